@@ -8,6 +8,11 @@ namespace {
 
 constexpr double kAsAsked = 0.01;  // a speed within 1 % is the one asked for
 
+// The greatest speeds are for travel: from this share of them on, it is no feed.
+constexpr double kFastShare = 0.8;
+// A rapid is several times as fast as a cut; feeds of one part for corners and finishing are not.
+constexpr double kSlowShare = 0.5;
+
 // Heights are sums of decimal steps in binary.
 constexpr double kSameHeight = 1e-6;  // device units
 
@@ -20,14 +25,41 @@ double ShareNotAbove(const Point& from, const Point& to, double height) {
   return (height - low) / (high - low);
 }
 
+// By V, which lifts have, too; F (VS) is of cuts alone.
+bool Fast(const CutWatch::Ride& ride) {
+  return !ride.by_xy_speed && ride.speed_mm_s >= kFastShare * ride.fastest_z_mm_s;
+}
+
+// More down than across.
+bool DropsSteeply(const CutWatch::Ride& ride) {
+  if (ride.plunge) return true;
+  if (!ride.in_work || ride.from.a != ride.to.a) return false;
+  const double across = std::hypot(ride.to.x - ride.from.x, ride.to.y - ride.from.y);
+  return ride.from.z - ride.to.z > across;
+}
+
+bool RisesSteeply(const CutWatch::Ride& ride) {
+  const double across = std::hypot(ride.to.x - ride.from.x, ride.to.y - ride.from.y);
+  return ride.to.z - ride.from.z > across;
+}
+
+// Along the surface nothing is cut: pens and drag knives go there with the spindle off.
+double BelowSurface_mm(const CutWatch::Ride& ride, const Registers& registers) {
+  const double below = registers.z0 - 2.0 * kSameHeight;
+  return ShareNotAbove(ride.from, ride.to, below) * ride.length_mm;
+}
+
 }  // namespace
 
 void CutWatch::OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command) {
-  if (fast_so_far_.mm > 0.0 && !ride.plunge) EndFastPlunge(ride);
+  const bool down = DropsSteeply(ride);
+  if (fast_so_far_.mm > 0.0 && !down) EndFastPlunge(ride);
+  OnVisit(ride, registers, command);
   if (ride.in_work) {
-    if (!ride.plunge) cut_mm_s_ = std::max(cut_mm_s_, ride.speed_mm_s);
+    if (!down) cut_mm_s_ = std::max(cut_mm_s_, ride.speed_mm_s);
+    if (down) OnWayDown(ride, registers, command);
     OnCut(ride, registers, command);
-    cutting_ = !ride.plunge || cutting_;
+    cutting_ = !down || cutting_;
     return;
   }
   cutting_ = false;
@@ -43,19 +75,18 @@ void CutWatch::OnCut(const Ride& ride, const Registers& registers, const Command
   const SpeedLimit& limit = ride.by_xy_speed ? registers.xy_limit : registers.z_limit;
   const bool limited = limit.off() > kAsAsked || registers.rpm_limit.off() > kAsAsked;
   if (ride.spindle_turns && given && !limited && !ride.plunge) return;
-  // Along the surface nothing is cut: pens and drag knives go there with the spindle off.
-  const double below = registers.z0 - 2.0 * kSameHeight;
-  const double mm = ShareNotAbove(ride.from, ride.to, below) * ride.length_mm;
+  const double mm = BelowSurface_mm(ride, registers);
   if (!ride.spindle_turns) Add(spindle_stands_, mm, command);
   if (!given) Add(feed_not_given_, mm, command);
-  if (ride.plunge) OnPlunge(ride, mm, command);
   const bool slower_down = ride.plunge && limit.used < limit.asked;
   if (!slower_down) AddLimited(feed_limited_, limit, mm, command);
   if (ride.spindle_turns) AddLimited(rpm_limited_, registers.rpm_limit, mm, command);
 }
 
-void CutWatch::OnPlunge(const Ride& ride, double mm, const CommandPlace& command) {
-  if (ride.as_fast_as_z && !cutting_) {
+void CutWatch::OnWayDown(const Ride& ride, const Registers& registers,
+                         const CommandPlace& command) {
+  const double mm = BelowSurface_mm(ride, registers);
+  if (Fast(ride) && !cutting_) {
     Add(fast_so_far_, mm, command);
     fast_mm_s_ = ride.speed_mm_s;
   } else if (mm > 0.0) {
@@ -75,11 +106,52 @@ void CutWatch::EndFastPlunge(const Ride& next) {
 
 CutWatch::Way CutWatch::fast_plunge() const {
   if (cut_mm_s_ >= fast_mm_s_) return fast_plunge_;
-  const bool hole_first =
-      fast_hole_.mm > 0.0 &&
-      (!(fast_plunge_.mm > 0.0) || fast_hole_.first.number < fast_plunge_.first.number);
-  return {.mm = fast_plunge_.mm + fast_hole_.mm,
-          .first = hole_first ? fast_hole_.first : fast_plunge_.first};
+  Way way = fast_plunge_;
+  Join(way, fast_hole_);
+  return way;
+}
+
+void CutWatch::OnVisit(const Ride& ride, const Registers& registers, const CommandPlace& command) {
+  const double mm = ride.in_work ? BelowSurface_mm(ride, registers) : 0.0;
+  if (mm > 0.0) {
+    const bool down = DropsSteeply(ride);
+    const bool enters = down ? !visit_.crosses : !visit_.entered;
+    if (enters) visit_.enters_fast = Fast(ride);
+    visit_.entered = true;
+    if (!down) {
+      visit_.crosses = true;
+      OnCrossing(ride, mm, command);
+    }
+  }
+  if (ride.to.z > registers.z0 - 2.0 * kSameHeight) EndVisit();
+}
+
+void CutWatch::OnCrossing(const Ride& ride, double mm, const CommandPlace& command) {
+  if (Fast(ride) && !RisesSteeply(ride)) {
+    Add(visit_.fast, mm, command);
+    visit_.fast_mm_s = std::min(visit_.fast_mm_s, ride.speed_mm_s);
+  } else if (ride.to.z > ride.from.z - kSameHeight) {
+    visit_.slowest_mm_s = std::min(visit_.slowest_mm_s, ride.speed_mm_s);
+  }
+}
+
+void CutWatch::EndVisit() {
+  if (visit_.fast.mm > 0.0 && visit_.slowest_mm_s <= kSlowShare * visit_.fast_mm_s) {
+    Join(fast_among_slow_, visit_.fast);
+  } else if (visit_.fast.mm > 0.0 && visit_.enters_fast) {
+    Join(fast_visits_, visit_.fast);
+    fast_visits_mm_s_ = std::min(fast_visits_mm_s_, visit_.fast_mm_s);
+  }
+  slowest_mm_s_ = std::min(slowest_mm_s_, visit_.slowest_mm_s);
+  visit_ = {};
+}
+
+CutWatch::Way CutWatch::fast_across() const {
+  CutWatch ended = *this;
+  ended.EndVisit();
+  Way way = ended.fast_among_slow_;
+  if (ended.slowest_mm_s_ <= kSlowShare * ended.fast_visits_mm_s_) Join(way, ended.fast_visits_);
+  return way;
 }
 
 void CutWatch::OnTravel(const Ride& ride, const Registers& registers, const CommandPlace& command) {
@@ -103,6 +175,12 @@ void CutWatch::Add(Way& way, double mm, const CommandPlace& command) {
   if (!(mm > 0.0)) return;
   if (!(way.mm > 0.0)) way.first = command;
   way.mm += mm;
+}
+
+void CutWatch::Join(Way& way, const Way& other) {
+  if (!(other.mm > 0.0)) return;
+  if (!(way.mm > 0.0) || other.first.number < way.first.number) way.first = other.first;
+  way.mm += other.mm;
 }
 
 void CutWatch::AddLimited(LimitedWay& way, const SpeedLimit& limit, double mm,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "engine/rml1/device.h"
 
@@ -28,22 +29,26 @@ class CutWatch {
     bool rapid = false;        // at the travel speed
     bool by_xy_speed = false;  // else by the speed of Z
     bool spindle_turns = false;
-    bool plunge = false;         // straight down into the work
-    bool as_fast_as_z = false;   // and as fast as Z travels
-    double speed_mm_s = 0.0;     // of a cut or a plunge
-    double clamps_height = 0.0;  // of the clamps above Z 0, device units; 0: none are known
+    bool plunge = false;          // straight down into the work
+    double speed_mm_s = 0.0;      // of a cut or a plunge
+    double fastest_z_mm_s = 0.0;  // that Z travels
+    double clamps_height = 0.0;   // of the clamps above Z 0, device units; 0: none are known
   };
   void OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command);
 
   const Way& spindle_stands() const { return spindle_stands_; }  // in the work
   const Way& no_clearance() const { return no_clearance_; }      // across, not above the surface
   const Way& feed_not_given() const { return feed_not_given_; }  // in the work
-  // Straight down below the surface as fast as Z travels, to where the tool cuts slower than that,
-  // or turns back in a program that cuts slower everywhere: on a machine with a slow Z that is the
-  // speed of every plunge. A fast way that a slower one goes on from ends above the material: CAM
-  // tools go down like that where a pass before has cleared the way. A step down on the way of a
-  // cut is part of the cut.
+  // Down below the surface, straight or steeply, nearly as fast as Z travels, to where the tool
+  // cuts slower than that, or turns back in a program that cuts slower everywhere: on a machine
+  // with a slow Z that is the speed of every plunge. A fast way that a slower one goes on from ends
+  // above the material: CAM tools go down like that where a pass before has cleared the way. A step
+  // down on the way of a cut is part of the cut.
   Way fast_plunge() const;
+  // Across below the surface by V, nearly as fast as Z travels, between cuts at half of that or
+  // less, or in a visit to the work that goes down as fast while such cuts are elsewhere. A
+  // way that leads down slowly is no slow cut: ramps are slow before a fast pass.
+  Way fast_across() const;
   // More than 1 % beside what the program asked for. A plunge that is slower harms nothing.
   const LimitedWay& feed_limited() const { return feed_limited_; }  // mm/s
   const LimitedWay& rpm_limited() const { return rpm_limited_; }
@@ -51,10 +56,26 @@ class CutWatch {
   Way below_clamps() const;
 
  private:
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  // From where the tool goes below the surface to where it is above again.
+  struct Visit {
+    Way fast;
+    double fast_mm_s = kNone;     // the least of these
+    double slowest_mm_s = kNone;  // of the others, unless they lead down
+    bool entered = false;
+    bool enters_fast = false;  // by the last way down before it crosses
+    bool crosses = false;
+  };
+
   static void Add(Way& way, double mm, const CommandPlace& command);
   static void AddLimited(LimitedWay& way, const SpeedLimit& limit, double mm,
                          const CommandPlace& command);
-  void OnPlunge(const Ride& ride, double mm, const CommandPlace& command);
+  static void Join(Way& way, const Way& other);
+  void OnVisit(const Ride& ride, const Registers& registers, const CommandPlace& command);
+  void OnWayDown(const Ride& ride, const Registers& registers, const CommandPlace& command);
+  void OnCrossing(const Ride& ride, double mm, const CommandPlace& command);
+  void EndVisit();
   void EndFastPlunge(const Ride& next);
   void OnCut(const Ride& ride, const Registers& registers, const CommandPlace& command);
   void OnTravel(const Ride& ride, const Registers& registers, const CommandPlace& command);
@@ -67,6 +88,11 @@ class CutWatch {
   Way fast_so_far_;  // of a way down that may go on slower
   double fast_mm_s_ = 0.0;
   double cut_mm_s_ = 0.0;  // the fastest across
+  Visit visit_;
+  Way fast_among_slow_;              // of visits that are over
+  Way fast_visits_;                  // of those that may be as fast as they should
+  double fast_visits_mm_s_ = kNone;  // the least of these
+  double slowest_mm_s_ = kNone;
   LimitedWay feed_limited_;
   LimitedWay rpm_limited_;
   bool has_cut_ = false;

@@ -30,20 +30,20 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
     }
   }
   totals_.motion_s += ride.time_s;
-  const double fastest_down = std::min(profile_->travel_speed, profile_->z_speeds.maximum_mm_s);
   const bool by_xy_speed = ride.chain == Chain::kToolDown;
-  watch_.OnRide({.from = ride.from,
-                 .to = ride.to,
-                 .length_mm = ride.length_mm,
-                 .in_work = in_work,
-                 .rapid = ride.rapid,
-                 .by_xy_speed = by_xy_speed,
-                 .spindle_turns = ride.spindle_turns,
-                 .plunge = plunges,
-                 .as_fast_as_z = registers.z_speed >= fastest_down,
-                 .speed_mm_s = by_xy_speed ? registers.xy_speed : registers.z_speed,
-                 .clamps_height = profile_->clamps_height},
-                registers, command);
+  watch_.OnRide(
+      {.from = ride.from,
+       .to = ride.to,
+       .length_mm = ride.length_mm,
+       .in_work = in_work,
+       .rapid = ride.rapid,
+       .by_xy_speed = by_xy_speed,
+       .spindle_turns = ride.spindle_turns,
+       .plunge = plunges,
+       .speed_mm_s = by_xy_speed ? registers.xy_speed : registers.z_speed,
+       .fastest_z_mm_s = std::min(profile_->travel_speed, profile_->z_speeds.maximum_mm_s),
+       .clamps_height = profile_->clamps_height},
+      registers, command);
   AddToState(ride.time_s, in_work || registers.tool_down);
   depth_ = registers.z0 - ride.to.z;
 }

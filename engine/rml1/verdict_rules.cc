@@ -51,7 +51,10 @@ constexpr std::array kRules = {
                 "it may be written for 40 units per mm: the tool rises # mm above the work, which "
                 "would be #{step_lift_at_40} mm there"},
     VerdictRule{ErrorCode::kRml1FastPlunge, "fast_plunge_length", kRounding_mm, Verdict::kDoubtful,
-                "# mm straight down to where the tool cuts, as fast as Z travels"},
+                "# mm down to where the tool cuts, nearly as fast as Z travels"},
+    VerdictRule{ErrorCode::kRml1FastAcross, "fast_across_length", kRounding_mm, Verdict::kDoubtful,
+                "# mm across in the work, nearly as fast as Z travels, where other cuts take "
+                "half of that or less"},
     VerdictRule{ErrorCode::kRml1BelowClamps, "below_clamps_length", kRounding_mm,
                 Verdict::kDoubtful,
                 "# mm across to the work or from it, lower than the clamps stand"},
