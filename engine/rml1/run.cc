@@ -429,6 +429,7 @@ std::unique_ptr<machine::RunSnapshot> MillRun::Save() const {
 
 void MillRun::Restore(const machine::RunSnapshot& snapshot) {
   state_ = static_cast<const Snapshot&>(snapshot).state;
+  released_ = state_.scout.sent();
 }
 
 }  // namespace rmlcell::rml1

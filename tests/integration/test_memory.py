@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A stream of any length takes no more memory than a short one: 16 MiB at most, whatever is made of it."""
+"""What a stream takes of memory has a bound, whatever its length: 16 MiB to check, run and explain it."""
 import os
 import subprocess
 import unittest

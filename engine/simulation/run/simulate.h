@@ -29,8 +29,7 @@ class Simulation {
   // Goes on by `slice` of virtual time, at most. While halted with scripted inputs to come, up to
   // the next of them. kHalted: nothing scripted will make it go on; apply a key, or end it.
   machine::RunPhase Step(SimTime slice) { return drive_.Step(slice); }
-  // START, where it is halted. False: the START before changed nothing, and none ever will.
-  bool Start() { return drive_.Start(); }
+  // Where it is halted: START, or its end where that changes nothing. True: it was started.
   bool StartOrEnd() { return drive_.StartOrEnd(); }
 
   // A key or input at the present time. Hold, resume, stop and override act through this.

@@ -19,23 +19,14 @@ using testing::StartsWith;
 constexpr const char* kGroove = "VS10;!VZ10;!PZ-100,200;!MC1;PU2010,1510;PD4010,1510;PU0,0;!MC0;";
 class JobMilling : public JobRunnerTest {
  protected:
-  static v1::WorkerAssignment Mill(const std::string& source, bool all = true) {
-    v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, source, "rml1");
-    assignment.set_profile("t1");
+  // With all that can be left of the block, or nothing.
+  static v1::WorkerAssignment MillFor(const std::string& source, bool all) {
+    v1::WorkerAssignment assignment = Mill(source);
     v1::Milling& milling = MillingOf(assignment);
-    milling.mutable_stock()->set_size_x_mm(60.0);
-    milling.mutable_stock()->set_size_y_mm(30.0);
-    milling.mutable_stock()->set_size_z_mm(5.0);
-    milling.mutable_tool()->set_shape(v1::MillTool::SHAPE_FLAT);
-    milling.mutable_tool()->set_diameter_mm(3.0);
-    milling.set_cell_mm(0.2);
     milling.set_relief(all);
     milling.set_height_map(all);
     milling.set_stl(all);
     return assignment;
-  }
-  static v1::Milling& MillingOf(v1::WorkerAssignment& assignment) {
-    return *assignment.mutable_job()->mutable_simulation()->mutable_milling();
   }
   std::vector<std::string> Reasons() {
     std::vector<std::string> codes;
@@ -46,7 +37,7 @@ class JobMilling : public JobRunnerTest {
 };
 
 TEST_F(JobMilling, LeavesWhatIsAskedFor) {
-  Work(Mill(kGroove));
+  Work(MillFor(kGroove, true));
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
   EXPECT_THAT(Names(), ElementsAre("height.png", "left.stl", "picture.svg", "relief.png", "report",
                                    "toolpath"));
@@ -75,13 +66,13 @@ TEST_F(JobMilling, LeavesWhatIsAskedFor) {
 
 // 20 mm x 3 mm x 1 mm and two half discs of 1.5 mm, 67.07 mm3 together.
 TEST_F(JobMilling, TheReportTellsWhatWasTakenOff) {
-  Work(Mill(kGroove, false));
+  Work(MillFor(kGroove, false));
   EXPECT_THAT(Names(), ElementsAre("picture.svg", "report", "toolpath"));
   EXPECT_NEAR(Report().milling().removed_mm3(), 67.07, 0.7);
   EXPECT_NEAR(Report().milling().deepest_cut_mm(), 1.0, 1e-6);
   EXPECT_EQ(Report().milling().tool_diameter_mm(), 3.0);
   EXPECT_EQ(Outcome().verdict(), v1::VERDICT_GOOD);
-  v1::WorkerAssignment plain = Mill(kGroove);
+  v1::WorkerAssignment plain = MillFor(kGroove, true);
   plain.mutable_job()->mutable_simulation()->clear_milling();
   Work(plain);
   EXPECT_FALSE(Report().has_milling());
@@ -90,13 +81,13 @@ TEST_F(JobMilling, TheReportTellsWhatWasTakenOff) {
 
 // docs/verdict.md: travel through the block, and what is cut below it. The tool travels at Z 2.
 TEST_F(JobMilling, TheVerdictMindsTheBlock) {
-  v1::WorkerAssignment high = Mill(kGroove);
+  v1::WorkerAssignment high = MillFor(kGroove, true);
   MillingOf(high).mutable_stock()->set_top_mm(3.0);
   Work(high);
   EXPECT_EQ(Outcome().verdict(), v1::VERDICT_BAD);
   EXPECT_THAT(Reasons(), testing::Contains("CELL-E9401"));
   EXPECT_GT(Report().milling().gouges(), 0);
-  v1::WorkerAssignment thin = Mill(kGroove);
+  v1::WorkerAssignment thin = MillFor(kGroove, true);
   MillingOf(thin).mutable_stock()->set_size_z_mm(0.8);
   Work(thin);
   EXPECT_NEAR(Report().milling().below_mm(), 0.2, 1e-6);
@@ -106,7 +97,7 @@ TEST_F(JobMilling, TheVerdictMindsTheBlock) {
 
 // 300 by 150 cells of 4 bytes are 180 kB; 6000 by 3000 are 72 MB, more than this job may hold.
 TEST_F(JobMilling, ABlockCountsAsMemoryOfTheJob) {
-  v1::WorkerAssignment assignment = Mill(kGroove, false);
+  v1::WorkerAssignment assignment = MillFor(kGroove, false);
   assignment.mutable_budget()->set_memory_bytes(32 << 20);
   Work(assignment);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
@@ -119,7 +110,7 @@ TEST_F(JobMilling, ABlockCountsAsMemoryOfTheJob) {
 // The block itself fits, what is to be made of it does not: a relief of 1500 by 750 pixels is drawn
 // row by row and kept as a file; the body of an exact ball nose has a triangle for each few cells.
 TEST_F(JobMilling, SoDoTheFilesThatAreMadeOfIt) {
-  v1::WorkerAssignment assignment = Mill(kGroove, false);
+  v1::WorkerAssignment assignment = MillFor(kGroove, false);
   MillingOf(assignment).mutable_tool()->set_shape(v1::MillTool::SHAPE_BALL);
   MillingOf(assignment).set_cell_mm(0.04);
   Work(assignment);
@@ -140,14 +131,14 @@ TEST_F(JobMilling, SoDoTheFilesThatAreMadeOfIt) {
 
 // Budget.output_bytes counts them, too: one byte less than all of them, and the report stays alone.
 TEST_F(JobMilling, TheFilesCountAsOutput) {
-  Work(Mill(kGroove, false));
+  Work(MillFor(kGroove, false));
   std::size_t without = 0;
   for (const auto& [name, bytes] : Artifacts()) without += bytes.size();
-  Work(Mill(kGroove));
+  Work(MillFor(kGroove, true));
   std::size_t all = 0;
   for (const auto& [name, bytes] : Artifacts()) all += bytes.size();
   ASSERT_GT(all, without);
-  v1::WorkerAssignment assignment = Mill(kGroove);
+  v1::WorkerAssignment assignment = MillFor(kGroove, true);
   for (const std::size_t allowed : {all - 1, without}) {
     assignment.mutable_budget()->set_output_bytes(static_cast<std::int64_t>(allowed));
     Work(assignment);
@@ -165,7 +156,7 @@ TEST_F(JobMilling, ACancelledRunLeavesNoMaterial) {
   server.heard = [&](const v1::WorkRequest& message) {
     if (IsPosition(message)) server.Send(Order(v1::WorkerControl::KIND_CANCEL));
   };
-  v1::WorkerAssignment assignment = Mill(endless);
+  v1::WorkerAssignment assignment = MillFor(endless, true);
   assignment.mutable_job()->mutable_simulation()->set_pace(1.0);
   Work(assignment);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
@@ -191,7 +182,7 @@ TEST_F(JobMilling, AFileForWhichThereIsNoMemoryIsOutOfMemory) {
 
 // A block that the server let through and this worker does not take: the job says why.
 TEST_F(JobMilling, ABlockThatCannotBeEndsTheJob) {
-  v1::WorkerAssignment assignment = Mill(kGroove);
+  v1::WorkerAssignment assignment = MillFor(kGroove, true);
   MillingOf(assignment).mutable_tool()->set_diameter_mm(0.0);
   Work(assignment);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_FAILED);

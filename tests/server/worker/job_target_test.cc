@@ -28,21 +28,6 @@ constexpr const char* kMoment = "PA;PU10,10;";
 
 class JobTargetRun : public JobRunnerTest {
  protected:
-  static v1::WorkerAssignment Mill(const std::string& source, double cell_mm = 0.2) {
-    v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, source, "rml1");
-    assignment.set_profile("t1");
-    v1::Milling& milling = MillingOf(assignment);
-    milling.mutable_stock()->set_size_x_mm(60.0);
-    milling.mutable_stock()->set_size_y_mm(30.0);
-    milling.mutable_stock()->set_size_z_mm(5.0);
-    milling.mutable_tool()->set_shape(v1::MillTool::SHAPE_FLAT);
-    milling.mutable_tool()->set_diameter_mm(3.0);
-    milling.set_cell_mm(cell_mm);
-    return assignment;
-  }
-  static v1::Milling& MillingOf(v1::WorkerAssignment& assignment) {
-    return *assignment.mutable_job()->mutable_simulation()->mutable_milling();
-  }
   static void SetTarget(const std::string& name, const std::string& bytes, bool is_file,
                         v1::WorkerAssignment& assignment) {
     v1::MillTarget& target = *MillingOf(assignment).mutable_target();

@@ -112,6 +112,22 @@ class JobRunnerTest : public testing::Test {
     lease.set_fence(fence);
     return lease;
   }
+  static v1::Milling& MillingOf(v1::WorkerAssignment& assignment) {
+    return *assignment.mutable_job()->mutable_simulation()->mutable_milling();
+  }
+  // A block of 60 x 30 x 5 mm under an end mill of 3 mm.
+  static v1::WorkerAssignment Mill(const std::string& source, double cell_mm = 0.2) {
+    v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, source, "rml1");
+    assignment.set_profile("t1");
+    v1::Milling& milling = MillingOf(assignment);
+    milling.mutable_stock()->set_size_x_mm(60.0);
+    milling.mutable_stock()->set_size_y_mm(30.0);
+    milling.mutable_stock()->set_size_z_mm(5.0);
+    milling.mutable_tool()->set_shape(v1::MillTool::SHAPE_FLAT);
+    milling.mutable_tool()->set_diameter_mm(3.0);
+    milling.set_cell_mm(cell_mm);
+    return assignment;
+  }
   static v1::WorkerAssignment Assignment(v1::JobKind kind, const std::string& source,
                                          const std::string& family = "optimo") {
     v1::WorkerAssignment assignment;
