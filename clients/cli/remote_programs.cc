@@ -30,7 +30,7 @@ std::string ProgramName(const std::string& machine, int slot) {
   return FullName("machines", machine) + "/programs/" + std::to_string(slot);
 }
 
-void PrintFindings(const v1::Findings& findings) {
+void PrintProgramFindings(const v1::Findings& findings) {
   for (const v1::Diagnostic& diagnostic : findings.diagnostics()) Print(FindingLine(diagnostic));
   if (findings.diagnostics_dropped() > 0) {
     Print("and " + std::to_string(findings.diagnostics_dropped()) + " more findings");
@@ -42,7 +42,7 @@ int PrintStored(const Remote& remote, const v1::Program& program, bool check_onl
     Print(Json(program));
     return kGood;
   }
-  PrintFindings(program.findings());
+  PrintProgramFindings(program.findings());
   const auto slot = ParseInteger(program.name().substr(program.name().rfind('/') + 1));
   const bool executable = slot && *slot > kExecutableOffset;
   Print(program.name() + (check_only ? " would be stored: " : " stored: ") + program.title() +
@@ -376,7 +376,7 @@ int TransferProject(const Remote& remote, const std::string& project, const std:
     Print(Json(response));
     return kGood;
   }
-  PrintFindings(response.findings());
+  PrintProgramFindings(response.findings());
   for (const v1::Program& program : response.programs()) PrintStored(remote, program, check_only);
   return kGood;
 }

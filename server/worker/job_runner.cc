@@ -1,9 +1,9 @@
 #include "server/worker/job_runner.h"
 
 #include <spdlog/spdlog.h>
-#include <time.h>
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <new>
@@ -14,7 +14,6 @@
 #include "engine/families/families.h"
 #include "engine/simulation/run/rehearsal.h"
 #include "engine/simulation/run/simulate.h"
-#include "engine/simulation/run/timetable.h"
 #include "engine/simulation/verdict/verdict.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
@@ -22,33 +21,26 @@
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
 #include "server/worker/assigned_programs.h"
+#include "server/worker/job_drive.h"
 #include "server/worker/job_events.h"
+#include "server/worker/job_lease.h"
 #include "server/worker/job_output.h"
 #include "server/worker/material_files.h"
 #include "server/worker/memory_budget.h"
-#include "server/worker/pacer.h"
 
 namespace rmlcell::server {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positions a second
-// Virtual time of one step of the simulation: it adapts, so that a step takes about this long.
-constexpr std::chrono::milliseconds kStepTarget{5};
-constexpr SimTime kSliceMin = std::chrono::milliseconds(10);
-constexpr SimTime kSliceMax = std::chrono::hours(10);
-constexpr SimTime kPacedSliceMin = std::chrono::milliseconds(1);
-
-double ProcessorTime_s() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
-}
-
 v1::Outcome OutcomeFor(machine::OutcomeKind kind, ErrorCode code, std::string detail = {}) {
   const machine::Outcome outcome{.kind = kind, .code = code, .detail = std::move(detail)};
   return bridge::ToProto(outcome, simulation::JudgeOutcome(outcome));
+}
+
+// Of a job that is cancelled, or over its time: kCancel, kOverTime.
+v1::Outcome OutcomeOf(Stop stop) {
+  return stop == Stop::kCancel
+             ? OutcomeFor(machine::OutcomeKind::kCancelled, ErrorCode::kCellCancelled)
+             : OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
 }
 
 // One attempt.
@@ -58,10 +50,12 @@ class Attempt {
       : line_(line),
         assignment_(std::move(assignment)),
         programs_(assignment_),
-        stopping_(stopping),
+        lease_(line, assignment_, stopping),
         output_(line, assignment_.lease(), assignment_.budget().output_bytes()),
-        events_([this](const v1::WorkerEvents& events) { SendEvents(events); }),
-        started_s_(ProcessorTime_s()) {}
+        events_([this](const v1::WorkerEvents& events) {
+          output_.CountEvents(events.ByteSizeLong());
+          lease_.SendEvents(events);
+        }) {}
 
   enum class End { kFinished, kHandBack, kLost };
 
@@ -81,19 +75,16 @@ class Attempt {
     Finish();
   }
 
-  bool stop_asked() const { return stop_asked_; }
+  bool stop_asked() const { return lease_.stop_asked(); }
 
  private:
   bool ReceivePrograms() {
     while (!programs_.complete()) {
-      std::optional<v1::WorkResponse> message = line_.Receive(std::chrono::seconds(60));
+      const std::optional<v1::WorkResponse> message = line_.Receive(std::chrono::seconds(60));
       if (!message) return false;
-      if (message->has_blob()) {
-        programs_.Add(message->blob());
-      } else {
-        Obey(*message);
-      }
-      if (released_) return false;
+      if (message->has_blob()) programs_.Add(message->blob());
+      lease_.Take(*message);
+      if (lease_.lost()) return false;
     }
     return true;
   }
@@ -151,22 +142,10 @@ class Attempt {
                              check->motion.findings.end());
     std::string motion_check;
     if (!check->motion.cut_short.empty()) motion_check = check->motion.cut_short.begin()->second;
-    while (const std::optional<v1::WorkResponse> message =
-               line_.Receive(std::chrono::milliseconds(0))) {
-      Obey(*message);
-      if (released_) return End::kLost;
-    }
-    if (CancelOrdered()) return Cancelled();
-    if (OverTime()) {
-      outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
-      return End::kFinished;
-    }
+    // Done as it is, it need not be handed back.
+    if (const Stop stop = lease_.StopAsked(); stop != Stop::kNone && stop != Stop::kHandBack)
+      return EndOf(stop);
     ReportFindings(found, judgement, motion_check);
-    return End::kFinished;
-  }
-
-  End Cancelled() {
-    outcome_ = OutcomeFor(machine::OutcomeKind::kCancelled, ErrorCode::kCellCancelled);
     return End::kFinished;
   }
 
@@ -208,7 +187,7 @@ class Attempt {
         bridge::RunOptionsOf(options, assignment_.budget(), assignment_.main_program(),
                              machine::Mode::kRemote));
     if (!made) return Refuse(made.error());
-    if (CancelOrdered()) return Cancelled();
+    if (const Stop stop = lease_.StopAsked(); stop != Stop::kNone) return EndOf(stop);
     if (!made->setup) {
       ReportFindings(*made, simulation::JudgeFindings(made->diagnostics));
       return End::kFinished;
@@ -219,16 +198,19 @@ class Attempt {
     for (const Diagnostic& diagnostic : made->diagnostics)
       events_.OnDiagnostic(SimTime(0), diagnostic);
     const machine::MachineFamily& family = *families::FindFamily(assignment_.family());
-    hold_key_ = machine::HoldKey(family.info(), made->setup->mode);
+    JobDrive::Options drive{.pace = options.pace(),
+                            .hold_key = machine::HoldKey(family.info(), made->setup->mode),
+                            .flush_events = [this] { events_.Flush(); }};
     if (options.pace() > 0.0) {  // else it is over as soon as that would be known
-      Result<std::unique_ptr<simulation::TimetableRun>> timetable_run =
-          simulation::TimetableRun::Of(family, *made->setup);
-      if (timetable_run) timetable_run_ = *std::move(timetable_run);
+      if (auto timetable = simulation::TimetableRun::Of(family, *made->setup))
+        drive.timetable = *std::move(timetable);
     }
     const Result<simulation::BegunRun> begun =
         simulation::Begin(family, std::move(*made->setup), std::move(products));
     if (!begun) return Refuse(begun.error());
-    if (const End end = Drive(*begun); end != End::kFinished) return end;
+    if (const Stop stop = JobDrive(lease_, output_, std::move(drive)).Run(*begun);
+        stop != Stop::kNone)
+      return EndOf(stop);
 
     const simulation::RunReport report = begun->simulation->Finish();
     std::map<std::string, std::string> values;
@@ -254,8 +236,8 @@ class Attempt {
     Result<std::vector<float>> heights = programs_.TargetHeights(
         milling,
         {.parameters = all.parameters, .mode = machine::Mode::kCycle, .budget = all.budget},
-        [this] { return StopAsked() == Stop::kNone; });
-    if (const Stop stop = StopAsked(); stop != Stop::kNone) return EndOf(stop);
+        [this] { return lease_.StopAsked() == Stop::kNone; });
+    if (const Stop stop = lease_.StopAsked(); stop != Stop::kNone) return EndOf(stop);
     if (!heights) {
       const std::string& name = assignment_.target().file_name();
       return Refuse({heights.error().code,
@@ -285,7 +267,7 @@ class Attempt {
       const std::optional<simulation::Target>& target = milling->target();
       files = MaterialFiles(milling->material(), target ? &*target : nullptr, options.milling(),
                             [&](std::size_t material_bytes) {
-                              stop = StopAsked();
+                              stop = lease_.StopAsked();
                               return stop == Stop::kNone && output_.Fits(smaller + material_bytes);
                             });
     }
@@ -310,203 +292,30 @@ class Attempt {
     return End::kFinished;
   }
 
-  // Why work that is no run, and so has nobody who drives it, should end where it is.
-  enum class Stop { kNone, kLost, kHandBack, kCancel, kOverTime };
-
-  Stop StopAsked() {
-    while (const std::optional<v1::WorkResponse> message = line_.TryReceive()) Obey(*message);
-    if (released_ || line_.gone()) return Stop::kLost;
-    if (stopping_ || stop_asked_) return Stop::kHandBack;
-    if (CancelOrdered()) return Stop::kCancel;
-    return OverTime() ? Stop::kOverTime : Stop::kNone;
-  }
-
   // Precondition: not kNone.
   End EndOf(Stop stop) {
     if (stop == Stop::kLost) return End::kLost;
     if (stop == Stop::kHandBack) return End::kHandBack;
-    if (stop == Stop::kCancel) return Cancelled();
-    outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
+    outcome_ = OutcomeOf(stop);
     return End::kFinished;
-  }
-
-  End Drive(const simulation::BegunRun& begun) {
-    machine::Run& run = *begun.run;
-    simulation::Simulation& simulation = *begun.simulation;
-    const simulation::Recorder& recorder = *begun.recorder;
-    SimTime slice = std::chrono::milliseconds(100);
-    Pacer pacer(assignment_.job().simulation().pace());
-    Clock::time_point last_position = Clock::now();
-    SendPosition(run);
-    while (!simulation.finished()) {
-      const Clock::time_point begin = Clock::now();
-      PlanTime(begin);
-      CarryOut(simulation);
-      if (simulation.finished()) break;
-      const SimTime due = pacer.Due(begin, simulation.state().time, slice);
-      const bool early = pacer.paced() && due < kPacedSliceMin &&
-                         simulation.phase() == machine::RunPhase::kRunning;
-      const machine::RunPhase phase = early ? machine::RunPhase::kRunning : simulation.Step(due);
-      const auto took = Clock::now() - begin;
-      if (took < kStepTarget / 2) slice = std::min(slice * 2, kSliceMax);
-      if (took > kStepTarget) slice = std::max(slice / 2, kSliceMin);
-      // Held by a client: wait for orders, not for the clock of the program.
-      const bool held = phase == machine::RunPhase::kHalted && orders_.empty();
-      if (held && !hold_ordered_) {
-        simulation.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
-        break;
-      }
-      if (held) pacer.Stand();
-      const auto patience = held    ? std::chrono::milliseconds(20)
-                            : early ? Pacer::kWait
-                                    : std::chrono::milliseconds(0);
-      while (std::optional<v1::WorkResponse> message = line_.Receive(patience)) {
-        Obey(*message);
-        if (released_) return End::kLost;
-        if (!orders_.empty()) break;
-      }
-      if (line_.gone()) return End::kLost;
-      if (stopping_ || stop_asked_) return End::kHandBack;
-      if (Clock::now() - last_position >= kPositionInterval) {
-        last_position = Clock::now();
-        events_.Flush();
-        SendPosition(run);
-      }
-      if (simulation.finished()) break;
-      if (recorder.cut_off() || !output_.Fits()) {
-        simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellOutputBudget);
-      } else if (OverTime()) {
-        simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
-      }
-    }
-    return End::kFinished;
-  }
-
-  // How long the program takes is found out beside the run, a little at a time; not for ever, for a
-  // program that has no end.
-  void PlanTime(Clock::time_point begin) {
-    constexpr std::chrono::milliseconds kAtATime{5};
-    constexpr std::chrono::seconds kTogether{10};
-    if (!timetable_run_ || timetable_run_->timetable().total()) return;
-    while (!timetable_run_->Advance() && Clock::now() - begin < kAtATime) continue;
-    planned_for_ += Clock::now() - begin;
-    if (!timetable_run_->timetable().total() && planned_for_ > kTogether) timetable_run_.reset();
-  }
-
-  // Orders wait until the run is between two steps: they come in while the run itself tells of an
-  // event.
-  void Obey(const v1::WorkResponse& message) {
-    const auto mine = [&](const v1::WorkerLease& lease) {
-      return lease.job() == assignment_.lease().job() &&
-             lease.fence() == assignment_.lease().fence();
-    };
-    if (message.has_stop()) {
-      stop_asked_ = true;
-    } else if (message.has_release() && mine(message.release().lease())) {
-      released_ = true;
-    } else if (message.has_events_stored() && mine(message.events_stored().lease())) {
-      events_stored_ = message.events_stored().count();
-    } else if (message.has_control() && mine(message.control().lease())) {
-      orders_.push_back(message.control());
-    }
-  }
-
-  bool CancelOrdered() const {
-    return std::ranges::count(orders_, v1::WorkerControl::KIND_CANCEL, &v1::WorkerControl::kind) >
-           0;
-  }
-
-  void CarryOut(simulation::Simulation& simulation) {
-    for (const v1::WorkerControl& order : std::exchange(orders_, {})) {
-      const SimTime now = simulation.state().time;
-      switch (order.kind()) {
-        case v1::WorkerControl::KIND_HOLD:
-          hold_ordered_ = true;
-          simulation.Apply({.at = now, .kind = hold_key_});
-          break;
-        case v1::WorkerControl::KIND_STOP:
-          hold_ordered_ = true;
-          simulation.Apply({.at = now, .kind = machine::InputKind::kStop});
-          break;
-        case v1::WorkerControl::KIND_RESUME:
-          hold_ordered_ = false;
-          simulation.Apply({.at = now, .kind = machine::InputKind::kStart});
-          break;
-        case v1::WorkerControl::KIND_OVERRIDE:
-          simulation.Apply(
-              {.at = now, .kind = machine::InputKind::kOverride, .value = order.value()});
-          break;
-        case v1::WorkerControl::KIND_CANCEL:
-          simulation.Cancel();
-          break;
-        default:
-          break;
-      }
-    }
-  }
-
-  bool OverTime() const {
-    return ProcessorTime_s() - started_s_ > assignment_.budget().processor_s();
-  }
-
-  // At most a window of events is under way: a store that is slow slows the run, not the memory.
-  void SendEvents(const v1::WorkerEvents& events) {
-    v1::WorkRequest message;
-    *message.mutable_events() = events;
-    *message.mutable_events()->mutable_lease() = assignment_.lease();
-    output_.CountEvents(events.ByteSizeLong());
-    if (!line_.Send(message)) return;
-    events_sent_ += events.events_size();
-    while (events_sent_ - events_stored_ > line_.events_window() && !line_.gone() && !released_) {
-      if (std::optional<v1::WorkResponse> answer = line_.Receive(std::chrono::milliseconds(100)))
-        Obey(*answer);
-    }
-  }
-
-  void SendPosition(const machine::Run& run) {
-    v1::WorkRequest message;
-    *message.mutable_heartbeat()->mutable_lease() = assignment_.lease();
-    v1::JobProgress& progress = *message.mutable_heartbeat()->mutable_progress();
-    progress = bridge::ToProto(run.state(), run.steps_executed());
-    if (assignment_.job().simulation().pace() > 0.0) {
-      progress.clear_progress();
-      if (timetable_run_ && timetable_run_->timetable().total()) {
-        simulation::Timetable& timetable = timetable_run_->timetable();
-        progress.set_progress(timetable.ShareAt(run.steps_executed(), run.state().time));
-        progress.set_planned_time_ns(timetable.total()->count());
-      }
-    }
-    line_.Send(message);
   }
 
   void Finish() {
-    v1::WorkRequest message;
-    v1::WorkerFinish& finish = *message.mutable_finish();
-    *finish.mutable_lease() = assignment_.lease();
+    v1::WorkerFinish finish;
     *finish.mutable_outcome() = outcome_;
     for (const auto& [slot, executable] : executables_)
       (*finish.mutable_executables())[slot] = executable;
-    line_.Send(message);
+    lease_.SendFinish(std::move(finish));
   }
 
   ServerLine& line_;
   v1::WorkerAssignment assignment_;
   AssignedPrograms programs_;
-  const std::atomic<bool>& stopping_;
+  JobLease lease_;
   JobOutput output_;
   JobEvents events_;
-  double started_s_;
   v1::Outcome outcome_;
   std::map<int, std::string> executables_;
-  std::unique_ptr<simulation::TimetableRun> timetable_run_;  // of a run with a pace
-  Clock::duration planned_for_{0};
-  std::int64_t events_sent_ = 0;
-  std::int64_t events_stored_ = 0;
-  std::vector<v1::WorkerControl> orders_;  // not carried out yet
-  bool hold_ordered_ = false;
-  machine::InputKind hold_key_ = machine::InputKind::kHold;
-  bool released_ = false;
-  bool stop_asked_ = false;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "clients/cli/local.h"
+#include "engine/simulation/run/simulate.h"
 
 #include <algorithm>
 #include <fstream>
@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "clients/cli/findings_text.h"
+#include "clients/cli/local.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/milling.h"
 #include "clients/cli/program_files.h"
@@ -14,7 +15,6 @@
 #include "clients/cli/verdict_text.h"
 #include "engine/core/number_text.h"
 #include "engine/simulation/report/facts.h"
-#include "engine/simulation/run/simulate.h"
 #include "engine/simulation/verdict/verdict.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
@@ -42,56 +42,6 @@ void DropFindings(const std::vector<Diagnostic>& told, v1::RunReport& report) {
       again.end());
 }
 
-Result<v1::StepPlace> ParseStepPlace(const std::string& text) {
-  if (text == "off") return v1::StepPlace();
-  const std::size_t slash = text.find('/');
-  const auto program = slash == std::string::npos ? std::optional<long long>(0)
-                                                  : ParseInteger(text.substr(0, slash));
-  const auto step = ParseInteger(slash == std::string::npos ? text : text.substr(slash + 1));
-  if (!program || !step || *program < 0 || *program > 99 ||
-      (slash != std::string::npos && *program < 1) || *step < 1 || *step > 1'000'000'000) {
-    return Error{
-        ErrorCode::kCellUsage, "'" + text + "': write PROGRAM/STEP, such as 45/7, or off", {}};
-  }
-  v1::StepPlace place;
-  place.set_program(static_cast<int>(*program));
-  place.set_step(static_cast<int>(*step));
-  return place;
-}
-
-Result<v1::OperatingMode> ParseMode(const std::string& text) {
-  const std::map<std::string, v1::OperatingMode> modes = {{"cycle", v1::OPERATING_MODE_CYCLE},
-                                                          {"remote", v1::OPERATING_MODE_REMOTE},
-                                                          {"single", v1::OPERATING_MODE_SINGLE},
-                                                          {"repeat", v1::OPERATING_MODE_REPEAT}};
-  const auto found = modes.find(text);
-  if (found != modes.end()) return found->second;
-  return Error{
-      ErrorCode::kCellUsage, "'" + text + "': modes are cycle, remote, single, repeat", {}};
-}
-
-// "steps=1000,time=60"
-Status ParseBudget(const std::string& text, v1::Budget& budget) {
-  std::string_view rest = text;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(','), rest.size());
-    const std::string_view part = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    const std::size_t equals = part.find('=');
-    const auto value =
-        equals == std::string_view::npos ? std::nullopt : ParseDouble(part.substr(equals + 1));
-    if (value && *value > 0.0 && part.substr(0, equals) == "steps") {
-      budget.set_steps(static_cast<std::int64_t>(*value));
-    } else if (value && *value > 0.0 && part.substr(0, equals) == "time") {
-      budget.set_virtual_time_s(*value);
-    } else {
-      return Error{
-          ErrorCode::kCellUsage, "'" + std::string(part) + "': write steps=N,time=SECONDS", {}};
-    }
-  }
-  return {};
-}
-
 std::vector<std::string> SplitCommas(const std::string& text) {
   std::vector<std::string> parts;
   std::string_view rest = text;
@@ -101,68 +51,6 @@ std::vector<std::string> SplitCommas(const std::string& text) {
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return parts;
-}
-
-// The options of the command line as the message that jobs have too.
-Result<v1::SimulationOptions> OptionsMessage(const SimulateOptions& options,
-                                             const machine::MachineFamily& family) {
-  const double override_max = family.info().override_max_percent;
-  v1::SimulationOptions message;
-  const Result<v1::OperatingMode> mode = ParseMode(options.mode);
-  if (!mode) return mode.error();
-  message.set_mode(*mode);
-  if (const Status valid = bridge::CheckOverride(options.override_percent, override_max); !valid)
-    return Error{ErrorCode::kCellUsage, "--override: " + valid.error().detail, {}};
-  message.set_override_percent(options.override_percent);
-  if (!options.simul.empty()) {
-    const Result<v1::StepPlace> place = ParseStepPlace(options.simul);
-    if (!place) return place.error();
-    *message.mutable_simul() = *place;
-  }
-  if (!options.breakpoint.empty()) {
-    const Result<v1::StepPlace> place = ParseStepPlace(options.breakpoint);
-    if (!place) return place.error();
-    *message.mutable_breakpoint() = *place;
-  }
-  if (!options.inputs_file.empty()) {
-    const Result<std::string> text = bridge::ReadFile(options.inputs_file, kFileBytesMax);
-    if (!text) return text.error();
-    if (const Status parsed =
-            bridge::ParseInputFile(*text, options.inputs_file, override_max, message);
-        !parsed)
-      return parsed.error();
-  }
-  return message;
-}
-
-// --executable 44 makes the executable of program 44 beforehand; --executable 44=FILE brings one.
-Status AddExecutables(const SimulateOptions& options, const machine::MachineFamily& family,
-                      std::vector<simulation::MemoryProgram>& programs, std::vector<int>& to_make) {
-  for (const std::string& text : options.executables) {
-    const Result<SlotFile> named = ParseSlotFile(text);
-    if (!named) return named.error();
-    const Result<int> slot = named->Slot(family);
-    if (!slot) return slot.error();
-    if (named->file.empty()) {
-      if (std::ranges::find(programs, *slot, &simulation::MemoryProgram::slot) == programs.end()) {
-        return Error{
-            ErrorCode::kCellUsage, "--executable " + text + ": there is no such program", {}};
-      }
-      to_make.push_back(*slot);
-      continue;
-    }
-    Result<std::string> bytes = bridge::ReadFile(named->file, kFileBytesMax);
-    if (!bytes) return bytes.error();
-    if (const Status good = family.CheckExecutable(*bytes, *slot); !good) return good.error();
-    const auto program = std::ranges::find(programs, *slot, &simulation::MemoryProgram::slot);
-    if (program == programs.end()) {
-      return Error{ErrorCode::kCellUsage,
-                   "--executable " + text + ": there is no program " + std::to_string(*slot),
-                   {}};
-    }
-    program->executable = machine::Bytes::Of(*std::move(bytes));
-  }
-  return {};
 }
 
 // A program that cannot run: its findings, and a verdict all the same.
@@ -283,20 +171,6 @@ class RunProducts {
   std::ofstream samples_;
 };
 
-// Whether the programs that --simul and --break name are in the memory.
-Status CheckPlaces(const v1::SimulationOptions& options, const LoadedFiles& loaded) {
-  for (const v1::StepPlace* place : {&options.simul(), &options.breakpoint()}) {
-    const bool there = place->program() == 0 ||
-                       std::ranges::find(loaded.programs, place->program(),
-                                         &simulation::MemoryProgram::slot) != loaded.programs.end();
-    if (there) continue;
-    return Error{ErrorCode::kCellUsage,
-                 "--simul, --break: there is no program " + std::to_string(place->program()),
-                 {}};
-  }
-  return {};
-}
-
 // The programs of a run. Streams call no others: a second one would be loaded and never run.
 Result<LoadedFiles> LoadPrograms(const SimulateOptions& options, const std::string& family) {
   Result<LoadedFiles> loaded = LoadFiles(options.files, options.slots, options.main_slot, family);
@@ -329,16 +203,15 @@ Result<PreparedCommand> Prepare(const SimulateOptions& options) {
     return placed.error();
   const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
   if (!message) return message.error();
-  if (const Status there = CheckPlaces(*message, *loaded); !there) return there.error();
-  v1::Budget budget;
-  if (const Status parsed = ParseBudget(options.budget, budget); !parsed) return parsed.error();
+  if (const Status there = CheckPlaces(*message, loaded->programs); !there) return there.error();
+  const Result<v1::Budget> budget = ParseBudget(options.budget);
+  if (!budget) return budget.error();
   Result<std::vector<std::string>> variables =
       bridge::ExpandVariables(SplitCommas(options.variables));
   if (!variables) return variables.error();
-  std::vector<int> to_make;
-  if (const Status added = AddExecutables(options, *loaded->family, loaded->programs, to_make);
-      !added)
-    return added.error();
+  const Result<std::vector<int>> to_make =
+      AddExecutables(options.executables, *loaded->family, loaded->programs);
+  if (!to_make) return to_make.error();
   Result<std::string> state = std::string();
   if (!options.state_in.empty()) state = bridge::ReadFile(options.state_in, kFileBytesMax);
   if (!state) return state.error();
@@ -349,9 +222,9 @@ Result<PreparedCommand> Prepare(const SimulateOptions& options) {
                                    .programs = loaded->programs,
                                    .machine_state = *std::move(state)};
   Result<simulation::PreparedRun> run = simulation::PrepareRun(
-      memory, bridge::RunOptionsOf(*message, budget, loaded->main_slot, machine::Mode::kCycle));
+      memory, bridge::RunOptionsOf(*message, *budget, loaded->main_slot, machine::Mode::kCycle));
   if (!run) return run.error();
-  for (const int slot : to_make) {
+  for (const int slot : *to_make) {
     if (!run->setup) break;  // it is told why
     if (const Status made = simulation::MakeExecutable(*loaded->family, *run->setup, slot); !made)
       return made.error();
@@ -423,39 +296,6 @@ int Simulate(const SimulateOptions& options) {
   products.MoveTraceTo(report);
   TellResult(options, *result, run, std::move(report));
   return ExitOf(outcome, options.strict);
-}
-
-int Explain(const std::vector<std::string>& codes, bool json) {
-  int exit_code = kGood;
-  std::vector<const CatalogueEntry*> entries;
-  if (codes.empty()) {
-    for (const CatalogueEntry& entry : Catalogue()) entries.push_back(&entry);
-  }
-  for (const std::string& code : codes) {
-    const auto found = FindByText(code);
-    if (found.empty()) {
-      Complain("no error '" + code + "'; rmlcell explain without a code lists them all");
-      exit_code = kUsage;
-    }
-    entries.insert(entries.end(), found.begin(), found.end());
-  }
-  for (const CatalogueEntry* entry : entries) {
-    if (json) {
-      Print(Json(bridge::Explain(*entry)));
-      continue;
-    }
-    if (codes.empty()) {
-      Print(CodeText(entry->code) + "  " + ConstantName(entry->code) + ": " +
-            std::string(entry->when));
-      continue;
-    }
-    Print(Paint(CodeText(entry->code), Colour::kBold, ColourOnOutput()) + "  " +
-          ConstantName(entry->code) + "  (" + std::string(SeverityName(entry->severity)) + ")");
-    Print("  what happened:  " + std::string(entry->when));
-    Print("  the machine:    " + std::string(SeverityEffect(entry->severity)));
-    Print("  what to do:     " + std::string(entry->advice));
-  }
-  return exit_code;
 }
 
 }  // namespace rmlcell::cli

@@ -1,0 +1,129 @@
+#include "server/worker/job_drive.h"
+
+#include <algorithm>
+
+#include "proto/bridge/report.h"
+#include "server/worker/pacer.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positions a second
+constexpr std::chrono::milliseconds kHeldWait{20};          // between two looks for an order
+constexpr SimTime kPacedSliceMin = std::chrono::milliseconds(1);
+
+// Virtual time of one step of the simulation: it adapts, so that a step takes about this long.
+class Slice {
+ public:
+  SimTime time() const { return time_; }
+  void Adapt(std::chrono::steady_clock::duration took) {
+    if (took < kStepTarget / 2) time_ = std::min(time_ * 2, kMax);
+    if (took > kStepTarget) time_ = std::max(time_ / 2, kMin);
+  }
+
+ private:
+  static constexpr std::chrono::milliseconds kStepTarget{5};
+  static constexpr SimTime kMin = std::chrono::milliseconds(10);
+  static constexpr SimTime kMax = std::chrono::hours(10);
+
+  SimTime time_ = std::chrono::milliseconds(100);
+};
+
+}  // namespace
+
+Stop JobDrive::Run(const simulation::BegunRun& begun) {
+  simulation::Simulation& simulation = *begun.simulation;
+  Slice slice;
+  Pacer pacer(options_.pace);
+  Clock::time_point last_position = Clock::now();
+  SendPosition(*begun.run);
+  while (!simulation.finished()) {
+    const Clock::time_point begin = Clock::now();
+    PlanTime(begin);
+    CarryOutOrders(simulation);
+    if (simulation.finished()) break;
+    const SimTime due = pacer.Due(begin, simulation.state().time, slice.time());
+    const bool early =
+        pacer.paced() && due < kPacedSliceMin && simulation.phase() == machine::RunPhase::kRunning;
+    const machine::RunPhase phase = early ? machine::RunPhase::kRunning : simulation.Step(due);
+    slice.Adapt(Clock::now() - begin);
+    // Held by a client: wait for orders, not for the clock of the program.
+    const bool halted = phase == machine::RunPhase::kHalted && !lease_.has_orders();
+    if (halted && !held_) {
+      simulation.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
+      break;
+    }
+    if (halted) pacer.Stand();
+    lease_.Listen(halted ? kHeldWait : early ? Pacer::kWait : std::chrono::milliseconds(0));
+    if (lease_.lost()) return Stop::kLost;
+    if (lease_.hand_back_asked()) return Stop::kHandBack;
+    if (Clock::now() - last_position >= kPositionInterval) {
+      last_position = Clock::now();
+      options_.flush_events();
+      SendPosition(*begun.run);
+    }
+    if (simulation.finished()) break;
+    if (begun.recorder->cut_off() || !output_.Fits()) {
+      simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellOutputBudget);
+    } else if (lease_.over_time()) {
+      simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
+    }
+  }
+  return Stop::kNone;
+}
+
+// How long the program takes is found out beside the run, a little at a time; not for ever, for a
+// program that has no end.
+void JobDrive::PlanTime(Clock::time_point begin) {
+  constexpr std::chrono::milliseconds kAtATime{5};
+  constexpr std::chrono::seconds kTogether{10};
+  std::unique_ptr<simulation::TimetableRun>& timetable = options_.timetable;
+  if (!timetable || timetable->timetable().total()) return;
+  while (!timetable->Advance() && Clock::now() - begin < kAtATime) continue;
+  planned_for_ += Clock::now() - begin;
+  if (!timetable->timetable().total() && planned_for_ > kTogether) timetable.reset();
+}
+
+void JobDrive::CarryOutOrders(simulation::Simulation& simulation) {
+  for (const v1::WorkerControl& order : lease_.TakeOrders()) {
+    const SimTime now = simulation.state().time;
+    switch (order.kind()) {
+      case v1::WorkerControl::KIND_HOLD:
+        held_ = true;
+        simulation.Apply({.at = now, .kind = options_.hold_key});
+        break;
+      case v1::WorkerControl::KIND_STOP:
+        held_ = true;
+        simulation.Apply({.at = now, .kind = machine::InputKind::kStop});
+        break;
+      case v1::WorkerControl::KIND_RESUME:
+        held_ = false;
+        simulation.Apply({.at = now, .kind = machine::InputKind::kStart});
+        break;
+      case v1::WorkerControl::KIND_OVERRIDE:
+        simulation.Apply(
+            {.at = now, .kind = machine::InputKind::kOverride, .value = order.value()});
+        break;
+      case v1::WorkerControl::KIND_CANCEL:
+        simulation.Cancel();
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+void JobDrive::SendPosition(const machine::Run& run) {
+  v1::JobProgress progress = bridge::ToProto(run.state(), run.steps_executed());
+  if (options_.pace > 0.0) {
+    progress.clear_progress();
+    if (options_.timetable && options_.timetable->timetable().total()) {
+      simulation::Timetable& timetable = options_.timetable->timetable();
+      progress.set_progress(timetable.ShareAt(run.steps_executed(), run.state().time));
+      progress.set_planned_time_ns(timetable.total()->count());
+    }
+  }
+  lease_.SendProgress(progress);
+}
+
+}  // namespace rmlcell::server

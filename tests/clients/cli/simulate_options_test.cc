@@ -1,0 +1,148 @@
+// What `rmlcell simulate` understands of its options: docs/files.md, "Running a program".
+#include "clients/cli/simulate_options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "engine/families/families.h"
+#include "tests/clients/cli/cli_folder.h"
+
+namespace rmlcell::cli {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const machine::MachineFamily& Optimo() { return *families::FindFamily("optimo"); }
+
+void ExpectUsage(const Error& error, const std::string& detail) {
+  EXPECT_EQ(error.code, ErrorCode::kCellUsage);
+  EXPECT_THAT(error.detail, HasSubstr(detail));
+}
+
+TEST(SimulateOptions, ABudgetIsStepsAndSecondsInAnyOrder) {
+  const auto both = ParseBudget("time=1.5,steps=1000");
+  ASSERT_TRUE(both);
+  EXPECT_EQ(both->steps(), 1000);
+  EXPECT_EQ(both->virtual_time_s(), 1.5);
+  const auto none = ParseBudget("");
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->steps(), 0);  // no limit of its own
+  EXPECT_EQ(none->virtual_time_s(), 0.0);
+}
+
+TEST(SimulateOptions, ABudgetOfNothingOfPartsOfStepsOrOfWordsIsRefused) {
+  for (const char* text :
+       {"steps=0", "steps=-1", "steps=0.5", "steps=1e300", "steps=", "steps", "time=0", "time=-2",
+        "time=inf", "time=x", "10", "speed=3", "steps=1,,time=2", "steps=1;time=2"}) {
+    const auto budget = ParseBudget(text);
+    ASSERT_FALSE(budget) << text;
+    ExpectUsage(budget.error(), "write steps=N,time=SECONDS");
+  }
+}
+
+TEST(SimulateOptions, EveryModeHasItsName) {
+  const std::map<std::string, v1::OperatingMode> modes = {{"cycle", v1::OPERATING_MODE_CYCLE},
+                                                          {"remote", v1::OPERATING_MODE_REMOTE},
+                                                          {"single", v1::OPERATING_MODE_SINGLE},
+                                                          {"repeat", v1::OPERATING_MODE_REPEAT}};
+  for (const auto& [name, mode] : modes) {
+    SimulateOptions options;
+    options.mode = name;
+    const auto message = OptionsMessage(options, Optimo());
+    ASSERT_TRUE(message) << name;
+    EXPECT_EQ(message->mode(), mode) << name;
+  }
+  SimulateOptions options;
+  options.mode = "Cycle";
+  ExpectUsage(OptionsMessage(options, Optimo()).error(), "cycle, remote, single, repeat");
+}
+
+TEST(SimulateOptions, APlaceIsAStepOfTheMainProgramOrOfOneThatIsNamed) {
+  SimulateOptions options;
+  options.simul = "45/7";
+  options.breakpoint = "12";
+  const auto message = OptionsMessage(options, Optimo());
+  ASSERT_TRUE(message);
+  EXPECT_EQ(message->simul().program(), 45);
+  EXPECT_EQ(message->simul().step(), 7);
+  EXPECT_EQ(message->breakpoint().program(), 0);  // whichever is started
+  EXPECT_EQ(message->breakpoint().step(), 12);
+
+  options.simul = "off";
+  options.breakpoint.clear();
+  const auto off = OptionsMessage(options, Optimo());
+  ASSERT_TRUE(off);
+  EXPECT_TRUE(off->has_simul());  // switches off what the machine had
+  EXPECT_EQ(off->simul().step(), 0);
+  EXPECT_FALSE(off->has_breakpoint());  // leaves it as it is
+}
+
+TEST(SimulateOptions, APlaceThatCannotBeIsRefused) {
+  for (const char* text : {"0/7", "100/7", "-1/7", "45/0", "45/-1", "45/", "/7", "45/7/1", "x", "",
+                           "0", "45/1000000001", "Off"}) {
+    if (*text == '\0') continue;  // not given
+    SimulateOptions simul;
+    simul.simul = text;
+    const auto message = OptionsMessage(simul, Optimo());
+    ASSERT_FALSE(message) << text;
+    ExpectUsage(message.error(), "write PROGRAM/STEP");
+    SimulateOptions breakpoint;
+    breakpoint.breakpoint = text;
+    EXPECT_FALSE(OptionsMessage(breakpoint, Optimo())) << text;
+  }
+  SimulateOptions last;
+  last.simul = "99/1000000000";
+  EXPECT_TRUE(OptionsMessage(last, Optimo()));
+}
+
+TEST(SimulateOptions, AnOverrideIsWithinWhatTheMachineHas) {
+  SimulateOptions options;
+  options.override_percent = Optimo().info().override_max_percent;
+  EXPECT_TRUE(OptionsMessage(options, Optimo()));
+  options.override_percent += 1.0;
+  ExpectUsage(OptionsMessage(options, Optimo()).error(), "--override: ");
+}
+
+TEST(SimulateOptions, InputsComeFromTheirFile) {
+  const CliFolder folder;
+  SimulateOptions options;
+  options.inputs_file = folder.File("missing.txt");
+  EXPECT_EQ(OptionsMessage(options, Optimo()).error().code, ErrorCode::kCellFileUnreadable);
+}
+
+// A place in a program that is not there would never be reached, and nobody would know why.
+TEST(SimulateOptions, APlaceNamesAProgramThatIsThere) {
+  const std::vector<simulation::MemoryProgram> programs = {{.slot = 45}, {.slot = 7}};
+  v1::SimulationOptions options;
+  EXPECT_TRUE(CheckPlaces(options, programs).ok());
+  options.mutable_simul()->set_program(7);
+  options.mutable_breakpoint()->set_step(3);  // of the main program
+  EXPECT_TRUE(CheckPlaces(options, programs).ok());
+  options.mutable_breakpoint()->set_program(8);
+  ExpectUsage(CheckPlaces(options, programs).error(), "there is no program 8");
+  options.mutable_simul()->set_program(9);
+  ExpectUsage(CheckPlaces(options, programs).error(), "there is no program 9");
+}
+
+TEST(SimulateOptions, AnExecutableIsMadeOfAProgramThatIsThere) {
+  std::vector<simulation::MemoryProgram> programs = {{.slot = 45}, {.slot = 7}};
+  const auto to_make = AddExecutables({"7", "45"}, Optimo(), programs);
+  ASSERT_TRUE(to_make);
+  EXPECT_THAT(*to_make, ElementsAre(7, 45));
+  ExpectUsage(AddExecutables({"8"}, Optimo(), programs).error(), "there is no such program");
+  EXPECT_EQ(AddExecutables({"100"}, Optimo(), programs).error().code, ErrorCode::kProgramNumber);
+}
+
+TEST(SimulateOptions, AnExecutableThatIsBroughtMustBeOne) {
+  const CliFolder folder;
+  std::vector<simulation::MemoryProgram> programs = {{.slot = 45}};
+  const std::string bad = folder.Put("45.exe", "no executable");
+  EXPECT_FALSE(AddExecutables({"45=" + bad}, Optimo(), programs));
+  EXPECT_EQ(AddExecutables({"45=" + folder.File("none")}, Optimo(), programs).error().code,
+            ErrorCode::kCellFileUnreadable);
+  EXPECT_TRUE(programs.front().executable->empty());
+}
+
+}  // namespace
+}  // namespace rmlcell::cli
