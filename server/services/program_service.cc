@@ -4,11 +4,11 @@
 
 #include "proto/bridge/findings.h"
 #include "proto/bridge/header_date.h"
-#include "proto/bridge/sha256.h"
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/programs/text_tools.h"
 #include "server/services/job_streams.h"
+#include "server/services/program_upload.h"
 
 namespace rmlcell::server {
 namespace {
@@ -21,86 +21,47 @@ v1::Findings FindingsOf(const machine::Translation& translation) {
                             translation.diagnostics_dropped, translation.figures);
 }
 
-// Takes a program in chunks. Bytes are kept in memory up to the announced size, which is checked
-// against the limit before the first chunk; they are stored when all are there and the digest is
-// right.
+// A program that comes in chunks: stored when all are there and the digest is right.
 class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
  public:
   Upload(const CallNeeds& needs, ProgramBook& programs, Caller caller, v1::Program* response)
-      : needs_(needs), programs_(programs), caller_(std::move(caller)), response_(response) {
+      : needs_(needs),
+        programs_(programs),
+        caller_(std::move(caller)),
+        response_(response),
+        upload_([&programs](std::int64_t bytes) { return programs.CheckSize(bytes); }) {
     StartRead(&message_);
   }
 
  private:
   void OnReadDone(bool ok) override {
     if (finished_) return;
-    if (!ok) return Store();
-    if (message_.has_header()) {
-      if (begun_) return End(Error{ErrorCode::kCellInvalidArgument, "a second header", {}});
-      begun_ = true;
-      header_ = message_.header();
-      if (const Status good = CheckHeader(); !good) return End(good.error());
+    if (const Status good = ok ? upload_.Add(message_) : upload_.End(); !good)
+      return End(ToGrpcStatus(good.error()));
+    if (ok) {
+      StartRead(&message_);
     } else {
-      if (!begun_)
-        return End(
-            Error{ErrorCode::kCellInvalidArgument, "the first message must be the header", {}});
-      if (header_.size() == 0 && !message_.chunk().empty()) {
-        return End(InvalidArgument("header.size is missing: give the number of bytes that follow"));
-      }
-      if (bytes_.size() + message_.chunk().size() > static_cast<std::size_t>(header_.size())) {
-        return End(Error{ErrorCode::kCellChecksum, "more bytes than the header says", {}});
-      }
-      digest_.Add(message_.chunk());
-      bytes_ += message_.chunk();
+      needs_.executor.Post([this] { Store(); });
     }
-    StartRead(&message_);
-  }
-
-  // What is wrong with it is told before the first byte of the program.
-  Status CheckHeader() {
-    if (header_.size() < 0)
-      return InvalidArgument("header.size is " + std::to_string(header_.size()));
-    if (header_.sha256().empty()) return InvalidArgument("header.sha256 is missing");
-    const std::optional<std::string> digest = bridge::ReadSha256(header_.sha256());
-    if (!digest) return InvalidArgument("header.sha256 is not 64 hexadecimal digits");
-    header_.set_sha256(*digest);
-    return programs_.CheckSize(header_.size());
   }
 
   void Store() {
-    if (!begun_) return End(Error{ErrorCode::kCellInvalidArgument, "no header", {}});
-    if (header_.size() == 0)
-      return End(Error{ErrorCode::kCellEmptyProgram, header_.file_name(), {}});
-    if (bytes_.size() != static_cast<std::size_t>(header_.size())) {
-      return End(Error{ErrorCode::kCellChecksum,
-                       std::to_string(bytes_.size()) + " bytes came, " +
-                           std::to_string(header_.size()) + " were announced",
-                       {}});
-    }
-    if (digest_.Hex() != header_.sha256())
-      return End(Error{ErrorCode::kCellChecksum, "SHA-256 differs", {}});
-    finished_ = true;
-    needs_.executor.Post([this] {
-      const ProgramResult<v1::Program> stored =
-          programs_.Store({.name = header_.name(),
-                           .file_name = header_.file_name(),
-                           .form = header_.form(),
-                           .title = header_.title(),
-                           .etag = header_.etag(),
-                           .bytes = std::move(bytes_),
-                           .validate_only = header_.validate_only(),
-                           .force = header_.force()});
-      if (stored) *response_ = *stored.value;
-      const grpc::Status status = stored ? grpc::Status::OK : ToGrpcStatus(stored.error);
-      LogCall("ProgramService/UploadProgram", caller_, status,
-              std::chrono::steady_clock::now() - begin_);
-      Finish(status);
-    });
+    const v1::UploadProgramRequest::Header& header = upload_.header();
+    const ProgramResult<v1::Program> stored =
+        programs_.Store({.name = header.name(),
+                         .file_name = header.file_name(),
+                         .form = header.form(),
+                         .title = header.title(),
+                         .etag = header.etag(),
+                         .bytes = upload_.TakeBytes(),
+                         .validate_only = header.validate_only(),
+                         .force = header.force()});
+    if (stored) *response_ = *stored.value;
+    End(stored ? grpc::Status::OK : ToGrpcStatus(stored.error));
   }
 
-  void End(const Error& error) {
+  void End(const grpc::Status& status) {
     finished_ = true;
-    const grpc::Status status = ToGrpcStatus(error);
     LogCall("ProgramService/UploadProgram", caller_, status,
             std::chrono::steady_clock::now() - begin_);
     Finish(status);
@@ -114,10 +75,7 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
   v1::Program* response_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   v1::UploadProgramRequest message_;
-  v1::UploadProgramRequest::Header header_;
-  bridge::Sha256 digest_;
-  std::string bytes_;
-  bool begun_ = false;
+  ProgramUpload upload_;
   bool finished_ = false;
 };
 
