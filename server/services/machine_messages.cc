@@ -1,5 +1,6 @@
 #include "server/services/machine_messages.h"
 
+#include <array>
 #include <sstream>
 
 #include "engine/core/number_text.h"
@@ -8,9 +9,12 @@
 #include "proto/bridge/setup.h"
 #include "server/base/names.h"
 #include "server/records/job_messages.h"
+#include "server/records/update_mask.h"
 
 namespace rmlcell::server {
 namespace {
+
+constexpr std::array<std::string_view, 3> kMachineFields = {"title", "profile", "parameters"};
 
 std::vector<std::string> Words(std::string_view text) {
   std::vector<std::string> words;
@@ -82,6 +86,28 @@ v1::LaserSchedule ToProto(const storage::ScheduleRecord& record) {
   message.set_power_percent(record.power_percent);
   message.set_etag(std::to_string(record.revision));
   return message;
+}
+
+storage::MachineRecord FromProto(const v1::Machine& message, const std::string& id) {
+  return {.id = id,
+          .family = message.family(),
+          .title = message.title(),
+          .profile = message.profile(),
+          .parameters = {message.parameters().begin(), message.parameters().end()}};
+}
+
+Result<storage::MachineRecord> Updated(storage::MachineRecord machine, const v1::Machine& wanted,
+                                       const google::protobuf::FieldMask& mask) {
+  if (!wanted.family().empty() && wanted.family() != machine.family)
+    return InvalidArgument("the family of a machine cannot be changed");
+  const auto named = FieldsToUpdate(mask, wanted, kMachineFields);
+  if (!named) return named.error();
+  storage::MachineRecord values = FromProto(wanted, machine.id);
+  if (named->contains("title")) machine.title = std::move(values.title);
+  if (named->contains("profile")) machine.profile = std::move(values.profile);
+  if (named->contains("parameters")) machine.parameters = std::move(values.parameters);
+  if (const Status good = CheckMachine(machine); !good) return good.error();
+  return machine;
 }
 
 Status CheckMachine(const storage::MachineRecord& machine) {

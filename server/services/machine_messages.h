@@ -1,5 +1,9 @@
 #pragma once
 
+#include <google/protobuf/field_mask.pb.h>
+
+#include <string>
+
 #include "engine/core/result.h"
 #include "rmlcell/v1/machine.pb.h"
 #include "storage/records.h"
@@ -13,6 +17,15 @@ namespace rmlcell::server {
 v1::Family ToProto(const machine::MachineFamily& family);
 v1::Machine ToProto(const storage::MachineRecord& record);
 v1::LaserSchedule ToProto(const storage::ScheduleRecord& record);
+
+// A record that is not stored yet.
+storage::MachineRecord FromProto(const v1::Machine& message, const std::string& id);
+
+// `machine` with those fields of `wanted` that an update takes over (update_mask.h); its revision
+// stays. Errors: CellInvalidArgument for another family or a field that cannot be changed, those of
+// CheckMachine.
+Result<storage::MachineRecord> Updated(storage::MachineRecord machine, const v1::Machine& wanted,
+                                       const google::protobuf::FieldMask& mask);
 
 // Family, profile and parameters must exist and be in range.
 // Errors: CellUnknownFamily, CellInvalidArgument, CellUnknownParameter, CellParameterRange.

@@ -1,7 +1,6 @@
 #include "server/services/machine_service.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 
 #include "engine/families/families.h"
@@ -12,7 +11,6 @@
 #include "server/jobs/dispatcher.h"
 #include "server/records/job_messages.h"
 #include "server/records/program_place.h"
-#include "server/records/update_mask.h"
 #include "server/services/job_streams.h"
 #include "server/services/machine_messages.h"
 
@@ -21,15 +19,6 @@ namespace {
 
 constexpr PageSizes kMachinePages{.fallback = 100, .max = 1000};
 constexpr std::int64_t kUnaryProgramBytes = 3 << 20;
-constexpr std::array<std::string_view, 3> kMachineFields = {"title", "profile", "parameters"};
-
-storage::MachineRecord FromProto(const v1::Machine& message, const std::string& id) {
-  return {.id = id,
-          .family = message.family(),
-          .title = message.title(),
-          .profile = message.profile(),
-          .parameters = {message.parameters().begin(), message.parameters().end()}};
-}
 
 }  // namespace
 
@@ -133,38 +122,28 @@ grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerContext* context,
                                                         const v1::UpdateMachineRequest* request,
                                                         v1::Machine* response) {
-  return Answer(
-      needs_, context, *request, "MachineService/UpdateMachine",
-      [this, request, response](const Caller&) {
-        const auto id = ParseMachineName(request->machine().name());
-        if (!id) return ToGrpcStatus(id.error());
-        const auto expected = ParseEtag(request->machine().etag());
-        if (!expected) return ToGrpcStatus(expected.error());
-        auto record = store_.GetMachine(*id);
-        if (!record) return ToGrpcStatus(record.error());
-        const storage::MachineRecord wanted = FromProto(request->machine(), *id);
-        if (!wanted.family.empty() && wanted.family != record->family) {
-          return ToGrpcStatus(Error{
-              ErrorCode::kCellInvalidArgument, "the family of a machine cannot be changed", {}});
-        }
-        const auto named =
-            FieldsToUpdate(request->update_mask(), request->machine(), kMachineFields);
-        if (!named) return ToGrpcStatus(named.error());
-        if (named->contains("title")) record->title = wanted.title;
-        if (named->contains("profile")) record->profile = wanted.profile;
-        if (named->contains("parameters")) record->parameters = wanted.parameters;
-        if (const Status good = CheckMachine(*record); !good) return ToGrpcStatus(good.error());
-        if (request->validate_only()) {
-          *response = ToProto(*record);
-          return grpc::Status::OK;
-        }
-        // Read and written by the same revision: a change in between is refused, not lost.
-        const auto stored = store_.PutMachine(
-            *record, *expected == storage::kAnyRevision ? record->revision : *expected);
-        if (!stored) return ToGrpcStatus(stored.error());
-        *response = ToProto(*stored);
-        return grpc::Status::OK;
-      });
+  return Answer(needs_, context, *request, "MachineService/UpdateMachine",
+                [this, request, response](const Caller&) {
+                  const auto id = ParseMachineName(request->machine().name());
+                  if (!id) return ToGrpcStatus(id.error());
+                  const auto expected = ParseEtag(request->machine().etag());
+                  if (!expected) return ToGrpcStatus(expected.error());
+                  const auto stands = store_.GetMachine(*id);
+                  if (!stands) return ToGrpcStatus(stands.error());
+                  const auto record = Updated(*stands, request->machine(), request->update_mask());
+                  if (!record) return ToGrpcStatus(record.error());
+                  if (request->validate_only()) {
+                    *response = ToProto(*record);
+                    return grpc::Status::OK;
+                  }
+                  // Read and written by the same revision: a change in between is refused, not
+                  // lost.
+                  const auto stored = store_.PutMachine(
+                      *record, *expected == storage::kAnyRevision ? record->revision : *expected);
+                  if (!stored) return ToGrpcStatus(stored.error());
+                  *response = ToProto(*stored);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* MachineService::ListLaserSchedules(

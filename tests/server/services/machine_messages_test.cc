@@ -201,5 +201,55 @@ TEST(CheckMachine, ATitleHas200CharactersAtMost) {
   ExpectNoMachine(machine, ErrorCode::kCellInvalidArgument, "title is longer than 200");
 }
 
+const storage::MachineRecord kMill{.id = "m-1",
+                                   .family = "rml1",
+                                   .title = "Mill",
+                                   .profile = "mdx-20",
+                                   .parameters = {{"ORIGIN_X", "10"}},
+                                   .revision = 7};
+
+google::protobuf::FieldMask Mask(const std::vector<std::string>& paths) {
+  google::protobuf::FieldMask mask;
+  for (const std::string& path : paths) mask.add_paths(path);
+  return mask;
+}
+
+TEST(UpdatedMachine, WithoutAMaskOnlyWhatHasAValueChanges) {
+  v1::Machine wanted;
+  wanted.set_title("Mill by the door");
+  const auto updated = Updated(kMill, wanted, {});
+  ASSERT_TRUE(updated);
+  EXPECT_EQ(updated->title, "Mill by the door");
+  EXPECT_EQ(updated->profile, "mdx-20");
+  EXPECT_EQ(updated->parameters, kMill.parameters);
+  EXPECT_EQ(updated->family, "rml1");
+  EXPECT_EQ(updated->revision, 7);
+}
+
+TEST(UpdatedMachine, AFieldThatTheMaskNamesIsEmptiedWithoutAValue) {
+  v1::Machine wanted;
+  wanted.set_title("not named");
+  const auto updated = Updated(kMill, wanted, Mask({"profile", "parameters"}));
+  ASSERT_TRUE(updated);
+  EXPECT_EQ(updated->title, "Mill");
+  EXPECT_EQ(updated->profile, "");
+  EXPECT_TRUE(updated->parameters.empty());
+}
+
+TEST(UpdatedMachine, ItsFamilyStays) {
+  v1::Machine wanted;
+  wanted.set_family("rml1");
+  EXPECT_TRUE(Updated(kMill, wanted, {}));
+  wanted.set_family("optimo");
+  EXPECT_EQ(Updated(kMill, wanted, {}).error().code, ErrorCode::kCellInvalidArgument);
+}
+
+TEST(UpdatedMachine, WhatCannotBeIsRefused) {
+  EXPECT_EQ(Updated(kMill, {}, Mask({"revision"})).error().code, ErrorCode::kCellInvalidArgument);
+  v1::Machine wanted;
+  (*wanted.mutable_parameters())["NO_SUCH"] = "1";
+  EXPECT_EQ(Updated(kMill, wanted, {}).error().code, ErrorCode::kCellUnknownParameter);
+}
+
 }  // namespace
 }  // namespace rmlcell::server
