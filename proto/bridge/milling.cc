@@ -113,8 +113,8 @@ Result<simulation::Milling> FromProto(const v1::Milling& milling) {
   if (!(milling.cell_mm() >= 0.0))
     return InvalidArgument("cell_mm is " + ShortestText(milling.cell_mm()) +
                            ": above 0, or 0 for 0.1");
-  const Status body = CheckTolerance("stl_tolerance_mm", StlToleranceOf(milling));
-  if (!body) return body.error();
+  if (const Status body = CheckTolerance("stl_tolerance_mm", StlToleranceOf(milling)); !body)
+    return body.error();
   const Result<simulation::MillTool> tool = FromProto(milling.tool());
   if (!tool) return tool.error();
   const double cell_mm = milling.cell_mm() > 0.0 ? milling.cell_mm() : kCellStandard_mm;
@@ -151,8 +151,9 @@ Status SetBlockAndTool(const std::string& stock, const std::string& tool, v1::Mi
 }
 
 Status CheckTarget(const v1::MillTarget& target) {
-  const Status tolerance = CheckTolerance("target.tolerance_mm", TargetToleranceOf(target));
-  if (!tolerance) return tolerance;
+  if (const Status tolerance = CheckTolerance("target.tolerance_mm", TargetToleranceOf(target));
+      !tolerance)
+    return tolerance.error();
   switch (target.source_case()) {
     case v1::MillTarget::kFile:
       break;

@@ -438,8 +438,7 @@ std::vector<std::string> MistypedVariables(const std::map<std::string, std::stri
 Status ValidateConfig(const Config& config) {
   if (config.listen_grpc.empty()) return Wrong("listen.grpc is empty: nobody could call");
   for (const std::string& address : config.listen_grpc) {
-    const Status valid = ValidateAddress("listen.grpc", address);
-    if (!valid) return valid.error();
+    if (const Status valid = ValidateAddress("listen.grpc", address); !valid) return valid.error();
   }
   if (!config.listen_web.empty()) {
     if (const Status valid = ValidateAddress("listen.web", config.listen_web); !valid)

@@ -81,12 +81,15 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
         "job.simulation.mode is MANUAL, in which no program runs: use REMOTE, CYCLE, SINGLE or REPEAT");
   }
   if (options.has_breakpoint()) {
-    const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint", family);
-    if (!valid) return valid.error();
+    if (const Status valid =
+            CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint", family);
+        !valid)
+      return valid.error();
   }
   if (options.has_simul()) {
-    const Status valid = CheckStepPlace(options.simul(), "job.simulation.simul", family);
-    if (!valid) return valid.error();
+    if (const Status valid = CheckStepPlace(options.simul(), "job.simulation.simul", family);
+        !valid)
+      return valid.error();
   }
   for (const v1::ScriptedInput& input : options.inputs()) {
     if (!(input.at_s() >= 0.0 && std::isfinite(input.at_s()))) {

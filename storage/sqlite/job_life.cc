@@ -131,8 +131,7 @@ Result<JobRecord> LoseAttempt(WriteContext& context, const Lease& lease, std::st
                               const LossPolicy& policy) {
   Result<JobRow> row = GetRow(context, lease.job);
   if (!row) return row.error();
-  const Status ended = EndAttempt(context, lease, how);
-  if (!ended) return ended.error();
+  if (const Status ended = EndAttempt(context, lease, how); !ended) return ended.error();
   JobRecord& job = row->job;
   const std::vector<NewEvent>* events = &policy.ended;
   if (job.kind == kRunKind) {
@@ -247,8 +246,8 @@ Result<JobRecord> CancelJob(WriteContext& context, std::int64_t id,
   if (job.state == JobState::kQueued) {
     job.cancel_requested = true;
     EndJob(context, job, Cancelled());
-    const Status written = WriteChange(context, *row, kOutsideAnAttempt, events);
-    if (!written) return written.error();
+    if (const Status written = WriteChange(context, *row, kOutsideAnAttempt, events); !written)
+      return written.error();
   } else if (!job.cancel_requested) {
     job.cancel_requested = true;
     if (const Status written = WriteChange(context, *row, kOutsideAnAttempt, {}); !written)

@@ -230,8 +230,7 @@ Result<std::vector<JobRecord>> JobTable::List(const JobQuery& query) {
   };
   for (const JobState state : {JobState::kQueued, JobState::kRunning}) {
     if (!wants(state)) continue;
-    const Status added = add(ListUnfinished(state, query));
-    if (!added) return added.error();
+    if (const Status added = add(ListUnfinished(state, query)); !added) return added.error();
   }
   const bool wants_finished =
       query.state ? wants(*query.state) && IsFinal(*query.state) : query.finished.value_or(true);

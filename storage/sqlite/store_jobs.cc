@@ -37,9 +37,10 @@ class Submission {
   Status Prepare(Writer& writer, RequestIds& ids, const Clock& clock) {
     contents_.request_id = job_.request_id.empty() ? ids.Make(clock()) : job_.request_id;
     staged_.reserve(job_.attachments.size() + 1);
-    const Status specification = Stage(
-        StagedContent::Make(writer, job_.specification, StagedContent::Place::kRecordWhenSmall));
-    if (!specification) return specification.error();
+    if (const Status specification = Stage(StagedContent::Make(
+            writer, job_.specification, StagedContent::Place::kRecordWhenSmall));
+        !specification)
+      return specification.error();
     contents_.specification = &staged_.back().content();
     for (const NewArtifact& attachment : job_.attachments) {
       if (const Status attached = Stage(StagedContent::Of(writer, attachment)); !attached)

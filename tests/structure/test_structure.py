@@ -188,6 +188,39 @@ class AMadeUpHouse(unittest.TestCase):
             for header in headers:
                 self.assertIn(f"{room}/{header}", used)
 
+    def test_a_door_between_neighbours_is_no_door_for_others(self):
+        line = '#include "engine/motion/geometry/corner_curve.h"\n'
+        self.assertEqual(self.breaches("engine/motion/corner/a.cc", line), [])
+        self.assert_breach("engine/motion/planner/a.cc", line, "is not for engine/motion/planner")
+
+    def test_every_door_between_neighbours_is_used_by_each_of_them(self):
+        includes = {}
+        for path in structure.files_under(ROOT):
+            if path.endswith((".h", ".cc")):
+                with open(os.path.join(ROOT, path), encoding="utf-8", errors="replace") as file:
+                    includes.setdefault(os.path.dirname(path), "")
+                    includes[os.path.dirname(path)] += file.read()
+        for room, headers in structure.ONLY_FOR.items():
+            for header, others in headers.items():
+                self.assertIn(header, structure.PUBLIC[room])
+                if others is structure.MOTION:  # the rooms of one house
+                    continue
+                for other in others:
+                    self.assertIn(f'"{room}/{header}"', includes[other])
+
+    def test_an_error_is_handed_on_in_one_form(self):
+        says = "write if (const Status done = F(); !done) return done.error();"
+        for text in ("Status A() {\n  if (const Status a = B(); !a) return a;\n}\n",
+                     "Status A() {\n  if (const Status a = B(1,\n      2);\n      !a) {\n    return a;\n  }\n}\n",
+                     "Status A() {\n  if (Status a = B(); !a) return a.error();\n}\n",
+                     "Status A() {\n  const Status a = B();\n  if (!a) return a.error();\n}\n"):
+            with self.subTest(text=text):
+                self.assert_breach("server/jobs/a.cc", text, says)
+        for text in ("if (const Status a = B(); !a) return a.error();\n", "const Status a = B();\nif (!a) Log(a.error());\n",
+                     "if (const Status a = B(); !a) return Refuse(a.error());\n"):
+            with self.subTest(text=text):
+                self.assertEqual(self.breaches("server/jobs/a.cc", text), [])
+
     def test_an_include_with_blanks_counts_too(self):
         self.assert_breach("engine/core/a.h", '  #  include   "engine/motion/geometry/path.h"\n', "may not include")
         self.assert_breach("engine/core/a.h", "#include <engine/motion/geometry/path.h>\n", "may not include")
