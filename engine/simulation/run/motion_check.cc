@@ -9,8 +9,7 @@
 #include "engine/machine/observer.h"
 #include "engine/simulation/report/finding_list.h"
 #include "engine/simulation/run/assumptions.h"
-#include "engine/simulation/run/drive.h"
-#include "engine/simulation/run/recorder.h"
+#include "engine/simulation/run/simulate.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -153,23 +152,20 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
   setup.mode = machine::Mode::kCycle;
   setup.forecast = true;
   setup.budget = {.steps = kCheckStepsMax, .virtual_time = kCheckTimeMax};
-  InputDescription inputs{.family = std::string(family.info().id)};
-  for (const machine::InputChange& input : setup.inputs) inputs.input_times.push_back(input.at);
-  Recorder recorder(family.Shape(setup.parameters), inputs, {.also = &checked.listener});
-  const auto run = family.NewRun(std::move(setup), recorder);
-  if (!run) return run.error();
-  Drive drive(**run, inputs.input_times);
-  while (drive.Step(kCheckTimeMax) != machine::RunPhase::kFinished) {
-    if (drive.phase() != machine::RunPhase::kHalted) continue;
-    const machine::Place here = (*run)->state().place;
-    if (drive.StartOrEnd() && checked.starts++ == 0) checked.halted_at = here;
+  const Result<BegunRun> begun = Begin(family, std::move(setup), {.also = &checked.listener});
+  if (!begun) return begun.error();
+  Simulation& simulation = *begun->simulation;
+  while (simulation.Step(kCheckTimeMax) != machine::RunPhase::kFinished) {
+    if (simulation.phase() != machine::RunPhase::kHalted) continue;
+    const machine::Place here = simulation.state().place;
+    if (simulation.StartOrEnd() && checked.starts++ == 0) checked.halted_at = here;
   }
-  recorder.Finish(**run);
-  checked.outcome = (*run)->outcome();
-  checked.for_sure = FailsForSure(family.info(), **run);
-  checked.ended_at = (*run)->state().time;
+  const RunReport report = simulation.Finish();
+  checked.outcome = report.outcome;
+  checked.for_sure = FailsForSure(family.info(), *begun->run);
+  checked.ended_at = simulation.state().time;
   checked.cut_short = WhyCutShort(family.info(), checked.outcome);
-  checked.reasons = ReasonsOf(recorder.Report(**run), family.info(), checked.listener);
+  checked.reasons = ReasonsOf(report, family.info(), checked.listener);
   if (checked.starts > 0 && checked.outcome.code != ErrorCode::kCellWaitsForever) {
     checked.reasons.push_back(
         {.code = ErrorCode::kCellWaitsForever,
