@@ -98,7 +98,7 @@ int Show(const CheckedFile& file, const CheckOptions& options) {
   const v1::Findings found = bridge::FindingsOf(*file.family, translation, file.motion, file.slot);
   const int exit_code = ExitOf(found, options.strict);
   if (options.json) {
-    Print(Json(found));
+    PrintJson(found);
     return exit_code;
   }
   PrintFindings(translation.diagnostics, translation.diagnostics_dropped, *file.text);

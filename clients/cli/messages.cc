@@ -27,6 +27,12 @@ std::string Json(const google::protobuf::Message& message) {
   return bridge::StableJson(message).value_or("{}");
 }
 
+void PrintJson(const google::protobuf::Message& message) {
+  // What is not known here can only be the detail of an error, and such a message is short.
+  if (!bridge::WriteStableJson(message, false, PrintRaw)) PrintRaw("{}");
+  PrintRaw("\n");
+}
+
 std::string StateName(v1::Job::State state) {
   std::string name = v1::Job::State_Name(state);
   if (name.starts_with("STATE_")) name.erase(0, 6);

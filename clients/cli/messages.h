@@ -12,6 +12,8 @@ namespace rmlcell::cli {
 
 // One line; zero values are shown, since people look for them.
 std::string Json(const google::protobuf::Message& message);
+// The same to standard output, for what may be long: it is never held whole.
+void PrintJson(const google::protobuf::Message& message);
 
 // Positions from the work origin, where the program has one, unless the machine's are wanted.
 enum class Zero { kWork, kMachine };

@@ -317,7 +317,7 @@ int JobReport(const Remote& remote, const std::string& job, bool machine_coordin
   const grpc::Status status = stub->GetJobReport(&context, request, &report);
   if (!status.ok()) return Refused(status, remote);
   if (remote.json) {
-    Print(Json(report));
+    PrintJson(report);
   } else {
     PrintRaw(ReportText(report, machine_coordinates ? Zero::kMachine : Zero::kWork));
   }

@@ -61,7 +61,7 @@ int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
     v1::Findings found =
         bridge::FindingsOf(false, prepared.diagnostics, prepared.diagnostics_dropped, {});
     bridge::SetJudgement(judgement, found);
-    Print(Json(found));
+    PrintJson(found);
   } else if (options.facts) {
     simulation::RunReport report;
     report.family = loaded.family->info().id;
@@ -241,7 +241,7 @@ void TellResult(const SimulateOptions& options, const simulation::SimulationResu
   } else if (!options.plot.empty() && options.plot[1] == "-") {
     PrintRaw(result.plot);
   } else if (options.json) {
-    Print(Json(report));
+    PrintJson(report);
   } else if (options.facts) {
     PrintRaw(simulation::FactsText(result.report));
     for (const auto& [name, value] : result.variables) Print("variable." + name + ": " + value);

@@ -9,6 +9,7 @@
 #include <google/protobuf/util/type_resolver_util.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -72,31 +73,28 @@ std::vector<const pb::FieldDescriptor*> LongLists(const pb::Message& message) {
   return fields;
 }
 
-// The entries of a list, as they stand between its brackets.
-std::optional<std::string> Entries(const pb::Message& message, const pb::FieldDescriptor* field,
-                                   bool whitespace) {
-  constexpr std::string_view kIndent = "  ";
-  std::string text;
+// The entries of a list, as they stand between its brackets. False: one cannot be printed.
+bool WriteEntries(const pb::Message& message, const pb::FieldDescriptor* field, bool whitespace,
+                  const JsonSink& write) {
   const int count = message.GetReflection()->FieldSize(message, field);
   for (int entry = 0; entry < count; ++entry) {
     const std::optional<std::string> one =
         Printed(message.GetReflection()->GetRepeatedMessage(message, field, entry), whitespace);
-    if (!one) return std::nullopt;
-    if (entry > 0) text += ',';
+    if (!one) return false;
+    if (entry > 0) write(",");
     if (!whitespace) {
-      text += *one;
+      write(*one);
       continue;
     }
-    text += '\n';
     for (std::string_view rest = *one; !rest.empty();) {
       const std::size_t end = std::min(rest.find('\n'), rest.size());
-      if (rest.data() != one->data()) text += '\n';
-      text.append(kIndent).append(rest.substr(0, end));
+      write("\n  ");
+      write(rest.substr(0, end));
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
   }
-  if (whitespace) text += "\n ";
-  return text;
+  if (whitespace) write("\n ");
+  return true;
 }
 
 }  // namespace
@@ -112,9 +110,8 @@ std::string StableBytes(const google::protobuf::Message& message) {
   return bytes;
 }
 
-std::optional<std::string> StableJson(const pb::Message& message, bool whitespace) {
+bool WriteStableJson(const pb::Message& message, bool whitespace, const JsonSink& write) {
   const std::vector<const pb::FieldDescriptor*> lists = LongLists(message);
-  if (lists.empty()) return Printed(message, whitespace);
   // All but the long lists, which stand there empty.
   std::vector<const pb::FieldDescriptor*> fields;
   message.GetReflection()->ListFields(message, &fields);
@@ -122,17 +119,32 @@ std::optional<std::string> StableJson(const pb::Message& message, bool whitespac
   for (const pb::FieldDescriptor* field : fields) {
     if (std::ranges::find(lists, field) == lists.end()) rest.add_paths(field->name());
   }
-  const std::unique_ptr<pb::Message> shell(message.New());
-  pb::util::FieldMaskUtil::MergeMessageTo(message, rest, {}, shell.get());
-  std::optional<std::string> json = Printed(*shell, whitespace);
+  const std::unique_ptr<pb::Message> shell(lists.empty() ? nullptr : message.New());
+  if (shell) pb::util::FieldMaskUtil::MergeMessageTo(message, rest, {}, shell.get());
+  const std::optional<std::string> json = Printed(shell ? *shell : message, whitespace);
+  if (!json) return false;
+  std::map<std::size_t, const pb::FieldDescriptor*> places;  // behind the bracket of each
   for (const pb::FieldDescriptor* list : lists) {
-    if (!json) return std::nullopt;
     const std::size_t value = ValueOf(*json, list->json_name());
     const std::size_t open = value == std::string::npos ? value : json->find('[', value);
-    const std::optional<std::string> entries = Entries(message, list, whitespace);
-    if (open == std::string::npos || !entries) return std::nullopt;
-    json->insert(open + 1, *entries);
+    if (open == std::string::npos) return false;
+    places.emplace(open + 1, list);
   }
+  std::size_t written = 0;
+  for (const auto& [place, list] : places) {
+    write(std::string_view(*json).substr(written, place - written));
+    if (!WriteEntries(message, list, whitespace, write)) return false;
+    written = place;
+  }
+  write(std::string_view(*json).substr(written));
+  return true;
+}
+
+std::optional<std::string> StableJson(const pb::Message& message, bool whitespace) {
+  std::string json;
+  const bool whole =
+      WriteStableJson(message, whitespace, [&](std::string_view piece) { json += piece; });
+  if (!whole) return std::nullopt;
   return json;
 }
 

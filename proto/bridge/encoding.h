@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace google::protobuf {
 class Message;
@@ -17,5 +19,11 @@ std::string StableBytes(const google::protobuf::Message& message);
 // when a google.protobuf.Any in it holds a type that is not known, or no message of its type.
 std::optional<std::string> StableJson(const google::protobuf::Message& message,
                                       bool whitespace = false);
+
+// The same, a piece at a time: who writes it out holds no more than a piece. False where that gives
+// nothing; what was written then is no whole message.
+using JsonSink = std::function<void(std::string_view piece)>;
+bool WriteStableJson(const google::protobuf::Message& message, bool whitespace,
+                     const JsonSink& write);
 
 }  // namespace rmlcell::bridge

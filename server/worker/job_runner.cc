@@ -205,24 +205,33 @@ class Attempt {
       if (auto timetable = simulation::TimetableRun::Of(family, *made->setup))
         drive.timetable = *std::move(timetable);
     }
-    const Result<simulation::BegunRun> begun =
+    Result<simulation::BegunRun> begun =
         simulation::Begin(family, std::move(*made->setup), std::move(products));
     if (!begun) return Refuse(begun.error());
-    if (const Stop stop = JobDrive(lease_, output_, std::move(drive)).Run(*begun);
-        stop != Stop::kNone)
-      return EndOf(stop);
+    const Stop stop = JobDrive(lease_, output_, std::move(drive)).Run(*begun);
+    return stop == Stop::kNone ? TellRun(*begun, made->diagnostics, *variables) : EndOf(stop);
+  }
 
-    const simulation::RunReport report = begun->simulation->Finish();
+  // What came of a run that is over, besides what went out while it ran.
+  End TellRun(simulation::BegunRun& begun, const std::vector<Diagnostic>& found_before,
+              const std::vector<std::string>& variables) {
+    const simulation::RunReport report = begun.simulation->Finish();
     std::map<std::string, std::string> values;
-    for (const std::string& name : *variables) {
-      if (const auto value = begun->run->ReadVariable(name)) values[name] = *value;
+    for (const std::string& name : variables) {
+      if (const auto value = begun.run->ReadVariable(name)) values[name] = *value;
     }
+    executables_ = begun.run->made_executables();
+    const std::string picture = begun.recorder->Svg(report, {});
+    // What made them is large, and so is the report as a message.
+    begun.simulation.reset();
+    begun.run.reset();
+    const simulation::MillingRecorder* milling = begun.recorder->milling();
+    if (milling == nullptr) begun.recorder.reset();
     v1::RunReport message = bridge::ToProto(report, values);
-    for (const Diagnostic& diagnostic : made->diagnostics)
-      *message.add_diagnostics() = bridge::ToProto(diagnostic);
+    for (const Diagnostic& finding : found_before)
+      *message.add_diagnostics() = bridge::ToProto(finding);
     outcome_ = message.outcome();
-    executables_ = begun->run->made_executables();
-    return SendProducts(message, begun->recorder->Svg(report, {}), begun->recorder->milling());
+    return SendProducts(message, picture, milling);
   }
 
   // What is left is compared with the target of the job, when it has one. An end: there will be no

@@ -16,7 +16,7 @@ class PathSketch;
 
 // Path elements kept while a run goes on: 6 MB. Longer programs are drawn coarser, by a tolerance
 // that is below a pixel for all but fillings.
-inline constexpr std::size_t kSketchElementsMax = 65'000;
+inline constexpr std::size_t kSketchElementsMax = 32'000;
 // Elements written to a picture: a browser draws this many smoothly.
 inline constexpr std::size_t kPictureElementsMax = 200'000;
 
