@@ -49,7 +49,7 @@ Result<const machine::MachineFamily*> FamilyOfObject(std::string_view object);
 // The family that has laser schedules and processes; null when there is none.
 const machine::MachineFamily* FamilyWithSchedules();
 
-// The greatest feed override that any family takes, percent.
+// The greatest override that any family takes, percent.
 double OverrideMax();
 
 // Whether the name says that the bytes are an object of some family.

@@ -16,7 +16,7 @@ enum class InputKind {
   kHold,
   kStop,
   kEmergencyStop,
-  kOverride,  // feed override in percent
+  kOverride,  // override in percent
 };
 
 struct InputChange {

@@ -9,7 +9,7 @@
 
 namespace rmlcell::rml1 {
 
-// Feed override as the panel offers it, in percent. Values beyond are limited: 0 would never end.
+// The override as the panel offers it, in percent. Values beyond are limited: 0 would never end.
 inline constexpr double kOverrideMin = 10.0;
 inline constexpr double kOverrideMax = 200.0;
 

@@ -37,7 +37,7 @@ Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& n
 Status ParseInputFile(std::string_view text, const std::string& name, double override_max,
                       v1::SimulationOptions& options);
 
-// Whether the value of an input can be: logical ones and the door are 0 or 1, the feed override is
+// Whether the value of an input can be: logical ones and the door are 0 or 1, the override is
 // above 0 to that of the family (percent), numbers are finite. Error: CellInvalidArgument.
 Status CheckInputValue(const v1::ScriptedInput& input, double override_max);
 

@@ -33,7 +33,7 @@ class JobBook {
               std::function<void(Result<v1::Job>)> done);
 
   Result<v1::Job> Get(std::string_view name);
-  // Whether the machine of the job can have this feed override. Errors: CellInvalidArgument,
+  // Whether the machine of the job can have this override. Errors: CellInvalidArgument,
   // CellNotFound.
   Status CheckOverride(std::string_view name, double percent);
   Result<v1::ListJobsResponse> List(const v1::ListJobsRequest& request);

@@ -3,6 +3,7 @@
 
 #include "engine/families/families.h"
 #include "engine/optimo/control/optimo_family.h"
+#include "engine/rml1/offline/stream_diff.h"
 #include "engine/rml1/rml1_family.h"
 #include "tests/plotter/plotter.h"
 
@@ -21,8 +22,11 @@ std::span<const machine::MachineFamily* const> Families() {
   return families;
 }
 
-// Streams of the plotter cannot be compared.
-std::span<const StreamComparison> StreamComparisons() { return {}; }
+std::span<const StreamComparison> StreamComparisons() {
+  static const std::array<StreamComparison, 1> comparisons = {
+      {{&rml1::Rml1Family(), rml1::CompareStreams}}};
+  return comparisons;
+}
 
 }  // namespace families
 }  // namespace rmlcell

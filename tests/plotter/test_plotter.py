@@ -103,6 +103,23 @@ class InACell(WithCell):
         self.assertEqual(families["plotter"].title, "Pen plotter")
         self.assertEqual([one.name for one in families["plotter"].parameters], ["SIZE"])
 
+    def test_the_machine_is_shown(self):
+        shown = self.cell.machines().GetMachine(machine_pb2.GetMachineRequest(name="machines/plotter-1"))
+        self.assertEqual((shown.family, shown.parameters["SIZE"]), ("plotter", "500"))
+        page = self.cell.command("machines")
+        self.assertIn("plotter-1", page.stdout)
+
+    def test_a_job_that_runs_shows_where_it_is(self):
+        stub = self.cell.jobs()
+        job = inline_job("plotter-1", "corner.plt", "SP 1\nPD 200,0\nPD 200,200\n")
+        job.simulation.pace = 10.0
+        seen = [message.progress.position.tip for message in
+                stub.WatchJob(job_pb2.WatchJobRequest(name=submit(stub, job).name), timeout=60)
+                if message.HasField("progress")]
+        self.assertTrue(seen)
+        for tip in seen:  # along the first move, or along the second
+            self.assertTrue(abs(tip.y) < 1e-6 or abs(tip.x - 200.0) < 1e-6, tip)
+
     def put(self, slot, text):
         return program_pb2.PutProgramRequest(
             name=f"machines/plotter-1/programs/{slot}",

@@ -43,11 +43,6 @@ AxisValues Together(const MachinePoint& column, double a, double b) {
   return {column.x(), column.y(), column.z(), a, b};
 }
 
-// The angle that differs from `angle` by whole turns and is nearest to `near`.
-double NearestTurn(double angle, double near) {
-  return angle + kTurn * std::round((near - angle) / kTurn);
-}
-
 constexpr double kAlongZ = 1e-9;   // below: the direction does not tell A
 constexpr int kRangePieces = 16;   // 17 points on any piece, motion.md 2.6
 constexpr int kRangePerTurn = 32;  // on arcs
@@ -145,17 +140,27 @@ BothAxisRates Head::RatesOfBoth(double a_rad, double b_rad, const TipRates& firs
           Together(second.tip + swing.second, second.a, second.b)};
 }
 
-HeadAngles AnglesOf(const MachineVector& u, const HeadAngles& near) {
-  const double across = std::hypot(u.x(), u.y());
+double NearestTurn(double angle, double near) {
+  return angle + kTurn * std::round((near - angle) / kTurn);
+}
+
+HeadSolutions SolutionsOf(const MachineVector& u, double near_a_rad) {
+  const double across = LengthOf(PlanOf(u));
   const double b = std::atan2(across, u.z());
-  if (across < kAlongZ) return {near.a_rad, b};
   const double a = std::atan2(u.x(), -u.y());
-  const HeadAngles first{NearestTurn(a, near.a_rad), b};
-  const HeadAngles twin{NearestTurn(a + kPi, near.a_rad), -b};
-  const auto distance = [&near](const HeadAngles& angles) {
-    return std::abs(angles.a_rad - near.a_rad) + std::abs(angles.b_rad - near.b_rad);
-  };
-  return distance(twin) < distance(first) ? twin : first;
+  return {.first = {NearestTurn(a, near_a_rad), b},
+          .twin = {NearestTurn(a + kPi, near_a_rad), -b},
+          .a_is_free = across < kAlongZ};
+}
+
+double DistanceOf(const HeadAngles& one, const HeadAngles& other) {
+  return std::abs(one.a_rad - other.a_rad) + std::abs(one.b_rad - other.b_rad);
+}
+
+HeadAngles AnglesOf(const MachineVector& u, const HeadAngles& near) {
+  const HeadSolutions both = SolutionsOf(u, near.a_rad);
+  if (both.a_is_free) return {near.a_rad, both.first.b_rad};
+  return DistanceOf(both.twin, near) < DistanceOf(both.first, near) ? both.twin : both.first;
 }
 
 AxisPose Jogged(const AxisPose& from, const Head& head, const Jog& jog) {

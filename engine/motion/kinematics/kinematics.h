@@ -101,13 +101,23 @@ class Head {
 TipPose TipOn(const PathPiece& path, const Head& head, const PathPose& place);
 AxisPose AxesOn(const PathPiece& path, const Head& head, const PathPose& place);
 
-// The head angles for a tool direction `u` (need not be a unit vector), of the two solutions and
-// their turns the one nearest to `near` in |dA| + |dB|; A stays where it is when u is along Z.
-// motion.md 2.5.
 struct HeadAngles {
   double a_rad = 0.0;
   double b_rad = 0.0;
 };
+// The angle that differs from `angle` by whole turns and is nearest to `near`.
+double NearestTurn(double angle, double near);
+// The head angles at which the tool points along `u`, which need not be a unit vector: (A, B) with
+// B in 0..pi and (A + pi, -B), A of each in the turn nearest to `near_a_rad`. `a_is_free`: u is
+// along Z, which does not tell A. motion.md 2.5.
+struct HeadSolutions {
+  HeadAngles first;
+  HeadAngles twin;
+  bool a_is_free = false;
+};
+HeadSolutions SolutionsOf(const MachineVector& u, double near_a_rad);
+double DistanceOf(const HeadAngles& one, const HeadAngles& other);  // |dA| + |dB|
+// The one of them nearest to `near`; A stays where it is when it is free.
 HeadAngles AnglesOf(const MachineVector& u, const HeadAngles& near);
 
 // Jog by a distance (mm or rad) along one axis, 0..4 for X Y Z A B. motion.md section 6.

@@ -43,7 +43,7 @@ class SpeedProfile {
   static SpeedProfile Span(double length, double v0, double v1, const PathLimits& limits);
 
   // From any state on, to speed `v1` at `end_s`: first the acceleration is brought to zero, then
-  // over to the speed of `limits`, which may be below the present one (feed override, motion.md
+  // over to the speed of `limits`, which may be below the present one (override, motion.md
   // section 6). Where the way left is too short for that the present speed is kept for as long as
   // it can be. Precondition: v1 can be reached, and it is not above limits.speed nor the present
   // speed.

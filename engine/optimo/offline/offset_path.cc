@@ -23,9 +23,6 @@ bool IsZero(const ProgramVector& v) { return v == ProgramVector{}; }
 
 using PlaneVector = Eigen::Vector2d;  // in the plane normal to the tool, from the corner
 
-// Lengths in a plane are the C library's hypot, whose last digit is not that of norm().
-double LengthOf(const PlaneVector& v) { return std::hypot(v.x(), v.y()); }
-
 // A leg's offset curve in that plane.
 struct PlaneCurve {
   bool circle = false;
@@ -47,7 +44,7 @@ std::optional<PlaneVector> NearestMeeting(const PlaneCurve& a, const PlaneCurve&
     to_either = line.direction * std::sqrt(half2);
   } else {
     const PlaneVector between = b.at - a.at;
-    const double distance = LengthOf(between);
+    const double distance = motion::LengthOf(between);
     if (distance < kTiny) return std::nullopt;
     const double along =
         (distance * distance + a.radius * a.radius - b.radius * b.radius) / (2.0 * distance);
@@ -58,7 +55,7 @@ std::optional<PlaneVector> NearestMeeting(const PlaneCurve& a, const PlaneCurve&
     to_either = PlaneVector(-towards.y(), towards.x()) * std::sqrt(half2);
   }
   const std::array<PlaneVector, 2> points = {middle + to_either, middle - to_either};
-  return *std::ranges::min_element(points, {}, LengthOf);
+  return *std::ranges::min_element(points, {}, motion::LengthOf);
 }
 
 // Towards the centre: the offset makes the arc smaller.

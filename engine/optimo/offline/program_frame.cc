@@ -16,8 +16,11 @@ bool ProgramFrame::Set(const ParsedProgram& program, const Instruction& sysdef) 
     values[v] = value.value_or(0.0);
   }
   rotation_ = motion::RotationZyx(values[3], values[4], values[5]);
-  translation_.reset();
-  if (moved && turned) translation_ = motion::MachineVector{values[0], values[1], values[2]};
+  whole_.reset();
+  if (moved && turned) {
+    const motion::MachineVector at(values[0], values[1], values[2]);
+    whole_.emplace(motion::RigidMotionOf(at, values[3], values[4], values[5]));
+  }
   return turned;
 }
 

@@ -23,18 +23,17 @@ class ProgramFrame {
 
   // Nothing where SYSDEF has values that are no numbers.
   std::optional<motion::MachinePoint> PointToMachine(const motion::ProgramPoint& p) const {
-    if (!translation_) return std::nullopt;
-    return *translation_ + rotation_ * p.from_origin();
+    if (!whole_) return std::nullopt;
+    return *whole_ * p;
   }
   std::optional<motion::ProgramPoint> PointToProgram(const motion::MachinePoint& p) const {
-    if (!translation_) return std::nullopt;
-    return motion::ProgramPoint::FromOrigin(DirectionToProgram(p - *translation_));
+    if (!whole_) return std::nullopt;
+    return whole_->ToProgram(p);
   }
 
  private:
-  motion::Rotation rotation_ = motion::Rotation::Identity();
-  // Only while all six are numbers.
-  std::optional<motion::MachineVector> translation_ = motion::MachineVector::Zero();
+  motion::Rotation rotation_ = motion::Rotation::Identity();  // known where the place is not, too
+  std::optional<motion::MachineFromProgram> whole_ = motion::MachineFromProgram();
 };
 
 }  // namespace rmlcell::optimo

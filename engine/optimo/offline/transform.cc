@@ -18,7 +18,7 @@ namespace rmlcell::optimo {
 namespace {
 
 constexpr int kTransformDecimals = 6;
-constexpr double kStraightDown = 1e-9;  // of sin B: then A is free
+constexpr double kAboutZ = 1e-9;  // of a rotation, how far it moves Z
 // Of the rotation about Z: decides between half a turn to the left and one to the right, which
 // rounding would decide otherwise.
 constexpr double kTieShare = 1e-3;
@@ -53,31 +53,20 @@ Rewriting Finish(std::string_view text, std::vector<Fix> edits, Findings& findin
   return result;
 }
 
-// The angle equal to `angle` by whole turns that is nearest to `old`.
-double Nearest(double angle, double old) {
-  return angle + kTurn * std::round((old - angle) / kTurn);
-}
-
 }  // namespace
 
-HeadAngles TurnHead(const HeadAngles& old, const motion::Rotation& turn,
-                    std::optional<double> swing) {
-  const motion::MachineVector u = turn * motion::ToolDirection(old.a, old.b);
-  const double across = std::hypot(u.x(), u.y());
-  const double b = std::atan2(across, u.z());
+motion::HeadAngles TurnHead(const motion::HeadAngles& old, const motion::Rotation& turn,
+                            std::optional<double> swing) {
   const double about_z = std::atan2(turn(1, 0), turn(0, 0));
-  if (across < kStraightDown) return {old.a + about_z, b};
-  const double a = std::atan2(u.x(), -u.y());
-  const double to = swing ? old.a + *swing : old.a + kTieShare * about_z;
-  const HeadAngles one{Nearest(a, to), b}, twin{Nearest(a + kPi, to), -b};
-  if (swing) return std::fabs(twin.a - to) < std::fabs(one.a - to) ? twin : one;
-  if (std::hypot(turn(0, 2), turn(1, 2)) < kStraightDown && turn(2, 2) > 0.0) {
-    return old.b < 0.0 ? twin : one;
-  }
-  const auto distance = [&](const HeadAngles& angles) {
-    return std::fabs(angles.a - old.a) + std::fabs(angles.b - old.b);
-  };
-  return distance(twin) < distance(one) ? twin : one;
+  const double to = old.a_rad + (swing ? *swing : kTieShare * about_z);
+  const auto [one, twin, a_is_free] =
+      motion::SolutionsOf(turn * motion::ToolDirection(old.a_rad, old.b_rad), to);
+  if (a_is_free) return {old.a_rad + about_z, one.b_rad};
+  if (swing) return std::abs(twin.a_rad - to) < std::abs(one.a_rad - to) ? twin : one;
+  const motion::MachineVector axis = turn.col(2);
+  if (motion::LengthOf(motion::PlanOf(axis)) < kAboutZ && axis.z() > 0.0)
+    return old.b_rad < 0.0 ? twin : one;
+  return motion::DistanceOf(twin, old) < motion::DistanceOf(one, old) ? twin : one;
 }
 
 Rewriting Transform(std::string_view text, const motion::RigidMotion& motion) {
@@ -111,10 +100,11 @@ Rewriting Transform(std::string_view text, const motion::RigidMotion& motion) {
       const ProgramFrame& in = robot ? machine : frame;
       const motion::Rotation& turned = in.rotation();
       const motion::Rotation in_machine = turned * motion.linear() * turned.transpose();
-      const HeadAngles head = TurnHead({*v[3], *v[4]}, in_machine, swing);
-      if (std::fabs(std::sin(*v[4])) > kNearlyDown && std::fabs(std::sin(head.b)) > kNearlyDown)
-        swing = head.a - *v[3];
-      const std::array<double, 5> values = {point.x(), point.y(), point.z(), head.a, head.b};
+      const motion::HeadAngles head = TurnHead({*v[3], *v[4]}, in_machine, swing);
+      if (std::fabs(std::sin(*v[4])) > kNearlyDown && std::fabs(std::sin(head.b_rad)) > kNearlyDown)
+        swing = head.a_rad - *v[3];
+      const std::array<double, 5> values = {point.x(), point.y(), point.z(), head.a_rad,
+                                            head.b_rad};
       for (std::uint32_t n = 0; n < 5; ++n) {
         edits.Put(i, i.first_expression + first + n, values[n]);
       }

@@ -8,13 +8,11 @@
 
 #include "engine/machine/tools.h"
 #include "engine/motion/geometry/frames.h"
+#include "engine/motion/kinematics/kinematics.h"
 
 // TRANSFOR and RMLSHIFT: moving a program by rewriting its numbers (optimo.md 8.4).
 namespace rmlcell::optimo {
 
-struct HeadAngles {
-  double a = 0.0, b = 0.0;  // rad
-};
 // The angles at which the tool points where the turned old tool points. Straight down A turns by
 // the rotation about Z (OPT-B.80). Otherwise there are two solutions, (A', B') and (A' + pi, -B'),
 // and whole turns of A:
@@ -23,8 +21,8 @@ struct HeadAngles {
 //   - behind that the one that swings A most nearly as `swing`, what A turned by before: chosen
 //   anew
 //     for each move, the head would swing by half a turn in the middle of a contour.
-HeadAngles TurnHead(const HeadAngles& old, const motion::Rotation& turn,
-                    std::optional<double> swing = {});
+motion::HeadAngles TurnHead(const motion::HeadAngles& old, const motion::Rotation& turn,
+                            std::optional<double> swing = {});
 
 using Rewriting = machine::RewrittenText;
 

@@ -10,7 +10,7 @@
 #include "engine/optimo/ride/lead.h"
 #include "engine/optimo/ride/motion_place.h"
 
-// The feed override changed while the machine moves. motion.md 6, OPT-4.38
+// The override changed while the machine moves. motion.md 6, OPT-4.38
 namespace rmlcell::optimo {
 
 void Ride::ChangeOverride(double percent) {

@@ -45,14 +45,14 @@ TEST(Transform, NumbersInParenthesesHaveTheirSign) {
 // OPT-B.80
 TEST(Transform, ChoosesTheNearestHeadAngles) {
   const RigidMotion quarter = RigidMotionOf({}, kPi / 2, 0, 0);
-  const HeadAngles negative = TurnHead({0.0, -0.5}, quarter.linear());
-  EXPECT_NEAR(negative.a, kPi / 2, 1e-12);
-  EXPECT_NEAR(negative.b, -0.5, 1e-12);
-  const HeadAngles far = TurnHead({12.0, 0.5}, quarter.linear());
-  EXPECT_NEAR(far.a, 12.0 + kPi / 2, 1e-9);
-  const HeadAngles down = TurnHead({0.3, 0.0}, quarter.linear());
-  EXPECT_NEAR(down.a, 0.3 + kPi / 2, 1e-12);
-  EXPECT_NEAR(down.b, 0.0, 1e-12);
+  const motion::HeadAngles negative = TurnHead({0.0, -0.5}, quarter.linear());
+  EXPECT_NEAR(negative.a_rad, kPi / 2, 1e-12);
+  EXPECT_NEAR(negative.b_rad, -0.5, 1e-12);
+  const motion::HeadAngles far = TurnHead({12.0, 0.5}, quarter.linear());
+  EXPECT_NEAR(far.a_rad, 12.0 + kPi / 2, 1e-9);
+  const motion::HeadAngles down = TurnHead({0.3, 0.0}, quarter.linear());
+  EXPECT_NEAR(down.a_rad, 0.3 + kPi / 2, 1e-12);
+  EXPECT_NEAR(down.b_rad, 0.0, 1e-12);
 }
 
 // OPT-B.80, OPT-8.76: B stays positive if it was, whatever the turn about Z; half a turn goes the
@@ -62,9 +62,9 @@ TEST(Transform, ATurnAboutZLeavesB) {
     const RigidMotion motion = RigidMotionOf({}, turn, 0, 0);
     for (const double b : {0.02, 0.3, 1.5, 1.6, 2.3, -0.3, -2.0}) {
       for (const double a : {-9.0, -kPi, 0.0, 0.2, kPi, 3.5256}) {
-        const HeadAngles head = TurnHead({a, b}, motion.linear());
-        EXPECT_NEAR(head.b, b, 1e-12);
-        EXPECT_NEAR(head.a, a + turn, 1e-9);
+        const motion::HeadAngles head = TurnHead({a, b}, motion.linear());
+        EXPECT_NEAR(head.b_rad, b, 1e-12);
+        EXPECT_NEAR(head.a_rad, a + turn, 1e-9);
       }
     }
   }
@@ -75,9 +75,9 @@ TEST(Transform, TheToolTurnsWithThePart) {
   for (const double a : {-3.0, 0.4, 2.8}) {
     for (const double b : {-1.5, -0.2, 0.7, 2.0}) {
       const RigidMotion motion = RigidMotionOf({1, 2, 3}, 0.7, -0.3, 1.1);
-      const HeadAngles head = TurnHead({a, b}, motion.linear());
+      const motion::HeadAngles head = TurnHead({a, b}, motion.linear());
       const MachineVector expected = motion.linear() * (ToolDirection(a, b)),
-                          found = ToolDirection(head.a, head.b);
+                          found = ToolDirection(head.a_rad, head.b_rad);
       EXPECT_NEAR((expected - found).norm(), 0.0, 1e-12);
     }
   }
