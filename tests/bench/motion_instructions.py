@@ -10,13 +10,13 @@ import sys
 
 import instructions
 
-# Measured with g++ 12, and a tenth of room for another compiler. The goal for acceleration-limited plans is
-# 1,000: reached where the path is kept as it is (mill, 994); with a curve at every corner
-# (trapezoid) a line is three motions, and no stage takes more than a tenth of the count:
+# 3 % above what a line took before the planner was split by its stages and spoke Eigen (docs/decisions/0019), with g++ 12.
+# The goal for acceleration-limited plans is 1,000: reached where the path is kept as it is (mill); with a curve at every
+# corner (trapezoid) a line is three motions, and no stage takes more than a tenth of the count:
 # docs/decisions/0009-motion-speed.md. Capped bends (short, ramps) cost the search for ramps through them:
 # docs/decisions/0008-ramps-across-passages.md.
-LIMITS = {"jerk": 3470, "trapezoid": 3420, "mill": 1000, "five_axis": 7150, "arcs": 205000, "short": 26500,
-          "ramps": 52000}
+LIMITS = {"jerk": 3242, "trapezoid": 3204, "mill": 1000, "five_axis": 6930, "arcs": 194700, "short": 26500,
+          "ramps": 47800}
 SHORT, LONG = 2400, 8400
 
 

@@ -28,22 +28,32 @@ void Fit(std::array<T, 6>& c, const std::type_identity_t<T>& p0, const std::type
   c[5] = h * 6.0 - v0 * 3.0 - v1 * 3.0 - c0 * 0.5 + c1 * 0.5;
 }
 
-template <class T>
-T Value(const std::array<T, 6>& c, double u) {
+double Value(const std::array<double, 6>& c, double u) {
   return c[0] + (c[1] + (c[2] + (c[3] + (c[4] + c[5] * u) * u) * u) * u) * u;
 }
-template <class T>
-T First(const std::array<T, 6>& c, double u) {
+double First(const std::array<double, 6>& c, double u) {
   return c[1] + (c[2] * 2.0 + (c[3] * 3.0 + (c[4] * 4.0 + c[5] * (5.0 * u)) * u) * u) * u;
 }
-template <class T>
-T Second(const std::array<T, 6>& c, double u) {
+double Second(const std::array<double, 6>& c, double u) {
   return c[2] * 2.0 + (c[3] * 6.0 + (c[4] * 12.0 + c[5] * (20.0 * u)) * u) * u;
 }
-template <class T>
-T Third(const std::array<T, 6>& c, double u) {
+double Third(const std::array<double, 6>& c, double u) {
   return c[3] * 6.0 + (c[4] * 24.0 + c[5] * (60.0 * u)) * u;
 }
+
+using Tips = std::array<MachineVector, 6>;
+// Of one coordinate after the other: of a vector's expression g++ keeps the parts on the stack.
+template <double (*kOf)(const std::array<double, 6>&, double)>
+MachineVector Of(const Tips& c, double u) {
+  const auto along = [&](int axis) {
+    return kOf({c[0][axis], c[1][axis], c[2][axis], c[3][axis], c[4][axis], c[5][axis]}, u);
+  };
+  return {along(0), along(1), along(2)};
+}
+MachineVector Value(const Tips& c, double u) { return Of<Value>(c, u); }
+MachineVector First(const Tips& c, double u) { return Of<First>(c, u); }
+MachineVector Second(const Tips& c, double u) { return Of<Second>(c, u); }
+MachineVector Third(const Tips& c, double u) { return Of<Third>(c, u); }
 
 }  // namespace
 
