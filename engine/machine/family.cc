@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/letters.h"
+#include "engine/core/near_words.h"
 #include "engine/core/units.h"
 #include "engine/machine/shape.h"
 
@@ -82,6 +83,12 @@ Error NoProfile(std::span<const MachineProfile> profiles, const std::string& wan
                              (id.size() > 1 && plain.find(id) != std::string::npos)))
       near += (near.empty() ? "" : " or ") + std::string(one.id);
   }
+  if (near.empty()) {
+    std::vector<std::string_view> ids;
+    for (const MachineProfile& one : profiles) ids.push_back(one.id);
+    const std::vector<std::string> words = NearestTo(wanted, ids).words;
+    for (const std::string& word : words) near += (near.empty() ? "" : " or ") + word;
+  }
   std::string detail = "no profile '" + wanted + "'";
   if (EqualIgnoringCase(std::string_view(plain).substr(plain.find_last_of('.') + 1), "toml")) {
     detail += ": a file of one's own goes to --machine";
@@ -94,6 +101,14 @@ Error NoProfile(std::span<const MachineProfile> profiles, const std::string& wan
 }
 
 }  // namespace
+
+std::string MachineTitle(const MachineFamily& family, std::string_view profile, bool named) {
+  const auto profiles = family.profiles();
+  const auto found = std::ranges::find(profiles, profile, &MachineProfile::id);
+  if (found == profiles.end()) return std::string(family.info().title);
+  const std::string title = std::string(found->title) + " (" + std::string(profile) + ")";
+  return named ? title : title + ": no profile was named";
+}
 
 Result<Parameters> MakeParameters(const MachineFamily& family, const std::string& profile,
                                   const std::map<std::string, std::string>& parameters) {

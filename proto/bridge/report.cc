@@ -262,7 +262,7 @@ v1::RunReport ToProto(const simulation::RunReport& report,
                       const std::map<std::string, std::string>& variables) {
   v1::RunReport message;
   message.set_family(report.family);
-  message.set_profile(report.profile);
+  SetMachine(report.machine, message);
   message.set_title(report.title);
   *message.mutable_outcome() = ToProto(report.outcome, report.judgement);
   *message.mutable_total() = ToProto(report.total);

@@ -69,6 +69,7 @@ class Attempt {
     if (!ReceivePrograms()) return End::kLost;
     const End end = assignment_.job().kind() == v1::JOB_KIND_CHECK ? Check() : Simulate();
     if (end == End::kFinished) {
+      events_.TellRest();
       events_.Flush();
       Finish();
     }
@@ -103,8 +104,10 @@ class Attempt {
                       const std::string& motion_check = {}) {
     v1::RunReport report;
     report.set_family(assignment_.family());
+    bridge::SetMachine(programs_.Machine(), report);
     report.set_motion_check(bridge::Utf8(motion_check));
-    for (const Diagnostic& diagnostic : made.diagnostics) {
+    for (Diagnostic diagnostic : made.diagnostics) {
+      diagnostic.judged = machine::JudgedBy(judgement, diagnostic.code);
       *report.add_diagnostics() = bridge::ToProto(diagnostic);
       events_.OnDiagnostic(diagnostic.at.value_or(SimTime(0)), diagnostic);
     }
@@ -236,8 +239,10 @@ class Attempt {
       if (const auto value = begun->run->ReadVariable(name)) values[name] = *value;
     }
     v1::RunReport message = bridge::ToProto(report, values);
-    for (const Diagnostic& diagnostic : made->diagnostics)
+    for (Diagnostic& diagnostic : made->diagnostics) {
+      diagnostic.judged = machine::JudgedBy(report.judgement, diagnostic.code);
       *message.add_diagnostics() = bridge::ToProto(diagnostic);
+    }
     outcome_ = message.outcome();
     executables_ = begun->run->made_executables();
     return SendProducts(message, begun->recorder->Svg(report, {}), begun->recorder->milling());

@@ -75,6 +75,14 @@ TEST_F(Messages, AnEventIsOneLine) {
   signal.set_text("beam");
   signal.set_detail(80.0);
   EXPECT_EQ(EventLine(event), "#12  1.500 s  beam = 1 (80.0)");
+  v1::GatheredFindings& gathered = *event.mutable_gathered();
+  gathered.set_code("RML1-E8002");
+  gathered.set_message("beyond the travel");
+  gathered.set_count(195);
+  gathered.mutable_first()->set_line(12);
+  gathered.mutable_last()->set_line(300);
+  EXPECT_EQ(EventLine(event),
+            "#12  1.500 s  and 195 more RML1-E8002, lines 12 to 300: beyond the travel");
   event.mutable_ended()->set_kind(v1::Outcome::KIND_COMPLETED);
   EXPECT_EQ(EventLine(event), "#12  1.500 s  ended: completed");
   EXPECT_EQ(EventLine(Event(3)), "#3  ");
@@ -85,6 +93,10 @@ TEST_F(Messages, AReportOfALaserHasItsFigures) {
   report.set_family("optimo");
   report.mutable_outcome()->set_kind(v1::Outcome::KIND_COMPLETED);
   EXPECT_EQ(ReportText(report), "outcome       completed\n");  // of a check: nothing ran
+  report.set_profile("efa-51");
+  report.set_profile_named(true);
+  EXPECT_EQ(ReportText(report),
+            "outcome       completed\nmachine       Optimo with EFA-51 laser (efa-51)\n");
   v1::WorkFigures& total = *report.mutable_total();
   total.set_steps(17);
   total.mutable_times()->set_cycle_s(61.5);
@@ -279,11 +291,18 @@ TEST_F(Messages, AWholeReportOfALaser) {
   report.mutable_tip_box()->mutable_low()->set_x(-1.0);
   report.mutable_tip_box()->mutable_high()->set_y(2.0);
   (*report.mutable_variables())["VR[2]"] = "39.";
+  report.set_profile("standard");
+  report.set_profile_changed_by("mine.toml");
+  v1::ParameterChange& change = *report.add_profile_changes();
+  change.set_name("VMAX");
+  change.set_value("300");
+  change.set_of_profile("500");
   report.set_motion_check("only up to step 2");
   EXPECT_EQ(
       ReportText(report),
       "outcome       stopped\n"
       "machine       Optimo of 30 m/min with ARROW laser (standard): no profile was named\n"
+      "changed       VMAX 300 (profile: 500); by mine.toml\n"
       "cycle time    45.000 s\n"
       "              motion 1.000 s, settling 2.000 s, dwell 3.000 s, pierce 4.000 s, condition 5.000 s, "
       "operator 6.000 s, spin-up 7.000 s, loading 8.000 s, standstill 9.000 s\n"
@@ -347,6 +366,7 @@ TEST_F(Messages, AWholeReportOfAMill) {
   v1::RunReport report;
   report.set_family("rml1");
   report.set_profile("srm-20");
+  report.set_profile_named(true);
   v1::Outcome& outcome = *report.mutable_outcome();
   outcome.set_kind(v1::Outcome::KIND_COMPLETED);
   outcome.set_verdict(v1::VERDICT_BAD);
