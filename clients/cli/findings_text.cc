@@ -16,7 +16,8 @@ std::string Text(const std::vector<Diagnostic>& findings, std::uint64_t dropped,
   KindsShown kinds;
   for (const Diagnostic& finding : findings) {
     if (!kinds.Show(CodeText(finding.code), finding.where.line)) continue;
-    const std::string text = FormatDiagnostic(finding, source);
+    // Bytes that are no text would upset a terminal, and whoever reads this in a pipe.
+    const std::string text = bridge::Utf8(FormatDiagnostic(finding, source));
     const std::size_t line_end = std::min(text.find('\n'), text.size());
     all += Paint(Visible(text.substr(0, line_end)),
                  IsError(finding.severity) || finding.judged == Judged::kBad ? Colour::kRed

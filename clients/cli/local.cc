@@ -433,6 +433,7 @@ int Simulate(const SimulateOptions& options) {
   v1::RunReport report = bridge::ToProto(result->report, result->variables);
   const v1::Outcome outcome = report.outcome();
   products.MoveTraceTo(report);
+  machine::MarkJudged(result->report.judgement, run.diagnostics);
   TellResult(options, *result, run, std::move(report));
   return ExitOf(outcome, options.strict);
 }

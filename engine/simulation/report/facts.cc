@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "engine/families/families.h"
 
@@ -134,9 +135,8 @@ void Table::AddRun() {
   Add("profile_changes", "", "machine parameters that differ from the profile, NAME=VALUE",
       [](const RunReport& r) {
         std::string text;
-        for (const machine::ChangedParameter& change : r.machine.changes)
-          text += (text.empty() ? "" : " ") + change.name + "=" + change.value;
-        return Line(text);
+        for (const auto& change : r.machine.changes) text += change.name + '=' + change.value + ' ';
+        return Line(Trimmed(text));
       });
   Add("profile_changed_by", "", "who changed them: a machine file, options, a machine of a server",
       [](const RunReport& r) { return Line(r.machine.changed_by); });
@@ -148,13 +148,8 @@ void Table::AddRun() {
   Add("changed_parameters", "", "machine parameters that differ from their defaults, NAME=VALUE",
       [](const RunReport& r) {
         std::string text;
-        for (const auto& [name, value] : r.changed_parameters) {
-          if (!text.empty()) text += ' ';
-          text += name;
-          text += '=';
-          text += value;
-        }
-        return Line(text);
+        for (const auto& [name, value] : r.changed_parameters) text += name + '=' + value + ' ';
+        return Line(Trimmed(text));
       });
   Add("outcome", "", "completed, stopped, failed, cancelled, budget_exceeded or running",
       [](const RunReport& r) {

@@ -88,15 +88,33 @@ TEST_F(Messages, AnEventIsOneLine) {
   EXPECT_EQ(EventLine(Event(3)), "#3  ");
 }
 
+// Of a check, too, which ran nothing.
+TEST_F(Messages, AReportNamesItsMachineAndWhatWasChangedOfIt) {
+  v1::RunReport report;
+  report.set_family("optimo");
+  report.set_profile("efa-51");
+  report.mutable_outcome()->set_kind(v1::Outcome::KIND_COMPLETED);
+  const std::string outcome = "outcome       completed\n";
+  EXPECT_EQ(ReportText(report),
+            outcome + "machine       Optimo with EFA-51 laser (efa-51): no profile was named\n");
+  report.set_profile_named(true);
+  const std::string machine = outcome + "machine       Optimo with EFA-51 laser (efa-51)\n";
+  EXPECT_EQ(ReportText(report), machine);
+  report.set_profile_changed_by("my\tfile.toml");
+  EXPECT_EQ(ReportText(report), machine + "changed       nothing, by my\\x09file.toml\n");
+  v1::ParameterChange& change = *report.add_profile_changes();
+  change.set_name("VMAX");
+  change.set_value("300");
+  change.set_of_profile("500");
+  EXPECT_EQ(ReportText(report),
+            machine + "changed       VMAX 300 (profile: 500); by my\\x09file.toml\n");
+}
+
 TEST_F(Messages, AReportOfALaserHasItsFigures) {
   v1::RunReport report;
   report.set_family("optimo");
   report.mutable_outcome()->set_kind(v1::Outcome::KIND_COMPLETED);
   EXPECT_EQ(ReportText(report), "outcome       completed\n");  // of a check: nothing ran
-  report.set_profile("efa-51");
-  report.set_profile_named(true);
-  EXPECT_EQ(ReportText(report),
-            "outcome       completed\nmachine       Optimo with EFA-51 laser (efa-51)\n");
   v1::WorkFigures& total = *report.mutable_total();
   total.set_steps(17);
   total.mutable_times()->set_cycle_s(61.5);
@@ -291,18 +309,11 @@ TEST_F(Messages, AWholeReportOfALaser) {
   report.mutable_tip_box()->mutable_low()->set_x(-1.0);
   report.mutable_tip_box()->mutable_high()->set_y(2.0);
   (*report.mutable_variables())["VR[2]"] = "39.";
-  report.set_profile("standard");
-  report.set_profile_changed_by("mine.toml");
-  v1::ParameterChange& change = *report.add_profile_changes();
-  change.set_name("VMAX");
-  change.set_value("300");
-  change.set_of_profile("500");
   report.set_motion_check("only up to step 2");
   EXPECT_EQ(
       ReportText(report),
       "outcome       stopped\n"
-      "machine       Optimo of 30 m/min with ARROW laser (standard): no profile was named\n"
-      "changed       VMAX 300 (profile: 500); by mine.toml\n"
+      "machine       Amada OPTIMO 5-axis laser\n"
       "cycle time    45.000 s\n"
       "              motion 1.000 s, settling 2.000 s, dwell 3.000 s, pierce 4.000 s, condition 5.000 s, "
       "operator 6.000 s, spin-up 7.000 s, loading 8.000 s, standstill 9.000 s\n"
