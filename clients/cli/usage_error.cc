@@ -52,6 +52,43 @@ std::vector<std::string> OptionsOf(const CLI::App& verb) {
   return names;
 }
 
+// "Could not convert: SLOT = x" of the library: where only numbers are converted.
+std::string NoNumber(const std::string& text) {
+  const std::size_t colon = text.find(": ");
+  const std::size_t equals = text.find(" = ", colon);
+  if (colon == std::string::npos || equals == std::string::npos) return text;
+  return text.substr(colon + 2, equals - colon - 2) + ": '" + text.substr(equals + 3) +
+         "' is no number";
+}
+
+// "--kind: simlate not in {simulate,check}" of the library.
+std::string NoneOf(const std::string& text) {
+  const std::size_t colon = text.find(": ");
+  const std::size_t list = text.find(" not in {");
+  if (colon == std::string::npos || list == std::string::npos || text.back() != '}') return text;
+  const std::string word = text.substr(colon + 2, list - colon - 2);
+  std::string known = text.substr(list + 9, text.size() - list - 10);
+  std::vector<std::string> words;
+  std::string list_of_words;
+  while (!known.empty()) {
+    const std::size_t end = std::min(known.find(','), known.size());
+    words.push_back(known.substr(0, end));
+    known.erase(0, end + 1);
+    list_of_words += (list_of_words.empty() ? "" : ", ") + words.back();
+  }
+  return text.substr(0, colon + 2) + "'" + word + "' is none of " + list_of_words +
+         Question(word, words);
+}
+
+// What an option wants, which the library only counts: "--samples: RATE FILE: write where ...".
+std::string Wants(const CLI::App& verb, const std::string& text) {
+  const std::string name = text.substr(0, text.find(':'));
+  for (const CLI::Option* option : verb.get_options()) {
+    if (option->check_name(name)) return name + " wants more: " + option->get_description();
+  }
+  return text;
+}
+
 std::vector<std::string> VerbsOf(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -81,7 +118,18 @@ std::string UsageText(const CLI::App& app, const CLI::Error& error) {
     return PathOf(verb) + " does not know what to do with '" + Visible(left.front()) + "'" +
            HelpOf(verb);
   }
-  return Visible(error.what()) + HelpOf(verb);
+  std::string text = error.what();
+  if (error.get_name() == "ConversionError") text = NoNumber(text);
+  if (error.get_name() == "ValidationError") text = NoneOf(text);
+  if (error.get_name() == "ArgumentMismatch") text = Wants(verb, text);
+  const std::vector<std::string> verbs = VerbsOf(verb);
+  if (error.get_name() == "RequiredError" && !verbs.empty()) {
+    constexpr std::size_t kFew = 12;  // more of them are read in the help
+    text = (PathOf(verb).empty() ? "rmlcell" : PathOf(verb)) + " needs a verb";
+    for (std::size_t i = 0; verbs.size() <= kFew && i < verbs.size(); ++i)
+      text += (i == 0 ? ": " : ", ") + verbs[i];
+  }
+  return Visible(text) + HelpOf(verb);
 }
 
 }  // namespace rmlcell::cli

@@ -75,25 +75,24 @@ const MachineProfile* FindProfile(std::span<const MachineProfile> profiles,
 Error NoProfile(std::span<const MachineProfile> profiles, const std::string& wanted) {
   const std::string plain = Plain(wanted);
   std::string known;
-  std::string near;
+  std::vector<std::string> near;
   for (const MachineProfile& one : profiles) {
     const std::string id = Plain(one.id);
     known += " " + std::string(one.id);
     if (plain.size() > 1 && (id.find(plain) != std::string::npos ||
                              (id.size() > 1 && plain.find(id) != std::string::npos)))
-      near += (near.empty() ? "" : " or ") + std::string(one.id);
+      near.emplace_back(one.id);
   }
   if (near.empty()) {
     std::vector<std::string_view> ids;
     for (const MachineProfile& one : profiles) ids.push_back(one.id);
-    const std::vector<std::string> words = NearestTo(wanted, ids).words;
-    for (const std::string& word : words) near += (near.empty() ? "" : " or ") + word;
+    near = NearestTo(wanted, ids).words;
   }
   std::string detail = "no profile '" + wanted + "'";
   if (EqualIgnoringCase(std::string_view(plain).substr(plain.find_last_of('.') + 1), "toml")) {
     detail += ": a file of one's own goes to --machine";
   } else if (!near.empty()) {
-    detail += "; did you mean " + near + "?";
+    detail += DidYouMean(near);
   } else {
     detail += "; there are" + known;
   }

@@ -88,7 +88,7 @@ class Device {
   // Coordinates and tool heights that were refused: the tool does not go where the program says.
   std::uint64_t positions_refused() const { return positions_refused_; }
   // Of the bytes that came out of the buffer, those that belong to no command, in percent: of 256
-  // where they are fewer and no more than a quarter of them is foreign.
+  // where they are fewer and no more than a word or a quarter of them is foreign.
   double foreign_percent() const;
   // Where the first set lost a part that it would have cut; number 0: none did.
   const CommandPlace& first_lost() const { return first_lost_; }

@@ -239,10 +239,8 @@ class Attempt {
       if (const auto value = begun->run->ReadVariable(name)) values[name] = *value;
     }
     v1::RunReport message = bridge::ToProto(report, values);
-    for (Diagnostic& diagnostic : made->diagnostics) {
-      diagnostic.judged = machine::JudgedBy(report.judgement, diagnostic.code);
-      *message.add_diagnostics() = bridge::ToProto(diagnostic);
-    }
+    machine::MarkJudged(report.judgement, made->diagnostics);
+    bridge::AddFindingsOfText(made->diagnostics, message);
     outcome_ = message.outcome();
     executables_ = begun->run->made_executables();
     return SendProducts(message, begun->recorder->Svg(report, {}), begun->recorder->milling());

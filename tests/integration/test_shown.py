@@ -174,6 +174,8 @@ class Stored(WithCell, InFolder):
         self.assertEqual([(g["code"], g["count"], g["first"]["line"], g["last"]["line"]) for g in gathered],
                          [("RML1-E8002", "15", 7, 21)])
         report = self.cell.command("report", number, "--json").stdout
+        # Each place once, though it is found in the text and again when it runs.
+        self.assertEqual([d["place"]["line"] for d in json.loads(report)["diagnostics"]], list(range(2, 22)))
         self.assertEqual((json.loads(report)["profile"], json.loads(report)["profileNamed"]), ("srm-20", True))
         self.assertIn("BAD RML1-E8002", self.cell.command("report", number).stdout)
 

@@ -75,6 +75,18 @@ TEST(Terminal, LongCellsAreCut) {
   EXPECT_EQ(Table({{umlauts, "b"}}), umlauts.substr(0, 59 * 2) + "…  b\n");
 }
 
+// On a terminal of 40 characters the widest column gives way; what needs no more than 12 does not.
+TEST(Terminal, TablesFitTheirTerminal) {
+  const std::vector<std::vector<std::string>> rows = {{"JOB", "STATE", "TITLE"},
+                                                      {"17", "succeeded", std::string(50, 'x')}};
+  // 3 + 2 + 9 + 2 leave 24.
+  EXPECT_EQ(Table(rows, 40),
+            "JOB  STATE      TITLE\n17   succeeded  " + std::string(23, 'x') + "…\n");
+  EXPECT_EQ(Table(rows, 0), Table(rows, 66));  // 3 + 2 + 9 + 2 + 50
+  EXPECT_NE(Table(rows, 65), Table(rows, 66));
+  EXPECT_EQ(Table(rows, 1), Table(rows, 28));  // 3 + 2 + 9 + 2 + 12
+}
+
 TEST(Terminal, FixedHasSoManyDecimals) {
   EXPECT_EQ(Fixed(1.25, 3), "1.250");
   EXPECT_EQ(Fixed(-0.5, 1), "-0.5");

@@ -18,6 +18,15 @@ std::string SaidTo(const std::vector<std::string>& line) {
   simulate->add_option("FILES", files)->required();
   simulate->add_option("--stock", stock);
   simulate->add_flag("--json");
+  int slot = 0;
+  simulate->add_option("--slot", slot);
+  std::string kind;
+  simulate->add_option("--kind", kind)->check(CLI::IsMember({"check", "run"}));
+  std::vector<std::string> samples;
+  simulate->add_option("--samples", samples, "RATE FILE: write samples")
+      ->type_size(2)
+      ->expected(1)
+      ->allow_extra_args(false);
   CLI::App* projects = app.add_subcommand("projects");
   projects->require_subcommand(0, 1);
   projects->fallthrough();
@@ -66,6 +75,17 @@ TEST(UsageText, AVerbThatIsNoneIsNamedWithTheOneThatWasMeant) {
 
 TEST(UsageText, WhatIsMissingIsSaidWithWhereToRead) {
   EXPECT_EQ(SaidTo({"simulate"}), "FILES is required (rmlcell simulate --help)");
+  EXPECT_EQ(SaidTo({"rml1"}), "rml1 needs a verb: explain (rmlcell rml1 --help)");
+  EXPECT_EQ(SaidTo({}), "rmlcell needs a verb: simulate, projects, rml1 (rmlcell --help)");
+  EXPECT_EQ(SaidTo({"simulate", "a.rml", "--samples", "10"}),
+            "--samples wants more: RATE FILE: write samples (rmlcell simulate --help)");
+}
+
+TEST(UsageText, AValueThatIsNoneIsShown) {
+  EXPECT_EQ(SaidTo({"simulate", "a.rml", "--slot", "x"}),
+            "--slot: 'x' is no number (rmlcell simulate --help)");
+  EXPECT_EQ(SaidTo({"simulate", "a.rml", "--kind", "chek"}),
+            "--kind: 'chek' is none of check, run; did you mean check? (rmlcell simulate --help)");
 }
 
 }  // namespace

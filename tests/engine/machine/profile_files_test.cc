@@ -78,6 +78,9 @@ TEST(Profiles, AreFoundByForgivingNames) {
     return none ? std::string() : none.error().detail;
   };
   EXPECT_EQ(said("mdx40"), "no profile 'mdx40'; did you mean mdx-40a or mdx-40a-rotary?");
+  EXPECT_EQ(said("mdx"),
+            "no profile 'mdx'; did you mean mdx-15, mdx-20, mdx-40a, mdx-40a-rotary, mdx-50 or "
+            "mdx-540?");
   EXPECT_EQ(said("mdx-540s"), "no profile 'mdx-540s'; did you mean mdx-540?");
   EXPECT_EQ(said("Roland SRM-20"), "no profile 'Roland SRM-20'; did you mean srm-20?");
   EXPECT_EQ(said("my.toml"), "no profile 'my.toml': a file of one's own goes to --machine");

@@ -267,7 +267,7 @@ TEST(Picture, WhatIsLostIsDrawn) {
   const std::string data = PathsOf(svg.substr(group, svg.find("</g>", group) - group));
   double across = 0.0, up = 0.0;
   ASSERT_EQ(std::sscanf(data.c_str() + data.find('l'), "l%lf", &across), 1) << data;
-  ASSERT_EQ(std::sscanf(data.c_str() + data.rfind('l'), "l%*lf%lf", &up), 1) << data;
+  ASSERT_EQ(std::sscanf(data.c_str() + data.rfind('l'), "l0%lf", &up), 1) << data;
   EXPECT_NEAR(across / -up, 60.0 / 25.0, 0.01);
 }
 
