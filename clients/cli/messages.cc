@@ -422,6 +422,21 @@ std::string GatheredLine(const v1::GatheredFindings& gathered) {
          Visible(gathered.message());
 }
 
+namespace {
+
+// While a program runs nothing is judged: what is called advice now may make its verdict BAD.
+std::string UnjudgedLine(const v1::Diagnostic& diagnostic) {
+  std::string text = FindingLine(diagnostic);
+  if (diagnostic.severity() != v1::SEVERITY_ADVICE ||
+      diagnostic.verdict() != v1::VERDICT_UNSPECIFIED)
+    return text;
+  const std::string word = std::string(SeverityName(Severity::kAdvice)) + " ";
+  const std::size_t at = text.find(word + diagnostic.code());
+  return at == std::string::npos ? text : text.erase(at, word.size());
+}
+
+}  // namespace
+
 std::string EventLine(const v1::JobEvent& event) {
   std::string text = "#" + std::to_string(event.sequence());
   if (event.virtual_time_ns() > 0)
@@ -431,7 +446,7 @@ std::string EventLine(const v1::JobEvent& event) {
     case v1::JobEvent::kState:
       return text + StateName(event.state());
     case v1::JobEvent::kDiagnostic:
-      return text + FindingLine(event.diagnostic());
+      return text + UnjudgedLine(event.diagnostic());
     case v1::JobEvent::kGathered:
       return text + GatheredLine(event.gathered());
     case v1::JobEvent::kMessage:

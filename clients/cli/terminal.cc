@@ -104,16 +104,16 @@ std::string CutToWidth(std::string text, std::size_t characters) {
 
 namespace {
 
-// Narrows the widest columns until a line of them all fits.
-void Narrow(std::vector<std::size_t>& columns, std::size_t line) {
-  constexpr std::size_t kLeast = 12;
-  std::size_t all = columns.empty() ? 0 : 2 * (columns.size() - 1);
+// What people wrote gives way; names, times and numbers would be of no use without their ends.
+void Narrow(const std::vector<std::string>& heading, std::size_t line,
+            std::vector<std::size_t>& columns) {
+  constexpr std::size_t kLeast = 8;
+  const auto title = std::ranges::find(heading, "TITLE");
+  if (title == heading.end()) return;
+  std::size_t all = 2 * (columns.size() - 1);
   for (const std::size_t column : columns) all += column;
-  for (; all > line; --all) {
-    const auto widest = std::ranges::max_element(columns);
-    if (widest == columns.end() || *widest <= kLeast) return;
-    --*widest;
-  }
+  std::size_t& free = columns[static_cast<std::size_t>(title - heading.begin())];
+  if (all > line) free = std::max(std::min(free, kLeast), free - std::min(free, all - line));
 }
 
 }  // namespace
@@ -133,8 +133,8 @@ std::string Table(std::vector<std::vector<std::string>> rows, std::size_t width)
     widths.resize(std::max(widths.size(), row.size()), 0);
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], Width(row[i]));
   }
-  if (width > 0) {
-    Narrow(widths, width);
+  if (width > 0 && !rows.empty()) {
+    Narrow(rows.front(), width, widths);
     for (auto& row : rows) {
       for (std::size_t i = 0; i < row.size(); ++i)
         row[i] = CutToWidth(std::move(row[i]), widths[i]);

@@ -31,8 +31,8 @@ void Complain(std::string_view text);  // to standard error, "rmlcell: ..."
 std::size_t OutputWidth();
 
 // Columns as wide as they need to be, cells of more than 60 characters cut; numbers are not aligned
-// specially. The first row is the heading. Where lines would be longer than `width`, the widest
-// columns are cut, to 12 characters at least; 0: lines may be of any length.
+// specially. The first row is the heading. Where lines would be longer than `width`, the column
+// "TITLE" is cut, to 8 characters at least; 0: lines may be of any length.
 std::string Table(std::vector<std::vector<std::string>> rows, std::size_t width = OutputWidth());
 
 // One line on standard error that is drawn over; draws nothing when standard error is no terminal.

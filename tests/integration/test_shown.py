@@ -168,6 +168,7 @@ class Stored(WithCell, InFolder):
         lines = [line for line in job.stdout.splitlines() if "RML1-E8002" in line and " ended: " not in line]
         self.assertEqual(len(lines), 6, job.stdout)
         self.assertIn("and 15 more RML1-E8002, lines 7 to 21: ", lines[-1])
+        self.assertNotIn("advice", job.stdout)  # of what makes it BAD
         number = re.search(r"jobs/(\d+)|job (\d+)", job.stdout + job.stderr).group(0).split("/")[-1].split(" ")[-1]
         events = [json.loads(line) for line in self.cell.command("watch", number, "--json", check=False).stdout.splitlines()]
         gathered = [e["event"]["gathered"] for e in events if e.get("event", {}).get("gathered")]

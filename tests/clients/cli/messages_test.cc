@@ -421,6 +421,22 @@ TEST_F(Messages, LongNamesKeepABlank) {
   EXPECT_THAT(ReportText(report), HasSubstr("VARIABLE[123] a\nVARIABLE[123456] b\n"));
 }
 
+// While a program runs nothing is judged: advice may be what makes its verdict BAD.
+TEST_F(Messages, AnEventCallsNothingMereAdvice) {
+  v1::JobEvent event = Event(1);
+  v1::Diagnostic& finding = *event.mutable_diagnostic();
+  finding.set_code("RML1-E8002");
+  finding.set_severity(v1::SEVERITY_ADVICE);
+  finding.set_message("lost");
+  finding.mutable_place()->set_file("a.rml");
+  EXPECT_EQ(EventLine(event), "#1  a.rml: RML1-E8002: lost");
+  finding.set_verdict(v1::VERDICT_BAD);
+  EXPECT_EQ(EventLine(event), "#1  a.rml: BAD RML1-E8002: lost");
+  finding.clear_verdict();
+  finding.set_severity(v1::SEVERITY_WARNING);
+  EXPECT_EQ(EventLine(event), "#1  a.rml: warning RML1-E8002: lost");
+}
+
 TEST_F(Messages, AFindingIsOneLineWithItsCount) {
   v1::Diagnostic finding;
   finding.set_code("OPT-E7004");

@@ -75,16 +75,18 @@ TEST(Terminal, LongCellsAreCut) {
   EXPECT_EQ(Table({{umlauts, "b"}}), umlauts.substr(0, 59 * 2) + "…  b\n");
 }
 
-// On a terminal of 40 characters the widest column gives way; what needs no more than 12 does not.
+// On a terminal of 40 characters the title gives way, down to 8 characters; nothing else does.
 TEST(Terminal, TablesFitTheirTerminal) {
-  const std::vector<std::vector<std::string>> rows = {{"JOB", "STATE", "TITLE"},
-                                                      {"17", "succeeded", std::string(50, 'x')}};
-  // 3 + 2 + 9 + 2 leave 24.
-  EXPECT_EQ(Table(rows, 40),
-            "JOB  STATE      TITLE\n17   succeeded  " + std::string(23, 'x') + "…\n");
-  EXPECT_EQ(Table(rows, 0), Table(rows, 66));  // 3 + 2 + 9 + 2 + 50
-  EXPECT_NE(Table(rows, 65), Table(rows, 66));
-  EXPECT_EQ(Table(rows, 1), Table(rows, 28));  // 3 + 2 + 9 + 2 + 12
+  const std::vector<std::vector<std::string>> rows = {
+      {"JOB", "TITLE", "SUBMITTED"}, {"17", std::string(50, 'x'), "2026-11-24 00:30:11"}};
+  // 3 + 2 + 2 + 19 leave 14.
+  EXPECT_EQ(Table(rows, 40), "JOB  TITLE           SUBMITTED\n17   " + std::string(13, 'x') +
+                                 "…  2026-11-24 00:30:11\n");
+  EXPECT_EQ(Table(rows, 0), Table(rows, 76));  // 3 + 2 + 50 + 2 + 19
+  EXPECT_NE(Table(rows, 75), Table(rows, 76));
+  EXPECT_EQ(Table(rows, 1), Table(rows, 34));  // 3 + 2 + 8 + 2 + 19
+  EXPECT_EQ(Table({{"JOB", "TITLE"}, {"1", "x"}}, 1), "JOB  TITLE\n1    x\n");
+  EXPECT_EQ(Table({{"a"}, {std::string(50, 'x')}}, 10), "a\n" + std::string(50, 'x') + "\n");
 }
 
 TEST(Terminal, FixedHasSoManyDecimals) {
