@@ -32,7 +32,8 @@ struct CheckedFile {
   std::optional<machine::Parameters> parameters;
   machine::Translation translation;
   simulation::MotionCheck motion;
-  int slot = 0;  // in the program memory of the check; 0: none
+  int slot = 0;                  // in the program memory of the check; 0: none
+  std::optional<Error> refused;  // why there is nothing to check
 
   bool ok() const { return translation.ok && !motion.has_errors(); }
 };
@@ -80,8 +81,7 @@ Status Translate(CheckedFile& file, const CheckOptions& options) {
 
 // The figures that people want of a check: those that the family gives a row, else all on one line.
 std::string FigureText(const CheckedFile& file, Zero zero) {
-  const std::string rows = FigureRows(*file.family, file.translation.figures,
-                                      std::string(file.parameters->profile()), zero);
+  const std::string rows = FigureRows(*file.family, file.translation.figures, zero);
   if (!rows.empty()) return rows;
   std::string line;
   for (const machine::Figure& figure : file.translation.figures) {
@@ -92,10 +92,33 @@ std::string FigureText(const CheckedFile& file, Zero zero) {
   return line.empty() ? line : "  " + line + "\n";
 }
 
+// A file that is not there, or empty, keeps nobody from hearing of the others.
+int ShowRefused(const CheckedFile& file, const CheckOptions& options) {
+  Refuse(*file.refused);
+  if (!options.json) return kProgramErrors;
+  v1::Findings found = bridge::FindingsOf(false,
+                                          {{.code = file.refused->code,
+                                            .severity = Lookup(file.refused->code).severity,
+                                            .detail = file.refused->detail,
+                                            .file = file.name}},
+                                          0, {});
+  found.set_file(bridge::Utf8(file.name));
+  found.set_family(std::string(file.family->info().id));
+  Print(Json(found));
+  return kProgramErrors;
+}
+
 // What there is to say; the exit code.
-int Show(const CheckedFile& file, const CheckOptions& options) {
-  const machine::Translation& translation = file.translation;
-  const v1::Findings found = bridge::FindingsOf(*file.family, translation, file.motion, file.slot);
+int Show(CheckedFile& file, const CheckOptions& options) {
+  if (file.refused) return ShowRefused(file, options);
+  machine::Translation& translation = file.translation;
+  v1::Findings found =
+      bridge::FindingsOf(*file.family, *file.parameters, translation, file.motion, file.slot);
+  found.set_file(bridge::Utf8(file.name));
+  const machine::Judgement judgement =
+      simulation::JudgeCheck(*file.family, translation, file.motion);
+  machine::MarkJudged(judgement, translation.diagnostics);
+  machine::MarkJudged(judgement, file.motion.findings);
   const int exit_code = ExitOf(found, options.strict);
   if (options.json) {
     PrintJson(found);
@@ -109,6 +132,7 @@ int Show(const CheckedFile& file, const CheckOptions& options) {
     for (const auto& [slot, why] : file.motion.cut_short) Print("  motion checked " + why);
   }
   for (const v1::VerdictReason& reason : found.reasons()) Print("  " + ReasonLine(reason));
+  PrintRaw(MachineRows(*file.family, found));
   PrintRaw(FigureText(file, options.machine_coordinates ? Zero::kMachine : Zero::kWork));
   return exit_code;
 }
@@ -141,9 +165,9 @@ int FixFiles(std::vector<CheckedFile>& files, const machine::InputScript& inputs
         if (const Status ran = CheckMotions({&file}, inputs, !options.errors_only); !ran)
           return ran.error();
       }
-      return FixCheck::Left{
-          .motion = file.motion,
-          .found = bridge::FindingsOf(*file.family, left, file.motion, file.slot)};
+      return FixCheck::Left{.motion = file.motion,
+                            .found = bridge::FindingsOf(*file.family, *file.parameters, left,
+                                                        file.motion, file.slot)};
     };
     exit_code = std::max(exit_code, FixFile(file.name, *text, {translate, judge},
                                             {options.dry_run, options.json, options.strict}));
@@ -167,6 +191,7 @@ int Check(const CheckOptions& options) {
       return Refuse(placed.error());
     auto parameters = machine::MakeParameters(**family, machine->profile, changed);
     if (!parameters) return Refuse(parameters.error());
+    parameters->SetChangedBy(ParametersOf(options.machine));
     files.push_back({.name = name, .family = *family, .parameters = *std::move(parameters)});
     override_max = std::max(override_max, (*family)->info().override_max_percent);
   }
@@ -184,10 +209,15 @@ int Check(const CheckOptions& options) {
   if (options.fix) return FixFiles(files, inputs, options);
   int exit_code = kGood;
   std::map<const machine::MachineFamily*, std::vector<CheckedFile*>> to_run;
+  const auto translate = [&](CheckedFile& file) -> Status {
+    const Status translated = Translate(file, options);
+    if (translated || files.size() == 1) return translated;
+    file.refused = translated.error();
+    return {};
+  };
   for (CheckedFile& file : files) {
     if (!file.family->info().checked_by_running) continue;
-    if (const Status translated = Translate(file, options); !translated)
-      return Refuse(translated.error());
+    if (const Status translated = translate(file); !translated) return Refuse(translated.error());
     if (file.translation.ok) to_run[file.family].push_back(&file);
   }
   for (auto& [family, ready] : to_run) {
@@ -196,8 +226,7 @@ int Check(const CheckOptions& options) {
   }
   for (CheckedFile& file : files) {
     if (!file.family->info().checked_by_running) {
-      if (const Status translated = Translate(file, options); !translated)
-        return Refuse(translated.error());
+      if (const Status translated = translate(file); !translated) return Refuse(translated.error());
     }
     exit_code = std::max(exit_code, Show(file, options));
     // A stream may be of hundreds of megabytes.

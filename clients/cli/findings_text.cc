@@ -16,10 +16,13 @@ std::string Text(const std::vector<Diagnostic>& findings, std::uint64_t dropped,
   KindsShown kinds;
   for (const Diagnostic& finding : findings) {
     if (!kinds.Show(CodeText(finding.code), finding.where.line)) continue;
-    const std::string text = FormatDiagnostic(finding, source);
+    // Bytes that are no text would upset a terminal, and whoever reads this in a pipe.
+    const std::string text = bridge::Utf8(FormatDiagnostic(finding, source));
     const std::size_t line_end = std::min(text.find('\n'), text.size());
     all += Paint(Visible(text.substr(0, line_end)),
-                 IsError(finding.severity) ? Colour::kRed : Colour::kYellow, colour) +
+                 IsError(finding.severity) || finding.judged == Judged::kBad ? Colour::kRed
+                                                                             : Colour::kYellow,
+                 colour) +
            text.substr(line_end) + "\n";
   }
   all += kinds.Rest();
@@ -31,7 +34,7 @@ std::string Text(const std::vector<Diagnostic>& findings, std::uint64_t dropped,
 
 bool KindsShown::Show(const std::string& code, int line) {
   Kind& kind = kinds_[code];
-  if (kind.shown < kShownMax) {
+  if (kind.shown < kToldOfKindMax) {
     ++kind.shown;
     return true;
   }
@@ -45,16 +48,16 @@ std::string KindsShown::Rest() const {
   std::string text;
   for (const auto& [code, kind] : kinds_) {
     if (kind.left_out == 0) continue;
-    text += "and " + std::to_string(kind.left_out) + " more " + code;
-    if (kind.first_line > 0 && kind.first_line == kind.last_line) {
-      text += ", line " + std::to_string(kind.first_line);
-    } else if (kind.first_line > 0) {
-      text +=
-          ", lines " + std::to_string(kind.first_line) + " to " + std::to_string(kind.last_line);
-    }
-    text += "\n";
+    text += "and " + std::to_string(kind.left_out) + " more " + code +
+            ExtentText(kind.first_line, kind.last_line) + "\n";
   }
   return text;
+}
+
+std::string ExtentText(int first_line, int last_line) {
+  if (first_line <= 0) return {};
+  if (first_line == last_line) return ", line " + std::to_string(first_line);
+  return ", lines " + std::to_string(first_line) + " to " + std::to_string(last_line);
 }
 
 void PrintFindings(const std::vector<Diagnostic>& findings, std::uint64_t dropped,

@@ -21,7 +21,6 @@ class KindsShown {
   std::string Rest() const;
 
  private:
-  static constexpr std::uint64_t kShownMax = 5;
   struct Kind {
     std::uint64_t shown = 0;
     std::uint64_t left_out = 0;
@@ -30,6 +29,9 @@ class KindsShown {
   };
   std::map<std::string, Kind> kinds_;
 };
+
+// ", lines 12 to 300", ", line 7"; empty where no line is known.
+std::string ExtentText(int first_line, int last_line);
 
 // Findings with the source line of each and a caret below it; `source` may be empty.
 // To standard output: they are what was asked for.

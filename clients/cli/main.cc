@@ -5,6 +5,7 @@
 #include "clients/cli/local.h"
 #include "clients/cli/remote.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/usage_error.h"
 #include "clients/cli/verbs.h"
 #include "clients/cli/version.h"
 #include "engine/families/families.h"
@@ -447,14 +448,15 @@ int main(int argc, char** argv) {
   AddProductVerbs(app, remote, given, exit_code);
   const auto named = [&](CLI::App* verb) { return argc > 1 && verb->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty()) {
-    Complain("there is no verb '" + std::string(argv[1]) + "'; rmlcell --help lists them");
+    Complain(NoSuchVerb(app, argv[1]));
     return kUsage;
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int shown = app.exit(error);
-    return shown == 0 ? kGood : kUsage;
+    if (error.get_exit_code() == 0) return app.exit(error);  // help, or the version
+    Complain(UsageText(app, error));
+    return kUsage;
   }
   // A full disk or a closed pipe: what was asked for did not arrive.
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

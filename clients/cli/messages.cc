@@ -278,16 +278,16 @@ void AddFamilyFigures(const v1::RunReport& report, const machine::MachineFamily&
       [&](std::string_view name) { return FigureOf(report, name); }, rows);
 }
 
-// "Roland monoFab SRM-20 (srm-20)". That nobody said which machine it is must not be overlooked.
-std::string MachineText(const machine::MachineFamily& family, const std::string& profile) {
-  const auto profiles = family.profiles();
-  const auto found = std::ranges::find(profiles, profile, &machine::MachineProfile::id);
-  if (found != profiles.end()) return std::string(found->title) + " (" + profile + ")";
-  if (profiles.empty()) return std::string(family.info().title);
-  const auto made =
-      std::ranges::find(profiles, family.info().default_profile, &machine::MachineProfile::id);
-  const machine::MachineProfile& taken = made != profiles.end() ? *made : profiles.front();
-  return std::string(taken.title) + " (" + std::string(taken.id) + "): no profile was named";
+// Which machine it is, and what of it is not as its profile has it.
+template <class Message>
+void AddMachine(const machine::MachineFamily& family, const Message& message, Rows& rows) {
+  rows.emplace_back("machine",
+                    machine::MachineTitle(family, message.profile(), message.profile_named()));
+  machine::MachineUsed used{.changed_by = message.profile_changed_by()};
+  for (const v1::ParameterChange& change : message.profile_changes())
+    used.changes.push_back({change.name(), change.value(), change.of_profile()});
+  if (const std::string changes = used.ChangesText(); !changes.empty())
+    rows.emplace_back("changed", Visible(changes));
 }
 
 // Where the tip ends and went: as the program counts, or the machine.
@@ -320,7 +320,6 @@ void AddPositions(const v1::RunReport& report, const machine::MachineShape& shap
 // What a run did; a job that only checks has none of it.
 void AddFigures(const v1::RunReport& report, Zero zero, Rows& rows) {
   const machine::MachineFamily* family = families::FindFamily(report.family());
-  if (family != nullptr) rows.emplace_back("machine", MachineText(*family, report.profile()));
   const v1::WorkFigures& total = report.total();
   const v1::RunTimes& times = total.times();
   rows.emplace_back("cycle time", Duration(times.cycle_s()));
@@ -385,6 +384,9 @@ std::string ReportText(const v1::RunReport& report, Zero zero) {
       rows.emplace_back("", ReasonLine(reason));
   }
   rows.emplace_back("outcome", OutcomeLine(outcome));
+  const machine::MachineFamily* family = families::FindFamily(report.family());
+  if (family != nullptr && (report.has_total() || !report.profile().empty()))
+    AddMachine(*family, report, rows);
   if (report.has_total()) AddFigures(report, zero, rows);
   if (!report.motion_check().empty())
     rows.emplace_back("motion", "checked " + report.motion_check());
@@ -401,9 +403,14 @@ std::string ReportText(const v1::RunReport& report, Zero zero) {
   return text;
 }
 
+std::string MachineRows(const machine::MachineFamily& family, const v1::Findings& found) {
+  Rows rows;
+  AddMachine(family, found, rows);
+  return TextOf(rows);
+}
+
 std::string FigureRows(const machine::MachineFamily& family,
-                       const std::vector<machine::Figure>& figures, const std::string& profile,
-                       Zero zero) {
+                       const std::vector<machine::Figure>& figures, Zero zero) {
   Rows rows;
   const auto value = [&](std::string_view name) -> std::optional<double> {
     const auto found = std::ranges::find(figures, name, &machine::Figure::name);
@@ -412,9 +419,29 @@ std::string FigureRows(const machine::MachineFamily& family,
   AddFigureRows(family, machine::FigureInfo::Where::kCheck, value, rows);
   if (zero == Zero::kMachine)
     AddFigureRows(family, machine::FigureInfo::Where::kCheckMachine, value, rows);
-  if (!rows.empty()) rows.emplace(rows.begin(), "machine", MachineText(family, profile));
   return TextOf(rows);
 }
+
+std::string GatheredLine(const v1::GatheredFindings& gathered) {
+  return "and " + std::to_string(gathered.count()) + " more " + gathered.code() +
+         ExtentText(gathered.first().line(), gathered.last().line()) + ": " +
+         Visible(gathered.message());
+}
+
+namespace {
+
+// While a program runs nothing is judged: what is called advice now may make its verdict BAD.
+std::string UnjudgedLine(const v1::Diagnostic& diagnostic) {
+  std::string text = FindingLine(diagnostic);
+  if (diagnostic.severity() != v1::SEVERITY_ADVICE ||
+      diagnostic.verdict() != v1::VERDICT_UNSPECIFIED)
+    return text;
+  const std::string word = std::string(SeverityName(Severity::kAdvice)) + " ";
+  const std::size_t at = text.find(word + diagnostic.code());
+  return at == std::string::npos ? text : text.erase(at, word.size());
+}
+
+}  // namespace
 
 std::string EventLine(const v1::JobEvent& event) {
   std::string text = "#" + std::to_string(event.sequence());
@@ -425,7 +452,9 @@ std::string EventLine(const v1::JobEvent& event) {
     case v1::JobEvent::kState:
       return text + StateName(event.state());
     case v1::JobEvent::kDiagnostic:
-      return text + FindingLine(event.diagnostic());
+      return text + UnjudgedLine(event.diagnostic());
+    case v1::JobEvent::kGathered:
+      return text + GatheredLine(event.gathered());
     case v1::JobEvent::kMessage:
       return text + Visible(event.message());
     case v1::JobEvent::kHalted:

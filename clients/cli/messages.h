@@ -20,12 +20,15 @@ enum class Zero { kWork, kMachine };
 std::string ReportText(const v1::RunReport& report, Zero zero = Zero::kWork);
 // The rows that a family gives its figures of a check; empty when it gives none.
 std::string FigureRows(const machine::MachineFamily& family,
-                       const std::vector<machine::Figure>& figures, const std::string& profile,
-                       Zero zero = Zero::kWork);
+                       const std::vector<machine::Figure>& figures, Zero zero = Zero::kWork);
+// Which machine a check was for, and what was changed of its profile.
+std::string MachineRows(const machine::MachineFamily& family, const v1::Findings& found);
 std::string OutcomeLine(const v1::Outcome& outcome);
 std::string EventLine(const v1::JobEvent& event);
 std::string StateName(v1::Job::State state);  // "running"
 
+// "and 95 more RML1-E2, lines 12 to 300: no command of the command set in force has this name".
+std::string GatheredLine(const v1::GatheredFindings& gathered);
 // A finding as the local checks print it, without source line.
 std::string FindingLine(const v1::Diagnostic& diagnostic);
 

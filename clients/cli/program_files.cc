@@ -61,6 +61,16 @@ Result<bridge::MachineFile> ReadMachine(const MachineChoice& choice) {
   return machine;
 }
 
+std::string ParametersOf(const MachineChoice& choice) {
+  std::string names = choice.file;
+  const auto add = [&names](std::string_view name) {
+    names += (names.empty() ? "" : " and ") + std::string(name);
+  };
+  if (!choice.origin.empty()) add("--origin");
+  if (choice.clamps_mm) add("--clamps");
+  return names;
+}
+
 namespace {
 
 Status PlaceOrigin(const std::vector<double>& origin, const machine::MachineFamily& family,

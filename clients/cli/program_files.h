@@ -49,6 +49,10 @@ Result<SlotFile> ParseSlotFile(const std::string& text);
 // Without a file what is chosen on the command line. Errors: CellFileUnreadable, CellBadText.
 Result<bridge::MachineFile> ReadMachine(const MachineChoice& choice);
 
+// Who changes parameters of the profile, for people: "mine.toml", "mine.toml and --origin"; empty:
+// nobody.
+std::string ParametersOf(const MachineChoice& choice);
+
 // The parameters that bring program zero to its place and know of the clamps. Errors: CellUsage for
 // a family whose programs set zero themselves or that knows no clamps, and for an origin of other
 // than two or three numbers.

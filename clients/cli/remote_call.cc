@@ -1,14 +1,41 @@
 #include "clients/cli/remote_call.h"
 
+#include "clients/cli/findings_text.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/terminal.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "proto/bridge/findings.h"
 
 namespace rmlcell::cli {
 namespace {
 
 constexpr std::chrono::seconds kUnaryDeadline{60};
+
+// What makes the program be refused, each with code, place and advice; the rest is counted. The
+// message of the call says the first of it again, without its place.
+void ComplainOf(const v1::ErrorDetail& detail, const std::string& message) {
+  KindsShown kinds;
+  std::int64_t others = detail.diagnostics_dropped();
+  bool told = false;
+  for (const v1::Diagnostic& diagnostic : detail.diagnostics()) {
+    if (!IsError(bridge::FromProto(diagnostic).severity)) {
+      ++others;
+    } else if (kinds.Show(diagnostic.code(), diagnostic.place().line())) {
+      if (!told && diagnostic.code() != detail.code()) Complain(message);
+      told = true;
+      Complain(FindingLine(diagnostic));
+    }
+  }
+  if (!told) Complain(message);
+  std::string rest = kinds.Rest();
+  for (std::size_t end; (end = rest.find('\n')) != std::string::npos; rest.erase(0, end + 1))
+    Complain(rest.substr(0, end));
+  if (others > 0) {
+    Complain("and " + std::to_string(others) + (others == 1 ? " more finding" : " more findings") +
+             "; rmlcell check of the file tells them");
+  }
+}
 
 }  // namespace
 
@@ -31,20 +58,14 @@ int Refused(const grpc::Status& status, const Remote& remote) {
              "); start rmlcelld, or give --server");
     return kConnection;
   }
-  Complain(status.error_message());
-  bool program_errors = false;
   for (const auto& any : rich.details()) {
     v1::ErrorDetail detail;
-    if (!any.Is<v1::ErrorDetail>() || !any.UnpackTo(&detail)) continue;
-    for (const v1::Diagnostic& diagnostic : detail.diagnostics()) {
-      program_errors = true;
-      Complain(FindingLine(diagnostic));
-    }
-    if (detail.diagnostics_dropped() > 0) {
-      Complain("and " + std::to_string(detail.diagnostics_dropped()) + " more findings");
+    if (any.Is<v1::ErrorDetail>() && any.UnpackTo(&detail) && !detail.diagnostics().empty()) {
+      ComplainOf(detail, status.error_message());
+      return kProgramErrors;
     }
   }
-  if (program_errors) return kProgramErrors;
+  Complain(status.error_message());
   return status.error_code() == grpc::StatusCode::INVALID_ARGUMENT ? kUsage : kConnection;
 }
 

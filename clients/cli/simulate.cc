@@ -53,18 +53,29 @@ std::vector<std::string> SplitCommas(const std::string& text) {
   return parts;
 }
 
+// Which machine a program would have run on.
+machine::MachineUsed MachineOf(const simulation::ProgramMemory& memory) {
+  auto parameters = machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
+  if (!parameters) return {};
+  parameters->SetChangedBy(memory.parameters_of);
+  return parameters->Used();
+}
+
 // A program that cannot run: its findings, and a verdict all the same.
-int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
+int TellWhyNot(const SimulateOptions& options, const simulation::ProgramMemory& memory,
                const simulation::PreparedRun& prepared) {
   const machine::Judgement judgement = simulation::JudgeFindings(prepared.diagnostics);
   if (options.json) {
     v1::Findings found =
         bridge::FindingsOf(false, prepared.diagnostics, prepared.diagnostics_dropped, {});
     bridge::SetJudgement(judgement, found);
+    found.set_family(std::string(memory.family->info().id));
+    bridge::SetMachine(MachineOf(memory), found);
     PrintJson(found);
   } else if (options.facts) {
     simulation::RunReport report;
-    report.family = loaded.family->info().id;
+    report.family = memory.family->info().id;
+    report.machine = MachineOf(memory);
     report.finished = true;
     report.outcome.kind = machine::OutcomeKind::kFailed;
     if (!judgement.reasons.empty()) report.outcome.code = judgement.reasons.front().code;
@@ -72,7 +83,7 @@ int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
     PrintRaw(simulation::FactsText(report));
   } else {
     std::string_view source;
-    if (loaded.programs.size() == 1) source = *loaded.programs.front().bytes;
+    if (memory.programs.size() == 1) source = *memory.programs.front().bytes;
     PrintFindings(prepared.diagnostics, prepared.diagnostics_dropped, source);
     PrintRaw("verdict       " + VerdictText(v1::VERDICT_BAD) + "\n");
   }
@@ -219,6 +230,7 @@ Result<PreparedCommand> Prepare(const SimulateOptions& options) {
   simulation::ProgramMemory memory{.family = loaded->family,
                                    .profile = machine->profile,
                                    .parameters = machine->parameters,
+                                   .parameters_of = ParametersOf(options.machine),
                                    .programs = loaded->programs,
                                    .machine_state = *std::move(state)};
   Result<simulation::PreparedRun> run = simulation::PrepareRun(
@@ -259,7 +271,7 @@ int Simulate(const SimulateOptions& options) {
   if (!prepared) return Refuse(prepared.error());
   const machine::MachineFamily& family = *prepared->loaded.family;
   simulation::PreparedRun& run = prepared->run;
-  if (!run.setup) return TellWhyNot(options, prepared->loaded, run);
+  if (!run.setup) return TellWhyNot(options, prepared->memory, run);
 
   simulation::SimulationRequest request;
   RunProducts products(options);
@@ -294,6 +306,7 @@ int Simulate(const SimulateOptions& options) {
   v1::RunReport report = bridge::ToProto(result->report, result->variables);
   const v1::Outcome outcome = report.outcome();
   products.MoveTraceTo(report);
+  machine::MarkJudged(result->report.judgement, run.diagnostics);
   TellResult(options, *result, run, std::move(report));
   return ExitOf(outcome, options.strict);
 }

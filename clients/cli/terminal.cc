@@ -1,11 +1,13 @@
 #include "clients/cli/terminal.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "engine/core/hex.h"
 #include "engine/core/number_text.h"
@@ -100,7 +102,29 @@ std::string CutToWidth(std::string text, std::size_t characters) {
 
 }  // namespace
 
-std::string Table(std::vector<std::vector<std::string>> rows) {
+namespace {
+
+// What people wrote gives way; names, times and numbers would be of no use without their ends.
+void Narrow(const std::vector<std::string>& heading, std::size_t line,
+            std::vector<std::size_t>& columns) {
+  constexpr std::size_t kLeast = 8;
+  const auto title = std::ranges::find(heading, "TITLE");
+  if (title == heading.end()) return;
+  std::size_t all = 2 * (columns.size() - 1);
+  for (const std::size_t column : columns) all += column;
+  std::size_t& free = columns[static_cast<std::size_t>(title - heading.begin())];
+  if (all > line) free = std::max(std::min(free, kLeast), free - std::min(free, all - line));
+}
+
+}  // namespace
+
+std::size_t OutputWidth() {
+  winsize size{};
+  if (::isatty(STDOUT_FILENO) == 0 || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return 0;
+  return size.ws_col;
+}
+
+std::string Table(std::vector<std::vector<std::string>> rows, std::size_t width) {
   for (auto& row : rows) {
     for (std::string& cell : row) cell = CutToWidth(Visible(cell), kCellMax);
   }
@@ -108,6 +132,13 @@ std::string Table(std::vector<std::vector<std::string>> rows) {
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()), 0);
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], Width(row[i]));
+  }
+  if (width > 0 && !rows.empty()) {
+    Narrow(rows.front(), width, widths);
+    for (auto& row : rows) {
+      for (std::size_t i = 0; i < row.size(); ++i)
+        row[i] = CutToWidth(std::move(row[i]), widths[i]);
+    }
   }
   std::string text;
   for (std::size_t r = 0; r < rows.size(); ++r) {

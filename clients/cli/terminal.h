@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -26,9 +27,13 @@ std::string Visible(std::string_view text);
 void PrintRaw(std::string_view text);  // to standard output, as it is
 void Complain(std::string_view text);  // to standard error, "rmlcell: ..."
 
+// Characters in a line of standard output; 0: it is no terminal, and a line may be of any length.
+std::size_t OutputWidth();
+
 // Columns as wide as they need to be, cells of more than 60 characters cut; numbers are not aligned
-// specially. The first row is the heading.
-std::string Table(std::vector<std::vector<std::string>> rows);
+// specially. The first row is the heading. Where lines would be longer than `width`, the column
+// "TITLE" is cut, to 8 characters at least; 0: lines may be of any length.
+std::string Table(std::vector<std::vector<std::string>> rows, std::size_t width = OutputWidth());
 
 // One line on standard error that is drawn over; draws nothing when standard error is no terminal.
 class ProgressLine {

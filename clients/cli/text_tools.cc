@@ -180,34 +180,45 @@ int Link(const LinkOptions& options) {
   return answer.Deliver(linked->executable, output, what);
 }
 
+namespace {
+
+// The exit code; an error: of the file, nothing was done to it.
+Result<int> FormatFile(const std::string& file, const FormatOptions& options, ToolAnswer& answer) {
+  const Result<std::string> text = bridge::ReadFile(file, kFileBytesMax);
+  if (!text) return text.error();
+  const auto family = families::FamilyWithTools(file);
+  if (!family) return family.error();
+  const machine::Tools& tools = *(*family)->tools();
+  if (tools.FormOf(file, *text) == FileForm::kObject) {
+    return Error{
+        ErrorCode::kCellBadText, file + " is an object; rmlcell decompile gives its source", {}};
+  }
+  const machine::FormattedText formatted = tools.Format({.name = file, .bytes = *text});
+  // It stays as it is where it cannot be read; say why.
+  const bool bad = !formatted.readable;
+  if (bad) answer.Found(formatted.diagnostics, formatted.diagnostics_dropped, *text);
+  if (formatted.changed && !options.check_only) {
+    if (const Status written = WriteWholeFile(file, formatted.text); !written)
+      return written.error();
+  }
+  // With --check a list of names, for scripts.
+  const std::string what = !formatted.changed   ? ""
+                           : options.check_only ? file
+                                                : file + ": formatted";
+  const bool fails = bad || (formatted.changed && options.check_only);
+  return answer.Say(what, fails ? kProgramErrors : kGood);
+}
+
+}  // namespace
+
 int Format(const FormatOptions& options) {
   int exit_code = kGood;
   for (const std::string& file : options.files) {
-    const Result<std::string> text = bridge::ReadFile(file, kFileBytesMax);
-    if (!text) return Refuse(text.error());
-    const auto family = families::FamilyWithTools(file);
-    if (!family) return Refuse(family.error());
-    const machine::Tools& tools = *(*family)->tools();
-    if (tools.FormOf(file, *text) == FileForm::kObject) {
-      return Refuse({ErrorCode::kCellBadText,
-                     file + " is an object; rmlcell decompile gives its source",
-                     {}});
-    }
     ToolAnswer answer(file, options.json);
-    const machine::FormattedText formatted = tools.Format({.name = file, .bytes = *text});
-    // It stays as it is where it cannot be read; say why.
-    const bool bad = !formatted.readable;
-    if (bad) answer.Found(formatted.diagnostics, formatted.diagnostics_dropped, *text);
-    if (formatted.changed && !options.check_only) {
-      if (const Status written = WriteWholeFile(file, formatted.text); !written)
-        return Refuse(written.error());
-    }
-    // With --check a list of names, for scripts.
-    const std::string what = !formatted.changed   ? ""
-                             : options.check_only ? file
-                                                  : file + ": formatted";
-    const bool fails = bad || (formatted.changed && options.check_only);
-    exit_code = std::max(exit_code, answer.Say(what, fails ? kProgramErrors : kGood));
+    const Result<int> formatted = FormatFile(file, options, answer);
+    if (!formatted && options.files.size() == 1) return Refuse(formatted.error());
+    // A file that is not there keeps nobody from the others.
+    exit_code = std::max(exit_code, formatted ? *formatted : answer.Failed(formatted.error()));
   }
   return exit_code;
 }

@@ -407,6 +407,52 @@ function countsText(pairs) {
   return pairs.filter(([number]) => Number(number) > 0).map(([number, what]) => `${number} ${what}`).join(", ");
 }
 
+// Which machine it was, and what of it is not as its profile has it.
+function machineText(report) {
+  if (!report.profile) return report.family ?? "";
+  return `${report.family}, ${report.profile}${report.profileNamed ? "" : ": no profile was named"}`;
+}
+
+function changesText(report) {
+  const changes = (report.profileChanges ?? []).map((one) => `${one.name} ${one.value} (profile: ${one.ofProfile})`);
+  const who = report.profileChangedBy;
+  if (!changes.length) return who ? `nothing, by ${who}` : "";
+  return changes.join(", ") + (who ? `; by ${who}` : "");
+}
+
+// The verdict and what makes it so.
+function verdictBlock(outcome) {
+  const [word, tone] = VERDICTS[outcome?.verdict] ?? [];
+  if (!word) return [];
+  const chip = element("span", { className: "chip" }, word);
+  chip.dataset.tone = tone;
+  const reasons = (outcome.reasons ?? []).map((reason) =>
+    element("li", {}, explainLink(reason.code), ` ${reason.message}`,
+      element("div", { className: "sub" }, [placeText(reason.first), reason.advice].filter(Boolean).join(" \u00b7 "))));
+  return [element("p", { className: "verdict" }, "Verdict ", chip, ` ${OUTCOMES[outcome.kind] ?? ""}`),
+    element("ul", { className: "findings" }, ...reasons)];
+}
+
+// Findings of one code at many places are told once.
+function findingItems(report) {
+  const kinds = new Map();
+  for (const one of report.diagnostics ?? []) {
+    if (!kinds.has(one.code)) kinds.set(one.code, []);
+    kinds.get(one.code).push(one);
+  }
+  const items = [...kinds.values()].map((all) => {
+    const [first] = all;
+    const count = all.reduce((sum, one) => sum + (Number(one.count) || 1), 0);
+    const word = VERDICTS[first.verdict]?.[0] ?? severityWord(first.severity ?? "SEVERITY_UNSPECIFIED");
+    const extent = all.length > 1 ? `${placeText(first.place)} to ${placeText(all[all.length - 1].place)}` : placeText(first.place);
+    return element("li", {}, explainLink(first.code), ` ${word}: ${first.message} `,
+      element("span", { className: "sub" }, [count > 1 ? `${count} times` : "", extent].filter(Boolean).join(", ")));
+  });
+  const dropped = Number(report.diagnosticsDropped ?? 0);
+  if (dropped > 0) items.push(element("li", { className: "sub" }, `and ${dropped} more`));
+  return items;
+}
+
 // What a person wants to know first; the link below has everything.
 function reportRows(report) {
   const rows = [];
@@ -414,6 +460,8 @@ function reportRows(report) {
   const add = (word, text) => {
     if (text) rows.push([word, text]);
   };
+  add("Machine", machineText(report));
+  add("Changed", changesText(report));
   if (total) {
     const times = total.times ?? {};
     add("Cycle time", duration(times.cycleS ?? 0));
@@ -458,13 +506,10 @@ async function showReport(job, address) {
     const report = await response.json();
     const list = element("dl", { className: "report" });
     for (const [word, text] of reportRows(report)) list.append(element("dt", {}, word), element("dd", {}, text));
-    const findings = element("ul", { className: "findings" });
-    for (const one of (report.diagnostics ?? []).slice(0, SHOWN_OF_A_LIST)) {
-      findings.append(element("li", {}, explainLink(one.code), ` ${one.message} `,
-        element("span", { className: "sub" }, placeText(one.place))));
-    }
+    const findings = findingItems(report);
     const all = element("a", { href: address, target: "_blank", rel: "noopener" }, "All of it as JSON");
-    body.replaceChildren(list, findings, element("p", {}, all));
+    const about = findings.length ? [element("h3", {}, "Findings"), element("ul", { className: "findings" }, ...findings)] : [];
+    body.replaceChildren(...verdictBlock(report.outcome), list, ...about, element("p", {}, all));
   } catch (error) {
     setText(body, `The report cannot be read: ${error.message}`);
   }

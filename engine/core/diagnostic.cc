@@ -52,6 +52,19 @@ bool HasErrors(std::span<const Diagnostic> findings) {
                              [](const Diagnostic& finding) { return IsError(finding.severity); });
 }
 
+std::string_view FindingWord(const Diagnostic& finding) {
+  if (IsError(finding.severity)) return "error";
+  switch (finding.judged) {
+    case Judged::kBad:
+      return "BAD";
+    case Judged::kDoubtful:
+      return "DOUBTFUL";
+    case Judged::kNo:
+      break;
+  }
+  return SeverityName(finding.severity);
+}
+
 std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view source) {
   const CatalogueEntry& entry = Lookup(diagnostic.code);
   std::string text = diagnostic.file.empty() && diagnostic.program > 0
@@ -63,8 +76,7 @@ std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view sour
     if (diagnostic.where.column > 0) text += ':' + std::to_string(diagnostic.where.column);
   }
   if (!text.empty()) text += ": ";
-  const bool error = IsError(diagnostic.severity);
-  text += error ? "error" : std::string(SeverityName(diagnostic.severity));
+  text += FindingWord(diagnostic);
   text += ' ' + CodeText(diagnostic.code) + ": ";
   text += diagnostic.detail.empty() ? std::string(entry.when) : diagnostic.detail;
   if (diagnostic.step > 0) {
@@ -73,7 +85,8 @@ std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view sour
     text += ')';
   }
   if (!diagnostic.rule.empty()) text += " [" + diagnostic.rule + ']';
-  if (error || diagnostic.severity == Severity::kDevice) text += "; " + std::string(entry.advice);
+  if (IsError(diagnostic.severity) || diagnostic.severity == Severity::kDevice)
+    text += "; " + std::string(entry.advice);
   if (diagnostic.where.line > 0 && !source.empty()) {
     const std::string_view line = LineAt(source, diagnostic.where.line);
     if (!line.empty()) text += CaretLines(line, diagnostic.where);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +21,9 @@ struct Fix {
   bool operator==(const Fix&) const = default;
 };
 
+// Whether the verdict of a program rests on findings of this kind: then it is no mere advice.
+enum class Judged : std::uint8_t { kNo, kDoubtful, kBad };
+
 // A finding about a program, before it runs or while it runs.
 struct Diagnostic {
   ErrorCode code;
@@ -32,6 +36,7 @@ struct Diagnostic {
   int step = 0;          // as the control counts; 0 when it belongs to no step
   std::vector<Fix> fixes{};
   std::optional<SimTime> at{};  // virtual time of the run that found it; none: found in the text
+  Judged judged = Judged::kNo;
 
   bool operator==(const Diagnostic&) const = default;
 };
@@ -39,6 +44,13 @@ struct Diagnostic {
 // An error stops a program from being stored or from going on; warnings and advice do not.
 bool IsError(Severity severity);
 bool HasErrors(std::span<const Diagnostic> findings);
+
+// The one word that stands before a finding: "error" where it stops a program, else "BAD" or
+// "DOUBTFUL" where the verdict rests on it, else the name of its severity.
+std::string_view FindingWord(const Diagnostic& finding);
+
+// Findings of one kind that are told singly; more of them are told once, with count and extent.
+inline constexpr std::uint64_t kToldOfKindMax = 5;
 
 // "part.S:12:6: error OPT-E7019: MOVE has 4 values, needs 5 [OPT-2.01]", of a run with its time,
 // "(step 3, at 1.500 s)", then, when `source` is not empty and the line is known, that line and a

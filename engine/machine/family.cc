@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/letters.h"
+#include "engine/core/near_words.h"
 #include "engine/core/units.h"
 #include "engine/machine/shape.h"
 
@@ -74,19 +75,24 @@ const MachineProfile* FindProfile(std::span<const MachineProfile> profiles,
 Error NoProfile(std::span<const MachineProfile> profiles, const std::string& wanted) {
   const std::string plain = Plain(wanted);
   std::string known;
-  std::string near;
+  std::vector<std::string> near;
   for (const MachineProfile& one : profiles) {
     const std::string id = Plain(one.id);
     known += " " + std::string(one.id);
     if (plain.size() > 1 && (id.find(plain) != std::string::npos ||
                              (id.size() > 1 && plain.find(id) != std::string::npos)))
-      near += (near.empty() ? "" : " or ") + std::string(one.id);
+      near.emplace_back(one.id);
+  }
+  if (near.empty()) {
+    std::vector<std::string_view> ids;
+    for (const MachineProfile& one : profiles) ids.push_back(one.id);
+    near = NearestTo(wanted, ids).words;
   }
   std::string detail = "no profile '" + wanted + "'";
   if (EqualIgnoringCase(std::string_view(plain).substr(plain.find_last_of('.') + 1), "toml")) {
     detail += ": a file of one's own goes to --machine";
   } else if (!near.empty()) {
-    detail += "; did you mean " + near + "?";
+    detail += DidYouMean(near);
   } else {
     detail += "; there are" + known;
   }
@@ -94,6 +100,14 @@ Error NoProfile(std::span<const MachineProfile> profiles, const std::string& wan
 }
 
 }  // namespace
+
+std::string MachineTitle(const MachineFamily& family, std::string_view profile, bool named) {
+  const auto profiles = family.profiles();
+  const auto found = std::ranges::find(profiles, profile, &MachineProfile::id);
+  if (found == profiles.end()) return std::string(family.info().title);
+  const std::string title = std::string(found->title) + " (" + std::string(profile) + ")";
+  return named ? title : title + ": no profile was named";
+}
 
 Result<Parameters> MakeParameters(const MachineFamily& family, const std::string& profile,
                                   const std::map<std::string, std::string>& parameters) {

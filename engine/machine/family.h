@@ -41,7 +41,7 @@ struct FamilyInfo {
   int schedules = 0;                // laser schedules 1 to this, and process definitions; or none
   bool checked_by_running = false;  // Translate does not follow the motion: CHECK runs the program
   bool hold_in_remote = false;      // the HOLD key works in mode REMOTE, too
-  // What a machine is for which nobody named a profile; empty: its parameters' defaults.
+  // The profile of a machine for which nobody named one; empty: the family has no profiles.
   std::string_view default_profile{};
   // Parameters that say where program zero lies on the machine: X, Y and Z, in mm. Empty: programs
   // set it themselves.
@@ -213,6 +213,10 @@ class MachineFamily {
   // `observer` must outlive the run.
   virtual Result<std::unique_ptr<Run>> NewRun(RunSetup setup, RunObserver& observer) const = 0;
 };
+
+// "Roland monoFab SRM-20 (srm-20)". That nobody said which machine it is must not be overlooked:
+// then ": no profile was named" stands behind it.
+std::string MachineTitle(const MachineFamily& family, std::string_view profile, bool named);
 
 // Parameters of a machine: defaults of the family, then the profile, then single values. Errors:
 // CellInvalidArgument (no such profile), CellUnknownParameter, CellParameterRange, also of values

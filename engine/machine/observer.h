@@ -107,6 +107,16 @@ struct TravelViolation {
   motion::TipPose tip{};
 };
 
+// A straight way in the work that the program asks for and the machine leaves out, because it lies
+// beyond the travel. Told when the instruction is read: the motions before it may still be under
+// way.
+struct LostWay {
+  SimTime at{0};
+  Place place{};
+  motion::MachinePoint from{};
+  motion::MachinePoint to{};
+};
+
 // A halt of the run: PAUSE, STOP, HOLD, breakpoint, !NR.
 struct Halt {
   SimTime at{0};
@@ -140,6 +150,7 @@ class RunObserver {
   }
   virtual void OnMessage(SimTime /*at*/, const Place&, std::string_view /*text*/) {}
   virtual void OnViolation(const TravelViolation&) {}
+  virtual void OnLost(const LostWay&) {}
   virtual void OnDiagnostic(SimTime /*at*/, const Diagnostic&) {}
   virtual void OnAssumed(const Assumed&) {}  // each time that it is looked at
 };

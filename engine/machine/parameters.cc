@@ -72,7 +72,7 @@ Status Parameters::Set(std::string_view name, std::string_view text) {
 
 Status Parameters::ApplyUnnamed(const MachineProfile& profile) {
   const Status applied = Apply(profile);
-  if (applied) profile_.clear();
+  if (applied) profile_named_ = false;
   return applied;
 }
 
@@ -82,6 +82,9 @@ Status Parameters::Apply(const MachineProfile& profile) {
     if (const Status set = changed.Set(value.name, value.Text()); !set) return set.error();
   }
   changed.profile_ = profile.id;
+  changed.profile_named_ = true;
+  changed.of_profile_ = {};
+  for (const auto& [name, value] : changed.Changed()) changed.of_profile_.emplace(name, value);
   *this = std::move(changed);
   return {};
 }
@@ -99,6 +102,35 @@ std::string_view Parameters::Word(std::string_view name) const {
   const auto found = words_.find(info->name);
   if (found != words_.end()) return found->second;
   return info->choices.substr(0, info->choices.find(' '));
+}
+
+std::string Parameters::TextOf(const ParameterInfo& info) const {
+  return info.choices.empty() ? ShortestText(Number(info.name)) : std::string(Word(info.name));
+}
+
+MachineUsed Parameters::Used() const {
+  MachineUsed used{
+      .profile = profile_, .named = profile_named_, .changes = {}, .changed_by = changed_by_};
+  const Parameters defaults(table_);
+  for (const ParameterInfo& info : table_) {
+    const auto own = of_profile_.find(info.name);
+    std::string of_profile = own != of_profile_.end() ? own->second : defaults.TextOf(info);
+    std::string value = TextOf(info);
+    if (value == of_profile) continue;
+    used.changes.push_back({std::string(info.name), std::move(value), std::move(of_profile)});
+  }
+  std::ranges::sort(used.changes, {}, &ChangedParameter::name);
+  return used;
+}
+
+std::string MachineUsed::ChangesText() const {
+  std::string text;
+  for (const ChangedParameter& change : changes) {
+    text += (text.empty() ? "" : ", ") + change.name + " " + change.value +
+            " (profile: " + change.of_profile + ")";
+  }
+  if (changed_by.empty()) return text;
+  return text.empty() ? "nothing, by " + changed_by : text + "; by " + changed_by;
 }
 
 std::map<std::string, std::string> Parameters::Changed() const {

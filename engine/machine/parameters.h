@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -42,6 +43,30 @@ struct MachineProfile {
   std::vector<ParameterValue> values;
 };
 
+// A value that is not the one of the profile.
+struct ChangedParameter {
+  std::string name;
+  std::string value;
+  std::string of_profile;  // the value that it stands in place of
+
+  bool operator==(const ChangedParameter&) const = default;
+};
+
+// Which machine something was computed for, as reports tell it.
+struct MachineUsed {
+  std::string profile;  // "srm-20"; empty: the family has no profile
+  bool named = false;   // false: nobody named one, and the family's own choice counts
+  std::vector<ChangedParameter> changes;  // by name
+  std::string
+      changed_by;  // who changed them, for people: "mine.toml", "machines/mill-1"; may be empty
+
+  // "VMAX 20 (profile: 15), Z1 2 (profile: 0); by mine.toml"; empty when nothing was changed and
+  // nobody could have.
+  std::string ChangesText() const;
+
+  bool operator==(const MachineUsed&) const = default;
+};
+
 // The parameters of one machine: the table of its family, with the values that differ from the
 // defaults.
 class Parameters {
@@ -55,8 +80,13 @@ class Parameters {
   Status Apply(const MachineProfile& profile);
   // The same of a family's own choice, which nobody named.
   Status ApplyUnnamed(const MachineProfile& profile);
-  // The profile that was named; empty: none was.
+  // Who sets values over those of the profile, for people.
+  void SetChangedBy(std::string who) { changed_by_ = std::move(who); }
+
+  // The profile in force: that was named, or the family's own choice; empty: there is none.
   const std::string& profile() const { return profile_; }
+  bool profile_named() const { return profile_named_; }
+  MachineUsed Used() const;
 
   // Precondition: the family has this parameter, and it is a number, or a word.
   double Number(std::string_view name) const;
@@ -69,9 +99,13 @@ class Parameters {
 
  private:
   const ParameterInfo* Find(std::string_view name) const;
+  std::string TextOf(const ParameterInfo& info) const;
 
   std::span<const ParameterInfo> table_;
   std::string profile_;
+  bool profile_named_ = false;
+  std::string changed_by_;
+  std::map<std::string, std::string, std::less<>> of_profile_;  // where it is not the default
   std::map<std::string, double, std::less<>> numbers_;
   std::map<std::string, std::string, std::less<>> words_;
 };

@@ -62,4 +62,17 @@ Reason ReasonOf(const VerdictRule& rule, const Figure& figure, std::span<const F
           .first = figure.first};
 }
 
+Judged JudgedBy(const Judgement& judgement, ErrorCode code) {
+  Judged worst = Judged::kNo;
+  for (const Reason& reason : judgement.reasons) {
+    if (reason.code != code) continue;
+    worst = std::max(worst, reason.verdict == Verdict::kBad ? Judged::kBad : Judged::kDoubtful);
+  }
+  return worst;
+}
+
+void MarkJudged(const Judgement& judgement, std::span<Diagnostic> findings) {
+  for (Diagnostic& finding : findings) finding.judged = JudgedBy(judgement, finding.code);
+}
+
 }  // namespace rmlcell::machine

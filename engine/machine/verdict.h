@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/catalogue.h"
+#include "engine/core/diagnostic.h"
 #include "engine/machine/outcome.h"
 
 // Will the part come out right? What a run did is judged by rules, each of which looks at one
@@ -51,6 +52,10 @@ struct Judgement {
 
   bool operator==(const Judgement&) const = default;
 };
+
+// Tells each finding whether one of the reasons is of its code.
+void MarkJudged(const Judgement& judgement, std::span<Diagnostic> findings);
+Judged JudgedBy(const Judgement& judgement, ErrorCode code);
 
 // What a rule says of a figure. Lengths and times to 0.001, counts whole, percent to 0.1; other
 // figures that it names are found in `figures`, and are as short as they can be told.

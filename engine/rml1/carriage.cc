@@ -302,6 +302,7 @@ void Carriage::NoteLost(const Point& from, const Point& to, double surface_z) {
   const double length = DistanceXYZ(a, b);
   if (!(length > zero_)) return;
   lost_.length += length;
+  if (lost_count_ < kLostLinesMax) lost_lines_[lost_count_++] = {a, b};
   for (const Point& p : {a, b}) {
     lost_.x_low = std::max(lost_.x_low, range_.x.low - p.x);
     lost_.x_high = std::max(lost_.x_high, p.x - range_.x.high);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 
 #include "engine/rml1/action.h"
 #include "engine/rml1/clipping.h"
@@ -70,6 +72,14 @@ class Carriage {
   const LostCut& lost() const { return lost_; }
   const CuttingRange& range() const { return range_; }
 
+  // The same of the last command, line by line.
+  struct LostLine {
+    Point from;
+    Point to;
+  };
+  std::span<const LostLine> lost_lines() const { return {lost_lines_.data(), lost_count_}; }
+  void ForgetLostLines() { lost_count_ = 0; }
+
  private:
   struct Stroke {
     double speed_mm_s = 0.0;
@@ -107,6 +117,9 @@ class Carriage {
   double clipped_length_ = 0.0;
   std::uint64_t clipped_sets_ = 0;
   LostCut lost_;
+  static constexpr std::size_t kLostLinesMax = 6;  // all pieces of a line, and the way down before
+  std::array<LostLine, kLostLinesMax> lost_lines_{};
+  std::size_t lost_count_ = 0;
 };
 
 // The highest speed up to `wanted` at which no axis exceeds its own; motion.md section 7.

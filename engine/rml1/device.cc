@@ -238,9 +238,13 @@ void Device::Report(FindingKind kind, DeviceListener& listener, double value) {
 }
 
 double Device::foreign_percent() const {
-  constexpr std::uint64_t kFew = 256;  // a mistyped letter in a line is no other language
+  // A mistyped word in a line is no other language. Of G-code nearly half is foreign, of noise more
+  // than that: where it is more than a word and more than a quarter, few bytes are enough to tell.
+  constexpr std::uint64_t kFew = 256;
+  constexpr std::uint64_t kWord = 7;
+  const bool much = bytes_foreign_ > kWord && 4 * bytes_foreign_ > bytes_read_;
   return 100.0 * static_cast<double>(bytes_foreign_) /
-         static_cast<double>(std::max(bytes_read_, kFew));
+         static_cast<double>(much ? bytes_read_ : std::max(bytes_read_, kFew));
 }
 
 void Device::Log(ErrorLog& log, Finding finding, DeviceListener& listener) {

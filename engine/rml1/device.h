@@ -28,6 +28,8 @@ class DeviceListener {
   virtual ~DeviceListener() = default;
   virtual void OnCommand(const CommandPlace&) {}  // right before its first effect
   virtual void OnFinding(const Finding&) {}       // errors up to the bound of the log, and advice
+  // Way in the work that the travel cut off, device units from the machine's zero.
+  virtual void OnLost(const Carriage::LostLine&) {}
   // What the device's reader made of the byte at `offset`, before the device acts on it.
   virtual void OnReading(const Reading&, const CommandReader&, std::int64_t /*offset*/) {}
   virtual void OnAbort(std::int64_t /*offset*/) {}  // ESC.K: what has not run is forgotten
@@ -85,8 +87,8 @@ class Device {
   std::uint64_t speeds_limited() const { return speeds_limited_; }
   // Coordinates and tool heights that were refused: the tool does not go where the program says.
   std::uint64_t positions_refused() const { return positions_refused_; }
-  // Of the bytes that came out of the buffer, or of 256 where they are fewer, those that belong to
-  // no command, in percent.
+  // Of the bytes that came out of the buffer, those that belong to no command, in percent: of 256
+  // where they are fewer and no more than a word or a quarter of them is foreign.
   double foreign_percent() const;
   // Where the first set lost a part that it would have cut; number 0: none did.
   const CommandPlace& first_lost() const { return first_lost_; }

@@ -90,6 +90,8 @@ void Device::RunBare(DeviceListener& listener) {
 // A lift above the top or a parking place beyond the travel costs nothing: it is only counted.
 void Device::NoteClipping(double lost_before, DeviceListener& listener) {
   if (!(carriage_.lost().length > lost_before)) return;
+  for (const Carriage::LostLine& line : carriage_.lost_lines()) listener.OnLost(line);
+  carriage_.ForgetLostLines();
   if (first_lost_.number == 0) first_lost_ = command_;
   if (clip_told_ == command_.number) return;
   clip_told_ = command_.number;

@@ -137,7 +137,7 @@ constexpr std::array kRows = {
     Row{{"clipped_y_high", "mm", "how far it leads beyond the greatest Y"}, [](const Source& s) -> Value { return s.fit.y.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().y_high * s.mm); }},
     Row{{"clipped_z_low", "mm", "how far it leads below the travel"}, [](const Source& s) -> Value { return s.fit.z.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().z_low * s.mm); }},
     Row{{"positions_refused", "", "coordinates and tool heights that were refused: the tool does not go where the program says"}, [](const Source& s) -> Value { return Count(s.device.positions_refused()); }, [](const Source& s) { return s.device.first_refused(); }},
-    Row{{"foreign_share", "%", "bytes that belong to no command, of 256 at least"}, [](const Source& s) -> Value { return s.device.foreign_percent(); }},
+    Row{{"foreign_share", "%", "bytes that belong to no command; of 256 at least where no more than a word or a quarter is foreign"}, [](const Source& s) -> Value { return s.device.foreign_percent(); }},
     Row{{"spindle_stands_length", "mm", "way in the work while the spindle stands"}, [](const Source& s) -> Value { return s.watch.spindle_stands().mm; }, [](const Source& s) { return s.watch.spindle_stands().first; }},
     Row{{"no_clearance_length", "mm", "way across at travel speed, not above the surface of the work, Z 0"}, [](const Source& s) -> Value { return s.watch.no_clearance().mm; }, [](const Source& s) { return s.watch.no_clearance().first; }},
     Row{{"feed_not_given_length", "mm", "way in the work at a speed that the program did not set"}, [](const Source& s) -> Value { return s.watch.feed_not_given().mm; }, [](const Source& s) { return s.watch.feed_not_given().first; }},

@@ -45,6 +45,14 @@ class MillRun::Listener final : public DeviceListener {
     run_.observer_.OnDiagnostic(state.now, diagnostic);
   }
 
+  void OnLost(const Carriage::LostLine& line) override {
+    const State& state = run_.state_;
+    run_.observer_.OnLost({.at = state.now,
+                           .place = state.place,
+                           .from = PoseOf(run_.profile(), line.from).tip,
+                           .to = PoseOf(run_.profile(), line.to).tip});
+  }
+
  private:
   MillRun& run_;
 };

@@ -42,6 +42,38 @@ void AddJudgement(const machine::Judgement& judgement, Message& message) {
   }
 }
 
+v1::Verdict ToProto(Judged judged) {
+  switch (judged) {
+    case Judged::kDoubtful:
+      return v1::VERDICT_DOUBTFUL;
+    case Judged::kBad:
+      return v1::VERDICT_BAD;
+    case Judged::kNo:
+      break;
+  }
+  return v1::VERDICT_UNSPECIFIED;
+}
+
+Judged JudgedFromProto(v1::Verdict verdict) {
+  return verdict == v1::VERDICT_BAD        ? Judged::kBad
+         : verdict == v1::VERDICT_DOUBTFUL ? Judged::kDoubtful
+                                           : Judged::kNo;
+}
+
+template <class Message>
+void AddMachine(const machine::MachineUsed& machine, Message& message) {
+  message.set_profile(machine.profile);
+  message.set_profile_named(machine.named);
+  message.clear_profile_changes();
+  for (const machine::ChangedParameter& change : machine.changes) {
+    v1::ParameterChange& made = *message.add_profile_changes();
+    made.set_name(change.name);
+    made.set_value(change.value);
+    made.set_of_profile(change.of_profile);
+  }
+  message.set_profile_changed_by(Utf8(machine.changed_by));
+}
+
 v1::Severity SeverityToProto(Severity severity) {
   switch (severity) {
     case Severity::kAdvice:
@@ -147,6 +179,7 @@ v1::Diagnostic ToProto(const Diagnostic& diagnostic) {
   message.set_advice(std::string(entry.advice));
   message.set_rule(diagnostic.rule);
   message.set_count(1);
+  message.set_verdict(ToProto(diagnostic.judged));
   if (diagnostic.at) message.set_time_s(ToSeconds(*diagnostic.at));
   v1::SourcePlace& place = *message.mutable_place();
   place.set_file(Utf8(diagnostic.file));
@@ -159,6 +192,21 @@ v1::Diagnostic ToProto(const Diagnostic& diagnostic) {
     made.set_length(fix.length);
     made.set_text(Utf8(fix.text));
   }
+  return message;
+}
+
+v1::GatheredFindings Gathered(const Diagnostic& first, const Diagnostic& last,
+                              std::uint64_t count) {
+  const CatalogueEntry& entry = Lookup(first.code);
+  v1::GatheredFindings message;
+  message.set_code(CodeText(first.code));
+  message.set_symbol(ConstantName(first.code));
+  message.set_severity(SeverityToProto(first.severity));
+  message.set_message(std::string(entry.when));
+  message.set_advice(std::string(entry.advice));
+  message.set_count(static_cast<std::int64_t>(count));
+  *message.mutable_first() = ToProto(first).place();
+  *message.mutable_last() = ToProto(last).place();
   return message;
 }
 
@@ -224,6 +272,14 @@ void SetJudgement(const machine::Judgement& judgement, v1::Findings& message) {
   AddJudgement(judgement, message);
 }
 
+void SetMachine(const machine::MachineUsed& machine, v1::RunReport& message) {
+  AddMachine(machine, message);
+}
+
+void SetMachine(const machine::MachineUsed& machine, v1::Findings& message) {
+  AddMachine(machine, message);
+}
+
 v1::ErrorExplanation Explain(const CatalogueEntry& entry) {
   v1::ErrorExplanation message;
   message.set_code(CodeText(entry.code));
@@ -245,7 +301,7 @@ v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std
   return message;
 }
 
-v1::Findings FindingsOf(const machine::MachineFamily& family,
+v1::Findings FindingsOf(const machine::MachineFamily& family, const machine::Parameters& parameters,
                         const machine::Translation& translation,
                         const simulation::MotionCheck& motion, int slot) {
   v1::Findings message =
@@ -255,7 +311,15 @@ v1::Findings FindingsOf(const machine::MachineFamily& family,
     *message.add_diagnostics() = ToProto(diagnostic);
   const auto cut_short = motion.cut_short.find(slot);
   if (cut_short != motion.cut_short.end()) message.set_motion_check(Utf8(cut_short->second));
-  SetJudgement(simulation::JudgeCheck(family, translation, motion), message);
+  const machine::Judgement judgement = simulation::JudgeCheck(family, translation, motion);
+  SetJudgement(judgement, message);
+  for (v1::Diagnostic& diagnostic : *message.mutable_diagnostics()) {
+    const auto found = FindByText(diagnostic.code());
+    if (!found.empty())
+      diagnostic.set_verdict(ToProto(machine::JudgedBy(judgement, found.front()->code)));
+  }
+  message.set_family(std::string(family.info().id));
+  SetMachine(parameters.Used(), message);
   return message;
 }
 
@@ -274,6 +338,7 @@ Diagnostic FromProto(const v1::Diagnostic& message) {
       .program = message.place().program(),
       .step = message.place().step(),
       .fixes = {}};
+  diagnostic.judged = JudgedFromProto(message.verdict());
   if (message.has_time_s()) diagnostic.at = FromSeconds(message.time_s());
   const auto found = FindByText(message.code());
   if (found.empty()) {

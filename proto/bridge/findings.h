@@ -15,14 +15,18 @@ class Diagnostic;
 class ErrorDetail;
 class Findings;
 class Figure;
+class GatheredFindings;
 class SourcePlace;
 class ErrorExplanation;
 class Outcome;
+class RunReport;
 }  // namespace rmlcell::v1
 
 namespace rmlcell::bridge {
 
 v1::Diagnostic ToProto(const Diagnostic& diagnostic);
+// `count` findings of one kind, of which the first and the last are known.
+v1::GatheredFindings Gathered(const Diagnostic& first, const Diagnostic& last, std::uint64_t count);
 // Text from programs and file names may hold any bytes; protobuf strings must be UTF-8. What is not
 // becomes
 // "?".
@@ -35,6 +39,9 @@ v1::Outcome ToProto(const machine::Outcome& outcome);
 v1::Outcome ToProto(const machine::Outcome& outcome, const machine::Judgement& judgement);
 void SetJudgement(const machine::Judgement& judgement, v1::Outcome& message);
 void SetJudgement(const machine::Judgement& judgement, v1::Findings& message);
+// Which machine it was; the message has profile and changes: a RunReport, or Findings.
+void SetMachine(const machine::MachineUsed& machine, v1::RunReport& message);
+void SetMachine(const machine::MachineUsed& machine, v1::Findings& message);
 v1::ErrorExplanation Explain(const CatalogueEntry& entry);
 
 // The findings of a translation or a transfer.
@@ -42,7 +49,7 @@ v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std
                         const std::vector<machine::Figure>& figures);
 
 // The findings of a check: of the translation, then of the motion, with what is judged of them.
-v1::Findings FindingsOf(const machine::MachineFamily& family,
+v1::Findings FindingsOf(const machine::MachineFamily& family, const machine::Parameters& parameters,
                         const machine::Translation& translation,
                         const simulation::MotionCheck& motion, int slot);
 

@@ -1,5 +1,10 @@
 #include "proto/bridge/report.h"
 
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/job.pb.h"
 #include "rmlcell/v1/report.pb.h"
@@ -262,7 +267,7 @@ v1::RunReport ToProto(const simulation::RunReport& report,
                       const std::map<std::string, std::string>& variables) {
   v1::RunReport message;
   message.set_family(report.family);
-  message.set_profile(report.profile);
+  SetMachine(report.machine, message);
   message.set_title(report.title);
   *message.mutable_outcome() = ToProto(report.outcome, report.judgement);
   *message.mutable_total() = ToProto(report.total);
@@ -317,6 +322,21 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   *message.mutable_toolpath() = ToProto(report.toolpath);
   *message.mutable_picture() = ToProto(report.picture);
   return message;
+}
+
+void AddFindingsOfText(const std::vector<Diagnostic>& findings, v1::RunReport& report) {
+  const auto place_of = [](const v1::Diagnostic& finding) {
+    const v1::SourcePlace& place = finding.place();
+    return std::tuple(finding.code(), place.line(), place.column());
+  };
+  std::set<std::tuple<std::string, int, int>> found;
+  for (const v1::Diagnostic& finding : report.diagnostics()) {
+    if (finding.place().line() > 0) found.insert(place_of(finding));
+  }
+  for (const Diagnostic& finding : findings) {
+    v1::Diagnostic message = ToProto(finding);
+    if (!found.contains(place_of(message))) *report.add_diagnostics() = std::move(message);
+  }
 }
 
 v1::TraceRecord ToProto(const simulation::TraceRecord& record) {

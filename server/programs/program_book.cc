@@ -436,6 +436,7 @@ Result<ProgramBook::Checked> ProgramBook::Check(const std::string& family_id,
       simulation::CheckProgram(memory, *subject->parameters, slot, advice, {});
   if (!check) return check.error();
   Checked checked{.family = &family,
+                  .parameters = *subject->parameters,
                   .translation = std::move(check->translation),
                   .motion = std::move(check->motion),
                   .slot = slot};

@@ -60,6 +60,7 @@ class ProgramBook {
   // is, with its programs. Findings of other programs, which the checked one calls, are among them.
   struct Checked {
     const machine::MachineFamily* family = nullptr;
+    machine::Parameters parameters;
     machine::Translation translation;
     simulation::MotionCheck motion;
     int slot = 0;  // that the program has in the check

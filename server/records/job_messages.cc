@@ -13,6 +13,8 @@ std::string_view KindOf(const v1::JobEvent& event) {
       return "state";
     case v1::JobEvent::kDiagnostic:
       return "diagnostic";
+    case v1::JobEvent::kGathered:
+      return "gathered";
     case v1::JobEvent::kMessage:
       return "message";
     case v1::JobEvent::kHalted:

@@ -215,15 +215,18 @@ grpc::ServerUnaryReactor* ProgramService::DeleteProgram(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerContext* context,
                                                        const v1::CheckProgramRequest* request,
                                                        v1::CheckProgramResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/CheckProgram",
-                [this, request, response](const Caller&) {
-                  const auto checked = programs_.Check(request->family(), request->machine(),
-                                                       request->program(), !request->errors_only());
-                  if (!checked) return ToGrpcStatus(checked.error());
-                  *response->mutable_findings() = bridge::FindingsOf(
-                      *checked->family, checked->translation, checked->motion, checked->slot);
-                  return grpc::Status::OK;
-                });
+  return Answer(
+      needs_, context, *request, "ProgramService/CheckProgram",
+      [this, request, response](const Caller&) {
+        const auto checked = programs_.Check(request->family(), request->machine(),
+                                             request->program(), !request->errors_only());
+        if (!checked) return ToGrpcStatus(checked.error());
+        *response->mutable_findings() =
+            bridge::FindingsOf(*checked->family, checked->parameters, checked->translation,
+                               checked->motion, checked->slot);
+        response->mutable_findings()->set_file(bridge::Utf8(request->program().file_name()));
+        return grpc::Status::OK;
+      });
 }
 
 grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerContext* context,

@@ -33,7 +33,17 @@ void AssignedPrograms::Add(const v1::WorkerBlob& part) {
 simulation::ProgramMemory AssignedPrograms::EmptyMemory() const {
   return {.family = families::FindFamily(assignment_.family()),
           .profile = assignment_.profile(),
-          .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()}};
+          .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()},
+          .parameters_of =
+              assignment_.parameters().empty() ? std::string() : assignment_.job().machine()};
+}
+
+machine::MachineUsed AssignedPrograms::Machine() const {
+  const simulation::ProgramMemory memory = EmptyMemory();
+  auto parameters = machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
+  if (!parameters) return {.profile = memory.profile, .named = !memory.profile.empty()};
+  parameters->SetChangedBy(memory.parameters_of);
+  return parameters->Used();
 }
 
 simulation::ProgramMemory AssignedPrograms::Memory() {

@@ -20,6 +20,9 @@ class AssignedPrograms {
   bool complete() const;
   void Add(const v1::WorkerBlob& part);
 
+  // Which machine it is, for the report of a program that is not run.
+  machine::MachineUsed Machine() const;
+
   // Once, when complete: the machine as it stands before the program is started.
   simulation::ProgramMemory Memory();
 

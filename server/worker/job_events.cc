@@ -24,9 +24,6 @@ bool IsLogged(machine::Signal signal) {
   }
 }
 
-// Findings that are kept apart for the log; more of them are in the report.
-constexpr std::size_t kFindingsTold = 200;
-
 }  // namespace
 
 // What somebody ordered is told however much happened before.
@@ -94,16 +91,37 @@ void JobEvents::OnMessage(SimTime at, const machine::Place&, std::string_view te
   Tell(std::move(event));
 }
 
+// The first places of a kind at once: whoever watches sees that something is wrong. More of them
+// would only push the rest out of sight.
 void JobEvents::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
-  const std::string key =
-      std::to_string(static_cast<int>(diagnostic.code)) + "/" + std::to_string(diagnostic.program) +
-      "/" + std::to_string(diagnostic.step) + "/" + std::to_string(diagnostic.where.line) + "/" +
-      std::to_string(diagnostic.where.column);
-  if (told_.size() >= kFindingsTold || !told_.insert(key).second) return;
+  const std::string place =
+      std::to_string(diagnostic.program) + "/" + std::to_string(diagnostic.step) + "/" +
+      std::to_string(diagnostic.where.line) + "/" + std::to_string(diagnostic.where.column);
+  Kind& kind = kinds_[diagnostic.code];
+  if (kind.places.size() < kPlacesMax ? !kind.places.insert(place).second
+                                      : kind.places.contains(place))
+    return;
+  if (kind.gathered > 0 || kind.places.size() > kToldOfKindMax) {
+    if (kind.gathered++ == 0) kind.first = diagnostic;
+    kind.last = diagnostic;
+    kind.last_at = at;
+    return;
+  }
   v1::JobEvent event;
   event.set_virtual_time_ns(at.count());
   *event.mutable_diagnostic() = bridge::ToProto(diagnostic);
   Tell(std::move(event));
+}
+
+void JobEvents::TellRest() {
+  for (auto& [code, kind] : kinds_) {
+    if (kind.gathered == 0) continue;
+    v1::JobEvent event;
+    event.set_virtual_time_ns(kind.last_at.count());
+    *event.mutable_gathered() = bridge::Gathered(kind.first, kind.last, kind.gathered);
+    Tell(std::move(event));
+    kind.gathered = 0;
+  }
 }
 
 }  // namespace rmlcell::server

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 
@@ -30,14 +31,26 @@ class JobEvents final : public machine::RunObserver {
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
 
   void Tell(v1::JobEvent event);
+  // At the end of a run: of each kind of finding what was not told singly.
+  void TellRest();
   void Flush();
 
  private:
+  // Findings of one code.
+  struct Kind {
+    std::set<std::string> places;  // at most kPlacesMax of them: the same place is told once
+    std::uint64_t gathered = 0;    // at further places
+    SimTime last_at{0};
+    Diagnostic first;
+    Diagnostic last;
+  };
+  static constexpr std::size_t kPlacesMax = 1'000;
+
   std::function<void(const v1::WorkerEvents&)> send_;
   v1::WorkerEvents batch_;
   std::int64_t count_ = 0;
   bool cut_ = false;
-  std::set<std::string> told_;  // findings, each once per step
+  std::map<ErrorCode, Kind> kinds_;
 };
 
 }  // namespace rmlcell::server

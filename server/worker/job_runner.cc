@@ -63,6 +63,7 @@ class Attempt {
     if (!ReceivePrograms()) return End::kLost;
     const End end = assignment_.job().kind() == v1::JOB_KIND_CHECK ? Check() : Simulate();
     if (end == End::kFinished) {
+      events_.TellRest();
       events_.Flush();
       Finish();
     }
@@ -94,8 +95,10 @@ class Attempt {
                       const std::string& motion_check = {}) {
     v1::RunReport report;
     report.set_family(assignment_.family());
+    bridge::SetMachine(programs_.Machine(), report);
     report.set_motion_check(bridge::Utf8(motion_check));
-    for (const Diagnostic& diagnostic : made.diagnostics) {
+    for (Diagnostic diagnostic : made.diagnostics) {
+      diagnostic.judged = machine::JudgedBy(judgement, diagnostic.code);
       *report.add_diagnostics() = bridge::ToProto(diagnostic);
       events_.OnDiagnostic(diagnostic.at.value_or(SimTime(0)), diagnostic);
     }
@@ -209,11 +212,12 @@ class Attempt {
         simulation::Begin(family, std::move(*made->setup), std::move(products));
     if (!begun) return Refuse(begun.error());
     const Stop stop = JobDrive(lease_, output_, std::move(drive)).Run(*begun);
-    return stop == Stop::kNone ? TellRun(*begun, made->diagnostics, *variables) : EndOf(stop);
+    return stop == Stop::kNone ? TellRun(*begun, std::move(made->diagnostics), *variables)
+                               : EndOf(stop);
   }
 
   // What came of a run that is over, besides what went out while it ran.
-  End TellRun(simulation::BegunRun& begun, const std::vector<Diagnostic>& found_before,
+  End TellRun(simulation::BegunRun& begun, std::vector<Diagnostic> found_before,
               const std::vector<std::string>& variables) {
     const simulation::RunReport report = begun.simulation->Finish();
     std::map<std::string, std::string> values;
@@ -228,8 +232,8 @@ class Attempt {
     const simulation::MillingRecorder* milling = begun.recorder->milling();
     if (milling == nullptr) begun.recorder.reset();
     v1::RunReport message = bridge::ToProto(report, values);
-    for (const Diagnostic& finding : found_before)
-      *message.add_diagnostics() = bridge::ToProto(finding);
+    machine::MarkJudged(report.judgement, found_before);
+    bridge::AddFindingsOfText(found_before, message);
     outcome_ = message.outcome();
     return SendProducts(message, picture, milling);
   }

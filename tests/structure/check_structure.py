@@ -88,7 +88,7 @@ MAY_INCLUDE = {
 # Of these rooms others may include no other header.
 PUBLIC = {
     "engine/core": ["alignment.h", "catalogue.h", "check.h", "diagnostic.h", "hex.h", "letters.h", "line_table.h",
-                    "number_text.h", "result.h", "ring.h", "text_fixes.h", "units.h"],
+                    "near_words.h", "number_text.h", "result.h", "ring.h", "text_fixes.h", "units.h"],
     GEOMETRY: ["frames.h", "pose.h", "path.h", "hole.h", "corner_curve.h", "corner_table.h", "blend_curve.h", "least.h"],
     PROFILE: ["speed_profile.h", "speed_passes.h", "ramp_plan.h"],
     KINEMATICS: ["kinematics.h", "axes.h", "machine_limits.h", "axis_demand.h", "speed_bound.h"],

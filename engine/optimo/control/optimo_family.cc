@@ -35,6 +35,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .schedules = 63,  // OPT-3.44
                                        .checked_by_running = true,
                                        .hold_in_remote = false,  // OPT-4.17
+                                       .default_profile = "standard",
                                        .override_max_percent = 145.0,
                                        .no_slot = ErrorCode::kProgramNumber,
                                        .empty_slot = ErrorCode::kProgramMissing,

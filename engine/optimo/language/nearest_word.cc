@@ -1,7 +1,7 @@
 #include "engine/optimo/language/nearest_word.h"
 
 #include <algorithm>
-#include <array>
+#include <utility>
 
 #include "engine/core/letters.h"
 
@@ -9,26 +9,6 @@ namespace rmlcell::optimo {
 namespace {
 
 constexpr std::size_t kLongest = 16;  // longer words are no mistyped words of eight letters
-
-// Optimal string alignment distance of two short words, without case.
-int Distance(std::string_view a, std::string_view b) {
-  std::array<std::array<int, kLongest + 1>, kLongest + 1> cost{};
-  for (std::size_t i = 0; i <= a.size(); ++i) cost[i][0] = static_cast<int>(i);
-  for (std::size_t j = 0; j <= b.size(); ++j) cost[0][j] = static_cast<int>(j);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const bool same = UpperCase(a[i - 1]) == UpperCase(b[j - 1]);
-      int best =
-          std::min({cost[i - 1][j] + 1, cost[i][j - 1] + 1, cost[i - 1][j - 1] + (same ? 0 : 1)});
-      if (i > 1 && j > 1 && UpperCase(a[i - 1]) == UpperCase(b[j - 2]) &&
-          UpperCase(a[i - 2]) == UpperCase(b[j - 1])) {
-        best = std::min(best, cost[i - 2][j - 2] + 1);
-      }
-      cost[i][j] = best;
-    }
-  }
-  return cost[a.size()][b.size()];
-}
 
 bool IsDigitOfName(char c) { return c >= '0' && c <= '9'; }
 // Letters by which the names of coordinates differ.
@@ -65,28 +45,13 @@ Slip SlipOf(std::string_view word, std::string_view meant) {
 NearWords NearestWords(std::string_view word, std::span<const std::string_view> candidates) {
   NearWords near;
   if (word.size() > kLongest) return near;
-  int best = static_cast<int>(word.size() / 3) + 1;
-  for (const std::string_view candidate : candidates) {
-    if (candidate.size() > kLongest || candidate.empty()) continue;
-    const int distance = Distance(word, candidate);
-    if (distance > best || (distance == best && near.words.empty())) continue;
-    if (distance < best) near.words.clear();
-    best = distance;
-    if (near.words.size() < kNearWordsMax &&
-        std::ranges::find(near.words, candidate) == near.words.end())
-      near.words.emplace_back(candidate);
-  }
-  if (best == 1 && near.words.size() == 1) near.slip = SlipOf(word, near.words.front());
+  NearestOf nearest = NearestTo(word, candidates);
+  near.words = std::move(nearest.words);
+  if (nearest.distance == 1 && near.words.size() == 1) near.slip = SlipOf(word, near.words.front());
   return near;
 }
 
-std::string QuestionFor(const NearWords& near) {
-  if (near.words.empty()) return {};
-  std::string text = "; did you mean " + near.words.front();
-  for (std::size_t w = 1; w < near.words.size(); ++w)
-    text += (w + 1 < near.words.size() ? ", " : " or ") + near.words[w];
-  return text + "?";
-}
+std::string QuestionFor(const NearWords& near) { return DidYouMean(near.words); }
 
 bool IsSurelyName(std::string_view word, const NearWords& near) {
   if (!near.IsSingle(Slip::kSwap)) return false;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/near_words.h"
 #include "engine/optimo/language/ast.h"
 
 // What a mistyped word may mean. Private to the folder.
@@ -24,7 +25,6 @@ struct NearWords {
 
   bool IsSingle(Slip of) const { return words.size() == 1 && slip == of; }
 };
-inline constexpr std::size_t kNearWordsMax = 3;
 
 // The candidates with the fewest exchanged, missing, surplus or swapped characters, at most a third
 // of the word; none when none is so near. Each once, in the order of the candidates.

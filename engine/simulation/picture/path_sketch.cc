@@ -23,6 +23,21 @@ constexpr double kCurveTolerance_mm = 0.01;
 constexpr double kFirstShare = 5e-5;
 constexpr double kCoarserSketch = 2.0;
 
+// Lines of what was lost: there is room for a whole filling of a board.
+constexpr std::size_t kLostMax = 16'000;
+
+// Makes what lies in `box` coarser, until it has at most `elements_max` elements.
+void ThinTo(std::size_t elements_max, const machine::Box& box, std::vector<SketchElement>& elements,
+            double& tolerance_mm) {
+  tolerance_mm = std::max({box.diagonal_mm() * kFirstShare, 1e-9, tolerance_mm});
+  // With a tolerance of the whole size everything is alike: this ends.
+  for (;; tolerance_mm *= kCoarserSketch) {
+    MergeStraight(elements, tolerance_mm);
+    DropAlike(elements, tolerance_mm);
+    if (elements.size() <= elements_max) return;
+  }
+}
+
 bool IsFinite(const MachinePoint& p) {
   return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
 }
@@ -89,6 +104,16 @@ void PathSketch::AddDot(const SketchDot& dot) {
 
 void PathSketch::AddPierce() { AddDot({.at = end_, .pierce = true}); }
 
+// It counts for no other figure: the tip was never there.
+void PathSketch::AddLost(const machine::LostWay& way) {
+  if (!IsFinite(way.from) || !IsFinite(way.to)) return;
+  lost_mm_ += (way.to - way.from).norm();
+  lost_box_.Add(way.from);
+  lost_box_.Add(way.to);
+  lost_.push_back({.from = way.from, .to = way.to, .lost = true});
+  if (lost_.size() > kLostMax) ThinTo(kLostMax / 2, lost_box_, lost_, lost_tolerance_mm_);
+}
+
 void PathSketch::AddTool(const machine::MotionDone& done) {
   if (tool_count_++ % tool_stride_ != 0) return;
   const motion::PathPiece& path = done.motion->path;
@@ -102,14 +127,7 @@ void PathSketch::AddTool(const machine::MotionDone& done) {
 }
 
 void PathSketch::Coarsen() {
-  const double first = std::max(box_.diagonal_mm() * kFirstShare, 1e-9);
-  tolerance_mm_ = std::max(first, tolerance_mm_);
-  // With a tolerance of the whole size everything is alike: this ends.
-  for (;; tolerance_mm_ *= kCoarserSketch) {
-    MergeStraight(elements_, tolerance_mm_);
-    DropAlike(elements_, tolerance_mm_);
-    if (elements_.size() <= elements_max_ / 2) break;
-  }
+  ThinTo(elements_max_ / 2, box_, elements_, tolerance_mm_);
   PackCircles();
 }
 

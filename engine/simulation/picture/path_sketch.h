@@ -37,6 +37,7 @@ class PathSketch {
 
   void Add(const machine::MotionDone& done);
   void AddPierce();  // where the tip is
+  void AddLost(const machine::LostWay& way);
 
   const std::vector<SketchElement>& elements() const { return elements_; }
   const SketchCircle& circle(std::int32_t index) const {
@@ -47,6 +48,10 @@ class PathSketch {
   const std::vector<SketchTool>& tools() const { return tools_; }
   const machine::Box& box() const { return box_; }  // of everything, true extremes
   const machine::Box& cut_box() const { return cut_box_; }
+  const machine::Box& lost_box() const { return lost_box_; }
+  // Lines of the work that the machine left out, and their length in all.
+  const std::vector<SketchElement>& lost() const { return lost_; }
+  double lost_mm() const { return lost_mm_; }
   bool moved() const { return moved_; }
   const motion::MachinePoint& start() const { return start_; }
   const motion::MachinePoint& end() const { return end_; }
@@ -70,6 +75,10 @@ class PathSketch {
   std::uint64_t tool_count_ = 0;
   machine::Box box_;
   machine::Box cut_box_;
+  machine::Box lost_box_;
+  std::vector<SketchElement> lost_;
+  double lost_mm_ = 0.0;
+  double lost_tolerance_mm_ = 0.0;
   bool moved_ = false;
   bool plunging_ = false;
   motion::MachinePoint start_;

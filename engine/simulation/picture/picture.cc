@@ -25,6 +25,8 @@ void PictureRecorder::OnMotion(const machine::MotionDone& done) {
   state_->stands_since_beam_on = false;
 }
 
+void PictureRecorder::OnLost(const machine::LostWay& way) { state_->sketch.AddLost(way); }
+
 void PictureRecorder::OnSignal(const machine::SignalChange& change) {
   if (change.signal != machine::Signal::kBeam) return;
   const bool on = change.value != 0.0;

@@ -37,6 +37,7 @@ class PictureRecorder final : public machine::RunObserver {
   ~PictureRecorder() override;
 
   void OnMotion(const machine::MotionDone& done) override;
+  void OnLost(const machine::LostWay& way) override;
   void OnWait(const machine::Wait& wait) override;
   void OnSignal(const machine::SignalChange& change) override;
 

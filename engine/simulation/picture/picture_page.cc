@@ -15,6 +15,7 @@ namespace {
 constexpr double kPictureHeader = 92.0;
 constexpr double kPictureColumn = 282.0;  // beside the panels
 constexpr double kPictureFooter = 30.0;
+constexpr double kCycleTimeWidth = 110.0;  // of the two words and the gap before them
 constexpr int kPictureWidthMin = 640;
 
 constexpr std::size_t kReasonsDrawn = 4;
@@ -128,10 +129,19 @@ class PageWriter {
         body_, {kPageMargin, 44.0},
         Fitted(TitleText(), right - kPageMargin - kTextGap - TextWidth(duration, large), large),
         large);
+    const machine::MachineUsed& used = report_.machine;
     const machine::MachineFamily* family = families::FindFamily(report_.family);
-    std::string machine = family != nullptr ? std::string(family->info().title) : report_.family;
-    if (!report_.profile.empty()) machine += ", " + report_.profile;
-    AppendText(body_, {kPageMargin, 70.0}, machine, {.size = 14.0, .colour = kFaint});
+    const std::string machine = family != nullptr
+                                    ? machine::MachineTitle(*family, used.profile, used.named)
+                                    : report_.family;
+    const double caption_width = right - kPageMargin - kCycleTimeWidth;
+    const TextStyle caption{.size = 14.0, .colour = kFaint};
+    AppendText(body_, {kPageMargin, 70.0}, Fitted(machine, caption_width, caption), caption);
+    if (const std::string changes = used.ChangesText(); !changes.empty()) {
+      const TextStyle small{.size = 12.0, .colour = kFaint};
+      AppendText(body_, {kPageMargin, 86.0}, Fitted("changed: " + changes, caption_width, small),
+                 small);
+    }
     AppendText(body_, {right, 44.0}, duration, {.size = 26.0, .anchor = "end", .bold = true});
     AppendText(body_, {right, 70.0}, "cycle time",
                {.size = 14.0, .colour = kFaint, .anchor = "end"});
@@ -245,6 +255,13 @@ class PageWriter {
                "stroke=\"" + std::string(kTravelColour) +
                    "\" stroke-width=\"1\" stroke-dasharray=\"5 3.5\"");
     name("travel");
+    if (sketch_.lost_mm() > 0.0) {
+      AppendLine(body_, {x, y}, {x + 44.0, y}, std::string("class=\"lost\" ") + kLostStyle);
+      name("beyond the travel, not cut");
+      AppendText(body_, {x + 58.0, y + 2.0}, Length(sketch_.lost_mm()) + " lost",
+                 {.size = 12.0, .colour = kLostColour});
+      y += 19.0;
+    }
     if (!sketch_.dots().empty()) {
       const bool pierce = sketch_.dots().front().pierce;
       AppendCircle(

@@ -25,7 +25,7 @@ constexpr double kFinest_px = 0.35;
 constexpr double kBoldest_px = 2.0;
 
 // Pieces of one style.
-enum class Layer { kTravel, kCut };
+enum class Layer { kTravel, kLost, kCut };
 
 // A circle as a panel sees it: an ellipse.
 struct SeenCircle {
@@ -75,6 +75,7 @@ class PathDrawing {
              panel.rect.width + 2 * kClipMargin_px, panel.rect.height + 2 * kClipMargin_px};
     elements_.reserve(strokes.elements.size());
     for (const SketchElement& element : strokes.elements) Project(element);
+    for (const SketchElement& element : strokes.lost) Project(element);
   }
 
   void Thin(std::size_t elements_max) {
@@ -93,6 +94,7 @@ class PathDrawing {
 
   void Write(std::string& out) const {
     WriteLayer(Layer::kTravel, out);
+    if (!strokes_.lost.empty()) WriteLayer(Layer::kLost, out);
     WriteLayer(Layer::kCut, out);
   }
 
@@ -190,6 +192,7 @@ class PathDrawing {
   }
 
   static Layer LayerOf(const SketchElement& element) {
+    if (element.lost) return Layer::kLost;
     return element.cuts ? Layer::kCut : Layer::kTravel;
   }
 
@@ -208,6 +211,11 @@ class PathDrawing {
       out += "<g fill=\"none\" stroke=\"";
       out += strokes_.travel;
       out += "\" stroke-width=\"0.9\" stroke-dasharray=\"5 3.5\" stroke-opacity=\"0.8\">\n";
+      WriteShade(layer, 0, out);
+    } else if (layer == Layer::kLost) {
+      out += "<g class=\"lost\" fill=\"none\" ";
+      out += kLostStyle;
+      out += ">\n";
       WriteShade(layer, 0, out);
     } else {
       out += "<g fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" stroke-width=\"";
@@ -282,8 +290,9 @@ int DepthRange::ShadeOf(double z_mm) const {
 
 std::size_t DrawPath(const PathSketch& sketch, const Panel& panel, const DepthRange& depth,
                      std::size_t elements_max, std::string& out) {
-  return DrawPath({.elements = sketch.elements(), .circles = sketch.circles()}, panel, depth,
-                  elements_max, out);
+  return DrawPath(
+      {.elements = sketch.elements(), .circles = sketch.circles(), .lost = sketch.lost()}, panel,
+      depth, elements_max, out);
 }
 
 std::size_t DrawPath(const PathStrokes& strokes, const Panel& panel, const DepthRange& depth,

@@ -15,6 +15,9 @@ inline constexpr const char* kShadeColours[kShades] = {"#6cc6bd", "#43a9b8", "#2
                                                        "#2a559f", "#2b3d8c", "#292872", "#1f1653"};
 inline constexpr const char* kCutColour = "#0b4fa8";
 inline constexpr const char* kTravelColour = "#7d8b99";
+inline constexpr const char* kLostColour = "#c2255c";
+inline constexpr const char* kLostStyle =
+    "stroke=\"#c2255c\" stroke-width=\"1.6\" stroke-dasharray=\"2.5 3\"";
 
 struct DepthRange {
   double low_mm = 0.0;
@@ -30,9 +33,11 @@ struct PathStrokes {
   std::string_view cut = kCutColour;
   std::string_view cut_dashes{};  // of stroke-dasharray; empty: a solid line
   std::string_view travel = kTravelColour;
+  std::span<const SketchElement> lost{};  // lines that the machine left out
 };
 
-// Appends the path as `panel` shows it: travel thin and dashed below, the cut on top. Arcs are
+// Appends the path as `panel` shows it: travel thin and dashed below, then what was lost in a group
+// of class "lost", the cut on top. Arcs are
 // elliptical arcs of the picture, exactly; only where the view sees a circle from its edge they are
 // lines. Nothing that differs by less than a tenth of a pixel is drawn twice. At most
 // `elements_max` elements: longer paths get coarser. Returns the number of elements drawn.

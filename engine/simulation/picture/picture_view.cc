@@ -32,6 +32,27 @@ std::pair<double, double> Share(double room, double first, double second) {
   return {given, room - given};
 }
 
+// What was lost belongs to the part. One that leads far away must not make the rest a dot: it is
+// followed to as far beyond the travel as that is large. Where nothing was cut, there is nothing to
+// make a dot of.
+machine::Box WithLost(const PathSketch& sketch, const machine::Box& travel) {
+  const machine::Box& lost = sketch.lost_box();
+  machine::Box part = sketch.cut_box();
+  if (part.empty() || travel.empty()) {
+    part.Add(sketch.box());
+    part.Add(lost);
+    return part;
+  }
+  const MachineVector reach = travel.max - travel.min;
+  const MachinePoint low = travel.min - reach;
+  const MachinePoint high = travel.max + reach;
+  for (const MachinePoint& corner : {lost.min, lost.max}) {
+    part.Add({std::clamp(corner.x(), low.x(), high.x()), std::clamp(corner.y(), low.y(), high.y()),
+              std::clamp(corner.z(), low.z(), high.z())});
+  }
+  return part;
+}
+
 }  // namespace
 
 ViewFrame FrameOf(PictureView view, const MachineVector& direction) {
@@ -169,7 +190,11 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
 }
 
 machine::Box BoxToShow(const PathSketch& sketch, const machine::Box& travel) {
-  return BoxToShow(sketch.box(), sketch.cut_box(), travel);
+  if (sketch.lost_box().empty()) return BoxToShow(sketch.box(), sketch.cut_box(), travel);
+  machine::Box part = WithLost(sketch, travel);
+  machine::Box all = sketch.box();
+  all.Add(part);
+  return BoxToShow(all, part, travel);
 }
 
 machine::Box BoxToShow(const machine::Box& all, const machine::Box& cut,

@@ -21,8 +21,9 @@ class LookKey {
     std::uint64_t a = Cell(element.from);
     std::uint64_t b = Cell(element.to);
     if (b < a) std::swap(a, b);
-    const std::uint64_t look =
-        static_cast<std::uint64_t>(element.use) * 512 + (element.cuts ? 256u : 0u) + element.shade;
+    const std::uint64_t look = static_cast<std::uint64_t>(element.use) * 1024 +
+                               (element.lost ? 512u : 0u) + (element.cuts ? 256u : 0u) +
+                               element.shade;
     const std::uint64_t key = Mix(Mix(a, b), look);
     return element.arc < 0 ? key : Mix(key, Cell(element.middle));
   }

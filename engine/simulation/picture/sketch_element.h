@@ -16,10 +16,11 @@ struct SketchElement {
   std::int32_t arc = -1;          // index of its circle; -1: a line
   machine::MotionUse use = machine::MotionUse::kTravel;
   bool cuts = false;
+  bool lost = false;       // asked for beyond the travel: the machine left it out
   std::uint8_t shade = 0;  // what else makes it look different
 
   bool SameLook(const SketchElement& other) const {
-    return use == other.use && cuts == other.cuts && shade == other.shade;
+    return use == other.use && cuts == other.cuts && lost == other.lost && shade == other.shade;
   }
 };
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "engine/families/families.h"
 
@@ -127,8 +128,18 @@ std::string CoordinateName(std::string_view suffix) {
 
 void Table::AddRun() {
   Add("family", "", "machine family", [](const RunReport& r) { return Line(r.family); });
-  Add("profile", "", "profile of the machine, such as srm-20; none: the defaults of the family",
-      [](const RunReport& r) { return Line(r.profile); });
+  Add("profile", "", "profile of the machine, such as srm-20; none: the family has no profiles",
+      [](const RunReport& r) { return Line(r.machine.profile); });
+  Add("profile_named", "", "no: nobody named it, and it is the family's own choice",
+      [](const RunReport& r) { return Yes(r.machine.named); });
+  Add("profile_changes", "", "machine parameters that differ from the profile, NAME=VALUE",
+      [](const RunReport& r) {
+        std::string text;
+        for (const auto& change : r.machine.changes) text += change.name + '=' + change.value + ' ';
+        return Line(Trimmed(text));
+      });
+  Add("profile_changed_by", "", "who changed them: a machine file, options, a machine of a server",
+      [](const RunReport& r) { return Line(r.machine.changed_by); });
   Add("title", "", "name of the program", [](const RunReport& r) { return Line(r.title); });
   Add("inputs_hash", "", "fingerprint of everything the run depends on",
       [](const RunReport& r) { return Line(r.inputs_hash); });
@@ -137,13 +148,8 @@ void Table::AddRun() {
   Add("changed_parameters", "", "machine parameters that differ from their defaults, NAME=VALUE",
       [](const RunReport& r) {
         std::string text;
-        for (const auto& [name, value] : r.changed_parameters) {
-          if (!text.empty()) text += ' ';
-          text += name;
-          text += '=';
-          text += value;
-        }
-        return Line(text);
+        for (const auto& [name, value] : r.changed_parameters) text += name + '=' + value + ' ';
+        return Line(Trimmed(text));
       });
   Add("outcome", "", "completed, stopped, failed, cancelled, budget_exceeded or running",
       [](const RunReport& r) {

@@ -327,9 +327,9 @@ struct ScopeFigures {
 
 // Collisions are not modelled: the machine knows neither part nor fixture.
 struct RunReport : ScopeFigures {
-  std::string family;   // "optimo"
-  std::string profile;  // "srm-20"; empty: none was named, and the defaults of the family count
-  std::string title;    // of the program: its name
+  std::string family;            // "optimo"
+  machine::MachineUsed machine;  // its profile, and what was changed of that
+  std::string title;             // of the program: its name
   std::string engine_version;
   std::string inputs_hash;  // of everything the run depends on; see input_description.h
   std::map<std::string, std::string> changed_parameters;  // those that differ from the defaults

@@ -107,7 +107,7 @@ InputDescription DescribeInputs(const machine::MachineFamily& family,
   const auto main = setup.programs.find(setup.main_program);
   if (main != setup.programs.end()) description.title = main->second.name;
   description.changed_parameters = setup.parameters.Changed();
-  description.profile = setup.parameters.profile();
+  description.machine = setup.parameters.Used();
 
   Fnv1a hash;
   hash.Text(family.info().id);

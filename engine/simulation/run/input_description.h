@@ -12,9 +12,9 @@ namespace rmlcell::simulation {
 // Everything a run depends on, in short: same description, same result.
 struct InputDescription {
   std::string family;
-  std::string title;    // name of the main program
-  std::string profile;  // that was named; its values count, not its name
-  std::string hash;     // 32 hexadecimal digits
+  std::string title;             // name of the main program
+  machine::MachineUsed machine;  // its values count, not its names
+  std::string hash;              // 32 hexadecimal digits
   std::map<std::string, std::string> changed_parameters;
   std::vector<SimTime> input_times;  // when scripted inputs act, in order
 };

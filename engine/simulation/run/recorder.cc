@@ -86,6 +86,9 @@ void Recorder::OnMessage(SimTime at, const machine::Place& place, std::string_vi
 void Recorder::OnViolation(const machine::TravelViolation& violation) {
   state_->All([&](machine::RunObserver& to) { to.OnViolation(violation); });
 }
+void Recorder::OnLost(const machine::LostWay& way) {
+  state_->All([&](machine::RunObserver& to) { to.OnLost(way); });
+}
 void Recorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   state_->All([&](machine::RunObserver& to) { to.OnDiagnostic(at, diagnostic); });
 }
@@ -119,7 +122,7 @@ RunReport Recorder::Report(const machine::Run& run) const {
   report.title = state_->inputs.title;
   report.engine_version = kEngineVersion;
   report.inputs_hash = state_->inputs.hash;
-  report.profile = state_->inputs.profile;
+  report.machine = state_->inputs.machine;
   report.changed_parameters = state_->inputs.changed_parameters;
   if (const auto& trace = state_->trace) {
     report.trace = {.made = true,
@@ -137,7 +140,10 @@ RunReport Recorder::Report(const machine::Run& run) const {
     report.picture = {.made = true, .complete = picture->exact(), .records = picture->elements()};
   }
   if (state_->milling) report.milling = state_->milling->Figures();
-  if (report.finished) report.judgement = Judge(report);
+  if (!report.finished) return report;
+  report.judgement = Judge(report);
+  for (Finding& finding : report.findings)
+    finding.diagnostic.judged = machine::JudgedBy(report.judgement, finding.diagnostic.code);
   return report;
 }
 

@@ -44,6 +44,7 @@ class Recorder final : public machine::RunObserver {
   void OnProgram(SimTime at, const machine::Place& place, std::string_view what,
                  int program) override;
   void OnMessage(SimTime at, const machine::Place& place, std::string_view text) override;
+  void OnLost(const machine::LostWay& way) override;
   void OnViolation(const machine::TravelViolation& violation) override;
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
   void OnAssumed(const machine::Assumed& assumed) override;

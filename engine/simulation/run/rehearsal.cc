@@ -63,6 +63,10 @@ Result<PreparedRun> PrepareRun(const ProgramMemory& memory, const RunOptions& op
   Result<machine::Parameters> parameters =
       machine::MakeParameters(*memory.family, memory.profile, values);
   if (!parameters) return parameters.error();
+  std::string changed_by = memory.parameters_of;
+  if (!options.parameters.empty())
+    changed_by += (changed_by.empty() ? "" : " and ") + std::string("the request");
+  parameters->SetChangedBy(std::move(changed_by));
   machine::RunSetup setup = SetupOf(memory, *std::move(parameters));
   setup.main_program = options.main_program;
   setup.mode = options.mode;

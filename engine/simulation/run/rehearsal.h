@@ -30,6 +30,7 @@ struct ProgramMemory {
   const machine::MachineFamily* family = nullptr;
   std::string profile{};
   std::map<std::string, std::string> parameters{};  // over the profile
+  std::string parameters_of{};  // where they are from, for people: "mine.toml"; may be empty
   std::vector<MemoryProgram> programs{};  // a later one of the same slot replaces an earlier one
   std::vector<int> deleted_programs{};    // slots that are empty now and were not always
   std::optional<std::vector<machine::LaserSchedule>> schedules{};  // none: all at their defaults

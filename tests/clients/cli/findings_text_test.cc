@@ -41,6 +41,23 @@ TEST(FindingsText, ACaretStandsBelowThePlace) {
             "  ^~~~~\n");
 }
 
+// Bytes that are no UTF-8 are question marks, one each: the caret stays in its column.
+TEST(FindingsText, BytesThatAreNoTextAreNotPrinted) {
+  EXPECT_EQ(Printed({Advice({.line = 1, .column = 5, .length = 1})}, 0, "\xAB\xFF\x80 Q\n"),
+            "a.S:1:5: advice OPT-E7011: look here [OPT-2.01]\n"
+            "  ??? Q\n"
+            "      ^\n");
+}
+
+// That which makes a verdict is no mere advice.
+TEST(FindingsText, WhatMakesAVerdictSaysSo) {
+  Diagnostic bad = Advice({});
+  bad.judged = Judged::kBad;
+  EXPECT_EQ(Printed({bad}, 0, {}), "a.S: BAD OPT-E7011: look here [OPT-2.01]\n");
+  bad.judged = Judged::kDoubtful;
+  EXPECT_EQ(Printed({bad}, 0, {}), "a.S: DOUBTFUL OPT-E7011: look here [OPT-2.01]\n");
+}
+
 TEST(FindingsText, WithoutALineThereIsNoCaret) {
   const std::string line = "a.S:2:8: advice OPT-E7011: look here [OPT-2.01]\n";
   EXPECT_EQ(Printed({Advice({.line = 2, .column = 8, .length = 3})}, 0, {}), line);

@@ -43,12 +43,15 @@ machine::Translation CheckWords(const machine::SourceFile& file) {
   return found;
 }
 
+const machine::MachineFamily& Optimo() { return *families::FindFamily("optimo"); }
+
 // Judged as a check does, of a program without motion.
 FixCheck Check(const std::function<machine::Translation(const machine::SourceFile&)>& translate,
                const simulation::MotionCheck& motion = {}) {
   return {translate, [motion](const machine::Translation& left) -> Result<FixCheck::Left> {
             return FixCheck::Left{
-                motion, bridge::FindingsOf(*families::FindFamily("optimo"), left, motion, 1)};
+                motion, bridge::FindingsOf(Optimo(), machine::Parameters(Optimo().parameters()),
+                                           left, motion, 1)};
           }};
 }
 

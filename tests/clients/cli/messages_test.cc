@@ -75,9 +75,39 @@ TEST_F(Messages, AnEventIsOneLine) {
   signal.set_text("beam");
   signal.set_detail(80.0);
   EXPECT_EQ(EventLine(event), "#12  1.500 s  beam = 1 (80.0)");
+  v1::GatheredFindings& gathered = *event.mutable_gathered();
+  gathered.set_code("RML1-E8002");
+  gathered.set_message("beyond the travel");
+  gathered.set_count(195);
+  gathered.mutable_first()->set_line(12);
+  gathered.mutable_last()->set_line(300);
+  EXPECT_EQ(EventLine(event),
+            "#12  1.500 s  and 195 more RML1-E8002, lines 12 to 300: beyond the travel");
   event.mutable_ended()->set_kind(v1::Outcome::KIND_COMPLETED);
   EXPECT_EQ(EventLine(event), "#12  1.500 s  ended: completed");
   EXPECT_EQ(EventLine(Event(3)), "#3  ");
+}
+
+// Of a check, too, which ran nothing.
+TEST_F(Messages, AReportNamesItsMachineAndWhatWasChangedOfIt) {
+  v1::RunReport report;
+  report.set_family("optimo");
+  report.set_profile("efa-51");
+  report.mutable_outcome()->set_kind(v1::Outcome::KIND_COMPLETED);
+  const std::string outcome = "outcome       completed\n";
+  EXPECT_EQ(ReportText(report),
+            outcome + "machine       Optimo with EFA-51 laser (efa-51): no profile was named\n");
+  report.set_profile_named(true);
+  const std::string machine = outcome + "machine       Optimo with EFA-51 laser (efa-51)\n";
+  EXPECT_EQ(ReportText(report), machine);
+  report.set_profile_changed_by("my\tfile.toml");
+  EXPECT_EQ(ReportText(report), machine + "changed       nothing, by my\\x09file.toml\n");
+  v1::ParameterChange& change = *report.add_profile_changes();
+  change.set_name("VMAX");
+  change.set_value("300");
+  change.set_of_profile("500");
+  EXPECT_EQ(ReportText(report),
+            machine + "changed       VMAX 300 (profile: 500); by my\\x09file.toml\n");
 }
 
 TEST_F(Messages, AReportOfALaserHasItsFigures) {
@@ -283,7 +313,7 @@ TEST_F(Messages, AWholeReportOfALaser) {
   EXPECT_EQ(
       ReportText(report),
       "outcome       stopped\n"
-      "machine       Optimo of 30 m/min with ARROW laser (standard): no profile was named\n"
+      "machine       Amada OPTIMO 5-axis laser\n"
       "cycle time    45.000 s\n"
       "              motion 1.000 s, settling 2.000 s, dwell 3.000 s, pierce 4.000 s, condition 5.000 s, "
       "operator 6.000 s, spin-up 7.000 s, loading 8.000 s, standstill 9.000 s\n"
@@ -347,6 +377,7 @@ TEST_F(Messages, AWholeReportOfAMill) {
   v1::RunReport report;
   report.set_family("rml1");
   report.set_profile("srm-20");
+  report.set_profile_named(true);
   v1::Outcome& outcome = *report.mutable_outcome();
   outcome.set_kind(v1::Outcome::KIND_COMPLETED);
   outcome.set_verdict(v1::VERDICT_BAD);
@@ -388,6 +419,22 @@ TEST_F(Messages, LongNamesKeepABlank) {
   (*report.mutable_variables())["VARIABLE[123]"] = "a";
   (*report.mutable_variables())["VARIABLE[123456]"] = "b";
   EXPECT_THAT(ReportText(report), HasSubstr("VARIABLE[123] a\nVARIABLE[123456] b\n"));
+}
+
+// While a program runs nothing is judged: advice may be what makes its verdict BAD.
+TEST_F(Messages, AnEventCallsNothingMereAdvice) {
+  v1::JobEvent event = Event(1);
+  v1::Diagnostic& finding = *event.mutable_diagnostic();
+  finding.set_code("RML1-E8002");
+  finding.set_severity(v1::SEVERITY_ADVICE);
+  finding.set_message("lost");
+  finding.mutable_place()->set_file("a.rml");
+  EXPECT_EQ(EventLine(event), "#1  a.rml: RML1-E8002: lost");
+  finding.set_verdict(v1::VERDICT_BAD);
+  EXPECT_EQ(EventLine(event), "#1  a.rml: BAD RML1-E8002: lost");
+  finding.clear_verdict();
+  finding.set_severity(v1::SEVERITY_WARNING);
+  EXPECT_EQ(EventLine(event), "#1  a.rml: warning RML1-E8002: lost");
 }
 
 TEST_F(Messages, AFindingIsOneLineWithItsCount) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "google/rpc/status.pb.h"
@@ -65,9 +66,39 @@ TEST(Refused, FindingsOfAProgramAreShownAndAreErrorsOfTheProgram) {
   const Told told = HearRefused(status);
   EXPECT_EQ(told.exit_code, 1);
   EXPECT_EQ(told.output, "");
-  EXPECT_THAT(told.errors, HasSubstr("\nrmlcell: 12.S:3:1: error OPT-E7011: SPEDE"));
-  EXPECT_THAT(told.errors, HasSubstr("\nrmlcell: and 5 more findings\n"));
+  EXPECT_TRUE(told.errors.starts_with("rmlcell: 12.S:3:1: error OPT-E7011: SPEDE")) << told.errors;
+  EXPECT_THAT(told.errors,
+              HasSubstr("\nrmlcell: and 5 more findings; rmlcell check of the file tells them\n"));
   EXPECT_EQ(HearRefused(status, true).exit_code, 1);
+}
+
+// What stops a program is told; what else is wrong with bytes that are none is only counted.
+TEST(Refused, BytesThatAreNoProgramAreRefusedInAFewLines) {
+  std::vector<Diagnostic> findings = {{.code = ErrorCode::kRml1NoProgram,
+                                       .severity = Severity::kCompile,
+                                       .detail = "61.2 %",
+                                       .file = "a.rml"}};
+  for (int line = 1; line <= 32; ++line) {
+    findings.push_back({.code = ErrorCode::kRml1UnknownCommand,
+                        .severity = Severity::kDevice,
+                        .file = "a.rml",
+                        .where = {.line = line, .column = 1}});
+  }
+  const Told told = HearRefused(StatusOf({ErrorCode::kRml1NoProgram, "61.2 %", {}}, findings));
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_EQ(std::count(told.errors.begin(), told.errors.end(), '\n'), 2) << told.errors;
+  EXPECT_TRUE(
+      told.errors.starts_with("rmlcell: a.rml: error RML1-E8007: 61.2 %; store the output"));
+  EXPECT_THAT(told.errors, HasSubstr("rml1 from-gcode"));
+  EXPECT_THAT(told.errors, HasSubstr("rmlcell: and 32 more findings; "));
+  // Errors of one kind are told as a check tells them: five, then their count and extent.
+  for (Diagnostic& finding : findings) {
+    finding.code = ErrorCode::kNameUndeclared;
+    finding.severity = Severity::kCompile;
+  }
+  const Told many = HearRefused(StatusOf({ErrorCode::kNameUndeclared, "SPEDE", {}}, findings));
+  EXPECT_EQ(std::count(many.errors.begin(), many.errors.end(), '\n'), 6) << many.errors;
+  EXPECT_THAT(many.errors, HasSubstr("\nrmlcell: and 28 more OPT-E7011, lines 5 to 32\n"));
 }
 
 TEST(Refused, TheDetailsArePrintedAsJsonWhereThatIsAskedFor) {

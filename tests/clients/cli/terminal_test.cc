@@ -75,6 +75,20 @@ TEST(Terminal, LongCellsAreCut) {
   EXPECT_EQ(Table({{umlauts, "b"}}), umlauts.substr(0, 59 * 2) + "…  b\n");
 }
 
+// On a terminal of 40 characters the title gives way, down to 8 characters; nothing else does.
+TEST(Terminal, TablesFitTheirTerminal) {
+  const std::vector<std::vector<std::string>> rows = {
+      {"JOB", "TITLE", "SUBMITTED"}, {"17", std::string(50, 'x'), "2026-11-24 00:30:11"}};
+  // 3 + 2 + 2 + 19 leave 14.
+  EXPECT_EQ(Table(rows, 40), "JOB  TITLE           SUBMITTED\n17   " + std::string(13, 'x') +
+                                 "…  2026-11-24 00:30:11\n");
+  EXPECT_EQ(Table(rows, 0), Table(rows, 76));  // 3 + 2 + 50 + 2 + 19
+  EXPECT_NE(Table(rows, 75), Table(rows, 76));
+  EXPECT_EQ(Table(rows, 1), Table(rows, 34));  // 3 + 2 + 8 + 2 + 19
+  EXPECT_EQ(Table({{"JOB", "TITLE"}, {"1", "x"}}, 1), "JOB  TITLE\n1    x\n");
+  EXPECT_EQ(Table({{"a"}, {std::string(50, 'x')}}, 10), "a\n" + std::string(50, 'x') + "\n");
+}
+
 TEST(Terminal, FixedHasSoManyDecimals) {
   EXPECT_EQ(Fixed(1.25, 3), "1.250");
   EXPECT_EQ(Fixed(-0.5, 1), "-0.5");

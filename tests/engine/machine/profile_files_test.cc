@@ -78,13 +78,74 @@ TEST(Profiles, AreFoundByForgivingNames) {
     return none ? std::string() : none.error().detail;
   };
   EXPECT_EQ(said("mdx40"), "no profile 'mdx40'; did you mean mdx-40a or mdx-40a-rotary?");
+  EXPECT_EQ(said("mdx"),
+            "no profile 'mdx'; did you mean mdx-15, mdx-20, mdx-40a, mdx-40a-rotary, mdx-50 or "
+            "mdx-540?");
   EXPECT_EQ(said("mdx-540s"), "no profile 'mdx-540s'; did you mean mdx-540?");
   EXPECT_EQ(said("Roland SRM-20"), "no profile 'Roland SRM-20'; did you mean srm-20?");
   EXPECT_EQ(said("my.toml"), "no profile 'my.toml': a file of one's own goes to --machine");
+  EXPECT_EQ(said("smr-20"), "no profile 'smr-20'; did you mean srm-20?");
   EXPECT_TRUE(said("lathe").starts_with("no profile 'lathe'; there are ")) << said("lathe");
   // Nobody named one: it is a machine that there is, and is not said to be named.
-  EXPECT_EQ(MakeParameters(mill, "", {})->profile(), "");
+  EXPECT_EQ(MakeParameters(mill, "", {})->profile(), "srm-20");
+  EXPECT_FALSE(MakeParameters(mill, "", {})->profile_named());
+  EXPECT_TRUE(MakeParameters(mill, "srm20", {})->profile_named());
   EXPECT_EQ(MakeParameters(mill, "", {})->Number("X_MAX"), 203.2);
+}
+
+// The SRM-20 has 203.2 mm in X and 100 units in a mm; a file that says the same changes nothing.
+TEST(Profiles, WhatIsChangedOfThemIsTold) {
+  const MachineFamily& mill = *families::FindFamily("rml1");
+  const auto used = [&](const std::map<std::string, std::string>& values) {
+    auto parameters = MakeParameters(mill, "srm-20", values);
+    EXPECT_TRUE(parameters);
+    parameters->SetChangedBy("mine.toml");
+    return parameters->Used();
+  };
+  EXPECT_EQ(used({{"X_MAX", "203.2"}}).changes, std::vector<ChangedParameter>{});
+  EXPECT_EQ(used({{"X_MAX", "203.2"}}).ChangesText(), "nothing, by mine.toml");
+  const MachineUsed two = used({{"X_MAX", "100"}, {"CLAMP_HEIGHT", "5"}});
+  ASSERT_EQ(two.changes.size(), 2U);
+  EXPECT_EQ(two.changes[1], (ChangedParameter{"X_MAX", "100", "203.2"}));
+  EXPECT_EQ(two.changes[0].name, "CLAMP_HEIGHT");
+  EXPECT_EQ(two.ChangesText(), "CLAMP_HEIGHT 5 (profile: " + two.changes[0].of_profile +
+                                   "), X_MAX 100 (profile: 203.2); by mine.toml");
+  EXPECT_EQ(two.profile, "srm-20");
+  EXPECT_EQ(MakeParameters(mill, "srm-20", {})->Used().ChangesText(), "");
+  // Of a profile that nobody named, and words as well as numbers.
+  const MachineFamily& laser = *families::FindFamily("optimo");
+  const MachineUsed standard = MakeParameters(laser, "", {{"LASER", "EFA51"}})->Used();
+  EXPECT_EQ(standard.profile, "standard");
+  EXPECT_FALSE(standard.named);
+  EXPECT_EQ(standard.changes, (std::vector<ChangedParameter>{{"LASER", "EFA51", "ARROW"}}));
+  EXPECT_EQ(MakeParameters(laser, "efa-51", {})->Used().changes, std::vector<ChangedParameter>{});
+}
+
+TEST(Profiles, ATitleSaysWhenNobodyNamedOne) {
+  const MachineFamily& mill = *families::FindFamily("rml1");
+  EXPECT_EQ(MachineTitle(mill, "srm-20", true), "Roland monoFab SRM-20 (srm-20)");
+  EXPECT_EQ(MachineTitle(mill, "srm-20", false),
+            "Roland monoFab SRM-20 (srm-20): no profile was named");
+  EXPECT_EQ(MachineTitle(mill, "", false), mill.info().title);
+}
+
+// Of a code the most serious of its reasons counts.
+TEST(Verdicts, FindingsAreMarked) {
+  Judgement judgement;
+  judgement.Add({.code = ErrorCode::kRml1Clipped, .verdict = Verdict::kDoubtful});
+  judgement.Add({.code = ErrorCode::kRml1Clipped, .verdict = Verdict::kBad});
+  judgement.Add({.code = ErrorCode::kRml1NotUnderstood, .verdict = Verdict::kDoubtful});
+  std::vector<Diagnostic> findings = {
+      {.code = ErrorCode::kRml1Clipped, .severity = Severity::kAdvice},
+      {.code = ErrorCode::kRml1NotUnderstood, .severity = Severity::kAdvice},
+      {.code = ErrorCode::kHoleRadiusZero, .severity = Severity::kProgram},
+      {.code = ErrorCode::kRml1LogCut, .severity = Severity::kAdvice}};
+  MarkJudged(judgement, findings);
+  EXPECT_EQ(FindingWord(findings[0]), "BAD");
+  EXPECT_EQ(FindingWord(findings[1]), "DOUBTFUL");
+  EXPECT_EQ(FindingWord(findings[2]), "error");
+  EXPECT_EQ(FindingWord(findings[3]), "advice");
+  EXPECT_EQ(FormatDiagnostic(findings[0], {}).substr(0, 14), "BAD RML1-E8002");
 }
 
 }  // namespace

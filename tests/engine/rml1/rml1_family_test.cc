@@ -115,9 +115,19 @@ TEST(Rml1Family, RefusesWhatIsNoRml1) {
   EXPECT_EQ(refused.diagnostics[0].code, ErrorCode::kRml1NoProgram);
   EXPECT_EQ(refused.diagnostics[0].detail, "10.1 % of the bytes belong to no command");
   EXPECT_TRUE(TranslateText(stream + std::string(101, '$')).ok);  // forced
-  // A few letters are looked at as 256: 25 of them are less than a tenth, 26 more.
-  EXPECT_TRUE(translate(std::string(25, '$')).ok);
-  EXPECT_FALSE(translate(std::string(26, '$')).ok);
+  // Few bytes are looked at as 256, as long as no more than a word of 7 letters or a quarter of
+  // them is foreign: 25 of 256 are less than a tenth, 26 more.
+  const auto foreign_of = [&](std::size_t foreign, std::size_t all) {
+    return translate(stream.substr(0, all - foreign) + std::string(foreign, '$')).ok;
+  };
+  EXPECT_TRUE(foreign_of(7, 7));
+  EXPECT_FALSE(foreign_of(8, 8));
+  EXPECT_TRUE(foreign_of(10, 40));   // a quarter
+  EXPECT_FALSE(foreign_of(20, 70));  // more
+  EXPECT_TRUE(foreign_of(25, 105));
+  EXPECT_FALSE(foreign_of(26, 106));
+  const machine::Translation noise = translate(std::string(22, '$'));
+  EXPECT_EQ(noise.diagnostics.at(0).detail, "100.0 % of the bytes belong to no command");
 }
 
 TEST(Rml1Family, RefusesAnEmptyStream) {

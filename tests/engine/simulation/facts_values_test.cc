@@ -35,7 +35,15 @@ TEST(FactsValues, Run) {
   report.steps_executed = 56;
   report.halts = 7;
   report.lookahead_starved = 8;
+  report.machine = {.profile = "efa-51",
+                    .named = true,
+                    .changes = {{"CYCLE", "0.1", "0.064"}, {"VMAX", "300", "500"}},
+                    .changed_by = "mine.toml"};
   ExpectFacts(report, {{"family", "optimo"},
+                       {"profile", "efa-51"},
+                       {"profile_named", "yes"},
+                       {"profile_changes", "CYCLE=0.1 VMAX=300"},
+                       {"profile_changed_by", "mine.toml"},
                        {"title", "plate.S"},
                        {"inputs_hash", "ab12"},
                        {"engine_version", "9.8.7"},

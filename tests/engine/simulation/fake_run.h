@@ -143,6 +143,12 @@ class Script {
     });
   }
 
+  Script& Lost(const motion::MachinePoint& from, const motion::MachinePoint& to) {
+    return Instant([=, place = place_](machine::RunObserver& watcher, SimTime at) {
+      watcher.OnLost({.at = at, .place = place, .from = from, .to = to});
+    });
+  }
+
   Script& Wait(machine::WaitKind kind, double seconds, bool beam_on = false, double power = 0.0) {
     items_.push_back(
         {.length = FromSeconds(seconds),

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "engine/core/units.h"
 #include "engine/simulation/picture/path_sketch.h"
 #include "engine/simulation/picture/picture_page.h"
+#include "engine/simulation/picture/picture_view.h"
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/laser_shape.h"
@@ -245,6 +247,80 @@ TEST(Picture, FailureIsShown) {
   const std::string svg = SvgOf(SomeMilling(), Mill(), report);
   EXPECT_GE(CountOf(svg, "failed  OPT-E348  at 45/7"), 1u);
   EXPECT_GE(CountOf(svg, ">where it ended<"), 1u);
+}
+
+// What the travel cut off has lines and a place in the legend of its own, with its length: 60 mm
+// beyond X 200 and 25 mm beyond Y 150.
+TEST(Picture, WhatIsLostIsDrawn) {
+  Script script = SomeMilling();
+  EXPECT_EQ(CountOf(SvgOf(script, Mill()), "class=\"lost\""), 0u);
+  EXPECT_EQ(CountOf(SvgOf(script, Mill()), "beyond the travel"), 0u);
+  script.Lost({200, 40, -21}, {260, 40, -21}).Lost({40, 150, -21}, {40, 175, -21});
+  const std::string svg = SvgOf(script, Mill());
+  EXPECT_EQ(XmlFault(svg), "");
+  EXPECT_EQ(CountOf(svg, "<g class=\"lost\""), 1u);
+  EXPECT_EQ(CountOf(svg, "class=\"lost\""), 2u);  // the other one in the legend
+  EXPECT_EQ(CountOf(svg, ">beyond the travel, not cut<"), 1u);
+  EXPECT_EQ(CountOf(svg, ">85.000 mm lost<"), 1u);
+  // Two lines, of which the longer is 60 mm and the other 25 mm.
+  const std::size_t group = svg.find("<g class=\"lost\"");
+  const std::string data = PathsOf(svg.substr(group, svg.find("</g>", group) - group));
+  double across = 0.0, up = 0.0;
+  ASSERT_EQ(std::sscanf(data.c_str() + data.find('l'), "l%lf", &across), 1) << data;
+  ASSERT_EQ(std::sscanf(data.c_str() + data.rfind('l'), "l0%lf", &up), 1) << data;
+  EXPECT_NEAR(across / -up, 60.0 / 25.0, 0.01);
+}
+
+// Work that leads metres away does not make the rest a dot: 200 mm of travel in X are shown beyond
+// it. Where nothing was cut all of it is shown, with the way of the tip.
+TEST(Picture, WhatIsLostFarAwayIsCut) {
+  const auto shown = [](double lost_from, double lost_to, MotionUse use) {
+    PathSketch sketch(Mill(), 1000);
+    motion::PlannedMotion planned;
+    planned.path = LineFrom({0, 10, -21}, {100, 10, -21});
+    sketch.Add({.use = use, .motion = &planned, .travelled = 100.0});
+    sketch.AddLost({.from = {lost_from, 10, -21}, .to = {lost_to, 10, -21}});
+    EXPECT_EQ(sketch.lost_mm(), lost_to - lost_from);
+    EXPECT_EQ(sketch.box().max.x(), 100.0);  // the tip was never there
+    return BoxToShow(sketch, Mill().travel);
+  };
+  const double margin = 1.06;  // of the extent from X 0
+  EXPECT_NEAR(shown(200, 250, MotionUse::kCut).max.x(), 250.0 * margin, 1e-9);
+  EXPECT_NEAR(shown(200, 90'000, MotionUse::kCut).max.x(), 400.0 * margin, 1e-9);
+  EXPECT_NEAR(shown(500, 900, MotionUse::kTravel).max.x(), 900.0 * margin, 1e-9);
+}
+
+// Memory stays bounded however much is lost.
+TEST(Picture, ManyLostLinesAreThinned) {
+  PathSketch sketch(Mill(), 1000);
+  double length = 0.0;
+  for (int i = 0; i < 100'000; ++i) {
+    const double y = 0.001 * i;
+    sketch.AddLost({.from = {200, y, -21}, .to = {230, y, -21}});
+    length += 30.0;
+  }
+  EXPECT_LE(sketch.lost().size(), 16'000u);
+  EXPECT_GT(sketch.lost().size(), 100u);
+  EXPECT_NEAR(sketch.lost_mm(), length, 1e-3);
+  EXPECT_EQ(sketch.elements().size(), 0u);
+}
+
+// A picture that goes from hand to hand says which machine it is of, and what was changed.
+TEST(Picture, NamesTheProfile) {
+  RunReport report = Completed();
+  report.family = "rml1";
+  report.machine = {.profile = "mdx-15", .named = true};
+  std::string svg = SvgOf(SomeMilling(), Mill(), report);
+  EXPECT_EQ(CountOf(svg, " (mdx-15)<"), 1u);
+  EXPECT_EQ(CountOf(svg, "changed"), 0u);
+  report.machine = {.profile = "srm-20",
+                    .named = false,
+                    .changes = {{"X_MAX", "100", "203.2"}},
+                    .changed_by = "a<b.toml"};
+  svg = SvgOf(SomeMilling(), Mill(), report);
+  EXPECT_EQ(XmlFault(svg), "");
+  EXPECT_EQ(CountOf(svg, ">Roland monoFab SRM-20 (srm-20): no profile was named<"), 1u);
+  EXPECT_EQ(CountOf(svg, ">changed: X_MAX 100 (profile: 203.2); by a&lt;b.toml<"), 1u);
 }
 
 // An arc that bows less than a fiftieth of a pixel is drawn as a line: 6 um in a picture of a

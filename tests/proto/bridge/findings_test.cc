@@ -165,10 +165,12 @@ TEST(FindingsMessage, OfATranslationAndItsMotion) {
   translation.diagnostics_dropped = 3;
   translation.figures = {{.name = "steps", .unit = "", .value = 7.0}};
   const machine::MachineFamily& family = *families::FindFamily("optimo");
+  auto parameters = *machine::MakeParameters(family, "", {{"LASER", "EFA51"}});
+  parameters.SetChangedBy("mine.toml");
   simulation::MotionCheck motion;
   motion.findings_dropped = 4;
   motion.cut_short = {{45, "only up to step 2"}};
-  const v1::Findings good = FindingsOf(family, translation, motion, 45);
+  const v1::Findings good = FindingsOf(family, parameters, translation, motion, 45);
   EXPECT_TRUE(good.ok());
   EXPECT_EQ(good.diagnostics_size(), 1);
   EXPECT_EQ(good.diagnostics_dropped(), 7);
@@ -180,17 +182,29 @@ TEST(FindingsMessage, OfATranslationAndItsMotion) {
   ASSERT_EQ(good.figures_size(), 1);
   EXPECT_EQ(good.figures(0).name(), "steps");
   EXPECT_EQ(good.figures(0).value(), 7.0);
-  EXPECT_EQ(FindingsOf(family, translation, motion, 44).motion_check(), "");
+  EXPECT_EQ(FindingsOf(family, parameters, translation, motion, 44).motion_check(), "");
   motion.findings = {{.code = ErrorCode::kTargetOutOfTravel, .severity = Severity::kProgram}};
-  const v1::Findings bad = FindingsOf(family, translation, motion, 45);
+  const v1::Findings bad = FindingsOf(family, parameters, translation, motion, 45);
   EXPECT_FALSE(bad.ok());
   ASSERT_EQ(bad.diagnostics_size(), 2);
   EXPECT_EQ(bad.diagnostics(1).code(), CodeText(ErrorCode::kTargetOutOfTravel));
+  EXPECT_EQ(bad.diagnostics(1).verdict(), v1::VERDICT_BAD);
+  EXPECT_EQ(bad.diagnostics(0).verdict(), v1::VERDICT_UNSPECIFIED);  // it is not what makes it so
+  EXPECT_EQ(FindingWord(FromProto(bad.diagnostics(0))), FindingWord(Whole()));
+  // As in a report.
+  EXPECT_EQ(bad.family(), "optimo");
+  EXPECT_EQ(bad.profile(), "standard");
+  EXPECT_FALSE(bad.profile_named());
+  ASSERT_EQ(bad.profile_changes_size(), 1);
+  EXPECT_EQ(bad.profile_changes(0).name(), "LASER");
+  EXPECT_EQ(bad.profile_changes(0).value(), "EFA51");
+  EXPECT_EQ(bad.profile_changes(0).of_profile(), "ARROW");
+  EXPECT_EQ(bad.profile_changed_by(), "mine.toml");
   EXPECT_EQ(bad.verdict(), v1::VERDICT_BAD);
   ASSERT_EQ(bad.reasons_size(), 1);
   EXPECT_EQ(bad.reasons(0).code(), CodeText(ErrorCode::kTargetOutOfTravel));
   translation.ok = false;
-  EXPECT_FALSE(FindingsOf(family, translation, {}, 45).ok());
+  EXPECT_FALSE(FindingsOf(family, parameters, translation, {}, 45).ok());
 }
 
 // The codes of gRPC, as docs/api.md tells what to do on each.

@@ -315,6 +315,25 @@ TEST(ReportMessage, AToolBelowTheBlockHasItsPlace) {
 }
 
 // What did not happen has no place: no gouge, no deviation, no beam, no limit to have a share of.
+// Told once: of the same code at the same place; another place, another code, or a place that is
+// not known is another finding.
+TEST(ReportMessage, FindingsOfTheTextAreNotToldAgain) {
+  const auto at = [](ErrorCode code, int line) {
+    return Diagnostic{
+        .code = code, .severity = Severity::kAdvice, .where = {.line = line, .column = 2}};
+  };
+  v1::RunReport report;
+  *report.add_diagnostics() = ToProto(at(ErrorCode::kRml1Clipped, 3));
+  *report.add_diagnostics() = ToProto(at(ErrorCode::kRml1Clipped, 0));
+  AddFindingsOfText({at(ErrorCode::kRml1Clipped, 3), at(ErrorCode::kRml1Clipped, 4),
+                     at(ErrorCode::kRml1LogCut, 3), at(ErrorCode::kRml1Clipped, 0)},
+                    report);
+  std::string told;
+  for (const v1::Diagnostic& finding : report.diagnostics())
+    told += finding.code() + "@" + std::to_string(finding.place().line()) + " ";
+  EXPECT_EQ(told, "RML1-E8002@3 RML1-E8002@0 RML1-E8002@4 RML1-E8004@3 RML1-E8002@0 ");
+}
+
 TEST(ReportMessage, WhatDidNotHappenIsNotThere) {
   RunReport report;
   report.milling = {.removed_mm3 = 1.0};

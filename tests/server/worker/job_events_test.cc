@@ -127,8 +127,9 @@ TEST_F(JobEventsTest, CutsALongLogAndSaysSo) {
   EXPECT_TRUE(sent[10'002].has_resumed());
 }
 
-// A finding is told once for each place that it is about, and 200 of them.
-TEST_F(JobEventsTest, TellsEachFindingOnce) {
+// A finding is told once for each place that it is about: five places of a code at once, the others
+// in one event at the end.
+TEST_F(JobEventsTest, GathersFindingsOfOneKind) {
   const Diagnostic first{.code = ErrorCode::kHoleRadiusZero,
                          .where = {.line = 3, .column = 4},
                          .program = 1,
@@ -151,11 +152,41 @@ TEST_F(JobEventsTest, TellsEachFindingOnce) {
   events_.OnDiagnostic(milliseconds(9), changed([](Diagnostic& d) { d.detail = "again"; }));
   events_.Flush();
   EXPECT_EQ(Sent().size(), different.size());
-  for (int step = 10; step < 1000; ++step) {
-    events_.OnDiagnostic(SimTime(0), changed([&](Diagnostic& d) { d.step = step; }));
+  for (int step = 10; step < 210; ++step) {
+    events_.OnDiagnostic(milliseconds(step), changed([&](Diagnostic& d) {
+                           d.step = step;
+                           d.where.line = step;
+                         }));
   }
   events_.Flush();
-  EXPECT_EQ(Sent().size(), 200U);
+  EXPECT_EQ(Sent().size(), different.size());  // five of this code were told
+  // Another kind is not held back by the first one.
+  events_.OnDiagnostic(milliseconds(300), {.code = ErrorCode::kCellWaitsForever, .step = 1});
+  events_.TellRest();
+  events_.Flush();
+  std::vector<v1::JobEvent> sent = Sent();
+  ASSERT_EQ(sent.size(), different.size() + 2);
+  EXPECT_EQ(sent[different.size()].diagnostic().code(), "CELL-E9308");
+  const v1::JobEvent rest = sent.back();
+  EXPECT_EQ(rest.virtual_time_ns(), 209'000'000);  // when the last of them was made
+  EXPECT_EQ(rest.gathered().code(), "OPT-E348");
+  EXPECT_EQ(rest.gathered().count(), 200);
+  EXPECT_EQ(rest.gathered().first().line(), 10);
+  EXPECT_EQ(rest.gathered().last().line(), 209);
+  EXPECT_FALSE(rest.gathered().advice().empty());
+  events_.TellRest();  // once
+  events_.Flush();
+  EXPECT_EQ(Sent().size(), different.size() + 2);
+}
+
+// Five are no crowd.
+TEST_F(JobEventsTest, FewFindingsAreToldEach) {
+  for (int step = 1; step <= 5; ++step)
+    events_.OnDiagnostic(SimTime(0), {.code = ErrorCode::kHoleRadiusZero, .step = step});
+  events_.TellRest();
+  events_.Flush();
+  ASSERT_EQ(Sent().size(), 5U);
+  EXPECT_TRUE(Sent().back().has_diagnostic());
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ TEST(NearestWords, OneLetterInThreeMayDiffer) {
   const std::string sixteen(16, 'A'), seventeen(17, 'A');
   EXPECT_EQ(near(sixteen, {sixteen}).size(), 1U);
   EXPECT_EQ(near(seventeen, {sixteen}), Words{});
-  EXPECT_EQ(near(sixteen, {seventeen}), Words{});
+  EXPECT_EQ(near(sixteen, {seventeen}), Words{seventeen});
   const std::vector<std::string_view> many = {"ABD", "ABE", "ABF", "ABG", "ABH"};
   EXPECT_EQ(near("ABC", many), Words(many.begin(), many.begin() + kNearWordsMax));
   EXPECT_EQ(QuestionFor(NearestWords("ABC", std::array<std::string_view, 3>{"ABD", "ABE", "ABF"})),

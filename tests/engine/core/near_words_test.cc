@@ -1,0 +1,47 @@
+#include "engine/core/near_words.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace rmlcell {
+namespace {
+
+using Words = std::vector<std::string>;
+
+Words Near(std::string_view word) {
+  static constexpr std::array<std::string_view, 6> kKnown = {"simulate", "check", "--stock",
+                                                             "--tool",   "--svg", "put"};
+  return NearestTo(word, kKnown).words;
+}
+
+// At most a third of the characters: 2 of 8, 1 of 3 to 5, none of 1 and 2.
+TEST(NearWords, AtMostAThirdDiffers) {
+  EXPECT_EQ(Near("simulat"), Words{"simulate"});   // one is missing
+  EXPECT_EQ(Near("simluate"), Words{"simulate"});  // two are swapped: one difference
+  EXPECT_EQ(Near("SIMULATE"), Words{"simulate"});  // case is none
+  EXPECT_EQ(Near("--stok"), Words{"--stock"});
+  EXPECT_EQ(Near("pt"), Words{});  // 2 / 3 is 0
+  EXPECT_EQ(Near("pot"), Words{"put"});
+  EXPECT_EQ(Near("chkec"), Words{});  // two of five differ
+  EXPECT_EQ(NearestTo("simxlxte", std::array<std::string_view, 1>{"simulate"}).distance, 2);
+}
+
+// Words of the command line are longer than those of a program.
+TEST(NearWords, LongWordsAreCompared) {
+  constexpr std::array<std::string_view, 1> kLong = {"--machine-coordinates"};
+  EXPECT_EQ(NearestTo("--machine-cordinates", kLong).words, Words{"--machine-coordinates"});
+  const std::string longest(32, 'a');
+  const std::array<std::string_view, 1> same = {longest};
+  EXPECT_EQ(NearestTo(longest, same).words, Words{longest});
+  EXPECT_EQ(NearestTo(longest + "a", same).words, Words{});
+}
+
+TEST(NearWords, TheQuestionNamesThemAll) {
+  EXPECT_EQ(DidYouMean({}), "");
+  EXPECT_EQ(DidYouMean(Words{"a"}), "; did you mean a?");
+  EXPECT_EQ(DidYouMean(Words{"a", "b", "c"}), "; did you mean a, b or c?");
+}
+
+}  // namespace
+}  // namespace rmlcell
