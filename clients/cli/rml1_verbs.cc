@@ -18,6 +18,11 @@ CLI::App* MillVerb(CLI::App& group, const char* name, const char* text, const st
                    "profile of a mill, such as srm-20 or mdx-20");
   verb->add_option("--machine", options->machine.file,
                    "machine file (TOML): family, profile, [parameters]");
+  verb->add_option(
+          "--origin", options->machine.origin,
+          "X,Y or X,Y,Z of the work origin on the machine, mm; default: as the profile has it")
+      ->delimiter(',')
+      ->expected(2, 3);
   return verb;
 }
 
@@ -35,6 +40,8 @@ void AddExplain(CLI::App& group, int& exit_code) {
 
 void AddOutput(CLI::App& verb, const std::shared_ptr<MillToolOptions>& options, const char* text) {
   verb.add_option("-o,--output", options->output, text);
+  verb.add_flag("--force", options->force,
+                "write it although the machine would leave out a part of it");
   verb.add_flag("--json", options->json, kAnswerAsJson);
 }
 
@@ -90,10 +97,17 @@ void AddRewriting(CLI::App& group, int& exit_code) {
   auto tile = std::make_shared<TileToolOptions>();
   verb = MillVerb(
       group, "tile", "Repeat a stream in columns and rows, within the travel",
-      "  rmlcell rml1 tile part.rml --columns 3 --rows 2 --gap 2 --profile srm-20 -o six.rml", tile,
-      "a stream");
-  verb->add_option("--columns", tile->columns, "copies in X; default 1");
-  verb->add_option("--rows", tile->rows, "copies in Y; default 1");
+      "  rmlcell rml1 tile part.rml --columns 3 --rows 2 --gap 2 --profile srm-20 -o six.rml\n"
+      "  rmlcell rml1 tile part.rml --within 150x100 --gap 4 --profile srm-20 -o sheet.rml",
+      tile, "a stream");
+  CLI::Option* columns = verb->add_option("--columns", tile->columns, "copies in X; default 1");
+  CLI::Option* rows = verb->add_option("--rows", tile->rows, "copies in Y; default 1");
+  verb->add_option(
+          "--within", tile->within,
+          "150x100: as many copies as have room in a field of so many mm, from the first one "
+          "to the right and to the back; the paths count, so take off the width of the tool")
+      ->excludes(columns)
+      ->excludes(rows);
   verb->add_option("--gap", tile->gap_mm,
                    "mm between the paths of two copies, so more than the tool; default 1");
   AddOutput(*verb, tile, kStreamOutput);

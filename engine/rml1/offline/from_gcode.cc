@@ -40,11 +40,13 @@ struct Orders {
   std::optional<GcodeUse> motion;  // a motion word of this line
   const GcodeWord* motion_word = nullptr;
   bool dwell = false;
+  bool home = false;
+  const GcodeWord* tool_change = nullptr;
   bool spindle_on = false;
   bool spindle_off = false;
   bool pause = false;
   bool end = false;
-  std::map<char, const GcodeWord*> values;  // X Y Z I J R F S P
+  std::map<char, const GcodeWord*> values;  // X Y Z I J R F S P T
 
   const GcodeWord* Find(char letter) const {
     const auto found = values.find(letter);
@@ -60,14 +62,19 @@ struct Orders {
 
 class Interpreter {
  public:
-  Interpreter(const Profile& profile, const FromGcodeOptions& options)
-      : profile_(profile), options_(options), writer_(profile) {
-    z_ = static_cast<double>(writer_.at().z) / profile.units_per_mm;
+  Interpreter(const Profile& profile, const FromGcodeOptions& options, const ByteSink& sink)
+      : profile_(profile), options_(options), writer_(profile, sink), top_(writer_.at().z) {
+    z_ = static_cast<double>(top_) / profile.units_per_mm;
   }
 
-  void Run(std::string_view text) {
-    GcodeReader reader(text);
+  void Run(const machine::Bytes& text) {
+    GcodeReader reader(*text);
+    std::size_t released = 0;
     while (std::optional<Result<GcodeBlock>> block = reader.Next()) {
+      if (reader.offset() - released > machine::kReleaseEvery) {
+        text.Release();
+        released = reader.offset();
+      }
       if (!*block) {
         Refuse(block->error());
       } else if (ended_) {
@@ -82,14 +89,22 @@ class Interpreter {
     }
   }
 
-  StreamOfGcode Take() {
+  FromGcodeOutcome Finish() {
     if (writer_.dwell_ms() > 0 && made_.ok)
       Note(ErrorCode::kRml1GcodeIgnored, "wait", "the wait behind the last motion", {});
-    if (made_.ok) made_.stream = writer_.Take();
+    TellRapids(across_, "across");
+    TellRapids(down_, "down");
+    if (made_.ok) writer_.Finish();
     return std::move(made_);
   }
 
  private:
+  // Rapids of one kind that lead through the work.
+  struct RapidsInWork {
+    std::uint64_t count = 0;
+    SourceSpan first;
+  };
+
   void Add(ErrorCode code, std::string detail, const SourceSpan& where) {
     if (made_.findings.size() == machine::kDiagnosticsMax) {
       ++made_.findings_dropped;
@@ -127,6 +142,10 @@ class Interpreter {
   void SetSpindleSpeed(const GcodeWord& word);
   void Wait(const Orders& orders, const GcodeBlock& block);
   void Move(const Orders& orders, const GcodeBlock& block);
+  void MoveRapid(const Units& to, const SourceSpan& where);
+  void TellRapids(const RapidsInWork& rapids, const char* way);
+  void ChangeTool(const Orders& orders);
+  void GoHome(const Orders& orders, const GcodeBlock& block);
   void MoveArc(const Orders& orders, GcodeUse motion, double x, double y, double z);
   std::optional<Units> UnitsOf(double x, double y, double z, const SourceSpan& where);
   void CutTo(double x, double y, double z, const SourceSpan& where);
@@ -135,7 +154,8 @@ class Interpreter {
   const Profile& profile_;
   const FromGcodeOptions& options_;
   StreamWriter writer_;
-  StreamOfGcode made_{.ok = true};
+  const std::int64_t top_;  // of the travel, from Z 0
+  FromGcodeOutcome made_{.ok = true};
   std::set<std::string> told_;  // bounded: the words of the subset, and a few of ours
   std::optional<GcodeUse> motion_;
   double unit_mm_ = 1.0;
@@ -145,7 +165,12 @@ class Interpreter {
   std::optional<double> feed_mm_s_;
   SourceSpan feed_where_;
   bool begun_ = false;
-  bool moved_ = false;
+  bool relative_ = false;  // G91: good for G28 alone
+  bool cut_ = false;
+  std::optional<double> tool_;  // the last T, and the one of the first cut
+  std::optional<double> cutting_tool_;
+  RapidsInWork across_;
+  RapidsInWork down_;
   bool ended_ = false;
 };
 
@@ -156,19 +181,24 @@ bool Interpreter::SortCode(const GcodeWord& word, const GcodeRow& row, Orders& o
     case GcodeUse::kLine:
     case GcodeUse::kArcClockwise:
     case GcodeUse::kArcCounter:
-      if (orders.motion_word != nullptr || orders.dwell) {
+      if (orders.motion_word != nullptr || orders.dwell || orders.home) {
         Refuse(ErrorCode::kRml1GcodeForm, "two words that move or wait in one line", word.where);
         return false;
       }
       orders.motion = row.use;
       orders.motion_word = &word;
       return true;
+    case GcodeUse::kHome:
     case GcodeUse::kDwell:
-      if (orders.motion_word != nullptr || orders.dwell) {
+      if (orders.motion_word != nullptr || orders.dwell || orders.home) {
         Refuse(ErrorCode::kRml1GcodeForm, "two words that move or wait in one line", word.where);
         return false;
       }
-      orders.dwell = true;
+      (row.use == GcodeUse::kHome ? orders.home : orders.dwell) = true;
+      return true;
+    case GcodeUse::kAbsolute:
+    case GcodeUse::kRelative:
+      relative_ = row.use == GcodeUse::kRelative;
       return true;
     case GcodeUse::kInch:
       unit_mm_ = kInch_mm;
@@ -183,14 +213,7 @@ bool Interpreter::SortCode(const GcodeWord& word, const GcodeRow& row, Orders& o
            WordText(word) + ", " + std::string(row.text), word.where);
       return true;
     case GcodeUse::kToolChange:
-      if (moved_) {
-        Refuse(ErrorCode::kRml1GcodeWord,
-               WordText(word) + " behind the first motion: write a program for each tool",
-               word.where);
-        return false;
-      }
-      Note(ErrorCode::kRml1GcodeIgnored, "M6", WordText(word) + ", the tool is put in by hand",
-           word.where);
+      orders.tool_change = &word;
       return true;
     case GcodeUse::kPause:
       orders.pause = true;
@@ -212,6 +235,7 @@ bool Interpreter::SortCode(const GcodeWord& word, const GcodeRow& row, Orders& o
 bool Interpreter::SortValue(const GcodeWord& word, const GcodeBlock& block, Orders& orders) {
   if (word.letter == 'T') {
     Note(ErrorCode::kRml1GcodeIgnored, "T", "T, the tool is put in by hand", word.where);
+    tool_ = word.value;
     return true;
   }
   if (word.letter == 'O' && block.words.size() == 1) {
@@ -219,7 +243,7 @@ bool Interpreter::SortValue(const GcodeWord& word, const GcodeBlock& block, Orde
          word.where);
     return true;
   }
-  if (std::string_view("XYZIJRFSP").find(word.letter) == std::string_view::npos) {
+  if (std::string_view("XYZIJRFSPH").find(word.letter) == std::string_view::npos) {
     Refuse(ErrorCode::kRml1GcodeWord, WordText(word), word.where);
     return false;
   }
@@ -235,7 +259,8 @@ bool Interpreter::SortValue(const GcodeWord& word, const GcodeBlock& block, Orde
 std::optional<Orders> Interpreter::Sort(const GcodeBlock& block) {
   Orders orders;
   bool good = true;
-  bool path_mode = false;  // G64 takes a P of its own
+  bool path_mode = false;    // G64 takes a P of its own
+  bool tool_length = false;  // G43 takes an H
   for (const GcodeWord& word : block.words) {
     if (word.letter != 'G' && word.letter != 'M') {
       good = SortValue(word, block, orders) && good;
@@ -248,6 +273,7 @@ std::optional<Orders> Interpreter::Sort(const GcodeBlock& block) {
       continue;
     }
     path_mode = path_mode || (row->letter == 'G' && row->tenths == 640);
+    tool_length = tool_length || (row->letter == 'G' && row->tenths == 430);
     good = SortCode(word, *row, orders) && good;
   }
   if (const GcodeWord* p = orders.Find('P'); p != nullptr && !orders.dwell) {
@@ -255,6 +281,10 @@ std::optional<Orders> Interpreter::Sort(const GcodeBlock& block) {
       Refuse(ErrorCode::kRml1GcodeWord, WordText(*p) + " without G4", p->where);
       good = false;
     }
+  }
+  if (const GcodeWord* h = orders.Find('H'); h != nullptr && !tool_length) {
+    Refuse(ErrorCode::kRml1GcodeWord, WordText(*h) + " without G43", h->where);
+    good = false;
   }
   return good ? std::optional(std::move(orders)) : std::nullopt;
 }
@@ -265,11 +295,14 @@ void Interpreter::Obey(const GcodeBlock& block) {
   if (!orders) return;
   if (const GcodeWord* feed = orders->Find('F')) SetFeed(*feed);
   if (const GcodeWord* speed = orders->Find('S')) SetSpindleSpeed(*speed);
+  if (orders->tool_change != nullptr) ChangeTool(*orders);
   if (orders->spindle_on) writer_.SpindleOn();
   if (orders->spindle_off) writer_.SpindleOff();
   if (orders->motion) motion_ = orders->motion;
   if (orders->dwell) {
     Wait(*orders, block);
+  } else if (orders->home) {
+    GoHome(*orders, block);
   } else if (orders->AxisWord() != nullptr) {
     Move(*orders, block);
   }
@@ -324,6 +357,11 @@ void Interpreter::Move(const Orders& orders, const GcodeBlock& block) {
                   WordText(*orders.AxisWord()) + " before any of G0 G1 G2 G3",
                   orders.AxisWord()->where);
   }
+  if (relative_)
+    return Refuse(
+        ErrorCode::kRml1GcodeWord,
+        WordText(*orders.AxisWord()) + " under G91: post-process for absolute coordinates",
+        orders.AxisWord()->where);
   const auto target = [&](char letter, double present) {
     const GcodeWord* word = orders.Find(letter);
     return word == nullptr ? present : word->value * unit_mm_;
@@ -331,7 +369,6 @@ void Interpreter::Move(const Orders& orders, const GcodeBlock& block) {
   const double x = target('X', x_);
   const double y = target('Y', y_);
   const double z = target('Z', z_);
-  moved_ = true;
   const bool arc = *motion_ == GcodeUse::kArcClockwise || *motion_ == GcodeUse::kArcCounter;
   for (const char letter : {'I', 'J', 'R'}) {
     const GcodeWord* word = orders.Find(letter);
@@ -345,11 +382,70 @@ void Interpreter::Move(const Orders& orders, const GcodeBlock& block) {
   } else if (*motion_ == GcodeUse::kLine) {
     CutTo(x, y, z, where);
   } else if (const auto to = UnitsOf(x, y, z, where)) {
-    writer_.Rapid(*to);
+    MoveRapid(*to, where);
   }
   x_ = x;
   y_ = y;
   z_ = z;
+}
+
+void Interpreter::MoveRapid(const Units& to, const SourceSpan& where) {
+  const Units from = writer_.at();
+  const bool across = (to.x != from.x || to.y != from.y) && std::min(from.z, to.z) < 0;
+  const bool down = to.z < std::min<std::int64_t>(from.z, 0);
+  if (across || down) {
+    RapidsInWork& rapids = across ? across_ : down_;
+    if (rapids.count++ == 0) rapids.first = where;
+  }
+  writer_.Rapid(to);
+}
+
+// Once of a kind, because CAM tools repeat their habits on every line.
+void Interpreter::TellRapids(const RapidsInWork& rapids, const char* way) {
+  if (rapids.count == 0 || !made_.ok) return;
+  Add(ErrorCode::kRml1GcodeRapidInWork,
+      "G0 leads " + std::string(way) + " below Z 0" +
+          (rapids.count > 1 ? ", here and in " + std::to_string(rapids.count - 1) + " more lines"
+                            : "") +
+          ": the stream goes there at " +
+          ShortNumber(profile_.z_speeds.Nearest(profile_.z_speeds.maximum_mm_s)) + " mm/s",
+      rapids.first);
+}
+
+// The tool is put in by hand before the program begins, and stays.
+void Interpreter::ChangeTool(const Orders& orders) {
+  const GcodeWord& word = *orders.tool_change;
+  if (cut_ && (!tool_ || tool_ != cutting_tool_)) {
+    return Refuse(ErrorCode::kRml1GcodeWord,
+                  WordText(word) + " behind the first cut: write a program for each tool",
+                  word.where);
+  }
+  Note(ErrorCode::kRml1GcodeIgnored, "M6", WordText(word) + ", the tool is put in by hand",
+       word.where);
+}
+
+// Home of a mill is the top, and its XY work origin; as with its command H, Z goes first. Without
+// G91 a G28 goes by way of the place that it names, which may be inside the work.
+void Interpreter::GoHome(const Orders& orders, const GcodeBlock& block) {
+  const SourceSpan& where = block.words.front().where;
+  if (!relative_)
+    return Refuse(ErrorCode::kRml1GcodeWord, "G28 without G91: write G28 G91 Z0", where);
+  bool any = false;
+  for (const char letter : {'X', 'Y', 'Z', 'I', 'J', 'R'}) {
+    const GcodeWord* word = orders.Find(letter);
+    if (word == nullptr) continue;
+    if (word->value != 0.0 || std::string_view("XYZ").find(letter) == std::string_view::npos)
+      return Refuse(ErrorCode::kRml1GcodeWord, WordText(*word) + " with G28: zeros alone are taken",
+                    word->where);
+    any = true;
+  }
+  Units to = writer_.at();
+  to.z = top_;
+  writer_.Rapid(to);
+  z_ = static_cast<double>(top_) / profile_.units_per_mm;
+  if (!any || orders.Find('X') != nullptr) x_ = 0.0;
+  if (!any || orders.Find('Y') != nullptr) y_ = 0.0;
+  if (const auto home = UnitsOf(x_, y_, z_, where)) writer_.Rapid(*home);
 }
 
 void Interpreter::MoveArc(const Orders& orders, GcodeUse motion, double x, double y, double z) {
@@ -393,10 +489,21 @@ std::optional<Units> Interpreter::UnitsOf(double x, double y, double z, const So
     if (first) Refuse(ErrorCode::kRml1ProductTooLarge, "the stream", where);
     return std::nullopt;
   }
-  return Units{NearestUnit(x, profile_), NearestUnit(y, profile_), NearestUnit(z, profile_)};
+  const Units to{NearestUnit(x, profile_), NearestUnit(y, profile_), NearestUnit(z, profile_)};
+  const auto beyond = [](std::int64_t at, double origin, const Travel& travel) {
+    const double place = static_cast<double>(at) + origin;
+    return place < travel.low || place > travel.high;
+  };
+  const bool below = static_cast<double>(to.z) + profile_.z0 < profile_.z.low;
+  if (!made_.beyond_travel && std::min(to.z, writer_.at().z) < 0 &&
+      (below || beyond(to.x, profile_.origin_x, profile_.x) ||
+       beyond(to.y, profile_.origin_y, profile_.y)))
+    made_.beyond_travel = where;
+  return to;
 }
 
 void Interpreter::CutTo(double x, double y, double z, const SourceSpan& where) {
+  if (!std::exchange(cut_, true)) cutting_tool_ = tool_;
   const std::optional<Units> to = UnitsOf(x, y, z, where);
   if (to) NoteFeed(writer_.Cut(*to, *feed_mm_s_), feed_where_);
 }
@@ -413,17 +520,18 @@ void Interpreter::NoteFeed(double used_mm_s, const SourceSpan& where) {
 
 }  // namespace
 
-Result<StreamOfGcode> FromGcode(std::string_view text, const machine::Parameters& parameters,
-                                const FromGcodeOptions& options) {
+Result<FromGcodeOutcome> FromGcode(const machine::Bytes& text,
+                                   const machine::Parameters& parameters,
+                                   const FromGcodeOptions& options, const ByteSink& sink) {
   if (!(options.tolerance_mm > 0.0 && std::isfinite(options.tolerance_mm)))
     return InvalidArgument("the tolerance is " + ShortNumber(options.tolerance_mm) +
                            " mm; it must be above 0");
-  if (text.empty()) return Error{ErrorCode::kCellEmptyProgram, "the G-code has no bytes", {}};
+  if (text->empty()) return Error{ErrorCode::kCellEmptyProgram, "the G-code has no bytes", {}};
   const Result<Profile> profile = MakeProfile(parameters);
   if (!profile) return profile.error();
-  Interpreter interpreter(*profile, options);
+  Interpreter interpreter(*profile, options, sink);
   interpreter.Run(text);
-  return interpreter.Take();
+  return interpreter.Finish();
 }
 
 }  // namespace rmlcell::rml1

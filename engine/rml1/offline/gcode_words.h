@@ -14,11 +14,14 @@ enum class GcodeUse {
   kArcClockwise,  // G2
   kArcCounter,    // G3
   kDwell,         // G4
+  kHome,          // G28
   kInch,          // G20
   kMetric,        // G21
+  kAbsolute,      // G90
+  kRelative,      // G91
   kDefault,       // what holds anyway: taken without a word
   kIgnored,       // says nothing to a mill: left out, with a note
-  kToolChange,    // M6: left out before the first motion, an error behind it
+  kToolChange,    // M6: left out before the first cut, an error behind it for another tool
   kPause,         // M0 M1
   kEnd,           // M2 M30
   kSpindleOn,     // M3
@@ -41,13 +44,16 @@ inline constexpr std::array kGcodeRows = {
     GcodeRow{'G', 170, GcodeUse::kDefault, "arcs in X and Y"},
     GcodeRow{'G', 200, GcodeUse::kInch, "inches"},
     GcodeRow{'G', 210, GcodeUse::kMetric, "millimetres"},
+    GcodeRow{'G', 280, GcodeUse::kHome, "with G91 and zeros: up to the top, then to X0 Y0"},
     GcodeRow{'G', 400, GcodeUse::kIgnored, "no cutter compensation"},
+    GcodeRow{'G', 430, GcodeUse::kIgnored, "tool length: Z0 is set with the tool that is in"},
     GcodeRow{'G', 490, GcodeUse::kIgnored, "no tool length offset"},
     GcodeRow{'G', 540, GcodeUse::kIgnored, "first work offset: the origin set on the panel"},
     GcodeRow{'G', 610, GcodeUse::kIgnored, "exact path"},
     GcodeRow{'G', 640, GcodeUse::kIgnored, "path with tolerance"},
     GcodeRow{'G', 800, GcodeUse::kIgnored, "no cycle"},
-    GcodeRow{'G', 900, GcodeUse::kDefault, "absolute coordinates"},
+    GcodeRow{'G', 900, GcodeUse::kAbsolute, "absolute coordinates"},
+    GcodeRow{'G', 910, GcodeUse::kRelative, "for G28 alone, until the next G90"},
     GcodeRow{'G', 911, GcodeUse::kDefault, "I and J from the start of the arc"},
     GcodeRow{'G', 940, GcodeUse::kDefault, "F in a minute"},
     GcodeRow{'M', 0, GcodeUse::kPause, "pause until resumed"},
