@@ -97,9 +97,9 @@ Status CheckOnTravel(const MachineChoice& choice, const machine::MachineFamily& 
     const double high = travel.max[of_point];
     if (choice.origin[axis] >= low && choice.origin[axis] <= high) continue;
     return Error{ErrorCode::kCellUsage,
-                 std::string("--origin: ") + "XYZ"[axis] + " " + ShortestText(choice.origin[axis]) +
-                     " is beyond the travel, which is from " + ShortestText(low) + " to " +
-                     ShortestText(high) + " mm",
+                 std::string("--origin: ") + "XYZ"[axis] + " " +
+                     TrimmedText(choice.origin[axis], 3) + " is beyond the travel, which is from " +
+                     TrimmedText(low, 3) + " to " + TrimmedText(high, 3) + " mm",
                  {}};
   }
   return {};

@@ -18,6 +18,7 @@
 #include "engine/rml1/board/png_bitmap.h"
 #include "engine/rml1/offline/explain.h"
 #include "engine/rml1/offline/from_gcode.h"
+#include "engine/rml1/offline/phrase_words.h"
 #include "engine/rml1/offline/rewrite.h"
 #include "engine/rml1/offline/tile.h"
 #include "engine/rml1/offline/to_gcode.h"
@@ -275,11 +276,11 @@ int ScaleMillStream(const StepsToolOptions& options) {
   ToolAnswer answer(options.file, options.json);
   if (!scaled) return FailedAt(scaled.error(), options.file, answer);
   const machine::Bytes made = product.Finish();
-  std::string text = TrimmedText(options.to, 3) + " units in a mm";
+  std::string text = rml1::ShortNumber(options.to) + " units in a mm";
   const double units = program->parameters.Number("UNITS_PER_MM");
   if (units != options.to) {
     text += "; whether it fits is not known: name the machine that it is for, of " +
-            TrimmedText(options.to, 3) + " units, with --profile";
+            rml1::ShortNumber(options.to) + " units, with --profile";
   } else if (!MayBeWritten(made, program->parameters, options, answer, LineAlone)) {
     return answer.Failed();
   }
@@ -344,8 +345,7 @@ int StreamFromPng(const PngToolOptions& options) {
   const std::string size =
       "picture of " + Fixed(lines->width_mm, 2) + " by " + Fixed(lines->height_mm, 2) + " mm";
   const auto of_picture = [&](Error& error) {
-    if (error.code == ErrorCode::kRml1WorkBeyondTravel)
-      error = {ErrorCode::kRml1PictureBeyondTravel, size + ": " + error.detail, {}};
+    error = rml1::InTermsOfPicture(std::move(error), *lines);
   };
   if (!MayBeWritten(made, *parameters, options, answer, of_picture)) return answer.Failed();
   return answer.Deliver(made, OutputOr(options, ".rml"),

@@ -1,12 +1,37 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "clients/cli/rml1_tools.h"
 #include "clients/cli/verbs.h"
+#include "engine/core/number_text.h"
 
 namespace rmlcell::cli {
 namespace {
+
+// "X,Y" or "X,Y,Z" in one word: a list of the library would take the file behind it, too. `into`
+// must outlive the verb.
+CLI::Option* AddPlace(CLI::App& verb, const char* name, const char* text, std::size_t axes_min,
+                      std::size_t axes_max, std::vector<double>& into) {
+  const auto take = [name, axes_min, axes_max, &into](const std::string& given) {
+    into.clear();
+    for (std::size_t at = 0; at <= given.size(); ++at) {
+      const std::size_t end = std::min(given.find(',', at), given.size());
+      const std::optional<double> number = ParseDouble(given.substr(at, end - at));
+      if (!number) throw CLI::ValidationError(name, "'" + given + "' is no list of numbers");
+      into.push_back(*number);
+      at = end;
+    }
+    if (into.size() < axes_min || into.size() > axes_max) {
+      throw CLI::ValidationError(
+          name, axes_min == axes_max ? "give X,Y in mm" : "give X,Y or X,Y,Z in mm");
+    }
+  };
+  return verb.add_option_function<std::string>(name, take, text);
+}
 
 // A verb that reads a file for one machine.
 CLI::App* MillVerb(CLI::App& group, const char* name, const char* text, const std::string& examples,
@@ -18,11 +43,9 @@ CLI::App* MillVerb(CLI::App& group, const char* name, const char* text, const st
                    "profile of a mill, such as srm-20 or mdx-20");
   verb->add_option("--machine", options->machine.file,
                    "machine file (TOML): family, profile, [parameters]");
-  verb->add_option(
-          "--origin", options->machine.origin,
-          "X,Y or X,Y,Z of the work origin on the machine, mm; default: as the profile has it")
-      ->delimiter(',')
-      ->expected(2, 3);
+  AddPlace(*verb, "--origin",
+           "X,Y or X,Y,Z of the work origin on the machine, mm; default: as the profile has it", 2,
+           3, options->machine.origin);
   return verb;
 }
 
@@ -77,9 +100,7 @@ void AddRewriting(CLI::App& group, int& exit_code) {
                "  rmlcell rml1 move part.rml --by 10,20 -o moved.rml\n"
                "  rmlcell rml1 move part.rml --by -5,0,-0.2 --profile mdx-20 -o moved.rml",
                move, "a stream");
-  verb->add_option("--by", move->by_mm, "X,Y or X,Y,Z in mm, rounded to units of the machine")
-      ->delimiter(',')
-      ->expected(2, 3)
+  AddPlace(*verb, "--by", "X,Y or X,Y,Z in mm, rounded to units of the machine", 2, 3, move->by_mm)
       ->required();
   AddOutput(*verb, move, kStreamOutput);
   verb->callback([move, &exit_code] { exit_code = MoveMillStream(*move); });
@@ -137,10 +158,8 @@ void AddPng(CLI::App& group, int& exit_code) {
       ->excludes(passes)
       ->excludes(overlap);
   verb->add_option("--dpi", options->dpi, "pixels an inch; default: as the PNG says");
-  verb->add_option("--at", options->at_mm,
-                   "X,Y in mm of the lower left corner of the picture; default 0,0")
-      ->delimiter(',')
-      ->expected(2);
+  AddPlace(*verb, "--at", "X,Y in mm of the lower left corner of the picture; default 0,0", 2, 2,
+           options->at_mm);
   verb->add_option("--feed", board.feed_mm_s, "mm/s around the copper; default 4");
   verb->add_option("--plunge", board.plunge_mm_s, "mm/s into the work; default 1");
   verb->add_option("--rpm", board.rpm, "of the spindle; default: as the machine has it");

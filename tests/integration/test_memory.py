@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""What a stream takes of memory has a bound, whatever its length: 16 MiB to check, run and explain it."""
+"""What a stream takes of memory has a bound, whatever its length: 16 MiB to check, run and explain it, and to make
+G-code or another stream of it."""
 import os
 import subprocess
 import unittest
@@ -20,6 +21,17 @@ def zigzag(size):
         parts.append(f"PD{row % 500},{y},{8000 - row % 300},{y + 3};")
         length += len(parts[-1])
     return "".join(parts) + "PU0,0;!MC0;"
+
+
+def gcode(size):
+    """The same to and fro in G-code."""
+    parts, length, row = ["G21 G90\nM3 S6000\nG0 Z2\nG1 Z-0.5 F300\n"], 0, 0
+    while length < size:
+        row += 1
+        y = row * 7 % 6000 / 100
+        parts.append(f"G1 X{row % 500 / 100} Y{y} F600\nX{80 - row % 300 / 100} Y{y + 0.03}\n")
+        length += len(parts[-1])
+    return "".join(parts) + "G0 Z2\nM5\nM30\n"
 
 
 class Memory(InFolder):
@@ -45,6 +57,24 @@ class Memory(InFolder):
                 more = ["--profile", "srm-20"]
                 least = self.peak(*words, self.short, *more)
                 self.assertLess(self.peak(*words, self.long, *more) - least, BOUND)
+
+    def test_tools_that_write(self):
+        short_gcode = self.file("short.nc", gcode(100))
+        long_gcode = self.file("long.nc", gcode(24_000_000))
+        for words, short, long in ((["to-gcode"], self.short, self.long),
+                                   (["from-gcode"], short_gcode, long_gcode),
+                                   (["move", "--by", "1,2"], self.short, self.long),
+                                   (["move", "--by", "0,0"], self.short, self.long),  # copied as it is
+                                   (["steps", "--from", "100", "--to", "100"], self.short, self.long),
+                                   (["tile", "--columns", "2"], self.short, self.long)):
+            with self.subTest(words):
+                made = self.folder / "made"
+                more = ["--profile", "srm-20", "-o", made]
+                least = self.peak("rml1", *words, short, *more)
+                self.assertLess(self.peak("rml1", *words, long, *more) - least, BOUND)
+                self.assertGreater(made.stat().st_size, 10_000_000)
+                if "move" in words:  # to standard output, too
+                    self.assertLess(self.peak("rml1", *words, long, "-o", "-") - least, BOUND)
 
     # A third of the size and the whole: what it takes has a bound that length does not move.
     def test_pictures_and_json(self):

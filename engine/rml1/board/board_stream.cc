@@ -168,6 +168,14 @@ void NoteJoined(const DistanceField& field, double level, BoardLines& made) {
 
 }  // namespace
 
+Error InTermsOfPicture(Error found, const BoardLines& board) {
+  if (found.code != ErrorCode::kRml1WorkBeyondTravel) return found;
+  return {ErrorCode::kRml1PictureBeyondTravel,
+          "the picture is " + ShortNumber(board.width_mm, 2) + " by " +
+              ShortNumber(board.height_mm, 2) + " mm: " + found.detail,
+          {}};
+}
+
 Result<BoardLines> StreamOfBoard(const Bitmap& bitmap, const machine::Parameters& parameters,
                                  const BoardOptions& options, const ByteSink& sink) {
   if (const Status good = CheckOptions(options); !good) return good.error();

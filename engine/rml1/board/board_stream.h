@@ -49,4 +49,8 @@ struct BoardLines {
 Result<BoardLines> StreamOfBoard(const Bitmap& bitmap, const machine::Parameters& parameters,
                                  const BoardOptions& options, const ByteSink& sink);
 
+// What CheckWork found about its stream, in the terms of the picture: work beyond the travel is
+// Rml1PictureBeyondTravel (8126). Stays as it is otherwise.
+Error InTermsOfPicture(Error found, const BoardLines& board);
+
 }  // namespace rmlcell::rml1

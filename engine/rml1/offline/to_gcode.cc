@@ -23,7 +23,7 @@ class GcodeWriter final : public PhraseListener {
   bool OnPhrase(const Phrase& phrase) override {
     for (const Finding& finding : phrase.findings) Note(ToDiagnostic(finding, *stream_, lines_));
     if (phrase.kind == Phrase::Kind::kIncomplete) {
-      NoteAt(phrase, ErrorCode::kRml1IncompleteCommand,
+      NoteAt(phrase.begin, ErrorCode::kRml1IncompleteCommand,
              "the data ends inside a command, which is not carried out");
     }
     Point at = phrase.physical_before;
@@ -49,6 +49,10 @@ class GcodeWriter final : public PhraseListener {
 
   Result<ToGcodeNotes> Finish() {
     if (error_) return *error_;
+    if (spindle_turns_) {
+      NoteAt(static_cast<std::int64_t>(stream_->size()), ErrorCode::kRml1SpindleLeftOn,
+             "the spindle goes on turning at the end, where M30 stops it");
+    }
     text_ += "M30\n";
     HandOver();
     return std::move(notes_);
@@ -75,11 +79,11 @@ class GcodeWriter final : public PhraseListener {
     text_ += "(" + comment + ")\n";
     notes_.findings.push_back(std::move(finding));
   }
-  void NoteAt(const Phrase& phrase, ErrorCode code, std::string detail) {
+  void NoteAt(std::int64_t offset, ErrorCode code, std::string detail) {
     Note({.code = code,
           .severity = Lookup(code).severity,
           .detail = std::move(detail),
-          .where = lines_.At(*stream_, phrase.begin, 1)});
+          .where = lines_.At(*stream_, offset, 1)});
   }
 
   // The F of a cut that the program gave no speed for is that of this machine.
@@ -90,11 +94,13 @@ class GcodeWriter final : public PhraseListener {
                                                         : phrase.after->z_speed_given;
     if (!cuts || given || feed_noted_ || !(action.to.z < phrase.after->z0)) return;
     feed_noted_ = true;
-    NoteAt(phrase, ErrorCode::kRml1FeedNotGiven,
+    NoteAt(phrase.begin, ErrorCode::kRml1FeedNotGiven,
            "a cut without a feed rate: F is the default of this machine");
   }
 
   void Add(const Action& action) {
+    spindle_turns_ = action.kind == Action::Kind::kSpindleStart ||
+                     (spindle_turns_ && action.kind != Action::Kind::kSpindleStop);
     switch (action.kind) {
       case Action::Kind::kSpindleStart:
         text_ += "S" + std::to_string(action.rpm) + " M3\n";
@@ -147,6 +153,7 @@ class GcodeWriter final : public PhraseListener {
   double feed_mm_s_ = 0.0;
   bool knows_xy_ = false;
   bool feed_noted_ = false;
+  bool spindle_turns_ = false;
 };
 
 }  // namespace

@@ -12,8 +12,9 @@
 namespace rmlcell::rml1 {
 
 // What is about the stream and G-code cannot say: the errors and advice of a check, a last command
-// that is not complete, a feed rate that the program does not set (Rml1FeedNotGiven, 8013). Each
-// stands in the G-code, too, as a comment in its place.
+// that is not complete, a feed rate that the program does not set (Rml1FeedNotGiven, 8013), a
+// spindle that turns at the end, where M30 stops it (Rml1SpindleLeftOn, 8012). Each stands in the
+// G-code, too, as a comment in its place.
 struct ToGcodeNotes {
   std::vector<Diagnostic> findings;
   std::uint64_t findings_dropped = 0;

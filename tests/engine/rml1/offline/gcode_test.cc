@@ -127,6 +127,12 @@ TEST(ToGcode, WhatItCannotSayIsAComment) {
             std::string::npos);
   // A bracket inside would end the comment.
   EXPECT_NE(made->text.find("(RML1-E1 in the stream: '[' begins no command)\n"), std::string::npos);
+  EXPECT_NE(
+      ToText("!MC1;!VZ2;VS4;PD1,1;PU;")
+          .find(
+              "(RML1-E8012 in the stream: the spindle goes on turning at the end, where M30 stops "
+              "it)\nM30\n"),
+      std::string::npos);
   EXPECT_TRUE(
       ToGcode("!MC0;VS4;!VZ2;!PZ-50,200;PU0,0;PD500,0;PU;", ParametersOf("t1"))->findings.empty());
 }
