@@ -1,64 +1,22 @@
 #include "engine/rml1/offline/from_gcode.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
-#include "engine/machine/program_file.h"
 #include "engine/rml1/offline/gcode_arc.h"
+#include "engine/rml1/offline/gcode_orders.h"
 #include "engine/rml1/offline/gcode_reader.h"
-#include "engine/rml1/offline/gcode_words.h"
 #include "engine/rml1/offline/phrase_words.h"
 #include "engine/rml1/offline/stream_writer.h"
 
 namespace rmlcell::rml1 {
 namespace {
 
-constexpr double kInch_mm = 25.4;
 constexpr double kSecondsPerMinute = 60.0;
 constexpr double kChordsMax = 100'000.0;  // of one arc
-
-std::string WordText(const GcodeWord& word) {
-  return std::string(1, word.letter) + ShortNumber(word.value, 6);
-}
-
-// The row of a G or M word; null: it is not in the subset.
-const GcodeRow* RowOf(const GcodeWord& word) {
-  const double tenths = word.value * 10.0;
-  if (!(tenths >= 0.0 && tenths < 1e6) || std::round(tenths) != tenths) return nullptr;
-  const auto row = std::ranges::find_if(kGcodeRows, [&](const GcodeRow& candidate) {
-    return candidate.letter == word.letter && candidate.tenths == static_cast<int>(tenths);
-  });
-  return row == kGcodeRows.end() ? nullptr : &*row;
-}
-
-// One line, its words by what they say.
-struct Orders {
-  std::optional<GcodeUse> motion;  // a motion word of this line
-  const GcodeWord* motion_word = nullptr;
-  bool dwell = false;
-  bool home = false;
-  const GcodeWord* tool_change = nullptr;
-  bool spindle_on = false;
-  bool spindle_off = false;
-  bool pause = false;
-  bool end = false;
-  std::map<char, const GcodeWord*> values;  // X Y Z I J R F S P T
-
-  const GcodeWord* Find(char letter) const {
-    const auto found = values.find(letter);
-    return found == values.end() ? nullptr : found->second;
-  }
-  const GcodeWord* AxisWord() const {
-    for (const char letter : {'X', 'Y', 'Z', 'I', 'J', 'R'}) {
-      if (const GcodeWord* word = Find(letter)) return word;
-    }
-    return nullptr;
-  }
-};
 
 class Interpreter {
  public:
@@ -76,7 +34,7 @@ class Interpreter {
         released = reader.offset();
       }
       if (!*block) {
-        Refuse(block->error());
+        findings_.Refuse(block->error());
       } else if (ended_) {
         NoteBehindEnd(**block);
       } else if ((*block)->percent) {
@@ -85,17 +43,19 @@ class Interpreter {
         begun_ = true;
         Obey(**block);
       }
-      if (made_.findings_dropped > 0 && !made_.ok) break;
+      if (findings_.full() && !findings_.ok()) break;
     }
   }
 
   FromGcodeOutcome Finish() {
-    if (writer_.dwell_ms() > 0 && made_.ok)
+    if (writer_.dwell_ms() > 0 && findings_.ok())
       Note(ErrorCode::kRml1GcodeIgnored, "wait", "the wait behind the last motion", {});
     TellRapids(across_, "across");
     TellRapids(down_, "down");
-    if (made_.ok) writer_.Finish();
-    return std::move(made_);
+    if (findings_.ok()) writer_.Finish();
+    FromGcodeOutcome outcome = findings_.Take();
+    outcome.beyond_travel = beyond_travel_;
+    return outcome;
   }
 
  private:
@@ -105,27 +65,12 @@ class Interpreter {
     SourceSpan first;
   };
 
-  void Add(ErrorCode code, std::string detail, const SourceSpan& where) {
-    if (made_.findings.size() == machine::kDiagnosticsMax) {
-      ++made_.findings_dropped;
-      return;
-    }
-    made_.findings.push_back({.code = code,
-                              .severity = Lookup(code).severity,
-                              .detail = std::move(detail),
-                              .where = where});
-  }
-  void Refuse(const Error& error) {
-    made_.ok = false;
-    Add(error.code, error.detail, error.where.value_or(SourceSpan{}));
-  }
   void Refuse(ErrorCode code, std::string detail, const SourceSpan& where) {
-    Refuse(Error{code, std::move(detail), where});
+    findings_.Refuse(code, std::move(detail), where);
   }
-  // Of each key once: CAM tools write some words on every line.
   void Note(ErrorCode code, const std::string& key, const std::string& detail,
             const SourceSpan& where) {
-    if (told_.insert(key).second) Add(code, detail, where);
+    findings_.Note(code, key, detail, where);
   }
 
   void NoteBehindEnd(const GcodeBlock& block) {
@@ -134,9 +79,6 @@ class Interpreter {
            block.words.front().where);
   }
 
-  std::optional<Orders> Sort(const GcodeBlock& block);
-  bool SortCode(const GcodeWord& word, const GcodeRow& row, Orders& orders);
-  bool SortValue(const GcodeWord& word, const GcodeBlock& block, Orders& orders);
   void Obey(const GcodeBlock& block);
   void SetFeed(const GcodeWord& word);
   void SetSpindleSpeed(const GcodeWord& word);
@@ -155,10 +97,11 @@ class Interpreter {
   const FromGcodeOptions& options_;
   StreamWriter writer_;
   const std::int64_t top_;  // of the travel, from Z 0
-  FromGcodeOutcome made_{.ok = true};
-  std::set<std::string> told_;  // bounded: the words of the subset, and a few of ours
+  GcodeFindings findings_;
+  std::optional<SourceSpan> beyond_travel_;
   std::optional<GcodeUse> motion_;
   double unit_mm_ = 1.0;
+  ArcPlane plane_;
   double x_ = 0.0;  // mm, as the program says and not rounded
   double y_ = 0.0;
   double z_ = 0.0;
@@ -174,125 +117,14 @@ class Interpreter {
   bool ended_ = false;
 };
 
-// A G or M word. False: it is refused.
-bool Interpreter::SortCode(const GcodeWord& word, const GcodeRow& row, Orders& orders) {
-  switch (row.use) {
-    case GcodeUse::kRapid:
-    case GcodeUse::kLine:
-    case GcodeUse::kArcClockwise:
-    case GcodeUse::kArcCounter:
-      if (orders.motion_word != nullptr || orders.dwell || orders.home) {
-        Refuse(ErrorCode::kRml1GcodeForm, "two words that move or wait in one line", word.where);
-        return false;
-      }
-      orders.motion = row.use;
-      orders.motion_word = &word;
-      return true;
-    case GcodeUse::kHome:
-    case GcodeUse::kDwell:
-      if (orders.motion_word != nullptr || orders.dwell || orders.home) {
-        Refuse(ErrorCode::kRml1GcodeForm, "two words that move or wait in one line", word.where);
-        return false;
-      }
-      (row.use == GcodeUse::kHome ? orders.home : orders.dwell) = true;
-      return true;
-    case GcodeUse::kAbsolute:
-    case GcodeUse::kRelative:
-      relative_ = row.use == GcodeUse::kRelative;
-      return true;
-    case GcodeUse::kInch:
-      unit_mm_ = kInch_mm;
-      return true;
-    case GcodeUse::kMetric:
-      unit_mm_ = 1.0;
-      return true;
-    case GcodeUse::kDefault:
-      return true;
-    case GcodeUse::kIgnored:
-      Note(ErrorCode::kRml1GcodeIgnored, WordText(word),
-           WordText(word) + ", " + std::string(row.text), word.where);
-      return true;
-    case GcodeUse::kToolChange:
-      orders.tool_change = &word;
-      return true;
-    case GcodeUse::kPause:
-      orders.pause = true;
-      return true;
-    case GcodeUse::kEnd:
-      orders.end = true;
-      return true;
-    case GcodeUse::kSpindleOn:
-      orders.spindle_on = true;
-      return true;
-    case GcodeUse::kSpindleOff:
-      orders.spindle_off = true;
-      return true;
-  }
-  return false;
-}
-
-// A word of any other letter. False: it is refused.
-bool Interpreter::SortValue(const GcodeWord& word, const GcodeBlock& block, Orders& orders) {
-  if (word.letter == 'T') {
-    Note(ErrorCode::kRml1GcodeIgnored, "T", "T, the tool is put in by hand", word.where);
-    tool_ = word.value;
-    return true;
-  }
-  if (word.letter == 'O' && block.words.size() == 1) {
-    Note(ErrorCode::kRml1GcodeIgnored, "O", WordText(word) + ", the number of the program",
-         word.where);
-    return true;
-  }
-  if (std::string_view("XYZIJRFSPH").find(word.letter) == std::string_view::npos) {
-    Refuse(ErrorCode::kRml1GcodeWord, WordText(word), word.where);
-    return false;
-  }
-  if (!orders.values.emplace(word.letter, &word).second) {
-    Refuse(ErrorCode::kRml1GcodeForm, std::string(1, word.letter) + " twice in one line",
-           word.where);
-    return false;
-  }
-  return true;
-}
-
-// Nothing: the line is refused.
-std::optional<Orders> Interpreter::Sort(const GcodeBlock& block) {
-  Orders orders;
-  bool good = true;
-  bool path_mode = false;    // G64 takes a P of its own
-  bool tool_length = false;  // G43 takes an H
-  for (const GcodeWord& word : block.words) {
-    if (word.letter != 'G' && word.letter != 'M') {
-      good = SortValue(word, block, orders) && good;
-      continue;
-    }
-    const GcodeRow* row = RowOf(word);
-    if (row == nullptr) {
-      Refuse(ErrorCode::kRml1GcodeWord, WordText(word), word.where);
-      good = false;
-      continue;
-    }
-    path_mode = path_mode || (row->letter == 'G' && row->tenths == 640);
-    tool_length = tool_length || (row->letter == 'G' && row->tenths == 430);
-    good = SortCode(word, *row, orders) && good;
-  }
-  if (const GcodeWord* p = orders.Find('P'); p != nullptr && !orders.dwell) {
-    if (!path_mode) {
-      Refuse(ErrorCode::kRml1GcodeWord, WordText(*p) + " without G4", p->where);
-      good = false;
-    }
-  }
-  if (const GcodeWord* h = orders.Find('H'); h != nullptr && !tool_length) {
-    Refuse(ErrorCode::kRml1GcodeWord, WordText(*h) + " without G43", h->where);
-    good = false;
-  }
-  return good ? std::optional(std::move(orders)) : std::nullopt;
-}
-
 // In the order of execution that CAM tools rely on: speeds, spindle, wait, motion, pause, end.
 void Interpreter::Obey(const GcodeBlock& block) {
-  const std::optional<Orders> orders = Sort(block);
+  const std::optional<Orders> orders = OrdersOf(block, findings_);
   if (!orders) return;
+  unit_mm_ = orders->unit_mm.value_or(unit_mm_);
+  relative_ = orders->relative.value_or(relative_);
+  plane_ = orders->plane.value_or(plane_);
+  if (orders->tool) tool_ = orders->tool;
   if (const GcodeWord* feed = orders->Find('F')) SetFeed(*feed);
   if (const GcodeWord* speed = orders->Find('S')) SetSpindleSpeed(*speed);
   if (orders->tool_change != nullptr) ChangeTool(*orders);
@@ -370,7 +202,7 @@ void Interpreter::Move(const Orders& orders, const GcodeBlock& block) {
   const double y = target('Y', y_);
   const double z = target('Z', z_);
   const bool arc = *motion_ == GcodeUse::kArcClockwise || *motion_ == GcodeUse::kArcCounter;
-  for (const char letter : {'I', 'J', 'R'}) {
+  for (const char letter : {'I', 'J', 'K', 'R'}) {
     const GcodeWord* word = orders.Find(letter);
     if (!arc && word != nullptr)
       return Refuse(ErrorCode::kRml1GcodeWord, WordText(*word) + " without G2 or G3", word->where);
@@ -402,8 +234,9 @@ void Interpreter::MoveRapid(const Units& to, const SourceSpan& where) {
 
 // Once of a kind, because CAM tools repeat their habits on every line.
 void Interpreter::TellRapids(const RapidsInWork& rapids, const char* way) {
-  if (rapids.count == 0 || !made_.ok) return;
-  Add(ErrorCode::kRml1GcodeRapidInWork,
+  if (rapids.count == 0 || !findings_.ok()) return;
+  findings_.Add(
+      ErrorCode::kRml1GcodeRapidInWork,
       "G0 leads " + std::string(way) + " below Z 0" +
           (rapids.count > 1 ? ", here and in " + std::to_string(rapids.count - 1) + " more lines"
                             : "") +
@@ -431,7 +264,7 @@ void Interpreter::GoHome(const Orders& orders, const GcodeBlock& block) {
   if (!relative_)
     return Refuse(ErrorCode::kRml1GcodeWord, "G28 without G91: write G28 G91 Z0", where);
   bool any = false;
-  for (const char letter : {'X', 'Y', 'Z', 'I', 'J', 'R'}) {
+  for (const char letter : {'X', 'Y', 'Z', 'I', 'J', 'K', 'R'}) {
     const GcodeWord* word = orders.Find(letter);
     if (word == nullptr) continue;
     if (word->value != 0.0 || std::string_view("XYZ").find(letter) == std::string_view::npos)
@@ -448,18 +281,29 @@ void Interpreter::GoHome(const Orders& orders, const GcodeBlock& block) {
   if (const auto home = UnitsOf(x_, y_, z_, where)) writer_.Rapid(*home);
 }
 
+// Chords in the plane of the arc, with the third axis in equal steps.
 void Interpreter::MoveArc(const Orders& orders, GcodeUse motion, double x, double y, double z) {
   const SourceSpan where = orders.AxisWord()->where;
+  for (const char letter : {'I', 'J', 'K'}) {
+    const GcodeWord* word = orders.Find(letter);
+    if (word != nullptr && std::ranges::find(plane_.centre, letter) == plane_.centre.end())
+      return Refuse(ErrorCode::kRml1GcodeArc, WordText(*word) + " is not in the plane of the arc",
+                    word->where);
+  }
   const auto value = [&](char letter) -> std::optional<double> {
     const GcodeWord* word = orders.Find(letter);
     if (word == nullptr) return std::nullopt;
     return word->value * unit_mm_;
   };
-  const Result<Arc> arc = ArcOf({.from = {x_, y_},
-                                 .to = {x, y},
+  const std::array<double, 3> from{x_, y_, z_};
+  const std::array<double, 3> to{x, y, z};
+  const auto index = [&](std::size_t k) { return static_cast<std::size_t>(plane_.axes[k] - 'X'); };
+  const std::size_t first = index(0), second = index(1), third = index(2);
+  const Result<Arc> arc = ArcOf({.from = {from[first], from[second]},
+                                 .to = {to[first], to[second]},
                                  .clockwise = motion == GcodeUse::kArcClockwise,
-                                 .i = value('I'),
-                                 .j = value('J'),
+                                 .i = value(plane_.centre[0]),
+                                 .j = value(plane_.centre[1]),
                                  .r = value('R')});
   if (!arc) return Refuse(arc.error().code, arc.error().detail, where);
   const double chords = arc->Chords(options_.tolerance_mm);
@@ -470,8 +314,12 @@ void Interpreter::MoveArc(const Orders& orders, GcodeUse motion, double x, doubl
   const auto count = static_cast<int>(chords);
   for (int k = 1; k < count; ++k) {
     const double share = k / chords;
-    const motion::PlanVector at = arc->At(share);
-    CutTo(at.x(), at.y(), z_ + (z - z_) * share, where);
+    const motion::PlanVector in_plane = arc->At(share);
+    std::array<double, 3> at{};
+    at[first] = in_plane.x();
+    at[second] = in_plane.y();
+    at[third] = from[third] + (to[third] - from[third]) * share;
+    CutTo(at[0], at[1], at[2], where);
   }
   CutTo(x, y, z, where);
 }
@@ -485,8 +333,7 @@ std::optional<Units> Interpreter::UnitsOf(double x, double y, double z, const So
     return std::nullopt;
   }
   if (writer_.size() > options_.bytes_max) {
-    const bool first = std::exchange(made_.ok, false);
-    if (first) Refuse(ErrorCode::kRml1ProductTooLarge, "the stream", where);
+    if (findings_.ok()) Refuse(ErrorCode::kRml1ProductTooLarge, "the stream", where);
     return std::nullopt;
   }
   const Units to{NearestUnit(x, profile_), NearestUnit(y, profile_), NearestUnit(z, profile_)};
@@ -495,10 +342,10 @@ std::optional<Units> Interpreter::UnitsOf(double x, double y, double z, const So
     return place < travel.low || place > travel.high;
   };
   const bool below = static_cast<double>(to.z) + profile_.z0 < profile_.z.low;
-  if (!made_.beyond_travel && std::min(to.z, writer_.at().z) < 0 &&
+  if (!beyond_travel_ && std::min(to.z, writer_.at().z) < 0 &&
       (below || beyond(to.x, profile_.origin_x, profile_.x) ||
        beyond(to.y, profile_.origin_y, profile_.y)))
-    made_.beyond_travel = where;
+    beyond_travel_ = where;
   return to;
 }
 

@@ -15,6 +15,9 @@ enum class GcodeUse {
   kArcCounter,    // G3
   kDwell,         // G4
   kHome,          // G28
+  kPlaneXY,       // G17
+  kPlaneZX,       // G18
+  kPlaneYZ,       // G19
   kInch,          // G20
   kMetric,        // G21
   kAbsolute,      // G90
@@ -38,10 +41,12 @@ struct GcodeRow {
 inline constexpr std::array kGcodeRows = {
     GcodeRow{'G', 0, GcodeUse::kRapid, "rapid, in a straight line"},
     GcodeRow{'G', 10, GcodeUse::kLine, "cut in a straight line at F"},
-    GcodeRow{'G', 20, GcodeUse::kArcClockwise, "clockwise arc in X and Y, with I J or R"},
-    GcodeRow{'G', 30, GcodeUse::kArcCounter, "counterclockwise arc in X and Y, with I J or R"},
+    GcodeRow{'G', 20, GcodeUse::kArcClockwise, "clockwise arc, with its centre or R"},
+    GcodeRow{'G', 30, GcodeUse::kArcCounter, "counterclockwise arc, with its centre or R"},
     GcodeRow{'G', 40, GcodeUse::kDwell, "wait P seconds before the next motion"},
-    GcodeRow{'G', 170, GcodeUse::kDefault, "arcs in X and Y"},
+    GcodeRow{'G', 170, GcodeUse::kPlaneXY, "arcs in X and Y, centre by I J"},
+    GcodeRow{'G', 180, GcodeUse::kPlaneZX, "arcs in Z and X, centre by I K"},
+    GcodeRow{'G', 190, GcodeUse::kPlaneYZ, "arcs in Y and Z, centre by J K"},
     GcodeRow{'G', 200, GcodeUse::kInch, "inches"},
     GcodeRow{'G', 210, GcodeUse::kMetric, "millimetres"},
     GcodeRow{'G', 280, GcodeUse::kHome, "with G91 and zeros: up to the top, then to X0 Y0"},

@@ -239,7 +239,7 @@ TEST(FromGcode, WhatMovesTheToolIsNeverDropped) {
   for (const char* word : {"G41 X1",    "G81 Z-1 R1 F60",
                            "G28",       "G91 X1",
                            "H1",        "G92 X0",
-                           "G53 G0 X0", "G18",
+                           "G53 G0 X0", "G18.1",
                            "G93",       "G55",
                            "G10 L2",    "M4",
                            "M98 P1",    "A90",
@@ -310,6 +310,26 @@ TEST(FromGcode, BlanksCaseAndLeadingZeros) {
   ASSERT_EQ(made.findings.size(), 1U);
   EXPECT_EQ(made.findings[0].where.column, 8);
   EXPECT_EQ(made.findings[0].where.length, 13);
+}
+
+// A quarter of radius 2 in each plane; the middle of it is 2 * sqrt(1/2) = 1.414 mm from its centre
+// in both axes. G18 turns from Z to X, G19 from Y to Z: so Fusion leads into a contour.
+TEST(FromGcode, ArcsInAllPlanes) {
+  const auto middle = [](const std::string& arc) {
+    // 0.2 mm: pi / 4 / acos(1 - 0.2 / 2) = 1.74, so two chords.
+    const StreamOfGcode made = From("G1 Z0 F600\n" + arc, "t1", {.tolerance_mm = 0.2});
+    EXPECT_TRUE(made.ok) << made.findings.front().detail;
+    const std::vector<Units> path = PathOf(made.stream, "t1");
+    EXPECT_EQ(path.size(), 4U);
+    return path[2];
+  };
+  // From (0,0,0) with the centre at X 2 (or Y 2), down to Z -2 below the centre.
+  EXPECT_EQ(middle("G18 G2 X2 Z-2 I2 K0\n"), (Units{59, 0, -141}));
+  EXPECT_EQ(middle("G19 G3 Y2 Z-2 J2 K0\n"), (Units{0, 59, -141}));
+  EXPECT_EQ(middle("G18 G3 X2 Z2 I2 K0\n"), (Units{59, 0, 141}));
+  EXPECT_EQ(middle("G18 G2 X2 Z-2 R2 Y1\n"), (Units{59, 50, -141}));
+  EXPECT_EQ(CodeOf("G18 G2 X2 Z-2 I2 J0 F60\n"), ErrorCode::kRml1GcodeArc);
+  EXPECT_EQ(CodeOf("G2 X2 Y2 I2 K0 F60\n"), ErrorCode::kRml1GcodeArc);
 }
 
 // T1: the highest speed with Z is 60 mm/s.
