@@ -15,7 +15,10 @@ constexpr double kNoticed_mm = 0.01;
 // Where the tool works, device units from the machine's zero.
 class WorkDone final : public PhraseListener {
  public:
+  explicit WorkDone(const Profile& profile) : profile_(profile) {}
+
   bool OnPhrase(const Phrase& phrase) override {
+    if (possible.empty()) possible = RangeOfRefused(phrase, profile_);
     Point at = phrase.physical_before;
     for (const Action& action : phrase.actions) {
       if (action.kind != Action::Kind::kMotion) continue;
@@ -34,6 +37,10 @@ class WorkDone final : public PhraseListener {
   Extent x;
   Extent y;
   Extent z;
+  std::string possible;  // in place of the first number that is refused
+
+ private:
+  const Profile& profile_;
 };
 
 class LostText {
@@ -94,7 +101,7 @@ Result<std::optional<Error>> CheckWork(const machine::Bytes& stream,
                                        const machine::Parameters& parameters) {
   const Result<Profile> profile = MakeProfile(parameters);
   if (!profile) return profile.error();
-  WorkDone done;
+  WorkDone done(*profile);
   StreamWalk walk(*profile, done);
   walk.Run(stream);
   const Device& device = walk.device();
@@ -103,7 +110,8 @@ Result<std::optional<Error>> CheckWork(const machine::Bytes& stream,
   if (const auto refused = device.positions_refused(); refused > 0) {
     return std::optional(
         Error{ErrorCode::kRml1PartRefused,
-              "coordinates or tool heights that are refused: " + std::to_string(refused),
+              "coordinates or tool heights that are refused: " + std::to_string(refused) +
+                  (done.possible.empty() ? "" : "; " + done.possible),
               at(device.first_refused())});
   }
   if (device.carriage().lost().length / profile->units_per_mm <= kNoticed_mm)

@@ -46,7 +46,8 @@ TEST(CheckWork, PartsThatTheMachineRefuses) {
   ASSERT_TRUE(refused);
   EXPECT_EQ(refused->code, ErrorCode::kRml1PartRefused);
   EXPECT_EQ(refused->where->line, 2);
-  EXPECT_EQ(refused->detail, "coordinates or tool heights that are refused: 2");
+  EXPECT_EQ(refused->detail,
+            "coordinates or tool heights that are refused: 2; the tool-up height may be from 0 mm");
 }
 
 }  // namespace
