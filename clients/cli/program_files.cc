@@ -17,6 +17,7 @@
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/families/families.h"
+#include "engine/machine/shape.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/spooled_bytes.h"
 
@@ -90,12 +91,38 @@ Status PlaceOrigin(const std::vector<double>& origin, const machine::MachineFami
   return {};
 }
 
+// Nobody can set it elsewhere on the panel.
+Status CheckOnTravel(const MachineChoice& choice, const machine::MachineFamily& family,
+                     const std::map<std::string, std::string>& parameters) {
+  if (choice.origin.empty()) return {};
+  const Result<bridge::MachineFile> machine = ReadMachine(choice);
+  if (!machine) return machine.error();
+  const auto made = machine::MakeParameters(family, machine->profile, parameters);
+  if (!made) return made.error();
+  const machine::Box travel = family.Shape(*made).travel;
+  if (travel.empty()) return {};
+  for (std::size_t axis = 0; axis < choice.origin.size(); ++axis) {
+    const auto of_point = static_cast<Eigen::Index>(axis);
+    const double low = travel.min[of_point];
+    const double high = travel.max[of_point];
+    if (choice.origin[axis] >= low && choice.origin[axis] <= high) continue;
+    return Error{ErrorCode::kCellUsage,
+                 std::string("--origin: ") + "XYZ"[axis] + " " +
+                     TrimmedText(choice.origin[axis], 3) + " is beyond the travel, which is from " +
+                     TrimmedText(low, 3) + " to " + TrimmedText(high, 3) + " mm",
+                 {}};
+  }
+  return {};
+}
+
 }  // namespace
 
 Status PlaceWork(const MachineChoice& choice, const machine::MachineFamily& family,
                  std::map<std::string, std::string>& parameters) {
   if (const Status placed = PlaceOrigin(choice.origin, family, parameters); !placed)
     return placed.error();
+  if (const Status on_travel = CheckOnTravel(choice, family, parameters); !on_travel)
+    return on_travel.error();
   if (!choice.clamps_mm) return {};
   const std::string_view name = family.info().clamps_parameter;
   if (name.empty()) {

@@ -55,7 +55,7 @@ std::string ParametersOf(const MachineChoice& choice);
 
 // The parameters that bring program zero to its place and know of the clamps. Errors: CellUsage for
 // a family whose programs set zero themselves or that knows no clamps, and for an origin of other
-// than two or three numbers.
+// than two or three numbers or beyond the travel; those of ReadMachine and of its parameters.
 Status PlaceWork(const MachineChoice& choice, const machine::MachineFamily& family,
                  std::map<std::string, std::string>& parameters);
 

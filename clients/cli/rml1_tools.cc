@@ -4,7 +4,10 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "clients/cli/findings_text.h"
 #include "clients/cli/program_files.h"
@@ -15,9 +18,11 @@
 #include "engine/rml1/board/png_bitmap.h"
 #include "engine/rml1/offline/explain.h"
 #include "engine/rml1/offline/from_gcode.h"
+#include "engine/rml1/offline/phrase_words.h"
 #include "engine/rml1/offline/rewrite.h"
 #include "engine/rml1/offline/tile.h"
 #include "engine/rml1/offline/to_gcode.h"
+#include "engine/rml1/offline/work_check.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/spooled_bytes.h"
@@ -41,8 +46,18 @@ Result<machine::Parameters> MillParameters(const MillToolOptions& options) {
                      "; these tools are for mills (rml1)",
                  {}};
   }
-  return machine::MakeParameters(*families::FindFamily(kFamily), machine->profile,
-                                 machine->parameters);
+  const machine::MachineFamily& family = *families::FindFamily(kFamily);
+  std::map<std::string, std::string> parameters = machine->parameters;
+  if (const Status placed = PlaceWork(options.machine, family, parameters); !placed)
+    return placed.error();
+  return machine::MakeParameters(family, machine->profile, parameters);
+}
+
+// Behind what was made: that nobody said for which machine must not be overlooked.
+std::string MachineNote(const MillToolOptions& options) {
+  if (!options.machine.profile.empty() || !options.machine.file.empty()) return {};
+  const std::string_view standard = families::FindFamily(kFamily)->info().default_profile;
+  return ", for the " + std::string(standard) + ": no profile was named";
 }
 
 // A stream by any name; a program of another family is refused.
@@ -78,6 +93,56 @@ int FailedAt(const Error& error, const std::string& file, ToolAnswer& answer) {
                      .where = error.where.value_or(SourceSpan{})};
   answer.Found({std::move(finding)}, 0, {});
   return answer.Failed();
+}
+
+// What a tool makes, until it is whole: in little memory, however long.
+class Product {
+ public:
+  rml1::ByteSink sink() {
+    return [this](std::string_view part) { bytes_.append(part); };
+  }
+  machine::Bytes Finish() { return bytes_.Finish(); }
+
+ private:
+  bridge::SpooledBytes bytes_;
+};
+
+std::string SizeText(const machine::Bytes& bytes) {
+  return Bytes(static_cast<std::int64_t>(bytes->size()));
+}
+
+void AsFound(Error&) {}
+// Of a stream whose lines are those of the file, with other numbers in them.
+void LineAlone(Error& error) {
+  if (error.where) error.where = SourceSpan{.line = error.where->line, .column = 1, .length = 1};
+}
+
+// The one rule for all that is written: the machine does all of the work. `in_its_terms` tells what
+// is wrong with it in those of the file. True: it does, or it is forced.
+bool MayBeWritten(const machine::Bytes& work, const machine::Parameters& parameters,
+                  const MillToolOptions& options, ToolAnswer& answer,
+                  const std::function<void(Error&)>& in_its_terms = AsFound) {
+  Result<std::optional<Error>> checked = rml1::CheckWork(work, parameters);
+  if (checked && !*checked) return true;
+  Error error = checked ? **std::move(checked) : checked.error();
+  in_its_terms(error);
+  Diagnostic finding{.code = error.code,
+                     .severity = options.force ? Severity::kWarning : Lookup(error.code).severity,
+                     .detail = error.detail,
+                     .file = options.file,
+                     .where = error.where.value_or(SourceSpan{})};
+  answer.Found({std::move(finding)}, 0, {});
+  return options.force;
+}
+
+// "150x100"
+std::optional<std::array<double, 2>> FieldOf(const std::string& text) {
+  const std::size_t by = text.find('x');
+  if (by == std::string::npos) return std::nullopt;
+  const auto width = ParseDouble(text.substr(0, by));
+  const auto height = ParseDouble(text.substr(by + 1));
+  if (!width || !height) return std::nullopt;
+  return std::array{*width, *height};
 }
 
 void Found(std::vector<Diagnostic>& findings, std::uint64_t dropped, const std::string& file,
@@ -151,28 +216,38 @@ int ExplainStream(const MillToolOptions& options) {
 int StreamToGcode(const MillToolOptions& options) {
   const Result<MillProgram> program = ReadStream(options);
   if (!program) return Refuse(program.error());
-  Result<rml1::GcodeText> made = rml1::ToGcode(*program->bytes, program->parameters);
   ToolAnswer answer(options.file, options.json);
-  if (!made) return FailedAt(made.error(), options.file, answer);
-  Found(made->findings, made->findings_dropped, options.file, *program->bytes, answer);
-  return answer.Deliver(made->text, OutputOr(options, ".nc"),
-                        Bytes(static_cast<std::int64_t>(made->text.size())) + " of G-code");
+  if (!MayBeWritten(program->bytes, program->parameters, options, answer)) return answer.Failed();
+  Product product;
+  Result<rml1::ToGcodeNotes> notes =
+      rml1::ToGcode(program->bytes, program->parameters, product.sink());
+  if (!notes) return FailedAt(notes.error(), options.file, answer);
+  Found(notes->findings, notes->findings_dropped, options.file, *program->bytes, answer);
+  const machine::Bytes made = product.Finish();
+  return answer.Deliver(made, OutputOr(options, ".nc"),
+                        SizeText(made) + " of G-code" + MachineNote(options));
 }
 
 int StreamFromGcode(const FromGcodeToolOptions& options) {
   const Result<machine::Parameters> parameters = MillParameters(options);
   if (!parameters) return Refuse(parameters.error());
-  const Result<std::string> text = bridge::ReadFile(options.file, kFileBytesMax);
+  const Result<machine::Bytes> text = bridge::ReadProgram(options.file, kFileBytesMax);
   if (!text) return Refuse(text.error());
-  if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, options.file, {}});
-  Result<rml1::StreamOfGcode> made = rml1::FromGcode(
-      *text, *parameters, {.tolerance_mm = options.tolerance_mm, .bytes_max = kFileBytesMax});
-  if (!made) return Refuse(made.error());
+  if ((*text)->empty()) return Refuse({ErrorCode::kCellEmptyProgram, options.file, {}});
+  Product product;
+  Result<rml1::FromGcodeOutcome> outcome = rml1::FromGcode(
+      *text, *parameters, {.tolerance_mm = options.tolerance_mm, .bytes_max = kFileBytesMax},
+      product.sink());
+  if (!outcome) return Refuse(outcome.error());
   ToolAnswer answer(options.file, options.json);
-  Found(made->findings, made->findings_dropped, options.file, *text, answer);
-  if (!made->ok) return answer.Failed();
-  return answer.Deliver(made->stream, OutputOr(options, ".rml"),
-                        "stream of " + Bytes(static_cast<std::int64_t>(made->stream.size())));
+  Found(outcome->findings, outcome->findings_dropped, options.file, **text, answer);
+  if (!outcome->ok) return answer.Failed();
+  const machine::Bytes made = product.Finish();
+  // The line of the G-code in place of that of the stream.
+  const auto in_gcode = [&](Error& error) { error.where = outcome->beyond_travel; };
+  if (!MayBeWritten(made, *parameters, options, answer, in_gcode)) return answer.Failed();
+  return answer.Deliver(made, OutputOr(options, ".rml"),
+                        "stream of " + SizeText(made) + MachineNote(options));
 }
 
 int MoveMillStream(const MoveToolOptions& options) {
@@ -180,42 +255,69 @@ int MoveMillStream(const MoveToolOptions& options) {
   if (!program) return Refuse(program.error());
   std::array<double, 3> by_mm{};
   std::ranges::copy(options.by_mm, by_mm.begin());
-  Result<rml1::RewrittenStream> made =
-      rml1::MoveStream(*program->bytes, program->parameters, by_mm);
+  Product product;
+  const Result<std::array<double, 3>> moved =
+      rml1::MoveStream(program->bytes, program->parameters, by_mm, product.sink());
   ToolAnswer answer(options.file, options.json);
-  if (!made) return FailedAt(made.error(), options.file, answer);
-  Found(made->findings, 0, options.file, *program->bytes, answer);
-  const auto& moved = made->moved_mm;
-  return answer.Deliver(made->stream, OutputOr(options, nullptr),
-                        "moved by " + Fixed(moved[0], 3) + "," + Fixed(moved[1], 3) + "," +
-                            Fixed(moved[2], 3) + " mm");
+  if (!moved) return FailedAt(moved.error(), options.file, answer);
+  const machine::Bytes made = product.Finish();
+  if (!MayBeWritten(made, program->parameters, options, answer, LineAlone)) return answer.Failed();
+  return answer.Deliver(made, OutputOr(options, nullptr),
+                        "moved by " + Fixed((*moved)[0], 3) + "," + Fixed((*moved)[1], 3) + "," +
+                            Fixed((*moved)[2], 3) + " mm" + MachineNote(options));
 }
 
 int ScaleMillStream(const StepsToolOptions& options) {
   const Result<MillProgram> program = ReadStream(options);
   if (!program) return Refuse(program.error());
-  const Result<rml1::RewrittenStream> made =
-      rml1::ScaleStream(*program->bytes, program->parameters, options.from, options.to);
+  Product product;
+  const Status scaled = rml1::ScaleStream(program->bytes, program->parameters, options.from,
+                                          options.to, product.sink());
   ToolAnswer answer(options.file, options.json);
-  if (!made) return FailedAt(made.error(), options.file, answer);
-  return answer.Deliver(made->stream, OutputOr(options, nullptr),
-                        TrimmedText(options.to, 3) + " units in a mm");
+  if (!scaled) return FailedAt(scaled.error(), options.file, answer);
+  const machine::Bytes made = product.Finish();
+  std::string text = rml1::ShortNumber(options.to) + " units in a mm";
+  const double units = program->parameters.Number("UNITS_PER_MM");
+  if (units != options.to) {
+    text += "; whether it fits is not known: name the machine that it is for, of " +
+            rml1::ShortNumber(options.to) + " units, with --profile";
+  } else if (!MayBeWritten(made, program->parameters, options, answer, LineAlone)) {
+    return answer.Failed();
+  }
+  return answer.Deliver(made, OutputOr(options, nullptr), text);
 }
 
 int TileMillStream(const TileToolOptions& options) {
+  rml1::TileOptions tile{.columns = options.columns,
+                         .rows = options.rows,
+                         .gap_mm = options.gap_mm,
+                         .force = options.force,
+                         .bytes_max = kFileBytesMax};
+  if (!options.within.empty()) {
+    tile.within_mm = FieldOf(options.within);
+    if (!tile.within_mm) {
+      return Refuse(InvalidArgument("'" + options.within +
+                                    "' is no field: write its width and height in mm, 150x100"));
+    }
+  }
   const Result<MillProgram> program = ReadStream(options);
   if (!program) return Refuse(program.error());
-  const Result<rml1::TiledStream> made = rml1::TileStream(*program->bytes, program->parameters,
-                                                          {.columns = options.columns,
-                                                           .rows = options.rows,
-                                                           .gap_mm = options.gap_mm,
-                                                           .bytes_max = kFileBytesMax});
+  Product product;
+  const Result<rml1::Tiling> tiling =
+      rml1::TileStream(program->bytes, program->parameters, tile, product.sink());
   ToolAnswer answer(options.file, options.json);
-  if (!made) return FailedAt(made.error(), options.file, answer);
-  return answer.Deliver(made->stream, OutputOr(options, nullptr),
-                        std::to_string(options.columns * options.rows) + " copies, every " +
-                            Fixed(made->pitch_x_mm, 3) + " mm in X and " +
-                            Fixed(made->pitch_y_mm, 3) + " mm in Y");
+  if (!tiling) return FailedAt(tiling.error(), options.file, answer);
+  const machine::Bytes made = product.Finish();
+  const auto nowhere = [](Error& error) { error.where.reset(); };
+  if (!MayBeWritten(made, program->parameters, options, answer, nowhere)) return answer.Failed();
+  const int copies = tiling->columns * tiling->rows;
+  return answer.Deliver(
+      made, OutputOr(options, nullptr),
+      std::to_string(copies) + (copies == 1 ? " copy, " : " copies, ") +
+          std::to_string(tiling->columns) + " in X and " + std::to_string(tiling->rows) +
+          " in Y, every " + Fixed(tiling->pitch_x_mm, 3) + " mm in X and " +
+          Fixed(tiling->pitch_y_mm, 3) + " mm in Y" +
+          (tiling->travel_is_less ? "; more are not on the travel" : "") + MachineNote(options));
 }
 
 int StreamFromPng(const PngToolOptions& options) {
@@ -234,12 +336,22 @@ int StreamFromPng(const PngToolOptions& options) {
     board.at_x_mm = options.at_mm[0];
     board.at_y_mm = options.at_mm[1];
   }
-  Result<rml1::BoardStream> made = rml1::StreamOfBoard(picture->bitmap, *parameters, board);
-  if (!made) return FailedAt(made.error(), options.file, answer);
-  Found(made->findings, 0, options.file, {}, answer);
-  return answer.Deliver(made->stream, OutputOr(options, ".rml"),
-                        std::to_string(made->loops) + " lines, picture of " +
-                            Fixed(made->width_mm, 2) + " by " + Fixed(made->height_mm, 2) + " mm");
+  Product product;
+  Result<rml1::BoardLines> lines =
+      rml1::StreamOfBoard(picture->bitmap, *parameters, board, product.sink());
+  if (!lines) return FailedAt(lines.error(), options.file, answer);
+  Found(lines->findings, 0, options.file, {}, answer);
+  const machine::Bytes made = product.Finish();
+  const std::string size =
+      "picture of " + Fixed(lines->width_mm, 2) + " by " + Fixed(lines->height_mm, 2) + " mm";
+  const auto of_picture = [&](Error& error) {
+    error = rml1::InTermsOfPicture(std::move(error), *lines);
+  };
+  if (!MayBeWritten(made, *parameters, options, answer, of_picture)) return answer.Failed();
+  return answer.Deliver(made, OutputOr(options, ".rml"),
+                        std::to_string(lines->loops) +
+                            (lines->loops == 1 ? " line, " : " lines, ") + size +
+                            MachineNote(options));
 }
 
 }  // namespace rmlcell::cli

@@ -9,7 +9,8 @@
 namespace rmlcell::cli {
 
 // The tools for streams of mills. They need no server. An `output` of "-" is standard output;
-// files are written whole or not at all.
+// files are written whole or not at all. What a machine would do a part of only is not written
+// (engine/rml1/offline/work_check.h) unless it is forced.
 
 // What all of them take. Machine: a profile or a machine file; neither: the defaults.
 struct MillToolOptions {
@@ -17,6 +18,7 @@ struct MillToolOptions {
   std::string output;
   MachineChoice machine;
   bool json = false;
+  bool force = false;
 };
 
 // To standard output as it comes: long streams need no memory of their length.
@@ -44,6 +46,7 @@ int ScaleMillStream(const StepsToolOptions& options);
 struct TileToolOptions : MillToolOptions {
   int columns = 1;
   int rows = 1;
+  std::string within;  // "150x100": a field in place of columns and rows; empty: none
   double gap_mm = 1.0;
 };
 int TileMillStream(const TileToolOptions& options);

@@ -1,12 +1,37 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "clients/cli/rml1_tools.h"
 #include "clients/cli/verbs.h"
+#include "engine/core/number_text.h"
 
 namespace rmlcell::cli {
 namespace {
+
+// "X,Y" or "X,Y,Z" in one word: a list of the library would take the file behind it, too. `into`
+// must outlive the verb.
+CLI::Option* AddPlace(CLI::App& verb, const char* name, const char* text, std::size_t axes_min,
+                      std::size_t axes_max, std::vector<double>& into) {
+  const auto take = [name, axes_min, axes_max, &into](const std::string& given) {
+    into.clear();
+    for (std::size_t at = 0; at <= given.size(); ++at) {
+      const std::size_t end = std::min(given.find(',', at), given.size());
+      const std::optional<double> number = ParseDouble(given.substr(at, end - at));
+      if (!number) throw CLI::ValidationError(name, "'" + given + "' is no list of numbers");
+      into.push_back(*number);
+      at = end;
+    }
+    if (into.size() < axes_min || into.size() > axes_max) {
+      throw CLI::ValidationError(
+          name, axes_min == axes_max ? "give X,Y in mm" : "give X,Y or X,Y,Z in mm");
+    }
+  };
+  return verb.add_option_function<std::string>(name, take, text);
+}
 
 // A verb that reads a file for one machine.
 CLI::App* MillVerb(CLI::App& group, const char* name, const char* text, const std::string& examples,
@@ -18,6 +43,9 @@ CLI::App* MillVerb(CLI::App& group, const char* name, const char* text, const st
                    "profile of a mill, such as srm-20 or mdx-20");
   verb->add_option("--machine", options->machine.file,
                    "machine file (TOML): family, profile, [parameters]");
+  AddPlace(*verb, "--origin",
+           "X,Y or X,Y,Z of the work origin on the machine, mm; default: as the profile has it", 2,
+           3, options->machine.origin);
   return verb;
 }
 
@@ -35,6 +63,8 @@ void AddExplain(CLI::App& group, int& exit_code) {
 
 void AddOutput(CLI::App& verb, const std::shared_ptr<MillToolOptions>& options, const char* text) {
   verb.add_option("-o,--output", options->output, text);
+  verb.add_flag("--force", options->force,
+                "write it although the machine would leave out a part of it");
   verb.add_flag("--json", options->json, kAnswerAsJson);
 }
 
@@ -70,9 +100,7 @@ void AddRewriting(CLI::App& group, int& exit_code) {
                "  rmlcell rml1 move part.rml --by 10,20 -o moved.rml\n"
                "  rmlcell rml1 move part.rml --by -5,0,-0.2 --profile mdx-20 -o moved.rml",
                move, "a stream");
-  verb->add_option("--by", move->by_mm, "X,Y or X,Y,Z in mm, rounded to units of the machine")
-      ->delimiter(',')
-      ->expected(2, 3)
+  AddPlace(*verb, "--by", "X,Y or X,Y,Z in mm, rounded to units of the machine", 2, 3, move->by_mm)
       ->required();
   AddOutput(*verb, move, kStreamOutput);
   verb->callback([move, &exit_code] { exit_code = MoveMillStream(*move); });
@@ -90,10 +118,17 @@ void AddRewriting(CLI::App& group, int& exit_code) {
   auto tile = std::make_shared<TileToolOptions>();
   verb = MillVerb(
       group, "tile", "Repeat a stream in columns and rows, within the travel",
-      "  rmlcell rml1 tile part.rml --columns 3 --rows 2 --gap 2 --profile srm-20 -o six.rml", tile,
-      "a stream");
-  verb->add_option("--columns", tile->columns, "copies in X; default 1");
-  verb->add_option("--rows", tile->rows, "copies in Y; default 1");
+      "  rmlcell rml1 tile part.rml --columns 3 --rows 2 --gap 2 --profile srm-20 -o six.rml\n"
+      "  rmlcell rml1 tile part.rml --within 150x100 --gap 4 --profile srm-20 -o sheet.rml",
+      tile, "a stream");
+  CLI::Option* columns = verb->add_option("--columns", tile->columns, "copies in X; default 1");
+  CLI::Option* rows = verb->add_option("--rows", tile->rows, "copies in Y; default 1");
+  verb->add_option(
+          "--within", tile->within,
+          "150x100: as many copies as have room in a field of so many mm, from the first one "
+          "to the right and to the back; the paths count, so take off the width of the tool")
+      ->excludes(columns)
+      ->excludes(rows);
   verb->add_option("--gap", tile->gap_mm,
                    "mm between the paths of two copies, so more than the tool; default 1");
   AddOutput(*verb, tile, kStreamOutput);
@@ -123,10 +158,8 @@ void AddPng(CLI::App& group, int& exit_code) {
       ->excludes(passes)
       ->excludes(overlap);
   verb->add_option("--dpi", options->dpi, "pixels an inch; default: as the PNG says");
-  verb->add_option("--at", options->at_mm,
-                   "X,Y in mm of the lower left corner of the picture; default 0,0")
-      ->delimiter(',')
-      ->expected(2);
+  AddPlace(*verb, "--at", "X,Y in mm of the lower left corner of the picture; default 0,0", 2, 2,
+           options->at_mm);
   verb->add_option("--feed", board.feed_mm_s, "mm/s around the copper; default 4");
   verb->add_option("--plunge", board.plunge_mm_s, "mm/s into the work; default 1");
   verb->add_option("--rpm", board.rpm, "of the spindle; default: as the machine has it");

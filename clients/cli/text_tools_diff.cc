@@ -112,7 +112,9 @@ int Diff(const DiffOptions& options) {
   if (options.json) return diff.equal() ? kGood : kProgramErrors;
   const bool none = !diff.compared_runs();
   if (none && diff.notes().empty()) Complain("no figures: a program cannot run by itself");
-  for (const std::string& note : diff.notes()) Complain((none ? "no figures: " : "") + note);
+  for (const std::string& note : diff.notes()) {
+    Complain(none ? "no figures: " + note + "; what they do is compared to the end of both" : note);
+  }
   return diff.equal() ? kGood : kProgramErrors;
 }
 

@@ -36,17 +36,20 @@ int ToolAnswer::PrintJson(int exit_code, std::string_view output, std::string_vi
   return exit_code;
 }
 
-int ToolAnswer::Deliver(const std::string& bytes, const std::string& output,
+int ToolAnswer::Deliver(const machine::Bytes& bytes, const std::string& output,
                         const std::string& text) {
   if (output == "-" && !json_) {
-    PrintRaw(bytes);
+    for (std::size_t at = 0; at < bytes->size(); at += machine::kReleaseEvery) {
+      PrintRaw(bytes->substr(at, machine::kReleaseEvery));
+      bytes.Release();
+    }
     return kGood;
   }
   if (output != "-") {
-    if (const Status written = WriteWholeFile(output, bytes); !written)
+    if (const Status written = WriteWholeFile(output, *bytes, bytes.keeper()); !written)
       return Refuse(written.error());
   }
-  return Written(bytes, output, text, kGood);
+  return Written(*bytes, output, text, kGood);
 }
 
 int ToolAnswer::Written(std::string_view bytes, std::string_view output, const std::string& text,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/diagnostic.h"
+#include "engine/machine/bytes.h"
 
 namespace rmlcell::cli {
 
@@ -26,7 +27,10 @@ class ToolAnswer {
              std::string_view source);
 
   // The result, to a file or, "-", to standard output. All of these give the exit code.
-  int Deliver(const std::string& bytes, const std::string& output, const std::string& text);
+  int Deliver(const machine::Bytes& bytes, const std::string& output, const std::string& text);
+  int Deliver(const std::string& bytes, const std::string& output, const std::string& text) {
+    return Deliver(machine::Bytes::Borrowed(bytes), output, text);
+  }
   // The same when it is in its file already.
   int Written(std::string_view bytes, std::string_view output, const std::string& text,
               int exit_code);

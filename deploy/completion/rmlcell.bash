@@ -62,15 +62,15 @@ _rmlcell_options() {
     explain) echo "--help --json" ;;
     diff) echo "--help --profile --machine --svg --json" ;;
     rml1) echo "--help" ;;
-    "rml1 explain") echo "--help --profile --machine --json" ;;
-    "rml1 to-gcode") echo "--help --profile --machine --output --json" ;;
-    "rml1 from-gcode") echo "--help --profile --machine --output --json --tolerance" ;;
-    "rml1 move") echo "--help --profile --machine --by --output --json" ;;
-    "rml1 steps") echo "--help --profile --machine --from --to --output --json" ;;
-    "rml1 tile") echo "--help --profile --machine --columns --rows --gap --output --json" ;;
+    "rml1 explain") echo "--help --profile --machine --origin --json" ;;
+    "rml1 to-gcode") echo "--help --profile --machine --origin --output --force --json" ;;
+    "rml1 from-gcode") echo "--help --profile --machine --origin --output --force --json --tolerance" ;;
+    "rml1 move") echo "--help --profile --machine --origin --by --output --force --json" ;;
+    "rml1 steps") echo "--help --profile --machine --origin --from --to --output --force --json" ;;
+    "rml1 tile") echo "--help --profile --machine --origin --columns --rows --within --gap --output --force --json" ;;
     "rml1 from-png")
-      echo "--help --profile --machine --tool --depth --step --passes --overlap --outline --dpi --at --feed" \
-        "--plunge --rpm --clearance --tolerance --invert --output --json" ;;
+      echo "--help --profile --machine --origin --tool --depth --step --passes --overlap --outline --dpi --at --feed" \
+        "--plunge --rpm --clearance --tolerance --invert --output --force --json" ;;
     parameters) echo "--help --profile --json" ;;
     compile) echo "--help --map --output --json" ;;
     decompile | compensate | list) echo "--help --output --json" ;;
@@ -100,7 +100,7 @@ _rmlcell_takes_value() {
       --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --material | --stl | --stl-tolerance | --relief | --height-map | --target | --target-slot | --target-tolerance | --target-png | \
       --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift | \
-      --tolerance | --by | --from | --to | --columns | --rows | --gap | --depth | --step | --passes | --overlap | \
+      --tolerance | --by | --from | --to | --columns | --rows | --within | --gap | --depth | --step | --passes | --overlap | \
       --dpi | --at | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
   esac
   return 1

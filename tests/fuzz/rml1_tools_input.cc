@@ -1,14 +1,11 @@
 #include "tests/fuzz/rml1_tools_input.h"
 
-#include "engine/rml1/board/board_stream.h"
 #include "engine/rml1/board/png_bitmap.h"
 #include "engine/rml1/offline/explain.h"
-#include "engine/rml1/offline/from_gcode.h"
-#include "engine/rml1/offline/rewrite.h"
 #include "engine/rml1/offline/stream_diff.h"
 #include "engine/rml1/offline/stream_walk.h"
-#include "engine/rml1/offline/tile.h"
-#include "engine/rml1/offline/to_gcode.h"
+#include "tests/engine/rml1/board/made_board.h"
+#include "tests/engine/rml1/offline/made_text.h"
 
 namespace rmlcell::rml1 {
 namespace {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What a stream takes of memory has a bound, whatever its length: 16 MiB in command and jobs, all that a job
-makes of it included."""
+"""What a stream takes of memory has a bound, whatever its length: 16 MiB in command and jobs, with all that a
+job makes of it, and for G-code or another stream made of it."""
 import subprocess
 import sys
 import unittest
@@ -35,15 +35,28 @@ def zigzag(size):
     yield "PU0,0;!MC0;"
 
 
+def gcode(size):
+    """The same to and fro in G-code."""
+    yield "G21 G90\nM3 S6000\nG0 Z2\nG1 Z-0.5 F300\n"
+    length, row = 0, 0
+    while length < size:
+        row += 1
+        y = row * 7 % 6000 / 100
+        piece = f"G1 X{row % 500 / 100} Y{y} F600\nX{8 - row % 300 / 100} Y{y + 0.03}\n"
+        length += len(piece)
+        yield piece
+    yield "G0 Z2\nM5\nM30\n"
+
+
 class Memory(InFolder):
     def setUp(self):
         super().setUp()
-        self.short = self.stream("short.rml", 100)
-        self.long = self.stream("long.rml", 24_000_000)
+        self.short = self.stream("short.rml", zigzag(100))
+        self.long = self.stream("long.rml", zigzag(24_000_000))
 
-    def stream(self, name, size):
+    def stream(self, name, pieces):
         with open(self.folder / name, "w", encoding="ascii") as file:
-            file.writelines(zigzag(size))
+            file.writelines(pieces)
         return self.folder / name
 
     def peak(self, *words):
@@ -63,6 +76,24 @@ class Memory(InFolder):
                 more = ["--profile", "srm-20"]
                 least = self.peak(*words, self.short, *more)
                 self.assertLess(self.peak(*words, self.long, *more) - least, BOUND)
+
+    def test_tools_that_write(self):
+        short_gcode = self.stream("short.nc", gcode(100))
+        long_gcode = self.stream("long.nc", gcode(24_000_000))
+        for words, short, long in ((["to-gcode"], self.short, self.long),
+                                   (["from-gcode"], short_gcode, long_gcode),
+                                   (["move", "--by", "1,2"], self.short, self.long),
+                                   (["move", "--by", "0,0"], self.short, self.long),  # copied as it is
+                                   (["steps", "--from", "100", "--to", "100"], self.short, self.long),
+                                   (["tile", "--columns", "2"], self.short, self.long)):
+            with self.subTest(words):
+                made = self.folder / "made"
+                more = ["--profile", "srm-20", "-o", made]
+                least = self.peak("rml1", *words, short, *more)
+                self.assertLess(self.peak("rml1", *words, long, *more) - least, BOUND)
+                self.assertGreater(made.stat().st_size, 10_000_000)
+                if "move" in words:  # to standard output, too
+                    self.assertLess(self.peak("rml1", *words, long, "-o", "-") - least, BOUND)
 
     def test_a_job(self):
         cell = Cell(workers=1)

@@ -87,7 +87,7 @@ class Gcode(InFolder):
 
     def test_an_old_result_stays_when_there_is_no_new_one(self):
         self.file("a.rml", "PU;")
-        run("rml1", "from-gcode", self.file("a.nc", "G91\n"), code=1)
+        run("rml1", "from-gcode", self.file("a.nc", "G91 X1\n"), code=1)
         self.assertEqual((self.folder / "a.rml").read_text(), "PU;")
 
     def test_tolerance(self):
@@ -109,6 +109,9 @@ class Rewriting(InFolder):
         run("rml1", "move", source, code=2)
         run("rml1", "move", source, "--by", "1", code=2)
         run("rml1", "move", source, "--by", "nan,1", code=2)
+        run("rml1", "move", source, "--by", "1,2,3,4", code=2)
+        # The file may stand behind what is given in numbers.
+        self.assertEqual(run("rml1", "move", "--by", "1,-0.5", "--origin", "0,0", source, "--profile", "srm-20"), "PU200,50; PD300,0 ;PR5,5;")
 
     def test_move_refuses_with_the_place_and_writes_nothing(self):
         done = ask("rml1", "move", self.file("a.rml", "PU1,1;\nPU5;"), "--by", "1,1", "-o", self.folder / "b.rml")
@@ -116,7 +119,7 @@ class Rewriting(InFolder):
         self.assertRegex(done.stderr, r"a\.rml:2:1: .*RML1-E8111")
         self.assertFalse((self.folder / "b.rml").exists())
         done = ask("rml1", "move", self.file("c.rml", "PU100,100;PD20220,100;"), "--by", "2,0", "-o", "-")
-        self.assertIn("1 mm uncut beyond the travel", done.stderr)
+        self.assertIn("RML1-E8114: 1 mm of the work would not be cut", done.stderr)
 
     def test_steps(self):
         source = self.file("a.rml", "VS4;!PZ-40,80;PU100,3;PR3,0,3,0;")
@@ -130,7 +133,7 @@ class Rewriting(InFolder):
         told = run("rml1", "tile", source, "--columns", 2, "--rows", 3, "--gap", 2, "--profile", "srm-20",
                    "-o", self.folder / "six.rml")
         # The cuts are 4 mm and 2 mm long.
-        self.assertIn("6 copies, every 6.000 mm in X and 4.000 mm in Y", told)
+        self.assertIn("6 copies, 2 in X and 3 in Y, every 6.000 mm in X and 4.000 mm in Y", told)
         facts = {name: run("simulate", path, "--profile", "srm-20", "--facts")
                  for name, path in (("one", source), ("six", self.folder / "six.rml"))}
         plunges = [float(re.search(r"^rml1\.plunges: (.*)$", text, re.MULTILINE).group(1)) for text in facts.values()]
@@ -141,12 +144,150 @@ class Rewriting(InFolder):
         self.assertAlmostEqual(lengths[1], 6 * lengths[0], places=3)
         self.assertIn("rml1.spindle_on_at_end: 0", facts["six"])
 
+    def test_tile_within_a_field(self):
+        source = self.file("a.rml", STREAM)
+        # Cuts of 4 by 2 mm, 1 mm between: 4 + 5 + 5 = 14 and 2 + 3 = 5.
+        told = run("rml1", "tile", source, "--within", "14x5", "--profile", "srm-20", "-o", self.folder / "b.rml")
+        self.assertIn("6 copies, 3 in X and 2 in Y, every 5.000 mm in X and 3.000 mm in Y", told)
+        self.assertEqual(run("rml1", "tile", source, "--columns", 3, "--rows", 2), (self.folder / "b.rml").read_text())
+        told = run("rml1", "tile", source, "--within", "14x900", "-o", self.folder / "b.rml")
+        self.assertIn("; more are not on the travel, for the srm-20: no profile was named", told)
+        done = ask("rml1", "tile", source, "--within", "3x3", "-o", "-")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("the paths of one copy take 4 by 2 mm, more than 3 by 3 mm", done.stderr)
+        for wrong in ("14", "14x", "axb", "0x5", "-1x5"):
+            run("rml1", "tile", source, f"--within={wrong}", "-o", "-", code=2)
+        run("rml1", "tile", source, "--within", "14x5", "--rows", 2, "-o", "-", code=2)
+
     def test_tile_says_what_fits(self):
         done = ask("rml1", "tile", self.file("a.rml", STREAM), "--columns", 900, "--profile", "srm-20", "-o", "-")
         self.assertEqual(done.returncode, 1)
         # 203.2 mm; the first copy ends at 5 mm, and 5 mm are from one to the next: 1 + 39.
         self.assertIn("at most 40 columns", done.stderr)
         run("rml1", "tile", self.folder / "a.rml", "--columns", 0, "-o", "-", code=2)
+
+
+class WhatTheMachineLeavesOut(InFolder):
+    """One rule for all tools that write: nothing is written of which the machine would do a part only."""
+
+    # The travel of an SRM-20 is 203.2 x 152.4 x 60.5 mm; Z0 is 60 mm above its bottom with --origin 0,0,-0.5.
+    WIDE = "PA;VS4;!VZ2;!PZ-50,200;!MC1;PU100,100;\nPD30000,100;PU0,0;!MC0;\n"
+    GOOD = "PA;VS4;!VZ2;!PZ-50,200;!MC1;PU100,100;\nPD5000,100;PU0,0;!MC0;\n"
+
+    def refused(self, *words, output, where, code="RML1-E8114", forced_code=None):
+        """Nothing is written, and the message has a place, a code and advice; forced, it is told and written."""
+        words = ("rml1", *words, "--profile", "srm-20", "-o", output)
+        done = ask(*words)
+        self.assertEqual(done.returncode, 1, words)
+        self.assertRegex(done.stderr, where + r" error " + code)
+        self.assertIn("--force", done.stderr)
+        self.assertFalse(output.exists(), words)
+        told = json.loads(run(*words, "--json", code=1))
+        self.assertFalse(told["ok"])
+        self.assertFalse(output.exists(), words)
+        forced = ask(*words, "--force")
+        self.assertEqual(forced.returncode, 0, forced.stderr)
+        self.assertRegex(forced.stderr, where + r" warning " + (forced_code or code))
+        self.assertTrue(output.exists(), words)
+        return done.stderr
+
+    def test_every_tool_that_writes(self):
+        wide, good, out = self.file("wide.rml", self.WIDE), self.file("good.rml", self.GOOD), self.folder
+        gcode = self.file("wide.nc", "G21\nG0 Z2\nG0 X1 Y1\nG1 Z-0.5 F120\nG1 X250\nX300\nG0 Z2\nM30\n")
+        told = self.refused("to-gcode", wide, output=out / "1", where=r"wide\.rml:2:1:")
+        # From X 1 to 300 mm.
+        self.assertIn("96.8 mm beyond the greatest X (203.2 mm); in X it is 95.8 mm too large", told)
+        self.refused("from-gcode", gcode, output=out / "2", where=r"wide\.nc:5:1:")
+        told = self.refused("move", good, "--by", "160,0", output=out / "3", where=r"good\.rml:2:1:")
+        self.assertIn("in X it fits moved by -161 to -6.8 mm", told)  # from X 161 to 210
+        self.refused("move", good, "--by", "0,-2", output=out / "4", where=r"good\.rml:2:1:")
+        self.refused("steps", good, "--from", 20, "--to", 100, output=out / "5", where=r"good\.rml:2:1:")
+        self.refused("tile", good, "--columns", 5, output=out / "6", where=r"good\.rml:", code="RML1-E8112",
+                     forced_code="RML1-E8114")
+
+    def test_depth(self):
+        picture = FromPng.png(self, "a.png", ["   ", " # ", "   "], dpi=25.4)
+        self.refused("from-png", picture, "--tool", 0.4, "--depth", 100, "--at", "5,5", output=self.folder / "7",
+                     where=r"a\.png:", code="RML1-E8126")
+        run("rml1", "from-png", picture, "--tool", 0.4, "--depth", 1, "--at", "5,5", "-o", "-")
+
+    def test_origin_decides(self):
+        good = self.file("good.rml", self.GOOD)
+        run("rml1", "move", good, "--by", "100,0", "--profile", "srm-20")
+        done = ask("rml1", "move", good, "--by", "100,0", "--profile", "srm-20", "--origin", "60,0")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("RML1-E8114", done.stderr)
+        # Back into the travel: what counts is what is written.
+        self.file("moved.rml", self.GOOD.replace("100,", "-900,"))
+        run("rml1", "move", self.folder / "moved.rml", "--by", "10,0", "--profile", "srm-20")
+
+    def test_origin_beyond_the_travel_is_refused_with_the_range(self):
+        good = self.file("good.rml", self.GOOD)
+        for words in (["check"], ["simulate"], ["rml1", "to-gcode", "-o", "-"]):
+            done = ask(*words, good, "--profile", "srm-20", "--origin", "0,0,-90")
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn("--origin: Z -90.0 is beyond the travel, which is from -60.5 to 0.0 mm", done.stderr)
+        done = ask("check", good, "--profile", "srm-20", "--origin", "-5,0")
+        self.assertIn("--origin: X -5.0 is beyond the travel, which is from 0.0 to 203.2 mm", done.stderr)
+        run("check", good, "--profile", "srm-20", "--origin", "0,0")
+
+    def test_steps_for_a_machine_that_is_not_named(self):
+        source = self.file("a.rml", self.GOOD)
+        told = run("rml1", "steps", source, "--from", 100, "--to", 40, "-o", self.folder / "b.rml")
+        self.assertIn("whether it fits is not known: name the machine that it is for, of 40 units", told)
+        told = run("rml1", "steps", source, "--from", 100, "--to", 40, "--profile", "mdx-20", "-o", self.folder / "b.rml")
+        self.assertNotIn("not known", told)
+
+    def test_no_round_trip_makes_a_stream_better(self):
+        """Streams that a check finds fault with are refused by to-gcode, or come back with the fault, or are told."""
+        head, tail = "PA;VS4;!VZ2;!PZ-50,200;!MC1;PU100,100;", "PU0,0;!MC0;"
+        verdicts = ("GOOD", "DOUBTFUL", "BAD")
+
+        def verdict(path):
+            return verdicts.index(re.search(rf"^{re.escape(str(path))}: (\w+)", ask(
+                "check", path, "--profile", "srm-20").stdout, re.MULTILINE).group(1))
+
+        streams = {
+            "spindle": head.replace("!MC1", "!MC0") + "PD500,100;" + tail,
+            "beyond": head + "PD50000,100;" + tail,
+            "number": head + "PD500,100,99999999,300;" + tail,
+            "height": head.replace("-50,", "-9000,") + "PD500,100;" + tail,
+            "lift": head.replace(",200", ",-200") + "PD500,100;" + tail,
+            "across": head.replace(",200", ",0") + "PD500,100;PU900,900;PD0,0;" + tail,
+            "deep": head + "PD500,100;!MC0;",
+            "on": head + "PD500,100;PU;",
+            "speed": head.replace("VS4", "VS99") + "PD500,100;" + tail,
+            "no speed": head.replace("VS4;!VZ2;", "") + "PD500,100;" + tail,
+            "unknown": head + "PD500,100;QQ;" + tail,
+            "torn": head + "PD500,100;" + tail + "PD",
+            "fast down": head.replace("!VZ2", "!VZ30") + "PD500,100;" + tail,
+            "halt": head + "PD500,100;!NR;" + tail,
+        }
+        told_alone = set()
+        for name, stream in streams.items():
+            with self.subTest(name):
+                source, gcode, back = (self.folder / (name + end) for end in (".rml", ".nc", ".back.rml"))
+                source.write_text(stream)
+                before = verdict(source)
+                self.assertGreater(before, 0)
+                made = ask("rml1", "to-gcode", source, "--profile", "srm-20")
+                if made.returncode != 0:
+                    self.assertEqual(before, 2)
+                    continue
+                run("rml1", "from-gcode", gcode, "--profile", "srm-20", "-o", back)
+                if verdict(back) < before:
+                    self.assertEqual(before, 1)  # what is BAD is never told alone
+                    self.assertRegex(made.stderr, r"RML1-E\d+")
+                    self.assertRegex(gcode.read_text(), r"\(RML1-E\d+ in the stream: ")
+                    told_alone.add(name)
+        self.assertEqual(told_alone, {"speed", "no speed", "unknown", "torn", "on"})
+
+    def test_rapids_through_the_work_are_told(self):
+        gcode = self.file("a.nc", "G21\nM3\nG0 Z2\nG1 Z-1 F600\nG0 X50\nG0 Z2\nM5\n")
+        done = ask("rml1", "from-gcode", gcode, "--profile", "srm-20")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("a.nc:5:1: warning RML1-E8110: G0 leads across below Z 0: the stream goes there at 30 mm/s",
+                      done.stderr)
 
 
 class Families(InFolder):
@@ -193,7 +334,8 @@ class Families(InFolder):
         self.assertIn("cut_length  7 -> 5 mm", torn.stdout)  # 3 mm down, and 4 or 2 mm across
         self.assertIn("b.rml: the data ends inside a command", torn.stderr)
         halted = ask("diff", a, self.file("c.rml", "VS10;!VZ10;!PZ-100,200;!MC1;PU0,0;PD400,0;!NR;PU;!MC0;"))
-        self.assertIn("no figures: c.rml: stopped at 1/7, CELL-E9308", halted.stderr)
+        self.assertIn("no figures: c.rml: stopped at 1/7, CELL-E9308; what they do is compared to the end of both",
+                      halted.stderr)
 
     def test_diff_refuses_what_cannot_be_compared(self):
         a = self.file("a.rml", STREAM)
@@ -263,11 +405,19 @@ class FromPng(InFolder):
         far = run("rml1", "from-png", picture, "--dpi", 254, "--at", "10,5", *words)
         self.assertNotEqual(near, far)
         self.assertEqual(run("rml1", "move", self.file("n.rml", near), "--by", "10,5").count("Z"), far.count("Z"))
-        full = self.png("full.png", ["#" * 20] * 20, dpi=254)
+        # Lines go around the copper, here left of the travel and below it.
+        full = self.png("full.png", ["#" * 19 + " "] * 20, dpi=254)
         done = ask("rml1", "from-png", full, *words)
         self.assertEqual(done.returncode, 1)
-        self.assertIn("RML1-E8112", done.stderr)
+        self.assertIn("RML1-E8126: the picture is 2 by 2 mm: ", done.stderr)
+        self.assertIn("give the picture another place with --at", done.stderr)
+        self.assertNotIn("copies", done.stderr)
         run("rml1", "from-png", full, "--at", "5,5", *words)
+        white = self.png("white.png", ["#" * 20] * 20, dpi=254)
+        done = ask("rml1", "from-png", white, "--at", "5,5", *words)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("RML1-E8124: all of the picture is copper", done.stderr)
+        run("rml1", "from-png", white, "--at", "5,5", "--outline", *words)
 
     def test_outline_goes_down_in_steps(self):
         board = self.png("o.png", [" " * 60] * 10 + [" " * 10 + "#" * 40 + " " * 10] * 40 + [" " * 60] * 10, dpi=254)

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tuple>
 
 #include "engine/rml1/board/contours.h"
 #include "engine/rml1/board/nearest_order.h"
 #include "engine/rml1/board/simplify.h"
 #include "engine/rml1/offline/phrase_words.h"
 #include "engine/rml1/offline/stream_writer.h"
-#include "engine/rml1/programmed.h"
 
 namespace rmlcell::rml1 {
 namespace {
@@ -75,8 +73,8 @@ std::size_t Outer(const std::vector<Loop>& loops) {
 
 class BoardMiller {
  public:
-  BoardMiller(const Profile& profile, const BoardOptions& options)
-      : profile_(profile), options_(options), writer_(profile) {}
+  BoardMiller(const Profile& profile, const BoardOptions& options, const ByteSink& sink)
+      : profile_(profile), options_(options), writer_(profile, sink) {}
 
   void Begin() {
     if (options_.rpm > 0.0) {
@@ -108,22 +106,16 @@ class BoardMiller {
     writer_.Rapid({start.x, start.y, clear_});
   }
 
-  void Finish(BoardStream& made) {
-    made.stream = writer_.Take();
+  void Finish(BoardLines& made) {
+    writer_.Finish();
     for (Diagnostic& note : notes_) made.findings.push_back(std::move(note));
   }
-
-  const Extent& x() const { return x_; }  // of the cuts, units of the work
-  const Extent& y() const { return y_; }
-  std::size_t size() const { return writer_.size(); }
 
  private:
   Units At(const PlanePoint& p, std::int64_t z) const {
     return {NearestUnit(p.x, profile_), NearestUnit(p.y, profile_), z};
   }
   void Cut(const Units& to, double feed_mm_s) {
-    x_.Add(static_cast<double>(to.x));
-    y_.Add(static_cast<double>(to.y));
     const double used = writer_.Cut(to, feed_mm_s);
     if (std::abs(used - feed_mm_s) > 1e-9 * feed_mm_s)
       Note(ShortNumber(feed_mm_s) + " mm/s becomes " + ShortNumber(used) + " mm/s");
@@ -138,26 +130,8 @@ class BoardMiller {
   const BoardOptions& options_;
   StreamWriter writer_;
   std::int64_t clear_ = 0;
-  Extent x_;
-  Extent y_;
   std::vector<Diagnostic> notes_;  // two feeds and a spindle speed at most
 };
-
-Status CheckTravel(const BoardMiller& miller, const Profile& profile) {
-  const std::tuple<char, const Extent*, const Travel*, double> axes[] = {
-      {'X', &miller.x(), &profile.x, profile.origin_x},
-      {'Y', &miller.y(), &profile.y, profile.origin_y}};
-  for (const auto& [axis, extent, travel, origin] : axes) {
-    if (extent->low + origin >= travel->low && extent->high + origin <= travel->high) continue;
-    const auto mm = [&](double units) { return ShortNumber(units / profile.units_per_mm, 3); };
-    return Error{ErrorCode::kRml1DoesNotFit,
-                 std::string("the tool would go from ") + axis + " " + mm(extent->low) + " to " +
-                     mm(extent->high) + " mm; the travel is " + mm(travel->low - origin) + " to " +
-                     mm(travel->high - origin) + " mm: give the picture another place (--at)",
-                 {}};
-  }
-  return {};
-}
 
 // The loops of all passes, in mm, those that lie in others first when a board is cut out.
 std::vector<std::vector<Loop>> GroupsOf(const DistanceField& field,
@@ -180,7 +154,7 @@ std::vector<std::vector<Loop>> GroupsOf(const DistanceField& field,
 
 Error NothingToMill(const char* why) { return {ErrorCode::kRml1NothingToMill, why, {}}; }
 
-void NoteJoined(const DistanceField& field, double level, BoardStream& made) {
+void NoteJoined(const DistanceField& field, double level, BoardLines& made) {
   constexpr double kEdge = 0.5;  // between a pixel of copper and the next one without
   const std::size_t traces = Outer(ContoursAt(field, kEdge));
   const std::size_t parted = Outer(ContoursAt(field, level));
@@ -194,13 +168,24 @@ void NoteJoined(const DistanceField& field, double level, BoardStream& made) {
 
 }  // namespace
 
-Result<BoardStream> StreamOfBoard(const Bitmap& bitmap, const machine::Parameters& parameters,
-                                  const BoardOptions& options) {
+Error InTermsOfPicture(Error found, const BoardLines& board) {
+  if (found.code != ErrorCode::kRml1WorkBeyondTravel) return found;
+  return {ErrorCode::kRml1PictureBeyondTravel,
+          "the picture is " + ShortNumber(board.width_mm, 2) + " by " +
+              ShortNumber(board.height_mm, 2) + " mm: " + found.detail,
+          {}};
+}
+
+Result<BoardLines> StreamOfBoard(const Bitmap& bitmap, const machine::Parameters& parameters,
+                                 const BoardOptions& options, const ByteSink& sink) {
   if (const Status good = CheckOptions(options); !good) return good.error();
   const Result<Profile> profile = MakeProfile(parameters);
   if (!profile) return profile.error();
   if (std::ranges::find(bitmap.copper, 1) == bitmap.copper.end())
     return NothingToMill("the picture has no copper");
+  if (!options.outline && std::ranges::find(bitmap.copper, 0) == bitmap.copper.end())
+    return NothingToMill(
+        "all of the picture is copper; to cut out a board of its size give --outline");
   const std::vector<double> levels = LevelsOf(options, *profile);
   const auto margin = static_cast<std::size_t>(std::ceil(levels.back())) + 2;
   const std::size_t pixels = (bitmap.width + 2 * margin) * (bitmap.height + 2 * margin);
@@ -210,11 +195,11 @@ Result<BoardStream> StreamOfBoard(const Bitmap& bitmap, const machine::Parameter
                  {}};
   }
   const DistanceField field = DistanceToCopper(bitmap, margin);
-  BoardStream made{.width_mm = static_cast<double>(bitmap.width) * options.pixel_mm,
-                   .height_mm = static_cast<double>(bitmap.height) * options.pixel_mm};
+  BoardLines made{.width_mm = static_cast<double>(bitmap.width) * options.pixel_mm,
+                  .height_mm = static_cast<double>(bitmap.height) * options.pixel_mm};
   if (!options.outline) NoteJoined(field, levels.front(), made);
 
-  BoardMiller miller(*profile, options);
+  BoardMiller miller(*profile, options, sink);
   miller.Begin();
   PlanePoint at;
   for (const std::vector<Loop>& group : GroupsOf(field, levels, margin, options)) {
@@ -227,7 +212,6 @@ Result<BoardStream> StreamOfBoard(const Bitmap& bitmap, const machine::Parameter
     made.loops += group.size();
   }
   if (made.loops == 0) return NothingToMill("no line around the copper");
-  if (const Status fits = CheckTravel(miller, *profile); !fits) return fits.error();
   miller.Finish(made);
   return made;
 }

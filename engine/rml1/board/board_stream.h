@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/result.h"
 #include "engine/machine/parameters.h"
 #include "engine/rml1/board/bitmap.h"
+#include "engine/rml1/offline/byte_sink.h"
 
 namespace rmlcell::rml1 {
 
@@ -31,8 +31,7 @@ struct BoardOptions {
 };
 inline constexpr int kPassesMax = 100;
 
-struct BoardStream {
-  std::string stream;
+struct BoardLines {
   std::vector<Diagnostic> findings;  // Rml1GapTooNarrow (8125), Rml1SpeedRounded (8106)
   std::size_t loops = 0;
   double width_mm = 0.0;  // of the picture
@@ -43,10 +42,15 @@ struct BoardStream {
 // loop after loop in the order of a short way, lifted between them, and at the end it is lifted and
 // the spindle is off. No copper is cut: lines keep the radius and, beyond it, half the diagonal of
 // a pixel, the tolerance and half a unit of the machine away from the centres of the outermost
-// pixels of copper. Traces that the tool cannot part are counted and said. Errors: as MakeProfile;
-// CellInvalidArgument for an option out of range; Rml1NothingToMill (8124); Rml1PictureTooLarge
-// (8122) with its margin; Rml1DoesNotFit (8112) when a line leaves the travel.
-Result<BoardStream> StreamOfBoard(const Bitmap& bitmap, const machine::Parameters& parameters,
-                                  const BoardOptions& options);
+// pixels of copper. Traces that the tool cannot part are counted and said. Whether the lines are on
+// the travel tells CheckWork (work_check.h). Errors: as MakeProfile; CellInvalidArgument for an
+// option out of range; Rml1NothingToMill (8124) for a picture without copper, or of copper alone
+// unless it is an outline; Rml1PictureTooLarge (8122) with its margin.
+Result<BoardLines> StreamOfBoard(const Bitmap& bitmap, const machine::Parameters& parameters,
+                                 const BoardOptions& options, const ByteSink& sink);
+
+// What CheckWork found about its stream, in the terms of the picture: work beyond the travel is
+// Rml1PictureBeyondTravel (8126). Stays as it is otherwise.
+Error InTermsOfPicture(Error found, const BoardLines& board);
 
 }  // namespace rmlcell::rml1

@@ -1,75 +1,40 @@
 #include "engine/rml1/offline/from_gcode.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
-#include "engine/machine/program_file.h"
 #include "engine/rml1/offline/gcode_arc.h"
+#include "engine/rml1/offline/gcode_orders.h"
 #include "engine/rml1/offline/gcode_reader.h"
-#include "engine/rml1/offline/gcode_words.h"
 #include "engine/rml1/offline/phrase_words.h"
 #include "engine/rml1/offline/stream_writer.h"
 
 namespace rmlcell::rml1 {
 namespace {
 
-constexpr double kInch_mm = 25.4;
 constexpr double kSecondsPerMinute = 60.0;
 constexpr double kChordsMax = 100'000.0;  // of one arc
 
-std::string WordText(const GcodeWord& word) {
-  return std::string(1, word.letter) + ShortNumber(word.value, 6);
-}
-
-// The row of a G or M word; null: it is not in the subset.
-const GcodeRow* RowOf(const GcodeWord& word) {
-  const double tenths = word.value * 10.0;
-  if (!(tenths >= 0.0 && tenths < 1e6) || std::round(tenths) != tenths) return nullptr;
-  const auto row = std::ranges::find_if(kGcodeRows, [&](const GcodeRow& candidate) {
-    return candidate.letter == word.letter && candidate.tenths == static_cast<int>(tenths);
-  });
-  return row == kGcodeRows.end() ? nullptr : &*row;
-}
-
-// One line, its words by what they say.
-struct Orders {
-  std::optional<GcodeUse> motion;  // a motion word of this line
-  const GcodeWord* motion_word = nullptr;
-  bool dwell = false;
-  bool spindle_on = false;
-  bool spindle_off = false;
-  bool pause = false;
-  bool end = false;
-  std::map<char, const GcodeWord*> values;  // X Y Z I J R F S P
-
-  const GcodeWord* Find(char letter) const {
-    const auto found = values.find(letter);
-    return found == values.end() ? nullptr : found->second;
-  }
-  const GcodeWord* AxisWord() const {
-    for (const char letter : {'X', 'Y', 'Z', 'I', 'J', 'R'}) {
-      if (const GcodeWord* word = Find(letter)) return word;
-    }
-    return nullptr;
-  }
-};
-
 class Interpreter {
  public:
-  Interpreter(const Profile& profile, const FromGcodeOptions& options)
-      : profile_(profile), options_(options), writer_(profile) {
-    z_ = static_cast<double>(writer_.at().z) / profile.units_per_mm;
+  Interpreter(const Profile& profile, const FromGcodeOptions& options, const ByteSink& sink)
+      : profile_(profile), options_(options), writer_(profile, sink), top_(writer_.at().z) {
+    z_ = static_cast<double>(top_) / profile.units_per_mm;
   }
 
-  void Run(std::string_view text) {
-    GcodeReader reader(text);
+  void Run(const machine::Bytes& text) {
+    GcodeReader reader(*text);
+    std::size_t released = 0;
     while (std::optional<Result<GcodeBlock>> block = reader.Next()) {
+      if (reader.offset() - released > machine::kReleaseEvery) {
+        text.Release();
+        released = reader.offset();
+      }
       if (!*block) {
-        Refuse(block->error());
+        findings_.Refuse(block->error());
       } else if (ended_) {
         NoteBehindEnd(**block);
       } else if ((*block)->percent) {
@@ -78,39 +43,34 @@ class Interpreter {
         begun_ = true;
         Obey(**block);
       }
-      if (made_.findings_dropped > 0 && !made_.ok) break;
+      if (findings_.full() && !findings_.ok()) break;
     }
   }
 
-  StreamOfGcode Take() {
-    if (writer_.dwell_ms() > 0 && made_.ok)
+  FromGcodeOutcome Finish() {
+    if (writer_.dwell_ms() > 0 && findings_.ok())
       Note(ErrorCode::kRml1GcodeIgnored, "wait", "the wait behind the last motion", {});
-    if (made_.ok) made_.stream = writer_.Take();
-    return std::move(made_);
+    TellRapids(across_, "across");
+    TellRapids(down_, "down");
+    if (findings_.ok()) writer_.Finish();
+    FromGcodeOutcome outcome = findings_.Take();
+    outcome.beyond_travel = beyond_travel_;
+    return outcome;
   }
 
  private:
-  void Add(ErrorCode code, std::string detail, const SourceSpan& where) {
-    if (made_.findings.size() == machine::kDiagnosticsMax) {
-      ++made_.findings_dropped;
-      return;
-    }
-    made_.findings.push_back({.code = code,
-                              .severity = Lookup(code).severity,
-                              .detail = std::move(detail),
-                              .where = where});
-  }
-  void Refuse(const Error& error) {
-    made_.ok = false;
-    Add(error.code, error.detail, error.where.value_or(SourceSpan{}));
-  }
+  // Rapids of one kind that lead through the work.
+  struct RapidsInWork {
+    std::uint64_t count = 0;
+    SourceSpan first;
+  };
+
   void Refuse(ErrorCode code, std::string detail, const SourceSpan& where) {
-    Refuse(Error{code, std::move(detail), where});
+    findings_.Refuse(code, std::move(detail), where);
   }
-  // Of each key once: CAM tools write some words on every line.
   void Note(ErrorCode code, const std::string& key, const std::string& detail,
             const SourceSpan& where) {
-    if (told_.insert(key).second) Add(code, detail, where);
+    findings_.Note(code, key, detail, where);
   }
 
   void NoteBehindEnd(const GcodeBlock& block) {
@@ -119,14 +79,15 @@ class Interpreter {
            block.words.front().where);
   }
 
-  std::optional<Orders> Sort(const GcodeBlock& block);
-  bool SortCode(const GcodeWord& word, const GcodeRow& row, Orders& orders);
-  bool SortValue(const GcodeWord& word, const GcodeBlock& block, Orders& orders);
   void Obey(const GcodeBlock& block);
   void SetFeed(const GcodeWord& word);
   void SetSpindleSpeed(const GcodeWord& word);
   void Wait(const Orders& orders, const GcodeBlock& block);
   void Move(const Orders& orders, const GcodeBlock& block);
+  void MoveRapid(const Units& to, const SourceSpan& where);
+  void TellRapids(const RapidsInWork& rapids, const char* way);
+  void ChangeTool(const Orders& orders);
+  void GoHome(const Orders& orders, const GcodeBlock& block);
   void MoveArc(const Orders& orders, GcodeUse motion, double x, double y, double z);
   std::optional<Units> UnitsOf(double x, double y, double z, const SourceSpan& where);
   void CutTo(double x, double y, double z, const SourceSpan& where);
@@ -135,141 +96,45 @@ class Interpreter {
   const Profile& profile_;
   const FromGcodeOptions& options_;
   StreamWriter writer_;
-  StreamOfGcode made_{.ok = true};
-  std::set<std::string> told_;  // bounded: the words of the subset, and a few of ours
+  const std::int64_t top_;  // of the travel, from Z 0
+  GcodeFindings findings_;
+  std::optional<SourceSpan> beyond_travel_;
   std::optional<GcodeUse> motion_;
   double unit_mm_ = 1.0;
+  ArcPlane plane_;
   double x_ = 0.0;  // mm, as the program says and not rounded
   double y_ = 0.0;
   double z_ = 0.0;
   std::optional<double> feed_mm_s_;
   SourceSpan feed_where_;
   bool begun_ = false;
-  bool moved_ = false;
+  bool relative_ = false;  // G91: good for G28 alone
+  bool cut_ = false;
+  std::optional<double> tool_;  // the last T, and the one of the first cut
+  std::optional<double> cutting_tool_;
+  RapidsInWork across_;
+  RapidsInWork down_;
   bool ended_ = false;
 };
 
-// A G or M word. False: it is refused.
-bool Interpreter::SortCode(const GcodeWord& word, const GcodeRow& row, Orders& orders) {
-  switch (row.use) {
-    case GcodeUse::kRapid:
-    case GcodeUse::kLine:
-    case GcodeUse::kArcClockwise:
-    case GcodeUse::kArcCounter:
-      if (orders.motion_word != nullptr || orders.dwell) {
-        Refuse(ErrorCode::kRml1GcodeForm, "two words that move or wait in one line", word.where);
-        return false;
-      }
-      orders.motion = row.use;
-      orders.motion_word = &word;
-      return true;
-    case GcodeUse::kDwell:
-      if (orders.motion_word != nullptr || orders.dwell) {
-        Refuse(ErrorCode::kRml1GcodeForm, "two words that move or wait in one line", word.where);
-        return false;
-      }
-      orders.dwell = true;
-      return true;
-    case GcodeUse::kInch:
-      unit_mm_ = kInch_mm;
-      return true;
-    case GcodeUse::kMetric:
-      unit_mm_ = 1.0;
-      return true;
-    case GcodeUse::kDefault:
-      return true;
-    case GcodeUse::kIgnored:
-      Note(ErrorCode::kRml1GcodeIgnored, WordText(word),
-           WordText(word) + ", " + std::string(row.text), word.where);
-      return true;
-    case GcodeUse::kToolChange:
-      if (moved_) {
-        Refuse(ErrorCode::kRml1GcodeWord,
-               WordText(word) + " behind the first motion: write a program for each tool",
-               word.where);
-        return false;
-      }
-      Note(ErrorCode::kRml1GcodeIgnored, "M6", WordText(word) + ", the tool is put in by hand",
-           word.where);
-      return true;
-    case GcodeUse::kPause:
-      orders.pause = true;
-      return true;
-    case GcodeUse::kEnd:
-      orders.end = true;
-      return true;
-    case GcodeUse::kSpindleOn:
-      orders.spindle_on = true;
-      return true;
-    case GcodeUse::kSpindleOff:
-      orders.spindle_off = true;
-      return true;
-  }
-  return false;
-}
-
-// A word of any other letter. False: it is refused.
-bool Interpreter::SortValue(const GcodeWord& word, const GcodeBlock& block, Orders& orders) {
-  if (word.letter == 'T') {
-    Note(ErrorCode::kRml1GcodeIgnored, "T", "T, the tool is put in by hand", word.where);
-    return true;
-  }
-  if (word.letter == 'O' && block.words.size() == 1) {
-    Note(ErrorCode::kRml1GcodeIgnored, "O", WordText(word) + ", the number of the program",
-         word.where);
-    return true;
-  }
-  if (std::string_view("XYZIJRFSP").find(word.letter) == std::string_view::npos) {
-    Refuse(ErrorCode::kRml1GcodeWord, WordText(word), word.where);
-    return false;
-  }
-  if (!orders.values.emplace(word.letter, &word).second) {
-    Refuse(ErrorCode::kRml1GcodeForm, std::string(1, word.letter) + " twice in one line",
-           word.where);
-    return false;
-  }
-  return true;
-}
-
-// Nothing: the line is refused.
-std::optional<Orders> Interpreter::Sort(const GcodeBlock& block) {
-  Orders orders;
-  bool good = true;
-  bool path_mode = false;  // G64 takes a P of its own
-  for (const GcodeWord& word : block.words) {
-    if (word.letter != 'G' && word.letter != 'M') {
-      good = SortValue(word, block, orders) && good;
-      continue;
-    }
-    const GcodeRow* row = RowOf(word);
-    if (row == nullptr) {
-      Refuse(ErrorCode::kRml1GcodeWord, WordText(word), word.where);
-      good = false;
-      continue;
-    }
-    path_mode = path_mode || (row->letter == 'G' && row->tenths == 640);
-    good = SortCode(word, *row, orders) && good;
-  }
-  if (const GcodeWord* p = orders.Find('P'); p != nullptr && !orders.dwell) {
-    if (!path_mode) {
-      Refuse(ErrorCode::kRml1GcodeWord, WordText(*p) + " without G4", p->where);
-      good = false;
-    }
-  }
-  return good ? std::optional(std::move(orders)) : std::nullopt;
-}
-
 // In the order of execution that CAM tools rely on: speeds, spindle, wait, motion, pause, end.
 void Interpreter::Obey(const GcodeBlock& block) {
-  const std::optional<Orders> orders = Sort(block);
+  const std::optional<Orders> orders = OrdersOf(block, findings_);
   if (!orders) return;
+  unit_mm_ = orders->unit_mm.value_or(unit_mm_);
+  relative_ = orders->relative.value_or(relative_);
+  plane_ = orders->plane.value_or(plane_);
+  if (orders->tool) tool_ = orders->tool;
   if (const GcodeWord* feed = orders->Find('F')) SetFeed(*feed);
   if (const GcodeWord* speed = orders->Find('S')) SetSpindleSpeed(*speed);
+  if (orders->tool_change != nullptr) ChangeTool(*orders);
   if (orders->spindle_on) writer_.SpindleOn();
   if (orders->spindle_off) writer_.SpindleOff();
   if (orders->motion) motion_ = orders->motion;
   if (orders->dwell) {
     Wait(*orders, block);
+  } else if (orders->home) {
+    GoHome(*orders, block);
   } else if (orders->AxisWord() != nullptr) {
     Move(*orders, block);
   }
@@ -324,6 +189,11 @@ void Interpreter::Move(const Orders& orders, const GcodeBlock& block) {
                   WordText(*orders.AxisWord()) + " before any of G0 G1 G2 G3",
                   orders.AxisWord()->where);
   }
+  if (relative_)
+    return Refuse(
+        ErrorCode::kRml1GcodeWord,
+        WordText(*orders.AxisWord()) + " under G91: post-process for absolute coordinates",
+        orders.AxisWord()->where);
   const auto target = [&](char letter, double present) {
     const GcodeWord* word = orders.Find(letter);
     return word == nullptr ? present : word->value * unit_mm_;
@@ -331,9 +201,8 @@ void Interpreter::Move(const Orders& orders, const GcodeBlock& block) {
   const double x = target('X', x_);
   const double y = target('Y', y_);
   const double z = target('Z', z_);
-  moved_ = true;
   const bool arc = *motion_ == GcodeUse::kArcClockwise || *motion_ == GcodeUse::kArcCounter;
-  for (const char letter : {'I', 'J', 'R'}) {
+  for (const char letter : {'I', 'J', 'K', 'R'}) {
     const GcodeWord* word = orders.Find(letter);
     if (!arc && word != nullptr)
       return Refuse(ErrorCode::kRml1GcodeWord, WordText(*word) + " without G2 or G3", word->where);
@@ -345,25 +214,96 @@ void Interpreter::Move(const Orders& orders, const GcodeBlock& block) {
   } else if (*motion_ == GcodeUse::kLine) {
     CutTo(x, y, z, where);
   } else if (const auto to = UnitsOf(x, y, z, where)) {
-    writer_.Rapid(*to);
+    MoveRapid(*to, where);
   }
   x_ = x;
   y_ = y;
   z_ = z;
 }
 
+void Interpreter::MoveRapid(const Units& to, const SourceSpan& where) {
+  const Units from = writer_.at();
+  const bool across = (to.x != from.x || to.y != from.y) && std::min(from.z, to.z) < 0;
+  const bool down = to.z < std::min<std::int64_t>(from.z, 0);
+  if (across || down) {
+    RapidsInWork& rapids = across ? across_ : down_;
+    if (rapids.count++ == 0) rapids.first = where;
+  }
+  writer_.Rapid(to);
+}
+
+// Once of a kind, because CAM tools repeat their habits on every line.
+void Interpreter::TellRapids(const RapidsInWork& rapids, const char* way) {
+  if (rapids.count == 0 || !findings_.ok()) return;
+  findings_.Add(
+      ErrorCode::kRml1GcodeRapidInWork,
+      "G0 leads " + std::string(way) + " below Z 0" +
+          (rapids.count > 1 ? ", here and in " + std::to_string(rapids.count - 1) + " more lines"
+                            : "") +
+          ": the stream goes there at " +
+          ShortNumber(profile_.z_speeds.Nearest(profile_.z_speeds.maximum_mm_s)) + " mm/s",
+      rapids.first);
+}
+
+// The tool is put in by hand before the program begins, and stays.
+void Interpreter::ChangeTool(const Orders& orders) {
+  const GcodeWord& word = *orders.tool_change;
+  if (cut_ && (!tool_ || tool_ != cutting_tool_)) {
+    return Refuse(ErrorCode::kRml1GcodeWord,
+                  WordText(word) + " behind the first cut: write a program for each tool",
+                  word.where);
+  }
+  Note(ErrorCode::kRml1GcodeIgnored, "M6", WordText(word) + ", the tool is put in by hand",
+       word.where);
+}
+
+// Home of a mill is the top, and its XY work origin; as with its command H, Z goes first. Without
+// G91 a G28 goes by way of the place that it names, which may be inside the work.
+void Interpreter::GoHome(const Orders& orders, const GcodeBlock& block) {
+  const SourceSpan& where = block.words.front().where;
+  if (!relative_)
+    return Refuse(ErrorCode::kRml1GcodeWord, "G28 without G91: write G28 G91 Z0", where);
+  bool any = false;
+  for (const char letter : {'X', 'Y', 'Z', 'I', 'J', 'K', 'R'}) {
+    const GcodeWord* word = orders.Find(letter);
+    if (word == nullptr) continue;
+    if (word->value != 0.0 || std::string_view("XYZ").find(letter) == std::string_view::npos)
+      return Refuse(ErrorCode::kRml1GcodeWord, WordText(*word) + " with G28: zeros alone are taken",
+                    word->where);
+    any = true;
+  }
+  Units to = writer_.at();
+  to.z = top_;
+  writer_.Rapid(to);
+  z_ = static_cast<double>(top_) / profile_.units_per_mm;
+  if (!any || orders.Find('X') != nullptr) x_ = 0.0;
+  if (!any || orders.Find('Y') != nullptr) y_ = 0.0;
+  if (const auto home = UnitsOf(x_, y_, z_, where)) writer_.Rapid(*home);
+}
+
+// Chords in the plane of the arc, with the third axis in equal steps.
 void Interpreter::MoveArc(const Orders& orders, GcodeUse motion, double x, double y, double z) {
   const SourceSpan where = orders.AxisWord()->where;
+  for (const char letter : {'I', 'J', 'K'}) {
+    const GcodeWord* word = orders.Find(letter);
+    if (word != nullptr && std::ranges::find(plane_.centre, letter) == plane_.centre.end())
+      return Refuse(ErrorCode::kRml1GcodeArc, WordText(*word) + " is not in the plane of the arc",
+                    word->where);
+  }
   const auto value = [&](char letter) -> std::optional<double> {
     const GcodeWord* word = orders.Find(letter);
     if (word == nullptr) return std::nullopt;
     return word->value * unit_mm_;
   };
-  const Result<Arc> arc = ArcOf({.from = {x_, y_},
-                                 .to = {x, y},
+  const std::array<double, 3> from{x_, y_, z_};
+  const std::array<double, 3> to{x, y, z};
+  const auto index = [&](std::size_t k) { return static_cast<std::size_t>(plane_.axes[k] - 'X'); };
+  const std::size_t first = index(0), second = index(1), third = index(2);
+  const Result<Arc> arc = ArcOf({.from = {from[first], from[second]},
+                                 .to = {to[first], to[second]},
                                  .clockwise = motion == GcodeUse::kArcClockwise,
-                                 .i = value('I'),
-                                 .j = value('J'),
+                                 .i = value(plane_.centre[0]),
+                                 .j = value(plane_.centre[1]),
                                  .r = value('R')});
   if (!arc) return Refuse(arc.error().code, arc.error().detail, where);
   const double chords = arc->Chords(options_.tolerance_mm);
@@ -374,8 +314,12 @@ void Interpreter::MoveArc(const Orders& orders, GcodeUse motion, double x, doubl
   const auto count = static_cast<int>(chords);
   for (int k = 1; k < count; ++k) {
     const double share = k / chords;
-    const motion::PlanVector at = arc->At(share);
-    CutTo(at.x(), at.y(), z_ + (z - z_) * share, where);
+    const motion::PlanVector in_plane = arc->At(share);
+    std::array<double, 3> at{};
+    at[first] = in_plane.x();
+    at[second] = in_plane.y();
+    at[third] = from[third] + (to[third] - from[third]) * share;
+    CutTo(at[0], at[1], at[2], where);
   }
   CutTo(x, y, z, where);
 }
@@ -389,14 +333,24 @@ std::optional<Units> Interpreter::UnitsOf(double x, double y, double z, const So
     return std::nullopt;
   }
   if (writer_.size() > options_.bytes_max) {
-    const bool first = std::exchange(made_.ok, false);
-    if (first) Refuse(ErrorCode::kRml1ProductTooLarge, "the stream", where);
+    if (findings_.ok()) Refuse(ErrorCode::kRml1ProductTooLarge, "the stream", where);
     return std::nullopt;
   }
-  return Units{NearestUnit(x, profile_), NearestUnit(y, profile_), NearestUnit(z, profile_)};
+  const Units to{NearestUnit(x, profile_), NearestUnit(y, profile_), NearestUnit(z, profile_)};
+  const auto beyond = [](std::int64_t at, double origin, const Travel& travel) {
+    const double place = static_cast<double>(at) + origin;
+    return place < travel.low || place > travel.high;
+  };
+  const bool below = static_cast<double>(to.z) + profile_.z0 < profile_.z.low;
+  if (!beyond_travel_ && std::min(to.z, writer_.at().z) < 0 &&
+      (below || beyond(to.x, profile_.origin_x, profile_.x) ||
+       beyond(to.y, profile_.origin_y, profile_.y)))
+    beyond_travel_ = where;
+  return to;
 }
 
 void Interpreter::CutTo(double x, double y, double z, const SourceSpan& where) {
+  if (!std::exchange(cut_, true)) cutting_tool_ = tool_;
   const std::optional<Units> to = UnitsOf(x, y, z, where);
   if (to) NoteFeed(writer_.Cut(*to, *feed_mm_s_), feed_where_);
 }
@@ -413,17 +367,18 @@ void Interpreter::NoteFeed(double used_mm_s, const SourceSpan& where) {
 
 }  // namespace
 
-Result<StreamOfGcode> FromGcode(std::string_view text, const machine::Parameters& parameters,
-                                const FromGcodeOptions& options) {
+Result<FromGcodeOutcome> FromGcode(const machine::Bytes& text,
+                                   const machine::Parameters& parameters,
+                                   const FromGcodeOptions& options, const ByteSink& sink) {
   if (!(options.tolerance_mm > 0.0 && std::isfinite(options.tolerance_mm)))
     return InvalidArgument("the tolerance is " + ShortNumber(options.tolerance_mm) +
                            " mm; it must be above 0");
-  if (text.empty()) return Error{ErrorCode::kCellEmptyProgram, "the G-code has no bytes", {}};
+  if (text->empty()) return Error{ErrorCode::kCellEmptyProgram, "the G-code has no bytes", {}};
   const Result<Profile> profile = MakeProfile(parameters);
   if (!profile) return profile.error();
-  Interpreter interpreter(*profile, options);
+  Interpreter interpreter(*profile, options, sink);
   interpreter.Run(text);
-  return interpreter.Take();
+  return interpreter.Finish();
 }
 
 }  // namespace rmlcell::rml1

@@ -20,6 +20,12 @@ std::string CharacterText(char c) {
 
 }  // namespace
 
+// Editors of Windows put a mark in front that belongs to no line.
+GcodeReader::GcodeReader(std::string_view text) : text_(text) {
+  constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
+  if (text_.starts_with(kUtf8Mark)) next_ = kUtf8Mark.size();
+}
+
 std::optional<Result<GcodeBlock>> GcodeReader::Next() {
   if (next_ >= text_.size()) return std::nullopt;
   start_ = next_;
@@ -32,14 +38,15 @@ std::optional<Result<GcodeBlock>> GcodeReader::Next() {
 
 Result<GcodeBlock> GcodeReader::ReadBlock(std::string_view line) const {
   GcodeBlock block;
-  if (Trimmed(line) == "%") {
-    block.percent = true;
-    return block;
-  }
-  for (std::size_t at = 0; at < line.size();) {
+  const std::string_view trimmed = Trimmed(line);
+  block.percent = trimmed.starts_with('%');
+  std::size_t at = block.percent ? line.find('%') + 1 : 0;
+  while (at < line.size()) {
     const char c = line[at];
     if (IsBlank(c)) {
       ++at;
+    } else if (block.percent && c != '(' && c != ';') {
+      return Error{ErrorCode::kRml1GcodeForm, "% stands alone on its line", Place(at, 1)};
     } else if (c == ';') {
       break;
     } else if (c == '(') {
@@ -60,16 +67,20 @@ Result<GcodeBlock> GcodeReader::ReadBlock(std::string_view line) const {
   return block;
 }
 
-// Letter, blanks, number; `at` goes behind it.
+// Letter and number with blanks anywhere; `at` goes behind it.
 std::optional<Error> GcodeReader::TakeWord(std::string_view line, std::size_t& at,
                                            GcodeBlock& block) const {
   const std::size_t begin = at;
   const char letter = UpperCase(line[at++]);
-  while (at < line.size() && IsBlank(line[at])) ++at;
-  const std::size_t number = at;
-  while (at < line.size() && IsOfNumber(line[at])) ++at;
-  std::string_view digits = line.substr(number, at - number);
-  const SourceSpan where = Place(begin, at - begin);
+  std::string number;
+  std::size_t end = at;  // behind the last digit
+  for (; at < line.size() && (IsBlank(line[at]) || IsOfNumber(line[at])); ++at) {
+    if (IsBlank(line[at])) continue;
+    if (number.size() <= kDigitsMax) number += line[at];
+    end = at + 1;
+  }
+  std::string_view digits = number;
+  const SourceSpan where = Place(begin, end - begin);
   if (digits.starts_with('+')) digits.remove_prefix(1);
   const auto value =
       digits.size() <= kDigitsMax && !digits.starts_with('+') ? ParseDouble(digits) : std::nullopt;

@@ -22,18 +22,20 @@ struct GcodeBlock {
 };
 
 // Reads G-code line by line, docs/gcode.md: words, comments in ( ) on one line or from ; to its
-// end, N and line ends of every kind. Nothing else is passed over: what cannot be read is an error
-// of its line. Memory is that of one line, of at most kWordsMax words.
+// end, N and line ends of every kind. Letters may be small, and blanks stand anywhere, inside
+// numbers too, as RS-274 has it. Nothing else is passed over: what cannot be read is an error of
+// its line. Memory is that of one line, of at most kWordsMax words.
 class GcodeReader {
  public:
   static constexpr std::size_t kWordsMax = 64;
   static constexpr std::size_t kDigitsMax = 40;  // of one number
 
-  explicit GcodeReader(std::string_view text) : text_(text) {}
+  explicit GcodeReader(std::string_view text);
 
   // The next line, empty ones too; nothing at the end. Error: Rml1GcodeForm (8101) with its place;
   // the line is passed over, and the next call goes on behind it.
   std::optional<Result<GcodeBlock>> Next();
+  std::size_t offset() const { return next_; }  // of the line to come
 
  private:
   Result<GcodeBlock> ReadBlock(std::string_view line) const;

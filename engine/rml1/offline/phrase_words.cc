@@ -75,6 +75,11 @@ void AddSetting(const Phrase& phrase, const Profile& profile, Words& words) {
   }
 }
 
+bool IsHeightOrPlace(const Finding& finding) {
+  return finding.kind == FindingKind::kHeightRange || finding.kind == FindingKind::kValueRange ||
+         finding.kind == FindingKind::kTravelRange;
+}
+
 bool IsMotion(Op op) {
   const CommandRow& row = RowOf(op);
   return row.shape == Shape::kSets || row.shape == Shape::kAxes || op == Op::kZM;
@@ -124,6 +129,23 @@ std::string ShortNumber(double value, int decimals) {
   std::string text = TrimmedText(value, decimals);
   if (text.ends_with(".0")) text.resize(text.size() - 2);
   return text;
+}
+
+std::string RangeOfRefused(const Phrase& phrase, const Profile& profile) {
+  const auto refused = std::ranges::find_if(phrase.findings, IsHeightOrPlace);
+  if (refused == phrase.findings.end()) return {};
+  const Words words(profile);
+  if (refused->kind == FindingKind::kTravelRange)
+    return "machine Z may be from " + words.mm(profile.z.low) + " to 0 mm";
+  if (refused->kind == FindingKind::kValueRange) {
+    return "a coordinate may be from " + words.mm(static_cast<double>(kFloatMin)) + " to " +
+           words.mm(static_cast<double>(kFloatMax)) + " mm";
+  }
+  const bool of_down = !phrase.values.empty() &&
+                       static_cast<double>(phrase.values[0].number.truncated()) == refused->value;
+  if (!of_down) return "the tool-up height may be from 0 mm";
+  return "the tool-down height may be from " + words.mm(profile.z.low - phrase.before->z0) +
+         " to 0 mm";
 }
 
 std::string WordsOf(const Action& action, const Point& from, double z0, const Profile& profile) {
@@ -185,6 +207,7 @@ std::string WordsOf(const Phrase& phrase, const Profile& profile) {
     words.Add("the tool does not move");
   }
   AddClipping(phrase, profile, words);
+  words.Add(RangeOfRefused(phrase, profile));
   std::string text = words.Take();
   return text.empty() ? "nothing happens" : text;
 }

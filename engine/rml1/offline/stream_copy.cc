@@ -16,8 +16,8 @@ bool IsPlainNumber(std::string_view text) {
 
 void StreamCopy::Replace(const Phrase::Value& number, double value) {
   if (failed()) return;
-  const std::string_view old = stream_.substr(static_cast<std::size_t>(number.begin),
-                                              static_cast<std::size_t>(number.end - number.begin));
+  const std::string_view old = stream_->substr(static_cast<std::size_t>(number.begin),
+                                               static_cast<std::size_t>(number.end - number.begin));
   if (!IsPlainNumber(old)) return Refuse("a number with other bytes in it", number.begin);
   if (old.find_first_of("0123456789") == std::string_view::npos)
     return Refuse("a lone period as a number: write 0", number.begin);
@@ -28,26 +28,38 @@ void StreamCopy::Replace(const Phrase::Value& number, double value) {
   std::string text = ShortNumber(value, kDecimals);
   // A period that ended the old number must not go on with the new one.
   const auto next = static_cast<std::size_t>(number.end);
-  if (next < stream_.size() && stream_[next] == '.' && text.find('.') == std::string::npos)
+  if (next < stream_->size() && (*stream_)[next] == '.' && text.find('.') == std::string::npos)
     text += ".0";
-  text_ += text;
+  Write(text);
   next_ = number.end;
 }
 
 void StreamCopy::Insert(std::int64_t at, std::string_view text) {
-  if (!failed() && CopyUpTo(at)) text_ += text;
+  if (!failed() && CopyUpTo(at)) Write(text);
 }
 
 void StreamCopy::Refuse(std::string detail, std::int64_t at) {
   if (failed()) return;
   LineCounter lines;
-  error_ = Error{ErrorCode::kRml1NotRewritten, std::move(detail), lines.At(stream_, at, 1)};
+  error_ = Error{ErrorCode::kRml1NotRewritten, std::move(detail), lines.At(*stream_, at, 1)};
 }
 
-Result<std::string> StreamCopy::Take(std::int64_t end) {
+Status StreamCopy::Finish(std::int64_t end) {
   CopyUpTo(end);
   if (error_) return *error_;
-  return std::move(text_);
+  HandOver();
+  return {};
+}
+
+void StreamCopy::Write(std::string_view text) {
+  constexpr std::size_t kPart = std::size_t{64} << 10;
+  text_ += text;
+  if (text_.size() >= kPart) HandOver();
+}
+
+void StreamCopy::HandOver() {
+  sink_(text_);
+  text_.clear();
 }
 
 bool StreamCopy::CopyUpTo(std::int64_t end) {
@@ -56,8 +68,13 @@ bool StreamCopy::CopyUpTo(std::int64_t end) {
     Refuse("a command whose first numbers are changed already", end);
     return false;
   }
-  text_ += stream_.substr(static_cast<std::size_t>(next_), static_cast<std::size_t>(end - next_));
-  next_ = end;
+  while (next_ < end) {
+    const std::int64_t part =
+        std::min<std::int64_t>(end - next_, std::int64_t{machine::kReleaseEvery});
+    Write(stream_->substr(static_cast<std::size_t>(next_), static_cast<std::size_t>(part)));
+    next_ += part;
+    if (part == std::int64_t{machine::kReleaseEvery}) stream_.Release();
+  }
   return true;
 }
 

@@ -6,16 +6,18 @@
 #include <string_view>
 
 #include "engine/core/result.h"
+#include "engine/rml1/offline/byte_sink.h"
 #include "engine/rml1/offline/stream_walk.h"
 
 namespace rmlcell::rml1 {
 
 // A part of a stream, byte for byte, with some numbers replaced and some text put in. Places are
 // those of the stream and must come in ascending order. The first error is kept, and nothing more
-// is copied.
+// is copied. The stream and the sink must outlive it.
 class StreamCopy {
  public:
-  StreamCopy(std::string_view stream, std::int64_t begin) : stream_(stream), next_(begin) {}
+  StreamCopy(const machine::Bytes& stream, std::int64_t begin, const ByteSink& sink)
+      : stream_(stream), sink_(sink), next_(begin) {}
 
   // A number that the device read; it keeps its meaning with what stands around it. `whole`: the
   // text has no fraction. Errors: Rml1NotRewritten for a lone period, for a number with bytes in it
@@ -26,14 +28,17 @@ class StreamCopy {
   void Refuse(std::string detail, std::int64_t at);
 
   // Up to `end`.
-  Result<std::string> Take(std::int64_t end);
+  Status Finish(std::int64_t end);
   bool failed() const { return error_.has_value(); }
 
  private:
   bool CopyUpTo(std::int64_t end);
+  void Write(std::string_view text);
+  void HandOver();
 
-  std::string_view stream_;
-  std::string text_;
+  const machine::Bytes& stream_;
+  const ByteSink& sink_;
+  std::string text_;   // not handed over yet
   std::int64_t next_;  // the first byte that is not copied yet
   std::optional<Error> error_;
 };

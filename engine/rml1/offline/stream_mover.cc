@@ -17,21 +17,34 @@ bool GoesIntoWork(const Phrase& phrase) {
   });
 }
 
-bool MovesXYRelatively(const Phrase& phrase) {
-  if (phrase.kind != Phrase::Kind::kSet && phrase.kind != Phrase::Kind::kGroup) return false;
-  if (!IsRelative(phrase)) return false;
+// What a phrase counts from where the tool stands.
+struct CountsFromHere {
+  bool xy = false;
+  bool z = false;
+};
+CountsFromHere RelativeAxesOf(const Phrase& phrase) {
+  CountsFromHere counts;
+  if (phrase.kind == Phrase::Kind::kFixed && (phrase.op == Op::kZM || phrase.op == Op::kZO)) {
+    counts.z = IsRelative(phrase) && !phrase.values.empty();
+    return counts;
+  }
+  if (phrase.kind != Phrase::Kind::kSet && phrase.kind != Phrase::Kind::kGroup) return counts;
+  if (!IsRelative(phrase)) return counts;
   for (std::size_t i = 0; i < phrase.values.size(); ++i) {
     const auto axis = AxisOf(phrase.values[i], i);
-    if (axis && *axis != kAxisZ && phrase.values[i].number.decimal != 0.0) return true;
+    if (!axis || phrase.values[i].number.decimal == 0.0) continue;
+    (*axis == kAxisZ ? counts.z : counts.xy) = true;
   }
-  return false;
+  // A motion in space leads from a height, whatever it does to it.
+  counts.z = counts.z || (counts.xy && RowOf(phrase.op).values != 2);
+  return counts;
 }
 
 }  // namespace
 
-StreamMover::StreamMover(std::string_view stream, const Profile& profile, const UnitVector& by,
-                         const UnitVector& owed, const Part& part)
-    : profile_(profile), by_(by), owed_(owed), part_(part), copy_(stream, part.begin) {}
+StreamMover::StreamMover(const machine::Bytes& stream, const Profile& profile, const UnitVector& by,
+                         const UnitVector& owed, const Part& part, const ByteSink& sink)
+    : profile_(profile), by_(by), owed_(owed), part_(part), copy_(stream, part.begin, sink) {}
 
 bool StreamMover::OnPhrase(const Phrase& phrase) {
   if (phrase.begin >= part_.end) return false;
@@ -60,18 +73,32 @@ bool StreamMover::OnPhrase(const Phrase& phrase) {
 
 void StreamMover::PayBefore(const Phrase& phrase) {
   const bool works = GoesIntoWork(phrase);
+  const CountsFromHere counts = RelativeAxesOf(phrase);
+  const bool pays_z = owed_[kAxisZ] != 0.0 && (works || counts.z);
   const bool owes_xy = owed_[kAxisX] != 0.0 || owed_[kAxisY] != 0.0;
-  if (!(works && (owes_xy || owed_[kAxisZ] != 0.0)) && !(owes_xy && MovesXYRelatively(phrase)))
-    return;
+  const bool pays_xy = owes_xy && (works || counts.xy);
+  if (!pays_xy && !pays_z) return;
+  const double dz = pays_z ? owed_[kAxisZ] : 0.0;
+  // Across only above the work: up first, and down behind it.
+  const double stands_z = phrase.logical_before.z + by_[kAxisZ] - owed_[kAxisZ];
+  const bool in_work = pays_xy && stands_z <= phrase.before->z0;
+  const double up = std::max({0.0, dz, in_work ? profile_.z.high - stands_z : 0.0});
+  std::string sets;
+  const auto go = [&sets](double x, double y, double z) {
+    if (x == 0.0 && y == 0.0 && z == 0.0) return;
+    sets +=
+        (sets.empty() ? "" : ",") + ShortNumber(x) + "," + ShortNumber(y) + "," + ShortNumber(z);
+  };
+  go(0.0, 0.0, up);
+  if (pays_xy) go(owed_[kAxisX], owed_[kAxisY], 0.0);
+  go(0.0, 0.0, dz - up);
   const CommandNames names = NamesFor(profile_.commands.setting);
-  const double z = works ? owed_[kAxisZ] : 0.0;
-  std::string text = "!ZZ" + ShortNumber(owed_[kAxisX]) + "," + ShortNumber(owed_[kAxisY]) + "," +
-                     ShortNumber(z) + ";";
+  std::string text = "!ZZ" + sets + ";";
   if (phrase.before->absolute)
     text = std::string(names.relative) + ";" + text + names.absolute + ";";
   copy_.Insert(phrase.name, text);
-  owed_[kAxisX] = owed_[kAxisY] = 0.0;
-  if (works) owed_[kAxisZ] = 0.0;
+  if (pays_xy) owed_[kAxisX] = owed_[kAxisY] = 0.0;
+  if (pays_z) owed_[kAxisZ] = 0.0;
 }
 
 void StreamMover::Shift(const Phrase::Value& value, std::size_t axis) {

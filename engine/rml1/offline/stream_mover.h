@@ -13,7 +13,8 @@ using UnitVector = std::array<double, 3>;
 // A part of a stream, moved; rewrite.h says what that means. It keeps what it owes: how far the
 // tool stands from where the moved program would have it. Absolute coordinates pay that. Where the
 // program would cut, or go on relatively, before it is paid, a relative three-axis command is put
-// in, which changes neither mode nor tool state.
+// in, which changes neither mode nor tool state. It crosses above the work: where the tool stands
+// at the surface or below, it rises to the top first and comes down behind.
 class StreamMover final : public PhraseListener {
  public:
   struct Part {
@@ -21,11 +22,11 @@ class StreamMover final : public PhraseListener {
     std::int64_t end = 0;
   };
   // `owed`: at the beginning of the part. Power-on: all of `by`.
-  StreamMover(std::string_view stream, const Profile& profile, const UnitVector& by,
-              const UnitVector& owed, const Part& part);
+  StreamMover(const machine::Bytes& stream, const Profile& profile, const UnitVector& by,
+              const UnitVector& owed, const Part& part, const ByteSink& sink);
 
   bool OnPhrase(const Phrase& phrase) override;
-  Result<std::string> Take() { return copy_.Take(part_.end); }
+  Status Finish() { return copy_.Finish(part_.end); }
 
  private:
   void PayBefore(const Phrase& phrase);

@@ -8,10 +8,11 @@ namespace rmlcell::rml1 {
 // is short of the exact one, and a relative coordinate makes that good.
 class StreamScaler final : public PhraseListener {
  public:
-  StreamScaler(std::string_view stream, double factor) : factor_(factor), copy_(stream, 0) {}
+  StreamScaler(const machine::Bytes& stream, double factor, const ByteSink& sink)
+      : factor_(factor), copy_(stream, 0, sink) {}
 
   bool OnPhrase(const Phrase& phrase) override;
-  Result<std::string> Take(std::int64_t end) { return copy_.Take(end); }
+  Status Finish(std::int64_t end) { return copy_.Finish(end); }
 
  private:
   void ScaleSet(const Phrase& phrase);

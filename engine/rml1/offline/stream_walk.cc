@@ -13,9 +13,10 @@ StreamWalk::StreamWalk(const Profile& profile, PhraseListener& listener)
       logical_before_(device_.carriage().logical()),
       physical_before_(device_.carriage().physical()) {}
 
-bool StreamWalk::Run(std::string_view stream) {
+bool StreamWalk::Run(const machine::Bytes& stream) {
   std::int64_t offset = 0;
-  for (const char c : stream) {
+  for (const char c : *stream) {
+    if (offset % static_cast<std::int64_t>(machine::kReleaseEvery) == 0) stream.Release();
     device_.Receive(static_cast<unsigned char>(c), offset++, *this);
     if (!link_findings_.empty() && !EmitLinkErrors(offset)) return false;
     if (complete_ && !Emit()) return false;  // ESC.K

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/machine/bytes.h"
 #include "engine/rml1/device.h"
 
 namespace rmlcell::rml1 {
@@ -69,8 +70,9 @@ class StreamWalk final : private DeviceListener {
  public:
   StreamWalk(const Profile& profile, PhraseListener& listener);
 
-  // Once. False: the listener ended it.
-  bool Run(std::string_view stream);
+  // Once. False: the listener ended it. What was read is released.
+  bool Run(const machine::Bytes& stream);
+  bool Run(std::string_view stream) { return Run(machine::Bytes::Borrowed(stream)); }
 
   const Device& device() const { return device_; }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/rml1/offline/command_names.h"
 #include "engine/rml1/offline/phrase_words.h"
@@ -13,8 +14,9 @@ std::int64_t NearestUnit(double mm, const Profile& profile) {
   return std::llround(units + std::copysign(1e-9, units));
 }
 
-StreamWriter::StreamWriter(const Profile& profile)
+StreamWriter::StreamWriter(const Profile& profile, ByteSink sink)
     : profile_(profile),
+      sink_(std::move(sink)),
       at_{.z = static_cast<std::int64_t>(std::llround(profile.z.high - profile.z0))} {
   Line(NamesFor(profile.commands.setting).defaults);
   Line("!MC0");
@@ -87,9 +89,21 @@ int StreamWriter::SpindleSpeed(double rpm) {
   return set;
 }
 
-std::string StreamWriter::Take() {
+void StreamWriter::Finish() {
   SpindleOff();
-  return std::move(text_);
+  HandOver();
+}
+
+void StreamWriter::Line(const std::string& command) {
+  constexpr std::size_t kPart = std::size_t{64} << 10;
+  text_ += command + ";\n";
+  if (text_.size() >= kPart) HandOver();
+}
+
+void StreamWriter::HandOver() {
+  sink_(text_);
+  handed_ += text_.size();
+  text_.clear();
 }
 
 void StreamWriter::SetZSpeed(double wanted_mm_s) {

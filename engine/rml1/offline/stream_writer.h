@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/rml1/offline/byte_sink.h"
 #include "engine/rml1/profile.h"
 
 namespace rmlcell::rml1 {
@@ -25,7 +26,7 @@ struct Units {
 // highest Z speed for all others. Names are those of the machine's command set setting.
 class StreamWriter {
  public:
-  explicit StreamWriter(const Profile& profile);
+  StreamWriter(const Profile& profile, ByteSink sink);
 
   void Rapid(const Units& to);
   // Returns the speed that the machine will use.
@@ -44,12 +45,13 @@ class StreamWriter {
   void Pause() { Line("!NR"); }
 
   Units at() const { return at_; }
-  std::size_t size() const { return text_.size(); }
-  // Ends with the spindle off.
-  std::string Take();
+  std::size_t size() const { return handed_ + text_.size(); }
+  // With the spindle off.
+  void Finish();
 
  private:
-  void Line(const std::string& command) { text_ += command + ";\n"; }
+  void Line(const std::string& command);
+  void HandOver();
   void SetZSpeed(double wanted_mm_s);
   void SetXYSpeed(double wanted_mm_s);
   void SetHeights(std::int64_t z1, std::int64_t z2);
@@ -58,7 +60,9 @@ class StreamWriter {
   void EndDwell();
 
   const Profile& profile_;
-  std::string text_;
+  ByteSink sink_;
+  std::string text_;  // not handed over yet
+  std::size_t handed_ = 0;
   Units at_;
   double z_speed_ = 0.0;  // 0: not set yet
   double xy_speed_ = 0.0;

@@ -175,33 +175,77 @@ Status Interlude::Restore(const Registers& start, const Registers& end) {
   return {};
 }
 
-Status CheckFits(const BodyFinder& body, const Profile& profile, const TileOptions& options,
-                 double pitch_x, double pitch_y) {
-  const auto fit = [](const Extent& extent, const Travel& travel, double pitch) {
-    constexpr double kRounding = 1e-6;
-    if (pitch <= 0.0) return kTilesMax;
-    const double more = std::floor((travel.high - extent.high) / pitch + kRounding);
-    return 1 + static_cast<int>(std::clamp(more, 0.0, static_cast<double>(kTilesMax - 1)));
-  };
-  const int columns = fit(body.x(), profile.x, pitch_x);
-  const int rows = fit(body.y(), profile.y, pitch_y);
-  if (options.columns <= columns && options.rows <= rows) return {};
-  return Error{ErrorCode::kRml1DoesNotFit,
-               "at most " + std::to_string(columns) + " columns and " + std::to_string(rows) +
-                   " rows fit, " + ShortNumber(pitch_x / profile.units_per_mm) + " mm and " +
-                   ShortNumber(pitch_y / profile.units_per_mm) + " mm from copy to copy",
-               {}};
+// How many copies of an extent stand on a length, the first of them included.
+int CopiesOn(double length, double extent, double pitch) {
+  constexpr double kRounding = 1e-6;
+  if (extent > length + kRounding) return 0;
+  if (pitch <= 0.0) return kTilesMax;
+  const double more = std::floor((length - extent) / pitch + kRounding);
+  return 1 + static_cast<int>(std::clamp(more, 0.0, static_cast<double>(kTilesMax - 1)));
+}
+
+// Copies from where the first one stands to the end of the travel; it itself always counts.
+int CopiesOnTravel(const Extent& extent, const Travel& travel, double pitch) {
+  return std::max(1, CopiesOn(travel.high - extent.low, extent.high - extent.low, pitch));
+}
+
+Error DoesNotFit(const Tiling& most, const char* what, const Tiling& tiling) {
+  return {ErrorCode::kRml1DoesNotFit,
+          std::string(what) + std::to_string(most.columns) + " columns and " +
+              std::to_string(most.rows) + " rows fit, " + ShortNumber(tiling.pitch_x_mm) +
+              " mm and " + ShortNumber(tiling.pitch_y_mm) + " mm from copy to copy",
+          {}};
+}
+
+// Columns, rows and the way between them.
+Result<Tiling> TilingOf(const BodyFinder& body, const Profile& profile,
+                        const TileOptions& options) {
+  const double units = profile.units_per_mm;
+  const double gap = std::ceil(options.gap_mm * units - 1e-6);
+  const double width = body.x().high - body.x().low;
+  const double height = body.y().high - body.y().low;
+  const double pitch_x = std::ceil(width) + gap;
+  const double pitch_y = std::ceil(height) + gap;
+  Tiling tiling{.columns = options.columns,
+                .rows = options.rows,
+                .pitch_x_mm = pitch_x / units,
+                .pitch_y_mm = pitch_y / units};
+  const Tiling most{.columns = CopiesOnTravel(body.x(), profile.x, pitch_x),
+                    .rows = CopiesOnTravel(body.y(), profile.y, pitch_y)};
+  if (options.within_mm) {
+    tiling.columns = CopiesOn((*options.within_mm)[0] * units, width, pitch_x);
+    tiling.rows = CopiesOn((*options.within_mm)[1] * units, height, pitch_y);
+    if (tiling.columns == 0 || tiling.rows == 0) {
+      return Error{ErrorCode::kRml1DoesNotFit,
+                   "the paths of one copy take " + ShortNumber(width / units) + " by " +
+                       ShortNumber(height / units) + " mm, more than " +
+                       ShortNumber((*options.within_mm)[0]) + " by " +
+                       ShortNumber((*options.within_mm)[1]) + " mm",
+                   {}};
+    }
+    if (options.force) return tiling;
+    tiling.travel_is_less = most.columns < tiling.columns || most.rows < tiling.rows;
+    tiling.columns = std::min(tiling.columns, most.columns);
+    tiling.rows = std::min(tiling.rows, most.rows);
+  }
+  if (!options.force && (tiling.columns > most.columns || tiling.rows > most.rows))
+    return DoesNotFit(most, "at most ", tiling);
+  return tiling;
 }
 
 // A copy of the body, so many units from the first; the tool comes from the copy before it.
-Result<std::string> CopyOf(std::string_view stream, const Profile& profile, const BodyFinder& body,
-                           const UnitVector& by, const UnitVector& before, double lifted_z) {
-  const UnitVector owed = {body.from().x + by[0] - body.to().x - before[0],
-                           body.from().y + by[1] - body.to().y - before[1],
+struct Place {
+  UnitVector by{};
+  UnitVector before{};
+};
+Status WriteCopy(const machine::Bytes& stream, const Profile& profile, const BodyFinder& body,
+                 const Place& place, double lifted_z, const ByteSink& sink) {
+  const UnitVector owed = {body.from().x + place.by[0] - body.to().x - place.before[0],
+                           body.from().y + place.by[1] - body.to().y - place.before[1],
                            body.from().z - lifted_z};
-  StreamMover mover(stream, profile, by, owed, body.part());
+  StreamMover mover(stream, profile, place.by, owed, body.part(), sink);
   StreamWalk(profile, mover).Run(stream);
-  return mover.Take();
+  return mover.Finish();
 }
 
 Status CheckOptions(const TileOptions& options) {
@@ -211,16 +255,64 @@ Status CheckOptions(const TileOptions& options) {
                              std::to_string(kTilesMax) + " are possible");
   }
   if (!(options.gap_mm >= 0.0 && std::isfinite(options.gap_mm)))
-    return InvalidArgument("the gap is " + ShortNumber(options.gap_mm) + " mm");
+    return InvalidArgument("the gap is " + ShortNumber(options.gap_mm) +
+                           " mm; it must be 0 or more");
+  for (const double edge : options.within_mm.value_or(std::array<double, 2>{1.0, 1.0})) {
+    if (!(edge > 0.0 && std::isfinite(edge)))
+      return InvalidArgument("the field is " + ShortNumber(edge) + " mm; it must be above 0");
+  }
+  return {};
+}
+
+// Portions, so that what is copied need not stay in memory.
+void WritePart(const machine::Bytes& stream, std::size_t begin, std::size_t end,
+               const ByteSink& sink) {
+  while (begin < end) {
+    const std::size_t part = std::min(end - begin, machine::kReleaseEvery);
+    sink(stream->substr(begin, part));
+    begin += part;
+    stream.Release();
+  }
+}
+
+// The copies behind the first one, row by row, each with what comes before it.
+Status WriteCopies(const machine::Bytes& stream, const Profile& profile, const BodyFinder& body,
+                   const Tiling& tiling, const TileOptions& options, const ByteSink& sink) {
+  Interlude between(body, profile);
+  between.Lift(body);
+  if (const Status restored = between.Restore(body.start(), body.end()); !restored)
+    return restored.error();
+  std::size_t size = static_cast<std::size_t>(body.part().end);
+  const ByteSink counted = [&](std::string_view part) {
+    size += part.size();
+    sink(part);
+  };
+  Place place;
+  for (int row = 0; row < tiling.rows; ++row) {
+    for (int column = 0; column < tiling.columns; ++column) {
+      if (row == 0 && column == 0) continue;
+      place.by = {column * std::round(tiling.pitch_x_mm * profile.units_per_mm),
+                  row * std::round(tiling.pitch_y_mm * profile.units_per_mm), 0.0};
+      counted(between.text());
+      const Status copy = WriteCopy(stream, profile, body, place, between.lifted_z(), counted);
+      if (!copy) return copy.error();
+      if (size > options.bytes_max) {
+        return Error{ErrorCode::kRml1ProductTooLarge,
+                     "more than " + std::to_string(options.bytes_max) + " bytes",
+                     {}};
+      }
+      place.before = place.by;
+    }
+  }
   return {};
 }
 
 }  // namespace
 
-Result<TiledStream> TileStream(std::string_view stream, const machine::Parameters& parameters,
-                               const TileOptions& options) {
+Result<Tiling> TileStream(const machine::Bytes& stream, const machine::Parameters& parameters,
+                          const TileOptions& options, const ByteSink& sink) {
   if (const Status good = CheckOptions(options); !good) return good.error();
-  if (stream.empty()) return Error{ErrorCode::kCellEmptyProgram, "the stream has no bytes", {}};
+  if (stream->empty()) return Error{ErrorCode::kCellEmptyProgram, "the stream has no bytes", {}};
   const Result<Profile> profile = MakeProfile(parameters);
   if (!profile) return profile.error();
   BodyFinder body(*profile);
@@ -231,50 +323,26 @@ Result<TiledStream> TileStream(std::string_view stream, const machine::Parameter
     return NotTiled("the data ends inside a command: end it with a semicolon");
   if (!body.found()) return NotTiled("the tool never goes into the work");
   if (const double lost = walk.device().carriage().lost().length; lost > 0.0) {
-    return Error{ErrorCode::kRml1DoesNotFit,
-                 "the program alone cuts " + ShortNumber(lost / profile->units_per_mm) +
-                     " mm beyond the travel: move it, or set its origin",
+    return Error{ErrorCode::kRml1WorkBeyondTravel,
+                 "of the program alone " + ShortNumber(lost / profile->units_per_mm, 3) +
+                     " mm would not be cut: how large a copy is cannot be told",
                  {}};
   }
-  const double gap = std::ceil(options.gap_mm * profile->units_per_mm - 1e-6);
-  const double pitch_x = std::ceil(body.x().high - body.x().low) + gap;
-  const double pitch_y = std::ceil(body.y().high - body.y().low) + gap;
-  if (const Status fits = CheckFits(body, *profile, options, pitch_x, pitch_y); !fits)
-    return fits.error();
-  Interlude between(body, *profile);
-  between.Lift(body);
-  if (const Status restored = between.Restore(body.start(), body.end()); !restored)
-    return restored.error();
+  const Result<Tiling> tiling = TilingOf(body, *profile, options);
+  if (!tiling) return tiling.error();
 
   const auto end = static_cast<std::size_t>(body.part().end);
-  TiledStream made{.stream = std::string(stream.substr(0, end)),
-                   .pitch_x_mm = pitch_x / profile->units_per_mm,
-                   .pitch_y_mm = pitch_y / profile->units_per_mm};
-  UnitVector before{};
-  for (int row = 0; row < options.rows; ++row) {
-    for (int column = 0; column < options.columns; ++column) {
-      if (row == 0 && column == 0) continue;
-      const UnitVector by = {column * pitch_x, row * pitch_y, 0.0};
-      const Result<std::string> copy =
-          CopyOf(stream, *profile, body, by, before, between.lifted_z());
-      if (!copy) return copy.error();
-      made.stream += between.text() + *copy;
-      if (made.stream.size() > options.bytes_max) {
-        return Error{ErrorCode::kRml1ProductTooLarge,
-                     "more than " + std::to_string(options.bytes_max) + " bytes",
-                     {}};
-      }
-      before = by;
-    }
-  }
-  if (options.columns * options.rows > 1) {  // the ending goes back to the first copy
+  WritePart(stream, 0, end, sink);
+  const Status copied = WriteCopies(stream, *profile, body, *tiling, options, sink);
+  if (!copied) return copied.error();
+  if (tiling->columns * tiling->rows > 1) {  // the ending goes back to the first copy
     Interlude ending(body, *profile);
     ending.Lift(body);
     ending.SetMode(body.end().absolute);
-    made.stream += ending.text();
+    sink(ending.text());
   }
-  made.stream += stream.substr(end);
-  return made;
+  WritePart(stream, end, stream->size(), sink);
+  return tiling;
 }
 
 }  // namespace rmlcell::rml1

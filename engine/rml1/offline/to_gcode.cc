@@ -13,15 +13,19 @@ namespace {
 
 class GcodeWriter final : public PhraseListener {
  public:
-  GcodeWriter(std::string_view stream, const Profile& profile)
-      : stream_(stream), profile_(profile) {
-    gcode_.text =
+  GcodeWriter(const machine::Bytes& stream, const Profile& profile, const ByteSink& sink)
+      : stream_(stream), profile_(profile), sink_(sink) {
+    text_ =
         "(made of an RML-1 stream; X0 Y0 is its work origin, Z0 its Z0)\n"
         "G21 G90 G17 G94\n";
   }
 
   bool OnPhrase(const Phrase& phrase) override {
-    for (const Finding& finding : phrase.findings) Note(finding);
+    for (const Finding& finding : phrase.findings) Note(ToDiagnostic(finding, *stream_, lines_));
+    if (phrase.kind == Phrase::Kind::kIncomplete) {
+      NoteAt(phrase.begin, ErrorCode::kRml1IncompleteCommand,
+             "the data ends inside a command, which is not carried out");
+    }
     Point at = phrase.physical_before;
     for (const Action& action : phrase.actions) {
       if (action.kind != Action::Kind::kMotion) {
@@ -31,46 +35,87 @@ class GcodeWriter final : public PhraseListener {
       if (std::abs(action.to.a - at.a) > kSameAngle_deg) {
         error_ = Error{ErrorCode::kRml1RotaryMotion,
                        "A goes to " + ShortNumber(action.to.a) + " degrees",
-                       lines_.At(stream_, phrase.begin, 1)};
+                       lines_.At(*stream_, phrase.begin, 1)};
         return false;
       }
+      NoteFeed(action, phrase);
       AddMotion(action, at);
       at = action.to;
     }
+    constexpr std::size_t kPart = std::size_t{64} << 10;
+    if (text_.size() >= kPart) HandOver();
     return true;
   }
 
-  Result<GcodeText> Take() {
+  Result<ToGcodeNotes> Finish() {
     if (error_) return *error_;
-    gcode_.text += "M30\n";
-    return std::move(gcode_);
+    if (spindle_turns_) {
+      NoteAt(static_cast<std::int64_t>(stream_->size()), ErrorCode::kRml1SpindleLeftOn,
+             "the spindle goes on turning at the end, where M30 stops it");
+    }
+    text_ += "M30\n";
+    HandOver();
+    return std::move(notes_);
   }
 
  private:
-  void Note(const Finding& finding) {
-    if (gcode_.findings.size() < machine::kDiagnosticsMax) {
-      gcode_.findings.push_back(ToDiagnostic(finding, stream_, lines_));
-    } else {
-      ++gcode_.findings_dropped;
+  void HandOver() {
+    sink_(text_);
+    text_.clear();
+  }
+
+  // For who makes the G-code, and in it for who reads it.
+  void Note(Diagnostic finding) {
+    if (notes_.findings.size() == machine::kDiagnosticsMax) {
+      ++notes_.findings_dropped;
+      return;
     }
+    std::string comment = CodeText(finding.code) + " in the stream: " + finding.detail;
+    for (char& c : comment) {
+      if (c < ' ' || c > '~') c = '?';
+      if (c == '(') c = '[';
+      if (c == ')') c = ']';
+    }
+    text_ += "(" + comment + ")\n";
+    notes_.findings.push_back(std::move(finding));
+  }
+  void NoteAt(std::int64_t offset, ErrorCode code, std::string detail) {
+    Note({.code = code,
+          .severity = Lookup(code).severity,
+          .detail = std::move(detail),
+          .where = lines_.At(*stream_, offset, 1)});
+  }
+
+  // The F of a cut that the program gave no speed for is that of this machine.
+  void NoteFeed(const Action& action, const Phrase& phrase) {
+    const bool cuts =
+        action.use == machine::MotionUse::kCut || action.use == machine::MotionUse::kPlunge;
+    const bool given = action.chain == Chain::kToolDown ? phrase.after->xy_speed_given
+                                                        : phrase.after->z_speed_given;
+    if (!cuts || given || feed_noted_ || !(action.to.z < phrase.after->z0)) return;
+    feed_noted_ = true;
+    NoteAt(phrase.begin, ErrorCode::kRml1FeedNotGiven,
+           "a cut without a feed rate: F is the default of this machine");
   }
 
   void Add(const Action& action) {
+    spindle_turns_ = action.kind == Action::Kind::kSpindleStart ||
+                     (spindle_turns_ && action.kind != Action::Kind::kSpindleStop);
     switch (action.kind) {
       case Action::Kind::kSpindleStart:
-        gcode_.text += "S" + std::to_string(action.rpm) + " M3\n";
+        text_ += "S" + std::to_string(action.rpm) + " M3\n";
         break;
       case Action::Kind::kSpindleSpeed:
-        gcode_.text += "S" + std::to_string(action.rpm) + "\n";
+        text_ += "S" + std::to_string(action.rpm) + "\n";
         break;
       case Action::Kind::kSpindleStop:
-        gcode_.text += "M5\n";
+        text_ += "M5\n";
         break;
       case Action::Kind::kDwell:
-        gcode_.text += "G4 P" + ShortNumber(action.dwell_ms / 1000.0) + "\n";
+        text_ += "G4 P" + ShortNumber(action.dwell_ms / 1000.0) + "\n";
         break;
       case Action::Kind::kPause:
-        gcode_.text += "M0\n";
+        text_ += "M0\n";
         break;
       case Action::Kind::kMotion:
         break;
@@ -95,30 +140,35 @@ class GcodeWriter final : public PhraseListener {
       constexpr double kPerMinute = 60.0;
       line += " F" + ShortNumber(feed_mm_s_ * kPerMinute);
     }
-    gcode_.text += line + "\n";
+    text_ += line + "\n";
   }
 
-  std::string_view stream_;
+  const machine::Bytes& stream_;
   const Profile& profile_;
-  GcodeText gcode_;
+  const ByteSink& sink_;
+  std::string text_;  // not handed over yet
+  ToGcodeNotes notes_;
   std::optional<Error> error_;
   LineCounter lines_;
   double feed_mm_s_ = 0.0;
   bool knows_xy_ = false;
+  bool feed_noted_ = false;
+  bool spindle_turns_ = false;
 };
 
 }  // namespace
 
-Result<GcodeText> ToGcode(std::string_view stream, const machine::Parameters& parameters) {
-  if (stream.empty()) return Error{ErrorCode::kCellEmptyProgram, "the stream has no bytes", {}};
+Result<ToGcodeNotes> ToGcode(const machine::Bytes& stream, const machine::Parameters& parameters,
+                             const ByteSink& sink) {
+  if (stream->empty()) return Error{ErrorCode::kCellEmptyProgram, "the stream has no bytes", {}};
   const Result<Profile> profile = MakeProfile(parameters);
   if (!profile) return profile.error();
-  GcodeWriter writer(stream, *profile);
+  GcodeWriter writer(stream, *profile, sink);
   StreamWalk walk(*profile, writer);
   if (walk.Run(stream)) {
     if (const Status known = CheckIsStream(walk.device()); !known) return known.error();
   }
-  return writer.Take();
+  return writer.Finish();
 }
 
 }  // namespace rmlcell::rml1

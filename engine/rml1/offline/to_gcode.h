@@ -1,19 +1,22 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/result.h"
+#include "engine/machine/bytes.h"
 #include "engine/machine/parameters.h"
+#include "engine/rml1/offline/byte_sink.h"
 
 namespace rmlcell::rml1 {
 
-struct GcodeText {
-  std::string text;
-  std::vector<Diagnostic> findings;  // about the stream, as a check has them
+// What is about the stream and G-code cannot say: the errors and advice of a check, a last command
+// that is not complete, a feed rate that the program does not set (Rml1FeedNotGiven, 8013), a
+// spindle that turns at the end, where M30 stops it (Rml1SpindleLeftOn, 8012). Each stands in the
+// G-code, too, as a comment in its place.
+struct ToGcodeNotes {
+  std::vector<Diagnostic> findings;
   std::uint64_t findings_dropped = 0;
 };
 
@@ -22,8 +25,10 @@ struct GcodeText {
 // parameters, at the speeds that it would use; spindle, dwells and pauses in their places. Motions
 // at the travel speed are G0, all others G1 with F in mm/min. Z words follow !ZO: the zero of the
 // G-code stays where it was at power-on.
+// A stream of which the machine leaves out a part (CheckWork, work_check.h) comes out without it.
 // Errors: as MakeProfile, CellEmptyProgram, Rml1NoProgram (8007), Rml1RotaryMotion (8107) when the
 // rotary axis turns.
-Result<GcodeText> ToGcode(std::string_view stream, const machine::Parameters& parameters);
+Result<ToGcodeNotes> ToGcode(const machine::Bytes& stream, const machine::Parameters& parameters,
+                             const ByteSink& sink);
 
 }  // namespace rmlcell::rml1

@@ -1,8 +1,12 @@
 #include "engine/simulation/material/milling_text.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <ranges>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/number_text.h"
@@ -31,33 +35,68 @@ constexpr ShapeName kShapes[] = {
     {"flat", MillTool::Shape::kFlat}, {"end", MillTool::Shape::kFlat},
     {"ball", MillTool::Shape::kBall}, {"vee", MillTool::Shape::kVee},
     {"cone", MillTool::Shape::kVee},  {"engrave", MillTool::Shape::kVee}};
+constexpr std::array<std::string_view, 4> kParts = {"flutes", "flute", "shank", "holder"};
 
-// "flutes=2", "flute=12", "shank=6", "holder=20@25"; false: it is none of them.
-bool TakeShankPart(std::string_view part, MillTool& tool) {
-  const std::size_t equals = part.find('=');
-  const std::string_view name = part.substr(0, equals);
-  const std::string_view value = part.substr(equals + 1);
+// One letter too many, missing, another, or two changed about; of two letters that is no likeness.
+bool AreAlike(std::string_view a, std::string_view b) {
+  if (a.size() > b.size()) std::swap(a, b);
+  if (a.size() < 2 || b.size() - a.size() > 1 || a == b) return false;
+  const auto differ = static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
+  const std::string_view rest_a = a.substr(differ);
+  const std::string_view rest_b = b.substr(differ);
+  if (a.size() < b.size()) return rest_a == rest_b.substr(1);
+  if (rest_a.substr(1) == rest_b.substr(1)) return true;
+  return rest_a.size() > 1 && rest_a[0] == rest_b[1] && rest_a[1] == rest_b[0] &&
+         rest_a.substr(2) == rest_b.substr(2);
+}
+
+// "; did you mean flat?"
+template <class Names>
+std::string Nearest(std::string_view name, const Names& names) {
+  for (const auto& one : names) {
+    if (AreAlike(name, one)) return "; did you mean " + std::string(one) + "?";
+  }
+  return {};
+}
+
+// "flutes=2", "flute=12", "shank=6", "holder=20@25": what is wrong with the value; nothing:
+// nothing.
+std::string_view TakeValue(std::string_view name, std::string_view value, MillTool& tool) {
   if (name == "holder") {
     const auto numbers = NumbersBetween(value, '@');
-    if (!numbers || numbers->size() != 2 || !(numbers->front() > 0.0)) return false;
+    if (!numbers || numbers->size() != 2 || !(numbers->front() > 0.0))
+      return "write its width and where it begins, holder=20@25";
     tool.holder_radius_mm = 0.5 * numbers->front();
     tool.holder_from_mm = numbers->back();
-    return true;
+    return {};
   }
   const std::optional<double> number = ParseDouble(value);
-  if (!number || !(*number > 0.0)) return false;
+  if (!number || !(*number > 0.0)) return "write a number above 0";
   if (name == "flutes") {
     constexpr double kFlutesMax = 100.0;
-    if (*number != std::floor(*number) || *number > kFlutesMax) return false;
+    if (*number != std::floor(*number) || *number > kFlutesMax)
+      return "write a whole number from 1 to 100";
     tool.flutes = static_cast<int>(*number);
   } else if (name == "flute") {
     tool.flute_mm = *number;
-  } else if (name == "shank") {
-    tool.shank_radius_mm = 0.5 * *number;
   } else {
-    return false;
+    tool.shank_radius_mm = 0.5 * *number;
   }
-  return true;
+  return {};
+}
+
+// One part behind the measures, and that it comes once. What is wrong; nothing: nothing.
+std::string TakePart(std::string_view part, std::vector<std::string_view>& taken, MillTool& tool) {
+  const std::size_t equals = part.find('=');
+  const std::string_view name = part.substr(0, equals);
+  if (std::ranges::find(kParts, name) == kParts.end())
+    return "'" + std::string(part) + "' is no part of a tool" + Nearest(name, kParts);
+  if (std::ranges::find(taken, name) != taken.end())
+    return "'" + std::string(part) + "' gives " + std::string(name) + " again";
+  taken.push_back(name);
+  if (equals == std::string_view::npos) return "'" + std::string(part) + "' has no value";
+  const std::string_view wrong = TakeValue(name, part.substr(equals + 1), tool);
+  return wrong.empty() ? std::string() : "'" + std::string(part) + "': " + std::string(wrong);
 }
 
 // Diameter, and of a vee its angle and perhaps the diameter of its tip.
@@ -94,28 +133,33 @@ Result<Stock> ParseStock(std::string_view text) {
 
 // tool := shape ":" diameter [ ":" angle [ ":" tip ] ] { ":" name "=" value }
 Result<MillTool> ParseTool(std::string_view text) {
-  const Error wrong = InvalidArgument(
-      "'" + std::string(text) +
-      "' is no tool: write flat:3, ball:3, vee:6:60 or vee:6:60:0.2, and what is above it as in "
-      "flat:3:flutes=2:flute=12:shank=6:holder=20@25");
+  // `at`: of what is wrong, so that it is found in a long text.
+  const auto wrong = [text](const std::string& what, std::size_t at) {
+    return InvalidArgument("'" + std::string(text) + "' is no tool" +
+                           (what.empty() ? "" : ": at " + std::to_string(at + 1) + ", " + what) +
+                           ": write flat:3, ball:3, vee:6:60 or vee:6:60:0.2, and what is above it "
+                           "as in flat:3:flutes=2:flute=12:shank=6:holder=20@25");
+  };
+  const std::size_t colon = text.find(':');
+  const std::string_view shape = text.substr(0, colon);
+  const auto known = std::ranges::find(kShapes, shape, &ShapeName::name);
+  if (known == std::end(kShapes)) {
+    const std::string near = Nearest(shape, kShapes | std::views::transform(&ShapeName::name));
+    return wrong(near.empty() ? near : "'" + std::string(shape) + "' is no shape" + near, 0);
+  }
   const std::size_t named = text.find('=');
   const std::size_t end = named == std::string_view::npos ? text.size() : text.rfind(':', named);
-  const std::size_t colon = text.find(':');
-  if (end == std::string_view::npos || colon >= end) return wrong;
+  if (end == std::string_view::npos || colon >= end) return wrong({}, 0);
   MillTool tool;
-  bool known = false;
-  for (const ShapeName& one : kShapes) {
-    if (one.name != text.substr(0, colon)) continue;
-    tool.shape = one.shape;
-    known = true;
-  }
+  tool.shape = known->shape;
   const auto numbers = NumbersBetween(text.substr(colon + 1, end - colon - 1), ':');
-  if (!known || !numbers || !TakeMeasures(*numbers, tool)) return wrong;
-  for (std::string_view rest = text.substr(end); !rest.empty();) {
-    rest.remove_prefix(1);
-    const std::string_view part = rest.substr(0, rest.find(':'));
-    if (!TakeShankPart(part, tool)) return wrong;
-    rest.remove_prefix(part.size());
+  if (!numbers || !TakeMeasures(*numbers, tool)) return wrong({}, 0);
+  std::vector<std::string_view> taken;
+  for (std::size_t at = end; at < text.size();) {
+    ++at;
+    const std::string_view part = text.substr(at, text.find(':', at) - at);
+    if (const std::string what = TakePart(part, taken, tool); !what.empty()) return wrong(what, at);
+    at += part.size();
   }
   if (const Status sound = CheckTool(tool); !sound) return sound.error();
   return tool;

@@ -150,6 +150,21 @@ TEST(MillingText, ReadsShanksAndHolders) {
   EXPECT_TRUE(ParseTool("ball:3:flute=1.5"));  // as high as its end
   EXPECT_TRUE(ParseTool("flat:3:flute=5:holder=9@5"));
   const std::pair<const char*, const char*> refused[] = {
+      {"flat:3:flute=2:flute=3", ": at 16, 'flute=3' gives flute again: write flat:3"},
+      {"flat:3:flutes=2:holder=20@9:flutes=2", ": at 29, 'flutes=2' gives flutes again"},
+      {"flatt:3", "'flatt' is no shape; did you mean flat?"},
+      {"bal:3", "'bal' is no shape; did you mean ball?"},
+      {"vea:6:60", "'vea' is no shape; did you mean vee?"},
+      {"falt:3:flute=9", "'falt' is no shape; did you mean flat?"},
+      {"drill:3", "'drill:3' is no tool: write"},
+      {"x:3", "'x:3' is no tool: write"},
+      {"flat:3:flute=9:shnk=6", ": at 16, 'shnk=6' is no part of a tool; did you mean shank?"},
+      {"flat:3:fluets=2", "did you mean flutes?"},
+      {"flat:3:flutes", "is no tool"},
+      {"flat:3:flute=9:shank", ": at 16, 'shank' has no value"},
+      {"flat:3:flutes=1.5", "at 8, 'flutes=1.5': write a whole number from 1 to 100"},
+      {"flat:3:holder=20", "at 8, 'holder=20': write its width and where it begins, holder=20@25"},
+      {"flat:3:flute=9:shank=0", "at 16, 'shank=0': write a number above 0"},
       {"flat:3:flute", "is no tool"},
       {"flat:3:flute=", "is no tool"},
       {"flat:3:flute=0", "is no tool"},

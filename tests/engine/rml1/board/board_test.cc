@@ -7,12 +7,12 @@
 #include <set>
 #include <string>
 
-#include "engine/rml1/board/board_stream.h"
 #include "engine/rml1/board/contours.h"
 #include "engine/rml1/board/nearest_order.h"
 #include "engine/rml1/board/png_bitmap.h"
 #include "engine/rml1/board/simplify.h"
 #include "engine/rml1/offline/stream_walk.h"
+#include "tests/engine/rml1/board/made_board.h"
 #include "tests/engine/rml1/run_support.h"
 
 namespace rmlcell::rml1 {
@@ -236,7 +236,7 @@ TEST(StreamOfBoard, MillsTheGapAndNoCopper) {
 }
 
 TEST(StreamOfBoard, PassesLieSideBySide) {
-  const Bitmap pad = Picture(std::vector<std::string>(20, std::string(20, '#')));
+  const Bitmap pad = Picture(std::vector<std::string>(20, std::string(20, '#') + '.'));
   const auto parameters = Centred("srm-20");
   const Profile profile = MakeProfile(parameters).value();
   const auto made = StreamOfBoard(pad, parameters,
@@ -288,7 +288,7 @@ TEST(StreamOfBoard, SaysWhichTracesStayJoined) {
 }
 
 TEST(StreamOfBoard, SpeedsAndTheEnds) {
-  const auto made = StreamOfBoard(Picture({"##", "##"}), Centred("srm-20"),
+  const auto made = StreamOfBoard(Picture({"##.", "##."}), Centred("srm-20"),
                                   {.pixel_mm = 0.5, .tool_mm = 1.0, .feed_mm_s = 99, .rpm = 9000});
   ASSERT_TRUE(made);
   EXPECT_TRUE(made->stream.starts_with("DF;\n!MC0;\n!RC7000;\n!MC1;\n")) << made->stream;
@@ -310,9 +310,11 @@ TEST(StreamOfBoard, Refuses) {
   EXPECT_EQ(code(pad, {.pixel_mm = 0.1, .depth_mm = -1}), ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(code(pad, {.pixel_mm = 0.1, .passes = 0}), ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(code(pad, {.pixel_mm = NAN}), ErrorCode::kCellInvalidArgument);
-  // The origin is the corner of the travel: the line around the pad is left of it.
-  EXPECT_EQ(code(pad, {.pixel_mm = 0.1}), ErrorCode::kRml1DoesNotFit);
-  EXPECT_EQ(code(pad, {.pixel_mm = 0.1, .at_x_mm = 5, .at_y_mm = 5}), ErrorCode::kCellUsage);
+  EXPECT_EQ(code(pad, {.pixel_mm = 0.1}), ErrorCode::kCellUsage);  // nothing to say
+  // Of copper alone there is nothing to part; a board may be as large as its picture.
+  const Bitmap white = Picture({"##", "##"});
+  EXPECT_EQ(code(white, {.pixel_mm = 0.1}), ErrorCode::kRml1NothingToMill);
+  EXPECT_EQ(code(white, {.pixel_mm = 0.1, .outline = true}), ErrorCode::kCellUsage);
   EXPECT_EQ(code(pad, {.pixel_mm = 1e-4, .tool_mm = 50}), ErrorCode::kRml1PictureTooLarge);
 }
 

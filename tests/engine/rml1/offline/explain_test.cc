@@ -42,6 +42,14 @@ TEST(Explain, UnitsAreThoseOfTheProfile) {
 }
 
 TEST(Explain, SettingsSayWhatHoldsAfterwards) {
+  // T1: Z0 is 20 mm below the top and 40 mm above the bottom; after !ZO-1000, 50 mm above it.
+  EXPECT_EQ(Words("!PZ-4001,200;")[0],
+            "tool down is Z 0 mm, tool up is Z 2 mm; the tool-down height may be from -40 to 0 mm");
+  EXPECT_EQ(Words("!ZO-1000;!PZ5,200;")[1],
+            "tool down is Z 0 mm, tool up is Z 2 mm; the tool-down height may be from -50 to 0 mm");
+  EXPECT_EQ(Words("!PZ-50,-200;")[0],
+            "tool down is Z -0.5 mm, tool up is Z 5 mm; the tool-up height may be from 0 mm");
+  EXPECT_EQ(Words("!ZM-6001;")[0], "machine Z may be from -60 to 0 mm");
   EXPECT_EQ(Words("VS4;!VZ99;!PZ-150,300;!DW7;!MC0;!RC3;!ZO-1000;PR;PR;PD;"),
             (std::vector<std::string>{
                 "cutting speed in X and Y 4 mm/s", "speed of Z and of three axes 60 mm/s",

@@ -6,12 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/rml1/offline/from_gcode.h"
 #include "engine/rml1/offline/gcode_arc.h"
 #include "engine/rml1/offline/gcode_words.h"
 #include "engine/rml1/offline/stream_walk.h"
 #include "engine/rml1/offline/stream_writer.h"
-#include "engine/rml1/offline/to_gcode.h"
+#include "tests/engine/rml1/offline/made_text.h"
 #include "tests/engine/rml1/run_support.h"
 
 namespace rmlcell::rml1 {
@@ -40,7 +39,10 @@ ErrorCode CodeOf(std::string_view text) {
   const StreamOfGcode made = From(text);
   EXPECT_FALSE(made.ok) << text;
   EXPECT_TRUE(made.stream.empty());
-  return made.findings.empty() ? ErrorCode::kCellUsage : made.findings.front().code;
+  for (const Diagnostic& finding : made.findings) {
+    if (finding.severity == Severity::kTool) return finding.code;
+  }
+  return ErrorCode::kCellUsage;
 }
 
 // Where the tool goes, in whole units of the work; points that round to one are one.
@@ -98,11 +100,41 @@ TEST(ToGcode, TheZeroStaysAndTheFirstWordOfXBringsY) {
 }
 
 TEST(ToGcode, ClippingIsDoneAndNoted) {
-  const Result<GcodeText> made = ToGcode("!MC0;Z0,0,-9000;", ParametersOf("t1"));
+  const Result<GcodeText> made = ToGcode("!MC0;!VZ2;Z0,0,-9000;", ParametersOf("t1"));
   ASSERT_TRUE(made);
   EXPECT_NE(made->text.find("G1 Z-40 F120\n"), std::string::npos);  // the bottom
   ASSERT_EQ(made->findings.size(), 1U);
   EXPECT_EQ(made->findings[0].code, ErrorCode::kRml1Clipped);
+}
+
+// What G-code has no word for stands there as a comment, and is told.
+TEST(ToGcode, WhatItCannotSayIsAComment) {
+  const Result<GcodeText> made =
+      ToGcode("!MC0;!PZ-50,200;VS99;PU0,0;PD500,0;PD(9;PD", ParametersOf("t1"));
+  ASSERT_TRUE(made);
+  std::vector<ErrorCode> codes;
+  for (const Diagnostic& finding : made->findings) codes.push_back(finding.code);
+  EXPECT_EQ(codes, (std::vector{ErrorCode::kRml1SpeedClamped, ErrorCode::kRml1FeedNotGiven,
+                                ErrorCode::kRml1UnknownCommand, ErrorCode::kRml1WrongParameters,
+                                ErrorCode::kRml1IncompleteCommand}));
+  // The plunge at the speed of Z, which nobody set, as fast as the way to Z 2 before it.
+  EXPECT_NE(
+      made->text.find("(RML1-E8013 in the stream: a cut without a feed rate: F is the default "
+                      "of this machine)\nG1 Z-0.5\n"),
+      std::string::npos)
+      << made->text;
+  EXPECT_NE(made->text.find("(RML1-E8003 in the stream: VS 99 is beyond the machine)\n"),
+            std::string::npos);
+  // A bracket inside would end the comment.
+  EXPECT_NE(made->text.find("(RML1-E1 in the stream: '[' begins no command)\n"), std::string::npos);
+  EXPECT_NE(
+      ToText("!MC1;!VZ2;VS4;PD1,1;PU;")
+          .find(
+              "(RML1-E8012 in the stream: the spindle goes on turning at the end, where M30 stops "
+              "it)\nM30\n"),
+      std::string::npos);
+  EXPECT_TRUE(
+      ToGcode("!MC0;VS4;!VZ2;!PZ-50,200;PU0,0;PD500,0;PU;", ParametersOf("t1"))->findings.empty());
 }
 
 TEST(ToGcode, RefusesTheRotaryAxisAndWhatIsNoStream) {
@@ -205,9 +237,9 @@ TEST(GcodeArc, CentresRadiiAndTurns) {
 
 TEST(FromGcode, WhatMovesTheToolIsNeverDropped) {
   for (const char* word : {"G41 X1",    "G81 Z-1 R1 F60",
-                           "G28",       "G91",
-                           "G43 H1",    "G92 X0",
-                           "G53 G0 X0", "G18",
+                           "G28",       "G91 X1",
+                           "H1",        "G92 X0",
+                           "G53 G0 X0", "G18.1",
                            "G93",       "G55",
                            "G10 L2",    "M4",
                            "M98 P1",    "A90",
@@ -222,15 +254,18 @@ TEST(FromGcode, WhatMovesTheToolIsNeverDropped) {
   }
   EXPECT_EQ(CodeOf("G0 X1\nG1 X2\n"), ErrorCode::kRml1GcodeFeed);
   EXPECT_EQ(CodeOf("F0\n"), ErrorCode::kRml1GcodeFeed);
-  EXPECT_EQ(CodeOf("G0 X1\nM6 T2\n"), ErrorCode::kRml1GcodeWord);
+  EXPECT_EQ(CodeOf("T1\nG1 X1 F60\nM6 T2\n"), ErrorCode::kRml1GcodeWord);
+  EXPECT_EQ(CodeOf("G28 G91 Z1\n"), ErrorCode::kRml1GcodeWord);
+  EXPECT_EQ(CodeOf("G91 G28 Z0\nG0 X1\n"), ErrorCode::kRml1GcodeWord);  // G90 is missing
   EXPECT_EQ(CodeOf("G0 X1 I1\n"), ErrorCode::kRml1GcodeWord);
   EXPECT_EQ(CodeOf("G0 X90000000\n"), ErrorCode::kRml1GcodeRange);
   EXPECT_EQ(CodeOf("G2 X1 F60\n"), ErrorCode::kRml1GcodeArc);
 }
 
 TEST(FromGcode, LinesThatCannotBeRead) {
-  for (const char* line : {"G0 X", "G0 X1.2.3", "G0 X--1", "(no end", "/G0 X1", "#1=2", "G0 X[1]",
-                           "G0 G1 X1", "G0 X1 X2", "X1", "\xff", "G4", "S-1", "G0 X1e"}) {
+  for (const char* line :
+       {"%%", "% G0", "G0 X", "G0 X1.2.3", "G0 X--1", "(no end", "/G0 X1", "#1=2", "G0 X[1]",
+        "G0 G1 X1", "G0 X1 X2", "X1", "\xff", "G4", "S-1", "G0 X1e"}) {
     EXPECT_EQ(CodeOf(std::string(line) + "\n"), ErrorCode::kRml1GcodeForm) << line;
   }
   const StreamOfGcode made = From("G0 X1\r\nG0 Y\rG0 Z#\n");
@@ -259,6 +294,85 @@ TEST(FromGcode, SpeedsAreRoundedAndSaidOnce) {
   // Only stages, evenly spaced from 4500 to 15000: 8000 is the fifth (RML1-9.31).
   EXPECT_NE(From("S8100\n", "t1s").stream.find("!RC5;"), std::string::npos);
   EXPECT_EQ(From("S8100\n", "t1f").stream.find("!RC"), std::string::npos);
+}
+
+// RS-274: blanks mean nothing, in words and in numbers; letters may be small; leading zeros.
+TEST(FromGcode, BlanksCaseAndLeadingZeros) {
+  const std::string plain = Body("G1 X10.5 Y-2 F600\nG0 Z1\n");
+  for (const char* same :
+       {"G 1 X 1 0 . 5 Y - 2 F6 00\nG 0 Z 1\n", "g01x10.5y-2f600\ng00z1\n",
+        "G1X010.50Y-02.F0600\nG0Z1.\n", "\tN 1 0 G1\tX1\t0.5 Y-2F600 \nN20G0Z+1\n",
+        "(a) G1 (b) X10.5 (c) Y-2 F600 ; d (e\n;(\nG0 Z1 (f;g)\n",
+        "\xEF\xBB\xBF%\nG1 X10.5 Y-2 F600\r\n\r\nG0 Z1\n % (end)\nG0 Z9\n"}) {
+    EXPECT_EQ(Body(same), plain) << same;
+  }
+  const StreamOfGcode made = From("G1 F60 X 1 0 0 . 0 .\n");  // the place has the blanks, too
+  ASSERT_EQ(made.findings.size(), 1U);
+  EXPECT_EQ(made.findings[0].where.column, 8);
+  EXPECT_EQ(made.findings[0].where.length, 13);
+}
+
+// A quarter of radius 2 in each plane; the middle of it is 2 * sqrt(1/2) = 1.414 mm from its centre
+// in both axes. G18 turns from Z to X, G19 from Y to Z: so Fusion leads into a contour.
+TEST(FromGcode, ArcsInAllPlanes) {
+  const auto middle = [](const std::string& arc) {
+    // 0.2 mm: pi / 4 / acos(1 - 0.2 / 2) = 1.74, so two chords.
+    const StreamOfGcode made = From("G1 Z0 F600\n" + arc, "t1", {.tolerance_mm = 0.2});
+    EXPECT_TRUE(made.ok) << made.findings.front().detail;
+    const std::vector<Units> path = PathOf(made.stream, "t1");
+    EXPECT_EQ(path.size(), 4U);
+    return path[2];
+  };
+  // From (0,0,0) with the centre at X 2 (or Y 2), down to Z -2 below the centre.
+  EXPECT_EQ(middle("G18 G2 X2 Z-2 I2 K0\n"), (Units{59, 0, -141}));
+  EXPECT_EQ(middle("G19 G3 Y2 Z-2 J2 K0\n"), (Units{0, 59, -141}));
+  EXPECT_EQ(middle("G18 G3 X2 Z2 I2 K0\n"), (Units{59, 0, 141}));
+  EXPECT_EQ(middle("G18 G2 X2 Z-2 R2 Y1\n"), (Units{59, 50, -141}));
+  EXPECT_EQ(CodeOf("G18 G2 X2 Z-2 I2 J0 F60\n"), ErrorCode::kRml1GcodeArc);
+  EXPECT_EQ(CodeOf("G2 X2 Y2 I2 K0 F60\n"), ErrorCode::kRml1GcodeArc);
+}
+
+// T1: the highest speed with Z is 60 mm/s.
+TEST(FromGcode, RapidsThroughTheWorkAreToldWithTheirLines) {
+  const StreamOfGcode made =
+      From("G0 Z1\nG0 X5\nG1 Z-1 F600\nG0 X9\nG0 Y9\nG0 Z1\nG0 Z-0.5\nG0 X0 Y0 Z2\n");
+  EXPECT_TRUE(made.ok);
+  ASSERT_EQ(made.findings.size(), 2U);
+  EXPECT_EQ(made.findings[0].code, ErrorCode::kRml1GcodeRapidInWork);
+  EXPECT_EQ(made.findings[0].severity, Severity::kWarning);
+  EXPECT_EQ(made.findings[0].where.line, 4);  // lines 4 and 5, and out of the work in line 8
+  EXPECT_EQ(
+      made.findings[0].detail,
+      "G0 leads across below Z 0, here and in 2 more lines: the stream goes there at 60 mm/s");
+  EXPECT_EQ(made.findings[1].where.line, 7);
+  EXPECT_EQ(made.findings[1].detail, "G0 leads down below Z 0: the stream goes there at 60 mm/s");
+  // Up out of the work, across at Z 0, and down to Z 0 are what rapids are for.
+  EXPECT_TRUE(From("G1 Z-1 F600\nG0 Z0\nG0 X5\nG0 Z3\nG0 X0 Z0\n").findings.empty());
+}
+
+// Up to the top, which is 20 mm above Z0 of T1, and then to the origin.
+TEST(FromGcode, HomeIsTheTopAndTheOrigin) {
+  const std::string head = "G1 X5 Y6 Z-1 F600\n";
+  const std::string start = "!VZ10;\nZ500,600,-100;\n!VZ60;\nZ500,600,2000;\n";
+  EXPECT_EQ(Body(head + "G28 G91 Z0.\nG90\n"), start);
+  EXPECT_EQ(Body(head + "G91\nG28 Z0\nG28 X0 Y0\nG90\nM30\n"), start + "!PZ0,2000;\nPU0,0;\n");
+  EXPECT_EQ(Body(head + "G91 G28 Y0\n"), start + "!PZ0,2000;\nPU500,0;\n");
+  EXPECT_EQ(Body(head + "G91 G28\n"), start + "!PZ0,2000;\nPU0,0;\n");
+}
+
+TEST(FromGcode, OneToolMayBeCalledMoreThanOnce) {
+  EXPECT_TRUE(From("G0 Z5\nM6 T1\nG1 X1 F60\nT1 M6\nG1 X2\n").ok);
+  EXPECT_TRUE(From("G0 Z5\nT1\nM6\nG43 Z5 H1\nG1 X1 F60\n").ok);
+  EXPECT_EQ(CodeOf("G1 X1 F60\nM6 T1\n"), ErrorCode::kRml1GcodeWord);
+  EXPECT_EQ(CodeOf("G1 X1 F60\nM6\n"), ErrorCode::kRml1GcodeWord);
+}
+
+// Where work leaves the travel, X 0 to 200 mm and Z down to -40 mm of T1, the line is known.
+TEST(FromGcode, TheFirstLineBeyondTheTravelIsKnown) {
+  EXPECT_FALSE(From("G0 X300\nG1 X200 F60\nG1 Z-40\n").beyond_travel);
+  EXPECT_EQ(From("G1 Z-1 F60\nX5\nX200.01\nX300\n").beyond_travel->line, 3);
+  EXPECT_EQ(From("G1 Z-1 F60\nY-1\n").beyond_travel->line, 2);
+  EXPECT_EQ(From("G1 Z-1 F60\nZ-40.01\n").beyond_travel->line, 2);
 }
 
 TEST(FromGcode, BoundsOfWhatIsMade) {

@@ -1,5 +1,3 @@
-#include "engine/rml1/offline/rewrite.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +7,7 @@
 #include <vector>
 
 #include "engine/rml1/offline/stream_walk.h"
-#include "engine/rml1/offline/tile.h"
+#include "tests/engine/rml1/offline/made_text.h"
 #include "tests/engine/rml1/run_support.h"
 
 namespace rmlcell::rml1 {
@@ -115,12 +113,18 @@ TEST(MoveStream, RefusesWhatItCannotFollow) {
   EXPECT_FALSE(MoveStream(std::string(300, '$'), ParametersOf("t1"), {1, 0, 0}));
 }
 
-// X goes to 200 mm: 199 + 2 leave 1 mm of the cut outside.
-TEST(MoveStream, SaysWhatTheNewPlaceLoses) {
-  const auto made = MoveStream("PU100,100;PD19900,100;", ParametersOf("t1"), {2, 0, 0});
-  ASSERT_TRUE(made);
-  ASSERT_EQ(made->findings.size(), 1U);
-  EXPECT_EQ(made->findings[0].detail, "the moved program leaves 1 mm uncut beyond the travel");
+// Where the tool stands at the surface when the way is owed, it goes up first. T1: the top is 0 and
+// Z0 -2000; !ZM and !ZO count from where the tool stands when coordinates are relative.
+TEST(MoveStream, TheWayThereIsAboveTheWork) {
+  EXPECT_EQ(Moved("PR;Z0,0,-2000;PU100,0;", 1, 2),
+            "PR;Z0,0,-2000;!ZZ0,0,2000,100,200,0,0,0,-2000;PU100,0;");
+  EXPECT_EQ(Moved("PR;!ZM-1500;!ZO0;PU100,0;", 1, 2),
+            "PR;!ZM-1500;!ZO0;!ZZ0,0,1500,100,200,0,0,0,-1500;PU100,0;");
+  // 1 unit above the surface is above it.
+  EXPECT_EQ(Moved("PR;!ZM-1499;!ZO-1;PU100,0;", 1, 2), "PR;!ZM-1499;!ZO-1;!ZZ100,200,0;PU100,0;");
+  // With a way in Z: 50 down at the end of it, for a plunge from the top to 10 below Z0.
+  EXPECT_EQ(Moved("PR;Z0,0,-2010;", 1, 2, -0.5), "PR;!ZZ100,200,0,0,0,-50;Z0,0,-2010;");
+  EXPECT_EQ(Moved("PR;Z0,0,-2090;", 1, 2, 0.5), "PR;!ZZ0,0,50,100,200,0;Z0,0,-2090;");
 }
 
 // A part in the middle of the travel, so that nothing is cut off: in both modes, with homes.
@@ -283,10 +287,57 @@ TEST(TileStream, EveryCopyDoesTheWorkOfTheFirst) {
         "!PZ-10,0;PU10,10;PD30,10;PR5,5;PU;", "PU50,50;PR;!PZ-10,50;PD10,0,0,10;PU;PA;",
         "Z9,9,90;Z9,9,-9,50,9,-9;V9;Z50,9,90;H;", "Z10,10,100;Z10,10,-20,40,10,-20;!ZM0;",
         "!PZ-5,50;D10,10;I5,5,5,0;M90,90;D95,95;M;H;",
-        "!PZ-5,50;PD10,10;PD20,20;!DW5;!RC8;!MC0;PU1,1;", "PR;!PZ-5,50;PD10,10;PU;PD3,3;"}) {
+        "!PZ-5,50;PD10,10;PD20,20;!DW5;!RC8;!MC0;PU1,1;", "PR;!PZ-5,50;PD10,10;PU;PD3,3;",
+        "PR;!PZ-50,100;Z500,500,0;!ZO-1500;Z0,0,-1550;Z300,0,0;PU;PA;PU0,0;",
+        "PR;!PZ-50,100;Z500,500,0;!ZM-1990;Z0,0,-20,30,0,0;PU;PA;PU0,0;",
+        "PA;Z0,0,10;PR;Z300,0,-30,300,0,0;PU;"}) {
     ExpectTiled(part, "t1", 3, 2);
     if (HasFailure()) return;
   }
+}
+
+// T1: Z0 is -2000. The part begins at the top, sets Z0 to 1500 below, cuts from X 500 to 800 and
+// lifts to 100 above. The copy comes from there, (800, 500, -1400), to (400, 0, 0): up first, and
+// Z0 counts from the top again.
+TEST(TileStream, ACopyThatSetsZ0RelativelyBeginsAtTheHeightOfTheFirst) {
+  const auto made = TileStream("PR;!PZ-50,100;Z500,500,0;!ZO-1500;Z0,0,-1550;Z300,0,0;PU;PA;PU0,0;",
+                               ParametersOf("t1"), {.columns = 2, .gap_mm = 1.0});
+  ASSERT_TRUE(made) << made.error().detail;
+  EXPECT_NE(made->stream.find("!ZO-2000;\nPR;\n!ZZ0,0,1400,-400,-500,0;Z500,500,0;!ZO-1500;"),
+            std::string::npos)
+      << made->stream;
+}
+
+// It begins 10 above Z0 and ends 500 above: across at 500, and then down by 490. The first ends at
+// X 600 and is cut from 0, so the copy begins at 700.
+TEST(TileStream, ACopyThatBeginsLowComesFromAbove) {
+  const auto made = TileStream("PA;Z0,0,10;PR;Z300,0,-30,300,0,0;PU;", ParametersOf("t1"),
+                               {.columns = 2, .gap_mm = 1.0});
+  ASSERT_TRUE(made) << made.error().detail;
+  EXPECT_NE(made->stream.find("!ZZ100,0,0,0,0,-490;Z300,0,-30,300,0,0;"), std::string::npos)
+      << made->stream;
+}
+
+// The cuts of kPart are 200 by 100 units; with 1 mm between, 3 mm in X and 2 mm in Y to the next.
+TEST(TileStream, AsManyAsAFieldHasRoomFor) {
+  const auto within = [](double width, double height, double gap = 1.0) {
+    const auto made =
+        TileStream(kPart, ParametersOf("t1"), {.within_mm = {{width, height}}, .gap_mm = gap});
+    if (!made) return made.error().detail;
+    return std::to_string(made->columns) + " x " + std::to_string(made->rows) +
+           (made->travel_is_less ? " on the travel" : "");
+  };
+  EXPECT_EQ(within(8.0, 5.0), "3 x 3");    // 2 + 3 + 3 and 1 + 2 + 2
+  EXPECT_EQ(within(7.99, 4.99), "2 x 2");  // not quite
+  EXPECT_EQ(within(6.0, 1.0, 0.0), "3 x 1");
+  EXPECT_EQ(within(1.99, 5.0), "the paths of one copy take 2 by 1 mm, more than 1.99 by 5 mm");
+  // 66 columns: see SaysHowManyFit.
+  EXPECT_EQ(within(900.0, 1.0), "66 x 1 on the travel");
+  const auto none = TileStream(kPart, ParametersOf("t1"), {.within_mm = {{0.0, 5.0}}});
+  EXPECT_EQ(none.error().code, ErrorCode::kCellInvalidArgument);
+  const auto two = TileStream(kPart, ParametersOf("t1"), {.columns = 2});
+  const auto field = TileStream(kPart, ParametersOf("t1"), {.within_mm = {{5.0, 1.0}}});
+  EXPECT_EQ(two->stream, field->stream);
 }
 
 TEST(TileStream, TheCorpus) {
@@ -304,6 +355,7 @@ TEST(TileStream, TheCorpus) {
       ++tiled;
     } else {
       EXPECT_TRUE(made.error().code == ErrorCode::kRml1DoesNotFit ||
+                  made.error().code == ErrorCode::kRml1WorkBeyondTravel ||
                   made.error().code == ErrorCode::kRml1NotRewritten)
           << made.error().detail;
     }

@@ -1,0 +1,54 @@
+#include "engine/rml1/offline/work_check.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/engine/rml1/run_support.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+std::optional<Error> Checked(std::string_view stream) {
+  return CheckWork(machine::Bytes::Borrowed(stream), ParametersOf("t1")).value();
+}
+
+// T1: X 0 to 200 mm, Y to 150, Z0 20 mm below the top and 40 mm above the bottom; 100 units in a
+// mm.
+TEST(CheckWork, WorkBeyondTheTravelIsToldWithItsRemedy) {
+  const auto wide = Checked("PU1000,100;\nPD20100,100;PU;");
+  ASSERT_TRUE(wide);
+  EXPECT_EQ(wide->code, ErrorCode::kRml1WorkBeyondTravel);
+  EXPECT_EQ(wide->where->line, 2);
+  // From X 10 to 201: 10 to the left at most, and 1 at least.
+  EXPECT_EQ(wide->detail,
+            "1 mm of the work would not be cut: 1 mm beyond the greatest X (200 mm); in X it fits "
+            "moved by -10 to -1 mm");
+  // 220 mm long, on both sides.
+  EXPECT_EQ(Checked("PU-1000,100;PD21000,100;PU;")->detail,
+            "20 mm of the work would not be cut: 10 mm beyond the least X (0 mm), 10 mm beyond the "
+            "greatest X (200 mm); in X it is 20 mm too large for this machine");
+  // From the surface, 20 mm below the top, to 50 below it: 10 to 20 higher.
+  EXPECT_EQ(Checked("!MC1;Z100,100,0;Z100,100,-5000;")->detail,
+            "10 mm of the work would not be cut: 10 mm below the lowest Z (-40 mm); in Z it fits "
+            "moved by 10 to 20 mm");
+}
+
+TEST(CheckWork, WhatCutsNothingMayLieThere) {
+  EXPECT_FALSE(Checked("PU-1000,0;PU100,100;PD20000,100;PU;!ZM0;Z0,0,9000;"));
+  // 0.01 mm is the limit of the verdict.
+  EXPECT_FALSE(Checked("PU1000,100;PD20001,100;PU;"));
+  EXPECT_TRUE(Checked("PU1000,100;PD20002,100;PU;"));
+}
+
+TEST(CheckWork, PartsThatTheMachineRefuses) {
+  const auto refused = Checked("PU1,1;\n!PZ-50,-200;PD100,100;PD9,99999999;");
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->code, ErrorCode::kRml1PartRefused);
+  EXPECT_EQ(refused->where->line, 2);
+  EXPECT_EQ(refused->detail,
+            "coordinates or tool heights that are refused: 2; the tool-up height may be from 0 mm");
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1
