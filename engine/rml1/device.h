@@ -92,6 +92,21 @@ class Device {
   const CommandPlace& first_lost() const { return first_lost_; }
   const CommandPlace& first_refused() const { return first_refused_; }
 
+  // The furthest that !ZO took Z0 from where it was before the program, and where that began.
+  struct MovedZ0 {
+    double by = 0.0;  // device units
+    CommandPlace at{};
+  };
+  const MovedZ0& raised() const { return raised_; }
+  const MovedZ0& lowered() const { return lowered_; }
+
+  // The first commands that rely on what was set before the program; number 0: none does.
+  struct Assumed {
+    CommandPlace mode;     // whether coordinates are absolute
+    CommandPlace heights;  // Z1, Z2
+  };
+  const Assumed& assumed() const { return assumed_; }
+
   // The state of an earlier run (machine_state.h), limited to what this profile can do. Only before
   // the first byte.
   void Restore(const Registers& registers, const Point& at);
@@ -141,6 +156,10 @@ class Device {
   void SetSpindleSpeed(DeviceListener& listener);
   void MoveMachineZ(DeviceListener& listener);
   void SetZ0(DeviceListener& listener);
+  void MoveZ0(double z);
+  void ReliesOnMode();
+  void ReliesOnHeights();
+  void GivePlace(bool x, bool y);
   void RestoreDefaults();
   void StopSpindle(bool waits);
 
@@ -175,6 +194,9 @@ class Device {
   std::uint64_t bytes_foreign_ = 0;
   CommandPlace first_lost_;
   CommandPlace first_refused_;
+  MovedZ0 raised_;
+  MovedZ0 lowered_;
+  Assumed assumed_;
   std::array<int, kFindingKindCount> advised_{};
 };
 

@@ -8,6 +8,9 @@
 namespace rmlcell::simulation {
 namespace {
 
+// Heights are in single precision, and in a picture in 65535 steps: less is no difference.
+constexpr double kSameHeight_mm = 5e-4;
+
 constexpr Colour kGood = {214, 214, 214};
 constexpr Colour kSilent = {255, 255, 255};
 constexpr Colour kTooDeep = {190, 0, 0};
@@ -41,8 +44,10 @@ class TargetComparison {
       }
     }
     const double here = std::max(field_.height(column, row), bottom_);
-    return {.left_mm = std::max(0.0, here - std::max(high, bottom_)),
-            .deep_mm = std::max(0.0, std::max(low, bottom_) - here),
+    const double left = here - std::max(high, bottom_);
+    const double deep = std::max(low, bottom_) - here;
+    return {.left_mm = left > kSameHeight_mm ? left : 0.0,
+            .deep_mm = deep > kSameHeight_mm ? deep : 0.0,
             .compared = true};
   }
 
