@@ -72,7 +72,10 @@ class Device {
   }
 
   // The stream is over: its last statement counts although nothing ended it (RML1-7.04).
-  void EndOfData() { programmed_.Finish(); }
+  void EndOfData() {
+    programmed_.Finish();
+    ReliesOnZ0();
+  }
 
   const Registers& registers() const { return registers_; }
   const Carriage& carriage() const { return carriage_; }
@@ -92,7 +95,8 @@ class Device {
   const CommandPlace& first_lost() const { return first_lost_; }
   const CommandPlace& first_refused() const { return first_refused_; }
 
-  // The furthest that !ZO took Z0 from where it was before the program, and where that began.
+  // The furthest that !ZO took Z0 from where it was before the program, for a motion or for the
+  // end, and which one began it.
   struct MovedZ0 {
     double by = 0.0;  // device units
     CommandPlace at{};
@@ -157,6 +161,7 @@ class Device {
   void MoveMachineZ(DeviceListener& listener);
   void SetZ0(DeviceListener& listener);
   void MoveZ0(double z);
+  void ReliesOnZ0();
   void ReliesOnMode();
   void ReliesOnHeights();
   void GivePlace(bool x, bool y);
@@ -196,6 +201,7 @@ class Device {
   CommandPlace first_refused_;
   MovedZ0 raised_;
   MovedZ0 lowered_;
+  CommandPlace z0_moved_by_;
   Assumed assumed_;
   std::array<int, kFindingKindCount> advised_{};
 };

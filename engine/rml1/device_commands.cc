@@ -78,6 +78,7 @@ void Device::RunSet(DeviceListener& listener) {
   const CommandRow& row = reader_.row();
   const auto [a, b, c] = operands_.set;
   ++registers_.act;
+  ReliesOnZ0();
   const double lost = carriage_.lost().length;
   ApplyEffects(row);
   ReliesOnMode();
@@ -104,6 +105,7 @@ void Device::RunSet(DeviceListener& listener) {
 void Device::RunBare(DeviceListener& listener) {
   const CommandRow& row = reader_.row();
   ++registers_.act;
+  ReliesOnZ0();
   const double lost = carriage_.lost().length;
   ApplyEffects(row);
   programmed_.OnBare(row);
@@ -246,6 +248,7 @@ void Device::OnGroup(DeviceListener& listener) {
     return;
   }
   ReliesOnMode();
+  ReliesOnZ0();
   ++registers_.act;
   const Programmed::AxisGroup& named = group_.named;
   if (registers_.absolute) GivePlace(named.has_x, named.has_y);
@@ -389,11 +392,19 @@ void Device::SetZ0(DeviceListener& listener) {
 // The material stays where it is: RML1-9.11.
 void Device::MoveZ0(double z) {
   registers_.z0 = z;
+  z0_moved_by_ = command_;
+}
+
+// When something goes by it, or the machine is left with it.
+void Device::ReliesOnZ0() {
+  const double up = registers_.z0 - registers_.surface_z;
   const auto note = [&](double by, MovedZ0& furthest) {
-    if (by > furthest.by) furthest = {.by = by, .at = furthest.by > 0.0 ? furthest.at : command_};
+    if (!(by > furthest.by)) return;
+    if (furthest.by == 0.0) furthest.at = z0_moved_by_;
+    furthest.by = by;
   };
-  note(z - registers_.surface_z, raised_);
-  note(registers_.surface_z - z, lowered_);
+  note(up, raised_);
+  note(-up, lowered_);
 }
 
 // DF (RML1-3B.01).

@@ -142,6 +142,10 @@ TEST(Verdict, OfZ0ThatIsMoved) {
   const auto checked =
       Mill().Translate({.name = "a.rml", .bytes = moved("-1000", "1200")}, MillOf("t1"), {});
   EXPECT_NEAR(FigureOf(checked.figures, "box_mm.zmin"), -2.0, 1e-12);
+  // Put back before anything goes by it, it harms nothing; left behind it does to what comes next.
+  EXPECT_EQ(TextOf(OfStream(Work("PD200,100;PU;!ZO-1000;!ZO;"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(Work("PD200,100;") + "!ZO-1000;")),
+            raised + "10.000 mm: so much less deep is what follows @9");
   // Where the machine is told to have it there, nothing moves.
   const auto told = *machine::MakeParameters(Mill(), "t1", {{"Z0", "-10"}});
   EXPECT_EQ(TextOf(VerdictOf(Mill(), told, moved("-1000"))), "GOOD");
