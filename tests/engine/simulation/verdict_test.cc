@@ -425,6 +425,7 @@ TEST(Verdict, OfWhatIsLeftBesideItsTarget) {
     return TextOf(Judge(report));
   };
   EXPECT_EQ(judged(0.1, 0.1), "GOOD");
+  EXPECT_EQ(judged(0.100001, 0.100001), "GOOD");
   EXPECT_EQ(judged(0.11, 0.0), "DOUBTFUL; CELL-E9414 0.110 mm stand above the target");
   EXPECT_EQ(judged(0.0, 0.11), "BAD; CELL-E9413 the part is cut 0.110 mm below its target");
 }
