@@ -251,7 +251,7 @@ void Device::OnGroup(DeviceListener& listener) {
   ReliesOnZ0();
   ++registers_.act;
   const Programmed::AxisGroup& named = group_.named;
-  if (registers_.absolute) GivePlace(named.has_x, named.has_y);
+  if (registers_.absolute) GivePlace(named.has_x, named.has_y || !profile_->has_y);
   if (named.has_x || named.has_y || named.has_z) programmed_.OnGroup(named);
   const double lost = carriage_.lost().length;
   carriage_.MoveXYZ(context(), group_.to);

@@ -281,6 +281,10 @@ TEST(Verdict, OfAPlaceThatNobodyGave) {
   EXPECT_EQ(begin("H;PR;PD100,0;"), "GOOD");
   EXPECT_EQ(begin("!ZEX100;PR;PD100,0;"), "DOUBTFUL; RML1-E8021 2.000" + said + "7");
   EXPECT_EQ(begin("!ZEX100Y100;PR;PD100,0;"), "GOOD");
+  // A machine without Y asks for none.
+  EXPECT_EQ(TextOf(VerdictOf(Mill(), MillOf("t1n"),
+                             "VS10;!VZ10;!MC1;!ZEX100Z200;!ZEZ-50;!ZEX200;!ZEZ200;!MC0;")),
+            "GOOD");
   // Down where it stands, and from there to a place that is given.
   EXPECT_EQ(begin("PD100,0;"), "DOUBTFUL; RML1-E8021 2.000" + said + "5");
   EXPECT_EQ(begin("Z0,0,200,0,0,-100;"), "GOOD");
