@@ -43,7 +43,8 @@ struct MotionDone {
   double travelled = 0.0;        // along motion->path, at `end`; short of its length when stopped
   double profile_start_s = 0.0;  // time within motion->speed at `start`
   double programmed_mm_s =
-      0.0;  // feed rate asked for, override included; 0: as fast as the axes can
+      0.0;              // feed rate asked for, override included; 0: as fast as the axes can
+  bool in_work = true;  // false: a cut or plunge of a tool that nowhere takes material off
   bool beam_on = false;
   PowerBySpeed power{};  // laser: in force while the beam is on
 };

@@ -16,11 +16,12 @@ MotionUse UseOfHeight(double from_z, double to_z, bool into_work) {
   return into_work ? MotionUse::kPlunge : MotionUse::kTravel;
 }
 
-// Three-axis motion says nothing about its purpose: below Z0 there is material.
-MotionUse UseOfThreeAxis(const Point& from, const Point& to, bool same_xy, double z0) {
-  if (same_xy && to.z < from.z) return to.z < z0 ? MotionUse::kPlunge : MotionUse::kTravel;
-  if (same_xy && to.z > from.z) return from.z < z0 ? MotionUse::kRetract : MotionUse::kTravel;
-  return std::min(from.z, to.z) < z0 ? MotionUse::kCut : MotionUse::kTravel;
+// Three-axis motion says nothing about its purpose: below the surface there is material.
+MotionUse UseOfThreeAxis(const Point& from, const Point& to, bool same_xy, double surface_z) {
+  if (same_xy && to.z < from.z) return to.z < surface_z ? MotionUse::kPlunge : MotionUse::kTravel;
+  if (same_xy && to.z > from.z)
+    return from.z < surface_z ? MotionUse::kRetract : MotionUse::kTravel;
+  return std::min(from.z, to.z) < surface_z ? MotionUse::kCut : MotionUse::kTravel;
 }
 
 }  // namespace
@@ -143,7 +144,7 @@ void Carriage::MoveXYZ(const Context& context, const Point& to) {
     }
     outside_ = true;
     beyond += DistanceXYZ(piece.from, piece.to);
-    NoteLost(piece.from, piece.to, context.registers.z0);
+    NoteLost(piece.from, piece.to, context.registers.surface_z);
     if (piece.region == Region::kBelow) Follow(context, piece, dwell);
   }
   TurnRotary(context, to.a, dwell);
@@ -160,7 +161,7 @@ void Carriage::Follow(const Context& context, const Piece& piece, bool& dwell) {
   const bool moved =
       Go(context, end,
          {.speed_mm_s = registers.z_speed,
-          .use = UseOfThreeAxis(physical_, end, SameXY(physical_, end), registers.z0),
+          .use = UseOfThreeAxis(physical_, end, SameXY(physical_, end), registers.surface_z),
           .chain = Chain::kThreeAxis,
           .dwells = dwell});
   dwell = dwell && !moved;
@@ -174,7 +175,7 @@ void Carriage::TurnRotary(const Context& context, double a, bool& dwell) {
   const Registers& registers = context.registers;
   Go(context, to,
      {.speed_mm_s = registers.z_speed,
-      .use = to.z < registers.z0 ? MotionUse::kCut : MotionUse::kTravel,
+      .use = to.z < registers.surface_z ? MotionUse::kCut : MotionUse::kTravel,
       .dwells = dwell});
   dwell = false;
 }
@@ -187,7 +188,7 @@ void Carriage::Recover(const Context& context, const Point& to, const Recovery& 
                        bool& dwell) {
   const Registers& registers = context.registers;
   Approach(context, to, recovery, dwell);
-  const bool into_work = recovery.to_tool_height ? registers.tool_down : to.z < registers.z0;
+  const bool into_work = recovery.to_tool_height ? registers.tool_down : to.z < registers.surface_z;
   const bool moved = Go(context, to,
                         {.speed_mm_s = registers.z_speed,
                          .use = UseOfHeight(physical_.z, to.z, into_work),
@@ -230,7 +231,7 @@ void Carriage::MoveZ(const Context& context, double z) {
   if (SamePoint(physical_, to, zero_) && std::abs(logical_.z - z) <= zero_) return;
   Go(context, to,
      {.speed_mm_s = context.registers.z_speed,
-      .use = UseOfThreeAxis(physical_, to, true, context.registers.z0)});
+      .use = UseOfThreeAxis(physical_, to, true, context.registers.surface_z)});
   logical_.z = z;
   parked_ = false;
 }
@@ -322,7 +323,7 @@ void Carriage::NoteLostDepth(const Context& context, double from_z) {
   Point to = logical_;
   to.z = registers.z0 + registers.z1;
   from.z = range_.HasXY(logical_) ? range_.bottom() : from_z;
-  if (to.z < from.z) NoteLost(from, to, registers.z0);
+  if (to.z < from.z) NoteLost(from, to, registers.surface_z);
 }
 
 bool Carriage::SameXY(const Point& a, const Point& b) const {

@@ -68,7 +68,7 @@ class Carriage {
   // Logical way that the tool could not follow, in device units, and the sets concerned.
   double clipped_length() const { return clipped_length_; }
   std::uint64_t clipped_sets() const { return clipped_sets_; }
-  // The part of that which would have been in the work: with the tool down, or below Z 0.
+  // The part of that which would have been in the work: with the tool down, or below the surface.
   const LostCut& lost() const { return lost_; }
   const CuttingRange& range() const { return range_; }
 

@@ -13,8 +13,7 @@ constexpr double kFastShare = 0.8;
 // A rapid is several times as fast as a cut; feeds of one part for corners and finishing are not.
 constexpr double kSlowShare = 0.5;
 
-// Heights are sums of decimal steps in binary.
-constexpr double kSameHeight = 1e-6;  // device units
+constexpr double kSameHeight = 0.5 * Registers::kSameHeight;
 
 // The share of a line that is not above a height.
 double ShareNotAbove(const Point& from, const Point& to, double height) {
@@ -45,7 +44,7 @@ bool RisesSteeply(const CutWatch::Ride& ride) {
 
 // Along the surface nothing is cut: pens and drag knives go there with the spindle off.
 double BelowSurface_mm(const CutWatch::Ride& ride, const Registers& registers) {
-  const double below = registers.z0 - 2.0 * kSameHeight;
+  const double below = registers.surface_z - 2.0 * kSameHeight;
   return ShareNotAbove(ride.from, ride.to, below) * ride.length_mm;
 }
 
@@ -55,7 +54,9 @@ void CutWatch::OnRide(const Ride& ride, const Registers& registers, const Comman
   const bool down = DropsSteeply(ride);
   if (fast_so_far_.mm > 0.0 && !down) EndFastPlunge(ride);
   OnVisit(ride, registers, command);
+  OnPlace(ride, registers, command);
   if (ride.in_work) {
+    if (!(down && Fast(ride))) EndAlong(ride.speed_mm_s);
     if (!down) cut_mm_s_ = std::max(cut_mm_s_, ride.speed_mm_s);
     if (down) OnWayDown(ride, registers, command);
     OnCut(ride, registers, command);
@@ -74,10 +75,12 @@ void CutWatch::OnCut(const Ride& ride, const Registers& registers, const Command
   const bool given = ride.by_xy_speed ? registers.xy_speed_given : registers.z_speed_given;
   const SpeedLimit& limit = ride.by_xy_speed ? registers.xy_limit : registers.z_limit;
   const bool limited = limit.off() > kAsAsked || registers.rpm_limit.off() > kAsAsked;
-  if (ride.spindle_turns && given && !limited && !ride.plunge) return;
+  const bool sure = ride.spindle_turns && registers.rotation_given && given && !limited;
+  if (sure && !ride.plunge) return;
   const double mm = BelowSurface_mm(ride, registers);
   if (!ride.spindle_turns) Add(spindle_stands_, mm, command);
   if (!given) Add(feed_not_given_, mm, command);
+  if (!registers.rotation_given) Add(rotation_not_given_, mm, command);
   const bool slower_down = ride.plunge && limit.used < limit.asked;
   if (!slower_down) AddLimited(feed_limited_, limit, mm, command);
   if (ride.spindle_turns) AddLimited(rpm_limited_, registers.rpm_limit, mm, command);
@@ -123,7 +126,7 @@ void CutWatch::OnVisit(const Ride& ride, const Registers& registers, const Comma
       OnCrossing(ride, mm, command);
     }
   }
-  if (ride.to.z > registers.z0 - 2.0 * kSameHeight) EndVisit();
+  if (!registers.IsBelowSurface(ride.to.z)) EndVisit();
 }
 
 void CutWatch::OnCrossing(const Ride& ride, double mm, const CommandPlace& command) {
@@ -156,14 +159,43 @@ CutWatch::Way CutWatch::fast_across() const {
 
 void CutWatch::OnTravel(const Ride& ride, const Registers& registers, const CommandPlace& command) {
   if (ride.rapid) {
-    const double share = ShareNotAbove(ride.from, ride.to, registers.z0);
+    const double share = ShareNotAbove(ride.from, ride.to, registers.surface_z);
     Add(no_clearance_, share * ride.length_mm, command);
+  } else if (Fast(ride)) {
+    const double share = ShareNotAbove(ride.from, ride.to, registers.surface_z);
+    Add(along_, share * ride.length_mm, command);
+    if (share > 0.0) along_mm_s_ = std::min(along_mm_s_, ride.speed_mm_s);
   }
   if (ride.clamps_height > 0.0) {
-    const double below = registers.z0 + ride.clamps_height - 2.0 * kSameHeight;
+    const double below = registers.surface_z + ride.clamps_height - 2.0 * kSameHeight;
     const double share = ShareNotAbove(ride.from, ride.to, below);
     Add(has_cut_ ? from_work_ : to_work_, share * ride.length_mm, command);
   }
+}
+
+// `next_mm_s`: of the cut or slow plunge that follows.
+void CutWatch::EndAlong(double next_mm_s) {
+  const bool slow = std::max(before_mm_s_, next_mm_s) <= kSlowShare * along_mm_s_;
+  if (slow) Join(no_clearance_, along_);
+  along_ = {};
+  along_mm_s_ = kNone;
+  before_mm_s_ = next_mm_s;
+}
+
+CutWatch::Way CutWatch::no_clearance() const {
+  CutWatch ended = *this;
+  if (before_mm_s_ > 0.0) ended.EndAlong(0.0);  // else nothing tells it from a cut
+  return ended.no_clearance_;
+}
+
+// A way across ends where its set says, and begins where the one before it ended.
+void CutWatch::OnPlace(const Ride& ride, const Registers& registers, const CommandPlace& command) {
+  if (place_known_) return;
+  const std::uint64_t given_by = registers.place_given_by;
+  const bool known = given_by != 0 && given_by < registers.act;
+  if (ride.in_work && !known) Add(place_not_given_, BelowSurface_mm(ride, registers), command);
+  const bool across = ride.from.x != ride.to.x || ride.from.y != ride.to.y;
+  place_known_ = known || (given_by != 0 && across);
 }
 
 CutWatch::Way CutWatch::below_clamps() const {

@@ -8,8 +8,8 @@
 namespace rmlcell::rml1 {
 
 // What a person should know of the way the tool goes through the work. Lengths in mm; the command
-// is the first that did it (number 0: none did). The work begins at Z 0: of a plunge from above
-// only what lies below counts.
+// is the first that did it (number 0: none did). The work begins at its surface, where Z0 was
+// before the program: of a plunge from above only what lies below counts.
 class CutWatch {
  public:
   struct Way {
@@ -37,8 +37,14 @@ class CutWatch {
   void OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command);
 
   const Way& spindle_stands() const { return spindle_stands_; }  // in the work
-  const Way& no_clearance() const { return no_clearance_; }      // across, not above the surface
+  // Across at travel speed, not above the surface; or along it by V, nearly as fast as Z travels,
+  // where the cuts before and behind, as far as there are any, take half of that or less.
+  Way no_clearance() const;
   const Way& feed_not_given() const { return feed_not_given_; }  // in the work
+  // In the work, from a place that no command gave before: it hangs on where the tool stood.
+  const Way& place_not_given() const { return place_not_given_; }
+  // In the work, before a command said whether the spindle may turn.
+  const Way& rotation_not_given() const { return rotation_not_given_; }
   // Down below the surface, straight or steeply, nearly as fast as Z travels, to where the tool
   // cuts slower than that, or turns back in a program that cuts slower everywhere: on a machine
   // with a slow Z that is the speed of every plunge. A fast way that a slower one goes on from ends
@@ -79,10 +85,18 @@ class CutWatch {
   void EndFastPlunge(const Ride& next);
   void OnCut(const Ride& ride, const Registers& registers, const CommandPlace& command);
   void OnTravel(const Ride& ride, const Registers& registers, const CommandPlace& command);
+  void OnPlace(const Ride& ride, const Registers& registers, const CommandPlace& command);
+  void EndAlong(double next_mm_s);
 
   Way spindle_stands_;
   Way no_clearance_;
+  Way along_;                  // the surface, since the last cut, as fast as lifts
+  double along_mm_s_ = kNone;  // the least of these
+  double before_mm_s_ = 0.0;   // of the last cut or slow plunge; 0: there was none
   Way feed_not_given_;
+  Way place_not_given_;
+  Way rotation_not_given_;
+  bool place_known_ = false;
   Way fast_plunge_;
   Way fast_hole_;    // of ways down that turn back
   Way fast_so_far_;  // of a way down that may go on slower

@@ -72,6 +72,7 @@ Device::Device(const Profile& profile)
 void Device::Restore(const Registers& registers, const Point& at) {
   registers_ = registers;
   registers_.z0 = std::clamp(registers.z0, profile_->z.low, profile_->z.high);
+  registers_.surface_z = registers_.z0;
   registers_.xy_speed = profile_->xy_speeds.Nearest(registers.xy_speed);
   registers_.z_speed = profile_->z_speeds.Nearest(registers.z_speed);
   registers_.rpm = std::clamp(registers.rpm, profile_->spindle_min_rpm, profile_->spindle_max_rpm);

@@ -74,7 +74,10 @@ class Device {
   }
 
   // The stream is over: its last statement counts although nothing ended it (RML1-7.04).
-  void EndOfData() { programmed_.Finish(); }
+  void EndOfData() {
+    programmed_.Finish();
+    ReliesOnZ0();
+  }
 
   const Registers& registers() const { return registers_; }
   const Carriage& carriage() const { return carriage_; }
@@ -93,6 +96,22 @@ class Device {
   // Where the first set lost a part that it would have cut; number 0: none did.
   const CommandPlace& first_lost() const { return first_lost_; }
   const CommandPlace& first_refused() const { return first_refused_; }
+
+  // The furthest that !ZO took Z0 from where it was before the program, for a motion or for the
+  // end, and which one began it.
+  struct MovedZ0 {
+    double by = 0.0;  // device units
+    CommandPlace at{};
+  };
+  const MovedZ0& raised() const { return raised_; }
+  const MovedZ0& lowered() const { return lowered_; }
+
+  // The first commands that rely on what was set before the program; number 0: none does.
+  struct Assumed {
+    CommandPlace mode;     // whether coordinates are absolute
+    CommandPlace heights;  // Z1, Z2
+  };
+  const Assumed& assumed() const { return assumed_; }
 
   // The state of an earlier run (machine_state.h), limited to what this profile can do. Only before
   // the first byte.
@@ -143,6 +162,11 @@ class Device {
   void SetSpindleSpeed(DeviceListener& listener);
   void MoveMachineZ(DeviceListener& listener);
   void SetZ0(DeviceListener& listener);
+  void MoveZ0(double z);
+  void ReliesOnZ0();
+  void ReliesOnMode();
+  void ReliesOnHeights();
+  void GivePlace(bool x, bool y);
   void RestoreDefaults();
   void StopSpindle(bool waits);
 
@@ -177,6 +201,10 @@ class Device {
   std::uint64_t bytes_foreign_ = 0;
   CommandPlace first_lost_;
   CommandPlace first_refused_;
+  MovedZ0 raised_;
+  MovedZ0 lowered_;
+  CommandPlace z0_moved_by_;
+  Assumed assumed_;
   std::array<int, kFindingKindCount> advised_{};
 };
 

@@ -30,8 +30,27 @@ void Device::BeginCommand(DeviceListener& listener) {
 }
 
 void Device::ApplyEffects(const CommandRow& row) {
-  if (row.mode != ModeChange::kNone) registers_.absolute = row.mode == ModeChange::kAbsolute;
+  if (row.mode != ModeChange::kNone) {
+    registers_.absolute = row.mode == ModeChange::kAbsolute;
+    registers_.mode_given = true;
+  }
   if (row.tool != ToolChange::kNone) registers_.tool_down = row.tool == ToolChange::kDown;
+}
+
+// A coordinate is read in the mode that is in force.
+void Device::ReliesOnMode() {
+  if (!registers_.mode_given && assumed_.mode.number == 0) assumed_.mode = command_;
+}
+
+void Device::ReliesOnHeights() {
+  if (!registers_.heights_given && assumed_.heights.number == 0) assumed_.heights = command_;
+}
+
+void Device::GivePlace(bool x, bool y) {
+  registers_.x_given = registers_.x_given || x;
+  registers_.y_given = registers_.y_given || y;
+  const bool both = registers_.x_given && registers_.y_given;
+  if (both && registers_.place_given_by == 0) registers_.place_given_by = registers_.act;
 }
 
 // One number of a set. False: it is out of range, and so are its set and the later ones
@@ -58,10 +77,14 @@ bool Device::TakeCoordinate(DeviceListener& listener) {
 void Device::RunSet(DeviceListener& listener) {
   const CommandRow& row = reader_.row();
   const auto [a, b, c] = operands_.set;
+  ++registers_.act;
+  ReliesOnZ0();
   const double lost = carriage_.lost().length;
   ApplyEffects(row);
+  ReliesOnMode();
   const Point& logical = carriage_.logical();
   const bool absolute = registers_.absolute;
+  if (absolute) GivePlace(true, true);
   const double x = a + (absolute ? profile_->origin_x : logical.x);
   double y = b + (absolute ? profile_->origin_y : logical.y);
   if (!profile_->has_y) y = logical.y;
@@ -71,6 +94,7 @@ void Device::RunSet(DeviceListener& listener) {
     carriage_.MoveXYZ(context(), {x, y, z, logical.a});
   } else {
     programmed_.OnSetXY(row, a, b);
+    ReliesOnHeights();
     carriage_.ToToolHeight(context());
     carriage_.MoveXY(context(), x, y);
   }
@@ -80,10 +104,15 @@ void Device::RunSet(DeviceListener& listener) {
 // A command with sets, without any parameter.
 void Device::RunBare(DeviceListener& listener) {
   const CommandRow& row = reader_.row();
+  ++registers_.act;
+  ReliesOnZ0();
   const double lost = carriage_.lost().length;
   ApplyEffects(row);
   programmed_.OnBare(row);
-  if (row.tool != ToolChange::kNone) carriage_.ToToolHeight(context());
+  if (row.tool != ToolChange::kNone) {
+    ReliesOnHeights();
+    carriage_.ToToolHeight(context());
+  }
   NoteClipping(lost, listener);
 }
 
@@ -100,6 +129,7 @@ void Device::NoteClipping(double lost_before, DeviceListener& listener) {
 
 void Device::RunFixed(DeviceListener& listener) {
   const CommandRow& row = reader_.row();
+  ++registers_.act;
   switch (row.op) {
     case Op::kF:
     case Op::kVS:
@@ -147,6 +177,7 @@ void Device::RunFixed(DeviceListener& listener) {
     case Op::kH:
       programmed_.OnBare(row);
       ApplyEffects(row);
+      GivePlace(true, true);
       carriage_.GoHome(context());
       command_errors_.ClearRegister();
       StopSpindle(false);
@@ -218,7 +249,11 @@ void Device::OnGroup(DeviceListener& listener) {
     reader_.SkipGroups();
     return;
   }
+  ReliesOnMode();
+  ReliesOnZ0();
+  ++registers_.act;
   const Programmed::AxisGroup& named = group_.named;
+  if (registers_.absolute) GivePlace(named.has_x, named.has_y || !profile_->has_y);
   if (named.has_x || named.has_y || named.has_z) programmed_.OnGroup(named);
   const double lost = carriage_.lost().length;
   carriage_.MoveXYZ(context(), group_.to);
@@ -274,6 +309,7 @@ void Device::SetDwell(DeviceListener& listener) {
 // @, !PZ: each height is set or refused by itself (RML1-3A.01 to 3A.09).
 void Device::SetHeights(DeviceListener& listener) {
   programmed_.OnHeights(operands_.count, operands_.fixed[0], operands_.fixed[1]);
+  registers_.heights_given = true;
   if (operands_.count == 0) {
     registers_.z1 = profile_->z1;
     registers_.z2 = profile_->z2;
@@ -298,6 +334,7 @@ void Device::SetHeights(DeviceListener& listener) {
 // !MC: never an error; a value beyond int is not 0 (RML1-3C.07).
 void Device::SetRotation() {
   registers_.rotation = operands_.count == 0 || operands_.fixed[0].truncated() != 0;
+  registers_.rotation_given = true;
   if (!registers_.rotation) StopSpindle(true);
 }
 
@@ -329,6 +366,7 @@ void Device::SetSpindleSpeed(DeviceListener& listener) {
 
 void Device::MoveMachineZ(DeviceListener& listener) {
   if (operands_.count == 0) return;
+  ReliesOnMode();
   const auto wanted = static_cast<double>(operands_.fixed[0].truncated());
   const double z = wanted + (registers_.absolute ? 0.0 : carriage_.logical().z);
   if (z < profile_->z.low || z > profile_->z.high) {
@@ -340,21 +378,41 @@ void Device::MoveMachineZ(DeviceListener& listener) {
 
 void Device::SetZ0(DeviceListener& listener) {
   if (operands_.count == 0) {
-    registers_.z0 = profile_->z0;
+    MoveZ0(profile_->z0);
     return;
   }
+  ReliesOnMode();
   const auto wanted = static_cast<double>(operands_.fixed[0].truncated());
   const double z = wanted + (registers_.absolute ? 0.0 : carriage_.logical().z);
   if (z < profile_->z.low || z > profile_->z.high) {
     Report(FindingKind::kTravelRange, listener, z);
   } else {
-    registers_.z0 = z;
+    MoveZ0(z);
   }
+}
+
+// The material stays where it is: RML1-9.11.
+void Device::MoveZ0(double z) {
+  registers_.z0 = z;
+  z0_moved_by_ = command_;
+}
+
+// When something goes by it, or the machine is left with it.
+void Device::ReliesOnZ0() {
+  const double up = registers_.z0 - registers_.surface_z;
+  const auto note = [&](double by, MovedZ0& furthest) {
+    if (!(by > furthest.by)) return;
+    if (furthest.by == 0.0) furthest.at = z0_moved_by_;
+    furthest.by = by;
+  };
+  note(up, raised_);
+  note(-up, lowered_);
 }
 
 // DF (RML1-3B.01).
 void Device::RestoreDefaults() {
   registers_.absolute = true;
+  registers_.mode_given = registers_.heights_given = registers_.rotation_given = true;
   registers_.xy_speed = profile_->xy_speed;
   registers_.z_speed = profile_->z_speed;
   registers_.xy_speed_given = registers_.z_speed_given = false;

@@ -53,13 +53,16 @@ Value Commands(const Source& s) {
 
 // How far below the surface the tool stands.
 double DepthNow(const Source& s) {
-  const double below = s.device.registers().z0 - s.device.carriage().physical().z;
+  const double below = s.device.registers().surface_z - s.device.carriage().physical().z;
   return std::max(0.0, below) * s.mm;
 }
 
 Value IfFits(const WorkFit::Axis& axis, double value) {
   return axis.known && axis.over == 0.0 ? Value(value) : std::nullopt;
 }
+
+// Where !ZO says where Z0 is, it helps little that somebody sets it.
+bool Z0Stays(const Source& s) { return s.device.raised().by + s.device.lowered().by == 0.0; }
 
 Value IfAbove0(double value) { return value > 0.0 ? Value(value) : std::nullopt; }
 
@@ -83,9 +86,9 @@ struct Row {
 constexpr std::array kRows = {
     Row{{"commands", "", "commands carried out to their end", "commands", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.device.commands_done()); }},
     Row{{"motions", "", "motions of the tool", "motions", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.tool.motions); }},
-    Row{{"cut_length", "mm", "way of the tool in the work: cuts and plunges", "path", "cut # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return s.tool.cut_mm; }},
+    Row{{"cut_length", "mm", "way of the tool in the work: motions that lead below its surface, lifts left out", "path", "cut # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return s.tool.cut_mm; }},
     Row{{"travel_length", "mm", "the rest of its way", "path", "travel # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return s.tool.travel_mm; }},
-    Row{{"plunges", "", "times that the tool went down into the work; steps of one way down are one", "plunges", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.tool.plunges); }},
+    Row{{"plunges", "", "times that the tool went down below the surface; steps of one way down are one", "plunges", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.tool.plunges); }},
     Row{{"motion_time", "s", "moving"}, [](const Source& s) -> Value { return IfTimed(s, s.tool.motion_s); }},
     Row{{"tool_up_time", "s", "the rest of the time of motions and waits", "tool", "up # s", true}, [](const Source& s) -> Value { return IfTimed(s, s.tool.up_s); }},
     Row{{"tool_down_time", "s", "moving or waiting in the work, or in tool state down", "tool", "down # s", true}, [](const Source& s) -> Value { return IfTimed(s, s.tool.down_s); }},
@@ -115,8 +118,8 @@ constexpr std::array kRows = {
     Row{{"origin.xmax", "mm", "greatest such X", "origin X", "to # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.x, s.fit.x.high); }},
     Row{{"origin.ymin", "mm", "least Y of the work origin on the machine so that the work fits its travel", "origin Y", "may be from # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.y, s.fit.y.low); }},
     Row{{"origin.ymax", "mm", "greatest such Y", "origin Y", "to # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.y, s.fit.y.high); }},
-    Row{{"origin.zmin", "mm", "least Z of the work origin on the machine (Z0) so that the work fits its travel", "origin Z", "may be from # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.z, s.fit.z.low); }},
-    Row{{"origin.zmax", "mm", "greatest such Z", "origin Z", "to # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.z, s.fit.z.high); }},
+    Row{{"origin.zmin", "mm", "least Z of the work origin on the machine (Z0) so that the work fits its travel", "origin Z", "may be from # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Z0Stays(s) ? IfFits(s.fit.z, s.fit.z.low) : std::nullopt; }},
+    Row{{"origin.zmax", "mm", "greatest such Z", "origin Z", "to # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Z0Stays(s) ? IfFits(s.fit.z, s.fit.z.high) : std::nullopt; }},
     Row{{"oversize_x", "mm", "by how much the work is larger than the travel of X"}, [](const Source& s) -> Value { return s.fit.x.over; }},
     Row{{"oversize_y", "mm", "by how much it is larger than the travel of Y"}, [](const Source& s) -> Value { return s.fit.y.over; }},
     Row{{"oversize_z", "mm", "by how much it is deeper than the travel of Z"}, [](const Source& s) -> Value { return s.fit.z.over; }},
@@ -139,8 +142,14 @@ constexpr std::array kRows = {
     Row{{"positions_refused", "", "coordinates and tool heights that were refused: the tool does not go where the program says"}, [](const Source& s) -> Value { return Count(s.device.positions_refused()); }, [](const Source& s) { return s.device.first_refused(); }},
     Row{{"foreign_share", "%", "bytes that belong to no command; of 256 at least where no more than a word or a quarter is foreign"}, [](const Source& s) -> Value { return s.device.foreign_percent(); }},
     Row{{"spindle_stands_length", "mm", "way in the work while the spindle stands"}, [](const Source& s) -> Value { return s.watch.spindle_stands().mm; }, [](const Source& s) { return s.watch.spindle_stands().first; }},
-    Row{{"no_clearance_length", "mm", "way across at travel speed, not above the surface of the work, Z 0"}, [](const Source& s) -> Value { return s.watch.no_clearance().mm; }, [](const Source& s) { return s.watch.no_clearance().first; }},
+    Row{{"no_clearance_length", "mm", "way across at travel speed, not above the surface of the work; and along it with a V of 80 % of the speed at which Z travels or more, where the cuts before and behind have half of that or less"}, [](const Source& s) -> Value { return s.watch.no_clearance().mm; }, [](const Source& s) { return s.watch.no_clearance().first; }},
     Row{{"feed_not_given_length", "mm", "way in the work at a speed that the program did not set"}, [](const Source& s) -> Value { return s.watch.feed_not_given().mm; }, [](const Source& s) { return s.watch.feed_not_given().first; }},
+    Row{{"place_not_given_length", "mm", "way in the work from a place that no command gave: it hangs on where the tool stood before"}, [](const Source& s) -> Value { return s.watch.place_not_given().mm; }, [](const Source& s) { return s.watch.place_not_given().first; }},
+    Row{{"assumed_absolute", "", "first command with coordinates, before one says whether they are absolute; 0: none", "assumed", "coordinates are absolute (command #)", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.device.assumed().mode.number); }},
+    Row{{"assumed_heights", "", "first command that goes to Z1 or Z2 before one sets them; 0: none", "assumed", "Z1 and Z2 of the machine (command #)", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.device.assumed().heights.number); }},
+    Row{{"assumed_rotation", "", "first command in the work before one says whether the spindle may turn; 0: none", "assumed", "the spindle may turn (command #)", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.watch.rotation_not_given().first.number); }},
+    Row{{"z0_raised", "mm", "how far !ZO takes Z0 above where it was before the program: there is the surface of the work", "Z0", "raised by # mm by !ZO", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return s.device.raised().by * s.mm; }, [](const Source& s) { return s.device.raised().at; }},
+    Row{{"z0_lowered", "mm", "how far !ZO takes it below that", "Z0", "lowered by # mm by !ZO", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return s.device.lowered().by * s.mm; }, [](const Source& s) { return s.device.lowered().at; }},
     Row{{"fast_plunge_length", "mm", "way straight or steeply down below the surface, at 80 % of the speed at which Z travels or more, to where the tool cuts or turns back"}, [](const Source& s) -> Value { return s.watch.fast_plunge().mm; }, [](const Source& s) { return s.watch.fast_plunge().first; }},
     Row{{"fast_across_length", "mm", "way across below the surface with a V of 80 % of the speed at which Z travels or more, where other cuts of the same visit to the work, or of the program where the tool goes in as fast, have half of that or less"}, [](const Source& s) -> Value { return s.watch.fast_across().mm; }, [](const Source& s) { return s.watch.fast_across().first; }},
     Row{{"below_clamps_length", "mm", "way across, lower than the clamps, to the first cut and from the last one"}, [](const Source& s) -> Value { return s.watch.below_clamps().mm; }, [](const Source& s) { return s.watch.below_clamps().first; }},
@@ -153,7 +162,7 @@ constexpr std::array kRows = {
     Row{{"depth_at_end", "mm", "how far below the surface the tool stands at the end"}, [](const Source& s) -> Value { return s.ended ? Value(DepthNow(s)) : std::nullopt; }},
     Row{{"spindle_on_at_end", "", "1 when the spindle turns at the end"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.spindle_turns() ? 1.0 : 0.0) : std::nullopt; }},
     Row{{"incomplete_at_end", "", "1 when the data ends inside a command, which is not carried out"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.pending() ? 1.0 : 0.0) : std::nullopt; }},
-    Row{{"nothing_cut", "", "1 when the tool never was in the work"}, [](const Source& s) -> Value { return s.ended ? Value(s.tool.cut_mm > 0.0 ? 0.0 : 1.0) : std::nullopt; }},
+    Row{{"nothing_cut", "", "1 when the tool never was below the surface; with the spindle off and strokes along the surface it is a pen, and this 0"}, [](const Source& s) -> Value { return s.ended ? Value(s.tool.cut_mm + s.tool.drawn_mm > 0.0 ? 0.0 : 1.0) : std::nullopt; }},
     Row{{"speed_clamps", "", "speed words beyond the machine", "speeds", "# limited to those of the machine", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.device.speeds_limited()); }},
     Row{{"error_register", "", "command error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.command_errors().value()); }},
     Row{{"communication_register", "", "communication error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.link_errors().value()); }},
@@ -232,7 +241,7 @@ std::span<const machine::FigureInfo> FigureTable() {
 std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical, bool ended,
                                        std::optional<std::uint64_t> starved) {
   const Profile& profile = physical.profile();
-  const Point origin{profile.origin_x, profile.origin_y, device.registers().z0, 0.0};
+  const Point origin{profile.origin_x, profile.origin_y, device.registers().surface_z, 0.0};
   const CuttingRange& travel = device.carriage().range();
   const WorkFit fit =
       FitOf(physical.totals().work, device.carriage().lost(), origin, travel, profile.units_per_mm);

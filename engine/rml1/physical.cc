@@ -11,22 +11,24 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
   const auto add_point = [&](const Point& p) {
     totals_.x.Add(p.x - profile_->origin_x);
     totals_.y.Add(p.y - profile_->origin_y);
-    totals_.z.Add(p.z - registers.z0);
+    totals_.z.Add(p.z - registers.surface_z);
     totals_.a.Add(p.a);
   };
   if (first_ever) add_point(ride.from);
   add_point(ride.to);
   if (ride.first) ++totals_.motions;
+  const bool in_work = IsInWork(ride.use, ride.from, ride.to, registers);
   const bool plunges = ride.use == MotionUse::kPlunge;
-  if (plunges && !plunging_) ++totals_.plunges;
-  plunging_ = plunges;
-  const bool in_work = ride.use == MotionUse::kCut || ride.use == MotionUse::kPlunge;
+  if (plunges && in_work && !plunging_) ++totals_.plunges;
+  plunging_ = plunges && in_work;
   (in_work ? totals_.cut_mm : totals_.travel_mm) += ride.length_mm;
-  if (in_work) {
+  const bool tool_in = plunges || ride.use == MotionUse::kCut;
+  if (tool_in && !in_work && !plunges && !ride.spindle_turns) totals_.drawn_mm += ride.length_mm;
+  if (tool_in) {
     for (const Point& p : {ride.from, ride.to}) {
       totals_.work.x.Add(p.x - profile_->origin_x);
       totals_.work.y.Add(p.y - profile_->origin_y);
-      totals_.work.z.Add(p.z - registers.z0);
+      totals_.work.z.Add(p.z - registers.surface_z);
     }
   }
   totals_.motion_s += ride.time_s;
@@ -35,7 +37,7 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
       {.from = ride.from,
        .to = ride.to,
        .length_mm = ride.length_mm,
-       .in_work = in_work,
+       .in_work = tool_in,
        .rapid = ride.rapid,
        .by_xy_speed = by_xy_speed,
        .spindle_turns = ride.spindle_turns,
@@ -45,7 +47,7 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
        .clamps_height = profile_->clamps_height},
       registers, command);
   AddToState(ride.time_s, in_work || registers.tool_down);
-  depth_ = registers.z0 - ride.to.z;
+  depth_ = registers.surface_z - ride.to.z;
 }
 
 void Physical::OnDwell(double time_s, const Registers& registers) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "engine/machine/run.h"
@@ -26,8 +27,8 @@ class Physical {
     Chain chain = Chain::kAlone;
     bool spindle_turns = false;
   };
-  // Cut length is what the tool did in the work, cuts and plunges, as in every report of the cell;
-  // travel length is the rest.
+  // Cut length is that of cuts and plunges that lead below the surface, as in every report of the
+  // cell; travel length is the rest.
   void OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command);
 
   void OnDwell(double time_s, const Registers& registers);
@@ -38,6 +39,7 @@ class Physical {
     std::uint64_t motions = 0;
     std::uint64_t plunges = 0;  // that follow each other are one
     double cut_mm = 0.0;
+    double drawn_mm = 0.0;  // with the tool down along the surface and no spindle: of a pen
     double travel_mm = 0.0;
     double up_s = 0.0;  // motions and waits: down in the work and in tool state down, else up
     double down_s = 0.0;
@@ -54,6 +56,13 @@ class Physical {
   const Totals& totals() const { return totals_; }
   const CutWatch& watch() const { return watch_; }
   const Profile& profile() const { return *profile_; }
+
+  // Whether a motion with the tool down takes material off: `use` tells only what it is for.
+  static bool IsInWork(machine::MotionUse use, const Point& from, const Point& to,
+                       const Registers& registers) {
+    const bool tool_in = use == machine::MotionUse::kCut || use == machine::MotionUse::kPlunge;
+    return tool_in && registers.IsBelowSurface(std::min(from.z, to.z));
+  }
 
  private:
   void AddToState(double time_s, bool down);

@@ -98,9 +98,11 @@ class Rehearsal {
   }
 
   const Device& device() const { return device_; }
-  // With what a check alone tells: where it went on and a run waits for the resume key.
+  // With what a check alone tells: how long a run takes at least, which ends at its budget, and
+  // where it went on and a run waits for the resume key.
   std::vector<machine::Figure> Figures() const {
     std::vector<machine::Figure> figures = FiguresOf(device_, physical_, true);
+    figures.push_back({.name = "least_time", .unit = "s", .value = least_time_s_});
     if (pauses_ == 0) return figures;
     figures.push_back({.name = "waits_for_key",
                        .unit = {},
@@ -122,6 +124,7 @@ class Rehearsal {
   void CarryOut() {
     const Action action = device_.actions().front();
     device_.actions().Pop();
+    least_time_s_ += LeastTime_s(action);
     if (action.kind == Action::Kind::kMotion) {
       physical_.OnRide({.from = tool_,
                         .to = action.to,
@@ -142,6 +145,22 @@ class Rehearsal {
     }
   }
 
+  // Ramps and corners take more.
+  double LeastTime_s(const Action& action) const {
+    switch (action.kind) {
+      case Action::Kind::kMotion:
+        return DistanceXYZ(tool_, action.to) / profile_.units_per_mm / action.speed_mm_s;
+      case Action::Kind::kDwell:
+        return action.dwell_ms * 1e-3;
+      case Action::Kind::kSpindleStart:
+        return profile_.spin_up_s;
+      case Action::Kind::kSpindleStop:
+        return action.waits ? profile_.spin_down_s : 0.0;
+      default:
+        return 0.0;
+    }
+  }
+
   // As the device does with advice of its own.
   static constexpr std::uint64_t kPausesMax = 1000;
 
@@ -152,6 +171,7 @@ class Rehearsal {
   Point tool_;
   std::uint64_t pauses_ = 0;
   CommandPlace first_pause_;
+  double least_time_s_ = 0.0;
 };
 
 class MillFamily final : public machine::MachineFamily {

@@ -402,7 +402,7 @@ machine::RunState MillRun::state() const {
   state.override_percent = s.override_percent;
   state.spindle_on = SpindleTurns();
   state.work_origin =
-      motion::MachinePoint(profile().origin_x, profile().origin_y, s.device.registers().z0) /
+      motion::MachinePoint(profile().origin_x, profile().origin_y, s.device.registers().surface_z) /
       profile().units_per_mm;
   const double size = static_cast<double>(stream().size());
   state.progress =

@@ -171,7 +171,8 @@ void MillRun::ReportLeg(double travelled) {
                       .use = m.action.use,
                       .motion = &leg,
                       .travelled = travelled,
-                      .programmed_mm_s = m.action.rapid ? 0.0 : m.leg.feed_mm_s});
+                      .programmed_mm_s = m.action.rapid ? 0.0 : m.leg.feed_mm_s,
+                      .in_work = Physical::IsInWork(m.action.use, from, to, s.device.registers())});
   s.motion.first_leg = false;
 }
 

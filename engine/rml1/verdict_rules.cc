@@ -1,6 +1,9 @@
 #include "engine/rml1/verdict_rules.h"
 
 #include <array>
+#include <chrono>
+
+#include "engine/machine/run_setup.h"
 
 namespace rmlcell::rml1 {
 namespace {
@@ -10,6 +13,9 @@ using machine::VerdictRule;
 
 // What the rounding of a post processor makes of nothing.
 constexpr double kRounding_mm = 0.01;
+
+constexpr double kBudget_s = 30.0 * 24.0 * 3600.0;
+static_assert(machine::RunBudget().virtual_time == std::chrono::hours(24 * 30));
 
 constexpr std::array kRules = {
     VerdictRule{ErrorCode::kRml1NoProgram, "foreign_share", kForeignShareMax_percent, Verdict::kBad,
@@ -39,11 +45,17 @@ constexpr std::array kRules = {
                 "the work leads # mm below the travel: raise Z0"},
     VerdictRule{ErrorCode::kRml1SpindleStands, "spindle_stands_length", kRounding_mm, Verdict::kBad,
                 "# mm in the work while the spindle stands"},
+    VerdictRule{ErrorCode::kCellTimeBudget, "least_time", kBudget_s, Verdict::kBad,
+                "a run takes # s at least, and ends at its budget of 30 days"},
     VerdictRule{ErrorCode::kCellWaitsForever, "waits_for_key", 0.0, Verdict::kDoubtful,
                 "halts that wait for the resume key: #"},
     VerdictRule{ErrorCode::kRml1NoClearance, "no_clearance_length", kRounding_mm,
                 Verdict::kDoubtful,
                 "# mm across at travel speed, not above the surface of the work"},
+    VerdictRule{ErrorCode::kRml1Z0Moved, "z0_raised", kRounding_mm, Verdict::kDoubtful,
+                "!ZO raises Z0 by # mm: so much less deep is what follows"},
+    VerdictRule{ErrorCode::kRml1Z0Moved, "z0_lowered", kRounding_mm, Verdict::kDoubtful,
+                "!ZO lowers Z0 by # mm: so much deeper is what follows"},
     VerdictRule{ErrorCode::kRml1StepGuess, "step_fits_at", 0.0, Verdict::kDoubtful,
                 "it may be written for # units per mm: the work would be #{step_fits_x} x "
                 "#{step_fits_y} x #{step_fits_z} mm there, and would fit"},
@@ -74,12 +86,15 @@ constexpr std::array kRules = {
                 "the spindle turns on at the end"},
     VerdictRule{ErrorCode::kRml1FeedNotGiven, "feed_not_given_length", kRounding_mm,
                 Verdict::kDoubtful, "# mm in the work at a speed that the program did not set"},
+    VerdictRule{ErrorCode::kRml1PlaceAssumed, "place_not_given_length", kRounding_mm,
+                Verdict::kDoubtful,
+                "# mm in the work at a place that hangs on where the tool stood before"},
     VerdictRule{ErrorCode::kRml1NotUnderstood, "errors", 0.0, Verdict::kDoubtful,
                 "places that are no command, or have wrong parameters: #"},
     VerdictRule{ErrorCode::kRml1NotUnderstood, "communication_errors", 0.0, Verdict::kDoubtful,
                 "communication errors: #"},
     VerdictRule{ErrorCode::kRml1NothingCut, "nothing_cut", 0.0, Verdict::kDoubtful,
-                "the tool never goes into the work"},
+                "nothing is cut: the tool never goes below the surface"},
 };
 
 }  // namespace

@@ -164,7 +164,11 @@ class Tools(Material):
         hard = judged("--material", "aluminium")
         self.assertEqual(hard.returncode, 1)
         self.assertIn("an edge takes off 222.2 % of the most that is usual (CELL-E9415", hard.stdout)
-        self.assertEqual(judged("--material", "aluminium", "--rpm", "10000").returncode, 0)
+        # As much as is usual across, and down, at the same 10 mm/s, 0.03 mm where 0.33 of that is.
+        down = judged("--material", "aluminium", "--rpm", "10000")
+        self.assertEqual(down.returncode, 1)
+        self.assertIn("an edge takes off 303.0 % of the most that is usual straight down (CELL-E9415", down.stdout)
+        self.assertEqual(judged("--material", "aluminium", "--rpm", "20000").returncode, 0)
         self.refused("CELL-E", "no material: aluminium, foam", *edges, "--material", "cheese")
         self.refused("CELL-E", "flutes=2", *BLOCK, "--material", "wax")
 

@@ -40,6 +40,9 @@ Result<ChipTable> ReadTable(std::string_view material, const toml::table& table)
   made.speed_most_m_min = table["speed_most_m_min"].value_or(0.0);
   if (!(made.speed_most_m_min > 0.0))
     return BadTable(where, made.material + " has no speed_most_m_min above 0");
+  made.plunge_share = table["plunge_share"].value_or(0.0);
+  if (!(made.plunge_share > 0.0) || made.plunge_share > 1.0)
+    return BadTable(where, made.material + " has no plunge_share above 0 and up to 1");
   const auto diameters = Rising(table["diameter_mm"]);
   const auto least = Rising(table["least_mm"]);
   const auto most = Rising(table["most_mm"]);
@@ -59,7 +62,8 @@ Result<ChipTable> ReadTable(std::string_view material, const toml::table& table)
 
 ChipRange ChipTable::For(double diameter_mm) const {
   const auto range = [&](const Row& row, double by) {
-    return ChipRange{row.least_mm * by, row.most_mm * by, speed_most_m_min};
+    return ChipRange{row.least_mm * by, row.most_mm * by, speed_most_m_min,
+                     row.most_mm * by * plunge_share};
   };
   const auto above =
       std::ranges::find_if(rows, [&](const Row& row) { return row.diameter_mm >= diameter_mm; });
@@ -70,8 +74,9 @@ ChipRange ChipTable::For(double diameter_mm) const {
   const Row& low = *std::prev(above);
   const Row& high = *above;
   const double share = (diameter_mm - low.diameter_mm) / (high.diameter_mm - low.diameter_mm);
-  return {low.least_mm + share * (high.least_mm - low.least_mm),
-          low.most_mm + share * (high.most_mm - low.most_mm), speed_most_m_min};
+  const double most = low.most_mm + share * (high.most_mm - low.most_mm);
+  return {low.least_mm + share * (high.least_mm - low.least_mm), most, speed_most_m_min,
+          most * plunge_share};
 }
 
 // toml++ throws on text that is not TOML; nothing else of it leaves this file.

@@ -14,6 +14,7 @@ struct ChipRange {
   double least_mm = 0.0;
   double most_mm = 0.0;
   double speed_most_m_min = 0.0;  // of the edge along the cut
+  double plunge_most_mm = 0.0;    // straight down; 0: not told
 
   bool operator==(const ChipRange&) const = default;
 };
@@ -28,6 +29,7 @@ struct ChipTable {
   std::string material;  // "wax"
   std::string source;    // where the figures are from; "estimate: ..."
   double speed_most_m_min = 0.0;
+  double plunge_share = 0.0;  // of the most across that an edge takes straight down
   std::vector<Row> rows;
 
   // Between two rows in proportion; beyond them in proportion to the diameter.
@@ -35,7 +37,8 @@ struct ChipTable {
 };
 
 // Of a file like chip_loads.toml. Error: CellBadText with its line: no TOML, a table without
-// source, lists that do not rise or are not as long as each other, a least above the most.
+// source, lists that do not rise or are not as long as each other, a least above the most, a plunge
+// that takes nothing or more than a pass.
 Result<std::vector<ChipTable>> ReadChipTables(std::string_view toml);
 
 // The file of that name in this folder.

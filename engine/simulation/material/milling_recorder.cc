@@ -6,6 +6,8 @@
 namespace rmlcell::simulation {
 namespace {
 
+using machine::MotionUse;
+
 constexpr double kGougeLeast_mm = 1e-3;  // less is rounding of heights and places
 
 }  // namespace
@@ -60,6 +62,8 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
     }
   }
   NoteBelow(from, to, done.place);
+  const bool cuts = done.use == MotionUse::kCut || done.use == MotionUse::kPlunge;
+  if (cuts && done.programmed_mm_s > 0.0) NoteBeside(from, to, done.place);
   const double shank_depth = material_.ShankDepthOf(tool_, from, to);
   if (shank_depth > std::max(figures_.shank_depth_mm, kGougeLeast_mm)) {
     figures_.shank_depth_mm = shank_depth;
@@ -73,15 +77,32 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
     figures_.deepest_pass_mm = taken;
     figures_.pass_place = done.place;
   }
-  if (is_pass && taken > kGougeLeast_mm) NoteChip(done.programmed_mm_s, done.place);
+  if (done.programmed_mm_s <= 0.0 || taken <= kGougeLeast_mm) return;
+  if (is_pass) {
+    NoteChip(done.programmed_mm_s, done.place);
+  } else if (to.z() < from.z()) {
+    NotePlunge(done.programmed_mm_s, done.place);
+  }
+}
+
+// What an edge takes off at one turn; 0: nobody told how fast the spindle turns.
+double MillingRecorder::ChipOf(double feed_mm_s) const {
+  return rpm_ > 0.0 ? feed_mm_s / (rpm_ / 60.0 * tool_.flutes) : 0.0;
+}
+
+void MillingRecorder::NotePlunge(double feed_mm_s, const machine::Place& place) {
+  if (!chips_ || !(chips_->plunge_most_mm > 0.0)) return;
+  const double percent = 100.0 * ChipOf(feed_mm_s) / chips_->plunge_most_mm;
+  if (percent <= figures_.chips->plunge_percent) return;
+  figures_.chips->plunge_percent = percent;
+  figures_.chips->plunge_place = place;
 }
 
 // At the feed rate asked for: on ramps and in corners an edge takes less for a moment.
 void MillingRecorder::NoteChip(double feed_mm_s, const machine::Place& place) {
   if (!chips_ || !(rpm_ > 0.0)) return;
-  const double turns_s = rpm_ / 60.0;
-  const double chip_mm = feed_mm_s / (turns_s * tool_.flutes);
-  const double edge_mm_s = turns_s * 2.0 * kPi * tool_.radius_mm;
+  const double chip_mm = ChipOf(feed_mm_s);
+  const double edge_mm_s = rpm_ / 60.0 * 2.0 * kPi * tool_.radius_mm;
   const auto note = [&](double percent, double& most, machine::Place& where) {
     if (percent <= most) return;
     most = percent;
@@ -108,6 +129,47 @@ void MillingRecorder::NoteBelow(const motion::MachinePoint& from, const motion::
     return;
   if (!(figures_.below_mm > 0.0)) figures_.below_place = place;
   figures_.below_mm = std::max(figures_.below_mm, below);
+}
+
+// Below the top of the block. Outlines and facing run on beyond an edge by about the diameter of
+// the tool, which stands beside the block then; what lies further out is meant for a larger block,
+// or for another place of it.
+void MillingRecorder::NoteBeside(const motion::MachinePoint& from, const motion::MachinePoint& to,
+                                 const machine::Place& place) {
+  const Stock& block = material_.stock();
+  const double run_on = 2.0 * tool_.radius_mm;
+  const motion::MachineVector way = to - from;
+  struct Part {
+    double low = 0.0;  // shares of the way
+    double high = 1.0;
+    void KeepBelow(double at_start, double change, double limit) {
+      if (at_start > limit && !(change < 0.0)) high = -1.0;
+      if (change > 0.0) high = std::min(high, (limit - at_start) / change);
+      if (change < 0.0) low = std::max(low, (limit - at_start) / change);
+    }
+    double length() const { return std::max(0.0, high - low); }
+  };
+  Part deep;
+  deep.KeepBelow(from.z(), way.z(), block.top);
+  Part inside = deep;
+  inside.KeepBelow(from.x(), way.x(), block.x_max + run_on);
+  inside.KeepBelow(-from.x(), -way.x(), run_on - block.x_min);
+  inside.KeepBelow(from.y(), way.y(), block.y_max + run_on);
+  inside.KeepBelow(-from.y(), -way.y(), run_on - block.y_min);
+  const double beside = (deep.length() - inside.length()) * way.norm();
+  if (beside <= kGougeLeast_mm) return;
+  if (!(figures_.beside_mm > 0.0)) figures_.beside_place = place;
+  figures_.beside_mm += beside;
+  const auto note = [&](double beyond, double& most) {
+    if (beyond > run_on) most = std::max(most, beyond);
+  };
+  for (const double share : {deep.low, deep.high}) {
+    const motion::MachinePoint p = from + way * share;
+    note(block.x_min - p.x(), figures_.beside_x_low_mm);
+    note(p.x() - block.x_max, figures_.beside_x_high_mm);
+    note(block.y_min - p.y(), figures_.beside_y_low_mm);
+    note(p.y() - block.y_max, figures_.beside_y_high_mm);
+  }
 }
 
 MillingFigures MillingRecorder::Figures() const {

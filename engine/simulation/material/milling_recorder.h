@@ -25,11 +25,15 @@ struct Milling {
 Status CheckMilling(const Milling& milling);
 
 // Takes the material away that the motions of a run sweep, and tells where the tool went into it at
-// travel speed, where shank or holder did, and how deep the deepest pass is. motion.md section 9.
+// travel speed, where shank or holder did, how deep the deepest pass is, and what lies beside it.
+// motion.md section 9.
 class MillingRecorder final : public machine::RunObserver {
  public:
   // Precondition: CheckMilling is well.
   MillingRecorder(const machine::MachineShape& shape, const Milling& milling);
+
+  // Where the work origin of the machine is, before the first motion: it may have been set since.
+  void BeginAt(const motion::MachinePoint& work_origin) { origin_ = work_origin; }
 
   void OnMotion(const machine::MotionDone& done) override;
   void OnSignal(const machine::SignalChange& change) override;
@@ -41,6 +45,10 @@ class MillingRecorder final : public machine::RunObserver {
  private:
   void NoteBelow(const motion::MachinePoint& from, const motion::MachinePoint& to,
                  const machine::Place& place);
+  void NoteBeside(const motion::MachinePoint& from, const motion::MachinePoint& to,
+                  const machine::Place& place);
+  double ChipOf(double feed_mm_s) const;
+  void NotePlunge(double feed_mm_s, const machine::Place& place);
   void NoteChip(double feed_mm_s, const machine::Place& place);
 
   motion::MachinePoint origin_;  // of the block's frame, machine frame

@@ -8,6 +8,14 @@
 namespace rmlcell::simulation {
 namespace {
 
+// Heights are in single precision, and in a picture in 65535 steps: less is no difference.
+constexpr double kSameHeight_mm = 5e-4;
+
+// As a verdict has it: what is told as the tolerance is within it.
+bool IsBeyond(double difference_mm, double tolerance_mm) {
+  return difference_mm > tolerance_mm + 1e-5;
+}
+
 constexpr Colour kGood = {214, 214, 214};
 constexpr Colour kSilent = {255, 255, 255};
 constexpr Colour kTooDeep = {190, 0, 0};
@@ -41,8 +49,10 @@ class TargetComparison {
       }
     }
     const double here = std::max(field_.height(column, row), bottom_);
-    return {.left_mm = std::max(0.0, here - std::max(high, bottom_)),
-            .deep_mm = std::max(0.0, std::max(low, bottom_) - here),
+    const double left = here - std::max(high, bottom_);
+    const double deep = std::max(low, bottom_) - here;
+    return {.left_mm = left > kSameHeight_mm ? left : 0.0,
+            .deep_mm = deep > kSameHeight_mm ? deep : 0.0,
             .compared = true};
   }
 
@@ -80,7 +90,7 @@ TargetFigures CompareWithTarget(const HeightField& field, const Target& target) 
       const Difference difference = comparison.At(column, row);
       if (!difference.compared) continue;
       ++compared;
-      if (std::max(difference.left_mm, difference.deep_mm) <= target.tolerance_mm) ++good;
+      if (!IsBeyond(std::max(difference.left_mm, difference.deep_mm), target.tolerance_mm)) ++good;
       figures.left_mm3 += difference.left_mm;
       figures.deep_mm3 += difference.deep_mm;
       if (difference.left_mm > figures.left_mm) {
@@ -110,9 +120,9 @@ bool WriteDifference(const HeightField& field, const Target& target,
       [&](std::size_t column, std::size_t row) {
         const Difference difference = comparison.At(column, row);
         if (!difference.compared) return kSilent;
-        if (difference.deep_mm > target.tolerance_mm)
+        if (IsBeyond(difference.deep_mm, target.tolerance_mm))
           return Strong(kTooDeep, difference.deep_mm, target.tolerance_mm);
-        if (difference.left_mm > target.tolerance_mm)
+        if (IsBeyond(difference.left_mm, target.tolerance_mm))
           return Strong(kTooMuch, difference.left_mm, target.tolerance_mm);
         return kGood;
       },

@@ -206,11 +206,13 @@ void Table::AddTimes() {
 
 void Table::AddWork() {
   Figure("tip_path_mm", "mm", "way of the tip: cut and travel", &WorkFigures::tip_path_mm);
-  Figure("cut_length_mm", "mm", "with the beam on; of a mill cuts and plunges",
+  Figure("cut_length_mm", "mm",
+         "with the beam on; of a mill motions below the surface of the work, lifts left out",
          &WorkFigures::cut_mm);
   Figure("travel_length_mm", "mm", "the rest", &WorkFigures::travel_mm);
   Figure("plunge_length_mm", "mm", "plunges, part of the cut length", &WorkFigures::plunge_mm);
-  Counter("plunges", "times that the tool went down into the work; steps of one way down are one",
+  Counter("plunges",
+          "times that the tool went down below the surface; steps of one way down are one",
           &WorkFigures::plunges);
   Add("beam_on_s", "s", "time with the beam on",
       [](const RunReport& r) { return Seconds(r.total.beam_on); });
@@ -353,6 +355,9 @@ void Table::AddCorners() {
       of_material([](const MillingFigures& m) { return Real(m.deepest_pass_mm); }));
   Add("shank_depth_mm", "mm", "how deep shank or holder of the tool went into that block",
       of_material([](const MillingFigures& m) { return Real(m.shank_depth_mm); }));
+  Add("beside_block_mm", "mm",
+      "way in the work with the tool beside that block by more than its diameter",
+      of_material([](const MillingFigures& m) { return Real(m.beside_mm); }));
   const auto of_target = [&](auto figure) {
     return of_material([figure](const MillingFigures& m) {
       return m.target ? Real(figure(*m.target)) : std::string(kNone);
@@ -389,7 +394,8 @@ void Table::AddPositions() {
       [](const RunReport& r) { return Real(r.final_position.axes.b_rad); });
   for (int i = 0; i < 3; ++i) {
     Add("work_origin" + std::string(kCoordinates[i]) + "_mm", "mm",
-        CoordinateName(kCoordinates[i]) + "work origin of a mill at the end, machine frame",
+        CoordinateName(kCoordinates[i]) +
+            "work origin of a mill, machine frame; Z where Z0 was before the program",
         [i](const RunReport& r) {
           return r.work_origin ? Real((*r.work_origin)[i]) : std::string(kNone);
         });

@@ -260,12 +260,13 @@ struct TargetFigures {
   bool operator==(const TargetFigures&) const = default;
 };
 
-// What a mill took off a block, when it was told of block and tool. motion.md 8.2, 9.
 // What the edges of a mill took off, beside what is usual for tool and material. Passes in material
-// alone.
+// alone, where it is not said of plunges.
 struct ChipFigures {
   double thick_percent = 0.0;  // greatest chip load, of the most that is usual
   machine::Place thick_place;
+  double plunge_percent = 0.0;  // the same of plunges
+  machine::Place plunge_place;
   double thin_percent = 0.0;  // how much the least one is below the least that is usual
   machine::Place thin_place;
   double speed_percent = 0.0;  // greatest speed of an edge, of the most that is usual
@@ -274,21 +275,28 @@ struct ChipFigures {
   bool operator==(const ChipFigures&) const = default;
 };
 
+// What a mill took off a block, when it was told of block and tool. motion.md 8.2, 9.
 struct MillingFigures {
   double removed_mm3 = 0.0;
   std::uint64_t gouges = 0;     // motions at travel speed through material
   double gouge_depth_mm = 0.0;  // of the deepest
   machine::Place gouge_place;   // where that was
   SimTime gouge_at{0};
-  double below_mm = 0.0;                  // how far the tool went below the block
-  machine::Place below_place;             // where it did first
-  double remaining_mm3 = 0.0;             // of the block
-  double deepest_cut_mm = 0.0;            // below its top
-  double tool_diameter_mm = 0.0;          // of the cutting part
-  double deepest_pass_mm = 0.0;           // most that one motion across took off over a cell
-  machine::Place pass_place;              // where that was
-  double shank_depth_mm = 0.0;            // deepest that shank or holder went into material
-  machine::Place shank_place;             // where that was
+  double below_mm = 0.0;          // how far the tool went below the block
+  machine::Place below_place;     // where it did first
+  double remaining_mm3 = 0.0;     // of the block
+  double deepest_cut_mm = 0.0;    // below its top
+  double tool_diameter_mm = 0.0;  // of the cutting part
+  double deepest_pass_mm = 0.0;   // most that one motion across took off over a cell
+  machine::Place pass_place;      // where that was
+  double shank_depth_mm = 0.0;    // deepest that shank or holder went into material
+  machine::Place shank_place;     // where that was
+  double beside_mm = 0.0;         // way in the work with the tool far beside the block
+  machine::Place beside_place;    // where that began
+  double beside_x_low_mm = 0.0;   // how far it leads beyond each edge
+  double beside_x_high_mm = 0.0;
+  double beside_y_low_mm = 0.0;
+  double beside_y_high_mm = 0.0;
   std::optional<TargetFigures> target{};  // nothing: there is none
   std::optional<ChipFigures> chips{};     // nothing: the material is not told
 
@@ -341,7 +349,7 @@ struct RunReport : ScopeFigures {
   std::uint64_t steps_executed = 0;
   std::uint64_t halts = 0;
   FinalPosition final_position;
-  std::optional<motion::MachinePoint> work_origin;  // at the end, machine frame
+  std::optional<motion::MachinePoint> work_origin;  // machine frame; Z: the surface
 
   std::uint64_t lookahead_starved = 0;  // knots that the planner decided before it saw enough
 

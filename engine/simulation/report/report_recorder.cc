@@ -100,7 +100,7 @@ void ReportRecorder::CountStandstill(const TimeLedger::Gap& gap) {
 // The beam cuts, or the tool of a machine without one.
 bool ReportRecorder::Cuts(const machine::MotionDone& done) const {
   const bool tool_in = done.use == MotionUse::kCut || done.use == MotionUse::kPlunge;
-  return done.beam_on || (shape_.laser_watts <= 0.0 && tool_in);
+  return done.beam_on || (shape_.laser_watts <= 0.0 && tool_in && done.in_work);
 }
 
 void ReportRecorder::OnStep(SimTime at, const machine::Place& place,
@@ -144,7 +144,7 @@ void ReportRecorder::OnMotion(const machine::MotionDone& done) {
 void ReportRecorder::AddLengths(const machine::MotionDone& done, double length, WorkFigures& work) {
   work.tip_path_mm = length;
   (Cuts(done) ? work.cut_mm : work.travel_mm) = length;
-  const bool plunge = done.use == MotionUse::kPlunge;
+  const bool plunge = done.use == MotionUse::kPlunge && done.in_work;
   if (plunge) work.plunge_mm = length;
   if (plunge && !plunging_) work.plunges = 1;
   plunging_ = plunge;

@@ -99,6 +99,7 @@ void Recorder::OnAssumed(const machine::Assumed& assumed) {
 void Recorder::Begin(const machine::Run& run) {
   const machine::RunState state = run.state();
   if (state_->samples) state_->samples->StandsAt(state.tip, state.axes);
+  if (state_->milling && state.work_origin) state_->milling->BeginAt(*state.work_origin);
 }
 
 bool Recorder::cut_off() const {

@@ -12,6 +12,15 @@ namespace {
 
 using machine::Verdict;
 
+constexpr double kRounding_mm = 0.01;
+
+// What is told as the limit is not above it: figures are sums of decimals in binary, heights over
+// cells have single precision.
+bool IsAbove(double value, double limit) {
+  constexpr double kSame = 1e-5;
+  return value > limit + kSame;
+}
+
 Measured Gouges(const RunReport& r) {
   if (!r.milling) return {};
   return {static_cast<double>(r.milling->gouges), r.milling->gouge_place};
@@ -22,6 +31,14 @@ Measured BelowBlock(const RunReport& r) {
 }
 Measured BlockUntouched(const RunReport& r) {
   return {r.milling && !(r.milling->removed_mm3 > 0.0) ? 1.0 : 0.0, {}};
+}
+Measured Beside(const RunReport& r) {
+  if (!r.milling) return {};
+  return {r.milling->beside_mm, r.milling->beside_place};
+}
+template <double MillingFigures::*kEdge>
+Measured BesideEdge(const RunReport& r) {
+  return {IsAbove(Beside(r).value, kRounding_mm) ? *r.milling.*kEdge : 0.0, {}};
 }
 Measured ShankDepth(const RunReport& r) {
   if (!r.milling) return {};
@@ -39,12 +56,12 @@ Measured OfChips(const RunReport& r) {
 Measured TargetDeep(const RunReport& r) {
   if (!r.milling || !r.milling->target) return {};
   const TargetFigures& target = *r.milling->target;
-  return {target.deep_mm > target.tolerance_mm ? target.deep_mm : 0.0, {}};
+  return {IsAbove(target.deep_mm, target.tolerance_mm) ? target.deep_mm : 0.0, {}};
 }
 Measured TargetLeft(const RunReport& r) {
   if (!r.milling || !r.milling->target) return {};
   const TargetFigures& target = *r.milling->target;
-  return {target.left_mm > target.tolerance_mm ? target.left_mm : 0.0, {}};
+  return {IsAbove(target.left_mm, target.tolerance_mm) ? target.left_mm : 0.0, {}};
 }
 Measured TravelLeft(const RunReport& r) {
   if (r.violations.empty()) return {};
@@ -53,7 +70,6 @@ Measured TravelLeft(const RunReport& r) {
 }
 
 constexpr double kThroughTheBlock_mm = 1.0;  // deeper than a cut that is to go through
-constexpr double kRounding_mm = 0.01;
 constexpr double kTwiceUsual_percent = 200.0;
 constexpr double kHalfUsual_percent = 50.0;
 constexpr double kPassShare_percent = 100.1;  // once its diameter, and the rounding of heights
@@ -65,9 +81,15 @@ constexpr std::array kRules = {
     MeasuredRule{{{ErrorCode::kCellBelowBlock, "below_block", kThroughTheBlock_mm, Verdict::kBad, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
     MeasuredRule{{{ErrorCode::kCellBelowBlock, "below_block", kRounding_mm, Verdict::kDoubtful, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
     MeasuredRule{{{ErrorCode::kCellBlockUntouched, "block_untouched", 0.0, Verdict::kDoubtful, "the tool takes nothing off the block"}, "", "1 when nothing is taken off the block that was given"}, BlockUntouched},
+    MeasuredRule{{{ErrorCode::kCellBesideBlock, "beside_block", kRounding_mm, Verdict::kDoubtful, "# mm of the work lie beside the block"}, "mm", "way in the work, lower than the top of the block, with the tool beside it by more than its diameter"}, Beside},
+    MeasuredRule{{{ErrorCode::kCellBesideBlock, "beside_block_x_low", kRounding_mm, Verdict::kDoubtful, "the work leads # mm beyond the edge of the block at its least X"}, "mm", "how far that leads beyond the least X of the block"}, BesideEdge<&MillingFigures::beside_x_low_mm>},
+    MeasuredRule{{{ErrorCode::kCellBesideBlock, "beside_block_x_high", kRounding_mm, Verdict::kDoubtful, "the work leads # mm beyond the edge of the block at its greatest X"}, "mm", "how far it leads beyond the greatest X"}, BesideEdge<&MillingFigures::beside_x_high_mm>},
+    MeasuredRule{{{ErrorCode::kCellBesideBlock, "beside_block_y_low", kRounding_mm, Verdict::kDoubtful, "the work leads # mm beyond the edge of the block at its least Y"}, "mm", "how far it leads beyond the least Y"}, BesideEdge<&MillingFigures::beside_y_low_mm>},
+    MeasuredRule{{{ErrorCode::kCellBesideBlock, "beside_block_y_high", kRounding_mm, Verdict::kDoubtful, "the work leads # mm beyond the edge of the block at its greatest Y"}, "mm", "how far it leads beyond the greatest Y"}, BesideEdge<&MillingFigures::beside_y_high_mm>},
     MeasuredRule{{{ErrorCode::kCellShankInMaterial, "shank_depth", kRounding_mm, Verdict::kBad, "shank or holder goes # mm into material"}, "mm", "how deep shank or holder of the tool goes into the block that was given"}, ShankDepth},
     MeasuredRule{{{ErrorCode::kCellDeepPass, "pass_share", kPassShare_percent, Verdict::kDoubtful, "one pass is as deep as # % of the width of the tool"}, "%", "most that one motion across takes off in depth, by the diameter of the tool"}, PassShare},
     MeasuredRule{{{ErrorCode::kCellChipThick, "chip_thick", kTwiceUsual_percent, Verdict::kDoubtful, "an edge takes off # % of the most that is usual"}, "%", "greatest chip load, by the most that is usual for tool and material"}, OfChips<&ChipFigures::thick_percent, &ChipFigures::thick_place>},
+    MeasuredRule{{{ErrorCode::kCellChipThick, "plunge_thick", kTwiceUsual_percent, Verdict::kDoubtful, "an edge takes off # % of the most that is usual straight down"}, "%", "greatest chip load of a plunge, by the most that is usual for tool and material"}, OfChips<&ChipFigures::plunge_percent, &ChipFigures::plunge_place>},
     MeasuredRule{{{ErrorCode::kCellChipThin, "chip_thin", kHalfUsual_percent, Verdict::kDoubtful, "an edge takes off # % less than the least that is usual"}, "%", "how far the least chip load is below the least that is usual"}, OfChips<&ChipFigures::thin_percent, &ChipFigures::thin_place>},
     MeasuredRule{{{ErrorCode::kCellEdgeFast, "edge_speed", kTwiceUsual_percent, Verdict::kDoubtful, "an edge goes at # % of the greatest speed that is usual"}, "%", "greatest speed of an edge, by the greatest that is usual for the material"}, OfChips<&ChipFigures::speed_percent, &ChipFigures::speed_place>},
     MeasuredRule{{{ErrorCode::kCellTargetGouged, "target_deep", 0.0, Verdict::kBad, "the part is cut # mm below its target"}, "mm", "deepest of what is missing below the target, when that is above the tolerance"}, TargetDeep},
@@ -91,7 +113,7 @@ void AddMeasuredRules(std::span<const MeasuredRule> rules, const RunReport& repo
     const Measured measured = rule.measure(report);
     // The outcome may have said it.
     const bool said = report.outcome.code == what.code || Told(judgement, what);
-    if (!(measured.value > what.limit) || said) continue;
+    if (!IsAbove(measured.value, what.limit) || said) continue;
     judgement.Add(machine::ReasonOf(
         what,
         {.unit = std::string(rule.info.unit), .value = measured.value, .first = measured.first}));
@@ -102,7 +124,7 @@ void AddFamilyRules(const machine::MachineFamily& family, std::span<const machin
                     machine::Judgement& judgement) {
   for (const machine::VerdictRule& rule : family.verdict_rules()) {
     const auto figure = std::ranges::find(figures, rule.figure, &machine::Figure::name);
-    if (figure != figures.end() && figure->value > rule.limit && !Told(judgement, rule))
+    if (figure != figures.end() && IsAbove(figure->value, rule.limit) && !Told(judgement, rule))
       judgement.Add(machine::ReasonOf(rule, *figure, figures));
   }
 }

@@ -244,7 +244,7 @@ TEST(MillChainControl, KeepsWhatWasRidden) {
   run.Press(InputKind::kEmergencyStop);
   EXPECT_EQ(run->outcome().kind, OutcomeKind::kStopped);
   EXPECT_EQ(run.seen().moves().size(), 51U);
-  EXPECT_NEAR(run.figures().at("cut_length"), 20.0 + 5.05, 1e-7);  // with the plunge
+  EXPECT_NEAR(run.figures().at("travel_length"), 20.0 + 5.05, 1e-7);  // along the surface
   EXPECT_NEAR(run->state().tip.tip.x(), 5.05, 1e-8);
 
   machine::RunSetup setup = SetupOf(ParametersOf("t1"), "!MC0;VS10;PD1000,0;PD2000,0;PD3000,0;");

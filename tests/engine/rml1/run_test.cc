@@ -104,13 +104,13 @@ TEST(MillRun, CountsStepsOfTheProfile) {
 
 // RML1-1.08, RML1-8.39, RML1-9.12: 40 units per mm on older machines; the numbers stay.
 TEST(MillRun, TakesTheUnitOfTheProfile) {
-  TestRun run(ParametersOf("mdx-20"), "PU400,-0;PD400,800;");
+  TestRun run(ParametersOf("mdx-20"), "PU400,-0;@-40;PD400,800;");
   run.AdvanceToEnd();
   EXPECT_EQ(run.variable("X"), "400");
   EXPECT_NEAR(run->state().tip.tip.x(), 10.0, 1e-9);
   EXPECT_NEAR(run->state().tip.tip.y(), 20.0, 1e-9);
-  EXPECT_EQ(run.figures().at("cut_length"), 20.0);  // Z1 = Z2 = 0: no plunge
-  EXPECT_EQ(run.figures().at("programmed.cut_length"), 800.0);
+  EXPECT_EQ(run.figures().at("cut_length"), 21.0);  // with 1 mm of plunge
+  EXPECT_EQ(run.figures().at("programmed.cut_length"), 840.0);
 }
 
 // RML1-8.42: a minimum of 0.1 mm/s takes the place of 0.5.
@@ -139,10 +139,10 @@ TEST(MillRun, TellsWhatMotionsAreFor) {
                                 MotionUse::kRetract, MotionUse::kPlunge, MotionUse::kCut,
                                 MotionUse::kRetract, MotionUse::kTravel, MotionUse::kRetract,
                                 MotionUse::kTravel));
-  EXPECT_EQ(run.figures().at("plunges"), 2);
-  // In the work: 5 down and 1 across, 5.1 down and 1 across.
-  EXPECT_NEAR(run.figures().at("cut_length"), 5 + 1 + 5.1 + 1, 1e-9);
-  EXPECT_NEAR(run.figures().at("travel_length"), 15 + 1 + 5 + 0.2 + 1 + 19.9 + 4, 1e-9);
+  // In the work: 5.1 down and 1 across. What is done at Z 0, 5 down and 1 across, cuts nothing.
+  EXPECT_EQ(run.figures().at("plunges"), 1);
+  EXPECT_NEAR(run.figures().at("cut_length"), 5.1 + 1, 1e-9);
+  EXPECT_NEAR(run.figures().at("travel_length"), 15 + 1 + 5 + 1 + 5 + 0.2 + 1 + 19.9 + 4, 1e-9);
 }
 
 // RML1-7.05: a place is the slot, the number of the command, its line and first byte.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kTin =
     "[tin]\nsource = 'measured'\ndiameter_mm = [1, 3]\nleast_mm = [0.01, 0.02]\n"
-    "most_mm = [0.1, 0.3]\nspeed_most_m_min = 100\n";
+    "most_mm = [0.1, 0.3]\nspeed_most_m_min = 100\nplunge_share = 0.4\n";
 
 // Half way between two rows half of each; below the first row and above the last in proportion.
 TEST(ChipLoad, GoesByTheDiameter) {
@@ -29,6 +29,7 @@ TEST(ChipLoad, GoesByTheDiameter) {
     EXPECT_NEAR(tin.For(diameter).least_mm, least, 1e-12) << diameter;
     EXPECT_NEAR(tin.For(diameter).most_mm, most, 1e-12) << diameter;
     EXPECT_EQ(tin.For(diameter).speed_most_m_min, 100.0);
+    EXPECT_NEAR(tin.For(diameter).plunge_most_mm, 0.4 * most, 1e-12) << diameter;
   };
   expect(1, 0.01, 0.1);
   expect(2, 0.015, 0.2);
@@ -47,6 +48,10 @@ TEST(ChipLoad, TellsWhatIsWrongWithATable) {
   EXPECT_EQ(fault(kTin, "source = 'measured'\n", ""), "chip_loads.toml:1: tin has no source");
   EXPECT_EQ(fault(kTin, "speed_most_m_min = 100", ""),
             "chip_loads.toml:1: tin has no speed_most_m_min above 0");
+  const std::string share = "chip_loads.toml:1: tin has no plunge_share above 0 and up to 1";
+  EXPECT_EQ(fault(kTin, "plunge_share = 0.4", ""), share);
+  EXPECT_EQ(fault(kTin, "0.4", "0"), share);
+  EXPECT_EQ(fault(kTin, "0.4", "1.1"), share);
   const std::string lists =
       "chip_loads.toml:1: tin: diameter_mm, least_mm and most_mm are lists of one length, of "
       "numbers that rise";
@@ -68,6 +73,8 @@ TEST(ChipLoad, TheTableIsWhole) {
       ASSERT_TRUE(range) << material;
       EXPECT_GT(range->least_mm, 0.0);
       EXPECT_LT(range->least_mm, range->most_mm);
+      EXPECT_GT(range->plunge_most_mm, 0.0);
+      EXPECT_LT(range->plunge_most_mm, range->most_mm);
     }
   }
   EXPECT_EQ(ChipTables().size(), 6U);
@@ -120,6 +127,22 @@ TEST(ChipLoad, GoesByEdgesAndSpindle) {
             "DOUBTFUL; CELL-E9415 an edge takes off 250.0 % of the most that is usual @10");
 }
 
+// Down at 10 mm/s is 0.05 mm for an edge: 250 % of 0.02 mm. In the same hole again there is nothing
+// to take off, and a way down of 45 degrees is a pass.
+TEST(ChipLoad, PlungesHaveARangeOfTheirOwn) {
+  EXPECT_EQ(TextOf(OfChips({0.01, 0.05, 100.0, 0.025})), "GOOD");
+  EXPECT_EQ(
+      TextOf(OfChips({0.01, 0.05, 100.0, 0.02})),
+      "DOUBTFUL; CELL-E9415 an edge takes off 250.0 % of the most that is usual straight down "
+      "@7");
+  EXPECT_EQ(TextOf(OfChips({0.01, 0.05, 100.0, 0.02}, "flat:3:flutes=2", "VS10;!VZ8;!RC6000;")),
+            "GOOD");
+  EXPECT_EQ(TextOf(OfChips({0.01, 0.05, 100.0, 0.02}, "flat:3:flutes=2",
+                           "VS10;!VZ8;!RC6000;!MC1;PU300,500;Z300,500,-100;!VZ20;PU;!PZ-50,200;"
+                           "PD;PU;Z300,500,0;Z300,500,-100;!PZ-100,200;")),
+            "GOOD");
+}
+
 TEST(ChipLoad, CountsPassesInMaterialAlone) {
   const machine::MachineFamily& mill = *families::FindFamily("rml1");
   const auto judged = [&](const std::string& cut) {
@@ -136,7 +159,7 @@ TEST(ChipLoad, CountsPassesInMaterialAlone) {
   EXPECT_EQ(judged(""), "GOOD");
   // Back in its own groove the tool takes nothing off, however fast; nor beside the block.
   EXPECT_EQ(judged("VS50;PD300,500;"), "GOOD");
-  EXPECT_EQ(judged("PU5000,5000;VS50;PD6000,5000;"), "GOOD");
+  EXPECT_EQ(judged("PU5000,5000;VS50;PD6000,5000;").find("CELL-E9415"), std::string::npos);
   EXPECT_EQ(judged("VS50;PD1000,1500;"),
             "DOUBTFUL; CELL-E9415 an edge takes off 500.0 % of the most that is usual @9");
 }

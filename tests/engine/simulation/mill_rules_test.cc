@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "engine/families/families.h"
+#include "engine/simulation/material/milling_text.h"
 #include "engine/simulation/run/drive.h"
+#include "engine/simulation/run/simulate.h"
 #include "engine/simulation/verdict/verdict.h"
 #include "tests/engine/simulation/verdict_text.h"
 
@@ -194,11 +196,40 @@ TEST(MillRules, WaysAcrossAtTheSpeedOfLifts) {
     return TextOfCheck("V5;!MC1;Z0,0,200;Z0,0,-50;Z1000,0,-50;V60;Z1000,0," + z + ";Z3000,0," + z +
                        ";Z3000,0,200;!MC0;");
   };
-  EXPECT_EQ(lift("0"), "GOOD");
+  EXPECT_EQ(lift("1"), "GOOD");
+  EXPECT_EQ(lift("0"),
+            "DOUBTFUL; RML1-E8010 20.000 mm across at travel speed, not above the surface of the "
+            "work @8");
   EXPECT_EQ(lift("-1"), "DOUBTFUL; RML1-E8019 20.000" + said + "8");
   // The way out on a slope from 0.5 mm below to 0.5 mm above: half of 10.05 mm lies below.
   EXPECT_EQ(TextOfCheck("V5;!MC1;Z0,0,200;Z0,0,-50;Z1000,0,-50;V60;Z2000,0,50;Z2000,0,200;!MC0;"),
             "DOUBTFUL; RML1-E8019 5.025" + said + "7");
+}
+
+// A Z command along the surface, as fast as lifts, between cuts at half of that or less: 10 mm
+// across from a hole or a groove, or to the first one. Reliefs are as fast there as beside it.
+TEST(MillRules, WaysAlongTheSurfaceAtTheSpeedOfLifts) {
+  const auto along = [](const std::string& before, const std::string& behind,
+                        const std::string& fast = "60", const std::string& z = "0") {
+    return TextOfCheck("!MC1;V60;Z0,0,200;V" + before + ";Z0,0,-50;Z500,0,-50;V" + fast +
+                       ";Z500,0," + z + ";Z1500,0," + z + ";V" + behind +
+                       ";Z1500,0,-50;Z2000,0,-50;V60;Z2000,0,200;!MC0;");
+  };
+  const std::string said =
+      "DOUBTFUL; RML1-E8010 10.000 mm across at travel speed, not above the surface of the work @";
+  EXPECT_EQ(along("5", "5"), said + "9");
+  EXPECT_EQ(along("30", "30"), said + "9");
+  EXPECT_EQ(along("31", "30"), "GOOD");
+  EXPECT_EQ(along("30", "31"), "GOOD");
+  EXPECT_EQ(along("5", "5", "48"), said + "9");
+  EXPECT_EQ(along("5", "5", "47"), "GOOD");
+  EXPECT_EQ(along("5", "5", "60", "1"), "GOOD");
+  // To the first hole, and home from the last one.
+  EXPECT_EQ(
+      TextOfCheck("PA;!MC1;V60;Z0,0,200;Z0,0,0;Z1000,0,0;V5;Z1000,0,-50;V60;Z1000,0,200;!MC0;"),
+      said + "6");
+  EXPECT_EQ(TextOfCheck("PA;!MC1;V60;Z1000,0,200;V5;Z1000,0,-50;V60;Z1000,0,0;Z0,0,0;!MC0;"),
+            said + "9");
 }
 
 // A pass of its own may be as fast as the machine goes, where it goes down slowly: to finish, or
@@ -290,9 +321,10 @@ std::vector<std::string> RandomProgram(std::mt19937& random) {
     return std::to_string(low + static_cast<int>(random() % static_cast<unsigned>(high - low)));
   };
   const auto place = [&] { return number(0, 20000) + "," + number(0, 15000); };
-  // Up to 47 mm/s: from 48 on, 0.8 of those of T1, speeds are judged as those of travel.
+  // Lifts of less than 1 mm may be taken for those of another step size. Up to 47 mm/s: from 48 on,
+  // 0.8 of those of T1, speeds are judged as those of travel.
   std::vector<std::string> program = {"VS" + number(1, 48), "!VZ" + number(1, 48),
-                                      "!PZ-" + number(10, 2000) + "," + number(60, 1500), "!MC1"};
+                                      "!PZ-" + number(10, 2000) + "," + number(100, 1500), "!MC1"};
   const int parts = 2 + static_cast<int>(random() % 5U);
   for (int part = 0; part < parts; ++part) {
     const std::string start = place();
@@ -325,6 +357,12 @@ void Replace(std::vector<std::string>& program, std::string_view begins, const s
   }
 }
 
+std::vector<std::string>::iterator PlaceOf(std::vector<std::string>& program,
+                                           std::string_view begins) {
+  return std::ranges::find_if(
+      program, [&](const std::string& command) { return command.starts_with(begins); });
+}
+
 // Each fault with the least verdict that it has, on a program that was GOOD.
 struct Fault {
   const char* name;
@@ -340,11 +378,35 @@ constexpr Fault kFaults[] = {
     {"a feed that there is not", Verdict::kDoubtful,
      [](auto& p) { p.insert(p.begin() + 2, "VS90"); }},
     {"no tail", Verdict::kDoubtful, [](auto& p) { p.resize(p.size() - 2); }},
+    {"spindle off on the way", Verdict::kBad,
+     [](auto& p) { p.insert(PlaceOf(p, "PD5000"), "!MC0"); }},
+    {"a plunge as fast as lifts", Verdict::kDoubtful, [](auto& p) { Replace(p, "!VZ", "!VZ60"); }},
+    {"a rapid at depth", Verdict::kDoubtful,
+     [](auto& p) {
+       const auto at = PlaceOf(p, "Z500,0,") + 1;
+       p.insert(at, {"V10", "Z900,0,-50", "V60", "Z900,700,-50"});
+     }},
+    {"a rapid along the surface", Verdict::kDoubtful,
+     [](auto& p) {
+       const auto at = PlaceOf(p, "PU500");
+       p.insert(at, {"V10", "Z5000,5000,-60", "Z5100,5000,-60", "V60", "Z5100,5000,0", "Z400,0,0",
+                     "V10", "Z400,0,-60"});
+     }},
+    {"deeper than the travel", Verdict::kBad,
+     [](auto& p) { Replace(p, "Z500,0,", "Z500,0,-4100"); }},
+    {"Z0 out of place", Verdict::kDoubtful, [](auto& p) { p.insert(p.begin() + 3, "!ZO-2100"); }},
+    {"a number that is missing", Verdict::kBad, [](auto& p) { Replace(p, "PU500,0", "PU500"); }},
+    {"a place from before", Verdict::kDoubtful,
+     [](auto& p) {
+       p.insert(p.begin() + 4, {"PR", "PD10,10", "PU", "PA"});
+     }},
 };
+
+constexpr int kRounds = 60;
 
 TEST(MillRules, AFaultNeverMakesAVerdictBetter) {
   std::mt19937 random(20);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     const std::vector<std::string> orderly = RandomProgram(random);
     ASSERT_EQ(TextOfCheck(Joined(orderly)), "GOOD") << Joined(orderly);
     std::vector<Fault> faults(std::begin(kFaults), std::end(kFaults));
@@ -361,6 +423,52 @@ TEST(MillRules, AFaultNeverMakesAVerdictBetter) {
       before = now;
     }
     EXPECT_EQ(before, Verdict::kBad);
+  }
+}
+
+// The same with what only a machine, or a block, makes wrong. A program that reaches into the far
+// corner does not fit when its origin is moved, nor on a machine with fewer units in a millimetre.
+TEST(MillRules, TheWrongMachineNeverMakesAVerdictBetter) {
+  std::mt19937 random(22);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<std::string> program = RandomProgram(random);
+    program.insert(program.begin() + 4, {"PU0,0", "PD20000,15000"});
+    const std::string stream = Joined(program);
+    ASSERT_EQ(TextOfCheck(stream), "GOOD") << stream;
+    for (const char* axis : {"ORIGIN_X", "ORIGIN_Y"})
+      EXPECT_EQ(CheckOf(stream, "t1", {{axis, "1"}}).verdict, Verdict::kBad) << axis << stream;
+    const std::string there = TextOfCheck(stream, "mdx-20");
+    EXPECT_EQ(there.substr(0, 3), "BAD");
+    EXPECT_NE(there.find("RML1-E8002"), std::string::npos) << there;
+    EXPECT_NE(there.find("RML1-E8016"), std::string::npos) << there;
+  }
+}
+
+// The deepest cut of each reaches 40 mm, all of them 20 mm and more into X; a tool of 60 mm is as
+// wide as any pass is deep.
+TEST(MillRules, TheWrongBlockNeverMakesAVerdictBetter) {
+  std::mt19937 random(23);
+  const machine::MachineFamily& mill = *families::FindFamily("rml1");
+  for (int round = 0; round < kRounds / 3; ++round) {
+    std::vector<std::string> program = RandomProgram(random);
+    program.insert(program.begin() + 4,
+                   {"PU10000,7000", "Z10000,7000,-4000", "Z10500,7000,-4000", "PU10500,7000"});
+    const auto judged = [&](const std::string& stock, const std::string& tool) {
+      machine::RunSetup setup(*machine::MakeParameters(mill, "t1", {}));
+      setup.main_program = 1;
+      setup.programs[1].object = machine::Bytes::Of(Joined(program));
+      SimulationRequest request;
+      request.products.milling = Milling{.stock = *ParseStock(stock), .tool = *ParseTool(tool)};
+      request.products.milling->stock.cell = 1.0;
+      return Simulate(mill, std::move(setup), std::move(request))->report.judgement;
+    };
+    ASSERT_EQ(TextOf(judged("200x150x40", "flat:60")), "GOOD") << Joined(program);
+    EXPECT_EQ(judged("200x150x38.5", "flat:60").verdict, Verdict::kBad);       // the table
+    EXPECT_EQ(judged("200x150x39.5", "flat:60").verdict, Verdict::kDoubtful);  // into it
+    EXPECT_EQ(judged("200x150x60@0,0,16", "flat:60").verdict, Verdict::kBad);  // travel through it
+    EXPECT_GE(judged("200x150x40", "flat:20").verdict, Verdict::kDoubtful);    // a pass of 40 mm
+    EXPECT_EQ(judged("200x150x40", "flat:60:flute=30").verdict, Verdict::kBad);
+    EXPECT_GE(judged("200x150x40@300,0,0", "flat:60").verdict, Verdict::kDoubtful);
   }
 }
 

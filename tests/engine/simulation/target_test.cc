@@ -96,6 +96,25 @@ TEST(Target, HasATolerance) {
   EXPECT_EQ(CompareWithTarget(TargetBlock(), AllAt(-9.0f)).left_mm, 2.0);
 }
 
+// Less than half a micrometre is rounding, either way; and 0.1 mm in single precision, a little
+// more than in double, is within 0.1 mm.
+TEST(Target, RoundingIsNoDifference) {
+  const auto compared = [](float height, double tolerance_mm) {
+    HeightField field = TargetBlock();
+    field.Cut({.radius_mm = 50.0}, {3, 0, -1}, {3, 0, -1});
+    return CompareWithTarget(field, AllAt(height, tolerance_mm));
+  };
+  for (const float rounded : {-1.0004f, -0.9996f}) {
+    const TargetFigures figures = compared(rounded, 0.0);
+    EXPECT_EQ(figures.good_percent, 100.0) << rounded;
+    EXPECT_EQ(figures.left_mm + figures.deep_mm + figures.left_mm3 + figures.deep_mm3, 0.0);
+  }
+  EXPECT_NEAR(compared(-0.9994f, 0.0).deep_mm, 0.0006, 1e-6);
+  EXPECT_NEAR(compared(-1.0006f, 0.0).left_mm, 0.0006, 1e-6);
+  EXPECT_EQ(compared(-0.89999998f, 0.1).good_percent, 100.0);
+  EXPECT_EQ(compared(-0.8999f, 0.1).good_percent, 0.0);
+}
+
 TEST(Target, BelongsToTheCellsOfItsBlock) {
   Milling milling{.stock = kTargetBlock, .tool = {.radius_mm = 1.0}, .target = AllAt(0.0f)};
   EXPECT_TRUE(CheckMilling(milling));

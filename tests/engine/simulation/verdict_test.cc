@@ -39,6 +39,11 @@ Judgement VerdictOf(const machine::MachineFamily& family, const machine::Paramet
   return result ? result->report.judgement : Judgement{.verdict = Verdict::kBad, .reasons = {}};
 }
 
+double FigureOf(const std::vector<machine::Figure>& figures, std::string_view name) {
+  const auto found = std::ranges::find(figures, name, &machine::Figure::name);
+  return found == figures.end() ? -1.0 : found->value;
+}
+
 // On the test profile T1: 0..200 x 0..150 x -60..0 mm, Z0 20 mm below the top, 100 units a mm.
 Judgement OfStream(const std::string& stream) { return VerdictOf(Mill(), MillOf("t1"), stream); }
 
@@ -98,7 +103,72 @@ TEST(Verdict, OfHolesThatAreNotDrilled) {
   const std::string deep = "VS10;!VZ10;!PZ-1000,200;!ZO-5500;!MC1;PU100,100;PD200,100;PU0,0;!MC0;";
   EXPECT_EQ(TextOf(OfStream(deep)),
             "BAD; RML1-E8002 5.000 mm of the work lie beyond the travel and are not cut @7; "
-            "RML1-E8002 the work leads 5.000 mm below the travel: raise Z0");
+            "RML1-E8002 the work leads 5.000 mm below the travel: raise Z0; RML1-E8010 3.650 mm "
+            "across at travel speed, not above the surface of the work @6; RML1-E8020 !ZO lowers "
+            "Z0 by 35.000 mm: so much deeper is what follows @4; RML1-E8011 the tool stays 33.000 "
+            "mm deep in the work at the end");
+}
+
+// Z0 of T1 is 20 mm below the top; 10 mm further up 1 mm down is 9 mm above the surface. The block
+// stays where it was, too, and so does what is told of depth. RML1-3C.32, RML1-9.11
+TEST(Verdict, OfZ0ThatIsMoved) {
+  const auto moved = [](const std::string& zo, const std::string& depth = "100") {
+    return "!ZO" + zo + ";VS10;!VZ10;!PZ-" + depth + ",200;!MC1;PU100,100;PD200,100;PU0,0;!MC0;";
+  };
+  EXPECT_EQ(TextOf(OfStream(moved("-2000"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(moved("-2001"))), "GOOD");
+  const std::string raised = "DOUBTFUL; RML1-E8020 !ZO raises Z0 by ";
+  EXPECT_EQ(TextOf(OfStream(moved("-1998"))),
+            raised + "0.020 mm: so much less deep is what follows @1");
+  EXPECT_EQ(TextOf(OfStream(moved("-1000"))),
+            raised +
+                "10.000 mm: so much less deep is what follows @1; RML1-E8015 nothing is cut: "
+                "the tool never goes below the surface");
+  EXPECT_EQ(TextOf(OfStreamInBlock(moved("-1000"), "20x20x10")).substr(0, 62),
+            "DOUBTFUL; CELL-E9403 the tool takes nothing off the block; RML");
+  // 12 mm down from there are 2 mm of the work, in the block and beside it.
+  machine::RunSetup setup(MillOf("t1"));
+  setup.main_program = 1;
+  setup.programs[1].object = machine::Bytes::Of(moved("-1000", "1200"));
+  SimulationRequest request;
+  request.products.milling =
+      Milling{.stock = *ParseStock("20x20x10"), .tool = *ParseTool("flat:3")};
+  const auto result = Simulate(Mill(), std::move(setup), std::move(request));
+  ASSERT_TRUE(result);
+  EXPECT_NEAR(result->report.milling->deepest_cut_mm, 2.0, 1e-6);
+  EXPECT_NEAR(result->report.work_origin->z(), -20.0, 1e-12);
+  EXPECT_NEAR(FigureOf(result->report.figures, "box_mm.zmin"), -2.0, 1e-12);
+  EXPECT_NEAR(FigureOf(result->report.figures, "z0_raised"), 10.0, 1e-12);
+  const auto checked =
+      Mill().Translate({.name = "a.rml", .bytes = moved("-1000", "1200")}, MillOf("t1"), {});
+  EXPECT_NEAR(FigureOf(checked.figures, "box_mm.zmin"), -2.0, 1e-12);
+  // Put back before anything goes by it, it harms nothing; left behind it does to what comes next.
+  EXPECT_EQ(TextOf(OfStream(Work("PD200,100;PU;!ZO-1000;!ZO;"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(Work("PD200,100;") + "!ZO-1000;")),
+            raised + "10.000 mm: so much less deep is what follows @9");
+  // Where the machine is told to have it there, nothing moves.
+  const auto told = *machine::MakeParameters(Mill(), "t1", {{"Z0", "-10"}});
+  EXPECT_EQ(TextOf(VerdictOf(Mill(), told, moved("-1000"))), "GOOD");
+}
+
+// A machine that was left with another Z0 has its surface, and the block, there.
+TEST(Verdict, OfZ0ThatAnEarlierRunLeft) {
+  machine::RunSetup first(MillOf("t1"));
+  first.main_program = 1;
+  first.programs[1].object = machine::Bytes::Of("!ZO-1000;");
+  const auto left = Simulate(Mill(), std::move(first), {});
+  ASSERT_TRUE(left);
+  machine::RunSetup setup(MillOf("t1"));
+  setup.main_program = 1;
+  setup.programs[1].object = machine::Bytes::Of(Work("PD200,100;"));
+  setup.machine_state = left->machine_state;
+  SimulationRequest request;
+  request.products.milling =
+      Milling{.stock = *ParseStock("20x20x10"), .tool = *ParseTool("flat:3")};
+  const auto result = Simulate(Mill(), std::move(setup), std::move(request));
+  ASSERT_TRUE(result);
+  EXPECT_EQ(TextOf(result->report.judgement), "GOOD");
+  EXPECT_NEAR(result->report.milling->deepest_cut_mm, 1.0, 1e-6);
 }
 
 TEST(Verdict, OfDataThatEndsInsideACommand) {
@@ -188,7 +258,96 @@ TEST(Verdict, OfFeedRatesThatNobodyGave) {
 
 TEST(Verdict, OfAToolThatNeverCuts) {
   EXPECT_EQ(TextOf(OfStream(Work("PU200,100;"))),
-            "DOUBTFUL; RML1-E8015 the tool never goes into the work");
+            "DOUBTFUL; RML1-E8015 nothing is cut: the tool never goes below the surface");
+  // Along the surface with the spindle turning nothing is cut, either; 0.01 mm below it is.
+  const auto at = [](const std::string& z1) {
+    return "VS10;!VZ10;!PZ" + z1 + ",200;!MC1;PU100,100;PD200,100;PU0,0;!MC0;";
+  };
+  EXPECT_EQ(TextOf(OfStream(at("0"))),
+            "DOUBTFUL; RML1-E8015 nothing is cut: the tool never goes below the surface");
+  EXPECT_EQ(TextOf(OfStream(at("-1"))), "GOOD");
+}
+
+// Relative ways lead to where the tool stood before, until absolute ones say where; 1 mm of the
+// plunge and 1 mm of the stroke are in the work.
+TEST(Verdict, OfAPlaceThatNobodyGave) {
+  const auto begin = [](const std::string& commands) {
+    return TextOf(OfStream("VS10;!VZ10;!PZ-100,200;!MC1;" + commands + "PU;!MC0;"));
+  };
+  const std::string said = " mm in the work at a place that hangs on where the tool stood before @";
+  EXPECT_EQ(begin("PR100,100;PD100,0;"), "DOUBTFUL; RML1-E8021 2.000" + said + "6");
+  EXPECT_EQ(begin("PA100,100;PR;PD100,0;"), "GOOD");
+  EXPECT_EQ(begin("PA0,0;PR;PD100,0;"), "GOOD");  // where it stands
+  EXPECT_EQ(begin("H;PR;PD100,0;"), "GOOD");
+  EXPECT_EQ(begin("!ZEX100;PR;PD100,0;"), "DOUBTFUL; RML1-E8021 2.000" + said + "7");
+  EXPECT_EQ(begin("!ZEX100Y100;PR;PD100,0;"), "GOOD");
+  // A machine without Y asks for none.
+  EXPECT_EQ(TextOf(VerdictOf(Mill(), MillOf("t1n"),
+                             "VS10;!VZ10;!MC1;!ZEX100Z200;!ZEZ-50;!ZEX200;!ZEZ200;!MC0;")),
+            "GOOD");
+  // Down where it stands, and from there to a place that is given.
+  EXPECT_EQ(begin("PD100,0;"), "DOUBTFUL; RML1-E8021 2.000" + said + "5");
+  EXPECT_EQ(begin("Z0,0,200,0,0,-100;"), "GOOD");
+}
+
+// What a machine may have otherwise from before is told, and no reason for anything.
+TEST(Figures, TellWhatAProgramTakesForGranted) {
+  const auto assumed = [](const std::string& stream) {
+    const auto checked = Mill().Translate({.name = "a.rml", .bytes = stream}, MillOf("t1"), {});
+    std::string text;
+    for (const char* name : {"assumed_absolute", "assumed_heights", "assumed_rotation"})
+      text += ShortestText(FigureOf(checked.figures, name)) + " ";
+    return text;
+  };
+  EXPECT_EQ(assumed("PU100,100;PD200,100;Z0,0,-10;PU;"), "1 1 3 ");
+  EXPECT_EQ(assumed("PA;!PZ-100,200;!MC1;PU100,100;PD200,100;PU;"), "0 0 0 ");
+  EXPECT_EQ(assumed("^IN;PU100,100;Z100,100,-10;PU;"), "0 0 0 ");
+  EXPECT_EQ(assumed("DF;PD;Z100,100,-10;PU;"), "0 0 0 ");
+  EXPECT_EQ(assumed("PR;!ZO5;"), "0 0 0 ");
+  EXPECT_EQ(assumed("!ZM-2500;"), "1 0 1 ");
+}
+
+// Waits of 32.767 s: 79104 of them are 2,592,000.768 s, and one less 2,591,968.001. RML1-3A.53
+TEST(Verdict, OfATimeBeyondTheBudget) {
+  const auto waits = [](int count) {
+    std::string stream = "VS10;!VZ10;!PZ-100,200;PA;!MC0;W32767;PU100,100;PD100,100;";
+    for (int i = 0; i < count; ++i) stream += i % 2 == 0 ? "PD101,100;" : "PD100,100;";
+    return TextOf(JudgeFigures(
+        Mill(), Mill().Translate({.name = "a.rml", .bytes = stream}, MillOf("t1"), {}).figures));
+  };
+  EXPECT_EQ(waits(79000).find("CELL-E9305"), std::string::npos);
+  EXPECT_NE(waits(79104).find("CELL-E9305 a run takes 25"), std::string::npos);
+}
+
+// A cut may run on beyond an edge by the diameter of the tool, 3 mm: the block ends at X 20 mm and
+// at Y 20 mm, the stroke along X at 23 mm; 1 mm deep, from a plunge of which 1 mm counts.
+TEST(Verdict, OfWorkBesideTheBlock) {
+  const auto stroke = [](const std::string& from, const std::string& to) {
+    return TextOf(OfStreamInBlock(Work("PU" + from + ";PD" + to + ";PU500,500;"), "20x20x10"));
+  };
+  EXPECT_EQ(stroke("500,500", "2300,500"), "GOOD");
+  EXPECT_EQ(stroke("500,500", "2301,500"), "GOOD");
+  EXPECT_EQ(
+      stroke("500,500", "2302,500"),
+      "DOUBTFUL; CELL-E9418 0.020 mm of the work lie beside the block @7; CELL-E9418 the work "
+      "leads 3.020 mm beyond the edge of the block at its greatest X");
+  EXPECT_EQ(stroke("500,500", "500,5000"),
+            "DOUBTFUL; CELL-E9418 27.000 mm of the work lie beside the block @7; CELL-E9418 the "
+            "work leads 30.000 mm beyond the edge of the block at its greatest Y");
+  const auto shifted = [](const std::string& stock) {
+    return TextOf(OfStreamInBlock(Work("PU100,100;PD1100,100;PU100,100;"), stock));
+  };
+  // From X 1 to 11 mm, with 1 mm of plunge: the block from 5 mm on, and from Y 4.5 mm on.
+  EXPECT_EQ(shifted("20x20x10@4,0,0"), "GOOD");
+  EXPECT_EQ(
+      shifted("20x20x10@5,0,0"),
+      "DOUBTFUL; CELL-E9418 2.000 mm of the work lie beside the block @7; CELL-E9418 the work "
+      "leads 4.000 mm beyond the edge of the block at its least X");
+  EXPECT_EQ(
+      shifted("20x20x10@0,4.5,0"),
+      "DOUBTFUL; CELL-E9403 the tool takes nothing off the block; CELL-E9418 11.000 mm of the "
+      "work lie beside the block @7; CELL-E9418 the work leads 3.500 mm beyond the edge of "
+      "the block at its least Y");
 }
 
 // motion.md 9: the top of the block 3 mm above Z 0 is higher than the tool travels.
@@ -202,7 +361,10 @@ TEST(Verdict, OfTravelThroughTheBlock) {
 
 TEST(Verdict, OfABlockThatIsNotThere) {
   EXPECT_EQ(TextOf(OfStreamInBlock(Work("PD200,100;"), "10x10x10@100,100,0")),
-            "DOUBTFUL; CELL-E9403 the tool takes nothing off the block");
+            "DOUBTFUL; CELL-E9403 the tool takes nothing off the block; CELL-E9418 2.000 mm of the "
+            "work lie beside the block @6; CELL-E9418 the work leads 99.000 mm beyond the edge of "
+            "the block at its least X; CELL-E9418 the work leads 99.000 mm beyond the edge of the "
+            "block at its least Y");
 }
 
 // A block of 10 mm: through it by a little is how one cuts out, by more than 1 mm it is the table.
@@ -211,10 +373,17 @@ TEST(Verdict, OfAToolBelowTheBlock) {
     return TextOf(OfStreamInBlock(Work("Z100,100," + z + ";"), "20x20x10"));
   };
   EXPECT_EQ(down_to("-1000"), "GOOD");
+  // Of a hundredth of a millimetre it is told from beyond it on.
+  EXPECT_EQ(down_to("-1001"), "GOOD");
+  EXPECT_EQ(down_to("-1002"), "DOUBTFUL; CELL-E9402 the tool goes 0.020 mm below the block @6");
+  EXPECT_EQ(down_to("-1100"), "DOUBTFUL; CELL-E9402 the tool goes 1.000 mm below the block @6");
   EXPECT_EQ(down_to("-1010"), "DOUBTFUL; CELL-E9402 the tool goes 0.100 mm below the block @6");
   EXPECT_EQ(down_to("-1200"), "BAD; CELL-E9402 the tool goes 2.000 mm below the block @6");
   // Beside the block, by its radius of 1.5 mm and more, the tool may go as deep as it likes.
   const std::string beside = Work("PD200,100;PU2151,100;Z2151,100,-1200,2151,100,200;");
+  EXPECT_EQ(TextOf(OfStreamInBlock(Work("PD200,100;PU2149,100;Z2149,100,-1200,2149,100,200;"),
+                                   "20x20x10")),
+            "BAD; CELL-E9402 the tool goes 2.000 mm below the block @8");
   EXPECT_EQ(TextOf(OfStreamInBlock(beside, "20x20x10")), "GOOD");
 }
 
@@ -260,6 +429,7 @@ TEST(Verdict, OfWhatIsLeftBesideItsTarget) {
     return TextOf(Judge(report));
   };
   EXPECT_EQ(judged(0.1, 0.1), "GOOD");
+  EXPECT_EQ(judged(0.100001, 0.100001), "GOOD");
   EXPECT_EQ(judged(0.11, 0.0), "DOUBTFUL; CELL-E9414 0.110 mm stand above the target");
   EXPECT_EQ(judged(0.0, 0.11), "BAD; CELL-E9413 the part is cut 0.110 mm below its target");
 }
@@ -378,27 +548,25 @@ TEST(Figures, MeanOneThingInCheckRunAndReport) {
       {Work("PD200,100;"), 1},
       {Work("Z100,100,100,100,100,-10,100,100,-20,300,100,-20;Z300,100,-40;Z300,100,200;"), 2},
       {Work("PD200,100;PU;PD300,100;Z300,100,-150;"), 3},
-      {Work("Z100,100,-10;Z100,100,-5;Z100,100,-20;"), 2}};
+      {Work("Z100,100,-10;Z100,100,-5;Z100,100,-20;"), 2},
+      {"!PZ0,200;!ZO-1900;PU100,100;PD200,100;PD;Z200,100,-50,200,100,-150;PU;", 1},
+      {"!PZ0,200;PU100,100;PD200,100;PU;", 0}};
   for (const auto& [stream, plunges] : streams) {
     machine::RunSetup setup(MillOf("t1"));
     setup.main_program = 1;
     setup.programs[1].object = machine::Bytes::Of(stream);
     const auto run = Simulate(Mill(), std::move(setup), {});
     ASSERT_TRUE(run);
-    const auto figure = [](const std::vector<machine::Figure>& figures, std::string_view name) {
-      const auto found = std::ranges::find(figures, name, &machine::Figure::name);
-      return found == figures.end() ? -1.0 : found->value;
-    };
     const auto checked = Mill().Translate({.name = "a.rml", .bytes = stream}, MillOf("t1"), {});
     const auto& of_run = run->report.figures;
     EXPECT_EQ(static_cast<double>(run->report.total.plunges), plunges) << stream;
-    EXPECT_EQ(figure(of_run, "plunges"), plunges) << stream;
-    EXPECT_EQ(figure(checked.figures, "plunges"), plunges) << stream;
-    EXPECT_NEAR(figure(of_run, "cut_length"), run->report.total.cut_mm, 1e-9) << stream;
-    EXPECT_NEAR(figure(checked.figures, "cut_length"), run->report.total.cut_mm, 1e-9) << stream;
-    EXPECT_EQ(figure(checked.figures, "motions"), figure(of_run, "motions")) << stream;
+    EXPECT_EQ(FigureOf(of_run, "plunges"), plunges) << stream;
+    EXPECT_EQ(FigureOf(checked.figures, "plunges"), plunges) << stream;
+    EXPECT_NEAR(FigureOf(of_run, "cut_length"), run->report.total.cut_mm, 1e-9) << stream;
+    EXPECT_NEAR(FigureOf(checked.figures, "cut_length"), run->report.total.cut_mm, 1e-9) << stream;
+    EXPECT_EQ(FigureOf(checked.figures, "motions"), FigureOf(of_run, "motions")) << stream;
     // What the tool does in the work it does down, by whatever commands.
-    EXPECT_GT(figure(of_run, "tool_down_time"), 0.0) << stream;
+    EXPECT_GT(FigureOf(of_run, "tool_down_time"), 0.0) << stream;
   }
 }
 

@@ -76,7 +76,7 @@ TEST(MillingOfAJob, AMaterialHasItsChipsAtTheDiameterOfTheTool) {
   given.set_rpm(7000.0);
   const auto made = FromProto(given);
   ASSERT_TRUE(made) << made.error().detail;
-  EXPECT_EQ(made->chips, (simulation::ChipRange{0.03, 0.35, 400.0}));
+  EXPECT_EQ(made->chips, (simulation::ChipRange{0.03, 0.35, 400.0, 0.175}));
   EXPECT_EQ(made->rpm, 7000.0);
 }
 
