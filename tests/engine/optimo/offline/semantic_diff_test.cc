@@ -47,6 +47,10 @@ TEST(SemanticDiff, NamesCountByWhatTheyStandFor) {
   const ProgramDiff constant = DiffOf("DECLARE T = 1.5\nDELAY T\n", "DECLARE T = 2.5\nDELAY T\n");
   ASSERT_EQ(constant.steps.size(), 1U);
   EXPECT_EQ(constant.steps[0].what, (Texts{"1.5 -> 2.5"}));
+  const ProgramDiff last =
+      DiffOf("DECLARE T = 1.5\nCALL 45 (1.,2.,T)\n", "DECLARE T = 2.5\nCALL 45 (1.,2.,T)\n");
+  ASSERT_EQ(last.steps.size(), 1U);
+  EXPECT_EQ(last.steps[0].what, (Texts{"1.5 -> 2.5"}));
   const ProgramDiff source = DiffOf("DECLARE XP = VR[1]\nMOVE (XP+1,0,0,0,0)\n",
                                     "DECLARE XP = VR[2]\nMOVE (XP+1,0,0,0,0)\n");
   ASSERT_EQ(source.steps.size(), 1U);
