@@ -84,6 +84,11 @@ TEST(SemanticDiff, MovesTellWhatChanged) {
             (Texts{"PATH LIN -> PATH CIR", "/FLY removed", "X 1.0 -> 4.0", "Y 2.0 -> 6.0"}));
   EXPECT_DOUBLE_EQ(moved.steps[0].target_moved_mm, 5.0);
   EXPECT_EQ(AspectText(moved.aspects), "path, time");
+  // X, Y and Z count, the head does not; nor is known how far a variable goes.
+  EXPECT_DOUBLE_EQ(DiffOf("MOVE (1,2,3,0,0)\n", "MOVE (4,6,15,1,2)\n").steps.at(0).target_moved_mm,
+                   13.0);
+  EXPECT_DOUBLE_EQ(
+      DiffOf("MOVE (1,2,3,0,0)\n", "MOVE (4,6,VR[1],0,0)\n").steps.at(0).target_moved_mm, 0.0);
 }
 
 TEST(SemanticDiff, StepsThatComeAndGo) {
