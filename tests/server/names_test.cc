@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "server/base/readable.h"
+
 namespace rmlcell::server {
 namespace {
 
@@ -93,6 +95,28 @@ TEST(Names, AnErrorShowsAReadableBeginningOnly) {
   ASSERT_FALSE(name);
   EXPECT_LT(name.error().detail.size(), 200U);
   for (const char c : name.error().detail) EXPECT_TRUE(c >= 0x20 && c < 0x7F);
+}
+
+// Of what a client sent 80 bytes are shown; a longer text is seen to be cut.
+TEST(Names, EightyBytesAreReadable) {
+  EXPECT_EQ(Readable(" a~"), " a~");
+  EXPECT_EQ(Readable("\x1F\x7F\xC3\xA4\n"), "?????");
+  EXPECT_EQ(Readable(std::string(80, 'x')), std::string(80, 'x'));
+  EXPECT_EQ(Readable(std::string(81, 'x')), std::string(80, 'x') + "...");
+}
+
+// A title has up to 200 characters, of however many bytes: U+0041, U+00E4, U+20AC, U+1F600.
+TEST(Names, TitlesAreCountedInCharacters) {
+  for (const std::string character : {"A", "\xC3\xA4", "\xE2\x82\xAC", "\xF0\x9F\x98\x80"}) {
+    std::string title;
+    for (int n = 0; n < 200; ++n) title += character;
+    EXPECT_TRUE(CheckTitle(title, "title"));
+    const Status longer = CheckTitle(title + character, "programs.title");
+    ASSERT_FALSE(longer) << character;
+    EXPECT_EQ(longer.error().code, kInvalid);
+    EXPECT_EQ(longer.error().detail, "programs.title is longer than 200 characters");
+  }
+  EXPECT_TRUE(CheckTitle("", "title"));
 }
 
 TEST(Names, EtagsAreRevisionsOfOurs) {

@@ -71,6 +71,9 @@ TEST(Content, ChunksComeBackWhateverCompressingGains) {
 TEST(Content, TextIsCompressed) {
   EXPECT_LT(Must(Encode(PlotText(kMiB))).size(), kMiB / 3);
   EXPECT_EQ(Must(Encode(Noise(kMiB, 1))).size(), kMiB);
+  // What is shorter than 512 bytes is not tried.
+  EXPECT_EQ(Must(Encode(std::string(511, 'a'))).size(), 511U);
+  EXPECT_LT(Must(Encode(std::string(512, 'a'))).size(), 512U);
 }
 
 TEST(Content, DamagedChunkIsToldAndChangesNothing) {

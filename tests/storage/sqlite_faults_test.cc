@@ -49,6 +49,13 @@ TEST_F(SqliteFaults, FullDiskFailsWritesUntilThereIsRoom) {
   EXPECT_EQ(JobCount(), 2U);
 }
 
+// Of several writes in a commit each is tried for itself; one alone has had its try.
+TEST_F(SqliteFaults, AFailedWriteAloneIsTriedOnce) {
+  faulty_disk::Fail({.on_write = SQLITE_FULL});
+  EXPECT_EQ(CodeOf(Submit("full")), kFailed);
+  EXPECT_EQ(faulty_disk::Operations(), 1);
+}
+
 TEST_F(SqliteFaults, FailedSyncIsNotAcknowledged) {
   faulty_disk::Fail({.on_sync = SQLITE_IOERR_FSYNC});
   const auto failed = Submit("r");

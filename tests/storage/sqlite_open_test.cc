@@ -113,6 +113,10 @@ TEST(SqliteOpen, PathsThatCannotBeAreRefused) {
   EXPECT_EQ(CodeOf(OpenAt("")), kRefused);
   const auto refused = OpenAt(directory.File("file/cell.db"));
   EXPECT_THAT(refused.error().detail, HasSubstr("file"));
+  ASSERT_EQ(mkdir(directory.File("held.db.lock").c_str(), 0700), 0);
+  const auto unlocked = OpenAt(directory.File("held.db"));
+  EXPECT_EQ(CodeOf(unlocked), kRefused);
+  EXPECT_THAT(unlocked.error().detail, HasSubstr("cannot open lock file"));
 }
 
 // Issue 2: a second store on the same file is refused, in this process and from another.

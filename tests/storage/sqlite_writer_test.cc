@@ -7,6 +7,7 @@
 #include <set>
 #include <thread>
 
+#include "storage/sqlite/reader_pool.h"
 #include "storage/sqlite/request_ids.h"
 #include "storage/sqlite/statement.h"
 #include "tests/storage/faulty_disk.h"
@@ -250,6 +251,26 @@ TEST(SqliteWriter, ManyReadersShareFewConnections) {
     }
   }
   EXPECT_EQ(bad, 0);
+}
+
+// So many reads at a time, each inside the one before.
+Result<int> ReadInside(sqlite::ReaderPool& pool, int depth, std::set<sqlite::Tables*>& used) {
+  if (depth == 0) return 0;
+  return pool.Read([&](sqlite::Tables& tables) -> Result<int> {
+    used.insert(&tables);
+    return ReadInside(pool, depth - 1, used);
+  });
+}
+
+// SqliteOptions::readers: as many connections as asked for, and one at least.
+TEST(SqliteWriter, ReadersAreAsManyAsAskedFor) {
+  SqliteBed bed;
+  for (const auto& [asked, there] : {std::pair{-1, 1}, {0, 1}, {1, 1}, {3, 3}}) {
+    const auto pool = Must(sqlite::ReaderPool::Open(bed.path(), {}, asked));
+    std::set<sqlite::Tables*> used;
+    Must(ReadInside(*pool, there, used));  // waits for ever for one that is missing
+    EXPECT_EQ(used.size(), static_cast<std::size_t>(there)) << asked;
+  }
 }
 
 // The end of the store: what waits is written and answered.

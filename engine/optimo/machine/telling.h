@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "engine/core/units.h"
+#include "engine/machine/observer.h"
 #include "engine/machine/run.h"
 #include "engine/optimo/machine/situation.h"
 

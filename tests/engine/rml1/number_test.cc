@@ -131,6 +131,16 @@ TEST(NumberReader, RoundsHalfwayCasesRight) {
   EXPECT_EQ(ValueOf(halfway).single, 1.0);
   const double next = std::nextafterf(1.0F, 2.0F);
   EXPECT_EQ(ValueOf(halfway + std::string(300, '0') + "1").single, next);
+  EXPECT_EQ(ValueOf(halfway + std::string(300, '0')).single, 1.0);
+}
+
+// RML1-9.21: of fifteen digits, so near to the middle between two values that their double is that
+// middle: above it, above it, below it, below it, by less than 2^-54 of it.
+TEST(NumberReader, RoundsWhatADoubleCannotTellFromTheMiddle) {
+  EXPECT_EQ(ValueOf("6.84661602973938").single, static_cast<double>(6.84661627F));
+  EXPECT_EQ(ValueOf("2.90292227268219").single, static_cast<double>(2.90292239F));
+  EXPECT_EQ(ValueOf("0.0918300561606884").single, static_cast<double>(0.0918300524F));
+  EXPECT_EQ(ValueOf("0.0308123966678977").single, static_cast<double>(0.0308123957F));
 }
 
 // RML1-7.07: a number of any length in the same room.

@@ -308,6 +308,11 @@ TEST(MillRules, WaysLowerThanTheClamps) {
   const std::string high =
       "VS10;!VZ10;!PZ-100,200;!MC1;Z100,100,2000;PD200,100;PU;Z200,100,2000,0,0,2000;!MC0;";
   EXPECT_EQ(with_clamps("20", high), "GOOD");
+  // High on the way there and low, sqrt(5) mm, on the way back: that is the place.
+  const std::string back = "VS10;!VZ10;!PZ-100,200;!MC1;Z100,100,2000;PD200,100;PU;PU0,0;!MC0;";
+  EXPECT_EQ(with_clamps("20", back),
+            "DOUBTFUL; RML1-E8018 2.236 mm across to the work or from it, lower than the clamps "
+            "stand @8");
   // Sloping from 10 mm down to the surface over 10 mm: half of it lies below 5 mm.
   const std::string slope = "VS10;!VZ10;!PZ-100,200;!MC1;Z0,0,1000;Z1000,0,0;PD1100,0;PU;!MC0;";
   EXPECT_EQ(with_clamps("5", slope),

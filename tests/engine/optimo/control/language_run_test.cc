@@ -166,7 +166,7 @@ TEST(LanguageRun, NamesAreCut) {
   ExpectValues({{"DECLARE POSITION1 = VR[1]\nPOSITION = 5.\n", "VR[1]", "5.0"}});
 }
 
-// OPT-7.19, OPT-7.16: of the labels of a GOTO only the one that is taken must exist.
+// OPT-7.19, OPT-7.16, OPT-E.7008: of the labels of a GOTO only the one that is taken must exist.
 TEST(LanguageRun, OnlyTheTakenLabelMustExist) {
   const std::string text = "GOTO VI[2] (20,999)\nVI[3]=9\nENDTASK\n20 VI[3]=2\n";
   ExpectValues({{"VI[2]=1\n" + text, "VI[3]", "2"}, {"VI[2]=3\n" + text, "VI[3]", "9"}});
@@ -280,13 +280,47 @@ TEST(LanguageRun, WorkdefTakesItsValuesAtOnce) {
   EXPECT_NEAR(ran.parts.back().PowerAt(1.0), 75.0, 1e-9);
 }
 
+// OPT-3.05: what each value of WORKDEF 1 means: power 95 at 4.5 % of the machine's speed (22.5
+// mm/s), before it 1.2 s with the shutter open at 99 %. At 2.25 % the power is half.
+TEST(LanguageRun, MeaningOfTheValuesOfWorkdef) {
+  const auto cut = [](const std::string& speed) {
+    return RunText("VR[65]=4.5\nVR[66]=95.\nVR[67]=1.2\nVR[68]=99.\n" + kThere +
+                   "WORKDEF 1,01 (VR[65],VR[66],VR[67],VR[68])\nWORK 1,01/ON\nSPEED " + speed +
+                   "\nMOVE (1045.,1000.,-400.,0.,0.)\nWORK 1,01/OFF\n");
+  };
+  const Ran full = cut("VR[65]");
+  EXPECT_EQ(full.First("shutter open").at_s, full.First("beam on 99.0").at_s);
+  EXPECT_TRUE(full.Told("wait pierce 1.2"));
+  EXPECT_NEAR(full.parts.back().SpeedAt(1.0), 22.5, 1e-9);
+  EXPECT_NEAR(full.parts.back().PowerAt(1.0), 95.0, 1e-9);
+  EXPECT_NEAR(cut("2.25").parts.back().PowerAt(1.0), 47.5, 1e-9);
+}
+
+// OPT-2.43: the order of attributes changes nothing of the run: it waits for the input, and the tip
+// passes the corner both ways.
+TEST(LanguageRun, OrderOfAttributes) {
+  const auto run = [](const std::string& attributes) {
+    return RunText(kThere + "MOVE (1100.,1000.,-400.,0.,0.)" + attributes +
+                       "\nMOVE (1100.,1100.,-400.,0.,0.)\n",
+                   {.inputs = {{At(9.0), InputKind::kLogical, 16, 1.0}}});
+  };
+  const Ran one = run("/FLY/START (IL[16])"), other = run("/START (IL[16]) /FLY");
+  EXPECT_EQ(one.end.time, other.end.time);
+  EXPECT_EQ(one.told, other.told);
+  for (const Ran& ran : {one, other}) {
+    EXPECT_GE(ToSeconds(ran.parts[1].done.start), 9.0);
+    EXPECT_NEAR(ran.DistanceTo({1100.0, 1000.0, -400.0}), 1.358847515, 1e-5);  // case C01
+  }
+}
+
 // OPT-7.27: WAIT is over at once when its condition is true already.
 TEST(LanguageRun, AWaitThatIsTrueTakesNoTime) {
   EXPECT_EQ(RunText("VI[2]=1\nWAIT VI[2]\n").time_s, 0.0);
   EXPECT_EQ(RunText("WAIT (NOT IL[16])\n").waits.size(), 0U);
 }
 
-// OPT-9.22, OPT-9.27: DEFINE decides about each parameter by itself: 2.7 as FLOAT, INT and LOGIC.
+// OPT-9.22, OPT-9.23, OPT-9.27, OPT-B.46: DEFINE decides about each parameter by itself: 2.7 as
+// FLOAT, INT and LOGIC.
 TEST(LanguageRun, TypesOfParameters) {
   const Ran ran = RunText(
       "CALL 45 (2.7,-2.7,2.7,0.,ON,OFF)\n",

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/machine/machine_state.h"
 #include "engine/optimo/machine/optimo_parameters.h"
@@ -238,6 +240,27 @@ TEST(MachineRules, EachFlagOfTheStateIsItsOwn) {
     EXPECT_EQ(read->door_open, state.door_open);
     EXPECT_FALSE(read->breakpoint.has_value());
   }
+}
+
+// Cells keep these bytes: what is on is one byte 1, a number lies in its own four, lowest first.
+TEST(MachineRules, TheFormOfTheBytesStays) {
+  const std::string off = EncodeMachineState(MachineState{});
+  EXPECT_EQ(off.substr(0, 8), "OPTSTATE");
+  for (const int number : {0, 98}) {
+    MachineState state;
+    state.outputs.logical[number] = true;
+    std::string on = EncodeMachineState(state);
+    ASSERT_EQ(on.size(), off.size());
+    const auto at = static_cast<std::size_t>(std::ranges::mismatch(on, off).in1 - on.begin());
+    ASSERT_LT(at, on.size());
+    EXPECT_EQ(off[at], 0);
+    EXPECT_EQ(on[at], 1);
+    on[at] = 0;
+    EXPECT_EQ(on, off);
+  }
+  MachineState state;
+  state.data.vr[0] = 1.0F;  // 3F800000
+  EXPECT_EQ(EncodeMachineState(state).substr(9, 4), std::string("\0\0\x80\x3F", 4));
 }
 
 // Bytes of another kind or version, too few or too many of them, and "not a number" are refused.

@@ -45,7 +45,8 @@ TEST(ProgramText, TheImpliedEndIsNotCounted) {
   EXPECT_THAT(ran.steps_begun, ElementsAre(1, 2, 3));
 }
 
-// OPT-6.02, OPT-6.43: the manual's table: six DECLAREs, then steps 1 to 11, the MOVE as step 10.
+// OPT-6.02, OPT-6.43, OPT-7.51: the manual's table: six DECLAREs, then steps 1 to 11, the MOVE as
+// step 10.
 TEST(ProgramText, TheTableOfSteps) {
   const Ran ran = RunText(
       "DECLARE XAXIS = VR[0]\nDECLARE YAXIS = VR[1]\nDECLARE ZAXIS = VR[2]\nDECLARE RAPID = VR[64]\n"
@@ -56,6 +57,15 @@ TEST(ProgramText, TheTableOfSteps) {
   ASSERT_EQ(ran.moves.size(), 1U);
   EXPECT_EQ(ran.moves[0].place.step, 10);
   EXPECT_NEAR((ran.end.tip.tip - motion::MachinePoint(500.0, 375.0, -50.5)).norm(), 0.0, 1e-4);
+}
+
+// OPT-1.18: a comment takes the rest of its line away, and nothing else.
+TEST(ProgramText, Comments) {
+  const Ran ran = RunText("VI[2]=1 ; VI[2]=2\n;VI[3]=3\n;\nVI[4]=4;VI[5]=5\n",
+                          {.variables = {"VI[2]", "VI[3]", "VI[4]", "VI[5]"}});
+  EXPECT_THAT(ran.steps_begun, ElementsAre(1, 2));
+  EXPECT_EQ(ran.variables, (std::map<std::string, std::string>{
+                               {"VI[2]", "1"}, {"VI[3]", "0"}, {"VI[4]", "4"}, {"VI[5]", "0"}}));
 }
 
 // OPT-1.02, OPT-1.29: small letters and any blanks run as the rest does.
@@ -74,8 +84,8 @@ TEST(ProgramText, LettersAndBlanks) {
   EXPECT_EQ(plain.variables.at("VR[12]"), "150.0");
 }
 
-// OPT-7.41, OPT-7.50, OPT-7.60, OPT-7.95: names of everything that may have one, declared anywhere
-// before their use; a name for a number is an index too.
+// OPT-7.41, OPT-7.44, OPT-7.50, OPT-7.60, OPT-7.95: names of everything that may have one, declared
+// anywhere before their use; a name for a number is an index too.
 TEST(ProgramText, DeclaredNames) {
   ExpectValues({{"DECLARE YHOME = -45.0\nVR[1] = YHOME\n", "VR[1]", "-45.0"},
                 {"VI[2]=1\nDECLARE CAXIS = OL [16]\nCAXIS = ON\n", "OL[16]", "1"},

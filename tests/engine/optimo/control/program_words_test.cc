@@ -31,8 +31,8 @@ TEST(ProgramWords, Jumps) {
                {.inputs = {{SimTime(0), machine::InputKind::kLogical, 10, 1.0}}});
 }
 
-// OPT-W.20, OPT-W.34, OPT-W.13, OPT-3.47: the subroutine behind ENDTASK runs once, between GOSUB
-// and the step that follows.
+// OPT-7.20, OPT-W.20, OPT-W.34, OPT-W.13, OPT-3.47: the subroutine behind ENDTASK runs once,
+// between GOSUB and the step that follows.
 TEST(ProgramWords, SubroutinesBehindEndtask) {
   const Ran ran =
       RunText("VI[2]=1\nGOSUB 100\nVI[2]=VI[2]*10+3\nENDTASK\n100 VI[2]=VI[2]*10+2\nRETURN\n",
@@ -42,8 +42,8 @@ TEST(ProgramWords, SubroutinesBehindEndtask) {
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
 }
 
-// OPT-W.04, OPT-W.16, OPT-W.18, OPT-7.07: CALL and FUNCTION come back, GO does not. The number of
-// a CALL may have zeros before it, or come from a constant or a variable.
+// OPT-W.04, OPT-W.16, OPT-W.18, OPT-7.07, OPT-9.01: CALL and FUNCTION come back, GO does not. The
+// number of a CALL may have zeros before it, or come from a constant or a variable.
 TEST(ProgramWords, OtherPrograms) {
   const RunOptions options{.programs = {{2, "VI[3]=VI[3]*10+2\n"}}};
   const std::string after = "\nVI[3]=VI[3]*10+3\n";
@@ -52,6 +52,7 @@ TEST(ProgramWords, OtherPrograms) {
                 {"VI[3]=1\nDECLARE SECOND = 2\nCALL SECOND" + after, "VI[3]", "123"},
                 {"VI[3]=1\nVI[1]=2\nCALL VI[1]" + after, "VI[3]", "123"},
                 {"VI[3]=1\nFUNCTION 2" + after, "VI[3]", "123"},
+                {"VI[3]=1\nDECLARE SECOND = 2\nFUNCTION SECOND" + after, "VI[3]", "123"},
                 {"VI[3]=1\nGO 2" + after, "VI[3]", "12"}},
                options);
 }

@@ -33,6 +33,16 @@ class Findings final : public machine::RunObserver {
   std::vector<int> lines;
 };
 
+// Run::Advance: what happens at the instant that it goes on to has happened.
+TEST(RunInterface, AdvanceGoesOnToTheInstantItself) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run = RunOf(SetupOf("DELAY 1\nVI[2]=1\n"), nobody);
+  EXPECT_EQ(run->Advance(At(1.0) - SimTime(1)), RunPhase::kRunning);
+  EXPECT_EQ(run->state().place.step, 1);
+  EXPECT_EQ(run->Advance(At(1.0)), RunPhase::kFinished);
+  EXPECT_EQ(run->state().time, At(1.0));
+}
+
 // OPT-4.07, OPT-7.68: place, speed, beam and override are those of the moment: during the ramp, at
 // full speed, in standstill.
 TEST(RunInterface, TheStateIsThatOfTheMoment) {

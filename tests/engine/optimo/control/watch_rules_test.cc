@@ -196,5 +196,26 @@ TEST(WatchRules, TakingOverAtATick) {
   EXPECT_NEAR(ran.end.tip.tip.y(), 2101.2, 1e-4);
 }
 
+// OPT-2.54, OPT-2.58: /TIME and /END are of their own MOVE, also where the next one follows without
+// a stop: 75 mm at 50 mm/s are over after 1.5 s, and 200 mm go on.
+TEST(WatchRules, NothingIsWatchedBehindItsMove) {
+  const auto run = [](const std::string& attributes, double at_s) {
+    return RunText(kThere + "MOVE (1075.,1000.,-400.,0.,0.)" + attributes +
+                       "\nMOVE (1275.,1000.,-400.,0.,0.)\nVI[3]=1\nENDTASK\n900 VI[2]=1\nRETURN\n",
+                   {.inputs = {{At(at_s), machine::InputKind::kLogical, 20, 1.0}},
+                    .variables = {"VI[2]", "VI[3]"}});
+  };
+  const double there_s = ToSeconds(run("", 0.0).parts[1].done.start);
+  for (const std::string next : {"", "/FLY"}) {
+    const Ran timed = run("/TIME (2.,900)" + next, 0.0);
+    EXPECT_EQ(timed.variables.at("VI[2]") + timed.variables.at("VI[3]"), "01") << next;
+    const Ran ended = run("/END (IL[20])" + next, there_s + 3.0);
+    EXPECT_NEAR(ended.end.tip.tip.x(), 1275.0, 1e-6) << next;
+    // Within its own MOVE each of them acts.
+    EXPECT_EQ(run("/TIME (1.,900)" + next, 0.0).variables.at("VI[2]"), "1") << next;
+    EXPECT_LT(run("/END (IL[20])" + next, there_s + 1.0).moves[1].tip.tip.x(), 1070.0) << next;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::watch_rules

@@ -40,6 +40,9 @@ TEST(Fixes, OperandsAreParted) {
   EXPECT_EQ(
       Fixed("GOTO10\nGOSUB10\n10 SPEED20\nTASK1\nSPEED33.\nGO46/C\nWORK0,0/ON\nFUNCTION44\n"),
       "GOTO 10\nGOSUB 10\n10 SPEED 20\nTASK 1\nSPEED 33.\nGO 46/C\nWORK 0,0/ON\nFUNCTION 44\n");
+  EXPECT_EQ(
+      Compile("SPEED20\n", "", {}).diagnostics.at(0).detail,
+      "'SPEED20' is no instruction and no declared name; a blank is missing before its digits");
 }
 
 // OPT-7.91: no repair where none makes the statement right, several do, or it would do nothing.

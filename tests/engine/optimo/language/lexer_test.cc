@@ -59,6 +59,17 @@ TEST(Lexer, LiteralsAreRoundedOnce) {
   EXPECT_EQ(literal("1E-50"), 0.0F);
 }
 
+// OPT-7.62: 2^-64 is 5.42101086E-20; what is written smaller is 0.
+TEST(Lexer, LiteralsBelowTheSmallestRealAreNothing) {
+  const auto literal = [](const std::string& text) {
+    const Compilation compiled = MustCompile("VR[0] = " + text + "\n");
+    return compiled.module.Value(compiled.module.instructions[0], 1)[0].number;
+  };
+  EXPECT_EQ(literal("5.42101086E-20"), 5.42101086e-20F);
+  EXPECT_EQ(literal("5.421E-20"), 0.0F);
+  EXPECT_EQ(literal("1E-30"), 0.0F);
+}
+
 // Work is linear in the text, whatever is wrong with it: no token is read more often than twice, by
 // the statement that stopped before it and by its own.
 TEST(Lexer, HostileTextIsReadTwiceAtMost) {

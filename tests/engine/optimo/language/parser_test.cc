@@ -65,6 +65,18 @@ TEST(Parser, WrongStatementsCountAsSteps) {
   EXPECT_EQ(compiled.diagnostics[2].step, 2);
 }
 
+// OPT-1.33: a fault in the values of a statement is told once, and nothing about their number.
+TEST(Parser, AFaultInAListIsToldOnce) {
+  for (const std::string list : {"(1.,)", "(,1.)", "(1. 2.)", "(1.", "((1.)"}) {
+    for (const std::string before :
+         {"MOVE ", "MOVE (1.,2.,3.,0.,0.) /VIA ", "MOVE (1.,2.,3.,0.,0.) /START ", "SYSDEF ",
+          "TCP ", "PATH HOLE ", "WORKDEF 1,0 ", "WORKDEF 2,0,", "CALL 45 ", "FUNCTION 45 ",
+          "TIMER "}) {
+      EXPECT_EQ(FindingsOf(before + list + "\nSTOP\n").size(), 1U) << before << list;
+    }
+  }
+}
+
 // OPT-7.45, OPT-1.32: names have letters and digits; what is wrong is the other character.
 TEST(Parser, ABadCharacterInANameIsWhatIsReported) {
   struct Row {

@@ -110,6 +110,9 @@ TEST(Silence, NumbersEndAtTheFirstWord) {
         "; rmlcell: allow 74120", "; rmlcell: allow 741", "; rmlcell: allowed 7412"}) {
     EXPECT_FALSE(silenced(comment)) << comment;
   }
+  // Nor with words of the lines behind it.
+  EXPECT_EQ(Details("OL[20] = ON ; rmlcell: allow 7412\nOL[21] = ON ; in file\n"),
+            (Texts{"OL[21] is used by the system"}));
   EXPECT_EQ(Details("SPEED 5 ; rmlcell:\n"),
             (Texts{"no word stands behind rmlcell:; write rmlcell: allow and the numbers of "
                    "findings"}));

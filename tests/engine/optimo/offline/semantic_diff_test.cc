@@ -47,6 +47,10 @@ TEST(SemanticDiff, NamesCountByWhatTheyStandFor) {
   const ProgramDiff constant = DiffOf("DECLARE T = 1.5\nDELAY T\n", "DECLARE T = 2.5\nDELAY T\n");
   ASSERT_EQ(constant.steps.size(), 1U);
   EXPECT_EQ(constant.steps[0].what, (Texts{"1.5 -> 2.5"}));
+  const ProgramDiff last =
+      DiffOf("DECLARE T = 1.5\nCALL 45 (1.,2.,T)\n", "DECLARE T = 2.5\nCALL 45 (1.,2.,T)\n");
+  ASSERT_EQ(last.steps.size(), 1U);
+  EXPECT_EQ(last.steps[0].what, (Texts{"1.5 -> 2.5"}));
   const ProgramDiff source = DiffOf("DECLARE XP = VR[1]\nMOVE (XP+1,0,0,0,0)\n",
                                     "DECLARE XP = VR[2]\nMOVE (XP+1,0,0,0,0)\n");
   ASSERT_EQ(source.steps.size(), 1U);
@@ -80,6 +84,11 @@ TEST(SemanticDiff, MovesTellWhatChanged) {
             (Texts{"PATH LIN -> PATH CIR", "/FLY removed", "X 1.0 -> 4.0", "Y 2.0 -> 6.0"}));
   EXPECT_DOUBLE_EQ(moved.steps[0].target_moved_mm, 5.0);
   EXPECT_EQ(AspectText(moved.aspects), "path, time");
+  // X, Y and Z count, the head does not; nor is known how far a variable goes.
+  EXPECT_DOUBLE_EQ(DiffOf("MOVE (1,2,3,0,0)\n", "MOVE (4,6,15,1,2)\n").steps.at(0).target_moved_mm,
+                   13.0);
+  EXPECT_DOUBLE_EQ(
+      DiffOf("MOVE (1,2,3,0,0)\n", "MOVE (4,6,VR[1],0,0)\n").steps.at(0).target_moved_mm, 0.0);
 }
 
 TEST(SemanticDiff, StepsThatComeAndGo) {

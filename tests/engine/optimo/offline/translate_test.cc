@@ -38,6 +38,24 @@ TEST(Translate, InchAndTooLongAreRefused) {
             ErrorCode::kObjectTooLong);
 }
 
+// OPT-2.04: an inch source that is being written has its own findings, and one that says what it
+// is; a move of 0.5 is no short one, because it is 12.7 mm.
+TEST(Translate, InchSourcesAreLookedAt) {
+  const std::string text =
+      "SPEED 101\nMOVE (1.,2.,3.,0.,0.)/FLY\nMOVE (1.5,2.,3.,0.,0.)/FLY\nMOVE (9.,2.,3.,0.,0.)\n";
+  for (const bool advice : {true, false}) {
+    const machine::Translation looked =
+        TranslateOptimo({"a.SI", text}, {.advice = advice, .unconverted = true});
+    EXPECT_FALSE(looked.ok);
+    ASSERT_EQ(looked.diagnostics.size(), advice ? 2U : 1U);
+    EXPECT_EQ(looked.diagnostics.back().code, ErrorCode::kLiteralRange);
+    EXPECT_EQ(looked.diagnostics.back().where.line, 1);
+    EXPECT_EQ(looked.diagnostics[0].code,
+              advice ? ErrorCode::kSourceIsInch : ErrorCode::kLiteralRange);
+    for (const Diagnostic& finding : looked.diagnostics) EXPECT_EQ(finding.file, "a.SI");
+  }
+}
+
 // OPT-B.71
 TEST(Translate, ObjectsAreCheckedAndTakenAsTheyAre) {
   const std::string object = MustCompile("SPEED 5\n").object;
