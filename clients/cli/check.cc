@@ -30,12 +30,9 @@ struct CheckedFile {
   machine::Bytes text;
   const machine::MachineFamily* family = nullptr;
   std::optional<machine::Parameters> parameters;
-  machine::Translation translation;
-  simulation::MotionCheck motion;
+  simulation::ProgramCheck check;
   int slot = 0;                  // in the program memory of the check; 0: none
   std::optional<Error> refused;  // why there is nothing to check
-
-  bool ok() const { return translation.ok && !motion.has_errors(); }
 };
 
 // Runs what was translated: files of one family.
@@ -47,7 +44,7 @@ Status CheckMotions(const std::vector<CheckedFile*>& files, const machine::Input
                                     .name = file->name,
                                     .bytes = file->text,
                                     .translation = std::make_shared<const machine::Translation>(
-                                        file->translation)}});
+                                        file->check.translation)}});
   }
   const CheckedFile& any = *files.front();
   if (const Status checked =
@@ -57,14 +54,22 @@ Status CheckMotions(const std::vector<CheckedFile*>& files, const machine::Input
   for (std::size_t n = 0; n < files.size(); ++n) {
     CheckedFile& file = *files[n];
     file.slot = programs[n].program.slot;
-    file.motion = std::move(programs[n].motion);
+    file.check.motion = std::move(programs[n].motion);
     if (!advice) {
-      std::erase_if(file.motion.findings,
+      std::erase_if(file.check.motion.findings,
                     [](const Diagnostic& finding) { return !IsError(finding.severity); });
     }
-    for (Diagnostic& finding : file.motion.findings) finding.file = file.name;
+    for (Diagnostic& finding : file.check.motion.findings) finding.file = file.name;
   }
   return {};
+}
+
+// Of a text that is not stored: all that can be said of it, unless errors alone are wanted.
+machine::Translation TranslateAs(const CheckedFile& file, const std::string& name,
+                                 const machine::Bytes& text, const CheckOptions& options) {
+  return simulation::TranslateProgram(*file.family, *file.parameters,
+                                      {.file_name = name, .bytes = text, .is_source = true},
+                                      {.advice = !options.errors_only, .source = true});
 }
 
 Status Translate(CheckedFile& file, const CheckOptions& options) {
@@ -72,19 +77,16 @@ Status Translate(CheckedFile& file, const CheckOptions& options) {
   if (!text) return text.error();
   if ((*text)->empty()) return Error{ErrorCode::kCellEmptyProgram, file.name, {}};
   file.text = *std::move(text);
-  file.translation =
-      simulation::TranslateProgram(*file.family, *file.parameters,
-                                   {.file_name = file.name, .bytes = file.text, .is_source = true},
-                                   {.advice = !options.errors_only, .source = true});
+  file.check.translation = TranslateAs(file, file.name, file.text, options);
   return {};
 }
 
 // The figures that people want of a check: those that the family gives a row, else all on one line.
 std::string FigureText(const CheckedFile& file, Zero zero) {
-  const std::string rows = FigureRows(*file.family, file.translation.figures, zero);
+  const std::string rows = FigureRows(*file.family, file.check.translation.figures, zero);
   if (!rows.empty()) return rows;
   std::string line;
-  for (const machine::Figure& figure : file.translation.figures) {
+  for (const machine::Figure& figure : file.check.translation.figures) {
     if (figure.value == 0.0) continue;
     line += (line.empty() ? "" : ", ") + figure.name + " " + ShortestText(figure.value) +
             (figure.unit.empty() ? "" : " " + figure.unit);
@@ -111,25 +113,25 @@ int ShowRefused(const CheckedFile& file, const CheckOptions& options) {
 // What there is to say; the exit code.
 int Show(CheckedFile& file, const CheckOptions& options) {
   if (file.refused) return ShowRefused(file, options);
-  machine::Translation& translation = file.translation;
+  machine::Translation& translation = file.check.translation;
   v1::Findings found =
-      bridge::FindingsOf(*file.family, *file.parameters, translation, file.motion, file.slot);
+      bridge::FindingsOf(*file.family, *file.parameters, translation, file.check.motion, file.slot);
   found.set_file(bridge::Utf8(file.name));
   const machine::Judgement judgement =
-      simulation::JudgeCheck(*file.family, translation, file.motion);
+      simulation::JudgeCheck(*file.family, translation, file.check.motion);
   machine::MarkJudged(judgement, translation.diagnostics);
-  machine::MarkJudged(judgement, file.motion.findings);
+  machine::MarkJudged(judgement, file.check.motion.findings);
   const int exit_code = ExitOf(found, options.strict);
   if (options.json) {
     PrintJson(found);
     return exit_code;
   }
   PrintFindings(translation.diagnostics, translation.diagnostics_dropped, *file.text);
-  PrintFindings(file.motion.findings, file.motion.findings_dropped, *file.text);
+  PrintFindings(file.check.motion.findings, file.check.motion.findings_dropped, *file.text);
   Print(Visible(file.name) + ": " + VerdictText(found.verdict()) + CountText(found));
   // Where it fails the reasons do not say how far it was looked at.
-  if (!file.ok()) {
-    for (const auto& [slot, why] : file.motion.cut_short) Print("  motion checked " + why);
+  if (!file.check.ok()) {
+    for (const auto& [slot, why] : file.check.motion.cut_short) Print("  motion checked " + why);
   }
   for (const v1::VerdictReason& reason : found.reasons()) Print("  " + ReasonLine(reason));
   PrintRaw(MachineRows(*file.family, found));
@@ -153,21 +155,17 @@ int FixFiles(std::vector<CheckedFile>& files, const machine::InputScript& inputs
     if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, file.name, {}});
     const auto translate = [&](const machine::SourceFile& source) {
       const std::string bytes(source.bytes);
-      return simulation::TranslateProgram(*file.family, *file.parameters,
-                                          {.file_name = std::string(source.name),
-                                           .bytes = machine::Bytes::Borrowed(bytes),
-                                           .is_source = true},
-                                          {.advice = !options.errors_only, .source = true});
+      return TranslateAs(file, std::string(source.name), machine::Bytes::Borrowed(bytes), options);
     };
     const auto judge = [&](const machine::Translation& left) -> Result<FixCheck::Left> {
-      file.translation = left;
+      file.check.translation = left;
       if (left.ok && file.family->info().checked_by_running) {
         if (const Status ran = CheckMotions({&file}, inputs, !options.errors_only); !ran)
           return ran.error();
       }
-      return FixCheck::Left{.motion = file.motion,
+      return FixCheck::Left{.motion = file.check.motion,
                             .found = bridge::FindingsOf(*file.family, *file.parameters, left,
-                                                        file.motion, file.slot)};
+                                                        file.check.motion, file.slot)};
     };
     exit_code = std::max(exit_code, FixFile(file.name, *text, {translate, judge},
                                             {options.dry_run, options.json, options.strict}));
@@ -218,7 +216,7 @@ int Check(const CheckOptions& options) {
   for (CheckedFile& file : files) {
     if (!file.family->info().checked_by_running) continue;
     if (const Status translated = translate(file); !translated) return Refuse(translated.error());
-    if (file.translation.ok) to_run[file.family].push_back(&file);
+    if (file.check.translation.ok) to_run[file.family].push_back(&file);
   }
   for (auto& [family, ready] : to_run) {
     if (const Status ran = CheckMotions(ready, inputs, !options.errors_only); !ran)
@@ -231,7 +229,7 @@ int Check(const CheckOptions& options) {
     exit_code = std::max(exit_code, Show(file, options));
     // A stream may be of hundreds of megabytes.
     file.text = {};
-    file.translation = {};
+    file.check.translation = {};
   }
   return exit_code;
 }

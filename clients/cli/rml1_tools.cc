@@ -46,11 +46,12 @@ Result<machine::Parameters> MillParameters(const MillToolOptions& options) {
                      "; these tools are for mills (rml1)",
                  {}};
   }
-  const machine::MachineFamily& family = *families::FindFamily(kFamily);
+  const Result<const machine::MachineFamily*> family = FamilyFor(std::string(kFamily), {});
+  if (!family) return family.error();
   std::map<std::string, std::string> parameters = machine->parameters;
-  if (const Status placed = PlaceWork(options.machine, family, parameters); !placed)
+  if (const Status placed = PlaceWork(options.machine, **family, parameters); !placed)
     return placed.error();
-  return machine::MakeParameters(family, machine->profile, parameters);
+  return machine::MakeParameters(**family, machine->profile, parameters);
 }
 
 // Behind what was made: that nobody said for which machine must not be overlooked.

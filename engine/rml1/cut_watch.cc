@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/geometry/frames.h"
+
 namespace rmlcell::rml1 {
 namespace {
 
@@ -29,18 +31,18 @@ bool Fast(const CutWatch::Ride& ride) {
   return !ride.by_xy_speed && ride.speed_mm_s >= kFastShare * ride.fastest_z_mm_s;
 }
 
+double Across(const CutWatch::Ride& ride) {
+  return motion::LengthOf({ride.to.x - ride.from.x, ride.to.y - ride.from.y});
+}
+
 // More down than across.
 bool DropsSteeply(const CutWatch::Ride& ride) {
   if (ride.plunge) return true;
   if (!ride.in_work || ride.from.a != ride.to.a) return false;
-  const double across = std::hypot(ride.to.x - ride.from.x, ride.to.y - ride.from.y);
-  return ride.from.z - ride.to.z > across;
+  return ride.from.z - ride.to.z > Across(ride);
 }
 
-bool RisesSteeply(const CutWatch::Ride& ride) {
-  const double across = std::hypot(ride.to.x - ride.from.x, ride.to.y - ride.from.y);
-  return ride.to.z - ride.from.z > across;
-}
+bool RisesSteeply(const CutWatch::Ride& ride) { return ride.to.z - ride.from.z > Across(ride); }
 
 // Along the surface nothing is cut: pens and drag knives go there with the spindle off.
 double BelowSurface_mm(const CutWatch::Ride& ride, const Registers& registers) {

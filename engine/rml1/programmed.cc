@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/motion/geometry/frames.h"
+
 namespace rmlcell::rml1 {
 namespace {
 
@@ -99,8 +101,7 @@ void Programmed::AddHeight(double z) {
 }
 
 void Programmed::GoTo(double x, double y, double z, bool two_axis_cut) {
-  const double length = std::sqrt((x - now_.x) * (x - now_.x) + (y - now_.y) * (y - now_.y) +
-                                  (z - now_.z) * (z - now_.z));
+  const double length = motion::ProgramVector(x - now_.x, y - now_.y, z - now_.z).norm();
   const bool below = now_.z < 0.0 || z < 0.0;
   (below || two_axis_cut ? now_.cut_length : now_.travel_length) += length;
   now_.x = x;

@@ -79,9 +79,9 @@ class Findings final : public DeviceListener {
 };
 
 // Runs a stream through a device at once, whatever time its actions would take.
-class Rehearsal {
+class StreamReading {
  public:
-  Rehearsal(const Profile& profile, Findings& findings)
+  StreamReading(const Profile& profile, Findings& findings)
       : profile_(profile), findings_(findings), device_(profile), physical_(profile) {
     tool_ = device_.carriage().physical();
   }
@@ -226,11 +226,11 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
   if (!profile) return refuse(profile.error().code, profile.error().detail);
 
   Findings findings(file, options.advice, translation);
-  Rehearsal rehearsal(*profile, findings);
-  rehearsal.Run(file);
-  const double foreign_percent = rehearsal.device().foreign_percent();
+  StreamReading reading(*profile, findings);
+  reading.Run(file);
+  const double foreign_percent = reading.device().foreign_percent();
   if (foreign_percent > kForeignShareMax_percent && !options.forced) {
-    translation.figures = rehearsal.Figures();
+    translation.figures = reading.Figures();
     translation.diagnostics.insert(
         translation.diagnostics.begin(),
         Plain(ErrorCode::kRml1NoProgram,
@@ -240,7 +240,7 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
   }
   translation.ok = true;
   translation.as_it_came = true;
-  translation.figures = rehearsal.Figures();
+  translation.figures = reading.Figures();
   PlaceFigures(file.bytes, file.keeper, 0, translation.figures);
   translation.figures.push_back(
       {.name = "object_bytes", .unit = "bytes", .value = static_cast<double>(file.bytes.size())});

@@ -43,9 +43,9 @@ struct Outcome {
 };
 
 // Without a clock. Pauses are resumed when the stream is over, or the buffer full, as a run does.
-class Rehearsal final : public DeviceListener {
+class ByteByByte final : public DeviceListener {
  public:
-  explicit Rehearsal(const Profile& profile) : profile_(profile), device_(profile) {}
+  explicit ByteByByte(const Profile& profile) : profile_(profile), device_(profile) {}
 
   Outcome Run(const std::string& stream, std::size_t copy_at) {
     std::size_t at = 0;
@@ -169,8 +169,8 @@ void FuzzDevice(const std::uint8_t* data, std::size_t size) {
   for (std::size_t i = kOptionBytes; i < size; ++i) stream += static_cast<char>(data[i]);
 
   const Profile profile = MakeProfile(parameters).value();
-  const Outcome whole = Rehearsal(profile).Run(stream, stream.size() + 1);
-  RMLCELL_CHECK(Rehearsal(profile).Run(stream, data[2]) == whole);
+  const Outcome whole = ByteByByte(profile).Run(stream, stream.size() + 1);
+  RMLCELL_CHECK(ByteByByte(profile).Run(stream, data[2]) == whole);
 
   CheckRun(parameters, stream, whole, {.slice_ms = data[2]});
   CheckRun(parameters, stream, whole, {.slice_ms = data[2], .inputs = KeysFrom(data[1], data[2])});

@@ -294,8 +294,9 @@ Status WriteCopies(const machine::Bytes& stream, const Profile& profile, const B
       place.by = {column * std::round(tiling.pitch_x_mm * profile.units_per_mm),
                   row * std::round(tiling.pitch_y_mm * profile.units_per_mm), 0.0};
       counted(between.text());
-      const Status copy = WriteCopy(stream, profile, body, place, between.lifted_z(), counted);
-      if (!copy) return copy.error();
+      if (const Status copy = WriteCopy(stream, profile, body, place, between.lifted_z(), counted);
+          !copy)
+        return copy.error();
       if (size > options.bytes_max) {
         return Error{ErrorCode::kRml1ProductTooLarge,
                      "more than " + std::to_string(options.bytes_max) + " bytes",
@@ -333,8 +334,8 @@ Result<Tiling> TileStream(const machine::Bytes& stream, const machine::Parameter
 
   const auto end = static_cast<std::size_t>(body.part().end);
   WritePart(stream, 0, end, sink);
-  const Status copied = WriteCopies(stream, *profile, body, *tiling, options, sink);
-  if (!copied) return copied.error();
+  if (const Status copied = WriteCopies(stream, *profile, body, *tiling, options, sink); !copied)
+    return copied.error();
   if (tiling->columns * tiling->rows > 1) {  // the ending goes back to the first copy
     Interlude ending(body, *profile);
     ending.Lift(body);
