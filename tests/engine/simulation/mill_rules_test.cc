@@ -31,6 +31,16 @@ machine::Judgement CheckOf(const std::string& stream, const std::string& profile
       mill, mill.Translate({.name = "part.rml", .bytes = stream}, *parameters, {}).figures);
 }
 
+std::string TextOfRun(const std::string& stream) {
+  const machine::MachineFamily& mill = *families::FindFamily("rml1");
+  machine::RunSetup setup(*machine::MakeParameters(mill, "t1", {}));
+  setup.main_program = 1;
+  setup.programs[1].object = machine::Bytes::Of(stream);
+  const auto result = Simulate(mill, std::move(setup), {});
+  EXPECT_TRUE(result);
+  return result ? TextOf(result->report.judgement) : std::string();
+}
+
 std::string TextOfCheck(const std::string& stream, const std::string& profile = "t1") {
   return TextOf(CheckOf(stream, profile));
 }
@@ -422,12 +432,14 @@ TEST(MillRules, AFaultNeverMakesAVerdictBetter) {
       std::vector<std::string> alone = orderly;
       fault.put(alone);
       EXPECT_GE(CheckOf(Joined(alone)).verdict, fault.least) << fault.name << Joined(alone);
+      EXPECT_EQ(TextOfRun(Joined(alone)), TextOfCheck(Joined(alone))) << fault.name;
       fault.put(faulty);
       const Verdict now = CheckOf(Joined(faulty)).verdict;
       EXPECT_GE(now, before) << fault.name << Joined(faulty);
       before = now;
     }
     EXPECT_EQ(before, Verdict::kBad);
+    EXPECT_EQ(TextOfRun(Joined(faulty)), TextOfCheck(Joined(faulty))) << Joined(faulty);
   }
 }
 
