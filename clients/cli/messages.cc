@@ -13,6 +13,7 @@
 #include "engine/machine/shape.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
+#include "rmlcell/v1/program.pb.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -406,6 +407,13 @@ std::string ReportText(const v1::RunReport& report, Zero zero) {
 std::string MachineRows(const machine::MachineFamily& family, const v1::Findings& found) {
   Rows rows;
   AddMachine(family, found, rows);
+  return TextOf(rows);
+}
+
+std::string MachineRows(const machine::MachineFamily& family,
+                        const v1::DiffProgramsResponse& diff) {
+  Rows rows;
+  AddMachine(family, diff, rows);
   return TextOf(rows);
 }
 

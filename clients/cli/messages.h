@@ -8,6 +8,10 @@
 #include "rmlcell/v1/job.pb.h"
 
 // Messages as JSON and as text for people.
+namespace rmlcell::v1 {
+class DiffProgramsResponse;
+}
+
 namespace rmlcell::cli {
 
 // One line; zero values are shown, since people look for them.
@@ -21,8 +25,9 @@ std::string ReportText(const v1::RunReport& report, Zero zero = Zero::kWork);
 // The rows that a family gives its figures of a check; empty when it gives none.
 std::string FigureRows(const machine::MachineFamily& family,
                        const std::vector<machine::Figure>& figures, Zero zero = Zero::kWork);
-// Which machine a check was for, and what was changed of its profile.
+// Which machine a check or a comparison was for, and what was changed of its profile.
 std::string MachineRows(const machine::MachineFamily& family, const v1::Findings& found);
+std::string MachineRows(const machine::MachineFamily& family, const v1::DiffProgramsResponse& diff);
 std::string OutcomeLine(const v1::Outcome& outcome);
 std::string EventLine(const v1::JobEvent& event);
 std::string StateName(v1::Job::State state);  // "running"

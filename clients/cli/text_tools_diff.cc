@@ -67,6 +67,9 @@ void PrintText(const Response& diff) {
   }
   if (diff.steps_dropped() > 0)
     Print("and " + std::to_string(diff.steps_dropped()) + " more steps");
+  // Times and lengths are those of a machine.
+  const machine::MachineFamily* family = families::FindFamily(diff.family());
+  if (family != nullptr && !diff.figures().empty()) PrintRaw(MachineRows(*family, diff));
   for (const Response::FigureChange& figure : diff.figures()) {
     const auto [before, after] = FigureTexts(figure.before(), figure.after());
     Print(figure.name() + "  " + before + " -> " + after +
@@ -91,7 +94,8 @@ int Diff(const DiffOptions& options) {
       bridge::ComparePrograms(programs[0], programs[1],
                               {.picture = !options.svg.empty(),
                                .profile = machine->profile,
-                               .parameters = machine->parameters});
+                               .parameters = machine->parameters,
+                               .parameters_of = ParametersOf(options.machine)});
   if (!made) return Refuse(made.error());
   for (std::size_t i = 0; i < 2; ++i)
     ComplainOf(made->diagnostics[i], made->dropped[i], *programs[i].bytes);

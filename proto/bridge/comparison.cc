@@ -162,8 +162,12 @@ std::string Picture(const machine::MachineFamily& family,
                                     .note = NoteOf(sides[side].run->outcome)};
   };
   const machine::MachineShape shape = family.Shape(parameters);
+  const machine::MachineUsed used = parameters.Used();
+  std::string machine = machine::MachineTitle(family, used.profile, used.named);
+  if (const std::string changes = used.ChangesText(); !changes.empty())
+    machine += "   ·   changed: " + changes;
   return simulation::PictureOfDifference(path(0), path(1), shape, figures, {},
-                                         options.picture_elements_max);
+                                         options.picture_elements_max, machine);
 }
 
 }  // namespace
@@ -178,9 +182,10 @@ Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
   const Result<const machine::MachineFamily*> found = FamilyOf(programs);
   if (!found) return found.error();
   const machine::MachineFamily& family = **found;
-  const Result<machine::Parameters> parameters =
+  Result<machine::Parameters> parameters =
       machine::MakeParameters(family, options.profile, options.parameters);
   if (!parameters) return parameters.error();
+  parameters->SetChangedBy(options.parameters_of);
   for (std::size_t i = 0; i < 2; ++i) {
     auto object =
         ObjectOf(family, programs[i], *parameters, outcome.diagnostics[i], outcome.dropped[i]);
@@ -203,6 +208,8 @@ Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
   if (!diff) return diff.error();
   outcome.response = MessageOf(*diff, options.changes_max);
   outcome.response.set_compared_runs(both_ran);
+  outcome.response.set_family(std::string(family.info().id));
+  SetMachine(parameters->Used(), outcome.response);
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string note = sides[i].run ? LeftOut(*sides[i].run, family.info()) : std::string();
     if (!note.empty()) {

@@ -29,6 +29,7 @@ struct ComparisonOptions {
   // Of the machine; a profile by its name, and parameters over it. Neither: the defaults.
   std::string profile{};
   std::map<std::string, std::string> parameters{};
+  std::string parameters_of{};    // where those are from, for people: "mine.toml"
   std::function<bool()> go_on{};  // asked now and then; false: the run is given up, without figures
 };
 

@@ -280,6 +280,10 @@ void SetMachine(const machine::MachineUsed& machine, v1::Findings& message) {
   AddMachine(machine, message);
 }
 
+void SetMachine(const machine::MachineUsed& machine, v1::DiffProgramsResponse& message) {
+  AddMachine(machine, message);
+}
+
 v1::ErrorExplanation Explain(const CatalogueEntry& entry) {
   v1::ErrorExplanation message;
   message.set_code(CodeText(entry.code));

@@ -12,6 +12,7 @@ class Status;
 }
 namespace rmlcell::v1 {
 class Diagnostic;
+class DiffProgramsResponse;
 class ErrorDetail;
 class Findings;
 class Figure;
@@ -39,9 +40,11 @@ v1::Outcome ToProto(const machine::Outcome& outcome);
 v1::Outcome ToProto(const machine::Outcome& outcome, const machine::Judgement& judgement);
 void SetJudgement(const machine::Judgement& judgement, v1::Outcome& message);
 void SetJudgement(const machine::Judgement& judgement, v1::Findings& message);
-// Which machine it was; the message has profile and changes: a RunReport, or Findings.
+// Which machine it was; the message has profile and changes: a RunReport, Findings, or a
+// comparison.
 void SetMachine(const machine::MachineUsed& machine, v1::RunReport& message);
 void SetMachine(const machine::MachineUsed& machine, v1::Findings& message);
+void SetMachine(const machine::MachineUsed& machine, v1::DiffProgramsResponse& message);
 v1::ErrorExplanation Explain(const CatalogueEntry& entry);
 
 // The findings of a translation or a transfer.

@@ -53,6 +53,16 @@ class Local(InFolder):
         picture = ask("simulate", part, "--machine", mine, "--svg", "-").stdout
         self.assertIn(">changed: X_MAX 100 (profile: 203.2); by ", picture)
 
+    def test_a_comparison_names_its_machine(self):
+        a, b, mine = self.file("a.rml", GOOD), self.file("b.rml", GOOD.replace("PD1000", "PD1500")), self.file("mine.toml", MINE)
+        self.assertIn("machine       Roland monoFab SRM-20 (srm-20): no profile was named\ncut_length  13 -> 18 mm",
+                      ask("diff", a, b).stdout)
+        self.assertIn("SRM-20 (srm-20): no profile was named<", ask("diff", a, b, "--svg", "-").stdout)
+        found = json.loads(ask("diff", a, b, "--machine", mine, "--json").stdout)
+        self.assertEqual((found["family"], found["profile"], found["profileNamed"], found["profileChangedBy"]),
+                         ("rml1", "srm-20", True, str(mine)))
+        self.assertEqual(ask("diff", a, a).stdout, "they do the same\n")
+
     # The names of a check's JSON are those of a simulation's, and what both know is the same.
     def test_the_json_of_check_and_simulate_agree(self):
         names = ["01-fts_mini_cut.rml", "06-ROUGH_LEFT.prn", "07-ROUGH_LEFT_EXTRA1.prn", "15-output_bis2.rml"]

@@ -41,11 +41,13 @@ class DifferencePage {
  public:
   DifferencePage(const ComparedPath& before, const ComparedPath& after,
                  const machine::MachineShape& shape, const std::vector<ComparedFigure>& figures,
-                 const PictureOptions& options, std::size_t elements_max)
+                 const PictureOptions& options, std::size_t elements_max,
+                 const std::string& machine)
       : before_(before),
         after_(after),
         shape_(shape),
         figures_(figures),
+        machine_(machine),
         difference_(Compare(before.path, after.path)) {
     width_ = std::clamp(options.width_px, kDifferenceWidthMin, kPageWidthMax);
     machine::Box all = before.path.box(), cut = before.path.cut_box();
@@ -137,6 +139,11 @@ class DifferencePage {
                same_path() ? "both run along the same path"
                            : "removed: the first alone runs there; added: the second alone",
                {.size = 14.0, .colour = kFaint});
+    const TextStyle small{.size = 12.0, .colour = kFaint};
+    if (!machine_.empty()) {
+      AppendText(body_, {kPageMargin, 86.0}, Fitted(machine_, width_ - 2.0 * kPageMargin, small),
+                 small);
+    }
   }
 
   void DrawOne(const Panel& panel, int id) {
@@ -245,6 +252,7 @@ class DifferencePage {
   const ComparedPath& after_;
   const machine::MachineShape& shape_;
   const std::vector<ComparedFigure>& figures_;
+  const std::string& machine_;
   PathDifference difference_;
   int width_ = 0;
   std::string_view zero_text_;
@@ -262,8 +270,9 @@ class DifferencePage {
 std::string PictureOfDifference(const ComparedPath& before, const ComparedPath& after,
                                 const machine::MachineShape& shape,
                                 const std::vector<ComparedFigure>& figures,
-                                const PictureOptions& options, std::size_t elements_max) {
-  return DifferencePage(before, after, shape, figures, options, elements_max).Svg();
+                                const PictureOptions& options, std::size_t elements_max,
+                                const std::string& machine) {
+  return DifferencePage(before, after, shape, figures, options, elements_max, machine).Svg();
 }
 
 }  // namespace rmlcell::simulation

@@ -27,11 +27,12 @@ struct ComparedFigure {
 
 // A standalone SVG document as PictureRecorder::Svg makes: both paths in the panels of the machine,
 // and where the difference is small a panel that shows it alone. At most `elements_max` lines and
-// arcs; what is drawn coarser for that says so.
+// arcs; what is drawn coarser for that says so. `machine`: that both ran on, for the caption.
 std::string PictureOfDifference(const ComparedPath& before, const ComparedPath& after,
                                 const machine::MachineShape& shape,
                                 const std::vector<ComparedFigure>& figures,
                                 const PictureOptions& options,
-                                std::size_t elements_max = kPictureElementsMax);
+                                std::size_t elements_max = kPictureElementsMax,
+                                const std::string& machine = {});
 
 }  // namespace rmlcell::simulation
