@@ -29,13 +29,15 @@ class Converter {
     names_.resize(module_.names.size());
   }
 
-  // `illegal`: places of errors, ascending; the statements that hold one are copied.
+  // `illegal`: places of errors, ascending; the statements that hold one are copied, also where it
+  // is in the sequence number before them.
   std::vector<Fix> Run(const std::vector<std::int64_t>& illegal) {
-    std::size_t error = 0;
+    std::size_t error = 0, end_before = 0;
     for (std::size_t s = 0; s < module_.instructions.size(); ++s) {
       const Instruction& i = module_.instructions[s];
       const Statement& statement = p_.statements[s];
-      while (error < illegal.size() && illegal[error] < statement.begin) ++error;
+      const std::size_t line = LineOf(statement, std::exchange(end_before, statement.end));
+      while (error < illegal.size() && illegal[error] < static_cast<std::int64_t>(line)) ++error;
       const bool bad = error < illegal.size() && illegal[error] <= statement.end;
       if (i.op == Op::kInvalid || bad) continue;
       if (statement.tokens > kConvertTokensMax) {
@@ -58,6 +60,13 @@ class Converter {
   }
 
  private:
+  // Where the line of a statement begins, behind the end of the one before.
+  std::size_t LineOf(const Statement& statement, std::size_t end_before) const {
+    const std::size_t from = std::min<std::size_t>(end_before, statement.begin);
+    const std::string_view between = p_.text.substr(from, statement.begin - from);
+    return from + between.rfind('\n') + 1;  // npos + 1: none
+  }
+
   // What a name stands for, as far as the text was read.
   struct Known {
     Unit unit = Unit::kNone;

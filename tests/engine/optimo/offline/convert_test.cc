@@ -206,9 +206,10 @@ TEST(Convert, LinesThatAreNoRmlAreCopied) {
   EXPECT_EQ(Metric(text), "MOVE (1,2\nMOVE (25.4,0.0,0.0,0.0,0.0)\nVR[0] = 1 2\n");
   EXPECT_EQ(FindingsOf(text), (std::vector<int>{7711, 7711}));
   // Also those that can be read, each of several.
-  const std::string twice = "MOVE (1,0,0,0,0)/FLY/FLY\n";
-  EXPECT_EQ(Metric(twice + "VR[0] = 1\n" + twice + "VR[0] = 2\n" + twice),
-            twice + "VR[0] = 25.4\n" + twice + "VR[0] = 50.8\n" + twice);
+  for (const std::string bad : {"MOVE (1,0,0,0,0)/FLY/FLY\n", "12345 VR[0] = 1\n"}) {
+    EXPECT_EQ(Metric(bad + "VR[0] = 1\n" + bad + "VR[0] = 2\n" + bad),
+              bad + "VR[0] = 25.4\n" + bad + "VR[0] = 50.8\n" + bad);
+  }
 }
 
 // OPT-8.65, OPT-E.7708: VR [ 26 ] = 1 + ... : 5 tokens and two for each further term.
