@@ -13,7 +13,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const machine::MachineFamily& Optimo() { return *families::FindFamily("optimo"); }
+const machine::MachineFamily& ALaser() { return *families::FindFamily("optimo"); }
 
 void ExpectUsage(const Error& error, const std::string& detail) {
   EXPECT_EQ(error.code, ErrorCode::kCellUsage);
@@ -49,20 +49,20 @@ TEST(SimulateOptions, EveryModeHasItsName) {
   for (const auto& [name, mode] : modes) {
     SimulateOptions options;
     options.mode = name;
-    const auto message = OptionsMessage(options, Optimo());
+    const auto message = OptionsMessage(options, ALaser());
     ASSERT_TRUE(message) << name;
     EXPECT_EQ(message->mode(), mode) << name;
   }
   SimulateOptions options;
   options.mode = "Cycle";
-  ExpectUsage(OptionsMessage(options, Optimo()).error(), "cycle, remote, single, repeat");
+  ExpectUsage(OptionsMessage(options, ALaser()).error(), "cycle, remote, single, repeat");
 }
 
 TEST(SimulateOptions, APlaceIsAStepOfTheMainProgramOrOfOneThatIsNamed) {
   SimulateOptions options;
   options.simul = "45/7";
   options.breakpoint = "12";
-  const auto message = OptionsMessage(options, Optimo());
+  const auto message = OptionsMessage(options, ALaser());
   ASSERT_TRUE(message);
   EXPECT_EQ(message->simul().program(), 45);
   EXPECT_EQ(message->simul().step(), 7);
@@ -71,7 +71,7 @@ TEST(SimulateOptions, APlaceIsAStepOfTheMainProgramOrOfOneThatIsNamed) {
 
   options.simul = "off";
   options.breakpoint.clear();
-  const auto off = OptionsMessage(options, Optimo());
+  const auto off = OptionsMessage(options, ALaser());
   ASSERT_TRUE(off);
   EXPECT_TRUE(off->has_simul());  // switches off what the machine had
   EXPECT_EQ(off->simul().step(), 0);
@@ -84,31 +84,31 @@ TEST(SimulateOptions, APlaceThatCannotBeIsRefused) {
     if (*text == '\0') continue;  // not given
     SimulateOptions simul;
     simul.simul = text;
-    const auto message = OptionsMessage(simul, Optimo());
+    const auto message = OptionsMessage(simul, ALaser());
     ASSERT_FALSE(message) << text;
     ExpectUsage(message.error(), "write PROGRAM/STEP");
     SimulateOptions breakpoint;
     breakpoint.breakpoint = text;
-    EXPECT_FALSE(OptionsMessage(breakpoint, Optimo())) << text;
+    EXPECT_FALSE(OptionsMessage(breakpoint, ALaser())) << text;
   }
   SimulateOptions last;
   last.simul = "99/1000000000";
-  EXPECT_TRUE(OptionsMessage(last, Optimo()));
+  EXPECT_TRUE(OptionsMessage(last, ALaser()));
 }
 
 TEST(SimulateOptions, AnOverrideIsWithinWhatTheMachineHas) {
   SimulateOptions options;
-  options.override_percent = Optimo().info().override_max_percent;
-  EXPECT_TRUE(OptionsMessage(options, Optimo()));
+  options.override_percent = ALaser().info().override_max_percent;
+  EXPECT_TRUE(OptionsMessage(options, ALaser()));
   options.override_percent += 1.0;
-  ExpectUsage(OptionsMessage(options, Optimo()).error(), "--override: ");
+  ExpectUsage(OptionsMessage(options, ALaser()).error(), "--override: ");
 }
 
 TEST(SimulateOptions, InputsComeFromTheirFile) {
   const CliFolder folder;
   SimulateOptions options;
   options.inputs_file = folder.File("missing.txt");
-  EXPECT_EQ(OptionsMessage(options, Optimo()).error().code, ErrorCode::kCellFileUnreadable);
+  EXPECT_EQ(OptionsMessage(options, ALaser()).error().code, ErrorCode::kCellFileUnreadable);
 }
 
 // A place in a program that is not there would never be reached, and nobody would know why.
@@ -127,19 +127,19 @@ TEST(SimulateOptions, APlaceNamesAProgramThatIsThere) {
 
 TEST(SimulateOptions, AnExecutableIsMadeOfAProgramThatIsThere) {
   std::vector<simulation::MemoryProgram> programs = {{.slot = 45}, {.slot = 7}};
-  const auto to_make = AddExecutables({"7", "45"}, Optimo(), programs);
+  const auto to_make = AddExecutables({"7", "45"}, ALaser(), programs);
   ASSERT_TRUE(to_make);
   EXPECT_THAT(*to_make, ElementsAre(7, 45));
-  ExpectUsage(AddExecutables({"8"}, Optimo(), programs).error(), "there is no such program");
-  EXPECT_EQ(AddExecutables({"100"}, Optimo(), programs).error().code, ErrorCode::kProgramNumber);
+  ExpectUsage(AddExecutables({"8"}, ALaser(), programs).error(), "there is no such program");
+  EXPECT_EQ(AddExecutables({"100"}, ALaser(), programs).error().code, ErrorCode::kProgramNumber);
 }
 
 TEST(SimulateOptions, AnExecutableThatIsBroughtMustBeOne) {
   const CliFolder folder;
   std::vector<simulation::MemoryProgram> programs = {{.slot = 45}};
   const std::string bad = folder.Put("45.exe", "no executable");
-  EXPECT_FALSE(AddExecutables({"45=" + bad}, Optimo(), programs));
-  EXPECT_EQ(AddExecutables({"45=" + folder.File("none")}, Optimo(), programs).error().code,
+  EXPECT_FALSE(AddExecutables({"45=" + bad}, ALaser(), programs));
+  EXPECT_EQ(AddExecutables({"45=" + folder.File("none")}, ALaser(), programs).error().code,
             ErrorCode::kCellFileUnreadable);
   EXPECT_TRUE(programs.front().executable->empty());
 }
