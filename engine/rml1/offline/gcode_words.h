@@ -66,7 +66,7 @@ inline constexpr std::array kGcodeRows = {
     GcodeRow{'M', 20, GcodeUse::kEnd, "end of the program"},
     GcodeRow{'M', 30, GcodeUse::kSpindleOn, "spindle on"},
     GcodeRow{'M', 50, GcodeUse::kSpindleOff, "spindle off"},
-    GcodeRow{'M', 60, GcodeUse::kToolChange, "tool change, before the first motion alone"},
+    GcodeRow{'M', 60, GcodeUse::kToolChange, "tool change, before the first cut"},
     GcodeRow{'M', 70, GcodeUse::kIgnored, "coolant"},
     GcodeRow{'M', 80, GcodeUse::kIgnored, "coolant"},
     GcodeRow{'M', 90, GcodeUse::kIgnored, "coolant"},

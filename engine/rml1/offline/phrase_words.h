@@ -14,8 +14,8 @@ std::string WordsOf(const Phrase& phrase, const Profile& profile);
 // One action of the device. `from`: where the tool is, `z0`: of the work, both in device units.
 std::string WordsOf(const Action& action, const Point& from, double z0, const Profile& profile);
 
-// What the machine would have taken in place of the first height or coordinate that it refused; empty
-// when the phrase has none. "the tool-down height may be from -60.5 to 0 mm".
+// What the machine would have taken in place of the first height or coordinate that it refused;
+// empty when the phrase has none. "the tool-down height may be from -60.5 to 0 mm".
 std::string RangeOfRefused(const Phrase& phrase, const Profile& profile);
 
 // Up to `decimals` decimals without zeros behind: "12.7", "5".
