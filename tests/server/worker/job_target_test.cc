@@ -162,9 +162,10 @@ TEST_F(JobTargetRun, HasTheBudgetsOfTheJob) {
 }
 
 // chip_loads.toml: aluminium at 3 mm takes 0.03 mm at most. 10 mm/s at 4500 rpm with two edges are
-// 10 / (75 * 2) = 0.067 mm; at 10000 rpm 0.03 mm.
+// 10 / (75 * 2) = 0.067 mm; at 10000 rpm 0.03 mm. Down it goes at a tenth of that.
 TEST_F(JobTargetRun, TheChipsOfTheToolAreJudged) {
-  v1::WorkerAssignment assignment = Mill(kShallow);
+  v1::WorkerAssignment assignment =
+      Mill("VS10;!VZ1;!PZ-100,200;!MC1;PU2010,1510;PD4010,1510;PU0,0;!MC0;");
   MillingOf(assignment).mutable_tool()->set_flutes(2);
   MillingOf(assignment).set_material("aluminium");
   MillingOf(assignment).set_rpm(4500.0);

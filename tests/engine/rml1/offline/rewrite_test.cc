@@ -288,7 +288,7 @@ TEST(TileStream, EveryCopyDoesTheWorkOfTheFirst) {
         "Z9,9,90;Z9,9,-9,50,9,-9;V9;Z50,9,90;H;", "Z10,10,100;Z10,10,-20,40,10,-20;!ZM0;",
         "!PZ-5,50;D10,10;I5,5,5,0;M90,90;D95,95;M;H;",
         "!PZ-5,50;PD10,10;PD20,20;!DW5;!RC8;!MC0;PU1,1;", "PR;!PZ-5,50;PD10,10;PU;PD3,3;",
-        "PR;!PZ-50,100;Z500,500,0;!ZO-1500;Z0,0,-1550;Z300,0,0;PU;PA;PU0,0;",
+        "PR;!PZ-50,100;Z500,500,0;!ZO-2500;Z0,0,-2550;Z300,0,0;PU;PA;PU0,0;",
         "PR;!PZ-50,100;Z500,500,0;!ZM-1990;Z0,0,-20,30,0,0;PU;PA;PU0,0;",
         "PA;Z0,0,10;PR;Z300,0,-30,300,0,0;PU;"}) {
     ExpectTiled(part, "t1", 3, 2);
@@ -296,14 +296,14 @@ TEST(TileStream, EveryCopyDoesTheWorkOfTheFirst) {
   }
 }
 
-// T1: Z0 is -2000. The part begins at the top, sets Z0 to 1500 below, cuts from X 500 to 800 and
-// lifts to 100 above. The copy comes from there, (800, 500, -1400), to (400, 0, 0): up first, and
+// T1: Z0 is -2000. The part begins at the top, sets Z0 to 2500 below, cuts from X 500 to 800 and
+// lifts to 100 above. The copy comes from there, (800, 500, -2400), to (400, 0, 0): up first, and
 // Z0 counts from the top again.
 TEST(TileStream, ACopyThatSetsZ0RelativelyBeginsAtTheHeightOfTheFirst) {
-  const auto made = TileStream("PR;!PZ-50,100;Z500,500,0;!ZO-1500;Z0,0,-1550;Z300,0,0;PU;PA;PU0,0;",
+  const auto made = TileStream("PR;!PZ-50,100;Z500,500,0;!ZO-2500;Z0,0,-2550;Z300,0,0;PU;PA;PU0,0;",
                                ParametersOf("t1"), {.columns = 2, .gap_mm = 1.0});
   ASSERT_TRUE(made) << made.error().detail;
-  EXPECT_NE(made->stream.find("!ZO-2000;\nPR;\n!ZZ0,0,1400,-400,-500,0;Z500,500,0;!ZO-1500;"),
+  EXPECT_NE(made->stream.find("!ZO-2000;\nPR;\n!ZZ0,0,2400,-400,-500,0;Z500,500,0;!ZO-2500;"),
             std::string::npos)
       << made->stream;
 }
