@@ -53,14 +53,6 @@ std::vector<std::string> SplitCommas(const std::string& text) {
   return parts;
 }
 
-// Which machine a program would have run on.
-machine::MachineUsed MachineOf(const simulation::ProgramMemory& memory) {
-  auto parameters = machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
-  if (!parameters) return {};
-  parameters->SetChangedBy(memory.parameters_of);
-  return parameters->Used();
-}
-
 // A program that cannot run: its findings, and a verdict all the same.
 int TellWhyNot(const SimulateOptions& options, const simulation::ProgramMemory& memory,
                const simulation::PreparedRun& prepared) {
@@ -70,12 +62,12 @@ int TellWhyNot(const SimulateOptions& options, const simulation::ProgramMemory& 
         bridge::FindingsOf(false, prepared.diagnostics, prepared.diagnostics_dropped, {});
     bridge::SetJudgement(judgement, found);
     found.set_family(std::string(memory.family->info().id));
-    bridge::SetMachine(MachineOf(memory), found);
+    bridge::SetMachine(simulation::MachineOf(memory), found);
     PrintJson(found);
   } else if (options.facts) {
     simulation::RunReport report;
     report.family = memory.family->info().id;
-    report.machine = MachineOf(memory);
+    report.machine = simulation::MachineOf(memory);
     report.finished = true;
     report.outcome.kind = machine::OutcomeKind::kFailed;
     if (!judgement.reasons.empty()) report.outcome.code = judgement.reasons.front().code;

@@ -39,11 +39,7 @@ simulation::ProgramMemory AssignedPrograms::EmptyMemory() const {
 }
 
 machine::MachineUsed AssignedPrograms::Machine() const {
-  const simulation::ProgramMemory memory = EmptyMemory();
-  auto parameters = machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
-  if (!parameters) return {.profile = memory.profile, .named = !memory.profile.empty()};
-  parameters->SetChangedBy(memory.parameters_of);
-  return parameters->Used();
+  return simulation::MachineOf(EmptyMemory());
 }
 
 simulation::ProgramMemory AssignedPrograms::Memory() {

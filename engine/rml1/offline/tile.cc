@@ -118,11 +118,12 @@ class Interlude {
         absolute_(body.end().absolute),
         lifted_z_(body.to().z) {}
 
-  // Away from the work, where the copy does not end there.
+  // Away from the work, where the copy does not end there. The work begins at the surface: of a Z0
+  // that !ZO lowered the tool-up height may lie within.
   void Lift(const BodyFinder& body) {
     const Registers& end = body.end();
-    if (!end.tool_down && body.stands().z > end.z0) return;
-    if (end.z2 > 0.0) {
+    if (!end.tool_down && body.stands().z > end.surface_z) return;
+    if (end.up_z(profile_) > end.surface_z) {
       Say(names_.up);
       if (profile_.commands.setting == CommandSetting::kMode1) absolute_ = true;  // so does M
       lifted_z_ = end.up_z(profile_);

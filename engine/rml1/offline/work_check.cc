@@ -79,18 +79,18 @@ class LostText {
 
 std::string TextOfLost(const Device& device, const WorkDone& done, const Profile& profile) {
   const LostCut& lost = device.carriage().lost();
-  const double z0 = device.registers().z0;
+  const double surface = device.registers().surface_z;  // !ZO moves no work
   LostText text(profile);
   text.Say(lost.x_low, "beyond the least X", profile.x.low - profile.origin_x);
   text.Say(lost.x_high, "beyond the greatest X", profile.x.high - profile.origin_x);
   text.Say(lost.y_low, "beyond the least Y", profile.y.low - profile.origin_y);
   text.Say(lost.y_high, "beyond the greatest Y", profile.y.high - profile.origin_y);
-  text.Say(lost.z_low, "below the lowest Z", profile.z.low - z0);
+  text.Say(lost.z_low, "below the lowest Z", profile.z.low - surface);
   text.SayRemedy("X", done.x, lost.x, profile.x);
   text.SayRemedy("Y", done.y, lost.y, profile.y);
   // Of a plunge from above the surface that part alone is work.
   Extent depth = done.z;
-  depth.high = std::min(depth.high, z0);
+  depth.high = std::min(depth.high, surface);
   text.SayRemedy("Z", depth, lost.z, profile.z);
   return text.Take(lost.length);
 }

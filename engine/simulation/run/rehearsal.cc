@@ -57,6 +57,13 @@ machine::RunSetup SetupOf(const ProgramMemory& memory, machine::Parameters param
 
 }  // namespace
 
+machine::MachineUsed MachineOf(const ProgramMemory& memory) {
+  auto parameters = machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
+  if (!parameters) return {.profile = memory.profile, .named = !memory.profile.empty()};
+  parameters->SetChangedBy(memory.parameters_of);
+  return parameters->Used();
+}
+
 Result<PreparedRun> PrepareRun(const ProgramMemory& memory, const RunOptions& options) {
   std::map<std::string, std::string> values = memory.parameters;
   for (const auto& [name, value] : options.parameters) values[name] = value;

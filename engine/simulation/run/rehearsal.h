@@ -37,6 +37,10 @@ struct ProgramMemory {
   std::string machine_state{};
 };
 
+// Which machine that is, for the report of a program that is not run; its profile alone where its
+// parameters cannot be.
+machine::MachineUsed MachineOf(const ProgramMemory& memory);
+
 // What a program is run with.
 struct RunOptions {
   int main_program = 0;

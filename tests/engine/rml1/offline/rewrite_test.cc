@@ -296,14 +296,23 @@ TEST(TileStream, EveryCopyDoesTheWorkOfTheFirst) {
   }
 }
 
-// T1: Z0 is -2000. The part begins at the top, sets Z0 to 2500 below, cuts from X 500 to 800 and
-// lifts to 100 above. The copy comes from there, (800, 500, -2400), to (400, 0, 0): up first, and
-// Z0 counts from the top again.
+// T1: the surface is at -2000. Z0 comes to -2500, and the tool-up height with it to -2400: in the
+// work still, so the way to the copy leads at the top.
+TEST(TileStream, ATopOfTheToolThatLiesInTheWorkIsNoWayAcross) {
+  const auto made = TileStream("PA;!PZ-50,100;PU500,500;!ZO-2500;PD500,500;PD800,500;PU;!ZM0;",
+                               ParametersOf("t1"), {.columns = 2, .gap_mm = 1.0});
+  ASSERT_TRUE(made) << made.error().detail;
+  EXPECT_NE(made->stream.find("!ZM0;\n!ZO-2000;"), std::string::npos) << made->stream;
+}
+
+// T1: Z0 is -2000. The part begins at the top, sets Z0 to 2500 below and cuts from X 500 to 800;
+// its tool-up height, 100 above that, lies in the work, so it goes up to the top. The copy comes
+// from there, (800, 500, 0), to (400, 0, 0), and Z0 counts from the top again.
 TEST(TileStream, ACopyThatSetsZ0RelativelyBeginsAtTheHeightOfTheFirst) {
   const auto made = TileStream("PR;!PZ-50,100;Z500,500,0;!ZO-2500;Z0,0,-2550;Z300,0,0;PU;PA;PU0,0;",
                                ParametersOf("t1"), {.columns = 2, .gap_mm = 1.0});
   ASSERT_TRUE(made) << made.error().detail;
-  EXPECT_NE(made->stream.find("!ZO-2000;\nPR;\n!ZZ0,0,2400,-400,-500,0;Z500,500,0;!ZO-2500;"),
+  EXPECT_NE(made->stream.find("!ZM0;\n!ZO-2000;\nPR;\n!ZZ-400,-500,0;Z500,500,0;!ZO-2500;"),
             std::string::npos)
       << made->stream;
 }

@@ -34,6 +34,14 @@ TEST(CheckWork, WorkBeyondTheTravelIsToldWithItsRemedy) {
             "moved by 10 to 20 mm");
 }
 
+// The surface stays where the operator set it, -2000, whatever !ZO makes of Z0: the lowest Z is 40
+// mm below it, and the work reaches 50.
+TEST(CheckWork, DepthIsToldFromTheSurface) {
+  EXPECT_EQ(Checked("!MC1;!ZO-2500;Z100,100,500;Z100,100,-4500;")->detail,
+            "10 mm of the work would not be cut: 10 mm below the lowest Z (-40 mm); in Z it fits "
+            "moved by 10 to 20 mm");
+}
+
 TEST(CheckWork, WhatCutsNothingMayLieThere) {
   EXPECT_FALSE(Checked("PU-1000,0;PU100,100;PD20000,100;PU;!ZM0;Z0,0,9000;"));
   // 0.01 mm is the limit of the verdict.
