@@ -6,12 +6,22 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import mutate  # noqa: E402
+from areas import AREAS  # noqa: E402
 from places import Finder  # noqa: E402
 
 
 def changes(source, kind, error_codes=()):
     places = Finder("a.cc", source).find(error_codes)
     return [place.applied(source) for place in places if place.kind == kind]
+
+
+class Areas(unittest.TestCase):
+    def test_every_source_is_in_one_area(self):
+        root = pathlib.Path(__file__).parents[2]
+        folders = {str(source.parent.relative_to(root)) for part in ("engine", "server", "storage", "proto", "clients")
+                   for source in (root / part).rglob("*.cc")}
+        measured = [folder for area in AREAS.values() for folder in area.folders]
+        self.assertEqual(sorted(measured), sorted(folders))
 
 
 class Places(unittest.TestCase):
