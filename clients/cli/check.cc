@@ -28,10 +28,8 @@ namespace {
 struct CheckedFile {
   std::string name;
   machine::Bytes text;
-  const machine::MachineFamily* family = nullptr;
   std::optional<machine::Parameters> parameters;
-  simulation::ProgramCheck check;
-  int slot = 0;                  // in the program memory of the check; 0: none
+  simulation::CheckedProgram check;
   std::optional<Error> refused;  // why there is nothing to check
 };
 
@@ -48,12 +46,12 @@ Status CheckMotions(const std::vector<CheckedFile*>& files, const machine::Input
   }
   const CheckedFile& any = *files.front();
   if (const Status checked =
-          simulation::CheckTogether(*any.family, *any.parameters, programs, inputs);
+          simulation::CheckTogether(*any.check.family, *any.parameters, programs, inputs);
       !checked)
     return checked.error();
   for (std::size_t n = 0; n < files.size(); ++n) {
     CheckedFile& file = *files[n];
-    file.slot = programs[n].program.slot;
+    file.check.slot = programs[n].program.slot;
     file.check.motion = std::move(programs[n].motion);
     if (!advice) {
       std::erase_if(file.check.motion.findings,
@@ -67,7 +65,7 @@ Status CheckMotions(const std::vector<CheckedFile*>& files, const machine::Input
 // Of a text that is not stored: all that can be said of it, unless errors alone are wanted.
 machine::Translation TranslateAs(const CheckedFile& file, const std::string& name,
                                  const machine::Bytes& text, const CheckOptions& options) {
-  return simulation::TranslateProgram(*file.family, *file.parameters,
+  return simulation::TranslateProgram(*file.check.family, *file.parameters,
                                       {.file_name = name, .bytes = text, .is_source = true},
                                       {.advice = !options.errors_only, .source = true});
 }
@@ -83,7 +81,7 @@ Status Translate(CheckedFile& file, const CheckOptions& options) {
 
 // The figures that people want of a check: those that the family gives a row, else all on one line.
 std::string FigureText(const CheckedFile& file, Zero zero) {
-  const std::string rows = FigureRows(*file.family, file.check.translation.figures, zero);
+  const std::string rows = FigureRows(*file.check.family, file.check.translation.figures, zero);
   if (!rows.empty()) return rows;
   std::string line;
   for (const machine::Figure& figure : file.check.translation.figures) {
@@ -105,7 +103,7 @@ int ShowRefused(const CheckedFile& file, const CheckOptions& options) {
                                             .file = file.name}},
                                           0, {});
   found.set_file(bridge::Utf8(file.name));
-  found.set_family(std::string(file.family->info().id));
+  found.set_family(std::string(file.check.family->info().id));
   Print(Json(found));
   return kProgramErrors;
 }
@@ -113,14 +111,10 @@ int ShowRefused(const CheckedFile& file, const CheckOptions& options) {
 // What there is to say; the exit code.
 int Show(CheckedFile& file, const CheckOptions& options) {
   if (file.refused) return ShowRefused(file, options);
-  machine::Translation& translation = file.check.translation;
-  v1::Findings found =
-      bridge::FindingsOf(*file.family, *file.parameters, translation, file.check.motion, file.slot);
+  const machine::Judgement judgement = simulation::JudgeCheck(file.check);
+  const machine::Translation& translation = file.check.translation;
+  v1::Findings found = bridge::FindingsOf(file.check, judgement);
   found.set_file(bridge::Utf8(file.name));
-  const machine::Judgement judgement =
-      simulation::JudgeCheck(*file.family, translation, file.check.motion);
-  machine::MarkJudged(judgement, translation.diagnostics);
-  machine::MarkJudged(judgement, file.check.motion.findings);
   const int exit_code = ExitOf(found, options.strict);
   if (options.json) {
     PrintJson(found);
@@ -134,7 +128,7 @@ int Show(CheckedFile& file, const CheckOptions& options) {
     for (const auto& [slot, why] : file.check.motion.cut_short) Print("  motion checked " + why);
   }
   for (const v1::VerdictReason& reason : found.reasons()) Print("  " + ReasonLine(reason));
-  PrintRaw(MachineRows(*file.family, found));
+  PrintRaw(MachineRows(*file.check.family, found));
   PrintRaw(FigureText(file, options.machine_coordinates ? Zero::kMachine : Zero::kWork));
   return exit_code;
 }
@@ -144,9 +138,9 @@ int FixFiles(std::vector<CheckedFile>& files, const machine::InputScript& inputs
              const CheckOptions& options) {
   int exit_code = kGood;
   for (CheckedFile& file : files) {
-    if (file.family->tools() == nullptr) {
+    if (file.check.family->tools() == nullptr) {
       return Refuse({ErrorCode::kCellUsage,
-                     file.name + ": a stream of " + std::string(file.family->info().title) +
+                     file.name + ": a stream of " + std::string(file.check.family->info().title) +
                          " has nothing to fix",
                      {}});
     }
@@ -159,13 +153,13 @@ int FixFiles(std::vector<CheckedFile>& files, const machine::InputScript& inputs
     };
     const auto judge = [&](const machine::Translation& left) -> Result<FixCheck::Left> {
       file.check.translation = left;
-      if (left.ok && file.family->info().checked_by_running) {
+      if (left.ok && file.check.family->info().checked_by_running) {
         if (const Status ran = CheckMotions({&file}, inputs, !options.errors_only); !ran)
           return ran.error();
       }
-      return FixCheck::Left{.motion = file.check.motion,
-                            .found = bridge::FindingsOf(*file.family, *file.parameters, left,
-                                                        file.check.motion, file.slot)};
+      const machine::Judgement judgement = simulation::JudgeCheck(file.check);
+      return FixCheck::Left{.check = file.check,
+                            .found = bridge::FindingsOf(file.check, judgement)};
     };
     exit_code = std::max(exit_code, FixFile(file.name, *text, {translate, judge},
                                             {options.dry_run, options.json, options.strict}));
@@ -190,7 +184,9 @@ int Check(const CheckOptions& options) {
     auto parameters = machine::MakeParameters(**family, machine->profile, changed);
     if (!parameters) return Refuse(parameters.error());
     parameters->SetChangedBy(ParametersOf(options.machine));
-    files.push_back({.name = name, .family = *family, .parameters = *std::move(parameters)});
+    files.push_back({.name = name,
+                     .parameters = *parameters,
+                     .check = {.family = *family, .machine = parameters->Used()}});
     override_max = std::max(override_max, (*family)->info().override_max_percent);
   }
   machine::InputScript inputs;
@@ -214,16 +210,16 @@ int Check(const CheckOptions& options) {
     return {};
   };
   for (CheckedFile& file : files) {
-    if (!file.family->info().checked_by_running) continue;
+    if (!file.check.family->info().checked_by_running) continue;
     if (const Status translated = translate(file); !translated) return Refuse(translated.error());
-    if (file.check.translation.ok) to_run[file.family].push_back(&file);
+    if (file.check.translation.ok) to_run[file.check.family].push_back(&file);
   }
   for (auto& [family, ready] : to_run) {
     if (const Status ran = CheckMotions(ready, inputs, !options.errors_only); !ran)
       return Refuse(ran.error());
   }
   for (CheckedFile& file : files) {
-    if (!file.family->info().checked_by_running) {
+    if (!file.check.family->info().checked_by_running) {
       if (const Status translated = translate(file); !translated) return Refuse(translated.error());
     }
     exit_code = std::max(exit_code, Show(file, options));

@@ -108,8 +108,7 @@ int FixFile(const std::string& file, const std::string& text, const FixCheck& ch
       return kUsage;
     }
   }
-  const machine::Translation& left = fixing.left;
-  const Result<FixCheck::Left> judged = check.judge(left);
+  const Result<FixCheck::Left> judged = check.judge(fixing.left);
   if (!judged) return Refuse(judged.error());
   if (options.json) {
     v1::FixProgramResponse message;
@@ -123,8 +122,9 @@ int FixFile(const std::string& file, const std::string& text, const FixCheck& ch
     for (const Diagnostic& finding : fixing.fixed) {
       Print(Paint("fixed", Colour::kGreen, ColourOnOutput()) + "  " + FixedLine(finding));
     }
-    PrintFindings(left.diagnostics, left.diagnostics_dropped, fixing.text);
-    PrintFindings(judged->motion.findings, judged->motion.findings_dropped, fixing.text);
+    const simulation::CheckedProgram& left = judged->check;
+    PrintFindings(left.translation.diagnostics, left.translation.diagnostics_dropped, fixing.text);
+    PrintFindings(left.motion.findings, left.motion.findings_dropped, fixing.text);
     Print(Visible(file) + ": " + std::to_string(fixing.fixed.size()) + " fixed, " +
           VerdictText(judged->found.verdict()) + CountText(judged->found));
     for (const v1::VerdictReason& reason : judged->found.reasons()) {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/machine/family.h"
-#include "engine/simulation/run/motion_check.h"
+#include "engine/simulation/run/rehearsal.h"
 #include "rmlcell/v1/program.pb.h"
 
 namespace rmlcell::cli {
@@ -18,9 +18,9 @@ struct FixOptions {
 // How a check finds and judges a source, as the tools for texts need it.
 struct FixCheck {
   std::function<machine::Translation(const machine::SourceFile&)> translate;
-  // What is left: the motion of it, and the findings of both with their verdict.
+  // What is left, judged, and the same as a message.
   struct Left {
-    simulation::MotionCheck motion{};
+    simulation::CheckedProgram check{};
     v1::Findings found{};
   };
   std::function<Result<Left>(const machine::Translation&)> judge;

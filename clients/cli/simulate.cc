@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <ranges>
 #include <set>
 #include <tuple>
 
@@ -44,11 +45,8 @@ void DropFindings(const std::vector<Diagnostic>& told, v1::RunReport& report) {
 
 std::vector<std::string> SplitCommas(const std::string& text) {
   std::vector<std::string> parts;
-  std::string_view rest = text;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(','), rest.size());
-    if (end > 0) parts.emplace_back(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+  for (const auto part : std::views::split(text, ',')) {
+    if (!part.empty()) parts.emplace_back(part.begin(), part.end());
   }
   return parts;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <utility>
 
 #include "clients/cli/program_files.h"
@@ -45,11 +46,8 @@ Result<v1::OperatingMode> ParseMode(const std::string& text) {
 
 Result<v1::Budget> ParseBudget(std::string_view text) {
   v1::Budget budget;
-  std::string_view rest = text;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(','), rest.size());
-    const std::string_view part = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+  for (const auto letters : std::views::split(text, ',')) {
+    const std::string_view part(letters.begin(), letters.end());
     const std::size_t equals = part.find('=');
     const std::string_view name = part.substr(0, equals);
     const std::string_view value =

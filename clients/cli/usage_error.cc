@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <ranges>
 #include <string_view>
 #include <vector>
 
@@ -67,13 +68,11 @@ std::string NoneOf(const std::string& text) {
   const std::size_t list = text.find(" not in {");
   if (colon == std::string::npos || list == std::string::npos || text.back() != '}') return text;
   const std::string word = text.substr(colon + 2, list - colon - 2);
-  std::string known = text.substr(list + 9, text.size() - list - 10);
+  const std::string_view known(text.data() + list + 9, text.size() - list - 10);
   std::vector<std::string> words;
   std::string list_of_words;
-  while (!known.empty()) {
-    const std::size_t end = std::min(known.find(','), known.size());
-    words.push_back(known.substr(0, end));
-    known.erase(0, end + 1);
+  for (const auto letters : std::views::split(known, ',')) {
+    words.emplace_back(letters.begin(), letters.end());
     list_of_words += (list_of_words.empty() ? "" : ", ") + words.back();
   }
   return text.substr(0, colon + 2) + "'" + word + "' is none of " + list_of_words +

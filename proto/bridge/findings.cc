@@ -305,25 +305,19 @@ v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std
   return message;
 }
 
-v1::Findings FindingsOf(const machine::MachineFamily& family, const machine::Parameters& parameters,
-                        const machine::Translation& translation,
-                        const simulation::MotionCheck& motion, int slot) {
+v1::Findings FindingsOf(const simulation::CheckedProgram& check,
+                        const machine::Judgement& judgement) {
   v1::Findings message =
-      FindingsOf(translation.ok && !motion.has_errors(), translation.diagnostics,
-                 translation.diagnostics_dropped + motion.findings_dropped, translation.figures);
-  for (const Diagnostic& diagnostic : motion.findings)
+      FindingsOf(check.ok(), check.translation.diagnostics,
+                 check.translation.diagnostics_dropped + check.motion.findings_dropped,
+                 check.translation.figures);
+  for (const Diagnostic& diagnostic : check.motion.findings)
     *message.add_diagnostics() = ToProto(diagnostic);
-  const auto cut_short = motion.cut_short.find(slot);
-  if (cut_short != motion.cut_short.end()) message.set_motion_check(Utf8(cut_short->second));
-  const machine::Judgement judgement = simulation::JudgeCheck(family, translation, motion);
+  const auto cut_short = check.motion.cut_short.find(check.slot);
+  if (cut_short != check.motion.cut_short.end()) message.set_motion_check(Utf8(cut_short->second));
   SetJudgement(judgement, message);
-  for (v1::Diagnostic& diagnostic : *message.mutable_diagnostics()) {
-    const auto found = FindByText(diagnostic.code());
-    if (!found.empty())
-      diagnostic.set_verdict(ToProto(machine::JudgedBy(judgement, found.front()->code)));
-  }
-  message.set_family(std::string(family.info().id));
-  SetMachine(parameters.Used(), message);
+  message.set_family(std::string(check.family->info().id));
+  SetMachine(check.machine, message);
   return message;
 }
 

@@ -5,10 +5,12 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/machine/family.h"
-#include "engine/simulation/run/motion_check.h"
 
 namespace google::rpc {
 class Status;
+}
+namespace rmlcell::simulation {
+struct CheckedProgram;
 }
 namespace rmlcell::v1 {
 class Diagnostic;
@@ -52,9 +54,8 @@ v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std
                         const std::vector<machine::Figure>& figures);
 
 // The findings of a check: of the translation, then of the motion, with what is judged of them.
-v1::Findings FindingsOf(const machine::MachineFamily& family, const machine::Parameters& parameters,
-                        const machine::Translation& translation,
-                        const simulation::MotionCheck& motion, int slot);
+v1::Findings FindingsOf(const simulation::CheckedProgram& check,
+                        const machine::Judgement& judgement);
 
 // Back to engine values, for those that print findings which came over the wire. Unknown codes
 // become CellInternal with the code in the text: a newer server may know more.

@@ -12,6 +12,7 @@
 
 #include "engine/core/hex.h"
 #include "engine/core/letters.h"
+#include "engine/core/near_words.h"
 #include "engine/core/number_text.h"
 
 namespace rmlcell::server {
@@ -261,19 +262,11 @@ std::string VariableOf(std::string_view key) {
   return variable;
 }
 
-// The key whose name is nearest, for a hint; empty when none is near.
-std::string NearestKey(std::string_view name) {
-  std::string best;
-  std::size_t best_common = 3;
-  for (const ConfigKey& key : ConfigKeys()) {
-    const auto mismatch = std::ranges::mismatch(key.name, name);
-    const auto common = static_cast<std::size_t>(mismatch.in1 - key.name.begin());
-    if (common > best_common) {
-      best_common = common;
-      best = key.name;
-    }
-  }
-  return best;
+// The keys that may be meant.
+std::vector<std::string> NearKeys(std::string_view name) {
+  std::vector<std::string_view> keys;
+  for (const ConfigKey& key : ConfigKeys()) keys.push_back(key.name);
+  return NearestTo(name, keys).words;
 }
 
 Status ReadMachine(const toml::table& table, const std::string& file,
@@ -327,9 +320,7 @@ Status ApplyTable(const toml::table& parsed, const std::string& name, Config& co
       const std::string full = section_name + "." + std::string(key);
       const ConfigKey* found = FindKey(full);
       if (found == nullptr) {
-        const std::string near = NearestKey(full);
-        return Wrong(PlaceText(name, node) + "unknown key " + full +
-                     (near.empty() ? "" : "; did you mean " + near + "?"));
+        return Wrong(PlaceText(name, node) + "unknown key " + full + DidYouMean(NearKeys(full)));
       }
       const auto value = ValueText(node, found->kind);
       if (!value) return Wrong(PlaceText(name, node) + full + " " + value.error().detail);
@@ -428,8 +419,10 @@ std::vector<std::string> MistypedVariables(const std::map<std::string, std::stri
     std::string name = LowerCase(std::string_view(variable).substr(kVariablePrefix.size()));
     const std::size_t section = name.find('_');
     if (section != std::string::npos) name[section] = '.';
-    if (const std::string near = NearestKey(name); !near.empty() && near != name) {
-      found.push_back(variable + " is no key of the configuration; there is " + VariableOf(near));
+    if (FindKey(name) != nullptr) continue;
+    if (const std::vector<std::string> near = NearKeys(name); !near.empty()) {
+      found.push_back(variable + " is no key of the configuration; there is " +
+                      VariableOf(near.front()));
     }
   }
   return found;

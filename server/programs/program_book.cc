@@ -417,9 +417,9 @@ Status ProgramBook::AddMemory(const Subject& subject, simulation::ProgramMemory&
   return {};
 }
 
-Result<ProgramBook::Checked> ProgramBook::Check(const std::string& family_id,
-                                                const std::string& machine_name,
-                                                const v1::ProgramText& program, bool advice) {
+Result<simulation::CheckedProgram> ProgramBook::Check(const std::string& family_id,
+                                                      const std::string& machine_name,
+                                                      const v1::ProgramText& program, bool advice) {
   const Result<Subject> subject = FindSubject(family_id, machine_name, program);
   if (!subject) return subject.error();
   const machine::MachineFamily& family = *subject->family;
@@ -432,22 +432,17 @@ Result<ProgramBook::Checked> ProgramBook::Check(const std::string& family_id,
                              .file_name = program.file_name(),
                              .bytes = machine::Bytes::Borrowed(program.content()),
                              .is_source = program.form() != v1::PROGRAM_FORM_OBJECT});
-  Result<simulation::ProgramCheck> check =
+  Result<simulation::CheckedProgram> check =
       simulation::CheckProgram(memory, *subject->parameters, slot, advice, {});
-  if (!check) return check.error();
-  Checked checked{.family = &family,
-                  .parameters = *subject->parameters,
-                  .translation = std::move(check->translation),
-                  .motion = std::move(check->motion),
-                  .slot = slot};
-  for (Diagnostic& finding : checked.motion.findings) {
-    if (finding.program == checked.slot) finding.file = program.file_name();
+  if (!check) return check;
+  for (Diagnostic& finding : check->motion.findings) {
+    if (finding.program == slot) finding.file = program.file_name();
   }
   if (!advice) {
-    std::erase_if(checked.motion.findings,
+    std::erase_if(check->motion.findings,
                   [](const Diagnostic& finding) { return !IsError(finding.severity); });
   }
-  return checked;
+  return check;
 }
 
 }  // namespace rmlcell::server

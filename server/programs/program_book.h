@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/machine/family.h"
-#include "engine/simulation/run/motion_check.h"
+#include "engine/simulation/run/rehearsal.h"
 #include "proto/bridge/setup.h"
 #include "rmlcell/v1/program.pb.h"
 #include "server/programs/program_result.h"
@@ -57,16 +57,9 @@ class ProgramBook {
                                          const v1::ProgramText& program, bool advice);
 
   // The same, and follows the motion of what has no errors; on a machine in the state in which that
-  // is, with its programs. Findings of other programs, which the checked one calls, are among them.
-  struct Checked {
-    const machine::MachineFamily* family = nullptr;
-    machine::Parameters parameters;
-    machine::Translation translation;
-    simulation::MotionCheck motion;
-    int slot = 0;  // that the program has in the check
-  };
-  Result<Checked> Check(const std::string& family, const std::string& machine,
-                        const v1::ProgramText& program, bool advice);
+  // is, with its programs.
+  Result<simulation::CheckedProgram> Check(const std::string& family, const std::string& machine,
+                                           const v1::ProgramText& program, bool advice);
 
   // Of a whole program. Error: CellTooLarge, with the limit of the configuration.
   Status CheckSize(std::int64_t bytes) const;

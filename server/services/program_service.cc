@@ -218,12 +218,11 @@ grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerConte
   return Answer(
       needs_, context, *request, "ProgramService/CheckProgram",
       [this, request, response](const Caller&) {
-        const auto checked = programs_.Check(request->family(), request->machine(),
-                                             request->program(), !request->errors_only());
+        auto checked = programs_.Check(request->family(), request->machine(), request->program(),
+                                       !request->errors_only());
         if (!checked) return ToGrpcStatus(checked.error());
-        *response->mutable_findings() =
-            bridge::FindingsOf(*checked->family, checked->parameters, checked->translation,
-                               checked->motion, checked->slot);
+        const machine::Judgement judgement = simulation::JudgeCheck(*checked);
+        *response->mutable_findings() = bridge::FindingsOf(*checked, judgement);
         response->mutable_findings()->set_file(bridge::Utf8(request->program().file_name()));
         return grpc::Status::OK;
       });

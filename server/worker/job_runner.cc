@@ -131,13 +131,12 @@ class Attempt {
         machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
     if (!parameters) return Refuse(parameters.error());
     const int slot = assignment_.main_program();
-    Result<simulation::ProgramCheck> check = simulation::CheckProgram(
+    Result<simulation::CheckedProgram> check = simulation::CheckProgram(
         memory, *parameters, slot, true, bridge::InputsOf(assignment_.job().simulation()));
     if (!check) return Refuse(check.error());
     machine::Translation& translation = check->translation;
     for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = slot;
-    const machine::Judgement judgement =
-        simulation::JudgeCheck(*memory.family, translation, check->motion);
+    const machine::Judgement judgement = simulation::JudgeCheck(*check);
     simulation::PreparedRun found{
         .diagnostics = std::move(translation.diagnostics),
         .diagnostics_dropped = translation.diagnostics_dropped + check->motion.findings_dropped};

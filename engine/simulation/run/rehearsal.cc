@@ -121,9 +121,9 @@ machine::Translation TranslateProgram(const machine::MachineFamily& family,
                           parameters, told);
 }
 
-Result<ProgramCheck> CheckProgram(const ProgramMemory& memory,
-                                  const machine::Parameters& parameters, int slot, bool advice,
-                                  const machine::InputScript& inputs) {
+Result<CheckedProgram> CheckProgram(const ProgramMemory& memory,
+                                    const machine::Parameters& parameters, int slot, bool advice,
+                                    const machine::InputScript& inputs) {
   ProgramMemory ready = memory;
   const auto last =
       std::ranges::find(ready.programs.rbegin(), ready.programs.rend(), slot, &MemoryProgram::slot);
@@ -131,8 +131,11 @@ Result<ProgramCheck> CheckProgram(const ProgramMemory& memory,
     return Error{memory.family->info().empty_slot, "program " + std::to_string(slot), {}};
   }
   MemoryProgram& program = *last;
-  ProgramCheck check{.translation = TranslateProgram(*memory.family, parameters, program,
-                                                     {.advice = advice, .source = true})};
+  CheckedProgram check{.family = memory.family,
+                       .machine = parameters.Used(),
+                       .slot = slot,
+                       .translation = TranslateProgram(*memory.family, parameters, program,
+                                                       {.advice = advice, .source = true})};
   if (!check.translation.ok || !memory.family->info().checked_by_running) return check;
   program.translation = std::make_shared<const machine::Translation>(check.translation);
   program.executable = nullptr;  // of what it was before
@@ -154,11 +157,14 @@ Result<MotionCheck> CheckMotionOf(const ProgramMemory& memory,
   return CheckMotion(*memory.family, setup, slots);
 }
 
-machine::Judgement JudgeCheck(const machine::MachineFamily& family,
-                              const machine::Translation& translation, const MotionCheck& motion) {
-  if (!translation.ok) return JudgeFindings(translation.diagnostics);
-  machine::Judgement judgement = motion.has_errors() ? JudgeFindings(motion.findings)
-                                                     : JudgeFigures(family, translation.figures);
+namespace {
+
+machine::Judgement JudgementOf(const CheckedProgram& check) {
+  if (!check.translation.ok) return JudgeFindings(check.translation.diagnostics);
+  const MotionCheck& motion = check.motion;
+  machine::Judgement judgement = motion.has_errors()
+                                     ? JudgeFindings(motion.findings)
+                                     : JudgeFigures(*check.family, check.translation.figures);
   for (const machine::Reason& reason : motion.reasons) {
     // An error that is sure in one place, too, is told as that.
     if (std::ranges::find(judgement.reasons, reason.code, &machine::Reason::code) ==
@@ -171,6 +177,15 @@ machine::Judgement JudgeCheck(const machine::MachineFamily& family,
                    .verdict = machine::Verdict::kDoubtful,
                    .said = "motion checked " + why});
   }
+  return judgement;
+}
+
+}  // namespace
+
+machine::Judgement JudgeCheck(CheckedProgram& check) {
+  machine::Judgement judgement = JudgementOf(check);
+  MarkJudged(judgement, check.translation.diagnostics);
+  MarkJudged(judgement, check.motion.findings);
   return judgement;
 }
 

@@ -75,21 +75,23 @@ machine::Translation TranslateProgram(const machine::MachineFamily& family,
 
 // What CHECK finds in a program: in its text, and, where that is good and the family asks for it,
 // in its motion.
-struct ProgramCheck {
+struct CheckedProgram {
+  const machine::MachineFamily* family = nullptr;
+  machine::MachineUsed machine{};  // for which it was checked
+  int slot = 0;                    // in the program memory of the check
   machine::Translation translation{};
-  MotionCheck motion{};
+  MotionCheck motion{};  // with what it found in programs that this one calls
 
   bool ok() const { return translation.ok && !motion.has_errors(); }
 };
 
-// What a check says of the part that would come out.
-machine::Judgement JudgeCheck(const machine::MachineFamily& family,
-                              const machine::Translation& translation, const MotionCheck& motion);
+// What a check says of the part that would come out. The findings that make it so are marked.
+machine::Judgement JudgeCheck(CheckedProgram& check);
 
 // Errors: those of MachineFamily::NewRun; that of a slot without program.
-Result<ProgramCheck> CheckProgram(const ProgramMemory& memory,
-                                  const machine::Parameters& parameters, int slot, bool advice,
-                                  const machine::InputScript& inputs);
+Result<CheckedProgram> CheckProgram(const ProgramMemory& memory,
+                                    const machine::Parameters& parameters, int slot, bool advice,
+                                    const machine::InputScript& inputs);
 
 // The motion of these programs of the memory (motion_check.h). Sources among the others are
 // translated, those with errors left out, as if they were not there.

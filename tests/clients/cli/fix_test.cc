@@ -49,9 +49,10 @@ const machine::MachineFamily& Optimo() { return *families::FindFamily("optimo");
 FixCheck Check(const std::function<machine::Translation(const machine::SourceFile&)>& translate,
                const simulation::MotionCheck& motion = {}) {
   return {translate, [motion](const machine::Translation& left) -> Result<FixCheck::Left> {
-            return FixCheck::Left{
-                motion, bridge::FindingsOf(Optimo(), machine::Parameters(Optimo().parameters()),
-                                           left, motion, 1)};
+            simulation::CheckedProgram check{
+                .family = &Optimo(), .slot = 1, .translation = left, .motion = motion};
+            const machine::Judgement judgement = simulation::JudgeCheck(check);
+            return FixCheck::Left{check, bridge::FindingsOf(check, judgement)};
           }};
 }
 
@@ -104,7 +105,7 @@ TEST_F(FixFileTest, IsJudgedAsACheckIs) {
   };
   const Told told = fix({});
   EXPECT_EQ(told.exit_code, 0);
-  EXPECT_THAT(told.output, HasSubstr("1: warning OPT-E7301: X goes too far\n"));
+  EXPECT_THAT(told.output, HasSubstr("1: DOUBTFUL OPT-E7301: X goes too far\n"));
   EXPECT_THAT(told.output,
               HasSubstr("b.S: 1 fixed, DOUBTFUL, 1 finding\n  X goes too far (OPT-E7301)"));
   EXPECT_EQ(fix({.strict = true}).exit_code, 1);

@@ -39,8 +39,11 @@ const std::string kPart =
 
 // CHECK of one program in slot 45, as people read it.
 std::string VerdictOfCheck(const std::string& text, const machine::InputScript& inputs = {}) {
-  return TextOf(JudgeCheck(*families::FindFamily("optimo"), {.ok = true},
-                           Checked({{45, text}}, {45}, inputs)));
+  CheckedProgram check{.family = families::FindFamily("optimo"),
+                       .slot = 45,
+                       .translation = {.ok = true},
+                       .motion = Checked({{45, text}}, {45}, inputs)};
+  return TextOf(JudgeCheck(check));
 }
 
 // OPT-E.7301: code, program, step, line and the time at which a run would do it.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/families/families.h"
+#include "engine/simulation/run/rehearsal.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "rmlcell/v1/common.pb.h"
@@ -159,18 +160,21 @@ TEST(ExplanationMessage, SaysAllOfARow) {
 }
 
 TEST(FindingsMessage, OfATranslationAndItsMotion) {
-  machine::Translation translation;
-  translation.ok = true;
-  translation.diagnostics = {Whole()};
-  translation.diagnostics_dropped = 3;
-  translation.figures = {{.name = "steps", .unit = "", .value = 7.0}};
   const machine::MachineFamily& family = *families::FindFamily("optimo");
   auto parameters = *machine::MakeParameters(family, "", {{"LASER", "EFA51"}});
   parameters.SetChangedBy("mine.toml");
-  simulation::MotionCheck motion;
-  motion.findings_dropped = 4;
-  motion.cut_short = {{45, "only up to step 2"}};
-  const v1::Findings good = FindingsOf(family, parameters, translation, motion, 45);
+  simulation::CheckedProgram check{
+      .family = &family, .machine = parameters.Used(), .slot = 45, .translation = {.ok = true}};
+  check.translation.diagnostics = {Whole()};
+  check.translation.diagnostics_dropped = 3;
+  check.translation.figures = {{.name = "steps", .unit = "", .value = 7.0}};
+  check.motion.findings_dropped = 4;
+  check.motion.cut_short = {{45, "only up to step 2"}};
+  const auto found = [&] {
+    const machine::Judgement judgement = simulation::JudgeCheck(check);
+    return FindingsOf(check, judgement);
+  };
+  const v1::Findings good = found();
   EXPECT_TRUE(good.ok());
   EXPECT_EQ(good.diagnostics_size(), 1);
   EXPECT_EQ(good.diagnostics_dropped(), 7);
@@ -182,9 +186,11 @@ TEST(FindingsMessage, OfATranslationAndItsMotion) {
   ASSERT_EQ(good.figures_size(), 1);
   EXPECT_EQ(good.figures(0).name(), "steps");
   EXPECT_EQ(good.figures(0).value(), 7.0);
-  EXPECT_EQ(FindingsOf(family, parameters, translation, motion, 44).motion_check(), "");
-  motion.findings = {{.code = ErrorCode::kTargetOutOfTravel, .severity = Severity::kProgram}};
-  const v1::Findings bad = FindingsOf(family, parameters, translation, motion, 45);
+  check.slot = 44;
+  EXPECT_EQ(found().motion_check(), "");
+  check.slot = 45;
+  check.motion.findings = {{.code = ErrorCode::kTargetOutOfTravel, .severity = Severity::kProgram}};
+  const v1::Findings bad = found();
   EXPECT_FALSE(bad.ok());
   ASSERT_EQ(bad.diagnostics_size(), 2);
   EXPECT_EQ(bad.diagnostics(1).code(), CodeText(ErrorCode::kTargetOutOfTravel));
@@ -203,8 +209,9 @@ TEST(FindingsMessage, OfATranslationAndItsMotion) {
   EXPECT_EQ(bad.verdict(), v1::VERDICT_BAD);
   ASSERT_EQ(bad.reasons_size(), 1);
   EXPECT_EQ(bad.reasons(0).code(), CodeText(ErrorCode::kTargetOutOfTravel));
-  translation.ok = false;
-  EXPECT_FALSE(FindingsOf(family, parameters, translation, {}, 45).ok());
+  check.translation.ok = false;
+  check.motion = {};
+  EXPECT_FALSE(found().ok());
 }
 
 // The codes of gRPC, as docs/api.md tells what to do on each.

@@ -197,18 +197,18 @@ TEST(CheckProgram, RunsTheOthersOfTheMemoryThatAreGood) {
                                                Source(14, "MOVE (99999.,0.,0.,0.,0.)\n")}),
                                      parameters, 12, true, {});
   };
-  const simulation::ProgramCheck called = check("CALL 14\n");
+  const simulation::CheckedProgram called = check("CALL 14\n");
   EXPECT_TRUE(called.translation.ok);
   ASSERT_EQ(called.motion.findings.size(), 1U);
   EXPECT_EQ(called.motion.findings[0].code, ErrorCode::kTargetOutOfTravel);
   EXPECT_EQ(called.motion.findings[0].program, 14);
   EXPECT_FALSE(called.ok());
   EXPECT_TRUE(called.motion.cut_short.empty());
-  const simulation::ProgramCheck missing = check("CALL 13\n");
+  const simulation::CheckedProgram missing = check("CALL 13\n");
   EXPECT_TRUE(missing.motion.findings.empty());
   EXPECT_THAT(missing.motion.cut_short.at(12), HasSubstr("OPT-E7102"));
   // Its text alone, when that is bad; and what stands later takes the place of what stood there.
-  const simulation::ProgramCheck bad = check("CALL\n");
+  const simulation::CheckedProgram bad = check("CALL\n");
   EXPECT_FALSE(bad.ok());
   EXPECT_TRUE(bad.motion.cut_short.empty());
   const auto last = simulation::CheckProgram(
