@@ -1,11 +1,29 @@
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "clients/cli/findings_text.h"
 #include "clients/cli/local.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/catalogue.h"
+#include "engine/core/near_words.h"
 #include "proto/bridge/findings.h"
 
 namespace rmlcell::cli {
+namespace {
+
+// Codes and names of errors that may be meant.
+std::vector<std::string> NearCodes(const std::string& word) {
+  std::vector<std::string> known;
+  for (const CatalogueEntry& entry : Catalogue()) {
+    known.push_back(CodeText(entry.code));
+    known.push_back(ConstantName(entry.code));
+  }
+  return NearestTo(word, std::vector<std::string_view>(known.begin(), known.end())).words;
+}
+
+}  // namespace
 
 int Explain(const std::vector<std::string>& codes, bool json) {
   int exit_code = kGood;
@@ -16,7 +34,8 @@ int Explain(const std::vector<std::string>& codes, bool json) {
   for (const std::string& code : codes) {
     const auto found = FindByText(code);
     if (found.empty()) {
-      Complain("no error '" + code + "'; rmlcell explain without a code lists them all");
+      Complain("no error '" + Visible(code) + "'" + DidYouMean(NearCodes(code)) +
+               "; rmlcell explain without a code lists them all");
       exit_code = kUsage;
     }
     entries.insert(entries.end(), found.begin(), found.end());

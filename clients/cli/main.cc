@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "clients/cli/local.h"
+#include "clients/cli/place_option.h"
 #include "clients/cli/remote.h"
 #include "clients/cli/terminal.h"
 #include "clients/cli/usage_error.h"
@@ -63,9 +64,8 @@ void AddMachineOptions(CLI::App* verb, MachineChoice& machine) {
   verb->add_option("--profile", machine.profile,
                    "profile of a machine model, such as srm-20 or pw-1993");
   verb->add_option("--machine", machine.file, "machine file (TOML): family, profile, [parameters]");
-  verb->add_option("--origin", machine.origin,
-                   "X,Y[,Z]: where the work origin of a mill lies on the machine, mm")
-      ->delimiter(',');
+  AddPlace(*verb, "--origin", "X,Y[,Z]: where the work origin of a mill lies on the machine, mm", 2,
+           3, machine.origin);
   verb->add_option("--clamps", machine.clamps_mm,
                    "how high the clamps of a mill stand above the surface of the work, mm");
 }

@@ -67,6 +67,7 @@ void AddJobMillingOptions(CLI::App& verb, JobMillingOptions& options) {
               "--products", options.products,
               "of relief,height-map,stl,target: what of the block the job leaves; default relief")
           ->delimiter(',')
+          ->allow_extra_args(false)
           ->check(CLI::IsMember({"relief", "height-map", "stl", "target"}))
           ->needs(block.stock);
   AddStlTolerance(verb, options.stl_tolerance_mm)->needs(products);

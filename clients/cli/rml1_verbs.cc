@@ -5,33 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "clients/cli/place_option.h"
 #include "clients/cli/rml1_tools.h"
 #include "clients/cli/verbs.h"
-#include "engine/core/number_text.h"
 
 namespace rmlcell::cli {
 namespace {
-
-// "X,Y" or "X,Y,Z" in one word: a list of the library would take the file behind it, too. `into`
-// must outlive the verb.
-CLI::Option* AddPlace(CLI::App& verb, const char* name, const char* text, std::size_t axes_min,
-                      std::size_t axes_max, std::vector<double>& into) {
-  const auto take = [name, axes_min, axes_max, &into](const std::string& given) {
-    into.clear();
-    for (std::size_t at = 0; at <= given.size(); ++at) {
-      const std::size_t end = std::min(given.find(',', at), given.size());
-      const std::optional<double> number = ParseDouble(given.substr(at, end - at));
-      if (!number) throw CLI::ValidationError(name, "'" + given + "' is no list of numbers");
-      into.push_back(*number);
-      at = end;
-    }
-    if (into.size() < axes_min || into.size() > axes_max) {
-      throw CLI::ValidationError(
-          name, axes_min == axes_max ? "give X,Y in mm" : "give X,Y or X,Y,Z in mm");
-    }
-  };
-  return verb.add_option_function<std::string>(name, take, text);
-}
 
 // A verb that reads a file for one machine.
 CLI::App* MillVerb(CLI::App& group, const char* name, const char* text, const std::string& examples,

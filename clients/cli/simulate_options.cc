@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "clients/cli/program_files.h"
+#include "engine/core/near_words.h"
 #include "engine/core/number_text.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/setup.h"
@@ -32,14 +33,19 @@ Result<v1::StepPlace> ParseStepPlace(const std::string& text) {
 }
 
 Result<v1::OperatingMode> ParseMode(const std::string& text) {
-  const std::map<std::string, v1::OperatingMode> modes = {{"cycle", v1::OPERATING_MODE_CYCLE},
-                                                          {"remote", v1::OPERATING_MODE_REMOTE},
-                                                          {"single", v1::OPERATING_MODE_SINGLE},
-                                                          {"repeat", v1::OPERATING_MODE_REPEAT}};
+  const std::map<std::string_view, v1::OperatingMode> modes = {
+      {"cycle", v1::OPERATING_MODE_CYCLE},
+      {"remote", v1::OPERATING_MODE_REMOTE},
+      {"single", v1::OPERATING_MODE_SINGLE},
+      {"repeat", v1::OPERATING_MODE_REPEAT}};
   const auto found = modes.find(text);
   if (found != modes.end()) return found->second;
-  return Error{
-      ErrorCode::kCellUsage, "'" + text + "': modes are cycle, remote, single, repeat", {}};
+  const auto names = std::views::keys(modes);
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  return Error{ErrorCode::kCellUsage,
+               "'" + text + "': modes are cycle, remote, single, repeat" +
+                   DidYouMean(NearestTo(text, known).words),
+               {}};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "clients/cli/place_option.h"
 #include "clients/cli/text_tools.h"
 #include "clients/cli/verbs.h"
 #include "clients/lsp/stdio.h"
@@ -131,11 +132,10 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
                  "  rmlcell transform part.S --turn 1.570796,0,0 -o turned.S\n"
                  "  rmlcell transform part.S --shift 1,0,0,0,0,0     adds to VR[86] to VR[91]",
                  options, "file of the result; default: standard output");
-    verb->add_option("--move", options->move, "X,Y,Z in mm")->delimiter(',')->expected(3);
-    verb->add_option("--turn", options->turn, "about Z,Y,X in rad")->delimiter(',')->expected(3);
-    verb->add_option("--shift", options->shift, "X,Y,Z,rz,ry,rx: add to VR[86] to VR[91] instead")
-        ->delimiter(',')
-        ->expected(6);
+    AddPlace(*verb, "--move", "X,Y,Z in mm", 3, 3, options->move);
+    AddPlace(*verb, "--turn", "angles about Z,Y,X in rad", 3, 3, options->turn);
+    AddPlace(*verb, "--shift", "X,Y,Z,rz,ry,rx: add to VR[86] to VR[91] instead", 6, 6,
+             options->shift);
     verb->callback([options, &exit_code] { exit_code = Transform(*options); });
   }
   {
