@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -301,12 +300,6 @@ int Rewrite(const ToolOptions& options,
 }  // namespace
 
 int Transform(const TransformOptions& options) {
-  for (const auto& [name, values] : {std::pair("--move", &options.move),
-                                     {"--turn", &options.turn},
-                                     {"--shift", &options.shift}}) {
-    if (std::ranges::all_of(*values, [](double value) { return std::isfinite(value); })) continue;
-    return Refuse({ErrorCode::kCellUsage, std::string(name) + ": give finite numbers", {}});
-  }
   if (!options.shift.empty() && !(options.move.empty() && options.turn.empty())) {
     return Refuse(
         {ErrorCode::kCellUsage,

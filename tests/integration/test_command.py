@@ -350,7 +350,7 @@ class Refusals(unittest.TestCase):
                       ("transform @a.S --shift 1,0,0,0,0,0 --turn 1,0,0", "CELL-E9026", "give one or the other"),
                       ("transform @a.SI --move 1,0,0", "OPT-E7030", "@a.SI")])
         for name in ("move", "turn"):
-            self.refused([(f"transform @a.S --{name} {values}", "CELL-E9026", f"--{name}: give finite numbers")
+            self.refused([(f"transform @a.S --{name} {values}", f"--{name}", f"'{values}' is no list of numbers")
                           for values in ("inf,0,0", "0,0,nan")])
 
 
