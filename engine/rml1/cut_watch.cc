@@ -15,6 +15,11 @@ constexpr double kFastShare = 0.8;
 // A rapid is several times as fast as a cut; feeds of one part for corners and finishing are not.
 constexpr double kSlowShare = 0.5;
 
+// Programs slow down 0.5 to 2 mm before they reach the material: less than this is no such
+// approach.
+constexpr double kApproach_mm = 0.2;
+constexpr double kSummed_mm = 1e-6;  // rounding of lengths that are added up
+
 constexpr double kSameHeight = 0.5 * Registers::kSameHeight;
 
 // The share of a line that is not above a height.
@@ -44,17 +49,20 @@ bool DropsSteeply(const CutWatch::Ride& ride) {
 
 bool RisesSteeply(const CutWatch::Ride& ride) { return ride.to.z - ride.from.z > Across(ride); }
 
+double Below_mm(const CutWatch::Ride& ride, double height) {
+  return ShareNotAbove(ride.from, ride.to, height - 2.0 * kSameHeight) * ride.length_mm;
+}
+
 // Along the surface nothing is cut: pens and drag knives go there with the spindle off.
 double BelowSurface_mm(const CutWatch::Ride& ride, const Registers& registers) {
-  const double below = registers.surface_z - 2.0 * kSameHeight;
-  return ShareNotAbove(ride.from, ride.to, below) * ride.length_mm;
+  return Below_mm(ride, registers.surface_z);
 }
 
 }  // namespace
 
 void CutWatch::OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command) {
   const bool down = DropsSteeply(ride);
-  if (fast_so_far_.mm > 0.0 && !down) EndFastPlunge(ride);
+  if (!down && (fast_so_far_.mm > 0.0 || slow_mm_ > 0.0)) EndWayDown(ride);
   OnVisit(ride, registers, command);
   OnPlace(ride, registers, command);
   if (ride.in_work) {
@@ -63,6 +71,7 @@ void CutWatch::OnRide(const Ride& ride, const Registers& registers, const Comman
     if (down) OnWayDown(ride, registers, command);
     OnCut(ride, registers, command);
     cutting_ = !down || cutting_;
+    deepest_ = std::min({deepest_, ride.from.z, ride.to.z});
     return;
   }
   cutting_ = false;
@@ -74,6 +83,9 @@ void CutWatch::OnRide(const Ride& ride, const Registers& registers, const Comman
 void CutWatch::OnCut(const Ride& ride, const Registers& registers, const CommandPlace& command) {
   has_cut_ = true;
   from_work_ = {};
+  if (ride.spindle_turns && !ride.plunge &&
+      !registers.IsBelowSurface(std::min(ride.from.z, ride.to.z)))
+    Add(skims_, ride.length_mm, command);
   const bool given = ride.by_xy_speed ? registers.xy_speed_given : registers.z_speed_given;
   const SpeedLimit& limit = ride.by_xy_speed ? registers.xy_limit : registers.z_limit;
   const bool limited = limit.off() > kAsAsked || registers.rpm_limit.off() > kAsAsked;
@@ -93,26 +105,35 @@ void CutWatch::OnWayDown(const Ride& ride, const Registers& registers,
   const double mm = BelowSurface_mm(ride, registers);
   if (Fast(ride) && !cutting_) {
     Add(fast_so_far_, mm, command);
+    Add(uncleared_, Below_mm(ride, std::min(registers.surface_z, deepest_)), command);
     fast_mm_s_ = ride.speed_mm_s;
   } else if (mm > 0.0) {
     fast_so_far_ = {};
+    slow_mm_ += ride.length_mm;
+    if (slow_mm_ < kApproach_mm - kSummed_mm) return;
+    Join(taken_for_cleared_, uncleared_);
+    uncleared_ = {};
   }
 }
 
 // `next` is a cut, or leads up and away.
-void CutWatch::EndFastPlunge(const Ride& next) {
-  if (!next.in_work) {
+void CutWatch::EndWayDown(const Ride& next) {
+  if (slow_mm_ > 0.0) {
+    Join(fast_plunge_, uncleared_);  // what is left: the approach was too short
+  } else if (!next.in_work) {
     Add(fast_hole_, fast_so_far_.mm, fast_so_far_.first);
   } else if (next.speed_mm_s < fast_mm_s_) {
     Add(fast_plunge_, fast_so_far_.mm, fast_so_far_.first);
   }
   fast_so_far_ = {};
+  uncleared_ = {};
+  slow_mm_ = 0.0;
 }
 
 CutWatch::Way CutWatch::fast_plunge() const {
-  if (cut_mm_s_ >= fast_mm_s_) return fast_plunge_;
   Way way = fast_plunge_;
-  Join(way, fast_hole_);
+  if (slow_mm_ > 0.0) Join(way, uncleared_);
+  if (cut_mm_s_ < fast_mm_s_) Join(way, fast_hole_);
   return way;
 }
 

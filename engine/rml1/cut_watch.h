@@ -47,10 +47,13 @@ class CutWatch {
   const Way& rotation_not_given() const { return rotation_not_given_; }
   // Down below the surface, straight or steeply, nearly as fast as Z travels, to where the tool
   // cuts slower than that, or turns back in a program that cuts slower everywhere: on a machine
-  // with a slow Z that is the speed of every plunge. A fast way that a slower one goes on from ends
-  // above the material: CAM tools go down like that where a pass before has cleared the way. A step
-  // down on the way of a cut is part of the cut.
+  // with a slow Z that is the speed of every plunge. CAM tools go down fast where
+  // a pass before has cleared the way, and slow down before they reach the material: such a way is
+  // no plunge. A step down on the way of a cut is part of the cut.
   Way fast_plunge() const;
+  // Of such a way what lies deeper than all that this program cut before: it takes for granted that
+  // another one has cleared it.
+  const Way& taken_for_cleared() const { return taken_for_cleared_; }
   // Across below the surface by V, nearly as fast as Z travels, between cuts at half of that or
   // less, or in a visit to the work that goes down as fast while such cuts are elsewhere. A
   // way that leads down slowly is no slow cut: ramps are slow before a fast pass.
@@ -58,6 +61,8 @@ class CutWatch {
   // More than 1 % beside what the program asked for. A plunge that is slower harms nothing.
   const LimitedWay& feed_limited() const { return feed_limited_; }  // mm/s
   const LimitedWay& rpm_limited() const { return rpm_limited_; }
+  // With the tool down (Z1) and the spindle on along the surface, where nothing is cut.
+  const Way& skims() const { return skims_; }
   // Across, lower than the clamps, on the way to the first cut and from the last one on.
   Way below_clamps() const;
 
@@ -82,7 +87,7 @@ class CutWatch {
   void OnWayDown(const Ride& ride, const Registers& registers, const CommandPlace& command);
   void OnCrossing(const Ride& ride, double mm, const CommandPlace& command);
   void EndVisit();
-  void EndFastPlunge(const Ride& next);
+  void EndWayDown(const Ride& next);
   void OnCut(const Ride& ride, const Registers& registers, const CommandPlace& command);
   void OnTravel(const Ride& ride, const Registers& registers, const CommandPlace& command);
   void OnPlace(const Ride& ride, const Registers& registers, const CommandPlace& command);
@@ -107,6 +112,11 @@ class CutWatch {
   Way fast_visits_;                  // of those that may be as fast as they should
   double fast_visits_mm_s_ = kNone;  // the least of these
   double slowest_mm_s_ = kNone;
+  Way uncleared_;         // of a fast way down, so far: deeper than what was cut before
+  double slow_mm_ = 0.0;  // of the way down since then
+  Way taken_for_cleared_;
+  double deepest_ = kNone;  // that the tool has cut, device units
+  Way skims_;
   LimitedWay feed_limited_;
   LimitedWay rpm_limited_;
   bool has_cut_ = false;

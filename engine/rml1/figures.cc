@@ -58,13 +58,18 @@ double DepthNow(const Source& s) {
 }
 
 Value IfFits(const WorkFit::Axis& axis, double value) {
-  return axis.known && axis.over == 0.0 ? Value(value) : std::nullopt;
+  return axis.fits() ? Value(value) : std::nullopt;
 }
 
 // Where !ZO says where Z0 is, it helps little that somebody sets it.
 bool Z0Stays(const Source& s) { return s.device.raised().by + s.device.lowered().by == 0.0; }
 
 Value IfAbove0(double value) { return value > 0.0 ? Value(value) : std::nullopt; }
+
+// Where nothing is lost the origin as it is will do, wherever that is.
+Value IfLost(const Source& s, double value) {
+  return s.device.carriage().lost().length > 0.0 ? IfAbove0(value) : std::nullopt;
+}
 
 // Of the work as it would be with the other step.
 Value Otherwise(const Source& s, const WorkFit::Axis& axis) {
@@ -118,8 +123,12 @@ constexpr std::array kRows = {
     Row{{"origin.xmax", "mm", "greatest such X", "origin X", "to # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.x, s.fit.x.high); }},
     Row{{"origin.ymin", "mm", "least Y of the work origin on the machine so that the work fits its travel", "origin Y", "may be from # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.y, s.fit.y.low); }},
     Row{{"origin.ymax", "mm", "greatest such Y", "origin Y", "to # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.y, s.fit.y.high); }},
-    Row{{"origin.zmin", "mm", "least Z of the work origin on the machine (Z0) so that the work fits its travel", "origin Z", "may be from # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Z0Stays(s) ? IfFits(s.fit.z, s.fit.z.low) : std::nullopt; }},
+    Row{{"origin.zmin", "mm", "least Z of the work origin on the machine (Z0) so that the work fits its travel, and the lowest lift too", "origin Z", "may be from # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Z0Stays(s) ? IfFits(s.fit.z, s.fit.z.low) : std::nullopt; }},
     Row{{"origin.zmax", "mm", "greatest such Z", "origin Z", "to # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Z0Stays(s) ? IfFits(s.fit.z, s.fit.z.high) : std::nullopt; }},
+    Row{{"move_x_less", "mm", "where no work origin in the travel makes it fit: how far the program has to move to less X", "origin X", "none fits; the program has to move # mm to less X", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfLost(s, -s.fit.x.move); }},
+    Row{{"move_x_more", "mm", "how far to greater X", "origin X", "none fits; the program has to move # mm to greater X", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfLost(s, s.fit.x.move); }},
+    Row{{"move_y_less", "mm", "how far to less Y", "origin Y", "none fits; the program has to move # mm to less Y", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfLost(s, -s.fit.y.move); }},
+    Row{{"move_y_more", "mm", "how far to greater Y", "origin Y", "none fits; the program has to move # mm to greater Y", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfLost(s, s.fit.y.move); }},
     Row{{"oversize_x", "mm", "by how much the work is larger than the travel of X"}, [](const Source& s) -> Value { return s.fit.x.over; }},
     Row{{"oversize_y", "mm", "by how much it is larger than the travel of Y"}, [](const Source& s) -> Value { return s.fit.y.over; }},
     Row{{"oversize_z", "mm", "by how much it is deeper than the travel of Z"}, [](const Source& s) -> Value { return s.fit.z.over; }},
@@ -134,10 +143,10 @@ constexpr std::array kRows = {
     Row{{"clipped_length", "mm", "programmed way beyond the cutting range", "clipped", "# mm beyond the cutting range", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return s.device.carriage().clipped_length() * s.mm; }},
     Row{{"clipped_sets", "", "coordinate sets that led beyond it"}, [](const Source& s) -> Value { return Count(s.device.carriage().clipped_sets()); }},
     Row{{"clipped_cut_length", "mm", "the part of that which would have been in the work"}, [](const Source& s) -> Value { return s.device.carriage().lost().length * s.mm; }, [](const Source& s) { return s.device.first_lost(); }},
-    Row{{"clipped_x_low", "mm", "how far the work leads beyond the least X of the travel; of work that fits, as the next four"}, [](const Source& s) -> Value { return s.fit.x.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().x_low * s.mm); }},
-    Row{{"clipped_x_high", "mm", "how far it leads beyond the greatest X"}, [](const Source& s) -> Value { return s.fit.x.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().x_high * s.mm); }},
-    Row{{"clipped_y_low", "mm", "how far it leads beyond the least Y"}, [](const Source& s) -> Value { return s.fit.y.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().y_low * s.mm); }},
-    Row{{"clipped_y_high", "mm", "how far it leads beyond the greatest Y"}, [](const Source& s) -> Value { return s.fit.y.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().y_high * s.mm); }},
+    Row{{"clipped_x_low", "mm", "how far the work leads beyond the least X of the travel; of work that fits from another origin, as the next four"}, [](const Source& s) -> Value { return s.fit.x.fits() ? Value(s.device.carriage().lost().x_low * s.mm) : std::nullopt; }},
+    Row{{"clipped_x_high", "mm", "how far it leads beyond the greatest X"}, [](const Source& s) -> Value { return s.fit.x.fits() ? Value(s.device.carriage().lost().x_high * s.mm) : std::nullopt; }},
+    Row{{"clipped_y_low", "mm", "how far it leads beyond the least Y"}, [](const Source& s) -> Value { return s.fit.y.fits() ? Value(s.device.carriage().lost().y_low * s.mm) : std::nullopt; }},
+    Row{{"clipped_y_high", "mm", "how far it leads beyond the greatest Y"}, [](const Source& s) -> Value { return s.fit.y.fits() ? Value(s.device.carriage().lost().y_high * s.mm) : std::nullopt; }},
     Row{{"clipped_z_low", "mm", "how far it leads below the travel"}, [](const Source& s) -> Value { return s.fit.z.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().z_low * s.mm); }},
     Row{{"positions_refused", "", "coordinates and tool heights that were refused: the tool does not go where the program says"}, [](const Source& s) -> Value { return Count(s.device.positions_refused()); }, [](const Source& s) { return s.device.first_refused(); }},
     Row{{"foreign_share", "%", "bytes that belong to no command; of 256 at least where no more than a word or a quarter is foreign"}, [](const Source& s) -> Value { return s.device.foreign_percent(); }},
@@ -148,6 +157,7 @@ constexpr std::array kRows = {
     Row{{"assumed_absolute", "", "first command with coordinates, before one says whether they are absolute; 0: none", "assumed", "coordinates are absolute (command #)", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.device.assumed().mode.number); }},
     Row{{"assumed_heights", "", "first command that goes to Z1 or Z2 before one sets them; 0: none", "assumed", "Z1 and Z2 of the machine (command #)", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.device.assumed().heights.number); }},
     Row{{"assumed_rotation", "", "first command in the work before one says whether the spindle may turn; 0: none", "assumed", "the spindle may turn (command #)", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.watch.rotation_not_given().first.number); }},
+    Row{{"assumed_cleared", "", "first command that goes down below the surface, and deeper than the program has cut before, nearly as fast as Z travels and slows down before it cuts; 0: none", "assumed", "an earlier cut has cleared the way down (command #)", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.watch.taken_for_cleared().first.number); }},
     Row{{"z0_raised", "mm", "how far !ZO takes Z0 above where it was before the program: there is the surface of the work", "Z0", "raised by # mm by !ZO", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return s.device.raised().by * s.mm; }, [](const Source& s) { return s.device.raised().at; }},
     Row{{"z0_lowered", "mm", "how far !ZO takes it below that", "Z0", "lowered by # mm by !ZO", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return s.device.lowered().by * s.mm; }, [](const Source& s) { return s.device.lowered().at; }},
     Row{{"fast_plunge_length", "mm", "way straight or steeply down below the surface, at 80 % of the speed at which Z travels or more, to where the tool cuts or turns back"}, [](const Source& s) -> Value { return s.watch.fast_plunge().mm; }, [](const Source& s) { return s.watch.fast_plunge().first; }},
@@ -162,6 +172,7 @@ constexpr std::array kRows = {
     Row{{"depth_at_end", "mm", "how far below the surface the tool stands at the end"}, [](const Source& s) -> Value { return s.ended ? Value(DepthNow(s)) : std::nullopt; }},
     Row{{"spindle_on_at_end", "", "1 when the spindle turns at the end"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.spindle_turns() ? 1.0 : 0.0) : std::nullopt; }},
     Row{{"incomplete_at_end", "", "1 when the data ends inside a command, which is not carried out"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.pending() ? 1.0 : 0.0) : std::nullopt; }},
+    Row{{"skimmed_length", "mm", "way with the tool down and the spindle on along the surface, where nothing is cut, of a program that cuts elsewhere"}, [](const Source& s) -> Value { return s.tool.cut_mm > 0.0 ? s.watch.skims().mm : 0.0; }, [](const Source& s) { return s.watch.skims().first; }},
     Row{{"nothing_cut", "", "1 when the tool never was below the surface; with the spindle off and strokes along the surface it is a pen, and this 0"}, [](const Source& s) -> Value { return s.ended ? Value(s.tool.cut_mm + s.tool.drawn_mm > 0.0 ? 0.0 : 1.0) : std::nullopt; }},
     Row{{"speed_clamps", "", "speed words beyond the machine", "speeds", "# limited to those of the machine", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.device.speeds_limited()); }},
     Row{{"error_register", "", "command error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.command_errors().value()); }},
@@ -243,8 +254,8 @@ std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& phy
   const Profile& profile = physical.profile();
   const Point origin{profile.origin_x, profile.origin_y, device.registers().surface_z, 0.0};
   const CuttingRange& travel = device.carriage().range();
-  const WorkFit fit =
-      FitOf(physical.totals().work, device.carriage().lost(), origin, travel, profile.units_per_mm);
+  const WorkFit fit = FitOf(physical.totals().work, device.carriage().lost(), origin, travel,
+                            device.programmed().lowest_lift(), profile.units_per_mm);
   const Source source{
       .device = device,
       .tool = physical.totals(),

@@ -1,5 +1,6 @@
 #include "engine/rml1/programmed.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -103,6 +104,8 @@ void Programmed::AddHeight(double z) {
 void Programmed::GoTo(double x, double y, double z, bool two_axis_cut) {
   const double length = motion::ProgramVector(x - now_.x, y - now_.y, z - now_.z).norm();
   const bool below = now_.z < 0.0 || z < 0.0;
+  if (now_.z > 0.0 && z > 0.0 && (x != now_.x || y != now_.y))
+    now_.lowest_lift = std::min({now_.lowest_lift, now_.z, z});
   (below || two_axis_cut ? now_.cut_length : now_.travel_length) += length;
   now_.x = x;
   now_.y = y;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "engine/rml1/command_table.h"
 #include "engine/rml1/extent.h"
@@ -63,10 +64,14 @@ class Programmed {
   const Extent& z() const { return now_.z_extent; }
   // Units that every height is a multiple of; 0: none but 0 was named.
   std::uint32_t z_grain() const { return now_.z_grain; }
+  // The lowest way across above Z 0; 0: there is none.
+  double lowest_lift() const { return now_.lowest_lift < kNone ? now_.lowest_lift : 0.0; }
   double cut_length() const { return now_.cut_length; }
   double travel_length() const { return now_.travel_length; }
 
  private:
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
   struct State {
     double x = 0.0;
     double y = 0.0;
@@ -81,6 +86,7 @@ class Programmed {
     Extent y_extent;
     Extent z_extent;
     std::uint32_t z_grain = 0;
+    double lowest_lift = kNone;
     std::array<std::uint64_t, kOpCount> counts{};
   };
 

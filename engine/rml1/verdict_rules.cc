@@ -41,6 +41,14 @@ constexpr std::array kRules = {
                 "the work leads # mm beyond the least Y: move the origin to greater Y"},
     VerdictRule{ErrorCode::kRml1Clipped, "clipped_y_high", kRounding_mm, Verdict::kBad,
                 "the work leads # mm beyond the greatest Y: move the origin to less Y"},
+    VerdictRule{ErrorCode::kRml1Clipped, "move_x_less", kRounding_mm, Verdict::kBad,
+                "no work origin in the travel fits: move the program by # mm to less X"},
+    VerdictRule{ErrorCode::kRml1Clipped, "move_x_more", kRounding_mm, Verdict::kBad,
+                "no work origin in the travel fits: move the program by # mm to greater X"},
+    VerdictRule{ErrorCode::kRml1Clipped, "move_y_less", kRounding_mm, Verdict::kBad,
+                "no work origin in the travel fits: move the program by # mm to less Y"},
+    VerdictRule{ErrorCode::kRml1Clipped, "move_y_more", kRounding_mm, Verdict::kBad,
+                "no work origin in the travel fits: move the program by # mm to greater Y"},
     VerdictRule{ErrorCode::kRml1Clipped, "clipped_z_low", kRounding_mm, Verdict::kBad,
                 "the work leads # mm below the travel: raise Z0"},
     VerdictRule{ErrorCode::kRml1SpindleStands, "spindle_stands_length", kRounding_mm, Verdict::kBad,
@@ -95,6 +103,9 @@ constexpr std::array kRules = {
                 "communication errors: #"},
     VerdictRule{ErrorCode::kRml1NothingCut, "nothing_cut", 0.0, Verdict::kDoubtful,
                 "nothing is cut: the tool never goes below the surface"},
+    VerdictRule{ErrorCode::kRml1NothingCut, "skimmed_length", kRounding_mm, Verdict::kDoubtful,
+                "# mm with the tool down and the spindle on, but along the surface: nothing is cut "
+                "there"},
 };
 
 }  // namespace

@@ -19,21 +19,30 @@ WorkFit::Axis Fit(const Extent& wanted, const Travel& travel, double units_per_m
   const double high = travel.high - wanted.high;
   const double length = (wanted.high - wanted.low) / units_per_mm;
   if (low > high) return {.known = true, .over = (low - high) / units_per_mm, .length = length};
+  if (high < travel.low)
+    return {.known = true, .move = (high - travel.low) / units_per_mm, .length = length};
+  if (low > travel.high)
+    return {.known = true, .move = (low - travel.high) / units_per_mm, .length = length};
   return {.known = true,
-          .low = std::min(std::max(low, travel.low), high) / units_per_mm,
-          .high = std::max(std::min(high, travel.high), low) / units_per_mm,
+          .low = std::max(low, travel.low) / units_per_mm,
+          .high = std::min(high, travel.high) / units_per_mm,
           .length = length};
 }
 
 }  // namespace
 
 WorkFit FitOf(const WorkExtent& work, const LostCut& lost, const Point& origin,
-              const CuttingRange& travel, double units_per_mm) {
+              const CuttingRange& travel, double lift, double units_per_mm) {
   Extent depth = Wanted(work.z, lost.z, origin.z);
-  depth.high = std::max(depth.low, 0.0);  // what lies above Z 0 is lift: cut off, nothing is lost
+  // Higher lifts may be cut off, and nothing is lost; with none at all the tool would cross the
+  // work. Where there is no room for both, the work goes first.
+  const double room = travel.z.high - travel.z.low + std::min(depth.low, 0.0);
+  depth.high = std::max(depth.low, std::min(lift, std::max(room, 0.0)));
+  WorkFit::Axis z = Fit(depth, travel.z, units_per_mm);
+  z.length = std::max(-depth.low, 0.0) / units_per_mm;  // without the lift
   return {.x = Fit(Wanted(work.x, lost.x, origin.x), travel.x, units_per_mm),
           .y = Fit(Wanted(work.y, lost.y, origin.y), travel.y, units_per_mm),
-          .z = Fit(depth, travel.z, units_per_mm)};
+          .z = z};
 }
 
 }  // namespace rmlcell::rml1

@@ -87,7 +87,7 @@ int Main(std::string_view what, int strokes) {
   for (const rml1::CutWatch::Ride& ride : kept.rides)
     watch.OnRide(ride, device.registers(), device.command());
   const rml1::CuttingRange& travel = device.carriage().range();
-  const rml1::WorkFit fit = rml1::FitOf(kept.work, {}, {}, travel, 100.0);
+  const rml1::WorkFit fit = rml1::FitOf(kept.work, {}, {}, travel, 0.0, 100.0);
   const rml1::StepGuess guess =
       rml1::GuessStep(fit, travel, {device.programmed().z(), device.programmed().z_grain()}, 100.0);
   const std::vector<machine::Figure> figures =

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rmlcell::simulation {
 namespace {
@@ -9,6 +10,8 @@ namespace {
 using machine::MotionUse;
 
 constexpr double kGougeLeast_mm = 1e-3;  // less is rounding of heights and places
+// The greatest speeds are for travel: from this share of that of Z on, a way down is no feed.
+constexpr double kFastShare = 0.8;
 
 }  // namespace
 
@@ -34,6 +37,8 @@ MillingRecorder::MillingRecorder(const machine::MachineShape& shape, const Milli
       material_(HeightField::Of(milling.stock).value()),
       target_(milling.target),
       chips_(milling.chips),
+      fast_z_mm_s_(shape.limits ? kFastShare * shape.limits->axes.speed.z()
+                                : std::numeric_limits<double>::infinity()),
       rpm_by_hand_(milling.rpm > 0.0),
       rpm_(milling.rpm) {
   if (chips_) figures_.chips.emplace();
@@ -79,9 +84,10 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
   }
   if (done.programmed_mm_s <= 0.0 || taken <= kGougeLeast_mm) return;
   if (is_pass) {
+    figures_.pass_mm_s = std::max(figures_.pass_mm_s, done.programmed_mm_s);
     NoteChip(done.programmed_mm_s, done.place);
   } else if (to.z() < from.z()) {
-    NotePlunge(done.programmed_mm_s, done.place);
+    NotePlunge(done.programmed_mm_s, taken, done.place);
   }
 }
 
@@ -90,7 +96,12 @@ double MillingRecorder::ChipOf(double feed_mm_s) const {
   return rpm_ > 0.0 ? feed_mm_s / (rpm_ / 60.0 * tool_.flutes) : 0.0;
 }
 
-void MillingRecorder::NotePlunge(double feed_mm_s, const machine::Place& place) {
+void MillingRecorder::NotePlunge(double feed_mm_s, double taken_mm, const machine::Place& place) {
+  if (feed_mm_s >= fast_z_mm_s_ && taken_mm > figures_.fast_plunge_mm) {
+    figures_.fast_plunge_mm = taken_mm;
+    figures_.fast_plunge_mm_s = feed_mm_s;
+    figures_.fast_plunge_place = place;
+  }
   if (!chips_ || !(chips_->plunge_most_mm > 0.0)) return;
   const double percent = 100.0 * ChipOf(feed_mm_s) / chips_->plunge_most_mm;
   if (percent <= figures_.chips->plunge_percent) return;

@@ -48,7 +48,7 @@ class MillingRecorder final : public machine::RunObserver {
   void NoteBeside(const motion::MachinePoint& from, const motion::MachinePoint& to,
                   const machine::Place& place);
   double ChipOf(double feed_mm_s) const;
-  void NotePlunge(double feed_mm_s, const machine::Place& place);
+  void NotePlunge(double feed_mm_s, double taken_mm, const machine::Place& place);
   void NoteChip(double feed_mm_s, const machine::Place& place);
 
   motion::MachinePoint origin_;  // of the block's frame, machine frame
@@ -56,6 +56,7 @@ class MillingRecorder final : public machine::RunObserver {
   HeightField material_;
   std::optional<Target> target_;
   std::optional<ChipRange> chips_;
+  double fast_z_mm_s_ = 0.0;  // a way down this fast is no feed
   bool rpm_by_hand_ = false;
   double rpm_ = 0.0;  // 0: not known yet
   MillingFigures figures_;

@@ -59,11 +59,17 @@ void PathSketch::Add(const machine::MotionDone& done) {
 
   const bool tool_in = shape_.laser_watts <= 0.0 && (done.use == machine::MotionUse::kCut ||
                                                      done.use == machine::MotionUse::kPlunge);
-  SketchElement element{.from = from, .to = to, .use = done.use, .cuts = done.beam_on || tool_in};
+  SketchElement element{.from = from,
+                        .to = to,
+                        .use = done.use,
+                        .cuts = done.beam_on || tool_in,
+                        .skims = tool_in && !done.in_work};
+  skims_ = skims_ || element.skims;
+  cuts_ = cuts_ || (element.cuts && !element.skims);
   const machine::Box box = BoxOf(TipSweep(part));
   box_.Add(box);
   if (element.cuts) cut_box_.Add(box);
-  if (done.use == machine::MotionUse::kPlunge) {
+  if (done.use == machine::MotionUse::kPlunge && done.in_work) {
     if (!plunging_) AddDot({.at = to});
     plunging_ = true;
   } else {

@@ -53,6 +53,9 @@ class PathSketch {
   const std::vector<SketchElement>& lost() const { return lost_; }
   double lost_mm() const { return lost_mm_; }
   bool moved() const { return moved_; }
+  // Strokes along the surface beside real cuts, which take nothing off: those of a pen alone are
+  // what it draws.
+  bool skims_beside_cuts() const { return skims_ && cuts_; }
   const motion::MachinePoint& start() const { return start_; }
   const motion::MachinePoint& end() const { return end_; }
   double tolerance_mm() const { return tolerance_mm_; }  // 0: exact
@@ -80,6 +83,8 @@ class PathSketch {
   double lost_mm_ = 0.0;
   double lost_tolerance_mm_ = 0.0;
   bool moved_ = false;
+  bool skims_ = false;  // some element
+  bool cuts_ = false;
   bool plunging_ = false;
   motion::MachinePoint start_;
   motion::MachinePoint end_;

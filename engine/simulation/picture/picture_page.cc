@@ -77,7 +77,7 @@ class PageWriter {
     double low = HUGE_VAL;
     double high = -HUGE_VAL;
     for (const SketchElement& element : sketch_.elements()) {
-      if (!element.cuts) continue;
+      if (!element.cuts || (element.skims && sketch_.skims_beside_cuts())) continue;
       low = std::min({low, element.from.z(), element.to.z()});
       high = std::max(high, std::min(element.from.z(), element.to.z()));
     }
@@ -250,6 +250,10 @@ class PageWriter {
       AppendLine(body_, {x, y}, {x + 44.0, y},
                  "stroke=\"" + std::string(kCutColour) + "\" stroke-width=\"2.2\"");
       name(shape_.laser_watts > 0.0 ? "beam on" : "cut");
+    }
+    if (sketch_.skims_beside_cuts()) {
+      AppendLine(body_, {x, y}, {x + 44.0, y}, std::string("class=\"skim\" ") + kSkimStyle);
+      name("along the surface, not cut");
     }
     AppendLine(body_, {x, y}, {x + 44.0, y},
                "stroke=\"" + std::string(kTravelColour) +

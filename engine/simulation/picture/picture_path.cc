@@ -25,7 +25,7 @@ constexpr double kFinest_px = 0.35;
 constexpr double kBoldest_px = 2.0;
 
 // Pieces of one style.
-enum class Layer { kTravel, kLost, kCut };
+enum class Layer { kTravel, kSkim, kLost, kCut };
 
 // A circle as a panel sees it: an ellipse.
 struct SeenCircle {
@@ -94,6 +94,7 @@ class PathDrawing {
 
   void Write(std::string& out) const {
     WriteLayer(Layer::kTravel, out);
+    if (strokes_.skims) WriteLayer(Layer::kSkim, out);
     if (!strokes_.lost.empty()) WriteLayer(Layer::kLost, out);
     WriteLayer(Layer::kCut, out);
   }
@@ -111,7 +112,8 @@ class PathDrawing {
     flat.from = OnPage(element.from);
     flat.to = OnPage(element.to);
     flat.arc = -1;
-    if (element.cuts && depth_.shaded) {
+    flat.skims = element.skims && strokes_.skims;
+    if (element.cuts && !flat.skims && depth_.shaded) {
       const double z = std::min(element.from.z(), element.to.z());
       flat.shade = static_cast<std::uint8_t>(depth_.ShadeOf(z));
     }
@@ -193,6 +195,7 @@ class PathDrawing {
 
   static Layer LayerOf(const SketchElement& element) {
     if (element.lost) return Layer::kLost;
+    if (element.skims) return Layer::kSkim;
     return element.cuts ? Layer::kCut : Layer::kTravel;
   }
 
@@ -212,9 +215,10 @@ class PathDrawing {
       out += strokes_.travel;
       out += "\" stroke-width=\"0.9\" stroke-dasharray=\"5 3.5\" stroke-opacity=\"0.8\">\n";
       WriteShade(layer, 0, out);
-    } else if (layer == Layer::kLost) {
-      out += "<g class=\"lost\" fill=\"none\" ";
-      out += kLostStyle;
+    } else if (layer == Layer::kLost || layer == Layer::kSkim) {
+      out += layer == Layer::kLost ? "<g class=\"lost" : "<g class=\"skim";
+      out += "\" fill=\"none\" ";
+      out += layer == Layer::kLost ? kLostStyle : kSkimStyle;
       out += ">\n";
       WriteShade(layer, 0, out);
     } else {
@@ -290,9 +294,11 @@ int DepthRange::ShadeOf(double z_mm) const {
 
 std::size_t DrawPath(const PathSketch& sketch, const Panel& panel, const DepthRange& depth,
                      std::size_t elements_max, std::string& out) {
-  return DrawPath(
-      {.elements = sketch.elements(), .circles = sketch.circles(), .lost = sketch.lost()}, panel,
-      depth, elements_max, out);
+  return DrawPath({.elements = sketch.elements(),
+                   .circles = sketch.circles(),
+                   .lost = sketch.lost(),
+                   .skims = sketch.skims_beside_cuts()},
+                  panel, depth, elements_max, out);
 }
 
 std::size_t DrawPath(const PathStrokes& strokes, const Panel& panel, const DepthRange& depth,

@@ -22,8 +22,8 @@ class LookKey {
     std::uint64_t b = Cell(element.to);
     if (b < a) std::swap(a, b);
     const std::uint64_t look = static_cast<std::uint64_t>(element.use) * 1024 +
-                               (element.lost ? 512u : 0u) + (element.cuts ? 256u : 0u) +
-                               element.shade;
+                               (element.skims ? 1024u * 1024 : 0u) + (element.lost ? 512u : 0u) +
+                               (element.cuts ? 256u : 0u) + element.shade;
     const std::uint64_t key = Mix(Mix(a, b), look);
     return element.arc < 0 ? key : Mix(key, Cell(element.middle));
   }

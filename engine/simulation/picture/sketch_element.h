@@ -16,11 +16,13 @@ struct SketchElement {
   std::int32_t arc = -1;          // index of its circle; -1: a line
   machine::MotionUse use = machine::MotionUse::kTravel;
   bool cuts = false;
+  bool skims = false;      // with the tool down, but along the surface of the work
   bool lost = false;       // asked for beyond the travel: the machine left it out
   std::uint8_t shade = 0;  // what else makes it look different
 
   bool SameLook(const SketchElement& other) const {
-    return use == other.use && cuts == other.cuts && lost == other.lost && shade == other.shade;
+    return use == other.use && cuts == other.cuts && skims == other.skims && lost == other.lost &&
+           shade == other.shade;
   }
 };
 

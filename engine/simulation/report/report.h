@@ -289,6 +289,10 @@ struct MillingFigures {
   double tool_diameter_mm = 0.0;  // of the cutting part
   double deepest_pass_mm = 0.0;   // most that one motion across took off over a cell
   machine::Place pass_place;      // where that was
+  double fast_plunge_mm = 0.0;    // most that a way down took off nearly as fast as Z travels
+  double fast_plunge_mm_s = 0.0;  // how fast that was
+  machine::Place fast_plunge_place;
+  double pass_mm_s = 0.0;         // of the fastest motion across in material
   double shank_depth_mm = 0.0;    // deepest that shank or holder went into material
   machine::Place shank_place;     // where that was
   double beside_mm = 0.0;         // way in the work with the tool far beside the block

@@ -48,6 +48,11 @@ Measured PassShare(const RunReport& r) {
   if (!r.milling || !(r.milling->tool_diameter_mm > 0.0)) return {};
   return {100.0 * r.milling->deepest_pass_mm / r.milling->tool_diameter_mm, r.milling->pass_place};
 }
+// What the machine cannot do faster and the program cuts with, too, is its feed.
+Measured FastPlunge(const RunReport& r) {
+  if (!r.milling || r.milling->pass_mm_s >= r.milling->fast_plunge_mm_s) return {};
+  return {r.milling->fast_plunge_mm, r.milling->fast_plunge_place};
+}
 template <double ChipFigures::*kPercent, machine::Place ChipFigures::*kPlace>
 Measured OfChips(const RunReport& r) {
   if (!r.milling || !r.milling->chips) return {};
@@ -88,6 +93,7 @@ constexpr std::array kRules = {
     MeasuredRule{{{ErrorCode::kCellBesideBlock, "beside_block_y_high", kRounding_mm, Verdict::kDoubtful, "the work leads # mm beyond the edge of the block at its greatest Y"}, "mm", "how far it leads beyond the greatest Y"}, BesideEdge<&MillingFigures::beside_y_high_mm>},
     MeasuredRule{{{ErrorCode::kCellShankInMaterial, "shank_depth", kRounding_mm, Verdict::kBad, "shank or holder goes # mm into material"}, "mm", "how deep shank or holder of the tool goes into the block that was given"}, ShankDepth},
     MeasuredRule{{{ErrorCode::kCellDeepPass, "pass_share", kPassShare_percent, Verdict::kDoubtful, "one pass is as deep as # % of the width of the tool"}, "%", "most that one motion across takes off in depth, by the diameter of the tool"}, PassShare},
+    MeasuredRule{{{ErrorCode::kCellFastPlunge, "fast_plunge_in_material", kRounding_mm, Verdict::kDoubtful, "the tool goes # mm down into material nearly as fast as Z travels, faster than it cuts"}, "mm", "most that one way down takes off at 80 % of the speed at which Z travels or more, when the tool cuts slower across"}, FastPlunge},
     MeasuredRule{{{ErrorCode::kCellChipThick, "chip_thick", kTwiceUsual_percent, Verdict::kDoubtful, "an edge takes off # % of the most that is usual"}, "%", "greatest chip load, by the most that is usual for tool and material"}, OfChips<&ChipFigures::thick_percent, &ChipFigures::thick_place>},
     MeasuredRule{{{ErrorCode::kCellChipThick, "plunge_thick", kTwiceUsual_percent, Verdict::kDoubtful, "an edge takes off # % of the most that is usual straight down"}, "%", "greatest chip load of a plunge, by the most that is usual for tool and material"}, OfChips<&ChipFigures::plunge_percent, &ChipFigures::plunge_place>},
     MeasuredRule{{{ErrorCode::kCellChipThin, "chip_thin", kHalfUsual_percent, Verdict::kDoubtful, "an edge takes off # % less than the least that is usual"}, "%", "how far the least chip load is below the least that is usual"}, OfChips<&ChipFigures::thin_percent, &ChipFigures::thin_place>},

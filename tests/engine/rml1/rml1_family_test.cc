@@ -67,6 +67,12 @@ TEST(Rml1Family, ListsItsFigures) {
   TestRun large(ParametersOf("mdx-15"), "VS10;!PZ-100,200;PD8000,100;");
   large.AdvanceToEnd();
   collect(large->figures());
+  // From 2 to 201 mm and from -200.5 to -1 mm in travels of 200 mm; the same in Y, of 150 mm.
+  for (const std::string corners : {"PU200,200;PD20100,15100;", "PU-100,-100;PD-20050,-15050;"}) {
+    TestRun beyond(ParametersOf("t1a"), "VS10;!PZ-100,200;" + corners);
+    beyond.AdvanceToEnd();
+    collect(beyond->figures());
+  }
   std::set<std::string> never;
   for (const auto& [name, unit] : listed) {
     if (!given.contains(name)) never.insert(name);

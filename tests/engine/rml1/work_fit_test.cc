@@ -20,7 +20,7 @@ Extent From(double low, double high) { return {.low = low, .high = high, .known 
 // panel) to 150; Y from -20 to 30 while it is from 20 to 120; 15 mm deep while Z0 is -45 or higher.
 TEST(WorkFit, TheOriginMayBeWhereNothingLeavesTheTravel) {
   const WorkExtent work{From(1000, 5000), From(-2000, 3000), From(-1500, 200)};
-  const WorkFit fit = FitOf(work, {}, {0, 0, -2000, 0}, kTravel, kUnits);
+  const WorkFit fit = FitOf(work, {}, {0, 0, -2000, 0}, kTravel, 0.0, kUnits);
   EXPECT_EQ(fit.x.low, 0.0);
   EXPECT_EQ(fit.x.high, 150.0);
   EXPECT_EQ(fit.y.low, 20.0);
@@ -36,20 +36,73 @@ TEST(WorkFit, WhatWasLostIsPartOfTheWork) {
   LostCut lost;
   lost.x = From(20100, 20400);
   const WorkExtent work{From(1000, 19000), From(0, 100), From(-100, 0)};
-  const WorkFit fit = FitOf(work, lost, {1000, 0, -2000, 0}, kTravel, kUnits);
+  const WorkFit fit = FitOf(work, lost, {1000, 0, -2000, 0}, kTravel, 0.0, kUnits);
   EXPECT_EQ(fit.x.high, 6.0);
 }
 
 TEST(WorkFit, LargerThanTheTravelFitsNowhere) {
   const WorkExtent work{From(-100, 20400), From(0, 15000), From(-6001, 0)};
-  const WorkFit fit = FitOf(work, {}, {0, 0, 0, 0}, kTravel, kUnits);
+  const WorkFit fit = FitOf(work, {}, {0, 0, 0, 0}, kTravel, 0.0, kUnits);
   EXPECT_EQ(fit.x.over, 5.0);
   EXPECT_EQ(fit.y.over, 0.0);
   EXPECT_EQ(fit.z.over, 0.01);
 }
 
+// X from 1 to 204 mm in a travel of 203.2: the origin would have to be from -1 to -0.8, where no
+// panel sets it, so the program must move by 0.8 mm to less X. Y from -150.01 to -2 mm in a travel
+// of 150: from 150.01 to 152, so it must move by 0.01 mm to greater Y.
+TEST(WorkFit, AnOriginOutsideTheTravelIsNone) {
+  const CuttingRange travel{{0.0, 20320.0}, {0.0, 15000.0}, {-6000.0, 0.0}};
+  const auto fit = [&](const Extent& x, const Extent& y) {
+    return FitOf({x, y, From(-100, 0)}, {}, {}, travel, 0.0, kUnits);
+  };
+  const WorkFit none = fit(From(100, 20400), From(-15001, -200));
+  EXPECT_NEAR(none.x.move, -0.8, 1e-9);
+  EXPECT_FALSE(none.x.fits());
+  EXPECT_EQ(none.x.over, 0.0);
+  EXPECT_NEAR(none.y.move, 0.01, 1e-9);
+  const WorkFit just = fit(From(0, 20320), From(-15000, -200));
+  EXPECT_TRUE(just.x.fits());
+  EXPECT_EQ(just.x.low, 0.0);
+  EXPECT_EQ(just.x.high, 0.0);
+  EXPECT_EQ(just.y.move, 0.0);
+  EXPECT_EQ(just.y.low, 150.0);
+  EXPECT_EQ(just.y.high, 150.0);
+}
+
+// 15 mm deep in 60 mm of travel: with lifts of 2 mm Z0 may be from -45 to -2 mm. 59 mm deep there
+// is room for 1 mm of lift, and at full depth for none.
+TEST(WorkFit, TheLowestLiftStaysAboveTheSurface) {
+  const auto z = [](double depth, double lift) {
+    return FitOf({From(0, 1), From(0, 1), From(-depth, 0)}, {}, {}, kTravel, lift, kUnits).z;
+  };
+  EXPECT_EQ(z(1500, 200).low, -45.0);
+  EXPECT_EQ(z(1500, 200).high, -2.0);
+  EXPECT_EQ(z(5900, 200).low, -1.0);
+  EXPECT_EQ(z(5900, 200).high, -1.0);
+  EXPECT_EQ(z(6000, 200).high, 0.0);
+  EXPECT_EQ(z(6001, 200).over, 0.01);
+}
+
+// The lowest way across counts: 0.5 mm of the Z commands, not 2 mm of Z2, nor what goes straight
+// up.
+TEST(WorkFit, TheLowestLiftIsThatOfTheProgram) {
+  const machine::MachineFamily& mill = Rml1Family();
+  const auto parameters = *machine::MakeParameters(mill, "t1", {});
+  const auto zmax = [&](const std::string& stream) {
+    const auto made = mill.Translate({.name = "a.rml", .bytes = stream}, parameters, {});
+    for (const machine::Figure& figure : made.figures) {
+      if (figure.name == "origin.zmax") return figure.value;
+    }
+    return 1.0;
+  };
+  const std::string cut = "!MC1;V10;!PZ-200,200;PU0,0;PD4000,0;PU4000,3000;";
+  EXPECT_NEAR(zmax(cut + "!MC0;"), -2.0, 1e-9);
+  EXPECT_NEAR(zmax(cut + "Z4000,3000,30;Z4000,3000,50;Z0,0,50;!MC0;"), -0.5, 1e-9);
+}
+
 TEST(WorkFit, NothingInTheWorkSaysNothing) {
-  EXPECT_FALSE(FitOf({}, {}, {}, kTravel, kUnits).x.known);
+  EXPECT_FALSE(FitOf({}, {}, {}, kTravel, 0.0, kUnits).x.known);
 }
 
 // The profile T1 has 200 x 150 x 60 mm (rml1.md 0.2). A frame of 40 x 30 mm, 2 mm deep: wherever

@@ -307,5 +307,20 @@ TEST(PicturePath, DepthsAreShades) {
   EXPECT_EQ(Draw(elements).Group(1).find("<path stroke"), std::string::npos);
 }
 
+// Strokes along the surface have a group of their own, between travel and cuts; where a pen draws
+// them they are its strokes.
+TEST(DrawPath, StrokesAlongTheSurfaceLookDifferentBesideCuts) {
+  SketchElement skim = Cut({0, 50, 0}, {100, 50, 0});
+  skim.skims = true;
+  const std::vector<SketchElement> elements = {skim, Cut({0, 0, -1}, {100, 0, -1})};
+  DrawnPath drawn;
+  DrawPath({.elements = elements, .circles = {}, .skims = true}, FromAbove(),
+           {.low_mm = -2.0, .high_mm = 0.0, .shaded = true}, 100, drawn.text);
+  EXPECT_EQ(drawn.Group(1).substr(0, 16), "<g class=\"skim\" ");
+  EXPECT_EQ(DrawnPath::Data(drawn.Group(1)), "M0-50l100 0");
+  EXPECT_EQ(DrawnPath::Data(drawn.Group(2)), "M0 0l100 0");
+  EXPECT_EQ(Draw(elements).cut(), "M0-50l100 0M0 0l100 0");
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

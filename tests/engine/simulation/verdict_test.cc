@@ -70,8 +70,8 @@ TEST(Verdict, OfWorkBeyondTheTravel) {
   EXPECT_EQ(TextOf(OfStream(Work("PD20001,100;"))), "GOOD");
   EXPECT_EQ(TextOf(OfStream(Work("PD20002,100;"))),
             "BAD; RML1-E8002 0.020" + lost +
-                "RML1-E8002 the work leads 0.020 mm beyond the greatest X: move the origin to less "
-                "X");
+                "RML1-E8002 no work origin in the travel fits: move the program by 0.020 mm to "
+                "less X");
   EXPECT_EQ(TextOf(OfStream(Work("PD-1,100;"))), "GOOD");
   EXPECT_EQ(TextOf(OfStream(Work("PD-2,100;"))),
             "BAD; RML1-E8002 0.020" + lost +
@@ -80,8 +80,8 @@ TEST(Verdict, OfWorkBeyondTheTravel) {
   EXPECT_EQ(TextOf(OfStream(Work("PD100,15001;"))), "GOOD");
   EXPECT_EQ(TextOf(OfStream(Work("PD100,15002;"))),
             "BAD; RML1-E8002 0.020" + lost +
-                "RML1-E8002 the work leads 0.020 mm beyond the greatest Y: move the origin to less "
-                "Y");
+                "RML1-E8002 no work origin in the travel fits: move the program by 0.020 mm to "
+                "less Y");
   EXPECT_EQ(TextOf(OfStream(Work("PD100,-1;"))), "GOOD");
   EXPECT_EQ(TextOf(OfStream(Work("PD100,-2;"))),
             "BAD; RML1-E8002 0.020" + lost +
