@@ -347,7 +347,7 @@ class PageWriter {
                "fill=\"#0b4fa8\" fill-opacity=\"0.25\" stroke=\"#0b4fa8\" stroke-width=\"1.4\"");
     y += height * scale + 18.0;
     const auto range = [](double low, double high) {
-      return FixedText(low, 0) + " to " + FixedText(high, 0);
+      return TrimmedText(low, 1) + " to " + TrimmedText(high, 1);
     };
     AppendText(body_, {column_x_, y},
                "X " + range(travel.min.x(), travel.max.x()) + ", Y " +
