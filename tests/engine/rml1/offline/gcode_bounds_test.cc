@@ -42,6 +42,16 @@ TEST(GcodeArcBounds, AFullTurnEndsWhereItBegan) {
   EXPECT_NEAR(nearly_full.sweep_rad, 1e-5 - 2 * M_PI, 1e-9);
 }
 
+// The same for what is no arc at all: a centre, or an end of an R, that is the start.
+TEST(GcodeArcBounds, WhatIsNoiseOfDecimals) {
+  EXPECT_EQ(ArcOf({.to = {1e-6, 0}, .j = -5}).value().sweep_rad, 2 * M_PI);
+  EXPECT_LT(ArcOf({.to = {2e-6, 0}, .j = -5}).value().sweep_rad, 2 * M_PI);
+  EXPECT_FALSE(ArcOf({.i = 1e-6}));
+  EXPECT_TRUE(ArcOf({.i = 2e-6}));
+  EXPECT_FALSE(ArcOf({.to = {1e-6, 0}, .r = 1}));
+  EXPECT_TRUE(ArcOf({.to = {2e-6, 0}, .r = 1}));
+}
+
 // From (10,0) to (0,10) clockwise: the quarter about (10,10), or with R below 0 the three quarters
 // about (0,0).
 TEST(GcodeArcBounds, RadiusOfAClockwiseArc) {
@@ -107,6 +117,58 @@ TEST(GcodeBounds, Coordinates) {
   EXPECT_EQ(RefusedWith("G0 Y-83886.09\n"), ErrorCode::kRml1GcodeRange);
   EXPECT_EQ(RefusedWith("G0 Z83886.08\n"), ErrorCode::kRml1GcodeRange);
   EXPECT_EQ(DetailOf("G0 Y-83886.09\n"), "Y -83886.09 mm");
+}
+
+// Words that say nothing to a mill are noted, each once, and nothing else is said.
+TEST(GcodeBounds, WordsThatAreNoted) {
+  for (const auto& [text, detail] :
+       {std::pair("O12\nG0 X1\nO13\n", "O12, the number of the program"),
+        {"T1\nG0 X1\nT1\n", "T, the tool is put in by hand"},
+        {"M6 T1\n", "M6, the tool is put in by hand"},
+        {"G64 P.1\nG0 X1\nG64\n", "G64, path with tolerance"}}) {
+    const StreamOfGcode made = Made(text);
+    EXPECT_TRUE(made.ok) << text;
+    bool noted = false;
+    for (const Diagnostic& finding : made.findings) {
+      EXPECT_EQ(finding.code, ErrorCode::kRml1GcodeIgnored) << text;
+      noted = noted || finding.detail == detail;
+    }
+    EXPECT_TRUE(noted) << text;
+  }
+  EXPECT_EQ(RefusedWith("O1 G0 X1\n"), ErrorCode::kRml1GcodeWord);
+}
+
+// G and M words are whole numbers or the tenths of the table.
+TEST(GcodeBounds, NumbersOfWords) {
+  for (const char* word : {"G-0.1", "G0.01", "G100000", "G1e3", "M-3", "M3.1"})
+    EXPECT_NE(RefusedWith(std::string(word) + " X1\n"), ErrorCode::kCellUsage) << word;
+  EXPECT_EQ(RefusedWith("G90.1\n"), RefusedWith("G90.10\n"));
+  EXPECT_EQ(RefusedWith("G00 X1\nG01.0 X2 F60\n"), ErrorCode::kCellUsage);
+}
+
+// With the work origin 50 mm from the left and 20 mm from the front, X leads from -50 to 150 and Y
+// from -20 to 130 mm.
+TEST(GcodeBounds, TheTravelIsFromTheWorkOrigin) {
+  machine::Parameters moved = ParametersOf("t1");
+  ASSERT_TRUE(moved.Set("ORIGIN_X", std::string_view("50")));
+  ASSERT_TRUE(moved.Set("ORIGIN_Y", std::string_view("20")));
+  const auto beyond = [&](const std::string& place) {
+    const auto made = FromGcode("G1 Z-1 F60\n" + place + "\n", moved).value();
+    return made.beyond_travel ? made.beyond_travel->line : 0;
+  };
+  for (const char* within : {"X-50", "X150", "Y-20", "Y130", "Z-40"}) EXPECT_EQ(beyond(within), 0);
+  for (const char* place : {"X-50.01", "X150.01", "Y-20.01", "Y130.01", "Z-40.01"})
+    EXPECT_EQ(beyond(place), 2) << place;
+}
+
+// What the stream says counts from the work origin, wherever that is on the table.
+TEST(GcodeBounds, WordsAreFromTheWorkOrigin) {
+  machine::Parameters moved = ParametersOf("t1");
+  ASSERT_TRUE(moved.Set("ORIGIN_X", std::string_view("50")));
+  ASSERT_TRUE(moved.Set("ORIGIN_Y", std::string_view("20")));
+  const auto made = ToGcode("!MC0;PU100,250;PU-100,300;", moved);
+  ASSERT_TRUE(made);
+  EXPECT_NE(made->text.find("G0 X1 Y2.5\nG0 X-1 Y3\nM30\n"), std::string::npos) << made->text;
 }
 
 // T1: 4500 to 15000 rpm.

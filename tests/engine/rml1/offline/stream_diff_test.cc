@@ -93,6 +93,19 @@ TEST(CompareStreams, NoiseOfDecimalsIsNoChange) {
   EXPECT_FALSE(Diff("Z100,0,0;", "Z100.00006,0,0;").equal());
 }
 
+// Places are told from the work origin, wherever that is on the table.
+TEST(CompareStreams, PlacesAreFromTheWorkOrigin) {
+  machine::Parameters moved = ParametersOf("t1");
+  ASSERT_TRUE(moved.Set("ORIGIN_X", std::string_view("50")));
+  ASSERT_TRUE(moved.Set("ORIGIN_Y", std::string_view("20")));
+  const auto diff =
+      CompareStreams({.object = "!MC0;Z50,30,0;"}, {.object = "!MC0;Z70,10,5;"}, moved);
+  ASSERT_TRUE(diff);
+  ASSERT_EQ(diff->steps.size(), 1U);
+  EXPECT_EQ(diff->steps[0].what,
+            (std::vector<std::string>{"X 0.5 -> 0.7", "Y 0.3 -> 0.1", "Z 0 -> 0.05"}));
+}
+
 // Degrees and waits are compared as what they are; a pause is one like any other.
 TEST(CompareStreams, DegreesAndWaits) {
   const auto turned = Diff("!ZE A90;", "!ZE A80.5;", "t1a");
