@@ -94,7 +94,7 @@ void CutWatch::OnWayDown(const Ride& ride, const Registers& registers,
   if (Fast(ride) && !cutting_) {
     Add(fast_so_far_, mm, command);
     fast_mm_s_ = ride.speed_mm_s;
-  } else if (mm > 0.0) {
+  } else {
     fast_so_far_ = {};
   }
 }
@@ -141,9 +141,9 @@ void CutWatch::OnCrossing(const Ride& ride, double mm, const CommandPlace& comma
 }
 
 void CutWatch::EndVisit() {
-  if (visit_.fast.mm > 0.0 && visit_.slowest_mm_s <= kSlowShare * visit_.fast_mm_s) {
+  if (visit_.slowest_mm_s <= kSlowShare * visit_.fast_mm_s) {
     Join(fast_among_slow_, visit_.fast);
-  } else if (visit_.fast.mm > 0.0 && visit_.enters_fast) {
+  } else if (visit_.enters_fast) {
     Join(fast_visits_, visit_.fast);
     fast_visits_mm_s_ = std::min(fast_visits_mm_s_, visit_.fast_mm_s);
   }
