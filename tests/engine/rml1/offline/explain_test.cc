@@ -77,6 +77,17 @@ TEST(Explain, SettingsSayWhatHoldsAfterwards) {
                 "tool down; wait 7 ms; down into the work to Z -1.5 at 60 mm/s"}));
 }
 
+// RML1-3A.37, RML1-3B.03: H and IN say by themselves what they set; coordinates that become
+// absolute with them are not told again.
+TEST(Explain, WhatACommandSetsIsSaidOnce) {
+  EXPECT_EQ(Words("PR;H;")[1],
+            "home: up to the top, to the XY origin, spindle off, errors cleared");
+  const std::string initialise = Words("PR;IN;")[1];
+  EXPECT_TRUE(
+      initialise.starts_with("initialise: defaults as DF, tool up, spindle off, errors cleared"));
+  EXPECT_EQ(initialise.find("absolute"), std::string::npos) << initialise;
+}
+
 TEST(Explain, PlacesNumbersAndText) {
   const auto phrases = ExplainAll("PA;\r\n  PU1,2 ,3,4;");
   ASSERT_EQ(phrases.size(), 3U);
