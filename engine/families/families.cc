@@ -8,10 +8,15 @@
 namespace rmlcell::families {
 namespace {
 
-// "part.SI" of "jobs/old.d/part.SI" -> ".SI"; empty when the name has no extension.
-std::string_view ExtensionOf(std::string_view name) {
+// "jobs/old.d/part.SI" -> "part.SI"
+std::string_view WithoutFolder(std::string_view name) {
   const std::size_t folder = name.find_last_of("/\\");
-  if (folder != std::string_view::npos) name.remove_prefix(folder + 1);
+  return folder == std::string_view::npos ? name : name.substr(folder + 1);
+}
+
+// "part.SI" -> ".SI"; empty when the name has no extension.
+std::string_view ExtensionOf(std::string_view name) {
+  name = WithoutFolder(name);
   const std::size_t dot = name.rfind('.');
   return dot == std::string_view::npos ? std::string_view{} : name.substr(dot);
 }
@@ -98,7 +103,8 @@ const machine::MachineFamily* FamilyWithSchedules() {
 
 bool IsObjectFileName(std::string_view name) {
   const std::string_view extension = ExtensionOf(name);
-  if (extension.empty() || extension.size() == name.size()) return false;  // ".O" is a name alone
+  // ".O" is a name alone.
+  if (extension.empty() || extension.size() == WithoutFolder(name).size()) return false;
   return std::ranges::any_of(Families(), [extension](const machine::MachineFamily* family) {
     const machine::Tools* tools = family->tools();
     return tools != nullptr && EqualIgnoringCase(extension, tools->extensions().object);

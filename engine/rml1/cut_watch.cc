@@ -107,7 +107,7 @@ void CutWatch::OnWayDown(const Ride& ride, const Registers& registers,
     Add(fast_so_far_, mm, command);
     Add(uncleared_, Below_mm(ride, std::min(registers.surface_z, deepest_)), command);
     fast_mm_s_ = ride.speed_mm_s;
-  } else if (mm > 0.0) {
+  } else {
     fast_so_far_ = {};
     slow_mm_ += ride.length_mm;
     if (slow_mm_ < kApproach_mm - kSummed_mm) return;
@@ -162,9 +162,9 @@ void CutWatch::OnCrossing(const Ride& ride, double mm, const CommandPlace& comma
 }
 
 void CutWatch::EndVisit() {
-  if (visit_.fast.mm > 0.0 && visit_.slowest_mm_s <= kSlowShare * visit_.fast_mm_s) {
+  if (visit_.slowest_mm_s <= kSlowShare * visit_.fast_mm_s) {
     Join(fast_among_slow_, visit_.fast);
-  } else if (visit_.fast.mm > 0.0 && visit_.enters_fast) {
+  } else if (visit_.enters_fast) {
     Join(fast_visits_, visit_.fast);
     fast_visits_mm_s_ = std::min(fast_visits_mm_s_, visit_.fast_mm_s);
   }

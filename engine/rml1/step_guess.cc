@@ -17,10 +17,10 @@ constexpr double kMostRoundLift = 99.0;
 constexpr std::uint32_t kTwentiethOfCoarse = 2;
 constexpr std::uint32_t kTwentiethOfFine = 5;
 
-// True: it is no larger than the travel when its lengths shrink so.
-bool Shrinks(WorkFit::Axis& axis, const Travel& travel, double units_per_mm, double by) {
-  axis.length *= by;
-  return axis.length <= (travel.high - travel.low) / units_per_mm;
+// Makes the length that of a fine step. True: it is no larger than the travel of a coarse one.
+bool Shrinks(WorkFit::Axis& axis, const Travel& travel) {
+  axis.length = axis.length * kCoarse / kFine;
+  return axis.length <= (travel.high - travel.low) / kCoarse;
 }
 
 }  // namespace
@@ -32,10 +32,8 @@ StepGuess GuessStep(const WorkFit& fit, const CuttingRange& travel,
       fit.x.over > kTooLarge_mm || fit.y.over > kTooLarge_mm || fit.z.over > kTooLarge_mm;
   if (units_per_mm == kCoarse && too_large) {
     guess.work = fit;
-    const double by = kCoarse / kFine;
-    const bool fits = Shrinks(guess.work.x, travel.x, units_per_mm, by) &&
-                      Shrinks(guess.work.y, travel.y, units_per_mm, by) &&
-                      Shrinks(guess.work.z, travel.z, units_per_mm, by);
+    const bool fits = Shrinks(guess.work.x, travel.x) && Shrinks(guess.work.y, travel.y) &&
+                      Shrinks(guess.work.z, travel.z);
     if (fits) guess.fits_at = kFine;
   }
   const bool round_there =

@@ -47,7 +47,7 @@ MotionPlan PlanMotion(const Profile& profile, const Point& from, const Action& a
   plan.limits.speed = plan.feed_mm_s;
   plan.limits.acceleration = profile.acceleration_mm_s2;
   const double turn_deg = std::abs(action.to.a - from.a);
-  if (turn_deg <= 0.0) return plan;
+  if (turn_deg == 0.0) return plan;
   // Degrees per unit of the path variable: mm of the line, or the whole turn.
   const double rate = turn_deg / plan.path.length();
   const double rotary = profile.rotary_acceleration_deg_s2 / rate;

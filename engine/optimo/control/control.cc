@@ -102,7 +102,6 @@ RunPhase Control::Advance(SimTime until) {
     ApplyScripted();  // an input of this instant is seen by the conditions of this instant
     if (!now().running()) continue;
     ActOnTime();
-    if (now().now >= until && !MayFetch() && NextEvent(until) > until) return now().phase;
   }
 }
 

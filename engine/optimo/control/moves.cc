@@ -313,7 +313,7 @@ Result<bool> Moves::NeverEnds(const Instruction& i, std::string why) {
 void Moves::TellStanding(const MoveNote& note) {
   if (!note.fly) ride_.EndChain();
   travel_.TellViolations(note.place, note.beyond);
-  if (!note.last || ride_.passing()) return;
+  if (ride_.passing()) return;
   telling_.observer().OnMove({.at = situation_.now,
                               .place = note.place,
                               .tip = ride_.tip(),

@@ -326,7 +326,7 @@ void Interpreter::MoveArc(const Orders& orders, GcodeUse motion, double x, doubl
 
 std::optional<Units> Interpreter::UnitsOf(double x, double y, double z, const SourceSpan& where) {
   for (const auto& [axis, mm] : {std::pair('X', x), {'Y', y}, {'Z', z}}) {
-    const double units = mm * profile_.units_per_mm;
+    const double units = std::round(mm * profile_.units_per_mm);
     if (units >= static_cast<double>(kFloatMin) && units <= static_cast<double>(kFloatMax))
       continue;
     Refuse(ErrorCode::kRml1GcodeRange, std::string(1, axis) + " " + ShortNumber(mm) + " mm", where);

@@ -1,7 +1,6 @@
 #include "engine/rml1/offline/gcode_orders.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 #include "engine/rml1/offline/phrase_words.h"
@@ -13,10 +12,8 @@ constexpr double kInch_mm = 25.4;
 
 // The row of a G or M word; null: it is not in the subset.
 const GcodeRow* RowOf(const GcodeWord& word) {
-  const double tenths = word.value * 10.0;
-  if (!(tenths >= 0.0 && tenths < 1e6) || std::round(tenths) != tenths) return nullptr;
   const auto row = std::ranges::find_if(kGcodeRows, [&](const GcodeRow& candidate) {
-    return candidate.letter == word.letter && candidate.tenths == static_cast<int>(tenths);
+    return candidate.letter == word.letter && candidate.tenths == word.value * 10.0;
   });
   return row == kGcodeRows.end() ? nullptr : &*row;
 }

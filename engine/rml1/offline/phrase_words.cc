@@ -87,7 +87,7 @@ bool IsMotion(Op op) {
 
 void AddChanges(const Phrase& phrase, Words& words) {
   const CommandRow& row = RowOf(phrase.op);
-  if (row.shape != Shape::kSets || phrase.kind == Phrase::Kind::kLeftOver) return;
+  if (row.shape != Shape::kSets) return;
   const bool told_by_itself = phrase.kind == Phrase::Kind::kBare;
   const bool mode_changes = phrase.before->absolute != phrase.after->absolute;
   if (row.mode != ModeChange::kNone && (mode_changes || told_by_itself))

@@ -52,6 +52,7 @@ TEST(Figures, OfTimesAndWays) {
 TEST(Figures, OfTheBox) {
   machine::Parameters parameters = ParametersOf("mdx-15");
   ASSERT_TRUE(parameters.Set("ORIGIN_X", 10.0).ok());
+  ASSERT_TRUE(parameters.Set("ORIGIN_Y", 5.0).ok());
   TestRun run(parameters, "@-8,40;PU-80,0;PD-80,120;PU40,0;");
   run.AdvanceToEnd();
   const Figures f = run.figures();
@@ -69,6 +70,27 @@ TEST(Figures, OfTheBox) {
   turns.AdvanceToEnd();
   EXPECT_EQ(turns.figures().at("box.amin"), -40.0);
   EXPECT_EQ(turns.figures().at("box.amax"), 30.0);
+}
+
+// The work of T1, X 10 to 30 and Y 20 to 25 mm from its origin and 1 mm deep, fits the 200 by 150
+// mm and 60 mm of the travel with the origin from -10, -20 to 170, 125 mm, as far as that is on the
+// table, and Z0 from -59 mm to the top; wherever the origin stands now.
+TEST(Figures, OfTheOriginThatTheWorkNeeds) {
+  for (const double origin : {0.0, 30.0}) {
+    machine::Parameters parameters = ParametersOf("t1");
+    ASSERT_TRUE(parameters.Set("ORIGIN_X", origin).ok());
+    ASSERT_TRUE(parameters.Set("ORIGIN_Y", 2.0 * origin).ok());
+    TestRun run(parameters, "VS10;!VZ10;@-100,200;PU1000,2000;PD3000,2500;PU0,0;!MC0;");
+    run.AdvanceToEnd();
+    const Figures f = run.figures();
+    EXPECT_EQ(f.at("origin.xmin"), 0.0);
+    EXPECT_EQ(f.at("origin.xmax"), 170.0);
+    EXPECT_EQ(f.at("origin.ymin"), 0.0);
+    EXPECT_EQ(f.at("origin.ymax"), 125.0);
+    EXPECT_EQ(f.at("origin.zmin"), -59.0);
+    EXPECT_EQ(f.at("origin.zmax"), 0.0);
+    EXPECT_EQ(f.at("oversize_x") + f.at("oversize_y") + f.at("oversize_z"), 0.0);
+  }
 }
 
 // RML1-6.04, RML1-4.21, RML1-3A.46: registers and counts of errors and advice.

@@ -111,7 +111,9 @@ TEST(Families, SchedulesAreOfOneFamily) {
 TEST(Families, ObjectsGoByTheName) {
   EXPECT_TRUE(families::IsObjectFileName("12.O"));
   EXPECT_TRUE(families::IsObjectFileName("12.o"));
-  for (const char* name : {"12.S", "12", "o", "12.rml", "12.O.S"})
+  EXPECT_TRUE(families::IsObjectFileName("old.S/12.O"));
+  for (const char* name :
+       {"12.S", "12", "o", "12.rml", "12.O.S", ".O", "jobs/.O", "jobs\\.o", "old.O/12", ""})
     EXPECT_FALSE(families::IsObjectFileName(name)) << name;
 }
 

@@ -187,6 +187,28 @@ TEST(MotionCheck, DoubtsATravelErrorThatHangsOnAnInput) {
             "BAD; OPT-E7301 X of the target leaves its travel by 400.000 mm @2");
 }
 
+// OPT-3.37, OPT-7.68, OPT-7.69: work flags IL[87] to IL[94], the motion flag IL[95], VI[98] and
+// VI[99] and OA[0] are the control's own, whatever was before; all others are as somebody left
+// them. Each condition is false on a machine that was just switched on.
+TEST(MotionCheck, WhatTheControlSetsItselfIsSure) {
+  const auto verdict = [](const std::string& condition) {
+    return VerdictOfCheck("COORD ROBOT\nIF " + condition +
+                          " THEN 10\nMOVE (4000.,0.,0.,0.,0.)\n10 COORD ROBOT\n");
+  };
+  const std::string beyond = "OPT-E7301 X of the target leaves its travel by 400.000 mm";
+  for (const char* own : {"IL[87]", "IL[94]", "IL[95]", "(VI[98]>7)", "(VI[99]>0)", "(OA[0]>0)"})
+    EXPECT_EQ(verdict(own), "BAD; " + beyond + " @3") << own;
+  for (const auto& [other, as_it_is] : {std::pair("IL[86]", "IL[86] is OFF"),
+                                        {"IL[96]", "IL[96] is OFF"},
+                                        {"(VI[97]>0)", "VI[97] is 0"},
+                                        {"(OA[1]>0)", "OA[1] is 0"},
+                                        {"(IA[7]>0)", "IA[7] is 0"},
+                                        {"VL[3]", "VL[3] is OFF"},
+                                        {"OL[3]", "OL[3] is OFF"},
+                                        {"(VR[3]>0)", "VR[3] is 0"}})
+    EXPECT_EQ(verdict(other), "DOUBTFUL; " + beyond + ", if " + as_it_is + " @3") << other;
+}
+
 // The rules of a run judge a check, too: the programs of laser_verdict_test.cc.
 TEST(MotionCheck, IsJudgedByTheRulesOfARun) {
   const std::string from = "COORD ABSOL\nPATH LIN\nMOVE (0.,1000.,-400.,0.,0.)\nSPEED 10\n";

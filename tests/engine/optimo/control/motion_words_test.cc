@@ -189,6 +189,33 @@ TEST(MotionWords, WordsThatTakeTime) {
        {"TIMER (1.,900)/AUTO\nDELAY 1.1\nTIMER /DIS\n" + seconds + handler, "VI[3]", "1"}});
 }
 
+// OPT-2.20, OPT-7.28: a MOVE to where the tip is already is told like any other, as it is
+// programmed and where the machine stands: SYSDEF puts (21, 2001, -50) of the program to (121,
+// 2201, -350).
+TEST(MotionWords, AMoveOnTheSpotIsTold) {
+  const std::string move = "MOVE (21.,2001.,-50.,.5,.25)";
+  for (const auto& [path, feed_mm_s] : {std::pair("LIN", 50.0), {"PTP", 0.0}}) {
+    const Ran ran = RunText("COORD ABSOL\nSYSDEF (100.,200.,-300.,0.,0.,0.)\nPATH " +
+                            std::string(path) + "\nSPEED 10\n" + move + "\n" + move + "\n");
+    ASSERT_EQ(ran.moves.size(), 2U) << path;
+    const machine::MoveDone& first = ran.moves[0];
+    const machine::MoveDone& second = ran.moves[1];
+    EXPECT_EQ(second.at, first.at) << path;  // it takes no time
+    EXPECT_NEAR(ToSeconds(second.at), ran.time_s, kExact) << path;
+    EXPECT_EQ(second.place.step, 6) << path;
+    EXPECT_NEAR((second.tip.tip - motion::MachinePoint(121.0, 2201.0, -350.0)).norm(), 0.0,
+                kReal_mm);
+    EXPECT_EQ(second.axes.column, first.axes.column) << path;
+    EXPECT_NEAR(second.axes.a_rad, 0.5, kExact) << path;
+    EXPECT_NEAR(second.axes.b_rad, 0.25, kExact) << path;
+    EXPECT_EQ(second.program_point, motion::ProgramPoint(21.0, 2001.0, -50.0)) << path;
+    EXPECT_EQ(second.rotary_a, 0.5) << path;
+    EXPECT_EQ(second.feed_mm_s, feed_mm_s) << path;
+    EXPECT_EQ(second.path, path);
+    EXPECT_EQ(first.path, path);
+  }
+}
+
 // OPT-W.32, OPT-W.42: PAUSE and STOP halt until START.
 TEST(MotionWords, WordsThatHalt) {
   for (const std::string word : {"PAUSE", "STOP"}) {

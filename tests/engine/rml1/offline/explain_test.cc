@@ -41,6 +41,23 @@ TEST(Explain, UnitsAreThoseOfTheProfile) {
             "spindle starts, 6500 rpm; go to Z 2 at 2 mm/s; go to X 2.5 at 15 mm/s");
 }
 
+// Places count from the work origin, here 50 mm from the left and 20 mm from the front.
+TEST(Explain, PlacesAreFromTheWorkOrigin) {
+  machine::Parameters moved = ParametersOf("t1");
+  ASSERT_TRUE(moved.Set("ORIGIN_X", std::string_view("50")));
+  ASSERT_TRUE(moved.Set("ORIGIN_Y", std::string_view("20")));
+  std::vector<std::string> words;
+  ASSERT_TRUE(Explain("!MC0;PU100,250;PU-6000,-2500;", moved, [&](const ExplainedPhrase& phrase) {
+    words.push_back(phrase.words);
+    return true;
+  }));
+  ASSERT_EQ(words.size(), 3U);
+  EXPECT_EQ(words[1], "go to Z 5 at 2 mm/s; go to X 1 Y 2.5 at 60 mm/s");
+  EXPECT_TRUE(words[2].ends_with(
+      "beyond the travel: the commands lead to X -60 Y -25 Z 5, the tool does not follow"))
+      << words[2];
+}
+
 TEST(Explain, SettingsSayWhatHoldsAfterwards) {
   // T1: Z0 is 20 mm below the top and 40 mm above the bottom; after !ZO-1000, 50 mm above it.
   EXPECT_EQ(Words("!PZ-4001,200;")[0],
@@ -58,6 +75,17 @@ TEST(Explain, SettingsSayWhatHoldsAfterwards) {
                 "relative coordinates", "relative coordinates",
                 // From the top, 10 mm above Z0, to 1.5 mm below it.
                 "tool down; wait 7 ms; down into the work to Z -1.5 at 60 mm/s"}));
+}
+
+// RML1-3A.37, RML1-3B.03: H and IN say by themselves what they set; coordinates that become
+// absolute with them are not told again.
+TEST(Explain, WhatACommandSetsIsSaidOnce) {
+  EXPECT_EQ(Words("PR;H;")[1],
+            "home: up to the top, to the XY origin, spindle off, errors cleared");
+  const std::string initialise = Words("PR;IN;")[1];
+  EXPECT_TRUE(
+      initialise.starts_with("initialise: defaults as DF, tool up, spindle off, errors cleared"));
+  EXPECT_EQ(initialise.find("absolute"), std::string::npos) << initialise;
 }
 
 TEST(Explain, PlacesNumbersAndText) {

@@ -63,6 +63,63 @@ TEST(CompareStreams, FiguresOfRunsButNotOfTheText) {
   EXPECT_EQ(diff->figures[0].after, 2.0);
 }
 
+// A figure of one run alone counts from 0 or to 0; equal ones, and the number of commands, are no
+// change, but a difference of a ten millionth is.
+TEST(CompareStreams, WhichFiguresChange) {
+  const std::vector<machine::Figure> a = {
+      {"commands", "", 7.0}, {"cut_length", "mm", 1.0}, {"time", "s", 5.0}, {"travel", "mm", 4.0}};
+  const std::vector<machine::Figure> b = {{"commands", "", 9.0},
+                                          {"cut_length", "mm", 1.0 + 1e-7},
+                                          {"plunges", "", 3.0},
+                                          {"time", "s", 5.0 + 1e-12}};
+  const auto diff = CompareStreams({.object = "PU;", .figures = a}, {.object = "PU;", .figures = b},
+                                   ParametersOf("t1"));
+  ASSERT_TRUE(diff);
+  ASSERT_EQ(diff->figures.size(), 3U);
+  EXPECT_EQ(diff->figures[0].name, "cut_length");
+  EXPECT_EQ(diff->figures[0].before, 1.0);
+  EXPECT_EQ(diff->figures[1].name, "plunges");
+  EXPECT_EQ(diff->figures[1].before, 0.0);
+  EXPECT_EQ(diff->figures[1].after, 3.0);
+  EXPECT_EQ(diff->figures[2].name, "travel");
+  EXPECT_EQ(diff->figures[2].unit, "mm");
+  EXPECT_EQ(diff->figures[2].before, 4.0);
+  EXPECT_EQ(diff->figures[2].after, 0.0);
+}
+
+// Places that differ by less than half of a ten thousandth of a unit are one.
+TEST(CompareStreams, NoiseOfDecimalsIsNoChange) {
+  EXPECT_TRUE(Diff("Z100,0,0;", "Z100.00004,0,0;").equal());
+  EXPECT_FALSE(Diff("Z100,0,0;", "Z100.00006,0,0;").equal());
+}
+
+// Places are told from the work origin, wherever that is on the table.
+TEST(CompareStreams, PlacesAreFromTheWorkOrigin) {
+  machine::Parameters moved = ParametersOf("t1");
+  ASSERT_TRUE(moved.Set("ORIGIN_X", std::string_view("50")));
+  ASSERT_TRUE(moved.Set("ORIGIN_Y", std::string_view("20")));
+  const auto diff =
+      CompareStreams({.object = "!MC0;Z50,30,0;"}, {.object = "!MC0;Z70,10,5;"}, moved);
+  ASSERT_TRUE(diff);
+  ASSERT_EQ(diff->steps.size(), 1U);
+  EXPECT_EQ(diff->steps[0].what,
+            (std::vector<std::string>{"X 0.5 -> 0.7", "Y 0.3 -> 0.1", "Z 0 -> 0.05"}));
+}
+
+// Degrees and waits are compared as what they are; a pause is one like any other.
+TEST(CompareStreams, DegreesAndWaits) {
+  const auto turned = Diff("!ZE A90;", "!ZE A80.5;", "t1a");
+  ASSERT_EQ(turned.steps.size(), 1U);
+  EXPECT_EQ(turned.steps[0].what, (std::vector<std::string>{"A 90 -> 80.5"}));
+  EXPECT_EQ(turned.steps[0].aspects, unsigned{machine::kAspectPath});
+  const auto waits = Diff("!MC0;!DW5;Z1,1,1;", "!MC0;!DW7;Z1,1,1;");
+  ASSERT_EQ(waits.steps.size(), 1U);
+  EXPECT_EQ(waits.steps[0].kind, StepChange::Kind::kChanged);
+  EXPECT_EQ(waits.steps[0].what, (std::vector<std::string>{"wait in ms 5 -> 7"}));
+  EXPECT_EQ(waits.steps[0].aspects, unsigned{machine::kAspectTime});
+  EXPECT_EQ(waits.steps[0].target_moved_mm, 0.0);
+}
+
 // More differences than an exact alignment takes, and more than are told.
 TEST(CompareStreams, LongStreams) {
   std::string a, b;

@@ -34,6 +34,27 @@ TEST(CheckWork, WorkBeyondTheTravelIsToldWithItsRemedy) {
             "moved by 10 to 20 mm");
 }
 
+// Y -1 to 151 mm on a travel of 150, and from X -60 to 0 of an origin that stands 50 mm in: 10 mm
+// to the right at least, and then up to the 200 of the travel.
+TEST(CheckWork, FacesAreThoseOfTheWorkOrigin) {
+  EXPECT_EQ(Checked("PU100,-100;PD100,15100;PU;")->detail,
+            "2 mm of the work would not be cut: 1 mm beyond the least Y (0 mm), 1 mm beyond the "
+            "greatest Y (150 mm); in Y it is 2 mm too large for this machine");
+  machine::Parameters moved = ParametersOf("t1");
+  EXPECT_TRUE(moved.Set("ORIGIN_X", std::string_view("50")));
+  EXPECT_TRUE(moved.Set("ORIGIN_Y", std::string_view("20")));
+  const auto left = CheckWork(machine::Bytes::Borrowed("PU-6000,100;PD0,100;PU;"), moved).value();
+  ASSERT_TRUE(left);
+  EXPECT_EQ(left->detail,
+            "10 mm of the work would not be cut: 10 mm beyond the least X (-50 mm); in X it fits "
+            "moved by 10 to 150 mm");
+  const auto up = CheckWork(machine::Bytes::Borrowed("PU0,0;PD0,13200;PU;"), moved).value();
+  ASSERT_TRUE(up);
+  EXPECT_EQ(up->detail,
+            "2 mm of the work would not be cut: 2 mm beyond the greatest Y (130 mm); in Y it fits "
+            "moved by -20 to -2 mm");
+}
+
 // The surface stays where the operator set it, -2000, whatever !ZO makes of Z0: the lowest Z is 40
 // mm below it, and the work reaches 50.
 TEST(CheckWork, DepthIsToldFromTheSurface) {
