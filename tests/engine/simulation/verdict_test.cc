@@ -182,7 +182,6 @@ TEST(Verdict, OfAPauseSaysNothingOfTheEnd) {
   EXPECT_EQ(judgement.verdict, Verdict::kDoubtful);
   ASSERT_EQ(judgement.reasons.size(), 1U);
   EXPECT_EQ(judgement.reasons[0].code, ErrorCode::kCellWaitsForever);
-  // As a check says it, which goes on and counts them all: MillRules.WaitsForTheResumeKey.
   EXPECT_EQ(judgement.reasons[0].said, "halts that wait for a key to go on: 1");
 }
 
