@@ -267,7 +267,7 @@ void Control::TellLeftOn(const Processes& processes) {
   }
   telling_.Tell({.code = ErrorCode::kWorkActiveAtEnd,
                  .severity = Severity::kAdvice,
-                 .detail = "the program ends with a WORK 2 ON, which has no beam and does no harm",
+                 .detail = "the program ends with a WORK 2 ON: it has no beam and does no harm",
                  .rule = "OPT-3.34",
                  .where = {.line = now().place.line},
                  .program = now().place.program,

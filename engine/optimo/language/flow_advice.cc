@@ -177,7 +177,7 @@ void FlowAdviser::AdviseEnding(std::uint32_t at, const FlowState& state, const s
   if (!harmless) return AdviseLeaving(at, state, ErrorCode::kWorkActiveAtEnd, what);
   if ((state.on.made & kAllProcesses) == 0) return;
   Note(module_.instructions[at], ErrorCode::kWorkActiveAtEnd,
-       "WORK 2 is ON at " + what + ", which has no beam and does no harm", "OPT-3.34");
+       "WORK 2, which has no beam, is ON at " + what + ": it does no harm", "OPT-3.34");
 }
 
 // The implied ENDTASK: reported at what comes before it.

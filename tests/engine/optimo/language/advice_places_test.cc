@@ -56,7 +56,7 @@ TEST(AdvicePlaces, OfProcesses) {
       {"IF VL[1] THEN 10\nWORK 0,0/ON\n10 {CALL 2}\n", 7407, "OPT-3.33",
        "on one path a process is ON at CALL"},
       {"WORKDEF 2,5 (15)\n{WORK 2,5/ON}\n", 7408, "OPT-3.34",
-       "WORK 2 is ON at the end of the program"},
+       "WORK 2, which has no beam, is ON at the end of the program"},
       {"WORK 0,0/ON\n{ENDTASK}\n", 7408, "OPT-3.34", "a process is ON at the end"},
       {"IF VL[1] THEN 10\nWORK 0,0/ON\n10 {ENDTASK}\n", 7408, "OPT-3.34",
        "on one path a process is ON at the end"},
