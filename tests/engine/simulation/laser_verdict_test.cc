@@ -217,9 +217,9 @@ TEST(LaserVerdict, OfAContourThatIsAllRamps) {
 }
 
 // motion.md 5.2: from rest to rest over L the tip comes to cbrt(40000 L^2 / 4) mm/s: over 0.5 mm to
-// 13.6, over 2.5 mm to 39.7, over 2.6 mm to 40.74 and over 2.8 mm to 42.80 mm/s. Below 40 mm/s,
-// 0.8 of SPEED 10, there is no ramp to leave out. Of 2.6 mm 2.105 mm are slow, and 1.44854 mm of
-// that are for nothing: 25.2 %; of 2.8 mm 1.809 mm: 12.9 %.
+// 13.6, over 2.5 mm to 39.7, over 2.6 mm to 40.736 and over 2.8 mm to 42.80 mm/s. Below 40 mm/s,
+// 0.8 of SPEED 10, there is no ramp to leave out. Of 2.6 mm 2.109 mm are slow, and 1.44854 mm of
+// that are for nothing: 25.4 %; of 2.8 mm 1.809 mm: 12.9 %.
 TEST(LaserVerdict, OfAContourThatNeverComesToItsSpeed) {
   const auto slow = [](const std::string& way) {
     return VerdictOfCut(From("0.") + kRamp + way + kRampOff);
@@ -230,7 +230,7 @@ TEST(LaserVerdict, OfAContourThatNeverComesToItsSpeed) {
   EXPECT_EQ(slow(To(".5") + To("1.")), all);
   EXPECT_EQ(slow(To("2.5")), all);
   EXPECT_EQ(slow(To("2.6")),
-            "DOUBTFUL; CELL-E9422 25.2 % of a contour is cut below 0.8 of its SPEED @6");
+            "DOUBTFUL; CELL-E9422 25.4 % of a contour is cut below 0.8 of its SPEED @6");
   EXPECT_EQ(slow(To("2.8")), "GOOD");
   // A point has no speed to keep.
   EXPECT_EQ(slow(To("0.0078125")), "GOOD");
