@@ -125,7 +125,8 @@ int Show(CheckedFile& file, const CheckOptions& options) {
   Print(Visible(file.name) + ": " + VerdictText(found.verdict()) + CountText(found));
   // Where it fails the reasons do not say how far it was looked at.
   if (!file.check.ok()) {
-    for (const auto& [slot, why] : file.check.motion.cut_short) Print("  motion checked " + why);
+    for (const auto& [slot, why] : file.check.motion.cut_short)
+      Print("  motion checked " + why.text);
   }
   for (const v1::VerdictReason& reason : found.reasons()) Print("  " + ReasonLine(reason));
   PrintRaw(MachineRows(*file.check.family, found));

@@ -68,9 +68,8 @@ class Run {
   // "VR[5]" -> "7.0"; nothing when the family has no such variable.
   virtual std::optional<std::string> ReadVariable(std::string_view /*name*/) const { return {}; }
 
-  // What it did hung on something that was there before it and that nothing of it has set: a
-  // variable, an input, the parameters of a subroutine. Another time it may do something else.
-  virtual bool relies_on_what_was() const { return false; }
+  // It stands at a condition that no motion and no scripted input changes any more.
+  virtual bool waits_for_ever() const { return false; }
 
   virtual std::vector<Figure> figures() const { return {}; }
 

@@ -32,6 +32,11 @@ struct VerdictRule {
   std::string_view said{};
 };
 
+// A halt that nobody ends: of a run its last place, of a check, which goes on, all there are.
+inline constexpr VerdictRule kWaitsForKey = {ErrorCode::kCellWaitsForever, "waits_for_key", 0.0,
+                                             Verdict::kDoubtful,
+                                             "halts that wait for a key to go on: #"};
+
 // Why a verdict is not GOOD. One for each rule that spoke, however many places it is about.
 struct Reason {
   ErrorCode code{};

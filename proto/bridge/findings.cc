@@ -314,7 +314,8 @@ v1::Findings FindingsOf(const simulation::CheckedProgram& check,
   for (const Diagnostic& diagnostic : check.motion.findings)
     *message.add_diagnostics() = ToProto(diagnostic);
   const auto cut_short = check.motion.cut_short.find(check.slot);
-  if (cut_short != check.motion.cut_short.end()) message.set_motion_check(Utf8(cut_short->second));
+  if (cut_short != check.motion.cut_short.end())
+    message.set_motion_check(Utf8(cut_short->second.text));
   SetJudgement(judgement, message);
   message.set_family(std::string(check.family->info().id));
   SetMachine(check.machine, message);

@@ -426,6 +426,7 @@ Result<simulation::CheckedProgram> ProgramBook::Check(const std::string& family_
   simulation::ProgramMemory memory{.family = &family};
   if (subject->record && family.info().checked_by_running) {
     if (const Status added = AddMemory(*subject, memory); !added) return added.error();
+    memory.given = simulation::MemoryGiven::kWhole;
   }
   const int slot = SlotForCheck(program.file_name(), memory.programs);
   memory.programs.push_back({.slot = slot,

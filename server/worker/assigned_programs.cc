@@ -47,6 +47,7 @@ simulation::ProgramMemory AssignedPrograms::Memory() {
   memory.deleted_programs = {assignment_.deleted_programs().begin(),
                              assignment_.deleted_programs().end()};
   memory.machine_state = assignment_.machine_state();
+  memory.given = simulation::MemoryGiven::kWhole;
   for (const v1::AssignedProgram& program : assignment_.programs()) {
     simulation::MemoryProgram made{
         .slot = program.slot(),

@@ -143,7 +143,8 @@ class Attempt {
     found.diagnostics.insert(found.diagnostics.end(), check->motion.findings.begin(),
                              check->motion.findings.end());
     std::string motion_check;
-    if (!check->motion.cut_short.empty()) motion_check = check->motion.cut_short.begin()->second;
+    if (!check->motion.cut_short.empty())
+      motion_check = check->motion.cut_short.begin()->second.text;
     // Done as it is, it need not be handed back.
     if (const Stop stop = lease_.StopAsked(); stop != Stop::kNone && stop != Stop::kHandBack)
       return EndOf(stop);

@@ -42,6 +42,19 @@ class Local(InFolder):
         self.assertIn("by 400.000 mm, if no SYSDEF is in force before (OPT-E7301, program 44 step 2 line 2)", alone.stdout)
         self.assertEqual(ask("check", part, "--strict").returncode, 1)
 
+    # OPT-2.08: nothing decides whether this run fails. OPT-E7102: what a file calls may be on its machine.
+    def test_check_fails_where_every_run_fails(self):
+        hole = self.file("6.S", "PATH HOLE (25.1)\nMOVE (1200.,1120.,-350.,0.,0.) / VIA (1200.,1120.,-150.,0.,0.)\n")
+        found = ask("check", hole)
+        self.assertEqual(found.returncode, 1)
+        self.assertIn("6.S: BAD", found.stdout)
+        self.assertIn("(OPT-E7302, program 6 step 2 line 2)", found.stdout)
+        calls = self.file("5.S", "COORD ABSOL\nCALL 77\n")
+        found = ask("check", calls)
+        self.assertEqual(found.returncode, 0)
+        self.assertIn("5.S: DOUBTFUL", found.stdout)
+        self.assertIn("check main.S 77.S", found.stdout)
+
     # docs/verdict.md: what a run would be judged by is judged before: 10 mm of WORK 0 without its beam.
     def test_check_and_simulate_judge_alike(self):
         cut = self.file("7.S", "COORD ABSOL\nPATH LIN\nMOVE (0.,1000.,-400.,0.,0.)\nSPEED 10\nWORK 0,0 /ON\n"

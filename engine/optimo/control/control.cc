@@ -110,7 +110,6 @@ bool Control::MayFetch() const {
          (!ride_.busy() || ride_.beside() || (halts_.stop_waits() && ride_.passing()));
 }
 
-// Nothing outside can change the condition any more, and no motion either.
 bool Control::WaitsForEver() const {
   return waits_.pending().kind == Pending::Kind::kCondition && !ride_.busy() &&
          !watch_.times_out() && s_.next_input >= setup_.inputs.size();

@@ -31,6 +31,8 @@ class Control final : private RideListener {
   void End(machine::OutcomeKind kind, ErrorCode code);
 
   machine::RunState Snapshot() const;
+  // Nothing outside can change the condition that it stands at any more, and no motion either.
+  bool WaitsForEver() const;
 
   const ControlState& state() const { return s_; }
   std::vector<machine::Figure> figures() const;
@@ -39,7 +41,6 @@ class Control final : private RideListener {
  private:
   // --- control.cc: the course of time ---
   bool MayFetch() const;
-  bool WaitsForEver() const;
   SimTime NextEvent(SimTime until) const;
   void ActOnTime();
   void ActOnPending();
@@ -61,6 +62,7 @@ class Control final : private RideListener {
   Status GoTo(const Instruction& i);
   void BeginMain(const Loaded& main, int slot);
   void EndModule();
+  void TellLeftOn(const Processes& processes);
 
   Situation& now() { return s_.situation; }
   const Situation& now() const { return s_.situation; }

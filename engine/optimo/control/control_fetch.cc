@@ -257,13 +257,29 @@ void Control::BeginMain(const Loaded& main, int slot) {
   data_.CountExecution(counter_.BeginMain(main, slot));
 }
 
+// The beam's process is a reason of the verdict. A schedule, WORK 2, has no beam and stays selected
+// even behind its OFF: OPT-3.23, OPT-3.26.
+void Control::TellLeftOn(const Processes& processes) {
+  if (processes.beam_on()) {
+    telling_.Warn(ErrorCode::kWorkActiveAtEnd, "the program ends with a WORK ON", "OPT-3.34");
+    process_watch_.OnLeftOn(now().place);
+    return;
+  }
+  telling_.Tell({.code = ErrorCode::kWorkActiveAtEnd,
+                 .severity = Severity::kAdvice,
+                 .detail = "the program ends with a WORK 2 ON: it has no beam and does no harm",
+                 .rule = "OPT-3.34",
+                 .where = {.line = now().place.line},
+                 .program = now().place.program,
+                 .step = now().place.step});
+}
+
 // Of a program the machine stands. OPT-3.34, 3.35, B.54
 void Control::EndModule() {
   if (counter_.in_function()) return counter_.LeaveFunction();
   const Processes& processes = counter_.program().processes;
   if (processes.any_on()) {
-    telling_.Warn(ErrorCode::kWorkActiveAtEnd, "the program ends with a WORK ON", "OPT-3.34");
-    if (processes.beam_on()) process_watch_.OnLeftOn(now().place);
+    TellLeftOn(processes);
     actuators_.BeamOff();
   }
   works_.EndProgram();

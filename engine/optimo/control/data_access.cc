@@ -76,10 +76,7 @@ bool DataAccess::IsOfTheRun(Variable variable) const {
 float DataAccess::Read(Variable variable) {
   const bool of_the_run = IsOfTheRun(variable);
   const float value = ValueOf(variable);
-  if (!of_the_run) {
-    s_.relied_on_what_was = true;
-    TellAssumed(variable, value);
-  }
+  if (!of_the_run) TellAssumed(variable, value);
   return value;
 }
 

@@ -15,7 +15,6 @@ struct DataState {
   DataArea area{};
   // By the run itself; by group.
   std::array<std::bitset<kVariableCount>, kVariableGroups> written{};
-  bool relied_on_what_was = false;  // what the run did hung on something that nothing of it had set
 };
 
 // Variables, the images of inputs and outputs, and the expressions that read them; the instructions
@@ -69,7 +68,6 @@ class DataAccess : private VariableAccess {
   void SetLastError(ErrorCode code);
   // VI[98], executions of the main program since it was selected: one more. OPT-7.70, OPT-B.63
   void CountExecution(bool selected_anew);
-  void RelyOnWhatWas() { s_.relied_on_what_was = true; }
 
   // Physical outputs of these groups follow their images again: UPDATE ON, REAL, the end of a
   // simulation. Errors: Gas3NotFitted.

@@ -27,7 +27,6 @@ Status Moves::Execute(const Instruction& i) {
       return Move(i);
     case Op::kCoord:
       counter_.modal().coord = static_cast<CoordType>(i.choice);
-      counter_.modal().coord_given = true;
       return {};
     case Op::kPath:
       return SetPath(i);
@@ -106,7 +105,6 @@ Status Moves::Move(const Instruction& i) {
   if (!*begins) return {};
   const Modal& modal = counter_.modal();
   if (modal.coord == CoordType::kRobot && modal.path != PathType::kPtp) {
-    if (!modal.coord_given) data_.RelyOnWhatWas();
     return Error{ErrorCode::kPathNeedsAbsol, "PATH LIN, CIR and HOLE need COORD ABSOL", {}};
   }
   if (!s_.zeroed && !situation_.simulating()) {

@@ -22,7 +22,7 @@ class OptimoRun final : public machine::Run {
   std::optional<std::string> ReadVariable(std::string_view name) const override {
     return ReadByName(control_.state().data.area, name);
   }
-  bool relies_on_what_was() const override { return control_.state().data.relied_on_what_was; }
+  bool waits_for_ever() const override { return control_.WaitsForEver(); }
   std::vector<machine::Figure> figures() const override { return control_.figures(); }
   std::string SaveMachine() const override { return EncodeMachineState(control_.state().Kept()); }
   std::map<int, std::string> made_executables() const override {

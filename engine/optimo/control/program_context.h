@@ -36,7 +36,6 @@ struct Frame {
 // Values that hold until they are changed; common to the modules of an executable (OPT-9.16).
 struct Modal {
   CoordType coord = CoordType::kRobot;
-  bool coord_given = false;  // by an instruction; a FUNCTION has that of its caller
   PathType path = PathType::kPtp;
   double hole_radius_mm = 0.0;
   double speed_percent = 70.0;

@@ -83,6 +83,7 @@ class FlowAdviser {
   void AdviseProcesses(std::uint32_t at, const FlowState& state);
   void AdviseLeaving(std::uint32_t at, const FlowState& state, ErrorCode code,
                      const std::string& what);
+  void AdviseEnding(std::uint32_t at, const FlowState& state, const std::string& what);
   void AdviseEnd(std::uint32_t at, const FlowState& state);
   void AdviseSensor(const Instruction& i, const FlowState& state);
   void AdviseGas(const Instruction& i, const FlowState& state);
@@ -141,7 +142,7 @@ void FlowAdviser::AdviseProcesses(std::uint32_t at, const FlowState& state) {
   if (i.op == Op::kGo || i.op == Op::kCall) {
     return AdviseLeaving(at, state, ErrorCode::kWorkActiveAtCall, i.op == Op::kGo ? "GO" : "CALL");
   }
-  if (i.op == Op::kEndtask) return AdviseLeaving(at, state, ErrorCode::kWorkActiveAtEnd, "the end");
+  if (i.op == Op::kEndtask) return AdviseEnding(at, state, "the end");
   if (i.op != Op::kWork) return;
   const ProcessSet bit = ProcessBit(i);
   if (i.Has(kOn)) {
@@ -170,13 +171,22 @@ void FlowAdviser::AdviseLeaving(std::uint32_t at, const FlowState& state, ErrorC
        code == ErrorCode::kWorkActiveAtCall ? "OPT-3.33" : "OPT-3.34");
 }
 
+// WORK 2 has no beam, and its schedule stays selected even behind its OFF: OPT-3.23, OPT-3.26.
+void FlowAdviser::AdviseEnding(std::uint32_t at, const FlowState& state, const std::string& what) {
+  const bool harmless = state.KnowsProcesses() && (state.on.made & kBeamProcesses) == 0;
+  if (!harmless) return AdviseLeaving(at, state, ErrorCode::kWorkActiveAtEnd, what);
+  if ((state.on.made & kAllProcesses) == 0) return;
+  Note(module_.instructions[at], ErrorCode::kWorkActiveAtEnd,
+       "WORK 2, which has no beam, is ON at " + what + ": it does no harm", "OPT-3.34");
+}
+
 // The implied ENDTASK: reported at what comes before it.
 void FlowAdviser::AdviseEnd(std::uint32_t at, const FlowState& state) {
   for (const Successor& s : graph_.From(at, room_)) {
     if (s.to != graph_.size() || (s.edge != Edge::kNext && s.edge != Edge::kJump)) continue;
     FlowState end = state;
     walk_.Pass(at, end);
-    return AdviseLeaving(at, end, ErrorCode::kWorkActiveAtEnd, "the end of the program");
+    return AdviseEnding(at, end, "the end of the program");
   }
 }
 

@@ -33,6 +33,7 @@ inline ProcessSet ProcessBit(const Instruction& i) {
 // Beside the processes: another program may have changed them.
 inline constexpr ProcessSet kNotFollowed = 1U << 30;
 inline constexpr ProcessSet kAllProcesses = kNotFollowed - 1;
+inline constexpr ProcessSet kBeamProcesses = (1U << 20) - 1;  // WORK 0 and 1
 
 // VR, VI, VL in this order, a hundred each.
 inline constexpr std::size_t kOwnVariables = 300;

@@ -1,6 +1,7 @@
 #include "engine/simulation/report/contour_log.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/motion/profile/speed_profile.h"
 
@@ -9,6 +10,7 @@ namespace {
 
 constexpr double kNearStraightDown_rad = kRadPerDegree;  // motion.md 2.5
 constexpr double kRounding = 1e-6;                       // mm, rad; motion.md section 1
+constexpr double kLeastCut_mm = 0.01;                    // a point: it has no speed to keep
 
 // How much of a range lies within 1 degree of straight down: A and B go in step.
 double ShareNearSingular(const CoordinateSweep& b) {
@@ -17,6 +19,23 @@ double ShareNearSingular(const CoordinateSweep& b) {
   if (low > high) return 0.0;
   const double range = b.maximum - b.minimum;
   return range > 0.0 ? (high - low) / range : 1.0;
+}
+
+// How much of the ramp from rest to this speed is slow.
+double SlowLengthOfRamp(double speed_mm_s, const motion::PathLimits& limits) {
+  const double length = motion::RampLength(0.0, speed_mm_s, limits);
+  const auto ramp = motion::SpeedProfile::Span(length, 0.0, speed_mm_s, limits);
+  for (int k = 0; k < ramp.phase_count(); ++k) {
+    const auto& [duration_s, jerk, start] = ramp.phase(k);
+    const double change = kSlowSpeed * speed_mm_s - start.speed;
+    const bool last = k + 1 == ramp.phase_count();
+    if (!last && ramp.phase(k + 1).start.speed < start.speed + change) continue;
+    // Both roots of the speed by time, without a difference of like numbers.
+    const double a = start.acceleration;
+    const double t = 2.0 * change / (a + std::sqrt(std::max(0.0, a * a + 2.0 * jerk * change)));
+    return start.s + t * (start.speed + t * (0.5 * a + t * jerk / 6.0));
+  }
+  return 0.0;
 }
 
 }  // namespace
@@ -132,22 +151,23 @@ void ContourLog::AddAxes(const Motion& motion) {
   }
 }
 
+// From rest to its speed, and to rest again: no contour can do without. One that never comes to its
+// speed has no such ramps: all of it is slow.
+double ContourLog::RampsLeftOut_mm() const {
+  if (!limits_ || pace_.slow_mm() >= contour_.length_mm - kRounding) return 0.0;
+  const motion::PathLimits tip{.speed = limits_->tip_speed_mm_s,
+                               .acceleration = limits_->tip_acceleration_mm_s2,
+                               .jerk = limits_->tip_jerk_mm_s3};
+  return 2.0 * SlowLengthOfRamp(pace_.programmed_max_mm_s(), tip);
+}
+
 void ContourLog::Close() {
   if (state_ == State::kNone) return;
   state_ = State::kNone;
   EndStand();
-  contour_.slow_mm = pace_.slow_mm();
-  if (contour_.length_mm > 0.0) {
-    // From rest and to rest again: no contour can do without.
-    double ramps_mm = 0.0;
-    if (limits_) {
-      const motion::PathLimits tip{.speed = limits_->tip_speed_mm_s,
-                                   .acceleration = limits_->tip_acceleration_mm_s2,
-                                   .jerk = limits_->tip_jerk_mm_s3};
-      ramps_mm = 2.0 * motion::RampLength(0.0, pace_.programmed_max_mm_s(), tip);
-    }
-    const double slow_mm = std::max(0.0, contour_.slow_mm - ramps_mm);
-    figures_.slow_percent.Raise(100.0 * slow_mm / contour_.length_mm, contour_.place);
+  if (contour_.length_mm > kLeastCut_mm) {
+    contour_.slow_mm = std::max(0.0, pace_.slow_mm() - RampsLeftOut_mm());
+    figures_.slow_percent.Raise(100.0 * contour_.slow_mm / contour_.length_mm, contour_.place);
   }
   pace_.Close(figures_);
   EndSwing();

@@ -53,6 +53,7 @@ class ContourLog {
   void Close();
   void AddTimes(const WorkFigures& work);
   void AddStand(double seconds, double power_percent, const machine::Place& place);
+  double RampsLeftOut_mm() const;
   void EndStand();
   void EndSwing();
   void AddAxes(const Motion& motion);

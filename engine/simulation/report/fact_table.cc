@@ -180,9 +180,10 @@ void Table::AddContours() {
     Add(std::move(key), std::move(unit), std::move(text),
         [figure](const RunReport& r) { return Real((r.cut_figures.*figure).value); });
   };
-  worst("slow_contour_max_percent", "%",
-        "greatest share of a contour below 0.8 of its SPEED, first and last ramp left out",
-        &CutFigures::slow_percent);
+  worst(
+      "slow_contour_max_percent", "%",
+      "greatest share of a contour below 0.8 of its SPEED, first and last ramp left out where it comes to it",
+      &CutFigures::slow_percent);
   worst("hot_stretch_max_mm", "mm",
         "longest stretch of a contour with more than 1.5 times the energy by length of the process",
         &CutFigures::hot_mm);

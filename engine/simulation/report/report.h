@@ -170,7 +170,7 @@ struct Contour {
   SimTime begin{0};
   SimTime time{0};  // with the beam on
   double length_mm = 0.0;
-  double slow_mm = 0.0;  // of it below kSlowSpeed of the speed asked for
+  double slow_mm = 0.0;  // of it below kSlowSpeed of the speed asked for, as slow_percent counts
   double cut_energy_j = 0.0;
   double pierce_energy_j = 0.0;  // on a standing tip
 
@@ -201,7 +201,8 @@ struct CutFigures {
   SimTime longest{0};         // of the times of contours
   double energy_max_j = 0.0;  // of one contour
 
-  Extreme slow_percent;     // of the length of a contour, its first and last ramp left out
+  // Of the length of a contour; the first and last ramp of one that comes to its speed left out.
+  Extreme slow_percent;
   Extreme hot_mm;           // of a stretch
   Extreme weak_mm;          // of a stretch
   Extreme uncontrolled_mm;  // in all, where no speed is asked for; the first place

@@ -89,7 +89,7 @@ struct CheckedRun {
       : listener(info, inputs) {}
 
   MotionListener listener;
-  std::string cut_short;
+  std::optional<CutShort> cut_short;
   machine::Outcome outcome;
   SimTime ended_at{0};
   bool for_sure = false;     // it failed, and so does every other
@@ -98,15 +98,37 @@ struct CheckedRun {
   std::vector<machine::Reason> reasons;
 };
 
-// Whether every run of these programs fails as this one did. That a program or FUNCTION is missing
-// tells of what was given to the check; and what hangs on a variable, an input or a parameter that
-// nothing has set may be another time otherwise: a program that others call is checked alone, too.
-bool FailsForSure(const machine::FamilyInfo& info, const machine::Run& run) {
-  if (run.relies_on_what_was()) return false;
-  const machine::Outcome& outcome = run.outcome();
-  if (outcome.kind != machine::OutcomeKind::kFailed || !outcome.code) return false;
+// How a check ended, and what it knew.
+struct Ending {
+  const machine::FamilyInfo& info;
+  const machine::Outcome& outcome;
+  MemoryGiven given = MemoryGiven::kInPart;
+  bool waits = false;     // for a condition that never comes true
+  std::string assumed{};  // Assumptions::Text
+
+  // A program that may be on the machine all the same.
+  bool LacksProgram() const {
+    return given == MemoryGiven::kInPart && Contains(info.check.not_given, *outcome.code);
+  }
+};
+
+// Whether every run of these programs fails as this one did. What hangs on a variable, an input or
+// a parameter that nothing has set may be another time otherwise.
+bool FailsForSure(const Ending& ending) {
+  const machine::Outcome& outcome = ending.outcome;
+  if (!outcome.code || !ending.assumed.empty()) return false;
+  if (outcome.kind != machine::OutcomeKind::kFailed && !ending.waits) return false;
   // That the travel is left is told by itself, with its axis.
-  return *outcome.code != info.travel_left && !Contains(info.check.not_given, *outcome.code);
+  return *outcome.code != ending.info.travel_left && !ending.LacksProgram();
+}
+
+ErrorCode CauseOf(const Ending& ending) {
+  const ErrorCode code = *ending.outcome.code;
+  if (FailsForSure(ending) || code == ErrorCode::kCellWaitsForever) return code;
+  if (ending.LacksProgram()) return ErrorCode::kCellCheckLacksProgram;
+  if (ending.waits) return ErrorCode::kCellCheckWaits;
+  return ending.outcome.kind == machine::OutcomeKind::kFailed ? ErrorCode::kCellCheckFailsPerhaps
+                                                              : ErrorCode::kCellCheckCutShort;
 }
 
 Diagnostic DiagnosticOf(const machine::Outcome& outcome) {
@@ -118,16 +140,19 @@ Diagnostic DiagnosticOf(const machine::Outcome& outcome) {
           .step = outcome.place.step};
 }
 
-// Empty: the program was followed to its end.
-std::string WhyCutShort(const machine::FamilyInfo& info, const machine::Outcome& outcome) {
-  if (!outcome.code || *outcome.code == info.travel_left) return {};
+// Nothing: the program was followed to its end.
+std::optional<CutShort> WhyCutShort(const Ending& ending) {
+  const machine::Outcome& outcome = ending.outcome;
+  if (!outcome.code || *outcome.code == ending.info.travel_left) return {};
   const CatalogueEntry& entry = Lookup(*outcome.code);
   std::string text = "not at all";
   if (outcome.place.step > 0) text = "only up to step " + std::to_string(outcome.place.step);
   if (outcome.place.line > 0) text += ", line " + std::to_string(outcome.place.line);
   text += ": " + CodeText(entry.code) + ' ';
   text += outcome.detail.empty() ? std::string(entry.when) : outcome.detail;
-  return text;
+  const ErrorCode cause = CauseOf(ending);
+  if (cause == ErrorCode::kCellCheckFailsPerhaps) text += ending.assumed;
+  return CutShort{.cause = cause, .text = std::move(text)};
 }
 
 // By what the figures of a run are judged. How it ended, and that it leaves the travel, is told
@@ -147,7 +172,7 @@ std::vector<machine::Reason> ReasonsOf(const RunReport& report, const machine::F
   return reasons;
 }
 
-Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup,
+Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup, MemoryGiven given,
                    CheckedRun& checked) {
   setup.mode = machine::Mode::kCycle;
   setup.forecast = true;
@@ -162,17 +187,20 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
   }
   const RunReport report = simulation.Finish();
   checked.outcome = report.outcome;
-  checked.for_sure = FailsForSure(family.info(), *begun->run);
+  const Ending ending{.info = family.info(),
+                      .outcome = checked.outcome,
+                      .given = given,
+                      .waits = checked.outcome.kind == machine::OutcomeKind::kBudgetExceeded &&
+                               begun->run->waits_for_ever(),
+                      .assumed = checked.listener.assumptions().Text()};
+  checked.for_sure = FailsForSure(ending);
   checked.ended_at = simulation.state().time;
-  checked.cut_short = WhyCutShort(family.info(), checked.outcome);
+  checked.cut_short = WhyCutShort(ending);
   checked.reasons = ReasonsOf(report, family.info(), checked.listener);
   if (checked.starts > 0 && checked.outcome.code != ErrorCode::kCellWaitsForever) {
-    checked.reasons.push_back(
-        {.code = ErrorCode::kCellWaitsForever,
-         .verdict = machine::Verdict::kDoubtful,
-         .said = "halts that wait for START: " + std::to_string(checked.starts),
-         .amount = static_cast<double>(checked.starts),
-         .first = checked.halted_at});
+    checked.reasons.push_back(machine::ReasonOf(
+        machine::kWaitsForKey,
+        {.value = static_cast<double>(checked.starts), .first = checked.halted_at}));
   }
   return {};
 }
@@ -192,7 +220,8 @@ void AddReason(machine::Reason reason, std::vector<machine::Reason>& reasons) {
 }  // namespace
 
 Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
-                                const machine::RunSetup& setup, const std::set<int>& slots) {
+                                const machine::RunSetup& setup, const std::set<int>& slots,
+                                MemoryGiven given) {
   MotionCheck check;
   if (!family.info().checked_by_running) return check;
   std::map<int, CheckedRun> runs;
@@ -201,7 +230,8 @@ Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
     machine::RunSetup one = setup;
     one.main_program = slot;
     CheckedRun& run = runs.try_emplace(slot, family.info(), setup.inputs).first->second;
-    if (const Status ran = RunForCheck(family, std::move(one), run); !ran) return ran.error();
+    if (const Status ran = RunForCheck(family, std::move(one), given, run); !ran)
+      return ran.error();
     for (const int program : run.listener.reached()) {
       if (program != slot) called.insert(program);
     }
@@ -212,7 +242,7 @@ Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
     const CheckedRun& run = runs.at(slot);
     covered.insert(run.listener.reached().begin(), run.listener.reached().end());
     covered.insert(slot);
-    if (!run.cut_short.empty()) check.cut_short[slot] = run.cut_short;
+    if (run.cut_short) check.cut_short[slot] = *run.cut_short;
     for (const Finding& finding : run.listener.findings().findings()) {
       all.Add(finding.first_at, finding.diagnostic);
     }

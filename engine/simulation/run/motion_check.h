@@ -18,18 +18,33 @@ namespace rmlcell::simulation {
 //
 // Nothing is BAD that hangs on what nobody told the check: a variable or an input that nothing of
 // the run has set, or a work offset of a program that ran before. It is DOUBTFUL, and says which.
+// Where nothing of that kind was looked at on the way, an error that ends the run ends every run:
+// it is a finding. A program that is missing is one in the whole memory of a machine only.
 //
 // Bounds, whatever the program does: an object of 34,000 bytes has some thousand steps, so this is
 // many times round the longest one, and a part takes less than a day.
 inline constexpr std::uint64_t kCheckStepsMax = 50'000;
 inline constexpr SimTime kCheckTimeMax = std::chrono::hours(24);
 
+enum class MemoryGiven : std::uint8_t {
+  kInPart,  // what is missing may be there on the machine
+  kWhole,   // that of a machine: what is missing is not there
+};
+
+// The check did not come to the end of a program.
+struct CutShort {
+  // A code whose advice fits the reason: CellCheckCutShort (a bound), CellCheckLacksProgram,
+  // CellCheckWaits, CellCheckFailsPerhaps, CellWaitsForever; where every run ends so, its error.
+  ErrorCode cause = ErrorCode::kCellCheckCutShort;
+  std::string text{};  // "only up to step 12, line 9: OPT-E7201 ..."
+
+  bool operator==(const CutShort&) const = default;
+};
+
 struct MotionCheck {
   std::vector<Diagnostic> findings;  // each with program, step, line and time
   std::uint64_t findings_dropped = 0;
-  // By slot: why the motion was not followed to the end of the program, for people: a bound, a wait
-  // for an input that never comes, an error.
-  std::map<int, std::string> cut_short;
+  std::map<int, CutShort> cut_short;  // by slot; programs that were followed to their end are not
   // What the figures of the runs are judged, and errors of motion that hang on something that the
   // check had to assume (they are warnings among the findings). Each is about the program of its
   // place; where it has none, about the one that was run.
@@ -43,6 +58,7 @@ struct MotionCheck {
 // SYSDEF and TCP. A family whose translation tells all has nothing to run: no findings.
 // Errors: those of MachineFamily::NewRun.
 Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
-                                const machine::RunSetup& setup, const std::set<int>& slots);
+                                const machine::RunSetup& setup, const std::set<int>& slots,
+                                MemoryGiven given = MemoryGiven::kInPart);
 
 }  // namespace rmlcell::simulation

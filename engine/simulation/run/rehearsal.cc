@@ -151,10 +151,11 @@ Result<MotionCheck> CheckMotionOf(const ProgramMemory& memory,
   machine::RunSetup setup = SetupOf(memory, parameters);
   setup.inputs = inputs;
   PreparedRun ignored;
+  MemoryGiven given = memory.given;
   for (const MemoryProgram& program : memory.programs) {
-    AddProgram(*memory.family, program, setup, ignored);
+    if (!AddProgram(*memory.family, program, setup, ignored)) given = MemoryGiven::kInPart;
   }
-  return CheckMotion(*memory.family, setup, slots);
+  return CheckMotion(*memory.family, setup, slots, given);
 }
 
 namespace {
@@ -173,9 +174,9 @@ machine::Judgement JudgementOf(const CheckedProgram& check) {
   }
   if (motion.has_errors()) return judgement;
   for (const auto& [slot, why] : motion.cut_short) {
-    judgement.Add({.code = ErrorCode::kCellCheckCutShort,
+    judgement.Add({.code = why.cause,
                    .verdict = machine::Verdict::kDoubtful,
-                   .said = "motion checked " + why});
+                   .said = "motion checked " + why.text});
   }
   return judgement;
 }

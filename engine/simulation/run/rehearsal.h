@@ -35,6 +35,7 @@ struct ProgramMemory {
   std::vector<int> deleted_programs{};    // slots that are empty now and were not always
   std::optional<std::vector<machine::LaserSchedule>> schedules{};  // none: all at their defaults
   std::string machine_state{};
+  MemoryGiven given = MemoryGiven::kInPart;  // how a check takes a program that is missing
 };
 
 // Which machine that is, for the report of a program that is not run; its profile alone where its

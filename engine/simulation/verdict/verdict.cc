@@ -150,6 +150,10 @@ std::span<const VerdictRuleInfo> CommonVerdictRules() {
 machine::Judgement JudgeOutcome(const machine::Outcome& outcome) {
   machine::Judgement judgement;
   if (outcome.kind == machine::OutcomeKind::kCompleted) return judgement;
+  if (outcome.code == machine::kWaitsForKey.code) {
+    judgement.Add(machine::ReasonOf(machine::kWaitsForKey, {.value = 1.0, .first = outcome.place}));
+    return judgement;
+  }
   const bool stopped = outcome.kind == machine::OutcomeKind::kStopped;
   machine::Reason reason{.code = outcome.code.value_or(ErrorCode::kCellWaitsForever),
                          .verdict = stopped ? Verdict::kDoubtful : Verdict::kBad,

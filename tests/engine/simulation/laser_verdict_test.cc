@@ -152,8 +152,22 @@ TEST(LaserVerdict, OfABeamWithoutPower) {
 TEST(LaserVerdict, OfAProgramThatEndsWithItsProcess) {
   EXPECT_EQ(VerdictOfCut(From("0.") + kOn + To("10.")),
             "DOUBTFUL; OPT-E7408 programs that end with the beam's process ON: 1 @6");
-  EXPECT_EQ(VerdictOfCut(From("0.") + "WORKDEF 2,0 (11)\nWORK 2,0 /ON\n" + kOn + To("10.") + kOff),
-            "GOOD");
+  const RunReport schedule =
+      ReportOfCut(From("0.") + "WORKDEF 2,0 (11)\nWORK 2,0 /ON\n" + kOn + To("10.") + kOff);
+  EXPECT_EQ(TextOf(schedule.judgement), "GOOD");
+  // The finding that goes with the verdict.
+  const auto severity = [](const RunReport& report) {
+    for (const Finding& finding : report.findings) {
+      if (finding.diagnostic.code == ErrorCode::kWorkActiveAtEnd)
+        return finding.diagnostic.severity;
+    }
+    return Severity::kFatal;
+  };
+  EXPECT_EQ(severity(schedule), Severity::kAdvice);
+  EXPECT_EQ(severity(ReportOfCut(From("0.") + kOn + To("10."))), Severity::kWarning);
+  EXPECT_EQ(
+      severity(ReportOfCut(From("0.") + "WORKDEF 2,0 (11)\nWORK 2,0 /ON\n" + kOn + To("10."))),
+      Severity::kWarning);
 }
 
 // A move settles 0.048 s; with a dwell of 0.05 s it stands 0.098 s, with one of 0.06 s 0.108 s.
@@ -184,22 +198,43 @@ TEST(LaserVerdict, OfAPiercing) {
             "GOOD");
 }
 
-// 69 or 70 mm at full speed, then 20 mm in which A has to turn by 5 rad and keeps the tip below
-// 6.283 / 5 * 20 = 25 mm/s. Of each ramp 0.72427 mm are below 40 mm/s; two ramps, 3.53553 mm, are
-// for nothing: 20 + 2 * 0.72427 - 3.53553 = 17.913 mm are 20.1 % of 89 mm and 19.9 % of 90 mm.
+// 79 or 81 mm at full speed, then 20 mm in which A has to turn by 5 rad and keeps the tip below
+// 6.283 / 5 * 20 = 25 mm/s. Of each ramp 0.72427 mm are below 40 mm/s; of two ramps these are for
+// nothing: 20 + 2 * 0.72427 - 2 * 0.72427 = 20 mm are 20.2 % of 99 mm and 19.8 % of 101 mm.
 TEST(LaserVerdict, OfAContourBelowItsSpeed) {
   const auto with_straight = [](const std::string& to, const std::string& end) {
     return VerdictOfCut("COORD ABSOL\nPATH LIN\nMOVE (0., 1000., -400., 0., .5)\nSPEED 10\n" +
                         kRamp + To(to, "0.", ".5") + To(end, "5.", ".5") + kRampOff);
   };
-  EXPECT_EQ(with_straight("70.", "90."), "GOOD");
-  EXPECT_EQ(with_straight("69.", "89."),
-            "DOUBTFUL; CELL-E9422 20.1 % of a contour is cut below 0.8 of its SPEED @6");
+  EXPECT_EQ(with_straight("81.", "101."), "GOOD");
+  EXPECT_EQ(with_straight("79.", "99."),
+            "DOUBTFUL; CELL-E9422 20.2 % of a contour is cut below 0.8 of its SPEED @6");
 }
 
 // The way that a contour needs to get up to its speed and down again is no fault of it.
 TEST(LaserVerdict, OfAContourThatIsAllRamps) {
   EXPECT_EQ(VerdictOfCut(From("0.") + kRamp + To("3.5") + kRampOff), "GOOD");
+}
+
+// motion.md 5.2: from rest to rest over L the tip comes to cbrt(40000 L^2 / 4) mm/s: over 0.5 mm to
+// 13.6, over 2.5 mm to 39.7, over 2.6 mm to 40.736 and over 2.8 mm to 42.80 mm/s. Below 40 mm/s,
+// 0.8 of SPEED 10, there is no ramp to leave out. Of 2.6 mm 2.109 mm are slow, and 1.44854 mm of
+// that are for nothing: 25.4 %; of 2.8 mm 1.809 mm: 12.9 %.
+TEST(LaserVerdict, OfAContourThatNeverComesToItsSpeed) {
+  const auto slow = [](const std::string& way) {
+    return VerdictOfCut(From("0.") + kRamp + way + kRampOff);
+  };
+  const std::string all =
+      "DOUBTFUL; CELL-E9422 100.0 % of a contour is cut below 0.8 of its SPEED @6";
+  EXPECT_EQ(slow(To(".5") + To("1.") + To("1.5") + To("2.") + To("2.5")), all);
+  EXPECT_EQ(slow(To(".5") + To("1.")), all);
+  EXPECT_EQ(slow(To("2.5")), all);
+  EXPECT_EQ(slow(To("2.6")),
+            "DOUBTFUL; CELL-E9422 25.4 % of a contour is cut below 0.8 of its SPEED @6");
+  EXPECT_EQ(slow(To("2.8")), "GOOD");
+  // A point has no speed to keep.
+  EXPECT_EQ(slow(To("0.0078125")), "GOOD");
+  EXPECT_EQ(slow(To("0.015625")), all);
 }
 
 // Constant power, and below 33.3 mm/s it is hot: the last 0.48477 mm of the straight line and all
@@ -323,12 +358,16 @@ TEST(Contours, HaveTimeLengthAndEnergy) {
 }
 
 // Of a ramp to 50 mm/s the way above 40 takes sqrt(20 / 40000) = 0.02236 s, 1.043498 mm; the rest
-// of 1.767767 mm is slow, at both ends.
+// of 1.767767 mm is slow, at both ends of each move, and left out at both ends of the contour. The
+// share is that of the same length.
 TEST(Contours, HaveTheirSlowLength) {
-  const RunReport report = ReportOfCut(From("0.") + kOn + To("200.") + kOff);
-  ASSERT_EQ(report.contours.size(), 1U);
-  EXPECT_NEAR(report.contours[0].slow_mm, 2.0 * (1.767767 - 1.043498), 1e-5);
-  EXPECT_EQ(report.cut_figures.slow_percent.value, 0.0);
+  const RunReport report =
+      ReportOfCut(From("0.") + kOn + To("200.") + kOff + kOn + To("100.") + To("0.") + kOff);
+  ASSERT_EQ(report.contours.size(), 2U);
+  EXPECT_NEAR(report.contours[0].slow_mm, 0.0, 1e-5);
+  const double slow_mm = 2.0 * (1.767767 - 1.043498);
+  EXPECT_NEAR(report.contours[1].slow_mm, slow_mm, 1e-5);
+  EXPECT_NEAR(report.cut_figures.slow_percent.value, 100.0 * slow_mm / 200.0, 1e-5);
 }
 
 // docs/verdict.md: a figure with its unit is the key of the fact.

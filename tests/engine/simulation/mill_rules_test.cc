@@ -287,7 +287,7 @@ TEST(MillRules, PlungesAtTheSpeedOfTheCut) {
 // RML1-3C.08: a run waits at !NR, and so a check says, which looks behind it all the same.
 TEST(MillRules, WaitsForTheResumeKey) {
   EXPECT_EQ(TextOfCheck("VS10;!VZ10;!PZ-100,200;!MC1;PU0,0;PD400,0;PU0,0;!NR;!NR;!MC0;"),
-            "DOUBTFUL; CELL-E9308 halts that wait for the resume key: 2 @8");
+            "DOUBTFUL; CELL-E9308 halts that wait for a key to go on: 2 @8");
 }
 
 // RML1-3A.03, RML1-9.23: Z2 below the surface is refused; at the surface travel has no clearance.

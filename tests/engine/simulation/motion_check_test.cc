@@ -135,7 +135,7 @@ TEST(MotionCheck, StopsWhereAnInputIsMissing) {
   const MotionCheck without = Checked({{1, program}}, {1});
   EXPECT_TRUE(without.findings.empty());
   ASSERT_TRUE(without.cut_short.contains(1));
-  EXPECT_NE(without.cut_short.at(1).find("only up to step 2, line 2"), std::string::npos);
+  EXPECT_NE(without.cut_short.at(1).text.find("only up to step 2, line 2"), std::string::npos);
   const MotionCheck with = Checked(
       {{1, program}}, {1}, {{std::chrono::seconds(5), machine::InputKind::kLogical, 16, 1.0}});
   ASSERT_EQ(with.findings.size(), 1U);
@@ -243,7 +243,7 @@ TEST(MotionCheck, DealsReasonsToThePrograms) {
 // A halt is answered with START: the program goes on behind it.
 TEST(MotionCheck, GoesOnBehindAHalt) {
   EXPECT_EQ(VerdictOfCheck("COORD ROBOT\nSTOP\nSTOP\nMOVE (9.,0.,0.,0.,0.)\n"),
-            "DOUBTFUL; CELL-E9308 halts that wait for START: 2 @2");
+            "DOUBTFUL; CELL-E9308 halts that wait for a key to go on: 2 @2");
   EXPECT_EQ(VerdictOfCheck("COORD ROBOT\nSTOP\nMOVE (9.,0.,0.,0.,0.)\n",
                            {{std::chrono::seconds(5), machine::InputKind::kStart, 0, 1.0}}),
             "GOOD");
@@ -258,8 +258,9 @@ TEST(MotionCheck, AHaltThatStartDoesNotEnd) {
   const auto check = CheckMotion(FakeFamily(script, true), FakeFamily::Setup(), {1});
   ASSERT_TRUE(check);
   ASSERT_TRUE(check->cut_short.contains(1));
-  EXPECT_EQ(check->cut_short.at(1).find("only up to step 4, line 5: CELL-E9308 "), 0U)
-      << check->cut_short.at(1);
+  const CutShort& why = check->cut_short.at(1);
+  EXPECT_EQ(why.text.find("only up to step 4, line 5: CELL-E9308 "), 0U) << why.text;
+  EXPECT_EQ(why.cause, ErrorCode::kCellWaitsForever);
 }
 
 // Whatever a program does, its check ends, and ends the same every time.
@@ -296,17 +297,68 @@ TEST(MotionCheck, FailsWhereEveryRunFails) {
             "OPT-E7302 45/3 line 3");
   EXPECT_EQ(fault({{45, "CALL 44\n"}, {44, "VI[1] = 0\nVR[2] = 1. / VI[1]\n"}}),
             "OPT-E7201 44/2 line 2");
+  // OPT-2.08, OPT-7.12: a program starts with the COORD of the machine.
+  EXPECT_EQ(fault({{45, "PATH LIN\nMOVE (1000.,900.,-400.,0.,0.)\n"}}), "OPT-E7302 45/2 line 2");
+  EXPECT_EQ(fault({{45,
+                    "PATH HOLE (25.1)\nMOVE (1200.,1120.,-350.,0.,0.) / VIA "
+                    "(1200.,1120.,-150.,0.,0.)\n"}}),
+            "OPT-E7302 45/2 line 2");
   // What nothing of the run has set may be another time otherwise: variables, inputs, the
-  // parameters of a FUNCTION, the COORD of a caller; and a program may be there another time.
+  // parameters of a FUNCTION; and a program may be there another time.
   for (const char* unsure : {"VR[2] = 1. / VR[1]\n", "VR[2] = 1. / VI[1]\n", "VR[2] = 1. / IA[5]\n",
                              "IF VL[1] THEN 10\nVR[2] = 1. / 0.\n10 VR[3] = 1.\n",
                              "IF IL[1] THEN 10\nVR[2] = 1. / 0.\n10 VR[3] = 1.\n",
                              "IF IL[96] THEN 10\nVR[2] = 1. / 0.\n10 VR[3] = 1.\n",
                              "IF OL[20] THEN 10\nVR[2] = 1. / 0.\n10 VR[3] = 1.\n",
                              "DEFINE PAR[0] = FLOAT\nVR[2] = 1. / PAR[0]\n",
-                             "PATH LIN\nMOVE (1000.,900.,-400.,0.,0.)\n", "CALL 44\n"}) {
+                             "IF IL[1] THEN 10\nPATH LIN\nMOVE (1000.,900.,-400.,0.,0.)\n10 "
+                             "VR[3] = 1.\n",
+                             "CALL 44\n"}) {
     EXPECT_EQ(fault({{45, unsure}}), "") << unsure;
   }
+}
+
+// OPT-E.7102, OPT-E.7103: what is missing in the whole memory of a machine is not there; of files
+// that were given to a check nobody knows.
+TEST(MotionCheck, AMissingProgramIsAnErrorOfAWholeMemory) {
+  const auto verdict = [](const std::string& text, MemoryGiven given) {
+    auto motion = CheckMotion(*families::FindFamily("optimo"), Memory({{45, text}}), {45}, given);
+    CheckedProgram check{.family = families::FindFamily("optimo"),
+                         .slot = 45,
+                         .translation = {.ok = true},
+                         .motion = *std::move(motion)};
+    const std::string told = TextOf(JudgeCheck(check));
+    return told.substr(0, told.find(' ', told.find("-E")));
+  };
+  const std::string call = "COORD ABSOL\nSPEED 10\nCALL 77\n";
+  EXPECT_EQ(verdict(call, MemoryGiven::kWhole), "BAD; OPT-E7102");
+  EXPECT_EQ(verdict(call, MemoryGiven::kInPart), "DOUBTFUL; CELL-E9406");
+  EXPECT_EQ(verdict("FUNCTION 44\n", MemoryGiven::kWhole), "BAD; OPT-E7103");
+  EXPECT_EQ(verdict("FUNCTION 44\n", MemoryGiven::kInPart), "DOUBTFUL; CELL-E9406");
+  // Whether it is called at all hangs on an input.
+  EXPECT_EQ(verdict("IF IL[5] THEN 10\nCALL 77\n10 SPEED 5\n", MemoryGiven::kWhole),
+            "DOUBTFUL; CELL-E9408");
+  EXPECT_EQ(verdict("VL[5] = ON\nIF VL[5] THEN 10\nCALL 77\n10 SPEED 5\n", MemoryGiven::kWhole),
+            "GOOD");
+}
+
+// Why a check did not come to the end has an advice that fits.
+TEST(MotionCheck, SaysWhatCutItShort) {
+  const auto told = [](const std::string& text, const machine::InputScript& inputs = {}) {
+    const std::string all = VerdictOfCheck(text, inputs);
+    return all.substr(0, all.find(" motion checked"));
+  };
+  EXPECT_EQ(told("CALL 44\n"), "DOUBTFUL; CELL-E9406");
+  EXPECT_EQ(told("WAIT (IL[16])\n"), "DOUBTFUL; CELL-E9407");
+  EXPECT_EQ(told("10 SPEED 20\nGOTO 10\n"), "DOUBTFUL; CELL-E9404");
+  EXPECT_EQ(VerdictOfCheck("VR[2] = 1. / VR[1]\n"),
+            "DOUBTFUL; CELL-E9408 motion checked only up to step 1, line 1: OPT-E7201 division by "
+            "zero, if VR[1] is 0");
+  // It waits for what it was told will not come, or for what it has set itself: so does every run.
+  EXPECT_EQ(
+      told("WAIT (IL[16])\n", {{SimTime(0), machine::InputKind::kLogical, 16, 0.0}}).substr(0, 14),
+      "BAD; OPT-E7902");
+  EXPECT_EQ(told("VL[1] = OFF\nWAIT (VL[1])\n").substr(0, 14), "BAD; OPT-E7902");
 }
 
 // RML1-5A.01: a mill cuts off what lies outside; its translation says so already.

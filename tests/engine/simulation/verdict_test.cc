@@ -182,6 +182,7 @@ TEST(Verdict, OfAPauseSaysNothingOfTheEnd) {
   EXPECT_EQ(judgement.verdict, Verdict::kDoubtful);
   ASSERT_EQ(judgement.reasons.size(), 1U);
   EXPECT_EQ(judgement.reasons[0].code, ErrorCode::kCellWaitsForever);
+  EXPECT_EQ(judgement.reasons[0].said, "halts that wait for a key to go on: 1");
 }
 
 // A pen goes along the surface with the spindle off.

@@ -169,7 +169,7 @@ TEST(FindingsMessage, OfATranslationAndItsMotion) {
   check.translation.diagnostics_dropped = 3;
   check.translation.figures = {{.name = "steps", .unit = "", .value = 7.0}};
   check.motion.findings_dropped = 4;
-  check.motion.cut_short = {{45, "only up to step 2"}};
+  check.motion.cut_short = {{45, {.text = "only up to step 2"}}};
   const auto found = [&] {
     const machine::Judgement judgement = simulation::JudgeCheck(check);
     return FindingsOf(check, judgement);

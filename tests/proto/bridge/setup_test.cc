@@ -206,7 +206,13 @@ TEST(CheckProgram, RunsTheOthersOfTheMemoryThatAreGood) {
   EXPECT_TRUE(called.motion.cut_short.empty());
   const simulation::CheckedProgram missing = check("CALL 13\n");
   EXPECT_TRUE(missing.motion.findings.empty());
-  EXPECT_THAT(missing.motion.cut_short.at(12), HasSubstr("OPT-E7102"));
+  EXPECT_THAT(missing.motion.cut_short.at(12).text, HasSubstr("OPT-E7102"));
+  // Of a whole memory what has errors is there all the same; what is in no slot is not.
+  simulation::ProgramMemory whole = MemoryOf({Source(12, "CALL 13\n"), Source(13, "SPEDE 20\n")});
+  whole.given = simulation::MemoryGiven::kWhole;
+  EXPECT_TRUE(simulation::CheckProgram(whole, parameters, 12, true, {})->ok());
+  whole.programs.pop_back();
+  EXPECT_FALSE(simulation::CheckProgram(whole, parameters, 12, true, {})->ok());
   // Its text alone, when that is bad; and what stands later takes the place of what stood there.
   const simulation::CheckedProgram bad = check("CALL\n");
   EXPECT_FALSE(bad.ok());

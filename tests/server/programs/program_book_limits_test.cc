@@ -182,6 +182,20 @@ TEST_F(ProgramBookLimits, ACheckTakesASlotOfItsOwn) {
   EXPECT_EQ(slot("2.S"), 2);
 }
 
+// OPT-E.7102: of a machine all programs are known, of a family alone none.
+TEST_F(ProgramBookLimits, ACheckKnowsWhatItsMachineLacks) {
+  const auto good = [&](const std::string& family, const std::string& machine) {
+    v1::ProgramText text;
+    text.set_file_name("45.S");
+    text.set_content("CALL 77\n");
+    return Must(programs.Check(family, machine, text, true)).ok();
+  };
+  EXPECT_FALSE(good("", "machines/optimo-1"));
+  EXPECT_TRUE(good("optimo", ""));
+  Must(bed.store().PutPrograms("optimo-1", {{.slot = 77, .object = ObjectOf("STOP\n")}}, {}));
+  EXPECT_TRUE(good("", "machines/optimo-1"));
+}
+
 // An error shows its line and how many more there are; a single one says nothing of more.
 TEST_F(ProgramBookLimits, TheFirstErrorStandsForAll) {
   const auto detail = [&](const std::string& source) {

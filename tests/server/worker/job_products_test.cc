@@ -88,6 +88,20 @@ TEST_F(JobProducts, ACheckTakesTheInputsOfTheJob) {
   EXPECT_EQ(Report().motion_check(), "");
 }
 
+// OPT-E.7102: a job has all programs of its machine; what it calls and is not there fails every
+// run.
+TEST_F(JobProducts, ACheckFailsWhereAProgramIsMissing) {
+  Work(CheckOf("COORD ABSOL\nPATH LIN\nSPEED 10\nCALL 77\n"));
+  EXPECT_THAT(Codes(), ElementsAre("OPT-E7102"));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_FAILED);
+  EXPECT_EQ(Outcome().code(), "OPT-E7102");
+  EXPECT_EQ(Outcome().verdict(), v1::VERDICT_BAD);
+  EXPECT_EQ(Outcome().place().step(), 4);
+  Work(CheckOf("IF IL[5] THEN 10\nCALL 77\n10 SPEED 10\n"));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_EQ(Outcome().verdict(), v1::VERDICT_DOUBTFUL);
+}
+
 // Only the program of the job is checked; the others are there to be called.
 TEST_F(JobProducts, ACheckLooksAtTheProgramOfTheJob) {
   v1::WorkerAssignment assignment = CheckOf("CALL 44\n");

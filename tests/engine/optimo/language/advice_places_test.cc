@@ -55,6 +55,8 @@ TEST(AdvicePlaces, OfProcesses) {
       {"WORKDEF 2,9 (15)\nWORK 2,9/ON\n{GO 46 /C}\n", 7407, "OPT-3.33", "a process is ON at GO"},
       {"IF VL[1] THEN 10\nWORK 0,0/ON\n10 {CALL 2}\n", 7407, "OPT-3.33",
        "on one path a process is ON at CALL"},
+      {"WORKDEF 2,5 (15)\n{WORK 2,5/ON}\n", 7408, "OPT-3.34",
+       "WORK 2, which has no beam, is ON at the end of the program"},
       {"WORK 0,0/ON\n{ENDTASK}\n", 7408, "OPT-3.34", "a process is ON at the end"},
       {"IF VL[1] THEN 10\nWORK 0,0/ON\n10 {ENDTASK}\n", 7408, "OPT-3.34",
        "on one path a process is ON at the end"},
@@ -64,6 +66,16 @@ TEST(AdvicePlaces, OfProcesses) {
        "on one path a process is ON at the end of the program"},
   };
   for (const AdviceRow& row : rows) ExpectAdvice(row);
+  // OPT-3.23, OPT-3.26: a schedule alone is no warning.
+  const auto severity = [](const std::string& text) {
+    for (const Diagnostic& d : Compile(text, "", {.advice = true}).diagnostics) {
+      if (d.code == ErrorCode::kWorkActiveAtEnd) return d.severity;
+    }
+    return Severity::kFatal;
+  };
+  EXPECT_EQ(severity("WORKDEF 2,5 (15)\nWORK 2,5/ON\n"), Severity::kAdvice);
+  EXPECT_EQ(severity("WORKDEF 2,5 (15)\nWORK 2,5/ON\nENDTASK\n"), Severity::kAdvice);
+  EXPECT_EQ(severity("WORKDEF 2,5 (15)\nWORK 2,5/ON\nWORK 0,0/ON\n"), Severity::kWarning);
 }
 
 // OPT-5.40, OPT-5.47: gases and the sensor.
