@@ -46,7 +46,7 @@ constexpr std::array kRules = {
     VerdictRule{ErrorCode::kRml1SpindleStands, "spindle_stands_length", kRounding_mm, Verdict::kBad,
                 "# mm in the work while the spindle stands"},
     VerdictRule{ErrorCode::kCellTimeBudget, "least_time", kBudget_s, Verdict::kBad,
-                "a run takes # s at least, and ends at its budget of 30 days"},
+                "a run takes #{least_days} days at least, and ends at its budget of 30 days"},
     VerdictRule{ErrorCode::kCellWaitsForever, "waits_for_key", 0.0, Verdict::kDoubtful,
                 "halts that wait for the resume key: #"},
     VerdictRule{ErrorCode::kRml1NoClearance, "no_clearance_length", kRounding_mm,

@@ -176,10 +176,11 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
       {9425, "CellCutInPtp"},           {9426, "CellHeadSingular"},
       {9427, "CellNearTravelEnd"},      {9415, "CellChipThick"},
       {9416, "CellChipThin"},           {9417, "CellEdgeFast"},
-      {9418, "CellBesideBlock"},        {9404, "CellCheckCutShort"},
-      {9405, "CellTravelLeft"},         {9501, "CellTargetUnusable"},
-      {9502, "CellNoMotion"},           {9503, "CellArcUndefined"},
-      {9504, "CellHoleRadius"},         {9505, "CellHoleNormal"},
+      {9418, "CellBesideBlock"},        {9419, "CellTooWide"},
+      {9404, "CellCheckCutShort"},      {9405, "CellTravelLeft"},
+      {9501, "CellTargetUnusable"},     {9502, "CellNoMotion"},
+      {9503, "CellArcUndefined"},       {9504, "CellHoleRadius"},
+      {9505, "CellHoleNormal"},
   };
   std::size_t rows = 0;
   for (const CatalogueEntry& entry : Catalogue()) {
