@@ -14,9 +14,9 @@ struct Run {
 };
 
 // What is below a level, row by row from the bottom up: which runs belong to one piece.
-class Pieces {
+class PiecesBelow {
  public:
-  Pieces(const DistanceField& field, double level) : field_(field), level_(level) {}
+  PiecesBelow(const DistanceField& field, double level) : field_(field), level_(level) {}
 
   void TakeRow(std::size_t y) {
     below_.swap(runs_);
@@ -68,8 +68,8 @@ class Pieces {
 }  // namespace
 
 JoinedTraces CountJoined(const DistanceField& field, double edge, double level) {
-  Pieces copper(field, edge);
-  Pieces within(field, level);
+  PiecesBelow copper(field, edge);
+  PiecesBelow within(field, level);
   std::vector<std::size_t> around;  // of each run of copper, the run that it lies in
   for (std::size_t y = 0; y < field.height; ++y) {
     copper.TakeRow(y);

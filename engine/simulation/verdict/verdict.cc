@@ -32,11 +32,12 @@ Measured BelowBlock(const RunReport& r) {
 }
 // A third of the width: at least three cells lie across the way then, wherever it leads, and the
 // one next to its middle is no further off than a sixth of the width.
-constexpr double kCellShare_percent = 100.0 / 3.0;
+constexpr double kCellsAcross = 3.0;
+constexpr double kCellShare_percent = 33.4;  // and rounding
 
 // The cell to give, in digits that people write, and not rounded up.
 double FittingCell(double width_mm) {
-  const double cell_mm = width_mm * kCellShare_percent / 100.0;
+  const double cell_mm = width_mm / kCellsAcross;
   const double step_mm = cell_mm < 1e-3 ? 1e-6 : 1e-3;
   constexpr double kLastDigits = 1e-6;
   return std::floor(cell_mm / step_mm + kLastDigits) * step_mm;
