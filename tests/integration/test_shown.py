@@ -62,7 +62,7 @@ class Local(InFolder):
         for verb in ("check", "simulate"):
             self.assertRegex(ask(verb, part, "--machine", mine).stdout, rf"(?m)^changed +{re.escape(said)}$")
             found = json.loads(ask(verb, part, "--machine", mine, "--json").stdout)
-            self.assertEqual(found["profileChanges"], [{"name": "X_MAX", "value": "100", "ofProfile": "203.2"}])
+            self.assertEqual(found["profileChanges"], [{"name": "X_MAX", "value": "100", "ofProfile": "203.2", "source": ""}])
             self.assertEqual(found["profileChangedBy"], str(mine))
             both = ask(verb, part, "--machine", mine, "--origin", "3,4").stdout
             self.assertIn(f"by {mine} and --origin", both)
