@@ -66,7 +66,9 @@ class Interpreter {
     std::uint64_t count = 0;
     SourceSpan first;
     std::string InMore() const {
-      return count > 1 ? ", here and in " + std::to_string(count - 1) + " more lines" : "";
+      return count > 1 ? ", here and in " + std::to_string(count - 1) +
+                             (count > 2 ? " more lines" : " more line")
+                       : "";
     }
   };
 

@@ -350,7 +350,7 @@ TEST(FromGcode, CutsWhileTheSpindleStandsAreTold) {
   const StreamOfGcode arc = From("M5\nG1 Z-1 F600\nG2 X2 Y2 I1 J1\n");
   ASSERT_EQ(arc.findings.size(), 1U);
   EXPECT_EQ(arc.findings[0].detail,
-            "a cut below Z 0 before M3 turns the spindle on, here and in 1 more lines");
+            "a cut below Z 0 before M3 turns the spindle on, here and in 1 more line");
   EXPECT_TRUE(From("M3 G1 Z-1 F600\nG0 Z1\nM5\n").findings.empty());
   EXPECT_TRUE(From("G0 Z1\nG1 X5 F600\nG1 Z0\n").findings.empty());
 }
