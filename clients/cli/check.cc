@@ -185,6 +185,7 @@ int Check(const CheckOptions& options) {
     auto parameters = machine::MakeParameters(**family, machine->profile, changed);
     if (!parameters) return Refuse(parameters.error());
     parameters->SetChangedBy(ParametersOf(options.machine));
+    parameters->SetOwn(OwnOf(options.machine, *machine));
     files.push_back({.name = name,
                      .parameters = *parameters,
                      .check = {.family = *family, .machine = parameters->Used()}});

@@ -47,6 +47,8 @@ std::string MachineFile(const machine::MachineFamily& family, const std::string&
   std::string text =
       "# " + std::string(family.info().title) + "\nfamily = " + Quoted(family.info().id) + "\n";
   text += !profile.empty() ? "profile = " + Quoted(profile) + "\n" : ProfileLines(family);
+  text +=
+      "# name = \"My machine\"   # what reports call it; [sources] says where figures are from\n";
   text += "\n[parameters]\n";
   for (const machine::ParameterInfo& parameter : family.parameters()) {
     text += "# " + std::string(parameter.text) + " (" + RangeText(parameter) + "; " +

@@ -282,11 +282,12 @@ void AddFamilyFigures(const v1::RunReport& report, const machine::MachineFamily&
 // Which machine it is, and what of it is not as its profile has it.
 template <class Message>
 void AddMachine(const machine::MachineFamily& family, const Message& message, Rows& rows) {
-  rows.emplace_back("machine",
-                    machine::MachineTitle(family, message.profile(), message.profile_named()));
+  rows.emplace_back(
+      "machine", Visible(machine::MachineTitle(family, message.profile(), message.profile_named(),
+                                               message.machine_name())));
   machine::MachineUsed used{.changed_by = message.profile_changed_by()};
   for (const v1::ParameterChange& change : message.profile_changes())
-    used.changes.push_back({change.name(), change.value(), change.of_profile()});
+    used.changes.push_back({change.name(), change.value(), change.of_profile(), change.source()});
   if (const std::string changes = used.ChangesText(); !changes.empty())
     rows.emplace_back("changed", Visible(changes));
 }

@@ -10,6 +10,7 @@
 #include "engine/simulation/material/height_map.h"
 #include "engine/simulation/material/milling_text.h"
 #include "engine/simulation/material/relief.h"
+#include "engine/simulation/material/standard_cell.h"
 #include "engine/simulation/material/stl.h"
 #include "engine/simulation/material/target_files.h"
 #include "engine/simulation/run/milled_target.h"
@@ -81,7 +82,7 @@ Result<simulation::Milling> MillingOf(const MillingOptions& options,
   if (!stock) return stock.error();
   Result<simulation::MillTool> tool = simulation::ParseTool(options.block.tool);
   if (!tool) return tool.error();
-  stock->cell = options.block.cell_mm;
+  stock->cell = options.block.cell_mm.value_or(simulation::StandardCell(*stock, *tool));
   simulation::Milling milling{.stock = *stock, .tool = *tool, .rpm = options.block.rpm};
   if (!options.block.material.empty()) {
     const auto chips = simulation::ChipsOf(options.block.material, 2.0 * tool->radius_mm);

@@ -16,12 +16,12 @@ class App;
 namespace rmlcell::cli {
 
 struct BlockOptions {
-  std::string stock;  // "100x80x10"; empty: material is not modelled
-  std::string tool;   // "flat:3"
-  double cell_mm = 0.1;
-  std::string material;  // "wax"; empty: chip loads are not judged
-  double rpm = 0.0;      // of a spindle that is set by hand; 0: as the program says
-  std::string target;    // file: what should be left; empty: nothing is compared
+  std::string stock;                // "100x80x10"; empty: material is not modelled
+  std::string tool;                 // "flat:3"
+  std::optional<double> cell_mm{};  // nothing: simulation::StandardCell
+  std::string material;             // "wax"; empty: chip loads are not judged
+  double rpm = 0.0;                 // of a spindle that is set by hand; 0: as the program says
+  std::string target;               // file: what should be left; empty: nothing is compared
   std::optional<double> target_tolerance_mm{};  // nothing: 0.1
 };
 

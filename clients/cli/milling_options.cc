@@ -19,8 +19,9 @@ OptionsOfABlock AddBlockOptions(CLI::App& verb, BlockOptions& options) {
       "flat:D, ball:D, vee:D:ANGLE[:TIP], with :flutes=N:flute=L:shank=D:holder=D@L: what mills it");
   stock->needs(tool);
   tool->needs(stock);
-  verb.add_option("--cell", options.cell_mm,
-                  "edge of the cells that the block is looked at in, mm; default 0.1")
+  verb.add_option(
+          "--cell", options.cell_mm,
+          "edge of the cells that the block is looked at in, mm; default 0.1, less for a tool below 0.4 mm")
       ->needs(stock);
   verb.add_option(
           "--material", options.material,

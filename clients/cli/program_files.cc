@@ -62,6 +62,11 @@ Result<bridge::MachineFile> ReadMachine(const MachineChoice& choice) {
   return machine;
 }
 
+machine::OwnMachine OwnOf(const MachineChoice& choice, const bridge::MachineFile& machine) {
+  const bool nameless = machine.name.empty() && machine.profile.empty();
+  return {.name = nameless ? choice.file : machine.name, .sources = machine.sources};
+}
+
 std::string ParametersOf(const MachineChoice& choice) {
   std::string names = choice.file;
   const auto add = [&names](std::string_view name) {

@@ -49,6 +49,10 @@ Result<SlotFile> ParseSlotFile(const std::string& text);
 // Without a file what is chosen on the command line. Errors: CellFileUnreadable, CellBadText.
 Result<bridge::MachineFile> ReadMachine(const MachineChoice& choice);
 
+// What reports call the machine of that file, and where its figures are from. A file that names
+// neither itself nor a profile is called by its own name: nobody said which machine it is.
+machine::OwnMachine OwnOf(const MachineChoice& choice, const bridge::MachineFile& machine);
+
 // Who changes parameters of the profile, for people: "mine.toml", "mine.toml and --origin"; empty:
 // nobody.
 std::string ParametersOf(const MachineChoice& choice);

@@ -83,7 +83,7 @@ Status SetMilling(const JobMillingOptions& wanted, v1::Milling& milling) {
   const BlockOptions& block = wanted.block;
   if (const Status set = bridge::SetBlockAndTool(block.stock, block.tool, milling); !set)
     return set.error();
-  milling.set_cell_mm(block.cell_mm);
+  if (block.cell_mm) milling.set_cell_mm(*block.cell_mm);
   milling.set_material(bridge::Utf8(block.material));
   milling.set_rpm(block.rpm);
   milling.set_stl_tolerance_mm(wanted.stl_tolerance_mm);

@@ -341,7 +341,11 @@ int StreamFromPng(const PngToolOptions& options) {
   Result<rml1::BoardLines> lines =
       rml1::StreamOfBoard(picture->bitmap, *parameters, board, product.sink());
   if (!lines) return FailedAt(lines.error(), options.file, answer);
+  for (Diagnostic& finding : lines->findings) {
+    if (options.force && IsError(finding.severity)) finding.severity = Severity::kWarning;
+  }
   Found(lines->findings, 0, options.file, {}, answer);
+  if (lines->joined > 0 && !options.force) return answer.Failed();
   const machine::Bytes made = product.Finish();
   const std::string size =
       "picture of " + Fixed(lines->width_mm, 2) + " by " + Fixed(lines->height_mm, 2) + " mm";

@@ -221,6 +221,7 @@ Result<PreparedCommand> Prepare(const SimulateOptions& options) {
                                    .profile = machine->profile,
                                    .parameters = machine->parameters,
                                    .parameters_of = ParametersOf(options.machine),
+                                   .own = OwnOf(options.machine, *machine),
                                    .programs = loaded->programs,
                                    .machine_state = *std::move(state)};
   Result<simulation::PreparedRun> run = simulation::PrepareRun(

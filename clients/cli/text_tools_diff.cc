@@ -95,7 +95,8 @@ int Diff(const DiffOptions& options) {
                               {.picture = !options.svg.empty(),
                                .profile = machine->profile,
                                .parameters = machine->parameters,
-                               .parameters_of = ParametersOf(options.machine)});
+                               .parameters_of = ParametersOf(options.machine),
+                               .own = OwnOf(options.machine, *machine)});
   if (!made) return Refuse(made.error());
   for (std::size_t i = 0; i < 2; ++i)
     ComplainOf(made->diagnostics[i], made->dropped[i], *programs[i].bytes);

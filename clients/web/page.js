@@ -410,11 +410,13 @@ function countsText(pairs) {
 // Which machine it was, and what of it is not as its profile has it.
 function machineText(report) {
   if (!report.profile) return report.family ?? "";
-  return `${report.family}, ${report.profile}${report.profileNamed ? "" : ": no profile was named"}`;
+  const own = report.machineName;
+  const unnamed = own ? ": the default, as it names no profile" : ": no profile was named";
+  return `${own ? `${own}, based on ` : ""}${report.family}, ${report.profile}${report.profileNamed ? "" : unnamed}`;
 }
 
 function changesText(report) {
-  const changes = (report.profileChanges ?? []).map((one) => `${one.name} ${one.value} (profile: ${one.ofProfile})`);
+  const changes = (report.profileChanges ?? []).map((one) => `${one.name} ${one.value} (profile: ${one.ofProfile}${one.source ? `; source: ${one.source}` : ""})`);
   const who = report.profileChangedBy;
   if (!changes.length) return who ? `nothing, by ${who}` : "";
   return changes.join(", ") + (who ? `; by ${who}` : "");

@@ -101,12 +101,16 @@ Error NoProfile(std::span<const MachineProfile> profiles, const std::string& wan
 
 }  // namespace
 
-std::string MachineTitle(const MachineFamily& family, std::string_view profile, bool named) {
+std::string MachineTitle(const MachineFamily& family, std::string_view profile, bool named,
+                         std::string_view own_name) {
+  const std::string own(own_name);
   const auto profiles = family.profiles();
   const auto found = std::ranges::find(profiles, profile, &MachineProfile::id);
-  if (found == profiles.end()) return std::string(family.info().title);
-  const std::string title = std::string(found->title) + " (" + std::string(profile) + ")";
-  return named ? title : title + ": no profile was named";
+  const std::string based = own.empty() ? "" : own + ", based on ";
+  if (found == profiles.end()) return based + std::string(family.info().title);
+  const std::string title = based + std::string(found->title) + " (" + std::string(profile) + ")";
+  if (named) return title;
+  return title + (own.empty() ? ": no profile was named" : ": the default, as it names no profile");
 }
 
 Result<Parameters> MakeParameters(const MachineFamily& family, const std::string& profile,

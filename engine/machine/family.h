@@ -214,9 +214,11 @@ class MachineFamily {
   virtual Result<std::unique_ptr<Run>> NewRun(RunSetup setup, RunObserver& observer) const = 0;
 };
 
-// "Roland monoFab SRM-20 (srm-20)". That nobody said which machine it is must not be overlooked:
-// then ": no profile was named" stands behind it.
-std::string MachineTitle(const MachineFamily& family, std::string_view profile, bool named);
+// "Roland monoFab SRM-20 (srm-20)", or "My mill, based on Roland monoFab SRM-20 (srm-20)". That
+// nobody said which machine it is must not be overlooked: then ": no profile was named" stands
+// behind it, or that it is the default where somebody's own machine is based on no other.
+std::string MachineTitle(const MachineFamily& family, std::string_view profile, bool named,
+                         std::string_view own_name = {});
 
 // Parameters of a machine: defaults of the family, then the profile, then single values. Errors:
 // CellInvalidArgument (no such profile), CellUnknownParameter, CellParameterRange, also of values

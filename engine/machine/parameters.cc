@@ -109,15 +109,26 @@ std::string Parameters::TextOf(const ParameterInfo& info) const {
 }
 
 MachineUsed Parameters::Used() const {
-  MachineUsed used{
-      .profile = profile_, .named = profile_named_, .changes = {}, .changed_by = changed_by_};
+  MachineUsed used{.profile = profile_,
+                   .named = profile_named_,
+                   .changes = {},
+                   .changed_by = changed_by_,
+                   .own_name = own_.name};
+  const auto source_of = [this](std::string_view name) {
+    const auto told = std::ranges::find_if(
+        own_.sources, [&](const auto& one) { return EqualIgnoringCase(one.first, name); });
+    return told == own_.sources.end() ? std::string() : told->second;
+  };
   const Parameters defaults(table_);
   for (const ParameterInfo& info : table_) {
     const auto own = of_profile_.find(info.name);
     std::string of_profile = own != of_profile_.end() ? own->second : defaults.TextOf(info);
     std::string value = TextOf(info);
     if (value == of_profile) continue;
-    used.changes.push_back({std::string(info.name), std::move(value), std::move(of_profile)});
+    used.changes.push_back({.name = std::string(info.name),
+                            .value = std::move(value),
+                            .of_profile = std::move(of_profile),
+                            .source = source_of(info.name)});
   }
   std::ranges::sort(used.changes, {}, &ChangedParameter::name);
   return used;
@@ -127,7 +138,8 @@ std::string MachineUsed::ChangesText() const {
   std::string text;
   for (const ChangedParameter& change : changes) {
     text += (text.empty() ? "" : ", ") + change.name + " " + change.value +
-            " (profile: " + change.of_profile + ")";
+            " (profile: " + change.of_profile +
+            (change.source.empty() ? "" : "; source: " + change.source) + ")";
   }
   if (changed_by.empty()) return text;
   return text.empty() ? "nothing, by " + changed_by : text + "; by " + changed_by;

@@ -48,8 +48,17 @@ struct ChangedParameter {
   std::string name;
   std::string value;
   std::string of_profile;  // the value that it stands in place of
+  std::string source{};    // where it is from, "estimate"; empty: not told
 
   bool operator==(const ChangedParameter&) const = default;
+};
+
+// A machine of somebody's own, based on a profile.
+struct OwnMachine {
+  std::string name{};  // for people: "Mill of the workshop", or a file that names no profile
+  std::map<std::string, std::string> sources{};  // of its parameters, by their names
+
+  bool operator==(const OwnMachine&) const = default;
 };
 
 // Which machine something was computed for, as reports tell it.
@@ -58,7 +67,8 @@ struct MachineUsed {
   bool named = false;   // false: nobody named one, and the family's own choice counts
   std::vector<ChangedParameter> changes;  // by name
   std::string
-      changed_by;  // who changed them, for people: "mine.toml", "machines/mill-1"; may be empty
+      changed_by{};  // who changed them, for people: "mine.toml", "machines/mill-1"; may be empty
+  std::string own_name{};  // of a machine of somebody's own, based on the profile; empty: none
 
   // "VMAX 20 (profile: 15), Z1 2 (profile: 0); by mine.toml"; empty when nothing was changed and
   // nobody could have.
@@ -82,6 +92,8 @@ class Parameters {
   Status ApplyUnnamed(const MachineProfile& profile);
   // Who sets values over those of the profile, for people.
   void SetChangedBy(std::string who) { changed_by_ = std::move(who); }
+  // Whose machine this is, and where its figures are from.
+  void SetOwn(OwnMachine own) { own_ = std::move(own); }
 
   // The profile in force: that was named, or the family's own choice; empty: there is none.
   const std::string& profile() const { return profile_; }
@@ -105,6 +117,7 @@ class Parameters {
   std::string profile_;
   bool profile_named_ = false;
   std::string changed_by_;
+  OwnMachine own_;
   std::map<std::string, std::string, std::less<>> of_profile_;  // where it is not the default
   std::map<std::string, double, std::less<>> numbers_;
   std::map<std::string, std::string, std::less<>> words_;

@@ -26,7 +26,10 @@ std::string Filled(std::string_view said, const Figure& figure, std::span<const 
     }
     const std::size_t end = said.find('}');
     const auto named = std::ranges::find(figures, said.substr(1, end - 1), &Figure::name);
-    if (named != figures.end()) text += ShortestText(std::round(named->value * 1e3) / 1e3);
+    if (named != figures.end()) {
+      const double digits = std::abs(named->value) < 1e-3 ? 1e6 : 1e3;
+      text += ShortestText(std::round(named->value * digits) / digits);
+    }
     said.remove_prefix(end + 1);
   }
   return text.append(said);

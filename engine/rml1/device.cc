@@ -226,7 +226,7 @@ void Device::OnEnd(DeviceListener& listener) {
   ++commands_done_;
 }
 
-void Device::Report(FindingKind kind, DeviceListener& listener, double value) {
+void Device::Report(FindingKind kind, DeviceListener& listener, double value, Travel allowed) {
   BeginCommand(listener);
   Log(command_errors_,
       {.kind = kind,
@@ -234,7 +234,8 @@ void Device::Report(FindingKind kind, DeviceListener& listener, double value) {
        .length = static_cast<int>(RowOf(command_.op).name.size()),
        .step = static_cast<int>(command_.number),
        .op = command_.op,
-       .value = value},
+       .value = value,
+       .allowed = allowed},
       listener);
 }
 

@@ -171,7 +171,7 @@ class Device {
   void StopSpindle(bool waits);
 
   // Errors of commands: the register, the log and the listener.
-  void Report(FindingKind kind, DeviceListener& listener, double value = 0.0);
+  void Report(FindingKind kind, DeviceListener& listener, double value = 0.0, Travel allowed = {});
   void Log(ErrorLog& log, Finding finding, DeviceListener& listener);
   void Advise(FindingKind kind, DeviceListener& listener, double value = 0.0);
 

@@ -11,6 +11,18 @@ bool InFloatRange(double value) {
   return value >= static_cast<double>(kFloatMin) && value <= static_cast<double>(kFloatMax);
 }
 
+constexpr std::int64_t kFirstRpm = 100;  // of !RC; below, it is a stage (RML1-3C.15)
+
+// !RC sets no speed where that is done by hand (RML1-3C.20); one that cannot be set there either is
+// not the one that the program is made for.
+SpeedLimit LimitByHand(const Profile& profile, std::int64_t wanted) {
+  const auto rpm = static_cast<double>(wanted);
+  const double nearest = std::clamp(rpm, static_cast<double>(profile.spindle_min_rpm),
+                                    static_cast<double>(profile.spindle_max_rpm));
+  if (wanted < kFirstRpm || nearest == rpm) return {};
+  return {.asked = rpm, .used = nearest};
+}
+
 // 16 stages, evenly spaced; higher ones count as the last (RML1-9.31).
 int StageSpeed(const Profile& profile, std::int64_t stage) {
   constexpr int kLastStage = 15;
@@ -268,7 +280,7 @@ double Device::NearestSpeed(const motion::FeedSteps& steps, SpeedLimit& limit,
   limit = {};
   if (wanted < steps.minimum_mm_s || wanted > steps.maximum_mm_s) {
     ++speeds_limited_;
-    limit = {.asked = std::max(wanted, 0.0), .used = steps.Nearest(wanted)};
+    limit = {.asked = wanted, .used = steps.Nearest(wanted)};
     Advise(FindingKind::kSpeedLimited, listener, wanted);
   }
   return steps.Nearest(wanted);
@@ -318,14 +330,15 @@ void Device::SetHeights(DeviceListener& listener) {
   const auto z1 = static_cast<double>(operands_.fixed[0].truncated());
   const double lowest = profile_->z.low - registers_.z0;
   if (z1 > 0.0 || z1 < lowest - CuttingRange::kFaceTolerance) {
-    Report(FindingKind::kHeightRange, listener, z1);
+    Report(FindingKind::kHeightRange, listener, z1, {lowest, 0.0});
   } else {
     registers_.z1 = z1;
   }
   if (operands_.count < 2) return;
   const std::int64_t z2 = operands_.fixed[1].truncated();
   if (z2 < 0 || z2 > kFloatMax) {
-    Report(FindingKind::kHeightRange, listener, static_cast<double>(z2));
+    Report(FindingKind::kHeightRange, listener, static_cast<double>(z2),
+           {0.0, static_cast<double>(kFloatMax)});
   } else {
     registers_.z2 = static_cast<double>(z2);
   }
@@ -339,13 +352,16 @@ void Device::SetRotation() {
 }
 
 void Device::SetSpindleSpeed(DeviceListener& listener) {
-  if (operands_.count == 0 || profile_->spindle_control == SpindleControl::kNone) return;
+  if (operands_.count == 0) return;
   const std::int64_t wanted = operands_.fixed[0].truncated();
+  if (profile_->spindle_control == SpindleControl::kNone) {
+    registers_.rpm_limit = LimitByHand(*profile_, wanted);
+    return;
+  }
   if (wanted < 0 || wanted > kFloatMax) {
     Report(FindingKind::kSettingRange, listener, static_cast<double>(wanted));
     return;
   }
-  constexpr std::int64_t kFirstRpm = 100;  // below, it is a stage
   int rpm = StageSpeed(*profile_, wanted);
   if (wanted >= kFirstRpm && profile_->spindle_control == SpindleControl::kRpm) {
     const int step = profile_->spindle_step_rpm;

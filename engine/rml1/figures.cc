@@ -136,7 +136,7 @@ constexpr std::array kRows = {
     Row{{"step_fits_x", "mm", "length in X that the work would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.x); }},
     Row{{"step_fits_y", "mm", "length in Y that it would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.y); }},
     Row{{"step_fits_z", "mm", "depth that it would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.z); }},
-    Row{{"step_lift", "mm", "with 100 units in a millimetre: how high the tool rises at most above the surface, where that is 0.2 to 0.5 mm, or less than 1 mm with heights that are round with 40"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_mm); }},
+    Row{{"step_lift", "mm", "with 100 units in a millimetre: how high the tool rises at most above the surface, where that is 0.2 to 0.4 mm, or less than 1 mm with heights that are round with 40"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_mm); }},
     Row{{"step_lift_at_40", "mm", "how high that would be with 40 units in a millimetre"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_there_mm); }},
     Row{{"box.amin", "deg", "least angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? Low(s.tool.a) : std::nullopt; }},
     Row{{"box.amax", "deg", "greatest angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? High(s.tool.a) : std::nullopt; }},

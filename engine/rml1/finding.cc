@@ -83,7 +83,8 @@ std::string DetailOf(const Finding& finding) {
     case FindingKind::kValueRange:
       return "a coordinate of " + name + " becomes " + value;
     case FindingKind::kHeightRange:
-      return "a tool height of " + value;
+      return "a tool height of " + FixedText(finding.value, 0) + ", allowed are " +
+             ShortestText(finding.allowed.low) + " to " + ShortestText(finding.allowed.high);
     case FindingKind::kSettingRange:
       return name + " " + value;
     case FindingKind::kTravelRange:

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "engine/core/diagnostic.h"
-#include "engine/rml1/command_table.h"
+#include "engine/rml1/profile.h"
 
 namespace rmlcell::rml1 {
 
@@ -47,6 +47,7 @@ struct Finding {
   unsigned char byte = 0;  // the byte that was refused, where there is one
   Op op = Op::kCall;       // of the command concerned, where there is one
   double value = 0.0;      // the number refused, where there is one
+  Travel allowed{};        // kHeightRange: what it may be, device units
 };
 
 struct FindingRow {

@@ -13,7 +13,7 @@ struct SpeedLimit {
   double asked = 0.0;
   double used = 0.0;
 
-  // By how much they differ, of the greater one: 0 to 1.
+  // By how much they differ, of the greater one: 0 to 1, and more where less than nothing is asked.
   double off() const {
     const double greater = std::max(asked, used);
     return greater > 0.0 ? std::abs(asked - used) / greater : 0.0;

@@ -103,6 +103,8 @@ class StreamReading {
   std::vector<machine::Figure> Figures() const {
     std::vector<machine::Figure> figures = FiguresOf(device_, physical_, true);
     figures.push_back({.name = "least_time", .unit = "s", .value = least_time_s_});
+    constexpr double kDay_s = 24.0 * 3600.0;
+    figures.push_back({.name = "least_days", .unit = {}, .value = least_time_s_ / kDay_s});
     if (pauses_ == 0) return figures;
     figures.push_back({.name = "waits_for_key",
                        .unit = {},

@@ -8,10 +8,11 @@ constexpr double kFine = 100.0;        // every later one
 constexpr double kTooLarge_mm = 0.01;  // less is rounding
 
 // Real programs for 100 units a millimetre lift by 1 mm and more, those for 40 by 1 or 2 mm: 40 or
-// 80 units. Who lifts by 0.2 to 0.5 mm here may well mean 0.5 to 1.25 mm there; who lifts by less
-// than 1 mm here may, where the heights are round there and not here.
+// 80 units. Who lifts by 0.2 to 0.4 mm here may well mean 0.5 to 1 mm there. 0.5 mm is an ordinary
+// lift here, and 1.25 mm, which it would be there, is none. Who lifts by less than 1 mm here may,
+// where the heights are round there and not here.
 constexpr double kLeastLift = 20.0;  // units
-constexpr double kMostLift = 50.0;
+constexpr double kMostLift = 40.0;
 constexpr double kMostRoundLift = 99.0;
 // People think of heights in twentieths of a millimetre: 2 units of 40, 5 of 100.
 constexpr std::uint32_t kTwentiethOfCoarse = 2;

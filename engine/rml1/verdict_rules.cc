@@ -54,7 +54,7 @@ constexpr std::array kRules = {
     VerdictRule{ErrorCode::kRml1SpindleStands, "spindle_stands_length", kRounding_mm, Verdict::kBad,
                 "# mm in the work while the spindle stands"},
     VerdictRule{ErrorCode::kCellTimeBudget, "least_time", kBudget_s, Verdict::kBad,
-                "a run takes # s at least, and ends at its budget of 30 days"},
+                "a run takes #{least_days} days at least, and ends at its budget of 30 days"},
     machine::kWaitsForKey,
     VerdictRule{ErrorCode::kRml1NoClearance, "no_clearance_length", kRounding_mm,
                 Verdict::kDoubtful,

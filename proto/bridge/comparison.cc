@@ -163,7 +163,7 @@ std::string Picture(const machine::MachineFamily& family,
   };
   const machine::MachineShape shape = family.Shape(parameters);
   const machine::MachineUsed used = parameters.Used();
-  std::string machine = machine::MachineTitle(family, used.profile, used.named);
+  std::string machine = machine::MachineTitle(family, used.profile, used.named, used.own_name);
   if (const std::string changes = used.ChangesText(); !changes.empty())
     machine += "   ·   changed: " + changes;
   return simulation::PictureOfDifference(path(0), path(1), shape, figures, {},
@@ -186,6 +186,7 @@ Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
       machine::MakeParameters(family, options.profile, options.parameters);
   if (!parameters) return parameters.error();
   parameters->SetChangedBy(options.parameters_of);
+  parameters->SetOwn(options.own);
   for (std::size_t i = 0; i < 2; ++i) {
     auto object =
         ObjectOf(family, programs[i], *parameters, outcome.diagnostics[i], outcome.dropped[i]);

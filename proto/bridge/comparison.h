@@ -30,6 +30,7 @@ struct ComparisonOptions {
   std::string profile{};
   std::map<std::string, std::string> parameters{};
   std::string parameters_of{};    // where those are from, for people: "mine.toml"
+  machine::OwnMachine own{};      // whose machine it is
   std::function<bool()> go_on{};  // asked now and then; false: the run is given up, without figures
 };
 

@@ -93,33 +93,70 @@ Result<std::string> ReadFile(const std::string& path, std::int64_t limit) {
   return text;
 }
 
+namespace {
+
+int LineOf(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
+
+// Numbers and words, as texts.
+Status ReadParameters(const toml::table& table, const std::string& name, MachineFile& machine) {
+  for (const auto& [parameter, value] : table) {
+    const std::string named(parameter);
+    if (const auto* word = value.as_string()) {
+      machine.parameters[named] = word->get();
+    } else if (const auto* integer = value.as_integer()) {
+      machine.parameters[named] = std::to_string(integer->get());
+    } else if (const auto* number = value.as_floating_point()) {
+      machine.parameters[named] = ShortestText(number->get());
+    } else {
+      return BadText(name, LineOf(value), 0, "parameter " + named + " takes a number or a text");
+    }
+  }
+  return {};
+}
+
+// Precondition: the parameters were read.
+Status ReadSources(const toml::table& table, const std::string& name, MachineFile& machine) {
+  for (const auto& [parameter, value] : table) {
+    const std::string named(parameter);
+    const auto* text = value.as_string();
+    if (text == nullptr)
+      return BadText(name, LineOf(value), 0, "the source of " + named + " is a text");
+    const bool given = std::ranges::any_of(
+        machine.parameters, [&](const auto& one) { return EqualIgnoringCase(one.first, named); });
+    if (!given)
+      return BadText(name, LineOf(value), 0,
+                     "a source of " + named + ", which [parameters] does not have");
+    machine.sources[named] = text->get();
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& name) {
   try {
     const toml::table table = toml::parse(text, name);
     MachineFile machine;
+    const toml::table* sources = nullptr;
     for (const auto& [key, node] : table) {
-      const int line = static_cast<int>(node.source().begin.line);
-      if ((key == "family" || key == "profile") && node.is_string()) {
-        (key == "family" ? machine.family : machine.profile) = node.as_string()->get();
+      const bool names = key == "name" || key == "title";
+      if ((key == "family" || key == "profile" || names) && node.is_string()) {
+        (names             ? machine.name
+         : key == "family" ? machine.family
+                           : machine.profile) = node.as_string()->get();
       } else if (key == "parameters" && node.is_table()) {
-        for (const auto& [parameter, value] : *node.as_table()) {
-          const std::string named(parameter);
-          if (const auto* word = value.as_string()) {
-            machine.parameters[named] = word->get();
-          } else if (const auto* integer = value.as_integer()) {
-            machine.parameters[named] = std::to_string(integer->get());
-          } else if (const auto* number = value.as_floating_point()) {
-            machine.parameters[named] = ShortestText(number->get());
-          } else {
-            return BadText(name, static_cast<int>(value.source().begin.line), 0,
-                           "parameter " + named + " takes a number or a text");
-          }
-        }
+        if (const Status read = ReadParameters(*node.as_table(), name, machine); !read)
+          return read.error();
+      } else if (key == "sources" && node.is_table()) {
+        sources = node.as_table();
       } else {
-        return BadText(
-            name, line, 0,
-            "unknown key " + std::string(key) + "; there are family, profile, [parameters]");
+        return BadText(name, LineOf(node), 0,
+                       "unknown key " + std::string(key) +
+                           "; there are family, profile, name, [parameters], [sources]");
       }
+    }
+    if (sources != nullptr) {
+      if (const Status read = ReadSources(*sources, name, machine); !read) return read.error();
     }
     return machine;
   } catch (const toml::parse_error& error) {

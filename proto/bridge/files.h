@@ -22,11 +22,14 @@ Status ReadParts(const std::string& path, std::int64_t limit,
 // A whole file. Errors: CellFileUnreadable; CellTooLarge above `limit` bytes.
 Result<std::string> ReadFile(const std::string& path, std::int64_t limit);
 
-// Machine file (TOML): family, profile and a table [parameters].
+// Machine file (TOML): family, profile, name (or title, as built-in profiles have it), a table
+// [parameters], and a table [sources] with where those are from.
 struct MachineFile {
   std::string family;
   std::string profile;
+  std::string name;
   std::map<std::string, std::string> parameters;
+  std::map<std::string, std::string> sources;
 };
 Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& name);
 

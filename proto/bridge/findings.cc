@@ -70,8 +70,10 @@ void AddMachine(const machine::MachineUsed& machine, Message& message) {
     made.set_name(change.name);
     made.set_value(change.value);
     made.set_of_profile(change.of_profile);
+    made.set_source(Utf8(change.source));
   }
   message.set_profile_changed_by(Utf8(machine.changed_by));
+  message.set_machine_name(Utf8(machine.own_name));
 }
 
 v1::Severity SeverityToProto(Severity severity) {

@@ -5,6 +5,7 @@
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/simulation/material/milling_text.h"
+#include "engine/simulation/material/standard_cell.h"
 #include "engine/simulation/material/stl.h"
 #include "engine/simulation/material/target_files.h"
 #include "rmlcell/v1/milling.pb.h"
@@ -112,13 +113,13 @@ Result<simulation::Milling> FromProto(const v1::Milling& milling) {
   }
   if (!(milling.cell_mm() >= 0.0))
     return InvalidArgument("cell_mm is " + ShortestText(milling.cell_mm()) +
-                           ": above 0, or 0 for 0.1");
+                           ": above 0, or 0 for what fits the tool");
   if (const Status body = CheckTolerance("stl_tolerance_mm", StlToleranceOf(milling)); !body)
     return body.error();
   const Result<simulation::MillTool> tool = FromProto(milling.tool());
   if (!tool) return tool.error();
-  const double cell_mm = milling.cell_mm() > 0.0 ? milling.cell_mm() : kCellStandard_mm;
-  simulation::Milling made{.stock = FromProto(block, cell_mm), .tool = *tool};
+  simulation::Milling made{.stock = FromProto(block, milling.cell_mm()), .tool = *tool};
+  if (!(milling.cell_mm() > 0.0)) made.stock.cell = simulation::StandardCell(made.stock, *tool);
   if (const Status chips = SetChips(milling, made); !chips) return chips.error();
   if (const Status sound = simulation::CheckMilling(made); !sound)
     return Within("stock", sound.error());

@@ -12,7 +12,6 @@ class Milling;
 // Block, tool and target of a job, as the engine and as people have them.
 namespace rmlcell::bridge {
 
-inline constexpr double kCellStandard_mm = 0.1;
 inline constexpr double kTargetToleranceStandard_mm = 0.1;
 
 // Without the target: its heights are not in the message, they are made where the job is. Errors:

@@ -419,6 +419,20 @@ class FromPng(InFolder):
         self.assertIn("RML1-E8124: all of the picture is copper", done.stderr)
         run("rml1", "from-png", white, "--at", "5,5", "--outline", *words)
 
+    def test_traces_that_stay_joined_are_written_by_force_alone(self):
+        # The pads are 2 mm apart: a tool of 3 mm does not fit between them.
+        picture = self.png("joined.png", self.PADS, dpi=254)
+        words = ("rml1", "from-png", picture, "--profile", "srm-20", "--tool", 3, "--depth", 0.1, "--at", "5,5")
+        done = ask(*words)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("RML1-E8125: of 2 traces 2 stay joined with a neighbour", done.stderr)
+        self.assertIn("--force", done.stderr)
+        self.assertFalse((self.folder / "joined.rml").exists())
+        done = ask(*words, "--force")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("RML1-E8125", done.stderr)
+        self.assertTrue((self.folder / "joined.rml").exists())
+
     def test_outline_goes_down_in_steps(self):
         board = self.png("o.png", [" " * 60] * 10 + [" " * 10 + "#" * 40 + " " * 10] * 40 + [" " * 60] * 10, dpi=254)
         stream = run("rml1", "from-png", board, "--profile", "srm-20", "--tool", 0.8, "--depth", 1.5, "--step", 0.5,

@@ -38,13 +38,31 @@ class Local(InFolder):
         self.assertEqual(facts(ask("simulate", bad, "--facts").stdout)["profile"], "standard")
         self.assertEqual(json.loads(ask("simulate", bad, "--json").stdout)["profile"], "standard")
 
+    def test_a_machine_of_ones_own_has_its_name_and_sources(self):
+        part = self.file("part.rml", GOOD)
+        own = self.file("own.toml", 'name = "My mill"\nprofile = "srm-20"\n[parameters]\nX_MAX = 100\n'
+                                    '[sources]\nX_MAX = "measured"\n')
+        title = "My mill, based on Roland monoFab SRM-20 (srm-20)"
+        for verb in ("check", "simulate"):
+            told = ask(verb, part, "--machine", own).stdout
+            self.assertRegex(told, rf"(?m)^machine +{re.escape(title)}$")
+            self.assertIn("X_MAX 100 (profile: 203.2; source: measured)", told)
+            found = json.loads(ask(verb, part, "--machine", own, "--json").stdout)
+            self.assertEqual((found["machineName"], found["profileChanges"][0]["source"]), ("My mill", "measured"))
+        self.assertEqual(facts(ask("simulate", part, "--machine", own, "--facts").stdout)["machine_name"], "My mill")
+        self.assertIn(f">{title}<", ask("simulate", part, "--machine", own, "--svg", "-").stdout)
+        bare = self.file("bare.toml", "[parameters]\nX_MAX = 100\n")
+        told = ask("check", part, "--machine", bare).stdout
+        self.assertIn(f"{bare}, based on Roland monoFab SRM-20 (srm-20): the default, as it names no profile", told)
+        self.assertNotIn("no profile was named", told)
+
     def test_a_machine_file_and_what_it_changed_are_named(self):
         part, mine = self.file("part.rml", GOOD), self.file("mine.toml", MINE)
         said = f"X_MAX 100 (profile: 203.2); by {mine}"
         for verb in ("check", "simulate"):
             self.assertRegex(ask(verb, part, "--machine", mine).stdout, rf"(?m)^changed +{re.escape(said)}$")
             found = json.loads(ask(verb, part, "--machine", mine, "--json").stdout)
-            self.assertEqual(found["profileChanges"], [{"name": "X_MAX", "value": "100", "ofProfile": "203.2"}])
+            self.assertEqual(found["profileChanges"], [{"name": "X_MAX", "value": "100", "ofProfile": "203.2", "source": ""}])
             self.assertEqual(found["profileChangedBy"], str(mine))
             both = ask(verb, part, "--machine", mine, "--origin", "3,4").stdout
             self.assertIn(f"by {mine} and --origin", both)

@@ -116,7 +116,7 @@ PUBLIC = {
     REPORT: ["report.h", "report_recorder.h", "finding_list.h", "facts.h", "trace.h", "samples.h"],
     TOOLPATH: ["toolpath_recorder.h", "toolpath_level.h"],
     PICTURE: ["picture.h", "picture_difference.h", "plot.h"],
-    MATERIAL: ["height_map.h", "milling_recorder.h", "milling_text.h", "relief.h", "stl.h", "target.h", "target_files.h"],
+    MATERIAL: ["height_map.h", "milling_recorder.h", "milling_text.h", "relief.h", "standard_cell.h", "stl.h", "target.h", "target_files.h"],
     VERDICT: ["verdict.h"],
     RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "joint_check.h", "milled_target.h", "timetable.h", "trial_run.h"],
     "storage": ["records.h", "store.h"],

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/rml1/board/contours.h"
+#include "engine/rml1/board/joined_traces.h"
 #include "engine/rml1/board/nearest_order.h"
 #include "engine/rml1/board/simplify.h"
 #include "engine/rml1/offline/phrase_words.h"
@@ -64,11 +65,6 @@ std::vector<double> LevelsOf(const BoardOptions& options, const Profile& profile
   for (int pass = 0; pass < passes; ++pass)
     levels.push_back(std::max(first, kLevelMin) + pass * pitch);
   return levels;
-}
-
-std::size_t Outer(const std::vector<Loop>& loops) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(loops, [](const Loop& loop) { return SignedArea(loop) > 0.0; }));
 }
 
 class BoardMiller {
@@ -156,14 +152,15 @@ Error NothingToMill(const char* why) { return {ErrorCode::kRml1NothingToMill, wh
 
 void NoteJoined(const DistanceField& field, double level, BoardLines& made) {
   constexpr double kEdge = 0.5;  // between a pixel of copper and the next one without
-  const std::size_t traces = Outer(ContoursAt(field, kEdge));
-  const std::size_t parted = Outer(ContoursAt(field, level));
-  if (parted >= traces) return;
+  const JoinedTraces counted = CountJoined(field, kEdge, level);
+  made.joined = counted.joined;
+  if (counted.joined == 0) return;
   constexpr ErrorCode kCode = ErrorCode::kRml1GapTooNarrow;
   made.findings.push_back({.code = kCode,
                            .severity = Lookup(kCode).severity,
-                           .detail = "of " + std::to_string(traces) + " traces " +
-                                     std::to_string(parted) + " are parted from the others"});
+                           .detail = "of " + std::to_string(counted.traces) + " traces " +
+                                     std::to_string(counted.joined) +
+                                     " stay joined with a neighbour"});
 }
 
 }  // namespace

@@ -50,6 +50,8 @@ class Interpreter {
   FromGcodeOutcome Finish() {
     if (writer_.dwell_ms() > 0 && findings_.ok())
       Note(ErrorCode::kRml1GcodeIgnored, "wait", "the wait behind the last motion", {});
+    TellStands(before_on_, "before M3 turns the spindle on");
+    TellStands(behind_off_, "behind M5, which stops the spindle");
     TellRapids(across_, "across");
     TellRapids(down_, "down");
     if (findings_.ok()) writer_.Finish();
@@ -59,10 +61,15 @@ class Interpreter {
   }
 
  private:
-  // Rapids of one kind that lead through the work.
-  struct RapidsInWork {
+  // Lines of one kind that a person should look at: CAM tools repeat their habits on every line.
+  struct LinesInWork {
     std::uint64_t count = 0;
     SourceSpan first;
+    std::string InMore() const {
+      return count > 1 ? ", here and in " + std::to_string(count - 1) +
+                             (count > 2 ? " more lines" : " more line")
+                       : "";
+    }
   };
 
   void Refuse(ErrorCode code, std::string detail, const SourceSpan& where) {
@@ -82,10 +89,13 @@ class Interpreter {
   void Obey(const GcodeBlock& block);
   void SetFeed(const GcodeWord& word);
   void SetSpindleSpeed(const GcodeWord& word);
+  void TurnSpindle(bool on);
   void Wait(const Orders& orders, const GcodeBlock& block);
   void Move(const Orders& orders, const GcodeBlock& block);
   void MoveRapid(const Units& to, const SourceSpan& where);
-  void TellRapids(const RapidsInWork& rapids, const char* way);
+  void TellRapids(const LinesInWork& rapids, const char* way);
+  void NoteStanding(const Units& to, const SourceSpan& where);
+  void TellStands(const LinesInWork& lines, const char* when);
   void ChangeTool(const Orders& orders);
   void GoHome(const Orders& orders, const GcodeBlock& block);
   void MoveArc(const Orders& orders, GcodeUse motion, double x, double y, double z);
@@ -112,8 +122,13 @@ class Interpreter {
   bool cut_ = false;
   std::optional<double> tool_;  // the last T, and the one of the first cut
   std::optional<double> cutting_tool_;
-  RapidsInWork across_;
-  RapidsInWork down_;
+  LinesInWork across_;  // rapids
+  LinesInWork down_;
+  bool spindle_on_ = false;
+  bool stopped_ = false;   // by M5, since the last M3 at the latest
+  LinesInWork before_on_;  // cuts while the spindle stands
+  LinesInWork behind_off_;
+  int last_standing_line_ = 0;
   bool ended_ = false;
 };
 
@@ -128,8 +143,8 @@ void Interpreter::Obey(const GcodeBlock& block) {
   if (const GcodeWord* feed = orders->Find('F')) SetFeed(*feed);
   if (const GcodeWord* speed = orders->Find('S')) SetSpindleSpeed(*speed);
   if (orders->tool_change != nullptr) ChangeTool(*orders);
-  if (orders->spindle_on) writer_.SpindleOn();
-  if (orders->spindle_off) writer_.SpindleOff();
+  if (orders->spindle_on) TurnSpindle(true);
+  if (orders->spindle_off) TurnSpindle(false);
   if (orders->motion) motion_ = orders->motion;
   if (orders->dwell) {
     Wait(*orders, block);
@@ -161,6 +176,16 @@ void Interpreter::SetSpindleSpeed(const GcodeWord& word) {
   } else if (used != word.value) {
     Note(ErrorCode::kRml1SpeedRounded, "S",
          WordText(word) + " becomes " + std::to_string(used) + " rpm", word.where);
+  }
+}
+
+void Interpreter::TurnSpindle(bool on) {
+  stopped_ = !on && (stopped_ || spindle_on_);
+  spindle_on_ = on;
+  if (on) {
+    writer_.SpindleOn();
+  } else {
+    writer_.SpindleOff();
   }
 }
 
@@ -226,23 +251,34 @@ void Interpreter::MoveRapid(const Units& to, const SourceSpan& where) {
   const bool across = (to.x != from.x || to.y != from.y) && std::min(from.z, to.z) < 0;
   const bool down = to.z < std::min<std::int64_t>(from.z, 0);
   if (across || down) {
-    RapidsInWork& rapids = across ? across_ : down_;
+    LinesInWork& rapids = across ? across_ : down_;
     if (rapids.count++ == 0) rapids.first = where;
   }
   writer_.Rapid(to);
 }
 
-// Once of a kind, because CAM tools repeat their habits on every line.
-void Interpreter::TellRapids(const RapidsInWork& rapids, const char* way) {
+void Interpreter::NoteStanding(const Units& to, const SourceSpan& where) {
+  if (spindle_on_ || std::min(to.z, writer_.at().z) >= 0 || where.line == last_standing_line_)
+    return;
+  last_standing_line_ = where.line;
+  LinesInWork& lines = stopped_ ? behind_off_ : before_on_;
+  if (lines.count++ == 0) lines.first = where;
+}
+
+void Interpreter::TellStands(const LinesInWork& lines, const char* when) {
+  if (lines.count == 0 || !findings_.ok()) return;
+  findings_.Add(ErrorCode::kRml1GcodeSpindleStands,
+                "a cut below Z 0 " + std::string(when) + lines.InMore(), lines.first);
+}
+
+void Interpreter::TellRapids(const LinesInWork& rapids, const char* way) {
   if (rapids.count == 0 || !findings_.ok()) return;
-  findings_.Add(
-      ErrorCode::kRml1GcodeRapidInWork,
-      "G0 leads " + std::string(way) + " below Z 0" +
-          (rapids.count > 1 ? ", here and in " + std::to_string(rapids.count - 1) + " more lines"
-                            : "") +
-          ": the stream goes there at " +
-          ShortNumber(profile_.z_speeds.Nearest(profile_.z_speeds.maximum_mm_s)) + " mm/s",
-      rapids.first);
+  findings_.Add(ErrorCode::kRml1GcodeRapidInWork,
+                "G0 leads " + std::string(way) + " below Z 0" + rapids.InMore() +
+                    ": the stream goes there at " +
+                    ShortNumber(profile_.z_speeds.Nearest(profile_.z_speeds.maximum_mm_s)) +
+                    " mm/s",
+                rapids.first);
 }
 
 // The tool is put in by hand before the program begins, and stays.
@@ -352,7 +388,9 @@ std::optional<Units> Interpreter::UnitsOf(double x, double y, double z, const So
 void Interpreter::CutTo(double x, double y, double z, const SourceSpan& where) {
   if (!std::exchange(cut_, true)) cutting_tool_ = tool_;
   const std::optional<Units> to = UnitsOf(x, y, z, where);
-  if (to) NoteFeed(writer_.Cut(*to, *feed_mm_s_), feed_where_);
+  if (!to) return;
+  NoteStanding(*to, where);
+  NoteFeed(writer_.Cut(*to, *feed_mm_s_), feed_where_);
 }
 
 void Interpreter::NoteFeed(double used_mm_s, const SourceSpan& where) {

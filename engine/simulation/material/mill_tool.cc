@@ -43,6 +43,19 @@ double ShapeHeight(const MillTool& tool) {
   return 0.0;
 }
 
+double WidthAt(const MillTool& tool, double height_mm) {
+  const double height = std::min(height_mm, ShapeHeight(tool));
+  switch (tool.shape) {
+    case MillTool::Shape::kFlat:
+      return 2.0 * tool.radius_mm;
+    case MillTool::Shape::kBall:
+      return 2.0 * std::sqrt(height * (2.0 * tool.radius_mm - height));
+    case MillTool::Shape::kVee:
+      return 2.0 * (tool.tip_radius_mm + height * std::tan(tool.half_angle_rad));
+  }
+  return 0.0;
+}
+
 Status CheckTool(const MillTool& tool) {
   if (!(tool.radius_mm > 0.0) || !std::isfinite(tool.radius_mm))
     return InvalidArgument("the radius of a tool is above 0 mm");

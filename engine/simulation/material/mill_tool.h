@@ -29,6 +29,10 @@ struct MillTool {
 // How high the cutting end reaches before the tool is as wide as its shaft.
 double ShapeHeight(const MillTool& tool);
 
+// How wide the tool is at `height_mm` above its lowest point: what a groove of that depth measures
+// across at the surface. Precondition: height_mm >= 0.
+double WidthAt(const MillTool& tool, double height_mm);
+
 // Error: CellInvalidArgument for a tool that cannot be: a radius that is not above 0, a half angle
 // not between 0 and a quarter turn, a tip wider than the shaft, a cutting length that ends in the
 // shape, a shank of a tool that cuts all along, a holder that begins below the shank.

@@ -13,6 +13,26 @@ constexpr double kGougeLeast_mm = 1e-3;  // less is rounding of heights and plac
 // The greatest speeds are for travel: from this share of that of Z on, a way down is no feed.
 constexpr double kFastShare = 0.8;
 
+// The part of a straight move that keeps within limits, by shares of its way.
+struct PartOfMove {
+  double low = 0.0;
+  double high = 1.0;
+  void KeepBelow(double at_start, double change, double limit) {
+    if (at_start > limit && !(change < 0.0)) high = -1.0;
+    if (change > 0.0) high = std::min(high, (limit - at_start) / change);
+    if (change < 0.0) low = std::max(low, (limit - at_start) / change);
+  }
+  // Over the block and no further than `beyond_mm` beside it.
+  void KeepOver(const Stock& block, double beyond_mm, const motion::MachinePoint& from,
+                const motion::MachineVector& way) {
+    KeepBelow(from.x(), way.x(), block.x_max + beyond_mm);
+    KeepBelow(-from.x(), -way.x(), beyond_mm - block.x_min);
+    KeepBelow(from.y(), way.y(), block.y_max + beyond_mm);
+    KeepBelow(-from.y(), -way.y(), beyond_mm - block.y_min);
+  }
+  double length() const { return std::max(0.0, high - low); }
+};
+
 }  // namespace
 
 Status CheckMilling(const Milling& milling) {
@@ -66,6 +86,7 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
       }
     }
   }
+  NoteReach(from, to, done.place);
   NoteBelow(from, to, done.place);
   const bool cuts = done.use == MotionUse::kCut || done.use == MotionUse::kPlunge;
   if (cuts && done.programmed_mm_s > 0.0) NoteBeside(from, to, done.place);
@@ -142,6 +163,21 @@ void MillingRecorder::NoteBelow(const motion::MachinePoint& from, const motion::
   figures_.below_mm = std::max(figures_.below_mm, below);
 }
 
+// With the middle of the tool over the block: whether a cell notices, or not.
+void MillingRecorder::NoteReach(const motion::MachinePoint& from, const motion::MachinePoint& to,
+                                const machine::Place& place) {
+  const Stock& block = material_.stock();
+  if (block.top - std::min(from.z(), to.z()) <= std::max(figures_.reach_mm, kGougeLeast_mm)) return;
+  const motion::MachineVector way = to - from;
+  PartOfMove over;
+  over.KeepOver(block, 0.0, from, way);
+  if (over.low > over.high) return;
+  const double least = from.z() + std::min(way.z() * over.low, way.z() * over.high);
+  if (block.top - least <= std::max(figures_.reach_mm, kGougeLeast_mm)) return;
+  figures_.reach_mm = block.top - least;
+  figures_.reach_place = place;
+}
+
 // Below the top of the block. Outlines and facing run on beyond an edge by about the diameter of
 // the tool, which stands beside the block then; what lies further out is meant for a larger block,
 // or for another place of it.
@@ -150,23 +186,10 @@ void MillingRecorder::NoteBeside(const motion::MachinePoint& from, const motion:
   const Stock& block = material_.stock();
   const double run_on = 2.0 * tool_.radius_mm;
   const motion::MachineVector way = to - from;
-  struct Part {
-    double low = 0.0;  // shares of the way
-    double high = 1.0;
-    void KeepBelow(double at_start, double change, double limit) {
-      if (at_start > limit && !(change < 0.0)) high = -1.0;
-      if (change > 0.0) high = std::min(high, (limit - at_start) / change);
-      if (change < 0.0) low = std::max(low, (limit - at_start) / change);
-    }
-    double length() const { return std::max(0.0, high - low); }
-  };
-  Part deep;
+  PartOfMove deep;
   deep.KeepBelow(from.z(), way.z(), block.top);
-  Part inside = deep;
-  inside.KeepBelow(from.x(), way.x(), block.x_max + run_on);
-  inside.KeepBelow(-from.x(), -way.x(), run_on - block.x_min);
-  inside.KeepBelow(from.y(), way.y(), block.y_max + run_on);
-  inside.KeepBelow(-from.y(), -way.y(), run_on - block.y_min);
+  PartOfMove inside = deep;
+  inside.KeepOver(block, run_on, from, way);
   const double beside = (deep.length() - inside.length()) * way.norm();
   if (beside <= kGougeLeast_mm) return;
   if (!(figures_.beside_mm > 0.0)) figures_.beside_place = place;
@@ -189,6 +212,8 @@ MillingFigures MillingRecorder::Figures() const {
   figures.remaining_mm3 = material_.remaining_mm3();
   figures.deepest_cut_mm = material_.deepest_cut_mm();
   figures.tool_diameter_mm = 2.0 * tool_.radius_mm;
+  figures.cell_mm = material_.stock().cell;
+  figures.reach_width_mm = figures.reach_mm > 0.0 ? WidthAt(tool_, figures.reach_mm) : 0.0;
   if (target_) figures.target = CompareWithTarget(material_, *target_);
   return figures;
 }

@@ -45,6 +45,8 @@ class MillingRecorder final : public machine::RunObserver {
  private:
   void NoteBelow(const motion::MachinePoint& from, const motion::MachinePoint& to,
                  const machine::Place& place);
+  void NoteReach(const motion::MachinePoint& from, const motion::MachinePoint& to,
+                 const machine::Place& place);
   void NoteBeside(const motion::MachinePoint& from, const motion::MachinePoint& to,
                   const machine::Place& place);
   double ChipOf(double feed_mm_s) const;

@@ -59,6 +59,23 @@ std::string Nearest(std::string_view name, const Names& names) {
   return {};
 }
 
+// What people call parts, and their names here.
+struct OtherName {
+  std::string_view said;
+  std::string_view part;
+};
+constexpr OtherName kOtherNames[] = {{"length", "flute=LENGTH"},  {"cut", "flute=LENGTH"},
+                                     {"edges", "flutes=NUMBER"},  {"teeth", "flutes=NUMBER"},
+                                     {"shaft", "shank=DIAMETER"}, {"collet", "holder=WIDTH@FROM"}};
+
+std::string NearestPart(std::string_view name) {
+  for (const OtherName& other : kOtherNames) {
+    if (name == other.said || AreAlike(name, other.said))
+      return "; did you mean " + std::string(other.part) + "?";
+  }
+  return Nearest(name, kParts);
+}
+
 // "flutes=2", "flute=12", "shank=6", "holder=20@25": what is wrong with the value; nothing:
 // nothing.
 std::string_view TakeValue(std::string_view name, std::string_view value, MillTool& tool) {
@@ -90,7 +107,7 @@ std::string TakePart(std::string_view part, std::vector<std::string_view>& taken
   const std::size_t equals = part.find('=');
   const std::string_view name = part.substr(0, equals);
   if (std::ranges::find(kParts, name) == kParts.end())
-    return "'" + std::string(part) + "' is no part of a tool" + Nearest(name, kParts);
+    return "'" + std::string(part) + "' is no part of a tool" + NearestPart(name);
   if (std::ranges::find(taken, name) != taken.end())
     return "'" + std::string(part) + "' gives " + std::string(name) + " again";
   taken.push_back(name);

@@ -131,9 +131,9 @@ class PageWriter {
         large);
     const machine::MachineUsed& used = report_.machine;
     const machine::MachineFamily* family = families::FindFamily(report_.family);
-    const std::string machine = family != nullptr
-                                    ? machine::MachineTitle(*family, used.profile, used.named)
-                                    : report_.family;
+    const std::string machine =
+        family != nullptr ? machine::MachineTitle(*family, used.profile, used.named, used.own_name)
+                          : report_.family;
     const double caption_width = right - kPageMargin - kCycleTimeWidth;
     const TextStyle caption{.size = 14.0, .colour = kFaint};
     AppendText(body_, {kPageMargin, 70.0}, Fitted(machine, caption_width, caption), caption);

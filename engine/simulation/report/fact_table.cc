@@ -37,6 +37,9 @@ void Table::AddRun() {
         for (const auto& change : r.machine.changes) text += change.name + '=' + change.value + ' ';
         return Line(Trimmed(text));
       });
+  Add("machine_name", "",
+      "name of a machine of one's own that is based on the profile; none: there is none",
+      [](const RunReport& r) { return Line(r.machine.own_name); });
   Add("profile_changed_by", "", "who changed them: a machine file, options, a machine of a server",
       [](const RunReport& r) { return Line(r.machine.changed_by); });
   Add("title", "", "name of the program", [](const RunReport& r) { return Line(r.title); });

@@ -302,6 +302,10 @@ struct MillingFigures {
   double beside_x_high_mm = 0.0;
   double beside_y_low_mm = 0.0;
   double beside_y_high_mm = 0.0;
+  double cell_mm = 0.0;                   // edge of the cells that the block is looked at in
+  double reach_mm = 0.0;                  // how far the tool went below its top, over the block
+  machine::Place reach_place;             // where it was deepest
+  double reach_width_mm = 0.0;            // of the tool at the top of the block, there
   std::optional<TargetFigures> target{};  // nothing: there is none
   std::optional<ChipFigures> chips{};     // nothing: the material is not told
 

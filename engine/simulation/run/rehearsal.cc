@@ -61,6 +61,7 @@ machine::MachineUsed MachineOf(const ProgramMemory& memory) {
   auto parameters = machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
   if (!parameters) return {.profile = memory.profile, .named = !memory.profile.empty()};
   parameters->SetChangedBy(memory.parameters_of);
+  parameters->SetOwn(memory.own);
   return parameters->Used();
 }
 
@@ -74,6 +75,7 @@ Result<PreparedRun> PrepareRun(const ProgramMemory& memory, const RunOptions& op
   if (!options.parameters.empty())
     changed_by += (changed_by.empty() ? "" : " and ") + std::string("the request");
   parameters->SetChangedBy(std::move(changed_by));
+  parameters->SetOwn(memory.own);
   machine::RunSetup setup = SetupOf(memory, *std::move(parameters));
   setup.main_program = options.main_program;
   setup.mode = options.mode;

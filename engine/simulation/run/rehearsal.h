@@ -31,6 +31,7 @@ struct ProgramMemory {
   std::string profile{};
   std::map<std::string, std::string> parameters{};  // over the profile
   std::string parameters_of{};  // where they are from, for people: "mine.toml"; may be empty
+  machine::OwnMachine own{};    // whose machine it is, and where its figures are from
   std::vector<MemoryProgram> programs{};  // a later one of the same slot replaces an earlier one
   std::vector<int> deleted_programs{};    // slots that are empty now and were not always
   std::optional<std::vector<machine::LaserSchedule>> schedules{};  // none: all at their defaults

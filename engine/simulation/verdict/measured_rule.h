@@ -9,6 +9,7 @@ namespace rmlcell::simulation {
 struct Measured {
   double value = 0.0;
   machine::Place first{};
+  machine::Figure beside{};  // another one that the rule names
 };
 
 // A rule for every machine, with how its figure is found in a report.

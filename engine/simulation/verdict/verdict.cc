@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "engine/families/families.h"
@@ -29,8 +30,28 @@ Measured BelowBlock(const RunReport& r) {
   if (!r.milling) return {};
   return {r.milling->below_mm, r.milling->below_place};
 }
+// A third of the width: at least three cells lie across the way then, wherever it leads, and the
+// one next to its middle is no further off than a sixth of the width.
+constexpr double kCellsAcross = 3.0;
+constexpr double kCellShare_percent = 33.4;  // and rounding
+
+// The cell to give, in digits that people write, and not rounded up.
+double FittingCell(double width_mm) {
+  const double cell_mm = width_mm / kCellsAcross;
+  const double step_mm = cell_mm < 1e-3 ? 1e-6 : 1e-3;
+  constexpr double kLastDigits = 1e-6;
+  return std::floor(cell_mm / step_mm + kLastDigits) * step_mm;
+}
+Measured CellShare(const RunReport& r) {
+  if (!r.milling || !(r.milling->reach_width_mm > 0.0)) return {};
+  return {100.0 * r.milling->cell_mm / r.milling->reach_width_mm,
+          r.milling->reach_place,
+          {.name = "fitting_cell", .unit = "mm", .value = FittingCell(r.milling->reach_width_mm)}};
+}
+// Cells that are too wide to notice the tool are told themselves.
 Measured BlockUntouched(const RunReport& r) {
-  return {r.milling && !(r.milling->removed_mm3 > 0.0) ? 1.0 : 0.0, {}};
+  const bool untouched = r.milling && !(r.milling->removed_mm3 > 0.0);
+  return {untouched && !IsAbove(CellShare(r).value, kCellShare_percent) ? 1.0 : 0.0};
 }
 Measured Beside(const RunReport& r) {
   if (!r.milling) return {};
@@ -85,6 +106,7 @@ constexpr std::array kRules = {
     MeasuredRule{{{ErrorCode::kCellGouge, "gouges", 0.0, Verdict::kBad, "motions at travel speed through material: #"}, "", "motions at travel speed through the block that was given"}, Gouges},
     MeasuredRule{{{ErrorCode::kCellBelowBlock, "below_block", kThroughTheBlock_mm, Verdict::kBad, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
     MeasuredRule{{{ErrorCode::kCellBelowBlock, "below_block", kRounding_mm, Verdict::kDoubtful, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
+    MeasuredRule{{{ErrorCode::kCellTooWide, "cell_share", kCellShare_percent, Verdict::kDoubtful, "a cell is as wide as # % of the tool at the top of its deepest cut, so that cuts and faults are missed: give --cell #{fitting_cell}"}, "%", "edge of a cell, by the width of the tool at the top of the block where it goes deepest"}, CellShare},
     MeasuredRule{{{ErrorCode::kCellBlockUntouched, "block_untouched", 0.0, Verdict::kDoubtful, "the tool takes nothing off the block"}, "", "1 when nothing is taken off the block that was given"}, BlockUntouched},
     MeasuredRule{{{ErrorCode::kCellBesideBlock, "beside_block", kRounding_mm, Verdict::kDoubtful, "# mm of the work lie beside the block"}, "mm", "way in the work, lower than the top of the block, with the tool beside it by more than its diameter"}, Beside},
     MeasuredRule{{{ErrorCode::kCellBesideBlock, "beside_block_x_low", kRounding_mm, Verdict::kDoubtful, "the work leads # mm beyond the edge of the block at its least X"}, "mm", "how far that leads beyond the least X of the block"}, BesideEdge<&MillingFigures::beside_x_low_mm>},
@@ -122,7 +144,8 @@ void AddMeasuredRules(std::span<const MeasuredRule> rules, const RunReport& repo
     if (!IsAbove(measured.value, what.limit) || said) continue;
     judgement.Add(machine::ReasonOf(
         what,
-        {.unit = std::string(rule.info.unit), .value = measured.value, .first = measured.first}));
+        {.unit = std::string(rule.info.unit), .value = measured.value, .first = measured.first},
+        {&measured.beside, 1}));
   }
 }
 

@@ -121,6 +121,27 @@ TEST(Profiles, WhatIsChangedOfThemIsTold) {
   EXPECT_EQ(MakeParameters(laser, "efa-51", {})->Used().changes, std::vector<ChangedParameter>{});
 }
 
+TEST(Profiles, AMachineOfOnesOwnHasItsNameAndSources) {
+  const MachineFamily& mill = *families::FindFamily("rml1");
+  auto parameters = MakeParameters(mill, "srm-20", {{"X_MAX", "100"}, {"CLAMP_HEIGHT", "5"}});
+  ASSERT_TRUE(parameters);
+  parameters->SetChangedBy("mine.toml");
+  parameters->SetOwn(
+      {.name = "My mill", .sources = {{"x_max", "measured"}, {"Y_MAX", "estimate"}}});
+  const MachineUsed used = parameters->Used();
+  EXPECT_EQ(used.own_name, "My mill");
+  ASSERT_EQ(used.changes.size(), 2U);
+  EXPECT_EQ(used.changes[0].source, "");
+  EXPECT_EQ(used.changes[1], (ChangedParameter{"X_MAX", "100", "203.2", "measured"}));
+  EXPECT_NE(used.ChangesText().find("X_MAX 100 (profile: 203.2; source: measured); by mine.toml"),
+            std::string::npos);
+  EXPECT_EQ(MachineTitle(mill, "srm-20", true, "My mill"),
+            "My mill, based on Roland monoFab SRM-20 (srm-20)");
+  EXPECT_EQ(
+      MachineTitle(mill, "srm-20", false, "mine.toml"),
+      "mine.toml, based on Roland monoFab SRM-20 (srm-20): the default, as it names no profile");
+}
+
 TEST(Profiles, ATitleSaysWhenNobodyNamedOne) {
   const MachineFamily& mill = *families::FindFamily("rml1");
   EXPECT_EQ(MachineTitle(mill, "srm-20", true), "Roland monoFab SRM-20 (srm-20)");

@@ -64,8 +64,10 @@ TEST(Finding, OfCommandErrors) {
        "RML1-E8002 RML1-5A.01 0+2 1: the tool could not follow PD to "
        "its end"},
       {"!ZE X9000000;", "RML1-E3 RML1-2.34 0+3 1: a coordinate of !ZE becomes 9e+06"},
-      {"PU;@1;", "RML1-E3 RML1-3C.13 3+1 2: a tool height of 1"},
-      {"PU;!PZ0,-2;", "RML1-E3 RML1-3C.13 3+3 2: a tool height of -2"},
+      {"PU;@1;", "RML1-E3 RML1-3C.13 3+1 2: a tool height of 1, allowed are -4000 to 0"},
+      {"PU;!PZ0,-2;", "RML1-E3 RML1-3C.13 3+3 2: a tool height of -2, allowed are 0 to 8388607"},
+      {"PU;!PZ0,9000000;",
+       "RML1-E3 RML1-3C.13 3+3 2: a tool height of 9000000, allowed are 0 to 8388607"},
       {"PU;W-1;", "RML1-E3 RML1-2.33 3+1 2: W -1"},
       {"PU;V40000;", "RML1-E3 RML1-2.33 3+1 2: V 40000"},
       {"PU;!RC-3;", "RML1-E3 RML1-2.33 3+3 2: !RC -3"},

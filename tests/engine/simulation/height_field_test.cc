@@ -198,6 +198,9 @@ TEST(HeightField, CellsCoverTheBlock) {
   Stock more = most;
   more.x_max = 8193.0;
   EXPECT_FALSE(CheckStock(more).ok());
+  // Numbers as people write them: 200,000 by 1,000 cells.
+  EXPECT_EQ(CheckStock({.x_max = 2000.0, .y_max = 10.0, .top = 1.0, .cell = 0.01}).error().detail,
+            "the stock has 200000 by 1000 cells, more than 67108864: make the cells larger");
 }
 
 // Each side of a block has an extent, each edge a finite place.

@@ -69,7 +69,7 @@ TEST(MillRules, WorkThatWouldFitWithTheOtherStep) {
   EXPECT_FALSE(guesses("-400", "mdx-15"));
 }
 
-// 50 units are a lift of 0.5 mm, or of 1.25 mm on a machine with 40 units.
+// 40 units are a lift of 0.4 mm, or of 1 mm on a machine with 40 units; 50 are an ordinary 0.5 mm.
 TEST(MillRules, LiftsAsLowAsWithTheOtherStep) {
   const auto lift = [](const std::string& units, const std::string& profile = "t1") {
     return TextOfCheck("VS10;!VZ10;!PZ-100," + units + ";!MC1;PU100,100;PD200,100;PU0,0;!MC0;",
@@ -79,10 +79,11 @@ TEST(MillRules, LiftsAsLowAsWithTheOtherStep) {
   EXPECT_EQ(lift("20"),
             "DOUBTFUL; RML1-E8016 it may be written for 40 units per mm: the tool rises 0.200 mm "
             "above the work, which would be 0.5 mm there");
-  EXPECT_EQ(lift("50"),
-            "DOUBTFUL; RML1-E8016 it may be written for 40 units per mm: the tool rises 0.500 mm "
-            "above the work, which would be 1.25 mm there");
-  EXPECT_EQ(lift("51"), "GOOD");
+  EXPECT_EQ(lift("40"),
+            "DOUBTFUL; RML1-E8016 it may be written for 40 units per mm: the tool rises 0.400 mm "
+            "above the work, which would be 1 mm there");
+  EXPECT_EQ(lift("41"), "GOOD");
+  EXPECT_EQ(lift("50"), "GOOD");
   // 88 and 100 units are 2.2 and 2.5 mm with 40: twentieths of a millimetre, as people think of
   // them. With 100, 0.88 mm is none. 80 and 100 units are round with both, 102 too high to tell.
   EXPECT_EQ(lift("88"),
@@ -109,6 +110,7 @@ TEST(MillRules, FeedRatesThatTheMachineDoesNotHave) {
   EXPECT_EQ(feeds("VS60.6;!VZ10;"), "GOOD");
   EXPECT_EQ(feeds("VS61;!VZ10;"), said + "60 mm/s in place of 61 @6");
   EXPECT_EQ(feeds("VS0;!VZ10;"), said + "0.5 mm/s in place of 0 @6");
+  EXPECT_EQ(feeds("VS-5;!VZ10;"), said + "0.5 mm/s in place of -5 @6");
   EXPECT_EQ(feeds("VS10;!VZ0.1;"), said + "0.5 mm/s in place of 0.1 @6");
   // The worst one is told: 0.1 is four fifths less than 0.5, 61 a sixtieth more than 60.
   EXPECT_EQ(feeds("VS61;!VZ0.1;"),
@@ -138,6 +140,17 @@ TEST(MillRules, SpindleSpeedsThatTheMachineDoesNotHave) {
   EXPECT_EQ(speed("4460", "t1"), "GOOD");                                     // 0.9 % below 4500
   EXPECT_EQ(speed("15", "t1"), "GOOD");                                       // a stage
   EXPECT_EQ(speed("12000", "t1s"), said + "15000 rpm in place of 12000 @7");  // the last stage
+  // RML1-3C.20: by hand T1F has 4500 to 15000 rpm, and the MDX-20 nothing but 6500.
+  EXPECT_EQ(speed("15000", "t1f"), "GOOD");
+  EXPECT_EQ(speed("20000", "t1f"), said + "15000 rpm in place of 20000 @7");
+  EXPECT_EQ(speed("15", "t1f"), "GOOD");
+  EXPECT_EQ(speed("-1", "t1f"), "GOOD");
+  const auto on_mdx_20 = [](const std::string& rc) {
+    return TextOfCheck(rc + "VS5;!VZ2;!PZ-40,80;!MC1;PU40,40;PD80,40;PU0,0;!MC0;", "mdx-20");
+  };
+  EXPECT_EQ(on_mdx_20("!RC6500;"), "GOOD");
+  EXPECT_EQ(on_mdx_20("!RC20000;"), said + "6500 rpm in place of 20000 @7");
+  EXPECT_EQ(on_mdx_20("!RC20000;!RC6500;"), "GOOD");
   EXPECT_EQ(speed("12000", "t1f"), "GOOD");  // set on the machine, not by command
   EXPECT_EQ(speed("20000;!RC8000", "t1"), "GOOD");
 }

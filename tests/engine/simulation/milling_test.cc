@@ -160,6 +160,8 @@ TEST(MillingText, ReadsShanksAndHolders) {
       {"x:3", "'x:3' is no tool: write"},
       {"flat:3:flute=9:shnk=6", ": at 16, 'shnk=6' is no part of a tool; did you mean shank?"},
       {"flat:3:fluets=2", "did you mean flutes?"},
+      {"flat:3:lenght=4", ": at 8, 'lenght=4' is no part of a tool; did you mean flute=LENGTH?"},
+      {"flat:3:teeth=4", "did you mean flutes=NUMBER?"},
       {"flat:3:flutes", "is no tool"},
       {"flat:3:flute=9:shank", ": at 16, 'shank' has no value"},
       {"flat:3:flutes=1.5", "at 8, 'flutes=1.5': write a whole number from 1 to 100"},

@@ -48,18 +48,35 @@ TEST(MachineFile, FamilyProfileAndParameters) {
                                      {"VMAX", "400"}, {"CYCLE", "0.064"}, {"LASER", "EFA51"}}));
 }
 
+// In any order, and with the word that built-in profiles have for the name.
+TEST(MachineFile, NameAndSources) {
+  for (const std::string key : {"name", "title"}) {
+    const auto machine = ParseMachineFile(key +
+                                              " = 'My mill'\nprofile = 'srm-20'\n[sources]\n"
+                                              "x_max = 'measured'\n[parameters]\nX_MAX = 100\n",
+                                          "m.toml");
+    ASSERT_TRUE(machine) << key;
+    EXPECT_EQ(machine->name, "My mill");
+    EXPECT_EQ(machine->sources, (std::map<std::string, std::string>{{"x_max", "measured"}}));
+  }
+}
+
 TEST(MachineFile, MistakesAreNamedWithTheirPlace) {
-  for (const auto& [text, line, said] : std::vector<std::tuple<std::string, int, std::string>>{
-           {"family = 'optimo'\ncolour = 'red'\n", 2,
-            "m.toml:2: unknown key colour; there are family, profile, [parameters]"},
-           {"profile = 1\n", 1,
-            "m.toml:1: unknown key profile; there are family, profile, [parameters]"},
-           {"family = 1\n", 1,
-            "m.toml:1: unknown key family; there are family, profile, [parameters]"},
-           {"parameters = 1\n", 1,
-            "m.toml:1: unknown key parameters; there are family, profile, [parameters]"},
-           {"[parameters]\nVMAX = true\n", 2,
-            "m.toml:2: parameter VMAX takes a number or a text"}}) {
+  for (
+      const auto& [text, line, said] : std::vector<std::tuple<std::string, int, std::string>>{
+          {"family = 'optimo'\ncolour = 'red'\n", 2,
+           "m.toml:2: unknown key colour; there are family, profile, name, [parameters], [sources]"},
+          {"profile = 1\n", 1,
+           "m.toml:1: unknown key profile; there are family, profile, name, [parameters], [sources]"},
+          {"family = 1\n", 1,
+           "m.toml:1: unknown key family; there are family, profile, name, [parameters], [sources]"},
+          {"parameters = 1\n", 1,
+           "m.toml:1: unknown key parameters; there are family, profile, name, [parameters], [sources]"},
+          {"[parameters]\nVMAX = true\n", 2, "m.toml:2: parameter VMAX takes a number or a text"},
+          {"[sources]\nVMAX = 'x'\n", 2,
+           "m.toml:2: a source of VMAX, which [parameters] does not have"},
+          {"[parameters]\nVMAX = 1\n[sources]\nVMAX = 1\n", 4,
+           "m.toml:4: the source of VMAX is a text"}}) {
     const auto machine = ParseMachineFile(text, "m.toml");
     ASSERT_FALSE(machine) << text;
     EXPECT_EQ(machine.error().code, ErrorCode::kCellBadText);

@@ -52,7 +52,7 @@ TEST(MillingOfAJob, EachFieldHasItsPlace) {
                                             .y_max = 74.0,
                                             .bottom = -8.0,
                                             .top = 2.0,
-                                            .cell = 0.1}));
+                                            .cell = 0.05}));  // a quarter of the tip
   const MillTool& tool = made->tool;
   EXPECT_EQ(tool.shape, MillTool::Shape::kVee);
   EXPECT_EQ(tool.radius_mm, 3.0);

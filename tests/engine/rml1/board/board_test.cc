@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/rml1/board/contours.h"
+#include "engine/rml1/board/joined_traces.h"
 #include "engine/rml1/board/nearest_order.h"
 #include "engine/rml1/board/png_bitmap.h"
 #include "engine/rml1/board/simplify.h"
@@ -284,7 +285,40 @@ TEST(StreamOfBoard, SaysWhichTracesStayJoined) {
   ASSERT_TRUE(made);
   ASSERT_EQ(made->findings.size(), 1U);
   EXPECT_EQ(made->findings[0].code, ErrorCode::kRml1GapTooNarrow);
-  EXPECT_EQ(made->findings[0].detail, "of 2 traces 1 are parted from the others");
+  EXPECT_EQ(made->findings[0].detail, "of 2 traces 2 stay joined with a neighbour");
+  EXPECT_EQ(made->joined, 2U);
+}
+
+// Two traces 0.2 mm apart and a third one 2 mm away: a tool of 0.4 mm parts the third alone. And
+// two such pairs: all four stay joined, in two groups.
+TEST(StreamOfBoard, CountsTracesAndNotGroups) {
+  const auto detail = [](const std::vector<std::string>& rows) {
+    const auto made =
+        StreamOfBoard(Picture(rows), Centred("srm-20"), {.pixel_mm = 0.1, .tool_mm = 0.4});
+    EXPECT_TRUE(made);
+    return made && !made->findings.empty() ? made->findings[0].detail : std::string();
+  };
+  const std::string far(20, '.');
+  EXPECT_EQ(detail({"##..##" + far + "##", "##..##" + far + "##"}),
+            "of 3 traces 2 stay joined with a neighbour");
+  EXPECT_EQ(detail({"##..##" + far + "##..##", "##..##" + far + "##..##"}),
+            "of 4 traces 4 stay joined with a neighbour");
+  EXPECT_EQ(detail({"##" + far + "##"}), "");
+  // A ring around a dot: 0.2 mm on all sides are too narrow, though the ring itself is one line.
+  EXPECT_EQ(detail({"#######", "#.....#", "#.....#", "#..#..#", "#.....#", "#.....#", "#######"}),
+            "of 2 traces 2 stay joined with a neighbour");
+}
+
+// As lines go around them: pixels that have a corner in common are two traces, or one where the
+// middle between them is below the level. Values around it 0, 2 and 2, 0: the middle is 1.
+TEST(JoinedTraces, AtACorner) {
+  const DistanceField field{4, 4, {9, 9, 9, 9, 9, 0, 2, 9, 9, 2, 0, 9, 9, 9, 9, 9}};
+  const JoinedTraces apart = CountJoined(field, 0.5, 0.9);
+  EXPECT_EQ(apart.traces, 2U);
+  EXPECT_EQ(apart.joined, 0U);
+  EXPECT_EQ(CountJoined(field, 0.5, 1.1).joined, 2U);
+  EXPECT_EQ(ContoursAt(field, 0.9).size(), 2U);
+  EXPECT_EQ(ContoursAt(field, 1.1).size(), 1U);
 }
 
 TEST(StreamOfBoard, SpeedsAndTheEnds) {

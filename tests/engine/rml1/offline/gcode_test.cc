@@ -332,10 +332,33 @@ TEST(FromGcode, ArcsInAllPlanes) {
   EXPECT_EQ(CodeOf("G2 X2 Y2 I2 K0 F60\n"), ErrorCode::kRml1GcodeArc);
 }
 
+// Told once of a kind, with the first line and how many more there are.
+TEST(FromGcode, CutsWhileTheSpindleStandsAreTold) {
+  const StreamOfGcode never = From("G0 Z1\nG1 Z-1 F600\nG1 X5\nG1 Z1\nG1 X9\n");
+  EXPECT_TRUE(never.ok);
+  ASSERT_EQ(never.findings.size(), 1U);
+  EXPECT_EQ(never.findings[0].code, ErrorCode::kRml1GcodeSpindleStands);
+  EXPECT_EQ(never.findings[0].severity, Severity::kWarning);
+  EXPECT_EQ(never.findings[0].where.line, 2);  // and lines 3 and 4, but not 5, above the work
+  EXPECT_EQ(never.findings[0].detail,
+            "a cut below Z 0 before M3 turns the spindle on, here and in 2 more lines");
+  const StreamOfGcode stopped = From("M3\nG1 Z-1 F600\nM5\nG1 X5\nM3\nG1 X9\nG0 Z1\nM5\nG0 X0\n");
+  ASSERT_EQ(stopped.findings.size(), 1U);
+  EXPECT_EQ(stopped.findings[0].where.line, 4);
+  EXPECT_EQ(stopped.findings[0].detail, "a cut below Z 0 behind M5, which stops the spindle");
+  // An M5 at the beginning stops nothing; an arc is one line, however many chords it has.
+  const StreamOfGcode arc = From("M5\nG1 Z-1 F600\nG2 X2 Y2 I1 J1\n");
+  ASSERT_EQ(arc.findings.size(), 1U);
+  EXPECT_EQ(arc.findings[0].detail,
+            "a cut below Z 0 before M3 turns the spindle on, here and in 1 more line");
+  EXPECT_TRUE(From("M3 G1 Z-1 F600\nG0 Z1\nM5\n").findings.empty());
+  EXPECT_TRUE(From("G0 Z1\nG1 X5 F600\nG1 Z0\n").findings.empty());
+}
+
 // T1: the highest speed with Z is 60 mm/s.
 TEST(FromGcode, RapidsThroughTheWorkAreToldWithTheirLines) {
   const StreamOfGcode made =
-      From("G0 Z1\nG0 X5\nG1 Z-1 F600\nG0 X9\nG0 Y9\nG0 Z1\nG0 Z-0.5\nG0 X0 Y0 Z2\n");
+      From("M3 G0 Z1\nG0 X5\nG1 Z-1 F600\nG0 X9\nG0 Y9\nG0 Z1\nG0 Z-0.5\nG0 X0 Y0 Z2\n");
   EXPECT_TRUE(made.ok);
   ASSERT_EQ(made.findings.size(), 2U);
   EXPECT_EQ(made.findings[0].code, ErrorCode::kRml1GcodeRapidInWork);
@@ -347,7 +370,7 @@ TEST(FromGcode, RapidsThroughTheWorkAreToldWithTheirLines) {
   EXPECT_EQ(made.findings[1].where.line, 7);
   EXPECT_EQ(made.findings[1].detail, "G0 leads down below Z 0: the stream goes there at 60 mm/s");
   // Up out of the work, across at Z 0, and down to Z 0 are what rapids are for.
-  EXPECT_TRUE(From("G1 Z-1 F600\nG0 Z0\nG0 X5\nG0 Z3\nG0 X0 Z0\n").findings.empty());
+  EXPECT_TRUE(From("M3 G1 Z-1 F600\nG0 Z0\nG0 X5\nG0 Z3\nG0 X0 Z0\n").findings.empty());
 }
 
 // Up to the top, which is 20 mm above Z0 of T1, and then to the origin.
