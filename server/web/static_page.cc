@@ -1,5 +1,6 @@
 #include "server/web/static_page.h"
 
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
