@@ -63,6 +63,11 @@ TEST(Navigation, ACallLeadsToTheFileOfTheProgram) {
 TEST(Navigation, AWorkLeadsToItsWorkdef) {
   EXPECT_EQ(DefinitionOf("WORKDEF 1,0 (1,2,3,4)\nWORKDEF 1,0 (2,2,3,4)\nWO|RK 1,0/ON\n"),
             Strings{"12.S 1:0"});
+  EXPECT_EQ(DefinitionOf("WORKDEF 1,1 (1,2,3,4)\nWORKDEF 2,0 (5)\nWO|RK 1,0/ON\nWORKDEF 1,0 "
+                         "(2,2,3,4)\nWORKDEF 1,0 (3,2,3,4)\n"),
+            Strings{"12.S 3:0"});
+  EXPECT_EQ(DefinitionOf("WORKDEF 1,0 (1,2,3,4)\nWORK 1,0/O|N\n"), Strings{});
+  EXPECT_EQ(DefinitionOf("WORK|DEF 1,0 (1,2,3,4)\n"), Strings{});
 }
 
 TEST(Navigation, ReferencesAreTheSequenceNumberAndItsJumps) {
@@ -78,6 +83,9 @@ TEST(Navigation, ReferencesOfNamesAndVariables) {
             (Strings{"12.S 0:8", "12.S 1:0", "12.S 1:4"}));
   EXPECT_EQ(ReferencesOf("DECLARE X = VR[5]\nX = x + VR[|05]\n", true, editor),
             (Strings{"12.S 0:12", "12.S 1:8"}));
+  // Of the group and of the index.
+  EXPECT_EQ(ReferencesOf("VR[|5] = VI[5]\nVR[6] = VR[5]\n", true, editor),
+            (Strings{"12.S 0:0", "12.S 1:8"}));
 }
 
 TEST(Navigation, ReferencesOfAProgramAreThoseOfItsFolder) {
