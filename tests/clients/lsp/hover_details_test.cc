@@ -129,6 +129,10 @@ TEST(HoverDetails, ACalledNameIsToldWithItsProgram) {
   editor.folder.files["file:///work/44.S"] = "VR[0] = PAR[2]\nVR[1] = PAR[0]\n";
   EXPECT_THAT(HoverIn(editor, "DECLARE RECT = 44\nCALL RE|CT\n"),
               EndsWith("\n\n**Program 44** in `44.S`, 2 steps\n\nReads PAR[0] to PAR[2]."));
+  editor.folder.files["file:///work/45.S"] = "VR[0] = PAR[0]\n";
+  EXPECT_THAT(HoverIn(editor, "CALL 4|5\n"), EndsWith("1 step\n\nReads PAR[0]."));
+  editor.folder.files["file:///work/46.S"] = "VR[0] = PAR[1]\n";
+  EXPECT_THAT(HoverIn(editor, "CALL 4|6\n"), EndsWith("1 step\n\nReads PAR[0] to PAR[1]."));
   EXPECT_THAT(HoverIn(editor, "DECLARE RECT = 44\nCALL 4 (RE|CT)\n"), Not(HasSubstr("Program")));
   EXPECT_THAT(HoverIn(editor, "DECLARE RECT = 44\n10 GO RE|CT\n"), HasSubstr("**Program 44**"));
   EXPECT_THAT(HoverIn(editor, "DECLARE RECT = 44.5\nCALL RE|CT\n"), Not(HasSubstr("Program")));
