@@ -100,6 +100,17 @@ TEST(CompletionBounds, NumbersStandInTheListsThatJump) {
   EXPECT_THAT(OfferedAt("SPEED GOTO |" + rest), Not(Contains("20")));
 }
 
+// Slots begin with 1; each program is offered once.
+TEST(CompletionBounds, ProgramsBeginWithTheFirstSlot) {
+  Editor editor;
+  for (const char* name : {"1.S", "1.SI", "2.S"})
+    editor.folder.files[std::string("file:///work/") + name] = "";
+  const Json answer = editor.At("textDocument/completion", "FUNCTION |");
+  std::vector<std::string> labels;
+  for (const Json& item : answer["result"]["items"]) labels.push_back(item["label"]);
+  EXPECT_THAT(labels, ElementsAre("1", "2"));
+}
+
 TEST(CompletionBounds, BehindAValueStandOperators) {
   for (const char* value : {"VR[0] = 5 |", "VR[0] = (5) |", "VR[0] = VR[1] |", "VR[0] = XPOS |"})
     EXPECT_THAT(OfferedAt(value),

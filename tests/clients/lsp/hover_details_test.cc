@@ -3,6 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clients/lsp/answers.h"
+#include "engine/core/diagnostic.h"
 #include "tests/clients/lsp/editor.h"
 
 namespace rmlcell::lsp {
@@ -181,6 +187,32 @@ TEST(HoverDetails, FindingsOfAPlaceStandBelow) {
   EXPECT_THAT(at(0, 9), HasSubstr("OPT-E7004"));  // behind its last
   EXPECT_THAT(at(0, 5), Not(HasSubstr("OPT-E7004")));
   EXPECT_THAT(at(1, 6), Not(HasSubstr("OPT-E7004")));
+}
+
+// Three findings of a place are told; one of no place is of none of them.
+TEST(HoverDetails, ThreeFindingsOfOnePlace) {
+  const Document document(kUri, "optimo-rml", 1, "SPEED 5\n", Encoding::kUtf16);
+  const auto told = [&](std::size_t offset, std::int64_t at, std::size_t count) {
+    Diagnostic finding{.code = ErrorCode::kNameUndeclared, .severity = Severity::kCompile};
+    finding.where.byte_offset = at;
+    finding.where.length = 2;
+    const std::vector<Diagnostic> findings(count, finding);
+    const Json answer = HoverAnswer(document, offset, std::nullopt, findings, nullptr);
+    if (answer.is_null()) return std::size_t{0};
+    const std::string text = answer["contents"]["value"];
+    std::size_t found = 0;
+    for (std::size_t from = text.find("**OPT-E7011**"); from != std::string::npos;
+         from = text.find("**OPT-E7011**", from + 1))
+      ++found;
+    return found;
+  };
+  EXPECT_EQ(told(0, -1, 1), 0U);
+  EXPECT_EQ(told(3, 4, 1), 0U);
+  EXPECT_EQ(told(4, 4, 1), 1U);
+  EXPECT_EQ(told(6, 4, 1), 1U);
+  EXPECT_EQ(told(7, 4, 1), 0U);
+  EXPECT_EQ(told(4, 4, 3), 3U);
+  EXPECT_EQ(told(4, 4, 4), 3U);
 }
 
 }  // namespace

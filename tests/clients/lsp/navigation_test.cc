@@ -99,6 +99,14 @@ TEST(Navigation, ReferencesOfAProgramAreThoseOfItsFolder) {
             (Strings{"12.S 1:5", "13.S 1:9", "14.S 2:3"}));
 }
 
+// Slots begin with 1.
+TEST(Navigation, ReferencesOfAProgramAreThoseOfTheFirstSlotToo) {
+  Editor editor;
+  editor.folder.files["file:///work/1.S"] = "CALL 44\n";
+  editor.folder.files["file:///work/2.S"] = "SPEED 5\n";
+  EXPECT_EQ(ReferencesOf("CALL 4|4\n", true, editor), (Strings{"12.S 0:5", "1.S 0:5"}));
+}
+
 // Of several files for one number the first is the program.
 TEST(Navigation, ReferencesOfAProgramAreNotThoseOfItsOtherForms) {
   Editor editor;
