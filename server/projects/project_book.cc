@@ -371,12 +371,11 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
   }
   const auto stored = store_.PutPrograms(*machine_id, writes, schedules);
   if (!stored) return stored.error();
-  // One of each program, in the same order.
-  auto made = response.mutable_programs()->begin();
-  for (const storage::ProgramSummary& summary : *stored) {
-    made->set_etag(std::to_string(summary.revision));
-    made->set_object_sha256(summary.object_sha256);
-    ++made;
+  std::size_t next = 0;  // one summary of each program, in the same order
+  for (v1::Program& made : *response.mutable_programs()) {
+    const storage::ProgramSummary& summary = (*stored)[next++];
+    made.set_etag(std::to_string(summary.revision));
+    made.set_object_sha256(summary.object_sha256);
   }
   return response;
 }
