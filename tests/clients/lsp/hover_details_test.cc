@@ -207,6 +207,7 @@ TEST(HoverDetails, ThreeFindingsOfOnePlace) {
     return found;
   };
   EXPECT_EQ(told(0, -1, 1), 0U);
+  EXPECT_EQ(told(0, 0, 1), 1U);
   EXPECT_EQ(told(3, 4, 1), 0U);
   EXPECT_EQ(told(4, 4, 1), 1U);
   EXPECT_EQ(told(6, 4, 1), 1U);
