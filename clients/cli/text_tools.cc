@@ -289,7 +289,8 @@ int Rewrite(const ToolOptions& options,
   const Result<Source> source = ReadSource(file);
   if (!source) return Refuse(source.error());
   if (source->inch) return Refuse({source->tools().codes().source_is_inch, file, {}});
-  const machine::RewrittenText made = (source->tools().*rewrite)(source->text, by);
+  machine::RewrittenText made = (source->tools().*rewrite)(source->text, by);
+  for (Diagnostic& finding : made.diagnostics) finding.file = file;
   ToolAnswer answer(file, options.json);
   answer.Found(made.diagnostics, 0, source->text);
   return made.ok

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "engine/core/hex.h"
@@ -25,9 +26,7 @@ struct Found {
 };
 
 bool ComesBefore(const Found& a, const Found& b) {
-  if (a.number != b.number) return a.number < b.number;
-  if (a.rank != b.rank) return a.rank < b.rank;
-  return a.path.compare(b.path) < 0;
+  return std::tie(a.number, a.rank, a.path) < std::tie(b.number, b.rank, b.path);
 }
 
 int HexDigit(char c) {

@@ -37,7 +37,6 @@ std::uint32_t UnitsOf(Character character, Encoding encoding) {
 }  // namespace
 
 std::uint32_t CharactersIn(std::string_view text, Encoding encoding) {
-  if (encoding == Encoding::kUtf8) return static_cast<std::uint32_t>(text.size());
   std::uint32_t count = 0;
   for (std::size_t at = 0; at < text.size();) {
     const Character character = CharacterAt(text, at);

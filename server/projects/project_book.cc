@@ -371,11 +371,11 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
   }
   const auto stored = store_.PutPrograms(*machine_id, writes, schedules);
   if (!stored) return stored.error();
-  for (int i = 0; i < response.programs_size() && static_cast<std::size_t>(i) < stored->size();
-       ++i) {
-    const storage::ProgramSummary& summary = (*stored)[static_cast<std::size_t>(i)];
-    response.mutable_programs(i)->set_etag(std::to_string(summary.revision));
-    response.mutable_programs(i)->set_object_sha256(summary.object_sha256);
+  std::size_t next = 0;  // one summary of each program, in the same order
+  for (v1::Program& made : *response.mutable_programs()) {
+    const storage::ProgramSummary& summary = (*stored)[next++];
+    made.set_etag(std::to_string(summary.revision));
+    made.set_object_sha256(summary.object_sha256);
   }
   return response;
 }

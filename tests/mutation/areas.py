@@ -49,5 +49,5 @@ AREAS = {
                       "integration_test_web")),
     "command": Area(("clients/cli", "clients/lsp", "engine/optimo/editing"),
                     ("lsp_test", "optimo_editing_test", "cli_test", "integration_test_command", "integration_test_lsp",
-                     "integration_test_tools", "integration_test_programs")),
+                     "integration_test_tools", "integration_test_rml1_tools", "integration_test_programs")),
 }

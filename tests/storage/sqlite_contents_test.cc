@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/core/hex.h"
 #include "storage/sqlite/content.h"
@@ -134,6 +137,37 @@ TEST_F(SqliteContents, EveryKindOfRecordLetsItsContentGo) {
   Must(store().DeleteExecutable("m", 1));
   Must(store().DeleteProgram("m", 1, kAnyRevision));
   WaitUntil([&] { return Count("blob") == 0 && Count("blob_chunk") == 0; });
+}
+
+// What each kind of write leaves behind goes by itself: nothing else has to be written after it.
+TEST(SqliteGarbage, EveryWriteThatDropsAContentHasItSwept) {
+  const std::string large = Noise(kContentInRecordMax + 1, 1);
+  using Change = std::function<void(Store&)>;
+  const std::vector<std::pair<std::string, Change>> changes = {
+      {"machine", [](Store& store) { Must(store.PutMachine({.id = "m"}, kAnyRevision)); }},
+      {"project", [](Store& store) { Must(store.PutProject({.id = "p"}, kAnyRevision)); }},
+      {"no project", [](Store& store) { Must(store.DeleteProject("p", kAnyRevision)); }},
+      {"program",
+       [](Store& store) { Must(store.PutPrograms("m", {{.slot = 1, .object = "new"}}, {})); }},
+      {"no program", [](Store& store) { Must(store.DeleteProgram("m", 1, kAnyRevision)); }},
+      {"executable", [](Store& store) { Must(store.PutExecutable("m", 2, 1, "new")); }},
+      {"no executable", [](Store& store) { Must(store.DeleteExecutable("m", 2)); }},
+  };
+  for (const auto& [what, change] : changes) {
+    SqliteBed bed;
+    Must(bed.store().PutMachine({.id = "m", .state = large + "m"}, 0));
+    Must(bed.store().PutProject({.id = "p", .body = large + "p"}, 0));
+    Must(bed.store().PutPrograms(
+        "m", {{.slot = 1, .object = large + "o"}, {.slot = 2, .object = "o"}}, {}));
+    Must(bed.store().PutExecutable("m", 2, 1, large + "e"));
+    const std::string has_large = "SELECT count(*) FROM blob WHERE size > 1000";
+    // What was set up has been swept before: nobody else's sweep takes the content away.
+    Must(bed.store().PutProject({.id = "q", .body = large + "q"}, 0));
+    Must(bed.store().DeleteProject("q", 1));
+    ASSERT_TRUE(Eventually([&] { return NumberIn(bed.path(), has_large) == 4; }));
+    change(bed.store());
+    EXPECT_TRUE(Eventually([&] { return NumberIn(bed.path(), has_large) == 3; })) << what;
+  }
 }
 
 // What a refused write had brought along goes again.

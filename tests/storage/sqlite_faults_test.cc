@@ -127,7 +127,9 @@ TEST_F(SqliteFaults, EveryStepSurvivesAFailureAtEveryOperation) {
 }
 
 // One write that does not fit must not take those down that share its commit.
-TEST_F(SqliteFaults, OthersInTheSameCommitAreNotTakenDown) {
+class SqliteFullLog : public SqliteFaults, public testing::WithParamInterface<int> {};
+
+TEST_P(SqliteFullLog, OthersInTheSameCommitAreNotTakenDown) {
   Must(store().PutMachine({.id = "m"}, 0));
   Must(store().SubmitAndWait({.kind = "SIMULATE"}));
   const Lease lease = Must(store().Acquire("w", {"SIMULATE"}, kLease, {}))->lease;
@@ -144,23 +146,25 @@ TEST_F(SqliteFaults, OthersInTheSameCommitAreNotTakenDown) {
     });
   });
   blocked.get_future().wait();
-  constexpr int kSmall = 5;
+  const int small = GetParam();
   const auto answer = [&](const Result<std::int64_t>& last) {
     ++(last ? good : bad);
     ++answered;
   };
-  for (int i = 0; i < kSmall; ++i) store().Append(lease, {{.kind = "small"}}, answer);
+  for (int i = 0; i < small; ++i) store().Append(lease, {{.kind = "small"}}, answer);
   store().Append(lease, {{.kind = "large", .payload = Noise(1'000'000, 1)}}, answer);
   faulty_disk::OnlyFilesEndingWith("-wal");
   const auto log = static_cast<std::int64_t>(std::filesystem::file_size(bed_.path() + "-wal"));
   faulty_disk::Fail({.on_write = SQLITE_FULL, .beyond = log + 200'000});
   release.set_value();
-  ASSERT_TRUE(Eventually([&] { return answered >= kSmall + 1; }));
-  EXPECT_EQ(good, kSmall);
+  ASSERT_TRUE(Eventually([&] { return answered >= small + 1; }));
+  EXPECT_EQ(good, small);
   EXPECT_EQ(bad, 1);
   faulty_disk::Heal();
-  EXPECT_EQ(Must(store().GetJob(lease.job)).last_sequence, kSmall + 1);
+  EXPECT_EQ(Must(store().GetJob(lease.job)).last_sequence, small + 1);
 }
+
+INSTANTIATE_TEST_SUITE_P(Small, SqliteFullLog, testing::Values(1, 5));
 
 // The log cannot be moved into the database: nothing is lost, it is tried again later.
 TEST_F(SqliteFaults, FailedCheckpointLosesNothing) {

@@ -237,7 +237,8 @@ class HoverText {
       if (use.kind == UseKind::kVariable && use.group == VariableGroup::kPar)
         parameters = std::max(parameters, use.number + 1);
     }
-    if (parameters > 0) text += "\n\nReads PAR[0] to PAR[" + std::to_string(parameters - 1) + "].";
+    if (parameters == 1) text += "\n\nReads PAR[0].";
+    if (parameters > 1) text += "\n\nReads PAR[0] to PAR[" + std::to_string(parameters - 1) + "].";
     return text;
   }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "tests/clients/lsp/editor.h"
 
 namespace rmlcell::lsp {
@@ -115,6 +117,26 @@ TEST(Check, MoreThanAThousandFindingsAreCounted) {
   const Json found = DiagnosticsOf(text);
   ASSERT_EQ(found.size(), 1001U);
   EXPECT_EQ(found.back()["message"], "and 500 more findings");
+}
+
+// A place is bytes of the text: none where there is none, and cut where the text ends before it.
+TEST(Check, AFindingMarksWhatIsInTheText) {
+  const auto marked = [](std::int64_t offset, int length) {
+    Diagnostic finding{.code = ErrorCode::kNameUndeclared};
+    finding.where.byte_offset = offset;
+    finding.where.length = length;
+    const Marked place = PlaceOf(finding, "SPEED 5\n");
+    return std::pair(place.begin, place.end);
+  };
+  using Pair = std::pair<std::size_t, std::size_t>;
+  EXPECT_EQ(marked(-1, 5), Pair(0, 0));
+  EXPECT_EQ(marked(0, 5), Pair(0, 5));
+  EXPECT_EQ(marked(6, 0), Pair(6, 6));
+  EXPECT_EQ(marked(6, -3), Pair(6, 6));
+  EXPECT_EQ(marked(6, 2), Pair(6, 8));
+  EXPECT_EQ(marked(6, 3), Pair(6, 8));
+  EXPECT_EQ(marked(8, 1), Pair(8, 8));
+  EXPECT_EQ(marked(9, 1), Pair(8, 8));
 }
 
 }  // namespace

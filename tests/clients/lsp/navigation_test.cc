@@ -63,6 +63,11 @@ TEST(Navigation, ACallLeadsToTheFileOfTheProgram) {
 TEST(Navigation, AWorkLeadsToItsWorkdef) {
   EXPECT_EQ(DefinitionOf("WORKDEF 1,0 (1,2,3,4)\nWORKDEF 1,0 (2,2,3,4)\nWO|RK 1,0/ON\n"),
             Strings{"12.S 1:0"});
+  EXPECT_EQ(DefinitionOf("WORKDEF 1,1 (1,2,3,4)\nWORKDEF 2,0 (5)\nWO|RK 1,0/ON\nWORKDEF 1,0 "
+                         "(2,2,3,4)\nWORKDEF 1,0 (3,2,3,4)\n"),
+            Strings{"12.S 3:0"});
+  EXPECT_EQ(DefinitionOf("WORKDEF 1,0 (1,2,3,4)\nWORK 1,0/O|N\n"), Strings{});
+  EXPECT_EQ(DefinitionOf("WORK|DEF 1,0 (1,2,3,4)\n"), Strings{});
 }
 
 TEST(Navigation, ReferencesAreTheSequenceNumberAndItsJumps) {
@@ -78,6 +83,9 @@ TEST(Navigation, ReferencesOfNamesAndVariables) {
             (Strings{"12.S 0:8", "12.S 1:0", "12.S 1:4"}));
   EXPECT_EQ(ReferencesOf("DECLARE X = VR[5]\nX = x + VR[|05]\n", true, editor),
             (Strings{"12.S 0:12", "12.S 1:8"}));
+  // Of the group and of the index.
+  EXPECT_EQ(ReferencesOf("VR[|5] = VI[5]\nVR[6] = VR[5]\n", true, editor),
+            (Strings{"12.S 0:0", "12.S 1:8"}));
 }
 
 TEST(Navigation, ReferencesOfAProgramAreThoseOfItsFolder) {
@@ -89,6 +97,14 @@ TEST(Navigation, ReferencesOfAProgramAreThoseOfItsFolder) {
   editor.folder.files["file:///work/14.S"] = "GO 45\n";
   EXPECT_EQ(ReferencesOf("\nCALL 4|4\n", true, editor),
             (Strings{"12.S 1:5", "13.S 1:9", "14.S 2:3"}));
+}
+
+// Slots begin with 1.
+TEST(Navigation, ReferencesOfAProgramAreThoseOfTheFirstSlotToo) {
+  Editor editor;
+  editor.folder.files["file:///work/1.S"] = "CALL 44\n";
+  editor.folder.files["file:///work/2.S"] = "SPEED 5\n";
+  EXPECT_EQ(ReferencesOf("CALL 4|4\n", true, editor), (Strings{"12.S 0:5", "1.S 0:5"}));
 }
 
 // Of several files for one number the first is the program.

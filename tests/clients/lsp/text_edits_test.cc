@@ -31,6 +31,12 @@ TEST(Formatting, TheEditsGiveTheCanonicalText) {
   }
 }
 
+// clients/lsp/text_edits.h: none for streams.
+TEST(Formatting, AStreamHasNoLayout) {
+  const Document stream("file:///work/a.rml", "rml1", 1, "PU0,0;PD9,9;", Encoding::kUtf16);
+  EXPECT_EQ(FormattingEdits(stream), Json::array());
+}
+
 TEST(Formatting, OnlyLinesThatChangeAreTouched) {
   const Json edits = FormatOf("     SPEED 5\nspeed 6\nspeed 7\n     SPEED 8\nstop\n");
   ASSERT_EQ(edits.size(), 2U);

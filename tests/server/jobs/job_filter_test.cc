@@ -102,6 +102,34 @@ TEST(JobFilter, RefusesWhatItDoesNotUnderstandAndLeavesTheQueryAsItWas) {
   }
 }
 
+TEST(JobFilter, AnErrorSaysWhatWasExpected) {
+  const auto detail = [](const std::string& filter) {
+    JobQuery query;
+    const Status applied = ApplyFilter(filter, query);
+    return applied ? "none" : applied.error().detail;
+  };
+  EXPECT_EQ(detail("state"), "expected is FIELD = VALUE, found 'state'");
+  EXPECT_EQ(detail("state = FAILED AND kind ="), "expected is FIELD = VALUE, found 'kind'");
+  EXPECT_EQ(detail("state = FAILED AND"), "comparisons are joined by AND, found 'AND'");
+  EXPECT_EQ(detail("state = FAILED OR kind = CHECK"), "comparisons are joined by AND, found 'OR'");
+  EXPECT_EQ(detail("state = FAILED AND state = QUEUED"), "'state' stands twice");
+  EXPECT_EQ(detail("state = LOST"),
+            "no state 'LOST'; there are QUEUED, RUNNING, SUCCEEDED, FAILED, CANCELLED, "
+            "INTERRUPTED");
+  EXPECT_EQ(detail("kind = MOVE"), "no kind 'MOVE'; there are CHECK, SIMULATE, RUN");
+  EXPECT_EQ(detail("caller = \"\""), "caller is empty");
+  EXPECT_EQ(detail("finished = maybe"), "finished is true or false, not 'maybe'");
+  EXPECT_EQ(detail("user = a"),
+            "no field 'user'; there are state, machine, kind, caller, finished");
+  EXPECT_EQ(detail("caller = \"open"), "a quoted text has no end");
+  EXPECT_EQ(detail("machine = machines/A"),
+            "machine: name is 'machines/A', expected is machines/ID");
+  // Five comparisons are nineteen words; more are refused before they are read.
+  const std::string five = "state=FAILED AND machine=m AND kind=RUN AND caller=c AND finished=true";
+  EXPECT_EQ(detail(five), "none");
+  EXPECT_EQ(detail(five + " AND"), "the filter has too many words");
+}
+
 TEST(JobFilter, AnErrorStaysShortAndReadable) {
   for (const std::string& filter :
        {"state = " + std::string(1 << 20, 'x'), std::string(1 << 20, 'x') + " = 1",

@@ -183,6 +183,8 @@ TEST(JobMessages, AnEventIsKeptUnderItsKind) {
   EXPECT_EQ(ToRecord(event).kind, "message");
   event.mutable_diagnostic();
   EXPECT_EQ(ToRecord(event).kind, "diagnostic");
+  event.mutable_gathered();
+  EXPECT_EQ(ToRecord(event).kind, "gathered");
   event.mutable_halted();
   EXPECT_EQ(ToRecord(event).kind, "halted");
   event.mutable_resumed();
@@ -244,6 +246,20 @@ TEST(JobMessages, AnOutcomeSaysWhatHappenedInItsOwnWordsOrThoseOfTheCatalogue) {
   EXPECT_EQ(ToProto(outcome).place().program(), 1);
   EXPECT_EQ(ToProto(outcome).place().step(), 1);
   EXPECT_EQ(ToProto(JobOutcome{.state = JobState::kSucceeded}).code(), "");
+  // What was judged is kept beside it; a judgement that cannot be read hides nothing else.
+  v1::Outcome judged;
+  judged.set_verdict(v1::VERDICT_DOUBTFUL);
+  judged.add_reasons();
+  judged.set_message("not kept twice");
+  outcome = OutcomeOf(judged);
+  v1::Outcome kept;
+  ASSERT_TRUE(kept.ParseFromString(outcome.judgement));
+  EXPECT_EQ(kept.message(), "");
+  EXPECT_EQ(ToProto(outcome).verdict(), v1::VERDICT_DOUBTFUL);
+  EXPECT_EQ(ToProto(outcome).reasons_size(), 1);
+  outcome.judgement = "\xFF\xFF";
+  EXPECT_EQ(ToProto(outcome).verdict(), v1::VERDICT_UNSPECIFIED);
+  EXPECT_EQ(ToProto(outcome).message(), "not kept twice");
   EXPECT_EQ(WorkerDiedOutcome().state, JobState::kFailed);
   EXPECT_EQ(WorkerDiedOutcome().code, ErrorCode::kCellWorkerDied);
   EXPECT_FALSE(ToProto(WorkerDiedOutcome()).has_place());  // it died somewhere

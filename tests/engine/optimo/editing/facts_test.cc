@@ -49,7 +49,8 @@ TEST(Facts, RulesOfInstructionsAreExplained) {
   }
 }
 
-// OPT-7.104, OPT-7.105, OPT-7.106: every variable by what is kept in it, place for place.
+// OPT-7.64, OPT-7.69, OPT-7.104, OPT-7.105, OPT-7.106: every variable by what is kept in it, place
+// for place.
 TEST(Facts, EachVariableSaysWhatIsKeptInIt) {
   struct Row {
     VariableGroup group;
@@ -97,6 +98,16 @@ TEST(Facts, EachVariableSaysWhatIsKeptInIt) {
       {VariableGroup::kIl, 87, 94, "process with number"},
       {VariableGroup::kIl, 95, 95, "motion"},
       {VariableGroup::kIl, 96, 99, "reserved"},
+      {VariableGroup::kIa, 0, 0, "coordinate X"},
+      {VariableGroup::kIa, 1, 1, "coordinate Y"},
+      {VariableGroup::kIa, 2, 2, "coordinate Z"},
+      {VariableGroup::kIa, 3, 3, "angle A"},
+      {VariableGroup::kIa, 4, 4, "angle B"},
+      {VariableGroup::kIa, 5, 39, "reserved"},
+      {VariableGroup::kIa, 40, 99, ""},
+      {VariableGroup::kOa, 0, 0, "speed"},
+      {VariableGroup::kOa, 1, 99, ""},
+      {VariableGroup::kPar, 0, 7, ""},
   };
   for (const Row& row : rows) {
     for (int index = row.first; index <= row.last; ++index) {
@@ -132,6 +143,35 @@ TEST(Facts, FormsNameTheirWord) {
     if (row.form.empty()) continue;
     EXPECT_NE(row.form.find(Describe(row.word).text), std::string_view::npos) << row.form;
   }
+}
+
+// OPT-7.60: what each group holds, and which process a flag of IL is of (OPT-3.37).
+TEST(Facts, VariablesAreToldWithTheirGroupAndTheirRule) {
+  using enum VariableGroup;
+  const auto head = [](VariableGroup group, std::uint8_t index) {
+    const std::string facts = VariableFacts({group, index});
+    return facts.substr(0, facts.find('\n'));
+  };
+  EXPECT_EQ(head(kVr, 26), "**VR[26]** real variable");
+  EXPECT_EQ(head(kVi, 26), "**VI[26]** whole-number variable, -32768 to 32767");
+  EXPECT_EQ(head(kVl, 26), "**VL[26]** logical variable");
+  EXPECT_EQ(head(kIl, 26), "**IL[26]** logical input");
+  EXPECT_EQ(head(kOl, 26), "**OL[26]** logical output");
+  EXPECT_EQ(head(kIa, 26), "**IA[26]** analogue input");
+  EXPECT_EQ(head(kOa, 26), "**OA[26]** analogue output");
+  EXPECT_EQ(head(kPar, 6), "**PAR[6]** parameter of CALL or FUNCTION");
+  EXPECT_EQ(VariableFacts({kOl, 16}),
+            "**OL[16]** logical output\n\nfree for customers (OPT-7.106)");
+  for (std::uint8_t flag = 87; flag <= 94; ++flag) {
+    const std::string said =
+        "1 while a process with number " + std::to_string(flag - 87) + " is ON";
+    EXPECT_EQ(VariableNote({kIl, flag}), said);
+    EXPECT_NE(VariableFacts({kIl, flag}).find("\n\n" + said + " (OPT-3.37)"), std::string::npos);
+  }
+  // OPT-7.66
+  EXPECT_NE(VariableFacts({kIa, 50}).find("cannot write"), std::string::npos);
+  EXPECT_NE(VariableFacts({kOa, 0}).find("cannot write"), std::string::npos);
+  EXPECT_EQ(VariableFacts({kOa, 1}).find("cannot write"), std::string::npos);
 }
 
 std::string Note(VariableGroup group, int index) {

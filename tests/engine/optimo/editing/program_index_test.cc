@@ -52,6 +52,61 @@ TEST(ProgramIndex, JumpsAreTheNumbersBehindWordsThatJump) {
   EXPECT_EQ(Dump("WORKDEF 1,0 (6,80,1,95)"), "");
 }
 
+// OPT-2.54: a jump is the second value of /TIME ( and of TIMER (, at their own level alone.
+TEST(ProgramIndex, TimesJumpWithTheirSecondValueOnly) {
+  EXPECT_EQ(Dump("MOVE (1,2,3,0,0)/VIA (4,5,6)"), "");
+  EXPECT_EQ(Dump("MOVE (1,2,3,0,0) TIME (2., 900)"), "");  // no attribute without its slash
+  EXPECT_EQ(Dump("TIME (2., 900)"), "");
+  EXPECT_EQ(Dump("SPEED TIMER (2., 900)"), "");
+  EXPECT_EQ(Dump("10 TIMER (2., 900)"), "label 10; jump 900; ");
+  EXPECT_EQ(Dump("MOVE (1,2,3,0,0)/TIME (SIN (2, 800), 900)/VIA (1, 700)"), "jump 900; ");
+  EXPECT_EQ(Dump("GOTO VI[2] (20, (30, 40), 50)"), "variable VI[2]; jump 20; jump 50; ");
+  EXPECT_EQ(Dump("GOTO VI[2] (20, 10000)"), "variable VI[2]; jump 20; ");
+  EXPECT_EQ(Dump("GOTO VI[2] (1 + 20)"), "variable VI[2]; jump 1; ");
+  EXPECT_EQ(Dump("GOTO 9999"), "jump 9999; ");
+  EXPECT_EQ(Dump("GOTO 10000"), "");
+  EXPECT_EQ(Dump("GOTO 5."), "");
+}
+
+// OPT-1.23: a sequence number goes up to 9999.
+TEST(ProgramIndex, ALabelIsANumberThatASequenceNumberCanBe) {
+  EXPECT_EQ(Dump("9999 STOP"), "label 9999; ");
+  EXPECT_EQ(Dump("10000 STOP"), "");
+}
+
+// OPT-7.60: an index that a variable can have; what is none stands there as words.
+TEST(ProgramIndex, AVariableHasItsIndexFrom0To99) {
+  EXPECT_EQ(Dump("VR[99] = 1"), "variable VR[99]; ");
+  EXPECT_EQ(Dump("VR[100] = 1"), "");
+  EXPECT_EQ(Dump("VR[5"), "");
+  EXPECT_EQ(Dump("VR[5.] = 1"), "");
+}
+
+// OPT-7.44: what a name stands for, and whether it is one whole number.
+TEST(ProgramIndex, DeclarationsHaveTheirValue) {
+  const ProgramIndex index(
+      "DECLARE A1 = 44\nDECLARE B1 = VR[3]\nDECLARE C1 = 44 + 1\nDECLARE D1 = 4.5\nDECLARE E1 "
+      "=\nDECLARE F1 5\nDECLARE SPEED = 5\n");
+  ASSERT_EQ(index.declarations().size(), 4U);
+  const auto& declared = index.declarations();
+  const auto value = [&](std::size_t i) {
+    return std::string(index.text().substr(declared[i].value_begin,
+                                           declared[i].value_end - declared[i].value_begin));
+  };
+  EXPECT_EQ(value(0), "44");
+  EXPECT_EQ(declared[0].whole, 44U);
+  EXPECT_FALSE(declared[0].variable);
+  EXPECT_EQ(value(1), "VR[3]");
+  EXPECT_EQ(declared[1].variable, (Variable{VariableGroup::kVr, 3}));
+  EXPECT_FALSE(declared[1].whole);
+  EXPECT_EQ(value(2), "44 + 1");
+  EXPECT_FALSE(declared[2].whole);
+  EXPECT_EQ(value(3), "4.5");
+  EXPECT_FALSE(declared[3].whole);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(index.TextOf(index.uses()[declared[i].use]).back(), '1') << i;
+}
+
 // OPT-7.01, OPT-7.07, OPT-9.01, OPT-6.11
 TEST(ProgramIndex, ProgramsAreWhatIsGoneToAndCalled) {
   EXPECT_EQ(Dump("CALL 02 (5, 6)"), "program 02; ");
@@ -59,6 +114,11 @@ TEST(ProgramIndex, ProgramsAreWhatIsGoneToAndCalled) {
   EXPECT_EQ(Dump("FUNCTION 44 (DATO)"), "program 44; name DATO; ");
   EXPECT_EQ(Dump("BREAK 7, 45"), "program 45; ");
   EXPECT_EQ(Dump("CALL VI[1]"), "variable VI[1]; ");
+  EXPECT_EQ(Dump("SIMUL 7, 45"), "program 45; ");
+  EXPECT_EQ(Dump("BREAK 7 45"), "");
+  EXPECT_EQ(Dump("BREAK 7, 45, 46"), "program 45; ");
+  EXPECT_EQ(Dump("TASK 7, 45"), "");
+  EXPECT_EQ(Dump("10 CALL 44"), "label 10; program 44; ");
 }
 
 // OPT-7.41, OPT-7.46, OPT-7.60
@@ -124,6 +184,14 @@ TEST(ProgramIndex, ProcessesAreWorkdefsAndTheirWorks) {
   EXPECT_TRUE(index.processes()[2].off);
   EXPECT_EQ(ProcessOf(index, index.statements()[2])->off, true);
   EXPECT_EQ(ProcessOf(index, index.statements()[3]), nullptr);
+  const ProgramIndex bounds(
+      "WORK 2,9/ON\nWORK 3,0/ON\nWORK 0,10/ON\nWORK 1 0/ON\nWORK XP,0/ON\nWORK 0,0\n");
+  ASSERT_EQ(bounds.processes().size(), 2U);
+  EXPECT_EQ(bounds.processes()[0].kind, 2);
+  EXPECT_EQ(bounds.processes()[0].process, 9);
+  EXPECT_FALSE(bounds.processes()[0].off);
+  EXPECT_EQ(bounds.processes()[1].statement, 5U);
+  EXPECT_FALSE(bounds.processes()[1].on || bounds.processes()[1].off);
 }
 
 // OPT-1.03: the text ends at 1Ah.

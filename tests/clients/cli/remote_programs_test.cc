@@ -1,0 +1,376 @@
+// The verbs that ask a server for machines, programs and projects: what they ask for, and what they
+// show of the answer.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "clients/cli/remote.h"
+#include "engine/core/result.h"
+#include "proto/bridge/findings.h"
+#include "proto/bridge/sha256.h"
+#include "rmlcell/v1/machine.grpc.pb.h"
+#include "rmlcell/v1/program.grpc.pb.h"
+#include "rmlcell/v1/project.grpc.pb.h"
+#include "tests/clients/cli/fake_services.h"
+
+namespace rmlcell::cli {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::StartsWith;
+
+struct FakeMachines final : v1::MachineService::Service {
+  grpc::Status ListMachines(grpc::ServerContext*, const v1::ListMachinesRequest*,
+                            v1::ListMachinesResponse* response) override {
+    *response = list;
+    return {};
+  }
+  v1::ListMachinesResponse list;
+};
+
+struct FakePrograms final : v1::ProgramService::Service {
+  grpc::Status PutProgram(grpc::ServerContext*, const v1::PutProgramRequest* request,
+                          v1::Program* response) override {
+    put = *request;
+    *response = stored;
+    return refusal;
+  }
+  grpc::Status UploadProgram(grpc::ServerContext*,
+                             grpc::ServerReader<v1::UploadProgramRequest>* reader,
+                             v1::Program* response) override {
+    v1::UploadProgramRequest part;
+    while (reader->Read(&part)) {
+      if (part.has_header()) header = part.header();
+      if (part.has_chunk()) chunks.push_back(part.chunk());
+    }
+    *response = stored;
+    return refusal;
+  }
+  grpc::Status DownloadProgram(grpc::ServerContext*, const v1::DownloadProgramRequest* request,
+                               grpc::ServerWriter<v1::DownloadProgramResponse>* writer) override {
+    download = *request;
+    v1::DownloadProgramResponse part;
+    part.mutable_header()->set_form(request->form());
+    writer->Write(part);
+    for (const char* chunk : {"SPEED 5\n", "STOP\n"}) {
+      part.set_chunk(chunk);
+      writer->Write(part);
+    }
+    return refusal;
+  }
+  grpc::Status ListPrograms(grpc::ServerContext*, const v1::ListProgramsRequest* request,
+                            v1::ListProgramsResponse* response) override {
+    parent = request->parent();
+    *response = list;
+    return refusal;
+  }
+  grpc::Status DeleteProgram(grpc::ServerContext*, const v1::DeleteProgramRequest* request,
+                             google::protobuf::Empty*) override {
+    deleted = request->name();
+    return refusal;
+  }
+  grpc::Status ListStaleExecutables(grpc::ServerContext*,
+                                    const v1::ListStaleExecutablesRequest* request,
+                                    v1::ListStaleExecutablesResponse* response) override {
+    parent = request->parent();
+    *response = stale;
+    return refusal;
+  }
+
+  grpc::Status refusal;
+  v1::Program stored;
+  v1::ListProgramsResponse list;
+  v1::ListStaleExecutablesResponse stale;
+  v1::PutProgramRequest put;
+  v1::UploadProgramRequest::Header header;
+  std::vector<std::string> chunks;
+  v1::DownloadProgramRequest download;
+  std::string parent, deleted;
+};
+
+struct FakeProjects final : v1::ProjectService::Service {
+  grpc::Status ListProjects(grpc::ServerContext*, const v1::ListProjectsRequest* request,
+                            v1::ListProjectsResponse* response) override {
+    tokens.push_back(request->page_token());
+    v1::Project& one = *response->add_projects();
+    one.set_name("projects/p" + std::to_string(tokens.size()));
+    one.set_title("title");
+    one.add_programs();
+    one.add_programs();
+    one.add_laser_schedules();
+    one.add_processes();
+    one.add_processes();
+    one.add_processes();
+    if (tokens.size() == 1) response->set_next_page_token("more");
+    return refusal;
+  }
+  grpc::Status GetProject(grpc::ServerContext*, const v1::GetProjectRequest* request,
+                          v1::Project* response) override {
+    asked = request->name();
+    *response = project;
+    return refusal;
+  }
+  grpc::Status DeleteProject(grpc::ServerContext*, const v1::DeleteProjectRequest* request,
+                             google::protobuf::Empty*) override {
+    asked = request->name();
+    return refusal;
+  }
+  grpc::Status TransferProject(grpc::ServerContext*, const v1::TransferProjectRequest* request,
+                               v1::TransferProjectResponse* response) override {
+    transfer = *request;
+    v1::Program& program = *response->add_programs();
+    program.set_name("machines/m/programs/12");
+    program.set_title("twelve");
+    program.set_object_bytes(33);
+    response->mutable_findings()->set_diagnostics_dropped(2);
+    return refusal;
+  }
+
+  grpc::Status refusal;
+  v1::Project project;
+  v1::TransferProjectRequest transfer;
+  std::vector<std::string> tokens;
+  std::string asked;
+};
+
+class RemoteVerbs : public testing::Test {
+ protected:
+  Told Put(const std::string& bytes, const PutOptions& options = {}, bool json = false) {
+    const std::string file = folder.Put("12.S", bytes);
+    return Hear([&] { return PutProgram(server.remote(json), "m", 12, file, options); });
+  }
+
+  CliFolder folder;
+  FakeMachines machines;
+  FakePrograms programs;
+  FakeProjects projects;
+  FakeServer server{folder, {&machines, &programs, &projects}};
+};
+
+TEST_F(RemoteVerbs, MachinesAreATable) {
+  v1::Machine& machine = *machines.list.add_machines();
+  machine.set_name("machines/mill-1");
+  machine.set_family("rml1");
+  machine.set_title("the small one");
+  Told told = Hear([&] { return Machines(server.remote()); });
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_THAT(told.output, MatchesRegex("MACHINE +FAMILY +PROFILE +TITLE *\n"
+                                        "mill-1 +rml1 +- +the small one *\n"));
+  told = Hear([&] { return Machines(server.remote(true)); });
+  EXPECT_THAT(told.output, HasSubstr("\"machines/mill-1\""));
+}
+
+TEST_F(RemoteVerbs, ProgramsAreATable) {
+  v1::Program& source = *programs.list.add_programs();
+  source.set_name("machines/m/programs/12");
+  source.set_title("bracket");
+  source.set_file_name("12.S");
+  source.set_object_bytes(99);
+  source.set_executable_bytes(0);
+  source.set_etag("3");
+  v1::Program& object = *programs.list.add_programs();
+  object.set_name("machines/m/programs/44");
+  object.set_object_bytes(7);
+  Told told = Hear([&] { return Programs(server.remote(), "m"); });
+  EXPECT_EQ(programs.parent, "machines/m");
+  EXPECT_THAT(told.output, MatchesRegex("SLOT +TITLE +SOURCE +OBJECT +EXECUTABLE +ETAG *\n"
+                                        "12 +bracket +12.S +99 B +0 B +3 *\n"
+                                        "44 +- +7 B +- *\n"));
+  told = Hear([&] { return Programs(server.remote(true), "machines/m"); });
+  EXPECT_EQ(programs.parent, "machines/m");
+  EXPECT_THAT(told.output, AllOf(HasSubstr("programs/12\""), HasSubstr("programs/44\"")));
+}
+
+TEST_F(RemoteVerbs, ASmallProgramGoesInOneMessage) {
+  programs.stored.set_name("machines/m/programs/12");
+  programs.stored.set_title("twelve");
+  programs.stored.set_object_bytes(33);
+  programs.stored.mutable_findings()->set_diagnostics_dropped(1);
+  Told told = Put("SPEED 5\n", {.etag = "7", .check_only = false, .force = true});
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_EQ(told.output,
+            "and 1 more findings\nmachines/m/programs/12 stored: twelve, object 33 B\n");
+  EXPECT_EQ(programs.put.name(), "machines/m/programs/12");
+  EXPECT_EQ(programs.put.program().file_name(), "12.S");
+  EXPECT_EQ(programs.put.program().content(), "SPEED 5\n");
+  EXPECT_EQ(programs.put.etag(), "7");
+  EXPECT_FALSE(programs.put.validate_only());
+  EXPECT_TRUE(programs.put.force());
+  programs.stored.clear_findings();
+  told = Put("SPEED 5\n", {.etag = {}, .check_only = true, .force = false});
+  EXPECT_EQ(told.output, "machines/m/programs/12 would be stored: twelve, object 33 B\n");
+  EXPECT_TRUE(programs.put.validate_only());
+  EXPECT_FALSE(programs.put.force());
+  EXPECT_THAT(Put("SPEED 5\n", {}, true).output, StartsWith("{"));
+}
+
+// OPT-1.11: the executable of slot n has the number n + 100.
+TEST_F(RemoteVerbs, AnExecutableIsToldAsOne) {
+  programs.stored.set_title("t");
+  programs.stored.set_object_bytes(5);
+  programs.stored.set_executable_bytes(6);
+  programs.stored.set_name("machines/m/programs/100");
+  EXPECT_THAT(Put("x").output, HasSubstr(", object 5 B\n"));
+  programs.stored.set_name("machines/m/programs/101");
+  EXPECT_THAT(Put("x").output, HasSubstr(", executable 6 B\n"));
+}
+
+// 3 MiB are one message; a byte more is uploaded, 512 KiB at a time.
+TEST_F(RemoteVerbs, ALargeProgramIsUploadedInParts) {
+  constexpr std::size_t kMessage = std::size_t{3} << 20;
+  EXPECT_EQ(Put(std::string(kMessage, ';')).exit_code, 0);
+  EXPECT_EQ(programs.put.program().content().size(), kMessage);
+  EXPECT_TRUE(programs.chunks.empty());
+  const std::string large = std::string(kMessage, ';') + "\n";
+  EXPECT_EQ(Put(large, {.etag = "7", .check_only = true, .force = true}).exit_code, 0);
+  ASSERT_EQ(programs.chunks.size(), 7U);
+  EXPECT_EQ(programs.chunks.front().size(), std::size_t{512} << 10);
+  EXPECT_EQ(programs.chunks.back(), "\n");
+  EXPECT_EQ(programs.header.name(), "machines/m/programs/12");
+  EXPECT_EQ(programs.header.file_name(), "12.S");
+  EXPECT_EQ(programs.header.etag(), "7");
+  EXPECT_EQ(programs.header.size(), static_cast<std::int64_t>(large.size()));
+  EXPECT_EQ(programs.header.sha256(), bridge::Sha256Hex(large));
+  EXPECT_TRUE(programs.header.validate_only());
+  EXPECT_TRUE(programs.header.force());
+}
+
+TEST_F(RemoteVerbs, AProgramComesInTheFormThatIsAskedFor) {
+  const auto get = [&](const std::string& form, const std::string& output) {
+    return Hear([&] { return GetProgram(server.remote(), "m", 12, form, output); });
+  };
+  EXPECT_EQ(get("", "").output, "SPEED 5\nSTOP\n");
+  EXPECT_EQ(programs.download.name(), "machines/m/programs/12");
+  EXPECT_EQ(programs.download.form(), v1::PROGRAM_FORM_SOURCE);
+  EXPECT_EQ(get("", "-").output, "SPEED 5\nSTOP\n");
+  EXPECT_EQ(get("object", "").output, "SPEED 5\nSTOP\n");  // no terminal
+  EXPECT_EQ(programs.download.form(), v1::PROGRAM_FORM_OBJECT);
+  get("executable", "");
+  EXPECT_EQ(programs.download.form(), v1::PROGRAM_FORM_EXECUTABLE);
+  get("listing", "");
+  EXPECT_EQ(programs.download.form(), v1::PROGRAM_FORM_LISTING);
+  EXPECT_EQ(get("", folder.File("a.O")).output, "");
+  EXPECT_EQ(programs.download.form(), v1::PROGRAM_FORM_OBJECT);  // by the name of the file
+  EXPECT_EQ(folder.Read("a.O"), "SPEED 5\nSTOP\n");
+  get("source", folder.File("b.O"));
+  EXPECT_EQ(programs.download.form(), v1::PROGRAM_FORM_SOURCE);
+  const Told told = get("", folder.File("none/a.S"));
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_THAT(told.errors, HasSubstr("CELL-E9023"));
+}
+
+TEST_F(RemoteVerbs, StaleExecutablesHaveTheirReasons) {
+  Told told = Hear([&] { return StaleExecutables(server.remote(), "m"); });
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_EQ(told.output, "every executable is what a new link would give\n");
+  EXPECT_EQ(programs.parent, "machines/m");
+  v1::StaleExecutable& stale = *programs.stale.add_executables();
+  stale.set_name("machines/m/programs/112");
+  stale.add_parts()->set_program("machines/m/programs/44");
+  stale.mutable_parts(0)->set_text("was changed");
+  told = Hear([&] { return StaleExecutables(server.remote(), "m"); });
+  EXPECT_THAT(told.output, MatchesRegex("EXECUTABLE +BECAUSE OF +WHY *\n112 +44 +was changed *\n"));
+  told = Hear([&] { return StaleExecutables(server.remote(true), "m"); });
+  EXPECT_THAT(told.output, AllOf(StartsWith("{"), HasSubstr("programs/112\"")));
+}
+
+TEST_F(RemoteVerbs, ProjectsAreReadToTheLastPage) {
+  Told told = Hear([&] { return Projects(server.remote()); });
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_THAT(projects.tokens, ElementsAre("", "more"));
+  EXPECT_THAT(told.output, MatchesRegex("PROJECT +TITLE +PROGRAMS +SCHEDULES +PROCESSES *\n"
+                                        "p1 +title +2 +1 +3 *\np2 +title +2 +1 +3 *\n"));
+  projects.tokens.clear();
+  told = Hear([&] { return Projects(server.remote(true)); });
+  EXPECT_THAT(told.output, AllOf(StartsWith("{"), HasSubstr("\"projects/p2\"")));
+  EXPECT_EQ(told.output.find("PROJECT "), std::string::npos);
+}
+
+TEST_F(RemoteVerbs, AProjectIsShownWithWhatIsInIt) {
+  projects.project.set_name("projects/p");
+  projects.project.set_title("title");
+  const auto get = [&] { return Hear([&] { return GetProject(server.remote(), "p"); }); };
+  EXPECT_EQ(get().output, "projects/p  title\n");  // no empty tables
+  EXPECT_EQ(projects.asked, "projects/p");
+  projects.project.set_notes("of steel");
+  v1::ProjectProgram& program = *projects.project.add_programs();
+  program.set_slot(12);
+  program.set_title("main");
+  program.set_units(v1::UNITS_INCH);
+  program.mutable_source()->set_file_name("12.SI");
+  program.mutable_source()->set_content("SPEED 5\n");
+  v1::ProjectLaserSchedule& schedule = *projects.project.add_laser_schedules();
+  schedule.set_number(11);
+  schedule.set_title("fine");
+  schedule.set_power_percent(12.5);
+  v1::ProjectProcess& process = *projects.project.add_processes();
+  process.set_kind(1);
+  process.set_process(5);
+  process.add_values(8);
+  process.add_values(0.5);
+  process.set_note("thin");
+  EXPECT_THAT(get().output,
+              MatchesRegex("projects/p  title\nof steel\n\n"
+                           "SLOT +TITLE +FILE +UNITS +SIZE *\n12 +main +12.SI +inch +8 B *\n\n"
+                           "SCHEDULE +TITLE +MODE +POWER % *\n11 +fine +CW +12.5 *\n\n"
+                           "WORKDEF +VALUES +NOTE *\n1,5 +8, 0.5 +thin *\n"));
+  const Told told = Hear([&] { return GetProject(server.remote(true), "projects/p"); });
+  EXPECT_EQ(projects.asked, "projects/p");
+  EXPECT_THAT(told.output, StartsWith("{"));
+}
+
+TEST_F(RemoteVerbs, ATransferSaysWhatItStored) {
+  Told told = Hear([&] { return TransferProject(server.remote(), "p", "m", true, false); });
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_EQ(projects.transfer.name(), "projects/p");
+  EXPECT_EQ(projects.transfer.machine(), "machines/m");
+  EXPECT_TRUE(projects.transfer.insert_missing_definitions());
+  EXPECT_FALSE(projects.transfer.validate_only());
+  EXPECT_EQ(told.output,
+            "and 2 more findings\nmachines/m/programs/12 stored: twelve, object 33 B\n");
+  told = Hear([&] { return TransferProject(server.remote(), "p", "m", false, true); });
+  EXPECT_FALSE(projects.transfer.insert_missing_definitions());
+  EXPECT_TRUE(projects.transfer.validate_only());
+  EXPECT_THAT(told.output, HasSubstr(" would be stored: "));
+  told = Hear([&] { return TransferProject(server.remote(true), "p", "m", false, true); });
+  EXPECT_THAT(told.output, StartsWith("{"));
+}
+
+TEST_F(RemoteVerbs, WhatIsDeletedIsNamed) {
+  EXPECT_EQ(Hear([&] { return DeleteProgram(server.remote(), "m", 112); }).exit_code, 0);
+  EXPECT_EQ(programs.deleted, "machines/m/programs/112");
+  EXPECT_EQ(Hear([&] { return DeleteProject(server.remote(), "p"); }).exit_code, 0);
+  EXPECT_EQ(projects.asked, "projects/p");
+}
+
+TEST_F(RemoteVerbs, ARefusalIsToldByEach) {
+  programs.refusal = projects.refusal = {grpc::StatusCode::NOT_FOUND, "there is none"};
+  const Remote remote = server.remote();
+  const std::string file = folder.Put("12.S", "SPEED 5\n");
+  for (const auto& verb : std::vector<std::function<int()>>{
+           [&] { return Programs(remote, "m"); },
+           [&] { return PutProgram(remote, "m", 12, file, {}); },
+           [&] { return GetProgram(remote, "m", 12, "", folder.File("out")); },
+           [&] { return DeleteProgram(remote, "m", 12); },
+           [&] { return StaleExecutables(remote, "m"); }, [&] { return Projects(remote); },
+           [&] { return GetProject(remote, "p"); }, [&] { return DeleteProject(remote, "p"); },
+           [&] { return TransferProject(remote, "p", "m", false, false); }}) {
+    const Told told = Hear(verb);
+    EXPECT_EQ(told.exit_code, 3);
+    EXPECT_EQ(told.output, "");
+    EXPECT_THAT(told.errors, HasSubstr("there is none"));
+  }
+  EXPECT_EQ(folder.Read("out"), "");
+  const Told none = Hear([&] { return PutProgram(remote, "m", 12, folder.File("no.S"), {}); });
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.errors, HasSubstr("CELL-E9022"));
+}
+
+}  // namespace
+}  // namespace rmlcell::cli
