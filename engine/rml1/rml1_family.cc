@@ -39,7 +39,7 @@ Diagnostic Plain(ErrorCode code, std::string detail) {
           .fixes = {}};
 }
 
-// The diagnostics of one stream, as many as a translation holds.
+// The diagnostics of one stream: as many as a translation holds, and the kinds of the rest.
 class Findings final : public DeviceListener {
  public:
   Findings(const machine::SourceFile& file, bool advice, machine::Translation& translation)
@@ -47,7 +47,13 @@ class Findings final : public DeviceListener {
 
   void OnFinding(const Finding& finding) override {
     if (!Wants(RowOf(finding.kind).code)) return;
+    if (full()) return OnCounted(finding);
     Add(ToDiagnostic(finding, file_.bytes, lines_));
+  }
+
+  void OnCounted(const Finding& finding) override {
+    if (!Wants(RowOf(finding.kind).code)) return;
+    Count(PlainDiagnostic(finding, file_.bytes, lines_));
   }
 
   void AddAdvice(ErrorCode code, std::string detail, std::string rule, const SourceSpan& at,
@@ -57,19 +63,21 @@ class Findings final : public DeviceListener {
     diagnostic.rule = std::move(rule);
     diagnostic.where = lines_.At(file_.bytes, at.byte_offset, at.length);
     diagnostic.step = step;
+    if (full()) return Count(std::move(diagnostic));
     Add(std::move(diagnostic));
   }
 
  private:
-  bool Wants(ErrorCode code) {
-    if (!advice_ && Lookup(code).severity == Severity::kAdvice) return false;
-    if (translation_.diagnostics.size() < machine::kDiagnosticsMax) return true;
-    ++translation_.diagnostics_dropped;
-    return false;
-  }
+  bool Wants(ErrorCode code) const { return advice_ || Lookup(code).severity != Severity::kAdvice; }
+  bool full() const { return translation_.diagnostics.size() >= machine::kDiagnosticsMax; }
   void Add(Diagnostic diagnostic) {
     diagnostic.file = file_.name;
     translation_.diagnostics.push_back(std::move(diagnostic));
+  }
+
+  void Count(Diagnostic diagnostic) {
+    diagnostic.file = file_.name;
+    translation_.diagnostics_dropped.Add(diagnostic);
   }
 
   const machine::SourceFile& file_;
@@ -138,7 +146,7 @@ class StreamReading {
     } else if (action.kind == Action::Kind::kPause) {
       const CommandPlace& place = device_.command();
       if (pauses_ == 0) first_pause_ = place;
-      if (++pauses_ > kPausesMax) return;
+      ++pauses_;
       findings_.AddAdvice(ErrorCode::kRml1PausedAtEnd, "the machine waits for its resume key here",
                           "RML1-3C.08", {.length = 3, .byte_offset = place.offset},
                           static_cast<int>(place.number));
@@ -160,9 +168,6 @@ class StreamReading {
         return 0.0;
     }
   }
-
-  // As the device does with advice of its own.
-  static constexpr std::uint64_t kPausesMax = 1000;
 
   const Profile& profile_;
   Findings& findings_;

@@ -320,7 +320,8 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
                            {.insert_missing_definitions = request.insert_missing_definitions()});
   if (!plan.ok) {
     ProgramError wrong{.error = {family->info().no_source, {}, {}},
-                       .diagnostics = plan.diagnostics};
+                       .diagnostics = plan.diagnostics,
+                       .dropped = plan.diagnostics_dropped};
     const auto first = std::ranges::find_if(
         plan.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
     if (first != plan.diagnostics.end()) {
@@ -331,7 +332,8 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
     return wrong;
   }
   v1::TransferProjectResponse response;
-  *response.mutable_findings() = bridge::FindingsOf(true, plan.diagnostics, 0, {});
+  *response.mutable_findings() =
+      bridge::FindingsOf(true, plan.diagnostics, plan.diagnostics_dropped, {});
   std::vector<storage::ProgramWrite> writes;
   for (machine::TransferPlan::Program& program : plan.programs) {
     const v1::ProjectProgram* source = FindProgram(*project, program.slot);

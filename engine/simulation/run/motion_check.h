@@ -26,7 +26,7 @@ inline constexpr SimTime kCheckTimeMax = std::chrono::hours(24);
 
 struct MotionCheck {
   std::vector<Diagnostic> findings;  // each with program, step, line and time
-  std::uint64_t findings_dropped = 0;
+  UntoldFindings findings_dropped;
   // By slot: why the motion was not followed to the end of the program, for people: a bound, a wait
   // for an input that never comes, an error.
   std::map<int, std::string> cut_short;
