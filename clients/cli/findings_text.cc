@@ -15,7 +15,7 @@ namespace {
 std::string Text(const std::vector<Diagnostic>& findings, const UntoldFindings& dropped,
                  std::string_view source, bool colour) {
   std::string all;
-  KindsShown kinds(findings.empty() ? std::string() : CodeText(findings.front().code));
+  KindsShown kinds;
   for (const Diagnostic& finding : findings) {
     if (!kinds.Show(CodeText(finding.code), finding.where.line)) continue;
     // Bytes that are no text would upset a terminal, and whoever reads this in a pipe.
@@ -36,7 +36,7 @@ std::string Text(const std::vector<Diagnostic>& findings, const UntoldFindings& 
 template <class Message>
 std::string TextOfMessage(const Message& message) {
   std::string all;
-  KindsShown kinds(message.diagnostics().empty() ? std::string() : message.diagnostics(0).code());
+  KindsShown kinds;
   for (const v1::Diagnostic& finding : message.diagnostics()) {
     if (kinds.Show(finding.code(), finding.place().line())) all += FindingLine(finding) + "\n";
   }
@@ -46,12 +46,9 @@ std::string TextOfMessage(const Message& message) {
 
 }  // namespace
 
-KindsShown::KindsShown(std::string_view first_code)
-    : each_max_(first_code == CodeText(ErrorCode::kRml1NoProgram) ? 1 : kToldOfKindMax) {}
-
 bool KindsShown::Show(const std::string& code, int line) {
   Kind& kind = kinds_[code];
-  if (kind.shown < each_max_) {
+  if (kind.shown < kToldOfKindMax) {
     ++kind.shown;
     return true;
   }

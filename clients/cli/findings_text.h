@@ -23,10 +23,6 @@ namespace rmlcell::cli {
 // thousand lines of one code.
 class KindsShown {
  public:
-  // `first_code` is that of the first finding: of what is no stream at all the findings say nothing
-  // else, and one of each kind is enough.
-  explicit KindsShown(std::string_view first_code = {});
-
   // Whether this one is to be shown. `line` 0: not known.
   bool Show(const std::string& code, int line);
   // Those that were not kept anywhere; `dropped` in all, of which `gathered` tells the kinds.
@@ -46,7 +42,6 @@ class KindsShown {
   };
   void LeaveOut(Kind& kind, std::uint64_t count, int first_line, int last_line);
 
-  std::uint64_t each_max_;
   std::map<std::string, Kind> kinds_;
   std::int64_t of_no_kind_ = 0;  // of a server that does not tell the kinds
 };

@@ -15,7 +15,7 @@ constexpr std::chrono::seconds kUnaryDeadline{60};
 // What makes the program be refused, each with code, place and advice; the rest is counted. The
 // message of the call says the first of it again, without its place.
 void ComplainOf(const v1::ErrorDetail& detail, const std::string& message) {
-  KindsShown kinds(detail.code());
+  KindsShown kinds;
   std::int64_t others = detail.diagnostics_dropped();
   bool told = false;
   for (const v1::Diagnostic& diagnostic : detail.diagnostics()) {

@@ -1,6 +1,7 @@
 #include "engine/rml1/rml1_family.h"
 
 #include <algorithm>
+#include <set>
 
 #include "engine/core/number_text.h"
 #include "engine/machine/shape.h"
@@ -85,6 +86,16 @@ class Findings final : public DeviceListener {
   machine::Translation& translation_;
   LineCounter lines_;
 };
+
+// What is no stream at all is shown by one finding of each kind: more say nothing else.
+void TellKindsOnce(machine::Translation& translation) {
+  std::set<ErrorCode> told;
+  std::erase_if(translation.diagnostics, [&](const Diagnostic& finding) {
+    if (told.insert(finding.code).second) return false;
+    translation.diagnostics_dropped.Add(finding);
+    return true;
+  });
+}
 
 // Runs a stream through a device at once, whatever time its actions would take.
 class StreamReading {
@@ -236,6 +247,7 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
   const double foreign_percent = reading.device().foreign_percent();
   if (foreign_percent > kForeignShareMax_percent && !options.forced) {
     translation.figures = reading.Figures();
+    TellKindsOnce(translation);
     translation.diagnostics.insert(
         translation.diagnostics.begin(),
         Plain(ErrorCode::kRml1NoProgram,

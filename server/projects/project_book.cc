@@ -198,6 +198,20 @@ const v1::ProjectProgram* FindProgram(const v1::Project& project, int slot) {
   return found == project.programs().end() ? nullptr : &*found;
 }
 
+// The first error of a transfer stands for all; its findings go along.
+ProgramError Refused(const machine::TransferPlan& plan, const machine::MachineFamily& family) {
+  ProgramError wrong{.error = {family.info().no_source, {}, {}},
+                     .diagnostics = plan.diagnostics,
+                     .dropped = plan.diagnostics_dropped};
+  const auto first = std::ranges::find_if(plan.diagnostics,
+                                          [](const Diagnostic& d) { return IsError(d.severity); });
+  if (first != plan.diagnostics.end()) {
+    wrong.error = {first->code, "program " + std::to_string(first->program) + ": " + first->detail,
+                   first->where};
+  }
+  return wrong;
+}
+
 }  // namespace
 
 ProgramResult<v1::Project> ProjectBook::Create(const v1::CreateProjectRequest& request) {
@@ -318,19 +332,7 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
   machine::TransferPlan plan =
       family->PlanTransfer(BundleOf(*project), *parameters,
                            {.insert_missing_definitions = request.insert_missing_definitions()});
-  if (!plan.ok) {
-    ProgramError wrong{.error = {family->info().no_source, {}, {}},
-                       .diagnostics = plan.diagnostics,
-                       .dropped = plan.diagnostics_dropped};
-    const auto first = std::ranges::find_if(
-        plan.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
-    if (first != plan.diagnostics.end()) {
-      wrong.error = {first->code,
-                     "program " + std::to_string(first->program) + ": " + first->detail,
-                     first->where};
-    }
-    return wrong;
-  }
+  if (!plan.ok) return Refused(plan, *family);
   v1::TransferProjectResponse response;
   *response.mutable_findings() =
       bridge::FindingsOf(true, plan.diagnostics, plan.diagnostics_dropped, {});

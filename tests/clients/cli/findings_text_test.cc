@@ -109,22 +109,6 @@ TEST(FindingsText, AKindThatNobodyShowedIsNamed) {
   EXPECT_EQ(Printed({}, clipped, {}), "BAD RML1-E8002: " + when + " (3 times, lines 5 to 7)\n");
 }
 
-// What is no stream at all is shown by one of each kind.
-TEST(FindingsText, OfForeignTextOneOfEachKindIsEnough) {
-  const Diagnostic none{.code = ErrorCode::kRml1NoProgram,
-                        .severity = Severity::kDevice,
-                        .detail = "60.0 %",
-                        .file = "a.rml"};
-  std::vector<Diagnostic> findings = {none};
-  for (int line = 1; line <= 4; ++line) findings.push_back(Advice({.line = line}));
-  const std::string told = Printed(findings, {}, {});
-  EXPECT_EQ(std::ranges::count(told, '\n'), 3) << told;
-  EXPECT_NE(told.find("\na.S:1: advice OPT-E7011: look here [OPT-2.01]\n"
-                      "and 3 more OPT-E7011, lines 2 to 4\n"),
-            std::string::npos)
-      << told;
-}
-
 // As the findings of a server: gathered by the same rule. One that does not tell the kinds of what
 // it left out tells their number.
 TEST(FindingsText, MessagesAreGatheredAlike) {

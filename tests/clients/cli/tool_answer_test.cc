@@ -113,19 +113,22 @@ TEST_F(ToolAnswerTest, WhatIsWrittenAlreadyIsNotWrittenAgain) {
 
 TEST_F(ToolAnswerTest, FindingsOfPeopleGoToStandardErrorAtOnce) {
   const Told told = Hear([&] {
-    plain.Found({FindingAt(2, Severity::kCompile)}, Untold(7, ErrorCode::kNameUndeclared, 9), "STOP\nSPEDE 20\n");
+    plain.Found({FindingAt(2, Severity::kCompile)}, Untold(7, ErrorCode::kNameUndeclared, 9),
+                "STOP\nSPEDE 20\n");
     return plain.Failed();
   });
   EXPECT_EQ(told.exit_code, 1);
   EXPECT_EQ(told.output, "");
   EXPECT_THAT(told.errors, HasSubstr("12.S:2:1: error OPT-E7011: SPEDE"));
-  EXPECT_THAT(told.errors, HasSubstr("\n  SPEDE 20\n  ^~~~~\nand 7 more findings\n"));
+  EXPECT_THAT(told.errors,
+              HasSubstr("\n  SPEDE 20\n  ^~~~~\nand 7 more OPT-E7011, lines 9 to 15\n"));
 }
 
 TEST_F(ToolAnswerTest, FindingsOfSeveralFilesStandInOneObject) {
   const Told told = Hear([&] {
     as_json.Found({FindingAt(2, Severity::kAdvice)}, Untold(3), "");
-    as_json.Found({FindingAt(5, Severity::kCompile), FindingAt(6, Severity::kAdvice)}, Untold(4), "");
+    as_json.Found({FindingAt(5, Severity::kCompile), FindingAt(6, Severity::kAdvice)}, Untold(4),
+                  "");
     return as_json.Failed();
   });
   EXPECT_EQ(told.exit_code, 1);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -187,6 +188,22 @@ TEST(Rml1Family, CountsEachKindToItsLastPlace) {
   EXPECT_EQ(foreign.last.where.line, 1503);
   EXPECT_EQ(foreign.last.where.column, 8);
   EXPECT_EQ(kinds.at(ErrorCode::kRml1LogCut).count, 1U);
+}
+
+// What is no stream is shown by one finding of each kind behind the refusal; the others are
+// counted.
+TEST(Rml1Family, OfForeignTextEachKindIsToldOnce) {
+  const machine::Translation translation =
+      TranslateText("G21 G90\nG0 Z5\nG0 X10 Y10\nM3 S5000\nG1 Z-1 F100\nG1 X20 F200\nG0 Z5\nM5\n");
+  ASSERT_FALSE(translation.ok);
+  ASSERT_FALSE(translation.diagnostics.empty());
+  EXPECT_EQ(translation.diagnostics[0].code, ErrorCode::kRml1NoProgram);
+  std::set<ErrorCode> kinds;
+  for (const Diagnostic& finding : translation.diagnostics)
+    EXPECT_TRUE(kinds.insert(finding.code).second) << CodeText(finding.code);
+  EXPECT_GT(translation.diagnostics_dropped.count(), 0U);
+  for (const auto& [code, kind] : translation.diagnostics_dropped.kinds())
+    EXPECT_TRUE(kinds.contains(code)) << CodeText(code);
 }
 
 // A check tells of the first 1000 pauses and counts the rest, as of every advice (RML1-9.06); each

@@ -136,12 +136,12 @@ TEST(ReportMessage, OfARunThatDidNothing) {
           "picture { complete: true } collisions: 'not modelled'");
 }
 
-const std::string kGathered =
-    "gathered { code: 'RML1-E8002' symbol: '" + std::string(ConstantName(ErrorCode::kRml1Clipped)) +
-    "' severity: SEVERITY_ADVICE message: '" +
-    std::string(Lookup(ErrorCode::kRml1Clipped).when) + "' advice: '" +
-    std::string(Lookup(ErrorCode::kRml1Clipped).advice) +
-    "' count: 7 first { line: 40 } last { line: 46 } } ";
+const std::string kGathered = "diagnostics_dropped: 7 gathered { code: 'RML1-E8002' symbol: '" +
+                              std::string(ConstantName(ErrorCode::kRml1Clipped)) +
+                              "' severity: SEVERITY_ADVICE message: '" +
+                              std::string(Lookup(ErrorCode::kRml1Clipped).when) + "' advice: '" +
+                              std::string(Lookup(ErrorCode::kRml1Clipped).advice) +
+                              "' count: 7 first { line: 40 } last { line: 46 } } ";
 
 TEST(ReportMessage, EveryFigureHasItsField) {
   RunReport report;
@@ -212,8 +212,7 @@ TEST(ReportMessage, EveryFigureHasItsField) {
           "} } other_steps { " + kFigures + "} diagnostics { code: '" + CodeText(turn.code) +
           "' symbol: '" + std::string(ConstantName(turn.code)) +
           "' severity: SEVERITY_WARNING message: 'turns' advice: '" + std::string(turn.advice) +
-          "' rule: 'OPT-2.48' count: 6 place {} } diagnostics_dropped: 7 " +
-          kGathered +
+          "' rule: 'OPT-2.48' count: 6 place {} } " + kGathered +
           "slow_moves { place { program: 1 step: 2 } cause: 'axis' axis: 'A' wanted_mm_s: 3 "
           "allowed_mm_s: 2 reached_mm_s: 1 count: 4 } slow_moves_dropped: 8 lookahead_starved: 12 "
           "violations { place { program: 1 step: 2 } axis: 'X' rotary: true excess: 0.5 "
