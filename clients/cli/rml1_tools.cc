@@ -360,7 +360,7 @@ int StreamFromPng(const PngToolOptions& options) {
   Result<rml1::BoardLines> lines =
       rml1::StreamOfBoard(picture->bitmap, *parameters, board, product.sink());
   if (!lines) return FailedAt(lines.error(), options.file, answer);
-  Found(lines->findings, 0, options.file, {}, answer);
+  Found(lines->findings, {}, options.file, {}, answer);
   const machine::Bytes made = product.Finish();
   const std::string size =
       "picture of " + Fixed(lines->width_mm, 2) + " by " + Fixed(lines->height_mm, 2) + " mm";

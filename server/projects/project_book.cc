@@ -125,7 +125,7 @@ bool IsFor(const v1::Project& project, const machine::MachineFamily& family) {
 // What is wrong with a project by itself: its definitions, to the families that it is for (OPT-3.01
 // to 3.08).
 std::optional<ProgramError> FindFault(const v1::Project& project) {
-  if (const Status good = CheckParts(project); !good) return ProgramError{good.error(), {}, 0};
+  if (const Status good = CheckParts(project); !good) return ProgramError{good.error(), {}, {}};
   std::vector<Diagnostic> found;
   for (const machine::MachineFamily* family : families::Families()) {
     if (!IsFor(project, *family)) continue;
@@ -137,7 +137,7 @@ std::optional<ProgramError> FindFault(const v1::Project& project) {
       std::ranges::find_if(found, [](const Diagnostic& d) { return IsError(d.severity); });
   if (first == found.end()) return std::nullopt;
   Error error{first->code, first->detail, {}};
-  return ProgramError{std::move(error), std::move(found), 0};
+  return ProgramError{std::move(error), std::move(found), {}};
 }
 
 Result<v1::Project> ProjectOf(const storage::ProjectRecord& record) {

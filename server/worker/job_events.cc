@@ -108,7 +108,8 @@ void JobEvents::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
 }
 
 void JobEvents::TellRest() {
-  for (const auto& [code, kind] : std::exchange(rest_, {}).kinds()) {
+  const UntoldFindings rest = std::exchange(rest_, {});
+  for (const auto& [code, kind] : rest.kinds()) {
     v1::JobEvent event;
     event.set_virtual_time_ns(kind.last_at.count());
     *event.mutable_gathered() = bridge::ToProto(kind);
