@@ -148,6 +148,7 @@ RunReport Recorder::Report(const machine::Run& run) const {
   report.judgement = Judge(report);
   for (Finding& finding : report.findings)
     finding.diagnostic.judged = machine::JudgedBy(report.judgement, finding.diagnostic.code);
+  machine::MarkJudged(report.judgement, report.findings_dropped);
   return report;
 }
 
