@@ -139,6 +139,7 @@ class Attempt {
     if (!check) return Refuse(check.error());
     machine::Translation& translation = check->translation;
     for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = slot;
+    translation.diagnostics_dropped.ForEachPlace([&](Diagnostic& place) { place.program = slot; });
     const machine::Judgement judgement = simulation::JudgeCheck(*check);
     simulation::PreparedRun found{.diagnostics = std::move(translation.diagnostics),
                                   .diagnostics_dropped = translation.diagnostics_dropped};
