@@ -87,11 +87,10 @@ class Memory(InFolder):
                 least = self.peak(*words, self.short, *more)
                 self.assertLess(self.peak(*words, self.long, *more) - least, BOUND)
 
-    # What is beyond the travel is drawn, too, and each is a finding.
-    def test_findings_and_lost_ways_without_end(self):
+    # Each way beyond the travel is a finding.
+    def test_findings_without_end(self):
         strays_short, strays_long = self.stream("few.rml", strays(10)), self.stream("strays.rml", strays(1_000_000))
-        svg, toolpath = ["--svg", self.folder / "a.svg"], ["--toolpath", self.folder / "a.path"]
-        for words in (["check"], ["simulate", *svg], ["simulate", *svg, *toolpath]):
+        for words in (["check"], ["simulate"], ["simulate", "--toolpath", self.folder / "a.path"]):
             with self.subTest(words):
                 least = self.peak(*words, strays_short, "--profile", "srm-20")
                 self.assertLess(self.peak(*words, strays_long, "--profile", "srm-20") - least, BOUND)

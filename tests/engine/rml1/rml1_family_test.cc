@@ -194,7 +194,10 @@ TEST(Rml1Family, CountsEachKindToItsLastPlace) {
 // counted.
 TEST(Rml1Family, OfForeignTextEachKindIsToldOnce) {
   const machine::Translation translation =
-      TranslateText("G21 G90\nG0 Z5\nG0 X10 Y10\nM3 S5000\nG1 Z-1 F100\nG1 X20 F200\nG0 Z5\nM5\n");
+      Rml1Family().Translate({.name = "part.rml",
+                              .bytes = "G21 G90\nG0 Z5\nG0 X10 Y10\nM3 S5000\nG1 Z-1 F100\n"
+                                       "G1 X20 F200\nG0 Z5\nM5\n"},
+                             *machine::MakeParameters(Rml1Family(), "srm-20", {}), {});
   ASSERT_FALSE(translation.ok);
   ASSERT_FALSE(translation.diagnostics.empty());
   EXPECT_EQ(translation.diagnostics[0].code, ErrorCode::kRml1NoProgram);
