@@ -101,7 +101,7 @@ int ShowRefused(const CheckedFile& file, const CheckOptions& options) {
                                             .severity = Lookup(file.refused->code).severity,
                                             .detail = file.refused->detail,
                                             .file = file.name}},
-                                          0, {});
+                                          {}, {});
   found.set_file(bridge::Utf8(file.name));
   found.set_family(std::string(file.check.family->info().id));
   Print(Json(found));

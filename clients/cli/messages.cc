@@ -40,12 +40,6 @@ std::string StateName(v1::Job::State state) {
   return LowerCase(name);
 }
 
-std::string FindingLine(const v1::Diagnostic& diagnostic) {
-  std::string text = Visible(FormatDiagnostic(bridge::FromProto(diagnostic), {}));
-  if (diagnostic.count() > 1) text += " (" + std::to_string(diagnostic.count()) + " times)";
-  return text;
-}
-
 std::string OutcomeLine(const v1::Outcome& outcome) {
   const bool colour = ColourOnOutput();
   std::string text;
@@ -392,17 +386,7 @@ std::string ReportText(const v1::RunReport& report, Zero zero) {
   if (report.has_total()) AddFigures(report, zero, rows);
   if (!report.motion_check().empty())
     rows.emplace_back("motion", "checked " + report.motion_check());
-  std::string text = TextOf(rows);
-  KindsShown kinds;
-  for (const v1::Diagnostic& diagnostic : report.diagnostics()) {
-    if (kinds.Show(diagnostic.code(), diagnostic.place().line()))
-      text += FindingLine(diagnostic) + "\n";
-  }
-  text += kinds.Rest();
-  if (report.diagnostics_dropped() > 0) {
-    text += "and " + std::to_string(report.diagnostics_dropped()) + " more findings\n";
-  }
-  return text;
+  return TextOf(rows) + FindingsText(report);
 }
 
 std::string MachineRows(const machine::MachineFamily& family, const v1::Findings& found) {

@@ -34,7 +34,5 @@ std::string StateName(v1::Job::State state);  // "running"
 
 // "and 95 more RML1-E2, lines 12 to 300: no command of the command set in force has this name".
 std::string GatheredLine(const v1::GatheredFindings& gathered);
-// A finding as the local checks print it, without source line.
-std::string FindingLine(const v1::Diagnostic& diagnostic);
 
 }  // namespace rmlcell::cli

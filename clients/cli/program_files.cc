@@ -189,6 +189,9 @@ Result<const machine::MachineFamily*> FamilyFor(const std::string& id,
     return Error{ErrorCode::kCellUnknownFamily, "'" + id + "'; there are" + known, {}};
   }
   if (const machine::MachineFamily* family = families::FamilyOfFileName(file_name)) return family;
+  std::error_code ignored;
+  if (fs::is_directory(file_name, ignored))
+    return Error{ErrorCode::kCellUsage, "'" + file_name + "' is a directory: give its files", {}};
   return Error{ErrorCode::kCellFamilyUnknownFromName, "'" + file_name + "': give --family", {}};
 }
 

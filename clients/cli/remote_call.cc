@@ -28,6 +28,17 @@ void ComplainOf(const v1::ErrorDetail& detail, const std::string& message) {
     }
   }
   if (!told) Complain(message);
+  google::protobuf::RepeatedPtrField<v1::GatheredFindings> errors;
+  std::int64_t errors_dropped = 0;
+  for (const v1::GatheredFindings& kind : detail.gathered()) {
+    v1::Diagnostic plain;
+    plain.set_severity(kind.severity());
+    if (!IsError(bridge::FromProto(plain).severity)) continue;
+    *errors.Add() = kind;
+    errors_dropped += kind.count();
+  }
+  kinds.AddUntold(errors, errors_dropped);
+  others -= errors_dropped;
   std::string rest = kinds.Rest();
   for (std::size_t end; (end = rest.find('\n')) != std::string::npos; rest.erase(0, end + 1))
     Complain(rest.substr(0, end));

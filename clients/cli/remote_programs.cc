@@ -8,6 +8,7 @@
 #include "clients/cli/project_files.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/verdict_text.h"
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
@@ -30,11 +31,12 @@ std::string ProgramName(const std::string& machine, int slot) {
   return FullName("machines", machine) + "/programs/" + std::to_string(slot);
 }
 
+// What there is to say, and what will come of it.
 void PrintProgramFindings(const v1::Findings& findings) {
-  for (const v1::Diagnostic& diagnostic : findings.diagnostics()) Print(FindingLine(diagnostic));
-  if (findings.diagnostics_dropped() > 0) {
-    Print("and " + std::to_string(findings.diagnostics_dropped()) + " more findings");
-  }
+  PrintRaw(FindingsText(findings));
+  if (findings.verdict() == v1::VERDICT_UNSPECIFIED) return;
+  Print("verdict: " + VerdictText(findings.verdict()));
+  for (const v1::VerdictReason& reason : findings.reasons()) Print("  " + ReasonLine(reason));
 }
 
 int PrintStored(const Remote& remote, const v1::Program& program, bool check_only) {
@@ -45,7 +47,9 @@ int PrintStored(const Remote& remote, const v1::Program& program, bool check_onl
   PrintProgramFindings(program.findings());
   const auto slot = ParseInteger(program.name().substr(program.name().rfind('/') + 1));
   const bool executable = slot && *slot > kExecutableOffset;
-  Print(program.name() + (check_only ? " would be stored: " : " stored: ") + program.title() +
+  Print(program.name() + (check_only ? " would be stored: " : " stored: ") +
+        (program.title().empty() && slot ? "slot " + std::to_string(*slot)
+                                         : Visible(program.title())) +
         (executable ? ", executable " + Bytes(program.executable_bytes())
                     : ", object " + Bytes(program.object_bytes())));
   return kGood;
@@ -268,7 +272,9 @@ void PrintProject(const v1::Project& project) {
   for (const v1::ProjectProgram& program : project.programs()) {
     programs.push_back({std::to_string(program.slot()), program.title(),
                         program.source().file_name(),
-                        LowerCase(v1::Units_Name(program.units()).substr(6)),
+                        program.units() == v1::UNITS_UNSPECIFIED
+                            ? "-"
+                            : LowerCase(v1::Units_Name(program.units()).substr(6)),
                         Bytes(static_cast<std::int64_t>(program.source().content().size()))});
   }
   if (programs.size() > 1) PrintRaw("\n" + Table(std::move(programs)));

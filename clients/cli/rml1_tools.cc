@@ -23,6 +23,7 @@
 #include "engine/rml1/offline/tile.h"
 #include "engine/rml1/offline/to_gcode.h"
 #include "engine/rml1/offline/work_check.h"
+#include "engine/simulation/run/rehearsal.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/spooled_bytes.h"
@@ -92,7 +93,7 @@ int FailedAt(const Error& error, const std::string& file, ToolAnswer& answer) {
                      .detail = error.detail,
                      .file = file,
                      .where = error.where.value_or(SourceSpan{})};
-  answer.Found({std::move(finding)}, 0, {});
+  answer.Found({std::move(finding)}, {}, {});
   return answer.Failed();
 }
 
@@ -132,7 +133,7 @@ bool MayBeWritten(const machine::Bytes& work, const machine::Parameters& paramet
                      .detail = error.detail,
                      .file = options.file,
                      .where = error.where.value_or(SourceSpan{})};
-  answer.Found({std::move(finding)}, 0, {});
+  answer.Found({std::move(finding)}, {}, {});
   return options.force;
 }
 
@@ -146,8 +147,8 @@ std::optional<std::array<double, 2>> FieldOf(const std::string& text) {
   return std::array{*width, *height};
 }
 
-void Found(std::vector<Diagnostic>& findings, std::uint64_t dropped, const std::string& file,
-           std::string_view text, ToolAnswer& answer) {
+void Found(std::vector<Diagnostic>& findings, const UntoldFindings& dropped,
+           const std::string& file, std::string_view text, ToolAnswer& answer) {
   for (Diagnostic& finding : findings) finding.file = file;
   answer.Found(findings, dropped, text);
 }
@@ -158,7 +159,20 @@ std::string Padded(std::string text, std::size_t width, bool left) {
   return left ? blanks + text : text + blanks;
 }
 
-void PrintPhrase(const rml1::ExplainedPhrase& phrase, const std::string& file, bool colour) {
+// What a check says of the whole stream: how serious each finding is.
+machine::Judgement JudgementOf(const MillProgram& program, const std::string& file) {
+  const machine::MachineFamily& family = *families::FindFamily(kFamily);
+  simulation::CheckedProgram check{
+      .family = &family,
+      .machine = program.parameters.Used(),
+      .translation = simulation::TranslateProgram(
+          family, program.parameters,
+          {.file_name = file, .bytes = program.bytes, .is_source = true}, {})};
+  return simulation::JudgeCheck(check);
+}
+
+void PrintPhrase(const rml1::ExplainedPhrase& phrase, const machine::Judgement& judgement,
+                 const std::string& file, bool colour) {
   std::string line = Padded(std::to_string(phrase.offset), 9, true) + ' ' +
                      Padded(phrase.command > 0 ? std::to_string(phrase.command) : "-", 8, true) +
                      "  " + Padded(Visible(phrase.text), 24, false) + "  " + phrase.words;
@@ -166,13 +180,14 @@ void PrintPhrase(const rml1::ExplainedPhrase& phrase, const std::string& file, b
   for (const Diagnostic& finding : phrase.findings) {
     Diagnostic named = finding;
     named.file = file;
-    const bool advice = named.severity == Severity::kAdvice;
+    named.judged = machine::JudgedBy(judgement, named.code);
+    const bool harmless = named.severity == Severity::kAdvice && named.judged != Judged::kBad;
     Print(Paint("                    " + FormatDiagnostic(named, {}),
-                advice ? Colour::kYellow : Colour::kRed, colour));
+                harmless ? Colour::kYellow : Colour::kRed, colour));
   }
 }
 
-void PrintPhraseJson(const rml1::ExplainedPhrase& phrase) {
+void PrintPhraseJson(const rml1::ExplainedPhrase& phrase, const machine::Judgement& judgement) {
   nlohmann::ordered_json line;
   line["offset"] = phrase.offset;
   line["command"] = phrase.command;
@@ -181,7 +196,10 @@ void PrintPhraseJson(const rml1::ExplainedPhrase& phrase) {
   line["words"] = phrase.words;
   nlohmann::ordered_json findings = nlohmann::ordered_json::array();
   for (const Diagnostic& finding : phrase.findings) {
+    Diagnostic judged = finding;
+    judged.judged = machine::JudgedBy(judgement, finding.code);
     findings.push_back({{"code", CodeText(finding.code)},
+                        {"word", FindingWord(judged)},
                         {"detail", bridge::Utf8(finding.detail)},
                         {"line", finding.where.line},
                         {"column", finding.where.column}});
@@ -195,6 +213,7 @@ void PrintPhraseJson(const rml1::ExplainedPhrase& phrase) {
 int ExplainStream(const MillToolOptions& options) {
   const Result<MillProgram> program = ReadStream(options);
   if (!program) return Refuse(program.error());
+  const machine::Judgement judgement = JudgementOf(*program, options.file);
   const bool colour = ColourOnOutput();
   if (!options.json) Print("     byte  command  text                      what it does");
   std::int64_t released = 0;
@@ -205,9 +224,9 @@ int ExplainStream(const MillToolOptions& options) {
           released = phrase.offset;
         }
         if (options.json) {
-          PrintPhraseJson(phrase);
+          PrintPhraseJson(phrase, judgement);
         } else {
-          PrintPhrase(phrase, options.file, colour);
+          PrintPhrase(phrase, judgement, options.file, colour);
         }
         return std::ferror(stdout) == 0;
       });
@@ -344,7 +363,7 @@ int StreamFromPng(const PngToolOptions& options) {
   for (Diagnostic& finding : lines->findings) {
     if (options.force && IsError(finding.severity)) finding.severity = Severity::kWarning;
   }
-  Found(lines->findings, 0, options.file, {}, answer);
+  Found(lines->findings, {}, options.file, {}, answer);
   if (lines->joined > 0 && !options.force) return answer.Failed();
   const machine::Bytes made = product.Finish();
   const std::string size =

@@ -28,7 +28,8 @@ namespace rmlcell::cli {
 namespace {
 
 // What was found in the text, and is found again at the same place when it runs.
-void DropFindings(const std::vector<Diagnostic>& told, v1::RunReport& report) {
+void DropFindings(const simulation::PreparedRun& before, v1::RunReport& report) {
+  const std::vector<Diagnostic>& told = before.diagnostics;
   std::set<std::tuple<std::string, int, int>> places;
   for (const Diagnostic& finding : told)
     places.emplace(CodeText(finding.code), finding.where.line, finding.where.column);
@@ -41,6 +42,18 @@ void DropFindings(const std::vector<Diagnostic>& told, v1::RunReport& report) {
                               places.contains({finding.code(), place.line(), place.column()});
                      }),
       again.end());
+  // What the text counts of a kind, the run counts, too.
+  auto& kinds = *report.mutable_gathered();
+  for (int i = kinds.size(); i-- > 0;) {
+    const auto of_text = std::ranges::find_if(
+        before.diagnostics_dropped.kinds(),
+        [&](const auto& kind) { return CodeText(kind.first) == kinds[i].code(); });
+    if (of_text == before.diagnostics_dropped.kinds().end()) continue;
+    const bool more = kinds[i].count() > static_cast<std::int64_t>(of_text->second.count);
+    if (more) continue;
+    report.set_diagnostics_dropped(report.diagnostics_dropped() - kinds[i].count());
+    kinds.DeleteSubrange(i, 1);
+  }
 }
 
 std::vector<std::string> SplitCommas(const std::string& text) {
@@ -250,7 +263,7 @@ void TellResult(const SimulateOptions& options, const simulation::SimulationResu
     for (const auto& [name, value] : result.variables) Print("variable." + name + ": " + value);
   } else {
     PrintFindings(run.diagnostics, run.diagnostics_dropped, {});
-    DropFindings(run.diagnostics, report);
+    DropFindings(run, report);
     PrintRaw(ReportText(report, options.machine_coordinates ? Zero::kMachine : Zero::kWork));
   }
 }
@@ -298,6 +311,7 @@ int Simulate(const SimulateOptions& options) {
   const v1::Outcome outcome = report.outcome();
   products.MoveTraceTo(report);
   machine::MarkJudged(result->report.judgement, run.diagnostics);
+  machine::MarkJudged(result->report.judgement, run.diagnostics_dropped);
   TellResult(options, *result, run, std::move(report));
   return ExitOf(outcome, options.strict);
 }

@@ -146,7 +146,7 @@ int Link(const LinkOptions& options) {
             .file = program->file_name,
             .where = {},
             .fixes = {}}},
-          0, {});
+          {}, {});
       good = false;
       return std::nullopt;
     }
@@ -248,7 +248,7 @@ int Convert(const ConvertOptions& options) {
   const machine::RewrittenText converted =
       tools.Convert(*text, wanted.direction, Names(wanted.input, wanted.output));
   ToolAnswer answer(wanted.input, options.json);
-  answer.Found(converted.diagnostics, 0, *text);
+  answer.Found(converted.diagnostics, {}, *text);
   const int exit_code = HasErrors(converted.diagnostics) ? kProgramErrors : kGood;
   const bool to_output = wanted.output == "-";
   if (to_output && !options.json) {
@@ -275,7 +275,7 @@ int Compensate(const ToolOptions& options) {
   const machine::RewrittenText made =
       tools.Compensate(source->text, Names(file, target), source->inch);
   ToolAnswer answer(file, options.json);
-  answer.Found(made.diagnostics, 0, source->text);
+  answer.Found(made.diagnostics, {}, source->text);
   return made.ok ? answer.Deliver(made.text, target, "compensated") : answer.Failed();
 }
 
@@ -292,7 +292,7 @@ int Rewrite(const ToolOptions& options,
   machine::RewrittenText made = (source->tools().*rewrite)(source->text, by);
   for (Diagnostic& finding : made.diagnostics) finding.file = file;
   ToolAnswer answer(file, options.json);
-  answer.Found(made.diagnostics, 0, source->text);
+  answer.Found(made.diagnostics, {}, source->text);
   return made.ok
              ? answer.Deliver(made.text, OrStandardOutput(options.output), "rewritten from " + file)
              : answer.Failed();

@@ -11,11 +11,11 @@
 
 namespace rmlcell::cli {
 
-void ToolAnswer::Found(const std::vector<Diagnostic>& findings, std::uint64_t dropped,
+void ToolAnswer::Found(const std::vector<Diagnostic>& findings, const UntoldFindings& dropped,
                        std::string_view source) {
   if (!json_) return ComplainOf(findings, dropped, source);
   findings_.insert(findings_.end(), findings.begin(), findings.end());
-  dropped_ += dropped;
+  dropped_.Add(dropped);
 }
 
 int ToolAnswer::PrintJson(int exit_code, std::string_view output, std::string_view content,

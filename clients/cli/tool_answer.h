@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/diagnostic.h"
+#include "engine/core/untold_findings.h"
 #include "engine/machine/bytes.h"
 
 namespace rmlcell::cli {
@@ -23,7 +24,7 @@ class ToolAnswer {
   ToolAnswer(std::string file, bool json) : file_(std::move(file)), json_(json) {}
 
   // Findings about the file, and about others that the tool reads along.
-  void Found(const std::vector<Diagnostic>& findings, std::uint64_t dropped,
+  void Found(const std::vector<Diagnostic>& findings, const UntoldFindings& dropped,
              std::string_view source);
 
   // The result, to a file or, "-", to standard output. All of these give the exit code.
@@ -48,7 +49,7 @@ class ToolAnswer {
   std::string file_;
   bool json_;
   std::vector<Diagnostic> findings_;
-  std::uint64_t dropped_ = 0;
+  UntoldFindings dropped_;
 };
 
 }  // namespace rmlcell::cli

@@ -47,7 +47,7 @@ Findings CheckDocument(const Document& document) {
               .file = {},
               .where = {},
               .fixes = {}}},
-            0};
+            {}};
   }
   const machine::MachineFamily& family = FamilyOf(document);
   machine::Translation translation =
@@ -89,12 +89,13 @@ Json ToJson(const Findings& findings, const Document& document) {
   PositionFinder positions(document);
   for (const Diagnostic& finding : findings.list)
     list.push_back(ToJson(finding, positions, document));
-  if (findings.dropped > 0) {
+  if (!findings.dropped.empty()) {
     const Position end = positions.At(document.text().size());
-    list.push_back({{"range", ToJson(Range{end, end})},
-                    {"severity", kSeverityWarning},
-                    {"source", "rmlcell"},
-                    {"message", "and " + std::to_string(findings.dropped) + " more findings"}});
+    list.push_back(
+        {{"range", ToJson(Range{end, end})},
+         {"severity", kSeverityWarning},
+         {"source", "rmlcell"},
+         {"message", "and " + std::to_string(findings.dropped.count()) + " more findings"}});
   }
   return list;
 }

@@ -23,7 +23,7 @@ const machine::MachineFamily& FamilyOf(const Document& document);
 
 struct Findings {
   std::vector<Diagnostic> list{};
-  std::uint64_t dropped = 0;  // beyond those of the list
+  UntoldFindings dropped{};  // beyond those of the list
 };
 
 // A source in other units is checked as it stands (machine::CheckOptions::unconverted).

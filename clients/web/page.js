@@ -442,15 +442,21 @@ function findingItems(report) {
     if (!kinds.has(one.code)) kinds.set(one.code, []);
     kinds.get(one.code).push(one);
   }
+  // Those that no list had room for come with the first and the last place of each code.
+  for (const { first, last, ...one } of report.gathered ?? []) {
+    if (!kinds.has(one.code)) kinds.set(one.code, []);
+    kinds.get(one.code).push({ ...one, place: first, count: Number(one.count) - 1 }, { ...one, place: last, count: 1 });
+  }
   const items = [...kinds.values()].map((all) => {
     const [first] = all;
-    const count = all.reduce((sum, one) => sum + (Number(one.count) || 1), 0);
+    const count = all.reduce((sum, one) => sum + Number(one.count ?? 1), 0);
     const word = VERDICTS[first.verdict]?.[0] ?? severityWord(first.severity ?? "SEVERITY_UNSPECIFIED");
     const extent = all.length > 1 ? `${placeText(first.place)} to ${placeText(all[all.length - 1].place)}` : placeText(first.place);
     return element("li", {}, explainLink(first.code), ` ${word}: ${first.message} `,
       element("span", { className: "sub" }, [count > 1 ? `${count} times` : "", extent].filter(Boolean).join(", ")));
   });
-  const dropped = Number(report.diagnosticsDropped ?? 0);
+  const gathered = (report.gathered ?? []).reduce((sum, one) => sum + Number(one.count), 0);
+  const dropped = Number(report.diagnosticsDropped ?? 0) - gathered;
   if (dropped > 0) items.push(element("li", { className: "sub" }, `and ${dropped} more`));
   return items;
 }

@@ -41,9 +41,15 @@ TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Par
     Translation translation = Translate(program.file, parameters, {});
     for (Diagnostic& diagnostic : translation.diagnostics) {
       diagnostic.program = slot;
-      if (plan.diagnostics.size() < kDiagnosticsMax)
+      if (plan.diagnostics.size() < kDiagnosticsMax) {
         plan.diagnostics.push_back(std::move(diagnostic));
+      } else {
+        plan.diagnostics_dropped.Add(diagnostic);
+      }
     }
+    translation.diagnostics_dropped.ForEachPlace(
+        [slot](Diagnostic& place) { place.program = slot; });
+    plan.diagnostics_dropped.Add(translation.diagnostics_dropped);
     plan.ok = plan.ok && translation.ok;
     std::string object = ObjectOf(std::move(translation), program.file.bytes);
     plan.programs.push_back({.slot = slot, .source = object, .object = object});

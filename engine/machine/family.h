@@ -103,7 +103,8 @@ struct TransferPlan {
     bool own_text = false;
   };
   std::vector<Program> programs{};
-  std::vector<Diagnostic> diagnostics{};
+  std::vector<Diagnostic> diagnostics{};  // at most kDiagnosticsMax
+  UntoldFindings diagnostics_dropped{};
 };
 
 // A figure that runs of a family may give (Run::figures): its name never changes meaning.

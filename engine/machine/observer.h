@@ -153,6 +153,8 @@ class RunObserver {
   virtual void OnViolation(const TravelViolation&) {}
   virtual void OnLost(const LostWay&) {}
   virtual void OnDiagnostic(SimTime /*at*/, const Diagnostic&) {}
+  // One more of a kind that was told a thousand times: code, severity and place alone are known.
+  virtual void OnCounted(SimTime /*at*/, const Diagnostic&) {}
   virtual void OnAssumed(const Assumed&) {}  // each time that it is looked at
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/diagnostic.h"
+#include "engine/core/untold_findings.h"
 #include "engine/machine/outcome.h"
 #include "engine/machine/run_setup.h"
 
@@ -27,9 +28,9 @@ struct Translation {
   // The machine keeps the bytes of the file as they came: `object` has no copy of them.
   bool as_it_came = false;
   std::vector<Diagnostic> diagnostics{};  // in order of place; at most kDiagnosticsMax
-  std::uint64_t diagnostics_dropped = 0;
-  std::vector<Figure> figures{};  // "steps", "object_bytes" ...
-  SourceNotes source{};           // empty: not asked for, or none
+  UntoldFindings diagnostics_dropped{};   // those that had no room
+  std::vector<Figure> figures{};          // "steps", "object_bytes" ...
+  SourceNotes source{};                   // empty: not asked for, or none
 };
 inline constexpr std::size_t kDiagnosticsMax = 1000;
 

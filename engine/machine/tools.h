@@ -11,6 +11,7 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/result.h"
+#include "engine/core/untold_findings.h"
 #include "engine/machine/parameters.h"
 #include "engine/machine/program_file.h"
 
@@ -33,7 +34,7 @@ struct CompiledProgram {
   std::string source_map{};  // gives the programmer his own text back, Tools::Decompile
   int steps = 0;
   std::vector<Diagnostic> diagnostics{};  // in order of place
-  std::uint64_t diagnostics_dropped = 0;
+  UntoldFindings diagnostics_dropped{};
 };
 
 struct RecoveredSource {
@@ -54,7 +55,7 @@ struct FormattedText {
   bool changed = false;
   bool readable = false;
   std::vector<Diagnostic> diagnostics{};
-  std::uint64_t diagnostics_dropped = 0;
+  UntoldFindings diagnostics_dropped{};
 };
 
 // The endings of files that tools make and read.

@@ -78,4 +78,8 @@ void MarkJudged(const Judgement& judgement, std::span<Diagnostic> findings) {
   for (Diagnostic& finding : findings) finding.judged = JudgedBy(judgement, finding.code);
 }
 
+void MarkJudged(const Judgement& judgement, UntoldFindings& findings) {
+  findings.Mark([&](ErrorCode code) { return JudgedBy(judgement, code); });
+}
+
 }  // namespace rmlcell::machine

@@ -8,6 +8,7 @@
 
 #include "engine/core/catalogue.h"
 #include "engine/core/diagnostic.h"
+#include "engine/core/untold_findings.h"
 #include "engine/machine/outcome.h"
 
 // Will the part come out right? What a run did is judged by rules, each of which looks at one
@@ -60,6 +61,7 @@ struct Judgement {
 
 // Tells each finding whether one of the reasons is of its code.
 void MarkJudged(const Judgement& judgement, std::span<Diagnostic> findings);
+void MarkJudged(const Judgement& judgement, UntoldFindings& findings);
 Judged JudgedBy(const Judgement& judgement, ErrorCode code);
 
 // What a rule says of a figure. Lengths and times to 0.001, counts whole, percent to 0.1; other

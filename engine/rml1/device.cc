@@ -257,22 +257,25 @@ void Device::Log(ErrorLog& log, Finding finding, DeviceListener& listener) {
   const int number = Lookup(RowOf(finding.kind).code).number;
   if (log.Add(number, finding.offset)) {
     listener.OnFinding(finding);
-  } else if (!was_cut) {
-    finding.kind = FindingKind::kLogCut;
-    listener.OnFinding(finding);
+    return;
   }
+  listener.OnCounted(finding);
+  if (was_cut) return;
+  finding.kind = FindingKind::kLogCut;
+  listener.OnFinding(finding);
 }
 
 void Device::Advise(FindingKind kind, DeviceListener& listener, double value) {
   int& told = advised_[static_cast<std::size_t>(kind)];
-  if (told >= kAdviceMax) return;
+  const Finding advice{.kind = kind,
+                       .offset = command_.offset,
+                       .length = static_cast<int>(RowOf(command_.op).name.size()),
+                       .step = static_cast<int>(command_.number),
+                       .op = command_.op,
+                       .value = value};
+  if (told >= kAdviceMax) return listener.OnCounted(advice);
   ++told;
-  listener.OnFinding({.kind = kind,
-                      .offset = command_.offset,
-                      .length = static_cast<int>(RowOf(command_.op).name.size()),
-                      .step = static_cast<int>(command_.number),
-                      .op = command_.op,
-                      .value = value});
+  listener.OnFinding(advice);
 }
 
 }  // namespace rmlcell::rml1

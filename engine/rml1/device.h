@@ -28,6 +28,8 @@ class DeviceListener {
   virtual ~DeviceListener() = default;
   virtual void OnCommand(const CommandPlace&) {}  // right before its first effect
   virtual void OnFinding(const Finding&) {}       // errors up to the bound of the log, and advice
+  // What is past that bound, and advice of a kind that was told often: in a word, to be counted.
+  virtual void OnCounted(const Finding&) {}
   // Way in the work that the travel cut off, device units from the machine's zero.
   virtual void OnLost(const Carriage::LostLine&) {}
   // What the device's reader made of the byte at `offset`, before the device acts on it.
@@ -175,7 +177,7 @@ class Device {
   void Log(ErrorLog& log, Finding finding, DeviceListener& listener);
   void Advise(FindingKind kind, DeviceListener& listener, double value = 0.0);
 
-  // Advice of one kind is told so many times; then it is only counted in the figures.
+  // Advice of one kind is told so many times; then it is only counted.
   static constexpr int kAdviceMax = 1000;
 
   const Profile* profile_;

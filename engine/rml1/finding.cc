@@ -131,18 +131,17 @@ SourceSpan LineCounter::At(std::string_view stream, std::int64_t offset, int len
       .line = line_, .column = static_cast<int>(column), .length = length, .byte_offset = offset};
 }
 
-Diagnostic ToDiagnostic(const Finding& finding, std::string_view stream, LineCounter& lines) {
-  const FindingRow& row = RowOf(finding.kind);
-  Diagnostic diagnostic{.code = row.code,
-                        .severity = Lookup(row.code).severity,
-                        .detail = DetailOf(finding),
-                        .rule = std::string(row.rule),
-                        .file = {},
-                        .where = {},
-                        .program = 0,
-                        .step = finding.step,
-                        .fixes = {}};
+Diagnostic PlainDiagnostic(const Finding& finding, std::string_view stream, LineCounter& lines) {
+  const ErrorCode code = RowOf(finding.kind).code;
+  Diagnostic diagnostic{.code = code, .severity = Lookup(code).severity, .step = finding.step};
   if (!stream.empty()) diagnostic.where = lines.At(stream, finding.offset, finding.length);
+  return diagnostic;
+}
+
+Diagnostic ToDiagnostic(const Finding& finding, std::string_view stream, LineCounter& lines) {
+  Diagnostic diagnostic = PlainDiagnostic(finding, stream, lines);
+  diagnostic.detail = DetailOf(finding);
+  diagnostic.rule = RowOf(finding.kind).rule;
   return diagnostic;
 }
 

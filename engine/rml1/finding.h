@@ -74,6 +74,9 @@ class LineCounter {
   int line_ = 1;
 };
 
+// Code, severity and place alone.
+Diagnostic PlainDiagnostic(const Finding& finding, std::string_view stream, LineCounter& lines);
+
 // With line and column where `stream` is known.
 Diagnostic ToDiagnostic(const Finding& finding, std::string_view stream, LineCounter& lines);
 

@@ -1,6 +1,7 @@
 #include "engine/rml1/rml1_family.h"
 
 #include <algorithm>
+#include <set>
 
 #include "engine/core/number_text.h"
 #include "engine/machine/shape.h"
@@ -39,7 +40,7 @@ Diagnostic Plain(ErrorCode code, std::string detail) {
           .fixes = {}};
 }
 
-// The diagnostics of one stream, as many as a translation holds.
+// The diagnostics of one stream: as many as a translation holds, and the kinds of the rest.
 class Findings final : public DeviceListener {
  public:
   Findings(const machine::SourceFile& file, bool advice, machine::Translation& translation)
@@ -47,7 +48,13 @@ class Findings final : public DeviceListener {
 
   void OnFinding(const Finding& finding) override {
     if (!Wants(RowOf(finding.kind).code)) return;
+    if (full()) return OnCounted(finding);
     Add(ToDiagnostic(finding, file_.bytes, lines_));
+  }
+
+  void OnCounted(const Finding& finding) override {
+    if (!Wants(RowOf(finding.kind).code)) return;
+    Count(PlainDiagnostic(finding, file_.bytes, lines_));
   }
 
   void AddAdvice(ErrorCode code, std::string detail, std::string rule, const SourceSpan& at,
@@ -57,19 +64,21 @@ class Findings final : public DeviceListener {
     diagnostic.rule = std::move(rule);
     diagnostic.where = lines_.At(file_.bytes, at.byte_offset, at.length);
     diagnostic.step = step;
+    if (full()) return Count(std::move(diagnostic));
     Add(std::move(diagnostic));
   }
 
  private:
-  bool Wants(ErrorCode code) {
-    if (!advice_ && Lookup(code).severity == Severity::kAdvice) return false;
-    if (translation_.diagnostics.size() < machine::kDiagnosticsMax) return true;
-    ++translation_.diagnostics_dropped;
-    return false;
-  }
+  bool Wants(ErrorCode code) const { return advice_ || Lookup(code).severity != Severity::kAdvice; }
+  bool full() const { return translation_.diagnostics.size() >= machine::kDiagnosticsMax; }
   void Add(Diagnostic diagnostic) {
     diagnostic.file = file_.name;
     translation_.diagnostics.push_back(std::move(diagnostic));
+  }
+
+  void Count(Diagnostic diagnostic) {
+    diagnostic.file = file_.name;
+    translation_.diagnostics_dropped.Add(diagnostic);
   }
 
   const machine::SourceFile& file_;
@@ -77,6 +86,16 @@ class Findings final : public DeviceListener {
   machine::Translation& translation_;
   LineCounter lines_;
 };
+
+// What is no stream at all is shown by one finding of each kind: more say nothing else.
+void TellKindsOnce(machine::Translation& translation) {
+  std::set<ErrorCode> told;
+  std::erase_if(translation.diagnostics, [&](const Diagnostic& finding) {
+    if (told.insert(finding.code).second) return false;
+    translation.diagnostics_dropped.Add(finding);
+    return true;
+  });
+}
 
 // Runs a stream through a device at once, whatever time its actions would take.
 class StreamReading {
@@ -140,7 +159,7 @@ class StreamReading {
     } else if (action.kind == Action::Kind::kPause) {
       const CommandPlace& place = device_.command();
       if (pauses_ == 0) first_pause_ = place;
-      if (++pauses_ > kPausesMax) return;
+      ++pauses_;
       findings_.AddAdvice(ErrorCode::kRml1PausedAtEnd, "the machine waits for its resume key here",
                           "RML1-3C.08", {.length = 3, .byte_offset = place.offset},
                           static_cast<int>(place.number));
@@ -162,9 +181,6 @@ class StreamReading {
         return 0.0;
     }
   }
-
-  // As the device does with advice of its own.
-  static constexpr std::uint64_t kPausesMax = 1000;
 
   const Profile& profile_;
   Findings& findings_;
@@ -233,6 +249,7 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
   const double foreign_percent = reading.device().foreign_percent();
   if (foreign_percent > kForeignShareMax_percent && !options.forced) {
     translation.figures = reading.Figures();
+    TellKindsOnce(translation);
     translation.diagnostics.insert(
         translation.diagnostics.begin(),
         Plain(ErrorCode::kRml1NoProgram,

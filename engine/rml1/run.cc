@@ -45,6 +45,13 @@ class MillRun::Listener final : public DeviceListener {
     run_.observer_.OnDiagnostic(state.now, diagnostic);
   }
 
+  void OnCounted(const Finding& finding) override {
+    State& state = run_.state_;
+    Diagnostic diagnostic = PlainDiagnostic(finding, run_.stream(), state.lines);
+    diagnostic.program = run_.setup_.main_program;
+    run_.observer_.OnCounted(state.now, diagnostic);
+  }
+
   void OnLost(const Carriage::LostLine& line) override {
     const State& state = run_.state_;
     run_.observer_.OnLost({.at = state.now,

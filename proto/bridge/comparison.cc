@@ -48,7 +48,7 @@ machine::FileForm FormOf(const machine::MachineFamily& family, const ComparedPro
 std::optional<std::string> ObjectOf(const machine::MachineFamily& family,
                                     const ComparedProgram& program,
                                     const machine::Parameters& parameters,
-                                    std::vector<Diagnostic>& found, std::uint64_t& dropped) {
+                                    std::vector<Diagnostic>& found, UntoldFindings& dropped) {
   const machine::FileForm form = FormOf(family, program);
   if (form == machine::FileForm::kObject) return std::string(*program.bytes);
   machine::CompiledProgram compiled =

@@ -39,7 +39,7 @@ struct ComparisonOutcome {
   v1::DiffProgramsResponse response;
   // Findings of the program before and of the one after; errors alone stop.
   std::array<std::vector<Diagnostic>, 2> diagnostics;
-  std::array<std::uint64_t, 2> dropped{};
+  std::array<UntoldFindings, 2> dropped{};
 };
 
 // Errors: ObjectCorrupt (7034), those of a comparison of streams and of MakeParameters;

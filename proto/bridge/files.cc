@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "engine/core/letters.h"
@@ -81,9 +82,10 @@ Status ReadParts(const std::string& path, std::int64_t limit,
                    {}};
     }
   }
-  // A directory opens but cannot be read.
-  if (std::ferror(file.get()) != 0) return Error{ErrorCode::kCellFileUnreadable, path, {}};
-  return {};
+  if (std::ferror(file.get()) == 0) return {};
+  std::error_code ignored;
+  const bool is_folder = std::filesystem::is_directory(path, ignored);  // it opens all the same
+  return Error{ErrorCode::kCellFileUnreadable, is_folder ? path + " is a directory" : path, {}};
 }
 
 Result<std::string> ReadFile(const std::string& path, std::int64_t limit) {

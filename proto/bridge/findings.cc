@@ -138,6 +138,25 @@ void SetSpan(const SourceSpan& where, v1::SourcePlace& place) {
   if (where.byte_offset >= 0) place.set_byte_offset(where.byte_offset);
 }
 
+v1::SourcePlace PlaceOf(const Diagnostic& diagnostic) {
+  v1::SourcePlace place;
+  place.set_file(Utf8(diagnostic.file));
+  place.set_program(diagnostic.program);
+  place.set_step(diagnostic.step);
+  SetSpan(diagnostic.where, place);
+  return place;
+}
+
+template <class Message>
+void AddUntold(const UntoldFindings& untold, Message& message) {
+  message.set_diagnostics_dropped(static_cast<std::int64_t>(untold.count()));
+  message.clear_gathered();
+  for (const auto& [code, kind] : untold.kinds()) *message.add_gathered() = bridge::ToProto(kind);
+}
+
+// An error travels in a header of a few kilobytes.
+constexpr int kGatheredInErrorMax = 24;
+
 }  // namespace
 
 std::string Utf8(const std::string& text) {
@@ -183,11 +202,7 @@ v1::Diagnostic ToProto(const Diagnostic& diagnostic) {
   message.set_count(1);
   message.set_verdict(ToProto(diagnostic.judged));
   if (diagnostic.at) message.set_time_s(ToSeconds(*diagnostic.at));
-  v1::SourcePlace& place = *message.mutable_place();
-  place.set_file(Utf8(diagnostic.file));
-  place.set_program(diagnostic.program);
-  place.set_step(diagnostic.step);
-  SetSpan(diagnostic.where, place);
+  *message.mutable_place() = PlaceOf(diagnostic);
   for (const Fix& fix : diagnostic.fixes) {
     v1::TextFix& made = *message.add_fixes();
     made.set_byte_offset(fix.byte_offset);
@@ -197,19 +212,36 @@ v1::Diagnostic ToProto(const Diagnostic& diagnostic) {
   return message;
 }
 
-v1::GatheredFindings Gathered(const Diagnostic& first, const Diagnostic& last,
-                              std::uint64_t count) {
-  const CatalogueEntry& entry = Lookup(first.code);
+v1::GatheredFindings ToProto(const GatheredFindings& gathered) {
+  const CatalogueEntry& entry = Lookup(gathered.code);
   v1::GatheredFindings message;
-  message.set_code(CodeText(first.code));
-  message.set_symbol(ConstantName(first.code));
-  message.set_severity(SeverityToProto(first.severity));
+  message.set_code(CodeText(gathered.code));
+  message.set_symbol(ConstantName(gathered.code));
+  message.set_severity(SeverityToProto(gathered.severity));
   message.set_message(std::string(entry.when));
   message.set_advice(std::string(entry.advice));
-  message.set_count(static_cast<std::int64_t>(count));
-  *message.mutable_first() = ToProto(first).place();
-  *message.mutable_last() = ToProto(last).place();
+  message.set_count(static_cast<std::int64_t>(gathered.count));
+  *message.mutable_first() = PlaceOf(gathered.first);
+  *message.mutable_last() = PlaceOf(gathered.last);
+  message.set_verdict(ToProto(gathered.judged));
   return message;
+}
+
+void SetUntold(const UntoldFindings& untold, v1::Findings& message) { AddUntold(untold, message); }
+
+void SetUntold(const UntoldFindings& untold, v1::RunReport& message) { AddUntold(untold, message); }
+
+void SetUntold(const UntoldFindings& untold, v1::ErrorDetail& message) {
+  AddUntold(untold, message);
+  if (message.gathered_size() > kGatheredInErrorMax)
+    message.mutable_gathered()->DeleteSubrange(kGatheredInErrorMax,
+                                               message.gathered_size() - kGatheredInErrorMax);
+  for (v1::GatheredFindings& kind : *message.mutable_gathered()) {
+    kind.clear_message();
+    kind.clear_advice();
+    kind.mutable_first()->clear_file();
+    kind.mutable_last()->clear_file();
+  }
 }
 
 v1::Figure ToProto(const machine::Figure& figure) {
@@ -297,22 +329,23 @@ v1::ErrorExplanation Explain(const CatalogueEntry& entry) {
   return message;
 }
 
-v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std::uint64_t dropped,
+v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics,
+                        const UntoldFindings& dropped,
                         const std::vector<machine::Figure>& figures) {
   v1::Findings message;
   message.set_ok(ok);
   for (const Diagnostic& diagnostic : diagnostics) *message.add_diagnostics() = ToProto(diagnostic);
-  message.set_diagnostics_dropped(static_cast<std::int64_t>(dropped));
+  SetUntold(dropped, message);
   for (const machine::Figure& figure : figures) *message.add_figures() = ToProto(figure);
   return message;
 }
 
 v1::Findings FindingsOf(const simulation::CheckedProgram& check,
                         const machine::Judgement& judgement) {
+  UntoldFindings dropped = check.translation.diagnostics_dropped;
+  dropped.Add(check.motion.findings_dropped);
   v1::Findings message =
-      FindingsOf(check.ok(), check.translation.diagnostics,
-                 check.translation.diagnostics_dropped + check.motion.findings_dropped,
-                 check.translation.figures);
+      FindingsOf(check.ok(), check.translation.diagnostics, dropped, check.translation.figures);
   for (const Diagnostic& diagnostic : check.motion.findings)
     *message.add_diagnostics() = ToProto(diagnostic);
   const auto cut_short = check.motion.cut_short.find(check.slot);
@@ -400,7 +433,7 @@ std::string ErrorText(const Error& error) {
 }
 
 google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics,
-                                std::uint64_t dropped) {
+                                const UntoldFindings& dropped) {
   const CatalogueEntry& entry = Lookup(error.code);
   google::rpc::Status status;
   status.set_code(RpcCode(error.code));
@@ -428,7 +461,7 @@ google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic
     }
     *detail.add_diagnostics() = ToProto(diagnostic);
   }
-  detail.set_diagnostics_dropped(static_cast<std::int64_t>(dropped));
+  SetUntold(dropped, detail);
   status.add_details()->PackFrom(detail);
   return status;
 }

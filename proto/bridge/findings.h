@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/core/diagnostic.h"
+#include "engine/core/untold_findings.h"
 #include "engine/machine/family.h"
 
 namespace google::rpc {
@@ -28,8 +29,13 @@ class RunReport;
 namespace rmlcell::bridge {
 
 v1::Diagnostic ToProto(const Diagnostic& diagnostic);
-// `count` findings of one kind, of which the first and the last are known.
-v1::GatheredFindings Gathered(const Diagnostic& first, const Diagnostic& last, std::uint64_t count);
+v1::GatheredFindings ToProto(const GatheredFindings& gathered);
+// Those that a message does not list: their number, and their kinds. The message is Findings, a
+// RunReport or an ErrorDetail.
+void SetUntold(const UntoldFindings& untold, v1::Findings& message);
+void SetUntold(const UntoldFindings& untold, v1::RunReport& message);
+// Of an error, which must be short, code, number and places of the first kinds.
+void SetUntold(const UntoldFindings& untold, v1::ErrorDetail& message);
 // Text from programs and file names may hold any bytes; protobuf strings must be UTF-8. What is not
 // becomes
 // "?".
@@ -50,8 +56,8 @@ void SetMachine(const machine::MachineUsed& machine, v1::DiffProgramsResponse& m
 v1::ErrorExplanation Explain(const CatalogueEntry& entry);
 
 // The findings of a translation or a transfer.
-v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std::uint64_t dropped,
-                        const std::vector<machine::Figure>& figures);
+v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics,
+                        const UntoldFindings& dropped, const std::vector<machine::Figure>& figures);
 
 // The findings of a check: of the translation, then of the motion, with what is judged of them.
 v1::Findings FindingsOf(const simulation::CheckedProgram& check,
@@ -67,7 +73,7 @@ int RpcCode(ErrorCode code);
 // Status with ErrorInfo (reason = constant name, domain "rmlcell") and our ErrorDetail, which
 // carries the findings when there are any.
 google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics = {},
-                                std::uint64_t dropped = 0);
+                                const UntoldFindings& dropped = {});
 
 // "OPT-E348: radius is 0; give PATH HOLE a radius above zero". Of a request that is wrong the
 // detail alone: "CELL-E9003: 'foo' is no tool: write flat:3".

@@ -300,7 +300,7 @@ v1::RunReport ToProto(const simulation::RunReport& report,
     diagnostic = ToProto(finding.diagnostic);
     diagnostic.set_count(static_cast<std::int64_t>(finding.count));
   }
-  message.set_diagnostics_dropped(static_cast<std::int64_t>(report.findings_dropped));
+  SetUntold(report.findings_dropped, message);
   for (const simulation::SlowMove& move : report.slow_moves)
     *message.add_slow_moves() = ToProto(move);
   message.set_slow_moves_dropped(static_cast<std::int64_t>(report.slow_moves_dropped));
@@ -324,7 +324,8 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   return message;
 }
 
-void AddFindingsOfText(const std::vector<Diagnostic>& findings, v1::RunReport& report) {
+void AddFindingsOfText(const std::vector<Diagnostic>& findings, const UntoldFindings& untold,
+                       v1::RunReport& report) {
   const auto place_of = [](const v1::Diagnostic& finding) {
     const v1::SourcePlace& place = finding.place();
     return std::tuple(finding.code(), place.line(), place.column());
@@ -336,6 +337,14 @@ void AddFindingsOfText(const std::vector<Diagnostic>& findings, v1::RunReport& r
   for (const Diagnostic& finding : findings) {
     v1::Diagnostic message = ToProto(finding);
     if (!found.contains(place_of(message))) *report.add_diagnostics() = std::move(message);
+  }
+  std::set<std::string> counted;  // what the run makes of the text, too, it counts itself
+  for (const v1::GatheredFindings& kind : report.gathered()) counted.insert(kind.code());
+  for (const auto& [code, kind] : untold.kinds()) {
+    if (counted.contains(CodeText(code))) continue;
+    *report.add_gathered() = ToProto(kind);
+    report.set_diagnostics_dropped(report.diagnostics_dropped() +
+                                   static_cast<std::int64_t>(kind.count));
   }
 }
 

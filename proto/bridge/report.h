@@ -19,7 +19,8 @@ v1::TraceRecord ToProto(const simulation::TraceRecord& record);
 
 // What was found in the text, behind what the run found. A mill finds the same again at the same
 // place when it runs: that is told once.
-void AddFindingsOfText(const std::vector<Diagnostic>& findings, v1::RunReport& report);
+void AddFindingsOfText(const std::vector<Diagnostic>& findings, const UntoldFindings& untold,
+                       v1::RunReport& report);
 
 // Where a run is, without the job's name.
 v1::JobProgress ToProto(const machine::RunState& state, std::uint64_t steps);

@@ -87,8 +87,9 @@ class LinkMaterial {
   v1::Findings Findings() {
     const bool good = !HasErrors(findings_);
     if (findings_.size() > machine::kDiagnosticsMax) {
-      dropped_ += findings_.size() - machine::kDiagnosticsMax;
-      findings_.resize(machine::kDiagnosticsMax);
+      const auto kept = findings_.begin() + machine::kDiagnosticsMax;
+      std::for_each(kept, findings_.end(), [this](const Diagnostic& one) { dropped_.Add(one); });
+      findings_.erase(kept, findings_.end());
     }
     return bridge::FindingsOf(good, findings_, dropped_, {});
   }
@@ -119,7 +120,7 @@ class LinkMaterial {
         tools_.Compile({.name = program.file_name(), .bytes = program.content()}, parameters_,
                        {.advice = false, .inch = inch});
     if (compiled.ok) objects_[slot] = std::move(compiled.object);
-    dropped_ += compiled.diagnostics_dropped;
+    dropped_.Add(compiled.diagnostics_dropped);
     for (Diagnostic& finding : compiled.diagnostics) {
       finding.program = slot;
       findings_.push_back(std::move(finding));
@@ -132,7 +133,7 @@ class LinkMaterial {
   std::map<int, const v1::ProgramText*> sources_;  // of the request, not compiled yet
   std::map<int, std::string> objects_;
   std::vector<Diagnostic> findings_;
-  std::uint64_t dropped_ = 0;
+  UntoldFindings dropped_;
 };
 
 }  // namespace
@@ -335,7 +336,7 @@ ProgramResult<v1::DiffProgramsResponse> MemoryTools::Diff(const v1::DiffPrograms
       }
       wrong.diagnostics.push_back(std::move(finding));
     }
-    wrong.dropped += made->dropped[i];
+    wrong.dropped.Add(made->dropped[i]);
   }
   return wrong;
 }

@@ -67,9 +67,19 @@ ProgramError FirstError(const machine::Translation& translation) {
     }
   }
   const std::uint64_t more =
-      errors - std::min<std::size_t>(errors, 1) + translation.diagnostics_dropped;
+      errors - std::min<std::size_t>(errors, 1) + translation.diagnostics_dropped.count();
   if (more > 0) wrong.error.detail += " (and " + std::to_string(more) + " more)";
   return wrong;
+}
+
+// With the verdict of a check, where the text tells all that a check knows: what moves is not run
+// to be stored.
+v1::Findings FindingsWhenStored(simulation::CheckedProgram& check) {
+  if (!check.family->info().checked_by_running)
+    return bridge::FindingsOf(check, simulation::JudgeCheck(check));
+  const machine::Translation& translation = check.translation;
+  return bridge::FindingsOf(true, translation.diagnostics, translation.diagnostics_dropped,
+                            translation.figures);
 }
 
 machine::Translation TranslateFor(const machine::MachineFamily& family,
@@ -182,16 +192,19 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
     found.file = BaseName(put.file_name);
     translation.diagnostics.push_back(std::move(found));
   }
-  v1::Findings findings = bridge::FindingsOf(true, translation.diagnostics,
-                                             translation.diagnostics_dropped, translation.figures);
+  simulation::CheckedProgram check{.family = &family,
+                                   .machine = parameters->Used(),
+                                   .slot = place->slot,
+                                   .translation = std::move(translation)};
+  v1::Findings findings = FindingsWhenStored(check);
   storage::ProgramWrite write{.slot = place->slot,
                               .name = put.title.empty() ? TitleFrom(put.file_name) : put.title,
-                              .object = std::move(translation.object),
+                              .object = std::move(check.translation.object),
                               .source = {},
                               .source_name = is_object ? std::string() : BaseName(put.file_name),
                               .expected = *expected};
   // A stream is its own object: kept once.
-  if (translation.as_it_came) {
+  if (check.translation.as_it_came) {
     write.object = std::move(put.bytes);
   } else if (!is_object && write.object != put.bytes) {
     write.source = std::move(put.bytes);

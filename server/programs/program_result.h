@@ -7,6 +7,7 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/result.h"
+#include "engine/core/untold_findings.h"
 
 namespace rmlcell::server {
 
@@ -14,7 +15,7 @@ namespace rmlcell::server {
 struct ProgramError {
   Error error;
   std::vector<Diagnostic> diagnostics;
-  std::uint64_t dropped = 0;
+  UntoldFindings dropped{};
 };
 
 template <class T>
@@ -22,9 +23,9 @@ struct ProgramResult {
   std::optional<T> value;
   ProgramError error{};  // when there is no value
 
-  ProgramResult(T made) : value(std::move(made)) {}               // NOLINT: implicit
-  ProgramResult(Error wrong) : error{std::move(wrong), {}, 0} {}  // NOLINT: implicit
-  ProgramResult(ProgramError wrong) : error(std::move(wrong)) {}  // NOLINT: implicit
+  ProgramResult(T made) : value(std::move(made)) {}                // NOLINT: implicit
+  ProgramResult(Error wrong) : error{std::move(wrong), {}, {}} {}  // NOLINT: implicit
+  ProgramResult(ProgramError wrong) : error(std::move(wrong)) {}   // NOLINT: implicit
   explicit operator bool() const { return value.has_value(); }
 };
 

@@ -11,7 +11,8 @@
 namespace rmlcell::server {
 namespace {
 
-v1::Findings FindingsOf(const std::vector<Diagnostic>& findings, std::uint64_t dropped = 0) {
+v1::Findings FindingsOf(const std::vector<Diagnostic>& findings,
+                        const UntoldFindings& dropped = {}) {
   return bridge::FindingsOf(!HasErrors(findings), findings, dropped, {});
 }
 

@@ -125,7 +125,7 @@ bool IsFor(const v1::Project& project, const machine::MachineFamily& family) {
 // What is wrong with a project by itself: its definitions, to the families that it is for (OPT-3.01
 // to 3.08).
 std::optional<ProgramError> FindFault(const v1::Project& project) {
-  if (const Status good = CheckParts(project); !good) return ProgramError{good.error(), {}, 0};
+  if (const Status good = CheckParts(project); !good) return ProgramError{good.error(), {}, {}};
   std::vector<Diagnostic> found;
   for (const machine::MachineFamily* family : families::Families()) {
     if (!IsFor(project, *family)) continue;
@@ -137,7 +137,7 @@ std::optional<ProgramError> FindFault(const v1::Project& project) {
       std::ranges::find_if(found, [](const Diagnostic& d) { return IsError(d.severity); });
   if (first == found.end()) return std::nullopt;
   Error error{first->code, first->detail, {}};
-  return ProgramError{std::move(error), std::move(found), 0};
+  return ProgramError{std::move(error), std::move(found), {}};
 }
 
 Result<v1::Project> ProjectOf(const storage::ProjectRecord& record) {
@@ -196,6 +196,20 @@ const v1::ProjectProgram* FindProgram(const v1::Project& project, int slot) {
       project.programs(),
       [&](const v1::ProjectProgram& program) { return program.slot() == slot; });
   return found == project.programs().end() ? nullptr : &*found;
+}
+
+// The first error of a transfer stands for all; its findings go along.
+ProgramError Refused(const machine::TransferPlan& plan, const machine::MachineFamily& family) {
+  ProgramError wrong{.error = {family.info().no_source, {}, {}},
+                     .diagnostics = plan.diagnostics,
+                     .dropped = plan.diagnostics_dropped};
+  const auto first = std::ranges::find_if(plan.diagnostics,
+                                          [](const Diagnostic& d) { return IsError(d.severity); });
+  if (first != plan.diagnostics.end()) {
+    wrong.error = {first->code, "program " + std::to_string(first->program) + ": " + first->detail,
+                   first->where};
+  }
+  return wrong;
 }
 
 }  // namespace
@@ -318,20 +332,10 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
   machine::TransferPlan plan =
       family->PlanTransfer(BundleOf(*project), *parameters,
                            {.insert_missing_definitions = request.insert_missing_definitions()});
-  if (!plan.ok) {
-    ProgramError wrong{.error = {family->info().no_source, {}, {}},
-                       .diagnostics = plan.diagnostics};
-    const auto first = std::ranges::find_if(
-        plan.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
-    if (first != plan.diagnostics.end()) {
-      wrong.error = {first->code,
-                     "program " + std::to_string(first->program) + ": " + first->detail,
-                     first->where};
-    }
-    return wrong;
-  }
+  if (!plan.ok) return Refused(plan, *family);
   v1::TransferProjectResponse response;
-  *response.mutable_findings() = bridge::FindingsOf(true, plan.diagnostics, 0, {});
+  *response.mutable_findings() =
+      bridge::FindingsOf(true, plan.diagnostics, plan.diagnostics_dropped, {});
   std::vector<storage::ProgramWrite> writes;
   for (machine::TransferPlan::Program& program : plan.programs) {
     const v1::ProjectProgram* source = FindProgram(*project, program.slot);

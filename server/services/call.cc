@@ -15,7 +15,7 @@ constexpr std::size_t kErrorTextMax = 1000;
 }  // namespace
 
 grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics,
-                          std::uint64_t dropped) {
+                          UntoldFindings dropped) {
   std::vector<Diagnostic> shown = diagnostics;
   Error shortened = error;
   if (shortened.detail.size() > kErrorTextMax) {
@@ -25,7 +25,7 @@ grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& dia
   google::rpc::Status rich = bridge::ToRpcStatus(shortened, shown, dropped);
   while (rich.ByteSizeLong() > kDetailsMax && !shown.empty()) {
     const std::size_t keep = shown.size() / 2;
-    dropped += shown.size() - keep;
+    for (std::size_t i = keep; i < shown.size(); ++i) dropped.Add(shown[i]);
     shown.resize(keep);
     rich = bridge::ToRpcStatus(shortened, shown, dropped);
   }

@@ -11,7 +11,7 @@ namespace rmlcell::server {
 
 // The status with google.rpc.Status as its details; findings of a program go along.
 grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics = {},
-                          std::uint64_t dropped = 0);
+                          UntoldFindings dropped = {});
 inline grpc::Status ToGrpcStatus(const ProgramError& wrong) {
   return ToGrpcStatus(wrong.error, wrong.diagnostics, wrong.dropped);
 }

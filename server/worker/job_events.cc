@@ -1,5 +1,7 @@
 #include "server/worker/job_events.h"
 
+#include <utility>
+
 #include "engine/simulation/report/trace.h"
 #include "proto/bridge/findings.h"
 
@@ -94,19 +96,11 @@ void JobEvents::OnMessage(SimTime at, const machine::Place&, std::string_view te
 // The first places of a kind at once: whoever watches sees that something is wrong. More of them
 // would only push the rest out of sight.
 void JobEvents::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
-  const std::string place =
-      std::to_string(diagnostic.program) + "/" + std::to_string(diagnostic.step) + "/" +
-      std::to_string(diagnostic.where.line) + "/" + std::to_string(diagnostic.where.column);
-  Kind& kind = kinds_[diagnostic.code];
-  if (kind.places.size() < kPlacesMax ? !kind.places.insert(place).second
-                                      : kind.places.contains(place))
-    return;
-  if (kind.gathered > 0 || kind.places.size() > kToldOfKindMax) {
-    if (kind.gathered++ == 0) kind.first = diagnostic;
-    kind.last = diagnostic;
-    kind.last_at = at;
-    return;
-  }
+  const FindingPlace place{diagnostic.program, diagnostic.step, diagnostic.where.line,
+                           diagnostic.where.column};
+  std::set<FindingPlace>& places = places_[diagnostic.code];
+  if (places.size() < kPlacesMax ? !places.insert(place).second : places.contains(place)) return;
+  if (places.size() > kToldOfKindMax) return rest_.Add(diagnostic, at);
   v1::JobEvent event;
   event.set_virtual_time_ns(at.count());
   *event.mutable_diagnostic() = bridge::ToProto(diagnostic);
@@ -114,13 +108,12 @@ void JobEvents::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
 }
 
 void JobEvents::TellRest() {
-  for (auto& [code, kind] : kinds_) {
-    if (kind.gathered == 0) continue;
+  const UntoldFindings rest = std::exchange(rest_, {});
+  for (const auto& [code, kind] : rest.kinds()) {
     v1::JobEvent event;
     event.set_virtual_time_ns(kind.last_at.count());
-    *event.mutable_gathered() = bridge::Gathered(kind.first, kind.last, kind.gathered);
+    *event.mutable_gathered() = bridge::ToProto(kind);
     Tell(std::move(event));
-    kind.gathered = 0;
   }
 }
 

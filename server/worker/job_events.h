@@ -5,7 +5,9 @@
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
 
+#include "engine/core/untold_findings.h"
 #include "engine/machine/observer.h"
 #include "rmlcell/v1/worker.pb.h"
 
@@ -29,6 +31,10 @@ class JobEvents final : public machine::RunObserver {
                  int program) override;
   void OnMessage(SimTime at, const machine::Place& place, std::string_view text) override;
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
+  void OnCounted(SimTime at, const Diagnostic& diagnostic) override { rest_.Add(diagnostic, at); }
+
+  // Findings that nobody told singly.
+  void AddUntold(const UntoldFindings& untold) { rest_.Add(untold); }
 
   void Tell(v1::JobEvent event);
   // At the end of a run: of each kind of finding what was not told singly.
@@ -36,21 +42,17 @@ class JobEvents final : public machine::RunObserver {
   void Flush();
 
  private:
-  // Findings of one code.
-  struct Kind {
-    std::set<std::string> places;  // at most kPlacesMax of them: the same place is told once
-    std::uint64_t gathered = 0;    // at further places
-    SimTime last_at{0};
-    Diagnostic first;
-    Diagnostic last;
-  };
+  // Program, step, line, column.
+  using FindingPlace = std::tuple<int, int, int, int>;
   static constexpr std::size_t kPlacesMax = 1'000;
 
   std::function<void(const v1::WorkerEvents&)> send_;
   v1::WorkerEvents batch_;
   std::int64_t count_ = 0;
   bool cut_ = false;
-  std::map<ErrorCode, Kind> kinds_;
+  // By code, at most kPlacesMax of each: the same place is told once.
+  std::map<ErrorCode, std::set<FindingPlace>> places_;
+  UntoldFindings rest_;
 };
 
 }  // namespace rmlcell::server

@@ -102,7 +102,10 @@ class Attempt {
       *report.add_diagnostics() = bridge::ToProto(diagnostic);
       events_.OnDiagnostic(diagnostic.at.value_or(SimTime(0)), diagnostic);
     }
-    report.set_diagnostics_dropped(static_cast<std::int64_t>(made.diagnostics_dropped));
+    UntoldFindings untold = made.diagnostics_dropped;
+    machine::MarkJudged(judgement, untold);
+    bridge::SetUntold(untold, report);
+    events_.AddUntold(untold);
     const auto first = std::ranges::find_if(
         made.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
     outcome_ = v1::Outcome();
@@ -136,10 +139,11 @@ class Attempt {
     if (!check) return Refuse(check.error());
     machine::Translation& translation = check->translation;
     for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = slot;
+    translation.diagnostics_dropped.ForEachPlace([&](Diagnostic& place) { place.program = slot; });
     const machine::Judgement judgement = simulation::JudgeCheck(*check);
-    simulation::PreparedRun found{
-        .diagnostics = std::move(translation.diagnostics),
-        .diagnostics_dropped = translation.diagnostics_dropped + check->motion.findings_dropped};
+    simulation::PreparedRun found{.diagnostics = std::move(translation.diagnostics),
+                                  .diagnostics_dropped = translation.diagnostics_dropped};
+    found.diagnostics_dropped.Add(check->motion.findings_dropped);
     found.diagnostics.insert(found.diagnostics.end(), check->motion.findings.begin(),
                              check->motion.findings.end());
     std::string motion_check;
@@ -212,12 +216,11 @@ class Attempt {
         simulation::Begin(family, std::move(*made->setup), std::move(products));
     if (!begun) return Refuse(begun.error());
     const Stop stop = JobDrive(lease_, output_, std::move(drive)).Run(*begun);
-    return stop == Stop::kNone ? TellRun(*begun, std::move(made->diagnostics), *variables)
-                               : EndOf(stop);
+    return stop == Stop::kNone ? TellRun(*begun, *std::move(made), *variables) : EndOf(stop);
   }
 
   // What came of a run that is over, besides what went out while it ran.
-  End TellRun(simulation::BegunRun& begun, std::vector<Diagnostic> found_before,
+  End TellRun(simulation::BegunRun& begun, simulation::PreparedRun before,
               const std::vector<std::string>& variables) {
     const simulation::RunReport report = begun.simulation->Finish();
     std::map<std::string, std::string> values;
@@ -232,8 +235,9 @@ class Attempt {
     const simulation::MillingRecorder* milling = begun.recorder->milling();
     if (milling == nullptr) begun.recorder.reset();
     v1::RunReport message = bridge::ToProto(report, values);
-    machine::MarkJudged(report.judgement, found_before);
-    bridge::AddFindingsOfText(found_before, message);
+    machine::MarkJudged(report.judgement, before.diagnostics);
+    machine::MarkJudged(report.judgement, before.diagnostics_dropped);
+    bridge::AddFindingsOfText(before.diagnostics, before.diagnostics_dropped, message);
     outcome_ = message.outcome();
     return SendProducts(message, picture, milling);
   }

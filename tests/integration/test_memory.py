@@ -35,6 +35,16 @@ def zigzag(size):
     yield "PU0,0;!MC0;"
 
 
+def strays(lines):
+    """Motions in all directions, most of them far beyond the travel, each with a speed of its own."""
+    yield "IN;PA;!PZ-100,200;VS10;!VZ5;!MC1;PU100,100;\n"
+    place = 1
+    for _ in range(lines):
+        place = place * 48271 % 2147483647
+        yield f"Z{place % 41000},{place // 41 % 42000 - 6000},{-(place // 977 % 5000)};V{place // 7 % 50 + 5};\n"
+    yield "PU0,0;!MC0;\n"
+
+
 def gcode(size):
     """The same to and fro in G-code."""
     yield "G21 G90\nM3 S6000\nG0 Z2\nG1 Z-0.5 F300\n"
@@ -76,6 +86,14 @@ class Memory(InFolder):
                 more = ["--profile", "srm-20"]
                 least = self.peak(*words, self.short, *more)
                 self.assertLess(self.peak(*words, self.long, *more) - least, BOUND)
+
+    # Each way beyond the travel is a finding.
+    def test_findings_without_end(self):
+        strays_short, strays_long = self.stream("few.rml", strays(10)), self.stream("strays.rml", strays(1_000_000))
+        for words in (["check"], ["simulate"], ["simulate", "--toolpath", self.folder / "a.path"]):
+            with self.subTest(words):
+                least = self.peak(*words, strays_short, "--profile", "srm-20")
+                self.assertLess(self.peak(*words, strays_long, "--profile", "srm-20") - least, BOUND)
 
     def test_tools_that_write(self):
         short_gcode = self.stream("short.nc", gcode(100))

@@ -11,6 +11,8 @@ from command import InFolder, ask
 STROKES = "\n".join(["^DF;!MC1;V10;F10;!PZ-100,200;"] +
                     [f"PU18000,{y};PD23320,{y};PU;" for y in range(0, 4000, 200)] + ["!MC0;"]) + "\n"
 GOOD = "^DF;!MC1;V5;F10;!PZ-100,200;PU0,0;PD1000,0;PU0,0;!MC0;"
+# One on each line from the second on, to and fro at 30 mm beyond the travel.
+MANY = "^DF;!MC1;V10;F10;!PZ-100,200;PU0,0;\n" + "PD23320,0;\nPD23320,10;\n" * 1500 + "PU0,0;!MC0;\n"
 MINE = "family = 'rml1'\nprofile = 'srm-20'\n[parameters]\nX_MAX = 100\n"
 
 
@@ -167,6 +169,37 @@ class Local(InFolder):
             self.assertIn("Example", done.stdout, verb)
 
 
+    # 3,000 ways beyond the travel: five are told, and the others once, to the last one.
+    def test_findings_beyond_a_thousand_are_counted_by_kind(self):
+        part = self.file("many.rml", MANY)
+        for verb in ("check", "simulate"):
+            told = [line for line in ask(verb, part).stdout.splitlines()
+                    if "RML1-E8002" in line and line[:1] != " " and not line.startswith("verdict")]
+            self.assertEqual(told[-1], "and 2995 more RML1-E8002, lines 7 to 3001", verb)
+            self.assertEqual(len(told), 6, told)
+            found = json.loads(ask(verb, part, "--json").stdout)
+            self.assertEqual(len(found["diagnostics"]) + int(found["diagnosticsDropped"]), 3000)
+            [rest] = found["gathered"]
+            self.assertEqual((rest["code"], rest["count"], rest["first"]["line"], rest["last"]["line"], rest["verdict"]),
+                             ("RML1-E8002", "2000", 1002, 3001, "VERDICT_BAD"))
+        self.assertIn(">3000</text>", ask("simulate", part, "--svg", "-").stdout)
+        explained = ask("rml1", "explain", part).stdout
+        self.assertEqual(explained.count("BAD RML1-E8002"), 3000)
+        self.assertNotIn("advice RML1", explained)
+
+    def test_a_directory_is_called_one(self):
+        done = ask("check", self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("is a directory", done.stderr)
+        self.assertIn("is a directory", ask("check", self.folder, "--family", "rml1").stderr)
+
+    def test_gcode_given_as_a_stream_is_told_in_a_few_lines(self):
+        part = self.file("gcode.rml", "G21 G90\nG0 Z5\nG0 X10 Y10\nM3 S5000\nG1 Z-1 F100\nG1 X20 F200\nG0 Z5\nM5\n")
+        lines = [line for line in ask("check", part).stdout.splitlines() if re.match(r".*gcode.rml:.* RML1-E", line)]
+        codes = [re.search(r"RML1-E\d+", line).group() for line in lines]
+        self.assertEqual(len(codes), len(set(codes)), lines)
+
+
 class Stored(WithCell, InFolder):
     def test_bytes_that_are_no_program_are_refused_in_a_line_or_two(self):
         noise = os.urandom(60_000)
@@ -207,6 +240,25 @@ class Stored(WithCell, InFolder):
         self.assertEqual([d["place"]["line"] for d in json.loads(report)["diagnostics"]], list(range(2, 22)))
         self.assertEqual((json.loads(report)["profile"], json.loads(report)["profileNamed"]), ("srm-20", True))
         self.assertIn("BAD RML1-E8002", self.cell.command("report", number).stdout)
+
+    def test_put_and_jobs_count_beyond_a_thousand_and_judge(self):
+        part = self.file("many.rml", MANY)
+        done = self.cell.command("put", "mill-1", 82, part)
+        self.assertIn("\nand 2995 more RML1-E8002, lines 7 to 3001\n", done.stdout)
+        self.assertIn("\nverdict: BAD\n  ", done.stdout)
+        self.assertIn("machines/mill-1/programs/82 stored: many, object ", done.stdout)
+        self.assertLess(done.stdout.count("\n"), 12)
+        self.assertNotIn("advice RML1", done.stdout)
+        for kind in ([], ["--kind", "check"]):
+            job = self.cell.command("submit", "mill-1", part, *kind, "--watch", check=False)
+            self.assertIn("and 2995 more RML1-E8002, lines 7 to 3001: ", job.stdout, kind)
+            number = re.search(r"jobs/(\d+)", job.stdout + job.stderr).group(1)
+            self.assertIn("\nand 2995 more RML1-E8002, lines 7 to 3001\n", self.cell.command("report", number).stdout)
+        forced = self.folder / "noise.rml"
+        forced.write_bytes(bytes(127 + byte % 128 for byte in os.urandom(200_000)))
+        done = self.cell.command("put", "mill-1", 83, forced, "--force")
+        self.assertLess(done.stdout.count("\n"), 40)
+        self.assertIn("\nverdict: BAD\n", done.stdout)
 
     def test_a_check_job_tells_its_machine(self):
         job = self.cell.command("submit", "mill-1", self.file("far.rml", STROKES), "--kind", "check", "--watch", check=False)

@@ -36,11 +36,11 @@ Compilation Compile(std::string_view text, std::string_view file, const CompileO
     }
   }
   result.ok = findings.error_count() == 0;
-  result.diagnostics_dropped = findings.dropped();
   result.diagnostics = findings.Take(text, file);
+  result.diagnostics_dropped = findings.dropped();
   std::vector<AllowedFinding> allowed =
       Silence(program,
-              {.tell_idle = options.advice && result.ok && result.diagnostics_dropped == 0,
+              {.tell_idle = options.advice && result.ok && result.diagnostics_dropped.empty(),
                .with_contours = options.further_advice != nullptr,
                .file = file},
               result.diagnostics);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/result.h"
+#include "engine/core/untold_findings.h"
 #include "engine/optimo/language/program.h"
 
 // Source to object and back (optimo.md 1.1, B.6).
@@ -30,7 +31,7 @@ struct Compilation {
   std::string object;                   // empty when not ok
   Module module;                        // checked; complete only when ok
   std::vector<Diagnostic> diagnostics;  // in order of place
-  std::uint64_t diagnostics_dropped = 0;
+  UntoldFindings diagnostics_dropped{};
   std::vector<int> step_lines;          // as LinesOfSteps; only when asked for and ok
   std::vector<AllowedFinding> allowed;  // alike: what comments allow
 };

@@ -14,7 +14,11 @@ void Findings::AddAs(Severity severity, ErrorCode code, Place place, std::string
                      std::string_view rule, std::vector<Fix> fixes) {
   if (IsError(severity)) ++errors_;
   if (full()) {
-    ++dropped_;
+    Diagnostic counted{.code = code, .severity = severity};
+    counted.where.byte_offset = place.offset;
+    counted.where.length = place.length;
+    counted.step = place.step;
+    dropped_.Add(counted);
     return;
   }
   Diagnostic& diagnostic = found_.emplace_back();
@@ -44,6 +48,15 @@ std::vector<Diagnostic> Findings::Take(std::string_view text, std::string_view f
     diagnostic.where.line = line;
     diagnostic.where.column = static_cast<int>(offset - line_begin) + 1;
   }
+  dropped_.ForEachPlace([&](Diagnostic& place) {
+    place.file = file;
+    if (place.where.byte_offset < 0) return;
+    const std::string_view before =
+        text.substr(0, static_cast<std::size_t>(place.where.byte_offset));
+    const std::size_t line_end = before.rfind('\n');  // none: npos, which is one before 0
+    place.where.line = static_cast<int>(std::ranges::count(before, '\n')) + 1;
+    place.where.column = static_cast<int>(before.size() - (line_end + 1)) + 1;
+  });
   return std::exchange(found_, {});
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/core/diagnostic.h"
+#include "engine/core/untold_findings.h"
 
 namespace rmlcell::optimo {
 
@@ -16,7 +17,7 @@ struct Place {
 };
 
 // Collects what there is to say about one text; keeps the first `limit` findings and counts the
-// rest.
+// rest by kind.
 class Findings {
  public:
   explicit Findings(std::size_t limit = 1000) : limit_(limit) {}
@@ -29,7 +30,8 @@ class Findings {
   bool full() const { return found_.size() >= limit_; }
   // Errors so far, those that were not kept included.
   std::uint64_t error_count() const { return errors_; }
-  std::uint64_t dropped() const { return dropped_; }
+  // Those that were not kept; behind Take with lines and columns.
+  const UntoldFindings& dropped() const { return dropped_; }
 
   // In order of place, with lines and columns of `text`, named `file`. Empties the collection.
   std::vector<Diagnostic> Take(std::string_view text, std::string_view file);
@@ -38,7 +40,7 @@ class Findings {
   std::size_t limit_;
   std::vector<Diagnostic> found_;
   std::uint64_t errors_ = 0;
-  std::uint64_t dropped_ = 0;
+  UntoldFindings dropped_;
 };
 
 }  // namespace rmlcell::optimo

@@ -354,6 +354,9 @@ void Planner::CompileDraft(Draft& draft) {
     found.program = draft.from->slot;
     Add(std::move(found));
   }
+  compiled.diagnostics_dropped.ForEachPlace(
+      [&](Diagnostic& place) { place.program = draft.from->slot; });
+  plan_.diagnostics_dropped.Add(compiled.diagnostics_dropped);
   if (!compiled.ok) return;
   plan_.programs.push_back(
       {draft.from->slot, std::move(draft.text), std::move(compiled.object), draft.own_text});

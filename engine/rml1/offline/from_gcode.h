@@ -6,6 +6,7 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/result.h"
+#include "engine/core/untold_findings.h"
 #include "engine/machine/bytes.h"
 #include "engine/machine/parameters.h"
 #include "engine/rml1/offline/byte_sink.h"
@@ -20,7 +21,7 @@ struct FromGcodeOptions {
 struct FromGcodeOutcome {
   bool ok = false;                   // false: what the sink was given is worth nothing
   std::vector<Diagnostic> findings;  // at most machine::kDiagnosticsMax
-  std::uint64_t findings_dropped = 0;
+  UntoldFindings findings_dropped;
   // The word of the first motion below Z 0 that leads beyond the travel: where CheckWork
   // (work_check.h) finds something to say.
   std::optional<SourceSpan> beyond_travel;

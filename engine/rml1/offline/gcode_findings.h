@@ -13,14 +13,15 @@ namespace rmlcell::rml1 {
 class GcodeFindings {
  public:
   void Add(ErrorCode code, std::string detail, const SourceSpan& where) {
+    Diagnostic finding{.code = code,
+                       .severity = Lookup(code).severity,
+                       .detail = std::move(detail),
+                       .where = where};
     if (outcome_.findings.size() == machine::kDiagnosticsMax) {
-      ++outcome_.findings_dropped;
+      outcome_.findings_dropped.Add(finding);
       return;
     }
-    outcome_.findings.push_back({.code = code,
-                                 .severity = Lookup(code).severity,
-                                 .detail = std::move(detail),
-                                 .where = where});
+    outcome_.findings.push_back(std::move(finding));
   }
   void Refuse(ErrorCode code, std::string detail, const SourceSpan& where) {
     outcome_.ok = false;
@@ -36,7 +37,7 @@ class GcodeFindings {
   }
 
   bool ok() const { return outcome_.ok; }
-  bool full() const { return outcome_.findings_dropped > 0; }
+  bool full() const { return !outcome_.findings_dropped.empty(); }
   FromGcodeOutcome Take() { return std::move(outcome_); }
 
  private:

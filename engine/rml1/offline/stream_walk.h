@@ -78,6 +78,7 @@ class StreamWalk final : private DeviceListener {
 
  private:
   void OnFinding(const Finding& finding) override;
+  void OnCounted(const Finding& finding) override { OnFinding(finding); }  // of a phrase of its own
   void OnReading(const Reading& reading, const CommandReader& reader, std::int64_t offset) override;
   void OnAbort(std::int64_t offset) override;
 

@@ -67,7 +67,7 @@ class GcodeWriter final : public PhraseListener {
   // For who makes the G-code, and in it for who reads it.
   void Note(Diagnostic finding) {
     if (notes_.findings.size() == machine::kDiagnosticsMax) {
-      ++notes_.findings_dropped;
+      notes_.findings_dropped.Add(finding);
       return;
     }
     std::string comment = CodeText(finding.code) + " in the stream: " + finding.detail;

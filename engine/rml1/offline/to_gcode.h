@@ -5,6 +5,7 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/result.h"
+#include "engine/core/untold_findings.h"
 #include "engine/machine/bytes.h"
 #include "engine/machine/parameters.h"
 #include "engine/rml1/offline/byte_sink.h"
@@ -17,7 +18,7 @@ namespace rmlcell::rml1 {
 // G-code, too, as a comment in its place.
 struct ToGcodeNotes {
   std::vector<Diagnostic> findings;
-  std::uint64_t findings_dropped = 0;
+  UntoldFindings findings_dropped;
 };
 
 // What a machine with these parameters does with a stream, as G-code (docs/gcode.md): the motions

@@ -45,7 +45,10 @@ bool IsFinite(const MachinePoint& p) {
 }  // namespace
 
 PathSketch::PathSketch(const machine::MachineShape& shape, std::size_t elements_max)
-    : shape_(shape), elements_max_(elements_max) {}
+    : shape_(shape), elements_max_(elements_max) {
+  // What is not used of it is no memory yet, and a list that grows is there twice while it does.
+  elements_.reserve(elements_max + 1);
+}
 
 void PathSketch::Add(const machine::MotionDone& done) {
   const motion::PathPiece& path = done.motion->path;
@@ -116,6 +119,7 @@ void PathSketch::AddLost(const machine::LostWay& way) {
   lost_mm_ += (way.to - way.from).norm();
   lost_box_.Add(way.from);
   lost_box_.Add(way.to);
+  if (lost_.empty()) lost_.reserve(kLostMax + 1);
   lost_.push_back({.from = way.from, .to = way.to, .lost = true});
   if (lost_.size() > kLostMax) ThinTo(kLostMax / 2, lost_box_, lost_, lost_tolerance_mm_);
 }

@@ -65,7 +65,9 @@ class PageWriter {
     const double panels_bottom = kPictureHeader + kPageMargin + layout_.height + kRulerBelow;
     const double height = std::max(column_bottom, panels_bottom) + kPictureFooter + 6.0;
     DrawFooter(height);
-    return Opening(height) + body_ + "</svg>\n";
+    body_ += "</svg>\n";
+    body_.insert(0, Opening(height));
+    return std::move(body_);
   }
 
  private:
@@ -226,7 +228,7 @@ class PageWriter {
     }
     row("steps", std::to_string(report_.steps_executed));
     if (!report_.findings.empty()) {
-      row("findings", std::to_string(report_.findings.size() + report_.findings_dropped));
+      row("findings", std::to_string(report_.findings.size() + report_.findings_dropped.count()));
     }
     return y;
   }

@@ -73,7 +73,8 @@ class PathDrawing {
       : strokes_(strokes), panel_(panel), depth_(depth) {
     clip_ = {panel.rect.x - kClipMargin_px, panel.rect.y - kClipMargin_px,
              panel.rect.width + 2 * kClipMargin_px, panel.rect.height + 2 * kClipMargin_px};
-    elements_.reserve(strokes.elements.size());
+    // All at once: a list that grows is there twice while it does.
+    elements_.reserve(strokes.elements.size() + strokes.lost.size());
     for (const SketchElement& element : strokes.elements) Project(element);
     for (const SketchElement& element : strokes.lost) Project(element);
   }

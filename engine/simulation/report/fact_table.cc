@@ -325,7 +325,7 @@ void Table::AddFindings() {
         return Line(text);
       });
   Add("findings_dropped", "", "findings at other places, past the thousandth",
-      [](const RunReport& r) { return Count(r.findings_dropped); });
+      [](const RunReport& r) { return Count(r.findings_dropped.count()); });
 }
 
 void Table::AddProducts() {

@@ -12,7 +12,7 @@ void FindingList::Add(SimTime at, const Diagnostic& diagnostic) {
     return;
   }
   if (findings_.size() >= machine::kDiagnosticsMax) {
-    ++dropped_;
+    dropped_.Add(diagnostic, at);
     return;
   }
   index_.emplace(key, findings_.size());

@@ -10,13 +10,15 @@
 namespace rmlcell::simulation {
 
 // The findings of a run, in order of first occurrence. A loop that warns a million times gives one
-// finding with a count; findings past machine::kDiagnosticsMax are counted only.
+// finding with a count; of findings past machine::kDiagnosticsMax each kind is counted.
 class FindingList {
  public:
   void Add(SimTime at, const Diagnostic& diagnostic);
+  // One of a kind that was told so often that its text is not made any more.
+  void Count(SimTime at, const Diagnostic& diagnostic) { dropped_.Add(diagnostic, at); }
 
   const std::vector<Finding>& findings() const { return findings_; }
-  std::uint64_t dropped() const { return dropped_; }
+  const UntoldFindings& dropped() const { return dropped_; }
 
  private:
   // The same finding: code, program, step, line and column (a stream may be one line). Its detail
@@ -25,7 +27,7 @@ class FindingList {
 
   std::vector<Finding> findings_;
   std::map<Key, std::size_t> index_;
-  std::uint64_t dropped_ = 0;
+  UntoldFindings dropped_;
 };
 
 }  // namespace rmlcell::simulation

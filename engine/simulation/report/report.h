@@ -367,7 +367,7 @@ struct RunReport : ScopeFigures {
   WorkFigures rest;                // of all other steps
 
   std::vector<Finding> findings;  // in order of first occurrence; at most machine::kDiagnosticsMax
-  std::uint64_t findings_dropped = 0;
+  UntoldFindings findings_dropped;
   std::vector<SlowMove> slow_moves;       // in order of first occurrence
   std::uint64_t slow_moves_dropped = 0;   // at further steps, past kReportedSlowMovesMax
   std::vector<AxisViolation> violations;  // in order of first occurrence

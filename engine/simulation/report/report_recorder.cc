@@ -259,6 +259,10 @@ void ReportRecorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   findings_.Add(at, diagnostic);
 }
 
+void ReportRecorder::OnCounted(SimTime at, const Diagnostic& diagnostic) {
+  findings_.Count(at, diagnostic);
+}
+
 void ReportRecorder::Finish(SimTime at) {
   time_.Leave(at, Now());
   time_.Close();

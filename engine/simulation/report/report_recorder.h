@@ -30,6 +30,7 @@ class ReportRecorder final : public machine::RunObserver {
   void OnResume(SimTime at, const machine::Place& place) override;
   void OnViolation(const machine::TravelViolation& violation) override;
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
+  void OnCounted(SimTime at, const Diagnostic& diagnostic) override;
 
   // Once, when the run is over: what nothing was told about since is standstill.
   void Finish(SimTime at);

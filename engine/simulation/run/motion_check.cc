@@ -251,7 +251,7 @@ Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
       AddReason(std::move(reason), check.reasons);
     }
     if (run.for_sure) all.Add(run.ended_at, DiagnosticOf(run.outcome));
-    check.findings_dropped += run.listener.findings().dropped();
+    check.findings_dropped.Add(run.listener.findings().dropped());
   };
   for (const int slot : slots) {
     if (!called.contains(slot)) take(slot);
@@ -260,7 +260,7 @@ Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
     if (!covered.contains(slot)) take(slot);
   }
   for (const Finding& finding : all.findings()) check.findings.push_back(finding.diagnostic);
-  check.findings_dropped += all.dropped();
+  check.findings_dropped.Add(all.dropped());
   return check;
 }
 

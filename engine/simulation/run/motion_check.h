@@ -43,7 +43,7 @@ struct CutShort {
 
 struct MotionCheck {
   std::vector<Diagnostic> findings;  // each with program, step, line and time
-  std::uint64_t findings_dropped = 0;
+  UntoldFindings findings_dropped;
   std::map<int, CutShort> cut_short;  // by slot; programs that were followed to their end are not
   // What the figures of the runs are judged, and errors of motion that hang on something that the
   // check had to assume (they are warnings among the findings). Each is about the program of its

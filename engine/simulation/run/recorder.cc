@@ -92,6 +92,9 @@ void Recorder::OnLost(const machine::LostWay& way) {
 void Recorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   state_->All([&](machine::RunObserver& to) { to.OnDiagnostic(at, diagnostic); });
 }
+void Recorder::OnCounted(SimTime at, const Diagnostic& diagnostic) {
+  state_->All([&](machine::RunObserver& to) { to.OnCounted(at, diagnostic); });
+}
 void Recorder::OnAssumed(const machine::Assumed& assumed) {
   state_->All([&](machine::RunObserver& to) { to.OnAssumed(assumed); });
 }
@@ -145,6 +148,7 @@ RunReport Recorder::Report(const machine::Run& run) const {
   report.judgement = Judge(report);
   for (Finding& finding : report.findings)
     finding.diagnostic.judged = machine::JudgedBy(report.judgement, finding.diagnostic.code);
+  machine::MarkJudged(report.judgement, report.findings_dropped);
   return report;
 }
 

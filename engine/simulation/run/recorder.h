@@ -47,6 +47,7 @@ class Recorder final : public machine::RunObserver {
   void OnLost(const machine::LostWay& way) override;
   void OnViolation(const machine::TravelViolation& violation) override;
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
+  void OnCounted(SimTime at, const Diagnostic& diagnostic) override;
   void OnAssumed(const machine::Assumed& assumed) override;
 
   // Once, before the run goes on: where the machine stands.

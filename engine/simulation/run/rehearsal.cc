@@ -32,14 +32,16 @@ bool AddProgram(const machine::MachineFamily& family, const MemoryProgram& progr
     machine::Translation translation =
         TranslateProgram(family, setup.parameters, program, {.advice = main, .source = true});
     for (Diagnostic& diagnostic : translation.diagnostics) {
+      diagnostic.program = program.slot;
       if (prepared.diagnostics.size() >= machine::kDiagnosticsMax) {
-        ++prepared.diagnostics_dropped;
+        prepared.diagnostics_dropped.Add(diagnostic);
         continue;
       }
-      diagnostic.program = program.slot;
       prepared.diagnostics.push_back(std::move(diagnostic));
     }
-    prepared.diagnostics_dropped += translation.diagnostics_dropped;
+    translation.diagnostics_dropped.ForEachPlace(
+        [&](Diagnostic& place) { place.program = program.slot; });
+    prepared.diagnostics_dropped.Add(translation.diagnostics_dropped);
     if (!translation.ok) return false;
     TakeTranslation(std::move(translation), stored);
   }
@@ -188,7 +190,9 @@ machine::Judgement JudgementOf(const CheckedProgram& check) {
 machine::Judgement JudgeCheck(CheckedProgram& check) {
   machine::Judgement judgement = JudgementOf(check);
   MarkJudged(judgement, check.translation.diagnostics);
+  MarkJudged(judgement, check.translation.diagnostics_dropped);
   MarkJudged(judgement, check.motion.findings);
+  MarkJudged(judgement, check.motion.findings_dropped);
   return judgement;
 }
 

@@ -59,7 +59,7 @@ struct RunOptions {
 struct PreparedRun {
   std::optional<machine::RunSetup> setup{};
   std::vector<Diagnostic> diagnostics{};  // of every program that was translated, with its slot
-  std::uint64_t diagnostics_dropped = 0;
+  UntoldFindings diagnostics_dropped{};
 };
 
 // Errors: those of machine::MakeParameters: the request itself is wrong.

@@ -53,14 +53,12 @@ Result<BegunRun> Begin(const machine::MachineFamily& family, machine::RunSetup s
 
 Result<SimulationResult> Simulate(const machine::MachineFamily& family, machine::RunSetup setup,
                                   SimulationRequest request) {
-  const Result<BegunRun> begun = Begin(family, std::move(setup), std::move(request.products));
+  Result<BegunRun> begun = Begin(family, std::move(setup), std::move(request.products));
   if (!begun) return begun.error();
   const Recorder& recorder = *begun->recorder;
   const machine::Run& run = *begun->run;
   SimulationResult result;
   result.report = RunToEnd(*begun->simulation, request.options);
-  result.svg = recorder.Svg(result.report, request.picture);
-  result.plot = recorder.PlotSvg(result.report, request.plot);
   if (recorder.milling() != nullptr) {
     result.material = recorder.milling()->material();
     result.target = recorder.milling()->target();
@@ -70,6 +68,11 @@ Result<SimulationResult> Simulate(const machine::MachineFamily& family, machine:
   for (const std::string& name : request.variables) {
     if (auto value = run.ReadVariable(name)) result.variables[name] = *std::move(value);
   }
+  // What was run is over: a drawing takes its room.
+  begun->simulation.reset();
+  begun->run.reset();
+  result.svg = recorder.Svg(result.report, request.picture);
+  result.plot = recorder.PlotSvg(result.report, request.plot);
   return result;
 }
 

@@ -2,8 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "clients/cli/terminal.h"
+#include "proto/bridge/findings.h"
+#include "rmlcell/v1/program.pb.h"
+#include "rmlcell/v1/report.pb.h"
 #include "tests/clients/cli/cli_folder.h"
+#include "tests/engine/core/untold.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -19,7 +25,7 @@ Diagnostic Advice(SourceSpan where) {
           .where = where};
 }
 
-std::string Printed(const std::vector<Diagnostic>& findings, std::uint64_t dropped,
+std::string Printed(const std::vector<Diagnostic>& findings, const UntoldFindings& dropped,
                     std::string_view source) {
   const Told told = Hear([&] {
     PrintFindings(findings, dropped, source);
@@ -31,11 +37,11 @@ std::string Printed(const std::vector<Diagnostic>& findings, std::uint64_t dropp
 
 // clients/cli/findings_text.h: with the source line of each and a caret below it.
 TEST(FindingsText, ACaretStandsBelowThePlace) {
-  EXPECT_EQ(Printed({Advice({.line = 2, .column = 8, .length = 3})}, 0, kSource),
+  EXPECT_EQ(Printed({Advice({.line = 2, .column = 8, .length = 3})}, {}, kSource),
             "a.S:2:8: advice OPT-E7011: look here [OPT-2.01]\n"
             "  \tSPEED 200\n"
             "  \t      ^~~\n");
-  EXPECT_EQ(Printed({Advice({.line = 1, .column = 1, .length = 5})}, 0, kSource),
+  EXPECT_EQ(Printed({Advice({.line = 1, .column = 1, .length = 5})}, {}, kSource),
             "a.S:1:1: advice OPT-E7011: look here [OPT-2.01]\n"
             "  COORD ABSOL\n"
             "  ^~~~~\n");
@@ -43,7 +49,7 @@ TEST(FindingsText, ACaretStandsBelowThePlace) {
 
 // Bytes that are no UTF-8 are question marks, one each: the caret stays in its column.
 TEST(FindingsText, BytesThatAreNoTextAreNotPrinted) {
-  EXPECT_EQ(Printed({Advice({.line = 1, .column = 5, .length = 1})}, 0, "\xAB\xFF\x80 Q\n"),
+  EXPECT_EQ(Printed({Advice({.line = 1, .column = 5, .length = 1})}, {}, "\xAB\xFF\x80 Q\n"),
             "a.S:1:5: advice OPT-E7011: look here [OPT-2.01]\n"
             "  ??? Q\n"
             "      ^\n");
@@ -53,23 +59,24 @@ TEST(FindingsText, BytesThatAreNoTextAreNotPrinted) {
 TEST(FindingsText, WhatMakesAVerdictSaysSo) {
   Diagnostic bad = Advice({});
   bad.judged = Judged::kBad;
-  EXPECT_EQ(Printed({bad}, 0, {}), "a.S: BAD OPT-E7011: look here [OPT-2.01]\n");
+  EXPECT_EQ(Printed({bad}, {}, {}), "a.S: BAD OPT-E7011: look here [OPT-2.01]\n");
   bad.judged = Judged::kDoubtful;
-  EXPECT_EQ(Printed({bad}, 0, {}), "a.S: DOUBTFUL OPT-E7011: look here [OPT-2.01]\n");
+  EXPECT_EQ(Printed({bad}, {}, {}), "a.S: DOUBTFUL OPT-E7011: look here [OPT-2.01]\n");
 }
 
 TEST(FindingsText, WithoutALineThereIsNoCaret) {
   const std::string line = "a.S:2:8: advice OPT-E7011: look here [OPT-2.01]\n";
-  EXPECT_EQ(Printed({Advice({.line = 2, .column = 8, .length = 3})}, 0, {}), line);
-  EXPECT_EQ(Printed({Advice({.line = 9, .column = 1})}, 0, kSource),
+  EXPECT_EQ(Printed({Advice({.line = 2, .column = 8, .length = 3})}, {}, {}), line);
+  EXPECT_EQ(Printed({Advice({.line = 9, .column = 1})}, {}, kSource),
             "a.S:9:1: advice OPT-E7011: look here [OPT-2.01]\n");
-  EXPECT_EQ(Printed({Advice({})}, 0, kSource), "a.S: advice OPT-E7011: look here [OPT-2.01]\n");
+  EXPECT_EQ(Printed({Advice({})}, {}, kSource), "a.S: advice OPT-E7011: look here [OPT-2.01]\n");
 }
 
 TEST(FindingsText, EachHasItsOwnLineAndThoseLeftOutAreCounted) {
   Diagnostic error = Advice({.line = 3, .column = 1, .length = 4});
   error.severity = Severity::kCompile;
-  EXPECT_EQ(Printed({Advice({.line = 1, .column = 7}), error}, 12, kSource),
+  EXPECT_EQ(Printed({Advice({.line = 1, .column = 7}), error},
+                    Untold(12, ErrorCode::kNameUndeclared, 9), kSource),
             "a.S:1:7: advice OPT-E7011: look here [OPT-2.01]\n"
             "  COORD ABSOL\n"
             "        ^\n"
@@ -77,15 +84,55 @@ TEST(FindingsText, EachHasItsOwnLineAndThoseLeftOutAreCounted) {
             "use, or correct the word\n"
             "  STOP\n"
             "  ^~~~\n"
-            "and 12 more findings\n");
-  EXPECT_EQ(Printed({}, 0, kSource), "");
-  EXPECT_EQ(Printed({}, 1, kSource), "and 1 more findings\n");
+            "and 12 more OPT-E7011, lines 9 to 20\n");
+  EXPECT_EQ(Printed({}, {}, kSource), "");
+}
+
+// Those of a kind that were kept and not shown, and those that were not kept, are one number and
+// one extent.
+TEST(FindingsText, WhatWasKeptAndWhatWasNotAreToldTogether) {
+  std::vector<Diagnostic> findings;
+  for (int line = 1; line <= 7; ++line) findings.push_back(Advice({.line = line}));
+  std::string told;
+  for (int line = 1; line <= 5; ++line)
+    told += "a.S:" + std::to_string(line) + ": advice OPT-E7011: look here [OPT-2.01]\n";
+  EXPECT_EQ(Printed(findings, Untold(1000, ErrorCode::kNameUndeclared, 8), {}),
+            told + "and 1002 more OPT-E7011, lines 6 to 1007\n");
+}
+
+// A kind of which none was kept is told in a word, with the verdict that rests on it.
+TEST(FindingsText, AKindThatNobodyShowedIsNamed) {
+  UntoldFindings clipped = Untold(3, ErrorCode::kRml1Clipped, 5);
+  const std::string when(Lookup(ErrorCode::kRml1Clipped).when);
+  EXPECT_EQ(Printed({}, clipped, {}), "advice RML1-E8002: " + when + " (3 times, lines 5 to 7)\n");
+  clipped.Mark([](ErrorCode) { return Judged::kBad; });
+  EXPECT_EQ(Printed({}, clipped, {}), "BAD RML1-E8002: " + when + " (3 times, lines 5 to 7)\n");
+}
+
+// As the findings of a server: gathered by the same rule. One that does not tell the kinds of what
+// it left out tells their number.
+TEST(FindingsText, MessagesAreGatheredAlike) {
+  v1::Findings found;
+  for (int line = 1; line <= 7; ++line)
+    *found.add_diagnostics() = bridge::ToProto(Advice({.line = line}));
+  bridge::SetUntold(Untold(3, ErrorCode::kNameUndeclared, 8), found);
+  const auto ends_with = [](const std::string& text, const std::string& end) {
+    EXPECT_TRUE(text.ends_with(end)) << text;
+    EXPECT_EQ(std::ranges::count(text, '\n'), 5 + std::ranges::count(end, '\n')) << text;
+  };
+  ends_with(FindingsText(found), "and 5 more OPT-E7011, lines 6 to 10\n");
+  found.set_diagnostics_dropped(5);
+  ends_with(FindingsText(found), "and 5 more OPT-E7011, lines 6 to 10\nand 2 more findings\n");
+  v1::RunReport report;
+  *report.mutable_diagnostics() = found.diagnostics();
+  report.set_diagnostics_dropped(1);
+  ends_with(FindingsText(report), "and 2 more OPT-E7011, lines 6 to 7\nand 1 more finding\n");
 }
 
 TEST(FindingsText, ComplaintsGoToStandardError) {
   const std::vector<Diagnostic> findings = {Advice({.line = 2, .column = 2, .length = 5})};
   const Told told = Hear([&] {
-    ComplainOf(findings, 3, kSource);
+    ComplainOf(findings, Untold(3, ErrorCode::kNameUndeclared, 9), kSource);
     return 0;
   });
   EXPECT_EQ(told.output, "");
@@ -93,7 +140,7 @@ TEST(FindingsText, ComplaintsGoToStandardError) {
             "a.S:2:2: advice OPT-E7011: look here [OPT-2.01]\n"
             "  \tSPEED 200\n"
             "  \t^~~~~\n"
-            "and 3 more findings\n");
+            "and 3 more OPT-E7011, lines 9 to 11\n");
 }
 
 TEST(FindingsText, ARefusalSaysWhyAndGivesTheCodeOfWrongUse) {

@@ -488,7 +488,7 @@ TEST_F(Messages, TheLeastThatIsTold) {
   EXPECT_THAT(text, HasSubstr("and 1 more steps\n"));
   EXPECT_THAT(text, HasSubstr("peak speed    Z 0.5 (1 %)\n"));
   EXPECT_THAT(text, HasSubstr("peak accel.   Z 0.5\n"));
-  EXPECT_THAT(text, HasSubstr("and 1 more findings\n"));
+  EXPECT_THAT(text, HasSubstr("and 1 more finding\n"));
   v1::RunReport mill;
   mill.set_family("rml1");
   mill.mutable_total();

@@ -9,6 +9,7 @@
 #include "google/rpc/status.pb.h"
 #include "proto/bridge/findings.h"
 #include "tests/clients/cli/cli_folder.h"
+#include "tests/engine/core/untold.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -26,7 +27,7 @@ TEST(FullName, ANameIsTakenWithItsCollectionAndWithout) {
 
 // What a server makes of an error.
 grpc::Status StatusOf(const Error& error, const std::vector<Diagnostic>& findings = {},
-                      std::uint64_t dropped = 0) {
+                      const UntoldFindings& dropped = {}) {
   const google::rpc::Status rich = bridge::ToRpcStatus(error, findings, dropped);
   return {static_cast<grpc::StatusCode>(rich.code()), rich.message(), rich.SerializeAsString()};
 }
@@ -62,13 +63,18 @@ TEST(Refused, FindingsOfAProgramAreShownAndAreErrorsOfTheProgram) {
                                              .detail = "SPEDE",
                                              .file = "12.S",
                                              .where = {.line = 3, .column = 1}}};
-  const grpc::Status status = StatusOf({ErrorCode::kNameUndeclared, "has errors", {}}, findings, 5);
+  UntoldFindings untold = Untold(3, ErrorCode::kNameUndeclared, 7);
+  untold.Add(Untold(2, ErrorCode::kShortFly));
+  const grpc::Status status =
+      StatusOf({ErrorCode::kNameUndeclared, "has errors", {}}, findings, untold);
   const Told told = HearRefused(status);
   EXPECT_EQ(told.exit_code, 1);
   EXPECT_EQ(told.output, "");
   EXPECT_TRUE(told.errors.starts_with("rmlcell: 12.S:3:1: error OPT-E7011: SPEDE")) << told.errors;
+  // Three errors that did not fit into the answer, and two advices, which refuse nothing.
   EXPECT_THAT(told.errors,
-              HasSubstr("\nrmlcell: and 5 more findings; rmlcell check of the file tells them\n"));
+              HasSubstr("\nrmlcell: and 3 more OPT-E7011, lines 7 to 9\n"
+                        "rmlcell: and 2 more findings; rmlcell check of the file tells them\n"));
   EXPECT_EQ(HearRefused(status, true).exit_code, 1);
 }
 

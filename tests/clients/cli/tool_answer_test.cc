@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/clients/cli/cli_folder.h"
+#include "tests/engine/core/untold.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -112,19 +113,22 @@ TEST_F(ToolAnswerTest, WhatIsWrittenAlreadyIsNotWrittenAgain) {
 
 TEST_F(ToolAnswerTest, FindingsOfPeopleGoToStandardErrorAtOnce) {
   const Told told = Hear([&] {
-    plain.Found({FindingAt(2, Severity::kCompile)}, 7, "STOP\nSPEDE 20\n");
+    plain.Found({FindingAt(2, Severity::kCompile)}, Untold(7, ErrorCode::kNameUndeclared, 9),
+                "STOP\nSPEDE 20\n");
     return plain.Failed();
   });
   EXPECT_EQ(told.exit_code, 1);
   EXPECT_EQ(told.output, "");
   EXPECT_THAT(told.errors, HasSubstr("12.S:2:1: error OPT-E7011: SPEDE"));
-  EXPECT_THAT(told.errors, HasSubstr("\n  SPEDE 20\n  ^~~~~\nand 7 more findings\n"));
+  EXPECT_THAT(told.errors,
+              HasSubstr("\n  SPEDE 20\n  ^~~~~\nand 7 more OPT-E7011, lines 9 to 15\n"));
 }
 
 TEST_F(ToolAnswerTest, FindingsOfSeveralFilesStandInOneObject) {
   const Told told = Hear([&] {
-    as_json.Found({FindingAt(2, Severity::kAdvice)}, 3, "");
-    as_json.Found({FindingAt(5, Severity::kCompile), FindingAt(6, Severity::kAdvice)}, 4, "");
+    as_json.Found({FindingAt(2, Severity::kAdvice)}, Untold(3), "");
+    as_json.Found({FindingAt(5, Severity::kCompile), FindingAt(6, Severity::kAdvice)}, Untold(4),
+                  "");
     return as_json.Failed();
   });
   EXPECT_EQ(told.exit_code, 1);
@@ -143,7 +147,7 @@ TEST_F(ToolAnswerTest, FindingsOfSeveralFilesStandInOneObject) {
 // An answer with advice is good; findings say what stands in the way, not what came of it.
 TEST_F(ToolAnswerTest, AdviceStandsInNobodysWay) {
   const Told told = Hear([&] {
-    as_json.Found({FindingAt(2, Severity::kWarning)}, 0, "");
+    as_json.Found({FindingAt(2, Severity::kWarning)}, {}, "");
     return as_json.Deliver("x", "-", {});
   });
   EXPECT_EQ(told.exit_code, 0);

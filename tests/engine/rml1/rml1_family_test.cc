@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -159,21 +160,69 @@ TEST(Rml1Family, TellsFindingsWithTheirPlace) {
   EXPECT_EQ(found[3].detail, "0x9F begins no command");
 }
 
-// At most kDiagnosticsMax are listed, the rest is counted.
+// At most kDiagnosticsMax are listed; of the rest each kind is counted, to its last place.
 TEST(Rml1Family, BoundsItsDiagnostics) {
   const machine::Translation translation = TranslateText(std::string(10'000, '5'));
   EXPECT_EQ(translation.diagnostics.size(), machine::kDiagnosticsMax);
-  EXPECT_EQ(translation.diagnostics_dropped, 9'000U);
-  EXPECT_EQ(TranslateText(std::string(1000, '5')).diagnostics_dropped, 0U);
+  EXPECT_EQ(translation.diagnostics_dropped.count(), 9'000U);
+  EXPECT_TRUE(TranslateText(std::string(1000, '5')).diagnostics_dropped.empty());
 }
 
-// A check tells of the first 1000 pauses, as of every advice (RML1-9.06); each at its command.
+// Every kind by itself, however many there are: of 1500 clipped motions, one a line behind the
+// first, and of 120,000 bytes that are no command, which are more than the log of the device holds
+// (RML1-6.10), 1000 findings in all are kept.
+TEST(Rml1Family, CountsEachKindToItsLastPlace) {
+  std::string stream = "PA;!MC1;\n";
+  for (int k = 0; k < 1500; ++k) stream += k % 2 == 0 ? "PD0,-100;\n" : "PD10,-100;\n";
+  stream += std::string(120'000, '$');
+  stream += "\nPU0,0;$\n";
+  const machine::Translation translation =
+      Rml1Family().Translate({.name = "part.rml", .bytes = stream},
+                             machine::Parameters(Rml1Family().parameters()), {.forced = true});
+  ASSERT_EQ(translation.diagnostics.size(), machine::kDiagnosticsMax);
+  const auto kept = [&](ErrorCode code) {
+    return static_cast<std::uint64_t>(
+        std::ranges::count(translation.diagnostics, code, &Diagnostic::code));
+  };
+  const auto& kinds = translation.diagnostics_dropped.kinds();
+  const GatheredFindings& clipped = kinds.at(ErrorCode::kRml1Clipped);
+  EXPECT_EQ(clipped.count + kept(ErrorCode::kRml1Clipped), 1500U);
+  EXPECT_EQ(clipped.last.where.line, 1501);
+  const GatheredFindings& foreign = kinds.at(ErrorCode::kRml1UnknownCommand);
+  EXPECT_EQ(foreign.count + kept(ErrorCode::kRml1UnknownCommand), 120'001U);
+  EXPECT_EQ(foreign.first.where.line, 1502);
+  EXPECT_EQ(foreign.last.where.line, 1503);
+  EXPECT_EQ(foreign.last.where.column, 7);
+  EXPECT_EQ(kinds.at(ErrorCode::kRml1LogCut).count, 1U);
+}
+
+// What is no stream is shown by one finding of each kind behind the refusal; the others are
+// counted.
+TEST(Rml1Family, OfForeignTextEachKindIsToldOnce) {
+  const machine::Translation translation =
+      Rml1Family().Translate({.name = "part.rml",
+                              .bytes = "G21 G90\nG0 Z5\nG0 X10 Y10\nM3 S5000\nG1 Z-1 F100\n"
+                                       "G1 X20 F200\nG0 Z5\nM5\n"},
+                             *machine::MakeParameters(Rml1Family(), "srm-20", {}), {});
+  ASSERT_FALSE(translation.ok);
+  ASSERT_FALSE(translation.diagnostics.empty());
+  EXPECT_EQ(translation.diagnostics[0].code, ErrorCode::kRml1NoProgram);
+  std::set<ErrorCode> kinds;
+  for (const Diagnostic& finding : translation.diagnostics)
+    EXPECT_TRUE(kinds.insert(finding.code).second) << CodeText(finding.code);
+  EXPECT_GT(translation.diagnostics_dropped.count(), 0U);
+  for (const auto& [code, kind] : translation.diagnostics_dropped.kinds())
+    EXPECT_TRUE(kinds.contains(code)) << CodeText(code);
+}
+
+// A check tells of the first 1000 pauses and counts the rest, as of every advice (RML1-9.06); each
+// at its command.
 TEST(Rml1Family, BoundsWhatItTellsOfPauses) {
   std::string stream;
   for (int k = 0; k < 1005; ++k) stream += "!NR;";
   const machine::Translation translation = TranslateText(stream);
   ASSERT_EQ(translation.diagnostics.size(), 1000U);
-  EXPECT_EQ(translation.diagnostics_dropped, 0U);
+  EXPECT_EQ(translation.diagnostics_dropped.count(), 5U);
   const Diagnostic& second = translation.diagnostics[1];
   EXPECT_EQ(second.code, ErrorCode::kRml1PausedAtEnd);
   EXPECT_EQ(second.rule, "RML1-3C.08");

@@ -12,6 +12,7 @@
 #include "engine/simulation/picture/picture_page.h"
 #include "engine/simulation/picture/plot.h"
 #include "engine/simulation/verdict/verdict.h"
+#include "tests/engine/core/untold.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"
@@ -96,7 +97,7 @@ RunReport MillReport() {
   report.cut.Add(MachineVector{20, 20, -26});
   report.cut.Add(MachineVector{152.25, 90.125, -20});
   report.findings.resize(2);
-  report.findings_dropped = 3;
+  report.findings_dropped = Untold(3);
   return report;
 }
 
@@ -131,7 +132,7 @@ TEST(Drawing, MillFromAbove) {
 TEST(Drawing, MillFromTwoSides) {
   RunReport report = MillReport();
   report.findings.clear();
-  report.findings_dropped = 0;
+  report.findings_dropped = {};
   report.cut = {};
   report.tip.Add(MachineVector{10, 10, -26});
   report.tip.Add(MachineVector{152.25, 120, -15});

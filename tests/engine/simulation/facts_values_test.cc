@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/simulation/report/facts.h"
+#include "tests/engine/core/untold.h"
 
 // Which figure of a report stands under which key: every figure has a value of its own, so none can
 // stand for another.
@@ -319,7 +320,7 @@ TEST(FactsValues, Findings) {
   add(Severity::kAdvice, ErrorCode::kSpeedLimited, 3, 4);
   add(Severity::kProgram, ErrorCode::kHoleRadiusZero, 4, 1);
   add(Severity::kAlarm, ErrorCode::kShutterInterlock, 5, 5);
-  report.findings_dropped = 9;
+  report.findings_dropped = Untold(9);
   report.violations = {{.place = {.program = 45, .step = 3}, .axis = "X", .excess = 12.5},
                        {.place = {.program = 46, .step = 4}, .axis = "A", .excess = 0.5}};
   report.violations_dropped = 7;

@@ -40,10 +40,17 @@ TEST(FindingList, FindingsPastTheLimitAreCounted) {
   const int limit = static_cast<int>(machine::kDiagnosticsMax);
   for (int step = 1; step <= limit + 2; ++step) list.Add(SimTime(step), Warning(step));
   EXPECT_EQ(list.findings().size(), machine::kDiagnosticsMax);
-  EXPECT_EQ(list.dropped(), 2u);
+  EXPECT_EQ(list.dropped().count(), 2u);
   list.Add(SimTime(1), Warning(1));
   EXPECT_EQ(list.findings().front().count, 2u);
-  EXPECT_EQ(list.dropped(), 2u);
+  EXPECT_EQ(list.dropped().count(), 2u);
+  // Those that come without a text, too; by kind, to the last place.
+  list.Count(SimTime(5), Warning(limit + 9));
+  ASSERT_EQ(list.dropped().kinds().size(), 1u);
+  const GatheredFindings& rest = list.dropped().kinds().at(ErrorCode::kSpeedLimited);
+  EXPECT_EQ(rest.count, 3u);
+  EXPECT_EQ(rest.first.step, limit + 1);
+  EXPECT_EQ(rest.last.step, limit + 9);
 }
 
 }  // namespace

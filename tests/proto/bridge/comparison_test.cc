@@ -54,7 +54,7 @@ TEST(Comparison, EachChangeHasItsFields) {
   EXPECT_THAT(diff.steps(2).what(), ElementsAre("DELAY 1 -> DELAY 2"));
   EXPECT_EQ(diff.steps(2).target_moved_mm(), 0.0);
   EXPECT_TRUE(outcome.diagnostics[0].empty());
-  EXPECT_EQ(outcome.dropped[0] + outcome.dropped[1], 0U);
+  EXPECT_EQ(outcome.dropped[0].count() + outcome.dropped[1].count(), 0U);
 }
 
 TEST(Comparison, OfPathDataAndFlow) {
@@ -226,7 +226,7 @@ TEST(Comparison, ErrorsOfATextAreItsFindings) {
   }
   std::string many;
   for (int i = 0; i < 1500; ++i) many += "SPEED 101\n";
-  EXPECT_EQ(Compared("DELAY 1\n", many).dropped[1], 500U);
+  EXPECT_EQ(Compared("DELAY 1\n", many).dropped[1].count(), 500U);
 }
 
 TEST(Comparison, WhatIsNoProgramOfTheOptimo) {

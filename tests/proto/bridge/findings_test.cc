@@ -14,6 +14,7 @@
 #include "rmlcell/v1/common.pb.h"
 #include "rmlcell/v1/program.pb.h"
 #include "rmlcell/v1/report.pb.h"
+#include "tests/engine/core/untold.h"
 #include "tests/proto/bridge/message_text.h"
 
 namespace rmlcell::bridge {
@@ -166,9 +167,9 @@ TEST(FindingsMessage, OfATranslationAndItsMotion) {
   simulation::CheckedProgram check{
       .family = &family, .machine = parameters.Used(), .slot = 45, .translation = {.ok = true}};
   check.translation.diagnostics = {Whole()};
-  check.translation.diagnostics_dropped = 3;
+  check.translation.diagnostics_dropped = Untold(3, ErrorCode::kNameUndeclared, 20);
   check.translation.figures = {{.name = "steps", .unit = "", .value = 7.0}};
-  check.motion.findings_dropped = 4;
+  check.motion.findings_dropped = Untold(4, ErrorCode::kNameUndeclared, 30);
   check.motion.cut_short = {{45, {.text = "only up to step 2"}}};
   const auto found = [&] {
     const machine::Judgement judgement = simulation::JudgeCheck(check);
@@ -178,6 +179,11 @@ TEST(FindingsMessage, OfATranslationAndItsMotion) {
   EXPECT_TRUE(good.ok());
   EXPECT_EQ(good.diagnostics_size(), 1);
   EXPECT_EQ(good.diagnostics_dropped(), 7);
+  ASSERT_EQ(good.gathered_size(), 1);
+  EXPECT_EQ(good.gathered(0).code(), "OPT-E7011");
+  EXPECT_EQ(good.gathered(0).count(), 7);
+  EXPECT_EQ(good.gathered(0).first().line(), 20);
+  EXPECT_EQ(good.gathered(0).last().line(), 33);
   EXPECT_EQ(good.motion_check(), "only up to step 2");
   // Not followed to its end: what comes behind is not known.
   EXPECT_EQ(good.verdict(), v1::VERDICT_DOUBTFUL);
@@ -258,7 +264,8 @@ TEST(RpcStatus, CarriesCodeTextPlaceAndFindings) {
   // The place of the first error stands for all.
   Diagnostic second = Whole();
   second.where.line = 99;
-  ASSERT_TRUE(ToRpcStatus(error, {warning, Whole(), second}, 3).details(1).UnpackTo(&detail));
+  ASSERT_TRUE(
+      ToRpcStatus(error, {warning, Whole(), second}, Untold(3)).details(1).UnpackTo(&detail));
   EXPECT_EQ(detail.diagnostics_size(), 3);
   EXPECT_EQ(detail.diagnostics_dropped(), 3);
   EXPECT_EQ(detail.place().line(), 1);

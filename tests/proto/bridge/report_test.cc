@@ -6,6 +6,7 @@
 
 #include "rmlcell/v1/job.pb.h"
 #include "rmlcell/v1/report.pb.h"
+#include "tests/engine/core/untold.h"
 #include "tests/proto/bridge/message_text.h"
 
 // Every figure of a report has its field: each has a value of its own here.
@@ -135,6 +136,13 @@ TEST(ReportMessage, OfARunThatDidNothing) {
           "picture { complete: true } collisions: 'not modelled'");
 }
 
+const std::string kGathered = "diagnostics_dropped: 7 gathered { code: 'RML1-E8002' symbol: '" +
+                              std::string(ConstantName(ErrorCode::kRml1Clipped)) +
+                              "' severity: SEVERITY_ADVICE message: '" +
+                              std::string(Lookup(ErrorCode::kRml1Clipped).when) + "' advice: '" +
+                              std::string(Lookup(ErrorCode::kRml1Clipped).advice) +
+                              "' count: 7 first { line: 40 } last { line: 46 } } ";
+
 TEST(ReportMessage, EveryFigureHasItsField) {
   RunReport report;
   static_cast<simulation::ScopeFigures&>(report) = Scope();
@@ -163,7 +171,7 @@ TEST(ReportMessage, EveryFigureHasItsField) {
                                      .rule = "OPT-2.48"},
                       .first_at = Seconds(1),
                       .count = 6}};
-  report.findings_dropped = 7;
+  report.findings_dropped = Untold(7, ErrorCode::kRml1Clipped, 40);
   report.slow_moves = {{.place = {.program = 1, .step = 2},
                         .cause = simulation::SlowCause::kAxis,
                         .axis = "A",
@@ -204,7 +212,7 @@ TEST(ReportMessage, EveryFigureHasItsField) {
           "} } other_steps { " + kFigures + "} diagnostics { code: '" + CodeText(turn.code) +
           "' symbol: '" + std::string(ConstantName(turn.code)) +
           "' severity: SEVERITY_WARNING message: 'turns' advice: '" + std::string(turn.advice) +
-          "' rule: 'OPT-2.48' count: 6 place {} } diagnostics_dropped: 7 "
+          "' rule: 'OPT-2.48' count: 6 place {} } " + kGathered +
           "slow_moves { place { program: 1 step: 2 } cause: 'axis' axis: 'A' wanted_mm_s: 3 "
           "allowed_mm_s: 2 reached_mm_s: 1 count: 4 } slow_moves_dropped: 8 lookahead_starved: 12 "
           "violations { place { program: 1 step: 2 } axis: 'X' rotary: true excess: 0.5 "
@@ -327,11 +335,26 @@ TEST(ReportMessage, FindingsOfTheTextAreNotToldAgain) {
   *report.add_diagnostics() = ToProto(at(ErrorCode::kRml1Clipped, 0));
   AddFindingsOfText({at(ErrorCode::kRml1Clipped, 3), at(ErrorCode::kRml1Clipped, 4),
                      at(ErrorCode::kRml1LogCut, 3), at(ErrorCode::kRml1Clipped, 0)},
-                    report);
+                    {}, report);
   std::string told;
   for (const v1::Diagnostic& finding : report.diagnostics())
     told += finding.code() + "@" + std::to_string(finding.place().line()) + " ";
   EXPECT_EQ(told, "RML1-E8002@3 RML1-E8002@0 RML1-E8002@4 RML1-E8004@3 RML1-E8002@0 ");
+}
+
+// What there was no room for, too: a kind that the run counted is that of the text.
+TEST(ReportMessage, KindsOfTheTextAreNotCountedAgain) {
+  v1::RunReport report;
+  SetUntold(Untold(40, ErrorCode::kRml1Clipped, 7), report);
+  UntoldFindings of_text = Untold(40, ErrorCode::kRml1Clipped, 7);
+  of_text.Add(Untold(2, ErrorCode::kShortFly, 3));
+  AddFindingsOfText({}, of_text, report);
+  EXPECT_EQ(report.diagnostics_dropped(), 42);
+  ASSERT_EQ(report.gathered_size(), 2);
+  EXPECT_EQ(report.gathered(0).count(), 40);
+  EXPECT_EQ(report.gathered(1).code(), "OPT-E7314");
+  EXPECT_EQ(report.gathered(1).count(), 2);
+  EXPECT_EQ(report.gathered(1).last().line(), 4);
 }
 
 TEST(ReportMessage, WhatDidNotHappenIsNotThere) {

@@ -181,11 +181,19 @@ TEST(PrepareRun, FindingsOfEveryProgram) {
   std::vector<int> slots;
   for (const Diagnostic& d : made->diagnostics) slots.push_back(d.program);
   EXPECT_EQ(slots, (std::vector<int>{13, 12}));
-  EXPECT_EQ(made->diagnostics_dropped, 0U);
+  EXPECT_TRUE(made->diagnostics_dropped.empty());
   std::string many;
   for (int n = 0; n < 1500; ++n) many += "SPEDE 20\n";
   const auto most = Prepare(MemoryOf({Source(13, many), Source(12, many)}), {}, {});
-  EXPECT_EQ(most->diagnostics.size() + most->diagnostics_dropped, 3000U);
+  EXPECT_EQ(most->diagnostics.size() + most->diagnostics_dropped.count(), 3000U);
+  // The second program's last line is the last place of all, its slot being the lower one: the
+  // first 1000 of program 13 are kept, its last is the last by slot.
+  ASSERT_EQ(most->diagnostics_dropped.kinds().size(), 1U);
+  const GatheredFindings& rest = most->diagnostics_dropped.kinds().begin()->second;
+  EXPECT_EQ(rest.first.program, 12);
+  EXPECT_EQ(rest.first.where.line, 1);
+  EXPECT_EQ(rest.last.program, 13);
+  EXPECT_EQ(rest.last.where.line, 1500);
   EXPECT_EQ(most->diagnostics.size(), machine::kDiagnosticsMax);
 }
 

@@ -224,6 +224,26 @@ TEST_F(ProgramBookTest, SlotsHaveTheCodesOfTheirMachine) {
   EXPECT_EQ(CodeOf(programs.Get(Name(100, "none"))), ErrorCode::kCellUnknownMachine);
 }
 
+// Stored all the same, with the verdict of a check: the SRM-20 has 203.2 mm of X, of 204 mm that
+// are asked for 0.8 are not cut. What is run to be checked is not judged when it is stored.
+TEST_F(ProgramBookTest, AStreamIsStoredWithItsVerdict) {
+  const auto stored = programs.Store(
+      {.name = Name(7, "mill-1"),
+       .file_name = "far.rml",
+       .bytes = "IN;PA;!PZ-100,200;VS5;!VZ2;!MC1;PU100,100;PD20400,100;PU0,0;!MC0;"});
+  ASSERT_TRUE(stored);
+  const v1::Findings& found = stored.value->findings();
+  EXPECT_EQ(found.verdict(), v1::VERDICT_BAD);
+  ASSERT_GE(found.reasons_size(), 1);
+  EXPECT_EQ(found.reasons(0).code(), "RML1-E8002");
+  EXPECT_NEAR(found.reasons(0).amount(), 0.8, 1e-9);
+  ASSERT_EQ(found.diagnostics_size(), 1);
+  EXPECT_EQ(found.diagnostics(0).code(), "RML1-E8002");
+  EXPECT_EQ(found.diagnostics(0).verdict(), v1::VERDICT_BAD);
+  EXPECT_EQ(Must(programs.Get(Name(7, "mill-1"))).object_bytes(), 65);
+  EXPECT_EQ(Store(45, "SPEED 5\nSTOP\n").value->findings().verdict(), v1::VERDICT_UNSPECIFIED);
+}
+
 // A mill keeps the stream itself, and has no executables.
 TEST_F(ProgramBookTest, AStreamIsItsOwnObject) {
   const auto stored =

@@ -6,6 +6,7 @@
 #include "google/rpc/status.pb.h"
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/common.pb.h"
+#include "tests/engine/core/untold.h"
 
 namespace rmlcell::server {
 namespace {
@@ -30,7 +31,7 @@ std::vector<Diagnostic> Findings(std::size_t count) {
 
 TEST(CallStatus, HasCodeTextAndFindings) {
   const grpc::Status status =
-      ToGrpcStatus(Error{ErrorCode::kCellNotFound, "jobs/7", {}}, Findings(2), 3);
+      ToGrpcStatus(Error{ErrorCode::kCellNotFound, "jobs/7", {}}, Findings(2), Untold(3));
   EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(status.error_message(), bridge::ErrorText({ErrorCode::kCellNotFound, "jobs/7", {}}));
   const v1::ErrorDetail detail = DetailOf(status);
@@ -44,7 +45,7 @@ TEST(CallStatus, HasCodeTextAndFindings) {
 TEST(CallStatus, LongTextsAreCut) {
   const auto told = [](std::size_t size) {
     return DetailOf(ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, std::string(size, 'x'), {}},
-                                 {}, 0))
+                                 {}, {}))
         .message();
   };
   EXPECT_EQ(told(999), std::string(999, 'x'));
@@ -57,7 +58,8 @@ TEST(CallStatus, LongTextsAreCut) {
 TEST(CallStatus, ManyFindingsAreCutAndCounted) {
   const Error error{ErrorCode::kLiteralRange, "SPEED 101", {}};
   for (const std::size_t count : {std::size_t{10}, std::size_t{100}, std::size_t{1000}}) {
-    const grpc::Status status = ToGrpcStatus(error, Findings(count), 5);
+    const grpc::Status status =
+        ToGrpcStatus(error, Findings(count), Untold(5, ErrorCode::kLiteralRange));
     EXPECT_LE(status.error_details().size(), std::size_t{6} << 10) << count;
     const v1::ErrorDetail detail = DetailOf(status);
     EXPECT_GT(detail.diagnostics_size(), 0) << count;
@@ -67,7 +69,8 @@ TEST(CallStatus, ManyFindingsAreCutAndCounted) {
     // Twice as many would not have fitted.
     const auto told = static_cast<std::size_t>(detail.diagnostics_size());
     const std::size_t twice_bytes =
-        bridge::ToRpcStatus(error, Findings(told * 2), 5).ByteSizeLong();
+        bridge::ToRpcStatus(error, Findings(told * 2), Untold(5, ErrorCode::kLiteralRange))
+            .ByteSizeLong();
     EXPECT_TRUE(told == count || twice_bytes > std::size_t{6} << 10) << count;
   }
 }
@@ -77,7 +80,7 @@ TEST(CallStatus, AFindingThatDoesNotFitIsCounted) {
   std::vector<Diagnostic> findings = Findings(1);
   findings[0].detail = std::string(7 << 10, 'd');
   const v1::ErrorDetail detail =
-      DetailOf(ToGrpcStatus(Error{ErrorCode::kLiteralRange, {}, {}}, findings, 0));
+      DetailOf(ToGrpcStatus(Error{ErrorCode::kLiteralRange, {}, {}}, findings, {}));
   EXPECT_EQ(detail.diagnostics_size(), 0);
   EXPECT_EQ(detail.diagnostics_dropped(), 1);
 }
