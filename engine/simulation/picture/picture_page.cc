@@ -349,7 +349,8 @@ class PageWriter {
                "fill=\"#0b4fa8\" fill-opacity=\"0.25\" stroke=\"#0b4fa8\" stroke-width=\"1.4\"");
     y += height * scale + 18.0;
     const auto range = [](double low, double high) {
-      return TrimmedText(low, 1) + " to " + TrimmedText(high, 1);
+      const auto tenths = [](double mm) { return ShortestText(std::round(10.0 * mm) / 10.0); };
+      return tenths(low) + " to " + tenths(high);
     };
     AppendText(body_, {column_x_, y},
                "X " + range(travel.min.x(), travel.max.x()) + ", Y " +

@@ -293,12 +293,12 @@ struct MillingFigures {
   double fast_plunge_mm = 0.0;    // most that a way down took off nearly as fast as Z travels
   double fast_plunge_mm_s = 0.0;  // how fast that was
   machine::Place fast_plunge_place;
-  double pass_mm_s = 0.0;         // of the fastest motion across in material
-  double shank_depth_mm = 0.0;    // deepest that shank or holder went into material
-  machine::Place shank_place;     // where that was
-  double beside_mm = 0.0;         // way in the work with the tool far beside the block
-  machine::Place beside_place;    // where that began
-  double beside_x_low_mm = 0.0;   // how far it leads beyond each edge
+  double pass_mm_s = 0.0;        // of the fastest motion across in material
+  double shank_depth_mm = 0.0;   // deepest that shank or holder went into material
+  machine::Place shank_place;    // where that was
+  double beside_mm = 0.0;        // way in the work with the tool far beside the block
+  machine::Place beside_place;   // where that began
+  double beside_x_low_mm = 0.0;  // how far it leads beyond each edge
   double beside_x_high_mm = 0.0;
   double beside_y_low_mm = 0.0;
   double beside_y_high_mm = 0.0;

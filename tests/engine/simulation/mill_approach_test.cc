@@ -128,6 +128,18 @@ TEST(MillApproach, StrokesAlongTheSurfaceCutNothing) {
   EXPECT_EQ(FigureOf(pen, "skimmed_length"), 0.0);
 }
 
+TEST(MillApproach, AToolThatNeverCutsIsTold) {
+  const std::string nothing =
+      "DOUBTFUL; RML1-E8015 nothing is cut: the tool never goes below the surface";
+  // Along the surface with the spindle turning nothing is cut, either; 0.01 mm below it is.
+  const auto at = [](const std::string& z1) {
+    return "VS10;!VZ10;!PZ" + z1 + ",200;!MC1;PU100,100;PD200,100;PU0,0;!MC0;";
+  };
+  EXPECT_EQ(SaidOfApproach("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PU200,100;PU0,0;!MC0;"), nothing);
+  EXPECT_EQ(SaidOfApproach(at("0")), nothing);
+  EXPECT_EQ(SaidOfApproach(at("-1")), "GOOD");
+}
+
 // 190.02 mm from an origin at 10 are 0.02 mm beyond the travel of 200: from 9.98 on it fits. 199 mm
 // of work from 2 mm on fit from no origin, for none lies below 0.
 TEST(MillApproach, WorkBeyondTheTravelWantsAnotherOriginOrToMove) {

@@ -319,7 +319,7 @@ TEST(DrawPath, StrokesAlongTheSurfaceLookDifferentBesideCuts) {
   EXPECT_EQ(drawn.Group(1).substr(0, 16), "<g class=\"skim\" ");
   EXPECT_EQ(DrawnPath::Data(drawn.Group(1)), "M0-50l100 0");
   EXPECT_EQ(DrawnPath::Data(drawn.Group(2)), "M0 0l100 0");
-  EXPECT_EQ(Draw(elements).cut(), "M0-50l100 0M0 0l100 0");
+  EXPECT_EQ(Draw(elements).cut(), "M0-50l100 0m-100 50l100 0");
 }
 
 }  // namespace

@@ -257,18 +257,6 @@ TEST(Verdict, OfFeedRatesThatNobodyGave) {
   EXPECT_EQ(TextOf(OfStream("VS10;!VZ10;" + rest)), "GOOD");
 }
 
-TEST(Verdict, OfAToolThatNeverCuts) {
-  EXPECT_EQ(TextOf(OfStream(Work("PU200,100;"))),
-            "DOUBTFUL; RML1-E8015 nothing is cut: the tool never goes below the surface");
-  // Along the surface with the spindle turning nothing is cut, either; 0.01 mm below it is.
-  const auto at = [](const std::string& z1) {
-    return "VS10;!VZ10;!PZ" + z1 + ",200;!MC1;PU100,100;PD200,100;PU0,0;!MC0;";
-  };
-  EXPECT_EQ(TextOf(OfStream(at("0"))),
-            "DOUBTFUL; RML1-E8015 nothing is cut: the tool never goes below the surface");
-  EXPECT_EQ(TextOf(OfStream(at("-1"))), "GOOD");
-}
-
 // Relative ways lead to where the tool stood before, until absolute ones say where; 1 mm of the
 // plunge and 1 mm of the stroke are in the work.
 TEST(Verdict, OfAPlaceThatNobodyGave) {
