@@ -90,7 +90,7 @@ class Memory(InFolder):
     # Each way beyond the travel is a finding.
     def test_findings_without_end(self):
         strays_short, strays_long = self.stream("few.rml", strays(10)), self.stream("strays.rml", strays(1_000_000))
-        for words in (["check"], ["simulate"], ["simulate", "--toolpath", self.folder / "a.path"]):
+        for words in (["check"], ["simulate"], ["simulate", "--svg", self.folder / "a.svg", "--toolpath", self.folder / "a.path"]):
             with self.subTest(words):
                 least = self.peak(*words, strays_short, "--profile", "srm-20")
                 self.assertLess(self.peak(*words, strays_long, "--profile", "srm-20") - least, BOUND)

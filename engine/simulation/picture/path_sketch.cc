@@ -23,8 +23,8 @@ constexpr double kCurveTolerance_mm = 0.01;
 constexpr double kFirstShare = 5e-5;
 constexpr double kCoarserSketch = 2.0;
 
-// Lines of what was lost: there is room for a whole filling of a board.
-constexpr std::size_t kLostMax = 16'000;
+// Lines of what was lost: enough to see where it lies.
+constexpr std::size_t kLostMax = 4'000;
 
 // Makes what lies in `box` coarser, until it has at most `elements_max` elements.
 void ThinTo(std::size_t elements_max, const machine::Box& box, std::vector<SketchElement>& elements,

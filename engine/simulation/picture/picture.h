@@ -14,9 +14,9 @@ namespace rmlcell::simulation {
 
 class PathSketch;
 
-// Path elements kept while a run goes on: 6 MB. Longer programs are drawn coarser, by a tolerance
-// that is below a pixel for all but fillings.
-inline constexpr std::size_t kSketchElementsMax = 32'000;
+// Path elements kept while a run goes on: 2 MB, and as much while they are drawn. Longer programs
+// are drawn coarser, by a tolerance that is below a pixel for all but fillings.
+inline constexpr std::size_t kSketchElementsMax = 20'000;
 // Elements written to a picture: a browser draws this many smoothly.
 inline constexpr std::size_t kPictureElementsMax = 200'000;
 

@@ -299,7 +299,7 @@ TEST(Picture, ManyLostLinesAreThinned) {
     sketch.AddLost({.from = {200, y, -21}, .to = {230, y, -21}});
     length += 30.0;
   }
-  EXPECT_LE(sketch.lost().size(), 16'000u);
+  EXPECT_LE(sketch.lost().size(), 4'000u);
   EXPECT_GT(sketch.lost().size(), 100u);
   EXPECT_NEAR(sketch.lost_mm(), length, 1e-3);
   EXPECT_EQ(sketch.elements().size(), 0u);
