@@ -61,6 +61,11 @@ Value IfFits(const WorkFit::Axis& axis, double value) {
   return axis.fits() ? Value(value) : std::nullopt;
 }
 
+// Where it fits from no origin, another figure tells what to do.
+Value IfPlaced(const WorkFit::Axis& axis, double value) {
+  return axis.over == 0.0 && axis.move == 0.0 ? Value(value) : std::nullopt;
+}
+
 // Where !ZO says where Z0 is, it helps little that somebody sets it.
 bool Z0Stays(const Source& s) { return s.device.raised().by + s.device.lowered().by == 0.0; }
 
@@ -143,10 +148,10 @@ constexpr std::array kRows = {
     Row{{"clipped_length", "mm", "programmed way beyond the cutting range", "clipped", "# mm beyond the cutting range", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return s.device.carriage().clipped_length() * s.mm; }},
     Row{{"clipped_sets", "", "coordinate sets that led beyond it"}, [](const Source& s) -> Value { return Count(s.device.carriage().clipped_sets()); }},
     Row{{"clipped_cut_length", "mm", "the part of that which would have been in the work"}, [](const Source& s) -> Value { return s.device.carriage().lost().length * s.mm; }, [](const Source& s) { return s.device.first_lost(); }},
-    Row{{"clipped_x_low", "mm", "how far the work leads beyond the least X of the travel; of work that fits from another origin, as the next four"}, [](const Source& s) -> Value { return s.fit.x.fits() ? Value(s.device.carriage().lost().x_low * s.mm) : std::nullopt; }},
-    Row{{"clipped_x_high", "mm", "how far it leads beyond the greatest X"}, [](const Source& s) -> Value { return s.fit.x.fits() ? Value(s.device.carriage().lost().x_high * s.mm) : std::nullopt; }},
-    Row{{"clipped_y_low", "mm", "how far it leads beyond the least Y"}, [](const Source& s) -> Value { return s.fit.y.fits() ? Value(s.device.carriage().lost().y_low * s.mm) : std::nullopt; }},
-    Row{{"clipped_y_high", "mm", "how far it leads beyond the greatest Y"}, [](const Source& s) -> Value { return s.fit.y.fits() ? Value(s.device.carriage().lost().y_high * s.mm) : std::nullopt; }},
+    Row{{"clipped_x_low", "mm", "how far the work leads beyond the least X of the travel; of work that fits from another origin, as the next four"}, [](const Source& s) -> Value { return IfPlaced(s.fit.x, s.device.carriage().lost().x_low * s.mm); }},
+    Row{{"clipped_x_high", "mm", "how far it leads beyond the greatest X"}, [](const Source& s) -> Value { return IfPlaced(s.fit.x, s.device.carriage().lost().x_high * s.mm); }},
+    Row{{"clipped_y_low", "mm", "how far it leads beyond the least Y"}, [](const Source& s) -> Value { return IfPlaced(s.fit.y, s.device.carriage().lost().y_low * s.mm); }},
+    Row{{"clipped_y_high", "mm", "how far it leads beyond the greatest Y"}, [](const Source& s) -> Value { return IfPlaced(s.fit.y, s.device.carriage().lost().y_high * s.mm); }},
     Row{{"clipped_z_low", "mm", "how far it leads below the travel"}, [](const Source& s) -> Value { return s.fit.z.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().z_low * s.mm); }},
     Row{{"positions_refused", "", "coordinates and tool heights that were refused: the tool does not go where the program says"}, [](const Source& s) -> Value { return Count(s.device.positions_refused()); }, [](const Source& s) { return s.device.first_refused(); }},
     Row{{"foreign_share", "%", "bytes that belong to no command; of 256 at least where no more than a word or a quarter is foreign"}, [](const Source& s) -> Value { return s.device.foreign_percent(); }},
