@@ -190,9 +190,8 @@ TEST(GcodeBounds, RapidsWithinTheWork) {
             "G0 leads down below Z 0: the stream goes there at 60 mm/s");
   EXPECT_EQ(DetailOf("M3 S9000\nG1 Z-.01 F600\nG0 Y1 Z5\n"),
             "G0 leads across below Z 0: the stream goes there at 60 mm/s");
-  EXPECT_EQ(
-      DetailOf("M3 S9000\nG1 Z-1 F600\nG0 X1\nG0 X2\n"),
-      "G0 leads across below Z 0, here and in 1 more line: the stream goes there at 60 mm/s");
+  EXPECT_EQ(DetailOf("M3 S9000\nG1 Z-1 F600\nG0 X1\nG0 X2\n"),
+            "G0 leads across below Z 0, here and in 1 more line: the stream goes there at 60 mm/s");
 }
 
 // A text of exactly as many bytes as may be made is made: DF and !MC0 are 10 bytes.
