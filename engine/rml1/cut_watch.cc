@@ -40,6 +40,9 @@ double Across(const CutWatch::Ride& ride) {
   return motion::LengthOf({ride.to.x - ride.from.x, ride.to.y - ride.from.y});
 }
 
+// A run has what rounding leaves of a place behind an oblique motion: straight up is no way across.
+bool GoesAcross(const CutWatch::Ride& ride) { return Across(ride) > kSameHeight; }
+
 // More down than across.
 bool DropsSteeply(const CutWatch::Ride& ride) {
   if (ride.plunge) return true;
@@ -75,9 +78,7 @@ void CutWatch::OnRide(const Ride& ride, const Registers& registers, const Comman
     return;
   }
   cutting_ = false;
-  if (ride.from.x != ride.to.x || ride.from.y != ride.to.y) {
-    OnTravel(ride, registers, command);
-  }
+  if (GoesAcross(ride)) OnTravel(ride, registers, command);
 }
 
 void CutWatch::OnCut(const Ride& ride, const Registers& registers, const CommandPlace& command) {
@@ -217,8 +218,7 @@ void CutWatch::OnPlace(const Ride& ride, const Registers& registers, const Comma
   const std::uint64_t given_by = registers.place_given_by;
   const bool known = given_by != 0 && given_by < registers.act;
   if (ride.in_work && !known) Add(place_not_given_, BelowSurface_mm(ride, registers), command);
-  const bool across = ride.from.x != ride.to.x || ride.from.y != ride.to.y;
-  place_known_ = known || (given_by != 0 && across);
+  place_known_ = known || (given_by != 0 && GoesAcross(ride));
 }
 
 CutWatch::Way CutWatch::below_clamps() const {

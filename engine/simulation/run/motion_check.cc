@@ -217,6 +217,30 @@ void AddReason(machine::Reason reason, std::vector<machine::Reason>& reasons) {
   }
 }
 
+// What a run met in programs that it calls is about it, too: it ends with their fault.
+void AddWhatIsOfOthers(const CheckedRun& run, int slot, std::vector<machine::Reason>& reasons) {
+  std::vector<machine::Reason> met = run.reasons;
+  std::vector<Diagnostic> errors;
+  for (const Finding& finding : run.listener.findings().findings())
+    errors.push_back(finding.diagnostic);
+  if (run.for_sure) errors.push_back(DiagnosticOf(run.outcome));
+  for (const Diagnostic& error : errors) {
+    if (!IsError(error.severity)) continue;
+    met.push_back(
+        {.code = error.code,
+         .verdict = machine::Verdict::kBad,
+         .said = error.detail.empty() ? std::string(Lookup(error.code).when) : error.detail,
+         .first = PlaceOf(error)});
+  }
+  for (machine::Reason& reason : met) {
+    const int program = reason.first.program;
+    if (program == 0 || program == slot) continue;
+    reason.said += ", in program " + std::to_string(program);
+    reason.first = {.program = slot};
+    AddReason(std::move(reason), reasons);
+  }
+}
+
 }  // namespace
 
 Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
@@ -251,6 +275,7 @@ Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
       AddReason(std::move(reason), check.reasons);
     }
     if (run.for_sure) all.Add(run.ended_at, DiagnosticOf(run.outcome));
+    AddWhatIsOfOthers(run, slot, check.reasons);
     check.findings_dropped.Add(run.listener.findings().dropped());
   };
   for (const int slot : slots) {

@@ -47,7 +47,8 @@ struct MotionCheck {
   std::map<int, CutShort> cut_short;  // by slot; programs that were followed to their end are not
   // What the figures of the runs are judged, and errors of motion that hang on something that the
   // check had to assume (they are warnings among the findings). Each is about the program of its
-  // place; where it has none, about the one that was run.
+  // place; where it has none, about the one that was run. What was met in a program that another
+  // one calls is there for that one, too.
   std::vector<machine::Reason> reasons;
 
   bool has_errors() const { return HasErrors(findings); }

@@ -178,6 +178,10 @@ machine::Judgement JudgementOf(const CheckedProgram& check) {
   }
   if (motion.has_errors()) return judgement;
   for (const auto& [slot, why] : motion.cut_short) {
+    // The error of a program that this one calls is told as that.
+    if (std::ranges::find(judgement.reasons, why.cause, &machine::Reason::code) !=
+        judgement.reasons.end())
+      continue;
     judgement.Add({.code = why.cause,
                    .verdict = machine::Verdict::kDoubtful,
                    .said = "motion checked " + why.text});

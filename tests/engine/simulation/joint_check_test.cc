@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/families/families.h"
+#include "tests/engine/simulation/verdict_text.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -35,6 +38,38 @@ TEST(CheckTogether, ProgramsCallEachOtherAndEachGetsItsOwnFindings) {
   ASSERT_EQ(files[1].motion.findings.size(), 1u);
   EXPECT_EQ(files[1].motion.findings[0].step, 3);
   EXPECT_TRUE(files[0].motion.cut_short.empty());
+}
+
+// Its run leaves the travel in 44, and so it is no good, either; 44 has it with its place.
+TEST(CheckTogether, WhoCallsAProgramThatFailsFailsWithIt) {
+  const auto judged = [](const std::string& called) {
+    auto files = Checked({File("CALL 44\n", 45), File(called, 44), File(kInside, 46)});
+    std::vector<std::string> said;
+    for (JointProgram& file : files) {
+      CheckedProgram check{.family = &TheOptimo(),
+                           .slot = file.program.slot,
+                           .translation = {.ok = true},
+                           .motion = file.motion};
+      said.push_back(TextOf(JudgeCheck(check)));
+    }
+    return said;
+  };
+  const auto travel = judged("SYSDEF\n" + kOutside);
+  EXPECT_EQ(travel[0].substr(0, 14), "BAD; OPT-E7301");
+  EXPECT_TRUE(travel[0].ends_with(", in program 44")) << travel[0];
+  EXPECT_EQ(travel[1].substr(0, 14), "BAD; OPT-E7301");
+  EXPECT_TRUE(travel[1].ends_with(" @4")) << travel[1];
+  EXPECT_EQ(travel[2], "GOOD");
+  // If no SYSDEF is in force before: of both.
+  const auto perhaps = judged(kOutside);
+  EXPECT_EQ(perhaps[0].substr(0, 19), "DOUBTFUL; OPT-E7301");
+  EXPECT_EQ(perhaps[1].substr(0, 19), "DOUBTFUL; OPT-E7301");
+  // An error that ends the run, told once.
+  const auto divided = judged("VI[1] = 0\nVI[2] = 5 / VI[1]\n");
+  EXPECT_EQ(divided[0].substr(0, 4), "BAD;");
+  EXPECT_TRUE(divided[0].ends_with(", in program 44")) << divided[0];
+  EXPECT_EQ(std::ranges::count(divided[0], ';'), 1) << divided[0];
+  EXPECT_EQ(divided[1].substr(0, 4), "BAD;");
 }
 
 // Files without a number take the free slots, in their order, and are checked all the same.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -156,6 +157,30 @@ TEST(MillApproach, WorkBeyondTheTravelWantsAnotherOriginOrToMove) {
   EXPECT_EQ(SaidFromOrigin(work("200,100", "20100,100")),
             "BAD; RML1-E8002 11.000" + lost +
                 "no work origin in the travel fits: move the program by 1.000 mm to less X");
+}
+
+// Programs of Z commands alone: fast down to above the work, slowly into it, an oblique cut, fast
+// straight up. What a run finds of them is what a check finds, wherever they lie.
+TEST(MillApproach, CheckAndRunOfLiftsBehindObliqueCutsAgree) {
+  const auto run = [](const std::string& stream) {
+    machine::RunSetup setup(*machine::MakeParameters(Mill(), "t1", {}));
+    setup.main_program = 1;
+    setup.programs[1].object = machine::Bytes::Of(stream);
+    const auto result = Simulate(Mill(), std::move(setup), {});
+    return result ? TextOf(result->report.judgement) : std::string();
+  };
+  std::mt19937 dice(7);
+  const auto place = [&](int most) {
+    return std::to_string(100 + static_cast<int>(dice() % static_cast<unsigned>(most)));
+  };
+  for (int n = 0; n < 200; ++n) {
+    const std::string from = place(10'000) + "," + place(10'000);
+    const std::string to = place(10'000) + "," + place(10'000);
+    const std::string stream = "PA;!MC1;V60;Z" + from + ",400;V2;Z" + from + ",-10;V10;Z" + to +
+                               ",-10;V60;Z" + to + ",400;Z0,0,400;!MC0;";
+    ASSERT_EQ(SaidOfApproach(stream), "GOOD") << stream;
+    ASSERT_EQ(run(stream), "GOOD") << stream;
+  }
 }
 
 }  // namespace

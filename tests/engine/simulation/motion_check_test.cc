@@ -228,16 +228,20 @@ TEST(MotionCheck, IsJudgedByTheRulesOfARun) {
             "BAD; CELL-E9421 ");
 }
 
-// A reason belongs to the program that does it, however it was run.
+// A reason belongs to the program that does it, however it was run, and to those that call it.
 TEST(MotionCheck, DealsReasonsToThePrograms) {
   const std::string cut =
       "COORD ABSOL\nPATH LIN\nMOVE (0.,1000.,-400.,0.,0.)\nSPEED 10\nWORK 0,0 /ON\n"
       "MOVE (50.,1000.,-400.,0.,0.)\n";
   const MotionCheck check =
       Checked({{44, cut}, {45, "CALL 44\n"}, {46, "CALL 44\n"}}, {44, 45, 46});
-  ASSERT_EQ(check.reasons.size(), 1U);
-  EXPECT_EQ(check.reasons[0].code, ErrorCode::kWorkActiveAtEnd);
-  EXPECT_EQ(check.reasons[0].first.program, 44);
+  std::vector<int> programs;
+  for (const machine::Reason& reason : check.reasons) {
+    EXPECT_EQ(reason.code, ErrorCode::kWorkActiveAtEnd);
+    EXPECT_EQ(reason.said.ends_with(", in program 44"), reason.first.program != 44);
+    programs.push_back(reason.first.program);
+  }
+  EXPECT_EQ(programs, (std::vector{44, 45, 46}));
 }
 
 // A halt is answered with START: the program goes on behind it.
