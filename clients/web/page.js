@@ -333,6 +333,13 @@ function drawProgress(row, job) {
   delete row.outcome.dataset.key;
 }
 
+// Of an error that ended a job: the verdict, where it came, and what to do.
+function endText(outcome) {
+  const [word] = VERDICTS[outcome.verdict] ?? [];
+  const advice = (outcome.reasons ?? []).find((reason) => reason.code === outcome.code)?.advice;
+  return [word && `Verdict ${word}`, placeText(outcome.place), advice].filter(Boolean).join(" \u00b7 ");
+}
+
 function drawOutcome(row, job) {
   const outcome = job.outcome;
   const key = JSON.stringify([job.state, outcome ?? null]);
@@ -344,7 +351,7 @@ function drawOutcome(row, job) {
   const reasons = outcome.code ? [] : outcome.reasons ?? [];
   if (outcome.code) {
     row.outcome.append(explainLink(outcome.code), ` ${outcome.message || words}`,
-      element("div", { className: "sub" }, placeText(outcome.place)));
+      element("div", { className: "sub" }, endText(outcome)));
   } else {
     row.outcome.append(words);
   }

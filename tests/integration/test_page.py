@@ -52,6 +52,18 @@ class Page(WithCell, InFolder):
             self.assertLessEqual(self.browser.ask("document.documentElement.scrollWidth"), width)
             self.assertLessEqual(self.browser.ask("document.querySelector('#explain').scrollWidth"), width)
 
+    def test_a_check_that_fails_is_bad_with_advice(self):
+        calls = self.file("calls.S", "COORD ABSOL\nPATH LIN\nSPEED 10\nCALL 77\n")
+        done = self.cell.command("submit", "optimo-1", calls, "--kind", "check", "--watch", check=False)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.browser.open(f"http://127.0.0.1:{self.cell.web_port}/", *DESK)
+        row = "[...document.querySelectorAll('tbody tr')].find(row => row.textContent.includes('calls'))"
+        self.browser.wait_for(f"Boolean({row})")
+        text = self.browser.ask(f"({row}).innerText")
+        self.assertIn("Failed", text)
+        self.assertRegex(text, r"OPT-E7102 program 77")
+        self.assertRegex(text, r"Verdict Bad · program \d+, step 4 · store the program first")
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)
