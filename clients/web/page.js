@@ -355,9 +355,11 @@ function drawOutcome(row, job) {
   } else {
     row.outcome.append(words);
   }
-  for (const reason of reasons.slice(0, REASONS_SHOWN)) {
+  for (const [index, reason] of reasons.slice(0, REASONS_SHOWN).entries()) {
+    const again = index > 0 && reasons[index - 1].code === reason.code;
+    const advice = again ? "" : reason.advice;
     row.outcome.append(element("div", { className: "reason" }, explainLink(reason.code), ` ${reason.message}`,
-      element("div", { className: "sub" }, [placeText(reason.first), reason.advice].filter(Boolean).join(" \u00b7 "))));
+      element("div", { className: "sub" }, [placeText(reason.first), advice].filter(Boolean).join(" \u00b7 "))));
   }
   if (reasons.length > REASONS_SHOWN) {
     row.outcome.append(element("div", { className: "sub" }, `and ${reasons.length - REASONS_SHOWN} more in the report`));
