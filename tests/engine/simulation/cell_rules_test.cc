@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "engine/families/families.h"
@@ -91,7 +92,8 @@ TEST(StandardCell, FitsTheTool) {
   EXPECT_EQ(of("20x20x2", "flat:0.2"), 0.05);
   EXPECT_EQ(of("20x20x2", "ball:0.2"), 0.05);
   EXPECT_EQ(of("20x20x2", "vee:3:60:0.2"), 0.05);
-  EXPECT_EQ(of("20x20x2", "vee:3:60"), 0.1);
+  EXPECT_NEAR(of("20x20x2", "vee:3:60"), 0.1 * std::tan(0.5235987755982988) / 2.0, 1e-12);
+  EXPECT_EQ(of("20x20x2", "vee:3:150"), 0.1);
   EXPECT_EQ(of("163.84x163.84x2", "flat:0.2"), 0.08);
   EXPECT_EQ(of("2000x1000x2", "flat:0.2"), 0.1);
 }
