@@ -160,10 +160,10 @@ class Adviser {
 
 }  // namespace
 
-void Advise(const ParsedProgram& program, Findings& findings) {
+void Advise(const ParsedProgram& program, const StartModes& start, Findings& findings) {
   Adviser(program, findings).Run();
   if (findings.error_count() == 0) AdviseOnConstants(program, findings);
-  AdviseOnFlow(program, findings);
+  AdviseOnFlow(program, start, findings);
 }
 
 }  // namespace rmlcell::optimo

@@ -20,7 +20,7 @@ Compilation Compile(std::string_view text, std::string_view file, const CompileO
   } else {
     program = Parse(text, findings, Places::kStatements);
     Check(program, findings);
-    if (options.advice) Advise(program, findings);
+    if (options.advice) Advise(program, options.start, findings);
     if (options.advice && options.further_advice && findings.error_count() == 0)
       options.further_advice(program, findings);
     if (findings.error_count() == 0) {

@@ -9,6 +9,7 @@
 #include "engine/core/result.h"
 #include "engine/core/untold_findings.h"
 #include "engine/optimo/language/program.h"
+#include "engine/optimo/language/start_modes.h"
 
 // Source to object and back (optimo.md 1.1, B.6).
 namespace rmlcell::optimo {
@@ -18,6 +19,7 @@ inline constexpr std::uint32_t kObjectLimitStandard = 34'000;  // OPT-1.08
 struct CompileOptions {
   std::uint32_t object_limit =
       kObjectLimitStandard;  // bytes; machine parameter OBJECT_LIMIT; 0: none
+  StartModes start{};        // advice is for a machine that starts programs so
   bool advice = true;        // static warnings and advice
   bool inch = false;         // the text is an inch source: 7030 (OPT-2.04)
   bool source = false;       // fill in Compilation::step_lines and allowed

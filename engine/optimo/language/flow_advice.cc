@@ -59,9 +59,10 @@ std::vector<bool> FaultyInstructions(const ParsedProgram& program) {
 
 class FlowAdviser {
  public:
-  FlowAdviser(const ParsedProgram& program, Findings& findings)
+  FlowAdviser(const ParsedProgram& program, const StartModes& start, Findings& findings)
       : p_(program),
         module_(program.module),
+        start_(start),
         findings_(findings),
         any_error_(findings.error_count() > 0),
         faulty_(any_error_ ? FaultyInstructions(program)
@@ -101,6 +102,7 @@ class FlowAdviser {
 
   const ParsedProgram& p_;
   const Module& module_;
+  const StartModes start_;
   Findings& findings_;
   const bool any_error_;
   const std::vector<bool> faulty_;
@@ -120,7 +122,7 @@ void FlowAdviser::AdviseStates() {
     absol_moves[at] = state.modes.coord() == CoordType::kAbsol;
   });
   const FlyChain chain(module_, graph_, dwells_, hole_moves, faulty_);
-  MoveAdviser moves(p_, findings_, chain);
+  MoveAdviser moves(p_, start_, findings_, chain);
   for (const Instruction& i : module_.instructions) assigned_ |= VariablesSetBy(module_, i);
   walk_.ForEachReached([&](std::uint32_t at, const FlowState& state) {
     const Instruction& i = module_.instructions[at];
@@ -307,10 +309,10 @@ void FlowAdviser::AdviseNesting() {
 
 }  // namespace
 
-void AdviseOnFlow(const ParsedProgram& program, Findings& findings) {
+void AdviseOnFlow(const ParsedProgram& program, const StartModes& start, Findings& findings) {
   const std::size_t count = program.module.instructions.size();
   if (count == 0 || count > kFlowInstructionsMax) return;
-  FlowAdviser(program, findings).Run();
+  FlowAdviser(program, start, findings).Run();
 }
 
 }  // namespace rmlcell::optimo

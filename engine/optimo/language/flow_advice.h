@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine/optimo/language/program.h"
+#include "engine/optimo/language/start_modes.h"
 
 namespace rmlcell::optimo {
 
@@ -9,6 +10,6 @@ namespace rmlcell::optimo {
 // gases, speeds and order of chapter 5.5, code that is never reached, variables that are read
 // before they are set, GOSUB without RETURN and RETURN without GOSUB. Warnings and advice only.
 // Programs that no object could hold are left out.
-void AdviseOnFlow(const ParsedProgram& program, Findings& findings);
+void AdviseOnFlow(const ParsedProgram& program, const StartModes& start, Findings& findings);
 
 }  // namespace rmlcell::optimo

@@ -50,7 +50,7 @@ void MoveAdviser::AdvisePath(const Instruction& i, const FlowState& state) {
     Warn(i, ErrorCode::kPathNeedsAbsol,
          "on one path this MOVE is in COORD ROBOT with a PATH other than PTP, and will fail",
          "OPT-2.08");
-  } else if (modes.IsDefaultCoord() && modes.IsContour() &&
+  } else if (start_.coord == CoordType::kRobot && modes.IsDefaultCoord() && modes.IsContour() &&
              !std::exchange(default_coord_told_, true)) {
     Note(i, ErrorCode::kPathNeedsAbsol,
          "no COORD was set: by default that is ROBOT, which has PATH PTP only, unless the program "
@@ -70,7 +70,8 @@ void MoveAdviser::AdvisePath(const Instruction& i, const FlowState& state) {
   if (modes.path() == PathType::kPtp) {
     Warn(i, ErrorCode::kPracticeAdvice,
          "a contour in PATH PTP with the beam on: its speed is not controlled", "OPT-5.45");
-  } else if (modes.IsDefaultPath() && !std::exchange(default_path_told_, true)) {
+  } else if (start_.path == PathType::kPtp && modes.IsDefaultPath() &&
+             !std::exchange(default_path_told_, true)) {
     Note(i, ErrorCode::kPracticeAdvice,
          "a contour with the beam on, and no PATH was set: by default that is PTP, of which the "
          "speed is not controlled",

@@ -6,6 +6,7 @@
 #include "engine/optimo/language/flow_state.h"
 #include "engine/optimo/language/fly_chain.h"
 #include "engine/optimo/language/program.h"
+#include "engine/optimo/language/start_modes.h"
 
 namespace rmlcell::optimo {
 
@@ -13,8 +14,9 @@ namespace rmlcell::optimo {
 // OPT-7.109). Private to the folder.
 class MoveAdviser {
  public:
-  MoveAdviser(const ParsedProgram& program, Findings& findings, const FlyChain& chain)
-      : p_(program), module_(program.module), findings_(findings), chain_(chain) {}
+  MoveAdviser(const ParsedProgram& program, const StartModes& start, Findings& findings,
+              const FlyChain& chain)
+      : p_(program), module_(program.module), start_(start), findings_(findings), chain_(chain) {}
 
   void Advise(std::uint32_t at, const FlowState& state);
   // After all moves: ROBOT moves between ABSOL moves in a program that uses SYSDEF. `to_absol`:
@@ -33,6 +35,7 @@ class MoveAdviser {
 
   const ParsedProgram& p_;
   const Module& module_;
+  const StartModes start_;
   Findings& findings_;
   const FlyChain& chain_;
   struct Placed {

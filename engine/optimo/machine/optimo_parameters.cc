@@ -169,7 +169,9 @@ machine::MachineShape ShapeOf(const OptimoParameters& parameters) {
 }
 
 ContourMachine ContourMachineOf(const OptimoParameters& parameters) {
-  return {.limits = parameters.limits, .head_length_mm = parameters.head_length_mm};
+  return {.limits = parameters.limits,
+          .head_length_mm = parameters.head_length_mm,
+          .start = {.coord = parameters.coord_default, .path = parameters.path_default}};
 }
 
 }  // namespace rmlcell::optimo

@@ -4,6 +4,7 @@
 
 #include "engine/motion/planner/planner.h"
 #include "engine/optimo/language/program.h"
+#include "engine/optimo/language/start_modes.h"
 
 namespace rmlcell::optimo {
 
@@ -11,6 +12,7 @@ namespace rmlcell::optimo {
 struct ContourMachine {
   motion::MachineLimits limits;
   double head_length_mm = 300.0;
+  StartModes start{};
 
   static ContourMachine Standard();
 };

@@ -102,6 +102,7 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
     return CheckUnconverted(file, options.advice);
   Compilation compiled = Compile(file.bytes, file.name,
                                  {.object_limit = object_limit,
+                                  .start = contour_machine.start,
                                   .advice = options.advice,
                                   .inch = form == FileForm::kInchSource,
                                   .source = options.source,

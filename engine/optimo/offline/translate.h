@@ -14,7 +14,7 @@ FileForm FormOfFile(std::string_view name, std::string_view bytes);
 // What the control would store: a source is checked and compiled, an object is checked and taken as
 // it is. An inch source is refused with 7030 (OPT-2.04), an empty file with CellEmptyProgram.
 // Figures: "steps", "source_bytes", "object_bytes", "sequence_numbers", "names".
-// Advice on the path of the program is that for `contour_machine`.
+// Advice on path and modes of the program is that for `contour_machine`.
 machine::Translation TranslateOptimo(
     const machine::SourceFile& file, const machine::CheckOptions& options,
     std::uint32_t object_limit = kObjectLimitStandard,

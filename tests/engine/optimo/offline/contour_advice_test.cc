@@ -332,5 +332,28 @@ TEST(ContourAdvice, TheStandardMachineHasTheDefaults) {
   EXPECT_EQ(limits.axes.travel_max, (motion::AxisValues{3600.0, 3100.0, 1100.0, 12.6, 2.4}));
 }
 
+// OPT-2.09: a machine whose parameters start programs in COORD ABSOL, PATH LIN needs neither.
+TEST(StartModes, WhatTheMachineStartsWithNeedsNoAdvice) {
+  const auto said = [](const std::string& text, const StartModes& start) {
+    ContourMachine machine = ContourMachine::Standard();
+    machine.start = start;
+    int advice = 0;
+    for (const Diagnostic& d :
+         TranslateOptimo({"a.S", text}, {}, kObjectLimitStandard, machine).diagnostics) {
+      const bool of_coord = d.detail.starts_with("no COORD was set");
+      const bool of_path = d.detail.find("no PATH was set") != std::string::npos;
+      advice += of_coord || of_path ? 1 : 0;
+    }
+    return advice;
+  };
+  const std::string lin = "PATH LIN\nMOVE (10.,0.,0.,0.,0.)\n";
+  const std::string contour = "COORD ABSOL\nWORK 0,0 /ON\nMOVE (10.,0.,0.,0.,0.)\nWORK 0,0 /OFF\n";
+  const StartModes absol{.coord = CoordType::kAbsol, .path = PathType::kLin};
+  EXPECT_EQ(said(lin, {}), 1);
+  EXPECT_EQ(said(lin, absol), 0);
+  EXPECT_EQ(said(contour, {}), 1);
+  EXPECT_EQ(said(contour, absol), 0);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo
