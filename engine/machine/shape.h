@@ -33,6 +33,10 @@ struct BoxOf {
 using Box = BoxOf<motion::MachinePoint>;
 using ProgramBox = BoxOf<motion::ProgramPoint>;  // as the program wrote its points
 
+// The greatest speed of Z is for travel: a way down at this share of it or more is no feed
+// (docs/verdict.md).
+inline constexpr double kTravelShareOfZ = 0.8;
+
 // What report and pictures need to know of a machine beyond what its runs tell.
 struct MachineShape {
   // The head of the gantry turns about A and B, and its column is not where the tip is. Otherwise

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/machine/shape.h"
 #include "engine/motion/geometry/frames.h"
 
 namespace rmlcell::rml1 {
@@ -10,8 +11,6 @@ namespace {
 
 constexpr double kAsAsked = 0.01;  // a speed within 1 % is the one asked for
 
-// The greatest speeds are for travel: from this share of them on, it is no feed.
-constexpr double kFastShare = 0.8;
 // A rapid is several times as fast as a cut; feeds of one part for corners and finishing are not.
 constexpr double kSlowShare = 0.5;
 
@@ -33,7 +32,7 @@ double ShareNotAbove(const Point& from, const Point& to, double height) {
 
 // By V, which lifts have, too; F (VS) is of cuts alone.
 bool Fast(const CutWatch::Ride& ride) {
-  return !ride.by_xy_speed && ride.speed_mm_s >= kFastShare * ride.fastest_z_mm_s;
+  return !ride.by_xy_speed && ride.speed_mm_s >= machine::kTravelShareOfZ * ride.fastest_z_mm_s;
 }
 
 double Across(const CutWatch::Ride& ride) {

@@ -34,9 +34,8 @@ inline constexpr int kPassesMax = 100;
 struct BoardLines {
   std::vector<Diagnostic> findings;  // Rml1GapTooNarrow (8125), Rml1SpeedRounded (8106)
   std::size_t loops = 0;
-  std::size_t joined =
-      0;                  // traces that the tool does not part from a neighbour: 8125 tells of them
-  double width_mm = 0.0;  // of the picture
+  std::size_t joined = 0;  // traces that the tool does not part from a neighbour (8125)
+  double width_mm = 0.0;   // of the picture
   double height_mm = 0.0;
 };
 

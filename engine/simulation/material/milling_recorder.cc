@@ -10,8 +10,6 @@ namespace {
 using machine::MotionUse;
 
 constexpr double kGougeLeast_mm = 1e-3;  // less is rounding of heights and places
-// The greatest speeds are for travel: from this share of that of Z on, a way down is no feed.
-constexpr double kFastShare = 0.8;
 
 // The part of a straight move that keeps within limits, by shares of its way.
 struct PartOfMove {
@@ -57,7 +55,7 @@ MillingRecorder::MillingRecorder(const machine::MachineShape& shape, const Milli
       material_(HeightField::Of(milling.stock).value()),
       target_(milling.target),
       chips_(milling.chips),
-      fast_z_mm_s_(shape.limits ? kFastShare * shape.limits->axes.speed.z()
+      fast_z_mm_s_(shape.limits ? machine::kTravelShareOfZ * shape.limits->axes.speed.z()
                                 : std::numeric_limits<double>::infinity()),
       rpm_by_hand_(milling.rpm > 0.0),
       rpm_(milling.rpm) {
