@@ -21,47 +21,26 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from programs import ROOT, all_programs  # noqa: E402
+from programs import all_programs  # noqa: E402
+from server_trials import all_server_trials  # noqa: E402
+from tool_trials import all_tool_trials  # noqa: E402
+from trials import ROOT  # noqa: E402
 
 SHARED = pathlib.Path(os.environ.get("RMLCELL_SHARED", ROOT.parent / "shared"))
 NUMBER = re.compile(rb"-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
 
-def what_it_does(command, program):
-    """All that the command says about a program, as bytes."""
-    with tempfile.TemporaryDirectory(prefix="behaviour-") as folder:
-        place = pathlib.Path(folder)
-        (place / program.file_name).write_bytes(program.text)
-        for name, text in program.others:
-            (place / name).write_bytes(text)
-        inputs = []
-        if program.inputs:
-            (place / "inputs.txt").write_text(program.inputs, encoding="utf-8")
-            inputs = ["--inputs", "inputs.txt"]
-        files = [program.file_name, *(name for name, _ in program.others)]
-        memory = [f"{name.removesuffix('.S')}={name}" for name, _ in program.others]
-        slots = [word for entry in memory for word in ("--slot", entry)]
-        main = ["--main", "1"] if memory else []
-        family = ["--family", "optimo" if program.file_name.upper().endswith((".S", ".SI", ".CMP")) else "rml1"]
-        parts = []
-        for words in (["check", *files, "--json", *family, *inputs],
-                      ["simulate", program.file_name, *slots, *main, *family, *inputs, *program.words, "--json", "--trace"],
-                      ["simulate", program.file_name, *slots, *main, *family, *inputs, *program.words, "--facts",
-                       "--samples", "20", "samples.csv", "--svg", "path.svg", "--toolpath", "path.blocks"]):
-            done = subprocess.run([command, *words], cwd=place, capture_output=True, timeout=600, check=False)
-            parts += [f"== {' '.join(words)}: {done.returncode}\n".encode(), done.stdout, b"-- errors\n", done.stderr]
-        for name in ("samples.csv", "path.svg", "path.blocks"):
-            path = place / name
-            parts += [f"== {name}\n".encode(), path.read_bytes() if path.exists() else b"none\n"]
-        return b"".join(parts)
-
-
 def each(command, take):
-    """Calls take(name, bytes) for all programs, in their order."""
-    programs = list(all_programs(SHARED if SHARED.exists() else None))
+    """Calls take(name, bytes) for all that is tried, in its order."""
+    trials = all_trials()
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for program, said in zip(programs, pool.map(lambda one: what_it_does(command, one), programs)):
-            take(program.name, said)
+        for trial, said in zip(trials, pool.map(lambda one: one.said(command), trials)):
+            take(trial.name, said)
+
+
+def all_trials():
+    shared = SHARED if SHARED.exists() else None
+    return [*(program.trial() for program in all_programs(shared)), *all_tool_trials(), *all_server_trials()]
 
 
 def path_of(folder, name):

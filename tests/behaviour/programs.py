@@ -1,14 +1,14 @@
-"""Programs of both families to compare two builds with: real ones, the examples of the tests, and random ones.
+"""Programs of both families to simulate with two builds: real ones, the examples of the tests, and random ones.
 
 A random program follows from its number alone, on every machine: Python's Random with an integer seed is the
 same everywhere.
 """
 import csv
 import dataclasses
-import pathlib
 import random
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from trials import ROOT, Trial
+
 RANDOM_OPTIMO = 1000
 RANDOM_RML1 = 1000
 
@@ -21,6 +21,24 @@ class Program:
     inputs: str = ""  # an input file; empty: none
     words: tuple = ()  # further words for `simulate`
     others: tuple = ()  # further programs of the memory: (file name, bytes)
+
+    def trial(self):
+        """Findings of `check` as JSON; report, trace and exit status of `simulate` as JSON and as facts; samples, picture
+        and toolpath."""
+        given = [(self.file_name, self.text), *self.others]
+        inputs = []
+        if self.inputs:
+            given.append(("inputs.txt", self.inputs.encode()))
+            inputs = ["--inputs", "inputs.txt"]
+        files = [self.file_name, *(name for name, _ in self.others)]
+        slots = [word for name, _ in self.others for word in ("--slot", f"{name.removesuffix('.S')}={name}")]
+        main = ["--main", "1"] if slots else []
+        family = ["--family", "optimo" if self.file_name.upper().endswith((".S", ".SI", ".CMP")) else "rml1"]
+        run = ["simulate", self.file_name, *slots, *main, *family, *inputs, *self.words]
+        return Trial(self.name, tuple(given),
+                     (("check", *files, "--json", *family, *inputs), (*run, "--json", "--trace"),
+                      (*run, "--facts", "--samples", "20", "samples.csv", "--svg", "path.svg", "--toolpath", "path.blocks")),
+                     ("samples.csv", "path.svg", "path.blocks"))
 
 
 def all_programs(shared):

@@ -29,12 +29,14 @@ import threading
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from areas import AREAS  # noqa: E402
 from places import KINDS, places_of  # noqa: E402
+from switched_tree import SwitchedTree  # noqa: E402
 from workshop import Workshop, fresh  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build" / "mutation"
 GOAL = 0.95
 ARGUED_MAX = 0.10  # of the changes of an area, those that are listed as equivalent by an argument
+BEHAVIOUR = "behaviour: "  # the hashes of tests/behaviour noticed it, and no test that says what is right
 COUNTED = ("noticed", "survived")
 
 
@@ -56,15 +58,17 @@ def change_of(place):
     return f"{place.before} => {place.after}"
 
 
+def sources_of(area):
+    return [str(path.relative_to(ROOT)) for folder in AREAS[area].folders for path in sorted((ROOT / folder).glob("*.cc"))]
+
+
 def sequence(area, seed, codes, files, kinds):
     """The places of an area in the order in which this seed takes them: first a kind, then a place of it."""
     by_kind = collections.defaultdict(list)
-    for folder in AREAS[area].folders:
-        for path in sorted((ROOT / folder).glob("*.cc")):
-            name = str(path.relative_to(ROOT))
-            for place in places_of(ROOT, name, codes) if not files or name in files else ():
-                if not kinds or place.kind in kinds:
-                    by_kind[place.kind].append(place)
+    for name in sources_of(area):
+        for place in places_of(ROOT, name, codes) if not files or name in files else ():
+            if not kinds or place.kind in kinds:
+                by_kind[place.kind].append(place)
     dice = random.Random(f"{seed} {area}")
     while any(by_kind.values()):
         places = by_kind[dice.choice([kind for kind in KINDS if by_kind[kind]])]
@@ -111,27 +115,23 @@ class Measurement:
         self.equivalent = read_equivalent()
         self.codes = error_codes()
         self.workshop = None
+        self.switches = None
         self.tests = {}
         self.originals = {}
         self.free = list(range(options.jobs))
         self.lock = threading.Lock()
 
     def prepare(self, areas):
-        if not self.options.no_build:
-            subprocess.run(["cmake", "--preset", "mutation", "-DBUILD_TESTING=ON"], cwd=ROOT, check=True,
-                           stdout=subprocess.DEVNULL)
         wanted = sorted({name for area in areas for name in AREAS[area].tests})
-        if not self.options.no_build:
-            # Scripts drive the programs; the other tests are targets of their own.
-            targets = [name for name in wanted if not name.startswith("integration_")]
-            if len(targets) < len(wanted):
-                targets += ["rmlcelld", "rmlcell-worker", "rmlcell", "python_stubs"]
-            subprocess.run(["ninja", "-C", str(BUILD), *targets], check=True, stdout=subprocess.DEVNULL)
-        self.workshop = Workshop(ROOT, BUILD)
+        self.switches = SwitchedTree(ROOT, BUILD / "switched", self.codes)
+        # All sources, whichever are asked for: another choice builds nothing anew.
+        self.switches.make([name for area in AREAS for name in sources_of(area)], wanted, self.options.jobs)
+        self.workshop = Workshop(self.switches.tree, self.switches.build)
         tests = {test.name: test for test in self.workshop.tests(wanted)}
         self.workshop.measure(tests.values(), fresh(BUILD / "try" / "as-it-is"),
                               BUILD / "results" / "times.json")
         self.tests = {area: [tests[name] for name in AREAS[area].tests] for area in areas}
+        self.switches.learn_all(wanted, self.options.jobs)
 
     def original(self, file, flags):
         """The object of the source as it is, to compare with."""
@@ -164,6 +164,12 @@ class Measurement:
         return row
 
     def attempt(self, area, place, desk):
+        noticed = self.switches.noticed(place, AREAS[area].tests)
+        if noticed:
+            return "noticed", noticed
+        shown = self.switches.behaves_otherwise(place)
+        if shown:
+            return "noticed", f"{BEHAVIOUR}{shown}"
         changed_source = place.applied((ROOT / place.file).read_text(encoding="utf-8"))
         changed = self.workshop.compile(place.file, changed_source, desk)
         if changed is None:
@@ -171,6 +177,8 @@ class Measurement:
         if changed.read_bytes() == self.original(place.file, ()):
             return "identical", "object code"
         for test in self.tests[area]:
+            if self.switches.has(place) and test.name not in self.switches.unfit:
+                continue  # its cases were tried
             failed = self.workshop.run(test, desk, place.file, changed)
             if failed:
                 return "noticed", f"{test.name}: {failed}"
@@ -204,21 +212,23 @@ class Measurement:
 
     def report(self, areas):
         """The figures by area as text, and whether each reaches the goal."""
-        lines = [f"{'area':10} {'changes':>7} {'noticed':>7} {'argued':>7} {'left':>5} {'share':>7}   "
+        lines = [f"{'area':10} {'changes':>7} {'noticed':>7} {'hashes':>7} {'argued':>7} {'left':>5} {'share':>7}   "
                  "same object code, left out"]
         left, good = [], True
         for area in areas:
             rows = [row for row in self.current(area) if row["outcome"] != "invalid"]
             noticed = sum(row["outcome"] == "noticed" for row in rows)
+            by_hash = sum(row["by"].startswith(BEHAVIOUR) for row in rows)
             survived = [row for row in rows if row["outcome"] == "survived"]
             argued = [row for row in survived if (row["file"], row["text"], row["change"]) in self.equivalent]
             identical = sum(row["outcome"] == "identical" for row in rows)
             meant = noticed + len(survived) - len(argued)
             share = noticed / meant if meant else 1.0
             good = good and share >= GOAL and len(argued) <= ARGUED_MAX * max(1, noticed + len(survived))
-            lines.append(f"{area:10} {noticed + len(survived):7} {noticed:7} {len(argued):7} "
+            lines.append(f"{area:10} {noticed + len(survived):7} {noticed:7} {by_hash:7} {len(argued):7} "
                          f"{len(survived) - len(argued):5} {100 * share:6.1f}%   {identical}")
             left += [row for row in survived if row not in argued]
+        lines += ["", "hashes: of those noticed, seen by the hashes of tests/behaviour alone."]
         if left:
             lines += ["", "Left unnoticed:"]
             lines += [f"  {row['file']}:{row['line']} {row['kind']}: {row['change']}\n      {row['text']}"
@@ -247,7 +257,6 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--again", action="store_true")
     parser.add_argument("--report", action="store_true")
-    parser.add_argument("--no-build", action="store_true", help="the build is fresh")
     parser.add_argument("--results", help="write the report into this file, too")
     options = parser.parse_args()
     areas = options.area or list(AREAS)

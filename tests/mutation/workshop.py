@@ -2,8 +2,8 @@
 
 The changed source becomes an archive of its own that stands before the library it belongs to when a program is
 linked, so that nothing of the build is written over and several changes can be tried at a time. The build
-compiles each source by itself (preset `mutation`): where several are compiled together, the compiler may have
-put the old code into a neighbour.
+compiles each source by itself (switched_tree.py): where several are compiled together, the compiler may have put the
+old code into a neighbour.
 """
 import json
 import math
@@ -41,18 +41,7 @@ class Workshop:
         self.links = {}
 
     def tests(self, names):
-        listed = subprocess.run(["ctest", "--test-dir", str(self.build), "--show-only=json-v1"], check=True,
-                                capture_output=True, text=True).stdout
-        entries = {entry["name"]: entry for entry in json.loads(listed)["tests"]}
-        unknown = [name for name in names if name not in entries]
-        if unknown:
-            raise SystemExit(f"no such test: {', '.join(unknown)}")
-        found = []
-        for name in names:
-            properties = {p["name"]: p["value"] for p in entries[name]["properties"]}
-            environment = dict(pair.split("=", 1) for pair in properties.get("ENVIRONMENT", []))
-            found.append(Test(name, entries[name]["command"], environment, self.build))
-        return found
+        return tests_of(self.build, names)
 
     def link(self, output):
         """The command that makes `output`, a path below the build."""
@@ -120,8 +109,7 @@ class Workshop:
 
     def run(self, test, place, file=None, changed=None):
         """What tells that the test fails, "" where it passes, None where it does not concern the file."""
-        command, environment = list(test.command), {**os.environ, **test.environment}
-        command += ["--gtest_fail_fast", "--gtest_brief=1"] if test.program else ["--failfast"]
+        command, environment = with_cases(test), {**os.environ, **test.environment}
         if changed:
             made = self.relink(test.program, file, changed, place) if test.program else None
             if made:
@@ -132,7 +120,8 @@ class Workshop:
                 if not self.relink_programs(file, changed, place) and not made:
                     return None
                 environment["RMLCELL_BIN"] = str(place / "bin")
-        return self.judge(test, command, environment, place)
+        # By processor time: a machine that is busy with other things decides nothing.
+        return judge(command, environment, place, int(test.cpu_s * 6) + 20 if test.cpu_s else 600)
 
     def relink_programs(self, file, changed, place):
         """All programs in place/bin, those that hold the source with the changed object; whether one does."""
@@ -144,35 +133,6 @@ class Workshop:
                 made.symlink_to(self.build / program)
             touched = touched or not made.is_symlink()
         return touched
-
-    def judge(self, test, command, environment, place):
-        # By processor time: a machine that is busy with other things decides nothing.
-        seconds = int(test.cpu_s * 6) + 20 if test.cpu_s else 600
-
-        def limits():
-            resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
-            resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES_MAX, MEMORY_BYTES_MAX))
-            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
-        scratch = place / "tmp"
-        scratch.mkdir(exist_ok=True)
-        environment["TMPDIR"] = str(scratch)
-        process = subprocess.Popen(command, cwd=place, env=environment, stdout=subprocess.PIPE, text=True,
-                                   stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, errors="replace",
-                                   preexec_fn=limits, start_new_session=True)
-        try:
-            output = communicate(process)
-        finally:
-            try:
-                os.killpg(process.pid, 9)
-            except ProcessLookupError:
-                pass
-        if process.wait() == 0:
-            return ""
-        failed = re.findall(r"\[  FAILED  \] ([\w/.]+)|^(?:FAIL|ERROR): (\w+)", output, re.MULTILINE)
-        if failed:
-            return next(part for part in failed[0] if part)
-        return output.strip().splitlines()[-1][:200] if output.strip() else f"signal {-process.returncode}"
 
     def measure(self, tests, place, kept):
         """Runs each test on the code as it is: what fails then tells nothing. `kept` holds what is known."""
@@ -197,6 +157,60 @@ class Workshop:
         if test.drives_programs:
             files += self.programs()
         return [(self.build / file).stat().st_mtime_ns for file in files]
+
+
+def tests_of(build, names):
+    """These entries of CTest."""
+    listed = subprocess.run(["ctest", "--test-dir", str(build), "--show-only=json-v1"], check=True,
+                            capture_output=True, text=True).stdout
+    entries = {entry["name"]: entry for entry in json.loads(listed)["tests"]}
+    unknown = [name for name in names if name not in entries]
+    if unknown:
+        raise SystemExit(f"no such test: {', '.join(unknown)}")
+    found = []
+    for name in names:
+        properties = {p["name"]: p["value"] for p in entries[name]["properties"]}
+        environment = dict(pair.split("=", 1) for pair in properties.get("ENVIRONMENT", []))
+        found.append(Test(name, entries[name]["command"], environment, build))
+    return found
+
+
+def with_cases(test, cases=()):
+    """The command that runs these cases of a test, or all; the first that fails ends it."""
+    if not test.program:
+        return [*test.command, "--failfast", *cases]
+    return [*test.command, "--gtest_fail_fast", "--gtest_brief=1", *([f"--gtest_filter={':'.join(cases)}"] if cases else [])]
+
+
+def judge(command, environment, place, seconds):
+    """What tells that it fails, "" where it ends well; it gets so many seconds of processor time, and its own folder."""
+    scratch = place / "tmp"
+    scratch.mkdir(exist_ok=True)
+    process = subprocess.Popen(command, cwd=place, env={**environment, "TMPDIR": str(scratch)}, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+                               errors="replace", preexec_fn=limit(seconds), start_new_session=True)
+    try:
+        output = communicate(process)
+    finally:
+        try:
+            os.killpg(process.pid, 9)
+        except ProcessLookupError:
+            pass
+    if process.wait() == 0:
+        return ""
+    failed = re.findall(r"\[  FAILED  \] ([\w/.]+)|^(?:FAIL|ERROR): (\w+)", output, re.MULTILINE)
+    if failed:
+        return next(part for part in failed[0] if part)
+    return output.strip().splitlines()[-1][:200] if output.strip() else f"signal {-process.returncode}"
+
+
+def limit(seconds):
+    """What a process calls before it begins: so much processor time, memory that the machine has, no core files."""
+    def limits():
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES_MAX, MEMORY_BYTES_MAX))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    return limits
 
 
 def communicate(process):
