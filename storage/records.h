@@ -132,6 +132,13 @@ struct JobCounts {
   std::int64_t running = 0;
 };
 
+// The jobs of one machine that wait or run.
+struct MachineJobs {
+  std::string machine{};
+  std::int64_t unfinished = 0;
+  std::int64_t oldest_running = 0;  // a job's id; 0: none runs
+};
+
 struct AttemptRecord {
   std::int64_t job = 0;
   int number = 0;  // from 1

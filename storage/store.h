@@ -49,14 +49,19 @@ struct LeasedJob {
 // outcome. A RUN is never repeated by itself: it becomes kInterrupted with the outcome's code,
 // detail and place.
 struct LossPolicy {
-  JobOutcome outcome{};              // final
-  std::vector<NewEvent> requeued{};  // appended when it goes back to the queue
-  std::vector<NewEvent> ended{};     // appended when it ends
+  JobOutcome outcome{};                 // final
+  std::vector<NewEvent> requeued{};     // appended when it goes back to the queue
+  std::vector<NewEvent> ended{};        // appended when it ends
+  std::vector<NewEvent> interrupted{};  // appended when it is a RUN
   // Appended when its cancel was requested: it then ends as kCancelled (CellCancelled), whatever
   // attempts are left; a RUN is interrupted all the same. Empty: such a job is treated as any
   // other.
   std::vector<NewEvent> cancelled{};
+  // False: the worker never said that it began, so this attempt does not count. Of one job at most
+  // kUncountedAttemptsMax are let go so, or what kills each worker at once would do so for ever.
+  bool counts = true;
 };
+inline constexpr int kUncountedAttemptsMax = 8;  // those that were handed back among them
 
 // Newest first. A page ends where the next begins: pass the last id of it as `before_id`.
 struct JobQuery {
@@ -166,6 +171,8 @@ class Store {
   virtual Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) = 0;
   virtual Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) = 0;  // by number
   virtual Result<JobCounts> CountJobs() = 0;  // cheap: called for every submission
+  // By id of the machine; those without such jobs are left out.
+  virtual Result<std::vector<MachineJobs>> UnfinishedJobs() = 0;
 
   // Queued: cancelled at once (CellCancelled), with `events`. Running: marked, without events; the
   // holder of the lease ends it. Final: unchanged. Returns the job as it then is.
@@ -197,8 +204,9 @@ class Store {
   virtual Result<JobRecord> Finish(const Lease& lease, const JobOutcome& outcome,
                                    const std::vector<NewArtifact>& artifacts,
                                    const std::vector<NewEvent>& events) = 0;
-  // Gives the job back to the queue; this attempt does not count. CellLeaseLost.
-  virtual Status HandBack(const Lease& lease, const std::vector<NewEvent>& events) = 0;
+  // Gives the job back to the queue; this attempt does not count. A RUN is interrupted: it may have
+  // moved its machine. Returns the job as it then is. CellLeaseLost.
+  virtual Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) = 0;
   // The worker is known to be dead: as if the lease ran out now. CellLeaseLost.
   virtual Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) = 0;
   // Every lease that ran out. Any server may call it at any time. Returns the jobs that changed;

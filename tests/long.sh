@@ -92,13 +92,13 @@ fuzz() {
   done
 }
 
-# The release tests again and again with busy loops beside them: none may depend on being served at once. Rounds
-# that this commit has passed in a row are not run again.
+# The release tests again and again with busy loops beside them, several at a time: none may depend on being served at
+# once. Rounds that were passed in a row count, each with the commit that it was run on; one that fails ends the row.
 load() {
   local wanted=${LOAD_ROUNDS:-20} log=tests/results/load.txt loops=() commit passed
   commit=$(git log -1 --format=%h -- . ':!tests/results')
-  if ! grep -qs "^Release tests of $commit," "$log" || grep -q '^failed' "$log"; then
-    echo "Release tests of $commit, $(nproc) cores, four busy loops beside them" >"$log"
+  if [ ! -f "$log" ] || grep -q '^failed' "$log"; then
+    echo "Release tests, $(nproc) cores, four busy loops beside them, three tests a core at a time" >"$log"
   fi
   for _ in 1 2 3 4; do
     (while :; do :; done) &
@@ -108,16 +108,16 @@ load() {
   trap "kill ${loops[*]} 2>/dev/null || true" EXIT
   while passed=$(grep -c '^round' "$log" || true); [ "$passed" -lt "$wanted" ]; do
     local begin=$SECONDS good=1
-    ctest --test-dir build/release --output-on-failure -j "$(nproc)" --test-output-truncation head \
+    ctest --test-dir build/release --output-on-failure -j $((3 * $(nproc))) --test-output-truncation head \
       --output-junit "$PWD/build/long/load.xml" >build/long/load.log 2>&1 || good=0
     local counted
     counted=$(python3 tests/count_results.py build/long/load.xml | tail -n 1)
     if [ $good -eq 0 ]; then
       cp build/long/load.log "build/long/load-failed-$((passed + 1)).log"
-      echo "failed: $counted, $((SECONDS - begin)) s: $(grep -A 20 'tests FAILED' build/long/load.log | tr '\n' ' ')" >>"$log"
+      echo "failed: $commit: $counted, $((SECONDS - begin)) s: $(grep -A 20 'tests FAILED' build/long/load.log | tr '\n' ' ')" >>"$log"
       break
     fi
-    echo "round $((passed + 1)): $counted, $((SECONDS - begin)) s" >>"$log"
+    echo "round $((passed + 1)): $commit: $counted, $((SECONDS - begin)) s" >>"$log"
   done
   kill "${loops[@]}" 2>/dev/null || true
   trap - EXIT

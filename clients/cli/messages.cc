@@ -60,6 +60,9 @@ std::string OutcomeLine(const v1::Outcome& outcome) {
     case v1::Outcome::KIND_BUDGET_EXCEEDED:
       text = Paint("budget exceeded", Colour::kRed, colour);
       break;
+    case v1::Outcome::KIND_INTERRUPTED:
+      text = Paint("interrupted", Colour::kRed, colour);
+      break;
     default:
       text = "not ended";
   }

@@ -142,6 +142,8 @@ const VERDICTS = {
   VERDICT_DOUBTFUL: ["Doubtful", "wait"],
   VERDICT_BAD: ["Bad", "bad"],
 };
+// No part, and nothing that went wrong.
+const STOPPED = ["Stopped", "wait"];
 const KINDS = { JOB_KIND_CHECK: "check", JOB_KIND_SIMULATE: "simulation", JOB_KIND_RUN: "run" };
 const ACTIVITIES = {
   ACTIVITY_IDLE: ["Idle", "off"],
@@ -155,10 +157,11 @@ const OUTCOMES = {
   KIND_FAILED: "Failed",
   KIND_CANCELLED: "Cancelled",
   KIND_BUDGET_EXCEEDED: "Budget exceeded",
+  KIND_INTERRUPTED: "Interrupted: look where the machine stands",
 };
 
 // Until the job itself is read again.
-const ENDED = { KIND_COMPLETED: "STATE_SUCCEEDED", KIND_STOPPED: "STATE_SUCCEEDED", KIND_CANCELLED: "STATE_CANCELLED" };
+const ENDED = { KIND_COMPLETED: "STATE_SUCCEEDED", KIND_CANCELLED: "STATE_CANCELLED", KIND_INTERRUPTED: "STATE_INTERRUPTED" };
 
 const isFinished = (state) => state !== "STATE_QUEUED" && state !== "STATE_RUNNING";
 const lastPart = (name) => (name ?? "").split("/").pop();
@@ -301,7 +304,8 @@ function fillRow(row, job) {
   const tries = job.attempts > 1 ? ` \u00b7 attempt ${job.attempts}` : "";
   setText(row.sub, `#${lastPart(job.name)} \u00b7 ${KINDS[job.kind] ?? "job"}${tries}`);
   setText(row.machine, lastPart(job.machine));
-  const judged = job.state === "STATE_SUCCEEDED" ? VERDICTS[job.outcome?.verdict] : undefined;
+  const judged = job.state === "STATE_SUCCEEDED" ? VERDICTS[job.outcome?.verdict]
+    : job.outcome?.kind === "KIND_STOPPED" ? STOPPED : undefined;
   const [word, tone] = judged ?? STATES[job.state] ?? ["Unknown", "off"];
   const held = progress.get(job.name)?.held && job.state === "STATE_RUNNING";
   setText(row.chip, held ? "Held" : word);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/base/secret.h"
+
 namespace rmlcell::server {
 namespace {
 
@@ -17,7 +19,7 @@ std::string Value(const std::multimap<std::string, std::string>& metadata, const
 
 Result<Caller> Gate::Admit(const CallFacts& call) const {
   Caller caller{.identity = "local", .role = Role::kAdmin, .peer = call.peer, .request_id = {}};
-  if (!web_secret_.empty() && Value(call.metadata, "rmlcell-web-secret") == web_secret_) {
+  if (KnowsSecret(Value(call.metadata, "rmlcell-web-secret"), web_secret_)) {
     caller.peer = "web:" + Value(call.metadata, "rmlcell-web-peer");
   }
   caller.request_id = Value(call.metadata, "x-request-id").substr(0, kRequestIdShown);

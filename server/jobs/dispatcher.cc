@@ -4,6 +4,7 @@
 #include "server/base/config.h"
 #include "server/base/executor.h"
 #include "server/base/names.h"
+#include "server/base/secret.h"
 #include "server/base/version.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher_worker.h"
@@ -43,7 +44,8 @@ Dispatcher::~Dispatcher() {
 
 Result<Dispatcher::WorkerId> Dispatcher::Join(std::shared_ptr<WorkerLine> line,
                                               const v1::WorkerHello& hello) {
-  if (hello.join_token() != join_token_) return Error{ErrorCode::kCellJoinRefused, {}, {}};
+  if (!KnowsSecret(hello.join_token(), join_token_))
+    return Error{ErrorCode::kCellJoinRefused, {}, {}};
   if (hello.version() != kVersion) {
     return Error{ErrorCode::kCellVersionMismatch,
                  "the worker is " + hello.version() + ", the server " + std::string(kVersion),
@@ -98,7 +100,7 @@ void Dispatcher::Leave(WorkerId id) {
     if (worker->assignment) {
       spdlog::warn("worker {} is gone in the middle of {}", worker->name,
                    JobName(worker->assignment->lease.job));
-      Lose(worker->assignment->lease);
+      Lose(*worker->assignment);
       feed_.ForgetProgress(worker->assignment->lease.job);
       worker->assignment.reset();
     }
@@ -169,7 +171,8 @@ void Dispatcher::WakeIdle() {
 void Dispatcher::SweepLeases(const std::stop_token& stop) {
   const auto interval = std::chrono::milliseconds(config_.workers_lease_ms / 2);
   while (!stop.stop_requested()) {
-    const auto expired = store_.Expire(PolicyForLoss("the lease of its worker ran out"));
+    const auto expired =
+        store_.Expire(LossOf(WorkerDiedOutcome(), {}, "the lease of its worker ran out"));
     if (!expired) {
       spdlog::error("leases could not be looked at: {}", bridge::ErrorText(expired.error()));
     } else {

@@ -86,10 +86,9 @@ class Dispatcher {
   Result<storage::JobRecord> StoreEnd(const Worker& worker, const v1::Outcome& outcome,
                                       const std::vector<storage::NewArtifact>& artifacts);
   void EndAssignment(Worker& worker, bool stored);
-  void Lose(const storage::Lease& lease);
+  void Lose(const Assignment& assignment);
   void SweepLeases(const std::stop_token& stop);
   void EndFailedDeliveries();
-  storage::LossPolicy PolicyForLoss(const std::string& why) const;
   std::shared_ptr<Worker> Find(WorkerId id) const;
 
   storage::Store& store_;

@@ -32,10 +32,6 @@ v1::WorkerLease ToProto(const storage::Lease& lease) {
   return message;
 }
 
-storage::JobOutcome CancelledOutcome() {
-  return {.state = storage::JobState::kCancelled, .code = ErrorCode::kCellCancelled, .detail = {}};
-}
-
 v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind,
                                 double value) {
   v1::WorkResponse message;
@@ -94,6 +90,7 @@ void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::Lea
 
 void Dispatcher::EndWithoutWork(const std::shared_ptr<Worker>& worker,
                                 const storage::JobOutcome& how) {
+  worker->assignment->begun = true;  // as far as anybody could
   (void)StoreEnd(*worker, ToProto(how), {});
   EndAssignment(*worker, false);
   PostLook(worker);
@@ -108,13 +105,16 @@ Result<storage::JobRecord> Dispatcher::StoreEnd(
     spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker.name,
                  bridge::ErrorText(ended.error()));
     // A full disk must not leave the job without an owner until its lease runs out.
-    if (ended.error().code != ErrorCode::kCellLeaseLost) Lose(lease);
+    if (ended.error().code != ErrorCode::kCellLeaseLost) Lose(*worker.assignment);
   }
   return ended;
 }
 
 void Dispatcher::GiveBack(Worker& worker) {
-  (void)store_.HandBack(worker.assignment->lease, {StateEvent(storage::JobState::kQueued)});
+  const Assignment& assignment = *worker.assignment;
+  storage::LossPolicy policy = LossOf(StoppedOutcome(), assignment.place, "its worker stops");
+  policy.requeued = {StateEvent(storage::JobState::kQueued)};
+  (void)store_.HandBack(assignment.lease, policy);
   worker.leaving = true;
   EndAssignment(worker, false);
 }
@@ -131,7 +131,9 @@ Status Dispatcher::SendAssignment(Worker& worker, const storage::LeasedJob& leas
 
 void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& message) {
   const auto holds = [&](const v1::WorkerLease& lease) {
-    return worker->assignment && SameLease(worker->assignment->lease, lease);
+    const bool its_own = worker->assignment && SameLease(worker->assignment->lease, lease);
+    if (its_own) worker->assignment->begun = true;
+    return its_own;
   };
   switch (message.message_case()) {
     case v1::WorkRequest::kHeartbeat:
@@ -164,6 +166,7 @@ void Dispatcher::Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat)
   Assignment& assignment = *worker.assignment;
   if (heartbeat.has_progress()) {
     v1::JobProgress progress = heartbeat.progress();
+    assignment.place = progress.place();
     progress.set_job(JobName(assignment.lease.job));
     progress.set_attempt(assignment.lease.attempt);
     feed_.PublishProgress(assignment.lease.job, progress.SerializeAsString());
@@ -269,19 +272,15 @@ void Dispatcher::EndAssignment(Worker& worker, bool stored) {
   changed_.notify_all();
 }
 
-storage::LossPolicy Dispatcher::PolicyForLoss(const std::string& why) const {
-  v1::JobEvent lost;
-  lost.set_message(why);
-  const storage::JobOutcome outcome = WorkerDiedOutcome();
-  return {.outcome = outcome,
-          .requeued = {ToRecord(lost), StateEvent(storage::JobState::kQueued)},
-          .ended = {ToRecord(lost), EndedEvent(ToProto(outcome))},
-          .cancelled = {ToRecord(lost), EndedEvent(ToProto(CancelledOutcome()))}};
-}
-
-void Dispatcher::Lose(const storage::Lease& lease) {
-  const auto changed = store_.Abandon(
-      lease, PolicyForLoss("the worker of attempt " + std::to_string(lease.attempt) + " died"));
+void Dispatcher::Lose(const Assignment& assignment) {
+  const storage::Lease& lease = assignment.lease;
+  const std::string attempt = "attempt " + std::to_string(lease.attempt);
+  storage::LossPolicy policy =
+      LossOf(WorkerDiedOutcome(), assignment.place,
+             assignment.begun ? "the worker of " + attempt + " died"
+                              : "the worker of " + attempt + " died before it began");
+  policy.counts = assignment.begun;
+  const auto changed = store_.Abandon(lease, policy);
   if (!changed && changed.error().code != ErrorCode::kCellLeaseLost) {
     spdlog::error("{} could not be given back: {}", JobName(lease.job),
                   bridge::ErrorText(changed.error()));
@@ -302,7 +301,7 @@ void Dispatcher::EndFailedDeliveries() {
   for (auto& [worker, delivery] : failed) {
     Post(worker, [this, worker = worker, delivery = delivery] {
       if (!worker->assignment || worker->assignment->delivery != delivery) return;
-      Lose(worker->assignment->lease);
+      Lose(*worker->assignment);
       EndAssignment(*worker, false);
       Assign(worker);
     });

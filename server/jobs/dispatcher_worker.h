@@ -31,6 +31,8 @@ struct Dispatcher::Assignment {
   bool over_budget = false;
   std::map<int, storage::Revision> object_revisions;  // of the programs of its memory
   std::string machine;
+  bool begun = false;     // the worker has said so
+  v1::SourcePlace place;  // where the worker was, as it last said
   std::shared_ptr<Delivery> delivery = std::make_shared<Delivery>();
 };
 

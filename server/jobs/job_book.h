@@ -45,6 +45,7 @@ class JobBook {
   // Unfinished jobs and the newest finished ones, for a watcher that begins; without machines.
   Result<v1::CellSnapshot> Snapshot();
   Result<std::vector<storage::MachineRecord>> Machines() { return store_.ListMachines(); }
+  Result<std::vector<storage::MachineJobs>> UnfinishedJobs() { return store_.UnfinishedJobs(); }
 
  private:
   Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);

@@ -33,9 +33,10 @@ std::string_view KindOf(const v1::JobEvent& event) {
   return "";
 }
 
-// Verdict and reasons alone.
+// What the columns of the store do not say: the kind of the end, verdict and reasons.
 std::string JudgementBytes(const v1::Outcome& outcome) {
   v1::Outcome judged;
+  judged.set_kind(outcome.kind());
   judged.set_verdict(outcome.verdict());
   *judged.mutable_reasons() = outcome.reasons();
   return judged.SerializeAsString();
@@ -138,8 +139,8 @@ storage::JobOutcome OutcomeOf(const v1::Outcome& outcome) {
                            .judgement = JudgementBytes(outcome)};
   const auto found = FindByText(outcome.code());
   if (!outcome.code().empty() && !found.empty()) made.code = found.front()->code;
-  if (outcome.kind() == v1::Outcome::KIND_COMPLETED ||
-      outcome.kind() == v1::Outcome::KIND_STOPPED) {
+  // What was stopped is no part: only what ran to its end counts (LIVE-5.08).
+  if (outcome.kind() == v1::Outcome::KIND_COMPLETED) {
     made.state = storage::JobState::kSucceeded;
   } else if (outcome.kind() == v1::Outcome::KIND_CANCELLED) {
     made.state = storage::JobState::kCancelled;
@@ -153,12 +154,17 @@ v1::Outcome ToProto(const storage::JobOutcome& outcome) {
   if (!message.ParseFromString(outcome.judgement)) message.Clear();
   switch (outcome.state) {
     case storage::JobState::kSucceeded:
+      if (message.kind() != v1::Outcome::KIND_UNSPECIFIED) break;
       message.set_kind(outcome.code ? v1::Outcome::KIND_STOPPED : v1::Outcome::KIND_COMPLETED);
       break;
     case storage::JobState::kCancelled:
       message.set_kind(v1::Outcome::KIND_CANCELLED);
       break;
+    case storage::JobState::kInterrupted:
+      message.set_kind(v1::Outcome::KIND_INTERRUPTED);
+      break;
     default: {
+      if (message.kind() != v1::Outcome::KIND_UNSPECIFIED) break;
       // That a worker died says nothing about what the job needed.
       const bool budget = outcome.code && *outcome.code != ErrorCode::kCellWorkerDied &&
                           Lookup(*outcome.code).severity == Severity::kBudget;
@@ -179,12 +185,30 @@ v1::Outcome ToProto(const storage::JobOutcome& outcome) {
 }
 
 storage::JobOutcome WorkerDiedOutcome() {
-  return {.state = storage::JobState::kFailed,
-          .code = ErrorCode::kCellWorkerDied,
-          .detail = {},
-          .program = 0,
-          .step = 0,
-          .judgement = {}};
+  return {.state = storage::JobState::kFailed, .code = ErrorCode::kCellWorkerDied, .detail = {}};
+}
+
+storage::JobOutcome StoppedOutcome() {
+  return {.state = storage::JobState::kFailed, .code = ErrorCode::kCellHostStopped, .detail = {}};
+}
+
+storage::JobOutcome CancelledOutcome() {
+  return {.state = storage::JobState::kCancelled, .code = ErrorCode::kCellCancelled, .detail = {}};
+}
+
+storage::LossPolicy LossOf(storage::JobOutcome outcome, const v1::SourcePlace& place,
+                           const std::string& why) {
+  v1::JobEvent lost;
+  lost.set_message(why);
+  outcome.program = place.program();
+  outcome.step = place.step();
+  storage::JobOutcome interrupted = outcome;
+  interrupted.state = storage::JobState::kInterrupted;
+  return {.outcome = outcome,
+          .requeued = {ToRecord(lost), StateEvent(storage::JobState::kQueued)},
+          .ended = {ToRecord(lost), EndedEvent(ToProto(outcome))},
+          .interrupted = {ToRecord(lost), EndedEvent(ToProto(interrupted))},
+          .cancelled = {ToRecord(lost), EndedEvent(ToProto(CancelledOutcome()))}};
 }
 
 }  // namespace rmlcell::server

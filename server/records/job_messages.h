@@ -5,6 +5,7 @@
 
 #include "rmlcell/v1/job.pb.h"
 #include "storage/records.h"
+#include "storage/store.h"
 
 // Between records of the store and messages of the API.
 namespace rmlcell::server {
@@ -34,5 +35,13 @@ v1::Outcome ToProto(const storage::JobOutcome& outcome);
 
 // The outcome of a job whose worker died once more than its policy allows.
 storage::JobOutcome WorkerDiedOutcome();
+// The server stopped in order while a machine was moved (CELL-E9432).
+storage::JobOutcome StoppedOutcome();
+storage::JobOutcome CancelledOutcome();
+
+// What becomes of a job whose worker is lost, and what its watchers are told; `place` is where it
+// was.
+storage::LossPolicy LossOf(storage::JobOutcome outcome, const v1::SourcePlace& place,
+                           const std::string& why);
 
 }  // namespace rmlcell::server

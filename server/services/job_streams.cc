@@ -82,6 +82,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
       return Next::kEnd;
     }
     final_sequence_ = job->has_end_time() ? job->last_sequence() : -1;
+    message.set_sequence(cursor_);
     *message.mutable_snapshot() = std::move(*job);
     return Next::kMessage;
   }
@@ -101,6 +102,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
 
   bool MakeGoodbye(v1::WatchJobResponse& message) override {
     message.set_instance_id(needs_.instance_id);
+    message.set_sequence(cursor_);
     message.set_reconnect("the server stops; watch again after sequence " +
                           std::to_string(cursor_));
     return true;
@@ -178,13 +180,19 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
       status = ToGrpcStatus(machines.error());
       return Next::kEnd;
     }
+    const auto unfinished = needs_.book.UnfinishedJobs();
+    if (!unfinished) {
+      status = ToGrpcStatus(unfinished.error());
+      return Next::kEnd;
+    }
     for (const storage::MachineRecord& machine : *machines)
-      *snapshot->add_machines() = ToProto(machine);
+      *snapshot->add_machines() = ToProto(machine, *unfinished);
     if (const Status there = CheckPosition(cursor_, snapshot->sequence(), "the cell"); !there) {
       status = ToGrpcStatus(there.error());
       return Next::kEnd;
     }
     if (cursor_ == 0) cursor_ = snapshot->sequence();
+    message.set_sequence(cursor_);
     *message.mutable_snapshot() = std::move(*snapshot);
     return Next::kMessage;
   }
@@ -206,6 +214,7 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
 
   bool MakeGoodbye(v1::WatchJobsResponse& message) override {
     message.set_instance_id(needs_.instance_id);
+    message.set_sequence(cursor_);
     message.set_reconnect("the server stops; watch again after sequence " +
                           std::to_string(cursor_));
     return true;

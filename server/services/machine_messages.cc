@@ -1,5 +1,6 @@
 #include "server/services/machine_messages.h"
 
+#include <algorithm>
 #include <array>
 #include <sstream>
 
@@ -75,6 +76,20 @@ v1::Machine ToProto(const storage::MachineRecord& record) {
   message.set_etag(std::to_string(record.revision));
   *message.mutable_create_time() = ToProto(record.created_at);
   *message.mutable_update_time() = ToProto(record.updated_at);
+  return message;
+}
+
+v1::Machine ToProto(const storage::MachineRecord& record,
+                    const std::vector<storage::MachineJobs>& unfinished) {
+  v1::Machine message = ToProto(record);
+  const auto jobs = std::ranges::find(unfinished, record.id, &storage::MachineJobs::machine);
+  if (jobs == unfinished.end()) return message;
+  v1::MachineState& state = *message.mutable_state();
+  state.set_jobs_active(static_cast<std::int32_t>(jobs->unfinished));
+  if (jobs->oldest_running > 0) {
+    state.set_activity(v1::MachineState::ACTIVITY_RUNNING);
+    state.set_job(JobName(jobs->oldest_running));
+  }
   return message;
 }
 

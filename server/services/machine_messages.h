@@ -3,6 +3,7 @@
 #include <google/protobuf/field_mask.pb.h>
 
 #include <string>
+#include <vector>
 
 #include "engine/core/result.h"
 #include "rmlcell/v1/machine.pb.h"
@@ -16,6 +17,9 @@ namespace rmlcell::server {
 
 v1::Family ToProto(const machine::MachineFamily& family);
 v1::Machine ToProto(const storage::MachineRecord& record);
+// With what its jobs do, of those that Store::UnfinishedJobs gave.
+v1::Machine ToProto(const storage::MachineRecord& record,
+                    const std::vector<storage::MachineJobs>& unfinished);
 v1::LaserSchedule ToProto(const storage::ScheduleRecord& record);
 
 // A record that is not stored yet.

@@ -92,7 +92,9 @@ grpc::ServerUnaryReactor* MachineService::GetMachine(grpc::CallbackServerContext
                   if (!id) return ToGrpcStatus(id.error());
                   const auto machine = store_.GetMachine(*id);
                   if (!machine) return ToGrpcStatus(machine.error());
-                  *response = ToProto(*machine);
+                  const auto unfinished = store_.UnfinishedJobs();
+                  if (!unfinished) return ToGrpcStatus(unfinished.error());
+                  *response = ToProto(*machine, *unfinished);
                   return grpc::Status::OK;
                 });
 }
@@ -107,13 +109,15 @@ grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerConte
         if (!size) return ToGrpcStatus(size.error());
         const auto machines = store_.ListMachines();
         if (!machines) return ToGrpcStatus(machines.error());
+        const auto unfinished = store_.UnfinishedJobs();
+        if (!unfinished) return ToGrpcStatus(unfinished.error());
         for (const storage::MachineRecord& machine : *machines) {
           if (!request->page_token().empty() && machine.id <= request->page_token()) continue;
           if (response->machines_size() == *size) {
             response->set_next_page_token(*ParseMachineName(response->machines(*size - 1).name()));
             break;
           }
-          *response->add_machines() = ToProto(machine);
+          *response->add_machines() = ToProto(machine, *unfinished);
         }
         return grpc::Status::OK;
       });

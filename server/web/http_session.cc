@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "engine/core/letters.h"
+#include "server/web/refused_connection.h"
 #include "server/web/rpc_codec.h"
 
 namespace rmlcell::web {
@@ -89,10 +90,7 @@ class HttpSession : public Connection,
             std::to_string(peer.port());
     if (refused) {
       closing_ = true;
-      HttpResponse response =
-          Refusal(503, ErrorCode::kCellResourceExhausted, "too many connections to the web port");
-      response.headers.emplace_back("Retry-After", "2");
-      return Send(std::move(response));
+      return Send(TooManyConnections());
     }
     AwaitRequest();
   }

@@ -1,7 +1,9 @@
 #include "server/web/web_server.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ip/v6_only.hpp>
@@ -9,12 +11,14 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <boost/asio/write.hpp>
 #include <future>
 #include <thread>
 #include <vector>
 
 #include "engine/core/letters.h"
 #include "server/web/http_session.h"
+#include "server/web/refused_connection.h"
 
 namespace rmlcell::web {
 
@@ -25,7 +29,7 @@ using boost::system::error_code;
 namespace {
 
 constexpr int kThreadsMax = 64;
-// Connections beyond the limit that are being told so; more are closed without a word.
+// Connections beyond the limit that are told so and waited for; more are told and closed at once.
 constexpr std::size_t kRefusalsMax = 100;
 constexpr std::chrono::milliseconds kAcceptPause{100};  // when the process is out of descriptors
 constexpr std::chrono::minutes kEver{10};
@@ -41,6 +45,19 @@ Result<tcp::endpoint> EndpointOf(const WebOptions& options) {
                  {}};
   }
   return tcp::endpoint(parsed, static_cast<unsigned short>(options.port));
+}
+
+// Says that there are too many and closes, waiting for nothing.
+void RefuseAtOnce(tcp::socket socket) {
+  error_code error;
+  socket.non_blocking(true, error);
+  // It fits the buffer of a socket that is new.
+  asio::write(socket, asio::buffer(TooManyConnectionsText()), error);
+  // What is left unread makes the system break the connection, and the client may then not see the
+  // answer: a request that has come already is read.
+  std::array<char, 4096> unread{};
+  for (int i = 0; i < 16 && !error; ++i) socket.read_some(asio::buffer(unread), error);
+  socket.shutdown(asio::socket_base::shutdown_send, error);
 }
 
 GuardRules RulesOf(const WebOptions& options) {
@@ -104,6 +121,8 @@ struct WebServer::Core {
       const bool refused = open >= gateway.options.connections_max;
       if (open < gateway.options.connections_max + kRefusalsMax) {
         StartSession({gateway, logger, table, draining}, tcp::socket(std::move(socket)), refused);
+      } else {
+        RefuseAtOnce(tcp::socket(std::move(socket)));
       }
       Accept();
     });

@@ -340,6 +340,9 @@ class Attempt {
 bool JobRunner::Work(v1::WorkerAssignment assignment) {
   const v1::WorkerLease lease = assignment.lease();
   const std::int64_t memory = assignment.budget().memory_bytes();
+  v1::WorkRequest begun;  // from here on the attempt counts
+  *begun.mutable_heartbeat()->mutable_lease() = lease;
+  line_.Send(begun);
   Attempt attempt(line_, std::move(assignment), stopping_);
   Attempt::End end = Attempt::End::kFinished;
   // Translating a large program, a picture of a long path or a slow store may take longer than a

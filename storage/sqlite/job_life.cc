@@ -126,6 +126,13 @@ std::string_view HowItEnded(JobState state) {
   return {};
 }
 
+// The machine may have moved: a person decides, also when a cancel was wanted.
+void Interrupt(WriteContext& context, JobRecord& job, const LossPolicy& policy) {
+  JobOutcome interrupted = policy.outcome;
+  interrupted.state = JobState::kInterrupted;
+  EndJob(context, job, interrupted);
+}
+
 // The holder is gone without an outcome.
 Result<JobRecord> LoseAttempt(WriteContext& context, const Lease& lease, std::string_view how,
                               const LossPolicy& policy) {
@@ -133,12 +140,12 @@ Result<JobRecord> LoseAttempt(WriteContext& context, const Lease& lease, std::st
   if (!row) return row.error();
   if (const Status ended = EndAttempt(context, lease, how); !ended) return ended.error();
   JobRecord& job = row->job;
+  const int uncounted = row->attempts_begun - job.attempts;
+  if (!policy.counts && uncounted < kUncountedAttemptsMax) job.attempts -= 1;
   const std::vector<NewEvent>* events = &policy.ended;
   if (job.kind == kRunKind) {
-    // The machine may have moved: a person decides, also when a cancel was wanted.
-    JobOutcome interrupted = policy.outcome;
-    interrupted.state = JobState::kInterrupted;
-    EndJob(context, job, interrupted);
+    Interrupt(context, job, policy);
+    events = &policy.interrupted;
   } else if (job.cancel_requested && !policy.cancelled.empty()) {
     EndJob(context, job, Cancelled());
     events = &policy.cancelled;
@@ -334,16 +341,25 @@ Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const Job
   return std::move(row->job);
 }
 
-Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease,
-                              const std::vector<NewEvent>& events) {
+Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease, const LossPolicy& policy) {
+  if (const Status final_state = CheckFinal(policy.outcome); !final_state)
+    return final_state.error();
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
   if (const Status ended = EndAttempt(context, lease, "handed back"); !ended) return ended.error();
-  row->job.attempts -= 1;
-  SetState(context, row->job, JobState::kQueued);
-  if (const Status written = WriteChange(context, *row, lease.attempt, events); !written)
+  JobRecord& job = row->job;
+  const bool moved = job.kind == kRunKind;
+  if (moved) {
+    Interrupt(context, job, policy);
+  } else {
+    job.attempts -= 1;
+    SetState(context, job, JobState::kQueued);
+  }
+  if (const Status written =
+          WriteChange(context, *row, lease.attempt, moved ? policy.interrupted : policy.requeued);
+      !written)
     return written.error();
-  return std::move(row->job);
+  return std::move(job);
 }
 
 Result<JobRecord> AbandonJob(WriteContext& context, const Lease& lease, const LossPolicy& policy) {

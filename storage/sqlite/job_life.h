@@ -46,8 +46,7 @@ Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const Job
                             const std::vector<const PreparedContent*>& contents,
                             const std::vector<NewEvent>& events);
 
-Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease,
-                              const std::vector<NewEvent>& events);
+Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease, const LossPolicy& policy);
 
 Result<JobRecord> AbandonJob(WriteContext& context, const Lease& lease, const LossPolicy& policy);
 

@@ -114,6 +114,10 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
           database,
           "SELECT specification, specification_blob FROM job_specification WHERE job = ?1"),
       last_id_(database, "SELECT ifnull(max(id), 0) FROM job"),
+      unfinished_(database,
+                  "SELECT machine, count(*), min(CASE WHEN state = 1 THEN id END)"
+                  " FROM job INDEXED BY job_unfinished WHERE state < 2"
+                  " GROUP BY machine ORDER BY machine"),
       count_queued_(
           database,
           "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 0"),
@@ -186,6 +190,14 @@ Result<std::string> JobTable::Specification(std::int64_t id) {
 }
 
 Result<std::int64_t> JobTable::LastId() { return FirstInteger(last_id_.With()); }
+
+Result<std::vector<MachineJobs>> JobTable::Unfinished() {
+  return AllRows<MachineJobs>(unfinished_.With(), [](const Query& row) {
+    return MachineJobs{.machine = row.Text(0),
+                       .unfinished = row.Integer(1),
+                       .oldest_running = row.Integer(2)};  // 0 for NULL
+  });
+}
 
 Result<JobTable::Counts> JobTable::Count() {
   const Result<std::int64_t> queued = FirstInteger(count_queued_.With());

@@ -26,6 +26,7 @@ class JobTable {
   Result<std::optional<JobRow>> FindByRequest(std::string_view request_id);
   Result<std::optional<std::int64_t>> OldestQueued(std::string_view kind);
   Result<std::vector<JobRecord>> List(const JobQuery& query);
+  Result<std::vector<MachineJobs>> Unfinished();  // by machine
 
   Status Update(const JobRow& row);  // all that changes in the life of a job
   Status SetLastSequence(std::int64_t id, std::int64_t sequence);
@@ -67,6 +68,7 @@ class JobTable {
   Statement put_specification_;
   Statement specification_;
   Statement last_id_;
+  Statement unfinished_;
   Statement count_queued_;
   Statement count_running_;
   Statement count_finished_;

@@ -26,6 +26,7 @@ AttemptRecord ReadAttempt(const Query& row) {
 LeaseTable::LeaseTable(Database& database)
     : add_(database,
            "INSERT INTO lease (job, attempt, fence, worker, until) VALUES (?1, ?2, ?3, ?4, ?5)"),
+      end_all_(database, "UPDATE lease SET until = 0"),
       find_(database, "SELECT job, attempt, fence, worker, until FROM lease WHERE job = ?1"),
       // No index: there are no more leases than workers, and each renewal would have to keep it.
       run_out_(database,
@@ -51,6 +52,8 @@ Status LeaseTable::Prolong(std::int64_t job, WallTime until) {
 }
 
 Status LeaseTable::Remove(std::int64_t job) { return remove_.With(job).Run(); }
+
+Status LeaseTable::EndAll() { return end_all_.With().Run(); }
 
 AttemptTable::AttemptTable(Database& database)
     : add_(database,

@@ -17,9 +17,11 @@ class LeaseTable {
   Result<std::vector<Lease>> RunOut(WallTime now);  // by job
   Status Prolong(std::int64_t job, WallTime until);
   Status Remove(std::int64_t job);
+  Status EndAll();  // every lease has run out
 
  private:
   Statement add_;
+  Statement end_all_;
   Statement find_;
   Statement run_out_;
   Statement prolong_;

@@ -114,6 +114,10 @@ Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
   auto connection = std::make_unique<Connection>(*std::move(database));
   const Status released = connection->tables.blobs.ReleaseAll();
   if (!released) return Named(released.error(), options.path);
+  // One process at a time has this file: whoever gave these leases is gone, and with it the lines
+  // to those who held them.
+  const Status ended = connection->tables.leases.EndAll();
+  if (!ended) return Named(ended.error(), options.path);
   const Result<Counters> counters = ReadCounters(connection->tables);
   if (!counters) return Named(counters.error(), options.path);
   Result<std::unique_ptr<ReaderPool>> readers = ReaderPool::Open(

@@ -67,6 +67,7 @@ class SqliteStore final : public Store {
   Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) override;
   Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) override;
   Result<JobCounts> CountJobs() override;
+  Result<std::vector<MachineJobs>> UnfinishedJobs() override;
   Result<JobRecord> RequestCancel(std::int64_t job, const std::vector<NewEvent>& events) override;
 
   Result<std::optional<LeasedJob>> Acquire(std::string_view worker,
@@ -80,7 +81,7 @@ class SqliteStore final : public Store {
   Result<JobRecord> Finish(const Lease& lease, const JobOutcome& outcome,
                            const std::vector<NewArtifact>& artifacts,
                            const std::vector<NewEvent>& events) override;
-  Status HandBack(const Lease& lease, const std::vector<NewEvent>& events) override;
+  Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) override;
   Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) override;
   Result<std::vector<JobRecord>> Expire(const LossPolicy& policy) override;
 

@@ -215,6 +215,10 @@ Result<std::vector<AttemptRecord>> SqliteStore::ListAttempts(std::int64_t job) {
 
 Result<JobCounts> SqliteStore::CountJobs() { return writer_.job_counts(); }
 
+Result<std::vector<MachineJobs>> SqliteStore::UnfinishedJobs() {
+  return readers_->Read([](Tables& tables) { return tables.jobs.Unfinished(); });
+}
+
 Result<JobRecord> SqliteStore::RequestCancel(std::int64_t job,
                                              const std::vector<NewEvent>& events) {
   return WithSpecification(
@@ -268,10 +272,9 @@ Result<JobRecord> SqliteStore::Finish(const Lease& lease, const JobOutcome& outc
   }));
 }
 
-Status SqliteStore::HandBack(const Lease& lease, const std::vector<NewEvent>& events) {
-  const Result<JobRecord> job =
-      writer_.Do([&](WriteContext& context) { return HandBackJob(context, lease, events); });
-  return job ? Status() : Status(job.error());
+Result<JobRecord> SqliteStore::HandBack(const Lease& lease, const LossPolicy& policy) {
+  return WithSpecification(
+      writer_.Do([&](WriteContext& context) { return HandBackJob(context, lease, policy); }));
 }
 
 Result<JobRecord> SqliteStore::Abandon(const Lease& lease, const LossPolicy& policy) {

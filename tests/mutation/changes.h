@@ -62,32 +62,45 @@ constexpr auto Plain(const auto& a, const auto& b) {
   if constexpr (order == Order::kEqual) return a == b;
   if constexpr (order == Order::kUnequal) return a != b;
 }
-// 0 is no change.
-template <Order order>
-constexpr auto Compare(unsigned contrary, unsigned bound, const auto& a, const auto& b) {
-  if constexpr (requires { Plain<Contrary(order)>(a, b); }) {
-    if (contrary != 0 && On(contrary)) return Plain<Contrary(order)>(a, b);
-  }
-  if (bound != 0 && On(bound)) return Plain<WithItsEnd(order)>(a, b);
-  return Plain<order>(a, b);
-}
 
+// An order as an argument: where types hang on a template, `.Compare<>` would need the word
+// template.
+template <Order order>
+struct Is {};
+
+// Left and right of an operator.
 template <class A, class B>
-constexpr auto Add(unsigned change, A&& a, B&& b) {
-  using Sum = decltype(std::forward<A>(a) + std::forward<B>(b));
-  if constexpr (requires { static_cast<Sum>(a - b); }) {
-    if (On(change)) return static_cast<Sum>(a - b);
+struct Operands {
+  A&& a;
+  B&& b;
+
+  // 0 is no change.
+  template <Order order>
+  constexpr auto Compare(Is<order>, unsigned contrary, unsigned bound) const {
+    if constexpr (requires { Plain<Contrary(order)>(a, b); }) {
+      if (contrary != 0 && On(contrary)) return Plain<Contrary(order)>(a, b);
+    }
+    if (bound != 0 && On(bound)) return Plain<WithItsEnd(order)>(a, b);
+    return Plain<order>(a, b);
   }
-  return std::forward<A>(a) + std::forward<B>(b);
-}
+  constexpr auto Add(unsigned change) const {
+    using Sum = decltype(std::forward<A>(a) + std::forward<B>(b));
+    if constexpr (requires { static_cast<Sum>(a - b); }) {
+      if (On(change)) return static_cast<Sum>(a - b);
+    }
+    return std::forward<A>(a) + std::forward<B>(b);
+  }
+  constexpr auto Subtract(unsigned change) const {
+    using Difference = decltype(std::forward<A>(a) - std::forward<B>(b));
+    if constexpr (requires { static_cast<Difference>(a + b); }) {
+      if (On(change)) return static_cast<Difference>(a + b);
+    }
+    return std::forward<A>(a) - std::forward<B>(b);
+  }
+};
 template <class A, class B>
-constexpr auto Subtract(unsigned change, A&& a, B&& b) {
-  using Difference = decltype(std::forward<A>(a) - std::forward<B>(b));
-  if constexpr (requires { static_cast<Difference>(a + b); }) {
-    if (On(change)) return static_cast<Difference>(a + b);
-  }
-  return std::forward<A>(a) - std::forward<B>(b);
-}
+Operands(A&&, B&&) -> Operands<A, B>;
+
 template <class B>
 constexpr decltype(auto) AddTo(unsigned change, auto& a, B&& b) {
   if constexpr (requires { a -= b; }) {

@@ -67,12 +67,18 @@ class SwitchedSource:
             self.put_around(*stretch, f"changes::{begin}", ")", number)
             self.replace(index, between, number)
 
+    def of_both(self, stretch, index, method, number):
+        # In braces what stands left is evaluated first, as with the operator; arguments have no order.
+        if stretch:
+            self.put_around(*stretch, "changes::Operands{", f"}}.{method}", number)
+            self.replace(index, ",", number)
+
     def compare(self):
         for index, kinds in self.orders.items():
             text = self.operands.tokens[index].text
             stretch = self.of_binary(index, RANK[text])
             contrary, bound = kinds.get("comparison", 0), kinds.get("bound", 0)
-            self.call(stretch, index, f"Compare<changes::Order::{ORDERS[text]}>({contrary}, {bound}, ", max(kinds.values()))
+            self.of_both(stretch, index, f"Compare(changes::Is<changes::Order::{ORDERS[text]}>(), {contrary}, {bound})", max(kinds.values()))
             if stretch:
                 self.switched.update(kinds.values())
 
@@ -103,7 +109,7 @@ class SwitchedSource:
         elif token.text in ("+=", "-="):
             self.call(self.of_binary(index, 0), index, f"{CALLS[token.text]}({number}, ", number)
         elif self.operands.is_binary(index):
-            self.call(self.of_binary(index, RANK[token.text]), index, f"{CALLS[token.text]}({number}, ", number)
+            self.of_both(self.of_binary(index, RANK[token.text]), index, f"{CALLS[token.text]}({number})", number)
         else:
             stretch = self.stretch(index, self.operands.end_of_unary(index))
             self.call(stretch, index, f"Negative({number}, ", number, "")

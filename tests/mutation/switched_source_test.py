@@ -28,6 +28,8 @@ int Run(int a, int b, double length) {
     sum -= k < a ? -k : k;
   }
   Show(sum);
+  int at = b;
+  Show(Take(at -= 1, 1) - Take(at -= 2, 1) + (Take(at += a, 0) < Take(at -= 3, 0)));
   const std::string text = "at " + std::to_string(sum + a);
   Show(static_cast<int>(text.size()) + Take(Take(1, a), b - 1));
   const ErrorCode code = length < 3.0 ? ErrorCode::kBelow : ErrorCode::kFar;

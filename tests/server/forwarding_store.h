@@ -90,6 +90,9 @@ class ForwardingStore : public storage::Store {
     return store_.ListAttempts(job);
   }
   Result<storage::JobCounts> CountJobs() override { return store_.CountJobs(); }
+  Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override {
+    return store_.UnfinishedJobs();
+  }
   Result<storage::JobRecord> RequestCancel(std::int64_t job,
                                            const std::vector<storage::NewEvent>& events) override {
     return store_.RequestCancel(job, events);
@@ -112,9 +115,9 @@ class ForwardingStore : public storage::Store {
                                     const std::vector<storage::NewEvent>& events) override {
     return store_.Finish(lease, outcome, artifacts, events);
   }
-  Status HandBack(const storage::Lease& lease,
-                  const std::vector<storage::NewEvent>& events) override {
-    return store_.HandBack(lease, events);
+  Result<storage::JobRecord> HandBack(const storage::Lease& lease,
+                                      const storage::LossPolicy& policy) override {
+    return store_.HandBack(lease, policy);
   }
   Result<storage::JobRecord> Abandon(const storage::Lease& lease,
                                      const storage::LossPolicy& policy) override {

@@ -422,7 +422,7 @@ TEST_P(StoreConformance, JobsAreCounted) {
   EXPECT_EQ(counts(), Counts(2, 3));
   Finish(first.lease);
   EXPECT_EQ(counts(), Counts(2, 2));
-  Must(store().HandBack(second.lease, {}));
+  Must(store().HandBack(second.lease, PolicyOfTests()));
   EXPECT_EQ(counts(), Counts(3, 1));
   Must(store().Abandon(third.lease, PolicyOfTests()));
   EXPECT_EQ(counts(), Counts(4, 0));
@@ -433,6 +433,39 @@ TEST_P(StoreConformance, JobsAreCounted) {
   Acquire();
   Reopen();
   EXPECT_EQ(counts(), Counts(2, 1));
+}
+
+// store.h UnfinishedJobs: by machine what waits or runs, and the oldest that runs.
+TEST_P(StoreConformance, UnfinishedJobsAreCountedByMachine) {
+  EXPECT_TRUE(Must(store().UnfinishedJobs()).empty());
+  const auto submit = [&](const std::string& machine) {
+    return Must(store().SubmitAndWait({.machine = machine, .kind = "SIMULATE"})).job.id;
+  };
+  const std::int64_t first = submit("mill-2");
+  submit("mill-1");
+  submit("mill-2");
+  submit("mill-2");
+  const auto told = [&] {
+    std::string text;
+    for (const MachineJobs& jobs : Must(store().UnfinishedJobs())) {
+      text += jobs.machine + " " + std::to_string(jobs.unfinished) + " " +
+              std::to_string(jobs.oldest_running) + "; ";
+    }
+    return text;
+  };
+  EXPECT_EQ(told(), "mill-1 1 0; mill-2 3 0; ");
+  const LeasedJob oldest = Acquire();
+  ASSERT_EQ(oldest.job.id, first);
+  const LeasedJob only = Acquire();  // of mill-1
+  const LeasedJob third = Acquire();
+  EXPECT_EQ(told(), "mill-1 1 " + std::to_string(only.job.id) + "; mill-2 3 " +
+                        std::to_string(first) + "; ");
+  Finish(oldest.lease);
+  EXPECT_EQ(told(), "mill-1 1 " + std::to_string(only.job.id) + "; mill-2 2 " +
+                        std::to_string(third.job.id) + "; ");
+  Finish(only.lease);
+  Must(store().HandBack(third.lease, PolicyOfTests()));
+  EXPECT_EQ(told(), "mill-2 2 0; ");
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ TEST_P(StoreConformance, FencesGrow) {
     const LeasedJob leased = (Submit(), Acquire());
     EXPECT_GT(leased.lease.fence, fence);
     fence = leased.lease.fence;
-    Must(store().HandBack(leased.lease, {}));
+    Must(store().HandBack(leased.lease, PolicyOfTests()));
     Reopen();
   }
 }
@@ -120,7 +120,7 @@ TEST_P(StoreConformance, StaleWorkerIsRefused) {
     EXPECT_EQ(CodeOf(store().AppendAndWait(stale, {{.kind = "e", .payload = ""}})), kLost);
     EXPECT_EQ(CodeOf(store().AppendAndWait(stale, {})), kLost);
     EXPECT_EQ(CodeOf(store().Finish(stale, {}, {{.name = "report", .bytes = "r"}}, {})), kLost);
-    EXPECT_EQ(CodeOf(store().HandBack(stale, {})), kLost);
+    EXPECT_EQ(CodeOf(store().HandBack(stale, PolicyOfTests())), kLost);
     EXPECT_EQ(CodeOf(store().Abandon(stale, PolicyOfTests())), kLost);
   };
   refused();  // while the job waits
@@ -259,12 +259,12 @@ TEST_P(StoreConformance, RunIsInterruptedNotRepeated) {
   EXPECT_EQ(ended[0].outcome->state, JobState::kInterrupted);
   EXPECT_EQ(ended[0].outcome->code, ErrorCode::kCellWorkerDied);
   EXPECT_EQ(ended[0].outcome->step, 34);
-  EXPECT_THAT(KindsOf(EventsOf(leased.job.id)), ElementsAre("ended"));
+  EXPECT_THAT(KindsOf(EventsOf(leased.job.id)), ElementsAre("interrupted"));
   EXPECT_FALSE(Must(store().Acquire("w", {"RUN"}, kLease, {})));
   // It has ended: a cancel that comes late changes nothing.
   EXPECT_EQ(Must(store().RequestCancel(leased.job.id, {{.kind = "ended", .payload = "c"}})).state,
             JobState::kInterrupted);
-  EXPECT_THAT(KindsOf(EventsOf(leased.job.id)), ElementsAre("ended"));
+  EXPECT_THAT(KindsOf(EventsOf(leased.job.id)), ElementsAre("interrupted"));
 }
 
 // store.h LossPolicy: a lost job whose cancel was requested is cancelled, if the caller has events
@@ -313,7 +313,7 @@ TEST_P(StoreConformance, HandedBackAttemptDoesNotCount) {
     const LeasedJob leased = Acquire();
     EXPECT_EQ(leased.lease.attempt, i);
     EXPECT_EQ(leased.job.attempts, 1);
-    Must(store().HandBack(leased.lease, {{.kind = "back", .payload = ""}}));
+    EXPECT_EQ(Must(store().HandBack(leased.lease, PolicyOfTests())).state, JobState::kQueued);
     EXPECT_EQ(Must(store().GetJob(job.id)).state, JobState::kQueued);
     EXPECT_EQ(Must(store().GetJob(job.id)).attempts, 0);
   }
@@ -324,6 +324,24 @@ TEST_P(StoreConformance, HandedBackAttemptDoesNotCount) {
   EXPECT_EQ(attempts[0].how_it_ended, "handed back");
   EXPECT_EQ(attempts[6].number, 7);
   EXPECT_EQ(EventsOf(job.id)[4].attempt, 5);
+}
+
+// store.h HandBack: what moved a machine is not begun again, though attempts are left.
+TEST_P(StoreConformance, RunThatIsHandedBackIsInterrupted) {
+  const LeasedJob leased = (Submit("RUN"), Acquire("w", "RUN"));
+  const JobRecord ended = Must(store().HandBack(leased.lease, PolicyOfTests()));
+  EXPECT_EQ(ended.state, JobState::kInterrupted);
+  EXPECT_EQ(ended.attempts, 1);
+  ASSERT_TRUE(ended.outcome);
+  EXPECT_EQ(ended.outcome->state, JobState::kInterrupted);
+  EXPECT_EQ(ended.outcome->code, ErrorCode::kCellWorkerDied);
+  EXPECT_EQ(ended.outcome->program, 12);
+  EXPECT_EQ(ended.outcome->step, 34);
+  EXPECT_EQ(ended.finished_at, clock().Now());
+  EXPECT_THAT(KindsOf(EventsOf(leased.job.id)), ElementsAre("interrupted"));
+  EXPECT_THAT(EndsOf(Must(store().ListAttempts(leased.job.id))), ElementsAre("handed back"));
+  EXPECT_FALSE(Must(store().Acquire("w", {"RUN"}, kLease, {})));
+  EXPECT_EQ(CodeOf(store().HandBack(leased.lease, PolicyOfTests())), ErrorCode::kCellLeaseLost);
 }
 
 // store.h Finish: state, outcome, times, events and artifacts come together.
@@ -398,7 +416,7 @@ TEST_P(StoreConformance, ManyWorkersFinishEveryJobOnce) {
           static_cast<void>(store().AppendAndWait(lease, {{.kind = "e", .payload = ""}}));
           switch (random() % 5) {
             case 0:
-              static_cast<void>(store().HandBack(lease, {}));
+              static_cast<void>(store().HandBack(lease, PolicyOfTests()));
               break;
             case 1:
               clock().Advance(2 * kLease);

@@ -66,7 +66,7 @@ void Work(Store& store, unsigned seed, const std::atomic<bool>& done) {
       case 0:
         break;
       case 1:
-        static_cast<void>(store.HandBack(lease, {{.kind = "back"}}));
+        static_cast<void>(store.HandBack(lease, policy));
         break;
       default: {
         const auto ended =

@@ -273,6 +273,22 @@ TEST(SqliteOpen, DamagedJobDoesNotStopTheExpiryOfOthers) {
   EXPECT_EQ(CodeOf(bed.store().Expire(PolicyOfTests())), ErrorCode::kCellStoreCorrupt);
 }
 
+// Whoever leased a job through this file is gone when it is opened again, since one process at a
+// time has it: the job does not wait for the end of its lease.
+TEST(SqliteOpen, LeasesOfBeforeHaveRunOut) {
+  SqliteBed bed;
+  Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+  const Lease held = Must(bed.store().Acquire("w", {"CHECK"}, kLease, {}))->lease;
+  EXPECT_TRUE(Must(bed.store().Expire(PolicyOfTests())).empty());
+  bed.Reopen();
+  EXPECT_EQ(CodeOf(bed.store().Renew(held, kLease)), std::nullopt);  // until somebody takes it
+  bed.Reopen();
+  const auto expired = Must(bed.store().Expire(PolicyOfTests()));
+  ASSERT_EQ(expired.size(), 1U);
+  EXPECT_EQ(expired[0].state, JobState::kQueued);
+  EXPECT_EQ(CodeOf(bed.store().Renew(held, kLease)), ErrorCode::kCellLeaseLost);
+}
+
 // A code that another version has invented must not hide the job that ended with it.
 TEST(SqliteOpen, UnknownErrorCodeIsKeptAsText) {
   SqliteBed bed;

@@ -127,6 +127,7 @@ inline LossPolicy PolicyOfTests() {
                       .step = 34},
           .requeued = {{.kind = "requeued", .payload = "r"}},
           .ended = {{.kind = "ended", .payload = "e"}},
+          .interrupted = {{.kind = "interrupted", .payload = "i"}},
           .cancelled = {{.kind = "cancelled", .payload = "c"}}};
 }
 

@@ -61,7 +61,7 @@ MAY_INCLUDE = {
     "proto/bridge": ["engine/core", "engine/machine", "engine/families", REPORT, PICTURE, MATERIAL, RUN, "proto"],
     # What every room of the server may use.
     "server/base": ["engine/core", "storage"],
-    "server/auth": ["engine/core"],
+    "server/auth": ["engine/core", "server/base"],
     "server/events": ["engine/core", "server/base", "storage"],
     # What programs, projects and jobs share.
     "server/records": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base",
@@ -123,7 +123,7 @@ PUBLIC = {
     "storage/sqlite": ["sqlite_store.h"],
     "proto/bridge": ["comparison.h", "encoding.h", "files.h", "findings.h", "framing.h", "header_date.h", "milling.h",
                      "report.h", "setup.h", "sha256.h", "spooled_bytes.h"],
-    "server/base": ["config.h", "executor.h", "log.h", "names.h", "readable.h", "steady_clock.h", "version.h"],
+    "server/base": ["config.h", "executor.h", "log.h", "names.h", "readable.h", "secret.h", "steady_clock.h", "version.h"],
     "server/events": ["event_feed.h"],
     "server/jobs": ["dispatcher.h", "job_book.h", "worker_processes.h"],
     "server/records": ["file_family.h", "job_messages.h", "program_place.h", "update_mask.h"],

@@ -137,6 +137,7 @@ class FakeLog final : public storage::Store {
   }
   Result<std::vector<storage::AttemptRecord>> ListAttempts(std::int64_t) override { return No(); }
   Result<storage::JobCounts> CountJobs() override { return No(); }
+  Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override { return No(); }
   Result<storage::JobRecord> RequestCancel(std::int64_t,
                                            const std::vector<storage::NewEvent>&) override {
     return No();
@@ -158,7 +159,7 @@ class FakeLog final : public storage::Store {
                                     const std::vector<storage::NewEvent>&) override {
     return No();
   }
-  Status HandBack(const storage::Lease&, const std::vector<storage::NewEvent>&) override {
+  Result<storage::JobRecord> HandBack(const storage::Lease&, const storage::LossPolicy&) override {
     return No();
   }
   Result<storage::JobRecord> Abandon(const storage::Lease&, const storage::LossPolicy&) override {

@@ -66,6 +66,11 @@ class FakeWorker {
               const std::map<int, std::string>& executables = {});
   void HandBack();
   void Leave() { dispatcher_.Leave(id_); }
+  // After it said that it began with its job: this attempt counts.
+  void BeginAndLeave() {
+    Heartbeat();
+    Leave();
+  }
 
   // What the server says about the lease: stored, lost; nothing when it does not say.
   std::optional<bool> Released();

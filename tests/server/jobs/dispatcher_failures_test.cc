@@ -161,7 +161,7 @@ TEST(DispatcherCancel, InEachState) {
   FakeWorker worker(bed.dispatcher(), "w");
   const std::vector<std::pair<v1::Outcome::Kind, JobState>> ends = {
       {v1::Outcome::KIND_COMPLETED, JobState::kSucceeded},
-      {v1::Outcome::KIND_STOPPED, JobState::kSucceeded},
+      {v1::Outcome::KIND_STOPPED, JobState::kFailed},
       {v1::Outcome::KIND_FAILED, JobState::kFailed},
       {v1::Outcome::KIND_BUDGET_EXCEEDED, JobState::kFailed},
       {v1::Outcome::KIND_CANCELLED, JobState::kCancelled}};
@@ -208,7 +208,7 @@ TEST(DispatcherLoss, AJobHasSoManyAttemptsAndNoMore) {
       EXPECT_EQ(worker.assignment().lease().attempt(), attempt);
       // By turns the line breaks and the lease runs out.
       if (attempt % 2 == 0) {
-        worker.Leave();
+        worker.BeginAndLeave();
       } else {
         bed.Advance(milliseconds(300));
       }
@@ -237,7 +237,7 @@ TEST(DispatcherLoss, IsToldInTheLogOfTheJob) {
   const std::int64_t job = bed.server.SubmitCheck("STOP\n", 2);
   FakeWorker first(bed.dispatcher(), "first");
   ASSERT_TRUE(first.Take());
-  first.Leave();
+  first.BeginAndLeave();
   FakeWorker second(bed.dispatcher(), "second");
   ASSERT_TRUE(second.Take());
   second.Finish();

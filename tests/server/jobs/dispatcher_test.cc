@@ -331,7 +331,7 @@ TEST(DispatcherLoss, AJobIsTriedAgainAndThenFailsWithACodeThatSaysSo) {
     FakeWorker worker(bed.dispatcher(), "w" + std::to_string(attempt));
     ASSERT_TRUE(worker.Take());
     EXPECT_EQ(worker.assignment().lease().attempt(), attempt);
-    worker.Leave();
+    worker.BeginAndLeave();
     ASSERT_TRUE(bed.Becomes(job, attempt < 2 ? JobState::kQueued : JobState::kFailed));
   }
   EXPECT_EQ(bed.Job(job).outcome->code, ErrorCode::kCellWorkerDied);
@@ -346,12 +346,53 @@ TEST(DispatcherLoss, AJobIsTriedAgainAndThenFailsWithACodeThatSaysSo) {
   EXPECT_EQ(healthy.job(), next);
 }
 
+// Two workers that are killed at once: the job of the first goes to the second, which is dead
+// already and never says that it began.
+TEST(DispatcherLoss, AnAttemptThatNeverBeganDoesNotCount) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck("STOP\n", 2);
+  FakeWorker one(bed.dispatcher(), "one");
+  ASSERT_TRUE(one.Take());
+  FakeWorker other(bed.dispatcher(), "other");
+  one.BeginAndLeave();
+  ASSERT_TRUE(other.Take());
+  other.Leave();
+  ASSERT_TRUE(bed.Becomes(job, JobState::kQueued));
+  EXPECT_EQ(bed.Job(job).attempts, 1);
+  FakeWorker third(bed.dispatcher(), "third");
+  ASSERT_TRUE(third.Take());
+  EXPECT_EQ(third.assignment().lease().attempt(), 3);
+  std::vector<std::string> told;
+  for (const v1::JobEvent& event : bed.Events(job)) {
+    if (event.has_message()) told.push_back(event.message());
+  }
+  EXPECT_THAT(told, testing::ElementsAre("the worker of attempt 1 died",
+                                         "the worker of attempt 2 died before it began"));
+  third.Finish();
+  EXPECT_EQ(third.Released(), true);
+  EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
+}
+
+// What kills each worker before it can say a word does not do so for ever: kUncountedAttemptsMax.
+TEST(DispatcherLoss, AJobThatKillsEveryWorkerAtOnceEnds) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck("STOP\n", 2);
+  for (int attempt = 1; attempt <= 10; ++attempt) {
+    FakeWorker worker(bed.dispatcher(), "w" + std::to_string(attempt));
+    ASSERT_TRUE(worker.Take());
+    worker.Leave();
+    ASSERT_TRUE(bed.Becomes(job, attempt < 10 ? JobState::kQueued : JobState::kFailed)) << attempt;
+  }
+  EXPECT_EQ(bed.Job(job).attempts, 2);
+  EXPECT_EQ(bed.Job(job).outcome->code, ErrorCode::kCellWorkerDied);
+}
+
 TEST(DispatcherLoss, AJobWithOneAttemptFailsAtOnce) {
   DispatcherBed bed;
   const std::int64_t job = bed.server.SubmitCheck("STOP\n", 1);
   FakeWorker worker(bed.dispatcher(), "w");
   ASSERT_TRUE(worker.Take());
-  worker.Leave();
+  worker.BeginAndLeave();
   ASSERT_TRUE(bed.Becomes(job, JobState::kFailed));
   EXPECT_EQ(bed.Job(job).attempts, 1);
 }

@@ -217,7 +217,7 @@ TEST(JobMessages, AnOutcomeOfAWorkerIsRead) {
     return OutcomeOf(outcome);
   };
   EXPECT_EQ(kept(v1::Outcome::KIND_COMPLETED).state, JobState::kSucceeded);
-  EXPECT_EQ(kept(v1::Outcome::KIND_STOPPED).state, JobState::kSucceeded);
+  EXPECT_EQ(kept(v1::Outcome::KIND_STOPPED).state, JobState::kFailed);  // half a part is no part
   EXPECT_EQ(kept(v1::Outcome::KIND_CANCELLED).state, JobState::kCancelled);
   EXPECT_EQ(kept(v1::Outcome::KIND_FAILED).state, JobState::kFailed);
   EXPECT_EQ(kept(v1::Outcome::KIND_BUDGET_EXCEEDED).state, JobState::kFailed);
@@ -231,11 +231,55 @@ TEST(JobMessages, AnOutcomeOfAWorkerIsRead) {
   EXPECT_EQ(kept(v1::Outcome::KIND_FAILED, "OPT-E99999").code, std::nullopt);
 }
 
+// How a run ended is kept as it was told, whatever the state of the job is called.
+TEST(JobMessages, TheKindOfAnEndIsKept) {
+  for (const auto kind :
+       {v1::Outcome::KIND_COMPLETED, v1::Outcome::KIND_STOPPED, v1::Outcome::KIND_FAILED,
+        v1::Outcome::KIND_CANCELLED, v1::Outcome::KIND_BUDGET_EXCEEDED}) {
+    v1::Outcome outcome;
+    outcome.set_kind(kind);
+    EXPECT_EQ(ToProto(OutcomeOf(outcome)).kind(), kind);
+    outcome.set_code("OPT-E7507");
+    EXPECT_EQ(ToProto(OutcomeOf(outcome)).kind(), kind);
+  }
+}
+
+// design.md section 8, LIVE-5.08: of a RUN that was lost its watchers hear what became of it, and
+// where it was; of other jobs what their outcome will be.
+TEST(JobMessages, ALostJobTellsWhereItWas) {
+  v1::SourcePlace place;
+  place.set_program(45);
+  place.set_step(6);
+  const storage::LossPolicy policy = LossOf(WorkerDiedOutcome(), place, "the worker died");
+  EXPECT_EQ(policy.outcome.state, JobState::kFailed);
+  EXPECT_EQ(policy.outcome.program, 45);
+  EXPECT_EQ(policy.outcome.step, 6);
+  const auto last = [](const std::vector<storage::NewEvent>& events) {
+    EXPECT_EQ(events.size(), 2U);
+    v1::JobEvent first, event;
+    EXPECT_TRUE(first.ParseFromString(events.front().payload));
+    EXPECT_EQ(first.message(), "the worker died");
+    EXPECT_TRUE(event.ParseFromString(events.back().payload));
+    return event;
+  };
+  EXPECT_EQ(last(policy.requeued).state(), v1::Job::STATE_QUEUED);
+  EXPECT_EQ(last(policy.cancelled).ended().kind(), v1::Outcome::KIND_CANCELLED);
+  for (const auto& [events, kind] : {std::pair(policy.ended, v1::Outcome::KIND_FAILED),
+                                     {policy.interrupted, v1::Outcome::KIND_INTERRUPTED}}) {
+    const v1::Outcome ended = last(events).ended();
+    EXPECT_EQ(ended.kind(), kind);
+    EXPECT_EQ(ended.code(), "CELL-E9301");
+    EXPECT_EQ(ended.place().program(), 45);
+    EXPECT_EQ(ended.place().step(), 6);
+  }
+}
+
 TEST(JobMessages, AnOutcomeSaysWhatHappenedInItsOwnWordsOrThoseOfTheCatalogue) {
   JobOutcome outcome{.state = JobState::kSucceeded, .code = ErrorCode::kCellCancelled};
-  EXPECT_EQ(ToProto(outcome).kind(), v1::Outcome::KIND_STOPPED);  // it ended before its last step
+  // As stores of before have it: it ended before its last step.
+  EXPECT_EQ(ToProto(outcome).kind(), v1::Outcome::KIND_STOPPED);
   outcome = {.state = JobState::kInterrupted};
-  EXPECT_EQ(ToProto(outcome).kind(), v1::Outcome::KIND_FAILED);
+  EXPECT_EQ(ToProto(outcome).kind(), v1::Outcome::KIND_INTERRUPTED);
   outcome = {.state = JobState::kFailed, .code = ErrorCode::kHoleRadiusZero};
   EXPECT_EQ(ToProto(outcome).message(), Lookup(ErrorCode::kHoleRadiusZero).when);
   EXPECT_FALSE(ToProto(outcome).has_place());

@@ -34,11 +34,9 @@ class JobsWatchTest : public testing::Test {
   static std::string NextOf(WatchedCell& stream) {
     const v1::WatchJobsResponse message = stream.Next();
     EXPECT_EQ(message.instance_id(), StreamBed::kInstance);
-    if (!message.has_event()) {
-      EXPECT_EQ(message.sequence(), 0);
-    }
     if (message.has_snapshot()) return "snapshot";
     if (message.has_progress()) {
+      EXPECT_EQ(message.sequence(), 0);
       return message.progress().job() + " at " + std::to_string(message.progress().steps()) +
              " steps";
     }
@@ -62,7 +60,7 @@ TEST_F(JobsWatchTest, ASnapshotOfTheCellFirst) {
   const v1::WatchJobsResponse first = watch.Next();
   ASSERT_TRUE(first.has_snapshot());
   EXPECT_EQ(first.instance_id(), StreamBed::kInstance);
-  EXPECT_EQ(first.sequence(), 0);
+  EXPECT_EQ(first.sequence(), 2);  // to go on after, should the line break before the first event
   const v1::CellSnapshot& cell = first.snapshot();
   EXPECT_EQ(cell.sequence(), 2);
   ASSERT_EQ(cell.jobs_size(), 2);  // the newest first
@@ -71,6 +69,37 @@ TEST_F(JobsWatchTest, ASnapshotOfTheCellFirst) {
   ASSERT_EQ(cell.machines_size(), 2);  // by id
   EXPECT_EQ(cell.machines(0).name(), "machines/mill-1");
   EXPECT_EQ(cell.machines(1).name(), "machines/optimo-1");
+}
+
+// A browser comes back with the number of the last message it got, and that may be the snapshot.
+TEST_F(JobsWatchTest, WhoComesBackBeforeTheFirstEventMissesNone) {
+  std::int64_t seen = 0;
+  {
+    auto watch = room.WatchAll(After(0));
+    seen = watch.Next().sequence();
+  }
+  room.Say(lease_two, {"a"});
+  auto again = room.WatchAll(After(seen));
+  EXPECT_EQ(NextOf(again), "snapshot");
+  EXPECT_EQ(NextOf(again), "3 jobs/2 a");
+  // The snapshot of a resumed watch names what the client has, not what the cell has by now.
+  auto resumed = room.WatchAll(After(1));
+  EXPECT_EQ(resumed.Next().sequence(), 1);
+}
+
+TEST_F(JobsWatchTest, TheSnapshotSaysWhichMachinesWork) {
+  room.Submit();  // waits
+  auto watch = room.WatchAll(After(0));
+  const v1::CellSnapshot cell = watch.Next().snapshot();
+  const std::string machine = cell.jobs(0).machine();
+  ASSERT_EQ(cell.machines_size(), 2);
+  for (const v1::Machine& one_of_them : cell.machines()) {
+    const bool busy = one_of_them.name() == machine;
+    EXPECT_EQ(one_of_them.state().jobs_active(), busy ? 3 : 0) << one_of_them.name();
+    EXPECT_EQ(one_of_them.state().activity(),
+              busy ? v1::MachineState::ACTIVITY_RUNNING : v1::MachineState::ACTIVITY_IDLE);
+    EXPECT_EQ(one_of_them.state().job(), busy ? JobName(one) : "");
+  }
 }
 
 TEST_F(JobsWatchTest, WithoutASequenceOnlyWhatComesFromNowOnIsTold) {
@@ -157,7 +186,7 @@ TEST_F(JobsWatchTest, AServerThatStopsSaysWhereToGoOn) {
   for (WatchedCell* stream : {&watch, &fresh}) {
     const v1::WatchJobsResponse goodbye = stream->Next();
     EXPECT_EQ(goodbye.instance_id(), StreamBed::kInstance);
-    EXPECT_EQ(goodbye.sequence(), 0);
+    EXPECT_EQ(goodbye.sequence(), 2);
     EXPECT_EQ(goodbye.reconnect(), "the server stops; watch again after sequence 2");
     stream->ExpectRefused(grpc::StatusCode::UNAVAILABLE, "CELL-E9002");
   }

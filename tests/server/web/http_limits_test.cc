@@ -250,6 +250,21 @@ TEST_F(HttpLimits, TooManyConnectionsGet503) {
   ExpectStillWell();
 }
 
+// However many come at once and say nothing, and however long those that are told of it stay.
+TEST(HttpRefusals, WhoeverIsOneTooManyIsTold) {
+  WebOptions options = AnyPort();
+  options.connections_max = 10;
+  options.linger_timeout = std::chrono::hours(1);
+  FakeCell cell(options);
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (int i = 0; i < 160; ++i) clients.push_back(std::make_unique<RawClient>(cell.port()));
+  for (std::size_t i = 10; i < clients.size(); ++i) {
+    const RawResponse refused = clients[i]->Read();
+    ASSERT_EQ(ErrorOf(refused), "503 CELL-E9020") << i;
+    EXPECT_EQ(refused.Header("retry-after"), "2");
+  }
+}
+
 TEST_F(HttpLimits, Expectations) {
   RawClient client(cell_.port());
   const std::string head = "POST " + std::string(kGetJob) +

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string_view>
+
+namespace rmlcell::server {
+
+// Whether a caller knows a secret. How long the answer takes tells nothing of the secret but its
+// length; an empty one is known to nobody.
+bool KnowsSecret(std::string_view given, std::string_view secret);
+
+}  // namespace rmlcell::server
