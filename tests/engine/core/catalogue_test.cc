@@ -190,8 +190,7 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
     ++rows;
     ASSERT_TRUE(cell.contains(entry.number)) << entry.number;
     EXPECT_EQ(entry.symbol, cell.at(entry.number));
-    const bool budget =
-        (entry.number >= 9301 && entry.number <= 9308) || entry.number == 9432;
+    const bool budget = (entry.number >= 9301 && entry.number <= 9308) || entry.number == 9432;
     const bool verdict = entry.number >= 9401 && entry.number <= 9427;
     const bool motion = entry.number >= 9501;
     EXPECT_EQ(entry.severity, budget                 ? Severity::kBudget
