@@ -154,7 +154,8 @@ function eventTests(url, job, test) {
     for await (const event of readEvents(watch("WatchJob", { name: job }), { headers: { "Last-Event-ID": ids[1] } })) {
       if (event.id) rest.push(event.id);
     }
-    assert.deepEqual(rest, ids.slice(2));
+    // The snapshot has the number that it goes on after.
+    assert.deepEqual(rest, ids.slice(1));
   });
 }
 
