@@ -34,6 +34,12 @@ void PrintJson(const google::protobuf::Message& message) {
   PrintRaw("\n");
 }
 
+std::string StateName(const v1::Job& job) {
+  // No part, and nothing that went wrong: the page says the same.
+  if (job.outcome().kind() == v1::Outcome::KIND_STOPPED) return "stopped";
+  return StateName(job.state());
+}
+
 std::string StateName(v1::Job::State state) {
   std::string name = v1::Job::State_Name(state);
   if (name.starts_with("STATE_")) name.erase(0, 6);

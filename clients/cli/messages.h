@@ -31,6 +31,7 @@ std::string MachineRows(const machine::MachineFamily& family, const v1::DiffProg
 std::string OutcomeLine(const v1::Outcome& outcome);
 std::string EventLine(const v1::JobEvent& event);
 std::string StateName(v1::Job::State state);  // "running"
+std::string StateName(const v1::Job& job);    // of one whose program was stopped: "stopped"
 
 // "and 95 more RML1-E2, lines 12 to 300: no command of the command set in force has this name".
 std::string GatheredLine(const v1::GatheredFindings& gathered);

@@ -253,8 +253,7 @@ int Jobs(const Remote& remote, const std::string& filter, int limit) {
       {"JOB", "STATE", "VERDICT", "KIND", "MACHINE", "TITLE", "SUBMITTED", "CODE"}};
   for (const v1::Job& job : response.jobs()) {
     const std::string kind = v1::JobKind_Name(job.kind());
-    rows.push_back({job.name().substr(5), StateName(job.state()),
-                    VerdictName(job.outcome().verdict()),
+    rows.push_back({job.name().substr(5), StateName(job), VerdictName(job.outcome().verdict()),
                     kind.substr(std::min<std::size_t>(9, kind.size())),
                     job.machine().substr(std::min<std::size_t>(9, job.machine().size())),
                     job.title().empty() ? job.program() : job.title(), When(job.create_time()),
@@ -277,7 +276,7 @@ int ShowJob(const Remote& remote, const std::string& job) {
     Print(Json(response));
     return kGood;
   }
-  Print(response.name() + "  " + StateName(response.state()) + "  " + response.machine() + "  " +
+  Print(response.name() + "  " + StateName(response) + "  " + response.machine() + "  " +
         response.title());
   if (response.has_outcome()) {
     const v1::Outcome& outcome = response.outcome();
@@ -303,7 +302,7 @@ int CancelJob(const Remote& remote, const std::string& job) {
   v1::Job response;
   const grpc::Status status = stub->CancelJob(&context, request, &response);
   if (!status.ok()) return Refused(status, remote);
-  Print(remote.json ? Json(response) : response.name() + " " + StateName(response.state()));
+  Print(remote.json ? Json(response) : response.name() + " " + StateName(response));
   return kGood;
 }
 

@@ -27,6 +27,11 @@ TEST_F(Messages, StatesAreWords) {
   EXPECT_EQ(StateName(v1::Job::STATE_RUNNING), "running");
   EXPECT_EQ(StateName(v1::Job::STATE_SUCCEEDED), "succeeded");
   EXPECT_EQ(StateName(v1::Job::STATE_INTERRUPTED), "interrupted");
+  v1::Job job;
+  job.set_state(v1::Job::STATE_FAILED);
+  EXPECT_EQ(StateName(job), "failed");
+  job.mutable_outcome()->set_kind(v1::Outcome::KIND_STOPPED);
+  EXPECT_EQ(StateName(job), "stopped");
 }
 
 TEST_F(Messages, AnOutcomeIsOneLine) {
