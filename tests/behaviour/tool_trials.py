@@ -236,7 +236,7 @@ def wrong_use():
              "rml1 tile p.rml --gap -1", "rml1 from-png p.rml --tool 1 --depth 1", "rml1 from-png p.rml --tool 0 --depth 1", "rml1 from-gcode p.rml",
              "rml1 from-gcode 1.S --tolerance 0", "rml1 to-gcode p.rml -o no/where.nc", "parameters none", "parameters rml1 --profile none", "parameters", "parameters optimo",
              "parameters optimo --json", "parameters rml1", "explain", "explain --json", "explain 348 0 99999 NONE HOLE_RADIUS_ZERO CELL-E9003 opt-e7410",
-             "none", "--none", "--version --x", "machines --server none", "jobs --server 127.0.0.1:1", "check --help", "simulate --help", "--help")
+             "none", "--none", "--version --x", "machines --server", "jobs --server 127.0.0.1:1", "check --help", "simulate --help", "--help")
     lines += tuple(f"parameters rml1 --profile {mill}" for mill in MILLS)
     for number, line in enumerate(lines):
         yield Trial(f"use/{number}", files, (tuple(line.split()),))
