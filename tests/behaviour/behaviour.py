@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Compares what two builds do: every real program, example and conformance program, and two thousand random ones.
+"""Compares what two builds do: with programs, with the tools, in the editor, and as a server. README.md has the list.
 
     behaviour.py keep BIN FOLDER          runs them all with BIN/rmlcell and keeps what it says, a file a program
     behaviour.py hash FOLDER              a line of name and hash for each of them, on standard output
     behaviour.py compare A B [--within X] says where two folders differ; numbers may differ by X, relative or absolute
     behaviour.py check BIN HASHES         runs them all and compares with the hashes of a file
 
-What is kept: findings of `check` as JSON; report, trace and exit status of `simulate` as JSON and as facts; the
-samples, the picture and the toolpath. Ends with 1 when something differs.
+What is kept is all that they say, exit status and files included. Ends with 1 when something differs.
 """
 import argparse
 import concurrent.futures
@@ -16,9 +15,7 @@ import hashlib
 import os
 import pathlib
 import re
-import subprocess
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from programs import all_programs  # noqa: E402

@@ -22,7 +22,6 @@ import os
 import pathlib
 import random
 import re
-import subprocess
 import sys
 import threading
 
