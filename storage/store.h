@@ -74,6 +74,21 @@ struct JobQuery {
   std::int64_t before_id = 0;  // jobs with a smaller id; 0: from the newest
 };
 
+// What a run compiled for a slot of its machine.
+struct NewExecutable {
+  int slot = 0;
+  Revision object_revision = 0;  // kept only while the object still has it (OPT-1.15)
+  std::string bytes{};
+};
+
+// The end of a job and all that is written with it.
+struct JobEnd {
+  JobOutcome outcome{};
+  std::vector<NewArtifact> artifacts{};
+  std::vector<NewExecutable> executables{};
+  std::vector<NewEvent> events{};
+};
+
 // What to write into one slot. All writes of one call are made, or none.
 struct ProgramWrite {
   int slot = 0;
@@ -198,12 +213,11 @@ class Store {
   virtual void Append(const Lease& lease, std::vector<NewEvent> events,
                       std::function<void(Result<std::int64_t>)> done) = 0;
   virtual Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events);
-  // Ends the job. Artifacts and events are written with it. CellLeaseLost; CellNotFound: an
-  // artifact names content that is not there; CellInvalidArgument: a state that is not final, an
-  // artifact's name that the job has already.
-  virtual Result<JobRecord> Finish(const Lease& lease, const JobOutcome& outcome,
-                                   const std::vector<NewArtifact>& artifacts,
-                                   const std::vector<NewEvent>& events) = 0;
+  // Ends the job, in one transaction: whoever reads its last event finds its artifacts and
+  // executables. CellLeaseLost; CellNotFound: an artifact names content that is not there;
+  // CellInvalidArgument: a state that is not final, an artifact's name that the job has already;
+  // CellTooLarge: an executable beyond kProgramBytesMax.
+  virtual Result<JobRecord> Finish(const Lease& lease, const JobEnd& end) = 0;
   // Gives the job back to the queue; this attempt does not count. A RUN is interrupted: it may have
   // moved its machine. Returns the job as it then is. CellLeaseLost.
   virtual Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) = 0;

@@ -23,6 +23,7 @@
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
+#include "server/services/foreign_calls.h"
 #include "server/services/handbox_service.h"
 #include "server/services/job_service.h"
 #include "server/services/machine_messages.h"
@@ -38,7 +39,9 @@ namespace rmlcell::server {
 namespace {
 
 // Threads for work that may block: the store mostly, so there are more of them than cores.
-constexpr int kExecutorThreads = 8;
+constexpr int kStoreThreads = 8;
+// Programs that may wait to be translated or compared, each with its bytes in memory.
+constexpr std::size_t kComputeWaitingMax = 64;
 
 // What the log of the store grows to between two checkpoints of a cell that is not busy.
 constexpr std::int64_t kLogBytesPrepared = 17 << 20;
@@ -94,6 +97,7 @@ struct Cell::Parts {
   std::string instance_id = RandomText();
   std::unique_ptr<storage::Store> store;
   std::unique_ptr<Executor> executor;
+  std::unique_ptr<Executor> compute;
   std::unique_ptr<EventFeed> feed;
   std::unique_ptr<Dispatcher> dispatcher;
   OpenStreams open;
@@ -156,14 +160,16 @@ Status Cell::Parts::MakeMachines() {
 }
 
 Status Cell::Parts::Listen(const std::string& join_token) {
-  executor = std::make_unique<Executor>(kExecutorThreads);
+  executor = std::make_unique<Executor>(kStoreThreads);
+  compute = std::make_unique<Executor>(
+      std::max(1, static_cast<int>(std::thread::hardware_concurrency())), kComputeWaitingMax);
   feed = std::make_unique<EventFeed>(*store);
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
   programs = std::make_unique<ProgramBook>(*store, config);
   tools = std::make_unique<MemoryTools>(*store, *programs);
   projects = std::make_unique<ProjectBook>(*store);
-  const CallNeeds needs{gate, *executor, config.limit_message_bytes};
+  const CallNeeds needs{gate, *executor, *compute, config.limit_message_bytes};
   job_service = std::make_unique<JobService>(needs, *book, *dispatcher, *feed, open, instance_id);
   machine_service =
       std::make_unique<MachineService>(needs, *store, *dispatcher, config, instance_id);
@@ -175,6 +181,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
+  AdmitForeignCalls(builder, [this](const CallFacts& call) { return gate.Admit(call); });
   // Without this a second server on the same port starts without a word and takes part of the
   // calls.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
@@ -289,6 +296,7 @@ void Cell::Stop() {
   // Calls are over; what they posted still runs.
   parts.web.reset();
   parts.server.reset();
+  parts.compute.reset();
   parts.executor.reset();
   parts.dispatcher.reset();
   parts.feed.reset();

@@ -51,7 +51,7 @@ class EventFeed::Handle : public EventFeed::Subscription {
 EventFeed::EventFeed(storage::Store& store, Timing timing)
     : store_(store), timing_(std::move(timing)) {
   const Result<std::int64_t> last = store_.LastPosition();
-  if (last) position_ = *last;
+  if (last) position_ = complete_after_ = *last;
   store_watch_ = store_.Watch([this] {
     const std::lock_guard lock(mutex_);
     hinted_ = true;
@@ -84,7 +84,7 @@ Result<std::vector<storage::EventRecord>> EventFeed::EventsAfter(std::int64_t po
   {
     const std::lock_guard lock(mutex_);
     if (position >= position_) return std::vector<storage::EventRecord>();
-    if (!recent_.empty() && recent_.front().position <= position + 1) {
+    if (position >= complete_after_) {
       const auto first =
           std::ranges::upper_bound(recent_, position, {}, &storage::EventRecord::position);
       const auto count = std::min<std::ptrdiff_t>(limit, recent_.end() - first);
@@ -196,7 +196,10 @@ void EventFeed::ReadNewEvents(const std::stop_token& stop) {
         if (tail.size() > kTailEvents) tail.pop_front();
       }
       for (storage::EventRecord& event : *events) recent_.push_back(std::move(event));
-      while (recent_.size() > kRecentEvents) recent_.pop_front();
+      while (recent_.size() > kRecentEvents) {
+        complete_after_ = recent_.front().position;
+        recent_.pop_front();
+      }
     }
     Wake({touched.begin(), touched.end()});
     if (!more) return;
@@ -213,6 +216,7 @@ bool EventFeed::SkipGoneEvents() {
     const std::lock_guard lock(mutex_);
     if (!gone || *gone <= position_) return false;
     position_ = *gone;
+    complete_after_ = position_;
     recent_.clear();
     tails_.clear();
     for (const auto& [job, watcher] : watchers_) all.push_back(watcher);

@@ -101,6 +101,7 @@ class EventFeed {
   std::uint64_t version_ = 0;
   std::int64_t position_ = 0;
   std::deque<storage::EventRecord> recent_;
+  std::int64_t complete_after_ = 0;  // every event behind this position is in recent_
   std::map<std::int64_t, std::deque<storage::EventRecord>> tails_;       // of jobs that are watched
   std::map<std::int64_t, std::shared_ptr<const std::string>> arriving_;  // not told yet, by job
   std::map<std::int64_t, ProgressText> progress_;

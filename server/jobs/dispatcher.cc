@@ -15,6 +15,8 @@ namespace {
 
 // Events that a worker may send before the first of them is durable.
 constexpr int kEventsWindow = 256;
+// What the store did not take or give.
+constexpr std::chrono::milliseconds kTriedAgainAfter{100};
 
 void SendStop(WorkerLine& line) {
   v1::WorkResponse message;
@@ -97,7 +99,8 @@ void Dispatcher::Leave(WorkerId id) {
     workers_.erase(found);
   }
   Post(worker, [this, worker] {
-    if (worker->assignment) {
+    // What it finished is stored without it.
+    if (worker->assignment && !worker->assignment->end) {
       spdlog::warn("worker {} is gone in the middle of {}", worker->name,
                    JobName(worker->assignment->lease.job));
       Lose(*worker->assignment);
@@ -162,7 +165,7 @@ void Dispatcher::WakeIdle() {
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [id, worker] : workers_) {
-      if (worker->idle) idle.push_back(worker);
+      if (worker->idle && !worker->rests) idle.push_back(worker);
     }
   }
   for (const auto& worker : idle) PostLook(worker);
@@ -170,42 +173,70 @@ void Dispatcher::WakeIdle() {
 
 void Dispatcher::SweepLeases(const std::stop_token& stop) {
   const auto interval = std::chrono::milliseconds(config_.workers_lease_ms / 2);
+  auto next = std::chrono::steady_clock::now();
   while (!stop.stop_requested()) {
-    const auto expired =
-        store_.Expire(LossOf(WorkerDiedOutcome(), {}, "the lease of its worker ran out"));
-    if (!expired) {
-      spdlog::error("leases could not be looked at: {}", bridge::ErrorText(expired.error()));
-    } else {
-      for (const storage::JobRecord& job : *expired)
-        spdlog::warn("the lease of {} ran out", JobName(job.id));
+    if (std::chrono::steady_clock::now() >= next) {
+      EndLeases();
+      EndFailedDeliveries();
+      next = std::chrono::steady_clock::now() + interval;
     }
-    EndFailedDeliveries();
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, stop, interval, [] { return false; });
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait_until(lock, stop, next, [this] { return later_; });
+      if (!later_) continue;
+      changed_.wait_for(lock, stop, kTriedAgainAfter, [] { return false; });
+      later_ = false;
+    }
+    TryAgain();
   }
 }
 
-// An order goes the way of the assignment, or it could reach the worker before the job does.
+void Dispatcher::EndLeases() {
+  const auto expired =
+      store_.Expire(LossOf(WorkerDiedOutcome(), {}, "the lease of its worker ran out"));
+  if (!expired) {
+    spdlog::error("leases could not be looked at: {}", bridge::ErrorText(expired.error()));
+    return;
+  }
+  for (const storage::JobRecord& job : *expired)
+    spdlog::warn("the lease of {} ran out", JobName(job.id));
+}
+
+bool Dispatcher::OrderAtOnce(std::int64_t job, v1::WorkerControl::Kind kind, double value) {
+  const std::lock_guard lock(mutex_);
+  return OrderHolder(job, kind, value);
+}
+
+// Before the job itself has gone out an order waits for it.
+bool Dispatcher::OrderHolder(std::int64_t job, v1::WorkerControl::Kind kind, double value) {
+  for (const auto& [id, worker] : workers_) {
+    if (worker->job != job) continue;
+    if (worker->sent) {
+      worker->line->Send(ControlMessage(*worker->sent, kind, value));
+    } else {
+      worker->early_orders.push_back({job, kind, value});
+    }
+    return true;
+  }
+  return false;
+}
+
 Status Dispatcher::Control(std::int64_t job, v1::WorkerControl::Kind kind, double value) {
   const auto record = store_.GetJob(job);
   if (!record) return record.error();
-  std::vector<std::shared_ptr<Worker>> bearers;
   if (record->state == storage::JobState::kRunning) {
-    // Who looks may have leased it a moment ago, and not have said so.
     const std::lock_guard lock(mutex_);
+    if (OrderHolder(job, kind, value)) return {};
+    // Who looks may have leased it a moment ago, and not have said so.
+    bool may_come = false;
     for (const auto& [id, worker] : workers_) {
-      if (worker->job == job || worker->looking) bearers.push_back(worker);
+      if (!worker->looking) continue;
+      worker->early_orders.push_back({job, kind, value});
+      may_come = true;
     }
+    if (may_come) return {};
   }
-  if (bearers.empty())
-    return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
-  for (const auto& worker : bearers) {
-    Post(worker, [worker, job, kind, value] {
-      if (!worker->assignment || worker->assignment->lease.job != job) return;
-      worker->line->Send(ControlMessage(worker->assignment->lease, kind, value));
-    });
-  }
-  return {};
+  return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
 }
 
 Result<storage::JobRecord> Dispatcher::Cancel(std::int64_t job) {

@@ -37,7 +37,7 @@ class WorkerLine {
 // sends after it lost its lease is refused by the fence.
 //
 // Thread-safe; calls from the lines return at once: messages of one worker are worked through in
-// order on the executor. Lock order: mutex_ is a leaf.
+// order on the executor. Lock order: mutex_, then that of a line.
 class Dispatcher {
  public:
   Dispatcher(storage::Store& store, EventFeed& feed, const Config& config, Executor& executor,
@@ -54,6 +54,9 @@ class Dispatcher {
 
   // Orders for a job that runs. CellPrecondition when no worker of this server has it.
   Status Control(std::int64_t job, v1::WorkerControl::Kind kind, double value);
+  // The same without a look into the store, and never blocking: an order to stop waits for nothing.
+  // False: no worker of this server is known to have it, which Control finds out.
+  bool OrderAtOnce(std::int64_t job, v1::WorkerControl::Kind kind, double value = 0.0);
 
   // Ends a job: at once when it waits, else through its worker.
   Result<storage::JobRecord> Cancel(std::int64_t job);
@@ -77,17 +80,20 @@ class Dispatcher {
   void EndWithoutWork(const std::shared_ptr<Worker>& worker, const storage::JobOutcome& how);
   void GiveBack(Worker& worker);
   Status SendAssignment(Worker& worker, const storage::LeasedJob& leased);
+  // Precondition: mutex_ is held. False: no worker is known to have the job.
+  bool OrderHolder(std::int64_t job, v1::WorkerControl::Kind kind, double value);
   void Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& message);
   void Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat);
   void AppendEvents(Worker& worker, const v1::WorkerEvents& events);
   void Collect(Worker& worker, v1::WorkerArtifact& artifact);
-  void Finish(Worker& worker, v1::WorkerFinish& finish);
-  // Of a job whose end cannot be stored this attempt counts as lost.
-  Result<storage::JobRecord> StoreEnd(const Worker& worker, const v1::Outcome& outcome,
-                                      const std::vector<storage::NewArtifact>& artifacts);
+  void Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish& finish);
+  void RestWithoutWork(Worker& worker, const Error& trouble);
+  void StoreEnd(const std::shared_ptr<Worker>& worker);
+  void TryAgain();
   void EndAssignment(Worker& worker, bool stored);
   void Lose(const Assignment& assignment);
   void SweepLeases(const std::stop_token& stop);
+  void EndLeases();
   void EndFailedDeliveries();
   std::shared_ptr<Worker> Find(WorkerId id) const;
 
@@ -103,6 +109,8 @@ class Dispatcher {
   std::condition_variable_any changed_;
   std::map<WorkerId, std::shared_ptr<Worker>> workers_;
   WorkerId next_worker_ = 1;
+  std::vector<std::shared_ptr<Worker>> ends_waiting_;  // guarded by mutex_; gone ones, too
+  bool later_ = false;  // guarded by mutex_; something is to be tried again in a moment
   std::unique_ptr<storage::Store::Subscription> store_watch_;
   std::jthread sweeper_;
 };

@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "proto/bridge/findings.h"
 #include "server/base/config.h"
@@ -16,6 +17,12 @@ namespace {
 
 // What a worker may send over its budget until it has noticed.
 constexpr std::int64_t kOutputSlack = 1 << 20;
+
+// Not of the job: the same may succeed in a moment.
+bool IsTroubleOfTheStore(const Error& error) {
+  return error.code == ErrorCode::kCellStoreFailed || error.code == ErrorCode::kCellStoreBusy ||
+         error.code == ErrorCode::kCellResourceExhausted;
+}
 
 bool SameLease(const storage::Lease& lease, const v1::WorkerLease& other) {
   return lease.job == other.job() && lease.attempt == other.attempt() &&
@@ -57,11 +64,11 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
     worker->assignment.emplace();
     worker->assignment->lease = (*leased)->lease;
     worker->assignment->renewed_at = clock_();
-    worker->assignment->machine = (*leased)->job.machine;
   }
   {
     const std::lock_guard lock(mutex_);
     worker->looking = false;
+    if (!found) worker->early_orders.clear();
     if (found) {
       worker->idle = false;
       worker->job = worker->assignment->lease.job;
@@ -79,6 +86,7 @@ void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::Lea
   spdlog::debug("{} attempt {} goes to worker {}", JobName(job.lease.job), job.lease.attempt,
                 worker->name);
   if (const Status sent = SendAssignment(*worker, job); !sent) {
+    if (IsTroubleOfTheStore(sent.error())) return RestWithoutWork(*worker, sent.error());
     // The job itself cannot be worked on: it fails, and the worker is free for the next.
     return EndWithoutWork(worker, {.state = storage::JobState::kFailed,
                                    .code = sent.error().code,
@@ -91,23 +99,74 @@ void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::Lea
 void Dispatcher::EndWithoutWork(const std::shared_ptr<Worker>& worker,
                                 const storage::JobOutcome& how) {
   worker->assignment->begun = true;  // as far as anybody could
-  (void)StoreEnd(*worker, ToProto(how), {});
-  EndAssignment(*worker, false);
+  const v1::Outcome outcome = ToProto(how);
+  worker->assignment->end =
+      storage::JobEnd{.outcome = OutcomeOf(outcome), .events = {EndedEvent(outcome)}};
+  StoreEnd(worker);
   PostLook(worker);
 }
 
-Result<storage::JobRecord> Dispatcher::StoreEnd(
-    const Worker& worker, const v1::Outcome& outcome,
-    const std::vector<storage::NewArtifact>& artifacts) {
-  const storage::Lease& lease = worker.assignment->lease;
-  auto ended = store_.Finish(lease, OutcomeOf(outcome), artifacts, {EndedEvent(outcome)});
-  if (!ended) {
-    spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker.name,
-                 bridge::ErrorText(ended.error()));
-    // A full disk must not leave the job without an owner until its lease runs out.
-    if (ended.error().code != ErrorCode::kCellLeaseLost) Lose(*worker.assignment);
+// The job is as good as before, and its attempt does not count.
+void Dispatcher::RestWithoutWork(Worker& worker, const Error& trouble) {
+  const storage::Lease lease = worker.assignment->lease;
+  spdlog::warn("{} goes back, its programs cannot be read: {}", JobName(lease.job),
+               bridge::ErrorText(trouble));
+  {
+    // Before the store tells of a job that waits, or this worker would be given it again at once.
+    const std::lock_guard lock(mutex_);
+    worker.rests = true;
+    later_ = true;
   }
-  return ended;
+  storage::LossPolicy policy = LossOf(StoppedOutcome(), {}, "its programs could not be read");
+  policy.requeued = {StateEvent(storage::JobState::kQueued)};
+  (void)store_.HandBack(lease, policy);
+  EndAssignment(worker, false);
+}
+
+// A store that is away for a moment does not throw a finished run away: while the lease may be ours
+// the end is stored again and again. Then this attempt counts as lost, so that a full disk does not
+// leave the job without an owner.
+void Dispatcher::StoreEnd(const std::shared_ptr<Worker>& worker) {
+  Assignment& assignment = *worker->assignment;
+  const storage::Lease lease = assignment.lease;
+  const auto ended = store_.Finish(lease, *assignment.end);
+  if (ended) {
+    const std::optional<ErrorCode> code = assignment.end->outcome.code;
+    spdlog::info("{} {} {}", JobName(lease.job), v1::Job::State_Name(ToProto(ended->state)),
+                 code ? CodeText(*code) : std::string());
+    return EndAssignment(*worker, true);
+  }
+  spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker->name,
+               bridge::ErrorText(ended.error()));
+  const auto lease_time = std::chrono::milliseconds(config_.workers_lease_ms);
+  if (IsTroubleOfTheStore(ended.error()) && clock_() - assignment.renewed_at < lease_time) {
+    const std::lock_guard lock(mutex_);
+    ends_waiting_.push_back(worker);
+    later_ = true;
+    return changed_.notify_all();
+  }
+  if (ended.error().code != ErrorCode::kCellLeaseLost) Lose(assignment);
+  EndAssignment(*worker, false);
+}
+
+// What the store did not take a moment ago.
+void Dispatcher::TryAgain() {
+  std::vector<std::shared_ptr<Worker>> ending;
+  std::vector<std::shared_ptr<Worker>> rested;
+  {
+    const std::lock_guard lock(mutex_);
+    ending.swap(ends_waiting_);
+    for (const auto& [id, worker] : workers_) {
+      if (std::exchange(worker->rests, false)) rested.push_back(worker);
+    }
+  }
+  for (const auto& worker : ending) {
+    Post(worker, [this, worker] {
+      if (worker->assignment && worker->assignment->end) StoreEnd(worker);
+      Assign(worker);
+    });
+  }
+  for (const auto& worker : rested) PostLook(worker);
 }
 
 void Dispatcher::GiveBack(Worker& worker) {
@@ -126,6 +185,12 @@ Status Dispatcher::SendAssignment(Worker& worker, const storage::LeasedJob& leas
   worker.assignment->object_revisions = std::move(made->object_revisions);
   worker.line->Send(std::move(made->first));
   for (auto& [slot, bytes] : made->programs) worker.line->SendProgram(slot, std::move(bytes));
+  const std::lock_guard lock(mutex_);
+  worker.sent = leased.lease;
+  for (const EarlyOrder& order : std::exchange(worker.early_orders, {})) {
+    if (order.job == leased.lease.job)
+      worker.line->Send(ControlMessage(leased.lease, order.kind, order.value));
+  }
   return {};
 }
 
@@ -149,7 +214,7 @@ void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& 
       break;
     case v1::WorkRequest::kFinish:
       if (!holds(message.finish().lease())) break;
-      Finish(*worker, *message.mutable_finish());
+      Finish(worker, *message.mutable_finish());
       Assign(worker);
       break;
     case v1::WorkRequest::kHandBack:
@@ -229,26 +294,25 @@ void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
   made.bytes += artifact.chunk();
 }
 
-void Dispatcher::Finish(Worker& worker, v1::WorkerFinish& finish) {
-  Assignment& assignment = *worker.assignment;
+void Dispatcher::Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish& finish) {
+  Assignment& assignment = *worker->assignment;
+  if (assignment.end) return;  // it said so before
   if (assignment.over_budget) {
     *finish.mutable_outcome() = ToProto(storage::JobOutcome{
         .state = storage::JobState::kFailed, .code = ErrorCode::kCellOutputBudget, .detail = {}});
   }
-  std::vector<storage::NewArtifact> artifacts;
-  for (auto& [name, artifact] : assignment.artifacts) artifacts.push_back(std::move(artifact));
-  const auto finished = StoreEnd(worker, finish.outcome(), artifacts);
-  if (finished) {
-    spdlog::info("{} {} {}", JobName(assignment.lease.job),
-                 v1::Job::State_Name(ToProto(finished->state)), finish.outcome().code());
-  }
-  // Of a worker that lost its lease nothing is kept.
-  for (const auto& [slot, executable] : finish.executables()) {
+  storage::JobEnd end{.outcome = OutcomeOf(finish.outcome()),
+                      .events = {EndedEvent(finish.outcome())}};
+  for (auto& [name, artifact] : assignment.artifacts) end.artifacts.push_back(std::move(artifact));
+  for (auto& [slot, executable] : *finish.mutable_executables()) {
     const auto revision = assignment.object_revisions.find(slot);
-    if (!finished || revision == assignment.object_revisions.end()) continue;
-    (void)store_.PutExecutable(assignment.machine, slot, revision->second, executable);
+    if (revision == assignment.object_revisions.end() ||
+        executable.size() > storage::kProgramBytesMax)
+      continue;
+    end.executables.push_back({slot, revision->second, std::move(executable)});
   }
-  EndAssignment(worker, finished.has_value());
+  assignment.end = std::move(end);
+  StoreEnd(worker);
 }
 
 void Dispatcher::EndAssignment(Worker& worker, bool stored) {
@@ -259,6 +323,8 @@ void Dispatcher::EndAssignment(Worker& worker, bool stored) {
     // Before the worker hears of it: an order for a job that is over is refused from then on.
     const std::lock_guard lock(mutex_);
     worker.job = 0;
+    worker.sent.reset();
+    worker.early_orders.clear();
     worker.delivery.reset();
   }
   v1::WorkResponse message;

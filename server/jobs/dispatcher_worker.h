@@ -30,10 +30,16 @@ struct Dispatcher::Assignment {
   std::int64_t collected_bytes = 0;
   bool over_budget = false;
   std::map<int, storage::Revision> object_revisions;  // of the programs of its memory
-  std::string machine;
-  bool begun = false;     // the worker has said so
-  v1::SourcePlace place;  // where the worker was, as it last said
+  std::optional<storage::JobEnd> end;                 // not stored yet
+  bool begun = false;                                 // the worker has said so
+  v1::SourcePlace place;                              // where the worker was, as it last said
   std::shared_ptr<Delivery> delivery = std::make_shared<Delivery>();
+};
+
+struct EarlyOrder {
+  std::int64_t job = 0;
+  v1::WorkerControl::Kind kind{};
+  double value = 0.0;
 };
 
 struct Dispatcher::Worker {
@@ -49,10 +55,13 @@ struct Dispatcher::Worker {
   bool working = false;
   bool gone = false;
   bool idle = true;
-  bool will_look = false;              // a look for a job is in the queue and has not begun
-  bool looking = false;                // it has begun, and may find one; for Drain and Control
-  std::int64_t job = 0;                // 0: none; for Control
-  std::shared_ptr<Delivery> delivery;  // of the same job, for the sweeper
+  bool rests = false;                    // the store gave it no programs a moment ago
+  bool will_look = false;                // a look for a job is in the queue and has not begun
+  bool looking = false;                  // it has begun, and may find one; for Drain and Control
+  std::int64_t job = 0;                  // 0: none; for orders
+  std::optional<storage::Lease> sent;    // of the same job, from when the assignment has gone out
+  std::vector<EarlyOrder> early_orders;  // for a job that has not gone out; while it looks, any job
+  std::shared_ptr<Delivery> delivery;    // of the same job, for the sweeper
 };
 
 v1::WorkerLease ToProto(const storage::Lease& lease);

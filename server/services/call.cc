@@ -43,6 +43,12 @@ Status CheckSize(const CallNeeds& needs, const google::protobuf::Message& reques
       {}};
 }
 
+Error LaneFull() {
+  return {ErrorCode::kCellResourceExhausted,
+          "too many programs wait to be translated or compared; try again when some are done",
+          {}};
+}
+
 Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
                      std::string_view method) {
   CallFacts facts{.method = std::string(method), .peer = context.peer(), .metadata = {}};

@@ -19,8 +19,13 @@ namespace rmlcell::server {
 // What a call needs before its own work begins.
 struct CallNeeds {
   const Gate& gate;
-  Executor& executor;
+  Executor& executor;              // the lane of this work: that of the store, or
+  Executor& compute;               // that of what keeps a processor busy
   std::int64_t message_bytes_max;  // limits.message_bytes
+
+  // For a method that translates or compares programs: however many are asked for, calls that only
+  // read and write the store do not stand behind them.
+  CallNeeds Computing() const { return {gate, compute, compute, message_bytes_max}; }
 };
 
 Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
@@ -34,29 +39,43 @@ inline constexpr std::int64_t kRefusalBytes = 16 << 20;
 // Error: CellTooLarge.
 Status CheckSize(const CallNeeds& needs, const google::protobuf::Message& request);
 
-// Runs `work(caller)`, which returns a grpc::Status, on the executor and finishes the call with it.
-template <class Work>
-grpc::ServerUnaryReactor* Answer(const CallNeeds& needs, grpc::CallbackServerContext* context,
-                                 std::string_view method, Work work) {
+// Too much waits for this lane already.
+Error LaneFull();
+
+// Runs `at_once(caller)` on the thread of the call, which must not block, then `work(caller)`,
+// which returns a grpc::Status, on the executor, and finishes the call with that.
+template <class AtOnce, class Work>
+grpc::ServerUnaryReactor* AnswerAfter(const CallNeeds& needs, grpc::CallbackServerContext* context,
+                                      std::string_view method, AtOnce at_once, Work work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   Result<Caller> caller = Admit(needs.gate, *context, method);
   if (!caller) {
     reactor->Finish(ToGrpcStatus(caller.error()));
     return reactor;
   }
-  needs.executor.Post([reactor, method, caller = std::move(*caller), work = std::move(work)] {
-    const auto begin = std::chrono::steady_clock::now();
-    grpc::Status status;
-    try {
-      status = work(caller);
-    } catch (const std::exception& error) {
-      spdlog::error("{}: an exception left its folder: {}", method, error.what());
-      status = ToGrpcStatus(Error{ErrorCode::kCellInternal, {}, {}});
-    }
-    LogCall(method, caller, status, std::chrono::steady_clock::now() - begin);
-    reactor->Finish(status);
-  });
+  at_once(*caller);
+  const bool taken = needs.executor.TryPost(
+      [reactor, method, caller = *std::move(caller), work = std::move(work)] {
+        const auto begin = std::chrono::steady_clock::now();
+        grpc::Status status;
+        try {
+          status = work(caller);
+        } catch (const std::exception& error) {
+          spdlog::error("{}: an exception left its folder: {}", method, error.what());
+          status = ToGrpcStatus(Error{ErrorCode::kCellInternal, {}, {}});
+        }
+        LogCall(method, caller, status, std::chrono::steady_clock::now() - begin);
+        reactor->Finish(status);
+      });
+  if (!taken) reactor->Finish(ToGrpcStatus(LaneFull()));
   return reactor;
+}
+
+template <class Work>
+grpc::ServerUnaryReactor* Answer(const CallNeeds& needs, grpc::CallbackServerContext* context,
+                                 std::string_view method, Work work) {
+  return AnswerAfter(
+      needs, context, method, [](const Caller&) {}, std::move(work));
 }
 
 // The same for a request that may be of any size.

@@ -1,7 +1,6 @@
 #include "server/services/job_service.h"
 
 #include "proto/bridge/files.h"
-#include "rmlcell/v1/worker.pb.h"
 #include "server/base/names.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher.h"
@@ -41,13 +40,9 @@ grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* con
 
 grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* context,
                                              const v1::GetJobRequest* request, v1::Job* response) {
-  return Answer(needs_, context, *request, "JobService/GetJob",
-                [this, request, response](const Caller&) {
-                  Result<v1::Job> job = book_.Get(request->name());
-                  if (!job) return ToGrpcStatus(job.error());
-                  *response = std::move(*job);
-                  return grpc::Status::OK;
-                });
+  return Answer(
+      needs_, context, *request, "JobService/GetJob",
+      [this, request, response](const Caller&) { return Give(request->name(), response); });
 }
 
 grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* context,
@@ -65,37 +60,48 @@ grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* cont
 grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* context,
                                                 const v1::CancelJobRequest* request,
                                                 v1::Job* response) {
-  return Answer(needs_, context, *request, "JobService/CancelJob",
-                [this, request, response](const Caller&) {
-                  const Result<std::int64_t> id = ParseJobName(request->name());
-                  if (!id) return ToGrpcStatus(id.error());
-                  const auto job = dispatcher_.Cancel(*id);
-                  if (!job) return ToGrpcStatus(job.error());
-                  *response = ToProto(*job);
-                  return grpc::Status::OK;
-                });
+  const Result<std::int64_t> id = ParseJobName(request->name());
+  return AnswerAfter(
+      needs_, context, "JobService/CancelJob",
+      [this, id](const Caller&) {
+        if (id) dispatcher_.OrderAtOnce(*id, v1::WorkerControl::KIND_CANCEL);
+      },
+      [this, id, response](const Caller&) {
+        if (!id) return ToGrpcStatus(id.error());
+        const auto job = dispatcher_.Cancel(*id);
+        if (!job) return ToGrpcStatus(job.error());
+        *response = ToProto(*job);
+        return grpc::Status::OK;
+      });
 }
 
+// Stops stand behind nothing: what the worker of a running job is to do goes out on the thread of
+// the call; the store is asked afterwards, and for a job that this server has given to nobody.
 grpc::ServerUnaryReactor* JobService::Order(grpc::CallbackServerContext* context,
                                             std::string_view method, const std::string& name,
-                                            int kind, double value, v1::Job* response) {
-  return Answer(needs_, context, method, [this, name, kind, value, response](const Caller&) {
-    const Result<std::int64_t> id = ParseJobName(name);
-    if (!id) return ToGrpcStatus(id.error());
-    if (kind == v1::WorkerControl::KIND_OVERRIDE) {
-      if (const Status valid = book_.CheckOverride(name, value); !valid)
-        return ToGrpcStatus(valid.error());
-    }
-    if (const Status ordered =
-            dispatcher_.Control(*id, static_cast<v1::WorkerControl::Kind>(kind), value);
-        !ordered) {
-      return ToGrpcStatus(ordered.error());
-    }
-    Result<v1::Job> job = book_.Get(name);
-    if (!job) return ToGrpcStatus(job.error());
-    *response = std::move(*job);
-    return grpc::Status::OK;
-  });
+                                            v1::WorkerControl::Kind kind, v1::Job* response) {
+  const Result<std::int64_t> id = ParseJobName(name);
+  auto ordered = std::make_shared<bool>(false);
+  return AnswerAfter(
+      needs_, context, method,
+      [this, id, kind, ordered](const Caller&) {
+        *ordered = id && dispatcher_.OrderAtOnce(*id, kind);
+      },
+      [this, id, name, kind, ordered, response](const Caller&) {
+        if (!id) return ToGrpcStatus(id.error());
+        if (!*ordered) {
+          if (const Status late = dispatcher_.Control(*id, kind, 0.0); !late)
+            return ToGrpcStatus(late.error());
+        }
+        return Give(name, response);
+      });
+}
+
+grpc::Status JobService::Give(const std::string& name, v1::Job* response) {
+  Result<v1::Job> job = book_.Get(name);
+  if (!job) return ToGrpcStatus(job.error());
+  *response = *std::move(job);
+  return grpc::Status::OK;
 }
 
 grpc::ServerUnaryReactor* JobService::HoldJob(grpc::CallbackServerContext* context,
@@ -103,21 +109,29 @@ grpc::ServerUnaryReactor* JobService::HoldJob(grpc::CallbackServerContext* conte
                                               v1::Job* response) {
   const auto kind =
       request->at_once() ? v1::WorkerControl::KIND_STOP : v1::WorkerControl::KIND_HOLD;
-  return Order(context, "JobService/HoldJob", request->name(), kind, 0.0, response);
+  return Order(context, "JobService/HoldJob", request->name(), kind, response);
 }
 
 grpc::ServerUnaryReactor* JobService::ResumeJob(grpc::CallbackServerContext* context,
                                                 const v1::ResumeJobRequest* request,
                                                 v1::Job* response) {
   return Order(context, "JobService/ResumeJob", request->name(), v1::WorkerControl::KIND_RESUME,
-               0.0, response);
+               response);
 }
 
 grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext* context,
                                                      const v1::SetJobOverrideRequest* request,
                                                      v1::Job* response) {
-  return Order(context, "JobService/SetJobOverride", request->name(),
-               v1::WorkerControl::KIND_OVERRIDE, request->override_percent(), response);
+  return Answer(
+      needs_, context, "JobService/SetJobOverride", [this, request, response](const Caller&) {
+        const double percent = request->override_percent();
+        const Result<std::int64_t> id = ParseJobName(request->name());
+        if (!id) return ToGrpcStatus(id.error());
+        if (const Status valid = book_.CheckOverride(request->name(), percent); !valid)
+          return ToGrpcStatus(valid.error());
+        const Status ordered = dispatcher_.Control(*id, v1::WorkerControl::KIND_OVERRIDE, percent);
+        return ordered ? Give(request->name(), response) : ToGrpcStatus(ordered.error());
+      });
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "rmlcell/v1/job.grpc.pb.h"
+#include "rmlcell/v1/worker.pb.h"
 #include "server/services/call.h"
 #include "server/services/pull_stream.h"
 
@@ -62,8 +63,9 @@ class JobService final : public v1::JobService::CallbackService {
 
  private:
   grpc::ServerUnaryReactor* Order(grpc::CallbackServerContext* context, std::string_view method,
-                                  const std::string& name, int kind, double value,
+                                  const std::string& name, v1::WorkerControl::Kind kind,
                                   v1::Job* response);
+  grpc::Status Give(const std::string& name, v1::Job* response);
 
   CallNeeds needs_;
   JobBook& book_;

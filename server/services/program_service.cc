@@ -41,7 +41,7 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
     if (ok) {
       StartRead(&message_);
     } else {
-      needs_.executor.Post([this] { Store(); });
+      needs_.compute.Post([this] { Store(); });
     }
   }
 
@@ -125,7 +125,7 @@ class Download final : public PullStream<v1::DownloadProgramResponse> {
 grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext* context,
                                                      const v1::PutProgramRequest* request,
                                                      v1::Program* response) {
-  return Answer(needs_, context, *request, "ProgramService/PutProgram",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/PutProgram",
                 [this, request, response](const Caller&) {
                   const ProgramResult<v1::Program> stored =
                       programs_.Store({.name = request->name(),
@@ -216,7 +216,7 @@ grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerConte
                                                        const v1::CheckProgramRequest* request,
                                                        v1::CheckProgramResponse* response) {
   return Answer(
-      needs_, context, *request, "ProgramService/CheckProgram",
+      needs_.Computing(), context, *request, "ProgramService/CheckProgram",
       [this, request, response](const Caller&) {
         auto checked = programs_.Check(request->family(), request->machine(), request->program(),
                                        !request->errors_only());
@@ -231,7 +231,7 @@ grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerContext* context,
                                                          const v1::CompileProgramRequest* request,
                                                          v1::CompileProgramResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/CompileProgram",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/CompileProgram",
                 [this, request, response](const Caller&) {
                   auto translation =
                       programs_.Translate(request->family(), {}, request->program(), true);
@@ -248,7 +248,7 @@ grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerCon
 grpc::ServerUnaryReactor* ProgramService::FormatProgram(grpc::CallbackServerContext* context,
                                                         const v1::FormatProgramRequest* request,
                                                         v1::FormatProgramResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/FormatProgram",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/FormatProgram",
                 [request, response](const Caller&) {
                   auto made = FormatText(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -260,7 +260,7 @@ grpc::ServerUnaryReactor* ProgramService::FormatProgram(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProgramService::DecompileProgram(
     grpc::CallbackServerContext* context, const v1::DecompileProgramRequest* request,
     v1::DecompileProgramResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/DecompileProgram",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/DecompileProgram",
                 [this, request, response](const Caller&) {
                   auto made = tools_.Decompile(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -272,7 +272,7 @@ grpc::ServerUnaryReactor* ProgramService::DecompileProgram(
 grpc::ServerUnaryReactor* ProgramService::FixProgram(grpc::CallbackServerContext* context,
                                                      const v1::FixProgramRequest* request,
                                                      v1::FixProgramResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/FixProgram",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/FixProgram",
                 [this, request, response](const Caller&) {
                   auto made = tools_.Fix(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -284,7 +284,7 @@ grpc::ServerUnaryReactor* ProgramService::FixProgram(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* ProgramService::LinkProgram(grpc::CallbackServerContext* context,
                                                       const v1::LinkProgramRequest* request,
                                                       v1::LinkProgramResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/LinkProgram",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/LinkProgram",
                 [this, request, response](const Caller&) {
                   auto made = tools_.Link(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -308,7 +308,7 @@ grpc::ServerUnaryReactor* ProgramService::ListStaleExecutables(
 grpc::ServerUnaryReactor* ProgramService::ShiftProgram(grpc::CallbackServerContext* context,
                                                        const v1::ShiftProgramRequest* request,
                                                        v1::ShiftProgramResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/ShiftProgram",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/ShiftProgram",
                 [request, response](const Caller&) {
                   auto made = ShiftText(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -320,7 +320,7 @@ grpc::ServerUnaryReactor* ProgramService::ShiftProgram(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProgramService::MakeListing(grpc::CallbackServerContext* context,
                                                       const v1::MakeListingRequest* request,
                                                       v1::MakeListingResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/MakeListing",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/MakeListing",
                 [request, response](const Caller&) {
                   auto made = ListText(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -332,7 +332,7 @@ grpc::ServerUnaryReactor* ProgramService::MakeListing(grpc::CallbackServerContex
 grpc::ServerUnaryReactor* ProgramService::DiffPrograms(grpc::CallbackServerContext* context,
                                                        const v1::DiffProgramsRequest* request,
                                                        v1::DiffProgramsResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/DiffPrograms",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/DiffPrograms",
                 [this, request, response](const Caller&) {
                   ProgramResult<v1::DiffProgramsResponse> made = tools_.Diff(*request);
                   if (!made) return ToGrpcStatus(made.error);
@@ -344,7 +344,7 @@ grpc::ServerUnaryReactor* ProgramService::DiffPrograms(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProgramService::ConvertProgram(grpc::CallbackServerContext* context,
                                                          const v1::ConvertProgramRequest* request,
                                                          v1::ConvertProgramResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/ConvertProgram",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/ConvertProgram",
                 [request, response](const Caller&) {
                   auto made = ConvertText(*request, bridge::HeaderDate());
                   if (!made) return ToGrpcStatus(made.error());
@@ -356,7 +356,7 @@ grpc::ServerUnaryReactor* ProgramService::ConvertProgram(grpc::CallbackServerCon
 grpc::ServerUnaryReactor* ProgramService::CompensateProgram(
     grpc::CallbackServerContext* context, const v1::CompensateProgramRequest* request,
     v1::CompensateProgramResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/CompensateProgram",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/CompensateProgram",
                 [request, response](const Caller&) {
                   auto made = CompensateText(*request, bridge::HeaderDate());
                   if (!made) return ToGrpcStatus(made.error());
@@ -368,7 +368,7 @@ grpc::ServerUnaryReactor* ProgramService::CompensateProgram(
 grpc::ServerUnaryReactor* ProgramService::TransformProgram(
     grpc::CallbackServerContext* context, const v1::TransformProgramRequest* request,
     v1::TransformProgramResponse* response) {
-  return Answer(needs_, context, *request, "ProgramService/TransformProgram",
+  return Answer(needs_.Computing(), context, *request, "ProgramService/TransformProgram",
                 [request, response](const Caller&) {
                   auto made = TransformText(*request);
                   if (!made) return ToGrpcStatus(made.error());

@@ -62,7 +62,7 @@ void JobLease::SendEvents(const v1::WorkerEvents& events) {
   *message.mutable_events()->mutable_lease() = assignment_.lease();
   if (!line_.Send(message)) return;
   events_sent_ += events.events_size();
-  while (events_sent_ - events_stored_ > line_.events_window() && !lost()) {
+  while (events_sent_ - events_stored_ > line_.events_window() && !lost() && !has_orders()) {
     if (const std::optional<v1::WorkResponse> answer =
             line_.Receive(std::chrono::milliseconds(100)))
       Take(*answer);

@@ -46,7 +46,8 @@ class JobLease {
   // Whether to end, for work that is no run and has nobody who takes its orders.
   Stop StopAsked();
 
-  // At most a window of events is under way: a store that is slow slows the run, not the memory.
+  // At most a window of events is under way: a store that is slow slows the run, not the memory. An
+  // order does not wait for the store: with one there, the run comes to where it is carried out.
   void SendEvents(const v1::WorkerEvents& events);
   void SendProgress(const v1::JobProgress& progress);
   void SendFinish(v1::WorkerFinish finish);

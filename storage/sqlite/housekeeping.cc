@@ -20,9 +20,7 @@ std::int64_t EventSlack(std::int64_t limit) {
 Status KeepCounters(WriteContext& context) {
   MarkTable& marks = context.tables.marks;
   if (const Status job = marks.Set(MarkTable::kJob, context.counters.job); !job) return job.error();
-  if (const Status position = marks.Set(MarkTable::kPosition, context.counters.position); !position)
-    return position.error();
-  return marks.Set(MarkTable::kFence, context.counters.fence);
+  return marks.Set(MarkTable::kPosition, context.counters.position);
 }
 
 // From now on a reader that asks for these events is told that they are gone.

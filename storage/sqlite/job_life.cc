@@ -324,19 +324,17 @@ Result<std::int64_t> AppendEvents(WriteContext& context, const Lease& lease,
   return row->job.last_sequence;
 }
 
-Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const JobOutcome& outcome,
-                            const std::vector<NewArtifact>& artifacts,
-                            const std::vector<const PreparedContent*>& contents,
-                            const std::vector<NewEvent>& events) {
-  if (const Status final_state = CheckFinal(outcome); !final_state) return final_state.error();
+Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const JobEnd& end,
+                            const std::vector<const PreparedContent*>& contents) {
+  if (const Status final_state = CheckFinal(end.outcome); !final_state) return final_state.error();
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
-  if (const Status added = AddArtifacts(context, lease.job, artifacts, contents); !added)
+  if (const Status added = AddArtifacts(context, lease.job, end.artifacts, contents); !added)
     return added.error();
-  if (const Status ended = EndAttempt(context, lease, HowItEnded(outcome.state)); !ended)
+  if (const Status ended = EndAttempt(context, lease, HowItEnded(end.outcome.state)); !ended)
     return ended.error();
-  EndJob(context, row->job, outcome);
-  if (const Status written = WriteChange(context, *row, lease.attempt, events); !written)
+  EndJob(context, row->job, end.outcome);
+  if (const Status written = WriteChange(context, *row, lease.attempt, end.events); !written)
     return written.error();
   return std::move(row->job);
 }

@@ -41,10 +41,8 @@ Result<std::int64_t> AppendEvents(WriteContext& context, const Lease& lease,
                                   const std::vector<NewEvent>& events);
 
 // `contents` belong to `artifacts`, one by one.
-Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const JobOutcome& outcome,
-                            const std::vector<NewArtifact>& artifacts,
-                            const std::vector<const PreparedContent*>& contents,
-                            const std::vector<NewEvent>& events);
+Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const JobEnd& end,
+                            const std::vector<const PreparedContent*>& contents);
 
 Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease, const LossPolicy& policy);
 

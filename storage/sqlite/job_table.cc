@@ -124,8 +124,6 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
       count_running_(
           database,
           "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 1"),
-      count_finished_(database,
-                      "SELECT count(*) FROM job INDEXED BY job_finished_by_time WHERE state >= 2"),
       oldest_finished_(database,
                        "SELECT id FROM job INDEXED BY job_finished_by_time WHERE state >= 2"
                        " ORDER BY finished_at, id LIMIT 1"),
@@ -199,14 +197,12 @@ Result<std::vector<MachineJobs>> JobTable::Unfinished() {
   });
 }
 
-Result<JobTable::Counts> JobTable::Count() {
+Result<JobTable::Counts> JobTable::CountUnfinished() {
   const Result<std::int64_t> queued = FirstInteger(count_queued_.With());
   if (!queued) return queued.error();
   const Result<std::int64_t> running = FirstInteger(count_running_.With());
   if (!running) return running.error();
-  const Result<std::int64_t> finished = FirstInteger(count_finished_.With());
-  if (!finished) return finished.error();
-  return Counts{.queued = *queued, .running = *running, .finished = *finished};
+  return Counts{.queued = *queued, .running = *running};
 }
 
 Result<std::optional<std::int64_t>> JobTable::OldestFinished() {

@@ -35,13 +35,12 @@ class JobTable {
   Status PutSpecification(std::int64_t id, const ContentColumns& specification);
   Result<std::string> Specification(std::int64_t id);  // empty when there is none
 
-  // Dear: all of the index is read.
+  // Dear: all of them are looked at.
   struct Counts {
     std::int64_t queued = 0;
     std::int64_t running = 0;
-    std::int64_t finished = 0;
   };
-  Result<Counts> Count();
+  Result<Counts> CountUnfinished();
   Result<std::int64_t> LastId();
 
   // For the bound on finished jobs.
@@ -71,7 +70,6 @@ class JobTable {
   Statement unfinished_;
   Statement count_queued_;
   Statement count_running_;
-  Statement count_finished_;
   Statement oldest_finished_;
   Statement remove_;
   Statement remove_specification_;

@@ -64,7 +64,6 @@ AttemptTable::AttemptTable(Database& database)
       list_(database,
             "SELECT job, number, worker, fence, started_at, ended_at, how_it_ended FROM attempt"
             " WHERE job = ?1 ORDER BY number"),
-      last_fence_(database, "SELECT ifnull(max(fence), 0) FROM attempt"),
       remove_(database, "DELETE FROM attempt WHERE job = ?1") {}
 
 Status AttemptTable::Add(const AttemptRecord& attempt) {
@@ -79,8 +78,6 @@ Status AttemptTable::End(std::int64_t job, int number, WallTime at, std::string_
 Result<std::vector<AttemptRecord>> AttemptTable::List(std::int64_t job) {
   return AllRows<AttemptRecord>(list_.With(job), ReadAttempt);
 }
-
-Result<std::int64_t> AttemptTable::LastFence() { return FirstInteger(last_fence_.With()); }
 
 Status AttemptTable::RemoveOf(std::int64_t job) { return remove_.With(job).Run(); }
 

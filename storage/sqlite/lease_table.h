@@ -35,14 +35,12 @@ class AttemptTable {
   Status Add(const AttemptRecord& attempt);
   Status End(std::int64_t job, int number, WallTime at, std::string_view how);
   Result<std::vector<AttemptRecord>> List(std::int64_t job);  // by number
-  Result<std::int64_t> LastFence();
   Status RemoveOf(std::int64_t job);
 
  private:
   Statement add_;
   Statement end_;
   Statement list_;
-  Statement last_fence_;
   Statement remove_;
 };
 

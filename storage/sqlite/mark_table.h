@@ -4,12 +4,14 @@
 
 namespace rmlcell::storage::sqlite {
 
-// Counters that must not fall back when the rows they came from are removed.
+// Counters that must not fall back when the rows they came from are removed, or that would be dear
+// to count.
 class MarkTable {
  public:
+  static constexpr std::string_view kFinishedJobs = "finished jobs";
   static constexpr std::string_view kJob = "job";
   static constexpr std::string_view kPosition = "position";
-  static constexpr std::string_view kFence = "fence";
+  static constexpr std::string_view kFence = "fence";  // none beyond it was given out
   static constexpr std::string_view kEventsGoneUntil = "events gone until";
 
   explicit MarkTable(Database& database);

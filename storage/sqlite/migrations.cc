@@ -11,6 +11,10 @@ constexpr Migration kMigrations[] = {
     {1, "machines, programs, schedules, projects, jobs, events, artifacts", kFirstSchema},
     {2, "what was judged of a job",
      "ALTER TABLE job ADD COLUMN outcome_judgement BLOB NOT NULL DEFAULT x'';"},
+    {3, "marks that spare the opening a look at every job",
+     "INSERT OR REPLACE INTO mark SELECT 'finished jobs', count(*) FROM job WHERE state >= 2;"
+     "INSERT OR REPLACE INTO mark SELECT 'fence', max(ifnull(max(fence), 0),"
+     " ifnull((SELECT value FROM mark WHERE name = 'fence'), 0)) FROM attempt;"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

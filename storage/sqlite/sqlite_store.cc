@@ -75,15 +75,16 @@ Result<Counters> ReadCounters(Tables& tables) {
           Raise(tables.events.LastPosition(), marks.Get(MarkTable::kPosition), counters.position);
       !position)
     return position.error();
-  if (const Status fence =
-          Raise(tables.attempts.LastFence(), marks.Get(MarkTable::kFence), counters.fence);
-      !fence)
-    return fence.error();
-  const Result<JobTable::Counts> jobs = tables.jobs.Count();
-  if (!jobs) return jobs.error();
-  counters.queued_jobs = jobs->queued;
-  counters.running_jobs = jobs->running;
-  counters.finished_jobs = jobs->finished;
+  const Result<std::int64_t> fence = marks.Get(MarkTable::kFence);
+  if (!fence) return fence.error();
+  counters.fence = *fence;
+  const Result<std::int64_t> finished = marks.Get(MarkTable::kFinishedJobs);
+  if (!finished) return finished.error();
+  counters.finished_jobs = *finished;
+  const Result<JobTable::Counts> unfinished = tables.jobs.CountUnfinished();
+  if (!unfinished) return unfinished.error();
+  counters.queued_jobs = unfinished->queued;
+  counters.running_jobs = unfinished->running;
   return counters;
 }
 

@@ -78,9 +78,7 @@ class SqliteStore final : public Store {
   void Append(const Lease& lease, std::vector<NewEvent> events,
               std::function<void(Result<std::int64_t>)> done) override;
   Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events) override;
-  Result<JobRecord> Finish(const Lease& lease, const JobOutcome& outcome,
-                           const std::vector<NewArtifact>& artifacts,
-                           const std::vector<NewEvent>& events) override;
+  Result<JobRecord> Finish(const Lease& lease, const JobEnd& end) override;
   Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) override;
   Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) override;
   Result<std::vector<JobRecord>> Expire(const LossPolicy& policy) override;

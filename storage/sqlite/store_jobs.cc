@@ -1,9 +1,11 @@
 // Jobs, leases, events and artifacts.
 #include <algorithm>
+#include <span>
 
 #include "engine/core/hex.h"
 #include "storage/sqlite/content.h"
 #include "storage/sqlite/content_staging.h"
+#include "storage/sqlite/executable_life.h"
 #include "storage/sqlite/job_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
@@ -255,20 +257,31 @@ Result<std::int64_t> SqliteStore::AppendAndWait(const Lease& lease, std::vector<
   return writer_.Do([&](WriteContext& context) { return AppendEvents(context, lease, events); });
 }
 
-Result<JobRecord> SqliteStore::Finish(const Lease& lease, const JobOutcome& outcome,
-                                      const std::vector<NewArtifact>& artifacts,
-                                      const std::vector<NewEvent>& events) {
+Result<JobRecord> SqliteStore::Finish(const Lease& lease, const JobEnd& end) {
   std::vector<StagedContent> staged;
   std::vector<const PreparedContent*> contents;
-  staged.reserve(artifacts.size());
-  for (const NewArtifact& artifact : artifacts) {
+  staged.reserve(end.artifacts.size() + end.executables.size());
+  for (const NewArtifact& artifact : end.artifacts) {
     Result<StagedContent> content = StagedContent::Of(writer_, artifact);
     if (!content) return content.error();
     staged.push_back(*std::move(content));
     contents.push_back(&staged.back().content());
   }
-  return WithSpecification(writer_.Do([&](WriteContext& context) {
-    return FinishJob(context, lease, outcome, artifacts, contents, events);
+  for (const NewExecutable& executable : end.executables) {
+    Result<StagedContent> content = StageExecutable(writer_, executable.bytes);
+    if (!content) return content.error();
+    staged.push_back(*std::move(content));
+  }
+  const std::span executables = std::span(staged).subspan(end.artifacts.size());
+  return WithSpecification(writer_.Do([&](WriteContext& context) -> Result<JobRecord> {
+    Result<JobRecord> job = FinishJob(context, lease, end, contents);
+    for (std::size_t i = 0; job && i < executables.size(); ++i) {
+      const NewExecutable& made = end.executables[i];
+      const auto kept = PutExecutableBlob(context, job->machine, made.slot, made.object_revision,
+                                          executables[i].content());
+      if (!kept) return kept.error();
+    }
+    return job;
   }));
 }
 

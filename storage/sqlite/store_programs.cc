@@ -5,6 +5,7 @@
 
 #include "engine/core/units.h"
 #include "storage/sqlite/content_staging.h"
+#include "storage/sqlite/executable_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
 namespace rmlcell::storage::sqlite {
@@ -186,22 +187,6 @@ Status RemoveProgram(WriteContext& context, std::string_view machine, int slot, 
   return DropBlobs(context, row);
 }
 
-Result<bool> PutExecutableBlob(WriteContext& context, std::string_view machine, int slot,
-                               Revision object_revision, const PreparedContent& executable) {
-  Tables& tables = context.tables;
-  const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
-  if (!found) return found.error();
-  if (!*found || (*found)->revision != object_revision) return false;
-  const Result<std::int64_t> blob = tables.blobs.PutBlob(executable);
-  if (!blob) return blob.error();
-  if (const Status put = tables.programs.PutExecutable(machine, slot, *blob); !put)
-    return put.error();
-  context.garbage = true;
-  if (const Status dropped = tables.blobs.Drop((*found)->executable_blob); !dropped)
-    return dropped.error();
-  return true;
-}
-
 Status RemoveExecutable(WriteContext& context, std::string_view machine, int slot) {
   Tables& tables = context.tables;
   if (const Status known = CheckMachine(tables, machine); !known) return known.error();
@@ -307,10 +292,7 @@ Status SqliteStore::DeleteProgram(std::string_view machine, int slot, Revision e
 
 Result<bool> SqliteStore::PutExecutable(std::string_view machine, int slot,
                                         Revision object_revision, std::string_view executable) {
-  if (const Status good = CheckSize(executable.size(), "the executable"); !good)
-    return good.error();
-  const Result<StagedContent> staged =
-      StagedContent::Make(writer_, executable, StagedContent::Place::kBlob);
+  const Result<StagedContent> staged = StageExecutable(writer_, executable);
   if (!staged) return staged.error();
   return writer_.Do([&](WriteContext& context) {
     return PutExecutableBlob(context, machine, slot, object_revision, staged->content());

@@ -57,6 +57,7 @@ Writer::Writer(Connection& connection, const Counters& counters, const Options& 
       housekeeping_(options.keep),
       connection_(connection),
       counters_(counters),
+      fence_mark_(counters.fence),
       queued_jobs_(counters.queued_jobs),
       running_jobs_(counters.running_jobs),
       thread_([this] { Loop(); }) {}
@@ -235,7 +236,9 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
       return Outcome::kSpoilt;
     }
   }
+  if (const Status kept = KeepMarks(before); !kept) return lose(kept.error());
   if (const Status committed = transaction->Commit(); !committed) return lose(committed.error());
+  fence_mark_ = FenceMark();
   PublishCounts();
   tidy_ = tidy_ || context.garbage || housekeeping_.IsDue(counters_);
   untold_ = untold_ || context.changed;
@@ -290,6 +293,7 @@ void Writer::Tidy() {
     WriteContext context{.tables = connection_.tables, .counters = counters_, .now = clock_()};
     const Result<bool> more = housekeeping_.RunSlice(context);
     if (!more) return more.error();
+    if (const Status kept = KeepMarks(before); !kept) return kept.error();
     if (const Status committed = transaction->Commit(); !committed) return committed.error();
     if (context.changed) changed_();
     return more;
@@ -299,6 +303,23 @@ void Writer::Tidy() {
   // again.
   if (!more) counters_ = before;
   tidy_ = more && *more;
+}
+
+// Whoever opens the store next begins behind every fence that was given out, and looks at no
+// attempt for it. Many are reserved at once: the mark is one more page to write.
+std::int64_t Writer::FenceMark() const {
+  constexpr std::int64_t kReserved = 1'000;
+  return counters_.fence <= fence_mark_ ? fence_mark_ : counters_.fence + kReserved;
+}
+
+Status Writer::KeepMarks(const Counters& before) {
+  MarkTable& marks = connection_.tables.marks;
+  if (counters_.finished_jobs != before.finished_jobs) {
+    if (const Status kept = marks.Set(MarkTable::kFinishedJobs, counters_.finished_jobs); !kept)
+      return kept.error();
+  }
+  if (FenceMark() == fence_mark_) return {};
+  return marks.Set(MarkTable::kFence, FenceMark());
 }
 
 // Before anybody is told of the change: whoever is, finds it here.

@@ -82,6 +82,8 @@ class Writer {
   Status RunOne(Pending& pending, WriteContext& context, Undo undo);
   void AnswerAll();
   void Tidy();
+  std::int64_t FenceMark() const;
+  Status KeepMarks(const Counters& before);
   void PublishCounts();
   bool LogIsLarge(int pages);
   void CheckpointWhenLarge();
@@ -99,6 +101,7 @@ class Writer {
   // Used by whoever has the turn.
   Connection& connection_;
   Counters counters_;
+  std::int64_t fence_mark_;      // as the store has it: none beyond it was given out
   std::deque<Pending> answers_;  // committed or failed, to be answered
   bool untold_ = false;          // watchers do not know yet of a commit
   bool tidy_ = true;             // there may be something to remove

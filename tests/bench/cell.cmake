@@ -3,5 +3,11 @@ if(NOT RMLCELL_ENGINE_ONLY)
   rmlcell_executable(bench_cell_submit
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_submit.cc
     LINKS rmlcell::proto SQLite::SQLite3)
-  set_property(TARGET bench_cell_submit PROPERTY LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,rmlcell_proto")
+  rmlcell_executable(bench_cell_stop
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_stop.cc
+    LINKS rmlcell::proto)
+  foreach(bench IN ITEMS submit stop)
+    set_property(TARGET bench_cell_${bench}
+                 PROPERTY LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,rmlcell_proto")
+  endforeach()
 endif()

@@ -3,18 +3,13 @@
 // ratios count.
 //   bench_cell_submit RMLCELLD [FOLDER [ROUNDS]]
 #include <grpcpp/grpcpp.h>
-#include <signal.h>
 #include <sqlite3.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -23,71 +18,16 @@
 
 #include "grpc/health/v1/health.grpc.pb.h"
 #include "rmlcell/v1/job.grpc.pb.h"
+#include "tests/bench/cell_server.h"
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using namespace rmlcell::bench;
+
 constexpr int kCallsOfARound = 150;
 constexpr int kClients = 64;
 constexpr auto kRateTime = std::chrono::milliseconds(1000);
 constexpr int kJobsToTheEnd = 400;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-// rmlcelld on a free port, with its own state.
-class Server {
- public:
-  Server(const std::string& program, const std::filesystem::path& folder, int workers)
-      : folder_(folder) {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-    const std::string log = (folder_ / "log").string();
-    process_ = fork();
-    if (process_ == 0) {
-      execl(program.c_str(), program.c_str(), "--state.directory", (folder_ / "store").c_str(),
-            "--listen.grpc", "127.0.0.1:0", "--listen.web", "127.0.0.1:0", "--log.file",
-            log.c_str(), "--jobs.queued_max", "1000000", "--workers.count",
-            std::to_string(workers).c_str(), nullptr);
-      _exit(127);
-    }
-    for (int tries = 0; tries < 300 && address_.empty(); ++tries) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      std::ifstream in(log);
-      const std::string text{std::istreambuf_iterator<char>(in), {}};
-      const std::size_t at = text.find("gRPC on ");
-      if (text.find("is ready") == std::string::npos || at == std::string::npos) continue;
-      address_ = text.substr(at + 8, text.find_first_of(" \n", at + 8) - at - 8);
-    }
-    if (address_.empty()) throw std::runtime_error("the server did not start");
-  }
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
-  ~Server() {
-    kill(process_, SIGTERM);
-    waitpid(process_, nullptr, 0);
-    std::filesystem::remove_all(folder_);
-  }
-
-  // A connection of its own, as a client on another machine has.
-  std::shared_ptr<grpc::Channel> Connect() const {
-    grpc::ChannelArguments arguments;
-    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
-    return grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), arguments);
-  }
-
- private:
-  std::filesystem::path folder_;
-  std::string address_;
-  pid_t process_ = 0;
-};
 
 // One durable row of the size of a small job.
 class RawStore {
@@ -143,9 +83,6 @@ struct Client {
     grpc::health::v1::HealthCheckResponse response;
     Must(health->Check(&context, {}, &response));
   }
-  static void Must(const grpc::Status& status) {
-    if (!status.ok()) throw std::runtime_error(status.error_message());
-  }
 
   std::unique_ptr<rmlcell::v1::JobService::Stub> jobs;
   std::unique_ptr<grpc::health::v1::Health::Stub> health;
@@ -190,7 +127,7 @@ double RateOfCommits(RawStore& raw) {
 }
 
 // From the first submission to the end of the last job, report and picture included.
-double JobsToTheEnd(const Server& server) {
+double JobsToTheEnd(const CellServer& server) {
   Client client(server.Connect());
   const auto start = Clock::now();
   std::string last;
@@ -201,7 +138,7 @@ double JobsToTheEnd(const Server& server) {
     request.set_filter("finished = false");
     request.set_page_size(1);
     rmlcell::v1::ListJobsResponse response;
-    Client::Must(client.jobs->ListJobs(&context, request, &response));
+    Must(client.jobs->ListJobs(&context, request, &response));
     if (response.jobs_size() == 0) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
@@ -220,7 +157,7 @@ int main(int argc, char** argv) {
   RawStore raw(folder / "raw");
   std::vector<double> latency, share_of_empty, share_of_commits, to_the_end;
   {
-    const Server server(argv[1], folder / "cell", 0);
+    const CellServer server(argv[1], folder / "cell", 0);
     Client one(server.Connect());
     std::vector<Client> many;
     for (int i = 0; i < kClients; ++i) many.emplace_back(server.Connect());
@@ -242,7 +179,7 @@ int main(int argc, char** argv) {
     }
   }
   for (int round = 0; round < rounds; ++round) {
-    const Server server(argv[1], folder / "cell", 2);
+    const CellServer server(argv[1], folder / "cell", 2);
     const double commits = RateOfCommits(raw);
     const double jobs = JobsToTheEnd(server);
     to_the_end.push_back(jobs / commits);

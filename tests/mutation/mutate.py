@@ -126,10 +126,10 @@ class Measurement:
         # All sources, whichever are asked for: another choice builds nothing anew.
         self.switches.make([name for area in AREAS for name in sources_of(area)], wanted, self.options.jobs)
         self.workshop = Workshop(self.switches.tree, self.switches.build)
-        tests = {test.name: test for test in self.workshop.tests(wanted)}
-        self.workshop.measure(tests.values(), fresh(BUILD / "try" / "as-it-is"),
-                              BUILD / "results" / "times.json")
-        self.tests = {area: [tests[name] for name in AREAS[area].tests] for area in areas}
+        good = self.workshop.measure(self.workshop.tests(wanted), fresh(BUILD / "try" / "as-it-is"),
+                                     BUILD / "results" / "times.json")
+        tests = {test.name: test for test in good}
+        self.tests = {area: [tests[name] for name in AREAS[area].tests if name in tests] for area in areas}
         self.switches.learn_all(wanted, self.options.jobs)
 
     def original(self, file, flags):
@@ -222,7 +222,7 @@ class Measurement:
             argued = [row for row in survived if (row["file"], row["text"], row["change"]) in self.equivalent]
             identical = sum(row["outcome"] == "identical" for row in rows)
             meant = noticed + len(survived) - len(argued)
-            share = noticed / meant if meant else 1.0
+            share = noticed / meant if meant else 0.0  # nothing tried shows nothing
             good = good and share >= GOAL and len(argued) <= ARGUED_MAX * max(1, noticed + len(survived))
             lines.append(f"{area:10} {noticed + len(survived):7} {noticed:7} {by_hash:7} {len(argued):7} "
                          f"{len(survived) - len(argued):5} {100 * share:6.1f}%   {identical}")

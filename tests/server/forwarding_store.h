@@ -110,10 +110,9 @@ class ForwardingStore : public storage::Store {
               std::function<void(Result<std::int64_t>)> done) override {
     store_.Append(lease, std::move(events), std::move(done));
   }
-  Result<storage::JobRecord> Finish(const storage::Lease& lease, const storage::JobOutcome& outcome,
-                                    const std::vector<storage::NewArtifact>& artifacts,
-                                    const std::vector<storage::NewEvent>& events) override {
-    return store_.Finish(lease, outcome, artifacts, events);
+  Result<storage::JobRecord> Finish(const storage::Lease& lease,
+                                    const storage::JobEnd& end) override {
+    return store_.Finish(lease, end);
   }
   Result<storage::JobRecord> HandBack(const storage::Lease& lease,
                                       const storage::LossPolicy& policy) override {

@@ -296,11 +296,11 @@ TEST_P(StoreConformance, ArtifactsComeBack) {
   const LeasedJob leased = (Submit(), Acquire());
   const std::string toolpath = PlotText(3'500'000);
   const std::string picture = Noise(1'200'000, 7);
-  Must(store().Finish(leased.lease, {},
-                      {{.name = "toolpath", .media_type = "text/plain", .bytes = toolpath},
-                       {.name = "picture.svg", .media_type = "image/svg+xml", .bytes = picture},
-                       {.name = "empty", .media_type = "", .bytes = ""}},
-                      {}));
+  Must(store().Finish(
+      leased.lease,
+      {.artifacts = {{.name = "toolpath", .media_type = "text/plain", .bytes = toolpath},
+                     {.name = "picture.svg", .media_type = "image/svg+xml", .bytes = picture},
+                     {.name = "empty", .media_type = "", .bytes = ""}}}));
   Reopen();
   const auto artifacts = Must(store().ListArtifacts(leased.job.id));
   ASSERT_EQ(artifacts.size(), 3U);
@@ -342,9 +342,9 @@ TEST_P(StoreConformance, AttachmentsStayWithTheJob) {
   EXPECT_EQ(Must(store().ReadBlob(Must(store().GetArtifact(job.id, "program-2")).sha256)),
             "inline");
   const LeasedJob leased = Acquire();
-  EXPECT_EQ(CodeOf(store().Finish(leased.lease, {}, {{.name = "main", .bytes = "x"}}, {})),
+  EXPECT_EQ(CodeOf(store().Finish(leased.lease, {.artifacts = {{.name = "main", .bytes = "x"}}})),
             ErrorCode::kCellInvalidArgument);
-  Must(store().Finish(leased.lease, {}, {{.name = "report", .existing_sha256 = hash}}, {}));
+  Must(store().Finish(leased.lease, {.artifacts = {{.name = "report", .existing_sha256 = hash}}}));
   EXPECT_EQ(Must(store().ListArtifacts(job.id)).size(), 3U);
 }
 
@@ -356,9 +356,10 @@ TEST_P(StoreConformance, ContentThatIsNotThereCannotBeAttached) {
     EXPECT_EQ(CodeOf(store().ReadBlob(hash)), ErrorCode::kCellNotFound);
   }
   const LeasedJob leased = (Submit(), Acquire());
-  EXPECT_EQ(CodeOf(store().Finish(leased.lease, {},
-                                  {{.name = "a", .existing_sha256 = std::string(64, 'a')}}, {})),
-            ErrorCode::kCellNotFound);
+  EXPECT_EQ(
+      CodeOf(store().Finish(
+          leased.lease, {.artifacts = {{.name = "a", .existing_sha256 = std::string(64, 'a')}}})),
+      ErrorCode::kCellNotFound);
   EXPECT_EQ(Must(store().GetJob(leased.job.id)).state, JobState::kRunning);
 }
 

@@ -119,7 +119,8 @@ TEST_P(StoreConformance, StaleWorkerIsRefused) {
     EXPECT_EQ(CodeOf(store().Renew(stale, kLease)), kLost);
     EXPECT_EQ(CodeOf(store().AppendAndWait(stale, {{.kind = "e", .payload = ""}})), kLost);
     EXPECT_EQ(CodeOf(store().AppendAndWait(stale, {})), kLost);
-    EXPECT_EQ(CodeOf(store().Finish(stale, {}, {{.name = "report", .bytes = "r"}}, {})), kLost);
+    EXPECT_EQ(CodeOf(store().Finish(stale, {.artifacts = {{.name = "report", .bytes = "r"}}})),
+              kLost);
     EXPECT_EQ(CodeOf(store().HandBack(stale, PolicyOfTests())), kLost);
     EXPECT_EQ(CodeOf(store().Abandon(stale, PolicyOfTests())), kLost);
   };
@@ -185,8 +186,8 @@ TEST_P(StoreConformance, ExpiryRacesWithFinish) {
     std::vector<JobRecord> expired;
     {
       const std::jthread worker([&] {
-        finished = store().Finish(lease, {}, {{.name = "report", .bytes = "r"}},
-                                  {{.kind = "finished", .payload = ""}});
+        finished = store().Finish(lease, {.artifacts = {{.name = "report", .bytes = "r"}},
+                                          .events = {{.kind = "finished", .payload = ""}}});
       });
       const std::jthread server([&] { expired = Must(store().Expire(PolicyOfTests())); });
     }
@@ -301,7 +302,7 @@ TEST_P(StoreConformance, PolicyNeedsAFinalOutcome) {
   policy.outcome.state = JobState::kQueued;
   EXPECT_EQ(CodeOf(store().Abandon(leased.lease, policy)), ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(CodeOf(store().Expire(policy)), ErrorCode::kCellInvalidArgument);
-  EXPECT_EQ(CodeOf(store().Finish(leased.lease, {.state = JobState::kRunning}, {}, {})),
+  EXPECT_EQ(CodeOf(store().Finish(leased.lease, {.outcome = {.state = JobState::kRunning}})),
             ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(CodeOf(store().Renew(leased.lease, kLease)), std::nullopt);
 }
@@ -344,6 +345,28 @@ TEST_P(StoreConformance, RunThatIsHandedBackIsInterrupted) {
   EXPECT_EQ(CodeOf(store().HandBack(leased.lease, PolicyOfTests())), ErrorCode::kCellLeaseLost);
 }
 
+// scale-out.md section 16 and OPT-1.15: what a run compiled comes with its end, for the object that
+// it had.
+TEST_P(StoreConformance, FinishKeepsExecutablesOfUnchangedObjects) {
+  PutMachine("m");
+  Must(store().PutPrograms("m", {{.slot = 3, .object = "three"}, {.slot = 4, .object = "four"}},
+                           {}));
+  Must(store().PutPrograms("m", {{.slot = 4, .object = "altered"}}, {}));
+  Submit("SIMULATE", "m");
+  const LeasedJob leased = Acquire();
+  const JobEnd end{
+      .executables = {{3, 1, "made of three"}, {4, 1, "made of four"}, {5, 1, "of none"}}};
+  Lease stale = leased.lease;
+  stale.fence -= 1;
+  EXPECT_EQ(CodeOf(store().Finish(stale, end)), ErrorCode::kCellLeaseLost);
+  EXPECT_EQ(Must(store().GetProgram("m", 3)).executable, std::nullopt);
+  Must(store().Finish(leased.lease, end));
+  Reopen();
+  EXPECT_EQ(Must(store().GetProgram("m", 3)).executable, "made of three");
+  EXPECT_EQ(Must(store().GetProgram("m", 4)).executable, std::nullopt);
+  EXPECT_EQ(CodeOf(store().GetProgram("m", 5)), ErrorCode::kCellNotFound);
+}
+
 // store.h Finish: state, outcome, times, events and artifacts come together.
 TEST_P(StoreConformance, FinishEndsTheJob) {
   const LeasedJob leased = (Submit(), Acquire());
@@ -354,8 +377,9 @@ TEST_P(StoreConformance, FinishEndsTheJob) {
                            .program = 45,
                            .step = 7};
   const JobRecord finished =
-      Must(store().Finish(leased.lease, outcome, {{.name = "report", .bytes = "{}"}},
-                          {{.kind = "ended", .payload = "x"}}));
+      Must(store().Finish(leased.lease, {.outcome = outcome,
+                                         .artifacts = {{.name = "report", .bytes = "{}"}},
+                                         .events = {{.kind = "ended", .payload = "x"}}}));
   EXPECT_EQ(finished.last_sequence, 1);
   Reopen();
   const JobRecord job = Must(store().GetJob(leased.job.id));
@@ -425,7 +449,7 @@ TEST_P(StoreConformance, ManyWorkersFinishEveryJobOnce) {
               if (const auto lost = store().Abandon(lease, PolicyOfTests())) note(*lost);
               break;
             default:
-              if (const auto job = store().Finish(lease, {}, {}, {})) note(*job);
+              if (const auto job = store().Finish(lease, {})) note(*job);
           }
         }
       });

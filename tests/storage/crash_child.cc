@@ -69,9 +69,9 @@ void Work(Store& store, unsigned seed, const std::atomic<bool>& done) {
         static_cast<void>(store.HandBack(lease, policy));
         break;
       default: {
-        const auto ended =
-            store.Finish(lease, {}, {{.name = "report", .bytes = crash::ReportOf(lease.job)}},
-                         {{.kind = "ended"}});
+        const auto ended = store.Finish(
+            lease, {.artifacts = {{.name = "report", .bytes = crash::ReportOf(lease.job)}},
+                    .events = {{.kind = "ended"}}});
         if (ended) Tell("F " + job + " " + std::to_string(static_cast<int>(ended->state)));
       }
     }

@@ -178,7 +178,7 @@ TEST_F(SqliteContents, RefusedWriteLeavesNothing) {
             ErrorCode::kCellNotFound);
   EXPECT_EQ(CodeOf(store().PutPrograms("none", {{.slot = 1, .object = object}}, {})),
             ErrorCode::kCellUnknownMachine);
-  EXPECT_EQ(CodeOf(store().Finish({.job = 1}, {}, {{.name = "r", .bytes = object}}, {})),
+  EXPECT_EQ(CodeOf(store().Finish({.job = 1}, {.artifacts = {{.name = "r", .bytes = object}}})),
             ErrorCode::kCellLeaseLost);
   WaitUntil([&] { return Count("blob") == 0 && Count("blob_chunk") == 0; });
 }

@@ -111,7 +111,8 @@ TEST_F(SqliteFaults, EveryStepSurvivesAFailureAtEveryOperation) {
             store().PutProject({.id = "p", .body = Noise(1'300'000, 1)}, kAnyRevision));
       });
       insist([&] {
-        return status_of(store().Finish(leased->lease, {}, {{.name = "r", .bytes = name}}, {}));
+        return status_of(
+            store().Finish(leased->lease, {.artifacts = {{.name = "r", .bytes = name}}}));
       });
       insist([&] { return store().DeleteProject("p", kAnyRevision); });
       const JobRecord job = Must(store().GetJob(id));

@@ -38,8 +38,9 @@ class SqliteKeep : public testing::Test {
   }
   void Finish(const Lease& lease) {
     bed_->clock().Advance(std::chrono::milliseconds(1));
-    Must(store().Finish(lease, {}, {{.name = "report", .bytes = Numbered("report ", lease.job)}},
-                        {{.kind = "ended", .payload = ""}}));
+    Must(store().Finish(lease,
+                        {.artifacts = {{.name = "report", .bytes = Numbered("report ", lease.job)}},
+                         .events = {{.kind = "ended", .payload = ""}}}));
   }
   std::vector<std::int64_t> Jobs() {
     std::vector<std::int64_t> ids;
@@ -125,6 +126,58 @@ TEST_F(SqliteKeep, NumbersAreNotGivenAgain) {
   EXPECT_EQ(Submit(), 3);
   EXPECT_GT(Acquire().fence, second.fence);
   EXPECT_EQ(Must(store().LastPosition()), position + 1);
+}
+
+// Opening counts no finished job and looks at no attempt: there may be a million of them.
+TEST_F(SqliteKeep, OpeningTakesItsCountersFromMarks) {
+  Open(0, 0);
+  for (int i = 0; i < 5; ++i) RunJob();
+  bed_->Close();
+  EXPECT_EQ(NumberIn(bed_->path(), "SELECT value FROM mark WHERE name = 'finished jobs'"), 5);
+  // As if there were fewer, and as if a higher fence had been given out.
+  ExecuteIn(bed_->path(),
+            "UPDATE mark SET value = 2 WHERE name = 'finished jobs';"
+            "UPDATE mark SET value = 70000 WHERE name = 'fence'");
+  bed_->options().keep_finished_jobs = 4;
+  bed_->Reopen();
+  RunJob();
+  EXPECT_EQ(RunJob(), 7);
+  EXPECT_EQ(Jobs().size(), 7U);
+  RunJob();  // the fifth by the mark
+  WaitForCount("job", 7);
+  Submit();
+  EXPECT_EQ(Acquire().fence, 70'004);
+}
+
+// A write that is undone changes no mark.
+TEST_F(SqliteKeep, MarksFollowWhatIsCommitted) {
+  Open(0, 0);
+  Submit();
+  const Lease lease = Acquire();
+  const std::string finished =
+      "SELECT ifnull(max(value), 0) FROM mark WHERE name = 'finished jobs'";
+  EXPECT_EQ(CodeOf(store().Finish(
+                lease, {.artifacts = {{.name = "r", .existing_sha256 = std::string(64, 'a')}}})),
+            ErrorCode::kCellNotFound);
+  Submit();
+  EXPECT_EQ(NumberIn(bed_->path(), finished), 0);
+  Finish(lease);
+  EXPECT_EQ(NumberIn(bed_->path(), finished), 1);
+}
+
+// A store of version 2 has no such marks: they are made from its rows.
+TEST_F(SqliteKeep, OldStoreGetsItsMarks) {
+  Open(0, 0);
+  for (int i = 0; i < 5; ++i) RunJob();
+  const std::int64_t last = Must(store().ListAttempts(5)).front().fence;
+  bed_->Close();
+  ExecuteIn(bed_->path(),
+            "DELETE FROM mark; DELETE FROM migration WHERE number = 3; PRAGMA user_version = 2");
+  bed_->options().keep_finished_jobs = 3;
+  bed_->Reopen();
+  WaitForCount("job", 3);
+  Submit();
+  EXPECT_EQ(Acquire().fence, last + 1);
 }
 
 // 9021: who asks for events that are gone is told so, with the number to go on from; nothing is

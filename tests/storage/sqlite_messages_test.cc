@@ -103,7 +103,7 @@ TEST_F(SqliteMessages, OfJobs) {
                 {.kind = "CHECK", .attachments = {{.name = "a", .existing_sha256 = hash}}})),
             "no content with SHA-256 " + hash);
   const Lease lease = Must(store().Acquire("w", {"CHECK"}, kLease, {}))->lease;
-  EXPECT_EQ(DetailOf(store().Finish(lease, {.state = JobState::kRunning}, {}, {})),
+  EXPECT_EQ(DetailOf(store().Finish(lease, {.outcome = {.state = JobState::kRunning}})),
             "an outcome has to be final");
 }
 

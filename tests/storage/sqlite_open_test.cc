@@ -69,7 +69,7 @@ void AskForEverything(Store& store) {
     }
   }
   if (const auto leased = store.Acquire("w", {"CHECK"}, kLease, {}); leased && *leased) {
-    static_cast<void>(store.Finish((*leased)->lease, {}, {{.name = "r", .bytes = "x"}}, {}));
+    static_cast<void>(store.Finish((*leased)->lease, {.artifacts = {{.name = "r", .bytes = "x"}}}));
   }
   static_cast<void>(store.PutMachine({.id = "n"}, kAnyRevision));
   static_cast<void>(store.PutPrograms("m", {{.slot = 1, .object = "x"}}, {}));
@@ -294,9 +294,9 @@ TEST(SqliteOpen, UnknownErrorCodeIsKeptAsText) {
   SqliteBed bed;
   Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
   const auto leased = Must(bed.store().Acquire("w", {"CHECK"}, kLease, {}));
-  Must(bed.store().Finish(
-      leased->lease,
-      {.state = JobState::kFailed, .code = ErrorCode::kCellWorkerDied, .detail = "why"}, {}, {}));
+  Must(bed.store().Finish(leased->lease, {.outcome = {.state = JobState::kFailed,
+                                                      .code = ErrorCode::kCellWorkerDied,
+                                                      .detail = "why"}}));
   bed.Close();
   ExecuteIn(bed.path(), "UPDATE job SET outcome_code = 'CELL-E9999'");
   bed.Reopen();

@@ -24,7 +24,7 @@ LeasedJob StoreConformance::Acquire(const std::string& worker, const std::string
 }
 
 JobRecord StoreConformance::Finish(const Lease& lease, JobState state) {
-  return Must(store().Finish(lease, {.state = state}, {}, {}));
+  return Must(store().Finish(lease, {.outcome = {.state = state}}));
 }
 
 std::vector<EventRecord> StoreConformance::EventsOf(std::int64_t job) {

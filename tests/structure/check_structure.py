@@ -128,7 +128,7 @@ PUBLIC = {
     "server/jobs": ["dispatcher.h", "job_book.h", "worker_processes.h"],
     "server/records": ["file_family.h", "job_messages.h", "program_place.h", "update_mask.h"],
     "server/programs": ["memory_tools.h", "program_book.h", "program_result.h", "text_tools.h"],
-    "server/services": ["handbox_service.h", "job_service.h", "machine_messages.h", "machine_service.h",
+    "server/services": ["foreign_calls.h", "handbox_service.h", "job_service.h", "machine_messages.h", "machine_service.h",
                         "program_service.h", "project_service.h", "web_resources.h", "worker_service.h"],
     "server/web": ["resource_source.h", "web_server.h"],
     "server/worker": [],

@@ -305,6 +305,26 @@ TEST(EventFeed, KeepsSoManyEventsInMemoryAndNoMore) {
   EXPECT_EQ(log.reads(), before + 2);
 }
 
+// Of a log that several servers write: what is in memory is known by the position behind which
+// nothing is missing, not by a number that must follow another.
+TEST(EventFeed, ServesFromMemoryOverAGap) {
+  FakeLog log;
+  log.Write(1, 5);
+  EventFeed feed(log, {.poll_interval = kNever});
+  ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));
+  const auto watch = feed.Subscribe(2, [] {});
+  log.LeaveGap(100);
+  log.Write(1, 3);
+  ASSERT_TRUE(Eventually([&] { return feed.position() == 108; }));
+  const int before = log.reads();
+  for (const std::int64_t after : {5, 6, 104, 105}) {
+    EXPECT_EQ(Must(feed.EventsAfter(after, 10)).front().position, after < 106 ? 106 : after + 1);
+  }
+  EXPECT_EQ(log.reads(), before);
+  EXPECT_EQ(Must(feed.EventsAfter(4, 10)).front().position, 5);
+  EXPECT_EQ(log.reads(), before + 1);
+}
+
 TEST(EventFeed, ANewPositionReplacesTheOneBefore) {
   FakeLog log;
   EventFeed feed(log);

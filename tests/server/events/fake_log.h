@@ -20,6 +20,11 @@ class FakeLog final : public storage::Store {
     }
     Hint();
   }
+  // The next event has a position so much higher than it would have: a shared log has gaps.
+  void LeaveGap(std::int64_t width) {
+    const std::lock_guard lock(mutex_);
+    last_ += width;
+  }
   // Removes all events up to the last one, as housekeeping may before they were read.
   void ForgetAll() {
     const std::lock_guard lock(mutex_);
@@ -154,9 +159,7 @@ class FakeLog final : public storage::Store {
               std::function<void(Result<std::int64_t>)> done) override {
     done(No());
   }
-  Result<storage::JobRecord> Finish(const storage::Lease&, const storage::JobOutcome&,
-                                    const std::vector<storage::NewArtifact>&,
-                                    const std::vector<storage::NewEvent>&) override {
+  Result<storage::JobRecord> Finish(const storage::Lease&, const storage::JobEnd&) override {
     return No();
   }
   Result<storage::JobRecord> HandBack(const storage::Lease&, const storage::LossPolicy&) override {

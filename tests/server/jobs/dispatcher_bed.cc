@@ -148,6 +148,20 @@ void DispatcherBed::Settle() {
   meeting->arrive_and_wait();
 }
 
+std::shared_ptr<void> DispatcherBed::Occupy() {
+  dispatcher();
+  const auto busy = std::make_shared<std::latch>(kThreads + 1);
+  const auto over = std::make_shared<std::latch>(1);
+  for (int i = 0; i < kThreads; ++i) {
+    executor_->Post([busy, over] {
+      busy->arrive_and_wait();
+      over->wait();
+    });
+  }
+  busy->arrive_and_wait();
+  return {nullptr, [over](void*) { over->count_down(); }};
+}
+
 // A worker that leaves wakes those that are idle; this one can do nothing, so it takes nothing.
 void DispatcherBed::LookAgain() {
   v1::WorkerHello hello = Hello("passing");

@@ -89,14 +89,18 @@ class FakeWorker {
 class HookedStore final : public ForwardingStore {
  public:
   using ForwardingStore::ForwardingStore;
-  std::function<void(bool found)> after_acquire;  // set before the dispatcher is made
+  // Set before the dispatcher is made.
+  std::function<void(bool found)> after_acquire;
+  std::function<void()> before_machine;  // an assignment is made from it
   // So many of the next calls fail, as on a full disk.
   std::atomic<int> finishes_that_fail = 0;
   std::atomic<int> renewals_that_fail = 0;
   std::atomic<int> acquires_that_fail = 0;
+  std::atomic<int> machines_that_fail = 0;
   // Calls that have returned.
   std::atomic<int> renewals = 0;
   std::atomic<int> sweeps = 0;
+  std::atomic<int> jobs_read = 0;
   std::atomic<int> hints = 0;  // told to the dispatcher and to the feed
 
   std::unique_ptr<Subscription> Watch(std::function<void()> changed) override {
@@ -106,6 +110,15 @@ class HookedStore final : public ForwardingStore {
     });
   }
 
+  Result<storage::JobRecord> GetJob(std::int64_t id) override {
+    ++jobs_read;
+    return store_.GetJob(id);
+  }
+  Result<storage::MachineRecord> GetMachine(std::string_view id) override {
+    if (before_machine) before_machine();
+    if (Fails(machines_that_fail)) return FullDisk();
+    return store_.GetMachine(id);
+  }
   Result<std::optional<storage::LeasedJob>> Acquire(
       std::string_view worker, const std::vector<std::string>& kinds,
       std::chrono::milliseconds duration, const std::vector<storage::NewEvent>& events) override {
@@ -120,11 +133,10 @@ class HookedStore final : public ForwardingStore {
     ++renewals;
     return renewed;
   }
-  Result<storage::JobRecord> Finish(const storage::Lease& lease, const storage::JobOutcome& outcome,
-                                    const std::vector<storage::NewArtifact>& artifacts,
-                                    const std::vector<storage::NewEvent>& events) override {
+  Result<storage::JobRecord> Finish(const storage::Lease& lease,
+                                    const storage::JobEnd& end) override {
     if (Fails(finishes_that_fail)) return FullDisk();
-    return store_.Finish(lease, outcome, artifacts, events);
+    return store_.Finish(lease, end);
   }
   Result<std::vector<storage::JobRecord>> Expire(const storage::LossPolicy& policy) override {
     auto expired = store_.Expire(policy);
@@ -162,6 +174,8 @@ class DispatcherBed {
   void Advance(std::chrono::milliseconds by);
   // Waits until what was posted for workers is worked through.
   void Settle();
+  // Keeps every thread of the executor busy until the handle is destroyed.
+  [[nodiscard]] std::shared_ptr<void> Occupy();
   // Each idle worker looks for a job once more, and has looked when this returns: what it was not
   // given until then it is not given.
   void LookAgain();

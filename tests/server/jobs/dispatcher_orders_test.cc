@@ -109,6 +109,59 @@ TEST(DispatcherControl, AnOrderForAJobOnItsWayComesAfterTheJob) {
   EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_HOLD);
 }
 
+TEST(DispatcherControl, AnOrderForAJobThatIsBeingMadeReadyComesAfterTheJob) {
+  DispatcherBed bed;
+  std::atomic<std::int64_t> job = 0;
+  std::optional<bool> taken;
+  bed.hooks.before_machine = [&] {
+    taken = bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_STOP);
+  };
+  job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(taken, true);
+  EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_STOP);
+}
+
+// One that another server has was ordered while this worker looked: it found another job.
+TEST(DispatcherControl, AnOrderForAnotherJobIsForgotten) {
+  DispatcherBed bed;
+  const std::int64_t elsewhere = bed.server.SubmitCheck();
+  const auto leased = Must(bed.server.store().Acquire("elsewhere", {"CHECK"}, kPatience, {}));
+  ASSERT_EQ(leased->lease.job, elsewhere);
+  Status ordered;
+  bed.hooks.after_acquire = [&](bool found) {
+    if (found) ordered = bed.dispatcher().Control(elsewhere, v1::WorkerControl::KIND_HOLD, 0);
+  };
+  bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_TRUE(ordered);
+  bed.Settle();
+  EXPECT_FALSE(worker.line().Has(v1::WorkResponse::kControl));
+}
+
+// A stop waits neither for the store nor for what keeps the threads of the server busy.
+TEST(DispatcherControl, AnOrderAtOncePassesByTheStoreAndBusyThreads) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_CANCEL));
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  bed.Settle();
+  {
+    const auto busy = bed.Occupy();
+    const int read = bed.hooks.jobs_read;
+    EXPECT_TRUE(bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_CANCEL));
+    EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_CANCEL);
+    EXPECT_EQ(bed.hooks.jobs_read, read);
+  }
+  worker.Finish(v1::Outcome::KIND_CANCELLED);
+  EXPECT_EQ(worker.Released(), true);
+  EXPECT_EQ(bed.Job(job).state, JobState::kCancelled);
+  EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_CANCEL));
+}
+
 // A worker that gives its job back is about to end: the job goes to another, and no attempt is
 // lost.
 TEST(DispatcherHandBack, GivesTheJobToAnotherAndCountsNoAttempt) {

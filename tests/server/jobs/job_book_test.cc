@@ -378,7 +378,7 @@ TEST_F(JobBookTest, ASnapshotHasWhatIsUnfinishedFirst) {
   for (int i = 0; i < 210; ++i) {
     Must(Submit(Simulate()));
     const auto leased = Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
-    Must(bed.store().Finish(leased->lease, {.state = JobState::kSucceeded}, {}, {}));
+    Must(bed.store().Finish(leased->lease, {.outcome = {.state = JobState::kSucceeded}}));
   }
   const v1::CellSnapshot snapshot = Must(book.Snapshot());
   EXPECT_EQ(snapshot.jobs_size(), 200);
@@ -391,8 +391,10 @@ TEST_F(JobBookTest, AProductThatIsNotThereSaysWhy) {
   const std::int64_t job = Number(Must(Submit(Simulate())));
   EXPECT_EQ(CodeOf(book.ReadArtifact(job, "report")), ErrorCode::kCellPrecondition);  // not yet
   const auto leased = Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
-  Must(bed.store().Finish(leased->lease, {.state = JobState::kSucceeded},
-                          {{.name = "report", .media_type = "m", .bytes = "the report"}}, {}));
+  Must(bed.store().Finish(
+      leased->lease,
+      {.outcome = {.state = JobState::kSucceeded},
+       .artifacts = {{.name = "report", .media_type = "m", .bytes = "the report"}}}));
   EXPECT_EQ(Must(book.ReadArtifact(job, "report")), "the report");
   EXPECT_EQ(CodeOf(book.ReadArtifact(job, "trace")), ErrorCode::kCellNotFound);
   EXPECT_EQ(CodeOf(book.ReadArtifact(job + 1, "report")), ErrorCode::kCellNotFound);

@@ -407,7 +407,7 @@ TEST_F(JobLimits, AStoredProgramIsAttached) {
 TEST_F(JobLimits, ASnapshotHasTwoHundredJobs) {
   Fill(3);
   for (int i = 0; i < 3; ++i) {
-    Must(bed.store().Finish(bed.Lease("CHECK"), {.state = JobState::kSucceeded}, {}, {}));
+    Must(bed.store().Finish(bed.Lease("CHECK"), {.outcome = {.state = JobState::kSucceeded}}));
   }
   Fill(198);
   v1::CellSnapshot snapshot = Must(book.Snapshot());

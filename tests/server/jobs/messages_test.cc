@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <latch>
+
 #include "proto/bridge/framing.h"
 #include "server/base/executor.h"
 #include "server/base/names.h"
@@ -321,6 +323,28 @@ TEST(Executor, RunsAllThatWasPostedAndSurvivesAnException) {
     }
   }
   EXPECT_EQ(done, 990);
+}
+
+TEST(Executor, TakesNoMoreThanMayWait) {
+  std::latch begun(1);
+  std::latch go_on(1);
+  std::atomic<int> done = 0;
+  {
+    Executor executor(1, 2);
+    ASSERT_TRUE(executor.TryPost([&] {
+      begun.count_down();
+      go_on.wait();
+    }));
+    begun.wait();  // what has begun does not wait any more
+    const auto work = [&done] { ++done; };
+    EXPECT_TRUE(executor.TryPost(work));
+    EXPECT_TRUE(executor.TryPost(work));
+    EXPECT_FALSE(executor.TryPost(work));
+    executor.Post(work);  // never refused
+    EXPECT_FALSE(executor.TryPost(work));
+    go_on.count_down();
+  }
+  EXPECT_EQ(done, 3);
 }
 
 }  // namespace

@@ -93,7 +93,9 @@ TEST(CallSize, AMessageOfTheLimitPassesAndOneByteMoreDoesNot) {
   request.set_message(std::string(1000, 'x'));
   const auto size = static_cast<std::int64_t>(request.SerializeAsString().size());
   const auto check = [&](std::int64_t bytes_max) {
-    return CheckSize({.gate = gate, .executor = executor, .message_bytes_max = bytes_max}, request);
+    return CheckSize(
+        {.gate = gate, .executor = executor, .compute = executor, .message_bytes_max = bytes_max},
+        request);
   };
   EXPECT_TRUE(check(size + 1));
   EXPECT_TRUE(check(size));

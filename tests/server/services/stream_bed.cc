@@ -27,7 +27,9 @@ void StreamBed::Finish(const storage::Lease& lease,
                        const std::vector<storage::NewArtifact>& artifacts) {
   v1::Outcome outcome;
   outcome.set_kind(v1::Outcome::KIND_COMPLETED);
-  Must(bed.store().Finish(lease, OutcomeOf(outcome), artifacts, {EndedEvent(outcome)}));
+  Must(bed.store().Finish(
+      lease,
+      {.outcome = OutcomeOf(outcome), .artifacts = artifacts, .events = {EndedEvent(outcome)}}));
 }
 
 std::int64_t StreamBed::Ended(const std::string& artifact, const std::string& bytes,

@@ -103,10 +103,9 @@ TEST_F(WebResourcesTest, ProductsOfAJob) {
     bed.SubmitCheck();
     const storage::Lease lease = bed.Lease();
     Must(bed.store().Finish(
-        lease, {},
-        {{.name = "report", .media_type = "application/x-protobuf", .bytes = report},
-         {.name = "picture.svg", .media_type = "image/svg+xml", .bytes = "<svg/>"}},
-        {}));
+        lease, {.artifacts = {
+                    {.name = "report", .media_type = "application/x-protobuf", .bytes = report},
+                    {.name = "picture.svg", .media_type = "image/svg+xml", .bytes = "<svg/>"}}}));
     return std::to_string(lease.job);
   };
   v1::RunReport report;

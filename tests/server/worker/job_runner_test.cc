@@ -289,6 +289,17 @@ TEST_F(JobRunnerTest, SendsNoMoreThanAWindowOfEvents) {
   }
 }
 
+// An order is looked at while the store makes the run wait.
+TEST_F(JobRunnerTest, IsStoppedWhileItsEventsAreNotStored) {
+  server.window = 1;
+  server.stores = false;
+  server.heard = [&](const v1::WorkRequest& message) {
+    if (message.has_events()) server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+  };
+  Work(Assignment(v1::JOB_KIND_SIMULATE, "10 OL[20]=ON\nOL[20]=OFF\nDELAY 0.1\nGOTO 10\n"));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
+}
+
 // While it translates and runs its heart beats three times in a lease.
 TEST_F(JobRunnerTest, BeatsThreeTimesInALease) {
   server.lease_ms = 60;
