@@ -91,6 +91,7 @@ class Dispatcher {
   void StoreEnd(const std::shared_ptr<Worker>& worker);
   void TryAgain();
   void EndAssignment(Worker& worker, bool stored);
+  void TakeNoOrders(Worker& worker);  // its job is over
   void Lose(const Assignment& assignment);
   void SweepLeases(const std::stop_token& stop);
   void EndLeases();

@@ -129,6 +129,7 @@ void Dispatcher::RestWithoutWork(Worker& worker, const Error& trouble) {
 void Dispatcher::StoreEnd(const std::shared_ptr<Worker>& worker) {
   Assignment& assignment = *worker->assignment;
   const storage::Lease lease = assignment.lease;
+  TakeNoOrders(*worker);  // before anybody reads that it is over
   const auto ended = store_.Finish(lease, *assignment.end);
   if (ended) {
     const std::optional<ErrorCode> code = assignment.end->outcome.code;
@@ -319,23 +320,24 @@ void Dispatcher::EndAssignment(Worker& worker, bool stored) {
   const storage::Lease lease = worker.assignment->lease;
   worker.assignment.reset();
   feed_.ForgetProgress(lease.job);
-  {
-    // Before the worker hears of it: an order for a job that is over is refused from then on.
-    const std::lock_guard lock(mutex_);
-    worker.job = 0;
-    worker.sent.reset();
-    worker.early_orders.clear();
-    worker.delivery.reset();
-  }
+  TakeNoOrders(worker);  // before the worker hears of it
   v1::WorkResponse message;
   *message.mutable_release()->mutable_lease() = ToProto(lease);
   message.mutable_release()->set_stored(stored);
   worker.line->Send(std::move(message));
   {
     const std::lock_guard lock(mutex_);
+    worker.delivery.reset();
     worker.idle = true;
   }
   changed_.notify_all();
+}
+
+void Dispatcher::TakeNoOrders(Worker& worker) {
+  const std::lock_guard lock(mutex_);
+  worker.job = 0;
+  worker.sent.reset();
+  worker.early_orders.clear();
 }
 
 void Dispatcher::Lose(const Assignment& assignment) {

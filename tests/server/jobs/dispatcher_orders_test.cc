@@ -124,6 +124,23 @@ TEST(DispatcherControl, AnOrderForAJobThatIsBeingMadeReadyComesAfterTheJob) {
 }
 
 // One that another server has was ordered while this worker looked: it found another job.
+// Whoever has read that a job is over is not told that it was held.
+TEST(DispatcherControl, AJobThatItsWorkerHasFinishedTakesNoOrders) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_TRUE(bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_HOLD));
+  bed.hooks.finishes_that_fail = 1'000'000;
+  worker.Finish();
+  bed.Settle();
+  EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_HOLD));
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, v1::WorkerControl::KIND_HOLD, 0)),
+            ErrorCode::kCellPrecondition);
+  bed.hooks.finishes_that_fail = 0;
+  EXPECT_EQ(worker.Released(), true);
+}
+
 TEST(DispatcherControl, AnOrderForAnotherJobIsForgotten) {
   DispatcherBed bed;
   const std::int64_t elsewhere = bed.server.SubmitCheck();
