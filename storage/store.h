@@ -122,6 +122,10 @@ class Store {
   virtual Result<MachineRecord> GetMachine(std::string_view id) = 0;
   // The revision and times of `machine` are not looked at. CellInvalidArgument: no id.
   virtual Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected) = 0;
+  // With its programs and schedules. Jobs that have ended stay. A machine of this id that is made
+  // later goes on counting the revisions. CellUnknownMachine; CellPrecondition: jobs wait for it or
+  // run.
+  virtual Status DeleteMachine(std::string_view id, Revision expected) = 0;
 
   // --- programs
   // Slots in order, those after `after_slot`.
@@ -188,6 +192,9 @@ class Store {
   virtual Result<JobCounts> CountJobs() = 0;  // cheap: called for every submission
   // By id of the machine; those without such jobs are left out.
   virtual Result<std::vector<MachineJobs>> UnfinishedJobs() = 0;
+  // With its events, attempts and products; whoever asks for its events is told that they are gone.
+  // CellNotFound; CellPrecondition: it has not ended.
+  virtual Status DeleteJob(std::int64_t id) = 0;
 
   // Queued: cancelled at once (CellCancelled), with `events`. Running: marked, without events; the
   // holder of the lease ends it. Final: unchanged. Returns the job as it then is.

@@ -458,20 +458,30 @@ std::string EventLine(const v1::JobEvent& event) {
     case v1::JobEvent::kGathered:
       return text + GatheredLine(event.gathered());
     case v1::JobEvent::kMessage:
-      return text + Visible(event.message());
+      return text + Visible(event.message().text());
     case v1::JobEvent::kHalted:
-      return text + "halted: " + event.halted();
+      return text + "halted: " + Visible(event.halted().message());
     case v1::JobEvent::kResumed:
       return text + "resumed";
     case v1::JobEvent::kSignal: {
-      const v1::TraceRecord& signal = event.signal();
-      std::string line = text + signal.text();
-      if (signal.text() == "output") line += " " + std::to_string(signal.index());
+      const v1::Signal& signal = event.signal();
+      std::string line = text + Visible(signal.name());
+      if (signal.kind() == v1::SIGNAL_KIND_LOGICAL_OUTPUT)
+        line += " " + std::to_string(signal.index());
       return line + " = " + Fixed(signal.value(), 0) +
              (signal.detail() != 0.0 ? " (" + Fixed(signal.detail(), 1) + ")" : "");
     }
-    case v1::JobEvent::kMilestone:
-      return text + event.milestone();
+    case v1::JobEvent::kProgramLoaded:
+      return text + "program " + std::to_string(event.program_loaded().program());
+    case v1::JobEvent::kExecutableMade:
+      return text + "compiling program " + std::to_string(event.executable_made().program());
+    case v1::JobEvent::kInputApplied:
+      return text + "input of " + Visible(event.input_applied().caller());
+    case v1::JobEvent::kRunBegun:
+      return text + "run " + std::to_string(event.run_begun().run()) + " begins";
+    case v1::JobEvent::kQueue:
+      return text + (event.queue().held() ? "held back"
+                                          : "priority " + std::to_string(event.queue().priority()));
     case v1::JobEvent::kEnded:
       text += "ended: " + OutcomeLine(event.ended());
       if (event.ended().verdict() == v1::VERDICT_UNSPECIFIED) return text;

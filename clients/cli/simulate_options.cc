@@ -9,6 +9,7 @@
 #include "clients/cli/program_files.h"
 #include "engine/core/near_words.h"
 #include "engine/core/number_text.h"
+#include "engine/core/units.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/setup.h"
 
@@ -63,7 +64,7 @@ Result<v1::Budget> ParseBudget(std::string_view text) {
     if (name == "steps" && steps && *steps > 0) {
       budget.set_steps(*steps);
     } else if (name == "time" && time_s && *time_s > 0.0) {
-      budget.set_virtual_time_s(*time_s);
+      budget.set_virtual_time_ns(FromSeconds(*time_s).count());
     } else {
       return Error{
           ErrorCode::kCellUsage, "'" + std::string(part) + "': write steps=N,time=SECONDS", {}};

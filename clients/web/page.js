@@ -145,11 +145,19 @@ const VERDICTS = {
 // No part, and nothing that went wrong.
 const STOPPED = ["Stopped", "wait"];
 const KINDS = { JOB_KIND_CHECK: "check", JOB_KIND_SIMULATE: "simulation", JOB_KIND_RUN: "run" };
-const ACTIVITIES = {
-  ACTIVITY_IDLE: ["Idle", "off"],
-  ACTIVITY_RUNNING: ["Running", "run"],
-  ACTIVITY_HELD: ["Held", "wait"],
-  ACTIVITY_ALARM: ["Alarm", "bad"],
+const MACHINE_STATES = {
+  MACHINE_STATE_OFF: ["Off", "off"],
+  MACHINE_STATE_STARTING: ["Starting", "wait"],
+  MACHINE_STATE_RECOVERING: ["Recovering", "wait"],
+  MACHINE_STATE_NOT_ZEROED: ["Not zeroed", "wait"],
+  MACHINE_STATE_IDLE: ["Idle", "off"],
+  MACHINE_STATE_JOGGING: ["Jogging", "run"],
+  MACHINE_STATE_RUNNING: ["Running", "run"],
+  MACHINE_STATE_STOPPING: ["Stopping", "wait"],
+  MACHINE_STATE_HELD: ["Held", "wait"],
+  MACHINE_STATE_ALARM: ["Alarm", "bad"],
+  MACHINE_STATE_INSPECT: ["Inspect", "bad"],
+  MACHINE_STATE_LOST: ["Lost", "bad"],
 };
 const OUTCOMES = {
   KIND_COMPLETED: "Completed",
@@ -242,14 +250,14 @@ function drawMachines(all) {
   const list = byId("machines");
   const items = machines.map((machine) => {
     const active = all.filter((job) => job.machine === machine.name && !isFinished(job.state)).length;
-    const [word, tone] = ACTIVITIES[machine.state?.activity] ?? ["Unknown", "off"];
+    const [word, tone] = MACHINE_STATES[machine.status?.state] ?? ["Unknown", "off"];
     const chip = element("span", { className: "chip" }, word);
     chip.dataset.tone = tone;
     const jobsText = active === 0 ? "no job" : active === 1 ? "1 job" : `${active} jobs`;
     return element("li", { className: "machine" },
       element("div", {}, element("strong", {}, machine.title || lastPart(machine.name)), chip),
       element("p", {}, `${lastPart(machine.name)} \u00b7 ${machine.family}${machine.profile ? ` ${machine.profile}` : ""}`),
-      element("p", {}, `${machine.isVirtual ? "Virtual" : "Real"} \u00b7 ${jobsText}`));
+      element("p", {}, `${machine.connection?.kind === "KIND_DEVICE" ? "Device" : "Virtual"} \u00b7 ${jobsText}`));
   });
   const text = items.map((item) => item.textContent).join("|");
   if (list.dataset.text === text) return;

@@ -119,11 +119,22 @@ struct LostWay {
 };
 
 // A halt of the run: PAUSE, STOP, HOLD, breakpoint, !NR.
+enum class HaltReason {
+  kHold,        // the key, or an order
+  kStop,        // the key, or an order
+  kProgram,     // an instruction of the program, or what it leads to
+  kBreakpoint,  // this step is over
+  kSingle,      // the mode SINGLE
+};
 struct Halt {
   SimTime at{0};
   Place place{};
+  HaltReason reason = HaltReason::kHold;
   std::string_view why{};  // "STOP"
 };
+
+// What OnProgram tells of a program whose executable is being made; any other word: it is loaded.
+inline constexpr std::string_view kCompiling = "compiling";
 
 // What a run goes by although nothing of it has set it: a variable, an input, a parameter of a
 // subroutine. Another time it may be another.

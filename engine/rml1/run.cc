@@ -323,13 +323,19 @@ void MillRun::BeginHalt(HaltCause cause) {
   State& s = state_;
   static constexpr std::array<std::string_view, 6> kWhy = {"",     "!NR",    "HOLD",
                                                            "STOP", "SINGLE", "BREAKPOINT"};
+  using enum machine::HaltReason;
+  static constexpr std::array<machine::HaltReason, 6> kReason = {kHold, kProgram, kHold,
+                                                                 kStop, kSingle,  kBreakpoint};
   std::string_view why = kWhy[static_cast<std::size_t>(cause)];
   if (cause == HaltCause::kPause && s.device.actions().front().outside) why = "OVER_AREA";
   s.halt = cause;
   s.halt_wanted = HaltCause::kNone;
   s.halted_at = s.now;
   if (s.ride.protocol().comes_to_rest()) s.ride.protocol().Rest();
-  observer_.OnHalt({.at = s.now, .place = s.place, .why = why});
+  observer_.OnHalt({.at = s.now,
+                    .place = s.place,
+                    .reason = kReason[static_cast<std::size_t>(cause)],
+                    .why = why});
   const bool for_ever = cause == HaltCause::kPause && s.next_input == setup_.inputs.size();
   if (!for_ever) return;
   const ErrorCode code = ErrorCode::kRml1PausedAtEnd;

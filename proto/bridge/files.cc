@@ -187,7 +187,7 @@ Status ParseInputFile(std::string_view text, const std::string& name, double ove
     const std::size_t equals = rest.find('=');
     const std::string_view what = Trimmed(rest.substr(0, equals));
     v1::ScriptedInput input;
-    input.set_at_s(*at);
+    input.set_virtual_time_ns(FromSeconds(*at).count());
     if (!SetKind(what, input)) {
       return BadText(name, line_number, static_cast<int>(blank) + 2,
                      "'" + std::string(what.substr(0, 40)) +

@@ -201,7 +201,7 @@ v1::Diagnostic ToProto(const Diagnostic& diagnostic) {
   message.set_rule(diagnostic.rule);
   message.set_count(1);
   message.set_verdict(ToProto(diagnostic.judged));
-  if (diagnostic.at) message.set_time_s(ToSeconds(*diagnostic.at));
+  if (diagnostic.at) message.set_virtual_time_ns(diagnostic.at->count());
   *message.mutable_place() = PlaceOf(diagnostic);
   for (const Fix& fix : diagnostic.fixes) {
     v1::TextFix& made = *message.add_fixes();
@@ -373,7 +373,7 @@ Diagnostic FromProto(const v1::Diagnostic& message) {
       .step = message.place().step(),
       .fixes = {}};
   diagnostic.judged = JudgedFromProto(message.verdict());
-  if (message.has_time_s()) diagnostic.at = FromSeconds(message.time_s());
+  if (message.has_virtual_time_ns()) diagnostic.at = SimTime(message.virtual_time_ns());
   const auto found = FindByText(message.code());
   if (found.empty()) {
     diagnostic.detail = message.code() + ": " + diagnostic.detail;

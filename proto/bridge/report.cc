@@ -353,7 +353,7 @@ v1::TraceRecord ToProto(const simulation::TraceRecord& record) {
   v1::TraceRecord message;
   message.set_number(static_cast<std::int64_t>(record.number));
   message.set_kind(std::string(simulation::TraceKindName(record.kind)));
-  message.set_time_s(ToSeconds(record.at));
+  message.set_virtual_time_ns(record.at.count());
   SetPlace(record.place, *message.mutable_place());
   switch (record.kind) {
     case TraceKind::kMove:
@@ -372,7 +372,7 @@ v1::TraceRecord ToProto(const simulation::TraceRecord& record) {
       break;
     case TraceKind::kWait:
       message.set_text(std::string(simulation::WaitKindName(record.wait)));
-      message.set_duration_s(ToSeconds(record.duration));
+      message.set_duration_ns(record.duration.count());
       break;
     case TraceKind::kProgram:
       message.set_text(std::string(record.text));

@@ -36,7 +36,7 @@ std::optional<machine::ProgramStep> StepOf(const v1::StepPlace& place, int main_
 
 machine::InputChange FromProto(const v1::ScriptedInput& input) {
   machine::InputChange change{
-      .at = FromSeconds(input.at_s()), .index = input.index(), .value = input.value()};
+      .at = SimTime(input.virtual_time_ns()), .index = input.index(), .value = input.value()};
   switch (input.kind()) {
     case v1::ScriptedInput::KIND_ANALOGUE_INPUT:
       change.kind = machine::InputKind::kAnalogue;
@@ -83,9 +83,7 @@ simulation::RunOptions RunOptionsOf(const v1::SimulationOptions& options, const 
   if (options.has_breakpoint()) run.breakpoint = StepOf(options.breakpoint(), main_program);
   if (options.has_simul()) run.simul = StepOf(options.simul(), main_program);
   if (budget.steps() > 0) run.budget.steps = static_cast<std::uint64_t>(budget.steps());
-  if (budget.virtual_time_s() > 0.0) {
-    run.budget.virtual_time = FromSeconds(budget.virtual_time_s());
-  }
+  if (budget.virtual_time_ns() > 0) run.budget.virtual_time = SimTime(budget.virtual_time_ns());
   return run;
 }
 

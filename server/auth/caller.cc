@@ -18,13 +18,20 @@ std::string Value(const std::multimap<std::string, std::string>& metadata, const
 }  // namespace
 
 Result<Caller> Gate::Admit(const CallFacts& call) const {
-  Caller caller{.identity = "local", .role = Role::kAdmin, .peer = call.peer, .request_id = {}};
+  const v1::Access* access = access_.Find(call.method);
+  if (access == nullptr)
+    return Error{ErrorCode::kCellPermission, call.method + " states no permission", {}};
+  Caller caller{.identity = "local", .permissions = local_, .peer = call.peer, .request_id = {}};
   if (KnowsSecret(Value(call.metadata, "rmlcell-web-secret"), web_secret_)) {
     caller.peer = "web:" + Value(call.metadata, "rmlcell-web-peer");
   }
   caller.request_id = Value(call.metadata, "x-request-id").substr(0, kRequestIdShown);
   std::ranges::replace_if(
       caller.request_id, [](unsigned char c) { return c < 0x20 || c > 0x7E; }, '?');
+  if (access->permission() != v1::PERMISSION_NONE &&
+      !caller.permissions.Has(access->permission())) {
+    return Error{ErrorCode::kCellPermission, call.method, {}};
+  }
   return caller;
 }
 

@@ -23,8 +23,11 @@
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
+#include "server/services/account_service.h"
+#include "server/services/cell_service.h"
 #include "server/services/foreign_calls.h"
 #include "server/services/handbox_service.h"
+#include "server/services/host_service.h"
 #include "server/services/job_service.h"
 #include "server/services/machine_messages.h"
 #include "server/services/machine_service.h"
@@ -111,6 +114,9 @@ struct Cell::Parts {
   std::unique_ptr<ProgramService> program_service;
   std::unique_ptr<ProjectService> project_service;
   std::unique_ptr<HandboxService> handbox_service;
+  std::unique_ptr<HostService> host_service;
+  std::unique_ptr<CellService> cell_service;
+  std::unique_ptr<AccountService> account_service;
   std::unique_ptr<WorkerService> worker_service;
   std::unique_ptr<WebResources> resources;
   std::unique_ptr<grpc::Server> server;
@@ -171,11 +177,13 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   projects = std::make_unique<ProjectBook>(*store);
   const CallNeeds needs{gate, *executor, *compute, config.limit_message_bytes};
   job_service = std::make_unique<JobService>(needs, *book, *dispatcher, *feed, open, instance_id);
-  machine_service =
-      std::make_unique<MachineService>(needs, *store, *dispatcher, config, instance_id);
+  machine_service = std::make_unique<MachineService>(needs, *store);
   program_service = std::make_unique<ProgramService>(needs, *programs, *tools, open);
   project_service = std::make_unique<ProjectService>(needs, *projects);
   handbox_service = std::make_unique<HandboxService>(needs);
+  host_service = std::make_unique<HostService>(needs);
+  cell_service = std::make_unique<CellService>(needs, *store, *dispatcher, config, instance_id);
+  account_service = std::make_unique<AccountService>(needs);
   worker_service = std::make_unique<WorkerService>(needs, *dispatcher);
 
   grpc::EnableDefaultHealthCheckService(true);
@@ -198,8 +206,9 @@ Status Cell::Parts::Listen(const std::string& join_token) {
     builder.AddListeningPort(config.listen_grpc[i], grpc::InsecureServerCredentials(), &ports[i]);
   }
   for (grpc::Service* service : std::initializer_list<grpc::Service*>{
-           job_service.get(), machine_service.get(), program_service.get(), project_service.get(),
-           handbox_service.get(), worker_service.get()}) {
+           cell_service.get(), job_service.get(), machine_service.get(), program_service.get(),
+           project_service.get(), handbox_service.get(), account_service.get(), host_service.get(),
+           worker_service.get()}) {
     builder.RegisterService(service);
   }
   server = builder.BuildAndStart();

@@ -1,5 +1,6 @@
 #include "server/jobs/assignment.h"
 
+#include "engine/core/units.h"
 #include "engine/families/families.h"
 #include "server/base/config.h"
 #include "server/base/names.h"
@@ -23,9 +24,11 @@ T Least(T wanted, T allowed) {
 v1::Budget BudgetOf(const v1::Budget& wanted, const Config& config) {
   v1::Budget budget;
   budget.set_steps(Least<std::int64_t>(wanted.steps(), config.limit_steps));
-  budget.set_virtual_time_s(Least(wanted.virtual_time_s(), config.limit_virtual_time_s));
+  budget.set_virtual_time_ns(Least<std::int64_t>(wanted.virtual_time_ns(),
+                                                 FromSeconds(config.limit_virtual_time_s).count()));
   budget.set_memory_bytes(Least<std::int64_t>(wanted.memory_bytes(), config.limit_memory_bytes));
-  budget.set_processor_s(Least(wanted.processor_s(), config.limit_processor_s));
+  budget.set_processor_ns(
+      Least<std::int64_t>(wanted.processor_ns(), FromSeconds(config.limit_processor_s).count()));
   budget.set_output_bytes(Least<std::int64_t>(wanted.output_bytes(), config.limit_output_bytes));
   return budget;
 }

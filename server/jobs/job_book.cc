@@ -41,14 +41,41 @@ std::string_view KindName(v1::JobKind kind) {
   }
 }
 
+// What the contract has and this version does not do: "" where the job asks for none of it.
+std::string_view FieldOfLater(const v1::Job& job) {
+  if (job.priority() != 0) return "priority";
+  if (job.held()) return "held";
+  if (job.has_not_before_time()) return "not_before_time";
+  if (job.after_jobs_size() > 0) return "after_jobs";
+  if (job.has_run()) return "run";
+  if (!job.continues().empty()) return "continues";
+  return {};
+}
+
 Status CheckBudget(const v1::Budget& budget) {
   if (budget.steps() < 0) return InvalidArgument("job.budget.steps is below 0");
   if (budget.memory_bytes() < 0) return InvalidArgument("job.budget.memory_bytes is below 0");
   if (budget.output_bytes() < 0) return InvalidArgument("job.budget.output_bytes is below 0");
-  if (!(budget.virtual_time_s() >= 0.0))
-    return InvalidArgument("job.budget.virtual_time_s is below 0");
-  if (!(budget.processor_s() >= 0.0)) return InvalidArgument("job.budget.processor_s is below 0");
+  if (budget.virtual_time_ns() < 0) return InvalidArgument("job.budget.virtual_time_ns is below 0");
+  if (budget.processor_ns() < 0) return InvalidArgument("job.budget.processor_ns is below 0");
   return {};
+}
+
+// What can be said of a request without a look at its machine.
+Status CheckRequest(const v1::SubmitJobRequest& request) {
+  const v1::Job& job = request.job();
+  if (KindName(job.kind()).empty())
+    return InvalidArgument("job.kind is missing: CHECK or SIMULATE");
+  if (job.kind() == v1::JOB_KIND_RUN)
+    return Error{ErrorCode::kCellUnimplemented, "jobs of kind RUN", {}};
+  if (const std::string_view later = FieldOfLater(job); !later.empty())
+    return Error{ErrorCode::kCellUnimplemented, "job." + std::string(later), {}};
+  if (request.request_id().size() > kRequestIdMax)
+    return InvalidArgument("request_id is longer than 64 characters");
+  if (const Status good = CheckTitle(job.title(), "job.title"); !good) return good.error();
+  if (job.attempts_max() < 0 || job.attempts_max() > 10)
+    return InvalidArgument("job.attempts_max: allowed are 1 to 10");
+  return CheckBudget(job.budget());
 }
 
 Status CheckStepPlace(const v1::StepPlace& place, const std::string& field,
@@ -92,9 +119,8 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
       return valid.error();
   }
   for (const v1::ScriptedInput& input : options.inputs()) {
-    if (!(input.at_s() >= 0.0 && std::isfinite(input.at_s()))) {
-      return InvalidArgument("job.simulation.inputs: at_s must be 0 or later");
-    }
+    if (input.virtual_time_ns() < 0)
+      return InvalidArgument("job.simulation.inputs: virtual_time_ns must be 0 or later");
     if (input.kind() == v1::ScriptedInput::KIND_UNSPECIFIED ||
         !v1::ScriptedInput::Kind_IsValid(input.kind())) {
       return InvalidArgument("job.simulation.inputs: kind is not given");
@@ -194,17 +220,7 @@ Status JobBook::CheckSize(const std::string& content, const std::string& what) c
 Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
                                          const std::string& caller) {
   const v1::Job& job = request.job();
-  const std::string_view kind = KindName(job.kind());
-  if (kind.empty()) return InvalidArgument("job.kind is missing: CHECK or SIMULATE");
-  if (job.kind() == v1::JOB_KIND_RUN) {
-    return Error{ErrorCode::kCellUnimplemented, "jobs of kind RUN", {}};
-  }
-  if (request.request_id().size() > kRequestIdMax)
-    return InvalidArgument("request_id is longer than 64 characters");
-  if (const Status good = CheckTitle(job.title(), "job.title"); !good) return good.error();
-  if (job.attempts_max() < 0 || job.attempts_max() > 10)
-    return InvalidArgument("job.attempts_max: allowed are 1 to 10");
-  if (const Status valid = CheckBudget(job.budget()); !valid) return valid.error();
+  if (const Status good = CheckRequest(request); !good) return good.error();
   const Result<std::string> machine_id = ParseMachineName(job.machine());
   if (!machine_id) return machine_id.error();
   const Result<storage::MachineRecord> machine = store_.GetMachine(*machine_id);
@@ -217,7 +233,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   storage::NewJob made{.request_id = request.request_id(),
                        .request_hash = request.request_id().empty() ? "" : RequestHash(request),
                        .machine = *machine_id,
-                       .kind = std::string(kind),
+                       .kind = std::string(KindName(job.kind())),
                        .title = job.title(),
                        .caller = caller,
                        .specification = {},
@@ -296,6 +312,12 @@ Result<v1::Job> JobBook::Get(std::string_view name) {
   return WithArtifacts(*record);
 }
 
+Status JobBook::Delete(std::string_view name) {
+  const Result<std::int64_t> id = ParseJobName(name);
+  if (!id) return id.error();
+  return store_.DeleteJob(*id);
+}
+
 Status JobBook::CheckOverride(std::string_view name, double percent) {
   const Result<std::int64_t> id = ParseJobName(name);
   if (!id) return id.error();
@@ -364,11 +386,11 @@ Result<std::string> JobBook::ReadArtifact(std::int64_t job, std::string_view nam
   return store_.ReadBlob(artifact->sha256);
 }
 
-Result<v1::CellSnapshot> JobBook::Snapshot() {
+Result<v1::JobsSnapshot> JobBook::Snapshot() {
   // The position first: what happens between the reads is then told twice, never left out.
   const Result<std::int64_t> position = store_.LastPosition();
   if (!position) return position.error();
-  v1::CellSnapshot snapshot;
+  v1::JobsSnapshot snapshot;
   snapshot.set_sequence(*position);
   for (const bool finished : {false, true}) {
     storage::JobQuery query;

@@ -33,6 +33,7 @@ class JobBook {
               std::function<void(Result<v1::Job>)> done);
 
   Result<v1::Job> Get(std::string_view name);
+  Status Delete(std::string_view name);
   // Whether the machine of the job can have this override. Errors: CellInvalidArgument,
   // CellNotFound.
   Status CheckOverride(std::string_view name, double percent);
@@ -43,7 +44,7 @@ class JobBook {
   Result<std::string> ReadArtifact(std::int64_t job, std::string_view name);
 
   // Unfinished jobs and the newest finished ones, for a watcher that begins; without machines.
-  Result<v1::CellSnapshot> Snapshot();
+  Result<v1::JobsSnapshot> Snapshot();
   Result<std::vector<storage::MachineRecord>> Machines() { return store_.ListMachines(); }
   Result<std::vector<storage::MachineJobs>> UnfinishedJobs() { return store_.UnfinishedJobs(); }
 

@@ -23,8 +23,16 @@ std::string_view KindOf(const v1::JobEvent& event) {
       return "resumed";
     case v1::JobEvent::kSignal:
       return "signal";
-    case v1::JobEvent::kMilestone:
-      return "milestone";
+    case v1::JobEvent::kProgramLoaded:
+      return "program_loaded";
+    case v1::JobEvent::kExecutableMade:
+      return "executable_made";
+    case v1::JobEvent::kInputApplied:
+      return "input_applied";
+    case v1::JobEvent::kRunBegun:
+      return "run_begun";
+    case v1::JobEvent::kQueue:
+      return "queue";
     case v1::JobEvent::kEnded:
       return "ended";
     case v1::JobEvent::WHAT_NOT_SET:
@@ -106,7 +114,8 @@ v1::Artifact ToProto(const storage::ArtifactRecord& record) {
 
 v1::JobEvent ToProto(const storage::EventRecord& record) {
   v1::JobEvent event;
-  if (!event.ParseFromString(record.payload)) event.set_message("an event that cannot be read");
+  if (!event.ParseFromString(record.payload))
+    event.mutable_message()->set_text("an event that cannot be read");
   event.set_sequence(record.sequence);
   event.set_job(JobName(record.job));
   event.set_attempt(record.attempt);
@@ -199,7 +208,7 @@ storage::JobOutcome CancelledOutcome() {
 storage::LossPolicy LossOf(storage::JobOutcome outcome, const v1::SourcePlace& place,
                            const std::string& why) {
   v1::JobEvent lost;
-  lost.set_message(why);
+  lost.mutable_message()->set_text(why);
   outcome.program = place.program();
   outcome.step = place.step();
   storage::JobOutcome interrupted = outcome;

@@ -1,5 +1,7 @@
 #include "server/services/call.h"
 
+#include <grpc/grpc_security_constants.h>
+
 #include "google/rpc/status.pb.h"
 #include "proto/bridge/findings.h"
 
@@ -50,12 +52,20 @@ Error LaneFull() {
 }
 
 Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
-                     std::string_view method) {
-  CallFacts facts{.method = std::string(method), .peer = context.peer(), .metadata = {}};
+                     std::string_view method, const google::protobuf::Message* request) {
+  CallFacts facts{.method = "/rmlcell.v1." + std::string(method), .peer = context.peer()};
   for (const auto& [key, value] : context.client_metadata()) {
     facts.metadata.emplace(std::string(key.data(), key.size()),
                            std::string(value.data(), value.size()));
   }
+  if (facts.peer.starts_with("unix:")) facts.transport = Transport::kUnixSocket;
+  const std::vector<grpc::string_ref> certificates =
+      context.auth_context()->FindPropertyValues(GRPC_X509_PEM_CERT_PROPERTY_NAME);
+  if (!certificates.empty())
+    facts.certificate.assign(certificates.front().data(), certificates.front().size());
+  const v1::Access* access = gate.AccessOf(facts.method);
+  if (access != nullptr && request != nullptr)
+    facts.resource = ResourceOf(*request, access->resource_field());
   return gate.Admit(facts);
 }
 
@@ -70,13 +80,6 @@ void LogCall(std::string_view method, const Caller& caller, const grpc::Status& 
                  static_cast<int>(status.error_code()), us, caller.identity, caller.peer,
                  caller.request_id, status.error_message());
   }
-}
-
-grpc::ServerUnaryReactor* NotYet(const CallNeeds& needs, grpc::CallbackServerContext* context,
-                                 std::string_view method) {
-  return Answer(needs, context, method, [method = std::string(method)](const Caller&) {
-    return ToGrpcStatus(Error{ErrorCode::kCellUnimplemented, method, {}});
-  });
 }
 
 }  // namespace rmlcell::server

@@ -28,8 +28,10 @@ struct CallNeeds {
   CallNeeds Computing() const { return {gate, compute, compute, message_bytes_max}; }
 };
 
+// `method`: "JobService/SubmitJob". Without a request, of a stream, nothing is known of what the
+// call is about.
 Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
-                     std::string_view method);
+                     std::string_view method, const google::protobuf::Message* request = nullptr);
 void LogCall(std::string_view method, const Caller& caller, const grpc::Status& status,
              std::chrono::steady_clock::duration took);
 
@@ -46,11 +48,13 @@ Error LaneFull();
 // which returns a grpc::Status, on the executor, and finishes the call with that.
 template <class AtOnce, class Work>
 grpc::ServerUnaryReactor* AnswerAfter(const CallNeeds& needs, grpc::CallbackServerContext* context,
+                                      const google::protobuf::Message& request,
                                       std::string_view method, AtOnce at_once, Work work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  Result<Caller> caller = Admit(needs.gate, *context, method);
-  if (!caller) {
-    reactor->Finish(ToGrpcStatus(caller.error()));
+  Result<Caller> caller = Admit(needs.gate, *context, method, &request);
+  const Status size = caller ? CheckSize(needs, request) : Status{};
+  if (!caller || !size) {
+    reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
     return reactor;
   }
   at_once(*caller);
@@ -73,24 +77,10 @@ grpc::ServerUnaryReactor* AnswerAfter(const CallNeeds& needs, grpc::CallbackServ
 
 template <class Work>
 grpc::ServerUnaryReactor* Answer(const CallNeeds& needs, grpc::CallbackServerContext* context,
-                                 std::string_view method, Work work) {
-  return AnswerAfter(
-      needs, context, method, [](const Caller&) {}, std::move(work));
-}
-
-// The same for a request that may be of any size.
-template <class Work>
-grpc::ServerUnaryReactor* Answer(const CallNeeds& needs, grpc::CallbackServerContext* context,
                                  const google::protobuf::Message& request, std::string_view method,
                                  Work work) {
-  const Status size = CheckSize(needs, request);
-  if (size) return Answer(needs, context, method, std::move(work));
-  return Answer(needs, context, method,
-                [error = size.error()](const Caller&) { return ToGrpcStatus(error); });
+  return AnswerAfter(
+      needs, context, request, method, [](const Caller&) {}, std::move(work));
 }
-
-// A method of a later version.
-grpc::ServerUnaryReactor* NotYet(const CallNeeds& needs, grpc::CallbackServerContext* context,
-                                 std::string_view method);
 
 }  // namespace rmlcell::server

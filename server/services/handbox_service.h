@@ -1,26 +1,22 @@
 #pragma once
 
 #include "rmlcell/v1/handbox.grpc.pb.h"
-#include "server/services/call.h"
+#include "server/services/later.h"
 
 namespace rmlcell::server {
 
-// Teach sessions come in a later version; the methods pass the gate and say so.
 class HandboxService final : public v1::HandboxService::CallbackService {
  public:
   explicit HandboxService(CallNeeds needs) : needs_(needs) {}
 
-  grpc::ServerUnaryReactor* CreateHandboxSession(grpc::CallbackServerContext* context,
-                                                 const v1::CreateHandboxSessionRequest* request,
-                                                 v1::HandboxSession* response) override;
-  grpc::ServerUnaryReactor* PressKey(grpc::CallbackServerContext* context,
-                                     const v1::PressKeyRequest* request,
-                                     v1::HandboxSession* response) override;
-  grpc::ServerWriteReactor<v1::WatchHandboxSessionResponse>* WatchHandboxSession(
-      grpc::CallbackServerContext* context, const v1::WatchHandboxSessionRequest* request) override;
-  grpc::ServerUnaryReactor* DeleteHandboxSession(grpc::CallbackServerContext* context,
-                                                 const v1::DeleteHandboxSessionRequest* request,
-                                                 google::protobuf::Empty* response) override;
+  RMLCELL_LATER("HandboxService", CreateHandboxSession, v1::HandboxSession)
+  RMLCELL_LATER("HandboxService", PressKey, v1::PressKeyResponse)
+  RMLCELL_LATER("HandboxService", HeartbeatHandbox, v1::HeartbeatResponse)
+  RMLCELL_LATER_BOTH("HandboxService", HandboxStream)
+  RMLCELL_LATER_READ("HandboxService", WatchHandbox)
+  RMLCELL_LATER("HandboxService", DeleteHandboxSession, google::protobuf::Empty)
+  RMLCELL_LATER("HandboxService", ListTeachEntries, v1::ListTeachEntriesResponse)
+  RMLCELL_LATER("HandboxService", UndoTeachEntries, v1::UndoTeachEntriesResponse)
 
  private:
   CallNeeds needs_;

@@ -9,6 +9,11 @@
 #include "server/services/job_streams.h"
 
 namespace rmlcell::server {
+namespace {
+
+constexpr std::int64_t kUnaryArtifactBytes = 3 << 20;
+
+}  // namespace
 
 // The one method that does not go through the executor. Of callers that come together only the
 // first waits here for the disk; the store answers all others from its own thread, with one commit.
@@ -16,7 +21,7 @@ grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* con
                                                 const v1::SubmitJobRequest* request,
                                                 v1::Job* response) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  const Result<Caller> caller = Admit(needs_.gate, *context, "JobService/SubmitJob");
+  const Result<Caller> caller = Admit(needs_.gate, *context, "JobService/SubmitJob", request);
   const Status size = CheckSize(needs_, *request);
   if (!caller || !size) {
     reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
@@ -57,12 +62,21 @@ grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* cont
                 });
 }
 
+grpc::ServerUnaryReactor* JobService::DeleteJob(grpc::CallbackServerContext* context,
+                                                const v1::DeleteJobRequest* request,
+                                                google::protobuf::Empty*) {
+  return Answer(needs_, context, *request, "JobService/DeleteJob", [this, request](const Caller&) {
+    const Status deleted = book_.Delete(request->name());
+    return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
+  });
+}
+
 grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* context,
                                                 const v1::CancelJobRequest* request,
                                                 v1::Job* response) {
   const Result<std::int64_t> id = ParseJobName(request->name());
   return AnswerAfter(
-      needs_, context, "JobService/CancelJob",
+      needs_, context, *request, "JobService/CancelJob",
       [this, id](const Caller&) {
         if (id) dispatcher_.OrderAtOnce(*id, v1::WorkerControl::KIND_CANCEL);
       },
@@ -77,23 +91,24 @@ grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* con
 
 // Stops stand behind nothing: what the worker of a running job is to do goes out on the thread of
 // the call; the store is asked afterwards, and for a job that this server has given to nobody.
+template <class Request>
 grpc::ServerUnaryReactor* JobService::Order(grpc::CallbackServerContext* context,
-                                            std::string_view method, const std::string& name,
+                                            std::string_view method, const Request& request,
                                             v1::WorkerControl::Kind kind, v1::Job* response) {
-  const Result<std::int64_t> id = ParseJobName(name);
+  const Result<std::int64_t> id = ParseJobName(request.name());
   auto ordered = std::make_shared<bool>(false);
   return AnswerAfter(
-      needs_, context, method,
+      needs_, context, request, method,
       [this, id, kind, ordered](const Caller&) {
         *ordered = id && dispatcher_.OrderAtOnce(*id, kind);
       },
-      [this, id, name, kind, ordered, response](const Caller&) {
+      [this, id, &request, kind, ordered, response](const Caller&) {
         if (!id) return ToGrpcStatus(id.error());
         if (!*ordered) {
           if (const Status late = dispatcher_.Control(*id, kind, 0.0); !late)
             return ToGrpcStatus(late.error());
         }
-        return Give(name, response);
+        return Give(request.name(), response);
       });
 }
 
@@ -107,31 +122,35 @@ grpc::Status JobService::Give(const std::string& name, v1::Job* response) {
 grpc::ServerUnaryReactor* JobService::HoldJob(grpc::CallbackServerContext* context,
                                               const v1::HoldJobRequest* request,
                                               v1::Job* response) {
-  const auto kind =
-      request->at_once() ? v1::WorkerControl::KIND_STOP : v1::WorkerControl::KIND_HOLD;
-  return Order(context, "JobService/HoldJob", request->name(), kind, response);
+  return Order(context, "JobService/HoldJob", *request, v1::WorkerControl::KIND_HOLD, response);
+}
+
+grpc::ServerUnaryReactor* JobService::StopJob(grpc::CallbackServerContext* context,
+                                              const v1::StopJobRequest* request,
+                                              v1::Job* response) {
+  return Order(context, "JobService/StopJob", *request, v1::WorkerControl::KIND_STOP, response);
 }
 
 grpc::ServerUnaryReactor* JobService::ResumeJob(grpc::CallbackServerContext* context,
                                                 const v1::ResumeJobRequest* request,
                                                 v1::Job* response) {
-  return Order(context, "JobService/ResumeJob", request->name(), v1::WorkerControl::KIND_RESUME,
-               response);
+  return Order(context, "JobService/ResumeJob", *request, v1::WorkerControl::KIND_RESUME, response);
 }
 
 grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext* context,
                                                      const v1::SetJobOverrideRequest* request,
                                                      v1::Job* response) {
-  return Answer(
-      needs_, context, "JobService/SetJobOverride", [this, request, response](const Caller&) {
-        const double percent = request->override_percent();
-        const Result<std::int64_t> id = ParseJobName(request->name());
-        if (!id) return ToGrpcStatus(id.error());
-        if (const Status valid = book_.CheckOverride(request->name(), percent); !valid)
-          return ToGrpcStatus(valid.error());
-        const Status ordered = dispatcher_.Control(*id, v1::WorkerControl::KIND_OVERRIDE, percent);
-        return ordered ? Give(request->name(), response) : ToGrpcStatus(ordered.error());
-      });
+  return Answer(needs_, context, *request, "JobService/SetJobOverride",
+                [this, request, response](const Caller&) {
+                  const double percent = request->override_percent();
+                  const Result<std::int64_t> id = ParseJobName(request->name());
+                  if (!id) return ToGrpcStatus(id.error());
+                  if (const Status valid = book_.CheckOverride(request->name(), percent); !valid)
+                    return ToGrpcStatus(valid.error());
+                  const Status ordered =
+                      dispatcher_.Control(*id, v1::WorkerControl::KIND_OVERRIDE, percent);
+                  return ordered ? Give(request->name(), response) : ToGrpcStatus(ordered.error());
+                });
 }
 
 namespace {
@@ -139,10 +158,12 @@ namespace {
 template <class Response>
 grpc::ServerWriteReactor<Response>* Open(const CallNeeds& needs,
                                          grpc::CallbackServerContext* context,
+                                         const google::protobuf::Message& request,
                                          std::string_view method,
                                          const std::shared_ptr<PullStream<Response>>& stream) {
-  const Result<Caller> caller = Admit(needs.gate, *context, method);
-  if (!caller) return new RefusedStream<Response>(ToGrpcStatus(caller.error()));
+  const Result<Caller> caller = Admit(needs.gate, *context, method, &request);
+  if (!caller)
+    return new EndedStream<grpc::ServerWriteReactor<Response>>(ToGrpcStatus(caller.error()));
   return stream->Begin();
 }
 
@@ -150,13 +171,13 @@ grpc::ServerWriteReactor<Response>* Open(const CallNeeds& needs,
 
 grpc::ServerWriteReactor<v1::WatchJobResponse>* JobService::WatchJob(
     grpc::CallbackServerContext* context, const v1::WatchJobRequest* request) {
-  return Open(needs_, context, "JobService/WatchJob",
+  return Open(needs_, context, *request, "JobService/WatchJob",
               MakeJobWatch({needs_.executor, open_, book_, feed_, instance_id_}, *request));
 }
 
 grpc::ServerWriteReactor<v1::WatchJobsResponse>* JobService::WatchJobs(
     grpc::CallbackServerContext* context, const v1::WatchJobsRequest* request) {
-  return Open(needs_, context, "JobService/WatchJobs",
+  return Open(needs_, context, *request, "JobService/WatchJobs",
               MakeJobsWatch({needs_.executor, open_, book_, feed_, instance_id_}, *request));
 }
 
@@ -179,7 +200,7 @@ grpc::ServerUnaryReactor* JobService::GetJobReport(grpc::CallbackServerContext* 
 
 grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobToolpath(
     grpc::CallbackServerContext* context, const v1::StreamJobToolpathRequest* request) {
-  return Open(needs_, context, "JobService/StreamJobToolpath",
+  return Open(needs_, context, *request, "JobService/StreamJobToolpath",
               MakeToolpathStream({needs_.executor, open_, book_, feed_, instance_id_},
                                  request->name(), request->level()));
 }
@@ -199,16 +220,40 @@ grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext*
                 });
 }
 
+grpc::ServerUnaryReactor* JobService::GetJobArtifact(grpc::CallbackServerContext* context,
+                                                     const v1::GetJobArtifactRequest* request,
+                                                     v1::GetJobArtifactResponse* response) {
+  return Answer(
+      needs_, context, *request, "JobService/GetJobArtifact",
+      [this, request, response](const Caller&) {
+        const Result<std::int64_t> id = ParseJobName(request->name());
+        if (!id) return ToGrpcStatus(id.error());
+        const auto artifact = book_.FindArtifact(*id, request->artifact());
+        if (!artifact) return ToGrpcStatus(artifact.error());
+        if (artifact->size > kUnaryArtifactBytes) {
+          return ToGrpcStatus(Error{ErrorCode::kCellTooLarge,
+                                    request->artifact() + " has " + std::to_string(artifact->size) +
+                                        " bytes, one answer takes 3 MiB; use StreamJobArtifact",
+                                    {}});
+        }
+        Result<std::string> bytes = book_.ReadArtifact(*id, request->artifact());
+        if (!bytes) return ToGrpcStatus(bytes.error());
+        response->set_content(*std::move(bytes));
+        response->set_media_type(artifact->media_type);
+        return grpc::Status::OK;
+      });
+}
+
 grpc::ServerWriteReactor<v1::StreamJobArtifactResponse>* JobService::StreamJobArtifact(
     grpc::CallbackServerContext* context, const v1::StreamJobArtifactRequest* request) {
-  return Open(needs_, context, "JobService/StreamJobArtifact",
+  return Open(needs_, context, *request, "JobService/StreamJobArtifact",
               MakeArtifactStream({needs_.executor, open_, book_, feed_, instance_id_}, *request));
 }
 
 grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* JobService::StreamJobTrace(
     grpc::CallbackServerContext* context, const v1::StreamJobTraceRequest* request) {
   return Open(
-      needs_, context, "JobService/StreamJobTrace",
+      needs_, context, *request, "JobService/StreamJobTrace",
       MakeTraceStream({needs_.executor, open_, book_, feed_, instance_id_}, request->name()));
 }
 

@@ -4,7 +4,7 @@
 
 #include "rmlcell/v1/job.grpc.pb.h"
 #include "rmlcell/v1/worker.pb.h"
-#include "server/services/call.h"
+#include "server/services/later.h"
 #include "server/services/pull_stream.h"
 
 namespace rmlcell::server {
@@ -33,11 +33,16 @@ class JobService final : public v1::JobService::CallbackService {
   grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* context,
                                      const v1::ListJobsRequest* request,
                                      v1::ListJobsResponse* response) override;
+  grpc::ServerUnaryReactor* DeleteJob(grpc::CallbackServerContext* context,
+                                      const v1::DeleteJobRequest* request,
+                                      google::protobuf::Empty* response) override;
   grpc::ServerUnaryReactor* CancelJob(grpc::CallbackServerContext* context,
                                       const v1::CancelJobRequest* request,
                                       v1::Job* response) override;
   grpc::ServerUnaryReactor* HoldJob(grpc::CallbackServerContext* context,
                                     const v1::HoldJobRequest* request, v1::Job* response) override;
+  grpc::ServerUnaryReactor* StopJob(grpc::CallbackServerContext* context,
+                                    const v1::StopJobRequest* request, v1::Job* response) override;
   grpc::ServerUnaryReactor* ResumeJob(grpc::CallbackServerContext* context,
                                       const v1::ResumeJobRequest* request,
                                       v1::Job* response) override;
@@ -56,14 +61,28 @@ class JobService final : public v1::JobService::CallbackService {
   grpc::ServerUnaryReactor* GetJobPicture(grpc::CallbackServerContext* context,
                                           const v1::GetJobPictureRequest* request,
                                           v1::GetJobPictureResponse* response) override;
+  grpc::ServerUnaryReactor* GetJobArtifact(grpc::CallbackServerContext* context,
+                                           const v1::GetJobArtifactRequest* request,
+                                           v1::GetJobArtifactResponse* response) override;
   grpc::ServerWriteReactor<v1::StreamJobArtifactResponse>* StreamJobArtifact(
       grpc::CallbackServerContext* context, const v1::StreamJobArtifactRequest* request) override;
   grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* StreamJobTrace(
       grpc::CallbackServerContext* context, const v1::StreamJobTraceRequest* request) override;
 
+  RMLCELL_LATER_BOTH("JobService", SubmitJobs)
+  RMLCELL_LATER("JobService", CancelJobs, v1::CancelJobsResponse)
+  RMLCELL_LATER("JobService", HoldJobs, v1::HoldJobsResponse)
+  RMLCELL_LATER("JobService", MoveJob, v1::Job)
+  RMLCELL_LATER("JobService", DecideInterrupted, v1::DecideInterruptedResponse)
+  RMLCELL_LATER("JobService", ListJobFindings, v1::ListJobFindingsResponse)
+  RMLCELL_LATER("JobService", GetJobSeries, v1::GetJobSeriesResponse)
+  RMLCELL_LATER("JobService", CompareJobs, v1::CompareJobsResponse)
+  RMLCELL_LATER("JobService", GetStepMap, v1::GetStepMapResponse)
+
  private:
+  template <class Request>
   grpc::ServerUnaryReactor* Order(grpc::CallbackServerContext* context, std::string_view method,
-                                  const std::string& name, v1::WorkerControl::Kind kind,
+                                  const Request& request, v1::WorkerControl::Kind kind,
                                   v1::Job* response);
   grpc::Status Give(const std::string& name, v1::Job* response);
 

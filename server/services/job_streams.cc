@@ -170,7 +170,7 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
       jobs_.insert(*id);
     }
     subscription_ = needs_.feed.Subscribe(std::nullopt, [this] { Wake(); });
-    Result<v1::CellSnapshot> snapshot = needs_.book.Snapshot();
+    Result<v1::JobsSnapshot> snapshot = needs_.book.Snapshot();
     if (!snapshot) {
       status = ToGrpcStatus(snapshot.error());
       return Next::kEnd;

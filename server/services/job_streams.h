@@ -31,12 +31,4 @@ std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(
 std::shared_ptr<PullStream<v1::StreamJobArtifactResponse>> MakeArtifactStream(
     const JobStreamNeeds& needs, const v1::StreamJobArtifactRequest& request);
 
-// A stream that ends at once, for calls that are refused.
-template <class Response>
-class RefusedStream final : public grpc::ServerWriteReactor<Response> {
- public:
-  explicit RefusedStream(const grpc::Status& status) { this->Finish(status); }
-  void OnDone() override { delete this; }
-};
-
 }  // namespace rmlcell::server

@@ -71,8 +71,9 @@ v1::Machine ToProto(const storage::MachineRecord& record) {
   message.set_title(record.title);
   message.set_profile(record.profile);
   for (const auto& [name, value] : record.parameters) (*message.mutable_parameters())[name] = value;
-  message.set_is_virtual(true);
-  message.mutable_state()->set_activity(v1::MachineState::ACTIVITY_IDLE);
+  message.mutable_connection()->set_kind(v1::MachineConnection::KIND_VIRTUAL);
+  message.mutable_status()->set_machine(message.name());
+  message.mutable_status()->set_state(v1::MACHINE_STATE_IDLE);
   message.set_etag(std::to_string(record.revision));
   *message.mutable_create_time() = ToProto(record.created_at);
   *message.mutable_update_time() = ToProto(record.updated_at);
@@ -84,11 +85,11 @@ v1::Machine ToProto(const storage::MachineRecord& record,
   v1::Machine message = ToProto(record);
   const auto jobs = std::ranges::find(unfinished, record.id, &storage::MachineJobs::machine);
   if (jobs == unfinished.end()) return message;
-  v1::MachineState& state = *message.mutable_state();
-  state.set_jobs_active(static_cast<std::int32_t>(jobs->unfinished));
+  v1::MachineStatus& status = *message.mutable_status();
+  status.set_jobs_active(static_cast<std::int32_t>(jobs->unfinished));
   if (jobs->oldest_running > 0) {
-    state.set_activity(v1::MachineState::ACTIVITY_RUNNING);
-    state.set_job(JobName(jobs->oldest_running));
+    status.set_state(v1::MACHINE_STATE_RUNNING);
+    status.set_simulating_job(JobName(jobs->oldest_running));
   }
   return message;
 }

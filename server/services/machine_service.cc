@@ -5,59 +5,28 @@
 
 #include "engine/families/families.h"
 #include "engine/machine/family.h"
-#include "server/base/config.h"
 #include "server/base/names.h"
-#include "server/base/version.h"
-#include "server/jobs/dispatcher.h"
 #include "server/records/job_messages.h"
 #include "server/records/program_place.h"
-#include "server/services/job_streams.h"
 #include "server/services/machine_messages.h"
 
 namespace rmlcell::server {
 namespace {
 
 constexpr PageSizes kMachinePages{.fallback = 100, .max = 1000};
-constexpr std::int64_t kUnaryProgramBytes = 3 << 20;
 
 }  // namespace
 
-MachineService::MachineService(CallNeeds needs, storage::Store& store, const Dispatcher& dispatcher,
-                               const Config& config, std::string instance_id)
-    : needs_(needs),
-      store_(store),
-      dispatcher_(dispatcher),
-      config_(config),
-      instance_id_(std::move(instance_id)),
-      started_at_(std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now())) {
-}
-
-grpc::ServerUnaryReactor* MachineService::GetCell(grpc::CallbackServerContext* context,
-                                                  const v1::GetCellRequest*, v1::Cell* response) {
-  return Answer(needs_, context, "MachineService/GetCell", [this, response](const Caller&) {
-    const auto counts = store_.CountJobs();
-    if (!counts) return ToGrpcStatus(counts.error());
-    response->set_version(std::string(kVersion));
-    response->set_instance_id(instance_id_);
-    *response->mutable_started_at() = ToProto(started_at_);
-    response->set_workers(dispatcher_.workers());
-    response->set_jobs_queued(counts->queued);
-    response->set_jobs_running(counts->running);
-    response->set_unary_program_bytes_max(kUnaryProgramBytes);
-    response->set_program_bytes_max(config_.limit_program_bytes);
-    return grpc::Status::OK;
-  });
-}
-
 grpc::ServerUnaryReactor* MachineService::ListFamilies(grpc::CallbackServerContext* context,
-                                                       const v1::ListFamiliesRequest*,
+                                                       const v1::ListFamiliesRequest* request,
                                                        v1::ListFamiliesResponse* response) {
-  return Answer(needs_, context, "MachineService/ListFamilies", [response](const Caller&) {
-    for (const machine::MachineFamily* family : families::Families()) {
-      *response->add_families() = ToProto(*family);
-    }
-    return grpc::Status::OK;
-  });
+  return Answer(needs_, context, *request, "MachineService/ListFamilies",
+                [response](const Caller&) {
+                  for (const machine::MachineFamily* family : families::Families()) {
+                    *response->add_families() = ToProto(*family);
+                  }
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* MachineService::CreateMachine(grpc::CallbackServerContext* context,
@@ -150,6 +119,40 @@ grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerCont
                 });
 }
 
+grpc::ServerUnaryReactor* MachineService::DeleteMachine(grpc::CallbackServerContext* context,
+                                                        const v1::DeleteMachineRequest* request,
+                                                        google::protobuf::Empty*) {
+  return Answer(needs_, context, *request, "MachineService/DeleteMachine",
+                [this, request](const Caller&) {
+                  const auto id = ParseMachineName(request->name());
+                  if (!id) return ToGrpcStatus(id.error());
+                  const auto expected = ParseEtag(request->etag());
+                  if (!expected) return ToGrpcStatus(expected.error());
+                  const Status deleted = store_.DeleteMachine(*id, *expected);
+                  return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
+                });
+}
+
+grpc::ServerUnaryReactor* MachineService::GetLaserSchedule(
+    grpc::CallbackServerContext* context, const v1::GetLaserScheduleRequest* request,
+    v1::LaserSchedule* response) {
+  return Answer(needs_, context, *request, "MachineService/GetLaserSchedule",
+                [this, request, response](const Caller&) {
+                  const auto name = ParseScheduleName(request->name());
+                  if (!name) return ToGrpcStatus(name.error());
+                  const auto machine = store_.GetMachine(name->machine);
+                  if (!machine) return ToGrpcStatus(machine.error());
+                  const auto schedules = store_.ListSchedules(name->machine);
+                  if (!schedules) return ToGrpcStatus(schedules.error());
+                  const auto found =
+                      std::ranges::find(*schedules, name->number, &storage::ScheduleRecord::number);
+                  if (found == schedules->end())
+                    return ToGrpcStatus(Error{ErrorCode::kCellNotFound, request->name(), {}});
+                  *response = ToProto(*found);
+                  return grpc::Status::OK;
+                });
+}
+
 grpc::ServerUnaryReactor* MachineService::ListLaserSchedules(
     grpc::CallbackServerContext* context, const v1::ListLaserSchedulesRequest* request,
     v1::ListLaserSchedulesResponse* response) {
@@ -227,28 +230,5 @@ grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });
 }
-
-grpc::ServerWriteReactor<v1::WatchMachineResponse>* MachineService::WatchMachine(
-    grpc::CallbackServerContext* context, const v1::WatchMachineRequest*) {
-  const auto caller = Admit(needs_.gate, *context, "MachineService/WatchMachine");
-  const Error error = caller
-                          ? Error{ErrorCode::kCellUnimplemented, "MachineService/WatchMachine", {}}
-                          : caller.error();
-  return new RefusedStream<v1::WatchMachineResponse>(ToGrpcStatus(error));
-}
-
-#define RMLCELL_LATER(method, request, response)                                         \
-  grpc::ServerUnaryReactor* MachineService::method(grpc::CallbackServerContext* context, \
-                                                   const v1::request*, v1::response*) {  \
-    return NotYet(needs_, context, "MachineService/" #method);                           \
-  }
-RMLCELL_LATER(SetMode, SetModeRequest, MachineState)
-RMLCELL_LATER(StartMachine, StartMachineRequest, MachineState)
-RMLCELL_LATER(HaltMachine, HaltMachineRequest, MachineState)
-RMLCELL_LATER(SetOverride, SetOverrideRequest, MachineState)
-RMLCELL_LATER(AcknowledgeAlarm, AcknowledgeAlarmRequest, MachineState)
-RMLCELL_LATER(ReadVariables, ReadVariablesRequest, ReadVariablesResponse)
-RMLCELL_LATER(WriteVariables, WriteVariablesRequest, WriteVariablesResponse)
-#undef RMLCELL_LATER
 
 }  // namespace rmlcell::server

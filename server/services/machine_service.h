@@ -1,23 +1,15 @@
 #pragma once
 
-#include <string>
-
 #include "rmlcell/v1/machine.grpc.pb.h"
-#include "server/services/call.h"
+#include "server/services/later.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
 
-class Dispatcher;
-struct Config;
-
 class MachineService final : public v1::MachineService::CallbackService {
  public:
-  MachineService(CallNeeds needs, storage::Store& store, const Dispatcher& dispatcher,
-                 const Config& config, std::string instance_id);
+  MachineService(CallNeeds needs, storage::Store& store) : needs_(needs), store_(store) {}
 
-  grpc::ServerUnaryReactor* GetCell(grpc::CallbackServerContext* context,
-                                    const v1::GetCellRequest* request, v1::Cell* response) override;
   grpc::ServerUnaryReactor* ListFamilies(grpc::CallbackServerContext* context,
                                          const v1::ListFamiliesRequest* request,
                                          v1::ListFamiliesResponse* response) override;
@@ -33,6 +25,12 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerUnaryReactor* UpdateMachine(grpc::CallbackServerContext* context,
                                           const v1::UpdateMachineRequest* request,
                                           v1::Machine* response) override;
+  grpc::ServerUnaryReactor* DeleteMachine(grpc::CallbackServerContext* context,
+                                          const v1::DeleteMachineRequest* request,
+                                          google::protobuf::Empty* response) override;
+  grpc::ServerUnaryReactor* GetLaserSchedule(grpc::CallbackServerContext* context,
+                                             const v1::GetLaserScheduleRequest* request,
+                                             v1::LaserSchedule* response) override;
   grpc::ServerUnaryReactor* ListLaserSchedules(grpc::CallbackServerContext* context,
                                                const v1::ListLaserSchedulesRequest* request,
                                                v1::ListLaserSchedulesResponse* response) override;
@@ -42,37 +40,44 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerUnaryReactor* DeleteLaserSchedule(grpc::CallbackServerContext* context,
                                                 const v1::DeleteLaserScheduleRequest* request,
                                                 google::protobuf::Empty* response) override;
-  grpc::ServerWriteReactor<v1::WatchMachineResponse>* WatchMachine(
-      grpc::CallbackServerContext* context, const v1::WatchMachineRequest* request) override;
-  grpc::ServerUnaryReactor* SetMode(grpc::CallbackServerContext* context,
-                                    const v1::SetModeRequest* request,
-                                    v1::MachineState* response) override;
-  grpc::ServerUnaryReactor* StartMachine(grpc::CallbackServerContext* context,
-                                         const v1::StartMachineRequest* request,
-                                         v1::MachineState* response) override;
-  grpc::ServerUnaryReactor* HaltMachine(grpc::CallbackServerContext* context,
-                                        const v1::HaltMachineRequest* request,
-                                        v1::MachineState* response) override;
-  grpc::ServerUnaryReactor* SetOverride(grpc::CallbackServerContext* context,
-                                        const v1::SetOverrideRequest* request,
-                                        v1::MachineState* response) override;
-  grpc::ServerUnaryReactor* AcknowledgeAlarm(grpc::CallbackServerContext* context,
-                                             const v1::AcknowledgeAlarmRequest* request,
-                                             v1::MachineState* response) override;
-  grpc::ServerUnaryReactor* ReadVariables(grpc::CallbackServerContext* context,
-                                          const v1::ReadVariablesRequest* request,
-                                          v1::ReadVariablesResponse* response) override;
-  grpc::ServerUnaryReactor* WriteVariables(grpc::CallbackServerContext* context,
-                                           const v1::WriteVariablesRequest* request,
-                                           v1::WriteVariablesResponse* response) override;
+  // Of machines that live.
+  RMLCELL_LATER("MachineService", AcquireControl, v1::AcquireControlResponse)
+  RMLCELL_LATER("MachineService", RenewControl, v1::RenewControlResponse)
+  RMLCELL_LATER("MachineService", ReleaseControl, google::protobuf::Empty)
+  RMLCELL_LATER("MachineService", EnableMachine, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", DisableMachine, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", TakeMachine, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", StartMachine, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", ZeroMachine, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", ResumeMachine, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", StopMachine, v1::HaltResponse)
+  RMLCELL_LATER("MachineService", HoldMachine, v1::HaltResponse)
+  RMLCELL_LATER("MachineService", EmergencyStopMachine, v1::HaltResponse)
+  RMLCELL_LATER("MachineService", AbortRun, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", SetMode, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", SetOverride, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", AcknowledgeAlarm, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", SetFactor, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", ReadVariables, v1::ReadVariablesResponse)
+  RMLCELL_LATER("MachineService", WriteVariables, v1::WriteVariablesResponse)
+  RMLCELL_LATER("MachineService", SetInputs, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", SetBreakpoints, v1::RunState)
+  RMLCELL_LATER("MachineService", SetSimulation, v1::RunState)
+  RMLCELL_LATER("MachineService", GetRunState, v1::RunState)
+  RMLCELL_LATER("MachineService", PressPanelKey, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", HeartbeatPanel, v1::HeartbeatResponse)
+  RMLCELL_LATER("MachineService", PreviewStart, v1::PreviewStartResponse)
+  RMLCELL_LATER("MachineService", StartAtStep, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", ConfirmMachine, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", ArmMachine, v1::ArmMachineResponse)
+  RMLCELL_LATER("MachineService", DisarmMachine, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", ListDevices, v1::ListDevicesResponse)
+  RMLCELL_LATER_READ("MachineService", WatchMachine)
+  RMLCELL_LATER_READ("MachineService", ExportJournal)
 
  private:
   CallNeeds needs_;
   storage::Store& store_;
-  const Dispatcher& dispatcher_;
-  const Config& config_;
-  std::string instance_id_;
-  storage::WallTime started_at_;
 };
 
 }  // namespace rmlcell::server

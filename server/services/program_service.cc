@@ -7,8 +7,8 @@
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/programs/text_tools.h"
-#include "server/services/job_streams.h"
 #include "server/services/program_upload.h"
+#include "server/services/pull_stream.h"
 
 namespace rmlcell::server {
 namespace {
@@ -185,8 +185,12 @@ grpc::ServerUnaryReactor* ProgramService::GetProgramContent(
 
 grpc::ServerWriteReactor<v1::DownloadProgramResponse>* ProgramService::DownloadProgram(
     grpc::CallbackServerContext* context, const v1::DownloadProgramRequest* request) {
-  const Result<Caller> caller = Admit(needs_.gate, *context, "ProgramService/DownloadProgram");
-  if (!caller) return new RefusedStream<v1::DownloadProgramResponse>(ToGrpcStatus(caller.error()));
+  const Result<Caller> caller =
+      Admit(needs_.gate, *context, "ProgramService/DownloadProgram", request);
+  if (!caller) {
+    return new EndedStream<grpc::ServerWriteReactor<v1::DownloadProgramResponse>>(
+        ToGrpcStatus(caller.error()));
+  }
   return std::make_shared<Download>(needs_.executor, open_, programs_, *request)->Begin();
 }
 

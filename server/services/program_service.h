@@ -3,7 +3,7 @@
 #include <string>
 
 #include "rmlcell/v1/program.grpc.pb.h"
-#include "server/services/call.h"
+#include "server/services/later.h"
 #include "server/services/pull_stream.h"
 
 namespace rmlcell::server {
@@ -79,6 +79,14 @@ class ProgramService final : public v1::ProgramService::CallbackService {
   grpc::ServerUnaryReactor* ExplainError(grpc::CallbackServerContext* context,
                                          const v1::ExplainErrorRequest* request,
                                          v1::ExplainErrorResponse* response) override;
+
+  RMLCELL_LATER("ProgramService", GetLanguage, v1::GetLanguageResponse)
+  RMLCELL_LATER("ProgramService", Hover, v1::HoverResponse)
+  RMLCELL_LATER("ProgramService", Complete, v1::CompleteResponse)
+  RMLCELL_LATER("ProgramService", FindDefinition, v1::FindDefinitionResponse)
+  RMLCELL_LATER("ProgramService", FindReferences, v1::FindReferencesResponse)
+  RMLCELL_LATER("ProgramService", Rename, v1::RenameResponse)
+  RMLCELL_LATER("ProgramService", Outline, v1::OutlineResponse)
 
  private:
   CallNeeds needs_;

@@ -2,7 +2,6 @@
 
 #include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
-#include "server/services/job_streams.h"
 
 namespace rmlcell::server {
 
@@ -74,27 +73,6 @@ grpc::ServerUnaryReactor* ProjectService::TransferProject(grpc::CallbackServerCo
                   *response = std::move(*transferred.value);
                   return grpc::Status::OK;
                 });
-}
-
-grpc::ServerUnaryReactor* ProjectService::TransferProjectFromMachine(
-    grpc::CallbackServerContext* context, const v1::TransferProjectFromMachineRequest*,
-    v1::Project*) {
-  return NotYet(needs_, context, "ProjectService/TransferProjectFromMachine");
-}
-
-grpc::ServerWriteReactor<v1::ExportProjectResponse>* ProjectService::ExportProject(
-    grpc::CallbackServerContext* context, const v1::ExportProjectRequest*) {
-  const auto caller = Admit(needs_.gate, *context, "ProjectService/ExportProject");
-  const Error error = caller
-                          ? Error{ErrorCode::kCellUnimplemented, "ProjectService/ExportProject", {}}
-                          : caller.error();
-  return new RefusedStream<v1::ExportProjectResponse>(ToGrpcStatus(error));
-}
-
-grpc::ServerUnaryReactor* ProjectService::ImportProject(grpc::CallbackServerContext* context,
-                                                        const v1::ImportProjectRequest*,
-                                                        v1::Project*) {
-  return NotYet(needs_, context, "ProjectService/ImportProject");
 }
 
 }  // namespace rmlcell::server

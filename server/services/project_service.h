@@ -3,7 +3,7 @@
 #include <string>
 
 #include "rmlcell/v1/project.grpc.pb.h"
-#include "server/services/call.h"
+#include "server/services/later.h"
 
 namespace rmlcell::server {
 
@@ -31,14 +31,9 @@ class ProjectService final : public v1::ProjectService::CallbackService {
   grpc::ServerUnaryReactor* TransferProject(grpc::CallbackServerContext* context,
                                             const v1::TransferProjectRequest* request,
                                             v1::TransferProjectResponse* response) override;
-  grpc::ServerUnaryReactor* TransferProjectFromMachine(
-      grpc::CallbackServerContext* context, const v1::TransferProjectFromMachineRequest* request,
-      v1::Project* response) override;
-  grpc::ServerWriteReactor<v1::ExportProjectResponse>* ExportProject(
-      grpc::CallbackServerContext* context, const v1::ExportProjectRequest* request) override;
-  grpc::ServerUnaryReactor* ImportProject(grpc::CallbackServerContext* context,
-                                          const v1::ImportProjectRequest* request,
-                                          v1::Project* response) override;
+  RMLCELL_LATER("ProjectService", TransferProjectFromMachine, v1::Project)
+  RMLCELL_LATER_READ("ProjectService", ExportProject)
+  RMLCELL_LATER_WRITE("ProjectService", ImportProject, v1::Project)
 
  private:
   CallNeeds needs_;

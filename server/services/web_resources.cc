@@ -13,9 +13,13 @@
 namespace rmlcell::server {
 namespace {
 
+// By the method that does the same.
 Result<Caller> Admit(const Gate& gate, const web::WebCallerMetadata& metadata,
-                     const std::string& method) {
-  CallFacts facts{.method = method, .peer = "web", .metadata = {}};
+                     const std::string& method, std::string resource) {
+  CallFacts facts{.method = "/rmlcell.v1." + method,
+                  .peer = "web",
+                  .transport = Transport::kInProcess,
+                  .resource = std::move(resource)};
   for (const auto& [key, value] : metadata) facts.metadata.emplace(key, value);
   return gate.Admit(facts);
 }
@@ -79,8 +83,7 @@ class Sink final : public web::UploadSink {
       return Refused(bridge::ToRpcStatus({ErrorCode::kCellChecksum, "SHA-256 differs", {}}));
     }
     const ProgramResult<v1::Program> stored =
-        programs_.Store({.name = "machines/" + header_.path.machine + "/programs/" +
-                                 std::to_string(header_.path.slot),
+        programs_.Store({.name = NameOfProgram(header_.path.machine, header_.path.slot),
                          .file_name = header_.file_name,
                          .form = form_,
                          .title = header_.title,
@@ -113,15 +116,19 @@ class Sink final : public web::UploadSink {
 
 Result<web::Resource> WebResources::Find(const web::ResourcePath& path,
                                          const web::WebCallerMetadata& metadata) {
-  const Result<Caller> caller = Admit(gate_, metadata, "GET");
-  if (!caller) return caller.error();
-  if (const auto* artifact = std::get_if<web::ArtifactPath>(&path))
+  if (const auto* artifact = std::get_if<web::ArtifactPath>(&path)) {
+    const Result<Caller> caller =
+        Admit(gate_, metadata, "JobService/GetJobArtifact", "jobs/" + artifact->job);
+    if (!caller) return caller.error();
     return FindArtifact(book_, *artifact);
+  }
   const auto& program = std::get<web::ProgramContentPath>(path);
+  const std::string name = NameOfProgram(program.machine, program.slot);
+  const Result<Caller> caller = Admit(gate_, metadata, "ProgramService/GetProgramContent", name);
+  if (!caller) return caller.error();
   const Result<v1::ProgramForm> form = FormOf(program.form);
   if (!form) return form.error();
-  Result<ProgramBook::Content> content = programs_.Read(
-      "machines/" + program.machine + "/programs/" + std::to_string(program.slot), *form);
+  Result<ProgramBook::Content> content = programs_.Read(name, *form);
   if (!content) return content.error();
   web::Resource resource{.media_type = content->form == v1::PROGRAM_FORM_SOURCE
                                            ? "text/plain; charset=utf-8"
@@ -134,7 +141,8 @@ Result<web::Resource> WebResources::Find(const web::ResourcePath& path,
 
 Result<std::unique_ptr<web::UploadSink>> WebResources::BeginUpload(
     const web::UploadHeader& header, const web::WebCallerMetadata& metadata) {
-  const Result<Caller> caller = Admit(gate_, metadata, "POST");
+  const Result<Caller> caller = Admit(gate_, metadata, "ProgramService/UploadProgram",
+                                      NameOfProgram(header.path.machine, header.path.slot));
   if (!caller) return caller.error();
   if (const Status fits = programs_.CheckSize(header.size); !fits) return fits.error();
   const Result<v1::ProgramForm> form = FormOf(header.path.form);

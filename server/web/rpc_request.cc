@@ -16,9 +16,9 @@ namespace {
 
 using google::protobuf::MethodDescriptor;
 
-// Not for browsers: the line to the workers, and what lists or looks into the process.
-constexpr std::array<std::string_view, 3> kHiddenServices = {"rmlcell.v1.WorkerService",
-                                                             "grpc.reflection.", "grpc.channelz."};
+// Not for browsers: the lines to workers and hosts, and what lists or looks into the process.
+constexpr std::array<std::string_view, 4> kHiddenServices = {
+    "rmlcell.v1.WorkerService", "rmlcell.v1.HostService", "grpc.reflection.", "grpc.channelz."};
 
 // Methods of these names change nothing, so a GET may call them.
 constexpr std::array<std::string_view, 5> kReadingPrefixes = {"Get", "List", "Watch", "Stream",

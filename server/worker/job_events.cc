@@ -26,6 +26,46 @@ bool IsLogged(machine::Signal signal) {
   }
 }
 
+v1::SignalKind KindOf(machine::Signal signal) {
+  switch (signal) {
+    case machine::Signal::kShutter:
+      return v1::SIGNAL_KIND_SHUTTER;
+    case machine::Signal::kBeam:
+      return v1::SIGNAL_KIND_BEAM;
+    case machine::Signal::kSchedule:
+      return v1::SIGNAL_KIND_SCHEDULE;
+    case machine::Signal::kGas:
+      return v1::SIGNAL_KIND_GAS;
+    case machine::Signal::kSpindle:
+    case machine::Signal::kSpindleSpeed:
+      return v1::SIGNAL_KIND_SPINDLE;
+    case machine::Signal::kOutput:
+      return v1::SIGNAL_KIND_LOGICAL_OUTPUT;
+    case machine::Signal::kAnalogue:
+      return v1::SIGNAL_KIND_ANALOGUE_OUTPUT;
+    case machine::Signal::kRotaryTable:
+    case machine::Signal::kSensor:
+      return v1::SIGNAL_KIND_OTHER;
+  }
+  return v1::SIGNAL_KIND_OTHER;
+}
+
+v1::HoldReason ReasonOf(machine::HaltReason reason) {
+  switch (reason) {
+    case machine::HaltReason::kHold:
+      return v1::HOLD_REASON_HOLD;
+    case machine::HaltReason::kStop:
+      return v1::HOLD_REASON_STOP;
+    case machine::HaltReason::kProgram:
+      return v1::HOLD_REASON_PROGRAM;
+    case machine::HaltReason::kBreakpoint:
+      return v1::HOLD_REASON_BREAKPOINT;
+    case machine::HaltReason::kSingle:
+      return v1::HOLD_REASON_SINGLE;
+  }
+  return v1::HOLD_REASON_UNSPECIFIED;
+}
+
 }  // namespace
 
 // What somebody ordered is told however much happened before.
@@ -33,7 +73,7 @@ void JobEvents::Tell(v1::JobEvent event) {
   if (count_ >= kEventsMax && !event.has_halted() && !event.has_resumed()) {
     if (cut_) return;
     cut_ = true;
-    event.set_message(
+    event.mutable_message()->set_text(
         "more happened than the log of a job takes; the report and the trace have the rest");
   }
   ++count_;
@@ -51,30 +91,30 @@ void JobEvents::OnSignal(const machine::SignalChange& change) {
   if (!IsLogged(change.signal)) return;
   v1::JobEvent event;
   event.set_virtual_time_ns(change.at.count());
-  v1::TraceRecord& signal = *event.mutable_signal();
-  signal.set_kind("signal");
-  signal.set_time_s(ToSeconds(change.at));
-  signal.mutable_place()->set_program(change.place.program);
-  signal.mutable_place()->set_step(change.place.step);
-  signal.set_text(std::string(simulation::SignalName(change.signal)));
+  v1::Signal& signal = *event.mutable_signal();
+  signal.set_kind(KindOf(change.signal));
+  signal.set_name(std::string(simulation::SignalName(change.signal)));
   signal.set_index(change.index);
   signal.set_value(change.value);
   signal.set_detail(change.detail);
+  *signal.mutable_place() = bridge::ToProto(change.place);
   Tell(std::move(event));
 }
 
 void JobEvents::OnHalt(const machine::Halt& halt) {
   v1::JobEvent event;
   event.set_virtual_time_ns(halt.at.count());
-  event.set_halted(std::string(halt.why));
+  event.mutable_halted()->set_reason(ReasonOf(halt.reason));
+  event.mutable_halted()->set_message(std::string(halt.why));
+  *event.mutable_halted()->mutable_place() = bridge::ToProto(halt.place);
   Tell(std::move(event));
   Flush();
 }
 
-void JobEvents::OnResume(SimTime at, const machine::Place&) {
+void JobEvents::OnResume(SimTime at, const machine::Place& place) {
   v1::JobEvent event;
   event.set_virtual_time_ns(at.count());
-  event.set_resumed("START");
+  *event.mutable_resumed()->mutable_place() = bridge::ToProto(place);
   Tell(std::move(event));
   Flush();
 }
@@ -82,14 +122,19 @@ void JobEvents::OnResume(SimTime at, const machine::Place&) {
 void JobEvents::OnProgram(SimTime at, const machine::Place&, std::string_view what, int program) {
   v1::JobEvent event;
   event.set_virtual_time_ns(at.count());
-  event.set_milestone(std::string(what) + " program " + std::to_string(program));
+  if (what == machine::kCompiling) {
+    event.mutable_executable_made()->set_program(program);
+  } else {
+    event.mutable_program_loaded()->set_program(program);
+  }
   Tell(std::move(event));
 }
 
-void JobEvents::OnMessage(SimTime at, const machine::Place&, std::string_view text) {
+void JobEvents::OnMessage(SimTime at, const machine::Place& place, std::string_view text) {
   v1::JobEvent event;
   event.set_virtual_time_ns(at.count());
-  event.set_message(std::string(text));
+  event.mutable_message()->set_text(std::string(text));
+  *event.mutable_message()->mutable_place() = bridge::ToProto(place);
   Tell(std::move(event));
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "engine/core/units.h"
+
 namespace rmlcell::server {
 namespace {
 
@@ -44,7 +46,7 @@ void JobLease::Listen(std::chrono::milliseconds patience) {
 }
 
 bool JobLease::over_time() const {
-  return ProcessorTime_s() - started_s_ > assignment_.budget().processor_s();
+  return ProcessorTime_s() - started_s_ > ToSeconds(SimTime(assignment_.budget().processor_ns()));
 }
 
 Stop JobLease::StopAsked() {

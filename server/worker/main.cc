@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "engine/core/units.h"
 #include "proto/bridge/findings.h"
 #include "server/base/log.h"
 #include "server/base/version.h"
@@ -86,7 +87,7 @@ int main(int argc, char** argv) {
     if (message->has_stop()) break;
     if (!message->has_assignment()) continue;
     processor_begin_s = JobProcessorTime_s();
-    processor_limit_s = message->assignment().budget().processor_s();
+    processor_limit_s = ToSeconds(SimTime(message->assignment().budget().processor_ns()));
     const bool go_on = runner.Work(std::move(*message->mutable_assignment()));
     processor_limit_s = 0.0;
     if (!go_on) break;

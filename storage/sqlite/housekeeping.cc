@@ -51,6 +51,19 @@ Status RemoveJob(WriteContext& context, std::int64_t job) {
 
 }  // namespace
 
+Status RemoveJobWhole(WriteContext& context, std::int64_t job) {
+  if (const Status kept = KeepCounters(context); !kept) return kept.error();
+  for (;;) {
+    const Result<std::optional<EventTable::Removed>> removed =
+        context.tables.events.RemoveOfJob(job, kEventsPerSlice);
+    if (!removed) return removed.error();
+    if (!*removed) break;
+    if (const Status noted = NoteGone(context, **removed); !noted) return noted.error();
+  }
+  context.garbage = true;
+  return RemoveJob(context, job);
+}
+
 bool Housekeeping::IsDue(const Counters& counters) const {
   return HasOldJobs(counters) || HasOldEvents(counters);
 }

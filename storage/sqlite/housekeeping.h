@@ -12,6 +12,9 @@ struct KeepLimits {
   std::int64_t events = 0;  // by position, those of unfinished jobs as well
 };
 
+// A finished job with all that belongs to it; its events are gone from then on.
+Status RemoveJobWhole(WriteContext& context, std::int64_t job);
+
 // Removes what is no longer wanted: blobs that nobody names, finished jobs and events beyond the
 // limits. In slices, so that no write waits long behind it.
 class Housekeeping {

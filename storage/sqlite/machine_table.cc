@@ -21,6 +21,7 @@ MachineTable::MachineTable(Database& database, BlobTable& blobs)
            " (id, family, title, profile, revision, created_at, updated_at, state, state_blob)"
            " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"),
       parameters_(database, "SELECT name, value FROM machine_parameter WHERE machine = ?1"),
+      remove_(database, "DELETE FROM machine WHERE id = ?1"),
       remove_parameters_(database, "DELETE FROM machine_parameter WHERE machine = ?1"),
       add_parameter_(database,
                      "INSERT INTO machine_parameter (machine, name, value) VALUES (?1, ?2, ?3)") {}
@@ -56,6 +57,11 @@ Status MachineTable::Put(const MachineRecord& machine, const Stamp& stamp,
       return added.error();
   }
   return {};
+}
+
+Status MachineTable::Remove(std::string_view id) {
+  if (const Status removed = remove_.With(id).Run(); !removed) return removed.error();
+  return remove_parameters_.With(id).Run();
 }
 
 Result<MachineRecord> MachineTable::Read(const Query& row) {

@@ -25,6 +25,7 @@ class MachineTable {
 
   // Inserts or replaces; the references of blobs are the caller's affair.
   Status Put(const MachineRecord& machine, const Stamp& stamp, const ContentColumns& state);
+  Status Remove(std::string_view id);  // the same
 
  private:
   Result<MachineRecord> Read(const Query& row);
@@ -36,6 +37,7 @@ class MachineTable {
   Statement list_;
   Statement put_;
   Statement parameters_;
+  Statement remove_;
   Statement remove_parameters_;
   Statement add_parameter_;
 };

@@ -26,7 +26,7 @@ class MarkTable {
 // The last revisions of deleted records.
 class BuriedTable {
  public:
-  enum class Kind { kProgram = 1, kSchedule = 2, kProject = 3 };
+  enum class Kind { kProgram = 1, kSchedule = 2, kProject = 3, kMachine = 4 };
 
   explicit BuriedTable(Database& database);
   Status Bury(Kind kind, std::string_view owner, std::string_view name, Revision revision);

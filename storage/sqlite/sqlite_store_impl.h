@@ -35,6 +35,7 @@ class SqliteStore final : public Store {
   Result<std::vector<MachineRecord>> ListMachines() override;
   Result<MachineRecord> GetMachine(std::string_view id) override;
   Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected) override;
+  Status DeleteMachine(std::string_view id, Revision expected) override;
 
   Result<std::vector<ProgramSummary>> ListPrograms(std::string_view machine, int after_slot,
                                                    int limit) override;
@@ -68,6 +69,7 @@ class SqliteStore final : public Store {
   Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) override;
   Result<JobCounts> CountJobs() override;
   Result<std::vector<MachineJobs>> UnfinishedJobs() override;
+  Status DeleteJob(std::int64_t id) override;
   Result<JobRecord> RequestCancel(std::int64_t job, const std::vector<NewEvent>& events) override;
 
   Result<std::optional<LeasedJob>> Acquire(std::string_view worker,

@@ -6,6 +6,7 @@
 #include "engine/core/units.h"
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/executable_life.h"
+#include "storage/sqlite/memory_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
 namespace rmlcell::storage::sqlite {
@@ -219,6 +220,23 @@ Status RemoveSchedule(WriteContext& context, std::string_view machine, int numbe
 }
 
 }  // namespace
+
+Status RemoveMemory(WriteContext& context, std::string_view machine) {
+  const Result<std::vector<ProgramSummary>> programs =
+      context.tables.programs.List(machine, 0, kSlotMax);
+  if (!programs) return programs.error();
+  for (const ProgramSummary& program : *programs) {
+    if (const Status gone = RemoveProgram(context, machine, program.slot, kAnyRevision); !gone)
+      return gone.error();
+  }
+  const Result<std::vector<ScheduleRecord>> schedules = context.tables.schedules.List(machine);
+  if (!schedules) return schedules.error();
+  for (const ScheduleRecord& schedule : *schedules) {
+    if (const Status gone = RemoveSchedule(context, machine, schedule.number); !gone)
+      return gone.error();
+  }
+  return {};
+}
 
 Result<std::vector<ProgramSummary>> SqliteStore::ListPrograms(std::string_view machine,
                                                               int after_slot, int limit) {

@@ -1,5 +1,8 @@
 // Machines and projects.
+#include <algorithm>
+
 #include "storage/sqlite/content_staging.h"
+#include "storage/sqlite/memory_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
 namespace rmlcell::storage::sqlite {
@@ -26,7 +29,14 @@ Result<Stamp> PutMachineRow(WriteContext& context, const MachineRecord& machine,
                         "machine " + machine.id, ErrorCode::kCellUnknownMachine);
       !fits)
     return fits.error();
-  const Stamp stamp{.revision = before ? before->revision + 1 : 1,
+  Revision last = before ? before->revision : 0;
+  if (!before) {
+    const Result<Revision> buried =
+        context.tables.buried.DigUp(BuriedTable::Kind::kMachine, "", machine.id);
+    if (!buried) return buried.error();
+    last = *buried;
+  }
+  const Stamp stamp{.revision = last + 1,
                     .created_at = before ? before->created_at : context.now,
                     .updated_at = context.now};
   const Result<ContentColumns> columns = context.tables.blobs.Put(state);
@@ -39,6 +49,32 @@ Result<Stamp> PutMachineRow(WriteContext& context, const MachineRecord& machine,
   }
   context.garbage = true;
   return stamp;
+}
+
+Status RemoveMachine(WriteContext& context, std::string_view id, Revision expected) {
+  Tables& tables = context.tables;
+  const Result<std::optional<MachineTable::Facts>> found = tables.machines.Find(id);
+  if (!found) return found.error();
+  if (!*found) return Error{ErrorCode::kCellUnknownMachine, std::string(id), {}};
+  const MachineTable::Facts& before = **found;
+  if (const Status fits = CheckRevision(before.revision, expected, "machine " + std::string(id));
+      !fits)
+    return fits.error();
+  const Result<std::vector<MachineJobs>> busy = tables.jobs.Unfinished();
+  if (!busy) return busy.error();
+  if (std::ranges::find(*busy, id, &MachineJobs::machine) != busy->end()) {
+    return Error{ErrorCode::kCellPrecondition,
+                 "jobs wait for machine " + std::string(id) + " or run; cancel them first",
+                 {}};
+  }
+  if (const Status memory = RemoveMemory(context, id); !memory) return memory.error();
+  if (const Status removed = tables.machines.Remove(id); !removed) return removed.error();
+  if (const Status buried =
+          tables.buried.Bury(BuriedTable::Kind::kMachine, "", id, before.revision);
+      !buried)
+    return buried.error();
+  context.garbage = true;
+  return tables.blobs.Drop(before.state_blob);
 }
 
 Result<Stamp> PutProjectRow(WriteContext& context, const ProjectRecord& project, Revision expected,
@@ -133,6 +169,10 @@ Result<MachineRecord> SqliteStore::PutMachine(const MachineRecord& machine, Revi
   MachineRecord put = machine;
   SetStamp(put, *stamp);
   return put;
+}
+
+Status SqliteStore::DeleteMachine(std::string_view id, Revision expected) {
+  return writer_.Do([&](WriteContext& context) { return RemoveMachine(context, id, expected); });
 }
 
 Result<std::vector<ProjectRecord>> SqliteStore::ListProjects(std::string_view after_id, int limit) {

@@ -188,8 +188,8 @@ def machines(session):
         elif what == 7:
             call("MachineService/DeleteLaserSchedule", {"name": f"{full}/laserSchedules/{dice.choice((1, 11, 63))}"})
         else:
-            call("MachineService/" + dice.choice(("StartMachine", "HaltMachine", "AcknowledgeAlarm", "ReadVariables", "SetMode", "WriteVariables")),
-                 {"name": full})
+            call("MachineService/" + dice.choice(("StartMachine", "StopMachine", "AcknowledgeAlarm", "ReadVariables", "SetMode", "WriteVariables")),
+                 {"machine": full})
     call("MachineService/ListMachines", {}, 0)
 
 
@@ -232,7 +232,7 @@ def programs(session):
             session.watch("ProgramService/DownloadProgram", {"name": full, "form": dice.choice((0, 1, 2, 3, 4))})
         else:
             job = call("JobService/SubmitJob", {"job": {"kind": "JOB_KIND_SIMULATE", "machine": machine, "program": full,
-                                                        "budget": {"steps": 500, "virtualTimeS": 100}}}, 0)
+                                                        "budget": {"steps": 500, "virtualTimeNs": 100_000_000_000}}}, 0)
             if "name" in job:
                 session.watch("JobService/WatchJob", {"name": job["name"]}, told=False)
                 until = time.monotonic() + 0.3  # the executable may come behind the end
@@ -287,10 +287,10 @@ def some_job(dice):
     family, file_name, content = some_program(dice)
     job = {"kind": mostly(dice, ("JOB_KIND_SIMULATE", "JOB_KIND_SIMULATE", "JOB_KIND_CHECK"), ("JOB_KIND_RUN", 0)), "machine": machine_of(family),
            "title": dice.choice(("", "first")), "inlineProgram": text_of(file_name, content), "inlineSlot": mostly(dice, (0, 0, 5), (100,)),
-           "attemptsMax": dice.choice((0, 1, 3)), "budget": {"steps": dice.choice((20, 1000)), "virtualTimeS": dice.choice((5, 200))}}
+           "attemptsMax": dice.choice((0, 1, 3)), "budget": {"steps": dice.choice((20, 1000)), "virtualTimeNs": dice.choice((5, 200)) * 1_000_000_000}}
     options = {"mode": mostly(dice, (0, 2, 3, 4), (1, 5, 9)), "overridePercent": mostly(dice, (0, 100, 50, 145), (400, -1, 145.1)), "trace": dice.random() < 0.6,
                "variables": mostly(dice, ([], ["VR[1]", "VI[0..3]"]), (["none"],)), "toolpathToleranceMm": mostly(dice, (0, 0.1), (-1, 101)),
-               "inputs": [{"atS": dice.choice((0, 0.5, 2)), "kind": dice.randrange(1, 9), "index": mostly(dice, (1, 2), (0, 300)), "value": dice.choice((0, 1, 50))}
+               "inputs": [{"virtualTimeNs": int(1e9 * dice.choice((0, 0.5, 2))), "kind": dice.randrange(1, 9), "index": mostly(dice, (1, 2), (0, 300)), "value": dice.choice((0, 1, 50))}
                           for _ in range(dice.randrange(3))],
                "parameters": mostly(dice, ({}, {"X_MAX": "120"} if family == "rml1" else {}), ({"none": "1"},))}
     if family == "optimo" and dice.random() < 0.3:
@@ -324,7 +324,7 @@ def jobs(session):
         session.watch("JobService/WatchJob", {"name": name, "afterSequence": dice.choice((1, 1, 2, 4, 1000)), "eventsOnly": True})
         what = dice.randrange(10)
         if what == 0:
-            call("JobService/" + dice.choice(("CancelJob", "HoldJob", "ResumeJob", "SetJobOverride")), {"name": name})
+            call("JobService/" + dice.choice(("CancelJob", "HoldJob", "StopJob", "ResumeJob", "SetJobOverride")), {"name": name})
         elif what == 1:
             filter_of = dice.choice(("", "state = SUCCEEDED", 'machine = "machines/mill-1"', "state=FAILED AND kind=SIMULATE", "kind = CHECK", "none", "state = ",
                                      'state = FAILED OR state = SUCCEEDED', 'title = "first"', 'caller = "x"'))
@@ -414,7 +414,7 @@ def http_requests(session):
     _, file_name, content = some_program(dice, "rml1")
     session.request("POST", f"/v1/machines/mill-1/programs/7/content?file_name={file_name}&force=true", content, {"Content-Type": "application/octet-stream"})
     job = session.call("JobService/SubmitJob", {"job": {"kind": "JOB_KIND_SIMULATE", "machine": "machines/mill-1", "program": "machines/mill-1/programs/7",
-                                                        "budget": {"steps": 500, "virtualTimeS": 100}}}, 0, told=False)
+                                                        "budget": {"steps": 500, "virtualTimeNs": 100_000_000_000}}}, 0, told=False)
     if "name" in job:
         session.watch("JobService/WatchJob", {"name": job["name"]}, told=False)
     name = dice.choice((b"\n\x0fmachines/mill-1", b"\n\x11machines/optimo-1", b"\n\x03348"))

@@ -73,17 +73,16 @@ class StoppedJob {
 
   double SecondsToStop() {
     const auto start = Clock::now();
-    v1::HoldJobRequest stop;
+    v1::StopJobRequest stop;
     stop.set_name(name_);
-    stop.set_at_once(true);
     // The answer reads the store; who stops does not wait for it.
     std::thread call([&] {
       grpc::ClientContext context;
       v1::Job job;
-      Must(calls_->HoldJob(&context, stop, &job));
+      Must(calls_->StopJob(&context, stop, &job));
     });
     v1::WatchJobResponse message;
-    while (message.event().halted().empty()) Read(message);
+    while (!message.event().has_halted()) Read(message);
     const double seconds = SecondsSince(start);
     call.join();
     v1::ResumeJobRequest resume;
@@ -91,7 +90,7 @@ class StoppedJob {
     grpc::ClientContext context;
     v1::Job job;
     Must(calls_->ResumeJob(&context, resume, &job));
-    while (message.event().resumed().empty()) Read(message);
+    while (!message.event().has_resumed()) Read(message);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // up to its speed again
     return seconds;
   }

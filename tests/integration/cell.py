@@ -22,13 +22,14 @@ sys.path.insert(0, os.environ["RMLCELL_STUBS"])
 import grpc  # noqa: E402
 from google.rpc import status_pb2  # noqa: E402
 from rmlcell.v1 import (  # noqa: E402
+    cell_pb2,
+    cell_pb2_grpc,
     common_pb2,
-    handbox_pb2,
-    handbox_pb2_grpc,
     job_pb2,
     job_pb2_grpc,
     machine_pb2,
     machine_pb2_grpc,
+    machine_status_pb2,
     program_pb2,
     program_pb2_grpc,
     project_pb2,
@@ -110,6 +111,9 @@ class Cell:
         return found
 
     # --- shorthands -----------------------------------------------------------------------------------
+    def cell_service(self):
+        return cell_pb2_grpc.CellServiceStub(self.channel())
+
     def jobs(self):
         return job_pb2_grpc.JobServiceStub(self.channel())
 

@@ -11,7 +11,7 @@ import urllib.request
 import uuid
 
 from cell import (COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, common_pb2, detail_of, eventually, grpc, inline_job,
-                  job_pb2, machine_pb2, program_pb2, submit, wait_for_end, wait_until_it_runs)
+                  job_pb2, machine_status_pb2, machine_pb2, program_pb2, submit, wait_for_end, wait_until_it_runs)
 from command import run
 
 
@@ -30,6 +30,8 @@ class Jobs(WithCell):
         # 10 mm and 10 mm in the work, and the plunge.
         self.assertAlmostEqual(report.total.cut_length_mm - report.total.plunge_length_mm, 20.0, places=3)
         picture = stub.GetJobPicture(job_pb2.GetJobPictureRequest(name=job.name))
+        artifact = stub.GetJobArtifact(job_pb2.GetJobArtifactRequest(name=job.name, artifact="picture.svg"))
+        self.assertEqual((artifact.content, artifact.media_type), (picture.content, "image/svg+xml"))
         self.assertIn(b"<svg", picture.content)
         blocks = list(stub.StreamJobToolpath(job_pb2.StreamJobToolpathRequest(name=job.name)))
         self.assertGreater(len(blocks), 0)
@@ -60,6 +62,18 @@ class Jobs(WithCell):
             self.assertAlmostEqual(outcome.reasons[1].amount, 900.0 - 203.2, places=6)
         check = submit(stub, inline_job("mill-1", "beyond.rml", source, job_pb2.JOB_KIND_CHECK))
         self.assertEqual(wait_for_end(stub, check.name)[-1].ended.verdict, common_pb2.VERDICT_BAD)
+
+    def test_a_deleted_job_is_gone_with_its_products(self):
+        stub = self.cell.jobs()
+        job = submit(stub, inline_job("mill-1", "square.rml", SQUARE))
+        wait_for_end(stub, job.name)
+        stub.DeleteJob(job_pb2.DeleteJobRequest(name=job.name))
+        for call, request in ((stub.GetJob, job_pb2.GetJobRequest(name=job.name)),
+                              (stub.DeleteJob, job_pb2.DeleteJobRequest(name=job.name)),
+                              (stub.GetJobReport, job_pb2.GetJobReportRequest(name=job.name)),
+                              (stub.GetJobArtifact, job_pb2.GetJobArtifactRequest(name=job.name, artifact="report"))):
+            self.refused(call, request, grpc.StatusCode.NOT_FOUND, "CELL-E9004")
+        self.refused(stub.DeleteJob, job_pb2.DeleteJobRequest(name="7"), grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
 
     def test_a_toolpath_comes_in_levels_of_detail(self):
         stub = self.cell.jobs()
@@ -201,7 +215,10 @@ class Jobs(WithCell):
             job = submit(stub, inline_job("optimo-1", "talk.S", talk))
             wait_until_it_runs(stub, job.name)
             stub.HoldJob(job_pb2.HoldJobRequest(name=job.name))
-            self.assertTrue(eventually(lambda: any(m.event.HasField("halted") for m in self.events(stub, job.name))))
+            halted = eventually(lambda: next((m.event.halted for m in self.events(stub, job.name)
+                                              if m.event.HasField("halted")), None))
+            # OPT-4.17: in REMOTE a HOLD is a STOP.
+            self.assertEqual((halted.reason, halted.message), (machine_status_pb2.HOLD_REASON_STOP, "STOP"))
             stub.CancelJob(job_pb2.CancelJobRequest(name=job.name))
             self.assertEqual(wait_for_end(stub, job.name)[-1].ended.code, "CELL-E9307")
 
@@ -309,10 +326,10 @@ class Jobs(WithCell):
         job.budget.steps = 1000
         self.assertEqual(wait_for_end(stub, submit(stub, job).name)[-1].ended.code, "OPT-E7901")
         job = inline_job("optimo-1", "wait.S", "WAIT IL[20]\n")
-        job.budget.virtual_time_s = 5.0
+        job.budget.virtual_time_ns = 5_000_000_000
         self.assertEqual(wait_for_end(stub, submit(stub, job).name)[-1].ended.code, "OPT-E7902")
         job = inline_job("optimo-1", "endless.S", ENDLESS)
-        job.budget.processor_s = 0.2
+        job.budget.processor_ns = 200_000_000
         self.assertEqual(wait_for_end(stub, submit(stub, job).name)[-1].ended.code, "CELL-E9303")
         # Report and events count as output, too.
         job = inline_job("mill-1", "square.rml", SQUARE)

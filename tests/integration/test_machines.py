@@ -2,7 +2,8 @@
 """Machines and their laser schedules as gRPC clients see them: every field, every refusal."""
 import unittest
 
-from cell import Cell, WithCell, detail_of, eventually, grpc, handbox_pb2, handbox_pb2_grpc, inline_job, job_pb2, machine_pb2, submit, wait_for_end
+from cell import (Cell, WithCell, cell_pb2, detail_of, eventually, grpc, inline_job, job_pb2, machine_pb2,
+                  machine_status_pb2, program_pb2, submit, wait_for_end)
 
 BAD = grpc.StatusCode.INVALID_ARGUMENT
 UNKNOWN = grpc.StatusCode.NOT_FOUND
@@ -15,14 +16,16 @@ def create(machine_id, family="rml1", validate_only=False, **fields):
 
 class Cells(WithCell):
     def test_a_cell_tells_what_it_is(self):
-        stub = self.cell.machines()
-        cell = eventually(lambda: next((cell for cell in [stub.GetCell(machine_pb2.GetCellRequest())]
+        stub = self.cell.cell_service()
+        cell = eventually(lambda: next((cell for cell in [stub.GetCell(cell_pb2.GetCellRequest())]
                                         if cell.workers == 2), None))
         self.assertEqual((cell.jobs_queued, cell.jobs_running), (0, 0))
         self.assertEqual(cell.unary_program_bytes_max, 3 << 20)
         self.assertEqual(cell.program_bytes_max, 256 << 20)
         self.assertTrue(cell.instance_id)
         self.assertGreater(cell.started_at.seconds, 1_700_000_000)
+        self.assertGreaterEqual(cell.server_time.ToNanoseconds(), cell.started_at.ToNanoseconds())
+        self.assertFalse(cell.log_in_needed)
 
     def test_families_tell_what_they_are(self):
         families = {one.id: one for one in self.cell.machines().ListFamilies(machine_pb2.ListFamiliesRequest()).families}
@@ -51,8 +54,10 @@ class Machines(WithCell):
         made = stub.CreateMachine(create("made", title="By the door", profile="srm-20", parameters={"SPIN_UP": "3"}))
         self.assertEqual((made.name, made.family, made.title, made.profile, dict(made.parameters)),
                          ("machines/made", "rml1", "By the door", "srm-20", {"SPIN_UP": "3"}))
-        self.assertTrue(made.is_virtual and made.etag)
-        self.assertEqual(made.state.activity, machine_pb2.MachineState.ACTIVITY_IDLE)
+        self.assertTrue(made.etag)
+        self.assertEqual(made.connection.kind, machine_pb2.MachineConnection.KIND_VIRTUAL)
+        self.assertEqual((made.status.machine, made.status.state),
+                         ("machines/made", machine_status_pb2.MACHINE_STATE_IDLE))
         self.assertEqual(made.create_time, made.update_time)
         self.assertGreater(made.create_time.seconds, 1_700_000_000)
         self.assertEqual(stub.GetMachine(machine_pb2.GetMachineRequest(name="machines/made")), made)
@@ -96,29 +101,39 @@ class Machines(WithCell):
         self.refused(stub.UpdateMachine, machine_pb2.UpdateMachineRequest(
             machine=machine_pb2.Machine(name="machines/mill-1", title="x", etag="odd")), grpc.StatusCode.ABORTED, "CELL-E9006")
 
-    def test_methods_of_live_machines_are_not_there_yet(self):
+
+class DeletedMachines(WithCell):
+    def test_a_machine_goes_with_its_memory(self):
         stub = self.cell.machines()
-        for method in (stub.SetMode, stub.StartMachine, stub.HaltMachine, stub.SetOverride, stub.AcknowledgeAlarm,
-                       stub.ReadVariables, stub.WriteVariables):
-            with self.assertRaises(grpc.RpcError) as caught:
-                method(machine_pb2.SetModeRequest() if method is stub.SetMode else
-                       {stub.StartMachine: machine_pb2.StartMachineRequest, stub.HaltMachine: machine_pb2.HaltMachineRequest,
-                        stub.SetOverride: machine_pb2.SetOverrideRequest,
-                        stub.AcknowledgeAlarm: machine_pb2.AcknowledgeAlarmRequest,
-                        stub.ReadVariables: machine_pb2.ReadVariablesRequest,
-                        stub.WriteVariables: machine_pb2.WriteVariablesRequest}[method]())
-            self.assertEqual(caught.exception.code(), grpc.StatusCode.UNIMPLEMENTED)
-        handbox = handbox_pb2_grpc.HandboxServiceStub(self.cell.channel())
-        for method, request in ((handbox.CreateHandboxSession, handbox_pb2.CreateHandboxSessionRequest()),
-                                (handbox.PressKey, handbox_pb2.PressKeyRequest()),
-                                (handbox.DeleteHandboxSession, handbox_pb2.DeleteHandboxSessionRequest())):
-            self.refused(method, request, grpc.StatusCode.UNIMPLEMENTED, "CELL-E9014")
-        with self.assertRaises(grpc.RpcError) as caught:
-            next(iter(handbox.WatchHandboxSession(handbox_pb2.WatchHandboxSessionRequest())))
-        self.assertEqual(caught.exception.code(), grpc.StatusCode.UNIMPLEMENTED)
-        with self.assertRaises(grpc.RpcError) as caught:
-            next(iter(stub.WatchMachine(machine_pb2.WatchMachineRequest(name="machines/mill-1"))))
-        self.assertEqual(caught.exception.code(), grpc.StatusCode.UNIMPLEMENTED)
+        made = stub.CreateMachine(create("old"))
+        text = program_pb2.ProgramText(file_name="p.rml", content=b"PA;VS5;!VZ5;PU0,0;Z0,0,-100;PU0,0;")
+        self.cell.programs().PutProgram(program_pb2.PutProgramRequest(name="machines/old/programs/7", program=text))
+        delete = machine_pb2.DeleteMachineRequest
+        self.refused(stub.DeleteMachine, delete(name="machines/old", etag="99"), grpc.StatusCode.ABORTED, "CELL-E9006")
+        self.refused(stub.DeleteMachine, delete(name="old"), BAD, "CELL-E9003")
+        stub.DeleteMachine(delete(name="machines/old", etag=made.etag))
+        self.refused(stub.DeleteMachine, delete(name="machines/old"), UNKNOWN, "CELL-E9009")
+        self.assertNotIn("machines/old", [one.name for one in stub.ListMachines(machine_pb2.ListMachinesRequest()).machines])
+        again = stub.CreateMachine(create("old"))
+        self.assertNotEqual(again.etag, made.etag)
+        programs = self.cell.programs().ListPrograms(program_pb2.ListProgramsRequest(parent="machines/old"))
+        self.assertEqual(list(programs.programs), [])
+
+    def test_a_machine_that_works_stays(self):
+        stub = self.cell.machines()
+        stub.CreateMachine(create("busy"))
+        job = inline_job("busy", "p.rml", "PA;VS1;!VZ1;PU0,0;Z0,0,-100;Z4000,0,-100;PU0,0;")
+        job.simulation.pace = 1.0
+        name = submit(self.cell.jobs(), job).name
+        delete = machine_pb2.DeleteMachineRequest(name="machines/busy")
+        self.refused(stub.DeleteMachine, delete, grpc.StatusCode.FAILED_PRECONDITION, "CELL-E9015")
+        self.refused(self.cell.jobs().DeleteJob, job_pb2.DeleteJobRequest(name=name),
+                     grpc.StatusCode.FAILED_PRECONDITION, "CELL-E9015")
+        self.cell.jobs().CancelJob(job_pb2.CancelJobRequest(name=name))
+        wait_for_end(self.cell.jobs(), name)
+        stub.DeleteMachine(delete)
+        # What it did can still be read.
+        self.assertEqual(self.cell.jobs().GetJob(job_pb2.GetJobRequest(name=name)).machine, "machines/busy")
 
 
 class Pages(unittest.TestCase):
@@ -179,10 +194,15 @@ class Schedules(WithCell):
         self.assertNotEqual(changed.etag, kept.etag)
         self.refused(stub.PutLaserSchedule, self.put(12, power_percent=20.0, etag=kept.etag),
                      grpc.StatusCode.ABORTED, "CELL-E9006")
+        self.assertEqual(stub.GetLaserSchedule(machine_pb2.GetLaserScheduleRequest(name=kept.name)), changed)
         delete = machine_pb2.DeleteLaserScheduleRequest(name=kept.name)
         stub.DeleteLaserSchedule(delete)
         self.assertEqual([one.name.rsplit("/", 1)[1] for one in self.listed()], ["13", "14"])
         self.refused(stub.DeleteLaserSchedule, delete, UNKNOWN, "CELL-E9004")
+        get = machine_pb2.GetLaserScheduleRequest
+        self.refused(stub.GetLaserSchedule, get(name=kept.name), UNKNOWN, "CELL-E9004")
+        self.refused(stub.GetLaserSchedule, get(name="machines/none/laserSchedules/1"), UNKNOWN, "CELL-E9009")
+        self.refused(stub.GetLaserSchedule, get(name="none"), BAD, "CELL-E9003")
 
     def test_bad_schedules_are_refused(self):
         stub = self.cell.machines()
@@ -224,6 +244,7 @@ class Orders(WithCell):
         wait_for_end(stub, job.name)
         ended = grpc.StatusCode.FAILED_PRECONDITION, "CELL-E9015"
         self.refused(stub.HoldJob, job_pb2.HoldJobRequest(name=job.name), *ended)
+        self.refused(stub.StopJob, job_pb2.StopJobRequest(name=job.name), *ended)
         self.refused(stub.ResumeJob, job_pb2.ResumeJobRequest(name=job.name), *ended)
         self.refused(stub.SetJobOverride, job_pb2.SetJobOverrideRequest(name=job.name, override_percent=145.0), *ended)
         self.assertEqual(stub.CancelJob(job_pb2.CancelJobRequest(name=job.name)).state, job_pb2.Job.STATE_SUCCEEDED)
@@ -231,7 +252,7 @@ class Orders(WithCell):
             self.refused(stub.SetJobOverride, job_pb2.SetJobOverrideRequest(name=job.name, override_percent=percent),
                          BAD, "CELL-E9003")
         calls = ((stub.GetJob, job_pb2.GetJobRequest), (stub.CancelJob, job_pb2.CancelJobRequest),
-                 (stub.HoldJob, job_pb2.HoldJobRequest), (stub.ResumeJob, job_pb2.ResumeJobRequest),
+                 (stub.HoldJob, job_pb2.HoldJobRequest), (stub.StopJob, job_pb2.StopJobRequest), (stub.ResumeJob, job_pb2.ResumeJobRequest),
                  (stub.GetJobReport, job_pb2.GetJobReportRequest), (stub.GetJobPicture, job_pb2.GetJobPictureRequest))
         for call, request in calls:
             self.refused(call, request(name="jobs/999999"), UNKNOWN, "CELL-E9004")

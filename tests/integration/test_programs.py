@@ -2,7 +2,7 @@
 import hashlib
 import unittest
 
-from cell import (WithCell, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2)
+from cell import (WithCell, cell_pb2, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2)
 
 
 class Machines(WithCell):
@@ -74,7 +74,7 @@ class Programs(WithCell):
         request.program.content = b"COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\n"
         findings = stub.CheckProgram(request).findings
         self.assertFalse(findings.ok)
-        self.assertEqual([(d.code, d.place.step, d.time_s) for d in findings.diagnostics], [("OPT-E7301", 2, 0.0)])
+        self.assertEqual([(d.code, d.place.step, d.virtual_time_ns) for d in findings.diagnostics], [("OPT-E7301", 2, 0)])
         stub.PutProgram(self.put("optimo-1", 46, "far.S", request.program.content))
         wide = machine_pb2.Machine(name="machines/optimo-1", parameters={"TRAVEL_X_MAX": "9500"})
         before = self.cell.machines().GetMachine(machine_pb2.GetMachineRequest(name=wide.name))
@@ -151,7 +151,7 @@ class Programs(WithCell):
         self.refused(self.cell.jobs().SubmitJob,
                      job_pb2.SubmitJobRequest(job=inline_job("mill-1", "big.rml", b";" * 5_000_000)),
                      grpc.StatusCode.RESOURCE_EXHAUSTED, "CELL-E9007")
-        self.assertEqual(self.cell.machines().GetCell(machine_pb2.GetCellRequest()).version, "0.1.0")
+        self.assertEqual(self.cell.cell_service().GetCell(cell_pb2.GetCellRequest()).version, "0.1.0")
 
     def upload(self, name, file_name, data, sha256=None, size=None):
         def parts():
@@ -180,7 +180,7 @@ class Programs(WithCell):
         name = "machines/mill-1/programs/10"
         upper = hashlib.sha256(data).hexdigest().upper()
         self.assertEqual(self.upload(name, "a.rml", data, sha256=upper).object_bytes, len(data))
-        limit = self.cell.machines().GetCell(machine_pb2.GetCellRequest()).program_bytes_max
+        limit = self.cell.cell_service().GetCell(cell_pb2.GetCellRequest()).program_bytes_max
         for sha256, size, code, words in (("junk", None, "CELL-E9003", "64 hexadecimal digits"),
                                           ("g" * 64, None, "CELL-E9003", "64 hexadecimal digits"),
                                           ("", None, "CELL-E9003", "sha256 is missing"),

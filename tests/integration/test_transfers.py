@@ -6,7 +6,7 @@ import unittest
 import urllib.error
 import urllib.request
 
-from cell import (WithCell, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2, submit, wait_for_end,
+from cell import (WithCell, cell_pb2, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2, submit, wait_for_end,
                   wait_until_it_runs)
 
 BAD = grpc.StatusCode.INVALID_ARGUMENT
@@ -110,15 +110,6 @@ class Compiled(WithCell):
         self.assertFalse(refused.findings.ok or refused.object)
         self.assertEqual(len(refused.findings.diagnostics), 1)
 
-    def test_what_is_for_a_later_version_says_so(self):
-        projects = self.cell.projects()
-        for call, request in ((projects.TransferProjectFromMachine, project_pb2.TransferProjectFromMachineRequest()),
-                              (projects.ImportProject, project_pb2.ImportProjectRequest())):
-            self.refused(call, request, grpc.StatusCode.UNIMPLEMENTED, "CELL-E9014")
-        with self.assertRaises(grpc.RpcError) as caught:
-            list(projects.ExportProject(project_pb2.ExportProjectRequest()))
-        self.assertEqual(caught.exception.code(), grpc.StatusCode.UNIMPLEMENTED)
-
 
 class Products(WithCell):
     def test_a_trace_comes_in_messages_of_five_hundred_records(self):
@@ -179,7 +170,7 @@ class Products(WithCell):
 
     def test_every_message_of_a_watch_names_the_cell_and_its_place(self):
         stub = self.cell.jobs()
-        cell = self.cell.machines().GetCell(machine_pb2.GetCellRequest()).instance_id
+        cell = self.cell.cell_service().GetCell(cell_pb2.GetCellRequest()).instance_id
         job = submit(stub, inline_job("mill-1", "p.rml", LINE))
         wait_for_end(stub, job.name)
         messages = list(stub.WatchJob(job_pb2.WatchJobRequest(name=job.name)))

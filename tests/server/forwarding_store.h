@@ -19,6 +19,9 @@ class ForwardingStore : public storage::Store {
                                             storage::Revision expected) override {
     return store_.PutMachine(machine, expected);
   }
+  Status DeleteMachine(std::string_view id, storage::Revision expected) override {
+    return store_.DeleteMachine(id, expected);
+  }
   Result<std::vector<storage::ProgramSummary>> ListPrograms(std::string_view machine, int after,
                                                             int limit) override {
     return store_.ListPrograms(machine, after, limit);
@@ -93,6 +96,7 @@ class ForwardingStore : public storage::Store {
   Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override {
     return store_.UnfinishedJobs();
   }
+  Status DeleteJob(std::int64_t id) override { return store_.DeleteJob(id); }
   Result<storage::JobRecord> RequestCancel(std::int64_t job,
                                            const std::vector<storage::NewEvent>& events) override {
     return store_.RequestCancel(job, events);

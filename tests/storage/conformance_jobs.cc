@@ -435,6 +435,46 @@ TEST_P(StoreConformance, JobsAreCounted) {
   EXPECT_EQ(counts(), Counts(2, 1));
 }
 
+// store.h DeleteJob: all that belongs to it goes, what it shares with others stays, and whoever
+// asks for its events hears that they are gone.
+TEST_P(StoreConformance, DeletedJobTakesEverythingAlong) {
+  const auto finished = [&](const std::string& request_id) {
+    Must(store().SubmitAndWait({.request_id = request_id, .kind = "SIMULATE"}));
+    const LeasedJob leased = Acquire();
+    Must(store().AppendAndWait(leased.lease, {{.kind = "one"}, {.kind = "two"}}));
+    Must(store().Finish(leased.lease, {.artifacts = {{.name = "report", .bytes = "shared"},
+                                                     {.name = "own", .bytes = request_id}}}));
+    return leased.job.id;
+  };
+  const std::int64_t kept = finished("kept");
+  const std::int64_t gone = finished("gone");
+  const std::int64_t position = Must(store().LastPosition());
+  Must(store().DeleteJob(gone));
+  Reopen();
+  EXPECT_EQ(CodeOf(store().GetJob(gone)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(store().ListArtifacts(gone)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(store().DeleteJob(gone)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(store().AllEvents(0, 100)), ErrorCode::kCellEventsGone);
+  EXPECT_EQ(Must(store().LastPosition()), position);
+  EXPECT_EQ(EventsOf(kept).size(), 2U);
+  EXPECT_EQ(Must(store().ReadBlob(Must(store().GetArtifact(kept, "report")).sha256)), "shared");
+  // The number is not given again, and the request is a new one.
+  const JobRecord again =
+      Must(store().SubmitAndWait({.request_id = "gone", .kind = "SIMULATE"})).job;
+  EXPECT_GT(again.id, gone);
+}
+
+TEST_P(StoreConformance, JobThatHasNotEndedIsNotDeleted) {
+  EXPECT_EQ(CodeOf(store().DeleteJob(1)), ErrorCode::kCellNotFound);
+  const JobRecord job = Submit();
+  EXPECT_EQ(CodeOf(store().DeleteJob(job.id)), ErrorCode::kCellPrecondition);
+  const LeasedJob leased = Acquire();
+  EXPECT_EQ(CodeOf(store().DeleteJob(job.id)), ErrorCode::kCellPrecondition);
+  Finish(leased.lease, JobState::kCancelled);
+  Must(store().DeleteJob(job.id));
+  EXPECT_EQ(Must(store().CountJobs()).queued, 0);
+}
+
 // store.h UnfinishedJobs: by machine what waits or runs, and the oldest that runs.
 TEST_P(StoreConformance, UnfinishedJobsAreCountedByMachine) {
   EXPECT_TRUE(Must(store().UnfinishedJobs()).empty());

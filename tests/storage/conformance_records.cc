@@ -76,6 +76,49 @@ TEST_P(StoreConformance, ExpectedRevisionOfAMachineIsChecked) {
   EXPECT_EQ(Must(store().PutMachine({.id = "m", .title = "second"}, kAnyRevision)).revision, 2);
 }
 
+// store.h DeleteMachine: programs and schedules go with it, finished jobs stay, and revisions count
+// on.
+TEST_P(StoreConformance, DeletedMachineTakesItsMemoryAlong) {
+  Must(store().PutMachine({.id = "m", .parameters = {{"a", "1"}}, .state = "s"}, 0));
+  PutMachine("other");
+  PutProgram("m", 7, "first");
+  PutProgram("m", 7, "second");
+  PutProgram("other", 7, "second");
+  Must(store().PutSchedule({.machine = "m", .number = 11, .name = "thin"}, 0));
+  const LeasedJob leased = (Submit("SIMULATE", "m"), Acquire());
+  Finish(leased.lease);
+  EXPECT_EQ(CodeOf(store().DeleteMachine("none", kAnyRevision)), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(store().DeleteMachine("m", 2)), ErrorCode::kCellEtagMismatch);
+  Must(store().DeleteMachine("m", 1));
+  Reopen();
+  EXPECT_EQ(CodeOf(store().GetMachine("m")), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(store().ListPrograms("m", 0, 99)), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(store().DeleteMachine("m", kAnyRevision)), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(Must(store().GetProgram("other", 7)).object, "second");
+  EXPECT_EQ(Must(store().GetJob(leased.job.id)).machine, "m");
+
+  EXPECT_EQ(Must(store().PutMachine({.id = "m"}, 0)).revision, 2);
+  EXPECT_TRUE(Must(store().GetMachine("m")).parameters.empty());
+  EXPECT_EQ(Must(store().GetMachine("m")).state, "");
+  EXPECT_TRUE(Must(store().ListPrograms("m", 0, 99)).empty());
+  EXPECT_TRUE(Must(store().ListSchedules("m")).empty());
+  EXPECT_EQ(PutProgram("m", 7, "third").revision, 3);
+}
+
+TEST_P(StoreConformance, MachineWithUnfinishedJobsIsNotDeleted) {
+  PutMachine("m");
+  PutMachine("n");
+  PutProgram("m", 7, "object");
+  Submit("SIMULATE", "m");
+  EXPECT_EQ(CodeOf(store().DeleteMachine("m", kAnyRevision)), ErrorCode::kCellPrecondition);
+  const LeasedJob leased = Acquire();
+  EXPECT_EQ(CodeOf(store().DeleteMachine("m", kAnyRevision)), ErrorCode::kCellPrecondition);
+  EXPECT_EQ(Must(store().GetProgram("m", 7)).object, "object");
+  Must(store().DeleteMachine("n", kAnyRevision));  // the jobs are of another one
+  Finish(leased.lease);
+  Must(store().DeleteMachine("m", kAnyRevision));
+}
+
 // store.h: machines by id, in the order of their bytes.
 TEST_P(StoreConformance, MachinesAreListedById) {
   for (const char* id : {"mill-2", "Optimo", "mill-10", "mill-1"}) PutMachine(id);

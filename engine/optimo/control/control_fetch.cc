@@ -207,7 +207,7 @@ Status Control::Execute(const Instruction& i) {
     case Op::kStop: {  // OPT-3.49 to 3.52, OPT-B.66
       const std::string_view name = i.op == Op::kPause ? "PAUSE" : "STOP";
       if (now().mode != machine::Mode::kRemote) {
-        halts_.Halt(name);
+        halts_.Halt(machine::HaltReason::kProgram, name);
         return {};
       }
       constexpr ErrorCode kCode = ErrorCode::kStopNotRestartable;
@@ -248,7 +248,9 @@ Status Control::GoTo(const Instruction& i) {
   telling_.observer().OnProgram(now().now, now().place, "go", *slot);
   counter_.Deselect();
   BeginMain(*next, *slot);
-  if (i.Has(kSingle)) halts_.Halt("SINGLE");  // waits for START before its first step, OPT-B.62
+  if (i.Has(kSingle))
+    halts_.Halt(machine::HaltReason::kSingle,
+                "SINGLE");  // waits for START before its first step, OPT-B.62
   return {};
 }
 

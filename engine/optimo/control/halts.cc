@@ -25,7 +25,7 @@ void Halts::Hold() {
 
 void Halts::Stop() {
   if (!situation_.running() || !ride_.protocol().may_stop()) return;
-  if (!ride_.busy() && !ride_.passing()) return Halt("STOP");
+  if (!ride_.busy() && !ride_.passing()) return Halt(machine::HaltReason::kStop, "STOP");
   const motion::MotionUnderWay* active = ride_.under_way();
   s_.stop = active == nullptr || active->ended || !ride_.Stop();
   if (!s_.stop && !ride_.busy()) HaltOnPath();
@@ -52,28 +52,35 @@ void Halts::EndStep(const machine::Place& place) {
 bool Halts::HaltHere(bool program_over) {
   const AfterStep after_step = std::exchange(s_.after_step, AfterStep::kNone);
   if (after_step == AfterStep::kNone) {
-    Halt(s_.stop ? "STOP" : "HOLD");
+    HaltByKey(s_.stop);
     return true;
   }
   if (program_over) return false;
-  Halt(after_step == AfterStep::kBreak ? "BREAK" : "SINGLE");
+  const bool at_break = after_step == AfterStep::kBreak;
+  Halt(at_break ? machine::HaltReason::kBreakpoint : machine::HaltReason::kSingle,
+       at_break ? "BREAK" : "SINGLE");
   return true;
 }
 
-void Halts::Halt(std::string_view why) {
+void Halts::HaltByKey(bool stop) {
+  Halt(stop ? machine::HaltReason::kStop : machine::HaltReason::kHold, stop ? "STOP" : "HOLD");
+}
+
+void Halts::Halt(machine::HaltReason reason, std::string_view why) {
   waits_.Tell();
   situation_.phase = machine::RunPhase::kHalted;
   s_.halted_at = situation_.now;
   s_.hold = false;
   s_.stop = false;
   actuators_.Hold();
-  telling_.observer().OnHalt({.at = situation_.now, .place = situation_.place, .why = why});
+  telling_.observer().OnHalt(
+      {.at = situation_.now, .place = situation_.place, .reason = reason, .why = why});
 }
 
 void Halts::HaltOnPath() {
   const bool holds = ride_.protocol().intent() == motion::RideIntent::kHold;
   s_.place_ahead = std::exchange(situation_.place, ride_.Rest());
-  Halt(holds ? "HOLD" : "STOP");
+  HaltByKey(!holds);
 }
 
 void Halts::Tell() const {

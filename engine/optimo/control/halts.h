@@ -81,7 +81,7 @@ class Halts {
   // The machine stands behind the last step. False: the step was the last of the main program, and
   // no halt comes behind it. Precondition: due().
   bool HaltHere(bool program_over);
-  void Halt(std::string_view why);
+  void Halt(machine::HaltReason reason, std::string_view why);
   // The motions are at rest, and go on at START: the halt belongs to the move that was under way.
   void HaltOnPath();
   // The halt up to now: the operator is waited for.
@@ -90,6 +90,7 @@ class Halts {
   void Resume();
 
  private:
+  void HaltByKey(bool stop);
   bool breaks_at(const machine::Place& place) const;
 
   HaltState& s_;

@@ -125,7 +125,7 @@ Result<Loaded> ProgramCounter::Make(int slot) {
                  "no room for executable " + std::to_string(slot + kExecutableOffset),
                  {}};
   }
-  telling_.observer().OnProgram(situation_.now, situation_.place, "compiling", slot);
+  telling_.observer().OnProgram(situation_.now, situation_.place, machine::kCompiling, slot);
   s_.made_executables[slot] = std::move(bytes);
   return s_.loaded[slot] = Load(std::move(*executable));
 }

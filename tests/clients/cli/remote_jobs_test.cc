@@ -93,7 +93,7 @@ struct FakeJobs final : v1::JobService::Service {
 v1::WatchJobResponse Event(std::int64_t sequence, const std::string& text) {
   v1::WatchJobResponse message;
   message.set_sequence(sequence);
-  message.mutable_event()->set_message(text);
+  message.mutable_event()->mutable_message()->set_text(text);
   return message;
 }
 v1::WatchJobResponse End(std::int64_t sequence, v1::Outcome::Kind kind,
@@ -193,7 +193,7 @@ TEST_F(RemoteJobs, InputsAreReadBeforeTheServerIsAsked) {
   wanted.inputs_file = folder.Put("in.txt", "0.5 IL[20] = 1\n2.0 START\n");
   const v1::SubmitJobRequest request = Submitted(wanted);
   ASSERT_EQ(request.job().simulation().inputs_size(), 2);
-  EXPECT_EQ(request.job().simulation().inputs(0).at_s(), 0.5);
+  EXPECT_EQ(request.job().simulation().inputs(0).virtual_time_ns(), 500'000'000);
   wanted.inputs_file = folder.Put("bad.txt", "at noon START\n");
   EXPECT_THAT(Refusal(wanted), AllOf(HasSubstr("CELL-E9024"), HasSubstr("bad.txt")));
   wanted.inputs_file = folder.File("none.txt");

@@ -24,11 +24,11 @@ TEST(SimulateOptions, ABudgetIsStepsAndSecondsInAnyOrder) {
   const auto both = ParseBudget("time=1.5,steps=1000");
   ASSERT_TRUE(both);
   EXPECT_EQ(both->steps(), 1000);
-  EXPECT_EQ(both->virtual_time_s(), 1.5);
+  EXPECT_EQ(both->virtual_time_ns(), 1'500'000'000);
   const auto none = ParseBudget("");
   ASSERT_TRUE(none);
   EXPECT_EQ(none->steps(), 0);  // no limit of its own
-  EXPECT_EQ(none->virtual_time_s(), 0.0);
+  EXPECT_EQ(none->virtual_time_ns(), 0);
 }
 
 TEST(SimulateOptions, ABudgetOfNothingOfPartsOfStepsOrOfWordsIsRefused) {

@@ -116,8 +116,12 @@ TEST(HoldKey, HoldsARunOfEveryFamily) {
        {{"part.S", "MOVE (521.02,2201.2,-50.,0.,0.)\nMOVE (621.02,2201.2,-50.,0.,0.)\n"}, "STOP"}},
       {"rml1", {{"part.rml", "PA;PU4000,0;PU0,0;PU4000,0;PU0,0;"}, "HOLD"}}};
   struct Listener final : RunObserver {
-    void OnHalt(const Halt& halt) override { why = halt.why; }
+    void OnHalt(const Halt& halt) override {
+      why = halt.why;
+      reason = halt.reason;
+    }
     std::string why;
+    HaltReason reason{};
   };
   for (const MachineFamily* family : families::Families()) {
     const FamilyInfo& info = family->info();
@@ -136,7 +140,50 @@ TEST(HoldKey, HoldsARunOfEveryFamily) {
       (*run)->Apply({.at = (*run)->state().time, .kind = HoldKey(info, mode)});
       EXPECT_EQ((*run)->Advance(FromSeconds(1000.0)), RunPhase::kHalted) << info.id;
       EXPECT_EQ(listener.why, mode == Mode::kRemote ? one.why_in_remote : "HOLD") << info.id;
+      EXPECT_EQ(listener.reason, listener.why == "STOP" ? HaltReason::kStop : HaltReason::kHold)
+          << info.id;
     }
+  }
+}
+
+// observer.h: what halts a run decides what lets it go on, so nobody has to read words for it.
+TEST(HaltReasons, AreToldByEveryFamily) {
+  const std::map<std::string_view, SourceFile> by_program = {
+      {"optimo", {"part.S", "PAUSE\nPAUSE\n"}},
+      {"rml1", {"part.rml", "PA;PU4000,0;!NR;PU0,0;PU100,0;"}}};
+  const std::map<std::string_view, SourceFile> without = {
+      {"optimo", {"part.S", "OL[20] = 1\nOL[20] = 0\nOL[20] = 1\n"}},
+      {"rml1", {"part.rml", "PA;PU4000,0;PU0,0;PU100,0;"}}};
+  struct Listener final : RunObserver {
+    void OnHalt(const Halt& halt) override { reasons.push_back(halt.reason); }
+    std::vector<HaltReason> reasons;
+  };
+  for (const MachineFamily* family : families::Families()) {
+    const FamilyInfo& info = family->info();
+    const auto first_halt = [&](const SourceFile& source, Mode mode,
+                                std::optional<ProgramStep> breakpoint) {
+      RunSetup setup{Parameters(family->parameters())};
+      const Translation made = family->Translate(source, setup.parameters, {});
+      EXPECT_TRUE(made.ok) << info.id;
+      setup.programs[1] = {.name = "part", .object = Bytes::Of(ObjectOf(made, source.bytes))};
+      setup.main_program = 1;
+      setup.mode = mode;
+      setup.breakpoint = breakpoint;
+      // Somebody is there who could let it go on.
+      setup.inputs = {{.at = FromSeconds(5000.0), .kind = InputKind::kStart}};
+      Listener listener;
+      Result<std::unique_ptr<machine::Run>> run = family->NewRun(std::move(setup), listener);
+      EXPECT_TRUE(bool(run)) << info.id;
+      (*run)->Advance(FromSeconds(1000.0));
+      EXPECT_FALSE(listener.reasons.empty()) << info.id;
+      return listener.reasons.empty() ? HaltReason::kHold : listener.reasons.front();
+    };
+    EXPECT_EQ(first_halt(by_program.at(info.id), Mode::kCycle, {}), HaltReason::kProgram)
+        << info.id;
+    EXPECT_EQ(first_halt(without.at(info.id), Mode::kSingle, {}), HaltReason::kSingle) << info.id;
+    EXPECT_EQ(first_halt(without.at(info.id), Mode::kCycle, ProgramStep{.program = 1, .step = 2}),
+              HaltReason::kBreakpoint)
+        << info.id;
   }
 }
 

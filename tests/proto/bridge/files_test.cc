@@ -100,20 +100,21 @@ TEST(InputFile, EveryInput) {
       "in.txt", 145.0, options);
   ASSERT_TRUE(read) << read.error().detail;
   const auto logical = [](int index, double at, int value) {
-    return "inputs { at_s: " + std::to_string(at) +
+    return "inputs { virtual_time_ns: " + std::to_string(FromSeconds(at).count()) +
            " kind: KIND_LOGICAL_INPUT index: " + std::to_string(index) +
            " value: " + std::to_string(value) + " } ";
   };
   ExpectMessage(
-      options, logical(0, 0, 1) + logical(99, 0.5, 0) +
-                   "inputs { at_s: 1 kind: KIND_ANALOGUE_INPUT index: 7 value: -2.5 } "
-                   "inputs { at_s: 2 kind: KIND_DOOR value: 1 } inputs { at_s: 3 kind: KIND_DOOR } "
-                   "inputs { at_s: 4 kind: KIND_START } inputs { at_s: 5 kind: KIND_START } "
-                   "inputs { at_s: 6 kind: KIND_HOLD } inputs { at_s: 7 kind: KIND_STOP } "
-                   "inputs { at_s: 8 kind: KIND_EMERGENCY_STOP } "
-                   "inputs { at_s: 9 kind: KIND_OVERRIDE value: 145 } " +
-                   logical(1, 10, 1) + logical(1, 11, 1) + logical(1, 12, 1) + logical(1, 13, 0) +
-                   logical(1, 14, 0));
+      options,
+      logical(0, 0, 1) + logical(99, 0.5, 0) +
+          "inputs { virtual_time_ns: 1000000000 kind: KIND_ANALOGUE_INPUT index: 7 value: -2.5 } "
+          "inputs { virtual_time_ns: 2000000000 kind: KIND_DOOR value: 1 } inputs { virtual_time_ns: 3000000000 kind: KIND_DOOR } "
+          "inputs { virtual_time_ns: 4000000000 kind: KIND_START } inputs { virtual_time_ns: 5000000000 kind: KIND_START } "
+          "inputs { virtual_time_ns: 6000000000 kind: KIND_HOLD } inputs { virtual_time_ns: 7000000000 kind: KIND_STOP } "
+          "inputs { virtual_time_ns: 8000000000 kind: KIND_EMERGENCY_STOP } "
+          "inputs { virtual_time_ns: 9000000000 kind: KIND_OVERRIDE value: 145 } " +
+          logical(1, 10, 1) + logical(1, 11, 1) + logical(1, 12, 1) + logical(1, 13, 0) +
+          logical(1, 14, 0));
 }
 
 TEST(InputFile, MistakesAreNamedWithTheirPlace) {

@@ -93,7 +93,7 @@ TEST(DiagnosticMessage, EveryFieldThereAndBack) {
                     std::string(entry.advice) +
                     "' rule: 'OPT-2.27' place { file: 'part.S' line: 1 column: 2 length: 3 "
                     "byte_offset: 4 program: 5 step: 6 } fixes { byte_offset: 7 length: 8 "
-                    "text: '1.' } count: 1 time_s: 9");
+                    "text: '1.' } count: 1 virtual_time_ns: 9000000000");
   EXPECT_EQ(FromProto(message), Whole());
   for (const auto& [severity, wire] : kSeverities) {
     Diagnostic one = Whole();
@@ -111,7 +111,7 @@ TEST(DiagnosticMessage, WhatIsMissing) {
   const v1::Diagnostic message = ToProto(bare);
   EXPECT_EQ(message.message(), Lookup(ErrorCode::kHoleRadiusZero).when);
   EXPECT_FALSE(message.place().has_byte_offset());
-  EXPECT_FALSE(message.has_time_s());
+  EXPECT_FALSE(message.has_virtual_time_ns());
   EXPECT_EQ(FromProto(message).where.byte_offset, -1);
   EXPECT_FALSE(FromProto(message).at);
   bare.where.byte_offset = 0;

@@ -403,14 +403,15 @@ TEST(TraceMessage, EachKindHasItsFields) {
   const auto expect = [](TraceKind kind, const std::string& more) {
     ExpectMessage(
         ToProto(Record(kind)),
-        "number: 3 time_s: 2 place { program: 4 step: 5 line: 6 byte_offset: 0 } " + more);
+        "number: 3 virtual_time_ns: 2000000000 place { program: 4 step: 5 line: 6 byte_offset: 0 } " +
+            more);
   };
   const std::string code = CodeText(ErrorCode::kFlyReversal);
   expect(TraceKind::kMove,
          "kind: 'move' text: 'words' point { x: 7 y: 8 z: 9 } angles: 10 angles: 11 position { tip "
          "{ x: 1 y: 2 z: 3 } column { x: 4 y: 5 z: 6 } a: 0.5 b: 0.25 } feed_mm_s: 12");
   expect(TraceKind::kSignal, "kind: 'signal' text: 'spindle' index: 13 value: 14 detail: 15");
-  expect(TraceKind::kWait, "kind: 'wait' text: 'pierce' duration_s: 16");
+  expect(TraceKind::kWait, "kind: 'wait' text: 'pierce' duration_ns: 16000000000");
   expect(TraceKind::kProgram, "kind: 'program' text: 'words' index: 13");
   expect(TraceKind::kHalt, "kind: 'halt' text: 'words'");
   expect(TraceKind::kResume, "kind: 'resume' text: 'words'");

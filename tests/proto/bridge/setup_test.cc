@@ -75,7 +75,7 @@ TEST(Inputs, EachKindAndTheOrderOfTime) {
   for (const auto& [kind, own] : kinds) {
     v1::ScriptedInput& input = *options.add_inputs();
     input.set_kind(kind);
-    input.set_at_s(at -= 1.0);
+    input.set_virtual_time_ns(FromSeconds(at -= 1.0).count());
     input.set_index(7);
     input.set_value(2.5);
     EXPECT_EQ(FromProto(input).kind, own);
@@ -85,7 +85,7 @@ TEST(Inputs, EachKindAndTheOrderOfTime) {
   }
   v1::ScriptedInput& same = *options.add_inputs();  // of the same instant: in the order given
   same.set_kind(K::KIND_STOP);
-  same.set_at_s(2.0);
+  same.set_virtual_time_ns(2'000'000'000);
   const machine::InputScript script = InputsOf(options);
   ASSERT_EQ(script.size(), 9U);
   for (std::size_t n = 1; n < script.size(); ++n) EXPECT_LE(script[n - 1].at, script[n].at);
@@ -116,7 +116,7 @@ TEST(PrepareRun, TakesEverythingOver) {
   options.add_inputs()->set_kind(v1::ScriptedInput::KIND_START);
   v1::Budget budget;
   budget.set_steps(9);
-  budget.set_virtual_time_s(10.0);
+  budget.set_virtual_time_ns(10'000'000'000);
   const auto made = Prepare(input, options, budget);
   ASSERT_TRUE(made);
   ASSERT_TRUE(made->setup);

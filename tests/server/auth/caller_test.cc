@@ -6,8 +6,9 @@ namespace rmlcell::server {
 namespace {
 
 Caller Admitted(const Gate& gate, std::multimap<std::string, std::string> metadata) {
-  const auto caller =
-      gate.Admit({.method = "/a.B/C", .peer = "ipv4:127.0.0.1:7", .metadata = std::move(metadata)});
+  const auto caller = gate.Admit({.method = "/rmlcell.v1.JobService/GetJob",
+                                  .peer = "ipv4:127.0.0.1:7",
+                                  .metadata = std::move(metadata)});
   EXPECT_TRUE(caller);
   return *caller;
 }
@@ -16,9 +17,36 @@ Caller Admitted(const Gate& gate, std::multimap<std::string, std::string> metada
 TEST(Gate, EveryCallerIsTheLocalAdministrator) {
   const Caller caller = Admitted(Gate("secret"), {});
   EXPECT_EQ(caller.identity, "local");
-  EXPECT_EQ(caller.role, Role::kAdmin);
+  EXPECT_EQ(caller.permissions, AdministratorPermissions());
   EXPECT_EQ(caller.peer, "ipv4:127.0.0.1:7");
   EXPECT_EQ(caller.request_id, "");
+}
+
+TEST(Gate, AMethodThatStatesNothingIsRefused) {
+  const auto refused = Gate("secret").Admit({.method = "/a.B/C", .peer = "unix:"});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kCellPermission);
+  EXPECT_EQ(refused.error().detail, "/a.B/C states no permission");
+}
+
+TEST(Gate, ACallerMayDoWhatHeHasThePermissionFor) {
+  const auto may = [](const Permissions& local, const std::string& method) {
+    const auto caller =
+        Gate("secret", local).Admit({.method = "/rmlcell.v1." + method, .peer = ""});
+    EXPECT_TRUE(caller || caller.error().code == ErrorCode::kCellPermission);
+    return bool(caller);
+  };
+  EXPECT_TRUE(may(ViewerPermissions(), "JobService/GetJob"));
+  EXPECT_FALSE(may(ViewerPermissions(), "JobService/StopJob"));
+  EXPECT_FALSE(may(ViewerPermissions(), "JobService/SubmitJob"));
+  EXPECT_TRUE(may(ProgrammerPermissions(), "JobService/StopJob"));
+  EXPECT_TRUE(may(ProgrammerPermissions(), "JobService/SubmitJob"));
+  EXPECT_FALSE(may(ProgrammerPermissions(), "JobService/ResumeJob"));
+  EXPECT_TRUE(may(OperatorPermissions(), "JobService/ResumeJob"));
+  EXPECT_FALSE(may(OperatorPermissions(), "MachineService/CreateMachine"));
+  // Asked of nobody.
+  EXPECT_TRUE(may({}, "CellService/GetCell"));
+  EXPECT_FALSE(may({}, "JobService/GetJob"));
 }
 
 // What is said of a browser counts with the secret of the gateway, and without one never.

@@ -93,6 +93,7 @@ class FakeLog final : public storage::Store {
                                             storage::Revision) override {
     return No();
   }
+  Status DeleteMachine(std::string_view, storage::Revision) override { return No(); }
   Result<std::vector<storage::ProgramSummary>> ListPrograms(std::string_view, int, int) override {
     return No();
   }
@@ -143,6 +144,7 @@ class FakeLog final : public storage::Store {
   Result<std::vector<storage::AttemptRecord>> ListAttempts(std::int64_t) override { return No(); }
   Result<storage::JobCounts> CountJobs() override { return No(); }
   Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override { return No(); }
+  Status DeleteJob(std::int64_t) override { return No(); }
   Result<storage::JobRecord> RequestCancel(std::int64_t,
                                            const std::vector<storage::NewEvent>&) override {
     return No();

@@ -105,15 +105,15 @@ TEST_F(AssignmentTest, ABudgetIsWhatTheJobWantsButNoMoreThanTheServerAllows) {
   config.limit_processor_s = 5.0;
   Put(1, "object");
   v1::SubmitJobRequest request = Stored(1);
-  request.mutable_job()->mutable_budget()->set_steps(2000);       // more than allowed
-  request.mutable_job()->mutable_budget()->set_processor_s(2.5);  // less
+  request.mutable_job()->mutable_budget()->set_steps(2000);                  // more than allowed
+  request.mutable_job()->mutable_budget()->set_processor_ns(2'500'000'000);  // less
   const auto made = Must(MakeAssignment(bed.store(), config, Lease(request)));
   const v1::Budget& budget = made.first.assignment().budget();
   EXPECT_EQ(budget.steps(), 1000);
-  EXPECT_EQ(budget.processor_s(), 2.5);
+  EXPECT_EQ(budget.processor_ns(), 2'500'000'000);
   EXPECT_EQ(budget.memory_bytes(), config.limit_memory_bytes);  // not given: all of it
   EXPECT_EQ(budget.output_bytes(), config.limit_output_bytes);
-  EXPECT_EQ(budget.virtual_time_s(), config.limit_virtual_time_s);
+  EXPECT_EQ(budget.virtual_time_ns(), FromSeconds(config.limit_virtual_time_s).count());
 }
 
 // OPT-3.44: schedules are records of the machine.
@@ -134,18 +134,18 @@ TEST_F(AssignmentTest, BringsTheLaserSchedulesOfTheMachine) {
 // Job.budget: 0 is the limit of the server; each on both sides of it.
 TEST_F(AssignmentTest, EachLimitOfABudgetIsItsOwn) {
   config.limit_steps = 10;
-  config.limit_virtual_time_s = 20.0;
+  config.limit_virtual_time_s = 20e-9;
   config.limit_memory_bytes = 30;
-  config.limit_processor_s = 40.0;
+  config.limit_processor_s = 40e-9;
   config.limit_output_bytes = 50;
   Put(1, "object");
   const auto given = [&](int difference) {
     v1::SubmitJobRequest request = Stored(1);
     v1::Budget& wanted = *request.mutable_job()->mutable_budget();
     wanted.set_steps(10 + difference);
-    wanted.set_virtual_time_s(20.0 + difference);
+    wanted.set_virtual_time_ns(20 + difference);
     wanted.set_memory_bytes(30 + difference);
-    wanted.set_processor_s(40.0 + difference);
+    wanted.set_processor_ns(40 + difference);
     wanted.set_output_bytes(50 + difference);
     return Must(MakeAssignment(bed.store(), config, Lease(request))).first.assignment().budget();
   };
@@ -153,9 +153,9 @@ TEST_F(AssignmentTest, EachLimitOfABudgetIsItsOwn) {
     const v1::Budget budget = given(difference);
     const int less = std::min(difference, 0);
     EXPECT_EQ(budget.steps(), 10 + less);
-    EXPECT_EQ(budget.virtual_time_s(), 20.0 + less);
+    EXPECT_EQ(budget.virtual_time_ns(), 20 + less);
     EXPECT_EQ(budget.memory_bytes(), 30 + less);
-    EXPECT_EQ(budget.processor_s(), 40.0 + less);
+    EXPECT_EQ(budget.processor_ns(), 40 + less);
     EXPECT_EQ(budget.output_bytes(), 50 + less);
   }
 }

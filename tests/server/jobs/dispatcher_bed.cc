@@ -79,7 +79,8 @@ void FakeWorker::Position(std::int64_t time_ns) {
 void FakeWorker::Events(int count, const std::string& text) {
   v1::WorkRequest message;
   *message.mutable_events()->mutable_lease() = assignment_.lease();
-  for (int i = 0; i < count; ++i) message.mutable_events()->add_events()->set_message(text);
+  for (int i = 0; i < count; ++i)
+    message.mutable_events()->add_events()->mutable_message()->set_text(text);
   Send(std::move(message));
 }
 

@@ -249,7 +249,7 @@ TEST(DispatcherLoss, AJobHasSoManyAttemptsAndNoMore) {
     EXPECT_EQ(bed.Job(job).outcome->code, ErrorCode::kCellWorkerDied);
     std::vector<std::string> told;
     for (const v1::JobEvent& event : bed.Events(job)) {
-      if (event.has_message()) told.push_back(event.message());
+      if (event.has_message()) told.push_back(event.message().text());
     }
     EXPECT_EQ(told.size(), static_cast<std::size_t>(attempts));
     EXPECT_EQ(told.front(), "the lease of its worker ran out");

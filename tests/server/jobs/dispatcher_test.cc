@@ -203,7 +203,7 @@ TEST(DispatcherEvents, AreStoredInOrderAndConfirmed) {
   for (const v1::JobEvent& event : bed.Events(job)) {
     EXPECT_EQ(event.sequence(), ++sequence);
     if (!event.has_message()) continue;
-    texts.push_back(event.message());
+    texts.push_back(event.message().text());
     EXPECT_EQ(event.attempt(), 1);
     EXPECT_EQ(event.job(), JobName(job));
   }
@@ -283,7 +283,7 @@ TEST(DispatcherLease, NothingOfAStaleWorkerIsKept) {
   EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
   const auto report = Must(bed.server.store().GetArtifact(job, "report"));
   EXPECT_EQ(Must(bed.server.store().ReadBlob(report.sha256)), "good");
-  for (const v1::JobEvent& event : bed.Events(job)) EXPECT_NE(event.message(), "stale");
+  for (const v1::JobEvent& event : bed.Events(job)) EXPECT_NE(event.message().text(), "stale");
 }
 
 // A message with a lease that the worker does not hold changes nothing at all.
@@ -364,7 +364,7 @@ TEST(DispatcherLoss, AnAttemptThatNeverBeganDoesNotCount) {
   EXPECT_EQ(third.assignment().lease().attempt(), 3);
   std::vector<std::string> told;
   for (const v1::JobEvent& event : bed.Events(job)) {
-    if (event.has_message()) told.push_back(event.message());
+    if (event.has_message()) told.push_back(event.message().text());
   }
   EXPECT_THAT(told, testing::ElementsAre("the worker of attempt 1 died",
                                          "the worker of attempt 2 died before it began"));

@@ -144,8 +144,8 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
       {"attempts -1", kInvalid, [](auto& r) { r.mutable_job()->set_attempts_max(-1); }},
       {"attempts 11", kInvalid, [](auto& r) { r.mutable_job()->set_attempts_max(11); }},
       {"steps -1", kInvalid, [](auto& r) { r.mutable_job()->mutable_budget()->set_steps(-1); }},
-      {"time NaN", kInvalid,
-       [](auto& r) { r.mutable_job()->mutable_budget()->set_virtual_time_s(std::nan("")); }},
+      {"time -1", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_budget()->set_virtual_time_ns(-1); }},
       {"override 146", kInvalid,
        [](auto& r) { r.mutable_job()->mutable_simulation()->set_override_percent(146); }},
       {"breakpoint slot 100", ErrorCode::kProgramNumber,
@@ -358,7 +358,7 @@ TEST_F(JobBookTest, ASnapshotAndTheEventsAfterItAreComplete) {
           {.machine = "optimo-1", .kind = "CHECK", .events = {{.kind = "state"}}}));
   });
   for (int round = 0; round < 20; ++round) {
-    const v1::CellSnapshot snapshot = Must(book.Snapshot());
+    const v1::JobsSnapshot snapshot = Must(book.Snapshot());
     std::set<std::int64_t> known;
     for (const v1::Job& job : snapshot.jobs()) known.insert(Number(job));
     for (const auto& event : Must(bed.store().AllEvents(snapshot.sequence(), 10'000)))
@@ -380,7 +380,7 @@ TEST_F(JobBookTest, ASnapshotHasWhatIsUnfinishedFirst) {
     const auto leased = Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
     Must(bed.store().Finish(leased->lease, {.outcome = {.state = JobState::kSucceeded}}));
   }
-  const v1::CellSnapshot snapshot = Must(book.Snapshot());
+  const v1::JobsSnapshot snapshot = Must(book.Snapshot());
   EXPECT_EQ(snapshot.jobs_size(), 200);
   EXPECT_EQ(Number(snapshot.jobs(snapshot.jobs_size() - 1)), running);
   for (int i = 1; i < snapshot.jobs_size(); ++i)

@@ -73,7 +73,7 @@ TEST(JobMessages, AnOutcomeKeepsStateCodeTextAndPlace) {
 
 TEST(JobMessages, AnEventOfTheLogKnowsItsPlaceThere) {
   v1::JobEvent event;
-  event.set_message("hello");
+  event.mutable_message()->set_text("hello");
   const storage::NewEvent kept = ToRecord(event);
   EXPECT_FALSE(kept.kind.empty());
   const v1::JobEvent read = ToProto(storage::EventRecord{.position = 99,
@@ -83,7 +83,7 @@ TEST(JobMessages, AnEventOfTheLogKnowsItsPlaceThere) {
                                                          .at = {},
                                                          .kind = kept.kind,
                                                          .payload = kept.payload});
-  EXPECT_EQ(read.message(), "hello");
+  EXPECT_EQ(read.message().text(), "hello");
   EXPECT_EQ(read.job(), "jobs/7");
   EXPECT_EQ(read.sequence(), 3);
   EXPECT_EQ(read.attempt(), 2);
@@ -181,7 +181,7 @@ TEST(JobMessages, AnInlineProgramHasSlotOneUnlessItSaysAnother) {
 TEST(JobMessages, AnEventIsKeptUnderItsKind) {
   v1::JobEvent event;
   EXPECT_EQ(ToRecord(event).kind, "");
-  event.set_message("m");
+  event.mutable_message();
   EXPECT_EQ(ToRecord(event).kind, "message");
   event.mutable_diagnostic();
   EXPECT_EQ(ToRecord(event).kind, "diagnostic");
@@ -193,8 +193,16 @@ TEST(JobMessages, AnEventIsKeptUnderItsKind) {
   EXPECT_EQ(ToRecord(event).kind, "resumed");
   event.mutable_signal();
   EXPECT_EQ(ToRecord(event).kind, "signal");
-  event.mutable_milestone();
-  EXPECT_EQ(ToRecord(event).kind, "milestone");
+  event.mutable_program_loaded();
+  EXPECT_EQ(ToRecord(event).kind, "program_loaded");
+  event.mutable_executable_made();
+  EXPECT_EQ(ToRecord(event).kind, "executable_made");
+  event.mutable_input_applied();
+  EXPECT_EQ(ToRecord(event).kind, "input_applied");
+  event.mutable_run_begun();
+  EXPECT_EQ(ToRecord(event).kind, "run_begun");
+  event.mutable_queue();
+  EXPECT_EQ(ToRecord(event).kind, "queue");
   event.set_state(v1::Job::STATE_QUEUED);
   EXPECT_EQ(ToRecord(event).kind, "state");
   EXPECT_EQ(StateEvent(JobState::kQueued).payload, event.SerializeAsString());
@@ -260,7 +268,7 @@ TEST(JobMessages, ALostJobTellsWhereItWas) {
     EXPECT_EQ(events.size(), 2U);
     v1::JobEvent first, event;
     EXPECT_TRUE(first.ParseFromString(events.front().payload));
-    EXPECT_EQ(first.message(), "the worker died");
+    EXPECT_EQ(first.message().text(), "the worker died");
     EXPECT_TRUE(event.ParseFromString(events.back().payload));
     return event;
   };

@@ -27,7 +27,7 @@ class JobWatchTest : public testing::Test {
     if (message.has_event()) {
       const v1::JobEvent& event = message.event();
       const std::string what = event.has_ended()     ? "ended"
-                               : event.has_message() ? event.message()
+                               : event.has_message() ? event.message().text()
                                                      : "state";
       return std::to_string(event.sequence()) + " " + what;
     }

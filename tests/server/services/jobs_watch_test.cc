@@ -44,7 +44,7 @@ class JobsWatchTest : public testing::Test {
     const v1::JobEvent& event = message.event();
     return std::to_string(message.sequence()) + " " + event.job() + " " +
            (event.has_ended()     ? "ended"
-            : event.has_message() ? event.message()
+            : event.has_message() ? event.message().text()
                                   : "state");
   }
 
@@ -61,7 +61,7 @@ TEST_F(JobsWatchTest, ASnapshotOfTheCellFirst) {
   ASSERT_TRUE(first.has_snapshot());
   EXPECT_EQ(first.instance_id(), StreamBed::kInstance);
   EXPECT_EQ(first.sequence(), 2);  // to go on after, should the line break before the first event
-  const v1::CellSnapshot& cell = first.snapshot();
+  const v1::JobsSnapshot& cell = first.snapshot();
   EXPECT_EQ(cell.sequence(), 2);
   ASSERT_EQ(cell.jobs_size(), 2);  // the newest first
   EXPECT_EQ(cell.jobs(0).name(), JobName(two));
@@ -90,15 +90,15 @@ TEST_F(JobsWatchTest, WhoComesBackBeforeTheFirstEventMissesNone) {
 TEST_F(JobsWatchTest, TheSnapshotSaysWhichMachinesWork) {
   room.Submit();  // waits
   auto watch = room.WatchAll(After(0));
-  const v1::CellSnapshot cell = watch.Next().snapshot();
+  const v1::JobsSnapshot cell = watch.Next().snapshot();
   const std::string machine = cell.jobs(0).machine();
   ASSERT_EQ(cell.machines_size(), 2);
   for (const v1::Machine& one_of_them : cell.machines()) {
     const bool busy = one_of_them.name() == machine;
-    EXPECT_EQ(one_of_them.state().jobs_active(), busy ? 3 : 0) << one_of_them.name();
-    EXPECT_EQ(one_of_them.state().activity(),
-              busy ? v1::MachineState::ACTIVITY_RUNNING : v1::MachineState::ACTIVITY_IDLE);
-    EXPECT_EQ(one_of_them.state().job(), busy ? JobName(one) : "");
+    EXPECT_EQ(one_of_them.status().jobs_active(), busy ? 3 : 0) << one_of_them.name();
+    EXPECT_EQ(one_of_them.status().state(),
+              busy ? v1::MACHINE_STATE_RUNNING : v1::MACHINE_STATE_IDLE);
+    EXPECT_EQ(one_of_them.status().simulating_job(), busy ? JobName(one) : "");
   }
 }
 

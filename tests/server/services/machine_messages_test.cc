@@ -131,8 +131,9 @@ TEST(MachineMessage, SaysWhatTheRecordHolds) {
   EXPECT_EQ(message.profile(), "pw-1993");
   EXPECT_THAT(message.parameters(),
               UnorderedElementsAre(Pair("VMAX", "400"), Pair("LASER", "EFA51")));
-  EXPECT_TRUE(message.is_virtual());
-  EXPECT_EQ(message.state().activity(), v1::MachineState::ACTIVITY_IDLE);
+  EXPECT_EQ(message.connection().kind(), v1::MachineConnection::KIND_VIRTUAL);
+  EXPECT_EQ(message.status().machine(), message.name());
+  EXPECT_EQ(message.status().state(), v1::MACHINE_STATE_IDLE);
   EXPECT_EQ(message.etag(), "12");
   EXPECT_EQ(message.create_time().seconds(), 1'500'000);
   EXPECT_EQ(message.create_time().nanos(), 250'000'000);

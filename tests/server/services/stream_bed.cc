@@ -17,7 +17,7 @@ void StreamBed::Say(const storage::Lease& lease, const std::vector<std::string>&
   std::vector<storage::NewEvent> events;
   for (const std::string& text : texts) {
     v1::JobEvent event;
-    event.set_message(text);
+    event.mutable_message()->set_text(text);
     events.push_back(ToRecord(event));
   }
   Must(bed.store().AppendAndWait(lease, std::move(events)));

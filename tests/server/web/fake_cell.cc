@@ -113,8 +113,8 @@ class Jobs : public v1::JobService::CallbackService {
           if (name == "jobs/1" && sequence > 5) return Step::kEnd;
           response.set_sequence(sequence);
           response.mutable_event()->set_sequence(sequence);
-          response.mutable_event()->set_message(name == "jobs/flood" ? std::string(kFloodBytes, 'f')
-                                                                     : "event");
+          response.mutable_event()->mutable_message()->set_text(
+              name == "jobs/flood" ? std::string(kFloodBytes, 'f') : "event");
           if (name == "jobs/flood") ++counters_.produced;
           return Step::kMessage;
         });

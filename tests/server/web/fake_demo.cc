@@ -11,7 +11,7 @@ namespace {
 constexpr std::int64_t kBegin_s = 1'780'000'000;
 constexpr int kTicksOfJob = 60;
 
-v1::Job& AddJob(v1::CellSnapshot& snapshot, int number, const std::string& machine,
+v1::Job& AddJob(v1::JobsSnapshot& snapshot, int number, const std::string& machine,
                 const std::string& title, v1::Job::State state) {
   v1::Job& job = *snapshot.add_jobs();
   job.set_name("jobs/" + std::to_string(number));
@@ -50,7 +50,7 @@ void SetOutcome(v1::Job& job, ErrorCode code, v1::Outcome::Kind kind, const std:
   outcome.mutable_place()->set_step(step);
 }
 
-void Snapshot(v1::CellSnapshot& snapshot, std::int64_t sequence) {
+void Snapshot(v1::JobsSnapshot& snapshot, std::int64_t sequence) {
   snapshot.set_sequence(sequence);
   AddJob(snapshot, 19, "mill-1", "", v1::Job::STATE_QUEUED);
   AddJob(snapshot, 18, "optimo-1", "Bracket, left", v1::Job::STATE_RUNNING);
@@ -74,9 +74,9 @@ void Snapshot(v1::CellSnapshot& snapshot, std::int64_t sequence) {
     machine.set_name(std::string("machines/") + id);
     machine.set_family(family);
     machine.set_title(title);
-    machine.set_is_virtual(true);
-    machine.mutable_state()->set_activity(v1::MachineState::ACTIVITY_IDLE);
-    machine.mutable_state()->set_jobs_active(1);
+    machine.mutable_connection()->set_kind(v1::MachineConnection::KIND_VIRTUAL);
+    machine.mutable_status()->set_state(v1::MACHINE_STATE_IDLE);
+    machine.mutable_status()->set_jobs_active(1);
   }
 }
 
@@ -115,7 +115,7 @@ bool DemoStory::Next(v1::WatchJobsResponse& response) {
 }
 
 void EndOfDemoJob(v1::Job& job) {
-  v1::CellSnapshot snapshot;
+  v1::JobsSnapshot snapshot;
   job = AddJob(snapshot, 18, "optimo-1", "Bracket, left", v1::Job::STATE_SUCCEEDED);
   job.mutable_outcome()->set_kind(v1::Outcome::KIND_COMPLETED);
 }

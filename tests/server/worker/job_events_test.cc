@@ -61,34 +61,69 @@ TEST_F(JobEventsTest, TellsAllOfASignal) {
   ASSERT_EQ(Sent().size(), 1U);
   const v1::JobEvent event = Sent().front();
   EXPECT_EQ(event.virtual_time_ns(), 1'500'000'000);
-  EXPECT_EQ(event.signal().kind(), "signal");
-  EXPECT_EQ(event.signal().time_s(), 1.5);
+  EXPECT_EQ(event.signal().kind(), v1::SIGNAL_KIND_BEAM);
   EXPECT_EQ(event.signal().place().program(), 45);
   EXPECT_EQ(event.signal().place().step(), 7);
-  EXPECT_EQ(event.signal().text(), "beam");
+  EXPECT_EQ(event.signal().name(), "beam");
   EXPECT_EQ(event.signal().index(), 3);
   EXPECT_EQ(event.signal().value(), 1.0);
   EXPECT_EQ(event.signal().detail(), 80.0);
 }
 
 TEST_F(JobEventsTest, TellsOfEachKind) {
-  events_.OnHalt({.at = milliseconds(1), .why = "STOP"});
-  events_.OnResume(milliseconds(2), {});
+  events_.OnHalt({.at = milliseconds(1),
+                  .place = {.program = 45, .step = 6},
+                  .reason = machine::HaltReason::kStop,
+                  .why = "STOP"});
+  events_.OnResume(milliseconds(2), {.program = 45, .step = 7});
   events_.OnProgram(milliseconds(3), {}, "call", 44);
-  events_.OnMessage(milliseconds(4), {}, "hello");
+  events_.OnMessage(milliseconds(4), {.program = 45, .step = 8}, "hello");
   events_.OnDiagnostic(milliseconds(5),
                        {.code = ErrorCode::kHoleRadiusZero, .detail = "radius is 0"});
+  events_.OnProgram(milliseconds(6), {}, machine::kCompiling, 45);
   events_.Flush();
   const std::vector<v1::JobEvent> sent = Sent();
-  ASSERT_EQ(sent.size(), 5U);
-  EXPECT_EQ(sent[0].halted(), "STOP");
-  EXPECT_TRUE(sent[1].has_resumed());
-  EXPECT_EQ(sent[2].milestone(), "call program 44");
-  EXPECT_EQ(sent[3].message(), "hello");
+  ASSERT_EQ(sent.size(), 6U);
+  EXPECT_EQ(sent[0].halted().reason(), v1::HOLD_REASON_STOP);
+  EXPECT_EQ(sent[0].halted().message(), "STOP");
+  EXPECT_EQ(sent[0].halted().place().step(), 6);
+  EXPECT_EQ(sent[1].resumed().place().step(), 7);
+  EXPECT_EQ(sent[2].program_loaded().program(), 44);
+  EXPECT_EQ(sent[3].message().text(), "hello");
+  EXPECT_EQ(sent[3].message().place().step(), 8);
   EXPECT_EQ(sent[4].diagnostic().code(), "OPT-E348");
-  for (int i = 0; i < 5; ++i) {
+  EXPECT_EQ(sent[5].executable_made().program(), 45);
+  for (int i = 0; i < 6; ++i) {
     EXPECT_EQ(sent[static_cast<std::size_t>(i)].virtual_time_ns(), (i + 1) * 1'000'000);
   }
+}
+
+TEST_F(JobEventsTest, TellsWhyARunHalts) {
+  const auto told = [&](machine::HaltReason reason) {
+    events_.OnHalt({.reason = reason});
+    return Sent().back().halted().reason();
+  };
+  EXPECT_EQ(told(machine::HaltReason::kHold), v1::HOLD_REASON_HOLD);
+  EXPECT_EQ(told(machine::HaltReason::kStop), v1::HOLD_REASON_STOP);
+  EXPECT_EQ(told(machine::HaltReason::kProgram), v1::HOLD_REASON_PROGRAM);
+  EXPECT_EQ(told(machine::HaltReason::kBreakpoint), v1::HOLD_REASON_BREAKPOINT);
+  EXPECT_EQ(told(machine::HaltReason::kSingle), v1::HOLD_REASON_SINGLE);
+}
+
+TEST_F(JobEventsTest, TellsWhatASignalIsOf) {
+  const auto told = [&](Signal signal) {
+    events_.OnSignal({.signal = signal});
+    events_.Flush();
+    return Sent().back().signal().kind();
+  };
+  EXPECT_EQ(told(Signal::kOutput), v1::SIGNAL_KIND_LOGICAL_OUTPUT);
+  EXPECT_EQ(told(Signal::kShutter), v1::SIGNAL_KIND_SHUTTER);
+  EXPECT_EQ(told(Signal::kBeam), v1::SIGNAL_KIND_BEAM);
+  EXPECT_EQ(told(Signal::kSchedule), v1::SIGNAL_KIND_SCHEDULE);
+  EXPECT_EQ(told(Signal::kGas), v1::SIGNAL_KIND_GAS);
+  EXPECT_EQ(told(Signal::kSpindle), v1::SIGNAL_KIND_SPINDLE);
+  EXPECT_EQ(told(Signal::kSpindleSpeed), v1::SIGNAL_KIND_SPINDLE);
+  EXPECT_EQ(told(Signal::kRotaryTable), v1::SIGNAL_KIND_OTHER);
 }
 
 // Whoever watches a halted job sees that at once; the rest goes in company.
@@ -114,7 +149,7 @@ TEST_F(JobEventsTest, CutsALongLogAndSaysSo) {
   Message(10'000);
   events_.Flush();
   EXPECT_EQ(Sent().size(), 10'000U);
-  EXPECT_EQ(Sent().back().message(), "text");
+  EXPECT_EQ(Sent().back().message().text(), "text");
   Message(100);
   events_.OnHalt({.why = "HOLD"});
   events_.OnResume(SimTime(0), {});
@@ -122,8 +157,8 @@ TEST_F(JobEventsTest, CutsALongLogAndSaysSo) {
   events_.Flush();
   const std::vector<v1::JobEvent> sent = Sent();
   ASSERT_EQ(sent.size(), 10'003U);
-  EXPECT_EQ(sent[10'000].message().substr(0, 13), "more happened");
-  EXPECT_EQ(sent[10'001].halted(), "HOLD");
+  EXPECT_EQ(sent[10'000].message().text().substr(0, 13), "more happened");
+  EXPECT_EQ(sent[10'001].halted().message(), "HOLD");
   EXPECT_TRUE(sent[10'002].has_resumed());
 }
 

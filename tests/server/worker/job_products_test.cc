@@ -32,7 +32,7 @@ TEST_F(JobProducts, ACheckFindsWhatTheMotionWouldMeet) {
   EXPECT_THAT(Codes(), ElementsAre("OPT-E7301", "OPT-E7301"));
   EXPECT_EQ(Report().diagnostics(1).place().step(), 5);
   EXPECT_EQ(Report().diagnostics(1).place().line(), 5);
-  EXPECT_GT(Report().diagnostics(1).time_s(), 0.0);
+  EXPECT_GT(Report().diagnostics(1).virtual_time_ns(), 0);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_FAILED);
   EXPECT_EQ(Outcome().code(), "OPT-E7301");
   EXPECT_EQ(Outcome().place().program(), 45);
@@ -78,13 +78,13 @@ TEST_F(JobProducts, ACheckTakesTheInputsOfTheJob) {
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
   EXPECT_THAT(Report().motion_check(), HasSubstr("only up to step 2, line 2"));
   v1::ScriptedInput& input = *assignment.mutable_job()->mutable_simulation()->add_inputs();
-  input.set_at_s(5.0);
+  input.set_virtual_time_ns(5'000'000'000);
   input.set_kind(v1::ScriptedInput::KIND_LOGICAL_INPUT);
   input.set_index(16);
   input.set_value(1.0);
   Work(assignment);
   EXPECT_THAT(Codes(), ElementsAre("OPT-E7301"));
-  EXPECT_EQ(Report().diagnostics(0).time_s(), 5.0);
+  EXPECT_EQ(Report().diagnostics(0).virtual_time_ns(), 5'000'000'000);
   EXPECT_EQ(Report().motion_check(), "");
 }
 
@@ -122,24 +122,25 @@ TEST_F(JobProducts, TheTraceTellsWhatHappenedInItsOrder) {
       Assignment(v1::JOB_KIND_SIMULATE, "OL[20]=ON\nDELAY 1.5\nOL[20]=OFF\n");
   assignment.mutable_job()->mutable_simulation()->set_trace(true);
   Work(assignment);
+  constexpr std::int64_t kThen = 1'500'000'000;
   const std::string bytes = Artifacts()["trace"];
   std::string_view rest = bytes;
   std::int64_t records = 0;
   std::string last;
-  std::vector<std::pair<double, double>> output;  // values of output 20 and their times
-  std::vector<std::pair<double, double>> waits;   // durations, and when they ended
+  std::vector<std::pair<double, std::int64_t>> output;       // values of output 20 and their times
+  std::vector<std::pair<std::int64_t, std::int64_t>> waits;  // durations, and when they ended
   while (const auto frame = bridge::TakeFrame(rest)) {
     v1::TraceRecord record;
     ASSERT_TRUE(record.ParseFromArray(frame->data(), static_cast<int>(frame->size())));
     EXPECT_EQ(record.number(), ++records);
     if (record.kind() == "signal" && record.index() == 20)
-      output.emplace_back(record.value(), record.time_s());
-    if (record.kind() == "wait") waits.emplace_back(record.duration_s(), record.time_s());
+      output.emplace_back(record.value(), record.virtual_time_ns());
+    if (record.kind() == "wait") waits.emplace_back(record.duration_ns(), record.virtual_time_ns());
     last = record.kind();
   }
   EXPECT_EQ(rest, "");
-  EXPECT_THAT(output, ElementsAre(std::pair(1.0, 0.0), std::pair(0.0, 1.5)));
-  EXPECT_THAT(waits, ElementsAre(std::pair(1.5, 1.5)));
+  EXPECT_THAT(output, ElementsAre(std::pair(1.0, std::int64_t{0}), std::pair(0.0, kThen)));
+  EXPECT_THAT(waits, ElementsAre(std::pair(kThen, kThen)));
   EXPECT_EQ(last, "end");
 }
 

@@ -230,9 +230,9 @@ TEST_F(JobRunnerTest, EachBudgetEndsTheJobWithItsCode) {
     EXPECT_EQ(outcome.kind(), v1::Outcome::KIND_BUDGET_EXCEEDED);
     return outcome.code();
   };
-  EXPECT_EQ(ended(kEndless, [](v1::Budget& b) { b.set_processor_s(0.05); }), "CELL-E9303");
+  EXPECT_EQ(ended(kEndless, [](v1::Budget& b) { b.set_processor_ns(50'000'000); }), "CELL-E9303");
   EXPECT_EQ(ended(
-                "STOP\n", [](v1::Budget& b) { b.set_processor_s(1e-9); }, v1::JOB_KIND_CHECK),
+                "STOP\n", [](v1::Budget& b) { b.set_processor_ns(1); }, v1::JOB_KIND_CHECK),
             "CELL-E9303");
   EXPECT_EQ(ended("STOP\n", [](v1::Budget& b) { b.set_output_bytes(1); }), "CELL-E9306");
   EXPECT_EQ(ended(

@@ -259,7 +259,7 @@ TEST_F(LongProducts, TheyCountAsProcessorTime) {
   MillingOf(assignment).set_stl(false);
   double budget_s = 0.02;
   for (bool enough = false; !enough; budget_s *= 1.5) {
-    assignment.mutable_budget()->set_processor_s(budget_s);
+    assignment.mutable_budget()->set_processor_ns(FromSeconds(budget_s).count());
     Work(assignment);
     enough = Outcome().kind() == v1::Outcome::KIND_COMPLETED;
   }

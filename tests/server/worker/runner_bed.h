@@ -144,9 +144,9 @@ class JobRunnerTest : public testing::Test {
     program.set_is_source(true);
     v1::Budget& budget = *assignment.mutable_budget();
     budget.set_steps(1'000'000'000);
-    budget.set_virtual_time_s(1e6);
+    budget.set_virtual_time_ns(1'000'000'000'000'000);
     budget.set_memory_bytes(std::int64_t{1} << 30);
-    budget.set_processor_s(600.0);
+    budget.set_processor_ns(600'000'000'000);
     budget.set_output_bytes(std::int64_t{1} << 28);
     return assignment;
   }

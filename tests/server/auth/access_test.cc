@@ -1,0 +1,164 @@
+#include "server/auth/access.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/descriptor.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "rmlcell/v1/job.pb.h"
+#include "rmlcell/v1/machine.pb.h"
+#include "server/auth/caller.h"
+
+namespace rmlcell::server {
+namespace {
+
+using google::protobuf::DescriptorPool;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::MethodDescriptor;
+using testing::UnorderedElementsAre;
+
+// Every method of the contract, whichever file it stands in.
+std::vector<const MethodDescriptor*> Methods() {
+  std::vector<const MethodDescriptor*> methods;
+  const auto folder = std::filesystem::path(RMLCELL_SOURCE_DIR) / "proto/rmlcell/v1";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const auto* file = DescriptorPool::generated_pool()->FindFileByName(
+        "rmlcell/v1/" + entry.path().filename().string());
+    EXPECT_NE(file, nullptr) << entry.path();
+    for (int i = 0; file != nullptr && i < file->service_count(); ++i) {
+      for (int j = 0; j < file->service(i)->method_count(); ++j)
+        methods.push_back(file->service(i)->method(j));
+    }
+  }
+  return methods;
+}
+
+std::string PathOf(const MethodDescriptor& method) {
+  return "/" + method.service()->full_name() + "/" + method.name();
+}
+
+const FieldDescriptor* FieldAt(const google::protobuf::Descriptor& message,
+                               const std::string& path) {
+  const std::size_t dot = path.find('.');
+  const FieldDescriptor* field = message.FindFieldByName(path.substr(0, dot));
+  if (field == nullptr || dot == std::string::npos) return field;
+  return field->message_type() == nullptr ? nullptr
+                                          : FieldAt(*field->message_type(), path.substr(dot + 1));
+}
+
+TEST(Access, IsStatedAtEveryMethod) {
+  const AccessTable table;
+  const auto methods = Methods();
+  EXPECT_GT(methods.size(), 100U);
+  for (const MethodDescriptor* method : methods) {
+    const v1::Access* access = table.Find(PathOf(*method));
+    ASSERT_NE(access, nullptr) << PathOf(*method);
+    if (!access->resource_field().empty()) {
+      const FieldDescriptor* field = FieldAt(*method->input_type(), access->resource_field());
+      ASSERT_NE(field, nullptr) << PathOf(*method);
+      EXPECT_EQ(field->type(), FieldDescriptor::TYPE_STRING) << PathOf(*method);
+    }
+    // A stream carries the token in its messages.
+    if (access->needs_control() && !method->client_streaming()) {
+      EXPECT_NE(method->input_type()->FindFieldByName("control_token"), nullptr) << PathOf(*method);
+    }
+  }
+}
+
+// gRPC's own services: whether a server lives may be asked by anybody.
+TEST(Access, IsKnownOfMethodsThatComeWithGrpc) {
+  const AccessTable table;
+  ASSERT_NE(table.Find("/grpc.health.v1.Health/Check"), nullptr);
+  EXPECT_EQ(table.Find("/grpc.health.v1.Health/Check")->permission(), v1::PERMISSION_NONE);
+  ASSERT_NE(table.Find("/grpc.health.v1.Health/Watch"), nullptr);
+  EXPECT_EQ(table.Find("/grpc.health.v1.Health/Watch")->permission(), v1::PERMISSION_NONE);
+  for (const std::string version : {"v1", "v1alpha"}) {
+    const v1::Access* reflection =
+        table.Find("/grpc.reflection." + version + ".ServerReflection/ServerReflectionInfo");
+    ASSERT_NE(reflection, nullptr);
+    EXPECT_EQ(reflection->permission(), v1::PERMISSION_VIEW);
+  }
+  EXPECT_EQ(table.Find("/grpc.channelz.v1.Channelz/GetServers"), nullptr);
+  EXPECT_EQ(table.Find("/rmlcell.v1.JobService/Nothing"), nullptr);
+  EXPECT_EQ(table.Find(""), nullptr);
+}
+
+std::set<std::string> MethodsThatAskFor(v1::Permission permission) {
+  const AccessTable table;
+  std::set<std::string> found;
+  for (const MethodDescriptor* method : Methods()) {
+    if (table.Find(PathOf(*method))->permission() == permission) found.insert(method->name());
+  }
+  return found;
+}
+
+// LIVE-4.04: what brings something to a stop asks for `stop`, and for nothing else.
+TEST(Access, OfWhatStops) {
+  EXPECT_THAT(MethodsThatAskFor(v1::PERMISSION_STOP),
+              UnorderedElementsAre("CancelJob", "CancelJobs", "HoldJob", "StopJob", "StopMachine",
+                                   "HoldMachine", "EmergencyStopMachine", "DisarmMachine"));
+}
+
+// Who has not said who he is may ask what server it is, who he is, log in, and join as a worker.
+TEST(Access, OfWhatAnybodyMay) {
+  EXPECT_THAT(MethodsThatAskFor(v1::PERMISSION_NONE),
+              UnorderedElementsAre("GetCell", "GetCaller", "LogIn", "LogOut", "Work", "Host"));
+}
+
+// LIVE-9.02 to 9.15: what moves a machine carries a token; stops and readings do not.
+TEST(Access, OfWhatNeedsControl) {
+  const AccessTable table;
+  std::set<std::string> found;
+  for (const MethodDescriptor* method : Methods()) {
+    const v1::Access* access = table.Find(PathOf(*method));
+    if (!access->needs_control()) continue;
+    EXPECT_EQ(access->permission(), v1::PERMISSION_OPERATE) << method->name();
+    found.insert(method->name());
+  }
+  EXPECT_THAT(
+      found, UnorderedElementsAre("RenewControl", "ReleaseControl", "StartMachine", "ZeroMachine",
+                                  "ResumeMachine", "SetMode", "SetOverride", "AcknowledgeAlarm",
+                                  "SetFactor", "WriteVariables", "SetInputs", "SetBreakpoints",
+                                  "SetSimulation", "PressPanelKey", "HeartbeatPanel", "StartAtStep",
+                                  "ConfirmMachine", "ArmMachine", "CreateHandboxSession",
+                                  "PressKey", "HeartbeatHandbox", "HandboxStream"));
+}
+
+// No permission holds another one.
+TEST(Permissions, OfTheRoles) {
+  const auto of = [](const Permissions& role) {
+    std::string text;
+    for (const v1::Permission one :
+         {v1::PERMISSION_VIEW, v1::PERMISSION_STOP, v1::PERMISSION_PROGRAM, v1::PERMISSION_OPERATE,
+          v1::PERMISSION_ADMINISTER})
+      text += role.Has(one) ? "1" : "0";
+    return text;
+  };
+  EXPECT_EQ(of(ViewerPermissions()), "10000");
+  EXPECT_EQ(of(ProgrammerPermissions()), "11100");
+  EXPECT_EQ(of(OperatorPermissions()), "11010");
+  EXPECT_EQ(of(AdministratorPermissions()), "11111");
+  EXPECT_EQ(of({}), "00000");
+  EXPECT_FALSE(AdministratorPermissions().Has(v1::PERMISSION_UNSPECIFIED));
+}
+
+TEST(Resource, IsWhatTheFieldNames) {
+  v1::SubmitJobRequest submit;
+  submit.mutable_job()->set_machine("machines/mill-1");
+  EXPECT_EQ(ResourceOf(submit, "job.machine"), "machines/mill-1");
+  EXPECT_EQ(ResourceOf(submit, "job.nothing"), "");
+  EXPECT_EQ(ResourceOf(submit, "job.budget"), "");
+  EXPECT_EQ(ResourceOf(submit, "request_id.machine"), "");
+  EXPECT_EQ(ResourceOf(submit, ""), "");
+  EXPECT_EQ(ResourceOf(v1::SubmitJobRequest(), "job.machine"), "");
+  v1::GetMachineRequest get;
+  get.set_name("machines/a");
+  EXPECT_EQ(ResourceOf(get, "name"), "machines/a");
+}
+
+}  // namespace
+}  // namespace rmlcell::server
