@@ -23,6 +23,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "behaviour"))
 import server_trials  # noqa: E402
 from behaviour import all_trials, hash_of  # noqa: E402
 from places import places_of  # noqa: E402
+from refusals import Refusals  # noqa: E402
 from switched_source import SwitchedSource  # noqa: E402
 from workshop import fresh, judge, limit, tests_of, with_cases  # noqa: E402
 
@@ -56,11 +57,13 @@ class SwitchedTree:
         self.error_codes = error_codes
         self.sources = sorted(str(path.relative_to(self.root)) for folder in FOLDERS
                               for path in (self.root / folder).rglob("*.cc"))
+        self.refusals = Refusals(pathlib.Path(__file__).with_name("refused.txt"))
         self.numbers = {}  # (file, begin, kind, after): number of a change with a switch
         self.tests = {}
         self.unfit = set()  # names of tests of which a case fails with switches, none of them awake
         self.reach = Reach()
         self.trials = collections.defaultdict(list)  # number of a change: programs that come by it
+        self.anew = set()  # sources whose switches were asked for again
         self.lock = threading.Lock()
 
     def make(self, files, names, jobs):
@@ -80,7 +83,25 @@ class SwitchedTree:
         # Scripts drive the programs; the other tests are targets of their own.
         targets = [name for name in names if not name.startswith("integration_")]
         targets += ["rmlcell", "rmlcelld", "rmlcell-worker", "python_stubs"]
-        subprocess.run(["ninja", "-C", str(self.build), *targets], check=True, stdout=subprocess.DEVNULL)
+        while failed := self.failed(targets):
+            # An answer of the compiler that holds no longer: a header changed.
+            with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+                list(pool.map(lambda file: self.write(file, anew=True), failed & set(files)))
+        self.refusals.keep()
+
+    def failed(self, targets):
+        """Builds them; the sources with switches that do not compile."""
+        done = subprocess.run(["ninja", "-k", "0", "-C", str(self.build), *targets], capture_output=True, text=True, check=False)
+        if done.returncode == 0:
+            return set()
+        objects = {entry["file"]: entry for entry in self.compiles.values()}
+        failed = {os.path.relpath(file, self.tree) for file in objects
+                  if re.search(rf"^FAILED: .*{re.escape(os.path.basename(file))}\.o", done.stdout, re.MULTILINE)}
+        again = failed - self.anew
+        if not again:
+            raise SystemExit(f"the tests with switches cannot be built:\n{done.stdout[-4000:]}")
+        self.anew |= again
+        return again
 
     def learn_all(self, names, jobs):
         """Learns what each case of these tests comes by, and each trial of tests/behaviour."""
@@ -108,34 +129,38 @@ class SwitchedTree:
             if not (self.tree / name).is_symlink():
                 (self.tree / name).symlink_to(self.root / name)
 
-    def write(self, file):
+    def write(self, file, anew=False):
         source = (self.root / file).read_text(encoding="utf-8")
         first = self.sources.index(file) * ROOM + 1
         every = {place: first + n for n, place in enumerate(places_of(self.root, file, self.error_codes))}
         assert len(every) < ROOM, file
-        switched = self.accepted(file, source, every, first)
+        switched = self.accepted(file, source, every, first, anew)
         put(self.tree / file, self.head(switched.text).encode())
         with self.lock:
-            self.numbers |= {key(place): number for place, number in every.items() if number in switched.switched}
+            for place, number in every.items():
+                if number in switched.switched:
+                    self.numbers[key(place)] = number
+                else:
+                    self.numbers.pop(key(place), None)
 
     @staticmethod
     def head(text):
         # Lines keep their numbers: messages and assertions name them.
         return f'#include "tests/mutation/changes.h"\n#line 1\n{text}'
 
-    def accepted(self, file, source, every, first):
+    def accepted(self, file, source, every, first, anew):
         """The source with those switches that the compiler takes."""
         switched = SwitchedSource(source, every)
-        known = self.folder / "refused" / f"{hashlib.sha256(switched.text.encode()).hexdigest()}.json"
-        if known.exists():
-            refused = {first + n for n in json.loads(known.read_text(encoding="utf-8"))}
-            return SwitchedSource(source, {p: n for p, n in every.items() if n not in refused})
+        key_of_source = self.refusals.key(source, list(every))
+        known = None if anew else self.refusals.get(key_of_source)
+        if known is not None:
+            return SwitchedSource(source, {p: n for p, n in every.items() if n - first not in known})
         refused = set()
         for attempt in range(REFUSALS_MAX):
             errors = self.errors(file, switched.text)
             if not errors:
-                known.parent.mkdir(parents=True, exist_ok=True)
-                known.write_text(json.dumps(sorted(n - first for n in refused)), encoding="utf-8")
+                with self.lock:
+                    self.refusals.put(key_of_source, {n - first for n in refused})
                 return switched
             found = blamed(switched, errors, 0 if attempt < REFUSALS_MAX / 2 else 1) - refused
             refused |= found or set(every.values())
