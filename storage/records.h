@@ -112,6 +112,7 @@ struct JobRecord {
       request_hash{};  // of what was asked for: the same request_id with another request is refused
   std::string machine{};
   std::string kind{};  // "CHECK", "SIMULATE", kRunKind
+  std::string pool{};  // of the workers that take it; may be empty
   std::string title{};
   std::string caller{};
   std::string specification{};  // opaque

@@ -12,6 +12,17 @@ Result<SubmittedJob> Store::SubmitAndWait(NewJob job) {
   return future.get();
 }
 
+Result<std::optional<LeasedJob>> Store::Acquire(std::string_view worker,
+                                                const std::vector<std::string>& kinds,
+                                                std::chrono::milliseconds duration,
+                                                const std::vector<NewEvent>& events) {
+  Result<std::vector<LeasedJob>> leased = AcquireJobs(
+      {.worker = std::string(worker), .kinds = kinds, .duration = duration, .events = events});
+  if (!leased) return leased.error();
+  if (leased->empty()) return std::optional<LeasedJob>();
+  return std::optional(std::move(leased->front()));
+}
+
 Result<std::int64_t> Store::AppendAndWait(const Lease& lease, std::vector<NewEvent> events) {
   std::promise<Result<std::int64_t>> promise;
   std::future<Result<std::int64_t>> future = promise.get_future();

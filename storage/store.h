@@ -18,6 +18,7 @@ struct NewJob {
   std::string request_hash{};
   std::string machine{};
   std::string kind{};
+  std::string pool{};
   std::string title{};
   std::string caller{};
   std::string specification{};
@@ -87,6 +88,16 @@ struct JobEnd {
   std::vector<NewArtifact> artifacts{};
   std::vector<NewExecutable> executables{};
   std::vector<NewEvent> events{};
+};
+
+// What a worker that is free takes.
+struct JobRequest {
+  std::string worker{};
+  std::vector<std::string> kinds{};
+  std::vector<std::string> pools{""};
+  int count = 1;
+  std::chrono::milliseconds duration{0};  // of each lease
+  std::vector<NewEvent> events{};         // appended to each job
 };
 
 // What to write into one slot. All writes of one call are made, or none.
@@ -205,12 +216,14 @@ class Store {
   // A job has at most one holder. A lease that ran out stays its holder's until Expire() takes it:
   // work that was done is kept while nobody else has begun it.
   //
-  // The oldest queued job of one of `kinds`, or nothing. `events` are appended to it. It may have
+  // The oldest queued jobs that fit, oldest first, as many as are asked for or fewer. One may have
   // cancel_requested, when an earlier holder gave it back: the new one ends it.
-  virtual Result<std::optional<LeasedJob>> Acquire(std::string_view worker,
-                                                   const std::vector<std::string>& kinds,
-                                                   std::chrono::milliseconds duration,
-                                                   const std::vector<NewEvent>& events) = 0;
+  virtual Result<std::vector<LeasedJob>> AcquireJobs(const JobRequest& request) = 0;
+  // One job of the common pool, or nothing.
+  Result<std::optional<LeasedJob>> Acquire(std::string_view worker,
+                                           const std::vector<std::string>& kinds,
+                                           std::chrono::milliseconds duration,
+                                           const std::vector<NewEvent>& events);
   // Until `duration` from now, 366 days at most. CellLeaseLost. Returns the job without its
   // specification, so that the holder sees cancel_requested.
   virtual Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) = 0;

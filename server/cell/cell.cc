@@ -23,6 +23,7 @@
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
+#include "server/records/job_messages.h"
 #include "server/services/account_service.h"
 #include "server/services/cell_service.h"
 #include "server/services/foreign_calls.h"
@@ -253,6 +254,7 @@ Status Cell::Parts::ListenWeb() {
 Status Cell::Parts::StartWorkers(const std::string& join_token) {
   int count = static_cast<int>(config.workers_count);
   if (count < 0) count = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int paced = count > 0 ? static_cast<int>(config.workers_paced) : 0;
   const std::string program = config.workers_program.empty()
                                   ? PathOfOwnProgram() + "/rmlcell-worker"
                                   : config.workers_program;
@@ -261,7 +263,10 @@ Status Cell::Parts::StartWorkers(const std::string& join_token) {
                                          .join_token = join_token,
                                          .log_level = config.log_level,
                                          .log_format = config.log_format,
-                                         .count = count});
+                                         .count = count,
+                                         .pool = std::string(paced > 0 ? kComputingWorkers : ""),
+                                         .further_pool = std::string(kPacedPool),
+                                         .further_count = paced});
   if (!started) return started.error();
   processes = std::move(*started);
   return {};

@@ -56,6 +56,11 @@ Result<Dispatcher::WorkerId> Dispatcher::Join(std::shared_ptr<WorkerLine> line,
   auto worker = std::make_shared<Worker>();
   worker->name = hello.worker();
   worker->line = std::move(line);
+  if (hello.pool().empty()) {
+    worker->pools = {"", std::string(kPacedPool)};
+  } else {
+    worker->pools = {hello.pool() == kComputingWorkers ? "" : hello.pool()};
+  }
   for (const int kind : hello.kinds()) {
     if (kind == v1::JOB_KIND_CHECK) worker->kinds.emplace_back("CHECK");
     if (kind == v1::JOB_KIND_SIMULATE) worker->kinds.emplace_back("SIMULATE");

@@ -21,6 +21,7 @@ constexpr std::int64_t kOutputSlack = 1 << 20;
 // Not of the job: the same may succeed in a moment.
 bool IsTroubleOfTheStore(const Error& error) {
   return error.code == ErrorCode::kCellStoreFailed || error.code == ErrorCode::kCellStoreBusy ||
+         error.code == ErrorCode::kCellStoreUnavailable ||
          error.code == ErrorCode::kCellResourceExhausted;
 }
 
@@ -56,13 +57,16 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
     if (worker->gone || draining_) return;
     worker->looking = true;
   }
-  const auto leased = store_.Acquire(worker->name, worker->kinds,
-                                     std::chrono::milliseconds(config_.workers_lease_ms),
-                                     {StateEvent(storage::JobState::kRunning)});
-  const bool found = leased && leased->has_value();
+  const auto leased =
+      store_.AcquireJobs({.worker = worker->name,
+                          .kinds = worker->kinds,
+                          .pools = worker->pools,
+                          .duration = std::chrono::milliseconds(config_.workers_lease_ms),
+                          .events = {StateEvent(storage::JobState::kRunning)}});
+  const bool found = leased && !leased->empty();
   if (found) {
     worker->assignment.emplace();
-    worker->assignment->lease = (*leased)->lease;
+    worker->assignment->lease = leased->front().lease;
     worker->assignment->renewed_at = clock_();
   }
   {
@@ -77,7 +81,7 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
   }
   changed_.notify_all();
   if (!leased) spdlog::error("no job could be leased: {}", bridge::ErrorText(leased.error()));
-  if (found) Begin(worker, **leased);
+  if (found) Begin(worker, leased->front());
 }
 
 void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job) {

@@ -47,6 +47,7 @@ struct Dispatcher::Worker {
   std::string name;
   std::shared_ptr<WorkerLine> line;
   std::vector<std::string> kinds;
+  std::vector<std::string> pools;
   std::optional<Assignment> assignment;
   bool leaving = false;  // it handed its job back, since it ends; as `assignment`
 

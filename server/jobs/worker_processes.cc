@@ -23,7 +23,7 @@ constexpr std::chrono::milliseconds kLook{20};  // how soon a dead worker is not
 }  // namespace
 
 Result<std::unique_ptr<WorkerProcesses>> WorkerProcesses::Start(Options options) {
-  if (options.count > 0) {
+  if (options.count + options.further_count > 0) {
     struct stat file {};
     int failed =
         ::access(options.program.c_str(), X_OK) != 0 || ::stat(options.program.c_str(), &file) != 0
@@ -49,6 +49,8 @@ pid_t WorkerProcesses::Spawn(int number) const {
   std::vector<std::string> words = {options_.program,   "--server",     options_.server,
                                     "--name",           name,           "--log-level",
                                     options_.log_level, "--log-format", options_.log_format};
+  const std::string& pool = number > options_.count ? options_.further_pool : options_.pool;
+  if (!pool.empty()) words.insert(words.end(), {"--pool", pool});
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -92,7 +94,7 @@ void WorkerProcesses::Watch(const std::stop_token& stop) {
     std::chrono::steady_clock::time_point next_start;
     RestartDelay delay;
   };
-  std::vector<Place> places(static_cast<std::size_t>(options_.count));
+  std::vector<Place> places(static_cast<std::size_t>(options_.count + options_.further_count));
   while (!stop.stop_requested()) {
     const auto now = options_.clock();
     for (std::size_t i = 0; i < places.size(); ++i) {

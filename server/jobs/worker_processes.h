@@ -12,8 +12,9 @@
 
 namespace rmlcell::server {
 
-// The engine workers that the server starts itself: so many processes, and another one for each
-// that dies. One that dies again and again at once is started more and more slowly.
+// The engine workers that the server starts itself: so many processes of one pool and so many of
+// another, and another one for each that dies. One that dies again and again at once is started
+// more and more slowly.
 class WorkerProcesses {
  public:
   struct Options {
@@ -23,6 +24,9 @@ class WorkerProcesses {
     std::string log_level;
     std::string log_format;
     int count = 1;
+    std::string pool{};  // of these; empty: of all
+    std::string further_pool{};
+    int further_count = 0;
     SteadyClock clock = SteadyTime;
   };
 

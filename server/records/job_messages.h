@@ -10,6 +10,12 @@
 // Between records of the store and messages of the API.
 namespace rmlcell::server {
 
+// The pool of simulations with a pace: they mostly wait for the time of the machine to pass, so
+// workers of their own take them, and they hold no processor from jobs that compute, which are in
+// no pool. A worker that takes only these says the other word.
+inline constexpr std::string_view kPacedPool = "paced";
+inline constexpr std::string_view kComputingWorkers = "computing";
+
 google::protobuf::Timestamp ToProto(storage::WallTime time);
 
 v1::Job::State ToProto(storage::JobState state);

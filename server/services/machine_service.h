@@ -61,6 +61,7 @@ class MachineService final : public v1::MachineService::CallbackService {
   RMLCELL_LATER("MachineService", ReadVariables, v1::ReadVariablesResponse)
   RMLCELL_LATER("MachineService", WriteVariables, v1::WriteVariablesResponse)
   RMLCELL_LATER("MachineService", SetInputs, v1::MachineStatus)
+  RMLCELL_LATER("MachineService", SetGates, v1::MachineStatus)
   RMLCELL_LATER("MachineService", SetBreakpoints, v1::RunState)
   RMLCELL_LATER("MachineService", SetSimulation, v1::RunState)
   RMLCELL_LATER("MachineService", GetRunState, v1::RunState)

@@ -51,11 +51,15 @@ int main(int argc, char** argv) {
   CLI::App app{"An engine worker: joins a server and works on its jobs.", "rmlcell-worker"};
   std::string server = "127.0.0.1:50051";
   std::string name = "worker-" + std::to_string(::getpid());
+  std::string pool;
   std::string log_level = "info";
   std::string log_format = "text";
   app.set_version_flag("--version", std::string(kVersion));
   app.add_option("--server", server, "host:port or unix:/path");
   app.add_option("--name", name, "unique among the workers of the server");
+  app.add_option(
+      "--pool", pool,
+      "takes \"paced\" jobs only (simulations with a pace), or \"computing\" ones; else all");
   app.add_option("--log-level", log_level);
   app.add_option("--log-format", log_format, "text or json");
   app.footer("The join token of the server is taken from the environment: RMLCELL_JOIN_TOKEN.");
@@ -73,7 +77,7 @@ int main(int argc, char** argv) {
   ::sigaction(SIGINT, &action, nullptr);
   const char* token = std::getenv("RMLCELL_JOIN_TOKEN");
   auto line = ServerLine::Join(
-      {.server = server, .join_token = token != nullptr ? token : "", .name = name});
+      {.server = server, .join_token = token != nullptr ? token : "", .name = name, .pool = pool});
   if (!line) {
     spdlog::error("{}", bridge::ErrorText(line.error()));
     return 69;

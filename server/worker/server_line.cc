@@ -48,6 +48,7 @@ Result<std::unique_ptr<ServerLine>> ServerLine::Join(const Options& options) {
   hello.add_kinds(v1::JOB_KIND_CHECK);
   hello.add_kinds(v1::JOB_KIND_SIMULATE);
   hello.set_process_id(::getpid());
+  hello.set_pool(options.pool);
   v1::WorkResponse answer;
   if (!stream.line->Write(message) || !stream.line->Read(&answer) || !answer.has_welcome()) {
     const grpc::Status status = stream.line->Finish();

@@ -20,6 +20,7 @@ class ServerLine {
     std::string server;
     std::string join_token;
     std::string name;
+    std::string pool{};
   };
   // Connects and joins. Errors: CellUnavailable, CellJoinRefused, CellVersionMismatch.
   static Result<std::unique_ptr<ServerLine>> Join(const Options& options);

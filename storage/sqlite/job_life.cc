@@ -204,6 +204,7 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                    .request_hash = job.request_hash,
                    .machine = job.machine,
                    .kind = job.kind,
+                   .pool = job.pool,
                    .title = job.title,
                    .caller = job.caller,
                    .specification = {},
@@ -263,18 +264,23 @@ Result<JobRecord> CancelJob(WriteContext& context, std::int64_t id,
   return std::move(job);
 }
 
-Result<std::optional<LeasedJob>> AcquireJob(WriteContext& context, std::string_view worker,
-                                            const std::vector<std::string>& kinds,
-                                            std::chrono::milliseconds duration,
-                                            const std::vector<NewEvent>& events) {
+namespace {
+
+Result<std::optional<std::int64_t>> OldestFor(WriteContext& context, const JobRequest& request) {
   std::optional<std::int64_t> oldest;
-  for (const std::string& kind : kinds) {
-    const Result<std::optional<std::int64_t>> of_kind = context.tables.jobs.OldestQueued(kind);
-    if (!of_kind) return of_kind.error();
-    if (*of_kind && (!oldest || **of_kind < *oldest)) oldest = *of_kind;
+  for (const std::string& pool : request.pools) {
+    for (const std::string& kind : request.kinds) {
+      const Result<std::optional<std::int64_t>> of_kind =
+          context.tables.jobs.OldestQueued(pool, kind);
+      if (!of_kind) return of_kind.error();
+      if (*of_kind && (!oldest || **of_kind < *oldest)) oldest = *of_kind;
+    }
   }
-  if (!oldest) return std::optional<LeasedJob>();
-  Result<JobRow> row = GetRow(context, *oldest);
+  return oldest;
+}
+
+Result<LeasedJob> LeaseJob(WriteContext& context, std::int64_t id, const JobRequest& request) {
+  Result<JobRow> row = GetRow(context, id);
   if (!row) return row.error();
   JobRecord& job = row->job;
   SetState(context, job, JobState::kRunning);
@@ -284,8 +290,8 @@ Result<std::optional<LeasedJob>> AcquireJob(WriteContext& context, std::string_v
   Lease lease{.job = job.id,
               .attempt = row->attempts_begun,
               .fence = ++context.counters.fence,
-              .worker = std::string(worker),
-              .until = After(context.now, duration)};
+              .worker = request.worker,
+              .until = After(context.now, request.duration)};
   if (const Status leased = context.tables.leases.Add(lease); !leased) return leased.error();
   if (const Status begun = context.tables.attempts.Add({.job = job.id,
                                                         .number = lease.attempt,
@@ -296,9 +302,24 @@ Result<std::optional<LeasedJob>> AcquireJob(WriteContext& context, std::string_v
                                                         .how_it_ended = {}});
       !begun)
     return begun.error();
-  if (const Status written = WriteChange(context, *row, lease.attempt, events); !written)
+  if (const Status written = WriteChange(context, *row, lease.attempt, request.events); !written)
     return written.error();
-  return std::optional(LeasedJob{.lease = std::move(lease), .job = std::move(job)});
+  return LeasedJob{.lease = std::move(lease), .job = std::move(job)};
+}
+
+}  // namespace
+
+Result<std::vector<LeasedJob>> LeaseJobs(WriteContext& context, const JobRequest& request) {
+  std::vector<LeasedJob> leased;
+  while (static_cast<int>(leased.size()) < request.count) {
+    const Result<std::optional<std::int64_t>> oldest = OldestFor(context, request);
+    if (!oldest) return oldest.error();
+    if (!*oldest) break;
+    Result<LeasedJob> one = LeaseJob(context, **oldest, request);
+    if (!one) return one.error();
+    leased.push_back(*std::move(one));
+  }
+  return leased;
 }
 
 Result<JobRecord> RenewLease(WriteContext& context, const Lease& lease,

@@ -28,10 +28,7 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
 Result<JobRecord> CancelJob(WriteContext& context, std::int64_t id,
                             const std::vector<NewEvent>& events);
 
-Result<std::optional<LeasedJob>> AcquireJob(WriteContext& context, std::string_view worker,
-                                            const std::vector<std::string>& kinds,
-                                            std::chrono::milliseconds duration,
-                                            const std::vector<NewEvent>& events);
+Result<std::vector<LeasedJob>> LeaseJobs(WriteContext& context, const JobRequest& request);
 
 Result<JobRecord> RenewLease(WriteContext& context, const Lease& lease,
                              std::chrono::milliseconds duration);

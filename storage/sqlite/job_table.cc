@@ -11,7 +11,7 @@ std::string SelectJob(const std::string& from) {
   return "SELECT id, request_id, request_hash, machine, kind, title, caller, state,"
          " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
          " events_gone_until, created_at, started_at, finished_at, outcome_code, outcome_detail,"
-         " outcome_program, outcome_step, outcome_judgement FROM job " +
+         " outcome_program, outcome_step, outcome_judgement, pool FROM job " +
          from;
 }
 
@@ -43,6 +43,7 @@ Result<JobRow> Read(const Query& row) {
                         .request_hash = row.Text(2),
                         .machine = row.Text(3),
                         .kind = row.Text(4),
+                        .pool = row.Text(22),
                         .title = row.Text(5),
                         .caller = row.Text(6),
                         .specification = {},
@@ -90,15 +91,15 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
       insert_(database,
               "INSERT INTO job (id, request_id, request_hash, machine, kind, title, caller, state,"
               " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
-              " events_gone_until, created_at)"
-              " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0, 0, 0, ?8, 0, ?9, 0, ?10)"
+              " events_gone_until, created_at, pool)"
+              " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0, 0, 0, ?8, 0, ?9, 0, ?10, ?11)"
               " ON CONFLICT (request_id) DO NOTHING"),
       get_(database, SelectJob("WHERE id = ?1")),
       find_by_request_(database, SelectJob("WHERE request_id = ?1")),
       oldest_queued_(
           database,
-          "SELECT id FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 0 AND kind = ?1"
-          " ORDER BY id LIMIT 1"),
+          "SELECT id FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 0 AND pool = ?1"
+          " AND kind = ?2 ORDER BY id LIMIT 1"),
       update_(
           database,
           "UPDATE job SET state = ?2, cancel_requested = ?3, attempts = ?4, attempts_begun = ?5,"
@@ -136,7 +137,7 @@ Result<bool> JobTable::Insert(const JobRecord& job) {
   if (const Status inserted =
           insert_
               .With(job.id, job.request_id, job.request_hash, job.machine, job.kind, job.title,
-                    job.caller, job.attempts_max, job.last_sequence, job.created_at)
+                    job.caller, job.attempts_max, job.last_sequence, job.created_at, job.pool)
               .Run();
       !inserted)
     return inserted.error();
@@ -151,8 +152,9 @@ Result<std::optional<JobRow>> JobTable::FindByRequest(std::string_view request_i
   return FirstRow<JobRow>(find_by_request_.With(request_id), Read);
 }
 
-Result<std::optional<std::int64_t>> JobTable::OldestQueued(std::string_view kind) {
-  return FirstRow<std::int64_t>(oldest_queued_.With(kind),
+Result<std::optional<std::int64_t>> JobTable::OldestQueued(std::string_view pool,
+                                                           std::string_view kind) {
+  return FirstRow<std::int64_t>(oldest_queued_.With(pool, kind),
                                 [](const Query& row) { return row.Integer(0); });
 }
 

@@ -24,7 +24,7 @@ class JobTable {
   Result<bool> Insert(const JobRecord& job);
   Result<std::optional<JobRow>> Get(std::int64_t id);
   Result<std::optional<JobRow>> FindByRequest(std::string_view request_id);
-  Result<std::optional<std::int64_t>> OldestQueued(std::string_view kind);
+  Result<std::optional<std::int64_t>> OldestQueued(std::string_view pool, std::string_view kind);
   Result<std::vector<JobRecord>> List(const JobQuery& query);
   Result<std::vector<MachineJobs>> Unfinished();  // by machine
 

@@ -15,6 +15,10 @@ constexpr Migration kMigrations[] = {
      "INSERT OR REPLACE INTO mark SELECT 'finished jobs', count(*) FROM job WHERE state >= 2;"
      "INSERT OR REPLACE INTO mark SELECT 'fence', max(ifnull(max(fence), 0),"
      " ifnull((SELECT value FROM mark WHERE name = 'fence'), 0)) FROM attempt;"},
+    {4, "jobs wait in pools",
+     "ALTER TABLE job ADD COLUMN pool TEXT NOT NULL DEFAULT '';"
+     "DROP INDEX job_unfinished;"
+     "CREATE INDEX job_unfinished ON job (state, pool, kind) WHERE state < 2;"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

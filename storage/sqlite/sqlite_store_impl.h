@@ -72,10 +72,7 @@ class SqliteStore final : public Store {
   Status DeleteJob(std::int64_t id) override;
   Result<JobRecord> RequestCancel(std::int64_t job, const std::vector<NewEvent>& events) override;
 
-  Result<std::optional<LeasedJob>> Acquire(std::string_view worker,
-                                           const std::vector<std::string>& kinds,
-                                           std::chrono::milliseconds duration,
-                                           const std::vector<NewEvent>& events) override;
+  Result<std::vector<LeasedJob>> AcquireJobs(const JobRequest& request) override;
   Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) override;
   void Append(const Lease& lease, std::vector<NewEvent> events,
               std::function<void(Result<std::int64_t>)> done) override;

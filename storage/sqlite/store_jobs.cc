@@ -242,18 +242,17 @@ Result<JobRecord> SqliteStore::RequestCancel(std::int64_t job,
       writer_.Do([&](WriteContext& context) { return CancelJob(context, job, events); }));
 }
 
-Result<std::optional<LeasedJob>> SqliteStore::Acquire(std::string_view worker,
-                                                      const std::vector<std::string>& kinds,
-                                                      std::chrono::milliseconds duration,
-                                                      const std::vector<NewEvent>& events) {
+Result<std::vector<LeasedJob>> SqliteStore::AcquireJobs(const JobRequest& request) {
   // Idle workers ask at every commit; most find nothing, and that must not keep the writer busy.
-  if (writer_.job_counts().queued == 0) return std::optional<LeasedJob>();
-  Result<std::optional<LeasedJob>> leased = writer_.Do(
-      [&](WriteContext& context) { return AcquireJob(context, worker, kinds, duration, events); });
-  if (!leased || !*leased) return leased;
-  Result<JobRecord> whole = WithSpecification(std::move((*leased)->job));
-  if (!whole) return whole.error();
-  (*leased)->job = *std::move(whole);
+  if (writer_.job_counts().queued == 0) return std::vector<LeasedJob>();
+  Result<std::vector<LeasedJob>> leased =
+      writer_.Do([&](WriteContext& context) { return LeaseJobs(context, request); });
+  if (!leased) return leased;
+  for (LeasedJob& one : *leased) {
+    Result<JobRecord> whole = WithSpecification(std::move(one.job));
+    if (!whole) return whole.error();
+    one.job = *std::move(whole);
+  }
   return leased;
 }
 

@@ -108,6 +108,24 @@ class Jobs(WithCell):
         self.assertGreaterEqual(took, 1.5)  # however slow the machine: less would be too fast
         self.assertGreater(len({t for t in seen if 0.0 < t < 1.5}), 0)  # live on the way
 
+    def test_paced_jobs_keep_no_check_waiting(self):
+        stub = self.cell.jobs()
+        paced = []
+        for _ in range(3):  # one more than there are workers for them
+            job = inline_job("mill-1", "slow.rml", "PA;VS1;!VZ1;PU0,0;Z0,0,-100;Z4000,0,-100;PU0,0;")
+            job.simulation.pace = 1.0
+            paced.append(submit(stub, job).name)
+        for name in paced[:2]:
+            wait_until_it_runs(stub, name)
+        check = submit(stub, job_pb2.Job(kind=job_pb2.JOB_KIND_CHECK, machine="machines/mill-1",
+                                         inline_program=program_pb2.ProgramText(file_name="p.rml", content=b"PA;PU0,0;")))
+        wait_for_end(stub, check.name)
+        states = [stub.GetJob(job_pb2.GetJobRequest(name=name)).state for name in paced]
+        self.assertEqual(states, [job_pb2.Job.STATE_RUNNING] * 2 + [job_pb2.Job.STATE_QUEUED])
+        for name in reversed(paced):
+            stub.CancelJob(job_pb2.CancelJobRequest(name=name))
+            wait_for_end(stub, name)
+
     def test_progress_of_a_paced_job_is_by_time(self):
         stub = self.cell.jobs()
         # One step of 2 s and many that take none: by steps or bytes it would be nearly over at once.

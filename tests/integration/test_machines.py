@@ -18,7 +18,7 @@ class Cells(WithCell):
     def test_a_cell_tells_what_it_is(self):
         stub = self.cell.cell_service()
         cell = eventually(lambda: next((cell for cell in [stub.GetCell(cell_pb2.GetCellRequest())]
-                                        if cell.workers == 2), None))
+                                        if cell.workers == 4), None))
         self.assertEqual((cell.jobs_queued, cell.jobs_running), (0, 0))
         self.assertEqual(cell.unary_program_bytes_max, 3 << 20)
         self.assertEqual(cell.program_bytes_max, 256 << 20)

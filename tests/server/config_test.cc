@@ -47,6 +47,7 @@ std::vector<KeyCase> AllKeys() {
       {"web.connections_max", "10", "100000", "100000", {"9", "100001", "ten", ""}, no_integer},
       {"state.directory", "'/a b'", "/a \"b\"", R"("/a \"b\"")", {}, no_text},
       {"workers.count", "-1", "256", "256", {"-2", "257", "2.5", "0x10", " 3"}, no_integer},
+      {"workers.paced", "0", "256", "256", {"-1", "257", "2.5"}, no_integer},
       {"workers.program", "'/w'", "/w", R"("/w")", {}, no_text},
       {"workers.join_token", "'t'", "t\\t", R"("t\\t")", {}, no_text},
       {"workers.lease_ms", "500", "600000", "600000", {"499", "600001"}, no_integer},
@@ -196,6 +197,7 @@ TEST(Config, RangesAreInclusiveAtBothEnds) {
   const std::vector<std::pair<std::string, std::pair<std::string, std::string>>> ends = {
       {"web.connections_max", {"10", "100000"}},
       {"workers.count", {"-1", "256"}},
+      {"workers.paced", {"0", "256"}},
       {"workers.lease_ms", {"500", "600000"}},
       {"jobs.attempts", {"1", "10"}},
       {"limits.virtual_time_s", {"0.001", "31536000"}},

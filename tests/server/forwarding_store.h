@@ -101,10 +101,8 @@ class ForwardingStore : public storage::Store {
                                            const std::vector<storage::NewEvent>& events) override {
     return store_.RequestCancel(job, events);
   }
-  Result<std::optional<storage::LeasedJob>> Acquire(
-      std::string_view worker, const std::vector<std::string>& kinds,
-      std::chrono::milliseconds duration, const std::vector<storage::NewEvent>& events) override {
-    return store_.Acquire(worker, kinds, duration, events);
+  Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest& request) override {
+    return store_.AcquireJobs(request);
   }
   Result<storage::JobRecord> Renew(const storage::Lease& lease,
                                    std::chrono::milliseconds duration) override {

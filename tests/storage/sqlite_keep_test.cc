@@ -172,7 +172,10 @@ TEST_F(SqliteKeep, OldStoreGetsItsMarks) {
   const std::int64_t last = Must(store().ListAttempts(5)).front().fence;
   bed_->Close();
   ExecuteIn(bed_->path(),
-            "DELETE FROM mark; DELETE FROM migration WHERE number = 3; PRAGMA user_version = 2");
+            "DELETE FROM mark; DELETE FROM migration WHERE number >= 3; DROP INDEX job_unfinished;"
+            "ALTER TABLE job DROP COLUMN pool;"
+            "CREATE INDEX job_unfinished ON job (state, kind) WHERE state < 2;"
+            "PRAGMA user_version = 2");
   bed_->options().keep_finished_jobs = 3;
   bed_->Reopen();
   WaitForCount("job", 3);

@@ -400,7 +400,7 @@ TEST_F(Messages, AWholeReportOfAMill) {
   outcome.set_verdict(v1::VERDICT_BAD);
   v1::VerdictReason& first = *outcome.add_reasons();
   first.set_message("3 motions");
-  first.set_code("CELL-E9401");
+  first.set_code("CELL-E9601");
   first.set_advice("lift the tool");
   first.mutable_first()->set_step(4);
   v1::VerdictReason& second = *outcome.add_reasons();
@@ -416,7 +416,7 @@ TEST_F(Messages, AWholeReportOfAMill) {
   EXPECT_EQ(
       ReportText(report),
       "verdict       BAD\n"
-      "              3 motions (CELL-E9401, step 4); lift the tool\n"
+      "              3 motions (CELL-E9601, step 4); lift the tool\n"
       "              deep (RML1-E8002)\n"
       "outcome       completed\n"
       "machine       Roland monoFab SRM-20 (srm-20)\n"

@@ -41,7 +41,7 @@ TEST(CellRules, CellsThatAreTooWide) {
   };
   const std::string groove = "VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD1000,100;PU0,0;!MC0;";
   const auto told = [](const std::string& percent, const std::string& fitting) {
-    return "DOUBTFUL; CELL-E9419 a cell is as wide as " + percent +
+    return "DOUBTFUL; CELL-E9619 a cell is as wide as " + percent +
            " % of the tool at the top of its deepest cut, so that cuts and faults are missed: give "
            "--cell " +
            fitting + " @6";
@@ -61,7 +61,7 @@ TEST(CellRules, CellsThatAreTooWide) {
   EXPECT_EQ(with_cell(scratch, "vee:3.175:10", 0.1, "12x2x10"), told("571.5", "0.005"));
   EXPECT_EQ(with_cell(scratch, "vee:3.175:10", 0.005, "12x2x10"), "GOOD");
   // Beside the block no cell could notice it.
-  EXPECT_EQ(with_cell(groove, "flat:3", 2.0, "5x5x10@0,10,0").find("E9419"), std::string::npos);
+  EXPECT_EQ(with_cell(groove, "flat:3", 2.0, "5x5x10@0,10,0").find("E9619"), std::string::npos);
 }
 
 // Cells of 4 mm miss a travel of 1 mm through the block: the verdict says that they do.

@@ -105,26 +105,26 @@ TEST(ChipLoad, BeyondTwiceTheUsualIsDoubtful) {
   EXPECT_EQ(TextOf(OfChips({0.01, 0.05, 100.0})), "GOOD");
   EXPECT_EQ(TextOf(OfChips({0.01, 0.0251, 100.0})), "GOOD");
   EXPECT_EQ(TextOf(OfChips({0.01, 0.02, 100.0})),
-            "DOUBTFUL; CELL-E9415 an edge takes off 250.0 % of the most that is usual @7");
+            "DOUBTFUL; CELL-E9615 an edge takes off 250.0 % of the most that is usual @7");
   EXPECT_EQ(TextOf(OfChips({0.099, 0.2, 100.0})), "GOOD");
   EXPECT_EQ(TextOf(OfChips({0.125, 0.2, 100.0})),
-            "DOUBTFUL; CELL-E9416 an edge takes off 60.0 % less than the least that is usual @7");
+            "DOUBTFUL; CELL-E9616 an edge takes off 60.0 % less than the least that is usual @7");
   EXPECT_EQ(TextOf(OfChips({0.01, 0.05, 28.3})), "GOOD");
   EXPECT_EQ(TextOf(OfChips({0.01, 0.05, 28.0})),
-            "DOUBTFUL; CELL-E9417 an edge goes at 202.0 % of the greatest speed that is usual @7");
+            "DOUBTFUL; CELL-E9617 an edge goes at 202.0 % of the greatest speed that is usual @7");
 }
 
 // One edge takes twice as much as two; a spindle that is set by hand turns as one says.
 TEST(ChipLoad, GoesByEdgesAndSpindle) {
   EXPECT_EQ(TextOf(OfChips({0.01, 0.04, 100.0}, "flat:3:flutes=1")),
-            "DOUBTFUL; CELL-E9415 an edge takes off 250.0 % of the most that is usual @7");
+            "DOUBTFUL; CELL-E9615 an edge takes off 250.0 % of the most that is usual @7");
   EXPECT_EQ(TextOf(OfChips({0.01, 0.04, 100.0})), "GOOD");
   EXPECT_EQ(TextOf(OfChips({0.01, 0.04, 100.0}, "flat:3:flutes=2", "VS10;!VZ10;!RC6000;", 3000.0)),
-            "DOUBTFUL; CELL-E9415 an edge takes off 250.0 % of the most that is usual @7");
+            "DOUBTFUL; CELL-E9615 an edge takes off 250.0 % of the most that is usual @7");
   // Its speed is changed while it turns: from 15000 rpm, where each takes 0.02 mm, to 6000.
   EXPECT_EQ(TextOf(OfChips({0.005, 0.02, 150.0}, "flat:3:flutes=2",
                            "VS10;!VZ10;!RC15000;!MC1;PU100,100;!RC6000;")),
-            "DOUBTFUL; CELL-E9415 an edge takes off 250.0 % of the most that is usual @10");
+            "DOUBTFUL; CELL-E9615 an edge takes off 250.0 % of the most that is usual @10");
 }
 
 // Down at 10 mm/s is 0.05 mm for an edge: 250 % of 0.02 mm. In the same hole again there is nothing
@@ -133,7 +133,7 @@ TEST(ChipLoad, PlungesHaveARangeOfTheirOwn) {
   EXPECT_EQ(TextOf(OfChips({0.01, 0.05, 100.0, 0.025})), "GOOD");
   EXPECT_EQ(
       TextOf(OfChips({0.01, 0.05, 100.0, 0.02})),
-      "DOUBTFUL; CELL-E9415 an edge takes off 250.0 % of the most that is usual straight down "
+      "DOUBTFUL; CELL-E9615 an edge takes off 250.0 % of the most that is usual straight down "
       "@7");
   EXPECT_EQ(TextOf(OfChips({0.01, 0.05, 100.0, 0.02}, "flat:3:flutes=2", "VS10;!VZ8;!RC6000;")),
             "GOOD");
@@ -159,9 +159,9 @@ TEST(ChipLoad, CountsPassesInMaterialAlone) {
   EXPECT_EQ(judged(""), "GOOD");
   // Back in its own groove the tool takes nothing off, however fast; nor beside the block.
   EXPECT_EQ(judged("VS50;PD300,500;"), "GOOD");
-  EXPECT_EQ(judged("PU5000,5000;VS50;PD6000,5000;").find("CELL-E9415"), std::string::npos);
+  EXPECT_EQ(judged("PU5000,5000;VS50;PD6000,5000;").find("CELL-E9615"), std::string::npos);
   EXPECT_EQ(judged("VS50;PD1000,1500;"),
-            "DOUBTFUL; CELL-E9415 an edge takes off 500.0 % of the most that is usual @9");
+            "DOUBTFUL; CELL-E9615 an edge takes off 500.0 % of the most that is usual @9");
 }
 
 }  // namespace

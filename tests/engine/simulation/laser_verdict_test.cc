@@ -177,17 +177,17 @@ TEST(LaserVerdict, OfABeamThatStands) {
   };
   EXPECT_EQ(with_stand("DELAY .05\n"), "GOOD");
   EXPECT_EQ(with_stand("DELAY .06\n"),
-            "DOUBTFUL; CELL-E9421 the beam stays 0.108 s on a tip that stands @6");
+            "DOUBTFUL; CELL-E9621 the beam stays 0.108 s on a tip that stands @6");
   EXPECT_EQ(with_stand("DELAY .95\n"),
-            "DOUBTFUL; CELL-E9421 the beam stays 0.998 s on a tip that stands @6");
+            "DOUBTFUL; CELL-E9621 the beam stays 0.998 s on a tip that stands @6");
   EXPECT_EQ(with_stand("DELAY .96\n"),
-            "BAD; CELL-E9421 the beam stays 1.008 s on a tip that stands @6");
+            "BAD; CELL-E9621 the beam stays 1.008 s on a tip that stands @6");
   // Two stands are two.
   EXPECT_EQ(with_stand("DELAY .05\n" + To("15.") + "DELAY .05\n"), "GOOD");
   // The head turns about the tip, motion.md 3.5: A by 0.5 rad with up to 0.1 * 2 pi rad/s and 400
   // rad/s3, 0.5 / 0.62832 + 2 sqrt(0.62832 / 400) = 0.875 s, and 0.048 s before and behind it.
   EXPECT_EQ(VerdictOfCut(From("0.") + kOn + To("10.") + To("10.", "0.5") + To("20.", "0.5") + kOff),
-            "DOUBTFUL; CELL-E9421 the beam stays 0.971 s on a tip that stands @6");
+            "DOUBTFUL; CELL-E9621 the beam stays 0.971 s on a tip that stands @6");
 }
 
 // motion.md 8.1: a dwell behind WORK 0 ON is a piercing. OPT-3.40: no power at standstill.
@@ -208,7 +208,7 @@ TEST(LaserVerdict, OfAContourBelowItsSpeed) {
   };
   EXPECT_EQ(with_straight("81.", "101."), "GOOD");
   EXPECT_EQ(with_straight("79.", "99."),
-            "DOUBTFUL; CELL-E9422 20.2 % of a contour is cut below 0.8 of its SPEED @6");
+            "DOUBTFUL; CELL-E9622 20.2 % of a contour is cut below 0.8 of its SPEED @6");
 }
 
 // The way that a contour needs to get up to its speed and down again is no fault of it.
@@ -225,12 +225,12 @@ TEST(LaserVerdict, OfAContourThatNeverComesToItsSpeed) {
     return VerdictOfCut(From("0.") + kRamp + way + kRampOff);
   };
   const std::string all =
-      "DOUBTFUL; CELL-E9422 100.0 % of a contour is cut below 0.8 of its SPEED @6";
+      "DOUBTFUL; CELL-E9622 100.0 % of a contour is cut below 0.8 of its SPEED @6";
   EXPECT_EQ(slow(To(".5") + To("1.") + To("1.5") + To("2.") + To("2.5")), all);
   EXPECT_EQ(slow(To(".5") + To("1.")), all);
   EXPECT_EQ(slow(To("2.5")), all);
   EXPECT_EQ(slow(To("2.6")),
-            "DOUBTFUL; CELL-E9422 25.4 % of a contour is cut below 0.8 of its SPEED @6");
+            "DOUBTFUL; CELL-E9622 25.4 % of a contour is cut below 0.8 of its SPEED @6");
   EXPECT_EQ(slow(To("2.8")), "GOOD");
   // A point has no speed to keep.
   EXPECT_EQ(slow(To("0.0078125")), "GOOD");
@@ -246,7 +246,7 @@ TEST(LaserVerdict, OfTooMuchEnergyByLength) {
   };
   EXPECT_EQ(with_turn("104.5", kOn, kOff), "GOOD");
   EXPECT_EQ(with_turn("104.6", kOn, kOff),
-            "DOUBTFUL; CELL-E9423 5.085 mm on end with more than 1.5 times the energy by length of "
+            "DOUBTFUL; CELL-E9623 5.085 mm on end with more than 1.5 times the energy by length of "
             "the process @6");
   EXPECT_EQ(with_turn("104.6", kRamp, kRampOff), "GOOD");  // power goes with the speed
 }
@@ -260,14 +260,14 @@ TEST(LaserVerdict, OfTooLittleEnergyByLength) {
   };
   EXPECT_EQ(at_speed("15"), "GOOD");
   EXPECT_EQ(at_speed("16"),
-            "DOUBTFUL; CELL-E9424 94.382 mm on end with less than 0.8 of the energy by length of "
+            "DOUBTFUL; CELL-E9624 94.382 mm on end with less than 0.8 of the energy by length of "
             "the process @8");
 }
 
 // OPT-5.45
 TEST(LaserVerdict, OfACutInPtp) {
   EXPECT_EQ(VerdictOfCut(From("0.") + kOn + "PATH PTP\n" + To("10.") + kOff),
-            "DOUBTFUL; CELL-E9425 10.000 mm cut in PATH PTP @7");
+            "DOUBTFUL; CELL-E9625 10.000 mm cut in PATH PTP @7");
   EXPECT_EQ(VerdictOfCut(From("0.") + "PATH PTP\n" + To("10.")), "GOOD");
 }
 
@@ -279,7 +279,7 @@ TEST(LaserVerdict, OfAHeadThatTurnsStraightDown) {
                         ")\nSPEED 10\n" + kOn + To("100.", a, to_b) + kOff);
   };
   const std::string said =
-      "DOUBTFUL; CELL-E9426 A turns 30.006 degrees in a contour within 1 degree of B = 0 @6";
+      "DOUBTFUL; CELL-E9626 A turns 30.006 degrees in a contour within 1 degree of B = 0 @6";
   EXPECT_EQ(swing("0.5235", "0.", "0."), "GOOD");
   EXPECT_EQ(swing("0.5237", "0.", "0."), said);
   EXPECT_EQ(swing("0.5237", "0.0174", "0.0174"), said);
@@ -291,7 +291,7 @@ TEST(LaserVerdict, OfAHeadThatTurnsStraightDown) {
                         kOff);
   };
   EXPECT_EQ(twice(""),
-            "DOUBTFUL; CELL-E9426 A turns 39.992 degrees in a contour within 1 degree of B = 0 @6");
+            "DOUBTFUL; CELL-E9626 A turns 39.992 degrees in a contour within 1 degree of B = 0 @6");
   EXPECT_EQ(twice(To("200.", "0.349", "0.1") + To("300.", "0.349", "0.1") + To("400.", "0.349")),
             "GOOD");
   // Across: of the 1 rad that A turns, 10 degrees while B comes from 1 degree and goes to -1.
@@ -303,9 +303,9 @@ TEST(LaserVerdict, OfAHeadThatTurnsStraightDown) {
 TEST(LaserVerdict, OfAContourNearTheEndOfAnAxis) {
   EXPECT_EQ(VerdictOfCut(From("3500.") + kOn + To("3594.5") + kOff), "GOOD");
   EXPECT_EQ(VerdictOfCut(From("3500.") + kOn + To("3595.5") + kOff),
-            "DOUBTFUL; CELL-E9427 a contour goes 0.500 mm into the last 5 mm of X @6");
+            "DOUBTFUL; CELL-E9627 a contour goes 0.500 mm into the last 5 mm of X @6");
   EXPECT_EQ(VerdictOfCut(From("-500.") + kOn + To("-595.5") + kOff),
-            "DOUBTFUL; CELL-E9427 a contour goes 0.500 mm into the last 5 mm of X @6");
+            "DOUBTFUL; CELL-E9627 a contour goes 0.500 mm into the last 5 mm of X @6");
   EXPECT_EQ(VerdictOfCut(From("3500.") + To("3595.5")), "GOOD");
   EXPECT_EQ(ReportOfCut(From("3500.") + kOn + To("3600.5") + kOff).judgement.reasons[0].code,
             ErrorCode::kTargetOutOfTravel);
@@ -316,10 +316,10 @@ TEST(LaserVerdict, OfAContourNearTheEndOfAnAxis) {
   };
   EXPECT_EQ(turned("12.58", "0.5"), "GOOD");
   EXPECT_EQ(turned("12.59", "0.5"),
-            "DOUBTFUL; CELL-E9427 a contour goes 0.007 rad into the last degree of A @6");
+            "DOUBTFUL; CELL-E9627 a contour goes 0.007 rad into the last degree of A @6");
   EXPECT_EQ(turned("0.", "2.38"), "GOOD");
   EXPECT_EQ(turned("0.", "-2.39"),
-            "DOUBTFUL; CELL-E9427 a contour goes 0.007 rad into the last degree of B @6");
+            "DOUBTFUL; CELL-E9627 a contour goes 0.007 rad into the last degree of B @6");
 }
 
 TEST(LaserVerdict, OfAnAxisThatHardlyMoves) {
@@ -377,7 +377,7 @@ TEST(LaserVerdict, LooksAtFiguresThatAreFacts) {
   int looked_at = 0;
   for (const VerdictRuleInfo& info : CommonVerdictRules()) {
     const int number = Lookup(info.rule.code).number;
-    if (number < 9421 || number > 9427) continue;  // of a beam
+    if (number < 9621 || number > 9627) continue;  // of a beam
     const std::string unit(info.unit == "%" ? "percent" : info.unit);
     EXPECT_TRUE(keys.contains(std::string(info.rule.figure) + '_' + unit)) << info.rule.figure;
     ++looked_at;

@@ -98,7 +98,7 @@ TEST(MillApproach, CountsWhatLiesDeeperThanTheCutsBefore) {
 // With a block it is known what stands in the way: 4 mm, at 60 mm/s and from 48 on (0.8 of that).
 TEST(MillApproach, MaterialInTheWayIsSeen) {
   const std::string said =
-      "DOUBTFUL; CELL-E9420 the tool goes 4.000 mm down into material nearly as fast as Z travels, "
+      "DOUBTFUL; CELL-E9620 the tool goes 4.000 mm down into material nearly as fast as Z travels, "
       "faster than it cuts @4";
   EXPECT_EQ(RunInBlock(Approach("Z500,500,-420;")), said);
   const auto with = [](const std::string& v, const std::string& cut) {

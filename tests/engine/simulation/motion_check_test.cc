@@ -225,7 +225,7 @@ TEST(MotionCheck, IsJudgedByTheRulesOfARun) {
       "@9");
   // A beam that stands 2 s behind the way, nothing of it piercing.
   EXPECT_EQ(VerdictOfCheck(from + "WORK 0,0 /ON\n" + to + "DELAY 2.\n" + off).substr(0, 16),
-            "BAD; CELL-E9421 ");
+            "BAD; CELL-E9621 ");
 }
 
 // A reason belongs to the program that does it, however it was run, and to those that call it.
@@ -336,12 +336,12 @@ TEST(MotionCheck, AMissingProgramIsAnErrorOfAWholeMemory) {
   };
   const std::string call = "COORD ABSOL\nSPEED 10\nCALL 77\n";
   EXPECT_EQ(verdict(call, MemoryGiven::kWhole), "BAD; OPT-E7102");
-  EXPECT_EQ(verdict(call, MemoryGiven::kInPart), "DOUBTFUL; CELL-E9406");
+  EXPECT_EQ(verdict(call, MemoryGiven::kInPart), "DOUBTFUL; CELL-E9606");
   EXPECT_EQ(verdict("FUNCTION 44\n", MemoryGiven::kWhole), "BAD; OPT-E7103");
-  EXPECT_EQ(verdict("FUNCTION 44\n", MemoryGiven::kInPart), "DOUBTFUL; CELL-E9406");
+  EXPECT_EQ(verdict("FUNCTION 44\n", MemoryGiven::kInPart), "DOUBTFUL; CELL-E9606");
   // Whether it is called at all hangs on an input.
   EXPECT_EQ(verdict("IF IL[5] THEN 10\nCALL 77\n10 SPEED 5\n", MemoryGiven::kWhole),
-            "DOUBTFUL; CELL-E9408");
+            "DOUBTFUL; CELL-E9608");
   EXPECT_EQ(verdict("VL[5] = ON\nIF VL[5] THEN 10\nCALL 77\n10 SPEED 5\n", MemoryGiven::kWhole),
             "GOOD");
 }
@@ -352,11 +352,11 @@ TEST(MotionCheck, SaysWhatCutItShort) {
     const std::string all = VerdictOfCheck(text, inputs);
     return all.substr(0, all.find(" motion checked"));
   };
-  EXPECT_EQ(told("CALL 44\n"), "DOUBTFUL; CELL-E9406");
-  EXPECT_EQ(told("WAIT (IL[16])\n"), "DOUBTFUL; CELL-E9407");
-  EXPECT_EQ(told("10 SPEED 20\nGOTO 10\n"), "DOUBTFUL; CELL-E9404");
+  EXPECT_EQ(told("CALL 44\n"), "DOUBTFUL; CELL-E9606");
+  EXPECT_EQ(told("WAIT (IL[16])\n"), "DOUBTFUL; CELL-E9607");
+  EXPECT_EQ(told("10 SPEED 20\nGOTO 10\n"), "DOUBTFUL; CELL-E9604");
   EXPECT_EQ(VerdictOfCheck("VR[2] = 1. / VR[1]\n"),
-            "DOUBTFUL; CELL-E9408 motion checked only up to step 1, line 1: OPT-E7201 division by "
+            "DOUBTFUL; CELL-E9608 motion checked only up to step 1, line 1: OPT-E7201 division by "
             "zero, if VR[1] is 0");
   // It waits for what it was told will not come, or for what it has set itself: so does every run.
   EXPECT_EQ(

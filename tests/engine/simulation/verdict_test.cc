@@ -125,7 +125,7 @@ TEST(Verdict, OfZ0ThatIsMoved) {
                 "10.000 mm: so much less deep is what follows @1; RML1-E8015 nothing is cut: "
                 "the tool never goes below the surface");
   EXPECT_EQ(TextOf(OfStreamInBlock(moved("-1000"), "20x20x10")).substr(0, 62),
-            "DOUBTFUL; CELL-E9403 the tool takes nothing off the block; RML");
+            "DOUBTFUL; CELL-E9603 the tool takes nothing off the block; RML");
   // 12 mm down from there are 2 mm of the work, in the block and beside it.
   machine::RunSetup setup(MillOf("t1"));
   setup.main_program = 1;
@@ -319,10 +319,10 @@ TEST(Verdict, OfWorkBesideTheBlock) {
   EXPECT_EQ(stroke("500,500", "2301,500"), "GOOD");
   EXPECT_EQ(
       stroke("500,500", "2302,500"),
-      "DOUBTFUL; CELL-E9418 0.020 mm of the work lie beside the block @7; CELL-E9418 the work "
+      "DOUBTFUL; CELL-E9618 0.020 mm of the work lie beside the block @7; CELL-E9618 the work "
       "leads 3.020 mm beyond the edge of the block at its greatest X");
   EXPECT_EQ(stroke("500,500", "500,5000"),
-            "DOUBTFUL; CELL-E9418 27.000 mm of the work lie beside the block @7; CELL-E9418 the "
+            "DOUBTFUL; CELL-E9618 27.000 mm of the work lie beside the block @7; CELL-E9618 the "
             "work leads 30.000 mm beyond the edge of the block at its greatest Y");
   const auto shifted = [](const std::string& stock) {
     return TextOf(OfStreamInBlock(Work("PU100,100;PD1100,100;PU100,100;"), stock));
@@ -331,12 +331,12 @@ TEST(Verdict, OfWorkBesideTheBlock) {
   EXPECT_EQ(shifted("20x20x10@4,0,0"), "GOOD");
   EXPECT_EQ(
       shifted("20x20x10@5,0,0"),
-      "DOUBTFUL; CELL-E9418 2.000 mm of the work lie beside the block @7; CELL-E9418 the work "
+      "DOUBTFUL; CELL-E9618 2.000 mm of the work lie beside the block @7; CELL-E9618 the work "
       "leads 4.000 mm beyond the edge of the block at its least X");
   EXPECT_EQ(
       shifted("20x20x10@0,4.5,0"),
-      "DOUBTFUL; CELL-E9403 the tool takes nothing off the block; CELL-E9418 11.000 mm of the "
-      "work lie beside the block @7; CELL-E9418 the work leads 3.500 mm beyond the edge of "
+      "DOUBTFUL; CELL-E9603 the tool takes nothing off the block; CELL-E9618 11.000 mm of the "
+      "work lie beside the block @7; CELL-E9618 the work leads 3.500 mm beyond the edge of "
       "the block at its least Y");
 }
 
@@ -351,9 +351,9 @@ TEST(Verdict, OfTravelThroughTheBlock) {
 
 TEST(Verdict, OfABlockThatIsNotThere) {
   EXPECT_EQ(TextOf(OfStreamInBlock(Work("PD200,100;"), "10x10x10@100,100,0")),
-            "DOUBTFUL; CELL-E9403 the tool takes nothing off the block; CELL-E9418 2.000 mm of the "
-            "work lie beside the block @6; CELL-E9418 the work leads 99.000 mm beyond the edge of "
-            "the block at its least X; CELL-E9418 the work leads 99.000 mm beyond the edge of the "
+            "DOUBTFUL; CELL-E9603 the tool takes nothing off the block; CELL-E9618 2.000 mm of the "
+            "work lie beside the block @6; CELL-E9618 the work leads 99.000 mm beyond the edge of "
+            "the block at its least X; CELL-E9618 the work leads 99.000 mm beyond the edge of the "
             "block at its least Y");
 }
 
@@ -365,15 +365,15 @@ TEST(Verdict, OfAToolBelowTheBlock) {
   EXPECT_EQ(down_to("-1000"), "GOOD");
   // Of a hundredth of a millimetre it is told from beyond it on.
   EXPECT_EQ(down_to("-1001"), "GOOD");
-  EXPECT_EQ(down_to("-1002"), "DOUBTFUL; CELL-E9402 the tool goes 0.020 mm below the block @6");
-  EXPECT_EQ(down_to("-1100"), "DOUBTFUL; CELL-E9402 the tool goes 1.000 mm below the block @6");
-  EXPECT_EQ(down_to("-1010"), "DOUBTFUL; CELL-E9402 the tool goes 0.100 mm below the block @6");
-  EXPECT_EQ(down_to("-1200"), "BAD; CELL-E9402 the tool goes 2.000 mm below the block @6");
+  EXPECT_EQ(down_to("-1002"), "DOUBTFUL; CELL-E9602 the tool goes 0.020 mm below the block @6");
+  EXPECT_EQ(down_to("-1100"), "DOUBTFUL; CELL-E9602 the tool goes 1.000 mm below the block @6");
+  EXPECT_EQ(down_to("-1010"), "DOUBTFUL; CELL-E9602 the tool goes 0.100 mm below the block @6");
+  EXPECT_EQ(down_to("-1200"), "BAD; CELL-E9602 the tool goes 2.000 mm below the block @6");
   // Beside the block, by its radius of 1.5 mm and more, the tool may go as deep as it likes.
   const std::string beside = Work("PD200,100;PU2151,100;Z2151,100,-1200,2151,100,200;");
   EXPECT_EQ(TextOf(OfStreamInBlock(Work("PD200,100;PU2149,100;Z2149,100,-1200,2149,100,200;"),
                                    "20x20x10")),
-            "BAD; CELL-E9402 the tool goes 2.000 mm below the block @8");
+            "BAD; CELL-E9602 the tool goes 2.000 mm below the block @8");
   EXPECT_EQ(TextOf(OfStreamInBlock(beside, "20x20x10")), "GOOD");
 }
 
@@ -391,7 +391,7 @@ TEST(Verdict, OfADeepPass) {
   };
   EXPECT_EQ(TextOf(OfCutWith(pass("300"), "flat:3")), "GOOD");
   EXPECT_EQ(TextOf(OfCutWith(pass("301"), "flat:3")),
-            "DOUBTFUL; CELL-E9412 one pass is as deep as 100.3 % of the width of the tool @6");
+            "DOUBTFUL; CELL-E9612 one pass is as deep as 100.3 % of the width of the tool @6");
   EXPECT_EQ(TextOf(OfCutWith(pass("301"), "flat:3.1")), "GOOD");
   EXPECT_EQ(TextOf(OfCutWith("Z500,500,100,500,500,-800,500,500,200;", "flat:3")), "GOOD");
 }
@@ -403,7 +403,7 @@ TEST(Verdict, OfAShankInMaterial) {
   };
   EXPECT_EQ(TextOf(OfCutWith(pass("401"), "flat:6:flute=4")), "GOOD");
   EXPECT_EQ(TextOf(OfCutWith(pass("402"), "flat:6:flute=4")),
-            "BAD; CELL-E9411 shank or holder goes 0.020 mm into material @6");
+            "BAD; CELL-E9611 shank or holder goes 0.020 mm into material @6");
   EXPECT_EQ(TextOf(OfCutWith(pass("402"), "flat:6")), "GOOD");
   EXPECT_EQ(TextOf(OfCutWith(pass("402"), "flat:6:flute=4.02:shank=8:holder=30@5")), "GOOD");
   EXPECT_EQ(OfCutWith(pass("402"), "flat:6:holder=30@4").verdict, Verdict::kBad);
@@ -420,8 +420,8 @@ TEST(Verdict, OfWhatIsLeftBesideItsTarget) {
   };
   EXPECT_EQ(judged(0.1, 0.1), "GOOD");
   EXPECT_EQ(judged(0.100001, 0.100001), "GOOD");
-  EXPECT_EQ(judged(0.11, 0.0), "DOUBTFUL; CELL-E9414 0.110 mm stand above the target");
-  EXPECT_EQ(judged(0.0, 0.11), "BAD; CELL-E9413 the part is cut 0.110 mm below its target");
+  EXPECT_EQ(judged(0.11, 0.0), "DOUBTFUL; CELL-E9614 0.110 mm stand above the target");
+  EXPECT_EQ(judged(0.0, 0.11), "BAD; CELL-E9613 the part is cut 0.110 mm below its target");
 }
 
 TEST(Verdict, OfHowARunEnds) {
@@ -450,7 +450,7 @@ TEST(Verdict, OfAnAxisBeyondItsTravel) {
   report.violations_dropped = 2;
   // With the number that the machine has for it; else in the words of the cell.
   EXPECT_EQ(TextOf(Judge(report)),
-            "BAD; CELL-E9405 motions that leave the travel of an axis: 3 @3");
+            "BAD; CELL-E9605 motions that leave the travel of an axis: 3 @3");
   report.family = "optimo";
   EXPECT_EQ(TextOf(Judge(report)), "BAD; OPT-E7301 motions that leave the travel of an axis: 3 @3");
   report.outcome = {.kind = machine::OutcomeKind::kFailed,

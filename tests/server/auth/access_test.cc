@@ -99,8 +99,8 @@ std::set<std::string> MethodsThatAskFor(v1::Permission permission) {
 // LIVE-4.04: what brings something to a stop asks for `stop`, and for nothing else.
 TEST(Access, OfWhatStops) {
   EXPECT_THAT(MethodsThatAskFor(v1::PERMISSION_STOP),
-              UnorderedElementsAre("CancelJob", "CancelJobs", "HoldJob", "StopJob", "StopMachine",
-                                   "HoldMachine", "EmergencyStopMachine", "DisarmMachine"));
+              UnorderedElementsAre("CancelJob", "HoldJob", "StopJob", "StopMachine", "HoldMachine",
+                                   "EmergencyStopMachine"));
 }
 
 // Who has not said who he is may ask what server it is, who he is, log in, and join as a worker.
@@ -116,16 +116,19 @@ TEST(Access, OfWhatNeedsControl) {
   for (const MethodDescriptor* method : Methods()) {
     const v1::Access* access = table.Find(PathOf(*method));
     if (!access->needs_control()) continue;
-    EXPECT_EQ(access->permission(), v1::PERMISSION_OPERATE) << method->name();
+    EXPECT_EQ(access->permission(), method->name() == "UndoTeachEntries" ? v1::PERMISSION_PROGRAM
+                                                                         : v1::PERMISSION_OPERATE)
+        << method->name();
     found.insert(method->name());
   }
-  EXPECT_THAT(
-      found, UnorderedElementsAre("RenewControl", "ReleaseControl", "StartMachine", "ZeroMachine",
-                                  "ResumeMachine", "SetMode", "SetOverride", "AcknowledgeAlarm",
-                                  "SetFactor", "WriteVariables", "SetInputs", "SetBreakpoints",
-                                  "SetSimulation", "PressPanelKey", "HeartbeatPanel", "StartAtStep",
-                                  "ConfirmMachine", "ArmMachine", "CreateHandboxSession",
-                                  "PressKey", "HeartbeatHandbox", "HandboxStream"));
+  EXPECT_THAT(found,
+              UnorderedElementsAre("RenewControl", "ReleaseControl", "StartMachine", "ZeroMachine",
+                                   "ResumeMachine", "SetMode", "SetOverride", "AcknowledgeAlarm",
+                                   "SetFactor", "WriteVariables", "SetInputs", "SetGates",
+                                   "SetBreakpoints", "SetSimulation", "PressPanelKey",
+                                   "HeartbeatPanel", "StartAtStep", "ConfirmMachine", "ArmMachine",
+                                   "CreateHandboxSession", "PressKey", "HeartbeatHandbox",
+                                   "HandboxStream", "UndoTeachEntries", "DecideInterrupted"));
 }
 
 // No permission holds another one.

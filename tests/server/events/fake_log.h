@@ -149,9 +149,7 @@ class FakeLog final : public storage::Store {
                                            const std::vector<storage::NewEvent>&) override {
     return No();
   }
-  Result<std::optional<storage::LeasedJob>> Acquire(
-      std::string_view, const std::vector<std::string>&, std::chrono::milliseconds,
-      const std::vector<storage::NewEvent>&) override {
+  Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest&) override {
     return No();
   }
   Result<storage::JobRecord> Renew(const storage::Lease&, std::chrono::milliseconds) override {

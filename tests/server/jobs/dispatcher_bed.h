@@ -119,12 +119,10 @@ class HookedStore final : public ForwardingStore {
     if (Fails(machines_that_fail)) return FullDisk();
     return store_.GetMachine(id);
   }
-  Result<std::optional<storage::LeasedJob>> Acquire(
-      std::string_view worker, const std::vector<std::string>& kinds,
-      std::chrono::milliseconds duration, const std::vector<storage::NewEvent>& events) override {
+  Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest& request) override {
     if (Fails(acquires_that_fail)) return FullDisk();
-    auto leased = store_.Acquire(worker, kinds, duration, events);
-    if (after_acquire) after_acquire(leased && leased->has_value());
+    auto leased = store_.AcquireJobs(request);
+    if (after_acquire) after_acquire(leased && !leased->empty());
     return leased;
   }
   Result<storage::JobRecord> Renew(const storage::Lease& lease,

@@ -64,6 +64,27 @@ TEST_F(WorkerProcessesTest, StartsSoManyAndEndsThemInOrder) {
   EXPECT_EQ(Lives().size(), 3U);
 }
 
+// Each is told its pool.
+TEST_F(WorkerProcessesTest, StartsFurtherOnesOfAPool) {
+  WorkerProcesses::Options options =
+      Options("echo \"[$*]\" >> " + folder_.File("said") + "\nexec sleep 60", 1);
+  options.pool = "computing";
+  options.further_pool = "paced";
+  options.further_count = 2;
+  auto processes = Must(WorkerProcesses::Start(std::move(options)));
+  const auto said = [&](const std::string& what) {
+    const std::string text = Text("said");
+    int count = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1))
+      ++count;
+    return count;
+  };
+  ASSERT_TRUE(Eventually([&] { return said("]\n") == 3; }));
+  EXPECT_EQ(said(" --pool computing]"), 1);
+  EXPECT_EQ(said(" --pool paced]"), 2);
+  processes->Stop(std::chrono::seconds(10));
+}
+
 // Issue "Server and workers": restarts what dies.
 TEST_F(WorkerProcessesTest, StartsAnotherForOneThatWasKilled) {
   auto processes = Must(WorkerProcesses::Start(Options("exec sleep 60")));

@@ -85,14 +85,14 @@ TEST_F(JobMilling, TheVerdictMindsTheBlock) {
   MillingOf(high).mutable_stock()->set_top_mm(3.0);
   Work(high);
   EXPECT_EQ(Outcome().verdict(), v1::VERDICT_BAD);
-  EXPECT_THAT(Reasons(), testing::Contains("CELL-E9401"));
+  EXPECT_THAT(Reasons(), testing::Contains("CELL-E9601"));
   EXPECT_GT(Report().milling().gouges(), 0);
   v1::WorkerAssignment thin = MillFor(kGroove, true);
   MillingOf(thin).mutable_stock()->set_size_z_mm(0.8);
   Work(thin);
   EXPECT_NEAR(Report().milling().below_mm(), 0.2, 1e-6);
   EXPECT_EQ(Outcome().verdict(), v1::VERDICT_DOUBTFUL);  // more than 0.01 mm, not 1 mm
-  EXPECT_THAT(Reasons(), ElementsAre("CELL-E9402"));
+  EXPECT_THAT(Reasons(), ElementsAre("CELL-E9602"));
 }
 
 // 300 by 150 cells of 4 bytes are 180 kB; 6000 by 3000 are 72 MB, more than this job may hold.

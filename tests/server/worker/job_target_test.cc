@@ -75,7 +75,7 @@ TEST_F(JobTargetRun, IsComparedWithWhatIsLeft) {
   EXPECT_EQ(figures.tolerance_mm(), 0.1);
   EXPECT_NEAR(figures.compared_mm2(), 60.0 * 30.0, 1e-6);
   EXPECT_EQ(Outcome().verdict(), v1::VERDICT_DOUBTFUL);
-  EXPECT_THAT(Reasons(), ElementsAre("CELL-E9414"));
+  EXPECT_THAT(Reasons(), ElementsAre("CELL-E9614"));
   EXPECT_THAT(Names(), ElementsAre("picture.svg", "report", "target.png", "toolpath"));
   EXPECT_THAT(Artifacts()["target.png"], StartsWith("\x89PNG\r\n\x1a\n"));
   MillingOf(assignment).mutable_target()->set_picture(false);
@@ -107,7 +107,7 @@ TEST_F(JobTargetRun, MayBeAFile) {
     EXPECT_NEAR(Report().milling().target().deep_mm(), 0.5, 0.0101) << name;
     EXPECT_NEAR(Report().milling().target().left_mm(), 0.0, 0.0101) << name;
     EXPECT_EQ(Outcome().verdict(), v1::VERDICT_BAD) << name;
-    EXPECT_THAT(Reasons(), ElementsAre("CELL-E9413")) << name;
+    EXPECT_THAT(Reasons(), ElementsAre("CELL-E9613")) << name;
   }
 }
 
@@ -170,7 +170,7 @@ TEST_F(JobTargetRun, TheChipsOfTheToolAreJudged) {
   MillingOf(assignment).set_material("aluminium");
   MillingOf(assignment).set_rpm(4500.0);
   Work(assignment);
-  EXPECT_THAT(Reasons(), ElementsAre("CELL-E9415"));
+  EXPECT_THAT(Reasons(), ElementsAre("CELL-E9615"));
   MillingOf(assignment).set_rpm(10000.0);
   Work(assignment);
   EXPECT_THAT(Reasons(), ElementsAre());
