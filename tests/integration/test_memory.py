@@ -114,7 +114,7 @@ class Memory(InFolder):
                     self.assertLess(self.peak("rml1", *words, long, "-o", "-") - least, BOUND)
 
     def test_a_job(self):
-        cell = Cell(workers=1)
+        cell = Cell("--workers.paced", "0", workers=1)
         self.addCleanup(cell.close)
         cell.start()
         found = subprocess.run(["pgrep", "-P", str(cell.process.pid), "rmlcell-worker"], capture_output=True, text=True)
