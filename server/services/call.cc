@@ -51,10 +51,10 @@ Error LaneFull() {
           {}};
 }
 
-Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
-                     std::string_view method, const google::protobuf::Message* request) {
-  CallFacts facts{.method = "/rmlcell.v1." + std::string(method), .peer = context.peer()};
-  for (const auto& [key, value] : context.client_metadata()) {
+CallFacts FactsOf(std::string method, const grpc::ServerContextBase& context,
+                  const std::multimap<grpc::string_ref, grpc::string_ref>& metadata) {
+  CallFacts facts{.method = std::move(method), .peer = context.peer()};
+  for (const auto& [key, value] : metadata) {
     facts.metadata.emplace(std::string(key.data(), key.size()),
                            std::string(value.data(), value.size()));
   }
@@ -63,6 +63,13 @@ Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
       context.auth_context()->FindPropertyValues(GRPC_X509_PEM_CERT_PROPERTY_NAME);
   if (!certificates.empty())
     facts.certificate.assign(certificates.front().data(), certificates.front().size());
+  return facts;
+}
+
+Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
+                     std::string_view method, const google::protobuf::Message* request) {
+  CallFacts facts =
+      FactsOf("/rmlcell.v1." + std::string(method), context, context.client_metadata());
   const v1::Access* access = gate.AccessOf(facts.method);
   if (access != nullptr && request != nullptr)
     facts.resource = ResourceOf(*request, access->resource_field());

@@ -28,6 +28,8 @@ struct CallNeeds {
   CallNeeds Computing() const { return {gate, compute, compute, message_bytes_max}; }
 };
 
+CallFacts FactsOf(std::string method, const grpc::ServerContextBase& context,
+                  const std::multimap<grpc::string_ref, grpc::string_ref>& metadata);
 // `method`: "JobService/SubmitJob". Without a request, of a stream, nothing is known of what the
 // call is about.
 Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
@@ -40,6 +42,9 @@ void LogCall(std::string_view method, const Caller& caller, const grpc::Status& 
 inline constexpr std::int64_t kRefusalBytes = 16 << 20;
 // Error: CellTooLarge.
 Status CheckSize(const CallNeeds& needs, const google::protobuf::Message& request);
+
+// Bytes of a program or product in one answer; larger ones go by a stream.
+inline constexpr std::int64_t kUnaryBytes = 3 << 20;
 
 // Too much waits for this lane already.
 Error LaneFull();

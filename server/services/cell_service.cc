@@ -10,8 +10,6 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr std::int64_t kUnaryProgramBytes = 3 << 20;
-
 storage::WallTime Now() {
   return std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now());
 }
@@ -40,7 +38,7 @@ grpc::ServerUnaryReactor* CellService::GetCell(grpc::CallbackServerContext* cont
     response->set_workers(dispatcher_.workers());
     response->set_jobs_queued(counts->queued);
     response->set_jobs_running(counts->running);
-    response->set_unary_program_bytes_max(kUnaryProgramBytes);
+    response->set_unary_program_bytes_max(kUnaryBytes);
     response->set_program_bytes_max(config_.limit_program_bytes);
     return grpc::Status::OK;
   });

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "proto/bridge/findings.h"
+#include "server/services/call.h"
 
 namespace rmlcell::server {
 namespace {
@@ -34,12 +35,7 @@ class AtTheGate final : public Interceptor {
 
  private:
   void Admit(const std::multimap<grpc::string_ref, grpc::string_ref>& metadata) {
-    CallFacts facts{
-        .method = call_.method(), .peer = call_.server_context()->peer(), .metadata = {}};
-    for (const auto& [key, value] : metadata) {
-      facts.metadata.emplace(std::string(key.data(), key.size()),
-                             std::string(value.data(), value.size()));
-    }
+    const CallFacts facts = FactsOf(call_.method(), *call_.server_context(), metadata);
     const Result<Caller> caller = admit_(facts);
     if (caller) return;
     spdlog::info("{} refused, caller at {}: {}", facts.method, facts.peer,

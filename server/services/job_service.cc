@@ -9,11 +9,6 @@
 #include "server/services/job_streams.h"
 
 namespace rmlcell::server {
-namespace {
-
-constexpr std::int64_t kUnaryArtifactBytes = 3 << 20;
-
-}  // namespace
 
 // The one method that does not go through the executor. Of callers that come together only the
 // first waits here for the disk; the store answers all others from its own thread, with one commit.
@@ -230,7 +225,7 @@ grpc::ServerUnaryReactor* JobService::GetJobArtifact(grpc::CallbackServerContext
         if (!id) return ToGrpcStatus(id.error());
         const auto artifact = book_.FindArtifact(*id, request->artifact());
         if (!artifact) return ToGrpcStatus(artifact.error());
-        if (artifact->size > kUnaryArtifactBytes) {
+        if (artifact->size > kUnaryBytes) {
           return ToGrpcStatus(Error{ErrorCode::kCellTooLarge,
                                     request->artifact() + " has " + std::to_string(artifact->size) +
                                         " bytes, one answer takes 3 MiB; use StreamJobArtifact",

@@ -14,7 +14,6 @@ namespace rmlcell::server {
 namespace {
 
 constexpr std::size_t kChunkBytes = 256 << 10;
-constexpr std::size_t kUnaryBytes = 3 << 20;
 
 v1::Findings FindingsOf(const machine::Translation& translation) {
   return bridge::FindingsOf(translation.ok, translation.diagnostics,
@@ -169,7 +168,7 @@ grpc::ServerUnaryReactor* ProgramService::GetProgramContent(
                   Result<ProgramBook::Content> content =
                       programs_.Read(request->name(), request->form());
                   if (!content) return ToGrpcStatus(content.error());
-                  if (content->bytes.size() > kUnaryBytes) {
+                  if (static_cast<std::int64_t>(content->bytes.size()) > kUnaryBytes) {
                     return ToGrpcStatus(
                         Error{ErrorCode::kCellTooLarge,
                               std::to_string(content->bytes.size()) + " bytes: use DownloadProgram",

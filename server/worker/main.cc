@@ -58,8 +58,9 @@ int main(int argc, char** argv) {
   app.add_option("--server", server, "host:port or unix:/path");
   app.add_option("--name", name, "unique among the workers of the server");
   app.add_option(
-      "--pool", pool,
-      "takes \"paced\" jobs only (simulations with a pace), or \"computing\" ones; else all");
+         "--pool", pool,
+         "takes \"paced\" jobs only (simulations with a pace), or \"computing\" ones; else all")
+      ->check(CLI::IsMember({"paced", "computing"}));
   app.add_option("--log-level", log_level);
   app.add_option("--log-format", log_format, "text or json");
   app.footer("The join token of the server is taken from the environment: RMLCELL_JOIN_TOKEN.");

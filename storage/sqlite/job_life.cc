@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/check.h"
+#include "storage/sqlite/housekeeping.h"
 
 namespace rmlcell::storage::sqlite {
 namespace {
@@ -398,6 +399,17 @@ Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease&
   Result<JobRecord> job = LoseAttempt(context, lease, "lease ran out", policy);
   if (!job) return job.error();
   return std::optional(*std::move(job));
+}
+
+Status RemoveEndedJob(WriteContext& context, std::int64_t id) {
+  const Result<JobRow> row = GetRow(context, id);
+  if (!row) return row.error();
+  if (!IsFinal(row->job.state)) {
+    return Error{ErrorCode::kCellPrecondition,
+                 "job " + std::to_string(id) + " has not ended; cancel it first",
+                 {}};
+  }
+  return RemoveJobWhole(context, id);
 }
 
 }  // namespace rmlcell::storage::sqlite

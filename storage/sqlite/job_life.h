@@ -49,4 +49,7 @@ Result<JobRecord> AbandonJob(WriteContext& context, const Lease& lease, const Lo
 Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease& lease,
                                              const LossPolicy& policy);
 
+// As Store::DeleteJob.
+Status RemoveEndedJob(WriteContext& context, std::int64_t id);
+
 }  // namespace rmlcell::storage::sqlite

@@ -18,6 +18,8 @@ namespace rmlcell::storage::sqlite {
 // none.
 Status CheckRevision(std::optional<Revision> current, Revision expected, const std::string& what,
                      ErrorCode when_missing = ErrorCode::kCellNotFound);
+// All programs and schedules of a machine that goes.
+Status RemoveMemory(WriteContext& context, std::string_view machine);
 
 // Reads go to the pool, writes to the writer; the rules of jobs stand in job_life.h.
 class SqliteStore final : public Store {

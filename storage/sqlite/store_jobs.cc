@@ -6,7 +6,6 @@
 #include "storage/sqlite/content.h"
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/executable_life.h"
-#include "storage/sqlite/housekeeping.h"
 #include "storage/sqlite/job_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
@@ -223,17 +222,7 @@ Result<std::vector<MachineJobs>> SqliteStore::UnfinishedJobs() {
 }
 
 Status SqliteStore::DeleteJob(std::int64_t id) {
-  return writer_.Do([&](WriteContext& context) -> Status {
-    const Result<std::optional<JobRow>> row = context.tables.jobs.Get(id);
-    if (!row) return row.error();
-    if (!*row) return Error{ErrorCode::kCellNotFound, "job " + std::to_string(id), {}};
-    if (!IsFinal((*row)->job.state)) {
-      return Error{ErrorCode::kCellPrecondition,
-                   "job " + std::to_string(id) + " has not ended; cancel it first",
-                   {}};
-    }
-    return RemoveJobWhole(context, id);
-  });
+  return writer_.Do([&](WriteContext& context) { return RemoveEndedJob(context, id); });
 }
 
 Result<JobRecord> SqliteStore::RequestCancel(std::int64_t job,

@@ -6,7 +6,6 @@
 #include "engine/core/units.h"
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/executable_life.h"
-#include "storage/sqlite/memory_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
 namespace rmlcell::storage::sqlite {

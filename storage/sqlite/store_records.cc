@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "storage/sqlite/content_staging.h"
-#include "storage/sqlite/memory_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
 namespace rmlcell::storage::sqlite {

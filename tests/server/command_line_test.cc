@@ -141,6 +141,13 @@ TEST(CommandLine, BothProgramsTellVersionAndUse) {
   }
 }
 
+// A worker of a pool that is none would wait for ever.
+TEST(CommandLine, AWorkerIsOfAPoolThatThereIs) {
+  const auto answer = Ask("", "--pool pacd", "rmlcell-worker");
+  EXPECT_EQ(answer.status, 64);
+  EXPECT_THAT(answer.text, HasSubstr("paced"));
+}
+
 // The address of gRPC in what a server has written so far.
 std::string AddressIn(const std::string& text) {
   const std::size_t at = text.find("gRPC on ");

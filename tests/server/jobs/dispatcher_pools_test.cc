@@ -1,0 +1,53 @@
+// Which workers are given which jobs.
+#include <gtest/gtest.h>
+
+#include "server/jobs/dispatcher.h"
+#include "server/jobs/job_book.h"
+#include "server/records/job_messages.h"
+#include "tests/server/jobs/dispatcher_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+// What only waits holds no worker that computes.
+TEST(DispatcherPools, AWorkerIsGivenJobsOfItsPool) {
+  DispatcherBed bed;
+  const auto of_pool = [](std::string_view pool) {
+    v1::WorkerHello hello = Hello(std::string(pool));
+    hello.set_pool(std::string(pool));
+    return hello;
+  };
+  FakeWorker paced(bed.dispatcher(), of_pool(kPacedPool));
+  FakeWorker computing(bed.dispatcher(), of_pool(kComputingWorkers));
+  const auto submit = [&](const std::string& pool) {
+    v1::Job job;
+    job.set_kind(v1::JOB_KIND_SIMULATE);
+    job.set_machine("machines/optimo-1");
+    job.mutable_inline_program()->set_file_name("part.S");
+    return Must(bed.server.store().SubmitAndWait(
+                    {.machine = "optimo-1",
+                     .kind = "SIMULATE",
+                     .pool = pool,
+                     .specification = job.SerializeAsString(),
+                     .attachments = {{.name = std::string(kMainAttachment), .bytes = "STOP\n"}}}))
+        .job.id;
+  };
+  const std::int64_t slow = submit(std::string(kPacedPool));
+  const std::int64_t second = submit(std::string(kPacedPool));
+  const std::int64_t quick = submit("");
+  ASSERT_TRUE(paced.Take());
+  EXPECT_EQ(paced.job(), slow);
+  ASSERT_TRUE(computing.Take());
+  EXPECT_EQ(computing.job(), quick);
+  computing.Finish();
+  EXPECT_EQ(computing.Released(), true);
+  bed.LookAgain();
+  EXPECT_FALSE(computing.HasJob());
+  EXPECT_EQ(bed.Job(second).state, storage::JobState::kQueued);
+  FakeWorker any(bed.dispatcher(), "any");
+  ASSERT_TRUE(any.Take());
+  EXPECT_EQ(any.job(), second);
+}
+
+}  // namespace
+}  // namespace rmlcell::server
