@@ -88,6 +88,7 @@ struct ProjectRecord {
   WallTime updated_at{};
 };
 
+inline constexpr std::string_view kCheckKind = "CHECK";
 // The kind of the jobs that move a machine: they are never attempted again by themselves.
 inline constexpr std::string_view kRunKind = "RUN";
 
@@ -95,6 +96,20 @@ enum class JobState { kQueued, kRunning, kSucceeded, kFailed, kCancelled, kInter
 inline bool IsFinal(JobState state) {
   return state != JobState::kQueued && state != JobState::kRunning;
 }
+
+// Those of a higher priority start first.
+inline constexpr int kPriorityMin = -100;
+inline constexpr int kPriorityMax = 100;
+
+// What a job waits for besides a worker.
+enum class WaitReason {
+  kNone,
+  kHeld,            // until it is let go
+  kNotBefore,       // its time has not come
+  kAfterJob,        // another one has to succeed first
+  kAfterJobFailed,  // another one did not succeed: a person decides
+  kMachineBusy,     // RUN: its machine runs another one
+};
 
 struct JobOutcome {
   JobState state = JobState::kSucceeded;
@@ -117,6 +132,12 @@ struct JobRecord {
   std::string caller{};
   std::string specification{};  // opaque
   JobState state = JobState::kQueued;
+  int priority = 0;
+  bool held = false;
+  std::optional<WallTime> not_before{};
+  std::vector<std::int64_t> after{};  // jobs that it waits for, those that have not succeeded
+  WaitReason wait = WaitReason::kNone;
+  std::int64_t waits_for = 0;  // the job of kAfterJob, kAfterJobFailed and kMachineBusy
   bool cancel_requested = false;
   int attempts = 0;  // begun and not handed back; the number of an attempt stands in its lease
   int attempts_max = 2;
@@ -131,6 +152,11 @@ struct JobRecord {
 struct JobCounts {
   std::int64_t queued = 0;
   std::int64_t running = 0;
+};
+
+struct JobStateCount {
+  JobState state = JobState::kQueued;
+  std::int64_t jobs = 0;
 };
 
 // The jobs of one machine that wait or run.
@@ -152,20 +178,42 @@ struct AttemptRecord {
   std::string how_it_ended{};
 };
 
-// One line of a job's durable log.
+// What was done with a machine, program, schedule or project: the kind of such an event.
+inline constexpr std::string_view kCreated = "created";
+inline constexpr std::string_view kUpdated = "updated";
+inline constexpr std::string_view kDeleted = "deleted";
+
+// One line of the durable log of a job.
 struct NewEvent {
   std::string kind{};     // "state", "step", "alarm" ...: for filters and people
   std::string payload{};  // opaque
+  std::string caller{};   // who did it; empty: nobody, it came of itself
 };
+// One line of the log of the cell, which is one over all its resources. Jobs tell what happens in
+// them; of other records it is told that they were made, changed or deleted, and no more: what they
+// are now is read where they are kept.
 struct EventRecord {
-  std::int64_t position = 0;  // over all jobs, counts up
-  std::int64_t job = 0;
+  std::int64_t position = 0;  // over the whole cell, counts up, with gaps
+  std::int64_t job = 0;       // 0: of another resource
+  std::string resource{};     // of what is no job: "machines/optimo-1/programs/45"
   std::int64_t sequence = 0;  // within the job, from 1 without a gap
   int attempt = 0;            // 0: from the server, outside an attempt
   WallTime at{};
+  std::string caller{};
   std::string kind{};
   std::string payload{};
 };
+
+// The names of resources, as the API has them.
+inline std::string MachineName(std::string_view id) { return "machines/" + std::string(id); }
+inline std::string ProjectName(std::string_view id) { return "projects/" + std::string(id); }
+inline std::string JobName(std::int64_t id) { return "jobs/" + std::to_string(id); }
+inline std::string NameOfProgram(std::string_view machine, int slot) {
+  return MachineName(machine) + "/programs/" + std::to_string(slot);
+}
+inline std::string NameOfSchedule(std::string_view machine, int number) {
+  return MachineName(machine) + "/laserSchedules/" + std::to_string(number);
+}
 
 // A product of a job: report, toolpath, picture. Bytes are kept once by content, compressed.
 struct NewArtifact {

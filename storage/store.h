@@ -24,6 +24,10 @@ struct NewJob {
   std::string specification{};
   int attempts_max = 2;
   std::int64_t queued_max = 0;  // refused when so many jobs wait already; 0: never
+  int priority = 0;             // kPriorityMin to kPriorityMax
+  bool held = false;            // it waits until LetGo()
+  std::optional<WallTime> not_before{};
+  std::vector<std::int64_t> after{};  // it starts when these have succeeded
   // What the job works on, as artifacts of it: kept with it, whatever happens to slots.
   std::vector<NewArtifact> attachments{};
   std::vector<NewEvent> events{};  // written in the transaction that makes the job
@@ -95,9 +99,21 @@ struct JobRequest {
   std::string worker{};
   std::vector<std::string> kinds{};
   std::vector<std::string> pools{""};
+  // Of a RUN: those of these machines; empty: of all.
+  std::vector<std::string> run_machines{};
   int count = 1;
   std::chrono::milliseconds duration{0};  // of each lease
   std::vector<NewEvent> events{};         // appended to each job
+};
+
+// The program memory of a machine and what belongs to it.
+struct MachineMemory {
+  MachineRecord machine{};
+  std::vector<ProgramRecord> programs{};  // by slot, with object and executable, without source
+  // Slots that held a program once and are empty now, in order (OPT-1.13: deleting counts as
+  // altering).
+  std::vector<int> deleted{};
+  std::vector<ScheduleRecord> schedules{};  // by number
 };
 
 // What to write into one slot. All writes of one call are made, or none.
@@ -124,6 +140,9 @@ struct ProgramWrite {
 // An `expected` revision that does not fit gives CellEtagMismatch; 0 when the record is there
 // CellAlreadyExists; above 0 when it is not there CellNotFound (of a machine: CellUnknownMachine).
 // `limit` is the largest number of rows given; below 1 there are none.
+//
+// Every change of a record is an event of the log of the cell, in the transaction of the change;
+// `caller` is who made it.
 class Store {
  public:
   virtual ~Store() = default;
@@ -132,11 +151,13 @@ class Store {
   virtual Result<std::vector<MachineRecord>> ListMachines() = 0;  // by id
   virtual Result<MachineRecord> GetMachine(std::string_view id) = 0;
   // The revision and times of `machine` are not looked at. CellInvalidArgument: no id.
-  virtual Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected) = 0;
+  virtual Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected,
+                                           std::string_view caller = {}) = 0;
   // With its programs and schedules. Jobs that have ended stay. A machine of this id that is made
   // later goes on counting the revisions. CellUnknownMachine; CellPrecondition: jobs wait for it or
   // run.
-  virtual Status DeleteMachine(std::string_view id, Revision expected) = 0;
+  virtual Status DeleteMachine(std::string_view id, Revision expected,
+                               std::string_view caller = {}) = 0;
 
   // --- programs
   // Slots in order, those after `after_slot`.
@@ -145,42 +166,48 @@ class Store {
   virtual Result<ProgramRecord> GetProgram(std::string_view machine, int slot) = 0;  // CellNotFound
   // Without its bytes. CellNotFound.
   virtual Result<ProgramSummary> GetProgramSummary(std::string_view machine, int slot) = 0;
-  // The program memory of the machine for a run, slots in order: every program with its object and
-  // executable, without its source.
-  virtual Result<std::vector<ProgramRecord>> GetProgramMemory(std::string_view machine) = 0;
-  // Slots that held a program once and are empty now, in order (OPT-1.13: deleting counts as
-  // altering).
-  virtual Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) = 0;
+  // What a run needs of its machine, all as it was at one moment. `wants_programs` is asked once,
+  // with the machine; where it says no, or nothing is there to ask, programs and deleted slots are
+  // left out. It does not call this store.
+  using WantsPrograms = std::function<bool(const MachineRecord&)>;
+  virtual Result<MachineMemory> GetMachineMemory(std::string_view machine,
+                                                 const WantsPrograms& wants_programs) = 0;
   // Replaces objects, deletes the executables of these slots and no others (OPT-1.12, OPT-1.13),
   // stores schedules (whatever is there; their `machine` is not looked at). Summaries in the order
   // of `programs`. CellInvalidArgument: a slot or number out of range or twice; CellTooLarge:
   // kProgramBytesMax.
   virtual Result<std::vector<ProgramSummary>> PutPrograms(
       std::string_view machine, const std::vector<ProgramWrite>& programs,
-      const std::vector<ScheduleRecord>& schedules) = 0;
+      const std::vector<ScheduleRecord>& schedules, std::string_view caller = {}) = 0;
   // The executable goes with it (OPT-1.12). CellNotFound.
-  virtual Status DeleteProgram(std::string_view machine, int slot, Revision expected) = 0;
+  virtual Status DeleteProgram(std::string_view machine, int slot, Revision expected,
+                               std::string_view caller = {}) = 0;
   // Kept only while the object still has `object_revision` (OPT-1.15); else nothing happens and
   // false is returned, also when there is no object. The revision stays as it is.
   virtual Result<bool> PutExecutable(std::string_view machine, int slot, Revision object_revision,
-                                     std::string_view executable) = 0;
+                                     std::string_view executable, std::string_view caller = {}) = 0;
   // The object stays (OPT-1.14). CellNotFound: no program, or no executable.
-  virtual Status DeleteExecutable(std::string_view machine, int slot) = 0;
+  virtual Status DeleteExecutable(std::string_view machine, int slot,
+                                  std::string_view caller = {}) = 0;
 
   // --- laser schedules
   virtual Result<std::vector<ScheduleRecord>> ListSchedules(
       std::string_view machine) = 0;  // by number
   // CellInvalidArgument: number out of range.
-  virtual Result<ScheduleRecord> PutSchedule(const ScheduleRecord& schedule, Revision expected) = 0;
-  virtual Status DeleteSchedule(std::string_view machine, int number) = 0;  // CellNotFound
+  virtual Result<ScheduleRecord> PutSchedule(const ScheduleRecord& schedule, Revision expected,
+                                             std::string_view caller = {}) = 0;
+  virtual Status DeleteSchedule(std::string_view machine, int number,
+                                std::string_view caller = {}) = 0;  // CellNotFound
 
   // --- projects
   // By id, those after `after_id`.
   virtual Result<std::vector<ProjectRecord>> ListProjects(std::string_view after_id, int limit) = 0;
   virtual Result<ProjectRecord> GetProject(std::string_view id) = 0;  // CellNotFound
   // As PutMachine.
-  virtual Result<ProjectRecord> PutProject(const ProjectRecord& project, Revision expected) = 0;
-  virtual Status DeleteProject(std::string_view id, Revision expected) = 0;  // CellNotFound
+  virtual Result<ProjectRecord> PutProject(const ProjectRecord& project, Revision expected,
+                                           std::string_view caller = {}) = 0;
+  virtual Status DeleteProject(std::string_view id, Revision expected,
+                               std::string_view caller = {}) = 0;  // CellNotFound
 
   // --- jobs
   // Durable before `done` is called, from a thread of the store or before Submit() returns: many
@@ -188,9 +215,11 @@ class Store {
   // commit waits for it; it may call this store. Attachments are hashed and compressed by the
   // calling thread before that. CellRequestIdReused when request_id is known with another
   // request_hash; CellNotFound: an attachment names content that is not there; CellInvalidArgument:
-  // attempts_max below 1, an attachment's name twice; CellTooLarge: an event beyond
-  // kEventPayloadBytesMax; CellResourceExhausted: queued_max jobs wait and the request_id is new;
-  // or too many writes wait already, told at once by the calling thread.
+  // attempts_max below 1, an attachment's name twice, a priority out of range; CellNotFound and
+  // CellPrecondition: a job of `after` that there is not, or that has ended otherwise;
+  // CellTooLarge: an event beyond kEventPayloadBytesMax; CellResourceExhausted: queued_max jobs
+  // wait and the request_id is new; or too many writes wait already, told at once by the calling
+  // thread.
   virtual void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) = 0;
   virtual Result<SubmittedJob> SubmitAndWait(NewJob job);
   // The job that this request made, or nothing. CellRequestIdReused, as of Submit().
@@ -201,23 +230,41 @@ class Store {
   virtual Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) = 0;
   virtual Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) = 0;  // by number
   virtual Result<JobCounts> CountJobs() = 0;  // cheap: called for every submission
+  // Of the jobs of this machine, kind and caller, whatever else the query says; states without jobs
+  // are left out. Dear: all of them are looked at.
+  virtual Result<std::vector<JobStateCount>> CountByState(const JobQuery& query) = 0;
   // By id of the machine; those without such jobs are left out.
   virtual Result<std::vector<MachineJobs>> UnfinishedJobs() = 0;
   // With its events, attempts and products; whoever asks for its events is told that they are gone.
   // CellNotFound; CellPrecondition: it has not ended.
-  virtual Status DeleteJob(std::int64_t id) = 0;
+  virtual Status DeleteJob(std::int64_t id, std::string_view caller = {}) = 0;
 
   // Queued: cancelled at once (CellCancelled), with `events`. Running: marked, without events; the
   // holder of the lease ends it. Final: unchanged. Returns the job as it then is.
   virtual Result<JobRecord> RequestCancel(std::int64_t job,
                                           const std::vector<NewEvent>& events) = 0;
 
+  // --- the queue: jobs that wait and no others (CellPrecondition). `events` are appended.
+  // Of those that are ready the one of the highest priority starts first, then the oldest; Move()
+  // gives a job another place.
+  //
+  // It does not start until it is let go.
+  virtual Result<JobRecord> HoldBack(std::int64_t job, const std::vector<NewEvent>& events) = 0;
+  // It waits no longer for a person: neither held back nor for jobs that did not succeed.
+  virtual Result<JobRecord> LetGo(std::int64_t job, const std::vector<NewEvent>& events) = 0;
+  // In front of `before`, with its priority (CellNotFound; CellPrecondition: it does not wait in
+  // the same pool for the same kind of worker, or there is no room between the two); 0: behind all
+  // others of its priority, which is `priority` from now on where it is given.
+  virtual Result<JobRecord> Move(std::int64_t job, std::int64_t before, std::optional<int> priority,
+                                 const std::vector<NewEvent>& events) = 0;
+
   // --- leases; all times by the clock of the store
   // A job has at most one holder. A lease that ran out stays its holder's until Expire() takes it:
   // work that was done is kept while nobody else has begun it.
   //
-  // The oldest queued jobs that fit, oldest first, as many as are asked for or fewer. One may have
-  // cancel_requested, when an earlier holder gave it back: the new one ends it.
+  // The first of the queue that are ready and fit, as many as are asked for or fewer. One may have
+  // cancel_requested, when an earlier holder gave it back: the new one ends it. A machine runs one
+  // RUN at a time.
   virtual Result<std::vector<LeasedJob>> AcquireJobs(const JobRequest& request) = 0;
   // One job of the common pool, or nothing.
   Result<std::optional<LeasedJob>> Acquire(std::string_view worker,
@@ -228,8 +275,8 @@ class Store {
   // specification, so that the holder sees cancel_requested.
   virtual Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) = 0;
   // CellLeaseLost, CellTooLarge, CellResourceExhausted. `done` gets the last sequence number
-  // written, and is called as that of Submit(). What one thread appends is written in the order of
-  // its calls.
+  // written, and is called as that of Submit(). What is appended under one lease is written in the
+  // order of the calls.
   virtual void Append(const Lease& lease, std::vector<NewEvent> events,
                       std::function<void(Result<std::int64_t>)> done) = 0;
   virtual Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events);
@@ -243,8 +290,10 @@ class Store {
   virtual Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) = 0;
   // The worker is known to be dead: as if the lease ran out now. CellLeaseLost.
   virtual Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) = 0;
-  // Every lease that ran out. Any server may call it at any time. Returns the jobs that changed;
-  // one that cannot be read does not keep the others from going on.
+  // Every lease that ran out, and every job whose time has come may start. Any server may call it
+  // at any time. Returns the jobs that changed; one that cannot be read does not keep the others
+  // from going on. It may take nothing for a while after the store was lost and found again:
+  // whoever could not renew meanwhile gets time to.
   virtual Result<std::vector<JobRecord>> Expire(const LossPolicy& policy) = 0;
 
   // --- events and artifacts
@@ -256,15 +305,22 @@ class Store {
   virtual Result<std::vector<EventRecord>> AllEvents(std::int64_t after_position, int limit) = 0;
   virtual Result<std::int64_t> LastPosition() = 0;     // of all events ever written; 0: none
   virtual Result<std::int64_t> EventsGoneUntil() = 0;  // a position; 0: all are there
+  // Names this log as it goes on from the opening of the store. Who keeps a position keeps this
+  // with it.
+  virtual std::string LogId() = 0;
+  // Whether a position that was seen under this id stands in this log. False: it is of another log,
+  // or of what was lost when a backup was put back.
+  virtual Result<bool> HasPosition(std::string_view log_id, std::int64_t position) = 0;
   virtual Result<std::vector<ArtifactRecord>> ListArtifacts(std::int64_t job) = 0;  // by name
   virtual Result<ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) = 0;
   virtual Result<std::string> ReadBlob(std::string_view sha256) = 0;  // any content; CellNotFound
 
   // Called after each commit that wrote events or changed jobs, from a thread of the store and
-  // under no lock: a hint to read the rows, which may come late, twice or for nothing. It may call
-  // this store and does not throw. The returned handle ends it when destroyed, also from inside the
-  // call; from elsewhere that waits for a call that is under way, so hold no lock there that the
-  // call takes. The handle may outlive the store.
+  // under no lock: a hint to read the rows, which may come twice or for nothing, and a second late,
+  // also where the store was lost meanwhile. It may call this store and does not throw. The
+  // returned handle ends it when destroyed, also from inside the call; from elsewhere that waits
+  // for a call that is under way, so hold no lock there that the call takes. The handle may outlive
+  // the store.
   class Subscription {
    public:
     virtual ~Subscription() = default;

@@ -91,7 +91,7 @@ Result<v1::SimulationOptions> OptionsMessage(const SimulateOptions& options,
   if (!options.breakpoint.empty()) {
     const Result<v1::StepPlace> place = ParseStepPlace(options.breakpoint);
     if (!place) return place.error();
-    *message.mutable_breakpoint() = *place;
+    *message.add_breakpoints()->mutable_step() = *place;
   }
   if (!options.inputs_file.empty()) {
     const Result<std::string> text = bridge::ReadFile(options.inputs_file, kFileBytesMax);
@@ -137,7 +137,10 @@ Result<std::vector<int>> AddExecutables(const std::vector<std::string>& executab
 
 Status CheckPlaces(const v1::SimulationOptions& options,
                    const std::vector<simulation::MemoryProgram>& programs) {
-  for (const v1::StepPlace* place : {&options.simul(), &options.breakpoint()}) {
+  std::vector<const v1::StepPlace*> places = {&options.simul()};
+  for (const v1::Breakpoint& breakpoint : options.breakpoints())
+    places.push_back(&breakpoint.step());
+  for (const v1::StepPlace* place : places) {
     const bool there = place->program() == 0 ||
                        std::ranges::find(programs, place->program(),
                                          &simulation::MemoryProgram::slot) != programs.end();

@@ -1,9 +1,13 @@
-// The live page: one event stream (rmlcell.v1.JobService/WatchJobs) shows all machines and jobs. A browser
+// The live page: one event stream (rmlcell.v1.CellService/WatchCell) shows all machines and jobs. A browser
 // opens only six connections to a host, over all its tabs, so this page never opens a second stream.
 // Text from the server only ever becomes text nodes.
 "use strict";
 
-const WATCH = "/rmlcell.v1.JobService/WatchJobs?message=%7B%7D";
+const SUBSCRIPTIONS = [
+  { id: "jobs", jobs: { withoutSignals: true } },
+  { id: "machines", machines: {} },
+];
+const WATCH = `/rmlcell.v1.CellService/WatchCell?message=${encodeURIComponent(JSON.stringify({ subscriptions: SUBSCRIPTIONS }))}`;
 const RETRY_MS = [1000, 2000, 4000, 8000, 15000]; // then again and again the last
 const CALL_MS = 15000; // patience for one answer
 const FINISHED_SHOWN = 200;
@@ -11,7 +15,7 @@ const FINISHED_SHOWN = 200;
 const jobs = new Map(); // by name
 const progress = new Map(); // by name of the job
 const rows = new Map(); // by name of the job: the elements of its row
-let machines = [];
+const machines = new Map(); // by name
 let filter = "all";
 let retries = 0;
 
@@ -54,9 +58,13 @@ function connect() {
     if (message.snapshot) {
       retries = 0;
       showLink("live", "Live");
-      takeSnapshot(message.snapshot);
+      takeSnapshot(message.subscriptions, message.snapshot);
     } else if (message.event) {
       takeEvent(message.event);
+    } else if (message.status) {
+      const machine = machines.get(message.status.machine);
+      if (machine) machine.status = message.status;
+      scheduleDraw();
     } else if (message.progress) {
       progress.set(message.progress.job, message.progress);
       scheduleDraw();
@@ -73,16 +81,32 @@ function connect() {
   });
 }
 
-function takeSnapshot(snapshot) {
-  jobs.clear();
-  progress.clear();
-  for (const job of snapshot.jobs ?? []) jobs.set(job.name, job);
-  machines = snapshot.machines ?? [];
+function takeSnapshot(subscriptions, snapshot) {
+  if (subscriptions.includes("jobs")) {
+    jobs.clear();
+    progress.clear();
+    for (const job of snapshot.jobs ?? []) jobs.set(job.name, job);
+  } else {
+    machines.clear();
+    for (const machine of snapshot.machines ?? []) machines.set(machine.name, machine);
+  }
+  scheduleDraw();
+}
+
+function takeEvent(event) {
+  if (event.job) takeJobEvent(event.job);
+  if (event.jobDeleted) {
+    jobs.delete(event.resource);
+    progress.delete(event.resource);
+  }
+  const changed = event.machine?.changed;
+  if (changed?.change === "RECORD_CHANGE_DELETED") machines.delete(event.resource);
+  else if (changed) machines.set(event.resource, { ...changed.machine, status: machines.get(event.resource)?.status });
   scheduleDraw();
 }
 
 // What an event says about a job is little; what is not known from it is asked for.
-function takeEvent(event) {
+function takeJobEvent(event) {
   const job = jobs.get(event.job);
   if (job && event.state) job.state = event.state;
   if (job && event.ended) {
@@ -248,7 +272,8 @@ function draw() {
 
 function drawMachines(all) {
   const list = byId("machines");
-  const items = machines.map((machine) => {
+  const ordered = [...machines.values()].sort((a, b) => (a.name < b.name ? -1 : 1));
+  const items = ordered.map((machine) => {
     const active = all.filter((job) => job.machine === machine.name && !isFinished(job.state)).length;
     const [word, tone] = MACHINE_STATES[machine.status?.state] ?? ["Unknown", "off"];
     const chip = element("span", { className: "chip" }, word);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/machine/editing.h"
+#include "engine/machine/language_word.h"
 #include "engine/machine/program_file.h"
 #include "engine/machine/run_setup.h"
 #include "engine/machine/tools.h"
@@ -198,6 +199,9 @@ class MachineFamily {
 
   // What an editor asks about program texts; null: nobody writes them by hand.
   virtual const Editing* editing() const { return nullptr; }
+
+  // The words of its language, by name.
+  virtual std::vector<LanguageWord> words() const { return {}; }
 
   // Whether bytes are an executable of this family, made of the program of this slot (1..99).
   // Errors: ObjectCorrupt (7034), CellInvalidArgument for that of another program.

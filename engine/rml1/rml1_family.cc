@@ -5,6 +5,7 @@
 
 #include "engine/core/number_text.h"
 #include "engine/machine/shape.h"
+#include "engine/rml1/command_facts.h"
 #include "engine/rml1/figures.h"
 #include "engine/rml1/physical.h"
 #include "engine/rml1/run.h"
@@ -207,6 +208,7 @@ class MillFamily final : public machine::MachineFamily {
   std::span<const machine::FigureInfo> figures() const override { return FigureTable(); }
   std::span<const machine::VerdictRule> verdict_rules() const override { return VerdictRules(); }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override;
+  std::vector<machine::LanguageWord> words() const override { return CommandFacts(); }
   machine::Translation Translate(const machine::SourceFile& file,
                                  const machine::Parameters& parameters,
                                  const machine::CheckOptions& options) const override;

@@ -10,6 +10,7 @@
 
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
+#include "engine/core/units.h"
 #include "rmlcell/v1/job.pb.h"
 
 namespace rmlcell::bridge {

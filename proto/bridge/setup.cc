@@ -80,7 +80,8 @@ simulation::RunOptions RunOptionsOf(const v1::SimulationOptions& options, const 
       .mode = FromProto(options.mode(), default_mode),
       .inputs = InputsOf(options)};
   if (options.override_percent() > 0.0) run.override_percent = options.override_percent();
-  if (options.has_breakpoint()) run.breakpoint = StepOf(options.breakpoint(), main_program);
+  if (!options.breakpoints().empty())
+    run.breakpoint = StepOf(options.breakpoints(0).step(), main_program);
   if (options.has_simul()) run.simul = StepOf(options.simul(), main_program);
   if (budget.steps() > 0) run.budget.steps = static_cast<std::uint64_t>(budget.steps());
   if (budget.virtual_time_ns() > 0) run.budget.virtual_time = SimTime(budget.virtual_time_ns());

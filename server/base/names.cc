@@ -113,14 +113,4 @@ Result<int> PageSize(int asked, PageSizes sizes) {
   return asked == 0 ? sizes.fallback : std::min(asked, sizes.max);
 }
 
-std::string MachineName(std::string_view id) { return "machines/" + std::string(id); }
-std::string ProjectName(std::string_view id) { return "projects/" + std::string(id); }
-std::string JobName(std::int64_t id) { return "jobs/" + std::to_string(id); }
-std::string NameOfProgram(std::string_view machine, int slot) {
-  return MachineName(machine) + "/programs/" + std::to_string(slot);
-}
-std::string NameOfSchedule(std::string_view machine, int number) {
-  return MachineName(machine) + "/laserSchedules/" + std::to_string(number);
-}
-
 }  // namespace rmlcell::server

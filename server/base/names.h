@@ -51,10 +51,10 @@ struct PageSizes {
 };
 Result<int> PageSize(int asked, PageSizes sizes);
 
-std::string MachineName(std::string_view id);
-std::string ProjectName(std::string_view id);
-std::string JobName(std::int64_t id);
-std::string NameOfProgram(std::string_view machine, int slot);
-std::string NameOfSchedule(std::string_view machine, int number);
+using storage::JobName;
+using storage::MachineName;
+using storage::NameOfProgram;
+using storage::NameOfSchedule;
+using storage::ProjectName;
 
 }  // namespace rmlcell::server

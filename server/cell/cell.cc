@@ -20,17 +20,19 @@
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
 #include "server/jobs/worker_processes.h"
+#include "server/machines/machine_statuses.h"
+#include "server/programs/language_tools.h"
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
 #include "server/records/job_messages.h"
+#include "server/records/machine_messages.h"
 #include "server/services/account_service.h"
 #include "server/services/cell_service.h"
 #include "server/services/foreign_calls.h"
 #include "server/services/handbox_service.h"
 #include "server/services/host_service.h"
 #include "server/services/job_service.h"
-#include "server/services/machine_messages.h"
 #include "server/services/machine_service.h"
 #include "server/services/program_service.h"
 #include "server/services/project_service.h"
@@ -46,6 +48,10 @@ namespace {
 constexpr int kStoreThreads = 8;
 // Programs that may wait to be translated or compared, each with its bytes in memory.
 constexpr std::size_t kComputeWaitingMax = 64;
+
+// Events that tell of machines, programs, schedules and projects; who comes back after more of them
+// begins with a snapshot.
+constexpr std::int64_t kRecordEventsKept = 10'000;
 
 // What the log of the store grows to between two checkpoints of a cell that is not busy.
 constexpr std::int64_t kLogBytesPrepared = 17 << 20;
@@ -103,12 +109,14 @@ struct Cell::Parts {
   std::unique_ptr<Executor> executor;
   std::unique_ptr<Executor> compute;
   std::unique_ptr<EventFeed> feed;
+  std::unique_ptr<MachineStatuses> statuses;
   std::unique_ptr<Dispatcher> dispatcher;
   OpenStreams open;
   Gate gate{RandomText()};
   std::unique_ptr<JobBook> book;
   std::unique_ptr<ProgramBook> programs;
   std::unique_ptr<MemoryTools> tools;
+  std::unique_ptr<LanguageTools> language;
   std::unique_ptr<ProjectBook> projects;
   std::unique_ptr<JobService> job_service;
   std::unique_ptr<MachineService> machine_service;
@@ -116,6 +124,8 @@ struct Cell::Parts {
   std::unique_ptr<ProjectService> project_service;
   std::unique_ptr<HandboxService> handbox_service;
   std::unique_ptr<HostService> host_service;
+  std::unique_ptr<JobFactsBook> facts;
+  WatchRegistry watches;
   std::unique_ptr<CellService> cell_service;
   std::unique_ptr<AccountService> account_service;
   std::unique_ptr<WorkerService> worker_service;
@@ -136,6 +146,7 @@ struct Cell::Parts {
 Status Cell::Parts::OpenStore() {
   auto opened = storage::OpenSqliteStore({.path = config.state_directory + "/cell.db",
                                           .keep_finished_jobs = config.jobs_keep_finished,
+                                          .keep_record_events = kRecordEventsKept,
                                           .log_bytes_prepared = kLogBytesPrepared});
   if (!opened) {
     Error error = opened.error();
@@ -171,19 +182,27 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   compute = std::make_unique<Executor>(
       std::max(1, static_cast<int>(std::thread::hardware_concurrency())), kComputeWaitingMax);
   feed = std::make_unique<EventFeed>(*store);
+  statuses = std::make_unique<MachineStatuses>(*store, *feed, *executor);
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
   programs = std::make_unique<ProgramBook>(*store, config);
   tools = std::make_unique<MemoryTools>(*store, *programs);
+  language = std::make_unique<LanguageTools>(*store, *programs);
   projects = std::make_unique<ProjectBook>(*store);
   const CallNeeds needs{gate, *executor, *compute, config.limit_message_bytes};
   job_service = std::make_unique<JobService>(needs, *book, *dispatcher, *feed, open, instance_id);
-  machine_service = std::make_unique<MachineService>(needs, *store);
-  program_service = std::make_unique<ProgramService>(needs, *programs, *tools, open);
+  machine_service = std::make_unique<MachineService>(
+      needs, MachineWatchNeeds{*executor, open, *store, *feed, instance_id});
+  program_service = std::make_unique<ProgramService>(needs, *programs, *tools, *language, open);
   project_service = std::make_unique<ProjectService>(needs, *projects);
   handbox_service = std::make_unique<HandboxService>(needs);
   host_service = std::make_unique<HostService>(needs);
-  cell_service = std::make_unique<CellService>(needs, *store, *dispatcher, config, instance_id);
+  facts = std::make_unique<JobFactsBook>(*store);
+  cell_service = std::make_unique<CellService>(
+      needs,
+      CellWatchNeeds{*executor, open, CellRecords{*store, *book, *programs, *projects}, *feed,
+                     *facts, watches, instance_id},
+      *dispatcher, config);
   account_service = std::make_unique<AccountService>(needs);
   worker_service = std::make_unique<WorkerService>(needs, *dispatcher);
 
@@ -311,6 +330,7 @@ void Cell::Stop() {
   parts.web.reset();
   parts.server.reset();
   parts.compute.reset();
+  parts.statuses.reset();
   parts.executor.reset();
   parts.dispatcher.reset();
   parts.feed.reset();

@@ -13,7 +13,9 @@ constexpr int kReadBatch = 1000;
 // enough.
 constexpr std::size_t kTailEvents = 1024;
 
-constexpr std::int64_t kEverything = 0;  // no job has this number
+std::string ResourceOf(const storage::EventRecord& event) {
+  return event.job > 0 ? storage::JobName(event.job) : event.resource;
+}
 
 }  // namespace
 
@@ -25,8 +27,8 @@ struct EventFeed::Watcher {
 
 class EventFeed::Handle : public EventFeed::Subscription {
  public:
-  Handle(EventFeed& feed, std::int64_t key, std::shared_ptr<Watcher> watcher)
-      : feed_(feed), key_(key), watcher_(std::move(watcher)) {}
+  Handle(EventFeed& feed, std::string key, std::shared_ptr<Watcher> watcher)
+      : feed_(feed), key_(std::move(key)), watcher_(std::move(watcher)) {}
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
   ~Handle() override {
@@ -44,7 +46,7 @@ class EventFeed::Handle : public EventFeed::Subscription {
 
  private:
   EventFeed& feed_;
-  std::int64_t key_;
+  std::string key_;
   std::shared_ptr<Watcher> watcher_;
 };
 
@@ -67,17 +69,16 @@ EventFeed::~EventFeed() {
   wake_.notify_all();
 }
 
-std::unique_ptr<EventFeed::Subscription> EventFeed::Subscribe(std::optional<std::int64_t> job,
+std::unique_ptr<EventFeed::Subscription> EventFeed::Subscribe(std::string resource,
                                                               std::function<void()> wake) {
   auto watcher = std::make_shared<Watcher>();
   watcher->wake = std::move(wake);
-  const std::int64_t key = job.value_or(kEverything);
   {
     const std::lock_guard lock(mutex_);
-    watchers_.emplace(key, watcher);
+    watchers_.emplace(resource, watcher);
     if (hinted_) wake_.notify_one();
   }
-  return std::make_unique<Handle>(*this, key, std::move(watcher));
+  return std::make_unique<Handle>(*this, std::move(resource), std::move(watcher));
 }
 
 Result<std::vector<storage::EventRecord>> EventFeed::EventsAfter(std::int64_t position, int limit) {
@@ -98,7 +99,7 @@ std::optional<std::vector<storage::EventRecord>> EventFeed::FromTail(std::int64_
                                                                      std::int64_t after_sequence,
                                                                      int limit) {
   const std::lock_guard lock(mutex_);
-  const auto found = tails_.find(job);
+  const auto found = tails_.find(storage::JobName(job));
   if (found == tails_.end() || found->second.empty()) return std::nullopt;
   const std::deque<storage::EventRecord>& tail = found->second;
   if (tail.front().sequence > after_sequence + 1) return std::nullopt;
@@ -109,37 +110,42 @@ std::optional<std::vector<storage::EventRecord>> EventFeed::FromTail(std::int64_
       first, first + std::min<std::ptrdiff_t>(limit, tail.end() - first));
 }
 
-void EventFeed::PublishProgress(std::int64_t job, std::string bytes) {
+void EventFeed::Publish(const std::string& resource, std::string bytes) {
   auto shared = std::make_shared<const std::string>(std::move(bytes));
   const std::lock_guard lock(mutex_);
   const bool first = arriving_.empty();
-  arriving_[job] = std::move(shared);
+  arriving_[resource] = std::move(shared);
   if (first) wake_.notify_one();  // the thread may have gone to sleep until the next poll
 }
 
-void EventFeed::ForgetProgress(std::int64_t job) {
+void EventFeed::Forget(const std::string& resource) {
   const std::lock_guard lock(mutex_);
-  arriving_.erase(job);
-  progress_.erase(job);
+  arriving_.erase(resource);
+  latest_.erase(resource);
 }
 
-std::optional<ProgressText> EventFeed::ProgressAfter(std::int64_t job, std::uint64_t seen) {
+std::optional<Latest> EventFeed::LatestAfter(const std::string& resource, std::uint64_t seen) {
   const std::lock_guard lock(mutex_);
-  const auto found = progress_.find(job);
-  if (found == progress_.end() || found->second.version <= seen) return std::nullopt;
+  const auto found = latest_.find(resource);
+  if (found == latest_.end() || found->second.version <= seen) return std::nullopt;
   return found->second;
 }
 
-std::vector<ProgressText> EventFeed::AllProgressAfter(std::uint64_t seen) {
-  std::vector<ProgressText> newer;
+std::vector<Latest> EventFeed::AllLatestAfter(std::uint64_t seen) {
+  std::vector<Latest> newer;
   {
     const std::lock_guard lock(mutex_);
-    for (const auto& [job, progress] : progress_) {
-      if (progress.version > seen) newer.push_back(progress);
+    for (const auto& [resource, latest] : latest_) {
+      if (latest.version > seen) newer.push_back(latest);
     }
   }
-  std::ranges::sort(newer, {}, &ProgressText::version);
+  std::ranges::sort(newer, {}, &Latest::version);
   return newer;
+}
+
+std::uint64_t EventFeed::version() {
+  const std::lock_guard lock(mutex_);
+  return version_;
 }
 
 std::int64_t EventFeed::position() {
@@ -151,7 +157,7 @@ void EventFeed::Run(const std::stop_token& stop) {
   FeedRhythm rhythm(timing_.clock(), timing_.poll_interval);
   while (!stop.stop_requested()) {
     bool read = false;
-    std::vector<std::int64_t> moved;
+    std::vector<std::string> moved;
     {
       std::unique_lock lock(mutex_);
       const bool quiet = arriving_.empty();
@@ -159,12 +165,13 @@ void EventFeed::Run(const std::stop_token& stop) {
                      [&] { return hinted_ || (quiet && !arriving_.empty()); });
       const auto now = timing_.clock();
       read = rhythm.TakeLook(now, std::exchange(hinted_, false));
-      // Watchers see positions only from here on: one that is woken by many events gets no more of
-      // them.
-      if (!arriving_.empty() && rhythm.TakePositions(now)) {
-        for (auto& [job, bytes] : arriving_) {
-          progress_[job] = {.job = job, .version = ++version_, .bytes = std::move(bytes)};
-          moved.push_back(job);
+      // Watchers see what arrived only from here on: one that is woken by many events gets no more
+      // of it.
+      if (!arriving_.empty() && rhythm.TakeLatest(now)) {
+        for (auto& [resource, bytes] : arriving_) {
+          latest_[resource] = {
+              .resource = resource, .version = ++version_, .bytes = std::move(bytes)};
+          moved.push_back(resource);
         }
         arriving_.clear();
       }
@@ -183,15 +190,16 @@ void EventFeed::ReadNewEvents(const std::stop_token& stop) {
       return;  // a failing store is tried again at the next poll
     }
     if (events->empty()) return;
-    std::set<std::int64_t> touched;
-    for (const storage::EventRecord& event : *events) touched.insert(event.job);
+    std::set<std::string> touched;
+    for (const storage::EventRecord& event : *events) touched.insert(ResourceOf(event));
     const bool more = events->size() == kReadBatch;
     {
       const std::lock_guard lock(mutex_);
       position_ = events->back().position;
       for (const storage::EventRecord& event : *events) {
-        if (!watchers_.contains(event.job)) continue;
-        std::deque<storage::EventRecord>& tail = tails_[event.job];
+        const std::string resource = ResourceOf(event);
+        if (event.job == 0 || !watchers_.contains(resource)) continue;
+        std::deque<storage::EventRecord>& tail = tails_[resource];
         tail.push_back(event);
         if (tail.size() > kTailEvents) tail.pop_front();
       }
@@ -219,22 +227,22 @@ bool EventFeed::SkipGoneEvents() {
     complete_after_ = position_;
     recent_.clear();
     tails_.clear();
-    for (const auto& [job, watcher] : watchers_) all.push_back(watcher);
+    for (const auto& [resource, watcher] : watchers_) all.push_back(watcher);
   }
   Call(all);
   return true;
 }
 
-void EventFeed::Wake(const std::vector<std::int64_t>& jobs) {
+void EventFeed::Wake(const std::vector<std::string>& resources) {
   std::vector<std::shared_ptr<Watcher>> woken;
   {
     const std::lock_guard lock(mutex_);
-    const auto add = [&](std::int64_t key) {
+    const auto add = [&](const std::string& key) {
       const auto [first, last] = watchers_.equal_range(key);
       for (auto row = first; row != last; ++row) woken.push_back(row->second);
     };
-    for (const std::int64_t job : jobs) add(job);
-    add(kEverything);
+    for (const std::string& resource : resources) add(resource);
+    add(std::string(kEverything));
   }
   Call(woken);
 }

@@ -18,17 +18,18 @@
 
 namespace rmlcell::server {
 
-// The newest position of a running job, as serialised rmlcell.v1.JobProgress.
-struct ProgressText {
-  std::int64_t job = 0;
-  std::uint64_t version = 0;  // grows with every update of any job that is told
+// What stands for now of a resource, later ones replacing earlier ones: of a running job
+// (rmlcell.v1.JobProgress) or of a machine (rmlcell.v1.MachineStatus), serialised.
+struct Latest {
+  std::string resource{};     // "jobs/17"
+  std::uint64_t version = 0;  // grows with every one that is told, of whatever resource
   std::shared_ptr<const std::string> bytes;
 };
 
 // Wakes watchers when there is something for them. Durable events are never handed over here: a
 // watcher keeps a cursor and reads the log when its writer is free, so one that does not read costs
-// a cursor. Positions are latest-wins and change, as watchers see them, at most every
-// FeedRhythm::kProgressInterval.
+// a cursor. What stands for now is latest-wins and changes, as watchers see it, at most every
+// FeedRhythm::kLatestInterval.
 //
 // Knows no gRPC: the race detector sees all of it. Thread-safe. Lock order: mutex_ is a leaf;
 // neither the store nor a watcher is called under it.
@@ -55,8 +56,8 @@ class EventFeed {
    public:
     virtual ~Subscription() = default;
   };
-  std::unique_ptr<Subscription> Subscribe(std::optional<std::int64_t> job,
-                                          std::function<void()> wake);
+  std::unique_ptr<Subscription> Subscribe(std::string resource, std::function<void()> wake);
+  static constexpr std::string_view kEverything{};  // in place of a resource
 
   // Events of the whole cell after a position; from memory when it reaches back that far. Not
   // beyond position(). Errors: those of the store, CellEventsGone among them.
@@ -70,12 +71,15 @@ class EventFeed {
   }
 
   // Seen by watchers at the next interval; at once when there was none for a while.
-  void PublishProgress(std::int64_t job, std::string bytes);
-  void ForgetProgress(std::int64_t job);
-  // The newest position of the job when it is newer than `seen`.
-  std::optional<ProgressText> ProgressAfter(std::int64_t job, std::uint64_t seen);
-  // The same for all jobs, in order of version.
-  std::vector<ProgressText> AllProgressAfter(std::uint64_t seen);
+  void Publish(const std::string& resource, std::string bytes);
+  void Forget(const std::string& resource);
+  // What stands for now of this resource when it is newer than `seen`.
+  std::optional<Latest> LatestAfter(const std::string& resource, std::uint64_t seen);
+  // The same of all resources, in order of version.
+  std::vector<Latest> AllLatestAfter(std::uint64_t seen);
+
+  // Of the newest of what stands for now, of all resources.
+  std::uint64_t version();
 
   // Events are told to watchers up to here.
   std::int64_t position();
@@ -87,7 +91,7 @@ class EventFeed {
   void Run(const std::stop_token& stop);
   void ReadNewEvents(const std::stop_token& stop);
   bool SkipGoneEvents();
-  void Wake(const std::vector<std::int64_t>& jobs);  // and those of everything
+  void Wake(const std::vector<std::string>& resources);  // and those of everything
   // Nothing when memory does not reach back that far.
   std::optional<std::vector<storage::EventRecord>> FromTail(std::int64_t job,
                                                             std::int64_t after_sequence, int limit);
@@ -102,10 +106,11 @@ class EventFeed {
   std::int64_t position_ = 0;
   std::deque<storage::EventRecord> recent_;
   std::int64_t complete_after_ = 0;  // every event behind this position is in recent_
-  std::map<std::int64_t, std::deque<storage::EventRecord>> tails_;       // of jobs that are watched
-  std::map<std::int64_t, std::shared_ptr<const std::string>> arriving_;  // not told yet, by job
-  std::map<std::int64_t, ProgressText> progress_;
-  std::multimap<std::int64_t, std::shared_ptr<Watcher>> watchers_;  // by job; 0: of everything
+  // By resource.
+  std::map<std::string, std::deque<storage::EventRecord>> tails_;       // of jobs that are watched
+  std::map<std::string, std::shared_ptr<const std::string>> arriving_;  // not told yet
+  std::map<std::string, Latest> latest_;
+  std::multimap<std::string, std::shared_ptr<Watcher>> watchers_;
   std::unique_ptr<storage::Store::Subscription> store_watch_;
   std::jthread thread_;
 };

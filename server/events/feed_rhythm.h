@@ -11,15 +11,15 @@ class FeedRhythm {
   using Instant = std::chrono::steady_clock::time_point;
 
   // Watchers are told of positions no more often than this.
-  static constexpr std::chrono::milliseconds kProgressInterval{50};
+  static constexpr std::chrono::milliseconds kLatestInterval{50};
 
   // At `begin` both are due.
   FeedRhythm(Instant begin, std::chrono::milliseconds poll_interval)
-      : poll_interval_(poll_interval), next_poll_(begin), next_progress_(begin) {}
+      : poll_interval_(poll_interval), next_poll_(begin), next_latest_(begin) {}
 
   // The next moment at which something is due.
   Instant Next(bool positions_wait) const {
-    return positions_wait ? std::min(next_poll_, next_progress_) : next_poll_;
+    return positions_wait ? std::min(next_poll_, next_latest_) : next_poll_;
   }
 
   // Whether to look at the log now; a look puts off the next one.
@@ -30,16 +30,16 @@ class FeedRhythm {
   }
 
   // Whether positions that wait are told now; that puts off the next ones.
-  bool TakePositions(Instant now) {
-    if (now < next_progress_) return false;
-    next_progress_ = now + kProgressInterval;
+  bool TakeLatest(Instant now) {
+    if (now < next_latest_) return false;
+    next_latest_ = now + kLatestInterval;
     return true;
   }
 
  private:
   std::chrono::milliseconds poll_interval_;
   Instant next_poll_;
-  Instant next_progress_;
+  Instant next_latest_;
 };
 
 }  // namespace rmlcell::server

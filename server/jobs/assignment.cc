@@ -38,10 +38,13 @@ class ProgramsOfAssignment {
   ProgramsOfAssignment(v1::WorkerAssignment& assignment, AssignmentMessages& messages)
       : assignment_(assignment), messages_(messages) {}
 
-  // A later program of the same slot replaces an earlier one.
+  // A later program of the same slot replaces an earlier one. `revision`: of the object, where it
+  // is stored and executables made of it may be kept.
   void Add(int slot, const std::string& title, const std::string& file_name, std::string bytes,
-           bool is_source, const std::optional<std::string>& executable) {
+           bool is_source, const std::optional<std::string>& executable,
+           storage::Revision revision = 0) {
     v1::AssignedProgram program;
+    program.set_object_revision(revision);
     program.set_slot(slot);
     program.set_title(title);
     program.set_file_name(file_name);
@@ -60,8 +63,9 @@ class ProgramsOfAssignment {
     SetContent(made, std::move(bytes));
   }
 
-  void Finish() {
+  void Finish(bool keep_executables) {
     for (auto& [slot, program] : by_slot_) {
+      if (!keep_executables) program.clear_object_revision();
       if (program.content().empty() && large_.contains(slot))
         messages_.programs.emplace_back(slot, large_[slot]);
       *assignment_.add_programs() = std::move(program);
@@ -93,6 +97,13 @@ Result<std::string> Attached(storage::Store& store, std::int64_t job, std::strin
   return store.ReadBlob(artifact->sha256);
 }
 
+// A mill runs one stream; only a family whose programs call each other needs the whole memory.
+bool RunsFromMemory(const storage::MachineRecord& machine, std::string_view kind) {
+  const machine::MachineFamily* family = families::FindFamily(machine.family);
+  if (family == nullptr || !family->info().has_executables) return false;
+  return family->info().checked_by_running || kind != storage::kCheckKind;
+}
+
 // A check takes no material off, and so compares nothing.
 Status AddTarget(storage::Store& store, std::int64_t id, const v1::Job& job,
                  ProgramsOfAssignment& programs) {
@@ -108,8 +119,12 @@ Status AddTarget(storage::Store& store, std::int64_t id, const v1::Job& job,
 
 Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& config,
                                           const storage::LeasedJob& leased) {
-  const auto machine = store.GetMachine(leased.job.machine);
-  if (!machine) return machine.error();
+  auto memory =
+      store.GetMachineMemory(leased.job.machine, [&](const storage::MachineRecord& machine) {
+        return RunsFromMemory(machine, leased.job.kind);
+      });
+  if (!memory) return memory.error();
+  const storage::MachineRecord& machine = memory->machine;
   AssignmentMessages messages;
   v1::WorkerAssignment& assignment = *messages.first.mutable_assignment();
   v1::Job& job = *assignment.mutable_job();
@@ -118,11 +133,11 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
         ErrorCode::kCellStoreCorrupt, "the specification of " + JobName(leased.job.id), {}};
   }
   job.set_name(JobName(leased.job.id));
-  assignment.set_family(machine->family);
-  assignment.set_profile(machine->profile);
-  for (const auto& [name, value] : machine->parameters)
+  assignment.set_family(machine.family);
+  assignment.set_profile(machine.profile);
+  for (const auto& [name, value] : machine.parameters)
     (*assignment.mutable_parameters())[name] = value;
-  assignment.set_machine_state(machine->state);
+  assignment.set_machine_state(machine.state);
   *assignment.mutable_budget() = BudgetOf(job.budget(), config);
 
   // The attached bytes count for the program that is started: its slot may have been stored again.
@@ -139,32 +154,22 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   }
   std::string main_title;
   std::optional<std::string> main_executable;
-  const machine::MachineFamily* family = families::FindFamily(machine->family);
-  // A mill runs one stream; only a family whose programs call each other needs the whole memory.
-  const bool only_read =
-      family != nullptr && !family->info().checked_by_running && job.kind() == v1::JOB_KIND_CHECK;
-  if (family != nullptr && family->info().has_executables && !only_read) {
-    auto memory = store.GetProgramMemory(leased.job.machine);
-    if (!memory) return memory.error();
-    for (storage::ProgramRecord& program : *memory) {
-      if (program.slot == main_slot && stored_main && program.object == *main_bytes) {
-        main_title = program.name;
-        main_executable = std::move(program.executable);
-        messages.object_revisions[program.slot] = program.revision;
-      } else if (program.slot != main_slot) {
-        messages.object_revisions[program.slot] = program.revision;
-        programs.Add(program.slot, program.name, {}, std::move(program.object), false,
-                     program.executable);
-      }
+  storage::Revision main_revision = 0;
+  for (storage::ProgramRecord& program : memory->programs) {
+    if (program.slot == main_slot && stored_main && program.object == *main_bytes) {
+      main_title = program.name;
+      main_executable = std::move(program.executable);
+      main_revision = program.revision;
+    } else if (program.slot != main_slot) {
+      programs.Add(program.slot, program.name, {}, std::move(program.object), false,
+                   program.executable, program.revision);
     }
-    const auto deleted = store.ListDeletedPrograms(leased.job.machine);
-    if (!deleted) return deleted.error();
-    assignment.mutable_deleted_programs()->Add(deleted->begin(), deleted->end());
   }
+  assignment.mutable_deleted_programs()->Add(memory->deleted.begin(), memory->deleted.end());
   const std::string file_name = stored_main ? std::string() : job.inline_program().file_name();
   const bool is_source = !stored_main && job.inline_program().form() != v1::PROGRAM_FORM_OBJECT;
-  programs.Add(main_slot, main_title, file_name, std::move(*main_bytes), is_source,
-               main_executable);
+  programs.Add(main_slot, main_title, file_name, std::move(*main_bytes), is_source, main_executable,
+               main_revision);
   for (const v1::SlotProgram& further : job.simulation().programs()) {
     Result<std::string> bytes = Attached(store, leased.job.id, AttachmentName(further.slot()));
     if (!bytes) return bytes.error();
@@ -175,16 +180,11 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
     return added.error();
   // An executable that is linked while the memory has programs that the machine has not, or not any
   // more, holds their code: it is for this job only.
-  const bool as_stored = stored_main && job.simulation().programs().empty() &&
-                         messages.object_revisions.contains(main_slot);
-  if (!as_stored) messages.object_revisions.clear();
-  programs.Finish();
+  programs.Finish(main_revision > 0 && job.simulation().programs().empty());
   assignment.set_main_program(main_slot);
 
-  const auto schedules = store.ListSchedules(leased.job.machine);
-  if (!schedules) return schedules.error();
-  assignment.set_default_schedules(schedules->empty());
-  for (const storage::ScheduleRecord& schedule : *schedules) {
+  assignment.set_default_schedules(memory->schedules.empty());
+  for (const storage::ScheduleRecord& schedule : memory->schedules) {
     v1::AssignedSchedule& made = *assignment.add_schedules();
     made.set_number(schedule.number);
     made.set_title(schedule.name);

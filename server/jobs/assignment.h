@@ -19,8 +19,6 @@ struct AssignmentMessages {
   v1::WorkResponse first;  // the assignment; the lease is not filled in
   std::vector<std::pair<int, std::shared_ptr<const std::string>>>
       programs;  // those too large for it, by slot; 0: its target
-  std::map<int, storage::Revision>
-      object_revisions;  // of stored programs: executables made of them may be kept
 };
 
 // Errors: those of the store, CellUnknownMachine.

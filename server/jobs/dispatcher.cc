@@ -109,7 +109,7 @@ void Dispatcher::Leave(WorkerId id) {
       spdlog::warn("worker {} is gone in the middle of {}", worker->name,
                    JobName(worker->assignment->lease.job));
       Lose(*worker->assignment);
-      feed_.ForgetProgress(worker->assignment->lease.job);
+      feed_.Forget(JobName(worker->assignment->lease.job));
       worker->assignment.reset();
     }
     changed_.notify_all();
@@ -207,36 +207,36 @@ void Dispatcher::EndLeases() {
     spdlog::warn("the lease of {} ran out", JobName(job.id));
 }
 
-bool Dispatcher::OrderAtOnce(std::int64_t job, v1::WorkerControl::Kind kind, double value) {
+bool Dispatcher::OrderAtOnce(std::int64_t job, const JobOrder& order) {
   const std::lock_guard lock(mutex_);
-  return OrderHolder(job, kind, value);
+  return OrderHolder(job, order);
 }
 
 // Before the job itself has gone out an order waits for it.
-bool Dispatcher::OrderHolder(std::int64_t job, v1::WorkerControl::Kind kind, double value) {
+bool Dispatcher::OrderHolder(std::int64_t job, const JobOrder& order) {
   for (const auto& [id, worker] : workers_) {
     if (worker->job != job) continue;
     if (worker->sent) {
-      worker->line->Send(ControlMessage(*worker->sent, kind, value));
+      worker->line->Send(ControlMessage(*worker->sent, order));
     } else {
-      worker->early_orders.push_back({job, kind, value});
+      worker->early_orders.push_back({job, order});
     }
     return true;
   }
   return false;
 }
 
-Status Dispatcher::Control(std::int64_t job, v1::WorkerControl::Kind kind, double value) {
+Status Dispatcher::Control(std::int64_t job, const JobOrder& order) {
   const auto record = store_.GetJob(job);
   if (!record) return record.error();
   if (record->state == storage::JobState::kRunning) {
     const std::lock_guard lock(mutex_);
-    if (OrderHolder(job, kind, value)) return {};
+    if (OrderHolder(job, order)) return {};
     // Who looks may have leased it a moment ago, and not have said so.
     bool may_come = false;
     for (const auto& [id, worker] : workers_) {
       if (!worker->looking) continue;
-      worker->early_orders.push_back({job, kind, value});
+      worker->early_orders.push_back({job, order});
       may_come = true;
     }
     if (may_come) return {};
@@ -244,11 +244,11 @@ Status Dispatcher::Control(std::int64_t job, v1::WorkerControl::Kind kind, doubl
   return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
 }
 
-Result<storage::JobRecord> Dispatcher::Cancel(std::int64_t job) {
-  auto cancelled = store_.RequestCancel(job, {EndedEvent(ToProto(CancelledOutcome()))});
+Result<storage::JobRecord> Dispatcher::Cancel(std::int64_t job, std::string_view caller) {
+  auto cancelled = store_.RequestCancel(job, {By(caller, EndedEvent(ToProto(CancelledOutcome())))});
   if (cancelled && cancelled->state == storage::JobState::kRunning) {
     // When the worker finishes at this moment there is nobody to tell, and nothing to do.
-    (void)Control(job, v1::WorkerControl::KIND_CANCEL, 0.0);
+    (void)Control(job, {.kind = v1::WorkerControl::KIND_CANCEL, .caller = std::string(caller)});
   }
   return cancelled;
 }

@@ -32,6 +32,14 @@ class WorkerLine {
   virtual void Close(const Error& why) = 0;
 };
 
+// What a client wants of a job that runs.
+struct JobOrder {
+  v1::WorkerControl::Kind kind{};
+  double value = 0.0;  // of an override, percent
+  std::string caller{};
+  std::string request_id{};
+};
+
 // Leases jobs to workers, takes their events and results, and sees to it that no job is lost with
 // its worker (design.md section 3, steps 3 to 9). A lease is held by one worker; what a worker
 // sends after it lost its lease is refused by the fence.
@@ -53,13 +61,13 @@ class Dispatcher {
   void Leave(WorkerId worker);  // the line is gone: its job is attempted again by its policy
 
   // Orders for a job that runs. CellPrecondition when no worker of this server has it.
-  Status Control(std::int64_t job, v1::WorkerControl::Kind kind, double value);
+  Status Control(std::int64_t job, const JobOrder& order);
   // The same without a look into the store, and never blocking: an order to stop waits for nothing.
   // False: no worker of this server is known to have it, which Control finds out.
-  bool OrderAtOnce(std::int64_t job, v1::WorkerControl::Kind kind, double value = 0.0);
+  bool OrderAtOnce(std::int64_t job, const JobOrder& order);
 
   // Ends a job: at once when it waits, else through its worker.
-  Result<storage::JobRecord> Cancel(std::int64_t job);
+  Result<storage::JobRecord> Cancel(std::int64_t job, std::string_view caller);
 
   // Gives out no more work and asks for what is under way to be handed back. Returns when that is
   // done, or after `patience`. For good: leases are not looked after any more.
@@ -81,7 +89,7 @@ class Dispatcher {
   void GiveBack(Worker& worker);
   Status SendAssignment(Worker& worker, const storage::LeasedJob& leased);
   // Precondition: mutex_ is held. False: no worker is known to have the job.
-  bool OrderHolder(std::int64_t job, v1::WorkerControl::Kind kind, double value);
+  bool OrderHolder(std::int64_t job, const JobOrder& order);
   void Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& message);
   void Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat);
   void AppendEvents(Worker& worker, const v1::WorkerEvents& events);

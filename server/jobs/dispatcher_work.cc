@@ -40,13 +40,14 @@ v1::WorkerLease ToProto(const storage::Lease& lease) {
   return message;
 }
 
-v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind,
-                                double value) {
+v1::WorkResponse ControlMessage(const storage::Lease& lease, const JobOrder& order) {
   v1::WorkResponse message;
   v1::WorkerControl& control = *message.mutable_control();
   *control.mutable_lease() = ToProto(lease);
-  control.set_kind(kind);
-  control.set_value(value);
+  control.set_kind(order.kind);
+  control.set_value(order.value);
+  control.set_caller(order.caller);
+  control.set_request_id(order.request_id);
   return message;
 }
 
@@ -187,14 +188,12 @@ Status Dispatcher::SendAssignment(Worker& worker, const storage::LeasedJob& leas
   Result<AssignmentMessages> made = MakeAssignment(store_, config_, leased);
   if (!made) return made.error();
   *made->first.mutable_assignment()->mutable_lease() = ToProto(leased.lease);
-  worker.assignment->object_revisions = std::move(made->object_revisions);
   worker.line->Send(std::move(made->first));
   for (auto& [slot, bytes] : made->programs) worker.line->SendProgram(slot, std::move(bytes));
   const std::lock_guard lock(mutex_);
   worker.sent = leased.lease;
-  for (const EarlyOrder& order : std::exchange(worker.early_orders, {})) {
-    if (order.job == leased.lease.job)
-      worker.line->Send(ControlMessage(leased.lease, order.kind, order.value));
+  for (const EarlyOrder& early : std::exchange(worker.early_orders, {})) {
+    if (early.job == leased.lease.job) worker.line->Send(ControlMessage(leased.lease, early.order));
   }
   return {};
 }
@@ -239,7 +238,7 @@ void Dispatcher::Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat)
     assignment.place = progress.place();
     progress.set_job(JobName(assignment.lease.job));
     progress.set_attempt(assignment.lease.attempt);
-    feed_.PublishProgress(assignment.lease.job, progress.SerializeAsString());
+    feed_.Publish(JobName(assignment.lease.job), progress.SerializeAsString());
   }
   const auto third = std::chrono::milliseconds(config_.workers_lease_ms / 3);
   const auto now = clock_();
@@ -250,7 +249,7 @@ void Dispatcher::Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat)
   if (renewed) {
     // Another server may have been asked to cancel it.
     if (renewed->cancel_requested) {
-      worker.line->Send(ControlMessage(assignment.lease, v1::WorkerControl::KIND_CANCEL, 0.0));
+      worker.line->Send(ControlMessage(assignment.lease, {.kind = v1::WorkerControl::KIND_CANCEL}));
     }
   } else if (renewed.error().code == ErrorCode::kCellLeaseLost) {
     spdlog::warn("worker {} lost its lease of {}", worker.name, JobName(assignment.lease.job));
@@ -309,12 +308,10 @@ void Dispatcher::Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish&
   storage::JobEnd end{.outcome = OutcomeOf(finish.outcome()),
                       .events = {EndedEvent(finish.outcome())}};
   for (auto& [name, artifact] : assignment.artifacts) end.artifacts.push_back(std::move(artifact));
-  for (auto& [slot, executable] : *finish.mutable_executables()) {
-    const auto revision = assignment.object_revisions.find(slot);
-    if (revision == assignment.object_revisions.end() ||
-        executable.size() > storage::kProgramBytesMax)
-      continue;
-    end.executables.push_back({slot, revision->second, std::move(executable)});
+  for (v1::LinkedExecutable& made : *finish.mutable_executables()) {
+    if (made.object_revision() == 0 || made.content().size() > storage::kProgramBytesMax) continue;
+    end.executables.push_back(
+        {made.slot(), made.object_revision(), std::move(*made.mutable_content())});
   }
   assignment.end = std::move(end);
   StoreEnd(worker);
@@ -323,7 +320,7 @@ void Dispatcher::Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish&
 void Dispatcher::EndAssignment(Worker& worker, bool stored) {
   const storage::Lease lease = worker.assignment->lease;
   worker.assignment.reset();
-  feed_.ForgetProgress(lease.job);
+  feed_.Forget(JobName(lease.job));
   TakeNoOrders(worker);  // before the worker hears of it
   v1::WorkResponse message;
   *message.mutable_release()->mutable_lease() = ToProto(lease);

@@ -29,17 +29,15 @@ struct Dispatcher::Assignment {
   std::map<std::string, storage::NewArtifact> artifacts;
   std::int64_t collected_bytes = 0;
   bool over_budget = false;
-  std::map<int, storage::Revision> object_revisions;  // of the programs of its memory
-  std::optional<storage::JobEnd> end;                 // not stored yet
-  bool begun = false;                                 // the worker has said so
-  v1::SourcePlace place;                              // where the worker was, as it last said
+  std::optional<storage::JobEnd> end;  // not stored yet
+  bool begun = false;                  // the worker has said so
+  v1::SourcePlace place;               // where the worker was, as it last said
   std::shared_ptr<Delivery> delivery = std::make_shared<Delivery>();
 };
 
 struct EarlyOrder {
   std::int64_t job = 0;
-  v1::WorkerControl::Kind kind{};
-  double value = 0.0;
+  JobOrder order{};
 };
 
 struct Dispatcher::Worker {
@@ -68,7 +66,6 @@ struct Dispatcher::Worker {
 v1::WorkerLease ToProto(const storage::Lease& lease);
 storage::JobOutcome CancelledOutcome();
 // An order for the worker that holds the lease.
-v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind,
-                                double value);
+v1::WorkResponse ControlMessage(const storage::Lease& lease, const JobOrder& order);
 
 }  // namespace rmlcell::server

@@ -24,8 +24,9 @@ namespace rmlcell::server {
 namespace {
 
 constexpr PageSizes kJobPages{.fallback = 50, .max = 1000};
-constexpr int kSnapshotJobs = 200;
 constexpr std::size_t kRequestIdMax = 64;
+constexpr int kAwaitedJobsMax = 100;
+constexpr int kChoicePage = 1000;
 constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as possible
 
 std::string_view KindName(v1::JobKind kind) {
@@ -43,12 +44,13 @@ std::string_view KindName(v1::JobKind kind) {
 
 // What the contract has and this version does not do: "" where the job asks for none of it.
 std::string_view FieldOfLater(const v1::Job& job) {
-  if (job.priority() != 0) return "priority";
-  if (job.held()) return "held";
-  if (job.has_not_before_time()) return "not_before_time";
-  if (job.after_jobs_size() > 0) return "after_jobs";
   if (job.has_run()) return "run";
   if (!job.continues().empty()) return "continues";
+  if (job.simulation().breakpoints_size() > 1) return "simulation.breakpoints beyond the first";
+  for (const v1::Breakpoint& breakpoint : job.simulation().breakpoints()) {
+    if (!breakpoint.condition().empty()) return "simulation.breakpoints.condition";
+    if (breakpoint.passes() != 0) return "simulation.breakpoints.passes";
+  }
   return {};
 }
 
@@ -61,6 +63,28 @@ Status CheckBudget(const v1::Budget& budget) {
   return {};
 }
 
+// What google.protobuf.Timestamp allows.
+Status CheckTime(const google::protobuf::Timestamp& time, const std::string& field) {
+  constexpr std::int64_t kLeast_s = -62'135'596'800;
+  constexpr std::int64_t kMost_s = 253'402'300'799;
+  if (time.seconds() >= kLeast_s && time.seconds() <= kMost_s && time.nanos() >= 0 &&
+      time.nanos() <= 999'999'999)
+    return {};
+  return InvalidArgument(field + " is no time of the years 1 to 9999");
+}
+
+Result<std::vector<std::int64_t>> AwaitedJobs(const v1::Job& job) {
+  if (job.after_jobs_size() > kAwaitedJobsMax)
+    return InvalidArgument("job.after_jobs has more than 100");
+  std::vector<std::int64_t> jobs;
+  for (const std::string& name : job.after_jobs()) {
+    const Result<std::int64_t> id = ParseJobName(name);
+    if (!id) return id.error();
+    jobs.push_back(*id);
+  }
+  return jobs;
+}
+
 // What can be said of a request without a look at its machine.
 Status CheckRequest(const v1::SubmitJobRequest& request) {
   const v1::Job& job = request.job();
@@ -68,6 +92,10 @@ Status CheckRequest(const v1::SubmitJobRequest& request) {
     return InvalidArgument("job.kind is missing: CHECK or SIMULATE");
   if (job.kind() == v1::JOB_KIND_RUN)
     return Error{ErrorCode::kCellUnimplemented, "jobs of kind RUN", {}};
+  if (job.priority() < storage::kPriorityMin || job.priority() > storage::kPriorityMax)
+    return InvalidArgument("job.priority: allowed are -100 to 100");
+  if (const Status time = CheckTime(job.not_before_time(), "job.not_before_time"); !time)
+    return time.error();
   if (const std::string_view later = FieldOfLater(job); !later.empty())
     return Error{ErrorCode::kCellUnimplemented, "job." + std::string(later), {}};
   if (request.request_id().size() > kRequestIdMax)
@@ -107,9 +135,9 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
     return InvalidArgument(
         "job.simulation.mode is MANUAL, in which no program runs: use REMOTE, CYCLE, SINGLE or REPEAT");
   }
-  if (options.has_breakpoint()) {
+  for (const v1::Breakpoint& breakpoint : options.breakpoints()) {
     if (const Status valid =
-            CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint", family);
+            CheckStepPlace(breakpoint.step(), "job.simulation.breakpoints.step", family);
         !valid)
       return valid.error();
   }
@@ -217,47 +245,8 @@ Status JobBook::CheckSize(const std::string& content, const std::string& what) c
                {}};
 }
 
-Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
-                                         const std::string& caller) {
-  const v1::Job& job = request.job();
-  if (const Status good = CheckRequest(request); !good) return good.error();
-  const Result<std::string> machine_id = ParseMachineName(job.machine());
-  if (!machine_id) return machine_id.error();
-  const Result<storage::MachineRecord> machine = store_.GetMachine(*machine_id);
-  if (!machine) return machine.error();
-  const machine::MachineFamily* known = families::FindFamily(machine->family);
-  if (known == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
-  const machine::MachineFamily& family = *known;
-  if (const Status valid = CheckSimulation(job.simulation(), family); !valid) return valid.error();
-
-  storage::NewJob made{.request_id = request.request_id(),
-                       .request_hash = request.request_id().empty() ? "" : RequestHash(request),
-                       .machine = *machine_id,
-                       .kind = std::string(KindName(job.kind())),
-                       .pool = std::string(job.simulation().pace() > 0.0 ? kPacedPool : ""),
-                       .title = job.title(),
-                       .caller = caller,
-                       .specification = {},
-                       .attempts_max = job.attempts_max() > 0
-                                           ? job.attempts_max()
-                                           : static_cast<int>(config_.jobs_attempts),
-                       .queued_max = config_.jobs_queued_max,
-                       .attachments = {},
-                       .events = {StateEvent(storage::JobState::kQueued)}};
-  v1::Job specification = job;
-  if (const Status attached = AttachProgram(job, family, made, specification); !attached)
-    return attached.error();
-  std::map<std::string, std::string> values = machine->parameters;
-  for (const auto& [name, value] : job.simulation().parameters()) values[name] = value;
-  const Result<machine::Parameters> parameters =
-      machine::MakeParameters(family, machine->profile, values);
-  if (!parameters) return parameters.error();
-  if (const Status good = CheckVariables(job.simulation(), family, *parameters); !good)
-    return good.error();
-  if (const Status good =
-          SettleMilling(store_, config_, family, family.Shape(*parameters), made, specification);
-      !good)
-    return good.error();
+Status JobBook::AttachFurther(const v1::Job& job, const machine::MachineFamily& family,
+                              storage::NewJob& made, v1::Job& specification) const {
   std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
@@ -276,6 +265,61 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
                                 {}});
     program.mutable_program()->clear_content();
   }
+  return {};
+}
+
+Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
+                                         const std::string& caller) {
+  const v1::Job& job = request.job();
+  if (const Status good = CheckRequest(request); !good) return good.error();
+  const Result<std::string> machine_id = ParseMachineName(job.machine());
+  if (!machine_id) return machine_id.error();
+  const Result<storage::MachineRecord> machine = store_.GetMachine(*machine_id);
+  if (!machine) return machine.error();
+  const machine::MachineFamily* known = families::FindFamily(machine->family);
+  if (known == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  const machine::MachineFamily& family = *known;
+  if (const Status valid = CheckSimulation(job.simulation(), family); !valid) return valid.error();
+
+  auto after = AwaitedJobs(job);
+  if (!after) return after.error();
+  std::optional<storage::WallTime> not_before;
+  if (job.has_not_before_time()) not_before = FromProto(job.not_before_time());
+
+  storage::NewJob made{.request_id = request.request_id(),
+                       .request_hash = request.request_id().empty() ? "" : RequestHash(request),
+                       .machine = *machine_id,
+                       .kind = std::string(KindName(job.kind())),
+                       .pool = std::string(job.simulation().pace() > 0.0 ? kPacedPool : ""),
+                       .title = job.title(),
+                       .caller = caller,
+                       .specification = {},
+                       .attempts_max = job.attempts_max() > 0
+                                           ? job.attempts_max()
+                                           : static_cast<int>(config_.jobs_attempts),
+                       .queued_max = config_.jobs_queued_max,
+                       .priority = job.priority(),
+                       .held = job.held(),
+                       .not_before = not_before,
+                       .after = *std::move(after),
+                       .attachments = {},
+                       .events = {By(caller, StateEvent(storage::JobState::kQueued))}};
+  v1::Job specification = job;
+  if (const Status attached = AttachProgram(job, family, made, specification); !attached)
+    return attached.error();
+  std::map<std::string, std::string> values = machine->parameters;
+  for (const auto& [name, value] : job.simulation().parameters()) values[name] = value;
+  const Result<machine::Parameters> parameters =
+      machine::MakeParameters(family, machine->profile, values);
+  if (!parameters) return parameters.error();
+  if (const Status good = CheckVariables(job.simulation(), family, *parameters); !good)
+    return good.error();
+  if (const Status good =
+          SettleMilling(store_, config_, family, family.Shape(*parameters), made, specification);
+      !good)
+    return good.error();
+  if (const Status further = AttachFurther(job, family, made, specification); !further)
+    return further.error();
   if (!job.has_simulation()) specification.clear_simulation();
   made.specification = bridge::StableBytes(specification);
   return made;
@@ -313,10 +357,99 @@ Result<v1::Job> JobBook::Get(std::string_view name) {
   return WithArtifacts(*record);
 }
 
-Status JobBook::Delete(std::string_view name) {
+Status JobBook::Delete(std::string_view name, std::string_view caller) {
   const Result<std::int64_t> id = ParseJobName(name);
   if (!id) return id.error();
-  return store_.DeleteJob(*id);
+  return store_.DeleteJob(*id, caller);
+}
+
+Result<v1::Job> JobBook::HoldBack(std::string_view name, std::string_view caller) {
+  const Result<std::int64_t> id = ParseJobName(name);
+  if (!id) return id.error();
+  const auto job = store_.GetJob(*id);
+  if (!job) return job.error();
+  const auto held = store_.HoldBack(*id, {By(caller, QueueEvent(true, job->priority))});
+  if (!held) return held.error();
+  return WithArtifacts(*held);
+}
+
+Result<v1::Job> JobBook::LetGo(std::string_view name, std::string_view caller) {
+  const Result<std::int64_t> id = ParseJobName(name);
+  if (!id) return id.error();
+  const auto job = store_.GetJob(*id);
+  if (!job) return job.error();
+  const auto gone = store_.LetGo(*id, {By(caller, QueueEvent(false, job->priority))});
+  if (!gone) return gone.error();
+  return WithArtifacts(*gone);
+}
+
+Result<v1::Job> JobBook::Move(const v1::MoveJobRequest& request, std::string_view caller) {
+  const Result<std::int64_t> id = ParseJobName(request.name());
+  if (!id) return id.error();
+  std::int64_t before = 0;
+  std::optional<int> priority;
+  if (request.has_priority()) priority = request.priority();
+  auto job = store_.GetJob(*id);
+  if (!job) return job.error();
+  if (!request.before().empty()) {
+    const Result<std::int64_t> other = ParseJobName(request.before());
+    if (!other) return other.error();
+    const auto found = store_.GetJob(*other);
+    if (!found) return found.error();
+    before = *other;
+    job->priority = found->priority;
+  } else if (priority) {
+    job->priority = *priority;
+  }
+  const auto moved =
+      store_.Move(*id, before, priority, {By(caller, QueueEvent(job->held, job->priority))});
+  if (!moved) return moved.error();
+  return WithArtifacts(*moved);
+}
+
+Result<std::vector<std::string>> JobBook::Choose(const v1::JobChoice& choice,
+                                                 std::optional<storage::JobState> state) {
+  std::vector<std::string> names;
+  storage::JobQuery query{.finished = false, .limit = kChoicePage};
+  switch (choice.which_case()) {
+    case v1::JobChoice::kNames:
+      names = {choice.names().names().begin(), choice.names().names().end()};
+      for (const std::string& name : names) {
+        const Result<std::int64_t> id = ParseJobName(name);
+        if (!id) return id.error();
+        if (const auto job = store_.GetJob(*id); !job) return job.error();
+      }
+      break;
+    case v1::JobChoice::kFilter:
+      if (choice.filter().empty()) return InvalidArgument("jobs.filter is empty; say all");
+      if (const Status applied = ApplyFilter(choice.filter(), query); !applied)
+        return applied.error();
+      [[fallthrough]];
+    case v1::JobChoice::kAll: {
+      if (choice.which_case() == v1::JobChoice::kAll && !choice.all())
+        return InvalidArgument("jobs.all is false");
+      if (state && query.state && *query.state != *state) break;  // none of these waits
+      if (state) query.state = state;
+      for (;;) {
+        const auto page = store_.ListJobs(query);
+        if (!page) return page.error();
+        for (const storage::JobRecord& job : *page) names.push_back(JobName(job.id));
+        if (page->size() < static_cast<std::size_t>(kChoicePage)) break;
+        query.before_id = page->back().id;
+      }
+      break;
+    }
+    case v1::JobChoice::WHICH_NOT_SET:
+      return InvalidArgument("jobs is missing: names, filter or all");
+  }
+  if (choice.expected_count() != 0 &&
+      choice.expected_count() != static_cast<std::int64_t>(names.size())) {
+    return Error{ErrorCode::kCellPrecondition,
+                 "these are " + std::to_string(names.size()) + " jobs, expected were " +
+                     std::to_string(choice.expected_count()),
+                 {}};
+  }
+  return names;
 }
 
 Status JobBook::CheckOverride(std::string_view name, double percent) {
@@ -355,6 +488,11 @@ Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
   const Result<std::vector<storage::JobRecord>> records = store_.ListJobs(query);
   if (!records) return records.error();
   v1::ListJobsResponse response;
+  if (request.count()) {
+    const auto counts = Count(query);
+    if (!counts) return counts.error();
+    *response.mutable_counts() = {counts->begin(), counts->end()};
+  }
   for (const storage::JobRecord& record : *records) {
     if (response.jobs_size() == *size) {
       response.set_next_page_token(
@@ -366,6 +504,20 @@ Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
     *response.add_jobs() = *std::move(job);
   }
   return response;
+}
+
+Result<std::vector<v1::JobCount>> JobBook::Count(const storage::JobQuery& query) {
+  const auto counted = store_.CountByState(query);
+  if (!counted) return counted.error();
+  std::vector<v1::JobCount> counts;
+  for (const storage::JobStateCount& count : *counted) {
+    if (query.state && *query.state != count.state) continue;
+    if (query.finished && *query.finished != storage::IsFinal(count.state)) continue;
+    v1::JobCount& made = counts.emplace_back();
+    made.set_state(ToProto(count.state));
+    made.set_jobs(count.jobs);
+  }
+  return counts;
 }
 
 Result<storage::ArtifactRecord> JobBook::FindArtifact(std::int64_t job, std::string_view name) {
@@ -387,29 +539,24 @@ Result<std::string> JobBook::ReadArtifact(std::int64_t job, std::string_view nam
   return store_.ReadBlob(artifact->sha256);
 }
 
-Result<v1::JobsSnapshot> JobBook::Snapshot() {
-  // The position first: what happens between the reads is then told twice, never left out.
-  const Result<std::int64_t> position = store_.LastPosition();
-  if (!position) return position.error();
-  v1::JobsSnapshot snapshot;
-  snapshot.set_sequence(*position);
+Result<std::vector<v1::Job>> JobBook::Newest(storage::JobQuery query) {
+  std::vector<v1::Job> jobs;
   for (const bool finished : {false, true}) {
-    storage::JobQuery query;
     query.finished = finished;
-    query.limit = kSnapshotJobs - snapshot.jobs_size();
+    query.limit = kNewestMax - static_cast<int>(jobs.size());
     if (query.limit <= 0) break;
     const Result<std::vector<storage::JobRecord>> records = store_.ListJobs(query);
     if (!records) return records.error();
     for (const storage::JobRecord& record : *records) {
       Result<v1::Job> job = WithArtifacts(record);
       if (!job) return job.error();
-      *snapshot.add_jobs() = *std::move(job);
+      jobs.push_back(*std::move(job));
     }
   }
-  std::ranges::sort(*snapshot.mutable_jobs(), [](const v1::Job& a, const v1::Job& b) {
+  std::ranges::sort(jobs, [](const v1::Job& a, const v1::Job& b) {
     return *ParseJobName(a.name()) > *ParseJobName(b.name());
   });
-  return snapshot;
+  return jobs;
 }
 
 }  // namespace rmlcell::server

@@ -33,7 +33,17 @@ class JobBook {
               std::function<void(Result<v1::Job>)> done);
 
   Result<v1::Job> Get(std::string_view name);
-  Status Delete(std::string_view name);
+  Status Delete(std::string_view name, std::string_view caller);
+  // Jobs that wait in the queue: held back, let go, given another place. Errors:
+  // CellInvalidArgument, CellNotFound, CellPrecondition for one that does not wait.
+  Result<v1::Job> HoldBack(std::string_view name, std::string_view caller);
+  Result<v1::Job> LetGo(std::string_view name, std::string_view caller);
+  Result<v1::Job> Move(const v1::MoveJobRequest& request, std::string_view caller);
+  // The names of the jobs that are meant: those that are named, or of the unfinished ones those
+  // that a filter finds, in this state where one is given. Errors: CellInvalidArgument,
+  // CellBadFilter, CellNotFound, CellPrecondition when they are not as many as expected.
+  Result<std::vector<std::string>> Choose(const v1::JobChoice& choice,
+                                          std::optional<storage::JobState> state);
   // Whether the machine of the job can have this override. Errors: CellInvalidArgument,
   // CellNotFound.
   Status CheckOverride(std::string_view name, double percent);
@@ -43,10 +53,12 @@ class JobBook {
   Result<storage::ArtifactRecord> FindArtifact(std::int64_t job, std::string_view name);
   Result<std::string> ReadArtifact(std::int64_t job, std::string_view name);
 
-  // Unfinished jobs and the newest finished ones, for a watcher that begins; without machines.
-  Result<v1::JobsSnapshot> Snapshot();
-  Result<std::vector<storage::MachineRecord>> Machines() { return store_.ListMachines(); }
-  Result<std::vector<storage::MachineJobs>> UnfinishedJobs() { return store_.UnfinishedJobs(); }
+  // Unfinished jobs and the newest finished ones, newest first, for a watcher that begins; of this
+  // machine, kind and caller.
+  static constexpr int kNewestMax = 200;
+  Result<std::vector<v1::Job>> Newest(storage::JobQuery query);
+  // How many the query finds, by state, whatever its limit.
+  Result<std::vector<v1::JobCount>> Count(const storage::JobQuery& query);
 
  private:
   Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);
@@ -54,6 +66,9 @@ class JobBook {
   Status CheckSize(const std::string& content, const std::string& what) const;
   Status AttachProgram(const v1::Job& job, const machine::MachineFamily& family,
                        storage::NewJob& made, v1::Job& specification);
+  // The further programs of a simulation, moved out of the specification.
+  Status AttachFurther(const v1::Job& job, const machine::MachineFamily& family,
+                       storage::NewJob& made, v1::Job& specification) const;
 
   storage::Store& store_;
   const Config& config_;

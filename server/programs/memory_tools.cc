@@ -136,6 +136,12 @@ class LinkMaterial {
   UntoldFindings dropped_;
 };
 
+// Only machines whose programs call each other have executables; a mill's streams are large.
+bool WithPrograms(const storage::MachineRecord& machine) {
+  const machine::MachineFamily* family = families::FindFamily(machine.family);
+  return family != nullptr && family->info().has_executables;
+}
+
 }  // namespace
 
 Result<v1::FixProgramResponse> MemoryTools::Fix(const v1::FixProgramRequest& request) {
@@ -179,8 +185,9 @@ Result<v1::LinkProgramResponse> MemoryTools::Link(const v1::LinkProgramRequest& 
   if (!request.machine().empty()) {
     const Result<std::string> id = ParseMachineName(request.machine());
     if (!id) return id.error();
-    const auto machine = store_.GetMachine(*id);
-    if (!machine) return machine.error();
+    auto stored = store_.GetMachineMemory(*id, WithPrograms);
+    if (!stored) return stored.error();
+    const storage::MachineRecord* machine = &stored->machine;
     family = families::FindFamily(machine->family);
     if (family == nullptr || family->tools() == nullptr) {
       return Error{
@@ -189,9 +196,7 @@ Result<v1::LinkProgramResponse> MemoryTools::Link(const v1::LinkProgramRequest& 
     auto made = machine::MakeParameters(*family, machine->profile, machine->parameters);
     if (!made) return made.error();
     parameters = *std::move(made);
-    auto stored = store_.GetProgramMemory(*id);
-    if (!stored) return stored.error();
-    memory = *std::move(stored);
+    memory = std::move(stored->programs);
   }
   if (!IsSlot(request.slot())) return NoSuchSlot(*family, request.slot());
   LinkMaterial material(*family, parameters);
@@ -215,23 +220,19 @@ Result<v1::ListStaleExecutablesResponse> MemoryTools::ListStale(
     const v1::ListStaleExecutablesRequest& request) {
   const Result<std::string> id = ParseMachineName(request.parent());
   if (!id) return id.error();
-  const auto machine = store_.GetMachine(*id);
-  if (!machine) return machine.error();
-  const machine::MachineFamily* family = families::FindFamily(machine->family);
+  auto memory = store_.GetMachineMemory(*id, WithPrograms);
+  if (!memory) return memory.error();
+  const machine::MachineFamily* family = families::FindFamily(memory->machine.family);
   v1::ListStaleExecutablesResponse response;
   if (family == nullptr || !family->info().has_executables) return response;
-  auto memory = store_.GetProgramMemory(*id);
-  if (!memory) return memory.error();
-  const auto deleted = store_.ListDeletedPrograms(*id);
-  if (!deleted) return deleted.error();
   std::map<int, machine::StoredProgram> programs;
-  for (storage::ProgramRecord& program : *memory) {
+  for (storage::ProgramRecord& program : memory->programs) {
     machine::StoredProgram& stored = programs[program.slot];
     stored.object = machine::Bytes::Of(std::move(program.object));
     if (program.executable) stored.executable = machine::Bytes::Of(*std::move(program.executable));
   }
   for (const machine::StaleExecutable& stale :
-       family->FindStaleExecutables(programs, {deleted->begin(), deleted->end()})) {
+       family->FindStaleExecutables(programs, {memory->deleted.begin(), memory->deleted.end()})) {
     v1::StaleExecutable& made = *response.add_executables();
     made.set_name(NameOfProgram(*id, stale.slot + kExecutableOffset));
     for (const machine::StalePart& part : stale.parts) {

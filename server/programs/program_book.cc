@@ -145,6 +145,32 @@ Result<FormBytes> BytesIn(v1::ProgramForm form, storage::ProgramRecord& program,
                    tools == nullptr ? source_extension : tools->extensions().object};
 }
 
+bool CheckedByRunning(const storage::MachineRecord& machine) {
+  const machine::MachineFamily* family = families::FindFamily(machine.family);
+  return family != nullptr && family->info().checked_by_running;
+}
+
+// The programs of the machine, its schedules and the state in which it stands.
+void AddMemory(storage::MachineMemory memory, simulation::ProgramMemory& input) {
+  input.machine_state = std::move(memory.machine.state);
+  for (storage::ProgramRecord& program : memory.programs) {
+    simulation::MemoryProgram& made = input.programs.emplace_back();
+    made.slot = program.slot;
+    made.name = std::move(program.name);
+    made.bytes = machine::Bytes::Of(std::move(program.object));
+    if (program.executable) made.executable = machine::Bytes::Of(*std::move(program.executable));
+  }
+  input.deleted_programs = std::move(memory.deleted);
+  if (memory.schedules.empty()) return;
+  input.schedules.emplace();
+  for (const storage::ScheduleRecord& schedule : memory.schedules) {
+    input.schedules->push_back({.number = schedule.number,
+                                .name = schedule.name,
+                                .mode = schedule.mode,
+                                .power_percent = schedule.power_percent});
+  }
+}
+
 }  // namespace
 
 Status ProgramBook::CheckSize(std::int64_t bytes) const {
@@ -220,7 +246,7 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
     *program.mutable_findings() = std::move(findings);
     return program;
   }
-  const auto stored = store_.PutPrograms(machine.id, {std::move(write)}, {});
+  const auto stored = store_.PutPrograms(machine.id, {std::move(write)}, {}, put.caller);
   if (!stored) return stored.error();
   v1::Program program = MessageOf(machine.id, stored->front());
   *program.mutable_findings() = std::move(findings);
@@ -267,7 +293,8 @@ ProgramResult<v1::Program> ProgramBook::StoreExecutable(const Put& put, const Pr
   if (const Status good = place.family->CheckExecutable(put.bytes, slot); !good)
     return good.error();
   if (!put.validate_only) {
-    const auto kept = store_.PutExecutable(machine_id, slot, (*found)->revision, put.bytes);
+    const auto kept =
+        store_.PutExecutable(machine_id, slot, (*found)->revision, put.bytes, put.caller);
     if (!kept) return kept.error();
     if (!*kept)
       return Error{ErrorCode::kCellEtagMismatch, "the object was stored again meanwhile", {}};
@@ -345,7 +372,7 @@ Result<v1::ListProgramsResponse> ProgramBook::List(const v1::ListProgramsRequest
   return response;
 }
 
-Status ProgramBook::Delete(const v1::DeleteProgramRequest& request) {
+Status ProgramBook::Delete(const v1::DeleteProgramRequest& request, std::string_view caller) {
   const Result<ProgramPlace> place = FindProgramPlace(store_, request.name());
   if (!place) return place.error();
   const std::string& machine = place->machine.id;
@@ -356,24 +383,25 @@ Status ProgramBook::Delete(const v1::DeleteProgramRequest& request) {
       if (fits.error().code != ErrorCode::kCellNotFound) return fits.error();
     }
   }
-  const Status deleted = place->executable ? store_.DeleteExecutable(machine, place->slot)
-                                           : store_.DeleteProgram(machine, place->slot, *expected);
+  const Status deleted = place->executable
+                             ? store_.DeleteExecutable(machine, place->slot, caller)
+                             : store_.DeleteProgram(machine, place->slot, *expected, caller);
   if (!deleted && deleted.error().code == ErrorCode::kCellNotFound)
     return EmptySlot(*place->family, request.name());
   return deleted;
 }
 
-Result<ProgramBook::Subject> ProgramBook::FindSubject(const std::string& family_id,
-                                                      const std::string& machine_name,
-                                                      const v1::ProgramText& program) {
+Result<ProgramBook::Subject> ProgramBook::FindSubject(
+    const std::string& family_id, const std::string& machine_name, const v1::ProgramText& program,
+    const storage::Store::WantsPrograms& wants_programs) {
   Subject subject;
   if (!machine_name.empty()) {
     const Result<std::string> id = ParseMachineName(machine_name);
     if (!id) return id.error();
-    auto machine = store_.GetMachine(*id);
-    if (!machine) return machine.error();
-    subject.family = families::FindFamily(machine->family);
-    subject.record = *std::move(machine);
+    auto memory = store_.GetMachineMemory(*id, wants_programs);
+    if (!memory) return memory.error();
+    subject.family = families::FindFamily(memory->machine.family);
+    subject.memory = *std::move(memory);
   } else if (!family_id.empty()) {
     subject.family = families::FindFamily(family_id);
     if (subject.family == nullptr) return Error{ErrorCode::kCellUnknownFamily, family_id, {}};
@@ -385,8 +413,8 @@ Result<ProgramBook::Subject> ProgramBook::FindSubject(const std::string& family_
   if (program.content().empty())
     return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
   Result<machine::Parameters> parameters =
-      subject.record ? machine::MakeParameters(*subject.family, subject.record->profile,
-                                               subject.record->parameters)
+      subject.memory ? machine::MakeParameters(*subject.family, subject.memory->machine.profile,
+                                               subject.memory->machine.parameters)
                      : machine::MakeParameters(*subject.family, {}, {});
   if (!parameters) return parameters.error();
   subject.parameters = *std::move(parameters);
@@ -396,49 +424,20 @@ Result<ProgramBook::Subject> ProgramBook::FindSubject(const std::string& family_
 Result<machine::Translation> ProgramBook::Translate(const std::string& family_id,
                                                     const std::string& machine_name,
                                                     const v1::ProgramText& program, bool advice) {
-  const Result<Subject> subject = FindSubject(family_id, machine_name, program);
+  const Result<Subject> subject = FindSubject(family_id, machine_name, program, {});
   if (!subject) return subject.error();
   return TranslateFor(*subject->family, *subject->parameters, program, advice);
-}
-
-// The programs of the machine, its schedules and the state in which it stands.
-Status ProgramBook::AddMemory(const Subject& subject, simulation::ProgramMemory& input) {
-  const storage::MachineRecord& machine = *subject.record;
-  input.machine_state = machine.state;
-  auto memory = store_.GetProgramMemory(machine.id);
-  if (!memory) return memory.error();
-  for (storage::ProgramRecord& program : *memory) {
-    simulation::MemoryProgram& made = input.programs.emplace_back();
-    made.slot = program.slot;
-    made.name = std::move(program.name);
-    made.bytes = machine::Bytes::Of(std::move(program.object));
-    if (program.executable) made.executable = machine::Bytes::Of(*std::move(program.executable));
-  }
-  const auto deleted = store_.ListDeletedPrograms(machine.id);
-  if (!deleted) return deleted.error();
-  input.deleted_programs = *deleted;
-  const auto schedules = store_.ListSchedules(machine.id);
-  if (!schedules) return schedules.error();
-  if (schedules->empty()) return {};
-  input.schedules.emplace();
-  for (const storage::ScheduleRecord& schedule : *schedules) {
-    input.schedules->push_back({.number = schedule.number,
-                                .name = schedule.name,
-                                .mode = schedule.mode,
-                                .power_percent = schedule.power_percent});
-  }
-  return {};
 }
 
 Result<simulation::CheckedProgram> ProgramBook::Check(const std::string& family_id,
                                                       const std::string& machine_name,
                                                       const v1::ProgramText& program, bool advice) {
-  const Result<Subject> subject = FindSubject(family_id, machine_name, program);
+  Result<Subject> subject = FindSubject(family_id, machine_name, program, CheckedByRunning);
   if (!subject) return subject.error();
   const machine::MachineFamily& family = *subject->family;
   simulation::ProgramMemory memory{.family = &family};
-  if (subject->record && family.info().checked_by_running) {
-    if (const Status added = AddMemory(*subject, memory); !added) return added.error();
+  if (subject->memory && family.info().checked_by_running) {
+    AddMemory(*std::move(subject->memory), memory);
     memory.given = simulation::MemoryGiven::kWhole;
   }
   const int slot = SlotForCheck(program.file_name(), memory.programs);

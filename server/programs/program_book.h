@@ -31,6 +31,7 @@ class ProgramBook {
     std::string bytes;
     bool validate_only = false;
     bool force = false;
+    std::string caller{};
   };
   // All or nothing. Errors: CellEmptyProgram, CellTooLarge, the first compile error,
   // CellEtagMismatch, CellUnknownMachine, FamilyInfo::no_slot, empty_slot for an executable without
@@ -50,7 +51,7 @@ class ProgramBook {
   Result<Content> Read(std::string_view name, v1::ProgramForm form);
 
   Result<v1::ListProgramsResponse> List(const v1::ListProgramsRequest& request);
-  Status Delete(const v1::DeleteProgramRequest& request);
+  Status Delete(const v1::DeleteProgramRequest& request, std::string_view caller);
 
   // Translates without storing. Errors: CellUnknownFamily and what names machine or family wrongly.
   Result<machine::Translation> Translate(const std::string& family, const std::string& machine,
@@ -70,12 +71,13 @@ class ProgramBook {
   // What a program is checked for.
   struct Subject {
     const machine::MachineFamily* family = nullptr;
-    std::optional<storage::MachineRecord> record{};
+    std::optional<storage::MachineMemory> memory{};
     std::optional<machine::Parameters> parameters{};
   };
+  // The memory of the machine has its programs where `wants_programs` says so.
   Result<Subject> FindSubject(const std::string& family, const std::string& machine,
-                              const v1::ProgramText& program);
-  Status AddMemory(const Subject& subject, simulation::ProgramMemory& input);
+                              const v1::ProgramText& program,
+                              const storage::Store::WantsPrograms& wants_programs);
   ProgramResult<v1::Program> StoreExecutable(const Put& put, const ProgramPlace& place);
 
   storage::Store& store_;

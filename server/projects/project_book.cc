@@ -214,7 +214,8 @@ ProgramError Refused(const machine::TransferPlan& plan, const machine::MachineFa
 
 }  // namespace
 
-ProgramResult<v1::Project> ProjectBook::Create(const v1::CreateProjectRequest& request) {
+ProgramResult<v1::Project> ProjectBook::Create(const v1::CreateProjectRequest& request,
+                                               std::string_view caller) {
   if (const Status id = CheckResourceId(request.project_id(), "project_id"); !id) return id.error();
   if (auto fault = FindFault(request.project())) return *std::move(fault);
   storage::ProjectRecord record = RecordOf(request.project_id(), request.project());
@@ -226,9 +227,20 @@ ProgramResult<v1::Project> ProjectBook::Create(const v1::CreateProjectRequest& r
     project.set_name(ProjectName(request.project_id()));
     return project;
   }
-  const auto stored = store_.PutProject(record, 0);
+  const auto stored = store_.PutProject(record, 0, caller);
   if (!stored) return stored.error();
   return Whole(*stored);
+}
+
+v1::Project WithoutContent(v1::Project project) {
+  for (v1::ProjectProgram& program : *project.mutable_programs()) {
+    program.mutable_source()->clear_content();
+    if (!program.milling().has_target()) continue;
+    v1::MillTarget& target = *program.mutable_milling()->mutable_target();
+    if (target.has_file()) target.mutable_file()->clear_content();
+    if (target.has_inline_program()) target.mutable_inline_program()->clear_content();
+  }
+  return project;
 }
 
 Result<v1::Project> ProjectBook::Get(std::string_view name) {
@@ -255,19 +267,13 @@ Result<v1::ListProjectsResponse> ProjectBook::List(const v1::ListProjectsRequest
     }
     Result<v1::Project> project = ProjectOf(record);
     if (!project) return project.error();
-    for (v1::ProjectProgram& program : *project->mutable_programs()) {
-      program.mutable_source()->clear_content();
-      if (!program.milling().has_target()) continue;
-      v1::MillTarget& target = *program.mutable_milling()->mutable_target();
-      if (target.has_file()) target.mutable_file()->clear_content();
-      if (target.has_inline_program()) target.mutable_inline_program()->clear_content();
-    }
-    *response.add_projects() = *std::move(project);
+    *response.add_projects() = WithoutContent(*std::move(project));
   }
   return response;
 }
 
-ProgramResult<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& request) {
+ProgramResult<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& request,
+                                               std::string_view caller) {
   const Result<std::string> id = ParseProjectName(request.project().name());
   if (!id) return id.error();
   const Result<storage::Revision> expected = ParseEtag(request.project().etag());
@@ -292,21 +298,21 @@ ProgramResult<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& r
   if (auto fault = FindFault(project)) return *std::move(fault);
   if (request.validate_only()) return project;
   // Another change between the two is not overwritten.
-  const auto stored = store_.PutProject(RecordOf(*id, project), record->revision);
+  const auto stored = store_.PutProject(RecordOf(*id, project), record->revision, caller);
   if (!stored) return stored.error();
   return Whole(*stored);
 }
 
-Status ProjectBook::Delete(const v1::DeleteProjectRequest& request) {
+Status ProjectBook::Delete(const v1::DeleteProjectRequest& request, std::string_view caller) {
   const Result<std::string> id = ParseProjectName(request.name());
   if (!id) return id.error();
   const Result<storage::Revision> expected = ParseEtag(request.etag());
   if (!expected) return expected.error();
-  return store_.DeleteProject(*id, *expected);
+  return store_.DeleteProject(*id, *expected, caller);
 }
 
 ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
-    const v1::TransferProjectRequest& request) {
+    const v1::TransferProjectRequest& request, std::string_view caller) {
   const Result<v1::Project> project = Get(request.name());
   if (!project) return project.error();
   const Result<std::string> machine_id = ParseMachineName(request.machine());
@@ -373,7 +379,7 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
                          .mode = schedule.mode().empty() ? "CW" : schedule.mode(),
                          .power_percent = schedule.power_percent()});
   }
-  const auto stored = store_.PutPrograms(*machine_id, writes, schedules);
+  const auto stored = store_.PutPrograms(*machine_id, writes, schedules, caller);
   if (!stored) return stored.error();
   std::size_t next = 0;  // one summary of each program, in the same order
   for (v1::Program& made : *response.mutable_programs()) {

@@ -8,6 +8,9 @@
 
 namespace rmlcell::server {
 
+// A project as lists have it: the bytes of its programs may be megabytes.
+v1::Project WithoutContent(v1::Project project);
+
 // Projects: kept as one record each, transferred to a machine as one. Thread-safe; blocks on the
 // store.
 class ProjectBook {
@@ -18,18 +21,21 @@ class ProjectBook {
   // those of process definitions (7402, 7403, 7004, 7019; OPT-3.01 to 3.08), CellAlreadyExists;
   // CellInvalidArgument, also for a program in UNITS_METRIC whose name says inch (OPT-8.72); those
   // of bridge::CheckTarget.
-  ProgramResult<v1::Project> Create(const v1::CreateProjectRequest& request);
+  ProgramResult<v1::Project> Create(const v1::CreateProjectRequest& request,
+                                    std::string_view caller);
   Result<v1::Project> Get(std::string_view name);
   Result<v1::ListProjectsResponse> List(const v1::ListProjectsRequest& request);
   // Errors: as Create, CellEtagMismatch.
-  ProgramResult<v1::Project> Update(const v1::UpdateProjectRequest& request);
-  Status Delete(const v1::DeleteProjectRequest& request);
+  ProgramResult<v1::Project> Update(const v1::UpdateProjectRequest& request,
+                                    std::string_view caller);
+  Status Delete(const v1::DeleteProjectRequest& request, std::string_view caller);
 
   // Converts, compiles and checks everything in the engine, then stores all programs and schedules
   // in one transaction; on any error nothing is stored (OPT-8.71). Errors: ProjectDuplicate (7861),
   // ProjectSource (7862), CellInvalidArgument for a file of another family, the first error of the
   // programs.
-  ProgramResult<v1::TransferProjectResponse> Transfer(const v1::TransferProjectRequest& request);
+  ProgramResult<v1::TransferProjectResponse> Transfer(const v1::TransferProjectRequest& request,
+                                                      std::string_view caller);
 
  private:
   storage::Store& store_;

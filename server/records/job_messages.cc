@@ -78,6 +78,29 @@ v1::Job::State ToProto(storage::JobState state) {
   return v1::Job::STATE_UNSPECIFIED;
 }
 
+v1::WaitReason ToProto(storage::WaitReason reason) {
+  switch (reason) {
+    case storage::WaitReason::kNone:
+      return v1::WAIT_REASON_UNSPECIFIED;
+    case storage::WaitReason::kHeld:
+      return v1::WAIT_REASON_HELD;
+    case storage::WaitReason::kNotBefore:
+      return v1::WAIT_REASON_NOT_BEFORE;
+    case storage::WaitReason::kAfterJob:
+      return v1::WAIT_REASON_AFTER_JOB;
+    case storage::WaitReason::kAfterJobFailed:
+      return v1::WAIT_REASON_AFTER_JOB_FAILED;
+    case storage::WaitReason::kMachineBusy:
+      return v1::WAIT_REASON_MACHINE_BUSY;
+  }
+  return v1::WAIT_REASON_UNSPECIFIED;
+}
+
+storage::WallTime FromProto(const google::protobuf::Timestamp& time) {
+  return storage::WallTime(
+      std::chrono::microseconds(time.seconds() * 1'000'000 + time.nanos() / 1000));
+}
+
 int InlineSlotOf(const v1::Job& job) {
   return job.inline_slot() > 0 ? job.inline_slot() : kSlotMin;
 }
@@ -95,6 +118,11 @@ v1::Job ToProto(const storage::JobRecord& record) {
   job.set_cancel_requested(record.cancel_requested);
   job.set_last_sequence(record.last_sequence);
   job.set_caller(record.caller);
+  job.set_priority(record.priority);
+  job.set_held(record.held);
+  if (record.not_before) *job.mutable_not_before_time() = ToProto(*record.not_before);
+  job.set_wait_reason(ToProto(record.wait));
+  if (record.waits_for > 0) job.set_waits_for(JobName(record.waits_for));
   *job.mutable_create_time() = ToProto(record.created_at);
   if (record.started_at) *job.mutable_start_time() = ToProto(*record.started_at);
   if (record.finished_at) *job.mutable_end_time() = ToProto(*record.finished_at);
@@ -137,6 +165,18 @@ storage::NewEvent EndedEvent(const v1::Outcome& outcome) {
   v1::JobEvent event;
   *event.mutable_ended() = outcome;
   return ToRecord(event);
+}
+
+storage::NewEvent QueueEvent(bool held, int priority) {
+  v1::JobEvent event;
+  event.mutable_queue()->set_held(held);
+  event.mutable_queue()->set_priority(priority);
+  return ToRecord(event);
+}
+
+storage::NewEvent By(std::string_view caller, storage::NewEvent event) {
+  event.caller = caller;
+  return event;
 }
 
 storage::JobOutcome OutcomeOf(const v1::Outcome& outcome) {

@@ -18,7 +18,10 @@ inline constexpr std::string_view kComputingWorkers = "computing";
 
 google::protobuf::Timestamp ToProto(storage::WallTime time);
 
+storage::WallTime FromProto(const google::protobuf::Timestamp& time);
+
 v1::Job::State ToProto(storage::JobState state);
+v1::WaitReason ToProto(storage::WaitReason reason);
 
 // The slot that an inline program stands in for its job.
 int InlineSlotOf(const v1::Job& job);
@@ -34,6 +37,10 @@ v1::JobEvent ToProto(const storage::EventRecord& record);
 storage::NewEvent ToRecord(const v1::JobEvent& event);
 storage::NewEvent StateEvent(storage::JobState state);
 storage::NewEvent EndedEvent(const v1::Outcome& outcome);
+// A job was held back, let go or given another place.
+storage::NewEvent QueueEvent(bool held, int priority);
+// The same event, told as what this caller did.
+storage::NewEvent By(std::string_view caller, storage::NewEvent event);
 
 // How a run ended, as the state of its job.
 storage::JobOutcome OutcomeOf(const v1::Outcome& outcome);

@@ -6,6 +6,7 @@
 #include "server/base/version.h"
 #include "server/jobs/dispatcher.h"
 #include "server/records/job_messages.h"
+#include "server/services/open_stream.h"
 
 namespace rmlcell::server {
 namespace {
@@ -16,23 +17,23 @@ storage::WallTime Now() {
 
 }  // namespace
 
-CellService::CellService(CallNeeds needs, storage::Store& store, const Dispatcher& dispatcher,
-                         const Config& config, std::string instance_id)
+CellService::CellService(CallNeeds needs, CellWatchNeeds watch, const Dispatcher& dispatcher,
+                         const Config& config)
     : needs_(needs),
-      store_(store),
+      watch_needs_(std::move(watch)),
       dispatcher_(dispatcher),
       config_(config),
-      instance_id_(std::move(instance_id)),
       started_at_(Now()) {}
 
 grpc::ServerUnaryReactor* CellService::GetCell(grpc::CallbackServerContext* context,
                                                const v1::GetCellRequest* request,
                                                v1::Cell* response) {
   return Answer(needs_, context, *request, "CellService/GetCell", [this, response](const Caller&) {
-    const auto counts = store_.CountJobs();
+    const auto counts = watch_needs_.records.store.CountJobs();
     if (!counts) return ToGrpcStatus(counts.error());
     response->set_version(std::string(kVersion));
-    response->set_instance_id(instance_id_);
+    response->set_instance_id(watch_needs_.instance_id);
+    response->set_log_id(watch_needs_.records.store.LogId());
     *response->mutable_started_at() = ToProto(started_at_);
     *response->mutable_server_time() = ToProto(Now());
     response->set_workers(dispatcher_.workers());
@@ -42,6 +43,23 @@ grpc::ServerUnaryReactor* CellService::GetCell(grpc::CallbackServerContext* cont
     response->set_program_bytes_max(config_.limit_program_bytes);
     return grpc::Status::OK;
   });
+}
+
+grpc::ServerWriteReactor<v1::WatchCellResponse>* CellService::WatchCell(
+    grpc::CallbackServerContext* context, const v1::WatchCellRequest* request) {
+  return OpenStream<v1::WatchCellResponse>(
+      needs_, *context, *request, "CellService/WatchCell",
+      [&](const Caller& caller) { return MakeCellWatch(watch_needs_, *request, caller.identity); });
+}
+
+grpc::ServerUnaryReactor* CellService::UpdateWatch(grpc::CallbackServerContext* context,
+                                                   const v1::UpdateWatchRequest* request,
+                                                   google::protobuf::Empty*) {
+  return Answer(needs_, context, *request, "CellService/UpdateWatch",
+                [this, request](const Caller& caller) {
+                  const Status changed = watch_needs_.registry.Change(*request, caller.identity);
+                  return changed ? grpc::Status::OK : ToGrpcStatus(changed.error());
+                });
 }
 
 }  // namespace rmlcell::server

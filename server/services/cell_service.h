@@ -3,7 +3,8 @@
 #include <string>
 
 #include "rmlcell/v1/cell.grpc.pb.h"
-#include "server/services/later.h"
+#include "server/services/call.h"
+#include "server/services/cell_watch.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
@@ -13,21 +14,24 @@ struct Config;
 
 class CellService final : public v1::CellService::CallbackService {
  public:
-  CellService(CallNeeds needs, storage::Store& store, const Dispatcher& dispatcher,
-              const Config& config, std::string instance_id);
+  // `watch.records.store` is the store of the cell.
+  CellService(CallNeeds needs, CellWatchNeeds watch, const Dispatcher& dispatcher,
+              const Config& config);
 
   grpc::ServerUnaryReactor* GetCell(grpc::CallbackServerContext* context,
                                     const v1::GetCellRequest* request, v1::Cell* response) override;
 
-  RMLCELL_LATER_READ("CellService", WatchCell)
-  RMLCELL_LATER("CellService", UpdateWatch, google::protobuf::Empty)
+  grpc::ServerWriteReactor<v1::WatchCellResponse>* WatchCell(
+      grpc::CallbackServerContext* context, const v1::WatchCellRequest* request) override;
+  grpc::ServerUnaryReactor* UpdateWatch(grpc::CallbackServerContext* context,
+                                        const v1::UpdateWatchRequest* request,
+                                        google::protobuf::Empty* response) override;
 
  private:
   CallNeeds needs_;
-  storage::Store& store_;
+  CellWatchNeeds watch_needs_;
   const Dispatcher& dispatcher_;
   const Config& config_;
-  std::string instance_id_;
   storage::WallTime started_at_;
 };
 

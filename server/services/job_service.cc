@@ -10,6 +10,19 @@
 
 namespace rmlcell::server {
 
+namespace {
+
+v1::Job* JobOf(v1::Job* response) { return response; }
+v1::Job* JobOf(v1::HaltJobResponse* response) { return response->mutable_job(); }
+
+void NoteActed(const v1::Job*) {}
+void NoteActed(v1::HaltJobResponse* response) {
+  *response->mutable_acted_at() =
+      ToProto(std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now()));
+}
+
+}  // namespace
+
 // The one method that does not go through the executor. Of callers that come together only the
 // first waits here for the disk; the store answers all others from its own thread, with one commit.
 grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* context,
@@ -60,10 +73,11 @@ grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* cont
 grpc::ServerUnaryReactor* JobService::DeleteJob(grpc::CallbackServerContext* context,
                                                 const v1::DeleteJobRequest* request,
                                                 google::protobuf::Empty*) {
-  return Answer(needs_, context, *request, "JobService/DeleteJob", [this, request](const Caller&) {
-    const Status deleted = book_.Delete(request->name());
-    return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
-  });
+  return Answer(needs_, context, *request, "JobService/DeleteJob",
+                [this, request](const Caller& caller) {
+                  const Status deleted = book_.Delete(request->name(), caller.identity);
+                  return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
+                });
 }
 
 grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* context,
@@ -72,12 +86,13 @@ grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* con
   const Result<std::int64_t> id = ParseJobName(request->name());
   return AnswerAfter(
       needs_, context, *request, "JobService/CancelJob",
-      [this, id](const Caller&) {
-        if (id) dispatcher_.OrderAtOnce(*id, v1::WorkerControl::KIND_CANCEL);
+      [this, id](const Caller& caller) {
+        if (id)
+          dispatcher_.OrderAtOnce(*id, {v1::WorkerControl::KIND_CANCEL, 0.0, caller.identity, {}});
       },
-      [this, id, response](const Caller&) {
+      [this, id, response](const Caller& caller) {
         if (!id) return ToGrpcStatus(id.error());
-        const auto job = dispatcher_.Cancel(*id);
+        const auto job = dispatcher_.Cancel(*id, caller.identity);
         if (!job) return ToGrpcStatus(job.error());
         *response = ToProto(*job);
         return grpc::Status::OK;
@@ -86,25 +101,49 @@ grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* con
 
 // Stops stand behind nothing: what the worker of a running job is to do goes out on the thread of
 // the call; the store is asked afterwards, and for a job that this server has given to nobody.
-template <class Request>
+template <class Request, class Response>
 grpc::ServerUnaryReactor* JobService::Order(grpc::CallbackServerContext* context,
                                             std::string_view method, const Request& request,
-                                            v1::WorkerControl::Kind kind, v1::Job* response) {
+                                            v1::WorkerControl::Kind kind, Response* response) {
   const Result<std::int64_t> id = ParseJobName(request.name());
   auto ordered = std::make_shared<bool>(false);
   return AnswerAfter(
       needs_, context, request, method,
-      [this, id, kind, ordered](const Caller&) {
-        *ordered = id && dispatcher_.OrderAtOnce(*id, kind);
+      [this, id, kind, ordered, &request, response](const Caller& caller) {
+        *ordered =
+            id && dispatcher_.OrderAtOnce(*id, {kind, 0.0, caller.identity, request.request_id()});
+        if (*ordered) NoteActed(response);
       },
-      [this, id, &request, kind, ordered, response](const Caller&) {
+      [this, id, &request, kind, ordered, response](const Caller& caller) {
         if (!id) return ToGrpcStatus(id.error());
         if (!*ordered) {
-          if (const Status late = dispatcher_.Control(*id, kind, 0.0); !late)
-            return ToGrpcStatus(late.error());
+          Status late =
+              dispatcher_.Control(*id, {kind, 0.0, caller.identity, request.request_id()});
+          // It may wait in the queue.
+          if (!late && late.error().code == ErrorCode::kCellPrecondition)
+            late = OrderWaiting(request.name(), kind, caller.identity);
+          if (!late) return ToGrpcStatus(late.error());
+          NoteActed(response);
         }
-        return Give(request.name(), response);
+        return Give(request.name(), JobOf(response));
       });
+}
+
+Status JobService::OrderWaiting(const std::string& name, v1::WorkerControl::Kind kind,
+                                const std::string& caller) {
+  Result<v1::Job> job = InvalidArgument(name);
+  if (kind == v1::WorkerControl::KIND_HOLD) {
+    job = book_.HoldBack(name, caller);
+  } else if (kind == v1::WorkerControl::KIND_RESUME) {
+    job = book_.LetGo(name, caller);
+  } else {
+    return Error{ErrorCode::kCellPrecondition, name + " does not run", {}};
+  }
+  return job ? Status() : Status(job.error());
+}
+
+JobStreamNeeds JobService::Streams() const {
+  return {needs_.executor, open_, book_, feed_, instance_id_};
 }
 
 grpc::Status JobService::Give(const std::string& name, v1::Job* response) {
@@ -116,13 +155,13 @@ grpc::Status JobService::Give(const std::string& name, v1::Job* response) {
 
 grpc::ServerUnaryReactor* JobService::HoldJob(grpc::CallbackServerContext* context,
                                               const v1::HoldJobRequest* request,
-                                              v1::Job* response) {
+                                              v1::HaltJobResponse* response) {
   return Order(context, "JobService/HoldJob", *request, v1::WorkerControl::KIND_HOLD, response);
 }
 
 grpc::ServerUnaryReactor* JobService::StopJob(grpc::CallbackServerContext* context,
                                               const v1::StopJobRequest* request,
-                                              v1::Job* response) {
+                                              v1::HaltJobResponse* response) {
   return Order(context, "JobService/StopJob", *request, v1::WorkerControl::KIND_STOP, response);
 }
 
@@ -136,44 +175,24 @@ grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext
                                                      const v1::SetJobOverrideRequest* request,
                                                      v1::Job* response) {
   return Answer(needs_, context, *request, "JobService/SetJobOverride",
-                [this, request, response](const Caller&) {
+                [this, request, response](const Caller& caller) {
                   const double percent = request->override_percent();
                   const Result<std::int64_t> id = ParseJobName(request->name());
                   if (!id) return ToGrpcStatus(id.error());
                   if (const Status valid = book_.CheckOverride(request->name(), percent); !valid)
                     return ToGrpcStatus(valid.error());
                   const Status ordered =
-                      dispatcher_.Control(*id, v1::WorkerControl::KIND_OVERRIDE, percent);
+                      dispatcher_.Control(*id, {v1::WorkerControl::KIND_OVERRIDE, percent,
+                                                caller.identity, request->request_id()});
                   return ordered ? Give(request->name(), response) : ToGrpcStatus(ordered.error());
                 });
 }
 
-namespace {
-
-template <class Response>
-grpc::ServerWriteReactor<Response>* Open(const CallNeeds& needs,
-                                         grpc::CallbackServerContext* context,
-                                         const google::protobuf::Message& request,
-                                         std::string_view method,
-                                         const std::shared_ptr<PullStream<Response>>& stream) {
-  const Result<Caller> caller = Admit(needs.gate, *context, method, &request);
-  if (!caller)
-    return new EndedStream<grpc::ServerWriteReactor<Response>>(ToGrpcStatus(caller.error()));
-  return stream->Begin();
-}
-
-}  // namespace
-
 grpc::ServerWriteReactor<v1::WatchJobResponse>* JobService::WatchJob(
     grpc::CallbackServerContext* context, const v1::WatchJobRequest* request) {
-  return Open(needs_, context, *request, "JobService/WatchJob",
-              MakeJobWatch({needs_.executor, open_, book_, feed_, instance_id_}, *request));
-}
-
-grpc::ServerWriteReactor<v1::WatchJobsResponse>* JobService::WatchJobs(
-    grpc::CallbackServerContext* context, const v1::WatchJobsRequest* request) {
-  return Open(needs_, context, *request, "JobService/WatchJobs",
-              MakeJobsWatch({needs_.executor, open_, book_, feed_, instance_id_}, *request));
+  return OpenStream<v1::WatchJobResponse>(
+      needs_, *context, *request, "JobService/WatchJob",
+      [&](const Caller&) { return MakeJobWatch(Streams(), *request); });
 }
 
 grpc::ServerUnaryReactor* JobService::GetJobReport(grpc::CallbackServerContext* context,
@@ -195,9 +214,10 @@ grpc::ServerUnaryReactor* JobService::GetJobReport(grpc::CallbackServerContext* 
 
 grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobToolpath(
     grpc::CallbackServerContext* context, const v1::StreamJobToolpathRequest* request) {
-  return Open(needs_, context, *request, "JobService/StreamJobToolpath",
-              MakeToolpathStream({needs_.executor, open_, book_, feed_, instance_id_},
-                                 request->name(), request->level()));
+  return OpenStream<v1::StreamJobToolpathResponse>(
+      needs_, *context, *request, "JobService/StreamJobToolpath", [&](const Caller&) {
+        return MakeToolpathStream(Streams(), request->name(), request->level());
+      });
 }
 
 grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext* context,
@@ -241,15 +261,63 @@ grpc::ServerUnaryReactor* JobService::GetJobArtifact(grpc::CallbackServerContext
 
 grpc::ServerWriteReactor<v1::StreamJobArtifactResponse>* JobService::StreamJobArtifact(
     grpc::CallbackServerContext* context, const v1::StreamJobArtifactRequest* request) {
-  return Open(needs_, context, *request, "JobService/StreamJobArtifact",
-              MakeArtifactStream({needs_.executor, open_, book_, feed_, instance_id_}, *request));
+  return OpenStream<v1::StreamJobArtifactResponse>(
+      needs_, *context, *request, "JobService/StreamJobArtifact",
+      [&](const Caller&) { return MakeArtifactStream(Streams(), *request); });
 }
 
 grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* JobService::StreamJobTrace(
     grpc::CallbackServerContext* context, const v1::StreamJobTraceRequest* request) {
-  return Open(
-      needs_, context, *request, "JobService/StreamJobTrace",
-      MakeTraceStream({needs_.executor, open_, book_, feed_, instance_id_}, request->name()));
+  return OpenStream<v1::StreamJobTraceResponse>(
+      needs_, *context, *request, "JobService/StreamJobTrace",
+      [&](const Caller&) { return MakeTraceStream(Streams(), request->name()); });
+}
+
+grpc::ServerUnaryReactor* JobService::CancelJobs(grpc::CallbackServerContext* context,
+                                                 const v1::CancelJobsRequest* request,
+                                                 v1::CancelJobsResponse* response) {
+  return Answer(needs_, context, *request, "JobService/CancelJobs",
+                [this, request, response](const Caller& caller) {
+                  const auto names = book_.Choose(request->jobs(), {});
+                  if (!names) return ToGrpcStatus(names.error());
+                  for (const std::string& name : *names) {
+                    const auto job = dispatcher_.Cancel(*ParseJobName(name), caller.identity);
+                    if (!job) return ToGrpcStatus(job.error());
+                    response->set_jobs(response->jobs() + 1);
+                  }
+                  return grpc::Status::OK;
+                });
+}
+
+grpc::ServerUnaryReactor* JobService::HoldJobs(grpc::CallbackServerContext* context,
+                                               const v1::HoldJobsRequest* request,
+                                               v1::HoldJobsResponse* response) {
+  return Answer(needs_, context, *request, "JobService/HoldJobs",
+                [this, request, response](const Caller& caller) {
+                  const auto names = book_.Choose(request->jobs(), storage::JobState::kQueued);
+                  if (!names) return ToGrpcStatus(names.error());
+                  for (const std::string& name : *names) {
+                    const auto job = request->release() ? book_.LetGo(name, caller.identity)
+                                                        : book_.HoldBack(name, caller.identity);
+                    // One that began meanwhile does not keep the others.
+                    if (!job && job.error().code == ErrorCode::kCellPrecondition) continue;
+                    if (!job) return ToGrpcStatus(job.error());
+                    response->set_jobs(response->jobs() + 1);
+                  }
+                  return grpc::Status::OK;
+                });
+}
+
+grpc::ServerUnaryReactor* JobService::MoveJob(grpc::CallbackServerContext* context,
+                                              const v1::MoveJobRequest* request,
+                                              v1::Job* response) {
+  return Answer(needs_, context, *request, "JobService/MoveJob",
+                [this, request, response](const Caller& caller) {
+                  Result<v1::Job> job = book_.Move(*request, caller.identity);
+                  if (!job) return ToGrpcStatus(job.error());
+                  *response = *std::move(job);
+                  return grpc::Status::OK;
+                });
 }
 
 }  // namespace rmlcell::server

@@ -4,8 +4,8 @@
 
 #include "rmlcell/v1/job.grpc.pb.h"
 #include "rmlcell/v1/worker.pb.h"
+#include "server/services/job_streams.h"
 #include "server/services/later.h"
-#include "server/services/pull_stream.h"
 
 namespace rmlcell::server {
 
@@ -40,9 +40,11 @@ class JobService final : public v1::JobService::CallbackService {
                                       const v1::CancelJobRequest* request,
                                       v1::Job* response) override;
   grpc::ServerUnaryReactor* HoldJob(grpc::CallbackServerContext* context,
-                                    const v1::HoldJobRequest* request, v1::Job* response) override;
+                                    const v1::HoldJobRequest* request,
+                                    v1::HaltJobResponse* response) override;
   grpc::ServerUnaryReactor* StopJob(grpc::CallbackServerContext* context,
-                                    const v1::StopJobRequest* request, v1::Job* response) override;
+                                    const v1::StopJobRequest* request,
+                                    v1::HaltJobResponse* response) override;
   grpc::ServerUnaryReactor* ResumeJob(grpc::CallbackServerContext* context,
                                       const v1::ResumeJobRequest* request,
                                       v1::Job* response) override;
@@ -51,8 +53,6 @@ class JobService final : public v1::JobService::CallbackService {
                                            v1::Job* response) override;
   grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(
       grpc::CallbackServerContext* context, const v1::WatchJobRequest* request) override;
-  grpc::ServerWriteReactor<v1::WatchJobsResponse>* WatchJobs(
-      grpc::CallbackServerContext* context, const v1::WatchJobsRequest* request) override;
   grpc::ServerUnaryReactor* GetJobReport(grpc::CallbackServerContext* context,
                                          const v1::GetJobReportRequest* request,
                                          v1::RunReport* response) override;
@@ -69,10 +69,16 @@ class JobService final : public v1::JobService::CallbackService {
   grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* StreamJobTrace(
       grpc::CallbackServerContext* context, const v1::StreamJobTraceRequest* request) override;
 
+  grpc::ServerUnaryReactor* CancelJobs(grpc::CallbackServerContext* context,
+                                       const v1::CancelJobsRequest* request,
+                                       v1::CancelJobsResponse* response) override;
+  grpc::ServerUnaryReactor* HoldJobs(grpc::CallbackServerContext* context,
+                                     const v1::HoldJobsRequest* request,
+                                     v1::HoldJobsResponse* response) override;
+  grpc::ServerUnaryReactor* MoveJob(grpc::CallbackServerContext* context,
+                                    const v1::MoveJobRequest* request, v1::Job* response) override;
+
   RMLCELL_LATER_BOTH("JobService", SubmitJobs)
-  RMLCELL_LATER("JobService", CancelJobs, v1::CancelJobsResponse)
-  RMLCELL_LATER("JobService", HoldJobs, v1::HoldJobsResponse)
-  RMLCELL_LATER("JobService", MoveJob, v1::Job)
   RMLCELL_LATER("JobService", DecideInterrupted, v1::DecideInterruptedResponse)
   RMLCELL_LATER("JobService", ListJobFindings, v1::ListJobFindingsResponse)
   RMLCELL_LATER("JobService", GetJobSeries, v1::GetJobSeriesResponse)
@@ -80,11 +86,14 @@ class JobService final : public v1::JobService::CallbackService {
   RMLCELL_LATER("JobService", GetStepMap, v1::GetStepMapResponse)
 
  private:
-  template <class Request>
+  template <class Request, class Response>
   grpc::ServerUnaryReactor* Order(grpc::CallbackServerContext* context, std::string_view method,
                                   const Request& request, v1::WorkerControl::Kind kind,
-                                  v1::Job* response);
+                                  Response* response);
   grpc::Status Give(const std::string& name, v1::Job* response);
+  Status OrderWaiting(const std::string& name, v1::WorkerControl::Kind kind,
+                      const std::string& caller);
+  JobStreamNeeds Streams() const;
 
   CallNeeds needs_;
   JobBook& book_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <deque>
-#include <set>
 
 #include "engine/core/number_text.h"
 #include "engine/simulation/toolpath/toolpath_level.h"
@@ -12,7 +11,6 @@
 #include "server/events/event_feed.h"
 #include "server/jobs/job_book.h"
 #include "server/records/job_messages.h"
-#include "server/services/machine_messages.h"
 
 namespace rmlcell::server {
 namespace {
@@ -23,11 +21,12 @@ constexpr int kReadAhead = 64;
 // A watcher must not wait for events that are numbered otherwise by now: it has its number of
 // another cell, or the store was put back from a backup. It is told, and never set somewhere else
 // in silence.
-Status CheckPosition(std::int64_t after, std::int64_t last, const std::string& of) {
+Status CheckPosition(std::int64_t after, std::int64_t last) {
   if (after < 0) return InvalidArgument("after_sequence is below 0");
   if (after <= last) return {};
-  return InvalidArgument("after_sequence is " + std::to_string(after) + ", the last event of " +
-                         of + " is " + std::to_string(last) + ": begin anew, with a snapshot");
+  return InvalidArgument("after_sequence is " + std::to_string(after) +
+                         ", the last event of the job is " + std::to_string(last) +
+                         ": begin anew, with a snapshot");
 }
 
 // A snapshot first, then the job's events in order, then positions while nothing else is to be
@@ -35,10 +34,7 @@ Status CheckPosition(std::int64_t after, std::int64_t last, const std::string& o
 class JobWatch final : public PullStream<v1::WatchJobResponse> {
  public:
   JobWatch(const JobStreamNeeds& needs, const v1::WatchJobRequest& request)
-      : PullStream(needs.executor, needs.open),
-        needs_(needs),
-        request_(request),
-        cursor_(request.after_sequence()) {}
+      : PullStream(needs.executor, needs.open), needs_(needs), request_(request) {}
 
  private:
   Next Make(v1::WatchJobResponse& message, grpc::Status& status) override {
@@ -59,7 +55,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
     }
     if (ended_ || Gone(status)) return Next::kEnd;
     if (!request_.events_only()) {
-      if (const auto progress = needs_.feed.ProgressAfter(job_, progress_seen_)) {
+      if (const auto progress = needs_.feed.LatestAfter(JobName(job_), progress_seen_)) {
         progress_seen_ = progress->version;
         message.mutable_progress()->ParseFromString(*progress->bytes);
         return Next::kMessage;
@@ -76,8 +72,9 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
     }
     job_ = *ParseJobName(request_.name());
     // Subscribed before the log is read: what comes in between wakes us again.
-    subscription_ = needs_.feed.Subscribe(job_, [this] { Wake(); });
-    if (const Status there = CheckPosition(cursor_, job->last_sequence(), "the job"); !there) {
+    subscription_ = needs_.feed.Subscribe(JobName(job_), [this] { Wake(); });
+    cursor_ = request_.has_after_sequence() ? request_.after_sequence() : job->last_sequence();
+    if (const Status there = CheckPosition(cursor_, job->last_sequence()); !there) {
       status = ToGrpcStatus(there.error());
       return Next::kEnd;
     }
@@ -102,9 +99,8 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
 
   bool MakeGoodbye(v1::WatchJobResponse& message) override {
     message.set_instance_id(needs_.instance_id);
-    message.set_sequence(cursor_);
-    message.set_reconnect("the server stops; watch again after sequence " +
-                          std::to_string(cursor_));
+    message.set_sequence(begun_ ? cursor_ : request_.after_sequence());
+    message.mutable_reconnect()->set_after_ms(kReconnectAfter_ms);
     return true;
   }
 
@@ -112,124 +108,13 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
 
   JobStreamNeeds needs_;
   v1::WatchJobRequest request_;
-  std::int64_t cursor_;
+  std::int64_t cursor_ = 0;
   std::int64_t job_ = 0;
   std::int64_t final_sequence_ = -1;
   std::uint64_t progress_seen_ = 0;
   bool begun_ = false;
   bool ended_ = false;
   std::deque<storage::EventRecord> read_ahead_;
-  std::unique_ptr<EventFeed::Subscription> subscription_;
-};
-
-// The same for all jobs, or some: the sequence is the position in the log of the cell.
-class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
- public:
-  JobsWatch(const JobStreamNeeds& needs, const v1::WatchJobsRequest& request)
-      : PullStream(needs.executor, needs.open),
-        needs_(needs),
-        request_(request),
-        cursor_(request.after_sequence()) {}
-
- private:
-  Next Make(v1::WatchJobsResponse& message, grpc::Status& status) override {
-    message.set_instance_id(needs_.instance_id);
-    if (!begun_) {
-      begun_ = true;
-      return MakeSnapshot(message, status);
-    }
-    for (;;) {
-      if (read_ahead_.empty()) {
-        auto events = needs_.feed.EventsAfter(cursor_, kReadAhead);
-        if (!events) {
-          status = ToGrpcStatus(events.error());
-          return Next::kEnd;
-        }
-        for (storage::EventRecord& event : *events) read_ahead_.push_back(std::move(event));
-        if (read_ahead_.empty()) break;
-      }
-      storage::EventRecord event = std::move(read_ahead_.front());
-      read_ahead_.pop_front();
-      cursor_ = event.position;
-      if (!Wanted(event.job)) continue;
-      message.set_sequence(event.position);
-      *message.mutable_event() = ToProto(event);
-      return Next::kMessage;
-    }
-    if (!request_.events_only() && MakeProgress(message)) return Next::kMessage;
-    return Next::kNothing;
-  }
-
-  Next MakeSnapshot(v1::WatchJobsResponse& message, grpc::Status& status) {
-    for (const std::string& name : request_.names()) {
-      const Result<std::int64_t> id = ParseJobName(name);
-      if (!id) {
-        status = ToGrpcStatus(id.error());
-        return Next::kEnd;
-      }
-      jobs_.insert(*id);
-    }
-    subscription_ = needs_.feed.Subscribe(std::nullopt, [this] { Wake(); });
-    Result<v1::JobsSnapshot> snapshot = needs_.book.Snapshot();
-    if (!snapshot) {
-      status = ToGrpcStatus(snapshot.error());
-      return Next::kEnd;
-    }
-    const auto machines = needs_.book.Machines();
-    if (!machines) {
-      status = ToGrpcStatus(machines.error());
-      return Next::kEnd;
-    }
-    const auto unfinished = needs_.book.UnfinishedJobs();
-    if (!unfinished) {
-      status = ToGrpcStatus(unfinished.error());
-      return Next::kEnd;
-    }
-    for (const storage::MachineRecord& machine : *machines)
-      *snapshot->add_machines() = ToProto(machine, *unfinished);
-    if (const Status there = CheckPosition(cursor_, snapshot->sequence(), "the cell"); !there) {
-      status = ToGrpcStatus(there.error());
-      return Next::kEnd;
-    }
-    if (cursor_ == 0) cursor_ = snapshot->sequence();
-    message.set_sequence(cursor_);
-    *message.mutable_snapshot() = std::move(*snapshot);
-    return Next::kMessage;
-  }
-
-  bool Wanted(std::int64_t job) const { return jobs_.empty() || jobs_.contains(job); }
-
-  bool MakeProgress(v1::WatchJobsResponse& message) {
-    if (progress_.empty()) {
-      for (ProgressText& progress : needs_.feed.AllProgressAfter(progress_seen_)) {
-        if (Wanted(progress.job)) progress_.push_back(std::move(progress));
-      }
-    }
-    if (progress_.empty()) return false;
-    progress_seen_ = progress_.front().version;
-    message.mutable_progress()->ParseFromString(*progress_.front().bytes);
-    progress_.pop_front();
-    return true;
-  }
-
-  bool MakeGoodbye(v1::WatchJobsResponse& message) override {
-    message.set_instance_id(needs_.instance_id);
-    message.set_sequence(cursor_);
-    message.set_reconnect("the server stops; watch again after sequence " +
-                          std::to_string(cursor_));
-    return true;
-  }
-
-  void Closed() override { subscription_.reset(); }
-
-  JobStreamNeeds needs_;
-  v1::WatchJobsRequest request_;
-  std::int64_t cursor_;
-  std::uint64_t progress_seen_ = 0;
-  bool begun_ = false;
-  std::set<std::int64_t> jobs_;
-  std::deque<storage::EventRecord> read_ahead_;
-  std::deque<ProgressText> progress_;  // at most one per running job
   std::unique_ptr<EventFeed::Subscription> subscription_;
 };
 
@@ -383,11 +268,6 @@ class ArtifactStream final : public PullStream<v1::StreamJobArtifactResponse> {
 std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamNeeds& needs,
                                                                const v1::WatchJobRequest& request) {
   return std::make_shared<JobWatch>(needs, request);
-}
-
-std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(
-    const JobStreamNeeds& needs, const v1::WatchJobsRequest& request) {
-  return std::make_shared<JobsWatch>(needs, request);
 }
 
 std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(

@@ -22,8 +22,6 @@ struct JobStreamNeeds {
 
 std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamNeeds& needs,
                                                                const v1::WatchJobRequest& request);
-std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(
-    const JobStreamNeeds& needs, const v1::WatchJobsRequest& request);
 std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
     const JobStreamNeeds& needs, const std::string& job_name, int level);
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "server/services/call.h"
+#include "server/services/open_stream.h"
 
 // Methods of the contract that come in a later version: each passes the gate and says
 // UNIMPLEMENTED. They stand in tests/conformance/later_methods.csv, too.
@@ -22,14 +22,6 @@ inline grpc::ServerUnaryReactor* Later(const CallNeeds& needs, grpc::CallbackSer
   reactor->Finish(LaterStatus(needs, *context, method, &request));
   return reactor;
 }
-
-// A stream of any kind that ends before it began.
-template <class Reactor>
-class EndedStream final : public Reactor {
- public:
-  explicit EndedStream(const grpc::Status& status) { this->Finish(status); }
-  void OnDone() override { delete this; }
-};
 
 // For the body of a service: `service` is its name in the contract.
 #define RMLCELL_LATER(service, method, Response)                                             \

@@ -7,13 +7,22 @@
 #include "engine/machine/family.h"
 #include "server/base/names.h"
 #include "server/records/job_messages.h"
+#include "server/records/machine_messages.h"
 #include "server/records/program_place.h"
-#include "server/services/machine_messages.h"
 
 namespace rmlcell::server {
 namespace {
 
 constexpr PageSizes kMachinePages{.fallback = 100, .max = 1000};
+
+// What the contract has and this version does not do.
+Status CheckNothingOfLater(const v1::Machine& machine) {
+  if (machine.has_options()) return Error{ErrorCode::kCellUnimplemented, "machine.options", {}};
+  if (machine.connection().kind() == v1::MachineConnection::KIND_DEVICE ||
+      !machine.connection().device().empty())
+    return Error{ErrorCode::kCellUnimplemented, "machine.connection: a device", {}};
+  return {};
+}
 
 }  // namespace
 
@@ -33,9 +42,11 @@ grpc::ServerUnaryReactor* MachineService::CreateMachine(grpc::CallbackServerCont
                                                         const v1::CreateMachineRequest* request,
                                                         v1::Machine* response) {
   return Answer(needs_, context, *request, "MachineService/CreateMachine",
-                [this, request, response](const Caller&) {
+                [this, request, response](const Caller& caller) {
                   if (const Status id = CheckResourceId(request->machine_id(), "machine_id"); !id)
                     return ToGrpcStatus(id.error());
+                  if (const Status now = CheckNothingOfLater(request->machine()); !now)
+                    return ToGrpcStatus(now.error());
                   const storage::MachineRecord record =
                       FromProto(request->machine(), request->machine_id());
                   if (const Status good = CheckMachine(record); !good)
@@ -45,7 +56,7 @@ grpc::ServerUnaryReactor* MachineService::CreateMachine(grpc::CallbackServerCont
                     response->clear_etag();
                     return grpc::Status::OK;
                   }
-                  const auto stored = store_.PutMachine(record, 0);
+                  const auto stored = store_.PutMachine(record, 0, caller.identity);
                   if (!stored) return ToGrpcStatus(stored.error());
                   *response = ToProto(*stored);
                   return grpc::Status::OK;
@@ -96,9 +107,11 @@ grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerCont
                                                         const v1::UpdateMachineRequest* request,
                                                         v1::Machine* response) {
   return Answer(needs_, context, *request, "MachineService/UpdateMachine",
-                [this, request, response](const Caller&) {
+                [this, request, response](const Caller& caller) {
                   const auto id = ParseMachineName(request->machine().name());
                   if (!id) return ToGrpcStatus(id.error());
+                  if (const Status now = CheckNothingOfLater(request->machine()); !now)
+                    return ToGrpcStatus(now.error());
                   const auto expected = ParseEtag(request->machine().etag());
                   if (!expected) return ToGrpcStatus(expected.error());
                   const auto stands = store_.GetMachine(*id);
@@ -112,7 +125,8 @@ grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerCont
                   // Read and written by the same revision: a change in between is refused, not
                   // lost.
                   const auto stored = store_.PutMachine(
-                      *record, *expected == storage::kAnyRevision ? record->revision : *expected);
+                      *record, *expected == storage::kAnyRevision ? record->revision : *expected,
+                      caller.identity);
                   if (!stored) return ToGrpcStatus(stored.error());
                   *response = ToProto(*stored);
                   return grpc::Status::OK;
@@ -123,12 +137,12 @@ grpc::ServerUnaryReactor* MachineService::DeleteMachine(grpc::CallbackServerCont
                                                         const v1::DeleteMachineRequest* request,
                                                         google::protobuf::Empty*) {
   return Answer(needs_, context, *request, "MachineService/DeleteMachine",
-                [this, request](const Caller&) {
+                [this, request](const Caller& caller) {
                   const auto id = ParseMachineName(request->name());
                   if (!id) return ToGrpcStatus(id.error());
                   const auto expected = ParseEtag(request->etag());
                   if (!expected) return ToGrpcStatus(expected.error());
-                  const Status deleted = store_.DeleteMachine(*id, *expected);
+                  const Status deleted = store_.DeleteMachine(*id, *expected, caller.identity);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });
 }
@@ -176,7 +190,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
     v1::LaserSchedule* response) {
   return Answer(
       needs_, context, *request, "MachineService/PutLaserSchedule",
-      [this, request, response](const Caller&) {
+      [this, request, response](const Caller& caller) {
         const v1::LaserSchedule& wanted = request->laser_schedule();
         const auto name = ParseScheduleName(wanted.name());
         if (!name) return ToGrpcStatus(name.error());
@@ -204,7 +218,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
                                                 .name = wanted.title(),
                                                 .mode = mode,
                                                 .power_percent = wanted.power_percent()},
-                                               *expected);
+                                               *expected, caller.identity);
         if (!stored) return ToGrpcStatus(stored.error());
         *response = ToProto(*stored);
         return grpc::Status::OK;
@@ -215,7 +229,7 @@ grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(
     grpc::CallbackServerContext* context, const v1::DeleteLaserScheduleRequest* request,
     google::protobuf::Empty*) {
   return Answer(needs_, context, *request, "MachineService/DeleteLaserSchedule",
-                [this, request](const Caller&) {
+                [this, request](const Caller& caller) {
                   const auto name = ParseScheduleName(request->name());
                   if (!name) return ToGrpcStatus(name.error());
                   const auto machine = store_.GetMachine(name->machine);
@@ -225,10 +239,17 @@ grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(
                     return ToGrpcStatus(Error{ErrorCode::kCellUnknownFamily, machine->family, {}});
                   if (const Status known = CheckSchedule(*family, name->number); !known)
                     return ToGrpcStatus(known.error());
-                  const Status deleted =
-                      store_.DeleteSchedule(name->machine, static_cast<int>(name->number));
+                  const Status deleted = store_.DeleteSchedule(
+                      name->machine, static_cast<int>(name->number), caller.identity);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });
+}
+
+grpc::ServerWriteReactor<v1::WatchMachineResponse>* MachineService::WatchMachine(
+    grpc::CallbackServerContext* context, const v1::WatchMachineRequest* request) {
+  return OpenStream<v1::WatchMachineResponse>(
+      needs_, *context, *request, "MachineService/WatchMachine",
+      [&](const Caller&) { return MakeMachineWatch(watch_needs_, *request); });
 }
 
 }  // namespace rmlcell::server

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <utility>
+
 #include "rmlcell/v1/machine.grpc.pb.h"
 #include "server/services/later.h"
+#include "server/services/machine_watch.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
 
 class MachineService final : public v1::MachineService::CallbackService {
  public:
-  MachineService(CallNeeds needs, storage::Store& store) : needs_(needs), store_(store) {}
+  MachineService(CallNeeds needs, MachineWatchNeeds watch)
+      : needs_(needs), watch_needs_(std::move(watch)), store_(watch_needs_.store) {}
 
   grpc::ServerUnaryReactor* ListFamilies(grpc::CallbackServerContext* context,
                                          const v1::ListFamiliesRequest* request,
@@ -40,6 +44,9 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerUnaryReactor* DeleteLaserSchedule(grpc::CallbackServerContext* context,
                                                 const v1::DeleteLaserScheduleRequest* request,
                                                 google::protobuf::Empty* response) override;
+  grpc::ServerWriteReactor<v1::WatchMachineResponse>* WatchMachine(
+      grpc::CallbackServerContext* context, const v1::WatchMachineRequest* request) override;
+
   // Of machines that live.
   RMLCELL_LATER("MachineService", AcquireControl, v1::AcquireControlResponse)
   RMLCELL_LATER("MachineService", RenewControl, v1::RenewControlResponse)
@@ -73,11 +80,11 @@ class MachineService final : public v1::MachineService::CallbackService {
   RMLCELL_LATER("MachineService", ArmMachine, v1::ArmMachineResponse)
   RMLCELL_LATER("MachineService", DisarmMachine, v1::MachineStatus)
   RMLCELL_LATER("MachineService", ListDevices, v1::ListDevicesResponse)
-  RMLCELL_LATER_READ("MachineService", WatchMachine)
   RMLCELL_LATER_READ("MachineService", ExportJournal)
 
  private:
   CallNeeds needs_;
+  MachineWatchNeeds watch_needs_;
   storage::Store& store_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "proto/bridge/findings.h"
 #include "proto/bridge/header_date.h"
+#include "server/programs/language_tools.h"
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/programs/text_tools.h"
@@ -54,7 +55,8 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
                          .etag = header.etag(),
                          .bytes = upload_.TakeBytes(),
                          .validate_only = header.validate_only(),
-                         .force = header.force()});
+                         .force = header.force(),
+                         .caller = caller_.identity});
     if (stored) *response_ = *stored.value;
     End(stored ? grpc::Status::OK : ToGrpcStatus(stored.error));
   }
@@ -125,7 +127,7 @@ grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext
                                                      const v1::PutProgramRequest* request,
                                                      v1::Program* response) {
   return Answer(needs_.Computing(), context, *request, "ProgramService/PutProgram",
-                [this, request, response](const Caller&) {
+                [this, request, response](const Caller& caller) {
                   const ProgramResult<v1::Program> stored =
                       programs_.Store({.name = request->name(),
                                        .file_name = request->program().file_name(),
@@ -134,7 +136,8 @@ grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext
                                        .etag = request->etag(),
                                        .bytes = request->program().content(),
                                        .validate_only = request->validate_only(),
-                                       .force = request->force()});
+                                       .force = request->force(),
+                                       .caller = caller.identity});
                   if (!stored) return ToGrpcStatus(stored.error);
                   *response = *stored.value;
                   return grpc::Status::OK;
@@ -209,8 +212,8 @@ grpc::ServerUnaryReactor* ProgramService::DeleteProgram(grpc::CallbackServerCont
                                                         const v1::DeleteProgramRequest* request,
                                                         google::protobuf::Empty*) {
   return Answer(needs_, context, *request, "ProgramService/DeleteProgram",
-                [this, request](const Caller&) {
-                  const Status deleted = programs_.Delete(*request);
+                [this, request](const Caller& caller) {
+                  const Status deleted = programs_.Delete(*request, caller.identity);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });
 }
@@ -397,6 +400,63 @@ grpc::ServerUnaryReactor* ProgramService::ExplainError(grpc::CallbackServerConte
         return ToGrpcStatus(Error{
             ErrorCode::kCellNotFound, "no error '" + request->code().substr(0, 80) + "'", {}});
       });
+}
+
+template <class Request, class Response>
+grpc::ServerUnaryReactor* ProgramService::AnswerBy(
+    Result<Response> (LanguageTools::*tool)(const Request&), std::string_view method,
+    grpc::CallbackServerContext* context, const Request* request, Response* response) {
+  return Answer(needs_.Computing(), context, *request, method,
+                [this, tool, request, response](const Caller&) {
+                  Result<Response> made = (language_.*tool)(*request);
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
+}
+
+grpc::ServerUnaryReactor* ProgramService::GetLanguage(grpc::CallbackServerContext* context,
+                                                      const v1::GetLanguageRequest* request,
+                                                      v1::GetLanguageResponse* response) {
+  return AnswerBy(&LanguageTools::Words, "ProgramService/GetLanguage", context, request, response);
+}
+
+grpc::ServerUnaryReactor* ProgramService::Hover(grpc::CallbackServerContext* context,
+                                                const v1::HoverRequest* request,
+                                                v1::HoverResponse* response) {
+  return AnswerBy(&LanguageTools::Hover, "ProgramService/Hover", context, request, response);
+}
+
+grpc::ServerUnaryReactor* ProgramService::Complete(grpc::CallbackServerContext* context,
+                                                   const v1::CompleteRequest* request,
+                                                   v1::CompleteResponse* response) {
+  return AnswerBy(&LanguageTools::Complete, "ProgramService/Complete", context, request, response);
+}
+
+grpc::ServerUnaryReactor* ProgramService::FindDefinition(grpc::CallbackServerContext* context,
+                                                         const v1::FindDefinitionRequest* request,
+                                                         v1::FindDefinitionResponse* response) {
+  return AnswerBy(&LanguageTools::FindDefinition, "ProgramService/FindDefinition", context, request,
+                  response);
+}
+
+grpc::ServerUnaryReactor* ProgramService::FindReferences(grpc::CallbackServerContext* context,
+                                                         const v1::FindReferencesRequest* request,
+                                                         v1::FindReferencesResponse* response) {
+  return AnswerBy(&LanguageTools::FindReferences, "ProgramService/FindReferences", context, request,
+                  response);
+}
+
+grpc::ServerUnaryReactor* ProgramService::Rename(grpc::CallbackServerContext* context,
+                                                 const v1::RenameRequest* request,
+                                                 v1::RenameResponse* response) {
+  return AnswerBy(&LanguageTools::Rename, "ProgramService/Rename", context, request, response);
+}
+
+grpc::ServerUnaryReactor* ProgramService::Outline(grpc::CallbackServerContext* context,
+                                                  const v1::OutlineRequest* request,
+                                                  v1::OutlineResponse* response) {
+  return AnswerBy(&LanguageTools::Outline, "ProgramService/Outline", context, request, response);
 }
 
 }  // namespace rmlcell::server

@@ -3,11 +3,12 @@
 #include <string>
 
 #include "rmlcell/v1/program.grpc.pb.h"
-#include "server/services/later.h"
+#include "server/services/call.h"
 #include "server/services/pull_stream.h"
 
 namespace rmlcell::server {
 
+class LanguageTools;
 class MemoryTools;
 class ProgramBook;
 
@@ -15,8 +16,9 @@ class ProgramBook;
 // engine.
 class ProgramService final : public v1::ProgramService::CallbackService {
  public:
-  ProgramService(CallNeeds needs, ProgramBook& programs, MemoryTools& tools, OpenStreams& open)
-      : needs_(needs), programs_(programs), tools_(tools), open_(open) {}
+  ProgramService(CallNeeds needs, ProgramBook& programs, MemoryTools& tools,
+                 LanguageTools& language, OpenStreams& open)
+      : needs_(needs), programs_(programs), tools_(tools), language_(language), open_(open) {}
 
   grpc::ServerUnaryReactor* PutProgram(grpc::CallbackServerContext* context,
                                        const v1::PutProgramRequest* request,
@@ -79,19 +81,39 @@ class ProgramService final : public v1::ProgramService::CallbackService {
   grpc::ServerUnaryReactor* ExplainError(grpc::CallbackServerContext* context,
                                          const v1::ExplainErrorRequest* request,
                                          v1::ExplainErrorResponse* response) override;
-
-  RMLCELL_LATER("ProgramService", GetLanguage, v1::GetLanguageResponse)
-  RMLCELL_LATER("ProgramService", Hover, v1::HoverResponse)
-  RMLCELL_LATER("ProgramService", Complete, v1::CompleteResponse)
-  RMLCELL_LATER("ProgramService", FindDefinition, v1::FindDefinitionResponse)
-  RMLCELL_LATER("ProgramService", FindReferences, v1::FindReferencesResponse)
-  RMLCELL_LATER("ProgramService", Rename, v1::RenameResponse)
-  RMLCELL_LATER("ProgramService", Outline, v1::OutlineResponse)
+  grpc::ServerUnaryReactor* GetLanguage(grpc::CallbackServerContext* context,
+                                        const v1::GetLanguageRequest* request,
+                                        v1::GetLanguageResponse* response) override;
+  grpc::ServerUnaryReactor* Hover(grpc::CallbackServerContext* context,
+                                  const v1::HoverRequest* request,
+                                  v1::HoverResponse* response) override;
+  grpc::ServerUnaryReactor* Complete(grpc::CallbackServerContext* context,
+                                     const v1::CompleteRequest* request,
+                                     v1::CompleteResponse* response) override;
+  grpc::ServerUnaryReactor* FindDefinition(grpc::CallbackServerContext* context,
+                                           const v1::FindDefinitionRequest* request,
+                                           v1::FindDefinitionResponse* response) override;
+  grpc::ServerUnaryReactor* FindReferences(grpc::CallbackServerContext* context,
+                                           const v1::FindReferencesRequest* request,
+                                           v1::FindReferencesResponse* response) override;
+  grpc::ServerUnaryReactor* Rename(grpc::CallbackServerContext* context,
+                                   const v1::RenameRequest* request,
+                                   v1::RenameResponse* response) override;
+  grpc::ServerUnaryReactor* Outline(grpc::CallbackServerContext* context,
+                                    const v1::OutlineRequest* request,
+                                    v1::OutlineResponse* response) override;
 
  private:
+  // Answers by one of the language tools.
+  template <class Request, class Response>
+  grpc::ServerUnaryReactor* AnswerBy(Result<Response> (LanguageTools::*tool)(const Request&),
+                                     std::string_view method, grpc::CallbackServerContext* context,
+                                     const Request* request, Response* response);
+
   CallNeeds needs_;
   ProgramBook& programs_;
   MemoryTools& tools_;
+  LanguageTools& language_;
   OpenStreams& open_;
 };
 

@@ -9,8 +9,8 @@ grpc::ServerUnaryReactor* ProjectService::CreateProject(grpc::CallbackServerCont
                                                         const v1::CreateProjectRequest* request,
                                                         v1::Project* response) {
   return Answer(needs_, context, *request, "ProjectService/CreateProject",
-                [this, request, response](const Caller&) {
-                  ProgramResult<v1::Project> project = book_.Create(*request);
+                [this, request, response](const Caller& caller) {
+                  ProgramResult<v1::Project> project = book_.Create(*request, caller.identity);
                   if (!project) return ToGrpcStatus(project.error);
                   *response = std::move(*project.value);
                   return grpc::Status::OK;
@@ -45,8 +45,8 @@ grpc::ServerUnaryReactor* ProjectService::UpdateProject(grpc::CallbackServerCont
                                                         const v1::UpdateProjectRequest* request,
                                                         v1::Project* response) {
   return Answer(needs_, context, *request, "ProjectService/UpdateProject",
-                [this, request, response](const Caller&) {
-                  ProgramResult<v1::Project> project = book_.Update(*request);
+                [this, request, response](const Caller& caller) {
+                  ProgramResult<v1::Project> project = book_.Update(*request, caller.identity);
                   if (!project) return ToGrpcStatus(project.error);
                   *response = std::move(*project.value);
                   return grpc::Status::OK;
@@ -57,8 +57,8 @@ grpc::ServerUnaryReactor* ProjectService::DeleteProject(grpc::CallbackServerCont
                                                         const v1::DeleteProjectRequest* request,
                                                         google::protobuf::Empty*) {
   return Answer(needs_, context, *request, "ProjectService/DeleteProject",
-                [this, request](const Caller&) {
-                  const Status deleted = book_.Delete(*request);
+                [this, request](const Caller& caller) {
+                  const Status deleted = book_.Delete(*request, caller.identity);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });
 }
@@ -67,8 +67,9 @@ grpc::ServerUnaryReactor* ProjectService::TransferProject(grpc::CallbackServerCo
                                                           const v1::TransferProjectRequest* request,
                                                           v1::TransferProjectResponse* response) {
   return Answer(needs_, context, *request, "ProjectService/TransferProject",
-                [this, request, response](const Caller&) {
-                  ProgramResult<v1::TransferProjectResponse> transferred = book_.Transfer(*request);
+                [this, request, response](const Caller& caller) {
+                  ProgramResult<v1::TransferProjectResponse> transferred =
+                      book_.Transfer(*request, caller.identity);
                   if (!transferred) return ToGrpcStatus(transferred.error);
                   *response = std::move(*transferred.value);
                   return grpc::Status::OK;

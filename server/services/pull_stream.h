@@ -1,7 +1,9 @@
 #pragma once
 
+#include <grpcpp/alarm.h>
 #include <grpcpp/grpcpp.h>
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -10,6 +12,9 @@
 #include "server/services/rpc_status.h"
 
 namespace rmlcell::server {
+
+// A client comes back this long after a server has stopped.
+inline constexpr int kReconnectAfter_ms = 250;
 
 // Streams that are open, so that a stop can end them with a last word.
 class OpenStreams {
@@ -74,6 +79,19 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
   // Makes the next message, or says that there is none now, or how the stream ends. On the
   // executor, never twice at once; may block.
   virtual Next Make(Response& message, grpc::Status& status) = 0;
+
+  // Make() is called at this moment, or before.
+  void WakeAt(std::chrono::steady_clock::time_point when) {
+    const std::lock_guard lock(mutex_);
+    if (finished_ || (alarm_ != nullptr && alarm_due_ <= when)) return;
+    alarm_due_ = when;
+    // A new one each time: the call of one that has just gone off may still be under way.
+    alarm_ = std::make_unique<grpc::Alarm>();
+    alarm_->Set(std::chrono::system_clock::now() + (when - std::chrono::steady_clock::now()),
+                [self = this->shared_from_this(), when](bool on_time) {
+                  if (on_time) self->AlarmRang(when);
+                });
+  }
 
   // A last message that tells the client to come back; false: there is none of that kind.
   virtual bool MakeGoodbye(Response&) { return false; }
@@ -140,7 +158,19 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
   void OnDone() override {
     open_.Remove(this);
     Closed();
+    {
+      const std::lock_guard lock(mutex_);
+      alarm_.reset();
+    }
     self_.reset();
+  }
+
+  void AlarmRang(std::chrono::steady_clock::time_point due) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (alarm_due_ == due) alarm_.reset();
+    }
+    Wake();
   }
 
   Executor& executor_;
@@ -155,6 +185,8 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
   bool finished_ = false;
   bool cancelled_ = false;
   bool stopping_ = false;
+  std::unique_ptr<grpc::Alarm> alarm_;                 // guarded by mutex_; null: none is set
+  std::chrono::steady_clock::time_point alarm_due_{};  // guarded by mutex_
 };
 
 }  // namespace rmlcell::server

@@ -29,7 +29,7 @@ class Events : public RpcCodec {
     const Result<JsonMessage> message = BytesToJson(*route_.method->output_type(), bytes);
     if (!message) return message.error();
     std::string event;
-    if (message->sequence != 0) event += "id: " + std::to_string(message->sequence) + "\n";
+    if (message->id) event += "id: " + message->id->Text() + "\n";
     event += "data: ";
     event += message->json;
     event += "\n\n";

@@ -282,12 +282,12 @@ RpcDecoding DecodeRpc(const RpcRoute& route, const HttpRequest& request) {
   out.status = Unwrap(route, request, content);
   if (!out.status.ok()) return out;
 
-  std::optional<std::int64_t> after_sequence;
+  std::optional<EventId> after;
   const std::string_view last_event = request.Header("last-event-id");
   if (!last_event.empty() && route.wire == Wire::kEvents) {
-    after_sequence = WholeNumber(last_event, 19);
-    if (!after_sequence) {
-      out.status = Invalid("Last-Event-ID is not a sequence number");
+    after = EventId::Parse(last_event);
+    if (!after) {
+      out.status = Invalid("Last-Event-ID is not the id of an event of this server");
       return out;
     }
   }
@@ -306,7 +306,7 @@ RpcDecoding DecodeRpc(const RpcRoute& route, const HttpRequest& request) {
     out.request.message = std::move(content);
     return out;
   }
-  Result<std::string> bytes = JsonToBytes(*route.method->input_type(), content, after_sequence);
+  Result<std::string> bytes = JsonToBytes(*route.method->input_type(), content, after);
   if (!bytes) {
     out.status = FromError(bytes.error());
     return out;

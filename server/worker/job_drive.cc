@@ -29,6 +29,39 @@ class Slice {
   SimTime time_ = std::chrono::milliseconds(100);
 };
 
+// What a log needs for the run to be carried out again.
+v1::JobEvent Applied(const v1::WorkerControl& order, SimTime now) {
+  v1::JobEvent event;
+  event.set_virtual_time_ns(now.count());
+  v1::InputApplied& applied = *event.mutable_input_applied();
+  applied.set_fence(order.lease().fence());
+  applied.set_virtual_time_ns(now.count());
+  applied.set_caller(order.caller());
+  applied.set_request_id(order.request_id());
+  applied.set_source(v1::START_SOURCE_CONSOLE);
+  v1::AppliedInput& input = *applied.mutable_input();
+  switch (order.kind()) {
+    case v1::WorkerControl::KIND_HOLD:
+      input.set_hold(v1::HOLD_REASON_HOLD);
+      break;
+    case v1::WorkerControl::KIND_STOP:
+      input.set_stop(v1::HOLD_REASON_STOP);
+      break;
+    case v1::WorkerControl::KIND_RESUME:
+      input.mutable_resume()->set_source(v1::START_SOURCE_CONSOLE);
+      break;
+    case v1::WorkerControl::KIND_OVERRIDE:
+      input.set_override_percent(order.value());
+      break;
+    case v1::WorkerControl::KIND_CANCEL:
+      input.set_abort(v1::HOLD_REASON_ABORT);
+      break;
+    default:
+      break;
+  }
+  return event;
+}
+
 }  // namespace
 
 Stop JobDrive::Run(const simulation::BegunRun& begun) {
@@ -86,30 +119,35 @@ void JobDrive::PlanTime(Clock::time_point begin) {
 
 void JobDrive::CarryOutOrders(simulation::Simulation& simulation) {
   for (const v1::WorkerControl& order : lease_.TakeOrders()) {
-    const SimTime now = simulation.state().time;
-    switch (order.kind()) {
-      case v1::WorkerControl::KIND_HOLD:
-        held_ = true;
-        simulation.Apply({.at = now, .kind = options_.hold_key});
-        break;
-      case v1::WorkerControl::KIND_STOP:
-        held_ = true;
-        simulation.Apply({.at = now, .kind = machine::InputKind::kStop});
-        break;
-      case v1::WorkerControl::KIND_RESUME:
-        held_ = false;
-        simulation.Apply({.at = now, .kind = machine::InputKind::kStart});
-        break;
-      case v1::WorkerControl::KIND_OVERRIDE:
-        simulation.Apply(
-            {.at = now, .kind = machine::InputKind::kOverride, .value = order.value()});
-        break;
-      case v1::WorkerControl::KIND_CANCEL:
-        simulation.Cancel();
-        break;
-      default:
-        break;
-    }
+    if (simulation.finished()) return;
+    options_.tell(Applied(order, simulation.state().time));
+    CarryOut(order, simulation);
+  }
+}
+
+void JobDrive::CarryOut(const v1::WorkerControl& order, simulation::Simulation& simulation) {
+  const SimTime now = simulation.state().time;
+  switch (order.kind()) {
+    case v1::WorkerControl::KIND_HOLD:
+      held_ = true;
+      simulation.Apply({.at = now, .kind = options_.hold_key});
+      break;
+    case v1::WorkerControl::KIND_STOP:
+      held_ = true;
+      simulation.Apply({.at = now, .kind = machine::InputKind::kStop});
+      break;
+    case v1::WorkerControl::KIND_RESUME:
+      held_ = false;
+      simulation.Apply({.at = now, .kind = machine::InputKind::kStart});
+      break;
+    case v1::WorkerControl::KIND_OVERRIDE:
+      simulation.Apply({.at = now, .kind = machine::InputKind::kOverride, .value = order.value()});
+      break;
+    case v1::WorkerControl::KIND_CANCEL:
+      simulation.Cancel();
+      break;
+    default:
+      break;
   }
 }
 

@@ -20,7 +20,8 @@ class JobDrive {
     machine::InputKind hold_key = machine::InputKind::kHold;  // what HOLD is on this machine
     // Of a run with a pace, where one can be made: how long it will take is not known before.
     std::unique_ptr<simulation::TimetableRun> timetable{};
-    std::function<void()> flush_events{};  // as often as positions are sent
+    std::function<void()> flush_events{};      // as often as positions are sent
+    std::function<void(v1::JobEvent)> tell{};  // for the log of the job
   };
   // Both outlive this.
   JobDrive(JobLease& lease, const JobOutput& output, Options options)
@@ -33,6 +34,7 @@ class JobDrive {
   using Clock = std::chrono::steady_clock;
 
   void CarryOutOrders(simulation::Simulation& simulation);
+  void CarryOut(const v1::WorkerControl& order, simulation::Simulation& simulation);
   void PlanTime(Clock::time_point begin);
   void SendPosition(const machine::Run& run);
 

@@ -70,7 +70,8 @@ v1::HoldReason ReasonOf(machine::HaltReason reason) {
 
 // What somebody ordered is told however much happened before.
 void JobEvents::Tell(v1::JobEvent event) {
-  if (count_ >= kEventsMax && !event.has_halted() && !event.has_resumed()) {
+  if (count_ >= kEventsMax && !event.has_halted() && !event.has_resumed() &&
+      !event.has_input_applied()) {
     if (cut_) return;
     cut_ = true;
     event.mutable_message()->set_text(

@@ -207,7 +207,8 @@ class Attempt {
     const machine::MachineFamily& family = *families::FindFamily(assignment_.family());
     JobDrive::Options drive{.pace = options.pace(),
                             .hold_key = machine::HoldKey(family.info(), made->setup->mode),
-                            .flush_events = [this] { events_.Flush(); }};
+                            .flush_events = [this] { events_.Flush(); },
+                            .tell = [this](v1::JobEvent event) { events_.Tell(std::move(event)); }};
     if (options.pace() > 0.0) {  // else it is over as soon as that would be known
       if (auto timetable = simulation::TimetableRun::Of(family, *made->setup))
         drive.timetable = *std::move(timetable);
@@ -320,8 +321,14 @@ class Attempt {
   void Finish() {
     v1::WorkerFinish finish;
     *finish.mutable_outcome() = outcome_;
-    for (const auto& [slot, executable] : executables_)
-      (*finish.mutable_executables())[slot] = executable;
+    for (const v1::AssignedProgram& program : assignment_.programs()) {
+      const auto made = executables_.find(program.slot());
+      if (made == executables_.end() || program.object_revision() == 0) continue;
+      v1::LinkedExecutable& linked = *finish.add_executables();
+      linked.set_slot(program.slot());
+      linked.set_object_revision(program.object_revision());
+      linked.set_content(std::move(made->second));
+    }
     lease_.SendFinish(std::move(finish));
   }
 

@@ -4,15 +4,18 @@ namespace rmlcell::storage::sqlite {
 namespace {
 
 std::string SelectEvent(const std::string& which) {
-  return "SELECT position, job, sequence, attempt, at, kind, payload FROM event " + which;
+  return "SELECT position, job, sequence, attempt, at, kind, payload, resource, caller FROM event " +
+         which;
 }
 
 EventRecord ReadEvent(const Query& row) {
   return EventRecord{.position = row.Integer(0),
                      .job = row.Integer(1),
+                     .resource = row.Text(7),
                      .sequence = row.Integer(2),
                      .attempt = row.Small(3),
                      .at = row.Time(4),
+                     .caller = row.Text(8),
                      .kind = row.Text(5),
                      .payload = row.Text(6)};
 }
@@ -28,8 +31,13 @@ EventTable::Removed ReadRemoved(const Query& row) {
 
 EventTable::EventTable(Database& database)
     : add_(database,
-           "INSERT INTO event (position, job, sequence, attempt, at, kind, payload)"
-           " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)"),
+           "INSERT INTO event (position, job, sequence, attempt, at, kind, payload, caller)"
+           " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)"),
+      add_of_record_(
+          database,
+          "INSERT INTO event (position, job, sequence, attempt, at, kind, payload, resource, caller)"
+          " VALUES (?1, 0, ?1, 0, ?2, ?3, x'', ?4, ?5)"),
+      count_of_records_(database, "SELECT count(*) FROM event WHERE job = 0"),
       of_job_(database, SelectEvent("WHERE job = ?1 AND sequence > ?2 ORDER BY sequence LIMIT ?3")),
       all_(database, SelectEvent("WHERE position > ?1 ORDER BY position LIMIT ?2")),
       last_(database, "SELECT ifnull(max(position), 0) FROM event"),
@@ -50,9 +58,16 @@ EventTable::EventTable(Database& database)
 Status EventTable::Add(const Place& place, const NewEvent& event) {
   return add_
       .With(place.position, place.job, place.sequence, place.attempt, place.at, event.kind,
-            Bytes{event.payload})
+            Bytes{event.payload}, event.caller)
       .Run();
 }
+
+Status EventTable::AddOfRecord(std::int64_t position, WallTime at, std::string_view resource,
+                               std::string_view change, std::string_view caller) {
+  return add_of_record_.With(position, at, change, resource, caller).Run();
+}
+
+Result<std::int64_t> EventTable::CountOfRecords() { return FirstInteger(count_of_records_.With()); }
 
 Result<std::vector<EventRecord>> EventTable::OfJob(std::int64_t job, std::int64_t after_sequence,
                                                    int limit) {

@@ -19,6 +19,9 @@ class EventTable {
     WallTime at;
   };
   Status Add(const Place& place, const NewEvent& event);
+  // What was done with a record that is no job, and by whom.
+  Status AddOfRecord(std::int64_t position, WallTime at, std::string_view resource,
+                     std::string_view change, std::string_view caller);
   Result<std::vector<EventRecord>> OfJob(std::int64_t job, std::int64_t after_sequence, int limit);
   Result<std::vector<EventRecord>> All(std::int64_t after_position, int limit);
   Result<std::int64_t> LastPosition();  // of those that are there
@@ -34,9 +37,14 @@ class EventTable {
   Result<std::vector<Removed>> RemoveUntil(std::int64_t position, int count_max);
   // The oldest `count_max` events of one job; nothing when it has none.
   Result<std::optional<Removed>> RemoveOfJob(std::int64_t job, int count_max);
+  // Those that are of no job.
+  static constexpr std::int64_t kOfRecords = 0;
+  Result<std::int64_t> CountOfRecords();
 
  private:
   Statement add_;
+  Statement add_of_record_;
+  Statement count_of_records_;
   Statement of_job_;
   Statement all_;
   Statement last_;

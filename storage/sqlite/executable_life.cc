@@ -12,7 +12,8 @@ Result<StagedContent> StageExecutable(Writer& writer, std::string_view bytes) {
 }
 
 Result<bool> PutExecutableBlob(WriteContext& context, std::string_view machine, int slot,
-                               Revision object_revision, const PreparedContent& executable) {
+                               Revision object_revision, const PreparedContent& executable,
+                               std::string_view caller) {
   Tables& tables = context.tables;
   const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
   if (!found) return found.error();
@@ -24,6 +25,9 @@ Result<bool> PutExecutableBlob(WriteContext& context, std::string_view machine, 
   context.garbage = true;
   if (const Status dropped = tables.blobs.Drop((*found)->executable_blob); !dropped)
     return dropped.error();
+  if (const Status noted = NoteRecord(context, NameOfProgram(machine, slot), kUpdated, caller);
+      !noted)
+    return noted.error();
   return true;
 }
 

@@ -12,6 +12,7 @@ Result<StagedContent> StageExecutable(Writer& writer, std::string_view bytes);
 
 // As Store::PutExecutable.
 Result<bool> PutExecutableBlob(WriteContext& context, std::string_view machine, int slot,
-                               Revision object_revision, const PreparedContent& executable);
+                               Revision object_revision, const PreparedContent& executable,
+                               std::string_view caller);
 
 }  // namespace rmlcell::storage::sqlite

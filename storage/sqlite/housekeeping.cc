@@ -26,6 +26,7 @@ Status KeepCounters(WriteContext& context) {
 // From now on a reader that asks for these events is told that they are gone.
 Status NoteGone(WriteContext& context, const EventTable::Removed& removed) {
   context.changed = true;
+  if (removed.job == EventTable::kOfRecords) context.counters.record_events -= removed.count;
   if (const Status job = context.tables.jobs.SetEventsGoneUntil(removed.job, removed.sequence);
       !job)
     return job.error();
@@ -65,11 +66,16 @@ Status RemoveJobWhole(WriteContext& context, std::int64_t job) {
 }
 
 bool Housekeeping::IsDue(const Counters& counters) const {
-  return HasOldJobs(counters) || HasOldEvents(counters);
+  return HasOldJobs(counters) || HasOldEvents(counters) || HasOldRecordEvents(counters);
 }
 
 bool Housekeeping::HasOldJobs(const Counters& counters) const {
   return limits_.finished_jobs > 0 && counters.finished_jobs > limits_.finished_jobs;
+}
+
+bool Housekeeping::HasOldRecordEvents(const Counters& counters) const {
+  return limits_.record_events > 0 &&
+         counters.record_events > limits_.record_events + EventSlack(limits_.record_events);
 }
 
 bool Housekeeping::HasOldEvents(const Counters& counters) const {
@@ -82,6 +88,7 @@ Result<bool> Housekeeping::RunSlice(WriteContext& context) const {
     if (const Status kept = KeepCounters(context); !kept) return kept.error();
     if (const Status jobs = RemoveOldJobs(context); !jobs) return jobs.error();
     if (const Status events = RemoveOldEvents(context); !events) return events.error();
+    if (const Status events = RemoveOldRecordEvents(context); !events) return events.error();
   }
   const Result<bool> swept = context.tables.blobs.Sweep(kBlobsPerSlice, kChunksPerSlice);
   if (!swept) return swept.error();
@@ -106,6 +113,16 @@ Status Housekeeping::RemoveOldJobs(WriteContext& context) const {
     if (const Status gone = RemoveJob(context, **job); !gone) return gone.error();
   }
   return {};
+}
+
+Status Housekeeping::RemoveOldRecordEvents(WriteContext& context) const {
+  if (!HasOldRecordEvents(context.counters)) return {};
+  const std::int64_t surplus = context.counters.record_events - limits_.record_events;
+  const Result<std::optional<EventTable::Removed>> removed = context.tables.events.RemoveOfJob(
+      EventTable::kOfRecords, static_cast<int>(std::min<std::int64_t>(surplus, kEventsPerSlice)));
+  if (!removed) return removed.error();
+  if (!*removed) return Error{ErrorCode::kCellStoreCorrupt, "old events cannot be removed", {}};
+  return NoteGone(context, **removed);
 }
 
 Status Housekeeping::RemoveOldEvents(WriteContext& context) const {

@@ -10,6 +10,7 @@ namespace rmlcell::storage::sqlite {
 struct KeepLimits {
   std::int64_t finished_jobs = 0;
   std::int64_t events = 0;  // by position, those of unfinished jobs as well
+  std::int64_t record_events = 0;
 };
 
 // A finished job with all that belongs to it; its events are gone from then on.
@@ -32,6 +33,8 @@ class Housekeeping {
   bool HasOldEvents(const Counters& counters) const;
   Status RemoveOldJobs(WriteContext& context) const;
   Status RemoveOldEvents(WriteContext& context) const;
+  bool HasOldRecordEvents(const Counters& counters) const;
+  Status RemoveOldRecordEvents(WriteContext& context) const;
 
   KeepLimits limits_;
 };

@@ -4,11 +4,11 @@
 
 #include "engine/core/check.h"
 #include "storage/sqlite/housekeeping.h"
+#include "storage/sqlite/job_changes.h"
+#include "storage/sqlite/queue_life.h"
 
 namespace rmlcell::storage::sqlite {
 namespace {
-
-constexpr int kOutsideAnAttempt = 0;
 
 Error LeaseLost(const Lease& lease, const std::string& why) {
   return Error{ErrorCode::kCellLeaseLost, "job " + std::to_string(lease.job) + " " + why, {}};
@@ -19,53 +19,10 @@ Status CheckFinal(const JobOutcome& outcome) {
   return InvalidArgument("an outcome has to be final");
 }
 
-Status CheckSizes(const std::vector<NewEvent>& events) {
-  for (const NewEvent& event : events) {
-    if (event.payload.size() > kEventPayloadBytesMax) {
-      return Error{ErrorCode::kCellTooLarge,
-                   "an event of " + std::to_string(event.payload.size()) + " bytes",
-                   {}};
-    }
-  }
-  return {};
-}
-
 // Never beyond what a WallTime can say.
 WallTime After(WallTime now, std::chrono::milliseconds duration) {
   return now + std::clamp<std::chrono::milliseconds>(duration, std::chrono::milliseconds(0),
                                                      std::chrono::days(366));
-}
-
-// Numbers and writes events; the job has the new last sequence, its row not yet.
-Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
-                   const std::vector<NewEvent>& events) {
-  if (const Status small_enough = CheckSizes(events); !small_enough) return small_enough.error();
-  for (const NewEvent& event : events) {
-    const EventTable::Place place{.position = ++context.counters.position,
-                                  .job = job.id,
-                                  .sequence = ++job.last_sequence,
-                                  .attempt = attempt,
-                                  .at = context.now};
-    if (const Status added = context.tables.events.Add(place, event); !added) return added.error();
-  }
-  context.changed = true;
-  return {};
-}
-
-// The end of every change of a job: its events, then its row.
-Status WriteChange(WriteContext& context, JobRow& row, int attempt,
-                   const std::vector<NewEvent>& events) {
-  if (const Status written = WriteEvents(context, row.job, attempt, events); !written)
-    return written.error();
-  context.changed = true;
-  return context.tables.jobs.Update(row);
-}
-
-Result<JobRow> GetRow(WriteContext& context, std::int64_t id) {
-  Result<std::optional<JobRow>> row = context.tables.jobs.Get(id);
-  if (!row) return row.error();
-  if (!*row) return Error{ErrorCode::kCellNotFound, "job " + std::to_string(id), {}};
-  return **std::move(row);
 }
 
 // The lease as the store has it, when it is still this one.
@@ -93,16 +50,14 @@ Status EndAttempt(WriteContext& context, const Lease& lease, std::string_view ho
   return context.tables.leases.Remove(lease.job);
 }
 
-void SetState(WriteContext& context, JobRecord& job, JobState state) {
-  context.counters.JobsIn(job.state) -= 1;
-  context.counters.JobsIn(state) += 1;
-  job.state = state;
-}
-
-void EndJob(WriteContext& context, JobRecord& job, const JobOutcome& outcome) {
-  SetState(context, job, outcome.state);
-  job.outcome = outcome;
-  job.finished_at = context.now;
+Status EndJob(WriteContext& context, JobRow& row, const JobOutcome& outcome) {
+  SetState(context, row, outcome.state);
+  row.job.outcome = outcome;
+  row.job.finished_at = context.now;
+  if (const Status waits = context.tables.queue.RemoveAllAfter(row.job.id); !waits)
+    return waits.error();
+  if (outcome.state != JobState::kSucceeded) return {};  // those that wait for it go on waiting
+  return LetFollowersGo(context, row.job.id);
 }
 
 JobOutcome Cancelled() {
@@ -128,10 +83,10 @@ std::string_view HowItEnded(JobState state) {
 }
 
 // The machine may have moved: a person decides, also when a cancel was wanted.
-void Interrupt(WriteContext& context, JobRecord& job, const LossPolicy& policy) {
+Status Interrupt(WriteContext& context, JobRow& row, const LossPolicy& policy) {
   JobOutcome interrupted = policy.outcome;
   interrupted.state = JobState::kInterrupted;
-  EndJob(context, job, interrupted);
+  return EndJob(context, row, interrupted);
 }
 
 // The holder is gone without an outcome.
@@ -144,18 +99,20 @@ Result<JobRecord> LoseAttempt(WriteContext& context, const Lease& lease, std::st
   const int uncounted = row->attempts_begun - job.attempts;
   if (!policy.counts && uncounted < kUncountedAttemptsMax) job.attempts -= 1;
   const std::vector<NewEvent>* events = &policy.ended;
+  Status changed;
   if (job.kind == kRunKind) {
-    Interrupt(context, job, policy);
+    changed = Interrupt(context, *row, policy);
     events = &policy.interrupted;
   } else if (job.cancel_requested && !policy.cancelled.empty()) {
-    EndJob(context, job, Cancelled());
+    changed = EndJob(context, *row, Cancelled());
     events = &policy.cancelled;
   } else if (job.attempts < job.attempts_max) {
-    SetState(context, job, JobState::kQueued);
+    SetState(context, *row, JobState::kQueued);
     events = &policy.requeued;
   } else {
-    EndJob(context, job, policy.outcome);
+    changed = EndJob(context, *row, policy.outcome);
   }
+  if (!changed) return changed.error();
   if (const Status written = WriteChange(context, *row, kOutsideAnAttempt, *events); !written)
     return written.error();
   return std::move(job);
@@ -185,10 +142,19 @@ Result<SubmittedJob> KnownJob(WriteContext& context, const NewJob& job,
   if (first.request_hash != job.request_hash) {
     return RequestIdReused(first.id);
   }
-  Result<std::string> specification = context.tables.jobs.Specification(first.id);
-  if (!specification) return specification.error();
-  first.specification = *std::move(specification);
+  if (const Status whole = CompleteJob(context.tables, first, context.now); !whole)
+    return whole.error();
   return SubmittedJob{.job = std::move(first), .already_there = true};
+}
+
+// The first job, or why there cannot be a new one. Asked before anything is written: a refusal in
+// the middle of a batch would undo the batch.
+Result<SubmittedJob> KnownJobOr(Error refusal, WriteContext& context, const NewJob& job,
+                                const JobContents& contents) {
+  const auto known = context.tables.jobs.FindByRequest(contents.request_id);
+  if (!known) return known.error();
+  if (*known) return KnownJob(context, job, contents);
+  return refusal;
 }
 
 }  // namespace
@@ -197,9 +163,23 @@ Error RequestIdReused(std::int64_t job) {
   return Error{ErrorCode::kCellRequestIdReused, "it made job " + std::to_string(job), {}};
 }
 
+Status CompleteJob(Tables& tables, JobRecord& job, WallTime now) {
+  Result<std::string> specification = tables.jobs.Specification(job.id);
+  if (!specification) return specification.error();
+  job.specification = *std::move(specification);
+  if (job.state != JobState::kQueued) return {};
+  Result<std::vector<std::int64_t>> after = tables.queue.After(job.id);
+  if (!after) return after.error();
+  job.after = *std::move(after);
+  return AddWait(tables, job, now);
+}
+
 Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                                const JobContents& contents) {
   if (job.attempts_max < 1) return InvalidArgument("a job needs at least one attempt");
+  if (job.priority < kPriorityMin || job.priority > kPriorityMax)
+    return InvalidArgument("priority is " + std::to_string(job.priority) +
+                           ", allowed are -100 to 100");
   JobRecord record{.id = context.counters.job + 1,
                    .request_id = contents.request_id,
                    .request_hash = job.request_hash,
@@ -209,6 +189,9 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                    .title = job.title,
                    .caller = job.caller,
                    .specification = {},
+                   .priority = job.priority,
+                   .held = job.held,
+                   .not_before = job.not_before,
                    .attempts_max = job.attempts_max,
                    .outcome = {},
                    .last_sequence = static_cast<std::int64_t>(job.events.size()),
@@ -216,20 +199,27 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                    .started_at = {},
                    .finished_at = {}};
   if (job.queued_max > 0 && context.counters.queued_jobs >= job.queued_max) {
-    // Looked for before anything is written: a refusal in the middle of a batch would undo the
-    // batch.
-    const auto known = context.tables.jobs.FindByRequest(contents.request_id);
-    if (!known) return known.error();
-    if (*known) return KnownJob(context, job, contents);
-    return Error{ErrorCode::kCellResourceExhausted,
-                 std::to_string(context.counters.queued_jobs) + " jobs wait",
-                 {}};
+    return KnownJobOr({ErrorCode::kCellResourceExhausted,
+                       std::to_string(context.counters.queued_jobs) + " jobs wait",
+                       {}},
+                      context, job, contents);
   }
-  const Result<bool> inserted = context.tables.jobs.Insert(record);
+  Result<std::vector<std::int64_t>> after = StillWanted(context, job);
+  if (!after) return KnownJobOr(after.error(), context, job, contents);
+  record.after = *std::move(after);
+  const int blocked = (job.held ? kBlockedByHold : 0) |
+                      (job.not_before && *job.not_before > context.now ? kBlockedByTime : 0) |
+                      (record.after.empty() ? 0 : kBlockedByJobs);
+  const Result<bool> inserted = context.tables.jobs.Insert(record, blocked);
   if (!inserted) return inserted.error();
   if (!*inserted) return KnownJob(context, job, contents);
   context.counters.job = record.id;
   context.counters.queued_jobs += 1;
+  if (blocked != 0) context.counters.blocked_jobs += 1;
+  for (const std::int64_t other : record.after) {
+    if (const Status added = context.tables.queue.AddAfter(record.id, other); !added)
+      return added.error();
+  }
   if (!job.specification.empty()) {
     const Result<ContentColumns> columns = context.tables.blobs.Put(*contents.specification);
     if (!columns) return columns.error();
@@ -243,6 +233,8 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
   record.last_sequence = 0;
   if (const Status written = WriteEvents(context, record, kOutsideAnAttempt, job.events); !written)
     return written.error();
+  if (const Status waits = AddWait(context.tables, record, context.now); !waits)
+    return waits.error();
   return SubmittedJob{.job = std::move(record), .already_there = false};
 }
 
@@ -254,7 +246,7 @@ Result<JobRecord> CancelJob(WriteContext& context, std::int64_t id,
   if (IsFinal(job.state)) return std::move(job);
   if (job.state == JobState::kQueued) {
     job.cancel_requested = true;
-    EndJob(context, job, Cancelled());
+    if (const Status ended = EndJob(context, *row, Cancelled()); !ended) return ended.error();
     if (const Status written = WriteChange(context, *row, kOutsideAnAttempt, events); !written)
       return written.error();
   } else if (!job.cancel_requested) {
@@ -267,24 +259,11 @@ Result<JobRecord> CancelJob(WriteContext& context, std::int64_t id,
 
 namespace {
 
-Result<std::optional<std::int64_t>> OldestFor(WriteContext& context, const JobRequest& request) {
-  std::optional<std::int64_t> oldest;
-  for (const std::string& pool : request.pools) {
-    for (const std::string& kind : request.kinds) {
-      const Result<std::optional<std::int64_t>> of_kind =
-          context.tables.jobs.OldestQueued(pool, kind);
-      if (!of_kind) return of_kind.error();
-      if (*of_kind && (!oldest || **of_kind < *oldest)) oldest = *of_kind;
-    }
-  }
-  return oldest;
-}
-
 Result<LeasedJob> LeaseJob(WriteContext& context, std::int64_t id, const JobRequest& request) {
   Result<JobRow> row = GetRow(context, id);
   if (!row) return row.error();
   JobRecord& job = row->job;
-  SetState(context, job, JobState::kRunning);
+  SetState(context, *row, JobState::kRunning);
   job.attempts += 1;
   row->attempts_begun += 1;
   if (!job.started_at) job.started_at = context.now;
@@ -313,10 +292,10 @@ Result<LeasedJob> LeaseJob(WriteContext& context, std::int64_t id, const JobRequ
 Result<std::vector<LeasedJob>> LeaseJobs(WriteContext& context, const JobRequest& request) {
   std::vector<LeasedJob> leased;
   while (static_cast<int>(leased.size()) < request.count) {
-    const Result<std::optional<std::int64_t>> oldest = OldestFor(context, request);
-    if (!oldest) return oldest.error();
-    if (!*oldest) break;
-    Result<LeasedJob> one = LeaseJob(context, **oldest, request);
+    const Result<std::optional<std::int64_t>> next = NextFor(context, request);
+    if (!next) return next.error();
+    if (!*next) break;
+    Result<LeasedJob> one = LeaseJob(context, **next, request);
     if (!one) return one.error();
     leased.push_back(*std::move(one));
   }
@@ -355,7 +334,7 @@ Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const Job
     return added.error();
   if (const Status ended = EndAttempt(context, lease, HowItEnded(end.outcome.state)); !ended)
     return ended.error();
-  EndJob(context, row->job, end.outcome);
+  if (const Status over = EndJob(context, *row, end.outcome); !over) return over.error();
   if (const Status written = WriteChange(context, *row, lease.attempt, end.events); !written)
     return written.error();
   return std::move(row->job);
@@ -370,10 +349,10 @@ Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease, const L
   JobRecord& job = row->job;
   const bool moved = job.kind == kRunKind;
   if (moved) {
-    Interrupt(context, job, policy);
+    if (const Status cut_off = Interrupt(context, *row, policy); !cut_off) return cut_off.error();
   } else {
     job.attempts -= 1;
-    SetState(context, job, JobState::kQueued);
+    SetState(context, *row, JobState::kQueued);
   }
   if (const Status written =
           WriteChange(context, *row, lease.attempt, moved ? policy.interrupted : policy.requeued);
@@ -401,7 +380,7 @@ Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease&
   return std::optional(*std::move(job));
 }
 
-Status RemoveEndedJob(WriteContext& context, std::int64_t id) {
+Status RemoveEndedJob(WriteContext& context, std::int64_t id, std::string_view caller) {
   const Result<JobRow> row = GetRow(context, id);
   if (!row) return row.error();
   if (!IsFinal(row->job.state)) {
@@ -409,7 +388,8 @@ Status RemoveEndedJob(WriteContext& context, std::int64_t id) {
                  "job " + std::to_string(id) + " has not ended; cancel it first",
                  {}};
   }
-  return RemoveJobWhole(context, id);
+  if (const Status removed = RemoveJobWhole(context, id); !removed) return removed.error();
+  return NoteRecord(context, JobName(id), kDeleted, caller);
 }
 
 }  // namespace rmlcell::storage::sqlite

@@ -22,6 +22,9 @@ struct JobContents {
 
 Error RequestIdReused(std::int64_t job);
 
+// What does not stand in its row: its specification, and of a queued job what it waits for.
+Status CompleteJob(Tables& tables, JobRecord& job, WallTime now);
+
 Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                                const JobContents& contents);
 
@@ -50,6 +53,6 @@ Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease&
                                              const LossPolicy& policy);
 
 // As Store::DeleteJob.
-Status RemoveEndedJob(WriteContext& context, std::int64_t id);
+Status RemoveEndedJob(WriteContext& context, std::int64_t id, std::string_view caller);
 
 }  // namespace rmlcell::storage::sqlite

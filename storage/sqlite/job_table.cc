@@ -11,7 +11,8 @@ std::string SelectJob(const std::string& from) {
   return "SELECT id, request_id, request_hash, machine, kind, title, caller, state,"
          " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
          " events_gone_until, created_at, started_at, finished_at, outcome_code, outcome_detail,"
-         " outcome_program, outcome_step, outcome_judgement, pool FROM job " +
+         " outcome_program, outcome_step, outcome_judgement, pool, priority, held, not_before, blocked,"
+         " place FROM job " +
          from;
 }
 
@@ -48,6 +49,9 @@ Result<JobRow> Read(const Query& row) {
                         .caller = row.Text(6),
                         .specification = {},
                         .state = static_cast<JobState>(state),
+                        .priority = row.Small(23),
+                        .held = row.Integer(24) != 0,
+                        .not_before = row.OptionalTime(25),
                         .cancel_requested = row.Integer(8) != 0,
                         .attempts = row.Small(9),
                         .attempts_max = row.Small(10),
@@ -57,7 +61,9 @@ Result<JobRow> Read(const Query& row) {
                         .created_at = row.Time(14),
                         .started_at = row.OptionalTime(15),
                         .finished_at = row.OptionalTime(16)},
-                .attempts_begun = row.Small(11)};
+                .attempts_begun = row.Small(11),
+                .blocked = row.Small(26),
+                .place = row.Real(27)};
   if (IsFinal(result.job.state)) {
     result.job.outcome = JobOutcome{.state = result.job.state,
                                     .code = {},
@@ -91,21 +97,20 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
       insert_(database,
               "INSERT INTO job (id, request_id, request_hash, machine, kind, title, caller, state,"
               " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
-              " events_gone_until, created_at, pool)"
-              " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0, 0, 0, ?8, 0, ?9, 0, ?10, ?11)"
+              " events_gone_until, created_at, pool, priority, place, special, held, not_before,"
+              " blocked)"
+              " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0, 0, 0, ?8, 0, ?9, 0, ?10, ?11, ?12, ?1, ?13,"
+              " ?14, ?15, ?16)"
               " ON CONFLICT (request_id) DO NOTHING"),
       get_(database, SelectJob("WHERE id = ?1")),
       find_by_request_(database, SelectJob("WHERE request_id = ?1")),
-      oldest_queued_(
-          database,
-          "SELECT id FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 0 AND pool = ?1"
-          " AND kind = ?2 ORDER BY id LIMIT 1"),
       update_(
           database,
           "UPDATE job SET state = ?2, cancel_requested = ?3, attempts = ?4, attempts_begun = ?5,"
           " last_sequence = ?6, started_at = ?7, finished_at = ?8, outcome_code = ?9,"
           " outcome_detail = ?10, outcome_program = ?11, outcome_step = ?12,"
-          " outcome_judgement = ?13 WHERE id = ?1"),
+          " outcome_judgement = ?13, priority = ?14, place = ?15, special = ?16, held = ?17,"
+          " not_before = ?18, blocked = ?19 WHERE id = ?1"),
       set_last_sequence_(database, "UPDATE job SET last_sequence = ?2 WHERE id = ?1"),
       set_events_gone_(database, "UPDATE job SET events_gone_until = ?2 WHERE id = ?1"),
       put_specification_(database,
@@ -133,11 +138,12 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
                             "DELETE FROM job_specification WHERE job = ?1"
                             " RETURNING specification_blob") {}
 
-Result<bool> JobTable::Insert(const JobRecord& job) {
+Result<bool> JobTable::Insert(const JobRecord& job, int blocked) {
   if (const Status inserted =
           insert_
               .With(job.id, job.request_id, job.request_hash, job.machine, job.kind, job.title,
-                    job.caller, job.attempts_max, job.last_sequence, job.created_at, job.pool)
+                    job.caller, job.attempts_max, job.last_sequence, job.created_at, job.pool,
+                    job.priority, job.priority != 0, job.held, job.not_before, blocked)
               .Run();
       !inserted)
     return inserted.error();
@@ -152,12 +158,6 @@ Result<std::optional<JobRow>> JobTable::FindByRequest(std::string_view request_i
   return FirstRow<JobRow>(find_by_request_.With(request_id), Read);
 }
 
-Result<std::optional<std::int64_t>> JobTable::OldestQueued(std::string_view pool,
-                                                           std::string_view kind) {
-  return FirstRow<std::int64_t>(oldest_queued_.With(pool, kind),
-                                [](const Query& row) { return row.Integer(0); });
-}
-
 Status JobTable::Update(const JobRow& row) {
   const JobRecord& job = row.job;
   const JobOutcome none;
@@ -166,7 +166,8 @@ Status JobTable::Update(const JobRow& row) {
   return update_
       .With(job.id, static_cast<int>(job.state), job.cancel_requested, job.attempts,
             row.attempts_begun, job.last_sequence, job.started_at, job.finished_at, code,
-            outcome.detail, outcome.program, outcome.step, Bytes{outcome.judgement})
+            outcome.detail, outcome.program, outcome.step, Bytes{outcome.judgement}, job.priority,
+            row.place, row.special(), job.held, job.not_before, row.blocked)
       .Run();
 }
 
@@ -225,7 +226,7 @@ Result<std::optional<std::int64_t>> JobTable::Remove(std::int64_t id) {
 
 // A list is put together of lanes, each of which an index gives in the order wanted, so that a page
 // costs the same however many jobs there are: one lane of finished jobs, and for those that wait or
-// run one for each state and kind.
+// run one for each state, pool, kind and way of waiting.
 Result<std::vector<JobRecord>> JobTable::List(const JobQuery& query) {
   std::vector<JobRecord> jobs;
   if (query.limit < 1) return jobs;
@@ -255,15 +256,17 @@ Result<std::vector<JobRecord>> JobTable::List(const JobQuery& query) {
 }
 
 Result<std::vector<JobRecord>> JobTable::ListUnfinished(JobState state, const JobQuery& query) {
-  const std::string lane = "INDEXED BY job_unfinished WHERE state < 2 AND state = " + Number(state);
-  if (!query.kind.empty()) return ListLane(lane, query, query.kind);
-  const Result<std::vector<std::string>> kinds = KindsOf(state);
-  if (!kinds) return kinds.error();
+  const std::string in_state =
+      "INDEXED BY job_unfinished WHERE state < 2 AND state = " + Number(state) +
+      " AND pool = ?6 AND blocked = ?7 AND special = ?8";
+  const Result<std::vector<Lane>> lanes = LanesOf(state);
+  if (!lanes) return lanes.error();
   std::vector<JobRecord> jobs;
-  for (const std::string& kind : *kinds) {
-    Result<std::vector<JobRecord>> of_kind = ListLane(lane, query, kind);
-    if (!of_kind) return of_kind.error();
-    std::move(of_kind->begin(), of_kind->end(), std::back_inserter(jobs));
+  for (const Lane& lane : *lanes) {
+    if (!query.kind.empty() && lane.kind != query.kind) continue;
+    Result<std::vector<JobRecord>> of_lane = ListLane(in_state, query, lane);
+    if (!of_lane) return of_lane.error();
+    std::move(of_lane->begin(), of_lane->end(), std::back_inserter(jobs));
   }
   return jobs;
 }
@@ -280,42 +283,62 @@ Result<std::vector<JobRecord>> JobTable::ListFinished(const JobQuery& query) {
   return ListLane(lane, query, {});
 }
 
-Result<std::vector<JobRecord>> JobTable::ListLane(const std::string& lane, const JobQuery& query,
-                                                  std::optional<std::string_view> lane_kind) {
+Result<std::vector<JobRecord>> JobTable::ListLane(const std::string& jobs, const JobQuery& query,
+                                                  const std::optional<Lane>& lane) {
   // A parameter that is not looked at still has to be named.
-  std::string sql = SelectJob(lane);
-  sql += lane_kind ? " AND kind = ?1" : " AND (?1 = '' OR kind = ?1)";
+  std::string sql = SelectJob(jobs);
+  sql += lane ? " AND kind = ?1" : " AND (?1 = '' OR kind = ?1) AND ?6 = '' AND ?7 = ?8";
   sql += query.machine.empty() ? " AND ?2 = ''" : " AND machine = ?2";
   sql += query.caller.empty() ? " AND ?3 = ''" : " AND caller = ?3";
   sql += " AND id < ?4 ORDER BY id DESC LIMIT ?5";
   const std::int64_t before = query.before_id > 0 ? query.before_id : INT64_MAX;
+  const std::string kind = lane ? lane->kind : query.kind;
+  const std::string pool = lane ? lane->pool : std::string();
   Statement statement(database_, std::move(sql));
-  return AllRows<JobRecord>(statement.With(lane_kind.value_or(query.kind), query.machine,
-                                           query.caller, before, query.limit),
-                            ReadRecord);
+  return AllRows<JobRecord>(
+      statement.With(kind, query.machine, query.caller, before, query.limit, pool,
+                     lane ? lane->blocked : 0, lane ? lane->special : 0),
+      ReadRecord);
 }
 
-Result<std::vector<std::string>> JobTable::KindsOf(JobState state) {
-  // Each step jumps to the next kind in the index: the cost is that of the kinds, not of the jobs.
+Result<std::vector<JobTable::Lane>> JobTable::LanesOf(JobState state) {
+  // Each step jumps to the next lane in the index: the cost is that of the lanes, not of the jobs.
+  const std::string select =
+      "SELECT pool, kind, blocked, special FROM job INDEXED BY job_unfinished"
+      " WHERE state < 2 AND state = " +
+      Number(state);
+  const std::string order = " ORDER BY pool, kind, blocked, special LIMIT 1";
   Statement next(database_,
-                 "SELECT kind FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = " +
-                     Number(state) + " AND kind > ?1 ORDER BY kind LIMIT 1");
-  Statement first(database_,
-                  "SELECT kind FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = " +
-                      Number(state) + " ORDER BY kind LIMIT 1");
-  const auto text = [](const Query& row) { return row.Text(0); };
-  std::vector<std::string> kinds;
-  Result<std::optional<std::string>> kind = FirstRow<std::string>(first.With(), text);
-  while (kind && *kind) {
-    if (!kinds.empty() && **kind <= kinds.back()) {  // a damaged index must not lead in circles
+                 select + " AND (pool, kind, blocked, special) > (?1, ?2, ?3, ?4)" + order);
+  Statement first(database_, select + order);
+  const auto read = [](const Query& row) {
+    return Lane{row.Text(0), row.Text(1), row.Small(2), row.Small(3)};
+  };
+  std::vector<Lane> lanes;
+  Result<std::optional<Lane>> lane = FirstRow<Lane>(first.With(), read);
+  while (lane && *lane) {
+    if (!lanes.empty() && **lane <= lanes.back()) {  // a damaged index must not lead in circles
       return Error{
           ErrorCode::kCellStoreCorrupt, "the index of unfinished jobs is out of order", {}};
     }
-    kinds.push_back(**std::move(kind));
-    kind = FirstRow<std::string>(next.With(kinds.back()), text);
+    lanes.push_back(**std::move(lane));
+    const Lane& last = lanes.back();
+    lane = FirstRow<Lane>(next.With(last.pool, last.kind, last.blocked, last.special), read);
   }
-  if (!kind) return kind.error();
-  return kinds;
+  if (!lane) return lane.error();
+  return lanes;
+}
+
+Result<std::vector<JobStateCount>> JobTable::CountByState(const JobQuery& query) {
+  std::string sql = "SELECT state, count(*) FROM job WHERE (?1 = '' OR kind = ?1)";
+  sql += query.machine.empty() ? " AND ?2 = ''" : " AND machine = ?2";
+  sql += query.caller.empty() ? " AND ?3 = ''" : " AND caller = ?3";
+  sql += " GROUP BY state";
+  Statement statement(database_, std::move(sql));
+  return AllRows<JobStateCount>(
+      statement.With(query.kind, query.machine, query.caller), [](const Query& row) {
+        return JobStateCount{.state = static_cast<JobState>(row.Small(0)), .jobs = row.Integer(1)};
+      });
 }
 
 }  // namespace rmlcell::storage::sqlite

@@ -14,6 +14,10 @@ namespace rmlcell::storage::sqlite {
 struct JobRow {
   JobRecord job;
   int attempts_begun = 0;  // handed back ones included: the number of the newest attempt
+  int blocked = 0;         // bits of queue_table.h
+  double place = 0.0;      // in the queue, among those of its priority
+
+  bool special() const { return job.priority != 0 || place != static_cast<double>(job.id); }
 };
 
 class JobTable {
@@ -21,12 +25,12 @@ class JobTable {
   JobTable(Database& database, BlobTable& blobs);
 
   // False, and nothing inserted, when there is a job with this request_id.
-  Result<bool> Insert(const JobRecord& job);
+  Result<bool> Insert(const JobRecord& job, int blocked);
   Result<std::optional<JobRow>> Get(std::int64_t id);
   Result<std::optional<JobRow>> FindByRequest(std::string_view request_id);
-  Result<std::optional<std::int64_t>> OldestQueued(std::string_view pool, std::string_view kind);
   Result<std::vector<JobRecord>> List(const JobQuery& query);
   Result<std::vector<MachineJobs>> Unfinished();  // by machine
+  Result<std::vector<JobStateCount>> CountByState(const JobQuery& query);
 
   Status Update(const JobRow& row);  // all that changes in the life of a job
   Status SetLastSequence(std::int64_t id, std::int64_t sequence);
@@ -49,18 +53,24 @@ class JobTable {
   Result<std::optional<std::int64_t>> Remove(std::int64_t id);
 
  private:
-  Result<std::vector<JobRecord>> ListLane(const std::string& lane, const JobQuery& query,
-                                          std::optional<std::string_view> lane_kind);
+  struct Lane {
+    std::string pool;
+    std::string kind;
+    int blocked = 0;
+    int special = 0;
+    auto operator<=>(const Lane&) const = default;
+  };
+  Result<std::vector<JobRecord>> ListLane(const std::string& jobs, const JobQuery& query,
+                                          const std::optional<Lane>& lane);
   Result<std::vector<JobRecord>> ListUnfinished(JobState state, const JobQuery& query);
   Result<std::vector<JobRecord>> ListFinished(const JobQuery& query);
-  Result<std::vector<std::string>> KindsOf(JobState state);
+  Result<std::vector<Lane>> LanesOf(JobState state);
 
   Database& database_;
   BlobTable& blobs_;
   Statement insert_;
   Statement get_;
   Statement find_by_request_;
-  Statement oldest_queued_;
   Statement update_;
   Statement set_last_sequence_;
   Statement set_events_gone_;

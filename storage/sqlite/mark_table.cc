@@ -12,6 +12,24 @@ Status MarkTable::Set(std::string_view name, std::int64_t value) {
   return set_.With(name, value).Run();
 }
 
+LogPartTable::LogPartTable(Database& database)
+    : begin_(database, "INSERT INTO log_part (id, after_position) VALUES (?1, ?2)"),
+      trim_(database,
+            "DELETE FROM log_part WHERE number <= (SELECT max(number) FROM log_part) - ?1"),
+      end_(database,
+           "SELECT ifnull((SELECT after_position FROM log_part AS next"
+           " WHERE next.number > part.number ORDER BY next.number LIMIT 1),"
+           " 9223372036854775807) FROM log_part AS part WHERE id = ?1") {}
+
+Status LogPartTable::Begin(std::string_view id, std::int64_t after_position) {
+  if (const Status begun = begin_.With(id, after_position).Run(); !begun) return begun.error();
+  return trim_.With(kPartsKept).Run();
+}
+
+Result<std::optional<std::int64_t>> LogPartTable::EndOf(std::string_view id) {
+  return FirstRow<std::int64_t>(end_.With(id), [](const Query& row) { return row.Integer(0); });
+}
+
 BuriedTable::BuriedTable(Database& database)
     : bury_(database,
             "INSERT OR REPLACE INTO buried (kind, owner, name, revision) VALUES (?1, ?2, ?3, ?4)"),

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "storage/sqlite/statement.h"
 
 namespace rmlcell::storage::sqlite {
@@ -21,6 +23,24 @@ class MarkTable {
  private:
   Statement get_;
   Statement set_;
+};
+
+// Parts of the log, one for each opening of the store: a position belongs to the log while it is no
+// newer than the part that it was seen in.
+class LogPartTable {
+ public:
+  static constexpr int kPartsKept = 1'000;
+
+  explicit LogPartTable(Database& database);
+  Status Begin(std::string_view id, std::int64_t after_position);
+  // Where the part behind that of this id begins; nothing: none is known by this id. The newest
+  // part has no end: the greatest number.
+  Result<std::optional<std::int64_t>> EndOf(std::string_view id);
+
+ private:
+  Statement begin_;
+  Statement trim_;
+  Statement end_;
 };
 
 // The last revisions of deleted records.

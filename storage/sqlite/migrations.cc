@@ -19,6 +19,32 @@ constexpr Migration kMigrations[] = {
      "ALTER TABLE job ADD COLUMN pool TEXT NOT NULL DEFAULT '';"
      "DROP INDEX job_unfinished;"
      "CREATE INDEX job_unfinished ON job (state, pool, kind) WHERE state < 2;"},
+    // Events of what is no job have job 0 and their position as sequence.
+    {5, "one log for all resources, and by which name it is known",
+     "ALTER TABLE event ADD COLUMN resource TEXT NOT NULL DEFAULT '';"
+     "ALTER TABLE event ADD COLUMN caller TEXT NOT NULL DEFAULT '';"
+     "CREATE TABLE log_part (number INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE,"
+     " after_position INTEGER NOT NULL);"},
+    // A job that is special has another priority or place than most; queue_table.h.
+    {6, "the order of the queue, and what jobs wait for",
+     "ALTER TABLE job ADD COLUMN priority INTEGER NOT NULL DEFAULT 0;"
+     "ALTER TABLE job ADD COLUMN place REAL NOT NULL DEFAULT 0;"
+     "ALTER TABLE job ADD COLUMN special INTEGER NOT NULL DEFAULT 0;"
+     "ALTER TABLE job ADD COLUMN held INTEGER NOT NULL DEFAULT 0;"
+     "ALTER TABLE job ADD COLUMN not_before INTEGER;"
+     "ALTER TABLE job ADD COLUMN blocked INTEGER NOT NULL DEFAULT 0;"
+     "UPDATE job SET place = id WHERE state < 2;"
+     "DROP INDEX job_unfinished;"
+     "CREATE INDEX job_unfinished ON job (state, pool, kind, blocked, special) WHERE state < 2;"
+     "CREATE INDEX job_special ON job (pool, kind, priority DESC, place)"
+     " WHERE state = 0 AND blocked = 0 AND special = 1;"
+     "CREATE INDEX job_run_queue ON job (machine, priority DESC, place)"
+     " WHERE state = 0 AND blocked = 0 AND kind = 'RUN';"
+     "CREATE INDEX job_run ON job (machine) WHERE state = 1 AND kind = 'RUN';"
+     "CREATE INDEX job_not_before ON job (not_before) WHERE state = 0 AND not_before IS NOT NULL;"
+     "CREATE TABLE job_after (job INTEGER NOT NULL, after INTEGER NOT NULL,"
+     " PRIMARY KEY (job, after)) WITHOUT ROWID;"
+     "CREATE INDEX job_after_by ON job_after (after);"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

@@ -8,9 +8,9 @@
 
 namespace rmlcell::storage::sqlite {
 
-// Request ids for jobs whose clients gave none: UUIDs of version 7. They begin with the time, so
-// that new ones lie together in the index. No two of one object are equal; those of two differ by
-// 64 random bits. Thread-safe.
+// Request ids for jobs whose clients gave none, and the names of parts of the log: UUIDs of
+// version 7. They begin with the time, so that new ones lie together in the index. No two of one
+// object are equal; those of two differ by 64 random bits. Thread-safe.
 class RequestIds {
  public:
   RequestIds();

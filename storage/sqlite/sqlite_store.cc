@@ -83,7 +83,13 @@ Result<Counters> ReadCounters(Tables& tables) {
   counters.finished_jobs = *finished;
   const Result<JobTable::Counts> unfinished = tables.jobs.CountUnfinished();
   if (!unfinished) return unfinished.error();
+  const Result<std::int64_t> of_records = tables.events.CountOfRecords();
+  if (!of_records) return of_records.error();
+  counters.record_events = *of_records;
   counters.queued_jobs = unfinished->queued;
+  const Result<std::int64_t> blocked = tables.queue.CountBlocked();
+  if (!blocked) return blocked.error();
+  counters.blocked_jobs = *blocked;
   counters.running_jobs = unfinished->running;
   return counters;
 }
@@ -121,21 +127,26 @@ Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
   if (!ended) return Named(ended.error(), options.path);
   const Result<Counters> counters = ReadCounters(connection->tables);
   if (!counters) return Named(counters.error(), options.path);
+  const std::string log_id = RequestIds().Make(clock());
+  if (const Status begun = connection->tables.log_parts.Begin(log_id, counters->position); !begun)
+    return Named(begun.error(), options.path);
   Result<std::unique_ptr<ReaderPool>> readers = ReaderPool::Open(
       options.path, {.vfs = options.vfs, .busy_timeout = options.busy_timeout}, options.readers);
   if (!readers) return Named(readers.error(), options.path);
 
-  return std::unique_ptr<Store>(std::make_unique<SqliteStore>(SqliteStore::Parts{
-      .lock = *std::move(lock),
-      .clock = std::move(clock),
-      .connection = std::move(connection),
-      .readers = *std::move(readers),
-      .counters = *counters,
-      .writer = {
-          .keep = {.finished_jobs = options.keep_finished_jobs, .events = options.keep_events},
-          .waiting_operations_max = options.waiting_operations_max,
-          .waiting_bytes_max = options.waiting_bytes_max,
-          .group_window = options.group_window}}));
+  return std::unique_ptr<Store>(std::make_unique<SqliteStore>(
+      SqliteStore::Parts{.lock = *std::move(lock),
+                         .clock = std::move(clock),
+                         .connection = std::move(connection),
+                         .readers = *std::move(readers),
+                         .counters = *counters,
+                         .log_id = log_id,
+                         .writer = {.keep = {.finished_jobs = options.keep_finished_jobs,
+                                             .events = options.keep_events,
+                                             .record_events = options.keep_record_events},
+                                    .waiting_operations_max = options.waiting_operations_max,
+                                    .waiting_bytes_max = options.waiting_bytes_max,
+                                    .group_window = options.group_window}}));
 }
 
 }  // namespace

@@ -41,6 +41,9 @@ struct SqliteOptions {
   // (a few more than the limit may be there for a while).
   std::int64_t keep_finished_jobs = 0;
   std::int64_t keep_events = 0;
+  // Of the events that tell of machines, programs, schedules and projects the newest; those of jobs
+  // go with their jobs.
+  std::int64_t keep_record_events = 0;
 
   // The log has this size from the start, as far as the disk has room. A commit that writes over a
   // part of the log waits about half as long for the disk as one that makes it grow, since the file

@@ -19,7 +19,7 @@ namespace rmlcell::storage::sqlite {
 Status CheckRevision(std::optional<Revision> current, Revision expected, const std::string& what,
                      ErrorCode when_missing = ErrorCode::kCellNotFound);
 // All programs and schedules of a machine that goes.
-Status RemoveMemory(WriteContext& context, std::string_view machine);
+Status RemoveMemory(WriteContext& context, std::string_view machine, std::string_view caller);
 
 // Reads go to the pool, writes to the writer; the rules of jobs stand in job_life.h.
 class SqliteStore final : public Store {
@@ -30,37 +30,43 @@ class SqliteStore final : public Store {
     std::unique_ptr<Connection> connection;
     std::unique_ptr<ReaderPool> readers;
     Counters counters;
+    std::string log_id;
     Writer::Options writer;
   };
   explicit SqliteStore(Parts parts);
 
   Result<std::vector<MachineRecord>> ListMachines() override;
   Result<MachineRecord> GetMachine(std::string_view id) override;
-  Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected) override;
-  Status DeleteMachine(std::string_view id, Revision expected) override;
+  Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected,
+                                   std::string_view caller) override;
+  Status DeleteMachine(std::string_view id, Revision expected, std::string_view caller) override;
 
   Result<std::vector<ProgramSummary>> ListPrograms(std::string_view machine, int after_slot,
                                                    int limit) override;
   Result<ProgramRecord> GetProgram(std::string_view machine, int slot) override;
   Result<ProgramSummary> GetProgramSummary(std::string_view machine, int slot) override;
-  Result<std::vector<ProgramRecord>> GetProgramMemory(std::string_view machine) override;
-  Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) override;
-  Result<std::vector<ProgramSummary>> PutPrograms(
-      std::string_view machine, const std::vector<ProgramWrite>& programs,
-      const std::vector<ScheduleRecord>& schedules) override;
-  Status DeleteProgram(std::string_view machine, int slot, Revision expected) override;
+  Result<MachineMemory> GetMachineMemory(std::string_view machine,
+                                         const WantsPrograms& wants_programs) override;
+  Result<std::vector<ProgramSummary>> PutPrograms(std::string_view machine,
+                                                  const std::vector<ProgramWrite>& programs,
+                                                  const std::vector<ScheduleRecord>& schedules,
+                                                  std::string_view caller) override;
+  Status DeleteProgram(std::string_view machine, int slot, Revision expected,
+                       std::string_view caller) override;
   Result<bool> PutExecutable(std::string_view machine, int slot, Revision object_revision,
-                             std::string_view executable) override;
-  Status DeleteExecutable(std::string_view machine, int slot) override;
+                             std::string_view executable, std::string_view caller) override;
+  Status DeleteExecutable(std::string_view machine, int slot, std::string_view caller) override;
 
   Result<std::vector<ScheduleRecord>> ListSchedules(std::string_view machine) override;
-  Result<ScheduleRecord> PutSchedule(const ScheduleRecord& schedule, Revision expected) override;
-  Status DeleteSchedule(std::string_view machine, int number) override;
+  Result<ScheduleRecord> PutSchedule(const ScheduleRecord& schedule, Revision expected,
+                                     std::string_view caller) override;
+  Status DeleteSchedule(std::string_view machine, int number, std::string_view caller) override;
 
   Result<std::vector<ProjectRecord>> ListProjects(std::string_view after_id, int limit) override;
   Result<ProjectRecord> GetProject(std::string_view id) override;
-  Result<ProjectRecord> PutProject(const ProjectRecord& project, Revision expected) override;
-  Status DeleteProject(std::string_view id, Revision expected) override;
+  Result<ProjectRecord> PutProject(const ProjectRecord& project, Revision expected,
+                                   std::string_view caller) override;
+  Status DeleteProject(std::string_view id, Revision expected, std::string_view caller) override;
 
   void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) override;
   Result<SubmittedJob> SubmitAndWait(NewJob job) override;
@@ -70,9 +76,15 @@ class SqliteStore final : public Store {
   Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) override;
   Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) override;
   Result<JobCounts> CountJobs() override;
+  Result<std::vector<JobStateCount>> CountByState(const JobQuery& query) override;
   Result<std::vector<MachineJobs>> UnfinishedJobs() override;
-  Status DeleteJob(std::int64_t id) override;
+  Status DeleteJob(std::int64_t id, std::string_view caller) override;
   Result<JobRecord> RequestCancel(std::int64_t job, const std::vector<NewEvent>& events) override;
+
+  Result<JobRecord> HoldBack(std::int64_t job, const std::vector<NewEvent>& events) override;
+  Result<JobRecord> LetGo(std::int64_t job, const std::vector<NewEvent>& events) override;
+  Result<JobRecord> Move(std::int64_t job, std::int64_t before, std::optional<int> priority,
+                         const std::vector<NewEvent>& events) override;
 
   Result<std::vector<LeasedJob>> AcquireJobs(const JobRequest& request) override;
   Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) override;
@@ -89,6 +101,8 @@ class SqliteStore final : public Store {
   Result<std::vector<EventRecord>> AllEvents(std::int64_t after_position, int limit) override;
   Result<std::int64_t> LastPosition() override;
   Result<std::int64_t> EventsGoneUntil() override;
+  std::string LogId() override { return log_id_; }
+  Result<bool> HasPosition(std::string_view log_id, std::int64_t position) override;
   Result<std::vector<ArtifactRecord>> ListArtifacts(std::int64_t job) override;
   Result<ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) override;
   Result<std::string> ReadBlob(std::string_view sha256) override;
@@ -102,6 +116,7 @@ class SqliteStore final : public Store {
   // Destroyed from the last to the first: the writer answers what waits while all else is there.
   const StoreLock lock_;
   const Clock clock_;
+  const std::string log_id_;
   RequestIds request_ids_;
   // Closed after the readers: the last one to close moves the log into the file, and a reader may
   // not.

@@ -7,6 +7,7 @@
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/executable_life.h"
 #include "storage/sqlite/job_life.h"
+#include "storage/sqlite/queue_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
 namespace rmlcell::storage::sqlite {
@@ -139,18 +140,12 @@ Result<JobRow> GetRow(Tables& tables, std::int64_t id) {
   return **std::move(row);
 }
 
-Status AddSpecification(Tables& tables, JobRecord& job) {
-  Result<std::string> specification = tables.jobs.Specification(job.id);
-  if (!specification) return specification.error();
-  job.specification = *std::move(specification);
-  return {};
-}
-
 }  // namespace
 
 SqliteStore::SqliteStore(Parts parts)
     : lock_(std::move(parts.lock)),
       clock_(parts.clock),
+      log_id_(std::move(parts.log_id)),
       connection_(std::move(parts.connection)),
       readers_(std::move(parts.readers)),
       writer_(*connection_, parts.counters, parts.writer, std::move(parts.clock),
@@ -182,7 +177,7 @@ Result<std::optional<JobRecord>> SqliteStore::FindSubmitted(std::string_view req
     if (!*known) return std::optional<JobRecord>();
     JobRecord& job = (*known)->job;
     if (job.request_hash != request_hash) return RequestIdReused(job.id);
-    if (const Status whole = AddSpecification(tables, job); !whole) return whole.error();
+    if (const Status whole = CompleteJob(tables, job, clock_()); !whole) return whole.error();
     return std::optional<JobRecord>(std::move(job));
   });
 }
@@ -191,7 +186,7 @@ Result<JobRecord> SqliteStore::GetJob(std::int64_t id) {
   return readers_->Read([&](Tables& tables) -> Result<JobRecord> {
     Result<JobRow> row = GetRow(tables, id);
     if (!row) return row.error();
-    if (const Status whole = AddSpecification(tables, row->job); !whole) return whole.error();
+    if (const Status whole = CompleteJob(tables, row->job, clock_()); !whole) return whole.error();
     return std::move(row->job);
   });
 }
@@ -201,7 +196,7 @@ Result<std::vector<JobRecord>> SqliteStore::ListJobs(const JobQuery& query) {
     Result<std::vector<JobRecord>> jobs = tables.jobs.List(query);
     if (!jobs) return jobs.error();
     for (JobRecord& job : *jobs) {
-      if (const Status whole = AddSpecification(tables, job); !whole) return whole.error();
+      if (const Status whole = CompleteJob(tables, job, clock_()); !whole) return whole.error();
     }
     return jobs;
   });
@@ -217,12 +212,16 @@ Result<std::vector<AttemptRecord>> SqliteStore::ListAttempts(std::int64_t job) {
 
 Result<JobCounts> SqliteStore::CountJobs() { return writer_.job_counts(); }
 
+Result<std::vector<JobStateCount>> SqliteStore::CountByState(const JobQuery& query) {
+  return readers_->Read([&](Tables& tables) { return tables.jobs.CountByState(query); });
+}
+
 Result<std::vector<MachineJobs>> SqliteStore::UnfinishedJobs() {
   return readers_->Read([](Tables& tables) { return tables.jobs.Unfinished(); });
 }
 
-Status SqliteStore::DeleteJob(std::int64_t id) {
-  return writer_.Do([&](WriteContext& context) { return RemoveEndedJob(context, id); });
+Status SqliteStore::DeleteJob(std::int64_t id, std::string_view caller) {
+  return writer_.Do([&](WriteContext& context) { return RemoveEndedJob(context, id, caller); });
 }
 
 Result<JobRecord> SqliteStore::RequestCancel(std::int64_t job,
@@ -231,9 +230,26 @@ Result<JobRecord> SqliteStore::RequestCancel(std::int64_t job,
       writer_.Do([&](WriteContext& context) { return CancelJob(context, job, events); }));
 }
 
+Result<JobRecord> SqliteStore::HoldBack(std::int64_t job, const std::vector<NewEvent>& events) {
+  return WithSpecification(
+      writer_.Do([&](WriteContext& context) { return HoldJobBack(context, job, events); }));
+}
+
+Result<JobRecord> SqliteStore::LetGo(std::int64_t job, const std::vector<NewEvent>& events) {
+  return WithSpecification(
+      writer_.Do([&](WriteContext& context) { return LetJobGo(context, job, events); }));
+}
+
+Result<JobRecord> SqliteStore::Move(std::int64_t job, std::int64_t before,
+                                    std::optional<int> priority,
+                                    const std::vector<NewEvent>& events) {
+  return WithSpecification(writer_.Do(
+      [&](WriteContext& context) { return MoveJob(context, job, before, priority, events); }));
+}
+
 Result<std::vector<LeasedJob>> SqliteStore::AcquireJobs(const JobRequest& request) {
   // Idle workers ask at every commit; most find nothing, and that must not keep the writer busy.
-  if (writer_.job_counts().queued == 0) return std::vector<LeasedJob>();
+  if (!writer_.any_ready_job()) return std::vector<LeasedJob>();
   Result<std::vector<LeasedJob>> leased =
       writer_.Do([&](WriteContext& context) { return LeaseJobs(context, request); });
   if (!leased) return leased;
@@ -281,7 +297,7 @@ Result<JobRecord> SqliteStore::Finish(const Lease& lease, const JobEnd& end) {
     for (std::size_t i = 0; job && i < executables.size(); ++i) {
       const NewExecutable& made = end.executables[i];
       const auto kept = PutExecutableBlob(context, job->machine, made.slot, made.object_revision,
-                                          executables[i].content());
+                                          executables[i].content(), {});
       if (!kept) return kept.error();
     }
     return job;
@@ -304,6 +320,16 @@ Result<std::vector<JobRecord>> SqliteStore::Expire(const LossPolicy& policy) {
     return Error{ErrorCode::kCellInvalidArgument, "an outcome has to be final", {}};
   }
   const WallTime now = clock_();
+  const Result<bool> due = readers_->Read([&](Tables& tables) -> Result<bool> {
+    const Result<std::vector<std::int64_t>> jobs = tables.queue.Due(now);
+    if (!jobs) return jobs.error();
+    return !jobs->empty();
+  });
+  if (!due) return due.error();
+  if (*due) {
+    const Status gone = writer_.Do([](WriteContext& context) { return LetDueJobsGo(context); });
+    if (!gone) return gone.error();
+  }
   const Result<std::vector<Lease>> leases =
       readers_->Read([&](Tables& tables) { return tables.leases.RunOut(now); });
   if (!leases) return leases.error();
@@ -358,6 +384,16 @@ Result<std::int64_t> SqliteStore::EventsGoneUntil() {
       [](Tables& tables) { return tables.marks.Get(MarkTable::kEventsGoneUntil); });
 }
 
+Result<bool> SqliteStore::HasPosition(std::string_view log_id, std::int64_t position) {
+  const Result<std::int64_t> last = LastPosition();
+  if (!last) return last.error();
+  return readers_->Read([&](Tables& tables) -> Result<bool> {
+    const Result<std::optional<std::int64_t>> end = tables.log_parts.EndOf(log_id);
+    if (!end) return end.error();
+    return *end && position <= std::min(**end, *last);
+  });
+}
+
 Result<std::vector<ArtifactRecord>> SqliteStore::ListArtifacts(std::int64_t job) {
   return readers_->Read([&](Tables& tables) -> Result<std::vector<ArtifactRecord>> {
     const Result<JobRow> row = GetRow(tables, job);
@@ -400,7 +436,7 @@ std::unique_ptr<Store::Subscription> SqliteStore::Watch(std::function<void()> ch
 Result<JobRecord> SqliteStore::WithSpecification(Result<JobRecord> job) {
   if (!job) return job.error();
   const Status whole =
-      readers_->Read([&](Tables& tables) -> Status { return AddSpecification(tables, *job); });
+      readers_->Read([&](Tables& tables) -> Status { return CompleteJob(tables, *job, clock_()); });
   // The change is durable by now, and that is what the caller has to know. Whoever needs the
   // specification meets the damage with GetJob().
   if (!whole) job->specification.clear();

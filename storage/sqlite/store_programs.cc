@@ -98,7 +98,8 @@ Status DropBlobs(WriteContext& context, const ProgramTable::Row& row) {
 }
 
 Result<ProgramSummary> PutProgramRow(WriteContext& context, std::string_view machine,
-                                     const ProgramWrite& program, const StagedProgram& staged) {
+                                     const ProgramWrite& program, const StagedProgram& staged,
+                                     std::string_view caller) {
   Tables& tables = context.tables;
   const Result<std::optional<ProgramTable::Row>> found =
       tables.programs.Find(machine, program.slot);
@@ -137,6 +138,10 @@ Result<ProgramSummary> PutProgramRow(WriteContext& context, std::string_view mac
   if (before) {
     if (const Status dropped = DropBlobs(context, *before); !dropped) return dropped.error();
   }
+  if (const Status noted = NoteRecord(context, NameOfProgram(machine, program.slot),
+                                      before ? kUpdated : kCreated, caller);
+      !noted)
+    return noted.error();
   const Result<std::optional<ProgramSummary>> summary =
       tables.programs.Summary(machine, program.slot);
   if (!summary) return summary.error();
@@ -145,7 +150,7 @@ Result<ProgramSummary> PutProgramRow(WriteContext& context, std::string_view mac
 }
 
 Result<ScheduleRecord> PutScheduleRow(WriteContext& context, ScheduleRecord schedule,
-                                      Revision expected) {
+                                      Revision expected, std::string_view caller) {
   Tables& tables = context.tables;
   const Result<std::optional<ScheduleRecord>> before =
       tables.schedules.Get(schedule.machine, schedule.number);
@@ -166,10 +171,15 @@ Result<ScheduleRecord> PutScheduleRow(WriteContext& context, ScheduleRecord sche
   }
   schedule.updated_at = context.now;
   if (const Status put = tables.schedules.Put(schedule); !put) return put.error();
+  if (const Status noted = NoteRecord(context, NameOfSchedule(schedule.machine, schedule.number),
+                                      *before ? kUpdated : kCreated, caller);
+      !noted)
+    return noted.error();
   return schedule;
 }
 
-Status RemoveProgram(WriteContext& context, std::string_view machine, int slot, Revision expected) {
+Status RemoveProgram(WriteContext& context, std::string_view machine, int slot, Revision expected,
+                     std::string_view caller) {
   Tables& tables = context.tables;
   if (const Status known = CheckMachine(tables, machine); !known) return known.error();
   const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
@@ -184,10 +194,14 @@ Status RemoveProgram(WriteContext& context, std::string_view machine, int slot, 
                                                std::to_string(slot), row.revision);
       !buried)
     return buried.error();
+  if (const Status noted = NoteRecord(context, NameOfProgram(machine, slot), kDeleted, caller);
+      !noted)
+    return noted.error();
   return DropBlobs(context, row);
 }
 
-Status RemoveExecutable(WriteContext& context, std::string_view machine, int slot) {
+Status RemoveExecutable(WriteContext& context, std::string_view machine, int slot,
+                        std::string_view caller) {
   Tables& tables = context.tables;
   if (const Status known = CheckMachine(tables, machine); !known) return known.error();
   const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
@@ -199,10 +213,14 @@ Status RemoveExecutable(WriteContext& context, std::string_view machine, int slo
   if (const Status removed = tables.programs.PutExecutable(machine, slot, {}); !removed)
     return removed.error();
   context.garbage = true;
+  if (const Status noted = NoteRecord(context, NameOfProgram(machine, slot), kUpdated, caller);
+      !noted)
+    return noted.error();
   return tables.blobs.Drop((*found)->executable_blob);
 }
 
-Status RemoveSchedule(WriteContext& context, std::string_view machine, int number) {
+Status RemoveSchedule(WriteContext& context, std::string_view machine, int number,
+                      std::string_view caller) {
   Tables& tables = context.tables;
   if (const Status known = CheckMachine(tables, machine); !known) return known.error();
   const Result<std::optional<ScheduleRecord>> found = tables.schedules.Get(machine, number);
@@ -214,24 +232,28 @@ Status RemoveSchedule(WriteContext& context, std::string_view machine, int numbe
   }
   if (const Status removed = tables.schedules.Remove(machine, number); !removed)
     return removed.error();
+  if (const Status noted = NoteRecord(context, NameOfSchedule(machine, number), kDeleted, caller);
+      !noted)
+    return noted.error();
   return tables.buried.Bury(BuriedTable::Kind::kSchedule, machine, std::to_string(number),
                             (*found)->revision);
 }
 
 }  // namespace
 
-Status RemoveMemory(WriteContext& context, std::string_view machine) {
+Status RemoveMemory(WriteContext& context, std::string_view machine, std::string_view caller) {
   const Result<std::vector<ProgramSummary>> programs =
       context.tables.programs.List(machine, 0, kSlotMax);
   if (!programs) return programs.error();
   for (const ProgramSummary& program : *programs) {
-    if (const Status gone = RemoveProgram(context, machine, program.slot, kAnyRevision); !gone)
+    if (const Status gone = RemoveProgram(context, machine, program.slot, kAnyRevision, caller);
+        !gone)
       return gone.error();
   }
   const Result<std::vector<ScheduleRecord>> schedules = context.tables.schedules.List(machine);
   if (!schedules) return schedules.error();
   for (const ScheduleRecord& schedule : *schedules) {
-    if (const Status gone = RemoveSchedule(context, machine, schedule.number); !gone)
+    if (const Status gone = RemoveSchedule(context, machine, schedule.number, caller); !gone)
       return gone.error();
   }
   return {};
@@ -265,23 +287,30 @@ Result<ProgramSummary> SqliteStore::GetProgramSummary(std::string_view machine, 
   });
 }
 
-Result<std::vector<ProgramRecord>> SqliteStore::GetProgramMemory(std::string_view machine) {
-  return readers_->Read([&](Tables& tables) -> Result<std::vector<ProgramRecord>> {
-    if (const Status known = CheckMachine(tables, machine); !known) return known.error();
-    return tables.programs.Memory(machine, ProgramTable::Parts::kWithoutSource);
-  });
-}
-
-Result<std::vector<int>> SqliteStore::ListDeletedPrograms(std::string_view machine) {
-  return readers_->Read([&](Tables& tables) -> Result<std::vector<int>> {
-    if (const Status known = CheckMachine(tables, machine); !known) return known.error();
-    return tables.buried.Numbers(BuriedTable::Kind::kProgram, machine);
+Result<MachineMemory> SqliteStore::GetMachineMemory(std::string_view machine,
+                                                    const WantsPrograms& wants_programs) {
+  return readers_->Read([&](Tables& tables) -> Result<MachineMemory> {
+    Result<std::optional<MachineRecord>> record = tables.machines.Get(machine);
+    if (!record) return record.error();
+    if (!*record) return Error{ErrorCode::kCellUnknownMachine, std::string(machine), {}};
+    MachineMemory memory{.machine = **std::move(record)};
+    auto schedules = tables.schedules.List(machine);
+    if (!schedules) return schedules.error();
+    memory.schedules = *std::move(schedules);
+    if (!wants_programs || !wants_programs(memory.machine)) return memory;
+    auto programs = tables.programs.Memory(machine, ProgramTable::Parts::kWithoutSource);
+    if (!programs) return programs.error();
+    memory.programs = *std::move(programs);
+    auto deleted = tables.buried.Numbers(BuriedTable::Kind::kProgram, machine);
+    if (!deleted) return deleted.error();
+    memory.deleted = *std::move(deleted);
+    return memory;
   });
 }
 
 Result<std::vector<ProgramSummary>> SqliteStore::PutPrograms(
     std::string_view machine, const std::vector<ProgramWrite>& programs,
-    const std::vector<ScheduleRecord>& schedules) {
+    const std::vector<ScheduleRecord>& schedules, std::string_view caller) {
   if (const Status good = CheckWrites(programs, schedules); !good) return good.error();
   const Result<std::vector<StagedProgram>> staged = StageAll(writer_, programs);
   if (!staged) return staged.error();
@@ -289,36 +318,41 @@ Result<std::vector<ProgramSummary>> SqliteStore::PutPrograms(
     if (const Status known = CheckMachine(context.tables, machine); !known) return known.error();
     std::vector<ProgramSummary> summaries;
     for (std::size_t i = 0; i < programs.size(); ++i) {
-      Result<ProgramSummary> put = PutProgramRow(context, machine, programs[i], (*staged)[i]);
+      Result<ProgramSummary> put =
+          PutProgramRow(context, machine, programs[i], (*staged)[i], caller);
       if (!put) return put.error();
       summaries.push_back(*std::move(put));
     }
     for (ScheduleRecord schedule : schedules) {
       schedule.machine = machine;
-      const Result<ScheduleRecord> put = PutScheduleRow(context, std::move(schedule), kAnyRevision);
+      const Result<ScheduleRecord> put =
+          PutScheduleRow(context, std::move(schedule), kAnyRevision, caller);
       if (!put) return put.error();
     }
     return summaries;
   });
 }
 
-Status SqliteStore::DeleteProgram(std::string_view machine, int slot, Revision expected) {
-  return writer_.Do(
-      [&](WriteContext& context) { return RemoveProgram(context, machine, slot, expected); });
-}
-
-Result<bool> SqliteStore::PutExecutable(std::string_view machine, int slot,
-                                        Revision object_revision, std::string_view executable) {
-  const Result<StagedContent> staged = StageExecutable(writer_, executable);
-  if (!staged) return staged.error();
+Status SqliteStore::DeleteProgram(std::string_view machine, int slot, Revision expected,
+                                  std::string_view caller) {
   return writer_.Do([&](WriteContext& context) {
-    return PutExecutableBlob(context, machine, slot, object_revision, staged->content());
+    return RemoveProgram(context, machine, slot, expected, caller);
   });
 }
 
-Status SqliteStore::DeleteExecutable(std::string_view machine, int slot) {
+Result<bool> SqliteStore::PutExecutable(std::string_view machine, int slot,
+                                        Revision object_revision, std::string_view executable,
+                                        std::string_view caller) {
+  const Result<StagedContent> staged = StageExecutable(writer_, executable);
+  if (!staged) return staged.error();
+  return writer_.Do([&](WriteContext& context) {
+    return PutExecutableBlob(context, machine, slot, object_revision, staged->content(), caller);
+  });
+}
+
+Status SqliteStore::DeleteExecutable(std::string_view machine, int slot, std::string_view caller) {
   return writer_.Do(
-      [&](WriteContext& context) { return RemoveExecutable(context, machine, slot); });
+      [&](WriteContext& context) { return RemoveExecutable(context, machine, slot, caller); });
 }
 
 Result<std::vector<ScheduleRecord>> SqliteStore::ListSchedules(std::string_view machine) {
@@ -328,18 +362,19 @@ Result<std::vector<ScheduleRecord>> SqliteStore::ListSchedules(std::string_view 
   });
 }
 
-Result<ScheduleRecord> SqliteStore::PutSchedule(const ScheduleRecord& schedule, Revision expected) {
+Result<ScheduleRecord> SqliteStore::PutSchedule(const ScheduleRecord& schedule, Revision expected,
+                                                std::string_view caller) {
   if (const Status good = CheckSchedule(schedule); !good) return good.error();
   return writer_.Do([&](WriteContext& context) -> Result<ScheduleRecord> {
     if (const Status known = CheckMachine(context.tables, schedule.machine); !known)
       return known.error();
-    return PutScheduleRow(context, schedule, expected);
+    return PutScheduleRow(context, schedule, expected, caller);
   });
 }
 
-Status SqliteStore::DeleteSchedule(std::string_view machine, int number) {
+Status SqliteStore::DeleteSchedule(std::string_view machine, int number, std::string_view caller) {
   return writer_.Do(
-      [&](WriteContext& context) { return RemoveSchedule(context, machine, number); });
+      [&](WriteContext& context) { return RemoveSchedule(context, machine, number, caller); });
 }
 
 }  // namespace rmlcell::storage::sqlite

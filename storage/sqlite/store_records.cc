@@ -18,8 +18,10 @@ void SetStamp(Record& record, const Stamp& stamp) {
   record.updated_at = stamp.updated_at;
 }
 
+std::string_view Change(bool there_before) { return there_before ? kUpdated : kCreated; }
+
 Result<Stamp> PutMachineRow(WriteContext& context, const MachineRecord& machine, Revision expected,
-                            const PreparedContent& state) {
+                            const PreparedContent& state, std::string_view caller) {
   const Result<std::optional<MachineTable::Facts>> found = context.tables.machines.Find(machine.id);
   if (!found) return found.error();
   const std::optional<MachineTable::Facts>& before = *found;
@@ -47,10 +49,15 @@ Result<Stamp> PutMachineRow(WriteContext& context, const MachineRecord& machine,
       return dropped.error();
   }
   context.garbage = true;
+  if (const Status noted =
+          NoteRecord(context, MachineName(machine.id), Change(before.has_value()), caller);
+      !noted)
+    return noted.error();
   return stamp;
 }
 
-Status RemoveMachine(WriteContext& context, std::string_view id, Revision expected) {
+Status RemoveMachine(WriteContext& context, std::string_view id, Revision expected,
+                     std::string_view caller) {
   Tables& tables = context.tables;
   const Result<std::optional<MachineTable::Facts>> found = tables.machines.Find(id);
   if (!found) return found.error();
@@ -66,18 +73,20 @@ Status RemoveMachine(WriteContext& context, std::string_view id, Revision expect
                  "jobs wait for machine " + std::string(id) + " or run; cancel them first",
                  {}};
   }
-  if (const Status memory = RemoveMemory(context, id); !memory) return memory.error();
+  if (const Status memory = RemoveMemory(context, id, caller); !memory) return memory.error();
   if (const Status removed = tables.machines.Remove(id); !removed) return removed.error();
   if (const Status buried =
           tables.buried.Bury(BuriedTable::Kind::kMachine, "", id, before.revision);
       !buried)
     return buried.error();
   context.garbage = true;
+  if (const Status noted = NoteRecord(context, MachineName(id), kDeleted, caller); !noted)
+    return noted.error();
   return tables.blobs.Drop(before.state_blob);
 }
 
 Result<Stamp> PutProjectRow(WriteContext& context, const ProjectRecord& project, Revision expected,
-                            const PreparedContent& body) {
+                            const PreparedContent& body, std::string_view caller) {
   const Result<std::optional<ProjectTable::Facts>> found = context.tables.projects.Find(project.id);
   if (!found) return found.error();
   const std::optional<ProjectTable::Facts>& before = *found;
@@ -104,10 +113,15 @@ Result<Stamp> PutProjectRow(WriteContext& context, const ProjectRecord& project,
       return dropped.error();
   }
   context.garbage = true;
+  if (const Status noted =
+          NoteRecord(context, ProjectName(project.id), Change(before.has_value()), caller);
+      !noted)
+    return noted.error();
   return stamp;
 }
 
-Status RemoveProject(WriteContext& context, std::string_view id, Revision expected) {
+Status RemoveProject(WriteContext& context, std::string_view id, Revision expected,
+                     std::string_view caller) {
   const Result<std::optional<ProjectTable::Facts>> found = context.tables.projects.Find(id);
   if (!found) return found.error();
   if (!*found) return NoProject(id);
@@ -121,6 +135,8 @@ Status RemoveProject(WriteContext& context, std::string_view id, Revision expect
       !buried)
     return buried.error();
   context.garbage = true;
+  if (const Status noted = NoteRecord(context, ProjectName(id), kDeleted, caller); !noted)
+    return noted.error();
   return context.tables.blobs.Drop(before.body_blob);
 }
 
@@ -156,13 +172,14 @@ Result<MachineRecord> SqliteStore::GetMachine(std::string_view id) {
   });
 }
 
-Result<MachineRecord> SqliteStore::PutMachine(const MachineRecord& machine, Revision expected) {
+Result<MachineRecord> SqliteStore::PutMachine(const MachineRecord& machine, Revision expected,
+                                              std::string_view caller) {
   if (machine.id.empty()) return InvalidArgument("a machine needs an id");
   const Result<StagedContent> state =
       StagedContent::Make(writer_, machine.state, StagedContent::Place::kRecordWhenSmall);
   if (!state) return state.error();
   const Result<Stamp> stamp = writer_.Do([&](WriteContext& context) {
-    return PutMachineRow(context, machine, expected, state->content());
+    return PutMachineRow(context, machine, expected, state->content(), caller);
   });
   if (!stamp) return stamp.error();
   MachineRecord put = machine;
@@ -170,8 +187,9 @@ Result<MachineRecord> SqliteStore::PutMachine(const MachineRecord& machine, Revi
   return put;
 }
 
-Status SqliteStore::DeleteMachine(std::string_view id, Revision expected) {
-  return writer_.Do([&](WriteContext& context) { return RemoveMachine(context, id, expected); });
+Status SqliteStore::DeleteMachine(std::string_view id, Revision expected, std::string_view caller) {
+  return writer_.Do(
+      [&](WriteContext& context) { return RemoveMachine(context, id, expected, caller); });
 }
 
 Result<std::vector<ProjectRecord>> SqliteStore::ListProjects(std::string_view after_id, int limit) {
@@ -188,13 +206,14 @@ Result<ProjectRecord> SqliteStore::GetProject(std::string_view id) {
   });
 }
 
-Result<ProjectRecord> SqliteStore::PutProject(const ProjectRecord& project, Revision expected) {
+Result<ProjectRecord> SqliteStore::PutProject(const ProjectRecord& project, Revision expected,
+                                              std::string_view caller) {
   if (project.id.empty()) return InvalidArgument("a project needs an id");
   const Result<StagedContent> body =
       StagedContent::Make(writer_, project.body, StagedContent::Place::kRecordWhenSmall);
   if (!body) return body.error();
   const Result<Stamp> stamp = writer_.Do([&](WriteContext& context) {
-    return PutProjectRow(context, project, expected, body->content());
+    return PutProjectRow(context, project, expected, body->content(), caller);
   });
   if (!stamp) return stamp.error();
   ProjectRecord put = project;
@@ -202,8 +221,9 @@ Result<ProjectRecord> SqliteStore::PutProject(const ProjectRecord& project, Revi
   return put;
 }
 
-Status SqliteStore::DeleteProject(std::string_view id, Revision expected) {
-  return writer_.Do([&](WriteContext& context) { return RemoveProject(context, id, expected); });
+Status SqliteStore::DeleteProject(std::string_view id, Revision expected, std::string_view caller) {
+  return writer_.Do(
+      [&](WriteContext& context) { return RemoveProject(context, id, expected, caller); });
 }
 
 }  // namespace rmlcell::storage::sqlite

@@ -9,6 +9,7 @@
 #include "storage/sqlite/mark_table.h"
 #include "storage/sqlite/program_table.h"
 #include "storage/sqlite/project_table.h"
+#include "storage/sqlite/queue_table.h"
 #include "storage/sqlite/schedule_table.h"
 #include "storage/sqlite/transaction.h"
 
@@ -23,11 +24,13 @@ struct Tables {
         schedules(database),
         projects(database, blobs),
         jobs(database, blobs),
+        queue(database),
         leases(database),
         attempts(database),
         events(database),
         artifacts(database),
         marks(database),
+        log_parts(database),
         buried(database) {}
 
   BlobTable blobs;
@@ -36,11 +39,13 @@ struct Tables {
   ScheduleTable schedules;
   ProjectTable projects;
   JobTable jobs;
+  QueueTable queue;
   LeaseTable leases;
   AttemptTable attempts;
   EventTable events;
   ArtifactTable artifacts;
   MarkTable marks;
+  LogPartTable log_parts;
   BuriedTable buried;
 };
 

@@ -11,8 +11,10 @@ struct Counters {
   std::int64_t position = 0;
   std::int64_t fence = 0;
   std::int64_t queued_jobs = 0;
+  std::int64_t blocked_jobs = 0;  // of these, not ready
   std::int64_t running_jobs = 0;
   std::int64_t finished_jobs = 0;
+  std::int64_t record_events = 0;  // events of what is no job
   std::int64_t events_trimmed_until =
       0;  // a position; all older events were removed for their number
 
@@ -30,6 +32,10 @@ struct WriteContext {
   bool changed = false;  // set: jobs or events changed, watchers want to know
   bool garbage = false;  // set: a blob may have lost its last reference or hold
 };
+
+// An event of a record that is no job: it was made, changed or deleted.
+Status NoteRecord(WriteContext& context, std::string_view resource, std::string_view change,
+                  std::string_view caller);
 
 // One write. Run() is called on the writer thread inside a transaction and is undone when it gives
 // an error; it may be called again when that transaction could not be committed. Then Answer() is

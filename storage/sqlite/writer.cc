@@ -59,6 +59,7 @@ Writer::Writer(Connection& connection, const Counters& counters, const Options& 
       counters_(counters),
       fence_mark_(counters.fence),
       queued_jobs_(counters.queued_jobs),
+      ready_jobs_(counters.queued_jobs - counters.blocked_jobs),
       running_jobs_(counters.running_jobs),
       thread_([this] { Loop(); }) {}
 
@@ -325,6 +326,7 @@ Status Writer::KeepMarks(const Counters& before) {
 // Before anybody is told of the change: whoever is, finds it here.
 void Writer::PublishCounts() {
   queued_jobs_ = counters_.queued_jobs;
+  ready_jobs_ = counters_.queued_jobs - counters_.blocked_jobs;
   running_jobs_ = counters_.running_jobs;
 }
 

@@ -49,6 +49,7 @@ class Writer {
 
   // As of the newest commit.
   JobCounts job_counts() const { return {.queued = queued_jobs_, .running = running_jobs_}; }
+  bool any_ready_job() const { return ready_jobs_ > 0; }
 
   // Runs `work`, from WriteContext& to a Result or Status, and returns what it gave once it is
   // durable. Also from within an answer: what was queued before is then run first.
@@ -108,6 +109,7 @@ class Writer {
   int pages_at_checkpoint_ = 0;  // size of the log when it was last moved
 
   std::atomic<std::int64_t> queued_jobs_;
+  std::atomic<std::int64_t> ready_jobs_;
   std::atomic<std::int64_t> running_jobs_;
 
   std::atomic<std::thread::id> has_turn_{};  // nobody: a thread that is none

@@ -234,7 +234,7 @@ def programs(session):
             job = call("JobService/SubmitJob", {"job": {"kind": "JOB_KIND_SIMULATE", "machine": machine, "program": full,
                                                         "budget": {"steps": 500, "virtualTimeNs": 100_000_000_000}}}, 0)
             if "name" in job:
-                session.watch("JobService/WatchJob", {"name": job["name"]}, told=False)
+                session.watch("JobService/WatchJob", {"name": job["name"], "afterSequence": 0}, told=False)
                 until = time.monotonic() + 0.3  # the executable may come behind the end
                 while time.monotonic() < until and b"executableBytes" not in session.watch("ProgramService/GetProgram", {"name": full}, told=False):
                     time.sleep(0.01)
@@ -318,7 +318,7 @@ def jobs(session):
         name = job.get("name", "")
         if name:
             names.append(name)
-            session.watch("JobService/WatchJob", {"name": name}, told=False)
+            session.watch("JobService/WatchJob", {"name": name, "afterSequence": 0}, told=False)
         name = dice.choice(names) if names else "jobs/1"
         call("JobService/GetJob", {"name": name}, 0.05)
         session.watch("JobService/WatchJob", {"name": name, "afterSequence": dice.choice((1, 1, 2, 4, 1000)), "eventsOnly": True})
@@ -416,7 +416,7 @@ def http_requests(session):
     job = session.call("JobService/SubmitJob", {"job": {"kind": "JOB_KIND_SIMULATE", "machine": "machines/mill-1", "program": "machines/mill-1/programs/7",
                                                         "budget": {"steps": 500, "virtualTimeNs": 100_000_000_000}}}, 0, told=False)
     if "name" in job:
-        session.watch("JobService/WatchJob", {"name": job["name"]}, told=False)
+        session.watch("JobService/WatchJob", {"name": job["name"], "afterSequence": 0}, told=False)
     name = dice.choice((b"\n\x0fmachines/mill-1", b"\n\x11machines/optimo-1", b"\n\x03348"))
     frame = b"\0" + len(name).to_bytes(4, "big") + name
     paths = ("/", "/index.html", "/page.js", "/page.css", "/favicon.svg", "/none", "/v1", "/v1/jobs/1/artifacts/report", "/v1/jobs/1/artifacts/picture.svg",
@@ -458,7 +458,7 @@ def killed(session):
             call("ProjectService/CreateProject", {"projectId": f"p{dice.randrange(9)}", "project": some_project(dice)}, 0)
         job = call("JobService/SubmitJob", {"job": {**some_job(dice), "kind": "JOB_KIND_SIMULATE"}, "requestId": "again"}, 0)
         if "name" in job:
-            session.watch("JobService/WatchJob", {"name": job["name"]}, told=False)
+            session.watch("JobService/WatchJob", {"name": job["name"], "afterSequence": 0}, told=False)
         session.stop(dice.choice((signal.SIGKILL, signal.SIGTERM)))
         session.start()
         for asked, message in (("MachineService/ListMachines", {}), ("ProgramService/ListPrograms", {"parent": "machines/optimo-1"}),

@@ -164,7 +164,7 @@ def submit(stub, job, request_id=""):
 def wait_for_end(stub, name, seconds=300):
     """Events of the job up to its end, in order."""
     events = []
-    for message in stub.WatchJob(job_pb2.WatchJobRequest(name=name, events_only=True), timeout=seconds):
+    for message in stub.WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name=name, events_only=True), timeout=seconds):
         if message.HasField("event"):
             events.append(message.event)
     return events

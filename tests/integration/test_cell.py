@@ -10,9 +10,23 @@ import urllib.error
 import urllib.request
 import uuid
 
-from cell import (COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, common_pb2, detail_of, eventually, grpc, inline_job,
+from cell import (COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, cell_pb2, common_pb2, detail_of, eventually, grpc, inline_job,
                   job_pb2, machine_status_pb2, machine_pb2, program_pb2, submit, wait_for_end, wait_until_it_runs)
 from command import run
+
+
+def jobs_request(jobs=None, **wanted):
+    """A watch of these jobs, of all without."""
+    jobs = jobs if jobs is not None else cell_pb2.JobsSubscription()
+    return cell_pb2.WatchCellRequest(subscriptions=[cell_pb2.Subscription(id="jobs", jobs=jobs)], **wanted)
+
+
+def first_of(stub, request):
+    """The first message of a watch of the cell."""
+    watch = stub.WatchCell(request, timeout=60)
+    message = next(watch)
+    watch.cancel()
+    return message
 
 
 class Jobs(WithCell):
@@ -102,7 +116,7 @@ class Jobs(WithCell):
         job.simulation.pace = 1.0
         begin = time.monotonic()
         name = submit(stub, job).name
-        seen = [m.progress.virtual_time_ns * 1e-9 for m in stub.WatchJob(job_pb2.WatchJobRequest(name=name), timeout=60)
+        seen = [m.progress.virtual_time_ns * 1e-9 for m in stub.WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name=name), timeout=60)
                 if m.HasField("progress")]
         took = time.monotonic() - begin
         self.assertGreaterEqual(took, 1.5)  # however slow the machine: less would be too fast
@@ -118,7 +132,7 @@ class Jobs(WithCell):
         for name in paced[:2]:
             wait_until_it_runs(stub, name)
         check = submit(stub, job_pb2.Job(kind=job_pb2.JOB_KIND_CHECK, machine="machines/mill-1",
-                                         inline_program=program_pb2.ProgramText(file_name="p.rml", content=b"PA;PU0,0;")))
+                                         inline_program=common_pb2.ProgramText(file_name="p.rml", content=b"PA;PU0,0;")))
         wait_for_end(stub, check.name)
         states = [stub.GetJob(job_pb2.GetJobRequest(name=name)).state for name in paced]
         self.assertEqual(states, [job_pb2.Job.STATE_RUNNING] * 2 + [job_pb2.Job.STATE_QUEUED])
@@ -132,7 +146,7 @@ class Jobs(WithCell):
         source = "".join(f"VR[{n}] = {n}.\n" for n in range(50)) + "DELAY 2.\n"
         job = inline_job("optimo-1", "late.S", source)
         job.simulation.pace = 1.0
-        seen = [m.progress for m in stub.WatchJob(job_pb2.WatchJobRequest(name=submit(stub, job).name), timeout=60)
+        seen = [m.progress for m in stub.WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name=submit(stub, job).name), timeout=60)
                 if m.HasField("progress")]
         known = [one for one in seen if one.HasField("planned_time_ns")]
         self.assertTrue(known)
@@ -173,7 +187,7 @@ class Jobs(WithCell):
         self.assertEqual((ended.kind, ended.code, ended.place.step), (FAILED, "OPT-E7301", 2))
         self.cell.programs().PutProgram(program_pb2.PutProgramRequest(
             name="machines/optimo-1/programs/61",
-            program=program_pb2.ProgramText(file_name="61.S", content=far.encode())))
+            program=common_pb2.ProgramText(file_name="61.S", content=far.encode())))
         job = submit(stub, inline_job("optimo-1", "main.S", "CALL 61\n", kind=job_pb2.JOB_KIND_CHECK))
         ended = wait_for_end(stub, job.name)[-1].ended
         self.assertEqual((ended.code, ended.place.program), ("OPT-E7301", 61))
@@ -201,7 +215,7 @@ class Jobs(WithCell):
     def test_a_repeated_request_has_its_job_also_when_the_program_is_gone(self):
         stub, name = self.cell.jobs(), "machines/mill-1/programs/51"
         self.cell.programs().PutProgram(program_pb2.PutProgramRequest(
-            name=name, program=program_pb2.ProgramText(file_name="a.rml", content=SQUARE.encode())))
+            name=name, program=common_pb2.ProgramText(file_name="a.rml", content=SQUARE.encode())))
         job = job_pb2.Job(machine="machines/mill-1", kind=job_pb2.JOB_KIND_SIMULATE, program=name)
         request_id = str(uuid.uuid4())
         first = submit(stub, job, request_id)
@@ -215,7 +229,7 @@ class Jobs(WithCell):
         for slot, text in ((71, "VR[0]=2.\n"), (72, "FUNCTION 71\nDELAY VR[0]\n")):
             programs.PutProgram(program_pb2.PutProgramRequest(
                 name=f"machines/optimo-1/programs/{slot}",
-                program=program_pb2.ProgramText(file_name=f"{slot}.S", content=text.encode())))
+                program=common_pb2.ProgramText(file_name=f"{slot}.S", content=text.encode())))
         other = inline_job("optimo-1", "71.S", "IF VL[9] THEN 5\nVL[9]=ON\nCALL 72\nGOTO 6\n5 VR[0]=7.\n6 VI[5]=1\n")
         other.inline_slot = 71
         self.assertEqual(wait_for_end(stub, submit(stub, other).name)[-1].ended.kind, COMPLETED)
@@ -272,30 +286,29 @@ class Jobs(WithCell):
         stub = self.cell.jobs()
         job = submit(stub, inline_job("mill-1", "square.rml", SQUARE))
         wait_for_end(stub, job.name)
-        watch = stub.WatchJobs(job_pb2.WatchJobsRequest(events_only=True), timeout=60)
-        last = next(iter(watch)).snapshot.sequence
-        watch.cancel()
+        cell = self.cell.cell_service()
+        first = first_of(cell, jobs_request())
+        last, log = first.sequence, first.log_id
         self.assertGreater(last, 0)
-        for after in (last + 1_000_000, -1):
-            with self.assertRaises(grpc.RpcError) as caught:
-                list(stub.WatchJobs(job_pb2.WatchJobsRequest(after_sequence=after), timeout=60))
-            self.assertEqual(caught.exception.code(), grpc.StatusCode.INVALID_ARGUMENT)
-            self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
         # The last number itself is good: nothing has come since.
-        watch = stub.WatchJobs(job_pb2.WatchJobsRequest(after_sequence=last, events_only=True), timeout=60)
-        self.assertTrue(next(iter(watch)).HasField("snapshot"))
-        watch.cancel()
+        self.assertTrue(first_of(cell, jobs_request(after_sequence=last, log_id=log)).HasField("bookmark"))
+        # One that this log has not come to yet, or that is of another log: begin anew.
+        for after, of in ((last + 1_000_000, log), (last, "0198c5b2-0000-7000-8000-000000000000"), (last + 1_000_000, "")):
+            watch = cell.WatchCell(jobs_request(after_sequence=after, log_id=of), timeout=60)
+            told = [next(watch), next(watch)]
+            watch.cancel()
+            self.assertEqual(told[0].gap.reason, cell_pb2.Gap.REASON_OTHER_LOG)
+            self.assertTrue(told[1].HasField("snapshot"))
+        with self.assertRaises(grpc.RpcError) as caught:
+            list(cell.WatchCell(jobs_request(after_sequence=-1), timeout=60))
+        self.assertEqual(caught.exception.code(), grpc.StatusCode.INVALID_ARGUMENT)
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
         # Over the web port, too.
-        request = urllib.request.Request(f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.JobService/WatchJobs", None,
-                                         {"Accept": "text/event-stream", "Last-Event-ID": str(last + 1_000_000)})
-        try:
-            with urllib.request.urlopen(request, timeout=60) as answer:
-                told = answer.read().decode()
-                self.assertIn("event: error", told)
-        except urllib.error.HTTPError as error:
-            self.assertEqual(error.code, 400)
-            told = error.read().decode()
-        self.assertIn("CELL-E9003", told)
+        request = urllib.request.Request(f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.CellService/WatchCell", None,
+                                         {"Accept": "text/event-stream", "Last-Event-ID": f"{last + 1_000_000}.{log}"})
+        with urllib.request.urlopen(request, timeout=60) as answer:
+            self.assertEqual(answer.readline().decode(), f"id: {last}.{log}\n")
+            self.assertIn("REASON_OTHER_LOG", answer.readline().decode())
 
     def test_a_watcher_of_all_jobs_sees_them_run(self):
         stub = self.cell.jobs()
@@ -306,18 +319,18 @@ class Jobs(WithCell):
 
         def follow(key, request):
             seen = ended.setdefault(key, [])
-            for message in stub.WatchJobs(request, timeout=120):
+            for message in self.cell.cell_service().WatchCell(request, timeout=120):
                 seen.append(message)
-                if message.event.HasField("ended"):
+                if message.event.job.HasField("ended"):
                     return
 
         def times(key):
             return [m.progress.virtual_time_ns for m in list(ended.get(key, ())) if m.HasField("progress")]
 
         watchers = [threading.Thread(target=follow, args=(key, request)) for key, request in (
-            ("all", job_pb2.WatchJobsRequest()),
-            ("named", job_pb2.WatchJobsRequest(names=[job.name])),
-            ("another", job_pb2.WatchJobsRequest(names=[job.name, "jobs/999999"], events_only=True)))]
+            ("all", jobs_request()),
+            ("named", jobs_request(cell_pb2.JobsSubscription(names=[job.name]))),
+            ("another", jobs_request(cell_pb2.JobsSubscription(names=[job.name, "jobs/999999"], events_only=True))))]
         for watcher in watchers:
             watcher.start()
         try:
@@ -335,7 +348,7 @@ class Jobs(WithCell):
             self.assertEqual(times(key), sorted(times(key)), key)
         self.assertEqual(times("another"), [])
         with self.assertRaises(grpc.RpcError) as caught:
-            list(stub.WatchJobs(job_pb2.WatchJobsRequest(names=["17"]), timeout=60))
+            list(self.cell.cell_service().WatchCell(jobs_request(cell_pb2.JobsSubscription(names=["17"])), timeout=60))
         self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
 
     def test_budgets_end_a_job_with_their_own_codes(self):
@@ -375,12 +388,16 @@ class Jobs(WithCell):
         self.assertLessEqual({"report", "toolpath", "picture.svg"}, {artifact.name for artifact in one.artifacts})
         listed = stub.ListJobs(job_pb2.ListJobsRequest(filter="machine = machines/mill-1", page_size=1000)).jobs
         self.assertIn(one, listed)
-        watch = stub.WatchJobs(job_pb2.WatchJobsRequest(), timeout=60)
-        snapshot = next(iter(watch)).snapshot
+        # So it is in a snapshot of the cell, and so are the machines; the counts are those of a list.
+        watch = self.cell.cell_service().WatchCell(cell_pb2.WatchCellRequest(), timeout=60)
+        jobs, machines = next(watch).snapshot, next(watch).snapshot
         watch.cancel()
-        self.assertIn(one, snapshot.jobs)
-        machines = self.cell.machines().ListMachines(machine_pb2.ListMachinesRequest()).machines
-        self.assertEqual(list(snapshot.machines), list(machines))
+        self.assertIn(one, jobs.jobs)
+        listed = stub.ListJobs(job_pb2.ListJobsRequest(page_size=1, count=True)).counts
+        self.assertEqual(list(jobs.counts), list(listed))
+        self.assertEqual(sum(count.jobs for count in listed), len(stub.ListJobs(job_pb2.ListJobsRequest(page_size=1000)).jobs))
+        self.assertEqual(list(machines.machines),
+                         list(self.cell.machines().ListMachines(machine_pb2.ListMachinesRequest()).machines))
         self.refused(stub.ListJobs, job_pb2.ListJobsRequest(filter="colour = red"),
                      grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9107")
 
@@ -496,9 +513,9 @@ class Stops(unittest.TestCase):
         wait_until_it_runs(stub, job.name)
         last = []
         cell = []
-        one = stub.WatchJob(job_pb2.WatchJobRequest(name=job.name))
+        one = stub.WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name=job.name))
         watchers = [threading.Thread(target=self.collect, args=(one, last)),
-                    threading.Thread(target=self.collect, args=(stub.WatchJobs(job_pb2.WatchJobsRequest()), cell))]
+                    threading.Thread(target=self.collect, args=(self.cell.cell_service().WatchCell(jobs_request()), cell))]
         for watcher in watchers:
             watcher.start()
         self.assertTrue(eventually(lambda: last and cell))
@@ -509,14 +526,42 @@ class Stops(unittest.TestCase):
             self.assertTrue(seen[-1].HasField("reconnect"))
             self.assertEqual(seen[-1].instance_id, seen[0].instance_id)
             # Where to go on: behind the last event that was told, or the snapshot.
-            begin = seen[0].snapshot.sequence if seen is cell else 0
-            told = max([begin] + [m.sequence for m in seen if m.HasField("event")])
-            self.assertTrue(seen[-1].reconnect.endswith(f"after sequence {told}"), seen[-1].reconnect)
+            told = max([seen[0].sequence] + [m.sequence for m in seen if m.HasField("event")])
+            self.assertEqual(seen[-1].sequence, told)
+            self.assertGreater(seen[-1].reconnect.after_ms, 0)
         self.cell.start()
         again = self.cell.jobs().GetJob(job_pb2.GetJobRequest(name=job.name))
         self.assertIn(again.state, (job_pb2.Job.STATE_QUEUED, job_pb2.Job.STATE_RUNNING))
         self.assertLessEqual(again.attempts, 1)  # handed back: the attempt does not count
         self.cell.jobs().CancelJob(job_pb2.CancelJobRequest(name=job.name))
+
+    # A number from before a restart is good in the store that goes on, and void when a backup was put back over it.
+    def test_a_store_that_was_put_back_is_noticed(self):
+        stub = self.cell.jobs()
+        submit(stub, inline_job("mill-1", "square.rml", SQUARE))
+        before = first_of(self.cell.cell_service(), jobs_request())
+        self.assertEqual(self.cell.stop(), 0)
+        store = self.cell.folder / "store" / "cell.db"
+        backup = store.read_bytes()
+        self.cell.start()
+        again = first_of(self.cell.cell_service(), jobs_request(after_sequence=before.sequence, log_id=before.log_id))
+        self.assertTrue(again.HasField("bookmark"))
+        self.assertNotEqual(again.log_id, before.log_id)
+        for _ in range(3):
+            wait_for_end(self.cell.jobs(), submit(self.cell.jobs(), inline_job("mill-1", "square.rml", SQUARE)).name)
+        seen = first_of(self.cell.cell_service(), jobs_request())
+        self.assertEqual(self.cell.stop(), 0)
+        for path in store.parent.glob("cell.db*"):
+            path.unlink()
+        store.write_bytes(backup)
+        self.cell.start()
+        # As many events as before, and more: the numbers come again, for other events.
+        for _ in range(4):
+            wait_for_end(self.cell.jobs(), submit(self.cell.jobs(), inline_job("mill-1", "square.rml", SQUARE)).name)
+        lost = first_of(self.cell.cell_service(), jobs_request(after_sequence=seen.sequence, log_id=seen.log_id))
+        self.assertEqual(lost.gap.reason, cell_pb2.Gap.REASON_OTHER_LOG)
+        kept = first_of(self.cell.cell_service(), jobs_request(after_sequence=before.sequence, log_id=before.log_id))
+        self.assertTrue(kept.HasField("bookmark"))
 
     @staticmethod
     def collect(watch, messages):

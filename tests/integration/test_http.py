@@ -69,7 +69,8 @@ class Web(WithCell):
             "kind": "JOB_KIND_SIMULATE", "machine": "machines/mill-1",
             "inlineProgram": {"fileName": "a.rml", "content": "UFUxMDAwLDEwMDA7SDs="}}})
         def ids(**headers):
-            message = urllib.parse.quote(json.dumps({"name": job["name"], "eventsOnly": True}))
+            message = urllib.parse.quote(json.dumps({"name": job["name"], "eventsOnly": True,
+                                                     "afterSequence": 0}))
             request = urllib.request.Request(
                 f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.JobService/WatchJob?message={message}", None,
                 {"Accept": "text/event-stream", **headers})

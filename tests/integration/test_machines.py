@@ -2,7 +2,7 @@
 """Machines and their laser schedules as gRPC clients see them: every field, every refusal."""
 import unittest
 
-from cell import (Cell, WithCell, cell_pb2, detail_of, eventually, grpc, inline_job, job_pb2, machine_pb2,
+from cell import (Cell, WithCell, cell_pb2, common_pb2, detail_of, eventually, grpc, inline_job, job_pb2, machine_pb2,
                   machine_status_pb2, program_pb2, submit, wait_for_end)
 
 BAD = grpc.StatusCode.INVALID_ARGUMENT
@@ -106,7 +106,7 @@ class DeletedMachines(WithCell):
     def test_a_machine_goes_with_its_memory(self):
         stub = self.cell.machines()
         made = stub.CreateMachine(create("old"))
-        text = program_pb2.ProgramText(file_name="p.rml", content=b"PA;VS5;!VZ5;PU0,0;Z0,0,-100;PU0,0;")
+        text = common_pb2.ProgramText(file_name="p.rml", content=b"PA;VS5;!VZ5;PU0,0;Z0,0,-100;PU0,0;")
         self.cell.programs().PutProgram(program_pb2.PutProgramRequest(name="machines/old/programs/7", program=text))
         delete = machine_pb2.DeleteMachineRequest
         self.refused(stub.DeleteMachine, delete(name="machines/old", etag="99"), grpc.StatusCode.ABORTED, "CELL-E9006")

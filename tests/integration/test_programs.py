@@ -2,7 +2,7 @@
 import hashlib
 import unittest
 
-from cell import (WithCell, cell_pb2, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2)
+from cell import (WithCell, cell_pb2, common_pb2, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2)
 
 
 class Machines(WithCell):
@@ -228,7 +228,7 @@ class Projects(WithCell):
         own = self.cell.programs().GetProgramContent(program_pb2.GetProgramContentRequest(name=name))
         self.assertEqual((own.content.decode(), own.file_name), (inch, "a.SI"))
         object_bytes = self.cell.programs().GetProgramContent(
-            program_pb2.GetProgramContentRequest(name=name, form=program_pb2.PROGRAM_FORM_OBJECT)).content
+            program_pb2.GetProgramContentRequest(name=name, form=common_pb2.PROGRAM_FORM_OBJECT)).content
         metric = self.cell.programs().DecompileProgram(program_pb2.DecompileProgramRequest(object=object_bytes))
         self.assertIn("MOVE (25.4, 0.0, 0.0, 0.0, 0.0)", metric.content.decode())
         stub.CreateProject(project_pb2.CreateProjectRequest(

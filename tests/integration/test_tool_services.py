@@ -7,7 +7,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree
 
-from cell import Cell, detail_of, grpc, program_pb2
+from cell import Cell, common_pb2, detail_of, grpc, program_pb2
 from command import ask
 from optimo_text import LINE, first_move
 
@@ -21,7 +21,7 @@ class Services(unittest.TestCase):
         cls.stub = cls.cell.programs()
 
     def text(self, name, content):
-        return program_pb2.ProgramText(file_name=name, content=content.encode())
+        return common_pb2.ProgramText(file_name=name, content=content.encode())
 
     def refused(self, call, request, code, ours):
         with self.assertRaises(grpc.RpcError) as caught:
@@ -66,7 +66,7 @@ class Services(unittest.TestCase):
         put.program.file_name, put.program.content = "12.S", LINE.encode()
         self.stub.PutProgram(put)
         answer = self.stub.GetProgramContent(program_pb2.GetProgramContentRequest(
-            name="machines/optimo-1/programs/12", form=program_pb2.PROGRAM_FORM_LISTING))
+            name="machines/optimo-1/programs/12", form=common_pb2.PROGRAM_FORM_LISTING))
         self.assertRegex(answer.content.decode(), r"^    1     1  +COORD ABSOL\n")
 
     def put(self, slot, name, content):
@@ -93,7 +93,7 @@ class Services(unittest.TestCase):
         self.assertRegex(answer.content.decode(), r"^    1     1  +COORD ABSOL\n")
         compiled = self.stub.CompileProgram(program_pb2.CompileProgramRequest(program=self.text("a.S", LINE)))
         request = program_pb2.MakeListingRequest()
-        request.program.content, request.program.form = compiled.object, program_pb2.PROGRAM_FORM_OBJECT
+        request.program.content, request.program.form = compiled.object, common_pb2.PROGRAM_FORM_OBJECT
         self.assertEqual(self.stub.MakeListing(request).content, answer.content)
         wrong = self.stub.MakeListing(program_pb2.MakeListingRequest(program=self.text("a.S", "SPEED 101\n")))
         self.assertEqual((wrong.content, wrong.findings.ok), (b"", False))
@@ -159,13 +159,13 @@ class Services(unittest.TestCase):
         self.assertEqual((answer.content.decode(), answer.own_text, answer.file_name), (own, True, "slow.S"))
         self.assertEqual(self.cell.command("get", "optimo-1", "75").stdout, own)
         content = self.stub.GetProgramContent(
-            program_pb2.GetProgramContentRequest(name=name, form=program_pb2.PROGRAM_FORM_OBJECT)).content
+            program_pb2.GetProgramContentRequest(name=name, form=common_pb2.PROGRAM_FORM_OBJECT)).content
         self.put(75, "other.O", content)
         answer = self.stub.DecompileProgram(request)
         self.assertFalse(answer.own_text)
         self.assertNotIn(b"mine", answer.content)
         again = self.stub.CompileProgram(program_pb2.CompileProgramRequest(
-            program=program_pb2.ProgramText(file_name="75.S", content=answer.content)))
+            program=common_pb2.ProgramText(file_name="75.S", content=answer.content)))
         self.assertEqual(again.object, content)
 
     # OPT-8.70: a program that was stored as an object is shown as text; a terminal gets no bytes.

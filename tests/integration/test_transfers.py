@@ -6,7 +6,7 @@ import unittest
 import urllib.error
 import urllib.request
 
-from cell import (WithCell, cell_pb2, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2, submit, wait_for_end,
+from cell import (WithCell, cell_pb2, common_pb2, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2, submit, wait_for_end,
                   wait_until_it_runs)
 
 BAD = grpc.StatusCode.INVALID_ARGUMENT
@@ -53,7 +53,7 @@ class Uploads(WithCell):
         self.assertEqual(dry.file_name, "x.S")
         self.refused(stub.GetProgram, program_pb2.GetProgramRequest(name=dry.name), UNKNOWN, "OPT-E7102")
         kept = stub.UploadProgram(iter([header(data, name="machines/optimo-1/programs/20", file_name="x.S", title="Plate",
-                                               form=program_pb2.PROGRAM_FORM_SOURCE), chunk(data[:4]), chunk(data[4:])]))
+                                               form=common_pb2.PROGRAM_FORM_SOURCE), chunk(data[:4]), chunk(data[4:])]))
         self.assertEqual((kept.title, kept.file_name), ("Plate", "x.S"))
         late = stub.UploadProgram(iter([header(data, name=kept.name, file_name="x.S", etag=kept.etag), chunk(data)]))
         self.refused_upload([header(data, name=kept.name, file_name="x.S", etag=kept.etag + "0"), chunk(data)], "CELL-E9006", "")
@@ -67,7 +67,7 @@ class Uploads(WithCell):
         self.assertEqual(parts[0].header.size, len(data))
         self.assertEqual(parts[0].header.sha256, hashlib.sha256(data).hexdigest())
         self.assertEqual(parts[0].header.file_name, "big.rml")
-        self.assertNotEqual(parts[0].header.form, program_pb2.PROGRAM_FORM_UNSPECIFIED)
+        self.assertNotEqual(parts[0].header.form, common_pb2.PROGRAM_FORM_UNSPECIFIED)
         self.assertEqual([len(part.chunk) for part in parts[1:]], [262144, 262144, len(data) - 524288])
         with self.assertRaises(grpc.RpcError) as caught:
             list(stub.DownloadProgram(program_pb2.DownloadProgramRequest(name="machines/mill-1/programs/99")))
@@ -142,7 +142,7 @@ class Products(WithCell):
             self.assertIn(f"level is {level}, allowed are 0 to ", caught.exception.details())
         for stream in (stub.StreamJobTrace(job_pb2.StreamJobTraceRequest(name="jobs/999999")),
                        stub.StreamJobToolpath(job_pb2.StreamJobToolpathRequest(name="jobs/999999")),
-                       stub.WatchJob(job_pb2.WatchJobRequest(name="jobs/999999"))):
+                       stub.WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name="jobs/999999"))):
             with self.assertRaises(grpc.RpcError) as caught:
                 list(stream)
             self.assertEqual(caught.exception.code(), UNKNOWN)
@@ -156,7 +156,8 @@ class Products(WithCell):
         stub = self.cell.jobs()
         job = submit(stub, inline_job("optimo-1", "endless.S", "10 DELAY 1\nGOTO 10\n"))
         wait_until_it_runs(stub, job.name)
-        for watch in (stub.WatchJob(job_pb2.WatchJobRequest(name=job.name)), stub.WatchJobs(job_pb2.WatchJobsRequest())):
+        for watch in (stub.WatchJob(job_pb2.WatchJobRequest(name=job.name)),
+                      self.cell.cell_service().WatchCell(cell_pb2.WatchCellRequest())):
             times = []
             for message in watch:
                 if message.HasField("progress"):
@@ -173,13 +174,13 @@ class Products(WithCell):
         cell = self.cell.cell_service().GetCell(cell_pb2.GetCellRequest()).instance_id
         job = submit(stub, inline_job("mill-1", "p.rml", LINE))
         wait_for_end(stub, job.name)
-        messages = list(stub.WatchJob(job_pb2.WatchJobRequest(name=job.name)))
+        messages = list(stub.WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name=job.name)))
         self.assertEqual({message.instance_id for message in messages}, {cell})
         self.assertTrue(messages[0].HasField("snapshot"))
         sequences = [message.sequence for message in messages[1:]]
         self.assertEqual(sequences, list(range(1, len(sequences) + 1)))
         self.assertEqual(messages[0].snapshot.last_sequence, sequences[-1])
-        watch = stub.WatchJobs(job_pb2.WatchJobsRequest())
+        watch = self.cell.cell_service().WatchCell(cell_pb2.WatchCellRequest())
         self.assertEqual(next(iter(watch)).instance_id, cell)
         watch.cancel()
 
@@ -187,24 +188,28 @@ class Products(WithCell):
         stub = self.cell.jobs()
         first = submit(stub, inline_job("mill-1", "p.rml", LINE))
         wait_for_end(stub, first.name)
-        sequence = next(iter(stub.WatchJobs(job_pb2.WatchJobsRequest()))).snapshot.sequence
+        cell = self.cell.cell_service()
+        sequence = next(cell.WatchCell(cell_pb2.WatchCellRequest())).sequence
         jobs = [submit(stub, inline_job("mill-1", f"{n}.rml", LINE)) for n in range(3)]
         for job in jobs:
             wait_for_end(stub, job.name)
         told = []
-        watch = stub.WatchJobs(job_pb2.WatchJobsRequest(names=[jobs[1].name], after_sequence=sequence, events_only=True))
+        named = cell_pb2.JobsSubscription(names=[jobs[1].name], events_only=True)
+        watch = cell.WatchCell(cell_pb2.WatchCellRequest(subscriptions=[cell_pb2.Subscription(id="one", jobs=named)],
+                                                         after_sequence=sequence))
         for message in watch:
-            if message.HasField("snapshot"):
+            if message.HasField("bookmark"):
                 continue
             self.assertTrue(message.instance_id)
-            told.append((message.event.job, message.sequence))
-            if message.event.HasField("ended"):
+            told.append((message.event.resource, message.sequence))
+            if message.event.job.HasField("ended"):
                 break
         watch.cancel()
         self.assertEqual({name for name, _ in told}, {jobs[1].name})
         self.assertEqual([position for _, position in told], sorted(position for _, position in told))
         with self.assertRaises(grpc.RpcError) as caught:
-            next(iter(stub.WatchJobs(job_pb2.WatchJobsRequest(names=["job/1"]))))
+            misnamed = cell_pb2.JobsSubscription(names=["job/1"])
+            next(cell.WatchCell(cell_pb2.WatchCellRequest(subscriptions=[cell_pb2.Subscription(id="one", jobs=misnamed)])))
         self.assertEqual(caught.exception.code(), BAD)
 
 

@@ -37,7 +37,7 @@ AREAS = {
     "store": Area(("storage", "storage/sqlite"),
                   ("storage_sqlite_conformance_test", "storage_sqlite_test", "storage_sqlite_crash_test",
                    "server_jobs_test", "server_projects_test")),
-    "jobs": Area(("server/base", "server/cell", "server/records", "server/jobs", "server/events", "server/worker", "server/programs", "server/projects"),
+    "jobs": Area(("server/base", "server/cell", "server/records", "server/jobs", "server/events", "server/machines", "server/worker", "server/programs", "server/projects"),
                  ("server_test", "server_command_line_test", "server_worker_test", "server_worker_runner_test", "server_projects_test",
                   "server_programs_test", "server_jobs_test", "server_events_test",
                   "integration_test_cell", "integration_test_tools", "integration_test_programs")),

@@ -29,6 +29,7 @@ from workshop import fresh, judge, limit, tests_of, with_cases  # noqa: E402
 
 ROOM = 2048  # for the numbers of one source
 TRIALS_MAX = 400  # programs of tests/behaviour for one change
+TRIALS_SECONDS = 15  # that they take as things are: sessions with a server take seconds each
 FOLDERS = ("cmake", "clients", "deploy", "engine", "proto", "server", "storage")
 REFUSALS_MAX = 40  # rounds; the last ones take out whole lines
 
@@ -241,7 +242,11 @@ class SwitchedTree:
         number = self.numbers.get(key(place))
         trials = list(self.trials.get(number, ())) if number else []
         random.Random(number).shuffle(trials)
+        left = TRIALS_SECONDS
         for trial, seconds, expected in trials[:TRIALS_MAX]:
+            left -= seconds
+            if left < 0:
+                break
             allowed = 5 + 20 * int(1 + seconds)
             try:
                 said = trial.said(self.command(), {**os.environ, "MUTATION_CHANGE": str(number)}, 5 * allowed, limit(allowed))

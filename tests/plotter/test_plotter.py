@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integration"))
-from cell import (BIN, COMPLETED, FAILED, WithCell, grpc, inline_job, job_pb2, machine_pb2, program_pb2, submit,  # noqa: E402
+from cell import (BIN, COMPLETED, FAILED, WithCell, common_pb2, grpc, inline_job, job_pb2, machine_pb2, program_pb2, submit,  # noqa: E402
                   wait_for_end)
 
 # A square of 40 mm; at 200 mm/s, 2,000 mm/s2 and 40,000 mm/s3.
@@ -114,7 +114,7 @@ class InACell(WithCell):
         job = inline_job("plotter-1", "corner.plt", "SP 1\nPD 200,0\nPD 200,200\n")
         job.simulation.pace = 10.0
         seen = [message.progress.position.tip for message in
-                stub.WatchJob(job_pb2.WatchJobRequest(name=submit(stub, job).name), timeout=60)
+                stub.WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name=submit(stub, job).name), timeout=60)
                 if message.HasField("progress")]
         self.assertTrue(seen)
         for tip in seen:  # along the first move, or along the second
@@ -123,7 +123,7 @@ class InACell(WithCell):
     def put(self, slot, text):
         return program_pb2.PutProgramRequest(
             name=f"machines/plotter-1/programs/{slot}",
-            program=program_pb2.ProgramText(file_name="square.plt", content=text.encode()))
+            program=common_pb2.ProgramText(file_name="square.plt", content=text.encode()))
 
     def test_programs_are_stored_and_run(self):
         self.cell.programs().PutProgram(self.put(7, SQUARE))

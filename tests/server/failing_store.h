@@ -35,26 +35,26 @@ class FailingStore final : public ForwardingStore {
   Result<storage::ProgramSummary> GetProgramSummary(std::string_view machine, int slot) override {
     return Or([&] { return store_.GetProgramSummary(machine, slot); });
   }
-  Result<std::vector<storage::ProgramRecord>> GetProgramMemory(std::string_view machine) override {
-    return Or([&] { return store_.GetProgramMemory(machine); });
-  }
-  Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) override {
-    return Or([&] { return store_.ListDeletedPrograms(machine); });
+  Result<storage::MachineMemory> GetMachineMemory(std::string_view machine,
+                                                  const WantsPrograms& wants_programs) override {
+    return Or([&] { return store_.GetMachineMemory(machine, wants_programs); });
   }
   Result<std::vector<storage::ProgramSummary>> PutPrograms(
       std::string_view machine, const std::vector<storage::ProgramWrite>& programs,
-      const std::vector<storage::ScheduleRecord>& schedules) override {
-    return Or([&] { return store_.PutPrograms(machine, programs, schedules); });
+      const std::vector<storage::ScheduleRecord>& schedules, std::string_view caller) override {
+    return Or([&] { return store_.PutPrograms(machine, programs, schedules, caller); });
   }
-  Status DeleteProgram(std::string_view machine, int slot, storage::Revision expected) override {
-    return Or([&] { return store_.DeleteProgram(machine, slot, expected); });
+  Status DeleteProgram(std::string_view machine, int slot, storage::Revision expected,
+                       std::string_view caller) override {
+    return Or([&] { return store_.DeleteProgram(machine, slot, expected, caller); });
   }
   Result<bool> PutExecutable(std::string_view machine, int slot, storage::Revision object_revision,
-                             std::string_view executable) override {
-    return Or([&] { return store_.PutExecutable(machine, slot, object_revision, executable); });
+                             std::string_view executable, std::string_view caller) override {
+    return Or(
+        [&] { return store_.PutExecutable(machine, slot, object_revision, executable, caller); });
   }
-  Status DeleteExecutable(std::string_view machine, int slot) override {
-    return Or([&] { return store_.DeleteExecutable(machine, slot); });
+  Status DeleteExecutable(std::string_view machine, int slot, std::string_view caller) override {
+    return Or([&] { return store_.DeleteExecutable(machine, slot, caller); });
   }
   Result<std::vector<storage::ScheduleRecord>> ListSchedules(std::string_view machine) override {
     return Or([&] { return store_.ListSchedules(machine); });
@@ -67,11 +67,13 @@ class FailingStore final : public ForwardingStore {
     return Or([&] { return store_.GetProject(id); });
   }
   Result<storage::ProjectRecord> PutProject(const storage::ProjectRecord& project,
-                                            storage::Revision expected) override {
-    return Or([&] { return store_.PutProject(project, expected); });
+                                            storage::Revision expected,
+                                            std::string_view caller) override {
+    return Or([&] { return store_.PutProject(project, expected, caller); });
   }
-  Status DeleteProject(std::string_view id, storage::Revision expected) override {
-    return Or([&] { return store_.DeleteProject(id, expected); });
+  Status DeleteProject(std::string_view id, storage::Revision expected,
+                       std::string_view caller) override {
+    return Or([&] { return store_.DeleteProject(id, expected, caller); });
   }
   void Submit(storage::NewJob job,
               std::function<void(Result<storage::SubmittedJob>)> done) override {

@@ -16,11 +16,13 @@ class ForwardingStore : public storage::Store {
     return store_.GetMachine(id);
   }
   Result<storage::MachineRecord> PutMachine(const storage::MachineRecord& machine,
-                                            storage::Revision expected) override {
-    return store_.PutMachine(machine, expected);
+                                            storage::Revision expected,
+                                            std::string_view caller) override {
+    return store_.PutMachine(machine, expected, caller);
   }
-  Status DeleteMachine(std::string_view id, storage::Revision expected) override {
-    return store_.DeleteMachine(id, expected);
+  Status DeleteMachine(std::string_view id, storage::Revision expected,
+                       std::string_view caller) override {
+    return store_.DeleteMachine(id, expected, caller);
   }
   Result<std::vector<storage::ProgramSummary>> ListPrograms(std::string_view machine, int after,
                                                             int limit) override {
@@ -32,36 +34,36 @@ class ForwardingStore : public storage::Store {
   Result<storage::ProgramSummary> GetProgramSummary(std::string_view machine, int slot) override {
     return store_.GetProgramSummary(machine, slot);
   }
-  Result<std::vector<storage::ProgramRecord>> GetProgramMemory(std::string_view machine) override {
-    return store_.GetProgramMemory(machine);
-  }
-  Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) override {
-    return store_.ListDeletedPrograms(machine);
+  Result<storage::MachineMemory> GetMachineMemory(std::string_view machine,
+                                                  const WantsPrograms& wants_programs) override {
+    return store_.GetMachineMemory(machine, wants_programs);
   }
   Result<std::vector<storage::ProgramSummary>> PutPrograms(
       std::string_view machine, const std::vector<storage::ProgramWrite>& programs,
-      const std::vector<storage::ScheduleRecord>& schedules) override {
-    return store_.PutPrograms(machine, programs, schedules);
+      const std::vector<storage::ScheduleRecord>& schedules, std::string_view caller) override {
+    return store_.PutPrograms(machine, programs, schedules, caller);
   }
-  Status DeleteProgram(std::string_view machine, int slot, storage::Revision expected) override {
-    return store_.DeleteProgram(machine, slot, expected);
+  Status DeleteProgram(std::string_view machine, int slot, storage::Revision expected,
+                       std::string_view caller) override {
+    return store_.DeleteProgram(machine, slot, expected, caller);
   }
   Result<bool> PutExecutable(std::string_view machine, int slot, storage::Revision object_revision,
-                             std::string_view executable) override {
-    return store_.PutExecutable(machine, slot, object_revision, executable);
+                             std::string_view executable, std::string_view caller) override {
+    return store_.PutExecutable(machine, slot, object_revision, executable, caller);
   }
-  Status DeleteExecutable(std::string_view machine, int slot) override {
-    return store_.DeleteExecutable(machine, slot);
+  Status DeleteExecutable(std::string_view machine, int slot, std::string_view caller) override {
+    return store_.DeleteExecutable(machine, slot, caller);
   }
   Result<std::vector<storage::ScheduleRecord>> ListSchedules(std::string_view machine) override {
     return store_.ListSchedules(machine);
   }
   Result<storage::ScheduleRecord> PutSchedule(const storage::ScheduleRecord& schedule,
-                                              storage::Revision expected) override {
-    return store_.PutSchedule(schedule, expected);
+                                              storage::Revision expected,
+                                              std::string_view caller) override {
+    return store_.PutSchedule(schedule, expected, caller);
   }
-  Status DeleteSchedule(std::string_view machine, int number) override {
-    return store_.DeleteSchedule(machine, number);
+  Status DeleteSchedule(std::string_view machine, int number, std::string_view caller) override {
+    return store_.DeleteSchedule(machine, number, caller);
   }
   Result<std::vector<storage::ProjectRecord>> ListProjects(std::string_view after,
                                                            int limit) override {
@@ -71,11 +73,13 @@ class ForwardingStore : public storage::Store {
     return store_.GetProject(id);
   }
   Result<storage::ProjectRecord> PutProject(const storage::ProjectRecord& project,
-                                            storage::Revision expected) override {
-    return store_.PutProject(project, expected);
+                                            storage::Revision expected,
+                                            std::string_view caller) override {
+    return store_.PutProject(project, expected, caller);
   }
-  Status DeleteProject(std::string_view id, storage::Revision expected) override {
-    return store_.DeleteProject(id, expected);
+  Status DeleteProject(std::string_view id, storage::Revision expected,
+                       std::string_view caller) override {
+    return store_.DeleteProject(id, expected, caller);
   }
   void Submit(storage::NewJob job,
               std::function<void(Result<storage::SubmittedJob>)> done) override {
@@ -93,13 +97,32 @@ class ForwardingStore : public storage::Store {
     return store_.ListAttempts(job);
   }
   Result<storage::JobCounts> CountJobs() override { return store_.CountJobs(); }
+  Result<std::vector<storage::JobStateCount>> CountByState(
+      const storage::JobQuery& query) override {
+    return store_.CountByState(query);
+  }
   Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override {
     return store_.UnfinishedJobs();
   }
-  Status DeleteJob(std::int64_t id) override { return store_.DeleteJob(id); }
+  Status DeleteJob(std::int64_t id, std::string_view caller) override {
+    return store_.DeleteJob(id, caller);
+  }
   Result<storage::JobRecord> RequestCancel(std::int64_t job,
                                            const std::vector<storage::NewEvent>& events) override {
     return store_.RequestCancel(job, events);
+  }
+  Result<storage::JobRecord> HoldBack(std::int64_t job,
+                                      const std::vector<storage::NewEvent>& events) override {
+    return store_.HoldBack(job, events);
+  }
+  Result<storage::JobRecord> LetGo(std::int64_t job,
+                                   const std::vector<storage::NewEvent>& events) override {
+    return store_.LetGo(job, events);
+  }
+  Result<storage::JobRecord> Move(std::int64_t job, std::int64_t before,
+                                  std::optional<int> priority,
+                                  const std::vector<storage::NewEvent>& events) override {
+    return store_.Move(job, before, priority, events);
   }
   Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest& request) override {
     return store_.AcquireJobs(request);
@@ -136,6 +159,10 @@ class ForwardingStore : public storage::Store {
   }
   Result<std::int64_t> LastPosition() override { return store_.LastPosition(); }
   Result<std::int64_t> EventsGoneUntil() override { return store_.EventsGoneUntil(); }
+  std::string LogId() override { return store_.LogId(); }
+  Result<bool> HasPosition(std::string_view log_id, std::int64_t position) override {
+    return store_.HasPosition(log_id, position);
+  }
   Result<std::vector<storage::ArtifactRecord>> ListArtifacts(std::int64_t job) override {
     return store_.ListArtifacts(job);
   }

@@ -286,7 +286,8 @@ TEST_P(StoreConformance, FiltersAgreeWithAPlainSearch) {
                            JobState::kInterrupted};
   for (int i = 0; i < 40; ++i) {
     const LeasedJob leased = Acquire("w", kinds[static_cast<std::size_t>(i % 3)]);
-    if (i % 5 != 4) Finish(leased.lease, ends[i % 4]);  // else it goes on running
+    // The others go on running; a RUN would keep its machine from the next one.
+    if (i % 5 != 4 || i % 3 == 2) Finish(leased.lease, ends[i % 4]);
   }
   const std::vector<JobRecord> all = Must(store().ListJobs({.limit = 1000}));
   ASSERT_EQ(all.size(), 60U);
@@ -455,7 +456,7 @@ TEST_P(StoreConformance, DeletedJobTakesEverythingAlong) {
   EXPECT_EQ(CodeOf(store().ListArtifacts(gone)), ErrorCode::kCellNotFound);
   EXPECT_EQ(CodeOf(store().DeleteJob(gone)), ErrorCode::kCellNotFound);
   EXPECT_EQ(CodeOf(store().AllEvents(0, 100)), ErrorCode::kCellEventsGone);
-  EXPECT_EQ(Must(store().LastPosition()), position);
+  EXPECT_EQ(Must(store().LastPosition()), position + 1);  // that it was deleted
   EXPECT_EQ(EventsOf(kept).size(), 2U);
   EXPECT_EQ(Must(store().ReadBlob(Must(store().GetArtifact(kept, "report")).sha256)), "shared");
   // The number is not given again, and the request is a new one.

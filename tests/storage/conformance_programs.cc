@@ -8,6 +8,8 @@
 namespace rmlcell::storage {
 namespace {
 
+bool WithPrograms(const MachineRecord&) { return true; }
+
 using testing::ElementsAre;
 using testing::IsEmpty;
 
@@ -102,8 +104,7 @@ TEST_P(StoreConformance, UnknownMachineHasNoPrograms) {
   EXPECT_EQ(CodeOf(store().PutPrograms("none", {{.slot = 1, .object = "x"}}, {})), kUnknown);
   EXPECT_EQ(CodeOf(store().GetProgram("none", 1)), kUnknown);
   EXPECT_EQ(CodeOf(store().ListPrograms("none", 0, 10)), kUnknown);
-  EXPECT_EQ(CodeOf(store().GetProgramMemory("none")), kUnknown);
-  EXPECT_EQ(CodeOf(store().ListDeletedPrograms("none")), kUnknown);
+  EXPECT_EQ(CodeOf(store().GetMachineMemory("none", WithPrograms)), kUnknown);
   EXPECT_EQ(CodeOf(store().DeleteProgram("none", 1, kAnyRevision)), kUnknown);
   EXPECT_EQ(CodeOf(store().DeleteExecutable("none", 1)), kUnknown);
   PutMachine("m");
@@ -141,12 +142,13 @@ TEST_P(StoreConformance, DeletedProgramsAreKnownUntilTheirSlotIsUsedAgain) {
   PutMachine("other");
   for (const int slot : {9, 44, 45, 7}) PutProgram("m", slot, "object");
   PutProgram("other", 50, "object");
-  EXPECT_EQ(Must(store().ListDeletedPrograms("m")), std::vector<int>{});
+  EXPECT_EQ(Must(store().GetMachineMemory("m", WithPrograms)).deleted, std::vector<int>{});
   for (const int slot : {44, 9, 45}) Must(store().DeleteProgram("m", slot, kAnyRevision));
   Must(store().DeleteProgram("other", 50, kAnyRevision));
-  EXPECT_EQ(Must(store().ListDeletedPrograms("m")), (std::vector<int>{9, 44, 45}));
+  EXPECT_EQ(Must(store().GetMachineMemory("m", WithPrograms)).deleted,
+            (std::vector<int>{9, 44, 45}));
   PutProgram("m", 44, "another");
-  EXPECT_EQ(Must(store().ListDeletedPrograms("m")), (std::vector<int>{9, 45}));
+  EXPECT_EQ(Must(store().GetMachineMemory("m", WithPrograms)).deleted, (std::vector<int>{9, 45}));
 }
 
 // OPT-1.14: an executable can be deleted on its own; the object stays as it is.
@@ -250,7 +252,7 @@ TEST_P(StoreConformance, ProgramMemoryHasObjectsAndExecutables) {
       "m", {{.slot = 44, .name = "f", .object = "b", .source = "B"}, {.slot = 12, .object = "a"}},
       {}));
   Must(store().PutExecutable("m", 44, 1, "x"));
-  const auto memory = Must(store().GetProgramMemory("m"));
+  const auto memory = Must(store().GetMachineMemory("m", WithPrograms)).programs;
   ASSERT_EQ(memory.size(), 2U);
   EXPECT_EQ(memory[0].slot, 12);
   EXPECT_EQ(memory[0].object, "a");
@@ -260,6 +262,35 @@ TEST_P(StoreConformance, ProgramMemoryHasObjectsAndExecutables) {
   EXPECT_EQ(memory[1].executable, "x");
   EXPECT_EQ(memory[1].source, std::nullopt);
   EXPECT_EQ(memory[1].revision, 1);
+}
+
+// The machine, its programs and its schedules, all as they were at one moment; programs only where
+// they are wanted, since those of a mill are large.
+TEST_P(StoreConformance, TheMemoryOfAMachineHasWhatIsWanted) {
+  Must(store().PutMachine({.id = "m", .family = "f", .profile = "p", .state = "s"}, 0));
+  Must(store().PutPrograms("m", {{.slot = 12, .object = "a"}, {.slot = 13, .object = "b"}},
+                           {{.number = 9, .name = "nine"}, {.number = 3, .name = "three"}}));
+  Must(store().DeleteProgram("m", 13, kAnyRevision));
+  std::vector<std::string> asked;
+  const auto memory = Must(store().GetMachineMemory("m", [&](const MachineRecord& machine) {
+    asked.push_back(machine.profile);
+    return true;
+  }));
+  EXPECT_THAT(asked, testing::ElementsAre("p"));
+  EXPECT_EQ(memory.machine.family, "f");
+  EXPECT_EQ(memory.machine.state, "s");
+  ASSERT_EQ(memory.programs.size(), 1U);
+  EXPECT_EQ(memory.deleted, std::vector<int>{13});
+  ASSERT_EQ(memory.schedules.size(), 2U);
+  EXPECT_EQ(memory.schedules[0].name, "three");
+  for (const Store::WantsPrograms& wants :
+       {Store::WantsPrograms(), Store::WantsPrograms([](const MachineRecord&) { return false; })}) {
+    const auto without = Must(store().GetMachineMemory("m", wants));
+    EXPECT_EQ(without.machine.profile, "p");
+    EXPECT_THAT(without.programs, IsEmpty());
+    EXPECT_THAT(without.deleted, IsEmpty());
+    EXPECT_EQ(without.schedules.size(), 2U);
+  }
 }
 
 // An empty object or source is not the same as none.
@@ -319,10 +350,10 @@ TEST_P(StoreConformance, ReadersSeeWholeTransfers) {
   std::atomic<int> reads = 0;
   std::jthread reader([&] {
     while (!done) {
-      const auto memory = store().GetProgramMemory("m");
-      if (!memory || memory->size() != kSlots) ++torn;
-      for (const ProgramRecord& program : *memory) {
-        if (program.object != memory->front().object) ++torn;
+      const auto memory = store().GetMachineMemory("m", WithPrograms);
+      if (!memory || memory->programs.size() != kSlots) ++torn;
+      for (const ProgramRecord& program : memory->programs) {
+        if (program.object != memory->programs.front().object) ++torn;
       }
       ++reads;
     }

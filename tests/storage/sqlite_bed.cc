@@ -104,10 +104,17 @@ void ExpectSound(const std::string& path) {
               " (SELECT count(*) FROM artifact WHERE artifact.blob = blob.id) AS found FROM blob)"
               " WHERE told <> found");
   expect_none("chunks without a blob", "blob_chunk WHERE blob NOT IN (SELECT id FROM blob)");
-  for (const char* table : {"job_specification", "lease", "attempt", "event", "artifact"}) {
+  for (const char* table :
+       {"job_specification", "lease", "attempt", "event", "artifact", "job_after"}) {
     expect_none(std::string(table) + " without a job",
-                std::string(table) + " WHERE job NOT IN (SELECT id FROM job)");
+                std::string(table) + " WHERE job <> 0 AND job NOT IN (SELECT id FROM job)");
   }
+  expect_none("events of nothing", "event WHERE (job = 0) <> (resource <> '')");
+  expect_none("jobs that wait for others and are not in the queue",
+              "job_after WHERE job IN (SELECT id FROM job WHERE state <> 0)");
+  expect_none("jobs that wait for no reason, or have a reason and do not wait",
+              "job WHERE (blocked & 1 <> 0) <> (state = 0 AND held) OR (blocked & 4 <> 0) <>"
+              " EXISTS (SELECT 1 FROM job_after WHERE job_after.job = job.id)");
   expect_none("running jobs without a lease, or leases of others",
               "job WHERE (state = 1) <> (id IN (SELECT job FROM lease))");
   expect_none("jobs with a gap in their events",

@@ -173,7 +173,13 @@ TEST_F(SqliteKeep, OldStoreGetsItsMarks) {
   bed_->Close();
   ExecuteIn(bed_->path(),
             "DELETE FROM mark; DELETE FROM migration WHERE number >= 3; DROP INDEX job_unfinished;"
-            "ALTER TABLE job DROP COLUMN pool;"
+            "DROP INDEX job_special; DROP INDEX job_run_queue; DROP INDEX job_run;"
+            "DROP INDEX job_not_before; DROP TABLE job_after; DROP TABLE log_part;"
+            "ALTER TABLE event DROP COLUMN resource; ALTER TABLE event DROP COLUMN caller;"
+            "ALTER TABLE job DROP COLUMN pool; ALTER TABLE job DROP COLUMN priority;"
+            "ALTER TABLE job DROP COLUMN place; ALTER TABLE job DROP COLUMN special;"
+            "ALTER TABLE job DROP COLUMN held; ALTER TABLE job DROP COLUMN not_before;"
+            "ALTER TABLE job DROP COLUMN blocked;"
             "CREATE INDEX job_unfinished ON job (state, kind) WHERE state < 2;"
             "PRAGMA user_version = 2");
   bed_->options().keep_finished_jobs = 3;
@@ -250,6 +256,28 @@ TEST_F(SqliteKeep, RequestIdGoesWithItsJob) {
   RunJob();
   WaitForCount("job", 1);
   EXPECT_FALSE(Must(store().SubmitAndWait(job)).already_there);
+}
+
+// Those of jobs go with their jobs, the others when there are too many.
+TEST_F(SqliteKeep, OldEventsOfRecordsGo) {
+  SqliteOptions options;
+  options.keep_record_events = 16;
+  bed_.emplace(options);
+  RunJob();
+  for (int i = 0; i < 100; ++i) Must(store().PutProject({.id = Numbered("p", i)}, 0));
+  // A few more may be there for a while.
+  EXPECT_TRUE(Eventually([&] { return Count("event WHERE job = 0") <= 18; }));
+  EXPECT_GE(Count("event WHERE job = 0"), 16);
+  EXPECT_EQ(Count("event WHERE job > 0"), 2);
+  const std::int64_t gone = Must(store().EventsGoneUntil());
+  EXPECT_GT(gone, 2);
+  EXPECT_EQ(CodeOf(store().AllEvents(0, 10)), ErrorCode::kCellEventsGone);
+  const auto left = Must(store().AllEvents(gone, 1000));
+  EXPECT_EQ(left.back().resource, "projects/p99");
+  // As many as before, also after it was opened again.
+  bed_->Reopen();
+  for (int i = 0; i < 10; ++i) Must(store().PutProject({.id = Numbered("q", i)}, 0));
+  EXPECT_TRUE(Eventually([&] { return Count("event WHERE job = 0") <= 18; }));
 }
 
 }  // namespace

@@ -140,8 +140,10 @@ TEST_F(SqliteMessages, RecordsKeepTheTimesOfTheirFirstAndLastPut) {
     EXPECT_EQ(summary.created_at, first);
     EXPECT_EQ(summary.updated_at, last);
   }
-  for (const ProgramRecord& program :
-       {Must(store().GetProgram("m", 1)), Must(store().GetProgramMemory("m"))[0]}) {
+  for (const ProgramRecord& program : {Must(store().GetProgram("m", 1)),
+                                       Must(store().GetMachineMemory("m", [](const MachineRecord&) {
+                                         return true;
+                                       })).programs[0]}) {
     EXPECT_EQ(program.created_at, first);
     EXPECT_EQ(program.updated_at, last);
   }

@@ -54,7 +54,7 @@ void AskForEverything(Store& store) {
   static_cast<void>(store.ListMachines());
   static_cast<void>(store.GetMachine("m"));
   static_cast<void>(store.ListPrograms("m", 0, 100));
-  static_cast<void>(store.GetProgramMemory("m"));
+  static_cast<void>(store.GetMachineMemory("m", [](const MachineRecord&) { return true; }));
   static_cast<void>(store.ListSchedules("m"));
   static_cast<void>(store.ListProjects("", 100));
   static_cast<void>(store.ListJobs({.limit = 100}));

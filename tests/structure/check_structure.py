@@ -68,6 +68,8 @@ MAY_INCLUDE = {
                        "storage"],
     "server/jobs": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base",
                     "server/events", "server/records", "storage"],
+    # How machines stand.
+    "server/machines": ["server/base", "server/events", "server/records", "storage"],
     "server/programs": ["engine/core", "engine/machine", "engine/families", RUN, "proto", "proto/bridge", "server/base", "server/records", "storage"],
     "server/projects": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base", "server/records", "server/programs", "storage"],
     "server/web": ["engine/core", "proto", "proto/bridge"],
@@ -79,15 +81,15 @@ MAY_INCLUDE = {
                       "server/base", "server/records"],
     # The wiring of the server.
     "server/cell": ["engine/core", "proto/bridge", "server/base", "server/auth", "server/events", "server/records",
-                    "server/jobs", "server/programs", "server/projects", "server/services", "server/web", "storage",
-                    "storage/sqlite"],
+                    "server/jobs", "server/machines", "server/programs", "server/projects", "server/services",
+                    "server/web", "storage", "storage/sqlite"],
     # The language server: no server and no language.
     "clients/lsp": ["engine/core", "engine/machine", "engine/families", RUN],
     "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", "engine/rml1/offline", "engine/rml1/board", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge"],
 }
 # Of these rooms others may include no other header.
 PUBLIC = {
-    "engine/core": ["alignment.h", "catalogue.h", "check.h", "diagnostic.h", "hex.h", "letters.h", "line_table.h", "untold_findings.h",
+    "engine/core": ["alignment.h", "catalogue.h", "characters.h", "check.h", "diagnostic.h", "hex.h", "letters.h", "line_table.h", "untold_findings.h",
                     "near_words.h", "number_text.h", "result.h", "ring.h", "text_fixes.h", "units.h"],
     GEOMETRY: ["frames.h", "pose.h", "path.h", "hole.h", "corner_curve.h", "corner_table.h", "blend_curve.h", "least.h"],
     PROFILE: ["speed_profile.h", "speed_passes.h", "ramp_plan.h"],
@@ -95,7 +97,7 @@ PUBLIC = {
     CORNER: ["corner.h", "axes_corner.h"],
     PLANNER: ["planner.h", "feed_steps.h"],
     RIDE: ["trajectory.h", "interruption.h", "ride_protocol.h", "path_ride.h"],
-    "engine/machine": ["bytes.h", "family.h", "run.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "verdict.h",
+    "engine/machine": ["bytes.h", "family.h", "language_word.h", "run.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "verdict.h",
                        "tools.h", "editing.h", "run_setup.h", "outcome.h", "inputs.h", "program_file.h"],
     "engine/rml1": ["rml1_family.h", "action.h", "clipping.h", "command_reader.h", "command_table.h", "device.h", "figures.h", "finding.h",
                     "number.h", "physical.h", "profile.h", "programmed.h", "registers.h", "verdict_rules.h"],
@@ -126,11 +128,12 @@ PUBLIC = {
     "server/base": ["config.h", "executor.h", "log.h", "names.h", "readable.h", "secret.h", "steady_clock.h", "version.h"],
     "server/auth": ["caller.h"],
     "server/events": ["event_feed.h"],
-    "server/jobs": ["dispatcher.h", "job_book.h", "worker_processes.h"],
-    "server/records": ["file_family.h", "job_messages.h", "program_place.h", "update_mask.h"],
-    "server/programs": ["memory_tools.h", "program_book.h", "program_result.h", "text_tools.h"],
+    "server/jobs": ["dispatcher.h", "job_book.h", "job_filter.h", "worker_processes.h"],
+    "server/records": ["file_family.h", "job_messages.h", "machine_messages.h", "program_place.h", "update_mask.h"],
+    "server/machines": ["machine_statuses.h"],
+    "server/programs": ["language_tools.h", "memory_tools.h", "program_book.h", "program_result.h", "text_tools.h"],
     "server/services": ["account_service.h", "cell_service.h", "foreign_calls.h", "handbox_service.h", "host_service.h",
-                        "job_service.h", "machine_messages.h", "machine_service.h", "program_service.h",
+                        "job_service.h", "machine_service.h", "program_service.h",
                         "project_service.h", "web_resources.h", "worker_service.h"],
     "server/web": ["resource_source.h", "web_server.h"],
     "server/worker": [],
@@ -148,7 +151,7 @@ ONLY_FOR = {
     PLANNER: {"feed_steps.h": ["engine/rml1"]},
     RIDE: {"interruption.h": ["engine/optimo/ride"], "ride_protocol.h": ["engine/rml1"],
            "path_ride.h": ["engine/optimo/ride", "engine/rml1"]},
-    "engine/machine": {"editing.h": ["clients/lsp", "engine/optimo/editing"], "profile_files.h": ["engine/rml1"],
+    "engine/machine": {"editing.h": ["clients/lsp", "engine/optimo/editing", "server/programs"], "profile_files.h": ["engine/rml1"],
                        "program_file.h": ["engine/rml1/offline"]},
     "engine/optimo/machine": {header: ["engine/optimo/control"]
                               for header in ("laser_unit.h", "machine_state.h", "system_cycle.h")},

@@ -108,6 +108,7 @@ class Family final : public machine::MachineFamily {
 
   const machine::Tools* tools() const override { return &OptimoTools(); }
   const machine::Editing* editing() const override { return &OptimoEditing(); }
+  std::vector<machine::LanguageWord> words() const override { return OptimoWords(); }
 
   std::vector<Diagnostic> CheckSlot(int slot) const override { return CheckProgramNumber(slot); }
 

@@ -1,5 +1,6 @@
 #include "engine/optimo/editing/optimo_editing.h"
 
+#include <algorithm>
 #include <array>
 
 #include "engine/optimo/editing/allowance.h"
@@ -9,6 +10,7 @@
 #include "engine/optimo/editing/outline.h"
 #include "engine/optimo/editing/rename.h"
 #include "engine/optimo/editing/rule_facts.h"
+#include "engine/optimo/editing/word_facts.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -77,6 +79,16 @@ class Editing final : public machine::Editing {
 const machine::Editing& OptimoEditing() {
   static const Editing editing;
   return editing;
+}
+
+std::vector<machine::LanguageWord> OptimoWords() {
+  std::vector<machine::LanguageWord> words;
+  for (const editing::WordFact& fact : editing::WordFacts()) {
+    const WordInfo& info = Describe(fact.word);
+    words.push_back({.name = info.text, .form = fact.form, .text = fact.text, .rule = info.rule});
+  }
+  std::ranges::sort(words, {}, &machine::LanguageWord::name);
+  return words;
 }
 
 }  // namespace rmlcell::optimo

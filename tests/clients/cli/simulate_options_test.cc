@@ -66,8 +66,8 @@ TEST(SimulateOptions, APlaceIsAStepOfTheMainProgramOrOfOneThatIsNamed) {
   ASSERT_TRUE(message);
   EXPECT_EQ(message->simul().program(), 45);
   EXPECT_EQ(message->simul().step(), 7);
-  EXPECT_EQ(message->breakpoint().program(), 0);  // whichever is started
-  EXPECT_EQ(message->breakpoint().step(), 12);
+  EXPECT_EQ(message->breakpoints(0).step().program(), 0);  // whichever is started
+  EXPECT_EQ(message->breakpoints(0).step().step(), 12);
 
   options.simul = "off";
   options.breakpoint.clear();
@@ -75,7 +75,7 @@ TEST(SimulateOptions, APlaceIsAStepOfTheMainProgramOrOfOneThatIsNamed) {
   ASSERT_TRUE(off);
   EXPECT_TRUE(off->has_simul());  // switches off what the machine had
   EXPECT_EQ(off->simul().step(), 0);
-  EXPECT_FALSE(off->has_breakpoint());  // leaves it as it is
+  EXPECT_TRUE(off->breakpoints().empty());  // leaves it as it is
 }
 
 TEST(SimulateOptions, APlaceThatCannotBeIsRefused) {
@@ -117,9 +117,9 @@ TEST(SimulateOptions, APlaceNamesAProgramThatIsThere) {
   v1::SimulationOptions options;
   EXPECT_TRUE(CheckPlaces(options, programs).ok());
   options.mutable_simul()->set_program(7);
-  options.mutable_breakpoint()->set_step(3);  // of the main program
+  options.add_breakpoints()->mutable_step()->set_step(3);  // of the main program
   EXPECT_TRUE(CheckPlaces(options, programs).ok());
-  options.mutable_breakpoint()->set_program(8);
+  options.mutable_breakpoints(0)->mutable_step()->set_program(8);
   ExpectUsage(CheckPlaces(options, programs).error(), "there is no program 8");
   options.mutable_simul()->set_program(9);
   ExpectUsage(CheckPlaces(options, programs).error(), "there is no program 9");

@@ -5,8 +5,9 @@ import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
 import { Code, ConnectError, createClient } from "@connectrpc/connect";
 import { createConnectTransport, createGrpcWebTransport } from "@connectrpc/connect-web";
 import { ErrorInfoSchema } from "./gen/google/rpc/error_details_pb.js";
+import { CellService, WatchCellRequestSchema, WatchCellResponseSchema } from "./gen/rmlcell/v1/cell_pb.js";
 import { ErrorDetailSchema } from "./gen/rmlcell/v1/common_pb.js";
-import { GetJobRequestSchema, JobSchema, JobService, WatchJobsRequestSchema, WatchJobsResponseSchema }
+import { GetJobRequestSchema, JobSchema, JobService }
   from "./gen/rmlcell/v1/job_pb.js";
 import { ListMachinesRequestSchema, ListMachinesResponseSchema, MachineService } from "./gen/rmlcell/v1/machine_pb.js";
 import { ProgramService } from "./gen/rmlcell/v1/program_pb.js";
@@ -26,6 +27,7 @@ async function refusal(promise) {
 
 // The same for each transport of connect-web.
 function connectTests(name, transport, job, test) {
+  const cell = createClient(CellService, transport);
   const jobs = createClient(JobService, transport);
   const machines = createClient(MachineService, transport);
   const programs = createClient(ProgramService, transport);
@@ -54,7 +56,7 @@ function connectTests(name, transport, job, test) {
     const abort = new AbortController();
     const seen = [];
     try {
-      for await (const message of jobs.watchJobs({}, { signal: abort.signal })) {
+      for await (const message of cell.watchCell({}, { signal: abort.signal })) {
         seen.push(message.what.case);
         abort.abort();
       }
@@ -66,7 +68,7 @@ function connectTests(name, transport, job, test) {
 
   test(`${name}: deadline`, async () => {
     const run = async () => {
-      for await (const message of jobs.watchJobs({}, { timeoutMs: 400 })) assert.ok(message);
+      for await (const message of cell.watchCell({}, { timeoutMs: 400 })) assert.ok(message);
     };
     assert.equal((await refusal(run())).code, Code.DeadlineExceeded);
   });
@@ -74,7 +76,7 @@ function connectTests(name, transport, job, test) {
   if (job) {
     test(`${name}: all events of a job, in order`, async () => {
       const sequences = [];
-      for await (const message of jobs.watchJob({ name: job })) {
+      for await (const message of jobs.watchJob({ name: job, afterSequence: 0n })) {
         if (message.what.case === "event") sequences.push(Number(message.sequence));
       }
       assert.ok(sequences.length >= 3);
@@ -110,10 +112,10 @@ async function grpcWebTests(url, format, test) {
   });
 
   if (format !== "text") return; // the binary form of this package has no streams
-  const watchJobs = describe("/rmlcell.v1.JobService/WatchJobs", grpcWeb.MethodType.SERVER_STREAMING,
-    WatchJobsRequestSchema, WatchJobsResponseSchema);
+  const watchCell = describe("/rmlcell.v1.CellService/WatchCell", grpcWeb.MethodType.SERVER_STREAMING,
+    WatchCellRequestSchema, WatchCellResponseSchema);
   test(`grpc-web ${format}: stream`, async () => {
-    const stream = client.serverStreaming(`${url}/rmlcell.v1.JobService/WatchJobs`, create(WatchJobsRequestSchema), {}, watchJobs);
+    const stream = client.serverStreaming(`${url}/rmlcell.v1.CellService/WatchCell`, create(WatchCellRequestSchema), {}, watchCell);
     const first = await new Promise((resolve, reject) => {
       stream.on("data", resolve);
       stream.on("error", reject);
@@ -124,11 +126,11 @@ async function grpcWebTests(url, format, test) {
 }
 
 function eventTests(url, job, test) {
-  const watch = (method, message) => `${url}/rmlcell.v1.JobService/${method}?message=${encodeURIComponent(JSON.stringify(message))}`;
+  const watch = (method, message) => `${url}/rmlcell.v1.${method}?message=${encodeURIComponent(JSON.stringify(message))}`;
 
   test("events: snapshot of the cell", async () => {
     const abort = new AbortController();
-    for await (const event of readEvents(watch("WatchJobs", {}), { signal: abort.signal })) {
+    for await (const event of readEvents(watch("CellService/WatchCell", { subscriptions: [{ id: "machines", machines: {} }] }), { signal: abort.signal })) {
       assert.equal(event.type, "message");
       const { snapshot } = JSON.parse(event.data);
       assert.ok(snapshot.machines.length > 0);
@@ -138,7 +140,7 @@ function eventTests(url, job, test) {
   });
 
   test("events: a wrong field has its HTTP status", async () => {
-    const error = await readEvents(watch("WatchJobs", { nam: "x" })).next().then(() => null, (reason) => reason);
+    const error = await readEvents(watch("CellService/WatchCell", { nam: "x" })).next().then(() => null, (reason) => reason);
     assert.equal(error.status, 400);
     assert.equal(JSON.parse(error.message).code, "invalid_argument");
   });
@@ -146,12 +148,12 @@ function eventTests(url, job, test) {
   if (!job) return;
   test("events: resume after Last-Event-ID, no gap and no repeat", async () => {
     const whole = [];
-    for await (const event of readEvents(watch("WatchJob", { name: job }))) whole.push(event);
+    for await (const event of readEvents(watch("JobService/WatchJob", { name: job, afterSequence: 0 }))) whole.push(event);
     assert.equal(whole.at(-1).type, "end");
     const ids = whole.map((event) => event.id).filter(Boolean);
     assert.ok(ids.length >= 3);
     const rest = [];
-    for await (const event of readEvents(watch("WatchJob", { name: job }), { headers: { "Last-Event-ID": ids[1] } })) {
+    for await (const event of readEvents(watch("JobService/WatchJob", { name: job, afterSequence: 0 }), { headers: { "Last-Event-ID": ids[1] } })) {
       if (event.id) rest.push(event.id);
     }
     // The snapshot has the number that it goes on after.

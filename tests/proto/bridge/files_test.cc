@@ -205,7 +205,7 @@ TEST(Encoding, IsStable) {
   outcome.set_code("X");
   EXPECT_EQ(
       StableJson(outcome, false),
-      R"({"kind":"KIND_UNSPECIFIED","code":"X","symbol":"","message":"","advice":"","verdict":"VERDICT_UNSPECIFIED","reasons":[]})");
+      R"({"kind":"KIND_UNSPECIFIED","code":"X","symbol":"","message":"","advice":"","verdict":"VERDICT_UNSPECIFIED","reasons":[],"confirmation":"END_CONFIRMATION_UNSPECIFIED"})");
   EXPECT_NE(StableJson(outcome, true)->find("\n \"code\": \"X\""), std::string::npos);
 }
 

@@ -110,7 +110,7 @@ TEST(PrepareRun, TakesEverythingOver) {
   v1::SimulationOptions options;
   (*options.mutable_parameters())["SETTLE"] = "0.25";
   options.set_override_percent(55.0);
-  options.mutable_breakpoint()->set_step(7);
+  options.add_breakpoints()->mutable_step()->set_step(7);
   options.mutable_simul()->set_program(13);
   options.mutable_simul()->set_step(8);
   options.add_inputs()->set_kind(v1::ScriptedInput::KIND_START);

@@ -62,8 +62,13 @@ TEST(Access, IsStatedAtEveryMethod) {
       ASSERT_NE(field, nullptr) << PathOf(*method);
       EXPECT_EQ(field->type(), FieldDescriptor::TYPE_STRING) << PathOf(*method);
     }
+    if (!access->resource_field_2().empty()) {
+      const FieldDescriptor* field = FieldAt(*method->input_type(), access->resource_field_2());
+      ASSERT_NE(field, nullptr) << PathOf(*method);
+      EXPECT_EQ(field->type(), FieldDescriptor::TYPE_STRING) << PathOf(*method);
+    }
     // A stream carries the token in its messages.
-    if (access->needs_control() && !method->client_streaming()) {
+    if (access->needs_control() != v1::CONTROL_NEED_UNSPECIFIED && !method->client_streaming()) {
       EXPECT_NE(method->input_type()->FindFieldByName("control_token"), nullptr) << PathOf(*method);
     }
   }
@@ -115,7 +120,7 @@ TEST(Access, OfWhatNeedsControl) {
   std::set<std::string> found;
   for (const MethodDescriptor* method : Methods()) {
     const v1::Access* access = table.Find(PathOf(*method));
-    if (!access->needs_control()) continue;
+    if (access->needs_control() != v1::CONTROL_NEED_ALWAYS) continue;
     EXPECT_EQ(access->permission(), method->name() == "UndoTeachEntries" ? v1::PERMISSION_PROGRAM
                                                                          : v1::PERMISSION_OPERATE)
         << method->name();
@@ -129,6 +134,27 @@ TEST(Access, OfWhatNeedsControl) {
                                    "HeartbeatPanel", "StartAtStep", "ConfirmMachine", "ArmMachine",
                                    "CreateHandboxSession", "PressKey", "HeartbeatHandbox",
                                    "HandboxStream", "UndoTeachEntries", "DecideInterrupted"));
+}
+
+// A job that simulates has no machine to move; a RUN has.
+TEST(Access, OfWhatNeedsControlOfARunAlone) {
+  const AccessTable table;
+  std::set<std::string> found;
+  for (const MethodDescriptor* method : Methods()) {
+    if (table.Find(PathOf(*method))->needs_control() == v1::CONTROL_NEED_FOR_RUN)
+      found.insert(method->name());
+  }
+  EXPECT_THAT(found, UnorderedElementsAre("ResumeJob", "SetJobOverride"));
+}
+
+// WEB-3.05: whoever submitted a job may hold it up and end it.
+TEST(Access, OfOnesOwnJobs) {
+  const AccessTable table;
+  std::set<std::string> found;
+  for (const MethodDescriptor* method : Methods()) {
+    if (table.Find(PathOf(*method))->own_job()) found.insert(method->name());
+  }
+  EXPECT_THAT(found, UnorderedElementsAre("CancelJob", "ResumeJob", "SetJobOverride"));
 }
 
 // No permission holds another one.

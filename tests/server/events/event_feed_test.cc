@@ -12,6 +12,8 @@
 namespace rmlcell::server {
 namespace {
 
+using storage::JobName;
+
 using std::chrono::milliseconds;
 using storage::EventRecord;
 
@@ -23,7 +25,7 @@ class Reader {
  public:
   Reader(EventFeed& feed, std::int64_t after, int batch)
       : feed_(feed), cursor_(after), batch_(batch) {
-    subscription_ = feed_.Subscribe(std::nullopt, [this] {
+    subscription_ = feed_.Subscribe(std::string(EventFeed::kEverything), [this] {
       woken_ = true;
       woken_.notify_all();
     });
@@ -146,9 +148,9 @@ TEST(EventFeed, WakesTheWatchersOfTheJobAndThoseOfEverything) {
   std::atomic<int> one = 0;
   std::atomic<int> two = 0;
   std::atomic<int> all = 0;
-  const auto watch_one = feed.Subscribe(1, [&] { ++one; });
-  const auto watch_two = feed.Subscribe(2, [&] { ++two; });
-  const auto watch_all = feed.Subscribe(std::nullopt, [&] { ++all; });
+  const auto watch_one = feed.Subscribe(JobName(1), [&] { ++one; });
+  const auto watch_two = feed.Subscribe(JobName(2), [&] { ++two; });
+  const auto watch_all = feed.Subscribe(std::string(EventFeed::kEverything), [&] { ++all; });
   log.Write(1, 1);
   ASSERT_TRUE(Eventually([&] { return all >= 1; }));
   EXPECT_EQ(one, 1);
@@ -165,8 +167,8 @@ TEST(EventFeed, ServesTheWatchersOfAJobFromMemory) {
   FakeLog log;
   EventFeed feed(log);
   std::atomic<int> woken = 0;
-  auto first = feed.Subscribe(1, [&] { ++woken; });
-  auto second = feed.Subscribe(1, [&] { ++woken; });
+  auto first = feed.Subscribe(JobName(1), [&] { ++woken; });
+  auto second = feed.Subscribe(JobName(1), [&] { ++woken; });
   log.Write(1, 3);
   ASSERT_TRUE(Eventually([&] { return woken >= 2; }));
   const Result<std::vector<EventRecord>> all = feed.JobEvents(1, 0, 100);
@@ -211,7 +213,7 @@ TEST(EventFeed, ReadsWhatCameBeforeTheFirstWatcher) {
   EventFeed feed(log, {.poll_interval = kNever});
   ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));
   log.Write(1, 3);
-  const auto watch = feed.Subscribe(1, [] {});
+  const auto watch = feed.Subscribe(JobName(1), [] {});
   EXPECT_TRUE(Eventually([&] { return feed.position() == 3; }));
 }
 
@@ -220,18 +222,18 @@ TEST(EventFeed, PositionsAreOfTheirJobs) {
   FakeLog log;
   EventFeed feed(log, {.poll_interval = kNever});
   for (const int job : {7, 3, 5}) {
-    feed.PublishProgress(job, "of " + std::to_string(job));
-    ASSERT_TRUE(Eventually([&] { return feed.ProgressAfter(job, 0).has_value(); }));
+    feed.Publish(JobName(job), "of " + std::to_string(job));
+    ASSERT_TRUE(Eventually([&] { return feed.LatestAfter(JobName(job), 0).has_value(); }));
   }
-  const std::vector<ProgressText> all = feed.AllProgressAfter(0);
+  const std::vector<Latest> all = feed.AllLatestAfter(0);
   ASSERT_EQ(all.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(all[i].job, (std::array{7, 3, 5}[i]));
-    EXPECT_EQ(*all[i].bytes, "of " + std::to_string(all[i].job));
+    EXPECT_EQ(all[i].resource, JobName(std::array{7, 3, 5}[i]));
+    EXPECT_EQ(*all[i].bytes, "of " + all[i].resource.substr(5));
     EXPECT_EQ(all[i].version, i + 1);
-    EXPECT_EQ(feed.AllProgressAfter(all[i].version).size(), 2 - i);
-    EXPECT_FALSE(feed.ProgressAfter(all[i].job, i + 1));
-    EXPECT_TRUE(feed.ProgressAfter(all[i].job, i));
+    EXPECT_EQ(feed.AllLatestAfter(all[i].version).size(), 2 - i);
+    EXPECT_FALSE(feed.LatestAfter(all[i].resource, i + 1));
+    EXPECT_TRUE(feed.LatestAfter(all[i].resource, i));
   }
 }
 
@@ -262,11 +264,11 @@ TEST(EventFeed, GoesOnWhenAFailingStoreWorksAgain) {
 TEST(EventFeed, SkipsEventsThatAreGoneAndTellsWatchersSo) {
   FakeLog log;
   EventFeed feed(log);
-  const auto first = feed.Subscribe(1, [] {});
+  const auto first = feed.Subscribe(JobName(1), [] {});
   log.Write(1, 2);
   ASSERT_TRUE(Eventually([&] { return feed.position() == 2; }));
   std::atomic<int> woken = 0;
-  const auto watch = feed.Subscribe(7, [&] { ++woken; });
+  const auto watch = feed.Subscribe(JobName(7), [&] { ++woken; });
   log.Fail(true);
   log.Write(7, 10);
   log.ForgetAll();
@@ -292,7 +294,7 @@ TEST(EventFeed, KeepsSoManyEventsInMemoryAndNoMore) {
   FakeLog log;
   EventFeed feed(log, {.poll_interval = kNever});
   ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));  // it looks when it begins
-  const auto watch = feed.Subscribe(2, [] {});
+  const auto watch = feed.Subscribe(JobName(2), [] {});
   constexpr std::int64_t kEvents = 3 * kKept + 5;
   log.Write(1, static_cast<int>(kEvents));
   ASSERT_TRUE(Eventually([&] { return feed.position() == kEvents; }));
@@ -312,7 +314,7 @@ TEST(EventFeed, ServesFromMemoryOverAGap) {
   log.Write(1, 5);
   EventFeed feed(log, {.poll_interval = kNever});
   ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));
-  const auto watch = feed.Subscribe(2, [] {});
+  const auto watch = feed.Subscribe(JobName(2), [] {});
   log.LeaveGap(100);
   log.Write(1, 3);
   ASSERT_TRUE(Eventually([&] { return feed.position() == 108; }));
@@ -328,22 +330,22 @@ TEST(EventFeed, ServesFromMemoryOverAGap) {
 TEST(EventFeed, ANewPositionReplacesTheOneBefore) {
   FakeLog log;
   EventFeed feed(log);
-  EXPECT_FALSE(feed.ProgressAfter(1, 0));
-  for (int i = 1; i <= 1000; ++i) feed.PublishProgress(1, std::to_string(i));
-  feed.PublishProgress(2, "two");
+  EXPECT_FALSE(feed.LatestAfter(JobName(1), 0));
+  for (int i = 1; i <= 1000; ++i) feed.Publish(JobName(1), std::to_string(i));
+  feed.Publish(JobName(2), "two");
   ASSERT_TRUE(Eventually([&] {
-    const auto progress = feed.ProgressAfter(1, 0);
+    const auto progress = feed.LatestAfter(JobName(1), 0);
     return progress && *progress->bytes == "1000";
   }));
-  ASSERT_TRUE(Eventually([&] { return feed.ProgressAfter(2, 0).has_value(); }));
-  const std::vector<ProgressText> all = feed.AllProgressAfter(0);
+  ASSERT_TRUE(Eventually([&] { return feed.LatestAfter(JobName(2), 0).has_value(); }));
+  const std::vector<Latest> all = feed.AllLatestAfter(0);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_LT(all[0].version, all[1].version);
-  EXPECT_FALSE(feed.ProgressAfter(1, feed.ProgressAfter(1, 0)->version));
-  EXPECT_EQ(feed.AllProgressAfter(all[0].version).size(), 1U);
-  feed.ForgetProgress(1);
-  EXPECT_FALSE(feed.ProgressAfter(1, 0));
-  EXPECT_EQ(feed.AllProgressAfter(0).size(), 1U);
+  EXPECT_FALSE(feed.LatestAfter(JobName(1), feed.LatestAfter(JobName(1), 0)->version));
+  EXPECT_EQ(feed.AllLatestAfter(all[0].version).size(), 1U);
+  feed.Forget(JobName(1));
+  EXPECT_FALSE(feed.LatestAfter(JobName(1), 0));
+  EXPECT_EQ(feed.AllLatestAfter(0).size(), 1U);
 }
 
 // What was published just before the job ended must not come back after it.
@@ -351,12 +353,12 @@ TEST(EventFeed, AForgottenPositionDoesNotComeBack) {
   FakeLog log;
   EventFeed feed(log);
   for (int i = 0; i < 50; ++i) {
-    feed.PublishProgress(1, "late");
-    feed.ForgetProgress(1);
+    feed.Publish(JobName(1), "late");
+    feed.Forget(JobName(1));
   }
-  feed.PublishProgress(2, "next");
-  ASSERT_TRUE(Eventually([&] { return feed.ProgressAfter(2, 0).has_value(); }));
-  EXPECT_FALSE(feed.ProgressAfter(1, 0));
+  feed.Publish(JobName(2), "next");
+  ASSERT_TRUE(Eventually([&] { return feed.LatestAfter(JobName(2), 0).has_value(); }));
+  EXPECT_FALSE(feed.LatestAfter(JobName(1), 0));
 }
 
 // Issue "Watch": at most 20 position updates a second, also for a watcher that many events wake.
@@ -367,8 +369,8 @@ TEST(EventFeed, TellsAtMostTwentyPositionsASecond) {
   std::vector<std::string>
       told;  // touched by the thread of the feed alone, until `feed` has caught up
   std::atomic<int> tellings = 0;
-  const auto watch = feed.Subscribe(1, [&, seen = std::uint64_t{0}]() mutable {
-    const auto progress = feed.ProgressAfter(1, seen);
+  const auto watch = feed.Subscribe(JobName(1), [&, seen = std::uint64_t{0}]() mutable {
+    const auto progress = feed.LatestAfter(JobName(1), seen);
     if (!progress) return;
     seen = progress->version;
     told.push_back(*progress->bytes);
@@ -377,7 +379,7 @@ TEST(EventFeed, TellsAtMostTwentyPositionsASecond) {
   int published = 0;
   const auto publish = [&](int count) {
     for (int i = 0; i < count; ++i) {
-      feed.PublishProgress(1, std::to_string(++published));
+      feed.Publish(JobName(1), std::to_string(++published));
       log.Write(1, 1);
     }
   };
@@ -411,8 +413,8 @@ TEST(EventFeed, TellsTheFirstPositionAfterAQuietTimeAtOnce) {
   EventFeed feed(log, {.poll_interval = kNever});
   ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));
   std::atomic<bool> woken = false;
-  const auto watch = feed.Subscribe(1, [&] { woken = true; });
-  feed.PublishProgress(1, "here");
+  const auto watch = feed.Subscribe(JobName(1), [&] { woken = true; });
+  feed.Publish(JobName(1), "here");
   EXPECT_TRUE(Eventually([&] { return woken.load(); }));
 }
 
@@ -422,7 +424,7 @@ TEST(EventFeed, NobodyIsCalledAfterItsHandleIsGone) {
   std::atomic<bool> inside = false;
   std::atomic<bool> go_on = false;
   std::atomic<int> calls = 0;
-  auto watch = feed.Subscribe(1, [&] {
+  auto watch = feed.Subscribe(JobName(1), [&] {
     inside = true;
     while (!go_on) std::this_thread::yield();
     ++calls;
@@ -438,7 +440,7 @@ TEST(EventFeed, NobodyIsCalledAfterItsHandleIsGone) {
   EXPECT_EQ(calls, 1);
   // Who watches the same is called in the same round.
   std::atomic<int> others = 0;
-  const auto other = feed.Subscribe(1, [&] { ++others; });
+  const auto other = feed.Subscribe(JobName(1), [&] { ++others; });
   log.Write(1, 1);
   ASSERT_TRUE(Eventually([&] { return others == 1; }));
   log.Write(1, 1);
@@ -456,17 +458,17 @@ TEST(EventFeed, StandsManyThreads) {
   for (int i = 0; i < 2; ++i) {
     threads.emplace_back([&, i] {
       while (!stop) {
-        const auto one = feed.Subscribe(i, [&] { ++woken; });
-        const auto all = feed.Subscribe(std::nullopt, [&] { ++woken; });
+        const auto one = feed.Subscribe(JobName(i), [&] { ++woken; });
+        const auto all = feed.Subscribe(std::string(EventFeed::kEverything), [&] { ++woken; });
         (void)feed.EventsAfter(std::max<std::int64_t>(0, feed.position() - 10), 10);
-        (void)feed.AllProgressAfter(0);
+        (void)feed.AllLatestAfter(0);
       }
     });
     threads.emplace_back([&, i] {
       while (!stop) {
-        feed.PublishProgress(i + 1, "here");
-        (void)feed.ProgressAfter(i + 1, 0);
-        feed.ForgetProgress(2 - i);
+        feed.Publish(JobName(i + 1), "here");
+        (void)feed.LatestAfter(JobName(i + 1), 0);
+        feed.Forget(JobName(2 - i));
       }
     });
     threads.emplace_back([&, i] {
@@ -491,7 +493,7 @@ TEST(EventFeed, EndsThoughEventsFlow) {
   });
   for (int i = 0; i < 20; ++i) {
     EventFeed feed(log, {.poll_interval = kNever});
-    const auto watch = feed.Subscribe(std::nullopt, [] {});
+    const auto watch = feed.Subscribe(std::string(EventFeed::kEverything), [] {});
   }
   stop = true;
   writer.join();

@@ -67,6 +67,8 @@ class FakeLog final : public storage::Store {
     const std::lock_guard lock(mutex_);
     return gone_;
   }
+  std::string LogId() override { return "a log of a test"; }
+  Result<bool> HasPosition(std::string_view, std::int64_t) override { return No(); }
   std::unique_ptr<Subscription> Watch(std::function<void()> changed) override {
     class Handle final : public Subscription {
      public:
@@ -89,47 +91,53 @@ class FakeLog final : public storage::Store {
   // What a log does not have.
   Result<std::vector<storage::MachineRecord>> ListMachines() override { return No(); }
   Result<storage::MachineRecord> GetMachine(std::string_view) override { return No(); }
-  Result<storage::MachineRecord> PutMachine(const storage::MachineRecord&,
-                                            storage::Revision) override {
+  Result<storage::MachineRecord> PutMachine(const storage::MachineRecord&, storage::Revision,
+                                            std::string_view) override {
     return No();
   }
-  Status DeleteMachine(std::string_view, storage::Revision) override { return No(); }
+  Status DeleteMachine(std::string_view, storage::Revision, std::string_view) override {
+    return No();
+  }
   Result<std::vector<storage::ProgramSummary>> ListPrograms(std::string_view, int, int) override {
     return No();
   }
   Result<storage::ProgramRecord> GetProgram(std::string_view, int) override { return No(); }
   Result<storage::ProgramSummary> GetProgramSummary(std::string_view, int) override { return No(); }
-  Result<std::vector<storage::ProgramRecord>> GetProgramMemory(std::string_view) override {
+  Result<storage::MachineMemory> GetMachineMemory(std::string_view, const WantsPrograms&) override {
     return No();
   }
-  Result<std::vector<int>> ListDeletedPrograms(std::string_view) override { return No(); }
   Result<std::vector<storage::ProgramSummary>> PutPrograms(
       std::string_view, const std::vector<storage::ProgramWrite>&,
-      const std::vector<storage::ScheduleRecord>&) override {
+      const std::vector<storage::ScheduleRecord>&, std::string_view) override {
     return No();
   }
-  Status DeleteProgram(std::string_view, int, storage::Revision) override { return No(); }
-  Result<bool> PutExecutable(std::string_view, int, storage::Revision, std::string_view) override {
+  Status DeleteProgram(std::string_view, int, storage::Revision, std::string_view) override {
     return No();
   }
-  Status DeleteExecutable(std::string_view, int) override { return No(); }
+  Result<bool> PutExecutable(std::string_view, int, storage::Revision, std::string_view,
+                             std::string_view) override {
+    return No();
+  }
+  Status DeleteExecutable(std::string_view, int, std::string_view) override { return No(); }
   Result<std::vector<storage::ScheduleRecord>> ListSchedules(std::string_view) override {
     return No();
   }
-  Result<storage::ScheduleRecord> PutSchedule(const storage::ScheduleRecord&,
-                                              storage::Revision) override {
+  Result<storage::ScheduleRecord> PutSchedule(const storage::ScheduleRecord&, storage::Revision,
+                                              std::string_view) override {
     return No();
   }
-  Status DeleteSchedule(std::string_view, int) override { return No(); }
+  Status DeleteSchedule(std::string_view, int, std::string_view) override { return No(); }
   Result<std::vector<storage::ProjectRecord>> ListProjects(std::string_view, int) override {
     return No();
   }
   Result<storage::ProjectRecord> GetProject(std::string_view) override { return No(); }
-  Result<storage::ProjectRecord> PutProject(const storage::ProjectRecord&,
-                                            storage::Revision) override {
+  Result<storage::ProjectRecord> PutProject(const storage::ProjectRecord&, storage::Revision,
+                                            std::string_view) override {
     return No();
   }
-  Status DeleteProject(std::string_view, storage::Revision) override { return No(); }
+  Status DeleteProject(std::string_view, storage::Revision, std::string_view) override {
+    return No();
+  }
   void Submit(storage::NewJob, std::function<void(Result<storage::SubmittedJob>)> done) override {
     done(No());
   }
@@ -143,10 +151,24 @@ class FakeLog final : public storage::Store {
   }
   Result<std::vector<storage::AttemptRecord>> ListAttempts(std::int64_t) override { return No(); }
   Result<storage::JobCounts> CountJobs() override { return No(); }
+  Result<std::vector<storage::JobStateCount>> CountByState(const storage::JobQuery&) override {
+    return No();
+  }
   Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override { return No(); }
-  Status DeleteJob(std::int64_t) override { return No(); }
+  Status DeleteJob(std::int64_t, std::string_view) override { return No(); }
   Result<storage::JobRecord> RequestCancel(std::int64_t,
                                            const std::vector<storage::NewEvent>&) override {
+    return No();
+  }
+  Result<storage::JobRecord> HoldBack(std::int64_t,
+                                      const std::vector<storage::NewEvent>&) override {
+    return No();
+  }
+  Result<storage::JobRecord> LetGo(std::int64_t, const std::vector<storage::NewEvent>&) override {
+    return No();
+  }
+  Result<storage::JobRecord> Move(std::int64_t, std::int64_t, std::optional<int>,
+                                  const std::vector<storage::NewEvent>&) override {
     return No();
   }
   Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest&) override {

@@ -29,16 +29,16 @@ TEST(FeedRhythm, TellsPositionsAtMostTwentyTimesASecond) {
   ASSERT_TRUE(rhythm.TakeLook(At(0), true));
   EXPECT_EQ(rhythm.Next(true), At(0));
   int told = 0;
-  for (int ms = 0; ms < 1000; ++ms) told += rhythm.TakePositions(At(ms)) ? 1 : 0;
+  for (int ms = 0; ms < 1000; ++ms) told += rhythm.TakeLatest(At(ms)) ? 1 : 0;
   EXPECT_EQ(told, 20);
   EXPECT_EQ(rhythm.Next(true), At(1000));
-  EXPECT_TRUE(rhythm.TakePositions(At(1030)));  // late: the next interval begins here
-  EXPECT_FALSE(rhythm.TakePositions(At(1079)));
+  EXPECT_TRUE(rhythm.TakeLatest(At(1030)));  // late: the next interval begins here
+  EXPECT_FALSE(rhythm.TakeLatest(At(1079)));
   EXPECT_EQ(rhythm.Next(true), At(1000));  // the look is due before
   EXPECT_TRUE(rhythm.TakeLook(At(1079), false));
   EXPECT_EQ(rhythm.Next(true), At(1080));
   EXPECT_EQ(rhythm.Next(false), At(2079));
-  EXPECT_TRUE(rhythm.TakePositions(At(1080)));
+  EXPECT_TRUE(rhythm.TakeLatest(At(1080)));
 }
 
 }  // namespace

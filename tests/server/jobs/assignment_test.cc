@@ -12,6 +12,13 @@
 namespace rmlcell::server {
 namespace {
 
+// How many programs may have executables that are kept.
+std::ptrdiff_t Revisions(const v1::WorkerAssignment& assignment) {
+  return std::ranges::count_if(assignment.programs(), [](const v1::AssignedProgram& program) {
+    return program.object_revision() > 0;
+  });
+}
+
 class AssignmentTest : public testing::Test {
  protected:
   // Submits as a client does, and leases it.
@@ -60,7 +67,7 @@ TEST_F(AssignmentTest, BringsTheWholeProgramMemoryOfAMachineWhoseProgramsCallEac
   EXPECT_EQ(Contents(assignment), (Programs{{32, "object 32"}, {44, "object 44"}}));
   EXPECT_EQ(assignment.programs(1).executable(), "executable 44");
   EXPECT_TRUE(assignment.default_schedules());
-  EXPECT_EQ(made.object_revisions.at(32), 1);
+  EXPECT_EQ(assignment.programs(0).object_revision(), 1);
 }
 
 // A mill runs one stream.
@@ -82,7 +89,7 @@ TEST_F(AssignmentTest, ASlotThatIsStoredAgainDoesNotChangeTheJob) {
   const auto made = Must(MakeAssignment(bed.store(), config, leased));
   EXPECT_EQ(Contents(made.first.assignment()), (Programs{{32, "first"}}));
   EXPECT_EQ(made.first.assignment().programs(0).executable(), "");
-  EXPECT_TRUE(made.object_revisions.empty());  // nor of any that links it as a FUNCTION
+  EXPECT_EQ(Revisions(made.first.assignment()), 0);  // nor of any that links it as a FUNCTION
 }
 
 TEST_F(AssignmentTest, ProgramsOfTheJobGoOverThoseOfTheMachine) {
@@ -97,7 +104,7 @@ TEST_F(AssignmentTest, ProgramsOfTheJobGoOverThoseOfTheMachine) {
   EXPECT_EQ(Contents(made.first.assignment()), (Programs{{44, "stored 44"}, {45, "STOP\n"}}));
   EXPECT_TRUE(made.first.assignment().programs(1).is_source());
   // Also 44 may link the job's 45 as a FUNCTION: its executable is for this job only.
-  EXPECT_TRUE(made.object_revisions.empty());
+  EXPECT_EQ(Revisions(made.first.assignment()), 0);
 }
 
 TEST_F(AssignmentTest, ABudgetIsWhatTheJobWantsButNoMoreThanTheServerAllows) {
@@ -177,7 +184,7 @@ TEST_F(AssignmentTest, BringsTheMachineAsItIs) {
   EXPECT_EQ(assignment.job().name(), "jobs/" + std::to_string(leased.job.id));
   ASSERT_EQ(assignment.programs_size(), 1);
   EXPECT_FALSE(assignment.programs(0).is_source());  // what is stored is an object
-  EXPECT_TRUE(made.object_revisions.empty());        // nothing is made of it that could be kept
+  EXPECT_EQ(Revisions(made.first.assignment()), 0);  // nothing is made of it that could be kept
 }
 
 TEST_F(AssignmentTest, AnInlineProgramIsSourceUnlessItSaysThatItIsAnObject) {
@@ -220,7 +227,7 @@ TEST_F(AssignmentTest, BringsTitlesAndTheExecutableOfTheMainProgram) {
   EXPECT_EQ(assignment.programs(0).size(), 9);
   EXPECT_EQ(assignment.programs(1).title(), "p44");
   EXPECT_EQ(assignment.programs(1).executable(), "");
-  EXPECT_EQ(made.object_revisions.size(), 2U);
+  EXPECT_EQ(Revisions(assignment), 2);
 }
 
 // Programs of up to 64 KiB go with the assignment, as long as all of them together have up to 1

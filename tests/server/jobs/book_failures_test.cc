@@ -73,13 +73,13 @@ TEST_F(BookFailures, OfALook) {
       "finding one of no job", 2, [&] { return CodeOf(book.FindArtifact(2, "report")); },
       ErrorCode::kCellNotFound);
   Expect("reading an artifact", 2, [&] { return CodeOf(book.ReadArtifact(1, kMainAttachment)); });
-  Expect("a snapshot", 4, [&] { return CodeOf(book.Snapshot()); });
+  Expect("the newest", 3, [&] { return CodeOf(book.Newest({})); });
 }
 
 TEST_F(BookFailures, OfAnAssignment) {
   ASSERT_EQ(Submit(Stored()), std::nullopt);
   const auto leased = *Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
-  Expect("an assignment", 8, [&] { return CodeOf(MakeAssignment(store, config, leased)); });
+  Expect("an assignment", 5, [&] { return CodeOf(MakeAssignment(store, config, leased)); });
 }
 
 // A store that a later version has written to may have machines of families unknown here.

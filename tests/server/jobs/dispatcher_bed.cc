@@ -97,8 +97,14 @@ void FakeWorker::Finish(v1::Outcome::Kind kind, const std::map<int, std::string>
   v1::WorkRequest message;
   *message.mutable_finish()->mutable_lease() = assignment_.lease();
   message.mutable_finish()->mutable_outcome()->set_kind(kind);
-  for (const auto& [slot, bytes] : executables)
-    (*message.mutable_finish()->mutable_executables())[slot] = bytes;
+  for (const v1::AssignedProgram& program : assignment_.programs()) {
+    const auto made = executables.find(program.slot());
+    if (made == executables.end()) continue;
+    v1::LinkedExecutable& linked = *message.mutable_finish()->add_executables();
+    linked.set_slot(made->first);
+    linked.set_object_revision(program.object_revision());
+    linked.set_content(made->second);
+  }
   Send(std::move(message));
 }
 

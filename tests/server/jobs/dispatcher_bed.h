@@ -114,10 +114,11 @@ class HookedStore final : public ForwardingStore {
     ++jobs_read;
     return store_.GetJob(id);
   }
-  Result<storage::MachineRecord> GetMachine(std::string_view id) override {
+  Result<storage::MachineMemory> GetMachineMemory(std::string_view id,
+                                                  const WantsPrograms& wants_programs) override {
     if (before_machine) before_machine();
     if (Fails(machines_that_fail)) return FullDisk();
-    return store_.GetMachine(id);
+    return store_.GetMachineMemory(id, wants_programs);
   }
   Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest& request) override {
     if (Fails(acquires_that_fail)) return FullDisk();

@@ -185,7 +185,9 @@ TEST(DispatcherFailures, ACancelThatAnotherServerTookComesWithARenewal) {
 // storage/store.h RequestCancel: waiting jobs end, running ones are marked, ended ones stay.
 TEST(DispatcherCancel, InEachState) {
   DispatcherBed bed;
-  const auto cancel = [&](std::int64_t job) { return Must(bed.dispatcher().Cancel(job)).state; };
+  const auto cancel = [&](std::int64_t job) {
+    return Must(bed.dispatcher().Cancel(job, "anna")).state;
+  };
   FakeWorker worker(bed.dispatcher(), "w");
   const std::vector<std::pair<v1::Outcome::Kind, JobState>> ends = {
       {v1::Outcome::KIND_COMPLETED, JobState::kSucceeded},
@@ -380,11 +382,11 @@ TEST(DispatcherProgress, ANewAttemptBeginsWithoutAPosition) {
   FakeWorker worker(bed.dispatcher(), "w");
   ASSERT_TRUE(worker.Take());
   worker.Position(7);
-  ASSERT_TRUE(Eventually([&] { return bed.feed().ProgressAfter(job, 0).has_value(); }));
+  ASSERT_TRUE(Eventually([&] { return bed.feed().LatestAfter(JobName(job), 0).has_value(); }));
   worker.Leave();
   ASSERT_TRUE(bed.Becomes(job, JobState::kQueued));
   bed.Settle();
-  EXPECT_FALSE(bed.feed().ProgressAfter(job, 0));
+  EXPECT_FALSE(bed.feed().LatestAfter(JobName(job), 0));
 }
 
 }  // namespace

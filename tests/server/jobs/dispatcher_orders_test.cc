@@ -14,12 +14,12 @@ using storage::JobState;
 TEST(DispatcherCancel, AWaitingJobEndsAtOnce) {
   DispatcherBed bed;
   const std::int64_t job = bed.server.SubmitCheck();
-  const storage::JobRecord cancelled = Must(bed.dispatcher().Cancel(job));
+  const storage::JobRecord cancelled = Must(bed.dispatcher().Cancel(job, "anna"));
   EXPECT_EQ(cancelled.state, JobState::kCancelled);
   EXPECT_TRUE(bed.Events(job).back().has_ended());
   EXPECT_EQ(bed.Events(job).back().ended().kind(), v1::Outcome::KIND_CANCELLED);
-  EXPECT_EQ(CodeOf(bed.dispatcher().Cancel(job + 1)), ErrorCode::kCellNotFound);
-  EXPECT_EQ(Must(bed.dispatcher().Cancel(job)).state,
+  EXPECT_EQ(CodeOf(bed.dispatcher().Cancel(job + 1, "anna")), ErrorCode::kCellNotFound);
+  EXPECT_EQ(Must(bed.dispatcher().Cancel(job, "anna")).state,
             JobState::kCancelled);  // twice is not an error
   // Nobody is given it: who comes is given the one behind it.
   const std::int64_t next = bed.server.SubmitCheck();
@@ -33,7 +33,7 @@ TEST(DispatcherCancel, ARunningJobIsEndedByItsWorker) {
   const std::int64_t job = bed.server.SubmitCheck();
   FakeWorker worker(bed.dispatcher(), "w");
   ASSERT_TRUE(worker.Take());
-  EXPECT_EQ(Must(bed.dispatcher().Cancel(job)).state, JobState::kRunning);
+  EXPECT_EQ(Must(bed.dispatcher().Cancel(job, "anna")).state, JobState::kRunning);
   const v1::WorkerControl order = worker.Ordered();
   EXPECT_EQ(order.kind(), v1::WorkerControl::KIND_CANCEL);
   EXPECT_EQ(order.lease().fence(), worker.assignment().lease().fence());
@@ -49,7 +49,7 @@ TEST(DispatcherCancel, ACancelledJobIsNotBegunAgain) {
     const std::int64_t job = bed.server.SubmitCheck();
     FakeWorker worker(bed.dispatcher(), "w");
     ASSERT_TRUE(worker.Take());
-    Must(bed.dispatcher().Cancel(job));
+    Must(bed.dispatcher().Cancel(job, "anna"));
     if (dies) {
       worker.Leave();
     } else {
@@ -69,25 +69,26 @@ TEST(DispatcherCancel, ACancelledJobIsNotBegunAgain) {
 TEST(DispatcherControl, OrdersReachTheWorkerThatHasTheJob) {
   DispatcherBed bed;
   const std::int64_t job = bed.server.SubmitCheck();
-  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, v1::WorkerControl::KIND_HOLD, 0)),
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, {.kind = v1::WorkerControl::KIND_HOLD})),
             ErrorCode::kCellPrecondition);
-  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job + 1, v1::WorkerControl::KIND_HOLD, 0)),
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job + 1, {.kind = v1::WorkerControl::KIND_HOLD})),
             ErrorCode::kCellNotFound);
   FakeWorker holder(bed.dispatcher(), "holder");
   ASSERT_TRUE(holder.Take());
   FakeWorker idle(bed.dispatcher(), "idle");
   for (const auto kind : {v1::WorkerControl::KIND_HOLD, v1::WorkerControl::KIND_RESUME,
                           v1::WorkerControl::KIND_STOP}) {
-    EXPECT_TRUE(bed.dispatcher().Control(job, kind, 0));
+    EXPECT_TRUE(bed.dispatcher().Control(job, {.kind = kind}));
     EXPECT_EQ(holder.Ordered().kind(), kind);
   }
-  EXPECT_TRUE(bed.dispatcher().Control(job, v1::WorkerControl::KIND_OVERRIDE, 42.5));
+  EXPECT_TRUE(
+      bed.dispatcher().Control(job, {.kind = v1::WorkerControl::KIND_OVERRIDE, .value = 42.5}));
   EXPECT_EQ(holder.Ordered().value(), 42.5);
   bed.Settle();
   EXPECT_FALSE(idle.line().Has(v1::WorkResponse::kControl));
   holder.Finish();
   EXPECT_EQ(holder.Released(), true);
-  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, v1::WorkerControl::KIND_HOLD, 0)),
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, {.kind = v1::WorkerControl::KIND_HOLD})),
             ErrorCode::kCellPrecondition);
 }
 
@@ -99,7 +100,7 @@ TEST(DispatcherControl, AnOrderForAJobOnItsWayComesAfterTheJob) {
     if (!found) return;
     const auto jobs = Must(bed.server.store().ListJobs({}));
     const Status ordered =
-        bed.dispatcher().Control(jobs.front().id, v1::WorkerControl::KIND_HOLD, 0);
+        bed.dispatcher().Control(jobs.front().id, {.kind = v1::WorkerControl::KIND_HOLD});
     if (!ordered) refused = ordered.error().code;
   };
   FakeWorker worker(bed.dispatcher(), "w");
@@ -114,7 +115,7 @@ TEST(DispatcherControl, AnOrderForAJobThatIsBeingMadeReadyComesAfterTheJob) {
   std::atomic<std::int64_t> job = 0;
   std::optional<bool> taken;
   bed.hooks.before_machine = [&] {
-    taken = bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_STOP);
+    taken = bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_STOP});
   };
   job = bed.server.SubmitCheck();
   FakeWorker worker(bed.dispatcher(), "w");
@@ -130,12 +131,12 @@ TEST(DispatcherControl, AJobThatItsWorkerHasFinishedTakesNoOrders) {
   const std::int64_t job = bed.server.SubmitCheck();
   FakeWorker worker(bed.dispatcher(), "w");
   ASSERT_TRUE(worker.Take());
-  EXPECT_TRUE(bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_HOLD));
+  EXPECT_TRUE(bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_HOLD}));
   bed.hooks.finishes_that_fail = 1'000'000;
   worker.Finish();
   bed.Settle();
-  EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_HOLD));
-  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, v1::WorkerControl::KIND_HOLD, 0)),
+  EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_HOLD}));
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, {.kind = v1::WorkerControl::KIND_HOLD})),
             ErrorCode::kCellPrecondition);
   bed.hooks.finishes_that_fail = 0;
   EXPECT_EQ(worker.Released(), true);
@@ -148,7 +149,8 @@ TEST(DispatcherControl, AnOrderForAnotherJobIsForgotten) {
   ASSERT_EQ(leased->lease.job, elsewhere);
   Status ordered;
   bed.hooks.after_acquire = [&](bool found) {
-    if (found) ordered = bed.dispatcher().Control(elsewhere, v1::WorkerControl::KIND_HOLD, 0);
+    if (found)
+      ordered = bed.dispatcher().Control(elsewhere, {.kind = v1::WorkerControl::KIND_HOLD});
   };
   bed.server.SubmitCheck();
   FakeWorker worker(bed.dispatcher(), "w");
@@ -162,21 +164,21 @@ TEST(DispatcherControl, AnOrderForAnotherJobIsForgotten) {
 TEST(DispatcherControl, AnOrderAtOncePassesByTheStoreAndBusyThreads) {
   DispatcherBed bed;
   const std::int64_t job = bed.server.SubmitCheck();
-  EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_CANCEL));
+  EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_CANCEL}));
   FakeWorker worker(bed.dispatcher(), "w");
   ASSERT_TRUE(worker.Take());
   bed.Settle();
   {
     const auto busy = bed.Occupy();
     const int read = bed.hooks.jobs_read;
-    EXPECT_TRUE(bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_CANCEL));
+    EXPECT_TRUE(bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_CANCEL}));
     EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_CANCEL);
     EXPECT_EQ(bed.hooks.jobs_read, read);
   }
   worker.Finish(v1::Outcome::KIND_CANCELLED);
   EXPECT_EQ(worker.Released(), true);
   EXPECT_EQ(bed.Job(job).state, JobState::kCancelled);
-  EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, v1::WorkerControl::KIND_CANCEL));
+  EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_CANCEL}));
 }
 
 // A worker that gives its job back is about to end: the job goes to another, and no attempt is

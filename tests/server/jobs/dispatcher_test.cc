@@ -429,14 +429,14 @@ TEST(DispatcherProgress, IsTheNewestAndEndsWithTheJob) {
   for (int i = 1; i <= 100; ++i) worker.Position(i);
   v1::JobProgress progress;
   ASSERT_TRUE(Eventually([&] {
-    const auto newest = bed.feed().ProgressAfter(job, 0);
+    const auto newest = bed.feed().LatestAfter(JobName(job), 0);
     return newest && progress.ParseFromString(*newest->bytes) && progress.virtual_time_ns() == 100;
   }));
   EXPECT_EQ(progress.job(), JobName(job));
   EXPECT_EQ(progress.attempt(), 1);
   worker.Finish();
   EXPECT_EQ(worker.Released(), true);
-  EXPECT_TRUE(Eventually([&] { return !bed.feed().ProgressAfter(job, 0); }));
+  EXPECT_TRUE(Eventually([&] { return !bed.feed().LatestAfter(JobName(job), 0); }));
 }
 
 // Workers come, work, die and come again while clients submit: every job ends once, as it should.

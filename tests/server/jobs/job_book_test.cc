@@ -150,12 +150,12 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
        [](auto& r) { r.mutable_job()->mutable_simulation()->set_override_percent(146); }},
       {"breakpoint slot 100", ErrorCode::kProgramNumber,
        [](auto& r) {
-         r.mutable_job()->mutable_simulation()->mutable_breakpoint()->set_program(100);
-         r.mutable_job()->mutable_simulation()->mutable_breakpoint()->set_step(1);
+         r.mutable_job()->mutable_simulation()->add_breakpoints()->mutable_step()->set_program(100);
+         r.mutable_job()->mutable_simulation()->mutable_breakpoints(0)->mutable_step()->set_step(1);
        }},
       {"breakpoint step 0", kInvalid,
        [](auto& r) {
-         r.mutable_job()->mutable_simulation()->mutable_breakpoint()->set_program(1);
+         r.mutable_job()->mutable_simulation()->add_breakpoints()->mutable_step()->set_program(1);
        }},
       {"mode MANUAL", kInvalid,
        [](auto& r) { r.mutable_job()->mutable_simulation()->set_mode(v1::OPERATING_MODE_MANUAL); }},
@@ -358,11 +358,10 @@ TEST_F(JobBookTest, ASnapshotAndTheEventsAfterItAreComplete) {
           {.machine = "optimo-1", .kind = "CHECK", .events = {{.kind = "state"}}}));
   });
   for (int round = 0; round < 20; ++round) {
-    const v1::JobsSnapshot snapshot = Must(book.Snapshot());
+    const std::int64_t position = Must(bed.store().LastPosition());
     std::set<std::int64_t> known;
-    for (const v1::Job& job : snapshot.jobs()) known.insert(Number(job));
-    for (const auto& event : Must(bed.store().AllEvents(snapshot.sequence(), 10'000)))
-      known.insert(event.job);
+    for (const v1::Job& job : Must(book.Newest({}))) known.insert(Number(job));
+    for (const auto& event : Must(bed.store().AllEvents(position, 10'000))) known.insert(event.job);
     const std::int64_t newest = *known.rbegin();
     // Unfinished jobs beyond the snapshot's size are the older ones.
     for (std::int64_t id = std::max<std::int64_t>(1, newest - 100); id <= newest; ++id) {
@@ -380,11 +379,11 @@ TEST_F(JobBookTest, ASnapshotHasWhatIsUnfinishedFirst) {
     const auto leased = Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
     Must(bed.store().Finish(leased->lease, {.outcome = {.state = JobState::kSucceeded}}));
   }
-  const v1::JobsSnapshot snapshot = Must(book.Snapshot());
-  EXPECT_EQ(snapshot.jobs_size(), 200);
-  EXPECT_EQ(Number(snapshot.jobs(snapshot.jobs_size() - 1)), running);
-  for (int i = 1; i < snapshot.jobs_size(); ++i)
-    EXPECT_GT(Number(snapshot.jobs(i - 1)), Number(snapshot.jobs(i)));
+  const std::vector<v1::Job> newest = Must(book.Newest({}));
+  EXPECT_EQ(newest.size(), 200U);
+  EXPECT_EQ(Number(newest.back()), running);
+  for (std::size_t i = 1; i < newest.size(); ++i)
+    EXPECT_GT(Number(newest[i - 1]), Number(newest[i]));
 }
 
 TEST_F(JobBookTest, AProductThatIsNotThereSaysWhy) {

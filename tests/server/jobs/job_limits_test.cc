@@ -190,7 +190,8 @@ TEST_F(JobLimits, OfPlacesWhereARunHalts) {
   const auto asked = [&](bool simul, int program, int step) {
     return Asked([&](v1::Job& job) {
       v1::SimulationOptions& options = *job.mutable_simulation();
-      v1::StepPlace& place = simul ? *options.mutable_simul() : *options.mutable_breakpoint();
+      v1::StepPlace& place =
+          simul ? *options.mutable_simul() : *options.add_breakpoints()->mutable_step();
       place.set_program(program);
       place.set_step(step);
     });
@@ -207,13 +208,51 @@ TEST_F(JobLimits, OfPlacesWhereARunHalts) {
 // What the contract has and this version does not do is said, not left out in silence.
 TEST_F(JobLimits, OfWhatComesLater) {
   constexpr ErrorCode kLater = ErrorCode::kCellUnimplemented;
-  for (const int priority : {-1, 1})
-    EXPECT_EQ(Asked([&](v1::Job& job) { job.set_priority(priority); }), kLater);
-  EXPECT_EQ(Asked([](v1::Job& job) { job.set_held(true); }), kLater);
-  EXPECT_EQ(Asked([](v1::Job& job) { job.mutable_not_before_time(); }), kLater);
-  EXPECT_EQ(Asked([](v1::Job& job) { job.add_after_jobs("jobs/1"); }), kLater);
   EXPECT_EQ(Asked([](v1::Job& job) { job.mutable_run(); }), kLater);
   EXPECT_EQ(Asked([](v1::Job& job) { job.set_continues("jobs/1"); }), kLater);
+  const auto breakpoint = [&](const std::function<void(v1::Breakpoint&)>& change) {
+    return Asked([&](v1::Job& job) {
+      v1::Breakpoint& one = *job.mutable_simulation()->add_breakpoints();
+      one.mutable_step()->set_step(1);
+      change(one);
+    });
+  };
+  EXPECT_EQ(breakpoint([](v1::Breakpoint&) {}), std::nullopt);
+  EXPECT_EQ(breakpoint([](v1::Breakpoint& one) { one.set_condition("VI[1] > 2"); }), kLater);
+  EXPECT_EQ(breakpoint([](v1::Breakpoint& one) { one.set_passes(1); }), kLater);
+  EXPECT_EQ(Asked([](v1::Job& job) {
+              for (int i = 0; i < 2; ++i)
+                job.mutable_simulation()->add_breakpoints()->mutable_step()->set_step(1);
+            }),
+            kLater);
+}
+
+TEST_F(JobLimits, OfThePlaceInTheQueue) {
+  for (const int priority : {-100, 0, 100})
+    EXPECT_EQ(Asked([&](v1::Job& job) { job.set_priority(priority); }), std::nullopt);
+  for (const int priority : {-101, 101})
+    EXPECT_EQ(Asked([&](v1::Job& job) { job.set_priority(priority); }), kInvalid);
+  const auto at = [&](std::int64_t seconds, int nanos) {
+    return Asked([&](v1::Job& job) {
+      job.mutable_not_before_time()->set_seconds(seconds);
+      job.mutable_not_before_time()->set_nanos(nanos);
+    });
+  };
+  EXPECT_EQ(at(0, 0), std::nullopt);
+  EXPECT_EQ(at(253'402'300'799, 999'999'999), std::nullopt);
+  EXPECT_EQ(at(-62'135'596'800, 0), std::nullopt);
+  EXPECT_EQ(at(253'402'300'800, 0), kInvalid);
+  EXPECT_EQ(at(-62'135'596'801, 0), kInvalid);
+  EXPECT_EQ(at(0, 1'000'000'000), kInvalid);
+  EXPECT_EQ(at(0, -1), kInvalid);
+  const auto after = [&](int count) {
+    return Asked([&](v1::Job& job) {
+      for (int i = 0; i < count; ++i) job.add_after_jobs("jobs/1");
+    });
+  };
+  EXPECT_EQ(after(100), std::nullopt);
+  EXPECT_EQ(after(101), kInvalid);
+  EXPECT_EQ(Asked([](v1::Job& job) { job.add_after_jobs("machines/mill-1"); }), kInvalid);
 }
 
 TEST_F(JobLimits, OfInputsOverTime) {
@@ -418,20 +457,19 @@ TEST_F(JobLimits, ASnapshotHasTwoHundredJobs) {
     Must(bed.store().Finish(bed.Lease("CHECK"), {.outcome = {.state = JobState::kSucceeded}}));
   }
   Fill(198);
-  v1::JobsSnapshot snapshot = Must(book.Snapshot());
-  ASSERT_EQ(snapshot.jobs_size(), 200);
-  EXPECT_EQ(snapshot.sequence(), Must(bed.store().LastPosition()));
-  EXPECT_EQ(snapshot.jobs(0).name(), "jobs/201");
-  EXPECT_EQ(snapshot.jobs(199).name(), "jobs/2");
-  EXPECT_EQ(snapshot.jobs(199).state(), v1::Job::STATE_SUCCEEDED);
+  std::vector<v1::Job> newest = Must(book.Newest({}));
+  ASSERT_EQ(newest.size(), 200U);
+  EXPECT_EQ(newest[0].name(), "jobs/201");
+  EXPECT_EQ(newest[199].name(), "jobs/2");
+  EXPECT_EQ(newest[199].state(), v1::Job::STATE_SUCCEEDED);
   Fill(2);
-  snapshot = Must(book.Snapshot());
-  EXPECT_EQ(snapshot.jobs_size(), 200);
-  EXPECT_EQ(snapshot.jobs(199).name(), "jobs/4");
+  newest = Must(book.Newest({}));
+  EXPECT_EQ(newest.size(), 200U);
+  EXPECT_EQ(newest[199].name(), "jobs/4");
   Fill(1);
-  snapshot = Must(book.Snapshot());
-  EXPECT_EQ(snapshot.jobs_size(), 200);
-  EXPECT_EQ(snapshot.jobs(199).name(), "jobs/5");
+  newest = Must(book.Newest({}));
+  EXPECT_EQ(newest.size(), 200U);
+  EXPECT_EQ(newest[199].name(), "jobs/5");
 }
 
 }  // namespace

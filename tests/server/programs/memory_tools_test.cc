@@ -38,7 +38,7 @@ class MemoryToolsTest : public testing::Test {
   void Delete(int number) {
     v1::DeleteProgramRequest request;
     request.set_name(Name(number));
-    ASSERT_TRUE(programs.Delete(request));
+    ASSERT_TRUE(programs.Delete(request, "anna"));
   }
   static v1::LinkProgramRequest LinkRequest(int slot, const std::map<int, std::string>& programs) {
     v1::LinkProgramRequest request;

@@ -37,7 +37,7 @@ class ProgramBookTest : public testing::Test {
     v1::DeleteProgramRequest request;
     request.set_name(Name(number));
     request.set_etag(etag);
-    return programs.Delete(request);
+    return programs.Delete(request, "anna");
   }
 
   ServerBed bed;

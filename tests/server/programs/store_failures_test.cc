@@ -30,7 +30,7 @@ class ProgramStoreFailures : public testing::Test {
     v1::DeleteProgramRequest request;
     request.set_name(Name(number));
     request.set_etag(etag);
-    const Status deleted = programs.Delete(request);
+    const Status deleted = programs.Delete(request, "anna");
     return deleted ? std::nullopt : std::optional(deleted.error().code);
   }
   void Put(int slot) {
@@ -69,7 +69,7 @@ TEST_F(ProgramStoreFailures, OfTheProgramBook) {
   });
   Expect("translating", 1,
          [&] { return CodeOf(programs.Translate("", "machines/optimo-1", Text(), true)); });
-  Expect("checking", 4,
+  Expect("checking", 1,
          [&] { return CodeOf(programs.Check("", "machines/optimo-1", Text(), true)); });
   Expect("deleting an executable", 3, [&] { return Delete(145); });
   Expect("deleting", 2, [&] { return Delete(45); });
@@ -78,13 +78,13 @@ TEST_F(ProgramStoreFailures, OfTheProgramBook) {
 TEST_F(ProgramStoreFailures, OfTheTools) {
   Put(44);
   Put(45);
-  Expect("linking", 2, [&] {
+  Expect("linking", 1, [&] {
     v1::LinkProgramRequest request;
     request.set_slot(45);
     request.set_machine("machines/optimo-1");
     return CodeOf(tools.Link(request));
   });
-  Expect("looking for stale executables", 3, [&] {
+  Expect("looking for stale executables", 1, [&] {
     v1::ListStaleExecutablesRequest request;
     request.set_parent("machines/optimo-1");
     return CodeOf(tools.ListStale(request));

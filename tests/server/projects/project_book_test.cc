@@ -54,7 +54,7 @@ class ProjectBookTest : public testing::Test {
     request.set_project_id(id);
     *request.mutable_project() = project;
     request.set_validate_only(validate_only);
-    return book.Create(request);
+    return book.Create(request, "anna");
   }
   ProgramResult<v1::TransferProjectResponse> Transfer(const std::string& id, bool insert = false,
                                                       bool validate_only = false) {
@@ -63,7 +63,7 @@ class ProjectBookTest : public testing::Test {
     request.set_machine("machines/optimo-1");
     request.set_insert_missing_definitions(insert);
     request.set_validate_only(validate_only);
-    return book.Transfer(request);
+    return book.Transfer(request, "anna");
   }
   std::size_t Programs() { return Must(bed.store().ListPrograms("optimo-1", 0, 100)).size(); }
 
@@ -144,7 +144,7 @@ TEST_F(ProjectBookTest, ChecksItsPartsBeforeItIsKept) {
     v1::UpdateProjectRequest update;
     *update.mutable_project() = project;
     update.mutable_project()->set_name("projects/kept");
-    EXPECT_EQ(CodeOf(book.Update(update)), code) << what;
+    EXPECT_EQ(CodeOf(book.Update(update, "anna")), code) << what;
   }
   EXPECT_EQ(CodeOf(book.Get("projects/new")), ErrorCode::kCellNotFound);
   EXPECT_EQ(Must(book.Get("projects/kept")).etag(), "1");
@@ -191,40 +191,40 @@ TEST_F(ProjectBookTest, AnUpdateChangesWhatItsMaskNames) {
   update.mutable_project()->set_etag(first.etag());
   update.mutable_update_mask()->add_paths("title");
   update.set_validate_only(true);
-  EXPECT_EQ(Must(book.Update(update)).title(), "new");
+  EXPECT_EQ(Must(book.Update(update, "anna")).title(), "new");
   EXPECT_EQ(Must(book.Get("projects/a")).title(), "old");
   update.set_validate_only(false);
-  const v1::Project second = Must(book.Update(update));
+  const v1::Project second = Must(book.Update(update, "anna"));
   EXPECT_EQ(second.title(), "new");
   EXPECT_EQ(second.notes(), "old");
   EXPECT_EQ(second.programs_size(), 1);
   EXPECT_NE(second.etag(), first.etag());
   for (const bool validate_only : {true, false}) {  // the etag is of before
     update.set_validate_only(validate_only);
-    EXPECT_EQ(CodeOf(book.Update(update)), ErrorCode::kCellEtagMismatch);
+    EXPECT_EQ(CodeOf(book.Update(update, "anna")), ErrorCode::kCellEtagMismatch);
   }
   update.mutable_project()->clear_etag();
   update.clear_update_mask();  // what has a value
   update.mutable_project()->set_title("third");
   AddSchedule(*update.mutable_project(), 11);
-  const v1::Project third = Must(book.Update(update));
+  const v1::Project third = Must(book.Update(update, "anna"));
   EXPECT_EQ(third.title(), "third");
   EXPECT_EQ(third.laser_schedules_size(), 1);
   EXPECT_EQ(third.notes(), "old");
   EXPECT_EQ(third.programs_size(), 1);
   update.mutable_update_mask()->add_paths("notes");  // named, and empty
-  EXPECT_EQ(Must(book.Update(update)).notes(), "");
+  EXPECT_EQ(Must(book.Update(update, "anna")).notes(), "");
   update.mutable_project()->clear_laser_schedules();
   *update.mutable_update_mask()->mutable_paths(0) = "*";  // all of it
-  const v1::Project fourth = Must(book.Update(update));
+  const v1::Project fourth = Must(book.Update(update, "anna"));
   EXPECT_EQ(fourth.title(), "third");
   EXPECT_EQ(fourth.laser_schedules_size(), 0);
   EXPECT_EQ(fourth.programs_size(), 0);
   update.mutable_update_mask()->add_paths("colour");
-  EXPECT_EQ(CodeOf(book.Update(update)), kInvalid);
+  EXPECT_EQ(CodeOf(book.Update(update, "anna")), kInvalid);
   update.mutable_project()->set_name("projects/none");
   update.clear_update_mask();
-  EXPECT_EQ(CodeOf(book.Update(update)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(book.Update(update, "anna")), ErrorCode::kCellNotFound);
 }
 
 TEST_F(ProjectBookTest, OfManyUpdatesWithTheSameEtagOneWins) {
@@ -238,7 +238,7 @@ TEST_F(ProjectBookTest, OfManyUpdatesWithTheSameEtagOneWins) {
         update.mutable_project()->set_name("projects/a");
         update.mutable_project()->set_etag(etag);
         update.mutable_project()->set_title(std::to_string(i));
-        const auto updated = book.Update(update);
+        const auto updated = book.Update(update, "anna");
         if (updated) {
           ++won;
         } else {
@@ -276,10 +276,10 @@ TEST_F(ProjectBookTest, DeletesAndListsInPages) {
   v1::DeleteProjectRequest remove;
   remove.set_name("projects/b");
   remove.set_etag("99");
-  EXPECT_EQ(book.Delete(remove).error().code, ErrorCode::kCellEtagMismatch);
+  EXPECT_EQ(book.Delete(remove, "anna").error().code, ErrorCode::kCellEtagMismatch);
   remove.clear_etag();
-  EXPECT_TRUE(book.Delete(remove));
-  EXPECT_EQ(book.Delete(remove).error().code, ErrorCode::kCellNotFound);
+  EXPECT_TRUE(book.Delete(remove, "anna"));
+  EXPECT_EQ(book.Delete(remove, "anna").error().code, ErrorCode::kCellNotFound);
 }
 
 // The family follows from the file name: a mill would take the text of a laser program for a
@@ -292,13 +292,13 @@ TEST_F(ProjectBookTest, ATransferTakesNoProgramOfAnotherFamily) {
   v1::TransferProjectRequest request;
   request.set_name("projects/f");
   request.set_machine("machines/mill-1");
-  const auto refused = book.Transfer(request);
+  const auto refused = book.Transfer(request, "anna");
   EXPECT_EQ(CodeOf(refused), kInvalid);
   EXPECT_THAT(refused.error.error.detail,
               testing::HasSubstr("program 11: 11.S is a program for Amada OPTIMO"));
   EXPECT_EQ(Must(bed.store().ListPrograms("mill-1", 0, 100)).size(), 0U);
   request.set_machine("machines/optimo-1");
-  EXPECT_THAT(book.Transfer(request).error.error.detail,
+  EXPECT_THAT(book.Transfer(request, "anna").error.error.detail,
               testing::HasSubstr("program 10: 10.rml is a program for Roland"));
   EXPECT_EQ(Programs(), 0U);
 
@@ -308,7 +308,7 @@ TEST_F(ProjectBookTest, ATransferTakesNoProgramOfAnotherFamily) {
   Must(Create("mill", mill));
   request.set_name("projects/mill");
   request.set_machine("machines/mill-1");
-  EXPECT_EQ(Must(book.Transfer(request)).programs_size(), 2);
+  EXPECT_EQ(Must(book.Transfer(request, "anna")).programs_size(), 2);
 }
 
 // Issue "Projects": compiled, and put into slots together with the schedules.
@@ -463,9 +463,9 @@ TEST_F(ProjectBookTest, ATransferNamesWhatIsNotThere) {
   v1::TransferProjectRequest request;
   request.set_name("projects/empty");
   request.set_machine("machines/none");
-  EXPECT_EQ(CodeOf(book.Transfer(request)), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(book.Transfer(request, "anna")), ErrorCode::kCellUnknownMachine);
   request.set_machine("optimo-1");
-  EXPECT_EQ(CodeOf(book.Transfer(request)), kInvalid);
+  EXPECT_EQ(CodeOf(book.Transfer(request, "anna")), kInvalid);
 }
 
 TEST_F(ProjectBookTest, ABodyThatCannotBeReadIsAnErrorAndNoEmptyProject) {

@@ -43,36 +43,37 @@ class ProjectFailures : public testing::Test {
 TEST_F(ProjectFailures, AreHandedOn) {
   v1::CreateProjectRequest create = Creation("lid");
   create.set_validate_only(true);
-  Expect("asking whether it can be created", 1, [&] { return Code(book.Create(create)); });
+  Expect("asking whether it can be created", 1, [&] { return Code(book.Create(create, "anna")); });
   create.set_validate_only(false);
-  Expect("creating", 1, [&] { return Code(book.Create(create)); });
+  Expect("creating", 1, [&] { return Code(book.Create(create, "anna")); });
   Expect("getting", 1, [&] { return CodeOf(book.Get("projects/lid")); });
   Expect("listing", 1, [&] { return CodeOf(book.List({})); });
   Expect("updating", 2, [&] {
     v1::UpdateProjectRequest request;
     request.mutable_project()->set_name("projects/lid");
     request.mutable_project()->set_title("Lid");
-    return Code(book.Update(request));
+    return Code(book.Update(request, "anna"));
   });
-  Expect("transferring", 3, [&] { return Code(book.Transfer(Transfer("machines/optimo-1"))); });
+  Expect("transferring", 3,
+         [&] { return Code(book.Transfer(Transfer("machines/optimo-1"), "anna")); });
   Expect("deleting", 1, [&]() -> std::optional<ErrorCode> {
     v1::DeleteProjectRequest request;
     request.set_name("projects/lid");
-    const Status deleted = book.Delete(request);
+    const Status deleted = book.Delete(request, "anna");
     return deleted ? std::nullopt : std::optional(deleted.error().code);
   });
 }
 
 // A store that a later version has written to may have machines of families unknown here.
 TEST_F(ProjectFailures, AMachineThatThisServerDoesNotKnow) {
-  ASSERT_TRUE(book.Create(Creation("lid")));
+  ASSERT_TRUE(book.Create(Creation("lid"), "anna"));
   Must(bed.store().PutMachine({.id = "odd", .family = "lathe"}, 0));
   Must(bed.store().PutMachine({.id = "strange", .family = "optimo", .parameters = {{"NONE", "1"}}},
                               0));
-  EXPECT_EQ(Code(book.Transfer(Transfer("machines/odd"))), ErrorCode::kCellUnknownFamily);
-  EXPECT_NE(Code(book.Transfer(Transfer("machines/strange"))), std::nullopt);
-  EXPECT_EQ(Code(book.Transfer(Transfer("machines/none"))), ErrorCode::kCellUnknownMachine);
-  EXPECT_EQ(Code(book.Transfer(Transfer("none"))), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(Code(book.Transfer(Transfer("machines/odd"), "anna")), ErrorCode::kCellUnknownFamily);
+  EXPECT_NE(Code(book.Transfer(Transfer("machines/strange"), "anna")), std::nullopt);
+  EXPECT_EQ(Code(book.Transfer(Transfer("machines/none"), "anna")), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(Code(book.Transfer(Transfer("none"), "anna")), ErrorCode::kCellInvalidArgument);
 }
 
 }  // namespace

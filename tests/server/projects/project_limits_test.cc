@@ -20,7 +20,7 @@ class ProjectLimits : public testing::Test {
     request.set_project_id("asked");
     change(*request.mutable_project());
     request.set_validate_only(true);
-    const auto created = book.Create(request);
+    const auto created = book.Create(request, "anna");
     return created ? std::nullopt : std::optional(created.error.error.code);
   }
   void Fill(int count) {
@@ -102,7 +102,7 @@ TEST_F(ProjectLimits, UnitsThatContradictTheNameOfTheFile) {
       program.mutable_source()->set_file_name(name);
       program.set_units(units);
     }
-    const auto created = book.Create(request);
+    const auto created = book.Create(request, "anna");
     return created ? "" : created.error.error.detail;
   };
   for (const std::string name : {"46.SI", "46.si", "hole.Si"}) {
@@ -126,11 +126,11 @@ TEST_F(ProjectLimits, UnitsThatContradictTheNameOfTheFile) {
   EXPECT_EQ(Asked(change), ErrorCode::kCellInvalidArgument);
   v1::CreateProjectRequest kept;
   kept.set_project_id("kept");
-  ASSERT_TRUE(book.Create(kept));
+  ASSERT_TRUE(book.Create(kept, "anna"));
   v1::UpdateProjectRequest update;
   change(*update.mutable_project());
   update.mutable_project()->set_name("projects/kept");
-  const auto updated = book.Update(update);
+  const auto updated = book.Update(update, "anna");
   ASSERT_FALSE(updated);
   EXPECT_EQ(updated.error.error.code, ErrorCode::kCellInvalidArgument);
 }
@@ -184,9 +184,9 @@ TEST_F(ProjectLimits, WhatIsKeptOfAProject) {
   request.mutable_project()->set_etag("77");
   request.mutable_project()->set_title("Lid");
   request.set_validate_only(true);
-  EXPECT_EQ(book.Create(request).value->name(), "projects/lid");
+  EXPECT_EQ(book.Create(request, "anna").value->name(), "projects/lid");
   request.set_validate_only(false);
-  const auto created = book.Create(request);
+  const auto created = book.Create(request, "anna");
   ASSERT_TRUE(created);
   EXPECT_EQ(created.value->name(), "projects/lid");
   EXPECT_EQ(created.value->etag(), "1");
@@ -196,7 +196,7 @@ TEST_F(ProjectLimits, WhatIsKeptOfAProject) {
   v1::UpdateProjectRequest update;
   update.mutable_project()->set_name("projects/lid");
   update.mutable_project()->set_notes("turn it over");
-  const auto updated = book.Update(update);
+  const auto updated = book.Update(update, "anna");
   ASSERT_TRUE(updated);
   EXPECT_EQ(updated.value->etag(), "2");
   EXPECT_EQ(updated.value->title(), "Lid");  // not given: as it was
@@ -217,18 +217,18 @@ TEST_F(ProjectLimits, NamesThatAreNone) {
     EXPECT_EQ(CodeOf(book.Get(name)), ErrorCode::kCellInvalidArgument) << name;
     v1::UpdateProjectRequest update;
     update.mutable_project()->set_name(name);
-    const auto updated = book.Update(update);
+    const auto updated = book.Update(update, "anna");
     ASSERT_FALSE(updated) << name;
     EXPECT_EQ(updated.error.error.code, ErrorCode::kCellInvalidArgument) << name;
     v1::DeleteProjectRequest remove;
     remove.set_name(name);
-    const Status removed = book.Delete(remove);
+    const Status removed = book.Delete(remove, "anna");
     ASSERT_FALSE(removed) << name;
     EXPECT_EQ(removed.error().code, ErrorCode::kCellInvalidArgument) << name;
     v1::TransferProjectRequest transfer;
     transfer.set_name(name);
     transfer.set_machine("machines/optimo-1");
-    const auto transferred = book.Transfer(transfer);
+    const auto transferred = book.Transfer(transfer, "anna");
     ASSERT_FALSE(transferred) << name;
     EXPECT_EQ(transferred.error.error.code, ErrorCode::kCellInvalidArgument) << name;
   }
@@ -242,13 +242,13 @@ TEST_F(ProjectLimits, EtagsThatAreNone) {
     update.mutable_project()->set_name("projects/lid");
     update.mutable_project()->set_title("new");
     update.mutable_project()->set_etag(etag);
-    const auto updated = book.Update(update);
+    const auto updated = book.Update(update, "anna");
     ASSERT_FALSE(updated) << etag;
     EXPECT_EQ(updated.error.error.code, ErrorCode::kCellEtagMismatch) << etag;
     v1::DeleteProjectRequest remove;
     remove.set_name("projects/lid");
     remove.set_etag(etag);
-    const Status removed = book.Delete(remove);
+    const Status removed = book.Delete(remove, "anna");
     ASSERT_FALSE(removed) << etag;
     EXPECT_EQ(removed.error().code, ErrorCode::kCellEtagMismatch) << etag;
   }
@@ -256,7 +256,7 @@ TEST_F(ProjectLimits, EtagsThatAreNone) {
   v1::DeleteProjectRequest remove;
   remove.set_name("projects/lid");
   remove.set_etag("1");
-  EXPECT_TRUE(book.Delete(remove));
+  EXPECT_TRUE(book.Delete(remove, "anna"));
 }
 
 // One damaged body is told of by whatever reads it, and no half of a page is given.
@@ -268,7 +268,7 @@ TEST_F(ProjectLimits, ADamagedBodyIsToldOf) {
   v1::UpdateProjectRequest update;
   update.mutable_project()->set_name("projects/wrong");
   update.mutable_project()->set_title("new");
-  const auto updated = book.Update(update);
+  const auto updated = book.Update(update, "anna");
   ASSERT_FALSE(updated);
   EXPECT_EQ(updated.error.error.code, ErrorCode::kCellStoreCorrupt);
   EXPECT_EQ(Must(bed.store().GetProject("wrong")).title, "t");
@@ -307,15 +307,15 @@ TEST_F(ProjectLimits, OfTargets) {
   milling.mutable_tool()->set_shape(v1::MillTool::SHAPE_FLAT);
   milling.mutable_tool()->set_diameter_mm(3.0);
   v1::MillTarget& target = *milling.mutable_target();
-  const auto missing = book.Create(request);
+  const auto missing = book.Create(request, "anna");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error.error.code, ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(missing.error.error.detail,
             "program 7: milling.target is missing: file, inline_program or slot");
   target.mutable_file()->set_content("PA;");
-  EXPECT_EQ(book.Create(request).error.error.code, ErrorCode::kCellBadText);
+  EXPECT_EQ(book.Create(request, "anna").error.error.code, ErrorCode::kCellBadText);
   target.mutable_file()->set_content("solid\nendsolid\n");
-  ASSERT_TRUE(book.Create(request));
+  ASSERT_TRUE(book.Create(request, "anna"));
   const auto kept = Must(book.Get("projects/coaster"));
   EXPECT_EQ(kept.programs(0).milling().target().file().content(), "solid\nendsolid\n");
   const v1::MillTarget listed = Page(1).projects(0).programs(0).milling().target();

@@ -1,5 +1,5 @@
 // Families and machines as messages, and which machines a cell takes.
-#include "server/services/machine_messages.h"
+#include "server/records/machine_messages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -45,9 +45,9 @@ void StreamBed::TellSteps(std::int64_t job, int steps) {
   progress.set_job(JobName(job));
   progress.set_steps(steps);
   const std::string bytes = progress.SerializeAsString();
-  feed.PublishProgress(job, bytes);
+  feed.Publish(JobName(job), bytes);
   EXPECT_TRUE(Eventually([&] {
-    const auto told = feed.ProgressAfter(job, 0);
+    const auto told = feed.LatestAfter(JobName(job), 0);
     return told && *told->bytes == bytes;
   }));
 }
@@ -66,9 +66,15 @@ OpenedStream<v1::WatchJobResponse> StreamBed::Watch(const v1::WatchJobRequest& r
       [&](grpc::ClientContext* context) { return stub_->WatchJob(context, request); });
 }
 
-OpenedStream<v1::WatchJobsResponse> StreamBed::WatchAll(const v1::WatchJobsRequest& request) {
-  return OpenedStream<v1::WatchJobsResponse>(
-      [&](grpc::ClientContext* context) { return stub_->WatchJobs(context, request); });
+OpenedStream<v1::WatchCellResponse> StreamBed::WatchCell(const v1::WatchCellRequest& request) {
+  return OpenedStream<v1::WatchCellResponse>(
+      [&](grpc::ClientContext* context) { return cell_stub_->WatchCell(context, request); });
+}
+
+OpenedStream<v1::WatchMachineResponse> StreamBed::WatchMachine(
+    const v1::WatchMachineRequest& request) {
+  return OpenedStream<v1::WatchMachineResponse>(
+      [&](grpc::ClientContext* context) { return machine_stub_->WatchMachine(context, request); });
 }
 
 OpenedStream<v1::StreamJobToolpathResponse> StreamBed::Toolpath(const std::string& name,

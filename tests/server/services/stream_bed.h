@@ -8,12 +8,19 @@
 #include <string>
 #include <vector>
 
+#include "rmlcell/v1/cell.grpc.pb.h"
 #include "rmlcell/v1/job.grpc.pb.h"
+#include "rmlcell/v1/machine.grpc.pb.h"
 #include "server/base/config.h"
 #include "server/base/executor.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/job_book.h"
+#include "server/machines/machine_statuses.h"
+#include "server/programs/program_book.h"
+#include "server/projects/project_book.h"
+#include "server/services/cell_watch.h"
 #include "server/services/job_streams.h"
+#include "server/services/machine_watch.h"
 #include "tests/server/server_bed.h"
 
 // Streams of jobs over a channel of this process, with the log of a real store behind them.
@@ -71,13 +78,29 @@ class OpenedStream {
 class StreamBed {
  public:
   static constexpr const char* kInstance = "this server";
+  static constexpr const char* kCaller = "anna";  // of every watch
 
-  explicit StreamBed(storage::SqliteOptions options = {})
-      : bed(std::move(options)), service_({executor_, open, book_, feed, kInstance}) {
+  explicit StreamBed(storage::SqliteOptions options = {},
+                     std::chrono::milliseconds bookmark_interval = std::chrono::hours(1))
+      : bed(std::move(options)),
+        service_({executor_, open, book_, feed, kInstance}),
+        cell_({.executor = executor_,
+               .open = open,
+               .records = {bed.store(), book_, programs, projects},
+               .feed = feed,
+               .facts = facts_,
+               .registry = registry,
+               .instance_id = kInstance,
+               .bookmark_interval = bookmark_interval}),
+        machines_({executor_, open, bed.store(), feed, kInstance}) {
     grpc::ServerBuilder builder;
     builder.RegisterService(&service_);
+    builder.RegisterService(&cell_);
+    builder.RegisterService(&machines_);
     server_ = builder.BuildAndStart();
     stub_ = v1::JobService::NewStub(server_->InProcessChannel({}));
+    cell_stub_ = v1::CellService::NewStub(server_->InProcessChannel({}));
+    machine_stub_ = v1::MachineService::NewStub(server_->InProcessChannel({}));
   }
   StreamBed(const StreamBed&) = delete;
   StreamBed& operator=(const StreamBed&) = delete;
@@ -101,7 +124,8 @@ class StreamBed {
   OpenedStream<v1::WatchJobResponse> Watch(std::int64_t job, std::int64_t after = 0,
                                            bool events_only = false);
   OpenedStream<v1::WatchJobResponse> Watch(const v1::WatchJobRequest& request);
-  OpenedStream<v1::WatchJobsResponse> WatchAll(const v1::WatchJobsRequest& request);
+  OpenedStream<v1::WatchCellResponse> WatchCell(const v1::WatchCellRequest& request);
+  OpenedStream<v1::WatchMachineResponse> WatchMachine(const v1::WatchMachineRequest& request);
   OpenedStream<v1::StreamJobToolpathResponse> Toolpath(const std::string& name, int level);
   OpenedStream<v1::StreamJobTraceResponse> Trace(const std::string& name);
   OpenedStream<v1::StreamJobArtifactResponse> Artifact(const std::string& name,
@@ -110,18 +134,40 @@ class StreamBed {
   ServerBed bed;
   EventFeed feed{bed.store()};
   OpenStreams open;
+  Config config;
+  ProgramBook programs{bed.store(), config};
+  ProjectBook projects{bed.store()};
+  WatchRegistry registry;
 
  private:
+  class CellService final : public v1::CellService::CallbackService {
+   public:
+    explicit CellService(CellWatchNeeds needs) : needs_(std::move(needs)) {}
+    grpc::ServerWriteReactor<v1::WatchCellResponse>* WatchCell(
+        grpc::CallbackServerContext*, const v1::WatchCellRequest* request) override {
+      return MakeCellWatch(needs_, *request, kCaller)->Begin();
+    }
+
+   private:
+    CellWatchNeeds needs_;
+  };
+  class MachineService final : public v1::MachineService::CallbackService {
+   public:
+    explicit MachineService(MachineWatchNeeds needs) : needs_(std::move(needs)) {}
+    grpc::ServerWriteReactor<v1::WatchMachineResponse>* WatchMachine(
+        grpc::CallbackServerContext*, const v1::WatchMachineRequest* request) override {
+      return MakeMachineWatch(needs_, *request)->Begin();
+    }
+
+   private:
+    MachineWatchNeeds needs_;
+  };
   class Service final : public v1::JobService::CallbackService {
    public:
     explicit Service(JobStreamNeeds needs) : needs_(std::move(needs)) {}
     grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(
         grpc::CallbackServerContext*, const v1::WatchJobRequest* request) override {
       return MakeJobWatch(needs_, *request)->Begin();
-    }
-    grpc::ServerWriteReactor<v1::WatchJobsResponse>* WatchJobs(
-        grpc::CallbackServerContext*, const v1::WatchJobsRequest* request) override {
-      return MakeJobsWatch(needs_, *request)->Begin();
     }
     grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* StreamJobToolpath(
         grpc::CallbackServerContext*, const v1::StreamJobToolpathRequest* request) override {
@@ -140,12 +186,16 @@ class StreamBed {
     JobStreamNeeds needs_;
   };
 
-  Config config_;
-  JobBook book_{bed.store(), config_};
+  JobBook book_{bed.store(), config};
+  JobFactsBook facts_{bed.store()};
   Executor executor_{2};
   Service service_;
+  CellService cell_;
+  MachineService machines_;
   std::unique_ptr<grpc::Server> server_;
   std::unique_ptr<v1::JobService::Stub> stub_;
+  std::unique_ptr<v1::CellService::Stub> cell_stub_;
+  std::unique_ptr<v1::MachineService::Stub> machine_stub_;
 };
 
 }  // namespace rmlcell::server

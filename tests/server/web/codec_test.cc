@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "rmlcell/v1/cell.pb.h"
 #include "rmlcell/v1/job.pb.h"
 #include "server/web/base64.h"
 #include "server/web/envelope.h"
@@ -160,7 +161,7 @@ TEST(RpcJson, WhoseMistakeItIs) {
   const auto answer = BytesToJson(type, "\xFF\xFF");
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, ErrorCode::kCellInternal);
-  EXPECT_EQ(BytesToJson(type, "")->sequence, 0);  // has no such field
+  EXPECT_FALSE(BytesToJson(type, "")->id);  // has no such field
 }
 
 // Nesting is limited by the reader, not by the stack.
@@ -172,21 +173,44 @@ TEST(RpcJson, DeepNestingIsRefused) {
   EXPECT_FALSE(JsonToBytes(type, objects));
 }
 
+// Of a watch of the cell the log goes along: its first message may have the number 0.
+TEST(RpcJson, AnEventOfTheCellIsNamedWithItsLog) {
+  v1::WatchCellResponse response;
+  const auto& type = *v1::WatchCellResponse::descriptor();
+  EXPECT_FALSE(BytesToJson(type, response.SerializeAsString())->id);
+  response.set_log_id("0198c5b2-aa");
+  EXPECT_EQ(BytesToJson(type, response.SerializeAsString())->id->Text(), "0.0198c5b2-aa");
+  response.set_sequence(42);
+  EXPECT_EQ(BytesToJson(type, response.SerializeAsString())->id->Text(), "42.0198c5b2-aa");
+  const std::optional<EventId> id = EventId::Parse("42.0198c5b2-aa");
+  ASSERT_TRUE(id);
+  v1::WatchCellRequest request;
+  ASSERT_TRUE(request.ParseFromString(
+      *JsonToBytes(*v1::WatchCellRequest::descriptor(), R"({"logId":"other"})", id)));
+  EXPECT_EQ(request.after_sequence(), 42);
+  EXPECT_EQ(request.log_id(), "0198c5b2-aa");
+  for (const char* bad : {"", ".a", "1.", "1.A", "1.a b", "-1", "1 ", "01x", "1.a.b"})
+    EXPECT_FALSE(EventId::Parse(bad)) << bad;
+  EXPECT_FALSE(EventId::Parse("1." + std::string(65, 'a')));
+  EXPECT_TRUE(EventId::Parse("1." + std::string(64, 'a')));
+}
+
 TEST(RpcJson, SequencesGoInAndComeOut) {
   const auto& type = *v1::WatchJobRequest::descriptor();
   const Result<std::string> bytes =
-      JsonToBytes(type, R"({"name":"jobs/1","afterSequence":"2"})", 41);
+      JsonToBytes(type, R"({"name":"jobs/1","afterSequence":"2"})", EventId{.sequence = 41});
   ASSERT_TRUE(bytes);
   v1::WatchJobRequest request;
   ASSERT_TRUE(request.ParseFromString(*bytes));
   EXPECT_EQ(request.after_sequence(), 41);
-  EXPECT_TRUE(JsonToBytes(*v1::GetJobRequest::descriptor(), "{}", 41));  // has no such field
+  // Has no such field.
+  EXPECT_TRUE(JsonToBytes(*v1::GetJobRequest::descriptor(), "{}", EventId{.sequence = 41}));
   v1::WatchJobResponse response;
   response.set_sequence(42);
   const Result<JsonMessage> json =
       BytesToJson(*v1::WatchJobResponse::descriptor(), response.SerializeAsString());
   ASSERT_TRUE(json);
-  EXPECT_EQ(json->sequence, 42);
+  EXPECT_EQ(json->id->Text(), "42");
   EXPECT_FALSE(BytesToJson(*v1::WatchJobResponse::descriptor(), "\xFF\xFF"));
 }
 

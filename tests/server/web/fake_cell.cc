@@ -12,6 +12,7 @@
 
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "rmlcell/v1/cell.grpc.pb.h"
 #include "rmlcell/v1/job.grpc.pb.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
 #include "rmlcell/v1/program.grpc.pb.h"
@@ -40,9 +41,46 @@ grpc::Status Rich(grpc::StatusCode code, const std::string& text, const std::str
   return {code, text, rich.SerializeAsString()};
 }
 
+// The streams that are open, which a test lets go on or stops. Thread-safe.
+class OpenFakes {
+ public:
+  template <class Response>
+  void Own(FakeStream<Response>* stream) {
+    stream->on_done = [this, stream] {
+      const std::lock_guard lock(mutex_);
+      streams_.erase(stream);
+    };
+    {
+      const std::lock_guard lock(mutex_);
+      streams_[stream] = [stream] { stream->Advance(); };
+    }
+    stream->Advance();
+  }
+  // Lets every stream that waits look again.
+  void Wake() {
+    const std::lock_guard lock(mutex_);
+    std::vector<void*> streams;
+    for (const auto& [stream, advance] : streams_) streams.push_back(stream);
+    for (void* stream : streams) {
+      const auto found = streams_.find(stream);  // it may have ended since
+      if (found != streams_.end()) std::function<void()>(found->second)();
+    }
+  }
+  void Stop() {
+    stopping_ = true;
+    Wake();
+  }
+  bool stopping() const { return stopping_; }
+
+ private:
+  std::atomic<bool> stopping_ = false;
+  std::recursive_mutex mutex_;  // an ended stream may leave from inside Wake
+  std::map<void*, std::function<void()>> streams_;
+};
+
 class Jobs : public v1::JobService::CallbackService {
  public:
-  explicit Jobs(Counters& counters) : counters_(counters) {}
+  Jobs(Counters& counters, OpenFakes& open) : counters_(counters), open_(open) {}
 
   grpc::ServerUnaryReactor* GetJob(grpc::CallbackServerContext* context,
                                    const v1::GetJobRequest* request, v1::Job* response) override {
@@ -101,7 +139,7 @@ class Jobs : public v1::JobService::CallbackService {
           }
           if (name == "jobs/idle") return Step::kWait;
           if (name == "jobs/stop") {
-            if (!stopping_) return Step::kWait;
+            if (!open_.stopping()) return Step::kWait;
             end = {grpc::StatusCode::UNAVAILABLE, "the server stops"};
             return Step::kEnd;
           }
@@ -118,38 +156,8 @@ class Jobs : public v1::JobService::CallbackService {
           if (name == "jobs/flood") ++counters_.produced;
           return Step::kMessage;
         });
-    Own(stream);
+    open_.Own(stream);
     return stream;
-  }
-
-  grpc::ServerWriteReactor<v1::WatchJobsResponse>* WatchJobs(
-      grpc::CallbackServerContext*, const v1::WatchJobsRequest* request) override {
-    auto demo = std::make_shared<DemoStory>(request->after_sequence());
-    auto* stream = new FakeStream<v1::WatchJobsResponse>(
-        counters_, [this, demo](v1::WatchJobsResponse& response, grpc::Status& end) {
-          if (stopping_) {
-            end = {grpc::StatusCode::UNAVAILABLE, "the server stops"};
-            return Step::kEnd;
-          }
-          return demo->Next(response) ? Step::kMessage : Step::kWait;
-        });
-    Own(stream);
-    return stream;
-  }
-
-  // Lets every stream that waits look again.
-  void Wake() {
-    const std::lock_guard lock(mutex_);
-    std::vector<void*> streams;
-    for (const auto& [stream, advance] : streams_) streams.push_back(stream);
-    for (void* stream : streams) {
-      const auto found = streams_.find(stream);  // it may have ended since
-      if (found != streams_.end()) std::function<void()>(found->second)();
-    }
-  }
-  void Stop() {
-    stopping_ = true;
-    Wake();
   }
 
  private:
@@ -173,23 +181,32 @@ class Jobs : public v1::JobService::CallbackService {
     Counters& counters_;
   };
 
-  template <class Response>
-  void Own(FakeStream<Response>* stream) {
-    stream->on_done = [this, stream] {
-      const std::lock_guard lock(mutex_);
-      streams_.erase(stream);
-    };
-    {
-      const std::lock_guard lock(mutex_);
-      streams_[stream] = [stream] { stream->Advance(); };
-    }
-    stream->Advance();
+  Counters& counters_;
+  OpenFakes& open_;
+};
+
+class Cells : public v1::CellService::CallbackService {
+ public:
+  Cells(Counters& counters, OpenFakes& open) : counters_(counters), open_(open) {}
+
+  grpc::ServerWriteReactor<v1::WatchCellResponse>* WatchCell(
+      grpc::CallbackServerContext*, const v1::WatchCellRequest* request) override {
+    auto demo = std::make_shared<DemoStory>(request->after_sequence());
+    auto* stream = new FakeStream<v1::WatchCellResponse>(
+        counters_, [this, demo](v1::WatchCellResponse& response, grpc::Status& end) {
+          if (open_.stopping()) {
+            end = {grpc::StatusCode::UNAVAILABLE, "the server stops"};
+            return Step::kEnd;
+          }
+          return demo->Next(response) ? Step::kMessage : Step::kWait;
+        });
+    open_.Own(stream);
+    return stream;
   }
 
+ private:
   Counters& counters_;
-  std::atomic<bool> stopping_ = false;
-  std::recursive_mutex mutex_;  // an ended stream may leave from inside Wake
-  std::map<void*, std::function<void()>> streams_;
+  OpenFakes& open_;
 };
 
 class Machines : public v1::MachineService::CallbackService {
@@ -221,19 +238,22 @@ class Workers : public v1::WorkerService::CallbackService {};
 }  // namespace
 
 struct FakeCell::Services {
-  explicit Services(Counters& counters) : jobs(counters) {}
+  explicit Services(Counters& counters) : jobs(counters, open), cells(counters, open) {}
+  OpenFakes open;
   Jobs jobs;
+  Cells cells;
   Machines machines;
   Programs programs;
   Workers workers;
   std::atomic<bool> ending = false;
-  std::thread clock;  // moves the story of WatchJobs on
+  std::thread clock;  // moves the story of WatchCell on
 };
 
 FakeCell::FakeCell(WebOptions options) : services_(std::make_unique<Services>(counters_)) {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::ServerBuilder builder;
   builder.RegisterService(&services_->jobs);
+  builder.RegisterService(&services_->cells);
   builder.RegisterService(&services_->machines);
   builder.RegisterService(&services_->programs);
   builder.RegisterService(&services_->workers);
@@ -261,7 +281,7 @@ FakeCell::FakeCell(WebOptions options) : services_(std::make_unique<Services>(co
   services_->clock = std::thread([this] {
     while (!services_->ending) {
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      services_->jobs.Wake();
+      services_->open.Wake();
     }
   });
 }
@@ -274,7 +294,7 @@ FakeCell::~FakeCell() {
   server_->Wait();
 }
 
-void FakeCell::StopStreams() { services_->jobs.Stop(); }
+void FakeCell::StopStreams() { services_->open.Stop(); }
 
 void FakeCell::SetServing(bool serving) {
   server_->GetHealthCheckService()->SetServingStatus(serving);

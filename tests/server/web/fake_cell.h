@@ -77,7 +77,7 @@ class FakeCell {
   Counters& counters() { return counters_; }
   FakeResources& resources() { return resources_; }
 
-  // Ends every "jobs/stop" and every WatchJobs stream as a stopping server does.
+  // Ends every "jobs/stop" and every WatchCell stream as a stopping server does.
   void StopStreams();
   void SetServing(bool serving);
   std::vector<WebLogEntry> log() const;

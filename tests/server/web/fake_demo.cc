@@ -2,7 +2,7 @@
 
 #include "engine/core/catalogue.h"
 #include "proto/bridge/findings.h"
-#include "rmlcell/v1/job.pb.h"
+#include "rmlcell/v1/cell.pb.h"
 #include "rmlcell/v1/program.pb.h"
 
 namespace rmlcell::web::testing {
@@ -11,7 +11,7 @@ namespace {
 constexpr std::int64_t kBegin_s = 1'780'000'000;
 constexpr int kTicksOfJob = 60;
 
-v1::Job& AddJob(v1::JobsSnapshot& snapshot, int number, const std::string& machine,
+v1::Job& AddJob(v1::CellSnapshot& snapshot, int number, const std::string& machine,
                 const std::string& title, v1::Job::State state) {
   v1::Job& job = *snapshot.add_jobs();
   job.set_name("jobs/" + std::to_string(number));
@@ -50,8 +50,7 @@ void SetOutcome(v1::Job& job, ErrorCode code, v1::Outcome::Kind kind, const std:
   outcome.mutable_place()->set_step(step);
 }
 
-void Snapshot(v1::JobsSnapshot& snapshot, std::int64_t sequence) {
-  snapshot.set_sequence(sequence);
+void AddJobs(v1::CellSnapshot& snapshot) {
   AddJob(snapshot, 19, "mill-1", "", v1::Job::STATE_QUEUED);
   AddJob(snapshot, 18, "optimo-1", "Bracket, left", v1::Job::STATE_RUNNING);
   SetOutcome(AddJob(snapshot, 17, "optimo-1", "Elbow 40 mm", v1::Job::STATE_FAILED),
@@ -68,6 +67,9 @@ void Snapshot(v1::JobsSnapshot& snapshot, std::int64_t sequence) {
              ErrorCode::kCellStepBudget, v1::Outcome::KIND_BUDGET_EXCEEDED, "1000000000 steps", 3);
   SetOutcome(AddJob(snapshot, 13, "optimo-1", "<b>Trial</b> & error", v1::Job::STATE_CANCELLED),
              ErrorCode::kCellCancelled, v1::Outcome::KIND_CANCELLED, "cancelled by local", 7);
+}
+
+void AddMachines(v1::CellSnapshot& snapshot) {
   for (const auto& [id, family, title] : {std::tuple{"mill-1", "rml1", "Virtual SRM-20"},
                                           std::tuple{"optimo-1", "optimo", "Virtual Optimo"}}) {
     v1::Machine& machine = *snapshot.add_machines();
@@ -82,23 +84,36 @@ void Snapshot(v1::JobsSnapshot& snapshot, std::int64_t sequence) {
 
 }  // namespace
 
-bool DemoStory::Next(v1::WatchJobsResponse& response) {
+bool DemoStory::Next(v1::WatchCellResponse& response) {
   response.set_instance_id("demo");
+  response.set_log_id("d3");
   const int tick = tick_++;
   if (tick == 0) {
-    Snapshot(*response.mutable_snapshot(), sequence_);
+    response.set_sequence(sequence_);
+    response.add_subscriptions("jobs");
+    AddJobs(*response.mutable_snapshot());
     return true;
   }
-  if (tick % 2 == 0 || tick > 2 * kTicksOfJob + 1) return false;  // waits between two messages
-  const int n = tick / 2;
+  if (tick == 1) {
+    response.set_sequence(sequence_);
+    response.add_subscriptions("machines");
+    AddMachines(*response.mutable_snapshot());
+    return true;
+  }
+  if (tick % 2 == 1 || tick > 2 * kTicksOfJob + 2) return false;  // waits between two messages
+  const int n = tick / 2 - 1;
   if (n == kTicksOfJob) {
     response.set_sequence(++sequence_);
-    v1::JobEvent& event = *response.mutable_event();
+    response.add_subscriptions("jobs");
+    response.mutable_event()->set_resource("jobs/18");
+    v1::JobEvent& event = *response.mutable_event()->mutable_job();
     event.set_job("jobs/18");
     event.set_sequence(9);
     event.mutable_ended()->set_kind(v1::Outcome::KIND_COMPLETED);
     return true;
   }
+  response.set_sequence(sequence_);
+  response.add_subscriptions("jobs");
   v1::JobProgress& progress = *response.mutable_progress();
   progress.set_job("jobs/18");
   progress.set_progress(static_cast<double>(n) / kTicksOfJob);
@@ -115,7 +130,7 @@ bool DemoStory::Next(v1::WatchJobsResponse& response) {
 }
 
 void EndOfDemoJob(v1::Job& job) {
-  v1::JobsSnapshot snapshot;
+  v1::CellSnapshot snapshot;
   job = AddJob(snapshot, 18, "optimo-1", "Bracket, left", v1::Job::STATE_SUCCEEDED);
   job.mutable_outcome()->set_kind(v1::Outcome::KIND_COMPLETED);
 }

@@ -6,19 +6,19 @@
 namespace rmlcell::v1 {
 class ExplainErrorResponse;
 class Job;
-class WatchJobsResponse;
+class WatchCellResponse;
 }  // namespace rmlcell::v1
 
 namespace rmlcell::web::testing {
 
-// What WatchJobs tells: a snapshot with two machines and jobs in every state, then a running job
+// What WatchCell tells: snapshots of jobs in every state and of two machines, then a running job
 // that makes progress and ends.
 class DemoStory {
  public:
   explicit DemoStory(std::int64_t after_sequence) : sequence_(after_sequence) {}
 
   // False: nothing to tell just now.
-  bool Next(v1::WatchJobsResponse& response);
+  bool Next(v1::WatchCellResponse& response);
 
  private:
   std::int64_t sequence_;

@@ -119,7 +119,7 @@ TEST_F(RpcForms, EventsByGetResumeAfterLastEventId) {
 // events.
 TEST_F(RpcForms, ForeignLastEventIdIsRefused) {
   for (const std::string_view id :
-       {"abc", "-1", "1.5", "99999999999999999999", "9223372036854775808", "1 2"}) {
+       {"abc", "-1", "1.A", "99999999999999999999", "9223372036854775808", "1 2"}) {
     const RawResponse response = Exchange(
         cell_.port(),
         Get(std::string(kWatchJob) + "?message={}", "Last-Event-ID: " + std::string(id) + "\r\n"));

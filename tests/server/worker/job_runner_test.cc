@@ -98,7 +98,9 @@ TEST_F(JobRunnerTest, ATraceComesWhenItIsWanted) {
   EXPECT_THAT(Names(), ElementsAre("picture.svg", "report", "toolpath", "trace"));
   EXPECT_NEAR(Report().total().times().dwell_s(), 1.5, 1e-9);
   EXPECT_EQ(Finished()->executables_size(), 1);  // OPT-1.11: the first run makes it
-  EXPECT_EQ(Finished()->executables().begin()->first, 45);
+  EXPECT_EQ(Finished()->executables(0).slot(), 45);
+  EXPECT_EQ(Finished()->executables(0).object_revision(), 3);
+  EXPECT_NE(Finished()->executables(0).content(), "");
   EXPECT_EQ(std::ranges::count_if(Events(), [](const v1::JobEvent& e) { return e.has_signal(); }),
             1);
 }
@@ -179,7 +181,7 @@ TEST_F(JobRunnerTest, IsHeldAndGoesOn) {
 // for him.
 TEST_F(JobRunnerTest, AHaltThatNobodyEndsEndsTheRun) {
   v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, kEndless);
-  assignment.mutable_job()->mutable_simulation()->mutable_breakpoint()->set_step(2);
+  assignment.mutable_job()->mutable_simulation()->add_breakpoints()->mutable_step()->set_step(2);
   Work(assignment);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_STOPPED);
   EXPECT_EQ(Outcome().code(), "CELL-E9308");

@@ -142,6 +142,7 @@ class JobRunnerTest : public testing::Test {
     program.set_content(source);
     program.set_size(static_cast<std::int64_t>(source.size()));
     program.set_is_source(true);
+    program.set_object_revision(3);
     v1::Budget& budget = *assignment.mutable_budget();
     budget.set_steps(1'000'000'000);
     budget.set_virtual_time_ns(1'000'000'000'000'000);

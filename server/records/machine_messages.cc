@@ -1,4 +1,4 @@
-#include "server/services/machine_messages.h"
+#include "server/records/machine_messages.h"
 
 #include <algorithm>
 #include <array>
@@ -72,25 +72,32 @@ v1::Machine ToProto(const storage::MachineRecord& record) {
   message.set_profile(record.profile);
   for (const auto& [name, value] : record.parameters) (*message.mutable_parameters())[name] = value;
   message.mutable_connection()->set_kind(v1::MachineConnection::KIND_VIRTUAL);
-  message.mutable_status()->set_machine(message.name());
-  message.mutable_status()->set_state(v1::MACHINE_STATE_IDLE);
+  *message.mutable_status() = StatusOf(record, {});
   message.set_etag(std::to_string(record.revision));
   *message.mutable_create_time() = ToProto(record.created_at);
   *message.mutable_update_time() = ToProto(record.updated_at);
   return message;
 }
 
-v1::Machine ToProto(const storage::MachineRecord& record,
-                    const std::vector<storage::MachineJobs>& unfinished) {
-  v1::Machine message = ToProto(record);
+v1::MachineStatus StatusOf(const storage::MachineRecord& record,
+                           const std::vector<storage::MachineJobs>& unfinished) {
+  v1::MachineStatus status;
+  status.set_machine(MachineName(record.id));
+  status.set_state(v1::MACHINE_STATE_IDLE);
   const auto jobs = std::ranges::find(unfinished, record.id, &storage::MachineJobs::machine);
-  if (jobs == unfinished.end()) return message;
-  v1::MachineStatus& status = *message.mutable_status();
+  if (jobs == unfinished.end()) return status;
   status.set_jobs_active(static_cast<std::int32_t>(jobs->unfinished));
   if (jobs->oldest_running > 0) {
     status.set_state(v1::MACHINE_STATE_RUNNING);
     status.set_simulating_job(JobName(jobs->oldest_running));
   }
+  return status;
+}
+
+v1::Machine ToProto(const storage::MachineRecord& record,
+                    const std::vector<storage::MachineJobs>& unfinished) {
+  v1::Machine message = ToProto(record);
+  *message.mutable_status() = StatusOf(record, unfinished);
   return message;
 }
 

@@ -20,6 +20,9 @@ v1::Machine ToProto(const storage::MachineRecord& record);
 // With what its jobs do, of those that Store::UnfinishedJobs gave.
 v1::Machine ToProto(const storage::MachineRecord& record,
                     const std::vector<storage::MachineJobs>& unfinished);
+// How it stands as far as its jobs tell: for now no machine has a host.
+v1::MachineStatus StatusOf(const storage::MachineRecord& record,
+                           const std::vector<storage::MachineJobs>& unfinished);
 v1::LaserSchedule ToProto(const storage::ScheduleRecord& record);
 
 // A record that is not stored yet.

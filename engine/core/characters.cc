@@ -1,6 +1,6 @@
-#include "clients/lsp/text_position.h"
+#include "engine/core/characters.h"
 
-namespace rmlcell::lsp {
+namespace rmlcell {
 namespace {
 
 struct Character {
@@ -58,4 +58,4 @@ std::size_t BytesOfCharacters(std::string_view line, std::uint32_t characters, E
   return at;
 }
 
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell

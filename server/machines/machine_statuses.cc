@@ -1,0 +1,93 @@
+#include "server/machines/machine_statuses.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/base/names.h"
+#include "server/records/machine_messages.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr int kReadAhead = 1000;
+
+// Whether a machine may stand otherwise after it.
+bool Matters(const storage::EventRecord& event) {
+  return event.job == 0 || event.kind == "state" || event.kind == "ended";
+}
+
+}  // namespace
+
+MachineStatuses::MachineStatuses(storage::Store& store, EventFeed& feed, Executor& executor)
+    : store_(store), feed_(feed), executor_(executor) {
+  subscription_ = feed_.Subscribe(std::string(EventFeed::kEverything), [this] { Woken(); });
+  Woken();
+}
+
+MachineStatuses::~MachineStatuses() {
+  subscription_.reset();
+  std::unique_lock lock(mutex_);
+  rests_.wait(lock, [this] { return !looking_; });
+}
+
+void MachineStatuses::Woken() {
+  {
+    const std::lock_guard lock(mutex_);
+    again_ = true;
+    if (looking_) return;
+    looking_ = true;
+  }
+  executor_.Post([this] { Look(); });
+}
+
+void MachineStatuses::Look() {
+  for (;;) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!again_) {
+        looking_ = false;
+        rests_.notify_all();  // under the lock: it may be gone right after
+        return;
+      }
+      again_ = false;
+    }
+    if (!ChangedSinceLastLook()) continue;
+    const auto machines = store_.ListMachines();
+    const auto unfinished = store_.UnfinishedJobs();
+    if (!machines || !unfinished) {
+      first_ = true;  // the next event brings a whole look
+      continue;
+    }
+    std::map<std::string, std::string> now;
+    for (const storage::MachineRecord& machine : *machines)
+      now[MachineName(machine.id)] = StatusOf(machine, *unfinished).SerializeAsString();
+    for (const auto& [name, status] : now) {
+      const auto before = told_.find(name);
+      if (before == told_.end() || before->second != status) feed_.Publish(name, status);
+    }
+    for (const auto& [name, status] : told_) {
+      if (!now.contains(name)) feed_.Forget(name);
+    }
+    told_ = std::move(now);
+  }
+}
+
+bool MachineStatuses::ChangedSinceLastLook() {
+  bool changed = std::exchange(first_, false);
+  if (changed) {
+    position_ = feed_.position();
+    return true;
+  }
+  while (true) {
+    const auto events = feed_.EventsAfter(position_, kReadAhead);
+    if (!events) {  // some are gone: whatever they told is seen below
+      position_ = feed_.position();
+      return true;
+    }
+    if (events->empty()) return changed;
+    position_ = events->back().position;
+    changed = changed || std::ranges::any_of(*events, Matters);
+  }
+}
+
+}  // namespace rmlcell::server

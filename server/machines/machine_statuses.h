@@ -1,0 +1,44 @@
+#pragma once
+
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "server/base/executor.h"
+#include "server/events/event_feed.h"
+#include "storage/store.h"
+
+namespace rmlcell::server {
+
+// Tells the feed how machines stand that have no host, for now every one: what the jobs of the
+// store say of them. It looks when a job or a machine changed. Thread-safe.
+class MachineStatuses {
+ public:
+  // All of them outlive this.
+  MachineStatuses(storage::Store& store, EventFeed& feed, Executor& executor);
+  ~MachineStatuses();  // waits for a look that is under way
+  MachineStatuses(const MachineStatuses&) = delete;
+  MachineStatuses& operator=(const MachineStatuses&) = delete;
+
+ private:
+  void Woken();
+  void Look();
+  bool ChangedSinceLastLook();
+
+  storage::Store& store_;
+  EventFeed& feed_;
+  Executor& executor_;
+  std::mutex mutex_;
+  std::condition_variable rests_;
+  bool looking_ = false;  // guarded by mutex_; a look is posted or under way
+  bool again_ = true;     // guarded by mutex_; there is something that it may have missed
+  // Of the look alone.
+  bool first_ = true;
+  std::int64_t position_ = 0;                // events up to here are accounted for
+  std::map<std::string, std::string> told_;  // by name of the machine
+  std::unique_ptr<EventFeed::Subscription> subscription_;
+};
+
+}  // namespace rmlcell::server

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "engine/core/result.h"
+#include "rmlcell/v1/cell.pb.h"
+#include "server/services/subscriptions.h"
+
+namespace rmlcell::server {
+
+class JobBook;
+class ProgramBook;
+class ProjectBook;
+
+// Where a watch of the cell reads what things are.
+struct CellRecords {
+  storage::Store& store;
+  JobBook& jobs;
+  ProgramBook& programs;
+  ProjectBook& projects;
+};
+
+// What this subscription begins with, as it stands now. Errors: those of the store.
+Result<v1::CellSnapshot> SnapshotOf(const CellRecords& records,
+                                    const CellSubscription& subscription);
+
+// An event as it is told. Of a record that is no job it is told what it is by now; where it cannot
+// be read, or is gone meanwhile, its name alone.
+v1::CellEvent EventOf(const CellRecords& records, const storage::EventRecord& event);
+
+}  // namespace rmlcell::server

@@ -1,0 +1,252 @@
+#include "storage/sqlite/queue_life.h"
+
+#include <algorithm>
+
+#include "storage/sqlite/job_changes.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+// One that waited for a job that has succeeded.
+Status LetFollow(WriteContext& context, std::int64_t job, std::int64_t after) {
+  QueueTable& queue = context.tables.queue;
+  if (const Status removed = queue.RemoveAfter(job, after); !removed) return removed.error();
+  const Result<std::vector<std::int64_t>> left = queue.After(job);
+  if (!left) return left.error();
+  if (!left->empty()) return {};
+  Result<std::optional<JobRow>> row = context.tables.jobs.Get(job);
+  if (!row) return row.error();
+  if (!*row || (*row)->job.state != JobState::kQueued) return {};
+  SetBlocked(context, **row, (*row)->blocked & ~kBlockedByJobs);
+  return context.tables.jobs.Update(**row);
+}
+
+// The job that keeps this one waiting: one that did not succeed before one that may.
+Status AddAwaited(Tables& tables, JobRecord& job) {
+  for (const std::int64_t id : job.after) {
+    const Result<std::optional<JobRow>> other = tables.jobs.Get(id);
+    if (!other) return other.error();
+    const bool failed = !*other || IsFinal((*other)->job.state);
+    if (!failed && job.wait == WaitReason::kAfterJob) continue;
+    job.wait = failed ? WaitReason::kAfterJobFailed : WaitReason::kAfterJob;
+    job.waits_for = id;
+    if (failed) break;
+  }
+  return {};
+}
+
+Status AddBusyMachine(Tables& tables, JobRecord& job) {
+  const Result<std::optional<std::int64_t>> running = tables.queue.RunningRun(job.machine);
+  if (!running) return running.error();
+  if (!*running) return {};
+  job.wait = WaitReason::kMachineBusy;
+  job.waits_for = **running;
+  return {};
+}
+
+using Head = QueueTable::Head;
+
+void Take(const std::optional<Head>& other, std::optional<Head>& first) {
+  if (other && (!first || other->IsBefore(*first))) first = other;
+}
+
+// Of machines that run none.
+Result<std::optional<Head>> NextRun(WriteContext& context, const JobRequest& request) {
+  QueueTable& queue = context.tables.queue;
+  Result<std::vector<std::string>> machines = queue.MachinesWithRuns();
+  if (!machines) return machines.error();
+  std::optional<Head> first;
+  for (const std::string& machine : *machines) {
+    if (!request.run_machines.empty() &&
+        std::ranges::find(request.run_machines, machine) == request.run_machines.end())
+      continue;
+    const Result<std::optional<std::int64_t>> running = queue.RunningRun(machine);
+    if (!running) return running.error();
+    if (*running) continue;
+    const Result<std::optional<Head>> next = queue.NextRun(machine);
+    if (!next) return next.error();
+    Take(*next, first);
+  }
+  return first;
+}
+
+}  // namespace
+
+Status AddWait(Tables& tables, JobRecord& job, WallTime now) {
+  if (job.held) {
+    job.wait = WaitReason::kHeld;
+  } else if (!job.after.empty()) {
+    return AddAwaited(tables, job);
+  } else if (job.not_before && *job.not_before > now) {
+    job.wait = WaitReason::kNotBefore;
+  } else if (job.kind == kRunKind) {
+    return AddBusyMachine(tables, job);
+  }
+  return {};
+}
+
+Result<std::vector<std::int64_t>> StillWanted(WriteContext& context, const NewJob& job) {
+  std::vector<std::int64_t> wanted;
+  for (const std::int64_t id : job.after) {
+    const Result<JobRow> row = GetRow(context, id);
+    if (!row) return row.error();
+    const JobState state = row->job.state;
+    if (state == JobState::kSucceeded || std::ranges::find(wanted, id) != wanted.end()) continue;
+    if (IsFinal(state)) {
+      return Error{ErrorCode::kCellPrecondition,
+                   "job " + std::to_string(id) + " has ended, and did not succeed",
+                   {}};
+    }
+    wanted.push_back(id);
+  }
+  std::ranges::sort(wanted);
+  return wanted;
+}
+
+Status LetFollowersGo(WriteContext& context, std::int64_t job) {
+  const Result<std::vector<std::int64_t>> followers = context.tables.queue.Dependents(job);
+  if (!followers) return followers.error();
+  for (const std::int64_t follower : *followers) {
+    if (const Status followed = LetFollow(context, follower, job); !followed)
+      return followed.error();
+  }
+  return {};
+}
+
+Result<std::optional<std::int64_t>> NextFor(WriteContext& context, const JobRequest& request) {
+  std::optional<Head> first;
+  for (const std::string& kind : request.kinds) {
+    if (kind == kRunKind) {
+      const Result<std::optional<Head>> run = NextRun(context, request);
+      if (!run) return run.error();
+      Take(*run, first);
+      continue;
+    }
+    for (const std::string& pool : request.pools) {
+      const Result<std::optional<Head>> next = context.tables.queue.Next(pool, kind);
+      if (!next) return next.error();
+      Take(*next, first);
+    }
+  }
+  return first ? std::optional(first->job) : std::nullopt;
+}
+
+namespace {
+
+Result<JobRow> GetWaiting(WriteContext& context, std::int64_t id) {
+  Result<JobRow> row = GetRow(context, id);
+  if (row && row->job.state != JobState::kQueued) {
+    return Error{ErrorCode::kCellPrecondition,
+                 "job " + std::to_string(id) + " does not wait in the queue",
+                 {}};
+  }
+  return row;
+}
+
+Result<JobRecord> Written(WriteContext& context, Result<JobRow> row,
+                          const std::vector<NewEvent>& events) {
+  if (const Status written = WriteChange(context, *row, kOutsideAnAttempt, events); !written)
+    return written.error();
+  return std::move(row->job);
+}
+
+// Between the job in front of this place and the place itself.
+Result<double> PlaceInFrontOf(WriteContext& context, const JobRow& before) {
+  const Head head{before.job.id, before.job.priority, before.place};
+  const auto in_front = context.tables.queue.PlaceBefore(before.job.pool, before.job.kind, head);
+  if (!in_front) return in_front.error();
+  const double place = *in_front ? (**in_front + head.place) / 2.0 : head.place - 1.0;
+  if (place >= head.place || (*in_front && place <= **in_front)) {
+    return Error{ErrorCode::kCellPrecondition,
+                 "there is no room in front of job " + std::to_string(before.job.id) +
+                     " any more; move others behind it",
+                 {}};
+  }
+  return place;
+}
+
+// Behind all that wait now, and in front of all that come.
+Result<double> LastPlace(WriteContext& context, const JobRecord& job) {
+  const auto last = context.tables.queue.LastPlace(job.pool, job.kind, job.priority);
+  if (!last) return last.error();
+  const auto newest = static_cast<double>(context.counters.job);
+  return (std::max(last->value_or(newest), newest) + newest + 1.0) / 2.0;
+}
+
+}  // namespace
+
+Result<JobRecord> HoldJobBack(WriteContext& context, std::int64_t id,
+                              const std::vector<NewEvent>& events) {
+  Result<JobRow> row = GetWaiting(context, id);
+  if (!row) return row.error();
+  row->job.held = true;
+  SetBlocked(context, *row, row->blocked | kBlockedByHold);
+  return Written(context, std::move(row), events);
+}
+
+Result<JobRecord> LetJobGo(WriteContext& context, std::int64_t id,
+                           const std::vector<NewEvent>& events) {
+  Result<JobRow> row = GetWaiting(context, id);
+  if (!row) return row.error();
+  const Result<std::vector<std::int64_t>> after = context.tables.queue.After(id);
+  if (!after) return after.error();
+  bool waits = false;
+  for (const std::int64_t other : *after) {
+    const Result<std::optional<JobRow>> awaited = context.tables.jobs.Get(other);
+    if (!awaited) return awaited.error();
+    if (*awaited && !IsFinal((*awaited)->job.state)) {
+      waits = true;
+    } else if (const Status removed = context.tables.queue.RemoveAfter(id, other); !removed) {
+      return removed.error();
+    }
+  }
+  row->job.held = false;
+  SetBlocked(context, *row, (row->blocked & kBlockedByTime) | (waits ? kBlockedByJobs : 0));
+  return Written(context, std::move(row), events);
+}
+
+Result<JobRecord> MoveJob(WriteContext& context, std::int64_t id, std::int64_t before,
+                          std::optional<int> priority, const std::vector<NewEvent>& events) {
+  if (priority && (*priority < kPriorityMin || *priority > kPriorityMax))
+    return InvalidArgument("priority is " + std::to_string(*priority) +
+                           ", allowed are -100 to 100");
+  Result<JobRow> row = GetWaiting(context, id);
+  if (!row) return row.error();
+  if (before == id) return InvalidArgument("a job cannot stand in front of itself");
+  if (before != 0) {
+    const Result<JobRow> other = GetWaiting(context, before);
+    if (!other) return other.error();
+    if (other->job.pool != row->job.pool || other->job.kind != row->job.kind) {
+      return Error{ErrorCode::kCellPrecondition,
+                   "job " + std::to_string(before) + " waits for another kind of worker",
+                   {}};
+    }
+    if (priority && *priority != other->job.priority)
+      return InvalidArgument("in front of a job another one has its priority");
+    const Result<double> place = PlaceInFrontOf(context, *other);
+    if (!place) return place.error();
+    row->job.priority = other->job.priority;
+    row->place = *place;
+  } else {
+    row->job.priority = priority.value_or(row->job.priority);
+    const Result<double> place = LastPlace(context, row->job);
+    if (!place) return place.error();
+    row->place = *place;
+  }
+  return Written(context, std::move(row), events);
+}
+
+Status LetDueJobsGo(WriteContext& context) {
+  const Result<std::vector<std::int64_t>> due = context.tables.queue.Due(context.now);
+  if (!due) return due.error();
+  for (const std::int64_t id : *due) {
+    Result<JobRow> row = GetRow(context, id);
+    if (!row) return row.error();
+    SetBlocked(context, *row, row->blocked & ~kBlockedByTime);
+    context.changed = true;
+    if (const Status updated = context.tables.jobs.Update(*row); !updated) return updated.error();
+  }
+  return {};
+}
+
+}  // namespace rmlcell::storage::sqlite

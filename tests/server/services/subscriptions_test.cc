@@ -1,0 +1,168 @@
+// What the subscriptions of a watch want, as proto/rmlcell/v1/cell.proto has it.
+#include "server/services/subscriptions.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "server/base/names.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using std::chrono::microseconds;
+using storage::EventRecord;
+
+v1::Subscription Jobs(const std::string& filter) {
+  v1::Subscription wanted;
+  wanted.set_id("a");
+  wanted.mutable_jobs()->set_filter(filter);
+  return wanted;
+}
+
+class SubscriptionTest : public testing::Test {
+ protected:
+  std::int64_t Submit(const std::string& machine, const std::string& kind,
+                      const std::string& caller) {
+    return Must(bed.store().SubmitAndWait({.machine = machine, .kind = kind, .caller = caller}))
+        .job.id;
+  }
+  static ErrorCode Refused(const v1::Subscription& wanted) {
+    const auto made = CellSubscription::Make(wanted);
+    return made ? ErrorCode{} : made.error().code;
+  }
+
+  ServerBed bed;
+  JobFactsBook facts{bed.store()};
+};
+
+TEST_F(SubscriptionTest, AFilterLooksAtWhatAJobKeeps) {
+  const std::int64_t laser = Submit("optimo-1", "CHECK", "anna");
+  const std::int64_t mill = Submit("mill-1", "SIMULATE", "berta");
+  const auto wants = [&](const std::string& filter) {
+    const CellSubscription made = Must(CellSubscription::Make(Jobs(filter)));
+    std::string found;
+    if (made.WantsEvent({.job = laser, .kind = "state"}, facts)) found += "laser ";
+    if (made.WantsEvent({.job = mill, .kind = "state"}, facts)) found += "mill ";
+    if (made.WantsLatest(JobName(laser), facts)) found += "laser now ";
+    if (made.WantsLatest(JobName(mill), facts)) found += "mill now ";
+    return found;
+  };
+  EXPECT_EQ(wants(""), "laser mill laser now mill now ");
+  EXPECT_EQ(wants("machine = machines/mill-1"), "mill mill now ");
+  EXPECT_EQ(wants("kind = CHECK"), "laser laser now ");
+  EXPECT_EQ(wants("caller = berta"), "mill mill now ");
+  EXPECT_EQ(wants("caller = berta AND kind = CHECK"), "");
+  for (const char* changing : {"state = FAILED", "finished = true"})
+    EXPECT_EQ(Refused(Jobs(changing)), ErrorCode::kCellBadFilter) << changing;
+}
+
+TEST_F(SubscriptionTest, SignalsCanBeLeftOut) {
+  const std::int64_t job = Submit("optimo-1", "CHECK", "anna");
+  v1::Subscription wanted = Jobs("");
+  wanted.mutable_jobs()->set_without_signals(true);
+  const CellSubscription made = Must(CellSubscription::Make(wanted));
+  EXPECT_FALSE(made.WantsEvent({.job = job, .kind = "signal"}, facts));
+  EXPECT_TRUE(made.WantsEvent({.job = job, .kind = "halted"}, facts));
+  const CellSubscription all = Must(CellSubscription::Make(Jobs("")));
+  EXPECT_TRUE(all.WantsEvent({.job = job, .kind = "signal"}, facts));
+}
+
+TEST_F(SubscriptionTest, MachinesBringTheirProgramsAndSchedules) {
+  v1::Subscription wanted;
+  wanted.set_id("a");
+  wanted.mutable_machines()->add_names("machines/mill-1");
+  const CellSubscription made = Must(CellSubscription::Make(wanted));
+  const auto wants = [&](const std::string& resource) {
+    return made.WantsEvent({.resource = resource, .kind = "updated"}, facts);
+  };
+  EXPECT_TRUE(wants("machines/mill-1"));
+  EXPECT_TRUE(wants("machines/mill-1/programs/3"));
+  EXPECT_TRUE(wants("machines/mill-1/laserSchedules/3"));
+  EXPECT_FALSE(wants("machines/mill-10"));
+  EXPECT_FALSE(wants("machines/optimo-1/programs/3"));
+  EXPECT_FALSE(wants("projects/mill-1"));
+  EXPECT_FALSE(wants("jobs/1"));
+  EXPECT_TRUE(made.WantsLatest("machines/mill-1", facts));
+  EXPECT_FALSE(made.WantsLatest("machines/optimo-1", facts));
+  wanted.mutable_machines()->set_events_only(true);
+  EXPECT_FALSE(Must(CellSubscription::Make(wanted)).WantsLatest("machines/mill-1", facts));
+}
+
+// A job that was deleted is known by its name alone.
+TEST_F(SubscriptionTest, OfADeletedJobEverySubscriptionThatMayHaveShownItHears) {
+  const EventRecord deleted{.resource = "jobs/7", .kind = "deleted"};
+  EXPECT_TRUE(Must(CellSubscription::Make(Jobs("kind = CHECK"))).WantsEvent(deleted, facts));
+  v1::Subscription named;
+  named.set_id("a");
+  named.mutable_jobs()->add_names("jobs/8");
+  EXPECT_FALSE(Must(CellSubscription::Make(named)).WantsEvent(deleted, facts));
+  named.mutable_jobs()->add_names("jobs/7");
+  EXPECT_TRUE(Must(CellSubscription::Make(named)).WantsEvent(deleted, facts));
+}
+
+TEST_F(SubscriptionTest, OfProjects) {
+  v1::Subscription wanted;
+  wanted.set_id("a");
+  wanted.mutable_projects();
+  EXPECT_TRUE(Must(CellSubscription::Make(wanted))
+                  .WantsEvent({.resource = "projects/lid", .kind = "updated"}, facts));
+  wanted.mutable_projects()->add_names("projects/box");
+  EXPECT_FALSE(Must(CellSubscription::Make(wanted))
+                   .WantsEvent({.resource = "projects/lid", .kind = "updated"}, facts));
+  wanted.mutable_projects()->add_names("lid");
+  EXPECT_EQ(Refused(wanted), ErrorCode::kCellInvalidArgument);
+}
+
+TEST_F(SubscriptionTest, TheRateIsOneToTwentyHertz) {
+  const auto interval = [](double rate) {
+    v1::Subscription wanted = Jobs("");
+    wanted.set_max_rate_hz(rate);
+    return Must(CellSubscription::Make(wanted)).interval();
+  };
+  EXPECT_EQ(interval(0.0), microseconds(0));
+  EXPECT_EQ(interval(20.0), microseconds(0));
+  EXPECT_EQ(interval(10.0), microseconds(100'000));
+  EXPECT_EQ(interval(1.0), microseconds(1'000'000));
+  for (const double rate : {0.99, 20.01, -1.0, std::nan("")}) {
+    v1::Subscription wanted = Jobs("");
+    wanted.set_max_rate_hz(rate);
+    EXPECT_EQ(Refused(wanted), ErrorCode::kCellInvalidArgument) << rate;
+  }
+}
+
+TEST_F(SubscriptionTest, WhatIsRefused) {
+  v1::Subscription nameless = Jobs("");
+  nameless.clear_id();
+  EXPECT_EQ(Refused(nameless), ErrorCode::kCellInvalidArgument);
+  nameless.set_id(std::string(65, 'a'));
+  EXPECT_EQ(Refused(nameless), ErrorCode::kCellInvalidArgument);
+  nameless.set_id(std::string(64, 'a'));
+  EXPECT_EQ(Refused(nameless), ErrorCode{});
+  v1::Subscription of_nothing;
+  of_nothing.set_id("a");
+  EXPECT_EQ(Refused(of_nothing), ErrorCode::kCellInvalidArgument);
+  v1::Subscription both = Jobs("kind = CHECK");
+  both.mutable_jobs()->add_names("jobs/1");
+  EXPECT_EQ(Refused(both), ErrorCode::kCellInvalidArgument);
+  v1::Subscription variables;
+  variables.set_id("a");
+  variables.mutable_variables();
+  EXPECT_EQ(Refused(variables), ErrorCode::kCellUnimplemented);
+  google::protobuf::RepeatedPtrField<v1::Subscription> twice;
+  *twice.Add() = Jobs("");
+  *twice.Add() = Jobs("");
+  EXPECT_EQ(CodeOf(MakeSubscriptions(twice)), ErrorCode::kCellInvalidArgument);
+}
+
+// Facts of jobs are asked once.
+TEST_F(SubscriptionTest, FactsOfAJobThatIsGoneAreNone) {
+  EXPECT_EQ(facts.Of(1), nullptr);
+  const std::int64_t job = Submit("mill-1", "CHECK", "anna");
+  EXPECT_EQ(facts.Of(job)->machine, "mill-1");
+  EXPECT_EQ(facts.Of(job), facts.Of(job));
+}
+
+}  // namespace
+}  // namespace rmlcell::server
