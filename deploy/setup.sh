@@ -22,6 +22,7 @@ libprotobuf-dev         # messages
 protobuf-compiler       # generates the messages
 libsqlite3-dev          # the embedded store
 libzstd-dev             # compresses what the store keeps
+libarchive-dev          # projects as one file
 libssl-dev              # SHA-256 of programs and products
 libspdlog-dev           # logs
 libfmt-dev              # spdlog's formatting

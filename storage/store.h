@@ -44,6 +44,12 @@ struct Lease {
   std::int64_t fence = 0;  // grows with every lease that this store ever gave
   std::string worker{};
   WallTime until{};
+  std::string server{};  // that gave the job to the worker
+};
+// What a client asked of a job, for the server that has it. Bytes that only the servers understand.
+struct TakenOrder {
+  Lease lease;
+  std::string payload;
 };
 struct LeasedJob {
   Lease lease;
@@ -97,6 +103,7 @@ struct JobEnd {
 // What a worker that is free takes.
 struct JobRequest {
   std::string worker{};
+  std::string server{};  // of the worker; for orders
   std::vector<std::string> kinds{};
   std::vector<std::string> pools{""};
   // Of a RUN: those of these machines; empty: of all.
@@ -252,6 +259,9 @@ class Store {
   virtual Result<JobRecord> HoldBack(std::int64_t job, const std::vector<NewEvent>& events) = 0;
   // It waits no longer for a person: neither held back nor for jobs that did not succeed.
   virtual Result<JobRecord> LetGo(std::int64_t job, const std::vector<NewEvent>& events) = 0;
+  // How many of the jobs that wait for the same workers, and are ready, start before this one.
+  // Dear: they are counted. CellPrecondition: it does not wait.
+  virtual Result<std::int64_t> CountBefore(std::int64_t job) = 0;
   // In front of `before`, with its priority (CellNotFound; CellPrecondition: it does not wait in
   // the same pool for the same kind of worker, or there is no room between the two); 0: behind all
   // others of its priority, which is `priority` from now on where it is given.
@@ -295,6 +305,14 @@ class Store {
   // from going on. It may take nothing for a while after the store was lost and found again:
   // whoever could not renew meanwhile gets time to.
   virtual Result<std::vector<JobRecord>> Expire(const LossPolicy& policy) = 0;
+
+  // --- orders: whichever server a client asks, the one whose worker has the job hears of it
+  // For the holder of the lease; gone with the lease. CellPrecondition: no other server than `from`
+  // has the job.
+  virtual Status PutOrder(std::int64_t job, std::string_view from, std::string_view payload) = 0;
+  // Those for leases of this server, in the order in which they were put, each once. Cheap where
+  // there are none: called a few times a second.
+  virtual Result<std::vector<TakenOrder>> TakeOrders(std::string_view server) = 0;
 
   // --- events and artifacts
   // In order, those after the number given. CellEventsGone when some of these were removed (a store

@@ -217,6 +217,8 @@ struct RemoteArguments {
   bool check_only = false;
   bool force = false;
   bool insert = false;
+  bool inch = false;
+  std::vector<int> slots;
   bool machine_coordinates = false;
   SubmitRequest submit;
 };
@@ -293,12 +295,15 @@ void AddProgramVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int&
 
 void AddProjectVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {
   CLI::App* projects = RemoteVerb(
-      app, "projects", "List, make, show, update, delete and transfer projects",
+      app, "projects", "List, make, show, update, delete, transfer, export and import projects",
       "  rmlcell projects                               all of them\n"
       "  rmlcell projects create door door/             12.S, 44.SI ... and project.json of a folder\n"
       "  rmlcell projects create door door.json\n"
       "  rmlcell projects transfer door optimo-1 --check-only\n"
-      "  rmlcell projects transfer door optimo-1 --insert",
+      "  rmlcell projects transfer door optimo-1 --insert\n"
+      "  rmlcell projects take door optimo-1 --slots 12 44   of what the machine holds\n"
+      "  rmlcell projects export door -o door.zip\n"
+      "  rmlcell projects import door-2 door.zip",
       remote);
   projects->require_subcommand(0, 1);
   projects->fallthrough();  // --server and --json may stand at the end, too
@@ -333,6 +338,23 @@ void AddProjectVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int&
     exit_code =
         TransferProject(remote, given.project, given.machine, given.insert, given.check_only);
   });
+  CLI::App* take = projects->add_subcommand("take", "Make a project of what a machine holds");
+  take->add_option("PROJECT", given.project)->required();
+  take->add_option("MACHINE", given.machine)->required();
+  take->add_option("--slots", given.slots, "these alone; else all that hold a program");
+  take->add_flag("--inch", given.inch, "convert the programs to inches and degrees");
+  take->callback([&] {
+    exit_code = TakeProject(remote, given.project, given.machine, given.slots, given.inch);
+  });
+  CLI::App* out = projects->add_subcommand("export", "Write a project as one file");
+  out->add_option("PROJECT", given.project)->required();
+  out->add_option("-o,--output", given.output,
+                  "ZIP archive; - for standard output; else PROJECT.zip");
+  out->callback([&] { exit_code = ExportProject(remote, given.project, given.output); });
+  CLI::App* in = projects->add_subcommand("import", "Make a project of such a file");
+  in->add_option("PROJECT", given.project)->required();
+  in->add_option("FILE", given.file)->required();
+  in->callback([&] { exit_code = ImportProject(remote, given.project, given.file); });
 }
 
 void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {

@@ -164,7 +164,8 @@ void AddSlowMoves(const v1::RunReport& report, Rows& rows) {
     if (++listed > kListedMax) break;
     rows.emplace_back(
         "", PlaceText(move.place()) + ": " + Fixed(move.reached_mm_s(), 3) + " of " +
-                Fixed(move.wanted_mm_s(), 3) + " mm/s, " + move.cause() +
+                Fixed(move.wanted_mm_s(), 3) + " mm/s, " +
+                LowerCase(v1::SlowMove::Cause_Name(move.cause()).substr(6)) +
                 (move.axis().empty() ? "" : " " + move.axis()) +
                 (move.count() > 1 ? " (" + std::to_string(move.count()) + " times)" : ""));
   }
@@ -295,6 +296,14 @@ void AddMachine(const machine::MachineFamily& family, const Message& message, Ro
     rows.emplace_back("changed", Visible(changes));
 }
 
+// "  A 0.500000  B 0.250000".
+std::string TurnedText(const v1::Position& position) {
+  std::string text;
+  for (const v1::AxisValue& turned : position.turned())
+    text += "  " + turned.axis() + " " + Fixed(turned.value(), 6);
+  return text;
+}
+
 // Where the tip ends and went: as the program counts, or the machine.
 void AddPositions(const v1::RunReport& report, const machine::MachineShape& shape, Zero zero,
                   Rows& rows) {
@@ -308,9 +317,8 @@ void AddPositions(const v1::RunReport& report, const machine::MachineShape& shap
   };
   rows.emplace_back("final tip", text(report.final_position().tip()));
   if (shape.five_axis) {
-    rows.emplace_back("final column", PointText(report.final_position().column()) + "  A " +
-                                          Fixed(report.final_position().a(), 6) + "  B " +
-                                          Fixed(report.final_position().b(), 6));
+    rows.emplace_back("final column", PointText(report.final_position().column()) +
+                                          TurnedText(report.final_position()));
   }
   if (report.has_tip_box()) {
     rows.emplace_back("tip box",

@@ -35,6 +35,12 @@ int UpdateProject(const Remote& remote, const std::string& project, const std::s
 int DeleteProject(const Remote& remote, const std::string& project);
 int TransferProject(const Remote& remote, const std::string& project, const std::string& machine,
                     bool insert, bool check_only);
+// Of what a machine holds; of these slots, or all of them.
+int TakeProject(const Remote& remote, const std::string& project, const std::string& machine,
+                const std::vector<int>& slots, bool inch);
+// `output` is empty: PROJECT.zip.
+int ExportProject(const Remote& remote, const std::string& project, const std::string& output);
+int ImportProject(const Remote& remote, const std::string& project, const std::string& file);
 
 struct SubmitRequest {
   std::string machine;

@@ -3,6 +3,7 @@
 #include "clients/cli/findings_text.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/verdict_text.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "proto/bridge/findings.h"
@@ -82,6 +83,13 @@ int Refused(const grpc::Status& status, const Remote& remote) {
 
 std::string FullName(const std::string& collection, const std::string& name) {
   return name.starts_with(collection + "/") ? name : collection + "/" + name;
+}
+
+void PrintProgramFindings(const v1::Findings& findings) {
+  PrintRaw(FindingsText(findings));
+  if (findings.verdict() == v1::VERDICT_UNSPECIFIED) return;
+  Print("verdict: " + VerdictText(findings.verdict()));
+  for (const v1::VerdictReason& reason : findings.reasons()) Print("  " + ReasonLine(reason));
 }
 
 }  // namespace rmlcell::cli

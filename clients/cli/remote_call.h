@@ -6,6 +6,7 @@
 #include <string>
 
 #include "clients/cli/remote.h"
+#include "rmlcell/v1/common.pb.h"
 
 namespace rmlcell::cli {
 
@@ -16,6 +17,9 @@ void Prepare(grpc::ClientContext& context);
 
 // Prints what the server said, findings included. Returns the exit code that fits.
 int Refused(const grpc::Status& status, const Remote& remote);
+
+// What there is to say about a program, and what will come of it.
+void PrintProgramFindings(const v1::Findings& findings);
 
 // "17" or "jobs/17" -> "jobs/17"; the same for machines and projects.
 std::string FullName(const std::string& collection, const std::string& name);

@@ -5,7 +5,6 @@
 #include "clients/cli/findings_text.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
-#include "clients/cli/project_files.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/terminal.h"
 #include "clients/cli/verdict_text.h"
@@ -19,7 +18,6 @@
 #include "proto/bridge/sha256.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
 #include "rmlcell/v1/program.grpc.pb.h"
-#include "rmlcell/v1/project.grpc.pb.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -29,14 +27,6 @@ constexpr std::size_t kChunkBytes = 512 << 10;
 
 std::string ProgramName(const std::string& machine, int slot) {
   return FullName("machines", machine) + "/programs/" + std::to_string(slot);
-}
-
-// What there is to say, and what will come of it.
-void PrintProgramFindings(const v1::Findings& findings) {
-  PrintRaw(FindingsText(findings));
-  if (findings.verdict() == v1::VERDICT_UNSPECIFIED) return;
-  Print("verdict: " + VerdictText(findings.verdict()));
-  for (const v1::VerdictReason& reason : findings.reasons()) Print("  " + ReasonLine(reason));
 }
 
 int PrintStored(const Remote& remote, const v1::Program& program, bool check_only) {
@@ -235,155 +225,6 @@ int StaleExecutables(const Remote& remote, const std::string& machine) {
     }
   }
   PrintRaw(Table(rows));
-  return kGood;
-}
-
-int Projects(const Remote& remote) {
-  const auto stub = v1::ProjectService::NewStub(Connect(remote));
-  std::vector<std::vector<std::string>> rows = {
-      {"PROJECT", "TITLE", "PROGRAMS", "SCHEDULES", "PROCESSES"}};
-  v1::ListProjectsRequest request;
-  do {
-    grpc::ClientContext context;
-    Prepare(context);
-    v1::ListProjectsResponse response;
-    const grpc::Status status = stub->ListProjects(&context, request, &response);
-    if (!status.ok()) return Refused(status, remote);
-    for (const v1::Project& project : response.projects()) {
-      if (remote.json) Print(Json(project));
-      rows.push_back({project.name().substr(9), project.title(),
-                      std::to_string(project.programs_size()),
-                      std::to_string(project.laser_schedules_size()),
-                      std::to_string(project.processes_size())});
-    }
-    request.set_page_token(response.next_page_token());
-  } while (!request.page_token().empty());
-  if (!remote.json) PrintRaw(Table(std::move(rows)));
-  return kGood;
-}
-
-namespace {
-
-// What is in a project; the texts of its programs come with --json.
-void PrintProject(const v1::Project& project) {
-  Print(project.name() + "  " + Visible(project.title()));
-  if (!project.notes().empty()) Print(Visible(project.notes()));
-  std::vector<std::vector<std::string>> programs = {{"SLOT", "TITLE", "FILE", "UNITS", "SIZE"}};
-  for (const v1::ProjectProgram& program : project.programs()) {
-    programs.push_back({std::to_string(program.slot()), program.title(),
-                        program.source().file_name(),
-                        program.units() == v1::UNITS_UNSPECIFIED
-                            ? "-"
-                            : LowerCase(v1::Units_Name(program.units()).substr(6)),
-                        Bytes(static_cast<std::int64_t>(program.source().content().size()))});
-  }
-  if (programs.size() > 1) PrintRaw("\n" + Table(std::move(programs)));
-  std::vector<std::vector<std::string>> schedules = {{"SCHEDULE", "TITLE", "MODE", "POWER %"}};
-  for (const v1::ProjectLaserSchedule& schedule : project.laser_schedules()) {
-    schedules.push_back({std::to_string(schedule.number()), schedule.title(),
-                         schedule.mode().empty() ? "CW" : schedule.mode(),
-                         ShortestText(schedule.power_percent())});
-  }
-  if (schedules.size() > 1) PrintRaw("\n" + Table(std::move(schedules)));
-  std::vector<std::vector<std::string>> processes = {{"WORKDEF", "VALUES", "NOTE"}};
-  for (const v1::ProjectProcess& process : project.processes()) {
-    std::string values;
-    for (const double value : process.values())
-      values += (values.empty() ? "" : ", ") + ShortestText(value);
-    processes.push_back({std::to_string(process.kind()) + "," + std::to_string(process.process()),
-                         std::move(values), process.note()});
-  }
-  if (processes.size() > 1) PrintRaw("\n" + Table(std::move(processes)));
-}
-
-}  // namespace
-
-int GetProject(const Remote& remote, const std::string& project) {
-  const auto stub = v1::ProjectService::NewStub(Connect(remote));
-  grpc::ClientContext context;
-  Prepare(context);
-  v1::GetProjectRequest request;
-  request.set_name(FullName("projects", project));
-  v1::Project response;
-  const grpc::Status status = stub->GetProject(&context, request, &response);
-  if (!status.ok()) return Refused(status, remote);
-  if (remote.json) {
-    Print(Json(response));
-    return kGood;
-  }
-  PrintProject(response);
-  return kGood;
-}
-
-namespace {
-
-int Stored(const Remote& remote, const grpc::Status& status, const v1::Project& project,
-           std::string_view what) {
-  if (!status.ok()) return Refused(status, remote);
-  Print(remote.json ? Json(project) : project.name() + " " + std::string(what));
-  return kGood;
-}
-
-}  // namespace
-
-int CreateProject(const Remote& remote, const std::string& project, const std::string& path) {
-  Result<v1::Project> made = ReadProject(path);
-  if (!made) return Refuse(made.error());
-  v1::CreateProjectRequest request;
-  request.set_project_id(project);
-  *request.mutable_project() = *std::move(made);
-  const auto stub = v1::ProjectService::NewStub(Connect(remote));
-  grpc::ClientContext context;
-  Prepare(context);
-  v1::Project response;
-  return Stored(remote, stub->CreateProject(&context, request, &response), response, "made");
-}
-
-int UpdateProject(const Remote& remote, const std::string& project, const std::string& path) {
-  Result<v1::Project> changed = ReadProject(path);
-  if (!changed) return Refuse(changed.error());
-  v1::UpdateProjectRequest request;
-  *request.mutable_project() = *std::move(changed);
-  request.mutable_project()->set_name(FullName("projects", project));
-  request.mutable_update_mask()->add_paths(
-      "*");  // what the file lacks is not in the project any more
-  const auto stub = v1::ProjectService::NewStub(Connect(remote));
-  grpc::ClientContext context;
-  Prepare(context);
-  v1::Project response;
-  return Stored(remote, stub->UpdateProject(&context, request, &response), response, "updated");
-}
-
-int DeleteProject(const Remote& remote, const std::string& project) {
-  const auto stub = v1::ProjectService::NewStub(Connect(remote));
-  grpc::ClientContext context;
-  Prepare(context);
-  v1::DeleteProjectRequest request;
-  request.set_name(FullName("projects", project));
-  google::protobuf::Empty response;
-  const grpc::Status status = stub->DeleteProject(&context, request, &response);
-  return status.ok() ? int{kGood} : Refused(status, remote);
-}
-
-int TransferProject(const Remote& remote, const std::string& project, const std::string& machine,
-                    bool insert, bool check_only) {
-  const auto stub = v1::ProjectService::NewStub(Connect(remote));
-  grpc::ClientContext context;
-  Prepare(context);
-  v1::TransferProjectRequest request;
-  request.set_name(FullName("projects", project));
-  request.set_machine(FullName("machines", machine));
-  request.set_insert_missing_definitions(insert);
-  request.set_validate_only(check_only);
-  v1::TransferProjectResponse response;
-  const grpc::Status status = stub->TransferProject(&context, request, &response);
-  if (!status.ok()) return Refused(status, remote);
-  if (remote.json) {
-    Print(Json(response));
-    return kGood;
-  }
-  PrintProgramFindings(response.findings());
-  for (const v1::Program& program : response.programs()) PrintStored(remote, program, check_only);
   return kGood;
 }
 

@@ -96,7 +96,8 @@ int TellWhyNot(const SimulateOptions& options, const simulation::ProgramMemory& 
 // What a run leaves besides its report, as the options ask for it. Must outlive the run.
 class RunProducts {
  public:
-  explicit RunProducts(const SimulateOptions& options) : options_(options) {}
+  RunProducts(const SimulateOptions& options, const machine::FamilyInfo& family)
+      : options_(options), family_(family) {}
 
   // Errors: CellUsage, CellInvalidArgument, CellFileUnwritable.
   Status AskFor(simulation::SimulationRequest& request) {
@@ -151,7 +152,7 @@ class RunProducts {
   void AskForTrace(simulation::Products& products) {
     products.trace = [this](const simulation::TraceRecord& record) {
       if (options_.json) {
-        *traced_.add_trace_records() = bridge::ToProto(record);
+        *traced_.add_trace_records() = bridge::ToProto(family_, record);
       } else {
         Print(simulation::TraceText(record));
       }
@@ -180,6 +181,7 @@ class RunProducts {
   }
 
   const SimulateOptions& options_;
+  machine::FamilyInfo family_;
   v1::RunReport traced_;
   bridge::SpooledBytes toolpath_;
   std::ofstream samples_;
@@ -278,7 +280,7 @@ int Simulate(const SimulateOptions& options) {
   if (!run.setup) return TellWhyNot(options, prepared->memory, run);
 
   simulation::SimulationRequest request;
-  RunProducts products(options);
+  RunProducts products(options, family.info());
   if (const Status asked = products.AskFor(request); !asked) return Refuse(asked.error());
   if (!options.milling.block.stock.empty()) {
     Result<simulation::Milling> milling =
@@ -307,7 +309,7 @@ int Simulate(const SimulateOptions& options) {
     Complain("the machine has no variable " + name);
     break;
   }
-  v1::RunReport report = bridge::ToProto(result->report, result->variables);
+  v1::RunReport report = bridge::ToProto(family.info(), result->report, result->variables);
   const v1::Outcome outcome = report.outcome();
   products.MoveTraceTo(report);
   machine::MarkJudged(result->report.judgement, run.diagnostics);

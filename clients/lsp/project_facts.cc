@@ -9,6 +9,8 @@
 namespace rmlcell::lsp {
 namespace {
 
+constexpr std::string_view kModePrefix = "LASER_MODE_";  // as JSON names the values of an enum
+
 // The rows of a list of the project of this folder.
 std::vector<Json> RowsOf(const ProgramFolder& folder, std::string_view uri, std::string_view list) {
   const std::size_t slash = uri.rfind('/');
@@ -31,6 +33,7 @@ std::string ScheduleNote(const ProgramFolder& folder, std::string_view uri, int 
   for (const Json& row : RowsOf(folder, uri, "laserSchedules")) {
     if (NumberMember(row, {"number"}) != number) continue;
     std::string note = TextMember(row, {"mode"}).value_or("CW");
+    if (note.starts_with(kModePrefix)) note.erase(0, kModePrefix.size());
     const std::string power = NumberText(Member(row, {"powerPercent"}));
     if (!power.empty()) note += ", " + power + " %";
     if (const auto title = TextMember(row, {"title"}); title && !title->empty())

@@ -192,6 +192,18 @@ const OUTCOMES = {
   KIND_INTERRUPTED: "Interrupted: look where the machine stands",
 };
 
+const WAITS = {
+  WAIT_REASON_WORKER: "Waits for a worker",
+  WAIT_REASON_HELD: "Held back until somebody lets it go",
+  WAIT_REASON_NOT_BEFORE: "Waits for its time",
+  WAIT_REASON_AFTER_JOB: "Waits for",
+  WAIT_REASON_AFTER_JOB_FAILED: "Somebody decides: it was to follow",
+  WAIT_REASON_MACHINE_BUSY: "Its machine runs",
+  WAIT_REASON_MACHINE_NOT_READY: "Its machine cannot start now",
+};
+// Products that programs read, and people do not.
+const FOR_PROGRAMS = ["steps", "series"];
+
 // Until the job itself is read again.
 const ENDED = { KIND_COMPLETED: "STATE_SUCCEEDED", KIND_CANCELLED: "STATE_CANCELLED", KIND_INTERRUPTED: "STATE_INTERRUPTED" };
 
@@ -377,12 +389,19 @@ function endText(outcome) {
   return [word && `Verdict ${word}`, placeText(outcome.place), advice].filter(Boolean).join(" \u00b7 ");
 }
 
+function waitText(job) {
+  const [collection, id] = (job.waitsFor ?? "").split("/");
+  const whom = collection === "jobs" ? `#${id}` : id;
+  return [WAITS[job.waitReason], whom].filter(Boolean).join(" ");
+}
+
 function drawOutcome(row, job) {
   const outcome = job.outcome;
-  const key = JSON.stringify([job.state, outcome ?? null]);
+  const key = JSON.stringify([job.state, outcome ?? null, job.waitReason, job.waitsFor]);
   if (row.outcome.dataset.key === key) return;
   row.outcome.dataset.key = key;
   row.outcome.replaceChildren();
+  if (job.state === "STATE_QUEUED") row.outcome.append(waitText(job));
   if (!outcome) return;
   const words = OUTCOMES[outcome.kind] ?? "";
   const reasons = outcome.code ? [] : outcome.reasons ?? [];
@@ -418,7 +437,8 @@ function drawLook(row, job, artifacts) {
 }
 
 function drawResults(row, job) {
-  const artifacts = (job.artifacts ?? []).filter((one) => one.urlPath?.startsWith("/v1/"));
+  const artifacts = (job.artifacts ?? [])
+    .filter((one) => one.urlPath?.startsWith("/v1/") && !FOR_PROGRAMS.includes(one.name));
   const key = artifacts.map((one) => one.urlPath).join(" ");
   if (row.results.dataset.key === key) return;
   row.results.dataset.key = key;

@@ -88,7 +88,10 @@ _rmlcell_options() {
     watch) echo "$remote --after --strict" ;;
     jobs) echo "$remote --filter --limit" ;;
     picture | artifact) echo "$remote --output" ;;
-    "projects list" | "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;
+    "projects list" | "projects show" | "projects create" | "projects update" | "projects delete" | "projects import")
+      echo "--help" ;;
+    "projects export") echo "--help --output" ;;
+    "projects take") echo "--help --slots --inch" ;;
     "projects transfer") echo "--help --insert --check-only" ;;
   esac
 }
@@ -96,7 +99,7 @@ _rmlcell_options() {
 # True when an option takes a value in the next word.
 _rmlcell_takes_value() {
   case $1 in
-    --slot | --main | --executable | --family | --profile | --machine | --origin | --clamps | --inputs | --mode | --override | \
+    --slot | --slots | --main | --executable | --family | --profile | --machine | --origin | --clamps | --inputs | --mode | --override | \
       --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --material | --stl | --stl-tolerance | --relief | --height-map | --target | --target-slot | --target-tolerance | --target-png | \
       --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift | \
@@ -186,14 +189,16 @@ _rmlcell_positional() {
         0) _rmlcell_jobs "finished = true" ;;
         1) _rmlcell_artifacts "${given[0]}" ;;
       esac ;;
-    projects) [[ $count -eq 0 ]] && _rmlcell_offer list show create update delete transfer ;;
-    "projects show" | "projects delete") [[ $count -eq 0 ]] && _rmlcell_projects ;;
+    projects) [[ $count -eq 0 ]] && _rmlcell_offer list show create update delete transfer take export import ;;
+    "projects show" | "projects delete" | "projects export") [[ $count -eq 0 ]] && _rmlcell_projects ;;
     "projects create") [[ $count -eq 1 ]] && _rmlcell_files .json ;;
     "projects update")
       case $count in
         0) _rmlcell_projects ;;
         1) _rmlcell_files .json ;;
       esac ;;
+    "projects import") [[ $count -eq 1 ]] && _rmlcell_files .zip ;;
+    "projects take") [[ $count -eq 1 ]] && _rmlcell_machines ;;
     "projects transfer")
       case $count in
         0) _rmlcell_projects ;;
@@ -233,7 +238,7 @@ _rmlcell() {
     option=''
     if [[ -z $verb ]]; then
       verb=$word
-    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(list|show|create|update|delete|transfer)$ ]]; then
+    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(list|show|create|update|delete|transfer|take|export|import)$ ]]; then
       verb="projects $word"
     elif [[ $verb == rml1 && ${#given[@]} -eq 0 ]]; then
       verb="rml1 $word"

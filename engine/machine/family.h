@@ -42,6 +42,7 @@ struct FamilyInfo {
   int schedules = 0;                // laser schedules 1 to this, and process definitions; or none
   bool checked_by_running = false;  // Translate does not follow the motion: CHECK runs the program
   bool hold_in_remote = false;      // the HOLD key works in mode REMOTE, too
+  bool turns_in_degrees = false;    // its programs write rotary axes in degrees
   // The profile of a machine for which nobody named one; empty: the family has no profiles.
   std::string_view default_profile{};
   // Parameters that say where program zero lies on the machine: X, Y and Z, in mm. Empty: programs

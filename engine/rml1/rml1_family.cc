@@ -22,7 +22,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .axes = "X Y Z A",
                                        .editor_language = "rml1",
                                        .has_executables = false,
-                                       .hold_in_remote = true,       // it has no such mode
+                                       .hold_in_remote = true,  // it has no such mode
+                                       .turns_in_degrees = true,
                                        .default_profile = "srm-20",  // the most common one
                                        .origin_parameters = {"ORIGIN_X", "ORIGIN_Y", "Z0"},
                                        .clamps_parameter = "CLAMP_HEIGHT",

@@ -26,12 +26,30 @@ void SetPlace(const machine::Place& place, v1::SourcePlace& message) {
 
 v1::Point ToProto(const motion::ProgramPoint& point) { return ToProto(point.from_origin()); }
 
-v1::Position PositionOf(const motion::TipPose& tip, const motion::AxisPose& axes) {
+// The axes that turn of those of a family, "X Y Z A B": their values are a and b.
+void AddTurned(std::string_view axes, double a, double b, v1::Unit unit,
+               google::protobuf::RepeatedPtrField<v1::AxisValue>& turned) {
+  for (const char axis : axes) {
+    if (axis != 'A' && axis != 'B') continue;
+    v1::AxisValue& value = *turned.Add();
+    value.set_axis(std::string(1, axis));
+    value.set_value(axis == 'A' ? a : b);
+    value.set_unit(unit);
+  }
+}
+
+// As a program writes them.
+void AddProgrammed(const machine::FamilyInfo& family, double a, double b,
+                   google::protobuf::RepeatedPtrField<v1::AxisValue>& turned) {
+  AddTurned(family.axes, a, b, family.turns_in_degrees ? v1::UNIT_DEGREE : v1::UNIT_RADIAN, turned);
+}
+
+v1::Position PositionOf(const machine::FamilyInfo& family, const motion::TipPose& tip,
+                        const motion::AxisPose& axes) {
   v1::Position message;
   *message.mutable_tip() = ToProto(tip.tip);
   *message.mutable_column() = ToProto(axes.column);
-  message.set_a(axes.a_rad);
-  message.set_b(axes.b_rad);
+  AddTurned(family.axes, axes.a_rad, axes.b_rad, v1::UNIT_RADIAN, *message.mutable_turned());
   return message;
 }
 
@@ -122,10 +140,24 @@ v1::SpeedShortfall ToProto(const simulation::SpeedShortfall& shortfall) {
   return message;
 }
 
+v1::SlowMove::Cause CauseOf(simulation::SlowCause cause) {
+  switch (cause) {
+    case simulation::SlowCause::kAxis:
+      return v1::SlowMove::CAUSE_AXIS;
+    case simulation::SlowCause::kRadius:
+      return v1::SlowMove::CAUSE_RADIUS;
+    case simulation::SlowCause::kShort:
+      return v1::SlowMove::CAUSE_SHORT;
+    case simulation::SlowCause::kAcceleration:
+      return v1::SlowMove::CAUSE_ACCELERATION;
+  }
+  return v1::SlowMove::CAUSE_UNSPECIFIED;
+}
+
 v1::SlowMove ToProto(const simulation::SlowMove& move) {
   v1::SlowMove message;
   SetPlace(move.place, *message.mutable_place());
-  message.set_cause(std::string(simulation::SlowCauseText(move.cause)));
+  message.set_cause(CauseOf(move.cause));
   message.set_axis(move.axis);
   message.set_wanted_mm_s(move.wanted_mm_s);
   message.set_allowed_mm_s(move.allowed_mm_s);
@@ -201,7 +233,8 @@ void SetContours(const simulation::RunReport& report, v1::RunReport& message) {
   if (report.cut_figures.contours > 0) *message.mutable_cut() = ToProto(report.cut_figures);
 }
 
-v1::AxisViolation ToProto(const simulation::AxisViolation& violation) {
+v1::AxisViolation ToProto(const machine::FamilyInfo& family,
+                          const simulation::AxisViolation& violation) {
   v1::AxisViolation message;
   SetPlace(violation.place, *message.mutable_place());
   message.set_axis(violation.axis);
@@ -209,11 +242,36 @@ v1::AxisViolation ToProto(const simulation::AxisViolation& violation) {
   message.set_excess(violation.excess);
   message.set_at_target(violation.at_target);
   *message.mutable_position() = PositionOf(
-      {.tip = violation.tip, .a_rad = violation.axes.a_rad, .b_rad = violation.axes.b_rad},
+      family, {.tip = violation.tip, .a_rad = violation.axes.a_rad, .b_rad = violation.axes.b_rad},
       violation.axes);
   message.set_time_s(ToSeconds(violation.first_at));
   message.set_count(static_cast<std::int64_t>(violation.count));
   return message;
+}
+
+v1::TraceRecord::Kind KindOf(simulation::TraceKind kind) {
+  using simulation::TraceKind;
+  switch (kind) {
+    case TraceKind::kMove:
+      return v1::TraceRecord::KIND_MOVE;
+    case TraceKind::kSignal:
+      return v1::TraceRecord::KIND_SIGNAL;
+    case TraceKind::kWait:
+      return v1::TraceRecord::KIND_WAIT;
+    case TraceKind::kHalt:
+      return v1::TraceRecord::KIND_HALT;
+    case TraceKind::kResume:
+      return v1::TraceRecord::KIND_RESUME;
+    case TraceKind::kProgram:
+      return v1::TraceRecord::KIND_PROGRAM;
+    case TraceKind::kMessage:
+      return v1::TraceRecord::KIND_MESSAGE;
+    case TraceKind::kFinding:
+      return v1::TraceRecord::KIND_FINDING;
+    case TraceKind::kEnd:
+      return v1::TraceRecord::KIND_END;
+  }
+  return v1::TraceRecord::KIND_UNSPECIFIED;
 }
 
 v1::ProductState ToProto(const simulation::ProductState& product) {
@@ -263,7 +321,7 @@ v1::MillingFigures ToProto(const simulation::MillingFigures& milling) {
 
 }  // namespace
 
-v1::RunReport ToProto(const simulation::RunReport& report,
+v1::RunReport ToProto(const machine::FamilyInfo& family, const simulation::RunReport& report,
                       const std::map<std::string, std::string>& variables) {
   v1::RunReport message;
   message.set_family(report.family);
@@ -272,11 +330,11 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   *message.mutable_outcome() = ToProto(report.outcome, report.judgement);
   *message.mutable_total() = ToProto(report.total);
   *message.mutable_final_position() =
-      PositionOf(report.final_position.tip, report.final_position.axes);
+      PositionOf(family, report.final_position.tip, report.final_position.axes);
   if (report.work_origin) *message.mutable_work_origin() = ToProto(*report.work_origin);
   *message.mutable_final_program_point() = ToProto(report.final_position.program_point);
-  message.add_final_program_angles(report.final_position.program_a);
-  message.add_final_program_angles(report.final_position.program_b);
+  AddProgrammed(family, report.final_position.program_a, report.final_position.program_b,
+                *message.mutable_final_program_axes());
   message.set_shutter_open_s(ToSeconds(report.total.shutter_open));
   message.set_energy_j_per_mm_max(report.total.energy_j_per_mm_max);
   message.set_halts(static_cast<std::int64_t>(report.halts));
@@ -309,7 +367,7 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   if (report.milling) *message.mutable_milling() = ToProto(*report.milling);
   SetContours(report, message);
   for (const simulation::AxisViolation& violation : report.violations) {
-    *message.add_violations() = ToProto(violation);
+    *message.add_violations() = ToProto(family, violation);
   }
   message.set_violations_dropped(static_cast<std::int64_t>(report.violations_dropped));
   for (const machine::Figure& figure : report.figures) *message.add_figures() = ToProto(figure);
@@ -348,20 +406,19 @@ void AddFindingsOfText(const std::vector<Diagnostic>& findings, const UntoldFind
   }
 }
 
-v1::TraceRecord ToProto(const simulation::TraceRecord& record) {
+v1::TraceRecord ToProto(const machine::FamilyInfo& family, const simulation::TraceRecord& record) {
   using simulation::TraceKind;
   v1::TraceRecord message;
   message.set_number(static_cast<std::int64_t>(record.number));
-  message.set_kind(std::string(simulation::TraceKindName(record.kind)));
+  message.set_kind(KindOf(record.kind));
   message.set_virtual_time_ns(record.at.count());
   SetPlace(record.place, *message.mutable_place());
   switch (record.kind) {
     case TraceKind::kMove:
       message.set_text(std::string(record.text));
       *message.mutable_point() = ToProto(record.program_point);
-      message.add_angles(record.program_a);
-      message.add_angles(record.program_b);
-      *message.mutable_position() = PositionOf(record.tip, record.axes);
+      AddProgrammed(family, record.program_a, record.program_b, *message.mutable_program_axes());
+      *message.mutable_position() = PositionOf(family, record.tip, record.axes);
       message.set_feed_mm_s(record.feed_mm_s);
       break;
     case TraceKind::kSignal:
@@ -397,13 +454,14 @@ v1::TraceRecord ToProto(const simulation::TraceRecord& record) {
   return message;
 }
 
-v1::JobProgress ToProto(const machine::RunState& state, std::uint64_t steps) {
+v1::JobProgress ToProto(const machine::FamilyInfo& family, const machine::RunState& state,
+                        std::uint64_t steps) {
   v1::JobProgress message;
   message.set_virtual_time_ns(state.time.count());
   message.set_steps(static_cast<std::int64_t>(steps));
   SetPlace(state.place, *message.mutable_place());
   message.set_instruction(std::string(state.instruction));
-  *message.mutable_position() = PositionOf(state.tip, state.axes);
+  *message.mutable_position() = PositionOf(family, state.tip, state.axes);
   if (state.work_origin) *message.mutable_work_tip() = ToProto(state.tip.tip - *state.work_origin);
   message.set_speed_mm_s(state.tip_speed_mm_s);
   message.set_override_percent(state.override_percent);

@@ -12,10 +12,12 @@ class TraceRecord;
 
 namespace rmlcell::bridge {
 
+// Of a machine of a family: it names the axes that turn.
+//
 // The report as its message; `variables` are those that were asked for.
-v1::RunReport ToProto(const simulation::RunReport& report,
+v1::RunReport ToProto(const machine::FamilyInfo& family, const simulation::RunReport& report,
                       const std::map<std::string, std::string>& variables);
-v1::TraceRecord ToProto(const simulation::TraceRecord& record);
+v1::TraceRecord ToProto(const machine::FamilyInfo& family, const simulation::TraceRecord& record);
 
 // What was found in the text, behind what the run found. A mill finds the same again at the same
 // place when it runs: that is told once.
@@ -23,6 +25,7 @@ void AddFindingsOfText(const std::vector<Diagnostic>& findings, const UntoldFind
                        v1::RunReport& report);
 
 // Where a run is, without the job's name.
-v1::JobProgress ToProto(const machine::RunState& state, std::uint64_t steps);
+v1::JobProgress ToProto(const machine::FamilyInfo& family, const machine::RunState& state,
+                        std::uint64_t steps);
 
 }  // namespace rmlcell::bridge

@@ -134,6 +134,7 @@ constexpr std::size_t kFileBytesMax = 1 << 20;  // a configuration has some kilo
 
 std::vector<ConfigKey> MakeKeys() {
   return {
+      {"cell.name", "what the cell is called, for people; may be empty", RMLCELL_TEXT(cell_name)},
       {"listen.grpc", "gRPC addresses: host:port or unix:/path; loopback and unix sockets only",
        RMLCELL_LIST(listen_grpc)},
       {"listen.web",

@@ -20,6 +20,7 @@ struct MachineConfig {
 
 // Everything that can be set. Defaults are those of a server started with no configuration at all.
 struct Config {
+  std::string cell_name;                                       // for people; may be empty
   std::vector<std::string> listen_grpc = {"127.0.0.1:50051"};  // host:port or unix:/path
   std::string listen_web = "127.0.0.1:50080";                  // empty: no web port
   std::vector<std::string> web_origins;  // other pages that may call, for CORS

@@ -10,12 +10,12 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <random>
 #include <thread>
 
 #include "engine/core/hex.h"
 #include "engine/core/number_text.h"
 #include "server/base/executor.h"
+#include "server/base/secret.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
@@ -25,8 +25,10 @@
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
+#include "server/projects/project_transfer.h"
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
+#include "server/results/job_results.h"
 #include "server/services/account_service.h"
 #include "server/services/cell_service.h"
 #include "server/services/foreign_calls.h"
@@ -60,13 +62,6 @@ constexpr std::int64_t kLogBytesPrepared = 17 << 20;
 // minute.
 constexpr int kKeepaliveTime_ms = 40'000;
 constexpr int kKeepaliveTimeout_ms = 15'000;
-
-std::string RandomText() {
-  std::random_device device;
-  std::string text;
-  for (int i = 0; i < 32; ++i) text += HexDigit(device());
-  return text;
-}
 
 std::string PathOfOwnProgram() {
   std::error_code error;
@@ -116,8 +111,10 @@ struct Cell::Parts {
   std::unique_ptr<JobBook> book;
   std::unique_ptr<ProgramBook> programs;
   std::unique_ptr<MemoryTools> tools;
+  std::unique_ptr<JobResults> results;
   std::unique_ptr<LanguageTools> language;
   std::unique_ptr<ProjectBook> projects;
+  std::unique_ptr<ProjectTransfer> transfer;
   std::unique_ptr<JobService> job_service;
   std::unique_ptr<MachineService> machine_service;
   std::unique_ptr<ProgramService> program_service;
@@ -172,7 +169,15 @@ Status Cell::Parts::MakeMachines() {
           ErrorCode::kCellConfiguration, "machine " + machine.id + ": " + good.error().detail, {}};
     }
     const auto stored = store->PutMachine(record, 0);
-    if (!stored && stored.error().code != ErrorCode::kCellAlreadyExists) return stored.error();
+    if (stored) continue;
+    if (stored.error().code != ErrorCode::kCellAlreadyExists) return stored.error();
+    const auto there = store->GetMachine(machine.id);
+    if (!there) return there.error();
+    if (there->family != record.family || there->profile != record.profile) {
+      spdlog::warn(
+          "machine {} is in the store as {} {}, and the configuration says {} {}: the store counts",
+          machine.id, there->family, there->profile, record.family, record.profile);
+    }
   }
   return {};
 }
@@ -187,14 +192,17 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   book = std::make_unique<JobBook>(*store, config);
   programs = std::make_unique<ProgramBook>(*store, config);
   tools = std::make_unique<MemoryTools>(*store, *programs);
+  results = std::make_unique<JobResults>(*store, *book, *tools);
   language = std::make_unique<LanguageTools>(*store, *programs);
   projects = std::make_unique<ProjectBook>(*store);
+  transfer = std::make_unique<ProjectTransfer>(*store, *projects, *programs);
   const CallNeeds needs{gate, *executor, *compute, config.limit_message_bytes};
-  job_service = std::make_unique<JobService>(needs, *book, *dispatcher, *feed, open, instance_id);
+  job_service =
+      std::make_unique<JobService>(needs, *book, *results, *dispatcher, *feed, open, instance_id);
   machine_service = std::make_unique<MachineService>(
       needs, MachineWatchNeeds{*executor, open, *store, *feed, instance_id});
   program_service = std::make_unique<ProgramService>(needs, *programs, *tools, *language, open);
-  project_service = std::make_unique<ProjectService>(needs, *projects);
+  project_service = std::make_unique<ProjectService>(needs, *projects, *transfer, open);
   handbox_service = std::make_unique<HandboxService>(needs);
   host_service = std::make_unique<HostService>(needs);
   facts = std::make_unique<JobFactsBook>(*store);

@@ -1,3 +1,4 @@
+#include <google/protobuf/util/time_util.h>
 #include <spdlog/spdlog.h>
 
 #include "proto/bridge/findings.h"
@@ -17,6 +18,8 @@ namespace {
 constexpr int kEventsWindow = 256;
 // What the store did not take or give.
 constexpr std::chrono::milliseconds kTriedAgainAfter{100};
+// While jobs run. A server does not hear at once what is asked of another one.
+constexpr std::chrono::milliseconds kOrdersLookedForAfter{200};
 
 void SendStop(WorkerLine& line) {
   v1::WorkResponse message;
@@ -66,7 +69,8 @@ Result<Dispatcher::WorkerId> Dispatcher::Join(std::shared_ptr<WorkerLine> line,
     if (kind == v1::JOB_KIND_SIMULATE) worker->kinds.emplace_back("SIMULATE");
   }
   v1::WorkResponse message;
-  message.mutable_welcome()->set_lease_ms(config_.workers_lease_ms);
+  *message.mutable_welcome()->mutable_lease() =
+      google::protobuf::util::TimeUtil::MillisecondsToDuration(config_.workers_lease_ms);
   message.mutable_welcome()->set_events_window(kEventsWindow);
   worker->line->Send(std::move(message));
   {
@@ -185,14 +189,45 @@ void Dispatcher::SweepLeases(const std::stop_token& stop) {
       EndFailedDeliveries();
       next = std::chrono::steady_clock::now() + interval;
     }
+    TakeOrders();
     {
       std::unique_lock lock(mutex_);
-      changed_.wait_until(lock, stop, next, [this] { return later_; });
+      const auto look = std::chrono::steady_clock::now() + kOrdersLookedForAfter;
+      const bool working = HasWork();
+      changed_.wait_until(lock, stop, working ? std::min(next, look) : next,
+                          [&] { return later_ || HasWork() != working; });
       if (!later_) continue;
       changed_.wait_for(lock, stop, kTriedAgainAfter, [] { return false; });
       later_ = false;
     }
     TryAgain();
+  }
+}
+
+bool Dispatcher::HasWork() const {
+  return std::ranges::any_of(workers_, [](const auto& row) { return row.second->job != 0; });
+}
+
+// What clients of other servers ask of the jobs of this one.
+void Dispatcher::TakeOrders() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!HasWork()) return;
+  }
+  const auto orders = store_.TakeOrders(server_);
+  if (!orders) {
+    spdlog::warn("orders of other servers: {}", bridge::ErrorText(orders.error()));
+    return;
+  }
+  for (const storage::TakenOrder& taken : *orders) {
+    v1::WorkerControl control;
+    if (!control.ParseFromString(taken.payload)) continue;  // of a newer server
+    const JobOrder order{.kind = control.kind(),
+                         .value = control.value(),
+                         .caller = control.caller(),
+                         .request_id = control.request_id()};
+    const std::lock_guard lock(mutex_);
+    OrderHolder(taken.lease.job, order);
   }
 }
 
@@ -240,6 +275,11 @@ Status Dispatcher::Control(std::int64_t job, const JobOrder& order) {
       may_come = true;
     }
     if (may_come) return {};
+  }
+  if (record->state == storage::JobState::kRunning) {
+    const Status put =
+        store_.PutOrder(job, server_, ControlMessage({}, order).control().SerializeAsString());
+    if (put || put.error().code != ErrorCode::kCellPrecondition) return put;
   }
   return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
 }

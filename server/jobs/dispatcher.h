@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "rmlcell/v1/worker.pb.h"
+#include "server/base/secret.h"
 #include "server/base/steady_clock.h"
 #include "storage/store.h"
 
@@ -60,7 +61,8 @@ class Dispatcher {
   void Receive(WorkerId worker, v1::WorkRequest message);
   void Leave(WorkerId worker);  // the line is gone: its job is attempted again by its policy
 
-  // Orders for a job that runs. CellPrecondition when no worker of this server has it.
+  // Orders for a job that runs, here or at another server of the store, which hears of it within a
+  // second. CellPrecondition when no worker has it.
   Status Control(std::int64_t job, const JobOrder& order);
   // The same without a look into the store, and never blocking: an order to stop waits for nothing.
   // False: no worker of this server is known to have it, which Control finds out.
@@ -103,6 +105,8 @@ class Dispatcher {
   void Lose(const Assignment& assignment);
   void SweepLeases(const std::stop_token& stop);
   void EndLeases();
+  void TakeOrders();
+  bool HasWork() const;  // precondition: mutex_ is held
   void EndFailedDeliveries();
   std::shared_ptr<Worker> Find(WorkerId id) const;
 
@@ -111,6 +115,7 @@ class Dispatcher {
   const Config& config_;
   Executor& executor_;
   std::string join_token_;
+  const std::string server_ = RandomText();  // what the store knows this server by
   SteadyClock clock_;
   std::atomic<bool> draining_ = false;
 

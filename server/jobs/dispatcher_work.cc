@@ -60,6 +60,7 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
   }
   const auto leased =
       store_.AcquireJobs({.worker = worker->name,
+                          .server = server_,
                           .kinds = worker->kinds,
                           .pools = worker->pools,
                           .duration = std::chrono::milliseconds(config_.workers_lease_ms),

@@ -354,7 +354,13 @@ Result<v1::Job> JobBook::Get(std::string_view name) {
   if (!id) return id.error();
   const Result<storage::JobRecord> record = store_.GetJob(*id);
   if (!record) return record.error();
-  return WithArtifacts(*record);
+  Result<v1::Job> job = WithArtifacts(*record);
+  if (job && job->wait_reason() == v1::WAIT_REASON_WORKER) {
+    const Result<std::int64_t> before = store_.CountBefore(*id);
+    if (before) job->set_position_in_queue(*before);
+    // Else it has begun meanwhile.
+  }
+  return job;
 }
 
 Status JobBook::Delete(std::string_view name, std::string_view caller) {

@@ -12,7 +12,7 @@
 namespace rmlcell::server {
 namespace {
 
-// Each of the five fields once, with "=", a value and AND.
+// Five fields once, with "=", a value and AND.
 constexpr std::size_t kWordsMax = 19;
 
 Error Bad(const std::string& detail) { return {ErrorCode::kCellBadFilter, detail, {}}; }
@@ -102,10 +102,9 @@ Status Apply(const std::string& field, const std::string& value, storage::JobQue
 
 }  // namespace
 
-Status ApplyFilter(std::string_view filter, storage::JobQuery& query) {
+Status ReadFilter(std::string_view filter, const ApplyComparison& apply) {
   const Result<std::vector<Word>> words = Words(filter);
   if (!words) return words.error();
-  storage::JobQuery changed = query;
   std::set<std::string_view> fields;
   for (std::size_t i = 0; i < words->size(); i += 4) {
     const Word* const word = &(*words)[i];
@@ -116,15 +115,22 @@ Status ApplyFilter(std::string_view filter, storage::JobQuery& query) {
     if (!fields.insert(word[0].text).second) {
       return Bad("'" + Readable(word[0].text) + "' stands twice");
     }
-    if (const Status applied = Apply(word[0].text, word[2].text, changed); !applied)
-      return applied.error();
+    if (const Status applied = apply(word[0].text, word[2].text); !applied) return applied.error();
     if (left == 3) break;
     if (word[3].quoted || UpperCase(word[3].text) != "AND" || left == 4) {
       return Bad("comparisons are joined by AND, found '" + Readable(word[3].text) + "'");
     }
   }
-  query = std::move(changed);
   return {};
+}
+
+Status ApplyFilter(std::string_view filter, storage::JobQuery& query) {
+  storage::JobQuery changed = query;
+  const Status read = ReadFilter(filter, [&](const std::string& field, const std::string& value) {
+    return Apply(field, value, changed);
+  });
+  if (read) query = std::move(changed);
+  return read;
 }
 
 }  // namespace rmlcell::server

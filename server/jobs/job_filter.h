@@ -1,15 +1,24 @@
 #pragma once
 
+#include <functional>
+#include <string>
 #include <string_view>
 
 #include "storage/store.h"
 
 namespace rmlcell::server {
 
-// "state = FAILED AND machine = machines/optimo-1": comparisons with "=" joined by AND, a subset of
-// the common filter grammar. Fields: state, machine, kind, caller, finished. Each at most once;
-// words are compared without case, a text in double quotes is one word. An empty filter asks for
-// all. Error: CellBadFilter; `query` is unchanged then.
+// What is done with one comparison of a filter. Error: CellBadFilter.
+using ApplyComparison = std::function<Status(const std::string& field, const std::string& value)>;
+
+// "code = RML1-E8002 AND verdict = BAD": comparisons with "=" joined by AND, a subset of the common
+// filter grammar. Each field at most once; a text in double quotes is one word. Error:
+// CellBadFilter, and those of `apply`.
+Status ReadFilter(std::string_view filter, const ApplyComparison& apply);
+
+// "state = FAILED AND machine = machines/optimo-1": fields state, machine, kind,
+// caller, finished; words are compared without case. An empty filter asks for all. Error:
+// CellBadFilter; `query` is unchanged then.
 Status ApplyFilter(std::string_view filter, storage::JobQuery& query);
 
 }  // namespace rmlcell::server

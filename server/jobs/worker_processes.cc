@@ -45,10 +45,9 @@ Result<std::unique_ptr<WorkerProcesses>> WorkerProcesses::Start(Options options)
 WorkerProcesses::~WorkerProcesses() { Stop(std::chrono::milliseconds(0)); }
 
 pid_t WorkerProcesses::Spawn(int number) const {
-  const std::string name = "worker-" + std::to_string(::getpid()) + "-" + std::to_string(number);
-  std::vector<std::string> words = {options_.program,   "--server",     options_.server,
-                                    "--name",           name,           "--log-level",
-                                    options_.log_level, "--log-format", options_.log_format};
+  std::vector<std::string> words = {options_.program,   "--server",         options_.server,
+                                    "--log-level",      options_.log_level, "--log-format",
+                                    options_.log_format};
   const std::string& pool = number > options_.count ? options_.further_pool : options_.pool;
   if (!pool.empty()) words.insert(words.end(), {"--pool", pool});
   std::vector<char*> arguments;
@@ -81,7 +80,7 @@ pid_t WorkerProcesses::Spawn(int number) const {
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   if (failed != 0) {
-    spdlog::error("worker {} cannot be started: {}", name, std::strerror(failed));
+    spdlog::error("worker {} cannot be started: {}", number, std::strerror(failed));
     return -1;
   }
   return process;

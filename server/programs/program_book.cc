@@ -35,21 +35,6 @@ std::string_view FirstExtension(const machine::FamilyInfo& info) {
   return info.extensions.substr(0, info.extensions.find(' '));
 }
 
-v1::Program MessageOf(const std::string& machine, const storage::ProgramSummary& summary) {
-  v1::Program program;
-  program.set_name(NameOfProgram(machine, summary.slot));
-  program.set_title(summary.name);
-  program.set_file_name(summary.source_name);
-  program.set_object_bytes(summary.object_bytes);
-  if (summary.source_bytes >= 0) program.set_source_bytes(summary.source_bytes);
-  if (summary.executable_bytes >= 0) program.set_executable_bytes(summary.executable_bytes);
-  program.set_object_sha256(summary.object_sha256);
-  program.set_etag(std::to_string(summary.revision));
-  *program.mutable_create_time() = ToProto(summary.created_at);
-  *program.mutable_update_time() = ToProto(summary.updated_at);
-  return program;
-}
-
 // The first error of a translation stands for all; its diagnostics go along.
 ProgramError FirstError(const machine::Translation& translation) {
   ProgramError wrong{.error = {ErrorCode::kCellBadText, {}, {}},
@@ -248,7 +233,7 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
   }
   const auto stored = store_.PutPrograms(machine.id, {std::move(write)}, {}, put.caller);
   if (!stored) return stored.error();
-  v1::Program program = MessageOf(machine.id, stored->front());
+  v1::Program program = ToProto(machine.id, stored->front());
   *program.mutable_findings() = std::move(findings);
   return program;
 }
@@ -299,7 +284,7 @@ ProgramResult<v1::Program> ProgramBook::StoreExecutable(const Put& put, const Pr
     if (!*kept)
       return Error{ErrorCode::kCellEtagMismatch, "the object was stored again meanwhile", {}};
   }
-  v1::Program program = MessageOf(machine_id, **found);
+  v1::Program program = ToProto(machine_id, **found);
   program.set_name(NameOfProgram(machine_id, slot + kExecutableOffset));
   program.set_executable_bytes(static_cast<std::int64_t>(put.bytes.size()));
   return program;
@@ -312,7 +297,7 @@ Result<v1::Program> ProgramBook::Get(std::string_view name) {
   if (!found && found.error().code != ErrorCode::kCellNotFound) return found.error();
   const bool there = found && (!place->executable || found->executable_bytes >= 0);
   if (!there) return EmptySlot(*place->family, name);
-  v1::Program program = MessageOf(place->machine.id, *found);
+  v1::Program program = ToProto(place->machine.id, *found);
   program.set_name(std::string(name));  // an executable is asked for by its own number
   return program;
 }
@@ -367,7 +352,7 @@ Result<v1::ListProgramsResponse> ProgramBook::List(const v1::ListProgramsRequest
           std::to_string((*programs)[static_cast<std::size_t>(*size) - 1].slot));
       break;
     }
-    *response.add_programs() = MessageOf(*machine, program);
+    *response.add_programs() = ToProto(*machine, program);
   }
   return response;
 }

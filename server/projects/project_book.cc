@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -14,8 +13,10 @@
 #include "proto/bridge/setup.h"
 #include "server/base/names.h"
 #include "server/base/readable.h"
+#include "server/projects/process_definition.h"
 #include "server/records/file_family.h"
 #include "server/records/job_messages.h"
+#include "server/records/machine_messages.h"
 #include "server/records/update_mask.h"
 
 namespace rmlcell::server {
@@ -85,9 +86,8 @@ Status CheckParts(const v1::Project& project) {
       return good.error();
     if (!schedules.insert(schedule.number()).second)
       return InvalidArgument("laser schedule " + number + " stands twice");
-    if (!schedule.mode().empty() && schedule.mode() != "CW" && schedule.mode() != "PULSE") {
-      return InvalidArgument("laser schedule " + number + ": mode is CW or PULSE");
-    }
+    if (const auto mode = ModeText(schedule.mode()); !mode)
+      return InvalidArgument("laser schedule " + number + ": " + mode.error().detail);
     if (!(schedule.power_percent() >= 0.0 && schedule.power_percent() <= 100.0)) {
       return InvalidArgument("laser schedule " + number + ": power_percent: allowed are 0 to 100");
     }
@@ -101,13 +101,6 @@ Status CheckParts(const v1::Project& project) {
     }
   }
   return {};
-}
-
-machine::ProcessDefinition DefinitionOf(const v1::ProjectProcess& process) {
-  return {.kind = process.kind(),
-          .process = process.process(),
-          .values = {process.values().begin(), process.values().end()},
-          .note = process.note()};
 }
 
 // Whether a program of the project is for a machine of the family, by its name; where no name says
@@ -168,48 +161,6 @@ storage::ProjectRecord RecordOf(const std::string& id, v1::Project project) {
   project.clear_create_time();
   project.clear_update_time();
   return {.id = id, .title = title, .body = project.SerializeAsString()};
-}
-
-machine::ProjectBundle BundleOf(const v1::Project& project) {
-  machine::ProjectBundle bundle;
-  for (const v1::ProjectProgram& program : project.programs()) {
-    // A name may say inch, too: the family reads it (OPT-8.72).
-    bundle.programs.push_back(
-        {.slot = program.slot(),
-         .file = {.name = program.source().file_name(), .bytes = program.source().content()},
-         .inch = program.units() == v1::UNITS_INCH});
-  }
-  for (const v1::ProjectLaserSchedule& schedule : project.laser_schedules()) {
-    bundle.schedules.push_back({.number = schedule.number(),
-                                .name = schedule.title(),
-                                .mode = schedule.mode().empty() ? "CW" : schedule.mode(),
-                                .power_percent = schedule.power_percent()});
-  }
-  for (const v1::ProjectProcess& process : project.processes()) {
-    bundle.processes.push_back(DefinitionOf(process));
-  }
-  return bundle;
-}
-
-const v1::ProjectProgram* FindProgram(const v1::Project& project, int slot) {
-  const auto found = std::ranges::find_if(
-      project.programs(),
-      [&](const v1::ProjectProgram& program) { return program.slot() == slot; });
-  return found == project.programs().end() ? nullptr : &*found;
-}
-
-// The first error of a transfer stands for all; its findings go along.
-ProgramError Refused(const machine::TransferPlan& plan, const machine::MachineFamily& family) {
-  ProgramError wrong{.error = {family.info().no_source, {}, {}},
-                     .diagnostics = plan.diagnostics,
-                     .dropped = plan.diagnostics_dropped};
-  const auto first = std::ranges::find_if(plan.diagnostics,
-                                          [](const Diagnostic& d) { return IsError(d.severity); });
-  if (first != plan.diagnostics.end()) {
-    wrong.error = {first->code, "program " + std::to_string(first->program) + ": " + first->detail,
-                   first->where};
-  }
-  return wrong;
 }
 
 }  // namespace
@@ -309,85 +260,6 @@ Status ProjectBook::Delete(const v1::DeleteProjectRequest& request, std::string_
   const Result<storage::Revision> expected = ParseEtag(request.etag());
   if (!expected) return expected.error();
   return store_.DeleteProject(*id, *expected, caller);
-}
-
-ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
-    const v1::TransferProjectRequest& request, std::string_view caller) {
-  const Result<v1::Project> project = Get(request.name());
-  if (!project) return project.error();
-  const Result<std::string> machine_id = ParseMachineName(request.machine());
-  if (!machine_id) return machine_id.error();
-  const auto machine = store_.GetMachine(*machine_id);
-  if (!machine) return machine.error();
-  const machine::MachineFamily* family = families::FindFamily(machine->family);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
-  const auto parameters = machine::MakeParameters(*family, machine->profile, machine->parameters);
-  if (!parameters) return parameters.error();
-  if (project->programs().empty())
-    return Error{family->info().no_source, "the project has no program", {}};
-
-  // A stream takes any bytes: by its translation alone no source of another family would be
-  // refused.
-  for (const v1::ProjectProgram& program : project->programs()) {
-    if (const Status fits = CheckFileFamily(program.source().file_name(), *family); !fits) {
-      return InvalidArgument("program " + std::to_string(program.slot()) + ": " +
-                             fits.error().detail);
-    }
-  }
-
-  machine::TransferPlan plan =
-      family->PlanTransfer(BundleOf(*project), *parameters,
-                           {.insert_missing_definitions = request.insert_missing_definitions()});
-  if (!plan.ok) return Refused(plan, *family);
-  v1::TransferProjectResponse response;
-  *response.mutable_findings() =
-      bridge::FindingsOf(true, plan.diagnostics, plan.diagnostics_dropped, {});
-  std::vector<storage::ProgramWrite> writes;
-  for (machine::TransferPlan::Program& program : plan.programs) {
-    const v1::ProjectProgram* source = FindProgram(*project, program.slot);
-    v1::Program& made = *response.add_programs();
-    made.set_name(NameOfProgram(*machine_id, program.slot));
-    made.set_title(source != nullptr ? source->title() : std::string());
-    made.set_object_bytes(static_cast<std::int64_t>(program.object.size()));
-    storage::ProgramWrite write{
-        .slot = program.slot,
-        .name = made.title(),
-        .object = std::move(program.object),
-        .source = {},
-        .source_name = source != nullptr ? source->source().file_name() : std::string()};
-    if (program.own_text && source != nullptr) {
-      write.source =
-          source->source().content();  // the programmer's own text, inch where it is inch
-    } else if (!program.source.empty() && program.source != write.object) {
-      // Another text than that of the project: its name must not say inch, or object.
-      if (source != nullptr && program.source != source->source().content()) {
-        const std::string_view extensions = family->info().extensions;
-        write.source_name = std::filesystem::path(write.source_name)
-                                .replace_extension(extensions.substr(0, extensions.find(' ')))
-                                .string();
-      }
-      write.source = std::move(program.source);
-    }
-    writes.push_back(std::move(write));
-  }
-  if (request.validate_only()) return response;
-  std::vector<storage::ScheduleRecord> schedules;
-  for (const v1::ProjectLaserSchedule& schedule : project->laser_schedules()) {
-    schedules.push_back({.machine = *machine_id,
-                         .number = schedule.number(),
-                         .name = schedule.title(),
-                         .mode = schedule.mode().empty() ? "CW" : schedule.mode(),
-                         .power_percent = schedule.power_percent()});
-  }
-  const auto stored = store_.PutPrograms(*machine_id, writes, schedules, caller);
-  if (!stored) return stored.error();
-  std::size_t next = 0;  // one summary of each program, in the same order
-  for (v1::Program& made : *response.mutable_programs()) {
-    const storage::ProgramSummary& summary = (*stored)[next++];
-    made.set_etag(std::to_string(summary.revision));
-    made.set_object_sha256(summary.object_sha256);
-  }
-  return response;
 }
 
 }  // namespace rmlcell::server

@@ -11,8 +11,7 @@ namespace rmlcell::server {
 // A project as lists have it: the bytes of its programs may be megabytes.
 v1::Project WithoutContent(v1::Project project);
 
-// Projects: kept as one record each, transferred to a machine as one. Thread-safe; blocks on the
-// store.
+// Projects: kept as one record each. Thread-safe; blocks on the store.
 class ProjectBook {
  public:
   explicit ProjectBook(storage::Store& store) : store_(store) {}
@@ -29,13 +28,6 @@ class ProjectBook {
   ProgramResult<v1::Project> Update(const v1::UpdateProjectRequest& request,
                                     std::string_view caller);
   Status Delete(const v1::DeleteProjectRequest& request, std::string_view caller);
-
-  // Converts, compiles and checks everything in the engine, then stores all programs and schedules
-  // in one transaction; on any error nothing is stored (OPT-8.71). Errors: ProjectDuplicate (7861),
-  // ProjectSource (7862), CellInvalidArgument for a file of another family, the first error of the
-  // programs.
-  ProgramResult<v1::TransferProjectResponse> Transfer(const v1::TransferProjectRequest& request,
-                                                      std::string_view caller);
 
  private:
   storage::Store& store_;

@@ -41,12 +41,13 @@ std::string_view KindOf(const v1::JobEvent& event) {
   return "";
 }
 
-// What the columns of the store do not say: the kind of the end, verdict and reasons.
+// What the columns of the store do not say: the kind of the end, verdict and reasons, the time.
 std::string JudgementBytes(const v1::Outcome& outcome) {
   v1::Outcome judged;
   judged.set_kind(outcome.kind());
   judged.set_verdict(outcome.verdict());
   *judged.mutable_reasons() = outcome.reasons();
+  if (outcome.has_cycle_time_ns()) judged.set_cycle_time_ns(outcome.cycle_time_ns());
   return judged.SerializeAsString();
 }
 
@@ -81,7 +82,7 @@ v1::Job::State ToProto(storage::JobState state) {
 v1::WaitReason ToProto(storage::WaitReason reason) {
   switch (reason) {
     case storage::WaitReason::kNone:
-      return v1::WAIT_REASON_UNSPECIFIED;
+      return v1::WAIT_REASON_WORKER;
     case storage::WaitReason::kHeld:
       return v1::WAIT_REASON_HELD;
     case storage::WaitReason::kNotBefore:
@@ -121,7 +122,7 @@ v1::Job ToProto(const storage::JobRecord& record) {
   job.set_priority(record.priority);
   job.set_held(record.held);
   if (record.not_before) *job.mutable_not_before_time() = ToProto(*record.not_before);
-  job.set_wait_reason(ToProto(record.wait));
+  if (record.state == storage::JobState::kQueued) job.set_wait_reason(ToProto(record.wait));
   if (record.waits_for > 0) job.set_waits_for(JobName(record.waits_for));
   *job.mutable_create_time() = ToProto(record.created_at);
   if (record.started_at) *job.mutable_start_time() = ToProto(*record.started_at);

@@ -101,11 +101,27 @@ v1::Machine ToProto(const storage::MachineRecord& record,
   return message;
 }
 
+Result<std::string> ModeText(v1::LaserMode mode) {
+  switch (mode) {
+    case v1::LASER_MODE_UNSPECIFIED:
+    case v1::LASER_MODE_CW:
+      return std::string("CW");
+    case v1::LASER_MODE_PULSE:
+      return std::string("PULSE");
+    default:
+      return InvalidArgument("mode is none that there is");
+  }
+}
+
+v1::LaserMode ModeOf(std::string_view text) {
+  return text == "PULSE" ? v1::LASER_MODE_PULSE : v1::LASER_MODE_CW;
+}
+
 v1::LaserSchedule ToProto(const storage::ScheduleRecord& record) {
   v1::LaserSchedule message;
   message.set_name(NameOfSchedule(record.machine, record.number));
   message.set_title(record.name);
-  message.set_mode(record.mode);
+  message.set_mode(ModeOf(record.mode));
   message.set_power_percent(record.power_percent);
   message.set_etag(std::to_string(record.revision));
   return message;

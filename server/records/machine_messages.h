@@ -24,6 +24,10 @@ v1::Machine ToProto(const storage::MachineRecord& record,
 v1::MachineStatus StatusOf(const storage::MachineRecord& record,
                            const std::vector<storage::MachineJobs>& unfinished);
 v1::LaserSchedule ToProto(const storage::ScheduleRecord& record);
+// "CW", "PULSE", as the store and the engine have it. CellInvalidArgument for a mode that there is
+// not.
+Result<std::string> ModeText(v1::LaserMode mode);
+v1::LaserMode ModeOf(std::string_view text);
 
 // A record that is not stored yet.
 storage::MachineRecord FromProto(const v1::Machine& message, const std::string& id);

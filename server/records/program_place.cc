@@ -2,6 +2,7 @@
 
 #include "engine/core/units.h"
 #include "engine/families/families.h"
+#include "server/records/job_messages.h"
 
 namespace rmlcell::server {
 
@@ -41,6 +42,21 @@ Status CheckSchedule(const machine::MachineFamily& family, std::int64_t number) 
 
 Error EmptySlot(const machine::MachineFamily& family, std::string_view name) {
   return {family.info().empty_slot, "there is no " + std::string(name), {}};
+}
+
+v1::Program ToProto(const std::string& machine, const storage::ProgramSummary& summary) {
+  v1::Program program;
+  program.set_name(NameOfProgram(machine, summary.slot));
+  program.set_title(summary.name);
+  program.set_file_name(summary.source_name);
+  program.set_object_bytes(summary.object_bytes);
+  if (summary.source_bytes >= 0) program.set_source_bytes(summary.source_bytes);
+  if (summary.executable_bytes >= 0) program.set_executable_bytes(summary.executable_bytes);
+  program.set_object_sha256(summary.object_sha256);
+  program.set_etag(std::to_string(summary.revision));
+  *program.mutable_create_time() = ToProto(summary.created_at);
+  *program.mutable_update_time() = ToProto(summary.updated_at);
+  return program;
 }
 
 }  // namespace rmlcell::server

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "engine/machine/family.h"
+#include "rmlcell/v1/program.pb.h"
 #include "server/base/names.h"
 #include "storage/store.h"
 
@@ -33,5 +34,8 @@ Status CheckSchedule(const machine::MachineFamily& family, std::int64_t number);
 
 // FamilyInfo::empty_slot: there is no program of this name.
 Error EmptySlot(const machine::MachineFamily& family, std::string_view name);
+
+// What is known of a program of a machine, without findings.
+v1::Program ToProto(const std::string& machine, const storage::ProgramSummary& summary);
 
 }  // namespace rmlcell::server

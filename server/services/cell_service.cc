@@ -7,6 +7,7 @@
 #include "server/jobs/dispatcher.h"
 #include "server/records/job_messages.h"
 #include "server/services/open_stream.h"
+#include "server/web/static_page.h"
 
 namespace rmlcell::server {
 namespace {
@@ -23,7 +24,8 @@ CellService::CellService(CallNeeds needs, CellWatchNeeds watch, const Dispatcher
       watch_needs_(std::move(watch)),
       dispatcher_(dispatcher),
       config_(config),
-      started_at_(Now()) {}
+      started_at_(Now()),
+      page_etag_(web::PageEtag()) {}
 
 grpc::ServerUnaryReactor* CellService::GetCell(grpc::CallbackServerContext* context,
                                                const v1::GetCellRequest* request,
@@ -40,6 +42,8 @@ grpc::ServerUnaryReactor* CellService::GetCell(grpc::CallbackServerContext* cont
     response->set_jobs_queued(counts->queued);
     response->set_jobs_running(counts->running);
     response->set_unary_program_bytes_max(kUnaryBytes);
+    response->set_title(config_.cell_name);
+    response->set_page_etag(page_etag_);
     response->set_program_bytes_max(config_.limit_program_bytes);
     return grpc::Status::OK;
   });

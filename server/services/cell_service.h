@@ -33,6 +33,7 @@ class CellService final : public v1::CellService::CallbackService {
   const Dispatcher& dispatcher_;
   const Config& config_;
   storage::WallTime started_at_;
+  std::string page_etag_;
 };
 
 }  // namespace rmlcell::server

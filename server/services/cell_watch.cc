@@ -270,7 +270,7 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
     message.set_instance_id(needs_.instance_id);
     message.set_log_id(needs_.records.store.LogId());
     message.set_sequence(begun_ ? cursor_ : request_.after_sequence());
-    message.mutable_reconnect()->set_after_ms(kReconnectAfter_ms);
+    *message.mutable_reconnect() = ServerStopped();
     return true;
   }
 

@@ -6,6 +6,7 @@
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
 #include "server/records/job_messages.h"
+#include "server/results/job_results.h"
 #include "server/services/job_streams.h"
 
 namespace rmlcell::server {
@@ -200,14 +201,57 @@ grpc::ServerUnaryReactor* JobService::GetJobReport(grpc::CallbackServerContext* 
                                                    v1::RunReport* response) {
   return Answer(needs_, context, *request, "JobService/GetJobReport",
                 [this, request, response](const Caller&) {
-                  const Result<std::int64_t> id = ParseJobName(request->name());
-                  if (!id) return ToGrpcStatus(id.error());
-                  const Result<std::string> bytes = book_.ReadArtifact(*id, "report");
-                  if (!bytes) return ToGrpcStatus(bytes.error());
-                  if (!response->ParseFromString(*bytes)) {
-                    return ToGrpcStatus(Error{
-                        ErrorCode::kCellStoreCorrupt, "the report of " + request->name(), {}});
-                  }
+                  Result<v1::RunReport> report = results_.Report(request->name());
+                  if (!report) return ToGrpcStatus(report.error());
+                  *response = *std::move(report);
+                  return grpc::Status::OK;
+                });
+}
+
+grpc::ServerUnaryReactor* JobService::ListJobFindings(grpc::CallbackServerContext* context,
+                                                      const v1::ListJobFindingsRequest* request,
+                                                      v1::ListJobFindingsResponse* response) {
+  return Answer(needs_, context, *request, "JobService/ListJobFindings",
+                [this, request, response](const Caller&) {
+                  Result<v1::ListJobFindingsResponse> findings = results_.Findings(*request);
+                  if (!findings) return ToGrpcStatus(findings.error());
+                  *response = *std::move(findings);
+                  return grpc::Status::OK;
+                });
+}
+
+grpc::ServerUnaryReactor* JobService::GetJobSeries(grpc::CallbackServerContext* context,
+                                                   const v1::GetJobSeriesRequest* request,
+                                                   v1::GetJobSeriesResponse* response) {
+  return Answer(needs_, context, *request, "JobService/GetJobSeries",
+                [this, request, response](const Caller&) {
+                  Result<v1::GetJobSeriesResponse> series = results_.Series(*request);
+                  if (!series) return ToGrpcStatus(series.error());
+                  *response = *std::move(series);
+                  return grpc::Status::OK;
+                });
+}
+
+grpc::ServerUnaryReactor* JobService::CompareJobs(grpc::CallbackServerContext* context,
+                                                  const v1::CompareJobsRequest* request,
+                                                  v1::CompareJobsResponse* response) {
+  return Answer(needs_.Computing(), context, *request, "JobService/CompareJobs",
+                [this, request, response](const Caller&) {
+                  Result<v1::CompareJobsResponse> compared = results_.Compare(*request);
+                  if (!compared) return ToGrpcStatus(compared.error());
+                  *response = *std::move(compared);
+                  return grpc::Status::OK;
+                });
+}
+
+grpc::ServerUnaryReactor* JobService::GetStepMap(grpc::CallbackServerContext* context,
+                                                 const v1::GetStepMapRequest* request,
+                                                 v1::GetStepMapResponse* response) {
+  return Answer(needs_.Computing(), context, *request, "JobService/GetStepMap",
+                [this, request, response](const Caller&) {
+                  Result<v1::GetStepMapResponse> map = results_.StepMap(*request);
+                  if (!map) return ToGrpcStatus(map.error());
+                  *response = *std::move(map);
                   return grpc::Status::OK;
                 });
 }

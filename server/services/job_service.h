@@ -12,14 +12,16 @@ namespace rmlcell::server {
 class Dispatcher;
 class EventFeed;
 class JobBook;
+class JobResults;
 
 // Converts, calls, converts: the rules live in server/jobs.
 class JobService final : public v1::JobService::CallbackService {
  public:
-  JobService(CallNeeds needs, JobBook& book, Dispatcher& dispatcher, EventFeed& feed,
-             OpenStreams& open, std::string instance_id)
+  JobService(CallNeeds needs, JobBook& book, JobResults& results, Dispatcher& dispatcher,
+             EventFeed& feed, OpenStreams& open, std::string instance_id)
       : needs_(needs),
         book_(book),
+        results_(results),
         dispatcher_(dispatcher),
         feed_(feed),
         open_(open),
@@ -78,12 +80,21 @@ class JobService final : public v1::JobService::CallbackService {
   grpc::ServerUnaryReactor* MoveJob(grpc::CallbackServerContext* context,
                                     const v1::MoveJobRequest* request, v1::Job* response) override;
 
+  grpc::ServerUnaryReactor* ListJobFindings(grpc::CallbackServerContext* context,
+                                            const v1::ListJobFindingsRequest* request,
+                                            v1::ListJobFindingsResponse* response) override;
+  grpc::ServerUnaryReactor* GetJobSeries(grpc::CallbackServerContext* context,
+                                         const v1::GetJobSeriesRequest* request,
+                                         v1::GetJobSeriesResponse* response) override;
+  grpc::ServerUnaryReactor* CompareJobs(grpc::CallbackServerContext* context,
+                                        const v1::CompareJobsRequest* request,
+                                        v1::CompareJobsResponse* response) override;
+  grpc::ServerUnaryReactor* GetStepMap(grpc::CallbackServerContext* context,
+                                       const v1::GetStepMapRequest* request,
+                                       v1::GetStepMapResponse* response) override;
+
   RMLCELL_LATER_BOTH("JobService", SubmitJobs)
   RMLCELL_LATER("JobService", DecideInterrupted, v1::DecideInterruptedResponse)
-  RMLCELL_LATER("JobService", ListJobFindings, v1::ListJobFindingsResponse)
-  RMLCELL_LATER("JobService", GetJobSeries, v1::GetJobSeriesResponse)
-  RMLCELL_LATER("JobService", CompareJobs, v1::CompareJobsResponse)
-  RMLCELL_LATER("JobService", GetStepMap, v1::GetStepMapResponse)
 
  private:
   template <class Request, class Response>
@@ -97,6 +108,7 @@ class JobService final : public v1::JobService::CallbackService {
 
   CallNeeds needs_;
   JobBook& book_;
+  JobResults& results_;
   Dispatcher& dispatcher_;
   EventFeed& feed_;
   OpenStreams& open_;

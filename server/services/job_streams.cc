@@ -100,7 +100,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
   bool MakeGoodbye(v1::WatchJobResponse& message) override {
     message.set_instance_id(needs_.instance_id);
     message.set_sequence(begun_ ? cursor_ : request_.after_sequence());
-    message.mutable_reconnect()->set_after_ms(kReconnectAfter_ms);
+    *message.mutable_reconnect() = ServerStopped();
     return true;
   }
 

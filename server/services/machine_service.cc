@@ -205,10 +205,8 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
           return ToGrpcStatus(known.error());
         if (const Status good = CheckTitle(wanted.title(), "title"); !good)
           return ToGrpcStatus(good.error());
-        const std::string mode = wanted.mode().empty() ? "CW" : wanted.mode();
-        if (mode != "CW" && mode != "PULSE") {
-          return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "mode is CW or PULSE", {}});
-        }
+        const auto mode = ModeText(wanted.mode());
+        if (!mode) return ToGrpcStatus(mode.error());
         if (!(wanted.power_percent() >= 0.0 && wanted.power_percent() <= 100.0)) {
           return ToGrpcStatus(
               Error{ErrorCode::kCellInvalidArgument, "power_percent: allowed are 0 to 100", {}});
@@ -216,7 +214,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
         const auto stored = store_.PutSchedule({.machine = name->machine,
                                                 .number = static_cast<int>(name->number),
                                                 .name = wanted.title(),
-                                                .mode = mode,
+                                                .mode = *mode,
                                                 .power_percent = wanted.power_percent()},
                                                *expected, caller.identity);
         if (!stored) return ToGrpcStatus(stored.error());

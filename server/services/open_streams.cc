@@ -1,6 +1,14 @@
+#include <google/protobuf/util/time_util.h>
+
 #include "server/services/pull_stream.h"
 
 namespace rmlcell::server {
+
+v1::Reconnect ServerStopped() {
+  v1::Reconnect message;
+  *message.mutable_after() = google::protobuf::util::TimeUtil::MillisecondsToDuration(250);
+  return message;
+}
 
 void OpenStreams::Add(Stream* stream) {
   bool stopping = false;

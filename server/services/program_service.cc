@@ -8,6 +8,7 @@
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/programs/text_tools.h"
+#include "server/services/open_stream.h"
 #include "server/services/program_upload.h"
 #include "server/services/pull_stream.h"
 
@@ -80,12 +81,6 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
   bool finished_ = false;
 };
 
-class RefusedUpload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
- public:
-  explicit RefusedUpload(const grpc::Status& status) { Finish(status); }
-  void OnDone() override { delete this; }
-};
-
 class Download final : public PullStream<v1::DownloadProgramResponse> {
  public:
   Download(Executor& executor, OpenStreams& open, ProgramBook& programs,
@@ -147,7 +142,10 @@ grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext
 grpc::ServerReadReactor<v1::UploadProgramRequest>* ProgramService::UploadProgram(
     grpc::CallbackServerContext* context, v1::Program* response) {
   Result<Caller> caller = Admit(needs_.gate, *context, "ProgramService/UploadProgram");
-  if (!caller) return new RefusedUpload(ToGrpcStatus(caller.error()));
+  if (!caller) {
+    return new EndedStream<grpc::ServerReadReactor<v1::UploadProgramRequest>>(
+        ToGrpcStatus(caller.error()));
+  }
   return new Upload(needs_, programs_, std::move(*caller), response);
 }
 

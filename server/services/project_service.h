@@ -3,15 +3,18 @@
 #include <string>
 
 #include "rmlcell/v1/project.grpc.pb.h"
-#include "server/services/later.h"
+#include "server/services/call.h"
 
 namespace rmlcell::server {
 
+class OpenStreams;
 class ProjectBook;
+class ProjectTransfer;
 
 class ProjectService final : public v1::ProjectService::CallbackService {
  public:
-  ProjectService(CallNeeds needs, ProjectBook& book) : needs_(needs), book_(book) {}
+  ProjectService(CallNeeds needs, ProjectBook& book, ProjectTransfer& transfer, OpenStreams& open)
+      : needs_(needs), book_(book), transfer_(transfer), open_(open) {}
 
   grpc::ServerUnaryReactor* CreateProject(grpc::CallbackServerContext* context,
                                           const v1::CreateProjectRequest* request,
@@ -31,13 +34,19 @@ class ProjectService final : public v1::ProjectService::CallbackService {
   grpc::ServerUnaryReactor* TransferProject(grpc::CallbackServerContext* context,
                                             const v1::TransferProjectRequest* request,
                                             v1::TransferProjectResponse* response) override;
-  RMLCELL_LATER("ProjectService", TransferProjectFromMachine, v1::Project)
-  RMLCELL_LATER_READ("ProjectService", ExportProject)
-  RMLCELL_LATER_WRITE("ProjectService", ImportProject, v1::Project)
+  grpc::ServerUnaryReactor* TransferProjectFromMachine(
+      grpc::CallbackServerContext* context, const v1::TransferProjectFromMachineRequest* request,
+      v1::Project* response) override;
+  grpc::ServerWriteReactor<v1::ExportProjectResponse>* ExportProject(
+      grpc::CallbackServerContext* context, const v1::ExportProjectRequest* request) override;
+  grpc::ServerReadReactor<v1::ImportProjectRequest>* ImportProject(
+      grpc::CallbackServerContext* context, v1::Project* response) override;
 
  private:
   CallNeeds needs_;
   ProjectBook& book_;
+  ProjectTransfer& transfer_;
+  OpenStreams& open_;
 };
 
 }  // namespace rmlcell::server

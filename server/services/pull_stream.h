@@ -8,13 +8,14 @@
 #include <mutex>
 #include <set>
 
+#include "rmlcell/v1/common.pb.h"
 #include "server/base/executor.h"
 #include "server/services/rpc_status.h"
 
 namespace rmlcell::server {
 
-// A client comes back this long after a server has stopped.
-inline constexpr int kReconnectAfter_ms = 250;
+// When a client comes back after a server has stopped.
+v1::Reconnect ServerStopped();
 
 // Streams that are open, so that a stop can end them with a last word.
 class OpenStreams {

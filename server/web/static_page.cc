@@ -46,6 +46,13 @@ std::optional<std::string> ReadFile(const std::string& path) {
 
 }  // namespace
 
+std::string PageEtag() {
+  std::string all;
+  for (const EmbeddedFile& file : EmbeddedFiles())
+    all += std::string(file.name) + ' ' + EtagOf(file.bytes) + '\n';
+  return EtagOf(all);
+}
+
 StaticPage::StaticPage(std::string web_dir) : web_dir_(std::move(web_dir)) {
   for (const EmbeddedFile& file : EmbeddedFiles()) {
     files_[std::string(file.name)] = {.bytes = std::string(file.bytes), .etag = EtagOf(file.bytes)};

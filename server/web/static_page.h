@@ -19,6 +19,9 @@ struct EmbeddedFile {
 // Implemented by a source file that CMake writes.
 std::vector<EmbeddedFile> EmbeddedFiles();
 
+// Another one when any of these files is another.
+std::string PageEtag();
+
 // The page and what belongs to it: "/" is index.html, "/NAME" the file of that name. There are only
 // the names that are built in, so a path never reaches the file system; with a folder given, the
 // bytes of these names are read from there at each request.

@@ -152,7 +152,7 @@ void JobDrive::CarryOut(const v1::WorkerControl& order, simulation::Simulation& 
 }
 
 void JobDrive::SendPosition(const machine::Run& run) {
-  v1::JobProgress progress = bridge::ToProto(run.state(), run.steps_executed());
+  v1::JobProgress progress = bridge::ToProto(options_.family, run.state(), run.steps_executed());
   if (options_.pace > 0.0) {
     progress.clear_progress();
     if (options_.timetable && options_.timetable->timetable().total()) {

@@ -17,6 +17,7 @@ class JobDrive {
  public:
   struct Options {
     double pace = 0.0;  // virtual seconds a real second; 0: as fast as the processor allows
+    machine::FamilyInfo family{};
     machine::InputKind hold_key = machine::InputKind::kHold;  // what HOLD is on this machine
     // Of a run with a pace, where one can be made: how long it will take is not known before.
     std::unique_ptr<simulation::TimetableRun> timetable{};

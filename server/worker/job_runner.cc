@@ -19,7 +19,9 @@
 #include "proto/bridge/findings.h"
 #include "proto/bridge/milling.h"
 #include "proto/bridge/report.h"
+#include "proto/bridge/series.h"
 #include "proto/bridge/setup.h"
+#include "proto/bridge/sha256.h"
 #include "server/worker/assigned_programs.h"
 #include "server/worker/job_drive.h"
 #include "server/worker/job_events.h"
@@ -41,6 +43,22 @@ v1::Outcome OutcomeOf(Stop stop) {
   return stop == Stop::kCancel
              ? OutcomeFor(machine::OutcomeKind::kCancelled, ErrorCode::kCellCancelled)
              : OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
+}
+
+// Which lines the steps of its programs are, as far as their texts are here; nothing for streams,
+// which have no steps.
+std::string StepsOf(const machine::MachineFamily& family, const machine::RunSetup& setup) {
+  if (family.tools() == nullptr) return {};
+  v1::GetStepMapResponse map;
+  for (const auto& [slot, program] : setup.programs) {
+    v1::GetStepMapResponse::ProgramSteps& made = *map.add_programs();
+    made.set_program(slot);
+    made.set_object_sha256(bridge::Sha256Hex(*program.object));
+    if (program.source == nullptr) continue;
+    const std::vector<int>& lines = program.source->step_lines;
+    *made.mutable_lines() = {lines.begin(), lines.end()};
+  }
+  return bridge::StableBytes(map);
 }
 
 // One attempt.
@@ -156,6 +174,10 @@ class Attempt {
     return End::kFinished;
   }
 
+  const machine::FamilyInfo& Family() const {
+    return families::FindFamily(assignment_.family())->info();
+  }
+
   End Refuse(const Error& error) {
     outcome_ = OutcomeFor(machine::OutcomeKind::kFailed, error.code, error.detail);
     return End::kFinished;
@@ -165,10 +187,11 @@ class Attempt {
   simulation::Products ProductsOf(const v1::SimulationOptions& options) {
     simulation::Products products;
     if (options.trace()) {
-      products.trace = [this](const simulation::TraceRecord& record) {
-        return output_.AddTrace(bridge::ToProto(record).SerializeAsString());
+      products.trace = [this, &family = Family()](const simulation::TraceRecord& record) {
+        return output_.AddTrace(bridge::ToProto(family, record).SerializeAsString());
       };
     }
+    products.plot = options.series();
     products.toolpath = [this](std::string_view block) { return output_.AddToolpath(block); };
     if (options.toolpath_tolerance_mm() > 0.0) {
       products.toolpath_options.tolerance_mm = options.toolpath_tolerance_mm();
@@ -206,6 +229,7 @@ class Attempt {
       events_.OnDiagnostic(SimTime(0), diagnostic);
     const machine::MachineFamily& family = *families::FindFamily(assignment_.family());
     JobDrive::Options drive{.pace = options.pace(),
+                            .family = family.info(),
                             .hold_key = machine::HoldKey(family.info(), made->setup->mode),
                             .flush_events = [this] { events_.Flush(); },
                             .tell = [this](v1::JobEvent event) { events_.Tell(std::move(event)); }};
@@ -213,6 +237,7 @@ class Attempt {
       if (auto timetable = simulation::TimetableRun::Of(family, *made->setup))
         drive.timetable = *std::move(timetable);
     }
+    steps_ = StepsOf(family, *made->setup);
     Result<simulation::BegunRun> begun =
         simulation::Begin(family, std::move(*made->setup), std::move(products));
     if (!begun) return Refuse(begun.error());
@@ -230,16 +255,19 @@ class Attempt {
     }
     executables_ = begun.run->made_executables();
     const std::string picture = begun.recorder->Svg(report, {});
+    if (const simulation::TimeEnvelope* series = begun.recorder->Values(report.cycle_time))
+      series_ = bridge::StableBytes(bridge::SeriesOf(Family(), *series, report.cycle_time));
     // What made them is large, and so is the report as a message.
     begun.simulation.reset();
     begun.run.reset();
     const simulation::MillingRecorder* milling = begun.recorder->milling();
     if (milling == nullptr) begun.recorder.reset();
-    v1::RunReport message = bridge::ToProto(report, values);
+    v1::RunReport message = bridge::ToProto(Family(), report, values);
     machine::MarkJudged(report.judgement, before.diagnostics);
     machine::MarkJudged(report.judgement, before.diagnostics_dropped);
     bridge::AddFindingsOfText(before.diagnostics, before.diagnostics_dropped, message);
     outcome_ = message.outcome();
+    outcome_.set_cycle_time_ns(report.cycle_time.count());
     return SendProducts(message, picture, milling);
   }
 
@@ -304,6 +332,8 @@ class Attempt {
       output_.Send("report", "application/x-protobuf", bytes);
     if (!files) return End::kFinished;
     output_.SendToolpath();
+    if (!series_.empty()) output_.Send("series", "application/x-protobuf", series_);
+    if (!steps_.empty()) output_.Send("steps", "application/x-protobuf", steps_);
     if (options.trace()) output_.SendTrace();
     output_.Send("picture.svg", "image/svg+xml", picture);
     for (const ProductFile& file : *files) output_.Send(file.name, file.media_type, file.bytes);
@@ -340,6 +370,8 @@ class Attempt {
   JobEvents events_;
   v1::Outcome outcome_;
   std::map<int, std::string> executables_;
+  std::string steps_;   // GetStepMapResponse
+  std::string series_;  // SeriesTable
 };
 
 }  // namespace

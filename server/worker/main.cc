@@ -5,9 +5,12 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <atomic>
 #include <cstdlib>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "engine/core/units.h"
 #include "proto/bridge/findings.h"
@@ -45,17 +48,38 @@ void Guard() {
   }
 }
 
+// "hall-3/4711": unique among the workers of all computers.
+std::string OwnName() {
+  std::array<char, 256> host{};
+  if (::gethostname(host.data(), host.size() - 1) != 0) host = {};
+  return std::string(host.data()) + "/" + std::to_string(::getpid());
+}
+
+// A server that is away, or of another version, leaves it to the next.
+Result<std::unique_ptr<ServerLine>> JoinFirst(const std::vector<std::string>& servers,
+                                              const std::string& token, const std::string& name,
+                                              const std::string& pool) {
+  Result<std::unique_ptr<ServerLine>> line = Error{ErrorCode::kCellUsage, "no --server", {}};
+  for (const std::string& server : servers) {
+    line = ServerLine::Join({.server = server, .join_token = token, .name = name, .pool = pool});
+    if (line) break;
+    if (servers.size() > 1) spdlog::warn("{}: {}", server, bridge::ErrorText(line.error()));
+  }
+  return line;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"An engine worker: joins a server and works on its jobs.", "rmlcell-worker"};
-  std::string server = "127.0.0.1:50051";
-  std::string name = "worker-" + std::to_string(::getpid());
+  std::vector<std::string> servers = {"127.0.0.1:50051"};
+  std::string name = OwnName();
   std::string pool;
   std::string log_level = "info";
   std::string log_format = "text";
   app.set_version_flag("--version", std::string(kVersion));
-  app.add_option("--server", server, "host:port or unix:/path");
+  app.add_option("--server", servers,
+                 "host:port or unix:/path; of several the first that takes the worker");
   app.add_option("--name", name, "unique among the workers of the server");
   app.add_option(
          "--pool", pool,
@@ -77,8 +101,7 @@ int main(int argc, char** argv) {
   ::sigaction(SIGTERM, &action, nullptr);
   ::sigaction(SIGINT, &action, nullptr);
   const char* token = std::getenv("RMLCELL_JOIN_TOKEN");
-  auto line = ServerLine::Join(
-      {.server = server, .join_token = token != nullptr ? token : "", .name = name, .pool = pool});
+  auto line = JoinFirst(servers, token != nullptr ? token : "", name, pool);
   if (!line) {
     spdlog::error("{}", bridge::ErrorText(line.error()));
     return 69;

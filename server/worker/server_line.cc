@@ -1,5 +1,6 @@
 #include "server/worker/server_line.h"
 
+#include <google/protobuf/util/time_util.h>
 #include <grpcpp/grpcpp.h>
 #include <unistd.h>
 
@@ -59,7 +60,8 @@ Result<std::unique_ptr<ServerLine>> ServerLine::Join(const Options& options) {
                                : ErrorCode::kCellUnavailable;
     return Error{code, status.error_message(), {}};
   }
-  made->lease_ms_ = answer.welcome().lease_ms();
+  made->lease_ms_ =
+      google::protobuf::util::TimeUtil::DurationToMilliseconds(answer.welcome().lease());
   made->events_window_ = answer.welcome().events_window();
   made->reader_ = std::thread([line = made.get()] {
     v1::WorkResponse response;

@@ -271,7 +271,8 @@ Result<LeasedJob> LeaseJob(WriteContext& context, std::int64_t id, const JobRequ
               .attempt = row->attempts_begun,
               .fence = ++context.counters.fence,
               .worker = request.worker,
-              .until = After(context.now, request.duration)};
+              .until = After(context.now, request.duration),
+              .server = request.server};
   if (const Status leased = context.tables.leases.Add(lease); !leased) return leased.error();
   if (const Status begun = context.tables.attempts.Add({.job = job.id,
                                                         .number = lease.attempt,

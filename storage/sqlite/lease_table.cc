@@ -8,7 +8,8 @@ Lease ReadLease(const Query& row) {
                .attempt = row.Small(1),
                .fence = row.Integer(2),
                .worker = row.Text(3),
-               .until = row.Time(4)};
+               .until = row.Time(4),
+               .server = row.Text(5)};
 }
 
 AttemptRecord ReadAttempt(const Query& row) {
@@ -25,18 +26,21 @@ AttemptRecord ReadAttempt(const Query& row) {
 
 LeaseTable::LeaseTable(Database& database)
     : add_(database,
-           "INSERT INTO lease (job, attempt, fence, worker, until) VALUES (?1, ?2, ?3, ?4, ?5)"),
+           "INSERT INTO lease (job, attempt, fence, worker, until, server)"
+           " VALUES (?1, ?2, ?3, ?4, ?5, ?6)"),
       end_all_(database, "UPDATE lease SET until = 0"),
-      find_(database, "SELECT job, attempt, fence, worker, until FROM lease WHERE job = ?1"),
+      find_(database,
+            "SELECT job, attempt, fence, worker, until, server FROM lease WHERE job = ?1"),
       // No index: there are no more leases than workers, and each renewal would have to keep it.
       run_out_(database,
-               "SELECT job, attempt, fence, worker, until FROM lease WHERE until <= ?1"
+               "SELECT job, attempt, fence, worker, until, server FROM lease WHERE until <= ?1"
                " ORDER BY job"),
       prolong_(database, "UPDATE lease SET until = ?2 WHERE job = ?1"),
       remove_(database, "DELETE FROM lease WHERE job = ?1") {}
 
 Status LeaseTable::Add(const Lease& lease) {
-  return add_.With(lease.job, lease.attempt, lease.fence, lease.worker, lease.until).Run();
+  return add_.With(lease.job, lease.attempt, lease.fence, lease.worker, lease.until, lease.server)
+      .Run();
 }
 
 Result<std::optional<Lease>> LeaseTable::Find(std::int64_t job) {

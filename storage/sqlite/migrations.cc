@@ -45,6 +45,10 @@ constexpr Migration kMigrations[] = {
      "CREATE TABLE job_after (job INTEGER NOT NULL, after INTEGER NOT NULL,"
      " PRIMARY KEY (job, after)) WITHOUT ROWID;"
      "CREATE INDEX job_after_by ON job_after (after);"},
+    {7, "orders for jobs of another server",
+     "ALTER TABLE lease ADD COLUMN server TEXT NOT NULL DEFAULT '';"
+     "CREATE TABLE job_order (id INTEGER PRIMARY KEY, job INTEGER NOT NULL,"
+     " fence INTEGER NOT NULL, payload BLOB NOT NULL);"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

@@ -236,6 +236,41 @@ Result<JobRecord> MoveJob(WriteContext& context, std::int64_t id, std::int64_t b
   return Written(context, std::move(row), events);
 }
 
+Result<std::int64_t> CountBefore(Tables& tables, std::int64_t id) {
+  const Result<std::optional<JobRow>> row = tables.jobs.Get(id);
+  if (!row) return row.error();
+  if (!*row) return Error{ErrorCode::kCellNotFound, "job " + std::to_string(id), {}};
+  const JobRecord& job = (*row)->job;
+  if (job.state != JobState::kQueued) {
+    return Error{ErrorCode::kCellPrecondition,
+                 "job " + std::to_string(id) + " does not wait in the queue",
+                 {}};
+  }
+  return tables.queue.CountBefore(job.pool, job.kind, {id, job.priority, (*row)->place});
+}
+
+Status PutJobOrder(WriteContext& context, std::int64_t job, std::string_view from,
+                   std::string_view payload) {
+  const Result<std::optional<Lease>> lease = context.tables.leases.Find(job);
+  if (!lease) return lease.error();
+  if (!*lease || (*lease)->server == from) {
+    return Error{ErrorCode::kCellPrecondition,
+                 "job " + std::to_string(job) + " does not run at another server",
+                 {}};
+  }
+  context.changed = true;
+  if (const Status tidy = context.tables.orders.RemoveStale(); !tidy) return tidy.error();
+  return context.tables.orders.Add(**lease, payload);
+}
+
+Result<std::vector<TakenOrder>> TakeJobOrders(WriteContext& context, std::string_view server) {
+  auto orders = context.tables.orders.Of(server);
+  if (!orders) return orders.error();
+  if (const Status removed = context.tables.orders.RemoveOf(server); !removed)
+    return removed.error();
+  return orders;
+}
+
 Status LetDueJobsGo(WriteContext& context) {
   const Result<std::vector<std::int64_t>> due = context.tables.queue.Due(context.now);
   if (!due) return due.error();

@@ -28,6 +28,14 @@ Result<JobRecord> LetJobGo(WriteContext& context, std::int64_t id,
                            const std::vector<NewEvent>& events);
 Result<JobRecord> MoveJob(WriteContext& context, std::int64_t id, std::int64_t before,
                           std::optional<int> priority, const std::vector<NewEvent>& events);
+// As Store::CountBefore.
+Result<std::int64_t> CountBefore(Tables& tables, std::int64_t id);
+
+// As Store::PutOrder and TakeOrders.
+Status PutJobOrder(WriteContext& context, std::int64_t job, std::string_view from,
+                   std::string_view payload);
+Result<std::vector<TakenOrder>> TakeJobOrders(WriteContext& context, std::string_view server);
+
 // Those whose time has come.
 Status LetDueJobsGo(WriteContext& context);
 

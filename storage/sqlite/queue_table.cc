@@ -42,6 +42,10 @@ QueueTable::QueueTable(Database& database)
       last_place_(database,
                   "SELECT max(place) FROM job INDEXED BY job_unfinished WHERE state < 2"
                   " AND state = 0 AND pool = ?1 AND kind = ?2 AND priority = ?3"),
+      count_before_(database,
+                    "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2"
+                    " AND state = 0 AND pool = ?1 AND kind = ?2 AND blocked = 0"
+                    " AND (priority > ?3 OR (priority = ?3 AND place < ?4))"),
       due_(database,
            "SELECT id FROM job INDEXED BY job_not_before"
            " WHERE state = 0 AND not_before IS NOT NULL AND not_before <= ?1 AND blocked & 2 <> 0"
@@ -103,6 +107,15 @@ Result<std::vector<std::int64_t>> Numbers(Query query) {
 }
 
 }  // namespace
+
+Result<std::int64_t> QueueTable::CountBefore(std::string_view pool, std::string_view kind,
+                                             const Head& head) {
+  const Result<std::optional<std::int64_t>> count =
+      FirstRow<std::int64_t>(count_before_.With(pool, kind, head.priority, head.place),
+                             [](const Query& row) { return row.Integer(0); });
+  if (!count) return count.error();
+  return count->value_or(0);
+}
 
 Result<std::optional<double>> QueueTable::PlaceBefore(std::string_view pool, std::string_view kind,
                                                       const Head& head) {

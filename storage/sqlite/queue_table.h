@@ -43,6 +43,8 @@ class QueueTable {
   // The last place of this priority; nothing: there is none.
   Result<std::optional<double>> LastPlace(std::string_view pool, std::string_view kind,
                                           int priority);
+  // How many that are ready come before this one.
+  Result<std::int64_t> CountBefore(std::string_view pool, std::string_view kind, const Head& head);
   // Jobs that are blocked by their time, up to this one.
   Result<std::vector<std::int64_t>> Due(WallTime now);
   Result<std::int64_t> CountBlocked();  // dear: all queued jobs are looked at
@@ -62,6 +64,7 @@ class QueueTable {
   Statement running_run_;
   Statement place_before_;
   Statement last_place_;
+  Statement count_before_;
   Statement due_;
   Statement count_blocked_;
   Statement add_after_;

@@ -86,6 +86,9 @@ class SqliteStore final : public Store {
   Result<JobRecord> Move(std::int64_t job, std::int64_t before, std::optional<int> priority,
                          const std::vector<NewEvent>& events) override;
 
+  Result<std::int64_t> CountBefore(std::int64_t job) override;
+  Status PutOrder(std::int64_t job, std::string_view from, std::string_view payload) override;
+  Result<std::vector<TakenOrder>> TakeOrders(std::string_view server) override;
   Result<std::vector<LeasedJob>> AcquireJobs(const JobRequest& request) override;
   Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) override;
   void Append(const Lease& lease, std::vector<NewEvent> events,

@@ -247,6 +247,22 @@ Result<JobRecord> SqliteStore::Move(std::int64_t job, std::int64_t before,
       [&](WriteContext& context) { return MoveJob(context, job, before, priority, events); }));
 }
 
+Result<std::int64_t> SqliteStore::CountBefore(std::int64_t job) {
+  return readers_->Read([&](Tables& tables) { return sqlite::CountBefore(tables, job); });
+}
+
+Status SqliteStore::PutOrder(std::int64_t job, std::string_view from, std::string_view payload) {
+  return writer_.Do(
+      [&](WriteContext& context) { return PutJobOrder(context, job, from, payload); });
+}
+
+Result<std::vector<TakenOrder>> SqliteStore::TakeOrders(std::string_view server) {
+  const Result<bool> any = readers_->Read([](Tables& tables) { return tables.orders.Any(); });
+  if (!any) return any.error();
+  if (!*any) return std::vector<TakenOrder>();
+  return writer_.Do([&](WriteContext& context) { return TakeJobOrders(context, server); });
+}
+
 Result<std::vector<LeasedJob>> SqliteStore::AcquireJobs(const JobRequest& request) {
   // Idle workers ask at every commit; most find nothing, and that must not keep the writer busy.
   if (!writer_.any_ready_job()) return std::vector<LeasedJob>();

@@ -7,6 +7,7 @@
 #include "storage/sqlite/lease_table.h"
 #include "storage/sqlite/machine_table.h"
 #include "storage/sqlite/mark_table.h"
+#include "storage/sqlite/order_table.h"
 #include "storage/sqlite/program_table.h"
 #include "storage/sqlite/project_table.h"
 #include "storage/sqlite/queue_table.h"
@@ -27,6 +28,7 @@ struct Tables {
         queue(database),
         leases(database),
         attempts(database),
+        orders(database),
         events(database),
         artifacts(database),
         marks(database),
@@ -42,6 +44,7 @@ struct Tables {
   QueueTable queue;
   LeaseTable leases;
   AttemptTable attempts;
+  OrderTable orders;
   EventTable events;
   ArtifactTable artifacts;
   MarkTable marks;

@@ -528,7 +528,7 @@ class Stops(unittest.TestCase):
             # Where to go on: behind the last event that was told, or the snapshot.
             told = max([seen[0].sequence] + [m.sequence for m in seen if m.HasField("event")])
             self.assertEqual(seen[-1].sequence, told)
-            self.assertGreater(seen[-1].reconnect.after_ms, 0)
+            self.assertGreater(seen[-1].reconnect.after.nanos, 0)
         self.cell.start()
         again = self.cell.jobs().GetJob(job_pb2.GetJobRequest(name=job.name))
         self.assertIn(again.state, (job_pb2.Job.STATE_QUEUED, job_pb2.Job.STATE_RUNNING))

@@ -101,7 +101,7 @@ class Local(InFolder):
         self.assertEqual((len(report["beam"]["bySpeedS"]), len(report["beam"]["byPowerS"])), (21, 20))
         self.assertAlmostEqual(sum(report["beam"]["bySpeedS"]), report["total"]["beamOnS"], 6)
         slow = report["slowMoves"][-1]
-        self.assertEqual((slow["place"]["step"], slow["cause"], slow["wantedMmS"]), (11, "short", 500.0))
+        self.assertEqual((slow["place"]["step"], slow["cause"], slow["wantedMmS"]), (11, "CAUSE_SHORT", 500.0))
         self.assertAlmostEqual(slow["reachedMmS"], 21.5443469, 3)  # case S03
         x = next(axis for axis in report["axes"] if axis["axis"] == "X")
         self.assertAlmostEqual(x["peakSpeedShare"], x["peakSpeed"] / 500.0, 9)

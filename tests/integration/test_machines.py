@@ -183,12 +183,12 @@ class Schedules(WithCell):
 
     def test_a_schedule_comes_back_as_it_was_put(self):
         stub = self.cell.machines()
-        kept = stub.PutLaserSchedule(self.put(12, title="Steel 3 mm", mode="PULSE", power_percent=62.5))
+        kept = stub.PutLaserSchedule(self.put(12, title="Steel 3 mm", mode=machine_pb2.LASER_MODE_PULSE, power_percent=62.5))
         self.assertEqual((kept.name, kept.title, kept.mode, kept.power_percent),
-                         ("machines/optimo-1/laserSchedules/12", "Steel 3 mm", "PULSE", 62.5))
+                         ("machines/optimo-1/laserSchedules/12", "Steel 3 mm", machine_pb2.LASER_MODE_PULSE, 62.5))
         self.assertIn(kept, self.listed())
         plain = stub.PutLaserSchedule(self.put(13, power_percent=100.0))
-        self.assertEqual((plain.mode, plain.power_percent), ("CW", 100.0))
+        self.assertEqual((plain.mode, plain.power_percent), (machine_pb2.LASER_MODE_CW, 100.0))
         self.assertEqual(stub.PutLaserSchedule(self.put(14, power_percent=0.0)).power_percent, 0.0)
         changed = stub.PutLaserSchedule(self.put(12, power_percent=10.0, etag=kept.etag))
         self.assertNotEqual(changed.etag, kept.etag)
@@ -206,7 +206,7 @@ class Schedules(WithCell):
 
     def test_bad_schedules_are_refused(self):
         stub = self.cell.machines()
-        for bad in (self.put(1, power_percent=100.01), self.put(1, power_percent=-0.01), self.put(1, mode="CWX"),
+        for bad in (self.put(1, power_percent=100.01), self.put(1, power_percent=-0.01), self.put(1, mode=7),
                     self.put(1, title="t" * 201), self.put("x")):
             self.refused(stub.PutLaserSchedule, bad, BAD, "CELL-E9003")
         self.refused(stub.PutLaserSchedule, self.put(1, power_percent=float("nan")), BAD, "CELL-E9003")

@@ -222,7 +222,10 @@ class Projects(WithCell):
         stub.CreateProject(project_pb2.CreateProjectRequest(
             project_id="good", project=self.project((20, "a.SI", inch), (21, "b.S", "SPEED 5\n"), schedules=(11,))))
         done = stub.TransferProject(project_pb2.TransferProjectRequest(name="projects/good", machine="machines/optimo-1"))
-        self.assertEqual([p.name for p in done.programs], ["machines/optimo-1/programs/20", "machines/optimo-1/programs/21"])
+        self.assertEqual([(item.name, item.change) for item in done.items],
+                         [("machines/optimo-1/programs/20", project_pb2.TRANSFER_CHANGE_ADD),
+                          ("machines/optimo-1/programs/21", project_pb2.TRANSFER_CHANGE_ADD),
+                          ("machines/optimo-1/laserSchedules/11", project_pb2.TRANSFER_CHANGE_ADD)])
         # The object is metric; the source is the programmer's own, under a name that says inch.
         name = "machines/optimo-1/programs/20"
         own = self.cell.programs().GetProgramContent(program_pb2.GetProgramContentRequest(name=name))

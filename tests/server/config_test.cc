@@ -42,6 +42,7 @@ std::vector<KeyCase> AllKeys() {
        R"(["127.0.0.1:7", "unix:/tmp/a"])",
        {},
        no_list},
+      {"cell.name", "'Hall 3'", "the \"hall\"", R"("the \"hall\"")", {}, no_text},
       {"listen.web", "'127.0.0.1:8'", "127.0.0.1:8", R"("127.0.0.1:8")", {}, no_text},
       {"web.origins", "['http://a:1']", "http://a:1", R"(["http://a:1"])", {}, no_list},
       {"web.connections_max", "10", "100000", "100000", {"9", "100001", "ten", ""}, no_integer},

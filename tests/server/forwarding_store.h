@@ -124,6 +124,13 @@ class ForwardingStore : public storage::Store {
                                   const std::vector<storage::NewEvent>& events) override {
     return store_.Move(job, before, priority, events);
   }
+  Result<std::int64_t> CountBefore(std::int64_t job) override { return store_.CountBefore(job); }
+  Status PutOrder(std::int64_t job, std::string_view from, std::string_view payload) override {
+    return store_.PutOrder(job, from, payload);
+  }
+  Result<std::vector<storage::TakenOrder>> TakeOrders(std::string_view server) override {
+    return store_.TakeOrders(server);
+  }
   Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest& request) override {
     return store_.AcquireJobs(request);
   }

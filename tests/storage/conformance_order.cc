@@ -307,5 +307,80 @@ TEST_P(StoreConformance, ListsHaveThoseThatWaitInEveryWay) {
   EXPECT_EQ(listed, jobs);
 }
 
+TEST_P(StoreConformance, AJobKnowsHowManyStartBeforeIt) {
+  const auto first = Put(store(), {});
+  const auto second = Put(store(), {});
+  const auto high = Put(store(), {.priority = 5});
+  const auto held = Put(store(), {.priority = 9, .held = true});  // it does not start
+  Put(store(), {.kind = "CHECK", .priority = 9});                 // for other workers
+  Put(store(), {.pool = "paced", .priority = 9});
+  const auto third = Put(store(), {});
+  const auto before = [&](std::int64_t job) { return Must(store().CountBefore(job)); };
+  EXPECT_EQ(before(high), 0);
+  EXPECT_EQ(before(first), 1);
+  EXPECT_EQ(before(second), 2);
+  EXPECT_EQ(before(third), 3);
+  Must(store().Move(third, second, std::nullopt, {}));
+  EXPECT_EQ(before(third), 2);
+  EXPECT_EQ(before(second), 3);
+  Must(store().LetGo(held, {}));
+  EXPECT_EQ(before(high), 1);
+  EXPECT_EQ(Started(store()).size(), 5U);
+  EXPECT_EQ(CodeOf(store().CountBefore(first)), kPrecondition);
+  EXPECT_EQ(CodeOf(store().CountBefore(999)), ErrorCode::kCellNotFound);
+}
+
+// IF-07.
+TEST_P(StoreConformance, AnOrderIsForTheServerThatHasTheJob) {
+  const auto one = Put(store(), {});
+  const auto two = Put(store(), {});
+  EXPECT_EQ(CodeOf(store().PutOrder(one, "b", "stop")), kPrecondition);  // it waits
+  const auto acquire = [&](const std::string& server) {
+    return Must(store().AcquireJobs({.worker = "w",
+                                     .server = server,
+                                     .kinds = {"SIMULATE"},
+                                     .duration = hours(100)}))
+        .at(0)
+        .lease;
+  };
+  const Lease of_a = acquire("a");
+  const Lease of_b = acquire("b");
+  EXPECT_EQ(of_a.server, "a");
+  EXPECT_EQ(CodeOf(store().PutOrder(one, "a", "stop")), kPrecondition);  // it is its own
+  EXPECT_EQ(CodeOf(store().PutOrder(999, "a", "stop")), kPrecondition);
+  ASSERT_TRUE(store().PutOrder(one, "b", std::string("\0first", 6)));
+  ASSERT_TRUE(store().PutOrder(two, "a", "for b"));
+  ASSERT_TRUE(store().PutOrder(one, "c", "second"));
+  Reopen();
+  const std::vector<TakenOrder> taken = Must(store().TakeOrders("a"));
+  ASSERT_EQ(taken.size(), 2U);
+  EXPECT_EQ(taken[0].payload, std::string("\0first", 6));
+  EXPECT_EQ(taken[0].lease.job, one);
+  EXPECT_EQ(taken[0].lease.fence, of_a.fence);
+  EXPECT_EQ(taken[0].lease.attempt, of_a.attempt);
+  EXPECT_EQ(taken[1].payload, "second");
+  EXPECT_THAT(Must(store().TakeOrders("a")), IsEmpty());  // once
+  EXPECT_EQ(Must(store().TakeOrders("b")).size(), 1U);
+}
+
+TEST_P(StoreConformance, AnOrderIsGoneWithItsLease) {
+  const auto job = Put(store(), {});
+  const auto acquire = [&](const std::string& server) {
+    return Must(store().AcquireJobs({.worker = "w",
+                                     .server = server,
+                                     .kinds = {"SIMULATE"},
+                                     .duration = hours(100)}))
+        .at(0)
+        .lease;
+  };
+  const Lease first = acquire("a");
+  ASSERT_TRUE(store().PutOrder(job, "b", "of the first attempt"));
+  Must(store().HandBack(first, PolicyOfTests()));
+  acquire("a");  // the same server has it again
+  EXPECT_THAT(Must(store().TakeOrders("a")), IsEmpty());
+  ASSERT_TRUE(store().PutOrder(job, "b", "of the second"));
+  EXPECT_EQ(Must(store().TakeOrders("a")).size(), 1U);
+}
+
 }  // namespace
 }  // namespace rmlcell::storage

@@ -171,17 +171,18 @@ TEST_F(SqliteKeep, OldStoreGetsItsMarks) {
   for (int i = 0; i < 5; ++i) RunJob();
   const std::int64_t last = Must(store().ListAttempts(5)).front().fence;
   bed_->Close();
-  ExecuteIn(bed_->path(),
-            "DELETE FROM mark; DELETE FROM migration WHERE number >= 3; DROP INDEX job_unfinished;"
-            "DROP INDEX job_special; DROP INDEX job_run_queue; DROP INDEX job_run;"
-            "DROP INDEX job_not_before; DROP TABLE job_after; DROP TABLE log_part;"
-            "ALTER TABLE event DROP COLUMN resource; ALTER TABLE event DROP COLUMN caller;"
-            "ALTER TABLE job DROP COLUMN pool; ALTER TABLE job DROP COLUMN priority;"
-            "ALTER TABLE job DROP COLUMN place; ALTER TABLE job DROP COLUMN special;"
-            "ALTER TABLE job DROP COLUMN held; ALTER TABLE job DROP COLUMN not_before;"
-            "ALTER TABLE job DROP COLUMN blocked;"
-            "CREATE INDEX job_unfinished ON job (state, kind) WHERE state < 2;"
-            "PRAGMA user_version = 2");
+  ExecuteIn(
+      bed_->path(),
+      "DELETE FROM mark; DELETE FROM migration WHERE number >= 3; DROP INDEX job_unfinished;"
+      "DROP INDEX job_special; DROP INDEX job_run_queue; DROP INDEX job_run;"
+      "DROP INDEX job_not_before; DROP TABLE job_after; DROP TABLE log_part; DROP TABLE job_order;"
+      "ALTER TABLE lease DROP COLUMN server; ALTER TABLE event DROP COLUMN resource; ALTER TABLE event DROP COLUMN caller;"
+      "ALTER TABLE job DROP COLUMN pool; ALTER TABLE job DROP COLUMN priority;"
+      "ALTER TABLE job DROP COLUMN place; ALTER TABLE job DROP COLUMN special;"
+      "ALTER TABLE job DROP COLUMN held; ALTER TABLE job DROP COLUMN not_before;"
+      "ALTER TABLE job DROP COLUMN blocked;"
+      "CREATE INDEX job_unfinished ON job (state, kind) WHERE state < 2;"
+      "PRAGMA user_version = 2");
   bed_->options().keep_finished_jobs = 3;
   bed_->Reopen();
   WaitForCount("job", 3);

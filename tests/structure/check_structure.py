@@ -72,16 +72,18 @@ MAY_INCLUDE = {
     "server/machines": ["server/base", "server/events", "server/records", "storage"],
     "server/programs": ["engine/core", "engine/machine", "engine/families", RUN, "proto", "proto/bridge", "server/base", "server/records", "storage"],
     "server/projects": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base", "server/records", "server/programs", "storage"],
+    # What is asked of jobs that have ended.
+    "server/results": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base", "server/jobs", "server/programs", "storage"],
     "server/web": ["engine/core", "proto", "proto/bridge"],
     "server/services": ["engine/core", "engine/machine", "engine/families", TOOLPATH, "proto", "proto/bridge",
                         "server/base", "server/auth", "server/events", "server/records", "server/jobs",
-                        "server/programs", "server/projects", "server/web", "storage"],
+                        "server/programs", "server/projects", "server/results", "server/web", "storage"],
     # The engine worker: a process of its own, without the store.
     "server/worker": ["engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge",
                       "server/base", "server/records"],
     # The wiring of the server.
     "server/cell": ["engine/core", "proto/bridge", "server/base", "server/auth", "server/events", "server/records",
-                    "server/jobs", "server/machines", "server/programs", "server/projects", "server/services",
+                    "server/jobs", "server/machines", "server/programs", "server/projects", "server/results", "server/services",
                     "server/web", "storage", "storage/sqlite"],
     # The language server: no server and no language.
     "clients/lsp": ["engine/core", "engine/machine", "engine/families", RUN],
@@ -117,14 +119,14 @@ PUBLIC = {
     PATH: ["part_curve.h", "path_extent.h", "polyline.h", "profile_phases.h", "motion_peaks.h"],
     REPORT: ["report.h", "report_recorder.h", "finding_list.h", "facts.h", "trace.h", "samples.h"],
     TOOLPATH: ["toolpath_recorder.h", "toolpath_level.h"],
-    PICTURE: ["picture.h", "picture_difference.h", "plot.h"],
+    PICTURE: ["picture.h", "picture_difference.h", "plot.h", "time_envelope.h"],
     MATERIAL: ["height_map.h", "milling_recorder.h", "milling_text.h", "relief.h", "standard_cell.h", "stl.h", "target.h", "target_files.h"],
     VERDICT: ["verdict.h"],
     RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "joint_check.h", "milled_target.h", "timetable.h", "trial_run.h"],
     "storage": ["records.h", "store.h"],
     "storage/sqlite": ["sqlite_store.h"],
     "proto/bridge": ["comparison.h", "encoding.h", "files.h", "findings.h", "framing.h", "header_date.h", "milling.h",
-                     "report.h", "setup.h", "sha256.h", "spooled_bytes.h"],
+                     "report.h", "series.h", "setup.h", "sha256.h", "spooled_bytes.h"],
     "server/base": ["config.h", "executor.h", "log.h", "names.h", "readable.h", "secret.h", "steady_clock.h", "version.h"],
     "server/auth": ["caller.h"],
     "server/events": ["event_feed.h"],
@@ -132,10 +134,11 @@ PUBLIC = {
     "server/records": ["file_family.h", "job_messages.h", "machine_messages.h", "program_place.h", "update_mask.h"],
     "server/machines": ["machine_statuses.h"],
     "server/programs": ["language_tools.h", "memory_tools.h", "program_book.h", "program_result.h", "text_tools.h"],
+    "server/projects": ["project_archive.h", "project_book.h", "project_transfer.h"],
     "server/services": ["account_service.h", "cell_service.h", "foreign_calls.h", "handbox_service.h", "host_service.h",
                         "job_service.h", "machine_service.h", "program_service.h",
                         "project_service.h", "web_resources.h", "worker_service.h"],
-    "server/web": ["resource_source.h", "web_server.h"],
+    "server/web": ["resource_source.h", "static_page.h", "web_server.h"],
     "server/worker": [],
     "server/cell": [],
     "clients/lsp": ["stdio.h"],
@@ -156,8 +159,9 @@ ONLY_FOR = {
     "engine/optimo/machine": {header: ["engine/optimo/control"]
                               for header in ("laser_unit.h", "machine_state.h", "system_cycle.h")},
     PATH: {"part_curve.h": [REPORT], "motion_peaks.h": [REPORT]},
-    "server/programs": {"program_result.h": ["server/services"], "text_tools.h": ["server/services"]},
-    "server/web": {"web_server.h": ["server/cell"], "resource_source.h": ["server/services"]},
+    "server/programs": {"program_result.h": ["server/projects", "server/results", "server/services"],
+                        "text_tools.h": ["server/projects", "server/services"]},
+    "server/web": {"web_server.h": ["server/cell"], "resource_source.h": ["server/services"], "static_page.h": ["server/services"]},
 }
 # Headers made of the .proto files.
 PROTO_HEADERS = ("rmlcell/v1/", "google/rpc/", "google/api/", "grpc/health/")

@@ -43,7 +43,7 @@ struct PlotRecorder::State {
   // Between what motions and waits cover nothing moves and the beam is off.
   void StandUntil(SimTime at) {
     if (at <= told) return;
-    values[PlotPage::kSpeed] = values[PlotPage::kFeed] = values[PlotPage::kPower] = 0.0;
+    values[PlotSeries::kSpeed] = values[PlotSeries::kFeed] = values[PlotSeries::kPower] = 0.0;
     if (!curves.envelope.buckets().empty()) curves.envelope.Add(told, values);
     if (!curves.envelope.buckets().empty()) curves.envelope.Add(at, values);
     told = at;
@@ -53,9 +53,9 @@ struct PlotRecorder::State {
     const motion::TrajectoryPoint point =
         view.At(TimeWithin(*done.motion, done.profile_start_s + t_s));
     const double speed = point.tip_speed();
-    values[PlotPage::kSpeed] = speed;
-    values[PlotPage::kFeed] = done.programmed_mm_s;
-    values[PlotPage::kPower] =
+    values[PlotSeries::kSpeed] = speed;
+    values[PlotSeries::kFeed] = done.programmed_mm_s;
+    values[PlotSeries::kPower] =
         done.beam_on ? std::clamp(done.power.constant_percent + done.power.percent_per_mm_s * speed,
                                   0.0, 100.0)
                      : 0.0;
@@ -63,10 +63,10 @@ struct PlotRecorder::State {
         shape.five_axis ? point.axes
                         : motion::AxisValues{point.tip.tip.x(), point.tip.tip.y(),
                                              point.tip.tip.z(), point.tip.a_rad, 0.0};
-    std::copy(axes.begin(), axes.end(), values.begin() + PlotPage::kFirstAxis);
+    std::copy(axes.begin(), axes.end(), values.begin() + PlotSeries::kFirstAxis);
     if (!std::exchange(moved, true)) {  // until now they stood here, and nobody had told where
       for (std::size_t k = 0; k < motion::kAxisCount; ++k)
-        curves.envelope.Amend(PlotPage::kFirstAxis + k, axes[k]);
+        curves.envelope.Amend(PlotSeries::kFirstAxis + k, axes[k]);
     }
     curves.envelope.Add(std::min(done.start + FromSeconds(t_s), done.end), values);
   }
@@ -116,8 +116,8 @@ void PlotRecorder::OnMotion(const machine::MotionDone& done) {
 void PlotRecorder::OnWait(const machine::Wait& wait) {
   state_->StandUntil(wait.start);
   TimeEnvelope::Values& values = state_->values;
-  values[PlotPage::kSpeed] = values[PlotPage::kFeed] = 0.0;
-  values[PlotPage::kPower] = wait.beam_on ? wait.power_percent : 0.0;
+  values[PlotSeries::kSpeed] = values[PlotSeries::kFeed] = 0.0;
+  values[PlotSeries::kPower] = wait.beam_on ? wait.power_percent : 0.0;
   if (wait.end < state_->told) return;
   state_->curves.envelope.Add(state_->told, values);
   state_->curves.envelope.Add(wait.end, values);
@@ -134,6 +134,11 @@ void PlotRecorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   if (state_->curves.marks.size() >= kMarksMax) return;
   const bool warning = diagnostic.severity == Severity::kWarning;
   state_->curves.marks.push_back({at, CodeText(diagnostic.code), !warning});
+}
+
+const TimeEnvelope& PlotRecorder::Values(SimTime until) const {
+  state_->StandUntil(until);
+  return state_->curves.envelope;
 }
 
 std::string PlotRecorder::Svg(const RunReport& report, const PlotOptions& options) const {

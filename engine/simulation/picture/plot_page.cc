@@ -82,30 +82,31 @@ std::vector<PlotPage::Panel> PlotPage::PanelsOf(const PlotOptions& options) cons
   for (const PlotCurve curve : options.curves) {
     if (curve == PlotCurve::kSpeed) {
       // A run of positioning moves asks for no speed of the tip.
-      const bool asks = Limits(curves_.envelope, kFeed).second > 0.0;
-      panels.push_back({.title = "tip speed",
-                        .unit = "mm/s",
-                        .series = asks ? std::vector<std::size_t>{kSpeed, kFeed}
-                                       : std::vector<std::size_t>{kSpeed},
-                        .colour = "#0b4fa8",
-                        .height = 220.0,
-                        .from_zero = true});
+      const bool asks = Limits(curves_.envelope, PlotSeries::kFeed).second > 0.0;
+      panels.push_back(
+          {.title = "tip speed",
+           .unit = "mm/s",
+           .series = asks ? std::vector<std::size_t>{PlotSeries::kSpeed, PlotSeries::kFeed}
+                          : std::vector<std::size_t>{PlotSeries::kSpeed},
+           .colour = "#0b4fa8",
+           .height = 220.0,
+           .from_zero = true});
     } else if (curve == PlotCurve::kPower) {
       if (shape_.laser_watts <= 0.0) continue;  // a mill has no beam
       panels.push_back({.title = "power",
                         .unit = "%",
-                        .series = {kPower},
+                        .series = {PlotSeries::kPower},
                         .colour = "#e8590c",
                         .height = 130.0,
                         .from_zero = true,
                         .hundred = true});
     } else {
       for (std::size_t axis = 0; axis < kAxisTitles.size(); ++axis) {
-        const auto [low, high] = Limits(curves_.envelope, kFirstAxis + axis);
+        const auto [low, high] = Limits(curves_.envelope, PlotSeries::kFirstAxis + axis);
         if (!(high - low > kMoved)) continue;
         panels.push_back({.title = std::string(kAxisTitles[axis]),
                           .unit = axis < 3 ? "mm" : "rad",
-                          .series = {kFirstAxis + axis},
+                          .series = {PlotSeries::kFirstAxis + axis},
                           .colour = kAxisColours[axis],
                           .height = 96.0});
       }

@@ -13,12 +13,7 @@ namespace rmlcell::simulation {
 // The page of a plot: panels one below the other over the same time, each with a scale of its own.
 class PlotPage {
  public:
-  // The series of the envelope.
-  static constexpr std::size_t kSpeed = 0;      // mm/s
-  static constexpr std::size_t kFeed = 1;       // mm/s asked for; 0: as fast as the axes can
-  static constexpr std::size_t kPower = 2;      // percent
-  static constexpr std::size_t kFirstAxis = 3;  // X Y Z A B, mm and rad
-  static_assert(kFirstAxis + motion::kAxisCount <= TimeEnvelope::kSeriesMax);
+  static_assert(PlotSeries::kFirstAxis + motion::kAxisCount <= TimeEnvelope::kSeriesMax);
 
   // An instant worth a line through all panels.
   struct Mark {

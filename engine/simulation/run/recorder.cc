@@ -160,6 +160,10 @@ std::string Recorder::Svg(const RunReport& report, const PictureOptions& options
   return state_->picture ? state_->picture->Svg(report, options) : std::string();
 }
 
+const TimeEnvelope* Recorder::Values(SimTime until) const {
+  return state_->plot ? &state_->plot->Values(until) : nullptr;
+}
+
 std::string Recorder::PlotSvg(const RunReport& report, const PlotOptions& options) const {
   return state_->plot ? state_->plot->Svg(report, options) : std::string();
 }

@@ -70,6 +70,9 @@ class Recorder final : public machine::RunObserver {
   // Empty when no picture was asked for.
   std::string Svg(const RunReport& report, const PictureOptions& options) const;
 
+  // What a plot draws, up to this time (PlotSeries); null when none was asked for.
+  const TimeEnvelope* Values(SimTime until) const;
+
   // Empty when no plot was asked for.
   std::string PlotSvg(const RunReport& report, const PlotOptions& options) const;
 

@@ -9,6 +9,13 @@
 namespace rmlcell::cli {
 namespace {
 
+void AddTurned(const std::string& axis, double rad, v1::Position& position) {
+  v1::AxisValue& turned = *position.add_turned();
+  turned.set_axis(axis);
+  turned.set_value(rad);
+  turned.set_unit(v1::UNIT_RADIAN);
+}
+
 using testing::HasSubstr;
 using testing::Not;
 
@@ -145,7 +152,8 @@ TEST_F(Messages, AReportOfALaserHasItsFigures) {
   total.set_pierces(4);
   total.set_energy_j(5000.0);
   report.mutable_final_position()->mutable_tip()->set_x(1.0);
-  report.mutable_final_position()->set_a(0.5);
+  AddTurned("A", 0.5, *report.mutable_final_position());
+  AddTurned("B", 0.0, *report.mutable_final_position());
   report.mutable_corners()->set_blended(6);
   report.mutable_corners()->set_stopped(7);
   report.set_lookahead_starved(8);
@@ -284,14 +292,14 @@ TEST_F(Messages, AWholeReportOfALaser) {
   slow.mutable_place()->set_step(24);
   slow.set_reached_mm_s(25.5);
   slow.set_wanted_mm_s(26.5);
-  slow.set_cause("axis");
+  slow.set_cause(v1::SlowMove::CAUSE_AXIS);
   slow.set_axis("A");
   slow.set_count(27);
   v1::SlowMove& once = *report.add_slow_moves();
   once.mutable_place()->set_line(28);
   once.set_reached_mm_s(1.0);
   once.set_wanted_mm_s(2.0);
-  once.set_cause("radius");
+  once.set_cause(v1::SlowMove::CAUSE_RADIUS);
   once.set_count(1);
   const auto axis = [&](const std::string& name, bool rotary, double speed, double share,
                         double acceleration) {
@@ -321,8 +329,8 @@ TEST_F(Messages, AWholeReportOfALaser) {
   end.mutable_column()->set_x(36.0);
   end.mutable_column()->set_y(37.0);
   end.mutable_column()->set_z(38.0);
-  end.set_a(0.25);
-  end.set_b(0.75);
+  AddTurned("A", 0.25, end);
+  AddTurned("B", 0.75, end);
   report.mutable_tip_box()->mutable_low()->set_x(-1.0);
   report.mutable_tip_box()->mutable_high()->set_y(2.0);
   (*report.mutable_variables())["VR[2]"] = "39.";

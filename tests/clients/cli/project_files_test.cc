@@ -43,7 +43,7 @@ class ReadProjectTest : public testing::Test {
 
 constexpr const char* kTwoPrograms = R"({
   "title": "Bracket", "notes": "clamp left",
-  "laserSchedules": [{"number": 3, "mode": "PULSE", "powerPercent": 40}],
+  "laserSchedules": [{"number": 3, "mode": "LASER_MODE_PULSE", "powerPercent": 40}],
   "programs": [{"slot": 12, "title": "outside", "source": {"fileName": "parts/outside.S"}},
                {"slot": 44, "source": {"fileName": "inside.SI"}, "units": "UNITS_INCH"}]})";
 

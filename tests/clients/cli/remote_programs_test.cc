@@ -9,6 +9,7 @@
 
 #include "clients/cli/remote.h"
 #include "engine/core/result.h"
+#include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/sha256.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
@@ -21,6 +22,7 @@ namespace {
 
 using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::StartsWith;
@@ -124,17 +126,56 @@ struct FakeProjects final : v1::ProjectService::Service {
   grpc::Status TransferProject(grpc::ServerContext*, const v1::TransferProjectRequest* request,
                                v1::TransferProjectResponse* response) override {
     transfer = *request;
-    v1::Program& program = *response->add_programs();
+    v1::TransferItem& program = *response->add_items();
     program.set_name("machines/m/programs/12");
-    program.set_title("twelve");
-    program.set_object_bytes(33);
+    program.set_change(v1::TRANSFER_CHANGE_REPLACE);
+    program.mutable_program_before()->set_object_bytes(30);
+    program.mutable_program_after()->set_title("twelve");
+    program.mutable_program_after()->set_object_bytes(33);
+    v1::TransferItem& schedule = *response->add_items();
+    schedule.set_name("machines/m/laserSchedules/3");
+    schedule.set_change(v1::TRANSFER_CHANGE_ADD);
+    schedule.mutable_laser_schedule_after()->set_mode(v1::LASER_MODE_PULSE);
+    schedule.mutable_laser_schedule_after()->set_power_percent(40.0);
     response->mutable_findings()->set_diagnostics_dropped(2);
+    return refusal;
+  }
+
+  grpc::Status TransferProjectFromMachine(grpc::ServerContext*,
+                                          const v1::TransferProjectFromMachineRequest* request,
+                                          v1::Project* response) override {
+    taken = *request;
+    response->set_name("projects/" + request->project_id());
+    return refusal;
+  }
+  grpc::Status ExportProject(grpc::ServerContext*, const v1::ExportProjectRequest* request,
+                             grpc::ServerWriter<v1::ExportProjectResponse>* writer) override {
+    asked = request->name();
+    if (!refusal.ok()) return refusal;
+    v1::ExportProjectResponse part;
+    for (const char* chunk : {"PK", "bytes"}) {
+      part.set_chunk(chunk);
+      writer->Write(part);
+    }
+    return refusal;
+  }
+  grpc::Status ImportProject(grpc::ServerContext*,
+                             grpc::ServerReader<v1::ImportProjectRequest>* reader,
+                             v1::Project* response) override {
+    v1::ImportProjectRequest part;
+    archive.clear();
+    while (reader->Read(&part)) {
+      if (part.has_chunk()) archive += part.chunk();
+      if (!part.project_id().empty()) response->set_name("projects/" + part.project_id());
+    }
     return refusal;
   }
 
   grpc::Status refusal;
   v1::Project project;
   v1::TransferProjectRequest transfer;
+  v1::TransferProjectFromMachineRequest taken;
+  std::string archive;
   std::vector<std::string> tokens;
   std::string asked;
 };
@@ -333,13 +374,38 @@ TEST_F(RemoteVerbs, ATransferSaysWhatItStored) {
   EXPECT_TRUE(projects.transfer.insert_missing_definitions());
   EXPECT_FALSE(projects.transfer.validate_only());
   EXPECT_EQ(told.output,
-            "and 2 more findings\nmachines/m/programs/12 stored: twelve, object 33 B\n");
+            "and 2 more findings\nmachines/m/programs/12 replaced: twelve, object 33 B, was 30 B\n"
+            "machines/m/laserSchedules/3 new: PULSE 40 %\nall of it is stored\n");
   told = Hear([&] { return TransferProject(server.remote(), "p", "m", false, true); });
   EXPECT_FALSE(projects.transfer.insert_missing_definitions());
   EXPECT_TRUE(projects.transfer.validate_only());
-  EXPECT_THAT(told.output, HasSubstr(" would be stored: "));
+  EXPECT_THAT(told.output, EndsWith("\nnothing was stored: --check-only\n"));
   told = Hear([&] { return TransferProject(server.remote(true), "p", "m", false, true); });
   EXPECT_THAT(told.output, StartsWith("{"));
+}
+
+TEST_F(RemoteVerbs, AProjectGoesOutAndInAsOneFile) {
+  const std::string file = folder.File("door.zip");
+  Told told = Hear([&] { return ExportProject(server.remote(), "door", file); });
+  EXPECT_EQ(told.output, "projects/door is in " + file + "\n");
+  EXPECT_EQ(projects.asked, "projects/door");
+  EXPECT_EQ(*bridge::ReadFile(file, 100), "PKbytes");
+  EXPECT_EQ(Hear([&] { return ExportProject(server.remote(), "door", "-"); }).output, "PKbytes");
+  told = Hear([&] { return ImportProject(server.remote(), "door-2", file); });
+  EXPECT_EQ(told.output, "projects/door-2 made\n");
+  EXPECT_EQ(projects.archive, "PKbytes");
+  EXPECT_NE(
+      Hear([&] { return ImportProject(server.remote(), "d", folder.File("none")); }).exit_code, 0);
+}
+
+TEST_F(RemoteVerbs, AProjectIsMadeOfWhatAMachineHolds) {
+  const Told told = Hear([&] { return TakeProject(server.remote(), "door", "m", {12, 44}, true); });
+  EXPECT_EQ(told.output, "projects/door made of what m holds\n");
+  EXPECT_EQ(projects.taken.machine(), "machines/m");
+  EXPECT_THAT(projects.taken.slots(), testing::ElementsAre(12, 44));
+  EXPECT_EQ(projects.taken.units(), v1::UNITS_INCH);
+  Hear([&] { return TakeProject(server.remote(), "door", "m", {}, false); });
+  EXPECT_EQ(projects.taken.units(), v1::UNITS_UNSPECIFIED);
 }
 
 TEST_F(RemoteVerbs, WhatIsDeletedIsNamed) {
@@ -360,7 +426,10 @@ TEST_F(RemoteVerbs, ARefusalIsToldByEach) {
            [&] { return DeleteProgram(remote, "m", 12); },
            [&] { return StaleExecutables(remote, "m"); }, [&] { return Projects(remote); },
            [&] { return GetProject(remote, "p"); }, [&] { return DeleteProject(remote, "p"); },
-           [&] { return TransferProject(remote, "p", "m", false, false); }}) {
+           [&] { return TransferProject(remote, "p", "m", false, false); },
+           [&] { return TakeProject(remote, "p", "m", {}, false); },
+           [&] { return ExportProject(remote, "p", folder.File("out")); },
+           [&] { return ImportProject(remote, "p", file); }}) {
     const Told told = Hear(verb);
     EXPECT_EQ(told.exit_code, 3);
     EXPECT_EQ(told.output, "");

@@ -124,12 +124,15 @@ std::string Beam() {
 
 const std::string kNothing = "times {} ";
 const std::string kStill =
-    "final_position { tip {} column {} } final_program_point {} final_program_angles: 0 "
-    "final_program_angles: 0 ";
+    "final_position { tip {} column {} turned { axis: 'A' unit: UNIT_RADIAN } "
+    "turned { axis: 'B' unit: UNIT_RADIAN } } final_program_point {} "
+    "final_program_axes { axis: 'A' unit: UNIT_RADIAN } "
+    "final_program_axes { axis: 'B' unit: UNIT_RADIAN } ";
+constexpr machine::FamilyInfo kGantry = {.axes = "X Y Z A B"};
 
 TEST(ReportMessage, OfARunThatDidNothing) {
   ExpectMessage(
-      ToProto(RunReport{}, {}),
+      ToProto(kGantry, RunReport{}, {}),
       "outcome { kind: KIND_COMPLETED place {} verdict: VERDICT_GOOD } total { times {} } " +
           kStill +
           "corners {} axes {} trace { complete: true } toolpath { complete: true } "
@@ -197,15 +200,14 @@ TEST(ReportMessage, EveryFigureHasItsField) {
   const CatalogueEntry& hole = Lookup(ErrorCode::kHoleRadiusZero);
   const CatalogueEntry& turn = Lookup(ErrorCode::kFlyReversal);
   ExpectMessage(
-      ToProto(report, {{"VR[1]", "2.5"}}),
+      ToProto(kGantry, report, {{"VR[1]", "2.5"}}),
       "family: 'optimo' title: 'part' outcome { kind: KIND_FAILED code: 'OPT-E348' symbol: '" +
           std::string(ConstantName(ErrorCode::kHoleRadiusZero)) +
           "' message: 'radius is 0' advice: '" + std::string(hole.advice) +
           "' place { program: 1 step: 2 line: 3 byte_offset: 4 } verdict: VERDICT_GOOD } total { " +
           kFigures +
-          "} final_position { tip { x: 1 y: 2 z: 3 } column { x: 4 y: 5 z: 6 } a: 0.75 b: 0.125 } "
-          "final_program_point { x: 7 y: 8 z: 9 } final_program_angles: 10 final_program_angles: "
-          "11 "
+          "} final_position { tip { x: 1 y: 2 z: 3 } column { x: 4 y: 5 z: 6 } turned { axis: 'A' value: 0.75 unit: UNIT_RADIAN } turned { axis: 'B' value: 0.125 unit: UNIT_RADIAN } } "
+          "final_program_point { x: 7 y: 8 z: 9 } final_program_axes { axis: 'A' value: 10 unit: UNIT_RADIAN } final_program_axes { axis: 'B' value: 11 unit: UNIT_RADIAN } "
           "shutter_open_s: 19 energy_j_per_mm_max: 22 halts: 5 " +
           kScope + Beam() + "programs { program: 45 figures { " + kFigures + "} " + kScope +
           Beam() + "} steps { program: 1 step: 2 line: 3 figures { " + kFigures +
@@ -213,10 +215,10 @@ TEST(ReportMessage, EveryFigureHasItsField) {
           "' symbol: '" + std::string(ConstantName(turn.code)) +
           "' severity: SEVERITY_WARNING message: 'turns' advice: '" + std::string(turn.advice) +
           "' rule: 'OPT-2.48' count: 6 place {} } " + kGathered +
-          "slow_moves { place { program: 1 step: 2 } cause: 'axis' axis: 'A' wanted_mm_s: 3 "
+          "slow_moves { place { program: 1 step: 2 } cause: CAUSE_AXIS axis: 'A' wanted_mm_s: 3 "
           "allowed_mm_s: 2 reached_mm_s: 1 count: 4 } slow_moves_dropped: 8 lookahead_starved: 12 "
           "violations { place { program: 1 step: 2 } axis: 'X' rotary: true excess: 0.5 "
-          "at_target: true position { tip { x: 6 y: 7 z: 8 } column { x: 1 y: 2 z: 3 } a: 4 b: 5 } "
+          "at_target: true position { tip { x: 6 y: 7 z: 8 } column { x: 1 y: 2 z: 3 } turned { axis: 'A' value: 4 unit: UNIT_RADIAN } turned { axis: 'B' value: 5 unit: UNIT_RADIAN } } "
           "time_s: 9 count: 10 } violations_dropped: 9 "
           "figures { name: 'programmed.cut_length' unit: 'mm' value: 2.5 } "
           "variables { key: 'VR[1]' value: '2.5' } parameters { key: 'VMAX' value: '400' } "
@@ -250,7 +252,7 @@ TEST(ReportMessage, EveryFigureOfABlockHasItsField) {
                                                         .deep_mm3 = 27.0,
                                                         .good_percent = 28.0,
                                                         .compared_mm2 = 29.0}};
-  ExpectMessage(ToProto(report, {}).milling(),
+  ExpectMessage(ToProto(kGantry, report, {}).milling(),
                 "removed_mm3: 1 gouges: 2 gouge_depth_mm: 3 gouge_place { program: 4 step: 5 } "
                 "gouge_time_s: 6 below_mm: 7 below_place { program: 8 step: 9 } remaining_mm3: 10 "
                 "deepest_cut_mm: 11 deepest_pass_mm: 13 pass_place { program: 14 step: 15 } "
@@ -282,8 +284,8 @@ TEST(ReportMessage, EveryFigureOfContoursHasItsField) {
   report.cut_figures.near_end[2] = {.value = 25.0, .place = {.step = 26}};
   report.cut_figures.near_end[4] = {.value = 27.0, .place = {.step = 28}};
   ExpectMessage(
-      ToProto(report, {}),
-      ToProto(RunReport{}, {}).DebugString() +
+      ToProto(kGantry, report, {}),
+      ToProto(kGantry, RunReport{}, {}).DebugString() +
           "contours { place { program: 1 step: 2 } begin_s: 3 time_s: 4 length_mm: 5 "
           "slow_length_mm: 6 energy_j: 15 pierce_energy_j: 8 } contours_dropped: 9 "
           "cut { contours: 10 time_s_max: 11 energy_j_max: 12 "
@@ -310,7 +312,7 @@ TEST(ReportMessage, AVerdictHasItsReasons) {
       "code: '" + CodeText(turn.code) + "' symbol: '" + std::string(ConstantName(turn.code)) + "' ";
   const std::string advice = "advice: '" + std::string(turn.advice) + "' ";
   ExpectMessage(
-      ToProto(report, {}).outcome(),
+      ToProto(kGantry, report, {}).outcome(),
       "kind: KIND_COMPLETED place {} verdict: VERDICT_BAD reasons { verdict: VERDICT_BAD " + code +
           advice + "} reasons { verdict: VERDICT_DOUBTFUL " + code + "message: '2.5 mm too much' " +
           advice + "amount: 2.5 unit: 'mm' first { program: 1 step: 2 } }");
@@ -319,7 +321,8 @@ TEST(ReportMessage, AVerdictHasItsReasons) {
 TEST(ReportMessage, AToolBelowTheBlockHasItsPlace) {
   RunReport report;
   report.milling = {.below_mm = 7.0, .below_place = {.program = 8, .step = 9}};
-  ExpectMessage(ToProto(report, {}).milling(), "below_mm: 7 below_place { program: 8 step: 9 }");
+  ExpectMessage(ToProto(kGantry, report, {}).milling(),
+                "below_mm: 7 below_place { program: 8 step: 9 }");
 }
 
 // What did not happen has no place: no gouge, no deviation, no beam, no limit to have a share of.
@@ -361,7 +364,7 @@ TEST(ReportMessage, WhatDidNotHappenIsNotThere) {
   RunReport report;
   report.milling = {.removed_mm3 = 1.0};
   report.tip_figures = {.name = "tip", .peak_speed = 5.0, .peak_acceleration = 6.0};
-  const v1::RunReport message = ToProto(report, {});
+  const v1::RunReport message = ToProto(kGantry, report, {});
   EXPECT_FALSE(message.milling().has_gouge_place());
   EXPECT_FALSE(message.corners().has_deviation_place());
   EXPECT_FALSE(message.has_beam());
@@ -371,7 +374,7 @@ TEST(ReportMessage, WhatDidNotHappenIsNotThere) {
   EXPECT_EQ(message.axes(0).peak_speed_share(), 0.0);
   EXPECT_EQ(message.axes(0).peak_acceleration_share(), 0.0);
   report.programs[1] = {};
-  EXPECT_FALSE(ToProto(report, {}).programs(0).has_beam());
+  EXPECT_FALSE(ToProto(kGantry, report, {}).programs(0).has_beam());
 }
 
 simulation::TraceRecord Record(simulation::TraceKind kind) {
@@ -402,26 +405,39 @@ TEST(TraceMessage, EachKindHasItsFields) {
   using simulation::TraceKind;
   const auto expect = [](TraceKind kind, const std::string& more) {
     ExpectMessage(
-        ToProto(Record(kind)),
+        ToProto(kGantry, Record(kind)),
         "number: 3 virtual_time_ns: 2000000000 place { program: 4 step: 5 line: 6 byte_offset: 0 } " +
             more);
   };
   const std::string code = CodeText(ErrorCode::kFlyReversal);
-  expect(TraceKind::kMove,
-         "kind: 'move' text: 'words' point { x: 7 y: 8 z: 9 } angles: 10 angles: 11 position { tip "
-         "{ x: 1 y: 2 z: 3 } column { x: 4 y: 5 z: 6 } a: 0.5 b: 0.25 } feed_mm_s: 12");
-  expect(TraceKind::kSignal, "kind: 'signal' text: 'spindle' index: 13 value: 14 detail: 15");
-  expect(TraceKind::kWait, "kind: 'wait' text: 'pierce' duration_ns: 16000000000");
-  expect(TraceKind::kProgram, "kind: 'program' text: 'words' index: 13");
-  expect(TraceKind::kHalt, "kind: 'halt' text: 'words'");
-  expect(TraceKind::kResume, "kind: 'resume' text: 'words'");
-  expect(TraceKind::kMessage, "kind: 'message' text: 'words'");
+  expect(
+      TraceKind::kMove,
+      "kind: KIND_MOVE text: 'words' point { x: 7 y: 8 z: 9 } program_axes { axis: 'A' value: 10 unit: UNIT_RADIAN } program_axes { axis: 'B' value: 11 unit: UNIT_RADIAN } position { tip "
+      "{ x: 1 y: 2 z: 3 } column { x: 4 y: 5 z: 6 } turned { axis: 'A' value: 0.5 unit: UNIT_RADIAN } turned { axis: 'B' value: 0.25 unit: UNIT_RADIAN } } feed_mm_s: 12");
+  expect(TraceKind::kSignal, "kind: KIND_SIGNAL text: 'spindle' index: 13 value: 14 detail: 15");
+  expect(TraceKind::kWait, "kind: KIND_WAIT text: 'pierce' duration_ns: 16000000000");
+  expect(TraceKind::kProgram, "kind: KIND_PROGRAM text: 'words' index: 13");
+  expect(TraceKind::kHalt, "kind: KIND_HALT text: 'words'");
+  expect(TraceKind::kResume, "kind: KIND_RESUME text: 'words'");
+  expect(TraceKind::kMessage, "kind: KIND_MESSAGE text: 'words'");
   expect(TraceKind::kFinding,
-         "kind: 'finding' text: 'words' code: '" + code + "' severity: SEVERITY_WARNING");
-  expect(TraceKind::kEnd, "kind: 'end' text: 'stopped' code: '" + code + "'");
+         "kind: KIND_FINDING text: 'words' code: '" + code + "' severity: SEVERITY_WARNING");
+  expect(TraceKind::kEnd, "kind: KIND_END text: 'stopped' code: '" + code + "'");
   simulation::TraceRecord end = Record(TraceKind::kEnd);
   end.code.reset();
-  EXPECT_EQ(ToProto(end).code(), "");
+  EXPECT_EQ(ToProto(kGantry, end).code(), "");
+}
+
+// A mill has one axis that turns, and its stream counts it in degrees; a machine may have none.
+TEST(TraceMessage, NamesTheAxesThatTurn) {
+  const simulation::TraceRecord move = Record(simulation::TraceKind::kMove);
+  const v1::TraceRecord mill = ToProto({.axes = "X Y Z A", .turns_in_degrees = true}, move);
+  ASSERT_EQ(mill.program_axes_size(), 1);
+  ExpectMessage(mill.program_axes(0), "axis: 'A' value: 10 unit: UNIT_DEGREE");
+  ASSERT_EQ(mill.position().turned_size(), 1);
+  ExpectMessage(mill.position().turned(0), "axis: 'A' value: 0.5 unit: UNIT_RADIAN");
+  const v1::TraceRecord flat = ToProto({.axes = "X Y Z"}, move);
+  EXPECT_EQ(flat.program_axes_size() + flat.position().turned_size(), 0);
 }
 
 TEST(ProgressMessage, EveryFieldIsThere) {
@@ -435,18 +451,19 @@ TEST(ProgressMessage, EveryFieldIsThere) {
                           .override_percent = 55.0,
                           .beam_on = true,
                           .progress = 0.0};
-  ExpectMessage(ToProto(state, 11),
-                "virtual_time_ns: 1 steps: 11 place { program: 2 step: 3 } instruction: 'MOVE' "
-                "position { tip { x: 4 y: 5 z: 6 } column { x: 7 y: 8 z: 9 } a: 0.75 b: 0.125 } "
-                "speed_mm_s: 10 override_percent: 55 tool_on: true held: true progress: 0");
+  ExpectMessage(
+      ToProto(kGantry, state, 11),
+      "virtual_time_ns: 1 steps: 11 place { program: 2 step: 3 } instruction: 'MOVE' "
+      "position { tip { x: 4 y: 5 z: 6 } column { x: 7 y: 8 z: 9 } turned { axis: 'A' value: 0.75 unit: UNIT_RADIAN } turned { axis: 'B' value: 0.125 unit: UNIT_RADIAN } } "
+      "speed_mm_s: 10 override_percent: 55 tool_on: true held: true progress: 0");
   state.phase = machine::RunPhase::kRunning;
   state.beam_on = false;
   state.progress = -1.0;
-  EXPECT_FALSE(ToProto(state, 0).held());
-  EXPECT_FALSE(ToProto(state, 0).tool_on());
-  EXPECT_FALSE(ToProto(state, 0).has_progress());
+  EXPECT_FALSE(ToProto(kGantry, state, 0).held());
+  EXPECT_FALSE(ToProto(kGantry, state, 0).tool_on());
+  EXPECT_FALSE(ToProto(kGantry, state, 0).has_progress());
   state.spindle_on = true;
-  EXPECT_TRUE(ToProto(state, 0).tool_on());
+  EXPECT_TRUE(ToProto(kGantry, state, 0).tool_on());
 }
 
 }  // namespace

@@ -171,6 +171,9 @@ class FakeLog final : public storage::Store {
                                   const std::vector<storage::NewEvent>&) override {
     return No();
   }
+  Result<std::int64_t> CountBefore(std::int64_t) override { return No(); }
+  Status PutOrder(std::int64_t, std::string_view, std::string_view) override { return No(); }
+  Result<std::vector<storage::TakenOrder>> TakeOrders(std::string_view) override { return No(); }
   Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest&) override {
     return No();
   }

@@ -34,7 +34,7 @@ TEST(DispatcherJoin, WelcomesAndCountsWorkers) {
   bed.config.workers_lease_ms = 7'000;
   FakeWorker one(bed.dispatcher(), "one");
   const v1::WorkResponse welcome = one.line().Next(v1::WorkResponse::kWelcome);
-  EXPECT_EQ(welcome.welcome().lease_ms(), 7'000);
+  EXPECT_EQ(welcome.welcome().lease().seconds(), 7);
   EXPECT_GT(welcome.welcome().events_window(), 0);
   FakeWorker two(bed.dispatcher(), "two");
   EXPECT_EQ(bed.dispatcher().workers(), 2);

@@ -49,7 +49,7 @@ class JobQueue : public testing::Test {
 
 TEST_F(JobQueue, AJobSaysItsPlaceAndWhatItWaitsFor) {
   const v1::Job first = Submit();
-  EXPECT_EQ(first.wait_reason(), v1::WAIT_REASON_UNSPECIFIED);
+  EXPECT_EQ(first.wait_reason(), v1::WAIT_REASON_WORKER);
   const v1::Job job = Submit([&](v1::Job& wanted) {
     wanted.set_priority(7);
     wanted.add_after_jobs(first.name());

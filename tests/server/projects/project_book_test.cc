@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "server/base/config.h"
+#include "server/programs/program_book.h"
+#include "server/projects/project_transfer.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/server_bed.h"
 
@@ -63,12 +65,15 @@ class ProjectBookTest : public testing::Test {
     request.set_machine("machines/optimo-1");
     request.set_insert_missing_definitions(insert);
     request.set_validate_only(validate_only);
-    return book.Transfer(request, "anna");
+    return transfer.ToMachine(request, "anna");
   }
   std::size_t Programs() { return Must(bed.store().ListPrograms("optimo-1", 0, 100)).size(); }
 
   ServerBed bed;
   ProjectBook book{bed.store()};
+  Config config;
+  ProgramBook programs{bed.store(), config};
+  ProjectTransfer transfer{bed.store(), book, programs};
 };
 
 TEST_F(ProjectBookTest, KeepsAllThatAProjectHas) {
@@ -124,7 +129,9 @@ TEST_F(ProjectBookTest, ChecksItsPartsBeforeItIsKept) {
       {"schedule 64", ErrorCode::kScheduleRange, [](auto& p) { AddSchedule(p, 64); }},
       {"schedule twice", kInvalid, [](auto& p) { AddSchedule(p, 1), AddSchedule(p, 1); }},
       {"mode", kInvalid,
-       [](auto& p) { AddSchedule(p, 1), p.mutable_laser_schedules(0)->set_mode("LOUD"); }},
+       [](auto& p) {
+         AddSchedule(p, 1), p.mutable_laser_schedules(0)->set_mode(static_cast<v1::LaserMode>(9));
+       }},
       {"power 101", kInvalid,
        [](auto& p) { AddSchedule(p, 1), p.mutable_laser_schedules(0)->set_power_percent(100.5); }},
       {"power NaN", kInvalid,
@@ -292,13 +299,13 @@ TEST_F(ProjectBookTest, ATransferTakesNoProgramOfAnotherFamily) {
   v1::TransferProjectRequest request;
   request.set_name("projects/f");
   request.set_machine("machines/mill-1");
-  const auto refused = book.Transfer(request, "anna");
+  const auto refused = transfer.ToMachine(request, "anna");
   EXPECT_EQ(CodeOf(refused), kInvalid);
   EXPECT_THAT(refused.error.error.detail,
               testing::HasSubstr("program 11: 11.S is a program for Amada OPTIMO"));
   EXPECT_EQ(Must(bed.store().ListPrograms("mill-1", 0, 100)).size(), 0U);
   request.set_machine("machines/optimo-1");
-  EXPECT_THAT(book.Transfer(request, "anna").error.error.detail,
+  EXPECT_THAT(transfer.ToMachine(request, "anna").error.error.detail,
               testing::HasSubstr("program 10: 10.rml is a program for Roland"));
   EXPECT_EQ(Programs(), 0U);
 
@@ -308,7 +315,7 @@ TEST_F(ProjectBookTest, ATransferTakesNoProgramOfAnotherFamily) {
   Must(Create("mill", mill));
   request.set_name("projects/mill");
   request.set_machine("machines/mill-1");
-  EXPECT_EQ(Must(book.Transfer(request, "anna")).programs_size(), 2);
+  EXPECT_EQ(Must(transfer.ToMachine(request, "anna")).items_size(), 2);
 }
 
 // Issue "Projects": compiled, and put into slots together with the schedules.
@@ -320,18 +327,18 @@ TEST_F(ProjectBookTest, ATransferStoresProgramsAndSchedulesTogether) {
   Must(Create("a", project));
   const auto asked = Transfer("a", false, true);
   ASSERT_TRUE(asked);
-  EXPECT_EQ(asked.value->programs_size(), 2);
+  EXPECT_EQ(asked.value->items_size(), 3);
   EXPECT_EQ(Programs(), 0U);
   const auto done = Transfer("a");
   ASSERT_TRUE(done) << done.error.error.detail;
-  ASSERT_EQ(done.value->programs_size(), 2);
-  EXPECT_EQ(done.value->programs(1).name(), "machines/optimo-1/programs/46");
-  EXPECT_EQ(done.value->programs(1).title(), "p46");
-  EXPECT_EQ(done.value->programs(1).etag(), "1");
-  EXPECT_EQ(done.value->programs(1).object_bytes(),
+  ASSERT_EQ(done.value->items_size(), 3);
+  EXPECT_EQ(done.value->items(1).program_after().name(), "machines/optimo-1/programs/46");
+  EXPECT_EQ(done.value->items(1).program_after().title(), "p46");
+  EXPECT_EQ(done.value->items(1).program_after().etag(), "1");
+  EXPECT_EQ(done.value->items(1).program_after().object_bytes(),
             static_cast<std::int64_t>(ObjectOf("SPEED 5\nSTOP\n").size()));
   const storage::ProgramSummary summary = Must(bed.store().GetProgramSummary("optimo-1", 46));
-  EXPECT_EQ(done.value->programs(1).object_sha256(), summary.object_sha256);
+  EXPECT_EQ(done.value->items(1).program_after().object_sha256(), summary.object_sha256);
   EXPECT_EQ(summary.source_name, "46.S");
   const storage::ProgramRecord program = Must(bed.store().GetProgram("optimo-1", 46));
   EXPECT_EQ(program.object, ObjectOf("SPEED 5\nSTOP\n"));
@@ -463,9 +470,9 @@ TEST_F(ProjectBookTest, ATransferNamesWhatIsNotThere) {
   v1::TransferProjectRequest request;
   request.set_name("projects/empty");
   request.set_machine("machines/none");
-  EXPECT_EQ(CodeOf(book.Transfer(request, "anna")), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(transfer.ToMachine(request, "anna")), ErrorCode::kCellUnknownMachine);
   request.set_machine("optimo-1");
-  EXPECT_EQ(CodeOf(book.Transfer(request, "anna")), kInvalid);
+  EXPECT_EQ(CodeOf(transfer.ToMachine(request, "anna")), kInvalid);
 }
 
 TEST_F(ProjectBookTest, ABodyThatCannotBeReadIsAnErrorAndNoEmptyProject) {

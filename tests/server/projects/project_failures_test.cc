@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "server/base/config.h"
+#include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
+#include "server/projects/project_transfer.h"
 #include "tests/server/failing_store.h"
 #include "tests/server/server_bed.h"
 
@@ -38,6 +40,9 @@ class ProjectFailures : public testing::Test {
   ServerBed bed;
   FailingStore store{bed.store()};
   ProjectBook book{store};
+  Config config;
+  ProgramBook programs{store, config};
+  ProjectTransfer transfer{store, book, programs};
 };
 
 TEST_F(ProjectFailures, AreHandedOn) {
@@ -54,8 +59,8 @@ TEST_F(ProjectFailures, AreHandedOn) {
     request.mutable_project()->set_title("Lid");
     return Code(book.Update(request, "anna"));
   });
-  Expect("transferring", 3,
-         [&] { return Code(book.Transfer(Transfer("machines/optimo-1"), "anna")); });
+  Expect("transferring", 4,
+         [&] { return Code(transfer.ToMachine(Transfer("machines/optimo-1"), "anna")); });
   Expect("deleting", 1, [&]() -> std::optional<ErrorCode> {
     v1::DeleteProjectRequest request;
     request.set_name("projects/lid");
@@ -70,10 +75,12 @@ TEST_F(ProjectFailures, AMachineThatThisServerDoesNotKnow) {
   Must(bed.store().PutMachine({.id = "odd", .family = "lathe"}, 0));
   Must(bed.store().PutMachine({.id = "strange", .family = "optimo", .parameters = {{"NONE", "1"}}},
                               0));
-  EXPECT_EQ(Code(book.Transfer(Transfer("machines/odd"), "anna")), ErrorCode::kCellUnknownFamily);
-  EXPECT_NE(Code(book.Transfer(Transfer("machines/strange"), "anna")), std::nullopt);
-  EXPECT_EQ(Code(book.Transfer(Transfer("machines/none"), "anna")), ErrorCode::kCellUnknownMachine);
-  EXPECT_EQ(Code(book.Transfer(Transfer("none"), "anna")), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(Code(transfer.ToMachine(Transfer("machines/odd"), "anna")),
+            ErrorCode::kCellUnknownFamily);
+  EXPECT_NE(Code(transfer.ToMachine(Transfer("machines/strange"), "anna")), std::nullopt);
+  EXPECT_EQ(Code(transfer.ToMachine(Transfer("machines/none"), "anna")),
+            ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(Code(transfer.ToMachine(Transfer("none"), "anna")), ErrorCode::kCellInvalidArgument);
 }
 
 }  // namespace

@@ -6,7 +6,10 @@
 #include <functional>
 #include <limits>
 
+#include "server/base/config.h"
+#include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
+#include "server/projects/project_transfer.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -38,6 +41,9 @@ class ProjectLimits : public testing::Test {
 
   ServerBed bed;
   ProjectBook book{bed.store()};
+  Config config;
+  ProgramBook programs{bed.store(), config};
+  ProjectTransfer transfers{bed.store(), book, programs};
 };
 
 // ListProjectsRequest.page_size: 0 is 100, at most 1000, below 0 is refused.
@@ -137,8 +143,7 @@ TEST_F(ProjectLimits, UnitsThatContradictTheNameOfTheFile) {
 
 // OPT-3.44: schedules 1 to 63, power 0 to 100 %.
 TEST_F(ProjectLimits, OfLaserSchedules) {
-  const auto asked = [&](int number, const std::string& mode, double power_percent,
-                         std::size_t title) {
+  const auto asked = [&](int number, v1::LaserMode mode, double power_percent, std::size_t title) {
     return Asked([&](v1::Project& project) {
       v1::ProjectLaserSchedule& schedule = *project.add_laser_schedules();
       schedule.set_number(number);
@@ -147,17 +152,20 @@ TEST_F(ProjectLimits, OfLaserSchedules) {
       schedule.set_title(std::string(title, 't'));
     });
   };
-  for (const int number : {1, 63}) EXPECT_EQ(asked(number, "", 50.0, 200), std::nullopt) << number;
-  for (const int number : {0, 64}) EXPECT_EQ(asked(number, "", 50.0, 0), ErrorCode::kScheduleRange);
-  for (const std::string mode : {"", "CW", "PULSE"})
+  for (const int number : {1, 63})
+    EXPECT_EQ(asked(number, v1::LASER_MODE_UNSPECIFIED, 50.0, 200), std::nullopt) << number;
+  for (const int number : {0, 64})
+    EXPECT_EQ(asked(number, v1::LASER_MODE_UNSPECIFIED, 50.0, 0), ErrorCode::kScheduleRange);
+  for (const v1::LaserMode mode :
+       {v1::LASER_MODE_UNSPECIFIED, v1::LASER_MODE_CW, v1::LASER_MODE_PULSE})
     EXPECT_EQ(asked(1, mode, 50.0, 0), std::nullopt);
-  for (const std::string mode : {"cw", "PULSED"})
-    EXPECT_EQ(asked(1, mode, 50.0, 0), ErrorCode::kCellInvalidArgument);
+  for (const int mode : {-1, 3})
+    EXPECT_EQ(asked(1, static_cast<v1::LaserMode>(mode), 50.0, 0), ErrorCode::kCellInvalidArgument);
   for (const double power : {0.0, 100.0})
-    EXPECT_EQ(asked(1, "CW", power, 0), std::nullopt) << power;
+    EXPECT_EQ(asked(1, v1::LASER_MODE_CW, power, 0), std::nullopt) << power;
   for (const double power : {-0.001, 100.001})
-    EXPECT_EQ(asked(1, "CW", power, 0), ErrorCode::kCellInvalidArgument) << power;
-  EXPECT_EQ(asked(1, "CW", 50.0, 201), ErrorCode::kCellInvalidArgument);
+    EXPECT_EQ(asked(1, v1::LASER_MODE_CW, power, 0), ErrorCode::kCellInvalidArgument) << power;
+  EXPECT_EQ(asked(1, v1::LASER_MODE_CW, 50.0, 201), ErrorCode::kCellInvalidArgument);
 }
 
 // A process is known by its kind and its number together.
@@ -228,7 +236,7 @@ TEST_F(ProjectLimits, NamesThatAreNone) {
     v1::TransferProjectRequest transfer;
     transfer.set_name(name);
     transfer.set_machine("machines/optimo-1");
-    const auto transferred = book.Transfer(transfer, "anna");
+    const auto transferred = transfers.ToMachine(transfer, "anna");
     ASSERT_FALSE(transferred) << name;
     EXPECT_EQ(transferred.error.error.code, ErrorCode::kCellInvalidArgument) << name;
   }

@@ -405,7 +405,7 @@ TEST_F(CellWatchTest, AServerThatStopsSaysWhereToGoOn) {
     const v1::WatchCellResponse goodbye = stream->Next();
     EXPECT_EQ(WordOf(goodbye), "come back");
     EXPECT_EQ(goodbye.sequence(), last);
-    EXPECT_EQ(goodbye.reconnect().after_ms(), 250);
+    EXPECT_EQ(goodbye.reconnect().after().nanos(), 250'000'000);
     stream->ExpectRefused(grpc::StatusCode::UNAVAILABLE, "CELL-E9002");
   }
 }

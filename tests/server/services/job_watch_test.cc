@@ -185,7 +185,7 @@ TEST_F(JobWatchTest, AServerThatStopsSaysWhereToGoOn) {
   const v1::WatchJobResponse goodbye = watch.Next();
   EXPECT_EQ(WordOf(goodbye), "come back");
   EXPECT_EQ(goodbye.sequence(), 3);
-  EXPECT_EQ(goodbye.reconnect().after_ms(), 250);
+  EXPECT_EQ(goodbye.reconnect().after().nanos(), 250'000'000);
   watch.ExpectRefused(grpc::StatusCode::UNAVAILABLE, "CELL-E9002");
   // A watch that begins now gets no further than it was.
   auto late = room.Watch(job, 2);

@@ -150,7 +150,7 @@ TEST(ScheduleMessage, SaysWhatTheRecordHolds) {
                                                                     .revision = 3});
   EXPECT_EQ(message.name(), "machines/optimo-1/laserSchedules/11");
   EXPECT_EQ(message.title(), "thick");
-  EXPECT_EQ(message.mode(), "PULSE");
+  EXPECT_EQ(message.mode(), v1::LASER_MODE_PULSE);
   EXPECT_EQ(message.power_percent(), 62.5);
   EXPECT_EQ(message.etag(), "3");
 }

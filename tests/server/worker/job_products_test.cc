@@ -126,22 +126,59 @@ TEST_F(JobProducts, TheTraceTellsWhatHappenedInItsOrder) {
   const std::string bytes = Artifacts()["trace"];
   std::string_view rest = bytes;
   std::int64_t records = 0;
-  std::string last;
+  v1::TraceRecord::Kind last = v1::TraceRecord::KIND_UNSPECIFIED;
   std::vector<std::pair<double, std::int64_t>> output;       // values of output 20 and their times
   std::vector<std::pair<std::int64_t, std::int64_t>> waits;  // durations, and when they ended
   while (const auto frame = bridge::TakeFrame(rest)) {
     v1::TraceRecord record;
     ASSERT_TRUE(record.ParseFromArray(frame->data(), static_cast<int>(frame->size())));
     EXPECT_EQ(record.number(), ++records);
-    if (record.kind() == "signal" && record.index() == 20)
+    if (record.kind() == v1::TraceRecord::KIND_SIGNAL && record.index() == 20)
       output.emplace_back(record.value(), record.virtual_time_ns());
-    if (record.kind() == "wait") waits.emplace_back(record.duration_ns(), record.virtual_time_ns());
+    if (record.kind() == v1::TraceRecord::KIND_WAIT)
+      waits.emplace_back(record.duration_ns(), record.virtual_time_ns());
     last = record.kind();
   }
   EXPECT_EQ(rest, "");
   EXPECT_THAT(output, ElementsAre(std::pair(1.0, std::int64_t{0}), std::pair(0.0, kThen)));
   EXPECT_THAT(waits, ElementsAre(std::pair(kThen, kThen)));
-  EXPECT_EQ(last, "end");
+  EXPECT_EQ(last, v1::TraceRecord::KIND_END);
+}
+
+// job.proto, SimulationOptions.series: 100 mm along X, then it stands for two seconds.
+TEST_F(JobProducts, SeriesAreThereWhenTheyAreAskedFor) {
+  v1::WorkerAssignment assignment =
+      Assignment(v1::JOB_KIND_SIMULATE,
+                 "COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (121.02, 2201.2, -350, 0, 0)\nDELAY 2\n");
+  assignment.mutable_job()->mutable_simulation()->set_series(true);
+  Work(assignment);
+  v1::SeriesTable table;
+  ASSERT_TRUE(table.ParseFromString(Artifacts()["series"]));
+  const v1::RunReport report = Report();
+  EXPECT_NEAR(1e-9 * static_cast<double>(table.end_ns()), report.total().times().cycle_s(), 1e-6);
+  ASSERT_EQ(table.columns_size(), 8);
+  const v1::SeriesTable::Column& speed = table.columns(0);
+  EXPECT_EQ(speed.signal(), "speed");
+  ASSERT_GT(speed.high_size(), 100);
+  EXPECT_NEAR(*std::ranges::max_element(speed.high()), report.axes(0).peak_speed(), 1e-3);
+  EXPECT_GT(report.axes(0).peak_speed(), 50.0);
+  EXPECT_EQ(speed.last(speed.last_size() - 1), 0.0F);
+  const v1::SeriesTable::Column& x = table.columns(3);
+  EXPECT_EQ(x.signal(), "axis.X");
+  EXPECT_NEAR(x.last(0), 21.02, 0.1);
+  EXPECT_NEAR(x.last(x.last_size() - 1), 121.02, 1e-3);
+}
+
+// job.proto, GetStepMapResponse: the texts that the job brought, and of all programs their objects.
+TEST_F(JobProducts, TheStepsOfItsProgramsAreKept) {
+  Work(Assignment(v1::JOB_KIND_SIMULATE, "; a part\nSPEED 5\n\nSTOP\n"));
+  v1::GetStepMapResponse map;
+  ASSERT_TRUE(map.ParseFromString(Artifacts()["steps"]));
+  ASSERT_EQ(map.programs_size(), 1);
+  EXPECT_EQ(map.programs(0).object_sha256().size(), 64U);
+  ASSERT_GE(map.programs(0).lines_size(), 2);
+  EXPECT_EQ(map.programs(0).lines(0), 2);
+  EXPECT_EQ(map.programs(0).lines(1), 4);
 }
 
 // framing.h: the toolpath is kept as frames, whole ones to the end.

@@ -95,7 +95,7 @@ TEST_F(JobRunnerTest, ATraceComesWhenItIsWanted) {
   assignment.mutable_job()->mutable_simulation()->add_variables("VI[3]");
   Work(assignment);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
-  EXPECT_THAT(Names(), ElementsAre("picture.svg", "report", "toolpath", "trace"));
+  EXPECT_THAT(Names(), ElementsAre("picture.svg", "report", "steps", "toolpath", "trace"));
   EXPECT_NEAR(Report().total().times().dwell_s(), 1.5, 1e-9);
   EXPECT_EQ(Finished()->executables_size(), 1);  // OPT-1.11: the first run makes it
   EXPECT_EQ(Finished()->executables(0).slot(), 45);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <google/protobuf/util/time_util.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 
@@ -71,7 +72,8 @@ class FakeServer final : public v1::WorkerService::Service {
       requests_ = {message};  // of this worker alone
     }
     v1::WorkResponse welcome;
-    welcome.mutable_welcome()->set_lease_ms(lease_ms);
+    *welcome.mutable_welcome()->mutable_lease() =
+        google::protobuf::util::TimeUtil::MillisecondsToDuration(lease_ms);
     welcome.mutable_welcome()->set_events_window(window);
     Send(welcome);
     std::int64_t events = 0;
