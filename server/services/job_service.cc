@@ -258,6 +258,10 @@ grpc::ServerUnaryReactor* JobService::GetStepMap(grpc::CallbackServerContext* co
 
 grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobToolpath(
     grpc::CallbackServerContext* context, const v1::StreamJobToolpathRequest* request) {
+  if (request->follow()) {
+    return new EndedStream<grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>>(
+        LaterStatus(needs_, *context, "JobService/StreamJobToolpath", request));
+  }
   return OpenStream<v1::StreamJobToolpathResponse>(
       needs_, *context, *request, "JobService/StreamJobToolpath", [&](const Caller&) {
         return MakeToolpathStream(Streams(), request->name(), request->level());

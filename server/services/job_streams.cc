@@ -4,6 +4,7 @@
 #include <deque>
 
 #include "engine/core/number_text.h"
+#include "engine/core/units.h"
 #include "engine/simulation/toolpath/toolpath_level.h"
 #include "engine/simulation/toolpath/toolpath_recorder.h"
 #include "proto/bridge/framing.h"
@@ -133,6 +134,9 @@ class FramesStream : public PullStream<Response> {
   // Adds one frame; false: the message is full with it.
   virtual bool Add(std::string_view frame, Response& message) = 0;
 
+  // What goes before the first frame, of so many bytes; false: nothing.
+  virtual bool AddHeader(std::int64_t /*bytes*/, Response& /*message*/) { return false; }
+
   // All frames, as they are stored.
   virtual Result<std::string> Read(std::int64_t job) {
     return needs_.book.ReadArtifact(job, artifact_);
@@ -153,6 +157,7 @@ class FramesStream : public PullStream<Response> {
       }
       bytes_ = std::move(*bytes);
       rest_ = bytes_;
+      if (AddHeader(static_cast<std::int64_t>(bytes_.size()), message)) return Next::kMessage;
     }
     bool any = false;
     while (const auto frame = bridge::TakeFrame(rest_)) {
@@ -199,15 +204,30 @@ class ToolpathStream final : public FramesStream<v1::StreamJobToolpathResponse> 
                              std::to_string(simulation::kToolpathLevelMax));
     }
     Result<std::string> stored = FramesStream::Read(job);
-    if (!stored || level_ == 0) return stored;
+    if (!stored) return stored;
     const Result<v1::Job> made_by = book().Get(job_name());
     if (!made_by) return made_by.error();
     const double asked = made_by->simulation().toolpath_tolerance_mm();
     const double used = asked > 0.0 ? asked : simulation::ToolpathOptions().tolerance_mm;
-    return AtLevel(*stored,
-                   std::clamp(used, simulation::kToolpathToleranceMin_mm,
-                              simulation::kToolpathToleranceMax_mm),  // as the recorder does
-                   level_);
+    tolerance_mm_ = std::clamp(used, simulation::kToolpathToleranceMin_mm,
+                               simulation::kToolpathToleranceMax_mm);  // as the recorder does
+    const Result<std::string> report = book().ReadArtifact(job, "report");
+    if (report) report_.ParseFromString(*report);
+    return level_ == 0 ? stored : AtLevel(*stored, tolerance_mm_, level_);
+  }
+
+  bool AddHeader(std::int64_t bytes, v1::StreamJobToolpathResponse& message) override {
+    v1::ToolpathHeader& header = *message.mutable_header();
+    header.set_level(level_);
+    header.set_level_max(simulation::kToolpathLevelMax);
+    header.set_tolerance_mm(simulation::LevelTolerance(tolerance_mm_, level_));
+    header.set_bytes(bytes);
+    header.set_points(report_.toolpath().records());
+    header.set_complete(report_.toolpath().complete());
+    if (report_.has_tip_box()) *header.mutable_tip_box() = report_.tip_box();
+    header.set_duration_ns(FromSeconds(report_.total().times().cycle_s()).count());
+    report_.Clear();
+    return true;
   }
 
   bool Add(std::string_view frame, v1::StreamJobToolpathResponse& message) override {
@@ -216,6 +236,8 @@ class ToolpathStream final : public FramesStream<v1::StreamJobToolpathResponse> 
   }
 
   int level_;
+  double tolerance_mm_ = 0.0;
+  v1::RunReport report_;  // until the header has gone out
 };
 
 class TraceStream final : public FramesStream<v1::StreamJobTraceResponse> {

@@ -47,8 +47,12 @@ class Jobs(WithCell):
         artifact = stub.GetJobArtifact(job_pb2.GetJobArtifactRequest(name=job.name, artifact="picture.svg"))
         self.assertEqual((artifact.content, artifact.media_type), (picture.content, "image/svg+xml"))
         self.assertIn(b"<svg", picture.content)
-        blocks = list(stub.StreamJobToolpath(job_pb2.StreamJobToolpathRequest(name=job.name)))
+        first, *blocks = stub.StreamJobToolpath(job_pb2.StreamJobToolpathRequest(name=job.name))
         self.assertGreater(len(blocks), 0)
+        self.assertEqual((first.header.points, first.header.complete, first.header.tip_box),
+                         (report.toolpath.records, True, report.tip_box))
+        self.assertAlmostEqual(first.header.duration_ns / 1e9, report.total.times.cycle_s, places=6)
+        self.assertEqual(first.header.bytes, sum(4 + len(one.block) for one in blocks))
         # The same file as the job's comes out of the command without a server: docs/toolpath.md.
         with tempfile.TemporaryDirectory() as folder:
             source = pathlib.Path(folder, "square.rml")

@@ -213,12 +213,14 @@ class Documents(unittest.TestCase):
         section = page[page.index("## A block by hand"):page.index("## A reader")]
         block = bytes.fromhex("".join(re.findall(r"^    ((?:[0-9a-f]{2} )+) ", section, re.MULTILINE)))
         self.assertEqual(list(reader["runs"](block)), [
-            {"program": 2, "step": 5, "use": "cut", "beam_on": True, "speed_class": 4, "start_s": 300e-6,
-             "end_s": 310e-6, "points_mm": [(0.001, -0.001, 0.0), (0.003, -0.001, 0.0)]}])
+            {"program": 2, "step": 5, "use": "cut", "beam_on": True, "speed_class": 4, "power_class": 15,
+             "reached_class": 0, "start_s": 300e-6, "end_s": 310e-6,
+             "points_mm": [(0.001, -0.001, 0.0), (0.003, -0.001, 0.0)],
+             "turned_rad": [(0.0, -2e-6), (1e-6, -2e-6)], "times_s": [300e-6, 310e-6]}])
         with self.assertRaises(ValueError):
             list(reader["runs"](block + b"\0"))
         with self.assertRaises(ValueError):
-            list(reader["runs"](b"T\2" + block[2:]))
+            list(reader["runs"](b"T\1" + block[2:]))
 
     def test_the_reader_finds_the_lengths_of_the_report_in_the_toolpath_of_a_job(self):
         reader = {}

@@ -24,7 +24,8 @@ double AngleBetween(const MachineVector& a, const MachineVector& b) {
 
 bool JoinsTo(const ToolpathRun& before, const ToolpathRun& run) {
   return before.program == run.program && before.use == run.use && before.beam_on == run.beam_on &&
-         before.speed_class == run.speed_class && before.end_us == run.start_us;
+         before.speed_class == run.speed_class && before.power_class == run.power_class &&
+         before.end_us == run.start_us;
 }
 
 }  // namespace
@@ -40,7 +41,7 @@ ToolpathLevel::ToolpathLevel(double tolerance_mm, ToolpathSink sink)
 void ToolpathLevel::Take(const ToolpathBlock& block) {
   for (const ToolpathRun& run : block.runs) {
     if (writer_.closed()) return;
-    Follow(run, &block.points[run.first_point]);
+    Follow(run, block);
   }
 }
 
@@ -49,7 +50,8 @@ void ToolpathLevel::Finish() {
   writer_.Finish();
 }
 
-void ToolpathLevel::Follow(const ToolpathRun& run, const ToolpathPoint* points) {
+void ToolpathLevel::Follow(const ToolpathRun& run, const ToolpathBlock& block) {
+  const ToolpathPoint* points = &block.points[run.first_point];
   if (!open_ || !JoinsTo(run_, run) || !(last_.point == points[0])) {
     Close();
     writer_.Open(run, points[0]);
@@ -60,15 +62,11 @@ void ToolpathLevel::Follow(const ToolpathRun& run, const ToolpathPoint* points) 
     open_ = true;
   }
   run_ = run;
-  double length = 0.0;
-  for (std::uint32_t k = 1; k < run.point_count; ++k)
-    length += Way(points[k - 1], points[k]).norm();
-  const double duration = static_cast<double>(run.end_us - run.start_us);
-  double done = 0.0;
+  if (!writer_.closed()) writer_.Reach(run.reached_class);
   for (std::uint32_t k = 1; k < run.point_count; ++k) {
-    done += Way(points[k - 1], points[k]).norm();
-    const double share = length > 0.0 ? done / length : 1.0;
-    Add({points[k], run.start_us + std::llround(share * duration)});
+    Add({points[k], TimeOf(block, run, k)});
+    // A block that is full goes on in the next one with the run as it was opened.
+    if (!writer_.closed() && writer_.open()) writer_.Reach(run.reached_class);
   }
   last_.at_us = run.end_us;
 }

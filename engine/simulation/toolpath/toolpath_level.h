@@ -33,7 +33,7 @@ class ToolpathLevel {
     std::int64_t at_us = 0;
   };
 
-  void Follow(const ToolpathRun& run, const ToolpathPoint* points);
+  void Follow(const ToolpathRun& run, const ToolpathBlock& block);
   void Add(const Vertex& next);
   bool Reaches(const motion::MachineVector& way) const;
   void Narrow(const motion::MachineVector& way);

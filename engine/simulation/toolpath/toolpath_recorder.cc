@@ -24,33 +24,57 @@ std::int32_t Micrometres(double mm) {
   return um == um ? static_cast<std::int32_t>(std::llround(um)) : 0;
 }
 
-ToolpathPoint PointOf(const MachinePoint& tip) {
-  return {Micrometres(tip.x()), Micrometres(tip.y()), Micrometres(tip.z())};
+constexpr double kFarthest_urad = 2e9;
+constexpr double kUradPerRad = 1e6;
+
+std::int32_t Microradians(double rad) {
+  const double urad = std::clamp(rad * kUradPerRad, -kFarthest_urad, kFarthest_urad);
+  return urad == urad ? static_cast<std::int32_t>(std::llround(urad)) : 0;
+}
+
+// At `s` of a path, whose rotary axes are linear in s.
+ToolpathPoint PointOf(const motion::PathPiece& path, double s, const MachinePoint& tip) {
+  return {Micrometres(tip.x()), Micrometres(tip.y()), Micrometres(tip.z()),
+          Microradians(path.from().a_rad + path.a_rate() * s),
+          Microradians(path.from().b_rad + path.b_rate() * s)};
 }
 
 std::int64_t Microseconds(SimTime time) {
   return time.count() / 1000 + (time.count() % 1000 >= 500 ? 1 : 0);
 }
 
-// The same step, purpose, beam and speed class.
+// The same step, purpose, beam, speed and power class.
 bool AlikeRuns(const ToolpathRun& a, const ToolpathRun& b) {
   return a.program == b.program && a.step == b.step && a.use == b.use && a.beam_on == b.beam_on &&
-         a.speed_class == b.speed_class;
+         a.speed_class == b.speed_class && a.power_class == b.power_class;
 }
 
-// When the motion is at `s`: the profile is monotone, so halving finds the nanosecond.
-SimTime TimeAt(const machine::MotionDone& done, double s) {
+// When the motion is at `s`, to the nanosecond, not before `since`. The profile is monotone: the
+// tangent leads there in a few steps, and where it does not, halving does.
+SimTime TimeAt(const machine::MotionDone& done, double s, SimTime since) {
+  constexpr int kTangents = 8;
+  constexpr double kNsPerS = 1e9;
   if (s >= done.travelled) return done.end;
-  const auto place_at = [&](std::int64_t ns) {
-    return done.motion->speed.At(done.profile_start_s + ToSeconds(SimTime(ns) - done.start)).s;
-  };
-  std::int64_t before = done.start.count() - 1;  // not there yet, or the start
+  std::int64_t before = since.count() - 1;  // not there yet, or the start
   std::int64_t reached = done.end.count();
-  while (reached - before > 1) {
-    const std::int64_t middle = before + (reached - before) / 2;
-    (place_at(middle) < s ? before : reached) = middle;
+  std::int64_t next = before + (reached - before) / 2;
+  for (int step = 0; reached - before > 1; ++step) {
+    next = std::max(before + 1, std::min(next, reached - 1));
+    const motion::PathState state =
+        done.motion->speed.At(done.profile_start_s + ToSeconds(SimTime(next) - done.start));
+    (state.s < s ? before : reached) = next;
+    const double ahead_ns = (s - state.s) / state.speed * kNsPerS;
+    const bool near = step < kTangents && state.speed > 0.0 &&
+                      std::abs(ahead_ns) < static_cast<double>(done.end.count() - since.count());
+    next = near ? next + std::llround(ahead_ns) : before + (reached - before) / 2;
   }
   return SimTime(reached);
+}
+
+double PowerPercent(const machine::MotionDone& done, double speed_mm_s) {
+  if (!done.beam_on) return 0.0;
+  return std::clamp(done.power.constant_percent + done.power.percent_per_mm_s * speed_mm_s, 0.0,
+                    100.0);
 }
 
 }  // namespace
@@ -65,10 +89,10 @@ ToolpathRecorder::ToolpathRecorder(const machine::MachineShape& shape, ToolpathO
   chord_tolerance_mm_ = tolerance - 2.0 * merge_tolerance_mm_;
 }
 
-int ToolpathRecorder::SpeedClassOf(const machine::MotionDone& done) const {
-  if (done.programmed_mm_s <= 0.0) return 0;
+int ToolpathRecorder::SpeedClassOf(double mm_s) const {
+  if (mm_s <= 0.0) return 0;
   if (speed_max_mm_s_ <= 0.0) return kSpeedClasses;
-  const double share = std::ceil(done.programmed_mm_s / speed_max_mm_s_ * kSpeedClasses - 1e-9);
+  const double share = std::ceil(mm_s / speed_max_mm_s_ * kSpeedClasses - 1e-9);
   return static_cast<int>(std::clamp(share, 1.0, double{kSpeedClasses}));
 }
 
@@ -77,28 +101,40 @@ void ToolpathRecorder::OnMotion(const machine::MotionDone& done) {
   const motion::PathPiece& path = done.motion->path;
   const motion::Head& head = done.motion->head;
   const MachineVector first = TipAt(path, head, done.from);
+  const ToolpathPoint first_point = PointOf(path, done.from, first);
+  // Along a way that is not that of the tip its speed is not known here.
+  const double peak_mm_s = path.by_sigma() ? 0.0 : done.motion->speed.peak_speed();
   const ToolpathRun run{.program = done.place.program,
                         .step = done.place.step,
                         .use = done.use,
                         .beam_on = done.beam_on,
-                        .speed_class = SpeedClassOf(done),
+                        .speed_class = SpeedClassOf(done.programmed_mm_s),
+                        .power_class = static_cast<int>(
+                            std::ceil(PowerPercent(done, peak_mm_s) / 100.0 * kPowerClasses)),
                         .start_us = Microseconds(done.start)};
   const bool goes_on = writer_.open() && AlikeRuns(run, writer_.run()) &&
-                       writer_.run().end_us == run.start_us && writer_.last() == PointOf(first);
+                       writer_.run().end_us == run.start_us && writer_.last() == first_point;
   if (!goes_on) {
-    writer_.Open(run, PointOf(first));
+    writer_.Open(run, first_point);
     stretch_ = {.anchor = first, .direction = {}, .last = first, .open = false};
   }
+  const int reached_class = SpeedClassOf(peak_mm_s);
+  SimTime at = done.start;
+  writer_.Reach(reached_class);
   ForEachVertex({path, head, done.from, done.travelled}, chord_tolerance_mm_,
                 [&](double s, const MachinePoint& tip) {
-                  // Only the end of a block needs the time of a vertex on the way.
-                  Vertex(tip, writer_.full_with_next() ? TimeAt(done, s) : done.end);
+                  at = TimeAt(done, s, at);
+                  Vertex(tip, PointOf(path, s, tip), at);
+                  if (writer_.open()) writer_.Reach(reached_class);
                 });
   writer_.EndAt(Microseconds(done.end));
 }
 
-bool ToolpathRecorder::Merges(const MachinePoint& tip) {
+bool ToolpathRecorder::Merges(const MachinePoint& tip, const ToolpathPoint& point) {
   if (!stretch_.open) return false;
+  // A head that turns keeps its vertices.
+  const ToolpathPoint& last = writer_.last();
+  if (point.a_urad != last.a_urad || point.b_urad != last.b_urad || stretch_.turns) return false;
   if (stretch_.direction.dot(stretch_.direction) == 0.0) {
     const MachineVector along = stretch_.last - stretch_.anchor;
     const double length = along.norm();
@@ -111,21 +147,23 @@ bool ToolpathRecorder::Merges(const MachinePoint& tip) {
   return (off - stretch_.direction * forward).norm() <= merge_tolerance_mm_;
 }
 
-void ToolpathRecorder::Vertex(const MachinePoint& tip, SimTime at) {
+void ToolpathRecorder::Vertex(const MachinePoint& tip, const ToolpathPoint& point, SimTime at) {
   if (writer_.closed()) return;
-  const ToolpathPoint point = PointOf(tip);
+  const std::int64_t at_us = Microseconds(at);
   if (writer_.run().point_count > 1) {
-    if (Merges(tip)) {  // it takes the place of the last vertex
-      writer_.MoveLast(point);
+    if (Merges(tip, point)) {  // it takes the place of the last vertex
+      writer_.MoveLast(point, at_us);
       stretch_.last = tip;
       return;
     }
-    if (point == writer_.last()) return;  // within a micrometre of it
+    if (point == writer_.last()) return writer_.MoveLast(point, at_us);  // within a micrometre
   }
-  if (writer_.Add(point, Microseconds(at))) {
+  const bool turns = point.a_urad != writer_.last().a_urad || point.b_urad != writer_.last().b_urad;
+  if (writer_.Add(point, at_us)) {
     stretch_ = {.anchor = tip, .direction = {}, .last = tip, .open = false};
   } else {
-    stretch_ = {.anchor = stretch_.last, .direction = {}, .last = tip, .open = true};
+    stretch_ = {
+        .anchor = stretch_.last, .direction = {}, .last = tip, .open = true, .turns = turns};
   }
 }
 

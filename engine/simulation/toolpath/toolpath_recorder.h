@@ -39,11 +39,12 @@ class ToolpathRecorder final : public machine::RunObserver {
     motion::MachineVector direction;  // unit; zero while nothing was merged
     motion::MachinePoint last;        // its last vertex, which is the last point of the block
     bool open = false;                // false: the last vertex stays, whatever comes
+    bool turns = false;               // A or B turn along it
   };
 
-  void Vertex(const motion::MachinePoint& tip, SimTime at);
-  bool Merges(const motion::MachinePoint& tip);
-  int SpeedClassOf(const machine::MotionDone& done) const;
+  void Vertex(const motion::MachinePoint& tip, const ToolpathPoint& point, SimTime at);
+  bool Merges(const motion::MachinePoint& tip, const ToolpathPoint& point);
+  int SpeedClassOf(double mm_s) const;
 
   double speed_max_mm_s_;
   double chord_tolerance_mm_;

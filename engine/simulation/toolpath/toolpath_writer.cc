@@ -10,6 +10,7 @@ ToolpathWriter::ToolpathWriter(std::uint64_t bytes_max, ToolpathSink sink)
     : bytes_max_(bytes_max), sink_(std::move(sink)) {
   RMLCELL_CHECK(sink_);
   block_.points.reserve(kToolpathBlockPoints);
+  block_.reached_us.reserve(kToolpathBlockPoints);
 }
 
 // A run that was opened and then went nowhere: takes it back, with its point unless that is the
@@ -20,7 +21,9 @@ void ToolpathWriter::DropEmptyRun() {
   block_.runs.pop_back();
   const bool shared = !block_.runs.empty() &&
                       block_.runs.back().first_point + block_.runs.back().point_count > point;
-  if (!shared) block_.points.pop_back();
+  if (shared) return;
+  block_.points.pop_back();
+  block_.reached_us.pop_back();
 }
 
 void ToolpathWriter::Open(const ToolpathRun& run, const ToolpathPoint& first) {
@@ -30,6 +33,7 @@ void ToolpathWriter::Open(const ToolpathRun& run, const ToolpathPoint& first) {
   const bool joined = !block_.points.empty() && block_.points.back() == first;
   if (!joined) {
     block_.points.push_back(first);
+    block_.reached_us.push_back(run.start_us);
     ++points_;
   }
   block_.runs.push_back(run);
@@ -42,6 +46,7 @@ void ToolpathWriter::Open(const ToolpathRun& run, const ToolpathPoint& first) {
 
 bool ToolpathWriter::Add(const ToolpathPoint& point, std::int64_t at_us) {
   block_.points.push_back(point);
+  block_.reached_us.push_back(at_us);
   ++points_;
   ++block_.runs.back().point_count;
   if (block_.points.size() < kToolpathBlockPoints) return false;
@@ -55,7 +60,9 @@ bool ToolpathWriter::Add(const ToolpathPoint& point, std::int64_t at_us) {
 }
 
 void ToolpathWriter::EndAt(std::int64_t at_us) {
-  if (open_ && !closed_) block_.runs.back().end_us = at_us;
+  if (!open_ || closed_) return;
+  block_.runs.back().end_us = at_us;
+  if (block_.runs.back().point_count > 1) block_.reached_us.back() = at_us;
 }
 
 void ToolpathWriter::Flush() {
@@ -71,6 +78,7 @@ void ToolpathWriter::Flush() {
     }
   }
   block_.points.clear();
+  block_.reached_us.clear();
   block_.runs.clear();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string_view>
@@ -25,14 +26,21 @@ class ToolpathWriter {
   // and the run goes on from there in the next one.
   bool Add(const ToolpathPoint& point, std::int64_t at_us);
   // Another point in the place of the last one.
-  void MoveLast(const ToolpathPoint& point) { block_.points.back() = point; }
+  void MoveLast(const ToolpathPoint& point, std::int64_t at_us) {
+    block_.points.back() = point;
+    block_.reached_us.back() = at_us;
+  }
+  // The tip is as fast as this somewhere on the present run.
+  void Reach(int reached_class) {
+    int& most = block_.runs.back().reached_class;
+    most = std::max(most, reached_class);
+  }
   void EndAt(std::int64_t at_us);
   void Finish();  // hands out what is left
 
   bool open() const { return open_; }  // there is a present run
   const ToolpathRun& run() const { return block_.runs.back(); }
   const ToolpathPoint& last() const { return block_.points.back(); }
-  bool full_with_next() const { return block_.points.size() + 1 >= kToolpathBlockPoints; }
 
   std::uint64_t points() const { return points_; }
   std::uint64_t bytes() const { return bytes_; }

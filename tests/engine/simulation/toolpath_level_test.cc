@@ -30,6 +30,18 @@ ToolpathBlock OneRun(std::vector<ToolpathPoint> points, int step = 1, std::int64
                      std::int64_t end_us = 1000) {
   ToolpathBlock block;
   block.runs.push_back(RunOf(step, start_us, end_us, static_cast<std::uint32_t>(points.size())));
+  // At one speed all the way.
+  std::vector<double> way{0.0};
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double x = static_cast<double>(points[i].x_um) - points[i - 1].x_um;
+    const double y = static_cast<double>(points[i].y_um) - points[i - 1].y_um;
+    const double z = static_cast<double>(points[i].z_um) - points[i - 1].z_um;
+    way.push_back(way.back() + std::hypot(x, y, z));
+  }
+  for (const double done : way) {
+    block.reached_us.push_back(
+        start_us + std::llround(done / way.back() * static_cast<double>(end_us - start_us)));
+  }
   block.points = std::move(points);
   return block;
 }
@@ -266,6 +278,30 @@ TEST(ToolpathLevel, LongWaysFillSeveralBlocks) {
   EXPECT_EQ(coarse.size(), 5u);  // 19,991 points, of which 4 appear twice
   EXPECT_EQ(ways, 19990u);
   EXPECT_EQ(time, 20000);
+}
+
+// A joined run is as fast as the fastest of its parts; another power of the beam ends it.
+TEST(ToolpathLevel, JoinedRunsKeepWhatTheyReach) {
+  ToolpathBlock first = OneRun({{0, 0, 0}, {1000, 0, 0}}, 7, 0, 100);
+  first.runs[0].reached_class = 3;
+  ToolpathBlock second = OneRun({{1000, 0, 0}, {2000, 0, 0}}, 8, 100, 300);
+  second.runs[0].reached_class = 5;
+  const std::vector<ToolpathBlock> joined = Coarser({first, second}, 0.08);
+  ASSERT_EQ(joined[0].runs.size(), 1U);
+  EXPECT_EQ(joined[0].runs[0].reached_class, 5);
+  second.runs[0].power_class = 9;
+  EXPECT_EQ(Coarser({first, second}, 0.08)[0].runs.size(), 2U);
+}
+
+// The points that are left are reached when they were, and the head stands there as it did.
+TEST(ToolpathLevel, PointsThatAreLeftKeepTimeAndAngles) {
+  ToolpathBlock way =
+      OneRun({{0, 0, 0, 0, 1}, {1000, 0, 0, 5, 1}, {1000, 3000, 0, 9, 2}}, 1, 0, 40'000);
+  way.reached_us[1] = 35'000;  // it began slowly
+  const std::vector<ToolpathBlock> coarse = Coarser({way}, 0.08);
+  ASSERT_EQ(coarse.size(), 1U);
+  EXPECT_EQ(coarse[0].points, way.points);
+  EXPECT_EQ(coarse[0].reached_us, way.reached_us);
 }
 
 }  // namespace

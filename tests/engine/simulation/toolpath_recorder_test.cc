@@ -117,6 +117,70 @@ TEST(ToolpathRecorder, MergesWhatGoesStraightOnInOneStep) {
   EXPECT_EQ(block.runs[0].end_us, block.runs[1].start_us);
 }
 
+// 100 mm at up to 50 mm/s with 100 mm/s2 from rest to rest: an arc is a quarter of its way behind
+// at 0.25 s + 12.5 mm / 50 mm/s ..., which the time by the way misses by tenths of a second.
+TEST(ToolpathRecorder, PointsHaveTheTimeAtWhichTheyAreReached) {
+  const motion::PathLimits limits{.speed = 50.0, .acceleration = 100.0};
+  const double radius = 100.0 / kTurn;
+  const PathPiece circle =
+      PathPiece::Circle({{radius, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0.0, 0.0);
+  const Recorded recorded = Record(Script().Step(1, 1).Motion(Planned(circle, limits)));
+  ASSERT_EQ(recorded.blocks.size(), 1U);
+  const ToolpathBlock& block = recorded.blocks[0];
+  const ToolpathRun& run = block.runs.at(0);
+  EXPECT_EQ(run.end_us, 2'500'000);  // 100 / 50 + 50 / 100
+  double way = 0.0;
+  for (std::uint32_t k = 1; k < run.point_count; ++k) {
+    way += 100.0 / (run.point_count - 1);
+    // Half a second of ramp, 12.5 mm long, at either end.
+    const double reached = way <= 12.5 ? std::sqrt(2.0 * way / 100.0)
+                           : way <= 87.5
+                               ? 0.5 + (way - 12.5) / 50.0
+                               : 2.5 - std::sqrt(2.0 * std::max(0.0, 100.0 - way) / 100.0);
+    EXPECT_NEAR(static_cast<double>(TimeOf(block, run, k)) * 1e-6, reached, 2e-6) << k;
+  }
+}
+
+// Angles of the head at each point; while it turns, what goes straight on is not merged.
+TEST(ToolpathRecorder, PointsHaveTheAnglesOfTheHead) {
+  Script script;
+  script.Step(1, 1);
+  script.Motion(Planned(PathPiece::Line({{0, 0, 0}, 0.0, 1.0}, {{10, 0, 0}, 0.5, 1.0})));
+  script.Motion(Planned(PathPiece::Line({{10, 0, 0}, 0.5, 1.0}, {{20, 0, 0}, 0.5, -0.25})));
+  script.Motion(Planned(PathPiece::Line({{20, 0, 0}, 0.5, -0.25}, {{20, 0, 0}, 0.25, -0.25})));
+  script.Motion(Planned(PathPiece::Line({{20, 0, 0}, 0.25, -0.25}, {{30, 0, 0}, 0.25, -0.25})));
+  script.Motion(Planned(PathPiece::Line({{30, 0, 0}, 0.25, -0.25}, {{40, 0, 0}, 0.25, -0.25})));
+  const Recorded recorded = Record(script);
+  ASSERT_EQ(recorded.blocks.size(), 1U);
+  EXPECT_EQ(recorded.blocks[0].points,
+            (std::vector<ToolpathPoint>{{0, 0, 0, 0, 1'000'000},
+                                        {10'000, 0, 0, 500'000, 1'000'000},
+                                        {20'000, 0, 0, 500'000, -250'000},
+                                        {20'000, 0, 0, 250'000, -250'000},
+                                        {40'000, 0, 0, 250'000, -250'000}}));
+}
+
+// Of 500 mm/s, and of the rated power. 10 mm with 10 mm/s2 reach 10 mm/s: the first class.
+TEST(ToolpathRecorder, RunsSayWhatSpeedAndPowerTheyReach) {
+  const motion::PathLimits slow{.speed = 500.0, .acceleration = 10.0};
+  const motion::PathLimits fast{.speed = 300.0, .acceleration = 1e6};
+  Script script;
+  const machine::PowerBySpeed power{.constant_percent = 70.0, .percent_per_mm_s = 0.2};
+  script.Step(1, 1).Motion(Planned(LineFrom({0, 0, 0}, {10, 0, 0}), slow),
+                           {.beam_on = true, .power = power, .programmed_mm_s = 500.0});
+  script.Step(1, 2).Motion(Planned(LineFrom({10, 0, 0}, {20, 0, 0}), fast),
+                           {.power = power, .programmed_mm_s = 500.0});
+  const Recorded recorded = Record(script);
+  ASSERT_EQ(recorded.blocks[0].runs.size(), 2U);
+  const ToolpathRun& first = recorded.blocks[0].runs[0];
+  EXPECT_EQ(first.speed_class, 20);
+  EXPECT_EQ(first.reached_class, 1);  // 10 of 500 mm/s
+  EXPECT_EQ(first.power_class, 15);   // 70 + 0.2 * 10 = 72 %
+  const ToolpathRun& second = recorded.blocks[0].runs[1];
+  EXPECT_EQ(second.reached_class, 12);  // 300 of 500 mm/s
+  EXPECT_EQ(second.power_class, 0);     // the beam is off
+}
+
 // A pause keeps runs apart: their times differ.
 TEST(ToolpathRecorder, PauseBeginsANewRun) {
   Script script;
@@ -220,8 +284,9 @@ TEST(ToolpathRecorder, BlocksFollowEachOther) {
     EXPECT_EQ(block.runs.front().start_us, recorded.blocks[b - 1].runs.back().end_us);
   }
   EXPECT_EQ(step, kMoves);
-  // Each move: flags, step, three bytes of duration, five of point: ten, and a header a block.
-  EXPECT_LT(recorded.bytes, 11u * kMoves);
+  // Each move: two bytes of flags, step, three of duration, five of point: eleven, and a header a
+  // block.
+  EXPECT_LT(recorded.bytes, 12u * kMoves);
 }
 
 // motion.md 9: what goes straight on is one line also behind the end of a block, and behind a jump:

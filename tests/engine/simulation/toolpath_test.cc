@@ -11,12 +11,19 @@ namespace {
 
 ToolpathBlock SmallBlock() {
   ToolpathBlock block;
-  block.points = {{1000, 0, -500}, {2000, 0, -500}, {2000, 300, -500}, {-7, 8, 9}, {-7, 8, 10}};
+  block.points = {{1000, 0, -500, 7, -8},
+                  {2000, 0, -500, 7, -8},
+                  {2000, 300, -500, 7, -8},
+                  {-7, 8, 9, 7, -8},
+                  {-7, 8, 10, 400, 1'570'796}};
+  block.reached_us = {1'000'000, 1'200'000, 1'250'000, 1'300'000, 1'300'001};
   block.runs = {{.program = 45,
                  .step = 12,
                  .use = machine::MotionUse::kCut,
                  .beam_on = true,
                  .speed_class = 3,
+                 .power_class = 15,
+                 .reached_class = 2,
                  .start_us = 1'000'000,
                  .end_us = 1'250'000,
                  .first_point = 0,
@@ -35,32 +42,39 @@ ToolpathBlock SmallBlock() {
 
 void ExpectEqual(const ToolpathBlock& a, const ToolpathBlock& b) {
   EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.reached_us, b.reached_us);
   EXPECT_EQ(a.runs, b.runs);
 }
 
 // docs/toolpath.md, byte by byte.
 TEST(ToolpathBlock, BytesAreAsDocumented) {
   ToolpathBlock block;
-  block.points = {{1, -1, 0}, {3, -1, 0}};
+  block.points = {{1, -1, 0, 0, -2}, {3, -1, 0, 1, -2}};
+  block.reached_us = {300, 310};
   block.runs = {{.program = 2,
                  .step = 5,
                  .use = machine::MotionUse::kCut,
                  .beam_on = true,
                  .speed_class = 4,
+                 .power_class = 15,
                  .start_us = 300,
                  .end_us = 310,
                  .first_point = 0,
                  .point_count = 2}};
   const std::string expected(
-      "T\x01"          // magic, version
-      "\x01\x02"       // one run, two points
-      "\xAC\x02"       // start 300
-      "\x02\x01\x00"   // (1, -1, 0)
-      "\x6D"           // 1 cut + 4 beam + 8 joined + 32 no pause + 64 one point
-      "\x04\x0A\x04"   // program +2, step +5, class 4
-      "\x0A"           // 10 us
-      "\x04\x00\x00",  // (+2, 0, 0)
-      17);
+      "T\x02"         // magic, version
+      "\x01\x02"      // one run, two points
+      "\xAC\x02"      // start 300
+      "\x02\x01\x00"  // (1, -1, 0)
+      "\x00\x03"      // A 0, B -2
+      "\x6D"          // 1 cut + 4 beam + 8 joined + 32 no pause + 64 one point
+      "\x06"          // 2 same reached class + 4 turns
+      "\x04\x0A\x04"  // program +2, step +5, class 4
+      "\x0F"          // power class 15
+      "\x0A"          // 10 us
+      "\x04\x00\x00"  // (+2, 0, 0)
+      "\x02\x00",     // A +1, B as before
+      23);
   EXPECT_EQ(EncodeToolpathBlock(block), expected);
 }
 
@@ -75,12 +89,16 @@ TEST(ToolpathBlock, ReadsBackTheFullestBlockAndTheFarthestPoints) {
   ToolpathBlock block;
   constexpr std::int32_t kFar = 2'000'000'000;
   for (std::size_t k = 0; k < kToolpathBlockPoints; ++k) {
-    block.points.push_back(k % 2 == 0 ? ToolpathPoint{kFar, -kFar, 0}
-                                      : ToolpathPoint{-kFar, kFar, 1});
+    block.points.push_back(k % 2 == 0 ? ToolpathPoint{kFar, -kFar, 0, -kFar, 0}
+                                      : ToolpathPoint{-kFar, kFar, 1, 0, kFar});
+    block.reached_us.push_back(k + 1 < kToolpathBlockPoints ? static_cast<std::int64_t>(k * k)
+                                                            : std::int64_t{1} << 50);
   }
   block.runs = {{.program = 99,
                  .step = std::numeric_limits<std::int32_t>::max(),
                  .speed_class = kSpeedClasses,
+                 .power_class = kPowerClasses,
+                 .reached_class = kSpeedClasses,
                  .start_us = 0,
                  .end_us = std::int64_t{1} << 50,
                  .first_point = 0,
@@ -88,6 +106,53 @@ TEST(ToolpathBlock, ReadsBackTheFullestBlockAndTheFarthestPoints) {
   const Result<ToolpathBlock> back = DecodeToolpathBlock(EncodeToolpathBlock(block));
   ASSERT_TRUE(back);
   ExpectEqual(*back, block);
+}
+
+// Times that the way tells well enough are left out, and come back as the way tells them.
+TEST(ToolpathBlock, TimesAreKeptWhereTheWayDoesNotTellThem) {
+  ToolpathBlock block;
+  block.points = {{0, 0, 0}, {1000, 0, 0}, {1000, 3000, 0}};
+  block.runs = {{.start_us = 10'000, .end_us = 50'000, .first_point = 0, .point_count = 3}};
+  const auto bytes = [&](std::int64_t middle_us) {
+    block.reached_us = {10'000, middle_us, 50'000};
+    return EncodeToolpathBlock(block);
+  };
+  // A quarter of the way: 20 ms, and a millisecond more or less.
+  const std::string even = bytes(20'000);
+  EXPECT_EQ(bytes(19'000), even);
+  EXPECT_EQ(bytes(21'000), even);
+  EXPECT_EQ(DecodeToolpathBlock(even)->reached_us,
+            (std::vector<std::int64_t>{10'000, 20'000, 50'000}));
+  for (const std::int64_t off : {18'999, 21'001, 50'000, 10'000}) {
+    const std::string timed = bytes(off);
+    EXPECT_GT(timed.size(), even.size()) << off;
+    EXPECT_EQ(DecodeToolpathBlock(timed)->reached_us,
+              (std::vector<std::int64_t>{10'000, off, 50'000}));
+  }
+}
+
+// A head that stands costs nothing, and one that turns on the spot has its time by the points.
+TEST(ToolpathBlock, AHeadMayTurnOnTheSpot) {
+  ToolpathBlock block;
+  block.points = {{0, 0, 0, 0, 5}, {0, 0, 0, 10, 5}, {0, 0, 0, 20, 5}};
+  block.reached_us = {0, 50'000, 100'000};
+  block.runs = {{.start_us = 0, .end_us = 100'000, .first_point = 0, .point_count = 3}};
+  const Result<ToolpathBlock> back = DecodeToolpathBlock(EncodeToolpathBlock(block));
+  ASSERT_TRUE(back);
+  ExpectEqual(*back, block);
+  const std::size_t turning = EncodeToolpathBlock(block).size();
+  for (ToolpathPoint& point : block.points) point.a_urad = 0;
+  EXPECT_EQ(EncodeToolpathBlock(block).size(), turning - 4);
+}
+
+// A flag of a later version is no guess for this one.
+TEST(ToolpathBlock, UnknownFlagsAndTimesBeyondTheEndAreRefused) {
+  std::string bytes = EncodeToolpathBlock(SmallBlock());
+  // Header: magic, version, counts, start of three bytes, the first point: 2, 1, 2, 1, 1 bytes.
+  constexpr std::size_t kMore = 2 + 2 + 3 + 2 + 1 + 2 + 1 + 1 + 1;
+  ASSERT_TRUE(DecodeToolpathBlock(bytes));
+  bytes[kMore] = static_cast<char>(bytes[kMore] | 0x10);
+  EXPECT_FALSE(DecodeToolpathBlock(bytes));
 }
 
 // Hostile bytes: every cut of a good block is refused with CELL-E9027.
@@ -103,7 +168,7 @@ TEST(ToolpathBlock, TruncatedBytesAreRefused) {
 }
 
 // Any change of bytes gives an error or a block within its bounds, and what is a block encodes to a
-// block that is the same.
+// block that is the same, its times within their tolerance.
 TEST(ToolpathBlock, ChangedBytesNeverBreakTheBounds) {
   const std::string good = EncodeToolpathBlock(SmallBlock());
   std::mt19937 random(20240601);  // NOLINT: fixed seed, so that a failure can be repeated
@@ -122,20 +187,34 @@ TEST(ToolpathBlock, ChangedBytesNeverBreakTheBounds) {
       ASSERT_LE(run.first_point + run.point_count, block->points.size());
       ASSERT_LE(run.start_us, run.end_us);
       ASSERT_LE(run.speed_class, kSpeedClasses);
+      ASSERT_LE(run.power_class, kPowerClasses);
+      ASSERT_LE(run.reached_class, kSpeedClasses);
+      std::int64_t before_us = run.start_us;
+      for (std::uint32_t k = 0; k < run.point_count; ++k) {
+        ASSERT_GE(TimeOf(*block, run, k), before_us);
+        before_us = TimeOf(*block, run, k);
+      }
+      ASSERT_EQ(before_us, run.end_us);
     }
     if (block->runs.empty()) continue;
     const Result<ToolpathBlock> again = DecodeToolpathBlock(EncodeToolpathBlock(*block));
     ASSERT_TRUE(again);
-    ExpectEqual(*again, *block);
+    EXPECT_EQ(again->points, block->points);
+    EXPECT_EQ(again->runs, block->runs);
+    ASSERT_EQ(again->reached_us.size(), block->reached_us.size());
+    for (std::size_t k = 0; k < block->reached_us.size(); ++k) {  // times that were not needed
+      ASSERT_NEAR(static_cast<double>(again->reached_us[k]),
+                  static_cast<double>(block->reached_us[k]), kToolpathTimeTolerance_us);
+    }
   }
   EXPECT_GT(read, 100);
 }
 
 // Counts that promise more than a block holds are refused before anything is reserved.
 TEST(ToolpathBlock, HugeCountsAreRefused) {
-  const std::string runs = std::string("T\x01", 2) + std::string(9, '\xFF') + '\x01';
+  const std::string runs = std::string("T\x02", 2) + std::string(9, '\xFF') + '\x01';
   EXPECT_FALSE(DecodeToolpathBlock(runs));
-  const std::string points("T\x01\x01\x81\x20\x00\x00\x00\x00", 9);  // 4097 points
+  const std::string points("T\x02\x01\x81\x20\x00\x00\x00\x00", 9);  // 4097 points
   EXPECT_FALSE(DecodeToolpathBlock(points));
 }
 

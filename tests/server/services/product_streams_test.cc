@@ -20,6 +20,7 @@ using simulation::ToolpathPoint;
 std::string BlockWithBend(std::int32_t aside_um) {
   ToolpathBlock block;
   block.points = {{0, 0, 0}, {1'000'000, aside_um, 0}, {2'000'000, 0, 0}};
+  block.reached_us = {0, 500, 1000};
   block.runs.push_back({.program = 1,
                         .step = 1,
                         .use = machine::MotionUse::kCut,
@@ -49,8 +50,16 @@ class ProductStreamsTest : public testing::Test {
   std::vector<std::string> Blocks(std::int64_t job, int level) {
     auto stream = room.Toolpath(JobName(job), level);
     std::vector<std::string> blocks;
-    for (const v1::StreamJobToolpathResponse& message : stream.Rest())
-      blocks.push_back(message.block());
+    header.reset();
+    for (const v1::StreamJobToolpathResponse& message : stream.Rest()) {
+      EXPECT_EQ(message.has_header(), blocks.empty() && !header);
+      if (message.has_header()) {
+        header = message.header();
+      } else {
+        blocks.push_back(message.block());
+      }
+    }
+    EXPECT_TRUE(header);
     stream.ExpectGoodEnd();
     return blocks;
   }
@@ -71,7 +80,22 @@ class ProductStreamsTest : public testing::Test {
   }
 
   StreamBed room;
+  std::optional<v1::ToolpathHeader> header;  // of the last Blocks()
 };
+
+// job.proto, ToolpathHeader.
+TEST_F(ProductStreamsTest, AHeaderComesBeforeTheBlocks) {
+  const std::string frames = Frames({BlockWithBend(500'000)});
+  const std::int64_t job = room.Ended("toolpath", frames, WithTolerance(0.1));
+  EXPECT_EQ(Blocks(job, 0).size(), 1U);
+  EXPECT_EQ(header->level(), 0);
+  EXPECT_EQ(header->level_max(), 5);
+  EXPECT_DOUBLE_EQ(header->tolerance_mm(), 0.1);
+  EXPECT_EQ(header->bytes(), static_cast<std::int64_t>(frames.size()));
+  EXPECT_EQ(Blocks(job, 2).size(), 1U);
+  EXPECT_EQ(header->level(), 2);
+  EXPECT_DOUBLE_EQ(header->tolerance_mm(), 6.4);
+}
 
 TEST_F(ProductStreamsTest, AtLevelZeroTheBlocksAreTheStoredOnes) {
   // Whatever they hold: nobody looks into them.
