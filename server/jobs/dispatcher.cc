@@ -276,11 +276,10 @@ Status Dispatcher::Control(std::int64_t job, const JobOrder& order) {
     }
     if (may_come) return {};
   }
-  if (record->state == storage::JobState::kRunning) {
-    const Status put =
-        store_.PutOrder(job, server_, ControlMessage({}, order).control().SerializeAsString());
-    if (put || put.error().code != ErrorCode::kCellPrecondition) return put;
-  }
+  // Perhaps another server has it; one that waits, or has ended, nobody has.
+  const Status put =
+      store_.PutOrder(job, server_, ControlMessage({}, order).control().SerializeAsString());
+  if (put || put.error().code != ErrorCode::kCellPrecondition) return put;
   return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
 }
 

@@ -206,9 +206,9 @@ v1::Series SeriesBetween(const v1::SeriesTable& table, const v1::SeriesTable::Co
   series.set_unit(column.unit());
   const int parts = table.parts_size();
   int part = 0;  // the first that does not end before the span
+  // In double, as the product would not fit; a part is longer than what is lost.
+  const double length = static_cast<double>(to_ns - from_ns) / count;
   for (int span = 0; span < count; ++span) {
-    // In double, as the product would not fit; a part is longer than what is lost.
-    const double length = static_cast<double>(to_ns - from_ns) / count;
     const auto begin = from_ns + static_cast<std::int64_t>(length * span);
     const auto end = from_ns + static_cast<std::int64_t>(length * (span + 1));
     while (part < parts && (table.parts(part) + 1) * table.part_ns() <= begin) ++part;

@@ -330,21 +330,20 @@ TEST_P(StoreConformance, AJobKnowsHowManyStartBeforeIt) {
   EXPECT_EQ(CodeOf(store().CountBefore(999)), ErrorCode::kCellNotFound);
 }
 
+Lease LeaseFor(Store& store, const std::string& server) {
+  return Must(store.AcquireJobs(
+                  {.worker = "w", .server = server, .kinds = {"SIMULATE"}, .duration = hours(100)}))
+      .at(0)
+      .lease;
+}
+
 // IF-07.
 TEST_P(StoreConformance, AnOrderIsForTheServerThatHasTheJob) {
   const auto one = Put(store(), {});
   const auto two = Put(store(), {});
   EXPECT_EQ(CodeOf(store().PutOrder(one, "b", "stop")), kPrecondition);  // it waits
-  const auto acquire = [&](const std::string& server) {
-    return Must(store().AcquireJobs({.worker = "w",
-                                     .server = server,
-                                     .kinds = {"SIMULATE"},
-                                     .duration = hours(100)}))
-        .at(0)
-        .lease;
-  };
-  const Lease of_a = acquire("a");
-  const Lease of_b = acquire("b");
+  const Lease of_a = LeaseFor(store(), "a");
+  const Lease of_b = LeaseFor(store(), "b");
   EXPECT_EQ(of_a.server, "a");
   EXPECT_EQ(CodeOf(store().PutOrder(one, "a", "stop")), kPrecondition);  // it is its own
   EXPECT_EQ(CodeOf(store().PutOrder(999, "a", "stop")), kPrecondition);
@@ -365,18 +364,10 @@ TEST_P(StoreConformance, AnOrderIsForTheServerThatHasTheJob) {
 
 TEST_P(StoreConformance, AnOrderIsGoneWithItsLease) {
   const auto job = Put(store(), {});
-  const auto acquire = [&](const std::string& server) {
-    return Must(store().AcquireJobs({.worker = "w",
-                                     .server = server,
-                                     .kinds = {"SIMULATE"},
-                                     .duration = hours(100)}))
-        .at(0)
-        .lease;
-  };
-  const Lease first = acquire("a");
+  const Lease first = LeaseFor(store(), "a");
   ASSERT_TRUE(store().PutOrder(job, "b", "of the first attempt"));
   Must(store().HandBack(first, PolicyOfTests()));
-  acquire("a");  // the same server has it again
+  LeaseFor(store(), "a");  // the same server has it again
   EXPECT_THAT(Must(store().TakeOrders("a")), IsEmpty());
   ASSERT_TRUE(store().PutOrder(job, "b", "of the second"));
   EXPECT_EQ(Must(store().TakeOrders("a")).size(), 1U);
