@@ -8,19 +8,20 @@
 #include "engine/core/units.h"
 
 namespace rmlcell::server {
-namespace {
 
-double ProcessorTime_s() {
+double ThreadProcessorTime_s() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
 }
 
-}  // namespace
-
 JobLease::JobLease(ServerLine& line, const v1::WorkerAssignment& assignment,
-                   const std::atomic<bool>& stopping)
-    : line_(line), assignment_(assignment), stopping_(stopping), started_s_(ProcessorTime_s()) {}
+                   const std::atomic<bool>& stopping, ProcessorTime processor_time)
+    : line_(line),
+      assignment_(assignment),
+      stopping_(stopping),
+      processor_time_(std::move(processor_time)),
+      started_s_(processor_time_()) {}
 
 bool JobLease::IsMine(const v1::WorkerLease& lease) const {
   return lease.job() == assignment_.lease().job() && lease.fence() == assignment_.lease().fence();
@@ -46,7 +47,7 @@ void JobLease::Listen(std::chrono::milliseconds patience) {
 }
 
 bool JobLease::over_time() const {
-  return ProcessorTime_s() - started_s_ > ToSeconds(SimTime(assignment_.budget().processor_ns()));
+  return processor_time_() - started_s_ > ToSeconds(SimTime(assignment_.budget().processor_ns()));
 }
 
 Stop JobLease::StopAsked() {

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -20,14 +21,18 @@ enum class Stop {
   kOverTime,  // of the processor
 };
 
+// Seconds of processor time that the calling thread has used, from any point on.
+using ProcessorTime = std::function<double()>;
+double ThreadProcessorTime_s();
+
 // The lease on one job: what the server orders while it lasts, and what goes out for it. For the
 // thread that works on the job.
 class JobLease {
  public:
-  // All outlive this. The time of the processor counts from here, that of the calling thread.
-  // `stopping` becomes true when the process is to end.
+  // All outlive this. The time of the processor counts from here. `stopping` becomes true when the
+  // process is to end.
   JobLease(ServerLine& line, const v1::WorkerAssignment& assignment,
-           const std::atomic<bool>& stopping);
+           const std::atomic<bool>& stopping, ProcessorTime processor_time);
 
   // Takes in a message; one that is of another lease changes nothing.
   void Take(const v1::WorkResponse& message);
@@ -58,6 +63,7 @@ class JobLease {
   ServerLine& line_;
   const v1::WorkerAssignment& assignment_;
   const std::atomic<bool>& stopping_;
+  ProcessorTime processor_time_;
   double started_s_;  // of the processor
   std::int64_t events_sent_ = 0;
   std::int64_t events_stored_ = 0;

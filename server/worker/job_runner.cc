@@ -64,11 +64,12 @@ std::string StepsOf(const machine::MachineFamily& family, const machine::RunSetu
 // One attempt.
 class Attempt {
  public:
-  Attempt(ServerLine& line, v1::WorkerAssignment assignment, const std::atomic<bool>& stopping)
+  Attempt(ServerLine& line, v1::WorkerAssignment assignment, const std::atomic<bool>& stopping,
+          const ProcessorTime& processor_time)
       : line_(line),
         assignment_(std::move(assignment)),
         programs_(assignment_),
-        lease_(line, assignment_, stopping),
+        lease_(line, assignment_, stopping, processor_time),
         output_(line, assignment_.lease(), assignment_.budget().output_bytes()),
         events_([this](const v1::WorkerEvents& events) {
           output_.CountEvents(events.ByteSizeLong());
@@ -382,7 +383,7 @@ bool JobRunner::Work(v1::WorkerAssignment assignment) {
   v1::WorkRequest begun;  // from here on the attempt counts
   *begun.mutable_heartbeat()->mutable_lease() = lease;
   line_.Send(begun);
-  Attempt attempt(line_, std::move(assignment), stopping_);
+  Attempt attempt(line_, std::move(assignment), stopping_, processor_time_);
   Attempt::End end = Attempt::End::kFinished;
   // Translating a large program, a picture of a long path or a slow store may take longer than a
   // lease.

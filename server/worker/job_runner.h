@@ -3,8 +3,10 @@
 #include <atomic>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "rmlcell/v1/worker.pb.h"
+#include "server/worker/job_lease.h"
 #include "server/worker/server_line.h"
 
 namespace rmlcell::server {
@@ -14,8 +16,9 @@ namespace rmlcell::server {
 class JobRunner {
  public:
   // `stopping` becomes true when the process is to end: the job is handed back.
-  JobRunner(ServerLine& line, const std::atomic<bool>& stopping)
-      : line_(line), stopping_(stopping) {}
+  JobRunner(ServerLine& line, const std::atomic<bool>& stopping,
+            ProcessorTime processor_time = ThreadProcessorTime_s)
+      : line_(line), stopping_(stopping), processor_time_(std::move(processor_time)) {}
 
   // Returns when the lease is over: finished, handed back, or lost. False: the worker is to end.
   bool Work(v1::WorkerAssignment assignment);
@@ -23,6 +26,7 @@ class JobRunner {
  private:
   ServerLine& line_;
   const std::atomic<bool>& stopping_;
+  ProcessorTime processor_time_;
 };
 
 }  // namespace rmlcell::server

@@ -175,7 +175,7 @@ class JobRunnerTest : public testing::Test {
             const std::vector<v1::WorkResponse>& before = {}) {
     line_ = *ServerLine::Join({.server = server.address(), .join_token = "secret", .name = "w"});
     for (const v1::WorkResponse& message : before) server.Send(message);
-    JobRunner runner(*line_, stopping);
+    JobRunner runner(*line_, stopping, processor_time);
     const bool go_on = runner.Work(assignment);
     line_->Close();
     while (!line_->gone()) line_->Receive(std::chrono::seconds(60));
@@ -238,6 +238,7 @@ class JobRunnerTest : public testing::Test {
 
   FakeServer server;
   std::atomic<bool> stopping = false;
+  ProcessorTime processor_time = ThreadProcessorTime_s;
   std::unique_ptr<ServerLine> line_;
   std::vector<v1::WorkRequest> heard_;
 };
