@@ -118,6 +118,7 @@ struct JobOutcome {
   int program = 0;  // where it ended, 0: not known
   int step = 0;
   std::string judgement{};  // opaque; what the part will come out like, where that is known
+  std::string verdict{};    // the word for it, to look for: "BAD"
 };
 
 struct JobRecord {
@@ -126,16 +127,19 @@ struct JobRecord {
   std::string
       request_hash{};  // of what was asked for: the same request_id with another request is refused
   std::string machine{};
-  std::string kind{};  // "CHECK", "SIMULATE", kRunKind
-  std::string pool{};  // of the workers that take it; may be empty
+  std::string family{};  // of the machine
+  std::string kind{};    // "CHECK", "SIMULATE", kRunKind
+  std::string pool{};    // of the workers that take it; may be empty
   std::string title{};
   std::string caller{};
   std::string specification{};  // opaque
   JobState state = JobState::kQueued;
   int priority = 0;
+  double place = 0.0;  // in the queue, among those of its priority: less is earlier
   bool held = false;
   std::optional<WallTime> not_before{};
   std::vector<std::int64_t> after{};  // jobs that it waits for, those that have not succeeded
+  bool blocked = false;  // it waits for a person, a time or other jobs, and has no turn yet
   WaitReason wait = WaitReason::kNone;
   std::int64_t waits_for = 0;  // the job of kAfterJob, kAfterJobFailed and kMachineBusy
   bool cancel_requested = false;

@@ -17,6 +17,7 @@ struct NewJob {
   std::string request_id{};  // empty: the store makes one
   std::string request_hash{};
   std::string machine{};
+  std::string family{};
   std::string kind{};
   std::string pool{};
   std::string title{};
@@ -74,15 +75,45 @@ struct LossPolicy {
 };
 inline constexpr int kUncountedAttemptsMax = 8;  // those that were handed back among them
 
-// Newest first. A page ends where the next begins: pass the last id of it as `before_id`.
+// Where a page of jobs ends and the next one begins: what decides the place of its last job.
+struct JobPlace {
+  std::int64_t id = 0;
+  JobState state = JobState::kQueued;
+  bool blocked = false;
+  int priority = 0;
+  double place = 0.0;
+
+  bool operator==(const JobPlace&) const = default;
+};
+inline JobPlace PlaceOf(const JobRecord& job) {
+  return {job.id, job.state, job.blocked, job.priority, job.place};
+}
+
+enum class JobOrder {
+  kNewestFirst,
+  kOldestFirst,
+  // Those that run, the oldest first; those that wait, in the order in which they will run, and
+  // those that have no turn yet behind them; then those that ended, the newest first.
+  kQueue,
+};
+
+// Which jobs: all that fit. Fields that are empty ask for nothing.
 struct JobQuery {
-  std::string machine{};  // empty: all
+  std::string machine{};
   std::optional<JobState> state{};
-  std::string kind{};              // empty: all
-  std::string caller{};            // empty: all
+  std::string kind{};
+  std::string caller{};
   std::optional<bool> finished{};  // final states only, or unfinished only
+  // Dear: no index helps to find them.
+  std::string family{};
+  std::string verdict{};
+  std::string text{};  // stands in the title, in capitals or not
+  std::optional<WallTime> created_from{};
+  std::optional<WallTime> created_before{};
+
+  JobOrder order = JobOrder::kNewestFirst;
   int limit = 50;
-  std::int64_t before_id = 0;  // jobs with a smaller id; 0: from the newest
+  std::optional<JobPlace> behind{};  // jobs behind this one, in the order asked for
 };
 
 // What a run compiled for a slot of its machine.
@@ -237,7 +268,7 @@ class Store {
   virtual Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) = 0;
   virtual Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) = 0;  // by number
   virtual Result<JobCounts> CountJobs() = 0;  // cheap: called for every submission
-  // Of the jobs of this machine, kind and caller, whatever else the query says; states without jobs
+  // Of the jobs that fit, whatever the query says of states, order and page; states without jobs
   // are left out. Dear: all of them are looked at.
   virtual Result<std::vector<JobStateCount>> CountByState(const JobQuery& query) = 0;
   // By id of the machine; those without such jobs are left out.

@@ -210,7 +210,7 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
 // What the verbs of a server are given on the command line; each uses its own.
 struct RemoteArguments {
   std::string machine, project, job, artifact;
-  std::string file, form, output, etag, filter;
+  std::string file, form, output, etag, filter, order = "newest";
   int slot = 0;
   int limit = 20;
   std::int64_t after = 0;
@@ -407,11 +407,14 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
   CLI::App* jobs =
       RemoteVerb(app, "jobs", "List jobs, newest first",
                  "  rmlcell jobs                                   the newest 20\n"
+                 "  rmlcell jobs --order queue                     as they will run\n"
                  "  rmlcell jobs --filter 'state = FAILED AND machine = machines/mill-1'",
                  remote);
   jobs->add_option("--filter", given.filter, "state = FAILED AND machine = machines/mill-1");
+  jobs->add_option("--order", given.order, "newest, oldest, queue")
+      ->transform(CLI::IsMember({"newest", "oldest", "queue"}));
   jobs->add_option("--limit", given.limit)->check(CLI::Range(1, 1000));
-  jobs->callback([&] { exit_code = Jobs(remote, given.filter, given.limit); });
+  jobs->callback([&] { exit_code = Jobs(remote, given.filter, given.order, given.limit); });
   CLI::App* show = RemoteVerb(app, "job", "Show one job", "  rmlcell job 17", remote);
   show->add_option("JOB", given.job)->required();
   show->callback([&] { exit_code = ShowJob(remote, given.job); });

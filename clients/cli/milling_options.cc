@@ -66,10 +66,10 @@ void AddJobMillingOptions(CLI::App& verb, JobMillingOptions& options) {
   CLI::Option* products =
       verb.add_option(
               "--products", options.products,
-              "of relief,height-map,stl,target: what of the block the job leaves; default relief")
+              "of relief,height-map,height-grid,stl,target: what of the block the job leaves; default relief")
           ->delimiter(',')
           ->allow_extra_args(false)
-          ->check(CLI::IsMember({"relief", "height-map", "stl", "target"}))
+          ->check(CLI::IsMember({"relief", "height-map", "height-grid", "stl", "target"}))
           ->needs(block.stock);
   AddStlTolerance(verb, options.stl_tolerance_mm)->needs(products);
 }

@@ -60,7 +60,7 @@ struct SubmitRequest {
 };
 int SubmitJob(const Remote& remote, const SubmitRequest& request);
 int WatchJob(const Remote& remote, const std::string& job, std::int64_t after, bool strict);
-int Jobs(const Remote& remote, const std::string& filter, int limit);
+int Jobs(const Remote& remote, const std::string& filter, const std::string& order, int limit);
 int ShowJob(const Remote& remote, const std::string& job);
 int CancelJob(const Remote& remote, const std::string& job);
 int JobReport(const Remote& remote, const std::string& job, bool machine_coordinates);

@@ -91,6 +91,7 @@ Status SetMilling(const JobMillingOptions& wanted, v1::Milling& milling) {
   for (const std::string& product : wanted.products) {
     if (product == "relief") milling.set_relief(true);
     if (product == "height-map") milling.set_height_map(true);
+    if (product == "height-grid") milling.set_height_grid(true);
     if (product == "stl") milling.set_stl(true);
     if (product == "target") difference = true;
   }
@@ -235,12 +236,13 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   return wanted.watch ? WatchJob(remote, made.name(), 0, wanted.strict) : kGood;
 }
 
-int Jobs(const Remote& remote, const std::string& filter, int limit) {
+int Jobs(const Remote& remote, const std::string& filter, const std::string& order, int limit) {
   const auto stub = v1::JobService::NewStub(Connect(remote));
   grpc::ClientContext context;
   Prepare(context);
   v1::ListJobsRequest request;
   request.set_filter(filter);
+  request.set_order_by(order == "queue" ? "queue" : order == "oldest" ? "create_time" : "");
   request.set_page_size(limit);
   v1::ListJobsResponse response;
   const grpc::Status status = stub->ListJobs(&context, request, &response);

@@ -86,7 +86,7 @@ _rmlcell_options() {
       echo "$remote --slot --kind --title --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --watch --strict" ;;
     report) echo "$remote --machine-coordinates" ;;
     watch) echo "$remote --after --strict" ;;
-    jobs) echo "$remote --filter --limit" ;;
+    jobs) echo "$remote --filter --order --limit" ;;
     picture | artifact) echo "$remote --output" ;;
     "projects list" | "projects show" | "projects create" | "projects update" | "projects delete" | "projects import")
       echo "--help" ;;
@@ -102,7 +102,7 @@ _rmlcell_takes_value() {
     --slot | --slots | --main | --executable | --family | --profile | --machine | --origin | --clamps | --inputs | --mode | --override | \
       --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --material | --stl | --stl-tolerance | --relief | --height-map | --target | --target-slot | --target-tolerance | --target-png | \
       --state-in | --state-out | --server | --etag | --form | \
-      --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift | \
+      --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --order | --limit | --move | --turn | --shift | \
       --tolerance | --by | --from | --to | --columns | --rows | --within | --gap | --depth | --step | --passes | --overlap | \
       --dpi | --at | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
   esac
@@ -128,7 +128,8 @@ _rmlcell_values() {
       _rmlcell_offer steps= time= ;;
     --filter)
       compopt -o nospace 2>/dev/null
-      _rmlcell_offer state= machine= kind= caller= finished= ;;
+      _rmlcell_offer state= machine= kind= caller= finished= family= verdict= text= since= until= ;;
+    --order) _rmlcell_offer newest oldest queue ;;
     --machine) _rmlcell_files .toml ;;
     --svg) _rmlcell_files .svg ;;
     --stl) _rmlcell_files .stl ;;
@@ -144,7 +145,7 @@ _rmlcell_values() {
       compopt -o nospace 2>/dev/null
       _rmlcell_offer speed power axes speed,power,axes ;;
     --inputs | --toolpath | --state-in | --state-out | --output | -o) _rmlcell_files ;;
-    --products) _rmlcell_offer relief height-map stl target ;;
+    --products) _rmlcell_offer relief height-map height-grid stl target ;;
     --project) _rmlcell_projects ;;
     --slot | --target-slot) [[ $verb == submit && -n ${given[0]:-} ]] && _rmlcell_slots "${given[0]}" ;;
   esac

@@ -8,10 +8,60 @@
 #include "engine/core/near_words.h"
 #include "engine/core/units.h"
 #include "engine/machine/shape.h"
+#include "engine/machine/standing.h"
 
 namespace rmlcell::machine {
 
 MachineShape MachineFamily::Shape(const Parameters& /*parameters*/) const { return {}; }
+
+Status MachineFamily::CheckWrite(const Parameters& parameters, std::string_view name,
+                                 double /*value*/) const {
+  const std::string what = "'" + std::string(name) + "'";
+  return Error{ErrorCode::kCellInvalidArgument,
+               HasVariable(parameters, name) ? what + " is written by the machine alone"
+                                             : "no variable is called " + what,
+               {}};
+}
+
+namespace {
+
+class PlainStanding final : public Standing {
+ public:
+  explicit PlainStanding(std::string_view state) : state_(state) {}
+  RunState state() const override { return {.phase = RunPhase::kFinished}; }
+  std::optional<std::string> ReadVariable(std::string_view /*name*/) const override { return {}; }
+  void CyclePower() override {}
+  std::string Save() const override { return state_; }
+
+ private:
+  std::string state_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Standing>> MachineFamily::NewStanding(const Parameters& /*parameters*/,
+                                                             std::string_view machine_state) const {
+  return std::unique_ptr<Standing>(std::make_unique<PlainStanding>(machine_state));
+}
+
+Status MachineFamily::CheckBreakpoint(const Breakpoint& breakpoint) const {
+  const auto refuse = [&](std::string_view why) {
+    return Error{
+        ErrorCode::kCellInvalidArgument,
+        "the breakpoint behind step " + std::to_string(breakpoint.at.step) + " " + std::string(why),
+        {}};
+  };
+  if (!info().has_breakpoints) {
+    return Error{ErrorCode::kCellNotLive, std::string(info().title) + " has no breakpoints", {}};
+  }
+  if (!IsSlot(breakpoint.at.program) || breakpoint.at.step < 1)
+    return refuse("stands in no program: give a slot of 1 to 99 and a step from 1 on");
+  if (!breakpoint.condition.empty())
+    return refuse("has a condition, but the programs of this machine have no expressions");
+  if (breakpoint.from_pass > 1)
+    return refuse("waits for a later pass, but a stream comes to each command once");
+  return {};
+}
 
 TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
                                          const TransferOptions& /*options*/) const {

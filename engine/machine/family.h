@@ -21,6 +21,7 @@ namespace rmlcell::machine {
 
 class Run;            // run.h
 class RunObserver;    // observer.h
+class Standing;       // standing.h
 struct MachineShape;  // shape.h
 
 // How a check that runs a program reads the codes of its family.
@@ -50,6 +51,9 @@ struct FamilyInfo {
   std::array<std::string_view, 3> origin_parameters{};
   std::string_view clamps_parameter{};  // height of the clamps above program zero, mm; empty: none
   double override_max_percent = 100.0;  // of the feed rate; the least is above 0
+  bool has_repeat = false;              // the mode REPEAT
+  bool has_dry_run = false;             // up to a step, RunSetup::simul
+  bool has_breakpoints = false;         // Run::SetBreakpoints
 
   // What the machine calls what the cell finds. What has no number in its manual the cell says in
   // its own words: a machine without program memory has no slots.
@@ -57,6 +61,8 @@ struct FamilyInfo {
   ErrorCode empty_slot = ErrorCode::kCellNotFound;          // a slot without program
   ErrorCode no_schedule = ErrorCode::kCellInvalidArgument;  // a number that is no laser schedule
   ErrorCode travel_left = ErrorCode::kCellTravelLeft;       // a motion leaves the travel of an axis
+  ErrorCode not_zeroed = ErrorCode::kCellMachineState;      // its axes have no reference
+  ErrorCode emergency_stop = ErrorCode::kCellEmergencyStop;
   // Of a project: a slot or a process twice; a slot without source, or no program at all.
   ErrorCode given_twice = ErrorCode::kCellInvalidArgument;
   ErrorCode no_source = ErrorCode::kCellInvalidArgument;
@@ -168,6 +174,17 @@ class MachineFamily {
     return false;
   }
 
+  // Whether WriteVariable of a run or of a machine that stands takes this value. Errors:
+  // CellInvalidArgument for no such variable, one that only the machine writes, or a value that it
+  // cannot hold. A family whose programs alone write its variables has none to be written.
+  virtual Status CheckWrite(const Parameters& parameters, std::string_view name,
+                            double value) const;
+
+  // Whether Run::SetBreakpoints takes it. One of a family whose programs have no expressions, and
+  // come to each step once, has neither condition nor pass. Errors: CellInvalidArgument;
+  // CellNotLive where there are none.
+  virtual Status CheckBreakpoint(const Breakpoint& breakpoint) const;
+
   // Every figure that Run::figures can hold; docs/facts.md lists them.
   virtual std::span<const FigureInfo> figures() const { return {}; }
 
@@ -218,6 +235,12 @@ class MachineFamily {
   // are not errors here: the run ends with them. Only a setup that makes no sense is refused.
   // `observer` must outlive the run.
   virtual Result<std::unique_ptr<Run>> NewRun(RunSetup setup, RunObserver& observer) const = 0;
+
+  // The machine that these bytes of SaveMachine or Standing::Save keep; of none: a new one. Errors:
+  // CellBadText for bytes that are none; parameters that do not fit together.
+  // Of a family that keeps nothing it holds the bytes alone.
+  virtual Result<std::unique_ptr<Standing>> NewStanding(const Parameters& parameters,
+                                                        std::string_view machine_state) const;
 };
 
 // "Roland monoFab SRM-20 (srm-20)", or "My mill, based on Roland monoFab SRM-20 (srm-20)". That

@@ -118,14 +118,7 @@ struct LostWay {
   motion::MachinePoint to{};
 };
 
-// A halt of the run: PAUSE, STOP, HOLD, breakpoint, !NR.
-enum class HaltReason {
-  kHold,        // the key, or an order
-  kStop,        // the key, or an order
-  kProgram,     // an instruction of the program, or what it leads to
-  kBreakpoint,  // this step is over
-  kSingle,      // the mode SINGLE
-};
+// A halt of the run.
 struct Halt {
   SimTime at{0};
   Place place{};

@@ -18,6 +18,15 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 
+// Why a run halts: PAUSE, STOP, HOLD, a breakpoint, !NR.
+enum class HaltReason {
+  kHold,        // the key, or an order
+  kStop,        // the key, or an order
+  kProgram,     // an instruction of the program, or what it leads to
+  kBreakpoint,  // this step is over
+  kSingle,      // the mode SINGLE
+};
+
 enum class OutcomeKind { kCompleted, kStopped, kFailed, kCancelled, kBudgetExceeded };
 struct Outcome {
   OutcomeKind kind = OutcomeKind::kCompleted;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/result.h"
 #include "engine/core/units.h"
 #include "engine/machine/outcome.h"
 #include "engine/machine/run_setup.h"
@@ -32,9 +33,20 @@ struct RunState {
   double override_percent = 100.0;
   bool beam_on = false;
   bool spindle_on = false;
+  bool zeroed = true;  // the axes have their reference
+  bool door_open = false;
+  std::optional<HaltReason> halted_by{};  // in kHalted
   // Program zero in the machine frame, where a program has one: what X 0, Y 0, Z 0 mean now.
   std::optional<motion::MachinePoint> work_origin{};
   double progress = -1.0;  // 0..1 where the length of the program is known, else below 0
+};
+
+// A value that stays until another one is given, as the language writes it.
+struct ModalValue {
+  std::string name{};  // "PATH"
+  std::string value{};
+
+  bool operator==(const ModalValue&) const = default;
 };
 
 // Opaque copy of a run at one instant.
@@ -57,6 +69,14 @@ class Run {
   // An input or key at the present time, as if scripted for it.
   virtual void Apply(const InputChange& input) = 0;
 
+  // Halted: time goes by up to `until`, and nothing happens. Else it changes nothing. A run whose
+  // halts take no time leaves it out.
+  virtual void Stand(SimTime /*until*/) {}
+
+  // From the end of the present instruction on; one that the machine does not have changes nothing.
+  // Precondition: not MANUAL.
+  virtual void SetMode(Mode /*mode*/) {}
+
   // Ends the run at the present time with beam off, shutter closed: CANCELLED, or a budget of the
   // caller.
   virtual void End(OutcomeKind kind, ErrorCode code) = 0;
@@ -67,6 +87,17 @@ class Run {
 
   // "VR[5]" -> "7.0"; nothing when the family has no such variable.
   virtual std::optional<std::string> ReadVariable(std::string_view /*name*/) const { return {}; }
+  // At the present time. The family says which may be written (MachineFamily::CheckWrite).
+  virtual void WriteVariable(std::string_view /*name*/, double /*value*/) {}
+
+  // These and no others; that of a BREAK in the program stays beside them. One that is set on a
+  // place that was already read ahead halts the run as soon as it can stand. Precondition:
+  // MachineFamily::CheckBreakpoint of each.
+  virtual void SetBreakpoints(const std::vector<Breakpoint>& /*breakpoints*/) {}
+
+  // Where each program and subroutine is that called another one; that in execution comes last.
+  virtual std::vector<Place> stack() const { return {state().place}; }
+  virtual std::vector<ModalValue> modal_values() const { return {}; }
 
   // It stands at a condition that no motion and no scripted input changes any more.
   virtual bool waits_for_ever() const { return false; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -37,11 +38,23 @@ struct LaserSchedule {
   bool operator==(const LaserSchedule&) const = default;
 };
 
-enum class Mode { kRemote, kCycle, kSingle, kRepeat };  // OPT-4.23
+// OPT-4.23. In MANUAL no run begins and none goes on.
+enum class Mode { kRemote, kCycle, kSingle, kRepeat, kManual };
 
 struct ProgramStep {
   int program = 0;
   int step = 0;
+
+  bool operator==(const ProgramStep&) const = default;
+};
+
+// Where somebody who watches a run wants it to halt: behind this step, as behind HOLD.
+struct Breakpoint {
+  ProgramStep at{};
+  std::string condition{};      // in the language of the family: "VI[3] > 10"; empty: always
+  std::uint64_t from_pass = 1;  // of the passes on which it holds, the first that halts
+
+  bool operator==(const Breakpoint&) const = default;
 };
 
 // The run is ended by the cell when it needs more. 0: no limit.

@@ -9,6 +9,7 @@
 #include "engine/rml1/figures.h"
 #include "engine/rml1/physical.h"
 #include "engine/rml1/run.h"
+#include "engine/rml1/standing.h"
 #include "engine/rml1/timing.h"
 #include "engine/rml1/variables.h"
 #include "engine/rml1/verdict_rules.h"
@@ -28,6 +29,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .origin_parameters = {"ORIGIN_X", "ORIGIN_Y", "Z0"},
                                        .clamps_parameter = "CLAMP_HEIGHT",
                                        .override_max_percent = 145.0,
+                                       .has_breakpoints = true,
                                        .torn = ErrorCode::kRml1IncompleteCommand};
 
 Diagnostic Plain(ErrorCode code, std::string detail) {
@@ -215,6 +217,8 @@ class MillFamily final : public machine::MachineFamily {
                                  const machine::CheckOptions& options) const override;
   Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
                                                machine::RunObserver& observer) const override;
+  Result<std::unique_ptr<machine::Standing>> NewStanding(
+      const machine::Parameters& parameters, std::string_view machine_state) const override;
 };
 
 machine::MachineShape MillFamily::Shape(const machine::Parameters& parameters) const {
@@ -274,6 +278,13 @@ Result<std::unique_ptr<machine::Run>> MillFamily::NewRun(machine::RunSetup setup
   Result<std::unique_ptr<MillRun>> run = MillRun::Make(std::move(setup), observer);
   if (!run) return run.error();
   return std::unique_ptr<machine::Run>(std::move(*run));
+}
+
+Result<std::unique_ptr<machine::Standing>> MillFamily::NewStanding(
+    const machine::Parameters& parameters, std::string_view machine_state) const {
+  Result<Profile> profile = MakeProfile(parameters);
+  if (!profile) return profile.error();
+  return MillStanding::Make(*std::move(profile), machine_state);
 }
 
 }  // namespace

@@ -91,9 +91,10 @@ MillRun::MillRun(machine::RunSetup setup, std::shared_ptr<const Profile> profile
   if (!std::isnan(setup_.override_percent)) {
     state_.override_percent = std::clamp(setup_.override_percent, kOverrideMin, kOverrideMax);
   }
-  halts_.after_each = setup_.mode == machine::Mode::kSingle;
-  if (setup_.breakpoint && setup_.breakpoint->program == setup_.main_program) {
-    halts_.after = setup_.breakpoint->step;
+  state_.halts.after_each = setup_.mode == machine::Mode::kSingle;
+  if (setup_.breakpoint && setup_.breakpoint->program == setup_.main_program &&
+      setup_.breakpoint->step > 0) {
+    state_.halts.breakpoints = {setup_.breakpoint->step};
   }
   PutTool();
   state_.place.program = setup_.main_program;
@@ -169,7 +170,8 @@ RunPhase MillRun::Advance(SimTime until) {
 // The next thing that takes no time, or the start of one that does.
 void MillRun::Proceed(std::size_t sent_max) {
   State& s = state_;
-  const bool ends_motion_first = s.rest_left && s.halt_wanted == HaltCause::kHold;
+  // STOP alone halts in the middle of a motion.
+  const bool ends_motion_first = s.rest_left && s.halt_wanted != HaltCause::kStop;
   if (s.halt_wanted != HaltCause::kNone && !Moves() && !ends_motion_first) {
     BeginHalt(s.halt_wanted);
     return;
@@ -199,9 +201,12 @@ void MillRun::Proceed(std::size_t sent_max) {
       End(OutcomeKind::kBudgetExceeded, ErrorCode::kCellStepBudget);
       return;
     }
-    if (halts_.After(s.place.step)) {
-      const bool at_breakpoint = halts_.after == s.place.step;
-      return BeginHalt(at_breakpoint ? HaltCause::kBreakpoint : HaltCause::kSingle);
+    if (s.halts.After(s.place.step)) {
+      const bool breaks = s.halts.BreaksAfter(s.place.step);
+      const HaltCause cause = breaks ? HaltCause::kBreakpoint : HaltCause::kSingle;
+      // It was set behind a place that had been read ahead: the tool passes here.
+      if (Moves()) return HaltBehindMotion(cause);
+      return BeginHalt(cause);
     }
   }
   Interpret(sent_max);
@@ -244,6 +249,30 @@ void MillRun::Apply(const machine::InputChange& input) {
   if (state_.phase != RunPhase::kFinished) Handle(input);
 }
 
+void MillRun::Stand(SimTime until) {
+  if (state_.halt != HaltCause::kNone && state_.phase != RunPhase::kFinished)
+    state_.now = std::max(state_.now, until);
+}
+
+// A mill knows SINGLE; all else is one mode to it.
+void MillRun::SetMode(machine::Mode mode) {
+  state_.halts.after_each = mode == machine::Mode::kSingle;
+}
+
+void MillRun::SetBreakpoints(const std::vector<machine::Breakpoint>& breakpoints) {
+  std::vector<int> commands;
+  for (const machine::Breakpoint& breakpoint : breakpoints) {
+    if (breakpoint.at.program == setup_.main_program) commands.push_back(breakpoint.at.step);
+  }
+  std::ranges::sort(commands);
+  state_.halts.breakpoints = std::move(commands);
+}
+
+std::vector<machine::ModalValue> MillRun::modal_values() const {
+  return ModalRegisters(state_.device, profile(),
+                        {.at = ToolAt(TipNow()), .spindle_turns = SpindleTurns()});
+}
+
 void MillRun::Handle(const machine::InputChange& input) {
   switch (input.kind) {
     case InputKind::kStart:
@@ -280,10 +309,12 @@ void MillRun::PressStart() {
   PlanAnew();
 }
 
-void MillRun::PressHold() {
+void MillRun::PressHold() { HaltBehindMotion(HaltCause::kHold); }
+
+void MillRun::HaltBehindMotion(HaltCause cause) {
   State& s = state_;
   if (s.halt != HaltCause::kNone || s.halt_wanted != HaltCause::kNone) return;
-  s.halt_wanted = HaltCause::kHold;
+  s.halt_wanted = cause;
   if (!Moves() || !s.ride.protocol().may_hold()) return;
   s.ride.protocol().Hold();
   PlanAnew();
@@ -319,23 +350,24 @@ void MillRun::ChangeOverride(double percent) {
   }
 }
 
+machine::HaltReason MillRun::ReasonOf(HaltCause cause) {
+  using enum machine::HaltReason;
+  static constexpr std::array<machine::HaltReason, 6> kReason = {kHold, kProgram, kHold,
+                                                                 kStop, kSingle,  kBreakpoint};
+  return kReason[static_cast<std::size_t>(cause)];
+}
+
 void MillRun::BeginHalt(HaltCause cause) {
   State& s = state_;
   static constexpr std::array<std::string_view, 6> kWhy = {"",     "!NR",    "HOLD",
                                                            "STOP", "SINGLE", "BREAKPOINT"};
-  using enum machine::HaltReason;
-  static constexpr std::array<machine::HaltReason, 6> kReason = {kHold, kProgram, kHold,
-                                                                 kStop, kSingle,  kBreakpoint};
   std::string_view why = kWhy[static_cast<std::size_t>(cause)];
   if (cause == HaltCause::kPause && s.device.actions().front().outside) why = "OVER_AREA";
   s.halt = cause;
   s.halt_wanted = HaltCause::kNone;
   s.halted_at = s.now;
   if (s.ride.protocol().comes_to_rest()) s.ride.protocol().Rest();
-  observer_.OnHalt({.at = s.now,
-                    .place = s.place,
-                    .reason = kReason[static_cast<std::size_t>(cause)],
-                    .why = why});
+  observer_.OnHalt({.at = s.now, .place = s.place, .reason = ReasonOf(cause), .why = why});
   const bool for_ever = cause == HaltCause::kPause && s.next_input == setup_.inputs.size();
   if (!for_ever) return;
   const ErrorCode code = ErrorCode::kRml1PausedAtEnd;
@@ -414,6 +446,7 @@ machine::RunState MillRun::state() const {
   }
   state.override_percent = s.override_percent;
   state.spindle_on = SpindleTurns();
+  if (s.halt != HaltCause::kNone) state.halted_by = ReasonOf(s.halt);
   state.work_origin =
       motion::MachinePoint(profile().origin_x, profile().origin_y, s.device.registers().surface_z) /
       profile().units_per_mm;

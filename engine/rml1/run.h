@@ -37,11 +37,16 @@ class MillRun final : public machine::Run {
 
   machine::RunPhase Advance(SimTime until) override;
   void Apply(const machine::InputChange& input) override;
+  void Stand(SimTime until) override;
+  void SetMode(machine::Mode mode) override;
   void End(machine::OutcomeKind kind, ErrorCode code) override;
   machine::RunState state() const override;
   const machine::Outcome& outcome() const override { return state_.outcome; }
   std::uint64_t steps_executed() const override { return state_.device.commands_done(); }
   std::optional<std::string> ReadVariable(std::string_view name) const override;
+  void SetBreakpoints(const std::vector<machine::Breakpoint>& breakpoints) override;
+  std::vector<machine::Place> stack() const override { return {state_.place}; }
+  std::vector<machine::ModalValue> modal_values() const override;
   std::vector<machine::Figure> figures() const override;
   std::string SaveMachine() const override;
   std::unique_ptr<machine::RunSnapshot> Save() const override;
@@ -98,6 +103,7 @@ class MillRun final : public machine::Run {
     machine::WaitKind wait_kind = machine::WaitKind::kDwell;
     Point tool;  // where it stands, or the leg began
 
+    CommandHalts halts;
     HaltCause halt = HaltCause::kNone;
     SimTime halted_at{0};
     HaltCause halt_wanted = HaltCause::kNone;  // at the next standstill
@@ -121,8 +127,10 @@ class MillRun final : public machine::Run {
   void Freeze();
   void PressStart();
   void PressHold();
+  void HaltBehindMotion(HaltCause cause);
   void PressStop();
   void ChangeOverride(double percent);
+  static machine::HaltReason ReasonOf(HaltCause cause);
   void BeginHalt(HaltCause cause);
   void EndHalt();
   void CloseWith(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);
@@ -151,7 +159,6 @@ class MillRun final : public machine::Run {
   bool SpindleTurns() const;
 
   const machine::RunSetup setup_;
-  CommandHalts halts_;
   machine::Bytes program_;
   std::size_t released_ = 0;  // bytes that were read up to the last release
   machine::RunObserver& observer_;

@@ -53,7 +53,7 @@ void MillRun::BeginMotion(const Action& action) {
 bool MillRun::PlanLeg(std::size_t sent_max) {
   State& s = state_;
   while (!s.ahead.NextLeg(s.ride.place().motion, s.motion.leg)) {
-    if (!s.scout.Read(stream(), halts_, sent_max, s.ahead)) return false;
+    if (!s.scout.Read(stream(), state_.halts, sent_max, s.ahead)) return false;
   }
   if (s.motion.leg.halts && !(s.ahead.speed() > 0.0)) {  // at rest for a STOP
     s.busy = Busy::kNothing;

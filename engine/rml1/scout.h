@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "engine/machine/run.h"
 #include "engine/rml1/device.h"
@@ -10,12 +12,13 @@
 
 namespace rmlcell::rml1 {
 
-// Where a run halts by itself between two commands: after each, or after one.
+// Where a run halts by itself between two commands: after each, or after some.
 struct CommandHalts {
-  bool after_each = false;  // mode SINGLE
-  int after = 0;            // number of the command with the breakpoint; 0: none
+  bool after_each = false;         // mode SINGLE
+  std::vector<int> breakpoints{};  // numbers of commands, in order
 
-  bool After(int command) const { return after_each || (after > 0 && after == command); }
+  bool BreaksAfter(int command) const { return std::ranges::binary_search(breakpoints, command); }
+  bool After(int command) const { return after_each || BreaksAfter(command); }
 };
 
 // Reads the stream of a run ahead of its tool, through a device of its own: which motions come, and

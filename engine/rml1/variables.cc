@@ -96,6 +96,16 @@ const Register* FindRegister(const Profile& profile, std::string_view name) {
 
 }  // namespace
 
+std::vector<machine::ModalValue> ModalRegisters(const Device& device, const Profile& profile,
+                                                const ToolNow& tool) {
+  std::vector<machine::ModalValue> values;
+  for (const std::string_view name :
+       {"VS", "VZ", "DW", "MC", "RPM", "Z0", "Z1", "Z2", "MODE", "TOOL"}) {
+    values.push_back({std::string(name), *ReadRegister(device, profile, tool, name)});
+  }
+  return values;
+}
+
 bool HasRegister(const Profile& profile, std::string_view name) {
   return FindRegister(profile, name) != nullptr;
 }

@@ -3,7 +3,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "engine/machine/run.h"
 #include "engine/rml1/device.h"
 
 namespace rmlcell::rml1 {
@@ -20,6 +22,11 @@ struct ToolNow {
 // other names.
 std::optional<std::string> ReadRegister(const Device& device, const Profile& profile,
                                         const ToolNow& tool, std::string_view name);
+
+// What holds until a command changes it, by the names above: speeds, dwell, !MC, rpm, heights,
+// mode, tool.
+std::vector<machine::ModalValue> ModalRegisters(const Device& device, const Profile& profile,
+                                                const ToolNow& tool);
 
 // Whether a machine of this profile has the register.
 bool HasRegister(const Profile& profile, std::string_view name);

@@ -444,7 +444,6 @@ google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic
   info.set_domain("rmlcell");
   (*info.mutable_metadata())["code"] = CodeText(error.code);
   status.add_details()->PackFrom(info);
-
   v1::ErrorDetail detail;
   detail.set_code(CodeText(error.code));
   detail.set_symbol(ConstantName(error.code));
@@ -463,6 +462,11 @@ google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic
   }
   SetUntold(dropped, detail);
   status.add_details()->PackFrom(detail);
+
+  google::rpc::LocalizedMessage localized;
+  localized.set_locale(std::string(kLanguage));
+  localized.set_message(status.message());
+  status.add_details()->PackFrom(localized);
   return status;
 }
 

@@ -70,8 +70,11 @@ Diagnostic FromProto(const v1::Diagnostic& diagnostic);
 // The value of google.rpc.Code that an error stands for: 3 INVALID_ARGUMENT, 5 NOT_FOUND ...
 int RpcCode(ErrorCode code);
 
-// Status with ErrorInfo (reason = constant name, domain "rmlcell") and our ErrorDetail, which
-// carries the findings when there are any.
+// Of the catalogue and of all texts for people, as BCP 47 has it.
+inline constexpr std::string_view kLanguage = "en";
+
+// Status with ErrorInfo (reason = constant name, domain "rmlcell"), our ErrorDetail, which carries
+// the findings when there are any, and LocalizedMessage, the same text with its language.
 google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics = {},
                                 const UntoldFindings& dropped = {});
 

@@ -147,6 +147,8 @@ std::vector<ConfigKey> MakeKeys() {
       {"state.directory",
        "where the store is kept; empty: $XDG_STATE_HOME/rmlcell or ~/.local/state/rmlcell",
        RMLCELL_TEXT(state_directory)},
+      {"store.url", "the store: sqlite:/path/of/cell.db; empty: cell.db in state.directory",
+       RMLCELL_TEXT(store_url)},
       {"workers.count",
        "engine workers that the server starts, 0 to 256; -1: one per processor core",
        RMLCELL_INTEGER(workers_count, -1, 256)},

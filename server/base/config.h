@@ -27,6 +27,7 @@ struct Config {
   std::int64_t web_connections_max = 2000;
 
   std::string state_directory;  // empty: $XDG_STATE_HOME/rmlcell, or ~/.local/state/rmlcell
+  std::string store_url;        // "sqlite:/path/of/cell.db"; empty: cell.db in state_directory
 
   std::int64_t workers_count = -1;  // -1: one per processor core; 0: none of its own
   std::int64_t workers_paced = 4;   // further ones, for simulations with a pace

@@ -41,7 +41,7 @@
 #include "server/services/web_resources.h"
 #include "server/services/worker_service.h"
 #include "server/web/web_server.h"
-#include "storage/sqlite/sqlite_store.h"
+#include "storage/opening/open_store.h"
 
 namespace rmlcell::server {
 namespace {
@@ -141,10 +141,11 @@ struct Cell::Parts {
 };
 
 Status Cell::Parts::OpenStore() {
-  auto opened = storage::OpenSqliteStore({.path = config.state_directory + "/cell.db",
-                                          .keep_finished_jobs = config.jobs_keep_finished,
-                                          .keep_record_events = kRecordEventsKept,
-                                          .log_bytes_prepared = kLogBytesPrepared});
+  auto opened = storage::OpenStore({.url = config.store_url,
+                                    .directory = config.state_directory,
+                                    .keep_finished_jobs = config.jobs_keep_finished,
+                                    .keep_record_events = kRecordEventsKept,
+                                    .log_bytes_prepared = kLogBytesPrepared});
   if (!opened) {
     Error error = opened.error();
     if (error.code == ErrorCode::kCellStoreCorrupt) {

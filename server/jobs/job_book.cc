@@ -289,6 +289,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   storage::NewJob made{.request_id = request.request_id(),
                        .request_hash = request.request_id().empty() ? "" : RequestHash(request),
                        .machine = *machine_id,
+                       .family = machine->family,
                        .kind = std::string(KindName(job.kind())),
                        .pool = std::string(job.simulation().pace() > 0.0 ? kPacedPool : ""),
                        .title = job.title(),
@@ -441,7 +442,7 @@ Result<std::vector<std::string>> JobBook::Choose(const v1::JobChoice& choice,
         if (!page) return page.error();
         for (const storage::JobRecord& job : *page) names.push_back(JobName(job.id));
         if (page->size() < static_cast<std::size_t>(kChoicePage)) break;
-        query.before_id = page->back().id;
+        query.behind = storage::PlaceOf(page->back());
       }
       break;
     }
@@ -486,10 +487,13 @@ Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
   if (!size) return size.error();
   query.limit = *size + 1;  // one more tells whether there is a next page
   if (const Status applied = ApplyFilter(request.filter(), query); !applied) return applied.error();
+  const Result<storage::JobOrder> order = ReadJobOrder(request.order_by());
+  if (!order) return order.error();
+  query.order = *order;
   if (!request.page_token().empty()) {
-    const auto before = ParseInteger(request.page_token());
-    if (!before || *before <= 0) return Error{ErrorCode::kCellBadPageToken, {}, {}};
-    query.before_id = *before;
+    const Result<storage::JobPlace> behind = ReadJobPlace(request.page_token());
+    if (!behind) return behind.error();
+    query.behind = *behind;
   }
   const Result<std::vector<storage::JobRecord>> records = store_.ListJobs(query);
   if (!records) return records.error();
@@ -497,12 +501,14 @@ Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
   if (request.count()) {
     const auto counts = Count(query);
     if (!counts) return counts.error();
+    for (const v1::JobCount& count : *counts)
+      response.set_total_size(response.total_size() + count.jobs());
     *response.mutable_counts() = {counts->begin(), counts->end()};
   }
   for (const storage::JobRecord& record : *records) {
     if (response.jobs_size() == *size) {
       response.set_next_page_token(
-          std::to_string((*records)[static_cast<std::size_t>(*size) - 1].id));
+          WriteJobPlace(storage::PlaceOf((*records)[static_cast<std::size_t>(*size) - 1])));
       break;
     }
     Result<v1::Job> job = WithArtifacts(record);

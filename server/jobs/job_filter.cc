@@ -1,19 +1,27 @@
 #include "server/jobs/job_filter.h"
 
+#include <google/protobuf/util/time_util.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cmath>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "engine/core/letters.h"
+#include "engine/core/number_text.h"
+#include "engine/families/families.h"
 #include "server/base/names.h"
 #include "server/base/readable.h"
+#include "server/records/job_messages.h"
 
 namespace rmlcell::server {
 namespace {
 
-// Five fields once, with "=", a value and AND.
-constexpr std::size_t kWordsMax = 19;
+// Ten fields once, with "=", a value and AND.
+constexpr std::size_t kWordsMax = 39;
 
 Error Bad(const std::string& detail) { return {ErrorCode::kCellBadFilter, detail, {}}; }
 
@@ -53,39 +61,68 @@ Result<std::vector<Word>> Words(std::string_view filter) {
   return words;
 }
 
-Status Apply(const std::string& field, const std::string& value, storage::JobQuery& query) {
+// The word in capitals, without the prefix that the contract gives it; one of those.
+Result<std::string> WordOf(std::string_view what, const std::string& value, std::string_view prefix,
+                           std::initializer_list<std::string_view> words) {
+  std::string word = UpperCase(value);
+  if (word.starts_with(prefix)) word.erase(0, prefix.size());
+  if (std::ranges::find(words, word) != words.end()) return word;
+  std::string all;
+  for (const std::string_view one : words) all += (all.empty() ? "" : ", ") + std::string(one);
+  return Bad("no " + std::string(what) + " '" + Readable(value) + "'; there are " + all);
+}
+
+Status ApplyState(const std::string& value, storage::JobQuery& query) {
   using storage::JobState;
-  if (field == "state") {
-    std::string state = UpperCase(value);
-    if (state.starts_with("STATE_")) state.erase(0, 6);
-    if (state == "QUEUED") {
-      query.state = JobState::kQueued;
-    } else if (state == "RUNNING") {
-      query.state = JobState::kRunning;
-    } else if (state == "SUCCEEDED") {
-      query.state = JobState::kSucceeded;
-    } else if (state == "FAILED") {
-      query.state = JobState::kFailed;
-    } else if (state == "CANCELLED") {
-      query.state = JobState::kCancelled;
-    } else if (state == "INTERRUPTED") {
-      query.state = JobState::kInterrupted;
-    } else {
-      return Bad("no state '" + Readable(value) +
-                 "'; there are QUEUED, RUNNING, SUCCEEDED, FAILED, CANCELLED, INTERRUPTED");
-    }
-  } else if (field == "machine") {
+  constexpr std::array kStates = {std::pair{"QUEUED", JobState::kQueued},
+                                  std::pair{"RUNNING", JobState::kRunning},
+                                  std::pair{"SUCCEEDED", JobState::kSucceeded},
+                                  std::pair{"FAILED", JobState::kFailed},
+                                  std::pair{"CANCELLED", JobState::kCancelled},
+                                  std::pair{"INTERRUPTED", JobState::kInterrupted}};
+  const Result<std::string> word =
+      WordOf("state", value, "STATE_",
+             {"QUEUED", "RUNNING", "SUCCEEDED", "FAILED", "CANCELLED", "INTERRUPTED"});
+  if (!word) return word.error();
+  for (const auto& [name, state] : kStates) {
+    if (*word == name) query.state = state;
+  }
+  return {};
+}
+
+// Times as the contract writes them in JSON: "2026-11-25T10:00:00Z".
+Result<storage::WallTime> TimeOf(const std::string& field, const std::string& value) {
+  google::protobuf::Timestamp time;
+  if (!google::protobuf::util::TimeUtil::FromString(value, &time))
+    return Bad(field + " is a time such as 2026-11-25T10:00:00Z, not '" + Readable(value) + "'");
+  return FromProto(time);
+}
+
+Status Apply(const std::string& field, const std::string& value, storage::JobQuery& query) {
+  if (field == "state") return ApplyState(value, query);
+  if (field == "machine") {
     const Result<std::string> id =
         ParseMachineName(value.find('/') == std::string::npos ? MachineName(value) : value);
     if (!id) return Bad("machine: " + id.error().detail);
     query.machine = *id;
   } else if (field == "kind") {
-    std::string kind = UpperCase(value);
-    if (kind.starts_with("JOB_KIND_")) kind.erase(0, 9);
-    if (kind != "CHECK" && kind != "SIMULATE" && kind != "RUN") {
-      return Bad("no kind '" + Readable(value) + "'; there are CHECK, SIMULATE, RUN");
-    }
-    query.kind = kind;
+    Result<std::string> kind = WordOf("kind", value, "JOB_KIND_", {"CHECK", "SIMULATE", "RUN"});
+    if (!kind) return kind.error();
+    query.kind = *std::move(kind);
+  } else if (field == "verdict") {
+    Result<std::string> verdict = WordOf("verdict", value, "VERDICT_", {"GOOD", "DOUBTFUL", "BAD"});
+    if (!verdict) return verdict.error();
+    query.verdict = *std::move(verdict);
+  } else if (field == "family") {
+    if (families::FindFamily(value) == nullptr) return Bad("no family '" + Readable(value) + "'");
+    query.family = value;
+  } else if (field == "text") {
+    if (value.empty()) return Bad("text is empty");
+    query.text = value;
+  } else if (field == "since" || field == "until") {
+    const Result<storage::WallTime> time = TimeOf(field, value);
+    if (!time) return time.error();
+    (field == "since" ? query.created_from : query.created_before) = *time;
   } else if (field == "caller") {
     if (value.empty()) return Bad("caller is empty");
     query.caller = value;
@@ -95,7 +132,8 @@ Status Apply(const std::string& field, const std::string& value, storage::JobQue
     query.finished = value == "true";
   } else {
     return Bad("no field '" + Readable(field) +
-               "'; there are state, machine, kind, caller, finished");
+               "'; there are state, machine, kind, caller, finished, family, verdict, text, since, "
+               "until");
   }
   return {};
 }
@@ -122,6 +160,47 @@ Status ReadFilter(std::string_view filter, const ApplyComparison& apply) {
     }
   }
   return {};
+}
+
+Result<storage::JobOrder> ReadJobOrder(std::string_view order_by) {
+  if (order_by.empty() || order_by == "create_time desc") return storage::JobOrder::kNewestFirst;
+  if (order_by == "create_time") return storage::JobOrder::kOldestFirst;
+  if (order_by == "queue") return storage::JobOrder::kQueue;
+  return Error{
+      ErrorCode::kCellInvalidArgument,
+      "order_by: '" + Readable(order_by) + "'; there are create_time desc, create_time, queue",
+      {}};
+}
+
+std::string WriteJobPlace(const storage::JobPlace& place) {
+  return std::to_string(place.id) + "," + std::to_string(static_cast<int>(place.state)) + "," +
+         (place.blocked ? "1" : "0") + "," + std::to_string(place.priority) + "," +
+         ShortestText(place.place);
+}
+
+Result<storage::JobPlace> ReadJobPlace(std::string_view token) {
+  const Error bad{ErrorCode::kCellBadPageToken, {}, {}};
+  std::array<std::optional<double>, 5> values;
+  for (std::optional<double>& value : values) {
+    const std::size_t end = std::min(token.find(','), token.size());
+    value = ParseDouble(token.substr(0, end));
+    const bool last = &value == &values.back();
+    if (!value || last != (end == token.size())) return bad;
+    token.remove_prefix(std::min(end + 1, token.size()));
+  }
+  const auto& [id, state, blocked, priority, place] = values;
+  constexpr double kIdMax = 1e15;  // whole numbers up to here are exact
+  const auto whole = [](double value, double low, double high) {
+    return value == std::trunc(value) && value >= low && value <= high;
+  };
+  if (!whole(*id, 1, kIdMax) || !whole(*blocked, 0, 1) || !whole(*priority, -1000, 1000) ||
+      !whole(*state, 0, static_cast<double>(storage::JobState::kInterrupted)))
+    return bad;
+  return storage::JobPlace{.id = static_cast<std::int64_t>(*id),
+                           .state = static_cast<storage::JobState>(static_cast<int>(*state)),
+                           .blocked = *blocked != 0.0,
+                           .priority = static_cast<int>(*priority),
+                           .place = *place};
 }
 
 Status ApplyFilter(std::string_view filter, storage::JobQuery& query) {

@@ -51,6 +51,12 @@ std::string JudgementBytes(const v1::Outcome& outcome) {
   return judged.SerializeAsString();
 }
 
+// "BAD"; empty: nothing was judged.
+std::string VerdictWord(v1::Verdict verdict) {
+  if (verdict == v1::VERDICT_UNSPECIFIED) return {};
+  return v1::Verdict_Name(verdict).substr(std::string_view("VERDICT_").size());
+}
+
 }  // namespace
 
 google::protobuf::Timestamp ToProto(storage::WallTime time) {
@@ -186,7 +192,8 @@ storage::JobOutcome OutcomeOf(const v1::Outcome& outcome) {
                            .detail = outcome.message(),
                            .program = outcome.place().program(),
                            .step = outcome.place().step(),
-                           .judgement = JudgementBytes(outcome)};
+                           .judgement = JudgementBytes(outcome),
+                           .verdict = VerdictWord(outcome.verdict())};
   const auto found = FindByText(outcome.code());
   if (!outcome.code().empty() && !found.empty()) made.code = found.front()->code;
   // What was stopped is no part: only what ran to its end counts (LIVE-5.08).

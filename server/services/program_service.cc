@@ -386,6 +386,7 @@ grpc::ServerUnaryReactor* ProgramService::ExplainError(grpc::CallbackServerConte
                                                        v1::ExplainErrorResponse* response) {
   return Answer(
       needs_, context, *request, "ProgramService/ExplainError", [request, response](const Caller&) {
+        response->set_language(std::string(bridge::kLanguage));
         if (request->code().empty()) {
           for (const CatalogueEntry& entry : Catalogue())
             *response->add_errors() = bridge::Explain(entry);

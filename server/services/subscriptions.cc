@@ -40,6 +40,7 @@ std::shared_ptr<const JobFacts> JobFactsBook::Of(std::int64_t job) {
   auto record = store_.GetJob(job);
   if (!record) return nullptr;
   auto facts = std::make_shared<const JobFacts>(JobFacts{.machine = std::move(record->machine),
+                                                         .family = std::move(record->family),
                                                          .kind = std::move(record->kind),
                                                          .caller = std::move(record->caller)});
   const std::lock_guard lock(mutex_);
@@ -62,9 +63,11 @@ Result<CellSubscription> CellSubscription::Make(const v1::Subscription& wanted) 
       if (const Status good = AddNames(jobs.names(), ParseJobName, made.names_); !good)
         return good.error();
       if (const Status good = ApplyFilter(jobs.filter(), made.query_); !good) return good.error();
-      if (made.query_.state || made.query_.finished) {
+      const storage::JobQuery& query = made.query_;
+      if (query.state || query.finished || !query.verdict.empty() || !query.text.empty() ||
+          query.created_from || query.created_before) {
         return Error{ErrorCode::kCellBadFilter,
-                     "a subscription takes kind, machine and caller, which a job keeps",
+                     "a subscription takes kind, machine, family and caller, which a job keeps",
                      {}};
       }
       made.filtered_ = !jobs.filter().empty();
@@ -99,6 +102,7 @@ bool CellSubscription::WantsJob(std::int64_t job, JobFactsBook& facts) const {
   const auto of_job = facts.Of(job);
   if (of_job == nullptr) return true;  // it is gone, and nobody knows any more what it was
   return (query_.machine.empty() || query_.machine == of_job->machine) &&
+         (query_.family.empty() || query_.family == of_job->family) &&
          (query_.kind.empty() || query_.kind == of_job->kind) &&
          (query_.caller.empty() || query_.caller == of_job->caller);
 }

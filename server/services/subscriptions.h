@@ -18,6 +18,7 @@ namespace rmlcell::server {
 // What a job does not change, and a subscription may ask for.
 struct JobFacts {
   std::string machine{};
+  std::string family{};
   std::string kind{};
   std::string caller{};
 };

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/simulation/material/height_grid.h"
 #include "engine/simulation/material/height_map.h"
 #include "engine/simulation/material/relief.h"
 #include "engine/simulation/material/stl.h"
@@ -62,6 +63,8 @@ std::optional<std::vector<ProductFile>> MaterialFiles(
        [&](const Sink& sink) { return simulation::WriteRelief(material, sink); }},
       {wanted.height_map(), "height.png", "image/png",
        [&](const Sink& sink) { return simulation::WriteHeightMap(material, sink); }},
+      {wanted.height_grid(), "height.grid", "application/octet-stream",
+       [&](const Sink& sink) { return simulation::WriteHeightGrid(material, sink); }},
       {wanted.stl(), "left.stl", "model/stl",
        [&](const Sink& sink) {
          return simulation::WriteStl(material, bridge::StlToleranceOf(wanted), sink);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/hex.h"
-#include "storage/sqlite/content.h"
+#include "storage/content.h"
 
 namespace rmlcell::storage::sqlite {
 namespace {

@@ -1,7 +1,7 @@
 #include "storage/sqlite/content_staging.h"
 
 #include "engine/core/hex.h"
-#include "storage/sqlite/content.h"
+#include "storage/content.h"
 
 namespace rmlcell::storage::sqlite {
 namespace {

@@ -184,12 +184,14 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                    .request_id = contents.request_id,
                    .request_hash = job.request_hash,
                    .machine = job.machine,
+                   .family = job.family,
                    .kind = job.kind,
                    .pool = job.pool,
                    .title = job.title,
                    .caller = job.caller,
                    .specification = {},
                    .priority = job.priority,
+                   .place = static_cast<double>(context.counters.job + 1),
                    .held = job.held,
                    .not_before = job.not_before,
                    .attempts_max = job.attempts_max,
@@ -210,6 +212,7 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
   const int blocked = (job.held ? kBlockedByHold : 0) |
                       (job.not_before && *job.not_before > context.now ? kBlockedByTime : 0) |
                       (record.after.empty() ? 0 : kBlockedByJobs);
+  record.blocked = blocked != 0;
   const Result<bool> inserted = context.tables.jobs.Insert(record, blocked);
   if (!inserted) return inserted.error();
   if (!*inserted) return KnownJob(context, job, contents);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <tuple>
 
 namespace rmlcell::storage::sqlite {
 namespace {
@@ -12,7 +14,7 @@ std::string SelectJob(const std::string& from) {
          " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
          " events_gone_until, created_at, started_at, finished_at, outcome_code, outcome_detail,"
          " outcome_program, outcome_step, outcome_judgement, pool, priority, held, not_before, blocked,"
-         " place FROM job " +
+         " place, family, outcome_verdict FROM job " +
          from;
 }
 
@@ -43,6 +45,7 @@ Result<JobRow> Read(const Query& row) {
                         .request_id = row.Text(1),
                         .request_hash = row.Text(2),
                         .machine = row.Text(3),
+                        .family = row.Text(28),
                         .kind = row.Text(4),
                         .pool = row.Text(22),
                         .title = row.Text(5),
@@ -50,8 +53,10 @@ Result<JobRow> Read(const Query& row) {
                         .specification = {},
                         .state = static_cast<JobState>(state),
                         .priority = row.Small(23),
+                        .place = row.Real(27),
                         .held = row.Integer(24) != 0,
                         .not_before = row.OptionalTime(25),
+                        .blocked = row.Small(26) != 0,
                         .cancel_requested = row.Integer(8) != 0,
                         .attempts = row.Small(9),
                         .attempts_max = row.Small(10),
@@ -62,15 +67,15 @@ Result<JobRow> Read(const Query& row) {
                         .started_at = row.OptionalTime(15),
                         .finished_at = row.OptionalTime(16)},
                 .attempts_begun = row.Small(11),
-                .blocked = row.Small(26),
-                .place = row.Real(27)};
+                .blocked = row.Small(26)};
   if (IsFinal(result.job.state)) {
     result.job.outcome = JobOutcome{.state = result.job.state,
                                     .code = {},
                                     .detail = row.Text(18),
                                     .program = row.Small(19),
                                     .step = row.Small(20),
-                                    .judgement = row.Text(21)};
+                                    .judgement = row.Text(21),
+                                    .verdict = row.Text(29)};
     if (!row.IsNull(17)) SetCode(*result.job.outcome, row.Text(17));
   }
   return result;
@@ -80,6 +85,35 @@ Result<JobRecord> ReadRecord(const Query& query) {
   Result<JobRow> row = Read(query);
   if (!row) return row.error();
   return std::move(row->job);
+}
+
+// What no index helps with: parameters 9 to 13.
+constexpr std::string_view kDearFilter =
+    " AND (?9 = '' OR family = ?9) AND (?10 = '' OR outcome_verdict = ?10)"
+    " AND (?11 = '' OR instr(lower(title), lower(?11)) > 0)"
+    " AND created_at >= ?12 AND created_at < ?13";
+
+bool Wants(const JobQuery& query, JobState state) {
+  return (!query.state || *query.state == state) &&
+         (!query.finished || *query.finished == IsFinal(state));
+}
+
+bool WantsFinished(const JobQuery& query) {
+  return query.state ? Wants(query, *query.state) && IsFinal(*query.state)
+                     : query.finished.value_or(true);
+}
+
+bool PlaceRunsBefore(const JobPlace& a, const JobPlace& b) {
+  return std::tuple(a.blocked, -a.priority, a.place, a.id) <
+         std::tuple(b.blocked, -b.priority, b.place, b.id);
+}
+
+bool RunsBefore(const JobRecord& a, const JobRecord& b) {
+  return PlaceRunsBefore(PlaceOf(a), PlaceOf(b));
+}
+
+void Shorten(std::vector<JobRecord>& jobs, int limit) {
+  if (jobs.size() > static_cast<std::size_t>(limit)) jobs.erase(jobs.begin() + limit, jobs.end());
 }
 
 std::string Number(JobState state) { return std::to_string(static_cast<int>(state)); }
@@ -98,9 +132,9 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
               "INSERT INTO job (id, request_id, request_hash, machine, kind, title, caller, state,"
               " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
               " events_gone_until, created_at, pool, priority, place, special, held, not_before,"
-              " blocked)"
+              " blocked, family)"
               " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0, 0, 0, ?8, 0, ?9, 0, ?10, ?11, ?12, ?1, ?13,"
-              " ?14, ?15, ?16)"
+              " ?14, ?15, ?16, ?17)"
               " ON CONFLICT (request_id) DO NOTHING"),
       get_(database, SelectJob("WHERE id = ?1")),
       find_by_request_(database, SelectJob("WHERE request_id = ?1")),
@@ -110,7 +144,7 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
           " last_sequence = ?6, started_at = ?7, finished_at = ?8, outcome_code = ?9,"
           " outcome_detail = ?10, outcome_program = ?11, outcome_step = ?12,"
           " outcome_judgement = ?13, priority = ?14, place = ?15, special = ?16, held = ?17,"
-          " not_before = ?18, blocked = ?19 WHERE id = ?1"),
+          " not_before = ?18, blocked = ?19, outcome_verdict = ?20 WHERE id = ?1"),
       set_last_sequence_(database, "UPDATE job SET last_sequence = ?2 WHERE id = ?1"),
       set_events_gone_(database, "UPDATE job SET events_gone_until = ?2 WHERE id = ?1"),
       put_specification_(database,
@@ -143,7 +177,7 @@ Result<bool> JobTable::Insert(const JobRecord& job, int blocked) {
           insert_
               .With(job.id, job.request_id, job.request_hash, job.machine, job.kind, job.title,
                     job.caller, job.attempts_max, job.last_sequence, job.created_at, job.pool,
-                    job.priority, job.priority != 0, job.held, job.not_before, blocked)
+                    job.priority, job.priority != 0, job.held, job.not_before, blocked, job.family)
               .Run();
       !inserted)
     return inserted.error();
@@ -167,7 +201,7 @@ Status JobTable::Update(const JobRow& row) {
       .With(job.id, static_cast<int>(job.state), job.cancel_requested, job.attempts,
             row.attempts_begun, job.last_sequence, job.started_at, job.finished_at, code,
             outcome.detail, outcome.program, outcome.step, Bytes{outcome.judgement}, job.priority,
-            row.place, row.special(), job.held, job.not_before, row.blocked)
+            job.place, row.special(), job.held, job.not_before, row.blocked, outcome.verdict)
       .Run();
 }
 
@@ -230,27 +264,65 @@ Result<std::optional<std::int64_t>> JobTable::Remove(std::int64_t id) {
 Result<std::vector<JobRecord>> JobTable::List(const JobQuery& query) {
   std::vector<JobRecord> jobs;
   if (query.limit < 1) return jobs;
-  const auto wants = [&](JobState state) {
-    return (!query.state || *query.state == state) &&
-           (!query.finished || *query.finished == IsFinal(state));
-  };
+  if (query.order == JobOrder::kQueue) return ListQueue(query);
   const auto add = [&](Result<std::vector<JobRecord>> lane) -> Status {
     if (!lane) return lane.error();
     std::move(lane->begin(), lane->end(), std::back_inserter(jobs));
     return {};
   };
   for (const JobState state : {JobState::kQueued, JobState::kRunning}) {
-    if (!wants(state)) continue;
+    if (!Wants(query, state)) continue;
     if (const Status added = add(ListUnfinished(state, query)); !added) return added.error();
   }
-  const bool wants_finished =
-      query.state ? wants(*query.state) && IsFinal(*query.state) : query.finished.value_or(true);
-  if (wants_finished) {
+  if (WantsFinished(query)) {
     if (const Status added = add(ListFinished(query)); !added) return added.error();
   }
-  std::ranges::sort(jobs, std::greater(), &JobRecord::id);
-  if (jobs.size() > static_cast<std::size_t>(query.limit)) {
-    jobs.erase(jobs.begin() + query.limit, jobs.end());
+  if (query.order == JobOrder::kOldestFirst) {
+    std::ranges::sort(jobs, std::less(), &JobRecord::id);
+  } else {
+    std::ranges::sort(jobs, std::greater(), &JobRecord::id);
+  }
+  Shorten(jobs, query.limit);
+  return jobs;
+}
+
+// In parts, up to a page of them. Those that wait are looked at all, as no index has their order
+// over all pools.
+Result<std::vector<JobRecord>> JobTable::ListQueue(const JobQuery& query) {
+  std::vector<JobRecord> jobs;
+  const std::optional<JobPlace>& behind = query.behind;
+  const auto add = [&](Result<std::vector<JobRecord>> part) -> Status {
+    if (!part) return part.error();
+    std::move(part->begin(), part->end(), std::back_inserter(jobs));
+    Shorten(jobs, query.limit);
+    return {};
+  };
+  JobQuery part = query;
+  part.order = JobOrder::kOldestFirst;
+  if (Wants(query, JobState::kRunning) && (!behind || behind->state == JobState::kRunning)) {
+    Result<std::vector<JobRecord>> running = ListUnfinished(JobState::kRunning, part);
+    if (running) std::ranges::sort(*running, std::less(), &JobRecord::id);
+    if (const Status added = add(std::move(running)); !added) return added.error();
+  }
+  if (Wants(query, JobState::kQueued) && !(behind && IsFinal(behind->state))) {
+    part.behind.reset();
+    part.limit = std::numeric_limits<int>::max();
+    Result<std::vector<JobRecord>> waiting = ListUnfinished(JobState::kQueued, part);
+    if (waiting) {
+      std::ranges::sort(*waiting, RunsBefore);
+      if (behind && behind->state == JobState::kQueued) {
+        std::erase_if(*waiting, [&](const JobRecord& job) {
+          return !PlaceRunsBefore(*behind, PlaceOf(job));
+        });
+      }
+    }
+    if (const Status added = add(std::move(waiting)); !added) return added.error();
+  }
+  if (WantsFinished(query) && jobs.size() < static_cast<std::size_t>(query.limit)) {
+    part = query;
+    part.order = JobOrder::kNewestFirst;
+    if (behind && !IsFinal(behind->state)) part.behind.reset();
+    if (const Status added = add(ListFinished(part)); !added) return added.error();
   }
   return jobs;
 }
@@ -290,14 +362,18 @@ Result<std::vector<JobRecord>> JobTable::ListLane(const std::string& jobs, const
   sql += lane ? " AND kind = ?1" : " AND (?1 = '' OR kind = ?1) AND ?6 = '' AND ?7 = ?8";
   sql += query.machine.empty() ? " AND ?2 = ''" : " AND machine = ?2";
   sql += query.caller.empty() ? " AND ?3 = ''" : " AND caller = ?3";
-  sql += " AND id < ?4 ORDER BY id DESC LIMIT ?5";
-  const std::int64_t before = query.before_id > 0 ? query.before_id : INT64_MAX;
+  sql += kDearFilter;
+  const bool oldest = query.order == JobOrder::kOldestFirst;
+  sql += oldest ? " AND id > ?4 ORDER BY id LIMIT ?5" : " AND id < ?4 ORDER BY id DESC LIMIT ?5";
+  const std::int64_t behind = query.behind ? query.behind->id : oldest ? 0 : INT64_MAX;
   const std::string kind = lane ? lane->kind : query.kind;
   const std::string pool = lane ? lane->pool : std::string();
   Statement statement(database_, std::move(sql));
   return AllRows<JobRecord>(
-      statement.With(kind, query.machine, query.caller, before, query.limit, pool,
-                     lane ? lane->blocked : 0, lane ? lane->special : 0),
+      statement.With(kind, query.machine, query.caller, behind, query.limit, pool,
+                     lane ? lane->blocked : 0, lane ? lane->special : 0, query.family,
+                     query.verdict, query.text, query.created_from.value_or(WallTime::min()),
+                     query.created_before.value_or(WallTime::max())),
       ReadRecord);
 }
 
@@ -333,10 +409,15 @@ Result<std::vector<JobStateCount>> JobTable::CountByState(const JobQuery& query)
   std::string sql = "SELECT state, count(*) FROM job WHERE (?1 = '' OR kind = ?1)";
   sql += query.machine.empty() ? " AND ?2 = ''" : " AND machine = ?2";
   sql += query.caller.empty() ? " AND ?3 = ''" : " AND caller = ?3";
+  sql += " AND ?4 + ?5 + ?6 + ?7 + ?8 = 0";
+  sql += kDearFilter;
   sql += " GROUP BY state";
   Statement statement(database_, std::move(sql));
   return AllRows<JobStateCount>(
-      statement.With(query.kind, query.machine, query.caller), [](const Query& row) {
+      statement.With(query.kind, query.machine, query.caller, 0, 0, 0, 0, 0, query.family,
+                     query.verdict, query.text, query.created_from.value_or(WallTime::min()),
+                     query.created_before.value_or(WallTime::max())),
+      [](const Query& row) {
         return JobStateCount{.state = static_cast<JobState>(row.Small(0)), .jobs = row.Integer(1)};
       });
 }

@@ -15,9 +15,8 @@ struct JobRow {
   JobRecord job;
   int attempts_begun = 0;  // handed back ones included: the number of the newest attempt
   int blocked = 0;         // bits of queue_table.h
-  double place = 0.0;      // in the queue, among those of its priority
 
-  bool special() const { return job.priority != 0 || place != static_cast<double>(job.id); }
+  bool special() const { return job.priority != 0 || job.place != static_cast<double>(job.id); }
 };
 
 class JobTable {
@@ -64,6 +63,7 @@ class JobTable {
                                           const std::optional<Lane>& lane);
   Result<std::vector<JobRecord>> ListUnfinished(JobState state, const JobQuery& query);
   Result<std::vector<JobRecord>> ListFinished(const JobQuery& query);
+  Result<std::vector<JobRecord>> ListQueue(const JobQuery& query);
   Result<std::vector<Lane>> LanesOf(JobState state);
 
   Database& database_;

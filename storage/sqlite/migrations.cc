@@ -49,6 +49,11 @@ constexpr Migration kMigrations[] = {
      "ALTER TABLE lease ADD COLUMN server TEXT NOT NULL DEFAULT '';"
      "CREATE TABLE job_order (id INTEGER PRIMARY KEY, job INTEGER NOT NULL,"
      " fence INTEGER NOT NULL, payload BLOB NOT NULL);"},
+    {8, "family and verdict of jobs",
+     "ALTER TABLE job ADD COLUMN family TEXT NOT NULL DEFAULT '';"
+     "ALTER TABLE job ADD COLUMN outcome_verdict TEXT NOT NULL DEFAULT '';"
+     "UPDATE job SET family = ifnull((SELECT machine.family FROM machine"
+     " WHERE machine.id = job.machine), '');"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

@@ -1,7 +1,7 @@
 #include "storage/sqlite/program_table.h"
 
 #include "engine/core/hex.h"
-#include "storage/sqlite/content.h"
+#include "storage/content.h"
 
 namespace rmlcell::storage::sqlite {
 namespace {

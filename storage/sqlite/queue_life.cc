@@ -152,7 +152,7 @@ Result<JobRecord> Written(WriteContext& context, Result<JobRow> row,
 
 // Between the job in front of this place and the place itself.
 Result<double> PlaceInFrontOf(WriteContext& context, const JobRow& before) {
-  const Head head{before.job.id, before.job.priority, before.place};
+  const Head head{before.job.id, before.job.priority, before.job.place};
   const auto in_front = context.tables.queue.PlaceBefore(before.job.pool, before.job.kind, head);
   if (!in_front) return in_front.error();
   const double place = *in_front ? (**in_front + head.place) / 2.0 : head.place - 1.0;
@@ -226,12 +226,12 @@ Result<JobRecord> MoveJob(WriteContext& context, std::int64_t id, std::int64_t b
     const Result<double> place = PlaceInFrontOf(context, *other);
     if (!place) return place.error();
     row->job.priority = other->job.priority;
-    row->place = *place;
+    row->job.place = *place;
   } else {
     row->job.priority = priority.value_or(row->job.priority);
     const Result<double> place = LastPlace(context, row->job);
     if (!place) return place.error();
-    row->place = *place;
+    row->job.place = *place;
   }
   return Written(context, std::move(row), events);
 }
@@ -246,7 +246,7 @@ Result<std::int64_t> CountBefore(Tables& tables, std::int64_t id) {
                  "job " + std::to_string(id) + " does not wait in the queue",
                  {}};
   }
-  return tables.queue.CountBefore(job.pool, job.kind, {id, job.priority, (*row)->place});
+  return tables.queue.CountBefore(job.pool, job.kind, {id, job.priority, job.place});
 }
 
 Status PutJobOrder(WriteContext& context, std::int64_t job, std::string_view from,

@@ -7,8 +7,8 @@ namespace rmlcell::storage::sqlite {
 // Version 1 of the schema. Released text: a change is a new migration, never an edit here.
 //
 // Times are microseconds since 1970 UTC. A column `x` beside `x_blob` holds small bytes itself or
-// names a blob that does (content.h). Columns that name a blob are counted in blob.refs; blob.holds
-// counts the writers that are still busy with one.
+// names a blob that does (storage/content.h). Columns that name a blob are counted in blob.refs;
+// blob.holds counts the writers that are still busy with one.
 //
 // Submitting is the hot path: each index it touches is a page more in the log of that commit. So
 // jobs that wait or run have one small index, and those by which people look for old jobs take a

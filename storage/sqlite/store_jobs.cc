@@ -3,7 +3,7 @@
 #include <span>
 
 #include "engine/core/hex.h"
-#include "storage/sqlite/content.h"
+#include "storage/content.h"
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/executable_life.h"
 #include "storage/sqlite/job_life.h"

@@ -91,6 +91,7 @@ class Explanations(WithCell):
     def test_errors_are_explained_by_code_number_or_all(self):
         stub = self.cell.programs()
         every = stub.ExplainError(program_pb2.ExplainErrorRequest()).errors
+        self.assertEqual(stub.ExplainError(program_pb2.ExplainErrorRequest(language="de-CH")).language, "en")
         self.assertGreater(len(every), 150)
         self.assertEqual([one.code for one in stub.ExplainError(program_pb2.ExplainErrorRequest(code="OPT-E348")).errors],
                          ["OPT-E348"])

@@ -34,7 +34,7 @@ AREAS = {
                         "engine/simulation/run", "engine/simulation/verdict"),
                        ("simulation_test", "optimo_run_conformance_test", "rml1_test", "rml1_examples_test",
                         "integration_test_command")),
-    "store": Area(("storage", "storage/sqlite"),
+    "store": Area(("storage", "storage/opening", "storage/sqlite"),
                   ("storage_sqlite_conformance_test", "storage_sqlite_test", "storage_sqlite_crash_test",
                    "server_jobs_test", "server_projects_test")),
     "jobs": Area(("server/base", "server/cell", "server/records", "server/jobs", "server/events", "server/machines", "server/worker", "server/programs", "server/projects", "server/results"),

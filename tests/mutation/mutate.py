@@ -175,8 +175,9 @@ class Measurement:
             return "invalid", "no C++"
         if changed.read_bytes() == self.original(place.file, ()):
             return "identical", "object code"
+        tried = self.switches.tried_in(place, AREAS[area].tests)
         for test in self.tests[area]:
-            if self.switches.has(place) and test.name not in self.switches.unfit:
+            if tried and test.name not in self.switches.unfit:
                 continue  # its cases were tried
             failed = self.workshop.run(test, desk, place.file, changed)
             if failed:

@@ -234,8 +234,11 @@ class SwitchedTree:
     def command(self):
         return self.build / "bin" / "rmlcell"
 
-    def has(self, place):
-        return key(place) in self.numbers
+    def tried_in(self, place, names):
+        """Whether some case comes by the switch of this place while it runs. What is worked out by the compiler, such as
+        a table, is no switch however it was written."""
+        number = self.numbers.get(key(place))
+        return number is not None and bool(self.reach.of(number, names))
 
     def behaves_otherwise(self, place):
         """The name of a program of tests/behaviour that shows the change; "" where none of those tried does."""

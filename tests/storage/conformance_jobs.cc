@@ -16,12 +16,6 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-std::vector<std::int64_t> IdsOf(const std::vector<JobRecord>& jobs) {
-  std::vector<std::int64_t> ids;
-  for (const JobRecord& job : jobs) ids.push_back(job.id);
-  return ids;
-}
-
 // design.md section 3, step 2: what was submitted is there, also after a restart.
 TEST_P(StoreConformance, JobComesBackAsItWasSubmitted) {
   const NewJob job{.request_id = "r-1",
@@ -252,90 +246,6 @@ TEST_P(StoreConformance, UnknownJobIsNotFound) {
   EXPECT_EQ(CodeOf(store().ListArtifacts(1)), kNotFound);
   EXPECT_EQ(CodeOf(store().GetArtifact(1, "report")), kNotFound);
   EXPECT_EQ(CodeOf(store().JobEvents(1, 0, 10)), kNotFound);
-}
-
-// store.h JobQuery: newest first, pages cover everything once, also while jobs come in.
-TEST_P(StoreConformance, JobsAreListedInPages) {
-  std::vector<std::int64_t> submitted;
-  for (int i = 0; i < 7; ++i) submitted.insert(submitted.begin(), Submit().id);
-  std::vector<std::int64_t> listed;
-  JobQuery query{.limit = 3};
-  for (;;) {
-    const auto page = IdsOf(Must(store().ListJobs(query)));
-    if (page.empty()) break;
-    listed.insert(listed.end(), page.begin(), page.end());
-    query.before_id = page.back();
-    Submit();
-  }
-  EXPECT_EQ(listed, submitted);
-  EXPECT_THAT(Must(store().ListJobs({.limit = 0})), IsEmpty());
-  EXPECT_THAT(Must(store().ListJobs({.limit = -5})), IsEmpty());
-}
-
-// Every filter, alone and together, against a plain filter over all jobs.
-TEST_P(StoreConformance, FiltersAgreeWithAPlainSearch) {
-  const std::vector<std::string> kinds = {"CHECK", "SIMULATE", "RUN"};
-  const std::vector<std::string> machines = {"m1", "m2"};
-  const std::vector<std::string> callers = {"anna", "bo"};
-  for (int i = 0; i < 60; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    Must(store().SubmitAndWait(
-        {.machine = machines[n / 3 % 2], .kind = kinds[n % 3], .caller = callers[n / 6 % 2]}));
-  }
-  const JobState ends[] = {JobState::kSucceeded, JobState::kFailed, JobState::kCancelled,
-                           JobState::kInterrupted};
-  for (int i = 0; i < 40; ++i) {
-    const LeasedJob leased = Acquire("w", kinds[static_cast<std::size_t>(i % 3)]);
-    // The others go on running; a RUN would keep its machine from the next one.
-    if (i % 5 != 4 || i % 3 == 2) Finish(leased.lease, ends[i % 4]);
-  }
-  const std::vector<JobRecord> all = Must(store().ListJobs({.limit = 1000}));
-  ASSERT_EQ(all.size(), 60U);
-
-  const auto search = [&](const JobQuery& query) {
-    std::vector<std::int64_t> found;
-    for (const JobRecord& job : all) {
-      const bool fits = (query.machine.empty() || job.machine == query.machine) &&
-                        (!query.state || job.state == *query.state) &&
-                        (query.kind.empty() || job.kind == query.kind) &&
-                        (query.caller.empty() || job.caller == query.caller) &&
-                        (!query.finished || IsFinal(job.state) == *query.finished) &&
-                        (query.before_id == 0 || job.id < query.before_id);
-      if (fits && found.size() < static_cast<std::size_t>(query.limit)) found.push_back(job.id);
-    }
-    return found;
-  };
-  std::vector<std::optional<JobState>> states = {std::nullopt};
-  for (int state = 0; state <= 5; ++state) states.emplace_back(static_cast<JobState>(state));
-  int compared = 0;
-  for (const char* machine : {"", "m1", "m3"}) {
-    for (const auto& state : states) {
-      for (const char* kind : {"", "CHECK", "RUN"}) {
-        for (const char* caller : {"", "anna"}) {
-          for (const std::optional<bool> finished :
-               {std::optional<bool>(), std::optional(true), std::optional(false)}) {
-            for (const std::int64_t before : {std::int64_t{0}, all[25].id}) {
-              for (const int limit : {4, 1000}) {
-                const JobQuery query{.machine = machine,
-                                     .state = state,
-                                     .kind = kind,
-                                     .caller = caller,
-                                     .finished = finished,
-                                     .limit = limit,
-                                     .before_id = before};
-                ASSERT_EQ(IdsOf(Must(store().ListJobs(query))), search(query))
-                    << machine << ' ' << (state ? static_cast<int>(*state) : -1) << ' ' << kind
-                    << ' ' << caller << ' ' << (finished ? static_cast<int>(*finished) : -1) << ' '
-                    << before << ' ' << limit;
-                ++compared;
-              }
-            }
-          }
-        }
-      }
-    }
-  }
-  EXPECT_EQ(compared, 3 * 7 * 3 * 2 * 3 * 2 * 2);
 }
 
 // store.h RequestCancel, queued: ended at once, with the code of a cancelled job and the events

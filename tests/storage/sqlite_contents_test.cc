@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/core/hex.h"
-#include "storage/sqlite/content.h"
+#include "storage/content.h"
 #include "tests/storage/sqlite_bed.h"
 
 namespace rmlcell::storage::sqlite {

@@ -125,7 +125,7 @@ std::map<std::string, JobRecord> JobsOf(Store& store) {
     const std::vector<JobRecord> page = Must(store.ListJobs(query));
     if (page.empty()) return jobs;
     for (const JobRecord& job : page) EXPECT_TRUE(jobs.emplace(job.request_id, job).second);
-    query.before_id = page.back().id;
+    query.behind = PlaceOf(page.back());
   }
 }
 

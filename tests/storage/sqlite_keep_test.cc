@@ -180,7 +180,8 @@ TEST_F(SqliteKeep, OldStoreGetsItsMarks) {
       "ALTER TABLE job DROP COLUMN pool; ALTER TABLE job DROP COLUMN priority;"
       "ALTER TABLE job DROP COLUMN place; ALTER TABLE job DROP COLUMN special;"
       "ALTER TABLE job DROP COLUMN held; ALTER TABLE job DROP COLUMN not_before;"
-      "ALTER TABLE job DROP COLUMN blocked;"
+      "ALTER TABLE job DROP COLUMN blocked; ALTER TABLE job DROP COLUMN family;"
+      "ALTER TABLE job DROP COLUMN outcome_verdict;"
       "CREATE INDEX job_unfinished ON job (state, kind) WHERE state < 2;"
       "PRAGMA user_version = 2");
   bed_->options().keep_finished_jobs = 3;

@@ -54,6 +54,9 @@ class StoreBed {
   virtual ~StoreBed() = default;
   virtual Store& store() = 0;
   virtual void Reopen() = 0;  // closes it and opens it again
+  // Another store over the same database, as a second server has it; of a kind of which only one is
+  // open at a time that one itself.
+  virtual Store& other() { return store(); }
   TestClock& clock() { return clock_; }
 
  private:
@@ -94,6 +97,7 @@ inline std::optional<ErrorCode> CodeOf(const Status& status) {
 class StoreConformance : public testing::TestWithParam<StoreKind> {
  protected:
   Store& store() { return bed_->store(); }
+  Store& other() { return bed_->other(); }
   TestClock& clock() { return bed_->clock(); }
   void Reopen() { bed_->Reopen(); }
 
@@ -116,6 +120,12 @@ class StoreConformance : public testing::TestWithParam<StoreKind> {
  private:
   std::unique_ptr<StoreBed> bed_ = GetParam().make();
 };
+
+inline std::vector<std::int64_t> IdsOf(const std::vector<JobRecord>& jobs) {
+  std::vector<std::int64_t> ids;
+  for (const JobRecord& job : jobs) ids.push_back(job.id);
+  return ids;
+}
 
 inline constexpr std::chrono::milliseconds kLease{10'000};
 

@@ -10,9 +10,6 @@
 
 namespace rmlcell::optimo {
 
-inline constexpr int kGas2 = 8;  // OL numbers, OPT-5.39
-inline constexpr int kGas3 = 9;
-
 // Something visible that an actuator does. Of a program that has run ahead it happens between two
 // motions (passage_effects.h).
 struct PassageEffect {

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "engine/core/number_text.h"
+#include "engine/optimo/control/break_condition.h"
+#include "engine/optimo/control/modal_values.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -57,7 +59,7 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
       process_watch_(s_.process_watch, s_.actuators),
       works_(s_.works, now(), parameters_, cycle_, telling_, counter_, ride_, actuators_, effects_,
              data_, waits_),
-      halts_(s_.halts, now(), telling_, ride_, actuators_, waits_, works_),
+      halts_(s_.halts, now(), telling_, ride_, actuators_, data_, waits_, works_),
       moves_(s_.moves, now(), parameters_, telling_, counter_, data_, travel_, ride_, effects_,
              waits_, watch_, halts_),
       flow_(now(), parameters_, cycle_, telling_, counter_, data_, effects_, waits_),
@@ -232,11 +234,16 @@ void Control::ApplyScripted() {
   }
 }
 
-void Control::Apply(const machine::InputChange& input) {
-  if (now().phase == RunPhase::kFinished) return;
+// Conditions are looked at again, before the next tick.
+void Control::ChangeOutside() {
   waits_.InputChanged();
   works_.InputChanged();
   works_.MarkStale();
+}
+
+void Control::Apply(const machine::InputChange& input) {
+  if (now().phase == RunPhase::kFinished) return;
+  ChangeOutside();
   const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
   switch (input.kind) {
     case machine::InputKind::kLogical:
@@ -267,6 +274,54 @@ void Control::Apply(const machine::InputChange& input) {
       End(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop);
       break;
   }
+}
+
+void Control::Stand(SimTime until) {
+  if (now().phase == RunPhase::kHalted) now().now = std::max(now().now, until);
+}
+
+void Control::SetMode(machine::Mode mode) {
+  if (now().phase != RunPhase::kFinished) halts_.SetMode(mode);
+}
+
+void Control::WriteVariable(Variable variable, float number) {
+  if (now().phase == RunPhase::kFinished) return;
+  ChangeOutside();
+  data_.WriteFromOutside(variable, number);
+}
+
+void Control::SetBreakpoints(const std::vector<machine::Breakpoint>& breakpoints) {
+  std::vector<WatchedStep> watched;
+  for (const machine::Breakpoint& breakpoint : breakpoints) {
+    WatchedStep& step = watched.emplace_back();
+    step.at = breakpoint.at;
+    step.from_pass = breakpoint.from_pass;
+    if (breakpoint.condition.empty()) continue;
+    if (Result<Condition> condition = ReadCondition(breakpoint.condition); condition)
+      step.condition = *std::move(condition);
+  }
+  halts_.Watch(std::move(watched));
+}
+
+// Each activation stands at the instruction that it carried out last: a call, but for the
+// innermost one.
+std::vector<machine::Place> Control::Stack() const {
+  std::vector<machine::Place> stack;
+  for (const ProgramContext& program : counter_.programs()) {
+    for (const Frame& frame : program.frames) {
+      const LinkedModule& linked =
+          program.program->executable.modules[static_cast<std::size_t>(frame.module)];
+      const auto add = [&](std::uint32_t next) {
+        const std::vector<Instruction>& all = linked.module.instructions;
+        const std::size_t at = next > 0 ? next - 1 : 0;
+        stack.push_back(telling_.PlaceOf(linked.slot, at < all.size() ? all[at].step : 0));
+      };
+      for (const std::uint32_t after : frame.returns) add(after);
+      add(frame.next);
+    }
+  }
+  if (!stack.empty()) stack.back() = now().place;
+  return stack;
 }
 
 void Control::PressStart() {
@@ -310,6 +365,20 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
   travel_.Judge(s_.outcome);
 }
 
+MachineState Control::Kept() const {
+  MachineState kept = s_.Kept();
+  kept.axes = ride_.axes();
+  return kept;
+}
+
+std::vector<machine::ModalValue> Control::ModalValues() const {
+  std::vector<machine::ModalValue> values;
+  if (!counter_.empty()) values = ModalValuesOf(counter_.modal());
+  for (machine::ModalValue& value : ModalValuesOf(now().tool, s_.moves.work_offset))
+    values.push_back(std::move(value));
+  return values;
+}
+
 std::vector<machine::Figure> Control::figures() const {
   std::vector<machine::Figure> figures = {
       {"lookahead_starved", "", static_cast<double>(s_.ride.planner.lookahead_starved())},
@@ -329,6 +398,9 @@ machine::RunState Control::Snapshot() const {
   state.tip_speed_mm_s = ride_.tip_speed_mm_s();
   state.override_percent = s_.ride.override_percent;
   state.beam_on = actuators_.beam_on();
+  state.zeroed = s_.moves.zeroed;
+  state.door_open = actuators_.door_open();
+  if (now().phase == RunPhase::kHalted) state.halted_by = s_.halts.halted_by;
   return state;
 }
 

@@ -29,12 +29,22 @@ class Control final : private RideListener {
   machine::RunPhase Advance(SimTime until);
   void Apply(const machine::InputChange& input);
   void End(machine::OutcomeKind kind, ErrorCode code);
+  void Stand(SimTime until);
+  void SetMode(machine::Mode mode);
+  // Precondition: Writable.
+  void WriteVariable(Variable variable, float number);
+  // Precondition: their conditions can be read.
+  void SetBreakpoints(const std::vector<machine::Breakpoint>& breakpoints);
 
   machine::RunState Snapshot() const;
+  std::vector<machine::Place> Stack() const;
+  std::vector<machine::ModalValue> ModalValues() const;
   // Nothing outside can change the condition that it stands at any more, and no motion either.
   bool WaitsForEver() const;
 
   const ControlState& state() const { return s_; }
+  // What the machine keeps of it, where it is now: in the middle of a motion, too.
+  MachineState Kept() const;
   std::vector<machine::Figure> figures() const;
   void Restore(const ControlState& state) { s_ = state; }
 
@@ -46,6 +56,7 @@ class Control final : private RideListener {
   void ActOnPending();
   void ApplyScripted();
   void PressStart();
+  void ChangeOutside();
   void Raise(const Error& error);
   void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);
   void OnMark(std::uint64_t tag) override { effects_.OnMark(tag); }

@@ -71,6 +71,7 @@ void Control::Fetch() {
   if (!waits_.condition_met()) {
     waits_.BeginInstruction();
     telling_.observer().OnStep(now().now, now().place, Describe(i.op).name);
+    halts_.BeginStep(here);
   }
   counter_.frame().next = at + 1;
   if (const Status executed = Execute(i); !executed) Raise(executed.error());

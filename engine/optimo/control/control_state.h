@@ -30,7 +30,7 @@ struct ControlState {
   // What the machine kept is handed to the parts; SIMUL that was armed begins.
   ControlState(const OptimoParameters& parameters, const MachineState& kept);
 
-  // What the machine keeps of it.
+  // What the machine keeps of it; the axes as they stood when the motion under way began.
   MachineState Kept() const;
 
   Situation situation{};

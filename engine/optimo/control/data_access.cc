@@ -90,8 +90,17 @@ void DataAccess::TellAssumed(Variable variable, float value) const {
   observer_.OnAssumed(assumed);
 }
 
+// An image that follows the outside is read anew with it.
 float DataAccess::ValueOf(Variable variable) {
-  DataArea& data = s_.area;
+  const float value = Peek(variable);
+  const auto n = static_cast<std::size_t>(variable.index);
+  if (variable.group == VariableGroup::kIl) s_.area.il[n] = value != 0.0F;
+  if (variable.group == VariableGroup::kIa) s_.area.ia[n] = value;
+  return value;
+}
+
+float DataAccess::Peek(Variable variable) const {
+  const DataArea& data = s_.area;
   const auto n = static_cast<std::size_t>(variable.index);
   switch (variable.group) {
     case VariableGroup::kVr:
@@ -102,15 +111,13 @@ float DataAccess::ValueOf(Variable variable) {
       return data.vl[n] ? 1.0F : 0.0F;
     case VariableGroup::kIl:
       // Work and motion flags are the control's own: they hold in simulation too (OPT-6.20).
-      if (Connected(kGroupIl) || (n >= kFirstWorkFlag && n <= kMotionFlag)) {
-        data.il[n] = InputNow(variable.group, variable.index) != 0.0;
-      }
+      if (Connected(kGroupIl) || (n >= kFirstWorkFlag && n <= kMotionFlag))
+        return InputNow(variable.group, variable.index) != 0.0 ? 1.0F : 0.0F;
       return data.il[n] ? 1.0F : 0.0F;
     case VariableGroup::kOl:
       return data.ol[n] ? 1.0F : 0.0F;
     case VariableGroup::kIa:
-      if (Connected(kGroupIa))
-        data.ia[n] = static_cast<float>(InputNow(variable.group, variable.index));
+      if (Connected(kGroupIa)) return static_cast<float>(InputNow(variable.group, variable.index));
       return data.ia[n];
     case VariableGroup::kOa:
       if (n == 0)
@@ -124,9 +131,18 @@ float DataAccess::ValueOf(Variable variable) {
 
 // On error nothing was written.
 Status DataAccess::Write(Variable variable, float number) {
+  s_.written[static_cast<std::size_t>(variable.group)][variable.index] = true;
+  return Put(variable, number, PassageEffects::When::kPassage);
+}
+
+// The machine follows as far as it can: a second gas waits for the first one to go off.
+void DataAccess::WriteFromOutside(Variable variable, float number) {
+  (void)Put(variable, number, PassageEffects::When::kNow);
+}
+
+Status DataAccess::Put(Variable variable, float number, PassageEffects::When when) {
   DataArea& data = s_.area;
   const auto n = static_cast<std::size_t>(variable.index);
-  s_.written[static_cast<std::size_t>(variable.group)][n] = true;
   switch (variable.group) {
     case VariableGroup::kVr:
       data.vr[n] = number;
@@ -138,14 +154,15 @@ Status DataAccess::Write(Variable variable, float number) {
       data.vl[n] = number != 0.0F;
       break;
     case VariableGroup::kOl:
-      return SetOutput(variable.index, number != 0.0F);
+      return SetOutput(variable.index, number != 0.0F, when);
     case VariableGroup::kOa:
       data.oa[n] = number;
       if (Connected(kGroupOa)) {
         effects_.Show({.kind = PassageEffect::Kind::kAnalogue,
                        .place = situation_.place,
                        .index = variable.index,
-                       .value = number});
+                       .value = number},
+                      when);
       }
       break;
     case VariableGroup::kPar:
@@ -160,7 +177,7 @@ Status DataAccess::Write(Variable variable, float number) {
 
 // The image takes the value in any case; the machine follows unless the output is refused
 // (OPT-5.38): a second gas when its turn comes, for the first may go off at the same passage.
-Status DataAccess::SetOutput(int index, bool on) {
+Status DataAccess::SetOutput(int index, bool on, PassageEffects::When when) {
   s_.area.ol[static_cast<std::size_t>(index)] = on;
   if (!Connected(kGroupOl)) return {};
   if (on && index == kGas3 && parameters_.gas_channels < 3) {
@@ -169,7 +186,8 @@ Status DataAccess::SetOutput(int index, bool on) {
   effects_.Show({.kind = PassageEffect::Kind::kOutput,
                  .place = situation_.place,
                  .index = index,
-                 .value = on ? 1.0 : 0.0});
+                 .value = on ? 1.0 : 0.0},
+                when);
   return {};
 }
 
@@ -218,6 +236,22 @@ Result<bool> DataAccess::Truth(const Condition& condition) {
       {owner.nodes.data() + condition.expression.first, condition.expression.count}, variables);
   if (!value) return value.error();
   return value->truth();
+}
+
+bool DataAccess::HoldsNow(const Condition& condition) const {
+  class Look final : public VariableAccess {
+   public:
+    explicit Look(const DataAccess& data) : data_(data) {}
+    float Read(Variable variable) override { return data_.Peek(variable); }
+
+   private:
+    const DataAccess& data_;
+  };
+  Look look(*this);
+  const Module& owner = condition.program->executable.modules.front().module;
+  const Result<Value> value =
+      Evaluate({owner.nodes.data() + condition.expression.first, condition.expression.count}, look);
+  return !value || value->truth();
 }
 
 Status DataAccess::Execute(const Instruction& i) {

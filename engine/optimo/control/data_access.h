@@ -61,6 +61,12 @@ class DataAccess : private VariableAccess {
 
   // The image of an output.
   bool output(int index) const { return s_.area.ol[static_cast<std::size_t>(index)]; }
+  // A value from outside, by no instruction: outputs that are connected follow now. Precondition:
+  // Writable.
+  void WriteFromOutside(Variable variable, float number);
+  // Whether an expression of a person who watches holds, with the PAR of the module in execution.
+  // Nothing is changed by it, and nobody told. An error in it: it holds, so that it is looked at.
+  bool HoldsNow(const Condition& condition) const;
   // An input changes outside: IL[index], IA[index].
   void SetLogicalInput(std::size_t index, bool on) { s_.area.il_physical[index] = on; }
   void SetAnalogueInput(std::size_t index, float value) { s_.area.ia_physical[index] = value; }
@@ -76,10 +82,12 @@ class DataAccess : private VariableAccess {
  private:
   float Read(Variable variable) override;
   float ValueOf(Variable variable);
+  float Peek(Variable variable) const;
   bool IsOfTheRun(Variable variable) const;
   void TellAssumed(Variable variable, float value) const;
   Status Write(Variable variable, float number);
-  Status SetOutput(int index, bool on);
+  Status Put(Variable variable, float number, PassageEffects::When when);
+  Status SetOutput(int index, bool on, PassageEffects::When when = PassageEffects::When::kPassage);
   Status Let(const Instruction& i);
   Status Assign(const Instruction& i);
   Status SetGroups(const Instruction& i);

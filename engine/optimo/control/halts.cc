@@ -10,8 +10,32 @@ bool Halts::due() const {
 }
 
 bool Halts::breaks_at(const machine::Place& place) const {
-  return s_.breakpoint && s_.breakpoint->program == place.program &&
-         s_.breakpoint->step == place.step;
+  return s_.watched_halts || (s_.breakpoint && s_.breakpoint->program == place.program &&
+                              s_.breakpoint->step == place.step);
+}
+
+void Halts::Watch(std::vector<WatchedStep> steps) {
+  s_.watched = std::move(steps);
+  s_.watched_halts = false;
+}
+
+void Halts::BeginStep(const machine::Place& place) {
+  s_.watched_halts = false;
+  for (WatchedStep& step : s_.watched) {
+    if (step.at.program != place.program || step.at.step != place.step) continue;
+    if (step.condition && !data_.HoldsNow(*step.condition)) continue;
+    if (++step.passes >= step.from_pass) s_.watched_halts = true;
+  }
+}
+
+// What is under way has had its EndStep, but for an instruction that waits for its condition.
+void Halts::SetMode(machine::Mode mode) {
+  situation_.mode = mode;
+  const bool begun = waits_.waits() && waits_.pending().kind == Pending::Kind::kCondition;
+  if (mode == machine::Mode::kSingle && situation_.running() && !begun &&
+      (ride_.busy() || ride_.passing() || waits_.waits())) {
+    s_.after_step = AfterStep::kSingle;
+  }
 }
 
 bool Halts::will_halt_behind(const machine::Place& place) const {
@@ -69,6 +93,7 @@ void Halts::HaltByKey(bool stop) {
 void Halts::Halt(machine::HaltReason reason, std::string_view why) {
   waits_.Tell();
   situation_.phase = machine::RunPhase::kHalted;
+  s_.halted_by = reason;
   s_.halted_at = situation_.now;
   s_.hold = false;
   s_.stop = false;

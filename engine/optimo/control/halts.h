@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "engine/optimo/control/actuators.h"
+#include "engine/optimo/control/data_access.h"
 #include "engine/optimo/control/waits.h"
 #include "engine/optimo/control/works.h"
 #include "engine/optimo/ride/ride.h"
@@ -18,12 +20,23 @@ enum class AfterStep : std::uint8_t {
   kBreak,   // the breakpoint stands at it. OPT-6.08
 };
 
+// A breakpoint of somebody who watches the run.
+struct WatchedStep {
+  machine::ProgramStep at{};
+  std::optional<Condition> condition{};  // none: always
+  std::uint64_t from_pass = 1;
+  std::uint64_t passes = 0;  // how often the step was begun with the condition met
+};
+
 struct HaltState {
   // Any of the three may be wanted together: the halt after a step comes first.
   bool hold = false;  // HOLD; a MOVE that is carried out meanwhile is exact. OPT-4.17
   bool stop = false;  // STOP on a motion that could not be left when the key was pressed
   AfterStep after_step = AfterStep::kNone;
   std::optional<machine::ProgramStep> breakpoint{};  // of BREAK
+  std::vector<WatchedStep> watched{};
+  bool watched_halts = false;       // behind the step in execution
+  machine::HaltReason halted_by{};  // while halted
   SimTime halted_at{0};
   // Where the program had run ahead to when HOLD or STOP halted the motion; while halted.
   std::optional<machine::Place> place_ahead{};
@@ -43,17 +56,19 @@ struct HaltState {
 //   after_step   EndStep: kBreak at the breakpoint,   HaltHere, with a halt; without one where the
 //                else kSingle in SINGLE               main program is over. Other halts leave it
 //   breakpoint   SetBreakpoint; what the machine kept never: the next BREAK replaces it. OPT-6.08
+//   watched      Watch                                never: the next Watch replaces them
 //
 // In kFinished nothing is set or cleared.
 class Halts {
  public:
   Halts(HaltState& state, Situation& situation, const Telling& telling, Ride& ride,
-        Actuators& actuators, Waits& waits, Works& works)
+        Actuators& actuators, const DataAccess& data, Waits& waits, Works& works)
       : s_(state),
         situation_(situation),
         telling_(telling),
         ride_(ride),
         actuators_(actuators),
+        data_(data),
         waits_(waits),
         works_(works) {}
 
@@ -70,10 +85,15 @@ class Halts {
   // STOP: at once, or as soon as the machine can come to rest. A HOLD that is still on its way to
   // the target is overtaken, a STOP is not.
   void Stop();
-  // The step that was begun here is over: SINGLE or BREAK may halt behind it.
+  // A step begins here: whether somebody who watches wants the run to halt behind it.
+  void BeginStep(const machine::Place& place);
+  // The step that was begun here is over: SINGLE or a breakpoint may halt behind it.
   void EndStep(const machine::Place& place);
   // BREAK
   void SetBreakpoint(const machine::ProgramStep& step) { s_.breakpoint = step; }
+  void Watch(std::vector<WatchedStep> steps);
+  // SINGLE halts behind the instruction that is under way, and behind each that comes.
+  void SetMode(machine::Mode mode);
 
   // Time passed. A STOP that waited brings the machine to rest from here, where it can. True: it
   // stands already, and the run is halted.
@@ -98,6 +118,7 @@ class Halts {
   const Telling& telling_;
   Ride& ride_;
   Actuators& actuators_;
+  const DataAccess& data_;
   Waits& waits_;
   Works& works_;
 };

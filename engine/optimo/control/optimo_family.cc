@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "engine/core/units.h"
+#include "engine/optimo/control/break_condition.h"
 #include "engine/optimo/control/optimo_run.h"
+#include "engine/optimo/control/optimo_standing.h"
 #include "engine/optimo/control/optimo_tools.h"
 #include "engine/optimo/control/process_watch.h"
 #include "engine/optimo/editing/optimo_editing.h"
@@ -37,10 +39,15 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .hold_in_remote = false,  // OPT-4.17
                                        .default_profile = "standard",
                                        .override_max_percent = 145.0,
+                                       .has_repeat = true,
+                                       .has_dry_run = true,
+                                       .has_breakpoints = true,
                                        .no_slot = ErrorCode::kProgramNumber,
                                        .empty_slot = ErrorCode::kProgramMissing,
                                        .no_schedule = ErrorCode::kScheduleRange,
                                        .travel_left = ErrorCode::kTargetOutOfTravel,
+                                       .not_zeroed = ErrorCode::kNotZeroed,
+                                       .emergency_stop = ErrorCode::kEmergencyStop,
                                        .given_twice = ErrorCode::kProjectDuplicate,
                                        .no_source = ErrorCode::kProjectSource,
                                        .check = kCheck};
@@ -172,6 +179,37 @@ class Family final : public machine::MachineFamily {
     const OptimoParameters resolved = Resolve(setup.parameters);
     return std::unique_ptr<machine::Run>(
         std::make_unique<OptimoRun>(resolved, std::move(setup), observer));
+  }
+
+  Result<std::unique_ptr<machine::Standing>> NewStanding(
+      const machine::Parameters& parameters, std::string_view machine_state) const override {
+    if (const Status fit = CheckFit(parameters); !fit) return fit.error();
+    const OptimoParameters resolved = Resolve(parameters);
+    MachineState state = NewMachine(resolved);
+    if (!machine_state.empty()) {
+      Result<MachineState> kept = DecodeMachineState(machine_state);
+      if (!kept) return kept.error();
+      state = *std::move(kept);
+    }
+    return std::unique_ptr<machine::Standing>(
+        std::make_unique<OptimoStanding>(resolved, std::move(state)));
+  }
+
+  Status CheckBreakpoint(const machine::Breakpoint& breakpoint) const override {
+    if (!breakpoint.condition.empty()) {
+      const Result<Condition> condition = ReadCondition(breakpoint.condition);
+      if (!condition) return condition.error();
+    }
+    return machine::MachineFamily::CheckBreakpoint({.at = breakpoint.at});
+  }
+
+  Status CheckWrite(const machine::Parameters& parameters, std::string_view name,
+                    double value) const override {
+    const std::optional<Variable> variable = VariableNamed(name);
+    if (!variable) return machine::MachineFamily::CheckWrite(parameters, name, value);
+    const Result<float> number = Writable(*variable, value, Resolve(parameters));
+    if (!number) return number.error();
+    return {};
   }
 };
 

@@ -11,6 +11,13 @@ class Snapshot final : public machine::RunSnapshot {
 
 }  // namespace
 
+void OptimoRun::WriteVariable(std::string_view name, double value) {
+  const std::optional<Variable> variable = VariableNamed(name);
+  if (!variable) return;
+  if (const Result<float> number = Writable(*variable, value, parameters_); number)
+    control_.WriteVariable(*variable, *number);
+}
+
 std::unique_ptr<machine::RunSnapshot> OptimoRun::Save() const {
   return std::make_unique<Snapshot>(control_.state());
 }

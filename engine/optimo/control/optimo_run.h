@@ -11,10 +11,12 @@ namespace rmlcell::optimo {
 class OptimoRun final : public machine::Run {
  public:
   OptimoRun(OptimoParameters parameters, machine::RunSetup setup, machine::RunObserver& observer)
-      : control_(std::move(parameters), std::move(setup), observer) {}
+      : parameters_(parameters), control_(std::move(parameters), std::move(setup), observer) {}
 
   machine::RunPhase Advance(SimTime until) override { return control_.Advance(until); }
   void Apply(const machine::InputChange& input) override { control_.Apply(input); }
+  void Stand(SimTime until) override { control_.Stand(until); }
+  void SetMode(machine::Mode mode) override { control_.SetMode(mode); }
   void End(machine::OutcomeKind kind, ErrorCode code) override { control_.End(kind, code); }
   machine::RunState state() const override { return control_.Snapshot(); }
   const machine::Outcome& outcome() const override { return control_.state().outcome; }
@@ -22,9 +24,15 @@ class OptimoRun final : public machine::Run {
   std::optional<std::string> ReadVariable(std::string_view name) const override {
     return ReadByName(control_.state().data.area, name);
   }
+  void WriteVariable(std::string_view name, double value) override;
+  void SetBreakpoints(const std::vector<machine::Breakpoint>& breakpoints) override {
+    control_.SetBreakpoints(breakpoints);
+  }
+  std::vector<machine::Place> stack() const override { return control_.Stack(); }
+  std::vector<machine::ModalValue> modal_values() const override { return control_.ModalValues(); }
   bool waits_for_ever() const override { return control_.WaitsForEver(); }
   std::vector<machine::Figure> figures() const override { return control_.figures(); }
-  std::string SaveMachine() const override { return EncodeMachineState(control_.state().Kept()); }
+  std::string SaveMachine() const override { return EncodeMachineState(control_.Kept()); }
   std::map<int, std::string> made_executables() const override {
     return control_.state().counter.made_executables;
   }
@@ -32,6 +40,7 @@ class OptimoRun final : public machine::Run {
   void Restore(const machine::RunSnapshot& snapshot) override;
 
  private:
+  const OptimoParameters parameters_;
   Control control_;
 };
 

@@ -49,6 +49,7 @@ class ProgramCounter {
 
   // Before the main program began, or when there is none: then nothing below may be asked.
   bool empty() const { return s_.programs.empty(); }
+  const std::vector<ProgramContext>& programs() const { return s_.programs; }
   ProgramContext& program() { return s_.programs.back(); }
   const ProgramContext& program() const { return s_.programs.back(); }
   Frame& frame() { return program().frames.back(); }

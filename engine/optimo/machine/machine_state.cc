@@ -1,9 +1,11 @@
 #include "engine/optimo/machine/machine_state.h"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "engine/core/number_text.h"
+#include "engine/optimo/language/evaluate.h"
 #include "engine/optimo/language/printer.h"
 
 namespace rmlcell::optimo {
@@ -168,24 +170,75 @@ std::string RealText(float value) {
 
 }  // namespace
 
-std::optional<std::string> ReadByName(const DataArea& data, std::string_view name) {
+std::optional<Variable> VariableNamed(std::string_view name) {
   const std::size_t open = name.find('[');
   if (open == std::string_view::npos || !name.ends_with(']')) return std::nullopt;
   const auto number = ParseInteger(name.substr(open + 1, name.size() - open - 2));
   if (!number || *number < 0 || *number > kVariableIndexMax) return std::nullopt;
-  const auto n = static_cast<std::size_t>(*number);
   const auto group = name.substr(0, open);
   const auto is = [&](std::string_view word) {
     return group.size() == 2 && (group[0] & ~0x20) == word[0] && (group[1] & ~0x20) == word[1];
   };
-  if (is("VR")) return RealText(data.vr[n]);
-  if (is("VI")) return std::to_string(static_cast<int>(data.vi[n]));
-  if (is("VL")) return data.vl[n] ? "1" : "0";
-  if (is("IL")) return data.il[n] ? "1" : "0";
-  if (is("OL")) return data.ol[n] ? "1" : "0";
-  if (is("IA")) return RealText(data.ia[n]);
-  if (is("OA")) return RealText(data.oa[n]);
+  using enum VariableGroup;
+  for (const VariableGroup one : {kVr, kVi, kVl, kIl, kOl, kIa, kOa}) {
+    if (is(GroupName(one)))
+      return Variable{.group = one, .index = static_cast<std::uint8_t>(*number)};
+  }
   return std::nullopt;
+}
+
+std::optional<std::string> ReadByName(const DataArea& data, std::string_view name) {
+  const std::optional<Variable> variable = VariableNamed(name);
+  if (!variable) return std::nullopt;
+  const std::size_t n = variable->index;
+  switch (variable->group) {
+    case VariableGroup::kVr:
+      return RealText(data.vr[n]);
+    case VariableGroup::kVi:
+      return std::to_string(static_cast<int>(data.vi[n]));
+    case VariableGroup::kVl:
+      return data.vl[n] ? "1" : "0";
+    case VariableGroup::kIl:
+      return data.il[n] ? "1" : "0";
+    case VariableGroup::kOl:
+      return data.ol[n] ? "1" : "0";
+    case VariableGroup::kIa:
+      return RealText(data.ia[n]);
+    case VariableGroup::kOa:
+      return RealText(data.oa[n]);
+    case VariableGroup::kPar:
+      break;
+  }
+  return std::nullopt;
+}
+
+Result<float> Writable(Variable variable, double value, const OptimoParameters& parameters) {
+  const std::string name =
+      std::string(GroupName(variable.group)) + "[" + std::to_string(variable.index) + "]";
+  const auto refuse = [&](std::string_view why) {
+    return Error{ErrorCode::kCellInvalidArgument, name + " " + std::string(why), {}};
+  };
+  if (variable.group == VariableGroup::kIl || variable.group == VariableGroup::kIa)
+    return refuse("is an input: set the input, not its image");
+  if (IsReadOnly(variable)) return refuse("is written by the machine alone");
+  const bool whole = value == std::trunc(value);
+  switch (TypeOf(variable.group)) {
+    case ValueType::kInteger:
+      if (!whole || value < kIntegerMin || value > kIntegerMax)
+        return refuse("holds whole numbers from -32768 to 32767");
+      return static_cast<float>(value);
+    case ValueType::kLogical:
+      if (value != 0.0 && value != 1.0) return refuse("is 0 or 1");
+      if (variable.group == VariableGroup::kOl && variable.index == kGas3 && value != 0.0 &&
+          parameters.gas_channels < 3) {
+        return Error{ErrorCode::kGas3NotFitted, {}, {}};
+      }
+      return static_cast<float>(value);
+    case ValueType::kReal:
+      if (!(std::abs(value) <= kRealMax)) return refuse("holds numbers up to 2^63");  // OPT-7.62
+      return std::abs(value) < kRealMin ? 0.0F : static_cast<float>(value);
+  }
+  return 0.0F;
 }
 
 }  // namespace rmlcell::optimo

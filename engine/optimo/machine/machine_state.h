@@ -15,6 +15,8 @@
 namespace rmlcell::optimo {
 
 inline constexpr int kVariableCount = kVariableIndexMax + 1;
+inline constexpr int kGas2 = 8;  // numbers of OL, OPT-5.39
+inline constexpr int kGas3 = 9;
 using Numbers = std::array<float, kVariableCount>;
 using Bits = std::array<bool, kVariableCount>;
 
@@ -39,8 +41,15 @@ struct Outputs {
   double table_deg = 0.0;  // of FUNCTION 99
 };
 
-// "VR[5]" -> "7.0", the groups in either case. Nothing for what names no variable.
+// "VR[5]", the groups in either case. Nothing for what names no variable; PAR is none of a machine.
+std::optional<Variable> VariableNamed(std::string_view name);
+// "VR[5]" -> "7.0". Nothing for what names no variable.
 std::optional<std::string> ReadByName(const DataArea& data, std::string_view name);
+
+// What the variable holds when it is given this value; outputs: their images. Errors:
+// CellInvalidArgument: what only the machine writes (OPT-7.66), or a value that it cannot hold;
+// Gas3NotFitted.
+Result<float> Writable(Variable variable, double value, const OptimoParameters& parameters);
 
 // SYSDEF in force. OPT-7.28 to 7.40
 struct WorkOffsetState {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/core/number_text.h"
+#include "engine/simulation/material/height_grid.h"
 #include "engine/simulation/material/png.h"
 
 namespace rmlcell::simulation {
@@ -43,15 +44,12 @@ bool WriteHeightMap(const HeightField& field, const std::function<bool(std::stri
   for (const ScaleText& text : kScale)
     heading.texts.emplace_back(text.key, ShortestText(stock.*text.value));
   heading.texts.emplace_back("Step mm", TrimmedText(StepOf(stock), 9));
-  const double step = StepOf(stock);
   return WritePng(
       heading,
       [&](std::size_t from_above, std::span<std::uint8_t> bytes) {
         const std::size_t row = field.rows() - 1 - from_above;
         for (std::size_t column = 0; column < field.columns(); ++column) {
-          const double above = static_cast<double>(field.height(column, row)) - stock.bottom;
-          const auto grey =
-              static_cast<std::uint16_t>(std::lround(std::clamp(above / step, 0.0, kWhite)));
+          const std::uint16_t grey = HeightNumber(stock, field.height(column, row));
           bytes[2 * column] = static_cast<std::uint8_t>(grey >> 8);
           bytes[2 * column + 1] = static_cast<std::uint8_t>(grey & 0xFF);
         }

@@ -111,9 +111,10 @@ TEST(Refused, TheDetailsArePrintedAsJsonWhereThatIsAskedFor) {
   const Told told = HearRefused(StatusOf({ErrorCode::kCellNotFound, "jobs/7", {}}), true);
   const auto status = nlohmann::json::parse(told.output, nullptr, false);
   EXPECT_EQ(status["code"], 5);  // NOT_FOUND
-  ASSERT_EQ(status["details"].size(), 2U);
+  ASSERT_EQ(status["details"].size(), 3U);
   EXPECT_EQ(status["details"][1]["code"], "CELL-E9004");
   EXPECT_EQ(status["details"][1]["message"], "jobs/7");
+  EXPECT_EQ(status["details"][2]["locale"], "en");
 }
 
 }  // namespace

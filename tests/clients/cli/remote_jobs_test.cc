@@ -333,18 +333,21 @@ TEST_F(RemoteJobs, JobsAreATable) {
   jobs.job.set_machine("machines/mill-1");
   jobs.job.set_program("machines/mill-1/programs/3");
   jobs.job.mutable_outcome()->set_code("OPT-E348");
-  Told told = Hear([&] { return Jobs(server.remote(), "state = FAILED", 5); });
+  Told told = Hear([&] { return Jobs(server.remote(), "state = FAILED", "queue", 5); });
   EXPECT_EQ(told.exit_code, 0);
   EXPECT_EQ(jobs.listed.filter(), "state = FAILED");
   EXPECT_EQ(jobs.listed.page_size(), 5);
+  EXPECT_EQ(jobs.listed.order_by(), "queue");
   EXPECT_THAT(told.output,
               MatchesRegex("JOB +STATE +VERDICT +KIND +MACHINE +TITLE +SUBMITTED +CODE *\n"
                            "17 +failed .*CHECK +mill-1 +machines/mill-1/programs/3 "
                            "+[0-9]+-[0-9]+-[0-9]+ [0-9:]+ +OPT-E348 *\n"));
   jobs.job.set_title("mine");
-  told = Hear([&] { return Jobs(server.remote(), "", 0); });
+  told = Hear([&] { return Jobs(server.remote(), "", "newest", 0); });
   EXPECT_THAT(told.output, AllOf(HasSubstr(" mine "), Not(HasSubstr("programs/3"))));
-  EXPECT_THAT(Hear([&] { return Jobs(server.remote(true), "", 0); }).output, StartsWith("{"));
+  EXPECT_THAT(Hear([&] { return Jobs(server.remote(true), "", "oldest", 0); }).output,
+              StartsWith("{"));
+  EXPECT_EQ(jobs.listed.order_by(), "create_time");
 }
 
 TEST_F(RemoteJobs, AJobIsShownWithItsProducts) {
@@ -396,7 +399,7 @@ TEST_F(RemoteJobs, ARefusalIsToldByEach) {
   jobs.refusal = {grpc::StatusCode::NOT_FOUND, "there is none"};
   const Remote remote = server.remote();
   for (const auto& verb : std::vector<std::function<int()>>{
-           [&] { return Jobs(remote, "", 0); }, [&] { return ShowJob(remote, "1"); },
+           [&] { return Jobs(remote, "", "newest", 0); }, [&] { return ShowJob(remote, "1"); },
            [&] { return CancelJob(remote, "1"); },
            [&] { return JobPicture(remote, "1", folder.File("out")); },
            [&] { return JobArtifact(remote, "1", "a", folder.File("out")); }}) {

@@ -236,6 +236,8 @@ const std::map<int, std::string_view> kNumbersOfTheCell = {
     {9433, "CellDoorOpen"},
     {9434, "CellKeySequence"},
     {9436, "CellReplayDiffers"},
+    {9437, "CellEmergencyStop"},
+    {9438, "CellPowerOff"},
 };
 
 // design.md section 5: clients and logs know the cell's codes by number, so a number keeps its
@@ -248,7 +250,8 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
     ++rows;
     ASSERT_TRUE(kNumbersOfTheCell.contains(entry.number)) << entry.number;
     EXPECT_EQ(entry.symbol, kNumbersOfTheCell.at(entry.number));
-    const bool budget = (entry.number >= 9301 && entry.number <= 9308) || entry.number == 9432;
+    const bool budget = (entry.number >= 9301 && entry.number <= 9308) || entry.number == 9432 ||
+                        entry.number == 9437 || entry.number == 9438;
     const bool verdict = entry.number >= 9601 && entry.number <= 9627;
     const bool held = entry.number == 9430 || entry.number == 9431;
     const bool motion = entry.number >= 9501 && entry.number <= 9505;

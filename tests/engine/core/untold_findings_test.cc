@@ -64,6 +64,19 @@ TEST(UntoldFindings, ListsAddUp) {
   EXPECT_EQ(both.kinds().at(ErrorCode::kRml1Clipped).last.where.line, 12);
 }
 
+// The time of the last one is the latest of both, whichever list is added to the other.
+TEST(UntoldFindings, TheLatestTimeOfTwoLists) {
+  UntoldFindings early;
+  early.Add(At(ErrorCode::kRml1Clipped, 1), SimTime(5));
+  UntoldFindings late;
+  late.Add(At(ErrorCode::kRml1Clipped, 2), SimTime(8));
+  UntoldFindings both = early;
+  both.Add(late);
+  EXPECT_EQ(both.kinds().at(ErrorCode::kRml1Clipped).last_at, SimTime(8));
+  late.Add(early);
+  EXPECT_EQ(late.kinds().at(ErrorCode::kRml1Clipped).last_at, SimTime(8));
+}
+
 // One error among them makes the kind one that stops a program.
 TEST(UntoldFindings, AnErrorIsNotHiddenByAdvice) {
   UntoldFindings untold = Untold(2, ErrorCode::kRml1Clipped);

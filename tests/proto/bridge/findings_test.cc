@@ -277,13 +277,17 @@ TEST(RpcStatus, CarriesCodeTextPlaceAndFindings) {
   EXPECT_EQ(plain.code(), 5);
   EXPECT_EQ(plain.message(),
             "CELL-E9004: " + std::string(entry.when) + ": slot 12; " + std::string(entry.advice));
-  ASSERT_EQ(plain.details_size(), 2);
+  ASSERT_EQ(plain.details_size(), 3);
   google::rpc::ErrorInfo info;
   ASSERT_TRUE(plain.details(0).UnpackTo(&info));
   EXPECT_EQ(info.reason(), ConstantName(ErrorCode::kCellNotFound));
   EXPECT_EQ(info.domain(), "rmlcell");
   EXPECT_EQ(info.metadata().at("code"), "CELL-E9004");
   v1::ErrorDetail detail;
+  google::rpc::LocalizedMessage localized;
+  ASSERT_TRUE(plain.details(2).UnpackTo(&localized));
+  EXPECT_EQ(localized.locale(), "en");
+  EXPECT_EQ(localized.message(), plain.message());
   ASSERT_TRUE(plain.details(1).UnpackTo(&detail));
   ExpectMessage(detail, "code: 'CELL-E9004' symbol: '" + std::string(ConstantName(entry.code)) +
                             "' number: 9004 message: 'slot 12' advice: '" +

@@ -165,6 +165,9 @@ TEST(PrepareRun, ModesAndWhatIsNotAskedFor) {
   const machine::RunSetup plain(machine::Parameters(Optimo().parameters()));
   const auto made = Prepare(input, options, {});
   EXPECT_EQ(made->setup->override_percent, 100.0);
+  v1::SimulationOptions slow;
+  slow.set_override_percent(0.5);
+  EXPECT_EQ(RunOptionsOf(slow, {}, 1, machine::Mode::kCycle).override_percent, 0.5);
   EXPECT_FALSE(made->setup->breakpoint);
   EXPECT_FALSE(made->setup->simul);
   EXPECT_EQ(made->setup->budget.steps, plain.budget.steps);

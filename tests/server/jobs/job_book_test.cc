@@ -332,7 +332,9 @@ TEST_F(JobBookTest, ListsPagesNewestFirst) {
   request.clear_page_token();
   request.set_page_size(7);  // exactly all: there is no next page
   EXPECT_EQ(Must(book.List(request)).next_page_token(), "");
-  for (const std::string token : {"x", "0", "-1", "1 ", "99999999999999999999"}) {
+  for (const std::string token :
+       {"x", "0", "-1", "1 ", "1", "1,0,0,0", "1,0,0,0,1,", "1,0,0,0,1,1", "0,0,0,0,1", "1,6,0,0,1",
+        "1,0,2,0,1", "1,0,0,1001,1", "1.5,0,0,0,1", "1,0,0,0,x", "1e16,0,0,0,1", "1,0,0,0,inf"}) {
     request.set_page_token(token);
     EXPECT_EQ(CodeOf(book.List(request)), ErrorCode::kCellBadPageToken) << token;
   }

@@ -47,6 +47,14 @@ TEST(JobFilter, ComparesEachField) {
   EXPECT_EQ(Applied("caller = \"=\"").caller, "=");
   EXPECT_EQ(Applied("finished = true").finished, true);
   EXPECT_EQ(Applied("finished=false").finished, false);
+  EXPECT_EQ(Applied("family = rml1").family, "rml1");
+  EXPECT_EQ(Applied("verdict = bad").verdict, "BAD");
+  EXPECT_EQ(Applied("verdict = VERDICT_DOUBTFUL").verdict, "DOUBTFUL");
+  EXPECT_EQ(Applied("text = \"left lid\"").text, "left lid");
+  const storage::WallTime noon(std::chrono::seconds(1'764'072'000));
+  EXPECT_EQ(Applied("since = 2025-11-25T12:00:00Z").created_from, noon);
+  EXPECT_EQ(Applied("until = 2025-11-25T13:00:00.5+01:00").created_before,
+            noon + std::chrono::milliseconds(500));
 }
 
 TEST(JobFilter, JoinsComparisonsByAnd) {
@@ -80,6 +88,11 @@ TEST(JobFilter, RefusesWhatItDoesNotUnderstandAndLeavesTheQueryAsItWas) {
                                    "caller = \"\"",
                                    "caller = \"open",
                                    "user = a",
+                                   "family = lathe",
+                                   "verdict = WORSE",
+                                   "text = \"\"",
+                                   "since = yesterday",
+                                   "until = 2025-11-25",
                                    "STATE = FAILED",
                                    "state = FAILED AND",
                                    "AND state = FAILED",
@@ -120,14 +133,39 @@ TEST(JobFilter, AnErrorSaysWhatWasExpected) {
   EXPECT_EQ(detail("caller = \"\""), "caller is empty");
   EXPECT_EQ(detail("finished = maybe"), "finished is true or false, not 'maybe'");
   EXPECT_EQ(detail("user = a"),
-            "no field 'user'; there are state, machine, kind, caller, finished");
+            "no field 'user'; there are state, machine, kind, caller, finished, family, verdict, "
+            "text, since, until");
+  EXPECT_EQ(detail("verdict = WORSE"), "no verdict 'WORSE'; there are GOOD, DOUBTFUL, BAD");
+  EXPECT_EQ(detail("family = lathe"), "no family 'lathe'");
+  EXPECT_EQ(detail("since = yesterday"),
+            "since is a time such as 2026-11-25T10:00:00Z, not 'yesterday'");
   EXPECT_EQ(detail("caller = \"open"), "a quoted text has no end");
   EXPECT_EQ(detail("machine = machines/A"),
             "machine: name is 'machines/A', expected is machines/ID");
-  // Five comparisons are nineteen words; more are refused before they are read.
-  const std::string five = "state=FAILED AND machine=m AND kind=RUN AND caller=c AND finished=true";
-  EXPECT_EQ(detail(five), "none");
-  EXPECT_EQ(detail(five + " AND"), "the filter has too many words");
+  // Ten comparisons are 39 words; more are refused before they are read.
+  const std::string ten =
+      "state=FAILED AND machine=m AND kind=RUN AND caller=c AND finished=true AND family=rml1 AND "
+      "verdict=BAD AND text=a AND since=2026-01-01T00:00:00Z AND until=2026-02-01T00:00:00Z";
+  EXPECT_EQ(detail(ten), "none");
+  EXPECT_EQ(detail(ten + " AND"), "the filter has too many words");
+}
+
+TEST(JobFilter, Orders) {
+  using storage::JobOrder;
+  EXPECT_EQ(*ReadJobOrder(""), JobOrder::kNewestFirst);
+  EXPECT_EQ(*ReadJobOrder("create_time desc"), JobOrder::kNewestFirst);
+  EXPECT_EQ(*ReadJobOrder("create_time"), JobOrder::kOldestFirst);
+  EXPECT_EQ(*ReadJobOrder("queue"), JobOrder::kQueue);
+  EXPECT_EQ(ReadJobOrder("title").error().code, ErrorCode::kCellInvalidArgument);
+}
+
+TEST(JobFilter, PlacesOfPagesComeBackAsTheyWere) {
+  const storage::JobPlace places[] = {
+      {.id = 17, .place = 17.0},
+      {.id = 1'000'000'000'000'000, .state = JobState::kInterrupted, .priority = -100},
+      {.id = 5, .state = JobState::kRunning, .blocked = true, .priority = 100, .place = -0.1}};
+  for (const storage::JobPlace& place : places)
+    EXPECT_EQ(*ReadJobPlace(WriteJobPlace(place)), place) << WriteJobPlace(place);
 }
 
 TEST(JobFilter, AnErrorStaysShortAndReadable) {

@@ -71,7 +71,7 @@ class JobLimits : public testing::Test {
 TEST_F(JobLimits, PagesHaveFiftyJobsOrSoManyAsWantedUpToAThousand) {
   Fill(1002);
   EXPECT_EQ(Page(0).jobs_size(), 50);
-  EXPECT_EQ(Page(0).next_page_token(), "953");
+  EXPECT_EQ(Page(0).next_page_token(), "953,0,0,0,953");
   EXPECT_EQ(Page(1).jobs_size(), 1);
   EXPECT_EQ(Page(1).jobs(0).name(), "jobs/1002");
   EXPECT_EQ(Page(999).jobs_size(), 999);
@@ -103,8 +103,8 @@ TEST_F(JobLimits, PagesHaveEachJobOnce) {
     Fill(1);
   } while (!token.empty());
   EXPECT_THAT(names, testing::ElementsAre("jobs/5", "jobs/4", "jobs/3", "jobs/2", "jobs/1"));
-  EXPECT_EQ(Page(2, "1").jobs_size(), 0);
-  EXPECT_EQ(Page(2, "9223372036854775807").jobs_size(), 2);
+  EXPECT_EQ(Page(2, "1,0,0,0,1").jobs_size(), 0);
+  EXPECT_EQ(Page(2, "1000000000000000,0,0,0,1").jobs_size(), 2);
 }
 
 TEST_F(JobLimits, OfTextsAndAttempts) {

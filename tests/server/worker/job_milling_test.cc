@@ -25,6 +25,7 @@ class JobMilling : public JobRunnerTest {
     v1::Milling& milling = MillingOf(assignment);
     milling.set_relief(all);
     milling.set_height_map(all);
+    milling.set_height_grid(all);
     milling.set_stl(all);
     return assignment;
   }
@@ -39,8 +40,8 @@ class JobMilling : public JobRunnerTest {
 TEST_F(JobMilling, LeavesWhatIsAskedFor) {
   Work(MillFor(kGroove, true));
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
-  EXPECT_THAT(Names(), ElementsAre("height.png", "left.stl", "picture.svg", "relief.png", "report",
-                                   "toolpath"));
+  EXPECT_THAT(Names(), ElementsAre("height.grid", "height.png", "left.stl", "picture.svg",
+                                   "relief.png", "report", "toolpath"));
   auto artifacts = Artifacts();
   EXPECT_THAT(artifacts["relief.png"], StartsWith("\x89PNG\r\n\x1a\n"));
   const auto heights = simulation::ReadHeightMap(artifacts["height.png"]);
@@ -49,6 +50,8 @@ TEST_F(JobMilling, LeavesWhatIsAskedFor) {
   EXPECT_EQ(heights->rows, 150U);
   EXPECT_NEAR(heights->heights[75 * 300 + 150], -1.0, 1e-4);  // at X 30.1, Y 15.1
   EXPECT_NEAR(heights->heights[75 * 300 + 250], 0.0, 1e-4);   // at X 50.1: beyond the groove
+  EXPECT_EQ(artifacts["height.grid"].size(), 64U + 2 * 300 * 150);
+  EXPECT_THAT(artifacts["height.grid"], StartsWith("RMLCELLH"));
   // 80 bytes, the number of triangles, 50 bytes each.
   const std::string& stl = artifacts["left.stl"];
   ASSERT_GT(stl.size(), 84U);
@@ -168,8 +171,8 @@ TEST_F(JobMilling, AFileForWhichThereIsNoMemoryIsOutOfMemory) {
   const auto field = simulation::HeightField::Of(
       {.x_max = 10.0, .y_max = 10.0, .bottom = -1.0, .top = 0.0, .cell = 0.1});
   ASSERT_TRUE(field);
-  for (const auto wants :
-       {&v1::Milling::set_relief, &v1::Milling::set_height_map, &v1::Milling::set_stl}) {
+  for (const auto wants : {&v1::Milling::set_relief, &v1::Milling::set_height_map,
+                           &v1::Milling::set_height_grid, &v1::Milling::set_stl}) {
     v1::Milling milling;
     (milling.*wants)(true);
     const auto none = [](std::size_t) -> bool { throw std::bad_alloc(); };

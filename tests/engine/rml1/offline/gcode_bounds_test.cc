@@ -42,6 +42,16 @@ TEST(GcodeArcBounds, AFullTurnEndsWhereItBegan) {
   EXPECT_NEAR(nearly_full.sweep_rad, 1e-5 - 2 * M_PI, 1e-9);
 }
 
+// I and J count from the start, in both senses.
+TEST(GcodeArcBounds, ACentreBesideTheStart) {
+  const Arc left = ArcOf({.from = {10, 5}, .to = {20, 5}, .i = 5, .j = 0}).value();
+  EXPECT_EQ(left.centre.x(), 15.0);
+  EXPECT_EQ(left.centre.y(), 5.0);
+  const Arc below = ArcOf({.from = {10, 5}, .to = {13, 2}, .j = -3}).value();
+  EXPECT_EQ(below.centre.x(), 10.0);
+  EXPECT_EQ(below.centre.y(), 2.0);
+}
+
 // The same for what is no arc at all: a centre, or an end of an R, that is the start.
 TEST(GcodeArcBounds, WhatIsNoiseOfDecimals) {
   EXPECT_EQ(ArcOf({.to = {1e-6, 0}, .j = -5}).value().sweep_rad, 2 * M_PI);

@@ -9,7 +9,7 @@
 
 // Contents as they lie in the store: named by their SHA-256, cut into chunks of kChunkBytes, each
 // chunk encoded for itself.
-namespace rmlcell::storage::sqlite {
+namespace rmlcell::storage {
 
 // One row of the database holds one chunk. Large enough that rows are few, small enough that
 // neither reader nor writer has to hold or write a whole program of 256 MiB at once.
@@ -38,4 +38,4 @@ Result<std::string> Encode(std::string_view chunk);
 // before.
 Status Decode(std::string_view encoded, std::size_t size, std::string& content);
 
-}  // namespace rmlcell::storage::sqlite
+}  // namespace rmlcell::storage

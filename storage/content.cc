@@ -1,11 +1,11 @@
-#include "storage/sqlite/content.h"
+#include "storage/content.h"
 
 #include <openssl/evp.h>
 #include <zstd.h>
 
 #include "engine/core/check.h"
 
-namespace rmlcell::storage::sqlite {
+namespace rmlcell::storage {
 namespace {
 
 constexpr std::size_t kSha256Bytes = 32;
@@ -57,4 +57,4 @@ Status Decode(std::string_view encoded, std::size_t size, std::string& content) 
                {}};
 }
 
-}  // namespace rmlcell::storage::sqlite
+}  // namespace rmlcell::storage

@@ -1,0 +1,488 @@
+#include "engine/machine/machine.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/core/check.h"
+#include "engine/core/number_text.h"
+
+namespace rmlcell::machine {
+namespace {
+
+Error NotNow(MachineState state, std::string_view possible) {
+  return {ErrorCode::kCellMachineState,
+          "the machine is " + std::string(Name(state)) + ": " + std::string(possible),
+          {}};
+}
+
+std::string_view Name(Mode mode) {
+  switch (mode) {
+    case Mode::kRemote:
+      return "REMOTE";
+    case Mode::kCycle:
+      return "CYCLE";
+    case Mode::kSingle:
+      return "SINGLE";
+    case Mode::kRepeat:
+      return "REPEAT";
+    case Mode::kManual:
+      break;
+  }
+  return "MANUAL";
+}
+
+}  // namespace
+
+std::string_view Name(MachineState state) {
+  switch (state) {
+    case MachineState::kOff:
+      return "OFF";
+    case MachineState::kNotZeroed:
+      return "NOT_ZEROED";
+    case MachineState::kIdle:
+      return "IDLE";
+    case MachineState::kRunning:
+      return "RUNNING";
+    case MachineState::kStopping:
+      return "STOPPING";
+    case MachineState::kHeld:
+      return "HELD";
+    case MachineState::kAlarm:
+      break;
+  }
+  return "ALARM";
+}
+
+Result<std::unique_ptr<Machine>> Machine::Make(const MachineFamily& family, Parameters parameters,
+                                               MachineMemory memory, std::string_view state,
+                                               RunObserver& observer) {
+  std::unique_ptr<Machine> machine(
+      new Machine(family, std::move(parameters), std::move(memory), observer));
+  MachineNote note;
+  if (!state.empty()) {
+    Result<MachineNote> kept = ReadMachineNote(state);
+    if (!kept) return kept.error();
+    note = *std::move(kept);
+  }
+  if (const Status taken = machine->Take(std::move(note)); !taken) return taken.error();
+  return machine;
+}
+
+Machine::Machine(const MachineFamily& family, Parameters parameters, MachineMemory memory,
+                 RunObserver& observer)
+    : family_(family),
+      parameters_(std::move(parameters)),
+      memory_(std::move(memory)),
+      observer_(observer) {}
+
+Status Machine::Take(MachineNote note) {
+  for (const Breakpoint& breakpoint : note.breakpoints) {
+    if (const Status good = family_.CheckBreakpoint(breakpoint); !good) return good.error();
+  }
+  Result<std::unique_ptr<Standing>> standing = family_.NewStanding(parameters_, note.family);
+  if (!standing) return standing.error();
+  standing_ = *std::move(standing);
+  now_ = note.time;
+  on_ = note.on;
+  emergency_ = note.emergency;
+  mode_ = note.mode;
+  override_percent_ = note.override_percent;
+  simulation_ = note.simulation;
+  breakpoints_ = std::move(note.breakpoints);
+  alarms_ = std::move(note.alarms);
+  last_alarm_ = note.last_alarm;
+  note_.number = note.last_run;
+  return {};
+}
+
+std::string Machine::Save() const {
+  return WriteMachineNote({.time = now_,
+                           .on = on_,
+                           .emergency = emergency_,
+                           .mode = mode_,
+                           .override_percent = override_percent_,
+                           .simulation = simulation_,
+                           .breakpoints = breakpoints_,
+                           .alarms = alarms_,
+                           .last_alarm = last_alarm_,
+                           .last_run = note_.number,
+                           .family = run_ != nullptr ? run_->SaveMachine() : standing_->Save()});
+}
+
+Progress Machine::Advance(SimTime until) {
+  RMLCELL_CHECK(until >= now_);
+  if (run_ != nullptr) {
+    const SimTime of_run = until - note_.begun;
+    run_->Advance(of_run);
+    Settle();
+    if (run_ != nullptr) {
+      const RunState state = run_->state();
+      if (state.phase == RunPhase::kRunning && state.time < of_run) {
+        now_ = std::max(now_, note_.begun + state.time);
+        return Progress::kMoreWork;
+      }
+      run_->Stand(of_run);
+    }
+  }
+  now_ = until;
+  return Progress::kReached;
+}
+
+// A run that halted goes on, or is over, where that was asked for while it came to rest.
+void Machine::Settle() {
+  if (run_ == nullptr) return;
+  const RunState state = run_->state();
+  if (state.phase == RunPhase::kFinished) return CloseRun();
+  if (state.phase != RunPhase::kHalted) return;
+  now_ = std::max(now_, note_.begun + state.time);
+  stopping_ = false;
+  if (abort_behind_) {
+    run_->End(OutcomeKind::kCancelled, ErrorCode::kCellCancelled);
+    return CloseRun();
+  }
+  const bool by_key = state.halted_by == HaltReason::kHold || state.halted_by == HaltReason::kStop;
+  if (std::exchange(resume_behind_, false) && by_key) ToRun(InputKind::kStart);
+}
+
+// What it made of an object that was replaced meanwhile is of no use.
+void Machine::CloseRun() {
+  const RunState state = run_->state();
+  const Outcome& outcome = run_->outcome();
+  now_ = std::max(now_, note_.begun + state.time);
+  over_.push_back({.run = note_,
+                   .outcome = outcome,
+                   .lasted = state.time,
+                   .steps = run_->steps_executed(),
+                   .figures = run_->figures()});
+  if (outcome.code && Lookup(*outcome.code).severity == Severity::kAlarm)
+    Raise(*outcome.code, outcome.detail, outcome.place);
+  for (auto& [slot, bytes] : run_->made_executables()) {
+    const auto program = memory_.programs.find(slot);
+    if (program == memory_.programs.end() || changed_.contains(slot)) continue;
+    program->second.executable = Bytes::Of(bytes);
+    made_.push_back({.slot = slot, .bytes = bytes});
+  }
+  Result<std::unique_ptr<Standing>> standing =
+      family_.NewStanding(parameters_, run_->SaveMachine());
+  RMLCELL_CHECK(standing);
+  standing_ = *std::move(standing);
+  run_.reset();
+  stopping_ = resume_behind_ = abort_behind_ = false;
+  changed_.clear();
+}
+
+MachineState Machine::state() const {
+  if (!on_) return MachineState::kOff;
+  if (!alarms_.empty()) return MachineState::kAlarm;
+  if (run_ == nullptr)
+    return standing_->state().zeroed ? MachineState::kIdle : MachineState::kNotZeroed;
+  if (run_->state().phase == RunPhase::kHalted) return MachineState::kHeld;
+  return stopping_ ? MachineState::kStopping : MachineState::kRunning;
+}
+
+MachineStatus Machine::status() const {
+  MachineStatus status{.time = now_,
+                       .state = state(),
+                       .mode = mode_,
+                       .override_percent = override_percent_,
+                       .run = run_ != nullptr ? run_->state() : standing_->state(),
+                       .alarms = alarms_};
+  if (run_ != nullptr) status.open = note_;
+  return status;
+}
+
+std::optional<std::string> Machine::ReadVariable(std::string_view name) const {
+  return run_ != nullptr ? run_->ReadVariable(name) : standing_->ReadVariable(name);
+}
+
+std::vector<Place> Machine::stack() const {
+  return run_ != nullptr ? run_->stack() : std::vector<Place>();
+}
+
+std::vector<ModalValue> Machine::modal_values() const {
+  return run_ != nullptr ? run_->modal_values() : standing_->modal_values();
+}
+
+std::optional<ProgramStep> Machine::simulation_until() const {
+  return simulation_ && simulation_->step > 0 ? simulation_ : std::nullopt;
+}
+
+Status Machine::Apply(const MachineInput& input) {
+  Status done = std::visit([this](const auto& one) { return Act(one); }, input);
+  Settle();
+  return done;
+}
+
+void Machine::Raise(ErrorCode code, std::string detail, const Place& place) {
+  if (std::ranges::find(alarms_, code, &Alarm::code) != alarms_.end()) return;
+  alarms_.push_back(
+      {.id = ++last_alarm_, .code = code, .detail = std::move(detail), .at = now_, .place = place});
+}
+
+void Machine::ToRun(InputKind kind, int index, double value) {
+  const InputChange change{.kind = kind, .index = index, .value = value};
+  if (run_ != nullptr) {
+    run_->Apply(change);
+  } else {
+    standing_->Apply(change);
+  }
+}
+
+// In REMOTE people at the machine start nothing; in the other modes nobody else does. OPT-4.11
+Status Machine::MaySource(StartSource source) const {
+  const bool panel = source == StartSource::kPanel;
+  if (mode_ != Mode::kManual && panel == (mode_ != Mode::kRemote)) return {};
+  return Error{ErrorCode::kCellMode,
+               "the mode is " + std::string(Name(mode_)) +
+                   (mode_ == Mode::kManual ? ": nothing starts in it"
+                    : panel                ? ": the keys of the machine start nothing in it"
+                            : ": only the keys of the machine start something in it"),
+               {}};
+}
+
+Status Machine::MayStart(const StartRun& input) const {
+  switch (state()) {
+    case MachineState::kOff:
+      return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
+    case MachineState::kAlarm:
+      return Error{alarms_.front().code, alarms_.front().detail, {}};
+    case MachineState::kRunning:
+    case MachineState::kStopping:
+      return NotNow(state(), "a run is open; hold or abort it");
+    case MachineState::kHeld:
+      return NotNow(state(), "resume or abort the run");
+    case MachineState::kNotZeroed:
+      if (!input.unzeroed && !simulation_until())
+        return Error{family_.info().not_zeroed, "START with axes that have no reference", {}};
+      break;
+    case MachineState::kIdle:
+      break;
+  }
+  if (const Status source = MaySource(input.source); !source) return source.error();
+  const std::string slot = std::to_string(input.program);
+  if (!IsSlot(input.program))
+    return Error{family_.info().no_slot, "program " + slot + ", allowed are 1 to 99", {}};
+  if (!memory_.programs.contains(input.program))
+    return Error{family_.info().empty_slot, "no program is stored in slot " + slot, {}};
+  return {};
+}
+
+Status Machine::Act(const StartRun& input) {
+  if (const Status may = MayStart(input); !may) return may.error();
+  RunSetup setup(parameters_);
+  setup.programs = memory_.programs;
+  setup.deleted_programs = memory_.deleted;
+  setup.main_program = input.program;
+  setup.schedules = memory_.schedules;
+  setup.machine_state = standing_->Save();
+  setup.mode = mode_;
+  setup.override_percent = override_percent_;
+  setup.simul = simulation_;
+  setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
+  Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
+  if (!run) return run.error();
+  simulation_.reset();
+  note_ = {
+      .number = note_.number + 1, .program = input.program, .source = input.source, .begun = now_};
+  run_ = *std::move(run);
+  run_->SetBreakpoints(breakpoints_);
+  return {};
+}
+
+Status Machine::Act(const ResumeRun& input) {
+  switch (state()) {
+    case MachineState::kOff:
+      return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
+    case MachineState::kAlarm:
+      return Error{alarms_.front().code, alarms_.front().detail, {}};
+    case MachineState::kIdle:
+    case MachineState::kNotZeroed:
+      return NotNow(state(), "no run is open; start one");
+    case MachineState::kRunning:
+      return {};
+    case MachineState::kStopping:
+    case MachineState::kHeld:
+      break;
+  }
+  if (const Status source = MaySource(input.source); !source) return source.error();
+  if (stopping_) {
+    resume_behind_ = true;
+  } else {
+    ToRun(InputKind::kStart);
+  }
+  return {};
+}
+
+void Machine::Halt(InputKind key) {
+  if (run_ == nullptr || run_->state().phase == RunPhase::kHalted) return;
+  resume_behind_ = false;
+  ToRun(key);
+  stopping_ = true;
+}
+
+Status Machine::Act(const HoldRun& /*input*/) {
+  if (!stopping_) Halt(HoldKey(family_.info(), mode_));
+  return {};
+}
+
+Status Machine::Act(const StopRun& /*input*/) {
+  Halt(InputKind::kStop);
+  return {};
+}
+
+Status Machine::Act(const AbortRun& /*input*/) {
+  if (run_ == nullptr) return {};
+  abort_behind_ = true;
+  Halt(InputKind::kStop);
+  return {};
+}
+
+// It acts in every state. What comes of the run says the family; the machine is in alarm.
+Status Machine::Act(const EmergencyStop& input) {
+  emergency_ = input.pressed;
+  if (!input.pressed || !on_) return {};
+  const Place place = run_ != nullptr ? run_->state().place : Place{};
+  ToRun(InputKind::kEmergencyStop);
+  Settle();
+  Raise(family_.info().emergency_stop, {}, place);
+  return {};
+}
+
+Status Machine::Act(const Acknowledge& input) {
+  if (!on_) return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
+  const auto found = std::ranges::find(alarms_, input.alarm, &Alarm::id);
+  if (found == alarms_.end()) return {};
+  if (emergency_ && found->code == family_.info().emergency_stop)
+    return NotNow(state(), "the emergency stop is pressed; release it first");
+  alarms_.erase(found);
+  return {};
+}
+
+// Leaving for MANUAL is a HOLD (OPT-4.24).
+Status Machine::Act(const ChangeMode& input) {
+  if (!on_) return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
+  if (input.mode == Mode::kRepeat && !family_.info().has_repeat) {
+    return Error{
+        ErrorCode::kCellMode, std::string(family_.info().title) + " has no mode REPEAT", {}};
+  }
+  if (input.mode == Mode::kManual) {
+    if (!stopping_) Halt(HoldKey(family_.info(), mode_));
+  } else if (run_ != nullptr) {
+    run_->SetMode(input.mode);
+  }
+  mode_ = input.mode;
+  return {};
+}
+
+Status Machine::Act(const ChangeOverride& input) {
+  const double highest = family_.info().override_max_percent;
+  if (!(input.percent > 0.0 && input.percent <= highest)) {
+    return Error{ErrorCode::kCellInvalidArgument,
+                 "an override of " + ShortestText(input.percent) +
+                     " %: it is above 0 and at most " + ShortestText(highest) + " %",
+                 {}};
+  }
+  override_percent_ = input.percent;
+  if (run_ != nullptr) ToRun(InputKind::kOverride, 0, input.percent);
+  return {};
+}
+
+Status Machine::Act(const ChangeInput& input) {
+  const bool logical = input.kind == InputKind::kLogical;
+  const std::string name = (logical ? "IL[" : "IA[") + std::to_string(input.index) + "]";
+  if ((!logical && input.kind != InputKind::kAnalogue) || !family_.HasVariable(parameters_, name)) {
+    return Error{ErrorCode::kCellInvalidArgument, "the machine has no input " + name, {}};
+  }
+  ToRun(input.kind, input.index, input.value);
+  return {};
+}
+
+// An open door acts as STOP. OPT-B.34
+Status Machine::Act(const MoveDoor& input) {
+  const bool goes_on = run_ != nullptr && run_->state().phase == RunPhase::kRunning;
+  ToRun(InputKind::kDoor, 0, input.open ? 1.0 : 0.0);
+  if (goes_on && run_->state().door_open) stopping_ = true;
+  return {};
+}
+
+Status Machine::Act(const SwitchPower& input) {
+  if (input.on == on_) return {};
+  if (!input.on && run_ != nullptr) {
+    run_->End(OutcomeKind::kStopped, ErrorCode::kCellPowerOff);
+    CloseRun();
+  }
+  on_ = input.on;
+  if (on_) {
+    if (emergency_) Raise(family_.info().emergency_stop, {}, {});
+    return {};
+  }
+  alarms_.clear();
+  breakpoints_.clear();  // OPT-6.08
+  simulation_.reset();
+  standing_->CyclePower();
+  return {};
+}
+
+Status Machine::Act(const WriteVariable& input) {
+  if (const Status good = family_.CheckWrite(parameters_, input.name, input.value); !good)
+    return good.error();
+  if (run_ != nullptr) {
+    run_->WriteVariable(input.name, input.value);
+  } else {
+    standing_->WriteVariable(input.name, input.value);
+  }
+  return {};
+}
+
+Status Machine::Act(const SetBreakpoints& input) {
+  for (const Breakpoint& breakpoint : input.breakpoints) {
+    if (const Status good = family_.CheckBreakpoint(breakpoint); !good) return good.error();
+  }
+  breakpoints_ = input.breakpoints;
+  if (run_ != nullptr) run_->SetBreakpoints(breakpoints_);
+  return {};
+}
+
+// Step 0 ends also what the machine kept of an earlier run (RunSetup::simul).
+Status Machine::Act(const SetSimulation& input) {
+  if (!family_.info().has_dry_run && input.until) {
+    return Error{ErrorCode::kCellNotLive,
+                 std::string(family_.info().title) + " has no dry run up to a step",
+                 {}};
+  }
+  if (input.until && (!IsSlot(input.until->program) || input.until->step < 1)) {
+    return Error{ErrorCode::kCellInvalidArgument,
+                 "a dry run ends at a step from 1 on of a program of 1 to 99",
+                 {}};
+  }
+  simulation_ = input.until.value_or(ProgramStep{});
+  return {};
+}
+
+Status Machine::Act(const StoreProgram& input) {
+  if (!IsSlot(input.slot))
+    return Error{family_.info().no_slot,
+                 "program " + std::to_string(input.slot) + ", allowed are 1 to 99",
+                 {}};
+  memory_.programs[input.slot] = input.program;
+  memory_.deleted.erase(input.slot);
+  changed_.insert(input.slot);
+  return {};
+}
+
+Status Machine::Act(const DeleteProgram& input) {
+  if (memory_.programs.erase(input.slot) == 0)
+    return Error{family_.info().empty_slot,
+                 "no program is stored in slot " + std::to_string(input.slot),
+                 {}};
+  memory_.deleted.insert(input.slot);
+  changed_.insert(input.slot);
+  return {};
+}
+
+Status Machine::Act(const SetSchedules& input) {
+  memory_.schedules = input.schedules;
+  return {};
+}
+
+}  // namespace rmlcell::machine

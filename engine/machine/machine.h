@@ -1,0 +1,189 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/core/result.h"
+#include "engine/core/units.h"
+#include "engine/machine/family.h"
+#include "engine/machine/machine_input.h"
+#include "engine/machine/machine_note.h"
+#include "engine/machine/observer.h"
+#include "engine/machine/run.h"
+#include "engine/machine/standing.h"
+
+namespace rmlcell::machine {
+
+// LIVE-2.03, without what belongs to its host (STARTING, RECOVERING, INSPECT, LOST).
+enum class MachineState {
+  kOff,
+  kNotZeroed,  // on and standing, its axes without reference
+  kIdle,       // on and standing, no run is open
+  kRunning,    // a run is open and goes on
+  kStopping,   // comes to rest for HOLD or STOP
+  kHeld,       // a run is open and stands
+  kAlarm,      // an alarm is not acknowledged
+};
+std::string_view Name(MachineState state);  // "HELD"
+
+// A run that is open, or the last one that was.
+struct RunNote {
+  std::int64_t number = 0;  // counts from 1
+  int program = 0;
+  StartSource source = StartSource::kConsole;
+  SimTime begun{0};  // of the machine: time of the run counts from here
+};
+
+// How it is now.
+struct MachineStatus {
+  SimTime time{0};  // of the machine
+  MachineState state = MachineState::kIdle;
+  Mode mode = Mode::kRemote;
+  double override_percent = 100.0;
+  RunState run{};  // the machine's own where no run is open: phase kFinished
+  std::optional<RunNote> open{};
+  std::vector<Alarm> alarms{};
+};
+
+// The programs of a machine and what belongs to them.
+struct MachineMemory {
+  std::map<int, StoredProgram> programs{};  // by slot 1..99
+  // Slots that held a program once and are empty now: deleting counts as altering (OPT-1.13).
+  std::set<int> deleted{};
+  std::optional<std::vector<LaserSchedule>> schedules{};  // none: all that the machine can have
+};
+
+// What runs left in the memory: the executable of an object, at slot + 100 (OPT-1.11).
+struct MadeExecutable {
+  int slot = 0;
+  std::string bytes{};
+};
+
+// A run that is over.
+struct RunOver {
+  RunNote run{};
+  Outcome outcome{};
+  SimTime lasted{0};
+  std::uint64_t steps = 0;
+  std::vector<Figure> figures{};
+};
+
+enum class Progress {
+  kReached,   // the time that was asked for
+  kMoreWork,  // not yet: call again
+};
+
+// A machine that lives between runs, of whatever family: it stands, is started, held and changed by
+// inputs, and keeps what a run leaves. Its time goes on in every state; a run inside it is the same
+// Run that a simulation drives, in its own time, and no budget ends it. Deterministic: the same
+// inputs at the same times give the same, however the caller divides time. One thread at a time.
+class Machine {
+ public:
+  // `state`: of Save; none: a new machine, in REMOTE. `observer` is told of runs, by the time of
+  // each; it outlives this. Errors: those of MachineFamily::NewStanding, CellBadText.
+  static Result<std::unique_ptr<Machine>> Make(const MachineFamily& family, Parameters parameters,
+                                               MachineMemory memory, std::string_view state,
+                                               RunObserver& observer);
+
+  // Precondition: not before time().
+  Progress Advance(SimTime until);
+
+  // At the present time. Refused, and nothing has changed:
+  //   CellMachineState   the state does not allow it; the detail says what is possible
+  //   CellMode           the mode or the source does not
+  //   NotZeroed          START with axes that have no reference
+  //   the alarm's own    START and RESUME while there is one
+  //   CellNotLive        it is off
+  //   CellInvalidArgument, ProgramMissing and the like: what the input names is none
+  Status Apply(const MachineInput& input);
+
+  const MachineFamily& family() const { return family_; }
+  // Inputs, and variables that may be written.
+  bool has_inputs() const { return family_.HasVariable(parameters_, "IL[0]"); }
+
+  SimTime time() const { return now_; }
+  MachineState state() const;
+  MachineStatus status() const;
+  const MachineMemory& memory() const { return memory_; }
+
+  // "VR[5]" -> "7.0"; nothing for what is no variable of this machine.
+  std::optional<std::string> ReadVariable(std::string_view name) const;
+  std::vector<Place> stack() const;  // of the open run, that in execution last; else nothing
+  std::vector<ModalValue> modal_values() const;
+  const std::vector<Breakpoint>& breakpoints() const { return breakpoints_; }
+  std::optional<ProgramStep> simulation_until() const;
+
+  // Runs that ended and executables that were made since the last call.
+  std::vector<RunOver> TakeRunsOver() { return std::exchange(over_, {}); }
+  std::vector<MadeExecutable> TakeMadeExecutables() { return std::exchange(made_, {}); }
+
+  // What it keeps, whatever it is doing: axes, variables, images, mode, override, alarms. An open
+  // run is not in it: it is never continued from its middle. Versioned bytes.
+  std::string Save() const;
+
+ private:
+  Machine(const MachineFamily& family, Parameters parameters, MachineMemory memory,
+          RunObserver& observer);
+
+  // One for each kind of MachineInput.
+  Status Act(const StartRun& input);
+  Status Act(const ResumeRun& input);
+  Status Act(const HoldRun& input);
+  Status Act(const StopRun& input);
+  Status Act(const AbortRun& input);
+  Status Act(const EmergencyStop& input);
+  Status Act(const Acknowledge& input);
+  Status Act(const ChangeMode& input);
+  Status Act(const ChangeOverride& input);
+  Status Act(const ChangeInput& input);
+  Status Act(const MoveDoor& input);
+  Status Act(const SwitchPower& input);
+  Status Act(const WriteVariable& input);
+  Status Act(const SetBreakpoints& input);
+  Status Act(const SetSimulation& input);
+  Status Act(const StoreProgram& input);
+  Status Act(const DeleteProgram& input);
+  Status Act(const SetSchedules& input);
+
+  Status MayStart(const StartRun& input) const;
+  Status MaySource(StartSource source) const;
+  void ToRun(InputKind kind, int index = 0, double value = 0.0);
+  void Halt(InputKind key);
+  void Raise(ErrorCode code, std::string detail, const Place& place);
+  void Settle();
+  void CloseRun();
+  Status Take(MachineNote note);
+
+  const MachineFamily& family_;
+  const Parameters parameters_;
+  MachineMemory memory_;
+  RunObserver& observer_;
+
+  SimTime now_{0};
+  bool on_ = true;
+  bool emergency_ = false;  // the key is down
+  Mode mode_ = Mode::kRemote;
+  double override_percent_ = 100.0;
+  std::vector<Breakpoint> breakpoints_;
+  std::optional<ProgramStep> simulation_;
+  std::vector<Alarm> alarms_;
+  std::int64_t last_alarm_ = 0;
+  RunNote note_{};  // of the run that was begun last
+  std::unique_ptr<Standing> standing_;
+  std::unique_ptr<Run> run_;    // open
+  bool stopping_ = false;       // a HOLD or STOP of this run has not halted it yet
+  bool resume_behind_ = false;  // it was taken back meanwhile: START follows the halt
+  bool abort_behind_ = false;   // the run is over once it stands
+  std::set<int> changed_;       // slots whose programs were changed while a run is open
+  std::vector<RunOver> over_;
+  std::vector<MadeExecutable> made_;
+};
+
+}  // namespace rmlcell::machine

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/machine/inputs.h"
+#include "engine/machine/run_setup.h"
+
+namespace rmlcell::machine {
+
+// Whoever starts a run. LIVE-2.11
+enum class StartSource {
+  kConsole,  // a person at a computer
+  kQueue,    // the queue, for a job
+  kPanel,    // the keys at the machine
+  kGate1,    // an input that starts a program of its own
+  kGate2,
+};
+
+// What acts on a machine from outside, one kind each.
+struct StartRun {
+  int program = 0;
+  StartSource source = StartSource::kConsole;
+  bool unzeroed = false;  // the program zeroes the axes itself
+};
+struct ResumeRun {
+  StartSource source = StartSource::kConsole;
+};
+struct HoldRun {};   // behind what is in progress
+struct StopRun {};   // at once, on the path
+struct AbortRun {};  // the run is over where it is: CANCELLED
+struct EmergencyStop {
+  bool pressed = true;  // false: released
+};
+struct Acknowledge {
+  std::int64_t alarm = 0;
+};
+struct ChangeMode {
+  Mode mode = Mode::kRemote;
+};
+struct ChangeOverride {
+  double percent = 100.0;
+};
+struct ChangeInput {  // IL, IA
+  InputKind kind = InputKind::kLogical;
+  int index = 0;
+  double value = 0.0;
+};
+struct MoveDoor {
+  bool open = false;
+};
+struct SwitchPower {
+  bool on = false;
+};
+struct WriteVariable {
+  std::string name{};
+  double value = 0.0;
+};
+struct SetBreakpoints {
+  std::vector<Breakpoint> breakpoints{};  // these and no others
+};
+struct SetSimulation {
+  std::optional<ProgramStep> until{};  // none: the next run is no dry run
+};
+// What is stored acts at the next start; a run that is open has what it began with. OPT-B.65
+struct StoreProgram {
+  int slot = 0;
+  StoredProgram program{};
+};
+struct DeleteProgram {
+  int slot = 0;
+};
+struct SetSchedules {
+  std::optional<std::vector<LaserSchedule>> schedules{};  // none: all that the machine can have
+};
+
+using MachineInput =
+    std::variant<StartRun, ResumeRun, HoldRun, StopRun, AbortRun, EmergencyStop, Acknowledge,
+                 ChangeMode, ChangeOverride, ChangeInput, MoveDoor, SwitchPower, WriteVariable,
+                 SetBreakpoints, SetSimulation, StoreProgram, DeleteProgram, SetSchedules>;
+
+}  // namespace rmlcell::machine

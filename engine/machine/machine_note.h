@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/result.h"
+#include "engine/core/units.h"
+#include "engine/machine/outcome.h"
+#include "engine/machine/run_setup.h"
+
+namespace rmlcell::machine {
+
+struct Alarm {
+  std::int64_t id = 0;  // counts from 1
+  ErrorCode code{};
+  std::string detail{};
+  SimTime at{0};  // of the machine
+  Place place{};
+
+  bool operator==(const Alarm&) const = default;
+};
+
+// What a machine keeps beside that of its family, and that (Standing::Save).
+struct MachineNote {
+  SimTime time{0};
+  bool on = true;
+  bool emergency = false;  // the key is down
+  Mode mode = Mode::kRemote;
+  double override_percent = 100.0;
+  std::optional<ProgramStep> simulation{};
+  std::vector<Breakpoint> breakpoints{};
+  std::vector<Alarm> alarms{};
+  std::int64_t last_alarm = 0;
+  std::int64_t last_run = 0;
+  std::string family{};
+
+  bool operator==(const MachineNote&) const = default;
+};
+
+// A key and its values a line, with a version in front; the bytes of the family behind all lines.
+std::string WriteMachineNote(const MachineNote& note);
+
+// Errors: CellBadText for what WriteMachineNote never writes.
+Result<MachineNote> ReadMachineNote(std::string_view text);
+
+}  // namespace rmlcell::machine

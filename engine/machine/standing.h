@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/machine/inputs.h"
+#include "engine/machine/run.h"
+
+namespace rmlcell::machine {
+
+// A machine of a family that stands, with no run open: what it keeps from one run to the next,
+// looked at and changed. A run begins with it (RunSetup::machine_state) and leaves another
+// (Run::SaveMachine). One thread at a time.
+class Standing {
+ public:
+  virtual ~Standing() = default;
+
+  // At time 0, in kFinished.
+  virtual RunState state() const = 0;
+
+  // As those of Run.
+  virtual std::optional<std::string> ReadVariable(std::string_view name) const = 0;
+  virtual void WriteVariable(std::string_view /*name*/, double /*value*/) {}
+  virtual std::vector<ModalValue> modal_values() const { return {}; }
+
+  // An input or the door; keys and the override do nothing here.
+  virtual void Apply(const InputChange& /*input*/) {}
+
+  // Off and on again: what the machine keeps only while it has power is as it comes.
+  virtual void CyclePower() = 0;
+
+  virtual std::string Save() const = 0;
+};
+
+}  // namespace rmlcell::machine

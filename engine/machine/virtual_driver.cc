@@ -1,0 +1,58 @@
+#include "engine/machine/virtual_driver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/number_text.h"
+
+namespace rmlcell::machine {
+
+VirtualDriver::VirtualDriver(std::unique_ptr<Machine> machine, SimTime clock)
+    : machine_(std::move(machine)), clock_(clock), time_(machine_->time()) {}
+
+DriverCapabilities VirtualDriver::capabilities() const {
+  return {.inputs = machine_->has_inputs(),
+          .variables = machine_->has_inputs(),
+          .breakpoints = machine_->family().info().has_breakpoints};
+}
+
+SimTime VirtualDriver::DueAt(SimTime clock) const {
+  const double since_ns = static_cast<double>((clock - clock_).count());
+  return std::max(machine_->time(), time_ + SimTime(std::llround(factor_ * since_ns)));
+}
+
+void VirtualDriver::Anchor(SimTime clock) {
+  clock_ = clock;
+  time_ = machine_->time();
+}
+
+Progress VirtualDriver::Pump(SimTime clock) {
+  const SimTime due = DueAt(clock);
+  if (machine_->Advance(due) == Progress::kReached) return Progress::kReached;
+  const SimTime late(std::llround(static_cast<double>((due - machine_->time()).count()) / factor_));
+  if (late > kMadeUp) {
+    lost_ += late;
+    Anchor(clock);
+  }
+  return Progress::kMoreWork;
+}
+
+// It acts where the machine is: never at a time before.
+Status VirtualDriver::Order(SimTime clock, const MachineInput& input) {
+  Pump(clock);
+  return machine_->Apply(input);
+}
+
+Status VirtualDriver::SetFactor(SimTime clock, double factor) {
+  if (!(factor >= kFactorMin && factor <= kFactorMax)) {
+    return Error{ErrorCode::kCellInvalidArgument,
+                 "a factor of " + ShortestText(factor) + ": it is 0.1 to 100",
+                 {}};
+  }
+  Pump(clock);
+  Anchor(clock);
+  factor_ = factor;
+  return {};
+}
+
+}  // namespace rmlcell::machine

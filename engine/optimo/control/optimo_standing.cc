@@ -1,0 +1,82 @@
+#include "engine/optimo/control/optimo_standing.h"
+
+#include <algorithm>
+
+#include "engine/motion/kinematics/kinematics.h"
+#include "engine/optimo/control/modal_values.h"
+#include "engine/optimo/machine/situation.h"
+
+namespace rmlcell::optimo {
+
+machine::RunState OptimoStanding::state() const {
+  machine::RunState state;
+  state.phase = machine::RunPhase::kFinished;
+  state.axes = s_.axes;
+  state.tip = HeadOf(s_.tool, parameters_).TipOf(s_.axes);
+  state.zeroed = s_.zeroed;
+  state.door_open = s_.door_open;
+  return state;
+}
+
+void OptimoStanding::WriteVariable(std::string_view name, double value) {
+  const std::optional<Variable> variable = VariableNamed(name);
+  if (!variable) return;
+  const Result<float> number = Writable(*variable, value, parameters_);
+  if (!number) return;
+  const std::size_t n = variable->index;
+  const bool on = *number != 0.0F;
+  switch (variable->group) {
+    case VariableGroup::kVr:
+      s_.data.vr[n] = *number;
+      break;
+    case VariableGroup::kVi:
+      s_.data.vi[n] = *number;
+      break;
+    case VariableGroup::kVl:
+      s_.data.vl[n] = on;
+      break;
+    case VariableGroup::kOl: {
+      s_.data.ol[n] = on;
+      const bool other_gas =
+          (n == kGas2 && s_.outputs.logical[kGas3]) || (n == kGas3 && s_.outputs.logical[kGas2]);
+      if (!on || !other_gas) s_.outputs.logical[n] = on;
+      break;
+    }
+    case VariableGroup::kOa:
+      s_.data.oa[n] = *number;
+      s_.outputs.analogue[n] = *number;
+      break;
+    default:
+      break;  // not Writable
+  }
+}
+
+std::vector<machine::ModalValue> OptimoStanding::modal_values() const {
+  return ModalValuesOf(s_.tool, s_.work_offset);
+}
+
+void OptimoStanding::Apply(const machine::InputChange& input) {
+  const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
+  switch (input.kind) {
+    case machine::InputKind::kLogical:
+      s_.data.il_physical[index] = input.value != 0.0;
+      break;
+    case machine::InputKind::kAnalogue:
+      s_.data.ia_physical[index] = static_cast<float>(input.value);
+      break;
+    case machine::InputKind::kDoor:
+      s_.door_open = input.value != 0.0;
+      break;
+    default:
+      break;
+  }
+}
+
+void OptimoStanding::CyclePower() {
+  s_.zeroed = false;
+  s_.tool = {};
+  s_.breakpoint.reset();
+  s_.simul.reset();
+}
+
+}  // namespace rmlcell::optimo

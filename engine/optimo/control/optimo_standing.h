@@ -1,0 +1,32 @@
+#pragma once
+
+#include "engine/machine/standing.h"
+#include "engine/optimo/machine/machine_state.h"
+
+namespace rmlcell::optimo {
+
+// An Optimo between two runs.
+class OptimoStanding final : public machine::Standing {
+ public:
+  OptimoStanding(OptimoParameters parameters, MachineState state)
+      : parameters_(std::move(parameters)), s_(std::move(state)) {}
+
+  machine::RunState state() const override;
+  std::optional<std::string> ReadVariable(std::string_view name) const override {
+    return ReadByName(s_.data, name);
+  }
+  // Outputs follow their images: UPDATE ON is in force when no program runs. A second assist gas
+  // stays off beside the first (OPT-5.40).
+  void WriteVariable(std::string_view name, double value) override;
+  std::vector<machine::ModalValue> modal_values() const override;
+  void Apply(const machine::InputChange& input) override;
+  // No reference, no TCP, no BREAK and no SIMUL. OPT-4.68, OPT-6.08, OPT-6.30
+  void CyclePower() override;
+  std::string Save() const override { return EncodeMachineState(s_); }
+
+ private:
+  const OptimoParameters parameters_;
+  MachineState s_;
+};
+
+}  // namespace rmlcell::optimo

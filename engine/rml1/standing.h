@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "engine/core/result.h"
+#include "engine/machine/standing.h"
+#include "engine/rml1/device.h"
+#include "engine/rml1/variables.h"
+
+namespace rmlcell::rml1 {
+
+// A mill between two streams: its axes have their reference, and it has neither inputs nor a door
+// that it knows of (RML1-7.08).
+class MillStanding final : public machine::Standing {
+ public:
+  // Errors: CellBadText for a machine state that is none.
+  static Result<std::unique_ptr<machine::Standing>> Make(Profile profile,
+                                                         std::string_view machine_state);
+
+  machine::RunState state() const override;
+  std::optional<std::string> ReadVariable(std::string_view name) const override;
+  std::vector<machine::ModalValue> modal_values() const override;
+  // As it comes: the settings of the streams before are gone, and so is the spindle; the tool stays
+  // where it is, and so does Z0, which the operator set.
+  void CyclePower() override;
+  std::string Save() const override;
+
+ private:
+  explicit MillStanding(Profile profile);
+  ToolNow tool() const;
+
+  std::unique_ptr<const Profile> profile_;  // of the device
+  Device device_;
+};
+
+}  // namespace rmlcell::rml1

@@ -1,0 +1,121 @@
+// The same machine with streams: commands in place of steps, no inputs and no variables to write.
+#include "tests/engine/machine/machine_bed.h"
+
+namespace rmlcell::machine {
+namespace {
+
+using testing::HasSubstr;
+
+class MillMachine : public MachineTest {
+ protected:
+  MillMachine() : MachineTest("rml1") {}
+};
+
+constexpr const char* kStrokes =
+    "VS10;!VZ10;!PZ-100,200;!MC1;PU2010,1510;PD4010,1510;PD4010,3510;PD2010,3510;PU0,0;!MC0;";
+
+// HOLD in REMOTE lets the stroke in progress end; a held mill stands as long as nobody resumes.
+TEST_F(MillMachine, IsHeldAndGoesOn) {
+  Load({kStrokes});
+  Start();
+  GoOn(At(60.0));
+  const SimTime plain = Over().lasted;
+  Load({kStrokes});
+  Start();
+  GoOn(At(3.0));
+  Good(HoldRun{});
+  EXPECT_EQ(state(), MachineState::kStopping);
+  GoOn(At(60.0));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  const SimTime halted = machine->status().run.time;
+  EXPECT_EQ(halted, At(60.0));
+  EXPECT_EQ(heard.halts.size(), 1U);
+  Good(ResumeRun{});
+  GoOn(At(120.0));
+  EXPECT_EQ(state(), MachineState::kIdle);
+  EXPECT_GT(Over().lasted, At(60.0));
+  EXPECT_LT(plain, At(60.0));
+}
+
+// A pause of the stream is a halt that RESUME ends: RML1-3C.08. Its SINGLE and its breakpoints are
+// commands.
+TEST_F(MillMachine, HaltsBehindCommands) {
+  Load({"PU100,100;!NR;PU200,200;PU300,300;PU400,400;"});
+  Start();
+  GoOn(At(20.0));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(machine->status().run.halted_by, HaltReason::kProgram);
+  Good(SetBreakpoints{{{.at = {1, 5}}, {.at = {1, 3}}, {.at = {2, 4}}}});
+  Good(ResumeRun{});
+  GoOn(At(40.0));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(heard.halts, (std::vector<int>{2, 3}));
+  EXPECT_EQ(machine->stack().at(0).step, 3);
+  Good(ResumeRun{});
+  GoOn(At(60.0));
+  EXPECT_EQ(heard.halts, (std::vector<int>{2, 3, 5}));
+  Good(ResumeRun{});
+  GoOn(At(80.0));
+  EXPECT_EQ(state(), MachineState::kIdle);
+}
+
+// Set where the tool passes without standing: it halts as HOLD would, behind that command.
+TEST_F(MillMachine, ABreakpointThatComesLate) {
+  std::string chain = "VS10;!VZ10;!PZ-100,200;!MC1;PU0,0;";
+  for (int i = 1; i <= 60; ++i)  // one straight line in parts of 0.1 mm: command 5 + i
+    chain += "PD" + std::to_string(10 * i) + ",0;";
+  Load({chain});
+  Start();
+  while (machine->status().run.place.step < 15) GoOn(machine->time() + At(0.001));
+  Good(SetBreakpoints{{{.at = {1, 18}}}});
+  GoOn(At(100.0));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(machine->status().run.halted_by, HaltReason::kBreakpoint);
+  EXPECT_GE(machine->status().run.place.step, 18);
+  EXPECT_LE(machine->status().run.place.step, 30);
+  EXPECT_EQ(machine->status().run.tip_speed_mm_s, 0.0);
+  Good(ResumeRun{});
+  GoOn(At(200.0));
+  EXPECT_EQ(Over().outcome.kind, OutcomeKind::kCompleted);
+  EXPECT_EQ(Value("X"), "600");
+}
+
+TEST_F(MillMachine, RefusesWhatAMillDoesNotHave) {
+  Load({kStrokes});
+  EXPECT_THAT(Refused(ChangeMode{Mode::kRepeat}), HasSubstr("no mode REPEAT"));
+  EXPECT_THAT(Refused(SetSimulation{ProgramStep{1, 2}}), HasSubstr("no dry run"));
+  EXPECT_THAT(Refused(SetBreakpoints{{{.at = {1, 2}, .condition = "X > 3"}}}),
+              HasSubstr("no expressions"));
+  EXPECT_THAT(Refused(SetBreakpoints{{{.at = {1, 2}, .from_pass = 2}}}),
+              HasSubstr("comes to each command once"));
+  EXPECT_THAT(Refused(WriteVariable{"VS", 5.0}), HasSubstr("by the machine alone"));
+  EXPECT_THAT(Refused(WriteVariable{"VI[1]", 5.0}), HasSubstr("no variable"));
+  EXPECT_THAT(Refused(ChangeInput{.kind = InputKind::kLogical, .index = 1, .value = 1.0}),
+              HasSubstr("no input"));
+  EXPECT_THAT(Refused(ChangeOverride{0.0}), HasSubstr("above 0"));
+}
+
+// RML1-7.08: speeds and the place stay from stream to stream, and a power cycle puts the settings
+// back; the tool has its reference all the time.
+TEST_F(MillMachine, KeepsItsRegisters) {
+  Load({"VS7;PU300,200;"});
+  const std::string fresh = Value("VS");
+  Start();
+  GoOn(At(30.0));
+  EXPECT_EQ(Value("VS"), "7");
+  EXPECT_EQ(Value("X"), "300");
+  const std::string saved = machine->Save();
+  Load({"PU0,0;"}, saved);
+  EXPECT_EQ(machine->Save(), saved);
+  EXPECT_EQ(Value("VS"), "7");
+  Good(SwitchPower{false});
+  Good(SwitchPower{true});
+  EXPECT_EQ(state(), MachineState::kIdle);
+  EXPECT_EQ(Value("VS"), fresh);
+  EXPECT_EQ(Value("X"), "300");
+  Good(EmergencyStop{});
+  EXPECT_EQ(CodeText(machine->status().alarms.at(0).code), "CELL-E9437");
+}
+
+}  // namespace
+}  // namespace rmlcell::machine

@@ -1,0 +1,78 @@
+// A virtual machine along a clock: live.md 3.
+#include "engine/machine/virtual_driver.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/families/families.h"
+#include "engine/machine/observer.h"
+#include "engine/machine/parameters.h"
+
+namespace rmlcell::machine {
+namespace {
+
+SimTime Clock(double seconds) { return FromSeconds(1000.0 + seconds); }
+
+class VirtualDriverTest : public testing::Test {
+ protected:
+  void Load(const std::string& text) {
+    const MachineFamily& family = *families::FindFamily("optimo");
+    const Parameters parameters = *MakeParameters(family, "standard", {});
+    Translation made = family.Translate({.name = "a.S", .bytes = text}, parameters, {});
+    ASSERT_TRUE(made.ok);
+    MachineMemory memory;
+    memory.programs[1].object = Bytes::Of(ObjectOf(std::move(made), text));
+    driver = std::make_unique<VirtualDriver>(
+        *Machine::Make(family, parameters, std::move(memory), {}, nobody), Clock(0.0));
+  }
+  double Time() const { return ToSeconds(driver->status().time); }
+
+  RunObserver nobody;
+  std::unique_ptr<VirtualDriver> driver;
+};
+
+// LIVE-3.11: the factor holds from where it is set; a standing machine's time goes on, too.
+TEST_F(VirtualDriverTest, ItsTimeFollowsTheClock) {
+  Load("DELAY 10\n");
+  EXPECT_EQ(driver->Pump(Clock(2.0)), Progress::kReached);
+  EXPECT_EQ(Time(), 2.0);
+  EXPECT_TRUE(driver->SetFactor(Clock(3.0), 10.0));
+  EXPECT_EQ(Time(), 3.0);
+  EXPECT_TRUE(driver->Start(Clock(3.5), {.program = 1}));
+  driver->Pump(Clock(4.0));
+  EXPECT_EQ(Time(), 13.0);
+  EXPECT_EQ(driver->status().run.time, FromSeconds(5.0));
+  EXPECT_TRUE(driver->SetFactor(Clock(4.0), 0.1));
+  driver->Pump(Clock(14.0));
+  EXPECT_EQ(Time(), 14.0);
+  EXPECT_TRUE(driver->Order(Clock(24.0), StopRun{}));  // stamped when it acts
+  EXPECT_EQ(driver->status().run.time, FromSeconds(7.0));
+  EXPECT_EQ(driver->status().state, MachineState::kHeld);
+  for (const double factor : {0.05, 101.0, -1.0})
+    EXPECT_FALSE(driver->SetFactor(Clock(24.0), factor)) << factor;
+  EXPECT_EQ(driver->factor(), 0.1);
+  EXPECT_TRUE(driver->capabilities().inputs);
+}
+
+// LIVE-3.14: what cannot be done in time is done all the same, and its time goes on from there. The
+// loop takes no time: a turn is 20,000 instructions.
+TEST_F(VirtualDriverTest, LateByMoreThanItMakesUpFor) {
+  Load(
+      "VI[1] = 0\nVI[2] = 0\n10 VI[1] = VI[1] + 1\nIF VI[1] < 30000 THEN 10\nDELAY 1\nVI[2] = 1\n");
+  EXPECT_TRUE(driver->Start(Clock(0.0), {.program = 1}));
+  EXPECT_EQ(driver->Pump(Clock(0.05)), Progress::kMoreWork);
+  EXPECT_EQ(driver->TakeLost(), SimTime(0));  // it may still make up for that
+  EXPECT_EQ(driver->Pump(Clock(0.25)), Progress::kMoreWork);
+  EXPECT_EQ(Time(), 0.0);
+  EXPECT_EQ(driver->TakeLost(), FromSeconds(0.25));
+  double clock = 0.25;
+  while (driver->Pump(Clock(clock)) == Progress::kMoreWork) {
+  }
+  driver->Pump(Clock(clock + 1.0) - SimTime(1));
+  EXPECT_EQ(driver->machine().ReadVariable("VI[2]"), "0");
+  driver->Pump(Clock(clock + 1.0));
+  EXPECT_EQ(driver->machine().ReadVariable("VI[2]"), "1");
+  EXPECT_EQ(driver->TakeLost(), SimTime(0));
+}
+
+}  // namespace
+}  // namespace rmlcell::machine
