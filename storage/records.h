@@ -36,11 +36,35 @@ struct MachineRecord {
   std::string title{};
   std::string profile{};                            // empty: the defaults of the family
   std::map<std::string, std::string> parameters{};  // what differs from the profile
-  std::string state{};  // engine bytes kept between jobs; empty: a new machine
   Revision revision = 0;
   WallTime created_at{};
   WallTime updated_at{};
 };
+
+// The right to be the host of a machine: to move it, and to say where it stands. LIVE-3.02
+struct MachineLease {
+  std::string machine{};
+  std::string host{};         // the process that has it
+  std::string server{};       // through which it was renewed last
+  std::int64_t fence = 0;     // grows with every lease that this store ever gave
+  std::int64_t renewals = 0;  // since it was taken
+  std::chrono::milliseconds duration{0};
+  bool pinned = false;  // of a device: only a person gives it to another host
+
+  bool operator==(const MachineLease&) const = default;
+};
+
+// Where a machine stands, as its host said last. It lies beside the configuration of the machine
+// and changes no revision of it.
+struct MachineMark {
+  std::int64_t fence = 0;
+  std::int64_t sequence = 0;  // of the host's journal: grows under one fence
+  std::string state{};        // engine bytes; empty: a new machine
+  std::string note{};         // the host's own, opaque
+  bool clean = true;          // no run was open
+  WallTime at{};              // when it was stored
+};
+inline constexpr std::size_t kMachineMarkBytesMax = std::size_t{256} << 10;  // state and note
 
 struct ProgramRecord {
   std::string machine{};

@@ -123,12 +123,34 @@ struct NewExecutable {
   std::string bytes{};
 };
 
+// Who wants to be the host of a machine.
+struct MachineClaim {
+  std::string machine{};
+  std::string host{};
+  std::string server{};
+  std::chrono::milliseconds duration{0};
+  bool pinned = false;
+  // The lease as the claimant has seen it, unchanged for longer than it lasts, by a clock of its
+  // own: its holder is gone (PG-5.09). Of a pinned one that is not enough.
+  std::optional<MachineLease> seen{};
+  bool by_hand = false;  // a person takes it, whoever has it
+};
+
+// What a host writes about its machine, all of it or nothing.
+struct MachineWrite {
+  std::vector<NewEvent> events{};     // of the machine, into the log of the cell
+  std::optional<MachineMark> mark{};  // its fence and time are those of the write
+};
+
 // The end of a job and all that is written with it.
 struct JobEnd {
   JobOutcome outcome{};
   std::vector<NewArtifact> artifacts{};
   std::vector<NewExecutable> executables{};
   std::vector<NewEvent> events{};
+  // Of a RUN: where it left its machine, by the host that has it.
+  std::optional<MachineLease> machine_lease{};
+  MachineWrite machine{};
 };
 
 // What a worker that is free takes.
@@ -147,6 +169,7 @@ struct JobRequest {
 // The program memory of a machine and what belongs to it.
 struct MachineMemory {
   MachineRecord machine{};
+  std::optional<MachineMark> mark{};      // where it stands; none: a new machine
   std::vector<ProgramRecord> programs{};  // by slot, with object and executable, without source
   // Slots that held a program once and are empty now, in order (OPT-1.13: deleting counts as
   // altering).
@@ -196,6 +219,22 @@ class Store {
   // run.
   virtual Status DeleteMachine(std::string_view id, Revision expected,
                                std::string_view caller = {}) = 0;
+
+  // --- machines that live: one host for each
+  // Given when nobody has it, to the host that has it already (the fence stays), and to one that
+  // has seen that the holder is gone, or that a person sends; then with a new fence.
+  // CellUnknownMachine; CellMachineTaken, with the holder; CellInvalidArgument: no host or
+  // duration.
+  virtual Result<MachineLease> TakeMachine(const MachineClaim& claim) = 0;
+  // One renewal more, through this server. CellLeaseLost.
+  virtual Result<MachineLease> RenewMachine(const MachineLease& lease, std::string_view server) = 0;
+  virtual Status ReleaseMachine(const MachineLease& lease) = 0;   // CellLeaseLost
+  virtual Result<std::vector<MachineLease>> MachineLeases() = 0;  // those that are held, by machine
+  // CellLeaseLost; CellTooLarge: kMachineMarkBytesMax, an event; CellInvalidArgument: a mark that
+  // is not newer than the one that is there. Older ones may be left out.
+  virtual Status AppendMachine(const MachineLease& lease, const MachineWrite& write) = 0;
+  // Nothing: no host has ever said. CellUnknownMachine.
+  virtual Result<std::optional<MachineMark>> GetMachineMark(std::string_view machine) = 0;
 
   // --- programs
   // Slots in order, those after `after_slot`.
@@ -322,7 +361,8 @@ class Store {
                       std::function<void(Result<std::int64_t>)> done) = 0;
   virtual Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events);
   // Ends the job, in one transaction: whoever reads its last event finds its artifacts and
-  // executables. CellLeaseLost; CellNotFound: an artifact names content that is not there;
+  // executables, and the machine where the run left it. CellLeaseLost, also of the machine;
+  // CellNotFound: an artifact names content that is not there;
   // CellInvalidArgument: a state that is not final, an artifact's name that the job has already;
   // CellTooLarge: an executable beyond kProgramBytesMax.
   virtual Result<JobRecord> Finish(const Lease& lease, const JobEnd& end) = 0;

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 #include "clients/cli/local.h"
 #include "clients/cli/place_option.h"
@@ -210,7 +211,8 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
 // What the verbs of a server are given on the command line; each uses its own.
 struct RemoteArguments {
   std::string machine, project, job, artifact;
-  std::string file, form, output, etag, filter, order = "newest";
+  std::string file, form, output, etag, filter, order = "newest", before;
+  std::optional<int> priority;
   int slot = 0;
   int limit = 20;
   std::int64_t after = 0;
@@ -357,6 +359,34 @@ void AddProjectVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int&
   in->callback([&] { exit_code = ImportProject(remote, given.project, given.file); });
 }
 
+void AddQueueOptions(CLI::App& verb, SubmitRequest& submit) {
+  verb.add_option("--priority", submit.priority, "jobs of a higher one start first")
+      ->check(CLI::Range(-100, 100));
+  verb.add_flag("--hold", submit.hold, "it waits until rmlcell resume");
+  verb.add_option("--not-before", submit.not_before, "2026-11-25T10:00:00Z");
+  verb.add_option("--after-job", submit.after, "starts when these have succeeded");
+}
+
+void AddQueueVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {
+  CLI::App* hold = RemoteVerb(app, "hold", "Hold a job: one that waits does not start",
+                              "  rmlcell hold 17", remote);
+  hold->add_option("JOB", given.job)->required();
+  hold->callback([&] { exit_code = HoldJob(remote, given.job); });
+  CLI::App* resume = RemoteVerb(app, "resume", "Let a job go on, or start, that is held",
+                                "  rmlcell resume 17", remote);
+  resume->add_option("JOB", given.job)->required();
+  resume->callback([&] { exit_code = ResumeJob(remote, given.job); });
+  CLI::App* move =
+      RemoteVerb(app, "move", "Give a job that waits another place in the queue",
+                 "  rmlcell move 17 --before 12                    in front of job 12\n"
+                 "  rmlcell move 17 --priority 10                  before all of less",
+                 remote);
+  move->add_option("JOB", given.job)->required();
+  move->add_option("--before", given.before, "job; else behind all of its priority");
+  move->add_option("--priority", given.priority, "from now on")->check(CLI::Range(-100, 100));
+  move->callback([&] { exit_code = MoveJob(remote, given.job, given.before, given.priority); });
+}
+
 void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {
   CLI::App* verb = RemoteVerb(
       app, "submit", "Submit a job",
@@ -386,6 +416,7 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
                    "block, tool and target of the same slot's program in this project")
       ->excludes("--stock");
   verb->add_flag("--trace", given.submit.trace, "keep a trace");
+  AddQueueOptions(*verb, given.submit);
   CLI::Option* watched = verb->add_flag("--watch", given.submit.watch, "watch the job to its end");
   verb->add_flag("--strict", given.submit.strict, kStrictText)->needs(watched);
   verb->callback([&] {
@@ -421,6 +452,7 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
   CLI::App* cancel = RemoteVerb(app, "cancel", "Cancel a job", "  rmlcell cancel 17", remote);
   cancel->add_option("JOB", given.job)->required();
   cancel->callback([&] { exit_code = CancelJob(remote, given.job); });
+  AddQueueVerbs(app, remote, given, exit_code);
 }
 
 void AddProductVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {

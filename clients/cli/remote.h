@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,10 @@ struct SubmitRequest {
   JobMillingOptions milling;
   std::string milling_project;  // whose block and tool count; empty: none
   bool trace = false;
+  int priority = 0;
+  bool hold = false;               // it waits until it is resumed
+  std::string not_before;          // a time as JSON has it; empty: at once
+  std::vector<std::string> after;  // jobs that must have succeeded
   bool watch = false;
   bool strict = false;  // with watch: a DOUBTFUL verdict is an exit code of 1, too
 };
@@ -63,6 +68,12 @@ int WatchJob(const Remote& remote, const std::string& job, std::int64_t after, b
 int Jobs(const Remote& remote, const std::string& filter, const std::string& order, int limit);
 int ShowJob(const Remote& remote, const std::string& job);
 int CancelJob(const Remote& remote, const std::string& job);
+// Of a job that waits: it does not start until it is resumed. Of one that runs: its run is held.
+int HoldJob(const Remote& remote, const std::string& job);
+int ResumeJob(const Remote& remote, const std::string& job);
+// In front of another job that waits, or behind all of its priority.
+int MoveJob(const Remote& remote, const std::string& job, const std::string& before,
+            std::optional<int> priority);
 int JobReport(const Remote& remote, const std::string& job, bool machine_coordinates);
 int JobPicture(const Remote& remote, const std::string& job, const std::string& output);
 int JobArtifact(const Remote& remote, const std::string& job, const std::string& artifact,

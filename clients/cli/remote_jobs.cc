@@ -1,3 +1,5 @@
+#include <google/protobuf/util/time_util.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <random>
@@ -146,6 +148,40 @@ bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::stri
   return ended;
 }
 
+// What a job that waits waits for; nothing but its turn: nothing.
+std::string WaitText(const v1::Job& job) {
+  const std::string other =
+      job.waits_for().substr(std::min<std::size_t>(5, job.waits_for().size()));
+  switch (job.wait_reason()) {
+    case v1::WAIT_REASON_HELD:
+      return "held";
+    case v1::WAIT_REASON_NOT_BEFORE:
+      return "not before " + When(job.not_before_time());
+    case v1::WAIT_REASON_AFTER_JOB:
+      return "after " + other;
+    case v1::WAIT_REASON_AFTER_JOB_FAILED:
+      return "after " + other + ", which did not succeed";
+    case v1::WAIT_REASON_MACHINE_BUSY:
+      return "its machine runs " + other;
+    default:
+      return {};
+  }
+}
+
+// When the job may start, and before whom.
+Status SetQueue(const SubmitRequest& wanted, v1::Job& job) {
+  job.set_priority(wanted.priority);
+  job.set_held(wanted.hold);
+  for (const std::string& other : wanted.after) job.add_after_jobs(FullName("jobs", other));
+  if (wanted.not_before.empty()) return {};
+  if (google::protobuf::util::TimeUtil::FromString(wanted.not_before,
+                                                   job.mutable_not_before_time()))
+    return {};
+  return Error{ErrorCode::kCellUsage,
+               "--not-before " + wanted.not_before + " is no time such as 2026-11-25T10:00:00Z",
+               {}};
+}
+
 }  // namespace
 
 int WatchJob(const Remote& remote, const std::string& job, std::int64_t after, bool strict) {
@@ -218,6 +254,7 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
         !parsed)
       return Refuse(parsed.error());
   }
+  if (const Status set = SetQueue(wanted, job); !set) return Refuse(set.error());
   request.set_request_id(wanted.request_id.empty() ? NewRequestId() : wanted.request_id);
 
   const auto stub = v1::JobService::NewStub(Connect(remote));
@@ -259,7 +296,7 @@ int Jobs(const Remote& remote, const std::string& filter, const std::string& ord
                     kind.substr(std::min<std::size_t>(9, kind.size())),
                     job.machine().substr(std::min<std::size_t>(9, job.machine().size())),
                     job.title().empty() ? job.program() : job.title(), When(job.create_time()),
-                    job.outcome().code()});
+                    job.state() == v1::Job::STATE_QUEUED ? WaitText(job) : job.outcome().code()});
   }
   PrintRaw(Table(rows));
   return kGood;
@@ -303,6 +340,48 @@ int CancelJob(const Remote& remote, const std::string& job) {
   request.set_name(FullName("jobs", job));
   v1::Job response;
   const grpc::Status status = stub->CancelJob(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  Print(remote.json ? Json(response) : response.name() + " " + StateName(response));
+  return kGood;
+}
+
+int HoldJob(const Remote& remote, const std::string& job) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::HoldJobRequest request;
+  request.set_name(FullName("jobs", job));
+  v1::HaltJobResponse response;
+  const grpc::Status status = stub->HoldJob(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  Print(remote.json ? Json(response) : response.job().name() + " " + StateName(response.job()));
+  return kGood;
+}
+
+int ResumeJob(const Remote& remote, const std::string& job) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::ResumeJobRequest request;
+  request.set_name(FullName("jobs", job));
+  v1::Job response;
+  const grpc::Status status = stub->ResumeJob(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  Print(remote.json ? Json(response) : response.name() + " " + StateName(response));
+  return kGood;
+}
+
+int MoveJob(const Remote& remote, const std::string& job, const std::string& before,
+            std::optional<int> priority) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::MoveJobRequest request;
+  request.set_name(FullName("jobs", job));
+  if (!before.empty()) request.set_before(FullName("jobs", before));
+  if (priority) request.set_priority(*priority);
+  v1::Job response;
+  const grpc::Status status = stub->MoveJob(&context, request, &response);
   if (!status.ok()) return Refused(status, remote);
   Print(remote.json ? Json(response) : response.name() + " " + StateName(response));
   return kGood;

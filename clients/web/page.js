@@ -422,7 +422,7 @@ function drawOutcome(row, job) {
   }
 }
 
-const PRODUCTS = { "picture.svg": "Picture", "relief.png": "Relief", "height.png": "Heights", "left.stl": "STL" };
+const PRODUCTS = { "picture.svg": "Picture", "relief.png": "Relief", "height.png": "Heights", "height.grid": "Height grid", "left.stl": "STL" };
 const productWord = (name) => PRODUCTS[name] ?? name[0].toUpperCase() + name.slice(1);
 
 // What the part looks like, small: what a mill left of its block says more than the path.

@@ -79,11 +79,12 @@ _rmlcell_options() {
     convert) echo "--help --output --json" ;;
     lsp) echo "--help --stdio" ;;
     transform) echo "--help --move --turn --shift --output --json" ;;
-    machines | programs | delete | stale | projects | job | cancel) echo "$remote" ;;
+    machines | programs | delete | stale | projects | job | cancel | hold | resume) echo "$remote" ;;
+    move) echo "$remote --before --priority" ;;
     put) echo "$remote --etag --check-only --force" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --title --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --watch --strict" ;;
+      echo "$remote --slot --kind --title --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
     report) echo "$remote --machine-coordinates" ;;
     watch) echo "$remote --after --strict" ;;
     jobs) echo "$remote --filter --order --limit" ;;
@@ -102,7 +103,7 @@ _rmlcell_takes_value() {
     --slot | --slots | --main | --executable | --family | --profile | --machine | --origin | --clamps | --inputs | --mode | --override | \
       --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --material | --stl | --stl-tolerance | --relief | --height-map | --target | --target-slot | --target-tolerance | --target-png | \
       --state-in | --state-out | --server | --etag | --form | \
-      --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --order | --limit | --move | --turn | --shift | \
+      --output | -o | --kind | --title | --request-id | --pace | --after | --after-job | --before | --not-before | --priority | --filter | --order | --limit | --move | --turn | --shift | \
       --tolerance | --by | --from | --to | --columns | --rows | --within | --gap | --depth | --step | --passes | --overlap | \
       --dpi | --at | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
   esac
@@ -183,7 +184,7 @@ _rmlcell_positional() {
         1) _rmlcell_programs_files ;;
       esac ;;
     watch | job) [[ $count -eq 0 ]] && _rmlcell_jobs ;;
-    cancel) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = false" ;;
+    cancel | hold | resume | move) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = false" ;;
     report | picture) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = true" ;;
     artifact)
       case $count in
@@ -276,7 +277,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff rml1 lsp machines programs put get delete stale projects submit watch jobs job cancel report picture artifact
+      diff rml1 lsp machines programs put get delete stale projects submit watch jobs job cancel hold resume move report picture artifact
   else
     _rmlcell_positional
   fi

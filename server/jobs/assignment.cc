@@ -7,6 +7,7 @@
 #include "server/jobs/job_book.h"
 #include "server/jobs/job_milling.h"
 #include "server/records/job_messages.h"
+#include "server/records/machine_messages.h"
 
 namespace rmlcell::server {
 namespace {
@@ -115,6 +116,27 @@ Status AddTarget(storage::Store& store, std::int64_t id, const v1::Job& job,
   return {};
 }
 
+// All of it but its programs.
+Status SetMachine(const storage::MachineMemory& memory, v1::WorkerAssignment& assignment) {
+  const storage::MachineRecord& machine = memory.machine;
+  assignment.set_family(machine.family);
+  assignment.set_profile(machine.profile);
+  for (const auto& [name, value] : machine.parameters)
+    (*assignment.mutable_parameters())[name] = value;
+  Result<std::string> state = StateForRun(machine.id, memory.mark);
+  if (!state) return state.error();
+  assignment.set_machine_state(*std::move(state));
+  assignment.set_default_schedules(memory.schedules.empty());
+  for (const storage::ScheduleRecord& schedule : memory.schedules) {
+    v1::AssignedSchedule& made = *assignment.add_schedules();
+    made.set_number(schedule.number);
+    made.set_title(schedule.name);
+    made.set_mode(schedule.mode);
+    made.set_power_percent(schedule.power_percent);
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& config,
@@ -124,7 +146,6 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
         return RunsFromMemory(machine, leased.job.kind);
       });
   if (!memory) return memory.error();
-  const storage::MachineRecord& machine = memory->machine;
   AssignmentMessages messages;
   v1::WorkerAssignment& assignment = *messages.first.mutable_assignment();
   v1::Job& job = *assignment.mutable_job();
@@ -133,11 +154,7 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
         ErrorCode::kCellStoreCorrupt, "the specification of " + JobName(leased.job.id), {}};
   }
   job.set_name(JobName(leased.job.id));
-  assignment.set_family(machine.family);
-  assignment.set_profile(machine.profile);
-  for (const auto& [name, value] : machine.parameters)
-    (*assignment.mutable_parameters())[name] = value;
-  assignment.set_machine_state(machine.state);
+  if (const Status set = SetMachine(*memory, assignment); !set) return set.error();
   *assignment.mutable_budget() = BudgetOf(job.budget(), config);
 
   // The attached bytes count for the program that is started: its slot may have been stored again.
@@ -182,15 +199,6 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   // more, holds their code: it is for this job only.
   programs.Finish(main_revision > 0 && job.simulation().programs().empty());
   assignment.set_main_program(main_slot);
-
-  assignment.set_default_schedules(memory->schedules.empty());
-  for (const storage::ScheduleRecord& schedule : memory->schedules) {
-    v1::AssignedSchedule& made = *assignment.add_schedules();
-    made.set_number(schedule.number);
-    made.set_title(schedule.name);
-    made.set_mode(schedule.mode);
-    made.set_power_percent(schedule.power_percent);
-  }
   return messages;
 }
 

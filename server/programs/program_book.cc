@@ -13,6 +13,7 @@
 #include "server/programs/text_tools.h"
 #include "server/records/file_family.h"
 #include "server/records/job_messages.h"
+#include "server/records/machine_messages.h"
 #include "server/records/program_place.h"
 
 namespace rmlcell::server {
@@ -136,8 +137,10 @@ bool CheckedByRunning(const storage::MachineRecord& machine) {
 }
 
 // The programs of the machine, its schedules and the state in which it stands.
-void AddMemory(storage::MachineMemory memory, simulation::ProgramMemory& input) {
-  input.machine_state = std::move(memory.machine.state);
+Status AddMemory(storage::MachineMemory memory, simulation::ProgramMemory& input) {
+  Result<std::string> state = StateForRun(memory.machine.id, memory.mark);
+  if (!state) return state.error();
+  input.machine_state = *std::move(state);
   for (storage::ProgramRecord& program : memory.programs) {
     simulation::MemoryProgram& made = input.programs.emplace_back();
     made.slot = program.slot;
@@ -146,7 +149,7 @@ void AddMemory(storage::MachineMemory memory, simulation::ProgramMemory& input) 
     if (program.executable) made.executable = machine::Bytes::Of(*std::move(program.executable));
   }
   input.deleted_programs = std::move(memory.deleted);
-  if (memory.schedules.empty()) return;
+  if (memory.schedules.empty()) return {};
   input.schedules.emplace();
   for (const storage::ScheduleRecord& schedule : memory.schedules) {
     input.schedules->push_back({.number = schedule.number,
@@ -154,6 +157,7 @@ void AddMemory(storage::MachineMemory memory, simulation::ProgramMemory& input) 
                                 .mode = schedule.mode,
                                 .power_percent = schedule.power_percent});
   }
+  return {};
 }
 
 }  // namespace
@@ -422,7 +426,8 @@ Result<simulation::CheckedProgram> ProgramBook::Check(const std::string& family_
   const machine::MachineFamily& family = *subject->family;
   simulation::ProgramMemory memory{.family = &family};
   if (subject->memory && family.info().checked_by_running) {
-    AddMemory(*std::move(subject->memory), memory);
+    if (const Status added = AddMemory(*std::move(subject->memory), memory); !added)
+      return added.error();
     memory.given = simulation::MemoryGiven::kWhole;
   }
   const int slot = SlotForCheck(program.file_name(), memory.programs);

@@ -7,6 +7,7 @@
 #include "engine/core/number_text.h"
 #include "engine/families/families.h"
 #include "engine/machine/family.h"
+#include "engine/machine/machine_note.h"
 #include "proto/bridge/setup.h"
 #include "server/base/names.h"
 #include "server/records/job_messages.h"
@@ -115,6 +116,16 @@ Result<std::string> ModeText(v1::LaserMode mode) {
 
 v1::LaserMode ModeOf(std::string_view text) {
   return text == "PULSE" ? v1::LASER_MODE_PULSE : v1::LASER_MODE_CW;
+}
+
+Result<std::string> StateForRun(std::string_view machine,
+                                const std::optional<storage::MachineMark>& mark) {
+  if (!mark) return std::string();
+  Result<machine::MachineNote> note = machine::ReadMachineNote(mark->state);
+  if (note) return std::move(note->family);
+  return Error{ErrorCode::kCellStoreCorrupt,
+               "how machine " + std::string(machine) + " stands cannot be read",
+               {}};
 }
 
 v1::LaserSchedule ToProto(const storage::ScheduleRecord& record) {

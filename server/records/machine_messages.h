@@ -2,7 +2,9 @@
 
 #include <google/protobuf/field_mask.pb.h>
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/result.h"
@@ -23,6 +25,10 @@ v1::Machine ToProto(const storage::MachineRecord& record,
 // How it stands as far as its jobs tell: for now no machine has a host.
 v1::MachineStatus StatusOf(const storage::MachineRecord& record,
                            const std::vector<storage::MachineJobs>& unfinished);
+// What a run on a machine that stands like that begins with (RunSetup::machine_state); empty: on a
+// new machine. CellStoreCorrupt: its host wrote what this version cannot read.
+Result<std::string> StateForRun(std::string_view machine,
+                                const std::optional<storage::MachineMark>& mark);
 v1::LaserSchedule ToProto(const storage::ScheduleRecord& record);
 // "CW", "PULSE", as the store and the engine have it. CellInvalidArgument for a mode that there is
 // not.

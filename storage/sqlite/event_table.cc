@@ -36,7 +36,7 @@ EventTable::EventTable(Database& database)
       add_of_record_(
           database,
           "INSERT INTO event (position, job, sequence, attempt, at, kind, payload, resource, caller)"
-          " VALUES (?1, 0, ?1, 0, ?2, ?3, x'', ?4, ?5)"),
+          " VALUES (?1, 0, ?1, 0, ?2, ?3, ?4, ?5, ?6)"),
       count_of_records_(database, "SELECT count(*) FROM event WHERE job = 0"),
       of_job_(database, SelectEvent("WHERE job = ?1 AND sequence > ?2 ORDER BY sequence LIMIT ?3")),
       all_(database, SelectEvent("WHERE position > ?1 ORDER BY position LIMIT ?2")),
@@ -63,8 +63,9 @@ Status EventTable::Add(const Place& place, const NewEvent& event) {
 }
 
 Status EventTable::AddOfRecord(std::int64_t position, WallTime at, std::string_view resource,
-                               std::string_view change, std::string_view caller) {
-  return add_of_record_.With(position, at, change, resource, caller).Run();
+                               const NewEvent& event) {
+  return add_of_record_.With(position, at, event.kind, Bytes{event.payload}, resource, event.caller)
+      .Run();
 }
 
 Result<std::int64_t> EventTable::CountOfRecords() { return FirstInteger(count_of_records_.With()); }

@@ -21,7 +21,7 @@ class EventTable {
   Status Add(const Place& place, const NewEvent& event);
   // What was done with a record that is no job, and by whom.
   Status AddOfRecord(std::int64_t position, WallTime at, std::string_view resource,
-                     std::string_view change, std::string_view caller);
+                     const NewEvent& event);
   Result<std::vector<EventRecord>> OfJob(std::int64_t job, std::int64_t after_sequence, int limit);
   Result<std::vector<EventRecord>> All(std::int64_t after_position, int limit);
   Result<std::int64_t> LastPosition();  // of those that are there

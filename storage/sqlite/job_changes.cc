@@ -1,7 +1,6 @@
 #include "storage/sqlite/job_changes.h"
 
 namespace rmlcell::storage::sqlite {
-namespace {
 
 Status CheckSizes(const std::vector<NewEvent>& events) {
   for (const NewEvent& event : events) {
@@ -13,8 +12,6 @@ Status CheckSizes(const std::vector<NewEvent>& events) {
   }
   return {};
 }
-
-}  // namespace
 
 Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
                    const std::vector<NewEvent>& events) {

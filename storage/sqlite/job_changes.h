@@ -13,6 +13,7 @@ inline constexpr int kOutsideAnAttempt = 0;
 // CellNotFound.
 Result<JobRow> GetRow(WriteContext& context, std::int64_t id);
 
+Status CheckSizes(const std::vector<NewEvent>& events);  // CellTooLarge
 // Numbers and writes events; the job has the new last sequence, its row not yet. CellTooLarge.
 Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
                    const std::vector<NewEvent>& events);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/check.h"
+#include "storage/sqlite/host_life.h"
 #include "storage/sqlite/housekeeping.h"
 #include "storage/sqlite/job_changes.h"
 #include "storage/sqlite/queue_life.h"
@@ -339,6 +340,10 @@ Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const Job
   if (const Status ended = EndAttempt(context, lease, HowItEnded(end.outcome.state)); !ended)
     return ended.error();
   if (const Status over = EndJob(context, *row, end.outcome); !over) return over.error();
+  if (end.machine_lease) {
+    if (const Status left = WriteMachine(context, *end.machine_lease, end.machine); !left)
+      return left.error();
+  }
   if (const Status written = WriteChange(context, *row, lease.attempt, end.events); !written)
     return written.error();
   return std::move(row->job);

@@ -4,22 +4,21 @@ namespace rmlcell::storage::sqlite {
 namespace {
 
 std::string SelectMachine(const std::string& which) {
-  return "SELECT id, family, title, profile, revision, created_at, updated_at, state, state_blob"
+  return "SELECT id, family, title, profile, revision, created_at, updated_at"
          " FROM machine " +
          which;
 }
 
 }  // namespace
 
-MachineTable::MachineTable(Database& database, BlobTable& blobs)
-    : blobs_(blobs),
-      find_(database, "SELECT revision, created_at, state_blob FROM machine WHERE id = ?1"),
+MachineTable::MachineTable(Database& database)
+    : find_(database, "SELECT revision, created_at FROM machine WHERE id = ?1"),
       get_(database, SelectMachine("WHERE id = ?1")),
       list_(database, SelectMachine("ORDER BY id")),
       put_(database,
            "INSERT OR REPLACE INTO machine"
-           " (id, family, title, profile, revision, created_at, updated_at, state, state_blob)"
-           " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"),
+           " (id, family, title, profile, revision, created_at, updated_at)"
+           " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)"),
       parameters_(database, "SELECT name, value FROM machine_parameter WHERE machine = ?1"),
       remove_(database, "DELETE FROM machine WHERE id = ?1"),
       remove_parameters_(database, "DELETE FROM machine_parameter WHERE machine = ?1"),
@@ -28,9 +27,7 @@ MachineTable::MachineTable(Database& database, BlobTable& blobs)
 
 Result<std::optional<MachineTable::Facts>> MachineTable::Find(std::string_view id) {
   return FirstRow<Facts>(find_.With(id), [](const Query& row) {
-    return Facts{.revision = row.Integer(0),
-                 .created_at = row.Time(1),
-                 .state_blob = row.OptionalInteger(2)};
+    return Facts{.revision = row.Integer(0), .created_at = row.Time(1)};
   });
 }
 
@@ -42,12 +39,10 @@ Result<std::vector<MachineRecord>> MachineTable::List() {
   return AllRows<MachineRecord>(list_.With(), [this](const Query& row) { return Read(row); });
 }
 
-Status MachineTable::Put(const MachineRecord& machine, const Stamp& stamp,
-                         const ContentColumns& state) {
-  if (const Status put =
-          put_.With(machine.id, machine.family, machine.title, machine.profile, stamp.revision,
-                    stamp.created_at, stamp.updated_at, state.bytes, state.blob)
-              .Run();
+Status MachineTable::Put(const MachineRecord& machine, const Stamp& stamp) {
+  if (const Status put = put_.With(machine.id, machine.family, machine.title, machine.profile,
+                                   stamp.revision, stamp.created_at, stamp.updated_at)
+                             .Run();
       !put)
     return put.error();
   if (const Status removed = remove_parameters_.With(machine.id).Run(); !removed)
@@ -65,14 +60,11 @@ Status MachineTable::Remove(std::string_view id) {
 }
 
 Result<MachineRecord> MachineTable::Read(const Query& row) {
-  Result<std::string> state = blobs_.Content(row, 7);
-  if (!state) return state.error();
   MachineRecord machine{.id = row.Text(0),
                         .family = row.Text(1),
                         .title = row.Text(2),
                         .profile = row.Text(3),
                         .parameters = {},
-                        .state = *std::move(state),
                         .revision = row.Integer(4),
                         .created_at = row.Time(5),
                         .updated_at = row.Time(6)};

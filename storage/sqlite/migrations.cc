@@ -54,6 +54,14 @@ constexpr Migration kMigrations[] = {
      "ALTER TABLE job ADD COLUMN outcome_verdict TEXT NOT NULL DEFAULT '';"
      "UPDATE job SET family = ifnull((SELECT machine.family FROM machine"
      " WHERE machine.id = job.machine), '');"},
+    {9, "hosts of machines, and where machines stand",
+     "CREATE TABLE machine_lock (machine TEXT PRIMARY KEY, host TEXT NOT NULL, server TEXT NOT NULL,"
+     " fence INTEGER NOT NULL, renewals INTEGER NOT NULL, duration_ms INTEGER NOT NULL,"
+     " pinned INTEGER NOT NULL) WITHOUT ROWID;"
+     "CREATE TABLE machine_mark (machine TEXT PRIMARY KEY, fence INTEGER NOT NULL,"
+     " sequence INTEGER NOT NULL, state BLOB NOT NULL, note BLOB NOT NULL, clean INTEGER NOT NULL,"
+     " at INTEGER NOT NULL);"
+     "ALTER TABLE machine DROP COLUMN state; ALTER TABLE machine DROP COLUMN state_blob;"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

@@ -40,6 +40,12 @@ class SqliteStore final : public Store {
   Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected,
                                    std::string_view caller) override;
   Status DeleteMachine(std::string_view id, Revision expected, std::string_view caller) override;
+  Result<MachineLease> TakeMachine(const MachineClaim& claim) override;
+  Result<MachineLease> RenewMachine(const MachineLease& lease, std::string_view server) override;
+  Status ReleaseMachine(const MachineLease& lease) override;
+  Result<std::vector<MachineLease>> MachineLeases() override;
+  Status AppendMachine(const MachineLease& lease, const MachineWrite& write) override;
+  Result<std::optional<MachineMark>> GetMachineMark(std::string_view machine) override;
 
   Result<std::vector<ProgramSummary>> ListPrograms(std::string_view machine, int after_slot,
                                                    int limit) override;

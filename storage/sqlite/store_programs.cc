@@ -294,6 +294,9 @@ Result<MachineMemory> SqliteStore::GetMachineMemory(std::string_view machine,
     if (!record) return record.error();
     if (!*record) return Error{ErrorCode::kCellUnknownMachine, std::string(machine), {}};
     MachineMemory memory{.machine = **std::move(record)};
+    Result<std::optional<MachineMark>> mark = tables.hosts.Mark(machine);
+    if (!mark) return mark.error();
+    memory.mark = *std::move(mark);
     auto schedules = tables.schedules.List(machine);
     if (!schedules) return schedules.error();
     memory.schedules = *std::move(schedules);

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "storage/sqlite/content_staging.h"
+#include "storage/sqlite/host_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
 namespace rmlcell::storage::sqlite {
@@ -21,7 +22,7 @@ void SetStamp(Record& record, const Stamp& stamp) {
 std::string_view Change(bool there_before) { return there_before ? kUpdated : kCreated; }
 
 Result<Stamp> PutMachineRow(WriteContext& context, const MachineRecord& machine, Revision expected,
-                            const PreparedContent& state, std::string_view caller) {
+                            std::string_view caller) {
   const Result<std::optional<MachineTable::Facts>> found = context.tables.machines.Find(machine.id);
   if (!found) return found.error();
   const std::optional<MachineTable::Facts>& before = *found;
@@ -40,15 +41,7 @@ Result<Stamp> PutMachineRow(WriteContext& context, const MachineRecord& machine,
   const Stamp stamp{.revision = last + 1,
                     .created_at = before ? before->created_at : context.now,
                     .updated_at = context.now};
-  const Result<ContentColumns> columns = context.tables.blobs.Put(state);
-  if (!columns) return columns.error();
-  if (const Status put = context.tables.machines.Put(machine, stamp, *columns); !put)
-    return put.error();
-  if (before) {
-    if (const Status dropped = context.tables.blobs.Drop(before->state_blob); !dropped)
-      return dropped.error();
-  }
-  context.garbage = true;
+  if (const Status put = context.tables.machines.Put(machine, stamp); !put) return put.error();
   if (const Status noted =
           NoteRecord(context, MachineName(machine.id), Change(before.has_value()), caller);
       !noted)
@@ -79,10 +72,9 @@ Status RemoveMachine(WriteContext& context, std::string_view id, Revision expect
           tables.buried.Bury(BuriedTable::Kind::kMachine, "", id, before.revision);
       !buried)
     return buried.error();
-  context.garbage = true;
-  if (const Status noted = NoteRecord(context, MachineName(id), kDeleted, caller); !noted)
-    return noted.error();
-  return tables.blobs.Drop(before.state_blob);
+  if (const Status forgotten = ForgetHost(context, id); !forgotten) return forgotten.error();
+  context.garbage = true;  // of its programs
+  return NoteRecord(context, MachineName(id), kDeleted, caller);
 }
 
 Result<Stamp> PutProjectRow(WriteContext& context, const ProjectRecord& project, Revision expected,
@@ -175,12 +167,8 @@ Result<MachineRecord> SqliteStore::GetMachine(std::string_view id) {
 Result<MachineRecord> SqliteStore::PutMachine(const MachineRecord& machine, Revision expected,
                                               std::string_view caller) {
   if (machine.id.empty()) return InvalidArgument("a machine needs an id");
-  const Result<StagedContent> state =
-      StagedContent::Make(writer_, machine.state, StagedContent::Place::kRecordWhenSmall);
-  if (!state) return state.error();
-  const Result<Stamp> stamp = writer_.Do([&](WriteContext& context) {
-    return PutMachineRow(context, machine, expected, state->content(), caller);
-  });
+  const Result<Stamp> stamp = writer_.Do(
+      [&](WriteContext& context) { return PutMachineRow(context, machine, expected, caller); });
   if (!stamp) return stamp.error();
   MachineRecord put = machine;
   SetStamp(put, *stamp);
@@ -190,6 +178,36 @@ Result<MachineRecord> SqliteStore::PutMachine(const MachineRecord& machine, Revi
 Status SqliteStore::DeleteMachine(std::string_view id, Revision expected, std::string_view caller) {
   return writer_.Do(
       [&](WriteContext& context) { return RemoveMachine(context, id, expected, caller); });
+}
+
+Result<MachineLease> SqliteStore::TakeMachine(const MachineClaim& claim) {
+  return writer_.Do([&](WriteContext& context) { return sqlite::TakeMachine(context, claim); });
+}
+
+Result<MachineLease> SqliteStore::RenewMachine(const MachineLease& lease, std::string_view server) {
+  return writer_.Do(
+      [&](WriteContext& context) { return sqlite::RenewMachine(context, lease, server); });
+}
+
+Status SqliteStore::ReleaseMachine(const MachineLease& lease) {
+  return writer_.Do([&](WriteContext& context) { return sqlite::ReleaseMachine(context, lease); });
+}
+
+Result<std::vector<MachineLease>> SqliteStore::MachineLeases() {
+  return readers_->Read([](Tables& tables) { return tables.hosts.List(); });
+}
+
+Status SqliteStore::AppendMachine(const MachineLease& lease, const MachineWrite& write) {
+  return writer_.Do([&](WriteContext& context) { return WriteMachine(context, lease, write); });
+}
+
+Result<std::optional<MachineMark>> SqliteStore::GetMachineMark(std::string_view machine) {
+  return readers_->Read([&](Tables& tables) -> Result<std::optional<MachineMark>> {
+    const auto known = tables.machines.Find(machine);
+    if (!known) return known.error();
+    if (!*known) return Error{ErrorCode::kCellUnknownMachine, std::string(machine), {}};
+    return tables.hosts.Mark(machine);
+  });
 }
 
 Result<std::vector<ProjectRecord>> SqliteStore::ListProjects(std::string_view after_id, int limit) {

@@ -3,6 +3,7 @@
 #include "storage/sqlite/artifact_table.h"
 #include "storage/sqlite/blob_table.h"
 #include "storage/sqlite/event_table.h"
+#include "storage/sqlite/host_table.h"
 #include "storage/sqlite/job_table.h"
 #include "storage/sqlite/lease_table.h"
 #include "storage/sqlite/machine_table.h"
@@ -20,7 +21,7 @@ namespace rmlcell::storage::sqlite {
 struct Tables {
   explicit Tables(Database& database)
       : blobs(database),
-        machines(database, blobs),
+        machines(database),
         programs(database, blobs),
         schedules(database),
         projects(database, blobs),
@@ -29,6 +30,7 @@ struct Tables {
         leases(database),
         attempts(database),
         orders(database),
+        hosts(database),
         events(database),
         artifacts(database),
         marks(database),
@@ -45,6 +47,7 @@ struct Tables {
   LeaseTable leases;
   AttemptTable attempts;
   OrderTable orders;
+  HostTable hosts;
   EventTable events;
   ArtifactTable artifacts;
   MarkTable marks;

@@ -4,10 +4,15 @@ namespace rmlcell::storage::sqlite {
 
 Status NoteRecord(WriteContext& context, std::string_view resource, std::string_view change,
                   std::string_view caller) {
+  return NoteEvent(context, resource,
+                   {.kind = std::string(change), .payload = {}, .caller = std::string(caller)});
+}
+
+Status NoteEvent(WriteContext& context, std::string_view resource, const NewEvent& event) {
   context.changed = true;
   context.counters.record_events += 1;
   return context.tables.events.AddOfRecord(++context.counters.position, context.now, resource,
-                                           change, caller);
+                                           event);
 }
 
 }  // namespace rmlcell::storage::sqlite

@@ -36,6 +36,8 @@ struct WriteContext {
 // An event of a record that is no job: it was made, changed or deleted.
 Status NoteRecord(WriteContext& context, std::string_view resource, std::string_view change,
                   std::string_view caller);
+// What happened with a record that is no job.
+Status NoteEvent(WriteContext& context, std::string_view resource, const NewEvent& event);
 
 // One write. Run() is called on the writer thread inside a transaction and is undone when it gives
 // an error; it may be called again when that transaction could not be committed. Then Answer() is

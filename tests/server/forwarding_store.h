@@ -24,6 +24,26 @@ class ForwardingStore : public storage::Store {
                        std::string_view caller) override {
     return store_.DeleteMachine(id, expected, caller);
   }
+  Result<storage::MachineLease> TakeMachine(const storage::MachineClaim& claim) override {
+    return store_.TakeMachine(claim);
+  }
+  Result<storage::MachineLease> RenewMachine(const storage::MachineLease& lease,
+                                             std::string_view server) override {
+    return store_.RenewMachine(lease, server);
+  }
+  Status ReleaseMachine(const storage::MachineLease& lease) override {
+    return store_.ReleaseMachine(lease);
+  }
+  Result<std::vector<storage::MachineLease>> MachineLeases() override {
+    return store_.MachineLeases();
+  }
+  Status AppendMachine(const storage::MachineLease& lease,
+                       const storage::MachineWrite& write) override {
+    return store_.AppendMachine(lease, write);
+  }
+  Result<std::optional<storage::MachineMark>> GetMachineMark(std::string_view machine) override {
+    return store_.GetMachineMark(machine);
+  }
   Result<std::vector<storage::ProgramSummary>> ListPrograms(std::string_view machine, int after,
                                                             int limit) override {
     return store_.ListPrograms(machine, after, limit);

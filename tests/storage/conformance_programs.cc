@@ -267,7 +267,7 @@ TEST_P(StoreConformance, ProgramMemoryHasObjectsAndExecutables) {
 // The machine, its programs and its schedules, all as they were at one moment; programs only where
 // they are wanted, since those of a mill are large.
 TEST_P(StoreConformance, TheMemoryOfAMachineHasWhatIsWanted) {
-  Must(store().PutMachine({.id = "m", .family = "f", .profile = "p", .state = "s"}, 0));
+  Must(store().PutMachine({.id = "m", .family = "f", .profile = "p"}, 0));
   Must(store().PutPrograms("m", {{.slot = 12, .object = "a"}, {.slot = 13, .object = "b"}},
                            {{.number = 9, .name = "nine"}, {.number = 3, .name = "three"}}));
   Must(store().DeleteProgram("m", 13, kAnyRevision));
@@ -278,7 +278,7 @@ TEST_P(StoreConformance, TheMemoryOfAMachineHasWhatIsWanted) {
   }));
   EXPECT_THAT(asked, testing::ElementsAre("p"));
   EXPECT_EQ(memory.machine.family, "f");
-  EXPECT_EQ(memory.machine.state, "s");
+  EXPECT_FALSE(memory.mark);
   ASSERT_EQ(memory.programs.size(), 1U);
   EXPECT_EQ(memory.deleted, std::vector<int>{13});
   ASSERT_EQ(memory.schedules.size(), 2U);

@@ -27,8 +27,7 @@ TEST_P(StoreConformance, MachineComesBackAsItWasPut) {
                               .family = "optimo",
                               .title = kOddText,
                               .profile = "standard",
-                              .parameters = {{"axis.x.max_mm", "3000"}, {"", kOddText}},
-                              .state = Noise(300'000, 1)};
+                              .parameters = {{"axis.x.max_mm", "3000"}, {"", kOddText}}};
   const MachineRecord put = Must(store().PutMachine(machine, 0));
   EXPECT_EQ(put.revision, 1);
   EXPECT_EQ(put.created_at, clock().Now());
@@ -38,7 +37,6 @@ TEST_P(StoreConformance, MachineComesBackAsItWasPut) {
   EXPECT_EQ(got.title, kOddText);
   EXPECT_EQ(got.profile, "standard");
   EXPECT_EQ(got.parameters, machine.parameters);
-  EXPECT_EQ(got.state, machine.state);
   EXPECT_EQ(got.revision, 1);
   EXPECT_EQ(got.created_at, put.created_at);
   EXPECT_EQ(got.updated_at, put.updated_at);
@@ -48,16 +46,14 @@ TEST_P(StoreConformance, MachineComesBackAsItWasPut) {
 // not added.
 TEST_P(StoreConformance, PuttingAMachineAgainReplacesIt) {
   const WallTime first = clock().Now();
-  Must(store().PutMachine({.id = "m", .parameters = {{"a", "1"}, {"b", "2"}}, .state = "old"}, 0));
+  Must(store().PutMachine({.id = "m", .parameters = {{"a", "1"}, {"b", "2"}}}, 0));
   clock().Advance(std::chrono::seconds(5));
-  const MachineRecord put =
-      Must(store().PutMachine({.id = "m", .parameters = {{"b", "3"}}, .state = {}}, 1));
+  const MachineRecord put = Must(store().PutMachine({.id = "m", .parameters = {{"b", "3"}}}, 1));
   EXPECT_EQ(put.revision, 2);
   EXPECT_EQ(put.created_at, first);
   EXPECT_EQ(put.updated_at, first + std::chrono::seconds(5));
   const MachineRecord got = Must(store().GetMachine("m"));
   EXPECT_EQ(got.parameters, (std::map<std::string, std::string>{{"b", "3"}}));
-  EXPECT_EQ(got.state, "");
   EXPECT_EQ(got.revision, 2);
 }
 
@@ -79,7 +75,7 @@ TEST_P(StoreConformance, ExpectedRevisionOfAMachineIsChecked) {
 // store.h DeleteMachine: programs and schedules go with it, finished jobs stay, and revisions count
 // on.
 TEST_P(StoreConformance, DeletedMachineTakesItsMemoryAlong) {
-  Must(store().PutMachine({.id = "m", .parameters = {{"a", "1"}}, .state = "s"}, 0));
+  Must(store().PutMachine({.id = "m", .parameters = {{"a", "1"}}}, 0));
   PutMachine("other");
   PutProgram("m", 7, "first");
   PutProgram("m", 7, "second");
@@ -99,7 +95,6 @@ TEST_P(StoreConformance, DeletedMachineTakesItsMemoryAlong) {
 
   EXPECT_EQ(Must(store().PutMachine({.id = "m"}, 0)).revision, 2);
   EXPECT_TRUE(Must(store().GetMachine("m")).parameters.empty());
-  EXPECT_EQ(Must(store().GetMachine("m")).state, "");
   EXPECT_TRUE(Must(store().ListPrograms("m", 0, 99)).empty());
   EXPECT_TRUE(Must(store().ListSchedules("m")).empty());
   EXPECT_EQ(PutProgram("m", 7, "third").revision, 3);

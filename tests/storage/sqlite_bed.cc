@@ -95,7 +95,6 @@ void ExpectSound(const std::string& path) {
   };
   expect_none("blobs with a wrong count of references",
               "(SELECT blob.refs AS told,"
-              " (SELECT count(*) FROM machine WHERE state_blob = blob.id) +"
               " (SELECT count(*) FROM program WHERE object_blob = blob.id) +"
               " (SELECT count(*) FROM program WHERE source_blob = blob.id) +"
               " (SELECT count(*) FROM program WHERE executable_blob = blob.id) +"

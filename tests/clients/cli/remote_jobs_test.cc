@@ -62,6 +62,24 @@ struct FakeJobs final : v1::JobService::Service {
     *response = job;
     return refusal;
   }
+  grpc::Status HoldJob(grpc::ServerContext*, const v1::HoldJobRequest* request,
+                       v1::HaltJobResponse* response) override {
+    asked = "hold " + request->name();
+    *response->mutable_job() = job;
+    return refusal;
+  }
+  grpc::Status ResumeJob(grpc::ServerContext*, const v1::ResumeJobRequest* request,
+                         v1::Job* response) override {
+    asked = "resume " + request->name();
+    *response = job;
+    return refusal;
+  }
+  grpc::Status MoveJob(grpc::ServerContext*, const v1::MoveJobRequest* request,
+                       v1::Job* response) override {
+    moved = *request;
+    *response = job;
+    return refusal;
+  }
   grpc::Status GetJobPicture(grpc::ServerContext*, const v1::GetJobPictureRequest* request,
                              v1::GetJobPictureResponse* response) override {
     asked = request->name();
@@ -87,6 +105,7 @@ struct FakeJobs final : v1::JobService::Service {
   std::vector<v1::WatchJobRequest> watches;
   std::vector<Watched> connections;
   v1::ListJobsRequest listed;
+  v1::MoveJobRequest moved;
   std::string asked;
 };
 
@@ -350,6 +369,24 @@ TEST_F(RemoteJobs, JobsAreATable) {
   EXPECT_EQ(jobs.listed.order_by(), "create_time");
 }
 
+TEST_F(RemoteJobs, AJobThatWaitsSaysForWhat) {
+  jobs.job.set_name("jobs/17");
+  jobs.job.set_state(v1::Job::STATE_QUEUED);
+  jobs.job.set_waits_for("jobs/12");
+  jobs.job.mutable_not_before_time()->set_seconds(1'795'600'800);
+  const auto told = [&](v1::WaitReason reason) {
+    jobs.job.set_wait_reason(reason);
+    return Hear([&] { return Jobs(server.remote(), "", "queue", 0); }).output;
+  };
+  EXPECT_THAT(told(v1::WAIT_REASON_HELD), HasSubstr(" held"));
+  EXPECT_THAT(told(v1::WAIT_REASON_NOT_BEFORE), HasSubstr(" not before 2026-11-2"));
+  EXPECT_THAT(told(v1::WAIT_REASON_AFTER_JOB), HasSubstr(" after 12"));
+  EXPECT_THAT(told(v1::WAIT_REASON_AFTER_JOB_FAILED),
+              HasSubstr(" after 12, which did not succeed"));
+  EXPECT_THAT(told(v1::WAIT_REASON_MACHINE_BUSY), HasSubstr(" its machine runs 12"));
+  EXPECT_THAT(told(v1::WAIT_REASON_WORKER), Not(HasSubstr("12")));
+}
+
 TEST_F(RemoteJobs, AJobIsShownWithItsProducts) {
   jobs.job.set_name("jobs/17");
   jobs.job.set_state(v1::Job::STATE_RUNNING);
@@ -372,6 +409,46 @@ TEST_F(RemoteJobs, AJobIsShownWithItsProducts) {
               StartsWith("{"));
   EXPECT_EQ(Hear([&] { return CancelJob(server.remote(), "17"); }).output, "jobs/17 running\n");
   EXPECT_THAT(Hear([&] { return CancelJob(server.remote(true), "17"); }).output, StartsWith("{"));
+}
+
+TEST_F(RemoteJobs, TheQueueIsOrdered) {
+  jobs.job.set_name("jobs/17");
+  jobs.job.set_state(v1::Job::STATE_QUEUED);
+  EXPECT_EQ(Hear([&] { return HoldJob(server.remote(), "17"); }).output, "jobs/17 queued\n");
+  EXPECT_EQ(jobs.asked, "hold jobs/17");
+  EXPECT_EQ(Hear([&] { return ResumeJob(server.remote(), "jobs/17"); }).output, "jobs/17 queued\n");
+  EXPECT_EQ(jobs.asked, "resume jobs/17");
+  EXPECT_EQ(Hear([&] { return MoveJob(server.remote(), "17", "12", 5); }).output,
+            "jobs/17 queued\n");
+  EXPECT_EQ(jobs.moved.name(), "jobs/17");
+  EXPECT_EQ(jobs.moved.before(), "jobs/12");
+  EXPECT_EQ(jobs.moved.priority(), 5);
+  EXPECT_THAT(Hear([&] { return MoveJob(server.remote(true), "17", "", {}); }).output,
+              StartsWith("{"));
+  EXPECT_EQ(jobs.moved.before(), "");
+  EXPECT_FALSE(jobs.moved.has_priority());
+}
+
+// What decides when a job starts goes along with it; a time that is none goes nowhere.
+TEST_F(RemoteJobs, AJobIsSubmittedWithItsPlace) {
+  SubmitRequest wanted{.machine = "mill-1", .slot = 7};
+  wanted.priority = -3;
+  wanted.hold = true;
+  wanted.not_before = "2026-11-25T10:00:00Z";
+  wanted.after = {"4", "jobs/5"};
+  EXPECT_EQ(Hear([&] { return SubmitJob(server.remote(), wanted); }).exit_code, 0);
+  ASSERT_FALSE(jobs.submitted.empty());
+  const v1::Job& job = jobs.submitted.back().job();
+  EXPECT_EQ(job.priority(), -3);
+  EXPECT_TRUE(job.held());
+  EXPECT_EQ(job.not_before_time().seconds(), 1'795'600'800);
+  EXPECT_THAT(job.after_jobs(), testing::ElementsAre("jobs/4", "jobs/5"));
+  const std::size_t before = jobs.submitted.size();
+  wanted.not_before = "tomorrow";
+  const Told told = Hear([&] { return SubmitJob(server.remote(), wanted); });
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_THAT(told.errors, HasSubstr("--not-before tomorrow is no time"));
+  EXPECT_EQ(jobs.submitted.size(), before);
 }
 
 TEST_F(RemoteJobs, ProductsGoWhereTheyAreWanted) {
@@ -400,7 +477,8 @@ TEST_F(RemoteJobs, ARefusalIsToldByEach) {
   const Remote remote = server.remote();
   for (const auto& verb : std::vector<std::function<int()>>{
            [&] { return Jobs(remote, "", "newest", 0); }, [&] { return ShowJob(remote, "1"); },
-           [&] { return CancelJob(remote, "1"); },
+           [&] { return CancelJob(remote, "1"); }, [&] { return HoldJob(remote, "1"); },
+           [&] { return ResumeJob(remote, "1"); }, [&] { return MoveJob(remote, "1", "", {}); },
            [&] { return JobPicture(remote, "1", folder.File("out")); },
            [&] { return JobArtifact(remote, "1", "a", folder.File("out")); }}) {
     const Told told = Hear(verb);

@@ -98,6 +98,19 @@ class FakeLog final : public storage::Store {
   Status DeleteMachine(std::string_view, storage::Revision, std::string_view) override {
     return No();
   }
+  Result<storage::MachineLease> TakeMachine(const storage::MachineClaim&) override { return No(); }
+  Result<storage::MachineLease> RenewMachine(const storage::MachineLease&,
+                                             std::string_view) override {
+    return No();
+  }
+  Status ReleaseMachine(const storage::MachineLease&) override { return No(); }
+  Result<std::vector<storage::MachineLease>> MachineLeases() override { return No(); }
+  Status AppendMachine(const storage::MachineLease&, const storage::MachineWrite&) override {
+    return No();
+  }
+  Result<std::optional<storage::MachineMark>> GetMachineMark(std::string_view) override {
+    return No();
+  }
   Result<std::vector<storage::ProgramSummary>> ListPrograms(std::string_view, int, int) override {
     return No();
   }

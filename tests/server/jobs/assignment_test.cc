@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "engine/machine/machine_note.h"
 #include "server/base/config.h"
 #include "server/jobs/job_book.h"
 #include "tests/server/server_bed.h"
@@ -170,8 +171,12 @@ TEST_F(AssignmentTest, EachLimitOfABudgetIsItsOwn) {
 TEST_F(AssignmentTest, BringsTheMachineAsItIs) {
   storage::MachineRecord machine = Must(bed.store().GetMachine("mill-1"));
   machine.parameters = {{"X_MAX", "250"}};
-  machine.state = "state of the machine";
   Must(bed.store().PutMachine(machine, storage::kAnyRevision));
+  const storage::MachineLease host = Must(bed.store().TakeMachine(
+      {.machine = "mill-1", .host = "h", .duration = std::chrono::seconds(60)}));
+  const std::string stands = machine::WriteMachineNote({.family = "state of the machine"});
+  ASSERT_TRUE(bed.store().AppendMachine(
+      host, {.mark = storage::MachineMark{.sequence = 1, .state = stands}}));
   Put(2, "PU;", "mill-1");
   const storage::LeasedJob leased = Lease(Stored(2, "mill-1"));
   const auto made = Must(MakeAssignment(bed.store(), config, leased));
@@ -185,6 +190,17 @@ TEST_F(AssignmentTest, BringsTheMachineAsItIs) {
   ASSERT_EQ(assignment.programs_size(), 1);
   EXPECT_FALSE(assignment.programs(0).is_source());  // what is stored is an object
   EXPECT_EQ(Revisions(made.first.assignment()), 0);  // nothing is made of it that could be kept
+}
+
+// A mark that this version cannot read must not begin a run on a new machine.
+TEST_F(AssignmentTest, RefusesAMarkThatIsNone) {
+  const storage::MachineLease host = Must(bed.store().TakeMachine(
+      {.machine = "mill-1", .host = "h", .duration = std::chrono::seconds(60)}));
+  ASSERT_TRUE(
+      bed.store().AppendMachine(host, {.mark = storage::MachineMark{.sequence = 1, .state = "x"}}));
+  Put(2, "PU;", "mill-1");
+  const storage::LeasedJob leased = Lease(Stored(2, "mill-1"));
+  EXPECT_EQ(CodeOf(MakeAssignment(bed.store(), config, leased)), ErrorCode::kCellStoreCorrupt);
 }
 
 TEST_F(AssignmentTest, AnInlineProgramIsSourceUnlessItSaysThatItIsAnObject) {

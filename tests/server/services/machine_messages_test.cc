@@ -120,7 +120,6 @@ TEST(MachineMessage, SaysWhatTheRecordHolds) {
       .title = "Laser",
       .profile = "pw-1993",
       .parameters = {{"VMAX", "400"}, {"LASER", "EFA51"}},
-      .state = "bytes of the engine",
       .revision = 12,
       .created_at = storage::WallTime(std::chrono::microseconds(1'500'000'250'000)),
       .updated_at = storage::WallTime(std::chrono::microseconds(1'500'001'000'001))};

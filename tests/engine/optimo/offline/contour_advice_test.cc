@@ -55,6 +55,20 @@ TEST(ContourAdvice, OvershotCornersAreMeasuredAtTheirSpeed) {
   EXPECT_NE(told[0].detail.find("stays 0.480 mm"), std::string::npos) << told[0].detail;
 }
 
+// OPT-2.34, 2.10: a program that says nothing runs at SPEED 70, ACCEL 100 and OVERSH 100.
+TEST(ContourAdvice, WhatHoldsAtTheStart) {
+  const auto told = [](const std::string& before) {
+    std::string text = CornerOf(90);
+    text.erase(text.find("SPEED 10\n"), 9);
+    const auto found = FindingsWith(before + text, ErrorCode::kFlySharp);
+    return found.size() == 1 ? found[0].detail : std::to_string(found.size()) + " findings";
+  };
+  EXPECT_EQ(told(""), told("SPEED 70\n"));
+  EXPECT_EQ(told(""), told("ACCEL 100\n"));
+  EXPECT_EQ(told(""), told("OVERSH 100\n"));
+  EXPECT_NE(told(""), told("SPEED 35\n"));
+}
+
 // OPT-2.62: OVERSH 0, beam off, or a corner that is no passage: nothing to say.
 TEST(ContourAdvice, HarmlessCornersAreNotTold) {
   EXPECT_TRUE(FindingsWith("OVERSH 0\n" + CornerOf(90), ErrorCode::kFlySharp).empty());

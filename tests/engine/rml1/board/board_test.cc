@@ -330,6 +330,8 @@ TEST(StreamOfBoard, SpeedsAndTheEnds) {
   ASSERT_EQ(made->findings.size(), 2U);
   EXPECT_EQ(made->findings[0].detail, "9000 rpm becomes 7000");
   EXPECT_EQ(made->findings[1].detail, "99 mm/s becomes 30 mm/s");
+  for (const Diagnostic& finding : made->findings)
+    EXPECT_EQ(CodeText(finding.code), "RML1-E8106") << finding.detail;
 }
 
 TEST(StreamOfBoard, Refuses) {

@@ -55,6 +55,15 @@ TEST(CheckWork, FacesAreThoseOfTheWorkOrigin) {
             "moved by -20 to -2 mm");
 }
 
+// A machine that cannot be is told, not taken for another one.
+TEST(CheckWork, AMachineThatCannotBe) {
+  machine::Parameters wrong = ParametersOf("t1");
+  EXPECT_TRUE(wrong.Set("X_MIN", std::string_view("300")));
+  const auto refused = CheckWork(machine::Bytes::Borrowed("PU;"), wrong);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kCellParameterRange);
+}
+
 // The surface stays where the operator set it, -2000, whatever !ZO makes of Z0: the lowest Z is 40
 // mm below it, and the work reaches 50.
 TEST(CheckWork, DepthIsToldFromTheSurface) {
