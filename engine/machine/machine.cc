@@ -313,6 +313,12 @@ Status Machine::Act(const ResumeRun& input) {
   return {};
 }
 
+// What is on its way to rest stays there, whatever was asked for meanwhile.
+void Machine::Hold() {
+  resume_behind_ = false;
+  if (!stopping_) Halt(HoldKey(family_.info(), mode_));
+}
+
 void Machine::Halt(InputKind key) {
   if (run_ == nullptr || run_->state().phase == RunPhase::kHalted) return;
   resume_behind_ = false;
@@ -321,7 +327,7 @@ void Machine::Halt(InputKind key) {
 }
 
 Status Machine::Act(const HoldRun& /*input*/) {
-  if (!stopping_) Halt(HoldKey(family_.info(), mode_));
+  Hold();
   return {};
 }
 
@@ -366,7 +372,7 @@ Status Machine::Act(const ChangeMode& input) {
         ErrorCode::kCellMode, std::string(family_.info().title) + " has no mode REPEAT", {}};
   }
   if (input.mode == Mode::kManual) {
-    if (!stopping_) Halt(HoldKey(family_.info(), mode_));
+    Hold();
   } else if (run_ != nullptr) {
     run_->SetMode(input.mode);
   }

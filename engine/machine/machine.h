@@ -155,6 +155,7 @@ class Machine {
   Status MayStart(const StartRun& input) const;
   Status MaySource(StartSource source) const;
   void ToRun(InputKind kind, int index = 0, double value = 0.0);
+  void Hold();
   void Halt(InputKind key);
   void Raise(ErrorCode code, std::string detail, const Place& place);
   void Settle();

@@ -74,6 +74,11 @@ void OptimoStanding::Apply(const machine::InputChange& input) {
 
 void OptimoStanding::CyclePower() {
   s_.zeroed = false;
+  s_.data.il = s_.data.ol = {};
+  s_.data.ia = s_.data.oa = {};
+  s_.outputs.logical = {};
+  s_.outputs.analogue = {};
+  s_.outputs.schedule = 0;
   s_.tool = {};
   s_.breakpoint.reset();
   s_.simul.reset();

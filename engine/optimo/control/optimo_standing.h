@@ -20,7 +20,8 @@ class OptimoStanding final : public machine::Standing {
   void WriteVariable(std::string_view name, double value) override;
   std::vector<machine::ModalValue> modal_values() const override;
   void Apply(const machine::InputChange& input) override;
-  // No reference, no TCP, no BREAK and no SIMUL. OPT-4.68, OPT-6.08, OPT-6.30
+  // No reference, no TCP, no BREAK and no SIMUL; outputs and images are 0, and what a program has
+  // counted stays. OPT-4.68, OPT-6.08, OPT-6.30, OPT-7.63
   void CyclePower() override;
   std::string Save() const override { return EncodeMachineState(s_); }
 

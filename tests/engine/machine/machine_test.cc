@@ -178,6 +178,23 @@ TEST_F(MachineTest, ComesToRestBeforeItGoesOnOrEnds) {
   EXPECT_EQ(heard.halts.size(), 2U);
 }
 
+// The last word counts: a HOLD, or MANUAL, behind a RESUME of a run that is not at rest yet.
+TEST_F(MachineTest, WhatIsAskedForLastCounts) {
+  const std::string move =
+      "COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (1521.02, 2201.2, -350., 0., 0.)\n";
+  for (const MachineInput& last : {MachineInput(HoldRun{}), MachineInput(StopRun{}),
+                                   MachineInput(ChangeMode{Mode::kManual})}) {
+    Load({move});
+    Start();
+    GoOn(At(3.0));
+    Good(StopRun{});
+    Good(ResumeRun{});
+    Good(last);
+    GoOn(At(10.0));
+    EXPECT_EQ(state(), MachineState::kHeld) << last.index();
+  }
+}
+
 // LIVE-2.10 a7: in alarm until it is released and acknowledged.
 TEST_F(MachineTest, EmergencyStopIsAnAlarm) {
   Load({"DELAY 5\n"});
@@ -214,13 +231,14 @@ TEST_F(MachineTest, AlarmsOfARunStay) {
   EXPECT_EQ(state(), MachineState::kIdle);
 }
 
-// OPT-4.68, OPT-6.08: what a power cycle takes away.
+// OPT-4.68, OPT-6.08, OPT-7.63: what a power cycle takes away, and what it leaves.
 TEST_F(MachineTest, PowerCycle) {
-  Load({"TCP (0., 0., -10., 0., 0., -15.)\nVR[3] = 2.5\nDELAY 5\n"});
-  Good(SetBreakpoints{{{.at = {1, 2}}}});
+  Load({"TCP (0., 0., -10., 0., 0., -15.)\nVR[3] = 2.5\nOL[16] = ON\nOA[5] = 3.\nDELAY 5\n"});
+  Good(SetBreakpoints{{{.at = {1, 4}}}});
   Start();
   GoOn(At(1.0));
   EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(Value("OL[16]") + Value("OA[5]"), "13.0");
   Good(SwitchPower{false});
   EXPECT_EQ(CodeText(*Over().outcome.code), "CELL-E9438");
   EXPECT_EQ(state(), MachineState::kOff);
@@ -231,6 +249,7 @@ TEST_F(MachineTest, PowerCycle) {
   Good(SwitchPower{true});
   EXPECT_EQ(state(), MachineState::kNotZeroed);
   EXPECT_EQ(Value("VR[3]"), "2.5");
+  EXPECT_EQ(Value("OL[16]") + Value("OA[5]"), "00.0");
   EXPECT_EQ(machine->modal_values().at(0).value, "(0.0, 0.0, 0.0, 0.0, 0.0, -5.0)");
   EXPECT_THAT(Refused(StartRun{.program = 1}), HasSubstr("OPT-E7310"));
   Good(StartRun{.program = 1, .unzeroed = true});

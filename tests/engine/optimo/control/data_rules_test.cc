@@ -30,6 +30,22 @@ TEST(DataRules, VariablesOutliveThePrograms) {
   EXPECT_EQ(Value("VI[3]=VI[2]\n", "VI[3]", {.machine_state = first.machine_state}), "3");
 }
 
+// OPT-7.59: what is on is ON, whatever group it is of, and one is as good as the other.
+TEST(DataRules, LogicalValuesAreOnOrOff) {
+  const auto taken = [](const std::string& condition) {
+    return Value("VL[1]=ON\nOL[2]=ON\nVL[3]=OFF\nIF " + condition +
+                     " THEN 10\nGOTO 20\n10 VI[1]=1\n20 VI[2]=2\n",
+                 "VI[1]", {.inputs = {{SimTime(0), InputKind::kLogical, 5, 1.0}}});
+  };
+  for (const char* on : {"VL[1]", "OL[2]", "IL[5]"}) {
+    EXPECT_EQ(taken(std::string(on) + " = ON"), "1") << on;
+    EXPECT_EQ(taken(std::string(on) + " = VL[3]"), "0") << on;
+    EXPECT_EQ(taken(std::string(on) + " = VL[1]"), "1") << on;
+    EXPECT_EQ(taken(std::string(on) + " <> OFF"), "1") << on;
+  }
+  EXPECT_EQ(taken("VL[3] = OFF"), "1");
+}
+
 // OPT-7.61, OPT-7.78, OPT-B.47: 32767 fits, 32768 does not, and then nothing is assigned.
 TEST(DataRules, IntegersAreOfSixteenBits) {
   const Ran ran =
