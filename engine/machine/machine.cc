@@ -1,6 +1,7 @@
 #include "engine/machine/machine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/core/check.h"
@@ -142,6 +143,7 @@ void Machine::Settle() {
   }
   const bool by_key = state.halted_by == HaltReason::kHold || state.halted_by == HaltReason::kStop;
   if (std::exchange(resume_behind_, false) && by_key) ToRun(InputKind::kStart);
+  if (run_->state().phase == RunPhase::kFinished) CloseRun();
 }
 
 // What it made of an object that was replaced meanwhile is of no use.
@@ -282,6 +284,7 @@ Status Machine::Act(const StartRun& input) {
   Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
   if (!run) return run.error();
   simulation_.reset();
+  changed_.clear();
   note_ = {
       .number = note_.number + 1, .program = input.program, .source = input.source, .begun = now_};
   run_ = *std::move(run);
@@ -399,12 +402,15 @@ Status Machine::Act(const ChangeInput& input) {
   if ((!logical && input.kind != InputKind::kAnalogue) || !family_.HasVariable(parameters_, name)) {
     return Error{ErrorCode::kCellInvalidArgument, "the machine has no input " + name, {}};
   }
+  if (!std::isfinite(static_cast<float>(input.value)))
+    return Error{ErrorCode::kCellInvalidArgument, name + " is a number up to 3.4e38", {}};
   ToRun(input.kind, input.index, input.value);
   return {};
 }
 
 // An open door acts as STOP. OPT-B.34
 Status Machine::Act(const MoveDoor& input) {
+  if (input.open) resume_behind_ = false;
   const bool goes_on = run_ != nullptr && run_->state().phase == RunPhase::kRunning;
   ToRun(InputKind::kDoor, 0, input.open ? 1.0 : 0.0);
   if (goes_on && run_->state().door_open) stopping_ = true;
