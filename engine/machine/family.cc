@@ -56,6 +56,8 @@ Status MachineFamily::CheckBreakpoint(const Breakpoint& breakpoint) const {
   }
   if (!IsSlot(breakpoint.at.program) || breakpoint.at.step < 1)
     return refuse("stands in no program: give a slot of 1 to 99 and a step from 1 on");
+  if (breakpoint.from_pass < 1 || breakpoint.from_pass > kBreakpointPassMax)
+    return refuse("counts passes from 1 to a million millions");
   if (!breakpoint.condition.empty())
     return refuse("has a condition, but the programs of this machine have no expressions");
   if (breakpoint.from_pass > 1)

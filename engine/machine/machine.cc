@@ -447,6 +447,11 @@ Status Machine::Act(const WriteVariable& input) {
 }
 
 Status Machine::Act(const SetBreakpoints& input) {
+  if (input.breakpoints.size() > kBreakpointsMax) {
+    return Error{ErrorCode::kCellInvalidArgument,
+                 "at most " + std::to_string(kBreakpointsMax) + " breakpoints are set",
+                 {}};
+  }
   for (const Breakpoint& breakpoint : input.breakpoints) {
     if (const Status good = family_.CheckBreakpoint(breakpoint); !good) return good.error();
   }

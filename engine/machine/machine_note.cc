@@ -12,7 +12,7 @@ namespace rmlcell::machine {
 namespace {
 
 constexpr std::string_view kHeader = "rmlcell machine 1";
-constexpr std::size_t kListMax = 10'000;  // breakpoints, alarms: nobody sets as many
+constexpr std::size_t kAlarmsMax = 10'000;  // of one kind there is one
 constexpr std::array kModes = {std::pair{Mode::kRemote, "REMOTE"}, std::pair{Mode::kCycle, "CYCLE"},
                                std::pair{Mode::kSingle, "SINGLE"},
                                std::pair{Mode::kRepeat, "REPEAT"},
@@ -101,7 +101,7 @@ void TakeAlarm(Words& words, MachineNote& note) {
   words.Take(alarm.id, 1, kAny);
   const std::string_view symbol = words.Next();
   const auto row = std::ranges::find(Catalogue(), symbol, &CatalogueEntry::symbol);
-  if (row == Catalogue().end() || note.alarms.size() >= kListMax) return words.Refuse();
+  if (row == Catalogue().end() || note.alarms.size() >= kAlarmsMax) return words.Refuse();
   alarm.code = row->code;
   words.Take(alarm.at);
   words.Take(alarm.place.program, 0, kSlotMax);
@@ -115,9 +115,9 @@ void TakeAlarm(Words& words, MachineNote& note) {
 void TakeBreakpoint(Words& words, MachineNote& note) {
   Breakpoint breakpoint;
   words.Take(breakpoint.at);
-  words.Take(breakpoint.from_pass, 0, kAny);
+  words.Take(breakpoint.from_pass, 1, static_cast<long long>(kBreakpointPassMax));
   breakpoint.condition = words.Rest();
-  if (note.breakpoints.size() >= kListMax) return words.Refuse();
+  if (note.breakpoints.size() >= kBreakpointsMax) return words.Refuse();
   note.breakpoints.push_back(std::move(breakpoint));
 }
 

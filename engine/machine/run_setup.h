@@ -48,6 +48,9 @@ struct ProgramStep {
   bool operator==(const ProgramStep&) const = default;
 };
 
+inline constexpr std::size_t kBreakpointsMax = 10'000;  // nobody sets as many
+inline constexpr std::uint64_t kBreakpointPassMax = 1'000'000'000'000;
+
 // Where somebody who watches a run wants it to halt: behind this step, as behind HOLD.
 struct Breakpoint {
   ProgramStep at{};

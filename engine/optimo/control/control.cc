@@ -368,6 +368,7 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
 MachineState Control::Kept() const {
   MachineState kept = s_.Kept();
   kept.axes = ride_.axes();
+  if (!kept.simul) kept.simul = now().simulated_until;  // its step was not reached yet: OPT-6.14
   return kept;
 }
 

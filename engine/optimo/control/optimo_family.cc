@@ -200,7 +200,11 @@ class Family final : public machine::MachineFamily {
       const Result<Condition> condition = ReadCondition(breakpoint.condition);
       if (!condition) return condition.error();
     }
-    return machine::MachineFamily::CheckBreakpoint({.at = breakpoint.at});
+    // That of streams, but for what they do not have.
+    const bool counts =
+        breakpoint.from_pass >= 1 && breakpoint.from_pass <= machine::kBreakpointPassMax;
+    return machine::MachineFamily::CheckBreakpoint(
+        {.at = breakpoint.at, .from_pass = counts ? 1 : breakpoint.from_pass});
   }
 
   Status CheckWrite(const machine::Parameters& parameters, std::string_view name,

@@ -1,6 +1,8 @@
 // A machine that lives between runs: states, inputs, debugging, what it keeps (live.md 2).
 #include "engine/machine/machine.h"
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 
@@ -195,6 +197,30 @@ TEST_F(MachineTest, WhatIsAskedForLastCounts) {
   }
 }
 
+// LIVE-2.10 a9, LIVE-2.05: a door that opens behind a RESUME keeps the run where it comes to rest;
+// a START that the open door makes an alarm ends the run at once, with its own time.
+TEST_F(MachineTest, ADoorBehindAResume) {
+  Load({"COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (1521.02, 2201.2, -350., 0., 0.)\n"});
+  Start();
+  GoOn(At(3.0));
+  Good(StopRun{});
+  Good(ResumeRun{});
+  Good(MoveDoor{true});
+  GoOn(At(10.0));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  Load({"COORD ABSOL\nPATH LIN\nSPEED 20\nWORK 0,0/ON\nMOVE (1521.02, 2201.2, -350., 0., 0.)\n"});
+  Start();
+  GoOn(At(3.0));
+  Good(MoveDoor{true});
+  Good(ResumeRun{});
+  GoOn(At(33.0));
+  EXPECT_EQ(state(), MachineState::kAlarm);
+  const RunOver over = Over();
+  EXPECT_EQ(CodeText(*over.outcome.code), "OPT-E7410");
+  EXPECT_LT(over.lasted, At(4.0));
+  EXPECT_EQ(machine->status().alarms.at(0).at, over.lasted);
+}
+
 // LIVE-2.10 a7: in alarm until it is released and acknowledged.
 TEST_F(MachineTest, EmergencyStopIsAnAlarm) {
   Load({"DELAY 5\n"});
@@ -281,6 +307,10 @@ TEST_F(MachineTest, VariablesAreWritten) {
   EXPECT_THAT(refused("OL[9]", 1.0), HasSubstr("OPT-E931"));  // two gas channels
   EXPECT_THAT(Refused(ChangeInput{.kind = InputKind::kLogical, .index = 100, .value = 1.0}),
               HasSubstr("no input IL[100]"));
+  for (const double value : {std::nan(""), 1e300, -std::numeric_limits<double>::infinity()}) {
+    EXPECT_THAT(Refused(ChangeInput{.kind = InputKind::kAnalogue, .index = 7, .value = value}),
+                HasSubstr("CELL-E9003 IA[7]"));
+  }
 }
 
 // A program of ten rounds: step 2 is in the loop.
@@ -400,6 +430,43 @@ TEST_F(MachineTest, MemoryChangesActAtTheNextStart) {
   EXPECT_THAT(machine->memory().deleted, ElementsAre(2));
   EXPECT_THAT(Refused(StartRun{.program = 2}), HasSubstr("OPT-E7102"));
   EXPECT_THAT(Refused(DeleteProgram{2}), HasSubstr("OPT-E7102"));
+}
+
+// Stored while no run is open, and run for the first time.
+TEST_F(MachineTest, TheExecutableOfANewProgramIsKept) {
+  Load({"VI[1] = 1\n"});
+  Good(StoreProgram{.slot = 2, .program = Translated("VI[1] = 2\n")});
+  Start(2);
+  GoOn(At(1.0));
+  EXPECT_EQ(machine->TakeMadeExecutables().size(), 1U);
+}
+
+// LIVE-3.23, OPT-6.14: SIMUL whose step was not reached is kept by a mark in the dry run, too.
+TEST_F(MachineTest, ADryRunIsSavedAsOne) {
+  Load({"VI[1] = 1\nDELAY 5\nOL[12] = ON\n"});
+  Good(SetSimulation{ProgramStep{1, 77}});
+  Start();
+  GoOn(At(1.0));
+  Load({"OL[12] = ON\n"}, machine->Save());
+  heard.told.clear();
+  Start();
+  GoOn(At(8.0));
+  for (const std::string& line : heard.told) EXPECT_THAT(line, testing::Not(HasSubstr("signal")));
+}
+
+// What is taken can be read back.
+TEST_F(MachineTest, BreakpointsHaveLimits) {
+  Load({kLoop});
+  EXPECT_THAT(Refused(SetBreakpoints{{{.at = {1, 1}, .from_pass = std::uint64_t{1} << 63}}}),
+              HasSubstr("pass"));
+  EXPECT_THAT(Refused(SetBreakpoints{{{.at = {1, 1}, .from_pass = 0}}}), HasSubstr("pass"));
+  std::vector<Breakpoint> many(kBreakpointsMax, Breakpoint{.at = {1, 1}});
+  Good(SetBreakpoints{many});
+  const std::string saved = machine->Save();
+  many.push_back({.at = {1, 2}});
+  EXPECT_THAT(Refused(SetBreakpoints{many}), HasSubstr("at most"));
+  Load({kLoop}, saved);
+  EXPECT_EQ(machine->breakpoints().size(), kBreakpointsMax);
 }
 
 // LIVE-3.23: what a mark keeps, standing and in the middle of a run.
