@@ -294,8 +294,7 @@ void Control::SetBreakpoints(const std::vector<machine::Breakpoint>& breakpoints
   std::vector<WatchedStep> watched;
   for (const machine::Breakpoint& breakpoint : breakpoints) {
     WatchedStep& step = watched.emplace_back();
-    step.at = breakpoint.at;
-    step.from_pass = breakpoint.from_pass;
+    step.breakpoint = breakpoint;
     if (breakpoint.condition.empty()) continue;
     if (Result<Condition> condition = ReadCondition(breakpoint.condition); condition)
       step.condition = *std::move(condition);

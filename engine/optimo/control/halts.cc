@@ -1,5 +1,6 @@
 #include "engine/optimo/control/halts.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace rmlcell::optimo {
@@ -10,36 +11,79 @@ bool Halts::due() const {
 }
 
 bool Halts::breaks_at(const machine::Place& place) const {
-  return s_.watched_halts || (s_.breakpoint && s_.breakpoint->program == place.program &&
-                              s_.breakpoint->step == place.step);
+  return s_.breakpoint && s_.breakpoint->program == place.program &&
+         s_.breakpoint->step == place.step;
+}
+
+bool Halts::Counts(const WatchedStep& step) const {
+  return !step.condition || data_.HoldsNow(*step.condition);
+}
+
+// An instruction that waits for its condition: its EndStep is to come.
+bool Halts::IsBegun() const { return waits_.pending().kind == Pending::Kind::kCondition; }
+
+// Something of an instruction is not over, whether its EndStep was or not.
+bool Halts::IsUnderWay() const {
+  const bool interrupted = ride_.protocol().intent() == motion::RideIntent::kStop;
+  return ride_.busy() || ride_.passing() || interrupted || waits_.waits();
+}
+
+// From where the machine is to where the program is: a chain of /FLY moves.
+bool Halts::IsReadAhead(const machine::ProgramStep& step) const {
+  const machine::Place from = ride_.motion_place();
+  const machine::Place to = s_.place_ahead.value_or(situation_.place);
+  return step.program == to.program && step.step <= to.step &&
+         step.step >= (from.program == to.program ? std::min(from.step, to.step) : to.step);
 }
 
 void Halts::Watch(std::vector<WatchedStep> steps) {
+  const bool under_way = IsUnderWay();
+  const bool was_due = s_.watched_halts || s_.after_step == AfterStep::kWatched;
+  bool due = false;
+  for (WatchedStep& step : steps) {
+    const bool here = under_way && IsReadAhead(step.breakpoint.at);
+    const auto before = std::ranges::find(s_.watched, step.breakpoint, &WatchedStep::breakpoint);
+    if (before != s_.watched.end()) {
+      step.passes = before->passes;
+      due = due || (here && was_due && step.due());
+    } else if (here && Counts(step)) {  // it was begun before anybody asked
+      ++step.passes;
+      due = due || step.due();
+    }
+  }
   s_.watched = std::move(steps);
-  s_.watched_halts = false;
+  s_.watched_halts = due && IsBegun();
+  if (IsBegun()) return;
+  if (due && s_.after_step != AfterStep::kBreak) s_.after_step = AfterStep::kWatched;
+  if (!due && s_.after_step == AfterStep::kWatched) {
+    s_.after_step = AfterStep::kNone;
+    SetMode(situation_.mode);
+  }
 }
 
 void Halts::BeginStep(const machine::Place& place) {
   s_.watched_halts = false;
   for (WatchedStep& step : s_.watched) {
-    if (step.at.program != place.program || step.at.step != place.step) continue;
-    if (step.condition && !data_.HoldsNow(*step.condition)) continue;
-    if (++step.passes >= step.from_pass) s_.watched_halts = true;
+    const machine::ProgramStep& at = step.breakpoint.at;
+    if (at.program != place.program || at.step != place.step || !Counts(step)) continue;
+    ++step.passes;
+    s_.watched_halts = s_.watched_halts || step.due();
   }
 }
 
-// What is under way has had its EndStep, but for an instruction that waits for its condition.
 void Halts::SetMode(machine::Mode mode) {
   situation_.mode = mode;
-  const bool begun = waits_.waits() && waits_.pending().kind == Pending::Kind::kCondition;
-  if (mode == machine::Mode::kSingle && situation_.running() && !begun &&
-      (ride_.busy() || ride_.passing() || waits_.waits())) {
-    s_.after_step = AfterStep::kSingle;
+  if (mode == machine::Mode::kSingle) {
+    if (s_.after_step == AfterStep::kNone && IsUnderWay() && !IsBegun())
+      s_.after_step = AfterStep::kSingle;
+  } else if (s_.after_step == AfterStep::kSingle) {
+    s_.after_step = AfterStep::kNone;
   }
 }
 
 bool Halts::will_halt_behind(const machine::Place& place) const {
-  return situation_.mode == machine::Mode::kSingle || s_.hold || breaks_at(place);
+  return situation_.mode == machine::Mode::kSingle || s_.hold || s_.watched_halts ||
+         breaks_at(place);
 }
 
 void Halts::Hold() {
@@ -68,6 +112,8 @@ bool Halts::StopNow() {
 void Halts::EndStep(const machine::Place& place) {
   if (breaks_at(place)) {
     s_.after_step = AfterStep::kBreak;
+  } else if (s_.watched_halts) {
+    s_.after_step = AfterStep::kWatched;
   } else if (situation_.mode == machine::Mode::kSingle) {
     s_.after_step = AfterStep::kSingle;
   }
@@ -80,7 +126,7 @@ bool Halts::HaltHere(bool program_over) {
     return true;
   }
   if (program_over) return false;
-  const bool at_break = after_step == AfterStep::kBreak;
+  const bool at_break = after_step != AfterStep::kSingle;
   Halt(at_break ? machine::HaltReason::kBreakpoint : machine::HaltReason::kSingle,
        at_break ? "BREAK" : "SINGLE");
   return true;

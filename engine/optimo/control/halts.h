@@ -16,16 +16,18 @@ namespace rmlcell::optimo {
 // What halts the run behind the step that was carried out last.
 enum class AfterStep : std::uint8_t {
   kNone,
-  kSingle,  // the mode. OPT-6.31
-  kBreak,   // the breakpoint stands at it. OPT-6.08
+  kSingle,   // the mode. OPT-6.31
+  kBreak,    // the breakpoint stands at it. OPT-6.08
+  kWatched,  // somebody who watches wants it
 };
 
 // A breakpoint of somebody who watches the run.
 struct WatchedStep {
-  machine::ProgramStep at{};
-  std::optional<Condition> condition{};  // none: always
-  std::uint64_t from_pass = 1;
-  std::uint64_t passes = 0;  // how often the step was begun with the condition met
+  machine::Breakpoint breakpoint{};
+  std::optional<Condition> condition{};  // as it is read; none: always
+  std::uint64_t passes = 0;              // how often the step was begun with the condition met
+
+  bool due() const { return passes >= breakpoint.from_pass; }
 };
 
 struct HaltState {
@@ -54,7 +56,9 @@ struct HaltState {
 //   stop         Stop, where the motion under way     Stop, StopNow: it can, and comes to rest;
 //                cannot be left yet                   any halt
 //   after_step   EndStep: kBreak at the breakpoint,   HaltHere, with a halt; without one where the
-//                else kSingle in SINGLE               main program is over. Other halts leave it
+//                kWatched, else kSingle in SINGLE;    main program is over. Other halts leave it;
+//                SetMode and Watch, of what is        SetMode and Watch, of what they set
+//                under way
 //   breakpoint   SetBreakpoint; what the machine kept never: the next BREAK replaces it. OPT-6.08
 //   watched      Watch                                never: the next Watch replaces them
 //
@@ -91,8 +95,11 @@ class Halts {
   void EndStep(const machine::Place& place);
   // BREAK
   void SetBreakpoint(const machine::ProgramStep& step) { s_.breakpoint = step; }
+  // One that was there already goes on counting; a new one on a place that was read ahead halts
+  // behind what is under way.
   void Watch(std::vector<WatchedStep> steps);
-  // SINGLE halts behind the instruction that is under way, and behind each that comes.
+  // SINGLE halts behind the instruction that is under way, and behind each that comes; another mode
+  // takes that back.
   void SetMode(machine::Mode mode);
 
   // Time passed. A STOP that waited brings the machine to rest from here, where it can. True: it
@@ -112,6 +119,10 @@ class Halts {
  private:
   void HaltByKey(bool stop);
   bool breaks_at(const machine::Place& place) const;
+  bool Counts(const WatchedStep& step) const;
+  bool IsUnderWay() const;
+  bool IsBegun() const;
+  bool IsReadAhead(const machine::ProgramStep& step) const;
 
   HaltState& s_;
   Situation& situation_;

@@ -136,6 +136,43 @@ TEST_F(MachineTest, ModesAndSources) {
   EXPECT_EQ(state(), MachineState::kIdle);
 }
 
+// LIVE-2.10 a11: the mode at the end of the instruction counts, also of one that a STOP
+// interrupted; a breakpoint that is due stays one.
+TEST_F(MachineTest, SingleTakenBackOrSetWhileHeld) {
+  const auto begin = [&](const std::string& first) {
+    Load({first + "VI[1] = 1\nVI[1] = 2\n"});
+    Good(ChangeMode{Mode::kCycle});
+    Good(StartRun{.program = 1, .source = StartSource::kPanel});
+    GoOn(At(2.0));
+  };
+  const std::string move =
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02, 2201.2, -350., 0., 0.)\n";
+  begin(move);
+  Good(ChangeMode{Mode::kSingle});
+  Good(ChangeMode{Mode::kCycle});
+  GoOn(At(100.0));
+  EXPECT_EQ(state(), MachineState::kIdle);
+  for (const std::string& first : {move, std::string("DELAY 5\n")}) {
+    begin(first);
+    Good(StopRun{});
+    GoOn(At(3.0));
+    EXPECT_EQ(state(), MachineState::kHeld) << first;
+    Good(ChangeMode{Mode::kSingle});
+    Good(ResumeRun{.source = StartSource::kPanel});
+    GoOn(At(100.0));
+    EXPECT_EQ(machine->status().run.halted_by, HaltReason::kSingle) << first;
+    EXPECT_EQ(Value("VI[1]"), "0") << first;
+  }
+  Load({move + "VI[1] = 1\n"});
+  Good(ChangeMode{Mode::kCycle});
+  Good(SetBreakpoints{{{.at = {1, 4}}}});
+  Good(StartRun{.program = 1, .source = StartSource::kPanel});
+  GoOn(At(2.0));
+  Good(ChangeMode{Mode::kSingle});
+  GoOn(At(100.0));
+  EXPECT_EQ(machine->status().run.halted_by, HaltReason::kBreakpoint);
+}
+
 // OPT-6.31: a run that goes over to SINGLE halts behind the move under way, then behind each step.
 TEST_F(MachineTest, SingleOnTheWay) {
   Load(
@@ -340,6 +377,72 @@ TEST_F(MachineTest, BreakpointsAreManyAndHaveConditions) {
   GoOn(At(200.0));
   EXPECT_EQ(Value("VI[1]"), "10");
   EXPECT_EQ(heard.halts.size(), 3U);
+}
+
+// Set again on the way a breakpoint goes on counting, and stays due; a cleared one is due no more.
+TEST_F(MachineTest, BreakpointsAreReplacedOnTheWay) {
+  Load({"VI[1] = 1\nWAIT IL[5]\nVI[1] = 2\nVI[1] = 3\n"});
+  Good(SetBreakpoints{{{.at = {1, 2}}}});
+  Start();
+  GoOn(At(1.0));
+  Good(SetBreakpoints{{{.at = {1, 2}}, {.at = {1, 4}}}});
+  Good(ChangeInput{.kind = InputKind::kLogical, .index = 5, .value = 1.0});
+  GoOn(At(2.0));
+  EXPECT_EQ(heard.halts, std::vector<int>{2});
+  Good(SetBreakpoints{{{.at = {1, 2}}, {.at = {1, 4}}}});  // it halts there once
+  Good(ResumeRun{});
+  GoOn(At(3.0));
+  EXPECT_EQ(heard.halts, std::vector<int>{2});  // step 4 is the last: the program is over
+
+  heard.halts.clear();
+  Load({kLoop});
+  Good(SetBreakpoints{{{.at = {1, 2}, .from_pass = 5}}});
+  Start();
+  GoOn(At(2.5));  // in the third round
+  Good(SetBreakpoints{{{.at = {1, 2}, .from_pass = 5}}});
+  GoOn(At(20.0));
+  EXPECT_EQ(Value("VI[1]"), "5");
+
+  Load(
+      {"COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02, 2201.2, -350., 0., 0.)\nVI[1] = 1\nVI[1] = 2\n"});
+  Good(SetBreakpoints{{{.at = {1, 4}}}});
+  Start();
+  GoOn(At(2.0));
+  Good(SetBreakpoints{});
+  GoOn(At(100.0));
+  EXPECT_EQ(state(), MachineState::kIdle);
+}
+
+// run.h: one that comes late halts behind what was read ahead.
+TEST_F(MachineTest, BreakpointsThatComeLate) {
+  const std::string single =
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02, 2201.2, -350., 0., 0.)\nVI[1] = 1\nVI[1] = 2\n";
+  Load({single});
+  Start();
+  GoOn(At(2.0));
+  Good(SetBreakpoints{{{.at = {1, 4}}}});
+  GoOn(At(100.0));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(Value("VI[1]"), "0");
+  std::string chain = "COORD ABSOL\nPATH LIN\nSPEED 20\n";
+  for (int i = 1; i <= 4; ++i)
+    chain +=
+        "MOVE (" + std::to_string(i * 100) + ".,2201.2,-350.,0.,0.)" + (i < 4 ? "/FLY\n" : "\n");
+  chain += "VI[1] = 1\nVI[1] = 2\n";
+  for (int step = 4; step <= 7; ++step) {
+    heard.halts.clear();
+    Load({chain});
+    Start();
+    GoOn(At(0.5));
+    Good(SetBreakpoints{{{.at = {1, step}}}});
+    GoOn(At(100.0));
+    EXPECT_EQ(heard.halts.size(), 1U) << step;
+    EXPECT_EQ(machine->status().run.halted_by, HaltReason::kBreakpoint) << step;
+    EXPECT_EQ(Value("VI[1]"), "0") << step;
+    Good(ResumeRun{});
+    GoOn(At(200.0));
+    EXPECT_EQ(state(), MachineState::kIdle) << step;
+  }
 }
 
 // A /FLY target with a breakpoint is reached exactly: OPT-6.07. What only watches changes nothing.
