@@ -83,6 +83,7 @@ Status Machine::Take(MachineNote note) {
   Result<std::unique_ptr<Standing>> standing = family_.NewStanding(parameters_, note.family);
   if (!standing) return standing.error();
   standing_ = *std::move(standing);
+  standing_->Rest();  // it may have been saved in the middle of a run
   now_ = note.time;
   on_ = note.on;
   emergency_ = note.emergency;
@@ -168,6 +169,7 @@ void Machine::CloseRun() {
       family_.NewStanding(parameters_, run_->SaveMachine());
   RMLCELL_CHECK(standing);
   standing_ = *std::move(standing);
+  standing_->Rest();
   run_.reset();
   stopping_ = resume_behind_ = abort_behind_ = false;
   changed_.clear();

@@ -27,6 +27,9 @@ class Standing {
   // An input or the door; keys and the override do nothing here.
   virtual void Apply(const InputChange& /*input*/) {}
 
+  // A run is over: what would go on by itself stops. LIVE-2.04
+  virtual void Rest() {}
+
   // Off and on again: what the machine keeps only while it has power is as it comes.
   virtual void CyclePower() = 0;
 

@@ -46,11 +46,13 @@ std::vector<machine::ModalValue> MillStanding::modal_values() const {
   return ModalRegisters(device_, *profile_, tool());
 }
 
-void MillStanding::CyclePower() {
-  Registers fresh(*profile_);
-  fresh.z0 = fresh.surface_z = device_.registers().z0;
-  device_.Restore(fresh, device_.carriage().physical());
+void MillStanding::Rest() {
+  Registers registers = device_.registers();
+  registers.spindle_on = false;
+  device_.Restore(registers, device_.carriage().physical());
 }
+
+void MillStanding::CyclePower() { device_ = Device(*profile_); }
 
 std::string MillStanding::Save() const {
   return WriteMachineState({.registers = device_.registers(), .at = device_.carriage().physical()});

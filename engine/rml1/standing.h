@@ -20,9 +20,8 @@ class MillStanding final : public machine::Standing {
   machine::RunState state() const override;
   std::optional<std::string> ReadVariable(std::string_view name) const override;
   std::vector<machine::ModalValue> modal_values() const override;
-  // As it comes: the settings of the streams before are gone, and so is the spindle; the tool stays
-  // where it is, and so does Z0, which the operator set.
-  void CyclePower() override;
+  void Rest() override;        // the spindle stands
+  void CyclePower() override;  // a new machine: RML1-7.08
   std::string Save() const override;
 
  private:

@@ -80,6 +80,26 @@ TEST_F(MillMachine, ABreakpointThatComesLate) {
   EXPECT_EQ(Value("X"), "600");
 }
 
+// LIVE-2.04, LIVE-3.30: a spindle that a stream left on, or that turned when it was saved, stands
+// in IDLE; the next stream that cuts switches it on.
+TEST_F(MillMachine, ItsSpindleTurnsInRunsOnly) {
+  Load({"VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;"});
+  Start();
+  GoOn(At(3.0));
+  EXPECT_TRUE(machine->status().run.spindle_on);
+  const std::string saved = machine->Save();
+  GoOn(At(60.0));
+  EXPECT_EQ(state(), MachineState::kIdle);
+  EXPECT_FALSE(machine->status().run.spindle_on);
+  EXPECT_EQ(Value("SPINDLE"), "off");
+  Load({"PD300,100;"}, saved);
+  EXPECT_FALSE(machine->status().run.spindle_on);
+  EXPECT_EQ(Value("MC"), "on");
+  Start();
+  GoOn(At(5.0));
+  EXPECT_TRUE(machine->status().run.spindle_on);
+}
+
 TEST_F(MillMachine, RefusesWhatAMillDoesNotHave) {
   Load({kStrokes});
   EXPECT_THAT(Refused(ChangeMode{Mode::kRepeat}), HasSubstr("no mode REPEAT"));
@@ -95,8 +115,8 @@ TEST_F(MillMachine, RefusesWhatAMillDoesNotHave) {
   EXPECT_THAT(Refused(ChangeOverride{0.0}), HasSubstr("above 0"));
 }
 
-// RML1-7.08: speeds and the place stay from stream to stream, and a power cycle puts the settings
-// back; the tool has its reference all the time.
+// RML1-7.08: speeds and the place stay from stream to stream; behind a power cycle it is a new one,
+// at the work origin with Z at the top, 20 mm above Z0. It has its reference all the time.
 TEST_F(MillMachine, KeepsItsRegisters) {
   Load({"VS7;PU300,200;"});
   const std::string fresh = Value("VS");
@@ -112,7 +132,8 @@ TEST_F(MillMachine, KeepsItsRegisters) {
   Good(SwitchPower{true});
   EXPECT_EQ(state(), MachineState::kIdle);
   EXPECT_EQ(Value("VS"), fresh);
-  EXPECT_EQ(Value("X"), "300");
+  EXPECT_EQ(Value("X") + " " + Value("Y"), "0 0");
+  EXPECT_EQ(machine->status().run.tip.tip.z(), 0.0);
   Good(EmergencyStop{});
   EXPECT_EQ(CodeText(machine->status().alarms.at(0).code), "CELL-E9437");
 }
