@@ -50,10 +50,11 @@ struct FamilyInfo {
   // set it themselves.
   std::array<std::string_view, 3> origin_parameters{};
   std::string_view clamps_parameter{};  // height of the clamps above program zero, mm; empty: none
-  double override_max_percent = 100.0;  // of the feed rate; the least is above 0
-  bool has_repeat = false;              // the mode REPEAT
-  bool has_dry_run = false;             // up to a step, RunSetup::simul
-  bool has_breakpoints = false;         // Run::SetBreakpoints
+  double override_min_percent = 1.0;    // of the feed rate, where a person sets it at a machine
+  double override_max_percent = 100.0;
+  bool has_repeat = false;       // the mode REPEAT
+  bool has_dry_run = false;      // up to a step, RunSetup::simul
+  bool has_breakpoints = false;  // Run::SetBreakpoints
 
   // What the machine calls what the cell finds. What has no number in its manual the cell says in
   // its own words: a machine without program memory has no slots.

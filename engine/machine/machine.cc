@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "engine/core/check.h"
@@ -15,6 +16,15 @@ Error NotNow(MachineState state, std::string_view possible) {
           "the machine is " + std::string(Name(state)) + ": " + std::string(possible),
           {}};
 }
+
+// What the machine itself takes, and not what is done to it from outside or to its memory. HOLD,
+// STOP and ABORT find nothing to do.
+template <class Input>
+constexpr bool kNeedsPower =
+    std::is_same_v<Input, StartRun> || std::is_same_v<Input, ResumeRun> ||
+    std::is_same_v<Input, Acknowledge> || std::is_same_v<Input, ChangeMode> ||
+    std::is_same_v<Input, ChangeOverride> || std::is_same_v<Input, WriteVariable> ||
+    std::is_same_v<Input, SetBreakpoints> || std::is_same_v<Input, SetSimulation>;
 
 std::string_view Name(Mode mode) {
   switch (mode) {
@@ -208,10 +218,14 @@ std::vector<ModalValue> Machine::modal_values() const {
 }
 
 std::optional<ProgramStep> Machine::simulation_until() const {
-  return simulation_ && simulation_->step > 0 ? simulation_ : std::nullopt;
+  const std::optional<ProgramStep> until =
+      simulation_ || run_ != nullptr ? simulation_ : standing_->simulation_until();
+  return until && until->step > 0 ? until : std::nullopt;
 }
 
 Status Machine::Apply(const MachineInput& input) {
+  if (!on_ && std::visit([]<class Input>(const Input&) { return kNeedsPower<Input>; }, input))
+    return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
   Status done = std::visit([this](const auto& one) { return Act(one); }, input);
   Settle();
   return done;
@@ -246,8 +260,8 @@ Status Machine::MaySource(StartSource source) const {
 
 Status Machine::MayStart(const StartRun& input) const {
   switch (state()) {
-    case MachineState::kOff:
-      return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
+    case MachineState::kOff:  // refused by Apply
+      break;
     case MachineState::kAlarm:
       return Error{alarms_.front().code, alarms_.front().detail, {}};
     case MachineState::kRunning:
@@ -296,8 +310,8 @@ Status Machine::Act(const StartRun& input) {
 
 Status Machine::Act(const ResumeRun& input) {
   switch (state()) {
-    case MachineState::kOff:
-      return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
+    case MachineState::kOff:  // refused by Apply
+      break;
     case MachineState::kAlarm:
       return Error{alarms_.front().code, alarms_.front().detail, {}};
     case MachineState::kIdle:
@@ -310,6 +324,7 @@ Status Machine::Act(const ResumeRun& input) {
       break;
   }
   if (const Status source = MaySource(input.source); !source) return source.error();
+  if (abort_behind_) return NotNow(state(), "the run ends as soon as it stands");
   if (stopping_) {
     resume_behind_ = true;
   } else {
@@ -360,7 +375,6 @@ Status Machine::Act(const EmergencyStop& input) {
 }
 
 Status Machine::Act(const Acknowledge& input) {
-  if (!on_) return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
   const auto found = std::ranges::find(alarms_, input.alarm, &Alarm::id);
   if (found == alarms_.end()) return {};
   if (emergency_ && found->code == family_.info().emergency_stop)
@@ -371,7 +385,6 @@ Status Machine::Act(const Acknowledge& input) {
 
 // Leaving for MANUAL is a HOLD (OPT-4.24).
 Status Machine::Act(const ChangeMode& input) {
-  if (!on_) return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
   if (input.mode == Mode::kRepeat && !family_.info().has_repeat) {
     return Error{
         ErrorCode::kCellMode, std::string(family_.info().title) + " has no mode REPEAT", {}};
@@ -386,11 +399,12 @@ Status Machine::Act(const ChangeMode& input) {
 }
 
 Status Machine::Act(const ChangeOverride& input) {
-  const double highest = family_.info().override_max_percent;
-  if (!(input.percent > 0.0 && input.percent <= highest)) {
+  const FamilyInfo& info = family_.info();
+  if (!(input.percent >= info.override_min_percent && input.percent <= info.override_max_percent)) {
     return Error{ErrorCode::kCellInvalidArgument,
-                 "an override of " + ShortestText(input.percent) +
-                     " %: it is above 0 and at most " + ShortestText(highest) + " %",
+                 "an override of " + ShortestText(input.percent) + " %: it is " +
+                     ShortestText(info.override_min_percent) + " to " +
+                     ShortestText(info.override_max_percent) + " %",
                  {}};
   }
   override_percent_ = input.percent;

@@ -24,6 +24,9 @@ class Standing {
   virtual void WriteVariable(std::string_view /*name*/, double /*value*/) {}
   virtual std::vector<ModalValue> modal_values() const { return {}; }
 
+  // What a run left that did not reach the end of its dry run (OPT-6.14): the next one is dry.
+  virtual std::optional<ProgramStep> simulation_until() const { return {}; }
+
   // An input or the door; keys and the override do nothing here.
   virtual void Apply(const InputChange& /*input*/) {}
 

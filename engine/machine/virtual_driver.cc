@@ -8,7 +8,7 @@
 namespace rmlcell::machine {
 
 VirtualDriver::VirtualDriver(std::unique_ptr<Machine> machine, SimTime clock)
-    : machine_(std::move(machine)), clock_(clock), time_(machine_->time()) {}
+    : machine_(std::move(machine)), clock_(clock), time_(machine_->time()), last_(clock) {}
 
 DriverCapabilities VirtualDriver::capabilities() const {
   return {.inputs = machine_->has_inputs(),
@@ -26,14 +26,25 @@ void VirtualDriver::Anchor(SimTime clock) {
   time_ = machine_->time();
 }
 
+// That time of the clock never was one of the machine.
+void VirtualDriver::GiveUp(SimTime late, SimTime clock) {
+  lost_ += late;
+  Anchor(clock);
+}
+
+SimTime VirtualDriver::LateAt(SimTime clock) const {
+  const SimTime behind = DueAt(clock) - machine_->time();
+  return SimTime(std::llround(static_cast<double>(behind.count()) / factor_));
+}
+
 Progress VirtualDriver::Pump(SimTime clock) {
-  const SimTime due = DueAt(clock);
-  if (machine_->Advance(due) == Progress::kReached) return Progress::kReached;
-  const SimTime late(std::llround(static_cast<double>((due - machine_->time()).count()) / factor_));
-  if (late > kMadeUp) {
-    lost_ += late;
-    Anchor(clock);
+  const SimTime slept = clock - std::exchange(last_, clock);
+  if (slept > kMadeUp && machine_->status().open) {
+    GiveUp(LateAt(clock), clock);
+    return Progress::kReached;
   }
+  if (machine_->Advance(DueAt(clock)) == Progress::kReached) return Progress::kReached;
+  if (LateAt(clock) > kMadeUp) GiveUp(LateAt(clock), clock);
   return Progress::kMoreWork;
 }
 
@@ -50,7 +61,7 @@ Status VirtualDriver::SetFactor(SimTime clock, double factor) {
                  {}};
   }
   Pump(clock);
-  Anchor(clock);
+  GiveUp(LateAt(clock), clock);  // with another factor it means another time
   factor_ = factor;
   return {};
 }

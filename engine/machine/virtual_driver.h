@@ -8,7 +8,8 @@ namespace rmlcell::machine {
 
 // Drives a virtual machine along a clock: its time is `factor` times as fast, in every state
 // (LIVE-3.11). What it is late by is made up for, up to kMadeUp of the clock; beyond that its time
-// goes on from where it stands: it never jumps, and nothing is left out (LIVE-3.14).
+// goes on from where it stands: it never jumps, and nothing is left out (LIVE-3.14). So whoever has
+// a run open calls more often than that; a machine without one may sleep.
 class VirtualDriver final : public MachineDriver {
  public:
   static constexpr double kFactorMin = 0.1;
@@ -35,12 +36,15 @@ class VirtualDriver final : public MachineDriver {
 
  private:
   SimTime DueAt(SimTime clock) const;
+  SimTime LateAt(SimTime clock) const;  // of the clock
   void Anchor(SimTime clock);
+  void GiveUp(SimTime late, SimTime clock);
 
   std::unique_ptr<Machine> machine_;
   double factor_ = 1.0;
   SimTime clock_;  // at the anchor
   SimTime time_;   // of the machine there
+  SimTime last_;   // call
   SimTime lost_{0};
 };
 

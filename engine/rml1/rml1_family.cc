@@ -28,6 +28,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .default_profile = "srm-20",  // the most common one
                                        .origin_parameters = {"ORIGIN_X", "ORIGIN_Y", "Z0"},
                                        .clamps_parameter = "CLAMP_HEIGHT",
+                                       .override_min_percent = kOverrideMin,
                                        .override_max_percent = 145.0,
                                        .has_breakpoints = true,
                                        .torn = ErrorCode::kRml1IncompleteCommand};

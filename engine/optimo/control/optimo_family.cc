@@ -38,6 +38,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .checked_by_running = true,
                                        .hold_in_remote = false,  // OPT-4.17
                                        .default_profile = "standard",
+                                       .override_min_percent = 10.0,  // OPT-4.34
                                        .override_max_percent = 145.0,
                                        .has_repeat = true,
                                        .has_dry_run = true,

@@ -19,6 +19,7 @@ class OptimoStanding final : public machine::Standing {
   // stays off beside the first (OPT-5.40).
   void WriteVariable(std::string_view name, double value) override;
   std::vector<machine::ModalValue> modal_values() const override;
+  std::optional<machine::ProgramStep> simulation_until() const override { return s_.simul; }
   void Apply(const machine::InputChange& input) override;
   // No reference, no TCP, no BREAK and no SIMUL; outputs and images are 0, and what a program has
   // counted stays. OPT-4.68, OPT-6.08, OPT-6.30, OPT-7.63

@@ -112,7 +112,7 @@ TEST_F(MillMachine, RefusesWhatAMillDoesNotHave) {
   EXPECT_THAT(Refused(WriteVariable{"VI[1]", 5.0}), HasSubstr("no variable"));
   EXPECT_THAT(Refused(ChangeInput{.kind = InputKind::kLogical, .index = 1, .value = 1.0}),
               HasSubstr("no input"));
-  EXPECT_THAT(Refused(ChangeOverride{0.0}), HasSubstr("above 0"));
+  EXPECT_THAT(Refused(ChangeOverride{0.0}), HasSubstr("it is 10 to 145 %"));
 }
 
 // RML1-7.08: speeds and the place stay from stream to stream; behind a power cycle it is a new one,

@@ -207,7 +207,10 @@ TEST_F(MachineTest, ComesToRestBeforeItGoesOnOrEnds) {
   GoOn(At(3.0) + std::chrono::milliseconds(500));
   EXPECT_EQ(state(), MachineState::kRunning);
   EXPECT_EQ(heard.halts, std::vector<int>{4});
+  for (const double percent : {0.0, 9.9, 145.1, std::nan("")})
+    EXPECT_THAT(Refused(ChangeOverride{percent}), HasSubstr("it is 10 to 145 %"));
   Good(AbortRun{});
+  EXPECT_THAT(Refused(ResumeRun{}), HasSubstr("the run ends as soon as it stands"));
   EXPECT_EQ(state(), MachineState::kStopping);
   GoOn(At(5.0));
   const RunOver over = Over();
@@ -306,7 +309,14 @@ TEST_F(MachineTest, PowerCycle) {
   EXPECT_EQ(CodeText(*Over().outcome.code), "CELL-E9438");
   EXPECT_EQ(state(), MachineState::kOff);
   EXPECT_THAT(Refused(StartRun{.program = 1}), HasSubstr("CELL-E9424"));
-  EXPECT_THAT(Refused(ChangeMode{Mode::kCycle}), HasSubstr("CELL-E9424"));
+  for (const MachineInput& input :
+       {MachineInput(ChangeMode{Mode::kCycle}), MachineInput(ResumeRun{}),
+        MachineInput(ChangeOverride{50.0}), MachineInput(Acknowledge{1}),
+        MachineInput(WriteVariable{"VR[3]", 1.0}), MachineInput(SetBreakpoints{{{.at = {1, 1}}}}),
+        MachineInput(SetSimulation{ProgramStep{1, 2}})}) {
+    EXPECT_THAT(Refused(input), HasSubstr("CELL-E9424")) << input.index();
+  }
+  Good(AbortRun{});  // nothing to do
   EXPECT_THAT(machine->breakpoints(), IsEmpty());
   GoOn(At(2.0));
   Good(SwitchPower{true});
@@ -551,6 +561,7 @@ TEST_F(MachineTest, ADryRunIsSavedAsOne) {
   Start();
   GoOn(At(1.0));
   Load({"OL[12] = ON\n"}, machine->Save());
+  EXPECT_EQ(machine->simulation_until(), (ProgramStep{1, 77}));
   heard.told.clear();
   Start();
   GoOn(At(8.0));

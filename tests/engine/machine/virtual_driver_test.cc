@@ -24,6 +24,11 @@ class VirtualDriverTest : public testing::Test {
     driver = std::make_unique<VirtualDriver>(
         *Machine::Make(family, parameters, std::move(memory), {}, nobody), Clock(0.0));
   }
+  // In turns as a host has them.
+  void GoOn(double from, double to) {
+    for (int turn = 1; turn <= 20 * (to - from); ++turn) driver->Pump(Clock(from + 0.05 * turn));
+    driver->Pump(Clock(to));
+  }
   double Time() const { return ToSeconds(driver->status().time); }
 
   RunObserver nobody;
@@ -38,12 +43,13 @@ TEST_F(VirtualDriverTest, ItsTimeFollowsTheClock) {
   EXPECT_TRUE(driver->SetFactor(Clock(3.0), 10.0));
   EXPECT_EQ(Time(), 3.0);
   EXPECT_TRUE(driver->Start(Clock(3.5), {.program = 1}));
-  driver->Pump(Clock(4.0));
+  GoOn(3.5, 4.0);
   EXPECT_EQ(Time(), 13.0);
   EXPECT_EQ(driver->status().run.time, FromSeconds(5.0));
   EXPECT_TRUE(driver->SetFactor(Clock(4.0), 0.1));
-  driver->Pump(Clock(14.0));
+  GoOn(4.0, 14.0);
   EXPECT_EQ(Time(), 14.0);
+  GoOn(14.0, 23.95);
   EXPECT_TRUE(driver->Order(Clock(24.0), StopRun{}));  // stamped when it acts
   EXPECT_EQ(driver->status().run.time, FromSeconds(7.0));
   EXPECT_EQ(driver->status().state, MachineState::kHeld);
@@ -60,18 +66,36 @@ TEST_F(VirtualDriverTest, LateByMoreThanItMakesUpFor) {
       "VI[1] = 0\nVI[2] = 0\n10 VI[1] = VI[1] + 1\nIF VI[1] < 30000 THEN 10\nDELAY 1\nVI[2] = 1\n");
   EXPECT_TRUE(driver->Start(Clock(0.0), {.program = 1}));
   EXPECT_EQ(driver->Pump(Clock(0.05)), Progress::kMoreWork);
+  EXPECT_EQ(driver->Pump(Clock(0.1)), Progress::kMoreWork);
   EXPECT_EQ(driver->TakeLost(), SimTime(0));  // it may still make up for that
-  EXPECT_EQ(driver->Pump(Clock(0.25)), Progress::kMoreWork);
+  EXPECT_EQ(driver->Pump(Clock(0.15)), Progress::kMoreWork);
   EXPECT_EQ(Time(), 0.0);
-  EXPECT_EQ(driver->TakeLost(), FromSeconds(0.25));
-  double clock = 0.25;
+  EXPECT_EQ(driver->TakeLost(), FromSeconds(0.15));
+  double clock = 0.15;
   while (driver->Pump(Clock(clock)) == Progress::kMoreWork) {
   }
+  GoOn(clock, clock + 0.95);
   driver->Pump(Clock(clock + 1.0) - SimTime(1));
   EXPECT_EQ(driver->machine().ReadVariable("VI[2]"), "0");
   driver->Pump(Clock(clock + 1.0));
   EXPECT_EQ(driver->machine().ReadVariable("VI[2]"), "1");
   EXPECT_EQ(driver->TakeLost(), SimTime(0));
+}
+
+// LIVE-3.14: twenty seconds in which nobody called are no time of a machine that runs, and of one
+// that stands they are.
+TEST_F(VirtualDriverTest, NeverJumpsInARun) {
+  Load("DELAY 10\n");
+  driver->Pump(Clock(20.0));
+  EXPECT_EQ(Time(), 20.0);
+  EXPECT_EQ(driver->TakeLost(), SimTime(0));
+  EXPECT_TRUE(driver->Start(Clock(20.0), {.program = 1}));
+  driver->Pump(Clock(20.05));
+  driver->Pump(Clock(40.05));
+  EXPECT_EQ(Time(), 20.05);
+  EXPECT_EQ(driver->TakeLost(), FromSeconds(20.0));
+  driver->Pump(Clock(40.1));
+  EXPECT_EQ(Time(), 20.1);
 }
 
 }  // namespace
