@@ -52,9 +52,10 @@ struct FamilyInfo {
   std::string_view clamps_parameter{};  // height of the clamps above program zero, mm; empty: none
   double override_min_percent = 1.0;    // of the feed rate, where a person sets it at a machine
   double override_max_percent = 100.0;
-  bool has_repeat = false;       // the mode REPEAT
-  bool has_dry_run = false;      // up to a step, RunSetup::simul
-  bool has_breakpoints = false;  // Run::SetBreakpoints
+  bool has_repeat = false;        // the mode REPEAT
+  bool start_takes_back = false;  // START a HOLD or STOP that has not halted the run yet
+  bool has_dry_run = false;       // up to a step, RunSetup::simul
+  bool has_breakpoints = false;   // Run::SetBreakpoints
 
   // What the machine calls what the cell finds. What has no number in its manual the cell says in
   // its own words: a machine without program memory has no slots.

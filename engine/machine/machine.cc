@@ -93,7 +93,6 @@ Status Machine::Take(MachineNote note) {
   Result<std::unique_ptr<Standing>> standing = family_.NewStanding(parameters_, note.family);
   if (!standing) return standing.error();
   standing_ = *std::move(standing);
-  standing_->Rest();  // it may have been saved in the middle of a run
   now_ = note.time;
   on_ = note.on;
   emergency_ = note.emergency;
@@ -325,9 +324,10 @@ Status Machine::Act(const ResumeRun& input) {
   }
   if (const Status source = MaySource(input.source); !source) return source.error();
   if (abort_behind_) return NotNow(state(), "the run ends as soon as it stands");
-  if (stopping_) {
+  if (stopping_ && !family_.info().start_takes_back) {
     resume_behind_ = true;
   } else {
+    stopping_ = false;
     ToRun(InputKind::kStart);
   }
   return {};
@@ -368,9 +368,15 @@ Status Machine::Act(const EmergencyStop& input) {
   emergency_ = input.pressed;
   if (!input.pressed || !on_) return {};
   const Place place = run_ != nullptr ? run_->state().place : Place{};
+  const bool ends_run = run_ != nullptr;
+  const ErrorCode code = family_.info().emergency_stop;
   ToRun(InputKind::kEmergencyStop);
   Settle();
-  Raise(family_.info().emergency_stop, {}, place);
+  if (ends_run && run_ == nullptr) {  // of a machine that has no number for it, too: LIVE-5.08
+    over_.back().outcome.kind = OutcomeKind::kFailed;
+    over_.back().outcome.code = code;
+  }
+  Raise(code, {}, place);
   return {};
 }
 
@@ -426,8 +432,10 @@ Status Machine::Act(const ChangeInput& input) {
 
 // An open door acts as STOP. OPT-B.34
 Status Machine::Act(const MoveDoor& input) {
+  const RunState before = status().run;
+  if (before.door_open == input.open) return {};
   if (input.open) resume_behind_ = false;
-  const bool goes_on = run_ != nullptr && run_->state().phase == RunPhase::kRunning;
+  const bool goes_on = run_ != nullptr && before.phase == RunPhase::kRunning;
   ToRun(InputKind::kDoor, 0, input.open ? 1.0 : 0.0);
   if (goes_on && run_->state().door_open) stopping_ = true;
   return {};

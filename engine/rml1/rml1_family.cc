@@ -30,6 +30,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .clamps_parameter = "CLAMP_HEIGHT",
                                        .override_min_percent = kOverrideMin,
                                        .override_max_percent = 145.0,
+                                       .start_takes_back = true,
                                        .has_breakpoints = true,
                                        .torn = ErrorCode::kRml1IncompleteCommand};
 

@@ -470,10 +470,10 @@ std::vector<machine::Figure> MillRun::figures() const {
   return figures;
 }
 
-// A run that was cut short leaves the tool where it stands, and the spindle off.
+// A run that is cut short, here or later, leaves the tool where it stands, and the spindle off.
 std::string MillRun::SaveMachine() const {
   MachineState kept{.registers = state_.device.registers(), .at = ToolAt(TipNow())};
-  kept.registers.spindle_on = SpindleTurns();
+  kept.registers.spindle_on = state_.phase == RunPhase::kFinished && SpindleTurns();
   return WriteMachineState(kept);
 }
 

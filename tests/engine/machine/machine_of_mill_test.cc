@@ -80,6 +80,35 @@ TEST_F(MillMachine, ABreakpointThatComesLate) {
   EXPECT_EQ(Value("X"), "600");
 }
 
+// LIVE-2.10 a2, LIVE-3.15: START takes a HOLD back that has not halted it yet, as in a simulation.
+TEST_F(MillMachine, TakesAHoldBack) {
+  Load({kStrokes});
+  Start();
+  GoOn(At(60.0));
+  const SimTime plain = Over().lasted;
+  Load({kStrokes});
+  Start();
+  GoOn(At(3.0));
+  Good(HoldRun{});
+  Good(ResumeRun{});
+  EXPECT_EQ(state(), MachineState::kRunning);
+  GoOn(At(60.0));
+  EXPECT_TRUE(heard.halts.empty());
+  EXPECT_EQ(Over().lasted, plain);
+}
+
+// LIVE-5.08
+TEST_F(MillMachine, AnEmergencyStopFailsTheRun) {
+  Load({kStrokes});
+  Start();
+  GoOn(At(3.0));
+  Good(EmergencyStop{});
+  const RunOver over = Over();
+  EXPECT_EQ(over.outcome.kind, OutcomeKind::kFailed);
+  EXPECT_EQ(CodeText(*over.outcome.code), "CELL-E9437");
+  EXPECT_FALSE(machine->status().run.spindle_on);
+}
+
 // LIVE-2.04, LIVE-3.30: a spindle that a stream left on, or that turned when it was saved, stands
 // in IDLE; the next stream that cuts switches it on.
 TEST_F(MillMachine, ItsSpindleTurnsInRunsOnly) {
