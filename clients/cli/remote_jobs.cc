@@ -148,6 +148,26 @@ bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::stri
   return ended;
 }
 
+const v1::Job& JobOf(const v1::Job& job) { return job; }
+const v1::Job& JobOf(const v1::HaltJobResponse& response) { return response.job(); }
+
+// Asks for a change of a job, and says how it is then.
+template <class Request, class Response>
+int ChangeJob(const Remote& remote,
+              grpc::Status (v1::JobService::Stub::*method)(grpc::ClientContext*, const Request&,
+                                                           Response*),
+              const Request& request) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  Response response;
+  const grpc::Status status = ((*stub).*method)(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  const v1::Job& job = JobOf(response);
+  Print(remote.json ? Json(response) : job.name() + " " + StateName(job));
+  return kGood;
+}
+
 // What a job that waits waits for; nothing but its turn: nothing.
 std::string WaitText(const v1::Job& job) {
   const std::string other =
@@ -333,58 +353,30 @@ int ShowJob(const Remote& remote, const std::string& job) {
 }
 
 int CancelJob(const Remote& remote, const std::string& job) {
-  const auto stub = v1::JobService::NewStub(Connect(remote));
-  grpc::ClientContext context;
-  Prepare(context);
   v1::CancelJobRequest request;
   request.set_name(FullName("jobs", job));
-  v1::Job response;
-  const grpc::Status status = stub->CancelJob(&context, request, &response);
-  if (!status.ok()) return Refused(status, remote);
-  Print(remote.json ? Json(response) : response.name() + " " + StateName(response));
-  return kGood;
+  return ChangeJob(remote, &v1::JobService::Stub::CancelJob, request);
 }
 
 int HoldJob(const Remote& remote, const std::string& job) {
-  const auto stub = v1::JobService::NewStub(Connect(remote));
-  grpc::ClientContext context;
-  Prepare(context);
   v1::HoldJobRequest request;
   request.set_name(FullName("jobs", job));
-  v1::HaltJobResponse response;
-  const grpc::Status status = stub->HoldJob(&context, request, &response);
-  if (!status.ok()) return Refused(status, remote);
-  Print(remote.json ? Json(response) : response.job().name() + " " + StateName(response.job()));
-  return kGood;
+  return ChangeJob(remote, &v1::JobService::Stub::HoldJob, request);
 }
 
 int ResumeJob(const Remote& remote, const std::string& job) {
-  const auto stub = v1::JobService::NewStub(Connect(remote));
-  grpc::ClientContext context;
-  Prepare(context);
   v1::ResumeJobRequest request;
   request.set_name(FullName("jobs", job));
-  v1::Job response;
-  const grpc::Status status = stub->ResumeJob(&context, request, &response);
-  if (!status.ok()) return Refused(status, remote);
-  Print(remote.json ? Json(response) : response.name() + " " + StateName(response));
-  return kGood;
+  return ChangeJob(remote, &v1::JobService::Stub::ResumeJob, request);
 }
 
 int MoveJob(const Remote& remote, const std::string& job, const std::string& before,
             std::optional<int> priority) {
-  const auto stub = v1::JobService::NewStub(Connect(remote));
-  grpc::ClientContext context;
-  Prepare(context);
   v1::MoveJobRequest request;
   request.set_name(FullName("jobs", job));
   if (!before.empty()) request.set_before(FullName("jobs", before));
   if (priority) request.set_priority(*priority);
-  v1::Job response;
-  const grpc::Status status = stub->MoveJob(&context, request, &response);
-  if (!status.ok()) return Refused(status, remote);
-  Print(remote.json ? Json(response) : response.name() + " " + StateName(response));
-  return kGood;
+  return ChangeJob(remote, &v1::JobService::Stub::MoveJob, request);
 }
 
 int JobReport(const Remote& remote, const std::string& job, bool machine_coordinates) {

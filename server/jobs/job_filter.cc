@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -61,33 +62,23 @@ Result<std::vector<Word>> Words(std::string_view filter) {
   return words;
 }
 
-// The word in capitals, without the prefix that the contract gives it; one of those.
-Result<std::string> WordOf(std::string_view what, const std::string& value, std::string_view prefix,
-                           std::initializer_list<std::string_view> words) {
+constexpr std::array<std::string_view, 6> kStates = {"QUEUED", "RUNNING",   "SUCCEEDED",
+                                                     "FAILED", "CANCELLED", "INTERRUPTED"};
+static_assert(kStates.size() == static_cast<std::size_t>(storage::JobState::kInterrupted) + 1,
+              "one for each JobState, in its order");
+constexpr std::array<std::string_view, 3> kKinds = {"CHECK", "SIMULATE", "RUN"};
+constexpr std::array<std::string_view, 3> kVerdicts = {"GOOD", "DOUBTFUL", "BAD"};
+
+// Which of the words it is, in capitals or not, with the prefix of the contract or without.
+Result<std::size_t> WordOf(std::string_view what, const std::string& value, std::string_view prefix,
+                           std::span<const std::string_view> words) {
   std::string word = UpperCase(value);
   if (word.starts_with(prefix)) word.erase(0, prefix.size());
-  if (std::ranges::find(words, word) != words.end()) return word;
+  const auto found = std::ranges::find(words, word);
+  if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
   std::string all;
   for (const std::string_view one : words) all += (all.empty() ? "" : ", ") + std::string(one);
   return Bad("no " + std::string(what) + " '" + Readable(value) + "'; there are " + all);
-}
-
-Status ApplyState(const std::string& value, storage::JobQuery& query) {
-  using storage::JobState;
-  constexpr std::array kStates = {std::pair{"QUEUED", JobState::kQueued},
-                                  std::pair{"RUNNING", JobState::kRunning},
-                                  std::pair{"SUCCEEDED", JobState::kSucceeded},
-                                  std::pair{"FAILED", JobState::kFailed},
-                                  std::pair{"CANCELLED", JobState::kCancelled},
-                                  std::pair{"INTERRUPTED", JobState::kInterrupted}};
-  const Result<std::string> word =
-      WordOf("state", value, "STATE_",
-             {"QUEUED", "RUNNING", "SUCCEEDED", "FAILED", "CANCELLED", "INTERRUPTED"});
-  if (!word) return word.error();
-  for (const auto& [name, state] : kStates) {
-    if (*word == name) query.state = state;
-  }
-  return {};
 }
 
 // Times as the contract writes them in JSON: "2026-11-25T10:00:00Z".
@@ -99,20 +90,23 @@ Result<storage::WallTime> TimeOf(const std::string& field, const std::string& va
 }
 
 Status Apply(const std::string& field, const std::string& value, storage::JobQuery& query) {
-  if (field == "state") return ApplyState(value, query);
-  if (field == "machine") {
+  if (field == "state") {
+    const Result<std::size_t> state = WordOf(field, value, "STATE_", kStates);
+    if (!state) return state.error();
+    query.state = static_cast<storage::JobState>(*state);
+  } else if (field == "machine") {
     const Result<std::string> id =
         ParseMachineName(value.find('/') == std::string::npos ? MachineName(value) : value);
     if (!id) return Bad("machine: " + id.error().detail);
     query.machine = *id;
   } else if (field == "kind") {
-    Result<std::string> kind = WordOf("kind", value, "JOB_KIND_", {"CHECK", "SIMULATE", "RUN"});
+    const Result<std::size_t> kind = WordOf(field, value, "JOB_KIND_", kKinds);
     if (!kind) return kind.error();
-    query.kind = *std::move(kind);
+    query.kind = kKinds[*kind];
   } else if (field == "verdict") {
-    Result<std::string> verdict = WordOf("verdict", value, "VERDICT_", {"GOOD", "DOUBTFUL", "BAD"});
+    const Result<std::size_t> verdict = WordOf(field, value, "VERDICT_", kVerdicts);
     if (!verdict) return verdict.error();
-    query.verdict = *std::move(verdict);
+    query.verdict = kVerdicts[*verdict];
   } else if (field == "family") {
     if (families::FindFamily(value) == nullptr) return Bad("no family '" + Readable(value) + "'");
     query.family = value;

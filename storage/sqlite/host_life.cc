@@ -1,16 +1,18 @@
 #include "storage/sqlite/host_life.h"
 
 #include <tuple>
+#include <utility>
 
 #include "storage/sqlite/job_changes.h"
 
 namespace rmlcell::storage::sqlite {
 namespace {
 
-Status CheckHost(WriteContext& context, const MachineLease& lease) {
-  const Result<std::optional<MachineLease>> held = context.tables.hosts.Find(lease.machine);
+// The lease as it is kept, while it is this one.
+Result<MachineLease> Held(WriteContext& context, const MachineLease& lease) {
+  Result<std::optional<MachineLease>> held = context.tables.hosts.Find(lease.machine);
   if (!held) return held.error();
-  if (*held && (*held)->fence == lease.fence) return {};
+  if (*held && (*held)->fence == lease.fence) return **std::move(held);
   return Error{
       ErrorCode::kCellLeaseLost,
       "machine " + lease.machine + (*held ? " is hosted by " + (*held)->host : " has no host"),
@@ -54,23 +56,23 @@ Result<MachineLease> TakeMachine(WriteContext& context, const MachineClaim& clai
 
 Result<MachineLease> RenewMachine(WriteContext& context, const MachineLease& lease,
                                   std::string_view server) {
-  if (const Status held = CheckHost(context, lease); !held) return held.error();
-  const Result<std::optional<MachineLease>> found = context.tables.hosts.Find(lease.machine);
-  if (!found) return found.error();
-  MachineLease renewed = **found;
-  renewed.server = server;
-  renewed.renewals += 1;
-  if (const Status put = context.tables.hosts.Put(renewed); !put) return put.error();
+  Result<MachineLease> renewed = Held(context, lease);
+  if (!renewed) return renewed;
+  renewed->server = server;
+  renewed->renewals += 1;
+  if (const Status put = context.tables.hosts.Put(*renewed); !put) return put.error();
   return renewed;
 }
 
 Status ReleaseMachine(WriteContext& context, const MachineLease& lease) {
-  if (const Status held = CheckHost(context, lease); !held) return held.error();
+  const Result<MachineLease> held = Held(context, lease);
+  if (!held) return held.error();
   return context.tables.hosts.Remove(lease.machine);
 }
 
 Status WriteMachine(WriteContext& context, const MachineLease& lease, const MachineWrite& write) {
-  if (const Status held = CheckHost(context, lease); !held) return held.error();
+  const Result<MachineLease> held = Held(context, lease);
+  if (!held) return held.error();
   if (const Status small_enough = CheckSizes(write.events); !small_enough)
     return small_enough.error();
   for (const NewEvent& event : write.events) {

@@ -304,7 +304,8 @@ Result<std::vector<JobRecord>> JobTable::ListQueue(const JobQuery& query) {
     if (running) std::ranges::sort(*running, std::less(), &JobRecord::id);
     if (const Status added = add(std::move(running)); !added) return added.error();
   }
-  if (Wants(query, JobState::kQueued) && !(behind && IsFinal(behind->state))) {
+  const auto full = [&] { return jobs.size() >= static_cast<std::size_t>(query.limit); };
+  if (Wants(query, JobState::kQueued) && !full() && !(behind && IsFinal(behind->state))) {
     part.behind.reset();
     part.limit = std::numeric_limits<int>::max();
     Result<std::vector<JobRecord>> waiting = ListUnfinished(JobState::kQueued, part);
@@ -318,7 +319,7 @@ Result<std::vector<JobRecord>> JobTable::ListQueue(const JobQuery& query) {
     }
     if (const Status added = add(std::move(waiting)); !added) return added.error();
   }
-  if (WantsFinished(query) && jobs.size() < static_cast<std::size_t>(query.limit)) {
+  if (WantsFinished(query) && !full()) {
     part = query;
     part.order = JobOrder::kNewestFirst;
     if (behind && !IsFinal(behind->state)) part.behind.reset();

@@ -80,7 +80,8 @@ TEST_F(MillMachine, ABreakpointThatComesLate) {
   EXPECT_EQ(Value("X"), "600");
 }
 
-// LIVE-2.10 a2, LIVE-3.15: START takes a HOLD back that has not halted it yet, as in a simulation.
+// live.md 2.10 a2, LIVE-3.15: START takes a HOLD back that has not halted it yet, as in a
+// simulation.
 TEST_F(MillMachine, TakesAHoldBack) {
   Load({kStrokes});
   Start();

@@ -82,7 +82,7 @@ TEST_F(MachineTest, RunsAsASimulation) {
   EXPECT_EQ(Over().lasted, (*run)->state().time);
 }
 
-// LIVE-2.10: START and RESUME by state.
+// live.md 2.10: START and RESUME by state.
 TEST_F(MachineTest, RefusesWhatItsStateDoesNotAllow) {
   Load({"DELAY 5\n", "PAUSE\n"});
   EXPECT_THAT(Refused(ResumeRun{}), HasSubstr("CELL-E9421 the machine is IDLE"));
@@ -136,7 +136,7 @@ TEST_F(MachineTest, ModesAndSources) {
   EXPECT_EQ(state(), MachineState::kIdle);
 }
 
-// LIVE-2.10 a11: the mode at the end of the instruction counts, also of one that a STOP
+// live.md 2.10 a11: the mode at the end of the instruction counts, also of one that a STOP
 // interrupted; a breakpoint that is due stays one.
 TEST_F(MachineTest, SingleTakenBackOrSetWhileHeld) {
   const auto begin = [&](const std::string& first) {
@@ -192,8 +192,8 @@ TEST_F(MachineTest, SingleOnTheWay) {
   EXPECT_EQ(state(), MachineState::kHeld);
 }
 
-// LIVE-2.10 a2, a4: RESUME takes back a STOP that has not halted yet; a run that is aborted on the
-// way comes to rest first.
+// live.md 2.10 a2, a4: RESUME takes back a STOP that has not halted yet; a run that is aborted on
+// the way comes to rest first.
 TEST_F(MachineTest, ComesToRestBeforeItGoesOnOrEnds) {
   const std::string move =
       "COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (1521.02, 2201.2, -350., 0., 0.)\n";
@@ -237,8 +237,8 @@ TEST_F(MachineTest, WhatIsAskedForLastCounts) {
   }
 }
 
-// LIVE-2.10 a9, LIVE-2.05: a door that opens behind a RESUME keeps the run where it comes to rest;
-// a START that the open door makes an alarm ends the run at once, with its own time.
+// live.md 2.10 a9, LIVE-2.05: a door that opens behind a RESUME keeps the run where it comes to
+// rest; a START that the open door makes an alarm ends the run at once, with its own time.
 TEST_F(MachineTest, ADoorBehindAResume) {
   Load({"COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (1521.02, 2201.2, -350., 0., 0.)\n"});
   Start();
@@ -261,7 +261,7 @@ TEST_F(MachineTest, ADoorBehindAResume) {
   EXPECT_EQ(machine->status().alarms.at(0).at, over.lasted);
 }
 
-// LIVE-2.10 a7: in alarm until it is released and acknowledged.
+// live.md 2.10 a7: in alarm until it is released and acknowledged.
 TEST_F(MachineTest, EmergencyStopIsAnAlarm) {
   Load({"DELAY 5\n"});
   Start();
@@ -283,7 +283,7 @@ TEST_F(MachineTest, EmergencyStopIsAnAlarm) {
   EXPECT_EQ(machine->status().alarms.at(0).id, 2);
 }
 
-// An alarm of the program stays, too; a fatal error of it does not: LIVE-2.10.
+// An alarm of the program stays, too; a fatal error of it does not: live.md 2.10.
 TEST_F(MachineTest, AlarmsOfARunStay) {
   Load({"COORD ROBOT\nMOVE (99999., 0., 0., 0., 0.)\n", "RETURN\n"});
   Start();
@@ -360,145 +360,6 @@ TEST_F(MachineTest, VariablesAreWritten) {
   }
 }
 
-// A program of ten rounds: step 2 is in the loop.
-constexpr const char* kLoop = "VI[1] = 0\n10 VI[1] = VI[1] + 1\nDELAY 1\nIF VI[1] < 10 THEN 10\n";
-
-TEST_F(MachineTest, BreakpointsAreManyAndHaveConditions) {
-  Load({kLoop});
-  Good(SetBreakpoints{{{.at = {1, 1}}, {.at = {1, 2}, .condition = "VI[1] = 3"}}});
-  Start();
-  GoOn(At(0.5));
-  EXPECT_EQ(state(), MachineState::kHeld);
-  EXPECT_EQ(machine->status().run.halted_by, HaltReason::kBreakpoint);
-  EXPECT_EQ(Value("VI[1]"), "0");
-  Good(ResumeRun{});
-  GoOn(At(50.0));
-  // The condition is looked at before the step: 3 is what it finds, 4 what it leaves.
-  EXPECT_EQ(Value("VI[1]"), "4");
-  EXPECT_EQ(heard.halts, (std::vector<int>{1, 2}));
-  // Cleared on the way; another, from its second pass on.
-  Good(SetBreakpoints{{{.at = {1, 3}, .from_pass = 2}}});
-  Good(ResumeRun{});
-  GoOn(At(100.0));
-  EXPECT_EQ(Value("VI[1]"), "5");
-  EXPECT_EQ(heard.halts, (std::vector<int>{1, 2, 3}));
-  Good(SetBreakpoints{});
-  Good(ResumeRun{});
-  GoOn(At(200.0));
-  EXPECT_EQ(Value("VI[1]"), "10");
-  EXPECT_EQ(heard.halts.size(), 3U);
-}
-
-// Set again on the way a breakpoint goes on counting, and stays due; a cleared one is due no more.
-TEST_F(MachineTest, BreakpointsAreReplacedOnTheWay) {
-  Load({"VI[1] = 1\nWAIT IL[5]\nVI[1] = 2\nVI[1] = 3\n"});
-  Good(SetBreakpoints{{{.at = {1, 2}}}});
-  Start();
-  GoOn(At(1.0));
-  Good(SetBreakpoints{{{.at = {1, 2}}, {.at = {1, 4}}}});
-  Good(ChangeInput{.kind = InputKind::kLogical, .index = 5, .value = 1.0});
-  GoOn(At(2.0));
-  EXPECT_EQ(heard.halts, std::vector<int>{2});
-  Good(SetBreakpoints{{{.at = {1, 2}}, {.at = {1, 4}}}});  // it halts there once
-  Good(ResumeRun{});
-  GoOn(At(3.0));
-  EXPECT_EQ(heard.halts, std::vector<int>{2});  // step 4 is the last: the program is over
-
-  heard.halts.clear();
-  Load({kLoop});
-  Good(SetBreakpoints{{{.at = {1, 2}, .from_pass = 5}}});
-  Start();
-  GoOn(At(2.5));  // in the third round
-  Good(SetBreakpoints{{{.at = {1, 2}, .from_pass = 5}}});
-  GoOn(At(20.0));
-  EXPECT_EQ(Value("VI[1]"), "5");
-
-  Load(
-      {"COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02, 2201.2, -350., 0., 0.)\nVI[1] = 1\nVI[1] = 2\n"});
-  Good(SetBreakpoints{{{.at = {1, 4}}}});
-  Start();
-  GoOn(At(2.0));
-  Good(SetBreakpoints{});
-  GoOn(At(100.0));
-  EXPECT_EQ(state(), MachineState::kIdle);
-}
-
-// run.h: one that comes late halts behind what was read ahead.
-TEST_F(MachineTest, BreakpointsThatComeLate) {
-  const std::string single =
-      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02, 2201.2, -350., 0., 0.)\nVI[1] = 1\nVI[1] = 2\n";
-  Load({single});
-  Start();
-  GoOn(At(2.0));
-  Good(SetBreakpoints{{{.at = {1, 4}}}});
-  GoOn(At(100.0));
-  EXPECT_EQ(state(), MachineState::kHeld);
-  EXPECT_EQ(Value("VI[1]"), "0");
-  std::string chain = "COORD ABSOL\nPATH LIN\nSPEED 20\n";
-  for (int i = 1; i <= 4; ++i)
-    chain +=
-        "MOVE (" + std::to_string(i * 100) + ".,2201.2,-350.,0.,0.)" + (i < 4 ? "/FLY\n" : "\n");
-  chain += "VI[1] = 1\nVI[1] = 2\n";
-  for (int step = 4; step <= 7; ++step) {
-    heard.halts.clear();
-    Load({chain});
-    Start();
-    GoOn(At(0.5));
-    Good(SetBreakpoints{{{.at = {1, step}}}});
-    GoOn(At(100.0));
-    EXPECT_EQ(heard.halts.size(), 1U) << step;
-    EXPECT_EQ(machine->status().run.halted_by, HaltReason::kBreakpoint) << step;
-    EXPECT_EQ(Value("VI[1]"), "0") << step;
-    Good(ResumeRun{});
-    GoOn(At(200.0));
-    EXPECT_EQ(state(), MachineState::kIdle) << step;
-  }
-}
-
-// A /FLY target with a breakpoint is reached exactly: OPT-6.07. What only watches changes nothing.
-TEST_F(MachineTest, BreakpointsOnChains) {
-  const std::string chain =
-      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02, 2201.2, -350., 0., 0.)/FLY\n"
-      "MOVE (521.02, 2301.2, -350., 0., 0.)\n";
-  Load({chain});
-  Start();
-  GoOn(At(100.0));
-  const std::vector<std::string> plain = std::exchange(heard.told, {});
-  const SimTime lasted = Over().lasted;
-
-  Load({chain});
-  Good(SetBreakpoints{{{.at = {1, 4}, .condition = "VI[5] > 0"}}});
-  Start();
-  GoOn(At(100.0));
-  EXPECT_EQ(heard.told, plain);
-  EXPECT_EQ(Over().lasted, lasted);
-
-  Load({chain});
-  Good(WriteVariable{"VI[5]", 1.0});
-  Good(SetBreakpoints{{{.at = {1, 4}, .condition = "VI[5] > 0"}}});
-  Start();
-  GoOn(At(100.0));
-  EXPECT_EQ(state(), MachineState::kHeld);
-  EXPECT_EQ(machine->status().run.tip.tip.x(), 521.02F);  // single precision: OPT-B.37
-  EXPECT_EQ(machine->status().run.tip.tip.y(), 2201.2F);
-}
-
-TEST_F(MachineTest, BreakpointsThatAreNone) {
-  Load({kLoop});
-  const auto refused = [&](const Breakpoint& breakpoint) {
-    return Refused(SetBreakpoints{{breakpoint}});
-  };
-  EXPECT_THAT(refused({.at = {1, 0}}), HasSubstr("stands in no program"));
-  EXPECT_THAT(refused({.at = {0, 1}}), HasSubstr("stands in no program"));
-  for (const char* condition : {"VI[1] >", "VI[1] > 1 THEN 20", "VI[1]; VI[2]", "VI[1]\nSTOP",
-                                "VI[100] > 1", "NAME > 3", "VL[1] + 1"}) {
-    EXPECT_THAT(refused({.at = {1, 1}, .condition = condition}),
-                HasSubstr("CELL-E9003 the condition"))
-        << condition;
-  }
-  EXPECT_THAT(machine->breakpoints(), IsEmpty());
-}
-
 // LIVE-9.09
 TEST_F(MachineTest, StackAndModalValues) {
   Load({"SPEED 25\nCALL 2\n",
@@ -566,21 +427,6 @@ TEST_F(MachineTest, ADryRunIsSavedAsOne) {
   Start();
   GoOn(At(8.0));
   for (const std::string& line : heard.told) EXPECT_THAT(line, testing::Not(HasSubstr("signal")));
-}
-
-// What is taken can be read back.
-TEST_F(MachineTest, BreakpointsHaveLimits) {
-  Load({kLoop});
-  EXPECT_THAT(Refused(SetBreakpoints{{{.at = {1, 1}, .from_pass = std::uint64_t{1} << 63}}}),
-              HasSubstr("pass"));
-  EXPECT_THAT(Refused(SetBreakpoints{{{.at = {1, 1}, .from_pass = 0}}}), HasSubstr("pass"));
-  std::vector<Breakpoint> many(kBreakpointsMax, Breakpoint{.at = {1, 1}});
-  Good(SetBreakpoints{many});
-  const std::string saved = machine->Save();
-  many.push_back({.at = {1, 2}});
-  EXPECT_THAT(Refused(SetBreakpoints{many}), HasSubstr("at most"));
-  Load({kLoop}, saved);
-  EXPECT_EQ(machine->breakpoints().size(), kBreakpointsMax);
 }
 
 // LIVE-3.23: what a mark keeps, standing and in the middle of a run.
