@@ -8,7 +8,6 @@
 namespace rmlcell::storage {
 namespace {
 
-constexpr std::size_t kSha256Bytes = 32;
 // The default of zstd: about 300 MB/s on one core, and toolpaths shrink to a fifth. Higher levels
 // gain little on numbers and cost several times as much.
 constexpr int kLevel = 3;
@@ -17,14 +16,36 @@ constexpr std::size_t kCompressedMin = 512;
 
 }  // namespace
 
-std::string Sha256(std::string_view content) {
+struct Sha256Sum::State {
+  struct Free {
+    void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
+  };
+  std::unique_ptr<EVP_MD_CTX, Free> context{EVP_MD_CTX_new()};
+};
+
+Sha256Sum::Sha256Sum() : state_(std::make_unique<State>()) {
+  RMLCELL_CHECK(EVP_DigestInit_ex(state_->context.get(), EVP_sha256(), nullptr) == 1);
+}
+
+Sha256Sum::~Sha256Sum() = default;
+
+void Sha256Sum::Add(std::string_view bytes) {
+  RMLCELL_CHECK(EVP_DigestUpdate(state_->context.get(), bytes.data(), bytes.size()) == 1);
+}
+
+std::string Sha256Sum::Take() {
   std::string digest(kSha256Bytes, '\0');
   unsigned int size = 0;
-  const int done = EVP_Digest(content.data(), content.size(),
-                              reinterpret_cast<unsigned char*>(digest.data()), &size,  // NOLINT
-                              EVP_sha256(), nullptr);
+  const int done = EVP_DigestFinal_ex(
+      state_->context.get(), reinterpret_cast<unsigned char*>(digest.data()), &size);  // NOLINT
   RMLCELL_CHECK(done == 1 && size == kSha256Bytes);
   return digest;
+}
+
+std::string Sha256(std::string_view content) {
+  Sha256Sum sum;
+  sum.Add(content);
+  return sum.Take();
 }
 
 Result<std::string> Encode(std::string_view chunk) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,7 +29,24 @@ inline std::string_view Chunk(std::string_view content, std::size_t number) {
   return content.substr(number * kChunkBytes, kChunkBytes);
 }
 
-std::string Sha256(std::string_view content);  // 32 bytes
+inline constexpr std::size_t kSha256Bytes = 32;
+std::string Sha256(std::string_view content);
+
+// The same of a content that comes piece by piece.
+class Sha256Sum {
+ public:
+  Sha256Sum();
+  ~Sha256Sum();
+  Sha256Sum(const Sha256Sum&) = delete;
+  Sha256Sum& operator=(const Sha256Sum&) = delete;
+
+  void Add(std::string_view bytes);
+  std::string Take();  // once
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 // One chunk as a zstd frame, or as it is where that is not smaller or would not pay. So what has
 // the size of the chunk is the chunk. Errors: CellStoreFailed, out of memory.

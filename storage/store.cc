@@ -3,13 +3,27 @@
 #include <future>
 
 namespace rmlcell::storage {
+namespace {
+
+// What `call` gives the Done<T> that it is called with.
+template <class T, class Call>
+Result<T> Waited(Call call) {
+  std::promise<Result<T>> promise;
+  std::future<Result<T>> future = promise.get_future();
+  call([&](Result<T> result) { promise.set_value(std::move(result)); });
+  return future.get();
+}
+
+}  // namespace
 
 Result<SubmittedJob> Store::SubmitAndWait(NewJob job) {
-  std::promise<Result<SubmittedJob>> promise;
-  std::future<Result<SubmittedJob>> future = promise.get_future();
-  Submit(std::move(job),
-         [&](Result<SubmittedJob> result) { promise.set_value(std::move(result)); });
-  return future.get();
+  return Waited<SubmittedJob>(
+      [&](Done<SubmittedJob> done) { Submit(std::move(job), std::move(done)); });
+}
+
+Result<std::int64_t> Store::AppendAndWait(const Lease& lease, std::vector<NewEvent> events) {
+  return Waited<std::int64_t>(
+      [&](Done<std::int64_t> done) { Append(lease, std::move(events), std::move(done)); });
 }
 
 Result<std::optional<LeasedJob>> Store::Acquire(std::string_view worker,
@@ -23,12 +37,31 @@ Result<std::optional<LeasedJob>> Store::Acquire(std::string_view worker,
   return std::optional(std::move(leased->front()));
 }
 
-Result<std::int64_t> Store::AppendAndWait(const Lease& lease, std::vector<NewEvent> events) {
-  std::promise<Result<std::int64_t>> promise;
-  std::future<Result<std::int64_t>> future = promise.get_future();
-  Append(lease, std::move(events),
-         [&](Result<std::int64_t> result) { promise.set_value(std::move(result)); });
-  return future.get();
+void Store::SendRequestCancel(std::int64_t job, std::vector<NewEvent> events,
+                              Done<JobRecord> done) {
+  done(RequestCancel(job, events));
+}
+
+void Store::SendAcquire(JobRequest request, Done<std::vector<LeasedJob>> done) {
+  done(AcquireJobs(request));
+}
+
+void Store::SendRenew(const Lease& lease, std::chrono::milliseconds duration,
+                      Done<JobRecord> done) {
+  done(Renew(lease, duration));
+}
+
+void Store::SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
+                       Done<JobRecord> done) {
+  done(Finish(lease, *end));
+}
+
+void Store::SendHandBack(const Lease& lease, LossPolicy policy, Done<JobRecord> done) {
+  done(HandBack(lease, policy));
+}
+
+void Store::SendAbandon(const Lease& lease, LossPolicy policy, Done<JobRecord> done) {
+  done(Abandon(lease, policy));
 }
 
 }  // namespace rmlcell::storage

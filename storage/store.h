@@ -33,6 +33,12 @@ struct NewJob {
   std::vector<NewArtifact> attachments{};
   std::vector<NewEvent> events{};  // written in the transaction that makes the job
 };
+// What becomes of a call that does not wait for the store: `done` is called once, from a thread of
+// the store or before the call returns. It does not throw, and is brief, as the next commit waits
+// for it; it may call this store.
+template <class T>
+using Done = std::function<void(Result<T>)>;
+
 struct SubmittedJob {
   JobRecord job;
   bool already_there = false;  // the request_id was known: the first job, as it is by now
@@ -114,6 +120,27 @@ struct JobQuery {
   JobOrder order = JobOrder::kNewestFirst;
   int limit = 50;
   std::optional<JobPlace> behind{};  // jobs behind this one, in the order asked for
+};
+
+// A content on its way out of the store. May outlive neither the store nor, to its end, the last
+// record that names the content.
+class BlobReader {
+ public:
+  virtual ~BlobReader() = default;
+  virtual std::size_t size() const = 0;
+  // The next part, of at most kChunkBytes; empty at the end. CellStoreCorrupt, also at the end,
+  // when all of it is not what it is called; CellNotFound: it was removed meanwhile.
+  virtual Result<std::string> Next() = 0;
+};
+
+// A content on its way into the store. One that is not finished leaves nothing behind.
+class BlobWriter {
+ public:
+  virtual ~BlobWriter() = default;
+  virtual Status Append(std::string_view bytes) = 0;  // CellTooLarge: more than were told
+  // The content is kept so long, and with each record that names it; told again, until the later of
+  // the two. CellChecksum: the bytes are not those of the name.
+  virtual Result<WallTime> Finish(std::chrono::milliseconds kept) = 0;
 };
 
 // What a run compiled for a slot of its machine.
@@ -287,17 +314,15 @@ class Store {
                                std::string_view caller = {}) = 0;  // CellNotFound
 
   // --- jobs
-  // Durable before `done` is called, from a thread of the store or before Submit() returns: many
-  // submissions share one commit. `done` is called once, does not throw, and is brief, as the next
-  // commit waits for it; it may call this store. Attachments are hashed and compressed by the
-  // calling thread before that. CellRequestIdReused when request_id is known with another
-  // request_hash; CellNotFound: an attachment names content that is not there; CellInvalidArgument:
-  // attempts_max below 1, an attachment's name twice, a priority out of range; CellNotFound and
-  // CellPrecondition: a job of `after` that there is not, or that has ended otherwise;
-  // CellTooLarge: an event beyond kEventPayloadBytesMax; CellResourceExhausted: queued_max jobs
-  // wait and the request_id is new; or too many writes wait already, told at once by the calling
-  // thread.
-  virtual void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) = 0;
+  // Durable before `done` is called: many submissions share one commit. Attachments are hashed and
+  // compressed by the calling thread before that. CellRequestIdReused when request_id is known with
+  // another request_hash; CellNotFound: an attachment names content that is not there;
+  // CellInvalidArgument: attempts_max below 1, an attachment's name twice, a priority out of range;
+  // CellNotFound and CellPrecondition: a job of `after` that there is not, or that has ended
+  // otherwise; CellTooLarge: an event beyond kEventPayloadBytesMax; CellResourceExhausted:
+  // queued_max jobs wait and the request_id is new; or too many writes wait already, told at once
+  // by the calling thread.
+  virtual void Submit(NewJob job, Done<SubmittedJob> done) = 0;
   virtual Result<SubmittedJob> SubmitAndWait(NewJob job);
   // The job that this request made, or nothing. CellRequestIdReused, as of Submit().
   virtual Result<std::optional<JobRecord>> FindSubmitted(std::string_view request_id,
@@ -320,6 +345,8 @@ class Store {
   // holder of the lease ends it. Final: unchanged. Returns the job as it then is.
   virtual Result<JobRecord> RequestCancel(std::int64_t job,
                                           const std::vector<NewEvent>& events) = 0;
+  virtual void SendRequestCancel(std::int64_t job, std::vector<NewEvent> events,
+                                 Done<JobRecord> done);
 
   // --- the queue: jobs that wait and no others (CellPrecondition). `events` are appended.
   // Of those that are ready the one of the highest priority starts first, then the oldest; Move()
@@ -339,6 +366,10 @@ class Store {
                                  const std::vector<NewEvent>& events) = 0;
 
   // --- leases; all times by the clock of the store
+  // Each call has a form that does not wait, Send...(): a server uses no other, or a store that is
+  // away for half a minute holds up all its threads. Jobs come without their specification there,
+  // but those of SendAcquire(). A store that never makes anybody wait leaves them as they are.
+  //
   // A job has at most one holder. A lease that ran out stays its holder's until Expire() takes it:
   // work that was done is kept while nobody else has begun it.
   //
@@ -346,6 +377,7 @@ class Store {
   // cancel_requested, when an earlier holder gave it back: the new one ends it. A machine runs one
   // RUN at a time.
   virtual Result<std::vector<LeasedJob>> AcquireJobs(const JobRequest& request) = 0;
+  virtual void SendAcquire(JobRequest request, Done<std::vector<LeasedJob>> done);
   // One job of the common pool, or nothing.
   Result<std::optional<LeasedJob>> Acquire(std::string_view worker,
                                            const std::vector<std::string>& kinds,
@@ -354,11 +386,13 @@ class Store {
   // Until `duration` from now, 366 days at most. CellLeaseLost. Returns the job without its
   // specification, so that the holder sees cancel_requested.
   virtual Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) = 0;
+  virtual void SendRenew(const Lease& lease, std::chrono::milliseconds duration,
+                         Done<JobRecord> done);
   // CellLeaseLost, CellTooLarge, CellResourceExhausted. `done` gets the last sequence number
   // written, and is called as that of Submit(). What is appended under one lease is written in the
   // order of the calls.
   virtual void Append(const Lease& lease, std::vector<NewEvent> events,
-                      std::function<void(Result<std::int64_t>)> done) = 0;
+                      Done<std::int64_t> done) = 0;
   virtual Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events);
   // Ends the job, in one transaction: whoever reads its last event finds its artifacts and
   // executables, and the machine where the run left it. CellLeaseLost, also of the machine;
@@ -366,11 +400,15 @@ class Store {
   // CellInvalidArgument: a state that is not final, an artifact's name that the job has already;
   // CellTooLarge: an executable beyond kProgramBytesMax.
   virtual Result<JobRecord> Finish(const Lease& lease, const JobEnd& end) = 0;
+  virtual void SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
+                          Done<JobRecord> done);
   // Gives the job back to the queue; this attempt does not count. A RUN is interrupted: it may have
   // moved its machine. Returns the job as it then is. CellLeaseLost.
   virtual Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) = 0;
+  virtual void SendHandBack(const Lease& lease, LossPolicy policy, Done<JobRecord> done);
   // The worker is known to be dead: as if the lease ran out now. CellLeaseLost.
   virtual Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) = 0;
+  virtual void SendAbandon(const Lease& lease, LossPolicy policy, Done<JobRecord> done);
   // Every lease that ran out, and every job whose time has come may start. Any server may call it
   // at any time. Returns the jobs that changed; one that cannot be read does not keep the others
   // from going on. It may take nothing for a while after the store was lost and found again:
@@ -403,6 +441,14 @@ class Store {
   virtual Result<std::vector<ArtifactRecord>> ListArtifacts(std::int64_t job) = 0;  // by name
   virtual Result<ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) = 0;
   virtual Result<std::string> ReadBlob(std::string_view sha256) = 0;  // any content; CellNotFound
+
+  // --- contents piece by piece, in the memory of a few chunks
+  // CellNotFound.
+  virtual Result<std::unique_ptr<BlobReader>> OpenBlob(std::string_view sha256) = 0;
+  // For a content of that name (64 hexadecimal digits) and size. CellInvalidArgument: no such name;
+  // CellTooLarge: kProgramBytesMax.
+  virtual Result<std::unique_ptr<BlobWriter>> WriteBlob(std::string_view sha256,
+                                                        std::size_t size) = 0;
 
   // Called after each commit that wrote events or changed jobs, from a thread of the store and
   // under no lock: a hint to read the rows, which may come twice or for nothing, and a second late,

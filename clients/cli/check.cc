@@ -17,6 +17,7 @@
 #include "engine/simulation/run/rehearsal.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/inputs.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/spooled_bytes.h"
 #include "rmlcell/v1/job.pb.h"

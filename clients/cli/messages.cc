@@ -378,12 +378,14 @@ void AddFigures(const v1::RunReport& report, Zero zero, Rows& rows) {
   AddViolations(report, rows);
   rows.emplace_back("steps", std::to_string(total.steps()));
   AddPositions(report, shape, zero, rows);
-  // A map of Protocol Buffers has another order each time: by kind and number.
-  const auto first = rows.insert(rows.end(), report.variables().begin(), report.variables().end());
+  // By kind and number.
+  const auto first = rows.end() - rows.begin();
+  for (const v1::Variable& variable : report.variables())
+    rows.emplace_back(variable.name(), variable.text());
   const auto order = [](const auto& row) {
     return std::tuple(row.first.substr(0, row.first.find('[')), row.first.size(), row.first);
   };
-  std::ranges::sort(first, rows.end(), {}, order);
+  std::ranges::sort(rows.begin() + first, rows.end(), {}, order);
 }
 
 }  // namespace

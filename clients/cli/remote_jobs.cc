@@ -14,6 +14,7 @@
 #include "engine/families/families.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/inputs.h"
 #include "proto/bridge/milling.h"
 #include "rmlcell/v1/job.grpc.pb.h"
 

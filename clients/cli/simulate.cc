@@ -262,7 +262,8 @@ void TellResult(const SimulateOptions& options, const simulation::SimulationResu
     PrintJson(report);
   } else if (options.facts) {
     PrintRaw(simulation::FactsText(result.report));
-    for (const auto& [name, value] : result.variables) Print("variable." + name + ": " + value);
+    for (const auto& [name, value] : result.variables)
+      Print("variable." + name + ": " + value.text);
   } else {
     PrintFindings(run.diagnostics, run.diagnostics_dropped, {});
     DropFindings(run, report);
@@ -305,7 +306,9 @@ int Simulate(const SimulateOptions& options) {
   if (!result) return Refuse(result.error());
   if (const Status written = products.Write(*result); !written) return Refuse(written.error());
   for (const std::string& name : prepared->variables) {
-    if (result->variables.contains(name)) continue;
+    if (std::ranges::find(result->variables, name, &machine::NamedVariable::name) !=
+        result->variables.end())
+      continue;
     Complain("the machine has no variable " + name);
     break;
   }

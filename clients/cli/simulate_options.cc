@@ -11,6 +11,7 @@
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "proto/bridge/files.h"
+#include "proto/bridge/inputs.h"
 #include "proto/bridge/setup.h"
 
 namespace rmlcell::cli {

@@ -29,7 +29,7 @@ class PlainStanding final : public Standing {
  public:
   explicit PlainStanding(std::string_view state) : state_(state) {}
   RunState state() const override { return {.phase = RunPhase::kFinished}; }
-  std::optional<std::string> ReadVariable(std::string_view /*name*/) const override { return {}; }
+  std::optional<VariableValue> ReadVariable(std::string_view /*name*/) const override { return {}; }
   void CyclePower() override {}
   std::string Save() const override { return state_; }
 

@@ -204,7 +204,7 @@ MachineStatus Machine::status() const {
   return status;
 }
 
-std::optional<std::string> Machine::ReadVariable(std::string_view name) const {
+std::optional<VariableValue> Machine::ReadVariable(std::string_view name) const {
   return run_ != nullptr ? run_->ReadVariable(name) : standing_->ReadVariable(name);
 }
 

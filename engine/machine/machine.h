@@ -114,7 +114,7 @@ class Machine {
   const MachineMemory& memory() const { return memory_; }
 
   // "VR[5]" -> "7.0"; nothing for what is no variable of this machine.
-  std::optional<std::string> ReadVariable(std::string_view name) const;
+  std::optional<VariableValue> ReadVariable(std::string_view name) const;
   std::vector<Place> stack() const;  // of the open run, that in execution last; else nothing
   std::vector<ModalValue> modal_values() const;
   const std::vector<Breakpoint>& breakpoints() const { return breakpoints_; }

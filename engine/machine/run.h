@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "engine/core/units.h"
 #include "engine/machine/outcome.h"
 #include "engine/machine/run_setup.h"
+#include "engine/machine/variable.h"
 #include "engine/motion/geometry/pose.h"
 
 namespace rmlcell::machine {
@@ -85,8 +87,8 @@ class Run {
   virtual const Outcome& outcome() const = 0;  // meaningful after kFinished
   virtual std::uint64_t steps_executed() const = 0;
 
-  // "VR[5]" -> "7.0"; nothing when the family has no such variable.
-  virtual std::optional<std::string> ReadVariable(std::string_view /*name*/) const { return {}; }
+  // "VR[5]" -> real "7.0"; nothing when the family has no such variable.
+  virtual std::optional<VariableValue> ReadVariable(std::string_view /*name*/) const { return {}; }
   // At the present time. The family says which may be written (MachineFamily::CheckWrite).
   virtual void WriteVariable(std::string_view /*name*/, double /*value*/) {}
 
@@ -114,5 +116,8 @@ class Run {
   // Precondition: the snapshot comes from this run, or one made from an equal setup.
   virtual void Restore(const RunSnapshot& snapshot) = 0;
 };
+
+// Those of `names` that the run has, in this order.
+std::vector<NamedVariable> ReadVariables(const Run& run, std::span<const std::string> names);
 
 }  // namespace rmlcell::machine

@@ -80,6 +80,7 @@ struct RunSetup {
   Mode mode = Mode::kCycle;
   double override_percent = 100.0;
   std::optional<ProgramStep> breakpoint{};  // halt after this step; step 0 ends the kept one
+  std::vector<Breakpoint> breakpoints{};    // of a person: set before it begins, kept by no machine
   std::optional<ProgramStep> simul{};       // dry run up to this step; step 0 as above
   InputScript inputs{};
   // SIMULATE and CHECK: a motion that leaves the travel of an axis is told as an error, and the run

@@ -20,7 +20,7 @@ class Standing {
   virtual RunState state() const = 0;
 
   // As those of Run.
-  virtual std::optional<std::string> ReadVariable(std::string_view name) const = 0;
+  virtual std::optional<VariableValue> ReadVariable(std::string_view name) const = 0;
   virtual void WriteVariable(std::string_view /*name*/, double /*value*/) {}
   virtual std::vector<ModalValue> modal_values() const { return {}; }
 

@@ -456,7 +456,7 @@ machine::RunState MillRun::state() const {
   return state;
 }
 
-std::optional<std::string> MillRun::ReadVariable(std::string_view name) const {
+std::optional<machine::VariableValue> MillRun::ReadVariable(std::string_view name) const {
   return ReadRegister(state_.device, profile(),
                       {.at = ToolAt(TipNow()), .spindle_turns = SpindleTurns()}, name);
 }

@@ -43,7 +43,7 @@ class MillRun final : public machine::Run {
   machine::RunState state() const override;
   const machine::Outcome& outcome() const override { return state_.outcome; }
   std::uint64_t steps_executed() const override { return state_.device.commands_done(); }
-  std::optional<std::string> ReadVariable(std::string_view name) const override;
+  std::optional<machine::VariableValue> ReadVariable(std::string_view name) const override;
   void SetBreakpoints(const std::vector<machine::Breakpoint>& breakpoints) override;
   std::vector<machine::Place> stack() const override { return {state_.place}; }
   std::vector<machine::ModalValue> modal_values() const override;

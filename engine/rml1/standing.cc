@@ -38,7 +38,7 @@ machine::RunState MillStanding::state() const {
   return state;
 }
 
-std::optional<std::string> MillStanding::ReadVariable(std::string_view name) const {
+std::optional<machine::VariableValue> MillStanding::ReadVariable(std::string_view name) const {
   return ReadRegister(device_, *profile_, tool(), name);
 }
 

@@ -18,7 +18,7 @@ class MillStanding final : public machine::Standing {
                                                          std::string_view machine_state);
 
   machine::RunState state() const override;
-  std::optional<std::string> ReadVariable(std::string_view name) const override;
+  std::optional<machine::VariableValue> ReadVariable(std::string_view name) const override;
   std::vector<machine::ModalValue> modal_values() const override;
   void Rest() override;        // the spindle stands
   void CyclePower() override;  // a new machine: RML1-7.08

@@ -44,48 +44,64 @@ std::string XySpeed(const View& v) { return NumberText(v.registers().xy_speed); 
 std::string ZSpeed(const View& v) { return NumberText(v.registers().z_speed); }
 std::string Dwell(const View& v) { return std::to_string(v.registers().dwell_ms); }
 
+using machine::VariableKind;
+
 struct Register {
   std::string_view name;
+  VariableKind kind;
   std::string (*read)(const View&);
   bool of_rotary = false;  // only a machine with a rotary axis has it
 };
 
 constexpr std::array kRegisters = {
-    Register{"X", [](const View& v) { return NumberText(v.tool.at.x - v.profile.origin_x); }},
-    Register{"Y", [](const View& v) { return NumberText(v.tool.at.y - v.profile.origin_y); }},
-    Register{"Z", [](const View& v) { return NumberText(v.tool.at.z - v.registers().z0); }},
-    Register{"A", [](const View& v) { return NumberText(v.tool.at.a); }, true},
-    Register{"LX", [](const View& v) { return NumberText(v.logical().x - v.profile.origin_x); }},
-    Register{"LY", [](const View& v) { return NumberText(v.logical().y - v.profile.origin_y); }},
-    Register{"LZ", [](const View& v) { return NumberText(v.logical().z - v.registers().z0); }},
-    Register{"VS", XySpeed},
-    Register{"F", XySpeed},
-    Register{"VZ", ZSpeed},
-    Register{"V", ZSpeed},
-    Register{"DW", Dwell},
-    Register{"W", Dwell},
-    Register{"MC",
+    Register{"X", VariableKind::kReal,
+             [](const View& v) { return NumberText(v.tool.at.x - v.profile.origin_x); }},
+    Register{"Y", VariableKind::kReal,
+             [](const View& v) { return NumberText(v.tool.at.y - v.profile.origin_y); }},
+    Register{"Z", VariableKind::kReal,
+             [](const View& v) { return NumberText(v.tool.at.z - v.registers().z0); }},
+    Register{"A", VariableKind::kReal, [](const View& v) { return NumberText(v.tool.at.a); }, true},
+    Register{"LX", VariableKind::kReal,
+             [](const View& v) { return NumberText(v.logical().x - v.profile.origin_x); }},
+    Register{"LY", VariableKind::kReal,
+             [](const View& v) { return NumberText(v.logical().y - v.profile.origin_y); }},
+    Register{"LZ", VariableKind::kReal,
+             [](const View& v) { return NumberText(v.logical().z - v.registers().z0); }},
+    Register{"VS", VariableKind::kReal, XySpeed},
+    Register{"F", VariableKind::kReal, XySpeed},
+    Register{"VZ", VariableKind::kReal, ZSpeed},
+    Register{"V", VariableKind::kReal, ZSpeed},
+    Register{"DW", VariableKind::kInteger, Dwell},
+    Register{"W", VariableKind::kInteger, Dwell},
+    Register{"MC", VariableKind::kLogical,
              [](const View& v) -> std::string { return v.registers().rotation ? "on" : "off"; }},
-    Register{"SPINDLE",
+    Register{"SPINDLE", VariableKind::kLogical,
              [](const View& v) -> std::string { return v.tool.spindle_turns ? "on" : "off"; }},
-    Register{"RPM", [](const View& v) { return std::to_string(v.registers().rpm); }},
-    Register{"Z0", [](const View& v) { return NumberText(v.registers().z0); }},
-    Register{"Z1", [](const View& v) { return NumberText(v.registers().z1); }},
-    Register{"Z2", [](const View& v) { return NumberText(v.registers().z2); }},
-    Register{"MODE",
+    Register{"RPM", VariableKind::kInteger,
+             [](const View& v) { return std::to_string(v.registers().rpm); }},
+    Register{"Z0", VariableKind::kReal, [](const View& v) { return NumberText(v.registers().z0); }},
+    Register{"Z1", VariableKind::kReal, [](const View& v) { return NumberText(v.registers().z1); }},
+    Register{"Z2", VariableKind::kReal, [](const View& v) { return NumberText(v.registers().z2); }},
+    Register{"MODE", VariableKind::kWord,
              [](const View& v) -> std::string { return v.registers().absolute ? "abs" : "rel"; }},
-    Register{"TOOL",
+    Register{"TOOL", VariableKind::kWord,
              [](const View& v) -> std::string { return v.registers().tool_down ? "down" : "up"; }},
-    Register{"ERR",
+    Register{"ERR", VariableKind::kInteger,
              [](const View& v) { return std::to_string(v.device.command_errors().value()); }},
-    Register{"COM", [](const View& v) { return std::to_string(v.device.link_errors().value()); }},
-    Register{"XSTEPS", [](const View& v) { return MmSteps(v, v.tool.at.x); }},
-    Register{"YSTEPS", [](const View& v) { return MmSteps(v, v.tool.at.y); }},
-    Register{"ZSTEPS", [](const View& v) { return MmSteps(v, v.tool.at.z); }},
-    Register{"ASTEPS",
+    Register{"COM", VariableKind::kInteger,
+             [](const View& v) { return std::to_string(v.device.link_errors().value()); }},
+    Register{"XSTEPS", VariableKind::kInteger,
+             [](const View& v) { return MmSteps(v, v.tool.at.x); }},
+    Register{"YSTEPS", VariableKind::kInteger,
+             [](const View& v) { return MmSteps(v, v.tool.at.y); }},
+    Register{"ZSTEPS", VariableKind::kInteger,
+             [](const View& v) { return MmSteps(v, v.tool.at.z); }},
+    Register{"ASTEPS", VariableKind::kInteger,
              [](const View& v) { return StepsText(v.tool.at.a, v.profile.rotary_step_deg); }, true},
-    Register{"ESC.M", [](const View& v) { return EscValues(v.device.path().esc_m(), 6); }},
-    Register{"ESC.T", [](const View& v) { return EscValues(v.device.path().esc_t(), 5); }},
+    Register{"ESC.M", VariableKind::kWord,
+             [](const View& v) { return EscValues(v.device.path().esc_m(), 6); }},
+    Register{"ESC.T", VariableKind::kWord,
+             [](const View& v) { return EscValues(v.device.path().esc_t(), 5); }},
 };
 
 const Register* FindRegister(const Profile& profile, std::string_view name) {
@@ -101,7 +117,7 @@ std::vector<machine::ModalValue> ModalRegisters(const Device& device, const Prof
   std::vector<machine::ModalValue> values;
   for (const std::string_view name :
        {"VS", "VZ", "DW", "MC", "RPM", "Z0", "Z1", "Z2", "MODE", "TOOL"}) {
-    values.push_back({std::string(name), *ReadRegister(device, profile, tool, name)});
+    values.push_back({std::string(name), ReadRegister(device, profile, tool, name)->text});
   }
   return values;
 }
@@ -110,11 +126,12 @@ bool HasRegister(const Profile& profile, std::string_view name) {
   return FindRegister(profile, name) != nullptr;
 }
 
-std::optional<std::string> ReadRegister(const Device& device, const Profile& profile,
-                                        const ToolNow& tool, std::string_view name) {
+std::optional<machine::VariableValue> ReadRegister(const Device& device, const Profile& profile,
+                                                   const ToolNow& tool, std::string_view name) {
   const Register* found = FindRegister(profile, name);
   if (found == nullptr) return std::nullopt;
-  return found->read({.device = device, .profile = profile, .tool = tool});
+  return machine::VariableValue{found->kind,
+                                found->read({.device = device, .profile = profile, .tool = tool})};
 }
 
 }  // namespace rmlcell::rml1

@@ -20,8 +20,8 @@ struct ToolNow {
 // the tool is, work units), LX LY LZ (where the program is), VS VZ F V mm/s, DW W ms, MC RPM
 // SPINDLE, Z0 Z1 Z2, MODE TOOL, ERR COM, XSTEPS YSTEPS ZSTEPS ASTEPS, ESC.M ESC.T. Nothing for
 // other names.
-std::optional<std::string> ReadRegister(const Device& device, const Profile& profile,
-                                        const ToolNow& tool, std::string_view name);
+std::optional<machine::VariableValue> ReadRegister(const Device& device, const Profile& profile,
+                                                   const ToolNow& tool, std::string_view name);
 
 // What holds until a command changes it, by the names above: speeds, dwell, !MC, rpm, heights,
 // mode, tool.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "proto/bridge/findings.h"
+#include "proto/bridge/inputs.h"
 #include "rmlcell/v1/job.pb.h"
 #include "rmlcell/v1/report.pb.h"
 
@@ -322,7 +323,7 @@ v1::MillingFigures ToProto(const simulation::MillingFigures& milling) {
 }  // namespace
 
 v1::RunReport ToProto(const machine::FamilyInfo& family, const simulation::RunReport& report,
-                      const std::map<std::string, std::string>& variables) {
+                      std::span<const machine::NamedVariable> variables) {
   v1::RunReport message;
   message.set_family(report.family);
   SetMachine(report.machine, message);
@@ -371,7 +372,8 @@ v1::RunReport ToProto(const machine::FamilyInfo& family, const simulation::RunRe
   }
   message.set_violations_dropped(static_cast<std::int64_t>(report.violations_dropped));
   for (const machine::Figure& figure : report.figures) *message.add_figures() = ToProto(figure);
-  for (const auto& [name, value] : variables) (*message.mutable_variables())[name] = value;
+  for (const machine::NamedVariable& variable : variables)
+    *message.add_variables() = ToProto(variable);
   for (const auto& [name, value] : report.changed_parameters)
     (*message.mutable_parameters())[name] = value;
   message.set_inputs_hash(report.inputs_hash);

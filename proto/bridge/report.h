@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+
+#include "engine/machine/variable.h"
 #include "engine/simulation/report/report.h"
 #include "engine/simulation/report/trace.h"
 
@@ -16,7 +19,7 @@ namespace rmlcell::bridge {
 //
 // The report as its message; `variables` are those that were asked for.
 v1::RunReport ToProto(const machine::FamilyInfo& family, const simulation::RunReport& report,
-                      const std::map<std::string, std::string>& variables);
+                      std::span<const machine::NamedVariable> variables);
 v1::TraceRecord ToProto(const machine::FamilyInfo& family, const simulation::TraceRecord& record);
 
 // What was found in the text, behind what the run found. A mill finds the same again at the same

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "engine/core/number_text.h"
+#include "proto/bridge/inputs.h"
 #include "rmlcell/v1/job.pb.h"
 
 namespace rmlcell::bridge {
@@ -27,49 +28,16 @@ machine::Mode FromProto(v1::OperatingMode mode, machine::Mode standard) {
   }
 }
 
-std::optional<machine::ProgramStep> StepOf(const v1::StepPlace& place, int main_program) {
-  return machine::ProgramStep{.program = place.program() > 0 ? place.program() : main_program,
-                              .step = place.step()};
+machine::ProgramStep StepOf(const v1::StepPlace& place, int main_program) {
+  return {.program = place.program() > 0 ? place.program() : main_program, .step = place.step()};
 }
 
 }  // namespace
 
-machine::InputChange FromProto(const v1::ScriptedInput& input) {
-  machine::InputChange change{
-      .at = SimTime(input.virtual_time_ns()), .index = input.index(), .value = input.value()};
-  switch (input.kind()) {
-    case v1::ScriptedInput::KIND_ANALOGUE_INPUT:
-      change.kind = machine::InputKind::kAnalogue;
-      break;
-    case v1::ScriptedInput::KIND_DOOR:
-      change.kind = machine::InputKind::kDoor;
-      break;
-    case v1::ScriptedInput::KIND_START:
-      change.kind = machine::InputKind::kStart;
-      break;
-    case v1::ScriptedInput::KIND_HOLD:
-      change.kind = machine::InputKind::kHold;
-      break;
-    case v1::ScriptedInput::KIND_STOP:
-      change.kind = machine::InputKind::kStop;
-      break;
-    case v1::ScriptedInput::KIND_EMERGENCY_STOP:
-      change.kind = machine::InputKind::kEmergencyStop;
-      break;
-    case v1::ScriptedInput::KIND_OVERRIDE:
-      change.kind = machine::InputKind::kOverride;
-      break;
-    default:
-      change.kind = machine::InputKind::kLogical;
-  }
-  return change;
-}
-
-machine::InputScript InputsOf(const v1::SimulationOptions& options) {
-  machine::InputScript inputs;
-  for (const v1::ScriptedInput& scripted : options.inputs()) inputs.push_back(FromProto(scripted));
-  std::ranges::stable_sort(inputs, {}, &machine::InputChange::at);
-  return inputs;
+machine::Breakpoint FromProto(const v1::Breakpoint& breakpoint, int main_program) {
+  return {.at = StepOf(breakpoint.step(), main_program),
+          .condition = breakpoint.condition(),
+          .from_pass = static_cast<std::uint64_t>(std::max<std::int64_t>(1, breakpoint.passes()))};
 }
 
 simulation::RunOptions RunOptionsOf(const v1::SimulationOptions& options, const v1::Budget& budget,
@@ -80,8 +48,14 @@ simulation::RunOptions RunOptionsOf(const v1::SimulationOptions& options, const 
       .mode = FromProto(options.mode(), default_mode),
       .inputs = InputsOf(options)};
   if (options.override_percent() > 0.0) run.override_percent = options.override_percent();
-  if (!options.breakpoints().empty())
-    run.breakpoint = StepOf(options.breakpoints(0).step(), main_program);
+  for (const v1::Breakpoint& breakpoint : options.breakpoints())
+    run.breakpoints.push_back(FromProto(breakpoint, main_program));
+  // A plain one alone is that of the machine: where its state is kept it is kept with it.
+  if (run.breakpoints.size() == 1 &&
+      run.breakpoints.front() == machine::Breakpoint{.at = run.breakpoints.front().at}) {
+    run.breakpoint = run.breakpoints.front().at;
+    run.breakpoints.clear();
+  }
   if (options.has_simul()) run.simul = StepOf(options.simul(), main_program);
   if (budget.steps() > 0) run.budget.steps = static_cast<std::uint64_t>(budget.steps());
   if (budget.virtual_time_ns() > 0) run.budget.virtual_time = SimTime(budget.virtual_time_ns());

@@ -6,8 +6,8 @@
 #include "engine/simulation/run/rehearsal.h"
 
 namespace rmlcell::v1 {
+class Breakpoint;
 class Budget;
-class ScriptedInput;
 class SimulationOptions;
 }  // namespace rmlcell::v1
 
@@ -19,8 +19,7 @@ namespace rmlcell::bridge {
 simulation::RunOptions RunOptionsOf(const v1::SimulationOptions& options, const v1::Budget& budget,
                                     int main_program, machine::Mode default_mode);
 
-machine::InputChange FromProto(const v1::ScriptedInput& input);
-machine::InputScript InputsOf(const v1::SimulationOptions& options);  // in order of time
+machine::Breakpoint FromProto(const v1::Breakpoint& breakpoint, int main_program);
 
 // "VR[0..9]", "VI[99]", "Z1" -> the single names, at most 1,000. Error: CellInvalidArgument.
 Result<std::vector<std::string>> ExpandVariables(const std::vector<std::string>& names);

@@ -14,8 +14,10 @@
 
 #include "engine/core/hex.h"
 #include "engine/core/number_text.h"
+#include "server/base/credentials.h"
 #include "server/base/executor.h"
 #include "server/base/secret.h"
+#include "server/cell/private_socket.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
@@ -130,12 +132,14 @@ struct Cell::Parts {
   std::unique_ptr<grpc::Server> server;
   std::unique_ptr<web::WebServer> web;
   std::unique_ptr<WorkerProcesses> processes;
+  std::optional<PrivateSocket> private_socket;
   std::vector<std::string> grpc_addresses;
   bool stopped = false;
 
   Status OpenStore();
   Status MakeMachines();
   Status Listen(const std::string& join_token);
+  Status Serve();
   Status ListenWeb();
   Status StartWorkers(const std::string& join_token);
 };
@@ -202,7 +206,8 @@ Status Cell::Parts::Listen(const std::string& join_token) {
       std::make_unique<JobService>(needs, *book, *results, *dispatcher, *feed, open, instance_id);
   machine_service = std::make_unique<MachineService>(
       needs, MachineWatchNeeds{*executor, open, *store, *feed, instance_id});
-  program_service = std::make_unique<ProgramService>(needs, *programs, *tools, *language, open);
+  program_service =
+      std::make_unique<ProgramService>(needs, *store, *programs, *tools, *language, open);
   project_service = std::make_unique<ProjectService>(needs, *projects, *transfer, open);
   handbox_service = std::make_unique<HandboxService>(needs);
   host_service = std::make_unique<HostService>(needs);
@@ -215,6 +220,10 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   account_service = std::make_unique<AccountService>(needs);
   worker_service = std::make_unique<WorkerService>(needs, *dispatcher);
 
+  return Serve();
+}
+
+Status Cell::Parts::Serve() {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
@@ -230,9 +239,13 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   for (const std::string& address : config.listen_grpc) {
     if (IsUnixSocketInUse(address)) return PortUsed(address);
   }
+  Result<PrivateSocket> own = PrivateSocket::Make(config.state_directory);
+  if (!own) return own.error();
+  private_socket.emplace(*std::move(own));
+  builder.AddListeningPort(private_socket->address(), CredentialsOfServer());
   std::vector<int> ports(config.listen_grpc.size(), 0);
   for (std::size_t i = 0; i < ports.size(); ++i) {
-    builder.AddListeningPort(config.listen_grpc[i], grpc::InsecureServerCredentials(), &ports[i]);
+    builder.AddListeningPort(config.listen_grpc[i], CredentialsOfServer(), &ports[i]);
   }
   for (grpc::Service* service : std::initializer_list<grpc::Service*>{
            cell_service.get(), job_service.get(), machine_service.get(), program_service.get(),
@@ -257,7 +270,7 @@ Status Cell::Parts::ListenWeb() {
   const std::size_t colon = config.listen_web.rfind(':');
   std::string host = config.listen_web.substr(0, colon);
   if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  resources = std::make_unique<WebResources>(gate, *book, *programs);
+  resources = std::make_unique<WebResources>(gate, *store, *book, *programs);
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_MAX_RECEIVE_MESSAGE_LENGTH, -1);
   auto started = web::WebServer::Start(
@@ -268,8 +281,7 @@ Status Cell::Parts::ListenWeb() {
        .connections_max = static_cast<std::size_t>(config.web_connections_max),
        .origins = config.web_origins,
        .secret = gate.web_secret()},
-      grpc::CreateCustomChannel(grpc_addresses.front(), grpc::InsecureChannelCredentials(),
-                                arguments),
+      grpc::CreateCustomChannel(private_socket->address(), CredentialsOfChannel(), arguments),
       *resources, [](const web::WebLogEntry& entry) {
         spdlog::debug("{} {} {} {} bytes in {} us, {}", entry.method, entry.path, entry.http_status,
                       entry.bytes_sent, entry.duration.count(), entry.peer);
@@ -287,7 +299,7 @@ Status Cell::Parts::StartWorkers(const std::string& join_token) {
                                   ? PathOfOwnProgram() + "/rmlcell-worker"
                                   : config.workers_program;
   auto started = WorkerProcesses::Start({.program = program,
-                                         .server = grpc_addresses.front(),
+                                         .server = private_socket->address(),
                                          .join_token = join_token,
                                          .log_level = config.log_level,
                                          .log_format = config.log_format,
@@ -338,8 +350,10 @@ void Cell::Stop() {
   // Calls are over; what they posted still runs.
   parts.web.reset();
   parts.server.reset();
+  parts.private_socket.reset();
   parts.compute.reset();
   parts.statuses.reset();
+  if (parts.dispatcher != nullptr) parts.dispatcher->Settle();
   parts.executor.reset();
   parts.dispatcher.reset();
   parts.feed.reset();

@@ -183,10 +183,10 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
     }
   }
   assignment.mutable_deleted_programs()->Add(memory->deleted.begin(), memory->deleted.end());
-  const std::string file_name = stored_main ? std::string() : job.inline_program().file_name();
-  const bool is_source = !stored_main && job.inline_program().form() != v1::PROGRAM_FORM_OBJECT;
-  programs.Add(main_slot, main_title, file_name, std::move(*main_bytes), is_source, main_executable,
-               main_revision);
+  const std::optional<BroughtProgram> brought = ProgramBrought(job);
+  const bool is_source = brought && brought->form != v1::PROGRAM_FORM_OBJECT;
+  programs.Add(main_slot, main_title, brought ? brought->file_name : std::string(),
+               std::move(*main_bytes), is_source, main_executable, main_revision);
   for (const v1::SlotProgram& further : job.simulation().programs()) {
     Result<std::string> bytes = Attached(store, leased.job.id, AttachmentName(further.slot()));
     if (!bytes) return bytes.error();

@@ -45,6 +45,8 @@ Dispatcher::~Dispatcher() {
   store_watch_.reset();
   sweeper_.request_stop();
   changed_.notify_all();
+  if (sweeper_.joinable()) sweeper_.join();
+  Settle();
 }
 
 Result<Dispatcher::WorkerId> Dispatcher::Join(std::shared_ptr<WorkerLine> line,
@@ -109,16 +111,16 @@ void Dispatcher::Leave(WorkerId id) {
   }
   Post(worker, [this, worker] {
     // What it finished is stored without it.
-    if (worker->assignment && !worker->assignment->end) {
-      spdlog::warn("worker {} is gone in the middle of {}", worker->name,
-                   JobName(worker->assignment->lease.job));
-      Lose(*worker->assignment);
-      feed_.Forget(JobName(worker->assignment->lease.job));
-      worker->assignment.reset();
-    }
-    changed_.notify_all();
-    WakeIdle();
+    if (!worker->assignment || worker->assignment->end) return Left();
+    spdlog::warn("worker {} is gone in the middle of {}", worker->name,
+                 JobName(worker->assignment->lease.job));
+    Lose(worker);
   });
+}
+
+void Dispatcher::Left() {
+  changed_.notify_all();
+  WakeIdle();
 }
 
 int Dispatcher::workers() const {
@@ -133,22 +135,50 @@ void Dispatcher::Post(const std::shared_ptr<Worker>& worker, std::function<void(
     worker->queue.push_back(std::move(work));
     if (worker->working) return;
     worker->working = true;
+    ++at_work_;
   }
-  executor_.Post([this, worker] {
-    for (;;) {
-      std::function<void()> next;
-      {
-        const std::lock_guard lock(mutex_);
-        if (worker->queue.empty()) {
-          worker->working = false;
-          return;
-        }
-        next = std::move(worker->queue.front());
-        worker->queue.pop_front();
-      }
-      next();
-    }
-  });
+  executor_.Post([this, worker] { Work(worker); });
+}
+
+// The next thing to do for a worker, or nothing, when its turn is over.
+std::function<void()> Dispatcher::NextWork(const std::shared_ptr<Worker>& worker) {
+  const std::lock_guard lock(mutex_);
+  if (worker->awaits) {
+    worker->parked = true;
+    return {};
+  }
+  if (!worker->queue.empty()) {
+    std::function<void()> next = std::move(worker->queue.front());
+    worker->queue.pop_front();
+    return next;
+  }
+  const std::optional<Assignment>& at = worker->assignment;
+  if (at && !at->events.empty() && !at->events_rest && !at->end)
+    return [this, worker] { StoreEvents(worker); };
+  worker->working = false;
+  --at_work_;
+  changed_.notify_all();
+  return {};
+}
+
+void Dispatcher::Work(const std::shared_ptr<Worker>& worker) {
+  while (const std::function<void()> next = NextWork(worker)) next();
+}
+
+void Dispatcher::Await(const std::shared_ptr<Worker>& worker) {
+  const std::lock_guard lock(mutex_);
+  worker->awaits = true;
+}
+
+// The work that asked for the answer may still be at its end: then its thread goes on with `next`.
+void Dispatcher::GoOn(const std::shared_ptr<Worker>& worker, std::function<void()> next) {
+  {
+    const std::lock_guard lock(mutex_);
+    worker->queue.push_front(std::move(next));
+    worker->awaits = false;
+    if (!std::exchange(worker->parked, false)) return;
+  }
+  executor_.Post([this, worker] { Work(worker); });
 }
 
 // A look that has not begun sees every job stored until now; one that has begun may have missed the
@@ -186,7 +216,6 @@ void Dispatcher::SweepLeases(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     if (std::chrono::steady_clock::now() >= next) {
       EndLeases();
-      EndFailedDeliveries();
       next = std::chrono::steady_clock::now() + interval;
     }
     TakeOrders();
@@ -311,6 +340,11 @@ void Dispatcher::Drain(std::chrono::milliseconds patience) {
   store_watch_.reset();
   sweeper_.request_stop();
   if (sweeper_.joinable()) sweeper_.join();
+}
+
+void Dispatcher::Settle() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return at_work_ == 0; });
 }
 
 }  // namespace rmlcell::server

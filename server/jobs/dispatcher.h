@@ -75,40 +75,61 @@ class Dispatcher {
   // done, or after `patience`. For good: leases are not looked after any more.
   void Drain(std::chrono::milliseconds patience);
 
+  // Waits until nothing of it is under way on the executor or in the store. Precondition: nobody
+  // calls it any more; behind Drain().
+  void Settle();
+
   int workers() const;
 
  private:
   struct Worker;
   struct Assignment;
-  struct Delivery;
 
   void Post(const std::shared_ptr<Worker>& worker, std::function<void()> work);
+  std::function<void()> NextWork(const std::shared_ptr<Worker>& worker);
+  void Work(const std::shared_ptr<Worker>& worker);
+  // What came of a call of the store, as the next thing that is done for the worker; until then
+  // nothing is. To be called from work for this worker, for the last thing in it.
+  template <class T, class Next>
+  storage::Done<T> Then(const std::shared_ptr<Worker>& worker, Next next);
+  void Await(const std::shared_ptr<Worker>& worker);
+  void GoOn(const std::shared_ptr<Worker>& worker, std::function<void()> next);
   void PostLook(const std::shared_ptr<Worker>& worker);
   void WakeIdle();
   void Assign(const std::shared_ptr<Worker>& worker);
+  void Assigned(const std::shared_ptr<Worker>& worker,
+                const Result<std::vector<storage::LeasedJob>>& leased);
   void Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job);
   void EndWithoutWork(const std::shared_ptr<Worker>& worker, const storage::JobOutcome& how);
-  void GiveBack(Worker& worker);
+  void GiveBack(const std::shared_ptr<Worker>& worker);
   Status SendAssignment(Worker& worker, const storage::LeasedJob& leased);
   // Precondition: mutex_ is held. False: no worker is known to have the job.
   bool OrderHolder(std::int64_t job, const JobOrder& order);
   void Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& message);
-  void Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat);
-  void AppendEvents(Worker& worker, const v1::WorkerEvents& events);
+  void Heartbeat(const std::shared_ptr<Worker>& worker, const v1::WorkerHeartbeat& heartbeat);
+  void Renewed(const std::shared_ptr<Worker>& worker, const Result<storage::JobRecord>& job);
+  void StoreEvents(const std::shared_ptr<Worker>& worker);
+  void EventsStored(const std::shared_ptr<Worker>& worker, std::size_t count,
+                    const Result<std::int64_t>& written);
   void Collect(Worker& worker, v1::WorkerArtifact& artifact);
   void Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish& finish);
-  void RestWithoutWork(Worker& worker, const Error& trouble);
+  void RestWithoutWork(const std::shared_ptr<Worker>& worker, const Error& trouble);
   void StoreEnd(const std::shared_ptr<Worker>& worker);
+  void EndStored(const std::shared_ptr<Worker>& worker, const Result<storage::JobRecord>& ended);
   void TryAgain();
   void EndAssignment(Worker& worker, bool stored);
   void TakeNoOrders(Worker& worker);  // its job is over
-  void Lose(const Assignment& assignment);
+  // Then its worker is told, when it is still there, and free.
+  void Lose(const std::shared_ptr<Worker>& worker);
+  void Lost(const std::shared_ptr<Worker>& worker, const Result<storage::JobRecord>& job);
   void SweepLeases(const std::stop_token& stop);
   void EndLeases();
   void TakeOrders();
   bool HasWork() const;  // precondition: mutex_ is held
-  void EndFailedDeliveries();
+  bool MayStillHold(const Assignment& assignment, const Error& trouble) const;
+  void TryLater(const std::shared_ptr<Worker>& worker);
   std::shared_ptr<Worker> Find(WorkerId id) const;
+  void Left();  // a worker is gone, and what it had is settled
 
   storage::Store& store_;
   EventFeed& feed_;
@@ -123,7 +144,8 @@ class Dispatcher {
   std::condition_variable_any changed_;
   std::map<WorkerId, std::shared_ptr<Worker>> workers_;
   WorkerId next_worker_ = 1;
-  std::vector<std::shared_ptr<Worker>> ends_waiting_;  // guarded by mutex_; gone ones, too
+  std::size_t at_work_ = 0;  // guarded by mutex_; workers that something is done or awaited for
+  std::vector<std::shared_ptr<Worker>> trying_later_;  // guarded by mutex_; gone ones, too
   bool later_ = false;  // guarded by mutex_; something is to be tried again in a moment
   std::unique_ptr<storage::Store::Subscription> store_watch_;
   std::jthread sweeper_;

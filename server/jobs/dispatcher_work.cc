@@ -25,6 +25,13 @@ bool IsTroubleOfTheStore(const Error& error) {
          error.code == ErrorCode::kCellResourceExhausted;
 }
 
+// What the worker told before it was lost.
+void PutBefore(const std::vector<storage::NewEvent>& events, storage::LossPolicy& policy) {
+  for (std::vector<storage::NewEvent>* list :
+       {&policy.requeued, &policy.ended, &policy.interrupted, &policy.cancelled})
+    list->insert(list->begin(), events.begin(), events.end());
+}
+
 bool SameLease(const storage::Lease& lease, const v1::WorkerLease& other) {
   return lease.job == other.job() && lease.attempt == other.attempt() &&
          lease.fence == other.fence();
@@ -58,13 +65,18 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
     if (worker->gone || draining_) return;
     worker->looking = true;
   }
-  const auto leased =
-      store_.AcquireJobs({.worker = worker->name,
-                          .server = server_,
-                          .kinds = worker->kinds,
-                          .pools = worker->pools,
-                          .duration = std::chrono::milliseconds(config_.workers_lease_ms),
-                          .events = {StateEvent(storage::JobState::kRunning)}});
+  store_.SendAcquire({.worker = worker->name,
+                      .server = server_,
+                      .kinds = worker->kinds,
+                      .pools = worker->pools,
+                      .duration = std::chrono::milliseconds(config_.workers_lease_ms),
+                      .events = {StateEvent(storage::JobState::kRunning)}},
+                     Then<std::vector<storage::LeasedJob>>(
+                         worker, [this, worker](const auto& leased) { Assigned(worker, leased); }));
+}
+
+void Dispatcher::Assigned(const std::shared_ptr<Worker>& worker,
+                          const Result<std::vector<storage::LeasedJob>>& leased) {
   const bool found = leased && !leased->empty();
   if (found) {
     worker->assignment.emplace();
@@ -78,7 +90,6 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
     if (found) {
       worker->idle = false;
       worker->job = worker->assignment->lease.job;
-      worker->delivery = worker->assignment->delivery;
     }
   }
   changed_.notify_all();
@@ -92,97 +103,115 @@ void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::Lea
   spdlog::debug("{} attempt {} goes to worker {}", JobName(job.lease.job), job.lease.attempt,
                 worker->name);
   if (const Status sent = SendAssignment(*worker, job); !sent) {
-    if (IsTroubleOfTheStore(sent.error())) return RestWithoutWork(*worker, sent.error());
+    if (IsTroubleOfTheStore(sent.error())) return RestWithoutWork(worker, sent.error());
     // The job itself cannot be worked on: it fails, and the worker is free for the next.
     return EndWithoutWork(worker, {.state = storage::JobState::kFailed,
                                    .code = sent.error().code,
                                    .detail = sent.error().detail});
   }
   // A worker that was told to stop before the job came to it drops the job and ends.
-  if (draining_) GiveBack(*worker);
+  if (draining_) GiveBack(worker);
 }
 
 void Dispatcher::EndWithoutWork(const std::shared_ptr<Worker>& worker,
                                 const storage::JobOutcome& how) {
   worker->assignment->begun = true;  // as far as anybody could
   const v1::Outcome outcome = ToProto(how);
-  worker->assignment->end =
-      storage::JobEnd{.outcome = OutcomeOf(outcome), .events = {EndedEvent(outcome)}};
+  worker->assignment->end = std::make_shared<const storage::JobEnd>(
+      storage::JobEnd{.outcome = OutcomeOf(outcome), .events = {EndedEvent(outcome)}});
   StoreEnd(worker);
-  PostLook(worker);
 }
 
 // The job is as good as before, and its attempt does not count.
-void Dispatcher::RestWithoutWork(Worker& worker, const Error& trouble) {
-  const storage::Lease lease = worker.assignment->lease;
+void Dispatcher::RestWithoutWork(const std::shared_ptr<Worker>& worker, const Error& trouble) {
+  const storage::Lease lease = worker->assignment->lease;
   spdlog::warn("{} goes back, its programs cannot be read: {}", JobName(lease.job),
                bridge::ErrorText(trouble));
   {
     // Before the store tells of a job that waits, or this worker would be given it again at once.
     const std::lock_guard lock(mutex_);
-    worker.rests = true;
+    worker->rests = true;
     later_ = true;
   }
   storage::LossPolicy policy = LossOf(StoppedOutcome(), {}, "its programs could not be read");
   policy.requeued = {StateEvent(storage::JobState::kQueued)};
-  (void)store_.HandBack(lease, policy);
-  EndAssignment(worker, false);
+  store_.SendHandBack(lease, std::move(policy),
+                      Then<storage::JobRecord>(
+                          worker, [this, worker](const auto&) { EndAssignment(*worker, false); }));
 }
 
 // A store that is away for a moment does not throw a finished run away: while the lease may be ours
 // the end is stored again and again. Then this attempt counts as lost, so that a full disk does not
 // leave the job without an owner.
 void Dispatcher::StoreEnd(const std::shared_ptr<Worker>& worker) {
-  Assignment& assignment = *worker->assignment;
-  const storage::Lease lease = assignment.lease;
+  const Assignment& assignment = *worker->assignment;
   TakeNoOrders(*worker);  // before anybody reads that it is over
-  const auto ended = store_.Finish(lease, *assignment.end);
+  store_.SendFinish(assignment.lease, assignment.end,
+                    Then<storage::JobRecord>(
+                        worker, [this, worker](const auto& ended) { EndStored(worker, ended); }));
+}
+
+void Dispatcher::EndStored(const std::shared_ptr<Worker>& worker,
+                           const Result<storage::JobRecord>& ended) {
+  const Assignment& assignment = *worker->assignment;
+  const storage::Lease lease = assignment.lease;
   if (ended) {
     const std::optional<ErrorCode> code = assignment.end->outcome.code;
     spdlog::info("{} {} {}", JobName(lease.job), v1::Job::State_Name(ToProto(ended->state)),
                  code ? CodeText(*code) : std::string());
-    return EndAssignment(*worker, true);
+    EndAssignment(*worker, true);
+    return Assign(worker);
   }
   spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker->name,
                bridge::ErrorText(ended.error()));
-  const auto lease_time = std::chrono::milliseconds(config_.workers_lease_ms);
-  if (IsTroubleOfTheStore(ended.error()) && clock_() - assignment.renewed_at < lease_time) {
-    const std::lock_guard lock(mutex_);
-    ends_waiting_.push_back(worker);
-    later_ = true;
-    return changed_.notify_all();
-  }
-  if (ended.error().code != ErrorCode::kCellLeaseLost) Lose(assignment);
+  if (MayStillHold(assignment, ended.error())) return TryLater(worker);
+  if (ended.error().code != ErrorCode::kCellLeaseLost) return Lose(worker);
   EndAssignment(*worker, false);
+  Assign(worker);
+}
+
+bool Dispatcher::MayStillHold(const Assignment& assignment, const Error& trouble) const {
+  return IsTroubleOfTheStore(trouble) &&
+         clock_() - assignment.renewed_at < std::chrono::milliseconds(config_.workers_lease_ms);
+}
+
+void Dispatcher::TryLater(const std::shared_ptr<Worker>& worker) {
+  const std::lock_guard lock(mutex_);
+  trying_later_.push_back(worker);
+  later_ = true;
+  changed_.notify_all();
 }
 
 // What the store did not take a moment ago.
 void Dispatcher::TryAgain() {
-  std::vector<std::shared_ptr<Worker>> ending;
+  std::vector<std::shared_ptr<Worker>> trying;
   std::vector<std::shared_ptr<Worker>> rested;
   {
     const std::lock_guard lock(mutex_);
-    ending.swap(ends_waiting_);
+    trying.swap(trying_later_);
     for (const auto& [id, worker] : workers_) {
       if (std::exchange(worker->rests, false)) rested.push_back(worker);
     }
   }
-  for (const auto& worker : ending) {
+  for (const auto& worker : trying) {
     Post(worker, [this, worker] {
-      if (worker->assignment && worker->assignment->end) StoreEnd(worker);
-      Assign(worker);
+      if (!worker->assignment) return Assign(worker);
+      worker->assignment->events_rest = false;
+      if (worker->assignment->end) StoreEnd(worker);
     });
   }
   for (const auto& worker : rested) PostLook(worker);
 }
 
-void Dispatcher::GiveBack(Worker& worker) {
-  const Assignment& assignment = *worker.assignment;
+void Dispatcher::GiveBack(const std::shared_ptr<Worker>& worker) {
+  const Assignment& assignment = *worker->assignment;
   storage::LossPolicy policy = LossOf(StoppedOutcome(), assignment.place, "its worker stops");
   policy.requeued = {StateEvent(storage::JobState::kQueued)};
-  (void)store_.HandBack(assignment.lease, policy);
-  worker.leaving = true;
-  EndAssignment(worker, false);
+  worker->leaving = true;
+  PutBefore(assignment.events, policy);
+  store_.SendHandBack(assignment.lease, std::move(policy),
+                      Then<storage::JobRecord>(
+                          worker, [this, worker](const auto&) { EndAssignment(*worker, false); }));
 }
 
 Status Dispatcher::SendAssignment(Worker& worker, const storage::LeasedJob& leased) {
@@ -208,23 +237,22 @@ void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& 
   switch (message.message_case()) {
     case v1::WorkRequest::kHeartbeat:
       if (!holds(message.heartbeat().lease())) break;
-      Heartbeat(*worker, message.heartbeat());
-      Assign(worker);  // the lease may have been lost
+      Heartbeat(worker, message.heartbeat());
       break;
     case v1::WorkRequest::kEvents:
-      if (holds(message.events().lease())) AppendEvents(*worker, message.events());
+      if (!holds(message.events().lease())) break;
+      for (const v1::JobEvent& event : message.events().events())
+        worker->assignment->events.push_back(ToRecord(event));
       break;
     case v1::WorkRequest::kArtifact:
       if (holds(message.artifact().lease())) Collect(*worker, *message.mutable_artifact());
       break;
     case v1::WorkRequest::kFinish:
-      if (!holds(message.finish().lease())) break;
-      Finish(worker, *message.mutable_finish());
-      Assign(worker);
+      if (holds(message.finish().lease())) Finish(worker, *message.mutable_finish());
       break;
     case v1::WorkRequest::kHandBack:
       // It gives back since it ends: others take the job.
-      if (holds(message.hand_back().lease())) GiveBack(*worker);
+      if (holds(message.hand_back().lease())) GiveBack(worker);
       break;
     case v1::WorkRequest::kHello:
     case v1::WorkRequest::MESSAGE_NOT_SET:
@@ -232,8 +260,9 @@ void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& 
   }
 }
 
-void Dispatcher::Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat) {
-  Assignment& assignment = *worker.assignment;
+void Dispatcher::Heartbeat(const std::shared_ptr<Worker>& worker,
+                           const v1::WorkerHeartbeat& heartbeat) {
+  Assignment& assignment = *worker->assignment;
   if (heartbeat.has_progress()) {
     v1::JobProgress progress = heartbeat.progress();
     assignment.place = progress.place();
@@ -245,39 +274,58 @@ void Dispatcher::Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat)
   const auto now = clock_();
   if (now - assignment.renewed_at < third) return;
   assignment.renewed_at = now;
-  const auto renewed =
-      store_.Renew(assignment.lease, std::chrono::milliseconds(config_.workers_lease_ms));
-  if (renewed) {
-    // Another server may have been asked to cancel it.
-    if (renewed->cancel_requested) {
-      worker.line->Send(ControlMessage(assignment.lease, {.kind = v1::WorkerControl::KIND_CANCEL}));
-    }
-  } else if (renewed.error().code == ErrorCode::kCellLeaseLost) {
-    spdlog::warn("worker {} lost its lease of {}", worker.name, JobName(assignment.lease.job));
-    EndAssignment(worker, false);
-  }
+  store_.SendRenew(
+      assignment.lease, std::chrono::milliseconds(config_.workers_lease_ms),
+      Then<storage::JobRecord>(worker, [this, worker](const auto& job) { Renewed(worker, job); }));
 }
 
-void Dispatcher::AppendEvents(Worker& worker, const v1::WorkerEvents& events) {
-  std::vector<storage::NewEvent> records;
-  records.reserve(static_cast<std::size_t>(events.events_size()));
-  for (const v1::JobEvent& event : events.events()) records.push_back(ToRecord(event));
-  const auto count = static_cast<std::int64_t>(records.size());
-  const storage::Lease lease = worker.assignment->lease;
-  store_.Append(
-      lease, std::move(records),
-      [line = worker.line, lease, count,
-       delivery = worker.assignment->delivery](const Result<std::int64_t>& written) {
-        if (!written) {
-          spdlog::warn("events of {}: {}", JobName(lease.job), bridge::ErrorText(written.error()));
-          delivery->failed = true;
-          return;
-        }
-        v1::WorkResponse message;
-        *message.mutable_events_stored()->mutable_lease() = ToProto(lease);
-        message.mutable_events_stored()->set_count(delivery->stored.fetch_add(count) + count);
-        line->Send(std::move(message));
-      });
+void Dispatcher::Renewed(const std::shared_ptr<Worker>& worker,
+                         const Result<storage::JobRecord>& job) {
+  const storage::Lease& lease = worker->assignment->lease;
+  if (job) {
+    // Another server may have been asked to cancel it.
+    if (job->cancel_requested)
+      worker->line->Send(ControlMessage(lease, {.kind = v1::WorkerControl::KIND_CANCEL}));
+    return;
+  }
+  if (job.error().code != ErrorCode::kCellLeaseLost) return;
+  spdlog::warn("worker {} lost its lease of {}", worker->name, JobName(lease.job));
+  EndAssignment(*worker, false);
+  Assign(worker);
+}
+
+// A worker waits until its events are durable. A store that is away for a moment gets them again,
+// all in their order; when they cannot be made durable the worker is told to forget the job, or it
+// would wait for ever.
+void Dispatcher::StoreEvents(const std::shared_ptr<Worker>& worker) {
+  const Assignment& assignment = *worker->assignment;
+  const std::size_t count = assignment.events.size();
+  store_.Append(assignment.lease, assignment.events,
+                Then<std::int64_t>(worker, [this, worker, count](const auto& written) {
+                  EventsStored(worker, count, written);
+                }));
+}
+
+void Dispatcher::EventsStored(const std::shared_ptr<Worker>& worker, std::size_t count,
+                              const Result<std::int64_t>& written) {
+  Assignment& assignment = *worker->assignment;
+  if (!written) {
+    spdlog::warn("events of {}: {}", JobName(assignment.lease.job),
+                 bridge::ErrorText(written.error()));
+    if (!MayStillHold(assignment, written.error())) {
+      assignment.events.clear();
+      return Lose(worker);
+    }
+    assignment.events_rest = true;
+    return TryLater(worker);
+  }
+  assignment.events.erase(assignment.events.begin(),
+                          assignment.events.begin() + static_cast<std::ptrdiff_t>(count));
+  assignment.events_stored += static_cast<std::int64_t>(count);
+  v1::WorkResponse message;
+  *message.mutable_events_stored()->mutable_lease() = ToProto(assignment.lease);
+  message.mutable_events_stored()->set_count(assignment.events_stored);
+  worker->line->Send(std::move(message));
 }
 
 void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
@@ -307,14 +355,15 @@ void Dispatcher::Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish&
         .state = storage::JobState::kFailed, .code = ErrorCode::kCellOutputBudget, .detail = {}});
   }
   storage::JobEnd end{.outcome = OutcomeOf(finish.outcome()),
-                      .events = {EndedEvent(finish.outcome())}};
+                      .events = std::exchange(assignment.events, {})};
+  end.events.push_back(EndedEvent(finish.outcome()));
   for (auto& [name, artifact] : assignment.artifacts) end.artifacts.push_back(std::move(artifact));
   for (v1::LinkedExecutable& made : *finish.mutable_executables()) {
     if (made.object_revision() == 0 || made.content().size() > storage::kProgramBytesMax) continue;
     end.executables.push_back(
         {made.slot(), made.object_revision(), std::move(*made.mutable_content())});
   }
-  assignment.end = std::move(end);
+  assignment.end = std::make_shared<const storage::JobEnd>(std::move(end));
   StoreEnd(worker);
 }
 
@@ -329,7 +378,6 @@ void Dispatcher::EndAssignment(Worker& worker, bool stored) {
   worker.line->Send(std::move(message));
   {
     const std::lock_guard lock(mutex_);
-    worker.delivery.reset();
     worker.idle = true;
   }
   changed_.notify_all();
@@ -342,40 +390,34 @@ void Dispatcher::TakeNoOrders(Worker& worker) {
   worker.early_orders.clear();
 }
 
-void Dispatcher::Lose(const Assignment& assignment) {
-  const storage::Lease& lease = assignment.lease;
-  const std::string attempt = "attempt " + std::to_string(lease.attempt);
+void Dispatcher::Lose(const std::shared_ptr<Worker>& worker) {
+  const Assignment& assignment = *worker->assignment;
+  const std::string attempt = "attempt " + std::to_string(assignment.lease.attempt);
   storage::LossPolicy policy =
       LossOf(WorkerDiedOutcome(), assignment.place,
              assignment.begun ? "the worker of " + attempt + " died"
                               : "the worker of " + attempt + " died before it began");
   policy.counts = assignment.begun;
-  const auto changed = store_.Abandon(lease, policy);
-  if (!changed && changed.error().code != ErrorCode::kCellLeaseLost) {
-    spdlog::error("{} could not be given back: {}", JobName(lease.job),
-                  bridge::ErrorText(changed.error()));
-  }
+  PutBefore(assignment.events, policy);
+  store_.SendAbandon(
+      assignment.lease, std::move(policy),
+      Then<storage::JobRecord>(worker, [this, worker](const auto& job) { Lost(worker, job); }));
 }
 
-// A worker waits until its events are durable. When they cannot be made so it is told to forget the
-// job, or it would wait for ever.
-void Dispatcher::EndFailedDeliveries() {
-  std::vector<std::pair<std::shared_ptr<Worker>, std::shared_ptr<Delivery>>> failed;
+void Dispatcher::Lost(const std::shared_ptr<Worker>& worker,
+                      const Result<storage::JobRecord>& job) {
+  if (!job && job.error().code != ErrorCode::kCellLeaseLost) {
+    spdlog::error("{} could not be given back: {}", JobName(worker->assignment->lease.job),
+                  bridge::ErrorText(job.error()));
+  }
+  EndAssignment(*worker, false);
+  bool gone = false;
   {
     const std::lock_guard lock(mutex_);
-    for (const auto& [id, worker] : workers_) {
-      if (worker->delivery != nullptr && worker->delivery->failed)
-        failed.emplace_back(worker, worker->delivery);
-    }
+    gone = worker->gone;
   }
-  for (auto& [worker, delivery] : failed) {
-    Post(worker, [this, worker = worker, delivery = delivery] {
-      if (!worker->assignment || worker->assignment->delivery != delivery) return;
-      Lose(*worker->assignment);
-      EndAssignment(*worker, false);
-      Assign(worker);
-    });
-  }
+  if (gone) return Left();
+  Assign(worker);
 }
 
 }  // namespace rmlcell::server

@@ -16,12 +16,6 @@
 // What the dispatcher knows of a worker. Only its own sources include this.
 namespace rmlcell::server {
 
-// What became of the events of an assignment; told by threads of the store, which may outlive it.
-struct Dispatcher::Delivery {
-  std::atomic<std::int64_t> stored = 0;
-  std::atomic<bool> failed = false;
-};
-
 // What a worker is at. Touched only by work posted for this worker, which runs in order.
 struct Dispatcher::Assignment {
   storage::Lease lease;
@@ -29,10 +23,14 @@ struct Dispatcher::Assignment {
   std::map<std::string, storage::NewArtifact> artifacts;
   std::int64_t collected_bytes = 0;
   bool over_budget = false;
-  std::optional<storage::JobEnd> end;  // not stored yet
-  bool begun = false;                  // the worker has said so
-  v1::SourcePlace place;               // where the worker was, as it last said
-  std::shared_ptr<Delivery> delivery = std::make_shared<Delivery>();
+  std::shared_ptr<const storage::JobEnd> end;  // not stored yet
+  bool begun = false;                          // the worker has said so
+  v1::SourcePlace place;                       // where the worker was, as it last said
+  // Events that the store does not have yet, and how many it has. They go when nothing else is to
+  // be done for the worker, and with the end of the job at the latest.
+  std::vector<storage::NewEvent> events;
+  std::int64_t events_stored = 0;
+  bool events_rest = false;  // the store did not take them a moment ago
 };
 
 struct EarlyOrder {
@@ -51,7 +49,9 @@ struct Dispatcher::Worker {
 
   // Guarded by Dispatcher::mutex_.
   std::deque<std::function<void()>> queue;
-  bool working = false;
+  bool working = false;  // somebody does, or awaits, what is in the queue
+  bool awaits = false;   // an answer of the store, which comes before the queue
+  bool parked = false;   // nobody is at it until the answer comes
   bool gone = false;
   bool idle = true;
   bool rests = false;                    // the store gave it no programs a moment ago
@@ -60,8 +60,17 @@ struct Dispatcher::Worker {
   std::int64_t job = 0;                  // 0: none; for orders
   std::optional<storage::Lease> sent;    // of the same job, from when the assignment has gone out
   std::vector<EarlyOrder> early_orders;  // for a job that has not gone out; while it looks, any job
-  std::shared_ptr<Delivery> delivery;    // of the same job, for the sweeper
 };
+
+template <class T, class Next>
+storage::Done<T> Dispatcher::Then(const std::shared_ptr<Worker>& worker, Next next) {
+  Await(worker);
+  return [this, worker, next = std::move(next)](Result<T> answer) {
+    // A function of the standard library is copied, and an answer may be large.
+    auto shared = std::make_shared<Result<T>>(std::move(answer));
+    GoOn(worker, [next, shared] { next(*shared); });
+  };
+}
 
 v1::WorkerLease ToProto(const storage::Lease& lease);
 storage::JobOutcome CancelledOutcome();

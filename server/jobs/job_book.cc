@@ -8,7 +8,7 @@
 #include "engine/core/units.h"
 #include "engine/families/families.h"
 #include "proto/bridge/encoding.h"
-#include "proto/bridge/files.h"
+#include "proto/bridge/inputs.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
 #include "server/base/config.h"
@@ -27,6 +27,7 @@ constexpr PageSizes kJobPages{.fallback = 50, .max = 1000};
 constexpr std::size_t kRequestIdMax = 64;
 constexpr int kAwaitedJobsMax = 100;
 constexpr int kChoicePage = 1000;
+constexpr int kBreakpointsMax = 1000;
 constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as possible
 
 std::string_view KindName(v1::JobKind kind) {
@@ -46,11 +47,6 @@ std::string_view KindName(v1::JobKind kind) {
 std::string_view FieldOfLater(const v1::Job& job) {
   if (job.has_run()) return "run";
   if (!job.continues().empty()) return "continues";
-  if (job.simulation().breakpoints_size() > 1) return "simulation.breakpoints beyond the first";
-  for (const v1::Breakpoint& breakpoint : job.simulation().breakpoints()) {
-    if (!breakpoint.condition().empty()) return "simulation.breakpoints.condition";
-    if (breakpoint.passes() != 0) return "simulation.breakpoints.passes";
-  }
   return {};
 }
 
@@ -135,11 +131,18 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
     return InvalidArgument(
         "job.simulation.mode is MANUAL, in which no program runs: use REMOTE, CYCLE, SINGLE or REPEAT");
   }
+  if (options.breakpoints_size() > kBreakpointsMax)
+    return InvalidArgument("job.simulation.breakpoints: at most 1,000");
   for (const v1::Breakpoint& breakpoint : options.breakpoints()) {
     if (const Status valid =
             CheckStepPlace(breakpoint.step(), "job.simulation.breakpoints.step", family);
         !valid)
       return valid.error();
+    if (breakpoint.passes() < 0)
+      return InvalidArgument("job.simulation.breakpoints.passes is below 0");
+    if (const Status valid = family.CheckBreakpoint(bridge::FromProto(breakpoint, kSlotMin));
+        !valid)
+      return InvalidArgument("job.simulation.breakpoints: " + valid.error().detail);
   }
   if (options.has_simul()) {
     if (const Status valid = CheckStepPlace(options.simul(), "job.simulation.simul", family);
@@ -147,17 +150,8 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
       return valid.error();
   }
   for (const v1::ScriptedInput& input : options.inputs()) {
-    if (input.virtual_time_ns() < 0)
-      return InvalidArgument("job.simulation.inputs: virtual_time_ns must be 0 or later");
-    if (input.kind() == v1::ScriptedInput::KIND_UNSPECIFIED ||
-        !v1::ScriptedInput::Kind_IsValid(input.kind())) {
-      return InvalidArgument("job.simulation.inputs: kind is not given");
-    }
-    if (input.index() < 0 || input.index() > 99)
-      return InvalidArgument("job.simulation.inputs: index is 0 to 99");
-    if (const Status valid = bridge::CheckInputValue(input, override_max); !valid) {
+    if (const auto valid = bridge::FromProto(input, override_max); !valid)
       return InvalidArgument("job.simulation.inputs: " + valid.error().detail);
-    }
   }
   for (const v1::SlotProgram& program : options.programs()) {
     if (const Status slot = CheckSlot(family, program.slot(), "job.simulation.programs.slot");
@@ -189,6 +183,16 @@ std::string RequestHash(const v1::SubmitJobRequest& request) {
   return bridge::Sha256Hex(bridge::StableBytes(request.job()));
 }
 
+// Error: a slot that is none, a file name of another family.
+Status CheckBrought(const v1::Job& job, const std::string& file_name,
+                    const machine::MachineFamily& family) {
+  if (job.inline_slot() != 0) {
+    if (const Status slot = CheckSlot(family, job.inline_slot(), "job.inline_slot"); !slot)
+      return slot.error();
+  }
+  return CheckFileFamily(file_name, family);
+}
+
 }  // namespace
 
 std::string AttachmentName(int slot) { return "program-" + std::to_string(slot); }
@@ -200,17 +204,24 @@ Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& 
       if (const Status fits = CheckSize(job.inline_program().content(), "job.inline_program");
           !fits)
         return fits.error();
-      if (job.inline_slot() != 0) {
-        if (const Status slot = CheckSlot(family, job.inline_slot(), "job.inline_slot"); !slot)
-          return slot.error();
-      }
-      if (const Status fits = CheckFileFamily(job.inline_program().file_name(), family); !fits)
-        return fits.error();
+      if (const Status good = CheckBrought(job, job.inline_program().file_name(), family); !good)
+        return good.error();
       made.attachments.push_back({std::string(kMainAttachment),
                                   "application/octet-stream",
                                   job.inline_program().content(),
                                   {}});
       specification.mutable_inline_program()->clear_content();
+      return {};
+    }
+    case v1::Job::kUploadedProgram: {
+      const v1::UploadedProgram& uploaded = job.uploaded_program();
+      std::optional<std::string> sha256 = bridge::ReadSha256(uploaded.sha256());
+      if (!sha256)
+        return InvalidArgument("job.uploaded_program.sha256 is not 64 hexadecimal digits");
+      if (const Status good = CheckBrought(job, uploaded.file_name(), family); !good)
+        return good.error();
+      made.attachments.push_back(
+          {std::string(kMainAttachment), "application/octet-stream", {}, *std::move(sha256)});
       return {};
     }
     case v1::Job::kProgram: {
@@ -233,7 +244,7 @@ Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& 
     case v1::Job::PROGRAM_SOURCE_NOT_SET:
       break;
   }
-  return InvalidArgument("job.program or job.inline_program is missing");
+  return InvalidArgument("job.program, job.inline_program or job.uploaded_program is missing");
 }
 
 Status JobBook::CheckSize(const std::string& content, const std::string& what) const {
@@ -255,9 +266,9 @@ Status JobBook::AttachFurther(const v1::Job& job, const machine::MachineFamily& 
     if (const Status fits = CheckFileFamily(program.program().file_name(), family); !fits)
       return fits.error();
     if (!further.insert(program.slot()).second) return InvalidArgument(what + " stands twice");
-    if (job.has_inline_program() && program.slot() == InlineSlotOf(job)) {
+    if (!job.has_program() && program.slot() == InlineSlotOf(job)) {
       return InvalidArgument(
-          what + ": the slot of job.inline_program (inline_slot, 1 when it is not given)");
+          what + ": the slot of the job's own program (inline_slot, 1 when it is not given)");
     }
     made.attachments.push_back({AttachmentName(program.slot()),
                                 "application/octet-stream",
@@ -549,6 +560,13 @@ Result<std::string> JobBook::ReadArtifact(std::int64_t job, std::string_view nam
   const Result<storage::ArtifactRecord> artifact = FindArtifact(job, name);
   if (!artifact) return artifact.error();
   return store_.ReadBlob(artifact->sha256);
+}
+
+Result<std::unique_ptr<storage::BlobReader>> JobBook::OpenArtifact(std::int64_t job,
+                                                                   std::string_view name) {
+  const Result<storage::ArtifactRecord> artifact = FindArtifact(job, name);
+  if (!artifact) return artifact.error();
+  return store_.OpenBlob(artifact->sha256);
 }
 
 Result<std::vector<v1::Job>> JobBook::Newest(storage::JobQuery query) {

@@ -52,6 +52,8 @@ class JobBook {
   // A product, and what is known of it. CellNotFound with what there is.
   Result<storage::ArtifactRecord> FindArtifact(std::int64_t job, std::string_view name);
   Result<std::string> ReadArtifact(std::int64_t job, std::string_view name);
+  Result<std::unique_ptr<storage::BlobReader>> OpenArtifact(std::int64_t job,
+                                                            std::string_view name);
 
   // Unfinished jobs and the newest finished ones, newest first, for a watcher that begins; of this
   // machine, kind and caller.

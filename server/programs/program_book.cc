@@ -418,6 +418,32 @@ Result<machine::Translation> ProgramBook::Translate(const std::string& family_id
   return TranslateFor(*subject->family, *subject->parameters, program, advice);
 }
 
+Result<ProgramBook::Opened> ProgramBook::Open(std::string_view name) {
+  const Result<ProgramPlace> place = FindProgramPlace(store_, name);
+  if (!place) return place.error();
+  const machine::MachineFamily& family = *place->family;
+  if (place->executable)
+    return Error{family.info().no_slot, "an executable is looked at by its object", {}};
+  Result<storage::MachineMemory> stored =
+      store_.GetMachineMemory(place->machine.id, CheckedByRunning);
+  if (!stored) return stored.error();
+  auto program = std::ranges::find(stored->programs, place->slot, &storage::ProgramRecord::slot);
+  if (program == stored->programs.end()) {
+    Result<storage::ProgramRecord> alone = store_.GetProgram(place->machine.id, place->slot);
+    if (!alone && alone.error().code != ErrorCode::kCellNotFound) return alone.error();
+    if (!alone) return EmptySlot(family, name);
+    program = stored->programs.insert(program, *std::move(alone));
+  }
+  Opened opened{.memory = {.family = &family,
+                           .profile = stored->machine.profile,
+                           .parameters = stored->machine.parameters},
+                .slot = place->slot,
+                .etag = std::to_string(program->revision)};
+  if (const Status added = AddMemory(*std::move(stored), opened.memory); !added)
+    return added.error();
+  return opened;
+}
+
 Result<simulation::CheckedProgram> ProgramBook::Check(const std::string& family_id,
                                                       const std::string& machine_name,
                                                       const v1::ProgramText& program, bool advice) {

@@ -62,6 +62,15 @@ class ProgramBook {
   Result<simulation::CheckedProgram> Check(const std::string& family, const std::string& machine,
                                            const v1::ProgramText& program, bool advice);
 
+  // A stored program with all that it needs to run on its machine as that stands. Errors:
+  // CellUnknownMachine, FamilyInfo::no_slot, empty_slot.
+  struct Opened {
+    simulation::ProgramMemory memory{};
+    int slot = 0;
+    std::string etag{};  // of the object
+  };
+  Result<Opened> Open(std::string_view name);
+
   // Of a whole program. Error: CellTooLarge, with the limit of the configuration.
   Status CheckSize(std::int64_t bytes) const;
 

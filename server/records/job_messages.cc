@@ -112,6 +112,14 @@ int InlineSlotOf(const v1::Job& job) {
   return job.inline_slot() > 0 ? job.inline_slot() : kSlotMin;
 }
 
+std::optional<BroughtProgram> ProgramBrought(const v1::Job& job) {
+  if (job.has_inline_program())
+    return BroughtProgram{job.inline_program().file_name(), job.inline_program().form()};
+  if (job.has_uploaded_program())
+    return BroughtProgram{job.uploaded_program().file_name(), job.uploaded_program().form()};
+  return std::nullopt;
+}
+
 v1::Job ToProto(const storage::JobRecord& record) {
   v1::Job job;
   // A specification that cannot be read leaves the rest of the job visible.

@@ -26,6 +26,14 @@ v1::WaitReason ToProto(storage::WaitReason reason);
 // The slot that an inline program stands in for its job.
 int InlineSlotOf(const v1::Job& job);
 
+// A program that a job brought with it, in the message or by its bytes' name: what it is called and
+// what its bytes are. Nothing: a stored one.
+struct BroughtProgram {
+  std::string file_name{};
+  v1::ProgramForm form = v1::PROGRAM_FORM_UNSPECIFIED;
+};
+std::optional<BroughtProgram> ProgramBrought(const v1::Job& job);
+
 // The job without its artifacts.
 v1::Job ToProto(const storage::JobRecord& record);
 v1::Artifact ToProto(const storage::ArtifactRecord& record);

@@ -19,6 +19,7 @@
 #include "server/jobs/job_filter.h"
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_result.h"
+#include "server/records/job_messages.h"
 
 namespace rmlcell::server {
 namespace {
@@ -393,12 +394,12 @@ void JobResults::ComparePrograms(const Compared& before, const Compared& after,
     if (!bytes) return bytes.error();
     v1::ProgramText& text = *side.mutable_text();
     text.set_content(*std::move(bytes));
-    const bool brought = one.job.has_inline_program();
+    const std::optional<BroughtProgram> brought = ProgramBrought(one.job);
     const machine::MachineFamily* family = families::FindFamily(one.report.family());
     const bool streams = family == nullptr || family->tools() == nullptr;
     if (brought) {
-      text.set_file_name(one.job.inline_program().file_name());
-      text.set_form(one.job.inline_program().form());
+      text.set_file_name(brought->file_name);
+      text.set_form(brought->form);
     } else {
       const std::string slot = one.job.program().substr(one.job.program().rfind('/') + 1);
       text.set_file_name(slot +

@@ -1,6 +1,5 @@
 #include "server/services/job_service.h"
 
-#include "proto/bridge/files.h"
 #include "server/base/names.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher.h"
@@ -263,9 +262,8 @@ grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobTo
         LaterStatus(needs_, *context, "JobService/StreamJobToolpath", request));
   }
   return OpenStream<v1::StreamJobToolpathResponse>(
-      needs_, *context, *request, "JobService/StreamJobToolpath", [&](const Caller&) {
-        return MakeToolpathStream(Streams(), request->name(), request->level());
-      });
+      needs_, *context, *request, "JobService/StreamJobToolpath",
+      [&](const Caller&) { return MakeToolpathStream(Streams(), *request); });
 }
 
 grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext* context,

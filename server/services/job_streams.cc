@@ -5,13 +5,13 @@
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
-#include "engine/simulation/toolpath/toolpath_level.h"
 #include "engine/simulation/toolpath/toolpath_recorder.h"
-#include "proto/bridge/framing.h"
 #include "server/base/names.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/job_book.h"
 #include "server/records/job_messages.h"
+#include "server/records/toolpath_levels.h"
+#include "server/services/frames_stream.h"
 
 namespace rmlcell::server {
 namespace {
@@ -119,114 +119,61 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
   std::unique_ptr<EventFeed::Subscription> subscription_;
 };
 
-// Products that are a series of frames (proto/bridge/framing.h), some frames a message.
+// A product of a job that is a series of frames.
 template <class Response>
-class FramesStream : public PullStream<Response> {
+class JobFrames : public FramesStream<Response> {
  public:
-  using typename PullStream<Response>::Next;
-  FramesStream(const JobStreamNeeds& needs, std::string job_name, std::string artifact)
-      : PullStream<Response>(needs.executor, needs.open),
-        needs_(needs),
+  JobFrames(const JobStreamNeeds& needs, std::string job_name, std::string artifact)
+      : FramesStream<Response>(needs.executor, needs.open),
+        book_(needs.book),
         job_name_(std::move(job_name)),
         artifact_(std::move(artifact)) {}
 
  protected:
-  // Adds one frame; false: the message is full with it.
-  virtual bool Add(std::string_view frame, Response& message) = 0;
-
-  // What goes before the first frame, of so many bytes; false: nothing.
-  virtual bool AddHeader(std::int64_t /*bytes*/, Response& /*message*/) { return false; }
-
-  // All frames, as they are stored.
-  virtual Result<std::string> Read(std::int64_t job) {
-    return needs_.book.ReadArtifact(job, artifact_);
+  Result<std::string> Read() override {
+    const Result<std::int64_t> job = ParseJobName(job_name_);
+    return job ? book_.ReadArtifact(*job, artifact_) : Result<std::string>(job.error());
   }
 
   const std::string& job_name() const { return job_name_; }
-  JobBook& book() const { return needs_.book; }
+  JobBook& book() const { return book_; }
 
  private:
-  Next Make(Response& message, grpc::Status& status) override {
-    if (!begun_) {
-      begun_ = true;
-      const Result<std::int64_t> job = ParseJobName(job_name_);
-      Result<std::string> bytes = job ? Read(*job) : Result<std::string>(job.error());
-      if (!bytes) {
-        status = ToGrpcStatus(bytes.error());
-        return Next::kEnd;
-      }
-      bytes_ = std::move(*bytes);
-      rest_ = bytes_;
-      if (AddHeader(static_cast<std::int64_t>(bytes_.size()), message)) return Next::kMessage;
-    }
-    bool any = false;
-    while (const auto frame = bridge::TakeFrame(rest_)) {
-      any = true;
-      if (!Add(*frame, message)) break;
-    }
-    return any ? Next::kMessage : Next::kEnd;
-  }
-
-  JobStreamNeeds needs_;
+  JobBook& book_;
   std::string job_name_;
   std::string artifact_;
-  bool begun_ = false;
-  std::string bytes_;
-  std::string_view rest_;
 };
 
-// A toolpath that is coarser than the stored one by some levels of detail.
-std::string AtLevel(std::string_view frames, double stored_mm, int level) {
-  std::string coarse;
-  simulation::ToolpathLevel made(simulation::LevelTolerance(stored_mm, level) - stored_mm,
-                                 [&](std::string_view block) {
-                                   bridge::AddFrame(block, coarse);
-                                   return true;
-                                 });
-  while (const auto frame = bridge::TakeFrame(frames)) {
-    const Result<simulation::ToolpathBlock> block = simulation::DecodeToolpathBlock(*frame);
-    if (!block) break;  // ends where the stored one does
-    made.Take(*block);
-  }
-  made.Finish();
-  return coarse;
-}
-
-class ToolpathStream final : public FramesStream<v1::StreamJobToolpathResponse> {
+class ToolpathStream final : public JobFrames<v1::StreamJobToolpathResponse> {
  public:
-  ToolpathStream(const JobStreamNeeds& needs, std::string job_name, int level)
-      : FramesStream(needs, std::move(job_name), "toolpath"), level_(level) {}
+  ToolpathStream(const JobStreamNeeds& needs, const v1::StreamJobToolpathRequest& request)
+      : JobFrames(needs, request.name(), "toolpath"), request_(request) {}
 
  private:
-  Result<std::string> Read(std::int64_t job) override {
-    if (level_ < 0 || level_ > simulation::kToolpathLevelMax) {
-      return InvalidArgument("level is " + std::to_string(level_) + ", allowed are 0 to " +
-                             std::to_string(simulation::kToolpathLevelMax));
-    }
-    Result<std::string> stored = FramesStream::Read(job);
+  Result<std::string> Read() override {
+    if (const Status level = CheckToolpathLevel(request_.level()); !level) return level.error();
+    Result<std::string> stored = JobFrames::Read();
     if (!stored) return stored;
     const Result<v1::Job> made_by = book().Get(job_name());
     if (!made_by) return made_by.error();
     const double asked = made_by->simulation().toolpath_tolerance_mm();
     const double used = asked > 0.0 ? asked : simulation::ToolpathOptions().tolerance_mm;
-    tolerance_mm_ = std::clamp(used, simulation::kToolpathToleranceMin_mm,
-                               simulation::kToolpathToleranceMax_mm);  // as the recorder does
-    const Result<std::string> report = book().ReadArtifact(job, "report");
-    if (report) report_.ParseFromString(*report);
-    return level_ == 0 ? stored : AtLevel(*stored, tolerance_mm_, level_);
+    stored_mm_ = std::clamp(used, simulation::kToolpathToleranceMin_mm,
+                            simulation::kToolpathToleranceMax_mm);  // as the recorder does
+    v1::RunReport report;
+    const Result<std::string> bytes = book().ReadArtifact(*ParseJobName(job_name()), "report");
+    if (bytes) report.ParseFromString(*bytes);
+    header_.set_points(report.toolpath().records());
+    header_.set_complete(report.toolpath().complete());
+    if (report.has_tip_box()) *header_.mutable_tip_box() = report.tip_box();
+    header_.set_duration_ns(FromSeconds(report.total().times().cycle_s()).count());
+    if (request_.with_levels()) AddLevels(*stored, stored_mm_, header_);
+    return request_.level() == 0 ? stored : ToolpathAtLevel(*stored, stored_mm_, request_.level());
   }
 
-  bool AddHeader(std::int64_t bytes, v1::StreamJobToolpathResponse& message) override {
-    v1::ToolpathHeader& header = *message.mutable_header();
-    header.set_level(level_);
-    header.set_level_max(simulation::kToolpathLevelMax);
-    header.set_tolerance_mm(simulation::LevelTolerance(tolerance_mm_, level_));
-    header.set_bytes(bytes);
-    header.set_points(report_.toolpath().records());
-    header.set_complete(report_.toolpath().complete());
-    if (report_.has_tip_box()) *header.mutable_tip_box() = report_.tip_box();
-    header.set_duration_ns(FromSeconds(report_.total().times().cycle_s()).count());
-    report_.Clear();
+  bool AddHeader(std::string_view frames, v1::StreamJobToolpathResponse& message) override {
+    SetLevel(stored_mm_, request_.level(), frames.size(), header_);
+    *message.mutable_header() = std::move(header_);
     return true;
   }
 
@@ -235,13 +182,13 @@ class ToolpathStream final : public FramesStream<v1::StreamJobToolpathResponse> 
     return false;
   }
 
-  int level_;
-  double tolerance_mm_ = 0.0;
-  v1::RunReport report_;  // until the header has gone out
+  const v1::StreamJobToolpathRequest request_;
+  double stored_mm_ = 0.0;
+  v1::ToolpathHeader header_;  // until it has gone out
 };
 
-class TraceStream final : public FramesStream<v1::StreamJobTraceResponse> {
-  using FramesStream::FramesStream;
+class TraceStream final : public JobFrames<v1::StreamJobTraceResponse> {
+  using JobFrames::JobFrames;
   static constexpr int kRecordsPerMessage = 500;
   bool Add(std::string_view frame, v1::StreamJobTraceResponse& message) override {
     message.add_records()->ParseFromArray(frame.data(), static_cast<int>(frame.size()));
@@ -256,33 +203,32 @@ class ArtifactStream final : public PullStream<v1::StreamJobArtifactResponse> {
       : PullStream(needs.executor, needs.open), book_(needs.book), request_(request) {}
 
  private:
-  static constexpr std::size_t kChunkBytes = 1 << 20;
-
   Next Make(v1::StreamJobArtifactResponse& message, grpc::Status& status) override {
-    if (!begun_) {
-      begun_ = true;
-      const Result<std::int64_t> job = ParseJobName(request_.name());
-      Result<std::string> bytes = !job ? Result<std::string>(job.error())
-                                  : request_.artifact().empty()
-                                      ? InvalidArgument("artifact is missing: its name")
-                                      : book_.ReadArtifact(*job, request_.artifact());
-      if (!bytes) {
-        status = ToGrpcStatus(bytes.error());
+    if (reader_ == nullptr) {
+      Result<std::unique_ptr<storage::BlobReader>> opened = Open();
+      if (!opened) {
+        status = ToGrpcStatus(opened.error());
         return Next::kEnd;
       }
-      bytes_ = *std::move(bytes);
+      reader_ = *std::move(opened);
     }
-    if (sent_ == bytes_.size()) return Next::kEnd;
-    message.set_chunk(bytes_.substr(sent_, kChunkBytes));
-    sent_ += message.chunk().size();
+    Result<std::string> chunk = reader_->Next();
+    if (!chunk) status = ToGrpcStatus(chunk.error());
+    if (!chunk || chunk->empty()) return Next::kEnd;
+    message.set_chunk(*std::move(chunk));
     return Next::kMessage;
+  }
+
+  Result<std::unique_ptr<storage::BlobReader>> Open() {
+    const Result<std::int64_t> job = ParseJobName(request_.name());
+    if (!job) return job.error();
+    if (request_.artifact().empty()) return InvalidArgument("artifact is missing: its name");
+    return book_.OpenArtifact(*job, request_.artifact());
   }
 
   JobBook& book_;
   v1::StreamJobArtifactRequest request_;
-  bool begun_ = false;
-  std::string bytes_;
-  std::size_t sent_ = 0;
+  std::unique_ptr<storage::BlobReader> reader_;
 };
 
 }  // namespace
@@ -293,8 +239,8 @@ std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamNe
 }
 
 std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
-    const JobStreamNeeds& needs, const std::string& job_name, int level) {
-  return std::make_shared<ToolpathStream>(needs, job_name, level);
+    const JobStreamNeeds& needs, const v1::StreamJobToolpathRequest& request) {
+  return std::make_shared<ToolpathStream>(needs, request);
 }
 
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(

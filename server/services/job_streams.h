@@ -23,7 +23,7 @@ struct JobStreamNeeds {
 std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamNeeds& needs,
                                                                const v1::WatchJobRequest& request);
 std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
-    const JobStreamNeeds& needs, const std::string& job_name, int level);
+    const JobStreamNeeds& needs, const v1::StreamJobToolpathRequest& request);
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(
     const JobStreamNeeds& needs, const std::string& job_name);
 std::shared_ptr<PullStream<v1::StreamJobArtifactResponse>> MakeArtifactStream(

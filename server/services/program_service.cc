@@ -4,10 +4,13 @@
 
 #include "proto/bridge/findings.h"
 #include "proto/bridge/header_date.h"
+#include "server/programs/content_upload.h"
 #include "server/programs/language_tools.h"
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
+#include "server/programs/program_views.h"
 #include "server/programs/text_tools.h"
+#include "server/services/frames_stream.h"
 #include "server/services/open_stream.h"
 #include "server/services/program_upload.h"
 #include "server/services/pull_stream.h"
@@ -81,6 +84,79 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
   bool finished_ = false;
 };
 
+// What is sent for SubmitJob: each chunk goes to the store before the next one is read.
+class ContentReceiver final : public grpc::ServerReadReactor<v1::UploadContentRequest> {
+ public:
+  ContentReceiver(const CallNeeds& needs, storage::Store& store, ProgramBook& programs,
+                  Caller caller, v1::UploadContentResponse* response)
+      : needs_(needs), caller_(std::move(caller)), response_(response), upload_(store, programs) {
+    StartRead(&message_);
+  }
+
+ private:
+  void OnReadDone(bool ok) override {
+    needs_.executor.Post([this, ok] { Take(ok); });
+  }
+
+  void Take(bool ok) {
+    if (ok) {
+      const Status good = message_.has_header()
+                              ? upload_.Begin(message_.header().size(), message_.header().sha256())
+                              : upload_.Add(message_.chunk());
+      if (!good) return End(ToGrpcStatus(good.error()));
+      return StartRead(&message_);
+    }
+    Result<v1::UploadContentResponse> made = upload_.End();
+    if (!made) return End(ToGrpcStatus(made.error()));
+    *response_ = *std::move(made);
+    End(grpc::Status::OK);
+  }
+
+  void End(const grpc::Status& status) {
+    LogCall("ProgramService/UploadContent", caller_, status,
+            std::chrono::steady_clock::now() - begin_);
+    Finish(status);
+  }
+
+  void OnDone() override { delete this; }
+
+  CallNeeds needs_;
+  Caller caller_;
+  v1::UploadContentResponse* response_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  v1::UploadContentRequest message_;
+  ContentUpload upload_;
+};
+
+class ProgramToolpath final : public FramesStream<v1::StreamProgramToolpathResponse> {
+ public:
+  ProgramToolpath(Executor& compute, OpenStreams& open, ProgramBook& programs,
+                  const v1::StreamProgramToolpathRequest& request)
+      : FramesStream(compute, open), views_(programs), request_(request) {}
+
+ private:
+  Result<std::string> Read() override {
+    Result<ProgramViews::Toolpath> path = views_.Path(request_);
+    if (!path) return path.error();
+    header_ = std::move(path->header);
+    return std::move(path->frames);
+  }
+
+  bool AddHeader(std::string_view, v1::StreamProgramToolpathResponse& message) override {
+    *message.mutable_header() = std::move(header_);
+    return true;
+  }
+
+  bool Add(std::string_view frame, v1::StreamProgramToolpathResponse& message) override {
+    message.set_block(std::string(frame));
+    return false;
+  }
+
+  ProgramViews views_;
+  const v1::StreamProgramToolpathRequest request_;
+  v1::ToolpathHeader header_;
+};
+
 class Download final : public PullStream<v1::DownloadProgramResponse> {
  public:
   Download(Executor& executor, OpenStreams& open, ProgramBook& programs,
@@ -147,6 +223,37 @@ grpc::ServerReadReactor<v1::UploadProgramRequest>* ProgramService::UploadProgram
         ToGrpcStatus(caller.error()));
   }
   return new Upload(needs_, programs_, std::move(*caller), response);
+}
+
+grpc::ServerReadReactor<v1::UploadContentRequest>* ProgramService::UploadContent(
+    grpc::CallbackServerContext* context, v1::UploadContentResponse* response) {
+  Result<Caller> caller = Admit(needs_.gate, *context, "ProgramService/UploadContent");
+  if (!caller) {
+    return new EndedStream<grpc::ServerReadReactor<v1::UploadContentRequest>>(
+        ToGrpcStatus(caller.error()));
+  }
+  return new ContentReceiver(needs_, store_, programs_, std::move(*caller), response);
+}
+
+grpc::ServerUnaryReactor* ProgramService::GetProgramPicture(
+    grpc::CallbackServerContext* context, const v1::GetProgramPictureRequest* request,
+    v1::GetProgramPictureResponse* response) {
+  return Answer(needs_.Computing(), context, *request, "ProgramService/GetProgramPicture",
+                [this, request, response](const Caller&) {
+                  Result<v1::GetProgramPictureResponse> made =
+                      ProgramViews(programs_).Picture(*request);
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
+}
+
+grpc::ServerWriteReactor<v1::StreamProgramToolpathResponse>* ProgramService::StreamProgramToolpath(
+    grpc::CallbackServerContext* context, const v1::StreamProgramToolpathRequest* request) {
+  return OpenStream<v1::StreamProgramToolpathResponse>(
+      needs_, *context, *request, "ProgramService/StreamProgramToolpath", [&](const Caller&) {
+        return std::make_shared<ProgramToolpath>(needs_.compute, open_, programs_, *request);
+      });
 }
 
 grpc::ServerUnaryReactor* ProgramService::GetProgram(grpc::CallbackServerContext* context,

@@ -11,20 +11,38 @@ namespace rmlcell::server {
 class LanguageTools;
 class MemoryTools;
 class ProgramBook;
+}  // namespace rmlcell::server
+namespace rmlcell::storage {
+class Store;
+}
+namespace rmlcell::server {
 
 // Converts, calls, converts: the rules live in ProgramBook, the tools of server/programs and the
 // engine.
 class ProgramService final : public v1::ProgramService::CallbackService {
  public:
-  ProgramService(CallNeeds needs, ProgramBook& programs, MemoryTools& tools,
+  ProgramService(CallNeeds needs, storage::Store& store, ProgramBook& programs, MemoryTools& tools,
                  LanguageTools& language, OpenStreams& open)
-      : needs_(needs), programs_(programs), tools_(tools), language_(language), open_(open) {}
+      : needs_(needs),
+        store_(store),
+        programs_(programs),
+        tools_(tools),
+        language_(language),
+        open_(open) {}
 
   grpc::ServerUnaryReactor* PutProgram(grpc::CallbackServerContext* context,
                                        const v1::PutProgramRequest* request,
                                        v1::Program* response) override;
   grpc::ServerReadReactor<v1::UploadProgramRequest>* UploadProgram(
       grpc::CallbackServerContext* context, v1::Program* response) override;
+  grpc::ServerReadReactor<v1::UploadContentRequest>* UploadContent(
+      grpc::CallbackServerContext* context, v1::UploadContentResponse* response) override;
+  grpc::ServerUnaryReactor* GetProgramPicture(grpc::CallbackServerContext* context,
+                                              const v1::GetProgramPictureRequest* request,
+                                              v1::GetProgramPictureResponse* response) override;
+  grpc::ServerWriteReactor<v1::StreamProgramToolpathResponse>* StreamProgramToolpath(
+      grpc::CallbackServerContext* context,
+      const v1::StreamProgramToolpathRequest* request) override;
   grpc::ServerUnaryReactor* GetProgram(grpc::CallbackServerContext* context,
                                        const v1::GetProgramRequest* request,
                                        v1::Program* response) override;
@@ -111,6 +129,7 @@ class ProgramService final : public v1::ProgramService::CallbackService {
                                      const Request* request, Response* response);
 
   CallNeeds needs_;
+  storage::Store& store_;
   ProgramBook& programs_;
   MemoryTools& tools_;
   LanguageTools& language_;

@@ -8,7 +8,9 @@
 #include "server/base/names.h"
 #include "server/base/readable.h"
 #include "server/jobs/job_book.h"
+#include "server/programs/content_upload.h"
 #include "server/programs/program_book.h"
+#include "server/programs/program_views.h"
 
 namespace rmlcell::server {
 namespace {
@@ -63,10 +65,35 @@ Result<v1::ProgramForm> FormOf(const std::string& word) {
                          "': use source, object, executable or listing");
 }
 
+web::UploadEnd Refused(const google::rpc::Status& status) {
+  return {.message_type = {}, .message = {}, .status = status.SerializeAsString()};
+}
+
+// Of an upload that takes no slot.
+class ContentSink final : public web::UploadSink {
+ public:
+  explicit ContentSink(ContentUpload upload) : upload_(std::move(upload)) {}
+
+  Status Append(std::string_view chunk) override { return upload_.Add(chunk); }
+
+  web::UploadEnd Finish() override {
+    const Result<v1::UploadContentResponse> made = upload_.End();
+    if (!made) return Refused(bridge::ToRpcStatus(made.error()));
+    return {.message_type = "rmlcell.v1.UploadContentResponse",
+            .message = made->SerializeAsString(),
+            .status = {}};
+  }
+
+ private:
+  ContentUpload upload_;
+};
+
+// Of a program for a slot.
 class Sink final : public web::UploadSink {
  public:
-  Sink(ProgramBook& programs, const web::UploadHeader& header, v1::ProgramForm form)
-      : programs_(programs), header_(header), form_(form) {}
+  Sink(ProgramBook& programs, const web::UploadHeader& header, std::string name,
+       v1::ProgramForm form)
+      : programs_(programs), header_(header), name_(std::move(name)), form_(form) {}
 
   Status Append(std::string_view chunk) override {
     if (const Status fits =
@@ -83,7 +110,7 @@ class Sink final : public web::UploadSink {
       return Refused(bridge::ToRpcStatus({ErrorCode::kCellChecksum, "SHA-256 differs", {}}));
     }
     const ProgramResult<v1::Program> stored =
-        programs_.Store({.name = NameOfProgram(header_.path.machine, header_.path.slot),
+        programs_.Store({.name = name_,
                          .file_name = header_.file_name,
                          .form = form_,
                          .title = header_.title,
@@ -101,12 +128,9 @@ class Sink final : public web::UploadSink {
   }
 
  private:
-  static web::UploadEnd Refused(const google::rpc::Status& status) {
-    return {.message_type = {}, .message = {}, .status = status.SerializeAsString()};
-  }
-
   ProgramBook& programs_;
   web::UploadHeader header_;
+  std::string name_;
   v1::ProgramForm form_;
   bridge::Sha256 digest_;
   std::string bytes_;
@@ -122,32 +146,56 @@ Result<web::Resource> WebResources::Find(const web::ResourcePath& path,
     if (!caller) return caller.error();
     return FindArtifact(book_, *artifact);
   }
-  const auto& program = std::get<web::ProgramContentPath>(path);
+  if (const auto* picture = std::get_if<web::ProgramPicturePath>(&path)) {
+    v1::GetProgramPictureRequest request;
+    request.set_name(NameOfProgram(picture->machine, picture->slot));
+    request.set_width_px(picture->width_px);
+    const Result<Caller> caller =
+        Admit(gate_, metadata, "ProgramService/GetProgramPicture", request.name());
+    if (!caller) return caller.error();
+    Result<v1::GetProgramPictureResponse> made = ProgramViews(programs_).Picture(request);
+    if (!made) return made.error();
+    web::Resource drawn{.media_type = made->media_type()};
+    drawn.etag = bridge::Sha256Hex(made->content());
+    drawn.bytes = std::move(*made->mutable_content());
+    return drawn;
+  }
+  const auto* content = std::get_if<web::ProgramContentPath>(&path);
+  if (content == nullptr) return InvalidArgument("there is nothing to read here");
+  const auto& program = *content;
   const std::string name = NameOfProgram(program.machine, program.slot);
   const Result<Caller> caller = Admit(gate_, metadata, "ProgramService/GetProgramContent", name);
   if (!caller) return caller.error();
   const Result<v1::ProgramForm> form = FormOf(program.form);
   if (!form) return form.error();
-  Result<ProgramBook::Content> content = programs_.Read(name, *form);
-  if (!content) return content.error();
-  web::Resource resource{.media_type = content->form == v1::PROGRAM_FORM_SOURCE
+  Result<ProgramBook::Content> read = programs_.Read(name, *form);
+  if (!read) return read.error();
+  web::Resource resource{.media_type = read->form == v1::PROGRAM_FORM_SOURCE
                                            ? "text/plain; charset=utf-8"
                                            : "application/octet-stream",
-                         .etag = content->sha256,
-                         .file_name = content->file_name};
-  resource.bytes = std::move(content->bytes);
+                         .etag = read->sha256,
+                         .file_name = read->file_name};
+  resource.bytes = std::move(read->bytes);
   return resource;
 }
 
 Result<std::unique_ptr<web::UploadSink>> WebResources::BeginUpload(
     const web::UploadHeader& header, const web::WebCallerMetadata& metadata) {
-  const Result<Caller> caller = Admit(gate_, metadata, "ProgramService/UploadProgram",
-                                      NameOfProgram(header.path.machine, header.path.slot));
+  const auto* path = std::get_if<web::ProgramContentPath>(&header.path);
+  if (path == nullptr) {
+    const Result<Caller> caller = Admit(gate_, metadata, "ProgramService/UploadContent", {});
+    if (!caller) return caller.error();
+    ContentUpload upload(store_, programs_);
+    if (const Status begun = upload.Begin(header.size, header.sha256); !begun) return begun.error();
+    return std::unique_ptr<web::UploadSink>(std::make_unique<ContentSink>(std::move(upload)));
+  }
+  const std::string name = NameOfProgram(path->machine, path->slot);
+  const Result<Caller> caller = Admit(gate_, metadata, "ProgramService/UploadProgram", name);
   if (!caller) return caller.error();
   if (const Status fits = programs_.CheckSize(header.size); !fits) return fits.error();
-  const Result<v1::ProgramForm> form = FormOf(header.path.form);
+  const Result<v1::ProgramForm> form = FormOf(path->form);
   if (!form) return form.error();
-  return std::unique_ptr<web::UploadSink>(std::make_unique<Sink>(programs_, header, *form));
+  return std::unique_ptr<web::UploadSink>(std::make_unique<Sink>(programs_, header, name, *form));
 }
 
 }  // namespace rmlcell::server

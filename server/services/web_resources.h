@@ -7,13 +7,18 @@ namespace rmlcell::server {
 
 class JobBook;
 class ProgramBook;
+}  // namespace rmlcell::server
+namespace rmlcell::storage {
+class Store;
+}
+namespace rmlcell::server {
 
 // What the web port serves at stable URLs: products of jobs, contents of programs. Callers pass the
 // same gate as calls do.
 class WebResources final : public web::ResourceSource {
  public:
-  WebResources(const Gate& gate, JobBook& book, ProgramBook& programs)
-      : gate_(gate), book_(book), programs_(programs) {}
+  WebResources(const Gate& gate, storage::Store& store, JobBook& book, ProgramBook& programs)
+      : gate_(gate), store_(store), book_(book), programs_(programs) {}
 
   Result<web::Resource> Find(const web::ResourcePath& path,
                              const web::WebCallerMetadata& caller) override;
@@ -22,6 +27,7 @@ class WebResources final : public web::ResourceSource {
 
  private:
   const Gate& gate_;
+  storage::Store& store_;
   JobBook& book_;
   ProgramBook& programs_;
 };

@@ -43,7 +43,8 @@ Plan PlanResource(const Gateway& gateway, const HttpRequest& request, const Reso
                   HeaderList metadata) {
   if (!route.path) return RefusePlan(400, ErrorCode::kCellInvalidArgument, route.problem);
   Plan plan;
-  if (IsRead(request)) {
+  const bool uploads = std::holds_alternative<UploadsPath>(*route.path);
+  if (IsRead(request) && !uploads) {
     plan.exchange = [&gateway, path = *route.path, metadata = std::move(metadata)](
                         std::shared_ptr<Connection> connection, const HttpRequest& full) {
       return MakeDownload(gateway, path, full, metadata, std::move(connection));
@@ -51,12 +52,14 @@ Plan PlanResource(const Gateway& gateway, const HttpRequest& request, const Reso
     return plan;
   }
   const auto* program = std::get_if<ProgramContentPath>(&*route.path);
-  const bool may_post = program != nullptr;
-  if (request.method != "POST" || !may_post) {
+  if (request.method != "POST" || (program == nullptr && !uploads)) {
     return RefusePlan(405, ErrorCode::kCellUnimplemented, request.method + " is not offered here",
-                      may_post ? "GET, HEAD, POST" : "GET, HEAD");
+                      uploads              ? "POST"
+                      : program != nullptr ? "GET, HEAD, POST"
+                                           : "GET, HEAD");
   }
-  UploadRoute upload = RouteUpload(request, *program);
+  UploadRoute upload =
+      uploads ? RouteUpload(request, UploadsPath()) : RouteUpload(request, *program);
   if (upload.refusal) return Answer(JsonRefusal(*upload.refusal, false));
   plan.stream_body = true;
   plan.body_bytes_max = gateway.options.upload_bytes_max;

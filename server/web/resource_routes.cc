@@ -11,6 +11,7 @@ namespace rmlcell::web {
 namespace {
 
 constexpr std::size_t kSegmentBytesMax = 200;  // longer than any name of ours
+constexpr long long kWidthMax_px = 100'000;    // what a picture can be is not known here
 constexpr int kSlotNumberMax = 199;            // executables live in slot + 100
 
 std::vector<std::string_view> Split(std::string_view path) {
@@ -36,22 +37,31 @@ std::optional<std::string> Segment(std::string_view raw) {
 }
 
 ResourceRoute RouteProgram(const HttpRequest& request, std::string_view machine_raw,
-                           std::string_view slot_raw) {
+                           std::string_view slot_raw, bool picture) {
   ResourceRoute route{.is_resource = true, .path = {}, .problem = {}};
   const std::optional<std::string> machine = Segment(machine_raw);
   const bool digits = !slot_raw.empty() && slot_raw.size() <= 3 &&
                       std::ranges::all_of(slot_raw, [](char c) { return c >= '0' && c <= '9'; });
-  const long long slot = digits ? ParseInteger(slot_raw).value_or(0) : 0;
-  const QueryValue form = QueryParameter(request.query, "form");
+  const long long number = digits ? ParseInteger(slot_raw).value_or(0) : 0;
+  const int slot = static_cast<int>(number);
+  const QueryValue value = QueryParameter(request.query, picture ? "width" : "form");
+  const std::string said = value.value.value_or("");
   if (!machine) {
     route.problem = "the path names no machine";
-  } else if (slot < kSlotMin || slot > kSlotNumberMax) {
+  } else if (number < kSlotMin || number > kSlotNumberMax) {
     route.problem = "the path names no slot from 1 to 199";
-  } else if (!form.ok) {
+  } else if (!value.ok) {
     route.problem = "the query has a malformed percent escape";
+  } else if (!picture) {
+    route.path = ProgramContentPath{.machine = *machine, .slot = slot, .form = said};
   } else {
-    route.path = ProgramContentPath{
-        .machine = *machine, .slot = static_cast<int>(slot), .form = form.value.value_or("")};
+    const auto width = said.empty() ? 0 : ParseInteger(said).value_or(-1);
+    if (width < 0 || width > kWidthMax_px) {
+      route.problem = "width is no number of pixels";
+      return route;
+    }
+    route.path =
+        ProgramPicturePath{.machine = *machine, .slot = slot, .width_px = static_cast<int>(width)};
   }
   return route;
 }
@@ -78,13 +88,16 @@ ResourceRoute RouteResource(const HttpRequest& request) {
             .problem = {}};
   }
   if (segments.size() == 6 && segments[1] == "machines" && segments[3] == "programs" &&
-      segments[5] == "content") {
-    return RouteProgram(request, segments[2], segments[4]);
+      (segments[5] == "content" || segments[5] == "picture.svg")) {
+    return RouteProgram(request, segments[2], segments[4], segments[5] == "picture.svg");
   }
+  if (segments.size() == 2 && segments[1] == "uploads")
+    return {.is_resource = true, .path = UploadsPath(), .problem = {}};
   return {};
 }
 
-UploadRoute RouteUpload(const HttpRequest& request, const ProgramContentPath& path) {
+UploadRoute RouteUpload(const HttpRequest& request,
+                        const std::variant<ProgramContentPath, UploadsPath>& path) {
   UploadRoute route;
   UploadHeader& header = route.header;
   const auto refuse = [&](int http_status, std::string detail) {

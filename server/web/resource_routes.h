@@ -29,6 +29,7 @@ struct UploadRoute {
 // Query: file_name, title, sha256, etag, form, validate_only=true, force=true. A Content-Type is
 // needed, and not one that a form of a foreign page can send: application/octet-stream is the right
 // one.
-UploadRoute RouteUpload(const HttpRequest& request, const ProgramContentPath& path);
+UploadRoute RouteUpload(const HttpRequest& request,
+                        const std::variant<ProgramContentPath, UploadsPath>& path);
 
 }  // namespace rmlcell::web

@@ -28,7 +28,18 @@ struct ProgramContentPath {
   std::string form;  // of the query: "source", "object", "executable", "listing"; empty: not said
 };
 
-using ResourcePath = std::variant<ArtifactPath, ProgramContentPath>;
+// GET /v1/machines/{machine}/programs/{slot}/picture.svg
+struct ProgramPicturePath {
+  std::string machine;  // "optimo-1"
+  int slot = 0;         // 1 to 199
+  int width_px = 0;     // of the query; 0: not said
+};
+
+// POST /v1/uploads: bytes for a job, that take no slot
+struct UploadsPath {};
+
+using ResourcePath =
+    std::variant<ArtifactPath, ProgramContentPath, ProgramPicturePath, UploadsPath>;
 
 // The metadata that a call of this browser would carry: for the same gate that admits calls.
 using WebCallerMetadata = std::vector<std::pair<std::string, std::string>>;
@@ -51,7 +62,7 @@ struct Resource {
 };
 
 struct UploadHeader {
-  ProgramContentPath path;
+  std::variant<ProgramContentPath, UploadsPath> path;
   std::string file_name;   // of the query; may be empty
   std::string title;       // of the query; may be empty
   std::string etag;        // of the query: as in PutProgramRequest
@@ -63,7 +74,7 @@ struct UploadHeader {
 
 // How an upload ended: a good answer, or a status with all that there is to say.
 struct UploadEnd {
-  std::string message_type;  // "rmlcell.v1.Program"
+  std::string message_type;  // "rmlcell.v1.Program", "rmlcell.v1.UploadContentResponse"
   std::string message;       // serialised
   std::string status;        // a serialised google.rpc.Status; empty: good
 };

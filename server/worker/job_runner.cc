@@ -17,6 +17,7 @@
 #include "engine/simulation/verdict/verdict.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/inputs.h"
 #include "proto/bridge/milling.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/series.h"
@@ -250,10 +251,8 @@ class Attempt {
   End TellRun(simulation::BegunRun& begun, simulation::PreparedRun before,
               const std::vector<std::string>& variables) {
     const simulation::RunReport report = begun.simulation->Finish();
-    std::map<std::string, std::string> values;
-    for (const std::string& name : variables) {
-      if (const auto value = begun.run->ReadVariable(name)) values[name] = *value;
-    }
+    const std::vector<machine::NamedVariable> values =
+        machine::ReadVariables(*begun.run, variables);
     executables_ = begun.run->made_executables();
     const std::string picture = begun.recorder->Svg(report, {});
     if (const simulation::TimeEnvelope* series = begun.recorder->Values(report.cycle_time))

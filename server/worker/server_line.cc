@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "rmlcell/v1/worker.grpc.pb.h"
+#include "server/base/credentials.h"
 #include "server/base/version.h"
 
 namespace rmlcell::server {
@@ -34,8 +35,7 @@ Result<std::unique_ptr<ServerLine>> ServerLine::Join(const Options& options) {
   arguments.SetMaxReceiveMessageSize(-1);
   // The window of a connection would grow to megabytes for programs that are read more slowly.
   arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
-  stream.channel =
-      grpc::CreateCustomChannel(options.server, grpc::InsecureChannelCredentials(), arguments);
+  stream.channel = grpc::CreateCustomChannel(options.server, CredentialsOfChannel(), arguments);
   if (!stream.channel->WaitForConnected(std::chrono::system_clock::now() + kConnectPatience)) {
     return Error{ErrorCode::kCellUnavailable, "no server answers at " + options.server, {}};
   }

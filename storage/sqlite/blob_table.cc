@@ -21,6 +21,11 @@ Error Damaged(std::int64_t blob, const std::string& what) {
 BlobTable::BlobTable(Database& database)
     : database_(database),
       find_(database, "SELECT id FROM blob WHERE sha256 = ?1"),
+      measure_(database, "SELECT size FROM blob WHERE sha256 = ?1"),
+      piece_(database,
+             "SELECT ifnull(blob.content, blob_chunk.content) FROM blob"
+             " LEFT JOIN blob_chunk ON blob_chunk.blob = blob.id AND blob_chunk.number = ?2"
+             " WHERE blob.sha256 = ?1"),
       get_(database, "SELECT sha256, size, content FROM blob WHERE id = ?1"),
       insert_(database,
               "INSERT INTO blob (sha256, size, refs, holds, content) VALUES (?1, ?2, ?3, ?4, ?5)"),
@@ -141,6 +146,25 @@ Status BlobTable::ReadChunks(std::int64_t blob, std::size_t size, std::string& c
     if (const Status read = Decode(chunks.View(0), std::min(left, kChunkBytes), content); !read)
       return read.error();
   }
+}
+
+Result<std::optional<std::size_t>> BlobTable::Measure(std::string_view sha256) {
+  return FirstRow<std::size_t>(measure_.With(Bytes{sha256}), [](const Query& row) {
+    return static_cast<std::size_t>(row.Integer(0));
+  });
+}
+
+Result<std::string> BlobTable::ReadChunk(std::string_view sha256, std::size_t number,
+                                         std::size_t bytes) {
+  Query query = piece_.With(Bytes{sha256}, number);
+  const Result<bool> row = query.Step();
+  if (!row) return row.error();
+  if (!*row) {
+    return Error{ErrorCode::kCellNotFound, "no content with SHA-256 " + HexOf(sha256), {}};
+  }
+  std::string content;
+  if (const Status read = Decode(query.View(0), bytes, content); !read) return read.error();
+  return content;
 }
 
 Result<std::optional<std::int64_t>> BlobTable::Find(std::string_view sha256) {

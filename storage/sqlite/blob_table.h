@@ -48,6 +48,11 @@ class BlobTable {
   Status ReleaseAll();  // what writers held that died with their process
 
   Result<std::string> Read(std::int64_t blob);  // CellStoreCorrupt
+  // Its size in bytes; nothing: it is not there.
+  Result<std::optional<std::size_t>> Measure(std::string_view sha256);
+  // Chunk `number` of a content, of `bytes` bytes. CellNotFound: the content is not there (any
+  // more).
+  Result<std::string> ReadChunk(std::string_view sha256, std::size_t number, std::size_t bytes);
   Result<std::optional<std::int64_t>> Find(std::string_view sha256);
 
   // The content of the columns `column` and the one after it, of the row that is ready.
@@ -63,6 +68,8 @@ class BlobTable {
 
   Database& database_;
   Statement find_;
+  Statement measure_;
+  Statement piece_;
   Statement get_;
   Statement insert_;
   Statement seal_;

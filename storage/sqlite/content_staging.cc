@@ -25,6 +25,48 @@ class ReleaseOperation final : public WriteOperation {
 
 }  // namespace
 
+ChunksAhead::ChunksAhead(ChunksAhead&& other) noexcept
+    : writer_(other.writer_),
+      blob_(std::exchange(other.blob_, 0)),
+      whole_(other.whole_),
+      written_(other.written_),
+      bytes_(other.bytes_),
+      encoded_(std::move(other.encoded_)) {}
+
+ChunksAhead::~ChunksAhead() {
+  if (blob_ != 0) writer_->Post(std::make_unique<ReleaseOperation>(blob_), 0);
+}
+
+Status ChunksAhead::Begin(std::string_view sha256, std::size_t size) {
+  const Result<BlobTable::Held> held =
+      writer_->Do([&](WriteContext& context) { return context.tables.blobs.Hold(sha256, size); });
+  if (!held) return held.error();
+  blob_ = held->blob;
+  whole_ = held->whole;
+  return {};
+}
+
+Status ChunksAhead::Add(std::string_view chunk) {
+  if (whole_) return {};
+  Result<std::string> encoded = Encode(chunk);
+  if (!encoded) return encoded.error();
+  bytes_ += encoded->size();
+  encoded_.push_back(*std::move(encoded));
+  return bytes_ < kWriteAheadBytes ? Status() : Flush();
+}
+
+Status ChunksAhead::Flush() {
+  if (encoded_.empty()) return {};
+  const Status written = writer_->Do([&](WriteContext& context) {
+    return context.tables.blobs.AddChunks(blob_, written_, encoded_);
+  });
+  if (!written) return written.error();
+  written_ += encoded_.size();
+  bytes_ = 0;
+  encoded_.clear();
+  return {};
+}
+
 Result<StagedContent> StagedContent::Make(Writer& writer, std::string_view bytes, Place place) {
   StagedContent staged(writer);
   PreparedContent& content = staged.content_;
@@ -55,41 +97,15 @@ Result<StagedContent> StagedContent::Of(Writer& writer, const NewArtifact& artif
   return staged;
 }
 
-StagedContent::StagedContent(StagedContent&& other) noexcept
-    : writer_(std::exchange(other.writer_, nullptr)), content_(std::move(other.content_)) {}
-
-StagedContent::~StagedContent() {
-  if (writer_ == nullptr || content_.staged_blob == 0) return;
-  writer_->Post(std::make_unique<ReleaseOperation>(content_.staged_blob), 0);
-}
-
 Status StagedContent::WriteAhead() {
-  const Result<BlobTable::Held> held = writer_->Do([this](WriteContext& context) {
-    return context.tables.blobs.Hold(content_.sha256, content_.bytes.size());
-  });
-  if (!held) return held.error();
-  content_.staged_blob = held->blob;
-  if (held->whole) return {};
-
-  const std::size_t count = ChunkCount(content_.bytes.size());
-  std::size_t first = 0;
-  std::size_t size = 0;
-  std::vector<std::string> encoded;
-  for (std::size_t number = 0; number < count; ++number) {
-    Result<std::string> chunk = Encode(Chunk(content_.bytes, number));
-    if (!chunk) return chunk.error();
-    size += chunk->size();
-    encoded.push_back(*std::move(chunk));
-    if (size < kWriteAheadBytes && number + 1 < count) continue;
-    const Status written = writer_->Do([&](WriteContext& context) {
-      return context.tables.blobs.AddChunks(held->blob, first, encoded);
-    });
-    if (!written) return written.error();
-    first = number + 1;
-    size = 0;
-    encoded.clear();
+  if (const Status begun = ahead_.Begin(content_.sha256, content_.bytes.size()); !begun)
+    return begun.error();
+  content_.staged_blob = ahead_.blob();
+  for (std::size_t number = 0; number < ChunkCount(content_.bytes.size()); ++number) {
+    if (const Status added = ahead_.Add(Chunk(content_.bytes, number)); !added)
+      return added.error();
   }
-  return {};
+  return ahead_.Flush();
 }
 
 }  // namespace rmlcell::storage::sqlite

@@ -7,10 +7,33 @@
 
 namespace rmlcell::storage::sqlite {
 
+// The chunks of a content that is larger than one, written ahead of the record that will name it.
+// Held by this object until then; what is not named in the end, also because the process was
+// killed, is removed.
+class ChunksAhead {
+ public:
+  explicit ChunksAhead(Writer& writer) : writer_(&writer) {}
+  ChunksAhead(ChunksAhead&& other) noexcept;
+  ChunksAhead& operator=(ChunksAhead&&) = delete;
+  ~ChunksAhead();
+
+  Status Begin(std::string_view sha256, std::size_t size);
+  Status Add(std::string_view chunk);          // in order; kChunkBytes, but for the last one
+  Status Flush();                              // behind the last one
+  std::int64_t blob() const { return blob_; }  // 0: not begun
+
+ private:
+  Writer* writer_;
+  std::int64_t blob_ = 0;
+  bool whole_ = false;  // the store has the content already
+  std::size_t written_ = 0;
+  std::size_t bytes_ = 0;  // of `encoded_`
+  std::vector<std::string> encoded_;
+};
+
 // A content on its way into the store. Hashing and encoding are done here, on the thread of the
 // caller; what is larger than a chunk is written ahead piece by piece, so that the writer never
-// stops for a whole program of 256 MiB. Until a record names it such a blob is held by this object;
-// what is not named in the end, also because the process was killed, is removed.
+// stops for a whole program of 256 MiB.
 class StagedContent {
  public:
   enum class Place { kBlob, kRecordWhenSmall };
@@ -20,18 +43,14 @@ class StagedContent {
   // The bytes of an artifact, or the content that it names: CellNotFound when it cannot be a name.
   static Result<StagedContent> Of(Writer& writer, const NewArtifact& artifact);
 
-  StagedContent(StagedContent&& other) noexcept;
-  StagedContent& operator=(StagedContent&&) = delete;
-  ~StagedContent();
-
   // For BlobTable::Put() and PutBlob().
   const PreparedContent& content() const { return content_; }
 
  private:
-  explicit StagedContent(Writer& writer) : writer_(&writer) {}
+  explicit StagedContent(Writer& writer) : ahead_(writer) {}
   Status WriteAhead();
 
-  Writer* writer_;
+  ChunksAhead ahead_;
   PreparedContent content_;
 };
 

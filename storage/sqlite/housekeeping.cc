@@ -90,6 +90,7 @@ Result<bool> Housekeeping::RunSlice(WriteContext& context) const {
     if (const Status events = RemoveOldEvents(context); !events) return events.error();
     if (const Status events = RemoveOldRecordEvents(context); !events) return events.error();
   }
+  if (const Status forgotten = ForgetUploads(context); !forgotten) return forgotten.error();
   const Result<bool> swept = context.tables.blobs.Sweep(kBlobsPerSlice, kChunksPerSlice);
   if (!swept) return swept.error();
   return *swept || IsDue(context.counters);
@@ -123,6 +124,19 @@ Status Housekeeping::RemoveOldRecordEvents(WriteContext& context) const {
   if (!removed) return removed.error();
   if (!*removed) return Error{ErrorCode::kCellStoreCorrupt, "old events cannot be removed", {}};
   return NoteGone(context, **removed);
+}
+
+// Contents that no record took in time.
+Status Housekeeping::ForgetUploads(WriteContext& context) const {
+  for (int i = 0; i < kBlobsPerSlice; ++i) {
+    const auto due = context.tables.uploads.FirstDue(context.now);
+    if (!due) return due.error();
+    if (!*due) return {};
+    if (const Status removed = context.tables.uploads.Remove(**due); !removed)
+      return removed.error();
+    if (const Status dropped = context.tables.blobs.Drop(**due); !dropped) return dropped.error();
+  }
+  return {};
 }
 
 Status Housekeeping::RemoveOldEvents(WriteContext& context) const {

@@ -62,6 +62,9 @@ constexpr Migration kMigrations[] = {
      " sequence INTEGER NOT NULL, state BLOB NOT NULL, note BLOB NOT NULL, clean INTEGER NOT NULL,"
      " at INTEGER NOT NULL);"
      "ALTER TABLE machine DROP COLUMN state; ALTER TABLE machine DROP COLUMN state_blob;"},
+    {10, "contents that no record names yet",
+     "CREATE TABLE upload (blob INTEGER PRIMARY KEY, until INTEGER NOT NULL);"
+     "CREATE INDEX upload_until ON upload (until);"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

@@ -74,7 +74,7 @@ class SqliteStore final : public Store {
                                    std::string_view caller) override;
   Status DeleteProject(std::string_view id, Revision expected, std::string_view caller) override;
 
-  void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) override;
+  void Submit(NewJob job, Done<SubmittedJob> done) override;
   Result<SubmittedJob> SubmitAndWait(NewJob job) override;
   Result<std::optional<JobRecord>> FindSubmitted(std::string_view request_id,
                                                  std::string_view request_hash) override;
@@ -86,6 +86,8 @@ class SqliteStore final : public Store {
   Result<std::vector<MachineJobs>> UnfinishedJobs() override;
   Status DeleteJob(std::int64_t id, std::string_view caller) override;
   Result<JobRecord> RequestCancel(std::int64_t job, const std::vector<NewEvent>& events) override;
+  void SendRequestCancel(std::int64_t job, std::vector<NewEvent> events,
+                         Done<JobRecord> done) override;
 
   Result<JobRecord> HoldBack(std::int64_t job, const std::vector<NewEvent>& events) override;
   Result<JobRecord> LetGo(std::int64_t job, const std::vector<NewEvent>& events) override;
@@ -96,13 +98,19 @@ class SqliteStore final : public Store {
   Status PutOrder(std::int64_t job, std::string_view from, std::string_view payload) override;
   Result<std::vector<TakenOrder>> TakeOrders(std::string_view server) override;
   Result<std::vector<LeasedJob>> AcquireJobs(const JobRequest& request) override;
+  void SendAcquire(JobRequest request, Done<std::vector<LeasedJob>> done) override;
   Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) override;
-  void Append(const Lease& lease, std::vector<NewEvent> events,
-              std::function<void(Result<std::int64_t>)> done) override;
+  void SendRenew(const Lease& lease, std::chrono::milliseconds duration,
+                 Done<JobRecord> done) override;
+  void Append(const Lease& lease, std::vector<NewEvent> events, Done<std::int64_t> done) override;
   Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events) override;
   Result<JobRecord> Finish(const Lease& lease, const JobEnd& end) override;
+  void SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
+                  Done<JobRecord> done) override;
   Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) override;
+  void SendHandBack(const Lease& lease, LossPolicy policy, Done<JobRecord> done) override;
   Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) override;
+  void SendAbandon(const Lease& lease, LossPolicy policy, Done<JobRecord> done) override;
   Result<std::vector<JobRecord>> Expire(const LossPolicy& policy) override;
 
   Result<std::vector<EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence,
@@ -115,6 +123,8 @@ class SqliteStore final : public Store {
   Result<std::vector<ArtifactRecord>> ListArtifacts(std::int64_t job) override;
   Result<ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) override;
   Result<std::string> ReadBlob(std::string_view sha256) override;
+  Result<std::unique_ptr<BlobReader>> OpenBlob(std::string_view sha256) override;
+  Result<std::unique_ptr<BlobWriter>> WriteBlob(std::string_view sha256, std::size_t size) override;
 
   std::unique_ptr<Subscription> Watch(std::function<void()> changed) override;
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <span>
 
-#include "engine/core/hex.h"
 #include "storage/content.h"
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/executable_life.h"
@@ -82,9 +81,8 @@ class Submission {
 
 class SubmitOperation final : public WriteOperation {
  public:
-  using Done = std::function<void(Result<SubmittedJob>)>;
-
-  SubmitOperation(NewJob job, Done done) : submission_(std::move(job)), done_(std::move(done)) {}
+  SubmitOperation(NewJob job, Done<SubmittedJob> done)
+      : submission_(std::move(job)), done_(std::move(done)) {}
 
   Submission& submission() { return submission_; }
 
@@ -101,36 +99,57 @@ class SubmitOperation final : public WriteOperation {
 
  private:
   Submission submission_;
-  Done done_;
+  Done<SubmittedJob> done_;
   Result<SubmittedJob> submitted_ = SubmittedJob{};
 };
 
-class AppendOperation final : public WriteOperation {
+// Of a job that is leased: damage is met when somebody works on it.
+void ReadSpecification(WriteContext& context, JobRecord& job) {
+  if (!CompleteJob(context.tables, job, context.now)) job.specification.clear();
+}
+
+// The contents of a job's end, made ready on the thread of the caller.
+class StagedEnd {
  public:
-  using Done = std::function<void(Result<std::int64_t>)>;
+  StagedEnd() = default;
+  StagedEnd(const StagedEnd&) = delete;
+  StagedEnd& operator=(const StagedEnd&) = delete;
 
-  AppendOperation(Lease lease, std::vector<NewEvent> events, Done done)
-      : lease_(std::move(lease)), events_(std::move(events)), done_(std::move(done)) {}
-
-  std::size_t bytes() const { return sizeof(*this) + BytesOf(events_); }
-
-  Status Run(WriteContext& context) override {
-    const Result<std::int64_t> last = AppendEvents(context, lease_, events_);
-    if (!last) return last.error();
-    last_sequence_ = *last;
+  Status Prepare(Writer& writer, const JobEnd& end) {
+    staged_.reserve(end.artifacts.size() + end.executables.size());
+    for (const NewArtifact& artifact : end.artifacts) {
+      if (const Status added = Add(StagedContent::Of(writer, artifact)); !added)
+        return added.error();
+      artifacts_.push_back(&staged_.back().content());
+    }
+    for (const NewExecutable& executable : end.executables) {
+      if (const Status added = Add(StageExecutable(writer, executable.bytes)); !added)
+        return added.error();
+    }
     return {};
   }
 
-  void Answer(const Status& status) override {
-    if (!status) return done_(status.error());
-    done_(last_sequence_);
+  Result<JobRecord> Run(WriteContext& context, const Lease& lease, const JobEnd& end) const {
+    const std::span executables = std::span(staged_).subspan(artifacts_.size());
+    Result<JobRecord> job = FinishJob(context, lease, end, artifacts_);
+    for (std::size_t i = 0; job && i < executables.size(); ++i) {
+      const NewExecutable& made = end.executables[i];
+      const auto kept = PutExecutableBlob(context, job->machine, made.slot, made.object_revision,
+                                          executables[i].content(), {});
+      if (!kept) return kept.error();
+    }
+    return job;
   }
 
  private:
-  Lease lease_;
-  std::vector<NewEvent> events_;
-  Done done_;
-  std::int64_t last_sequence_ = 0;
+  Status Add(Result<StagedContent> content) {
+    if (!content) return content.error();
+    staged_.push_back(*std::move(content));
+    return {};
+  }
+
+  std::vector<StagedContent> staged_;
+  std::vector<const PreparedContent*> artifacts_;
 };
 
 Result<JobRow> GetRow(Tables& tables, std::int64_t id) {
@@ -151,7 +170,7 @@ SqliteStore::SqliteStore(Parts parts)
       writer_(*connection_, parts.counters, parts.writer, std::move(parts.clock),
               [this] { watchers_.Notify(); }) {}
 
-void SqliteStore::Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) {
+void SqliteStore::Submit(NewJob job, Done<SubmittedJob> done) {
   auto operation = std::make_unique<SubmitOperation>(std::move(job), std::move(done));
   const Status prepared = operation->submission().Prepare(writer_, request_ids_, clock_);
   if (!prepared) return operation->Answer(prepared);
@@ -230,6 +249,13 @@ Result<JobRecord> SqliteStore::RequestCancel(std::int64_t job,
       writer_.Do([&](WriteContext& context) { return CancelJob(context, job, events); }));
 }
 
+void SqliteStore::SendRequestCancel(std::int64_t job, std::vector<NewEvent> events,
+                                    Done<JobRecord> done) {
+  writer_.Send([job, events = std::move(events)](
+                   WriteContext& context) { return CancelJob(context, job, events); },
+               std::move(done));
+}
+
 Result<JobRecord> SqliteStore::HoldBack(std::int64_t job, const std::vector<NewEvent>& events) {
   return WithSpecification(
       writer_.Do([&](WriteContext& context) { return HoldJobBack(context, job, events); }));
@@ -277,15 +303,35 @@ Result<std::vector<LeasedJob>> SqliteStore::AcquireJobs(const JobRequest& reques
   return leased;
 }
 
+void SqliteStore::SendAcquire(JobRequest request, Done<std::vector<LeasedJob>> done) {
+  if (!writer_.any_ready_job()) return done(std::vector<LeasedJob>());
+  writer_.Send(
+      [request = std::move(request)](WriteContext& context) {
+        Result<std::vector<LeasedJob>> leased = LeaseJobs(context, request);
+        if (!leased) return leased;
+        for (LeasedJob& one : *leased) ReadSpecification(context, one.job);
+        return leased;
+      },
+      std::move(done));
+}
+
 Result<JobRecord> SqliteStore::Renew(const Lease& lease, std::chrono::milliseconds duration) {
   return writer_.Do([&](WriteContext& context) { return RenewLease(context, lease, duration); });
 }
 
+void SqliteStore::SendRenew(const Lease& lease, std::chrono::milliseconds duration,
+                            Done<JobRecord> done) {
+  writer_.Send(
+      [lease, duration](WriteContext& context) { return RenewLease(context, lease, duration); },
+      std::move(done));
+}
+
 void SqliteStore::Append(const Lease& lease, std::vector<NewEvent> events,
-                         std::function<void(Result<std::int64_t>)> done) {
-  auto operation = std::make_unique<AppendOperation>(lease, std::move(events), std::move(done));
-  const std::size_t bytes = operation->bytes();
-  writer_.Post(std::move(operation), bytes);
+                         Done<std::int64_t> done) {
+  const std::size_t bytes = sizeof(lease) + BytesOf(events);
+  writer_.Send([lease, events = std::move(events)](
+                   WriteContext& context) { return AppendEvents(context, lease, events); },
+               std::move(done), bytes);
 }
 
 Result<std::int64_t> SqliteStore::AppendAndWait(const Lease& lease, std::vector<NewEvent> events) {
@@ -293,31 +339,19 @@ Result<std::int64_t> SqliteStore::AppendAndWait(const Lease& lease, std::vector<
 }
 
 Result<JobRecord> SqliteStore::Finish(const Lease& lease, const JobEnd& end) {
-  std::vector<StagedContent> staged;
-  std::vector<const PreparedContent*> contents;
-  staged.reserve(end.artifacts.size() + end.executables.size());
-  for (const NewArtifact& artifact : end.artifacts) {
-    Result<StagedContent> content = StagedContent::Of(writer_, artifact);
-    if (!content) return content.error();
-    staged.push_back(*std::move(content));
-    contents.push_back(&staged.back().content());
-  }
-  for (const NewExecutable& executable : end.executables) {
-    Result<StagedContent> content = StageExecutable(writer_, executable.bytes);
-    if (!content) return content.error();
-    staged.push_back(*std::move(content));
-  }
-  const std::span executables = std::span(staged).subspan(end.artifacts.size());
-  return WithSpecification(writer_.Do([&](WriteContext& context) -> Result<JobRecord> {
-    Result<JobRecord> job = FinishJob(context, lease, end, contents);
-    for (std::size_t i = 0; job && i < executables.size(); ++i) {
-      const NewExecutable& made = end.executables[i];
-      const auto kept = PutExecutableBlob(context, job->machine, made.slot, made.object_revision,
-                                          executables[i].content(), {});
-      if (!kept) return kept.error();
-    }
-    return job;
-  }));
+  StagedEnd staged;
+  if (const Status made = staged.Prepare(writer_, end); !made) return made.error();
+  return WithSpecification(
+      writer_.Do([&](WriteContext& context) { return staged.Run(context, lease, end); }));
+}
+
+void SqliteStore::SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
+                             Done<JobRecord> done) {
+  auto staged = std::make_shared<StagedEnd>();
+  if (const Status made = staged->Prepare(writer_, *end); !made) return done(made.error());
+  writer_.Send([lease, end = std::move(end), staged = std::move(staged)](
+                   WriteContext& context) { return staged->Run(context, lease, *end); },
+               std::move(done));
 }
 
 Result<JobRecord> SqliteStore::HandBack(const Lease& lease, const LossPolicy& policy) {
@@ -325,9 +359,21 @@ Result<JobRecord> SqliteStore::HandBack(const Lease& lease, const LossPolicy& po
       writer_.Do([&](WriteContext& context) { return HandBackJob(context, lease, policy); }));
 }
 
+void SqliteStore::SendHandBack(const Lease& lease, LossPolicy policy, Done<JobRecord> done) {
+  writer_.Send([lease, policy = std::move(policy)](
+                   WriteContext& context) { return HandBackJob(context, lease, policy); },
+               std::move(done));
+}
+
 Result<JobRecord> SqliteStore::Abandon(const Lease& lease, const LossPolicy& policy) {
   return WithSpecification(
       writer_.Do([&](WriteContext& context) { return AbandonJob(context, lease, policy); }));
+}
+
+void SqliteStore::SendAbandon(const Lease& lease, LossPolicy policy, Done<JobRecord> done) {
+  writer_.Send([lease, policy = std::move(policy)](
+                   WriteContext& context) { return AbandonJob(context, lease, policy); },
+               std::move(done));
 }
 
 // One write for each lease: a job that cannot be read must not keep the others from going on.
@@ -428,20 +474,6 @@ Result<ArtifactRecord> SqliteStore::GetArtifact(std::int64_t job, std::string_vi
     return Error{ErrorCode::kCellNotFound,
                  "job " + std::to_string(job) + " has no artifact " + std::string(name),
                  {}};
-  });
-}
-
-Result<std::string> SqliteStore::ReadBlob(std::string_view sha256) {
-  const auto unknown = [&] {
-    return Error{ErrorCode::kCellNotFound, "no content with SHA-256 " + std::string(sha256), {}};
-  };
-  const std::optional<std::string> name = BytesOfHex(sha256);
-  if (!name) return unknown();
-  return readers_->Read([&](Tables& tables) -> Result<std::string> {
-    const Result<std::optional<std::int64_t>> blob = tables.blobs.Find(*name);
-    if (!blob) return blob.error();
-    if (!*blob) return unknown();
-    return tables.blobs.Read(**blob);
   });
 }
 

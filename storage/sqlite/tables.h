@@ -14,6 +14,7 @@
 #include "storage/sqlite/queue_table.h"
 #include "storage/sqlite/schedule_table.h"
 #include "storage/sqlite/transaction.h"
+#include "storage/sqlite/upload_table.h"
 
 namespace rmlcell::storage::sqlite {
 
@@ -33,6 +34,7 @@ struct Tables {
         hosts(database),
         events(database),
         artifacts(database),
+        uploads(database),
         marks(database),
         log_parts(database),
         buried(database) {}
@@ -50,6 +52,7 @@ struct Tables {
   HostTable hosts;
   EventTable events;
   ArtifactTable artifacts;
+  UploadTable uploads;
   MarkTable marks;
   LogPartTable log_parts;
   BuriedTable buried;

@@ -47,6 +47,11 @@ class Writer {
   // refused.
   void Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes);
 
+  // The same for `work`, from WriteContext& to a Result or Status; `done` is called with what it
+  // gave, or with what kept it from becoming durable.
+  template <class Work, class Done>
+  void Send(Work work, Done done, std::size_t bytes = 0);
+
   // As of the newest commit.
   JobCounts job_counts() const { return {.queued = queued_jobs_, .running = running_jobs_}; }
   bool any_ready_job() const { return ready_jobs_ > 0; }
@@ -126,6 +131,29 @@ class Writer {
 
   std::thread thread_;  // last: it uses all of the above
 };
+
+template <class Work, class Done>
+void Writer::Send(Work work, Done done, std::size_t bytes) {
+  using Given = std::invoke_result_t<Work&, WriteContext&>;
+  class Operation final : public WriteOperation {
+   public:
+    Operation(Work work, Done done) : work_(std::move(work)), done_(std::move(done)) {}
+    Status Run(WriteContext& context) override {
+      given_.emplace(work_(context));
+      return *given_ ? Status() : Status(given_->error());
+    }
+    void Answer(const Status& status) override {
+      if (!status) return done_(Given(status.error()));
+      done_(*std::move(given_));
+    }
+
+   private:
+    Work work_;
+    Done done_;
+    std::optional<Given> given_;  // of the newest run
+  };
+  Post(std::make_unique<Operation>(std::move(work), std::move(done)), bytes);
+}
 
 template <class Work>
 auto Writer::Do(Work work) -> std::invoke_result_t<Work&, WriteContext&> {

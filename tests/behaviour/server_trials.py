@@ -283,6 +283,15 @@ def helpers(session):
             call("ProgramService/ExplainError", {"code": dice.choice(("348", "OPT-E348", "none", "", "E2", "9003", "HOLE_RADIUS_ZERO"))})
 
 
+def scripted_input(dice):
+    def from_outside(name, value):
+        return {"fromOutside": {"input": {"name": "%s[%d]" % (name, mostly(dice, (1, 2), (0, 300))), "value": value}}}
+    return dice.choice((from_outside("IL", {"logical": dice.random() < 0.5}), from_outside("IA", {"real": dice.choice((0, 1, 50))}),
+                        {"fromOutside": {"doorOpen": dice.random() < 0.5}}, {"resume": {}}, {"hold": "HOLD_REASON_HOLD"},
+                        {"stop": "HOLD_REASON_STOP"}, {"emergencyStop": True}, {"overridePercent": dice.choice((0, 1, 50))},
+                        {"power": True}))
+
+
 def some_job(dice):
     family, file_name, content = some_program(dice)
     job = {"kind": mostly(dice, ("JOB_KIND_SIMULATE", "JOB_KIND_SIMULATE", "JOB_KIND_CHECK"), ("JOB_KIND_RUN", 0)), "machine": machine_of(family),
@@ -290,7 +299,7 @@ def some_job(dice):
            "attemptsMax": dice.choice((0, 1, 3)), "budget": {"steps": dice.choice((20, 1000)), "virtualTimeNs": dice.choice((5, 200)) * 1_000_000_000}}
     options = {"mode": mostly(dice, (0, 2, 3, 4), (1, 5, 9)), "overridePercent": mostly(dice, (0, 100, 50, 145), (400, -1, 145.1)), "trace": dice.random() < 0.6,
                "variables": mostly(dice, ([], ["VR[1]", "VI[0..3]"]), (["none"],)), "toolpathToleranceMm": mostly(dice, (0, 0.1), (-1, 101)),
-               "inputs": [{"virtualTimeNs": int(1e9 * dice.choice((0, 0.5, 2))), "kind": dice.randrange(1, 9), "index": mostly(dice, (1, 2), (0, 300)), "value": dice.choice((0, 1, 50))}
+               "inputs": [{"virtualTimeNs": int(1e9 * dice.choice((0, 0.5, 2))), "input": scripted_input(dice)}
                           for _ in range(dice.randrange(3))],
                "parameters": mostly(dice, ({}, {"X_MAX": "120"} if family == "rml1" else {}), ({"none": "1"},))}
     if family == "optimo" and dice.random() < 0.3:

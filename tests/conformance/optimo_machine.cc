@@ -130,7 +130,7 @@ bool Ran::completed() const {
 }
 double Ran::time_s() const { return ToSeconds(run_->state().time); }
 std::string Ran::Var(const std::string& name) const {
-  return run_->ReadVariable(name).value_or("?");
+  return run_->ReadVariable(name).value_or(machine::VariableValue{.text = "?"}).text;
 }
 double Ran::Number(const std::string& name) const { return ParseDouble(Var(name)).value_or(NAN); }
 

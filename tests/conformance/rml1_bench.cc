@@ -61,15 +61,15 @@ class TraceObserver final : public machine::RunObserver {
 };
 
 double NumberOf(const machine::Run& run, std::string_view name) {
-  const std::optional<std::string> text = run.ReadVariable(name);
-  return text ? ParseDouble(*text).value() : 0.0;
+  const std::optional<machine::VariableValue> value = run.ReadVariable(name);
+  return value ? ParseDouble(value->text).value() : 0.0;
 }
 
 void ReadState(const machine::Run& run, Observed& seen) {
   seen.err = static_cast<int>(NumberOf(run, "ERR"));
   seen.com = static_cast<int>(NumberOf(run, "COM"));
-  seen.mode = run.ReadVariable("MODE").value();
-  seen.tool = run.ReadVariable("TOOL").value();
+  seen.mode = run.ReadVariable("MODE")->text;
+  seen.tool = run.ReadVariable("TOOL")->text;
   seen.vs = NumberOf(run, "VS");
   seen.vz = NumberOf(run, "VZ");
   seen.z0 = NumberOf(run, "Z0");
@@ -77,8 +77,8 @@ void ReadState(const machine::Run& run, Observed& seen) {
   seen.z2 = NumberOf(run, "Z2");
   seen.dwell_ms = static_cast<int>(NumberOf(run, "DW"));
   seen.rpm = static_cast<int>(NumberOf(run, "RPM"));
-  seen.rotation = run.ReadVariable("MC") == "on";
-  seen.spindle_on = run.ReadVariable("SPINDLE") == "on";
+  seen.rotation = run.ReadVariable("MC")->text == "on";
+  seen.spindle_on = run.ReadVariable("SPINDLE")->text == "on";
   seen.at.x = NumberOf(run, "X");
   seen.at.y = NumberOf(run, "Y");
   seen.at.z = NumberOf(run, "Z");
@@ -86,8 +86,8 @@ void ReadState(const machine::Run& run, Observed& seen) {
   seen.logical.x = NumberOf(run, "LX");
   seen.logical.y = NumberOf(run, "LY");
   seen.logical.z = NumberOf(run, "LZ");
-  seen.esc_m = run.ReadVariable("ESC.M").value();
-  seen.esc_t = run.ReadVariable("ESC.T").value();
+  seen.esc_m = run.ReadVariable("ESC.M")->text;
+  seen.esc_t = run.ReadVariable("ESC.T")->text;
 }
 
 std::vector<int> Numbers(const ErrorLog& log) {
@@ -202,8 +202,8 @@ Observed Bench::Look() const {
   seen.pending = device_->pending();
   seen.at = place(device_->carriage().physical());
   seen.logical = place(device_->carriage().logical());
-  seen.esc_m = ReadRegister(*device_, profile_, {}, "ESC.M").value();
-  seen.esc_t = ReadRegister(*device_, profile_, {}, "ESC.T").value();
+  seen.esc_m = ReadRegister(*device_, profile_, {}, "ESC.M")->text;
+  seen.esc_t = ReadRegister(*device_, profile_, {}, "ESC.T")->text;
   return seen;
 }
 

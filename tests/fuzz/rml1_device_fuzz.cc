@@ -156,8 +156,8 @@ void CheckRun(const machine::Parameters& parameters, const std::string& stream,
     RMLCELL_CHECK(std::abs(tip.x() * units - whole.moves[i].x) < 1e-3);
     RMLCELL_CHECK(std::abs(tip.z() * units - whole.moves[i].z) < 1e-3);
   }
-  RMLCELL_CHECK(run->ReadVariable("ERR") == std::to_string(whole.command_error));
-  RMLCELL_CHECK(run->ReadVariable("COM") == std::to_string(whole.link_error));
+  RMLCELL_CHECK(run->ReadVariable("ERR")->text == std::to_string(whole.command_error));
+  RMLCELL_CHECK(run->ReadVariable("COM")->text == std::to_string(whole.link_error));
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ class Local(InFolder):
         done = ask("simulate", self.file("w.S", "WAIT IL[20]\nVI[2] = 7\n"), "--inputs", inputs, "--vars", "VI[2]",
                    "--json")
         report = json.loads(done.stdout)
-        self.assertEqual(report["variables"], {"VI[2]": "7"})
+        self.assertEqual(report["variables"], [{"name": "VI[2]", "value": {"integer": "7"}, "text": "7"}])
         self.assertAlmostEqual(report["total"]["times"]["conditionS"], 2.5, places=6)
 
     def test_the_picture_goes_to_standard_output_and_the_run_keeps_its_exit_code(self):

@@ -1,4 +1,5 @@
 """The web port as curl meets it, and reflection."""
+import hashlib
 import json
 import os
 import socket
@@ -8,7 +9,7 @@ import urllib.error
 import urllib.parse
 import urllib.request
 
-from cell import (SQUARE, WithCell, grpc, inline_job, submit, wait_for_end)
+from cell import (SQUARE, WithCell, grpc, inline_job, job_pb2, submit, wait_for_end)
 
 
 class Web(WithCell):
@@ -97,6 +98,49 @@ class Web(WithCell):
             self.assertEqual(json.load(answer)["outcome"]["kind"], "KIND_COMPLETED")
         with urllib.request.urlopen(f"http://127.0.0.1:{self.cell.web_port}/") as page:
             self.assertIn(b"<html", page.read())
+
+    def send(self, path, body):
+        request = urllib.request.Request(f"http://127.0.0.1:{self.cell.web_port}{path}", data=body,
+                                         headers={"Content-Type": "application/octet-stream"})
+        with urllib.request.urlopen(request) as answer:
+            return json.load(answer)
+
+    def test_a_program_is_uploaded_without_a_slot_and_run(self):
+        bytes_of_program = SQUARE if isinstance(SQUARE, bytes) else SQUARE.encode()
+        digest = hashlib.sha256(bytes_of_program).hexdigest()
+        for query in ("", "?sha256=" + digest):
+            kept = self.send("/v1/uploads" + query, bytes_of_program)
+            self.assertEqual((kept["sha256"], kept["size"]), (digest, str(len(bytes_of_program))))
+            self.assertIn("expireTime", kept)
+        stub = self.cell.jobs()
+        job = job_pb2.Job(machine="machines/mill-1", kind=job_pb2.JOB_KIND_SIMULATE)
+        job.uploaded_program.sha256 = digest.upper()
+        job.uploaded_program.file_name = "square.rml"
+        name = submit(stub, job).name
+        wait_for_end(stub, name)
+        ended = stub.GetJob(job_pb2.GetJobRequest(name=name))
+        self.assertEqual(job_pb2.Job.State.Name(ended.state), "STATE_SUCCEEDED")
+        self.assertEqual(ended.uploaded_program.file_name, "square.rml")
+        job.uploaded_program.sha256 = "ab" * 32
+        self.refused(stub.SubmitJob, job_pb2.SubmitJobRequest(job=job), grpc.StatusCode.NOT_FOUND, "CELL-E9004")
+        with self.assertRaises(urllib.error.HTTPError) as caught:
+            self.send("/v1/uploads?sha256=" + "ab" * 32, bytes_of_program)
+        self.assertEqual(caught.exception.code, 400)
+        with self.assertRaises(urllib.error.HTTPError) as caught:
+            urllib.request.urlopen(f"http://127.0.0.1:{self.cell.web_port}/v1/uploads")
+        self.assertEqual((caught.exception.code, caught.exception.headers["Allow"]), (405, "POST"))
+
+    def test_a_stored_program_is_drawn_without_a_job(self):
+        bytes_of_program = SQUARE if isinstance(SQUARE, bytes) else SQUARE.encode()
+        self.send("/v1/machines/mill-1/programs/8/content?file_name=square.rml", bytes_of_program)
+        url = f"http://127.0.0.1:{self.cell.web_port}/v1/machines/mill-1/programs/8/picture.svg"
+        with urllib.request.urlopen(url + "?width=200") as answer:
+            self.assertEqual(answer.headers["Content-Type"], "image/svg+xml")
+            self.assertIn(b'width="200"', answer.read())
+        for query in ("?width=63", "?width=9000", "?width=x"):
+            with self.assertRaises(urllib.error.HTTPError) as caught:
+                urllib.request.urlopen(url + query)
+            self.assertEqual(caught.exception.code, 400, query)
 
     def test_a_form_that_is_none_is_refused(self):
         url = f"http://127.0.0.1:{self.cell.web_port}/v1/machines/optimo-1/programs/61/content"

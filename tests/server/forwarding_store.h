@@ -197,6 +197,13 @@ class ForwardingStore : public storage::Store {
     return store_.GetArtifact(job, name);
   }
   Result<std::string> ReadBlob(std::string_view sha256) override { return store_.ReadBlob(sha256); }
+  Result<std::unique_ptr<storage::BlobReader>> OpenBlob(std::string_view sha256) override {
+    return store_.OpenBlob(sha256);
+  }
+  Result<std::unique_ptr<storage::BlobWriter>> WriteBlob(std::string_view sha256,
+                                                         std::size_t size) override {
+    return store_.WriteBlob(sha256, size);
+  }
   std::unique_ptr<Subscription> Watch(std::function<void()> changed) override {
     return store_.Watch(std::move(changed));
   }

@@ -100,6 +100,7 @@ void ExpectSound(const std::string& path) {
               " (SELECT count(*) FROM program WHERE executable_blob = blob.id) +"
               " (SELECT count(*) FROM project WHERE body_blob = blob.id) +"
               " (SELECT count(*) FROM job_specification WHERE specification_blob = blob.id) +"
+              " (SELECT count(*) FROM upload WHERE upload.blob = blob.id) +"
               " (SELECT count(*) FROM artifact WHERE artifact.blob = blob.id) AS found FROM blob)"
               " WHERE told <> found");
   expect_none("chunks without a blob", "blob_chunk WHERE blob NOT IN (SELECT id FROM blob)");

@@ -182,7 +182,7 @@ TEST_F(SqliteKeep, OldStoreGetsItsMarks) {
       "ALTER TABLE job DROP COLUMN held; ALTER TABLE job DROP COLUMN not_before;"
       "ALTER TABLE job DROP COLUMN blocked; ALTER TABLE job DROP COLUMN family;"
       "ALTER TABLE job DROP COLUMN outcome_verdict; DROP TABLE machine_lock;"
-      "DROP TABLE machine_mark; ALTER TABLE machine ADD COLUMN state BLOB;"
+      "DROP TABLE machine_mark; DROP TABLE upload; ALTER TABLE machine ADD COLUMN state BLOB;"
       "ALTER TABLE machine ADD COLUMN state_blob INTEGER;"
       "CREATE INDEX job_unfinished ON job (state, kind) WHERE state < 2;"
       "PRAGMA user_version = 2");

@@ -21,7 +21,7 @@ class OptimoRun final : public machine::Run {
   machine::RunState state() const override { return control_.Snapshot(); }
   const machine::Outcome& outcome() const override { return control_.state().outcome; }
   std::uint64_t steps_executed() const override { return control_.state().steps; }
-  std::optional<std::string> ReadVariable(std::string_view name) const override {
+  std::optional<machine::VariableValue> ReadVariable(std::string_view name) const override {
     return ReadByName(control_.state().data.area, name);
   }
   void WriteVariable(std::string_view name, double value) override;

@@ -12,7 +12,7 @@ class OptimoStanding final : public machine::Standing {
       : parameters_(std::move(parameters)), s_(std::move(state)) {}
 
   machine::RunState state() const override;
-  std::optional<std::string> ReadVariable(std::string_view name) const override {
+  std::optional<machine::VariableValue> ReadVariable(std::string_view name) const override {
     return ReadByName(s_.data, name);
   }
   // Outputs follow their images: UPDATE ON is in force when no program runs. A second assist gas

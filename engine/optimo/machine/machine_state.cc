@@ -187,25 +187,32 @@ std::optional<Variable> VariableNamed(std::string_view name) {
   return std::nullopt;
 }
 
-std::optional<std::string> ReadByName(const DataArea& data, std::string_view name) {
+std::optional<machine::VariableValue> ReadByName(const DataArea& data, std::string_view name) {
   const std::optional<Variable> variable = VariableNamed(name);
   if (!variable) return std::nullopt;
   const std::size_t n = variable->index;
+  const auto real = [](float value) {
+    return machine::VariableValue{machine::VariableKind::kReal, RealText(value)};
+  };
+  const auto logical = [](bool value) {
+    return machine::VariableValue{machine::VariableKind::kLogical, value ? "1" : "0"};
+  };
   switch (variable->group) {
     case VariableGroup::kVr:
-      return RealText(data.vr[n]);
+      return real(data.vr[n]);
     case VariableGroup::kVi:
-      return std::to_string(static_cast<int>(data.vi[n]));
+      return machine::VariableValue{machine::VariableKind::kInteger,
+                                    std::to_string(static_cast<int>(data.vi[n]))};
     case VariableGroup::kVl:
-      return data.vl[n] ? "1" : "0";
+      return logical(data.vl[n]);
     case VariableGroup::kIl:
-      return data.il[n] ? "1" : "0";
+      return logical(data.il[n]);
     case VariableGroup::kOl:
-      return data.ol[n] ? "1" : "0";
+      return logical(data.ol[n]);
     case VariableGroup::kIa:
-      return RealText(data.ia[n]);
+      return real(data.ia[n]);
     case VariableGroup::kOa:
-      return RealText(data.oa[n]);
+      return real(data.oa[n]);
     case VariableGroup::kPar:
       break;
   }

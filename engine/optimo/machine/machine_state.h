@@ -44,7 +44,7 @@ struct Outputs {
 // "VR[5]", the groups in either case. Nothing for what names no variable; PAR is none of a machine.
 std::optional<Variable> VariableNamed(std::string_view name);
 // "VR[5]" -> "7.0". Nothing for what names no variable.
-std::optional<std::string> ReadByName(const DataArea& data, std::string_view name);
+std::optional<machine::VariableValue> ReadByName(const DataArea& data, std::string_view name);
 
 // What the variable holds when it is given this value; outputs: their images. Errors:
 // CellInvalidArgument: what only the machine writes (OPT-7.66), or a value that it cannot hold;

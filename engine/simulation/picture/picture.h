@@ -26,7 +26,7 @@ struct PictureOptions {
   // Up to four. Empty: XY for a mill; XY, direction, XZ and YZ for a machine with five axes.
   std::vector<PictureView> views;
   motion::MachineVector direction{1.0, -1.0, 0.8};  // of kDirection: from the part towards the eye
-  int width_px = 1600;                              // of the whole picture; its height follows
+  int width_px = 1600;  // of the whole picture; its height follows. Below 640 all of it is smaller
   bool machine_frame = false;  // rulers count from the zero of the machine, not of the work
 };
 

@@ -17,6 +17,7 @@ constexpr double kPictureColumn = 282.0;  // beside the panels
 constexpr double kPictureFooter = 30.0;
 constexpr double kCycleTimeWidth = 110.0;  // of the two words and the gap before them
 constexpr int kPictureWidthMin = 640;
+constexpr int kThumbnailMin = 64;  // narrower ones are not worth a look
 
 constexpr std::size_t kReasonsDrawn = 4;
 constexpr std::size_t kReasonLine = 38;  // characters that fit beside the picture
@@ -48,6 +49,7 @@ class PageWriter {
     zero_ = ZeroOf(options, shape_);
     zero_text_ = ZeroText(options, shape_);
     width_ = std::clamp(options.width_px, kPictureWidthMin, kPageWidthMax);
+    shown_px_ = options.width_px < kThumbnailMin ? width_ : std::min(options.width_px, width_);
     const std::vector<ViewFrame> frames = FramesOf(options, shape);
     depth_ = DepthOf(frames);
     const double panels_width =
@@ -88,7 +90,8 @@ class PageWriter {
   }
 
   std::string Opening(double height) const {
-    const std::string size = Pixels(width_) + "\" height=\"" + Pixels(std::ceil(height));
+    const double shown_height = std::ceil(height) * shown_px_ / width_;
+    const std::string size = Pixels(shown_px_) + "\" height=\"" + Pixels(std::ceil(shown_height));
     std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
     out +=
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + size + "\" viewBox=\"0 0 " +
@@ -371,6 +374,7 @@ class PageWriter {
   machine::MachineShape shape_;  // with the work origin of the end
   const RunReport& report_;
   int width_ = 0;
+  int shown_px_ = 0;  // a page that is shown narrower than it is laid out is made smaller
   DepthRange depth_;
   motion::MachinePoint zero_;
   std::string_view zero_text_;

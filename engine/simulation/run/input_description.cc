@@ -124,6 +124,11 @@ InputDescription DescribeInputs(const machine::MachineFamily& family,
   hash.Real(setup.override_percent);
   Add(hash, setup.breakpoint);
   Add(hash, setup.simul);
+  for (const machine::Breakpoint& breakpoint : setup.breakpoints) {
+    Add(hash, breakpoint.at);
+    hash.Text(breakpoint.condition);
+    hash.Number(breakpoint.from_pass);
+  }
   hash.Number(setup.inputs.size());
   for (const machine::InputChange& input : setup.inputs) {
     hash.Integer(input.at.count());

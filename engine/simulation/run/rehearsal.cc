@@ -84,6 +84,7 @@ Result<PreparedRun> PrepareRun(const ProgramMemory& memory, const RunOptions& op
   setup.forecast = true;  // who moves a machine says otherwise
   setup.override_percent = options.override_percent;
   setup.breakpoint = options.breakpoint;
+  setup.breakpoints = options.breakpoints;
   setup.simul = options.simul;
   setup.inputs = options.inputs;
   setup.budget = options.budget;

@@ -49,7 +49,9 @@ struct RunOptions {
   std::map<std::string, std::string> parameters{};  // over those of the machine
   machine::Mode mode = machine::Mode::kRemote;
   double override_percent = 100.0;
+  // As of RunSetup: that of the machine, which its state keeps, and those of a person.
   std::optional<machine::ProgramStep> breakpoint{};
+  std::vector<machine::Breakpoint> breakpoints{};
   std::optional<machine::ProgramStep> simul{};
   machine::InputScript inputs{};
   machine::RunBudget budget{};

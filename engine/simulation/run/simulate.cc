@@ -44,8 +44,10 @@ Result<BegunRun> Begin(const machine::MachineFamily& family, machine::RunSetup s
   BegunRun begun;
   begun.recorder = std::make_unique<Recorder>(family.Shape(setup.parameters),
                                               DescribeInputs(family, setup), std::move(products));
+  const std::vector<machine::Breakpoint> breakpoints = std::move(setup.breakpoints);
   Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(setup), *begun.recorder);
   if (!run) return run.error();
+  if (!breakpoints.empty()) (*run)->SetBreakpoints(breakpoints);
   begun.run = *std::move(run);
   begun.simulation = std::make_unique<Simulation>(*begun.run, *begun.recorder);
   return begun;
@@ -65,9 +67,7 @@ Result<SimulationResult> Simulate(const machine::MachineFamily& family, machine:
   }
   result.machine_state = run.SaveMachine();
   result.executables = run.made_executables();
-  for (const std::string& name : request.variables) {
-    if (auto value = run.ReadVariable(name)) result.variables[name] = *std::move(value);
-  }
+  result.variables = machine::ReadVariables(run, request.variables);
   // What was run is over: a drawing takes its room.
   begun->simulation.reset();
   begun->run.reset();

@@ -91,13 +91,13 @@ RunReport RunToEnd(Simulation& simulation, const SimulationOptions& options);
 
 struct SimulationResult {
   RunReport report;
-  std::string svg;                               // empty when not asked for
-  std::string plot;                              // empty when not asked for
-  std::optional<HeightField> material;           // what is left of the block, when there is one
-  std::optional<Target> target;                  // what that was compared with
-  std::string machine_state;                     // for the next run on this machine
-  std::map<int, std::string> executables;        // that the run made, by slot
-  std::map<std::string, std::string> variables;  // those asked for and known, by name
+  std::string svg;                                // empty when not asked for
+  std::string plot;                               // empty when not asked for
+  std::optional<HeightField> material;            // what is left of the block, when there is one
+  std::optional<Target> target;                   // what that was compared with
+  std::string machine_state;                      // for the next run on this machine
+  std::map<int, std::string> executables;         // that the run made, by slot
+  std::vector<machine::NamedVariable> variables;  // those asked for and known
 };
 
 // Everything in one call: describes the inputs, makes the run, drives it to its end, makes the

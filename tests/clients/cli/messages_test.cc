@@ -228,10 +228,16 @@ TEST_F(Messages, LongListsAreCutAfterFive) {
   EXPECT_THAT(text_of(0, 1), HasSubstr("travel        1 violation\n"));
 }
 
+void AddVariable(const std::string& name, const std::string& text, v1::RunReport& report) {
+  v1::Variable& variable = *report.add_variables();
+  variable.set_name(name);
+  variable.set_text(text);
+}
+
 TEST_F(Messages, VariablesStandInOrder) {
   v1::RunReport report;
   report.mutable_total();
-  for (const char* name : {"VR[10]", "VI[1]", "VR[2]"}) (*report.mutable_variables())[name] = "0.";
+  for (const char* name : {"VR[10]", "VI[1]", "VR[2]"}) AddVariable(name, "0.", report);
   const std::string text = ReportText(report);
   EXPECT_LT(text.find("VI[1]"), text.find("VR[2]"));
   EXPECT_LT(text.find("VR[2]"), text.find("VR[10]"));
@@ -333,7 +339,7 @@ TEST_F(Messages, AWholeReportOfALaser) {
   AddTurned("B", 0.75, end);
   report.mutable_tip_box()->mutable_low()->set_x(-1.0);
   report.mutable_tip_box()->mutable_high()->set_y(2.0);
-  (*report.mutable_variables())["VR[2]"] = "39.";
+  AddVariable("VR[2]", "39.", report);
   report.set_motion_check("only up to step 2");
   EXPECT_EQ(
       ReportText(report),
@@ -441,8 +447,8 @@ TEST_F(Messages, AWholeReportOfAMill) {
 TEST_F(Messages, LongNamesKeepABlank) {
   v1::RunReport report;
   report.mutable_total();
-  (*report.mutable_variables())["VARIABLE[123]"] = "a";
-  (*report.mutable_variables())["VARIABLE[123456]"] = "b";
+  AddVariable("VARIABLE[123]", "a", report);
+  AddVariable("VARIABLE[123456]", "b", report);
   EXPECT_THAT(ReportText(report), HasSubstr("VARIABLE[123] a\nVARIABLE[123456] b\n"));
 }
 

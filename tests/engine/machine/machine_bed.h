@@ -95,7 +95,7 @@ class MachineTest : public testing::Test {
     return over.empty() ? RunOver() : over.back();
   }
   std::string Value(std::string_view name) const {
-    return machine->ReadVariable(name).value_or("none");
+    return machine->ReadVariable(name).value_or(VariableValue{.text = "none"}).text;
   }
   MachineState state() const { return machine->state(); }
 

@@ -76,9 +76,9 @@ TEST_F(VirtualDriverTest, LateByMoreThanItMakesUpFor) {
   }
   GoOn(clock, clock + 0.95);
   driver->Pump(Clock(clock + 1.0) - SimTime(1));
-  EXPECT_EQ(driver->machine().ReadVariable("VI[2]"), "0");
+  EXPECT_EQ(driver->machine().ReadVariable("VI[2]")->text, "0");
   driver->Pump(Clock(clock + 1.0));
-  EXPECT_EQ(driver->machine().ReadVariable("VI[2]"), "1");
+  EXPECT_EQ(driver->machine().ReadVariable("VI[2]")->text, "1");
   EXPECT_EQ(driver->TakeLost(), SimTime(0));
 }
 

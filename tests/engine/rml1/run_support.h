@@ -35,7 +35,7 @@ class TestRun {
   Figures figures() const { return ByName(run_->figures()); }
   double time_s() const { return ToSeconds(run_->state().time); }
   std::string variable(std::string_view name) const {
-    return run_->ReadVariable(name).value_or("none");
+    return run_->ReadVariable(name).value_or(machine::VariableValue{.text = "none"}).text;
   }
 
  private:

@@ -299,8 +299,8 @@ class FakeRun final : public machine::Run {
   }
   const machine::Outcome& outcome() const override { return outcome_; }
   std::uint64_t steps_executed() const override { return steps_; }
-  std::optional<std::string> ReadVariable(std::string_view name) const override {
-    if (name == "VR[5]") return "7.0";
+  std::optional<machine::VariableValue> ReadVariable(std::string_view name) const override {
+    if (name == "VR[5]") return {{machine::VariableKind::kReal, "7.0"}};
     return std::nullopt;
   }
   std::vector<machine::Figure> figures() const override { return script_.figures; }

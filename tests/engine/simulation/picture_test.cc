@@ -485,11 +485,26 @@ TEST(Picture, SomeDirectionsOfTheHeadAreShown) {
   EXPECT_EQ(shown(121), 61u);
 }
 
-// Neither narrower than 640 px nor wider than 8192.
+// Laid out neither narrower than 640 px nor wider than 8192; a narrower one is made smaller as a
+// whole.
 TEST(Picture, WidthIsLimited) {
-  for (const auto& [asked, made] : {std::pair{1, 640}, {641, 641}, {8191, 8191}, {9000, 8192}}) {
+  struct Case {
+    int asked, made, shown;
+  };
+  for (const auto& [asked, made, shown] : {Case{1, 640, 640},
+                                           {63, 640, 640},
+                                           {64, 640, 64},
+                                           {320, 640, 320},
+                                           {640, 640, 640},
+                                           {641, 641, 641},
+                                           {8191, 8191, 8191},
+                                           {9000, 8192, 8192}}) {
     const std::string svg = SvgOf(Script(), Mill(), Completed(), {.width_px = asked});
     EXPECT_EQ(CountOf(svg, "viewBox=\"0 0 " + std::to_string(made) + " "), 1u) << asked;
+    EXPECT_EQ(CountOf(svg, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
+                               std::to_string(shown) + "\" "),
+              1u)
+        << asked;
   }
 }
 

@@ -43,7 +43,9 @@ TEST(Simulate, RunsToTheEndAndMakesTheProducts) {
   EXPECT_EQ(result->report.title, "part.FK");
   EXPECT_EQ(result->machine_state, "state");
   EXPECT_EQ(result->executables.at(12), "executable");
-  EXPECT_EQ(result->variables, (std::map<std::string, std::string>{{"VR[5]", "7.0"}}));
+  EXPECT_EQ(
+      result->variables,
+      (std::vector<machine::NamedVariable>{{"VR[5]", {machine::VariableKind::kReal, "7.0"}}}));
   EXPECT_NE(result->svg.find("</svg>"), std::string::npos);
   EXPECT_NE(trace.find("end completed"), std::string::npos);
 }

@@ -89,85 +89,6 @@ TEST(MachineFile, MistakesAreNamedWithTheirPlace) {
   EXPECT_EQ(broken.error().where->column, 11);
 }
 
-TEST(InputFile, EveryInput) {
-  v1::SimulationOptions options;
-  const Status read = ParseInputFile(
-      "# what comes from outside\n"
-      "0 IL[0] = 1\n 0.5\til[99] = off # and back\n\n1 IA[7] = -2.5\r\n2 DOOR = OPEN\n3 door = "
-      "closed\n"
-      "4 START\n5 RESUME\n6 HOLD\n7 STOP\n8 EMERGENCY\n9 OVERRIDE = 145\n"
-      "10 IL[1] = on\n11 IL[1] = true\n12 IL[1] = yes\n13 IL[1] = false\n14 IL[1] = no",
-      "in.txt", 145.0, options);
-  ASSERT_TRUE(read) << read.error().detail;
-  const auto logical = [](int index, double at, int value) {
-    return "inputs { virtual_time_ns: " + std::to_string(FromSeconds(at).count()) +
-           " kind: KIND_LOGICAL_INPUT index: " + std::to_string(index) +
-           " value: " + std::to_string(value) + " } ";
-  };
-  ExpectMessage(
-      options,
-      logical(0, 0, 1) + logical(99, 0.5, 0) +
-          "inputs { virtual_time_ns: 1000000000 kind: KIND_ANALOGUE_INPUT index: 7 value: -2.5 } "
-          "inputs { virtual_time_ns: 2000000000 kind: KIND_DOOR value: 1 } inputs { virtual_time_ns: 3000000000 kind: KIND_DOOR } "
-          "inputs { virtual_time_ns: 4000000000 kind: KIND_START } inputs { virtual_time_ns: 5000000000 kind: KIND_START } "
-          "inputs { virtual_time_ns: 6000000000 kind: KIND_HOLD } inputs { virtual_time_ns: 7000000000 kind: KIND_STOP } "
-          "inputs { virtual_time_ns: 8000000000 kind: KIND_EMERGENCY_STOP } "
-          "inputs { virtual_time_ns: 9000000000 kind: KIND_OVERRIDE value: 145 } " +
-          logical(1, 10, 1) + logical(1, 11, 1) + logical(1, 12, 1) + logical(1, 13, 0) +
-          logical(1, 14, 0));
-}
-
-TEST(InputFile, MistakesAreNamedWithTheirPlace) {
-  const std::string time = "a line begins with the time in seconds, from 0: 0.5 IL[20] = 1";
-  const std::string kinds =
-      "' is none of IL[n], IA[n], DOOR, START, HOLD, STOP, EMERGENCY, OVERRIDE";
-  for (const auto& [text, line, column, said] :
-       std::vector<std::tuple<std::string, int, int, std::string>>{
-           {"START", 1, 1, time},
-           {"1", 1, 1, time},
-           {"-1 START", 1, 1, time},
-           {"nan START", 1, 1, time},
-           {"\n\n1 GO", 3, 3, "'GO" + kinds},
-           {"12 " + std::string(50, 'G'), 1, 4, "'" + std::string(40, 'G') + kinds},
-           {"1 IL[100] = 1", 1, 3, "'IL[100]" + kinds},
-           {"1 IL[-1] = 1", 1, 3, "'IL[-1]" + kinds},
-           {"1 IL[x] = 1", 1, 3, "'IL[x]" + kinds},
-           {"1 IA[1 = 1", 1, 3, "'IA[1" + kinds},
-           {"1 IL[1]", 1, 3, "IL[1] needs '= VALUE'"},
-           {"1 DOOR", 1, 3, "DOOR needs '= VALUE'"},
-           {"1 IA[1]", 1, 3, "IA[1] needs '= VALUE'"},
-           {"1 OVERRIDE", 1, 3, "OVERRIDE needs '= VALUE'"},
-           {"1 START = 1", 1, 3, "START takes no value"},
-           {"1 IL[1] = maybe", 1, 0, "the value is no number, ON, OFF, OPEN or CLOSED"},
-           {"1 IL[1] = 2", 1, 3, "the value is 2; allowed are 0 and 1"},
-           {"1 DOOR = 0.5", 1, 3, "the value is 0.5; allowed are 0 and 1"},
-           {"1 OVERRIDE = 146", 1, 3, "the value is 146; allowed are above 0 to 145 %"},
-           {"1 OVERRIDE = 0", 1, 3, "the value is 0; allowed are above 0 to 145 %"}}) {
-    v1::SimulationOptions options;
-    const Status read = ParseInputFile(text, "in.txt", 145.0, options);
-    ASSERT_FALSE(read) << text;
-    EXPECT_EQ(read.error().code, ErrorCode::kCellBadText);
-    EXPECT_EQ(read.error().detail, "in.txt:" + std::to_string(line) + ": " + said);
-    EXPECT_EQ(read.error().where->line, line) << text;
-    EXPECT_EQ(read.error().where->column, column) << text;
-    EXPECT_EQ(options.inputs_size(), 0);
-  }
-}
-
-TEST(InputValue, AnaloguesAreNumbers) {
-  v1::ScriptedInput input;
-  input.set_kind(v1::ScriptedInput::KIND_ANALOGUE_INPUT);
-  input.set_value(1e300);
-  EXPECT_TRUE(CheckInputValue(input, 145.0));
-  input.set_value(std::numeric_limits<double>::infinity());
-  ASSERT_FALSE(CheckInputValue(input, 145.0));
-  EXPECT_EQ(CheckInputValue(input, 145.0).error().code, ErrorCode::kCellInvalidArgument);
-  input.set_kind(v1::ScriptedInput::KIND_OVERRIDE);
-  EXPECT_FALSE(CheckInputValue(input, 145.0));
-  input.set_value(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_FALSE(CheckInputValue(input, 145.0));
-}
-
 // FIPS 180-4: the message "abc", the empty one, and one of more than a block.
 TEST(Sha256, KnownDigests) {
   EXPECT_EQ(Sha256Hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
@@ -194,12 +115,12 @@ TEST(Sha256, IsReadInEitherCase) {
 // The same message gives the same bytes and text, whatever the order in which its map was filled.
 TEST(Encoding, IsStable) {
   v1::RunReport one, other;
-  for (const char* name : {"A", "B", "C", "D", "E"}) (*one.mutable_variables())[name] = name;
-  for (const char* name : {"E", "C", "A", "D", "B"}) (*other.mutable_variables())[name] = name;
+  for (const char* name : {"A", "B", "C", "D", "E"}) (*one.mutable_parameters())[name] = name;
+  for (const char* name : {"E", "C", "A", "D", "B"}) (*other.mutable_parameters())[name] = name;
   EXPECT_EQ(StableBytes(one), StableBytes(other));
   v1::RunReport back;
   ASSERT_TRUE(back.ParseFromString(StableBytes(one)));
-  EXPECT_EQ(back.variables().at("C"), "C");
+  EXPECT_EQ(back.parameters().at("C"), "C");
   EXPECT_EQ(StableJson(one, false), StableJson(other, false));
   v1::Outcome outcome;
   outcome.set_code("X");
@@ -214,7 +135,7 @@ TEST(StableJson, ALongListIsPrintedTheSame) {
   for (const int count : {99, 100, 101, 250}) {
     v1::RunReport report;
     report.set_family("a \"steps\":[ that is none, {");
-    (*report.mutable_variables())["steps"] = "\"steps\":[]";
+    (*report.mutable_parameters())["steps"] = "\"steps\":[]";
     report.mutable_outcome()->set_message("\"steps\":[");
     for (int n = 0; n < count; ++n) {
       report.add_steps()->set_step(n);

@@ -146,6 +146,8 @@ const std::string kGathered = "diagnostics_dropped: 7 gathered { code: 'RML1-E80
                               std::string(Lookup(ErrorCode::kRml1Clipped).advice) +
                               "' count: 7 first { line: 40 } last { line: 46 } } ";
 
+const machine::NamedVariable kVariables[] = {{"VR[1]", {machine::VariableKind::kReal, "2.5"}}};
+
 TEST(ReportMessage, EveryFigureHasItsField) {
   RunReport report;
   static_cast<simulation::ScopeFigures&>(report) = Scope();
@@ -200,7 +202,7 @@ TEST(ReportMessage, EveryFigureHasItsField) {
   const CatalogueEntry& hole = Lookup(ErrorCode::kHoleRadiusZero);
   const CatalogueEntry& turn = Lookup(ErrorCode::kFlyReversal);
   ExpectMessage(
-      ToProto(kGantry, report, {{"VR[1]", "2.5"}}),
+      ToProto(kGantry, report, kVariables),
       "family: 'optimo' title: 'part' outcome { kind: KIND_FAILED code: 'OPT-E348' symbol: '" +
           std::string(ConstantName(ErrorCode::kHoleRadiusZero)) +
           "' message: 'radius is 0' advice: '" + std::string(hole.advice) +
@@ -221,7 +223,7 @@ TEST(ReportMessage, EveryFigureHasItsField) {
           "at_target: true position { tip { x: 6 y: 7 z: 8 } column { x: 1 y: 2 z: 3 } turned { axis: 'A' value: 4 unit: UNIT_RADIAN } turned { axis: 'B' value: 5 unit: UNIT_RADIAN } } "
           "time_s: 9 count: 10 } violations_dropped: 9 "
           "figures { name: 'programmed.cut_length' unit: 'mm' value: 2.5 } "
-          "variables { key: 'VR[1]' value: '2.5' } parameters { key: 'VMAX' value: '400' } "
+          "variables { name: 'VR[1]' value { real: 2.5 } text: '2.5' } parameters { key: 'VMAX' value: '400' } "
           "inputs_hash: 'abc' engine_version: '1.2' trace { made: true records: 1 dropped: 2 } "
           "toolpath { made: true complete: true records: 3 } "
           "picture { made: true complete: true records: 4 } collisions: 'not modelled' ");

@@ -59,39 +59,26 @@ TEST(MakeParameters, DefaultsThenProfileThenValues) {
             ErrorCode::kCellParameterRange);
 }
 
-TEST(Inputs, EachKindAndTheOrderOfTime) {
-  v1::SimulationOptions options;
-  using K = v1::ScriptedInput;
-  const std::vector<std::pair<K::Kind, machine::InputKind>> kinds = {
-      {K::KIND_LOGICAL_INPUT, machine::InputKind::kLogical},
-      {K::KIND_ANALOGUE_INPUT, machine::InputKind::kAnalogue},
-      {K::KIND_DOOR, machine::InputKind::kDoor},
-      {K::KIND_START, machine::InputKind::kStart},
-      {K::KIND_HOLD, machine::InputKind::kHold},
-      {K::KIND_STOP, machine::InputKind::kStop},
-      {K::KIND_EMERGENCY_STOP, machine::InputKind::kEmergencyStop},
-      {K::KIND_OVERRIDE, machine::InputKind::kOverride}};
-  double at = 10.0;
-  for (const auto& [kind, own] : kinds) {
-    v1::ScriptedInput& input = *options.add_inputs();
-    input.set_kind(kind);
-    input.set_virtual_time_ns(FromSeconds(at -= 1.0).count());
-    input.set_index(7);
-    input.set_value(2.5);
-    EXPECT_EQ(FromProto(input).kind, own);
-    EXPECT_EQ(FromProto(input).index, 7);
-    EXPECT_EQ(FromProto(input).value, 2.5);
-    EXPECT_EQ(ToSeconds(FromProto(input).at), at);
-  }
-  v1::ScriptedInput& same = *options.add_inputs();  // of the same instant: in the order given
-  same.set_kind(K::KIND_STOP);
-  same.set_virtual_time_ns(2'000'000'000);
-  const machine::InputScript script = InputsOf(options);
-  ASSERT_EQ(script.size(), 9U);
-  for (std::size_t n = 1; n < script.size(); ++n) EXPECT_LE(script[n - 1].at, script[n].at);
-  EXPECT_EQ(script[0].kind, machine::InputKind::kOverride);
-  EXPECT_EQ(script[1].kind, machine::InputKind::kStop);
-  EXPECT_EQ(script[1].at, script[0].at + std::chrono::seconds(0));
+TEST(PrepareRun, TakesManyBreakpoints) {
+  const auto made = [](const std::vector<std::tuple<int, std::string, int>>& asked) {
+    v1::SimulationOptions options;
+    for (const auto& [step, condition, passes] : asked) {
+      v1::Breakpoint& one = *options.add_breakpoints();
+      one.mutable_step()->set_step(step);
+      one.set_condition(condition);
+      one.set_passes(passes);
+    }
+    return RunOptionsOf(options, {}, 12, machine::Mode::kCycle);
+  };
+  EXPECT_EQ(made({{7, "", 1}}).breakpoint, (machine::ProgramStep{.program = 12, .step = 7}));
+  const machine::ProgramStep seven{.program = 12, .step = 7};
+  const machine::ProgramStep eight{.program = 12, .step = 8};
+  using List = std::vector<machine::Breakpoint>;
+  EXPECT_EQ(made({{7, "", 0}, {8, "", 3}}).breakpoints,
+            (List{{.at = seven}, {.at = eight, .from_pass = 3}}));
+  EXPECT_EQ(made({{7, "VI[1] > 2", 0}}).breakpoints,
+            (List{{.at = seven, .condition = "VI[1] > 2"}}));
+  EXPECT_EQ(made({{7, "", 2}}).breakpoint, std::nullopt);
 }
 
 TEST(PrepareRun, TakesEverythingOver) {
@@ -113,7 +100,7 @@ TEST(PrepareRun, TakesEverythingOver) {
   options.add_breakpoints()->mutable_step()->set_step(7);
   options.mutable_simul()->set_program(13);
   options.mutable_simul()->set_step(8);
-  options.add_inputs()->set_kind(v1::ScriptedInput::KIND_START);
+  options.add_inputs()->mutable_input()->mutable_start();
   v1::Budget budget;
   budget.set_steps(9);
   budget.set_virtual_time_ns(10'000'000'000);
@@ -134,6 +121,7 @@ TEST(PrepareRun, TakesEverythingOver) {
   ASSERT_TRUE(setup.breakpoint);
   EXPECT_EQ(setup.breakpoint->program, 12);  // none named: that of the main program
   EXPECT_EQ(setup.breakpoint->step, 7);
+  EXPECT_TRUE(setup.breakpoints.empty());
   EXPECT_EQ(setup.simul->program, 13);
   EXPECT_EQ(setup.simul->step, 8);
   EXPECT_EQ(setup.inputs.size(), 1U);

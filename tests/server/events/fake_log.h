@@ -217,6 +217,10 @@ class FakeLog final : public storage::Store {
     return No();
   }
   Result<std::string> ReadBlob(std::string_view) override { return No(); }
+  Result<std::unique_ptr<storage::BlobReader>> OpenBlob(std::string_view) override { return No(); }
+  Result<std::unique_ptr<storage::BlobWriter>> WriteBlob(std::string_view, std::size_t) override {
+    return No();
+  }
 
  private:
   static Error No() { return {ErrorCode::kCellStoreFailed, "not in a log", {}}; }

@@ -146,14 +146,7 @@ void DispatcherBed::Advance(std::chrono::milliseconds by) {
 }
 
 // The executor takes work in order: when all its threads meet here, all before is done.
-void DispatcherBed::Settle() {
-  dispatcher();
-  const auto meeting = std::make_shared<std::latch>(kThreads + 1);
-  for (int i = 0; i < kThreads; ++i) {
-    executor_->Post([meeting] { meeting->arrive_and_wait(); });
-  }
-  meeting->arrive_and_wait();
-}
+void DispatcherBed::Settle() { dispatcher().Settle(); }
 
 std::shared_ptr<void> DispatcherBed::Occupy() {
   dispatcher();
@@ -186,6 +179,7 @@ bool DispatcherBed::Swept() {
 void DispatcherBed::End() {
   if (dispatcher_ == nullptr) return;
   dispatcher_->Drain(std::chrono::milliseconds(0));
+  dispatcher_->Settle();
   executor_.reset();
   dispatcher_.reset();
   feed_.reset();

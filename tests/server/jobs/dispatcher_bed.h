@@ -97,6 +97,10 @@ class HookedStore final : public ForwardingStore {
   std::atomic<int> renewals_that_fail = 0;
   std::atomic<int> acquires_that_fail = 0;
   std::atomic<int> machines_that_fail = 0;
+  std::atomic<int> appends_that_fail = 0;
+  // Ends are kept until Answer() and not written, as by a store that is not there for a while.
+  std::atomic<bool> keeps_ends = false;
+  std::atomic<int> ends_kept = 0;
   // Calls that have returned.
   std::atomic<int> renewals = 0;
   std::atomic<int> sweeps = 0;
@@ -120,23 +124,57 @@ class HookedStore final : public ForwardingStore {
     if (Fails(machines_that_fail)) return FullDisk();
     return store_.GetMachineMemory(id, wants_programs);
   }
-  Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest& request) override {
-    if (Fails(acquires_that_fail)) return FullDisk();
-    auto leased = store_.AcquireJobs(request);
-    if (after_acquire) after_acquire(leased && !leased->empty());
-    return leased;
+  // As the store itself answers: later, on a thread of its own.
+  void SendAcquire(storage::JobRequest request,
+                   storage::Done<std::vector<storage::LeasedJob>> done) override {
+    if (Fails(acquires_that_fail)) return done(FullDisk());
+    store_.SendAcquire(std::move(request),
+                       [this, done](Result<std::vector<storage::LeasedJob>> leased) {
+                         if (after_acquire) after_acquire(leased && !leased->empty());
+                         done(std::move(leased));
+                       });
   }
-  Result<storage::JobRecord> Renew(const storage::Lease& lease,
-                                   std::chrono::milliseconds duration) override {
-    auto renewed = Fails(renewals_that_fail) ? FullDisk() : store_.Renew(lease, duration);
-    ++renewals;
-    return renewed;
+  void SendRenew(const storage::Lease& lease, std::chrono::milliseconds duration,
+                 storage::Done<storage::JobRecord> done) override {
+    if (Fails(renewals_that_fail)) {
+      done(FullDisk());
+      ++renewals;
+      return;
+    }
+    store_.SendRenew(lease, duration, [this, done](Result<storage::JobRecord> job) {
+      done(std::move(job));
+      ++renewals;
+    });
   }
-  Result<storage::JobRecord> Finish(const storage::Lease& lease,
-                                    const storage::JobEnd& end) override {
-    if (Fails(finishes_that_fail)) return FullDisk();
-    return store_.Finish(lease, end);
+  void Append(const storage::Lease& lease, std::vector<storage::NewEvent> events,
+              storage::Done<std::int64_t> done) override {
+    if (Fails(appends_that_fail)) return done(FullDisk());
+    store_.Append(lease, std::move(events), std::move(done));
   }
+  void SendFinish(const storage::Lease& lease, std::shared_ptr<const storage::JobEnd> end,
+                  storage::Done<storage::JobRecord> done) override {
+    if (Fails(finishes_that_fail)) return done(FullDisk());
+    if (!keeps_ends) return store_.SendFinish(lease, std::move(end), std::move(done));
+    {
+      const std::lock_guard lock(kept_mutex_);
+      kept_.push_back([this, lease, end, done] { store_.SendFinish(lease, end, done); });
+    }
+    ++ends_kept;
+  }
+  void SendHandBack(const storage::Lease& lease, storage::LossPolicy policy,
+                    storage::Done<storage::JobRecord> done) override {
+    store_.SendHandBack(lease, std::move(policy), std::move(done));
+  }
+  void SendAbandon(const storage::Lease& lease, storage::LossPolicy policy,
+                   storage::Done<storage::JobRecord> done) override {
+    store_.SendAbandon(lease, std::move(policy), std::move(done));
+  }
+  void Answer() {
+    keeps_ends = false;
+    const std::lock_guard lock(kept_mutex_);
+    for (const auto& kept : std::exchange(kept_, {})) kept();
+  }
+
   Result<std::vector<storage::JobRecord>> Expire(const storage::LossPolicy& policy) override {
     auto expired = store_.Expire(policy);
     ++sweeps;
@@ -144,6 +182,9 @@ class HookedStore final : public ForwardingStore {
   }
 
  private:
+  std::mutex kept_mutex_;
+  std::vector<std::function<void()>> kept_;  // guarded by kept_mutex_
+
   static bool Fails(std::atomic<int>& left) {
     if (left == 0) return false;
     --left;

@@ -44,6 +44,77 @@ TEST(DispatcherFailures, AnEndThatTheStoreDoesNotTakeIsStoredALittleLater) {
   EXPECT_EQ(Must(store.GetProgram("optimo-1", 32)).executable, "executable");
 }
 
+// scale-out.md IF-03: nor do events, and all of them come in their order.
+TEST(DispatcherFailures, EventsThatTheStoreDoesNotTakeAreStoredALittleLater) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  bed.hooks.appends_that_fail = 3;
+  worker.Events(2, "a");
+  worker.Events(1, "b");
+  while (worker.line().Next(v1::WorkResponse::kEventsStored).events_stored().count() < 3) {
+  }
+  EXPECT_EQ(bed.hooks.appends_that_fail, 0);
+  // The end takes with it what is not stored yet.
+  bed.hooks.appends_that_fail = 1'000'000;
+  worker.Events(1, "c");
+  worker.Finish();
+  EXPECT_EQ(worker.Released(), true);
+  std::vector<std::string> told;
+  for (const v1::JobEvent& event : bed.Events(job)) {
+    if (event.has_message()) told.push_back(event.message().text());
+    if (event.has_ended()) told.emplace_back("end");
+  }
+  EXPECT_THAT(told, ElementsAre("a", "a", "b", "c", "end"));
+  EXPECT_EQ(bed.Job(job).attempts, 1);
+}
+
+// When the lease cannot be ours any more the attempt is lost, with what the worker told of it.
+TEST(DispatcherFailures, EventsThatAreNotTakenInTheTimeOfALeaseAreAnAttemptThatWasLost) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  bed.hooks.appends_that_fail = 1'000'000;
+  worker.Events(1, "a");
+  bed.Settle();
+  EXPECT_FALSE(worker.line().Has(v1::WorkResponse::kRelease));
+  bed.Advance(milliseconds(bed.config.workers_lease_ms));
+  EXPECT_EQ(worker.Released(), false);
+  bed.hooks.appends_that_fail = 0;
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.assignment().lease().attempt(), 2);
+  worker.Finish();
+  EXPECT_TRUE(bed.Becomes(job, JobState::kSucceeded));
+}
+
+// scale-out.md IF-01: a store that is away holds up no thread of the server, however many workers
+// wait for it.
+TEST(DispatcherFailures, AStoreThatDoesNotAnswerHoldsUpNoThread) {
+  DispatcherBed bed;
+  std::vector<std::unique_ptr<FakeWorker>> workers;
+  std::vector<std::int64_t> jobs;
+  constexpr int kWorkers = 10;  // more than the executor has threads
+  for (int i = 0; i < kWorkers; ++i) {
+    jobs.push_back(bed.server.SubmitCheck());
+    workers.push_back(std::make_unique<FakeWorker>(bed.dispatcher(), "w" + std::to_string(i)));
+    ASSERT_TRUE(workers.back()->Take());
+  }
+  bed.hooks.keeps_ends = true;
+  for (const auto& worker : workers) worker->Finish();
+  ASSERT_TRUE(Eventually([&] { return bed.hooks.ends_kept == kWorkers; }));
+  const std::int64_t another = bed.server.SubmitCheck();
+  FakeWorker free_one(bed.dispatcher(), "free");
+  ASSERT_TRUE(free_one.Take());
+  EXPECT_EQ(free_one.job(), another);
+  bed.hooks.Answer();
+  for (const auto& worker : workers) EXPECT_EQ(worker->Released(), true);
+  for (const std::int64_t job : jobs) EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
+  free_one.Finish();
+  EXPECT_EQ(free_one.Released(), true);
+}
+
 // Also when its worker is gone meanwhile.
 TEST(DispatcherFailures, AnEndIsStoredThoughItsWorkerIsGone) {
   DispatcherBed bed;

@@ -210,6 +210,9 @@ TEST_F(JobLimits, OfWhatComesLater) {
   constexpr ErrorCode kLater = ErrorCode::kCellUnimplemented;
   EXPECT_EQ(Asked([](v1::Job& job) { job.mutable_run(); }), kLater);
   EXPECT_EQ(Asked([](v1::Job& job) { job.set_continues("jobs/1"); }), kLater);
+}
+
+TEST_F(JobLimits, OfBreakpoints) {
   const auto breakpoint = [&](const std::function<void(v1::Breakpoint&)>& change) {
     return Asked([&](v1::Job& job) {
       v1::Breakpoint& one = *job.mutable_simulation()->add_breakpoints();
@@ -218,13 +221,18 @@ TEST_F(JobLimits, OfWhatComesLater) {
     });
   };
   EXPECT_EQ(breakpoint([](v1::Breakpoint&) {}), std::nullopt);
-  EXPECT_EQ(breakpoint([](v1::Breakpoint& one) { one.set_condition("VI[1] > 2"); }), kLater);
-  EXPECT_EQ(breakpoint([](v1::Breakpoint& one) { one.set_passes(1); }), kLater);
-  EXPECT_EQ(Asked([](v1::Job& job) {
-              for (int i = 0; i < 2; ++i)
-                job.mutable_simulation()->add_breakpoints()->mutable_step()->set_step(1);
-            }),
-            kLater);
+  EXPECT_EQ(breakpoint([](v1::Breakpoint& one) { one.set_condition("VI[1] > 2"); }), std::nullopt);
+  EXPECT_EQ(breakpoint([](v1::Breakpoint& one) { one.set_condition("VI[1] >"); }), kInvalid);
+  EXPECT_EQ(breakpoint([](v1::Breakpoint& one) { one.set_passes(1'000'000); }), std::nullopt);
+  EXPECT_EQ(breakpoint([](v1::Breakpoint& one) { one.set_passes(-1); }), kInvalid);
+  const auto many = [&](int count) {
+    return Asked([&](v1::Job& job) {
+      for (int i = 0; i < count; ++i)
+        job.mutable_simulation()->add_breakpoints()->mutable_step()->set_step(1);
+    });
+  };
+  EXPECT_EQ(many(1000), std::nullopt);
+  EXPECT_EQ(many(1001), kInvalid);
 }
 
 TEST_F(JobLimits, OfThePlaceInTheQueue) {
@@ -256,20 +264,19 @@ TEST_F(JobLimits, OfThePlaceInTheQueue) {
 }
 
 TEST_F(JobLimits, OfInputsOverTime) {
-  const auto asked = [&](std::int64_t at_ns, int kind, int index, double value) {
+  const auto asked = [&](std::int64_t at_ns, const std::string& name) {
     return Asked([&](v1::Job& job) {
       v1::ScriptedInput& input = *job.mutable_simulation()->add_inputs();
       input.set_virtual_time_ns(at_ns);
-      input.set_kind(static_cast<v1::ScriptedInput::Kind>(kind));
-      input.set_index(index);
-      input.set_value(value);
+      v1::Variable& variable = *input.mutable_input()->mutable_from_outside()->mutable_input();
+      variable.set_name(name);
+      variable.mutable_value()->set_logical(true);
     });
   };
-  constexpr int kLogical = v1::ScriptedInput::KIND_LOGICAL_INPUT;
-  for (const int index : {0, 1, 99}) EXPECT_EQ(asked(0, kLogical, index, 1.0), std::nullopt);
-  for (const int index : {-1, 100}) EXPECT_EQ(asked(0, kLogical, index, 1.0), kInvalid) << index;
-  EXPECT_EQ(asked(-1, kLogical, 1, 1.0), kInvalid);
-  for (const int kind : {0, 99}) EXPECT_EQ(asked(1, kind, 1, 1.0), kInvalid) << kind;
+  for (const char* name : {"IL[0]", "IL[1]", "IL[99]"}) EXPECT_EQ(asked(0, name), std::nullopt);
+  for (const char* name : {"IL[-1]", "IL[100]"}) EXPECT_EQ(asked(0, name), kInvalid) << name;
+  EXPECT_EQ(asked(-1, "IL[1]"), kInvalid);
+  EXPECT_EQ(Asked([](v1::Job& job) { job.mutable_simulation()->add_inputs(); }), kInvalid);
 }
 
 // Job.inline_slot: 1 to 99, 0 is 1. SlotProgram.slot: 1 to 99, no slot twice, nor that of the

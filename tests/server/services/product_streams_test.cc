@@ -124,6 +124,24 @@ TEST_F(ProductStreamsTest, EachLevelHasEightTimesTheToleranceOfTheOneBefore) {
   EXPECT_TRUE(BendIsLeft(0.1, 1, 801));
 }
 
+// Where it is asked for the header tells of each level what its own stream would hold.
+TEST_F(ProductStreamsTest, TheHeaderTellsHowLargeEachLevelIs) {
+  const std::int64_t job = room.Ended(
+      "toolpath", Frames({BlockWithBend(20), BlockWithBend(5'000), BlockWithBend(500'000)}));
+  auto stream = room.Toolpath(JobName(job), 2, true);
+  const v1::ToolpathHeader told = stream.Rest().at(0).header();
+  ASSERT_EQ(told.levels_size(), 6);
+  double tolerance_mm = 0.01;
+  for (int level = 0; level < 6; ++level, tolerance_mm *= 8.0) {
+    EXPECT_EQ(told.levels(level).level(), level);
+    EXPECT_NEAR(told.levels(level).tolerance_mm(), tolerance_mm, 1e-9);
+    Blocks(job, level);
+    EXPECT_EQ(told.levels(level).bytes(), header->bytes()) << level;
+    EXPECT_TRUE(header->levels().empty());
+  }
+  EXPECT_GT(told.levels(0).bytes(), told.levels(5).bytes());
+}
+
 // The toolpath that is stored has a tolerance of 0.001 to 10 mm, whatever is asked for.
 TEST_F(ProductStreamsTest, LevelsCountFromTheToleranceThatTheStoredOneHas) {
   EXPECT_TRUE(BendIsLeft(100.0, 1, 81'000));

@@ -77,11 +77,12 @@ OpenedStream<v1::WatchMachineResponse> StreamBed::WatchMachine(
       [&](grpc::ClientContext* context) { return machine_stub_->WatchMachine(context, request); });
 }
 
-OpenedStream<v1::StreamJobToolpathResponse> StreamBed::Toolpath(const std::string& name,
-                                                                int level) {
+OpenedStream<v1::StreamJobToolpathResponse> StreamBed::Toolpath(const std::string& name, int level,
+                                                                bool with_levels) {
   v1::StreamJobToolpathRequest request;
   request.set_name(name);
   request.set_level(level);
+  request.set_with_levels(with_levels);
   return OpenedStream<v1::StreamJobToolpathResponse>(
       [&](grpc::ClientContext* context) { return stub_->StreamJobToolpath(context, request); });
 }

@@ -126,7 +126,8 @@ class StreamBed {
   OpenedStream<v1::WatchJobResponse> Watch(const v1::WatchJobRequest& request);
   OpenedStream<v1::WatchCellResponse> WatchCell(const v1::WatchCellRequest& request);
   OpenedStream<v1::WatchMachineResponse> WatchMachine(const v1::WatchMachineRequest& request);
-  OpenedStream<v1::StreamJobToolpathResponse> Toolpath(const std::string& name, int level);
+  OpenedStream<v1::StreamJobToolpathResponse> Toolpath(const std::string& name, int level,
+                                                       bool with_levels = false);
   OpenedStream<v1::StreamJobTraceResponse> Trace(const std::string& name);
   OpenedStream<v1::StreamJobArtifactResponse> Artifact(const std::string& name,
                                                        const std::string& artifact);
@@ -171,7 +172,7 @@ class StreamBed {
     }
     grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* StreamJobToolpath(
         grpc::CallbackServerContext*, const v1::StreamJobToolpathRequest* request) override {
-      return MakeToolpathStream(needs_, request->name(), request->level())->Begin();
+      return MakeToolpathStream(needs_, *request)->Begin();
     }
     grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* StreamJobTrace(
         grpc::CallbackServerContext*, const v1::StreamJobTraceRequest* request) override {

@@ -26,7 +26,7 @@ class WebResourcesTest : public testing::Test {
   WebResourcesTest() { config.limit_program_bytes = 100; }
 
   static web::UploadHeader Header(const std::string& form = {}) {
-    return {.path = {.machine = "optimo-1", .slot = 45, .form = form},
+    return {.path = web::ProgramContentPath{.machine = "optimo-1", .slot = 45, .form = form},
             .file_name = "plate.S",
             .size = 9};
   }
@@ -51,7 +51,7 @@ class WebResourcesTest : public testing::Test {
   Gate gate{"secret"};
   JobBook book{bed.store(), config};
   ProgramBook programs{bed.store(), config};
-  WebResources resources{gate, book, programs};
+  WebResources resources{gate, bed.store(), book, programs};
   v1::Program stored;
 };
 

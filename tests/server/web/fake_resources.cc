@@ -60,13 +60,20 @@ class Sink : public UploadSink {
       const auto status = bridge::ToRpcStatus({ErrorCode::kCellEmptyProgram, "", {}});
       return {.message_type = {}, .message = {}, .status = status.SerializeAsString()};
     }
+    if (std::holds_alternative<UploadsPath>(header_.path)) {
+      v1::UploadContentResponse response;
+      response.set_size(static_cast<std::int64_t>(bytes_.size()));
+      return {.message_type = "rmlcell.v1.UploadContentResponse",
+              .message = response.SerializeAsString(),
+              .status = {}};
+    }
     v1::Program program;
-    program.set_name("machines/" + header_.path.machine + "/programs/" +
-                     std::to_string(header_.path.slot));
+    const auto& path = std::get<ProgramContentPath>(header_.path);
+    program.set_name("machines/" + path.machine + "/programs/" + std::to_string(path.slot));
     program.set_file_name(header_.file_name);
     program.set_object_bytes(static_cast<std::int64_t>(bytes_.size()));
     const std::lock_guard lock(owner_.mutex);
-    owner_.uploads[header_.path.machine + "/" + std::to_string(header_.path.slot)] = bytes_;
+    owner_.uploads[path.machine + "/" + std::to_string(path.slot)] = bytes_;
     return {
         .message_type = "rmlcell.v1.Program", .message = program.SerializeAsString(), .status = {}};
   }
@@ -124,9 +131,9 @@ Result<std::unique_ptr<UploadSink>> FakeResources::BeginUpload(const UploadHeade
   const std::lock_guard lock(mutex);
   last_caller = caller;
   headers.push_back(header);
-  if (header.path.machine != "optimo-1") {
-    return Error{ErrorCode::kCellUnknownMachine, header.path.machine, {}};
-  }
+  const auto* path = std::get_if<ProgramContentPath>(&header.path);
+  if (path != nullptr && path->machine != "optimo-1")
+    return Error{ErrorCode::kCellUnknownMachine, path->machine, {}};
   return std::unique_ptr<UploadSink>(std::make_unique<Sink>(*this, header));
 }
 

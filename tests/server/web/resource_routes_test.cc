@@ -56,6 +56,29 @@ TEST(ResourceRoutes, Slots) {
   }
 }
 
+TEST(ResourceRoutes, PicturesOfPrograms) {
+  const auto width = [](const std::string& query) {
+    const ResourceRoute route =
+        RouteResource(At("/v1/machines/optimo-1/programs/45/picture.svg", query));
+    EXPECT_TRUE(route.is_resource);
+    if (!route.path) return -1;
+    const auto& path = std::get<ProgramPicturePath>(*route.path);
+    EXPECT_EQ(path.machine + "/" + std::to_string(path.slot), "optimo-1/45");
+    return path.width_px;
+  };
+  EXPECT_EQ(width(""), 0);
+  EXPECT_EQ(width("width=240"), 240);
+  for (const char* wrong : {"width=-1", "width=x", "width=1.5", "width=99999999999"})
+    EXPECT_EQ(width(wrong), -1) << wrong;
+}
+
+TEST(ResourceRoutes, Uploads) {
+  const ResourceRoute route = RouteResource(At("/v1/uploads"));
+  ASSERT_TRUE(route.path);
+  EXPECT_TRUE(std::holds_alternative<UploadsPath>(*route.path));
+  EXPECT_FALSE(RouteResource(At("/v1/uploads/1")).is_resource);
+}
+
 TEST(UploadRoutes, Query) {
   const ProgramContentPath path{.machine = "optimo-1", .slot = 45, .form = {}};
   const std::string hash = "0189AFaf" + std::string(56, 'A');

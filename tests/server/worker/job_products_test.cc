@@ -79,9 +79,9 @@ TEST_F(JobProducts, ACheckTakesTheInputsOfTheJob) {
   EXPECT_THAT(Report().motion_check(), HasSubstr("only up to step 2, line 2"));
   v1::ScriptedInput& input = *assignment.mutable_job()->mutable_simulation()->add_inputs();
   input.set_virtual_time_ns(5'000'000'000);
-  input.set_kind(v1::ScriptedInput::KIND_LOGICAL_INPUT);
-  input.set_index(16);
-  input.set_value(1.0);
+  v1::Variable& variable = *input.mutable_input()->mutable_from_outside()->mutable_input();
+  variable.set_name("IL[16]");
+  variable.mutable_value()->set_logical(true);
   Work(assignment);
   EXPECT_THAT(Codes(), ElementsAre("OPT-E7301"));
   EXPECT_EQ(Report().diagnostics(0).virtual_time_ns(), 5'000'000'000);
@@ -206,6 +206,25 @@ TEST_F(JobProducts, ABudgetOfOutputMayBeUsedUp) {
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_BUDGET_EXCEEDED);
   EXPECT_EQ(Outcome().code(), "CELL-E9306");
   EXPECT_THAT(Names(), ElementsAre());
+}
+
+// Of several breakpoints the one whose condition holds first ends what nobody starts again.
+TEST_F(JobProducts, ASimulationHaltsAtABreakpointWithItsCondition) {
+  v1::WorkerAssignment assignment = Assignment(
+      v1::JOB_KIND_SIMULATE, "VI[1] = 0\n10 VI[1] = VI[1] + 1\nDELAY 1\nIF VI[1] < 10 THEN 10\n");
+  v1::SimulationOptions& options = *assignment.mutable_job()->mutable_simulation();
+  options.add_variables("VI[1]");
+  v1::Breakpoint& conditional = *options.add_breakpoints();
+  conditional.mutable_step()->set_step(3);
+  conditional.set_condition("VI[1] > 4");
+  v1::Breakpoint& late = *options.add_breakpoints();
+  late.mutable_step()->set_step(2);
+  late.set_passes(9);
+  Work(assignment);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_STOPPED);
+  ASSERT_EQ(Report().variables_size(), 1);
+  EXPECT_EQ(Report().variables(0).value().integer(), 5);
+  EXPECT_EQ(Report().variables(0).text(), "5");
 }
 
 }  // namespace

@@ -299,7 +299,7 @@ TEST(MachineRules, ExecutionsSinceSelection) {
     Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(std::move(setup), nobody);
     EXPECT_TRUE(bool(run));
     (*run)->Advance(At(1.0));
-    return std::pair((*run)->ReadVariable("VI[2]").value_or("?"), (*run)->SaveMachine());
+    return std::pair((*run)->ReadVariable("VI[2]")->text, (*run)->SaveMachine());
   };
   auto [first, state] = run_of(45, "");
   EXPECT_EQ(first, "1");

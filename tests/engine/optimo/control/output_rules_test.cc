@@ -261,16 +261,26 @@ TEST(OutputRules, VariablesByName) {
   data.vl[1] = data.il[2] = data.ol[3] = true;
   data.ia[4] = 1.25F;
   data.oa[0] = 2.5F;
-  EXPECT_EQ(ReadByName(data, "VR[5]"), "7.5");
-  EXPECT_EQ(ReadByName(data, "vi[99]"), "-3");
-  EXPECT_EQ(ReadByName(data, "VL[1]"), "1");
-  EXPECT_EQ(ReadByName(data, "Il[2]"), "1");
-  EXPECT_EQ(ReadByName(data, "oL[3]"), "1");
-  EXPECT_EQ(ReadByName(data, "OL[2]"), "0");
-  EXPECT_EQ(ReadByName(data, "VL[0]"), "0");
-  EXPECT_EQ(ReadByName(data, "IL[0]"), "0");
-  EXPECT_EQ(ReadByName(data, "IA[4]"), "1.25");
-  EXPECT_EQ(ReadByName(data, "OA[0]"), "2.5");
+  EXPECT_EQ(ReadByName(data, "VR[5]"),
+            (machine::VariableValue{machine::VariableKind::kReal, "7.5"}));
+  EXPECT_EQ(ReadByName(data, "vi[99]"),
+            (machine::VariableValue{machine::VariableKind::kInteger, "-3"}));
+  EXPECT_EQ(ReadByName(data, "VL[1]"),
+            (machine::VariableValue{machine::VariableKind::kLogical, "1"}));
+  EXPECT_EQ(ReadByName(data, "Il[2]"),
+            (machine::VariableValue{machine::VariableKind::kLogical, "1"}));
+  EXPECT_EQ(ReadByName(data, "oL[3]"),
+            (machine::VariableValue{machine::VariableKind::kLogical, "1"}));
+  EXPECT_EQ(ReadByName(data, "OL[2]"),
+            (machine::VariableValue{machine::VariableKind::kLogical, "0"}));
+  EXPECT_EQ(ReadByName(data, "VL[0]"),
+            (machine::VariableValue{machine::VariableKind::kLogical, "0"}));
+  EXPECT_EQ(ReadByName(data, "IL[0]"),
+            (machine::VariableValue{machine::VariableKind::kLogical, "0"}));
+  EXPECT_EQ(ReadByName(data, "IA[4]"),
+            (machine::VariableValue{machine::VariableKind::kReal, "1.25"}));
+  EXPECT_EQ(ReadByName(data, "OA[0]"),
+            (machine::VariableValue{machine::VariableKind::kReal, "2.5"}));
   for (const char* none : {"VR", "VR[", "VR[5", "VR5]", "VR[100]", "VR[-1]", "VR[x]", "VR[]",
                            "XR[5]", "VX[5]", "V[5]", "VRR[5]", "[5]", ""}) {
     EXPECT_EQ(ReadByName(data, none), std::nullopt) << none;

@@ -136,7 +136,7 @@ TEST(RunInterface, NothingComesAfterTheEnd) {
   run->End(machine::OutcomeKind::kCancelled, ErrorCode::kCancelled);
   EXPECT_EQ(run->outcome().kind, machine::OutcomeKind::kCompleted);
   EXPECT_FALSE(run->outcome().code.has_value());
-  EXPECT_EQ(run->ReadVariable("VI[99]"), "0");
+  EXPECT_EQ(run->ReadVariable("VI[99]")->text, "0");
 }
 
 // Inputs beyond the last index act on the last one, those below the first on the first.

@@ -245,7 +245,8 @@ Ran RunText(const std::string& main, const RunOptions& options) {
   ran.machine_state = (*run)->SaveMachine();
   ran.executables = (*run)->made_executables();
   for (const std::string& name : options.variables) {
-    ran.variables[name] = (*run)->ReadVariable(name).value_or("?");
+    ran.variables[name] =
+        (*run)->ReadVariable(name).value_or(machine::VariableValue{.text = "?"}).text;
   }
   return ran;
 }

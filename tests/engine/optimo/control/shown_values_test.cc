@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 std::string Shown(float value) {
   DataArea data;
   data.vr[99] = value;
-  return ReadByName(data, "VR[99]").value_or("?");
+  return ReadByName(data, "VR[99]")->text;
 }
 
 // OPT-B.39: the shortest decimal form with at least one decimal; an INTEGER without a point.
@@ -28,7 +28,7 @@ TEST(ShownValues, AreShortest) {
   EXPECT_EQ(Shown(80.0F), "80.0");
   DataArea data;
   data.vi[5] = 5.0F;
-  EXPECT_EQ(ReadByName(data, "VI[5]"), "5");
+  EXPECT_EQ(ReadByName(data, "VI[5]")->text, "5");
   EXPECT_EQ(Value("VR[0]=1262.139005\n", "VR[0]"), "1262.139");
 }
 
@@ -64,16 +64,16 @@ TEST(ShownValues, NamesOfVariables) {
   data.ia[4] = 4.5F;
   data.oa[5] = 5.5F;
   data.vi[0] = -7.0F;
-  EXPECT_EQ(ReadByName(data, "VL[1]"), "1");
-  EXPECT_EQ(ReadByName(data, "vl[2]"), "0");
-  EXPECT_EQ(ReadByName(data, "IL[2]"), "1");
-  EXPECT_EQ(ReadByName(data, "il[1]"), "0");
-  EXPECT_EQ(ReadByName(data, "Ol[3]"), "1");
-  EXPECT_EQ(ReadByName(data, "OL[2]"), "0");
-  EXPECT_EQ(ReadByName(data, "IA[4]"), "4.5");
-  EXPECT_EQ(ReadByName(data, "OA[5]"), "5.5");
-  EXPECT_EQ(ReadByName(data, "VI[0]"), "-7");
-  EXPECT_EQ(ReadByName(data, "VR[99]"), "0.0");
+  EXPECT_EQ(ReadByName(data, "VL[1]")->text, "1");
+  EXPECT_EQ(ReadByName(data, "vl[2]")->text, "0");
+  EXPECT_EQ(ReadByName(data, "IL[2]")->text, "1");
+  EXPECT_EQ(ReadByName(data, "il[1]")->text, "0");
+  EXPECT_EQ(ReadByName(data, "Ol[3]")->text, "1");
+  EXPECT_EQ(ReadByName(data, "OL[2]")->text, "0");
+  EXPECT_EQ(ReadByName(data, "IA[4]")->text, "4.5");
+  EXPECT_EQ(ReadByName(data, "OA[5]")->text, "5.5");
+  EXPECT_EQ(ReadByName(data, "VI[0]")->text, "-7");
+  EXPECT_EQ(ReadByName(data, "VR[99]")->text, "0.0");
   for (const char* wrong : {"VR[100]", "VR[-1]", "VR[]", "VR5", "VR[5", "XR[5]", "VRR[5]", "V[5]",
                             "PAR[0]", "", "[5]", "VR[a]"}) {
     EXPECT_FALSE(ReadByName(data, wrong).has_value()) << wrong;

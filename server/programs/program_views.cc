@@ -1,0 +1,99 @@
+#include "server/programs/program_views.h"
+
+#include <chrono>
+
+#include "engine/core/units.h"
+#include "engine/simulation/run/simulate.h"
+#include "proto/bridge/framing.h"
+#include "proto/bridge/report.h"
+#include "server/records/toolpath_levels.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr int kWidthMin_px = 64;
+constexpr int kWidthMax_px = 8192;
+constexpr int kThumbnailMax_px = 400;  // narrower ones show one view
+// Of real time; what is drawn until then is what there is to see.
+constexpr std::chrono::seconds kFollowedFor{5};
+
+struct Followed {
+  simulation::SimulationResult result;
+  bool complete = false;
+};
+
+// A halt lasts no longer than it takes to press START.
+Result<Followed> Follow(const ProgramBook::Opened& opened, simulation::SimulationRequest request) {
+  const Result<simulation::PreparedRun> prepared = simulation::PrepareRun(
+      opened.memory,
+      {.main_program = opened.slot,
+       .mode = machine::Mode::kCycle,
+       .budget = {.steps = simulation::kCheckStepsMax, .virtual_time = simulation::kCheckTimeMax}});
+  if (!prepared) return prepared.error();
+  if (!prepared->setup) {
+    for (const Diagnostic& finding : prepared->diagnostics)
+      if (IsError(finding.severity)) return Error{finding.code, finding.detail, finding.where};
+  }
+  const auto until = std::chrono::steady_clock::now() + kFollowedFor;
+  request.options = {.at_halt = simulation::AtHalt::kStart,
+                     .progress = [until](const simulation::Progress&) {
+                       return std::chrono::steady_clock::now() < until;
+                     }};
+  Result<simulation::SimulationResult> result =
+      simulation::Simulate(*opened.memory.family, *prepared->setup, std::move(request));
+  if (!result) return result.error();
+  const machine::OutcomeKind how = result->report.outcome.kind;
+  const bool complete =
+      how != machine::OutcomeKind::kCancelled && how != machine::OutcomeKind::kBudgetExceeded;
+  return Followed{*std::move(result), complete};
+}
+
+}  // namespace
+
+Result<v1::GetProgramPictureResponse> ProgramViews::Picture(
+    const v1::GetProgramPictureRequest& request) {
+  simulation::SimulationRequest asked{.products = {.picture = true}};
+  if (request.width_px() != 0) {
+    if (request.width_px() < kWidthMin_px || request.width_px() > kWidthMax_px) {
+      return InvalidArgument("width_px is " + std::to_string(request.width_px()) +
+                             ", allowed are 64 to 8192");
+    }
+    asked.picture.width_px = request.width_px();
+    if (request.width_px() < kThumbnailMax_px) asked.picture.views = {simulation::PictureView::kXY};
+  }
+  const Result<ProgramBook::Opened> opened = programs_.Open(request.name());
+  if (!opened) return opened.error();
+  Result<Followed> followed = Follow(*opened, std::move(asked));
+  if (!followed) return followed.error();
+  v1::GetProgramPictureResponse response;
+  response.set_content(std::move(followed->result.svg));
+  response.set_media_type("image/svg+xml");
+  response.set_complete(followed->complete);
+  response.set_etag(opened->etag);
+  return response;
+}
+
+Result<ProgramViews::Toolpath> ProgramViews::Path(const v1::StreamProgramToolpathRequest& request) {
+  if (const Status level = CheckToolpathLevel(request.level()); !level) return level.error();
+  const Result<ProgramBook::Opened> opened = programs_.Open(request.name());
+  if (!opened) return opened.error();
+  Toolpath path;
+  const simulation::ToolpathOptions options;
+  Result<Followed> followed =
+      Follow(*opened, {.products = {.toolpath = [&](std::string_view block) {
+                         bridge::AddFrame(block, path.frames);
+                         return true;
+                       }}});
+  if (!followed) return followed.error();
+  const v1::RunReport report =
+      bridge::ToProto(opened->memory.family->info(), followed->result.report, {});
+  path.header.set_points(report.toolpath().records());
+  path.header.set_complete(report.toolpath().complete() && followed->complete);
+  if (report.has_tip_box()) *path.header.mutable_tip_box() = report.tip_box();
+  path.header.set_duration_ns(followed->result.report.cycle_time.count());
+  path.frames = ToolpathAtLevel(path.frames, options.tolerance_mm, request.level());
+  SetLevel(options.tolerance_mm, request.level(), path.frames.size(), path.header);
+  return path;
+}
+
+}  // namespace rmlcell::server

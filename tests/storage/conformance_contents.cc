@@ -1,0 +1,199 @@
+// Contents piece by piece, and those that no record names yet.
+#include <future>
+
+#include "engine/core/hex.h"
+#include "storage/content.h"
+#include "tests/storage/store_conformance.h"
+
+namespace rmlcell::storage {
+namespace {
+
+// SHA-256 of "abc", FIPS 180-4.
+constexpr const char* kAbc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+
+std::string HexName(std::string_view content) { return HexOf(Sha256(content)); }
+
+std::string Pattern(std::size_t size) {
+  std::string text(size, '\0');
+  std::uint32_t state = 7;
+  for (char& c : text) {
+    state = state * 1'664'525 + 1'013'904'223;
+    c = static_cast<char>(state >> 24);
+  }
+  return text;
+}
+
+Result<WallTime> Upload(Store& store, const std::string& name, std::string_view content,
+                        std::size_t piece, std::chrono::milliseconds kept) {
+  auto writer = store.WriteBlob(name, content.size());
+  if (!writer) return writer.error();
+  for (std::size_t at = 0; at < content.size(); at += piece) {
+    if (const Status added = (*writer)->Append(content.substr(at, piece)); !added)
+      return added.error();
+  }
+  return (*writer)->Finish(kept);
+}
+
+std::string ReadAll(Store& store, const std::string& name) {
+  const auto reader = Must(store.OpenBlob(name));
+  std::string content;
+  for (;;) {
+    const std::string part = Must(reader->Next());
+    if (part.empty()) break;
+    EXPECT_LE(part.size(), kChunkBytes);
+    content += part;
+  }
+  EXPECT_EQ(reader->size(), content.size());
+  EXPECT_EQ(Must(reader->Next()), "");
+  return content;
+}
+
+TEST_P(StoreConformance, ContentsGoInAndOutPieceByPiece) {
+  for (const std::size_t size : {std::size_t{1}, std::size_t{700}, kChunkBytes - 1, kChunkBytes,
+                                 kChunkBytes + 1, 3 * kChunkBytes, 3 * kChunkBytes + 12345}) {
+    const std::string content = Pattern(size);
+    const std::string name = HexName(content);
+    Must(Upload(store(), name, content, 300'000, std::chrono::hours(1)));
+    EXPECT_TRUE(Must(store().ReadBlob(name)) == content) << size;
+    EXPECT_TRUE(ReadAll(store(), name) == content) << size;
+  }
+  Reopen();
+  EXPECT_TRUE(ReadAll(store(), HexName(Pattern(3 * kChunkBytes))) == Pattern(3 * kChunkBytes));
+}
+
+TEST_P(StoreConformance, AnUploadIsKeptForItsTimeAndWithTheJobThatNamesIt) {
+  const std::string other = Pattern(2 * kChunkBytes);
+  const WallTime now = clock().Now();
+  EXPECT_EQ(Must(Upload(store(), kAbc, "abc", 3, std::chrono::hours(1))),
+            now + std::chrono::hours(1));
+  // Sent again the later of the two times counts.
+  EXPECT_EQ(Must(Upload(store(), kAbc, "abc", 1, std::chrono::minutes(1))),
+            now + std::chrono::hours(1));
+  Must(Upload(store(), HexName(other), other, kChunkBytes, std::chrono::hours(1)));
+  const JobRecord job =
+      Must(store().SubmitAndWait(
+               {.machine = "m",
+                .kind = "CHECK",
+                .attachments = {{.name = "program", .bytes = {}, .existing_sha256 = kAbc}}}))
+          .job;
+  EXPECT_EQ(Must(store().GetArtifact(job.id, "program")).sha256, kAbc);
+  clock().Advance(std::chrono::hours(1));
+  // What is over goes when the store has something to tidy: here the next upload.
+  Must(Upload(store(), HexName("x"), "x", 1, std::chrono::hours(1)));
+  EXPECT_TRUE(Eventually(
+      [&] { return CodeOf(store().ReadBlob(HexName(other))) == ErrorCode::kCellNotFound; }));
+  EXPECT_EQ(Must(store().ReadBlob(kAbc)), "abc");
+  EXPECT_EQ(CodeOf(store().OpenBlob(HexName(other))), ErrorCode::kCellNotFound);
+}
+
+TEST_P(StoreConformance, AnUploadThatIsNotWhatItSaysIsRefused) {
+  EXPECT_EQ(CodeOf(Upload(store(), kAbc, "abd", 3, std::chrono::hours(1))),
+            ErrorCode::kCellChecksum);
+  {
+    const auto writer = Must(store().WriteBlob(kAbc, 3));
+    EXPECT_EQ(CodeOf(writer->Append("abcd")), ErrorCode::kCellTooLarge);
+  }
+  {
+    const auto writer = Must(store().WriteBlob(kAbc, 3));
+    EXPECT_TRUE(writer->Append("ab"));
+    EXPECT_EQ(CodeOf(writer->Finish(std::chrono::hours(1))), ErrorCode::kCellChecksum);
+  }
+  const std::string large = Pattern(2 * kChunkBytes + 1);
+  {
+    const auto writer = Must(store().WriteBlob(HexName(large), large.size()));
+    EXPECT_TRUE(writer->Append(large));  // and never finished
+  }
+  EXPECT_EQ(CodeOf(Upload(store(), HexName(large), std::string(large.size(), 'x'), kChunkBytes,
+                          std::chrono::hours(1))),
+            ErrorCode::kCellChecksum);
+  EXPECT_EQ(CodeOf(store().ReadBlob(kAbc)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(store().ReadBlob(HexName(large))), ErrorCode::kCellNotFound);
+  for (const std::string& name : {std::string("ab"), std::string(64, 'g'), std::string(66, 'a')})
+    EXPECT_EQ(CodeOf(store().WriteBlob(name, 1)), ErrorCode::kCellInvalidArgument) << name;
+  EXPECT_EQ(CodeOf(store().WriteBlob(kAbc, kProgramBytesMax + 1)), ErrorCode::kCellTooLarge);
+  EXPECT_EQ(CodeOf(store().OpenBlob(kAbc)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(store().OpenBlob("xyz")), ErrorCode::kCellNotFound);
+}
+
+// A content that is removed while somebody reads it is told as gone, never cut short.
+TEST_P(StoreConformance, AContentThatIsRemovedWhileItIsReadIsGone) {
+  const std::string content = Pattern(3 * kChunkBytes);
+  Must(Upload(store(), HexName(content), content, kChunkBytes, std::chrono::minutes(1)));
+  const auto reader = Must(store().OpenBlob(HexName(content)));
+  EXPECT_EQ(Must(reader->Next()).size(), kChunkBytes);
+  clock().Advance(std::chrono::minutes(2));
+  Must(Upload(store(), HexName("x"), "x", 1, std::chrono::hours(1)));
+  ASSERT_TRUE(Eventually(
+      [&] { return CodeOf(store().OpenBlob(HexName(content))) == ErrorCode::kCellNotFound; }));
+  EXPECT_EQ(CodeOf(reader->Next()), ErrorCode::kCellNotFound);
+}
+
+// What a call gives the Done<T> that it is called with.
+template <class T, class Call>
+Result<T> Answered(Call call) {
+  std::promise<Result<T>> promise;
+  std::future<Result<T>> future = promise.get_future();
+  call([&](Result<T> result) { promise.set_value(std::move(result)); });
+  return future.get();
+}
+
+std::int64_t SubmitOne(Store& store) {
+  return Must(store.SubmitAndWait({.machine = "m",
+                                   .kind = "CHECK",
+                                   .specification = "what to do",
+                                   .attempts_max = 3}))
+      .job.id;
+}
+std::vector<LeasedJob> AcquireAll(Store& store) {
+  return Must(Answered<std::vector<LeasedJob>>([&](auto done) {
+    store.SendAcquire(
+        {.worker = "w", .server = "s", .kinds = {"CHECK"}, .duration = std::chrono::seconds(10)},
+        done);
+  }));
+}
+Result<JobRecord> Renewed(Store& store, const Lease& lease) {
+  return Answered<JobRecord>(
+      [&](auto done) { store.SendRenew(lease, std::chrono::seconds(20), done); });
+}
+
+// store.h Done: what does not wait gives the same as what does.
+TEST_P(StoreConformance, CallsOfALeaseThatDoNotWait) {
+  const std::int64_t job = SubmitOne(store());
+  std::vector<LeasedJob> leased = AcquireAll(store());
+  ASSERT_EQ(leased.size(), 1U);
+  EXPECT_EQ(leased[0].job.id, job);
+  EXPECT_EQ(leased[0].job.specification, "what to do");
+  EXPECT_TRUE(AcquireAll(store()).empty());
+  EXPECT_EQ(Must(Renewed(store(), leased[0].lease)).state, JobState::kRunning);
+  const auto handed_back =
+      Answered<JobRecord>([&](auto done) { store().SendHandBack(leased[0].lease, {}, done); });
+  EXPECT_EQ(Must(handed_back).state, JobState::kQueued);
+  EXPECT_EQ(CodeOf(Renewed(store(), leased[0].lease)), ErrorCode::kCellLeaseLost);
+  leased = AcquireAll(store());
+  ASSERT_EQ(leased.size(), 1U);
+  const LossPolicy policy{.outcome = {.state = JobState::kFailed}};
+  const auto abandoned =
+      Answered<JobRecord>([&](auto done) { store().SendAbandon(leased[0].lease, policy, done); });
+  EXPECT_EQ(Must(abandoned).state, JobState::kQueued);
+}
+
+TEST_P(StoreConformance, EndsAndCancelsThatDoNotWait) {
+  const std::int64_t job = SubmitOne(store());
+  const std::vector<LeasedJob> leased = AcquireAll(store());
+  ASSERT_EQ(leased.size(), 1U);
+  const auto cancelled =
+      Answered<JobRecord>([&](auto done) { store().SendRequestCancel(job, {}, done); });
+  EXPECT_TRUE(Must(cancelled).cancel_requested);
+  const auto end = std::make_shared<const JobEnd>(
+      JobEnd{.outcome = {.state = JobState::kSucceeded},
+             .artifacts = {{.name = "report", .bytes = "the report"}}});
+  const auto finish = [&] {
+    return Answered<JobRecord>([&](auto done) { store().SendFinish(leased[0].lease, end, done); });
+  };
+  EXPECT_EQ(Must(finish()).state, JobState::kSucceeded);
+  EXPECT_EQ(CodeOf(finish()), ErrorCode::kCellLeaseLost);
+  EXPECT_EQ(Must(store().ReadBlob(Must(store().GetArtifact(job, "report")).sha256)), "the report");
+}
+
+}  // namespace
+}  // namespace rmlcell::storage
