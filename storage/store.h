@@ -409,7 +409,8 @@ class Store {
   // The worker is known to be dead: as if the lease ran out now. CellLeaseLost.
   virtual Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) = 0;
   virtual void SendAbandon(const Lease& lease, LossPolicy policy, Done<JobRecord> done);
-  // Every lease that ran out, and every job whose time has come may start. Any server may call it
+  // Every lease that ran out, and every job whose time has come may start; contents that were kept
+  // for a time are let go behind it. Any server may call it
   // at any time. Returns the jobs that changed; one that cannot be read does not keep the others
   // from going on. It may take nothing for a while after the store was lost and found again:
   // whoever could not renew meanwhile gets time to.

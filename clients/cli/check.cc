@@ -201,7 +201,9 @@ int Check(const CheckOptions& options) {
             bridge::ParseInputFile(*text, options.inputs_file, override_max, scripted);
         !parsed)
       return Refuse(parsed.error());
-    inputs = bridge::InputsOf(scripted);
+    Result<machine::InputScript> read = bridge::InputsOf(scripted);
+    if (!read) return Refuse(read.error());
+    inputs = *std::move(read);
   }
   if (options.fix) return FixFiles(files, inputs, options);
   int exit_code = kGood;

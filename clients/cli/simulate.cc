@@ -239,8 +239,10 @@ Result<PreparedCommand> Prepare(const SimulateOptions& options) {
                                    .own = OwnOf(options.machine, *machine),
                                    .programs = loaded->programs,
                                    .machine_state = *std::move(state)};
-  Result<simulation::PreparedRun> run = simulation::PrepareRun(
-      memory, bridge::RunOptionsOf(*message, *budget, loaded->main_slot, machine::Mode::kCycle));
+  const Result<simulation::RunOptions> how =
+      bridge::RunOptionsOf(*message, *budget, loaded->main_slot, machine::Mode::kCycle);
+  if (!how) return how.error();
+  Result<simulation::PreparedRun> run = simulation::PrepareRun(memory, *how);
   if (!run) return run.error();
   for (const int slot : *to_make) {
     if (!run->setup) break;  // it is told why

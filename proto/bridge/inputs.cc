@@ -41,8 +41,9 @@ std::optional<InputChange> InputNamed(std::string_view name) {
 Result<InputChange> OfVariable(const v1::Variable& variable) {
   std::optional<InputChange> change = InputNamed(variable.name());
   if (!change) {
-    return Invalid("'" + variable.name().substr(0, kShownMax) +
-                   "' is no input: use IL[0] to IL[99] or IA[0] to IA[99]");
+    const std::string& name = variable.name();
+    return Invalid((name.size() <= kShownMax ? "'" + name + "'" : "a long name") +
+                   " is no input: use IL[0] to IL[99] or IA[0] to IA[99]");
   }
   const v1::VariableValue& value = variable.value();
   if (change->kind == InputKind::kLogical) {
@@ -161,11 +162,12 @@ Result<machine::InputChange> FromProto(const v1::ScriptedInput& scripted, double
   return change;
 }
 
-machine::InputScript InputsOf(const v1::SimulationOptions& options) {
+Result<machine::InputScript> InputsOf(const v1::SimulationOptions& options) {
   machine::InputScript inputs;
   for (const v1::ScriptedInput& scripted : options.inputs()) {
-    if (const auto change = FromProto(scripted, std::numeric_limits<double>::infinity()))
-      inputs.push_back(*change);
+    const auto change = FromProto(scripted, std::numeric_limits<double>::infinity());
+    if (!change) return change.error();
+    inputs.push_back(*change);
   }
   std::ranges::stable_sort(inputs, {}, &InputChange::at);
   return inputs;

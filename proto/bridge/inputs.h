@@ -21,8 +21,8 @@ namespace rmlcell::bridge {
 // above 0 to `override_max`, percent.
 Result<machine::InputChange> FromProto(const v1::ScriptedInput& scripted, double override_max);
 
-// Those of the options that FromProto takes, in order of time. The override is not looked at again.
-machine::InputScript InputsOf(const v1::SimulationOptions& options);
+// Those of the options in order of time. Errors: of FromProto, but for an override that is high.
+Result<machine::InputScript> InputsOf(const v1::SimulationOptions& options);
 
 // Input file: one change a line, "SECONDS WHAT [= VALUE]", # begins a comment:
 //   0.5 IL[20] = 1      2.0 START      3.25 OVERRIDE = 55      4 DOOR = OPEN

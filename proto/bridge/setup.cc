@@ -40,13 +40,16 @@ machine::Breakpoint FromProto(const v1::Breakpoint& breakpoint, int main_program
           .from_pass = static_cast<std::uint64_t>(std::max<std::int64_t>(1, breakpoint.passes()))};
 }
 
-simulation::RunOptions RunOptionsOf(const v1::SimulationOptions& options, const v1::Budget& budget,
-                                    int main_program, machine::Mode default_mode) {
+Result<simulation::RunOptions> RunOptionsOf(const v1::SimulationOptions& options,
+                                            const v1::Budget& budget, int main_program,
+                                            machine::Mode default_mode) {
+  Result<machine::InputScript> inputs = InputsOf(options);
+  if (!inputs) return inputs.error();
   simulation::RunOptions run{
       .main_program = main_program,
       .parameters = {options.parameters().begin(), options.parameters().end()},
       .mode = FromProto(options.mode(), default_mode),
-      .inputs = InputsOf(options)};
+      .inputs = *std::move(inputs)};
   if (options.override_percent() > 0.0) run.override_percent = options.override_percent();
   for (const v1::Breakpoint& breakpoint : options.breakpoints())
     run.breakpoints.push_back(FromProto(breakpoint, main_program));

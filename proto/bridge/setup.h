@@ -15,9 +15,11 @@ class SimulationOptions;
 // the command on a laptop.
 namespace rmlcell::bridge {
 
-// `default_mode`: where none is asked for; REMOTE for jobs, CYCLE for the command.
-simulation::RunOptions RunOptionsOf(const v1::SimulationOptions& options, const v1::Budget& budget,
-                                    int main_program, machine::Mode default_mode);
+// `default_mode`: where none is asked for; REMOTE for jobs, CYCLE for the command. Errors: those of
+// InputsOf.
+Result<simulation::RunOptions> RunOptionsOf(const v1::SimulationOptions& options,
+                                            const v1::Budget& budget, int main_program,
+                                            machine::Mode default_mode);
 
 machine::Breakpoint FromProto(const v1::Breakpoint& breakpoint, int main_program);
 

@@ -254,6 +254,7 @@ Status Cell::Parts::Serve() {
     builder.RegisterService(service);
   }
   server = builder.BuildAndStart();
+  if (server == nullptr && ports.empty()) return PortUsed(private_socket->address());
   for (std::size_t i = 0; i < ports.size(); ++i) {
     const std::string& address = config.listen_grpc[i];
     const bool unix_socket = address.starts_with("unix:");

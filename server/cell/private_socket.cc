@@ -21,7 +21,9 @@ Result<PrivateSocket> PrivateSocket::Make(const std::string& state_directory) {
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::path folder = fs::absolute(state_directory, error) / "private";
-  if (!error && folder.string().size() + kSocketName.size() <= kSocketPathMax) {
+  // An address of gRPC is a URI: some characters mean something else there.
+  const bool plain = folder.string().find_first_of("?#%") == std::string::npos;
+  if (!error && plain && folder.string().size() + kSocketName.size() <= kSocketPathMax) {
     fs::remove_all(folder, error);
     if (::mkdir(folder.c_str(), S_IRWXU) == 0) return PrivateSocket(folder.string());
   }

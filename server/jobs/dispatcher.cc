@@ -111,7 +111,7 @@ void Dispatcher::Leave(WorkerId id) {
   }
   Post(worker, [this, worker] {
     // What it finished is stored without it.
-    if (!worker->assignment || worker->assignment->end) return Left();
+    if (!worker->assignment || worker->assignment->closing) return Left();
     spdlog::warn("worker {} is gone in the middle of {}", worker->name,
                  JobName(worker->assignment->lease.job));
     Lose(worker);
@@ -153,7 +153,7 @@ std::function<void()> Dispatcher::NextWork(const std::shared_ptr<Worker>& worker
     return next;
   }
   const std::optional<Assignment>& at = worker->assignment;
-  if (at && !at->events.empty() && !at->events_rest && !at->end)
+  if (at && !at->events.empty() && !at->events_rest && !at->closing)
     return [this, worker] { StoreEvents(worker); };
   worker->working = false;
   --at_work_;
@@ -162,7 +162,15 @@ std::function<void()> Dispatcher::NextWork(const std::shared_ptr<Worker>& worker
 }
 
 void Dispatcher::Work(const std::shared_ptr<Worker>& worker) {
-  while (const std::function<void()> next = NextWork(worker)) next();
+  while (const std::function<void()> next = NextWork(worker)) {
+    try {
+      next();
+    } catch (const std::exception& error) {
+      // A part of what it told may be missing: it leaves, and its job is attempted again.
+      spdlog::error("worker {}: {}", worker->name, error.what());
+      worker->line->Close(Error{ErrorCode::kCellInternal, {}, {}});
+    }
+  }
 }
 
 void Dispatcher::Await(const std::shared_ptr<Worker>& worker) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <variant>
 
 #include "rmlcell/v1/worker.pb.h"
 #include "server/base/secret.h"
@@ -32,6 +33,10 @@ class WorkerLine {
   virtual void SendProgram(int slot, std::shared_ptr<const std::string> bytes) = 0;
   virtual void Close(const Error& why) = 0;
 };
+
+struct HandBack;
+struct Lost;
+using Closing = std::variant<std::shared_ptr<const storage::JobEnd>, HandBack, Lost>;
 
 // What a client wants of a job that runs.
 struct JobOrder {
@@ -84,6 +89,8 @@ class Dispatcher {
  private:
   struct Worker;
   struct Assignment;
+  template <class T, class Next>
+  class Answer;
 
   void Post(const std::shared_ptr<Worker>& worker, std::function<void()> work);
   std::function<void()> NextWork(const std::shared_ptr<Worker>& worker);
@@ -114,14 +121,13 @@ class Dispatcher {
   void Collect(Worker& worker, v1::WorkerArtifact& artifact);
   void Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish& finish);
   void RestWithoutWork(const std::shared_ptr<Worker>& worker, const Error& trouble);
-  void StoreEnd(const std::shared_ptr<Worker>& worker);
-  void EndStored(const std::shared_ptr<Worker>& worker, const Result<storage::JobRecord>& ended);
+  void Close(const std::shared_ptr<Worker>& worker, Closing how);
+  void StoreClosing(const std::shared_ptr<Worker>& worker);
+  void Closed(const std::shared_ptr<Worker>& worker, const Result<storage::JobRecord>& job);
   void TryAgain();
   void EndAssignment(Worker& worker, bool stored);
   void TakeNoOrders(Worker& worker);  // its job is over
-  // Then its worker is told, when it is still there, and free.
   void Lose(const std::shared_ptr<Worker>& worker);
-  void Lost(const std::shared_ptr<Worker>& worker, const Result<storage::JobRecord>& job);
   void SweepLeases(const std::stop_token& stop);
   void EndLeases();
   void TakeOrders();

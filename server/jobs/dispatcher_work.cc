@@ -62,7 +62,7 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
   if (worker->assignment || worker->leaving) return;
   {
     const std::lock_guard lock(mutex_);
-    if (worker->gone || draining_) return;
+    if (worker->gone || worker->rests || draining_) return;
     worker->looking = true;
   }
   store_.SendAcquire({.worker = worker->name,
@@ -81,7 +81,7 @@ void Dispatcher::Assigned(const std::shared_ptr<Worker>& worker,
   if (found) {
     worker->assignment.emplace();
     worker->assignment->lease = leased->front().lease;
-    worker->assignment->renewed_at = clock_();
+    worker->assignment->renewed_at = worker->assignment->asked_at = clock_();
   }
   {
     const std::lock_guard lock(mutex_);
@@ -117,16 +117,14 @@ void Dispatcher::EndWithoutWork(const std::shared_ptr<Worker>& worker,
                                 const storage::JobOutcome& how) {
   worker->assignment->begun = true;  // as far as anybody could
   const v1::Outcome outcome = ToProto(how);
-  worker->assignment->end = std::make_shared<const storage::JobEnd>(
-      storage::JobEnd{.outcome = OutcomeOf(outcome), .events = {EndedEvent(outcome)}});
-  StoreEnd(worker);
+  Close(worker, std::make_shared<const storage::JobEnd>(storage::JobEnd{
+                    .outcome = OutcomeOf(outcome), .events = {EndedEvent(outcome)}}));
 }
 
 // The job is as good as before, and its attempt does not count.
 void Dispatcher::RestWithoutWork(const std::shared_ptr<Worker>& worker, const Error& trouble) {
-  const storage::Lease lease = worker->assignment->lease;
-  spdlog::warn("{} goes back, its programs cannot be read: {}", JobName(lease.job),
-               bridge::ErrorText(trouble));
+  spdlog::warn("{} goes back, its programs cannot be read: {}",
+               JobName(worker->assignment->lease.job), bridge::ErrorText(trouble));
   {
     // Before the store tells of a job that waits, or this worker would be given it again at once.
     const std::lock_guard lock(mutex_);
@@ -135,38 +133,58 @@ void Dispatcher::RestWithoutWork(const std::shared_ptr<Worker>& worker, const Er
   }
   storage::LossPolicy policy = LossOf(StoppedOutcome(), {}, "its programs could not be read");
   policy.requeued = {StateEvent(storage::JobState::kQueued)};
-  store_.SendHandBack(lease, std::move(policy),
-                      Then<storage::JobRecord>(
-                          worker, [this, worker](const auto&) { EndAssignment(*worker, false); }));
+  Close(worker, HandBack{std::move(policy)});
 }
 
-// A store that is away for a moment does not throw a finished run away: while the lease may be ours
-// the end is stored again and again. Then this attempt counts as lost, so that a full disk does not
-// leave the job without an owner.
-void Dispatcher::StoreEnd(const std::shared_ptr<Worker>& worker) {
-  const Assignment& assignment = *worker->assignment;
+void Dispatcher::Close(const std::shared_ptr<Worker>& worker, Closing how) {
+  worker->assignment->closing = std::move(how);
   TakeNoOrders(*worker);  // before anybody reads that it is over
-  store_.SendFinish(assignment.lease, assignment.end,
-                    Then<storage::JobRecord>(
-                        worker, [this, worker](const auto& ended) { EndStored(worker, ended); }));
+  StoreClosing(worker);
 }
 
-void Dispatcher::EndStored(const std::shared_ptr<Worker>& worker,
-                           const Result<storage::JobRecord>& ended) {
+// A store that is away for a moment throws nothing away: while the lease may be ours what becomes
+// of the job is told it again and again. Then an end counts as an attempt that was lost, so that a
+// full disk does not leave the job without an owner.
+void Dispatcher::StoreClosing(const std::shared_ptr<Worker>& worker) {
   const Assignment& assignment = *worker->assignment;
-  const storage::Lease lease = assignment.lease;
-  if (ended) {
-    const std::optional<ErrorCode> code = assignment.end->outcome.code;
-    spdlog::info("{} {} {}", JobName(lease.job), v1::Job::State_Name(ToProto(ended->state)),
-                 code ? CodeText(*code) : std::string());
-    EndAssignment(*worker, true);
-    return Assign(worker);
+  const storage::Lease& lease = assignment.lease;
+  auto then =
+      Then<storage::JobRecord>(worker, [this, worker](const auto& job) { Closed(worker, job); });
+  if (const auto* end = std::get_if<Finished>(&*assignment.closing)) {
+    store_.SendFinish(lease, *end, std::move(then));
+  } else if (const auto* back = std::get_if<HandBack>(&*assignment.closing)) {
+    store_.SendHandBack(lease, back->policy, std::move(then));
+  } else {
+    store_.SendAbandon(lease, std::get<Lost>(*assignment.closing).policy, std::move(then));
   }
-  spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker->name,
-               bridge::ErrorText(ended.error()));
-  if (MayStillHold(assignment, ended.error())) return TryLater(worker);
-  if (ended.error().code != ErrorCode::kCellLeaseLost) return Lose(worker);
-  EndAssignment(*worker, false);
+}
+
+void Dispatcher::Closed(const std::shared_ptr<Worker>& worker,
+                        const Result<storage::JobRecord>& job) {
+  Assignment& assignment = *worker->assignment;
+  const std::string name = JobName(assignment.lease.job);
+  const auto* end = std::get_if<Finished>(&*assignment.closing);
+  if (job && end != nullptr) {
+    const std::optional<ErrorCode> code = (*end)->outcome.code;
+    spdlog::info("{} {} {}", name, v1::Job::State_Name(ToProto(job->state)),
+                 code ? CodeText(*code) : std::string());
+  }
+  if (!job) {
+    spdlog::warn("{} of worker {}: {}", name, worker->name, bridge::ErrorText(job.error()));
+    if (MayStillHold(assignment, job.error())) return TryLater(worker);
+    if (end != nullptr && job.error().code != ErrorCode::kCellLeaseLost) {
+      // What cannot be stored at all may be one of them.
+      if (!IsTroubleOfTheStore(job.error())) assignment.events.clear();
+      return Lose(worker);
+    }
+  }
+  EndAssignment(*worker, job && end != nullptr);
+  bool gone = false;
+  {
+    const std::lock_guard lock(mutex_);
+    gone = worker->gone;
+  }
+  if (gone) return Left();
   Assign(worker);
 }
 
@@ -197,7 +215,7 @@ void Dispatcher::TryAgain() {
     Post(worker, [this, worker] {
       if (!worker->assignment) return Assign(worker);
       worker->assignment->events_rest = false;
-      if (worker->assignment->end) StoreEnd(worker);
+      if (worker->assignment->closing) StoreClosing(worker);
     });
   }
   for (const auto& worker : rested) PostLook(worker);
@@ -207,11 +225,9 @@ void Dispatcher::GiveBack(const std::shared_ptr<Worker>& worker) {
   const Assignment& assignment = *worker->assignment;
   storage::LossPolicy policy = LossOf(StoppedOutcome(), assignment.place, "its worker stops");
   policy.requeued = {StateEvent(storage::JobState::kQueued)};
-  worker->leaving = true;
   PutBefore(assignment.events, policy);
-  store_.SendHandBack(assignment.lease, std::move(policy),
-                      Then<storage::JobRecord>(
-                          worker, [this, worker](const auto&) { EndAssignment(*worker, false); }));
+  worker->leaving = true;
+  Close(worker, HandBack{std::move(policy)});
 }
 
 Status Dispatcher::SendAssignment(Worker& worker, const storage::LeasedJob& leased) {
@@ -234,25 +250,29 @@ void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& 
     if (its_own) worker->assignment->begun = true;
     return its_own;
   };
+  // What comes when it is said already what becomes of the job is not heard.
+  const auto works = [&](const v1::WorkerLease& lease) {
+    return holds(lease) && !worker->assignment->closing;
+  };
   switch (message.message_case()) {
     case v1::WorkRequest::kHeartbeat:
       if (!holds(message.heartbeat().lease())) break;
       Heartbeat(worker, message.heartbeat());
       break;
     case v1::WorkRequest::kEvents:
-      if (!holds(message.events().lease())) break;
+      if (!works(message.events().lease())) break;
       for (const v1::JobEvent& event : message.events().events())
         worker->assignment->events.push_back(ToRecord(event));
       break;
     case v1::WorkRequest::kArtifact:
-      if (holds(message.artifact().lease())) Collect(*worker, *message.mutable_artifact());
+      if (works(message.artifact().lease())) Collect(*worker, *message.mutable_artifact());
       break;
     case v1::WorkRequest::kFinish:
-      if (holds(message.finish().lease())) Finish(worker, *message.mutable_finish());
+      if (works(message.finish().lease())) Finish(worker, *message.mutable_finish());
       break;
     case v1::WorkRequest::kHandBack:
       // It gives back since it ends: others take the job.
-      if (holds(message.hand_back().lease())) GiveBack(worker);
+      if (works(message.hand_back().lease())) GiveBack(worker);
       break;
     case v1::WorkRequest::kHello:
     case v1::WorkRequest::MESSAGE_NOT_SET:
@@ -272,8 +292,8 @@ void Dispatcher::Heartbeat(const std::shared_ptr<Worker>& worker,
   }
   const auto third = std::chrono::milliseconds(config_.workers_lease_ms / 3);
   const auto now = clock_();
-  if (now - assignment.renewed_at < third) return;
-  assignment.renewed_at = now;
+  if (now - assignment.asked_at < third) return;
+  assignment.asked_at = now;
   store_.SendRenew(
       assignment.lease, std::chrono::milliseconds(config_.workers_lease_ms),
       Then<storage::JobRecord>(worker, [this, worker](const auto& job) { Renewed(worker, job); }));
@@ -281,8 +301,10 @@ void Dispatcher::Heartbeat(const std::shared_ptr<Worker>& worker,
 
 void Dispatcher::Renewed(const std::shared_ptr<Worker>& worker,
                          const Result<storage::JobRecord>& job) {
-  const storage::Lease& lease = worker->assignment->lease;
+  Assignment& assignment = *worker->assignment;
+  const storage::Lease& lease = assignment.lease;
   if (job) {
+    assignment.renewed_at = assignment.asked_at;
     // Another server may have been asked to cancel it.
     if (job->cancel_requested)
       worker->line->Send(ControlMessage(lease, {.kind = v1::WorkerControl::KIND_CANCEL}));
@@ -349,13 +371,11 @@ void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
 
 void Dispatcher::Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish& finish) {
   Assignment& assignment = *worker->assignment;
-  if (assignment.end) return;  // it said so before
   if (assignment.over_budget) {
     *finish.mutable_outcome() = ToProto(storage::JobOutcome{
         .state = storage::JobState::kFailed, .code = ErrorCode::kCellOutputBudget, .detail = {}});
   }
-  storage::JobEnd end{.outcome = OutcomeOf(finish.outcome()),
-                      .events = std::exchange(assignment.events, {})};
+  storage::JobEnd end{.outcome = OutcomeOf(finish.outcome()), .events = assignment.events};
   end.events.push_back(EndedEvent(finish.outcome()));
   for (auto& [name, artifact] : assignment.artifacts) end.artifacts.push_back(std::move(artifact));
   for (v1::LinkedExecutable& made : *finish.mutable_executables()) {
@@ -363,8 +383,7 @@ void Dispatcher::Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish&
     end.executables.push_back(
         {made.slot(), made.object_revision(), std::move(*made.mutable_content())});
   }
-  assignment.end = std::make_shared<const storage::JobEnd>(std::move(end));
-  StoreEnd(worker);
+  Close(worker, std::make_shared<const storage::JobEnd>(std::move(end)));
 }
 
 void Dispatcher::EndAssignment(Worker& worker, bool stored) {
@@ -399,25 +418,7 @@ void Dispatcher::Lose(const std::shared_ptr<Worker>& worker) {
                               : "the worker of " + attempt + " died before it began");
   policy.counts = assignment.begun;
   PutBefore(assignment.events, policy);
-  store_.SendAbandon(
-      assignment.lease, std::move(policy),
-      Then<storage::JobRecord>(worker, [this, worker](const auto& job) { Lost(worker, job); }));
-}
-
-void Dispatcher::Lost(const std::shared_ptr<Worker>& worker,
-                      const Result<storage::JobRecord>& job) {
-  if (!job && job.error().code != ErrorCode::kCellLeaseLost) {
-    spdlog::error("{} could not be given back: {}", JobName(worker->assignment->lease.job),
-                  bridge::ErrorText(job.error()));
-  }
-  EndAssignment(*worker, false);
-  bool gone = false;
-  {
-    const std::lock_guard lock(mutex_);
-    gone = worker->gone;
-  }
-  if (gone) return Left();
-  Assign(worker);
+  Close(worker, Lost{std::move(policy)});
 }
 
 }  // namespace rmlcell::server

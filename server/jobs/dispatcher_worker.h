@@ -16,16 +16,26 @@
 // What the dispatcher knows of a worker. Only its own sources include this.
 namespace rmlcell::server {
 
+// What becomes of a job: its end, back into the queue, or an attempt that was lost.
+using Finished = std::shared_ptr<const storage::JobEnd>;
+struct HandBack {
+  storage::LossPolicy policy{};
+};
+struct Lost {
+  storage::LossPolicy policy{};
+};
+
 // What a worker is at. Touched only by work posted for this worker, which runs in order.
 struct Dispatcher::Assignment {
   storage::Lease lease;
-  std::chrono::steady_clock::time_point renewed_at;
+  std::chrono::steady_clock::time_point renewed_at;  // the lease may be ours for its time from here
+  std::chrono::steady_clock::time_point asked_at;    // to renew it
   std::map<std::string, storage::NewArtifact> artifacts;
   std::int64_t collected_bytes = 0;
   bool over_budget = false;
-  std::shared_ptr<const storage::JobEnd> end;  // not stored yet
-  bool begun = false;                          // the worker has said so
-  v1::SourcePlace place;                       // where the worker was, as it last said
+  std::optional<Closing> closing;  // said, and not stored yet
+  bool begun = false;              // the worker has said so
+  v1::SourcePlace place;           // where the worker was, as it last said
   // Events that the store does not have yet, and how many it has. They go when nothing else is to
   // be done for the worker, and with the end of the job at the latest.
   std::vector<storage::NewEvent> events;
@@ -62,14 +72,36 @@ struct Dispatcher::Worker {
   std::vector<EarlyOrder> early_orders;  // for a job that has not gone out; while it looks, any job
 };
 
+// An answer that does not come, since what asked for it threw, is an error.
+template <class T, class Next>
+class Dispatcher::Answer {
+ public:
+  Answer(Dispatcher& dispatcher, std::shared_ptr<Worker> worker, Next next)
+      : dispatcher_(dispatcher), worker_(std::move(worker)), next_(std::move(next)) {}
+  ~Answer() {
+    if (!given_) Give(Error{ErrorCode::kCellInternal, "the store was not asked", {}});
+  }
+  Answer(const Answer&) = delete;
+  Answer& operator=(const Answer&) = delete;
+
+  void Give(Result<T> answer) {
+    given_ = true;
+    auto shared = std::make_shared<Result<T>>(std::move(answer));
+    dispatcher_.GoOn(worker_, [next = next_, shared] { next(*shared); });
+  }
+
+ private:
+  Dispatcher& dispatcher_;
+  std::shared_ptr<Worker> worker_;
+  Next next_;
+  bool given_ = false;
+};
+
 template <class T, class Next>
 storage::Done<T> Dispatcher::Then(const std::shared_ptr<Worker>& worker, Next next) {
+  auto answer = std::make_shared<Answer<T, Next>>(*this, worker, std::move(next));
   Await(worker);
-  return [this, worker, next = std::move(next)](Result<T> answer) {
-    // A function of the standard library is copied, and an answer may be large.
-    auto shared = std::make_shared<Result<T>>(std::move(answer));
-    GoOn(worker, [next, shared] { next(*shared); });
-  };
+  return [answer](Result<T> given) { answer->Give(std::move(given)); };
 }
 
 v1::WorkerLease ToProto(const storage::Lease& lease);

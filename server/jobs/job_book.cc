@@ -4,18 +4,17 @@
 #include <cmath>
 #include <set>
 
-#include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/families/families.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/inputs.h"
-#include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
 #include "server/base/config.h"
 #include "server/base/names.h"
 #include "server/base/readable.h"
 #include "server/jobs/job_filter.h"
 #include "server/jobs/job_milling.h"
+#include "server/jobs/job_request.h"
 #include "server/records/file_family.h"
 #include "server/records/job_messages.h"
 #include "server/records/program_place.h"
@@ -24,156 +23,7 @@ namespace rmlcell::server {
 namespace {
 
 constexpr PageSizes kJobPages{.fallback = 50, .max = 1000};
-constexpr std::size_t kRequestIdMax = 64;
-constexpr int kAwaitedJobsMax = 100;
 constexpr int kChoicePage = 1000;
-constexpr int kBreakpointsMax = 1000;
-constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as possible
-
-std::string_view KindName(v1::JobKind kind) {
-  switch (kind) {
-    case v1::JOB_KIND_CHECK:
-      return "CHECK";
-    case v1::JOB_KIND_SIMULATE:
-      return "SIMULATE";
-    case v1::JOB_KIND_RUN:
-      return "RUN";
-    default:
-      return "";
-  }
-}
-
-// What the contract has and this version does not do: "" where the job asks for none of it.
-std::string_view FieldOfLater(const v1::Job& job) {
-  if (job.has_run()) return "run";
-  if (!job.continues().empty()) return "continues";
-  return {};
-}
-
-Status CheckBudget(const v1::Budget& budget) {
-  if (budget.steps() < 0) return InvalidArgument("job.budget.steps is below 0");
-  if (budget.memory_bytes() < 0) return InvalidArgument("job.budget.memory_bytes is below 0");
-  if (budget.output_bytes() < 0) return InvalidArgument("job.budget.output_bytes is below 0");
-  if (budget.virtual_time_ns() < 0) return InvalidArgument("job.budget.virtual_time_ns is below 0");
-  if (budget.processor_ns() < 0) return InvalidArgument("job.budget.processor_ns is below 0");
-  return {};
-}
-
-// What google.protobuf.Timestamp allows.
-Status CheckTime(const google::protobuf::Timestamp& time, const std::string& field) {
-  constexpr std::int64_t kLeast_s = -62'135'596'800;
-  constexpr std::int64_t kMost_s = 253'402'300'799;
-  if (time.seconds() >= kLeast_s && time.seconds() <= kMost_s && time.nanos() >= 0 &&
-      time.nanos() <= 999'999'999)
-    return {};
-  return InvalidArgument(field + " is no time of the years 1 to 9999");
-}
-
-Result<std::vector<std::int64_t>> AwaitedJobs(const v1::Job& job) {
-  if (job.after_jobs_size() > kAwaitedJobsMax)
-    return InvalidArgument("job.after_jobs has more than 100");
-  std::vector<std::int64_t> jobs;
-  for (const std::string& name : job.after_jobs()) {
-    const Result<std::int64_t> id = ParseJobName(name);
-    if (!id) return id.error();
-    jobs.push_back(*id);
-  }
-  return jobs;
-}
-
-// What can be said of a request without a look at its machine.
-Status CheckRequest(const v1::SubmitJobRequest& request) {
-  const v1::Job& job = request.job();
-  if (KindName(job.kind()).empty())
-    return InvalidArgument("job.kind is missing: CHECK or SIMULATE");
-  if (job.kind() == v1::JOB_KIND_RUN)
-    return Error{ErrorCode::kCellUnimplemented, "jobs of kind RUN", {}};
-  if (job.priority() < storage::kPriorityMin || job.priority() > storage::kPriorityMax)
-    return InvalidArgument("job.priority: allowed are -100 to 100");
-  if (const Status time = CheckTime(job.not_before_time(), "job.not_before_time"); !time)
-    return time.error();
-  if (const std::string_view later = FieldOfLater(job); !later.empty())
-    return Error{ErrorCode::kCellUnimplemented, "job." + std::string(later), {}};
-  if (request.request_id().size() > kRequestIdMax)
-    return InvalidArgument("request_id is longer than 64 characters");
-  if (const Status good = CheckTitle(job.title(), "job.title"); !good) return good.error();
-  if (job.attempts_max() < 0 || job.attempts_max() > 10)
-    return InvalidArgument("job.attempts_max: allowed are 1 to 10");
-  return CheckBudget(job.budget());
-}
-
-Status CheckStepPlace(const v1::StepPlace& place, const std::string& field,
-                      const machine::MachineFamily& family) {
-  if (place.program() != 0) {
-    if (const Status slot = CheckSlot(family, place.program(), field + ".program"); !slot)
-      return slot.error();
-  }
-  if (place.step() < 1) return InvalidArgument(field + ".step is below 1");
-  return {};
-}
-
-Status CheckSimulation(const v1::SimulationOptions& options, const machine::MachineFamily& family) {
-  const double override_max = family.info().override_max_percent;
-  if (options.override_percent() != 0.0) {
-    const Status valid = bridge::CheckOverride(options.override_percent(), override_max);
-    if (!valid) return InvalidArgument("job.simulation.override_percent: " + valid.error().detail);
-  }
-  if (!(options.toolpath_tolerance_mm() >= 0.0 && options.toolpath_tolerance_mm() <= 100.0)) {
-    return InvalidArgument("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
-  }
-  if (!(options.pace() >= 0.0 && options.pace() <= kPaceMax)) {
-    return InvalidArgument("job.simulation.pace is " + ShortestText(options.pace()) +
-                           ", allowed are 0 to 1000");
-  }
-  if (!v1::OperatingMode_IsValid(options.mode()))
-    return InvalidArgument("job.simulation.mode is none that there is");
-  if (options.mode() == v1::OPERATING_MODE_MANUAL) {
-    return InvalidArgument(
-        "job.simulation.mode is MANUAL, in which no program runs: use REMOTE, CYCLE, SINGLE or REPEAT");
-  }
-  if (options.breakpoints_size() > kBreakpointsMax)
-    return InvalidArgument("job.simulation.breakpoints: at most 1,000");
-  for (const v1::Breakpoint& breakpoint : options.breakpoints()) {
-    if (const Status valid =
-            CheckStepPlace(breakpoint.step(), "job.simulation.breakpoints.step", family);
-        !valid)
-      return valid.error();
-    if (breakpoint.passes() < 0)
-      return InvalidArgument("job.simulation.breakpoints.passes is below 0");
-    if (const Status valid = family.CheckBreakpoint(bridge::FromProto(breakpoint, kSlotMin));
-        !valid)
-      return InvalidArgument("job.simulation.breakpoints: " + valid.error().detail);
-  }
-  if (options.has_simul()) {
-    if (const Status valid = CheckStepPlace(options.simul(), "job.simulation.simul", family);
-        !valid)
-      return valid.error();
-  }
-  for (const v1::ScriptedInput& input : options.inputs()) {
-    if (const auto valid = bridge::FromProto(input, override_max); !valid)
-      return InvalidArgument("job.simulation.inputs: " + valid.error().detail);
-  }
-  for (const v1::SlotProgram& program : options.programs()) {
-    if (const Status slot = CheckSlot(family, program.slot(), "job.simulation.programs.slot");
-        !slot)
-      return slot.error();
-  }
-  return {};
-}
-
-// Those of a report can be given (Run::ReadVariable) when the run is over.
-Status CheckVariables(const v1::SimulationOptions& options, const machine::MachineFamily& family,
-                      const machine::Parameters& parameters) {
-  const auto names =
-      bridge::ExpandVariables({options.variables().begin(), options.variables().end()});
-  if (!names) return InvalidArgument("job.simulation." + names.error().detail);
-  for (const std::string& name : *names) {
-    if (family.HasVariable(parameters, name)) continue;
-    return InvalidArgument("job.simulation.variables: the machine has no variable " +
-                           Readable(name));
-  }
-  return {};
-}
 
 // Two requests of one request_id must ask for the same: by this alone a submission is acknowledged
 // as a job that is there already, so nobody may be able to make two jobs of one hash. A store of an
@@ -181,16 +31,6 @@ Status CheckVariables(const v1::SimulationOptions& options, const machine::Machi
 // nothing is run twice.
 std::string RequestHash(const v1::SubmitJobRequest& request) {
   return bridge::Sha256Hex(bridge::StableBytes(request.job()));
-}
-
-// Error: a slot that is none, a file name of another family.
-Status CheckBrought(const v1::Job& job, const std::string& file_name,
-                    const machine::MachineFamily& family) {
-  if (job.inline_slot() != 0) {
-    if (const Status slot = CheckSlot(family, job.inline_slot(), "job.inline_slot"); !slot)
-      return slot.error();
-  }
-  return CheckFileFamily(file_name, family);
 }
 
 }  // namespace
@@ -201,7 +41,8 @@ Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& 
                               storage::NewJob& made, v1::Job& specification) {
   switch (job.program_source_case()) {
     case v1::Job::kInlineProgram: {
-      if (const Status fits = CheckSize(job.inline_program().content(), "job.inline_program");
+      if (const Status fits =
+              CheckSize(job.inline_program().content().size(), "job.inline_program");
           !fits)
         return fits.error();
       if (const Status good = CheckBrought(job, job.inline_program().file_name(), family); !good)
@@ -220,6 +61,10 @@ Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& 
         return InvalidArgument("job.uploaded_program.sha256 is not 64 hexadecimal digits");
       if (const Status good = CheckBrought(job, uploaded.file_name(), family); !good)
         return good.error();
+      const auto content = store_.OpenBlob(*sha256);
+      if (!content) return content.error();
+      if (const Status fits = CheckSize((*content)->size(), "job.uploaded_program"); !fits)
+        return fits.error();
       made.attachments.push_back(
           {std::string(kMainAttachment), "application/octet-stream", {}, *std::move(sha256)});
       return {};
@@ -247,12 +92,12 @@ Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& 
   return InvalidArgument("job.program, job.inline_program or job.uploaded_program is missing");
 }
 
-Status JobBook::CheckSize(const std::string& content, const std::string& what) const {
-  if (content.empty()) return Error{ErrorCode::kCellEmptyProgram, what, {}};
-  if (static_cast<std::int64_t>(content.size()) <= config_.limit_program_bytes) return {};
+Status JobBook::CheckSize(std::size_t bytes, const std::string& what) const {
+  if (bytes == 0) return Error{ErrorCode::kCellEmptyProgram, what, {}};
+  if (static_cast<std::int64_t>(bytes) <= config_.limit_program_bytes) return {};
   return Error{ErrorCode::kCellTooLarge,
-               what + " has " + std::to_string(content.size()) +
-                   " bytes; limits.program_bytes is " + std::to_string(config_.limit_program_bytes),
+               what + " has " + std::to_string(bytes) + " bytes; limits.program_bytes is " +
+                   std::to_string(config_.limit_program_bytes),
                {}};
 }
 
@@ -261,7 +106,7 @@ Status JobBook::AttachFurther(const v1::Job& job, const machine::MachineFamily& 
   std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
-    if (const Status fits = CheckSize(program.program().content(), what); !fits)
+    if (const Status fits = CheckSize(program.program().content().size(), what); !fits)
       return fits.error();
     if (const Status fits = CheckFileFamily(program.program().file_name(), family); !fits)
       return fits.error();

@@ -65,7 +65,7 @@ class JobBook {
  private:
   Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);
   Result<v1::Job> WithArtifacts(const storage::JobRecord& record);
-  Status CheckSize(const std::string& content, const std::string& what) const;
+  Status CheckSize(std::size_t bytes, const std::string& what) const;
   Status AttachProgram(const v1::Job& job, const machine::MachineFamily& family,
                        storage::NewJob& made, v1::Job& specification);
   // The further programs of a simulation, moved out of the specification.

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "engine/core/units.h"
+#include "engine/simulation/run/input_description.h"
 #include "engine/simulation/run/simulate.h"
 #include "proto/bridge/framing.h"
 #include "proto/bridge/report.h"
@@ -22,25 +23,30 @@ struct Followed {
   bool complete = false;
 };
 
-// A halt lasts no longer than it takes to press START.
-Result<Followed> Follow(const ProgramBook::Opened& opened, simulation::SimulationRequest request) {
-  const Result<simulation::PreparedRun> prepared = simulation::PrepareRun(
+// What is run: the program on its machine as that stands.
+Result<machine::RunSetup> SetupOf(const ProgramBook::Opened& opened) {
+  Result<simulation::PreparedRun> prepared = simulation::PrepareRun(
       opened.memory,
       {.main_program = opened.slot,
        .mode = machine::Mode::kCycle,
        .budget = {.steps = simulation::kCheckStepsMax, .virtual_time = simulation::kCheckTimeMax}});
   if (!prepared) return prepared.error();
-  if (!prepared->setup) {
-    for (const Diagnostic& finding : prepared->diagnostics)
-      if (IsError(finding.severity)) return Error{finding.code, finding.detail, finding.where};
-  }
+  if (prepared->setup) return *std::move(prepared->setup);
+  for (const Diagnostic& finding : prepared->diagnostics)
+    if (IsError(finding.severity)) return Error{finding.code, finding.detail, finding.where};
+  return Error{ErrorCode::kCellBadText, "a program of the machine cannot be translated", {}};
+}
+
+// A halt lasts no longer than it takes to press START.
+Result<Followed> Follow(const machine::MachineFamily& family, machine::RunSetup setup,
+                        simulation::SimulationRequest request) {
   const auto until = std::chrono::steady_clock::now() + kFollowedFor;
   request.options = {.at_halt = simulation::AtHalt::kStart,
                      .progress = [until](const simulation::Progress&) {
                        return std::chrono::steady_clock::now() < until;
                      }};
   Result<simulation::SimulationResult> result =
-      simulation::Simulate(*opened.memory.family, *prepared->setup, std::move(request));
+      simulation::Simulate(family, std::move(setup), std::move(request));
   if (!result) return result.error();
   const machine::OutcomeKind how = result->report.outcome.kind;
   const bool complete =
@@ -50,8 +56,7 @@ Result<Followed> Follow(const ProgramBook::Opened& opened, simulation::Simulatio
 
 }  // namespace
 
-Result<v1::GetProgramPictureResponse> ProgramViews::Picture(
-    const v1::GetProgramPictureRequest& request) {
+Result<ProgramViews::Drawing> ProgramViews::Prepare(const v1::GetProgramPictureRequest& request) {
   simulation::SimulationRequest asked{.products = {.picture = true}};
   if (request.width_px() != 0) {
     if (request.width_px() < kWidthMin_px || request.width_px() > kWidthMax_px) {
@@ -63,27 +68,44 @@ Result<v1::GetProgramPictureResponse> ProgramViews::Picture(
   }
   const Result<ProgramBook::Opened> opened = programs_.Open(request.name());
   if (!opened) return opened.error();
-  Result<Followed> followed = Follow(*opened, std::move(asked));
-  if (!followed) return followed.error();
-  v1::GetProgramPictureResponse response;
-  response.set_content(std::move(followed->result.svg));
-  response.set_media_type("image/svg+xml");
-  response.set_complete(followed->complete);
-  response.set_etag(opened->etag);
-  return response;
+  const machine::MachineFamily& family = *opened->memory.family;
+  Result<machine::RunSetup> setup = SetupOf(*opened);
+  if (!setup) return setup.error();
+  std::string etag = simulation::DescribeInputs(family, *setup).hash + "-" +
+                     std::to_string(asked.picture.width_px);
+  const auto shared = std::make_shared<machine::RunSetup>(*std::move(setup));
+  return Drawing{.etag = etag,
+                 .draw = [&family, shared, asked, etag]() -> Result<v1::GetProgramPictureResponse> {
+                   Result<Followed> followed = Follow(family, std::move(*shared), asked);
+                   if (!followed) return followed.error();
+                   v1::GetProgramPictureResponse response;
+                   response.set_content(std::move(followed->result.svg));
+                   response.set_media_type(std::string(kMediaTypeOfPictures));
+                   response.set_complete(followed->complete);
+                   response.set_etag(etag);
+                   return response;
+                 }};
+}
+
+Result<v1::GetProgramPictureResponse> ProgramViews::Picture(
+    const v1::GetProgramPictureRequest& request) {
+  const Result<Drawing> drawing = Prepare(request);
+  return drawing ? drawing->draw() : drawing.error();
 }
 
 Result<ProgramViews::Toolpath> ProgramViews::Path(const v1::StreamProgramToolpathRequest& request) {
   if (const Status level = CheckToolpathLevel(request.level()); !level) return level.error();
   const Result<ProgramBook::Opened> opened = programs_.Open(request.name());
   if (!opened) return opened.error();
+  Result<machine::RunSetup> setup = SetupOf(*opened);
+  if (!setup) return setup.error();
   Toolpath path;
   const simulation::ToolpathOptions options;
-  Result<Followed> followed =
-      Follow(*opened, {.products = {.toolpath = [&](std::string_view block) {
-                         bridge::AddFrame(block, path.frames);
-                         return true;
-                       }}});
+  Result<Followed> followed = Follow(*opened->memory.family, *std::move(setup),
+                                     {.products = {.toolpath = [&](std::string_view block) {
+                                        bridge::AddFrame(block, path.frames);
+                                        return true;
+                                      }}});
   if (!followed) return followed.error();
   const v1::RunReport report =
       bridge::ToProto(opened->memory.family->info(), followed->result.report, {});

@@ -1,196 +1,22 @@
 #include "server/services/program_service.h"
 
-#include <chrono>
-
 #include "proto/bridge/findings.h"
 #include "proto/bridge/header_date.h"
-#include "server/programs/content_upload.h"
 #include "server/programs/language_tools.h"
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/programs/program_views.h"
 #include "server/programs/text_tools.h"
-#include "server/services/frames_stream.h"
 #include "server/services/open_stream.h"
-#include "server/services/program_upload.h"
-#include "server/services/pull_stream.h"
+#include "server/services/program_streams.h"
 
 namespace rmlcell::server {
 namespace {
-
-constexpr std::size_t kChunkBytes = 256 << 10;
 
 v1::Findings FindingsOf(const machine::Translation& translation) {
   return bridge::FindingsOf(translation.ok, translation.diagnostics,
                             translation.diagnostics_dropped, translation.figures);
 }
-
-// A program that comes in chunks: stored when all are there and the digest is right.
-class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
- public:
-  Upload(const CallNeeds& needs, ProgramBook& programs, Caller caller, v1::Program* response)
-      : needs_(needs),
-        programs_(programs),
-        caller_(std::move(caller)),
-        response_(response),
-        upload_([&programs](std::int64_t bytes) { return programs.CheckSize(bytes); }) {
-    StartRead(&message_);
-  }
-
- private:
-  void OnReadDone(bool ok) override {
-    if (finished_) return;
-    if (const Status good = ok ? upload_.Add(message_) : upload_.End(); !good)
-      return End(ToGrpcStatus(good.error()));
-    if (ok) {
-      StartRead(&message_);
-    } else {
-      needs_.compute.Post([this] { Store(); });
-    }
-  }
-
-  void Store() {
-    const v1::UploadProgramRequest::Header& header = upload_.header();
-    const ProgramResult<v1::Program> stored =
-        programs_.Store({.name = header.name(),
-                         .file_name = header.file_name(),
-                         .form = header.form(),
-                         .title = header.title(),
-                         .etag = header.etag(),
-                         .bytes = upload_.TakeBytes(),
-                         .validate_only = header.validate_only(),
-                         .force = header.force(),
-                         .caller = caller_.identity});
-    if (stored) *response_ = *stored.value;
-    End(stored ? grpc::Status::OK : ToGrpcStatus(stored.error));
-  }
-
-  void End(const grpc::Status& status) {
-    finished_ = true;
-    LogCall("ProgramService/UploadProgram", caller_, status,
-            std::chrono::steady_clock::now() - begin_);
-    Finish(status);
-  }
-
-  void OnDone() override { delete this; }
-
-  CallNeeds needs_;
-  ProgramBook& programs_;
-  Caller caller_;
-  v1::Program* response_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  v1::UploadProgramRequest message_;
-  ProgramUpload upload_;
-  bool finished_ = false;
-};
-
-// What is sent for SubmitJob: each chunk goes to the store before the next one is read.
-class ContentReceiver final : public grpc::ServerReadReactor<v1::UploadContentRequest> {
- public:
-  ContentReceiver(const CallNeeds& needs, storage::Store& store, ProgramBook& programs,
-                  Caller caller, v1::UploadContentResponse* response)
-      : needs_(needs), caller_(std::move(caller)), response_(response), upload_(store, programs) {
-    StartRead(&message_);
-  }
-
- private:
-  void OnReadDone(bool ok) override {
-    needs_.executor.Post([this, ok] { Take(ok); });
-  }
-
-  void Take(bool ok) {
-    if (ok) {
-      const Status good = message_.has_header()
-                              ? upload_.Begin(message_.header().size(), message_.header().sha256())
-                              : upload_.Add(message_.chunk());
-      if (!good) return End(ToGrpcStatus(good.error()));
-      return StartRead(&message_);
-    }
-    Result<v1::UploadContentResponse> made = upload_.End();
-    if (!made) return End(ToGrpcStatus(made.error()));
-    *response_ = *std::move(made);
-    End(grpc::Status::OK);
-  }
-
-  void End(const grpc::Status& status) {
-    LogCall("ProgramService/UploadContent", caller_, status,
-            std::chrono::steady_clock::now() - begin_);
-    Finish(status);
-  }
-
-  void OnDone() override { delete this; }
-
-  CallNeeds needs_;
-  Caller caller_;
-  v1::UploadContentResponse* response_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  v1::UploadContentRequest message_;
-  ContentUpload upload_;
-};
-
-class ProgramToolpath final : public FramesStream<v1::StreamProgramToolpathResponse> {
- public:
-  ProgramToolpath(Executor& compute, OpenStreams& open, ProgramBook& programs,
-                  const v1::StreamProgramToolpathRequest& request)
-      : FramesStream(compute, open), views_(programs), request_(request) {}
-
- private:
-  Result<std::string> Read() override {
-    Result<ProgramViews::Toolpath> path = views_.Path(request_);
-    if (!path) return path.error();
-    header_ = std::move(path->header);
-    return std::move(path->frames);
-  }
-
-  bool AddHeader(std::string_view, v1::StreamProgramToolpathResponse& message) override {
-    *message.mutable_header() = std::move(header_);
-    return true;
-  }
-
-  bool Add(std::string_view frame, v1::StreamProgramToolpathResponse& message) override {
-    message.set_block(std::string(frame));
-    return false;
-  }
-
-  ProgramViews views_;
-  const v1::StreamProgramToolpathRequest request_;
-  v1::ToolpathHeader header_;
-};
-
-class Download final : public PullStream<v1::DownloadProgramResponse> {
- public:
-  Download(Executor& executor, OpenStreams& open, ProgramBook& programs,
-           const v1::DownloadProgramRequest& request)
-      : PullStream(executor, open), programs_(programs), request_(request) {}
-
- private:
-  Next Make(v1::DownloadProgramResponse& message, grpc::Status& status) override {
-    if (!begun_) {
-      begun_ = true;
-      Result<ProgramBook::Content> content = programs_.Read(request_.name(), request_.form());
-      if (!content) {
-        status = ToGrpcStatus(content.error());
-        return Next::kEnd;
-      }
-      content_ = std::move(*content);
-      message.mutable_header()->set_size(static_cast<std::int64_t>(content_.bytes.size()));
-      message.mutable_header()->set_sha256(content_.sha256);
-      message.mutable_header()->set_form(content_.form);
-      message.mutable_header()->set_file_name(content_.file_name);
-      return Next::kMessage;
-    }
-    if (sent_ >= content_.bytes.size()) return Next::kEnd;
-    message.set_chunk(content_.bytes.substr(sent_, kChunkBytes));
-    sent_ += message.chunk().size();
-    return Next::kMessage;
-  }
-
-  ProgramBook& programs_;
-  v1::DownloadProgramRequest request_;
-  ProgramBook::Content content_;
-  bool begun_ = false;
-  std::size_t sent_ = 0;
-};
 
 }  // namespace
 
@@ -222,7 +48,7 @@ grpc::ServerReadReactor<v1::UploadProgramRequest>* ProgramService::UploadProgram
     return new EndedStream<grpc::ServerReadReactor<v1::UploadProgramRequest>>(
         ToGrpcStatus(caller.error()));
   }
-  return new Upload(needs_, programs_, std::move(*caller), response);
+  return ReceiveProgram(needs_, programs_, *std::move(caller), response);
 }
 
 grpc::ServerReadReactor<v1::UploadContentRequest>* ProgramService::UploadContent(
@@ -232,7 +58,7 @@ grpc::ServerReadReactor<v1::UploadContentRequest>* ProgramService::UploadContent
     return new EndedStream<grpc::ServerReadReactor<v1::UploadContentRequest>>(
         ToGrpcStatus(caller.error()));
   }
-  return new ContentReceiver(needs_, store_, programs_, std::move(*caller), response);
+  return ReceiveContent(needs_, store_, programs_, *std::move(caller), response);
 }
 
 grpc::ServerUnaryReactor* ProgramService::GetProgramPicture(
@@ -251,9 +77,8 @@ grpc::ServerUnaryReactor* ProgramService::GetProgramPicture(
 grpc::ServerWriteReactor<v1::StreamProgramToolpathResponse>* ProgramService::StreamProgramToolpath(
     grpc::CallbackServerContext* context, const v1::StreamProgramToolpathRequest* request) {
   return OpenStream<v1::StreamProgramToolpathResponse>(
-      needs_, *context, *request, "ProgramService/StreamProgramToolpath", [&](const Caller&) {
-        return std::make_shared<ProgramToolpath>(needs_.compute, open_, programs_, *request);
-      });
+      needs_, *context, *request, "ProgramService/StreamProgramToolpath",
+      [&](const Caller&) { return MakeProgramToolpath(needs_, open_, programs_, *request); });
 }
 
 grpc::ServerUnaryReactor* ProgramService::GetProgram(grpc::CallbackServerContext* context,
@@ -298,7 +123,7 @@ grpc::ServerWriteReactor<v1::DownloadProgramResponse>* ProgramService::DownloadP
     return new EndedStream<grpc::ServerWriteReactor<v1::DownloadProgramResponse>>(
         ToGrpcStatus(caller.error()));
   }
-  return std::make_shared<Download>(needs_.executor, open_, programs_, *request)->Begin();
+  return MakeDownload(needs_, open_, programs_, *request)->Begin();
 }
 
 grpc::ServerUnaryReactor* ProgramService::ListPrograms(grpc::CallbackServerContext* context,

@@ -6,16 +6,14 @@
 #include "server/services/call.h"
 #include "server/services/pull_stream.h"
 
+namespace rmlcell::storage {
+class Store;
+}
 namespace rmlcell::server {
 
 class LanguageTools;
 class MemoryTools;
 class ProgramBook;
-}  // namespace rmlcell::server
-namespace rmlcell::storage {
-class Store;
-}
-namespace rmlcell::server {
 
 // Converts, calls, converts: the rules live in ProgramBook, the tools of server/programs and the
 // engine.

@@ -153,11 +153,14 @@ Result<web::Resource> WebResources::Find(const web::ResourcePath& path,
     const Result<Caller> caller =
         Admit(gate_, metadata, "ProgramService/GetProgramPicture", request.name());
     if (!caller) return caller.error();
-    Result<v1::GetProgramPictureResponse> made = ProgramViews(programs_).Picture(request);
-    if (!made) return made.error();
-    web::Resource drawn{.media_type = made->media_type()};
-    drawn.etag = bridge::Sha256Hex(made->content());
-    drawn.bytes = std::move(*made->mutable_content());
+    Result<ProgramViews::Drawing> drawing = ProgramViews(programs_).Prepare(request);
+    if (!drawing) return drawing.error();
+    web::Resource drawn{.media_type = std::string(kMediaTypeOfPictures), .etag = drawing->etag};
+    drawn.make = [draw = std::move(drawing->draw)]() -> Result<std::string> {
+      Result<v1::GetProgramPictureResponse> made = draw();
+      if (!made) return made.error();
+      return std::move(*made->mutable_content());
+    };
     return drawn;
   }
   const auto* content = std::get_if<web::ProgramContentPath>(&path);

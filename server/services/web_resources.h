@@ -3,15 +3,13 @@
 #include "server/auth/caller.h"
 #include "server/web/resource_source.h"
 
-namespace rmlcell::server {
-
-class JobBook;
-class ProgramBook;
-}  // namespace rmlcell::server
 namespace rmlcell::storage {
 class Store;
 }
 namespace rmlcell::server {
+
+class JobBook;
+class ProgramBook;
 
 // What the web port serves at stable URLs: products of jobs, contents of programs. Callers pass the
 // same gate as calls do.

@@ -18,7 +18,8 @@ struct Gateway {
   StaticPage page;
   std::shared_ptr<grpc::Channel> channel;
   ResourceSource* resources = nullptr;
-  std::function<void(std::function<void()>)> run_blocking;  // on the threads for ResourceSource
+  std::function<void(std::function<void()>)> run_blocking;   // on the threads for ResourceSource
+  std::function<void(std::function<void()>)> run_computing;  // on those for Resource::make
 };
 
 // What is to be done with a request whose headers have come.

@@ -2,6 +2,7 @@
 
 #include <google/protobuf/descriptor.h>
 
+#include <atomic>
 #include <utility>
 
 #include "google/rpc/status.pb.h"
@@ -27,12 +28,14 @@ RpcStatus Thrown() {
   return FromError({ErrorCode::kCellInternal, "reading or writing a resource failed", {}});
 }
 
-// Work on the blocking threads, with its result back on the strand. Nothing that throws may end the
+using Run = std::function<void(std::function<void()>)>;
+
+// Work on other threads, with its result back on the strand. Nothing that throws may end the
 // process: a failure of one request is that request's.
 template <class Value>
-void RunAndReturn(const Gateway& gateway, const std::shared_ptr<Connection>& connection,
+void RunAndReturn(const Run& run, const std::shared_ptr<Connection>& connection,
                   std::function<Value()> work, std::function<void(std::optional<Value>)> then) {
-  gateway.run_blocking([connection, work = std::move(work), then = std::move(then)] {
+  run([connection, work = std::move(work), then = std::move(then)] {
     auto value = std::make_shared<std::optional<Value>>();
     try {
       value->emplace(work());
@@ -67,7 +70,7 @@ class Download : public Exchange, public std::enable_shared_from_this<Download> 
   void Start() override {
     const auto self = shared_from_this();
     RunAndReturn<Result<Resource>>(
-        gateway_, connection_,
+        gateway_.run_blocking, connection_,
         [self] { return self->gateway_.resources->Find(self->path_, self->caller_); },
         [self](std::optional<Result<Resource>> found) { self->TakeResource(std::move(found)); });
   }
@@ -75,13 +78,34 @@ class Download : public Exchange, public std::enable_shared_from_this<Download> 
   void OnTaken() override {
     const auto self = shared_from_this();
     RunAndReturn<Result<std::string>>(
-        gateway_, connection_, [self] { return self->resource_.reader->Read(kPieceBytes); },
+        gateway_.run_blocking, connection_,
+        [self] { return self->resource_.reader->Read(kPieceBytes); },
         [self](std::optional<Result<std::string>> piece) { self->TakePiece(std::move(piece)); });
   }
 
-  void OnGone() override { connection_.reset(); }
+  void OnGone() override {
+    gone_ = true;
+    connection_.reset();
+  }
 
  private:
+  void Make(HttpResponse head) {
+    const auto self = shared_from_this();
+    RunAndReturn<Result<std::string>>(
+        gateway_.run_computing, connection_,
+        [self]() -> Result<std::string> {
+          return self->gone_ ? Result(std::string()) : self->resource_.make();
+        },
+        [self, head = std::move(head)](std::optional<Result<std::string>> made) mutable {
+          if (!self->connection_) return;
+          if (!made || !*made)
+            head = ErrorAnswer(made ? FromError(made->error()) : Thrown());
+          else
+            head.body = **std::move(made);
+          std::exchange(self->connection_, nullptr)->Send(std::move(head));
+        });
+  }
+
   void TakeResource(std::optional<Result<Resource>> found) {
     if (!connection_) return;
     if (!found || !*found) {
@@ -95,6 +119,8 @@ class Download : public Exchange, public std::enable_shared_from_this<Download> 
     if (known) {
       head.status = 304;
       std::exchange(connection_, nullptr)->Send(std::move(head));
+    } else if (resource_.make) {
+      Make(std::move(head));
     } else if (!resource_.reader) {
       head.body = std::move(resource_.bytes);
       std::exchange(connection_, nullptr)->Send(std::move(head));
@@ -149,6 +175,7 @@ class Download : public Exchange, public std::enable_shared_from_this<Download> 
   const bool head_only_;
   const WebCallerMetadata caller_;
   std::shared_ptr<Connection> connection_;
+  std::atomic<bool> gone_ = false;  // nobody waits for it any more
   Resource resource_;
   std::int64_t left_ = 0;
 };
@@ -173,7 +200,7 @@ class Upload : public Exchange, public std::enable_shared_from_this<Upload> {
     using Sink = std::unique_ptr<UploadSink>;
     const auto self = shared_from_this();
     RunAndReturn<Result<Sink>>(
-        gateway_, connection_,
+        gateway_.run_blocking, connection_,
         [self] { return self->gateway_.resources->BeginUpload(self->header_, self->caller_); },
         [self](std::optional<Result<Sink>> sink) {
           if (!self->connection_) return;
@@ -186,7 +213,7 @@ class Upload : public Exchange, public std::enable_shared_from_this<Upload> {
   void OnBody(std::string_view chunk, bool last) override {
     const auto self = shared_from_this();
     RunAndReturn<Status>(
-        gateway_, connection_,
+        gateway_.run_blocking, connection_,
         [self, bytes = std::string(chunk)] {
           return bytes.empty() ? Status() : self->sink_->Append(bytes);
         },
@@ -204,7 +231,7 @@ class Upload : public Exchange, public std::enable_shared_from_this<Upload> {
   void End() {
     const auto self = shared_from_this();
     RunAndReturn<UploadEnd>(
-        gateway_, connection_, [self] { return self->sink_->Finish(); },
+        gateway_.run_blocking, connection_, [self] { return self->sink_->Finish(); },
         [self](std::optional<UploadEnd> end) {
           if (self->connection_) self->TakeEnd(std::move(end));
         });

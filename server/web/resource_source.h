@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -56,7 +57,10 @@ struct Resource {
   std::string media_type;  // "image/svg+xml"
   std::string etag;        // without quotes; normally the SHA-256
   std::string file_name;   // for saving; empty: none is proposed
-  std::string bytes;       // when there is no reader
+  std::string bytes;       // when there is neither reader nor `make`
+  // Makes `bytes`, which takes seconds of a processor: called on threads of its own, and only where
+  // the client does not have what `etag` names.
+  std::function<Result<std::string>()> make;
   std::unique_ptr<ResourceReader> reader;
   std::int64_t size = 0;  // of what the reader gives, in bytes
 };

@@ -80,7 +80,8 @@ struct WebServer::Core {
                 .page = StaticPage(options.web_dir),
                 .channel = std::move(channel),
                 .resources = &resources,
-                .run_blocking = {}},
+                .run_blocking = {},
+                .run_computing = {}},
         logger(std::move(web_logger)),
         io(std::clamp(options.io_threads, 1, kThreadsMax)),
         blocking(static_cast<std::size_t>(std::clamp(options.blocking_threads, 1, kThreadsMax))),
@@ -88,6 +89,9 @@ struct WebServer::Core {
         accept_pause(acceptor.get_executor()) {
     gateway.run_blocking = [this](std::function<void()> task) {
       asio::post(blocking, std::move(task));
+    };
+    gateway.run_computing = [this](std::function<void()> task) {
+      asio::post(computing, std::move(task));
     };
   }
 
@@ -157,6 +161,7 @@ struct WebServer::Core {
       }
     }
     work.reset();
+    computing.join();
     blocking.join();
     for (std::thread& thread : threads) thread.join();
     threads.clear();
@@ -169,6 +174,7 @@ struct WebServer::Core {
   int port = 0;
   asio::io_context io;
   asio::thread_pool blocking;
+  asio::thread_pool computing{1};  // pictures of programs: one after the other
   tcp::acceptor acceptor;
   asio::steady_timer accept_pause;
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;

@@ -153,9 +153,11 @@ class Attempt {
     const auto parameters =
         machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
     if (!parameters) return Refuse(parameters.error());
+    const Result<machine::InputScript> inputs = bridge::InputsOf(assignment_.job().simulation());
+    if (!inputs) return Refuse(inputs.error());
     const int slot = assignment_.main_program();
-    Result<simulation::CheckedProgram> check = simulation::CheckProgram(
-        memory, *parameters, slot, true, bridge::InputsOf(assignment_.job().simulation()));
+    Result<simulation::CheckedProgram> check =
+        simulation::CheckProgram(memory, *parameters, slot, true, *inputs);
     if (!check) return Refuse(check.error());
     machine::Translation& translation = check->translation;
     for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = slot;
@@ -214,10 +216,10 @@ class Attempt {
       if (!milling) return Refuse(milling.error());
       products.milling = *std::move(milling);
     }
-    Result<simulation::PreparedRun> made = simulation::PrepareRun(
-        programs_.Memory(),
-        bridge::RunOptionsOf(options, assignment_.budget(), assignment_.main_program(),
-                             machine::Mode::kRemote));
+    const Result<simulation::RunOptions> how = bridge::RunOptionsOf(
+        options, assignment_.budget(), assignment_.main_program(), machine::Mode::kRemote);
+    if (!how) return Refuse(how.error());
+    Result<simulation::PreparedRun> made = simulation::PrepareRun(programs_.Memory(), *how);
     if (!made) return Refuse(made.error());
     if (const Stop stop = lease_.StopAsked(); stop != Stop::kNone) return EndOf(stop);
     if (!made->setup) {
@@ -277,11 +279,12 @@ class Attempt {
     const v1::SimulationOptions& options = assignment_.job().simulation();
     if (!assignment_.has_target()) return std::nullopt;
     // As the command runs such a program: by itself, with nobody at its keys.
-    const simulation::RunOptions all = bridge::RunOptionsOf(
+    const Result<simulation::RunOptions> all = bridge::RunOptionsOf(
         options, assignment_.budget(), assignment_.main_program(), machine::Mode::kCycle);
+    if (!all) return Refuse(all.error());
     Result<std::vector<float>> heights = programs_.TargetHeights(
         milling,
-        {.parameters = all.parameters, .mode = machine::Mode::kCycle, .budget = all.budget},
+        {.parameters = all->parameters, .mode = machine::Mode::kCycle, .budget = all->budget},
         [this] { return lease_.StopAsked() == Stop::kNone; });
     if (const Stop stop = lease_.StopAsked(); stop != Stop::kNone) return EndOf(stop);
     if (!heights) {

@@ -90,10 +90,11 @@ Result<bool> Housekeeping::RunSlice(WriteContext& context) const {
     if (const Status events = RemoveOldEvents(context); !events) return events.error();
     if (const Status events = RemoveOldRecordEvents(context); !events) return events.error();
   }
-  if (const Status forgotten = ForgetUploads(context); !forgotten) return forgotten.error();
+  const Result<bool> more_uploads = ForgetUploads(context);
+  if (!more_uploads) return more_uploads.error();
   const Result<bool> swept = context.tables.blobs.Sweep(kBlobsPerSlice, kChunksPerSlice);
   if (!swept) return swept.error();
-  return *swept || IsDue(context.counters);
+  return *swept || *more_uploads || IsDue(context.counters);
 }
 
 Status Housekeeping::RemoveOldJobs(WriteContext& context) const {
@@ -126,17 +127,17 @@ Status Housekeeping::RemoveOldRecordEvents(WriteContext& context) const {
   return NoteGone(context, **removed);
 }
 
-// Contents that no record took in time.
-Status Housekeeping::ForgetUploads(WriteContext& context) const {
+// Contents that no record took in time. True: there may be more.
+Result<bool> Housekeeping::ForgetUploads(WriteContext& context) const {
   for (int i = 0; i < kBlobsPerSlice; ++i) {
     const auto due = context.tables.uploads.FirstDue(context.now);
     if (!due) return due.error();
-    if (!*due) return {};
+    if (!*due) return false;
     if (const Status removed = context.tables.uploads.Remove(**due); !removed)
       return removed.error();
     if (const Status dropped = context.tables.blobs.Drop(**due); !dropped) return dropped.error();
   }
-  return {};
+  return true;
 }
 
 Status Housekeeping::RemoveOldEvents(WriteContext& context) const {

@@ -35,7 +35,7 @@ class Housekeeping {
   Status RemoveOldEvents(WriteContext& context) const;
   bool HasOldRecordEvents(const Counters& counters) const;
   Status RemoveOldRecordEvents(WriteContext& context) const;
-  Status ForgetUploads(WriteContext& context) const;
+  Result<bool> ForgetUploads(WriteContext& context) const;
 
   KeepLimits limits_;
 };

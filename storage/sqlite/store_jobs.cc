@@ -392,6 +392,15 @@ Result<std::vector<JobRecord>> SqliteStore::Expire(const LossPolicy& policy) {
     const Status gone = writer_.Do([](WriteContext& context) { return LetDueJobsGo(context); });
     if (!gone) return gone.error();
   }
+  const auto upload = readers_->Read([&](Tables& tables) { return tables.uploads.FirstDue(now); });
+  if (!upload) return upload.error();
+  if (*upload) {
+    const Status tidy = writer_.Do([](WriteContext& context) -> Status {
+      context.garbage = true;  // tidying forgets them
+      return {};
+    });
+    if (!tidy) return tidy.error();
+  }
   const Result<std::vector<Lease>> leases =
       readers_->Read([&](Tables& tables) { return tables.leases.RunOut(now); });
   if (!leases) return leases.error();

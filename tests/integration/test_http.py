@@ -137,6 +137,15 @@ class Web(WithCell):
         with urllib.request.urlopen(url + "?width=200") as answer:
             self.assertEqual(answer.headers["Content-Type"], "image/svg+xml")
             self.assertIn(b'width="200"', answer.read())
+            etag = answer.headers["ETag"]
+        with self.assertRaises(urllib.error.HTTPError) as caught:
+            urllib.request.urlopen(urllib.request.Request(url + "?width=200", headers={"If-None-Match": etag}))
+        self.assertEqual(caught.exception.code, 304)
+        with urllib.request.urlopen(url + "?width=300") as answer:
+            self.assertNotEqual(answer.headers["ETag"], etag)
+        self.send("/v1/machines/mill-1/programs/8/content?file_name=square.rml", bytes_of_program + b"PU0,0;")
+        with urllib.request.urlopen(urllib.request.Request(url + "?width=200", headers={"If-None-Match": etag})) as answer:
+            self.assertEqual(answer.status, 200)
         for query in ("?width=63", "?width=9000", "?width=x"):
             with self.assertRaises(urllib.error.HTTPError) as caught:
                 urllib.request.urlopen(url + query)

@@ -51,6 +51,34 @@ class Programs(WithCell):
         request.program.content = content if isinstance(content, bytes) else content.encode()
         return request
 
+    def content(self, content, size=None, sha256=None, pieces=3):
+        header = program_pb2.UploadContentRequest.Header(
+            size=len(content) if size is None else size,
+            sha256=hashlib.sha256(content).hexdigest() if sha256 is None else sha256)
+        yield program_pb2.UploadContentRequest(header=header)
+        step = max(1, len(content) // pieces)
+        for at in range(0, len(content), step):
+            yield program_pb2.UploadContentRequest(chunk=content[at:at + step])
+
+    def test_bytes_without_a_slot_are_named_by_a_job(self):
+        stub = self.cell.programs()
+        content = b"; large\n" + b"DELAY 0.001\n" * 200_000
+        kept = stub.UploadContent(self.content(content))
+        self.assertEqual((kept.sha256, kept.size), (hashlib.sha256(content).hexdigest(), len(content)))
+        bad, invalid = grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003"
+        self.refused(stub.UploadContent, self.content(b"SPEED 20\n", sha256=""), bad, invalid)
+        self.refused(stub.UploadContent, self.content(b"SPEED 20\n", sha256="no digest"), bad, invalid)
+        self.refused(stub.UploadContent, self.content(b"SPEED 20\n", size=-1), bad, invalid)
+        self.refused(stub.UploadContent, self.content(b"SPEED 20\n", size=8), bad, "CELL-E9016")
+        self.refused(stub.UploadContent, self.content(b"SPEED 20\n", sha256="ab" * 32), bad, "CELL-E9016")
+        job = job_pb2.Job(machine="machines/optimo-1", kind=job_pb2.JOB_KIND_CHECK)
+        job.uploaded_program.file_name = "part.S"
+        for wrong, code, ours in (("", bad, invalid), ("ab" * 32, grpc.StatusCode.NOT_FOUND, "CELL-E9004")):
+            job.uploaded_program.sha256 = wrong
+            self.refused(self.cell.jobs().SubmitJob, job_pb2.SubmitJobRequest(job=job), code, ours)
+        job.uploaded_program.sha256 = kept.sha256
+        self.assertEqual(self.cell.jobs().SubmitJob(job_pb2.SubmitJobRequest(job=job)).uploaded_program.sha256, kept.sha256)
+
     def test_a_program_comes_back_as_it_was_stored(self):
         stub = self.cell.programs()
         text = "; mine\n10   SPEED 20 ; slow\nENDTASK\n"

@@ -77,9 +77,11 @@ TEST_P(StoreConformance, AnUploadIsKeptForItsTimeAndWithTheJobThatNamesIt) {
                 .attachments = {{.name = "program", .bytes = {}, .existing_sha256 = kAbc}}}))
           .job;
   EXPECT_EQ(Must(store().GetArtifact(job.id, "program")).sha256, kAbc);
-  clock().Advance(std::chrono::hours(1));
-  // What is over goes when the store has something to tidy: here the next upload.
-  Must(Upload(store(), HexName("x"), "x", 1, std::chrono::hours(1)));
+  clock().Advance(std::chrono::hours(1) - std::chrono::milliseconds(1));
+  Must(store().Expire({.outcome = {.state = JobState::kFailed}}));
+  EXPECT_TRUE(Must(store().ReadBlob(HexName(other))) == other);
+  clock().Advance(std::chrono::milliseconds(1));
+  Must(store().Expire({.outcome = {.state = JobState::kFailed}}));
   EXPECT_TRUE(Eventually(
       [&] { return CodeOf(store().ReadBlob(HexName(other))) == ErrorCode::kCellNotFound; }));
   EXPECT_EQ(Must(store().ReadBlob(kAbc)), "abc");

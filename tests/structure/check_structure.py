@@ -124,7 +124,7 @@ PUBLIC = {
     PICTURE: ["picture.h", "picture_difference.h", "plot.h", "time_envelope.h"],
     MATERIAL: ["height_grid.h", "height_map.h", "milling_recorder.h", "milling_text.h", "relief.h", "standard_cell.h", "stl.h", "target.h", "target_files.h"],
     VERDICT: ["verdict.h"],
-    RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "joint_check.h", "milled_target.h", "timetable.h", "trial_run.h"],
+    RUN: ["simulate.h", "input_description.h", "motion_check.h", "rehearsal.h", "joint_check.h", "milled_target.h", "timetable.h", "trial_run.h"],
     "storage": ["content.h", "records.h", "store.h"],
     "storage/sqlite": ["sqlite_store.h"],
     "storage/opening": ["open_store.h"],

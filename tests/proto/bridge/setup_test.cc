@@ -36,7 +36,7 @@ Result<simulation::PreparedRun> Prepare(const simulation::ProgramMemory& memory,
                                         const v1::SimulationOptions& options,
                                         const v1::Budget& budget,
                                         machine::Mode default_mode = machine::Mode::kRemote) {
-  return simulation::PrepareRun(memory, RunOptionsOf(options, budget, 12, default_mode));
+  return simulation::PrepareRun(memory, *RunOptionsOf(options, budget, 12, default_mode));
 }
 
 TEST(MakeParameters, DefaultsThenProfileThenValues) {
@@ -68,7 +68,7 @@ TEST(PrepareRun, TakesManyBreakpoints) {
       one.set_condition(condition);
       one.set_passes(passes);
     }
-    return RunOptionsOf(options, {}, 12, machine::Mode::kCycle);
+    return *RunOptionsOf(options, {}, 12, machine::Mode::kCycle);
   };
   EXPECT_EQ(made({{7, "", 1}}).breakpoint, (machine::ProgramStep{.program = 12, .step = 7}));
   const machine::ProgramStep seven{.program = 12, .step = 7};
@@ -155,7 +155,7 @@ TEST(PrepareRun, ModesAndWhatIsNotAskedFor) {
   EXPECT_EQ(made->setup->override_percent, 100.0);
   v1::SimulationOptions slow;
   slow.set_override_percent(0.5);
-  EXPECT_EQ(RunOptionsOf(slow, {}, 1, machine::Mode::kCycle).override_percent, 0.5);
+  EXPECT_EQ(RunOptionsOf(slow, {}, 1, machine::Mode::kCycle)->override_percent, 0.5);
   EXPECT_FALSE(made->setup->breakpoint);
   EXPECT_FALSE(made->setup->simul);
   EXPECT_EQ(made->setup->budget.steps, plain.budget.steps);

@@ -22,7 +22,7 @@ class FakeLine final : public WorkerLine {
  public:
   void Send(v1::WorkResponse message) override;
   void SendProgram(int slot, std::shared_ptr<const std::string> bytes) override;
-  void Close(const Error&) override {}
+  void Close(const Error&) override { closed = true; }
 
   // The next message of this kind; those of other kinds that came before it are dropped. An empty
   // one when none comes within `patience`.
@@ -31,6 +31,7 @@ class FakeLine final : public WorkerLine {
   // Whether a message of this kind is there now; nothing is dropped.
   bool Has(v1::WorkResponse::MessageCase kind);
   std::map<int, std::string> programs();
+  std::atomic<bool> closed = false;
 
  private:
   std::mutex mutex_;
@@ -98,6 +99,8 @@ class HookedStore final : public ForwardingStore {
   std::atomic<int> acquires_that_fail = 0;
   std::atomic<int> machines_that_fail = 0;
   std::atomic<int> appends_that_fail = 0;
+  std::atomic<int> losses_that_fail = 0;  // hand-backs and abandons
+  std::atomic<int> finishes_that_throw = 0;
   // Ends are kept until Answer() and not written, as by a store that is not there for a while.
   std::atomic<bool> keeps_ends = false;
   std::atomic<int> ends_kept = 0;
@@ -154,6 +157,7 @@ class HookedStore final : public ForwardingStore {
   void SendFinish(const storage::Lease& lease, std::shared_ptr<const storage::JobEnd> end,
                   storage::Done<storage::JobRecord> done) override {
     if (Fails(finishes_that_fail)) return done(FullDisk());
+    if (Fails(finishes_that_throw)) throw std::bad_alloc();
     if (!keeps_ends) return store_.SendFinish(lease, std::move(end), std::move(done));
     {
       const std::lock_guard lock(kept_mutex_);
@@ -163,10 +167,12 @@ class HookedStore final : public ForwardingStore {
   }
   void SendHandBack(const storage::Lease& lease, storage::LossPolicy policy,
                     storage::Done<storage::JobRecord> done) override {
+    if (Fails(losses_that_fail)) return done(FullDisk());
     store_.SendHandBack(lease, std::move(policy), std::move(done));
   }
   void SendAbandon(const storage::Lease& lease, storage::LossPolicy policy,
                    storage::Done<storage::JobRecord> done) override {
+    if (Fails(losses_that_fail)) return done(FullDisk());
     store_.SendAbandon(lease, std::move(policy), std::move(done));
   }
   void Answer() {

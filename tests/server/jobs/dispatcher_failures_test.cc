@@ -89,6 +89,93 @@ TEST(DispatcherFailures, EventsThatAreNotTakenInTheTimeOfALeaseAreAnAttemptThatW
   EXPECT_TRUE(bed.Becomes(job, JobState::kSucceeded));
 }
 
+std::vector<std::string> Told(DispatcherBed& bed, std::int64_t job) {
+  std::vector<std::string> told;
+  for (const v1::JobEvent& event : bed.Events(job))
+    if (event.has_message()) told.push_back(event.message().text());
+  return told;
+}
+
+// scale-out.md IF-03: what a worker told is not lost with it, whether it dies or gives back.
+TEST(DispatcherFailures, WhatAWorkerToldOutlivesItThoughTheStoreIsAway) {
+  for (const bool gives_back : {false, true}) {
+    DispatcherBed bed;
+    const std::int64_t job = bed.server.SubmitCheck();
+    FakeWorker worker(bed.dispatcher(), "w");
+    ASSERT_TRUE(worker.Take());
+    bed.hooks.appends_that_fail = 1'000'000;
+    bed.hooks.losses_that_fail = 3;
+    worker.Events(2, "a");
+    if (gives_back) {
+      worker.HandBack();
+    } else {
+      worker.Leave();
+    }
+    EXPECT_TRUE(bed.Becomes(job, JobState::kQueued));
+    EXPECT_EQ(bed.hooks.losses_that_fail, 0);
+    if (gives_back) {
+      EXPECT_THAT(Told(bed, job), ElementsAre("a", "a"));
+    } else {
+      EXPECT_THAT(Told(bed, job), ElementsAre("a", "a", "the worker of attempt 1 died"));
+    }
+  }
+}
+
+// An end that is not taken in the time of a lease leaves what was told of the attempt.
+TEST(DispatcherFailures, WhatWasToldStaysWhenTheEndIsLost) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  bed.hooks.appends_that_fail = 1'000'000;
+  bed.hooks.finishes_that_fail = 1'000'000;
+  worker.Events(1, "a");
+  worker.Finish();
+  bed.Settle();
+  bed.Advance(milliseconds(bed.config.workers_lease_ms));
+  EXPECT_EQ(worker.Released(), false);
+  EXPECT_THAT(Told(bed, job), ElementsAre("a", "the worker of attempt 1 died"));
+}
+
+// A lease that could not be renewed is not ours for longer than it was given, however often its
+// worker says that it lives.
+TEST(DispatcherFailures, EventsOfALeaseThatCannotBeRenewedAreNotTriedForEver) {
+  DispatcherBed bed;
+  bed.config.workers_lease_ms = 900;
+  bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  bed.hooks.appends_that_fail = 1'000'000;
+  bed.hooks.renewals_that_fail = 1'000'000;
+  bed.hooks.losses_that_fail = 1'000'000;
+  worker.Events(1, "a");
+  for (int i = 0; i < 3; ++i) {
+    bed.Settle();
+    EXPECT_FALSE(worker.line().Has(v1::WorkResponse::kRelease)) << i;
+    bed.Advance(milliseconds(300));
+    worker.Heartbeat();
+  }
+  EXPECT_EQ(worker.Released(), false);
+}
+
+// What throws in the middle of a worker's work ends with that worker, not with the server.
+TEST(DispatcherFailures, AWorkerWhoseWorkThrowsIsSentAway) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  bed.hooks.finishes_that_throw = 1;
+  worker.Finish();
+  bed.Settle();
+  EXPECT_TRUE(worker.line().closed);
+  worker.Leave();
+  EXPECT_TRUE(bed.Becomes(job, JobState::kQueued));
+  FakeWorker another(bed.dispatcher(), "another");
+  ASSERT_TRUE(another.Take());
+  another.Finish();
+  EXPECT_EQ(another.Released(), true);
+}
+
 // scale-out.md IF-01: a store that is away holds up no thread of the server, however many workers
 // wait for it.
 TEST(DispatcherFailures, AStoreThatDoesNotAnswerHoldsUpNoThread) {
