@@ -69,7 +69,7 @@ Marked PlaceOf(const Diagnostic& finding, std::string_view text) {
 Json ToJson(const Diagnostic& finding, PositionFinder& positions, const Document& document) {
   const std::string_view text = document.text();
   const CatalogueEntry& entry = Lookup(finding.code);
-  std::string message = finding.detail.empty() ? std::string(entry.when) : finding.detail;
+  std::string message = Said(finding.code, finding.detail);
   if (!finding.rule.empty()) message += " [" + finding.rule + "]";
   if (entry.family != ErrorFamily::kCell) message += "\n" + std::string(entry.advice);
   const Marked marked = PlaceOf(finding, text);

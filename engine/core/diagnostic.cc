@@ -65,6 +65,10 @@ std::string_view FindingWord(const Diagnostic& finding) {
   return SeverityName(finding.severity);
 }
 
+Detail Said(ErrorCode code, const Detail& detail) {
+  return detail.empty() ? Detail(std::string(Lookup(code).when)) : detail;
+}
+
 std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view source) {
   const CatalogueEntry& entry = Lookup(diagnostic.code);
   std::string text = diagnostic.file.empty() && diagnostic.program > 0
@@ -78,7 +82,7 @@ std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view sour
   if (!text.empty()) text += ": ";
   text += FindingWord(diagnostic);
   text += ' ' + CodeText(diagnostic.code) + ": ";
-  text += diagnostic.detail.empty() ? std::string(entry.when) : diagnostic.detail;
+  text += Said(diagnostic.code, diagnostic.detail);
   if (diagnostic.step > 0) {
     text += " (step " + std::to_string(diagnostic.step);
     if (diagnostic.at) text += ", at " + FixedText(ToSeconds(*diagnostic.at), 3) + " s";

@@ -27,19 +27,22 @@ enum class Judged : std::uint8_t { kNo, kDoubtful, kBad };
 // A finding about a program, before it runs or while it runs.
 struct Diagnostic {
   ErrorCode code;
-  Severity severity;     // normally that of the catalogue row; CHECK may lower or raise it
-  std::string detail{};  // "radius is 0"
-  std::string rule{};    // "OPT-2.27"; empty when the code says all
-  std::string file{};    // as the user named it; empty for a stored program
-  SourceSpan where{};    // line 0: no text is known
-  int program = 0;       // slot; 0 when the program has none
-  int step = 0;          // as the control counts; 0 when it belongs to no step
+  Severity severity;   // normally that of the catalogue row; CHECK may lower or raise it
+  Detail detail{};     // "radius is 0"
+  std::string rule{};  // "OPT-2.27"; empty when the code says all
+  std::string file{};  // as the user named it; empty for a stored program
+  SourceSpan where{};  // line 0: no text is known
+  int program = 0;     // slot; 0 when the program has none
+  int step = 0;        // as the control counts; 0 when it belongs to no step
   std::vector<Fix> fixes{};
   std::optional<SimTime> at{};  // virtual time of the run that found it; none: found in the text
   Judged judged = Judged::kNo;
 
   bool operator==(const Diagnostic&) const = default;
 };
+
+// What was observed; where nothing is said of it, what the catalogue says of the code.
+Detail Said(ErrorCode code, const Detail& detail);
 
 // An error stops a program from being stored or from going on; warnings and advice do not.
 bool IsError(Severity severity);

@@ -47,11 +47,11 @@ NearestOf NearestTo(std::string_view word, std::span<const std::string_view> can
   return near;
 }
 
-std::string DidYouMean(std::span<const std::string> words) {
+Detail DidYouMean(std::span<const std::string> words) {
   if (words.empty()) return {};
-  std::string text = "; did you mean " + words.front();
+  Detail text = "; did you mean " + Told("near", words.front());
   for (std::size_t w = 1; w < words.size(); ++w)
-    text += (w + 1 < words.size() ? ", " : " or ") + words[w];
+    text += (w + 1 < words.size() ? ", " : " or ") + Told("near", words[w]);
   return text + "?";
 }
 

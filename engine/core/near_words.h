@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/detail.h"
+
 // What a mistyped word may mean: of a program, of the command line, a name of a profile.
 namespace rmlcell {
 
@@ -24,6 +26,6 @@ struct NearestOf {
 NearestOf NearestTo(std::string_view word, std::span<const std::string_view> candidates);
 
 // "; did you mean GO or GOTO?"; empty when there is no word.
-std::string DidYouMean(std::span<const std::string> words);
+Detail DidYouMean(std::span<const std::string> words);
 
 }  // namespace rmlcell

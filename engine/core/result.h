@@ -8,6 +8,7 @@
 
 #include "engine/core/catalogue.h"
 #include "engine/core/check.h"
+#include "engine/core/detail.h"
 
 namespace rmlcell {
 
@@ -24,14 +25,14 @@ struct SourceSpan {
 // What went wrong: a row of the catalogue, what was observed, and where.
 struct Error {
   ErrorCode code;
-  std::string detail{};               // "radius is 0": lower case, no full stop
+  Detail detail{};                    // "radius is 0": lower case, no full stop
   std::optional<SourceSpan> where{};  // when there is program text
 
   bool operator==(const Error&) const = default;
 };
 
 // What a caller gave and must not have given; the detail says which part and what is allowed.
-inline Error InvalidArgument(std::string detail) {
+inline Error InvalidArgument(Detail detail) {
   return {ErrorCode::kCellInvalidArgument, std::move(detail), {}};
 }
 
@@ -79,7 +80,7 @@ class [[nodiscard]] Result {
 // An operation that returns nothing: good, or an error.
 class [[nodiscard]] Status {
  public:
-  Status() = default;
+  Status() {}  // not defaulted: `return {};` would set all of its bytes to zero first
   Status(Error error) : error_(std::move(error)) {}  // NOLINT: implicit by design
 
   bool ok() const { return !error_.has_value(); }

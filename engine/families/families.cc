@@ -58,8 +58,8 @@ Result<const machine::MachineFamily*> FamilyWithTools(std::string_view name) {
     return family;
   }
   return Error{ErrorCode::kCellInvalidArgument,
-               std::string(name) + " is a program for " +
-                   (family == nullptr ? "no machine with" : std::string(family->info().title)) +
+               Told("file", name) + " is a program for " +
+                   (family == nullptr ? "no machine with" : Told("machine", family->info().title)) +
                    ": there are no tools for its streams",
                {}};
 }

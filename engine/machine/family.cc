@@ -16,7 +16,7 @@ MachineShape MachineFamily::Shape(const Parameters& /*parameters*/) const { retu
 
 Status MachineFamily::CheckWrite(const Parameters& parameters, std::string_view name,
                                  double /*value*/) const {
-  const std::string what = "'" + std::string(name) + "'";
+  const Detail what = "'" + Told("variable", name) + "'";
   return Error{ErrorCode::kCellInvalidArgument,
                HasVariable(parameters, name) ? what + " is written by the machine alone"
                                              : "no variable is called " + what,
@@ -48,11 +48,12 @@ Status MachineFamily::CheckBreakpoint(const Breakpoint& breakpoint) const {
   const auto refuse = [&](std::string_view why) {
     return Error{
         ErrorCode::kCellInvalidArgument,
-        "the breakpoint behind step " + std::to_string(breakpoint.at.step) + " " + std::string(why),
+        "the breakpoint behind step " + Told("step", breakpoint.at.step) + " " + std::string(why),
         {}};
   };
   if (!info().has_breakpoints) {
-    return Error{ErrorCode::kCellNotLive, std::string(info().title) + " has no breakpoints", {}};
+    return Error{
+        ErrorCode::kCellNotLive, Told("machine", info().title) + " has no breakpoints", {}};
   }
   if (!IsSlot(breakpoint.at.program) || breakpoint.at.step < 1)
     return refuse("stands in no program: give a slot of 1 to 99 and a step from 1 on");
@@ -68,7 +69,7 @@ Status MachineFamily::CheckBreakpoint(const Breakpoint& breakpoint) const {
 TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
                                          const TransferOptions& /*options*/) const {
   TransferPlan plan{.ok = true};
-  const auto refuse = [&plan](std::string detail, const std::string& file, int slot) {
+  const auto refuse = [&plan](Detail detail, const std::string& file, int slot) {
     constexpr ErrorCode kCode = ErrorCode::kCellInvalidArgument;
     Diagnostic finding{.code = kCode,
                        .severity = Lookup(kCode).severity,
@@ -78,7 +79,7 @@ TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Par
     plan.diagnostics.push_back(std::move(finding));
     plan.ok = false;
   };
-  const std::string title(info().title);
+  const Detail title = Told("machine", info().title);
   if (!project.schedules.empty()) refuse(title + " has no laser schedules", {}, 0);
   if (!project.processes.empty()) refuse(title + " has no process definitions", {}, 0);
   std::set<int> slots;
@@ -86,9 +87,9 @@ TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Par
     const std::string& name = program.file.name;
     const int slot = program.slot;
     if (!IsSlot(slot))
-      refuse("slot " + std::to_string(slot) + " is not one of 1 to 99", name, slot);
+      refuse("slot " + Told("program", slot) + " is not one of 1 to 99", name, slot);
     if (!slots.insert(slot).second)
-      refuse("slot " + std::to_string(slot) + " has two programs", name, slot);
+      refuse("slot " + Told("program", slot) + " has two programs", name, slot);
     if (program.inch) refuse("a stream is in units of its machine, not in inches", name, slot);
     Translation translation = Translate(program.file, parameters, {});
     for (Diagnostic& diagnostic : translation.diagnostics) {
@@ -132,11 +133,11 @@ const MachineProfile* FindProfile(std::span<const MachineProfile> profiles,
 
 Error NoProfile(std::span<const MachineProfile> profiles, const std::string& wanted) {
   const std::string plain = Plain(wanted);
-  std::string known;
+  Detail known;
   std::vector<std::string> near;
   for (const MachineProfile& one : profiles) {
     const std::string id = Plain(one.id);
-    known += " " + std::string(one.id);
+    known += " " + Told("known", one.id);
     if (plain.size() > 1 && (id.find(plain) != std::string::npos ||
                              (id.size() > 1 && plain.find(id) != std::string::npos)))
       near.emplace_back(one.id);
@@ -146,7 +147,7 @@ Error NoProfile(std::span<const MachineProfile> profiles, const std::string& wan
     for (const MachineProfile& one : profiles) ids.push_back(one.id);
     near = NearestTo(wanted, ids).words;
   }
-  std::string detail = "no profile '" + wanted + "'";
+  Detail detail = "no profile '" + Told("name", wanted) + "'";
   if (EqualIgnoringCase(std::string_view(plain).substr(plain.find_last_of('.') + 1), "toml")) {
     detail += ": a file of one's own goes to --machine";
   } else if (!near.empty()) {

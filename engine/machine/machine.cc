@@ -13,7 +13,7 @@ namespace {
 
 Error NotNow(MachineState state, std::string_view possible) {
   return {ErrorCode::kCellMachineState,
-          "the machine is " + std::string(Name(state)) + ": " + std::string(possible),
+          "the machine is " + Told("state", Name(state)) + ": " + std::string(possible),
           {}};
 }
 
@@ -230,7 +230,7 @@ Status Machine::Apply(const MachineInput& input) {
   return done;
 }
 
-void Machine::Raise(ErrorCode code, std::string detail, const Place& place) {
+void Machine::Raise(ErrorCode code, Detail detail, const Place& place) {
   if (std::ranges::find(alarms_, code, &Alarm::code) != alarms_.end()) return;
   alarms_.push_back(
       {.id = ++last_alarm_, .code = code, .detail = std::move(detail), .at = now_, .place = place});
@@ -250,7 +250,7 @@ Status Machine::MaySource(StartSource source) const {
   const bool panel = source == StartSource::kPanel;
   if (mode_ != Mode::kManual && panel == (mode_ != Mode::kRemote)) return {};
   return Error{ErrorCode::kCellMode,
-               "the mode is " + std::string(Name(mode_)) +
+               "the mode is " + Told("mode", Name(mode_)) +
                    (mode_ == Mode::kManual ? ": nothing starts in it"
                     : panel                ? ": the keys of the machine start nothing in it"
                             : ": only the keys of the machine start something in it"),
@@ -276,7 +276,7 @@ Status Machine::MayStart(const StartRun& input) const {
       break;
   }
   if (const Status source = MaySource(input.source); !source) return source.error();
-  const std::string slot = std::to_string(input.program);
+  const Detail slot = Told("program", input.program);
   if (!IsSlot(input.program))
     return Error{family_.info().no_slot, "program " + slot + ", allowed are 1 to 99", {}};
   if (!memory_.programs.contains(input.program))
@@ -393,7 +393,7 @@ Status Machine::Act(const Acknowledge& input) {
 Status Machine::Act(const ChangeMode& input) {
   if (input.mode == Mode::kRepeat && !family_.info().has_repeat) {
     return Error{
-        ErrorCode::kCellMode, std::string(family_.info().title) + " has no mode REPEAT", {}};
+        ErrorCode::kCellMode, Told("machine", family_.info().title) + " has no mode REPEAT", {}};
   }
   if (input.mode == Mode::kManual) {
     Hold();
@@ -407,11 +407,15 @@ Status Machine::Act(const ChangeMode& input) {
 Status Machine::Act(const ChangeOverride& input) {
   const FamilyInfo& info = family_.info();
   if (!(input.percent >= info.override_min_percent && input.percent <= info.override_max_percent)) {
-    return Error{ErrorCode::kCellInvalidArgument,
-                 "an override of " + ShortestText(input.percent) + " %: it is " +
-                     ShortestText(info.override_min_percent) + " to " +
-                     ShortestText(info.override_max_percent) + " %",
-                 {}};
+    return Error{
+        ErrorCode::kCellInvalidArgument,
+        "an override of " + Told("override", input.percent, "%", ShortestText(input.percent)) +
+            " %: it is " +
+            Told("least", info.override_min_percent, "%", ShortestText(info.override_min_percent)) +
+            " to " +
+            Told("most", info.override_max_percent, "%",
+                 ShortestText(info.override_max_percent) + " %"),
+        {}};
   }
   override_percent_ = input.percent;
   if (run_ != nullptr) ToRun(InputKind::kOverride, 0, input.percent);
@@ -422,10 +426,12 @@ Status Machine::Act(const ChangeInput& input) {
   const bool logical = input.kind == InputKind::kLogical;
   const std::string name = (logical ? "IL[" : "IA[") + std::to_string(input.index) + "]";
   if ((!logical && input.kind != InputKind::kAnalogue) || !family_.HasVariable(parameters_, name)) {
-    return Error{ErrorCode::kCellInvalidArgument, "the machine has no input " + name, {}};
+    return Error{
+        ErrorCode::kCellInvalidArgument, "the machine has no input " + Told("input", name), {}};
   }
   if (!std::isfinite(static_cast<float>(input.value)))
-    return Error{ErrorCode::kCellInvalidArgument, name + " is a number up to 3.4e38", {}};
+    return Error{
+        ErrorCode::kCellInvalidArgument, Told("input", name) + " is a number up to 3.4e38", {}};
   ToRun(input.kind, input.index, input.value);
   return {};
 }
@@ -473,7 +479,7 @@ Status Machine::Act(const WriteVariable& input) {
 Status Machine::Act(const SetBreakpoints& input) {
   if (input.breakpoints.size() > kBreakpointsMax) {
     return Error{ErrorCode::kCellInvalidArgument,
-                 "at most " + std::to_string(kBreakpointsMax) + " breakpoints are set",
+                 "at most " + Told("most", kBreakpointsMax) + " breakpoints are set",
                  {}};
   }
   for (const Breakpoint& breakpoint : input.breakpoints) {
@@ -488,7 +494,7 @@ Status Machine::Act(const SetBreakpoints& input) {
 Status Machine::Act(const SetSimulation& input) {
   if (!family_.info().has_dry_run && input.until) {
     return Error{ErrorCode::kCellNotLive,
-                 std::string(family_.info().title) + " has no dry run up to a step",
+                 Told("machine", family_.info().title) + " has no dry run up to a step",
                  {}};
   }
   if (input.until && (!IsSlot(input.until->program) || input.until->step < 1)) {
@@ -503,7 +509,7 @@ Status Machine::Act(const SetSimulation& input) {
 Status Machine::Act(const StoreProgram& input) {
   if (!IsSlot(input.slot))
     return Error{family_.info().no_slot,
-                 "program " + std::to_string(input.slot) + ", allowed are 1 to 99",
+                 "program " + Told("program", input.slot) + ", allowed are 1 to 99",
                  {}};
   memory_.programs[input.slot] = input.program;
   memory_.deleted.erase(input.slot);
@@ -514,7 +520,7 @@ Status Machine::Act(const StoreProgram& input) {
 Status Machine::Act(const DeleteProgram& input) {
   if (memory_.programs.erase(input.slot) == 0)
     return Error{family_.info().empty_slot,
-                 "no program is stored in slot " + std::to_string(input.slot),
+                 "no program is stored in slot " + Told("program", input.slot),
                  {}};
   memory_.deleted.insert(input.slot);
   changed_.insert(input.slot);

@@ -157,7 +157,7 @@ class Machine {
   void ToRun(InputKind kind, int index = 0, double value = 0.0);
   void Hold();
   void Halt(InputKind key);
-  void Raise(ErrorCode code, std::string detail, const Place& place);
+  void Raise(ErrorCode code, Detail detail, const Place& place);
   void Settle();
   void CloseRun();
   Status Take(MachineNote note);

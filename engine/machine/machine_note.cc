@@ -108,7 +108,7 @@ void TakeAlarm(Words& words, MachineNote& note) {
   words.Take(alarm.place.step, 0, kIntMax);
   words.Take(alarm.place.line, 0, kIntMax);
   words.Take(alarm.place.byte_offset, -1, kAny);
-  alarm.detail = words.Rest();
+  alarm.detail = std::string(words.Rest());
   note.alarms.push_back(std::move(alarm));
 }
 

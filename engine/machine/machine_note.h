@@ -16,7 +16,7 @@ namespace rmlcell::machine {
 struct Alarm {
   std::int64_t id = 0;  // counts from 1
   ErrorCode code{};
-  std::string detail{};
+  Detail detail{};
   SimTime at{0};  // of the machine
   Place place{};
 

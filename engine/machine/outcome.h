@@ -31,7 +31,7 @@ enum class OutcomeKind { kCompleted, kStopped, kFailed, kCancelled, kBudgetExcee
 struct Outcome {
   OutcomeKind kind = OutcomeKind::kCompleted;
   std::optional<ErrorCode> code{};  // the machine's own; none when completed
-  std::string detail{};
+  Detail detail{};
   Place place{};  // of the last step, or where it failed
 };
 

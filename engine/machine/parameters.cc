@@ -19,6 +19,22 @@ std::string_view FindChoice(std::string_view choices, std::string_view word) {
   return {};
 }
 
+Error OutOfRange(const ParameterInfo& info, double value) {
+  const auto told = [&](std::string_view name, double number) {
+    return Told(name, number, info.unit, ShortestText(number));
+  };
+  return {ErrorCode::kCellParameterRange,
+          Told("name", info.name) + " is " + told("value", value) + ", allowed are " +
+              told("least", info.minimum) + " to " + told("most", info.maximum),
+          {}};
+}
+
+Error NotOneOf(const ParameterInfo& info) {
+  return {ErrorCode::kCellParameterRange,
+          Told("name", info.name) + " takes one of " + Told("choices", info.choices),
+          {}};
+}
+
 }  // namespace
 
 std::string ParameterValue::Text() const {
@@ -34,38 +50,25 @@ const ParameterInfo* Parameters::Find(std::string_view name) const {
 
 Status Parameters::Set(std::string_view name, double value) {
   const ParameterInfo* info = Find(name);
-  if (info == nullptr) return Error{ErrorCode::kCellUnknownParameter, std::string(name), {}};
-  if (!info->choices.empty()) {
-    return Error{ErrorCode::kCellParameterRange,
-                 std::string(info->name) + " takes one of " + std::string(info->choices),
-                 {}};
-  }
-  if (!(value >= info->minimum && value <= info->maximum)) {
-    return Error{ErrorCode::kCellParameterRange,
-                 std::string(info->name) + " is " + ShortestText(value) + ", allowed are " +
-                     ShortestText(info->minimum) + " to " + ShortestText(info->maximum),
-                 {}};
-  }
+  if (info == nullptr) return Error{ErrorCode::kCellUnknownParameter, Told("name", name), {}};
+  if (!info->choices.empty()) return NotOneOf(*info);
+  if (!(value >= info->minimum && value <= info->maximum)) return OutOfRange(*info, value);
   numbers_.insert_or_assign(std::string(info->name), value);
   return {};
 }
 
 Status Parameters::Set(std::string_view name, std::string_view text) {
   const ParameterInfo* info = Find(name);
-  if (info == nullptr) return Error{ErrorCode::kCellUnknownParameter, std::string(name), {}};
+  if (info == nullptr) return Error{ErrorCode::kCellUnknownParameter, Told("name", name), {}};
   if (info->choices.empty()) {
     const std::optional<double> number = ParseDouble(text);
     if (number) return Set(name, *number);
     return Error{ErrorCode::kCellParameterRange,
-                 std::string(info->name) + " takes a number, not '" + std::string(text) + "'",
+                 Told("name", info->name) + " takes a number, not '" + Told("word", text) + "'",
                  {}};
   }
   const std::string_view choice = FindChoice(info->choices, text);
-  if (choice.empty()) {
-    return Error{ErrorCode::kCellParameterRange,
-                 std::string(info->name) + " takes one of " + std::string(info->choices),
-                 {}};
-  }
+  if (choice.empty()) return NotOneOf(*info);
   words_.insert_or_assign(std::string(info->name), std::string(choice));
   return {};
 }
@@ -94,6 +97,11 @@ double Parameters::Number(std::string_view name) const {
   RMLCELL_CHECK(info != nullptr && info->choices.empty());
   const auto found = numbers_.find(info->name);
   return found == numbers_.end() ? info->standard : found->second;
+}
+
+Detail Parameters::ToldNumber(std::string_view argument, std::string_view name) const {
+  const double value = Number(name);
+  return Told(argument, value, Find(name)->unit, ShortestText(value));
 }
 
 std::string_view Parameters::Word(std::string_view name) const {

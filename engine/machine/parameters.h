@@ -102,6 +102,8 @@ class Parameters {
 
   // Precondition: the family has this parameter, and it is a number, or a word.
   double Number(std::string_view name) const;
+  // Such a number in a finding, where it is the argument `argument` in its unit.
+  Detail ToldNumber(std::string_view argument, std::string_view name) const;
   std::string_view Word(std::string_view name) const;
 
   std::span<const ParameterInfo> table() const { return table_; }

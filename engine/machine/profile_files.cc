@@ -7,9 +7,9 @@
 namespace rmlcell::machine {
 namespace {
 
-Error Bad(std::string_view id, const toml::source_region& where, const std::string& what) {
+Error Bad(std::string_view id, const toml::source_region& where, const Detail& what) {
   return {ErrorCode::kCellBadText,
-          std::string(id) + ".toml:" + std::to_string(where.begin.line) + ": " + what,
+          Told("profile", id) + ".toml:" + Told("line", where.begin.line) + ": " + what,
           {}};
 }
 
@@ -28,7 +28,7 @@ Status ProfileFiles::Add(const ProfileText& file) {
     const toml::table table = toml::parse(file.text);
     for (const auto& [key, node] : table) {
       const bool known = key == "title" || key == "parameters" || key == "sources";
-      if (!known) return Bad(file.id, node.source(), "no key " + std::string(key.str()));
+      if (!known) return Bad(file.id, node.source(), "no key " + Told("key", key.str()));
     }
     const auto title = table["title"].value<std::string>();
     if (!title) return Bad(file.id, table.source(), "no title");
@@ -43,10 +43,10 @@ Status ProfileFiles::Add(const ProfileText& file) {
       } else if (const auto word = node.value<std::string>()) {
         value.value = Kept(*word);
       } else {
-        return Bad(file.id, node.source(), std::string(name.str()) + " is no number and no word");
+        return Bad(file.id, node.source(), Told("name", name.str()) + " is no number and no word");
       }
       const auto source = sources[name.str()].value<std::string>();
-      if (!source) return Bad(file.id, node.source(), std::string(name.str()) + " has no source");
+      if (!source) return Bad(file.id, node.source(), Told("name", name.str()) + " has no source");
       value.source = Kept(*source);
       profile.values.push_back(value);
     }

@@ -15,24 +15,27 @@ int DecimalsOf(std::string_view unit) {
 }
 
 // "# mm/s in place of #{name}" with its numbers.
-std::string Filled(std::string_view said, const Figure& figure, std::span<const Figure> figures) {
-  std::string text;
+Detail Filled(const VerdictRule& rule, const Figure& figure, std::span<const Figure> figures) {
+  std::string_view said = rule.said;
+  Detail text;
   for (std::size_t mark = said.find('#'); mark != std::string_view::npos; mark = said.find('#')) {
     text += said.substr(0, mark);
     said.remove_prefix(mark + 1);
     if (!said.starts_with('{')) {
-      text += FixedText(figure.value, DecimalsOf(figure.unit));
+      text += Told(rule.figure, figure.value, figure.unit,
+                   FixedText(figure.value, DecimalsOf(figure.unit)));
       continue;
     }
     const std::size_t end = said.find('}');
     const auto named = std::ranges::find(figures, said.substr(1, end - 1), &Figure::name);
     if (named != figures.end()) {
       const double digits = std::abs(named->value) < 1e-3 ? 1e6 : 1e3;
-      text += ShortestText(std::round(named->value * digits) / digits);
+      text += Told(named->name, named->value, named->unit,
+                   ShortestText(std::round(named->value * digits) / digits));
     }
     said.remove_prefix(end + 1);
   }
-  return text.append(said);
+  return text + said;
 }
 
 }  // namespace
@@ -59,7 +62,7 @@ void Judgement::Add(Reason reason) {
 Reason ReasonOf(const VerdictRule& rule, const Figure& figure, std::span<const Figure> figures) {
   return {.code = rule.code,
           .verdict = rule.verdict,
-          .said = Filled(rule.said, figure, figures),
+          .said = Filled(rule, figure, figures),
           .amount = figure.value,
           .unit = figure.unit,
           .first = figure.first};

@@ -42,7 +42,7 @@ inline constexpr VerdictRule kWaitsForKey = {ErrorCode::kCellWaitsForever, "wait
 struct Reason {
   ErrorCode code{};
   Verdict verdict = Verdict::kDoubtful;
-  std::string said{};  // "cuts 12.500 mm while the spindle stands"
+  Detail said{};  // "cuts 12.500 mm while the spindle stands"
   double amount = 0.0;
   std::string unit{};  // of the amount; empty for counts
   Place first{};       // step 0: no place

@@ -57,7 +57,9 @@ Status VirtualDriver::Order(SimTime clock, const MachineInput& input) {
 Status VirtualDriver::SetFactor(SimTime clock, double factor) {
   if (!(factor >= kFactorMin && factor <= kFactorMax)) {
     return Error{ErrorCode::kCellInvalidArgument,
-                 "a factor of " + ShortestText(factor) + ": it is 0.1 to 100",
+                 "a factor of " + Told("factor", factor, "", ShortestText(factor)) + ": it is " +
+                     Told("least", kFactorMin, "", ShortestText(kFactorMin)) + " to " +
+                     Told("most", kFactorMax, "", ShortestText(kFactorMax)),
                  {}};
   }
   Pump(clock);

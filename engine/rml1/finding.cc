@@ -48,18 +48,21 @@ constexpr bool IsIndexedByKind() {
 static_assert(IsIndexedByKind(), "one row per FindingKind, in its order");
 
 // 'X', or 0x9F where the byte is no printing character.
-std::string ByteText(unsigned char byte) {
-  if (byte > 0x20 && byte < 0x7F) return {'\'', static_cast<char>(byte), '\''};
-  return "0x" + HexByte(static_cast<char>(byte));
+Detail ByteText(unsigned char byte) {
+  const auto c = static_cast<char>(byte);
+  if (byte > 0x20 && byte < 0x7F) return "'" + Told("character", {&c, 1}) + "'";
+  return Told("byte", byte, {}, "0x" + HexByte(c));
 }
 
 }  // namespace
 
 const FindingRow& RowOf(FindingKind kind) { return kFindings[static_cast<std::size_t>(kind)]; }
 
-std::string DetailOf(const Finding& finding) {
-  const std::string name(RowOf(finding.op).name);
-  const std::string value = ShortestText(finding.value);
+Detail DetailOf(const Finding& finding) {
+  const auto name = [&] { return Told("command", RowOf(finding.op).name); };
+  const auto told = [](std::string_view argument, double number) {
+    return Told(argument, number, {}, ShortestText(number));
+  };
   switch (finding.kind) {
     case FindingKind::kForeignCharacter:
       return ByteText(finding.byte) + " begins no command";
@@ -79,22 +82,23 @@ std::string DetailOf(const Finding& finding) {
     case FindingKind::kAxesTogether:
       return "Y and A cannot move in one group";
     case FindingKind::kLeftOver:
-      return name + " lacks a number of its last set";
+      return name() + " lacks a number of its last set";
     case FindingKind::kValueRange:
-      return "a coordinate of " + name + " becomes " + value;
+      return "a coordinate of " + name() + " becomes " + told("value", finding.value);
     case FindingKind::kHeightRange:
-      return "a tool height of " + FixedText(finding.value, 0) + ", allowed are " +
-             ShortestText(finding.allowed.low) + " to " + ShortestText(finding.allowed.high);
+      return "a tool height of " + Told("value", finding.value, {}, FixedText(finding.value, 0)) +
+             ", allowed are " + told("least", finding.allowed.low) + " to " +
+             told("most", finding.allowed.high);
     case FindingKind::kSettingRange:
-      return name + " " + value;
+      return name() + " " + told("value", finding.value);
     case FindingKind::kTravelRange:
-      return name + " leads to machine Z " + value;
+      return name() + " leads to machine Z " + told("value", finding.value);
     case FindingKind::kSpeedLimited:
-      return name + " " + value + " is beyond the machine";
+      return name() + " " + told("value", finding.value) + " is beyond the machine";
     case FindingKind::kClipped:
-      return "the tool could not follow " + name + " to its end";
+      return "the tool could not follow " + name() + " to its end";
     case FindingKind::kSkippedName:
-      return name + " was skipped";
+      return name() + " was skipped";
     default:
       return {};
   }

@@ -59,7 +59,7 @@ const FindingRow& RowOf(FindingKind kind);
 inline bool IsError(FindingKind kind) { return kind < FindingKind::kSpeedLimited; }
 
 // "'X' begins no command", "PD lacks a number of its last set": what was observed.
-std::string DetailOf(const Finding& finding);
+Detail DetailOf(const Finding& finding);
 
 // The place of a byte in a stream. A step from one question to the next, forward or back, costs
 // what lies between them: asked nearly in order, it costs one pass in all.

@@ -59,7 +59,7 @@ constexpr std::array kFields = {
           [](MachineState& s, double v) { s.registers.spindle_on = v != 0.0; }},
 };
 
-Error Bad(std::string detail) {
+Error Bad(Detail detail) {
   return {ErrorCode::kCellBadText, "machine state: " + std::move(detail), {}};
 }
 
@@ -88,11 +88,11 @@ Result<MachineState> ReadMachineState(std::string_view text, const Profile& prof
     const std::size_t blank = line.find(' ');
     if (end == std::string_view::npos || blank != field.key.size() ||
         !line.starts_with(field.key)) {
-      return Bad("no line '" + std::string(field.key) + "'");
+      return Bad("no line '" + Told("name", field.key) + "'");
     }
     const std::optional<double> value = ParseDouble(line.substr(blank + 1));
     if (!value || !(*value >= field.low && *value <= field.high)) {
-      return Bad(std::string(field.key) + " is out of range");
+      return Bad(Told("name", field.key) + " is out of range");
     }
     field.write(state, *value);
     text.remove_prefix(end + 1);

@@ -15,8 +15,8 @@ Error Misfit(const machine::Parameters& parameters, const std::string& what,
   const std::string low = what + "_MIN";
   const std::string high = what + "_MAX";
   return {ErrorCode::kCellParameterRange,
-          low + " is " + ShortestText(parameters.Number(low)) + ", " + std::string(against) + " " +
-              high + ", which is " + ShortestText(parameters.Number(high)),
+          Told("name", low) + " is " + parameters.ToldNumber("value", low) + ", " + against + " " +
+              Told("limit_name", high) + ", which is " + parameters.ToldNumber("limit", high),
           {}};
 }
 

@@ -34,7 +34,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .has_breakpoints = true,
                                        .torn = ErrorCode::kRml1IncompleteCommand};
 
-Diagnostic Plain(ErrorCode code, std::string detail) {
+Diagnostic Plain(ErrorCode code, Detail detail) {
   return {.code = code,
           .severity = Lookup(code).severity,
           .detail = std::move(detail),
@@ -63,8 +63,7 @@ class Findings final : public DeviceListener {
     Count(PlainDiagnostic(finding, file_.bytes, lines_));
   }
 
-  void AddAdvice(ErrorCode code, std::string detail, std::string rule, const SourceSpan& at,
-                 int step) {
+  void AddAdvice(ErrorCode code, Detail detail, std::string rule, const SourceSpan& at, int step) {
     if (!Wants(code)) return;
     Diagnostic diagnostic = Plain(code, std::move(detail));
     diagnostic.rule = std::move(rule);
@@ -243,7 +242,7 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
                                            const machine::Parameters& parameters,
                                            const machine::CheckOptions& options) const {
   machine::Translation translation;
-  const auto refuse = [&](ErrorCode code, std::string detail) {
+  const auto refuse = [&](ErrorCode code, Detail detail) {
     translation.diagnostics.push_back(Plain(code, std::move(detail)));
     translation.diagnostics.back().file = file.name;
     return translation;
@@ -262,7 +261,8 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
     translation.diagnostics.insert(
         translation.diagnostics.begin(),
         Plain(ErrorCode::kRml1NoProgram,
-              FixedText(foreign_percent, 1) + " % of the bytes belong to no command"));
+              Told("share", foreign_percent, "%", FixedText(foreign_percent, 1) + " %") +
+                  " of the bytes belong to no command"));
     translation.diagnostics.front().file = file.name;
     return translation;
   }

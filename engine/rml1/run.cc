@@ -102,7 +102,7 @@ MillRun::MillRun(machine::RunSetup setup, std::shared_ptr<const Profile> profile
   if (found != setup_.programs.end()) program_ = found->second.object;
   if (!program_) {
     CloseWith(OutcomeKind::kFailed, ErrorCode::kCellNotFound,
-              "no program in slot " + std::to_string(setup_.main_program));
+              "no program in slot " + Told("program", setup_.main_program));
   }
 }
 
@@ -425,7 +425,7 @@ bool MillRun::SpindleTurns() const {
   return state_.device.spindle_turns() && state_.outcome.kind == OutcomeKind::kCompleted;
 }
 
-void MillRun::CloseWith(OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
+void MillRun::CloseWith(OutcomeKind kind, std::optional<ErrorCode> code, Detail detail) {
   state_.phase = RunPhase::kFinished;
   state_.outcome = {.kind = kind, .code = code, .detail = std::move(detail), .place = state_.place};
 }

@@ -133,7 +133,7 @@ class MillRun final : public machine::Run {
   static machine::HaltReason ReasonOf(HaltCause cause);
   void BeginHalt(HaltCause cause);
   void EndHalt();
-  void CloseWith(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);
+  void CloseWith(machine::OutcomeKind kind, std::optional<ErrorCode> code, Detail detail);
   std::string_view stream() const;
 
   // run_motion.cc: one action after the other.

@@ -143,7 +143,7 @@ std::string LeftOut(const simulation::TrialRun& run, const machine::FamilyInfo& 
   if (std::string note = NoteOf(run.outcome); !note.empty()) return note;
   const auto torn = std::ranges::find_if(
       run.reasons, [&](const machine::Reason& reason) { return info.torn == reason.code; });
-  return torn == run.reasons.end() ? std::string() : torn->said;
+  return torn == run.reasons.end() ? Detail() : torn->said;
 }
 
 std::string Picture(const machine::MachineFamily& family,

@@ -24,6 +24,20 @@ v1::Verdict ToProto(machine::Verdict verdict) {
   return v1::VERDICT_UNSPECIFIED;
 }
 
+// What a text says in numbers and words; the message has arguments.
+template <class Message>
+void SetArguments(const Detail& detail, Message& message) {
+  for (const Argument& argument : detail.arguments()) {
+    v1::Argument& made = *message.add_arguments();
+    made.set_name(argument.name);
+    if (const double* const number = std::get_if<double>(&argument.value))
+      made.set_number(*number);
+    else
+      made.set_text(Utf8(std::get<std::string>(argument.value)));
+    made.set_unit(argument.unit);
+  }
+}
+
 template <class Message>
 void AddJudgement(const machine::Judgement& judgement, Message& message) {
   message.set_verdict(ToProto(judgement.verdict));
@@ -34,12 +48,23 @@ void AddJudgement(const machine::Judgement& judgement, Message& message) {
     made.set_code(CodeText(reason.code));
     made.set_symbol(ConstantName(reason.code));
     made.set_message(Utf8(reason.said));
+    SetArguments(reason.said, made);
     made.set_advice(std::string(Lookup(reason.code).advice));
     made.set_amount(reason.amount);
     made.set_unit(reason.unit);
     if (reason.first.step > 0 || reason.first.line > 0)
       *made.mutable_first() = bridge::ToProto(reason.first);
   }
+}
+
+Detail DetailFromProto(const v1::Diagnostic& message) {
+  Detail detail = message.message();
+  for (const v1::Argument& argument : message.arguments()) {
+    std::variant<double, std::string> value = argument.number();
+    if (argument.value_case() == v1::Argument::kText) value = argument.text();
+    detail += Detail("", {argument.name(), std::move(value), argument.unit()});
+  }
+  return detail;
 }
 
 v1::Verdict ToProto(Judged judged) {
@@ -195,8 +220,8 @@ v1::Diagnostic ToProto(const Diagnostic& diagnostic) {
   message.set_code(CodeText(diagnostic.code));
   message.set_symbol(ConstantName(diagnostic.code));
   message.set_severity(SeverityToProto(diagnostic.severity));
-  message.set_message(diagnostic.detail.empty() ? std::string(entry.when)
-                                                : Utf8(diagnostic.detail));
+  message.set_message(Utf8(Said(diagnostic.code, diagnostic.detail)));
+  SetArguments(diagnostic.detail, message);
   message.set_advice(std::string(entry.advice));
   message.set_rule(diagnostic.rule);
   message.set_count(1);
@@ -281,6 +306,7 @@ v1::Outcome ToProto(const machine::Outcome& outcome) {
       break;
   }
   message.set_message(Utf8(outcome.detail));
+  SetArguments(outcome.detail, message);
   if (outcome.code) {
     const CatalogueEntry& entry = Lookup(*outcome.code);
     message.set_code(CodeText(*outcome.code));
@@ -361,7 +387,7 @@ Diagnostic FromProto(const v1::Diagnostic& message) {
   Diagnostic diagnostic{
       .code = ErrorCode::kCellInternal,
       .severity = SeverityFromProto(message.severity()),
-      .detail = message.message(),
+      .detail = DetailFromProto(message),
       .rule = message.rule(),
       .file = message.place().file(),
       .where = {.line = message.place().line(),
@@ -448,7 +474,8 @@ google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic
   detail.set_code(CodeText(error.code));
   detail.set_symbol(ConstantName(error.code));
   detail.set_number(entry.number);
-  detail.set_message(error.detail.empty() ? std::string(entry.when) : Utf8(error.detail));
+  detail.set_message(Utf8(Said(error.code, error.detail)));
+  SetArguments(error.detail, detail);
   detail.set_advice(std::string(entry.advice));
   if (error.where) SetSpan(*error.where, *detail.mutable_place());
   // The place of the first error stands for all, for clients that look no further.

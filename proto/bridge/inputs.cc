@@ -18,12 +18,10 @@ using machine::InputKind;
 constexpr int kInputIndexMax = 99;
 constexpr std::size_t kShownMax = 40;
 
-Error Invalid(std::string detail) {
-  return {ErrorCode::kCellInvalidArgument, std::move(detail), {}};
-}
+Error Invalid(Detail detail) { return {ErrorCode::kCellInvalidArgument, std::move(detail), {}}; }
 
-Error BadLine(const std::string& name, int line, int column, const std::string& what) {
-  return {ErrorCode::kCellBadText, name + ":" + std::to_string(line) + ": " + what,
+Error BadLine(const std::string& name, int line, int column, const Detail& what) {
+  return {ErrorCode::kCellBadText, Told("file", name) + ":" + Told("line", line) + ": " + what,
           SourceSpan{.line = line, .column = column}};
 }
 
@@ -42,19 +40,21 @@ Result<InputChange> OfVariable(const v1::Variable& variable) {
   std::optional<InputChange> change = InputNamed(variable.name());
   if (!change) {
     const std::string& name = variable.name();
-    return Invalid((name.size() <= kShownMax ? "'" + name + "'" : "a long name") +
+    return Invalid((name.size() <= kShownMax ? "'" + Told("name", name) + "'" : "a long name") +
                    " is no input: use IL[0] to IL[99] or IA[0] to IA[99]");
   }
   const v1::VariableValue& value = variable.value();
   if (change->kind == InputKind::kLogical) {
-    if (!value.has_logical()) return Invalid(variable.name() + " needs a logical value");
+    if (!value.has_logical())
+      return Invalid(Told("input", variable.name()) + " needs a logical value");
     change->value = value.logical() ? 1.0 : 0.0;
     return *change;
   }
   change->value = value.has_real()      ? value.real()
                   : value.has_integer() ? static_cast<double>(value.integer())
                                         : std::numeric_limits<double>::quiet_NaN();
-  if (!std::isfinite(change->value)) return Invalid(variable.name() + " needs a number");
+  if (!std::isfinite(change->value))
+    return Invalid(Told("input", variable.name()) + " needs a number");
   return *change;
 }
 
@@ -138,7 +138,8 @@ Status SetValue(double value, v1::AppliedInput& input) {
     return {};
   }
   if (value != 0.0 && value != 1.0)
-    return Invalid("the value is " + ShortestText(value) + "; allowed are 0 and 1");
+    return Invalid("the value is " + Told("value", value, {}, ShortestText(value)) +
+                   "; allowed are 0 and 1");
   if (outside.has_input()) {
     outside.mutable_input()->mutable_value()->set_logical(value == 1.0);
   } else {
@@ -151,8 +152,9 @@ Status SetValue(double value, v1::AppliedInput& input) {
 
 Status CheckOverride(double percent, double override_max) {
   if (percent > 0.0 && percent <= override_max) return {};
-  return Invalid("the value is " + ShortestText(percent) + "; allowed are above 0 to " +
-                 ShortestText(override_max) + " %");
+  return Invalid("the value is " + Told("override", percent, "%", ShortestText(percent)) +
+                 "; allowed are above 0 to " +
+                 Told("most", override_max, "%", ShortestText(override_max) + " %"));
 }
 
 Result<machine::InputChange> FromProto(const v1::ScriptedInput& scripted, double override_max) {
@@ -196,13 +198,13 @@ Status ParseInputFile(std::string_view text, const std::string& name, double ove
     std::optional<v1::AppliedInput> input = Named(what);
     if (!input) {
       return BadLine(name, line_number, column,
-                     "'" + std::string(what.substr(0, kShownMax)) +
+                     "'" + Told("word", what.substr(0, kShownMax)) +
                          "' is none of IL[n], IA[n], DOOR, START, HOLD, STOP, EMERGENCY, OVERRIDE");
     }
     if (NeedsValue(*input) != (equals != std::string_view::npos)) {
       return BadLine(name, line_number, column,
-                     std::string(what) + (equals == std::string_view::npos ? " needs '= VALUE'"
-                                                                           : " takes no value"));
+                     Told("word", what) + (equals == std::string_view::npos ? " needs '= VALUE'"
+                                                                            : " takes no value"));
     }
     v1::ScriptedInput scripted;
     if (equals != std::string_view::npos) {

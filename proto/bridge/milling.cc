@@ -22,7 +22,9 @@ constexpr std::string_view kStlType = "model/stl";
 
 Status CheckTolerance(const std::string& field, double tolerance_mm) {
   if (tolerance_mm >= 0.0 && tolerance_mm <= kToleranceMax_mm) return {};
-  return InvalidArgument(field + " is " + ShortestText(tolerance_mm) + ", allowed are 0 to 1000");
+  return InvalidArgument(Told("name", field) + " is " +
+                         Told("value", tolerance_mm, "mm", ShortestText(tolerance_mm)) +
+                         ", allowed are 0 to 1000");
 }
 
 Error Within(const std::string& field, const Error& error) {
@@ -55,7 +57,7 @@ Result<simulation::MillTool> FromProto(const v1::MillTool& tool) {
       (tool.angle_rad() != 0.0 || tool.tip_diameter_mm() != 0.0))
     return InvalidArgument("tool: angle_rad and tip_diameter_mm are for SHAPE_VEE");
   if (tool.flutes() < 0 || tool.flutes() > kFlutesMax) {
-    return InvalidArgument("tool.flutes is " + std::to_string(tool.flutes()) +
+    return InvalidArgument("tool.flutes is " + Told("value", tool.flutes()) +
                            ", allowed are 1 to 100, or 0 when it is not known");
   }
   if (const Status sound = simulation::CheckTool(made); !sound)
@@ -77,7 +79,7 @@ simulation::Stock FromProto(const v1::Stock& stock, double cell_mm) {
 Status SetChips(const v1::Milling& milling, simulation::Milling& made) {
   made.rpm = milling.rpm();
   if (made.rpm != 0.0 && !(made.rpm >= kRpmMin && made.rpm <= kRpmMax)) {
-    return InvalidArgument("rpm is " + ShortestText(made.rpm) +
+    return InvalidArgument("rpm is " + Told("speed", made.rpm, "rpm", ShortestText(made.rpm)) +
                            ", allowed are 1 to 1,000,000, or 0 for what the program says");
   }
   if (milling.material().empty()) return {};
@@ -112,7 +114,8 @@ Result<simulation::Milling> FromProto(const v1::Milling& milling) {
       return InvalidArgument("stock: size_x_mm, size_y_mm and size_z_mm are above 0");
   }
   if (!(milling.cell_mm() >= 0.0))
-    return InvalidArgument("cell_mm is " + ShortestText(milling.cell_mm()) +
+    return InvalidArgument("cell_mm is " +
+                           Told("value", milling.cell_mm(), "mm", ShortestText(milling.cell_mm())) +
                            ": above 0, or 0 for what fits the tool");
   if (const Status body = CheckTolerance("stl_tolerance_mm", StlToleranceOf(milling)); !body)
     return body.error();
@@ -163,7 +166,7 @@ Status CheckTarget(const v1::MillTarget& target) {
       return Error{ErrorCode::kCellEmptyProgram, "target.inline_program", {}};
     case v1::MillTarget::kSlot:
       if (IsSlot(target.slot())) return {};
-      return InvalidArgument("target.slot is " + std::to_string(target.slot()) +
+      return InvalidArgument("target.slot is " + Told("program", target.slot()) +
                              ", allowed are 1 to 99");
     case v1::MillTarget::SOURCE_NOT_SET:
       return InvalidArgument("target is missing: file, inline_program or slot");

@@ -80,9 +80,10 @@ Result<std::vector<std::string>> ExpandVariables(const std::vector<std::string>&
                             ? ParseInteger(name.substr(dots + 2, name.size() - dots - 3))
                             : std::nullopt;
       if (!low || !high || *low < 0 || *low > *high || *high > 999) {
-        return Error{ErrorCode::kCellInvalidArgument,
-                     "variables: '" + name.substr(0, kShownNameMax) + "': write VR[0..9]",
-                     {}};
+        return Error{
+            ErrorCode::kCellInvalidArgument,
+            "variables: '" + Told("name", name.substr(0, kShownNameMax)) + "': write VR[0..9]",
+            {}};
       }
       for (long long i = *low; i <= *high; ++i) {
         expanded.push_back(name.substr(0, open + 1) + std::to_string(i) + "]");

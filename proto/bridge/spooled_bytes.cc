@@ -76,6 +76,15 @@ void SpooledBytes::TakeBack() {
   file_.reset();
 }
 
+Result<std::string> SpooledBytes::Part(std::int64_t offset, std::size_t most) const {
+  if (offset >= size()) return std::string();
+  if (offset >= spooled_) return held_.substr(static_cast<std::size_t>(offset - spooled_), most);
+  std::string part(std::min(most, static_cast<std::size_t>(spooled_ - offset)), '\0');
+  const ssize_t read = ::pread(::fileno(file_.get()), part.data(), part.size(), offset);
+  if (read == static_cast<ssize_t>(part.size())) return part;
+  return Error{ErrorCode::kCellFileUnreadable, "a file of the temporary folder", {}};
+}
+
 machine::Bytes SpooledBytes::Finish() {
   if (spooled_ > 0 && !held_.empty() && !Spool()) TakeBack();
   if (spooled_ > 0) {

@@ -20,6 +20,10 @@ class SpooledBytes {
   void append(std::string_view bytes);
   std::int64_t size() const { return spooled_ + static_cast<std::int64_t>(held_.size()); }
 
+  // At most `most` of the bytes that are there, from `offset` on; empty at their end.
+  // CellFileUnreadable.
+  Result<std::string> Part(std::int64_t offset, std::size_t most) const;
+
   // When all is there; it begins anew after that.
   machine::Bytes Finish();
 

@@ -18,7 +18,7 @@
 namespace rmlcell::server {
 namespace {
 
-Error Wrong(const std::string& detail) { return {ErrorCode::kCellConfiguration, detail, {}}; }
+Error Wrong(const Detail& detail) { return {ErrorCode::kCellConfiguration, detail, {}}; }
 
 // A basic string of TOML, which may hold control characters only as escapes.
 std::string Quoted(std::string_view text) {

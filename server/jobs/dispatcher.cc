@@ -9,6 +9,7 @@
 #include "server/base/version.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher_worker.h"
+#include "server/jobs/running_toolpath.h"
 #include "server/records/job_messages.h"
 
 namespace rmlcell::server {
@@ -296,6 +297,19 @@ bool Dispatcher::OrderHolder(std::int64_t job, const JobOrder& order) {
     return true;
   }
   return false;
+}
+
+std::shared_ptr<RunningToolpath> Dispatcher::FollowToolpath(std::int64_t job) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, worker] : workers_) {
+    if (worker->job != job) continue;
+    if (worker->toolpath == nullptr) {
+      worker->toolpath = std::make_shared<RunningToolpath>();
+      OrderHolder(job, {.kind = v1::WorkerControl::KIND_FOLLOW_TOOLPATH});
+    }
+    return worker->toolpath;
+  }
+  return nullptr;
 }
 
 Status Dispatcher::Control(std::int64_t job, const JobOrder& order) {

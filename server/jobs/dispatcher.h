@@ -21,6 +21,7 @@ namespace rmlcell::server {
 
 class EventFeed;
 class Executor;
+class RunningToolpath;
 struct Config;
 
 // The line to one worker, as the dispatcher sees it: no gRPC here. Never blocks; after Close
@@ -73,6 +74,9 @@ class Dispatcher {
   // False: no worker of this server is known to have it, which Control finds out.
   bool OrderAtOnce(std::int64_t job, const JobOrder& order);
 
+  // The toolpath of a job that a worker of this server has, as it is made; null: none has it.
+  std::shared_ptr<RunningToolpath> FollowToolpath(std::int64_t job);
+
   // Ends a job: at once when it waits, else through its worker.
   Result<storage::JobRecord> Cancel(std::int64_t job, std::string_view caller);
 
@@ -118,6 +122,7 @@ class Dispatcher {
   void StoreEvents(const std::shared_ptr<Worker>& worker);
   void EventsStored(const std::shared_ptr<Worker>& worker, std::size_t count,
                     const Result<std::int64_t>& written);
+  void TakeToolpath(Worker& worker, const v1::WorkerToolpath& toolpath);
   void Collect(Worker& worker, v1::WorkerArtifact& artifact);
   void Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish& finish);
   void RestWithoutWork(const std::shared_ptr<Worker>& worker, const Error& trouble);

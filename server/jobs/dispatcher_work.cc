@@ -10,6 +10,7 @@
 #include "server/events/event_feed.h"
 #include "server/jobs/assignment.h"
 #include "server/jobs/dispatcher_worker.h"
+#include "server/jobs/running_toolpath.h"
 #include "server/records/job_messages.h"
 
 namespace rmlcell::server {
@@ -267,6 +268,9 @@ void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& 
     case v1::WorkRequest::kArtifact:
       if (works(message.artifact().lease())) Collect(*worker, *message.mutable_artifact());
       break;
+    case v1::WorkRequest::kToolpath:
+      if (works(message.toolpath().lease())) TakeToolpath(*worker, message.toolpath());
+      break;
     case v1::WorkRequest::kFinish:
       if (works(message.finish().lease())) Finish(worker, *message.mutable_finish());
       break;
@@ -350,6 +354,21 @@ void Dispatcher::EventsStored(const std::shared_ptr<Worker>& worker, std::size_t
   worker->line->Send(std::move(message));
 }
 
+void Dispatcher::TakeToolpath(Worker& worker, const v1::WorkerToolpath& toolpath) {
+  Assignment& assignment = *worker.assignment;
+  assignment.followed_bytes += static_cast<std::int64_t>(toolpath.frames().size());
+  if (assignment.followed_bytes > config_.limit_output_bytes + kOutputSlack) {
+    assignment.over_budget = true;  // as in Collect
+    return;
+  }
+  std::shared_ptr<RunningToolpath> followed;
+  {
+    const std::lock_guard lock(mutex_);
+    followed = worker.toolpath;
+  }
+  if (followed) followed->Add(toolpath.frames(), toolpath.open_block());
+}
+
 void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
   Assignment& assignment = *worker.assignment;
   assignment.collected_bytes += static_cast<std::int64_t>(artifact.chunk().size());
@@ -375,6 +394,7 @@ void Dispatcher::Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish&
     *finish.mutable_outcome() = ToProto(storage::JobOutcome{
         .state = storage::JobState::kFailed, .code = ErrorCode::kCellOutputBudget, .detail = {}});
   }
+  for (const v1::JobEvent& event : finish.events()) assignment.events.push_back(ToRecord(event));
   storage::JobEnd end{.outcome = OutcomeOf(finish.outcome()), .events = assignment.events};
   end.events.push_back(EndedEvent(finish.outcome()));
   for (auto& [name, artifact] : assignment.artifacts) end.artifacts.push_back(std::move(artifact));
@@ -391,6 +411,12 @@ void Dispatcher::EndAssignment(Worker& worker, bool stored) {
   worker.assignment.reset();
   feed_.Forget(JobName(lease.job));
   TakeNoOrders(worker);  // before the worker hears of it
+  std::shared_ptr<RunningToolpath> followed;
+  {
+    const std::lock_guard lock(mutex_);
+    followed.swap(worker.toolpath);
+  }
+  if (followed) followed->End(stored);
   v1::WorkResponse message;
   *message.mutable_release()->mutable_lease() = ToProto(lease);
   message.mutable_release()->set_stored(stored);

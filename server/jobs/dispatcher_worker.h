@@ -32,6 +32,7 @@ struct Dispatcher::Assignment {
   std::chrono::steady_clock::time_point asked_at;    // to renew it
   std::map<std::string, storage::NewArtifact> artifacts;
   std::int64_t collected_bytes = 0;
+  std::int64_t followed_bytes = 0;  // of its toolpath, before its end
   bool over_budget = false;
   std::optional<Closing> closing;  // said, and not stored yet
   bool begun = false;              // the worker has said so
@@ -64,11 +65,12 @@ struct Dispatcher::Worker {
   bool parked = false;   // nobody is at it until the answer comes
   bool gone = false;
   bool idle = true;
-  bool rests = false;                    // the store gave it no programs a moment ago
-  bool will_look = false;                // a look for a job is in the queue and has not begun
-  bool looking = false;                  // it has begun, and may find one; for Drain and Control
-  std::int64_t job = 0;                  // 0: none; for orders
-  std::optional<storage::Lease> sent;    // of the same job, from when the assignment has gone out
+  bool rests = false;                  // the store gave it no programs a moment ago
+  bool will_look = false;              // a look for a job is in the queue and has not begun
+  bool looking = false;                // it has begun, and may find one; for Drain and Control
+  std::int64_t job = 0;                // 0: none; for orders
+  std::optional<storage::Lease> sent;  // of the same job, from when the assignment has gone out
+  std::shared_ptr<RunningToolpath> toolpath;  // of its job, where it is followed
   std::vector<EarlyOrder> early_orders;  // for a job that has not gone out; while it looks, any job
 };
 

@@ -96,8 +96,11 @@ Status JobBook::CheckSize(std::size_t bytes, const std::string& what) const {
   if (bytes == 0) return Error{ErrorCode::kCellEmptyProgram, what, {}};
   if (static_cast<std::int64_t>(bytes) <= config_.limit_program_bytes) return {};
   return Error{ErrorCode::kCellTooLarge,
-               what + " has " + std::to_string(bytes) + " bytes; limits.program_bytes is " +
-                   std::to_string(config_.limit_program_bytes),
+               what + " has " +
+                   Told("bytes", static_cast<double>(bytes), "bytes", std::to_string(bytes)) +
+                   " bytes; limits.program_bytes is " +
+                   Told("limit", static_cast<double>(config_.limit_program_bytes), "bytes",
+                        std::to_string(config_.limit_program_bytes)),
                {}};
 }
 

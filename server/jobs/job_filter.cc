@@ -24,7 +24,7 @@ namespace {
 // Ten fields once, with "=", a value and AND.
 constexpr std::size_t kWordsMax = 39;
 
-Error Bad(const std::string& detail) { return {ErrorCode::kCellBadFilter, detail, {}}; }
+Error Bad(const Detail& detail) { return {ErrorCode::kCellBadFilter, detail, {}}; }
 
 struct Word {
   std::string text;

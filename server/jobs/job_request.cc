@@ -111,7 +111,8 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
     return InvalidArgument("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
   }
   if (!(options.pace() >= 0.0 && options.pace() <= kPaceMax)) {
-    return InvalidArgument("job.simulation.pace is " + ShortestText(options.pace()) +
+    return InvalidArgument("job.simulation.pace is " +
+                           Told("pace", options.pace(), {}, ShortestText(options.pace())) +
                            ", allowed are 0 to 1000");
   }
   if (!v1::OperatingMode_IsValid(options.mode()))
@@ -158,7 +159,7 @@ Status CheckVariables(const v1::SimulationOptions& options, const machine::Machi
   for (const std::string& name : *names) {
     if (family.HasVariable(parameters, name)) continue;
     return InvalidArgument("job.simulation.variables: the machine has no variable " +
-                           Readable(name));
+                           Told("variable", Readable(name)));
   }
   return {};
 }

@@ -41,12 +41,14 @@ std::string_view KindOf(const v1::JobEvent& event) {
   return "";
 }
 
-// What the columns of the store do not say: the kind of the end, verdict and reasons, the time.
+// What the columns of the store do not say: the kind of the end, what its text is made of, verdict
+// and reasons, the time.
 std::string JudgementBytes(const v1::Outcome& outcome) {
   v1::Outcome judged;
   judged.set_kind(outcome.kind());
   judged.set_verdict(outcome.verdict());
   *judged.mutable_reasons() = outcome.reasons();
+  *judged.mutable_arguments() = outcome.arguments();
   if (outcome.has_cycle_time_ns()) judged.set_cycle_time_ns(outcome.cycle_time_ns());
   return judged.SerializeAsString();
 }

@@ -143,7 +143,12 @@ Status JobService::OrderWaiting(const std::string& name, v1::WorkerControl::Kind
 }
 
 JobStreamNeeds JobService::Streams() const {
-  return {needs_.executor, open_, book_, feed_, instance_id_};
+  return {.executor = needs_.executor,
+          .open = open_,
+          .book = book_,
+          .feed = feed_,
+          .running_toolpath = [this](std::int64_t job) { return dispatcher_.FollowToolpath(job); },
+          .instance_id = instance_id_};
 }
 
 grpc::Status JobService::Give(const std::string& name, v1::Job* response) {
@@ -257,10 +262,6 @@ grpc::ServerUnaryReactor* JobService::GetStepMap(grpc::CallbackServerContext* co
 
 grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobToolpath(
     grpc::CallbackServerContext* context, const v1::StreamJobToolpathRequest* request) {
-  if (request->follow()) {
-    return new EndedStream<grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>>(
-        LaterStatus(needs_, *context, "JobService/StreamJobToolpath", request));
-  }
   return OpenStream<v1::StreamJobToolpathResponse>(
       needs_, *context, *request, "JobService/StreamJobToolpath",
       [&](const Caller&) { return MakeToolpathStream(Streams(), *request); });

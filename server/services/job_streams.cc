@@ -1,16 +1,13 @@
 #include "server/services/job_streams.h"
 
-#include <algorithm>
 #include <deque>
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
-#include "engine/simulation/toolpath/toolpath_recorder.h"
 #include "server/base/names.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/job_book.h"
 #include "server/records/job_messages.h"
-#include "server/records/toolpath_levels.h"
 #include "server/services/frames_stream.h"
 
 namespace rmlcell::server {
@@ -135,56 +132,10 @@ class JobFrames : public FramesStream<Response> {
     return job ? book_.ReadArtifact(*job, artifact_) : Result<std::string>(job.error());
   }
 
-  const std::string& job_name() const { return job_name_; }
-  JobBook& book() const { return book_; }
-
  private:
   JobBook& book_;
   std::string job_name_;
   std::string artifact_;
-};
-
-class ToolpathStream final : public JobFrames<v1::StreamJobToolpathResponse> {
- public:
-  ToolpathStream(const JobStreamNeeds& needs, const v1::StreamJobToolpathRequest& request)
-      : JobFrames(needs, request.name(), "toolpath"), request_(request) {}
-
- private:
-  Result<std::string> Read() override {
-    if (const Status level = CheckToolpathLevel(request_.level()); !level) return level.error();
-    Result<std::string> stored = JobFrames::Read();
-    if (!stored) return stored;
-    const Result<v1::Job> made_by = book().Get(job_name());
-    if (!made_by) return made_by.error();
-    const double asked = made_by->simulation().toolpath_tolerance_mm();
-    const double used = asked > 0.0 ? asked : simulation::ToolpathOptions().tolerance_mm;
-    stored_mm_ = std::clamp(used, simulation::kToolpathToleranceMin_mm,
-                            simulation::kToolpathToleranceMax_mm);  // as the recorder does
-    v1::RunReport report;
-    const Result<std::string> bytes = book().ReadArtifact(*ParseJobName(job_name()), "report");
-    if (bytes) report.ParseFromString(*bytes);
-    header_.set_points(report.toolpath().records());
-    header_.set_complete(report.toolpath().complete());
-    if (report.has_tip_box()) *header_.mutable_tip_box() = report.tip_box();
-    header_.set_duration_ns(FromSeconds(report.total().times().cycle_s()).count());
-    if (request_.with_levels()) AddLevels(*stored, stored_mm_, header_);
-    return request_.level() == 0 ? stored : ToolpathAtLevel(*stored, stored_mm_, request_.level());
-  }
-
-  bool AddHeader(std::string_view frames, v1::StreamJobToolpathResponse& message) override {
-    SetLevel(stored_mm_, request_.level(), frames.size(), header_);
-    *message.mutable_header() = std::move(header_);
-    return true;
-  }
-
-  bool Add(std::string_view frame, v1::StreamJobToolpathResponse& message) override {
-    message.set_block(std::string(frame));
-    return false;
-  }
-
-  const v1::StreamJobToolpathRequest request_;
-  double stored_mm_ = 0.0;
-  v1::ToolpathHeader header_;  // until it has gone out
 };
 
 class TraceStream final : public JobFrames<v1::StreamJobTraceResponse> {
@@ -236,11 +187,6 @@ class ArtifactStream final : public PullStream<v1::StreamJobArtifactResponse> {
 std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamNeeds& needs,
                                                                const v1::WatchJobRequest& request) {
   return std::make_shared<JobWatch>(needs, request);
-}
-
-std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
-    const JobStreamNeeds& needs, const v1::StreamJobToolpathRequest& request) {
-  return std::make_shared<ToolpathStream>(needs, request);
 }
 
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -10,6 +12,7 @@ namespace rmlcell::server {
 
 class EventFeed;
 class JobBook;
+class RunningToolpath;
 
 // What a stream of jobs works with.
 struct JobStreamNeeds {
@@ -17,6 +20,8 @@ struct JobStreamNeeds {
   OpenStreams& open;
   JobBook& book;
   EventFeed& feed;
+  // Of a job that runs here; null: it does not.
+  std::function<std::shared_ptr<RunningToolpath>(std::int64_t job)> running_toolpath;
   std::string instance_id;
 };
 

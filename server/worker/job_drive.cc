@@ -9,7 +9,8 @@ namespace rmlcell::server {
 namespace {
 
 constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positions a second
-constexpr std::chrono::milliseconds kHeldWait{20};          // between two looks for an order
+constexpr std::chrono::milliseconds kToolpathInterval{200};
+constexpr std::chrono::milliseconds kHeldWait{20};  // between two looks for an order
 constexpr SimTime kPacedSliceMin = std::chrono::milliseconds(1);
 
 // Virtual time of one step of the simulation: it adapts, so that a step takes about this long.
@@ -94,6 +95,7 @@ Stop JobDrive::Run(const simulation::BegunRun& begun) {
       last_position = Clock::now();
       options_.flush_events();
       SendPosition(*begun.run);
+      SendToolpath(*begun.recorder, last_position);
     }
     if (simulation.finished()) break;
     if (begun.recorder->cut_off() || !output_.Fits()) {
@@ -102,6 +104,9 @@ Stop JobDrive::Run(const simulation::BegunRun& begun) {
       simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
     }
   }
+  // What is made of it yet may take a while; the way is all there.
+  toolpath_sent_.reset();
+  SendToolpath(*begun.recorder, Clock::now());
   return Stop::kNone;
 }
 
@@ -123,6 +128,13 @@ void JobDrive::CarryOutOrders(simulation::Simulation& simulation) {
     options_.tell(Applied(order, simulation.state().time));
     CarryOut(order, simulation);
   }
+}
+
+void JobDrive::SendToolpath(const simulation::Recorder& recorder, Clock::time_point now) {
+  if (!lease_.toolpath_followed()) return;
+  if (toolpath_sent_ && now - *toolpath_sent_ < kToolpathInterval) return;
+  toolpath_sent_.reset();  // at once, where there is more
+  if (output_.SendNewToolpath(recorder.OpenToolpathBlock())) toolpath_sent_ = now;
 }
 
 void JobDrive::CarryOut(const v1::WorkerControl& order, simulation::Simulation& simulation) {

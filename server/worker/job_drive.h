@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "engine/simulation/run/simulate.h"
 #include "engine/simulation/run/timetable.h"
@@ -25,7 +26,7 @@ class JobDrive {
     std::function<void(v1::JobEvent)> tell{};  // for the log of the job
   };
   // Both outlive this.
-  JobDrive(JobLease& lease, const JobOutput& output, Options options)
+  JobDrive(JobLease& lease, JobOutput& output, Options options)
       : lease_(lease), output_(output), options_(std::move(options)) {}
 
   // kNone: the run is over. kLost, kHandBack: it is not, and nobody waits for it here.
@@ -35,14 +36,16 @@ class JobDrive {
   using Clock = std::chrono::steady_clock;
 
   void CarryOutOrders(simulation::Simulation& simulation);
+  void SendToolpath(const simulation::Recorder& recorder, Clock::time_point now);
   void CarryOut(const v1::WorkerControl& order, simulation::Simulation& simulation);
   void PlanTime(Clock::time_point begin);
   void SendPosition(const machine::Run& run);
 
   JobLease& lease_;
-  const JobOutput& output_;
+  JobOutput& output_;
   Options options_;
   Clock::duration planned_for_{0};
+  std::optional<Clock::time_point> toolpath_sent_;
   bool held_ = false;  // by a client, who may let it go on
 };
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "engine/core/untold_findings.h"
 #include "engine/machine/observer.h"
@@ -40,6 +41,8 @@ class JobEvents final : public machine::RunObserver {
   // At the end of a run: of each kind of finding what was not told singly.
   void TellRest();
   void Flush();
+  // Those that were not sent; they are no more to be.
+  v1::WorkerEvents TakeUnsent() { return std::exchange(batch_, {}); }
 
  private:
   // Program, step, line, column.

@@ -35,7 +35,11 @@ void JobLease::Take(const v1::WorkResponse& message) {
   } else if (message.has_events_stored() && IsMine(message.events_stored().lease())) {
     events_stored_ = message.events_stored().count();
   } else if (message.has_control() && IsMine(message.control().lease())) {
-    orders_.push_back(message.control());
+    if (message.control().kind() == v1::WorkerControl::KIND_FOLLOW_TOOLPATH) {
+      toolpath_followed_ = true;
+    } else {
+      orders_.push_back(message.control());
+    }
   }
 }
 

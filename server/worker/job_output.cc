@@ -6,6 +6,7 @@ namespace rmlcell::server {
 namespace {
 
 constexpr std::size_t kChunkBytes = 128 << 10;
+constexpr std::size_t kChunksAtOnce = 8;  // then orders are looked at
 
 }  // namespace
 
@@ -17,6 +18,26 @@ bool JobOutput::AddTrace(std::string_view record) {
 bool JobOutput::AddToolpath(std::string_view block) {
   bridge::AddFrame(block, toolpath_);
   return Fits();
+}
+
+bool JobOutput::SendNewToolpath(std::string open_block) {
+  for (std::size_t chunk = 0; chunk < kChunksAtOnce; ++chunk) {
+    Result<std::string> frames = toolpath_.Part(followed_bytes_, kChunkBytes);
+    if (!frames) return true;  // its end tells what it was
+    v1::WorkRequest message;
+    v1::WorkerToolpath& toolpath = *message.mutable_toolpath();
+    *toolpath.mutable_lease() = lease_;
+    followed_bytes_ += static_cast<std::int64_t>(frames->size());
+    const bool all = followed_bytes_ == toolpath_.size();
+    if (all && frames->empty() && open_block == followed_block_) return true;
+    toolpath.set_frames(*std::move(frames));
+    if (all) toolpath.set_open_block(open_block);
+    if (!line_.Send(message)) return true;
+    if (!all) continue;
+    followed_block_ = std::move(open_block);
+    return true;
+  }
+  return false;
 }
 
 bool JobOutput::Fits(std::size_t more) const {

@@ -24,6 +24,10 @@ class JobOutput {
   bool AddToolpath(std::string_view block);
   void CountEvents(std::size_t bytes) { event_bytes_ += bytes; }
 
+  // For who follows the toolpath: what is new of it, and the block that is not full yet. False:
+  // there is more, as is told next time.
+  bool SendNewToolpath(std::string open_block);
+
   // Whether all that the job has put out stays in its budget, `more` included.
   bool Fits(std::size_t more = 0) const;
 
@@ -42,6 +46,8 @@ class JobOutput {
   bridge::SpooledBytes trace_;
   bridge::SpooledBytes toolpath_;
   std::size_t event_bytes_ = 0;
+  std::int64_t followed_bytes_ = 0;  // of the toolpath, that went to who follows it
+  std::string followed_block_;       // the open one that went last
 };
 
 }  // namespace rmlcell::server

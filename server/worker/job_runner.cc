@@ -34,7 +34,7 @@
 namespace rmlcell::server {
 namespace {
 
-v1::Outcome OutcomeFor(machine::OutcomeKind kind, ErrorCode code, std::string detail = {}) {
+v1::Outcome OutcomeFor(machine::OutcomeKind kind, ErrorCode code, Detail detail = {}) {
   const machine::Outcome outcome{.kind = kind, .code = code, .detail = std::move(detail)};
   return bridge::ToProto(outcome, simulation::JudgeOutcome(outcome));
 }
@@ -84,7 +84,6 @@ class Attempt {
     const End end = assignment_.job().kind() == v1::JOB_KIND_CHECK ? Check() : Simulate();
     if (end == End::kFinished) {
       events_.TellRest();
-      events_.Flush();
       Finish();
     }
     return end;
@@ -354,6 +353,7 @@ class Attempt {
   void Finish() {
     v1::WorkerFinish finish;
     *finish.mutable_outcome() = outcome_;
+    finish.mutable_events()->Swap(events_.TakeUnsent().mutable_events());
     for (const v1::AssignedProgram& program : assignment_.programs()) {
       const auto made = executables_.find(program.slot());
       if (made == executables_.end() || program.object_revision() == 0) continue;

@@ -5,9 +5,11 @@
 #include <string_view>
 #include <vector>
 
+#include "storage/sqlite/ends_under_way.h"
 #include "storage/sqlite/reader_pool.h"
 #include "storage/sqlite/request_ids.h"
 #include "storage/sqlite/sqlite_store.h"
+#include "storage/sqlite/staging_thread.h"
 #include "storage/sqlite/store_files.h"
 #include "storage/sqlite/watchers.h"
 #include "storage/sqlite/writer.h"
@@ -20,6 +22,8 @@ Status CheckRevision(std::optional<Revision> current, Revision expected, const s
                      ErrorCode when_missing = ErrorCode::kCellNotFound);
 // All programs and schedules of a machine that goes.
 Status RemoveMemory(WriteContext& context, std::string_view machine, std::string_view caller);
+
+class StagedEnd;
 
 // Reads go to the pool, writes to the writer; the rules of jobs stand in job_life.h.
 class SqliteStore final : public Store {
@@ -129,6 +133,8 @@ class SqliteStore final : public Store {
   std::unique_ptr<Subscription> Watch(std::function<void()> changed) override;
 
  private:
+  void SendStaged(const Lease& lease, std::shared_ptr<const JobEnd> end,
+                  std::shared_ptr<const StagedEnd> staged, Done<JobRecord> done);
   // `job` with its specification, read on this thread.
   Result<JobRecord> WithSpecification(Result<JobRecord> job);
 
@@ -142,7 +148,9 @@ class SqliteStore final : public Store {
   const std::unique_ptr<Connection> connection_;
   const std::unique_ptr<ReaderPool> readers_;
   Watchers watchers_;
+  EndsUnderWay ends_;
   Writer writer_;
+  StagingThread staging_;
 };
 
 }  // namespace rmlcell::storage::sqlite

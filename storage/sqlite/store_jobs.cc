@@ -1,5 +1,6 @@
 // Jobs, leases, events and artifacts.
 #include <algorithm>
+#include <exception>
 #include <span>
 
 #include "storage/content.h"
@@ -108,7 +109,17 @@ void ReadSpecification(WriteContext& context, JobRecord& job) {
   if (!CompleteJob(context.tables, job, context.now)) job.specification.clear();
 }
 
-// The contents of a job's end, made ready on the thread of the caller.
+// What is written ahead piece by piece, and takes as long as the disk does.
+bool IsLarge(const JobEnd& end) {
+  return std::ranges::any_of(end.artifacts,
+                             [](const NewArtifact& a) { return a.bytes.size() > kChunkBytes; }) ||
+         std::ranges::any_of(end.executables,
+                             [](const NewExecutable& e) { return e.bytes.size() > kChunkBytes; });
+}
+
+}  // namespace
+
+// The contents of a job's end, made ready on the thread that prepares it.
 class StagedEnd {
  public:
   StagedEnd() = default;
@@ -158,8 +169,6 @@ Result<JobRow> GetRow(Tables& tables, std::int64_t id) {
   if (!*row) return NoJob(id);
   return **std::move(row);
 }
-
-}  // namespace
 
 SqliteStore::SqliteStore(Parts parts)
     : lock_(std::move(parts.lock)),
@@ -347,8 +356,28 @@ Result<JobRecord> SqliteStore::Finish(const Lease& lease, const JobEnd& end) {
 
 void SqliteStore::SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
                              Done<JobRecord> done) {
-  auto staged = std::make_shared<StagedEnd>();
-  if (const Status made = staged->Prepare(writer_, *end); !made) return done(made.error());
+  if (!IsLarge(*end)) {
+    const auto staged = std::make_shared<StagedEnd>();
+    if (const Status made = staged->Prepare(writer_, *end); !made) return done(made.error());
+    return SendStaged(lease, std::move(end), staged, std::move(done));
+  }
+  const auto holder = std::make_shared<const EndsUnderWay::Holder>(ends_, lease.fence);
+  staging_.Post([this, lease, end = std::move(end), holder, done = std::move(done)] {
+    std::shared_ptr<StagedEnd> staged;
+    std::optional<Error> failed;
+    try {
+      staged = std::make_shared<StagedEnd>();
+      if (const Status made = staged->Prepare(writer_, *end); !made) failed = made.error();
+    } catch (const std::exception& error) {
+      failed = Error{ErrorCode::kCellStoreFailed, error.what(), {}};
+    }
+    if (failed) return done(*std::move(failed));
+    SendStaged(lease, end, staged, [holder, done](Result<JobRecord> job) { done(std::move(job)); });
+  });
+}
+
+void SqliteStore::SendStaged(const Lease& lease, std::shared_ptr<const JobEnd> end,
+                             std::shared_ptr<const StagedEnd> staged, Done<JobRecord> done) {
   writer_.Send([lease, end = std::move(end), staged = std::move(staged)](
                    WriteContext& context) { return staged->Run(context, lease, *end); },
                std::move(done));
@@ -407,6 +436,7 @@ Result<std::vector<JobRecord>> SqliteStore::Expire(const LossPolicy& policy) {
   std::vector<JobRecord> changed;
   std::optional<Error> failure;
   for (const Lease& lease : *leases) {
+    if (ends_.Has(lease.fence)) continue;
     Result<std::optional<JobRecord>> job =
         writer_.Do([&](WriteContext& context) { return ExpireLease(context, lease, policy); });
     if (!job) {

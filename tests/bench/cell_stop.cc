@@ -78,8 +78,8 @@ class StoppedJob {
     // The answer reads the store; who stops does not wait for it.
     std::thread call([&] {
       grpc::ClientContext context;
-      v1::Job job;
-      Must(calls_->StopJob(&context, stop, &job));
+      v1::HaltJobResponse answer;
+      Must(calls_->StopJob(&context, stop, &answer));
     });
     v1::WatchJobResponse message;
     while (!message.event().has_halted()) Read(message);

@@ -114,6 +114,29 @@ class Jobs(WithCell):
                 size(level)
             self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
 
+    # Who follows it has at the end what is stored, and saw the way grow before.
+    def test_a_toolpath_is_followed_while_its_job_runs(self):
+        stub = self.cell.jobs()
+        job = inline_job("mill-1", "grows.rml", "PA;PA;VS5;!PZ0,200;PU0,0;" + "PD900,100;PD100,900;" * 3 + "PU0,0;")
+        job.simulation.pace = 10.0
+        name = submit(stub, job).name
+
+        def parts(follow):
+            return list(stub.StreamJobToolpath(job_pb2.StreamJobToolpathRequest(name=name, follow=follow), timeout=60))
+        followed, stored = parts(True), parts(False)
+        self.assertFalse(followed[0].header.complete)
+        self.assertTrue(followed[-1].header.complete)
+        self.assertEqual(followed[-1].header, stored[0].header)
+        self.assertEqual([p.block for p in followed if p.HasField("block")], [p.block for p in stored[1:]])
+        grown = [len(p.open_block) for p in followed if p.HasField("open_block")]
+        self.assertGreater(len(grown), 1)
+        self.assertEqual(grown, sorted(grown))
+        # Of one that is over it is the same stream.
+        self.assertEqual(parts(True), stored)
+        self.refused(lambda request, timeout: list(stub.StreamJobToolpath(request, timeout=timeout)),
+                     job_pb2.StreamJobToolpathRequest(name=name, follow=True, level=2),
+                     grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
+
     def test_a_job_runs_at_the_pace_of_the_machine(self):
         stub = self.cell.jobs()
         job = inline_job("optimo-1", "slow.S", "DELAY 1.5\n")
@@ -181,6 +204,13 @@ class Jobs(WithCell):
         self.assertEqual(ended.code, "OPT-E7004")
         report = stub.GetJobReport(job_pb2.GetJobReportRequest(name=job.name))
         self.assertEqual([d.code for d in report.diagnostics][:2], ["OPT-E7004", "OPT-E7019"])
+        # The numbers of a finding by name; those of the first one also with the job, which a store gives.
+        self.assertEqual({a.name: a.text or a.number for a in report.diagnostics[1].arguments},
+                         {"instruction": "MOVE", "values": 2, "needed": 5})
+        told = stub.GetJob(job_pb2.GetJobRequest(name=job.name)).outcome
+        self.assertTrue(told.arguments)
+        self.assertEqual(told.arguments, report.diagnostics[0].arguments)
+        self.assertEqual(told.arguments, ended.arguments)
 
     # OPT-E.7301: a job that only checks follows the motion, with the programs of its machine.
     def test_a_check_job_follows_the_motion(self):

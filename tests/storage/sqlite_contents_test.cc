@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <functional>
+#include <future>
+#include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -31,6 +34,49 @@ class SqliteContents : public testing::Test {
 
   SqliteBed bed_;
 };
+
+// The end of a job is told in no time, however large its products are and whatever the disk does:
+// here the writer stands, in the answer of another call.
+TEST_F(SqliteContents, WhoTellsALargeEndWaitsForNothing) {
+  std::vector<Lease> leases;
+  for (int i = 0; i < 2; ++i) {
+    Must(store().SubmitAndWait({.machine = "m", .kind = "CHECK", .specification = "s"}));
+    leases.push_back(
+        Must(store().Acquire("w", {"CHECK"}, std::chrono::hours(i == 0 ? 24 : 1), {}))->lease);
+  }
+  std::promise<void> stands;
+  std::promise<void> go_on;
+  std::thread other([&] {
+    store().Append(leases[0], {{.kind = "k", .payload = "p"}}, [&](Result<std::int64_t>) {
+      stands.set_value();
+      go_on.get_future().wait();
+    });
+  });
+  stands.get_future().wait();
+  const std::string large = Noise(3 * kMiB + 5, 1);
+  auto end = std::make_shared<const JobEnd>(JobEnd{
+      .artifacts = {{.name = "a", .media_type = "application/octet-stream", .bytes = large}}});
+  std::promise<Result<JobRecord>> ended;
+  std::future<Result<JobRecord>> job = ended.get_future();
+  auto told = std::async(std::launch::async, [&] {
+    store().SendFinish(leases[1], end,
+                       [&](Result<JobRecord> record) { ended.set_value(std::move(record)); });
+  });
+  EXPECT_EQ(told.wait_for(kPatience), std::future_status::ready);
+  told.get();
+  // Its lease runs out meanwhile, and the job stays its own.
+  bed_.clock().Advance(std::chrono::hours(1));
+  auto expired = std::async(std::launch::async, [&] {
+    return store().Expire({.outcome = {.state = JobState::kFailed}});
+  });
+  ASSERT_EQ(expired.wait_for(kPatience), std::future_status::ready);
+  EXPECT_TRUE(Must(expired.get()).empty());
+  go_on.set_value();
+  other.join();
+  EXPECT_EQ(Must(job.get()).state, JobState::kSucceeded);
+  EXPECT_TRUE(Must(store().ReadBlob(Must(store().GetArtifact(leases[1].job, "a")).sha256)) ==
+              large);
+}
 
 // FIPS 180-2, appendix B.1.
 TEST(Content, Sha256IsThatOfTheStandard) {

@@ -74,6 +74,43 @@ TEST(SqliteRefusals, PathThatIsNoRegularFile) {
   EXPECT_THAT(refused.error().detail, HasSubstr("not a regular file"));
 }
 
+// A write whose last step the file refuses fails as a whole: the job is still held by who had it.
+TEST(SqliteRefusals, HandingBackWithoutItsEvent) {
+  SqliteBed bed;
+  bed.Close();
+  ExecuteIn(bed.path(),
+            "CREATE TRIGGER refuses BEFORE INSERT ON event WHEN new.kind = 'requeued'"
+            " BEGIN SELECT RAISE(ABORT, 'not this one'); END");
+  bed.Reopen();
+  Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+  const auto leased = Must(bed.store().Acquire("w", {"CHECK"}, std::chrono::minutes(1), {}));
+  ASSERT_TRUE(leased);
+  const LossPolicy policy{.outcome = {.state = JobState::kFailed},
+                          .requeued = {{.kind = "requeued"}}};
+  const auto refused = bed.store().HandBack(leased->lease, policy);
+  ASSERT_EQ(CodeOf(refused), kFailedFile);
+  EXPECT_THAT(refused.error().detail, HasSubstr("not this one"));
+  EXPECT_EQ(Must(bed.store().GetJob(1)).state, JobState::kRunning);
+  EXPECT_EQ(Must(bed.store().GetJob(1)).attempts, 1);
+  EXPECT_TRUE(bed.store().Renew(leased->lease, std::chrono::minutes(1)));
+}
+
+// Without the bytes of its specification there is no job.
+TEST(SqliteRefusals, SpecificationThatIsNotTaken) {
+  SqliteBed bed;
+  bed.Close();
+  ExecuteIn(bed.path(),
+            "CREATE TRIGGER refuses BEFORE INSERT ON blob"
+            " BEGIN SELECT RAISE(ABORT, 'no blobs'); END");
+  bed.Reopen();
+  const auto refused =
+      bed.store().SubmitAndWait({.kind = "CHECK", .specification = std::string(100'000, 's')});
+  ASSERT_EQ(CodeOf(refused), kFailedFile);
+  EXPECT_THAT(refused.error().detail, HasSubstr("no blobs"));
+  EXPECT_TRUE(Must(bed.store().ListJobs({.limit = 10})).empty());
+  EXPECT_EQ(Must(bed.store().SubmitAndWait({.kind = "CHECK", .specification = "s"})).job.id, 1);
+}
+
 // A write-ahead log needs memory that processes share; file systems without it are refused.
 TEST(SqliteRefusals, FileSystemWithoutSharedMemory) {
   const TestDirectory directory;

@@ -77,6 +77,21 @@ TEST(SqliteWriter, WaitingWritesShareOneCommit) {
   EXPECT_LT(faulty_disk::Operations(), kJobs);
 }
 
+// docs/decisions/0005: who finds the store idle commits on his own thread, and not only the first
+// time. The first ones may come while the store still gets ready.
+TEST(SqliteWriter, LoneCallersCommitOnTheirOwnThread) {
+  SqliteBed bed;
+  int alone = 0;
+  for (int i = 0; i < 100; ++i) {
+    std::promise<std::thread::id> answered;
+    bed.store().Submit({.kind = "CHECK"}, [&](const Result<SubmittedJob>&) {
+      answered.set_value(std::this_thread::get_id());
+    });
+    if (answered.get_future().get() == std::this_thread::get_id()) ++alone;
+  }
+  EXPECT_GE(alone, 10);
+}
+
 // What is too much is refused at once, what was taken is done.
 TEST(SqliteWriter, TooManyWaitingWritesAreRefused) {
   SqliteOptions options;

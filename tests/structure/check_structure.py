@@ -93,7 +93,7 @@ MAY_INCLUDE = {
 }
 # Of these rooms others may include no other header.
 PUBLIC = {
-    "engine/core": ["alignment.h", "catalogue.h", "characters.h", "check.h", "diagnostic.h", "hex.h", "letters.h", "line_table.h", "untold_findings.h",
+    "engine/core": ["alignment.h", "catalogue.h", "characters.h", "check.h", "detail.h", "diagnostic.h", "hex.h", "letters.h", "line_table.h", "untold_findings.h",
                     "near_words.h", "number_text.h", "result.h", "ring.h", "text_fixes.h", "units.h"],
     GEOMETRY: ["frames.h", "pose.h", "path.h", "hole.h", "corner_curve.h", "corner_table.h", "blend_curve.h", "least.h"],
     PROFILE: ["speed_profile.h", "speed_passes.h", "ramp_plan.h"],
@@ -133,7 +133,7 @@ PUBLIC = {
     "server/base": ["config.h", "credentials.h", "executor.h", "log.h", "names.h", "readable.h", "secret.h", "steady_clock.h", "version.h"],
     "server/auth": ["caller.h"],
     "server/events": ["event_feed.h"],
-    "server/jobs": ["dispatcher.h", "job_book.h", "job_filter.h", "worker_processes.h"],
+    "server/jobs": ["dispatcher.h", "job_book.h", "job_filter.h", "running_toolpath.h", "worker_processes.h"],
     "server/records": ["file_family.h", "job_messages.h", "machine_messages.h", "program_place.h", "toolpath_levels.h", "update_mask.h"],
     "server/machines": ["machine_statuses.h"],
     "server/programs": ["content_upload.h", "language_tools.h", "memory_tools.h", "program_book.h", "program_result.h", "program_views.h",
@@ -211,6 +211,12 @@ NEUTRAL_ROWS = "Cell"
 STATUS_WHOLE = re.compile(r"if \((?:const )?Status (\w+) =[^;]*;\s*!\1\)\s*\{?\s*return \1;")
 STATUS_CHANGES = re.compile(r"if \(Status \w+ =")
 STATUS_APART = re.compile(r"\bStatus (\w+) =[^;]*;\s*if \(!\1\)\s*\{?\s*return \1\b")
+
+# What an error or a finding says keeps its numbers as arguments (engine/core/detail.h): none of them becomes text
+# but inside Told(...).
+FINDING = re.compile(r"\bErrorCode::k|\b(InvalidArgument|Corrupt|Bad\w*)\(")
+NUMBER_AS_TEXT = re.compile(r"\b(std::to_string|FixedText|TrimmedText|ShortestText|ShortNumber)\(")
+TOLD = re.compile(r"\bTold\w*\(")
 
 SOURCES = ("engine", "storage", "proto/bridge", "server", "clients")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -300,6 +306,29 @@ def check_errors(path, text, breaches):
             breaches.append(f"{path}:{number}: write if (const Status done = F(); !done) return done.error();")
 
 
+def without_told(code):
+    """The code with what stands between the parentheses of Told(...) blanked."""
+    kept = list(code)
+    for found in TOLD.finditer(code):
+        depth = 1
+        for at in range(found.end(), len(code)):
+            depth += (code[at] == "(") - (code[at] == ")")
+            if depth == 0:
+                break
+            if kept[at] != "\n":
+                kept[at] = " "
+    return "".join(kept)
+
+
+def check_findings(path, text, breaches):
+    code = without_told(without_comments(text))
+    for part in re.finditer(r"[^;{}]+", code):
+        number = NUMBER_AS_TEXT.search(part.group())
+        if number and FINDING.search(part.group()):
+            line = code.count("\n", 0, part.start() + number.start()) + 1
+            breaches.append(f"{path}:{line}: write Told(name, number ...), so that the finding knows its number")
+
+
 def check_names(path, text, breaches):
     for part in path.split("/"):
         if BAD_NAME.search(os.path.splitext(part)[0]):
@@ -339,6 +368,7 @@ def check(root):
                 check_errors(path, text, breaches)
             if path.startswith("engine/"):
                 check_purity(path, text, breaches)
+                check_findings(path, text, breaches)
     return breaches
 
 

@@ -221,6 +221,21 @@ class AMadeUpHouse(unittest.TestCase):
             with self.subTest(text=text):
                 self.assertEqual(self.breaches("server/jobs/a.cc", text), [])
 
+    def test_a_finding_knows_its_numbers(self):
+        says = "write Told(name, number ...), so that the finding knows its number"
+        for text in ('return Error{ErrorCode::kA, "label " + std::to_string(n), {}};\n',
+                     'return InvalidArgument("radius " +\n    ShortestText(r));\n',
+                     'return Corrupt(Told("line", 1) + std::to_string(n));\n',
+                     'Warn(ErrorCode::kA,\n     FixedText(v, 1) + " mm/s", "OPT-1");\n'):
+            with self.subTest(text=text):
+                self.assert_breach("engine/core/a.cc", text, says)
+        for text in ('return Error{ErrorCode::kA, "label " + Told("label", n), {}};\n',
+                     'return Bad(Told("speed", v, "mm/s", FixedText(v, 1) + " mm/s"));\n',
+                     'text += std::to_string(n);\nreturn Error{ErrorCode::kA, {}, {}};\n'):
+            with self.subTest(text=text):
+                self.assertEqual(self.breaches("engine/core/a.cc", text), [])
+        self.assertEqual(self.breaches("server/jobs/a.cc", "InvalidArgument(std::to_string(n));\n"), [])
+
     def test_an_include_with_blanks_counts_too(self):
         self.assert_breach("engine/core/a.h", '  #  include   "engine/motion/geometry/path.h"\n', "may not include")
         self.assert_breach("engine/core/a.h", "#include <engine/motion/geometry/path.h>\n", "may not include")

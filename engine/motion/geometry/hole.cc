@@ -20,7 +20,9 @@ MachineVector InPlane(const MachineVector& v, const MachineVector& normal) {
 
 Result<HolePath> HoleThrough(const HoleCommand& hole) {
   if (!(hole.radius_mm > 0.0)) {
-    return Error{ErrorCode::kCellHoleRadius, "radius is " + ShortestText(hole.radius_mm), {}};
+    return Error{ErrorCode::kCellHoleRadius,
+                 "radius is " + Told("radius", hole.radius_mm, "mm", ShortestText(hole.radius_mm)),
+                 {}};
   }
   const MachineVector axis = hole.normal_point - hole.centre.tip;
   const double axis_length = axis.norm();

@@ -46,8 +46,11 @@ bool NeedsAnchor(const PathPiece& path, const PathPose* end) {
   return Error{ErrorCode::kCellNoMotion, why, {}};
 }
 [[gnu::cold, gnu::noinline]] Status TooLittleAcceleration(double share) {
+  const double percent = 100.0 * share;
   return Error{
-      ErrorCode::kCellNoMotion, "the acceleration is " + ShortestText(100.0 * share) + " %", {}};
+      ErrorCode::kCellNoMotion,
+      "the acceleration is " + Told("acceleration", percent, "%", ShortestText(percent) + " %"),
+      {}};
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ void Actuators::SetOutput(int index, double value) {
   if (on && other >= 0 && outputs[static_cast<std::size_t>(other)]) {
     s_.gas_refused = index;
     return telling_.Warn(ErrorCode::kGasConflict,
-                         "OL[" + std::to_string(index) + "] while another assist gas is on",
+                         "OL[" + Told("output", index) + "] while another assist gas is on",
                          "OPT-5.40");
   }
   outputs[n] = on;

@@ -9,9 +9,9 @@ namespace rmlcell::optimo {
 
 // The compiler knows programs: one of which only the condition is ever looked at.
 Result<Condition> ReadCondition(std::string_view text) {
-  const auto refuse = [text](const std::string& why) {
+  const auto refuse = [text](const Detail& why) {
     return Error{ErrorCode::kCellInvalidArgument,
-                 "the condition '" + std::string(text) + "' is none: " + why,
+                 "the condition '" + Told("condition", text) + "' is none: " + why,
                  {}};
   };
   if (text.find_first_of(";\r\n") != std::string_view::npos)
@@ -20,9 +20,7 @@ Result<Condition> ReadCondition(std::string_view text) {
   Compilation compiled = Compile(program, "condition", {.advice = false});
   if (!compiled.ok) {
     for (const Diagnostic& finding : compiled.diagnostics) {
-      if (IsError(finding.severity))
-        return refuse(finding.detail.empty() ? std::string(Lookup(finding.code).when)
-                                             : finding.detail);
+      if (IsError(finding.severity)) return refuse(Said(finding.code, finding.detail));
     }
     return refuse("it cannot be read");
   }

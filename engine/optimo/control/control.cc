@@ -178,7 +178,9 @@ void Control::ActOnTime() {
   // What can go on without time may do so: more than the budget is too much, not all of it.
   const SimTime budget = setup_.budget.virtual_time;
   if (!now().running() || now().now < budget || MayFetch()) return;
-  std::string detail = "the run takes longer than " + TrimmedText(ToSeconds(budget), 9) + " s";
+  const double limit = ToSeconds(budget);
+  Detail detail =
+      "the run takes longer than " + Told("limit", limit, "s", TrimmedText(limit, 9) + " s");
   if (WaitsForEver()) detail += ": it waits for a condition, and no input is to come";
   now().place = ride_.place();
   Finish(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget, std::move(detail));
@@ -328,7 +330,7 @@ void Control::PressStart() {
   if (!actuators_.door_blocks_start()) return halts_.Resume();
   // An alarm: no ERR catches it (OPT-B.56).
   constexpr ErrorCode kCode = ErrorCode::kShutterInterlock;
-  const std::string detail = "START with the operator door open";
+  const Detail detail = "START with the operator door open";
   data_.SetLastError(kCode);
   telling_.Warn(kCode, detail, "OPT-3.17");
   Finish(machine::OutcomeKind::kFailed, kCode, detail);
@@ -348,7 +350,7 @@ void Control::End(machine::OutcomeKind kind, ErrorCode code) {
 }
 
 // What goes on is told up to now.
-void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
+void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, Detail detail) {
   if (now().phase == RunPhase::kHalted) {
     halts_.Tell();
   } else {

@@ -58,7 +58,7 @@ class Control final : private RideListener {
   void PressStart();
   void ChangeOutside();
   void Raise(const Error& error);
-  void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);
+  void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, Detail detail);
   void OnMark(std::uint64_t tag) override { effects_.OnMark(tag); }
   void OnMotionBegins(std::uint64_t tag) override { watch_.OnMotionBegins(tag); }
   void OnMotionTold(const machine::MotionDone& done) override { process_watch_.OnMotion(done); }

@@ -60,7 +60,7 @@ void Control::Fetch() {
   }
   if (s_.steps >= setup_.budget.steps) {
     return Finish(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kStepBudget,
-                  std::to_string(s_.steps) + " steps were executed");
+                  Told("steps", s_.steps) + " steps were executed");
   }
   now().place = here;
   s_.op = i.op;
@@ -121,10 +121,10 @@ bool Control::MayCarryOut(const Instruction& i) {
   }
   if (!NeedsStandstill(i) && ride_.RunsAhead()) return true;
   if (passing) {
-    telling_.Warn(
-        ErrorCode::kFlyCancelled,
-        "/FLY before " + std::string(Describe(i.op).name) + ": the machine stops at the target",
-        "OPT-2.48");
+    telling_.Warn(ErrorCode::kFlyCancelled,
+                  "/FLY before " + Told("instruction", Describe(i.op).name) +
+                      ": the machine stops at the target",
+                  "OPT-2.48");
   }
   StandFirst();
   return false;
@@ -212,8 +212,8 @@ Status Control::Execute(const Instruction& i) {
         return {};
       }
       constexpr ErrorCode kCode = ErrorCode::kStopNotRestartable;
-      telling_.Warn(kCode, std::string(name) + " in REMOTE", "OPT-3.50");
-      Finish(machine::OutcomeKind::kStopped, kCode, std::string(name));
+      telling_.Warn(kCode, Told("instruction", name) + " in REMOTE", "OPT-3.50");
+      Finish(machine::OutcomeKind::kStopped, kCode, Told("instruction", name));
       return {};
     }
     case Op::kBreak:  // stays when the program ends: OPT-6.08
@@ -238,7 +238,7 @@ Status Control::GoTo(const Instruction& i) {
   if (!slot) return slot.error();
   if (counter_.program().processes.any_on()) {
     return Error{
-        ErrorCode::kWorkActiveAtCall, "GO " + std::to_string(*slot) + " with a WORK ON", {}};
+        ErrorCode::kWorkActiveAtCall, "GO " + Told("program", *slot) + " with a WORK ON", {}};
   }
   const Result<Loaded> next = counter_.Acquire(*slot, false);
   if (!next) return next.error();

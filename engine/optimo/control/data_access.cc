@@ -283,9 +283,8 @@ Status DataAccess::Assign(const Instruction& i) {
   if (*number < 0 || (width < 16 && *number >= (1 << width)) ||
       target.index + width > kVariableCount) {
     return Error{ErrorCode::kAssignGroup,
-                 std::to_string(*number) + " into " + std::to_string(width) + " places from " +
-                     std::string(GroupName(target.group)) + "[" + std::to_string(target.index) +
-                     "]",
+                 Told("value", *number) + " into " + Told("places", width) + " places from " +
+                     ToldVariable(target.variable()),
                  {}};
   }
   for (int bit = 0; bit < width; ++bit) {

@@ -100,7 +100,7 @@ Result<int> Flow::ProgramNumber(Expression expression) {
   const Result<int> number = TruncateToInteger(static_cast<float>(*value));
   if (!number) return number.error();
   if (!IsSlot(*number)) {
-    return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(*number), {}};
+    return Error{ErrorCode::kProgramNumber, "program number is " + Told("program", *number), {}};
   }
   return *number;
 }
@@ -108,12 +108,12 @@ Result<int> Flow::ProgramNumber(Expression expression) {
 Status Flow::CallProgram(const Instruction& i) {
   const Result<int> slot = ProgramNumber(counter_.module().Value(i, 0));
   if (!slot) return slot.error();
-  const std::string call = "CALL " + std::to_string(*slot);
+  const auto call = [&slot] { return "CALL " + Told("program", *slot); };
   if (counter_.program().processes.any_on()) {
-    return Error{ErrorCode::kWorkActiveAtCall, call + " with a WORK ON", {}};
+    return Error{ErrorCode::kWorkActiveAtCall, call() + " with a WORK ON", {}};
   }
   if (counter_.call_level() > kCallLevels) {
-    return Error{ErrorCode::kCallTooDeep, call + " is a fifth level", {}};
+    return Error{ErrorCode::kCallTooDeep, call() + " is a fifth level", {}};
   }
   const Result<Loaded> callee = counter_.Acquire(*slot, counter_.call_level() == kCallLevels);
   if (!callee) return callee.error();
@@ -136,7 +136,9 @@ Status Flow::SetTimer(const Instruction& i) {
   const Result<double> seconds = data_.Real(counter_.module().Value(i, 0));
   if (!seconds) return seconds.error();
   if (*seconds < 0.0) {
-    return Error{ErrorCode::kValueRange, "TIMER is " + ShortestText(*seconds), {}};
+    return Error{ErrorCode::kValueRange,
+                 "TIMER is " + Told("time", *seconds, "s", ShortestText(*seconds)),
+                 {}};
   }
   if (situation_.simulating()) return {};
   // A period below one cycle would never let the program go on.
@@ -151,7 +153,9 @@ Status Flow::Delay(const Instruction& i) {
   const Result<double> seconds = data_.Real(counter_.module().Value(i, 0));
   if (!seconds) return seconds.error();
   if (*seconds < 0.0) {
-    return Error{ErrorCode::kValueRange, "DELAY is " + ShortestText(*seconds), {}};
+    return Error{ErrorCode::kValueRange,
+                 "DELAY is " + Told("time", *seconds, "s", ShortestText(*seconds)),
+                 {}};
   }
   if (!situation_.simulating()) waits_.BeginTime(*seconds, machine::WaitKind::kDwell);
   return {};
@@ -172,7 +176,8 @@ Status Flow::TellError(const Instruction& i) {
   if (!value) return value.error();
   const double number = std::trunc(*value);
   if (!(number >= 1.0 && number <= 9999.0)) {
-    return Error{ErrorCode::kSeterrRange, "SETERR " + ShortestText(*value), {}};
+    return Error{
+        ErrorCode::kSeterrRange, "SETERR " + Told("value", *value, "", ShortestText(*value)), {}};
   }
   telling_.observer().OnMessage(situation_.now, situation_.place,
                                 "ERROR " + std::to_string(static_cast<int>(number)));

@@ -147,7 +147,9 @@ Result<bool> Moves::MayBegin(const Instruction& i) {
     const Result<double> seconds = data_.Real(module.Time(i));
     if (!seconds) return seconds.error();
     if (*seconds < 0.0) {
-      return Error{ErrorCode::kValueRange, "/TIME is " + ShortestText(*seconds), {}};
+      return Error{ErrorCode::kValueRange,
+                   "/TIME is " + Told("time", *seconds, "s", ShortestText(*seconds)),
+                   {}};
     }
     if (!situation_.simulating()) watch_.Arm(module.TimeLabel(i), *seconds);
   }
@@ -214,7 +216,9 @@ Result<bool> Moves::AppendHole(const Programmed& move, const motion::TipPose& fr
   const motion::TipPose target = TipAt(move.target);
   if (!i.Has(kVia)) {
     if (radius <= 0.0) {
-      return Error{ErrorCode::kHoleRadiusZero, "radius is " + ShortestText(radius), {}};
+      return Error{ErrorCode::kHoleRadiusZero,
+                   "radius is " + Told("radius", radius, "mm", ShortestText(radius)),
+                   {}};
     }
     telling_.Warn(ErrorCode::kViaMissing, "HOLE without /VIA is a straight line to the centre",
                   "OPT-2.29");
@@ -300,7 +304,7 @@ Result<bool> Moves::Append(const Instruction& i, const motion::PathPiece& path, 
   return false;                                     // can go there
 }
 
-Result<bool> Moves::NeverEnds(const Instruction& i, std::string why) {
+Result<bool> Moves::NeverEnds(const Instruction& i, Detail why) {
   if (!i.Has(kTime)) return Error{ErrorCode::kNoMotion, std::move(why), {}};
   watch_.Stand();
   return false;
@@ -346,10 +350,10 @@ Status Moves::SetPercent(const Instruction& i) {
   const Result<double> value = data_.Real(counter_.module().Value(i, 0));
   if (!value) return value.error();
   if (!(*value >= 0.0 && *value <= 100.0)) {
-    return Error{
-        ErrorCode::kValueRange,
-        std::string(Describe(i.op).name) + " is " + ShortestText(*value) + ", allowed are 0 to 100",
-        {}};
+    return Error{ErrorCode::kValueRange,
+                 Told("instruction", Describe(i.op).name) + " is " +
+                     Told("value", *value, "%", ShortestText(*value)) + ", allowed are 0 to 100",
+                 {}};
   }
   Modal& modal = counter_.modal();
   double& target = i.op == Op::kSpeed   ? modal.speed_percent

@@ -72,7 +72,7 @@ class Moves {
   // False: nothing is on its way. It ends where it begins, or the MOVE stands until its /TIME.
   Result<bool> Append(const Instruction& i, const motion::PathPiece& path, MoveNote note,
                       bool settles = true);
-  Result<bool> NeverEnds(const Instruction& i, std::string why);
+  Result<bool> NeverEnds(const Instruction& i, Detail why);
   void TellStanding(const MoveNote& note);
   double SpeedFraction();
   void GoOn(const Programmed& move);

@@ -139,9 +139,9 @@ class Family final : public machine::MachineFamily {
     const int made_of = decoded->modules.front().slot;
     if (made_of == slot) return {};
     return Error{ErrorCode::kCellInvalidArgument,
-                 "the executable is that of program " + std::to_string(made_of) + ", not of " +
-                     std::to_string(slot) + ": store it as " +
-                     std::to_string(made_of + kExecutableOffset),
+                 "the executable is that of program " + Told("holds", made_of) + ", not of " +
+                     Told("program", slot) + ": store it as " +
+                     Told("executable", made_of + kExecutableOffset),
                  {}};
   }
 

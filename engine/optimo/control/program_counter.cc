@@ -16,7 +16,7 @@ void SkipMissed(ProgramTimer& timer, SimTime now) {
 }
 
 Error NoLabel(int label) {
-  return {ErrorCode::kLabelNotFound, "no sequence number " + std::to_string(label), {}};
+  return {ErrorCode::kLabelNotFound, "no sequence number " + Told("label", label), {}};
 }
 
 ObjectLookup ObjectsOf(const machine::RunSetup& setup) {
@@ -82,25 +82,25 @@ Result<Loaded> ProgramCounter::Acquire(int slot, bool must_be_executable) {
   const auto stored = setup_.programs.find(slot);
   if (stored == setup_.programs.end() ||
       (stored->second.object == nullptr && stored->second.executable == nullptr)) {
-    return Error{ErrorCode::kProgramMissing, "program " + std::to_string(slot), {}};
+    return Error{ErrorCode::kProgramMissing, "program " + Told("program", slot), {}};
   }
   if (stored->second.executable != nullptr) return LoadStored(slot, *stored->second.executable);
   if (must_be_executable) {
     return Error{ErrorCode::kCallNotExecutable,
-                 "program " + std::to_string(slot) + " at the fourth level",
+                 "program " + Told("program", slot) + " at the fourth level",
                  {}};
   }
   return Make(slot);
 }
 
 Result<Loaded> ProgramCounter::LoadStored(int slot, std::string_view bytes) {
-  const std::string name = "executable " + std::to_string(slot + kExecutableOffset);
+  const Detail name = "executable " + Told("executable", slot + kExecutableOffset);
   Result<Executable> executable = DecodeExecutable(bytes);
   if (!executable) return Error{executable.error().code, name, {}};
   if (const int made_of = executable->modules.front().slot; made_of != slot) {
     telling_.Warn(
         ErrorCode::kExecutableStale,
-        name + " holds program " + std::to_string(made_of) + " instead of " + std::to_string(slot),
+        name + " holds program " + Told("holds", made_of) + " instead of " + Told("program", slot),
         "OPT-1.15");
   }
   for (const StalePart& part :
@@ -122,7 +122,7 @@ Result<Loaded> ProgramCounter::Make(int slot) {
   std::string bytes = EncodeExecutable(*executable);
   if (!HasRoomFor(bytes.size())) {
     return Error{ErrorCode::kCmosFull,
-                 "no room for executable " + std::to_string(slot + kExecutableOffset),
+                 "no room for executable " + Told("executable", slot + kExecutableOffset),
                  {}};
   }
   telling_.observer().OnProgram(situation_.now, situation_.place, machine::kCompiling, slot);
@@ -140,7 +140,7 @@ Status ProgramCounter::Jump(int label) {
 Status ProgramCounter::Gosub(int label) {
   if (frame().returns.size() >= static_cast<std::size_t>(parameters_.gosub_depth)) {
     return Error{ErrorCode::kGosubTooDeep,
-                 "more than " + std::to_string(parameters_.gosub_depth) + " GOSUBs",
+                 "more than " + Told("limit", parameters_.gosub_depth) + " GOSUBs",
                  {}};
   }
   const std::optional<std::uint32_t> target = index().FindLabel(label);
@@ -167,7 +167,7 @@ Result<const LinkedModule*> ProgramCounter::FindFunction(int slot) const {
   }
   const LinkedModule* found = program().program->executable.Find(slot);
   if (found == nullptr) {
-    return Error{ErrorCode::kFunctionMissing, "FUNCTION " + std::to_string(slot), {}};
+    return Error{ErrorCode::kFunctionMissing, "FUNCTION " + Told("function", slot), {}};
   }
   return found;
 }
@@ -190,9 +190,8 @@ Result<bool> ProgramCounter::JumpToErrorLabel() {
     const std::optional<std::uint32_t> handler =
         context.program->index[static_cast<std::size_t>(frame.module)].FindLabel(label);
     if (!handler) {
-      return Error{ErrorCode::kLabelNotFound,
-                   "no sequence number " + std::to_string(label) + " for ERR",
-                   {}};
+      return Error{
+          ErrorCode::kLabelNotFound, "no sequence number " + Told("label", label) + " for ERR", {}};
     }
     frame.error_label.reset();
     frame.next = *handler;

@@ -19,24 +19,27 @@ Status Works::Define(const Instruction& i) {
       data_.Reals<5>(i.value_count, [&](int n) { return counter_.module().Value(i, n); });
   if (!values) return values.error();
   const std::array<double, 5>& v = *values;
-  const auto refuse = [&](std::string_view what, double value) {
-    return Error{
-        ErrorCode::kValueRange, std::string(what) + " of WORKDEF is " + ShortestText(value), {}};
+  const auto refuse = [&](const std::string& what, double value, std::string_view unit) {
+    return Error{ErrorCode::kValueRange,
+                 what + " of WORKDEF is " + Told(what, value, unit, ShortestText(value)),
+                 {}};
   };
   WorkDefinition definition;
   if (i.numbers[0] == 1) {
     definition = {
         .speed_percent = v[0], .power_percent = v[1], .delay_s = v[2], .peak_percent = v[3]};
-    if (!(v[0] > 0.0 && v[0] <= 100.0)) return refuse("speed", v[0]);
-    if (!(v[1] >= 0.0 && v[1] <= 100.0)) return refuse("power", v[1]);
-    if (!(v[2] >= 0.0)) return refuse("delay", v[2]);
-    if (!(v[3] >= 0.0 && v[3] <= 100.0)) return refuse("peak", v[3]);
+    if (!(v[0] > 0.0 && v[0] <= 100.0)) return refuse("speed", v[0], "%");
+    if (!(v[1] >= 0.0 && v[1] <= 100.0)) return refuse("power", v[1], "%");
+    if (!(v[2] >= 0.0)) return refuse("delay", v[2], "s");
+    if (!(v[3] >= 0.0 && v[3] <= 100.0)) return refuse("peak", v[3], "%");
   }
   if (i.numbers[0] == 2 || i.value_count == 5) {
     const double schedule = i.numbers[0] == 2 ? v[0] : v[4];
     const double number = std::trunc(schedule);
     if (!(number >= kScheduleMin && number <= kScheduleMax)) {
-      return Error{ErrorCode::kScheduleRange, "laser schedule is " + ShortestText(schedule), {}};
+      return Error{ErrorCode::kScheduleRange,
+                   "laser schedule is " + Told("schedule", schedule, "", ShortestText(schedule)),
+                   {}};
     }
     definition.schedule = static_cast<int>(number);
   }
@@ -115,13 +118,13 @@ Status Works::MaySwitchOn(const WorkTask& task,
   if (!definition && !(kind == 0 && task.process == 0)) {
     return Error{
         ErrorCode::kWorkdefMissing,
-        "WORK " + std::to_string(kind) + "," + std::to_string(task.process) + " has no WORKDEF",
+        "WORK " + Told("kind", kind) + "," + Told("process", task.process) + " has no WORKDEF",
         {}};
   }
   if (efa && kind == 1) {
     for (const int blocking : {2, 12, 13, 14, 15}) {
       if (!data_.output(blocking)) continue;
-      return Error{ErrorCode::kRampBlocked, "OL[" + std::to_string(blocking) + "] is on", {}};
+      return Error{ErrorCode::kRampBlocked, "OL[" + Told("output", blocking) + "] is on", {}};
     }
   }
   if (kind != 2 && actuators_.door_open() && !situation_.simulating()) {
@@ -132,7 +135,7 @@ Status Works::MaySwitchOn(const WorkTask& task,
 
 Status Works::SelectSchedule(int number, When when) {
   if (!actuators_.HasSchedule(number)) {
-    return Error{ErrorCode::kScheduleMissing, "laser schedule " + std::to_string(number), {}};
+    return Error{ErrorCode::kScheduleMissing, "laser schedule " + Told("schedule", number), {}};
   }
   if (situation_.simulating()) {
     s_.simulated_schedule = number;
@@ -196,7 +199,7 @@ void Works::SwitchOff(int kind, int process, When when) {
   if (kind == 2) {
     if (processes.beam_on() && actuators_.beam_on()) {
       telling_.Warn(ErrorCode::kBeamOffBySchedule,
-                    "WORK 2," + std::to_string(process) + " /OFF switches the beam off",
+                    "WORK 2," + Told("process", process) + " /OFF switches the beam off",
                     "OPT-3.24");
     }
     std::erase_if(s_.tasks, [&](const WorkTask& task) {

@@ -70,7 +70,7 @@ class Adviser {
   }
 
  private:
-  void Warn(const Instruction& i, ErrorCode code, std::string detail, std::string_view rule) {
+  void Warn(const Instruction& i, ErrorCode code, Detail detail, std::string_view rule) {
     findings_.Add(code, program_.At(i), std::move(detail), rule);
   }
 
@@ -81,8 +81,8 @@ class Adviser {
          ++index) {
       if (!IsReserved({target.group, static_cast<std::uint8_t>(index)})) continue;
       Warn(i, ErrorCode::kReservedVariable,
-           std::string(GroupName(target.group)) + "[" + std::to_string(index) +
-               "] belongs to Amada's programs or to the system",
+           ToldVariable({target.group, static_cast<std::uint8_t>(index)}) +
+               " belongs to Amada's programs or to the system",
            target.group == VariableGroup::kVr ? "OPT-7.104" : "OPT-7.105");
       break;
     }
@@ -90,8 +90,8 @@ class Adviser {
     for (int output = target.index; output < target.index + width; ++output) {
       if (!IsSystemOutput(output)) continue;
       Warn(i, ErrorCode::kSystemOutput,
-           output == 2 ? "OL[2] is used by the system, except on an EFA-51 laser"
-                       : "OL[" + std::to_string(output) + "] is used by the system",
+           "OL[" + Told("output", output) + "] is used by the system" +
+               (output == 2 ? ", except on an EFA-51 laser" : ""),
            "OPT-7.106");
       return;
     }

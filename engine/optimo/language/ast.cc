@@ -25,6 +25,11 @@ std::string_view GroupName(VariableGroup group) {
   return kNames[static_cast<std::size_t>(group)];
 }
 
+Detail ToldVariable(Variable variable) {
+  return Told("variable",
+              std::string(GroupName(variable.group)) + "[" + std::to_string(variable.index) + "]");
+}
+
 ValueType TypeOf(VariableGroup group) {
   switch (group) {
     case VariableGroup::kVi:

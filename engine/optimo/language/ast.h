@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/detail.h"
 #include "engine/optimo/language/instruction_set.h"
 
 // A program as data: instructions in order, expressions in one pool, no text and no layout. The
@@ -31,6 +32,7 @@ struct Variable {
 
   bool operator==(const Variable&) const = default;
 };
+Detail ToldVariable(Variable variable);  // "VR[5]"
 // The type that the group has by itself; PAR: Module::parameter_types.
 ValueType TypeOf(VariableGroup group);
 // IL, IA, OA[0], VI[98], VI[99]. OPT-7.66

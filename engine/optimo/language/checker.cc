@@ -88,9 +88,9 @@ class Checker {
     const bool above = range.above_min ? value > range.min : value >= range.min;
     if (above && value <= range.max) return;
     findings_.Add(code, typing_.PlaceOfNode(module_.FirstNode(expression)),
-                  "the value must be " + std::string(range.text), range.rule);
+                  "the value must be " + Told("allowed", range.text), range.rule);
   }
-  void Warn(ErrorCode code, std::string detail, std::string_view rule) {
+  void Warn(ErrorCode code, Detail detail, std::string_view rule) {
     findings_.Add(code, typing_.PlaceOfStatement(), std::move(detail), rule);
   }
 
@@ -159,7 +159,7 @@ void Checker::CheckInstruction(Instruction& i) {
       break;
     case Op::kIgnored: {
       const std::string& text = module_.texts[i.name];
-      Warn(ErrorCode::kWordIgnored, text.substr(0, text.find(' ')) + " has no effect",
+      Warn(ErrorCode::kWordIgnored, Told("word", text.substr(0, text.find(' '))) + " has no effect",
            "OPT-E.7023");
       break;
     }
@@ -225,7 +225,7 @@ void Checker::CheckAssign(const Instruction& i) {
   if (typed && value.op != Node::kVariable &&
       (value.number < 0.0F || value.number >= static_cast<float>(1 << width))) {
     findings_.AddAs(Severity::kCompile, ErrorCode::kAssignGroup, typing_.PlaceOfNode(value_at),
-                    "the value does not fit into " + std::to_string(width) + " places",
+                    "the value does not fit into " + Told("places", width) + " places",
                     "OPT-7.103");
   }
   if (!known) return;
@@ -272,7 +272,7 @@ void Checker::CheckLabels() {
       const std::uint16_t label = module_.targets[i.first_target + t];
       if (known.test(label)) continue;
       typing_.BeginStep(i);
-      Warn(ErrorCode::kLabelMissing, "no sequence number " + std::to_string(label), "OPT-7.16");
+      Warn(ErrorCode::kLabelMissing, "no sequence number " + Told("label", label), "OPT-7.16");
     }
   }
 }

@@ -27,8 +27,8 @@ Compilation Compile(std::string_view text, std::string_view file, const CompileO
       result.object = EncodeObject(program.module);
       if (options.object_limit > 0 && result.object.size() > options.object_limit) {
         findings.Add(ErrorCode::kObjectTooLong, {},
-                     "the object has " + std::to_string(result.object.size()) + " bytes; at most " +
-                         std::to_string(options.object_limit) +
+                     "the object has " + ToldSize("bytes", result.object.size()) +
+                         " bytes; at most " + ToldSize("limit", options.object_limit) +
                          " fit; split the program and CALL its parts",
                      "OPT-1.08");
         result.object.clear();

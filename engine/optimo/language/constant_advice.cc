@@ -103,7 +103,7 @@ class ConstantAdviser {
     const auto number = static_cast<double>(value->number);
     const bool above = range->above_min ? number > range->min : number >= range->min;
     if (above && number <= range->max) return true;
-    return Tell(i, range->code, "a value that is not " + std::string(range->text), range->rule);
+    return Tell(i, range->code, "a value that is not " + Told("allowed", range->text), range->rule);
   }
 
   static std::string_view RuleOf(ErrorCode code) {
@@ -111,7 +111,7 @@ class ConstantAdviser {
     return code == ErrorCode::kRealOverflow ? "OPT-7.62" : "OPT-7.83";
   }
 
-  bool Tell(const Instruction& i, ErrorCode code, const std::string& what, std::string_view rule) {
+  bool Tell(const Instruction& i, ErrorCode code, const Detail& what, std::string_view rule) {
     findings_.AddAs(Severity::kWarning, code, p_.At(i),
                     "this fails whenever it is executed: " + what, rule);
     return false;

@@ -5,12 +5,16 @@
 
 namespace rmlcell::optimo {
 
-void Findings::Add(ErrorCode code, Place place, std::string detail, std::string_view rule,
+Detail ToldSize(std::string_view name, std::uint64_t bytes) {
+  return Told(name, static_cast<double>(bytes), "bytes", std::to_string(bytes));
+}
+
+void Findings::Add(ErrorCode code, Place place, Detail detail, std::string_view rule,
                    std::vector<Fix> fixes) {
   AddAs(Lookup(code).severity, code, place, std::move(detail), rule, std::move(fixes));
 }
 
-void Findings::AddAs(Severity severity, ErrorCode code, Place place, std::string detail,
+void Findings::AddAs(Severity severity, ErrorCode code, Place place, Detail detail,
                      std::string_view rule, std::vector<Fix> fixes) {
   if (IsError(severity)) ++errors_;
   if (full()) {

@@ -16,15 +16,18 @@ struct Place {
   int step = 0;
 };
 
+// So many bytes, as digits: "the object has " + ToldSize("bytes", 34001) + " bytes".
+Detail ToldSize(std::string_view name, std::uint64_t bytes);
+
 // Collects what there is to say about one text; keeps the first `limit` findings and counts the
 // rest by kind.
 class Findings {
  public:
   explicit Findings(std::size_t limit = 1000) : limit_(limit) {}
 
-  void Add(ErrorCode code, Place place, std::string detail, std::string_view rule = {},
+  void Add(ErrorCode code, Place place, Detail detail, std::string_view rule = {},
            std::vector<Fix> fixes = {});
-  void AddAs(Severity severity, ErrorCode code, Place place, std::string detail,
+  void AddAs(Severity severity, ErrorCode code, Place place, Detail detail,
              std::string_view rule = {}, std::vector<Fix> fixes = {});
 
   bool full() const { return found_.size() >= limit_; }

@@ -16,12 +16,8 @@
 namespace rmlcell::optimo {
 namespace {
 
-std::string ProcessText(const Instruction& i) {
-  return std::to_string(i.numbers[0]) + "," + std::to_string(i.numbers[1]);
-}
-
-std::string VariableText(const ExprNode& node) {
-  return std::string(GroupName(node.group)) + "[" + std::to_string(node.index) + "]";
+Detail ProcessText(const Instruction& i) {
+  return Told("kind", i.numbers[0]) + "," + Told("process", i.numbers[1]);
 }
 
 // Customer variables (OPT-7.104, OPT-7.105): the others have a use that other programs know, VI[1]
@@ -93,10 +89,10 @@ class FlowAdviser {
   void AdviseReturns();
   void AdviseNesting();
 
-  void Warn(const Instruction& i, ErrorCode code, std::string detail, std::string_view rule) {
+  void Warn(const Instruction& i, ErrorCode code, Detail detail, std::string_view rule) {
     findings_.AddAs(Severity::kWarning, code, p_.At(i), std::move(detail), rule);
   }
-  void Note(const Instruction& i, ErrorCode code, std::string detail, std::string_view rule) {
+  void Note(const Instruction& i, ErrorCode code, Detail detail, std::string_view rule) {
     findings_.AddAs(Severity::kAdvice, code, p_.At(i), std::move(detail), rule);
   }
 
@@ -230,12 +226,14 @@ void FlowAdviser::AdviseReads(const Instruction& i, const FlowState& state) {
       if (!variable || !state.unset.made.test(*variable)) continue;
       if (assigned_.test(*variable)) {
         return Note(i, ErrorCode::kPracticeAdvice,
-                    VariableText(node) + " is read before the program sets it", "OPT-1.17");
+                    ToldVariable(node.variable()) + " is read before the program sets it",
+                    "OPT-1.17");
       }
       if (!IsFree(node) || told_.test(*variable)) continue;
       told_.set(*variable);
       Note(i, ErrorCode::kPracticeAdvice,
-           VariableText(node) + " is read, and nothing in this program sets it", "OPT-1.17");
+           ToldVariable(node.variable()) + " is read, and nothing in this program sets it",
+           "OPT-1.17");
     }
   }
 }
@@ -296,12 +294,12 @@ void FlowAdviser::AdviseNesting() {
   const GosubNesting nesting = FindNesting(graph_.size() + 1U, graph_.entry(), edges);
   for (const std::uint32_t at : nesting.too_deep) {
     Warn(module_.instructions[at], ErrorCode::kGosubTooDeep,
-         "this GOSUB can be the " + std::to_string(kGosubDepthStandard + 1) + "th inside another",
+         "this GOSUB can be the " + Told("level", kGosubDepthStandard + 1) + "th inside another",
          "OPT-7.21");
   }
   for (const std::uint32_t at : nesting.recursive) {
     Note(module_.instructions[at], ErrorCode::kGosubTooDeep,
-         "the subroutine calls itself here; at most " + std::to_string(kGosubDepthStandard) +
+         "the subroutine calls itself here; at most " + Told("limit", kGosubDepthStandard) +
              " GOSUBs run inside each other",
          "OPT-7.21");
   }

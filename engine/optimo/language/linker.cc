@@ -80,7 +80,7 @@ bool HasEntry(const Module& module) {
   return !task;
 }
 
-Error At(ErrorCode code, std::string detail) { return {code, std::move(detail), {}}; }
+Error At(ErrorCode code, Detail detail) { return {code, std::move(detail), {}}; }
 
 }  // namespace
 
@@ -102,7 +102,7 @@ Result<Executable> Link(int main_slot, const ObjectLookup& lookup, const LinkOpt
   const std::optional<std::string_view> main_object = lookup(main_slot);
   if (!main_object)
     return At(ErrorCode::kProgramMissing,
-              "program " + std::to_string(main_slot) + " is not stored");
+              "program " + Told("program", main_slot) + " is not stored");
   Result<Module> main = DecodeObject(*main_object);
   if (!main) return main.error();
   executable.modules.push_back({main_slot, HashObject(*main_object), std::move(*main)});
@@ -114,22 +114,24 @@ Result<Executable> Link(int main_slot, const ObjectLookup& lookup, const LinkOpt
       const Instruction& i = executable.modules[m].module.instructions[n];
       if (i.op != Op::kFunction) continue;
       const int slot = i.numbers[0];
-      const std::string function = "FUNCTION " + std::to_string(slot);
-      const std::string place = function + " in program " +
-                                std::to_string(executable.modules[m].slot) + ", step " +
-                                std::to_string(i.step);
+      const auto function = [slot] { return "FUNCTION " + Told("function", slot); };
+      const auto place = [&, step = i.step] {
+        return function() + " in program " + Told("program", executable.modules[m].slot) +
+               ", step " + Told("step", step);
+      };
       if (slot == kRotaryTableFunction && options.rotary_table) continue;
-      if (slot == main_slot) return At(ErrorCode::kFunctionIsMain, place + " is the main program");
+      if (slot == main_slot)
+        return At(ErrorCode::kFunctionIsMain, place() + " is the main program");
       if (executable.Find(slot) != nullptr) continue;
       const std::optional<std::string_view> object = lookup(slot);
-      if (!object) return At(ErrorCode::kFunctionMissing, "no object for " + place);
+      if (!object) return At(ErrorCode::kFunctionMissing, "no object for " + place());
       if (executable.modules.size() > static_cast<std::size_t>(kFunctionsMax)) {
-        return At(ErrorCode::kTooManyFunctions, place + " is the 33rd function");
+        return At(ErrorCode::kTooManyFunctions, place() + " is the 33rd function");
       }
       Result<Module> module = DecodeObject(*object);
-      if (!module) return At(module.error().code, function + ": " + module.error().detail);
+      if (!module) return At(module.error().code, function() + ": " + module.error().detail);
       if (!HasEntry(*module))
-        return At(ErrorCode::kFunctionEntry, function + " has TASK, but no TASK 1");
+        return At(ErrorCode::kFunctionEntry, function() + " has TASK, but no TASK 1");
       for (Instruction& other : module->instructions) {
         if (other.op == Op::kEndtask) other.op = Op::kReturn;
       }
@@ -138,9 +140,9 @@ Result<Executable> Link(int main_slot, const ObjectLookup& lookup, const LinkOpt
   }
   const std::uint64_t size = SizeOf(executable);
   if (size >= options.executable_limit) {
-    return At(ErrorCode::kExecutableTooLong, "the executable has " + std::to_string(size) +
+    return At(ErrorCode::kExecutableTooLong, "the executable has " + ToldSize("bytes", size) +
                                                  " bytes; it must have fewer than " +
-                                                 std::to_string(options.executable_limit));
+                                                 ToldSize("limit", options.executable_limit));
   }
   return executable;
 }

@@ -17,17 +17,18 @@ constexpr float kRapidMax = 70.0F, kApproachMax = 10.0F, kCuttingMin = 5.0F, kCu
                 kLeavingMax = 20.0F;
 constexpr double kHoleTiltMax_rad = 30.0 * kRadPerDegree;  // OPT-5.48
 
-std::string SpeedText(float speed) { return "SPEED " + ShortestText(static_cast<double>(speed)); }
+Detail SpeedText(float speed) {
+  const auto percent = static_cast<double>(speed);
+  return "SPEED " + Told("speed", percent, "%", ShortestText(percent));
+}
 
 }  // namespace
 
-void MoveAdviser::Warn(const Instruction& i, ErrorCode code, std::string detail,
-                       std::string_view rule) {
+void MoveAdviser::Warn(const Instruction& i, ErrorCode code, Detail detail, std::string_view rule) {
   findings_.AddAs(Severity::kWarning, code, p_.At(i), std::move(detail), rule);
 }
 
-void MoveAdviser::Note(const Instruction& i, ErrorCode code, std::string detail,
-                       std::string_view rule) {
+void MoveAdviser::Note(const Instruction& i, ErrorCode code, Detail detail, std::string_view rule) {
   findings_.AddAs(Severity::kAdvice, code, p_.At(i), std::move(detail), rule);
 }
 
@@ -126,7 +127,7 @@ void MoveAdviser::AdviseFly(std::uint32_t at, const FlowState& state) {
   const Instruction& i = module_.instructions[at];
   if (!i.Has(kFly)) return;
   const std::uint8_t ahead = chain_.Behind(at);
-  std::string detail;
+  Detail detail;
   std::string_view rule;
   if (state.modes.path() == PathType::kHole) {
     detail = "/FLY on a hole move";
@@ -142,15 +143,15 @@ void MoveAdviser::AdviseFly(std::uint32_t at, const FlowState& state) {
     } else {
       const Instruction& cause = module_.instructions[stop];
       rule = cause.op == Op::kGo || cause.op == Op::kCall ? "OPT-2.47" : "OPT-2.48";
-      const std::string where =
-          std::string(Describe(cause.op).name) + " at step " + std::to_string(cause.step);
+      const Detail where =
+          Told("instruction", Describe(cause.op).name) + " at step " + Told("step", cause.step);
       detail = "/FLY, but " + where + " needs standstill";
       const auto coord = state.modes.coord();
       if (cause.op == Op::kCoord && coord && *coord != static_cast<CoordType>(cause.choice)) {
         return findings_.AddAs(
             Severity::kWarning, ErrorCode::kFlyBeforeCoord, p_.At(i),
-            "/FLY before the change of coordinates at step " + std::to_string(cause.step),
-            "OPT-2.45", RemoveAttribute(i, Word::kFly));
+            "/FLY before the change of coordinates at step " + Told("step", cause.step), "OPT-2.45",
+            RemoveAttribute(i, Word::kFly));
       }
     }
   }
@@ -202,8 +203,10 @@ void MoveAdviser::AdviseHole(const Instruction& i, const FlowState& state) {
   const double angle = std::acos(std::fmin(1.0, std::fmax(-1.0, cosine)));
   if (angle <= kHoleTiltMax_rad) return;
   Warn(i, ErrorCode::kPracticeAdvice,
-       "the axis of the hole is " + FixedText(angle / kRadPerDegree, 2) +
-           " degrees off the tool axis: a wrong normal point?",
+       "the axis of the hole is " +
+           Told("angle", angle / kRadPerDegree, "deg",
+                FixedText(angle / kRadPerDegree, 2) + " degrees") +
+           " off the tool axis: a wrong normal point?",
        "OPT-5.48");
 }
 

@@ -29,8 +29,8 @@ class MoveAdviser {
   void AdviseFly(std::uint32_t at, const FlowState& state);
   void AdviseShortFly(std::uint32_t at, const FlowState& state);
   void AdviseHole(const Instruction& i, const FlowState& state);
-  void Warn(const Instruction& i, ErrorCode code, std::string detail, std::string_view rule);
-  void Note(const Instruction& i, ErrorCode code, std::string detail, std::string_view rule);
+  void Warn(const Instruction& i, ErrorCode code, Detail detail, std::string_view rule);
+  void Note(const Instruction& i, ErrorCode code, Detail detail, std::string_view rule);
   std::vector<Fix> RemoveAttribute(const Instruction& i, Word word) const;
 
   const ParsedProgram& p_;

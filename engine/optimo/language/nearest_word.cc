@@ -51,7 +51,7 @@ NearWords NearestWords(std::string_view word, std::span<const std::string_view> 
   return near;
 }
 
-std::string QuestionFor(const NearWords& near) { return DidYouMean(near.words); }
+Detail QuestionFor(const NearWords& near) { return DidYouMean(near.words); }
 
 bool IsSurelyName(std::string_view word, const NearWords& near) {
   if (!near.IsSingle(Slip::kSwap)) return false;

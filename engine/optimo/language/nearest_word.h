@@ -31,7 +31,7 @@ struct NearWords {
 NearWords NearestWords(std::string_view word, std::span<const std::string_view> candidates);
 
 // "; did you mean GO or GOTO?"; empty when there is no word.
-std::string QuestionFor(const NearWords& near);
+Detail QuestionFor(const NearWords& near);
 
 // One name for another changes the program, and it stays valid: ZONE3 is no slip for ZONE1, nor
 // YPOS for XPOS or POS for POSX. Only two swapped letters that name no axes are taken for a slip.

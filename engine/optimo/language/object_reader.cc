@@ -313,7 +313,7 @@ void Reader::RequireOwn(const Instruction& i) {
   }
 }
 
-Error Corrupt(std::string detail) { return {ErrorCode::kObjectCorrupt, std::move(detail), {}}; }
+Error Corrupt(Detail detail) { return {ErrorCode::kObjectCorrupt, std::move(detail), {}}; }
 
 }  // namespace
 
@@ -324,7 +324,7 @@ Result<Module> DecodeObject(std::string_view bytes) {
   }
   const auto version = static_cast<unsigned char>(bytes[kObjectMagic.size()]);
   if (version != kObjectVersion)
-    return Corrupt("object version " + std::to_string(version) + " is not known");
+    return Corrupt("object version " + Told("version", version) + " is not known");
   const std::string_view body = bytes.substr(0, bytes.size() - kTail);
   if (ByteReader(bytes.substr(body.size())).Fixed32() != Checksum(body))
     return Corrupt("the checksum is wrong");
@@ -335,7 +335,7 @@ Result<Module> DecodeObject(std::string_view bytes) {
   if (findings.error_count() == 0) return module;
   for (const Diagnostic& found : findings.Take({}, {})) {
     if (IsError(found.severity))
-      return Corrupt(CodeText(found.code) + " at step " + std::to_string(found.step));
+      return Corrupt(Told("code", CodeText(found.code)) + " at step " + Told("step", found.step));
   }
   return Corrupt("the program has errors");
 }

@@ -175,8 +175,8 @@ void Parser::AddLabel(const Token& token) {
   std::uint32_t& line = label_line_[token.digits];
   if (line != 0) {
     return Report(token, ErrorCode::kLabelDuplicate,
-                  "sequence number " + std::to_string(token.digits) + " stands on line " +
-                      std::to_string(line) + " already",
+                  "sequence number " + Told("label", token.digits) + " stands on line " +
+                      Told("line", line) + " already",
                   "OPT-1.25");
   }
   line = lexer_.line();
@@ -265,7 +265,7 @@ std::optional<std::uint32_t> Parser::MissingBlank(const Token& name) const {
 // what was meant. OPT-7.91
 bool Parser::FailUnknown(const Token& name) {
   if (findings_.full()) return FailAt(name, ErrorCode::kNameUndeclared, {});
-  std::string detail = Quoted(name) + " is no instruction and no declared name";
+  Detail detail = Quoted(name, "name") + " is no instruction and no declared name";
   std::vector<Fix> fixes;
   if (const auto blank = MissingBlank(name)) {
     detail += "; a blank is missing before its digits";
@@ -313,9 +313,10 @@ std::uint16_t Parser::InternName(const Token& token) {
   if (token.length > kNameLength && known && !long_form_reported_[name]) {
     long_form_reported_[name] = true;
     char room[kNameLength];
-    std::string eight(UnpackName(token.key, room));
-    findings_.Add(ErrorCode::kNameTruncated, PlaceOf(token), Quoted(token) + " counts as " + eight,
-                  "OPT-7.46");
+    findings_.Add(
+        ErrorCode::kNameTruncated, PlaceOf(token),
+        Quoted(token, "name") + " counts as " + Told("counts_as", UnpackName(token.key, room)),
+        "OPT-7.46");
   }
   return name;
 }
@@ -326,9 +327,9 @@ bool Parser::Fail(std::string_view expected) {
     case TokenKind::kEnd:
       if (lexer_.unfinished()) {
         return FailAt(token, ErrorCode::kUnexpectedEnd,
-                      "expected " + std::string(expected) + " before the end of the text");
+                      "expected " + Told("expected", expected) + " before the end of the text");
       }
-      return FailAt(token, ErrorCode::kSyntax, "expected " + std::string(expected));
+      return FailAt(token, ErrorCode::kSyntax, "expected " + Told("expected", expected));
     case TokenKind::kBadCharacter:
       if (token.offset == 0 && lexer_.TextOf(token).starts_with(kByteOrderMark)) {
         findings_.Add(ErrorCode::kBadCharacter, PlaceOf(token),
@@ -352,10 +353,10 @@ bool Parser::Fail(std::string_view expected) {
       break;
   }
   return FailAt(token, ErrorCode::kSyntax,
-                "expected " + std::string(expected) + ", found " + Quoted(token));
+                "expected " + Told("expected", expected) + ", found " + Quoted(token, "found"));
 }
 
-bool Parser::FailAt(const Token& token, ErrorCode code, std::string detail, std::string_view rule) {
+bool Parser::FailAt(const Token& token, ErrorCode code, Detail detail, std::string_view rule) {
   Report(token, code, std::move(detail), rule);
   // The line may be a statement of its own behind one that forgot a parenthesis.
   if (token.first_on_line && token.offset > first_.offset &&
@@ -365,11 +366,11 @@ bool Parser::FailAt(const Token& token, ErrorCode code, std::string detail, std:
   return false;
 }
 
-void Parser::Report(const Token& token, ErrorCode code, std::string detail, std::string_view rule) {
+void Parser::Report(const Token& token, ErrorCode code, Detail detail, std::string_view rule) {
   findings_.Add(code, PlaceOf(token), std::move(detail), rule);
 }
 
-void Parser::ReportStatement(ErrorCode code, std::string detail, std::string_view rule) {
+void Parser::ReportStatement(ErrorCode code, Detail detail, std::string_view rule) {
   Report(first_, code, std::move(detail), rule);
 }
 
@@ -377,8 +378,8 @@ Place Parser::PlaceOf(const Token& token) const {
   return {token.offset, static_cast<int>(token.length), static_cast<int>(instruction_.step)};
 }
 
-std::string Parser::Quoted(const Token& token) const {
-  std::string text = "'";
+Detail Parser::Quoted(const Token& token, std::string_view name) const {
+  std::string text;
   for (const char c : lexer_.TextOf(token).substr(0, kQuotedMax)) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte >= 0x20 && byte < 0x7F) {
@@ -387,8 +388,7 @@ std::string Parser::Quoted(const Token& token) const {
       text += "\\x" + HexByte(c);
     }
   }
-  if (token.length > kQuotedMax) text += "...";
-  return text + "'";
+  return "'" + Told(name, text) + (token.length > kQuotedMax ? "...'" : "'");
 }
 
 Place ParsedProgram::At(const Instruction& instruction) const {

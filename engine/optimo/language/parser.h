@@ -103,9 +103,9 @@ class Parser {
 
   // Reports at the next token. `expected` completes "expected ...".
   bool Fail(std::string_view expected);
-  bool FailAt(const Token& token, ErrorCode code, std::string detail, std::string_view rule = {});
-  void Report(const Token& token, ErrorCode code, std::string detail, std::string_view rule = {});
-  void ReportStatement(ErrorCode code, std::string detail, std::string_view rule = {});
+  bool FailAt(const Token& token, ErrorCode code, Detail detail, std::string_view rule = {});
+  void Report(const Token& token, ErrorCode code, Detail detail, std::string_view rule = {});
+  void ReportStatement(ErrorCode code, Detail detail, std::string_view rule = {});
   bool FailUnknown(const Token& name);
   bool IsRightWith(const Token& word, std::string_view text) const;
   std::optional<std::uint32_t> MissingBlank(const Token& name) const;
@@ -114,7 +114,7 @@ class Parser {
   }
   bool IsNameOfRefused(const Token& word, const Token& next) const;
   Place PlaceOf(const Token& token) const;
-  std::string Quoted(const Token& token) const;
+  Detail Quoted(const Token& token, std::string_view name = "word") const;
   std::uint16_t InternName(const Token& token);
 
   std::string_view text_;

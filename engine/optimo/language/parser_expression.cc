@@ -352,10 +352,10 @@ bool Parser::ParseVariable() {
     node.index_name = InternName(index);
   } else if (index.kind == TokenKind::kNumber && index.whole && Is(TokenKind::kCloseIndex)) {
     if (index.digits > static_cast<std::uint32_t>(max)) {
-      return FailAt(
-          index, ErrorCode::kIndexRange,
-          "index " + std::string(lexer_.TextOf(index)) + " is outside 0.." + std::to_string(max),
-          "OPT-7.59");
+      return FailAt(index, ErrorCode::kIndexRange,
+                    "index " + Told("index", index.digits, {}, std::string(lexer_.TextOf(index))) +
+                        " is outside 0.." + Told("most", max),
+                    "OPT-7.59");
     }
     node.index = static_cast<std::uint8_t>(index.digits);
   } else if (index.kind == TokenKind::kEnd || index.kind == TokenKind::kCloseIndex ||

@@ -2,15 +2,17 @@
 #include <string>
 
 #include "engine/core/letters.h"
+#include "engine/core/number_text.h"
 #include "engine/optimo/language/nearest_word.h"
 #include "engine/optimo/language/parser.h"
 
 namespace rmlcell::optimo {
 namespace {
 
-std::string CountText(std::string_view what, int count, std::string_view needed) {
-  return std::string(what) + " has " + std::to_string(count) + (count == 1 ? " value" : " values") +
-         ", needs " + std::string(needed);
+Detail CountText(const Detail& what, int count, std::string_view needed) {
+  const auto number = ParseInteger(needed);
+  return what + " has " + Told("values", count) + (count == 1 ? " value" : " values") + ", needs " +
+         (number ? Told("needed", *number) : Told("needed", needed));
 }
 
 }  // namespace
@@ -129,8 +131,10 @@ bool Parser::ParseCountedList(const Operand& operand) {
   int count = 0;
   if (Is(TokenKind::kOpen) && !ParseList(count, operand.high)) return false;
   if (count < operand.low || count > operand.high) {
-    return FailAt(first_, ErrorCode::kArgumentCount,
-                  CountText(Describe(instruction_.op).name, count, operand.missing), operand.rule);
+    return FailAt(
+        first_, ErrorCode::kArgumentCount,
+        CountText(Told("instruction", Describe(instruction_.op).name), count, operand.missing),
+        operand.rule);
   }
   instruction_.value_count = static_cast<std::uint8_t>(count);
   return true;
@@ -171,8 +175,9 @@ bool Parser::ParseTcp() {
   return FailAt(
       first_, ErrorCode::kArgumentCount,
       count < 0
-          ? "TCP has '/' only between the third and the fourth value; a division needs parentheses"
-          : CountText("TCP", count, "6"),
+          ? Detail(
+                "TCP has '/' only between the third and the fourth value; a division needs parentheses")
+          : CountText(Told("instruction", "TCP"), count, "6"),
       count < 0 ? "OPT-B.85" : "OPT-4.72");
 }
 
@@ -202,7 +207,8 @@ bool Parser::ParseWorkdef() {
     if (!ParseList(count, 5)) return false;
     if (count == 0)
       return FailAt(first_, ErrorCode::kArgumentCount,
-                    CountText("WORKDEF", 0, "some between its parentheses"), "OPT-3.01");
+                    CountText(Told("instruction", "WORKDEF"), 0, "some between its parentheses"),
+                    "OPT-3.01");
   }
   const int kind = instruction_.numbers[0];
   const bool fits = kind == 0 ? count == 0 : kind == 1 ? count == 4 || count == 5 : count == 1;
@@ -210,11 +216,12 @@ bool Parser::ParseWorkdef() {
     const char* needed = kind == 0   ? "none"
                          : kind == 1 ? "4 or 5: speed, power, delay, peak [, schedule]"
                                      : "1: the laser schedule";
-    return FailAt(first_, ErrorCode::kArgumentCount,
-                  CountText("WORKDEF " + std::to_string(kind), count, needed),
-                  kind == 0   ? "OPT-3.03"
-                  : kind == 1 ? "OPT-3.04"
-                              : "OPT-3.06");
+    return FailAt(
+        first_, ErrorCode::kArgumentCount,
+        CountText(Told("instruction", "WORKDEF") + " " + Told("kind", kind), count, needed),
+        kind == 0   ? "OPT-3.03"
+        : kind == 1 ? "OPT-3.04"
+                    : "OPT-3.06");
   }
   instruction_.value_count = static_cast<std::uint8_t>(count);
   return true;
@@ -241,7 +248,7 @@ bool Parser::ParseArguments() {
   }
   if (count > kParameterCount) {
     return FailAt(first_, ErrorCode::kTooManyParameters,
-                  std::to_string(count) + " parameters; at most eight are passed", "OPT-9.20");
+                  Told("values", count) + " parameters; at most eight are passed", "OPT-9.20");
   }
   instruction_.value_count = static_cast<std::uint8_t>(1 + count);
   return true;
@@ -293,7 +300,7 @@ bool Parser::ParseDeclare() {
   if (const Word reserved = FindWord(name.key); reserved != Word::kNone) {
     refused_.set(static_cast<std::size_t>(reserved));
     return FailAt(name, ErrorCode::kNameReserved,
-                  Quoted(name) + " is reserved" +
+                  Quoted(name, "name") + " is reserved" +
                       (name.word == Word::kNone ? ": eight characters count" : ""),
                   "OPT-7.48");
   }
@@ -324,7 +331,7 @@ bool Parser::ParseDeclare() {
   if (declared_[instruction_.name]) {
     char room[kNameLength];
     return FailAt(name, ErrorCode::kNameDuplicate,
-                  std::string(UnpackName(name.key, room)) + " is declared already", "OPT-7.49");
+                  Told("name", UnpackName(name.key, room)) + " is declared already", "OPT-7.49");
   }
   declared_[instruction_.name] = true;
   declared_names_.push_back(instruction_.name);
@@ -406,10 +413,10 @@ bool Parser::ParseAttributes() {
     if (found == nullptr) return Fail("an attribute behind '/'");
     const bool late_dis = found->bit == kDis && instruction_.value_count > 0;
     if ((row.attributes & found->bit) == 0 || late_dis) {
-      return FailAt(
-          word, ErrorCode::kAttributeNotAllowed,
-          std::string(row.name) + " has no attribute " + std::string(Describe(word.word).text),
-          "OPT-2.43");
+      return FailAt(word, ErrorCode::kAttributeNotAllowed,
+                    Told("instruction", row.name) + " has no attribute " +
+                        Told("attribute", Describe(word.word).text),
+                    "OPT-2.43");
     }
     const std::uint16_t exclusive = instruction_.op == Op::kGo      ? row.attributes
                                     : instruction_.op == Op::kTimer ? row.attributes
@@ -418,9 +425,10 @@ bool Parser::ParseAttributes() {
                                         : static_cast<std::uint16_t>(found->bit);
     if ((instruction_.attributes & exclusive) != 0) {
       const bool same = instruction_.Has(found->bit);
-      return FailAt(word, ErrorCode::kAttributeDuplicate,
-                    Quoted(word) + (same ? " stands twice" : " contradicts another attribute"),
-                    "OPT-2.43");
+      return FailAt(
+          word, ErrorCode::kAttributeDuplicate,
+          Quoted(word, "attribute") + (same ? " stands twice" : " contradicts another attribute"),
+          "OPT-2.43");
     }
     Take();
     if (!ParseAttribute(word, found->bit)) return false;
@@ -438,7 +446,8 @@ bool Parser::ParseAttribute(const Token& word, Attribute attribute) {
       int count = 0;
       if (Is(TokenKind::kOpen) && !ParseList(count, 5)) return false;
       if (count != 5)
-        return FailAt(word, ErrorCode::kArgumentCount, CountText("/VIA", count, "5"), "OPT-2.31");
+        return FailAt(word, ErrorCode::kArgumentCount,
+                      CountText(Told("attribute", "/VIA"), count, "5"), "OPT-2.31");
       break;
     }
     case kStart:

@@ -27,7 +27,7 @@ constexpr std::size_t kNoStatement = std::string_view::npos;
 struct Directive {
   std::vector<int> numbers;
   bool whole_file = false;
-  std::string complaint;   // why it cannot be followed
+  Detail complaint;        // why it cannot be followed
   std::vector<Fix> fixes;  // of the complaint; from the beginning of the comment
 };
 
@@ -41,8 +41,9 @@ Directive ReadDirective(std::string_view comment) {
   std::size_t end = at;
   while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) ++end;
   if (const std::string word = text.substr(at, end - at); word != kAllow) {
-    directive.complaint = word.empty() ? "no word stands behind rmlcell:"
-                                       : "'" + word.substr(0, 20) + "' is no word for rmlcell:";
+    directive.complaint =
+        word.empty() ? Detail("no word stands behind rmlcell:")
+                     : "'" + Told("word", word.substr(0, 20)) + "' is no word for rmlcell:";
     directive.complaint += "; write rmlcell: allow and the numbers of findings";
     const NearWords near = NearestWords(word, std::array{kAllow});
     if (near.IsSingle(Slip::kOneLetter) || near.IsSingle(Slip::kSwap)) {
@@ -89,7 +90,7 @@ class Silencer {
   std::size_t StatementAt(std::int64_t offset) const;
   struct Complaint {
     std::size_t comment = 0;
-    std::string detail;
+    Detail detail;
     std::vector<Fix> fixes{};
   };
   void Add(const Complaint& complaint, std::string_view file,
@@ -135,7 +136,7 @@ void Silencer::ReadComments() {
       const auto code = FindError(ErrorFamily::kOptimo, number);
       if (!code || IsError(Lookup(*code).severity)) {
         complaints_.push_back(
-            {c, std::to_string(number) + (code ? " is an error, which no comment allows"
+            {c, Told("number", number) + (code ? " is an error, which no comment allows"
                                                : " is the number of no finding")});
         continue;
       }
@@ -209,7 +210,7 @@ void Silencer::Tell(const SilenceOptions& options, std::vector<Diagnostic>& diag
       continue;
     }
     complaints_.push_back({allowance.comment,
-                           "allow " + std::to_string(allowance.number) + " silences nothing here"});
+                           "allow " + Told("number", allowance.number) + " silences nothing here"});
   }
   if (complaints_.empty()) return;
   std::ranges::stable_sort(complaints_, {}, &Complaint::comment);

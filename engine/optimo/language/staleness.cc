@@ -5,17 +5,17 @@
 
 namespace rmlcell::optimo {
 
-std::string ReasonText(int slot, StaleReason reason) {
-  const std::string number = std::to_string(slot);
+Detail ReasonText(int slot, StaleReason reason) {
   switch (reason) {
     case StaleReason::kObjectChanged:
-      return "it was not made of the object of program " + number + " that is stored now";
+      return "it was not made of the object of program " + Told("program", slot) +
+             " that is stored now";
     case StaleReason::kObjectMissing:
-      return "program " + number + " is not stored any more";
+      return "program " + Told("program", slot) + " is not stored any more";
     case StaleReason::kFunctionChanged:
-      return "FUNCTION " + number + " was altered since it was made";
+      return "FUNCTION " + Told("function", slot) + " was altered since it was made";
     case StaleReason::kFunctionDeleted:
-      return "FUNCTION " + number + " is not stored any more";
+      return "FUNCTION " + Told("function", slot) + " is not stored any more";
     case StaleReason::kDamaged:
       break;
   }

@@ -19,7 +19,7 @@ enum class StaleReason {
   kDamaged,          // the executable cannot be read
 };
 // "FUNCTION 44 was altered since the executable was made", for people.
-std::string ReasonText(int slot, StaleReason reason);
+Detail ReasonText(int slot, StaleReason reason);
 
 struct StalePart {
   int slot = 0;  // 1..99, of the object concerned

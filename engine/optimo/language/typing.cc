@@ -37,7 +37,7 @@ Place Typing::PlaceOfNode(std::size_t node) {
   return {place.offset, static_cast<int>(place.length), static_cast<int>(instruction_->step)};
 }
 
-void Typing::Report(ErrorCode code, std::size_t node, std::string detail, std::string_view rule) {
+void Typing::Report(ErrorCode code, std::size_t node, Detail detail, std::string_view rule) {
   findings_.Add(code, PlaceOfNode(node), std::move(detail), rule);
 }
 
@@ -55,7 +55,8 @@ void Typing::ReportUndeclared(std::uint16_t name, std::size_t node) {
     fixes.push_back({place.offset, static_cast<int>(place.length), near.words.front()});
   }
   findings_.Add(ErrorCode::kNameUndeclared, PlaceOfNode(node),
-                text + " is not declared" + QuestionFor(near), "OPT-7.50", std::move(fixes));
+                Told("name", text) + " is not declared" + QuestionFor(near), "OPT-7.50",
+                std::move(fixes));
 }
 
 void Typing::UseVariable(const ExprNode& node) {
@@ -79,8 +80,8 @@ bool Typing::ResolveIndex(std::size_t at) {
   const float value = name.value.number;
   if (name.value.op != Node::kInteger || value < 0.0F || value > static_cast<float>(max)) {
     Report(ErrorCode::kIndexRange, at,
-           NameText(module_, node.index_name) + " is no INTEGER constant from 0 to " +
-               std::to_string(max),
+           Told("name", NameText(module_, node.index_name)) + " is no INTEGER constant from 0 to " +
+               Told("most", max),
            "OPT-7.60");
     return false;
   }
@@ -225,15 +226,13 @@ bool Typing::ResolveTarget(std::uint32_t expression) {
   reads_machine_ = reads;  // writing is not reading
   ExprNode& node = module_.nodes[at];
   if (node.op != Node::kVariable) {
-    Report(ErrorCode::kConstantAssigned, at, NameText(module_, node.name) + " is a constant",
-           "OPT-7.43");
+    Report(ErrorCode::kConstantAssigned, at,
+           Told("name", NameText(module_, node.name)) + " is a constant", "OPT-7.43");
     return false;
   }
   node.type = TypeOfLeaf(node);
   if (IsReadOnly(node.variable())) {
-    Report(ErrorCode::kReadOnly, at,
-           std::string(GroupName(node.group)) + "[" + std::to_string(node.index) +
-               "] can only be read",
+    Report(ErrorCode::kReadOnly, at, ToldVariable(node.variable()) + " can only be read",
            "OPT-7.66");
     return false;
   }
@@ -257,12 +256,12 @@ void Typing::Declare(const Instruction& instruction) {
 
 void Typing::Define(const Instruction& instruction) {
   const std::size_t index = instruction.numbers[0];
-  const std::string par = "PAR[" + std::to_string(index) + "]";
+  const auto par = [index] { return "PAR[" + Told("index", index) + "]"; };
   if (std::exchange(parameter_defined_[index], true)) {
-    findings_.Add(ErrorCode::kDefineInvalid, PlaceOfStatement(), par + " is defined already",
+    findings_.Add(ErrorCode::kDefineInvalid, PlaceOfStatement(), par() + " is defined already",
                   "OPT-B.88");
   } else if (parameter_used_[index]) {
-    findings_.Add(ErrorCode::kDefineAfterUse, PlaceOfStatement(), par + " was used before",
+    findings_.Add(ErrorCode::kDefineAfterUse, PlaceOfStatement(), par() + " was used before",
                   "OPT-9.25");
   }
   module_.parameter_types[index] = static_cast<ValueType>(instruction.choice);

@@ -64,7 +64,7 @@ class Typing {
   bool NeedLogical(Operand& operand);
   bool TypeBinary(std::size_t node, Operand& a, Operand& b);
   void ReportUndeclared(std::uint16_t name, std::size_t node);
-  void Report(ErrorCode code, std::size_t node, std::string detail, std::string_view rule);
+  void Report(ErrorCode code, std::size_t node, Detail detail, std::string_view rule);
 
   Module& module_;
   const ParsedProgram* places_;

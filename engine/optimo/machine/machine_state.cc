@@ -220,10 +220,8 @@ std::optional<machine::VariableValue> ReadByName(const DataArea& data, std::stri
 }
 
 Result<float> Writable(Variable variable, double value, const OptimoParameters& parameters) {
-  const std::string name =
-      std::string(GroupName(variable.group)) + "[" + std::to_string(variable.index) + "]";
   const auto refuse = [&](std::string_view why) {
-    return Error{ErrorCode::kCellInvalidArgument, name + " " + std::string(why), {}};
+    return Error{ErrorCode::kCellInvalidArgument, ToldVariable(variable) + " " + why, {}};
   };
   if (variable.group == VariableGroup::kIl || variable.group == VariableGroup::kIa)
     return refuse("is an input: set the input, not its image");

@@ -116,8 +116,9 @@ Status CheckFit(const machine::Parameters& parameters) {
     const std::string high = "TRAVEL_" + std::string(axis) + "_MAX";
     if (parameters.Number(low) > parameters.Number(high)) {
       return Error{ErrorCode::kCellParameterRange,
-                   low + " is " + ShortestText(parameters.Number(low)) + ", above " + high +
-                       ", which is " + ShortestText(parameters.Number(high)),
+                   Told("name", low) + " is " + parameters.ToldNumber("value", low) + ", above " +
+                       Told("limit_name", high) + ", which is " +
+                       parameters.ToldNumber("limit", high),
                    {}};
     }
   }

@@ -32,11 +32,11 @@ machine::Place Telling::PlaceOf(int slot, std::uint32_t step) const {
           .line = known ? source->step_lines[step - 1] : 0};
 }
 
-void Telling::Warn(ErrorCode code, std::string detail, std::string_view rule) const {
+void Telling::Warn(ErrorCode code, Detail detail, std::string_view rule) const {
   WarnAt(situation_.place, code, std::move(detail), rule);
 }
 
-void Telling::WarnAt(const machine::Place& place, ErrorCode code, std::string detail,
+void Telling::WarnAt(const machine::Place& place, ErrorCode code, Detail detail,
                      std::string_view rule) const {
   Tell({.code = code,
         .severity = SeverityInRun(code),

@@ -28,8 +28,8 @@ class Telling {
   // A step of a program, with its line where the source is known.
   machine::Place PlaceOf(int slot, std::uint32_t step) const;
 
-  void Warn(ErrorCode code, std::string detail, std::string_view rule) const;
-  void WarnAt(const machine::Place& place, ErrorCode code, std::string detail,
+  void Warn(ErrorCode code, Detail detail, std::string_view rule) const;
+  void WarnAt(const machine::Place& place, ErrorCode code, Detail detail,
               std::string_view rule) const;
   void Tell(const Diagnostic& finding) const;
   void Signal(machine::Signal signal, int index, double value, double detail = 0.0) const;

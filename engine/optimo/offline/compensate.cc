@@ -68,7 +68,7 @@ class Compensator {
   bool Wanted() const { return beam_ && amount_ && side_ != CutSide::kNone; }
   bool Active() const { return Wanted() && path_ != PathType::kPtp; }
   double SignedOffset() const { return side_ == CutSide::kLeft ? *amount_ : -*amount_; }
-  void Report(ErrorCode code, const Instruction& i, std::string detail, std::string_view rule) {
+  void Report(ErrorCode code, const Instruction& i, Detail detail, std::string_view rule) {
     findings_.Add(code, p_.At(i), std::move(detail), rule);
   }
 
@@ -322,28 +322,31 @@ void Compensator::FinishChain() {
   chain_moves_.clear();
 }
 
+Detail GougeText(const Gouge& gouge, double radius) {
+  if (gouge.kind != Gouge::Kind::kTooNear)
+    return "the move is shorter than the compensation at its corners needs";
+  if (!(gouge.distance > 0.0)) return "the compensated path crosses the contour";
+  const double depth = radius - gouge.distance;
+  return "the compensated path comes within " +
+         Told("distance", gouge.distance, "mm", FixedText(gouge.distance, 3)) +
+         " mm of the contour, and the beam has a radius of " +
+         Told("radius", radius, "mm", TrimmedText(radius, kCompensateDecimals)) + " mm: it cuts " +
+         Told("depth", depth, "mm", FixedText(depth, 3)) + " mm into the part";
+}
+
 void Compensator::LookForGouges(const std::vector<OffsetLeg>& moved) {
   const GougeSearch search = FindGouges(chain_, moved, chain_offset_);
   if (search.unchecked_from) {
     findings_.AddAs(
         Severity::kAdvice, ErrorCode::kCompGouge, p_.At(*chain_moves_[*search.unchecked_from]),
-        "not checked from step " + std::to_string(chain_moves_[*search.unchecked_from]->step) +
-            " to " + std::to_string(chain_moves_.back()->step) +
+        "not checked from step " + Told("first", chain_moves_[*search.unchecked_from]->step) +
+            " to " + Told("last", chain_moves_.back()->step) +
             ": the contour is too long to be looked through",
         "OPT-8.19");
   }
   for (const Gouge& gouge : search.found) {
-    const double radius = std::fabs(chain_offset_);
-    std::string detail = "the move is shorter than the compensation at its corners needs";
-    if (gouge.kind == Gouge::Kind::kTooNear) {
-      detail = gouge.distance > 0.0
-                   ? "the compensated path comes within " + FixedText(gouge.distance, 3) +
-                         " mm of the contour, and the beam has a radius of " +
-                         TrimmedText(radius, kCompensateDecimals) + " mm: it cuts " +
-                         FixedText(radius - gouge.distance, 3) + " mm into the part"
-                   : "the compensated path crosses the contour";
-    }
-    Report(ErrorCode::kCompGouge, *chain_moves_[gouge.leg], std::move(detail), "OPT-8.19");
+    Report(ErrorCode::kCompGouge, *chain_moves_[gouge.leg],
+           GougeText(gouge, std::fabs(chain_offset_)), "OPT-8.19");
   }
 }
 

@@ -32,6 +32,11 @@ std::optional<double> Known(Expression value) {
   return static_cast<double>(value[0].number);
 }
 
+Detail ToldAngle(double rad) {
+  const double deg = rad / kRadPerDegree;
+  return Told("angle", deg, "deg", FixedText(deg, 1) + " degrees");
+}
+
 class ContourAdviser {
  public:
   ContourAdviser(const ParsedProgram& program, const ContourMachine& machine, Findings& findings)
@@ -199,8 +204,7 @@ void ContourAdviser::AdviseHead(const Instruction& i, const TipPose& target) {
   const double nearest = crosses ? 0.0 : std::min(std::fabs(at_->b_rad), std::fabs(target.b_rad));
   if (swing <= kSwingMax_rad || nearest >= kNearStraightDown_rad) return;
   findings_.Add(ErrorCode::kHeadSingular, p_.At(i),
-                "A turns by " + FixedText(swing / kRadPerDegree, 1) +
-                    " degrees while the head passes straight down",
+                "A turns by " + ToldAngle(swing) + " while the head passes straight down",
                 "OPT-E.7319");
 }
 
@@ -232,18 +236,22 @@ void ContourAdviser::AdviseCorner(const ChainMove& before, const ChainMove& afte
   const motion::MachineVector a = in.Tangent(in.length()), b = out.Tangent(0.0);
   const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
   if (turn > kSharp_rad && before.beam && after.beam) {
-    findings_.Add(ErrorCode::kFlySharp, p_.At(*before.instruction),
-                  "the contour turns by " + FixedText(turn / kRadPerDegree, 1) +
-                      " degrees; the path stays " + FixedText(corner.deviation_mm, 3) +
-                      " mm away from the corner",
-                  "OPT-2.62");
+    findings_.Add(
+        ErrorCode::kFlySharp, p_.At(*before.instruction),
+        "the contour turns by " + ToldAngle(turn) + "; the path stays " +
+            Told("distance", corner.deviation_mm, "mm", FixedText(corner.deviation_mm, 3)) +
+            " mm away from the corner",
+        "OPT-2.62");
   }
   const double cost = corner.wanted_speed - corner.speed;
   if (corner.passage == motion::Passage::kBlendCapped && cost > kCostMin * corner.wanted_speed) {
-    findings_.AddAs(Severity::kAdvice, ErrorCode::kFlyCapped, p_.At(*before.instruction),
-                    "a short neighbour makes the blend tighter: " + FixedText(corner.speed, 1) +
-                        " mm/s in its middle instead of " + FixedText(corner.wanted_speed, 1),
-                    "OPT-E.7318");
+    findings_.AddAs(
+        Severity::kAdvice, ErrorCode::kFlyCapped, p_.At(*before.instruction),
+        "a short neighbour makes the blend tighter: " +
+            Told("speed", corner.speed, "mm/s", FixedText(corner.speed, 1)) +
+            " mm/s in its middle instead of " +
+            Told("wanted", corner.wanted_speed, "mm/s", FixedText(corner.wanted_speed, 1)),
+        "OPT-E.7318");
   }
 }
 

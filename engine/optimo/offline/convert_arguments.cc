@@ -32,7 +32,7 @@ bool IsUpper(std::string_view extension) {
   return extension.size() > 1;
 }
 
-Error Refuse(ErrorCode code, std::string detail) { return {code, std::move(detail), {}}; }
+Error Refuse(ErrorCode code, Detail detail) { return {code, std::move(detail), {}}; }
 
 }  // namespace
 
@@ -46,7 +46,8 @@ Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::
       continue;
     }
     const std::string letter = LowerCase(argument);
-    if (letter != "/i" && letter != "/m") return Refuse(ErrorCode::kConvertSwitch, argument);
+    if (letter != "/i" && letter != "/m")
+      return Refuse(ErrorCode::kConvertSwitch, Told("word", argument));
     const Direction direction = letter == "/i" ? Direction::kToInch : Direction::kToMetric;
     if (wanted && *wanted != direction) {
       return Refuse(ErrorCode::kConvertConflict, "/i and /m");
@@ -61,13 +62,13 @@ Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::
   if (extension == ".s") by_name = Direction::kToInch;
   if (extension == ".si") by_name = Direction::kToMetric;
   if (extension == ".cmp" && wanted == Direction::kToMetric) {
-    return Refuse(ErrorCode::kConvertConflict, names[0] + " is metric");
+    return Refuse(ErrorCode::kConvertConflict, Told("file", names[0]) + " is metric");
   }
   if (wanted && by_name && *wanted != *by_name) {
-    return Refuse(ErrorCode::kConvertConflict, names[0] + " and its switch");
+    return Refuse(ErrorCode::kConvertConflict, Told("file", names[0]) + " and its switch");
   }
   if (!wanted && !by_name) {
-    return Refuse(ErrorCode::kConvertDirection, names[0] + " is neither .S nor .SI");
+    return Refuse(ErrorCode::kConvertDirection, Told("file", names[0]) + " is neither .S nor .SI");
   }
   ConvertRequest request;
   request.input = names[0];
@@ -83,10 +84,11 @@ Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::
     const std::string output_extension = LowerCase(ExtensionOf(names[1]));
     if (output_extension.empty()) request.output += standard;
     if (output_extension == (inch ? ".s" : ".si")) {
-      return Refuse(ErrorCode::kConvertConflict, names[0] + " and " + names[1]);
+      return Refuse(ErrorCode::kConvertConflict,
+                    Told("input", names[0]) + " and " + Told("output", names[1]));
     }
     if (inch && output_extension == ".cmp") {  // OPT-8.72
-      return Refuse(ErrorCode::kConvertConflict, names[1] + " would not be metric");
+      return Refuse(ErrorCode::kConvertConflict, Told("file", names[1]) + " would not be metric");
     }
   }
   return std::optional<ConvertRequest>(std::move(request));

@@ -54,13 +54,13 @@ RepairedText FixProgram(const machine::SourceFile& file, const ProgramCheck& che
 
 Status CheckIsText(std::string_view name, std::string_view bytes) {
   if (FormOfFile(name, bytes) == FileForm::kObject) {
-    return Error{ErrorCode::kCellBadText, std::string(name) + " is an object, not a source", {}};
+    return Error{ErrorCode::kCellBadText, Told("file", name) + " is an object, not a source", {}};
   }
   // Comments may hold any other byte.
   const std::size_t zero = bytes.find('\0');
   if (zero == std::string_view::npos) return {};
   return Error{ErrorCode::kCellBadText,
-               std::string(name) + " is no text: byte " + std::to_string(zero) + " is zero",
+               Told("file", name) + " is no text: byte " + Told("byte", zero) + " is zero",
                {}};
 }
 

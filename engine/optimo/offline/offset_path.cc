@@ -178,10 +178,11 @@ Result<std::vector<OffsetLeg>> OffsetChain(const std::vector<Leg>& legs, double 
     const Leg& leg = legs[k];
     failed = k;
     if (ArcIsConsumed(leg, offset)) {
-      return Error{
-          ErrorCode::kCompArc,
-          "the arc of radius " + std::to_string(leg.radius) + " is not larger than the offset",
-          {}};
+      return Error{ErrorCode::kCompArc,
+                   "the arc of radius " +
+                       Told("radius", leg.radius, "mm", std::to_string(leg.radius)) +
+                       " is not larger than the offset",
+                   {}};
     }
     OffsetLeg moved;
     if (k + 1 < legs.size()) {

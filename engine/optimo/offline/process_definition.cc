@@ -24,7 +24,7 @@ class Checker {
     const std::size_t count = definition_.values.size();
     const bool fits = kind == 0 ? count == 0 : kind == 1 ? count == 4 || count == 5 : count == 1;
     if (!fits) {
-      Report(ErrorCode::kArgumentCount, std::to_string(count) + " values do not fit this kind",
+      Report(ErrorCode::kArgumentCount, Told("values", count) + " values do not fit this kind",
              kind == 0   ? "OPT-3.03"
              : kind == 1 ? "OPT-3.04"
                          : "OPT-3.06");
@@ -47,17 +47,17 @@ class Checker {
   void Range(std::size_t at, double min, double max, const char* what) {
     const double value = definition_.values[at];
     if (std::isfinite(value) && value >= min && value <= max) return;
-    Report(ErrorCode::kLiteralRange, std::string("the ") + what + " is out of range", "OPT-3.08");
+    Report(ErrorCode::kLiteralRange, "the " + Told("name", what) + " is out of range", "OPT-3.08");
   }
   void Schedule(double number) {
     if (number >= 1.0 && std::trunc(number) <= kScheduleMax) return;
     Report(ErrorCode::kScheduleRange, "laser schedules go from 1 to 63", "OPT-3.06");
   }
-  void Report(ErrorCode code, const std::string& detail, const char* rule) {
+  void Report(ErrorCode code, const Detail& detail, const char* rule) {
     found_.push_back({.code = code,
                       .severity = Lookup(code).severity,
-                      .detail = "process definition " + std::to_string(definition_.kind) + "," +
-                                std::to_string(definition_.process) + ": " + detail,
+                      .detail = "process definition " + Told("kind", definition_.kind) + "," +
+                                Told("process", definition_.process) + ": " + detail,
                       .rule = rule,
                       .file = {},
                       .where = {},

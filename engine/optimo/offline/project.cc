@@ -20,8 +20,8 @@ namespace {
 constexpr std::size_t kProcesses = 30;  // kinds 0..2, numbers 0..9
 
 std::size_t ProcessIndex(const Instruction& i) { return i.numbers[0] * 10U + i.numbers[1]; }
-std::string ProcessText(std::size_t process) {
-  return std::to_string(process / 10) + "," + std::to_string(process % 10);
+Detail ProcessText(std::size_t process) {
+  return Told("kind", process / 10) + "," + Told("process", process % 10);
 }
 
 // A program on its way through the transfer.
@@ -76,8 +76,8 @@ class Planner {
     plan_.diagnostics.push_back(std::move(diagnostic));
   }
   // A finding about the project as a whole, or about a statement of a program.
-  void Report(ErrorCode code, std::string detail, std::string_view rule,
-              const Draft* draft = nullptr, const Instruction* i = nullptr) {
+  void Report(ErrorCode code, Detail detail, std::string_view rule, const Draft* draft = nullptr,
+              const Instruction* i = nullptr) {
     Findings findings;
     findings.Add(code, draft != nullptr && i != nullptr ? draft->parsed.At(*i) : Place{},
                  std::move(detail), rule);
@@ -110,14 +110,14 @@ void Planner::CheckBundle() {
   for (const machine::ProjectProgram& program : project_.programs) {
     if (!IsSlot(program.slot)) {
       Report(ErrorCode::kProgramNumber,
-             "program number " + std::to_string(program.slot) + " is outside 1..99", "OPT-1.10");
+             "program number " + Told("program", program.slot) + " is outside 1..99", "OPT-1.10");
     } else if (!slots.insert(program.slot).second) {
       Report(ErrorCode::kProjectDuplicate,
-             "program " + std::to_string(program.slot) + " stands twice", "OPT-8.68");
+             "program " + Told("program", program.slot) + " stands twice", "OPT-8.68");
     }
   }
   for (const machine::LaserSchedule& schedule : project_.schedules) {
-    const std::string text = "laser schedule " + std::to_string(schedule.number);
+    const Detail text = "laser schedule " + Told("schedule", schedule.number);
     if (schedule.number < 1 || schedule.number > 63) {
       Report(ErrorCode::kScheduleRange, text + " is outside 1..63", "OPT-3.44");
     } else if (!schedules_.insert(schedule.number).second) {
@@ -144,7 +144,7 @@ void Planner::AddDraft(const machine::ProjectProgram& program) {
   draft.from = &program;
   if (program.file.bytes.empty()) {
     return Report(ErrorCode::kProjectSource,
-                  "program " + std::to_string(program.slot) + " has no text", "OPT-8.68", &draft);
+                  "program " + Told("program", program.slot) + " has no text", "OPT-8.68", &draft);
   }
   const FileForm form = FormOfFile(program.file.name, program.file.bytes);
   if (form == FileForm::kObject) {
@@ -210,8 +210,8 @@ void Planner::Survey(Draft& draft) {
 void Planner::RequireSchedule(const Draft* draft, const Instruction* i, double number) {
   const int schedule = static_cast<int>(number);
   if (schedule < 1 || schedule > 63 || schedules_.contains(schedule)) return;
-  Report(ErrorCode::kProjectSource, "the project has no laser schedule " + std::to_string(schedule),
-         "OPT-8.68", draft, i);
+  Report(ErrorCode::kProjectSource,
+         "the project has no laser schedule " + Told("schedule", schedule), "OPT-8.68", draft, i);
 }
 
 void Planner::CompareDefinitions(Draft& draft) {
@@ -246,8 +246,9 @@ void Planner::CompareOne(Draft& draft, const Instruction& i) {
     differs = values[v] && *values[v] != static_cast<float>(definition->values[v]);
   }
   if (!differs) return;
-  Report(ErrorCode::kProjectProcess, "the project defines " + WorkdefText(*definition), "OPT-3.11",
-         &draft, &i);
+  Report(ErrorCode::kProjectProcess,
+         "the project defines " + Told("definition", WorkdefText(*definition)), "OPT-3.11", &draft,
+         &i);
 }
 
 // The programs whose WORKDEFs are in force where this one runs: those that it is a FUNCTION of and
@@ -293,7 +294,7 @@ void Planner::RequireDefinitions(Draft& draft) {
     } else {
       Report(ErrorCode::kProjectProcess,
              "no WORKDEF before WORK " + ProcessText(process) + "; the project defines " +
-                 WorkdefText(*definition),
+                 Told("definition", WorkdefText(*definition)),
              "OPT-3.09", &draft, &work);
     }
   }

@@ -22,7 +22,7 @@ void AddFigures(const Module& module, std::size_t source_bytes, machine::Transla
                 {"names", "", count(module.names.size())}};
 }
 
-machine::Translation Refuse(ErrorCode code, std::string detail, const std::string& file) {
+machine::Translation Refuse(ErrorCode code, Detail detail, const std::string& file) {
   machine::Translation refused;
   refused.diagnostics.push_back({.code = code,
                                  .severity = Lookup(code).severity,
@@ -90,7 +90,7 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
     if (!module) return Refuse(module.error().code, module.error().detail, file.name);
     if (object_limit > 0 && file.bytes.size() > object_limit) {
       return Refuse(ErrorCode::kObjectTooLong,
-                    "the object has " + std::to_string(file.bytes.size()) + " bytes", file.name);
+                    "the object has " + ToldSize("bytes", file.bytes.size()) + " bytes", file.name);
     }
     machine::Translation accepted;
     accepted.ok = true;

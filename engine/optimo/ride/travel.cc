@@ -30,17 +30,22 @@ std::string_view NameOfAxis(int axis) {
 }
 
 // "X of the target leaves its travel by 5400.000 mm, A on the way by 0.200 rad"
-std::string TextOf(const std::vector<BeyondTravel>& beyond) {
-  std::string text;
+Detail TextOf(const std::vector<BeyondTravel>& beyond) {
+  Detail text;
   for (const BeyondTravel& one : beyond) {
     const bool first = text.empty();
     if (!first) text += ", ";
-    text += NameOfAxis(one.axis);
+    text += Told("axis", NameOfAxis(one.axis));
     text += one.at_target ? " of the target" : " on the way";
     text += first ? " leaves its travel by " : " by ";
-    text += FixedText(one.excess, 3) + (one.axis < kFirstRotaryAxis ? " mm" : " rad");
+    const std::string unit = one.axis < kFirstRotaryAxis ? "mm" : "rad";
+    text += Told("excess", one.excess, unit, FixedText(one.excess, 3) + " " + unit);
   }
   return text;
+}
+
+Detail ToldSpeed(std::string_view name, double speed_mm_s, std::string_view unit) {
+  return Told(name, speed_mm_s, "mm/s", FixedText(speed_mm_s, 3).append(unit));
 }
 
 }  // namespace
@@ -113,9 +118,9 @@ void Travel::Judge(machine::Outcome& outcome) const {
                          outcome.kind == machine::OutcomeKind::kStopped;
   if (!s_.first_violation || !went_well) return;
   const Diagnostic& first = *s_.first_violation;
-  std::string detail = first.detail;
+  Detail detail = first.detail;
   if (s_.violations > 1) {
-    detail = std::to_string(s_.violations) + " motions leave the travel; the first: " + detail;
+    detail = Told("count", s_.violations) + " motions leave the travel; the first: " + detail;
   }
   outcome = {.kind = machine::OutcomeKind::kFailed,
              .code = first.code,
@@ -138,10 +143,10 @@ void Travel::TellSpeedHeld(const motion::PlannedMotion& motion, const machine::P
   s_.held_by_axis.emplace(place.program, place.step);
   telling_.Tell({.code = ErrorCode::kSpeedHeldByAxis,
                  .severity = Lookup(ErrorCode::kSpeedHeldByAxis).severity,
-                 .detail = "axis " + std::string(NameOfAxis(bound.axis)) + " allows " +
-                           FixedText(motion.limits.speed, 3) + " mm/s of " +
-                           FixedText(feed_mm_s, 3) + "; reached " +
-                           FixedText(motion.speed.peak_speed(), 3) + " mm/s",
+                 .detail = "axis " + Told("axis", NameOfAxis(bound.axis)) + " allows " +
+                           ToldSpeed("limit", motion.limits.speed, " mm/s") + " of " +
+                           ToldSpeed("feed_rate", feed_mm_s, "") + "; reached " +
+                           ToldSpeed("speed", motion.speed.peak_speed(), " mm/s"),
                  .rule = "OPT-2.16",
                  .where = {.line = place.line},
                  .program = place.program,

@@ -26,29 +26,31 @@ struct Range {
   double value;
   double low;
   double high;
+  std::string_view unit;
 };
 
 Status CheckOptions(const BoardOptions& options) {
   constexpr double kLong_mm = 1000.0;
-  const Range ranges[] = {{"the edge of a pixel", options.pixel_mm, 1e-4, 10.0},
-                          {"the diameter of the tool", options.tool_mm, 0.01, 50.0},
-                          {"the depth", options.depth_mm, 1e-3, kLong_mm},
-                          {"the depth of a step", options.step_mm, 0.0, kLong_mm},
+  const Range ranges[] = {{"the edge of a pixel", options.pixel_mm, 1e-4, 10.0, "mm"},
+                          {"the diameter of the tool", options.tool_mm, 0.01, 50.0, "mm"},
+                          {"the depth", options.depth_mm, 1e-3, kLong_mm, "mm"},
+                          {"the depth of a step", options.step_mm, 0.0, kLong_mm, "mm"},
                           {"the number of passes", static_cast<double>(options.passes), 1.0,
-                           static_cast<double>(kPassesMax)},
-                          {"the overlap", options.overlap, 0.0, 0.95},
-                          {"the feed rate", options.feed_mm_s, 0.01, kLong_mm},
-                          {"the plunge rate", options.plunge_mm_s, 0.01, kLong_mm},
-                          {"the spindle speed", options.rpm, 0.0, 1e6},
-                          {"the clearance", options.clearance_mm, 1e-3, kLong_mm},
-                          {"the tolerance", options.tolerance_mm, 0.0, 1.0},
-                          {"the place in X", options.at_x_mm, -kLong_mm, kLong_mm},
-                          {"the place in Y", options.at_y_mm, -kLong_mm, kLong_mm}};
+                           static_cast<double>(kPassesMax), ""},
+                          {"the overlap", options.overlap, 0.0, 0.95, ""},
+                          {"the feed rate", options.feed_mm_s, 0.01, kLong_mm, "mm/s"},
+                          {"the plunge rate", options.plunge_mm_s, 0.01, kLong_mm, "mm/s"},
+                          {"the spindle speed", options.rpm, 0.0, 1e6, "rpm"},
+                          {"the clearance", options.clearance_mm, 1e-3, kLong_mm, "mm"},
+                          {"the tolerance", options.tolerance_mm, 0.0, 1.0, "mm"},
+                          {"the place in X", options.at_x_mm, -kLong_mm, kLong_mm, "mm"},
+                          {"the place in Y", options.at_y_mm, -kLong_mm, kLong_mm, "mm"}};
   for (const Range& range : ranges) {
     if (range.value >= range.low && range.value <= range.high) continue;
-    return InvalidArgument(std::string(range.name) + " is " + ShortNumber(range.value) + "; from " +
-                           ShortNumber(range.low) + " to " + ShortNumber(range.high) +
-                           " is possible");
+    return InvalidArgument(Told("name", range.name) + " is " +
+                           ToldShort("value", range.value, range.unit) + "; from " +
+                           ToldShort("least", range.low, range.unit) + " to " +
+                           ToldShort("most", range.high, range.unit) + " is possible");
   }
   return {};
 }
@@ -76,8 +78,9 @@ class BoardMiller {
     if (options_.rpm > 0.0) {
       const int used = writer_.SpindleSpeed(options_.rpm);
       if (used != options_.rpm)
-        Note(used == 0 ? "the spindle speed of this machine is set by hand"
-                       : ShortNumber(options_.rpm) + " rpm becomes " + std::to_string(used));
+        Note(used == 0 ? Detail("the spindle speed of this machine is set by hand")
+                       : ToldShort("wanted", options_.rpm, "rpm") + " rpm becomes " +
+                             Told("speed", used, "rpm", std::to_string(used)));
     }
     writer_.SpindleOn();
     clear_ = std::max<std::int64_t>(1, NearestUnit(options_.clearance_mm, profile_));
@@ -114,9 +117,10 @@ class BoardMiller {
   void Cut(const Units& to, double feed_mm_s) {
     const double used = writer_.Cut(to, feed_mm_s);
     if (std::abs(used - feed_mm_s) > 1e-9 * feed_mm_s)
-      Note(ShortNumber(feed_mm_s) + " mm/s becomes " + ShortNumber(used) + " mm/s");
+      Note(ToldShort("wanted", feed_mm_s, "mm/s") + " mm/s becomes " +
+           ToldShort("feed_rate", used, "mm/s") + " mm/s");
   }
-  void Note(const std::string& detail) {
+  void Note(const Detail& detail) {
     constexpr ErrorCode kCode = ErrorCode::kRml1SpeedRounded;
     if (std::ranges::find(notes_, detail, &Diagnostic::detail) == notes_.end())
       notes_.push_back({.code = kCode, .severity = Lookup(kCode).severity, .detail = detail});
@@ -158,8 +162,8 @@ void NoteJoined(const DistanceField& field, double level, BoardLines& made) {
   constexpr ErrorCode kCode = ErrorCode::kRml1GapTooNarrow;
   made.findings.push_back({.code = kCode,
                            .severity = Lookup(kCode).severity,
-                           .detail = "of " + std::to_string(counted.traces) + " traces " +
-                                     std::to_string(counted.joined) +
+                           .detail = "of " + Told("traces", counted.traces) + " traces " +
+                                     Told("joined", counted.joined) +
                                      " stay joined with a neighbour"});
 }
 
@@ -168,8 +172,8 @@ void NoteJoined(const DistanceField& field, double level, BoardLines& made) {
 Error InTermsOfPicture(Error found, const BoardLines& board) {
   if (found.code != ErrorCode::kRml1WorkBeyondTravel) return found;
   return {ErrorCode::kRml1PictureBeyondTravel,
-          "the picture is " + ShortNumber(board.width_mm, 2) + " by " +
-              ShortNumber(board.height_mm, 2) + " mm: " + found.detail,
+          "the picture is " + ToldShort("width", board.width_mm, "mm", 2) + " by " +
+              ToldShort("height", board.height_mm, "mm", 2) + " mm: " + found.detail,
           {}};
 }
 
@@ -188,7 +192,7 @@ Result<BoardLines> StreamOfBoard(const Bitmap& bitmap, const machine::Parameters
   const std::size_t pixels = (bitmap.width + 2 * margin) * (bitmap.height + 2 * margin);
   if (pixels > 2 * kPixelsMax) {
     return Error{ErrorCode::kRml1PictureTooLarge,
-                 std::to_string(pixels) + " pixels with room for the tool around it",
+                 Told("pixels", pixels) + " pixels with room for the tool around it",
                  {}};
   }
   const DistanceField field = DistanceToCopper(bitmap, margin);

@@ -10,7 +10,7 @@
 namespace rmlcell::rml1 {
 namespace {
 
-Error BadPicture(std::string detail) { return {ErrorCode::kRml1BadPicture, std::move(detail), {}}; }
+Error BadPicture(Detail detail) { return {ErrorCode::kRml1BadPicture, std::move(detail), {}}; }
 
 std::uint32_t BigEndian(std::string_view bytes) {
   std::uint32_t value = 0;
@@ -62,8 +62,8 @@ Result<PngBitmap> ReadPng(std::string_view bytes, bool invert, std::size_t pixel
   const std::size_t pixels = std::size_t{image.width} * image.height;
   if (pixels > pixels_max) {
     return Error{ErrorCode::kRml1PictureTooLarge,
-                 std::to_string(image.width) + " by " + std::to_string(image.height) +
-                     " pixels; at most " + std::to_string(pixels_max) + " are taken",
+                 Told("width", image.width) + " by " + Told("height", image.height) +
+                     " pixels; at most " + Told("most", pixels_max) + " are taken",
                  {}};
   }
   const Result<std::optional<double>> pixel_mm = PixelSize(bytes);

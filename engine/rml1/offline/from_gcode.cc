@@ -65,18 +65,17 @@ class Interpreter {
   struct LinesInWork {
     std::uint64_t count = 0;
     SourceSpan first;
-    std::string InMore() const {
-      return count > 1 ? ", here and in " + std::to_string(count - 1) +
+    Detail InMore() const {
+      return count > 1 ? ", here and in " + Told("lines", count - 1) +
                              (count > 2 ? " more lines" : " more line")
-                       : "";
+                       : Detail();
     }
   };
 
-  void Refuse(ErrorCode code, std::string detail, const SourceSpan& where) {
+  void Refuse(ErrorCode code, Detail detail, const SourceSpan& where) {
     findings_.Refuse(code, std::move(detail), where);
   }
-  void Note(ErrorCode code, const std::string& key, const std::string& detail,
-            const SourceSpan& where) {
+  void Note(ErrorCode code, const std::string& key, const Detail& detail, const SourceSpan& where) {
     findings_.Note(code, key, detail, where);
   }
 
@@ -175,7 +174,8 @@ void Interpreter::SetSpindleSpeed(const GcodeWord& word) {
          word.where);
   } else if (used != word.value) {
     Note(ErrorCode::kRml1SpeedRounded, "S",
-         WordText(word) + " becomes " + std::to_string(used) + " rpm", word.where);
+         WordText(word) + " becomes " + Told("speed", used, "rpm", std::to_string(used) + " rpm"),
+         word.where);
   }
 }
 
@@ -201,7 +201,7 @@ void Interpreter::Wait(const Orders& orders, const GcodeBlock& block) {
   if (ms + writer_.dwell_ms() > StreamWriter::kDwellMax_ms) {
     return Refuse(ErrorCode::kRml1GcodeRange,
                   WordText(*seconds) + ": a wait is at most " +
-                      ShortNumber(StreamWriter::kDwellMax_ms / 1000.0) + " s",
+                      ToldShort("most", StreamWriter::kDwellMax_ms / 1000.0, "s") + " s",
                   seconds->where);
   }
   writer_.Dwell(static_cast<int>(ms));
@@ -273,12 +273,13 @@ void Interpreter::TellStands(const LinesInWork& lines, const char* when) {
 
 void Interpreter::TellRapids(const LinesInWork& rapids, const char* way) {
   if (rapids.count == 0 || !findings_.ok()) return;
-  findings_.Add(ErrorCode::kRml1GcodeRapidInWork,
-                "G0 leads " + std::string(way) + " below Z 0" + rapids.InMore() +
-                    ": the stream goes there at " +
-                    ShortNumber(profile_.z_speeds.Nearest(profile_.z_speeds.maximum_mm_s)) +
-                    " mm/s",
-                rapids.first);
+  findings_.Add(
+      ErrorCode::kRml1GcodeRapidInWork,
+      "G0 leads " + std::string(way) + " below Z 0" + rapids.InMore() +
+          ": the stream goes there at " +
+          ToldShort("speed", profile_.z_speeds.Nearest(profile_.z_speeds.maximum_mm_s), "mm/s") +
+          " mm/s",
+      rapids.first);
 }
 
 // The tool is put in by hand before the program begins, and stays.
@@ -345,7 +346,7 @@ void Interpreter::MoveArc(const Orders& orders, GcodeUse motion, double x, doubl
   const double chords = arc->Chords(options_.tolerance_mm);
   if (chords > kChordsMax) {
     return Refuse(ErrorCode::kRml1ProductTooLarge,
-                  "an arc of " + ShortNumber(chords, 0) + " chords", where);
+                  "an arc of " + ToldShort("chords", chords, {}, 0) + " chords", where);
   }
   const auto count = static_cast<int>(chords);
   for (int k = 1; k < count; ++k) {
@@ -365,7 +366,8 @@ std::optional<Units> Interpreter::UnitsOf(double x, double y, double z, const So
     const double units = std::round(mm * profile_.units_per_mm);
     if (units >= static_cast<double>(kFloatMin) && units <= static_cast<double>(kFloatMax))
       continue;
-    Refuse(ErrorCode::kRml1GcodeRange, std::string(1, axis) + " " + ShortNumber(mm) + " mm", where);
+    Refuse(ErrorCode::kRml1GcodeRange,
+           Told("axis", {&axis, 1}) + " " + ToldShort("value", mm, "mm") + " mm", where);
     return std::nullopt;
   }
   if (writer_.size() > options_.bytes_max) {
@@ -398,8 +400,8 @@ void Interpreter::NoteFeed(double used_mm_s, const SourceSpan& where) {
   if (std::abs(used_mm_s - *feed_mm_s_) <= kSame * *feed_mm_s_) return;
   constexpr int kShownDecimals = 3;
   Note(ErrorCode::kRml1SpeedRounded, "F",
-       ShortNumber(*feed_mm_s_, kShownDecimals) + " mm/s becomes " + ShortNumber(used_mm_s) +
-           " mm/s, a speed of the machine",
+       ToldShort("wanted", *feed_mm_s_, "mm/s", kShownDecimals) + " mm/s becomes " +
+           ToldShort("feed_rate", used_mm_s, "mm/s") + " mm/s, a speed of the machine",
        where);
 }
 
@@ -409,7 +411,8 @@ Result<FromGcodeOutcome> FromGcode(const machine::Bytes& text,
                                    const machine::Parameters& parameters,
                                    const FromGcodeOptions& options, const ByteSink& sink) {
   if (!(options.tolerance_mm > 0.0 && std::isfinite(options.tolerance_mm)))
-    return InvalidArgument("the tolerance is " + ShortNumber(options.tolerance_mm) +
+    return InvalidArgument("the tolerance is " +
+                           ToldShort("tolerance", options.tolerance_mm, "mm") +
                            " mm; it must be above 0");
   if (text->empty()) return Error{ErrorCode::kCellEmptyProgram, "the G-code has no bytes", {}};
   const Result<Profile> profile = MakeProfile(parameters);

@@ -14,7 +14,7 @@ using motion::LengthOf, motion::PlanVector;
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kSamePlace_mm = 1e-6;  // noise of decimals and of inches
 
-Error NoArc(const std::string& detail) { return {ErrorCode::kRml1GcodeArc, detail, {}}; }
+Error NoArc(const Detail& detail) { return {ErrorCode::kRml1GcodeArc, detail, {}}; }
 
 // The centre of an arc with R: on the line across the middle of the ends.
 Result<Arc> CentreByRadius(const ArcWords& words) {
@@ -24,8 +24,8 @@ Result<Arc> CentreByRadius(const ArcWords& words) {
   const double radius = std::abs(*words.r);
   const double half = distance / 2.0;
   if (radius < half - kRadiusError_mm) {
-    return NoArc("R is " + ShortNumber(*words.r) + " mm, the ends are " + ShortNumber(distance) +
-                 " mm apart");
+    return NoArc("R is " + ToldShort("radius", *words.r, "mm") + " mm, the ends are " +
+                 ToldShort("distance", distance, "mm") + " mm apart");
   }
   const double height = std::sqrt(std::max(0.0, radius * radius - half * half));
   const bool to_the_left = words.clockwise == (*words.r < 0.0);
@@ -67,8 +67,8 @@ Result<Arc> ArcOf(const ArcWords& words) {
   const double other = LengthOf(to);
   const double error = std::abs(other - arc.radius_mm);
   if (error > kRadiusError_mm && error > 1e-3 * arc.radius_mm) {
-    return NoArc("the start is " + ShortNumber(arc.radius_mm) + " mm from the centre, the end " +
-                 ShortNumber(other) + " mm");
+    return NoArc("the start is " + ToldShort("first", arc.radius_mm, "mm") +
+                 " mm from the centre, the end " + ToldShort("second", other, "mm") + " mm");
   }
   arc.start_rad = std::atan2(from.y(), from.x());
   arc.sweep_rad = std::atan2(to.y(), to.x()) - arc.start_rad;

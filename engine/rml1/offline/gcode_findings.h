@@ -12,7 +12,7 @@ namespace rmlcell::rml1 {
 // What is said about a program in G-code: errors, which refuse it, and notes.
 class GcodeFindings {
  public:
-  void Add(ErrorCode code, std::string detail, const SourceSpan& where) {
+  void Add(ErrorCode code, Detail detail, const SourceSpan& where) {
     Diagnostic finding{.code = code,
                        .severity = Lookup(code).severity,
                        .detail = std::move(detail),
@@ -23,7 +23,7 @@ class GcodeFindings {
     }
     outcome_.findings.push_back(std::move(finding));
   }
-  void Refuse(ErrorCode code, std::string detail, const SourceSpan& where) {
+  void Refuse(ErrorCode code, Detail detail, const SourceSpan& where) {
     outcome_.ok = false;
     Add(code, std::move(detail), where);
   }
@@ -31,8 +31,7 @@ class GcodeFindings {
     Refuse(error.code, error.detail, error.where.value_or(SourceSpan{}));
   }
   // Of each key once: CAM tools write some words on every line.
-  void Note(ErrorCode code, const std::string& key, const std::string& detail,
-            const SourceSpan& where) {
+  void Note(ErrorCode code, const std::string& key, const Detail& detail, const SourceSpan& where) {
     if (told_.insert(key).second) Add(code, detail, where);
   }
 

@@ -105,8 +105,8 @@ bool SortValue(const GcodeWord& word, const GcodeBlock& block, Orders& orders,
     return false;
   }
   if (!orders.values.emplace(word.letter, &word).second) {
-    findings.Refuse(ErrorCode::kRml1GcodeForm, std::string(1, word.letter) + " twice in one line",
-                    word.where);
+    findings.Refuse(ErrorCode::kRml1GcodeForm,
+                    Told("word", {&word.letter, 1}) + " twice in one line", word.where);
     return false;
   }
   return true;
@@ -154,8 +154,8 @@ std::optional<Orders> OrdersOf(const GcodeBlock& block, GcodeFindings& findings)
   return good ? std::optional(std::move(orders)) : std::nullopt;
 }
 
-std::string WordText(const GcodeWord& word) {
-  return std::string(1, word.letter) + ShortNumber(word.value, 6);
+Detail WordText(const GcodeWord& word) {
+  return Told("word", std::string(1, word.letter) + ShortNumber(word.value, 6));
 }
 
 }  // namespace rmlcell::rml1

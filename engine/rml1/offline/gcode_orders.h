@@ -49,6 +49,6 @@ struct Orders {
 std::optional<Orders> OrdersOf(const GcodeBlock& block, GcodeFindings& findings);
 
 // "G91.1"
-std::string WordText(const GcodeWord& word);
+Detail WordText(const GcodeWord& word);
 
 }  // namespace rmlcell::rml1

@@ -13,9 +13,9 @@ bool IsBlank(char c) { return c == ' ' || c == '\t'; }
 bool IsLetter(char c) { return c >= 'A' && c <= 'Z'; }
 bool IsOfNumber(char c) { return (c >= '0' && c <= '9') || c == '.' || c == '+' || c == '-'; }
 
-std::string CharacterText(char c) {
-  if (c > 0x20 && c < 0x7F) return {'\'', c, '\''};
-  return "byte 0x" + HexByte(c);
+Detail CharacterText(char c) {
+  if (c > 0x20 && c < 0x7F) return "'" + Told("character", {&c, 1}) + "'";
+  return "byte " + Told("byte", static_cast<unsigned char>(c), {}, "0x" + HexByte(c));
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ std::optional<Error> GcodeReader::TakeWord(std::string_view line, std::size_t& a
   if (!value) {
     return Error{
         ErrorCode::kRml1GcodeForm,
-        std::string(1, letter) + (digits.empty() ? " has no number" : " has no such number"),
+        Told("word", {&letter, 1}) + (digits.empty() ? " has no number" : " has no such number"),
         where};
   }
   if (letter == 'N') return std::nullopt;

@@ -131,6 +131,10 @@ std::string ShortNumber(double value, int decimals) {
   return text;
 }
 
+Detail ToldShort(std::string_view name, double value, std::string_view unit, int decimals) {
+  return Told(name, value, unit, ShortNumber(value, decimals));
+}
+
 std::string RangeOfRefused(const Phrase& phrase, const Profile& profile) {
   const auto refused = std::ranges::find_if(phrase.findings, IsHeightOrPlace);
   if (refused == phrase.findings.end()) return {};

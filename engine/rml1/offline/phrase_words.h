@@ -20,5 +20,7 @@ std::string RangeOfRefused(const Phrase& phrase, const Profile& profile);
 
 // Up to `decimals` decimals without zeros behind: "12.7", "5".
 std::string ShortNumber(double value, int decimals = 4);
+// Such a number in a finding, where it is an argument.
+Detail ToldShort(std::string_view name, double value, std::string_view unit, int decimals = 4);
 
 }  // namespace rmlcell::rml1

@@ -44,7 +44,8 @@ Status ScaleStream(const machine::Bytes& stream, const machine::Parameters& para
   constexpr double kUnitsMax = 10'000.0;
   for (const double units : {from_units_per_mm, to_units_per_mm}) {
     if (!(units >= 1.0 && units <= kUnitsMax))
-      return InvalidArgument(ShortNumber(units) + " units in a mm; from 1 to 10000 are possible");
+      return InvalidArgument(ToldShort("units", units, {}) +
+                             " units in a mm; from 1 to 10000 are possible");
   }
   StreamScaler scaler(stream, to_units_per_mm / from_units_per_mm, sink);
   StreamWalk walk(*profile, scaler);

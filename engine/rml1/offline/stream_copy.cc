@@ -22,7 +22,8 @@ void StreamCopy::Replace(const Phrase::Value& number, double value) {
   if (old.find_first_of("0123456789") == std::string_view::npos)
     return Refuse("a lone period as a number: write 0", number.begin);
   if (value < static_cast<double>(kFloatMin) || value > static_cast<double>(kFloatMax))
-    return Refuse("a number becomes " + ShortNumber(value) + ", beyond its range", number.begin);
+    return Refuse("a number becomes " + ToldShort("value", value, {}) + ", beyond its range",
+                  number.begin);
   if (!CopyUpTo(number.begin)) return;
   constexpr int kDecimals = 6;  // of a 4-byte value that is less than a unit
   std::string text = ShortNumber(value, kDecimals);
@@ -38,7 +39,7 @@ void StreamCopy::Insert(std::int64_t at, std::string_view text) {
   if (!failed() && CopyUpTo(at)) Write(text);
 }
 
-void StreamCopy::Refuse(std::string detail, std::int64_t at) {
+void StreamCopy::Refuse(Detail detail, std::int64_t at) {
   if (failed()) return;
   LineCounter lines;
   error_ = Error{ErrorCode::kRml1NotRewritten, std::move(detail), lines.At(*stream_, at, 1)};
@@ -78,7 +79,7 @@ bool StreamCopy::CopyUpTo(std::int64_t end) {
   return true;
 }
 
-std::optional<std::string> WhyNotFollowed(const Phrase& phrase) {
+std::optional<Detail> WhyNotFollowed(const Phrase& phrase) {
   using Kind = Phrase::Kind;
   if (phrase.kind != Kind::kSet && phrase.kind != Kind::kGroup && phrase.kind != Kind::kLeftOver)
     return std::nullopt;

@@ -25,7 +25,7 @@ class StreamCopy {
   void Replace(const Phrase::Value& number, double value);
   // Before the command whose name begins at `at`.
   void Insert(std::int64_t at, std::string_view text);
-  void Refuse(std::string detail, std::int64_t at);
+  void Refuse(Detail detail, std::int64_t at);
 
   // Up to `end`.
   Status Finish(std::int64_t end);
@@ -45,7 +45,7 @@ class StreamCopy {
 
 // A command that a rewriting tool cannot follow, because parts of it were not carried out; the
 // detail says which. Nothing: it can.
-std::optional<std::string> WhyNotFollowed(const Phrase& phrase);
+std::optional<Detail> WhyNotFollowed(const Phrase& phrase);
 
 inline constexpr std::size_t kAxisX = 0;
 inline constexpr std::size_t kAxisY = 1;

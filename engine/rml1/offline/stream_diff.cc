@@ -43,7 +43,7 @@ Result<std::vector<Deed>> DeedsOf(std::string_view stream, const Profile& profil
   StreamWalk walk(profile, deeds);
   if (!walk.Run(stream)) {
     return Error{ErrorCode::kRml1TooManyMotions,
-                 "more than " + std::to_string(kComparedMax) + " motions and other actions",
+                 "more than " + Told("most", kComparedMax) + " motions and other actions",
                  {}};
   }
   if (const Status known = CheckIsStream(walk.device()); !known) return known.error();

@@ -194,7 +194,8 @@ Status CheckIsStream(const Device& device) {
   const double foreign_percent = device.foreign_percent();
   if (foreign_percent <= kForeignShareMax_percent) return {};
   return Error{ErrorCode::kRml1NoProgram,
-               FixedText(foreign_percent, 1) + " % of the bytes belong to no command",
+               Told("share", foreign_percent, "%", FixedText(foreign_percent, 1) + " %") +
+                   " of the bytes belong to no command",
                {}};
 }
 

@@ -96,7 +96,7 @@ class BodyFinder final : public PhraseListener {
   bool lifting_ = false;
 };
 
-Error NotTiled(std::string detail) { return {ErrorCode::kRml1NotRewritten, std::move(detail), {}}; }
+Error NotTiled(Detail detail) { return {ErrorCode::kRml1NotRewritten, std::move(detail), {}}; }
 
 // The parameter of !RC that gives a speed again.
 std::optional<std::string> SpindleParameter(int rpm, const Profile& profile) {
@@ -192,9 +192,18 @@ int CopiesOnTravel(const Extent& extent, const Travel& travel, double pitch) {
 
 Error DoesNotFit(const Tiling& most, const char* what, const Tiling& tiling) {
   return {ErrorCode::kRml1DoesNotFit,
-          std::string(what) + std::to_string(most.columns) + " columns and " +
-              std::to_string(most.rows) + " rows fit, " + ShortNumber(tiling.pitch_x_mm) +
-              " mm and " + ShortNumber(tiling.pitch_y_mm) + " mm from copy to copy",
+          what + Told("columns", most.columns) + " columns and " + Told("rows", most.rows) +
+              " rows fit, " + ToldShort("pitch_x", tiling.pitch_x_mm, "mm") + " mm and " +
+              ToldShort("pitch_y", tiling.pitch_y_mm, "mm") + " mm from copy to copy",
+          {}};
+}
+
+Error CopyIsTooLarge(const std::array<double, 2>& size_mm, const std::array<double, 2>& within_mm) {
+  return {ErrorCode::kRml1DoesNotFit,
+          "the paths of one copy take " + ToldShort("width", size_mm[0], "mm") + " by " +
+              ToldShort("height", size_mm[1], "mm") + " mm, more than " +
+              ToldShort("within_width", within_mm[0], "mm") + " by " +
+              ToldShort("within_height", within_mm[1], "mm") + " mm",
           {}};
 }
 
@@ -216,14 +225,8 @@ Result<Tiling> TilingOf(const BodyFinder& body, const Profile& profile,
   if (options.within_mm) {
     tiling.columns = CopiesOn((*options.within_mm)[0] * units, width, pitch_x);
     tiling.rows = CopiesOn((*options.within_mm)[1] * units, height, pitch_y);
-    if (tiling.columns == 0 || tiling.rows == 0) {
-      return Error{ErrorCode::kRml1DoesNotFit,
-                   "the paths of one copy take " + ShortNumber(width / units) + " by " +
-                       ShortNumber(height / units) + " mm, more than " +
-                       ShortNumber((*options.within_mm)[0]) + " by " +
-                       ShortNumber((*options.within_mm)[1]) + " mm",
-                   {}};
-    }
+    if (tiling.columns == 0 || tiling.rows == 0)
+      return CopyIsTooLarge({width / units, height / units}, *options.within_mm);
     if (options.force) return tiling;
     tiling.travel_is_less = most.columns < tiling.columns || most.rows < tiling.rows;
     tiling.columns = std::min(tiling.columns, most.columns);
@@ -252,15 +255,16 @@ Status WriteCopy(const machine::Bytes& stream, const Profile& profile, const Bod
 Status CheckOptions(const TileOptions& options) {
   for (const int count : {options.columns, options.rows}) {
     if (count < 1 || count > kTilesMax)
-      return InvalidArgument(std::to_string(count) + " copies; from 1 to " +
-                             std::to_string(kTilesMax) + " are possible");
+      return InvalidArgument(Told("count", count) + " copies; from 1 to " +
+                             Told("most", kTilesMax) + " are possible");
   }
   if (!(options.gap_mm >= 0.0 && std::isfinite(options.gap_mm)))
-    return InvalidArgument("the gap is " + ShortNumber(options.gap_mm) +
+    return InvalidArgument("the gap is " + ToldShort("gap", options.gap_mm, "mm") +
                            " mm; it must be 0 or more");
   for (const double edge : options.within_mm.value_or(std::array<double, 2>{1.0, 1.0})) {
     if (!(edge > 0.0 && std::isfinite(edge)))
-      return InvalidArgument("the field is " + ShortNumber(edge) + " mm; it must be above 0");
+      return InvalidArgument("the field is " + ToldShort("edge", edge, "mm") +
+                             " mm; it must be above 0");
   }
   return {};
 }
@@ -300,7 +304,10 @@ Status WriteCopies(const machine::Bytes& stream, const Profile& profile, const B
         return copy.error();
       if (size > options.bytes_max) {
         return Error{ErrorCode::kRml1ProductTooLarge,
-                     "more than " + std::to_string(options.bytes_max) + " bytes",
+                     "more than " +
+                         Told("most", static_cast<double>(options.bytes_max), "bytes",
+                              std::to_string(options.bytes_max)) +
+                         " bytes",
                      {}};
       }
       place.before = place.by;
@@ -326,7 +333,8 @@ Result<Tiling> TileStream(const machine::Bytes& stream, const machine::Parameter
   if (!body.found()) return NotTiled("the tool never goes into the work");
   if (const double lost = walk.device().carriage().lost().length; lost > 0.0) {
     return Error{ErrorCode::kRml1WorkBeyondTravel,
-                 "of the program alone " + ShortNumber(lost / profile->units_per_mm, 3) +
+                 "of the program alone " +
+                     ToldShort("length", lost / profile->units_per_mm, "mm", 3) +
                      " mm would not be cut: how large a copy is cannot be told",
                  {}};
   }

@@ -34,7 +34,7 @@ class GcodeWriter final : public PhraseListener {
       }
       if (std::abs(action.to.a - at.a) > kSameAngle_deg) {
         error_ = Error{ErrorCode::kRml1RotaryMotion,
-                       "A goes to " + ShortNumber(action.to.a) + " degrees",
+                       "A goes to " + ToldShort("angle", action.to.a, "deg") + " degrees",
                        lines_.At(*stream_, phrase.begin, 1)};
         return false;
       }
@@ -79,7 +79,7 @@ class GcodeWriter final : public PhraseListener {
     text_ += "(" + comment + ")\n";
     notes_.findings.push_back(std::move(finding));
   }
-  void NoteAt(std::int64_t offset, ErrorCode code, std::string detail) {
+  void NoteAt(std::int64_t offset, ErrorCode code, Detail detail) {
     Note({.code = code,
           .severity = Lookup(code).severity,
           .detail = std::move(detail),

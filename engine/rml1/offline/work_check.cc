@@ -50,7 +50,8 @@ class LostText {
   // "12 mm beyond the greatest X (203.2 mm)", with the face as the work counts.
   void Say(double beyond, const char* face, double at) {
     if (beyond / profile_.units_per_mm <= kNoticed_mm) return;
-    faces_ += (faces_.empty() ? ": " : ", ") + Mm(beyond) + " mm " + face + " (" + Mm(at) + " mm)";
+    faces_ += (faces_.empty() ? ": " : ", ") + Mm("beyond", beyond) + " mm " + face + " (" +
+              Mm("limit", at) + " mm)";
   }
   // By how much the work must be moved along an axis where something is lost.
   void SayRemedy(const char* axis, Extent wanted, const Extent& lost, const Travel& travel) {
@@ -61,23 +62,27 @@ class LostText {
     const double most = travel.high - wanted.high;
     const bool leaves = least > 0.0 || most < 0.0;
     if (!leaves) return;
-    remedies_ += std::string("; in ") + axis +
-                 (least > most ? " it is " + Mm(least - most) + " mm too large for this machine"
-                               : " it fits moved by " + Mm(least) + " to " + Mm(most) + " mm");
+    remedies_ +=
+        "; in " + Told("axis", axis) +
+        (least > most
+             ? " it is " + Mm("too_large", least - most) + " mm too large for this machine"
+             : " it fits moved by " + Mm("least", least) + " to " + Mm("most", most) + " mm");
   }
-  std::string Take(double length) const {
-    return Mm(length) + " mm of the work would not be cut" + faces_ + remedies_;
+  Detail Take(double length) const {
+    return Mm("length", length) + " mm of the work would not be cut" + faces_ + remedies_;
   }
 
  private:
-  std::string Mm(double units) const { return ShortNumber(units / profile_.units_per_mm, 3); }
+  Detail Mm(std::string_view name, double units) const {
+    return ToldShort(name, units / profile_.units_per_mm, "mm", 3);
+  }
 
   const Profile& profile_;
-  std::string faces_;
-  std::string remedies_;
+  Detail faces_;
+  Detail remedies_;
 };
 
-std::string TextOfLost(const Device& device, const WorkDone& done, const Profile& profile) {
+Detail TextOfLost(const Device& device, const WorkDone& done, const Profile& profile) {
   const LostCut& lost = device.carriage().lost();
   const double surface = device.registers().surface_z;  // !ZO moves no work
   LostText text(profile);
@@ -110,7 +115,7 @@ Result<std::optional<Error>> CheckWork(const machine::Bytes& stream,
   if (const auto refused = device.positions_refused(); refused > 0) {
     return std::optional(
         Error{ErrorCode::kRml1PartRefused,
-              "coordinates or tool heights that are refused: " + std::to_string(refused) +
+              "coordinates or tool heights that are refused: " + Told("count", refused) +
                   (done.possible.empty() ? "" : "; " + done.possible),
               at(device.first_refused())});
   }

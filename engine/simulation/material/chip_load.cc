@@ -12,9 +12,9 @@
 namespace rmlcell::simulation {
 namespace {
 
-Error BadTable(const toml::source_region& where, const std::string& what) {
+Error BadTable(const toml::source_region& where, const Detail& what) {
   return {ErrorCode::kCellBadText,
-          "chip_loads.toml:" + std::to_string(where.begin.line) + ": " + what,
+          "chip_loads.toml:" + Told("line", where.begin.line) + ": " + what,
           {}};
 }
 
@@ -34,25 +34,26 @@ std::vector<double> Rising(const toml::node_view<const toml::node>& node) {
 Result<ChipTable> ReadTable(std::string_view material, const toml::table& table) {
   const toml::source_region& where = table.source();
   ChipTable made{.material = std::string(material)};
+  const auto name = [&] { return Told("material", material); };
   const auto source = table["source"].value<std::string>();
-  if (!source || source->empty()) return BadTable(where, made.material + " has no source");
+  if (!source || source->empty()) return BadTable(where, name() + " has no source");
   made.source = *source;
   made.speed_most_m_min = table["speed_most_m_min"].value_or(0.0);
   if (!(made.speed_most_m_min > 0.0))
-    return BadTable(where, made.material + " has no speed_most_m_min above 0");
+    return BadTable(where, name() + " has no speed_most_m_min above 0");
   made.plunge_share = table["plunge_share"].value_or(0.0);
   if (!(made.plunge_share > 0.0) || made.plunge_share > 1.0)
-    return BadTable(where, made.material + " has no plunge_share above 0 and up to 1");
+    return BadTable(where, name() + " has no plunge_share above 0 and up to 1");
   const auto diameters = Rising(table["diameter_mm"]);
   const auto least = Rising(table["least_mm"]);
   const auto most = Rising(table["most_mm"]);
   if (diameters.empty() || least.size() != diameters.size() || most.size() != diameters.size()) {
-    return BadTable(where, made.material +
+    return BadTable(where, name() +
                                ": diameter_mm, least_mm and most_mm are lists of one length, of "
                                "numbers that rise");
   }
   for (std::size_t i = 0; i < diameters.size(); ++i) {
-    if (least[i] > most[i]) return BadTable(where, made.material + " has a least above its most");
+    if (least[i] > most[i]) return BadTable(where, name() + " has a least above its most");
     made.rows.push_back({diameters[i], least[i], most[i]});
   }
   return made;
@@ -86,7 +87,7 @@ Result<std::vector<ChipTable>> ReadChipTables(std::string_view text) {
     const toml::table file = toml::parse(text);
     for (const auto& [name, node] : file) {
       const toml::table* table = node.as_table();
-      if (table == nullptr) return BadTable(node.source(), "no key " + std::string(name.str()));
+      if (table == nullptr) return BadTable(node.source(), "no key " + Told("key", name.str()));
       Result<ChipTable> read = ReadTable(name.str(), *table);
       if (!read) return read.error();
       tables.push_back(*std::move(read));
@@ -107,12 +108,12 @@ const std::vector<ChipTable>& ChipTables() {
 }
 
 Result<ChipRange> ChipsOf(std::string_view material, double diameter_mm) {
-  std::string known;
+  Detail known;
   for (const ChipTable& table : ChipTables()) {
     if (table.material == material) return table.For(diameter_mm);
-    known += (known.empty() ? "" : ", ") + table.material;
+    known += (known.empty() ? "" : ", ") + Told("known", table.material);
   }
-  return InvalidArgument("'" + std::string(material) + "' is no material: " + known);
+  return InvalidArgument("'" + Told("material", material) + "' is no material: " + known);
 }
 
 }  // namespace rmlcell::simulation

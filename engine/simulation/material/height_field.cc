@@ -65,8 +65,9 @@ Status CheckStock(const Stock& stock) {
   const double columns = CellsAlong(stock.x_min, stock.x_max, stock.cell);
   const double rows = CellsAlong(stock.y_min, stock.y_max, stock.cell);
   if (columns * rows <= static_cast<double>(HeightField::kCellsMax)) return {};
-  return InvalidArgument("the stock has " + FixedText(columns, 0) + " by " + FixedText(rows, 0) +
-                         " cells, more than " + std::to_string(HeightField::kCellsMax) +
+  return InvalidArgument("the stock has " + Told("columns", columns, {}, FixedText(columns, 0)) +
+                         " by " + Told("rows", rows, {}, FixedText(rows, 0)) +
+                         " cells, more than " + Told("most", HeightField::kCellsMax) +
                          ": make the cells larger");
 }
 

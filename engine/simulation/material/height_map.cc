@@ -65,7 +65,7 @@ Result<HeightMap> ReadHeightMap(std::string_view bytes) {
     const std::optional<double> value = NumberOf(*picture, text.key);
     if (!value) {
       return Error{ErrorCode::kCellBadText,
-                   "the picture does not say '" + std::string(text.key) +
+                   "the picture does not say '" + Told("key", text.key) +
                        "': --height-map writes one that does",
                    {}};
     }

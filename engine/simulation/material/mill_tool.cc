@@ -18,9 +18,11 @@ Status CheckShank(const MillTool& tool) {
   }
   constexpr double kLastDigits_mm = 1e-9;  // a ball of 3 mm may cut for 1.5 mm
   if (tool.flute_mm > 0.0 && tool.flute_mm < ShapeHeight(tool) - kLastDigits_mm) {
-    return InvalidArgument("the tool cuts for " + ShortestText(tool.flute_mm) +
-                           " mm, and its end alone is " + TrimmedText(ShapeHeight(tool), 3) +
-                           " mm high: make flute longer");
+    return InvalidArgument(
+        "the tool cuts for " + Told("length", tool.flute_mm, "mm", ShortestText(tool.flute_mm)) +
+        " mm, and its end alone is " +
+        Told("least", ShapeHeight(tool), "mm", TrimmedText(ShapeHeight(tool), 3)) +
+        " mm high: make flute longer");
   }
   if (tool.shank_radius_mm > 0.0 && !(tool.flute_mm > 0.0))
     return InvalidArgument("a shank begins where the tool ceases to cut: say flute=LENGTH, too");

@@ -52,9 +52,9 @@ bool AreAlike(std::string_view a, std::string_view b) {
 
 // "; did you mean flat?"
 template <class Names>
-std::string Nearest(std::string_view name, const Names& names) {
+Detail Nearest(std::string_view name, const Names& names) {
   for (const auto& one : names) {
-    if (AreAlike(name, one)) return "; did you mean " + std::string(one) + "?";
+    if (AreAlike(name, one)) return "; did you mean " + Told("near", one) + "?";
   }
   return {};
 }
@@ -68,10 +68,10 @@ constexpr OtherName kOtherNames[] = {{"length", "flute=LENGTH"},  {"cut", "flute
                                      {"edges", "flutes=NUMBER"},  {"teeth", "flutes=NUMBER"},
                                      {"shaft", "shank=DIAMETER"}, {"collet", "holder=WIDTH@FROM"}};
 
-std::string NearestPart(std::string_view name) {
+Detail NearestPart(std::string_view name) {
   for (const OtherName& other : kOtherNames) {
     if (name == other.said || AreAlike(name, other.said))
-      return "; did you mean " + std::string(other.part) + "?";
+      return "; did you mean " + Told("near", other.part) + "?";
   }
   return Nearest(name, kParts);
 }
@@ -103,17 +103,17 @@ std::string_view TakeValue(std::string_view name, std::string_view value, MillTo
 }
 
 // One part behind the measures, and that it comes once. What is wrong; nothing: nothing.
-std::string TakePart(std::string_view part, std::vector<std::string_view>& taken, MillTool& tool) {
+Detail TakePart(std::string_view part, std::vector<std::string_view>& taken, MillTool& tool) {
   const std::size_t equals = part.find('=');
   const std::string_view name = part.substr(0, equals);
   if (std::ranges::find(kParts, name) == kParts.end())
-    return "'" + std::string(part) + "' is no part of a tool" + NearestPart(name);
+    return "'" + Told("part", part) + "' is no part of a tool" + NearestPart(name);
   if (std::ranges::find(taken, name) != taken.end())
-    return "'" + std::string(part) + "' gives " + std::string(name) + " again";
+    return "'" + Told("part", part) + "' gives " + Told("name", name) + " again";
   taken.push_back(name);
-  if (equals == std::string_view::npos) return "'" + std::string(part) + "' has no value";
+  if (equals == std::string_view::npos) return "'" + Told("part", part) + "' has no value";
   const std::string_view wrong = TakeValue(name, part.substr(equals + 1), tool);
-  return wrong.empty() ? std::string() : "'" + std::string(part) + "': " + std::string(wrong);
+  return wrong.empty() ? Detail() : "'" + Told("part", part) + "': " + wrong;
 }
 
 // Diameter, and of a vee its angle and perhaps the diameter of its tip.
@@ -129,7 +129,7 @@ bool TakeMeasures(const std::vector<double>& numbers, MillTool& tool) {
 }  // namespace
 
 Result<Stock> ParseStock(std::string_view text) {
-  const Error wrong = InvalidArgument("'" + std::string(text) +
+  const Error wrong = InvalidArgument("'" + Told("word", text) +
                                       "' is no block: write 100x80x10, or 100x80x10@-5,-5,2");
   const std::size_t at = text.find('@');
   const auto sizes = NumbersBetween(text.substr(0, at), 'x');
@@ -151,18 +151,19 @@ Result<Stock> ParseStock(std::string_view text) {
 // tool := shape ":" diameter [ ":" angle [ ":" tip ] ] { ":" name "=" value }
 Result<MillTool> ParseTool(std::string_view text) {
   // `at`: of what is wrong, so that it is found in a long text.
-  const auto wrong = [text](const std::string& what, std::size_t at) {
-    return InvalidArgument("'" + std::string(text) + "' is no tool" +
-                           (what.empty() ? "" : ": at " + std::to_string(at + 1) + ", " + what) +
-                           ": write flat:3, ball:3, vee:6:60 or vee:6:60:0.2, and what is above it "
-                           "as in flat:3:flutes=2:flute=12:shank=6:holder=20@25");
+  const auto wrong = [text](const Detail& what, std::size_t at) {
+    return InvalidArgument(
+        "'" + Told("word", text) + "' is no tool" +
+        (what.empty() ? Detail() : ": at " + Told("column", at + 1) + ", " + what) +
+        ": write flat:3, ball:3, vee:6:60 or vee:6:60:0.2, and what is above it "
+        "as in flat:3:flutes=2:flute=12:shank=6:holder=20@25");
   };
   const std::size_t colon = text.find(':');
   const std::string_view shape = text.substr(0, colon);
   const auto known = std::ranges::find(kShapes, shape, &ShapeName::name);
   if (known == std::end(kShapes)) {
-    const std::string near = Nearest(shape, kShapes | std::views::transform(&ShapeName::name));
-    return wrong(near.empty() ? near : "'" + std::string(shape) + "' is no shape" + near, 0);
+    const Detail near = Nearest(shape, kShapes | std::views::transform(&ShapeName::name));
+    return wrong(near.empty() ? Detail() : "'" + Told("shape", shape) + "' is no shape" + near, 0);
   }
   const std::size_t named = text.find('=');
   const std::size_t end = named == std::string_view::npos ? text.size() : text.rfind(':', named);
@@ -175,7 +176,7 @@ Result<MillTool> ParseTool(std::string_view text) {
   for (std::size_t at = end; at < text.size();) {
     ++at;
     const std::string_view part = text.substr(at, text.find(':', at) - at);
-    if (const std::string what = TakePart(part, taken, tool); !what.empty()) return wrong(what, at);
+    if (const Detail what = TakePart(part, taken, tool); !what.empty()) return wrong(what, at);
     at += part.size();
   }
   if (const Status sound = CheckTool(tool); !sound) return sound.error();

@@ -13,11 +13,11 @@ namespace {
 constexpr std::size_t kStlHeading = 84;   // 80 bytes of anything, and how many triangles follow
 constexpr std::size_t kStlTriangle = 50;  // normal, three corners, two bytes of anything
 
-Error NoStl(const std::string& why) { return {ErrorCode::kCellBadText, "no STL: " + why, {}}; }
+Error NoStl(const Detail& why) { return {ErrorCode::kCellBadText, "no STL: " + why, {}}; }
 
 Error TooManyTriangles() {
   return {ErrorCode::kCellTooLarge,
-          "the STL has more than " + std::to_string(kStlTrianglesMax) + " triangles",
+          "the STL has more than " + Told("most", kStlTrianglesMax) + " triangles",
           {}};
 }
 
@@ -43,7 +43,7 @@ Result<std::vector<StlTriangle>> ReadBinary(std::string_view bytes) {
         coordinate = std::bit_cast<float>(LittleEndian(at));
         at.remove_prefix(4);
         if (!std::isfinite(coordinate))
-          return NoStl("triangle " + std::to_string(t + 1) + " has a corner nowhere");
+          return NoStl("triangle " + Told("triangle", t + 1) + " has a corner nowhere");
       }
     }
   }
@@ -69,7 +69,7 @@ class StlWords {
   }
   // Of a message: "line 7: 'vertx'".
   Error Wrong(std::string_view word) const {
-    return NoStl("line " + std::to_string(line_) + ": '" + std::string(word.substr(0, 40)) + "'");
+    return NoStl("line " + Told("line", line_) + ": '" + Told("word", word.substr(0, 40)) + "'");
   }
 
  private:

@@ -26,11 +26,11 @@ Result<std::vector<PlotCurve>> ParsePlotCurves(std::string_view text) {
     const auto found = std::find(kCurveNames.begin(), kCurveNames.end(), name);
     if (found == kCurveNames.end()) {
       return Error{
-          ErrorCode::kCellUsage, "'" + std::string(name) + "': curves are speed, power, axes", {}};
+          ErrorCode::kCellUsage, "'" + Told("word", name) + "': curves are speed, power, axes", {}};
     }
     const auto curve = static_cast<PlotCurve>(found - kCurveNames.begin());
     if (std::find(curves.begin(), curves.end(), curve) != curves.end()) {
-      return Error{ErrorCode::kCellUsage, "'" + std::string(name) + "' is there twice", {}};
+      return Error{ErrorCode::kCellUsage, "'" + Told("word", name) + "' is there twice", {}};
     }
     curves.push_back(curve);
   }

@@ -24,7 +24,7 @@ Result<double> ParseSampleRate(std::string_view text) {
   const std::optional<double> rate = ParseDouble(text);
   if (rate && *rate >= kSampleRateMin_hz && *rate <= kSampleRateMax_hz) return *rate;
   return Error{
-      ErrorCode::kCellUsage, "'" + std::string(text) + "': samples a second, 1 to 10000", {}};
+      ErrorCode::kCellUsage, "'" + Told("word", text) + "': samples a second, 1 to 10000", {}};
 }
 
 struct SampleRecorder::State {

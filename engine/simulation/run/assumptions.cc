@@ -14,14 +14,18 @@ void Assumptions::Add(const machine::Assumed& assumed) {
   if (!first_) first_ = assumed;
 }
 
-std::string Assumptions::Text() const {
+Detail Assumptions::Text() const {
   if (!first_) return {};
-  std::string text =
-      ", if " + std::string(first_->group) + '[' + std::to_string(first_->index) + "] is ";
-  text += first_->on_off ? (first_->value != 0.0 ? "ON" : "OFF") : ShortestText(first_->value);
+  const std::string variable =
+      std::string(first_->group) + '[' + std::to_string(first_->index) + ']';
+  Detail text = ", if " + Told("assumed", variable) + " is ";
+  text += Told("assumed_value", first_->value, {},
+               !first_->on_off        ? ShortestText(first_->value)
+               : first_->value != 0.0 ? "ON"
+                                      : "OFF");
   const std::size_t more = seen_.size() - 1;
   if (more > 0) {
-    text += " (and " + std::to_string(more) + " more";
+    text += " (and " + Told("more", more) + " more";
     text += more == 1 ? " is as it was)" : " are as they were)";
   }
   return text;

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/core/detail.h"
 #include "engine/machine/inputs.h"
 #include "engine/machine/observer.h"
 
@@ -19,7 +20,7 @@ class Assumptions {
   void Add(const machine::Assumed& assumed);
 
   // ", if VR[86] is 0"; ", if IL[5] is OFF (and 3 more are as they were)". Empty: nothing assumed.
-  std::string Text() const;
+  Detail Text() const;
 
  private:
   std::set<std::pair<machine::InputKind, int>> told_;

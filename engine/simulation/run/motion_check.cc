@@ -49,7 +49,7 @@ class MotionListener final : public machine::RunObserver {
     if (Contains(codes.by_speed, told.code)) told.severity = Severity::kWarning;
     const bool of_travel = told.code == info_.travel_left;
     const bool by_offset = of_travel && !std::exchange(anywhere_, false) && !offset_set_;
-    const std::string assumed = by_offset ? NoOffset() : assumptions_.Text();
+    const Detail assumed = by_offset ? NoOffset() : assumptions_.Text();
     if (IsError(told.severity) && !assumed.empty()) {
       told.severity = Severity::kWarning;
       told.detail += assumed;
@@ -70,8 +70,8 @@ class MotionListener final : public machine::RunObserver {
   const std::vector<machine::Reason>& doubts() const { return doubts_; }
 
  private:
-  std::string NoOffset() const {
-    return ", if no " + std::string(info_.check.work_offset) + " is in force before";
+  Detail NoOffset() const {
+    return ", if no " + Told("assumed", info_.check.work_offset) + " is in force before";
   }
 
   const machine::FamilyInfo& info_;
@@ -103,8 +103,8 @@ struct Ending {
   const machine::FamilyInfo& info;
   const machine::Outcome& outcome;
   MemoryGiven given = MemoryGiven::kInPart;
-  bool waits = false;     // for a condition that never comes true
-  std::string assumed{};  // Assumptions::Text
+  bool waits = false;  // for a condition that never comes true
+  Detail assumed{};    // Assumptions::Text
 
   // A program that may be on the machine all the same.
   bool LacksProgram() const {
@@ -145,11 +145,11 @@ std::optional<CutShort> WhyCutShort(const Ending& ending) {
   const machine::Outcome& outcome = ending.outcome;
   if (!outcome.code || *outcome.code == ending.info.travel_left) return {};
   const CatalogueEntry& entry = Lookup(*outcome.code);
-  std::string text = "not at all";
-  if (outcome.place.step > 0) text = "only up to step " + std::to_string(outcome.place.step);
-  if (outcome.place.line > 0) text += ", line " + std::to_string(outcome.place.line);
-  text += ": " + CodeText(entry.code) + ' ';
-  text += outcome.detail.empty() ? std::string(entry.when) : outcome.detail;
+  Detail text = "not at all";
+  if (outcome.place.step > 0) text = "only up to step " + Told("step", outcome.place.step);
+  if (outcome.place.line > 0) text += ", line " + Told("line", outcome.place.line);
+  text += ": " + Told("code", CodeText(entry.code)) + ' ';
+  text += Said(*outcome.code, outcome.detail);
   const ErrorCode cause = CauseOf(ending);
   if (cause == ErrorCode::kCellCheckFailsPerhaps) text += ending.assumed;
   return CutShort{.cause = cause, .text = std::move(text)};
@@ -160,7 +160,7 @@ std::optional<CutShort> WhyCutShort(const Ending& ending) {
 std::vector<machine::Reason> ReasonsOf(const RunReport& report, const machine::FamilyInfo& info,
                                        const MotionListener& listener) {
   std::vector<machine::Reason> reasons = listener.doubts();
-  const std::string assumed = listener.assumptions().Text();
+  const Detail assumed = listener.assumptions().Text();
   for (machine::Reason reason : report.judgement.reasons) {
     if (reason.code == report.outcome.code || reason.code == info.travel_left) continue;
     if (reason.verdict == machine::Verdict::kBad && !assumed.empty()) {
@@ -226,16 +226,15 @@ void AddWhatIsOfOthers(const CheckedRun& run, int slot, std::vector<machine::Rea
   if (run.for_sure) errors.push_back(DiagnosticOf(run.outcome));
   for (const Diagnostic& error : errors) {
     if (!IsError(error.severity)) continue;
-    met.push_back(
-        {.code = error.code,
-         .verdict = machine::Verdict::kBad,
-         .said = error.detail.empty() ? std::string(Lookup(error.code).when) : error.detail,
-         .first = PlaceOf(error)});
+    met.push_back({.code = error.code,
+                   .verdict = machine::Verdict::kBad,
+                   .said = Said(error.code, error.detail),
+                   .first = PlaceOf(error)});
   }
   for (machine::Reason& reason : met) {
     const int program = reason.first.program;
     if (program == 0 || program == slot) continue;
-    reason.said += ", in program " + std::to_string(program);
+    reason.said += ", in program " + Told("called", program);
     reason.first = {.program = slot};
     AddReason(std::move(reason), reasons);
   }

@@ -36,7 +36,7 @@ struct CutShort {
   // A code whose advice fits the reason: CellCheckCutShort (a bound), CellCheckLacksProgram,
   // CellCheckWaits, CellCheckFailsPerhaps, CellWaitsForever; where every run ends so, its error.
   ErrorCode cause = ErrorCode::kCellCheckCutShort;
-  std::string text{};  // "only up to step 12, line 9: OPT-E7201 ..."
+  Detail text{};  // "only up to step 12, line 9: OPT-E7201 ..."
 
   bool operator==(const CutShort&) const = default;
 };

@@ -110,6 +110,10 @@ bool Recorder::cut_off() const {
          (state_->toolpath && !state_->toolpath->complete());
 }
 
+std::string Recorder::OpenToolpathBlock() const {
+  return state_->toolpath ? state_->toolpath->OpenBlock() : std::string();
+}
+
 const InputDescription& Recorder::inputs() const { return state_->inputs; }
 
 void Recorder::Finish(const machine::Run& run) {

@@ -58,6 +58,9 @@ class Recorder final : public machine::RunObserver {
 
   const InputDescription& inputs() const;
 
+  // The block of the toolpath that is not full yet; empty: there is none.
+  std::string OpenToolpathBlock() const;
+
   // The report up to now. Whole after Finish.
   RunReport Report(const machine::Run& run) const;
 

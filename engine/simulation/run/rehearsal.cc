@@ -133,7 +133,7 @@ Result<CheckedProgram> CheckProgram(const ProgramMemory& memory,
   const auto last =
       std::ranges::find(ready.programs.rbegin(), ready.programs.rend(), slot, &MemoryProgram::slot);
   if (last == ready.programs.rend()) {
-    return Error{memory.family->info().empty_slot, "program " + std::to_string(slot), {}};
+    return Error{memory.family->info().empty_slot, "program " + Told("program", slot), {}};
   }
   MemoryProgram& program = *last;
   CheckedProgram check{.family = memory.family,

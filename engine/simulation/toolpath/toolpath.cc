@@ -88,7 +88,7 @@ bool IsJoined(const ToolpathRun& run, const ToolpathRun* before) {
                            : run.first_point == before->first_point + before->point_count - 1;
 }
 
-Error Corrupt(std::string detail) {
+Error Corrupt(Detail detail) {
   return Error{ErrorCode::kCellToolpathCorrupt, std::move(detail), {}};
 }
 
@@ -113,7 +113,7 @@ class BlockReader {
       return Corrupt("no first point");
     run_.end_us = static_cast<std::int64_t>(*start);
     for (std::uint64_t k = 0; k < *runs; ++k) {
-      if (!ReadRun(k == 0)) return Corrupt("run " + std::to_string(k + 1) + " cannot be read");
+      if (!ReadRun(k == 0)) return Corrupt("run " + Told("run", k + 1) + " cannot be read");
     }
     if (block_.points.size() != points_expected_) return Corrupt("points missing");
     if (!in_.at_end()) return Corrupt("bytes after the last run");

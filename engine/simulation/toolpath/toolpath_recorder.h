@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "engine/machine/shape.h"
 #include "engine/simulation/toolpath/toolpath_writer.h"
@@ -26,6 +27,9 @@ class ToolpathRecorder final : public machine::RunObserver {
 
   // Once, when the run is over: hands out what is left.
   void Finish();
+
+  // What is not handed out yet, as a block.
+  std::string OpenBlock() const { return writer_.OpenBlock(); }
 
   std::uint64_t points() const { return writer_.points(); }
   std::uint64_t bytes() const { return writer_.bytes(); }

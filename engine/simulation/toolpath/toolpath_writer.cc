@@ -5,6 +5,22 @@
 #include "engine/core/check.h"
 
 namespace rmlcell::simulation {
+namespace {
+
+// A run that was opened and then went nowhere: takes it back, with its point unless that is the
+// last one of the run before.
+void DropEmptyRun(ToolpathBlock& block) {
+  if (block.runs.empty() || block.runs.back().point_count > 1) return;
+  const std::uint32_t point = block.runs.back().first_point;
+  block.runs.pop_back();
+  const bool shared =
+      !block.runs.empty() && block.runs.back().first_point + block.runs.back().point_count > point;
+  if (shared) return;
+  block.points.pop_back();
+  block.reached_us.pop_back();
+}
+
+}  // namespace
 
 ToolpathWriter::ToolpathWriter(std::uint64_t bytes_max, ToolpathSink sink)
     : bytes_max_(bytes_max), sink_(std::move(sink)) {
@@ -13,21 +29,14 @@ ToolpathWriter::ToolpathWriter(std::uint64_t bytes_max, ToolpathSink sink)
   block_.reached_us.reserve(kToolpathBlockPoints);
 }
 
-// A run that was opened and then went nowhere: takes it back, with its point unless that is the
-// last one of the run before.
-void ToolpathWriter::DropEmptyRun() {
-  if (block_.runs.empty() || block_.runs.back().point_count > 1) return;
-  const std::uint32_t point = block_.runs.back().first_point;
-  block_.runs.pop_back();
-  const bool shared = !block_.runs.empty() &&
-                      block_.runs.back().first_point + block_.runs.back().point_count > point;
-  if (shared) return;
-  block_.points.pop_back();
-  block_.reached_us.pop_back();
+std::string ToolpathWriter::OpenBlock() const {
+  ToolpathBlock block = block_;
+  DropEmptyRun(block);
+  return block.runs.empty() ? std::string() : EncodeToolpathBlock(block);
 }
 
 void ToolpathWriter::Open(const ToolpathRun& run, const ToolpathPoint& first) {
-  DropEmptyRun();
+  DropEmptyRun(block_);
   // A run needs two points: its first one and one more.
   if (block_.points.size() + 2 > kToolpathBlockPoints) Flush();
   const bool joined = !block_.points.empty() && block_.points.back() == first;
@@ -67,7 +76,7 @@ void ToolpathWriter::EndAt(std::int64_t at_us) {
 
 void ToolpathWriter::Flush() {
   open_ = false;
-  DropEmptyRun();
+  DropEmptyRun(block_);
   if (!block_.runs.empty()) {
     const std::string bytes = EncodeToolpathBlock(block_);
     if (bytes_ + bytes.size() > bytes_max_ || !sink_(bytes)) {

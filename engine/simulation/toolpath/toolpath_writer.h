@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <string_view>
 
 #include "engine/simulation/toolpath/toolpath.h"
@@ -38,6 +39,9 @@ class ToolpathWriter {
   void EndAt(std::int64_t at_us);
   void Finish();  // hands out what is left
 
+  // The block that is not full yet, encoded as if it were; empty when it has no run.
+  std::string OpenBlock() const;
+
   bool open() const { return open_; }  // there is a present run
   const ToolpathRun& run() const { return block_.runs.back(); }
   const ToolpathPoint& last() const { return block_.points.back(); }
@@ -48,7 +52,6 @@ class ToolpathWriter {
   bool closed() const { return closed_; }  // the sink, or the budget, wants no more
 
  private:
-  void DropEmptyRun();
   void Flush();
 
   std::uint64_t bytes_max_;

@@ -126,7 +126,7 @@ constexpr std::array kRules = {
 // clang-format on
 
 // One figure may have several limits: the most serious rule speaks for all of them.
-bool Told(const machine::Judgement& judgement, const machine::VerdictRule& rule) {
+bool IsSaid(const machine::Judgement& judgement, const machine::VerdictRule& rule) {
   return std::ranges::any_of(judgement.reasons, [&](const machine::Reason& reason) {
     return reason.code == rule.code && reason.verdict > rule.verdict;
   });
@@ -140,7 +140,7 @@ void AddMeasuredRules(std::span<const MeasuredRule> rules, const RunReport& repo
       what.code = family->info().travel_left;
     const Measured measured = rule.measure(report);
     // The outcome may have said it.
-    const bool said = report.outcome.code == what.code || Told(judgement, what);
+    const bool said = report.outcome.code == what.code || IsSaid(judgement, what);
     if (!IsAbove(measured.value, what.limit) || said) continue;
     judgement.Add(machine::ReasonOf(
         what,
@@ -153,7 +153,7 @@ void AddFamilyRules(const machine::MachineFamily& family, std::span<const machin
                     machine::Judgement& judgement) {
   for (const machine::VerdictRule& rule : family.verdict_rules()) {
     const auto figure = std::ranges::find(figures, rule.figure, &machine::Figure::name);
-    if (figure != figures.end() && IsAbove(figure->value, rule.limit) && !Told(judgement, rule))
+    if (figure != figures.end() && IsAbove(figure->value, rule.limit) && !IsSaid(judgement, rule))
       judgement.Add(machine::ReasonOf(rule, *figure, figures));
   }
 }
@@ -209,14 +209,13 @@ machine::Judgement JudgeFindings(std::span<const Diagnostic> findings) {
       findings, [](const Diagnostic& finding) { return IsError(finding.severity); });
   if (first == findings.end()) return judgement;
   const auto& where = first->where;
-  judgement.Add(
-      {.code = first->code,
-       .verdict = Verdict::kBad,
-       .said = first->detail.empty() ? std::string(Lookup(first->code).when) : first->detail,
-       .first = {.program = first->program,
-                 .step = first->step,
-                 .line = where.line,
-                 .byte_offset = where.byte_offset}});
+  judgement.Add({.code = first->code,
+                 .verdict = Verdict::kBad,
+                 .said = Said(first->code, first->detail),
+                 .first = {.program = first->program,
+                           .step = first->step,
+                           .line = where.line,
+                           .byte_offset = where.byte_offset}});
   return judgement;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "tests/engine/core/arguments_text.h"
 #include "tests/engine/machine/machine_bed.h"
 
 namespace rmlcell::machine {
@@ -458,6 +459,22 @@ TEST_F(MachineTest, IsSavedAndMadeAnew) {
   Good(StartRun{.program = 1, .source = StartSource::kPanel});
   GoOn(At(6.0));
   EXPECT_EQ(Over().run.number, 2);  // numbers are never used twice
+}
+
+// What an order is refused for is known as numbers and words.
+TEST_F(MachineTest, RefusalsKnowWhatTheyAreAbout) {
+  Load({"COORD ROBOT\n"});
+  const auto told = [&](const MachineInput& input) {
+    const Status done = machine->Apply(input);
+    return done ? std::string("taken") : ArgumentsText(done.error().detail);
+  };
+  EXPECT_EQ(told(ChangeOverride{200.0}), "override=200 % least=10 % most=145 %");
+  EXPECT_EQ(told(StartRun{.program = 100}), "program=100");
+  EXPECT_EQ(told(StartRun{.program = 44}), "program=44");
+  EXPECT_EQ(told(DeleteProgram{44}), "program=44");
+  EXPECT_EQ(told(ChangeInput{InputKind::kLogical, 100, 1.0}), "input='IL[100]'");
+  EXPECT_EQ(told(SetBreakpoints{{{.at = {0, 3}}}}), "step=3");
+  EXPECT_EQ(told(WriteVariable{"IL[3]", 1.0}), "variable='IL[3]'");
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <array>
 #include <limits>
 
+#include "tests/engine/core/arguments_text.h"
+
 namespace rmlcell::machine {
 namespace {
 
@@ -51,6 +53,23 @@ TEST(Parameters, RangesIncludeTheirEnds) {
     EXPECT_EQ(CodeOf(parameters.Set("VMAX", value)), ErrorCode::kCellParameterRange) << value;
   }
   EXPECT_EQ(parameters.Number("VMAX"), 1000.0);  // unchanged on error
+}
+
+TEST(Parameters, RefusalsKnowNameValueAndRangeInTheirUnit) {
+  Parameters parameters(kTable);
+  const auto told = [](const Status& status) {
+    return status ? std::string("good") : ArgumentsText(status.error().detail);
+  };
+  const Status high = parameters.Set("VMAX", 2000.5);
+  EXPECT_EQ(high.error().detail, "VMAX is 2000.5, allowed are 1 to 1000");
+  EXPECT_EQ(told(high), "name='VMAX' value=2000.5 mm/s least=1 mm/s most=1000 mm/s");
+  EXPECT_EQ(told(parameters.Set("VMIN", 1.0)), "name='VMIN'");
+  EXPECT_EQ(told(parameters.Set("VMAX", std::string_view("fast"))), "name='VMAX' word='fast'");
+  EXPECT_EQ(told(parameters.Set("DIRECTION", std::string_view("LEFT"))),
+            "name='DIRECTION' choices='ARROW EFA51 NONE'");
+  const Detail offset = parameters.ToldNumber("limit", "OFFSET");
+  EXPECT_EQ(offset, "0");
+  EXPECT_EQ(ArgumentsText(offset), "limit=0 mm");
 }
 
 TEST(Parameters, WhatIsNotThereOrNotSuchIsRefused) {

@@ -75,7 +75,7 @@ TEST(Profiles, AreFoundByForgivingNames) {
   EXPECT_FALSE(MakeParameters(mill, "srm-200", {}));
   const auto said = [&](const std::string& name) {
     const Result<Parameters> none = MakeParameters(mill, name, {});
-    return none ? std::string() : none.error().detail;
+    return none ? Detail() : none.error().detail;
   };
   EXPECT_EQ(said("mdx40"), "no profile 'mdx40'; did you mean mdx-40a or mdx-40a-rotary?");
   EXPECT_EQ(said("mdx"),

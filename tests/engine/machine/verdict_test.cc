@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/engine/core/arguments_text.h"
+
 namespace rmlcell::machine {
 namespace {
 
@@ -41,6 +43,9 @@ TEST(ReasonOf, FiguresStandInTheSentence) {
             "1.000 mm/s in place of 2.5, with 3 mm");
   EXPECT_EQ(said("of #{none}.", "", 1.0), "of .");
   EXPECT_EQ(said("no number", "", 1.0), "no number");
+  EXPECT_EQ(ArgumentsText(said("# mm/s in place of #{feed}", "mm/s", 1.0)),
+            "x=1 mm/s feed=2.5005 mm/s");
+  EXPECT_EQ(ArgumentsText(said("# times", "", 3.0)), "x=3");
 }
 
 }  // namespace

@@ -96,7 +96,8 @@ TEST(BendStretches, EveryRampKeepsTheSpeedsOfTheBend) {
   EXPECT_GT(halves, 20);
 }
 
-BendSpeeds Speeds(double (*at)(std::size_t)) {
+template <class At>
+BendSpeeds Speeds(At at) {
   BendSpeeds speeds;
   for (std::size_t k = 0; k < speeds.most.size(); ++k) speeds.most[k] = at(k);
   return speeds;
@@ -178,6 +179,33 @@ TEST(BendStretches, ADipBehindTheStartIsTheSpeedAllAlong) {
     EXPECT_EQ(bend.start, 9.0) << dip;
     EXPECT_EQ(bend.open, 9.0) << dip;
     EXPECT_EQ(bend.middle, 9.0) << dip;
+  }
+}
+
+// Who begins slower may be at its speed sooner: of jerk J a ramp to w from w/3 takes a way of
+// (4/3) sqrt(2/3) w sqrt(w/J), 1.089 of it, that from rest 1. A bend that opens just as the ramp
+// from its start does is too tight for the one from rest, so the speed on the way is less.
+TEST(BendStretches, RampsFromLowerSpeedsKeepTheSpeedsToo) {
+  constexpr PathLimits kRamp{.speed = 20.0, .acceleration = 1e9, .jerk = 250.0};
+  constexpr double kStart = 20.0 / 3.0;
+  const double half_mm = RampLength(kStart, 20.0, kRamp);
+  ASSERT_NEAR(half_mm / RampLength(0.0, 20.0, kRamp), 4.0 / 3.0 * std::sqrt(2.0 / 3.0), 1e-9);
+  const SpeedProfile ramp = SpeedProfile::Span(half_mm, kStart, 20.0, kRamp);
+  const BendSpeeds opens = Speeds([&](std::size_t k) {
+    const double x = half_mm * static_cast<double>(k) / BendSpeeds::kSteps;
+    const double room = k == 0 ? 1.0 : k < BendSpeeds::kSteps / 2 ? 1.03 : 1.001;
+    return std::min(room * ramp.At(ramp.TimeAt(x)).speed, 20.0);
+  });
+  const BendStretches bend = StretchesOf(opens, half_mm, kRamp);
+  EXPECT_EQ(bend.count, 1u);
+  EXPECT_NEAR(bend.start, kStart, 1e-9);
+  EXPECT_GT(bend.open, 1.5 * kStart);
+  EXPECT_LT(bend.open, 20.0);
+  const double way = RampLength(0.0, bend.open, kRamp);
+  const SpeedProfile from_rest = SpeedProfile::Span(way, 0.0, bend.open, kRamp);
+  for (std::size_t k = 0; k <= BendSpeeds::kSteps; ++k) {
+    const double x = std::min(half_mm * static_cast<double>(k) / BendSpeeds::kSteps, way);
+    EXPECT_LE(from_rest.At(from_rest.TimeAt(x)).speed, opens.most[k] * 1.001) << k;
   }
 }
 

@@ -138,6 +138,32 @@ TEST(ItemStageDump, SectionsAreGivenOutMoveByMove) {
   EXPECT_TRUE(legs.moves().empty());
 }
 
+// As many spans are timed together as have room among 2560 cells with three to each: 853, of which
+// one is taken here. No knot of this chain is passed as fast as it may be.
+TEST(ItemStageDump, SectionsHaveAsManySpansAsThereIsRoomFor) {
+  MachineLimits machine = PlainMachine();
+  machine.tip_acceleration_mm_s2 = 10.0;  // 405 mm to 90 mm/s
+  machine.tip_jerk_mm_s3 = 1000.0;
+  machine.axes.jerk.fill(1e9);
+  ItemStage items(machine, Planner::kWindow);
+  SpanStage& spans = items.span_stage();
+  LegStage& legs = spans.leg_stage();
+  for (int k = 0; k < 2000; ++k) {
+    MoveCommand move;
+    move.path = PathPiece::Line({{0.1 * k, 0, 0}}, {{0.1 * (k + 1), 0, 0}});
+    move.speed_fraction = k % 2 == 0 ? 0.9 : 1.0;  // else they would be one leg
+    move.fly = true;
+    legs.Add(move, legs.LimitsFor(move), true);
+  }
+  legs.End();
+  legs.Settle();
+  while (spans.Resolve(false)) {
+  }
+  spans.Settle();
+  ASSERT_NE(items.Next(), nullptr);
+  EXPECT_TRUE(items.Dump().starts_with("section: 852 spans, ")) << items.Dump().substr(0, 60);
+}
+
 // Two lines in a row are one leg, and open until the chain is at an end; then a span that takes
 // 0.1 s to speed up over 5 mm, 0.9 s for the 90 mm between and 0.1 s to stop.
 TEST(ChainDump, ALineSplitInTwoIsOneLeg) {

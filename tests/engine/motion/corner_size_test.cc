@@ -214,6 +214,18 @@ TEST(CornerSize, SmallestBend) {
   EXPECT_EQ(Passed(Lines(90), w * 0.999 / 50.0, Trapezoids()).passage, Passage::kStopShort);
 }
 
+// motion.md 4.4: d < 1e-4 mm stops, so a run of 2e-4 mm, half of which is 1e-4 mm, has a bend.
+TEST(CornerSize, SmallestBendIsItself) {
+  const auto passage_behind = [](double length) {
+    return Passed({PathPiece::Line({{0, 0, 0}}, {{length, 0, 0}}),
+                   PathPiece::Line({{length, 0, 0}}, {{length, 100, 0}})},
+                  1.0, Trapezoids())
+        .passage;
+  };
+  EXPECT_EQ(passage_behind(1.999e-4), Passage::kStopShort);
+  EXPECT_EQ(passage_behind(2e-4), Passage::kBlendCapped);
+}
+
 // d <= half of each adjacent run, exactly: 3 and 40 mm, either way round. Speed by 4.3's bounds.
 TEST(CornerSize, HalfOfTheShorterNeighbour) {
   for (const bool short_first : {true, false}) {

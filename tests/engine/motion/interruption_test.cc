@@ -139,6 +139,28 @@ TEST(RestartAlong, LimitsStayThoseOfThePlan) {
   }
 }
 
+// Where a ramp in a bend asks too much of an axis a gentler one goes on: with a half, a quarter ...
+// of the limit on jerk as of that on acceleration. OPT-B.31
+TEST(RestartAlong, GentlerRampsAreGentlerInTheirJerk) {
+  MachineLimits machine = StandardMachine();
+  int gentler = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const std::vector<PlannedMotion> plan =
+        Plan(RandomChain(seed, 6, {.all_fly = true, .shortest_mm = 0.5, .longest_mm = 5.0}));
+    for (std::size_t k = 0; k < plan.size(); ++k) {
+      if (plan[k].path.kind() != PathPiece::Kind::kBlend) continue;
+      const std::vector<PlannedMotion> rest =
+          RestartAlong(std::span(plan).subspan(k), 0.5 * plan[k].path.length(), machine.axes);
+      ASSERT_FALSE(rest.empty());
+      ASSERT_GT(rest[0].speed.phase_count(), 0);
+      const double share = rest[0].speed.phase(0).jerk / plan[k].limits.jerk;
+      EXPECT_NEAR(std::exp2(std::round(std::log2(share))), share, 1e-9) << seed;
+      gentler += share < 0.75 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(gentler, 0);
+}
+
 // Stopped anywhere and started again: the same path, every limit kept, the end at rest at the
 // target. motion.md section 10, property 12
 TEST(RestartAlong, GoesOnOverTheSamePath) {

@@ -60,5 +60,68 @@ TEST(VariedBends, KeepEveryAxisWhileTheHeadTurns) {
   }
 }
 
+// Whether a bend between these pieces that is smaller than its speed needs is passed with changing
+// speed.
+bool Varies(const PathPiece& in, const PathPiece& out, const MachineLimits& machine) {
+  std::vector<MoveCommand> chain(2);
+  chain[0].path = in;
+  chain[0].fly = true;
+  chain[1].path = out;
+  bool varies = false;
+  int bends = 0;
+  for (const PlannedMotion& motion : Plan(chain, machine)) {
+    if (motion.path.kind() != PathPiece::Kind::kBlend) continue;
+    ++bends;
+    varies = varies || motion.restart_speed < kLargest;
+  }
+  EXPECT_GT(bends, 0);
+  return varies;
+}
+
+// motion.md 5.4: only where no axis can be asked for more than the tip, whatever its speed does:
+// each by its acceleration and by its jerk, unless there is no limit on jerk at all.
+TEST(VariedBends, NeedAxesThatFollowTheTip) {
+  const PathPiece in = PathPiece::Line({{990, 900, -200}}, {{1000, 900, -200}});
+  const PathPiece out = PathPiece::Line({{1000, 900, -200}}, {{1000, 910, -200}});
+  EXPECT_TRUE(Varies(in, out, StandardMachine()));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    MachineLimits machine = StandardMachine();
+    machine.axes.jerk[axis] *= 2.0;
+    machine.axes.acceleration[axis] *= 2.0;
+    EXPECT_TRUE(Varies(in, out, machine)) << axis;
+    machine.axes.jerk[axis] = 0.99 * machine.tip_jerk_mm_s3;
+    EXPECT_FALSE(Varies(in, out, machine)) << axis;
+    machine = StandardMachine();
+    machine.axes.acceleration[axis] *= 0.99;
+    EXPECT_FALSE(Varies(in, out, machine)) << axis;
+    machine = StandardMachine();
+    machine.axes.jerk[axis] *= 0.99;
+    machine.tip_jerk_mm_s3 = kNoLimit;
+    EXPECT_TRUE(Varies(in, out, machine)) << axis;
+  }
+}
+
+// motion.md 5.4: the head must not turn on either side, by A or by B.
+TEST(VariedBends, NeedAHeadThatStands) {
+  const auto in = [](double a_rad, double b_rad) {
+    return PathPiece::Line({{990, 900, -200}, 0.3 - a_rad, 0.4 - b_rad},
+                           {{1000, 900, -200}, 0.3, 0.4});
+  };
+  const auto out = [](double a_rad, double b_rad) {
+    return PathPiece::Line({{1000, 900, -200}, 0.3, 0.4},
+                           {{1000, 910, -200}, 0.3 + a_rad, 0.4 + b_rad});
+  };
+  // A quarter of a circle of 20 mm, so that the bend is no plain one.
+  const PathPiece arc =
+      PathPiece::ArcThrough({{980, 880, -200}, 0.3, 0.4}, {985.857864376, 894.142135624, -200},
+                            {{1000, 900, -200}, 0.3, 0.4})
+          ->path;
+  EXPECT_TRUE(Varies(arc, out(0, 0), StandardMachine()));
+  EXPECT_FALSE(Varies(in(0.02, 0), out(0, 0), StandardMachine()));
+  EXPECT_FALSE(Varies(in(0, 0.02), out(0, 0), StandardMachine()));
+  EXPECT_FALSE(Varies(in(0, 0), out(0.02, 0), StandardMachine()));
+  EXPECT_FALSE(Varies(in(0, 0), out(0, 0.02), StandardMachine()));
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

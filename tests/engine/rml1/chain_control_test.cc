@@ -293,5 +293,28 @@ TEST(MillChainControl, KeepsThePathWhateverKeysArePressed) {
   }
 }
 
+// A window of 65,536 vertices does not show the 90 mm that braking takes from 60 mm/s by 20 mm/s2,
+// in steps of 1 um. What has been counted stays counted when an override plans anew.
+TEST(MillChainControl, AnOverrideForgetsNoStarvedLookAhead) {
+  machine::Parameters parameters = ParametersOf("t1");
+  ASSERT_TRUE(parameters.Set("ACCELERATION", 20.0).ok());
+  std::string stream = "!MC0;V60;Z0,0,0";
+  for (int k = 1; k <= 190'000; ++k)
+    stream += "," + std::to_string(k / 10) + "." + std::to_string(k % 10) + ",0,0";
+  TestRun run(parameters, stream + ";");
+  run.seen().keep_events = false;
+  const auto starved = [&] { return run.figures().at("lookahead_starved"); };
+  for (double x = 0.0; x < 50.0; x = run->state().tip.tip.x())
+    run->Advance(run->state().time + 100ms);
+  const double before = starved();
+  EXPECT_GT(before, 0.0);
+  run.Press(InputKind::kOverride, 50.0);
+  EXPECT_GE(starved(), before);
+  run->Advance(run->state().time + 1ms);
+  run.Press(InputKind::kOverride, 60.0);
+  EXPECT_GE(starved(), before);
+  EXPECT_LT(starved(), before + 190'000.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

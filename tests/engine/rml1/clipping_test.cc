@@ -118,5 +118,19 @@ TEST(Pieces, ShareTheRotaryAxisAlongTheLine) {
   EXPECT_NEAR(pieces.all()[0].to.a, 80.0, 1e-9);
 }
 
+// RML1-5A.01: what counts as on a face although it is beyond it is put on the face, so that no
+// piece inside leaves the travel; along X, Y and Z, at the very end of the tolerance.
+TEST(Pieces, PutWhatCountsAsOnAFaceOnTheFace) {
+  constexpr double kBeyond = CuttingRange::kFaceTolerance;
+  const Pieces x = Pieces::Cut(kRange, {-kBeyond, 1000, -100, 0}, {-kBeyond, 2000, -100, 0}, kZero);
+  ASSERT_EQ(x.all().size(), 1U);
+  EXPECT_EQ(x.all()[0].from.x, 0.0);
+  EXPECT_EQ(x.all()[0].to.x, 0.0);
+  const Pieces z = Pieces::Cut(kRange, {500, 1000, kBeyond, 0}, {500, 2000, kBeyond, 0}, kZero);
+  ASSERT_EQ(z.all().size(), 1U);
+  EXPECT_EQ(z.all()[0].from.z, 0.0);
+  EXPECT_EQ(z.all()[0].to.z, 0.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

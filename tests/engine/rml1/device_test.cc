@@ -294,5 +294,20 @@ TEST(Device, RelativeValuesHaveTheRangeOfTheirPlace) {
   EXPECT_EQ(error("PA;PU0," + value(kFloatMax + 1) + ";"), "3");
 }
 
+// RML1-3D.12, RML1-3D.25: axes that cannot move together drop all up to the terminator, later
+// groups too, and without further errors; the command behind it runs.
+TEST(Device, DropsTheGroupsBehindAxesThatCannotMoveTogether) {
+  TestDevice device(ParametersOf("t1a"));
+  device.Feed("!ZE X100:Y200A90:X300:Z400;");
+  EXPECT_EQ(device.CountOf(FindingKind::kAxesTogether), 1);
+  EXPECT_EQ(device.findings().size(), 1U);
+  EXPECT_EQ(device->carriage().logical().x, 100.0);
+  EXPECT_EQ(device->carriage().logical().y, 0.0);
+  EXPECT_EQ(device->carriage().logical().z, 0.0);
+  device.Feed("!ZE X700;");
+  EXPECT_EQ(device.findings().size(), 1U);
+  EXPECT_EQ(device->carriage().logical().x, 700.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -189,5 +189,19 @@ TEST(Registers, AreReadByName) {
   EXPECT_FALSE(family.HasVariable(parameters, "Q"));
 }
 
+// RML1-3A.46: T1 cuts at 0.5 to 60 mm/s. Half of what was asked for is as far away as twice as
+// much: told is the first of those, which is the place that is shown.
+TEST(Figures, OfTwoLimitedSpeedsAsFarAwayTellTheFirst) {
+  TestRun fast(ParametersOf("t1"), "@-100,200;V5;VS120;PD1000,0;VS0.25;PD1010,0;");
+  fast.AdvanceToEnd();
+  EXPECT_EQ(fast.figures().at("feed_limited_asked"), 120.0);
+  EXPECT_EQ(fast.figures().at("feed_limited_used"), 60.0);
+  EXPECT_NEAR(fast.figures().at("feed_limited_length"), 10.1, 1e-9);
+  TestRun slow(ParametersOf("t1"), "@-100,200;V5;VS0.25;PD10,0;VS120;PD1010,0;");
+  slow.AdvanceToEnd();
+  EXPECT_EQ(slow.figures().at("feed_limited_asked"), 0.25);
+  EXPECT_EQ(slow.figures().at("feed_limited_used"), 0.5);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

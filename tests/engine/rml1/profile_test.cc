@@ -324,7 +324,8 @@ TEST(Profile, AllOfThemFit) {
 
 // Parameters that do not fit together are refused by name.
 TEST(Profile, RefusesMisfits) {
-  const auto refusal = [](std::initializer_list<std::pair<const char*, double>> values) {
+  const auto refusal =
+      [](std::initializer_list<std::pair<const char*, double>> values) -> std::string {
     machine::Parameters parameters = ParametersOf("t1");
     for (const auto& [name, value] : values) EXPECT_TRUE(parameters.Set(name, value).ok());
     const Result<Profile> profile = MakeProfile(parameters);

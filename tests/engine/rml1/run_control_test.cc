@@ -471,5 +471,25 @@ TEST(MillRunControl, RefusesImpossibleSetups) {
   EXPECT_EQ(run->outcome().code, ErrorCode::kCellNotFound);
 }
 
+// What happens exactly where a call ends belongs to the next one: HOLD applied at the beginning, or
+// where a dwell ends, stands before the motion that would begin there, as a scripted one does.
+TEST(MillRunControl, LeavesWhatHappensAtTheEndOfACallToTheNext) {
+  TestRun first(ParametersOf("t1"), "!MC0;PU1000,0;");
+  ASSERT_EQ(first->Advance(SimTime::zero()), RunPhase::kRunning);
+  EXPECT_TRUE(first.seen().Events().empty());
+  first.Press(InputKind::kHold);
+  ASSERT_EQ(first.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_EQ(first->state().time, SimTime::zero());
+  EXPECT_TRUE(first.seen().motions().empty());
+
+  TestRun second(ParametersOf("t1"), "!MC0;W250;PU1000,0;");
+  second->Advance(250ms);
+  EXPECT_EQ(second->state().time, SimTime(250ms));
+  second.Press(InputKind::kHold);
+  ASSERT_EQ(second.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_EQ(second->state().time, SimTime(250ms));
+  EXPECT_TRUE(second.seen().motions().empty());
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

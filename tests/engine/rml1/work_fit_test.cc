@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/rml1/rml1_family.h"
+#include "engine/rml1/step_guess.h"
 
 namespace rmlcell::rml1 {
 namespace {
@@ -126,6 +127,19 @@ TEST(WorkFit, TheAnswerDoesNotHangOnTheOrigin) {
     EXPECT_NEAR(figures.at("origin.ymax"), 120.0, 1e-9) << x;
     EXPECT_NEAR(figures.at("origin.zmin"), -58.0, 1e-9) << x;
     EXPECT_EQ(figures.at("oversize_x"), 0.0) << x;
+  }
+}
+
+// RML1-1.08: what is larger than the travel by the 0.01 mm of rounding is no reason to guess
+// another step; more than that is, along any axis.
+TEST(StepGuess, RoundingBeyondTheTravelIsNoReason) {
+  const CuttingRange travel{{0.0, 8000.0}, {0.0, 6000.0}, {-2400.0, 0.0}};
+  for (WorkFit::Axis WorkFit::*axis : {&WorkFit::x, &WorkFit::y, &WorkFit::z}) {
+    WorkFit fit;
+    (fit.*axis).over = 0.01;
+    EXPECT_EQ(GuessStep(fit, travel, {}, 40.0).fits_at, 0.0);
+    (fit.*axis).over = 0.0125;
+    EXPECT_EQ(GuessStep(fit, travel, {}, 40.0).fits_at, 100.0);
   }
 }
 

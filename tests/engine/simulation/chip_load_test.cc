@@ -43,7 +43,8 @@ TEST(ChipLoad, TellsWhatIsWrongWithATable) {
     text.replace(text.find(what), what.size(), by);
     const auto read = ReadChipTables(text);
     EXPECT_FALSE(read) << text;
-    return read ? std::string() : read.error().detail;
+    EXPECT_TRUE(!read && read.error().code == ErrorCode::kCellBadText) << text;
+    return read ? Detail() : read.error().detail;
   };
   EXPECT_EQ(fault(kTin, "source = 'measured'\n", ""), "chip_loads.toml:1: tin has no source");
   EXPECT_EQ(fault(kTin, "speed_most_m_min = 100", ""),

@@ -227,5 +227,25 @@ TEST(MillingRecorder, TellsTheShankInMaterial) {
   EXPECT_EQ(recorder.Figures().shank_place.step, 2);
 }
 
+// motion.md 9: the way down that takes off most at 80 % of the speed of Z or more is told with its
+// speed and its place; of two that take off as much the first, and none that is slower or rises.
+TEST(MillingRecorder, TellsTheFirstOfTheDeepestFastPlunges) {
+  machine::MachineShape shape = MillShape();
+  shape.limits.emplace();
+  shape.limits->axes.speed.z() = 10.0;
+  MillingRecorder recorder(shape, kSlot);
+  Tell(recorder, {2, 2, 1}, {2, 2, -3}, 7.9, 1);
+  EXPECT_EQ(recorder.Figures().fast_plunge_mm, 0.0);
+  Tell(recorder, {8, 2, 1}, {8, 2, -1}, 10.0, 2);
+  Tell(recorder, {14, 2, 1}, {14, 2, -2}, 9.0, 3);
+  Tell(recorder, {2, 9, 1}, {2, 9, -2}, 10.0, 4);
+  Tell(recorder, {8, 9, 1}, {8, 9, -1.5}, 10.0, 5);
+  Tell(recorder, {14, 9, -2.5}, {14, 9, 1}, 10.0, 6);
+  const MillingFigures figures = recorder.Figures();
+  EXPECT_NEAR(figures.fast_plunge_mm, 2.0, 1e-6);
+  EXPECT_EQ(figures.fast_plunge_mm_s, 9.0);
+  EXPECT_EQ(figures.fast_plunge_place.step, 3);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

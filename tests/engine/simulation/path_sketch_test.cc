@@ -262,5 +262,19 @@ TEST(DropAlike, DropsCopiesFromEitherEnd) {
   EXPECT_EQ(elements.size(), 4u);
 }
 
+// An arc whose middle is as near to where it begins as the tolerance is drawn as a line, wherever
+// it lies; one that reaches further stays an arc.
+TEST(MergeStraight, TakesArcsWithinTheToleranceForLines) {
+  const auto arc_left = [](const motion::MachinePoint& from, const motion::MachinePoint& middle) {
+    std::vector<SketchElement> elements(1);
+    elements[0] = {.from = from, .to = from, .middle = middle, .arc = 0};
+    MergeStraight(elements, 0.5);
+    return elements.at(0).arc == 0;
+  };
+  EXPECT_FALSE(arc_left({1000, 0, 0}, {1000, 0.5, 0}));
+  EXPECT_TRUE(arc_left({1000, 0, 0}, {1000, 0.75, 0}));
+  EXPECT_TRUE(arc_left({-5, 0, 0}, {5, 0, 0}));
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

@@ -70,6 +70,37 @@ double WorstDistance(const PathPiece& path, const motion::Head& head, const Tool
   return worst;
 }
 
+// What is not handed out yet can be looked at, as often as one likes, and changes nothing.
+TEST(ToolpathRecorder, TheOpenBlockHasWhatIsNotHandedOut) {
+  machine::MachineShape shape;
+  shape.limits = motion::StandardMachine();
+  std::vector<std::string> blocks;
+  ToolpathRecorder recorder(shape, {}, [&](std::string_view bytes) {
+    blocks.emplace_back(bytes);
+    return true;
+  });
+  EXPECT_EQ(recorder.OpenBlock(), "");
+  const motion::PathLimits limits{.speed = 10.0, .acceleration = 10.0};
+  Script script;
+  script.Step(45, 7);
+  script.Motion(Planned(LineFrom({0, 0, 0}, {10, 0, 0}), limits), {});  // 2 s
+  script.Motion(Planned(LineFrom({10, 0, 0}, {10, 10, 0}), limits), {});
+  FakeRun run(script, recorder);
+  run.Advance(SimTime(std::chrono::milliseconds(2500)));
+  const Result<ToolpathBlock> half = DecodeToolpathBlock(recorder.OpenBlock());
+  ASSERT_TRUE(half);
+  EXPECT_EQ(half->points.front(), (ToolpathPoint{0, 0, 0}));
+  EXPECT_EQ(half->points.at(1), (ToolpathPoint{10'000, 0, 0}));
+  run.Advance(kForever);
+  const std::string whole = recorder.OpenBlock();
+  EXPECT_EQ(recorder.OpenBlock(), whole);
+  EXPECT_TRUE(blocks.empty());
+  recorder.Finish();
+  ASSERT_EQ(blocks.size(), 1U);
+  EXPECT_EQ(blocks[0], whole);
+  EXPECT_EQ(recorder.OpenBlock(), "");
+}
+
 // motion.md 9: a line is two points; step, use, beam, speed class and times of a run. SPEED 10 of
 // 500 mm/s is class 2. 10 mm with 10 mm/s2 to 10 mm/s take 2 s.
 TEST(ToolpathRecorder, LineIsTwoPoints) {

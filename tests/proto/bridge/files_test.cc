@@ -126,7 +126,7 @@ TEST(Encoding, IsStable) {
   outcome.set_code("X");
   EXPECT_EQ(
       StableJson(outcome, false),
-      R"({"kind":"KIND_UNSPECIFIED","code":"X","symbol":"","message":"","advice":"","verdict":"VERDICT_UNSPECIFIED","reasons":[],"confirmation":"END_CONFIRMATION_UNSPECIFIED"})");
+      R"({"kind":"KIND_UNSPECIFIED","code":"X","symbol":"","message":"","advice":"","verdict":"VERDICT_UNSPECIFIED","reasons":[],"confirmation":"END_CONFIRMATION_UNSPECIFIED","arguments":[]})");
   EXPECT_NE(StableJson(outcome, true)->find("\n \"code\": \"X\""), std::string::npos);
 }
 

@@ -84,6 +84,35 @@ Diagnostic Whole() {
           .at = std::chrono::seconds(9)};
 }
 
+// What the text is made of goes with it, wherever it goes: a finding, there and back, an error, an
+// outcome, a reason of a verdict.
+TEST(DiagnosticMessage, NumbersAndWordsGoWithTheText) {
+  const Detail detail = "speed of " + Told("word", "!MC") + " is " +
+                        Told("speed", 0.25, "mm/s", "0.25 mm/s") + ", not " + Told("limit", 3);
+  ASSERT_EQ(detail, "speed of !MC is 0.25 mm/s, not 3");
+  const auto expect = [](const auto& message) {
+    ASSERT_EQ(message.arguments_size(), 3);
+    ExpectMessage(message.arguments(0), "name: 'word' text: '!MC'");
+    ExpectMessage(message.arguments(1), "name: 'speed' number: 0.25 unit: 'mm/s'");
+    ExpectMessage(message.arguments(2), "name: 'limit' number: 3");
+  };
+  Diagnostic finding = Whole();
+  finding.detail = detail;
+  expect(ToProto(finding));
+  EXPECT_EQ(FromProto(ToProto(finding)).detail.arguments(), detail.arguments());
+  const google::rpc::Status status = ToRpcStatus({ErrorCode::kHoleRadiusZero, detail, {}});
+  v1::ErrorDetail error;
+  ASSERT_TRUE(status.details(1).UnpackTo(&error));
+  expect(error);
+  const machine::Outcome outcome{
+      .kind = machine::OutcomeKind::kFailed, .code = ErrorCode::kHoleRadiusZero, .detail = detail};
+  machine::Judgement judgement{.verdict = machine::Verdict::kBad};
+  judgement.reasons.push_back({.verdict = machine::Verdict::kBad, .said = detail});
+  const v1::Outcome judged = ToProto(outcome, judgement);
+  expect(judged);
+  expect(judged.reasons(0));
+}
+
 TEST(DiagnosticMessage, EveryFieldThereAndBack) {
   const CatalogueEntry& entry = Lookup(ErrorCode::kHoleRadiusZero);
   const v1::Diagnostic message = ToProto(Whole());

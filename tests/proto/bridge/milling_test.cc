@@ -81,7 +81,7 @@ TEST(MillingOfAJob, AMaterialHasItsChipsAtTheDiameterOfTheTool) {
 }
 
 TEST(MillingOfAJob, RefusesWhatCannotBeByItsField) {
-  const auto said = [](const std::function<void(v1::Milling&)>& change) {
+  const auto said = [](const std::function<void(v1::Milling&)>& change) -> std::string {
     v1::Milling milling = Sound();
     change(milling);
     const auto made = FromProto(milling);

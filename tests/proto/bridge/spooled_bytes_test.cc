@@ -44,6 +44,27 @@ TEST(SpooledBytes, GiveBackWhatCame) {
   }
 }
 
+// While they grow: from the file, from memory, and up to where the one ends and the other begins.
+TEST(SpooledBytes, GivePartsOfWhatIsThere) {
+  const std::string text = Numbered(2'500'000);
+  SpooledBytes spooled;
+  EXPECT_EQ(*spooled.Part(0, 10), "");
+  spooled.append(text.substr(0, 600'000));
+  EXPECT_EQ(*spooled.Part(599'990, 100), text.substr(599'990, 10));
+  spooled.append(text.substr(600'000));
+  std::string together;
+  while (together.size() < text.size()) {
+    const std::string part = *spooled.Part(static_cast<std::int64_t>(together.size()), 300'007);
+    ASSERT_FALSE(part.empty());
+    ASSERT_LE(part.size(), 300'007U);
+    together += part;
+  }
+  EXPECT_TRUE(together == text);
+  EXPECT_EQ(*spooled.Part(2'500'000, 1), "");
+  EXPECT_EQ(*spooled.Part(9'000'000, 1), "");
+  EXPECT_TRUE(*spooled.Finish() == text);  // what was looked at is still there
+}
+
 TEST(SpooledBytes, BeginAnew) {
   SpooledBytes spooled;
   spooled.append(Numbered(2'000'000));

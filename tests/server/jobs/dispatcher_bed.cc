@@ -93,8 +93,19 @@ void FakeWorker::Artifact(const std::string& name, const std::string& bytes) {
   Send(std::move(message));
 }
 
-void FakeWorker::Finish(v1::Outcome::Kind kind, const std::map<int, std::string>& executables) {
+void FakeWorker::Toolpath(const std::string& frames, const std::string& open_block) {
   v1::WorkRequest message;
+  *message.mutable_toolpath()->mutable_lease() = assignment_.lease();
+  message.mutable_toolpath()->set_frames(frames);
+  message.mutable_toolpath()->set_open_block(open_block);
+  Send(std::move(message));
+}
+
+void FakeWorker::Finish(v1::Outcome::Kind kind, const std::map<int, std::string>& executables,
+                        const std::vector<std::string>& last_told) {
+  v1::WorkRequest message;
+  for (const std::string& text : last_told)
+    message.mutable_finish()->add_events()->mutable_message()->set_text(text);
   *message.mutable_finish()->mutable_lease() = assignment_.lease();
   message.mutable_finish()->mutable_outcome()->set_kind(kind);
   for (const v1::AssignedProgram& program : assignment_.programs()) {

@@ -63,8 +63,10 @@ class FakeWorker {
   void Position(std::int64_t time_ns);
   void Events(int count, const std::string& text = "text");
   void Artifact(const std::string& name, const std::string& bytes);
+  void Toolpath(const std::string& frames, const std::string& open_block);
   void Finish(v1::Outcome::Kind kind = v1::Outcome::KIND_COMPLETED,
-              const std::map<int, std::string>& executables = {});
+              const std::map<int, std::string>& executables = {},
+              const std::vector<std::string>& last_told = {});
   void HandBack();
   void Leave() { dispatcher_.Leave(id_); }
   // After it said that it began with its job: this attempt counts.

@@ -3,6 +3,7 @@
 
 #include "server/base/names.h"
 #include "server/jobs/dispatcher.h"
+#include "server/jobs/running_toolpath.h"
 #include "tests/server/jobs/dispatcher_bed.h"
 
 namespace rmlcell::server {
@@ -64,6 +65,47 @@ TEST(DispatcherCancel, ACancelledJobIsNotBegunAgain) {
     ASSERT_TRUE(next.Take());
     EXPECT_EQ(next.job(), other);
   }
+}
+
+// The worker is asked once, however many follow; all of them see the same.
+TEST(DispatcherToolpath, IsFollowedWhileTheJobRuns) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  EXPECT_EQ(bed.dispatcher().FollowToolpath(job), nullptr);  // it waits
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  const auto toolpath = bed.dispatcher().FollowToolpath(job);
+  ASSERT_NE(toolpath, nullptr);
+  EXPECT_EQ(bed.dispatcher().FollowToolpath(job), toolpath);
+  const v1::WorkerControl order = worker.Ordered();
+  EXPECT_EQ(order.kind(), v1::WorkerControl::KIND_FOLLOW_TOOLPATH);
+  EXPECT_EQ(order.lease().fence(), worker.assignment().lease().fence());
+  EXPECT_FALSE(worker.line().Has(v1::WorkResponse::kControl));
+  worker.Toolpath("frames ", "open");
+  worker.Toolpath("and more", "");
+  ASSERT_TRUE(Eventually([&] { return toolpath->Look(0, 0).frames == "frames and more"; }));
+  EXPECT_FALSE(toolpath->Look(0, 0).ended);
+  worker.Finish();
+  EXPECT_EQ(worker.Released(), true);
+  EXPECT_TRUE(toolpath->Look(0, 0).ended);
+  EXPECT_EQ(bed.dispatcher().FollowToolpath(job), nullptr);
+}
+
+// Of a worker that is gone nothing more comes.
+TEST(DispatcherToolpath, EndsWithItsAttempt) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  const auto toolpath = bed.dispatcher().FollowToolpath(job);
+  ASSERT_NE(toolpath, nullptr);
+  worker.Toolpath("of this attempt", "");
+  worker.Leave();
+  ASSERT_TRUE(Eventually([&] { return toolpath->Look(0, 0).ended; }));
+  EXPECT_EQ(toolpath->Look(0, 0).frames, "of this attempt");
+  FakeWorker next(bed.dispatcher(), "next");
+  ASSERT_TRUE(next.Take());
+  EXPECT_NE(bed.dispatcher().FollowToolpath(job), toolpath);
 }
 
 TEST(DispatcherControl, OrdersReachTheWorkerThatHasTheJob) {

@@ -216,6 +216,23 @@ TEST(DispatcherEvents, AreStoredInOrderAndConfirmed) {
   EXPECT_THAT(texts, ElementsAre("a", "a", "a", "b", "b"));
 }
 
+// The last ones come with the end, and stand before it.
+TEST(DispatcherEvents, OfTheEndGoIntoTheLogWithIt) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  worker.Events(1, "a");
+  worker.Finish(v1::Outcome::KIND_COMPLETED, {}, {"b", "c"});
+  EXPECT_EQ(worker.Released(), true);
+  std::vector<std::string> told;
+  for (const v1::JobEvent& event : bed.Events(job)) {
+    if (event.has_message()) told.push_back(event.message().text());
+    if (event.has_ended()) told.emplace_back("the end");
+  }
+  EXPECT_THAT(told, ElementsAre("a", "b", "c", "the end"));
+}
+
 // A worker waits for the confirmation of its events: when it cannot come the job is taken from it.
 TEST(DispatcherEvents, ThatCannotBeStoredTakeTheJobFromTheWorker) {
   DispatcherBed bed;

@@ -306,7 +306,7 @@ TEST_F(JobLimits, OfSlots) {
 // milling.proto: each message says which field is wrong.
 TEST_F(JobLimits, OfMillings) {
   const auto asked = [&](const std::string& machine,
-                         const std::function<void(v1::Milling&)>& change) {
+                         const std::function<void(v1::Milling&)>& change) -> std::string {
     v1::SubmitJobRequest request = Simulate();
     request.mutable_job()->set_machine(machine);
     request.mutable_job()->mutable_inline_program()->set_file_name("part");

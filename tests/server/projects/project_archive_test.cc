@@ -146,7 +146,7 @@ TEST(ProjectArchive, ReadsAFolderThatAPersonPacked) {
 TEST(ProjectArchive, SaysWhatIsWrong) {
   const auto said = [](const std::string& bytes) {
     const auto project = ReadProjectArchive(bytes);
-    return project ? std::string() : project.error().detail;
+    return project ? Detail() : project.error().detail;
   };
   EXPECT_THAT(said(""), HasSubstr("cannot be read"));
   EXPECT_THAT(said("no archive at all"), HasSubstr("cannot be read"));

@@ -262,7 +262,7 @@ TEST_F(JobResultsTest, SeriesThatMakeNoSenseAreRefused) {
     v1::GetJobSeriesRequest request = good;
     change(request);
     const auto series = results.Series(request);
-    return series ? std::string() : series.error().detail;
+    return series ? Detail() : series.error().detail;
   };
   EXPECT_THAT(refused([](auto& r) { r.add_signals("colour"); }),
               HasSubstr("there are speed axis.X"));

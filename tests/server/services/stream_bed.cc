@@ -83,6 +83,23 @@ OpenedStream<v1::StreamJobToolpathResponse> StreamBed::Toolpath(const std::strin
   request.set_name(name);
   request.set_level(level);
   request.set_with_levels(with_levels);
+  return Toolpath(request);
+}
+
+std::shared_ptr<RunningToolpath> StreamBed::Run(std::int64_t job) {
+  const std::lock_guard lock(running_mutex_);
+  return running_[job] = std::make_shared<RunningToolpath>();
+}
+
+std::shared_ptr<RunningToolpath> StreamBed::Running(std::int64_t job) {
+  ++toolpaths_looked_for;
+  const std::lock_guard lock(running_mutex_);
+  const auto found = running_.find(job);
+  return found == running_.end() ? nullptr : found->second;
+}
+
+OpenedStream<v1::StreamJobToolpathResponse> StreamBed::Toolpath(
+    const v1::StreamJobToolpathRequest& request) {
   return OpenedStream<v1::StreamJobToolpathResponse>(
       [&](grpc::ClientContext* context) { return stub_->StreamJobToolpath(context, request); });
 }

@@ -15,6 +15,7 @@
 #include "server/base/executor.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/job_book.h"
+#include "server/jobs/running_toolpath.h"
 #include "server/machines/machine_statuses.h"
 #include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
@@ -83,7 +84,12 @@ class StreamBed {
   explicit StreamBed(storage::SqliteOptions options = {},
                      std::chrono::milliseconds bookmark_interval = std::chrono::hours(1))
       : bed(std::move(options)),
-        service_({executor_, open, book_, feed, kInstance}),
+        service_({.executor = executor_,
+                  .open = open,
+                  .book = book_,
+                  .feed = feed,
+                  .running_toolpath = [this](std::int64_t job) { return Running(job); },
+                  .instance_id = kInstance}),
         cell_({.executor = executor_,
                .open = open,
                .records = {bed.store(), book_, programs, projects},
@@ -128,6 +134,10 @@ class StreamBed {
   OpenedStream<v1::WatchMachineResponse> WatchMachine(const v1::WatchMachineRequest& request);
   OpenedStream<v1::StreamJobToolpathResponse> Toolpath(const std::string& name, int level,
                                                        bool with_levels = false);
+  OpenedStream<v1::StreamJobToolpathResponse> Toolpath(const v1::StreamJobToolpathRequest& request);
+  // A job that runs here has a toolpath that can be followed.
+  std::shared_ptr<RunningToolpath> Run(std::int64_t job);
+  std::atomic<int> toolpaths_looked_for = 0;
   OpenedStream<v1::StreamJobTraceResponse> Trace(const std::string& name);
   OpenedStream<v1::StreamJobArtifactResponse> Artifact(const std::string& name,
                                                        const std::string& artifact);
@@ -187,6 +197,10 @@ class StreamBed {
     JobStreamNeeds needs_;
   };
 
+  std::shared_ptr<RunningToolpath> Running(std::int64_t job);
+
+  std::mutex running_mutex_;
+  std::map<std::int64_t, std::shared_ptr<RunningToolpath>> running_;  // guarded by running_mutex_
   JobBook book_{bed.store(), config};
   JobFactsBook facts_{bed.store()};
   Executor executor_{2};

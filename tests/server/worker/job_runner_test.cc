@@ -154,6 +154,43 @@ TEST_F(JobRunnerTest, IsCancelledWhileItRuns) {
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
 }
 
+// Who follows the toolpath gets each frame once, in order, while the run goes on, and the block
+// that is not full yet besides; what is stored at the end begins with the same.
+TEST_F(JobRunnerTest, TheToolpathIsSentAsItIsMade) {
+  bool ordered = false;
+  std::string frames;
+  int open_blocks = 0;
+  server.heard = [&](const v1::WorkRequest& message) {
+    if (IsPosition(message) && !std::exchange(ordered, true))
+      server.Send(Order(v1::WorkerControl::KIND_FOLLOW_TOOLPATH));
+    if (!message.has_toolpath()) return;
+    frames += message.toolpath().frames();
+    if (!message.toolpath().open_block().empty()) ++open_blocks;
+    // One block that is full, and one that is not.
+    if (!frames.empty() && open_blocks > 1) server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+  };
+  std::string source = "PA;PA;VS8;!MC1;";
+  for (int i = 0; i < 200'000; ++i)
+    source += "Z" + std::to_string(i % 2 * 1000) + "," + std::to_string(i % 7 * 100) + ",-50;";
+  v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, source, "rml1");
+  assignment.mutable_job()->mutable_simulation()->set_pace(20'000.0);
+  Work(assignment);
+  EXPECT_FALSE(frames.empty());
+  EXPECT_GT(open_blocks, 1);
+  const std::string stored = Artifacts()["toolpath"];
+  EXPECT_GE(stored.size(), frames.size());
+  EXPECT_TRUE(stored.starts_with(frames));
+  // It is no order of a client: the log tells of nothing but the cancel.
+  for (const v1::JobEvent& event : Events()) {
+    EXPECT_TRUE(!event.has_input_applied() || event.input_applied().input().has_abort());
+  }
+}
+
+TEST_F(JobRunnerTest, AToolpathThatNobodyFollowsIsSentAtItsEnd) {
+  Work(Assignment(v1::JOB_KIND_SIMULATE, "PA;PA;VS8;!MC1;PU1000,1000;PU0,0;", "rml1"));
+  EXPECT_TRUE(std::ranges::none_of(heard_, [](const auto& m) { return m.has_toolpath(); }));
+}
+
 // HOLD halts it and RESUME lets it go on; what is ordered is told at once.
 TEST_F(JobRunnerTest, IsHeldAndGoesOn) {
   for (const auto kind : {v1::WorkerControl::KIND_HOLD, v1::WorkerControl::KIND_STOP}) {

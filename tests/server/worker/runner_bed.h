@@ -228,6 +228,8 @@ class JobRunnerTest : public testing::Test {
   std::vector<v1::JobEvent> Events() {
     std::vector<v1::JobEvent> events;
     for (const v1::WorkRequest& message : heard_) {
+      const auto& last = message.finish().events();  // of a finish; else there are none
+      events.insert(events.end(), last.begin(), last.end());
       if (!message.has_events()) continue;
       EXPECT_EQ(message.events().lease().SerializeAsString(), Lease().SerializeAsString());
       events.insert(events.end(), message.events().events().begin(),

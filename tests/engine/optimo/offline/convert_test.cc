@@ -135,6 +135,8 @@ TEST(Convert, TheRotaryTableStaysInDegrees) {
   EXPECT_EQ(Metric("FUNCTION 99 (90.)"), "FUNCTION 99 (90.)");
   EXPECT_EQ(Metric("FUNCTION 99 (SIN(90.))"), "FUNCTION 99 (SIN(90.))");
   EXPECT_EQ(Metric("FUNCTION 44 (SIN(90.))"), "FUNCTION 44 (SIN(1.570796))");
+  EXPECT_EQ(Metric("FUNCTION 44 (7., SIN(90.), SIN(180.))"),
+            "FUNCTION 44 (7., SIN(1.570796), SIN(3.141593))");
 }
 
 // OPT-8.42, OPT-8.43, OPT-8.48

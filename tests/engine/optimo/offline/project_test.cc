@@ -310,7 +310,7 @@ TEST_F(Project, PathsAreLookedAtAsTheyAreWhenChecked) {
       "MOVE (100,0,0,0,0)/FLY\nMOVE (100,100,0,0,0)\nWORK 0,0/OFF\n");
   const auto corner = [](const machine::TransferPlan& plan) {
     const auto found = std::ranges::find(plan.diagnostics, ErrorCode::kFlySharp, &Diagnostic::code);
-    return found == plan.diagnostics.end() ? std::string() : found->detail;
+    return found == plan.diagnostics.end() ? Detail() : found->detail;
   };
   EXPECT_EQ(corner(Plan()),
             "the contour turns by 90.0 degrees; the path stays 1.359 mm away from the corner");

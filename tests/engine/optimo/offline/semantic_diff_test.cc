@@ -133,5 +133,36 @@ TEST(SemanticDiff, FiguresOfRunsAreCompared) {
   EXPECT_FALSE(diff.equal());
 }
 
+// OPT-7.41: of two plain values each has one spelling, whatever value stands behind them.
+TEST(SemanticDiff, PlainValuesHaveOneSpelling) {
+  const auto what = [](const std::string& a, const std::string& b) {
+    const ProgramDiff diff = DiffOf(a, b);
+    EXPECT_EQ(diff.steps.size(), 1U);
+    return diff.steps.empty() ? Texts() : diff.steps[0].what;
+  };
+  EXPECT_EQ(what("MOVE (0,0,0,0,1)\nWAIT ON\n", "MOVE (0,0,0,0,2.250)\nWAIT ON\n"),
+            (Texts{"B 1.0 -> 2.25"}));
+  EXPECT_EQ(what("DECLARE FLAG = ON\nVL[1] = FLAG\n", "DECLARE FLAG = OFF\nVL[1] = FLAG\n"),
+            (Texts{"ON -> OFF"}));
+}
+
+// OPT-7.17: of tables of different lengths the labels that both have are compared, and those of no
+// other instruction.
+TEST(SemanticDiff, TablesOfDifferentLengthsCompareWhatBothHave) {
+  const std::string body = "GOTO 4\n1 VI[2]=1\n2 VI[3]=1\n3 VI[4]=1\n4\n";
+  const auto what = [&](const std::string& a, const std::string& b) {
+    const ProgramDiff diff = DiffOf(a + body, b + body);
+    EXPECT_EQ(diff.steps.size(), 1U);
+    Texts goes = diff.steps.empty() ? Texts() : diff.steps[0].what;
+    std::erase_if(goes, [](const std::string& text) { return !text.starts_with("goes to"); });
+    return goes;
+  };
+  const std::string two = "GOTO VI[1] (1, 2)\n";
+  const std::string three = "GOTO VI[1] (1, 2, 3)\n";
+  EXPECT_EQ(what(two, three), Texts());
+  EXPECT_EQ(what(three, two), Texts());
+  EXPECT_EQ(what(three, "GOTO VI[1] (1, 3)\n"), (Texts{"goes to step 4 -> step 5"}));
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

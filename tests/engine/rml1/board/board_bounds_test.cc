@@ -9,6 +9,7 @@
 #include "engine/rml1/board/nearest_order.h"
 #include "engine/rml1/board/png_bitmap.h"
 #include "engine/rml1/board/simplify.h"
+#include "tests/engine/core/arguments_text.h"
 #include "tests/engine/rml1/board/made_board.h"
 #include "tests/engine/rml1/run_support.h"
 
@@ -63,6 +64,7 @@ TEST(BoardBounds, NumberOfPasses) {
   EXPECT_EQ(told(1), "the picture has no copper");
   EXPECT_EQ(told(100), "the picture has no copper");
   EXPECT_EQ(told(0), "the number of passes is 0; from 1 to 100 is possible");
+  EXPECT_EQ(ArgumentsText(told(0)), "name='the number of passes' value=0 least=1 most=100");
   EXPECT_EQ(told(101), "the number of passes is 101; from 1 to 100 is possible");
 }
 

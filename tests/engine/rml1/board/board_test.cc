@@ -13,6 +13,7 @@
 #include "engine/rml1/board/png_bitmap.h"
 #include "engine/rml1/board/simplify.h"
 #include "engine/rml1/offline/stream_walk.h"
+#include "tests/engine/core/arguments_text.h"
 #include "tests/engine/rml1/board/made_board.h"
 #include "tests/engine/rml1/run_support.h"
 
@@ -286,6 +287,7 @@ TEST(StreamOfBoard, SaysWhichTracesStayJoined) {
   ASSERT_EQ(made->findings.size(), 1U);
   EXPECT_EQ(made->findings[0].code, ErrorCode::kRml1GapTooNarrow);
   EXPECT_EQ(made->findings[0].detail, "of 2 traces 2 stay joined with a neighbour");
+  EXPECT_EQ(ArgumentsText(made->findings[0].detail), "traces=2 joined=2");
   EXPECT_EQ(made->joined, 2U);
 }
 
@@ -296,7 +298,7 @@ TEST(StreamOfBoard, CountsTracesAndNotGroups) {
     const auto made =
         StreamOfBoard(Picture(rows), Centred("srm-20"), {.pixel_mm = 0.1, .tool_mm = 0.4});
     EXPECT_TRUE(made);
-    return made && !made->findings.empty() ? made->findings[0].detail : std::string();
+    return made && !made->findings.empty() ? made->findings[0].detail : Detail();
   };
   const std::string far(20, '.');
   EXPECT_EQ(detail({"##..##" + far + "##", "##..##" + far + "##"}),

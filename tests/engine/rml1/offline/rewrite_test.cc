@@ -329,7 +329,7 @@ TEST(TileStream, ACopyThatBeginsLowComesFromAbove) {
 
 // The cuts of kPart are 200 by 100 units; with 1 mm between, 3 mm in X and 2 mm in Y to the next.
 TEST(TileStream, AsManyAsAFieldHasRoomFor) {
-  const auto within = [](double width, double height, double gap = 1.0) {
+  const auto within = [](double width, double height, double gap = 1.0) -> std::string {
     const auto made =
         TileStream(kPart, ParametersOf("t1"), {.within_mm = {{width, height}}, .gap_mm = gap});
     if (!made) return made.error().detail;
