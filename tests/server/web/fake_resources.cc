@@ -113,6 +113,12 @@ Result<Resource> FakeResources::Find(const ResourcePath& path, const WebCallerMe
       resource.etag = "toolpath-1";
       return resource;
     }
+    if (artifact->artifact == "longer") {  // than it says
+      resource.media_type = "application/octet-stream";
+      resource.size = 200'000;
+      resource.reader = std::make_unique<PatternReader>(300'000, -1);
+      return resource;
+    }
     if (artifact->artifact == "throw") throw std::runtime_error("a bug");
     return Error{ErrorCode::kCellNotFound, "no artifact " + artifact->artifact, {}};
   }

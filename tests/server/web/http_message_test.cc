@@ -244,6 +244,14 @@ TEST(JsonText, EveryRangeOfUtf8) {
   }
 }
 
+// A text that is cut within a character ends there, whatever lies behind it in memory.
+TEST(JsonText, ACharacterThatIsCutIsMended) {
+  const std::string_view euro = "\xE2\x82\xAC";
+  EXPECT_EQ(JsonString(euro.substr(0, 2)), "\"\xEF\xBF\xBD\xEF\xBF\xBD\"");
+  EXPECT_EQ(JsonString(euro.substr(0, 1)), "\"\xEF\xBF\xBD\"");
+  EXPECT_EQ(JsonString(euro), "\"\xE2\x82\xAC\"");
+}
+
 TEST(JsonText, ControlCharactersAreEscaped) {
   EXPECT_EQ(JsonString(std::string("\0\x1F\x20\x7F", 4)), "\"\\u0000\\u001F \\u007F\"");
 }

@@ -79,6 +79,26 @@ TEST_F(Resources, BrokenDownloadIsVisible) {
   EXPECT_LE(response.body.size(), 200'000U);
 }
 
+// One that has more than was announced is cut off as well: what is too much would be taken for the
+// next answer.
+TEST_F(Resources, DownloadOfMoreThanAnnouncedIsCutOff) {
+  const RawResponse response = Exchange(cell_.port(), Get("/v1/jobs/17/artifacts/longer"));
+  EXPECT_EQ(response.Header("content-length"), "200000");
+  EXPECT_FALSE(response.complete);
+  EXPECT_LT(response.body.size(), 200'000U);
+}
+
+// Behind a whole download the connection serves on.
+TEST_F(Resources, ConnectionOutlivesADownload) {
+  RawClient client(cell_.port());
+  client.Send(Get("/v1/jobs/17/artifacts/toolpath"));
+  const RawResponse response = client.Read();
+  EXPECT_TRUE(response.complete);
+  EXPECT_EQ(response.body.size(), 3'000'001U);
+  client.Send(Get("/healthz"));
+  EXPECT_EQ(client.Read().body, "{\"status\":\"SERVING\"}\n");
+}
+
 TEST_F(Resources, ProgramsAreSavedAsFiles) {
   const RawResponse response = Exchange(cell_.port(), Get(std::string(kContent) + "?form=listing"));
   EXPECT_EQ(response.body, "; 45 listing\n");

@@ -186,6 +186,26 @@ TEST_F(JobRunnerTest, TheToolpathIsSentAsItIsMade) {
   }
 }
 
+// How long a paced program takes is worked out beside its run, a little at a time, and told once it
+// is known: of 50,000 moves not at first. The run itself would last some 13 s.
+TEST_F(JobRunnerTest, TheTimeOfALongProgramIsToldWhenItIsKnown) {
+  std::int64_t planned_ns = 0;
+  server.heard = [&](const v1::WorkRequest& message) {
+    if (!IsPosition(message) || planned_ns > 0) return;
+    planned_ns = message.heartbeat().progress().planned_time_ns();
+    if (planned_ns > 0) server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+  };
+  std::string source = "PA;PA;VS8;!MC1;";
+  for (int i = 0; i < 50'000; ++i)
+    source += "Z" + std::to_string(i % 2 * 1000) + "," + std::to_string(i % 7 * 100) + ",-50;";
+  v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, source, "rml1");
+  assignment.mutable_job()->mutable_simulation()->set_pace(20'000.0);
+  Work(assignment);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
+  // Each is 10 mm or a little more long, at 2 mm/s and more slowly at its ends.
+  EXPECT_GT(planned_ns, std::int64_t{50'000} * 5'000'000'000);
+}
+
 TEST_F(JobRunnerTest, AToolpathThatNobodyFollowsIsSentAtItsEnd) {
   Work(Assignment(v1::JOB_KIND_SIMULATE, "PA;PA;VS8;!MC1;PU1000,1000;PU0,0;", "rml1"));
   EXPECT_TRUE(std::ranges::none_of(heard_, [](const auto& m) { return m.has_toolpath(); }));

@@ -1,0 +1,92 @@
+// The line to a worker as it goes over the wire.
+#include "server/services/worker_service.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "server/base/executor.h"
+#include "server/jobs/job_book.h"
+#include "tests/server/jobs/dispatcher_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr std::size_t kPieceOfProgram = 131'072;  // worker.proto: a chunk of a blob
+
+class WorkerLineTest : public testing::Test {
+ protected:
+  WorkerLineTest() {
+    grpc::ServerBuilder builder;
+    int port = 0;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+    builder.RegisterService(&service_);
+    server_ = builder.BuildAndStart();
+    stub_ = v1::WorkerService::NewStub(grpc::CreateChannel("127.0.0.1:" + std::to_string(port),
+                                                           grpc::InsecureChannelCredentials()));
+    context_.set_deadline(std::chrono::system_clock::now() + kPatience);
+  }
+  ~WorkerLineTest() override {
+    context_.TryCancel();
+    server_->Shutdown(std::chrono::system_clock::now());
+    server_->Wait();
+    bed_.End();
+  }
+
+  void SubmitSimulation(const std::string& machine, int slot) {
+    v1::SubmitJobRequest request;
+    request.mutable_job()->set_kind(v1::JOB_KIND_SIMULATE);
+    request.mutable_job()->set_machine(machine);
+    request.mutable_job()->set_program(machine + "/programs/" + std::to_string(slot));
+    std::promise<bool> submitted;
+    book_.Submit(request, "c",
+                 [&](const Result<v1::Job>& job) { submitted.set_value(job.has_value()); });
+    ASSERT_TRUE(submitted.get_future().get());
+  }
+
+  DispatcherBed bed_;
+  JobBook book_{bed_.server.store(), bed_.config};
+  Gate gate_{"a secret of the web port"};
+  Executor executor_{1};
+  WorkerService service_{{gate_, executor_, executor_, 1 << 20}, bed_.dispatcher()};
+  std::unique_ptr<grpc::Server> server_;
+  std::unique_ptr<v1::WorkerService::Stub> stub_;
+  grpc::ClientContext context_;
+};
+
+// A large program comes in pieces, and the last one is not empty, whether it is full or not: of one
+// piece and a byte, of exactly two, and of two and a byte.
+TEST_F(WorkerLineTest, ProgramsComeInPiecesOfWhichNoneIsEmpty) {
+  const std::map<int, std::size_t> sizes = {
+      {1, kPieceOfProgram + 1}, {2, 2 * kPieceOfProgram}, {3, 2 * kPieceOfProgram + 1}};
+  for (const auto& [slot, size] : sizes) {
+    Must(bed_.server.store().PutPrograms(
+        "optimo-1",
+        {{.slot = slot, .name = "p", .object = std::string(size, static_cast<char>('a' + slot))}},
+        {}));
+  }
+  SubmitSimulation("machines/optimo-1", 1);
+  const auto stream = stub_->Work(&context_);
+  v1::WorkRequest hello;
+  *hello.mutable_hello() = Hello("w");
+  ASSERT_TRUE(stream->Write(hello));
+  std::map<int, std::vector<std::size_t>> pieces;
+  std::map<int, std::string> programs;
+  v1::WorkResponse message;
+  while (programs[3].size() < sizes.at(3) && stream->Read(&message)) {
+    if (!message.has_blob()) continue;
+    pieces[message.blob().slot()].push_back(message.blob().chunk().size());
+    programs[message.blob().slot()] += message.blob().chunk();
+  }
+  EXPECT_EQ(pieces[1], (std::vector<std::size_t>{kPieceOfProgram, 1}));
+  EXPECT_EQ(pieces[2], (std::vector<std::size_t>{kPieceOfProgram, kPieceOfProgram}));
+  EXPECT_EQ(pieces[3], (std::vector<std::size_t>{kPieceOfProgram, kPieceOfProgram, 1}));
+  for (const auto& [slot, size] : sizes)
+    EXPECT_EQ(programs[slot], std::string(size, static_cast<char>('a' + slot))) << slot;
+}
+
+}  // namespace
+}  // namespace rmlcell::server
