@@ -156,7 +156,8 @@ struct JobRecord {
   std::string pool{};    // of the workers that take it; may be empty
   std::string title{};
   std::string caller{};
-  std::string specification{};  // opaque
+  std::vector<std::string> labels{};  // words without blanks, to look for
+  std::string specification{};        // opaque
   JobState state = JobState::kQueued;
   int priority = 0;
   double place = 0.0;  // in the queue, among those of its priority: less is earlier

@@ -22,6 +22,7 @@ struct NewJob {
   std::string pool{};
   std::string title{};
   std::string caller{};
+  std::vector<std::string> labels{};  // words without blanks, each once
   std::string specification{};
   int attempts_max = 2;
   std::int64_t queued_max = 0;  // refused when so many jobs wait already; 0: never
@@ -113,6 +114,7 @@ struct JobQuery {
   // Dear: no index helps to find them.
   std::string family{};
   std::string verdict{};
+  std::string label{};
   std::string text{};  // stands in the title, in capitals or not
   std::optional<WallTime> created_from{};
   std::optional<WallTime> created_before{};
@@ -360,7 +362,7 @@ class Store {
   // Dear: they are counted. CellPrecondition: it does not wait.
   virtual Result<std::int64_t> CountBefore(std::int64_t job) = 0;
   // In front of `before`, with its priority (CellNotFound; CellPrecondition: it does not wait in
-  // the same pool for the same kind of worker, or there is no room between the two); 0: behind all
+  // the same pool for the same kind of worker); 0: behind all
   // others of its priority, which is `priority` from now on where it is given.
   virtual Result<JobRecord> Move(std::int64_t job, std::int64_t before, std::optional<int> priority,
                                  const std::vector<NewEvent>& events) = 0;
@@ -427,7 +429,8 @@ class Store {
   // --- events and artifacts
   // In order, those after the number given. CellEventsGone when some of these were removed (a store
   // may be told to bound what it keeps): from JobRecord::events_gone_until and EventsGoneUntil() on
-  // all are there.
+  // all are there. Those of a job that was deleted by itself are left out without a word but that
+  // it was deleted, which comes behind them.
   virtual Result<std::vector<EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence,
                                                      int limit) = 0;
   virtual Result<std::vector<EventRecord>> AllEvents(std::int64_t after_position, int limit) = 0;
@@ -441,10 +444,15 @@ class Store {
   virtual Result<bool> HasPosition(std::string_view log_id, std::int64_t position) = 0;
   virtual Result<std::vector<ArtifactRecord>> ListArtifacts(std::int64_t job) = 0;  // by name
   virtual Result<ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) = 0;
-  virtual Result<std::string> ReadBlob(std::string_view sha256) = 0;  // any content; CellNotFound
+  // The bytes of an artifact; piece by piece in the memory of a few chunks. Errors: of
+  // GetArtifact().
+  virtual Result<std::string> ReadArtifact(std::int64_t job, std::string_view name) = 0;
+  virtual Result<std::unique_ptr<BlobReader>> OpenArtifact(std::int64_t job,
+                                                           std::string_view name) = 0;
 
-  // --- contents piece by piece, in the memory of a few chunks
-  // CellNotFound.
+  // --- contents by their SHA-256: all but small programs, which are kept with their job alone
+  virtual Result<std::string> ReadBlob(std::string_view sha256) = 0;  // CellNotFound
+  // Piece by piece. CellNotFound.
   virtual Result<std::unique_ptr<BlobReader>> OpenBlob(std::string_view sha256) = 0;
   // For a content of that name (64 hexadecimal digits) and size. CellInvalidArgument: no such name;
   // CellTooLarge: kProgramBytesMax.

@@ -404,6 +404,8 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
   verb->add_option("--kind", given.submit.kind, "simulate or check")
       ->check(CLI::IsMember({"simulate", "check", "run"}));
   verb->add_option("--title", given.submit.title);
+  verb->add_option("--label", given.submit.labels, "a word to find the job by; may be repeated")
+      ->allow_extra_args(false);
   verb->add_option("--request-id", given.submit.request_id, "repeating it gives the same job");
   verb->add_option("--override", given.submit.override_percent,
                    "override of the programmed speed, percent");

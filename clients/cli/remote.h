@@ -49,6 +49,7 @@ struct SubmitRequest {
   int slot = 0;      // of a stored program, or where the file goes
   std::string kind = "simulate";
   std::string title;
+  std::vector<std::string> labels;
   std::string request_id;
   std::string inputs_file;
   double override_percent = 0.0;

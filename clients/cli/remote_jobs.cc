@@ -236,6 +236,7 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
                                       : v1::JOB_KIND_SIMULATE);
   job.set_machine(FullName("machines", wanted.machine));
   job.set_title(bridge::Utf8(wanted.title));
+  for (const std::string& label : wanted.labels) job.add_labels(bridge::Utf8(label));
   if (wanted.file.empty()) {
     job.set_program(job.machine() + "/programs/" + std::to_string(wanted.slot));
   } else {

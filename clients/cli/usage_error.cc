@@ -109,7 +109,10 @@ std::string UsageText(const CLI::App& app, const CLI::Error& error) {
       std::ranges::find_if(left, [](const std::string& word) { return word.starts_with('-'); });
   if (option != left.end()) {
     const std::string name = option->substr(0, option->find('='));
-    return PathOf(verb) + " has no option " + Visible(name) + Question(name, OptionsOf(verb)) +
+    const std::vector<std::string> options = OptionsOf(verb);
+    if (std::ranges::find(options, name) != options.end())
+      return name + " stands behind the verb: rmlcell " + PathOf(verb) + " " + name + HelpOf(verb);
+    return PathOf(verb) + " has no option " + Visible(name) + Question(name, options) +
            HelpOf(verb);
   }
   if (!left.empty() && !VerbsOf(verb).empty()) return NoSuchVerb(verb, left.front());

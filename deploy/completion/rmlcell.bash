@@ -84,7 +84,7 @@ _rmlcell_options() {
     put) echo "$remote --etag --check-only --force" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --title --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
+      echo "$remote --slot --kind --title --label --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
     report) echo "$remote --machine-coordinates" ;;
     watch) echo "$remote --after --strict" ;;
     jobs) echo "$remote --filter --order --limit" ;;
@@ -103,7 +103,7 @@ _rmlcell_takes_value() {
     --slot | --slots | --main | --executable | --family | --profile | --machine | --origin | --clamps | --inputs | --mode | --override | \
       --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --material | --stl | --stl-tolerance | --relief | --height-map | --target | --target-slot | --target-tolerance | --target-png | \
       --state-in | --state-out | --server | --etag | --form | \
-      --output | -o | --kind | --title | --request-id | --pace | --after | --after-job | --before | --not-before | --priority | --filter | --order | --limit | --move | --turn | --shift | \
+      --output | -o | --kind | --title | --label | --request-id | --pace | --after | --after-job | --before | --not-before | --priority | --filter | --order | --limit | --move | --turn | --shift | \
       --tolerance | --by | --from | --to | --columns | --rows | --within | --gap | --depth | --step | --passes | --overlap | \
       --dpi | --at | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
   esac

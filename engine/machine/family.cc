@@ -7,10 +7,18 @@
 #include "engine/core/letters.h"
 #include "engine/core/near_words.h"
 #include "engine/core/units.h"
+#include "engine/machine/machine_status.h"
+#include "engine/machine/panel.h"
 #include "engine/machine/shape.h"
 #include "engine/machine/standing.h"
 
 namespace rmlcell::machine {
+
+Panel MachineFamily::ShowPanel(const MachineStatus& status) const {
+  Panel panel;
+  if (status.state != MachineState::kOff) panel.lamps.push_back("POWER");
+  return panel;
+}
 
 MachineShape MachineFamily::Shape(const Parameters& /*parameters*/) const { return {}; }
 

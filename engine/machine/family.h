@@ -19,10 +19,12 @@
 
 namespace rmlcell::machine {
 
-class Run;            // run.h
-class RunObserver;    // observer.h
-class Standing;       // standing.h
-struct MachineShape;  // shape.h
+class Run;             // run.h
+class RunObserver;     // observer.h
+class Standing;        // standing.h
+struct MachineShape;   // shape.h
+struct MachineStatus;  // machine_status.h
+struct Panel;          // panel.h
 
 // How a check that runs a program reads the codes of its family.
 struct CheckCodes {
@@ -195,6 +197,10 @@ class MachineFamily {
 
   // What report and pictures need to know of a machine with these parameters.
   virtual MachineShape Shape(const Parameters& parameters) const;
+
+  // What is to be seen at a machine that is so. That of a machine of which nothing is known but
+  // that it has power.
+  virtual Panel ShowPanel(const MachineStatus& status) const;
 
   // Checks and translates. Bad programs are diagnostics, not errors.
   virtual Translation Translate(const SourceFile& file, const Parameters& parameters,

@@ -24,7 +24,8 @@ constexpr bool kNeedsPower =
     std::is_same_v<Input, StartRun> || std::is_same_v<Input, ResumeRun> ||
     std::is_same_v<Input, Acknowledge> || std::is_same_v<Input, ChangeMode> ||
     std::is_same_v<Input, ChangeOverride> || std::is_same_v<Input, WriteVariable> ||
-    std::is_same_v<Input, SetBreakpoints> || std::is_same_v<Input, SetSimulation>;
+    std::is_same_v<Input, SetBreakpoints> || std::is_same_v<Input, SetSimulation> ||
+    std::is_same_v<Input, ClearMessage>;
 
 std::string_view Name(Mode mode) {
   switch (mode) {
@@ -103,6 +104,8 @@ Status Machine::Take(MachineNote note) {
   alarms_ = std::move(note.alarms);
   last_alarm_ = note.last_alarm;
   note_.number = note.last_run;
+  shown_ = std::move(note.shown);
+  message_ = note.message;
   return {};
 }
 
@@ -117,6 +120,8 @@ std::string Machine::Save() const {
                            .alarms = alarms_,
                            .last_alarm = last_alarm_,
                            .last_run = note_.number,
+                           .shown = status().shown,
+                           .message = message_,
                            .family = run_ != nullptr ? run_->SaveMachine() : standing_->Save()});
 }
 
@@ -166,6 +171,8 @@ void Machine::CloseRun() {
                    .lasted = state.time,
                    .steps = run_->steps_executed(),
                    .figures = run_->figures()});
+  shown_ = status().shown;
+  if (outcome.code) message_ = outcome.code;
   if (outcome.code && Lookup(*outcome.code).severity == Severity::kAlarm)
     Raise(*outcome.code, outcome.detail, outcome.place);
   for (auto& [slot, bytes] : run_->made_executables()) {
@@ -199,10 +206,21 @@ MachineStatus Machine::status() const {
                        .mode = mode_,
                        .override_percent = override_percent_,
                        .run = run_ != nullptr ? run_->state() : standing_->state(),
-                       .alarms = alarms_};
-  if (run_ != nullptr) status.open = note_;
+                       .alarms = alarms_,
+                       .shown = shown_,
+                       .message = message_};
+  if (run_ == nullptr) return status;
+  status.open = note_;
+  const RunState& run = status.run;
+  if (run.place.step > 0) {
+    status.shown = {.program = run.place.program,
+                    .step = run.place.step,
+                    .instruction = std::string(run.instruction)};
+  }
   return status;
 }
+
+Panel Machine::panel() const { return family_.ShowPanel(status()); }
 
 std::optional<VariableValue> Machine::ReadVariable(std::string_view name) const {
   return run_ != nullptr ? run_->ReadVariable(name) : standing_->ReadVariable(name);
@@ -231,6 +249,7 @@ Status Machine::Apply(const MachineInput& input) {
 }
 
 void Machine::Raise(ErrorCode code, Detail detail, const Place& place) {
+  message_ = code;
   if (std::ranges::find(alarms_, code, &Alarm::code) != alarms_.end()) return;
   alarms_.push_back(
       {.id = ++last_alarm_, .code = code, .detail = std::move(detail), .at = now_, .place = place});
@@ -302,6 +321,7 @@ Status Machine::Act(const StartRun& input) {
   changed_.clear();
   note_ = {
       .number = note_.number + 1, .program = input.program, .source = input.source, .begun = now_};
+  shown_ = {.program = input.program};
   run_ = *std::move(run);
   run_->SetBreakpoints(breakpoints_);
   return {};
@@ -459,6 +479,8 @@ Status Machine::Act(const SwitchPower& input) {
     return {};
   }
   alarms_.clear();
+  message_.reset();
+  shown_ = {};           // OPT-4.03
   breakpoints_.clear();  // OPT-6.08
   simulation_.reset();
   standing_->CyclePower();
@@ -529,6 +551,11 @@ Status Machine::Act(const DeleteProgram& input) {
 
 Status Machine::Act(const SetSchedules& input) {
   memory_.schedules = input.schedules;
+  return {};
+}
+
+Status Machine::Act(const ClearMessage& /*input*/) {
+  message_.reset();
   return {};
 }
 

@@ -15,42 +15,13 @@
 #include "engine/machine/family.h"
 #include "engine/machine/machine_input.h"
 #include "engine/machine/machine_note.h"
+#include "engine/machine/machine_status.h"
 #include "engine/machine/observer.h"
+#include "engine/machine/panel.h"
 #include "engine/machine/run.h"
 #include "engine/machine/standing.h"
 
 namespace rmlcell::machine {
-
-// LIVE-2.03, without what belongs to its host (STARTING, RECOVERING, INSPECT, LOST).
-enum class MachineState {
-  kOff,
-  kNotZeroed,  // on and standing, its axes without reference
-  kIdle,       // on and standing, no run is open
-  kRunning,    // a run is open and goes on
-  kStopping,   // comes to rest for HOLD or STOP
-  kHeld,       // a run is open and stands
-  kAlarm,      // an alarm is not acknowledged
-};
-std::string_view Name(MachineState state);  // "HELD"
-
-// A run that is open, or the last one that was.
-struct RunNote {
-  std::int64_t number = 0;  // counts from 1
-  int program = 0;
-  StartSource source = StartSource::kConsole;
-  SimTime begun{0};  // of the machine: time of the run counts from here
-};
-
-// How it is now.
-struct MachineStatus {
-  SimTime time{0};  // of the machine
-  MachineState state = MachineState::kIdle;
-  Mode mode = Mode::kRemote;
-  double override_percent = 100.0;
-  RunState run{};  // the machine's own where no run is open: phase kFinished
-  std::optional<RunNote> open{};
-  std::vector<Alarm> alarms{};
-};
 
 // The programs of a machine and what belongs to them.
 struct MachineMemory {
@@ -111,6 +82,7 @@ class Machine {
   SimTime time() const { return now_; }
   MachineState state() const;
   MachineStatus status() const;
+  Panel panel() const;  // what is to be seen at the machine itself
   const MachineMemory& memory() const { return memory_; }
 
   // "VR[5]" -> "7.0"; nothing for what is no variable of this machine.
@@ -151,6 +123,7 @@ class Machine {
   Status Act(const StoreProgram& input);
   Status Act(const DeleteProgram& input);
   Status Act(const SetSchedules& input);
+  Status Act(const ClearMessage& input);
 
   Status MayStart(const StartRun& input) const;
   Status MaySource(StartSource source) const;
@@ -176,7 +149,9 @@ class Machine {
   std::optional<ProgramStep> simulation_;
   std::vector<Alarm> alarms_;
   std::int64_t last_alarm_ = 0;
-  RunNote note_{};  // of the run that was begun last
+  ShownStep shown_{};                 // what the last run left
+  std::optional<ErrorCode> message_;  // not cleared yet
+  RunNote note_{};                    // of the run that was begun last
   std::unique_ptr<Standing> standing_;
   std::unique_ptr<Run> run_;    // open
   bool stopping_ = false;       // a HOLD or STOP of this run has not halted it yet

@@ -77,9 +77,13 @@ struct SetSchedules {
   std::optional<std::vector<LaserSchedule>> schedules{};  // none: all that the machine can have
 };
 
-using MachineInput =
-    std::variant<StartRun, ResumeRun, HoldRun, StopRun, AbortRun, EmergencyStop, Acknowledge,
-                 ChangeMode, ChangeOverride, ChangeInput, MoveDoor, SwitchPower, WriteVariable,
-                 SetBreakpoints, SetSimulation, StoreProgram, DeleteProgram, SetSchedules>;
+// The key that clears the display and not its cause: ERR of a handbox. It acts in every mode.
+// OPT-4.06, 4.29
+struct ClearMessage {};
+
+using MachineInput = std::variant<StartRun, ResumeRun, HoldRun, StopRun, AbortRun, EmergencyStop,
+                                  Acknowledge, ChangeMode, ChangeOverride, ChangeInput, MoveDoor,
+                                  SwitchPower, WriteVariable, SetBreakpoints, SetSimulation,
+                                  StoreProgram, DeleteProgram, SetSchedules, ClearMessage>;
 
 }  // namespace rmlcell::machine

@@ -149,6 +149,15 @@ bool TakeLine(std::string_view line, MachineNote& note) {
     words.Take(note.last_alarm, 0, kAny);
   } else if (key == "last_run") {
     words.Take(note.last_run, 0, kAny);
+  } else if (key == "shown") {
+    words.Take(note.shown.program, 0, kSlotMax);
+    words.Take(note.shown.step, 0, kIntMax);
+    note.shown.instruction = words.Rest();
+  } else if (key == "message") {
+    const std::string_view code = words.Rest();
+    const std::vector<const CatalogueEntry*> rows = FindByText(code);
+    if (rows.size() != 1 || CodeText(rows.front()->code) != code) return false;
+    note.message = rows.front()->code;
   } else {
     return false;
   }
@@ -177,6 +186,9 @@ std::string WriteMachineNote(const MachineNote& note) {
   }
   lines.Add("last_alarm", note.last_alarm);
   lines.Add("last_run", note.last_run);
+  if (note.shown != ShownStep())
+    lines.Add("shown", note.shown.program, note.shown.step, note.shown.instruction);
+  if (note.message) lines.Add("message", CodeText(*note.message));
   lines.Add("family");
   return lines.Take() + note.family;
 }

@@ -23,6 +23,15 @@ struct Alarm {
   bool operator==(const Alarm&) const = default;
 };
 
+// The program that is selected, and where in it the control stands: what a panel points at.
+struct ShownStep {
+  int program = 0;            // in execution, the module that the step belongs to; 0: none
+  int step = 0;               // 0: none
+  std::string instruction{};  // "MOVE"; empty: none
+
+  bool operator==(const ShownStep&) const = default;
+};
+
 // What a machine keeps beside that of its family, and that (Standing::Save).
 struct MachineNote {
   SimTime time{0};
@@ -35,6 +44,8 @@ struct MachineNote {
   std::vector<Alarm> alarms{};
   std::int64_t last_alarm = 0;
   std::int64_t last_run = 0;
+  ShownStep shown{};
+  std::optional<ErrorCode> message{};
   std::string family{};
 
   bool operator==(const MachineNote&) const = default;

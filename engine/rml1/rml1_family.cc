@@ -7,6 +7,7 @@
 #include "engine/machine/shape.h"
 #include "engine/rml1/command_facts.h"
 #include "engine/rml1/figures.h"
+#include "engine/rml1/panel.h"
 #include "engine/rml1/physical.h"
 #include "engine/rml1/run.h"
 #include "engine/rml1/standing.h"
@@ -212,6 +213,9 @@ class MillFamily final : public machine::MachineFamily {
   std::span<const machine::FigureInfo> figures() const override { return FigureTable(); }
   std::span<const machine::VerdictRule> verdict_rules() const override { return VerdictRules(); }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override;
+  machine::Panel ShowPanel(const machine::MachineStatus& status) const override {
+    return ShowMillPanel(status);
+  }
   std::vector<machine::LanguageWord> words() const override { return CommandFacts(); }
   machine::Translation Translate(const machine::SourceFile& file,
                                  const machine::Parameters& parameters,

@@ -21,7 +21,15 @@ Result<Caller> Gate::Admit(const CallFacts& call) const {
   const v1::Access* access = access_.Find(call.method);
   if (access == nullptr)
     return Error{ErrorCode::kCellPermission, call.method + " states no permission", {}};
-  Caller caller{.identity = "local", .permissions = local_, .peer = call.peer, .request_id = {}};
+  Caller caller{.identity = "local", .permissions = {}, .peer = call.peer, .request_id = {}};
+  {
+    const std::lock_guard lock(mutex_);
+    caller.permissions = local_;
+  }
+  if (call.transport == Transport::kUnixSocket) {
+    caller.user = socket_users_.Of(call.peer);
+    if (caller.user) caller.peer = "unix:user " + std::to_string(*caller.user);
+  }
   if (KnowsSecret(Value(call.metadata, "rmlcell-web-secret"), web_secret_)) {
     caller.peer = "web:" + Value(call.metadata, "rmlcell-web-peer");
   }
@@ -33,6 +41,11 @@ Result<Caller> Gate::Admit(const CallFacts& call) const {
     return Error{ErrorCode::kCellPermission, call.method, {}};
   }
   return caller;
+}
+
+void Gate::SetLocal(Permissions local) {
+  const std::lock_guard lock(mutex_);
+  local_ = local;
 }
 
 }  // namespace rmlcell::server

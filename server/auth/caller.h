@@ -1,11 +1,14 @@
 #pragma once
 
 #include <map>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "engine/core/result.h"
 #include "server/auth/access.h"
+#include "server/auth/socket_users.h"
 
 namespace rmlcell::server {
 
@@ -14,7 +17,8 @@ struct Caller {
   std::string identity;  // "local"
   Permissions permissions{};
   std::string peer;  // address, for the log; of the browser when the call came over the web port
-  std::string request_id;  // for the log: the client's own, or empty
+  std::optional<unsigned> user{};  // of the computer, at the other end of a unix socket
+  std::string request_id;          // for the log: the client's own, or empty
 };
 
 // How a call came in.
@@ -43,15 +47,20 @@ class Gate {
 
   // Errors: CellUnauthenticated, CellPermission; that also for a method that states no access.
   Result<Caller> Admit(const CallFacts& call) const;
+  // From now on. Whoever has long streams open asks for them again (OpenStreams::AskAgain).
+  void SetLocal(Permissions local);
   // What a method asks for; null: it states nothing.
   const v1::Access* AccessOf(std::string_view method) const { return access_.Find(method); }
 
   const std::string& web_secret() const { return web_secret_; }
+  SocketUsers& socket_users() { return socket_users_; }
 
  private:
   std::string web_secret_;
-  Permissions local_;
+  mutable std::mutex mutex_;
+  Permissions local_;  // guarded by mutex_
   AccessTable access_;
+  SocketUsers socket_users_;
 };
 
 }  // namespace rmlcell::server

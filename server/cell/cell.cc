@@ -4,9 +4,6 @@
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <spdlog/spdlog.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <filesystem>
@@ -18,6 +15,7 @@
 #include "server/base/executor.h"
 #include "server/base/secret.h"
 #include "server/cell/private_socket.h"
+#include "server/cell/socket_listener.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
@@ -71,25 +69,7 @@ std::string PathOfOwnProgram() {
   return error ? std::string() : self.parent_path().string();
 }
 
-// A server that listens on a unix socket has it taken away by the next one without a word: gRPC
-// removes the file before it makes its own, which is right only for one that a dead server left
-// behind.
-bool IsUnixSocketInUse(const std::string& address) {
-  if (!address.starts_with("unix:")) return false;
-  std::string path = address.substr(std::string_view("unix:").size());
-  if (path.starts_with("//")) path.erase(0, 2);
-  sockaddr_un name{};
-  if (path.size() >= sizeof(name.sun_path)) return false;  // gRPC refuses it
-  name.sun_family = AF_UNIX;
-  path.copy(name.sun_path, path.size());
-  const int probe = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (probe < 0) return false;
-  const bool answers =
-      ::connect(probe, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) == 0 ||
-      errno == EAGAIN;
-  ::close(probe);
-  return answers;
-}
+bool IsUnixSocket(const std::string& address) { return address.starts_with("unix:"); }
 
 Error PortUsed(const std::string& address) {
   return {ErrorCode::kCellPortUsed, "cannot listen on " + address, {}};
@@ -130,6 +110,7 @@ struct Cell::Parts {
   std::unique_ptr<WorkerService> worker_service;
   std::unique_ptr<WebResources> resources;
   std::unique_ptr<grpc::Server> server;
+  std::vector<std::unique_ptr<SocketListener>> sockets;  // behind it: they hand connections over
   std::unique_ptr<web::WebServer> web;
   std::unique_ptr<WorkerProcesses> processes;
   std::optional<PrivateSocket> private_socket;
@@ -140,6 +121,7 @@ struct Cell::Parts {
   Status MakeMachines();
   Status Listen(const std::string& join_token);
   Status Serve();
+  Status ListenAt(const std::string& address);
   Status ListenWeb();
   Status StartWorkers(const std::string& join_token);
 };
@@ -236,16 +218,18 @@ Status Cell::Parts::Serve() {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.SetMaxReceiveMessageSize(static_cast<int>(config.limit_message_bytes + kRefusalBytes));
   builder.SetMaxSendMessageSize(-1);
-  for (const std::string& address : config.listen_grpc) {
-    if (IsUnixSocketInUse(address)) return PortUsed(address);
-  }
   Result<PrivateSocket> own = PrivateSocket::Make(config.state_directory);
   if (!own) return own.error();
   private_socket.emplace(*std::move(own));
-  builder.AddListeningPort(private_socket->address(), CredentialsOfServer());
+  if (const Status listens = ListenAt(private_socket->address()); !listens) return listens.error();
   std::vector<int> ports(config.listen_grpc.size(), 0);
   for (std::size_t i = 0; i < ports.size(); ++i) {
-    builder.AddListeningPort(config.listen_grpc[i], CredentialsOfServer(), &ports[i]);
+    const std::string& address = config.listen_grpc[i];
+    if (!IsUnixSocket(address)) {
+      builder.AddListeningPort(address, CredentialsOfServer(), &ports[i]);
+    } else if (const Status listens = ListenAt(address); !listens) {
+      return listens.error();
+    }
   }
   for (grpc::Service* service : std::initializer_list<grpc::Service*>{
            cell_service.get(), job_service.get(), machine_service.get(), program_service.get(),
@@ -254,15 +238,24 @@ Status Cell::Parts::Serve() {
     builder.RegisterService(service);
   }
   server = builder.BuildAndStart();
-  if (server == nullptr && ports.empty()) return PortUsed(private_socket->address());
   for (std::size_t i = 0; i < ports.size(); ++i) {
     const std::string& address = config.listen_grpc[i];
-    const bool unix_socket = address.starts_with("unix:");
-    if (server == nullptr || (ports[i] == 0 && !unix_socket)) return PortUsed(address);
-    grpc_addresses.push_back(unix_socket ? address
-                                         : address.substr(0, address.rfind(':') + 1) +
-                                               std::to_string(ports[i]));
+    if (IsUnixSocket(address)) {
+      grpc_addresses.push_back(address);
+      continue;
+    }
+    if (server == nullptr || ports[i] == 0) return PortUsed(address);
+    grpc_addresses.push_back(address.substr(0, address.rfind(':') + 1) + std::to_string(ports[i]));
   }
+  if (server == nullptr) return Error{ErrorCode::kCellPortUsed, "gRPC does not start", {}};
+  for (const auto& socket : sockets) socket->Serve(*server);
+  return {};
+}
+
+Status Cell::Parts::ListenAt(const std::string& address) {
+  auto socket = SocketListener::Make(address, gate.socket_users());
+  if (!socket) return socket.error();
+  sockets.push_back(*std::move(socket));
   return {};
 }
 
@@ -347,6 +340,7 @@ void Cell::Stop() {
   if (parts.dispatcher != nullptr) parts.dispatcher->Drain(patience / 2);
   if (parts.processes != nullptr) parts.processes->Stop(patience / 4);
   if (parts.web != nullptr) parts.web->Stop(patience / 4);
+  parts.sockets.clear();
   if (parts.server != nullptr) parts.server->Shutdown(deadline);
   // Calls are over; what they posted still runs.
   parts.web.reset();

@@ -92,12 +92,6 @@ class ProgramsOfAssignment {
   std::size_t inline_total_ = 0;
 };
 
-Result<std::string> Attached(storage::Store& store, std::int64_t job, std::string_view name) {
-  const auto artifact = store.GetArtifact(job, name);
-  if (!artifact) return artifact.error();
-  return store.ReadBlob(artifact->sha256);
-}
-
 // A mill runs one stream; only a family whose programs call each other needs the whole memory.
 bool RunsFromMemory(const storage::MachineRecord& machine, std::string_view kind) {
   const machine::MachineFamily* family = families::FindFamily(machine.family);
@@ -110,7 +104,7 @@ Status AddTarget(storage::Store& store, std::int64_t id, const v1::Job& job,
                  ProgramsOfAssignment& programs) {
   const v1::Milling& milling = job.simulation().milling();
   if (!milling.has_target() || job.kind() == v1::JOB_KIND_CHECK) return {};
-  Result<std::string> bytes = Attached(store, id, kTargetAttachment);
+  Result<std::string> bytes = store.ReadArtifact(id, kTargetAttachment);
   if (!bytes) return bytes.error();
   programs.AddTarget(milling.target(), *std::move(bytes));
   return {};
@@ -158,7 +152,7 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   *assignment.mutable_budget() = BudgetOf(job.budget(), config);
 
   // The attached bytes count for the program that is started: its slot may have been stored again.
-  Result<std::string> main_bytes = Attached(store, leased.job.id, kMainAttachment);
+  Result<std::string> main_bytes = store.ReadArtifact(leased.job.id, kMainAttachment);
   if (!main_bytes) return main_bytes.error();
 
   ProgramsOfAssignment programs(assignment, messages);
@@ -188,7 +182,7 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   programs.Add(main_slot, main_title, brought ? brought->file_name : std::string(),
                std::move(*main_bytes), is_source, main_executable, main_revision);
   for (const v1::SlotProgram& further : job.simulation().programs()) {
-    Result<std::string> bytes = Attached(store, leased.job.id, AttachmentName(further.slot()));
+    Result<std::string> bytes = store.ReadArtifact(leased.job.id, AttachmentName(further.slot()));
     if (!bytes) return bytes.error();
     programs.Add(further.slot(), {}, further.program().file_name(), std::move(*bytes),
                  further.program().form() != v1::PROGRAM_FORM_OBJECT, std::nullopt);

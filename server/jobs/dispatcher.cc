@@ -18,6 +18,7 @@ namespace {
 // Events that a worker may send before the first of them is durable.
 constexpr int kEventsWindow = 256;
 // What the store did not take or give.
+constexpr std::chrono::milliseconds kTimesLookedAtAfter{1000};
 constexpr std::chrono::milliseconds kTriedAgainAfter{100};
 // While jobs run. A server does not hear at once what is asked of another one.
 constexpr std::chrono::milliseconds kOrdersLookedForAfter{200};
@@ -39,14 +40,12 @@ Dispatcher::Dispatcher(storage::Store& store, EventFeed& feed, const Config& con
       join_token_(std::move(join_token)),
       clock_(std::move(clock)) {
   store_watch_ = store_.Watch([this] { WakeIdle(); });
-  sweeper_ = std::jthread([this](const std::stop_token& stop) { SweepLeases(stop); });
+  orders_ = std::jthread([this](const std::stop_token& stop) { LookAtOrders(stop); });
+  times_ = std::jthread([this](const std::stop_token& stop) { LookAtTimes(stop); });
 }
 
 Dispatcher::~Dispatcher() {
-  store_watch_.reset();
-  sweeper_.request_stop();
-  changed_.notify_all();
-  if (sweeper_.joinable()) sweeper_.join();
+  EndThreads();
   Settle();
 }
 
@@ -219,21 +218,29 @@ void Dispatcher::WakeIdle() {
   for (const auto& worker : idle) PostLook(worker);
 }
 
-void Dispatcher::SweepLeases(const std::stop_token& stop) {
-  const auto interval = std::chrono::milliseconds(config_.workers_lease_ms / 2);
-  auto next = std::chrono::steady_clock::now();
+// Leases that ran out, and jobs whose time has come.
+void Dispatcher::LookAtTimes(const std::stop_token& stop) {
+  const auto interval = std::min<std::chrono::milliseconds>(
+      std::chrono::milliseconds(config_.workers_lease_ms / 2), kTimesLookedAtAfter);
   while (!stop.stop_requested()) {
-    if (std::chrono::steady_clock::now() >= next) {
-      EndLeases();
-      next = std::chrono::steady_clock::now() + interval;
-    }
+    EndLeases();
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, interval, [] { return false; });
+  }
+}
+
+void Dispatcher::LookAtOrders(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
     TakeOrders();
     {
       std::unique_lock lock(mutex_);
-      const auto look = std::chrono::steady_clock::now() + kOrdersLookedForAfter;
       const bool working = HasWork();
-      changed_.wait_until(lock, stop, working ? std::min(next, look) : next,
-                          [&] { return later_ || HasWork() != working; });
+      const auto changed = [&] { return later_ || HasWork() != working; };
+      if (working) {
+        changed_.wait_for(lock, stop, kOrdersLookedForAfter, changed);
+      } else {
+        changed_.wait(lock, stop, changed);
+      }
       if (!later_) continue;
       changed_.wait_for(lock, stop, kTriedAgainAfter, [] { return false; });
       later_ = false;
@@ -334,11 +341,14 @@ Status Dispatcher::Control(std::int64_t job, const JobOrder& order) {
   return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
 }
 
-Result<storage::JobRecord> Dispatcher::Cancel(std::int64_t job, std::string_view caller) {
+Result<storage::JobRecord> Dispatcher::Cancel(std::int64_t job, std::string_view caller,
+                                              std::string_view request_id) {
   auto cancelled = store_.RequestCancel(job, {By(caller, EndedEvent(ToProto(CancelledOutcome())))});
   if (cancelled && cancelled->state == storage::JobState::kRunning) {
     // When the worker finishes at this moment there is nobody to tell, and nothing to do.
-    (void)Control(job, {.kind = v1::WorkerControl::KIND_CANCEL, .caller = std::string(caller)});
+    (void)Control(job, {.kind = v1::WorkerControl::KIND_CANCEL,
+                        .caller = std::string(caller),
+                        .request_id = std::string(request_id)});
   }
   return cancelled;
 }
@@ -359,9 +369,15 @@ void Dispatcher::Drain(std::chrono::milliseconds patience) {
     });
   }
   // From here on nothing is posted but what lines still say.
+  EndThreads();
+}
+
+void Dispatcher::EndThreads() {
   store_watch_.reset();
-  sweeper_.request_stop();
-  if (sweeper_.joinable()) sweeper_.join();
+  for (std::jthread* thread : {&orders_, &times_}) {
+    thread->request_stop();
+    if (thread->joinable()) thread->join();
+  }
 }
 
 void Dispatcher::Settle() {

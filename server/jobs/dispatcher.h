@@ -78,7 +78,8 @@ class Dispatcher {
   std::shared_ptr<RunningToolpath> FollowToolpath(std::int64_t job);
 
   // Ends a job: at once when it waits, else through its worker.
-  Result<storage::JobRecord> Cancel(std::int64_t job, std::string_view caller);
+  Result<storage::JobRecord> Cancel(std::int64_t job, std::string_view caller,
+                                    std::string_view request_id = {});
 
   // Gives out no more work and asks for what is under way to be handed back. Returns when that is
   // done, or after `patience`. For good: leases are not looked after any more.
@@ -133,7 +134,9 @@ class Dispatcher {
   void EndAssignment(Worker& worker, bool stored);
   void TakeNoOrders(Worker& worker);  // its job is over
   void Lose(const std::shared_ptr<Worker>& worker);
-  void SweepLeases(const std::stop_token& stop);
+  void EndThreads();
+  void LookAtOrders(const std::stop_token& stop);
+  void LookAtTimes(const std::stop_token& stop);
   void EndLeases();
   void TakeOrders();
   bool HasWork() const;  // precondition: mutex_ is held
@@ -159,7 +162,8 @@ class Dispatcher {
   std::vector<std::shared_ptr<Worker>> trying_later_;  // guarded by mutex_; gone ones, too
   bool later_ = false;  // guarded by mutex_; something is to be tried again in a moment
   std::unique_ptr<storage::Store::Subscription> store_watch_;
-  std::jthread sweeper_;
+  std::jthread orders_;
+  std::jthread times_;  // its own thread: it waits for the store
 };
 
 }  // namespace rmlcell::server

@@ -18,6 +18,7 @@
 #include "server/records/file_family.h"
 #include "server/records/job_messages.h"
 #include "server/records/program_place.h"
+#include "storage/jobs/queue_rules.h"
 
 namespace rmlcell::server {
 namespace {
@@ -153,6 +154,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
                        .pool = std::string(job.simulation().pace() > 0.0 ? kPacedPool : ""),
                        .title = job.title(),
                        .caller = caller,
+                       .labels = {job.labels().begin(), job.labels().end()},
                        .specification = {},
                        .attempts_max = job.attempts_max() > 0
                                            ? job.attempts_max()
@@ -185,6 +187,15 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   return made;
 }
 
+Status JobBook::CheckAwaited(const storage::NewJob& made) {
+  for (const std::int64_t id : made.after) {
+    const auto other = store_.GetJob(id);
+    if (!other) return other.error();
+    if (const auto awaited = storage::MustAwait(id, other->state); !awaited) return awaited.error();
+  }
+  return {};
+}
+
 void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& caller,
                      std::function<void(Result<v1::Job>)> done) {
   Result<storage::NewJob> made = Prepare(request, caller);
@@ -198,6 +209,9 @@ void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& cal
     }
     if (!made && !first) return done(made.error());
     if (!request.validate_only()) return done(ToProto(*first));
+    if (made && !first) {
+      if (const Status may = CheckAwaited(*made); !may) return done(may.error());
+    }
     v1::Job job = request.job();
     job.clear_name();
     return done(std::move(job));
@@ -278,14 +292,16 @@ Result<std::vector<std::string>> JobBook::Choose(const v1::JobChoice& choice,
   std::vector<std::string> names;
   storage::JobQuery query{.finished = false, .limit = kChoicePage};
   switch (choice.which_case()) {
-    case v1::JobChoice::kNames:
-      names = {choice.names().names().begin(), choice.names().names().end()};
-      for (const std::string& name : names) {
+    case v1::JobChoice::kNames: {
+      std::set<std::int64_t> named;
+      for (const std::string& name : choice.names().names()) {
         const Result<std::int64_t> id = ParseJobName(name);
         if (!id) return id.error();
         if (const auto job = store_.GetJob(*id); !job) return job.error();
+        if (named.insert(*id).second) names.push_back(JobName(*id));
       }
       break;
+    }
     case v1::JobChoice::kFilter:
       if (choice.filter().empty()) return InvalidArgument("jobs.filter is empty; say all");
       if (const Status applied = ApplyFilter(choice.filter(), query); !applied)
@@ -316,6 +332,14 @@ Result<std::vector<std::string>> JobBook::Choose(const v1::JobChoice& choice,
                  {}};
   }
   return names;
+}
+
+Result<bool> JobBook::IsOver(std::string_view name) {
+  const Result<std::int64_t> id = ParseJobName(name);
+  if (!id) return id.error();
+  const auto job = store_.GetJob(*id);
+  if (!job) return job.error();
+  return storage::IsFinal(job->state);
 }
 
 Status JobBook::CheckOverride(std::string_view name, double percent) {
@@ -407,14 +431,27 @@ Result<storage::ArtifactRecord> JobBook::FindArtifact(std::int64_t job, std::str
 Result<std::string> JobBook::ReadArtifact(std::int64_t job, std::string_view name) {
   const Result<storage::ArtifactRecord> artifact = FindArtifact(job, name);
   if (!artifact) return artifact.error();
-  return store_.ReadBlob(artifact->sha256);
+  return store_.ReadArtifact(job, name);
 }
 
 Result<std::unique_ptr<storage::BlobReader>> JobBook::OpenArtifact(std::int64_t job,
                                                                    std::string_view name) {
   const Result<storage::ArtifactRecord> artifact = FindArtifact(job, name);
   if (!artifact) return artifact.error();
-  return store_.OpenBlob(artifact->sha256);
+  return store_.OpenArtifact(job, name);
+}
+
+Status JobBook::CheckLog(std::int64_t job, std::int64_t sequence, std::string_view log_id) {
+  if (log_id.empty() || sequence <= 0) return {};
+  // Where it stands in the log of the cell; one that was removed only shows that the log is known.
+  std::int64_t position = 0;
+  const auto events = store_.JobEvents(job, sequence - 1, 1);
+  if (!events && events.error().code != ErrorCode::kCellEventsGone) return events.error();
+  if (events && !events->empty()) position = events->front().position;
+  const Result<bool> known = store_.HasPosition(log_id, position);
+  if (!known) return known.error();
+  if (*known) return {};
+  return InvalidArgument("after_sequence is a number of another log: begin anew, with a snapshot");
 }
 
 Result<std::vector<v1::Job>> JobBook::Newest(storage::JobQuery query) {

@@ -44,6 +44,8 @@ class JobBook {
   // CellBadFilter, CellNotFound, CellPrecondition when they are not as many as expected.
   Result<std::vector<std::string>> Choose(const v1::JobChoice& choice,
                                           std::optional<storage::JobState> state);
+  // Whether it has ended. CellNotFound.
+  Result<bool> IsOver(std::string_view name);
   // Whether the machine of the job can have this override. Errors: CellInvalidArgument,
   // CellNotFound.
   Status CheckOverride(std::string_view name, double percent);
@@ -55,6 +57,11 @@ class JobBook {
   Result<std::unique_ptr<storage::BlobReader>> OpenArtifact(std::int64_t job,
                                                             std::string_view name);
 
+  // The log that the events of jobs are in, and whether an event with this number was seen under
+  // such an id; under none: in this log. CellInvalidArgument: it is of another one.
+  std::string LogId() { return store_.LogId(); }
+  Status CheckLog(std::int64_t job, std::int64_t sequence, std::string_view log_id);
+
   // Unfinished jobs and the newest finished ones, newest first, for a watcher that begins; of this
   // machine, kind and caller.
   static constexpr int kNewestMax = 200;
@@ -64,6 +71,8 @@ class JobBook {
 
  private:
   Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);
+  // Whether a job may come behind those that it names. Errors: CellNotFound, CellPrecondition.
+  Status CheckAwaited(const storage::NewJob& made);
   Result<v1::Job> WithArtifacts(const storage::JobRecord& record);
   Status CheckSize(std::size_t bytes, const std::string& what) const;
   Status AttachProgram(const v1::Job& job, const machine::MachineFamily& family,

@@ -16,13 +16,14 @@
 #include "engine/families/families.h"
 #include "server/base/names.h"
 #include "server/base/readable.h"
+#include "server/jobs/job_request.h"
 #include "server/records/job_messages.h"
 
 namespace rmlcell::server {
 namespace {
 
-// Ten fields once, with "=", a value and AND.
-constexpr std::size_t kWordsMax = 39;
+// Eleven fields once, with "=", a value and AND.
+constexpr std::size_t kWordsMax = 43;
 
 Error Bad(const Detail& detail) { return {ErrorCode::kCellBadFilter, detail, {}}; }
 
@@ -110,6 +111,9 @@ Status Apply(const std::string& field, const std::string& value, storage::JobQue
   } else if (field == "family") {
     if (families::FindFamily(value) == nullptr) return Bad("no family '" + Readable(value) + "'");
     query.family = value;
+  } else if (field == "label") {
+    if (!IsLabel(value)) return Bad("no label '" + Readable(value) + "'");
+    query.label = value;
   } else if (field == "text") {
     if (value.empty()) return Bad("text is empty");
     query.text = value;
@@ -125,9 +129,10 @@ Status Apply(const std::string& field, const std::string& value, storage::JobQue
       return Bad("finished is true or false, not '" + Readable(value) + "'");
     query.finished = value == "true";
   } else {
-    return Bad("no field '" + Readable(field) +
-               "'; there are state, machine, kind, caller, finished, family, verdict, text, since, "
-               "until");
+    return Bad(
+        "no field '" + Readable(field) +
+        "'; there are state, machine, kind, caller, finished, family, verdict, label, text, since, "
+        "until");
   }
   return {};
 }

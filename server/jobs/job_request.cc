@@ -1,5 +1,7 @@
 #include "server/jobs/job_request.h"
 
+#include <set>
+
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "proto/bridge/inputs.h"
@@ -15,6 +17,8 @@ namespace {
 
 constexpr std::size_t kRequestIdMax = 64;
 constexpr int kAwaitedJobsMax = 100;
+constexpr int kLabelsMax = 16;
+constexpr std::size_t kLabelMax = 63;
 constexpr int kBreakpointsMax = 1000;
 constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as possible
 
@@ -81,6 +85,30 @@ Result<std::vector<std::int64_t>> AwaitedJobs(const v1::Job& job) {
   return jobs;
 }
 
+bool IsLabel(std::string_view text) {
+  constexpr std::string_view kAllowed =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.:/";
+  return !text.empty() && text.size() <= kLabelMax &&
+         text.find_first_not_of(kAllowed) == std::string_view::npos;
+}
+
+namespace {
+
+Status CheckLabels(const v1::Job& job) {
+  if (job.labels_size() > kLabelsMax) return InvalidArgument("job.labels has more than 16");
+  std::set<std::string_view> labels;
+  for (const std::string& label : job.labels()) {
+    if (!IsLabel(label))
+      return InvalidArgument("job.labels: '" + Readable(label) +
+                             "' is none: 1 to 63 letters, digits, and - _ . : /");
+    if (!labels.insert(label).second)
+      return InvalidArgument("job.labels: '" + label + "' stands twice");
+  }
+  return {};
+}
+
+}  // namespace
+
 Status CheckRequest(const v1::SubmitJobRequest& request) {
   const v1::Job& job = request.job();
   if (KindName(job.kind()).empty())
@@ -96,6 +124,7 @@ Status CheckRequest(const v1::SubmitJobRequest& request) {
   if (request.request_id().size() > kRequestIdMax)
     return InvalidArgument("request_id is longer than 64 characters");
   if (const Status good = CheckTitle(job.title(), "job.title"); !good) return good.error();
+  if (const Status good = CheckLabels(job); !good) return good.error();
   if (job.attempts_max() < 0 || job.attempts_max() > 10)
     return InvalidArgument("job.attempts_max: allowed are 1 to 10");
   return CheckBudget(job.budget());

@@ -13,6 +13,9 @@ namespace rmlcell::server {
 
 std::string_view KindName(v1::JobKind kind);  // "CHECK"; empty: none that there is
 
+// Whether it may be a label of a job: 1 to 63 letters, digits, and - _ . : /
+bool IsLabel(std::string_view text);
+
 // What can be said of a request without a look at its machine. CellUnimplemented: a field of a
 // later version.
 Status CheckRequest(const v1::SubmitJobRequest& request);

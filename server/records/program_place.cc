@@ -18,8 +18,13 @@ Result<ProgramPlace> FindProgramPlace(storage::Store& store, std::string_view na
 }
 
 Status CheckNumber(const machine::MachineFamily& family, const ProgramName& name) {
-  if (name.slot != 0 && (!name.executable || family.info().has_executables)) return {};
-  return CheckSlot(family, name.number, "program number");
+  const bool has_executables = family.info().has_executables;
+  if (name.slot != 0 && (!name.executable || has_executables)) return {};
+  if (!has_executables) return CheckSlot(family, name.number, "program number");
+  return Error{family.info().no_slot,
+               "program number is " + Told("program", name.number) +
+                   "; programs have 1 to 99, and their executables 101 to 199",
+               {}};
 }
 
 Status CheckSlot(const machine::MachineFamily& family, std::int64_t number,

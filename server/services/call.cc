@@ -31,6 +31,11 @@ grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& dia
     shown.resize(keep);
     rich = bridge::ToRpcStatus(shortened, shown, dropped);
   }
+  // Then also the values of the text that have a name: the text has them.
+  if (rich.ByteSizeLong() > kDetailsMax) {
+    shortened.detail = Detail(std::string(shortened.detail));
+    rich = bridge::ToRpcStatus(shortened, shown, dropped);
+  }
   return {static_cast<grpc::StatusCode>(rich.code()), rich.message(), rich.SerializeAsString()};
 }
 
@@ -58,7 +63,7 @@ CallFacts FactsOf(std::string method, const grpc::ServerContextBase& context,
     facts.metadata.emplace(std::string(key.data(), key.size()),
                            std::string(value.data(), value.size()));
   }
-  if (facts.peer.starts_with("unix:")) facts.transport = Transport::kUnixSocket;
+  if (facts.peer.starts_with(SocketUsers::kPeer)) facts.transport = Transport::kUnixSocket;
   const std::vector<grpc::string_ref> certificates =
       context.auth_context()->FindPropertyValues(GRPC_X509_PEM_CERT_PROPERTY_NAME);
   if (!certificates.empty())
@@ -66,14 +71,19 @@ CallFacts FactsOf(std::string method, const grpc::ServerContextBase& context,
   return facts;
 }
 
-Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
-                     std::string_view method, const google::protobuf::Message* request) {
+CallFacts FactsOfCall(const Gate& gate, const grpc::ServerContextBase& context,
+                      std::string_view method, const google::protobuf::Message* request) {
   CallFacts facts =
       FactsOf("/rmlcell.v1." + std::string(method), context, context.client_metadata());
   const v1::Access* access = gate.AccessOf(facts.method);
   if (access != nullptr && request != nullptr)
     facts.resource = ResourceOf(*request, access->resource_field());
-  return gate.Admit(facts);
+  return facts;
+}
+
+Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
+                     std::string_view method, const google::protobuf::Message* request) {
+  return gate.Admit(FactsOfCall(gate, context, method, request));
 }
 
 void LogCall(std::string_view method, const Caller& caller, const grpc::Status& status,

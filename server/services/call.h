@@ -32,6 +32,8 @@ CallFacts FactsOf(std::string method, const grpc::ServerContextBase& context,
                   const std::multimap<grpc::string_ref, grpc::string_ref>& metadata);
 // `method`: "JobService/SubmitJob". Without a request, of a stream, nothing is known of what the
 // call is about.
+CallFacts FactsOfCall(const Gate& gate, const grpc::ServerContextBase& context,
+                      std::string_view method, const google::protobuf::Message* request);
 Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
                      std::string_view method, const google::protobuf::Message* request = nullptr);
 void LogCall(std::string_view method, const Caller& caller, const grpc::Status& status,

@@ -77,8 +77,8 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
     }
     if (!*made) return Next::kNothing;
     message.set_sequence(cursor_);
-    last_message_ = needs_.clock();
-    WakeAt(last_message_ + needs_.bookmark_interval);
+    if (message.has_bookmark()) last_bookmark_ = needs_.clock();
+    WakeAt(last_bookmark_ + needs_.bookmark_interval);
     return Next::kMessage;
   }
 
@@ -90,21 +90,23 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
       if (!std::exchange(told.snapshot_due, false)) continue;
       return MakeSnapshot(told, message);
     }
+    // Also between events without a pause: it says what time it is at the server.
+    const Instant bookmark_due = last_bookmark_ + needs_.bookmark_interval;
+    if (needs_.clock() >= bookmark_due) {
+      SetBookmark(message);
+      return true;
+    }
     const Result<bool> event = MakeEvent(message);
     if (!event || *event) return event;
     if (MakeLatest(message)) return true;
-    const Instant bookmark_due = last_message_ + needs_.bookmark_interval;
-    if (needs_.clock() < bookmark_due) {
-      WakeAt(bookmark_due);
-      return false;
-    }
-    SetBookmark(message);
-    return true;
+    WakeAt(bookmark_due);
+    return false;
   }
 
   // Where to begin; the answer is the first message, with the watch's id.
   Result<bool> Begin(v1::WatchCellResponse& message) {
     begun_ = true;
+    last_bookmark_ = needs_.clock();
     auto subscriptions = MakeSubscriptions(request_.subscriptions());
     if (!subscriptions) return subscriptions.error();
     if (request_.has_after_sequence() && request_.after_sequence() < 0)
@@ -285,7 +287,7 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
   std::string watch_id_;
   std::int64_t cursor_ = 0;
   bool begun_ = false;
-  Instant last_message_{};
+  Instant last_bookmark_{};
   std::vector<Told> told_;
   std::deque<storage::EventRecord> read_ahead_;
   std::deque<std::pair<Latest, std::vector<std::string>>> latest_;  // one per resource at most

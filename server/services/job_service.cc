@@ -86,13 +86,14 @@ grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* con
   const Result<std::int64_t> id = ParseJobName(request->name());
   return AnswerAfter(
       needs_, context, *request, "JobService/CancelJob",
-      [this, id](const Caller& caller) {
+      [this, id, request](const Caller& caller) {
         if (id)
-          dispatcher_.OrderAtOnce(*id, {v1::WorkerControl::KIND_CANCEL, 0.0, caller.identity, {}});
+          dispatcher_.OrderAtOnce(
+              *id, {v1::WorkerControl::KIND_CANCEL, 0.0, caller.identity, request->request_id()});
       },
-      [this, id, response](const Caller& caller) {
+      [this, id, request, response](const Caller& caller) {
         if (!id) return ToGrpcStatus(id.error());
-        const auto job = dispatcher_.Cancel(*id, caller.identity);
+        const auto job = dispatcher_.Cancel(*id, caller.identity, request->request_id());
         if (!job) return ToGrpcStatus(job.error());
         *response = ToProto(*job);
         return grpc::Status::OK;
@@ -328,6 +329,9 @@ grpc::ServerUnaryReactor* JobService::CancelJobs(grpc::CallbackServerContext* co
                   const auto names = book_.Choose(request->jobs(), {});
                   if (!names) return ToGrpcStatus(names.error());
                   for (const std::string& name : *names) {
+                    const Result<bool> over = book_.IsOver(name);
+                    if (!over) return ToGrpcStatus(over.error());
+                    if (*over) continue;
                     const auto job = dispatcher_.Cancel(*ParseJobName(name), caller.identity);
                     if (!job) return ToGrpcStatus(job.error());
                     response->set_jobs(response->jobs() + 1);

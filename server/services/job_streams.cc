@@ -47,6 +47,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
       read_ahead_.pop_front();
       cursor_ = event.sequence;
       message.set_sequence(event.sequence);
+      message.set_log_id(log_id_);
       *message.mutable_event() = ToProto(event);
       ended_ = message.event().has_ended();
       return Next::kMessage;
@@ -76,6 +77,12 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
       status = ToGrpcStatus(there.error());
       return Next::kEnd;
     }
+    if (const Status of_log = needs_.book.CheckLog(job_, cursor_, request_.log_id()); !of_log) {
+      status = ToGrpcStatus(of_log.error());
+      return Next::kEnd;
+    }
+    log_id_ = needs_.book.LogId();
+    message.set_log_id(log_id_);
     final_sequence_ = job->has_end_time() ? job->last_sequence() : -1;
     message.set_sequence(cursor_);
     *message.mutable_snapshot() = std::move(*job);
@@ -98,6 +105,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
   bool MakeGoodbye(v1::WatchJobResponse& message) override {
     message.set_instance_id(needs_.instance_id);
     message.set_sequence(begun_ ? cursor_ : request_.after_sequence());
+    message.set_log_id(begun_ ? log_id_ : request_.log_id());
     *message.mutable_reconnect() = ServerStopped();
     return true;
   }
@@ -107,6 +115,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
   JobStreamNeeds needs_;
   v1::WatchJobRequest request_;
   std::int64_t cursor_ = 0;
+  std::string log_id_;
   std::int64_t job_ = 0;
   std::int64_t final_sequence_ = -1;
   std::uint64_t progress_seen_ = 0;

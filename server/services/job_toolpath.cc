@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <optional>
 
 #include "engine/core/units.h"
@@ -21,8 +20,7 @@ constexpr std::chrono::milliseconds kBegunLookedForAfter{500};
 double ToleranceOf(const v1::Job& job) {
   const double asked = job.simulation().toolpath_tolerance_mm();
   const double used = asked > 0.0 ? asked : simulation::ToolpathOptions().tolerance_mm;
-  return std::clamp(used, simulation::kToolpathToleranceMin_mm,
-                    simulation::kToolpathToleranceMax_mm);
+  return simulation::ToolpathTolerance_mm(used);
 }
 
 // The toolpath of a job that is over: a header, then a block a message. One that is followed before

@@ -56,11 +56,15 @@ class MachineWatch final : public PullStream<v1::WatchMachineResponse> {
     // Subscribed before the store is read: what comes in between wakes us again.
     subscription_ = needs_.feed.Subscribe(request_.name(), [this] { Wake(); });
     seen_ = needs_.feed.version();
+    const auto position = needs_.store.LastPosition();
+    if (!position) return position.error();
     const auto machine = needs_.store.GetMachine(id_);
     if (!machine) return machine.error();
     const auto unfinished = needs_.store.UnfinishedJobs();
     if (!unfinished) return unfinished.error();
     *message.mutable_status() = StatusOf(*machine, *unfinished);
+    message.set_sequence(*position);
+    message.set_log_id(needs_.store.LogId());
     return true;
   }
 

@@ -21,10 +21,16 @@ grpc::ServerWriteReactor<Response>* OpenStream(const CallNeeds& needs,
                                                const grpc::CallbackServerContext& context,
                                                const google::protobuf::Message& request,
                                                std::string_view method, Make make) {
-  const Result<Caller> caller = Admit(needs.gate, context, method, &request);
+  CallFacts facts = FactsOfCall(needs.gate, context, method, &request);
+  const Result<Caller> caller = needs.gate.Admit(facts);
   if (!caller)
     return new EndedStream<grpc::ServerWriteReactor<Response>>(ToGrpcStatus(caller.error()));
-  return make(*caller)->Begin();
+  const auto stream = make(*caller);
+  stream->SetAdmission([&gate = needs.gate, facts = std::move(facts)]() -> Status {
+    const Result<Caller> still = gate.Admit(facts);
+    return still ? Status() : Status(still.error());
+  });
+  return stream->Begin();
 }
 
 }  // namespace rmlcell::server

@@ -33,6 +33,11 @@ void OpenStreams::StopAll() {
   for (Stream* stream : streams_) stream->ServerStops();
 }
 
+void OpenStreams::AskAgain() {
+  const std::lock_guard lock(mutex_);
+  for (Stream* stream : streams_) stream->RightsChanged();
+}
+
 std::size_t OpenStreams::count() const {
   const std::lock_guard lock(mutex_);
   return streams_.size();

@@ -4,6 +4,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -24,11 +25,14 @@ class OpenStreams {
    public:
     virtual ~Stream() = default;
     virtual void ServerStops() = 0;
+    virtual void RightsChanged() = 0;
   };
   void Add(Stream* stream);
   void Remove(Stream* stream);
   // Tells every open stream, and those that are opened later.
   void StopAll();
+  // Rights have changed: streams whose callers may not have them any more end.
+  void AskAgain();
   // How many are open.
   std::size_t count() const;
 
@@ -47,11 +51,14 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
  public:
   PullStream(Executor& executor, OpenStreams& open) : executor_(executor), open_(open) {}
 
+  // How the caller is asked for again when rights change. Before Begin().
+  void SetAdmission(std::function<Status()> admission) { admission_ = std::move(admission); }
+
   // Keeps itself alive and begins. Call once, on a shared_ptr.
   grpc::ServerWriteReactor<Response>* Begin() {
     self_ = this->shared_from_this();
     open_.Add(this);
-    Wake();
+    RightsChanged();  // perhaps between its admission and this moment
     return this;
   }
 
@@ -70,6 +77,13 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
     {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
+    }
+    Wake();
+  }
+  void RightsChanged() override {
+    {
+      const std::lock_guard lock(mutex_);
+      asked_again_ = true;
     }
     Wake();
   }
@@ -105,8 +119,10 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
     for (;;) {
       bool stopping = false;
       bool cancelled = false;
+      bool ask = false;
       {
         const std::lock_guard lock(mutex_);
+        ask = std::exchange(asked_again_, false);
         again_ = false;
         stopping = stopping_;
         cancelled = cancelled_;
@@ -114,8 +130,11 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
       message_.Clear();
       grpc::Status status;
       Next next = Next::kEnd;
+      const Status admitted = ask && admission_ ? admission_() : Status();
       if (cancelled) {
         status = grpc::Status::CANCELLED;
+      } else if (!admitted) {
+        status = ToGrpcStatus(admitted.error());
       } else if (stopping && goodbye_said_) {
         status = ToGrpcStatus(Error{ErrorCode::kCellUnavailable, "the server stops", {}});
       } else if (stopping) {
@@ -176,6 +195,7 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
 
   Executor& executor_;
   OpenStreams& open_;
+  std::function<Status()> admission_;
   std::shared_ptr<PullStream> self_;
   Response message_;
   bool goodbye_said_ = false;
@@ -185,6 +205,7 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
   bool again_ = false;
   bool finished_ = false;
   bool cancelled_ = false;
+  bool asked_again_ = false;
   bool stopping_ = false;
   std::unique_ptr<grpc::Alarm> alarm_;                 // guarded by mutex_; null: none is set
   std::chrono::steady_clock::time_point alarm_due_{};  // guarded by mutex_

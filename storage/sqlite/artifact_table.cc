@@ -7,8 +7,8 @@ namespace rmlcell::storage::sqlite {
 namespace {
 
 std::string SelectArtifact(const std::string& which) {
-  return "SELECT artifact.job, artifact.name, artifact.media_type, blob.sha256, blob.size"
-         " FROM artifact LEFT JOIN blob ON blob.id = artifact.blob WHERE artifact.job = ?1 " +
+  return "SELECT artifact.job, artifact.name, artifact.media_type,"
+         " ifnull(blob.sha256, artifact.sha256), ifnull(blob.size, artifact.size) FROM artifact LEFT JOIN blob ON blob.id = artifact.blob WHERE artifact.job = ?1 " +
          which;
 }
 
@@ -30,14 +30,28 @@ Result<ArtifactRecord> ReadArtifact(const Query& row) {
 
 ArtifactTable::ArtifactTable(Database& database)
     : add_(database,
-           "INSERT INTO artifact (job, name, media_type, blob) VALUES (?1, ?2, ?3, ?4)"
+           "INSERT INTO artifact (job, name, media_type, blob, sha256, size)"
+           " VALUES (?1, ?2, ?3, ?4, ?5, ?6)"
            " ON CONFLICT DO NOTHING"),
       list_(database, SelectArtifact("ORDER BY artifact.name")),
       get_(database, SelectArtifact("AND artifact.name = ?2")),
+      blob_(database, "SELECT blob FROM artifact WHERE job = ?1 AND name = ?2"),
       remove_(database, "DELETE FROM artifact WHERE job = ?1 RETURNING blob") {}
 
 Result<bool> ArtifactTable::Add(std::int64_t job, const NewArtifact& artifact, std::int64_t blob) {
-  if (const Status added = add_.With(job, artifact.name, artifact.media_type, blob).Run(); !added)
+  if (const Status added =
+          add_.With(job, artifact.name, artifact.media_type, blob, std::nullopt, 0).Run();
+      !added)
+    return added.error();
+  return add_.changes() == 1;
+}
+
+Result<bool> ArtifactTable::AddWithJob(std::int64_t job, const NewArtifact& artifact,
+                                       const PreparedContent& content) {
+  if (const Status added = add_.With(job, artifact.name, artifact.media_type, kWithJob,
+                                     Bytes{content.sha256}, content.bytes.size())
+                               .Run();
+      !added)
     return added.error();
   return add_.changes() == 1;
 }
@@ -50,8 +64,15 @@ Result<std::optional<ArtifactRecord>> ArtifactTable::Get(std::int64_t job, std::
   return FirstRow<ArtifactRecord>(get_.With(job, name), ReadArtifact);
 }
 
+Result<std::int64_t> ArtifactTable::BlobOf(std::int64_t job, std::string_view name) {
+  return FirstInteger(blob_.With(job, name));
+}
+
 Result<std::vector<std::int64_t>> ArtifactTable::RemoveOf(std::int64_t job) {
-  return AllRows<std::int64_t>(remove_.With(job), [](const Query& row) { return row.Integer(0); });
+  auto blobs =
+      AllRows<std::int64_t>(remove_.With(job), [](const Query& row) { return row.Integer(0); });
+  if (blobs) std::erase(*blobs, kWithJob);
+  return blobs;
 }
 
 }  // namespace rmlcell::storage::sqlite

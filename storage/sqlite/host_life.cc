@@ -3,6 +3,7 @@
 #include <tuple>
 #include <utility>
 
+#include "storage/jobs/job_rules.h"
 #include "storage/sqlite/job_changes.h"
 
 namespace rmlcell::storage::sqlite {
@@ -73,7 +74,7 @@ Status ReleaseMachine(WriteContext& context, const MachineLease& lease) {
 Status WriteMachine(WriteContext& context, const MachineLease& lease, const MachineWrite& write) {
   const Result<MachineLease> held = Held(context, lease);
   if (!held) return held.error();
-  if (const Status small_enough = CheckSizes(write.events); !small_enough)
+  if (const Status small_enough = CheckEventSizes(write.events); !small_enough)
     return small_enough.error();
   for (const NewEvent& event : write.events) {
     if (const Status noted = NoteEvent(context, MachineName(lease.machine), event); !noted)

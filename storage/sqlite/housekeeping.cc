@@ -23,13 +23,16 @@ Status KeepCounters(WriteContext& context) {
   return marks.Set(MarkTable::kPosition, context.counters.position);
 }
 
-// From now on a reader that asks for these events is told that they are gone.
-Status NoteGone(WriteContext& context, const EventTable::Removed& removed) {
+// From now on a reader that asks for these events of the job is told that they are gone.
+Status NoteGoneOfJob(WriteContext& context, const EventTable::Removed& removed) {
   context.changed = true;
   if (removed.job == EventTable::kOfRecords) context.counters.record_events -= removed.count;
-  if (const Status job = context.tables.jobs.SetEventsGoneUntil(removed.job, removed.sequence);
-      !job)
-    return job.error();
+  return context.tables.jobs.SetEventsGoneUntil(removed.job, removed.sequence);
+}
+
+// The same of a reader of the whole log.
+Status NoteGone(WriteContext& context, const EventTable::Removed& removed) {
+  if (const Status job = NoteGoneOfJob(context, removed); !job) return job.error();
   const Result<std::int64_t> before = context.tables.marks.Get(MarkTable::kEventsGoneUntil);
   if (!before) return before.error();
   return context.tables.marks.Set(MarkTable::kEventsGoneUntil, std::max(*before, removed.position));
@@ -59,7 +62,8 @@ Status RemoveJobWhole(WriteContext& context, std::int64_t job) {
         context.tables.events.RemoveOfJob(job, kEventsPerSlice);
     if (!removed) return removed.error();
     if (!*removed) break;
-    if (const Status noted = NoteGone(context, **removed); !noted) return noted.error();
+    // Readers of the whole log find the event that tells of the removal.
+    if (const Status noted = NoteGoneOfJob(context, **removed); !noted) return noted.error();
   }
   context.garbage = true;
   return RemoveJob(context, job);

@@ -1,21 +1,13 @@
 #include "storage/sqlite/job_changes.h"
 
-namespace rmlcell::storage::sqlite {
+#include "storage/jobs/job_rules.h"
 
-Status CheckSizes(const std::vector<NewEvent>& events) {
-  for (const NewEvent& event : events) {
-    if (event.payload.size() > kEventPayloadBytesMax) {
-      return Error{ErrorCode::kCellTooLarge,
-                   "an event of " + std::to_string(event.payload.size()) + " bytes",
-                   {}};
-    }
-  }
-  return {};
-}
+namespace rmlcell::storage::sqlite {
 
 Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
                    const std::vector<NewEvent>& events) {
-  if (const Status small_enough = CheckSizes(events); !small_enough) return small_enough.error();
+  if (const Status small_enough = CheckEventSizes(events); !small_enough)
+    return small_enough.error();
   for (const NewEvent& event : events) {
     const EventTable::Place place{.position = ++context.counters.position,
                                   .job = job.id,
@@ -36,8 +28,8 @@ Status WriteChange(WriteContext& context, JobRow& row, int attempt,
   return context.tables.jobs.Update(row);
 }
 
-Result<JobRow> GetRow(WriteContext& context, std::int64_t id) {
-  Result<std::optional<JobRow>> row = context.tables.jobs.Get(id);
+Result<JobRow> GetRow(Tables& tables, std::int64_t id) {
+  Result<std::optional<JobRow>> row = tables.jobs.Get(id);
   if (!row) return row.error();
   if (!*row) return Error{ErrorCode::kCellNotFound, "job " + std::to_string(id), {}};
   return **std::move(row);

@@ -11,9 +11,11 @@ namespace rmlcell::storage::sqlite {
 inline constexpr int kOutsideAnAttempt = 0;
 
 // CellNotFound.
-Result<JobRow> GetRow(WriteContext& context, std::int64_t id);
+Result<JobRow> GetRow(Tables& tables, std::int64_t id);
+inline Result<JobRow> GetRow(WriteContext& context, std::int64_t id) {
+  return GetRow(context.tables, id);
+}
 
-Status CheckSizes(const std::vector<NewEvent>& events);  // CellTooLarge
 // Numbers and writes events; the job has the new last sequence, its row not yet. CellTooLarge.
 Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
                    const std::vector<NewEvent>& events);

@@ -1,8 +1,8 @@
 #include "storage/sqlite/job_life.h"
 
-#include <algorithm>
-
-#include "engine/core/check.h"
+#include "storage/content.h"
+#include "storage/jobs/job_rules.h"
+#include "storage/jobs/queue_rules.h"
 #include "storage/sqlite/host_life.h"
 #include "storage/sqlite/housekeeping.h"
 #include "storage/sqlite/job_changes.h"
@@ -11,36 +11,14 @@
 namespace rmlcell::storage::sqlite {
 namespace {
 
-Error LeaseLost(const Lease& lease, const std::string& why) {
-  return Error{ErrorCode::kCellLeaseLost, "job " + std::to_string(lease.job) + " " + why, {}};
-}
-
-Status CheckFinal(const JobOutcome& outcome) {
-  if (IsFinal(outcome.state)) return {};
-  return InvalidArgument("an outcome has to be final");
-}
-
-// Never beyond what a WallTime can say.
-WallTime After(WallTime now, std::chrono::milliseconds duration) {
-  return now + std::clamp<std::chrono::milliseconds>(duration, std::chrono::milliseconds(0),
-                                                     std::chrono::days(366));
-}
-
-// The lease as the store has it, when it is still this one.
-Status CheckHolder(WriteContext& context, const Lease& lease) {
+Status IsHolder(WriteContext& context, const Lease& lease) {
   const Result<std::optional<Lease>> held = context.tables.leases.Find(lease.job);
   if (!held) return held.error();
-  if (!*held) return LeaseLost(lease, "is not leased");
-  const Lease& now = **held;
-  if (now.fence != lease.fence || now.attempt != lease.attempt) {
-    return LeaseLost(lease,
-                     "is leased to " + now.worker + " as attempt " + std::to_string(now.attempt));
-  }
-  return {};
+  return CheckHolder(lease, *held);
 }
 
 Result<JobRow> GetHeldRow(WriteContext& context, const Lease& lease) {
-  if (const Status held = CheckHolder(context, lease); !held) return held.error();
+  if (const Status held = IsHolder(context, lease); !held) return held.error();
   return GetRow(context, lease.job);
 }
 
@@ -61,76 +39,80 @@ Status EndJob(WriteContext& context, JobRow& row, const JobOutcome& outcome) {
   return LetFollowersGo(context, row.job.id);
 }
 
-JobOutcome Cancelled() {
-  return JobOutcome{.state = JobState::kCancelled, .code = ErrorCode::kCellCancelled, .detail = {}};
-}
-
-std::string_view HowItEnded(JobState state) {
-  switch (state) {
-    case JobState::kSucceeded:
-      return "succeeded";
-    case JobState::kFailed:
-      return "failed";
-    case JobState::kCancelled:
-      return "cancelled";
-    case JobState::kInterrupted:
-      return "interrupted";
-    case JobState::kQueued:
-    case JobState::kRunning:
-      break;
-  }
-  RMLCELL_CHECK(false);  // CheckFinal() was asked
-  return {};
-}
-
-// The machine may have moved: a person decides, also when a cancel was wanted.
-Status Interrupt(WriteContext& context, JobRow& row, const LossPolicy& policy) {
-  JobOutcome interrupted = policy.outcome;
-  interrupted.state = JobState::kInterrupted;
-  return EndJob(context, row, interrupted);
-}
-
 // The holder is gone without an outcome.
-Result<JobRecord> LoseAttempt(WriteContext& context, const Lease& lease, std::string_view how,
-                              const LossPolicy& policy) {
+Result<JobRecord> LoseJob(WriteContext& context, const Lease& lease, std::string_view how,
+                          const LossPolicy& policy) {
   Result<JobRow> row = GetRow(context, lease.job);
   if (!row) return row.error();
   if (const Status ended = EndAttempt(context, lease, how); !ended) return ended.error();
-  JobRecord& job = row->job;
-  const int uncounted = row->attempts_begun - job.attempts;
-  if (!policy.counts && uncounted < kUncountedAttemptsMax) job.attempts -= 1;
   const std::vector<NewEvent>* events = &policy.ended;
   Status changed;
-  if (job.kind == kRunKind) {
-    changed = Interrupt(context, *row, policy);
-    events = &policy.interrupted;
-  } else if (job.cancel_requested && !policy.cancelled.empty()) {
-    changed = EndJob(context, *row, Cancelled());
-    events = &policy.cancelled;
-  } else if (job.attempts < job.attempts_max) {
-    SetState(context, *row, JobState::kQueued);
-    events = &policy.requeued;
-  } else {
-    changed = EndJob(context, *row, policy.outcome);
+  switch (LoseAttempt(row->job, row->attempts_begun, policy)) {
+    case AfterLoss::kInterrupted:
+      changed = EndJob(context, *row, InterruptedOutcome(policy));
+      events = &policy.interrupted;
+      break;
+    case AfterLoss::kCancelled:
+      changed = EndJob(context, *row, CancelledOutcome());
+      events = &policy.cancelled;
+      break;
+    case AfterLoss::kQueued:
+      SetState(context, *row, JobState::kQueued);
+      events = &policy.requeued;
+      break;
+    case AfterLoss::kEnded:
+      changed = EndJob(context, *row, policy.outcome);
+      break;
   }
   if (!changed) return changed.error();
   if (const Status written = WriteChange(context, *row, kOutsideAnAttempt, *events); !written)
     return written.error();
-  return std::move(job);
+  return std::move(row->job);
 }
 
-// The bytes first, then the rows that name them.
+// The bytes first, then the rows that name them. Those of `with_job` stand in its own row already.
 Status AddArtifacts(WriteContext& context, std::int64_t job,
                     const std::vector<NewArtifact>& artifacts,
-                    const std::vector<const PreparedContent*>& contents) {
+                    const std::vector<const PreparedContent*>& contents,
+                    const PreparedContent* with_job) {
+  ArtifactTable& table = context.tables.artifacts;
   for (std::size_t i = 0; i < artifacts.size(); ++i) {
+    if (contents[i] == with_job) {
+      const Result<bool> kept = table.AddWithJob(job, artifacts[i], *with_job);
+      if (!kept) return kept.error();
+      if (!*kept) return InvalidArgument("two artifacts named " + artifacts[i].name);
+      continue;
+    }
     const Result<std::int64_t> blob = context.tables.blobs.PutBlob(*contents[i]);
     if (!blob) return blob.error();
-    const Result<bool> added = context.tables.artifacts.Add(job, artifacts[i], *blob);
+    const Result<bool> added = table.Add(job, artifacts[i], *blob);
     if (!added) return added.error();
     if (!*added) return InvalidArgument("two artifacts named " + artifacts[i].name);
   }
   return {};
+}
+
+// The program of most jobs: a page of its own, and one of the index of contents, would be two more
+// to write with each of them.
+const PreparedContent* KeptWithJob(const JobContents& contents) {
+  if (contents.attachments.empty()) return nullptr;
+  const PreparedContent& first = *contents.attachments.front();
+  const bool whole = !first.must_exist && first.staged_blob == 0;
+  return whole && first.encoded.size() <= kContentInRowMax ? &first : nullptr;
+}
+
+Status PutWhatItBrings(WriteContext& context, std::int64_t id, const NewJob& job,
+                       const JobContents& contents) {
+  const PreparedContent* with_job = KeptWithJob(contents);
+  if (!job.specification.empty() || with_job != nullptr) {
+    const Result<ContentColumns> columns = context.tables.blobs.Put(*contents.specification);
+    if (!columns) return columns.error();
+    std::optional<Bytes> attachment;
+    if (with_job != nullptr) attachment = Bytes{with_job->encoded};
+    if (const Status put = context.tables.jobs.PutSpecification(id, *columns, attachment); !put)
+      return put.error();
+  }
+  return AddArtifacts(context, id, job.attachments, contents.attachments, with_job);
 }
 
 // The first job, as it is by now; for the same request only.
@@ -177,30 +159,8 @@ Status CompleteJob(Tables& tables, JobRecord& job, WallTime now) {
 
 Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                                const JobContents& contents) {
-  if (job.attempts_max < 1) return InvalidArgument("a job needs at least one attempt");
-  if (job.priority < kPriorityMin || job.priority > kPriorityMax)
-    return InvalidArgument("priority is " + std::to_string(job.priority) +
-                           ", allowed are -100 to 100");
-  JobRecord record{.id = context.counters.job + 1,
-                   .request_id = contents.request_id,
-                   .request_hash = job.request_hash,
-                   .machine = job.machine,
-                   .family = job.family,
-                   .kind = job.kind,
-                   .pool = job.pool,
-                   .title = job.title,
-                   .caller = job.caller,
-                   .specification = {},
-                   .priority = job.priority,
-                   .place = static_cast<double>(context.counters.job + 1),
-                   .held = job.held,
-                   .not_before = job.not_before,
-                   .attempts_max = job.attempts_max,
-                   .outcome = {},
-                   .last_sequence = static_cast<std::int64_t>(job.events.size()),
-                   .created_at = context.now,
-                   .started_at = {},
-                   .finished_at = {}};
+  if (const Status good = CheckNewJob(job); !good) return good.error();
+  JobRecord record = MakeRecord(job, context.counters.job + 1, contents.request_id, context.now);
   if (job.queued_max > 0 && context.counters.queued_jobs >= job.queued_max) {
     return KnownJobOr({ErrorCode::kCellResourceExhausted,
                        std::to_string(context.counters.queued_jobs) + " jobs wait",
@@ -210,9 +170,7 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
   Result<std::vector<std::int64_t>> after = StillWanted(context, job);
   if (!after) return KnownJobOr(after.error(), context, job, contents);
   record.after = *std::move(after);
-  const int blocked = (job.held ? kBlockedByHold : 0) |
-                      (job.not_before && *job.not_before > context.now ? kBlockedByTime : 0) |
-                      (record.after.empty() ? 0 : kBlockedByJobs);
+  const int blocked = BlockedAtFirst(job, !record.after.empty(), context.now);
   record.blocked = blocked != 0;
   const Result<bool> inserted = context.tables.jobs.Insert(record, blocked);
   if (!inserted) return inserted.error();
@@ -224,16 +182,8 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
     if (const Status added = context.tables.queue.AddAfter(record.id, other); !added)
       return added.error();
   }
-  if (!job.specification.empty()) {
-    const Result<ContentColumns> columns = context.tables.blobs.Put(*contents.specification);
-    if (!columns) return columns.error();
-    if (const Status put = context.tables.jobs.PutSpecification(record.id, *columns); !put)
-      return put.error();
-  }
-  if (const Status attached =
-          AddArtifacts(context, record.id, job.attachments, contents.attachments);
-      !attached)
-    return attached.error();
+  if (const Status brought = PutWhatItBrings(context, record.id, job, contents); !brought)
+    return brought.error();
   record.last_sequence = 0;
   if (const Status written = WriteEvents(context, record, kOutsideAnAttempt, job.events); !written)
     return written.error();
@@ -250,7 +200,8 @@ Result<JobRecord> CancelJob(WriteContext& context, std::int64_t id,
   if (IsFinal(job.state)) return std::move(job);
   if (job.state == JobState::kQueued) {
     job.cancel_requested = true;
-    if (const Status ended = EndJob(context, *row, Cancelled()); !ended) return ended.error();
+    if (const Status ended = EndJob(context, *row, CancelledOutcome()); !ended)
+      return ended.error();
     if (const Status written = WriteChange(context, *row, kOutsideAnAttempt, events); !written)
       return written.error();
   } else if (!job.cancel_requested) {
@@ -275,7 +226,7 @@ Result<LeasedJob> LeaseJob(WriteContext& context, std::int64_t id, const JobRequ
               .attempt = row->attempts_begun,
               .fence = ++context.counters.fence,
               .worker = request.worker,
-              .until = After(context.now, request.duration),
+              .until = LeaseEnd(context.now, request.duration),
               .server = request.server};
   if (const Status leased = context.tables.leases.Add(lease); !leased) return leased.error();
   if (const Status begun = context.tables.attempts.Add({.job = job.id,
@@ -312,7 +263,7 @@ Result<JobRecord> RenewLease(WriteContext& context, const Lease& lease,
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
   if (const Status prolonged =
-          context.tables.leases.Prolong(lease.job, After(context.now, duration));
+          context.tables.leases.Prolong(lease.job, LeaseEnd(context.now, duration));
       !prolonged)
     return prolonged.error();
   return std::move(row->job);
@@ -335,7 +286,8 @@ Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const Job
   if (const Status final_state = CheckFinal(end.outcome); !final_state) return final_state.error();
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
-  if (const Status added = AddArtifacts(context, lease.job, end.artifacts, contents); !added)
+  if (const Status added = AddArtifacts(context, lease.job, end.artifacts, contents, nullptr);
+      !added)
     return added.error();
   if (const Status ended = EndAttempt(context, lease, HowItEnded(end.outcome.state)); !ended)
     return ended.error();
@@ -355,26 +307,24 @@ Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease, const L
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
   if (const Status ended = EndAttempt(context, lease, "handed back"); !ended) return ended.error();
-  JobRecord& job = row->job;
-  const bool moved = job.kind == kRunKind;
-  if (moved) {
-    if (const Status cut_off = Interrupt(context, *row, policy); !cut_off) return cut_off.error();
-  } else {
-    job.attempts -= 1;
+  const bool waits = HandBackAttempt(row->job);
+  if (waits) {
     SetState(context, *row, JobState::kQueued);
+  } else if (const Status cut_off = EndJob(context, *row, InterruptedOutcome(policy)); !cut_off) {
+    return cut_off.error();
   }
   if (const Status written =
-          WriteChange(context, *row, lease.attempt, moved ? policy.interrupted : policy.requeued);
+          WriteChange(context, *row, lease.attempt, waits ? policy.requeued : policy.interrupted);
       !written)
     return written.error();
-  return std::move(job);
+  return std::move(row->job);
 }
 
 Result<JobRecord> AbandonJob(WriteContext& context, const Lease& lease, const LossPolicy& policy) {
   if (const Status final_state = CheckFinal(policy.outcome); !final_state)
     return final_state.error();
-  if (const Status held = CheckHolder(context, lease); !held) return held.error();
-  return LoseAttempt(context, lease, "abandoned", policy);
+  if (const Status held = IsHolder(context, lease); !held) return held.error();
+  return LoseJob(context, lease, "abandoned", policy);
 }
 
 Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease& lease,
@@ -384,7 +334,7 @@ Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease&
   if (!*held || (*held)->fence != lease.fence || (*held)->until > context.now) {
     return std::optional<JobRecord>();
   }
-  Result<JobRecord> job = LoseAttempt(context, lease, "lease ran out", policy);
+  Result<JobRecord> job = LoseJob(context, lease, "lease ran out", policy);
   if (!job) return job.error();
   return std::optional(*std::move(job));
 }
@@ -392,11 +342,7 @@ Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease&
 Status RemoveEndedJob(WriteContext& context, std::int64_t id, std::string_view caller) {
   const Result<JobRow> row = GetRow(context, id);
   if (!row) return row.error();
-  if (!IsFinal(row->job.state)) {
-    return Error{ErrorCode::kCellPrecondition,
-                 "job " + std::to_string(id) + " has not ended; cancel it first",
-                 {}};
-  }
+  if (const Status may = CheckRemoval(row->job); !may) return may.error();
   if (const Status removed = RemoveJobWhole(context, id); !removed) return removed.error();
   return NoteRecord(context, JobName(id), kDeleted, caller);
 }

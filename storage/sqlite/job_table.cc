@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <ranges>
 #include <tuple>
+
+#include "storage/content.h"
 
 namespace rmlcell::storage::sqlite {
 namespace {
@@ -14,8 +17,22 @@ std::string SelectJob(const std::string& from) {
          " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
          " events_gone_until, created_at, started_at, finished_at, outcome_code, outcome_detail,"
          " outcome_program, outcome_step, outcome_judgement, pool, priority, held, not_before, blocked,"
-         " place, family, outcome_verdict FROM job " +
+         " place, family, outcome_verdict, labels FROM job " +
          from;
+}
+
+std::string TextOf(const std::vector<std::string>& labels) {
+  std::string text;
+  for (const std::string& label : labels) text += (text.empty() ? " " : "") + label + " ";
+  return text;
+}
+
+std::vector<std::string> LabelsOf(std::string_view text) {
+  std::vector<std::string> labels;
+  for (const auto word : std::views::split(text, ' ')) {
+    if (!word.empty()) labels.emplace_back(word.begin(), word.end());
+  }
+  return labels;
 }
 
 // The code is kept as people write it: its place in the catalogue moves from version to version.
@@ -50,6 +67,7 @@ Result<JobRow> Read(const Query& row) {
                         .pool = row.Text(22),
                         .title = row.Text(5),
                         .caller = row.Text(6),
+                        .labels = LabelsOf(row.View(30)),
                         .specification = {},
                         .state = static_cast<JobState>(state),
                         .priority = row.Small(23),
@@ -87,9 +105,10 @@ Result<JobRecord> ReadRecord(const Query& query) {
   return std::move(row->job);
 }
 
-// What no index helps with: parameters 9 to 13.
+// What no index helps with: parameters 9 to 14.
 constexpr std::string_view kDearFilter =
     " AND (?9 = '' OR family = ?9) AND (?10 = '' OR outcome_verdict = ?10)"
+    " AND (?14 = '' OR instr(labels, ' ' || ?14 || ' ') > 0)"
     " AND (?11 = '' OR instr(lower(title), lower(?11)) > 0)"
     " AND created_at >= ?12 AND created_at < ?13";
 
@@ -132,9 +151,9 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
               "INSERT INTO job (id, request_id, request_hash, machine, kind, title, caller, state,"
               " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
               " events_gone_until, created_at, pool, priority, place, special, held, not_before,"
-              " blocked, family)"
+              " blocked, family, labels)"
               " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0, 0, 0, ?8, 0, ?9, 0, ?10, ?11, ?12, ?1, ?13,"
-              " ?14, ?15, ?16, ?17)"
+              " ?14, ?15, ?16, ?17, ?18)"
               " ON CONFLICT (request_id) DO NOTHING"),
       get_(database, SelectJob("WHERE id = ?1")),
       find_by_request_(database, SelectJob("WHERE request_id = ?1")),
@@ -148,11 +167,13 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
       set_last_sequence_(database, "UPDATE job SET last_sequence = ?2 WHERE id = ?1"),
       set_events_gone_(database, "UPDATE job SET events_gone_until = ?2 WHERE id = ?1"),
       put_specification_(database,
-                         "INSERT INTO job_specification (job, specification, specification_blob)"
-                         " VALUES (?1, ?2, ?3)"),
+                         "INSERT INTO job_specification"
+                         " (job, specification, specification_blob, attachment)"
+                         " VALUES (?1, ?2, ?3, ?4)"),
       specification_(
           database,
           "SELECT specification, specification_blob FROM job_specification WHERE job = ?1"),
+      attachment_(database, "SELECT attachment FROM job_specification WHERE job = ?1"),
       last_id_(database, "SELECT ifnull(max(id), 0) FROM job"),
       unfinished_(database,
                   "SELECT machine, count(*), min(CASE WHEN state = 1 THEN id END)"
@@ -173,11 +194,13 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
                             " RETURNING specification_blob") {}
 
 Result<bool> JobTable::Insert(const JobRecord& job, int blocked) {
+  const std::string labels = TextOf(job.labels);
   if (const Status inserted =
           insert_
               .With(job.id, job.request_id, job.request_hash, job.machine, job.kind, job.title,
                     job.caller, job.attempts_max, job.last_sequence, job.created_at, job.pool,
-                    job.priority, job.priority != 0, job.held, job.not_before, blocked, job.family)
+                    job.priority, job.priority != 0, job.held, job.not_before, blocked, job.family,
+                    labels)
               .Run();
       !inserted)
     return inserted.error();
@@ -213,8 +236,24 @@ Status JobTable::SetEventsGoneUntil(std::int64_t id, std::int64_t sequence) {
   return set_events_gone_.With(id, sequence).Run();
 }
 
-Status JobTable::PutSpecification(std::int64_t id, const ContentColumns& specification) {
-  return put_specification_.With(id, specification.bytes, specification.blob).Run();
+Status JobTable::PutSpecification(std::int64_t id, const ContentColumns& specification,
+                                  const std::optional<Bytes>& attachment) {
+  return put_specification_.With(id, specification.bytes, specification.blob, attachment).Run();
+}
+
+Result<std::string> JobTable::Attachment(std::int64_t id, std::size_t size,
+                                         std::string_view sha256) {
+  Query query = attachment_.With(id);
+  const Result<bool> row = query.Step();
+  if (!row) return row.error();
+  std::string content;
+  const bool there = *row && !query.IsNull(0) && size <= kChunkBytes;
+  if (!there || !Decode(query.View(0), size, content) || Sha256(content) != sha256) {
+    return Error{ErrorCode::kCellStoreCorrupt,
+                 "the program that is kept with job " + std::to_string(id) + " is damaged",
+                 {}};
+  }
+  return content;
 }
 
 Result<std::string> JobTable::Specification(std::int64_t id) {
@@ -374,7 +413,7 @@ Result<std::vector<JobRecord>> JobTable::ListLane(const std::string& jobs, const
       statement.With(kind, query.machine, query.caller, behind, query.limit, pool,
                      lane ? lane->blocked : 0, lane ? lane->special : 0, query.family,
                      query.verdict, query.text, query.created_from.value_or(WallTime::min()),
-                     query.created_before.value_or(WallTime::max())),
+                     query.created_before.value_or(WallTime::max()), query.label),
       ReadRecord);
 }
 
@@ -417,7 +456,7 @@ Result<std::vector<JobStateCount>> JobTable::CountByState(const JobQuery& query)
   return AllRows<JobStateCount>(
       statement.With(query.kind, query.machine, query.caller, 0, 0, 0, 0, 0, query.family,
                      query.verdict, query.text, query.created_from.value_or(WallTime::min()),
-                     query.created_before.value_or(WallTime::max())),
+                     query.created_before.value_or(WallTime::max()), query.label),
       [](const Query& row) {
         return JobStateCount{.state = static_cast<JobState>(row.Small(0)), .jobs = row.Integer(1)};
       });

@@ -35,8 +35,12 @@ class JobTable {
   Status SetLastSequence(std::int64_t id, std::int64_t sequence);
   Status SetEventsGoneUntil(std::int64_t id, std::int64_t sequence);
 
-  Status PutSpecification(std::int64_t id, const ContentColumns& specification);
+  // `attachment`: encoded, of the artifact whose bytes are kept with the job.
+  Status PutSpecification(std::int64_t id, const ContentColumns& specification,
+                          const std::optional<Bytes>& attachment);
   Result<std::string> Specification(std::int64_t id);  // empty when there is none
+  // Of this size. CellStoreCorrupt: it does not have this SHA-256 (32 bytes).
+  Result<std::string> Attachment(std::int64_t id, std::size_t size, std::string_view sha256);
 
   // Dear: all of them are looked at.
   struct Counts {
@@ -76,6 +80,7 @@ class JobTable {
   Statement set_events_gone_;
   Statement put_specification_;
   Statement specification_;
+  Statement attachment_;
   Statement last_id_;
   Statement unfinished_;
   Statement count_queued_;

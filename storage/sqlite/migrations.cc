@@ -65,6 +65,13 @@ constexpr Migration kMigrations[] = {
     {10, "contents that no record names yet",
      "CREATE TABLE upload (blob INTEGER PRIMARY KEY, until INTEGER NOT NULL);"
      "CREATE INDEX upload_until ON upload (until);"},
+    // An artifact with blob 0 has its bytes there.
+    {11, "a small program is kept with its job",
+     "ALTER TABLE artifact ADD COLUMN sha256 BLOB;"
+     "ALTER TABLE artifact ADD COLUMN size INTEGER NOT NULL DEFAULT 0;"
+     "ALTER TABLE job_specification ADD COLUMN attachment BLOB;"},
+    // A blank around each: looked for in a text.
+    {12, "labels of jobs", "ALTER TABLE job ADD COLUMN labels TEXT NOT NULL DEFAULT '';"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

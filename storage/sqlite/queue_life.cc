@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "storage/jobs/queue_rules.h"
 #include "storage/sqlite/job_changes.h"
 
 namespace rmlcell::storage::sqlite {
@@ -73,15 +74,10 @@ Result<std::optional<Head>> NextRun(WriteContext& context, const JobRequest& req
 }  // namespace
 
 Status AddWait(Tables& tables, JobRecord& job, WallTime now) {
-  if (job.held) {
-    job.wait = WaitReason::kHeld;
-  } else if (!job.after.empty()) {
-    return AddAwaited(tables, job);
-  } else if (job.not_before && *job.not_before > now) {
-    job.wait = WaitReason::kNotBefore;
-  } else if (job.kind == kRunKind) {
-    return AddBusyMachine(tables, job);
-  }
+  const WaitReason first = FirstWait(job, now);
+  if (first == WaitReason::kAfterJob) return AddAwaited(tables, job);
+  if (first == WaitReason::kMachineBusy) return AddBusyMachine(tables, job);
+  job.wait = first;
   return {};
 }
 
@@ -90,13 +86,9 @@ Result<std::vector<std::int64_t>> StillWanted(WriteContext& context, const NewJo
   for (const std::int64_t id : job.after) {
     const Result<JobRow> row = GetRow(context, id);
     if (!row) return row.error();
-    const JobState state = row->job.state;
-    if (state == JobState::kSucceeded || std::ranges::find(wanted, id) != wanted.end()) continue;
-    if (IsFinal(state)) {
-      return Error{ErrorCode::kCellPrecondition,
-                   "job " + std::to_string(id) + " has ended, and did not succeed",
-                   {}};
-    }
+    const Result<bool> awaited = MustAwait(id, row->job.state);
+    if (!awaited) return awaited.error();
+    if (!*awaited || std::ranges::find(wanted, id) != wanted.end()) continue;
     wanted.push_back(id);
   }
   std::ranges::sort(wanted);
@@ -135,11 +127,8 @@ namespace {
 
 Result<JobRow> GetWaiting(WriteContext& context, std::int64_t id) {
   Result<JobRow> row = GetRow(context, id);
-  if (row && row->job.state != JobState::kQueued) {
-    return Error{ErrorCode::kCellPrecondition,
-                 "job " + std::to_string(id) + " does not wait in the queue",
-                 {}};
-  }
+  if (!row) return row;
+  if (const Status waits = CheckWaits(row->job); !waits) return waits.error();
   return row;
 }
 
@@ -150,27 +139,31 @@ Result<JobRecord> Written(WriteContext& context, Result<JobRow> row,
   return std::move(row->job);
 }
 
-// Between the job in front of this place and the place itself.
-Result<double> PlaceInFrontOf(WriteContext& context, const JobRow& before) {
-  const Head head{before.job.id, before.job.priority, before.job.place};
-  const auto in_front = context.tables.queue.PlaceBefore(before.job.pool, before.job.kind, head);
+// In front of another job of the line that this one is in, or null: behind all.
+Result<double> PlaceFor(WriteContext& context, const JobRecord& job, const JobRecord* before) {
+  QueueTable& queue = context.tables.queue;
+  const Result<std::optional<double>> in_front =
+      before != nullptr
+          ? queue.PlaceBefore(job.pool, job.kind, {before->id, before->priority, before->place})
+          : queue.LastPlace(job.pool, job.kind, job.priority);
   if (!in_front) return in_front.error();
-  const double place = *in_front ? (**in_front + head.place) / 2.0 : head.place - 1.0;
-  if (place >= head.place || (*in_front && place <= **in_front)) {
-    return Error{ErrorCode::kCellPrecondition,
-                 "there is no room in front of job " + std::to_string(before.job.id) +
-                     " any more; move others behind it",
-                 {}};
+  const std::int64_t newest = context.counters.job;
+  const auto between = PlaceBetween(
+      *in_front, before != nullptr ? std::optional(before->place) : std::nullopt, newest);
+  if (between) return *between;
+  Result<std::vector<PlacedJob>> line = queue.InOrder(job.pool, job.kind, job.priority);
+  if (!line) return line.error();
+  std::erase_if(*line, [&](const PlacedJob& placed) { return placed.job == job.id; });
+  const auto at =
+      before != nullptr ? std::ranges::find(*line, before->id, &PlacedJob::job) : line->end();
+  std::vector<PlacedJob> spread =
+      Spread(*line, static_cast<std::size_t>(at - line->begin()), job.id, newest);
+  const double place = spread.back().place;
+  spread.pop_back();
+  for (const PlacedJob& placed : spread) {
+    if (const Status set = queue.SetPlace(placed.job, placed.place); !set) return set.error();
   }
   return place;
-}
-
-// Behind all that wait now, and in front of all that come.
-Result<double> LastPlace(WriteContext& context, const JobRecord& job) {
-  const auto last = context.tables.queue.LastPlace(job.pool, job.kind, job.priority);
-  if (!last) return last.error();
-  const auto newest = static_cast<double>(context.counters.job);
-  return (std::max(last->value_or(newest), newest) + newest + 1.0) / 2.0;
 }
 
 }  // namespace
@@ -201,38 +194,27 @@ Result<JobRecord> LetJobGo(WriteContext& context, std::int64_t id,
     }
   }
   row->job.held = false;
-  SetBlocked(context, *row, (row->blocked & kBlockedByTime) | (waits ? kBlockedByJobs : 0));
+  SetBlocked(context, *row, BlockedWhenLetGo(row->blocked, waits));
   return Written(context, std::move(row), events);
 }
 
 Result<JobRecord> MoveJob(WriteContext& context, std::int64_t id, std::int64_t before,
                           std::optional<int> priority, const std::vector<NewEvent>& events) {
-  if (priority && (*priority < kPriorityMin || *priority > kPriorityMax))
-    return InvalidArgument("priority is " + std::to_string(*priority) +
-                           ", allowed are -100 to 100");
-  Result<JobRow> row = GetWaiting(context, id);
+  Result<JobRow> row = GetRow(context, id);
   if (!row) return row.error();
-  if (before == id) return InvalidArgument("a job cannot stand in front of itself");
+  std::optional<JobRow> other;
   if (before != 0) {
-    const Result<JobRow> other = GetWaiting(context, before);
-    if (!other) return other.error();
-    if (other->job.pool != row->job.pool || other->job.kind != row->job.kind) {
-      return Error{ErrorCode::kCellPrecondition,
-                   "job " + std::to_string(before) + " waits for another kind of worker",
-                   {}};
-    }
-    if (priority && *priority != other->job.priority)
-      return InvalidArgument("in front of a job another one has its priority");
-    const Result<double> place = PlaceInFrontOf(context, *other);
-    if (!place) return place.error();
-    row->job.priority = other->job.priority;
-    row->job.place = *place;
-  } else {
-    row->job.priority = priority.value_or(row->job.priority);
-    const Result<double> place = LastPlace(context, row->job);
-    if (!place) return place.error();
-    row->job.place = *place;
+    Result<JobRow> found = GetRow(context, before);
+    if (!found) return found.error();
+    other = *std::move(found);
   }
+  const JobRecord* other_job = other ? &other->job : nullptr;
+  JobRecord& job = row->job;
+  if (const Status may = CheckMove(job, other_job, priority); !may) return may.error();
+  job.priority = other_job != nullptr ? other_job->priority : priority.value_or(job.priority);
+  const Result<double> place = PlaceFor(context, job, other_job);
+  if (!place) return place.error();
+  job.place = *place;
   return Written(context, std::move(row), events);
 }
 
@@ -241,11 +223,7 @@ Result<std::int64_t> CountBefore(Tables& tables, std::int64_t id) {
   if (!row) return row.error();
   if (!*row) return Error{ErrorCode::kCellNotFound, "job " + std::to_string(id), {}};
   const JobRecord& job = (*row)->job;
-  if (job.state != JobState::kQueued) {
-    return Error{ErrorCode::kCellPrecondition,
-                 "job " + std::to_string(id) + " does not wait in the queue",
-                 {}};
-  }
+  if (const Status waits = CheckWaits(job); !waits) return waits.error();
   return tables.queue.CountBefore(job.pool, job.kind, {id, job.priority, job.place});
 }
 

@@ -42,6 +42,11 @@ QueueTable::QueueTable(Database& database)
       last_place_(database,
                   "SELECT max(place) FROM job INDEXED BY job_unfinished WHERE state < 2"
                   " AND state = 0 AND pool = ?1 AND kind = ?2 AND priority = ?3"),
+      in_order_(database,
+                "SELECT id, place, special FROM job INDEXED BY job_unfinished WHERE state < 2"
+                " AND state = 0 AND pool = ?1 AND kind = ?2 AND priority = ?3"
+                " ORDER BY place, id"),
+      set_place_(database, "UPDATE job SET place = ?2, special = 1 WHERE id = ?1"),
       count_before_(database,
                     "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2"
                     " AND state = 0 AND pool = ?1 AND kind = ?2 AND blocked = 0"
@@ -125,6 +130,17 @@ Result<std::optional<double>> QueueTable::PlaceBefore(std::string_view pool, std
 Result<std::optional<double>> QueueTable::LastPlace(std::string_view pool, std::string_view kind,
                                                     int priority) {
   return PlaceIn(last_place_.With(pool, kind, priority));
+}
+
+Result<std::vector<PlacedJob>> QueueTable::InOrder(std::string_view pool, std::string_view kind,
+                                                   int priority) {
+  return AllRows<PlacedJob>(in_order_.With(pool, kind, priority), [](const Query& row) {
+    return PlacedJob{.job = row.Integer(0), .place = row.Real(1), .moved = row.Small(2) != 0};
+  });
+}
+
+Status QueueTable::SetPlace(std::int64_t job, double place) {
+  return set_place_.With(job, place).Run();
 }
 
 Result<std::vector<std::int64_t>> QueueTable::Due(WallTime now) { return Numbers(due_.With(now)); }

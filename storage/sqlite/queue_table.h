@@ -5,12 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "storage/jobs/queue_rules.h"
 #include "storage/sqlite/statement.h"
 
 namespace rmlcell::storage::sqlite {
-
-// Why a queued job is not ready, as bits of job.blocked.
-enum : int { kBlockedByHold = 1, kBlockedByTime = 2, kBlockedByJobs = 4 };
 
 // The order of the queue, and which jobs wait for which.
 //
@@ -43,6 +41,10 @@ class QueueTable {
   // The last place of this priority; nothing: there is none.
   Result<std::optional<double>> LastPlace(std::string_view pool, std::string_view kind,
                                           int priority);
+  // All that wait with this priority, ready or not, in their order.
+  Result<std::vector<PlacedJob>> InOrder(std::string_view pool, std::string_view kind,
+                                         int priority);
+  Status SetPlace(std::int64_t job, double place);
   // How many that are ready come before this one.
   Result<std::int64_t> CountBefore(std::string_view pool, std::string_view kind, const Head& head);
   // Jobs that are blocked by their time, up to this one.
@@ -64,6 +66,8 @@ class QueueTable {
   Statement running_run_;
   Statement place_before_;
   Statement last_place_;
+  Statement in_order_;
+  Statement set_place_;
   Statement count_before_;
   Statement due_;
   Statement count_blocked_;

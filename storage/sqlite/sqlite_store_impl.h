@@ -126,6 +126,9 @@ class SqliteStore final : public Store {
   Result<bool> HasPosition(std::string_view log_id, std::int64_t position) override;
   Result<std::vector<ArtifactRecord>> ListArtifacts(std::int64_t job) override;
   Result<ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) override;
+  Result<std::string> ReadArtifact(std::int64_t job, std::string_view name) override;
+  Result<std::unique_ptr<BlobReader>> OpenArtifact(std::int64_t job,
+                                                   std::string_view name) override;
   Result<std::string> ReadBlob(std::string_view sha256) override;
   Result<std::unique_ptr<BlobReader>> OpenBlob(std::string_view sha256) override;
   Result<std::unique_ptr<BlobWriter>> WriteBlob(std::string_view sha256, std::size_t size) override;

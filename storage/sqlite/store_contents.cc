@@ -4,6 +4,7 @@
 #include "engine/core/hex.h"
 #include "storage/content.h"
 #include "storage/sqlite/content_staging.h"
+#include "storage/sqlite/job_changes.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
 namespace rmlcell::storage::sqlite {
@@ -49,6 +50,34 @@ class ContentReader final : public BlobReader {
   bool checked_ = false;
   Sha256Sum sum_;
 };
+
+// One that was read already.
+class WholeReader final : public BlobReader {
+ public:
+  explicit WholeReader(std::string content)
+      : content_(std::move(content)), size_(content_.size()) {}
+  std::size_t size() const override { return size_; }
+  Result<std::string> Next() override { return std::exchange(content_, {}); }
+
+ private:
+  std::string content_;
+  const std::size_t size_;
+};
+
+Result<ArtifactRecord> FindArtifact(Tables& tables, std::int64_t job, std::string_view name) {
+  const Result<std::optional<ArtifactRecord>> artifact = tables.artifacts.Get(job, name);
+  if (!artifact) return artifact.error();
+  if (*artifact) return **artifact;
+  if (const auto row = GetRow(tables, job); !row) return row.error();
+  return Error{ErrorCode::kCellNotFound,
+               "job " + std::to_string(job) + " has no artifact " + std::string(name),
+               {}};
+}
+
+Result<std::string> KeptWithJob(Tables& tables, const ArtifactRecord& artifact) {
+  return tables.jobs.Attachment(artifact.job, static_cast<std::size_t>(artifact.size),
+                                *BytesOfHex(artifact.sha256));
+}
 
 // A content that nobody names yet becomes one that is kept for so long.
 Result<WallTime> KeepUpload(WriteContext& context, const PreparedContent& content,
@@ -127,6 +156,45 @@ class ContentWriter final : public BlobWriter {
 };
 
 }  // namespace
+
+Result<std::vector<ArtifactRecord>> SqliteStore::ListArtifacts(std::int64_t job) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<ArtifactRecord>> {
+    if (const auto row = GetRow(tables, job); !row) return row.error();
+    return tables.artifacts.List(job);
+  });
+}
+
+Result<ArtifactRecord> SqliteStore::GetArtifact(std::int64_t job, std::string_view name) {
+  return readers_->Read([&](Tables& tables) { return FindArtifact(tables, job, name); });
+}
+
+Result<std::string> SqliteStore::ReadArtifact(std::int64_t job, std::string_view name) {
+  return readers_->Read([&](Tables& tables) -> Result<std::string> {
+    const Result<ArtifactRecord> artifact = FindArtifact(tables, job, name);
+    if (!artifact) return artifact.error();
+    const Result<std::int64_t> blob = tables.artifacts.BlobOf(job, name);
+    if (!blob) return blob.error();
+    return *blob == ArtifactTable::kWithJob ? KeptWithJob(tables, *artifact)
+                                            : tables.blobs.Read(*blob);
+  });
+}
+
+Result<std::unique_ptr<BlobReader>> SqliteStore::OpenArtifact(std::int64_t job,
+                                                              std::string_view name) {
+  return readers_->Read([&](Tables& tables) -> Result<std::unique_ptr<BlobReader>> {
+    const Result<ArtifactRecord> artifact = FindArtifact(tables, job, name);
+    if (!artifact) return artifact.error();
+    const Result<std::int64_t> blob = tables.artifacts.BlobOf(job, name);
+    if (!blob) return blob.error();
+    if (*blob == ArtifactTable::kWithJob) {
+      Result<std::string> content = KeptWithJob(tables, *artifact);
+      if (!content) return content.error();
+      return std::unique_ptr<BlobReader>(std::make_unique<WholeReader>(*std::move(content)));
+    }
+    return std::unique_ptr<BlobReader>(std::make_unique<ContentReader>(
+        *readers_, *BytesOfHex(artifact->sha256), static_cast<std::size_t>(artifact->size)));
+  });
+}
 
 Result<std::string> SqliteStore::ReadBlob(std::string_view sha256) {
   const std::optional<std::string> name = BytesOfHex(sha256);

@@ -13,10 +13,6 @@
 namespace rmlcell::storage::sqlite {
 namespace {
 
-Error NoJob(std::int64_t id) {
-  return Error{ErrorCode::kCellNotFound, "job " + std::to_string(id), {}};
-}
-
 Error EventsGone(const std::string& what, std::int64_t until) {
   return Error{ErrorCode::kCellEventsGone,
                "those " + what + " up to " + std::to_string(until) + " were removed; watch from " +
@@ -162,13 +158,6 @@ class StagedEnd {
   std::vector<StagedContent> staged_;
   std::vector<const PreparedContent*> artifacts_;
 };
-
-Result<JobRow> GetRow(Tables& tables, std::int64_t id) {
-  Result<std::optional<JobRow>> row = tables.jobs.Get(id);
-  if (!row) return row.error();
-  if (!*row) return NoJob(id);
-  return **std::move(row);
-}
 
 SqliteStore::SqliteStore(Parts parts)
     : lock_(std::move(parts.lock)),
@@ -492,27 +481,6 @@ Result<bool> SqliteStore::HasPosition(std::string_view log_id, std::int64_t posi
     const Result<std::optional<std::int64_t>> end = tables.log_parts.EndOf(log_id);
     if (!end) return end.error();
     return *end && position <= std::min(**end, *last);
-  });
-}
-
-Result<std::vector<ArtifactRecord>> SqliteStore::ListArtifacts(std::int64_t job) {
-  return readers_->Read([&](Tables& tables) -> Result<std::vector<ArtifactRecord>> {
-    const Result<JobRow> row = GetRow(tables, job);
-    if (!row) return row.error();
-    return tables.artifacts.List(job);
-  });
-}
-
-Result<ArtifactRecord> SqliteStore::GetArtifact(std::int64_t job, std::string_view name) {
-  return readers_->Read([&](Tables& tables) -> Result<ArtifactRecord> {
-    const Result<std::optional<ArtifactRecord>> artifact = tables.artifacts.Get(job, name);
-    if (!artifact) return artifact.error();
-    if (*artifact) return **artifact;
-    const Result<JobRow> row = GetRow(tables, job);
-    if (!row) return row.error();
-    return Error{ErrorCode::kCellNotFound,
-                 "job " + std::to_string(job) + " has no artifact " + std::string(name),
-                 {}};
   });
 }
 

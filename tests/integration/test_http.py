@@ -76,11 +76,14 @@ class Web(WithCell):
                 f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.JobService/WatchJob?message={message}", None,
                 {"Accept": "text/event-stream", **headers})
             with urllib.request.urlopen(request, timeout=60) as answer:
-                return [int(line[3:]) for line in answer.read().decode().splitlines() if line.startswith("id:")]
+                return [line[3:].strip() for line in answer.read().decode().splitlines() if line.startswith("id:")]
         whole = ids()
-        self.assertEqual(whole, list(range(1, len(whole) + 1)))
-        # The snapshot of a watch that goes on has the number that it goes on after.
-        self.assertEqual(ids(**{"Last-Event-ID": "1"}), [1, *whole[1:]])
+        # The number, and behind a point the log; that of the snapshot is the number that the watch goes on after.
+        self.assertEqual([int(one.split(".")[0]) for one in whole], list(range(len(whole))))
+        self.assertEqual(len({one.split(".")[1] for one in whole}), 1)
+        self.assertEqual(ids(**{"Last-Event-ID": whole[1]}), whole[1:])
+        self.assertEqual(ids(**{"Last-Event-ID": "1"}), whole[1:])
+        self.assertEqual(ids(**{"Last-Event-ID": "1.another-log"}), [])
 
     def test_products_have_stable_addresses_with_etag(self):
         stub = self.cell.jobs()

@@ -3,7 +3,7 @@
 import unittest
 
 from cell import (Cell, WithCell, cell_pb2, common_pb2, detail_of, eventually, grpc, inline_job, job_pb2, machine_pb2,
-                  machine_status_pb2, program_pb2, submit, wait_for_end)
+                  program_pb2, submit, wait_for_end)
 
 BAD = grpc.StatusCode.INVALID_ARGUMENT
 UNKNOWN = grpc.StatusCode.NOT_FOUND
@@ -57,7 +57,7 @@ class Machines(WithCell):
         self.assertTrue(made.etag)
         self.assertEqual(made.connection.kind, machine_pb2.MachineConnection.KIND_VIRTUAL)
         self.assertEqual((made.status.machine, made.status.state),
-                         ("machines/made", machine_status_pb2.MACHINE_STATE_IDLE))
+                         ("machines/made", common_pb2.MACHINE_STATE_IDLE))
         self.assertEqual(made.create_time, made.update_time)
         self.assertGreater(made.create_time.seconds, 1_700_000_000)
         self.assertEqual(stub.GetMachine(machine_pb2.GetMachineRequest(name="machines/made")), made)

@@ -99,8 +99,8 @@ class FailingStore final : public ForwardingStore {
   Result<storage::ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) override {
     return Or([&] { return store_.GetArtifact(job, name); });
   }
-  Result<std::string> ReadBlob(std::string_view sha256) override {
-    return Or([&] { return store_.ReadBlob(sha256); });
+  Result<std::string> ReadArtifact(std::int64_t job, std::string_view name) override {
+    return Or([&] { return store_.ReadArtifact(job, name); });
   }
 
  private:

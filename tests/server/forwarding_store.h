@@ -196,6 +196,13 @@ class ForwardingStore : public storage::Store {
   Result<storage::ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) override {
     return store_.GetArtifact(job, name);
   }
+  Result<std::string> ReadArtifact(std::int64_t job, std::string_view name) override {
+    return store_.ReadArtifact(job, name);
+  }
+  Result<std::unique_ptr<storage::BlobReader>> OpenArtifact(std::int64_t job,
+                                                            std::string_view name) override {
+    return store_.OpenArtifact(job, name);
+  }
   Result<std::string> ReadBlob(std::string_view sha256) override { return store_.ReadBlob(sha256); }
   Result<std::unique_ptr<storage::BlobReader>> OpenBlob(std::string_view sha256) override {
     return store_.OpenBlob(sha256);

@@ -194,7 +194,7 @@ TEST_P(StoreConformance, EndsAndCancelsThatDoNotWait) {
   };
   EXPECT_EQ(Must(finish()).state, JobState::kSucceeded);
   EXPECT_EQ(CodeOf(finish()), ErrorCode::kCellLeaseLost);
-  EXPECT_EQ(Must(store().ReadBlob(Must(store().GetArtifact(job, "report")).sha256)), "the report");
+  EXPECT_EQ(Must(store().ReadArtifact(job, "report")), "the report");
 }
 
 }  // namespace

@@ -337,10 +337,8 @@ TEST_P(StoreConformance, AttachmentsStayWithTheJob) {
   Must(store().DeleteProgram("m", 1, kAnyRevision));
   PutProgram("m", 1, "another program");
   Reopen();
-  EXPECT_EQ(Must(store().ReadBlob(Must(store().GetArtifact(job.id, "main")).sha256)),
-            "stored program");
-  EXPECT_EQ(Must(store().ReadBlob(Must(store().GetArtifact(job.id, "program-2")).sha256)),
-            "inline");
+  EXPECT_EQ(Must(store().ReadArtifact(job.id, "main")), "stored program");
+  EXPECT_EQ(Must(store().ReadArtifact(job.id, "program-2")), "inline");
   const LeasedJob leased = Acquire();
   EXPECT_EQ(CodeOf(store().Finish(leased.lease, {.artifacts = {{.name = "main", .bytes = "x"}}})),
             ErrorCode::kCellInvalidArgument);

@@ -87,6 +87,29 @@ TEST_P(StoreConformance, JobsAreFoundByWhatIsInThem) {
   EXPECT_THAT(Must(store().ListJobs({.text = "5_%", .limit = 1000})), IsEmpty());
 }
 
+// Whole labels, and the counts with them.
+TEST_P(StoreConformance, JobsAreFoundByTheirLabels) {
+  const auto put = [&](std::vector<std::string> labels) {
+    return Must(store().SubmitAndWait({.kind = "SIMULATE", .labels = std::move(labels)})).job.id;
+  };
+  const auto first = put({"a", "order-1"});
+  const auto second = put({"order-11"});
+  const auto third = put({"order-1", "b", "c"});
+  put({});
+  Finish(Acquire("w", "SIMULATE").lease, JobState::kSucceeded);  // the first
+  Reopen();
+  EXPECT_THAT(IdsOf(Must(store().ListJobs({.label = "order-1"}))), ElementsAre(third, first));
+  EXPECT_THAT(IdsOf(Must(store().ListJobs({.label = "order-11"}))), ElementsAre(second));
+  EXPECT_THAT(IdsOf(Must(store().ListJobs({.label = "c"}))), ElementsAre(third));
+  EXPECT_THAT(Must(store().ListJobs({.label = "order"})), IsEmpty());
+  EXPECT_THAT(Must(store().GetJob(third)).labels, ElementsAre("order-1", "b", "c"));
+  EXPECT_THAT(Must(store().GetJob(first)).labels, ElementsAre("a", "order-1"));
+  std::int64_t counted = 0;
+  for (const JobStateCount& count : Must(store().CountByState({.label = "order-1"})))
+    counted += count.jobs;
+  EXPECT_EQ(counted, 2);
+}
+
 // The order in which jobs run, and the pages of each order.
 TEST_P(StoreConformance, JobsAreListedInTheOrderOfTheQueue) {
   std::vector<std::int64_t> ids;

@@ -241,23 +241,40 @@ TEST_P(StoreConformance, WhatCannotBeMoved) {
   EXPECT_EQ(CodeOf(store().Move(one, 0, {}, {})), kPrecondition);
 }
 
-// There is room for very many moves to the same place, and then it is said, and nothing is lost.
-TEST_P(StoreConformance, MovesToOnePlaceEndWithAClearRefusal) {
+// Halving leaves no number in between after some fifty moves; there is room all the same.
+TEST_P(StoreConformance, ThereIsAlwaysRoomInFrontOfAJob) {
   const auto front = Put(store(), {});
   const auto back = Put(store(), {});
   std::vector<std::int64_t> moved;
-  std::optional<ErrorCode> refused;
-  while (!refused && moved.size() < 2'000) {
-    const auto job = Put(store(), {});
-    refused = CodeOf(store().Move(job, back, {}, {}));
-    if (!refused) moved.push_back(job);
+  for (int i = 0; i < 90; ++i) {
+    moved.push_back(Put(store(), {}));
+    Must(store().Move(moved.back(), back, {}, {}));
   }
-  EXPECT_EQ(refused, kPrecondition);
-  EXPECT_GT(moved.size(), 30U);
   const auto started = Started(store());
+  ASSERT_EQ(started.size(), moved.size() + 2);
   EXPECT_EQ(started.front(), front);
   EXPECT_TRUE(std::equal(moved.begin(), moved.end(), started.begin() + 1));
-  EXPECT_EQ(started[moved.size() + 1], back);
+  EXPECT_EQ(started.back(), back);
+}
+
+// The same two, again and again: in front of a third, of each other, and behind all.
+TEST_P(StoreConformance, JobsAreMovedToAndFroWithoutAnEnd) {
+  const auto first = Put(store(), {});
+  const auto held = Put(store(), {.held = true});
+  const auto third = Put(store(), {});
+  const auto fourth = Put(store(), {});
+  for (int i = 0; i < 150; ++i) {
+    Must(store().Move(fourth, first, {}, {}));
+    Must(store().Move(third, fourth, {}, {}));
+    Must(store().Move(fourth, third, {}, {}));
+  }
+  for (int i = 0; i < 150; ++i) {
+    Must(store().Move(third, 0, {}, {}));
+    Must(store().Move(first, 0, {}, {}));
+  }
+  const auto last = Put(store(), {});
+  Must(store().LetGo(held, {}));
+  EXPECT_THAT(Started(store()), ElementsAre(fourth, held, third, first, last));
 }
 
 TEST_P(StoreConformance, AMachineRunsOneRunAtATime) {

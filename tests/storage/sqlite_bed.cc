@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 
 namespace rmlcell::storage {
 namespace {
@@ -85,6 +87,15 @@ std::string TextIn(const std::string& path, const std::string& sql) {
 
 void ExecuteIn(const std::string& path, const std::string& sql) {
   Connection(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE).First(sql);
+}
+
+std::string ReadFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void WriteFile(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
 }
 
 void ExpectSound(const std::string& path) {

@@ -51,6 +51,9 @@ std::string TextIn(const std::string& path, const std::string& sql);
 // Changes the file behind the store's back. The store must be closed.
 void ExecuteIn(const std::string& path, const std::string& sql);
 
+std::string ReadFile(const std::string& path);
+void WriteFile(const std::string& path, const std::string& bytes);
+
 // What must hold for every store file at rest: SQLite finds it whole; every blob counts exactly the
 // columns that name it, and no chunk or row hangs in the air; sequence numbers have no gap.
 void ExpectSound(const std::string& path);

@@ -131,8 +131,7 @@ std::map<std::string, JobRecord> JobsOf(Store& store) {
 
 void ExpectJobIsWhole(Store& store, const JobRecord& job, const Acknowledged& told) {
   EXPECT_EQ(job.specification, "specification of " + job.request_id);
-  const ArtifactRecord program = Must(store.GetArtifact(job.id, "program"));
-  EXPECT_EQ(Must(store.ReadBlob(program.sha256)), "program of " + job.request_id);
+  EXPECT_EQ(Must(store.ReadArtifact(job.id, "program")), "program of " + job.request_id);
   const auto events = Must(store.JobEvents(job.id, job.events_gone_until, 1'000'000));
   std::int64_t sequence = job.events_gone_until;
   for (const EventRecord& event : events) EXPECT_EQ(event.sequence, ++sequence);

@@ -24,16 +24,6 @@ unsigned ModeOf(const std::string& path) {
   return stat(path.c_str(), &facts) == 0 ? facts.st_mode & 0777U : 0;
 }
 
-std::string ReadFile(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-void WriteFile(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
-}
-
 // A store with a little of everything, closed, as bytes of its one file.
 std::string SmallStore() {
   SqliteBed bed;
@@ -64,9 +54,8 @@ void AskForEverything(Store& store) {
     static_cast<void>(store.GetJob(job));
     static_cast<void>(store.JobEvents(job, 0, 100));
     static_cast<void>(store.ListAttempts(job));
-    if (const auto artifact = store.GetArtifact(job, "main")) {
-      static_cast<void>(store.ReadBlob(artifact->sha256));
-    }
+    static_cast<void>(store.ReadArtifact(job, "main"));
+    static_cast<void>(store.OpenArtifact(job, "main"));
   }
   if (const auto leased = store.Acquire("w", {"CHECK"}, kLease, {}); leased && *leased) {
     static_cast<void>(store.Finish((*leased)->lease, {.artifacts = {{.name = "r", .bytes = "x"}}}));
@@ -151,12 +140,12 @@ TEST(SqliteOpen, LockIsFreeAfterTheStoreIsClosed) {
 TEST(SqliteOpen, NewerStoreIsRefused) {
   SqliteBed bed;
   bed.Close();
-  ExecuteIn(bed.path(), "PRAGMA user_version = 11");
+  ExecuteIn(bed.path(), "PRAGMA user_version = 13");
   const std::string before = ReadFile(bed.path());
   const auto refused = bed.Open();
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kCellStoreNewer);
-  EXPECT_THAT(refused.error().detail, HasSubstr("version 11"));
+  EXPECT_THAT(refused.error().detail, HasSubstr("version 13"));
   EXPECT_THAT(refused.error().detail, HasSubstr(bed.path()));
   EXPECT_TRUE(ReadFile(bed.path()) == before);
   ExecuteIn(bed.path(), "PRAGMA user_version = 1");

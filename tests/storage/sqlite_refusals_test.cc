@@ -27,8 +27,8 @@ TEST(SqliteRefusals, RecordsWithoutTheirBytes) {
   Must(bed.store().PutPrograms("m", {{.slot = 1, .object = "gone"}, {.slot = 2, .object = "b"}},
                                {}));
   Must(bed.store().SubmitAndWait({.kind = "CHECK",
-                                  .attachments = {{.name = "lost", .bytes = "lost bytes"},
-                                                  {.name = "main", .bytes = "main bytes"}}}));
+                                  .attachments = {{.name = "main", .bytes = "main bytes"},
+                                                  {.name = "lost", .bytes = "lost bytes"}}}));
   bed.Close();
   ExecuteIn(bed.path(),
             "DELETE FROM blob WHERE id = (SELECT object_blob FROM program WHERE slot = 1)"
@@ -45,6 +45,24 @@ TEST(SqliteRefusals, RecordsWithoutTheirBytes) {
   EXPECT_THAT(artifact.error().detail, HasSubstr("artifact lost of job 1"));
   EXPECT_EQ(CodeOf(bed.store().ListArtifacts(1)), kCorruptFile);
   EXPECT_EQ(Must(bed.store().GetArtifact(1, "main")).size, 10);
+  EXPECT_EQ(Must(bed.store().ReadArtifact(1, "main")), "main bytes");
+}
+
+// The program that is kept with its job: other bytes, a part of them, or none.
+TEST(SqliteRefusals, AProgramThatIsDamagedInItsJob) {
+  for (const char* damage : {"x'6162'", "substr(attachment, 1, 9)", "NULL"}) {
+    SqliteBed bed;
+    bed.LeaveUnchecked();
+    Must(bed.store().SubmitAndWait(
+        {.kind = "CHECK", .attachments = {{.name = "main", .bytes = "main bytes"}}}));
+    bed.Close();
+    ExecuteIn(bed.path(), std::string("UPDATE job_specification SET attachment = ") + damage);
+    bed.Reopen();
+    const auto read = bed.store().ReadArtifact(1, "main");
+    ASSERT_EQ(CodeOf(read), kCorruptFile) << damage;
+    EXPECT_THAT(read.error().detail, HasSubstr("kept with job 1"));
+    EXPECT_EQ(CodeOf(bed.store().OpenArtifact(1, "main")), kCorruptFile);
+  }
 }
 
 // An index that is ordered otherwise than the store compares: a list ends with an error, not in

@@ -10,6 +10,7 @@
 #include "engine/optimo/control/optimo_tools.h"
 #include "engine/optimo/control/process_watch.h"
 #include "engine/optimo/editing/optimo_editing.h"
+#include "engine/optimo/handbox/display.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/language/staleness.h"
@@ -104,6 +105,9 @@ class Family final : public machine::MachineFamily {
   }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override {
     return ShapeOf(Resolve(parameters));
+  }
+  machine::Panel ShowPanel(const machine::MachineStatus& status) const override {
+    return ShowHandbox(status);
   }
 
   machine::Translation Translate(const machine::SourceFile& file,

@@ -79,12 +79,15 @@ double PowerPercent(const machine::MotionDone& done, double speed_mm_s) {
 
 }  // namespace
 
+double ToolpathTolerance_mm(double wanted_mm) {
+  return std::clamp(wanted_mm, kToolpathToleranceMin_mm, kToolpathToleranceMax_mm);
+}
+
 ToolpathRecorder::ToolpathRecorder(const machine::MachineShape& shape, ToolpathOptions options,
                                    ToolpathSink sink)
     : speed_max_mm_s_(shape.limits ? shape.limits->tip_speed_mm_s : 0.0),
       writer_(options.bytes_max, std::move(sink)) {
-  const double tolerance =
-      std::clamp(options.tolerance_mm, kToolpathToleranceMin_mm, kToolpathToleranceMax_mm);
+  const double tolerance = ToolpathTolerance_mm(options.tolerance_mm);
   merge_tolerance_mm_ = kMergeShare * tolerance;
   chord_tolerance_mm_ = tolerance - 2.0 * merge_tolerance_mm_;
 }

@@ -17,6 +17,9 @@ inline constexpr double kToolpathToleranceMin_mm =
     0.001;  // below it arcs would get points for nothing
 inline constexpr double kToolpathToleranceMax_mm = 10.0;
 
+// The tolerance that a recorder works to when it is given this one.
+double ToolpathTolerance_mm(double wanted_mm);
+
 // Turns the motions of a run into blocks, in memory of one block.
 class ToolpathRecorder final : public machine::RunObserver {
  public:

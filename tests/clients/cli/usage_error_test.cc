@@ -61,6 +61,11 @@ TEST(UsageText, InnerVerbsKnowTheOptionsOfTheirVerb) {
       "projects list has no option --sever; did you mean --server? (rmlcell projects list --help)");
 }
 
+TEST(UsageText, AnOptionInFrontOfItsVerbIsSentBehindIt) {
+  EXPECT_EQ(SaidTo({"--stock", "1x1x1", "simulate", "a.rml"}),
+            "--stock stands behind the verb: rmlcell simulate --stock (rmlcell simulate --help)");
+}
+
 TEST(UsageText, AVerbThatIsNoneIsNamedWithTheOneThatWasMeant) {
   EXPECT_EQ(SaidTo({"rml1", "explian", "a.rml"}),
             "rml1 has no verb 'explian'; did you mean explain? (rmlcell rml1 --help)");

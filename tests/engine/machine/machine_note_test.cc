@@ -24,6 +24,8 @@ TEST(MachineNoteTest, ReadsWhatItWritesAndNothingElse) {
                  {.id = 5, .code = ErrorCode::kCellPowerOff}},
       .last_alarm = 5,
       .last_run = 8,
+      .shown = {.program = 12, .step = 7, .instruction = "MOVE"},
+      .message = ErrorCode::kLabelNotFound,
       .family = std::string("\0family\nx", 9)};
   const std::string text = WriteMachineNote(note);
   const Result<MachineNote> read = ReadMachineNote(text);
@@ -39,7 +41,9 @@ TEST(MachineNoteTest, ReadsWhatItWritesAndNothingElse) {
         std::pair{"override 72.5", "override 1e9"}, std::pair{"simulation 3 4", "simulation 3"},
         std::pair{"simulation 3 4", "simulation 3 4 5"}, std::pair{"simulation 3 4", "x 1"},
         std::pair{"breakpoint 5 6", "breakpoint 500 6"}, std::pair{"EmergencyStop", "Nothing"},
-        std::pair{"last_run 8", "last_run -8"}}) {
+        std::pair{"last_run 8", "last_run -8"}, std::pair{"shown 12 7", "shown 100 7"},
+        std::pair{"shown 12 7", "shown 12 -7"}, std::pair{"OPT-E60", "OPT-E61"},
+        std::pair{"message OPT-E60", "message 60"}}) {
     std::string changed = text;
     changed.replace(changed.find(from), std::string_view(from).size(), to);
     EXPECT_FALSE(ReadMachineNote(changed)) << to;

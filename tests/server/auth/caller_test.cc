@@ -22,6 +22,36 @@ TEST(Gate, EveryCallerIsTheLocalAdministrator) {
   EXPECT_EQ(caller.request_id, "");
 }
 
+// The kernel says who is at the other end of a unix socket; a descriptor is given again.
+TEST(Gate, KnowsTheUserOfASocket) {
+  Gate gate("secret");
+  gate.socket_users().Note(7, 1000);
+  const auto user = [&gate](const std::string& peer, Transport transport) {
+    return gate
+        .Admit({.method = "/rmlcell.v1.JobService/GetJob", .peer = peer, .transport = transport})
+        ->user;
+  };
+  EXPECT_EQ(user("fd:7", Transport::kUnixSocket), 1000U);
+  EXPECT_EQ(user("fd:8", Transport::kUnixSocket), std::nullopt);
+  EXPECT_EQ(user("fd:7", Transport::kTcp), std::nullopt);
+  EXPECT_EQ(user("fd:", Transport::kUnixSocket), std::nullopt);
+  EXPECT_EQ(user("fd:x", Transport::kUnixSocket), std::nullopt);
+  gate.socket_users().Note(7, 0);
+  EXPECT_EQ(user("fd:7", Transport::kUnixSocket), 0U);
+}
+
+TEST(Gate, RightsChange) {
+  Gate gate("secret");
+  const auto may = [&gate] {
+    return bool(gate.Admit({.method = "/rmlcell.v1.JobService/StopJob", .peer = ""}));
+  };
+  EXPECT_TRUE(may());
+  gate.SetLocal(ViewerPermissions());
+  EXPECT_FALSE(may());
+  gate.SetLocal(OperatorPermissions());
+  EXPECT_TRUE(may());
+}
+
 TEST(Gate, AMethodThatStatesNothingIsRefused) {
   const auto refused = Gate("secret").Admit({.method = "/a.B/C", .peer = "unix:"});
   ASSERT_FALSE(refused);

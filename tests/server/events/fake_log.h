@@ -216,6 +216,11 @@ class FakeLog final : public storage::Store {
   Result<storage::ArtifactRecord> GetArtifact(std::int64_t, std::string_view) override {
     return No();
   }
+  Result<std::string> ReadArtifact(std::int64_t, std::string_view) override { return No(); }
+  Result<std::unique_ptr<storage::BlobReader>> OpenArtifact(std::int64_t,
+                                                            std::string_view) override {
+    return No();
+  }
   Result<std::string> ReadBlob(std::string_view) override { return No(); }
   Result<std::unique_ptr<storage::BlobReader>> OpenBlob(std::string_view) override { return No(); }
   Result<std::unique_ptr<storage::BlobWriter>> WriteBlob(std::string_view, std::size_t) override {

@@ -79,7 +79,7 @@ TEST_F(BookFailures, OfALook) {
 TEST_F(BookFailures, OfAnAssignment) {
   ASSERT_EQ(Submit(Stored()), std::nullopt);
   const auto leased = *Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
-  Expect("an assignment", 5, [&] { return CodeOf(MakeAssignment(store, config, leased)); });
+  Expect("an assignment", 3, [&] { return CodeOf(MakeAssignment(store, config, leased)); });
 }
 
 // A store that a later version has written to may have machines of families unknown here.

@@ -44,6 +44,22 @@ TEST(DispatcherJoin, WelcomesAndCountsWorkers) {
   EXPECT_EQ(bed.dispatcher().workers(), 1);
 }
 
+// Nothing else wakes an idle worker then, and leases of five minutes are looked at no sooner.
+TEST(DispatcherAssign, AJobStartsWhenItsTimeHasComeHoweverLongLeasesAre) {
+  DispatcherBed bed;
+  bed.config.workers_lease_ms = 600'000;
+  Must(bed.server.store().SubmitAndWait(
+      {.machine = "optimo-1",
+       .kind = "CHECK",
+       .not_before = bed.server.clock().Now() + std::chrono::minutes(1),
+       .attachments = {{.name = std::string(kMainAttachment), .bytes = "STOP\n"}}}));
+  FakeWorker worker(bed.dispatcher(), "w");
+  bed.LookAgain();
+  EXPECT_FALSE(worker.line().Has(v1::WorkResponse::kAssignment));
+  bed.Advance(std::chrono::minutes(1));
+  EXPECT_TRUE(worker.Take());
+}
+
 TEST(DispatcherAssign, GivesTheOldestJobFirstWithAllThatItNeeds) {
   DispatcherBed bed;
   const std::int64_t first = bed.server.SubmitCheck("STOP\n");

@@ -55,8 +55,7 @@ TEST_F(JobBookTest, AnAcknowledgedJobIsDurableWithItsProgram) {
   const storage::JobRecord record = Must(bed.store().GetJob(Number(job)));
   EXPECT_EQ(record.caller, "tester");
   EXPECT_EQ(record.attempts_max, 2);  // jobs.attempts
-  const auto program = Must(bed.store().GetArtifact(Number(job), kMainAttachment));
-  EXPECT_EQ(Must(bed.store().ReadBlob(program.sha256)), "DELAY 1.0\n");
+  EXPECT_EQ(Must(bed.store().ReadArtifact(Number(job), kMainAttachment)), "DELAY 1.0\n");
   EXPECT_EQ(record.specification.find("DELAY"), std::string::npos);  // the bytes are kept once
   EXPECT_EQ(Must(book.Get(job.name())).artifacts_size(), 1);
 }

@@ -134,7 +134,7 @@ TEST(JobFilter, AnErrorSaysWhatWasExpected) {
   EXPECT_EQ(detail("finished = maybe"), "finished is true or false, not 'maybe'");
   EXPECT_EQ(detail("user = a"),
             "no field 'user'; there are state, machine, kind, caller, finished, family, verdict, "
-            "text, since, until");
+            "label, text, since, until");
   EXPECT_EQ(detail("verdict = WORSE"), "no verdict 'WORSE'; there are GOOD, DOUBTFUL, BAD");
   EXPECT_EQ(detail("family = lathe"), "no family 'lathe'");
   EXPECT_EQ(detail("since = yesterday"),
@@ -142,12 +142,14 @@ TEST(JobFilter, AnErrorSaysWhatWasExpected) {
   EXPECT_EQ(detail("caller = \"open"), "a quoted text has no end");
   EXPECT_EQ(detail("machine = machines/A"),
             "machine: name is 'machines/A', expected is machines/ID");
-  // Ten comparisons are 39 words; more are refused before they are read.
-  const std::string ten =
+  EXPECT_EQ(detail("label = \"a b\""), "no label 'a b'");
+  // Eleven comparisons are 43 words; more are refused before they are read.
+  const std::string all =
       "state=FAILED AND machine=m AND kind=RUN AND caller=c AND finished=true AND family=rml1 AND "
-      "verdict=BAD AND text=a AND since=2026-01-01T00:00:00Z AND until=2026-02-01T00:00:00Z";
-  EXPECT_EQ(detail(ten), "none");
-  EXPECT_EQ(detail(ten + " AND"), "the filter has too many words");
+      "verdict=BAD AND label=a AND text=a AND since=2026-01-01T00:00:00Z AND "
+      "until=2026-02-01T00:00:00Z";
+  EXPECT_EQ(detail(all), "none");
+  EXPECT_EQ(detail(all + " AND"), "the filter has too many words");
 }
 
 TEST(JobFilter, Orders) {

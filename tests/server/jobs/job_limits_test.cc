@@ -253,6 +253,7 @@ TEST_F(JobLimits, OfThePlaceInTheQueue) {
   EXPECT_EQ(at(-62'135'596'801, 0), kInvalid);
   EXPECT_EQ(at(0, 1'000'000'000), kInvalid);
   EXPECT_EQ(at(0, -1), kInvalid);
+  Fill(1);
   const auto after = [&](int count) {
     return Asked([&](v1::Job& job) {
       for (int i = 0; i < count; ++i) job.add_after_jobs("jobs/1");
@@ -261,6 +262,22 @@ TEST_F(JobLimits, OfThePlaceInTheQueue) {
   EXPECT_EQ(after(100), std::nullopt);
   EXPECT_EQ(after(101), kInvalid);
   EXPECT_EQ(Asked([](v1::Job& job) { job.add_after_jobs("machines/mill-1"); }), kInvalid);
+}
+
+TEST_F(JobLimits, OfLabels) {
+  const auto labelled = [&](const std::vector<std::string>& labels) {
+    return Asked([&](v1::Job& job) { *job.mutable_labels() = {labels.begin(), labels.end()}; });
+  };
+  EXPECT_EQ(labelled({"order-4711", "A_b.9:/", std::string(63, 'x')}), std::nullopt);
+  for (const std::string& none : {std::string(), std::string("a b"), std::string("a=b"),
+                                  std::string("\xc3\xa4"), std::string(64, 'x')})
+    EXPECT_EQ(labelled({none}), kInvalid) << none;
+  EXPECT_EQ(labelled({"a", "b", "a"}), kInvalid);
+  std::vector<std::string> many;
+  for (int i = 0; i < 16; ++i) many.push_back(std::to_string(i));
+  EXPECT_EQ(labelled(many), std::nullopt);
+  many.push_back("16");
+  EXPECT_EQ(labelled(many), kInvalid);
 }
 
 TEST_F(JobLimits, OfInputsOverTime) {

@@ -81,6 +81,29 @@ TEST_F(JobQueue, HoldingBackAndLettingGoAreEventsWithTheirCaller) {
   EXPECT_EQ(records[2].caller, "carl");
 }
 
+TEST_F(JobQueue, JobsAreFoundByTheirLabels) {
+  const v1::Job first = Submit([](v1::Job& job) {
+    job.add_labels("order-4711");
+    job.add_labels("urgent");
+  });
+  Submit([](v1::Job& job) { job.add_labels("order-471"); });
+  Submit();
+  EXPECT_THAT(Must(book.Get(first.name())).labels(), ElementsAre("order-4711", "urgent"));
+  const auto found = [&](const std::string& filter) {
+    v1::ListJobsRequest request;
+    request.set_filter(filter);
+    const v1::ListJobsResponse page = Must(book.List(request));
+    return page.jobs_size();
+  };
+  EXPECT_EQ(found("label = order-4711"), 1);
+  EXPECT_EQ(found("label = urgent AND state = QUEUED"), 1);
+  EXPECT_EQ(found("label = order-471"), 1);
+  EXPECT_EQ(found("label = order"), 0);
+  v1::ListJobsRequest request;
+  request.set_filter("label = \"a b\"");
+  EXPECT_EQ(CodeOf(book.List(request)), ErrorCode::kCellBadFilter);
+}
+
 TEST_F(JobQueue, AMoveTellsThePriority) {
   const v1::Job first = Submit([](v1::Job& job) { job.set_priority(4); });
   const v1::Job second = Submit();
@@ -119,10 +142,35 @@ TEST_F(JobQueue, ManyJobsAreChosenByNameFilterOrAll) {
   EXPECT_THAT(Chosen(choice, JobState::kQueued), ElementsAre());
   choice.mutable_names()->add_names(three.name());
   EXPECT_THAT(Chosen(choice), ElementsAre(three.name()));
+  choice.mutable_names()->add_names(three.name());  // twice is once
   choice.set_expected_count(1);
   EXPECT_THAT(Chosen(choice), ElementsAre(three.name()));
   choice.set_expected_count(2);
   EXPECT_EQ(CodeOf(book.Choose(choice, {})), ErrorCode::kCellPrecondition);
+}
+
+// What a submission refuses its trial refuses, too.
+TEST_F(JobQueue, ATrialLooksAtTheJobsThatAreAwaited) {
+  const v1::Job first = Submit();
+  const auto tried = [&](const std::string& after) {
+    v1::SubmitJobRequest request;
+    request.set_validate_only(true);
+    request.mutable_job()->set_kind(v1::JOB_KIND_SIMULATE);
+    request.mutable_job()->set_machine("machines/optimo-1");
+    request.mutable_job()->mutable_inline_program()->set_file_name("part.S");
+    request.mutable_job()->mutable_inline_program()->set_content("STOP\n");
+    request.mutable_job()->add_after_jobs(after);
+    std::promise<Result<v1::Job>> answer;
+    book.Submit(request, "anna", [&](Result<v1::Job> made) { answer.set_value(std::move(made)); });
+    return CodeOf(answer.get_future().get());
+  };
+  EXPECT_EQ(tried(first.name()), std::nullopt);
+  EXPECT_EQ(tried("jobs/99"), ErrorCode::kCellNotFound);
+  EXPECT_FALSE(Must(book.IsOver(first.name())));
+  Must(bed.store().RequestCancel(1, {}));
+  EXPECT_EQ(tried(first.name()), ErrorCode::kCellPrecondition);
+  EXPECT_TRUE(Must(book.IsOver(first.name())));
+  EXPECT_EQ(CodeOf(book.IsOver("jobs/99")), ErrorCode::kCellNotFound);
 }
 
 TEST_F(JobQueue, AChoiceThatIsNoneIsRefused) {

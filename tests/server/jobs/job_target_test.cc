@@ -83,7 +83,7 @@ TEST_F(JobTarget, AFileIsKeptBesideTheJob) {
   EXPECT_TRUE(kept.picture());
   EXPECT_EQ(Attachment(job).media_type, "model/stl");
   EXPECT_EQ(Attachment(job).name, "target");
-  EXPECT_EQ(Must(bed.store().ReadBlob(Attachment(job).sha256)), kStl);
+  EXPECT_EQ(Must(bed.store().ReadArtifact(Attachment(job).job, "target")), kStl);
   const AssignmentMessages assigned = Assigned();
   const v1::AssignedProgram& target = assigned.first.assignment().target();
   EXPECT_EQ(target.content(), kStl);

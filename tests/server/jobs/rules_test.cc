@@ -53,6 +53,21 @@ TEST(ProgramPlace, SchedulesAreThoseOfTheFamily) {
   EXPECT_EQ(CodeOf(CheckSchedule(Mill(), 1)), ErrorCode::kCellPrecondition);
 }
 
+// Who puts a program at 100 hears what the numbers behind it are.
+TEST(ProgramPlace, ANumberThatIsNoneSaysWhatThereIs) {
+  for (const int number : {0, 100, 200}) {
+    const Status laser = CheckNumber(Optimo(), {.number = number});
+    ASSERT_FALSE(laser) << number;
+    EXPECT_EQ(laser.error().code, ErrorCode::kProgramNumber);
+    EXPECT_EQ(laser.error().detail,
+              "program number is " + std::to_string(number) +
+                  "; programs have 1 to 99, and their executables 101 to 199");
+    const Status mill = CheckNumber(Mill(), {.number = number});
+    ASSERT_FALSE(mill) << number;
+    EXPECT_THAT(mill.error().detail, HasSubstr("slots are 1 to 99, and there are no executables"));
+  }
+}
+
 // OPT-1.11: the executable of slot n has the number n + 100; a mill has none.
 TEST(ProgramPlace, NumbersAreThoseOfTheFamily) {
   const auto checked = [](const machine::MachineFamily& family, int number) {

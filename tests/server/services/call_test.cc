@@ -54,6 +54,21 @@ TEST(CallStatus, LongTextsAreCut) {
   EXPECT_EQ(told(1'000'000), std::string(1000, 'x') + "...");
 }
 
+// What clients take of headers holds for the named values of a text, too.
+TEST(CallStatus, LongNamedValuesAreLeftOut) {
+  const auto status = [](std::size_t size) {
+    return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument,
+                              "no parameter '" + Told("parameter", std::string(size, 'x')) + "'",
+                              {}});
+  };
+  EXPECT_EQ(DetailOf(status(100)).arguments_size(), 1);
+  for (const std::size_t size : {std::size_t{4'000}, std::size_t{1'000'000}}) {
+    EXPECT_LE(status(size).error_details().size(), std::size_t{6} << 10) << size;
+    EXPECT_EQ(DetailOf(status(size)).arguments_size(), 0);
+    EXPECT_EQ(status(size).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  }
+}
+
 // Of many findings the first are told, as many as fit in 6 KiB, and the others counted.
 TEST(CallStatus, ManyFindingsAreCutAndCounted) {
   const Error error{ErrorCode::kLiteralRange, "SPEED 101", {}};

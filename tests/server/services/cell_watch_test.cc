@@ -394,6 +394,42 @@ TEST(CellWatchBookmarks, ComeWhenNothingElseDoes) {
   }
 }
 
+// Also where there is something to tell all the time.
+TEST(CellWatchBookmarks, ComeBetweenEvents) {
+  StreamBed room({}, std::chrono::milliseconds(1));
+  room.Submit();
+  const storage::Lease lease = room.bed.Lease();
+  auto watch = room.WatchCell(Of({"jobs"}));
+  EXPECT_EQ(NextOf(watch), "snapshot of jobs");
+  room.Say(lease, std::vector<std::string>(3'000, "x"));
+  int told = 0;
+  bool between = false;
+  std::int64_t before = 0;
+  while (told < 3'000) {
+    const v1::WatchCellResponse message = watch.Next();
+    ASSERT_TRUE(message.has_event() || message.has_bookmark());
+    EXPECT_GE(message.sequence(), before);
+    before = message.sequence();
+    if (message.has_event()) ++told;
+    between = between || (message.has_bookmark() && told > 0 && told < 3'000);
+  }
+  EXPECT_TRUE(between);
+}
+
+// Whoever may look no longer is sent away; the others go on.
+TEST_F(CellWatchTest, ChangedRightsEndAWatch) {
+  auto watch = room.WatchCell(Of({"jobs"}));
+  EXPECT_EQ(NextOf(watch), "snapshot of jobs");
+  room.open.AskAgain();
+  room.Say(lease_one, {"still here"});
+  EXPECT_EQ(NextOf(watch), "jobs/1 still here");
+  room.admitted = false;
+  room.open.AskAgain();
+  watch.ExpectRefused(grpc::StatusCode::PERMISSION_DENIED, "WatchCell");
+  auto late = room.WatchCell(Of({"jobs"}));
+  late.ExpectRefused(grpc::StatusCode::PERMISSION_DENIED, "WatchCell");
+}
+
 TEST_F(CellWatchTest, AServerThatStopsSaysWhereToGoOn) {
   auto watch = room.WatchCell(After(last - 1));
   EXPECT_EQ(NextOf(watch), "bookmark");

@@ -124,6 +124,31 @@ TEST_F(JobWatchTest, ASequenceThatTheJobDoesNotHaveIsRefused) {
       "after_sequence is 3, the last event of the job is 2: begin anew, with a snapshot");
 }
 
+// Numbers of jobs begin at 1 in each log: of a log that was put back another job may have them.
+TEST_F(JobWatchTest, ANumberOfAnotherLogIsRefused) {
+  const std::int64_t job = room.Submit();
+  room.Say(room.bed.Lease(), {"a", "b"});
+  v1::WatchJobRequest request;
+  request.set_name(JobName(job));
+  request.set_after_sequence(2);
+  request.set_log_id(room.bed.store().LogId());
+  {
+    auto watch = room.Watch(request);
+    const v1::WatchJobResponse first = watch.Next();
+    EXPECT_EQ(first.log_id(), room.bed.store().LogId());
+    const v1::WatchJobResponse second = watch.Next();
+    EXPECT_EQ(WordOf(second), "3 b");
+    EXPECT_EQ(second.log_id(), room.bed.store().LogId());
+  }
+  request.set_log_id("another");
+  auto refused = room.Watch(request);
+  refused.ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "of another log");
+  request.set_after_sequence(0);  // from the first on: whatever log it was
+  auto watch = room.Watch(request);
+  EXPECT_EQ(NextOf(watch), "snapshot");
+  EXPECT_EQ(NextOf(watch), "1 state");
+}
+
 TEST_F(JobWatchTest, WhatIsNoJobIsRefused) {
   auto unknown = room.Watch(7);
   unknown.ExpectRefused(grpc::StatusCode::NOT_FOUND, "CELL-E9004");

@@ -28,6 +28,8 @@ TEST_F(MachineWatchTest, TellsTheStatusNowAndAfterEachChange) {
   EXPECT_EQ(first.instance_id(), StreamBed::kInstance);
   EXPECT_EQ(first.status().machine(), "machines/optimo-1");
   EXPECT_EQ(first.status().state(), v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(first.sequence(), Must(room.bed.store().LastPosition()));
+  EXPECT_EQ(first.log_id(), room.bed.store().LogId());
   room.Submit();
   const v1::WatchMachineResponse waits = watch.Next();
   EXPECT_EQ(waits.status().state(), v1::MACHINE_STATE_IDLE);

@@ -8,7 +8,9 @@ namespace {
 class StoppedStream final : public OpenStreams::Stream {
  public:
   void ServerStops() override { ++stops; }
+  void RightsChanged() override { ++asked; }
   int stops = 0;
+  int asked = 0;
 };
 
 TEST(OpenStreams, AStopIsToldToThoseThatAreOpen) {
@@ -24,6 +26,16 @@ TEST(OpenStreams, AStopIsToldToThoseThatAreOpen) {
   EXPECT_EQ(second.stops, 1);
   EXPECT_EQ(gone.stops, 0);
   EXPECT_EQ(open.count(), 2U);  // they go when they have said their last word
+}
+
+TEST(OpenStreams, AChangeOfRightsIsToldToThoseThatAreOpen) {
+  OpenStreams open;
+  StoppedStream first, gone;
+  for (StoppedStream* stream : {&first, &gone}) open.Add(stream);
+  open.Remove(&gone);
+  open.AskAgain();
+  EXPECT_EQ(first.asked, 1);
+  EXPECT_EQ(gone.asked, 0);
 }
 
 // Between the stop and the end of the server a call may still begin.

@@ -97,7 +97,8 @@ class StreamBed {
                .facts = facts_,
                .registry = registry,
                .instance_id = kInstance,
-               .bookmark_interval = bookmark_interval}),
+               .bookmark_interval = bookmark_interval},
+              admitted),
         machines_({executor_, open, bed.store(), feed, kInstance}) {
     grpc::ServerBuilder builder;
     builder.RegisterService(&service_);
@@ -138,6 +139,8 @@ class StreamBed {
   // A job that runs here has a toolpath that can be followed.
   std::shared_ptr<RunningToolpath> Run(std::int64_t job);
   std::atomic<int> toolpaths_looked_for = 0;
+  // Whether those who watch the cell may go on, when they are asked for again (OpenStreams).
+  std::atomic<bool> admitted = true;
   OpenedStream<v1::StreamJobTraceResponse> Trace(const std::string& name);
   OpenedStream<v1::StreamJobArtifactResponse> Artifact(const std::string& name,
                                                        const std::string& artifact);
@@ -153,14 +156,20 @@ class StreamBed {
  private:
   class CellService final : public v1::CellService::CallbackService {
    public:
-    explicit CellService(CellWatchNeeds needs) : needs_(std::move(needs)) {}
+    CellService(CellWatchNeeds needs, std::atomic<bool>& admitted)
+        : needs_(std::move(needs)), admitted_(admitted) {}
     grpc::ServerWriteReactor<v1::WatchCellResponse>* WatchCell(
         grpc::CallbackServerContext*, const v1::WatchCellRequest* request) override {
-      return MakeCellWatch(needs_, *request, kCaller)->Begin();
+      const auto watch = MakeCellWatch(needs_, *request, kCaller);
+      watch->SetAdmission([this]() -> Status {
+        return admitted_ ? Status() : Status(Error{ErrorCode::kCellPermission, "WatchCell", {}});
+      });
+      return watch->Begin();
     }
 
    private:
     CellWatchNeeds needs_;
+    std::atomic<bool>& admitted_;
   };
   class MachineService final : public v1::MachineService::CallbackService {
    public:

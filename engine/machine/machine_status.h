@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/result.h"
+#include "engine/core/units.h"
+#include "engine/machine/machine_input.h"
+#include "engine/machine/machine_note.h"
+#include "engine/machine/run.h"
+
+namespace rmlcell::machine {
+
+// LIVE-2.03, without what belongs to its host (STARTING, RECOVERING, INSPECT, LOST).
+enum class MachineState {
+  kOff,
+  kNotZeroed,  // on and standing, its axes without reference
+  kIdle,       // on and standing, no run is open
+  kRunning,    // a run is open and goes on
+  kStopping,   // comes to rest for HOLD or STOP
+  kHeld,       // a run is open and stands
+  kAlarm,      // an alarm is not acknowledged
+};
+std::string_view Name(MachineState state);  // "HELD"
+
+// A run that is open, or the last one that was.
+struct RunNote {
+  std::int64_t number = 0;  // counts from 1
+  int program = 0;
+  StartSource source = StartSource::kConsole;
+  SimTime begun{0};  // of the machine: time of the run counts from here
+};
+
+// How it is now.
+struct MachineStatus {
+  SimTime time{0};  // of the machine
+  MachineState state = MachineState::kIdle;
+  Mode mode = Mode::kRemote;
+  double override_percent = 100.0;
+  RunState run{};  // the machine's own where no run is open: phase kFinished
+  std::optional<RunNote> open{};
+  std::vector<Alarm> alarms{};
+  ShownStep shown{};
+  // The last error, alarm or end of a run that nobody has cleared from the panel (ClearMessage);
+  // its cause may be over long since, or not. OPT-4.06
+  std::optional<ErrorCode> message{};
+};
+
+}  // namespace rmlcell::machine

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/result.h"
+
+namespace rmlcell::machine {
+
+// What is to be seen at the machine itself: the handbox of an Optimo, the panel of a mill.
+struct Panel {
+  // One line, as wide as the display is; empty: it has none.
+  std::string display{};
+  bool flashing = false;  // the display, to ask for something
+  // Those that are lit, by the names that stand beside them: "CYCLE", "POWER".
+  std::vector<std::string_view> lamps{};
+  // What the display tells in place of its default text.
+  std::optional<ErrorCode> message{};
+
+  bool operator==(const Panel&) const = default;
+};
+
+}  // namespace rmlcell::machine

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "engine/core/result.h"
+
+namespace grpc {
+class Server;
+}
+
+namespace rmlcell::server {
+
+class SocketUsers;
+
+// A unix socket that clients of the server connect to. gRPC could listen itself, but would not say
+// which user a call comes from; so each connection is taken here, asked for its user, and handed
+// over.
+class SocketListener {
+ public:
+  // `address`: "unix:/run/cell.sock". A file that a dead server left behind is replaced. `users`
+  // outlives this. Error: CellPortUsed.
+  static Result<std::unique_ptr<SocketListener>> Make(const std::string& address,
+                                                      SocketUsers& users);
+  // No more connections; the file is gone.
+  ~SocketListener();
+  SocketListener(const SocketListener&) = delete;
+  SocketListener& operator=(const SocketListener&) = delete;
+
+  // Once. `server` outlives this.
+  void Serve(grpc::Server& server);
+
+ private:
+  SocketListener(std::string path, int listening, SocketUsers& users);
+  void Take(grpc::Server& server);
+
+  const std::string path_;
+  const int listening_;
+  SocketUsers& users_;
+  std::jthread thread_;
+};
+
+}  // namespace rmlcell::server

@@ -1,0 +1,149 @@
+// What is to be seen at a machine that stands, runs, or is in alarm.
+#include "engine/machine/panel.h"
+
+#include "tests/engine/machine/machine_bed.h"
+
+namespace rmlcell::machine {
+namespace {
+
+using testing::ElementsAre;
+
+class HandboxDisplay : public MachineTest {
+ protected:
+  std::string Display() const { return machine->panel().display; }
+  void Store(int slot, const std::string& text) {
+    Good(StoreProgram{.slot = slot, .program = Translated(text)});
+  }
+};
+
+// OPT-4.02 OPT-4.03 OPT-4.04 OPT-3.48: nothing is selected after power-up; a run selects its
+// program, and behind its end the display stands at ENDTASK.
+TEST_F(HandboxDisplay, PointsAtProgramAndStep) {
+  Load({});
+  EXPECT_EQ(Display(), "P=00S=0000I=********");
+  Store(12, "DELAY 1\nDELAY 2\nMOVE (100.,0.,-400.,0.,0.)\nENDTASK\n");
+  Start(12);
+  EXPECT_EQ(Display(), "P=12S=0000I=********");
+  GoOn(At(2.0));
+  EXPECT_EQ(Display(), "P=12S=0002I=DELAY   ");
+  GoOn(At(3.001));
+  EXPECT_EQ(Display(), "P=12S=0003I=MOVE    ");
+  GoOn(At(100.0));
+  EXPECT_EQ(Display(), "P=12S=0004I=ENDTASK ");
+  Good(SwitchPower{false});
+  EXPECT_EQ(Display(), std::string(20, ' '));
+  Good(SwitchPower{true});
+  EXPECT_EQ(Display(), "P=00S=0000I=********");
+}
+
+// OPT-4.05 OPT-1.22: the name alone, LET for an assignment; a sequence number is not seen.
+TEST_F(HandboxDisplay, ShowsNamesWithoutParameters) {
+  Load({"10 VI[3] = 7\nPAUSE\n"});
+  Good(ChangeMode{Mode::kSingle});
+  Good(StartRun{.program = 1, .source = StartSource::kPanel});
+  GoOn(At(1.0));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(Display(), "P=01S=0001I=LET     ");
+}
+
+// OPT-4.07: in a FUNCTION P is the number of that.
+TEST_F(HandboxDisplay, FollowsTheModule) {
+  Load({});
+  Store(44, "DELAY 3\nRETURN\n");
+  Store(32, "DELAY 1\nFUNCTION 44\nENDTASK\n");
+  Start(32);
+  GoOn(At(0.5));
+  EXPECT_EQ(Display(), "P=32S=0001I=DELAY   ");
+  GoOn(At(2.0));
+  EXPECT_EQ(Display(), "P=44S=0001I=DELAY   ");
+}
+
+// OPT-4.06: the number stands there until ERR; what it was about is not over with that.
+TEST_F(HandboxDisplay, TellsAnErrorUntilItIsCleared) {
+  Load({"VI[1] = 2\nGOTO VI[1] (20,999)\n20 ENDTASK\n"});
+  Start();
+  GoOn(At(1.0));
+  const Outcome failed = Over().outcome;
+  ASSERT_EQ(failed.code, ErrorCode::kLabelNotFound);
+  EXPECT_EQ(Display(), "ERROR 60            ");
+  EXPECT_EQ(machine->panel().message, ErrorCode::kLabelNotFound);
+  Good(ClearMessage{});
+  EXPECT_EQ(Display(), "P=01S=0002I=GOTO    ");
+  Good(EmergencyStop{true});
+  EXPECT_EQ(Display(), "ERROR 7610          ");
+  Good(ClearMessage{});
+  EXPECT_EQ(machine->panel().message, std::nullopt);
+  EXPECT_EQ(state(), MachineState::kAlarm);
+}
+
+// OPT-4.01, in every state: and a machine that was saved shows the same when it is read.
+TEST_F(HandboxDisplay, Has20CharactersAndIsKept) {
+  const auto look = [this] {
+    EXPECT_EQ(Display().size(), 20U);
+    const Panel before = machine->panel();
+    MachineMemory memory = machine->memory();
+    RunObserver nobody;
+    const auto again = Machine::Make(family_, parameters(), memory, machine->Save(), nobody);
+    ASSERT_TRUE(again);
+    EXPECT_EQ((*again)->panel(), before);
+  };
+  Load({"FUNCTION 2\nDELAY 1\nMOVE (9.,0.,-400.,0.,0.)\n", "PATH LIN\nRETURN\n"});
+  look();
+  Start();
+  for (int i = 1; i < 8; ++i) {
+    GoOn(At(0.2 * i));
+    look();
+  }
+  Good(EmergencyStop{true});
+  look();
+  Good(SwitchPower{false});
+  look();
+}
+
+// What the cell itself says has no number that the handbox knows.
+TEST_F(HandboxDisplay, KnowsItsOwnNumbersOnly) {
+  Load({"DELAY 5\n"});
+  Start();
+  GoOn(At(1.0));
+  Good(AbortRun{});
+  GoOn(At(2.0));
+  ASSERT_EQ(Over().outcome.code, ErrorCode::kCellCancelled);
+  EXPECT_EQ(Display(), "P=01S=0001I=DELAY   ");
+  EXPECT_EQ(machine->panel().message, std::nullopt);
+}
+
+TEST_F(HandboxDisplay, LightsTheLampOfTheMode) {
+  Load({});
+  EXPECT_THAT(machine->panel().lamps, ElementsAre("REMOTE", "ROB"));
+  for (const auto& [mode, lamp] :
+       {std::pair{Mode::kManual, "MANUAL"}, std::pair{Mode::kRepeat, "REPEAT"},
+        std::pair{Mode::kCycle, "CYCLE"}, std::pair{Mode::kSingle, "SINGLE"}}) {
+    Good(ChangeMode{mode});
+    EXPECT_THAT(machine->panel().lamps, ElementsAre(lamp, "ROB"));
+  }
+  Good(SwitchPower{false});
+  EXPECT_TRUE(machine->panel().lamps.empty());
+  EXPECT_EQ(machine->Apply(ClearMessage{}).error().code, ErrorCode::kCellNotLive);
+}
+
+class MillPanel : public MachineTest {
+ protected:
+  MillPanel() : MachineTest("rml1") {}
+};
+
+TEST_F(MillPanel, LightsWhatIsSo) {
+  Load({"!MC1;PU2000,0;PD4000,0;!NR;PU0,0;!MC0;"});
+  EXPECT_THAT(machine->panel().lamps, ElementsAre("POWER"));
+  EXPECT_EQ(machine->panel().display, "");
+  Start();
+  GoOn(At(3.0));
+  EXPECT_THAT(machine->panel().lamps, ElementsAre("POWER", "SPINDLE"));
+  GoOn(At(100.0));
+  ASSERT_EQ(state(), MachineState::kHeld);  // RML1-3C.08
+  EXPECT_THAT(machine->panel().lamps, ElementsAre("POWER", "PAUSE", "SPINDLE"));
+  Good(SwitchPower{false});
+  EXPECT_TRUE(machine->panel().lamps.empty());
+}
+
+}  // namespace
+}  // namespace rmlcell::machine
