@@ -33,6 +33,9 @@ struct NewJob {
   // What the job works on, as artifacts of it: kept with it, whatever happens to slots.
   std::vector<NewArtifact> attachments{};
   std::vector<NewEvent> events{};  // written in the transaction that makes the job
+  // Others are on their way from the same caller: this one may wait for them to be written
+  // together.
+  bool more_come = false;
 };
 // What becomes of a call that does not wait for the store: `done` is called once, from a thread of
 // the store or before the call returns. It does not throw, and is brief, as the next commit waits

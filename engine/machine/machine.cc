@@ -172,7 +172,7 @@ void Machine::CloseRun() {
                    .steps = run_->steps_executed(),
                    .figures = run_->figures()});
   shown_ = status().shown;
-  if (outcome.code) message_ = outcome.code;
+  if (outcome.code) Show(*outcome.code);
   if (outcome.code && Lookup(*outcome.code).severity == Severity::kAlarm)
     Raise(*outcome.code, outcome.detail, outcome.place);
   for (auto& [slot, bytes] : run_->made_executables()) {
@@ -249,10 +249,15 @@ Status Machine::Apply(const MachineInput& input) {
 }
 
 void Machine::Raise(ErrorCode code, Detail detail, const Place& place) {
-  message_ = code;
+  Show(code);
   if (std::ranges::find(alarms_, code, &Alarm::code) != alarms_.end()) return;
   alarms_.push_back(
       {.id = ++last_alarm_, .code = code, .detail = std::move(detail), .at = now_, .place = place});
+}
+
+// What the cell says is not the control's to show, and takes nothing from the display.
+void Machine::Show(ErrorCode code) {
+  if (Lookup(code).family != ErrorFamily::kCell) message_ = code;
 }
 
 void Machine::ToRun(InputKind kind, int index, double value) {

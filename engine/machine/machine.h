@@ -131,6 +131,7 @@ class Machine {
   void Hold();
   void Halt(InputKind key);
   void Raise(ErrorCode code, Detail detail, const Place& place);
+  void Show(ErrorCode code);
   void Settle();
   void CloseRun();
   Status Take(MachineNote note);

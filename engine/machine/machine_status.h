@@ -44,8 +44,8 @@ struct MachineStatus {
   std::optional<RunNote> open{};
   std::vector<Alarm> alarms{};
   ShownStep shown{};
-  // The last error, alarm or end of a run that nobody has cleared from the panel (ClearMessage);
-  // its cause may be over long since, or not. OPT-4.06
+  // The machine's own code of the last error, alarm or end of a run that nobody has cleared from
+  // the panel (ClearMessage); its cause may be over long since, or not. OPT-4.06
   std::optional<ErrorCode> message{};
 };
 

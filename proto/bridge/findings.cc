@@ -458,9 +458,21 @@ std::string ErrorText(const Error& error) {
   return text;
 }
 
+v1::ErrorDetail ToErrorDetail(const Error& error) {
+  const CatalogueEntry& entry = Lookup(error.code);
+  v1::ErrorDetail detail;
+  detail.set_code(CodeText(error.code));
+  detail.set_symbol(ConstantName(error.code));
+  detail.set_number(entry.number);
+  detail.set_message(Utf8(Said(error.code, error.detail)));
+  SetArguments(error.detail, detail);
+  detail.set_advice(std::string(entry.advice));
+  if (error.where) SetSpan(*error.where, *detail.mutable_place());
+  return detail;
+}
+
 google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics,
                                 const UntoldFindings& dropped) {
-  const CatalogueEntry& entry = Lookup(error.code);
   google::rpc::Status status;
   status.set_code(RpcCode(error.code));
   status.set_message(ErrorText(error));
@@ -470,14 +482,7 @@ google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic
   info.set_domain("rmlcell");
   (*info.mutable_metadata())["code"] = CodeText(error.code);
   status.add_details()->PackFrom(info);
-  v1::ErrorDetail detail;
-  detail.set_code(CodeText(error.code));
-  detail.set_symbol(ConstantName(error.code));
-  detail.set_number(entry.number);
-  detail.set_message(Utf8(Said(error.code, error.detail)));
-  SetArguments(error.detail, detail);
-  detail.set_advice(std::string(entry.advice));
-  if (error.where) SetSpan(*error.where, *detail.mutable_place());
+  v1::ErrorDetail detail = ToErrorDetail(error);
   // The place of the first error stands for all, for clients that look no further.
   bool placed = false;
   for (const Diagnostic& diagnostic : diagnostics) {

@@ -73,6 +73,9 @@ int RpcCode(ErrorCode code);
 // Of the catalogue and of all texts for people, as BCP 47 has it.
 inline constexpr std::string_view kLanguage = "en";
 
+// Ours alone, without findings.
+v1::ErrorDetail ToErrorDetail(const Error& error);
+
 // Status with ErrorInfo (reason = constant name, domain "rmlcell"), our ErrorDetail, which carries
 // the findings when there are any, and LocalizedMessage, the same text with its language.
 google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics = {},

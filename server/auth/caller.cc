@@ -32,6 +32,7 @@ Result<Caller> Gate::Admit(const CallFacts& call) const {
   }
   if (KnowsSecret(Value(call.metadata, "rmlcell-web-secret"), web_secret_)) {
     caller.peer = "web:" + Value(call.metadata, "rmlcell-web-peer");
+    caller.user.reset();  // it is the gateway's
   }
   caller.request_id = Value(call.metadata, "x-request-id").substr(0, kRequestIdShown);
   std::ranges::replace_if(
@@ -44,8 +45,11 @@ Result<Caller> Gate::Admit(const CallFacts& call) const {
 }
 
 void Gate::SetLocal(Permissions local) {
-  const std::lock_guard lock(mutex_);
-  local_ = local;
+  {
+    const std::lock_guard lock(mutex_);
+    local_ = local;
+  }
+  if (changed_) changed_();
 }
 
 }  // namespace rmlcell::server

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -47,8 +48,11 @@ class Gate {
 
   // Errors: CellUnauthenticated, CellPermission; that also for a method that states no access.
   Result<Caller> Admit(const CallFacts& call) const;
-  // From now on. Whoever has long streams open asks for them again (OpenStreams::AskAgain).
+  // From now on.
   void SetLocal(Permissions local);
+  // Called when rights have changed, for those who have long streams open
+  // (OpenStreams::AskAgain). Before the first call is admitted.
+  void OnChange(std::function<void()> changed) { changed_ = std::move(changed); }
   // What a method asks for; null: it states nothing.
   const v1::Access* AccessOf(std::string_view method) const { return access_.Find(method); }
 
@@ -59,6 +63,7 @@ class Gate {
   std::string web_secret_;
   mutable std::mutex mutex_;
   Permissions local_;  // guarded by mutex_
+  std::function<void()> changed_;
   AccessTable access_;
   SocketUsers socket_users_;
 };

@@ -183,6 +183,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   language = std::make_unique<LanguageTools>(*store, *programs);
   projects = std::make_unique<ProjectBook>(*store);
   transfer = std::make_unique<ProjectTransfer>(*store, *projects, *programs);
+  gate.OnChange([this] { open.AskAgain(); });
   const CallNeeds needs{gate, *executor, *compute, config.limit_message_bytes};
   job_service =
       std::make_unique<JobService>(needs, *book, *results, *dispatcher, *feed, open, instance_id);

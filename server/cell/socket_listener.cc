@@ -5,6 +5,7 @@
 #include <grpcpp/server_posix.h>
 #include <spdlog/spdlog.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -21,12 +22,15 @@ namespace rmlcell::server {
 namespace {
 
 constexpr int kBacklog = 128;
-constexpr std::chrono::milliseconds kTriedAgainAfter{100};  // no descriptor was free
+constexpr std::chrono::milliseconds kTriedAgainAfter{100};  // where no descriptor is free
 
+// Empty: clients, for whom it is a URI, would look for another file.
 std::string PathOf(const std::string& address) {
   std::string path = address.substr(std::string_view("unix:").size());
-  if (path.starts_with("//")) path.erase(0, 2);
-  return path;
+  if (path.find_first_of("?#%") != std::string::npos) return {};
+  if (!path.starts_with("//")) return path;
+  path.erase(0, 2);
+  return path.starts_with('/') ? path : std::string();
 }
 
 int NewSocket() { return ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0); }
@@ -54,18 +58,21 @@ Result<std::unique_ptr<SocketListener>> SocketListener::Make(const std::string& 
   name.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof(name.sun_path))
     return refuse("the path of a socket has 1 to " + std::to_string(sizeof(name.sun_path) - 1) +
-                  " characters");
+                  " characters, none of them ? # or %, and begins with / behind unix://");
   path.copy(name.sun_path, path.size());
   if (IsInUse(name)) return refuse("another server listens there");
   const int listening = NewSocket();
   if (listening < 0) return refuse(std::strerror(errno));
-  // One that is no socket stays, and then there is no room for ours.
   std::unique_ptr<SocketListener> listener(new SocketListener(path, listening, users));
-  if (const auto left = ::unlink(path.c_str()); left != 0 && errno != ENOENT)
+  struct stat left {};
+  if (::lstat(path.c_str(), &left) == 0) {
+    if (!S_ISSOCK(left.st_mode)) return refuse("there is a file that is no socket");
+    if (::unlink(path.c_str()) != 0) return refuse(std::strerror(errno));
+  }
+  if (::bind(listening, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0)
     return refuse(std::strerror(errno));
-  if (::bind(listening, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0 ||
-      ::listen(listening, kBacklog) != 0)
-    return refuse(std::strerror(errno));
+  listener->bound_ = true;
+  if (::listen(listening, kBacklog) != 0) return refuse(std::strerror(errno));
   return listener;
 }
 
@@ -73,22 +80,22 @@ SocketListener::SocketListener(std::string path, int listening, SocketUsers& use
     : path_(std::move(path)), listening_(listening), users_(users) {}
 
 SocketListener::~SocketListener() {
-  ::shutdown(listening_, SHUT_RDWR);  // wakes the thread
-  if (thread_.joinable()) {
-    thread_.request_stop();
-    thread_.join();
-  }
+  thread_.request_stop();
+  ::shutdown(listening_, SHUT_RDWR);  // wakes it
+  if (thread_.joinable()) thread_.join();
+  // In this order: of a server that comes meanwhile the file is not taken.
+  if (bound_) ::unlink(path_.c_str());
   ::close(listening_);
-  ::unlink(path_.c_str());
 }
 
 void SocketListener::Serve(grpc::Server& server) {
   // Its thread waits in accept().
   ::fcntl(listening_, F_SETFL, ::fcntl(listening_, F_GETFL) & ~O_NONBLOCK);
-  thread_ = std::jthread([this, &server] { Take(server); });
+  thread_ = std::jthread([this, &server](const std::stop_token& stop) { Take(server, stop); });
 }
 
-void SocketListener::Take(grpc::Server& server) {
+void SocketListener::Take(grpc::Server& server, const std::stop_token& stop) {
+  bool told = false;
   for (;;) {
     const int connection = ::accept4(listening_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (connection >= 0) {
@@ -100,11 +107,13 @@ void SocketListener::Take(grpc::Server& server) {
       }
       users_.Note(connection, who.uid);
       grpc::AddInsecureChannelFromFd(&server, connection);
+      told = false;
       continue;
     }
+    if (stop.stop_requested()) return;
     if (errno == ECONNABORTED || errno == EINTR) continue;
-    if (errno != EMFILE && errno != ENFILE && errno != ENOBUFS && errno != ENOMEM) return;
-    spdlog::warn("connections to {} wait: {}", path_, std::strerror(errno));
+    if (!std::exchange(told, true))
+      spdlog::warn("connections to {} wait: {}", path_, std::strerror(errno));
     std::this_thread::sleep_for(kTriedAgainAfter);
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -19,8 +20,8 @@ class SocketUsers;
 // over.
 class SocketListener {
  public:
-  // `address`: "unix:/run/cell.sock". A file that a dead server left behind is replaced. `users`
-  // outlives this. Error: CellPortUsed.
+  // `address`: "unix:/run/cell.sock". The socket that a dead server left behind is replaced, and no
+  // other file. `users` outlives this. Error: CellPortUsed.
   static Result<std::unique_ptr<SocketListener>> Make(const std::string& address,
                                                       SocketUsers& users);
   // No more connections; the file is gone.
@@ -33,9 +34,10 @@ class SocketListener {
 
  private:
   SocketListener(std::string path, int listening, SocketUsers& users);
-  void Take(grpc::Server& server);
+  void Take(grpc::Server& server, const std::stop_token& stop);
 
   const std::string path_;
+  bool bound_ = false;  // the file is ours
   const int listening_;
   SocketUsers& users_;
   std::jthread thread_;

@@ -203,7 +203,10 @@ void EventFeed::ReadNewEvents(const std::stop_token& stop) {
         tail.push_back(event);
         if (tail.size() > kTailEvents) tail.pop_front();
       }
-      for (storage::EventRecord& event : *events) recent_.push_back(std::move(event));
+      for (storage::EventRecord& event : *events) {
+        if (event.job == 0 && event.kind == storage::kDeleted) DropEventsOf(event.resource);
+        recent_.push_back(std::move(event));
+      }
       while (recent_.size() > kRecentEvents) {
         complete_after_ = recent_.front().position;
         recent_.pop_front();
@@ -212,6 +215,15 @@ void EventFeed::ReadNewEvents(const std::stop_token& stop) {
     Wake({touched.begin(), touched.end()});
     if (!more) return;
   }
+}
+
+// The events of a job that was deleted are gone from the store; here they are, too.
+void EventFeed::DropEventsOf(std::string_view job) {
+  if (!job.starts_with("jobs/")) return;
+  std::erase_if(recent_, [&](const storage::EventRecord& event) {
+    return event.job != 0 && storage::JobName(event.job) == job;
+  });
+  tails_.erase(std::string(job));
 }
 
 // The store removed events before they were read here (it keeps so many, and more were written at

@@ -91,6 +91,7 @@ class EventFeed {
   void Run(const std::stop_token& stop);
   void ReadNewEvents(const std::stop_token& stop);
   bool SkipGoneEvents();
+  void DropEventsOf(std::string_view job);               // precondition: mutex_ is held
   void Wake(const std::vector<std::string>& resources);  // and those of everything
   // Nothing when memory does not reach back that far.
   std::optional<std::vector<storage::EventRecord>> FromTail(std::int64_t job,

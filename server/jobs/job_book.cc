@@ -197,8 +197,9 @@ Status JobBook::CheckAwaited(const storage::NewJob& made) {
 }
 
 void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& caller,
-                     std::function<void(Result<v1::Job>)> done) {
+                     std::function<void(Result<v1::Job>)> done, bool more_come) {
   Result<storage::NewJob> made = Prepare(request, caller);
+  if (made) made->more_come = more_come;
   if (!made || request.validate_only()) {
     // Repeated after an answer that was lost: what it needed may be gone by now, its job is there.
     std::optional<storage::JobRecord> first;
@@ -338,6 +339,7 @@ Result<bool> JobBook::IsOver(std::string_view name) {
   const Result<std::int64_t> id = ParseJobName(name);
   if (!id) return id.error();
   const auto job = store_.GetJob(*id);
+  if (!job && job.error().code == ErrorCode::kCellNotFound) return true;
   if (!job) return job.error();
   return storage::IsFinal(job->state);
 }

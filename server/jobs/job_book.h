@@ -28,9 +28,9 @@ class JobBook {
   // nothing. Errors:
   // CellInvalidArgument, CellUnknownMachine, FamilyInfo::no_slot and empty_slot, CellEmptyProgram,
   // CellTooLarge, CellParameterRange, CellUnimplemented (RUN), CellRequestIdReused,
-  // CellResourceExhausted.
+  // CellResourceExhausted. `more_come`: others are on their way from the same caller (NewJob).
   void Submit(const v1::SubmitJobRequest& request, const std::string& caller,
-              std::function<void(Result<v1::Job>)> done);
+              std::function<void(Result<v1::Job>)> done, bool more_come = false);
 
   Result<v1::Job> Get(std::string_view name);
   Status Delete(std::string_view name, std::string_view caller);
@@ -44,7 +44,7 @@ class JobBook {
   // CellBadFilter, CellNotFound, CellPrecondition when they are not as many as expected.
   Result<std::vector<std::string>> Choose(const v1::JobChoice& choice,
                                           std::optional<storage::JobState> state);
-  // Whether it has ended. CellNotFound.
+  // Whether it has ended, or is gone.
   Result<bool> IsOver(std::string_view name);
   // Whether the machine of the job can have this override. Errors: CellInvalidArgument,
   // CellNotFound.

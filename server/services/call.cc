@@ -24,16 +24,15 @@ grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& dia
     shortened.detail.resize(kErrorTextMax);
     shortened.detail += "...";
   }
+  // The values of the text that have a name go first where they alone are too much: the text has
+  // them.
+  if (bridge::ToRpcStatus(shortened, {}, dropped).ByteSizeLong() > kDetailsMax)
+    shortened.detail = Detail(std::string(shortened.detail));
   google::rpc::Status rich = bridge::ToRpcStatus(shortened, shown, dropped);
   while (rich.ByteSizeLong() > kDetailsMax && !shown.empty()) {
     const std::size_t keep = shown.size() / 2;
     for (std::size_t i = keep; i < shown.size(); ++i) dropped.Add(shown[i]);
     shown.resize(keep);
-    rich = bridge::ToRpcStatus(shortened, shown, dropped);
-  }
-  // Then also the values of the text that have a name: the text has them.
-  if (rich.ByteSizeLong() > kDetailsMax) {
-    shortened.detail = Detail(std::string(shortened.detail));
     rich = bridge::ToRpcStatus(shortened, shown, dropped);
   }
   return {static_cast<grpc::StatusCode>(rich.code()), rich.message(), rich.SerializeAsString()};

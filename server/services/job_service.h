@@ -6,6 +6,7 @@
 #include "rmlcell/v1/worker.pb.h"
 #include "server/services/job_streams.h"
 #include "server/services/later.h"
+#include "server/services/submit_stream.h"
 
 namespace rmlcell::server {
 
@@ -30,6 +31,10 @@ class JobService final : public v1::JobService::CallbackService {
   grpc::ServerUnaryReactor* SubmitJob(grpc::CallbackServerContext* context,
                                       const v1::SubmitJobRequest* request,
                                       v1::Job* response) override;
+  grpc::ServerBidiReactor<v1::SubmitJobsRequest, v1::SubmitJobsResponse>* SubmitJobs(
+      grpc::CallbackServerContext* context) override {
+    return MakeSubmitStream(needs_, *context, book_, open_);
+  }
   grpc::ServerUnaryReactor* GetJob(grpc::CallbackServerContext* context,
                                    const v1::GetJobRequest* request, v1::Job* response) override;
   grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* context,
@@ -93,7 +98,6 @@ class JobService final : public v1::JobService::CallbackService {
                                        const v1::GetStepMapRequest* request,
                                        v1::GetStepMapResponse* response) override;
 
-  RMLCELL_LATER_BOTH("JobService", SubmitJobs)
   RMLCELL_LATER("JobService", DecideInterrupted, v1::DecideInterruptedResponse)
 
  private:

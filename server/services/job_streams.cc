@@ -77,7 +77,10 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
       status = ToGrpcStatus(there.error());
       return Next::kEnd;
     }
-    if (const Status of_log = needs_.book.CheckLog(job_, cursor_, request_.log_id()); !of_log) {
+    const Status of_log = request_.has_after_sequence()
+                              ? needs_.book.CheckLog(job_, cursor_, request_.log_id())
+                              : Status();
+    if (!of_log) {
       status = ToGrpcStatus(of_log.error());
       return Next::kEnd;
     }

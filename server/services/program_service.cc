@@ -117,13 +117,9 @@ grpc::ServerUnaryReactor* ProgramService::GetProgramContent(
 
 grpc::ServerWriteReactor<v1::DownloadProgramResponse>* ProgramService::DownloadProgram(
     grpc::CallbackServerContext* context, const v1::DownloadProgramRequest* request) {
-  const Result<Caller> caller =
-      Admit(needs_.gate, *context, "ProgramService/DownloadProgram", request);
-  if (!caller) {
-    return new EndedStream<grpc::ServerWriteReactor<v1::DownloadProgramResponse>>(
-        ToGrpcStatus(caller.error()));
-  }
-  return MakeDownload(needs_, open_, programs_, *request)->Begin();
+  return OpenStream<v1::DownloadProgramResponse>(
+      needs_, *context, *request, "ProgramService/DownloadProgram",
+      [this, request](const Caller&) { return MakeDownload(needs_, open_, programs_, *request); });
 }
 
 grpc::ServerUnaryReactor* ProgramService::ListPrograms(grpc::CallbackServerContext* context,

@@ -42,7 +42,8 @@ std::shared_ptr<const JobFacts> JobFactsBook::Of(std::int64_t job) {
   auto facts = std::make_shared<const JobFacts>(JobFacts{.machine = std::move(record->machine),
                                                          .family = std::move(record->family),
                                                          .kind = std::move(record->kind),
-                                                         .caller = std::move(record->caller)});
+                                                         .caller = std::move(record->caller),
+                                                         .labels = std::move(record->labels)});
   const std::lock_guard lock(mutex_);
   kept_.emplace(job, facts);
   if (kept_.size() > kKept) kept_.erase(kept_.begin());
@@ -66,9 +67,10 @@ Result<CellSubscription> CellSubscription::Make(const v1::Subscription& wanted) 
       const storage::JobQuery& query = made.query_;
       if (query.state || query.finished || !query.verdict.empty() || !query.text.empty() ||
           query.created_from || query.created_before) {
-        return Error{ErrorCode::kCellBadFilter,
-                     "a subscription takes kind, machine, family and caller, which a job keeps",
-                     {}};
+        return Error{
+            ErrorCode::kCellBadFilter,
+            "a subscription takes kind, machine, family, caller and label, which a job keeps",
+            {}};
       }
       made.filtered_ = !jobs.filter().empty();
       if (made.filtered_ && !made.names_.empty())
@@ -104,7 +106,9 @@ bool CellSubscription::WantsJob(std::int64_t job, JobFactsBook& facts) const {
   return (query_.machine.empty() || query_.machine == of_job->machine) &&
          (query_.family.empty() || query_.family == of_job->family) &&
          (query_.kind.empty() || query_.kind == of_job->kind) &&
-         (query_.caller.empty() || query_.caller == of_job->caller);
+         (query_.caller.empty() || query_.caller == of_job->caller) &&
+         (query_.label.empty() ||
+          std::ranges::find(of_job->labels, query_.label) != of_job->labels.end());
 }
 
 bool CellSubscription::WantsMachine(std::string_view resource) const {

@@ -21,6 +21,7 @@ struct JobFacts {
   std::string family{};
   std::string kind{};
   std::string caller{};
+  std::vector<std::string> labels{};
 };
 
 // The same of every job that is asked for, the newest ones in memory. Thread-safe.

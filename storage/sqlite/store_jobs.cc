@@ -169,11 +169,12 @@ SqliteStore::SqliteStore(Parts parts)
               [this] { watchers_.Notify(); }) {}
 
 void SqliteStore::Submit(NewJob job, Done<SubmittedJob> done) {
+  const auto company = job.more_come ? Writer::Company::kComes : Writer::Company::kNone;
   auto operation = std::make_unique<SubmitOperation>(std::move(job), std::move(done));
   const Status prepared = operation->submission().Prepare(writer_, request_ids_, clock_);
   if (!prepared) return operation->Answer(prepared);
   const std::size_t bytes = operation->submission().bytes();
-  writer_.Post(std::move(operation), bytes);
+  writer_.Post(std::move(operation), bytes, company);
 }
 
 Result<SubmittedJob> SqliteStore::SubmitAndWait(NewJob job) {

@@ -72,7 +72,7 @@ Writer::~Writer() {
   thread_.join();
 }
 
-void Writer::Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes) {
+void Writer::Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes, Company company) {
   bool enough = false;
   bool alone = false;
   {
@@ -84,7 +84,7 @@ void Writer::Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes) 
       waiting_bytes_ += bytes;
       queue_.push_back({.operation = std::move(operation), .bytes = bytes, .status = {}});
     }
-    alone = operation == nullptr && TakeTurnAlone();
+    alone = operation == nullptr && company == Company::kNone && TakeTurnAlone();
     // Who has the turn looks at the queue again, unless it waits for callers to come together.
     enough = !alone && queue_.size() >= wanted_ && (!turn_taken_ || wanted_ > 1);
   }

@@ -42,10 +42,13 @@ class Writer {
   // Runs and answers what waits, then stops the thread.
   ~Writer();
 
+  // Whether others are on their way behind an operation: then it is left to the writer thread.
+  enum class Company { kNone, kComes };
   // Queues the operation, or runs and answers it. `bytes` is the memory that it holds: when too
   // much waits, it is answered with CellResourceExhausted instead, by this thread. 0: never
   // refused.
-  void Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes);
+  void Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes,
+            Company company = Company::kNone);
 
   // The same for `work`, from WriteContext& to a Result or Status; `done` is called with what it
   // gave, or with what kept it from becoming durable.

@@ -396,6 +396,19 @@ class Sockets(unittest.TestCase):
             self.addCleanup(third.kill)
             self.assertTrue(eventually(answers))
 
+    def test_another_file_is_not_taken_for_a_socket(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "notes"
+            file.write_text("mine")
+            for address in (file, f"{folder}/a%20b", f"//{str(file)[1:]}", f"{folder}/{100 * 'x'}/{100 * 'y'}"):
+                done = subprocess.run([BIN / "rmlcelld", "--state.directory", pathlib.Path(folder) / "state",
+                                       "--listen.grpc", f"unix:{address}", "--listen.web", "", "--workers.count", "0"],
+                                      stderr=subprocess.PIPE, text=True, timeout=60)
+                self.assertEqual(done.returncode, 69, address)
+                self.assertIn("CELL-E9202", done.stderr)
+            self.assertEqual(file.read_text(), "mine")
+            self.assertEqual(sorted(entry.name for entry in pathlib.Path(folder).iterdir()), ["notes", "state"])
+
 
 class Remote(unittest.TestCase):
     @classmethod

@@ -112,6 +112,19 @@ TEST_F(HandboxDisplay, KnowsItsOwnNumbersOnly) {
   EXPECT_EQ(machine->panel().message, std::nullopt);
 }
 
+// ... and takes nothing from the display that nobody has cleared. OPT-4.06
+TEST_F(HandboxDisplay, AnErrorOutlivesARunThatIsCancelled) {
+  Load({"VI[1] = 2\nGOTO VI[1] (20,999)\n20 ENDTASK\n", "DELAY 5\n"});
+  Start();
+  GoOn(At(1.0));
+  EXPECT_EQ(Display(), "ERROR 60            ");
+  Start(2);
+  GoOn(At(2.0));
+  Good(AbortRun{});
+  GoOn(At(3.0));
+  EXPECT_EQ(Display(), "ERROR 60            ");
+}
+
 TEST_F(HandboxDisplay, LightsTheLampOfTheMode) {
   Load({});
   EXPECT_THAT(machine->panel().lamps, ElementsAre("REMOTE", "ROB"));

@@ -36,6 +36,12 @@ TEST(Gate, KnowsTheUserOfASocket) {
   EXPECT_EQ(user("fd:7", Transport::kTcp), std::nullopt);
   EXPECT_EQ(user("fd:", Transport::kUnixSocket), std::nullopt);
   EXPECT_EQ(user("fd:x", Transport::kUnixSocket), std::nullopt);
+  // That of the gateway is not the browser's.
+  const auto browser = gate.Admit({.method = "/rmlcell.v1.JobService/GetJob",
+                                   .peer = "fd:7",
+                                   .metadata = {{"rmlcell-web-secret", "secret"}},
+                                   .transport = Transport::kUnixSocket});
+  EXPECT_EQ(browser->user, std::nullopt);
   gate.socket_users().Note(7, 0);
   EXPECT_EQ(user("fd:7", Transport::kUnixSocket), 0U);
 }
@@ -46,7 +52,10 @@ TEST(Gate, RightsChange) {
     return bool(gate.Admit({.method = "/rmlcell.v1.JobService/StopJob", .peer = ""}));
   };
   EXPECT_TRUE(may());
+  int told = 0;
+  gate.OnChange([&told] { ++told; });
   gate.SetLocal(ViewerPermissions());
+  EXPECT_EQ(told, 1);
   EXPECT_FALSE(may());
   gate.SetLocal(OperatorPermissions());
   EXPECT_TRUE(may());

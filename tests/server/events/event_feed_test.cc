@@ -448,6 +448,30 @@ TEST(EventFeed, NobodyIsCalledAfterItsHandleIsGone) {
   EXPECT_EQ(calls, 1);
 }
 
+// Who comes back is told of what the store still has, and that it was deleted; also where the
+// events are still in memory.
+TEST(EventFeed, ForgetsTheEventsOfAJobThatIsDeleted) {
+  ServerBed bed;
+  EventFeed feed(bed.store());
+  const auto all = feed.Subscribe(std::string(EventFeed::kEverything), [] {});
+  const std::int64_t begin = Must(bed.store().LastPosition());
+  const std::int64_t gone = bed.SubmitCheck();
+  const storage::Lease lease = bed.Lease();
+  bed.Append(lease, 20);
+  const std::int64_t kept = bed.SubmitCheck();
+  Must(bed.store().Finish(lease, {}));
+  const auto told = [&] { return Must(feed.EventsAfter(begin, 1'000)); };
+  ASSERT_TRUE(Eventually([&] { return feed.position() == Must(bed.store().LastPosition()); }));
+  EXPECT_GT(told().size(), 20U);
+  Must(bed.store().DeleteJob(gone));
+  ASSERT_TRUE(Eventually([&] { return feed.position() == Must(bed.store().LastPosition()); }));
+  const std::vector<EventRecord> left = told();
+  ASSERT_EQ(left.size(), 2U);
+  EXPECT_EQ(left[0].job, kept);
+  EXPECT_EQ(left[1].resource, JobName(gone));
+  EXPECT_EQ(left[1].kind, storage::kDeleted);
+}
+
 // For the race detector: watchers come and go, positions change, events flow, all at once.
 TEST(EventFeed, StandsManyThreads) {
   FakeLog log;

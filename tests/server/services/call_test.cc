@@ -69,6 +69,14 @@ TEST(CallStatus, LongNamedValuesAreLeftOut) {
   }
 }
 
+// Findings are not what is too much then.
+TEST(CallStatus, ALongNamedValueTakesNoFindingsAlong) {
+  const Error error{ErrorCode::kLiteralRange, Told("text", std::string(9'000, 'x')), {}};
+  const v1::ErrorDetail detail = DetailOf(ToGrpcStatus(error, Findings(3), {}));
+  EXPECT_EQ(detail.arguments_size(), 0);
+  EXPECT_EQ(detail.diagnostics_size(), 3);
+}
+
 // Of many findings the first are told, as many as fit in 6 KiB, and the others counted.
 TEST(CallStatus, ManyFindingsAreCutAndCounted) {
   const Error error{ErrorCode::kLiteralRange, "SPEED 101", {}};

@@ -420,11 +420,10 @@ TEST(CellWatchBookmarks, ComeBetweenEvents) {
 TEST_F(CellWatchTest, ChangedRightsEndAWatch) {
   auto watch = room.WatchCell(Of({"jobs"}));
   EXPECT_EQ(NextOf(watch), "snapshot of jobs");
-  room.open.AskAgain();
+  room.gate.SetLocal(ViewerPermissions());
   room.Say(lease_one, {"still here"});
   EXPECT_EQ(NextOf(watch), "jobs/1 still here");
-  room.admitted = false;
-  room.open.AskAgain();
+  room.gate.SetLocal({});
   watch.ExpectRefused(grpc::StatusCode::PERMISSION_DENIED, "WatchCell");
   auto late = room.WatchCell(Of({"jobs"}));
   late.ExpectRefused(grpc::StatusCode::PERMISSION_DENIED, "WatchCell");

@@ -143,6 +143,11 @@ TEST_F(JobWatchTest, ANumberOfAnotherLogIsRefused) {
   request.set_log_id("another");
   auto refused = room.Watch(request);
   refused.ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "of another log");
+  request.clear_after_sequence();  // from now on: it has no number
+  {
+    auto watch = room.Watch(request);
+    EXPECT_EQ(NextOf(watch), "snapshot");
+  }
   request.set_after_sequence(0);  // from the first on: whatever log it was
   auto watch = room.Watch(request);
   EXPECT_EQ(NextOf(watch), "snapshot");

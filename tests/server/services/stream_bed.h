@@ -22,6 +22,7 @@
 #include "server/services/cell_watch.h"
 #include "server/services/job_streams.h"
 #include "server/services/machine_watch.h"
+#include "server/services/open_stream.h"
 #include "tests/server/server_bed.h"
 
 // Streams of jobs over a channel of this process, with the log of a real store behind them.
@@ -98,8 +99,9 @@ class StreamBed {
                .registry = registry,
                .instance_id = kInstance,
                .bookmark_interval = bookmark_interval},
-              admitted),
+              CallNeeds{gate, executor_, executor_, 1 << 20}),
         machines_({executor_, open, bed.store(), feed, kInstance}) {
+    gate.OnChange([this] { open.AskAgain(); });
     grpc::ServerBuilder builder;
     builder.RegisterService(&service_);
     builder.RegisterService(&cell_);
@@ -139,8 +141,8 @@ class StreamBed {
   // A job that runs here has a toolpath that can be followed.
   std::shared_ptr<RunningToolpath> Run(std::int64_t job);
   std::atomic<int> toolpaths_looked_for = 0;
-  // Whether those who watch the cell may go on, when they are asked for again (OpenStreams).
-  std::atomic<bool> admitted = true;
+  // Of those who watch the cell.
+  Gate gate{"secret"};
   OpenedStream<v1::StreamJobTraceResponse> Trace(const std::string& name);
   OpenedStream<v1::StreamJobArtifactResponse> Artifact(const std::string& name,
                                                        const std::string& artifact);
@@ -156,20 +158,17 @@ class StreamBed {
  private:
   class CellService final : public v1::CellService::CallbackService {
    public:
-    CellService(CellWatchNeeds needs, std::atomic<bool>& admitted)
-        : needs_(std::move(needs)), admitted_(admitted) {}
+    CellService(CellWatchNeeds needs, CallNeeds call) : needs_(std::move(needs)), call_(call) {}
     grpc::ServerWriteReactor<v1::WatchCellResponse>* WatchCell(
-        grpc::CallbackServerContext*, const v1::WatchCellRequest* request) override {
-      const auto watch = MakeCellWatch(needs_, *request, kCaller);
-      watch->SetAdmission([this]() -> Status {
-        return admitted_ ? Status() : Status(Error{ErrorCode::kCellPermission, "WatchCell", {}});
-      });
-      return watch->Begin();
+        grpc::CallbackServerContext* context, const v1::WatchCellRequest* request) override {
+      return OpenStream<v1::WatchCellResponse>(
+          call_, *context, *request, "CellService/WatchCell",
+          [this, request](const Caller&) { return MakeCellWatch(needs_, *request, kCaller); });
     }
 
    private:
     CellWatchNeeds needs_;
-    std::atomic<bool>& admitted_;
+    CallNeeds call_;
   };
   class MachineService final : public v1::MachineService::CallbackService {
    public:

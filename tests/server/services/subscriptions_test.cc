@@ -54,6 +54,11 @@ TEST_F(SubscriptionTest, AFilterLooksAtWhatAJobKeeps) {
   EXPECT_EQ(wants("kind = CHECK"), "laser laser now ");
   EXPECT_EQ(wants("caller = berta"), "mill mill now ");
   EXPECT_EQ(wants("caller = berta AND kind = CHECK"), "");
+  const std::int64_t labelled =
+      Must(bed.store().SubmitAndWait({.machine = "mill-1", .labels = {"a", "order-1"}})).job.id;
+  const CellSubscription by_label = Must(CellSubscription::Make(Jobs("label = order-1")));
+  EXPECT_TRUE(by_label.WantsEvent({.job = labelled, .kind = "state"}, facts));
+  EXPECT_FALSE(by_label.WantsEvent({.job = mill, .kind = "state"}, facts));
   for (const char* changing : {"state = FAILED", "finished = true"})
     EXPECT_EQ(Refused(Jobs(changing)), ErrorCode::kCellBadFilter) << changing;
 }
