@@ -52,8 +52,14 @@ void Store::SendRenew(const Lease& lease, std::chrono::milliseconds duration,
 }
 
 void Store::SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
-                       Done<JobRecord> done) {
-  done(Finish(lease, *end));
+                       std::optional<JobRequest> next, Done<FinishedJob> done) {
+  Result<JobRecord> job = Finish(lease, *end);
+  if (!job) return done(job.error());
+  FinishedJob finished{.job = *std::move(job)};
+  if (next) {
+    if (auto leased = AcquireJobs(*next)) finished.next = *std::move(leased);
+  }
+  done(std::move(finished));
 }
 
 void Store::SendHandBack(const Lease& lease, LossPolicy policy, Done<JobRecord> done) {

@@ -198,6 +198,12 @@ struct JobRequest {
   std::vector<NewEvent> events{};         // appended to each job
 };
 
+// A job that is over, and what its worker was given in its place.
+struct FinishedJob {
+  JobRecord job{};
+  std::vector<LeasedJob> next{};
+};
+
 // The program memory of a machine and what belongs to it.
 struct MachineMemory {
   MachineRecord machine{};
@@ -405,8 +411,10 @@ class Store {
   // CellInvalidArgument: a state that is not final, an artifact's name that the job has already;
   // CellTooLarge: an executable beyond kProgramBytesMax.
   virtual Result<JobRecord> Finish(const Lease& lease, const JobEnd& end) = 0;
+  // `next`: a worker that is done asks for more, and gets it in the same transaction; that nothing
+  // could be leased does not keep the end from being stored.
   virtual void SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
-                          Done<JobRecord> done);
+                          std::optional<JobRequest> next, Done<FinishedJob> done);
   // Gives the job back to the queue; this attempt does not count. A RUN is interrupted: it may have
   // moved its machine. Returns the job as it then is. CellLeaseLost.
   virtual Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) = 0;

@@ -135,9 +135,18 @@ void Dispatcher::Post(const std::shared_ptr<Worker>& worker, std::function<void(
     worker->queue.push_back(std::move(work));
     if (worker->working) return;
     worker->working = true;
-    ++at_work_;
+    at_work_ += 2;
   }
+  BeginWork(worker);
+}
+
+// Precondition: this call counts in at_work_. Whoever settles and then lets the executor go waits
+// until the thread that posts, which may be one of the store, is out of it.
+void Dispatcher::BeginWork(const std::shared_ptr<Worker>& worker) {
   executor_.Post([this, worker] { Work(worker); });
+  const std::lock_guard lock(mutex_);
+  --at_work_;
+  changed_.notify_all();
 }
 
 // The next thing to do for a worker, or nothing, when its turn is over.
@@ -185,8 +194,9 @@ void Dispatcher::GoOn(const std::shared_ptr<Worker>& worker, std::function<void(
     worker->queue.push_front(std::move(next));
     worker->awaits = false;
     if (!std::exchange(worker->parked, false)) return;
+    ++at_work_;
   }
-  executor_.Post([this, worker] { Work(worker); });
+  BeginWork(worker);
 }
 
 // A look that has not begun sees every job stored until now; one that has begun may have missed the

@@ -109,6 +109,9 @@ class Dispatcher {
   void PostLook(const std::shared_ptr<Worker>& worker);
   void WakeIdle();
   void Assign(const std::shared_ptr<Worker>& worker);
+  std::optional<storage::JobRequest> Look(Worker& worker);
+  void HasNotFound(Worker& worker);
+  void BeginWork(const std::shared_ptr<Worker>& worker);
   void Assigned(const std::shared_ptr<Worker>& worker,
                 const Result<std::vector<storage::LeasedJob>>& leased);
   void Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job);
@@ -129,10 +132,11 @@ class Dispatcher {
   void RestWithoutWork(const std::shared_ptr<Worker>& worker, const Error& trouble);
   void Close(const std::shared_ptr<Worker>& worker, Closing how);
   void StoreClosing(const std::shared_ptr<Worker>& worker);
-  void Closed(const std::shared_ptr<Worker>& worker, const Result<storage::JobRecord>& job);
+  void Closed(const std::shared_ptr<Worker>& worker, const Result<storage::JobRecord>& job,
+              const std::vector<storage::LeasedJob>& next);
   void TryAgain();
   void EndAssignment(Worker& worker, bool stored);
-  void TakeNoOrders(Worker& worker);  // its job is over
+  void TakeNoOrders(Worker& worker, std::int64_t job);  // its job is over
   void Lose(const std::shared_ptr<Worker>& worker);
   void EndThreads();
   void LookAtOrders(const std::stop_token& stop);
@@ -158,7 +162,8 @@ class Dispatcher {
   std::condition_variable_any changed_;
   std::map<WorkerId, std::shared_ptr<Worker>> workers_;
   WorkerId next_worker_ = 1;
-  std::size_t at_work_ = 0;  // guarded by mutex_; workers that something is done or awaited for
+  std::size_t at_work_ = 0;  // guarded by mutex_; workers that something is done or awaited for,
+                             // and calls that begin it
   std::vector<std::shared_ptr<Worker>> trying_later_;  // guarded by mutex_; gone ones, too
   bool later_ = false;  // guarded by mutex_; something is to be tried again in a moment
   std::unique_ptr<storage::Store::Subscription> store_watch_;

@@ -60,42 +60,53 @@ v1::WorkResponse ControlMessage(const storage::Lease& lease, const JobOrder& ord
 }
 
 void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
-  if (worker->assignment || worker->leaving) return;
-  {
-    const std::lock_guard lock(mutex_);
-    if (worker->gone || worker->rests || draining_) return;
-    worker->looking = true;
-  }
-  store_.SendAcquire({.worker = worker->name,
-                      .server = server_,
-                      .kinds = worker->kinds,
-                      .pools = worker->pools,
-                      .duration = std::chrono::milliseconds(config_.workers_lease_ms),
-                      .events = {StateEvent(storage::JobState::kRunning)}},
+  if (worker->assignment) return;
+  std::optional<storage::JobRequest> request = Look(*worker);
+  if (!request) return;
+  store_.SendAcquire(*std::move(request),
                      Then<std::vector<storage::LeasedJob>>(
                          worker, [this, worker](const auto& leased) { Assigned(worker, leased); }));
 }
 
+// What the worker would take now; nothing: it takes no job. It looks until Assigned() or
+// HasNotFound().
+std::optional<storage::JobRequest> Dispatcher::Look(Worker& worker) {
+  if (worker.leaving) return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  if (worker.gone || worker.rests || draining_) return std::nullopt;
+  worker.looking = true;
+  return storage::JobRequest{.worker = worker.name,
+                             .server = server_,
+                             .kinds = worker.kinds,
+                             .pools = worker.pools,
+                             .duration = std::chrono::milliseconds(config_.workers_lease_ms),
+                             .events = {StateEvent(storage::JobState::kRunning)}};
+}
+
+void Dispatcher::HasNotFound(Worker& worker) {
+  {
+    const std::lock_guard lock(mutex_);
+    worker.looking = false;
+    worker.early_orders.clear();
+  }
+  changed_.notify_all();
+}
+
 void Dispatcher::Assigned(const std::shared_ptr<Worker>& worker,
                           const Result<std::vector<storage::LeasedJob>>& leased) {
-  const bool found = leased && !leased->empty();
-  if (found) {
-    worker->assignment.emplace();
-    worker->assignment->lease = leased->front().lease;
-    worker->assignment->renewed_at = worker->assignment->asked_at = clock_();
-  }
+  if (!leased) spdlog::error("no job could be leased: {}", bridge::ErrorText(leased.error()));
+  if (!leased || leased->empty()) return HasNotFound(*worker);
+  worker->assignment.emplace();
+  worker->assignment->lease = leased->front().lease;
+  worker->assignment->renewed_at = worker->assignment->asked_at = clock_();
   {
     const std::lock_guard lock(mutex_);
     worker->looking = false;
-    if (!found) worker->early_orders.clear();
-    if (found) {
-      worker->idle = false;
-      worker->job = worker->assignment->lease.job;
-    }
+    worker->idle = false;
+    worker->job = worker->assignment->lease.job;
   }
   changed_.notify_all();
-  if (!leased) spdlog::error("no job could be leased: {}", bridge::ErrorText(leased.error()));
-  if (found) Begin(worker, leased->front());
+  Begin(worker, leased->front());
 }
 
 void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job) {
@@ -139,7 +150,8 @@ void Dispatcher::RestWithoutWork(const std::shared_ptr<Worker>& worker, const Er
 
 void Dispatcher::Close(const std::shared_ptr<Worker>& worker, Closing how) {
   worker->assignment->closing = std::move(how);
-  TakeNoOrders(*worker);  // before anybody reads that it is over
+  // Before anybody reads that it is over.
+  TakeNoOrders(*worker, worker->assignment->lease.job);
   StoreClosing(worker);
 }
 
@@ -149,19 +161,28 @@ void Dispatcher::Close(const std::shared_ptr<Worker>& worker, Closing how) {
 void Dispatcher::StoreClosing(const std::shared_ptr<Worker>& worker) {
   const Assignment& assignment = *worker->assignment;
   const storage::Lease& lease = assignment.lease;
-  auto then =
-      Then<storage::JobRecord>(worker, [this, worker](const auto& job) { Closed(worker, job); });
   if (const auto* end = std::get_if<Finished>(&*assignment.closing)) {
-    store_.SendFinish(lease, *end, std::move(then));
-  } else if (const auto* back = std::get_if<HandBack>(&*assignment.closing)) {
+    // The next job comes with the same commit.
+    auto then = Then<storage::FinishedJob>(worker, [this, worker](const auto& finished) {
+      if (!finished) return Closed(worker, finished.error(), {});
+      Closed(worker, finished->job, finished->next);
+    });
+    return store_.SendFinish(lease, *end, Look(*worker), std::move(then));
+  }
+  auto then = Then<storage::JobRecord>(
+      worker, [this, worker](const auto& job) { Closed(worker, job, {}); });
+  if (const auto* back = std::get_if<HandBack>(&*assignment.closing)) {
     store_.SendHandBack(lease, back->policy, std::move(then));
   } else {
     store_.SendAbandon(lease, std::get<Lost>(*assignment.closing).policy, std::move(then));
   }
 }
 
+// `next`: what the worker was given with the end of the job.
 void Dispatcher::Closed(const std::shared_ptr<Worker>& worker,
-                        const Result<storage::JobRecord>& job) {
+                        const Result<storage::JobRecord>& job,
+                        const std::vector<storage::LeasedJob>& next) {
+  if (next.empty()) HasNotFound(*worker);
   Assignment& assignment = *worker->assignment;
   const std::string name = JobName(assignment.lease.job);
   const auto* end = std::get_if<Finished>(&*assignment.closing);
@@ -180,6 +201,8 @@ void Dispatcher::Closed(const std::shared_ptr<Worker>& worker,
     }
   }
   EndAssignment(*worker, job && end != nullptr);
+  // One that is gone by now loses it at once: that it left is the next thing that is said of it.
+  if (!next.empty()) return Assigned(worker, next);
   bool gone = false;
   {
     const std::lock_guard lock(mutex_);
@@ -410,7 +433,7 @@ void Dispatcher::EndAssignment(Worker& worker, bool stored) {
   const storage::Lease lease = worker.assignment->lease;
   worker.assignment.reset();
   feed_.Forget(JobName(lease.job));
-  TakeNoOrders(worker);  // before the worker hears of it
+  TakeNoOrders(worker, lease.job);  // before the worker hears of it
   std::shared_ptr<RunningToolpath> followed;
   {
     const std::lock_guard lock(mutex_);
@@ -428,11 +451,12 @@ void Dispatcher::EndAssignment(Worker& worker, bool stored) {
   changed_.notify_all();
 }
 
-void Dispatcher::TakeNoOrders(Worker& worker) {
+// Those for its next job, which may be leased already, wait for that.
+void Dispatcher::TakeNoOrders(Worker& worker, std::int64_t job) {
   const std::lock_guard lock(mutex_);
   worker.job = 0;
   worker.sent.reset();
-  worker.early_orders.clear();
+  std::erase_if(worker.early_orders, [job](const EarlyOrder& early) { return early.job == job; });
 }
 
 void Dispatcher::Lose(const std::shared_ptr<Worker>& worker) {

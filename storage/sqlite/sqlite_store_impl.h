@@ -110,7 +110,7 @@ class SqliteStore final : public Store {
   Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events) override;
   Result<JobRecord> Finish(const Lease& lease, const JobEnd& end) override;
   void SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
-                  Done<JobRecord> done) override;
+                  std::optional<JobRequest> next, Done<FinishedJob> done) override;
   Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) override;
   void SendHandBack(const Lease& lease, LossPolicy policy, Done<JobRecord> done) override;
   Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) override;
@@ -137,7 +137,8 @@ class SqliteStore final : public Store {
 
  private:
   void SendStaged(const Lease& lease, std::shared_ptr<const JobEnd> end,
-                  std::shared_ptr<const StagedEnd> staged, Done<JobRecord> done);
+                  std::shared_ptr<const StagedEnd> staged, const std::optional<JobRequest>& next,
+                  Done<FinishedJob> done);
   // `job` with its specification, read on this thread.
   Result<JobRecord> WithSpecification(Result<JobRecord> job);
 

@@ -345,32 +345,50 @@ Result<JobRecord> SqliteStore::Finish(const Lease& lease, const JobEnd& end) {
 }
 
 void SqliteStore::SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
-                             Done<JobRecord> done) {
+                             std::optional<JobRequest> next, Done<FinishedJob> done) {
   if (!IsLarge(*end)) {
     const auto staged = std::make_shared<StagedEnd>();
     if (const Status made = staged->Prepare(writer_, *end); !made) return done(made.error());
-    return SendStaged(lease, std::move(end), staged, std::move(done));
+    return SendStaged(lease, std::move(end), staged, std::move(next), std::move(done));
   }
   const auto holder = std::make_shared<const EndsUnderWay::Holder>(ends_, lease.fence);
-  staging_.Post([this, lease, end = std::move(end), holder, done = std::move(done)] {
-    std::shared_ptr<StagedEnd> staged;
-    std::optional<Error> failed;
-    try {
-      staged = std::make_shared<StagedEnd>();
-      if (const Status made = staged->Prepare(writer_, *end); !made) failed = made.error();
-    } catch (const std::exception& error) {
-      failed = Error{ErrorCode::kCellStoreFailed, error.what(), {}};
-    }
-    if (failed) return done(*std::move(failed));
-    SendStaged(lease, end, staged, [holder, done](Result<JobRecord> job) { done(std::move(job)); });
-  });
+  staging_.Post(
+      [this, lease, end = std::move(end), next = std::move(next), holder, done = std::move(done)] {
+        std::shared_ptr<StagedEnd> staged;
+        std::optional<Error> failed;
+        try {
+          staged = std::make_shared<StagedEnd>();
+          if (const Status made = staged->Prepare(writer_, *end); !made) failed = made.error();
+        } catch (const std::exception& error) {
+          failed = Error{ErrorCode::kCellStoreFailed, error.what(), {}};
+        }
+        if (failed) return done(*std::move(failed));
+        SendStaged(lease, end, staged, next,
+                   [holder, done](Result<FinishedJob> job) { done(std::move(job)); });
+      });
 }
 
+// A job of the queue that cannot be leased would undo the end with it: then the end goes alone.
 void SqliteStore::SendStaged(const Lease& lease, std::shared_ptr<const JobEnd> end,
-                             std::shared_ptr<const StagedEnd> staged, Done<JobRecord> done) {
-  writer_.Send([lease, end = std::move(end), staged = std::move(staged)](
-                   WriteContext& context) { return staged->Run(context, lease, *end); },
-               std::move(done));
+                             std::shared_ptr<const StagedEnd> staged,
+                             const std::optional<JobRequest>& next, Done<FinishedJob> done) {
+  const auto work = [lease, end, staged, next](WriteContext& context) -> Result<FinishedJob> {
+    Result<JobRecord> job = staged->Run(context, lease, *end);
+    if (!job) return job.error();
+    FinishedJob finished{.job = *std::move(job)};
+    if (!next) return finished;
+    Result<std::vector<LeasedJob>> leased = LeaseJobs(context, *next);
+    if (!leased) return leased.error();
+    for (LeasedJob& one : *leased) ReadSpecification(context, one.job);
+    finished.next = *std::move(leased);
+    return finished;
+  };
+  if (!next) return writer_.Send(work, std::move(done));
+  writer_.Send(work, [this, lease, end, staged, done](Result<FinishedJob> finished) {
+    if (finished || finished.error().code == ErrorCode::kCellLeaseLost)
+      return done(std::move(finished));
+    SendStaged(lease, end, staged, {}, done);
+  });
 }
 
 Result<JobRecord> SqliteStore::HandBack(const Lease& lease, const LossPolicy& policy) {

@@ -1,4 +1,6 @@
 // Contents piece by piece, and those that no record names yet.
+#include <gmock/gmock.h>
+
 #include <future>
 
 #include "engine/core/hex.h"
@@ -190,11 +192,51 @@ TEST_P(StoreConformance, EndsAndCancelsThatDoNotWait) {
       JobEnd{.outcome = {.state = JobState::kSucceeded},
              .artifacts = {{.name = "report", .bytes = "the report"}}});
   const auto finish = [&] {
-    return Answered<JobRecord>([&](auto done) { store().SendFinish(leased[0].lease, end, done); });
+    return Answered<FinishedJob>(
+        [&](auto done) { store().SendFinish(leased[0].lease, end, {}, done); });
   };
-  EXPECT_EQ(Must(finish()).state, JobState::kSucceeded);
+  EXPECT_EQ(Must(finish()).job.state, JobState::kSucceeded);
   EXPECT_EQ(CodeOf(finish()), ErrorCode::kCellLeaseLost);
   EXPECT_EQ(Must(store().ReadArtifact(job, "report")), "the report");
+}
+
+// A worker that is done is given the next job with the same commit: what follows the end of one,
+// and nothing with an end that is not stored.
+TEST_P(StoreConformance, AnEndBringsTheNextJob) {
+  const std::int64_t first = SubmitOne(store());
+  const Lease lease = AcquireAll(store()).at(0).lease;
+  const auto follower = Must(store().SubmitAndWait({.kind = "CHECK", .after = {first}})).job.id;
+  const std::int64_t last = SubmitOne(store());
+  const JobRequest next{.worker = "w",
+                        .server = "s",
+                        .kinds = {"CHECK"},
+                        .duration = std::chrono::seconds(10),
+                        .events = {{.kind = "runs"}}};
+  const auto finish = [&](const Lease& of) {
+    const auto end = std::make_shared<const JobEnd>(
+        JobEnd{.outcome = {.state = JobState::kSucceeded}, .events = {{.kind = "over"}}});
+    return Answered<FinishedJob>([&](auto done) { store().SendFinish(of, end, next, done); });
+  };
+  const FinishedJob one = Must(finish(lease));
+  EXPECT_EQ(one.job.state, JobState::kSucceeded);
+  ASSERT_EQ(one.next.size(), 1U);
+  EXPECT_EQ(one.next[0].job.id, follower);  // it has waited for this end
+  EXPECT_EQ(Must(store().GetJob(follower)).state, JobState::kRunning);
+  EXPECT_EQ(CodeOf(finish(lease)), ErrorCode::kCellLeaseLost);
+  EXPECT_EQ(Must(store().GetJob(last)).state, JobState::kQueued);
+  const FinishedJob two = Must(finish(one.next[0].lease));
+  ASSERT_EQ(two.next.size(), 1U);
+  EXPECT_EQ(two.next[0].job.id, last);
+  EXPECT_EQ(two.next[0].job.specification, "what to do");
+  EXPECT_TRUE(Must(finish(two.next[0].lease)).next.empty());
+  std::vector<std::string> told;
+  for (const EventRecord& event : Must(store().AllEvents(0, 100))) {
+    if (event.job > 0) told.push_back(std::to_string(event.job) + " " + event.kind);
+  }
+  const auto of = [](std::int64_t job) { return std::to_string(job) + " "; };
+  EXPECT_THAT(told,
+              testing::ElementsAre(of(first) + "over", of(follower) + "runs", of(follower) + "over",
+                                   of(last) + "runs", of(last) + "over"));
 }
 
 }  // namespace

@@ -56,11 +56,11 @@ TEST_F(SqliteContents, WhoTellsALargeEndWaitsForNothing) {
   const std::string large = Noise(3 * kMiB + 5, 1);
   auto end = std::make_shared<const JobEnd>(JobEnd{
       .artifacts = {{.name = "a", .media_type = "application/octet-stream", .bytes = large}}});
-  std::promise<Result<JobRecord>> ended;
-  std::future<Result<JobRecord>> job = ended.get_future();
+  std::promise<Result<FinishedJob>> ended;
+  std::future<Result<FinishedJob>> job = ended.get_future();
   auto told = std::async(std::launch::async, [&] {
-    store().SendFinish(leases[1], end,
-                       [&](Result<JobRecord> record) { ended.set_value(std::move(record)); });
+    store().SendFinish(leases[1], end, {},
+                       [&](Result<FinishedJob> record) { ended.set_value(std::move(record)); });
   });
   EXPECT_EQ(told.wait_for(kPatience), std::future_status::ready);
   told.get();
@@ -73,7 +73,7 @@ TEST_F(SqliteContents, WhoTellsALargeEndWaitsForNothing) {
   EXPECT_TRUE(Must(expired.get()).empty());
   go_on.set_value();
   other.join();
-  EXPECT_EQ(Must(job.get()).state, JobState::kSucceeded);
+  EXPECT_EQ(Must(job.get()).job.state, JobState::kSucceeded);
   EXPECT_TRUE(Must(store().ReadArtifact(leases[1].job, "a")) == large);
 }
 

@@ -4,6 +4,8 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
+#include <future>
+
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/migrations.h"
 #include "storage/sqlite/store_files.h"
@@ -46,6 +48,28 @@ TEST(SqliteRefusals, RecordsWithoutTheirBytes) {
   EXPECT_EQ(CodeOf(bed.store().ListArtifacts(1)), kCorruptFile);
   EXPECT_EQ(Must(bed.store().GetArtifact(1, "main")).size, 10);
   EXPECT_EQ(Must(bed.store().ReadArtifact(1, "main")), "main bytes");
+}
+
+// A job of the queue that cannot be leased does not keep the end of another one from the disk.
+TEST(SqliteRefusals, AnEndIsStoredThoughTheNextJobIsDamaged) {
+  SqliteBed bed;
+  bed.LeaveUnchecked();
+  for (int i = 0; i < 2; ++i) Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+  const Lease lease = (*Must(bed.store().Acquire("w", {"CHECK"}, std::chrono::hours(1), {}))).lease;
+  bed.Close();
+  ExecuteIn(bed.path(),
+            "INSERT INTO attempt (job, number, worker, fence, started_at, how_it_ended)"
+            " VALUES (2, 1, 'w', 99, 0, '')");
+  bed.Reopen();
+  std::promise<Result<FinishedJob>> answer;
+  bed.store().SendFinish(lease, std::make_shared<const JobEnd>(),
+                         JobRequest{.worker = "w", .kinds = {"CHECK"}},
+                         [&](Result<FinishedJob> done) { answer.set_value(std::move(done)); });
+  const FinishedJob finished = Must(answer.get_future().get());
+  EXPECT_EQ(finished.job.state, JobState::kSucceeded);
+  EXPECT_TRUE(finished.next.empty());
+  EXPECT_EQ(Must(bed.store().GetJob(1)).state, JobState::kSucceeded);
+  EXPECT_EQ(Must(bed.store().GetJob(2)).state, JobState::kQueued);
 }
 
 // The program that is kept with its job: other bytes, a part of them, or none.

@@ -106,6 +106,7 @@ class HookedStore final : public ForwardingStore {
   // Ends are kept until Answer() and not written, as by a store that is not there for a while.
   std::atomic<bool> keeps_ends = false;
   std::atomic<int> ends_kept = 0;
+  std::atomic<int> next_given = 0;  // jobs that came with the end of another one
   // Calls that have returned.
   std::atomic<int> renewals = 0;
   std::atomic<int> sweeps = 0;
@@ -157,13 +158,21 @@ class HookedStore final : public ForwardingStore {
     store_.Append(lease, std::move(events), std::move(done));
   }
   void SendFinish(const storage::Lease& lease, std::shared_ptr<const storage::JobEnd> end,
-                  storage::Done<storage::JobRecord> done) override {
+                  std::optional<storage::JobRequest> next,
+                  storage::Done<storage::FinishedJob> done) override {
     if (Fails(finishes_that_fail)) return done(FullDisk());
     if (Fails(finishes_that_throw)) throw std::bad_alloc();
-    if (!keeps_ends) return store_.SendFinish(lease, std::move(end), std::move(done));
+    auto answer = [this, looked = next.has_value(), done](Result<storage::FinishedJob> finished) {
+      const bool found = finished && !finished->next.empty();
+      if (found) ++next_given;
+      if (looked && found && after_acquire) after_acquire(true);
+      done(std::move(finished));
+    };
+    if (!keeps_ends) return store_.SendFinish(lease, std::move(end), next, std::move(answer));
     {
       const std::lock_guard lock(kept_mutex_);
-      kept_.push_back([this, lease, end, done] { store_.SendFinish(lease, end, done); });
+      kept_.push_back(
+          [this, lease, end, next, answer] { store_.SendFinish(lease, end, next, answer); });
     }
     ++ends_kept;
   }

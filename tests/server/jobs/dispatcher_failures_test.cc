@@ -202,6 +202,46 @@ TEST(DispatcherFailures, AStoreThatDoesNotAnswerHoldsUpNoThread) {
   EXPECT_EQ(free_one.Released(), true);
 }
 
+// A worker that is gone when its end is stored is given a job that it never sees: another one gets
+// it, and no attempt counts.
+TEST(DispatcherFailures, TheNextJobOfAWorkerThatIsGoneGoesToAnother) {
+  DispatcherBed bed;
+  const std::int64_t first = bed.server.SubmitCheck();
+  const std::int64_t next = bed.server.SubmitCheck("STOP\n", 1);
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  bed.hooks.keeps_ends = true;
+  worker.Finish();
+  ASSERT_TRUE(Eventually([&] { return bed.hooks.ends_kept == 1; }));
+  worker.Leave();
+  bed.hooks.Answer();
+  bed.Settle();
+  EXPECT_EQ(bed.Job(first).state, JobState::kSucceeded);
+  EXPECT_EQ(bed.hooks.next_given, 1);
+  FakeWorker other(bed.dispatcher(), "other");
+  ASSERT_TRUE(other.Take());
+  EXPECT_EQ(other.job(), next);
+  other.Finish();
+  EXPECT_EQ(other.Released(), true);
+  EXPECT_EQ(bed.Job(next).state, JobState::kSucceeded);
+}
+
+// One that is told to stop takes no further job.
+TEST(DispatcherFailures, AServerThatStopsGivesNoNextJob) {
+  DispatcherBed bed;
+  bed.server.SubmitCheck();
+  const std::int64_t next = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  std::jthread drain([&] { bed.dispatcher().Drain(kPatience); });
+  worker.line().Next(v1::WorkResponse::kStop);
+  worker.Finish();
+  EXPECT_EQ(worker.Released(), true);
+  drain.join();
+  EXPECT_EQ(bed.hooks.next_given, 0);
+  EXPECT_EQ(bed.Job(next).state, JobState::kQueued);
+}
+
 // Also when its worker is gone meanwhile.
 TEST(DispatcherFailures, AnEndIsStoredThoughItsWorkerIsGone) {
   DispatcherBed bed;

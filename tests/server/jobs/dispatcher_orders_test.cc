@@ -152,6 +152,25 @@ TEST(DispatcherControl, AnOrderForAJobOnItsWayComesAfterTheJob) {
   EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_HOLD);
 }
 
+// The same of one that came with the end of the job before.
+TEST(DispatcherControl, AnOrderForTheNextJobComesAfterIt) {
+  DispatcherBed bed;
+  bed.server.SubmitCheck();
+  const std::int64_t next = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  Status ordered = Error{ErrorCode::kCellInternal, {}, {}};
+  bed.hooks.after_acquire = [&](bool found) {
+    if (found) ordered = bed.dispatcher().Control(next, {.kind = v1::WorkerControl::KIND_HOLD});
+  };
+  worker.Finish();
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.job(), next);
+  EXPECT_EQ(bed.hooks.next_given, 1);
+  EXPECT_TRUE(ordered);
+  EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_HOLD);
+}
+
 TEST(DispatcherControl, AnOrderForAJobThatIsBeingMadeReadyComesAfterTheJob) {
   DispatcherBed bed;
   std::atomic<std::int64_t> job = 0;
