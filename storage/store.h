@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -204,6 +205,8 @@ struct FinishedJob {
   std::vector<LeasedJob> next{};
 };
 
+enum class QueueAct { kHold, kRelease, kCancel };
+
 // The program memory of a machine and what belongs to it.
 struct MachineMemory {
   MachineRecord machine{};
@@ -365,6 +368,13 @@ class Store {
   //
   // It does not start until it is let go.
   virtual Result<JobRecord> HoldBack(std::int64_t job, const std::vector<NewEvent>& events) = 0;
+  // The same, or a cancel, of many in one transaction: of those that wait, or have not ended, and
+  // that it changes; the others, and jobs that are gone, are left out. `event` says what is told of
+  // a job, as it was before. Returns those that changed, without their specification. Not more than
+  // a few hundred, or other writes wait.
+  using EventOf = std::function<NewEvent(const JobRecord&)>;
+  virtual Result<std::vector<JobRecord>> ActOn(std::span<const std::int64_t> jobs, QueueAct act,
+                                               const EventOf& event) = 0;
   // It waits no longer for a person: neither held back nor for jobs that did not succeed.
   virtual Result<JobRecord> LetGo(std::int64_t job, const std::vector<NewEvent>& events) = 0;
   // How many of the jobs that wait for the same workers, and are ready, start before this one.

@@ -364,7 +364,8 @@ void AddQueueOptions(CLI::App& verb, SubmitRequest& submit) {
       ->check(CLI::Range(-100, 100));
   verb.add_flag("--hold", submit.hold, "it waits until rmlcell resume");
   verb.add_option("--not-before", submit.not_before, "2026-11-25T10:00:00Z");
-  verb.add_option("--after-job", submit.after, "starts when these have succeeded");
+  verb.add_option("--after-job", submit.after, "starts when these have succeeded")
+      ->allow_extra_args(false);
 }
 
 void AddQueueVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {

@@ -112,8 +112,8 @@ std::string UsageText(const CLI::App& app, const CLI::Error& error) {
     const std::vector<std::string> options = OptionsOf(verb);
     if (std::ranges::find(options, name) != options.end())
       return name + " stands behind the verb: rmlcell " + PathOf(verb) + " " + name + HelpOf(verb);
-    return PathOf(verb) + " has no option " + Visible(name) + Question(name, options) +
-           HelpOf(verb);
+    return (PathOf(verb).empty() ? "rmlcell" : PathOf(verb)) + " has no option " + Visible(name) +
+           Question(name, options) + HelpOf(verb);
   }
   if (!left.empty() && !VerbsOf(verb).empty()) return NoSuchVerb(verb, left.front());
   if (!left.empty()) {

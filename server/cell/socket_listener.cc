@@ -35,6 +35,13 @@ std::string PathOf(const std::string& address) {
 
 int NewSocket() { return ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0); }
 
+// Which file stands there.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> FileAt(const std::string& path) {
+  struct stat facts {};
+  if (::lstat(path.c_str(), &facts) != 0) return {};
+  return std::pair<std::uint64_t, std::uint64_t>(facts.st_dev, facts.st_ino);
+}
+
 // Only a file that a dead server left behind may be taken away.
 bool IsInUse(const sockaddr_un& name) {
   const int probe = NewSocket();
@@ -71,7 +78,7 @@ Result<std::unique_ptr<SocketListener>> SocketListener::Make(const std::string& 
   }
   if (::bind(listening, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0)
     return refuse(std::strerror(errno));
-  listener->bound_ = true;
+  listener->file_ = FileAt(path);
   if (::listen(listening, kBacklog) != 0) return refuse(std::strerror(errno));
   return listener;
 }
@@ -84,7 +91,7 @@ SocketListener::~SocketListener() {
   ::shutdown(listening_, SHUT_RDWR);  // wakes it
   if (thread_.joinable()) thread_.join();
   // In this order: of a server that comes meanwhile the file is not taken.
-  if (bound_) ::unlink(path_.c_str());
+  if (file_ && FileAt(path_) == file_) ::unlink(path_.c_str());
   ::close(listening_);
 }
 

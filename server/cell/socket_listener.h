@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "engine/core/result.h"
 
@@ -37,7 +40,8 @@ class SocketListener {
   void Take(grpc::Server& server, const std::stop_token& stop);
 
   const std::string path_;
-  bool bound_ = false;  // the file is ours
+  // Device and inode of our file; none: there is none.
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> file_;
   const int listening_;
   SocketUsers& users_;
   std::jthread thread_;

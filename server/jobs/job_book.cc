@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <span>
 
 #include "engine/core/units.h"
 #include "engine/families/families.h"
@@ -18,6 +20,7 @@
 #include "server/records/file_family.h"
 #include "server/records/job_messages.h"
 #include "server/records/program_place.h"
+#include "storage/jobs/job_rules.h"
 #include "storage/jobs/queue_rules.h"
 
 namespace rmlcell::server {
@@ -25,6 +28,7 @@ namespace {
 
 constexpr PageSizes kJobPages{.fallback = 50, .max = 1000};
 constexpr int kChoicePage = 1000;
+constexpr std::size_t kActedOnAtOnce = 200;
 
 // Two requests of one request_id must ask for the same: by this alone a submission is acknowledged
 // as a job that is there already, so nobody may be able to make two jobs of one hash. A store of an
@@ -335,13 +339,26 @@ Result<std::vector<std::string>> JobBook::Choose(const v1::JobChoice& choice,
   return names;
 }
 
-Result<bool> JobBook::IsOver(std::string_view name) {
-  const Result<std::int64_t> id = ParseJobName(name);
-  if (!id) return id.error();
-  const auto job = store_.GetJob(*id);
-  if (!job && job.error().code == ErrorCode::kCellNotFound) return true;
-  if (!job) return job.error();
-  return storage::IsFinal(job->state);
+Result<std::vector<storage::JobRecord>> JobBook::ActOn(const std::vector<std::string>& names,
+                                                       storage::QueueAct act,
+                                                       std::string_view caller) {
+  std::vector<std::int64_t> jobs;
+  for (const std::string& name : names) jobs.push_back(*ParseJobName(name));
+  const auto event = [&](const storage::JobRecord& job) {
+    if (act == storage::QueueAct::kCancel)
+      return By(caller, EndedEvent(ToProto(storage::CancelledOutcome())));
+    return By(caller, QueueEvent(act == storage::QueueAct::kHold, job.priority));
+  };
+  std::vector<storage::JobRecord> changed;
+  std::span<const std::int64_t> left = jobs;
+  while (!left.empty()) {
+    const auto part = left.first(std::min(left.size(), kActedOnAtOnce));
+    left = left.subspan(part.size());
+    auto of_part = store_.ActOn(part, act, event);
+    if (!of_part) return of_part.error();
+    std::move(of_part->begin(), of_part->end(), std::back_inserter(changed));
+  }
+  return changed;
 }
 
 Status JobBook::CheckOverride(std::string_view name, double percent) {

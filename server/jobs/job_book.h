@@ -44,8 +44,10 @@ class JobBook {
   // CellBadFilter, CellNotFound, CellPrecondition when they are not as many as expected.
   Result<std::vector<std::string>> Choose(const v1::JobChoice& choice,
                                           std::optional<storage::JobState> state);
-  // Whether it has ended, or is gone.
-  Result<bool> IsOver(std::string_view name);
+  // Of those that the act changes, a few hundred in each transaction; the others are left as they
+  // are. Returns them.
+  Result<std::vector<storage::JobRecord>> ActOn(const std::vector<std::string>& names,
+                                                storage::QueueAct act, std::string_view caller);
   // Whether the machine of the job can have this override. Errors: CellInvalidArgument,
   // CellNotFound.
   Status CheckOverride(std::string_view name, double percent);

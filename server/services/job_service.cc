@@ -324,39 +324,39 @@ grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* JobService::StreamJobTrace
 grpc::ServerUnaryReactor* JobService::CancelJobs(grpc::CallbackServerContext* context,
                                                  const v1::CancelJobsRequest* request,
                                                  v1::CancelJobsResponse* response) {
-  return Answer(needs_, context, *request, "JobService/CancelJobs",
+  return Answer(needs_.Computing(), context, *request, "JobService/CancelJobs",
                 [this, request, response](const Caller& caller) {
-                  const auto names = book_.Choose(request->jobs(), {});
-                  if (!names) return ToGrpcStatus(names.error());
-                  for (const std::string& name : *names) {
-                    const Result<bool> over = book_.IsOver(name);
-                    if (!over) return ToGrpcStatus(over.error());
-                    if (*over) continue;
-                    const auto job = dispatcher_.Cancel(*ParseJobName(name), caller.identity);
-                    if (!job) return ToGrpcStatus(job.error());
-                    response->set_jobs(response->jobs() + 1);
-                  }
-                  return grpc::Status::OK;
+                  return ActOn(request->jobs(), {}, storage::QueueAct::kCancel, caller, *response);
                 });
 }
 
 grpc::ServerUnaryReactor* JobService::HoldJobs(grpc::CallbackServerContext* context,
                                                const v1::HoldJobsRequest* request,
                                                v1::HoldJobsResponse* response) {
-  return Answer(needs_, context, *request, "JobService/HoldJobs",
+  return Answer(needs_.Computing(), context, *request, "JobService/HoldJobs",
                 [this, request, response](const Caller& caller) {
-                  const auto names = book_.Choose(request->jobs(), storage::JobState::kQueued);
-                  if (!names) return ToGrpcStatus(names.error());
-                  for (const std::string& name : *names) {
-                    const auto job = request->release() ? book_.LetGo(name, caller.identity)
-                                                        : book_.HoldBack(name, caller.identity);
-                    // One that began meanwhile does not keep the others.
-                    if (!job && job.error().code == ErrorCode::kCellPrecondition) continue;
-                    if (!job) return ToGrpcStatus(job.error());
-                    response->set_jobs(response->jobs() + 1);
-                  }
-                  return grpc::Status::OK;
+                  const auto act =
+                      request->release() ? storage::QueueAct::kRelease : storage::QueueAct::kHold;
+                  return ActOn(request->jobs(), storage::JobState::kQueued, act, caller, *response);
                 });
+}
+
+// Not on the lane of the store: with many jobs it takes a while, and others want a short answer.
+template <class Response>
+grpc::Status JobService::ActOn(const v1::JobChoice& jobs, std::optional<storage::JobState> state,
+                               storage::QueueAct act, const Caller& caller, Response& response) {
+  const auto names = book_.Choose(jobs, state);
+  if (!names) return ToGrpcStatus(names.error());
+  const auto changed = book_.ActOn(*names, act, caller.identity);
+  if (!changed) return ToGrpcStatus(changed.error());
+  for (const storage::JobRecord& job : *changed) {
+    // When its worker finishes at this moment there is nobody to tell, and nothing to do.
+    if (job.state == storage::JobState::kRunning)
+      (void)dispatcher_.Control(
+          job.id, {.kind = v1::WorkerControl::KIND_CANCEL, .caller = caller.identity});
+  }
+  response.set_jobs(static_cast<std::int64_t>(changed->size()));
+  return grpc::Status::OK;
 }
 
 grpc::ServerUnaryReactor* JobService::MoveJob(grpc::CallbackServerContext* context,

@@ -7,6 +7,7 @@
 #include "server/services/job_streams.h"
 #include "server/services/later.h"
 #include "server/services/submit_stream.h"
+#include "storage/store.h"
 
 namespace rmlcell::server {
 
@@ -101,6 +102,9 @@ class JobService final : public v1::JobService::CallbackService {
   RMLCELL_LATER("JobService", DecideInterrupted, v1::DecideInterruptedResponse)
 
  private:
+  template <class Response>
+  grpc::Status ActOn(const v1::JobChoice& jobs, std::optional<storage::JobState> state,
+                     storage::QueueAct act, const Caller& caller, Response& response);
   template <class Request, class Response>
   grpc::ServerUnaryReactor* Order(grpc::CallbackServerContext* context, std::string_view method,
                                   const Request& request, v1::WorkerControl::Kind kind,

@@ -115,7 +115,9 @@ class SubmitStream final
       finished_ = true;
       return Finish(end_);
     }
-    if (reading_ || under_way_ >= kSubmittedAtOnce || bytes_ >= kBytesAtOnce) return;
+    // Answers that nobody reads count, too.
+    const std::size_t unread = answers_.size() + static_cast<std::size_t>(under_way_);
+    if (reading_ || unread >= kSubmittedAtOnce || bytes_ >= kBytesAtOnce) return;
     reading_ = true;
     StartRead(&incoming_);
   }

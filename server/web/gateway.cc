@@ -72,7 +72,8 @@ Plan PlanResource(const Gateway& gateway, const HttpRequest& request, const Reso
 
 Plan PlanPage(const Gateway& gateway, const HttpRequest& request) {
   std::optional<HttpResponse> file = gateway.page.Find(request);
-  if (!file) return RefusePlan(404, ErrorCode::kCellNotFound, "nothing at " + request.path);
+  if (!file)
+    return RefusePlan(404, ErrorCode::kCellNotFound, "nothing at " + request.path.substr(0, 200));
   if (!IsRead(request)) {
     return RefusePlan(405, ErrorCode::kCellUnimplemented, request.method + " is not offered here",
                       "GET, HEAD");

@@ -20,6 +20,8 @@ using google::protobuf::Message;
 
 // Messages of more than 2 GiB cannot be parsed; the limits of the gateway are far below.
 constexpr std::size_t kMessageBytesMax = std::numeric_limits<int>::max();
+// What is told of JSON that is none: it names what the client sent, however long that is.
+constexpr std::size_t kShownMax = 400;
 
 std::unique_ptr<Message> NewMessage(const Descriptor& type) {
   const Message* prototype =
@@ -81,10 +83,10 @@ Result<std::string> JsonToBytes(const Descriptor& type, std::string_view json,
         google::protobuf::StringPiece(json.data(), json.size()), message.get());
     if (!status.ok()) {
       const auto text = status.message();
-      return Error{
-          ErrorCode::kCellInvalidArgument,
-          "the JSON is no " + type.full_name() + ": " + std::string(text.data(), text.size()),
-          {}};
+      return Error{ErrorCode::kCellInvalidArgument,
+                   "the JSON is no " + type.full_name() + ": " +
+                       std::string(text.data(), std::min<std::size_t>(text.size(), kShownMax)),
+                   {}};
     }
   }
   const FieldDescriptor* field = Int64Field(type, "after_sequence");

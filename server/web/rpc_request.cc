@@ -252,7 +252,7 @@ RpcRouting RouteRpc(const HttpRequest& request) {
   const MethodDescriptor* method = FindMethod(request.path);
   if (method == nullptr) {
     routing.refusal =
-        Unimplemented("no method " + request.path.substr(1) + " on the web port", 404);
+        Unimplemented("no method " + request.path.substr(1, 200) + " on the web port", 404);
     return routing;
   }
   route.method = method;

@@ -4,6 +4,7 @@
 
 #include "storage/jobs/queue_rules.h"
 #include "storage/sqlite/job_changes.h"
+#include "storage/sqlite/job_life.h"
 
 namespace rmlcell::storage::sqlite {
 namespace {
@@ -216,6 +217,57 @@ Result<JobRecord> MoveJob(WriteContext& context, std::int64_t id, std::int64_t b
   if (!place) return place.error();
   job.place = *place;
   return Written(context, std::move(row), events);
+}
+
+namespace {
+
+// Whether LetJobGo() would change it.
+Result<bool> WaitsForAPerson(WriteContext& context, const JobRecord& job) {
+  if (job.held) return true;
+  const Result<std::vector<std::int64_t>> after = context.tables.queue.After(job.id);
+  if (!after) return after.error();
+  for (const std::int64_t other : *after) {
+    const Result<std::optional<JobRow>> awaited = context.tables.jobs.Get(other);
+    if (!awaited) return awaited.error();
+    if (!*awaited || IsFinal((*awaited)->job.state)) return true;
+  }
+  return false;
+}
+
+Result<bool> Changes(WriteContext& context, const JobRecord& job, QueueAct act) {
+  const bool waits = job.state == JobState::kQueued;
+  switch (act) {
+    case QueueAct::kHold:
+      return waits && !job.held;
+    case QueueAct::kCancel:
+      return waits || (job.state == JobState::kRunning && !job.cancel_requested);
+    case QueueAct::kRelease:
+      break;
+  }
+  return waits ? WaitsForAPerson(context, job) : Result<bool>(false);
+}
+
+}  // namespace
+
+Result<std::vector<JobRecord>> ActOnJobs(WriteContext& context, std::span<const std::int64_t> jobs,
+                                         QueueAct act, const Store::EventOf& event) {
+  std::vector<JobRecord> changed;
+  for (const std::int64_t id : jobs) {
+    const Result<std::optional<JobRow>> row = context.tables.jobs.Get(id);
+    if (!row) return row.error();
+    if (!*row) continue;
+    const JobRecord& job = (*row)->job;
+    const Result<bool> changes = Changes(context, job, act);
+    if (!changes) return changes.error();
+    if (!*changes) continue;
+    const std::vector<NewEvent> events = {event(job)};
+    Result<JobRecord> done = act == QueueAct::kHold      ? HoldJobBack(context, id, events)
+                             : act == QueueAct::kRelease ? LetJobGo(context, id, events)
+                                                         : CancelJob(context, id, events);
+    if (!done) return done.error();
+    changed.push_back(*std::move(done));
+  }
+  return changed;
 }
 
 Result<std::int64_t> CountBefore(Tables& tables, std::int64_t id) {

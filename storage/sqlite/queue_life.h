@@ -28,6 +28,8 @@ Result<JobRecord> LetJobGo(WriteContext& context, std::int64_t id,
                            const std::vector<NewEvent>& events);
 Result<JobRecord> MoveJob(WriteContext& context, std::int64_t id, std::int64_t before,
                           std::optional<int> priority, const std::vector<NewEvent>& events);
+Result<std::vector<JobRecord>> ActOnJobs(WriteContext& context, std::span<const std::int64_t> jobs,
+                                         QueueAct act, const Store::EventOf& event);
 // As Store::CountBefore.
 Result<std::int64_t> CountBefore(Tables& tables, std::int64_t id);
 

@@ -95,6 +95,8 @@ class SqliteStore final : public Store {
 
   Result<JobRecord> HoldBack(std::int64_t job, const std::vector<NewEvent>& events) override;
   Result<JobRecord> LetGo(std::int64_t job, const std::vector<NewEvent>& events) override;
+  Result<std::vector<JobRecord>> ActOn(std::span<const std::int64_t> jobs, QueueAct act,
+                                       const EventOf& event) override;
   Result<JobRecord> Move(std::int64_t job, std::int64_t before, std::optional<int> priority,
                          const std::vector<NewEvent>& events) override;
 

@@ -260,6 +260,11 @@ Result<JobRecord> SqliteStore::HoldBack(std::int64_t job, const std::vector<NewE
       writer_.Do([&](WriteContext& context) { return HoldJobBack(context, job, events); }));
 }
 
+Result<std::vector<JobRecord>> SqliteStore::ActOn(std::span<const std::int64_t> jobs, QueueAct act,
+                                                  const EventOf& event) {
+  return writer_.Do([&](WriteContext& context) { return ActOnJobs(context, jobs, act, event); });
+}
+
 Result<JobRecord> SqliteStore::LetGo(std::int64_t job, const std::vector<NewEvent>& events) {
   return WithSpecification(
       writer_.Do([&](WriteContext& context) { return LetJobGo(context, job, events); }));

@@ -2,6 +2,7 @@
 """SubmitJobs: many jobs in one stream, each answered when it is durable (proto/rmlcell/v1/job.proto)."""
 import itertools
 import threading
+import time
 import unittest
 
 from cell import Cell, WithCell, eventually, grpc, inline_job, job_pb2
@@ -68,6 +69,24 @@ class Streams(WithCell):
         more.set()
         self.assertEqual(next(stream).number, 2)
         self.assertRaises(StopIteration, next, stream)
+
+    def test_a_client_that_reads_no_answers_is_read_no_further(self):
+        sent = []
+
+        def requests():
+            for n in range(20_000):
+                request = submission(n)
+                request.submission.job.simulation.parameters[1000 * "A"] = "1"  # a long answer: windows fill
+                sent.append(n)
+                yield request
+
+        stream = self.cell.jobs().SubmitJobs(requests())
+        seen = -1
+        while len(sent) > seen:  # until no more goes out
+            seen = len(sent)
+            time.sleep(1.0)
+        self.assertLess(seen, 20_000)
+        self.assertEqual(sum(1 for answer in stream if answer.refusal.code), 20_000)
 
     def test_one_that_is_broken_off_keeps_what_was_answered(self):
         stub = self.cell.jobs()

@@ -135,6 +135,11 @@ class ForwardingStore : public storage::Store {
                                       const std::vector<storage::NewEvent>& events) override {
     return store_.HoldBack(job, events);
   }
+  Result<std::vector<storage::JobRecord>> ActOn(std::span<const std::int64_t> jobs,
+                                                storage::QueueAct act,
+                                                const EventOf& event) override {
+    return store_.ActOn(jobs, act, event);
+  }
   Result<storage::JobRecord> LetGo(std::int64_t job,
                                    const std::vector<storage::NewEvent>& events) override {
     return store_.LetGo(job, events);

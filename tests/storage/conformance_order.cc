@@ -277,6 +277,30 @@ TEST_P(StoreConformance, JobsAreMovedToAndFroWithoutAnEnd) {
   EXPECT_THAT(Started(store()), ElementsAre(fourth, held, third, first, last));
 }
 
+// store.h ActOn: of those that it changes.
+TEST_P(StoreConformance, ManyAreChangedAtOnce) {
+  const auto first = Put(store(), {});
+  const auto follower = Put(store(), {.after = {first}});
+  const auto held = Put(store(), {.held = true});
+  const auto plain = Put(store(), {});
+  const std::vector<std::int64_t> all = {plain, follower, 999, held, first};
+  const auto act = [&](QueueAct what) {
+    std::vector<std::int64_t> changed;
+    const auto event = [](const JobRecord&) { return NewEvent{.kind = "queue"}; };
+    for (const JobRecord& job : Must(store().ActOn(all, what, event))) changed.push_back(job.id);
+    return changed;
+  };
+  EXPECT_THAT(act(QueueAct::kHold), ElementsAre(plain, follower, first));
+  EXPECT_THAT(act(QueueAct::kRelease), ElementsAre(plain, follower, held, first));
+  EXPECT_THAT(act(QueueAct::kRelease), IsEmpty());
+  EXPECT_EQ(WaitOf(store(), follower), "job " + std::to_string(first));
+  Must(store().RequestCancel(first, {}));
+  EXPECT_THAT(act(QueueAct::kRelease), ElementsAre(follower));  // a person decides
+  EXPECT_THAT(act(QueueAct::kCancel), ElementsAre(plain, follower, held));
+  EXPECT_THAT(act(QueueAct::kCancel), IsEmpty());
+  EXPECT_EQ(Must(store().JobEvents(plain, 0, 10)).size(), 3U);
+}
+
 TEST_P(StoreConformance, AMachineRunsOneRunAtATime) {
   const auto first = Put(store(), {.machine = "a", .kind = "RUN"});
   const auto second = Put(store(), {.machine = "a", .kind = "RUN", .priority = 1});

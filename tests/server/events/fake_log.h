@@ -177,6 +177,10 @@ class FakeLog final : public storage::Store {
                                       const std::vector<storage::NewEvent>&) override {
     return No();
   }
+  Result<std::vector<storage::JobRecord>> ActOn(std::span<const std::int64_t>, storage::QueueAct,
+                                                const EventOf&) override {
+    return No();
+  }
   Result<storage::JobRecord> LetGo(std::int64_t, const std::vector<storage::NewEvent>&) override {
     return No();
   }

@@ -264,6 +264,16 @@ TEST_F(JobLimits, OfThePlaceInTheQueue) {
   EXPECT_EQ(Asked([](v1::Job& job) { job.add_after_jobs("machines/mill-1"); }), kInvalid);
 }
 
+TEST_F(JobLimits, OfFileNames) {
+  const auto named = [&](std::size_t size) {
+    return Asked([&](v1::Job& job) {
+      job.mutable_inline_program()->set_file_name(std::string(size - 2, 'x') + ".S");
+    });
+  };
+  EXPECT_EQ(named(255), std::nullopt);
+  EXPECT_EQ(named(256), kInvalid);
+}
+
 TEST_F(JobLimits, OfLabels) {
   const auto labelled = [&](const std::vector<std::string>& labels) {
     return Asked([&](v1::Job& job) { *job.mutable_labels() = {labels.begin(), labels.end()}; });

@@ -166,11 +166,34 @@ TEST_F(JobQueue, ATrialLooksAtTheJobsThatAreAwaited) {
   };
   EXPECT_EQ(tried(first.name()), std::nullopt);
   EXPECT_EQ(tried("jobs/99"), ErrorCode::kCellNotFound);
-  EXPECT_FALSE(Must(book.IsOver(first.name())));
   Must(bed.store().RequestCancel(1, {}));
   EXPECT_EQ(tried(first.name()), ErrorCode::kCellPrecondition);
-  EXPECT_TRUE(Must(book.IsOver(first.name())));
-  EXPECT_TRUE(Must(book.IsOver("jobs/99")));
+}
+
+// Those that it changes are counted, and hear of it; more than go into one transaction.
+TEST_F(JobQueue, ManyAreHeldReleasedAndCancelled) {
+  std::vector<std::string> names;
+  for (int i = 0; i < 450; ++i) names.push_back(Submit().name());
+  bed.Lease("SIMULATE");  // the first one runs
+  const auto act = [&](storage::QueueAct what) {
+    return Must(book.ActOn(names, what, "anna")).size();
+  };
+  EXPECT_EQ(act(storage::QueueAct::kRelease), 0U);
+  EXPECT_EQ(act(storage::QueueAct::kHold), 449U);
+  EXPECT_EQ(act(storage::QueueAct::kHold), 0U);
+  EXPECT_TRUE(Must(book.Get(names.back())).held());
+  EXPECT_EQ(act(storage::QueueAct::kRelease), 449U);
+  Must(bed.store().RequestCancel(5, {}));
+  Must(bed.store().DeleteJob(5));
+  EXPECT_EQ(act(storage::QueueAct::kCancel), 449U);
+  EXPECT_EQ(act(storage::QueueAct::kCancel), 0U);
+  EXPECT_TRUE(Must(bed.store().GetJob(1)).cancel_requested);
+  const auto told = Must(bed.store().JobEvents(450, 0, 10));
+  ASSERT_EQ(told.size(), 4U);
+  EXPECT_EQ(told[1].caller, "anna");
+  EXPECT_TRUE(ToProto(told[1]).queue().held());
+  EXPECT_FALSE(ToProto(told[2]).queue().held());
+  EXPECT_TRUE(ToProto(told[3]).has_ended());
 }
 
 TEST_F(JobQueue, AChoiceThatIsNoneIsRefused) {
