@@ -27,22 +27,6 @@ constexpr bool kNeedsPower =
     std::is_same_v<Input, SetBreakpoints> || std::is_same_v<Input, SetSimulation> ||
     std::is_same_v<Input, ClearMessage>;
 
-std::string_view Name(Mode mode) {
-  switch (mode) {
-    case Mode::kRemote:
-      return "REMOTE";
-    case Mode::kCycle:
-      return "CYCLE";
-    case Mode::kSingle:
-      return "SINGLE";
-    case Mode::kRepeat:
-      return "REPEAT";
-    case Mode::kManual:
-      break;
-  }
-  return "MANUAL";
-}
-
 }  // namespace
 
 std::string_view Name(MachineState state) {

@@ -13,10 +13,8 @@ namespace {
 
 constexpr std::string_view kHeader = "rmlcell machine 1";
 constexpr std::size_t kAlarmsMax = 10'000;  // of one kind there is one
-constexpr std::array kModes = {std::pair{Mode::kRemote, "REMOTE"}, std::pair{Mode::kCycle, "CYCLE"},
-                               std::pair{Mode::kSingle, "SINGLE"},
-                               std::pair{Mode::kRepeat, "REPEAT"},
-                               std::pair{Mode::kManual, "MANUAL"}};
+constexpr std::array kModes = {Mode::kRemote, Mode::kCycle, Mode::kSingle, Mode::kRepeat,
+                               Mode::kManual};
 
 // Of what a person reads, in one line.
 std::string OneLine(std::string text) {
@@ -132,9 +130,9 @@ bool TakeLine(std::string_view line, MachineNote& note) {
     words.Take(note.emergency);
   } else if (key == "mode") {
     const auto mode =
-        std::ranges::find(kModes, words.Next(), &decltype(kModes)::value_type::second);
+        std::ranges::find(kModes, words.Next(), static_cast<std::string_view (*)(Mode)>(&Name));
     if (mode == kModes.end()) return false;
-    note.mode = mode->first;
+    note.mode = *mode;
   } else if (key == "override") {
     const auto percent = ParseDouble(words.Next());
     if (!percent || !(*percent > 0.0) || *percent > 1000.0) return false;
@@ -166,14 +164,29 @@ bool TakeLine(std::string_view line, MachineNote& note) {
 
 }  // namespace
 
+std::string_view Name(Mode mode) {
+  switch (mode) {
+    case Mode::kRemote:
+      return "REMOTE";
+    case Mode::kCycle:
+      return "CYCLE";
+    case Mode::kSingle:
+      return "SINGLE";
+    case Mode::kRepeat:
+      return "REPEAT";
+    case Mode::kManual:
+      break;
+  }
+  return "MANUAL";
+}
+
 std::string WriteMachineNote(const MachineNote& note) {
   Lines lines;
   lines.Add(kHeader);
   lines.Add("time", note.time.count());
   lines.Add("on", note.on ? 1 : 0);
   lines.Add("emergency", note.emergency ? 1 : 0);
-  lines.Add("mode",
-            std::ranges::find(kModes, note.mode, &decltype(kModes)::value_type::first)->second);
+  lines.Add("mode", Name(note.mode));
   lines.Add("override", note.override_percent);
   if (note.simulation) lines.Add("simulation", note.simulation->program, note.simulation->step);
   for (const Breakpoint& breakpoint : note.breakpoints) {

@@ -51,6 +51,8 @@ struct MachineNote {
   bool operator==(const MachineNote&) const = default;
 };
 
+std::string_view Name(Mode mode);  // "REMOTE", as lamps and notes say it
+
 // A key and its values a line, with a version in front; the bytes of the family behind all lines.
 std::string WriteMachineNote(const MachineNote& note);
 

@@ -353,14 +353,18 @@ Status Dispatcher::Control(std::int64_t job, const JobOrder& order) {
 
 Result<storage::JobRecord> Dispatcher::Cancel(std::int64_t job, std::string_view caller,
                                               std::string_view request_id) {
-  auto cancelled = store_.RequestCancel(job, {By(caller, EndedEvent(ToProto(CancelledOutcome())))});
-  if (cancelled && cancelled->state == storage::JobState::kRunning) {
-    // When the worker finishes at this moment there is nobody to tell, and nothing to do.
-    (void)Control(job, {.kind = v1::WorkerControl::KIND_CANCEL,
-                        .caller = std::string(caller),
-                        .request_id = std::string(request_id)});
-  }
+  auto cancelled = store_.RequestCancel(job, {By(caller, CancelledEvent())});
+  if (cancelled) TellCancel(*cancelled, caller, request_id);
   return cancelled;
+}
+
+void Dispatcher::TellCancel(const storage::JobRecord& job, std::string_view caller,
+                            std::string_view request_id) {
+  if (job.state != storage::JobState::kRunning) return;
+  // When the worker finishes at this moment there is nobody to tell, and nothing to do.
+  (void)Control(job.id, {.kind = v1::WorkerControl::KIND_CANCEL,
+                         .caller = std::string(caller),
+                         .request_id = std::string(request_id)});
 }
 
 void Dispatcher::Drain(std::chrono::milliseconds patience) {

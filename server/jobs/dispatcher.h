@@ -80,6 +80,9 @@ class Dispatcher {
   // Ends a job: at once when it waits, else through its worker.
   Result<storage::JobRecord> Cancel(std::int64_t job, std::string_view caller,
                                     std::string_view request_id = {});
+  // Tells the worker of a job that runs, here or at another server, that it is to be cancelled.
+  void TellCancel(const storage::JobRecord& job, std::string_view caller,
+                  std::string_view request_id = {});
 
   // Gives out no more work and asks for what is under way to be handed back. Returns when that is
   // done, or after `patience`. For good: leases are not looked after any more.

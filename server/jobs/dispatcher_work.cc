@@ -12,6 +12,7 @@
 #include "server/jobs/dispatcher_worker.h"
 #include "server/jobs/running_toolpath.h"
 #include "server/records/job_messages.h"
+#include "storage/jobs/job_rules.h"
 
 namespace rmlcell::server {
 namespace {
@@ -111,7 +112,7 @@ void Dispatcher::Assigned(const std::shared_ptr<Worker>& worker,
 
 void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job) {
   // A job whose cancel came while its first worker gave it back: there is nothing to begin.
-  if (job.job.cancel_requested) return EndWithoutWork(worker, CancelledOutcome());
+  if (job.job.cancel_requested) return EndWithoutWork(worker, storage::CancelledOutcome());
   spdlog::debug("{} attempt {} goes to worker {}", JobName(job.lease.job), job.lease.attempt,
                 worker->name);
   if (const Status sent = SendAssignment(*worker, job); !sent) {

@@ -107,7 +107,6 @@ storage::Done<T> Dispatcher::Then(const std::shared_ptr<Worker>& worker, Next ne
 }
 
 v1::WorkerLease ToProto(const storage::Lease& lease);
-storage::JobOutcome CancelledOutcome();
 // An order for the worker that holds the lease.
 v1::WorkResponse ControlMessage(const storage::Lease& lease, const JobOrder& order);
 

@@ -345,8 +345,7 @@ Result<std::vector<storage::JobRecord>> JobBook::ActOn(const std::vector<std::st
   std::vector<std::int64_t> jobs;
   for (const std::string& name : names) jobs.push_back(*ParseJobName(name));
   const auto event = [&](const storage::JobRecord& job) {
-    if (act == storage::QueueAct::kCancel)
-      return By(caller, EndedEvent(ToProto(storage::CancelledOutcome())));
+    if (act == storage::QueueAct::kCancel) return By(caller, CancelledEvent());
     return By(caller, QueueEvent(act == storage::QueueAct::kHold, job.priority));
   };
   std::vector<storage::JobRecord> changed;
@@ -437,6 +436,10 @@ Result<std::vector<v1::JobCount>> JobBook::Count(const storage::JobQuery& query)
 Result<storage::ArtifactRecord> JobBook::FindArtifact(std::int64_t job, std::string_view name) {
   Result<storage::ArtifactRecord> artifact = store_.GetArtifact(job, name);
   if (artifact || artifact.error().code != ErrorCode::kCellNotFound) return artifact;
+  return WhyNoArtifact(job, name);
+}
+
+Error JobBook::WhyNoArtifact(std::int64_t job, std::string_view name) {
   const Result<storage::JobRecord> record = store_.GetJob(job);
   if (!record) return record.error();
   if (!storage::IsFinal(record->state)) {
@@ -448,16 +451,16 @@ Result<storage::ArtifactRecord> JobBook::FindArtifact(std::int64_t job, std::str
 }
 
 Result<std::string> JobBook::ReadArtifact(std::int64_t job, std::string_view name) {
-  const Result<storage::ArtifactRecord> artifact = FindArtifact(job, name);
-  if (!artifact) return artifact.error();
-  return store_.ReadArtifact(job, name);
+  Result<std::string> bytes = store_.ReadArtifact(job, name);
+  if (bytes || bytes.error().code != ErrorCode::kCellNotFound) return bytes;
+  return WhyNoArtifact(job, name);
 }
 
 Result<std::unique_ptr<storage::BlobReader>> JobBook::OpenArtifact(std::int64_t job,
                                                                    std::string_view name) {
-  const Result<storage::ArtifactRecord> artifact = FindArtifact(job, name);
-  if (!artifact) return artifact.error();
-  return store_.OpenArtifact(job, name);
+  auto opened = store_.OpenArtifact(job, name);
+  if (opened || opened.error().code != ErrorCode::kCellNotFound) return opened;
+  return WhyNoArtifact(job, name);
 }
 
 Status JobBook::CheckLog(std::int64_t job, std::int64_t sequence, std::string_view log_id) {

@@ -72,6 +72,8 @@ class JobBook {
   Result<std::vector<v1::JobCount>> Count(const storage::JobQuery& query);
 
  private:
+  // Of a job that is not there, has not ended, or left none such.
+  Error WhyNoArtifact(std::int64_t job, std::string_view name);
   Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);
   // Whether a job may come behind those that it names. Errors: CellNotFound, CellPrecondition.
   Status CheckAwaited(const storage::NewJob& made);

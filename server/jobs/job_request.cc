@@ -19,7 +19,6 @@ constexpr std::size_t kRequestIdMax = 64;
 constexpr int kAwaitedJobsMax = 100;
 constexpr int kLabelsMax = 16;
 constexpr std::size_t kLabelMax = 63;
-constexpr std::size_t kFileNameMax = 255;
 constexpr int kBreakpointsMax = 1000;
 constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as possible
 
@@ -200,11 +199,13 @@ Status CheckBrought(const v1::Job& job, const std::string& file_name,
     if (const Status slot = CheckSlot(family, job.inline_slot(), "job.inline_slot"); !slot)
       return slot.error();
   }
-  if (file_name.size() > kFileNameMax)
-    return InvalidArgument("the file name of the program is longer than 255 characters");
+  if (const Status named = CheckFileName(file_name, "the file name of the program"); !named)
+    return named.error();
   for (const v1::SlotProgram& program : job.simulation().programs()) {
-    if (program.program().file_name().size() > kFileNameMax)
-      return InvalidArgument("job.simulation.programs: a file name is longer than 255 characters");
+    if (const Status named =
+            CheckFileName(program.program().file_name(), "job.simulation.programs: a file name");
+        !named)
+      return named.error();
   }
   return CheckFileFamily(file_name, family);
 }

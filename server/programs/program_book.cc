@@ -19,8 +19,6 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr std::size_t kFileNameMax = 255;
-
 std::string BaseName(const std::string& file_name) {
   const std::size_t slash = file_name.find_last_of("/\\");
   return slash == std::string::npos ? file_name : file_name.substr(slash + 1);
@@ -180,8 +178,7 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
   if (const Status fits = CheckSize(static_cast<std::int64_t>(put.bytes.size())); !fits)
     return fits.error();
   if (const Status good = CheckTitle(put.title, "title"); !good) return good.error();
-  if (put.file_name.size() > kFileNameMax)
-    return InvalidArgument("file_name is longer than 255 characters");
+  if (const Status named = CheckFileName(put.file_name, "file_name"); !named) return named.error();
   if (!v1::ProgramForm_IsValid(put.form)) return InvalidArgument("form is none that there is");
   if (put.form == v1::PROGRAM_FORM_LISTING)
     return InvalidArgument("a listing is made of a program and cannot be stored");

@@ -13,4 +13,10 @@ Status CheckFileFamily(const std::string& file_name, const machine::MachineFamil
                          std::string(family.info().title));
 }
 
+Status CheckFileName(std::string_view file_name, std::string_view field) {
+  constexpr std::size_t kLongest = 255;
+  if (file_name.size() <= kLongest) return {};
+  return InvalidArgument(std::string(field) + " is longer than 255 characters");
+}
+
 }  // namespace rmlcell::server

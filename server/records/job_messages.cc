@@ -3,6 +3,7 @@
 #include "engine/core/units.h"
 #include "proto/bridge/findings.h"
 #include "server/base/names.h"
+#include "storage/jobs/job_rules.h"
 
 namespace rmlcell::server {
 namespace {
@@ -259,9 +260,7 @@ storage::JobOutcome StoppedOutcome() {
   return {.state = storage::JobState::kFailed, .code = ErrorCode::kCellHostStopped, .detail = {}};
 }
 
-storage::JobOutcome CancelledOutcome() {
-  return {.state = storage::JobState::kCancelled, .code = ErrorCode::kCellCancelled, .detail = {}};
-}
+storage::NewEvent CancelledEvent() { return EndedEvent(ToProto(storage::CancelledOutcome())); }
 
 storage::LossPolicy LossOf(storage::JobOutcome outcome, const v1::SourcePlace& place,
                            const std::string& why) {
@@ -275,7 +274,7 @@ storage::LossPolicy LossOf(storage::JobOutcome outcome, const v1::SourcePlace& p
           .requeued = {ToRecord(lost), StateEvent(storage::JobState::kQueued)},
           .ended = {ToRecord(lost), EndedEvent(ToProto(outcome))},
           .interrupted = {ToRecord(lost), EndedEvent(ToProto(interrupted))},
-          .cancelled = {ToRecord(lost), EndedEvent(ToProto(CancelledOutcome()))}};
+          .cancelled = {ToRecord(lost), CancelledEvent()}};
 }
 
 }  // namespace rmlcell::server

@@ -58,7 +58,8 @@ v1::Outcome ToProto(const storage::JobOutcome& outcome);
 storage::JobOutcome WorkerDiedOutcome();
 // The server stopped in order while a machine was moved (CELL-E9432).
 storage::JobOutcome StoppedOutcome();
-storage::JobOutcome CancelledOutcome();
+// The last event of a job that was cancelled.
+storage::NewEvent CancelledEvent();
 
 // What becomes of a job whose worker is lost, and what its watchers are told; `place` is where it
 // was.

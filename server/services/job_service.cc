@@ -349,12 +349,7 @@ grpc::Status JobService::ActOn(const v1::JobChoice& jobs, std::optional<storage:
   if (!names) return ToGrpcStatus(names.error());
   const auto changed = book_.ActOn(*names, act, caller.identity);
   if (!changed) return ToGrpcStatus(changed.error());
-  for (const storage::JobRecord& job : *changed) {
-    // When its worker finishes at this moment there is nobody to tell, and nothing to do.
-    if (job.state == storage::JobState::kRunning)
-      (void)dispatcher_.Control(
-          job.id, {.kind = v1::WorkerControl::KIND_CANCEL, .caller = caller.identity});
-  }
+  for (const storage::JobRecord& job : *changed) dispatcher_.TellCancel(job, caller.identity);
   response.set_jobs(static_cast<std::int64_t>(changed->size()));
   return grpc::Status::OK;
 }

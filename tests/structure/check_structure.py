@@ -68,7 +68,7 @@ MAY_INCLUDE = {
     "server/events": ["engine/core", "server/base", "storage"],
     # What programs, projects and jobs share.
     "server/records": ["engine/core", "engine/machine", "engine/families", TOOLPATH, "proto", "proto/bridge", "server/base",
-                       "storage"],
+                       "storage", "storage/jobs"],
     "server/jobs": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base",
                     "server/events", "server/records", "storage", "storage/jobs"],
     # How machines stand.

@@ -27,28 +27,13 @@ std::string DefaultText(const machine::ShownStep& shown) {
          "I=" + Padded(name, kNameWidth);
 }
 
-std::string_view LampOf(machine::Mode mode) {
-  switch (mode) {
-    case machine::Mode::kManual:
-      return "MANUAL";
-    case machine::Mode::kRepeat:
-      return "REPEAT";
-    case machine::Mode::kCycle:
-      return "CYCLE";
-    case machine::Mode::kSingle:
-      return "SINGLE";
-    case machine::Mode::kRemote:
-      break;
-  }
-  return "REMOTE";
-}
-
 }  // namespace
 
 machine::Panel ShowHandbox(const machine::MachineStatus& status) {
   machine::Panel panel{.display = std::string(kDisplayWidth, ' ')};
   if (status.state == machine::MachineState::kOff) return panel;
-  panel.lamps = {LampOf(status.mode), "ROB"};  // OPT-4.21: the reference of jog keys as it comes
+  panel.lamps = {machine::Name(status.mode),
+                 "ROB"};  // OPT-4.21: the reference of jog keys as it comes
   panel.display = DefaultText(status.shown);
   // The control knows its own numbers only.
   if (status.message && Lookup(*status.message).family == ErrorFamily::kOptimo) {

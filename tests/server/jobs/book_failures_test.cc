@@ -72,7 +72,7 @@ TEST_F(BookFailures, OfALook) {
   Expect(
       "finding one of no job", 2, [&] { return CodeOf(book.FindArtifact(2, "report")); },
       ErrorCode::kCellNotFound);
-  Expect("reading an artifact", 2, [&] { return CodeOf(book.ReadArtifact(1, kMainAttachment)); });
+  Expect("reading an artifact", 1, [&] { return CodeOf(book.ReadArtifact(1, kMainAttachment)); });
   Expect("the newest", 3, [&] { return CodeOf(book.Newest({})); });
 }
 
