@@ -64,6 +64,7 @@ Reason ReasonOf(const VerdictRule& rule, const Figure& figure, std::span<const F
           .verdict = rule.verdict,
           .said = Filled(rule, figure, figures),
           .amount = figure.value,
+          .limit = rule.limit,
           .unit = figure.unit,
           .first = figure.first};
 }

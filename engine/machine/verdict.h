@@ -44,7 +44,8 @@ struct Reason {
   Verdict verdict = Verdict::kDoubtful;
   Detail said{};  // "cuts 12.500 mm while the spindle stands"
   double amount = 0.0;
-  std::string unit{};  // of the amount; empty for counts
+  double limit = 0.0;  // up to which nothing is said
+  std::string unit{};  // of both; empty for counts
   Place first{};       // step 0: no place
 
   bool operator==(const Reason&) const = default;

@@ -51,6 +51,7 @@ void AddJudgement(const machine::Judgement& judgement, Message& message) {
     SetArguments(reason.said, made);
     made.set_advice(std::string(Lookup(reason.code).advice));
     made.set_amount(reason.amount);
+    made.set_limit(reason.limit);
     made.set_unit(reason.unit);
     if (reason.first.step > 0 || reason.first.line > 0)
       *made.mutable_first() = bridge::ToProto(reason.first);

@@ -1,5 +1,6 @@
 #include "proto/bridge/milling.h"
 
+#include <cmath>
 #include <utility>
 
 #include "engine/core/number_text.h"
@@ -208,6 +209,30 @@ double TargetToleranceOf(const v1::MillTarget& target) {
 
 double StlToleranceOf(const v1::Milling& milling) {
   return milling.has_stl_tolerance_mm() ? milling.stl_tolerance_mm() : simulation::kStlTolerance_mm;
+}
+
+v1::HeightGrid ToProto(const simulation::HeightGridHead& head, int level) {
+  const simulation::HeightField::Size size = simulation::SizeAtLevel(head.size, level);
+  v1::HeightGrid grid;
+  grid.set_level(level);
+  grid.set_columns(static_cast<int>(size.columns));
+  grid.set_rows(static_cast<int>(size.rows));
+  grid.set_left_mm(head.left);
+  grid.set_front_mm(head.front);
+  grid.set_cell_mm(std::ldexp(head.cell, level));
+  grid.set_bottom_mm(head.bottom);
+  grid.set_top_mm(head.top);
+  return grid;
+}
+
+v1::HeightTile ToProto(simulation::HeightTile tile) {
+  v1::HeightTile message;
+  message.set_column(static_cast<int>(tile.column));
+  message.set_row(static_cast<int>(tile.row));
+  message.set_columns(static_cast<int>(tile.columns));
+  message.set_rows(static_cast<int>(tile.rows));
+  message.set_heights(std::move(tile.heights));
+  return message;
 }
 
 }  // namespace rmlcell::bridge

@@ -2,9 +2,12 @@
 
 #include <string>
 
+#include "engine/simulation/material/height_tiles.h"
 #include "engine/simulation/material/milling_recorder.h"
 
 namespace rmlcell::v1 {
+class HeightGrid;
+class HeightTile;
 class MillTarget;
 class Milling;
 }  // namespace rmlcell::v1
@@ -38,5 +41,9 @@ Status SetBlockAndTool(const std::string& stock, const std::string& tool, v1::Mi
 
 // How far the body of the job may be off, mm.
 double StlToleranceOf(const v1::Milling& milling);
+
+// Heights of a block at a level.
+v1::HeightGrid ToProto(const simulation::HeightGridHead& head, int level);
+v1::HeightTile ToProto(simulation::HeightTile tile);
 
 }  // namespace rmlcell::bridge

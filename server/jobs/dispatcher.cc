@@ -9,6 +9,7 @@
 #include "server/base/version.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher_worker.h"
+#include "server/jobs/running_heights.h"
 #include "server/jobs/running_toolpath.h"
 #include "server/records/job_messages.h"
 
@@ -316,17 +317,29 @@ bool Dispatcher::OrderHolder(std::int64_t job, const JobOrder& order) {
   return false;
 }
 
-std::shared_ptr<RunningToolpath> Dispatcher::FollowToolpath(std::int64_t job) {
+template <class Running>
+std::shared_ptr<Running> Dispatcher::Follow(std::int64_t job,
+                                            std::shared_ptr<Running> Worker::*followed,
+                                            v1::WorkerControl::Kind order) {
   const std::lock_guard lock(mutex_);
   for (const auto& [id, worker] : workers_) {
     if (worker->job != job) continue;
-    if (worker->toolpath == nullptr) {
-      worker->toolpath = std::make_shared<RunningToolpath>();
-      OrderHolder(job, {.kind = v1::WorkerControl::KIND_FOLLOW_TOOLPATH});
+    std::shared_ptr<Running>& running = *worker.*followed;
+    if (running == nullptr) {
+      running = std::make_shared<Running>();
+      OrderHolder(job, {.kind = order});
     }
-    return worker->toolpath;
+    return running;
   }
   return nullptr;
+}
+
+std::shared_ptr<RunningToolpath> Dispatcher::FollowToolpath(std::int64_t job) {
+  return Follow(job, &Worker::toolpath, v1::WorkerControl::KIND_FOLLOW_TOOLPATH);
+}
+
+std::shared_ptr<RunningHeights> Dispatcher::FollowHeights(std::int64_t job) {
+  return Follow(job, &Worker::heights, v1::WorkerControl::KIND_FOLLOW_HEIGHTS);
 }
 
 Status Dispatcher::Control(std::int64_t job, const JobOrder& order) {

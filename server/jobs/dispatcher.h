@@ -21,6 +21,7 @@ namespace rmlcell::server {
 
 class EventFeed;
 class Executor;
+class RunningHeights;
 class RunningToolpath;
 struct Config;
 
@@ -76,6 +77,8 @@ class Dispatcher {
 
   // The toolpath of a job that a worker of this server has, as it is made; null: none has it.
   std::shared_ptr<RunningToolpath> FollowToolpath(std::int64_t job);
+  // Likewise what is left of its block.
+  std::shared_ptr<RunningHeights> FollowHeights(std::int64_t job);
 
   // Ends a job: at once when it waits, else through its worker.
   Result<storage::JobRecord> Cancel(std::int64_t job, std::string_view caller,
@@ -129,6 +132,10 @@ class Dispatcher {
   void StoreEvents(const std::shared_ptr<Worker>& worker);
   void EventsStored(const std::shared_ptr<Worker>& worker, std::size_t count,
                     const Result<std::int64_t>& written);
+  template <class Running>
+  std::shared_ptr<Running> Follow(std::int64_t job, std::shared_ptr<Running> Worker::*followed,
+                                  v1::WorkerControl::Kind order);
+  void TakeHeights(Worker& worker, const v1::WorkerHeights& heights);
   void TakeToolpath(Worker& worker, const v1::WorkerToolpath& toolpath);
   void Collect(Worker& worker, v1::WorkerArtifact& artifact);
   void Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish& finish);

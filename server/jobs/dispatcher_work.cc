@@ -10,6 +10,7 @@
 #include "server/events/event_feed.h"
 #include "server/jobs/assignment.h"
 #include "server/jobs/dispatcher_worker.h"
+#include "server/jobs/running_heights.h"
 #include "server/jobs/running_toolpath.h"
 #include "server/records/job_messages.h"
 #include "storage/jobs/job_rules.h"
@@ -295,6 +296,9 @@ void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& 
     case v1::WorkRequest::kToolpath:
       if (works(message.toolpath().lease())) TakeToolpath(*worker, message.toolpath());
       break;
+    case v1::WorkRequest::kHeights:
+      if (works(message.heights().lease())) TakeHeights(*worker, message.heights());
+      break;
     case v1::WorkRequest::kFinish:
       if (works(message.finish().lease())) Finish(worker, *message.mutable_finish());
       break;
@@ -393,6 +397,15 @@ void Dispatcher::TakeToolpath(Worker& worker, const v1::WorkerToolpath& toolpath
   if (followed) followed->Add(toolpath.frames(), toolpath.open_block());
 }
 
+void Dispatcher::TakeHeights(Worker& worker, const v1::WorkerHeights& heights) {
+  std::shared_ptr<RunningHeights> followed;
+  {
+    const std::lock_guard lock(mutex_);
+    followed = worker.heights;
+  }
+  if (followed) followed->Add(heights);
+}
+
 void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
   Assignment& assignment = *worker.assignment;
   assignment.collected_bytes += static_cast<std::int64_t>(artifact.chunk().size());
@@ -435,12 +448,15 @@ void Dispatcher::EndAssignment(Worker& worker, bool stored) {
   worker.assignment.reset();
   feed_.Forget(JobName(lease.job));
   TakeNoOrders(worker, lease.job);  // before the worker hears of it
-  std::shared_ptr<RunningToolpath> followed;
+  std::shared_ptr<RunningToolpath> toolpath;
+  std::shared_ptr<RunningHeights> heights;
   {
     const std::lock_guard lock(mutex_);
-    followed.swap(worker.toolpath);
+    toolpath.swap(worker.toolpath);
+    heights.swap(worker.heights);
   }
-  if (followed) followed->End(stored);
+  if (toolpath) toolpath->End(stored);
+  if (heights) heights->End(stored);
   v1::WorkResponse message;
   *message.mutable_release()->mutable_lease() = ToProto(lease);
   message.mutable_release()->set_stored(stored);

@@ -71,6 +71,7 @@ struct Dispatcher::Worker {
   std::int64_t job = 0;                // 0: none; for orders
   std::optional<storage::Lease> sent;  // of the same job, from when the assignment has gone out
   std::shared_ptr<RunningToolpath> toolpath;  // of its job, where it is followed
+  std::shared_ptr<RunningHeights> heights;    // likewise
   std::vector<EarlyOrder> early_orders;  // for a job that has not gone out; while it looks, any job
 };
 

@@ -9,23 +9,14 @@ constexpr std::size_t kPartMax = std::size_t{256} << 10;
 
 }  // namespace
 
-RunningToolpath::Follower::~Follower() {
-  const std::lock_guard lock(followed_->mutex_);
-  followed_->followers_.erase(at_);
-}
-
-std::unique_ptr<RunningToolpath::Follower> RunningToolpath::Follow(std::function<void()> wake) {
-  const std::lock_guard lock(mutex_);
-  return std::unique_ptr<Follower>(
-      new Follower(shared_from_this(), followers_.insert(followers_.end(), std::move(wake))));
-}
-
 RunningToolpath::Part RunningToolpath::Look(std::int64_t offset, std::uint64_t open_seen) const {
   const std::lock_guard lock(mutex_);
   Result<std::string> frames = frames_.Part(offset, kPartMax);
   if (!frames) return {.open_seen = open_seen, .ended = true};
-  Part part{
-      .frames = *std::move(frames), .open_seen = open_version_, .ended = ended_, .stored = stored_};
+  Part part{.frames = *std::move(frames),
+            .open_seen = open_version_,
+            .ended = ended(),
+            .stored = stored()};
   if (part.frames.empty() && open_seen != open_version_) part.open_block = open_block_;
   return part;
 }
@@ -35,14 +26,7 @@ void RunningToolpath::Add(std::string_view frames, std::string open_block) {
   frames_.append(frames);
   open_block_ = std::move(open_block);
   ++open_version_;
-  for (const auto& wake : followers_) wake();
-}
-
-void RunningToolpath::End(bool stored) {
-  const std::lock_guard lock(mutex_);
-  ended_ = true;
-  stored_ = stored;
-  for (const auto& wake : followers_) wake();
+  WakeAll();
 }
 
 }  // namespace rmlcell::server

@@ -149,6 +149,7 @@ JobStreamNeeds JobService::Streams() const {
           .book = book_,
           .feed = feed_,
           .running_toolpath = [this](std::int64_t job) { return dispatcher_.FollowToolpath(job); },
+          .running_heights = [this](std::int64_t job) { return dispatcher_.FollowHeights(job); },
           .instance_id = instance_id_};
 }
 
@@ -266,6 +267,13 @@ grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobTo
   return OpenStream<v1::StreamJobToolpathResponse>(
       needs_, *context, *request, "JobService/StreamJobToolpath",
       [&](const Caller&) { return MakeToolpathStream(Streams(), *request); });
+}
+
+grpc::ServerWriteReactor<v1::StreamJobHeightsResponse>* JobService::StreamJobHeights(
+    grpc::CallbackServerContext* context, const v1::StreamJobHeightsRequest* request) {
+  return OpenStream<v1::StreamJobHeightsResponse>(
+      needs_, *context, *request, "JobService/StreamJobHeights",
+      [&](const Caller&) { return MakeHeightsStream(Streams(), *request); });
 }
 
 grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext* context,

@@ -66,6 +66,8 @@ class JobService final : public v1::JobService::CallbackService {
                                          v1::RunReport* response) override;
   grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* StreamJobToolpath(
       grpc::CallbackServerContext* context, const v1::StreamJobToolpathRequest* request) override;
+  grpc::ServerWriteReactor<v1::StreamJobHeightsResponse>* StreamJobHeights(
+      grpc::CallbackServerContext* context, const v1::StreamJobHeightsRequest* request) override;
   grpc::ServerUnaryReactor* GetJobPicture(grpc::CallbackServerContext* context,
                                           const v1::GetJobPictureRequest* request,
                                           v1::GetJobPictureResponse* response) override;

@@ -12,6 +12,7 @@ namespace rmlcell::server {
 
 class EventFeed;
 class JobBook;
+class RunningHeights;
 class RunningToolpath;
 
 // What a stream of jobs works with.
@@ -22,6 +23,7 @@ struct JobStreamNeeds {
   EventFeed& feed;
   // Of a job that runs here; null: it does not.
   std::function<std::shared_ptr<RunningToolpath>(std::int64_t job)> running_toolpath;
+  std::function<std::shared_ptr<RunningHeights>(std::int64_t job)> running_heights;
   std::string instance_id;
 };
 
@@ -29,6 +31,8 @@ std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamNe
                                                                const v1::WatchJobRequest& request);
 std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
     const JobStreamNeeds& needs, const v1::StreamJobToolpathRequest& request);
+std::shared_ptr<PullStream<v1::StreamJobHeightsResponse>> MakeHeightsStream(
+    const JobStreamNeeds& needs, const v1::StreamJobHeightsRequest& request);
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(
     const JobStreamNeeds& needs, const std::string& job_name);
 std::shared_ptr<PullStream<v1::StreamJobArtifactResponse>> MakeArtifactStream(

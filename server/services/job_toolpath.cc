@@ -3,18 +3,12 @@
 #include "engine/core/units.h"
 #include "engine/simulation/toolpath/toolpath_recorder.h"
 #include "proto/bridge/framing.h"
-#include "server/base/names.h"
-#include "server/events/event_feed.h"
-#include "server/jobs/job_book.h"
 #include "server/jobs/running_toolpath.h"
 #include "server/records/toolpath_levels.h"
-#include "server/services/job_streams.h"
+#include "server/services/followed_job.h"
 
 namespace rmlcell::server {
 namespace {
-
-// Between two looks whether a job that waits has begun; its events wake as well.
-constexpr std::chrono::milliseconds kBegunLookedForAfter{500};
 
 // As the recorder of the job takes it.
 double ToleranceOf(const v1::Job& job) {
@@ -29,9 +23,14 @@ double ToleranceOf(const v1::Job& job) {
 class ToolpathStream final : public PullStream<v1::StreamJobToolpathResponse> {
  public:
   ToolpathStream(const JobStreamNeeds& needs, const v1::StreamJobToolpathRequest& request)
-      : PullStream(needs.executor, needs.open), needs_(needs), request_(request) {}
+      : PullStream(needs.executor, needs.open),
+        needs_(needs),
+        request_(request),
+        followed_(needs.feed, needs.book, needs.running_toolpath) {}
 
  private:
+  using Job = FollowedJob<RunningToolpath>;
+
   Next Make(v1::StreamJobToolpathResponse& message, grpc::Status& status) override {
     const Result<Next> next = MakeNext(message);
     if (next) return *next;
@@ -50,7 +49,7 @@ class ToolpathStream final : public PullStream<v1::StreamJobToolpathResponse> {
       if (const Status opened = OpenStored(); !opened) return opened.error();
       stored_ = true;
       // Who follows has a header, and gets the one that tells of all of it at the end.
-      if (!followed_) return SendHeader(message);
+      if (followed_.running() == nullptr) return SendHeader(message);
     }
     for (;;) {
       if (const auto frame = bridge::TakeFrame(rest_)) {
@@ -61,7 +60,7 @@ class ToolpathStream final : public PullStream<v1::StreamJobToolpathResponse> {
       if (!more) return more.error();
       if (!*more) break;
     }
-    if (!followed_ || header_sent_) return Next::kEnd;
+    if (followed_.running() == nullptr || header_sent_) return Next::kEnd;
     return SendHeader(message);
   }
 
@@ -73,7 +72,7 @@ class ToolpathStream final : public PullStream<v1::StreamJobToolpathResponse> {
 
   // Nothing: the job is over, and what is left of its toolpath is in the store.
   Result<std::optional<Next>> FollowOn(v1::StreamJobToolpathResponse& message) {
-    if (running_ == nullptr) return BeginToFollow(message);
+    if (followed_.running() == nullptr) return BeginToFollow(message);
     RunningToolpath::Part part;
     for (;;) {
       const std::size_t before = rest_.size();
@@ -82,7 +81,7 @@ class ToolpathStream final : public PullStream<v1::StreamJobToolpathResponse> {
         taken_ += static_cast<std::int64_t>(before - rest_.size());
         return {Next::kMessage};
       }
-      part = running_->Look(taken_ + static_cast<std::int64_t>(before), open_seen_);
+      part = followed_.running()->Look(taken_ + static_cast<std::int64_t>(before), open_seen_);
       if (part.frames.empty()) break;
       Append(part.frames);
     }
@@ -99,28 +98,21 @@ class ToolpathStream final : public PullStream<v1::StreamJobToolpathResponse> {
       rest_ = {};
       return {std::nullopt};
     }
-    return Error{ErrorCode::kCellLeaseLost, JobName(job_) + " begins anew: follow it again", {}};
+    return followed_.BeginsAnew();
   }
 
   Result<std::optional<Next>> BeginToFollow(v1::StreamJobToolpathResponse& message) {
-    const Result<v1::Job> job = needs_.book.Get(request_.name());
-    if (!job) return job.error();
-    job_ = *ParseJobName(request_.name());
-    // One that ends now is over at the next look at it.
-    if (job->has_end_time()) return {std::nullopt};
-    if (job->kind() != v1::JOB_KIND_SIMULATE)
-      return Error{ErrorCode::kCellNotFound, JobName(job_) + " makes no toolpath", {}};
-    if (!begun_) begun_ = needs_.feed.Subscribe(JobName(job_), [this] { Wake(); });
-    running_ = needs_.running_toolpath(job_);
-    if (running_ == nullptr) {
-      WakeAt(std::chrono::steady_clock::now() + kBegunLookedForAfter);
+    const Result<Job::State> state = followed_.Look(
+        request_.name(), "toolpath",
+        [](const v1::Job& job) { return job.kind() == v1::JOB_KIND_SIMULATE; }, [this] { Wake(); });
+    if (!state) return state.error();
+    if (*state == Job::State::kOver) return {std::nullopt};
+    if (*state == Job::State::kWaits) {
+      WakeAt(std::chrono::steady_clock::now() + Job::kBegunLookedForAfter);
       return {Next::kNothing};
     }
-    begun_.reset();
-    follower_ = running_->Follow([this] { Wake(); });
-    followed_ = true;
     v1::ToolpathHeader& header = *message.mutable_header();
-    SetLevel(ToleranceOf(*job), 0, 0, header);
+    SetLevel(ToleranceOf(followed_.job()), 0, 0, header);
     return {Next::kMessage};
   }
 
@@ -179,10 +171,7 @@ class ToolpathStream final : public PullStream<v1::StreamJobToolpathResponse> {
     return Next::kMessage;
   }
 
-  void Closed() override {
-    begun_.reset();
-    follower_.reset();
-  }
+  void Closed() override { followed_.Leave(); }
 
   const JobStreamNeeds needs_;
   const v1::StreamJobToolpathRequest request_;
@@ -194,13 +183,9 @@ class ToolpathStream final : public PullStream<v1::StreamJobToolpathResponse> {
   bool header_sent_ = false;
 
   // Before the job is over.
-  std::int64_t job_ = 0;
-  bool followed_ = false;
-  std::shared_ptr<RunningToolpath> running_;
+  Job followed_;
   std::int64_t taken_ = 0;  // bytes of frames that have gone out
   std::uint64_t open_seen_ = 0;
-  std::unique_ptr<EventFeed::Subscription> begun_;
-  std::unique_ptr<RunningToolpath::Follower> follower_;
 };
 
 }  // namespace

@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positions a second
 constexpr std::chrono::milliseconds kToolpathInterval{200};
+constexpr std::chrono::milliseconds kHeightsInterval{200};
+constexpr std::size_t kTilesAtOnce = 32;            // of at most 8 KiB
 constexpr std::chrono::milliseconds kHeldWait{20};  // between two looks for an order
 constexpr SimTime kPacedSliceMin = std::chrono::milliseconds(1);
 
@@ -96,6 +98,7 @@ Stop JobDrive::Run(const simulation::BegunRun& begun) {
       options_.flush_events();
       SendPosition(*begun.run);
       SendToolpath(*begun.recorder, last_position);
+      SendHeights(*begun.recorder, last_position);
     }
     if (simulation.finished()) break;
     if (begun.recorder->cut_off() || !output_.Fits()) {
@@ -107,6 +110,7 @@ Stop JobDrive::Run(const simulation::BegunRun& begun) {
   // What is made of it yet may take a while; the way is all there.
   toolpath_sent_.reset();
   SendToolpath(*begun.recorder, Clock::now());
+  while (SendHeights(*begun.recorder, std::nullopt)) continue;
   return Stop::kNone;
 }
 
@@ -135,6 +139,17 @@ void JobDrive::SendToolpath(const simulation::Recorder& recorder, Clock::time_po
   if (toolpath_sent_ && now - *toolpath_sent_ < kToolpathInterval) return;
   toolpath_sent_.reset();  // at once, where there is more
   if (output_.SendNewToolpath(recorder.OpenToolpathBlock())) toolpath_sent_ = now;
+}
+
+bool JobDrive::SendHeights(simulation::Recorder& recorder, std::optional<Clock::time_point> now) {
+  simulation::MillingRecorder* milling = recorder.milling();
+  if (milling == nullptr || !lease_.heights_followed()) return false;
+  if (now && heights_sent_ && *now - *heights_sent_ < kHeightsInterval) return false;
+  std::vector<simulation::HeightTile> tiles = milling->TakeChanges(kTilesAtOnce);
+  if (tiles.empty() && heights_sent_) return false;
+  heights_sent_ = now.value_or(Clock::time_point());
+  const bool more = tiles.size() == kTilesAtOnce;
+  return output_.SendHeights(milling->material(), std::move(tiles)) && more;
 }
 
 void JobDrive::CarryOut(const v1::WorkerControl& order, simulation::Simulation& simulation) {

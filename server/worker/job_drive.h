@@ -37,6 +37,8 @@ class JobDrive {
 
   void CarryOutOrders(simulation::Simulation& simulation);
   void SendToolpath(const simulation::Recorder& recorder, Clock::time_point now);
+  // Without a time: at once. True: there may be more.
+  bool SendHeights(simulation::Recorder& recorder, std::optional<Clock::time_point> now);
   void CarryOut(const v1::WorkerControl& order, simulation::Simulation& simulation);
   void PlanTime(Clock::time_point begin);
   void SendPosition(const machine::Run& run);
@@ -46,6 +48,7 @@ class JobDrive {
   Options options_;
   Clock::duration planned_for_{0};
   std::optional<Clock::time_point> toolpath_sent_;
+  std::optional<Clock::time_point> heights_sent_;
   bool held_ = false;  // by a client, who may let it go on
 };
 

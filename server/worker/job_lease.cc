@@ -37,6 +37,8 @@ void JobLease::Take(const v1::WorkResponse& message) {
   } else if (message.has_control() && IsMine(message.control().lease())) {
     if (message.control().kind() == v1::WorkerControl::KIND_FOLLOW_TOOLPATH) {
       toolpath_followed_ = true;
+    } else if (message.control().kind() == v1::WorkerControl::KIND_FOLLOW_HEIGHTS) {
+      heights_followed_ = true;
     } else {
       orders_.push_back(message.control());
     }

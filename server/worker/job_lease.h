@@ -47,6 +47,9 @@ class JobLease {
   // Somebody follows the toolpath: it is to be sent as it is made.
   bool toolpath_followed() const { return toolpath_followed_; }
 
+  // Somebody looks at what is left of the block: what changes is to be sent.
+  bool heights_followed() const { return heights_followed_; }
+
   bool lost() const { return released_ || line_.gone(); }
   bool stop_asked() const { return stop_asked_; }  // by the server: the process is to end
   bool hand_back_asked() const { return stopping_ || stop_asked_; }
@@ -72,6 +75,7 @@ class JobLease {
   std::int64_t events_stored_ = 0;
   std::vector<v1::WorkerControl> orders_;  // not carried out yet
   bool toolpath_followed_ = false;
+  bool heights_followed_ = false;
   bool released_ = false;
   bool stop_asked_ = false;
 };

@@ -1,6 +1,9 @@
 #include "server/worker/job_output.h"
 
+#include <utility>
+
 #include "proto/bridge/framing.h"
+#include "proto/bridge/milling.h"
 
 namespace rmlcell::server {
 namespace {
@@ -38,6 +41,20 @@ bool JobOutput::SendNewToolpath(std::string open_block) {
     return true;
   }
   return false;
+}
+
+bool JobOutput::SendHeights(const simulation::HeightField& field,
+                            std::vector<simulation::HeightTile> tiles) {
+  v1::WorkRequest message;
+  v1::WorkerHeights& heights = *message.mutable_heights();
+  *heights.mutable_lease() = lease_;
+  if (!std::exchange(grid_sent_, true)) {
+    const simulation::HeightGridHead head = simulation::HeadOf(field);
+    *heights.mutable_grid() = bridge::ToProto(head, simulation::LevelForScreen(head.size));
+  }
+  for (simulation::HeightTile& tile : tiles)
+    *heights.add_tiles() = bridge::ToProto(std::move(tile));
+  return line_.Send(message);
 }
 
 bool JobOutput::Fits(std::size_t more) const {

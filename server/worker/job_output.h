@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "engine/simulation/material/height_tiles.h"
 #include "proto/bridge/spooled_bytes.h"
 #include "rmlcell/v1/worker.pb.h"
 #include "server/worker/server_line.h"
@@ -28,6 +30,10 @@ class JobOutput {
   // there is more, as is told next time.
   bool SendNewToolpath(std::string open_block);
 
+  // For who looks at what is left of the block: the first time the grid, then tiles of it. False:
+  // it cannot be sent.
+  bool SendHeights(const simulation::HeightField& field, std::vector<simulation::HeightTile> tiles);
+
   // Whether all that the job has put out stays in its budget, `more` included.
   bool Fits(std::size_t more = 0) const;
 
@@ -48,6 +54,7 @@ class JobOutput {
   std::size_t event_bytes_ = 0;
   std::int64_t followed_bytes_ = 0;  // of the toolpath, that went to who follows it
   std::string followed_block_;       // the open one that went last
+  bool grid_sent_ = false;
 };
 
 }  // namespace rmlcell::server

@@ -321,6 +321,34 @@ class Jobs(WithServer):
                 self.fetched(job, name, **{"If-None-Match": etag})
             self.assertEqual(caught.exception.code, 304)
 
+    # Who looks on has at the end what is stored, and saw it before.
+    def test_the_heights_are_followed_while_the_job_runs(self):
+        stub = self.cell.jobs()
+        wanted = inline_job("mill-1", "groove.rml", GROOVE)
+        wanted.simulation.pace = 5.0
+        milling = wanted.simulation.milling
+        milling.stock.size_x_mm, milling.stock.size_y_mm, milling.stock.size_z_mm = 60, 30, 5
+        milling.tool.shape, milling.tool.diameter_mm = 1, 3
+        milling.cell_mm, milling.height_grid = 0.2, True
+        name = submit(stub, wanted).name
+
+        def heights(**request):
+            parts = list(stub.StreamJobHeights(job_pb2.StreamJobHeightsRequest(name=name, **request), timeout=60))
+            self.assertEqual({p.WhichOneof("part") for p in parts[1:]}, {"tiles"})
+            tiles = [tile for part in parts[1:] for tile in part.tiles.tiles]
+            return parts[0].grid, tiles, {(t.row, t.column): t.heights for t in tiles}
+        grid, told, followed = heights(follow=True)
+        self.assertEqual((grid.columns, grid.rows, grid.level, grid.cell_mm), (300, 150, 0, 0.2))
+        self.assertGreater(len(told), len(followed))  # some came again as they changed
+        again, _, stored = heights()
+        self.assertEqual(again, grid)
+        self.assertEqual(len(stored), 5 * 3)
+        self.assertEqual({place: row for place, row in stored.items() if row.strip(b"\xff")}, followed)
+        # The cell in the middle of the groove: 1 mm of 5 mm are gone.
+        numbers = struct.unpack("<4096H", stored[64, 128])
+        self.assertAlmostEqual(numbers[(75 - 64) * 64 + 150 - 128], 65535 * 4 / 5, delta=1)
+        self.assertEqual(len(heights(level=2)[1]), 2)  # 75 by 38 squares
+
     # 20 mm x 3 mm x 1 mm and two half discs of 1.5 mm.
     def test_the_report_has_the_figures(self):
         job = self.submitted(*BLOCK)

@@ -69,7 +69,7 @@ MAY_INCLUDE = {
     # What programs, projects and jobs share.
     "server/records": ["engine/core", "engine/machine", "engine/families", TOOLPATH, "proto", "proto/bridge", "server/base",
                        "storage", "storage/jobs"],
-    "server/jobs": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base",
+    "server/jobs": ["engine/core", "engine/machine", "engine/families", MATERIAL, "proto", "proto/bridge", "server/base",
                     "server/events", "server/records", "storage", "storage/jobs"],
     # How machines stand.
     "server/machines": ["server/base", "server/events", "server/records", "storage"],
@@ -79,7 +79,7 @@ MAY_INCLUDE = {
     "server/results": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base", "server/records", "server/jobs", "server/programs",
                        "storage"],
     "server/web": ["engine/core", "proto", "proto/bridge"],
-    "server/services": ["engine/core", "engine/machine", "engine/families", TOOLPATH, "proto", "proto/bridge",
+    "server/services": ["engine/core", "engine/machine", "engine/families", TOOLPATH, MATERIAL, "proto", "proto/bridge",
                         "server/base", "server/auth", "server/events", "server/records", "server/jobs",
                         "server/programs", "server/projects", "server/results", "server/web", "storage"],
     # The engine worker: a process of its own, without the store.
@@ -125,7 +125,7 @@ PUBLIC = {
     REPORT: ["report.h", "report_recorder.h", "finding_list.h", "facts.h", "trace.h", "samples.h"],
     TOOLPATH: ["toolpath_recorder.h", "toolpath_level.h"],
     PICTURE: ["picture.h", "picture_difference.h", "plot.h", "time_envelope.h"],
-    MATERIAL: ["height_grid.h", "height_map.h", "milling_recorder.h", "milling_text.h", "relief.h", "standard_cell.h", "stl.h", "target.h", "target_files.h"],
+    MATERIAL: ["height_grid.h", "height_map.h", "height_tiles.h", "milling_recorder.h", "milling_text.h", "relief.h", "standard_cell.h", "stl.h", "target.h", "target_files.h"],
     VERDICT: ["verdict.h"],
     RUN: ["simulate.h", "input_description.h", "motion_check.h", "rehearsal.h", "joint_check.h", "milled_target.h", "timetable.h", "trial_run.h"],
     "storage": ["content.h", "records.h", "store.h"],

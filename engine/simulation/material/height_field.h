@@ -36,6 +36,8 @@ class HeightField {
   struct Size {
     std::size_t columns = 0;
     std::size_t rows = 0;
+
+    bool operator==(const Size&) const = default;
   };
   static Size SizeOf(const Stock& stock);  // precondition: CheckStock is well
 

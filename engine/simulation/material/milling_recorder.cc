@@ -94,6 +94,7 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
     figures_.shank_place = done.place;
   }
   const double taken = material_.Cut(tool_, from, to);
+  if (changes_ && taken > 0.0) NoteChange(from, to);
   // A plunge, or a ramp of more than 45 degrees, is no pass; at travel speed it is a gouge.
   const double across = LengthOf(PlanOf(to - from));
   const bool is_pass = done.programmed_mm_s > 0.0 && across >= std::abs(to.z() - from.z());
@@ -108,6 +109,17 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
   } else if (to.z() < from.z()) {
     NotePlunge(done.programmed_mm_s, taken, done.place);
   }
+}
+
+void MillingRecorder::NoteChange(const motion::MachinePoint& from, const motion::MachinePoint& to) {
+  const double radius = tool_.radius_mm;
+  changes_->Note(std::min(from.x(), to.x()) - radius, std::max(from.x(), to.x()) + radius,
+                 std::min(from.y(), to.y()) - radius, std::max(from.y(), to.y()) + radius);
+}
+
+std::vector<HeightTile> MillingRecorder::TakeChanges(std::size_t most) {
+  if (!changes_) changes_.emplace(material_);
+  return changes_->Take(material_, most);
 }
 
 // What an edge takes off at one turn; 0: nobody told how fast the spindle turns.

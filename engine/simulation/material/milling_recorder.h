@@ -6,6 +6,7 @@
 #include "engine/machine/shape.h"
 #include "engine/simulation/material/chip_load.h"
 #include "engine/simulation/material/height_field.h"
+#include "engine/simulation/material/height_tiles.h"
 #include "engine/simulation/material/target.h"
 #include "engine/simulation/report/report.h"
 
@@ -40,9 +41,13 @@ class MillingRecorder final : public machine::RunObserver {
 
   MillingFigures Figures() const;
   const HeightField& material() const { return material_; }
+  // For who looks on while it mills: at most `most` tiles that have changed since they were taken
+  // last. From the first call on it is noted where something is taken off.
+  std::vector<HeightTile> TakeChanges(std::size_t most);
   const std::optional<Target>& target() const { return target_; }
 
  private:
+  void NoteChange(const motion::MachinePoint& from, const motion::MachinePoint& to);
   void NoteBelow(const motion::MachinePoint& from, const motion::MachinePoint& to,
                  const machine::Place& place);
   void NoteReach(const motion::MachinePoint& from, const motion::MachinePoint& to,
@@ -56,6 +61,7 @@ class MillingRecorder final : public machine::RunObserver {
   motion::MachinePoint origin_;  // of the block's frame, machine frame
   MillTool tool_;
   HeightField material_;
+  std::optional<HeightChanges> changes_;
   std::optional<Target> target_;
   std::optional<ChipRange> chips_;
   double fast_z_mm_s_ = 0.0;  // a way down this fast is no feed

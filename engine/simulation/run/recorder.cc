@@ -160,6 +160,8 @@ const MillingRecorder* Recorder::milling() const {
   return state_->milling ? &*state_->milling : nullptr;
 }
 
+MillingRecorder* Recorder::milling() { return state_->milling ? &*state_->milling : nullptr; }
+
 std::string Recorder::Svg(const RunReport& report, const PictureOptions& options) const {
   return state_->picture ? state_->picture->Svg(report, options) : std::string();
 }

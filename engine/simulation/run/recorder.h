@@ -69,6 +69,7 @@ class Recorder final : public machine::RunObserver {
 
   // Null when material is not modelled.
   const MillingRecorder* milling() const;
+  MillingRecorder* milling();
 
   // Empty when no picture was asked for.
   std::string Svg(const RunReport& report, const PictureOptions& options) const;

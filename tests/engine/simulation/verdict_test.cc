@@ -216,6 +216,7 @@ TEST(Verdict, OfWhatIsNoRml1) {
   ASSERT_FALSE(none.reasons.empty());
   EXPECT_EQ(none.reasons[0].said, "10.1 % of the bytes belong to no command");
   EXPECT_EQ(none.reasons[0].unit, "%");
+  EXPECT_EQ(none.reasons[0].limit, 10.0);
 }
 
 // Down 1 mm and along 1 mm with the spindle off.

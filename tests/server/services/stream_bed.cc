@@ -91,11 +91,15 @@ std::shared_ptr<RunningToolpath> StreamBed::Run(std::int64_t job) {
   return running_[job] = std::make_shared<RunningToolpath>();
 }
 
-std::shared_ptr<RunningToolpath> StreamBed::Running(std::int64_t job) {
-  ++toolpaths_looked_for;
+std::shared_ptr<RunningHeights> StreamBed::RunMill(std::int64_t job) {
   const std::lock_guard lock(running_mutex_);
-  const auto found = running_.find(job);
-  return found == running_.end() ? nullptr : found->second;
+  return mills_[job] = std::make_shared<RunningHeights>();
+}
+
+OpenedStream<v1::StreamJobHeightsResponse> StreamBed::Heights(
+    const v1::StreamJobHeightsRequest& request) {
+  return OpenedStream<v1::StreamJobHeightsResponse>(
+      [&](grpc::ClientContext* context) { return stub_->StreamJobHeights(context, request); });
 }
 
 OpenedStream<v1::StreamJobToolpathResponse> StreamBed::Toolpath(

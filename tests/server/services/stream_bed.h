@@ -15,6 +15,7 @@
 #include "server/base/executor.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/job_book.h"
+#include "server/jobs/running_heights.h"
 #include "server/jobs/running_toolpath.h"
 #include "server/machines/machine_statuses.h"
 #include "server/programs/program_book.h"
@@ -89,7 +90,12 @@ class StreamBed {
                   .open = open,
                   .book = book_,
                   .feed = feed,
-                  .running_toolpath = [this](std::int64_t job) { return Running(job); },
+                  .running_toolpath =
+                      [this](std::int64_t job) {
+                        ++toolpaths_looked_for;
+                        return Running(running_, job);
+                      },
+                  .running_heights = [this](std::int64_t job) { return Running(mills_, job); },
                   .instance_id = kInstance}),
         cell_({.executor = executor_,
                .open = open,
@@ -138,8 +144,10 @@ class StreamBed {
   OpenedStream<v1::StreamJobToolpathResponse> Toolpath(const std::string& name, int level,
                                                        bool with_levels = false);
   OpenedStream<v1::StreamJobToolpathResponse> Toolpath(const v1::StreamJobToolpathRequest& request);
+  OpenedStream<v1::StreamJobHeightsResponse> Heights(const v1::StreamJobHeightsRequest& request);
   // A job that runs here has a toolpath that can be followed.
   std::shared_ptr<RunningToolpath> Run(std::int64_t job);
+  std::shared_ptr<RunningHeights> RunMill(std::int64_t job);
   std::atomic<int> toolpaths_looked_for = 0;
   // Of those who watch the cell.
   Gate gate{"secret"};
@@ -192,6 +200,10 @@ class StreamBed {
         grpc::CallbackServerContext*, const v1::StreamJobToolpathRequest* request) override {
       return MakeToolpathStream(needs_, *request)->Begin();
     }
+    grpc::ServerWriteReactor<v1::StreamJobHeightsResponse>* StreamJobHeights(
+        grpc::CallbackServerContext*, const v1::StreamJobHeightsRequest* request) override {
+      return MakeHeightsStream(needs_, *request)->Begin();
+    }
     grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* StreamJobTrace(
         grpc::CallbackServerContext*, const v1::StreamJobTraceRequest* request) override {
       return MakeTraceStream(needs_, request->name())->Begin();
@@ -205,10 +217,18 @@ class StreamBed {
     JobStreamNeeds needs_;
   };
 
-  std::shared_ptr<RunningToolpath> Running(std::int64_t job);
+  template <class Followed>
+  using ByJob = std::map<std::int64_t, std::shared_ptr<Followed>>;
+  template <class Followed>
+  std::shared_ptr<Followed> Running(const ByJob<Followed>& running, std::int64_t job) {
+    const std::lock_guard lock(running_mutex_);
+    const auto found = running.find(job);
+    return found == running.end() ? nullptr : found->second;
+  }
 
   std::mutex running_mutex_;
-  std::map<std::int64_t, std::shared_ptr<RunningToolpath>> running_;  // guarded by running_mutex_
+  ByJob<RunningToolpath> running_;  // guarded by running_mutex_
+  ByJob<RunningHeights> mills_;     // likewise
   JobBook book_{bed.store(), config};
   JobFactsBook facts_{bed.store()};
   Executor executor_{2};

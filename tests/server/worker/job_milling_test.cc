@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <new>
+#include <utility>
 
 #include "engine/simulation/material/height_map.h"
+#include "engine/simulation/material/height_tiles.h"
 #include "server/worker/material_files.h"
 #include "tests/server/worker/runner_bed.h"
 
@@ -65,6 +68,49 @@ TEST_F(JobMilling, LeavesWhatIsAskedFor) {
       EXPECT_EQ(message.artifact().media_type(), "model/stl");
     }
   }
+}
+
+// Who looks on sees the tiles of the block as they change, and at the end what is left of it, as
+// the product has it.
+TEST_F(JobMilling, TheHeightsAreSentAsTheBlockIsMilled) {
+  bool ordered = false;
+  int grids = 0;
+  int messages = 0;
+  std::map<std::pair<int, int>, v1::HeightTile> seen;
+  server.heard = [&](const v1::WorkRequest& message) {
+    if (IsPosition(message) && !std::exchange(ordered, true))
+      server.Send(Order(v1::WorkerControl::KIND_FOLLOW_HEIGHTS));
+    if (!message.has_heights()) return;
+    ++messages;
+    if (message.heights().has_grid()) {
+      ++grids;
+      EXPECT_EQ(message.heights().grid().columns(), 300);
+      EXPECT_EQ(message.heights().grid().rows(), 150);
+      EXPECT_EQ(message.heights().grid().level(), 0);
+    }
+    for (const v1::HeightTile& tile : message.heights().tiles())
+      seen[{tile.row(), tile.column()}] = tile;
+  };
+  v1::WorkerAssignment assignment = MillFor(kGroove, true);
+  assignment.mutable_job()->mutable_simulation()->set_pace(10.0);  // 0.5 s
+  Work(assignment);
+  EXPECT_EQ(grids, 1);
+  EXPECT_GT(messages, 1);
+  const std::string stored = Artifacts()["height.grid"];
+  const auto head = simulation::ReadHeightGridHead(stored);
+  ASSERT_TRUE(head);
+  simulation::HeightGridTiles grid(*head, 0, std::nullopt);
+  int told = 0;
+  for (const simulation::HeightTile& tile :
+       grid.Add(std::string_view(stored).substr(simulation::kHeightGridHeadBytes))) {
+    const auto found = seen.find({static_cast<int>(tile.row), static_cast<int>(tile.column)});
+    const bool touched = tile.heights.find_first_not_of('\xFF') != std::string::npos;
+    ASSERT_EQ(found != seen.end(), touched) << tile.column << ' ' << tile.row;
+    if (!touched) continue;
+    EXPECT_EQ(found->second.heights(), tile.heights);
+    ++told;
+  }
+  EXPECT_GT(told, 1);
 }
 
 // 20 mm x 3 mm x 1 mm and two half discs of 1.5 mm, 67.07 mm3 together.
