@@ -49,11 +49,9 @@ grpc::ServerUnaryReactor* CellService::GetCell(grpc::CallbackServerContext* cont
   });
 }
 
-grpc::ServerWriteReactor<v1::WatchCellResponse>* CellService::WatchCell(
-    grpc::CallbackServerContext* context, const v1::WatchCellRequest* request) {
-  return OpenStream<v1::WatchCellResponse>(
-      needs_, *context, *request, "CellService/WatchCell",
-      [&](const Caller& caller) { return MakeCellWatch(watch_needs_, *request, caller.identity); });
+grpc::ServerWriteReactor<grpc::ByteBuffer>* CellService::WatchCell(
+    grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
+  return OpenCellWatch(needs_, watch_needs_, *context, *request);
 }
 
 grpc::ServerUnaryReactor* CellService::UpdateWatch(grpc::CallbackServerContext* context,

@@ -12,7 +12,9 @@ namespace rmlcell::server {
 class Dispatcher;
 struct Config;
 
-class CellService final : public v1::CellService::CallbackService {
+// WatchCell gives bytes: messages of events are made once for all who watch.
+class CellService final
+    : public v1::CellService::WithRawCallbackMethod_WatchCell<v1::CellService::CallbackService> {
  public:
   // `watch.records.store` is the store of the cell.
   CellService(CallNeeds needs, CellWatchNeeds watch, const Dispatcher& dispatcher,
@@ -21,8 +23,8 @@ class CellService final : public v1::CellService::CallbackService {
   grpc::ServerUnaryReactor* GetCell(grpc::CallbackServerContext* context,
                                     const v1::GetCellRequest* request, v1::Cell* response) override;
 
-  grpc::ServerWriteReactor<v1::WatchCellResponse>* WatchCell(
-      grpc::CallbackServerContext* context, const v1::WatchCellRequest* request) override;
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchCell(grpc::CallbackServerContext* context,
+                                                        const grpc::ByteBuffer* request) override;
   grpc::ServerUnaryReactor* UpdateWatch(grpc::CallbackServerContext* context,
                                         const v1::UpdateWatchRequest* request,
                                         google::protobuf::Empty* response) override;

@@ -1,6 +1,7 @@
 #include "server/services/cell_watch.h"
 
 #include <algorithm>
+#include <atomic>
 #include <deque>
 #include <map>
 #include <optional>
@@ -9,12 +10,10 @@
 
 #include "server/events/event_feed.h"
 #include "server/records/job_messages.h"
+#include "server/services/open_stream.h"
 
 namespace rmlcell::server {
 namespace {
-
-// Events read from the log at once; all that a watcher ever holds.
-constexpr int kEventsReadAhead = 64;
 
 // A request that names nothing watches everything.
 v1::WatchCellRequest Completed(v1::WatchCellRequest request) {
@@ -41,7 +40,12 @@ struct Told {
   Instant next{};          // not before
 };
 
-class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRegistry::Watch {
+grpc::ByteBuffer BytesOf(const v1::WatchCellResponse& message) {
+  const grpc::Slice slice(message.SerializeAsString());
+  return grpc::ByteBuffer(&slice, 1);
+}
+
+class CellWatch final : public PullStream<grpc::ByteBuffer>, public WatchRegistry::Watch {
  public:
   CellWatch(const CellWatchNeeds& needs, const v1::WatchCellRequest& request, std::string caller)
       : PullStream(needs.executor, needs.open),
@@ -61,42 +65,64 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
       if (ids.size() > kSubscriptionsMax) return InvalidArgument("more than 100 subscriptions");
       ids_ = std::move(ids);
       changes_.push_back(std::move(change));
+      has_changes_ = true;
     }
     Wake();
     return {};
   }
 
  private:
-  Next Make(v1::WatchCellResponse& message, grpc::Status& status) override {
+  Next Make(grpc::ByteBuffer& bytes, grpc::Status& status) override {
+    v1::WatchCellResponse message;
     message.set_instance_id(needs_.instance_id);
     message.set_log_id(needs_.records.store.LogId());
-    const Result<bool> made = MakeAny(message);
+    const Result<bool> made = MakeAny(message, bytes);
     if (!made) {
       status = ToGrpcStatus(made.error());
       return Next::kEnd;
     }
     if (!*made) return Next::kNothing;
-    message.set_sequence(cursor_);
     if (message.has_bookmark()) last_bookmark_ = needs_.clock();
     WakeAt(last_bookmark_ + needs_.bookmark_interval);
+    if (bytes.Length() == 0) {  // else it is a piece of the log
+      message.set_sequence(cursor_);
+      bytes = BytesOf(message);
+    }
     return Next::kMessage;
   }
 
-  // False: there is nothing to tell now.
-  Result<bool> MakeAny(v1::WatchCellResponse& message) {
+  // Events that another watch had made, one after the other.
+  std::optional<Next> MakeAtOnce(grpc::ByteBuffer& bytes) override {
+    if (log_ == nullptr || snapshots_due_ || !latest_.empty() || has_changes_ ||
+        needs_.clock() >= last_bookmark_ + needs_.bookmark_interval)
+      return std::nullopt;
+    while (const auto piece = log_->MadeAfter(cursor_, request_.batched())) {
+      cursor_ = piece->end;
+      if (!piece->message) continue;
+      bytes = grpc::ByteBuffer(&*piece->message, 1);
+      return Next::kMessage;
+    }
+    if (cursor_ < needs_.feed.position() || needs_.feed.version() > version_looked_at_)
+      return std::nullopt;
+    return Next::kNothing;
+  }
+
+  // False: there is nothing to tell now. A piece of the log comes as bytes.
+  Result<bool> MakeAny(v1::WatchCellResponse& message, grpc::ByteBuffer& bytes) {
     if (!begun_) return Begin(message);
     TakeChanges();
     for (Told& told : told_) {
       if (!std::exchange(told.snapshot_due, false)) continue;
       return MakeSnapshot(told, message);
     }
+    snapshots_due_ = false;
     // Also between events without a pause: it says what time it is at the server.
     const Instant bookmark_due = last_bookmark_ + needs_.bookmark_interval;
     if (needs_.clock() >= bookmark_due) {
       SetBookmark(message);
       return true;
     }
-    const Result<bool> event = MakeEvent(message);
+    const Result<bool> event = MakeEvent(message, bytes);
     if (!event || *event) return event;
     if (MakeLatest(message)) return true;
     WakeAt(bookmark_due);
@@ -115,6 +141,7 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
     subscription_ = needs_.feed.Subscribe(std::string(EventFeed::kEverything), [this] { Wake(); });
     for (CellSubscription& subscription : *subscriptions)
       told_.push_back({.subscription = std::move(subscription)});
+    ShareLog();
     watch_id_ =
         needs_.registry.Add(std::static_pointer_cast<CellWatch>(this->shared_from_this()), caller_);
     message.set_watch_id(watch_id_);
@@ -141,8 +168,8 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
     const Result<std::int64_t> last = needs_.records.store.LastPosition();
     if (!last) return last.error();
     cursor_ = *last;
-    read_ahead_.clear();
     for (Told& told : told_) told.snapshot_due = true;
+    snapshots_due_ = true;
     return {};
   }
 
@@ -175,7 +202,9 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
     {
       const std::lock_guard lock(changes_mutex_);
       changes.swap(changes_);
+      has_changes_ = false;
     }
+    if (changes.empty()) return;
     for (WatchChange& change : changes) {
       const auto replaced = [&](const Told& told) {
         return std::ranges::find(change.remove, told.subscription.id()) != change.remove.end() ||
@@ -186,6 +215,13 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
       for (CellSubscription& added : change.add)
         told_.push_back({.subscription = std::move(added)});
     }
+    ShareLog();
+  }
+
+  void ShareLog() {
+    std::vector<const CellSubscription*> subscriptions;
+    for (const Told& told : told_) subscriptions.push_back(&told.subscription);
+    log_ = needs_.logs.Of(subscriptions);
   }
 
   Result<bool> MakeSnapshot(Told& told, v1::WatchCellResponse& message) {
@@ -198,28 +234,19 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
     return true;
   }
 
-  Result<bool> MakeEvent(v1::WatchCellResponse& message) {
+  Result<bool> MakeEvent(v1::WatchCellResponse& message, grpc::ByteBuffer& bytes) {
     for (;;) {
-      if (read_ahead_.empty()) {
-        auto events = needs_.feed.EventsAfter(cursor_, kEventsReadAhead);
-        if (!events && events.error().code == ErrorCode::kCellEventsGone) {
-          if (const Status now = BeginNow(); !now) return now.error();
-          message.mutable_gap()->set_reason(v1::Gap::REASON_TOO_SLOW);
-          return true;
-        }
-        if (!events) return events.error();
-        read_ahead_.assign(std::move_iterator(events->begin()), std::move_iterator(events->end()));
-        if (read_ahead_.empty()) return false;
+      const auto piece = log_->After(cursor_, request_.batched());
+      if (!piece && piece.error().code == ErrorCode::kCellEventsGone) {
+        if (const Status now = BeginNow(); !now) return now.error();
+        message.mutable_gap()->set_reason(v1::Gap::REASON_TOO_SLOW);
+        return true;
       }
-      const storage::EventRecord event = std::move(read_ahead_.front());
-      read_ahead_.pop_front();
-      cursor_ = event.position;
-      for (const Told& told : told_) {
-        if (told.subscription.WantsEvent(event, needs_.facts))
-          message.add_subscriptions(told.subscription.id());
-      }
-      if (message.subscriptions().empty()) continue;
-      *message.mutable_event() = EventOf(needs_.records, event);
+      if (!piece) return piece.error();
+      if (!*piece) return false;
+      cursor_ = (*piece)->end;
+      if (!(*piece)->message) continue;
+      bytes = grpc::ByteBuffer(&*(*piece)->message, 1);
       return true;
     }
   }
@@ -241,6 +268,7 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
   // What stands for now, for those subscriptions whose time has come; the others look later.
   void ReadLatest() {
     const Instant now = needs_.clock();
+    version_looked_at_ = needs_.feed.version();
     std::map<std::uint64_t, std::pair<Latest, std::vector<std::string>>> wanted;
     for (Told& told : told_) {
       const std::vector<Latest> newer = needs_.feed.AllLatestAfter(told.seen);
@@ -268,11 +296,13 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
         ToProto(std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now()));
   }
 
-  bool MakeGoodbye(v1::WatchCellResponse& message) override {
+  bool MakeGoodbye(grpc::ByteBuffer& bytes) override {
+    v1::WatchCellResponse message;
     message.set_instance_id(needs_.instance_id);
     message.set_log_id(needs_.records.store.LogId());
     message.set_sequence(begun_ ? cursor_ : request_.after_sequence());
     *message.mutable_reconnect() = ServerStopped();
+    bytes = BytesOf(message);
     return true;
   }
 
@@ -289,20 +319,37 @@ class CellWatch final : public PullStream<v1::WatchCellResponse>, public WatchRe
   bool begun_ = false;
   Instant last_bookmark_{};
   std::vector<Told> told_;
-  std::deque<storage::EventRecord> read_ahead_;
+  std::shared_ptr<SharedLog> log_;                                  // of told_
+  bool snapshots_due_ = true;                                       // of some subscription, perhaps
+  std::uint64_t version_looked_at_ = 0;                             // of what stands for now
   std::deque<std::pair<Latest, std::vector<std::string>>> latest_;  // one per resource at most
   std::unique_ptr<EventFeed::Subscription> subscription_;
 
   std::mutex changes_mutex_;
+  std::atomic<bool> has_changes_ = false;
   std::vector<WatchChange> changes_;  // guarded by changes_mutex_; not taken yet
   std::set<std::string> ids_;         // guarded by changes_mutex_; of all subscriptions, those too
 };
 
 }  // namespace
 
-std::shared_ptr<PullStream<v1::WatchCellResponse>> MakeCellWatch(
-    const CellWatchNeeds& needs, const v1::WatchCellRequest& request, std::string caller) {
+std::shared_ptr<PullStream<grpc::ByteBuffer>> MakeCellWatch(const CellWatchNeeds& needs,
+                                                            const v1::WatchCellRequest& request,
+                                                            std::string caller) {
   return std::make_shared<CellWatch>(needs, request, std::move(caller));
+}
+
+grpc::ServerWriteReactor<grpc::ByteBuffer>* OpenCellWatch(
+    const CallNeeds& call, const CellWatchNeeds& needs, const grpc::CallbackServerContext& context,
+    const grpc::ByteBuffer& request) {
+  v1::WatchCellRequest wanted;
+  grpc::ByteBuffer bytes(request);
+  const grpc::Status read =
+      grpc::SerializationTraits<v1::WatchCellRequest>::Deserialize(&bytes, &wanted);
+  if (!read.ok()) return new EndedStream<grpc::ServerWriteReactor<grpc::ByteBuffer>>(read);
+  return OpenStream<grpc::ByteBuffer>(
+      call, context, wanted, "CellService/WatchCell",
+      [&](const Caller& caller) { return MakeCellWatch(needs, wanted, caller.identity); });
 }
 
 }  // namespace rmlcell::server

@@ -144,7 +144,7 @@ Status JobService::OrderWaiting(const std::string& name, v1::WorkerControl::Kind
 }
 
 JobStreamNeeds JobService::Streams() const {
-  return {.executor = needs_.executor,
+  return {.executor = streams_,
           .open = open_,
           .book = book_,
           .feed = feed_,

@@ -19,9 +19,10 @@ class JobResults;
 // Converts, calls, converts: the rules live in server/jobs.
 class JobService final : public v1::JobService::CallbackService {
  public:
-  JobService(CallNeeds needs, JobBook& book, JobResults& results, Dispatcher& dispatcher,
-             EventFeed& feed, OpenStreams& open, std::string instance_id)
+  JobService(CallNeeds needs, Executor& streams, JobBook& book, JobResults& results,
+             Dispatcher& dispatcher, EventFeed& feed, OpenStreams& open, std::string instance_id)
       : needs_(needs),
+        streams_(streams),
         book_(book),
         results_(results),
         dispatcher_(dispatcher),
@@ -117,6 +118,7 @@ class JobService final : public v1::JobService::CallbackService {
   JobStreamNeeds Streams() const;
 
   CallNeeds needs_;
+  Executor& streams_;
   JobBook& book_;
   JobResults& results_;
   Dispatcher& dispatcher_;

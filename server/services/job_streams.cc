@@ -42,16 +42,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
       return MakeSnapshot(message, status);
     }
     if (read_ahead_.empty() && !ReadEvents(status)) return Next::kEnd;
-    if (!read_ahead_.empty()) {
-      storage::EventRecord event = std::move(read_ahead_.front());
-      read_ahead_.pop_front();
-      cursor_ = event.sequence;
-      message.set_sequence(event.sequence);
-      message.set_log_id(log_id_);
-      *message.mutable_event() = ToProto(event);
-      ended_ = message.event().has_ended();
-      return Next::kMessage;
-    }
+    if (!read_ahead_.empty()) return MakeEvent(message);
     if (ended_ || Gone(status)) return Next::kEnd;
     if (!request_.events_only()) {
       if (const auto progress = needs_.feed.LatestAfter(JobName(job_), progress_seen_)) {
@@ -61,6 +52,23 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
       }
     }
     return Next::kNothing;
+  }
+
+  std::optional<Next> MakeAtOnce(v1::WatchJobResponse& message) override {
+    if (read_ahead_.empty()) return std::nullopt;
+    message.set_instance_id(needs_.instance_id);
+    return MakeEvent(message);
+  }
+
+  Next MakeEvent(v1::WatchJobResponse& message) {
+    const storage::EventRecord event = std::move(read_ahead_.front());
+    read_ahead_.pop_front();
+    cursor_ = event.sequence;
+    message.set_sequence(event.sequence);
+    message.set_log_id(log_id_);
+    *message.mutable_event() = ToProto(event);
+    ended_ = message.event().has_ended();
+    return Next::kMessage;
   }
 
   Next MakeSnapshot(v1::WatchJobResponse& message, grpc::Status& status) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "rmlcell/v1/common.pb.h"
@@ -95,6 +96,10 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
   // executor, never twice at once; may block.
   virtual Next Make(Response& message, grpc::Status& status) = 0;
 
+  // The same on a thread of gRPC, when a message has gone out: what is in memory goes on without a
+  // change of thread. Must not block; nothing: Make() is to be asked.
+  virtual std::optional<Next> MakeAtOnce(Response&) { return std::nullopt; }
+
   // Make() is called at this moment, or before.
   void WakeAt(std::chrono::steady_clock::time_point when) {
     const std::lock_guard lock(mutex_);
@@ -158,12 +163,29 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
   }
 
   void OnWriteDone(bool ok) override {
+    bool go_on = false;
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
       if (!ok) cancelled_ = true;
+      go_on = pumping_ = !cancelled_ && !stopping_ && !asked_again_;
+      again_ = false;
     }
-    Wake();
+    if (!go_on || !GoOn()) Wake();
+  }
+
+  // False: Make() is to be asked.
+  bool GoOn() {
+    message_.Clear();
+    const std::optional<Next> next = MakeAtOnce(message_);
+    {
+      const std::lock_guard lock(mutex_);
+      pumping_ = false;
+      writing_ = next == Next::kMessage;
+      if (!writing_ && (!next || again_)) return false;
+    }
+    if (next == Next::kMessage) this->StartWrite(&message_);
+    return true;
   }
 
   // A write may be under way: only noted here.

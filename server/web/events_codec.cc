@@ -1,8 +1,9 @@
 // Server-sent events: for EventSource, fetch and `curl -N`.
 #include <google/protobuf/descriptor.h>
 
+#include "rmlcell/v1/cell.pb.h"
+#include "server/web/event_texts.h"
 #include "server/web/rpc_codec.h"
-#include "server/web/rpc_json.h"
 
 namespace rmlcell::web {
 namespace {
@@ -12,7 +13,7 @@ constexpr std::string_view kRetry = "retry: 2000\n";
 
 class Events : public RpcCodec {
  public:
-  explicit Events(const RpcRoute& route) : route_(route) {}
+  Events(const RpcRoute& route, EventTexts& texts) : route_(route), texts_(texts) {}
 
   bool streams() const override { return true; }
 
@@ -24,16 +25,17 @@ class Events : public RpcCodec {
     return response;
   }
 
-  // JSON has no line ends in it, so one data line holds a message.
+  // However busy the cell is, a stream is no call for each event.
+  std::string Asked(std::string request) const override {
+    if (route_.method->input_type() != v1::WatchCellRequest::descriptor()) return request;
+    v1::WatchCellRequest batched;
+    batched.set_batched(true);
+    return request + batched.SerializeAsString();  // the last one of a field counts
+  }
+
   Result<std::string> Message(std::string_view bytes) override {
-    const Result<JsonMessage> message = BytesToJson(*route_.method->output_type(), bytes);
-    if (!message) return message.error();
-    std::string event;
-    if (message->id) event += "id: " + message->id->Text() + "\n";
-    event += "data: ";
-    event += message->json;
-    event += "\n\n";
-    return event;
+    const Result<EventTexts::Text> text = texts_.Of(*route_.method->output_type(), bytes);
+    return text ? Result<std::string>(**text) : text.error();
   }
 
   // A server that stops says so: the client comes back with the last id, nothing is lost.
@@ -59,12 +61,13 @@ class Events : public RpcCodec {
 
  private:
   RpcRoute route_;
+  EventTexts& texts_;
 };
 
 }  // namespace
 
-std::unique_ptr<RpcCodec> MakeEvents(const RpcRoute& route) {
-  return std::make_unique<Events>(route);
+std::unique_ptr<RpcCodec> MakeEvents(const RpcRoute& route, EventTexts& texts) {
+  return std::make_unique<Events>(route, texts);
 }
 
 }  // namespace rmlcell::web

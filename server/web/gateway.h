@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "server/web/connection.h"
+#include "server/web/event_texts.h"
 #include "server/web/request_guard.h"
 #include "server/web/resource_source.h"
 #include "server/web/static_page.h"
@@ -17,6 +18,7 @@ struct Gateway {
   GuardRules rules;
   StaticPage page;
   std::shared_ptr<grpc::Channel> channel;
+  std::shared_ptr<EventTexts> event_texts = std::make_shared<EventTexts>();
   ResourceSource* resources = nullptr;
   std::function<void(std::function<void()>)> run_blocking;   // on the threads for ResourceSource
   std::function<void(std::function<void()>)> run_computing;  // on those for Resource::make

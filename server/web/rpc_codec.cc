@@ -2,7 +2,7 @@
 
 namespace rmlcell::web {
 
-std::unique_ptr<RpcCodec> MakeCodec(const RpcRoute& route) {
+std::unique_ptr<RpcCodec> MakeCodec(const RpcRoute& route, EventTexts& texts) {
   switch (route.wire) {
     case Wire::kConnectJson:
     case Wire::kConnectProto:
@@ -14,7 +14,7 @@ std::unique_ptr<RpcCodec> MakeCodec(const RpcRoute& route) {
     case Wire::kGrpcWebText:
       return MakeGrpcWeb(route);
     case Wire::kEvents:
-      return MakeEvents(route);
+      return MakeEvents(route, texts);
   }
   return MakeConnectUnary(route);
 }

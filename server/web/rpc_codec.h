@@ -10,6 +10,8 @@
 
 namespace rmlcell::web {
 
+class EventTexts;
+
 // Turns the answers of a call into one protocol of the web port. One object per call. No two
 // threads use it at once; which thread may change from message to message.
 class RpcCodec {
@@ -18,6 +20,9 @@ class RpcCodec {
 
   // True: Head, then Message for each, then End. False: Whole.
   virtual bool streams() const = 0;
+
+  // What is asked of the server, where it is more than the client said.
+  virtual std::string Asked(std::string request) const { return request; }
 
   virtual HttpResponse Head() const = 0;
 
@@ -38,8 +43,8 @@ class RpcCodec {
   virtual HttpResponse Refusal(const RpcRefusal& refusal) = 0;
 };
 
-// Preconditions: the route has a method, and its form fits it.
-std::unique_ptr<RpcCodec> MakeCodec(const RpcRoute& route);
+// Preconditions: the route has a method, and its form fits it. `texts` outlives the codec.
+std::unique_ptr<RpcCodec> MakeCodec(const RpcRoute& route, EventTexts& texts);
 
 // For requests that name no method: JSON, in Connect's form for clients that speak it.
 HttpResponse JsonRefusal(const RpcRefusal& refusal, bool connect_client);
@@ -55,6 +60,6 @@ void AddNoCache(HttpResponse& response);
 std::unique_ptr<RpcCodec> MakeConnectUnary(const RpcRoute& route);
 std::unique_ptr<RpcCodec> MakeConnectStream(const RpcRoute& route);
 std::unique_ptr<RpcCodec> MakeGrpcWeb(const RpcRoute& route);
-std::unique_ptr<RpcCodec> MakeEvents(const RpcRoute& route);
+std::unique_ptr<RpcCodec> MakeEvents(const RpcRoute& route, EventTexts& texts);
 
 }  // namespace rmlcell::web

@@ -19,7 +19,7 @@ class RpcExchange : public Exchange, public std::enable_shared_from_this<RpcExch
         route_(route),
         request_(request),
         metadata_(std::move(metadata)),
-        codec_(MakeCodec(route)),
+        codec_(MakeCodec(route, *gateway.event_texts)),
         streams_(codec_->streams()),
         connection_(std::move(connection)) {}
 
@@ -30,7 +30,7 @@ class RpcExchange : public Exchange, public std::enable_shared_from_this<RpcExch
       return;
     }
     RpcCallSpec spec{.method = request_.path,
-                     .message = std::move(decoding.request.message),
+                     .message = codec_->Asked(std::move(decoding.request.message)),
                      .metadata = std::move(metadata_),
                      .timeout = decoding.request.timeout};
     const std::shared_ptr<RpcExchange> self = shared_from_this();

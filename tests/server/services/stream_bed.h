@@ -81,7 +81,7 @@ class OpenedStream {
 class StreamBed {
  public:
   static constexpr const char* kInstance = "this server";
-  static constexpr const char* kCaller = "anna";  // of every watch
+  static constexpr const char* kCaller = "local";  // of every watch
 
   explicit StreamBed(storage::SqliteOptions options = {},
                      std::chrono::milliseconds bookmark_interval = std::chrono::hours(1))
@@ -101,6 +101,7 @@ class StreamBed {
                .open = open,
                .records = {bed.store(), book_, programs, projects},
                .feed = feed,
+               .logs = logs_,
                .facts = facts_,
                .registry = registry,
                .instance_id = kInstance,
@@ -164,14 +165,13 @@ class StreamBed {
   WatchRegistry registry;
 
  private:
-  class CellService final : public v1::CellService::CallbackService {
+  class CellService final
+      : public v1::CellService::WithRawCallbackMethod_WatchCell<v1::CellService::CallbackService> {
    public:
     CellService(CellWatchNeeds needs, CallNeeds call) : needs_(std::move(needs)), call_(call) {}
-    grpc::ServerWriteReactor<v1::WatchCellResponse>* WatchCell(
-        grpc::CallbackServerContext* context, const v1::WatchCellRequest* request) override {
-      return OpenStream<v1::WatchCellResponse>(
-          call_, *context, *request, "CellService/WatchCell",
-          [this, request](const Caller&) { return MakeCellWatch(needs_, *request, kCaller); });
+    grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchCell(
+        grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) override {
+      return OpenCellWatch(call_, needs_, *context, *request);
     }
 
    private:
@@ -231,6 +231,7 @@ class StreamBed {
   ByJob<RunningHeights> mills_;     // likewise
   JobBook book_{bed.store(), config};
   JobFactsBook facts_{bed.store()};
+  SharedLogs logs_{{{bed.store(), book_, programs, projects}, feed, facts_, kInstance}};
   Executor executor_{2};
   Service service_;
   CellService cell_;

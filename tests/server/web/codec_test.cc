@@ -9,6 +9,7 @@
 #include "rmlcell/v1/job.pb.h"
 #include "server/web/base64.h"
 #include "server/web/envelope.h"
+#include "server/web/event_texts.h"
 #include "server/web/rpc_codec.h"
 #include "server/web/rpc_json.h"
 
@@ -224,7 +225,8 @@ RpcRoute WatchRoute(Wire wire) {
 
 // A stopping server ends streams with UNAVAILABLE: event clients are told to come back.
 TEST(Events, LastEvents) {
-  const auto codec = MakeCodec(WatchRoute(Wire::kEvents));
+  EventTexts texts;
+  const auto codec = MakeCodec(WatchRoute(Wire::kEvents), texts);
   EXPECT_EQ(codec->End({}, {}), "event: end\ndata: {}\n\n");
   const std::string stopped = codec->End({.code = 14, .message = "stops", .details = {}}, {});
   EXPECT_NE(stopped.find("event: reconnect\ndata: {\"code\":\"unavailable\""), std::string::npos);
@@ -236,7 +238,8 @@ TEST(Events, LastEvents) {
 }
 
 TEST(ConnectStream, TrailersAreGrouped) {
-  const auto codec = MakeCodec(WatchRoute(Wire::kConnectStreamJson));
+  EventTexts texts;
+  const auto codec = MakeCodec(WatchRoute(Wire::kConnectStreamJson), texts);
   const std::string end = codec->End({}, {{"a", "1"}, {"b", "2"}, {"a", "3"}});
   EXPECT_EQ(end[0], 2);
   EXPECT_EQ(Json::parse(end.substr(5)), Json::parse(R"({"metadata":{"a":["1","3"],"b":["2"]}})"));

@@ -7,6 +7,7 @@
 #include "rmlcell/v1/job.pb.h"
 #include "server/web/base64.h"
 #include "server/web/envelope.h"
+#include "server/web/event_texts.h"
 #include "server/web/request_guard.h"
 #include "server/web/resource_routes.h"
 #include "server/web/rpc_codec.h"
@@ -66,7 +67,8 @@ void CheckCall(const HttpRequest& request) {
     return;
   }
   const RpcDecoding decoding = DecodeRpc(routing.route, request);
-  const auto codec = MakeCodec(routing.route);
+  EventTexts texts;
+  const auto codec = MakeCodec(routing.route, texts);
   if (!decoding.status.ok()) {
     RMLCELL_CHECK(!codec->Refusal({.status = decoding.status, .headers = {}}).body.empty());
     return;

@@ -1,0 +1,96 @@
+#include "server/web/event_texts.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "rmlcell/v1/cell.pb.h"
+#include "rmlcell/v1/job.pb.h"
+
+namespace rmlcell::web {
+namespace {
+
+using nlohmann::json;
+
+v1::WatchCellResponse Told(std::int64_t sequence) {
+  v1::WatchCellResponse message;
+  message.set_sequence(sequence);
+  message.set_log_id("l0g");
+  message.add_subscriptions("jobs");
+  return message;
+}
+
+std::string TextOf(EventTexts& texts, const v1::WatchCellResponse& message) {
+  const auto text = texts.Of(*v1::WatchCellResponse::descriptor(), message.SerializeAsString());
+  return text ? **text : text.error().detail.text();
+}
+
+TEST(EventTexts, AMessageIsAnEvent) {
+  EventTexts texts;
+  v1::WatchCellResponse message = Told(41);
+  message.mutable_event()->set_sequence(41);
+  const std::string text = TextOf(texts, message);
+  EXPECT_TRUE(text.starts_with("id: 41.l0g\ndata: {")) << text;
+  EXPECT_TRUE(text.ends_with("}\n\n"));
+  const json data = json::parse(text.substr(text.find('{')));
+  EXPECT_EQ(data["sequence"], "41");
+  EXPECT_EQ(data["event"]["sequence"], "41");
+}
+
+// A browser is told of one event at a time, each with the number to come back with.
+TEST(EventTexts, SeveralEventsAreAsManyTexts) {
+  EventTexts texts;
+  v1::WatchCellResponse several = Told(43);
+  std::string expected;
+  for (const std::int64_t sequence : {41, 43}) {
+    v1::CellEvent event;
+    event.set_sequence(sequence);
+    event.set_resource("jobs/" + std::to_string(sequence));
+    *several.mutable_events()->add_events() = event;
+    v1::WatchCellResponse alone = Told(sequence);
+    *alone.mutable_event() = event;
+    expected += TextOf(texts, alone);
+  }
+  EXPECT_EQ(TextOf(texts, several), expected);
+  EXPECT_NE(expected.find("id: 41.l0g\n"), std::string::npos);
+  EXPECT_NE(expected.find("id: 43.l0g\n"), std::string::npos);
+}
+
+TEST(EventTexts, IsMadeOnceForAll) {
+  EventTexts texts;
+  const std::string text = TextOf(texts, Told(1));
+  EXPECT_EQ(texts.made(), 1U);
+  EXPECT_EQ(TextOf(texts, Told(1)), text);
+  EXPECT_EQ(texts.made(), 1U);
+  TextOf(texts, Told(2));
+  EXPECT_EQ(texts.made(), 2U);
+}
+
+// However many there are, they take a bounded room; what is large is not kept at all.
+TEST(EventTexts, TheOldestAreForgotten) {
+  EventTexts texts;
+  const auto with = [](std::int64_t sequence, std::size_t bytes) {
+    v1::WatchCellResponse message = Told(sequence);
+    message.mutable_event()->mutable_job()->mutable_message()->set_text(std::string(bytes, 'x'));
+    return message;
+  };
+  constexpr std::size_t kPart = 100'000;  // twice that with its text
+  for (int i = 0; i < 60; ++i) TextOf(texts, with(i, kPart));
+  EXPECT_EQ(texts.made(), 60U);
+  TextOf(texts, with(59, kPart));
+  EXPECT_EQ(texts.made(), 60U);
+  TextOf(texts, with(0, kPart));
+  EXPECT_EQ(texts.made(), 61U);
+  for (int i = 0; i < 2; ++i) TextOf(texts, with(100, EventTexts::kKeptMax));
+  EXPECT_EQ(texts.made(), 63U);
+}
+
+TEST(EventTexts, WhatIsNoMessageIsAnError) {
+  EventTexts texts;
+  const auto text = texts.Of(*v1::WatchJobResponse::descriptor(), "\xFF\xFF");
+  ASSERT_FALSE(text);
+  EXPECT_EQ(text.error().code, ErrorCode::kCellInternal);
+}
+
+}  // namespace
+}  // namespace rmlcell::web
