@@ -6,7 +6,10 @@ if(NOT RMLCELL_ENGINE_ONLY)
   rmlcell_executable(bench_cell_stop
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_stop.cc
     LINKS rmlcell::proto)
-  foreach(bench IN ITEMS submit stop)
+  rmlcell_executable(bench_cell_watch
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_watch.cc
+    LINKS rmlcell::proto)
+  foreach(bench IN ITEMS submit stop watch)
     set_property(TARGET bench_cell_${bench}
                  PROPERTY LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,rmlcell_proto")
   endforeach()

@@ -61,6 +61,8 @@ class CellServer {
       const std::size_t at = text.find("gRPC on ");
       if (text.find("is ready") == std::string::npos || at == std::string::npos) continue;
       address_ = text.substr(at + 8, text.find_first_of(" \n", at + 8) - at - 8);
+      const std::size_t web = text.find("http://127.0.0.1:");
+      if (web != std::string::npos) web_port_ = std::atoi(text.c_str() + web + 17);
     }
     if (address_.empty()) throw std::runtime_error("the server did not start");
   }
@@ -79,9 +81,21 @@ class CellServer {
     return grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), arguments);
   }
 
+  int web_port() const { return web_port_; }
+
+  // What it holds of the memory of the computer.
+  double MemoryKiB() const {
+    std::ifstream status("/proc/" + std::to_string(process_) + "/status");
+    for (std::string line; std::getline(status, line);) {
+      if (line.starts_with("VmRSS:")) return std::atof(line.c_str() + 6);
+    }
+    return 0.0;
+  }
+
  private:
   std::filesystem::path folder_;
   std::string address_;
+  int web_port_ = 0;
   pid_t process_ = 0;
 };
 

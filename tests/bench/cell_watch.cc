@@ -1,0 +1,433 @@
+// What it costs to tell many watchers, against streams of gRPC that only send the same bytes again
+// and again: rows A2 to A5 and A7 of the goals. All in one run, turn by turn, so that only ratios
+// count.
+//   bench_cell_watch RMLCELLD [FOLDER [ROUNDS]]
+#include <grpcpp/grpcpp.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <latch>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "rmlcell/v1/cell.grpc.pb.h"
+#include "rmlcell/v1/job.grpc.pb.h"
+#include "tests/bench/cell_server.h"
+
+namespace {
+
+using namespace rmlcell;
+using namespace rmlcell::bench;
+using Response = v1::WatchCellResponse;
+
+constexpr int kWatchers = 100;
+constexpr int kEvents = 2000;  // that each is told
+constexpr auto kRateTime = std::chrono::seconds(2);
+constexpr int kPacedRate = 1000;  // events a second, for their age
+constexpr auto kPacedTime = std::chrono::seconds(3);
+constexpr int kStopped = 10;
+constexpr int kIdle = 1000;
+
+// As many messages as were told of, each the same bytes: what gRPC can do.
+class BareWatch final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
+ public:
+  BareWatch(const std::string& bytes, int count, std::atomic<bool>& open)
+      : left_(count), open_(open) {
+    const grpc::Slice slice(bytes);
+    message_ = grpc::ByteBuffer(&slice, 1);
+    // All begin together, as watchers of one cell are told together.
+    starter_ = std::jthread([this] {
+      open_.wait(false);
+      Next();
+    });
+  }
+
+ private:
+  void Next() {
+    if (left_-- > 0) return StartWrite(&message_);
+    Finish(grpc::Status::OK);
+  }
+  void OnWriteDone(bool ok) override {
+    if (ok) return Next();
+    Finish(grpc::Status::CANCELLED);
+  }
+  void OnDone() override { delete this; }
+
+  int left_;
+  std::atomic<bool>& open_;
+  grpc::ByteBuffer message_;
+  std::jthread starter_;
+};
+
+class BareServer final
+    : public v1::CellService::WithRawCallbackMethod_WatchCell<v1::CellService::Service> {
+ public:
+  explicit BareServer(std::string bytes) : bytes_(std::move(bytes)) {
+    grpc::ServerBuilder builder;
+    int port = 0;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+    builder.RegisterService(this);
+    server_ = builder.BuildAndStart();
+    address_ = "127.0.0.1:" + std::to_string(port);
+  }
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchCell(grpc::CallbackServerContext*,
+                                                        const grpc::ByteBuffer*) override {
+    return new BareWatch(bytes_, kEvents, open_);
+  }
+  std::shared_ptr<grpc::Channel> Connect() const {
+    grpc::ChannelArguments arguments;
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+    return grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), arguments);
+  }
+  void Begin() {
+    open_ = true;
+    open_.notify_all();
+  }
+  void Again() { open_ = false; }
+
+ private:
+  std::string bytes_;
+  std::string address_;
+  std::atomic<bool> open_ = false;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+v1::SubmitJobsRequest Held(std::int64_t number) {
+  v1::SubmitJobsRequest request;
+  request.set_number(number);
+  v1::Job& job = *request.mutable_submission()->mutable_job();
+  job.set_kind(v1::JOB_KIND_CHECK);
+  job.set_machine("machines/mill-1");
+  job.set_held(true);
+  job.mutable_inline_program()->set_content("IN;");
+  return request;
+}
+
+// Jobs that are held, one event each, for `time`, or `count` of them; at `rate` a second where one
+// is given. How many a second were acknowledged.
+double Submit(const CellServer& server, std::optional<std::chrono::milliseconds> time,
+              std::int64_t count, double rate = 0.0) {
+  const auto stub = v1::JobService::NewStub(server.Connect());
+  grpc::ClientContext context;
+  const auto stream = stub->SubmitJobs(&context);
+  std::int64_t answered = 0;
+  std::thread reader([&] {
+    for (v1::SubmitJobsResponse response; stream->Read(&response);) ++answered;
+  });
+  const auto start = Clock::now();
+  for (std::int64_t number = 1; number <= count; ++number) {
+    if (time && Clock::now() - start > *time) break;
+    if (rate > 0.0)
+      std::this_thread::sleep_until(
+          start + std::chrono::duration_cast<Clock::duration>(
+                      std::chrono::duration<double>(static_cast<double>(number) / rate)));
+    if (!stream->Write(Held(number))) break;
+  }
+  stream->WritesDone();
+  reader.join();
+  Must(stream->Finish());
+  return static_cast<double>(answered) / SecondsSince(start);
+}
+
+v1::WatchCellRequest AllJobs(std::optional<std::int64_t> after, bool batched) {
+  v1::WatchCellRequest request;
+  v1::Subscription& jobs = *request.add_subscriptions();
+  jobs.set_id("jobs");
+  jobs.mutable_jobs()->set_events_only(true);
+  if (after) request.set_after_sequence(*after);
+  request.set_batched(batched);
+  return request;
+}
+
+std::int64_t LastSequence(const CellServer& server) {
+  const auto stub = v1::CellService::NewStub(server.Connect());
+  grpc::ClientContext context;
+  const auto stream = stub->WatchCell(&context, AllJobs(std::nullopt, false));
+  Response response;
+  stream->Read(&response);
+  context.TryCancel();
+  return response.sequence();
+}
+
+int EventsIn(const Response& response) {
+  if (response.has_event()) return 1;
+  return response.events().events_size();
+}
+
+// Events a second that so many watchers were told together, of kEvents each.
+double Told(const std::function<std::shared_ptr<grpc::Channel>()>& connect, int watchers,
+            const v1::WatchCellRequest& request, const std::function<void()>& begin) {
+  std::vector<std::jthread> threads;
+  std::latch ready(watchers + 1);
+  std::vector<Clock::time_point> first(static_cast<std::size_t>(watchers));
+  std::vector<Clock::time_point> last(first.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    threads.emplace_back([&, i] {
+      const auto stub = v1::CellService::NewStub(connect());
+      grpc::ClientContext context;
+      context.set_wait_for_ready(true);
+      ready.arrive_and_wait();
+      const auto stream = stub->WatchCell(&context, request);
+      Response response;
+      int told = 0;
+      while (told < kEvents && stream->Read(&response)) {
+        const int more = EventsIn(response);
+        if (told == 0 && more > 0) first[i] = Clock::now();
+        told += more;
+      }
+      last[i] = Clock::now();
+      context.TryCancel();
+      if (told < kEvents) std::fprintf(stderr, "a watcher was told %d of %d\n", told, kEvents);
+    });
+  }
+  ready.arrive_and_wait();
+  begin();
+  threads.clear();
+  const double seconds = std::chrono::duration<double>(*std::ranges::max_element(last) -
+                                                       *std::ranges::min_element(first))
+                             .count();
+  return watchers * kEvents / seconds;
+}
+
+// Watchers that go on until they are destroyed; of each event how old it was when it came.
+class Watchers {
+ public:
+  Watchers(const CellServer& server, int count, bool batched, bool ages) {
+    std::latch ready(count + 1);
+    for (int i = 0; i < count; ++i) {
+      contexts_.push_back(std::make_unique<grpc::ClientContext>());
+      threads_.emplace_back(
+          [this, &server, &ready, batched, ages, context = contexts_.back().get()] {
+            const auto stub = v1::CellService::NewStub(server.Connect());
+            const auto stream = stub->WatchCell(context, AllJobs(std::nullopt, batched));
+            Response response;
+            stream->Read(&response);
+            ready.count_down();
+            std::vector<double> mine;
+            while (stream->Read(&response)) {
+              told_ += EventsIn(response);
+              if (!ages) continue;
+              const double now =
+                  std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch())
+                      .count();
+              const auto add = [&](const v1::CellEvent& event) {
+                mine.push_back(now - static_cast<double>(event.time().seconds()) -
+                               1e-9 * event.time().nanos());
+              };
+              if (response.has_event()) add(response.event());
+              for (const v1::CellEvent& event : response.events().events()) add(event);
+            }
+            const std::lock_guard lock(mutex_);
+            ages_.insert(ages_.end(), mine.begin(), mine.end());
+          });
+    }
+    ready.arrive_and_wait();
+  }
+  Watchers(const Watchers&) = delete;
+  Watchers& operator=(const Watchers&) = delete;
+  ~Watchers() { Stop(); }
+  std::int64_t told() const { return told_; }
+  std::vector<double> Stop() {
+    for (const auto& context : contexts_) context->TryCancel();
+    threads_.clear();
+    contexts_.clear();
+    return std::move(ages_);
+  }
+
+ private:
+  std::atomic<std::int64_t> told_ = 0;
+  std::mutex mutex_;
+  std::vector<double> ages_;
+  std::vector<std::unique_ptr<grpc::ClientContext>> contexts_;
+  std::vector<std::jthread> threads_;
+};
+
+// Browsers: server-sent events, read and thrown away.
+class Browsers {
+ public:
+  Browsers(const CellServer& server, int count) {
+    for (int i = 0; i < count; ++i) {
+      const int socket_of = socket(AF_INET, SOCK_STREAM, 0);
+      sockaddr_in address{};
+      address.sin_family = AF_INET;
+      address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      address.sin_port = htons(static_cast<std::uint16_t>(server.web_port()));
+      if (connect(socket_of, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
+        throw std::runtime_error("the web port takes no connection");
+      const std::string request =
+          "GET /rmlcell.v1.CellService/WatchCell?message=%7B%22subscriptions%22%3A%5B%7B%22id%22%3A%22j%22%2C%22jobs%22"
+          "%3A%7B%22eventsOnly%22%3Atrue%7D%7D%5D%7D HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n\r\n";
+      if (send(socket_of, request.data(), request.size(), 0) < 0)
+        throw std::runtime_error("the web port takes no request");
+      sockets_.push_back(socket_of);
+      std::vector<char> bytes(1 << 16);
+      const ssize_t head = recv(socket_of, bytes.data(), bytes.size(), 0);
+      if (head < 12 || std::strncmp(bytes.data(), "HTTP/1.1 200", 12) != 0)
+        throw std::runtime_error("the web port refuses the stream");
+      threads_.emplace_back([this, socket_of] {
+        std::vector<char> read(1 << 16);
+        for (ssize_t got = 0; (got = recv(socket_of, read.data(), read.size(), 0)) > 0;)
+          bytes_ += got;
+      });
+    }
+  }
+  Browsers(const Browsers&) = delete;
+  Browsers& operator=(const Browsers&) = delete;
+  ~Browsers() {
+    for (const int one : sockets_) shutdown(one, SHUT_RDWR);
+    threads_.clear();
+    for (const int one : sockets_) close(one);
+  }
+  std::int64_t bytes() const { return bytes_; }
+
+ private:
+  std::atomic<std::int64_t> bytes_ = 0;
+  std::vector<int> sockets_;
+  std::vector<std::jthread> threads_;
+};
+
+// A watcher that never reads.
+struct Stalled {
+  explicit Stalled(const CellServer& server, std::int64_t after)
+      : stub(v1::CellService::NewStub(server.Connect())),
+        stream(stub->WatchCell(&context, AllJobs(after, false))) {}
+  ~Stalled() { context.TryCancel(); }
+  std::unique_ptr<v1::CellService::Stub> stub;
+  grpc::ClientContext context;
+  std::unique_ptr<grpc::ClientReader<Response>> stream;
+};
+
+std::vector<std::string> g_missed;
+
+void Row(const char* what, const std::vector<double>& values, double goal, bool at_least) {
+  const double median = Median(values);
+  const bool reached = at_least ? median >= goal : median <= goal;
+  std::printf("%-64s %8.2f   goal: at %s %.2f%s\n", what, median, at_least ? "least" : "most", goal,
+              reached ? "" : "   MISSED");
+  if (!reached) g_missed.push_back(what);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: %s RMLCELLD [FOLDER [ROUNDS]]\n", argv[0]);
+    return 2;
+  }
+  const std::filesystem::path folder = argc > 2 ? argv[2] : "bench-state";
+  const int rounds = argc > 3 ? std::max(1, std::atoi(argv[3])) : 5;
+  std::vector<double> single, batched, one_watcher, stalled, submit, submit_batched, submit_sse;
+  std::vector<double> p50, p99, alone_age, memory, memory_sse;
+  {
+    const CellServer server(argv[1], folder / "cell", 0);
+    const std::int64_t before = LastSequence(server);
+    Submit(server, std::nullopt, kEvents);
+    const auto connect = [&] { return server.Connect(); };
+    // One message as it is told: the bare stream sends as many bytes.
+    Response sample;
+    {
+      const auto stub = v1::CellService::NewStub(server.Connect());
+      grpc::ClientContext context;
+      const auto stream = stub->WatchCell(&context, AllJobs(before, false));
+      while (stream->Read(&sample) && !sample.has_event()) continue;
+      context.TryCancel();
+    }
+    std::printf("an event is a message of %zu bytes\n", sample.ByteSizeLong());
+    BareServer bare(sample.SerializeAsString());
+    for (int round = 0; round < rounds; ++round) {
+      bare.Again();
+      const double limit = Told([&] { return bare.Connect(); }, kWatchers, {},
+                                [&] {
+                                  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+                                  bare.Begin();
+                                });
+      const double ours = Told(connect, kWatchers, AllJobs(before, false), [] {});
+      const double many = Told(connect, kWatchers, AllJobs(before, true), [] {});
+      double with_stalled = 0.0;
+      {
+        std::vector<std::unique_ptr<Stalled>> asleep;
+        for (int i = 0; i < kStopped; ++i)
+          asleep.push_back(std::make_unique<Stalled>(server, before));
+        with_stalled = Told(connect, kWatchers, AllJobs(before, false), [] {});
+      }
+      const double one = Told(connect, 1, AllJobs(before, false), [] {});
+      single.push_back(ours / limit);
+      batched.push_back(many / limit);
+      stalled.push_back(with_stalled / ours);
+      one_watcher.push_back(one);
+      std::printf(
+          "round %d: bare %8.0f/s  ours %8.0f/s  batched %9.0f/s  beside %d that stopped %8.0f/s  one %8.0f/s\n",
+          round + 1, limit, ours, many, kStopped, with_stalled, one);
+    }
+  }
+  for (int round = 0; round < rounds; ++round) {
+    const CellServer server(argv[1], folder / "cell", 0);
+    const auto paced = [&](int count, bool in_batches) {
+      Watchers watchers(server, count, in_batches, true);
+      Submit(server, kPacedTime, 1'000'000, count == 1 ? 50.0 : kPacedRate);
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      return watchers.Stop();
+    };
+    const std::vector<double> idle = paced(1, false);
+    const std::vector<double> ages = paced(kWatchers, true);
+    alone_age.push_back(Median(idle) * 1e3);
+    p50.push_back(Quantile(ages, 0.5) * 1e3);
+    p99.push_back(Quantile(ages, 0.99) * 1e3);
+    const double alone = Submit(server, kRateTime, 1'000'000);
+    double beside = 0.0, beside_batched = 0.0, beside_sse = 0.0;
+    std::int64_t told = 0;
+    {
+      Watchers watchers(server, kWatchers, false, false);
+      beside = Submit(server, kRateTime, 1'000'000);
+    }
+    {
+      Watchers watchers(server, kWatchers, true, false);
+      beside_batched = Submit(server, kRateTime, 1'000'000);
+      told = watchers.told();
+    }
+    {
+      Browsers browsers(server, kWatchers);
+      beside_sse = Submit(server, kRateTime, 1'000'000);
+    }
+    submit.push_back(beside / alone);
+    submit_batched.push_back(beside_batched / alone);
+    submit_sse.push_back(beside_sse / alone);
+    std::printf(
+        "round %d: age, one watcher %.2f ms; %d at %d/s p50 %.2f p99 %.2f ms; submits/s alone %.0f, beside %d "
+        "watchers %.0f, batched %.0f (%.0f events/s told), browsers %.0f\n",
+        round + 1, alone_age.back(), kWatchers, kPacedRate, p50.back(), p99.back(), alone,
+        kWatchers, beside, beside_batched, static_cast<double>(told) / 2.0, beside_sse);
+  }
+  {
+    const CellServer server(argv[1], folder / "cell", 0);
+    const double before = server.MemoryKiB();
+    Watchers watchers(server, kIdle, false, false);
+    memory.push_back((server.MemoryKiB() - before) / kIdle);
+    watchers.Stop();
+    const double between = server.MemoryKiB();
+    Browsers browsers(server, kIdle);
+    memory_sse.push_back((server.MemoryKiB() - between) / kIdle);
+  }
+  Row("100 watchers, an event a message / bare streams", single, 0.7, true);
+  Row("100 watchers, batched, events / bare streams", batched, 3.0, true);
+  Row("100 watchers beside 10 that stopped / without them", stalled, 0.95, true);
+  Row("age of an event, 1,000/s, 100 watchers: p50, ms", p50, 1.0, false);
+  Row("the same: p99, ms", p99, 5.0, false);
+  Row("submits/s beside 100 watchers / alone", submit, 0.8, true);
+  Row("submits/s beside 100 watchers that take batches / alone", submit_batched, 0.8, true);
+  Row("submits/s beside 100 browsers / alone", submit_sse, 0.8, true);
+  Row("1,000 idle watchers: KiB each", memory, 64.0, false);
+  Row("1,000 idle browsers: KiB each", memory_sse, 64.0, false);
+  std::filesystem::remove_all(folder);
+  return g_missed.empty() ? 0 : 1;
+}
