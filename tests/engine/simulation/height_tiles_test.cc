@@ -11,18 +11,18 @@ using Size = HeightField::Size;
 
 // 150 x 130 cells, three tiles by three; the top is 0, the bottom 65.535 mm below: 0.001 mm a
 // number.
-constexpr Stock kBlock{.x_min = 10.0,
-                       .x_max = 160.0,
-                       .y_min = -20.0,
-                       .y_max = 110.0,
-                       .bottom = -65.535,
-                       .top = 0.0,
-                       .cell = 1.0};
-constexpr MillTool kPoint{.radius_mm = 0.1};  // one cell, at its centre
+constexpr Stock kTiledBlock{.x_min = 10.0,
+                            .x_max = 160.0,
+                            .y_min = -20.0,
+                            .y_max = 110.0,
+                            .bottom = -65.535,
+                            .top = 0.0,
+                            .cell = 1.0};
+constexpr MillTool kPinTool{.radius_mm = 0.1};  // one cell, at its centre
 
 void CutCell(HeightField& field, double column, double row, double z) {
   const motion::MachinePoint at{10.5 + column, -19.5 + row, z};
-  field.Cut(kPoint, at, at);
+  field.Cut(kPinTool, at, at);
 }
 
 std::string GridOf(const HeightField& field) {
@@ -64,13 +64,13 @@ TEST(HeightTiles, RowsOfALevel) {
 }
 
 TEST(HeightTiles, OfABlockThatNothingTouchedThereAreNone) {
-  const HeightField field = HeightField::Of(kBlock).value();
+  const HeightField field = HeightField::Of(kTiledBlock).value();
   EXPECT_TRUE(HeightChanges(field).Take(field, 100).empty());
 }
 
 // Who begins to look gets what was cut before; then only where something was noted.
 TEST(HeightTiles, ChangesAreTaken) {
-  HeightField field = HeightField::Of(kBlock).value();
+  HeightField field = HeightField::Of(kTiledBlock).value();
   CutCell(field, 149, 0, -1.0);  // in the tile of the greatest X
   HeightChanges changes(field);
   EXPECT_EQ(changes.size(), (Size{150, 130}));
@@ -98,7 +98,7 @@ TEST(HeightTiles, ChangesAreTaken) {
 
 // A rectangle over the whole block and beyond is of all tiles; those beside it of none.
 TEST(HeightTiles, WhatIsNotedMayLieBesideTheBlock) {
-  HeightField field = HeightField::Of(kBlock).value();
+  HeightField field = HeightField::Of(kTiledBlock).value();
   for (const double column : {0, 70, 140}) {
     for (const double row : {0, 70, 129}) CutCell(field, column, row, -1.0);
   }
@@ -115,7 +115,7 @@ TEST(HeightTiles, WhatIsNotedMayLieBesideTheBlock) {
 
 // A few at a time, each once, whatever changes again meanwhile.
 TEST(HeightTiles, TheyAreTakenByTurns) {
-  HeightField field = HeightField::Of(kBlock).value();
+  HeightField field = HeightField::Of(kTiledBlock).value();
   for (const double column : {0, 70, 140}) {
     for (const double row : {0, 70, 129}) CutCell(field, column, row, -1.0);
   }
@@ -140,7 +140,7 @@ TEST(HeightTiles, AGridHasTheSameTiles) {
   HeightField field = HeightField::Of(wide).value();
   for (int i = 0; i < 1100; i += 3) {
     const motion::MachinePoint at{i + 0.5, i % 70 + 0.5, -0.001 * (i % 400)};
-    field.Cut(kPoint, at, at);
+    field.Cut(kPinTool, at, at);
   }
   const std::string bytes = GridOf(field);
   const HeightGridHead head = ReadHeightGridHead(bytes).value();
@@ -176,7 +176,7 @@ TEST(HeightTiles, AGridHasTheSameTiles) {
 }
 
 TEST(HeightTiles, OnlyThoseOfAnArea) {
-  const HeightField field = HeightField::Of(kBlock).value();
+  const HeightField field = HeightField::Of(kTiledBlock).value();
   const std::string bytes = GridOf(field);
   const HeightGridHead head = ReadHeightGridHead(bytes).value();
   const auto places = [&](const HeightGridTiles::Area& area) {
@@ -196,7 +196,8 @@ TEST(HeightTiles, OnlyThoseOfAnArea) {
 }
 
 TEST(HeightTiles, WhatIsNoGridIsRefused) {
-  const std::string good = GridOf(HeightField::Of(kBlock).value()).substr(0, kHeightGridHeadBytes);
+  const std::string good =
+      GridOf(HeightField::Of(kTiledBlock).value()).substr(0, kHeightGridHeadBytes);
   ASSERT_TRUE(ReadHeightGridHead(good));
   const auto refused = [&](std::size_t at, std::string_view bytes) {
     std::string bad = good;

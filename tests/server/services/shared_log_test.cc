@@ -187,7 +187,7 @@ TEST_F(SharedLogTest, EachWatchSeesWhatThePlainLogHas) {
           request.mutable_subscriptions(0)->mutable_jobs()->add_names(JobName(mine.job));
         auto watch = room.WatchCell(request);
         // Breaks off somewhere, and comes back with the last number.
-        for (unsigned left = 1 + random() % 40; left > 0; --left) {
+        for (auto left = 1 + random() % 40; left > 0; --left) {
           const v1::WatchCellResponse message = watch.Next();
           ASSERT_FALSE(message.instance_id().empty());
           for (const v1::CellEvent& event : EventsOf(message)) {
