@@ -173,6 +173,7 @@ Result<JobRecord> HoldJobBack(WriteContext& context, std::int64_t id,
                               const std::vector<NewEvent>& events) {
   Result<JobRow> row = GetWaiting(context, id);
   if (!row) return row.error();
+  if (row->job.held) return row->job;  // nothing happens, and nothing is told
   row->job.held = true;
   SetBlocked(context, *row, row->blocked | kBlockedByHold);
   return Written(context, std::move(row), events);

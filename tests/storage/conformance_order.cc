@@ -117,6 +117,8 @@ TEST_P(StoreConformance, AJobThatIsHeldBackStartsWhenItIsLetGo) {
   const auto other = Put(store(), {});
   EXPECT_EQ(WaitOf(store(), held), "held");
   EXPECT_EQ(Must(store().HoldBack(other, {{.kind = "queue", .caller = "anna"}})).held, true);
+  Must(store().HoldBack(other,
+                        {{.kind = "queue", .caller = "carl"}}));  // it is, and nothing is told
   EXPECT_THAT(Started(store()), IsEmpty());
   Reopen();
   EXPECT_THAT(Started(store()), IsEmpty());
