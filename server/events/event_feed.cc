@@ -82,17 +82,19 @@ std::unique_ptr<EventFeed::Subscription> EventFeed::Subscribe(std::string resour
 }
 
 Result<std::vector<storage::EventRecord>> EventFeed::EventsAfter(std::int64_t position, int limit) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (position >= position_) return std::vector<storage::EventRecord>();
-    if (position >= complete_after_) {
-      const auto first =
-          std::ranges::upper_bound(recent_, position, {}, &storage::EventRecord::position);
-      const auto count = std::min<std::ptrdiff_t>(limit, recent_.end() - first);
-      return std::vector<storage::EventRecord>(first, first + count);
-    }
-  }
+  if (auto recent = RecentAfter(position, limit)) return *std::move(recent);
   return store_.AllEvents(position, limit);
+}
+
+std::optional<std::vector<storage::EventRecord>> EventFeed::RecentAfter(std::int64_t position,
+                                                                        int limit) {
+  const std::lock_guard lock(mutex_);
+  if (position >= position_) return std::vector<storage::EventRecord>();
+  if (position < complete_after_) return std::nullopt;
+  const auto first =
+      std::ranges::upper_bound(recent_, position, {}, &storage::EventRecord::position);
+  const auto count = std::min<std::ptrdiff_t>(limit, recent_.end() - first);
+  return std::vector<storage::EventRecord>(first, first + count);
 }
 
 std::optional<std::vector<storage::EventRecord>> EventFeed::FromTail(std::int64_t job,
@@ -154,17 +156,19 @@ std::int64_t EventFeed::position() {
 }
 
 void EventFeed::Run(const std::stop_token& stop) {
-  FeedRhythm rhythm(timing_.clock(), timing_.poll_interval);
+  FeedRhythm rhythm(timing_.clock(), timing_.poll_interval, timing_.message_time);
   while (!stop.stop_requested()) {
     bool read = false;
     std::vector<std::string> moved;
     {
       std::unique_lock lock(mutex_);
       const bool quiet = arriving_.empty();
-      wake_.wait_for(lock, stop, rhythm.Next(!quiet) - timing_.clock(),
-                     [&] { return hinted_ || (quiet && !arriving_.empty()); });
+      const bool hinted = hinted_;
+      wake_.wait_for(lock, stop, rhythm.Next(hinted, !quiet) - timing_.clock(),
+                     [&] { return (!hinted && hinted_) || (quiet && !arriving_.empty()); });
       const auto now = timing_.clock();
-      read = rhythm.TakeLook(now, std::exchange(hinted_, false));
+      read = rhythm.TakeLook(now, hinted_);
+      if (read) hinted_ = false;
       // Watchers see what arrived only from here on: one that is woken by many events gets no more
       // of it.
       if (!arriving_.empty() && rhythm.TakeLatest(now)) {
@@ -177,22 +181,27 @@ void EventFeed::Run(const std::stop_token& stop) {
       }
     }
     if (stop.stop_requested()) return;
-    if (read) ReadNewEvents(stop);
+    if (read) {
+      const Look look = ReadNewEvents(stop);
+      rhythm.Told(timing_.clock(), look.events, look.watchers);
+    }
     if (!moved.empty()) Wake(moved);
   }
 }
 
-void EventFeed::ReadNewEvents(const std::stop_token& stop) {
+EventFeed::Look EventFeed::ReadNewEvents(const std::stop_token& stop) {
+  Look look;
   while (!stop.stop_requested()) {
     Result<std::vector<storage::EventRecord>> events = store_.AllEvents(position(), kReadBatch);
     if (!events) {
       if (events.error().code == ErrorCode::kCellEventsGone && SkipGoneEvents()) continue;
-      return;  // a failing store is tried again at the next poll
+      return look;  // a failing store is tried again at the next poll
     }
-    if (events->empty()) return;
+    if (events->empty()) return look;
     std::set<std::string> touched;
     for (const storage::EventRecord& event : *events) touched.insert(ResourceOf(event));
-    const bool more = events->size() == kReadBatch;
+    const std::size_t read = events->size();
+    const bool more = read == kReadBatch;
     {
       const std::lock_guard lock(mutex_);
       position_ = events->back().position;
@@ -212,9 +221,11 @@ void EventFeed::ReadNewEvents(const std::stop_token& stop) {
         recent_.pop_front();
       }
     }
-    Wake({touched.begin(), touched.end()});
-    if (!more) return;
+    look.events += read;
+    look.watchers = std::max(look.watchers, Wake({touched.begin(), touched.end()}));
+    if (!more) return look;
   }
+  return look;
 }
 
 // The events of a job that was deleted are gone from the store; here they are, too.
@@ -245,7 +256,7 @@ bool EventFeed::SkipGoneEvents() {
   return true;
 }
 
-void EventFeed::Wake(const std::vector<std::string>& resources) {
+std::size_t EventFeed::Wake(const std::vector<std::string>& resources) {
   std::vector<std::shared_ptr<Watcher>> woken;
   {
     const std::lock_guard lock(mutex_);
@@ -257,6 +268,7 @@ void EventFeed::Wake(const std::vector<std::string>& resources) {
     add(std::string(kEverything));
   }
   Call(woken);
+  return woken.size();
 }
 
 void EventFeed::Call(const std::vector<std::shared_ptr<Watcher>>& woken) {

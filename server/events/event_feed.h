@@ -42,6 +42,7 @@ class EventFeed {
     SteadyClock clock = SteadyTime;
     // Another server may write to the same store: look without a hint that often.
     std::chrono::milliseconds poll_interval{1000};
+    std::chrono::microseconds message_time = FeedRhythm::kMessageTime;
   };
 
   explicit EventFeed(storage::Store& store) : EventFeed(store, Timing()) {}
@@ -62,6 +63,8 @@ class EventFeed {
   // Events of the whole cell after a position; from memory when it reaches back that far. Not
   // beyond position(). Errors: those of the store, CellEventsGone among them.
   Result<std::vector<storage::EventRecord>> EventsAfter(std::int64_t position, int limit);
+  // The same at once; nothing: memory does not reach back that far.
+  std::optional<std::vector<storage::EventRecord>> RecentAfter(std::int64_t position, int limit);
 
   // Events of one job after a sequence number; from memory when it reaches back that far.
   Result<std::vector<storage::EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence,
@@ -89,10 +92,15 @@ class EventFeed {
   class Handle;
 
   void Run(const std::stop_token& stop);
-  void ReadNewEvents(const std::stop_token& stop);
+  // How many events were read, and how many watchers woken for them.
+  struct Look {
+    std::size_t events = 0;
+    std::size_t watchers = 0;
+  };
+  Look ReadNewEvents(const std::stop_token& stop);
   bool SkipGoneEvents();
-  void DropEventsOf(std::string_view job);               // precondition: mutex_ is held
-  void Wake(const std::vector<std::string>& resources);  // and those of everything
+  void DropEventsOf(std::string_view job);                      // precondition: mutex_ is held
+  std::size_t Wake(const std::vector<std::string>& resources);  // and those of everything
   // Nothing when memory does not reach back that far.
   std::optional<std::vector<storage::EventRecord>> FromTail(std::int64_t job,
                                                             std::int64_t after_sequence, int limit);

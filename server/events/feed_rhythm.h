@@ -2,31 +2,52 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 
 namespace rmlcell::server {
 
-// When the feed looks at the log without a hint, and when it tells the next positions.
+// When the feed looks at the log, and when it tells the next positions. A look that wakes watchers
+// costs as many messages: under load the next one waits a little, so that more events go in each.
 class FeedRhythm {
  public:
   using Instant = std::chrono::steady_clock::time_point;
 
   // Watchers are told of positions no more often than this.
   static constexpr std::chrono::milliseconds kLatestInterval{50};
+  // What a message to a watcher costs, about; how many events a look should bring for each that it
+  // waits again; and how old an event may get by that.
+  static constexpr std::chrono::microseconds kMessageTime{50};
+  static constexpr std::int64_t kEventsOfALook = 8;
+  static constexpr std::chrono::milliseconds kWaitMax{20};
 
   // At `begin` both are due.
-  FeedRhythm(Instant begin, std::chrono::milliseconds poll_interval)
-      : poll_interval_(poll_interval), next_poll_(begin), next_latest_(begin) {}
+  FeedRhythm(Instant begin, std::chrono::milliseconds poll_interval,
+             std::chrono::microseconds message_time = kMessageTime)
+      : poll_interval_(poll_interval),
+        message_time_(message_time),
+        next_poll_(begin),
+        next_hinted_(begin),
+        next_latest_(begin) {}
 
   // The next moment at which something is due.
-  Instant Next(bool positions_wait) const {
-    return positions_wait ? std::min(next_poll_, next_latest_) : next_poll_;
+  Instant Next(bool hinted, bool positions_wait) const {
+    const Instant look = hinted ? std::min(next_hinted_, next_poll_) : next_poll_;
+    return positions_wait ? std::min(look, next_latest_) : look;
   }
 
   // Whether to look at the log now; a look puts off the next one.
   bool TakeLook(Instant now, bool hinted) {
-    if (!hinted && now < next_poll_) return false;
+    if (now < next_poll_ && !(hinted && now >= next_hinted_)) return false;
     next_poll_ = now + poll_interval_;
     return true;
+  }
+
+  // A look brought so many events for so many watchers.
+  void Told(Instant now, std::size_t events, std::size_t watchers) {
+    const auto looks = 1 + static_cast<std::int64_t>(events) / kEventsOfALook;
+    const auto wait = message_time_ * static_cast<std::int64_t>(watchers) * looks;
+    next_hinted_ = now + std::min<std::chrono::microseconds>(wait, kWaitMax);
   }
 
   // Whether positions that wait are told now; that puts off the next ones.
@@ -38,7 +59,9 @@ class FeedRhythm {
 
  private:
   std::chrono::milliseconds poll_interval_;
+  std::chrono::microseconds message_time_;
   Instant next_poll_;
+  Instant next_hinted_;
   Instant next_latest_;
 };
 

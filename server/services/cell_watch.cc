@@ -91,12 +91,12 @@ class CellWatch final : public PullStream<grpc::ByteBuffer>, public WatchRegistr
     return Next::kMessage;
   }
 
-  // Events that another watch had made, one after the other.
+  // Events that are in memory.
   std::optional<Next> MakeAtOnce(grpc::ByteBuffer& bytes) override {
     if (log_ == nullptr || snapshots_due_ || !latest_.empty() || has_changes_ ||
         needs_.clock() >= last_bookmark_ + needs_.bookmark_interval)
       return std::nullopt;
-    while (const auto piece = log_->MadeAfter(cursor_, request_.batched())) {
+    while (const auto piece = log_->AtOnce(cursor_, request_.batched())) {
       cursor_ = piece->end;
       if (!piece->message) continue;
       bytes = grpc::ByteBuffer(&*piece->message, 1);

@@ -65,13 +65,16 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
 
   // There may be something to send. Any thread; never blocks.
   void Wake() {
+    bool at_once = false;
     {
       const std::lock_guard lock(mutex_);
       again_ = true;
       if (pumping_ || writing_ || finished_) return;
       pumping_ = true;
+      at_once = !cancelled_ && !stopping_ && !asked_again_;
+      if (at_once) again_ = false;
     }
-    executor_.Post([self = this->shared_from_this()] { self->Pump(); });
+    if (!at_once || !GoOn()) Ask();
   }
 
   void ServerStops() override {
@@ -96,8 +99,8 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
   // executor, never twice at once; may block.
   virtual Next Make(Response& message, grpc::Status& status) = 0;
 
-  // The same on a thread of gRPC, when a message has gone out: what is in memory goes on without a
-  // change of thread. Must not block; nothing: Make() is to be asked.
+  // The same on the thread that wakes, or on that of gRPC when a message has gone out: what is in
+  // memory goes on without a change of thread. Must not block; nothing: Make() is to be asked.
   virtual std::optional<Next> MakeAtOnce(Response&) { return std::nullopt; }
 
   // Make() is called at this moment, or before.
@@ -168,24 +171,30 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
       const std::lock_guard lock(mutex_);
       writing_ = false;
       if (!ok) cancelled_ = true;
-      go_on = pumping_ = !cancelled_ && !stopping_ && !asked_again_;
+      pumping_ = true;
+      go_on = !cancelled_ && !stopping_ && !asked_again_;
       again_ = false;
     }
-    if (!go_on || !GoOn()) Wake();
+    if (!go_on || !GoOn()) Ask();
   }
 
-  // False: Make() is to be asked.
+  // With what is there at once. False: Make() is to be asked. Precondition: pumping_, which stays
+  // so then.
   bool GoOn() {
     message_.Clear();
     const std::optional<Next> next = MakeAtOnce(message_);
     {
       const std::lock_guard lock(mutex_);
+      if (next != Next::kMessage && (next != Next::kNothing || again_)) return false;
       pumping_ = false;
       writing_ = next == Next::kMessage;
-      if (!writing_ && (!next || again_)) return false;
     }
     if (next == Next::kMessage) this->StartWrite(&message_);
     return true;
+  }
+
+  void Ask() {
+    executor_.Post([self = this->shared_from_this()] { self->Pump(); });
   }
 
   // A write may be under way: only noted here.

@@ -49,7 +49,7 @@ std::shared_ptr<const std::string> ToldEvents::Of(const storage::EventRecord& ev
   return made;
 }
 
-std::optional<LogPiece> SharedLog::MadeAfter(std::int64_t position, bool batched) {
+std::optional<LogPiece> SharedLog::Known(std::int64_t position, bool batched) {
   const std::lock_guard lock(mutex_);
   const auto& pieces = kept_[batched ? 1 : 0].pieces;
   const auto found = pieces.find(position);
@@ -57,24 +57,35 @@ std::optional<LogPiece> SharedLog::MadeAfter(std::int64_t position, bool batched
   return found->second;
 }
 
+std::optional<LogPiece> SharedLog::AtOnce(std::int64_t position, bool batched) {
+  if (auto known = Known(position, batched)) return known;
+  // Whether a job passes a filter is perhaps asked of the store, and so is what a record is by now.
+  if (std::ranges::any_of(subscriptions_, &CellSubscription::filtered)) return std::nullopt;
+  auto read = needs_.feed.RecentAfter(position, kReadAhead);
+  if (!read || std::ranges::any_of(*read, [](const storage::EventRecord& event) {
+        return event.job == 0 && !IsDeletion(event);
+      }))
+    return std::nullopt;
+  return Make(*std::move(read), position, batched);
+}
+
 Result<std::optional<LogPiece>> SharedLog::After(std::int64_t position, bool batched) {
-  if (auto made = MadeAfter(position, batched)) return made;
-  Result<std::optional<LogPiece>> piece = Make(position, batched);
-  if (piece && *piece) Keep(position, batched, **piece);
-  return piece;
+  if (auto known = Known(position, batched)) return known;
+  auto read = needs_.feed.EventsAfter(position, kReadAhead);
+  if (!read) return read.error();
+  return Make(*std::move(read), position, batched);
 }
 
 // Watches that are apart end their batches at the same places, and go on together.
-Result<std::optional<LogPiece>> SharedLog::Make(std::int64_t position, bool batched) {
+std::optional<LogPiece> SharedLog::Make(std::vector<storage::EventRecord> read,
+                                        std::int64_t position, bool batched) {
+  if (read.empty()) return std::nullopt;
   const std::int64_t border = (position / kEventsMax + 1) * kEventsMax;
-  auto read = needs_.feed.EventsAfter(position, kReadAhead);
-  if (!read) return read.error();
-  if (read->empty()) return std::optional<LogPiece>();
   LogPiece piece{.end = position};
   Ids ids;
   std::vector<storage::EventRecord> wanted;
   bool deletion = false;
-  for (storage::EventRecord& event : *read) {
+  for (storage::EventRecord& event : read) {
     if (batched && !wanted.empty() && event.position > border) break;
     Ids of_event = WantedBy(event);
     if (!wanted.empty() && !of_event.empty() && of_event != ids) break;
@@ -88,7 +99,8 @@ Result<std::optional<LogPiece>> SharedLog::Make(std::int64_t position, bool batc
   // What was made of the events of a job goes with it.
   if (deletion) Forget();
   if (!wanted.empty()) piece.message = MessageOf(ids, wanted, piece.end, batched);
-  return std::optional(std::move(piece));
+  Keep(position, batched, piece);
+  return piece;
 }
 
 SharedLog::Ids SharedLog::WantedBy(const storage::EventRecord& event) const {

@@ -67,12 +67,14 @@ class SharedLog {
   // there, for the same subscriptions, one message. May read the store. Errors: those of
   // EventFeed::EventsAfter.
   Result<std::optional<LogPiece>> After(std::int64_t position, bool batched);
-  // The same where it was made already; at once.
-  std::optional<LogPiece> MadeAfter(std::int64_t position, bool batched);
+  // The same where it was made already, or can be made of what is in memory: never reads the store.
+  std::optional<LogPiece> AtOnce(std::int64_t position, bool batched);
 
  private:
   using Ids = std::vector<std::string>;
-  Result<std::optional<LogPiece>> Make(std::int64_t position, bool batched);
+  std::optional<LogPiece> Known(std::int64_t position, bool batched);
+  std::optional<LogPiece> Make(std::vector<storage::EventRecord> read, std::int64_t position,
+                               bool batched);
   Ids WantedBy(const storage::EventRecord& event) const;
   grpc::Slice MessageOf(const Ids& ids, const std::vector<storage::EventRecord>& events,
                         std::int64_t position, bool batched);

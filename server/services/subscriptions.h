@@ -54,6 +54,9 @@ class CellSubscription {
   // Least time between two messages of what stands for now; zero: as often as the feed has news.
   std::chrono::microseconds interval() const { return interval_; }
 
+  // Whether it asks what a job is.
+  bool filtered() const { return filtered_; }
+
   bool WantsEvent(const storage::EventRecord& event, JobFactsBook& facts) const;
   bool WantsLatest(std::string_view resource, JobFactsBook& facts) const;
 

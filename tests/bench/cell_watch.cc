@@ -32,6 +32,7 @@ using Response = v1::WatchCellResponse;
 
 constexpr int kWatchers = 100;
 constexpr int kEvents = 2000;  // that each is told
+constexpr std::int64_t kUnansweredMax = 256;
 constexpr auto kRateTime = std::chrono::seconds(2);
 constexpr int kPacedRate = 1000;  // events a second, for their age
 constexpr auto kPacedTime = std::chrono::seconds(3);
@@ -120,9 +121,12 @@ double Submit(const CellServer& server, std::optional<std::chrono::milliseconds>
   const auto stub = v1::JobService::NewStub(server.Connect());
   grpc::ClientContext context;
   const auto stream = stub->SubmitJobs(&context);
-  std::int64_t answered = 0;
+  std::atomic<std::int64_t> answered = 0;
   std::thread reader([&] {
-    for (v1::SubmitJobsResponse response; stream->Read(&response);) ++answered;
+    for (v1::SubmitJobsResponse response; stream->Read(&response);) {
+      ++answered;
+      answered.notify_one();
+    }
   });
   const auto start = Clock::now();
   for (std::int64_t number = 1; number <= count; ++number) {
@@ -131,6 +135,9 @@ double Submit(const CellServer& server, std::optional<std::chrono::milliseconds>
       std::this_thread::sleep_until(
           start + std::chrono::duration_cast<Clock::duration>(
                       std::chrono::duration<double>(static_cast<double>(number) / rate)));
+    // What lies in buffers on the way would be submitted long after the time.
+    for (std::int64_t had = answered; number - had > kUnansweredMax; had = answered)
+      answered.wait(had);
     if (!stream->Write(Held(number))) break;
   }
   stream->WritesDone();

@@ -365,7 +365,9 @@ TEST(EventFeed, AForgottenPositionDoesNotComeBack) {
 TEST(EventFeed, TellsAtMostTwentyPositionsASecond) {
   FakeLog log;
   TestSteadyClock steady;
-  EventFeed feed(log, {.clock = steady.clock(), .poll_interval = kNever});
+  EventFeed feed(log, {.clock = steady.clock(),
+                       .poll_interval = kNever,
+                       .message_time = std::chrono::microseconds(0)});
   std::vector<std::string>
       told;  // touched by the thread of the feed alone, until `feed` has caught up
   std::atomic<int> tellings = 0;
