@@ -314,14 +314,127 @@ struct Stalled {
   std::unique_ptr<grpc::ClientReader<Response>> stream;
 };
 
-std::vector<std::string> g_missed;
+// What was measured, a value each round.
+struct Figures {
+  std::vector<double> single, batched, stalled;
+  std::vector<double> submit, submit_batched, submit_browsers;
+  std::vector<double> alone_age, p50, p99;
+  double watcher_kib = 0.0;
+  double browser_kib = 0.0;
+};
 
-void Row(const char* what, const std::vector<double>& values, double goal, bool at_least) {
+// One message as it is told: the bare stream sends as many bytes.
+Response SampleOf(const CellServer& server, std::int64_t after) {
+  const auto stub = v1::CellService::NewStub(server.Connect());
+  grpc::ClientContext context;
+  const auto stream = stub->WatchCell(&context, AllJobs(after, false));
+  Response sample;
+  while (stream->Read(&sample) && !sample.has_event()) continue;
+  context.TryCancel();
+  return sample;
+}
+
+void MeasureTelling(const char* program, const std::filesystem::path& folder, int rounds,
+                    Figures& figures) {
+  const CellServer server(program, folder, 0);
+  const std::int64_t before = LastSequence(server);
+  Submit(server, std::nullopt, kEvents);
+  const auto connect = [&] { return server.Connect(); };
+  const Response sample = SampleOf(server, before);
+  std::printf("an event is a message of %zu bytes\n", sample.ByteSizeLong());
+  BareServer bare(sample.SerializeAsString());
+  for (int round = 0; round < rounds; ++round) {
+    bare.Again();
+    const double limit = Told([&] { return bare.Connect(); }, kWatchers, {},
+                              [&] {
+                                std::this_thread::sleep_for(std::chrono::milliseconds(200));
+                                bare.Begin();
+                              });
+    const double ours = Told(connect, kWatchers, AllJobs(before, false), [] {});
+    const double many = Told(connect, kWatchers, AllJobs(before, true), [] {});
+    double with_stalled = 0.0;
+    {
+      std::vector<std::unique_ptr<Stalled>> asleep;
+      for (int i = 0; i < kStopped; ++i)
+        asleep.push_back(std::make_unique<Stalled>(server, before));
+      with_stalled = Told(connect, kWatchers, AllJobs(before, false), [] {});
+    }
+    figures.single.push_back(ours / limit);
+    figures.batched.push_back(many / limit);
+    figures.stalled.push_back(with_stalled / ours);
+    std::printf(
+        "round %d: bare %8.0f/s  ours %8.0f/s  batched %9.0f/s  beside %d that stopped %8.0f/s\n",
+        round + 1, limit, ours, many, kStopped, with_stalled);
+  }
+}
+
+std::vector<double> AgesOf(const CellServer& server, int watchers, double rate) {
+  Watchers watching(server, watchers, true, true);
+  Submit(server, kPacedTime, 1'000'000, rate);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  return watching.Stop();
+}
+
+void MeasureSubmitting(const CellServer& server, int round, Figures& figures) {
+  figures.alone_age.push_back(Median(AgesOf(server, 1, 50.0)) * 1e3);
+  const std::vector<double> ages = AgesOf(server, kWatchers, kPacedRate);
+  figures.p50.push_back(Quantile(ages, 0.5) * 1e3);
+  figures.p99.push_back(Quantile(ages, 0.99) * 1e3);
+  const double alone = Submit(server, kRateTime, 1'000'000);
+  const auto beside_watchers = [&](bool batched) {
+    Watchers watchers(server, kWatchers, batched, false);
+    return Submit(server, kRateTime, 1'000'000);
+  };
+  const double beside = beside_watchers(false);
+  const double beside_batched = beside_watchers(true);
+  double beside_browsers = 0.0;
+  {
+    Browsers browsers(server, kWatchers);
+    beside_browsers = Submit(server, kRateTime, 1'000'000);
+  }
+  figures.submit.push_back(beside / alone);
+  figures.submit_batched.push_back(beside_batched / alone);
+  figures.submit_browsers.push_back(beside_browsers / alone);
+  std::printf(
+      "round %d: age, one watcher %.2f ms; %d at %d/s p50 %.2f p99 %.2f ms; submits/s alone %.0f, "
+      "beside %d watchers %.0f, batched %.0f, browsers %.0f\n",
+      round + 1, figures.alone_age.back(), kWatchers, kPacedRate, figures.p50.back(),
+      figures.p99.back(), alone, kWatchers, beside, beside_batched, beside_browsers);
+}
+
+void MeasureIdle(const CellServer& server, Figures& figures) {
+  const double before = server.MemoryKiB();
+  {
+    const Watchers watchers(server, kIdle, false, false);
+    figures.watcher_kib = (server.MemoryKiB() - before) / kIdle;
+  }
+  const double between = server.MemoryKiB();
+  const Browsers browsers(server, kIdle);
+  figures.browser_kib = (server.MemoryKiB() - between) / kIdle;
+}
+
+bool Row(const char* what, const std::vector<double>& values, double goal, bool at_least) {
   const double median = Median(values);
   const bool reached = at_least ? median >= goal : median <= goal;
   std::printf("%-64s %8.2f   goal: at %s %.2f%s\n", what, median, at_least ? "least" : "most", goal,
               reached ? "" : "   MISSED");
-  if (!reached) g_missed.push_back(what);
+  return reached;
+}
+
+bool Print(const Figures& figures) {
+  const bool rows[] = {
+      Row("100 watchers, an event a message / bare streams", figures.single, 0.7, true),
+      Row("100 watchers, batched, events / bare streams", figures.batched, 3.0, true),
+      Row("100 watchers beside 10 that stopped / without them", figures.stalled, 0.95, true),
+      Row("age of an event, 1,000/s, 100 watchers: p50, ms", figures.p50, 1.0, false),
+      Row("the same: p99, ms", figures.p99, 5.0, false),
+      Row("submits/s beside 100 watchers / alone", figures.submit, 0.8, true),
+      Row("submits/s beside 100 watchers that take batches / alone", figures.submit_batched, 0.8,
+          true),
+      Row("submits/s beside 100 browsers / alone", figures.submit_browsers, 0.8, true),
+      Row("1,000 idle watchers: KiB each", {figures.watcher_kib}, 64.0, false),
+      Row("1,000 idle browsers: KiB each", {figures.browser_kib}, 64.0, false)};
+  return std::ranges::all_of(rows, [](bool reached) { return reached; });
 }
 
 }  // namespace
@@ -333,108 +446,16 @@ int main(int argc, char** argv) {
   }
   const std::filesystem::path folder = argc > 2 ? argv[2] : "bench-state";
   const int rounds = argc > 3 ? std::max(1, std::atoi(argv[3])) : 5;
-  std::vector<double> single, batched, one_watcher, stalled, submit, submit_batched, submit_sse;
-  std::vector<double> p50, p99, alone_age, memory, memory_sse;
-  {
-    const CellServer server(argv[1], folder / "cell", 0);
-    const std::int64_t before = LastSequence(server);
-    Submit(server, std::nullopt, kEvents);
-    const auto connect = [&] { return server.Connect(); };
-    // One message as it is told: the bare stream sends as many bytes.
-    Response sample;
-    {
-      const auto stub = v1::CellService::NewStub(server.Connect());
-      grpc::ClientContext context;
-      const auto stream = stub->WatchCell(&context, AllJobs(before, false));
-      while (stream->Read(&sample) && !sample.has_event()) continue;
-      context.TryCancel();
-    }
-    std::printf("an event is a message of %zu bytes\n", sample.ByteSizeLong());
-    BareServer bare(sample.SerializeAsString());
-    for (int round = 0; round < rounds; ++round) {
-      bare.Again();
-      const double limit = Told([&] { return bare.Connect(); }, kWatchers, {},
-                                [&] {
-                                  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-                                  bare.Begin();
-                                });
-      const double ours = Told(connect, kWatchers, AllJobs(before, false), [] {});
-      const double many = Told(connect, kWatchers, AllJobs(before, true), [] {});
-      double with_stalled = 0.0;
-      {
-        std::vector<std::unique_ptr<Stalled>> asleep;
-        for (int i = 0; i < kStopped; ++i)
-          asleep.push_back(std::make_unique<Stalled>(server, before));
-        with_stalled = Told(connect, kWatchers, AllJobs(before, false), [] {});
-      }
-      const double one = Told(connect, 1, AllJobs(before, false), [] {});
-      single.push_back(ours / limit);
-      batched.push_back(many / limit);
-      stalled.push_back(with_stalled / ours);
-      one_watcher.push_back(one);
-      std::printf(
-          "round %d: bare %8.0f/s  ours %8.0f/s  batched %9.0f/s  beside %d that stopped %8.0f/s  one %8.0f/s\n",
-          round + 1, limit, ours, many, kStopped, with_stalled, one);
-    }
-  }
+  Figures figures;
+  MeasureTelling(argv[1], folder / "cell", rounds, figures);
   for (int round = 0; round < rounds; ++round) {
     const CellServer server(argv[1], folder / "cell", 0);
-    const auto paced = [&](int count, bool in_batches) {
-      Watchers watchers(server, count, in_batches, true);
-      Submit(server, kPacedTime, 1'000'000, count == 1 ? 50.0 : kPacedRate);
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));
-      return watchers.Stop();
-    };
-    const std::vector<double> idle = paced(1, false);
-    const std::vector<double> ages = paced(kWatchers, true);
-    alone_age.push_back(Median(idle) * 1e3);
-    p50.push_back(Quantile(ages, 0.5) * 1e3);
-    p99.push_back(Quantile(ages, 0.99) * 1e3);
-    const double alone = Submit(server, kRateTime, 1'000'000);
-    double beside = 0.0, beside_batched = 0.0, beside_sse = 0.0;
-    std::int64_t told = 0;
-    {
-      Watchers watchers(server, kWatchers, false, false);
-      beside = Submit(server, kRateTime, 1'000'000);
-    }
-    {
-      Watchers watchers(server, kWatchers, true, false);
-      beside_batched = Submit(server, kRateTime, 1'000'000);
-      told = watchers.told();
-    }
-    {
-      Browsers browsers(server, kWatchers);
-      beside_sse = Submit(server, kRateTime, 1'000'000);
-    }
-    submit.push_back(beside / alone);
-    submit_batched.push_back(beside_batched / alone);
-    submit_sse.push_back(beside_sse / alone);
-    std::printf(
-        "round %d: age, one watcher %.2f ms; %d at %d/s p50 %.2f p99 %.2f ms; submits/s alone %.0f, beside %d "
-        "watchers %.0f, batched %.0f (%.0f events/s told), browsers %.0f\n",
-        round + 1, alone_age.back(), kWatchers, kPacedRate, p50.back(), p99.back(), alone,
-        kWatchers, beside, beside_batched, static_cast<double>(told) / 2.0, beside_sse);
+    MeasureSubmitting(server, round, figures);
   }
   {
     const CellServer server(argv[1], folder / "cell", 0);
-    const double before = server.MemoryKiB();
-    Watchers watchers(server, kIdle, false, false);
-    memory.push_back((server.MemoryKiB() - before) / kIdle);
-    watchers.Stop();
-    const double between = server.MemoryKiB();
-    Browsers browsers(server, kIdle);
-    memory_sse.push_back((server.MemoryKiB() - between) / kIdle);
+    MeasureIdle(server, figures);
   }
-  Row("100 watchers, an event a message / bare streams", single, 0.7, true);
-  Row("100 watchers, batched, events / bare streams", batched, 3.0, true);
-  Row("100 watchers beside 10 that stopped / without them", stalled, 0.95, true);
-  Row("age of an event, 1,000/s, 100 watchers: p50, ms", p50, 1.0, false);
-  Row("the same: p99, ms", p99, 5.0, false);
-  Row("submits/s beside 100 watchers / alone", submit, 0.8, true);
-  Row("submits/s beside 100 watchers that take batches / alone", submit_batched, 0.8, true);
-  Row("submits/s beside 100 browsers / alone", submit_sse, 0.8, true);
-  Row("1,000 idle watchers: KiB each", memory, 64.0, false);
-  Row("1,000 idle browsers: KiB each", memory_sse, 64.0, false);
   std::filesystem::remove_all(folder);
-  return g_missed.empty() ? 0 : 1;
+  return Print(figures) ? 0 : 1;
 }

@@ -76,7 +76,7 @@ void HeightChanges::Note(double x_min, double x_max, double y_min, double y_max)
   const double cell = stock_.cell * static_cast<double>(std::size_t{1} << level_);
   const Range columns = CellsBetween(x_min, x_max, stock_.x_min, cell, size_.columns);
   const Range rows = CellsBetween(y_min, y_max, stock_.y_min, cell, size_.rows);
-  if (columns.begin >= columns.end) return;
+  if (columns.begin >= columns.end || rows.begin >= rows.end) return;
   for (std::size_t row = rows.begin / kTileCells; row * kTileCells < rows.end; ++row) {
     const std::size_t first = row * tile_columns_;
     for (std::size_t at = columns.begin / kTileCells; at * kTileCells < columns.end; ++at)
