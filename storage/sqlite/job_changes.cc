@@ -40,6 +40,7 @@ void SetState(WriteContext& context, JobRow& row, JobState state) {
   if (job.state == JobState::kQueued && row.blocked != 0) context.counters.blocked_jobs -= 1;
   context.counters.JobsIn(job.state) -= 1;
   context.counters.JobsIn(state) += 1;
+  context.moves.push_back({.machine = job.machine, .job = job.id, .from = job.state, .to = state});
   job.state = state;
   // Whoever comes back to the queue waited for all that it had to wait for.
   if (state != JobState::kQueued) row.blocked = 0;

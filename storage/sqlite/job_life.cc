@@ -177,6 +177,8 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
   if (!*inserted) return KnownJob(context, job, contents);
   context.counters.job = record.id;
   context.counters.queued_jobs += 1;
+  context.moves.push_back(
+      {.machine = record.machine, .job = record.id, .from = {}, .to = JobState::kQueued});
   if (blocked != 0) context.counters.blocked_jobs += 1;
   for (const std::int64_t other : record.after) {
     if (const Status added = context.tables.queue.AddAfter(record.id, other); !added)

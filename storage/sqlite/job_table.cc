@@ -176,15 +176,11 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
       attachment_(database, "SELECT attachment FROM job_specification WHERE job = ?1"),
       last_id_(database, "SELECT ifnull(max(id), 0) FROM job"),
       unfinished_(database,
-                  "SELECT machine, count(*), min(CASE WHEN state = 1 THEN id END)"
-                  " FROM job INDEXED BY job_unfinished WHERE state < 2"
-                  " GROUP BY machine ORDER BY machine"),
-      count_queued_(
+                  "SELECT machine, count(*) FROM job INDEXED BY job_unfinished WHERE state < 2"
+                  " GROUP BY machine"),
+      running_(
           database,
-          "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 0"),
-      count_running_(
-          database,
-          "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 1"),
+          "SELECT machine, id FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 1"),
       oldest_finished_(database,
                        "SELECT id FROM job INDEXED BY job_finished_by_time WHERE state >= 2"
                        " ORDER BY finished_at, id LIMIT 1"),
@@ -265,20 +261,18 @@ Result<std::string> JobTable::Specification(std::int64_t id) {
 
 Result<std::int64_t> JobTable::LastId() { return FirstInteger(last_id_.With()); }
 
-Result<std::vector<MachineJobs>> JobTable::Unfinished() {
-  return AllRows<MachineJobs>(unfinished_.With(), [](const Query& row) {
-    return MachineJobs{.machine = row.Text(0),
-                       .unfinished = row.Integer(1),
-                       .oldest_running = row.Integer(2)};  // 0 for NULL
-  });
-}
-
-Result<JobTable::Counts> JobTable::CountUnfinished() {
-  const Result<std::int64_t> queued = FirstInteger(count_queued_.With());
-  if (!queued) return queued.error();
-  const Result<std::int64_t> running = FirstInteger(count_running_.With());
-  if (!running) return running.error();
-  return Counts{.queued = *queued, .running = *running};
+Result<MachineTally::Machines> JobTable::Unfinished() {
+  MachineTally::Machines machines;
+  Query counts = unfinished_.With();
+  Result<bool> row = counts.Step();
+  for (; row && *row; row = counts.Step()) machines[counts.Text(0)].unfinished = counts.Integer(1);
+  if (!row) return row.error();
+  Query running = running_.With();
+  row = running.Step();
+  for (; row && *row; row = running.Step())
+    machines[running.Text(0)].running.insert(running.Integer(1));
+  if (!row) return row.error();
+  return machines;
 }
 
 Result<std::optional<std::int64_t>> JobTable::OldestFinished() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "storage/sqlite/blob_table.h"
+#include "storage/sqlite/machine_tally.h"
 #include "storage/store.h"
 
 namespace rmlcell::storage::sqlite {
@@ -28,7 +29,7 @@ class JobTable {
   Result<std::optional<JobRow>> Get(std::int64_t id);
   Result<std::optional<JobRow>> FindByRequest(std::string_view request_id);
   Result<std::vector<JobRecord>> List(const JobQuery& query);
-  Result<std::vector<MachineJobs>> Unfinished();  // by machine
+  Result<MachineTally::Machines> Unfinished();  // dear: all of them are looked at
   Result<std::vector<JobStateCount>> CountByState(const JobQuery& query);
 
   Status Update(const JobRow& row);  // all that changes in the life of a job
@@ -42,12 +43,6 @@ class JobTable {
   // Of this size. CellStoreCorrupt: it does not have this SHA-256 (32 bytes).
   Result<std::string> Attachment(std::int64_t id, std::size_t size, std::string_view sha256);
 
-  // Dear: all of them are looked at.
-  struct Counts {
-    std::int64_t queued = 0;
-    std::int64_t running = 0;
-  };
-  Result<Counts> CountUnfinished();
   Result<std::int64_t> LastId();
 
   // For the bound on finished jobs.
@@ -83,8 +78,7 @@ class JobTable {
   Statement attachment_;
   Statement last_id_;
   Statement unfinished_;
-  Statement count_queued_;
-  Statement count_running_;
+  Statement running_;
   Statement oldest_finished_;
   Statement remove_;
   Statement remove_specification_;

@@ -65,7 +65,7 @@ Status Raise(Result<std::int64_t> from_rows, Result<std::int64_t> mark, std::int
   return {};
 }
 
-Result<Counters> ReadCounters(Tables& tables) {
+Result<Counters> ReadCounters(Tables& tables, const MachineTally::Machines& machines) {
   Counters counters;
   MarkTable& marks = tables.marks;
   if (const Status job = Raise(tables.jobs.LastId(), marks.Get(MarkTable::kJob), counters.job);
@@ -81,16 +81,17 @@ Result<Counters> ReadCounters(Tables& tables) {
   const Result<std::int64_t> finished = marks.Get(MarkTable::kFinishedJobs);
   if (!finished) return finished.error();
   counters.finished_jobs = *finished;
-  const Result<JobTable::Counts> unfinished = tables.jobs.CountUnfinished();
-  if (!unfinished) return unfinished.error();
+  for (const auto& [machine, jobs] : machines) {
+    const auto running = static_cast<std::int64_t>(jobs.running.size());
+    counters.running_jobs += running;
+    counters.queued_jobs += jobs.unfinished - running;
+  }
   const Result<std::int64_t> of_records = tables.events.CountOfRecords();
   if (!of_records) return of_records.error();
   counters.record_events = *of_records;
-  counters.queued_jobs = unfinished->queued;
   const Result<std::int64_t> blocked = tables.queue.CountBlocked();
   if (!blocked) return blocked.error();
   counters.blocked_jobs = *blocked;
-  counters.running_jobs = unfinished->running;
   return counters;
 }
 
@@ -125,7 +126,9 @@ Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
   // to those who held them.
   const Status ended = connection->tables.leases.EndAll();
   if (!ended) return Named(ended.error(), options.path);
-  const Result<Counters> counters = ReadCounters(connection->tables);
+  Result<MachineTally::Machines> machines = connection->tables.jobs.Unfinished();
+  if (!machines) return Named(machines.error(), options.path);
+  const Result<Counters> counters = ReadCounters(connection->tables, *machines);
   if (!counters) return Named(counters.error(), options.path);
   const std::string log_id = RequestIds().Make(clock());
   if (const Status begun = connection->tables.log_parts.Begin(log_id, counters->position); !begun)
@@ -140,6 +143,7 @@ Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
                          .connection = std::move(connection),
                          .readers = *std::move(readers),
                          .counters = *counters,
+                         .machines = *std::move(machines),
                          .log_id = log_id,
                          .writer = {.keep = {.finished_jobs = options.keep_finished_jobs,
                                              .events = options.keep_events,

@@ -34,6 +34,7 @@ class SqliteStore final : public Store {
     std::unique_ptr<Connection> connection;
     std::unique_ptr<ReaderPool> readers;
     Counters counters;
+    MachineTally::Machines machines;
     std::string log_id;
     Writer::Options writer;
   };

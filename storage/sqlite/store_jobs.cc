@@ -165,8 +165,8 @@ SqliteStore::SqliteStore(Parts parts)
       log_id_(std::move(parts.log_id)),
       connection_(std::move(parts.connection)),
       readers_(std::move(parts.readers)),
-      writer_(*connection_, parts.counters, parts.writer, std::move(parts.clock),
-              [this] { watchers_.Notify(); }) {}
+      writer_(*connection_, parts.counters, std::move(parts.machines), parts.writer,
+              std::move(parts.clock), [this] { watchers_.Notify(); }) {}
 
 void SqliteStore::Submit(NewJob job, Done<SubmittedJob> done) {
   const auto company = job.more_come ? Writer::Company::kComes : Writer::Company::kNone;
@@ -234,9 +234,7 @@ Result<std::vector<JobStateCount>> SqliteStore::CountByState(const JobQuery& que
   return readers_->Read([&](Tables& tables) { return tables.jobs.CountByState(query); });
 }
 
-Result<std::vector<MachineJobs>> SqliteStore::UnfinishedJobs() {
-  return readers_->Read([](Tables& tables) { return tables.jobs.Unfinished(); });
-}
+Result<std::vector<MachineJobs>> SqliteStore::UnfinishedJobs() { return writer_.machine_jobs(); }
 
 Status SqliteStore::DeleteJob(std::int64_t id, std::string_view caller) {
   return writer_.Do([&](WriteContext& context) { return RemoveEndedJob(context, id, caller); });

@@ -59,9 +59,10 @@ Status RemoveMachine(WriteContext& context, std::string_view id, Revision expect
   if (const Status fits = CheckRevision(before.revision, expected, "machine " + std::string(id));
       !fits)
     return fits.error();
-  const Result<std::vector<MachineJobs>> busy = tables.jobs.Unfinished();
+  // In the store, and not in the tally: a job of the same transaction counts.
+  const Result<MachineTally::Machines> busy = tables.jobs.Unfinished();
   if (!busy) return busy.error();
-  if (std::ranges::find(*busy, id, &MachineJobs::machine) != busy->end()) {
+  if (busy->contains(std::string(id))) {
     return Error{ErrorCode::kCellPrecondition,
                  "jobs wait for machine " + std::string(id) + " or run; cancel them first",
                  {}};

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "storage/sqlite/machine_tally.h"
 #include "storage/sqlite/tables.h"
 
 namespace rmlcell::storage::sqlite {
@@ -28,9 +31,10 @@ struct Counters {
 struct WriteContext {
   Tables& tables;
   Counters& counters;
-  WallTime now;          // of this write: leases, events and records all get this one time
-  bool changed = false;  // set: jobs or events changed, watchers want to know
-  bool garbage = false;  // set: a blob may have lost its last reference or hold
+  WallTime now;                  // of this write: leases, events and records all get this one time
+  std::vector<JobMove> moves{};  // added to: for the tally, once they are committed
+  bool changed = false;          // set: jobs or events changed, watchers want to know
+  bool garbage = false;          // set: a blob may have lost its last reference or hold
 };
 
 // An event of a record that is no job: it was made, changed or deleted.

@@ -49,8 +49,8 @@ class WaitingOperation final : public WriteOperation {
 
 }  // namespace
 
-Writer::Writer(Connection& connection, const Counters& counters, const Options& options,
-               Clock clock, std::function<void()> changed)
+Writer::Writer(Connection& connection, const Counters& counters, MachineTally::Machines machines,
+               const Options& options, Clock clock, std::function<void()> changed)
     : options_(options),
       clock_(std::move(clock)),
       changed_(std::move(changed)),
@@ -58,6 +58,7 @@ Writer::Writer(Connection& connection, const Counters& counters, const Options& 
       connection_(connection),
       counters_(counters),
       fence_mark_(counters.fence),
+      machine_jobs_(std::move(machines)),
       queued_jobs_(counters.queued_jobs),
       ready_jobs_(counters.queued_jobs - counters.blocked_jobs),
       running_jobs_(counters.running_jobs),
@@ -240,7 +241,7 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
   if (const Status kept = KeepMarks(before); !kept) return lose(kept.error());
   if (const Status committed = transaction->Commit(); !committed) return lose(committed.error());
   fence_mark_ = FenceMark();
-  PublishCounts();
+  PublishCounts(context);
   tidy_ = tidy_ || context.garbage || housekeeping_.IsDue(counters_);
   untold_ = untold_ || context.changed;
   return Outcome::kCommitted;
@@ -250,6 +251,7 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
 Status Writer::RunOne(Pending& pending, WriteContext& context, Undo undo) {
   context.now = clock_();
   const Counters before = counters_;
+  const std::size_t moves = context.moves.size();
   const std::int64_t changes = connection_.database.total_changes();
   std::optional<Savepoint> savepoint;
   if (undo == Undo::kAlone) {
@@ -264,7 +266,10 @@ Status Writer::RunOne(Pending& pending, WriteContext& context, Undo undo) {
     pending.status = Error{ErrorCode::kCellInternal, exception.what(), {}};
   }
   pending.wrote = connection_.database.total_changes() != changes;
-  if (!pending.status) counters_ = before;
+  if (!pending.status) {
+    counters_ = before;
+    context.moves.resize(moves);
+  }
   if (!savepoint) return {};
   return pending.status ? savepoint->Keep() : savepoint->Undo();
 }
@@ -324,7 +329,8 @@ Status Writer::KeepMarks(const Counters& before) {
 }
 
 // Before anybody is told of the change: whoever is, finds it here.
-void Writer::PublishCounts() {
+void Writer::PublishCounts(const WriteContext& context) {
+  machine_jobs_.Apply(context.moves);
   queued_jobs_ = counters_.queued_jobs;
   ready_jobs_ = counters_.queued_jobs - counters_.blocked_jobs;
   running_jobs_ = counters_.running_jobs;

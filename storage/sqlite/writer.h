@@ -36,8 +36,8 @@ class Writer {
   };
 
   // `changed` is called by whoever has the turn after a commit that changed jobs or events.
-  Writer(Connection& connection, const Counters& counters, const Options& options, Clock clock,
-         std::function<void()> changed);
+  Writer(Connection& connection, const Counters& counters, MachineTally::Machines machines,
+         const Options& options, Clock clock, std::function<void()> changed);
 
   // Runs and answers what waits, then stops the thread.
   ~Writer();
@@ -57,6 +57,7 @@ class Writer {
 
   // As of the newest commit.
   JobCounts job_counts() const { return {.queued = queued_jobs_, .running = running_jobs_}; }
+  std::vector<MachineJobs> machine_jobs() const { return machine_jobs_.List(); }
   bool any_ready_job() const { return ready_jobs_ > 0; }
 
   // Runs `work`, from WriteContext& to a Result or Status, and returns what it gave once it is
@@ -93,7 +94,7 @@ class Writer {
   void Tidy();
   std::int64_t FenceMark() const;
   Status KeepMarks(const Counters& before);
-  void PublishCounts();
+  void PublishCounts(const WriteContext& context);
   bool LogIsLarge(int pages);
   void CheckpointWhenLarge();
   bool IsIdle();
@@ -116,6 +117,7 @@ class Writer {
   bool tidy_ = true;             // there may be something to remove
   int pages_at_checkpoint_ = 0;  // size of the log when it was last moved
 
+  MachineTally machine_jobs_;
   std::atomic<std::int64_t> queued_jobs_;
   std::atomic<std::int64_t> ready_jobs_;
   std::atomic<std::int64_t> running_jobs_;

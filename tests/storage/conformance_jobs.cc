@@ -410,6 +410,9 @@ TEST_P(StoreConformance, UnfinishedJobsAreCountedByMachine) {
   const LeasedJob third = Acquire();
   EXPECT_EQ(told(), "mill-1 1 " + std::to_string(only.job.id) + "; mill-2 3 " +
                         std::to_string(first) + "; ");
+  Reopen();
+  EXPECT_EQ(told(), "mill-1 1 " + std::to_string(only.job.id) + "; mill-2 3 " +
+                        std::to_string(first) + "; ");
   Finish(oldest.lease);
   EXPECT_EQ(told(), "mill-1 1 " + std::to_string(only.job.id) + "; mill-2 2 " +
                         std::to_string(third.job.id) + "; ");

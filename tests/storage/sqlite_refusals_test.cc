@@ -218,7 +218,7 @@ constexpr Writer::Options kRoomy{.keep = {},
 
 // A write that runs out of memory, or meets another mistake, fails alone, and nothing of it stays.
 TEST_F(SqliteOwnWriter, WriteThatThrows) {
-  Writer writer(connection_, {}, kRoomy, SystemTime, [] {});
+  Writer writer(connection_, {}, {}, kRoomy, SystemTime, [] {});
   const Status failed = writer.Do([](WriteContext& context) -> Status {
     context.counters.queued_jobs += 1;
     Must(context.tables.marks.Set(MarkTable::kJob, 99));
@@ -236,7 +236,7 @@ TEST_F(SqliteOwnWriter, WriteThatThrows) {
 // between them, and the disk is not asked for each chunk. Noise does not shrink: 9 MiB are three
 // writes, behind the one that makes the blob.
 TEST_F(SqliteOwnWriter, LargeContentGoesAheadInWritesOf4MiB) {
-  Writer writer(connection_, {}, kRoomy, SystemTime, [] {});
+  Writer writer(connection_, {}, {}, kRoomy, SystemTime, [] {});
   const std::string content = Noise(std::size_t{9} << 20, 1);
   const StagedContent staged =
       Must(StagedContent::Make(writer, content, StagedContent::Place::kBlob));
