@@ -48,9 +48,9 @@ namespace {
 
 // Threads for work that may block: the store mostly, so there are more of them than cores.
 constexpr int kStoreThreads = 8;
-// For streams, which mostly copy what is in memory: however many there are, calls go on beside
+// For watches, which mostly tell what is in memory: however many there are, calls go on beside
 // them.
-constexpr int kStreamThreads = 2;
+constexpr int kWatchThreads = 2;
 // Programs that may wait to be translated or compared, each with its bytes in memory.
 constexpr std::size_t kComputeWaitingMax = 64;
 
@@ -87,7 +87,7 @@ struct Cell::Parts {
   std::string instance_id = RandomText();
   std::unique_ptr<storage::Store> store;
   std::unique_ptr<Executor> executor;
-  std::unique_ptr<Executor> streams;
+  std::unique_ptr<Executor> watching;
   std::unique_ptr<Executor> compute;
   std::unique_ptr<EventFeed> feed;
   std::unique_ptr<MachineStatuses> statuses;
@@ -176,7 +176,7 @@ Status Cell::Parts::MakeMachines() {
 
 Status Cell::Parts::Listen(const std::string& join_token) {
   executor = std::make_unique<Executor>(kStoreThreads);
-  streams = std::make_unique<Executor>(kStreamThreads);
+  watching = std::make_unique<Executor>(kWatchThreads);
   compute = std::make_unique<Executor>(
       std::max(1, static_cast<int>(std::thread::hardware_concurrency())), kComputeWaitingMax);
   feed = std::make_unique<EventFeed>(*store);
@@ -191,10 +191,10 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   transfer = std::make_unique<ProjectTransfer>(*store, *projects, *programs);
   gate.OnChange([this] { open.AskAgain(); });
   const CallNeeds needs{gate, *executor, *compute, config.limit_message_bytes};
-  job_service = std::make_unique<JobService>(needs, *streams, *book, *results, *dispatcher, *feed,
+  job_service = std::make_unique<JobService>(needs, *watching, *book, *results, *dispatcher, *feed,
                                              open, instance_id);
   machine_service = std::make_unique<MachineService>(
-      needs, MachineWatchNeeds{*streams, open, *store, *feed, instance_id});
+      needs, MachineWatchNeeds{*watching, open, *store, *feed, instance_id});
   program_service =
       std::make_unique<ProgramService>(needs, *store, *programs, *tools, *language, open);
   project_service = std::make_unique<ProjectService>(needs, *projects, *transfer, open);
@@ -204,7 +204,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   const CellRecords records{*store, *book, *programs, *projects};
   logs = std::make_unique<SharedLogs>(SharedLogNeeds{records, *feed, *facts, instance_id});
   cell_service = std::make_unique<CellService>(
-      needs, CellWatchNeeds{*streams, open, records, *feed, *logs, *facts, watches, instance_id},
+      needs, CellWatchNeeds{*watching, open, records, *feed, *logs, *facts, watches, instance_id},
       *dispatcher, config);
   account_service = std::make_unique<AccountService>(needs);
   worker_service = std::make_unique<WorkerService>(needs, *dispatcher);
@@ -353,7 +353,7 @@ void Cell::Stop() {
   parts.web.reset();
   parts.server.reset();
   parts.private_socket.reset();
-  parts.streams.reset();
+  parts.watching.reset();
   parts.compute.reset();
   parts.statuses.reset();
   if (parts.dispatcher != nullptr) parts.dispatcher->Settle();

@@ -444,10 +444,11 @@ Error JobBook::WhyNoArtifact(std::int64_t job, std::string_view name) {
   if (!record) return record.error();
   if (!storage::IsFinal(record->state)) {
     return Error{ErrorCode::kCellPrecondition,
-                 JobName(job) + " has not ended: its " + std::string(name) + " is made at its end",
+                 JobName(job) + " has not ended: what it leaves, perhaps " + Readable(name) +
+                     ", is there at its end",
                  {}};
   }
-  return Error{ErrorCode::kCellNotFound, JobName(job) + " has no " + std::string(name), {}};
+  return Error{ErrorCode::kCellNotFound, JobName(job) + " has no " + Readable(name), {}};
 }
 
 Result<std::string> JobBook::ReadArtifact(std::int64_t job, std::string_view name) {

@@ -201,6 +201,12 @@ Status CheckBrought(const v1::Job& job, const std::string& file_name,
   }
   if (const Status named = CheckFileName(file_name, "the file name of the program"); !named)
     return named.error();
+  const v1::MillTarget& target = job.simulation().milling().target();
+  for (const std::string* of_target :
+       {&target.file().file_name(), &target.inline_program().file_name()}) {
+    if (const Status named = CheckFileName(*of_target, "the file name of the target"); !named)
+      return named.error();
+  }
   for (const v1::SlotProgram& program : job.simulation().programs()) {
     if (const Status named =
             CheckFileName(program.program().file_name(), "job.simulation.programs: a file name");

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kTile = static_cast<int>(simulation::kTileCells);
 
-bool Fits(const v1::HeightGrid& grid) {
+bool IsForAScreen(const v1::HeightGrid& grid) {
   constexpr int kMost = static_cast<int>(simulation::kScreenCells);
   return grid.columns() > 0 && grid.columns() <= kMost && grid.rows() > 0 && grid.rows() <= kMost;
 }
@@ -29,7 +29,7 @@ RunningHeights::Part RunningHeights::Look(std::uint64_t seen) const {
 
 void RunningHeights::Add(const v1::WorkerHeights& heights) {
   const std::lock_guard lock(mutex_);
-  if (!grid_ && heights.has_grid() && server::Fits(heights.grid())) grid_ = heights.grid();
+  if (!grid_ && heights.has_grid() && IsForAScreen(heights.grid())) grid_ = heights.grid();
   for (const v1::HeightTile& tile : heights.tiles()) {
     if (!Fits(tile)) continue;
     const std::pair<int, int> place{tile.row(), tile.column()};

@@ -16,7 +16,7 @@ Status CheckFileFamily(const std::string& file_name, const machine::MachineFamil
 Status CheckFileName(std::string_view file_name, std::string_view field) {
   constexpr std::size_t kLongest = 255;
   if (file_name.size() <= kLongest) return {};
-  return InvalidArgument(std::string(field) + " is longer than 255 characters");
+  return InvalidArgument(std::string(field) + " is longer than 255 bytes");
 }
 
 }  // namespace rmlcell::server

@@ -87,48 +87,61 @@ Status AddProjects(const CellRecords& records, const CellSubscription& subscript
   return {};
 }
 
-void SetMachine(const CellRecords& records, const storage::EventRecord& event,
+// Of a record that was read: whether it is there no more, and not that the store is in trouble.
+bool IsGone(const Error& error) {
+  return error.code == ErrorCode::kCellNotFound || error.code == ErrorCode::kCellUnknownMachine ||
+         error.code == ErrorCode::kProgramMissing;
+}
+
+// False: it could not be read.
+bool SetMachine(const CellRecords& records, const storage::EventRecord& event,
                 v1::MachineChanged& changed) {
   changed.set_change(ChangeOf(event));
   changed.mutable_machine()->set_name(event.resource);
-  if (changed.change() == v1::RECORD_CHANGE_DELETED) return;
+  if (changed.change() == v1::RECORD_CHANGE_DELETED) return true;
   const auto id = ParseMachineName(event.resource);
   const auto machine =
       id ? records.store.GetMachine(*id) : Result<storage::MachineRecord>(id.error());
-  if (!machine) return;
+  if (!machine) return IsGone(machine.error());
   *changed.mutable_machine() = ToProto(*machine);
   changed.mutable_machine()->clear_status();
+  return true;
 }
 
-void SetProgram(const CellRecords& records, const storage::EventRecord& event,
+bool SetProgram(const CellRecords& records, const storage::EventRecord& event,
                 v1::ProgramEvent& changed) {
   changed.set_change(ChangeOf(event));
   changed.mutable_program()->set_name(event.resource);
-  if (changed.change() == v1::RECORD_CHANGE_DELETED) return;
+  if (changed.change() == v1::RECORD_CHANGE_DELETED) return true;
   auto program = records.programs.Get(event.resource);
-  if (program) *changed.mutable_program() = *std::move(program);
+  if (!program) return IsGone(program.error());
+  *changed.mutable_program() = *std::move(program);
+  return true;
 }
 
-void SetSchedule(const CellRecords& records, const storage::EventRecord& event,
+bool SetSchedule(const CellRecords& records, const storage::EventRecord& event,
                  v1::ProgramEvent& changed) {
   changed.set_change(ChangeOf(event));
   changed.mutable_laser_schedule()->set_name(event.resource);
-  if (changed.change() == v1::RECORD_CHANGE_DELETED) return;
+  if (changed.change() == v1::RECORD_CHANGE_DELETED) return true;
   const auto name = ParseScheduleName(event.resource);
-  if (!name) return;
+  if (!name) return true;
   const auto schedules = records.store.ListSchedules(name->machine);
-  if (!schedules) return;
+  if (!schedules) return IsGone(schedules.error());
   const auto found = std::ranges::find(*schedules, name->number, &storage::ScheduleRecord::number);
   if (found != schedules->end()) *changed.mutable_laser_schedule() = ToProto(*found);
+  return true;
 }
 
-void SetProject(const CellRecords& records, const storage::EventRecord& event,
+bool SetProject(const CellRecords& records, const storage::EventRecord& event,
                 v1::ProjectEvent& changed) {
   changed.set_change(ChangeOf(event));
   changed.mutable_project()->set_name(event.resource);
-  if (changed.change() == v1::RECORD_CHANGE_DELETED) return;
+  if (changed.change() == v1::RECORD_CHANGE_DELETED) return true;
   auto project = records.projects.Get(event.resource);
-  if (project) *changed.mutable_project() = WithoutContent(*std::move(project));
+  if (!project) return IsGone(project.error());
+  *changed.mutable_project() = WithoutContent(*std::move(project));
+  return true;
 }
 
 }  // namespace
@@ -154,8 +167,9 @@ Result<v1::CellSnapshot> SnapshotOf(const CellRecords& records,
   return snapshot;
 }
 
-v1::CellEvent EventOf(const CellRecords& records, const storage::EventRecord& event) {
-  v1::CellEvent made;
+ReadEvent EventOf(const CellRecords& records, const storage::EventRecord& event) {
+  ReadEvent read;
+  v1::CellEvent& made = read.event;
   made.set_sequence(event.position);
   made.set_resource(event.job > 0 ? JobName(event.job) : event.resource);
   *made.mutable_time() = ToProto(event.at);
@@ -165,15 +179,15 @@ v1::CellEvent EventOf(const CellRecords& records, const storage::EventRecord& ev
   } else if (event.resource.starts_with("jobs/")) {
     made.set_job_deleted(true);
   } else if (event.resource.starts_with("projects/")) {
-    SetProject(records, event, *made.mutable_project());
+    read.whole = SetProject(records, event, *made.mutable_project());
   } else if (event.resource.find("/programs/") != std::string::npos) {
-    SetProgram(records, event, *made.mutable_program());
+    read.whole = SetProgram(records, event, *made.mutable_program());
   } else if (event.resource.find("/laserSchedules/") != std::string::npos) {
-    SetSchedule(records, event, *made.mutable_program());
+    read.whole = SetSchedule(records, event, *made.mutable_program());
   } else {
-    SetMachine(records, event, *made.mutable_machine()->mutable_changed());
+    read.whole = SetMachine(records, event, *made.mutable_machine()->mutable_changed());
   }
-  return made;
+  return read;
 }
 
 }  // namespace rmlcell::server

@@ -22,8 +22,12 @@ struct CellRecords {
 Result<v1::CellSnapshot> SnapshotOf(const CellRecords& records,
                                     const CellSubscription& subscription);
 
-// An event as it is told. Of a record that is no job it is told what it is by now; where it cannot
-// be read, or is gone meanwhile, its name alone.
-v1::CellEvent EventOf(const CellRecords& records, const storage::EventRecord& event);
+// An event as it is told. Of a record that is no job it is told what it is by now; where it is gone
+// meanwhile, or cannot be read, its name alone.
+struct ReadEvent {
+  v1::CellEvent event{};
+  bool whole = true;  // false: it could not be read
+};
+ReadEvent EventOf(const CellRecords& records, const storage::EventRecord& event);
 
 }  // namespace rmlcell::server

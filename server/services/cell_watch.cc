@@ -93,8 +93,9 @@ class CellWatch final : public PullStream<grpc::ByteBuffer>, public WatchRegistr
 
   // Events that are in memory.
   std::optional<Next> MakeAtOnce(grpc::ByteBuffer& bytes) override {
+    const Instant due = std::min(last_bookmark_ + needs_.bookmark_interval, postponed_);
     if (log_ == nullptr || snapshots_due_ || !latest_.empty() || has_changes_ ||
-        needs_.clock() >= last_bookmark_ + needs_.bookmark_interval)
+        needs_.clock() >= due)
       return std::nullopt;
     while (const auto piece = log_->AtOnce(cursor_, request_.batched())) {
       cursor_ = piece->end;
@@ -104,6 +105,7 @@ class CellWatch final : public PullStream<grpc::ByteBuffer>, public WatchRegistr
     }
     if (cursor_ < needs_.feed.position() || needs_.feed.version() > version_looked_at_)
       return std::nullopt;
+    WakeAt(due);
     return Next::kNothing;
   }
 
@@ -205,6 +207,8 @@ class CellWatch final : public PullStream<grpc::ByteBuffer>, public WatchRegistr
       has_changes_ = false;
     }
     if (changes.empty()) return;
+    snapshots_due_ = true;
+    version_looked_at_ = 0;  // they were told of nothing that stands
     for (WatchChange& change : changes) {
       const auto replaced = [&](const Told& told) {
         return std::ranges::find(change.remove, told.subscription.id()) != change.remove.end() ||
@@ -269,11 +273,13 @@ class CellWatch final : public PullStream<grpc::ByteBuffer>, public WatchRegistr
   void ReadLatest() {
     const Instant now = needs_.clock();
     version_looked_at_ = needs_.feed.version();
+    postponed_ = Instant::max();
     std::map<std::uint64_t, std::pair<Latest, std::vector<std::string>>> wanted;
     for (Told& told : told_) {
       const std::vector<Latest> newer = needs_.feed.AllLatestAfter(told.seen);
       if (newer.empty()) continue;
       if (now < told.next) {
+        postponed_ = std::min(postponed_, told.next);
         WakeAt(told.next);
         continue;
       }
@@ -322,6 +328,7 @@ class CellWatch final : public PullStream<grpc::ByteBuffer>, public WatchRegistr
   std::shared_ptr<SharedLog> log_;                                  // of told_
   bool snapshots_due_ = true;                                       // of some subscription, perhaps
   std::uint64_t version_looked_at_ = 0;                             // of what stands for now
+  Instant postponed_ = Instant::max();                              // when some of it may be told
   std::deque<std::pair<Latest, std::vector<std::string>>> latest_;  // one per resource at most
   std::unique_ptr<EventFeed::Subscription> subscription_;
 

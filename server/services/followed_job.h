@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "server/base/names.h"
@@ -52,7 +53,9 @@ class FollowedJob {
   }
 
   Error BeginsAnew() const {
-    return {ErrorCode::kCellLeaseLost, JobName(id_) + " begins anew: follow it again", {}};
+    return {ErrorCode::kCellUnavailable,
+            "the attempt of " + JobName(id_) + " was lost: follow the job again",
+            {}};
   }
 
   // Of one that runs.

@@ -119,6 +119,8 @@ class HeightsStream final : public PullStream<v1::StreamJobHeightsResponse> {
 
   Result<Next> MakeStored(v1::StreamJobHeightsResponse& message) {
     while (next_ == ready_.size()) {
+      // The end of all of it shows whether it is whole; of a part there is no need to go there.
+      if (request_.has_area() && tiles_->done()) return Next::kEnd;
       const Result<std::string> chunk = reader_->Next();
       if (!chunk) return chunk.error();
       if (chunk->empty()) return Next::kEnd;

@@ -143,8 +143,8 @@ Status JobService::OrderWaiting(const std::string& name, v1::WorkerControl::Kind
   return job ? Status() : Status(job.error());
 }
 
-JobStreamNeeds JobService::Streams() const {
-  return {.executor = streams_,
+JobStreamNeeds JobService::Streams(Executor& lane) const {
+  return {.executor = lane,
           .open = open_,
           .book = book_,
           .feed = feed_,
@@ -199,7 +199,7 @@ grpc::ServerWriteReactor<v1::WatchJobResponse>* JobService::WatchJob(
     grpc::CallbackServerContext* context, const v1::WatchJobRequest* request) {
   return OpenStream<v1::WatchJobResponse>(
       needs_, *context, *request, "JobService/WatchJob",
-      [&](const Caller&) { return MakeJobWatch(Streams(), *request); });
+      [&](const Caller&) { return MakeJobWatch(Streams(watches_), *request); });
 }
 
 grpc::ServerUnaryReactor* JobService::GetJobReport(grpc::CallbackServerContext* context,
@@ -266,14 +266,14 @@ grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobTo
     grpc::CallbackServerContext* context, const v1::StreamJobToolpathRequest* request) {
   return OpenStream<v1::StreamJobToolpathResponse>(
       needs_, *context, *request, "JobService/StreamJobToolpath",
-      [&](const Caller&) { return MakeToolpathStream(Streams(), *request); });
+      [&](const Caller&) { return MakeToolpathStream(Streams(needs_.executor), *request); });
 }
 
 grpc::ServerWriteReactor<v1::StreamJobHeightsResponse>* JobService::StreamJobHeights(
     grpc::CallbackServerContext* context, const v1::StreamJobHeightsRequest* request) {
   return OpenStream<v1::StreamJobHeightsResponse>(
       needs_, *context, *request, "JobService/StreamJobHeights",
-      [&](const Caller&) { return MakeHeightsStream(Streams(), *request); });
+      [&](const Caller&) { return MakeHeightsStream(Streams(needs_.executor), *request); });
 }
 
 grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext* context,
@@ -319,14 +319,14 @@ grpc::ServerWriteReactor<v1::StreamJobArtifactResponse>* JobService::StreamJobAr
     grpc::CallbackServerContext* context, const v1::StreamJobArtifactRequest* request) {
   return OpenStream<v1::StreamJobArtifactResponse>(
       needs_, *context, *request, "JobService/StreamJobArtifact",
-      [&](const Caller&) { return MakeArtifactStream(Streams(), *request); });
+      [&](const Caller&) { return MakeArtifactStream(Streams(needs_.executor), *request); });
 }
 
 grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* JobService::StreamJobTrace(
     grpc::CallbackServerContext* context, const v1::StreamJobTraceRequest* request) {
   return OpenStream<v1::StreamJobTraceResponse>(
       needs_, *context, *request, "JobService/StreamJobTrace",
-      [&](const Caller&) { return MakeTraceStream(Streams(), request->name()); });
+      [&](const Caller&) { return MakeTraceStream(Streams(needs_.executor), request->name()); });
 }
 
 grpc::ServerUnaryReactor* JobService::CancelJobs(grpc::CallbackServerContext* context,

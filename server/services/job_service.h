@@ -19,10 +19,10 @@ class JobResults;
 // Converts, calls, converts: the rules live in server/jobs.
 class JobService final : public v1::JobService::CallbackService {
  public:
-  JobService(CallNeeds needs, Executor& streams, JobBook& book, JobResults& results,
+  JobService(CallNeeds needs, Executor& watches, JobBook& book, JobResults& results,
              Dispatcher& dispatcher, EventFeed& feed, OpenStreams& open, std::string instance_id)
       : needs_(needs),
-        streams_(streams),
+        watches_(watches),
         book_(book),
         results_(results),
         dispatcher_(dispatcher),
@@ -115,10 +115,10 @@ class JobService final : public v1::JobService::CallbackService {
   grpc::Status Give(const std::string& name, v1::Job* response);
   Status OrderWaiting(const std::string& name, v1::WorkerControl::Kind kind,
                       const std::string& caller);
-  JobStreamNeeds Streams() const;
+  JobStreamNeeds Streams(Executor& lane) const;
 
   CallNeeds needs_;
-  Executor& streams_;
+  Executor& watches_;
   JobBook& book_;
   JobResults& results_;
   Dispatcher& dispatcher_;

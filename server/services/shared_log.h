@@ -31,11 +31,16 @@ struct SharedLogNeeds {
 // The last events that were told, serialised (rmlcell.v1.CellEvent). Thread-safe.
 class ToldEvents {
  public:
-  static constexpr std::size_t kBytesMax = std::size_t{4} << 20;
+  static constexpr std::size_t kKeptBytes = std::size_t{4} << 20;
 
   explicit ToldEvents(const CellRecords& records) : records_(records) {}
+
+  struct Told {
+    std::shared_ptr<const std::string> bytes;
+    bool whole = true;  // false: the store was in trouble, and the name alone is told; not kept
+  };
   // An event of a record is told as that is when the first asks.
-  std::shared_ptr<const std::string> Of(const storage::EventRecord& event);
+  Told Of(const storage::EventRecord& event);
 
  private:
   CellRecords records_;
@@ -51,11 +56,15 @@ struct LogPiece {
 };
 
 // Of one set of subscriptions. Thread-safe.
-class SharedLog {
+class SharedLog : public std::enable_shared_from_this<SharedLog> {
  public:
-  // Events of a message at most, for who takes several in one.
-  static constexpr std::int64_t kEventsMax = 64;
-  static constexpr std::size_t kBytesMax = std::size_t{1} << 20;
+  // Events that are read at once, and the most of a message for who takes several in one; such a
+  // message ends, too, where it has kMessageBytes.
+  static constexpr std::int64_t kEventsAtOnce = 64;
+  static constexpr std::size_t kMessageBytes = std::size_t{512} << 10;
+  // Messages that are kept, of each form: for watches that share them, and for one alone.
+  static constexpr std::size_t kSharedBytes = std::size_t{1} << 20;
+  static constexpr std::size_t kBytesOfOne = std::size_t{32} << 10;
 
   SharedLog(SharedLogNeeds needs, std::shared_ptr<ToldEvents> events,
             std::vector<CellSubscription> subscriptions)
@@ -72,14 +81,26 @@ class SharedLog {
 
  private:
   using Ids = std::vector<std::string>;
+  // A piece that is being made.
+  struct Draft {
+    std::int64_t begin = 0;
+    std::int64_t end = 0;
+    std::int64_t last_wanted = 0;
+    Ids ids{};
+    std::vector<std::shared_ptr<const std::string>> events{};
+    std::size_t bytes = 0;
+    bool whole = true;
+  };
+
   std::optional<LogPiece> Known(std::int64_t position, bool batched);
-  std::optional<LogPiece> Make(std::vector<storage::EventRecord> read, std::int64_t position,
-                               bool batched);
+  std::optional<LogPiece> MakeAll(const std::vector<storage::EventRecord>& read,
+                                  std::int64_t position, bool batched);
+  bool IsFull(const Draft& draft, const Ids& ids, std::int64_t position, bool batched) const;
   Ids WantedBy(const storage::EventRecord& event) const;
-  grpc::Slice MessageOf(const Ids& ids, const std::vector<storage::EventRecord>& events,
-                        std::int64_t position, bool batched);
+  LogPiece Close(const Draft& draft, bool batched);
+  grpc::Slice MessageOf(const Draft& draft) const;
   void Keep(std::int64_t position, bool batched, const LogPiece& piece);
-  void Forget();
+  void ForgetBefore(std::int64_t position);
 
   const SharedLogNeeds needs_;
   const std::shared_ptr<ToldEvents> events_;
@@ -87,7 +108,7 @@ class SharedLog {
   std::mutex mutex_;
   struct Kept {
     std::map<std::int64_t, LogPiece> pieces;  // by where they begin
-    std::deque<std::int64_t> order;           // the oldest first
+    std::deque<std::int64_t> order;           // the oldest first; some may be forgotten
     std::size_t bytes = 0;
   };
   Kept kept_[2];  // guarded by mutex_; one event a message, several

@@ -24,14 +24,15 @@ Status AddEvent(const google::protobuf::Descriptor& type, std::string_view bytes
 
 Result<std::string> TextOf(const google::protobuf::Descriptor& type, std::string_view bytes) {
   std::string text;
-  v1::WatchCellResponse message;
-  const bool several = &type == v1::WatchCellResponse::descriptor() &&
-                       message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())) &&
-                       message.has_events();
-  if (!several) {
-    if (const Status added = AddEvent(type, bytes, text); !added) return added.error();
-    return text;
-  }
+  if (const Status added = AddEvent(type, bytes, text); !added) return added.error();
+  return text;
+}
+
+// Of each event a message of its own, as a browser is told of it.
+Result<std::string> TextOf(v1::WatchCellResponse message) {
+  const google::protobuf::Descriptor& type = *v1::WatchCellResponse::descriptor();
+  if (!message.has_events()) return TextOf(type, message.SerializeAsString());
+  std::string text;
   v1::CellEvents events = std::move(*message.mutable_events());
   for (v1::CellEvent& event : *events.mutable_events()) {
     message.set_sequence(event.sequence());
@@ -46,18 +47,34 @@ Result<std::string> TextOf(const google::protobuf::Descriptor& type, std::string
 
 Result<EventTexts::Text> EventTexts::Of(const google::protobuf::Descriptor& type,
                                         std::string_view bytes) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (const auto found = texts_.find(bytes); found != texts_.end()) return found->second;
-  }
-  Result<std::string> made = TextOf(type, bytes);
-  if (!made) return made.error();
-  auto text = std::make_shared<const std::string>(*std::move(made));
+  const auto told = [](Result<std::string> text) -> Result<Text> {
+    if (!text) return text.error();
+    return std::make_shared<const std::string>(*std::move(text));
+  };
+  // Only what happens is told to many in the same words.
+  if (&type != v1::WatchCellResponse::descriptor()) return told(TextOf(type, bytes));
+  if (Text known = Find(bytes)) return known;
+  v1::WatchCellResponse message;
+  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())))
+    return told(TextOf(type, bytes));  // which says so
+  const bool shared = message.has_event() || message.has_events();
+  Result<Text> text = told(TextOf(std::move(message)));
+  if (text && shared) Keep(bytes, *text);
+  return text;
+}
+
+EventTexts::Text EventTexts::Find(std::string_view bytes) {
+  const std::lock_guard lock(mutex_);
+  const auto found = texts_.find(bytes);
+  return found == texts_.end() ? nullptr : found->second;
+}
+
+void EventTexts::Keep(std::string_view bytes, const Text& text) {
   const std::lock_guard lock(mutex_);
   ++made_;
-  if (bytes.size() + text->size() > kKeptMax) return text;
+  if (bytes.size() + text->size() > kKeptMax) return;
   const auto [row, added] = texts_.emplace(std::string(bytes), text);
-  if (!added) return row->second;
+  if (!added) return;
   order_.push_back(row);
   bytes_ += bytes.size() + text->size();
   while (bytes_ > kBytesMax) {
@@ -66,7 +83,6 @@ Result<EventTexts::Text> EventTexts::Of(const google::protobuf::Descriptor& type
     bytes_ -= oldest->first.size() + oldest->second->size();
     texts_.erase(oldest);
   }
-  return text;
 }
 
 std::size_t EventTexts::made() const {

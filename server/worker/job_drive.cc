@@ -1,6 +1,7 @@
 #include "server/worker/job_drive.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "proto/bridge/report.h"
 #include "server/worker/pacer.h"
@@ -11,7 +12,7 @@ namespace {
 constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positions a second
 constexpr std::chrono::milliseconds kToolpathInterval{200};
 constexpr std::chrono::milliseconds kHeightsInterval{200};
-constexpr std::size_t kTilesAtOnce = 32;            // of at most 8 KiB
+constexpr std::size_t kTilesOfALook = 32;           // of at most 8 KiB
 constexpr std::chrono::milliseconds kHeldWait{20};  // between two looks for an order
 constexpr SimTime kPacedSliceMin = std::chrono::milliseconds(1);
 
@@ -144,12 +145,13 @@ void JobDrive::SendToolpath(const simulation::Recorder& recorder, Clock::time_po
 bool JobDrive::SendHeights(simulation::Recorder& recorder, std::optional<Clock::time_point> now) {
   simulation::MillingRecorder* milling = recorder.milling();
   if (milling == nullptr || !lease_.heights_followed()) return false;
-  if (now && heights_sent_ && *now - *heights_sent_ < kHeightsInterval) return false;
-  std::vector<simulation::HeightTile> tiles = milling->TakeChanges(kTilesAtOnce);
-  if (tiles.empty() && heights_sent_) return false;
-  heights_sent_ = now.value_or(Clock::time_point());
-  const bool more = tiles.size() == kTilesAtOnce;
-  return output_.SendHeights(milling->material(), std::move(tiles)) && more;
+  if (now && *now < heights_due_) return false;
+  if (now) heights_due_ = *now + kHeightsInterval;
+  std::vector<simulation::HeightTile> tiles = milling->TakeChanges(kTilesOfALook);
+  if (!tiles.empty() || !std::exchange(grid_sent_, true)) {
+    if (!output_.SendHeights(milling->material(), std::move(tiles))) return false;
+  }
+  return milling->any_change_left();
 }
 
 void JobDrive::CarryOut(const v1::WorkerControl& order, simulation::Simulation& simulation) {

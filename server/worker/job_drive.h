@@ -48,7 +48,8 @@ class JobDrive {
   Options options_;
   Clock::duration planned_for_{0};
   std::optional<Clock::time_point> toolpath_sent_;
-  std::optional<Clock::time_point> heights_sent_;
+  Clock::time_point heights_due_{};
+  bool grid_sent_ = false;
   bool held_ = false;  // by a client, who may let it go on
 };
 

@@ -23,6 +23,7 @@ Range CellsBetween(double low, double high, double from, double cell, std::size_
     return static_cast<std::size_t>(
         std::clamp(std::floor((at - from) / cell), 0.0, static_cast<double>(cells)));
   };
+  if (high < from) return {};
   return {index(low), std::min(index(high) + 1, cells)};
 }
 
@@ -70,7 +71,8 @@ HeightChanges::HeightChanges(const HeightField& field)
       level_(LevelForScreen({field.columns(), field.rows()})),
       size_(SizeAtLevel({field.columns(), field.rows()}, level_)),
       tile_columns_(TilesIn(size_.columns)),
-      changed_(tile_columns_ * TilesIn(size_.rows), true) {}
+      changed_(tile_columns_ * TilesIn(size_.rows), true),
+      left_(changed_.size()) {}
 
 void HeightChanges::Note(double x_min, double x_max, double y_min, double y_max) {
   const double cell = stock_.cell * static_cast<double>(std::size_t{1} << level_);
@@ -79,18 +81,23 @@ void HeightChanges::Note(double x_min, double x_max, double y_min, double y_max)
   if (columns.begin >= columns.end || rows.begin >= rows.end) return;
   for (std::size_t row = rows.begin / kTileCells; row * kTileCells < rows.end; ++row) {
     const std::size_t first = row * tile_columns_;
-    for (std::size_t at = columns.begin / kTileCells; at * kTileCells < columns.end; ++at)
+    for (std::size_t at = columns.begin / kTileCells; at * kTileCells < columns.end; ++at) {
+      if (!changed_[first + at]) ++left_;
       changed_[first + at] = true;
+    }
   }
 }
 
 std::vector<HeightTile> HeightChanges::Take(const HeightField& field, std::size_t most) {
   std::vector<HeightTile> tiles;
-  for (std::size_t looked = 0; looked < changed_.size() && tiles.size() < most; ++looked) {
+  const std::size_t cells_of_a_tile = (kTileCells * kTileCells) << (2 * level_);
+  for (std::size_t cells = 0; left_ > 0 && tiles.size() < most && cells < kCellsAtOnce;) {
     const std::size_t tile = next_;
     next_ = (next_ + 1) % changed_.size();
     if (!changed_[tile]) continue;
     changed_[tile] = false;
+    --left_;
+    cells += cells_of_a_tile;
     HeightTile made = TileOf(field, tile);
     // The number of the top has all bits.
     if (made.heights.find_first_not_of('\xFF') != std::string::npos)
@@ -173,6 +180,11 @@ void HeightGridTiles::CutTiles(std::vector<HeightTile>& tiles) {
   }
   rows_cut_ += rows;
   band_.clear();
+}
+
+bool HeightGridTiles::done() const {
+  const std::size_t wanted = area_ ? std::min(area_->row + area_->rows, size_.rows) : size_.rows;
+  return rows_cut_ >= wanted;
 }
 
 bool HeightGridTiles::Wanted(const HeightTile& tile) const {

@@ -58,12 +58,15 @@ class HeightChanges {
   // At first all have.
   explicit HeightChanges(const HeightField& field);
 
-  // Something was taken off in this rectangle of the machine frame, mm.
+  // Something was taken off in this rectangle of the block's frame, mm.
   void Note(double x_min, double x_max, double y_min, double y_max);
 
   // At most `most` of those that have changed, by turns, and from then on they have not. One that
-  // nothing was ever taken off is none. Empty: there are no more.
+  // nothing was ever taken off is none. No more than kCellsAtOnce are looked at.
   std::vector<HeightTile> Take(const HeightField& field, std::size_t most);
+  static constexpr std::size_t kCellsAtOnce = std::size_t{1} << 22;
+  // Whether Take() would look at more.
+  bool any_left() const { return left_ > 0; }
 
   int level() const { return level_; }
   HeightField::Size size() const { return size_; }  // at this level
@@ -77,6 +80,7 @@ class HeightChanges {
   std::size_t tile_columns_;
   std::size_t next_ = 0;  // tile that is looked at next
   std::vector<bool> changed_;
+  std::size_t left_;  // that have
 };
 
 // A height grid, as its bytes come, into the tiles of a level.
@@ -91,6 +95,9 @@ class HeightGridTiles {
   };
   // Tiles that have no cell in the area are left out.
   HeightGridTiles(const HeightGridHead& head, int level, std::optional<Area> area);
+
+  // Whether all that is wanted has come: what follows need not be read.
+  bool done() const;
 
   // Bytes behind the head, in parts of any size. The tiles that are full now, row by row.
   std::vector<HeightTile> Add(std::string_view bytes);

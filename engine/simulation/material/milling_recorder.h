@@ -44,6 +44,7 @@ class MillingRecorder final : public machine::RunObserver {
   // For who looks on while it mills: at most `most` tiles that have changed since they were taken
   // last. From the first call on it is noted where something is taken off.
   std::vector<HeightTile> TakeChanges(std::size_t most);
+  bool any_change_left() const { return changes_ && changes_->any_left(); }
   const std::optional<Target>& target() const { return target_; }
 
  private:

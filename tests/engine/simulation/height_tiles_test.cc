@@ -128,6 +128,17 @@ TEST(HeightTiles, TheyAreTakenByTurns) {
   EXPECT_EQ(seen.size(), 9U);
 }
 
+// A look at a large block is bounded: 4,096 by 4,096 cells are four looks, though nothing was cut.
+TEST(HeightTiles, ALookAtALargeBlockIsBounded) {
+  const Stock large{.x_max = 4096.0, .y_max = 4096.0, .bottom = -1.0, .cell = 1.0};
+  const HeightField field = HeightField::Of(large).value();
+  HeightChanges changes(field);
+  ASSERT_EQ(changes.level(), 2);
+  int looks = 0;
+  for (; changes.any_left(); ++looks) EXPECT_TRUE(changes.Take(field, 1000).empty());
+  EXPECT_EQ(looks, 4);
+}
+
 // As one looks on, and afterwards: the same tiles, at each level, in parts of any size.
 TEST(HeightTiles, AGridHasTheSameTiles) {
   const Stock wide{.x_min = 0.0,

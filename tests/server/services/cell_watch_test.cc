@@ -456,5 +456,41 @@ TEST_F(CellWatchTest, WhatIsNoSubscriptionIsRefused) {
   later.ExpectRefused(grpc::StatusCode::UNIMPLEMENTED, "audit");
 }
 
+// A subscription with a rate is told of what changed meanwhile when its time comes, though nothing
+// else happens; and then the stream says that it lives.
+TEST(CellWatchRate, WhatIsPutOffIsTold) {
+  StreamBed room({}, std::chrono::milliseconds(1500));
+  const std::int64_t job = room.Submit();
+  room.bed.Lease();
+  v1::WatchCellRequest request = Of({"jobs"}, false);
+  request.mutable_subscriptions(0)->set_max_rate_hz(2);
+  auto watch = room.WatchCell(request);
+  EXPECT_EQ(NextOf(watch), "snapshot of jobs");
+  room.TellSteps(job, 1);
+  const std::string first = JobName(job) + " at 1 steps";
+  EXPECT_EQ(NextOf(watch), first);
+  room.TellSteps(job, 2);
+  EXPECT_EQ(NextOf(watch), JobName(job) + " at 2 steps");
+  EXPECT_EQ(NextOf(watch), "bookmark");
+  EXPECT_EQ(NextOf(watch), "bookmark");
+}
+
+// Each that is added begins with its snapshot, before any event for it.
+TEST_F(CellWatchTest, EachOneThatIsAddedBeginsWithASnapshot) {
+  auto watch = room.WatchCell(Of({"projects"}));
+  v1::UpdateWatchRequest change;
+  change.set_watch_id(watch.Next().watch_id());
+  for (const char* id : {"a", "b", "c"}) {
+    v1::Subscription& added = *change.add_add();
+    added.set_id(id);
+    added.mutable_jobs();
+  }
+  room.TellSteps(one, 7);
+  EXPECT_TRUE(room.registry.Change(change, StreamBed::kCaller));
+  for (const char* id : {"a", "b", "c"}) EXPECT_EQ(NextOf(watch), std::string("snapshot of ") + id);
+  // And where the job is, that was told before.
+  EXPECT_EQ(NextOf(watch), JobName(one) + " at 7 steps");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

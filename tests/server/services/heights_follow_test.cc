@@ -158,7 +158,7 @@ TEST_F(HeightsFollow, AnAttemptThatIsLostEndsTheStream) {
   running->Add(Grid());
   EXPECT_TRUE(stream.Next().has_grid());
   running->End(false);
-  stream.ExpectRefused(grpc::StatusCode::ABORTED, "begins anew: follow it again");
+  stream.ExpectRefused(grpc::StatusCode::UNAVAILABLE, "was lost: follow the job again");
 }
 
 // Also when it ended before its worker heard that somebody looks.

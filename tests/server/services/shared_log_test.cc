@@ -78,7 +78,7 @@ TEST_F(SharedLogTest, SeveralEventsAreOneMessage) {
     ++messages;
   }
   EXPECT_EQ(told, Stored(before));
-  EXPECT_LE(messages, 5);
+  EXPECT_LE(messages, 5);  // 64 positions each, and what is left at both ends
   room.Say(lease, {"alone"});
   const v1::WatchCellResponse alone = watch.Next();
   EXPECT_FALSE(alone.has_events());
@@ -125,6 +125,27 @@ TEST_F(SharedLogTest, AMessageIsForTheSameSubscriptions) {
   EXPECT_THAT(cde.subscriptions(), ElementsAre("other"));
   EXPECT_EQ(cde.events().events_size(), 3);
   EXPECT_EQ(watch.Next().event().job().message().text(), "f");
+}
+
+// The number of a message is that of its last event, also where others follow that nobody wants.
+TEST_F(SharedLogTest, TheNumberIsThatOfTheLastEvent) {
+  room.Submit();
+  const storage::Lease lease = room.bed.Lease();
+  const std::int64_t other = room.Submit();
+  const storage::Lease of_other = room.bed.Lease();
+  const std::int64_t before = Must(room.bed.store().LastPosition());
+  room.Say(of_other, {"a", "b"});
+  room.Say(lease, {"not wanted", "not wanted"});
+  for (const bool batched : {false, true}) {
+    v1::WatchCellRequest request = After(before, batched);
+    request.mutable_subscriptions(0)->mutable_jobs()->add_names(JobName(other));
+    auto watch = room.WatchCell(request);
+    EXPECT_TRUE(watch.Next().has_bookmark());
+    if (!batched) {
+      EXPECT_EQ(watch.Next().sequence(), before + 1);
+    }
+    EXPECT_EQ(watch.Next().sequence(), before + 2);
+  }
 }
 
 // Events that nobody wants are passed over, however many there are, by both kinds.

@@ -150,7 +150,7 @@ TEST_F(ToolpathFollowTest, AnAttemptThatIsLostEndsTheStream) {
   EXPECT_TRUE(stream.Next().has_header());
   EXPECT_EQ(stream.Next().block(), "one");
   running->End(false);
-  stream.ExpectRefused(grpc::StatusCode::ABORTED, "begins anew: follow it again");
+  stream.ExpectRefused(grpc::StatusCode::UNAVAILABLE, "was lost: follow the job again");
 }
 
 // Also when another attempt has brought the job to its end before the follower looks.
@@ -164,7 +164,7 @@ TEST_F(ToolpathFollowTest, WhatAnotherAttemptMadeIsNotPutBehindIt) {
   EXPECT_EQ(stream.Next().block(), "one");
   room.Finish(lease, Stored(Framed({"another", "and more"})));
   running->End(false);
-  stream.ExpectRefused(grpc::StatusCode::ABORTED, "begins anew: follow it again");
+  stream.ExpectRefused(grpc::StatusCode::UNAVAILABLE, "was lost: follow the job again");
 }
 
 TEST_F(ToolpathFollowTest, AJobThatMakesNoneHasNothingToFollow) {

@@ -58,11 +58,21 @@ TEST(EventTexts, SeveralEventsAreAsManyTexts) {
 
 TEST(EventTexts, IsMadeOnceForAll) {
   EventTexts texts;
-  const std::string text = TextOf(texts, Told(1));
+  const auto happened = [](std::int64_t sequence) {
+    v1::WatchCellResponse message = Told(sequence);
+    message.mutable_event()->set_sequence(sequence);
+    return message;
+  };
+  const std::string text = TextOf(texts, happened(1));
   EXPECT_EQ(texts.made(), 1U);
-  EXPECT_EQ(TextOf(texts, Told(1)), text);
+  EXPECT_EQ(TextOf(texts, happened(1)), text);
   EXPECT_EQ(texts.made(), 1U);
-  TextOf(texts, Told(2));
+  TextOf(texts, happened(2));
+  EXPECT_EQ(texts.made(), 2U);
+  // What is told to one alone leaves no trace.
+  v1::WatchCellResponse snapshot = Told(2);
+  snapshot.mutable_snapshot();
+  TextOf(texts, snapshot);
   EXPECT_EQ(texts.made(), 2U);
 }
 
