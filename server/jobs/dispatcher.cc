@@ -233,10 +233,12 @@ void Dispatcher::WakeIdle() {
 void Dispatcher::LookAtTimes(const std::stop_token& stop) {
   const auto interval = std::min<std::chrono::milliseconds>(
       std::chrono::milliseconds(config_.workers_lease_ms / 2), kTimesLookedAtAfter);
+  std::mutex mutex;
+  std::condition_variable_any stopped;
   while (!stop.stop_requested()) {
     EndLeases();
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, stop, interval, [] { return false; });
+    std::unique_lock lock(mutex);
+    stopped.wait_for(lock, stop, interval, [] { return false; });
   }
 }
 
@@ -248,12 +250,12 @@ void Dispatcher::LookAtOrders(const std::stop_token& stop) {
       const bool working = HasWork();
       const auto changed = [&] { return later_ || HasWork() != working; };
       if (working) {
-        changed_.wait_for(lock, stop, kOrdersLookedForAfter, changed);
+        to_look_at_.wait_for(lock, stop, kOrdersLookedForAfter, changed);
       } else {
-        changed_.wait(lock, stop, changed);
+        to_look_at_.wait(lock, stop, changed);
       }
       if (!later_) continue;
-      changed_.wait_for(lock, stop, kTriedAgainAfter, [] { return false; });
+      to_look_at_.wait_for(lock, stop, kTriedAgainAfter, [] { return false; });
       later_ = false;
     }
     TryAgain();

@@ -169,7 +169,8 @@ class Dispatcher {
   std::atomic<bool> draining_ = false;
 
   mutable std::mutex mutex_;
-  std::condition_variable_any changed_;
+  std::condition_variable_any changed_;     // for who waits until there is nothing more to do
+  std::condition_variable_any to_look_at_;  // a first job, or later_
   std::map<WorkerId, std::shared_ptr<Worker>> workers_;
   WorkerId next_worker_ = 1;
   std::size_t at_work_ = 0;  // guarded by mutex_; workers that something is done or awaited for,

@@ -105,6 +105,7 @@ void Dispatcher::Assigned(const std::shared_ptr<Worker>& worker,
     const std::lock_guard lock(mutex_);
     worker->looking = false;
     worker->idle = false;
+    if (!HasWork()) to_look_at_.notify_all();
     worker->job = worker->assignment->lease.job;
   }
   changed_.notify_all();
@@ -145,6 +146,7 @@ void Dispatcher::RestWithoutWork(const std::shared_ptr<Worker>& worker, const Er
     worker->rests = true;
     later_ = true;
   }
+  to_look_at_.notify_all();
   storage::LossPolicy policy = LossOf(StoppedOutcome(), {}, "its programs could not be read");
   policy.requeued = {StateEvent(storage::JobState::kQueued)};
   Close(worker, HandBack{std::move(policy)});
@@ -223,7 +225,7 @@ void Dispatcher::TryLater(const std::shared_ptr<Worker>& worker) {
   const std::lock_guard lock(mutex_);
   trying_later_.push_back(worker);
   later_ = true;
-  changed_.notify_all();
+  to_look_at_.notify_all();
 }
 
 // What the store did not take a moment ago.
@@ -427,6 +429,7 @@ void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
 
 void Dispatcher::Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish& finish) {
   Assignment& assignment = *worker->assignment;
+  for (v1::WorkerArtifact& artifact : *finish.mutable_artifacts()) Collect(*worker, artifact);
   if (assignment.over_budget) {
     *finish.mutable_outcome() = ToProto(storage::JobOutcome{
         .state = storage::JobState::kFailed, .code = ErrorCode::kCellOutputBudget, .detail = {}});

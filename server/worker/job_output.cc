@@ -9,6 +9,9 @@ namespace rmlcell::server {
 namespace {
 
 constexpr std::size_t kChunkBytes = 128 << 10;
+// Products that go with the end of the attempt, each and all together.
+constexpr std::size_t kSmallBytes = 32 << 10;
+constexpr std::size_t kSmallBytesAll = 128 << 10;
 constexpr std::size_t kChunksAtOnce = 8;  // then orders are looked at
 
 }  // namespace
@@ -69,6 +72,15 @@ void JobOutput::SendSpooled(const std::string& name, bridge::SpooledBytes& produ
 
 void JobOutput::Send(const std::string& name, const std::string& media_type, std::string_view bytes,
                      const machine::BytesKeeper* keeper) {
+  if (bytes.size() <= kSmallBytes && small_bytes_ + bytes.size() <= kSmallBytesAll) {
+    small_bytes_ += bytes.size();
+    v1::WorkerArtifact& artifact = *small_.add_artifacts();
+    *artifact.mutable_lease() = lease_;
+    artifact.set_name(name);
+    artifact.set_media_type(media_type);
+    artifact.set_chunk(std::string(bytes));
+    return;
+  }
   for (std::size_t sent = 0; sent == 0 || sent < bytes.size(); sent += kChunkBytes) {
     v1::WorkRequest message;
     v1::WorkerArtifact& artifact = *message.mutable_artifact();
@@ -79,6 +91,10 @@ void JobOutput::Send(const std::string& name, const std::string& media_type, std
     if (!line_.Send(message)) return;
     if (keeper != nullptr) keeper->Release();
   }
+}
+
+void JobOutput::MoveSmallTo(v1::WorkerFinish& finish) {
+  finish.mutable_artifacts()->Swap(small_.mutable_artifacts());
 }
 
 }  // namespace rmlcell::server

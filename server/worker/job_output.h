@@ -42,6 +42,8 @@ class JobOutput {
   void SendToolpath() { SendSpooled("toolpath", toolpath_); }
   void Send(const std::string& name, const std::string& media_type, std::string_view bytes,
             const machine::BytesKeeper* keeper = nullptr);
+  // The small ones of what was sent: they go with the end of the attempt.
+  void MoveSmallTo(v1::WorkerFinish& finish);
 
  private:
   void SendSpooled(const std::string& name, bridge::SpooledBytes& product);
@@ -51,6 +53,8 @@ class JobOutput {
   std::int64_t bytes_max_;
   bridge::SpooledBytes trace_;
   bridge::SpooledBytes toolpath_;
+  v1::WorkerFinish small_;  // products that go with the end
+  std::size_t small_bytes_ = 0;
   std::size_t event_bytes_ = 0;
   std::int64_t followed_bytes_ = 0;  // of the toolpath, that went to who follows it
   std::string followed_block_;       // the open one that went last

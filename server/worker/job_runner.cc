@@ -362,6 +362,7 @@ class Attempt {
       linked.set_object_revision(program.object_revision());
       linked.set_content(std::move(made->second));
     }
+    output_.MoveSmallTo(finish);
     lease_.SendFinish(std::move(finish));
   }
 

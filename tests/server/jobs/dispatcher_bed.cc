@@ -116,7 +116,16 @@ void FakeWorker::Finish(v1::Outcome::Kind kind, const std::map<int, std::string>
     linked.set_object_revision(program.object_revision());
     linked.set_content(made->second);
   }
+  message.mutable_finish()->mutable_artifacts()->Swap(small_.mutable_artifacts());
   Send(std::move(message));
+}
+
+void FakeWorker::SmallArtifact(const std::string& name, const std::string& bytes) {
+  v1::WorkerArtifact& artifact = *small_.add_artifacts();
+  *artifact.mutable_lease() = assignment_.lease();
+  artifact.set_name(name);
+  artifact.set_media_type("text/plain");
+  artifact.set_chunk(bytes);
 }
 
 void FakeWorker::HandBack() {

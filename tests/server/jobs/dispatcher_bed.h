@@ -63,6 +63,8 @@ class FakeWorker {
   void Position(std::int64_t time_ns);
   void Events(int count, const std::string& text = "text");
   void Artifact(const std::string& name, const std::string& bytes);
+  // One that comes with the end.
+  void SmallArtifact(const std::string& name, const std::string& bytes);
   void Toolpath(const std::string& frames, const std::string& open_block);
   void Finish(v1::Outcome::Kind kind = v1::Outcome::KIND_COMPLETED,
               const std::map<int, std::string>& executables = {},
@@ -80,6 +82,7 @@ class FakeWorker {
   v1::WorkerControl Ordered();
 
  private:
+  v1::WorkerFinish small_;  // products that go with the end
   void Send(v1::WorkRequest message) { dispatcher_.Receive(id_, std::move(message)); }
 
   Dispatcher& dispatcher_;

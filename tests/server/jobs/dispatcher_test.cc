@@ -145,7 +145,8 @@ TEST(DispatcherFinish, StoresOutcomeProductsAndLastEventTogether) {
   ASSERT_TRUE(worker.Take());
   worker.Artifact("report", "first ");
   worker.Artifact("report", "second");
-  worker.Artifact("empty", "");
+  worker.SmallArtifact("picture.svg", "small");
+  worker.SmallArtifact("empty", "");
   worker.Finish(v1::Outcome::KIND_COMPLETED);
   EXPECT_EQ(worker.Released(), true);
   EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
@@ -153,6 +154,8 @@ TEST(DispatcherFinish, StoresOutcomeProductsAndLastEventTogether) {
   EXPECT_EQ(Must(bed.server.store().ReadBlob(report.sha256)), "first second");
   EXPECT_EQ(report.media_type, "text/plain");
   EXPECT_EQ(Must(bed.server.store().GetArtifact(job, "empty")).size, 0);
+  const auto picture = Must(bed.server.store().GetArtifact(job, "picture.svg"));
+  EXPECT_EQ(Must(bed.server.store().ReadBlob(picture.sha256)), "small");
   const std::vector<v1::JobEvent> events = bed.Events(job);
   ASSERT_TRUE(events.back().has_ended());
   EXPECT_EQ(events.back().ended().kind(), v1::Outcome::KIND_COMPLETED);

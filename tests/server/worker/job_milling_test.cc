@@ -59,13 +59,12 @@ TEST_F(JobMilling, LeavesWhatIsAskedFor) {
   const std::string& stl = artifacts["left.stl"];
   ASSERT_GT(stl.size(), 84U);
   EXPECT_EQ((stl.size() - 84) % 50, 0U);
-  for (const v1::WorkRequest& message : heard_) {
-    if (!message.has_artifact()) continue;
-    if (message.artifact().name().ends_with(".png")) {
-      EXPECT_EQ(message.artifact().media_type(), "image/png");
+  for (const v1::WorkerArtifact& artifact : ArtifactMessages()) {
+    if (artifact.name().ends_with(".png")) {
+      EXPECT_EQ(artifact.media_type(), "image/png");
     }
-    if (message.artifact().name() == "left.stl") {
-      EXPECT_EQ(message.artifact().media_type(), "model/stl");
+    if (artifact.name() == "left.stl") {
+      EXPECT_EQ(artifact.media_type(), "model/stl");
     }
   }
 }

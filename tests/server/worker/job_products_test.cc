@@ -191,6 +191,22 @@ TEST_F(JobProducts, TheToolpathIsASeriesOfFrames) {
   EXPECT_EQ(rest, "");
 }
 
+// worker.proto, WorkerFinish.artifacts: what is small comes with the end, what is large by itself.
+TEST_F(JobProducts, SmallOnesComeWithTheEnd) {
+  const auto by_themselves = [&] {
+    return std::ranges::count_if(heard_, [](const v1::WorkRequest& m) { return m.has_artifact(); });
+  };
+  Work(Assignment(v1::JOB_KIND_SIMULATE, "PA;VS8;!MC1;PU1000,1000;Z1000,1000,-50;PU0,0;", "rml1"));
+  EXPECT_EQ(by_themselves(), 0);
+  EXPECT_THAT(Names(), ElementsAre("picture.svg", "report", "toolpath"));
+  std::string source = "PA;PA;VS8;!MC1;";
+  for (int i = 0; i < 20'000; ++i)
+    source += "Z" + std::to_string(i % 2 * 1000) + "," + std::to_string(i % 7 * 100) + ",-50;";
+  Work(Assignment(v1::JOB_KIND_SIMULATE, source, "rml1"));
+  EXPECT_GT(by_themselves(), 0);
+  EXPECT_THAT(Names(), ElementsAre("picture.svg", "report", "toolpath"));
+}
+
 // Budget.output_bytes: so many bytes of output and not one more.
 TEST_F(JobProducts, ABudgetOfOutputMayBeUsedUp) {
   v1::WorkerAssignment assignment = CheckOf("STOP\n");

@@ -207,13 +207,23 @@ class JobRunnerTest : public testing::Test {
   }
   std::map<std::string, std::string> Artifacts() {
     std::map<std::string, std::string> artifacts;
-    for (const v1::WorkRequest& message : heard_) {
-      if (!message.has_artifact()) continue;
-      EXPECT_EQ(message.artifact().lease().SerializeAsString(), Lease().SerializeAsString());
-      EXPECT_LE(message.artifact().chunk().size(), std::size_t{1} << 20);
-      artifacts[message.artifact().name()] += message.artifact().chunk();
-    }
+    for (const v1::WorkerArtifact& artifact : ArtifactMessages())
+      artifacts[artifact.name()] += artifact.chunk();
     return artifacts;
+  }
+  // Those that came by themselves, and those of the end.
+  std::vector<v1::WorkerArtifact> ArtifactMessages() {
+    std::vector<v1::WorkerArtifact> all;
+    for (const v1::WorkRequest& message : heard_) {
+      if (message.has_artifact()) all.push_back(message.artifact());
+      for (const v1::WorkerArtifact& artifact : message.finish().artifacts())
+        all.push_back(artifact);
+    }
+    for (const v1::WorkerArtifact& artifact : all) {
+      EXPECT_EQ(artifact.lease().SerializeAsString(), Lease().SerializeAsString());
+      EXPECT_LE(artifact.chunk().size(), std::size_t{1} << 20);
+    }
+    return all;
   }
   std::vector<std::string> Names() {
     std::vector<std::string> names;
