@@ -14,19 +14,13 @@
 #include "server/jobs/running_toolpath.h"
 #include "server/records/job_messages.h"
 #include "storage/jobs/job_rules.h"
+#include "storage/trouble.h"
 
 namespace rmlcell::server {
 namespace {
 
 // What a worker may send over its budget until it has noticed.
 constexpr std::int64_t kOutputSlack = 1 << 20;
-
-// Not of the job: the same may succeed in a moment.
-bool IsTroubleOfTheStore(const Error& error) {
-  return error.code == ErrorCode::kCellStoreFailed || error.code == ErrorCode::kCellStoreBusy ||
-         error.code == ErrorCode::kCellStoreUnavailable ||
-         error.code == ErrorCode::kCellResourceExhausted;
-}
 
 // What the worker told before it was lost.
 void PutBefore(const std::vector<storage::NewEvent>& events, storage::LossPolicy& policy) {
@@ -118,7 +112,7 @@ void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::Lea
   spdlog::debug("{} attempt {} goes to worker {}", JobName(job.lease.job), job.lease.attempt,
                 worker->name);
   if (const Status sent = SendAssignment(*worker, job); !sent) {
-    if (IsTroubleOfTheStore(sent.error())) return RestWithoutWork(worker, sent.error());
+    if (storage::IsTroubleOfTheStore(sent.error())) return RestWithoutWork(worker, sent.error());
     // The job itself cannot be worked on: it fails, and the worker is free for the next.
     return EndWithoutWork(worker, {.state = storage::JobState::kFailed,
                                    .code = sent.error().code,
@@ -200,7 +194,7 @@ void Dispatcher::Closed(const std::shared_ptr<Worker>& worker,
     if (MayStillHold(assignment, job.error())) return TryLater(worker);
     if (end != nullptr && job.error().code != ErrorCode::kCellLeaseLost) {
       // What cannot be stored at all may be one of them.
-      if (!IsTroubleOfTheStore(job.error())) assignment.events.clear();
+      if (!storage::IsTroubleOfTheStore(job.error())) assignment.events.clear();
       return Lose(worker);
     }
   }
@@ -217,7 +211,7 @@ void Dispatcher::Closed(const std::shared_ptr<Worker>& worker,
 }
 
 bool Dispatcher::MayStillHold(const Assignment& assignment, const Error& trouble) const {
-  return IsTroubleOfTheStore(trouble) &&
+  return storage::IsTroubleOfTheStore(trouble) &&
          clock_() - assignment.renewed_at < std::chrono::milliseconds(config_.workers_lease_ms);
 }
 

@@ -9,6 +9,7 @@
 #include "server/projects/project_book.h"
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
+#include "storage/trouble.h"
 
 namespace rmlcell::server {
 namespace {
@@ -87,12 +88,6 @@ Status AddProjects(const CellRecords& records, const CellSubscription& subscript
   return {};
 }
 
-// Of a record that was read: whether it is there no more, and not that the store is in trouble.
-bool IsGone(const Error& error) {
-  return error.code == ErrorCode::kCellNotFound || error.code == ErrorCode::kCellUnknownMachine ||
-         error.code == ErrorCode::kProgramMissing;
-}
-
 // False: it could not be read.
 bool SetMachine(const CellRecords& records, const storage::EventRecord& event,
                 v1::MachineChanged& changed) {
@@ -102,7 +97,7 @@ bool SetMachine(const CellRecords& records, const storage::EventRecord& event,
   const auto id = ParseMachineName(event.resource);
   const auto machine =
       id ? records.store.GetMachine(*id) : Result<storage::MachineRecord>(id.error());
-  if (!machine) return IsGone(machine.error());
+  if (!machine) return !storage::IsTroubleOfTheStore(machine.error());
   *changed.mutable_machine() = ToProto(*machine);
   changed.mutable_machine()->clear_status();
   return true;
@@ -114,7 +109,7 @@ bool SetProgram(const CellRecords& records, const storage::EventRecord& event,
   changed.mutable_program()->set_name(event.resource);
   if (changed.change() == v1::RECORD_CHANGE_DELETED) return true;
   auto program = records.programs.Get(event.resource);
-  if (!program) return IsGone(program.error());
+  if (!program) return !storage::IsTroubleOfTheStore(program.error());
   *changed.mutable_program() = *std::move(program);
   return true;
 }
@@ -127,7 +122,7 @@ bool SetSchedule(const CellRecords& records, const storage::EventRecord& event,
   const auto name = ParseScheduleName(event.resource);
   if (!name) return true;
   const auto schedules = records.store.ListSchedules(name->machine);
-  if (!schedules) return IsGone(schedules.error());
+  if (!schedules) return !storage::IsTroubleOfTheStore(schedules.error());
   const auto found = std::ranges::find(*schedules, name->number, &storage::ScheduleRecord::number);
   if (found != schedules->end()) *changed.mutable_laser_schedule() = ToProto(*found);
   return true;
@@ -139,7 +134,7 @@ bool SetProject(const CellRecords& records, const storage::EventRecord& event,
   changed.mutable_project()->set_name(event.resource);
   if (changed.change() == v1::RECORD_CHANGE_DELETED) return true;
   auto project = records.projects.Get(event.resource);
-  if (!project) return IsGone(project.error());
+  if (!project) return !storage::IsTroubleOfTheStore(project.error());
   *changed.mutable_project() = WithoutContent(*std::move(project));
   return true;
 }

@@ -128,7 +128,7 @@ PUBLIC = {
     MATERIAL: ["height_grid.h", "height_map.h", "height_tiles.h", "milling_recorder.h", "milling_text.h", "relief.h", "standard_cell.h", "stl.h", "target.h", "target_files.h"],
     VERDICT: ["verdict.h"],
     RUN: ["simulate.h", "input_description.h", "motion_check.h", "rehearsal.h", "joint_check.h", "milled_target.h", "timetable.h", "trial_run.h"],
-    "storage": ["content.h", "records.h", "store.h"],
+    "storage": ["content.h", "records.h", "store.h", "trouble.h"],
     "storage/jobs": ["job_rules.h", "queue_rules.h"],
     "storage/sqlite": ["sqlite_store.h"],
     "storage/opening": ["open_store.h"],
