@@ -101,6 +101,12 @@ class HeightsStream final : public PullStream<v1::StreamJobHeightsResponse> {
     }
     const Result<simulation::HeightGridHead> head = simulation::ReadHeightGridHead(bytes);
     if (!head) return head.error();
+    if (head->size.columns > simulation::HeightGridTiles::kColumnsMax) {
+      return Error{ErrorCode::kCellTooLarge,
+                   "the block has " + std::to_string(head->size.columns) +
+                       " columns, tiles are made of up to 1,048,576; read height.grid itself",
+                   {}};
+    }
     const int level =
         request_.has_level() ? request_.level() : simulation::LevelForScreen(head->size);
     std::optional<simulation::HeightGridTiles::Area> area;

@@ -93,7 +93,10 @@ class HeightGridTiles {
     std::size_t columns = 0;
     std::size_t rows = 0;
   };
-  // Tiles that have no cell in the area are left out.
+  // A row of cells is in memory: no more of them than this.
+  static constexpr std::size_t kColumnsMax = std::size_t{1} << 20;
+
+  // Tiles that have no cell in the area are left out. Precondition: kColumnsMax.
   HeightGridTiles(const HeightGridHead& head, int level, std::optional<Area> area);
 
   // Whether all that is wanted has come: what follows need not be read.

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/simulation/material/height_grid.h"
+#include "engine/simulation/material/height_tiles.h"
 #include "server/base/names.h"
 #include "tests/server/services/stream_bed.h"
 
@@ -223,6 +223,18 @@ TEST_F(HeightsFollow, RefusesWhatIsNotThere) {
   request.set_follow(false);
   request.mutable_area()->set_columns(1);
   room.Heights(request).ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "area");
+}
+
+// A block of one row and millions of columns: such a row is not held in memory.
+TEST_F(HeightsFollow, TooManyColumnsAreRefused) {
+  std::string bytes = StoredGrid();
+  const std::size_t columns = simulation::HeightGridTiles::kColumnsMax + 1;
+  for (std::size_t byte = 0; byte < 4; ++byte)
+    bytes[12 + byte] = static_cast<char>(columns >> (8 * byte) & 0xFF);
+  bytes[16] = 1;  // row
+  v1::StreamJobHeightsRequest request;
+  request.set_name(JobName(room.Ended("height.grid", bytes, Mills())));
+  room.Heights(request).ExpectRefused(grpc::StatusCode::RESOURCE_EXHAUSTED, "1048577 columns");
 }
 
 TEST_F(HeightsFollow, ABadProductIsAnErrorAndNoPicture) {
