@@ -97,6 +97,9 @@ class CellWatch final : public PullStream<grpc::ByteBuffer>, public WatchRegistr
     if (log_ == nullptr || snapshots_due_ || !latest_.empty() || has_changes_ ||
         needs_.clock() >= due)
       return std::nullopt;
+    // Who is far behind takes turns on the lane of watches: a hundred of them that went on from
+    // write to write would leave nothing to those who submit.
+    if (needs_.feed.position() - cursor_ > SharedLog::kEventsAtOnce) return std::nullopt;
     while (const auto piece = log_->AtOnce(cursor_, request_.batched())) {
       cursor_ = piece->end;
       if (!piece->message) continue;
