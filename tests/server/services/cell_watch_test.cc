@@ -466,11 +466,16 @@ TEST(CellWatchRate, WhatIsPutOffIsTold) {
   request.mutable_subscriptions(0)->set_max_rate_hz(2);
   auto watch = room.WatchCell(request);
   EXPECT_EQ(NextOf(watch), "snapshot of jobs");
+  // On a machine that is busy a bookmark may fall due before.
+  const auto next_position = [&] {
+    std::string word = NextOf(watch);
+    while (word == "bookmark") word = NextOf(watch);
+    return word;
+  };
   room.TellSteps(job, 1);
-  const std::string first = JobName(job) + " at 1 steps";
-  EXPECT_EQ(NextOf(watch), first);
+  EXPECT_EQ(next_position(), JobName(job) + " at 1 steps");
   room.TellSteps(job, 2);
-  EXPECT_EQ(NextOf(watch), JobName(job) + " at 2 steps");
+  EXPECT_EQ(next_position(), JobName(job) + " at 2 steps");
   EXPECT_EQ(NextOf(watch), "bookmark");
   EXPECT_EQ(NextOf(watch), "bookmark");
 }
