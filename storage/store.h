@@ -252,6 +252,9 @@ class Store {
   // --- machines
   virtual Result<std::vector<MachineRecord>> ListMachines() = 0;  // by id
   virtual Result<MachineRecord> GetMachine(std::string_view id) = 0;
+  // Grows with every change of a machine: what was read of them after it was asked for stands as
+  // long as it is the same. From memory; whoever is told of a change finds it here.
+  virtual std::uint64_t MachineChanges() const = 0;
   // The revision and times of `machine` are not looked at. CellInvalidArgument: no id.
   virtual Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected,
                                            std::string_view caller = {}) = 0;
@@ -343,6 +346,9 @@ class Store {
                                                          std::string_view request_hash) = 0;
 
   virtual Result<JobRecord> GetJob(std::int64_t id) = 0;
+  // The same as MachineChanges, of one job and what it left; what it waits for depends on others.
+  // Jobs may share it.
+  virtual std::uint64_t JobChanges(std::int64_t job) const = 0;
   virtual Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) = 0;
   virtual Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) = 0;  // by number
   virtual Result<JobCounts> CountJobs() = 0;  // cheap: called for every submission

@@ -138,7 +138,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   if (const Status good = CheckRequest(request); !good) return good.error();
   const Result<std::string> machine_id = ParseMachineName(job.machine());
   if (!machine_id) return machine_id.error();
-  const Result<storage::MachineRecord> machine = store_.GetMachine(*machine_id);
+  const Result<storage::MachineRecord> machine = machines_.Get(*machine_id);
   if (!machine) return machine.error();
   const machine::MachineFamily* known = families::FindFamily(machine->family);
   if (known == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
@@ -231,15 +231,25 @@ void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& cal
 Result<v1::Job> JobBook::Get(std::string_view name) {
   const Result<std::int64_t> id = ParseJobName(name);
   if (!id) return id.error();
+  const std::uint64_t changes = store_.JobChanges(*id);
+  if (const auto told = told_.Find(*id, changes)) return *told;
   const Result<storage::JobRecord> record = store_.GetJob(*id);
   if (!record) return record.error();
   Result<v1::Job> job = WithArtifacts(*record);
-  if (job && job->wait_reason() == v1::WAIT_REASON_WORKER) {
+  if (!job) return job;
+  if (job->wait_reason() == v1::WAIT_REASON_WORKER) {
     const Result<std::int64_t> before = store_.CountBefore(*id);
     if (before) job->set_position_in_queue(*before);
     // Else it has begun meanwhile.
   }
+  // What one waits for, and how long, changes without it.
+  if (record->state != storage::JobState::kQueued) told_.Keep(*id, changes, *job);
   return job;
+}
+
+std::shared_ptr<const v1::Job> JobBook::GetAtOnce(std::string_view name) const {
+  const Result<std::int64_t> id = ParseJobName(name);
+  return id ? told_.Find(*id, store_.JobChanges(*id)) : nullptr;
 }
 
 Status JobBook::Delete(std::string_view name, std::string_view caller) {
@@ -365,7 +375,7 @@ Status JobBook::CheckOverride(std::string_view name, double percent) {
   if (!id) return id.error();
   const Result<storage::JobRecord> record = store_.GetJob(*id);
   if (!record) return record.error();
-  const auto machine = store_.GetMachine(record->machine);
+  const auto machine = machines_.Get(record->machine);
   if (!machine) return machine.error();
   const machine::MachineFamily* family = families::FindFamily(machine->family);
   if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};

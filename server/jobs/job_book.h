@@ -9,6 +9,8 @@
 #include "engine/core/result.h"
 #include "engine/machine/family.h"
 #include "rmlcell/v1/job.pb.h"
+#include "server/jobs/told_jobs.h"
+#include "server/records/known_machines.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
@@ -20,7 +22,8 @@ struct Config;
 class JobBook {
  public:
   // `store` and `config` outlive this.
-  JobBook(storage::Store& store, const Config& config) : store_(store), config_(config) {}
+  JobBook(storage::Store& store, const Config& config)
+      : store_(store), config_(config), machines_(store) {}
 
   // Checks everything that can be checked before work begins, makes the job durable, then calls
   // `done`, from a thread of the store or before it returns. Bytes of programs are kept with the
@@ -33,6 +36,8 @@ class JobBook {
               std::function<void(Result<v1::Job>)> done, bool more_come = false);
 
   Result<v1::Job> Get(std::string_view name);
+  // Never waits for the store. Null: Get() has to be asked, as of each job that waits in the queue.
+  std::shared_ptr<const v1::Job> GetAtOnce(std::string_view name) const;
   Status Delete(std::string_view name, std::string_view caller);
   // Jobs that wait in the queue: held back, let go, given another place. Errors:
   // CellInvalidArgument, CellNotFound, CellPrecondition for one that does not wait.
@@ -87,6 +92,8 @@ class JobBook {
 
   storage::Store& store_;
   const Config& config_;
+  KnownMachines machines_;
+  ToldJobs told_;
 };
 
 // The names under which the programs of a job are kept with it: "program" for the one that is

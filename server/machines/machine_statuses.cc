@@ -19,7 +19,7 @@ bool Matters(const storage::EventRecord& event) {
 }  // namespace
 
 MachineStatuses::MachineStatuses(storage::Store& store, EventFeed& feed, Executor& executor)
-    : store_(store), feed_(feed), executor_(executor) {
+    : store_(store), machines_(store), feed_(feed), executor_(executor) {
   subscription_ = feed_.Subscribe(std::string(EventFeed::kEverything), [this] { Woken(); });
   Woken();
 }
@@ -52,15 +52,15 @@ void MachineStatuses::Look() {
       again_ = false;
     }
     if (!ChangedSinceLastLook()) continue;
-    const auto machines = store_.ListMachines();
+    const auto machines = machines_.List();
     const auto unfinished = store_.UnfinishedJobs();
     if (!machines || !unfinished) {
       first_ = true;  // the next event brings a whole look
       continue;
     }
     std::map<std::string, std::string> now;
-    for (const storage::MachineRecord& machine : *machines)
-      now[MachineName(machine.id)] = StatusOf(machine, *unfinished).SerializeAsString();
+    for (const auto& [id, machine] : **machines)
+      now[MachineName(id)] = StatusOf(machine, *unfinished).SerializeAsString();
     for (const auto& [name, status] : now) {
       const auto before = told_.find(name);
       if (before == told_.end() || before->second != status) feed_.Publish(name, status);

@@ -8,6 +8,7 @@
 
 #include "server/base/executor.h"
 #include "server/events/event_feed.h"
+#include "server/records/known_machines.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
@@ -28,6 +29,7 @@ class MachineStatuses {
   bool ChangedSinceLastLook();
 
   storage::Store& store_;
+  KnownMachines machines_;
   EventFeed& feed_;
   Executor& executor_;
   std::mutex mutex_;

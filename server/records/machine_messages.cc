@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kMachineFields = {"title", "profile", "parameters"};
 
-std::vector<std::string> Words(std::string_view text) {
+std::vector<std::string> WordsOf(std::string_view text) {
   std::vector<std::string> words;
   std::istringstream stream{std::string(text)};
   for (std::string word; stream >> word;) words.push_back(word);
@@ -35,7 +35,7 @@ v1::ParameterInfo ToProto(const machine::ParameterInfo& info) {
     message.set_minimum(info.minimum);
     message.set_maximum(info.maximum);
   } else {
-    for (const std::string& word : Words(info.choices)) message.add_choices(word);
+    for (const std::string& word : WordsOf(info.choices)) message.add_choices(word);
     message.set_default_value(message.choices(0));
   }
   return message;
@@ -48,8 +48,8 @@ v1::Family ToProto(const machine::MachineFamily& family) {
   v1::Family message;
   message.set_id(std::string(info.id));
   message.set_title(std::string(info.title));
-  for (const std::string& extension : Words(info.extensions)) message.add_extensions(extension);
-  for (const std::string& axis : Words(info.axes)) message.add_axes(axis);
+  for (const std::string& extension : WordsOf(info.extensions)) message.add_extensions(extension);
+  for (const std::string& axis : WordsOf(info.axes)) message.add_axes(axis);
   message.set_has_executables(info.has_executables);
   message.set_has_schedules(info.schedules > 0);
   for (const machine::ParameterInfo& parameter : family.parameters())

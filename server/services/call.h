@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -51,12 +52,14 @@ inline constexpr std::int64_t kUnaryBytes = 3 << 20;
 // Too much waits for this lane already.
 Error LaneFull();
 
-// Runs `at_once(caller)` on the thread of the call, which must not block, then `work(caller)`,
-// which returns a grpc::Status, on the executor, and finishes the call with that.
-template <class AtOnce, class Work>
-grpc::ServerUnaryReactor* AnswerAfter(const CallNeeds& needs, grpc::CallbackServerContext* context,
-                                      const google::protobuf::Message& request,
-                                      std::string_view method, AtOnce at_once, Work work) {
+// Runs `from_memory(caller)` on the thread of the call, which must not block. A grpc::Status ends
+// the call; nothing: `work(caller)`, which returns one, is run on the executor.
+template <class FromMemory, class Work>
+grpc::ServerUnaryReactor* AnswerFromMemory(const CallNeeds& needs,
+                                           grpc::CallbackServerContext* context,
+                                           const google::protobuf::Message& request,
+                                           std::string_view method, FromMemory from_memory,
+                                           Work work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   Result<Caller> caller = Admit(needs.gate, *context, method, &request);
   const Status size = caller ? CheckSize(needs, request) : Status{};
@@ -64,7 +67,11 @@ grpc::ServerUnaryReactor* AnswerAfter(const CallNeeds& needs, grpc::CallbackServ
     reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
     return reactor;
   }
-  at_once(*caller);
+  if (const std::optional<grpc::Status> known = from_memory(*caller)) {
+    LogCall(method, *caller, *known, {});
+    reactor->Finish(*known);
+    return reactor;
+  }
   const bool taken = needs.executor.TryPost(
       [reactor, method, caller = *std::move(caller), work = std::move(work)] {
         const auto begin = std::chrono::steady_clock::now();
@@ -80,6 +87,21 @@ grpc::ServerUnaryReactor* AnswerAfter(const CallNeeds& needs, grpc::CallbackServ
       });
   if (!taken) reactor->Finish(ToGrpcStatus(LaneFull()));
   return reactor;
+}
+
+// Runs `at_once(caller)` on the thread of the call, which must not block, then `work(caller)` on
+// the executor.
+template <class AtOnce, class Work>
+grpc::ServerUnaryReactor* AnswerAfter(const CallNeeds& needs, grpc::CallbackServerContext* context,
+                                      const google::protobuf::Message& request,
+                                      std::string_view method, AtOnce at_once, Work work) {
+  return AnswerFromMemory(
+      needs, context, request, method,
+      [at_once = std::move(at_once)](const Caller& caller) -> std::optional<grpc::Status> {
+        at_once(caller);
+        return std::nullopt;
+      },
+      std::move(work));
 }
 
 template <class Work>

@@ -66,17 +66,27 @@ grpc::ServerUnaryReactor* MachineService::CreateMachine(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* MachineService::GetMachine(grpc::CallbackServerContext* context,
                                                      const v1::GetMachineRequest* request,
                                                      v1::Machine* response) {
-  return Answer(needs_, context, *request, "MachineService/GetMachine",
-                [this, request, response](const Caller&) {
-                  const auto id = ParseMachineName(request->name());
-                  if (!id) return ToGrpcStatus(id.error());
-                  const auto machine = store_.GetMachine(*id);
-                  if (!machine) return ToGrpcStatus(machine.error());
-                  const auto unfinished = store_.UnfinishedJobs();
-                  if (!unfinished) return ToGrpcStatus(unfinished.error());
-                  *response = ToProto(*machine, *unfinished);
-                  return grpc::Status::OK;
-                });
+  const auto id = ParseMachineName(request->name());
+  const auto tell = [this, response](const storage::MachineRecord& machine) {
+    const auto unfinished = store_.UnfinishedJobs();
+    if (!unfinished) return ToGrpcStatus(unfinished.error());
+    *response = ToProto(machine, *unfinished);
+    return grpc::Status::OK;
+  };
+  return AnswerFromMemory(
+      needs_, context, *request, "MachineService/GetMachine",
+      [this, id, tell](const Caller&) -> std::optional<grpc::Status> {
+        const auto known = machines_.ListAtOnce();
+        if (!id || !known) return std::nullopt;
+        const auto found = known->find(*id);
+        if (found == known->end()) return std::nullopt;
+        return tell(found->second);
+      },
+      [this, id, tell](const Caller&) {
+        if (!id) return ToGrpcStatus(id.error());
+        const auto machine = machines_.Get(*id);
+        return machine ? tell(*machine) : ToGrpcStatus(machine.error());
+      });
 }
 
 grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerContext* context,
@@ -87,12 +97,12 @@ grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerConte
       [this, request, response](const Caller&) {
         const Result<int> size = PageSize(request->page_size(), kMachinePages);
         if (!size) return ToGrpcStatus(size.error());
-        const auto machines = store_.ListMachines();
+        const auto machines = machines_.List();
         if (!machines) return ToGrpcStatus(machines.error());
         const auto unfinished = store_.UnfinishedJobs();
         if (!unfinished) return ToGrpcStatus(unfinished.error());
-        for (const storage::MachineRecord& machine : *machines) {
-          if (!request->page_token().empty() && machine.id <= request->page_token()) continue;
+        for (const auto& [id, machine] : **machines) {
+          if (!request->page_token().empty() && id <= request->page_token()) continue;
           if (response->machines_size() == *size) {
             response->set_next_page_token(*ParseMachineName(response->machines(*size - 1).name()));
             break;

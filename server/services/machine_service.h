@@ -12,7 +12,10 @@ namespace rmlcell::server {
 class MachineService final : public v1::MachineService::CallbackService {
  public:
   MachineService(CallNeeds needs, MachineWatchNeeds watch)
-      : needs_(needs), watch_needs_(std::move(watch)), store_(watch_needs_.store) {}
+      : needs_(needs),
+        watch_needs_(std::move(watch)),
+        store_(watch_needs_.store),
+        machines_(store_) {}
 
   grpc::ServerUnaryReactor* ListFamilies(grpc::CallbackServerContext* context,
                                          const v1::ListFamiliesRequest* request,
@@ -86,6 +89,7 @@ class MachineService final : public v1::MachineService::CallbackService {
   CallNeeds needs_;
   MachineWatchNeeds watch_needs_;
   storage::Store& store_;
+  KnownMachines machines_;
 };
 
 }  // namespace rmlcell::server

@@ -42,6 +42,7 @@ class SqliteStore final : public Store {
 
   Result<std::vector<MachineRecord>> ListMachines() override;
   Result<MachineRecord> GetMachine(std::string_view id) override;
+  std::uint64_t MachineChanges() const override { return writer_.changes().OfMachines(); }
   Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected,
                                    std::string_view caller) override;
   Status DeleteMachine(std::string_view id, Revision expected, std::string_view caller) override;
@@ -84,6 +85,7 @@ class SqliteStore final : public Store {
   Result<std::optional<JobRecord>> FindSubmitted(std::string_view request_id,
                                                  std::string_view request_hash) override;
   Result<JobRecord> GetJob(std::int64_t id) override;
+  std::uint64_t JobChanges(std::int64_t job) const override { return writer_.changes().OfJob(job); }
   Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) override;
   Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) override;
   Result<JobCounts> CountJobs() override;

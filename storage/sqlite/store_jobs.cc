@@ -6,6 +6,7 @@
 #include "storage/content.h"
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/executable_life.h"
+#include "storage/sqlite/job_changes.h"
 #include "storage/sqlite/job_life.h"
 #include "storage/sqlite/queue_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"

@@ -58,6 +58,7 @@ Writer::Writer(Connection& connection, const Counters& counters, MachineTally::M
       connection_(connection),
       counters_(counters),
       fence_mark_(counters.fence),
+      changes_(connection.database),
       machine_jobs_(std::move(machines)),
       queued_jobs_(counters.queued_jobs),
       ready_jobs_(counters.queued_jobs - counters.blocked_jobs),
@@ -301,6 +302,7 @@ void Writer::Tidy() {
     if (!more) return more.error();
     if (const Status kept = KeepMarks(before); !kept) return kept.error();
     if (const Status committed = transaction->Commit(); !committed) return committed.error();
+    changes_.Publish();
     if (context.changed) changed_();
     return more;
   };
@@ -330,6 +332,7 @@ Status Writer::KeepMarks(const Counters& before) {
 
 // Before anybody is told of the change: whoever is, finds it here.
 void Writer::PublishCounts(const WriteContext& context) {
+  changes_.Publish();
   machine_jobs_.Apply(context.moves);
   queued_jobs_ = counters_.queued_jobs;
   ready_jobs_ = counters_.queued_jobs - counters_.blocked_jobs;

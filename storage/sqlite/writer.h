@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "storage/sqlite/change_counts.h"
 #include "storage/sqlite/housekeeping.h"
 #include "storage/sqlite/sqlite_store.h"
 #include "storage/sqlite/write_context.h"
@@ -59,6 +60,7 @@ class Writer {
   JobCounts job_counts() const { return {.queued = queued_jobs_, .running = running_jobs_}; }
   std::vector<MachineJobs> machine_jobs() const { return machine_jobs_.List(); }
   bool any_ready_job() const { return ready_jobs_ > 0; }
+  const ChangeCounts& changes() const { return changes_; }
 
   // Runs `work`, from WriteContext& to a Result or Status, and returns what it gave once it is
   // durable. Also from within an answer: what was queued before is then run first.
@@ -117,6 +119,7 @@ class Writer {
   bool tidy_ = true;             // there may be something to remove
   int pages_at_checkpoint_ = 0;  // size of the log when it was last moved
 
+  ChangeCounts changes_;
   MachineTally machine_jobs_;
   std::atomic<std::int64_t> queued_jobs_;
   std::atomic<std::int64_t> ready_jobs_;

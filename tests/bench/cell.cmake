@@ -6,10 +6,13 @@ if(NOT RMLCELL_ENGINE_ONLY)
   rmlcell_executable(bench_cell_stop
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_stop.cc
     LINKS rmlcell::proto)
+  rmlcell_executable(bench_cell_status
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_status.cc
+    LINKS rmlcell::proto)
   rmlcell_executable(bench_cell_watch
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_watch.cc
     LINKS rmlcell::proto)
-  foreach(bench IN ITEMS submit stop watch)
+  foreach(bench IN ITEMS submit status stop watch)
     set_property(TARGET bench_cell_${bench}
                  PROPERTY LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,rmlcell_proto")
   endforeach()

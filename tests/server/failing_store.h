@@ -22,6 +22,11 @@ class FailingStore final : public ForwardingStore {
   }
   bool failed() const { return fails_at_ > 0 && calls_ >= fails_at_; }
 
+  Result<std::vector<storage::MachineRecord>> ListMachines() override {
+    return Or([&] { return store_.ListMachines(); });
+  }
+  // As if one had always changed: what is in memory would fail at no call.
+  std::uint64_t MachineChanges() const override { return ++looks_; }
   Result<storage::MachineRecord> GetMachine(std::string_view id) override {
     return Or([&] { return store_.GetMachine(id); });
   }
@@ -114,6 +119,7 @@ class FailingStore final : public ForwardingStore {
 
   int fails_at_ = 0;
   int calls_ = 0;
+  mutable std::uint64_t looks_ = 0;
 };
 
 // Lets the first call to the store fail, then the second, and so on until the operation comes

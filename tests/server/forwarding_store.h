@@ -15,6 +15,8 @@ class ForwardingStore : public storage::Store {
   Result<storage::MachineRecord> GetMachine(std::string_view id) override {
     return store_.GetMachine(id);
   }
+  std::uint64_t MachineChanges() const override { return store_.MachineChanges(); }
+  std::uint64_t JobChanges(std::int64_t job) const override { return store_.JobChanges(job); }
   Result<storage::MachineRecord> PutMachine(const storage::MachineRecord& machine,
                                             storage::Revision expected,
                                             std::string_view caller) override {

@@ -138,7 +138,7 @@ PUBLIC = {
     "server/auth": ["caller.h", "socket_users.h"],
     "server/events": ["event_feed.h"],
     "server/jobs": ["dispatcher.h", "followed.h", "job_book.h", "job_filter.h", "running_heights.h", "running_toolpath.h", "worker_processes.h"],
-    "server/records": ["file_family.h", "job_messages.h", "machine_messages.h", "program_place.h", "toolpath_levels.h", "update_mask.h"],
+    "server/records": ["file_family.h", "job_messages.h", "known_machines.h", "machine_messages.h", "program_place.h", "toolpath_levels.h", "update_mask.h"],
     "server/machines": ["machine_statuses.h"],
     "server/programs": ["content_upload.h", "language_tools.h", "memory_tools.h", "program_book.h", "program_result.h", "program_views.h",
                         "text_tools.h"],

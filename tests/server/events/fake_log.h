@@ -91,6 +91,8 @@ class FakeLog final : public storage::Store {
   // What a log does not have.
   Result<std::vector<storage::MachineRecord>> ListMachines() override { return No(); }
   Result<storage::MachineRecord> GetMachine(std::string_view) override { return No(); }
+  std::uint64_t MachineChanges() const override { return 0; }
+  std::uint64_t JobChanges(std::int64_t) const override { return 0; }
   Result<storage::MachineRecord> PutMachine(const storage::MachineRecord&, storage::Revision,
                                             std::string_view) override {
     return No();

@@ -54,7 +54,7 @@ TEST_F(BookFailures, OfASubmission) {
   request.mutable_job()->set_machine("machines/none");
   request.set_validate_only(false);
   Expect(
-      "submitting again what cannot be submitted now", 2, [&] { return Submit(request); },
+      "submitting again what cannot be submitted now", 3, [&] { return Submit(request); },
       ErrorCode::kCellUnknownMachine);
   request = Stored();
   request.mutable_job()->set_program("machines/optimo-1/programs/44");
