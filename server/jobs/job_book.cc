@@ -232,7 +232,9 @@ Result<v1::Job> JobBook::Get(std::string_view name) {
   const Result<std::int64_t> id = ParseJobName(name);
   if (!id) return id.error();
   const std::uint64_t changes = store_.JobChanges(*id);
-  if (const auto told = told_.Find(*id, changes)) return *told;
+  v1::Job known;
+  if (const auto told = told_.Find(*id, changes); told && known.ParseFromString(*told))
+    return known;
   const Result<storage::JobRecord> record = store_.GetJob(*id);
   if (!record) return record.error();
   Result<v1::Job> job = WithArtifacts(*record);
@@ -247,7 +249,7 @@ Result<v1::Job> JobBook::Get(std::string_view name) {
   return job;
 }
 
-std::shared_ptr<const v1::Job> JobBook::GetAtOnce(std::string_view name) const {
+std::shared_ptr<const std::string> JobBook::GetAtOnce(std::string_view name) const {
   const Result<std::int64_t> id = ParseJobName(name);
   return id ? told_.Find(*id, store_.JobChanges(*id)) : nullptr;
 }

@@ -36,8 +36,9 @@ class JobBook {
               std::function<void(Result<v1::Job>)> done, bool more_come = false);
 
   Result<v1::Job> Get(std::string_view name);
-  // Never waits for the store. Null: Get() has to be asked, as of each job that waits in the queue.
-  std::shared_ptr<const v1::Job> GetAtOnce(std::string_view name) const;
+  // The same, serialised, and never waiting for the store. Null: Get() has to be asked, as of each
+  // job that waits in the queue.
+  std::shared_ptr<const std::string> GetAtOnce(std::string_view name) const;
   Status Delete(std::string_view name, std::string_view caller);
   // Jobs that wait in the queue: held back, let go, given another place. Errors:
   // CellInvalidArgument, CellNotFound, CellPrecondition for one that does not wait.

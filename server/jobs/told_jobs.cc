@@ -4,7 +4,7 @@
 
 namespace rmlcell::server {
 
-std::shared_ptr<const v1::Job> ToldJobs::Find(std::int64_t id, std::uint64_t changes) const {
+std::shared_ptr<const std::string> ToldJobs::Find(std::int64_t id, std::uint64_t changes) const {
   const std::lock_guard lock(mutex_);
   const Told& told = told_[static_cast<std::size_t>(id) % kJobsMax];
   return told.id == id && told.changes == changes ? told.job : nullptr;
@@ -12,7 +12,9 @@ std::shared_ptr<const v1::Job> ToldJobs::Find(std::int64_t id, std::uint64_t cha
 
 void ToldJobs::Keep(std::int64_t id, std::uint64_t changes, const v1::Job& job) {
   if (job.ByteSizeLong() > kBytesMax) return;
-  Told told{.id = id, .changes = changes, .job = std::make_shared<const v1::Job>(job)};
+  Told told{.id = id,
+            .changes = changes,
+            .job = std::make_shared<const std::string>(job.SerializeAsString())};
   const std::lock_guard lock(mutex_);
   std::swap(told_[static_cast<std::size_t>(id) % kJobsMax], told);
 }

@@ -52,16 +52,32 @@ grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* con
 }
 
 grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* context,
-                                             const v1::GetJobRequest* request, v1::Job* response) {
+                                             const grpc::ByteBuffer* request,
+                                             grpc::ByteBuffer* response) {
+  v1::GetJobRequest asked;
+  grpc::ByteBuffer bytes(*request);
+  const grpc::Status read =
+      grpc::SerializationTraits<v1::GetJobRequest>::Deserialize(&bytes, &asked);
+  if (!read.ok()) {
+    grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+    reactor->Finish(read);
+    return reactor;
+  }
+  const auto give = [response](const std::string& job) {
+    const grpc::Slice slice(job);
+    *response = grpc::ByteBuffer(&slice, 1);
+    return grpc::Status::OK;
+  };
   return AnswerFromMemory(
-      needs_, context, *request, "JobService/GetJob",
-      [this, request, response](const Caller&) -> std::optional<grpc::Status> {
-        const auto job = book_.GetAtOnce(request->name());
-        if (!job) return std::nullopt;
-        *response = *job;
-        return grpc::Status::OK;
+      needs_, context, asked, "JobService/GetJob",
+      [this, &asked, give](const Caller&) -> std::optional<grpc::Status> {
+        const auto job = book_.GetAtOnce(asked.name());
+        return job ? std::optional(give(*job)) : std::nullopt;
       },
-      [this, request, response](const Caller&) { return Give(request->name(), response); });
+      [this, name = asked.name(), give](const Caller&) {
+        const Result<v1::Job> job = book_.Get(name);
+        return job ? give(job->SerializeAsString()) : ToGrpcStatus(job.error());
+      });
 }
 
 grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* context,

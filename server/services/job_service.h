@@ -17,7 +17,9 @@ class JobBook;
 class JobResults;
 
 // Converts, calls, converts: the rules live in server/jobs.
-class JobService final : public v1::JobService::CallbackService {
+// GetJob is answered with bytes that are ready (ToldJobs).
+class JobService final
+    : public v1::JobService::WithRawCallbackMethod_GetJob<v1::JobService::CallbackService> {
  public:
   JobService(CallNeeds needs, Executor& watches, JobBook& book, JobResults& results,
              Dispatcher& dispatcher, EventFeed& feed, OpenStreams& open, std::string instance_id)
@@ -38,7 +40,8 @@ class JobService final : public v1::JobService::CallbackService {
     return MakeSubmitStream(needs_, *context, book_, open_);
   }
   grpc::ServerUnaryReactor* GetJob(grpc::CallbackServerContext* context,
-                                   const v1::GetJobRequest* request, v1::Job* response) override;
+                                   const grpc::ByteBuffer* request,
+                                   grpc::ByteBuffer* response) override;
   grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* context,
                                      const v1::ListJobsRequest* request,
                                      v1::ListJobsResponse* response) override;

@@ -44,7 +44,7 @@ TEST_F(ToldJobsTest, AJobThatRunsIsReadOnceForEachChange) {
   EXPECT_EQ(Must(book.Get(name)).state(), v1::Job::STATE_RUNNING);
   EXPECT_EQ(Must(book.Get(name)).state(), v1::Job::STATE_RUNNING);
   ASSERT_NE(book.GetAtOnce(name), nullptr);
-  EXPECT_EQ(book.GetAtOnce(name)->SerializeAsString(), Must(book.Get(name)).SerializeAsString());
+  EXPECT_EQ(*book.GetAtOnce(name), Must(book.Get(name)).SerializeAsString());
   EXPECT_EQ(store.reads, 1);
   bed.Append(lease, 1);
   EXPECT_EQ(book.GetAtOnce(name), nullptr);
@@ -55,7 +55,9 @@ TEST_F(ToldJobsTest, AJobThatRunsIsReadOnceForEachChange) {
                                   .artifacts = {{.name = "report", .bytes = "r"}}}));
   EXPECT_EQ(book.GetAtOnce(name), nullptr);
   EXPECT_EQ(Must(book.Get(name)).artifacts_size(), 2);  // beside the program
-  EXPECT_EQ(book.GetAtOnce(name)->state(), v1::Job::STATE_SUCCEEDED);
+  v1::Job told;
+  ASSERT_TRUE(told.ParseFromString(*book.GetAtOnce(name)));
+  EXPECT_EQ(told.state(), v1::Job::STATE_SUCCEEDED);
   Must(bed.store().DeleteJob(lease.job, {}));
   EXPECT_EQ(book.GetAtOnce(name), nullptr);
   EXPECT_EQ(CodeOf(book.Get(name)), ErrorCode::kCellNotFound);
