@@ -42,10 +42,6 @@ void Store::SendRequestCancel(std::int64_t job, std::vector<NewEvent> events,
   done(RequestCancel(job, events));
 }
 
-void Store::SendAcquire(JobRequest request, Done<std::vector<LeasedJob>> done) {
-  done(AcquireJobs(request));
-}
-
 void Store::SendRenew(const Lease& lease, std::chrono::milliseconds duration,
                       Done<JobRecord> done) {
   done(Renew(lease, duration));

@@ -395,7 +395,7 @@ class Store {
   // --- leases; all times by the clock of the store
   // Each call has a form that does not wait, Send...(): a server uses no other, or a store that is
   // away for half a minute holds up all its threads. Jobs come without their specification there,
-  // but those of SendAcquire(). A store that never makes anybody wait leaves them as they are.
+  // but those of AwaitJobs(). A store that never makes anybody wait leaves them as they are.
   //
   // A job has at most one holder. A lease that ran out stays its holder's until Expire() takes it:
   // work that was done is kept while nobody else has begun it.
@@ -404,7 +404,14 @@ class Store {
   // cancel_requested, when an earlier holder gave it back: the new one ends it. A machine runs one
   // RUN at a time.
   virtual Result<std::vector<LeasedJob>> AcquireJobs(const JobRequest& request) = 0;
-  virtual void SendAcquire(JobRequest request, Done<std::vector<LeasedJob>> done);
+  // The same for who has time: while there is none the request stands, and the transaction that
+  // makes a job one that can begin leases it as well, so that both cost one wait for the disk.
+  // Who asked earlier hears of it before whoever made the job. Returns what Withdraw() knows the
+  // request by.
+  virtual std::int64_t AwaitJobs(JobRequest request, Done<std::vector<LeasedJob>> done) = 0;
+  // `done` is then called with nothing, unless it has been called or is to be; so is that of each
+  // request that stands when the store goes.
+  virtual void Withdraw(std::int64_t request) = 0;
   // One job of the common pool, or nothing.
   Result<std::optional<LeasedJob>> Acquire(std::string_view worker,
                                            const std::vector<std::string>& kinds,

@@ -40,12 +40,12 @@ Dispatcher::Dispatcher(storage::Store& store, EventFeed& feed, const Config& con
       executor_(executor),
       join_token_(std::move(join_token)),
       clock_(std::move(clock)) {
-  store_watch_ = store_.Watch([this] { WakeIdle(); });
   orders_ = std::jthread([this](const std::stop_token& stop) { LookAtOrders(stop); });
   times_ = std::jthread([this](const std::stop_token& stop) { LookAtTimes(stop); });
 }
 
 Dispatcher::~Dispatcher() {
+  draining_ = true;
   EndThreads();
   Settle();
 }
@@ -83,7 +83,7 @@ Result<Dispatcher::WorkerId> Dispatcher::Join(std::shared_ptr<WorkerLine> line,
   }
   spdlog::info("worker {} joined (process {})", worker->name, hello.process_id());
   if (draining_) SendStop(*worker->line);
-  PostLook(worker);
+  Post(worker, [this, worker] { Assign(worker); });
   return worker->id;
 }
 
@@ -102,26 +102,26 @@ void Dispatcher::Receive(WorkerId id, v1::WorkRequest message) {
 
 void Dispatcher::Leave(WorkerId id) {
   std::shared_ptr<Worker> worker;
+  std::int64_t request = 0;
   {
     const std::lock_guard lock(mutex_);
     const auto found = workers_.find(id);
     if (found == workers_.end()) return;
     worker = found->second;
     worker->gone = true;
+    if (worker->stands) request = worker->request;
     workers_.erase(found);
   }
+  if (request != 0) store_.Withdraw(request);
   Post(worker, [this, worker] {
+    worker->left = true;
+    changed_.notify_all();
     // What it finished is stored without it.
-    if (!worker->assignment || worker->assignment->closing) return Left();
+    if (!worker->assignment || worker->assignment->closing) return;
     spdlog::warn("worker {} is gone in the middle of {}", worker->name,
                  JobName(worker->assignment->lease.job));
     Lose(worker);
   });
-}
-
-void Dispatcher::Left() {
-  changed_.notify_all();
-  WakeIdle();
 }
 
 int Dispatcher::workers() const {
@@ -198,35 +198,6 @@ void Dispatcher::GoOn(const std::shared_ptr<Worker>& worker, std::function<void(
     ++at_work_;
   }
   BeginWork(worker);
-}
-
-// A look that has not begun sees every job stored until now; one that has begun may have missed the
-// last.
-void Dispatcher::PostLook(const std::shared_ptr<Worker>& worker) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (worker->will_look) return;
-    worker->will_look = true;
-  }
-  Post(worker, [this, worker] {
-    {
-      const std::lock_guard lock(mutex_);
-      worker->will_look = false;
-    }
-    Assign(worker);
-  });
-}
-
-void Dispatcher::WakeIdle() {
-  if (draining_) return;
-  std::vector<std::shared_ptr<Worker>> idle;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto& [id, worker] : workers_) {
-      if (worker->idle && !worker->rests) idle.push_back(worker);
-    }
-  }
-  for (const auto& worker : idle) PostLook(worker);
 }
 
 // Leases that ran out, and jobs whose time has come.
@@ -347,22 +318,26 @@ std::shared_ptr<RunningHeights> Dispatcher::FollowHeights(std::int64_t job) {
 Status Dispatcher::Control(std::int64_t job, const JobOrder& order) {
   const auto record = store_.GetJob(job);
   if (!record) return record.error();
-  if (record->state == storage::JobState::kRunning) {
+  const bool runs = record->state == storage::JobState::kRunning;
+  const auto may_come = [&](bool Worker::*way) {
     const std::lock_guard lock(mutex_);
-    if (OrderHolder(job, order)) return {};
-    // Who looks may have leased it a moment ago, and not have said so.
-    bool may_come = false;
+    if (OrderHolder(job, order)) return true;
+    bool any = false;
     for (const auto& [id, worker] : workers_) {
-      if (!worker->looking) continue;
+      if (!(*worker.*way)) continue;
       worker->early_orders.push_back({job, order});
-      may_come = true;
+      any = true;
     }
-    if (may_come) return {};
-  }
+    return any;
+  };
+  // Who looks may have leased it a moment ago, and not have said so.
+  if (runs && may_come(&Worker::looking)) return {};
   // Perhaps another server has it; one that waits, or has ended, nobody has.
   const Status put =
       store_.PutOrder(job, server_, ControlMessage({}, order).control().SerializeAsString());
   if (put || put.error().code != ErrorCode::kCellPrecondition) return put;
+  // No other server: one that waited may have been given it, and not have heard so.
+  if (runs && may_come(&Worker::stands)) return {};
   return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
 }
 
@@ -384,6 +359,7 @@ void Dispatcher::TellCancel(const storage::JobRecord& job, std::string_view call
 
 void Dispatcher::Drain(std::chrono::milliseconds patience) {
   draining_ = true;
+  WithdrawAll();
   std::vector<std::shared_ptr<Worker>> all;
   {
     const std::lock_guard lock(mutex_);
@@ -393,16 +369,27 @@ void Dispatcher::Drain(std::chrono::milliseconds patience) {
   {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [this] {
-      return std::ranges::all_of(
-          workers_, [](const auto& row) { return row.second->idle && !row.second->looking; });
+      return std::ranges::all_of(workers_, [](const auto& row) {
+        return row.second->idle && !row.second->looking && !row.second->stands;
+      });
     });
   }
   // From here on nothing is posted but what lines still say.
   EndThreads();
 }
 
+void Dispatcher::WithdrawAll() {
+  std::vector<std::int64_t> requests;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, worker] : workers_) {
+      if (worker->stands && worker->request != 0) requests.push_back(worker->request);
+    }
+  }
+  for (const std::int64_t request : requests) store_.Withdraw(request);
+}
+
 void Dispatcher::EndThreads() {
-  store_watch_.reset();
   for (std::jthread* thread : {&orders_, &times_}) {
     thread->request_stop();
     if (thread->joinable()) thread->join();
@@ -410,8 +397,9 @@ void Dispatcher::EndThreads() {
 }
 
 void Dispatcher::Settle() {
+  if (draining_) WithdrawAll();
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return at_work_ == 0; });
+  changed_.wait(lock, [this] { return at_work_ == 0 && (standing_ == 0 || !draining_); });
 }
 
 }  // namespace rmlcell::server

@@ -112,14 +112,16 @@ class Dispatcher {
   storage::Done<T> Then(const std::shared_ptr<Worker>& worker, Next next);
   void Await(const std::shared_ptr<Worker>& worker);
   void GoOn(const std::shared_ptr<Worker>& worker, std::function<void()> next);
-  void PostLook(const std::shared_ptr<Worker>& worker);
-  void WakeIdle();
   void Assign(const std::shared_ptr<Worker>& worker);
+  void Stood(const std::shared_ptr<Worker>& worker, Result<std::vector<storage::LeasedJob>> leased);
+  void Has(Worker& worker, std::int64_t job);  // precondition: mutex_ is held
+  void WithdrawAll();
+  std::optional<storage::JobRequest> Wants(const Worker& worker) const;  // likewise
   std::optional<storage::JobRequest> Look(Worker& worker);
   void HasNotFound(Worker& worker);
+  void Rest(Worker& worker);
   void BeginWork(const std::shared_ptr<Worker>& worker);
-  void Assigned(const std::shared_ptr<Worker>& worker,
-                const Result<std::vector<storage::LeasedJob>>& leased);
+  void Assigned(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& leased);
   void Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job);
   void EndWithoutWork(const std::shared_ptr<Worker>& worker, const storage::JobOutcome& how);
   void GiveBack(const std::shared_ptr<Worker>& worker);
@@ -157,8 +159,6 @@ class Dispatcher {
   bool MayStillHold(const Assignment& assignment, const Error& trouble) const;
   void TryLater(const std::shared_ptr<Worker>& worker);
   std::shared_ptr<Worker> Find(WorkerId id) const;
-  void Left();  // a worker is gone, and what it had is settled
-
   storage::Store& store_;
   EventFeed& feed_;
   const Config& config_;
@@ -173,11 +173,11 @@ class Dispatcher {
   std::condition_variable_any to_look_at_;  // a first job, or later_
   std::map<WorkerId, std::shared_ptr<Worker>> workers_;
   WorkerId next_worker_ = 1;
-  std::size_t at_work_ = 0;  // guarded by mutex_; workers that something is done or awaited for,
-                             // and calls that begin it
+  std::size_t at_work_ = 0;   // guarded by mutex_; workers that something is done or awaited for,
+                              // and calls that begin it
+  std::size_t standing_ = 0;  // guarded by mutex_; requests that the store has not answered
   std::vector<std::shared_ptr<Worker>> trying_later_;  // guarded by mutex_; gone ones, too
   bool later_ = false;  // guarded by mutex_; something is to be tried again in a moment
-  std::unique_ptr<storage::Store::Subscription> store_watch_;
   std::jthread orders_;
   std::jthread times_;  // its own thread: it waits for the store
 };

@@ -55,28 +55,91 @@ v1::WorkResponse ControlMessage(const storage::Lease& lease, const JobOrder& ord
   return message;
 }
 
+// It waits in the store: the transaction that makes a job ready gives it to it.
 void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
   if (worker->assignment) return;
-  std::optional<storage::JobRequest> request = Look(*worker);
-  if (!request) return;
-  store_.SendAcquire(*std::move(request),
-                     Then<std::vector<storage::LeasedJob>>(
-                         worker, [this, worker](const auto& leased) { Assigned(worker, leased); }));
+  std::optional<storage::JobRequest> request;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!worker->stands) request = Wants(*worker);
+    if (!request) return;
+    worker->stands = true;
+    worker->request = 0;
+    ++standing_;
+  }
+  std::int64_t number = 0;
+  try {
+    number = store_.AwaitJobs(*std::move(request),
+                              [this, worker](Result<std::vector<storage::LeasedJob>> leased) {
+                                Stood(worker, std::move(leased));
+                              });
+  } catch (const std::exception& error) {
+    return Stood(worker, Error{ErrorCode::kCellInternal, error.what(), {}});
+  }
+  bool in_vain = false;
+  {
+    const std::lock_guard lock(mutex_);
+    worker->request = number;
+    in_vain = worker->stands && (worker->gone || draining_);
+  }
+  if (in_vain) store_.Withdraw(number);
 }
 
-// What the worker would take now; nothing: it takes no job. It looks until Assigned() or
-// HasNotFound().
-std::optional<storage::JobRequest> Dispatcher::Look(Worker& worker) {
-  if (worker.leaving) return std::nullopt;
+// On a thread of the store, before anybody else hears of the job: orders for it find its worker.
+void Dispatcher::Stood(const std::shared_ptr<Worker>& worker,
+                       Result<std::vector<storage::LeasedJob>> leased) {
+  const bool found = leased && !leased->empty();
+  {
+    const std::lock_guard lock(mutex_);
+    worker->stands = false;
+    if (found) Has(*worker, leased->front().lease.job);
+  }
+  if (found) {
+    auto job = std::make_shared<const storage::LeasedJob>(std::move(leased->front()));
+    Post(worker, [this, worker, job] { Assigned(worker, *job); });
+  } else {
+    if (!leased) spdlog::error("no job could be leased: {}", bridge::ErrorText(leased.error()));
+    Rest(*worker);
+  }
   const std::lock_guard lock(mutex_);
-  if (worker.gone || worker.rests || draining_) return std::nullopt;
-  worker.looking = true;
+  --standing_;
+  changed_.notify_all();  // under the lock: it may be gone right after
+}
+
+void Dispatcher::Has(Worker& worker, std::int64_t job) {
+  std::erase_if(worker.early_orders, [job](const EarlyOrder& early) { return early.job != job; });
+  worker.looking = false;
+  worker.idle = false;
+  if (!HasWork()) to_look_at_.notify_all();
+  worker.job = job;
+}
+
+// It asks again in a moment; one that is gone, or is to ask no more, does not.
+void Dispatcher::Rest(Worker& worker) {
+  const std::lock_guard lock(mutex_);
+  if (worker.gone || draining_) return;
+  worker.rests = true;
+  later_ = true;
+  to_look_at_.notify_all();
+}
+
+std::optional<storage::JobRequest> Dispatcher::Wants(const Worker& worker) const {
+  if (worker.leaving || worker.gone || worker.rests || draining_) return std::nullopt;
   return storage::JobRequest{.worker = worker.name,
                              .server = server_,
                              .kinds = worker.kinds,
                              .pools = worker.pools,
                              .duration = std::chrono::milliseconds(config_.workers_lease_ms),
                              .events = {StateEvent(storage::JobState::kRunning)}};
+}
+
+// What the worker would take with the end of its job; nothing: it takes none. It looks until it has
+// one or HasNotFound().
+std::optional<storage::JobRequest> Dispatcher::Look(Worker& worker) {
+  const std::lock_guard lock(mutex_);
+  std::optional<storage::JobRequest> request = Wants(worker);
+  worker.looking = request.has_value();
+  return request;
 }
 
 void Dispatcher::HasNotFound(Worker& worker) {
@@ -88,22 +151,17 @@ void Dispatcher::HasNotFound(Worker& worker) {
   changed_.notify_all();
 }
 
-void Dispatcher::Assigned(const std::shared_ptr<Worker>& worker,
-                          const Result<std::vector<storage::LeasedJob>>& leased) {
-  if (!leased) spdlog::error("no job could be leased: {}", bridge::ErrorText(leased.error()));
-  if (!leased || leased->empty()) return HasNotFound(*worker);
+void Dispatcher::Assigned(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& leased) {
   worker->assignment.emplace();
-  worker->assignment->lease = leased->front().lease;
+  worker->assignment->lease = leased.lease;
   worker->assignment->renewed_at = worker->assignment->asked_at = clock_();
   {
     const std::lock_guard lock(mutex_);
-    worker->looking = false;
-    worker->idle = false;
-    if (!HasWork()) to_look_at_.notify_all();
-    worker->job = worker->assignment->lease.job;
+    Has(*worker, leased.lease.job);
   }
   changed_.notify_all();
-  Begin(worker, leased->front());
+  if (worker->left) return Lose(worker);  // it went as it was given the job
+  Begin(worker, leased);
 }
 
 void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job) {
@@ -134,13 +192,7 @@ void Dispatcher::EndWithoutWork(const std::shared_ptr<Worker>& worker,
 void Dispatcher::RestWithoutWork(const std::shared_ptr<Worker>& worker, const Error& trouble) {
   spdlog::warn("{} goes back, its programs cannot be read: {}",
                JobName(worker->assignment->lease.job), bridge::ErrorText(trouble));
-  {
-    // Before the store tells of a job that waits, or this worker would be given it again at once.
-    const std::lock_guard lock(mutex_);
-    worker->rests = true;
-    later_ = true;
-  }
-  to_look_at_.notify_all();
+  Rest(*worker);  // first, or this worker would be given it again at once
   storage::LossPolicy policy = LossOf(StoppedOutcome(), {}, "its programs could not be read");
   policy.requeued = {StateEvent(storage::JobState::kQueued)};
   Close(worker, HandBack{std::move(policy)});
@@ -200,13 +252,7 @@ void Dispatcher::Closed(const std::shared_ptr<Worker>& worker,
   }
   EndAssignment(*worker, job && end != nullptr);
   // One that is gone by now loses it at once: that it left is the next thing that is said of it.
-  if (!next.empty()) return Assigned(worker, next);
-  bool gone = false;
-  {
-    const std::lock_guard lock(mutex_);
-    gone = worker->gone;
-  }
-  if (gone) return Left();
+  if (!next.empty()) return Assigned(worker, next.front());
   Assign(worker);
 }
 
@@ -240,7 +286,7 @@ void Dispatcher::TryAgain() {
       if (worker->assignment->closing) StoreClosing(worker);
     });
   }
-  for (const auto& worker : rested) PostLook(worker);
+  for (const auto& worker : rested) Post(worker, [this, worker] { Assign(worker); });
 }
 
 void Dispatcher::GiveBack(const std::shared_ptr<Worker>& worker) {

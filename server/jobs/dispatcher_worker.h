@@ -57,6 +57,7 @@ struct Dispatcher::Worker {
   std::vector<std::string> pools;
   std::optional<Assignment> assignment;
   bool leaving = false;  // it handed its job back, since it ends; as `assignment`
+  bool left = false;     // its line is gone, and what it had is settled; likewise
 
   // Guarded by Dispatcher::mutex_.
   std::deque<std::function<void()>> queue;
@@ -65,9 +66,10 @@ struct Dispatcher::Worker {
   bool parked = false;   // nobody is at it until the answer comes
   bool gone = false;
   bool idle = true;
-  bool rests = false;                  // the store gave it no programs a moment ago
-  bool will_look = false;              // a look for a job is in the queue and has not begun
-  bool looking = false;                // it has begun, and may find one; for Drain and Control
+  bool rests = false;                  // the store failed it a moment ago
+  bool stands = false;                 // the store gives it a job as soon as there is one
+  std::int64_t request = 0;            // by which the store knows that, as soon as it has said so
+  bool looking = false;                // one may come with the end of its job; for Drain, Control
   std::int64_t job = 0;                // 0: none; for orders
   std::optional<storage::Lease> sent;  // of the same job, from when the assignment has gone out
   std::shared_ptr<RunningToolpath> toolpath;  // of its job, where it is followed

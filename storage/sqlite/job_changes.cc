@@ -41,6 +41,9 @@ void SetState(WriteContext& context, JobRow& row, JobState state) {
   context.counters.JobsIn(job.state) -= 1;
   context.counters.JobsIn(state) += 1;
   context.moves.push_back({.machine = job.machine, .job = job.id, .from = job.state, .to = state});
+  // A RUN that is over lets the next one of its machine begin.
+  context.ready =
+      context.ready || state == JobState::kQueued || (IsFinal(state) && job.kind == kRunKind);
   job.state = state;
   // Whoever comes back to the queue waited for all that it had to wait for.
   if (state != JobState::kQueued) row.blocked = 0;
@@ -49,6 +52,7 @@ void SetState(WriteContext& context, JobRow& row, JobState state) {
 void SetBlocked(WriteContext& context, JobRow& row, int blocked) {
   context.counters.blocked_jobs += (blocked != 0 ? 1 : 0) - (row.blocked != 0 ? 1 : 0);
   row.blocked = blocked;
+  context.ready = context.ready || blocked == 0;
 }
 
 }  // namespace rmlcell::storage::sqlite

@@ -180,6 +180,7 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
   context.moves.push_back(
       {.machine = record.machine, .job = record.id, .from = {}, .to = JobState::kQueued});
   if (blocked != 0) context.counters.blocked_jobs += 1;
+  context.ready = context.ready || blocked == 0;
   for (const std::int64_t other : record.after) {
     if (const Status added = context.tables.queue.AddAfter(record.id, other); !added)
       return added.error();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -107,7 +108,8 @@ class SqliteStore final : public Store {
   Status PutOrder(std::int64_t job, std::string_view from, std::string_view payload) override;
   Result<std::vector<TakenOrder>> TakeOrders(std::string_view server) override;
   Result<std::vector<LeasedJob>> AcquireJobs(const JobRequest& request) override;
-  void SendAcquire(JobRequest request, Done<std::vector<LeasedJob>> done) override;
+  std::int64_t AwaitJobs(JobRequest request, Done<std::vector<LeasedJob>> done) override;
+  void Withdraw(std::int64_t request) override;
   Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) override;
   void SendRenew(const Lease& lease, std::chrono::milliseconds duration,
                  Done<JobRecord> done) override;
@@ -158,6 +160,7 @@ class SqliteStore final : public Store {
   const std::unique_ptr<ReaderPool> readers_;
   Watchers watchers_;
   EndsUnderWay ends_;
+  std::atomic<std::int64_t> last_request_ = 0;  // of those that stand
   Writer writer_;
   StagingThread staging_;
 };

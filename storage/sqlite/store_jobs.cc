@@ -106,6 +106,39 @@ void ReadSpecification(WriteContext& context, JobRecord& job) {
   if (!CompleteJob(context.tables, job, context.now)) job.specification.clear();
 }
 
+// A worker that waits for a job.
+class StandingRequest final : public WriteOperation {
+ public:
+  StandingRequest(std::int64_t number, JobRequest request, Done<std::vector<LeasedJob>> done)
+      : number_(number), request_(std::move(request)), done_(std::move(done)) {}
+
+  Status Run(WriteContext& context) override {
+    Result<std::vector<LeasedJob>> leased = LeaseJobs(context, request_);
+    if (!leased) return leased.error();
+    leased_ = *std::move(leased);
+    for (LeasedJob& one : leased_) ReadSpecification(context, one.job);
+    return {};
+  }
+  void Answer(const Status& status) override {
+    if (!status) return done_(status.error());
+    done_(std::move(leased_));
+  }
+  std::int64_t StandsAs() const override { return leased_.empty() ? number_ : 0; }
+  void Undone() override { leased_.clear(); }
+  bool AsksAs(const WriteOperation& other) const override {
+    const auto* request = dynamic_cast<const StandingRequest*>(&other);
+    return request != nullptr && request->request_.kinds == request_.kinds &&
+           request->request_.pools == request_.pools &&
+           request->request_.run_machines == request_.run_machines;
+  }
+
+ private:
+  const std::int64_t number_;
+  const JobRequest request_;
+  Done<std::vector<LeasedJob>> done_;
+  std::vector<LeasedJob> leased_;  // of the newest run
+};
+
 // What is written ahead piece by piece, and takes as long as the disk does.
 bool IsLarge(const JobEnd& end) {
   return std::ranges::any_of(end.artifacts,
@@ -306,17 +339,13 @@ Result<std::vector<LeasedJob>> SqliteStore::AcquireJobs(const JobRequest& reques
   return leased;
 }
 
-void SqliteStore::SendAcquire(JobRequest request, Done<std::vector<LeasedJob>> done) {
-  if (!writer_.any_ready_job()) return done(std::vector<LeasedJob>());
-  writer_.Send(
-      [request = std::move(request)](WriteContext& context) {
-        Result<std::vector<LeasedJob>> leased = LeaseJobs(context, request);
-        if (!leased) return leased;
-        for (LeasedJob& one : *leased) ReadSpecification(context, one.job);
-        return leased;
-      },
-      std::move(done));
+std::int64_t SqliteStore::AwaitJobs(JobRequest request, Done<std::vector<LeasedJob>> done) {
+  const std::int64_t number = ++last_request_;
+  writer_.Post(std::make_unique<StandingRequest>(number, std::move(request), std::move(done)), 0);
+  return number;
 }
+
+void SqliteStore::Withdraw(std::int64_t request) { writer_.EndStanding(request); }
 
 Result<JobRecord> SqliteStore::Renew(const Lease& lease, std::chrono::milliseconds duration) {
   return writer_.Do([&](WriteContext& context) { return RenewLease(context, lease, duration); });

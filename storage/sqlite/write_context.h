@@ -35,6 +35,7 @@ struct WriteContext {
   std::vector<JobMove> moves{};  // added to: for the tally, once they are committed
   bool changed = false;          // set: jobs or events changed, watchers want to know
   bool garbage = false;          // set: a blob may have lost its last reference or hold
+  bool ready = false;            // set: a job may have become one that can begin
 };
 
 // An event of a record that is no job: it was made, changed or deleted.
@@ -51,6 +52,14 @@ class WriteOperation {
   virtual ~WriteOperation() = default;
   virtual Status Run(WriteContext& context) = 0;
   virtual void Answer(const Status& status) = 0;
+  // Not 0: what it ran for is not there yet. It is not answered, but run again in each transaction
+  // in which a job may have become one that can begin, behind what is written there, until it is 0
+  // or it is withdrawn by this number.
+  virtual std::int64_t StandsAs() const { return 0; }
+  // What the newest Run() of one that stands has written is not there.
+  virtual void Undone() {}
+  // Whether what is not there for it is not there for the other one.
+  virtual bool AsksAs(const WriteOperation&) const { return false; }
 };
 
 }  // namespace rmlcell::storage::sqlite

@@ -49,6 +49,18 @@ class WaitingOperation final : public WriteOperation {
 
 }  // namespace
 
+// Its answer is given by who has the turn, as all that stands is looked at by nobody else.
+class Writer::Withdrawal final : public WriteOperation {
+ public:
+  Withdrawal(Writer& writer, std::int64_t number) : writer_(writer), number_(number) {}
+  Status Run(WriteContext&) override { return {}; }
+  void Answer(const Status&) override { writer_.AnswerStanding(number_); }
+
+ private:
+  Writer& writer_;
+  const std::int64_t number_;
+};
+
 Writer::Writer(Connection& connection, const Counters& counters, MachineTally::Machines machines,
                const Options& options, Clock clock, std::function<void()> changed)
     : options_(options),
@@ -72,6 +84,7 @@ Writer::~Writer() {
   }
   work_.notify_one();
   thread_.join();
+  for (const Pending& pending : std::exchange(standing_, {})) pending.operation->Answer({});
 }
 
 void Writer::Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes, Company company) {
@@ -101,6 +114,20 @@ void Writer::Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes, 
   } else if (enough) {
     work_.notify_one();
   }
+}
+
+void Writer::EndStanding(std::int64_t number) {
+  Post(std::make_unique<Withdrawal>(*this, number), 0);
+}
+
+void Writer::AnswerStanding(std::int64_t number) {
+  const auto found = std::ranges::find_if(standing_, [number](const Pending& pending) {
+    return pending.operation->StandsAs() == number;
+  });
+  if (found == standing_.end()) return;
+  const Pending pending = std::move(*found);
+  standing_.erase(found);
+  pending.operation->Answer({});
 }
 
 // Under mutex_.
@@ -204,22 +231,46 @@ void Writer::RunBatch(Batch batch) {
   Outcome outcome = TryBatch(batch, Undo::kWithAll);
   // One failed in the middle of its writes: again, and this time each can be undone alone.
   if (outcome == Outcome::kSpoilt) outcome = TryBatch(batch, Undo::kAlone);
-  if (outcome == Outcome::kLost && batch.size() > 1) {
-    // One of them may be to blame, such as a program that no longer fits on the disk: each for
-    // itself.
-    for (Pending& pending : batch) TryBatch(std::span(&pending, 1), Undo::kAlone);
+  if (outcome != Outcome::kLost || batch.size() == 1) return Keep(batch);
+  // One of them may be to blame, such as a program that no longer fits on the disk: each for
+  // itself.
+  for (Pending& pending : batch) {
+    const std::span alone(&pending, 1);
+    TryBatch(alone, Undo::kAlone);
+    Keep(alone);
   }
-  std::move(batch.begin(), batch.end(), std::back_inserter(answers_));
+}
+
+// To be answered, or to stand. Those that stood and have what they stood for, or failed, are
+// answered before those that made it.
+void Writer::Keep(std::span<Pending> batch) {
+  std::deque<Pending> still;
+  const auto keep = [&](Pending& pending) {
+    auto& to = pending.stands() ? still : answers_;
+    to.push_back(std::move(pending));
+  };
+  std::ranges::for_each(standing_, keep);
+  std::ranges::for_each(batch, keep);
+  standing_ = std::move(still);
 }
 
 // One transaction. kCommitted: every operation has its own status. Else nothing of it is there;
 // when it was lost, every operation has the reason as its status.
 Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
   const Counters before = counters_;
-  const auto lose = [&](const Error& reason) {
+  std::vector<Pending*> stood;
+  const auto undo_all = [&](Outcome outcome) {
     counters_ = before;
+    for (Pending* pending : stood) {
+      pending->operation->Undone();
+      pending->status = {};
+    }
+    stood.clear();
+    return outcome;
+  };
+  const auto lose = [&](const Error& reason) {
     for (Pending& pending : batch) pending.status = reason;
-    return Outcome::kLost;
+    return undo_all(Outcome::kLost);
   };
   Result<Transaction> transaction =
       Transaction::Begin(connection_.transactions, Transaction::Kind::kWrite);
@@ -229,16 +280,10 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
                                  // again
   }
   WriteContext context{.tables = connection_.tables, .counters = counters_, .now = {}};
-  for (Pending& pending : batch) {
-    if (const Status sound = RunOne(pending, context, undo); !sound) return lose(sound.error());
-    if (pending.status) continue;
-    // SQLite has ended the transaction: what followed would each be a transaction of its own.
-    if (!transaction->alive()) return lose(Error(pending.status.error()));
-    if (undo == Undo::kWithAll && pending.wrote) {
-      counters_ = before;
-      return Outcome::kSpoilt;
-    }
-  }
+  Result<bool> run = RunEach(batch, context, undo, *transaction);
+  if (run && *run) run = RunStanding(batch, context, undo, *transaction, stood);
+  if (!run) return lose(run.error());
+  if (!*run) return undo_all(Outcome::kSpoilt);
   if (const Status kept = KeepMarks(before); !kept) return lose(kept.error());
   if (const Status committed = transaction->Commit(); !committed) return lose(committed.error());
   fence_mark_ = FenceMark();
@@ -246,6 +291,43 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
   tidy_ = tidy_ || context.garbage || housekeeping_.IsDue(counters_);
   untold_ = untold_ || context.changed;
   return Outcome::kCommitted;
+}
+
+Result<bool> Writer::RunEach(std::span<Pending> batch, WriteContext& context, Undo undo,
+                             const Transaction& transaction) {
+  for (Pending& pending : batch) {
+    if (const Status sound = RunOne(pending, context, undo); !sound) return sound.error();
+    if (pending.status) continue;
+    // SQLite has ended the transaction: what followed would each be a transaction of its own.
+    if (!transaction.alive()) return Error(pending.status.error());
+    if (undo == Undo::kWithAll && pending.wrote) return false;
+  }
+  return true;
+}
+
+// Those of the batch, too: one may have been run before what it waits for was made. Of those that
+// ask for the same only the first is run when there is nothing for it. Added to `run`: those that
+// were run and stood before.
+Result<bool> Writer::RunStanding(std::span<Pending> batch, WriteContext& context, Undo undo,
+                                 const Transaction& transaction, std::vector<Pending*>& run) {
+  std::vector<const WriteOperation*> in_vain;
+  const auto give = [&](Pending& pending) -> Result<bool> {
+    if (!context.ready || counters_.queued_jobs == counters_.blocked_jobs) return true;
+    const WriteOperation& operation = *pending.operation;
+    const auto asked = [&](const auto* other) { return operation.AsksAs(*other); };
+    if (!pending.stands() || std::ranges::any_of(in_vain, asked)) return true;
+    run.push_back(&pending);
+    const Result<bool> went = RunEach(std::span(&pending, 1), context, undo, transaction);
+    if (went && *went && pending.stands()) in_vain.push_back(&operation);
+    return went;
+  };
+  for (Pending& pending : standing_) {
+    if (const Result<bool> went = give(pending); !went || !*went) return went;
+  }
+  for (Pending& pending : batch) {
+    if (const Result<bool> went = give(pending); !went || !*went) return went;
+  }
+  return true;
 }
 
 // An error: the transaction cannot go on.

@@ -51,6 +51,10 @@ class Writer {
   void Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes,
             Company company = Company::kNone);
 
+  // Answers the operation that stands by this number, as one that found nothing; none: nothing is
+  // done.
+  void EndStanding(std::int64_t number);
+
   // The same for `work`, from WriteContext& to a Result or Status; `done` is called with what it
   // gave, or with what kept it from becoming durable.
   template <class Work, class Done>
@@ -73,8 +77,10 @@ class Writer {
     std::size_t bytes = 0;
     Status status;
     bool wrote = false;  // it changed rows, also when it failed then
+    bool stands() const { return status && operation->StandsAs() != 0; }
   };
   using Batch = std::vector<Pending>;
+  class Withdrawal;
 
   // How an operation that fails is undone. A savepoint for each costs a quarter of the time of a
   // small write, and almost every failure is seen before the first row is touched, where nothing is
@@ -91,7 +97,14 @@ class Writer {
   Batch Take();
   void RunBatch(Batch batch);
   Outcome TryBatch(std::span<Pending> batch, Undo undo);
+  // An error: the transaction cannot go on. False: all of it has to be undone and run again.
+  Result<bool> RunEach(std::span<Pending> batch, WriteContext& context, Undo undo,
+                       const Transaction& transaction);
+  Result<bool> RunStanding(std::span<Pending> batch, WriteContext& context, Undo undo,
+                           const Transaction& transaction, std::vector<Pending*>& run);
   Status RunOne(Pending& pending, WriteContext& context, Undo undo);
+  void Keep(std::span<Pending> batch);
+  void AnswerStanding(std::int64_t number);
   void AnswerAll();
   void Tidy();
   std::int64_t FenceMark() const;
@@ -113,11 +126,12 @@ class Writer {
   // Used by whoever has the turn.
   Connection& connection_;
   Counters counters_;
-  std::int64_t fence_mark_;      // as the store has it: none beyond it was given out
-  std::deque<Pending> answers_;  // committed or failed, to be answered
-  bool untold_ = false;          // watchers do not know yet of a commit
-  bool tidy_ = true;             // there may be something to remove
-  int pages_at_checkpoint_ = 0;  // size of the log when it was last moved
+  std::int64_t fence_mark_;       // as the store has it: none beyond it was given out
+  std::deque<Pending> answers_;   // committed or failed, to be answered
+  std::deque<Pending> standing_;  // run and not answered: see WriteOperation::StandsAs
+  bool untold_ = false;           // watchers do not know yet of a commit
+  bool tidy_ = true;              // there may be something to remove
+  int pages_at_checkpoint_ = 0;   // size of the log when it was last moved
 
   ChangeCounts changes_;
   MachineTally machine_jobs_;

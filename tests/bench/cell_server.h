@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -82,6 +83,18 @@ class CellServer {
   }
 
   int web_port() const { return web_port_; }
+
+  // Of itself, without its workers.
+  double ProcessorSeconds() const {
+    std::ifstream status("/proc/" + std::to_string(process_) + "/stat");
+    const std::string text{std::istreambuf_iterator<char>(status), {}};
+    std::istringstream fields(text.substr(text.rfind(')') + 1));
+    std::string skipped;
+    for (int i = 0; i < 11; ++i) fields >> skipped;
+    double user = 0.0, system = 0.0;
+    fields >> user >> system;
+    return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+  }
 
   // What it holds of the memory of the computer.
   double MemoryKiB() const {

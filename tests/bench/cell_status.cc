@@ -16,6 +16,7 @@
 #include "rmlcell/v1/job.grpc.pb.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
 #include "tests/bench/cell_server.h"
+#include "tests/bench/goals.h"
 
 namespace {
 
@@ -181,24 +182,11 @@ class Submitters {
   std::vector<std::jthread> threads_;
 };
 
-class Row {
- public:
-  Row(std::string what, double goal, bool at_most = false)
-      : what_(std::move(what)), goal_(goal), at_most_(at_most) {}
-  void Add(double value) { values_.push_back(value); }
-  bool Print() const {
-    const double value = Median(values_);
-    const bool reached = at_most_ ? value <= goal_ : value >= goal_;
-    std::printf("%-66s %7.2f   goal: at %s %.2f%s\n", what_.c_str(), value,
-                at_most_ ? "most" : "least", goal_, reached ? "" : "   MISSED");
-    return reached;
-  }
-
- private:
-  std::string what_;
-  double goal_;
-  bool at_most_;
-  std::vector<double> values_;
+struct Goal {
+  std::string what;
+  double goal = 0.0;
+  bool at_least = true;
+  std::vector<double> values{};
 };
 
 }  // namespace
@@ -223,25 +211,25 @@ int main(int argc, char** argv) {
   while (Get(*jobs, runs).state() != v1::Job::STATE_RUNNING)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
 
-  std::vector<Row> rows;
+  std::vector<Goal> rows;
   constexpr int kClients[] = {1, 8, 64};
   for (const int clients : kClients) {
     const std::string who = ", clients: " + std::to_string(clients);
-    rows.emplace_back("A1: job that runs / empty call, calls/s" + who, 0.9);
-    rows.emplace_back("A1: the same, p99" + who, 1.3, true);
-    rows.emplace_back("A1: machine / empty call, calls/s" + who, 0.9);
+    rows.push_back({"A1: job that runs / empty call, calls/s" + who, 0.9});
+    rows.push_back({"A1: the same, p99" + who, 1.3, false});
+    rows.push_back({"A1: machine / empty call, calls/s" + who, 0.9});
   }
-  rows.emplace_back("Q7: job that ended / empty call, calls/s, beside 64 that submit", 0.7);
-  rows.emplace_back("Q7: the same, p99", 1.3, true);
+  rows.push_back({"Q7: job that ended / empty call, calls/s, beside 64 that submit", 0.7});
+  rows.push_back({"Q7: the same, p99", 1.3, false});
   for (int round = 0; round < rounds; ++round) {
     std::size_t row = 0;
     for (const int clients : kClients) {
       const Calls empty = AskJob(to_bare, clients, runs);
       const Calls job = AskJob(to_cell, clients, runs);
       const Calls machine = AskMachine(to_cell, clients);
-      rows[row++].Add(job.per_second / empty.per_second);
-      rows[row++].Add(job.p99 / empty.p99);
-      rows[row++].Add(machine.per_second / empty.per_second);
+      rows[row++].values.push_back(job.per_second / empty.per_second);
+      rows[row++].values.push_back(job.p99 / empty.p99);
+      rows[row++].values.push_back(machine.per_second / empty.per_second);
       std::printf(
           "%2d clients: empty %6.0f/s p99 %6.3f ms  job %6.0f/s p99 %6.3f ms  machine %6.0f/s p99 %6.3f ms\n",
           clients, empty.per_second, empty.p99 * 1e3, job.per_second, job.p99 * 1e3,
@@ -250,12 +238,13 @@ int main(int argc, char** argv) {
     const Submitters load(server);
     const Calls empty = AskJob(to_bare, kReaders, runs);
     const Calls job = AskJob(to_cell, kReaders, ended);
-    rows[row++].Add(job.per_second / empty.per_second);
-    rows[row++].Add(job.p99 / empty.p99);
+    rows[row++].values.push_back(job.per_second / empty.per_second);
+    rows[row++].values.push_back(job.p99 / empty.p99);
     std::printf("beside %d that submit: empty %6.0f/s p99 %6.3f ms  job %6.0f/s p99 %6.3f ms\n",
                 kSubmitters, empty.per_second, empty.p99 * 1e3, job.per_second, job.p99 * 1e3);
   }
   bool reached = true;
-  for (const Row& row : rows) reached = row.Print() && reached;
+  for (const Goal& row : rows)
+    reached = Row(row.what, row.values, row.goal, row.at_least) && reached;
   return reached ? 0 : 1;
 }

@@ -26,8 +26,17 @@ class FaultyStore final : public ForwardingStore {
   std::unique_ptr<Subscription> Watch(std::function<void()> changed) override {
     return std::make_unique<LateHints>(*this, std::move(changed));
   }
-  Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest& request) override {
-    return Try([&] { return store_.AcquireJobs(request); });
+  std::int64_t AwaitJobs(storage::JobRequest request,
+                         storage::Done<std::vector<storage::LeasedJob>> done) override {
+    const When when = Draw();
+    if (when == When::kBefore) {
+      done(Away());
+      return 0;
+    }
+    return store_.AwaitJobs(std::move(request), [when, done = std::move(done)](auto leased) {
+      if (when == When::kBehind) return done(Away());
+      done(std::move(leased));
+    });
   }
   Result<storage::JobRecord> Renew(const storage::Lease& lease,
                                    std::chrono::milliseconds duration) override {

@@ -161,6 +161,11 @@ class ForwardingStore : public storage::Store {
   Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest& request) override {
     return store_.AcquireJobs(request);
   }
+  std::int64_t AwaitJobs(storage::JobRequest request,
+                         storage::Done<std::vector<storage::LeasedJob>> done) override {
+    return store_.AwaitJobs(std::move(request), std::move(done));
+  }
+  void Withdraw(std::int64_t request) override { store_.Withdraw(request); }
   Result<storage::JobRecord> Renew(const storage::Lease& lease,
                                    std::chrono::milliseconds duration) override {
     return store_.Renew(lease, duration);

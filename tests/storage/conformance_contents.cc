@@ -150,9 +150,9 @@ std::int64_t SubmitOne(Store& store) {
 }
 std::vector<LeasedJob> AcquireAll(Store& store) {
   return Must(Answered<std::vector<LeasedJob>>([&](auto done) {
-    store.SendAcquire(
+    store.Withdraw(store.AwaitJobs(
         {.worker = "w", .server = "s", .kinds = {"CHECK"}, .duration = std::chrono::seconds(10)},
-        done);
+        done));
   }));
 }
 Result<JobRecord> Renewed(Store& store, const Lease& lease) {

@@ -28,6 +28,7 @@ struct Disk {
   Failure failure;
   std::string only_ending_with;
   std::int64_t operations = 0;
+  std::int64_t syncs = 0;
   std::int64_t crash_at = 0;  // 0: never
   Crash crash = Crash::kKill;
   std::map<std::string, std::vector<Undo>> unsynced;  // by path
@@ -127,6 +128,7 @@ int Sync(sqlite3_file* file, int flags) {
   const int synced = Of(file).system()->pMethods->xSync(Of(file).system(), flags);
   Disk& disk = TheDisk();
   const std::lock_guard lock(disk.mutex);
+  ++disk.syncs;
   if (Of(file).path != nullptr) disk.unsynced.erase(Of(file).path);
   return synced;
 }
@@ -223,6 +225,7 @@ void Fail(const Failure& failure) {
   const std::lock_guard lock(disk.mutex);
   disk.failure = failure;
   disk.operations = 0;
+  disk.syncs = 0;
 }
 
 void Heal() {
@@ -242,12 +245,19 @@ void CrashAt(std::int64_t operation, Crash crash) {
   disk.crash_at = operation;
   disk.crash = crash;
   disk.operations = 0;
+  disk.syncs = 0;
 }
 
 std::int64_t Operations() {
   Disk& disk = TheDisk();
   const std::lock_guard lock(disk.mutex);
   return disk.operations;
+}
+
+std::int64_t Syncs() {
+  Disk& disk = TheDisk();
+  const std::lock_guard lock(disk.mutex);
+  return disk.syncs;
 }
 
 }  // namespace rmlcell::storage::faulty_disk

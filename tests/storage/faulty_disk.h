@@ -36,5 +36,6 @@ void CrashAt(std::int64_t operation, Crash crash);
 
 // Operations since Register(), CrashAt() or Fail().
 std::int64_t Operations();
+std::int64_t Syncs();  // of these
 
 }  // namespace rmlcell::storage::faulty_disk

@@ -198,6 +198,59 @@ TEST_F(SqliteFaults, NothingIsToldOfAFailedCommit) {
   EXPECT_EQ(Must(store().CountJobs()).queued, 1);
 }
 
+// store.h AwaitJobs: what was given by a commit that failed was not given; the request stands.
+TEST_F(SqliteFaults, AJobGivenByAFailedCommitIsGivenByTheNext) {
+  std::vector<Result<std::vector<LeasedJob>>> answers;
+  store().AwaitJobs({.worker = "w", .kinds = {"SIMULATE"}, .duration = std::chrono::seconds(10)},
+                    [&](auto leased) { answers.push_back(std::move(leased)); });
+  for (const auto& failure :
+       {faulty_disk::Failure{.on_sync = SQLITE_IOERR_FSYNC}, {.on_write = SQLITE_FULL}}) {
+    faulty_disk::Fail(failure);
+    EXPECT_EQ(CodeOf(Submit("r")), kFailed);
+    faulty_disk::Heal();
+    EXPECT_EQ(answers.size(), 0U);
+    EXPECT_EQ(JobCount(), 0U);
+  }
+  const std::int64_t job = Must(Submit("r")).job.id;
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(Must(answers[0]).at(0).lease.job, job);
+  EXPECT_EQ(Must(store().GetJob(job)).state, JobState::kRunning);
+  EXPECT_EQ(Must(store().CountJobs()).running, 1);
+}
+
+// Withdrawn behind such a commit it has nothing.
+TEST_F(SqliteFaults, ARequestWithdrawnBehindAFailedCommitHasNothing) {
+  std::vector<Result<std::vector<LeasedJob>>> answers;
+  const std::int64_t number = store().AwaitJobs(
+      {.worker = "w", .kinds = {"SIMULATE"}, .duration = std::chrono::seconds(10)},
+      [&](auto leased) { answers.push_back(std::move(leased)); });
+  faulty_disk::Fail({.on_sync = SQLITE_IOERR_FSYNC});
+  EXPECT_EQ(CodeOf(Submit("r")), kFailed);
+  faulty_disk::Heal();
+  store().Withdraw(number);
+  Must(store().ActOn({}, QueueAct::kHold, {}));
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_TRUE(Must(answers[0]).empty());
+}
+
+// performance.md Q5: a job that is made and given out, and its end: the disk is waited for twice.
+TEST_F(SqliteFaults, ALoneJobIsTwoSyncs) {
+  std::vector<Result<std::vector<LeasedJob>>> answers;
+  const auto await = [&] {
+    store().AwaitJobs({.worker = "w", .kinds = {"SIMULATE"}, .duration = std::chrono::seconds(10)},
+                      [&](auto leased) { answers.push_back(std::move(leased)); });
+    Must(store().ActOn({}, QueueAct::kHold, {}));
+  };
+  await();
+  Must(Submit("first"));
+  Must(store().Finish(Must(answers.at(0)).at(0).lease, {}));
+  faulty_disk::Fail({});  // counts from here
+  await();
+  Must(Submit("second"));
+  Must(store().Finish(Must(answers.at(1)).at(0).lease, {}));
+  EXPECT_EQ(faulty_disk::Syncs(), 2);
+}
+
 TEST_F(SqliteFaults, OpeningOnAFullDiskIsAnError) {
   bed_.Close();
   std::filesystem::remove(bed_.path());

@@ -77,6 +77,29 @@ TEST(SqliteWriter, WaitingWritesShareOneCommit) {
   EXPECT_LT(faulty_disk::Operations(), kJobs);
 }
 
+// store.h AwaitJobs: a request and the job that it waits for, in one commit, whichever comes first.
+TEST(SqliteWriter, ARequestAndItsJobInOneCommitMeet) {
+  for (const bool request_first : {true, false}) {
+    SqliteBed bed;
+    std::promise<std::int64_t> given;
+    Answers answers;
+    {
+      WriterHold hold(bed.store());
+      if (!request_first) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+      bed.store().AwaitJobs({.worker = "w", .kinds = {"CHECK"}, .duration = std::chrono::hours(1)},
+                            [&](const Result<std::vector<LeasedJob>>& leased) {
+                              given.set_value(leased->empty() ? 0 : leased->front().lease.job);
+                            });
+      if (request_first) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+      hold.Release();
+    }
+    answers.WaitFor(1);
+    auto future = given.get_future();
+    ASSERT_EQ(future.wait_for(kPatience), std::future_status::ready) << request_first;
+    EXPECT_EQ(Must(bed.store().GetJob(future.get())).state, JobState::kRunning);
+  }
+}
+
 // docs/decisions/0005: who finds the store idle commits on his own thread, and not only the first
 // time. The first ones may come while the store still gets ready.
 TEST(SqliteWriter, LoneCallersCommitOnTheirOwnThread) {

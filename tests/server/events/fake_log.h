@@ -196,6 +196,12 @@ class FakeLog final : public storage::Store {
   Result<std::vector<storage::LeasedJob>> AcquireJobs(const storage::JobRequest&) override {
     return No();
   }
+  std::int64_t AwaitJobs(storage::JobRequest,
+                         storage::Done<std::vector<storage::LeasedJob>> done) override {
+    done(No());
+    return 0;
+  }
+  void Withdraw(std::int64_t) override {}
   Result<storage::JobRecord> Renew(const storage::Lease&, std::chrono::milliseconds) override {
     return No();
   }

@@ -182,13 +182,11 @@ std::shared_ptr<void> DispatcherBed::Occupy() {
   return {nullptr, [over](void*) { over->count_down(); }};
 }
 
-// A worker that leaves wakes those that are idle; this one can do nothing, so it takes nothing.
+// The store writes in order: what was asked of it before this write of nothing is done.
 void DispatcherBed::LookAgain() {
-  v1::WorkerHello hello = Hello("passing");
-  hello.clear_kinds();
-  FakeWorker(dispatcher(), hello).Leave();
-  Settle();  // it has left, and others were woken
-  Settle();  // they have looked
+  Settle();
+  Must(server.store().ActOn({}, storage::QueueAct::kHold, {}));
+  Settle();
 }
 
 bool DispatcherBed::Swept() {

@@ -96,7 +96,7 @@ class HookedStore final : public ForwardingStore {
  public:
   using ForwardingStore::ForwardingStore;
   // Set before the dispatcher is made.
-  std::function<void(bool found)> after_acquire;
+  std::function<void()> after_acquire;   // before the dispatcher hears of the job
   std::function<void()> before_machine;  // an assignment is made from it
   // So many of the next calls fail, as on a full disk.
   std::atomic<int> finishes_that_fail = 0;
@@ -109,6 +109,7 @@ class HookedStore final : public ForwardingStore {
   // Ends are kept until Answer() and not written, as by a store that is not there for a while.
   std::atomic<bool> keeps_ends = false;
   std::atomic<int> ends_kept = 0;
+  std::atomic<int> standing = 0;    // requests that were not answered
   std::atomic<int> next_given = 0;  // jobs that came with the end of another one
   // Calls that have returned.
   std::atomic<int> renewals = 0;
@@ -133,15 +134,20 @@ class HookedStore final : public ForwardingStore {
     if (Fails(machines_that_fail)) return FullDisk();
     return store_.GetMachineMemory(id, wants_programs);
   }
-  // As the store itself answers: later, on a thread of its own.
-  void SendAcquire(storage::JobRequest request,
-                   storage::Done<std::vector<storage::LeasedJob>> done) override {
-    if (Fails(acquires_that_fail)) return done(FullDisk());
-    store_.SendAcquire(std::move(request),
-                       [this, done](Result<std::vector<storage::LeasedJob>> leased) {
-                         if (after_acquire) after_acquire(leased && !leased->empty());
-                         done(std::move(leased));
-                       });
+  std::int64_t AwaitJobs(storage::JobRequest request,
+                         storage::Done<std::vector<storage::LeasedJob>> done) override {
+    if (Fails(acquires_that_fail)) {
+      done(FullDisk());
+      return 0;
+    }
+    const std::int64_t number = store_.AwaitJobs(
+        std::move(request), [this, done](Result<std::vector<storage::LeasedJob>> leased) {
+          if (after_acquire && leased && !leased->empty()) after_acquire();
+          done(std::move(leased));
+          --standing;
+        });
+    ++standing;
+    return number;
   }
   void SendRenew(const storage::Lease& lease, std::chrono::milliseconds duration,
                  storage::Done<storage::JobRecord> done) override {
@@ -168,7 +174,7 @@ class HookedStore final : public ForwardingStore {
     auto answer = [this, looked = next.has_value(), done](Result<storage::FinishedJob> finished) {
       const bool found = finished && !finished->next.empty();
       if (found) ++next_given;
-      if (looked && found && after_acquire) after_acquire(true);
+      if (looked && found && after_acquire) after_acquire();
       done(std::move(finished));
     };
     if (!keeps_ends) return store_.SendFinish(lease, std::move(end), next, std::move(answer));
@@ -236,7 +242,7 @@ class DispatcherBed {
   void Settle();
   // Keeps every thread of the executor busy until the handle is destroyed.
   [[nodiscard]] std::shared_ptr<void> Occupy();
-  // Each idle worker looks for a job once more, and has looked when this returns: what it was not
+  // Each idle worker has looked for a job when this returns, and waits for one: what it was not
   // given until then it is not given.
   void LookAgain();
   // Waits until leases were looked at by the clock as it is now.

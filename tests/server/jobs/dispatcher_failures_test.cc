@@ -235,6 +235,7 @@ TEST(DispatcherFailures, AServerThatStopsGivesNoNextJob) {
   const std::int64_t next = bed.server.SubmitCheck();
   FakeWorker worker(bed.dispatcher(), "w");
   ASSERT_TRUE(worker.Take());
+  bed.Settle();  // it was told of the job before it is told to stop, and the dispatcher knows
   std::jthread drain([&] { bed.dispatcher().Drain(kPatience); });
   worker.line().Next(v1::WorkResponse::kStop);
   worker.Finish();

@@ -138,8 +138,7 @@ TEST(DispatcherControl, OrdersReachTheWorkerThatHasTheJob) {
 TEST(DispatcherControl, AnOrderForAJobOnItsWayComesAfterTheJob) {
   DispatcherBed bed;
   std::optional<ErrorCode> refused;
-  bed.hooks.after_acquire = [&](bool found) {
-    if (!found) return;
+  bed.hooks.after_acquire = [&] {
     const auto jobs = Must(bed.server.store().ListJobs({}));
     const Status ordered =
         bed.dispatcher().Control(jobs.front().id, {.kind = v1::WorkerControl::KIND_HOLD});
@@ -160,8 +159,8 @@ TEST(DispatcherControl, AnOrderForTheNextJobComesAfterIt) {
   FakeWorker worker(bed.dispatcher(), "w");
   ASSERT_TRUE(worker.Take());
   Status ordered = Error{ErrorCode::kCellInternal, {}, {}};
-  bed.hooks.after_acquire = [&](bool found) {
-    if (found) ordered = bed.dispatcher().Control(next, {.kind = v1::WorkerControl::KIND_HOLD});
+  bed.hooks.after_acquire = [&] {
+    ordered = bed.dispatcher().Control(next, {.kind = v1::WorkerControl::KIND_HOLD});
   };
   worker.Finish();
   ASSERT_TRUE(worker.Take());
@@ -209,9 +208,8 @@ TEST(DispatcherControl, AnOrderForAnotherJobIsForgotten) {
   const auto leased = Must(bed.server.store().Acquire("elsewhere", {"CHECK"}, kPatience, {}));
   ASSERT_EQ(leased->lease.job, elsewhere);
   Status ordered;
-  bed.hooks.after_acquire = [&](bool found) {
-    if (found)
-      ordered = bed.dispatcher().Control(elsewhere, {.kind = v1::WorkerControl::KIND_HOLD});
+  bed.hooks.after_acquire = [&] {
+    ordered = bed.dispatcher().Control(elsewhere, {.kind = v1::WorkerControl::KIND_HOLD});
   };
   bed.server.SubmitCheck();
   FakeWorker worker(bed.dispatcher(), "w");
@@ -302,8 +300,7 @@ TEST(DispatcherDrain, AJobOnItsWayToAWorkerGoesBack) {
   bed.config.workers_lease_ms = 100;  // leases are looked at often, by a clock that stands still
   std::atomic<bool> found_one = false;
   std::atomic<bool> go_on = false;
-  bed.hooks.after_acquire = [&](bool found) {
-    if (!found) return;
+  bed.hooks.after_acquire = [&] {
     found_one = true;
     Eventually([&] { return go_on.load(); });
   };

@@ -108,19 +108,49 @@ TEST(DispatcherAssign, SendsALargeProgramAfterTheAssignment) {
   EXPECT_EQ(worker.line().programs().at(1), source);
 }
 
-// A worker that looks and finds nothing must look again when a job was stored meanwhile.
-TEST(DispatcherAssign, AJobStoredDuringALookIsGivenOut) {
+// performance.md Q5: a worker that waits is given the job by the transaction that makes it, so that
+// nobody ever sees it wait.
+TEST(DispatcherAssign, AJobIsGivenOutAsItIsStored) {
   DispatcherBed bed;
-  std::atomic<bool> done = false;
-  bed.hooks.after_acquire = [&](bool found) {
-    if (found || done.exchange(true)) return;
-    const int before = bed.hooks.hints;
-    bed.server.SubmitCheck();
-    // The dispatcher was told, and the look is not over.
-    Eventually([&] { return bed.hooks.hints > before; });
-  };
   FakeWorker worker(bed.dispatcher(), "w");
-  EXPECT_TRUE(worker.Take());
+  bed.LookAgain();
+  const std::int64_t job = bed.server.SubmitCheck();
+  EXPECT_EQ(bed.Job(job).state, JobState::kRunning);
+  EXPECT_TRUE(bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_HOLD}));
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.job(), job);
+  EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_HOLD);
+}
+
+// It left while it was given one: the job goes to another, and its attempt does not count.
+TEST(DispatcherAssign, AJobGivenToAWorkerThatLeavesGoesToAnother) {
+  DispatcherBed bed;
+  FakeWorker leaving(bed.dispatcher(), "leaving");
+  bed.LookAgain();
+  bool first = true;
+  bed.hooks.after_acquire = [&] {
+    if (!std::exchange(first, false)) return;
+    leaving.Leave();
+    bed.Settle();  // it is gone for the dispatcher before that hears of the job
+  };
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.job(), job);
+  EXPECT_EQ(bed.Job(job).attempts, 1);
+}
+
+// A worker that leaves takes its request with it.
+TEST(DispatcherAssign, AWorkerThatIsGoneWaitsForNothing) {
+  DispatcherBed bed;
+  {
+    FakeWorker worker(bed.dispatcher(), "w");
+    bed.LookAgain();
+    EXPECT_EQ(bed.hooks.standing, 1);
+    worker.Leave();
+  }
+  EXPECT_TRUE(Eventually([&] { return bed.hooks.standing == 0; }));
+  EXPECT_EQ(bed.Job(bed.server.SubmitCheck()).state, JobState::kQueued);
 }
 
 TEST(DispatcherAssign, AJobThatCannotBeWorkedOnFailsAndTheNextIsGiven) {
