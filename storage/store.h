@@ -253,7 +253,8 @@ class Store {
   virtual Result<std::vector<MachineRecord>> ListMachines() = 0;  // by id
   virtual Result<MachineRecord> GetMachine(std::string_view id) = 0;
   // Grows with every change of a machine: what was read of them after it was asked for stands as
-  // long as it is the same. From memory; whoever is told of a change finds it here.
+  // long as it is the same, and not 0; that says that one is being changed. From memory; whoever
+  // was told of a change, or has read it, finds it here.
   virtual std::uint64_t MachineChanges() const = 0;
   // The revision and times of `machine` are not looked at. CellInvalidArgument: no id.
   virtual Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected,
@@ -406,8 +407,8 @@ class Store {
   virtual Result<std::vector<LeasedJob>> AcquireJobs(const JobRequest& request) = 0;
   // The same for who has time: while there is none the request stands, and the transaction that
   // makes a job one that can begin leases it as well, so that both cost one wait for the disk.
-  // Who asked earlier hears of it before whoever made the job. Returns what Withdraw() knows the
-  // request by.
+  // Who asked before that hears of it before whoever made the job, unless he made it in an answer.
+  // Returns what Withdraw() knows the request by.
   virtual std::int64_t AwaitJobs(JobRequest request, Done<std::vector<LeasedJob>> done) = 0;
   // `done` is then called with nothing, unless it has been called or is to be; so is that of each
   // request that stands when the store goes.

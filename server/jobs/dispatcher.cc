@@ -112,7 +112,6 @@ void Dispatcher::Leave(WorkerId id) {
     if (worker->stands) request = worker->request;
     workers_.erase(found);
   }
-  if (request != 0) store_.Withdraw(request);
   Post(worker, [this, worker] {
     worker->left = true;
     changed_.notify_all();
@@ -122,6 +121,7 @@ void Dispatcher::Leave(WorkerId id) {
                  JobName(worker->assignment->lease.job));
     Lose(worker);
   });
+  if (request != 0) store_.Withdraw(request);
 }
 
 int Dispatcher::workers() const {
@@ -319,25 +319,24 @@ Status Dispatcher::Control(std::int64_t job, const JobOrder& order) {
   const auto record = store_.GetJob(job);
   if (!record) return record.error();
   const bool runs = record->state == storage::JobState::kRunning;
-  const auto may_come = [&](bool Worker::*way) {
-    const std::lock_guard lock(mutex_);
-    if (OrderHolder(job, order)) return true;
-    bool any = false;
-    for (const auto& [id, worker] : workers_) {
-      if (!(*worker.*way)) continue;
-      worker->early_orders.push_back({job, order});
-      any = true;
-    }
-    return any;
-  };
-  // Who looks may have leased it a moment ago, and not have said so.
-  if (runs && may_come(&Worker::looking)) return {};
+  if (runs && OrderAtOnce(job, order)) return {};
   // Perhaps another server has it; one that waits, or has ended, nobody has.
   const Status put =
       store_.PutOrder(job, server_, ControlMessage({}, order).control().SerializeAsString());
   if (put || put.error().code != ErrorCode::kCellPrecondition) return put;
-  // No other server: one that waited may have been given it, and not have heard so.
-  if (runs && may_come(&Worker::stands)) return {};
+  // The store has written this by now, so that whoever stood for the job there has heard of it. Who
+  // looks for a further one may have leased it a moment ago, and not have said so.
+  if (runs) {
+    const std::lock_guard lock(mutex_);
+    if (OrderHolder(job, order)) return {};
+    bool may_come = false;
+    for (const auto& [id, worker] : workers_) {
+      if (!worker->looking) continue;
+      worker->early_orders.push_back({job, order});
+      may_come = true;
+    }
+    if (may_come) return {};
+  }
   return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
 }
 

@@ -91,7 +91,8 @@ class Dispatcher {
   // done, or after `patience`. For good: leases are not looked after any more.
   void Drain(std::chrono::milliseconds patience);
 
-  // Waits until nothing of it is under way on the executor or in the store. Precondition: nobody
+  // Waits until nothing of it is under way on the executor or, behind Drain(), in the store.
+  // Precondition: nobody
   // calls it any more; behind Drain().
   void Settle();
 
@@ -114,6 +115,7 @@ class Dispatcher {
   void GoOn(const std::shared_ptr<Worker>& worker, std::function<void()> next);
   void Assign(const std::shared_ptr<Worker>& worker);
   void Stood(const std::shared_ptr<Worker>& worker, Result<std::vector<storage::LeasedJob>> leased);
+  void StandsNoMore();
   void Has(Worker& worker, std::int64_t job);  // precondition: mutex_ is held
   void WithdrawAll();
   std::optional<storage::JobRequest> Wants(const Worker& worker) const;  // likewise

@@ -61,7 +61,8 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
   std::optional<storage::JobRequest> request;
   {
     const std::lock_guard lock(mutex_);
-    if (!worker->stands) request = Wants(*worker);
+    // One that was given a job a moment ago may not know of it yet.
+    if (!worker->stands && worker->job == 0) request = Wants(*worker);
     if (!request) return;
     worker->stands = true;
     worker->request = 0;
@@ -71,10 +72,18 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
   try {
     number = store_.AwaitJobs(*std::move(request),
                               [this, worker](Result<std::vector<storage::LeasedJob>> leased) {
-                                Stood(worker, std::move(leased));
+                                try {
+                                  Stood(worker, std::move(leased));
+                                } catch (const std::exception& error) {
+                                  // What it was given is given to another when its lease ends.
+                                  spdlog::error("worker {}: {}", worker->name, error.what());
+                                  worker->line->Close(Error{ErrorCode::kCellInternal, {}, {}});
+                                }
+                                StandsNoMore();
                               });
   } catch (const std::exception& error) {
-    return Stood(worker, Error{ErrorCode::kCellInternal, error.what(), {}});
+    Stood(worker, Error{ErrorCode::kCellInternal, error.what(), {}});
+    return StandsNoMore();
   }
   bool in_vain = false;
   {
@@ -101,6 +110,9 @@ void Dispatcher::Stood(const std::shared_ptr<Worker>& worker,
     if (!leased) spdlog::error("no job could be leased: {}", bridge::ErrorText(leased.error()));
     Rest(*worker);
   }
+}
+
+void Dispatcher::StandsNoMore() {
   const std::lock_guard lock(mutex_);
   --standing_;
   changed_.notify_all();  // under the lock: it may be gone right after

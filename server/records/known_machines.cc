@@ -6,7 +6,7 @@ namespace rmlcell::server {
 
 std::shared_ptr<const KnownMachines::Machines> KnownMachines::ListAtOnce() const {
   const std::lock_guard lock(mutex_);
-  return machines_ && changes_ == store_.MachineChanges() ? machines_ : nullptr;
+  return changes_ != 0 && changes_ == store_.MachineChanges() ? machines_ : nullptr;
 }
 
 Result<std::shared_ptr<const KnownMachines::Machines>> KnownMachines::List() {

@@ -30,7 +30,7 @@ class KnownMachines {
   storage::Store& store_;
   mutable std::mutex mutex_;
   std::shared_ptr<const Machines> machines_;  // guarded by mutex_
-  std::uint64_t changes_ = 0;                 // guarded by mutex_; when they were read
+  std::uint64_t changes_ = 0;  // guarded by mutex_; when they were read, 0: they do not stand
 };
 
 }  // namespace rmlcell::server

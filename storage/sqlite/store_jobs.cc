@@ -326,7 +326,7 @@ Result<std::vector<TakenOrder>> SqliteStore::TakeOrders(std::string_view server)
 }
 
 Result<std::vector<LeasedJob>> SqliteStore::AcquireJobs(const JobRequest& request) {
-  // Idle workers ask at every commit; most find nothing, and that must not keep the writer busy.
+  // Most who ask find nothing, and that must not keep the writer busy.
   if (!writer_.any_ready_job()) return std::vector<LeasedJob>();
   Result<std::vector<LeasedJob>> leased =
       writer_.Do([&](WriteContext& context) { return LeaseJobs(context, request); });

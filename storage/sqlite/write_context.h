@@ -44,9 +44,10 @@ Status NoteRecord(WriteContext& context, std::string_view resource, std::string_
 // What happened with a record that is no job.
 Status NoteEvent(WriteContext& context, std::string_view resource, const NewEvent& event);
 
-// One write. Run() is called on the writer thread inside a transaction and is undone when it gives
-// an error; it may be called again when that transaction could not be committed. Then Answer() is
-// called once, after the commit, with an error of Run() or of the commit.
+// One write. Run() is called by whoever has the turn, inside a transaction, and is undone when it
+// gives an error; it may be called again when that transaction could not be committed. Then
+// Answer() is called once, after the commit, with an error of Run() or of the commit; of one that
+// stands, after the commit that gave it what it waits for, or when it waits no more.
 class WriteOperation {
  public:
   virtual ~WriteOperation() = default;

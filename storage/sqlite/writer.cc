@@ -117,7 +117,7 @@ void Writer::Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes, 
 }
 
 void Writer::EndStanding(std::int64_t number) {
-  Post(std::make_unique<Withdrawal>(*this, number), 0);
+  Post(std::make_unique<Withdrawal>(*this, number), 0, Company::kComes);
 }
 
 void Writer::AnswerStanding(std::int64_t number) {
@@ -228,17 +228,22 @@ Writer::Batch Writer::Take() {
 
 void Writer::RunBatch(Batch batch) {
   if (batch.empty()) return;
-  Outcome outcome = TryBatch(batch, Undo::kWithAll);
-  // One failed in the middle of its writes: again, and this time each can be undone alone.
-  if (outcome == Outcome::kSpoilt) outcome = TryBatch(batch, Undo::kAlone);
-  if (outcome != Outcome::kLost || batch.size() == 1) return Keep(batch);
+  if (RunTogether(batch, Undo::kWithAll) != Outcome::kLost || batch.size() == 1) return Keep(batch);
   // One of them may be to blame, such as a program that no longer fits on the disk: each for
   // itself.
   for (Pending& pending : batch) {
     const std::span alone(&pending, 1);
-    TryBatch(alone, Undo::kAlone);
+    RunTogether(alone, Undo::kAlone);
     Keep(alone);
   }
+}
+
+// When one failed in the middle of its writes all is run again, and this time each can be undone
+// alone.
+Writer::Outcome Writer::RunTogether(std::span<Pending> batch, Undo undo) {
+  Outcome outcome = TryBatch(batch, undo);
+  while (outcome == Outcome::kSpoilt) outcome = TryBatch(batch, Undo::kAlone);
+  return outcome;
 }
 
 // To be answered, or to stand. Those that stood and have what they stood for, or failed, are
@@ -281,11 +286,21 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
   }
   WriteContext context{.tables = connection_.tables, .counters = counters_, .now = {}};
   Result<bool> run = RunEach(batch, context, undo, *transaction);
-  if (run && *run) run = RunStanding(batch, context, undo, *transaction, stood);
   if (!run) return lose(run.error());
+  if (*run) {
+    run = RunStanding(batch, context, undo, *transaction, stood);
+    if (!run) {
+      // The others shall not suffer for one that waits: without it.
+      Pending& to_blame = *stood.back();
+      undo_all(Outcome::kSpoilt);
+      to_blame.status = run.error();
+      to_blame.barred = true;
+      return Outcome::kSpoilt;
+    }
+  }
   if (!*run) return undo_all(Outcome::kSpoilt);
   if (const Status kept = KeepMarks(before); !kept) return lose(kept.error());
-  if (const Status committed = transaction->Commit(); !committed) return lose(committed.error());
+  if (const Status committed = Commit(*transaction); !committed) return lose(committed.error());
   fence_mark_ = FenceMark();
   PublishCounts(context);
   tidy_ = tidy_ || context.garbage || housekeeping_.IsDue(counters_);
@@ -293,21 +308,33 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
   return Outcome::kCommitted;
 }
 
+// Those that stand take their turn behind the others.
 Result<bool> Writer::RunEach(std::span<Pending> batch, WriteContext& context, Undo undo,
                              const Transaction& transaction) {
   for (Pending& pending : batch) {
-    if (const Status sound = RunOne(pending, context, undo); !sound) return sound.error();
-    if (pending.status) continue;
-    // SQLite has ended the transaction: what followed would each be a transaction of its own.
-    if (!transaction.alive()) return Error(pending.status.error());
-    if (undo == Undo::kWithAll && pending.wrote) return false;
+    if (pending.operation->StandsAs() != 0) {
+      if (!pending.barred) pending.status = {};
+      context.ready = true;  // what was ready before it came, too
+      continue;
+    }
+    const Result<bool> run = RunSoundly(pending, context, undo, transaction);
+    if (!run || !*run) return run;
   }
   return true;
 }
 
-// Those of the batch, too: one may have been run before what it waits for was made. Of those that
-// ask for the same only the first is run when there is nothing for it. Added to `run`: those that
-// were run and stood before.
+Result<bool> Writer::RunSoundly(Pending& pending, WriteContext& context, Undo undo,
+                                const Transaction& transaction) {
+  if (const Status sound = RunOne(pending, context, undo); !sound) return sound.error();
+  if (pending.status) return true;
+  // SQLite has ended the transaction: what followed would each be a transaction of its own.
+  if (!transaction.alive()) return Error(pending.status.error());
+  return undo == Undo::kAlone || !pending.wrote;
+}
+
+// Who has stood longest first, and those of the batch last. Of those that ask for the same only the
+// first is run when there is nothing for it. Added to `run`: those that were run; with an error the
+// last of them is to blame.
 Result<bool> Writer::RunStanding(std::span<Pending> batch, WriteContext& context, Undo undo,
                                  const Transaction& transaction, std::vector<Pending*>& run) {
   std::vector<const WriteOperation*> in_vain;
@@ -317,7 +344,7 @@ Result<bool> Writer::RunStanding(std::span<Pending> batch, WriteContext& context
     const auto asked = [&](const auto* other) { return operation.AsksAs(*other); };
     if (!pending.stands() || std::ranges::any_of(in_vain, asked)) return true;
     run.push_back(&pending);
-    const Result<bool> went = RunEach(std::span(&pending, 1), context, undo, transaction);
+    const Result<bool> went = RunSoundly(pending, context, undo, transaction);
     if (went && *went && pending.stands()) in_vain.push_back(&operation);
     return went;
   };
@@ -328,6 +355,14 @@ Result<bool> Writer::RunStanding(std::span<Pending> batch, WriteContext& context
     if (const Result<bool> went = give(pending); !went || !*went) return went;
   }
   return true;
+}
+
+// Also when it fails the counts are told as changed: a look too many.
+Status Writer::Commit(Transaction& transaction) {
+  changes_.BeforeCommit();
+  Status committed = transaction.Commit();
+  changes_.AfterCommit();
+  return committed;
 }
 
 // An error: the transaction cannot go on.
@@ -383,8 +418,7 @@ void Writer::Tidy() {
     const Result<bool> more = housekeeping_.RunSlice(context);
     if (!more) return more.error();
     if (const Status kept = KeepMarks(before); !kept) return kept.error();
-    if (const Status committed = transaction->Commit(); !committed) return committed.error();
-    changes_.Publish();
+    if (const Status committed = Commit(*transaction); !committed) return committed.error();
     if (context.changed) changed_();
     return more;
   };
@@ -414,7 +448,6 @@ Status Writer::KeepMarks(const Counters& before) {
 
 // Before anybody is told of the change: whoever is, finds it here.
 void Writer::PublishCounts(const WriteContext& context) {
-  changes_.Publish();
   machine_jobs_.Apply(context.moves);
   queued_jobs_ = counters_.queued_jobs;
   ready_jobs_ = counters_.queued_jobs - counters_.blocked_jobs;

@@ -76,8 +76,9 @@ class Writer {
     std::unique_ptr<WriteOperation> operation;
     std::size_t bytes = 0;
     Status status;
-    bool wrote = false;  // it changed rows, also when it failed then
-    bool stands() const { return status && operation->StandsAs() != 0; }
+    bool wrote = false;   // it changed rows, also when it failed then
+    bool barred = false;  // it stood, and made the writes of others fail
+    bool stands() const { return status && !barred && operation->StandsAs() != 0; }
   };
   using Batch = std::vector<Pending>;
   class Withdrawal;
@@ -96,14 +97,18 @@ class Writer {
   void AnswerAndTell();
   Batch Take();
   void RunBatch(Batch batch);
+  Outcome RunTogether(std::span<Pending> batch, Undo undo);
   Outcome TryBatch(std::span<Pending> batch, Undo undo);
   // An error: the transaction cannot go on. False: all of it has to be undone and run again.
   Result<bool> RunEach(std::span<Pending> batch, WriteContext& context, Undo undo,
                        const Transaction& transaction);
+  Result<bool> RunSoundly(Pending& pending, WriteContext& context, Undo undo,
+                          const Transaction& transaction);
   Result<bool> RunStanding(std::span<Pending> batch, WriteContext& context, Undo undo,
                            const Transaction& transaction, std::vector<Pending*>& run);
   Status RunOne(Pending& pending, WriteContext& context, Undo undo);
   void Keep(std::span<Pending> batch);
+  Status Commit(Transaction& transaction);
   void AnswerStanding(std::int64_t number);
   void AnswerAll();
   void Tidy();

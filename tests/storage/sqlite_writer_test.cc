@@ -4,6 +4,8 @@
 #include <sqlite3.h>
 
 #include <future>
+#include <map>
+#include <mutex>
 #include <set>
 #include <thread>
 
@@ -85,12 +87,13 @@ TEST(SqliteWriter, ARequestAndItsJobInOneCommitMeet) {
     Answers answers;
     {
       WriterHold hold(bed.store());
-      if (!request_first) bed.store().Submit({.kind = "CHECK"}, answers.Next());
-      bed.store().AwaitJobs({.worker = "w", .kinds = {"CHECK"}, .duration = std::chrono::hours(1)},
-                            [&](const Result<std::vector<LeasedJob>>& leased) {
-                              given.set_value(leased->empty() ? 0 : leased->front().lease.job);
-                            });
-      if (request_first) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+      if (!request_first) bed.store().Submit({.kind = "SIMULATE"}, answers.Next());
+      bed.store().AwaitJobs(
+          {.worker = "w", .kinds = {"SIMULATE"}, .duration = std::chrono::hours(1)},
+          [&](const Result<std::vector<LeasedJob>>& leased) {
+            given.set_value(leased->empty() ? 0 : leased->front().lease.job);
+          });
+      if (request_first) bed.store().Submit({.kind = "SIMULATE"}, answers.Next());
       hold.Release();
     }
     answers.WaitFor(1);
@@ -98,6 +101,34 @@ TEST(SqliteWriter, ARequestAndItsJobInOneCommitMeet) {
     ASSERT_EQ(future.wait_for(kPatience), std::future_status::ready) << request_first;
     EXPECT_EQ(Must(bed.store().GetJob(future.get())).state, JobState::kRunning);
   }
+}
+
+// Who has stood longest is first, also beside a request that comes with the job.
+TEST(SqliteWriter, ANewRequestPassesNoneThatStands) {
+  SqliteBed bed;
+  std::mutex mutex;
+  std::map<std::string, std::int64_t> given;
+  const auto await = [&](const std::string& worker) {
+    bed.store().AwaitJobs(
+        {.worker = worker, .kinds = {"SIMULATE"}, .duration = std::chrono::hours(1)},
+        [&, worker](const Result<std::vector<LeasedJob>>& leased) {
+          const std::lock_guard lock(mutex);
+          given[worker] = leased->empty() ? 0 : leased->front().lease.job;
+        });
+  };
+  await("old");
+  Answers answers;
+  {
+    WriterHold hold(bed.store());
+    bed.store().Submit({.kind = "SIMULATE"}, answers.Next());
+    await("new");
+    hold.Release();
+  }
+  answers.WaitFor(1);
+  Must(bed.store().ActOn({}, QueueAct::kHold, {}));
+  const std::lock_guard lock(mutex);
+  EXPECT_EQ(given.size(), 1U);
+  EXPECT_GT(given["old"], 0);
 }
 
 // docs/decisions/0005: who finds the store idle commits on his own thread, and not only the first

@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <future>
+#include <thread>
+
 #include "server/base/names.h"
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/running_toolpath.h"
@@ -134,21 +137,37 @@ TEST(DispatcherControl, OrdersReachTheWorkerThatHasTheJob) {
             ErrorCode::kCellPrecondition);
 }
 
-// Clients see that a job runs before its worker has heard of it.
+// Clients see that a job runs before its worker has heard of it; another worker looks meanwhile,
+// and gets another.
 TEST(DispatcherControl, AnOrderForAJobOnItsWayComesAfterTheJob) {
   DispatcherBed bed;
-  std::optional<ErrorCode> refused;
+  const std::int64_t first = bed.server.SubmitCheck();
+  FakeWorker other(bed.dispatcher(), "other");
+  ASSERT_TRUE(other.Take());
+  bed.hooks.keeps_ends = true;
+  other.Finish();  // its answer does not come: it looks for a further one
+  ASSERT_TRUE(Eventually([&] { return bed.hooks.ends_kept == 1; }));
+  std::promise<Status> ordered;
+  std::jthread client;
   bed.hooks.after_acquire = [&] {
-    const auto jobs = Must(bed.server.store().ListJobs({}));
-    const Status ordered =
-        bed.dispatcher().Control(jobs.front().id, {.kind = v1::WorkerControl::KIND_HOLD});
-    if (!ordered) refused = ordered.error().code;
+    if (client.joinable()) return;
+    const int read = bed.hooks.jobs_read;
+    client = std::jthread([&] {
+      ordered.set_value(
+          bed.dispatcher().Control(first + 1, {.kind = v1::WorkerControl::KIND_HOLD}));
+    });
+    Eventually([&] { return bed.hooks.jobs_read > read; });  // it has seen that the job runs
   };
   FakeWorker worker(bed.dispatcher(), "w");
-  bed.server.SubmitCheck();
+  ASSERT_TRUE(Eventually([&] { return bed.hooks.standing == 1; }));
+  Must(bed.server.store().ActOn({}, storage::QueueAct::kHold, {}));  // it stands by now
+  ASSERT_EQ(bed.server.SubmitCheck(), first + 1);
   ASSERT_TRUE(worker.Take());
-  EXPECT_EQ(refused, std::nullopt);
+  EXPECT_TRUE(ordered.get_future().get());
   EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_HOLD);
+  bed.hooks.Answer();
+  EXPECT_EQ(other.Released(), true);
+  EXPECT_FALSE(other.line().Has(v1::WorkResponse::kControl));
 }
 
 // The same of one that came with the end of the job before.
@@ -184,7 +203,6 @@ TEST(DispatcherControl, AnOrderForAJobThatIsBeingMadeReadyComesAfterTheJob) {
   EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_STOP);
 }
 
-// One that another server has was ordered while this worker looked: it found another job.
 // Whoever has read that a job is over is not told that it was held.
 TEST(DispatcherControl, AJobThatItsWorkerHasFinishedTakesNoOrders) {
   DispatcherBed bed;
@@ -202,7 +220,8 @@ TEST(DispatcherControl, AJobThatItsWorkerHasFinishedTakesNoOrders) {
   EXPECT_EQ(worker.Released(), true);
 }
 
-TEST(DispatcherControl, AnOrderForAnotherJobIsForgotten) {
+// It is for the other server to give it.
+TEST(DispatcherControl, AnOrderForAJobOfAnotherServerGoesToNoWorkerHere) {
   DispatcherBed bed;
   const std::int64_t elsewhere = bed.server.SubmitCheck();
   const auto leased = Must(bed.server.store().Acquire("elsewhere", {"CHECK"}, kPatience, {}));

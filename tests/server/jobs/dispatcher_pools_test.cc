@@ -1,6 +1,8 @@
 // Which workers are given which jobs.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
 #include "server/records/job_messages.h"
@@ -47,6 +49,24 @@ TEST(DispatcherPools, AWorkerIsGivenJobsOfItsPool) {
   FakeWorker any(bed.dispatcher(), "any");
   ASSERT_TRUE(any.Take());
   EXPECT_EQ(any.job(), second);
+}
+
+// What was tried again, and the look that was put off with it, are one job.
+TEST(DispatcherFailures, AWorkerIsGivenOneJobWhenAFailingStoreWorksAgain) {
+  DispatcherBed bed;
+  bed.hooks.machines_that_fail = 1;
+  bed.hooks.losses_that_fail = 1;
+  std::set<std::int64_t> jobs = {bed.server.SubmitCheck(), bed.server.SubmitCheck()};
+  FakeWorker worker(bed.dispatcher(), "w");
+  while (!jobs.empty()) {
+    ASSERT_TRUE(worker.Take());
+    bed.LookAgain();
+    EXPECT_FALSE(worker.line().Has(v1::WorkResponse::kAssignment));
+    EXPECT_EQ(jobs.erase(worker.job()), 1U);
+    worker.Finish();
+    EXPECT_EQ(worker.Released(), true);
+    EXPECT_EQ(bed.Job(worker.job()).state, JobState::kSucceeded);
+  }
 }
 
 }  // namespace
