@@ -105,9 +105,9 @@ TEST(SqliteWriter, ARequestAndItsJobInOneCommitMeet) {
 
 // Who has stood longest is first, also beside a request that comes with the job.
 TEST(SqliteWriter, ANewRequestPassesNoneThatStands) {
-  SqliteBed bed;
   std::mutex mutex;
   std::map<std::string, std::int64_t> given;
+  SqliteBed bed;  // goes first: it answers who still stands
   const auto await = [&](const std::string& worker) {
     bed.store().AwaitJobs(
         {.worker = worker, .kinds = {"SIMULATE"}, .duration = std::chrono::hours(1)},
