@@ -91,9 +91,8 @@ class Dispatcher {
   // done, or after `patience`. For good: leases are not looked after any more.
   void Drain(std::chrono::milliseconds patience);
 
-  // Waits until nothing of it is under way on the executor or, behind Drain(), in the store.
-  // Precondition: nobody
-  // calls it any more; behind Drain().
+  // Waits until nothing of it is under way on the executor and, behind Drain(), no request of it
+  // stands in the store. Precondition of the last one: nobody calls it any more.
   void Settle();
 
   int workers() const;
@@ -161,6 +160,7 @@ class Dispatcher {
   bool MayStillHold(const Assignment& assignment, const Error& trouble) const;
   void TryLater(const std::shared_ptr<Worker>& worker);
   std::shared_ptr<Worker> Find(WorkerId id) const;
+
   storage::Store& store_;
   EventFeed& feed_;
   const Config& config_;

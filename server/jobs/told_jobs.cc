@@ -5,8 +5,8 @@
 namespace rmlcell::server {
 
 std::shared_ptr<const std::string> ToldJobs::Find(std::int64_t id, std::uint64_t changes) const {
-  const std::lock_guard lock(mutex_);
   if (changes == 0) return nullptr;  // it is being changed
+  const std::lock_guard lock(mutex_);
   const Told& told = told_[static_cast<std::size_t>(id) % kJobsMax];
   return told.id == id && told.changes == changes ? told.job : nullptr;
 }

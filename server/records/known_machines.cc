@@ -5,8 +5,9 @@
 namespace rmlcell::server {
 
 std::shared_ptr<const KnownMachines::Machines> KnownMachines::ListAtOnce() const {
+  const std::uint64_t changes = store_.MachineChanges();
   const std::lock_guard lock(mutex_);
-  return changes_ != 0 && changes_ == store_.MachineChanges() ? machines_ : nullptr;
+  return changes_ != 0 && changes_ == changes ? machines_ : nullptr;
 }
 
 Result<std::shared_ptr<const KnownMachines::Machines>> KnownMachines::List() {
