@@ -37,7 +37,6 @@ EventTable::EventTable(Database& database)
           database,
           "INSERT INTO event (position, job, sequence, attempt, at, kind, payload, resource, caller)"
           " VALUES (?1, 0, ?1, 0, ?2, ?3, ?4, ?5, ?6)"),
-      count_of_records_(database, "SELECT count(*) FROM event WHERE job = 0"),
       of_job_(database, SelectEvent("WHERE job = ?1 AND sequence > ?2 ORDER BY sequence LIMIT ?3")),
       all_(database, SelectEvent("WHERE position > ?1 ORDER BY position LIMIT ?2")),
       last_(database, "SELECT ifnull(max(position), 0) FROM event"),
@@ -67,8 +66,6 @@ Status EventTable::AddOfRecord(std::int64_t position, WallTime at, std::string_v
   return add_of_record_.With(position, at, event.kind, Bytes{event.payload}, resource, event.caller)
       .Run();
 }
-
-Result<std::int64_t> EventTable::CountOfRecords() { return FirstInteger(count_of_records_.With()); }
 
 Result<std::vector<EventRecord>> EventTable::OfJob(std::int64_t job, std::int64_t after_sequence,
                                                    int limit) {

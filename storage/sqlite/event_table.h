@@ -39,12 +39,10 @@ class EventTable {
   Result<std::optional<Removed>> RemoveOfJob(std::int64_t job, int count_max);
   // Those that are of no job.
   static constexpr std::int64_t kOfRecords = 0;
-  Result<std::int64_t> CountOfRecords();
 
  private:
   Statement add_;
   Statement add_of_record_;
-  Statement count_of_records_;
   Statement of_job_;
   Statement all_;
   Statement last_;

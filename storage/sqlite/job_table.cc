@@ -175,9 +175,6 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
           "SELECT specification, specification_blob FROM job_specification WHERE job = ?1"),
       attachment_(database, "SELECT attachment FROM job_specification WHERE job = ?1"),
       last_id_(database, "SELECT ifnull(max(id), 0) FROM job"),
-      unfinished_(database,
-                  "SELECT machine, count(*) FROM job INDEXED BY job_unfinished WHERE state < 2"
-                  " GROUP BY machine"),
       running_(
           database,
           "SELECT machine, id FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 1"),
@@ -261,18 +258,13 @@ Result<std::string> JobTable::Specification(std::int64_t id) {
 
 Result<std::int64_t> JobTable::LastId() { return FirstInteger(last_id_.With()); }
 
-Result<MachineTally::Machines> JobTable::Unfinished() {
-  MachineTally::Machines machines;
-  Query counts = unfinished_.With();
-  Result<bool> row = counts.Step();
-  for (; row && *row; row = counts.Step()) machines[counts.Text(0)].unfinished = counts.Integer(1);
-  if (!row) return row.error();
+Status JobTable::AddRunning(MachineTally::Machines& machines) {
   Query running = running_.With();
-  row = running.Step();
+  Result<bool> row = running.Step();
   for (; row && *row; row = running.Step())
     machines[running.Text(0)].running.insert(running.Integer(1));
   if (!row) return row.error();
-  return machines;
+  return {};
 }
 
 Result<std::optional<std::int64_t>> JobTable::OldestFinished() {

@@ -29,7 +29,7 @@ class JobTable {
   Result<std::optional<JobRow>> Get(std::int64_t id);
   Result<std::optional<JobRow>> FindByRequest(std::string_view request_id);
   Result<std::vector<JobRecord>> List(const JobQuery& query);
-  Result<MachineTally::Machines> Unfinished();  // dear: all of them are looked at
+  Status AddRunning(MachineTally::Machines& machines);
   Result<std::vector<JobStateCount>> CountByState(const JobQuery& query);
 
   Status Update(const JobRow& row);  // all that changes in the life of a job
@@ -77,7 +77,6 @@ class JobTable {
   Statement specification_;
   Statement attachment_;
   Statement last_id_;
-  Statement unfinished_;
   Statement running_;
   Statement oldest_finished_;
   Statement remove_;

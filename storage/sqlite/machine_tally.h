@@ -21,6 +21,9 @@ struct JobMove {
   JobState to{};
 };
 
+// How many more of the machine's jobs are unfinished by these moves.
+std::map<std::string, std::int64_t> GrowthOf(std::span<const JobMove> moves);
+
 // What waits and runs, by machine, as of the newest commit: whoever asks how machines stand, and
 // that is after each job, looks at no row. Thread-safe.
 class MachineTally {
@@ -34,6 +37,7 @@ class MachineTally {
   explicit MachineTally(Machines machines) : machines_(std::move(machines)) {}
 
   void Apply(std::span<const JobMove> moves);
+  std::int64_t Unfinished(const std::string& machine) const;
   std::vector<MachineJobs> List() const;  // by id of the machine; those without jobs are left out
 
  private:

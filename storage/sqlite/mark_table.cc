@@ -12,6 +12,25 @@ Status MarkTable::Set(std::string_view name, std::int64_t value) {
   return set_.With(name, value).Run();
 }
 
+MachineJobsTable::MachineJobsTable(Database& database)
+    : set_(database, "INSERT OR REPLACE INTO machine_jobs (machine, unfinished) VALUES (?1, ?2)"),
+      remove_(database, "DELETE FROM machine_jobs WHERE machine = ?1"),
+      list_(database, "SELECT machine, unfinished FROM machine_jobs") {}
+
+Status MachineJobsTable::Set(std::string_view machine, std::int64_t unfinished) {
+  if (unfinished == 0) return remove_.With(machine).Run();
+  return set_.With(machine, unfinished).Run();
+}
+
+Result<MachineTally::Machines> MachineJobsTable::List() {
+  MachineTally::Machines machines;
+  Query rows = list_.With();
+  Result<bool> row = rows.Step();
+  for (; row && *row; row = rows.Step()) machines[rows.Text(0)].unfinished = rows.Integer(1);
+  if (!row) return row.error();
+  return machines;
+}
+
 LogPartTable::LogPartTable(Database& database)
     : begin_(database, "INSERT INTO log_part (id, after_position) VALUES (?1, ?2)"),
       trim_(database,

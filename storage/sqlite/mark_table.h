@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "storage/sqlite/machine_tally.h"
 #include "storage/sqlite/statement.h"
 
 namespace rmlcell::storage::sqlite {
@@ -11,6 +12,8 @@ namespace rmlcell::storage::sqlite {
 class MarkTable {
  public:
   static constexpr std::string_view kFinishedJobs = "finished jobs";
+  static constexpr std::string_view kBlockedJobs = "blocked jobs";
+  static constexpr std::string_view kRecordEvents = "record events";
   static constexpr std::string_view kJob = "job";
   static constexpr std::string_view kPosition = "position";
   static constexpr std::string_view kFence = "fence";  // none beyond it was given out
@@ -23,6 +26,19 @@ class MarkTable {
  private:
   Statement get_;
   Statement set_;
+};
+
+// How many jobs of each machine wait or run; of those without jobs there is no row.
+class MachineJobsTable {
+ public:
+  explicit MachineJobsTable(Database& database);
+  Status Set(std::string_view machine, std::int64_t unfinished);
+  Result<MachineTally::Machines> List();  // without those that run
+
+ private:
+  Statement set_;
+  Statement remove_;
+  Statement list_;
 };
 
 // Parts of the log, one for each opening of the store: a position belongs to the log while it is no

@@ -72,6 +72,15 @@ constexpr Migration kMigrations[] = {
      "ALTER TABLE job_specification ADD COLUMN attachment BLOB;"},
     // A blank around each: looked for in a text.
     {12, "labels of jobs", "ALTER TABLE job ADD COLUMN labels TEXT NOT NULL DEFAULT '';"},
+    // Whoever opens a store looks at no job for them.
+    {13, "counts that are kept",
+     "CREATE TABLE machine_jobs (machine TEXT PRIMARY KEY, unfinished INTEGER NOT NULL)"
+     " WITHOUT ROWID;"
+     "INSERT INTO machine_jobs SELECT machine, count(*) FROM job INDEXED BY job_unfinished"
+     " WHERE state < 2 GROUP BY machine;"
+     "INSERT INTO mark SELECT 'blocked jobs', count(*) FROM job INDEXED BY job_unfinished"
+     " WHERE state < 2 AND state = 0 AND blocked <> 0;"
+     "INSERT INTO mark SELECT 'record events', count(*) FROM event WHERE job = 0;"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

@@ -55,9 +55,6 @@ QueueTable::QueueTable(Database& database)
            "SELECT id FROM job INDEXED BY job_not_before"
            " WHERE state = 0 AND not_before IS NOT NULL AND not_before <= ?1 AND blocked & 2 <> 0"
            " ORDER BY not_before, id"),
-      count_blocked_(database,
-                     "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2"
-                     " AND state = 0 AND blocked <> 0"),
       add_after_(database, "INSERT INTO job_after (job, after) VALUES (?1, ?2)"),
       remove_after_(database, "DELETE FROM job_after WHERE job = ?1 AND after = ?2"),
       remove_all_after_(database, "DELETE FROM job_after WHERE job = ?1"),
@@ -144,8 +141,6 @@ Status QueueTable::SetPlace(std::int64_t job, double place) {
 }
 
 Result<std::vector<std::int64_t>> QueueTable::Due(WallTime now) { return Numbers(due_.With(now)); }
-
-Result<std::int64_t> QueueTable::CountBlocked() { return FirstInteger(count_blocked_.With()); }
 
 Status QueueTable::AddAfter(std::int64_t job, std::int64_t after) {
   return add_after_.With(job, after).Run();

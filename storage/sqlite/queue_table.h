@@ -49,7 +49,6 @@ class QueueTable {
   Result<std::int64_t> CountBefore(std::string_view pool, std::string_view kind, const Head& head);
   // Jobs that are blocked by their time, up to this one.
   Result<std::vector<std::int64_t>> Due(WallTime now);
-  Result<std::int64_t> CountBlocked();  // dear: all queued jobs are looked at
 
   Status AddAfter(std::int64_t job, std::int64_t after);
   Status RemoveAfter(std::int64_t job, std::int64_t after);
@@ -70,7 +69,6 @@ class QueueTable {
   Statement set_place_;
   Statement count_before_;
   Statement due_;
-  Statement count_blocked_;
   Statement add_after_;
   Statement remove_after_;
   Statement remove_all_after_;

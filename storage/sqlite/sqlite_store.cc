@@ -86,10 +86,10 @@ Result<Counters> ReadCounters(Tables& tables, const MachineTally::Machines& mach
     counters.running_jobs += running;
     counters.queued_jobs += jobs.unfinished - running;
   }
-  const Result<std::int64_t> of_records = tables.events.CountOfRecords();
+  const Result<std::int64_t> of_records = marks.Get(MarkTable::kRecordEvents);
   if (!of_records) return of_records.error();
   counters.record_events = *of_records;
-  const Result<std::int64_t> blocked = tables.queue.CountBlocked();
+  const Result<std::int64_t> blocked = marks.Get(MarkTable::kBlockedJobs);
   if (!blocked) return blocked.error();
   counters.blocked_jobs = *blocked;
   return counters;
@@ -126,31 +126,31 @@ Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
   // to those who held them.
   const Status ended = connection->tables.leases.EndAll();
   if (!ended) return Named(ended.error(), options.path);
-  Result<MachineTally::Machines> machines = connection->tables.jobs.Unfinished();
+  Result<MachineTally::Machines> machines = connection->tables.machine_jobs.List();
   if (!machines) return Named(machines.error(), options.path);
+  if (const Status running = connection->tables.jobs.AddRunning(*machines); !running)
+    return Named(running.error(), options.path);
   const Result<Counters> counters = ReadCounters(connection->tables, *machines);
   if (!counters) return Named(counters.error(), options.path);
   const std::string log_id = RequestIds().Make(clock());
   if (const Status begun = connection->tables.log_parts.Begin(log_id, counters->position); !begun)
     return Named(begun.error(), options.path);
-  Result<std::unique_ptr<ReaderPool>> readers = ReaderPool::Open(
-      options.path, {.vfs = options.vfs, .busy_timeout = options.busy_timeout}, options.readers);
-  if (!readers) return Named(readers.error(), options.path);
-
-  return std::unique_ptr<Store>(std::make_unique<SqliteStore>(
-      SqliteStore::Parts{.lock = *std::move(lock),
-                         .clock = std::move(clock),
-                         .connection = std::move(connection),
-                         .readers = *std::move(readers),
-                         .counters = *counters,
-                         .machines = *std::move(machines),
-                         .log_id = log_id,
-                         .writer = {.keep = {.finished_jobs = options.keep_finished_jobs,
-                                             .events = options.keep_events,
-                                             .record_events = options.keep_record_events},
-                                    .waiting_operations_max = options.waiting_operations_max,
-                                    .waiting_bytes_max = options.waiting_bytes_max,
-                                    .group_window = options.group_window}}));
+  return std::unique_ptr<Store>(std::make_unique<SqliteStore>(SqliteStore::Parts{
+      .lock = *std::move(lock),
+      .clock = std::move(clock),
+      .connection = std::move(connection),
+      .readers = std::make_unique<ReaderPool>(
+          options.path, ConnectionOptions{.vfs = options.vfs, .busy_timeout = options.busy_timeout},
+          options.readers),
+      .counters = *counters,
+      .machines = *std::move(machines),
+      .log_id = log_id,
+      .writer = {.keep = {.finished_jobs = options.keep_finished_jobs,
+                          .events = options.keep_events,
+                          .record_events = options.keep_record_events},
+                 .waiting_operations_max = options.waiting_operations_max,
+                 .waiting_bytes_max = options.waiting_bytes_max,
+                 .group_window = options.group_window}}));
 }
 
 }  // namespace

@@ -103,7 +103,9 @@ Status MakeDirectoryOf(const std::string& path) {
 }
 
 Status MakePrivateFile(const std::string& path) {
-  const File file(path, O_RDWR | O_CREAT, kPrivateFile);
+  const File made(path, O_RDWR | O_CREAT | O_EXCL, kPrivateFile);
+  if (made.is_open()) return SyncDirectory(std::filesystem::path(path).parent_path());
+  const File file(path, O_RDWR, kPrivateFile);
   if (!file.is_open()) return FileError("cannot open", path, errno);
   struct stat facts {};
   if (fstat(file.number(), &facts) != 0) return FileError("cannot read", path, errno);
@@ -114,7 +116,7 @@ Status MakePrivateFile(const std::string& path) {
   if (others_may_read_it && fchmod(file.number(), kPrivateFile) != 0) {
     return FileError("cannot set the mode of", path, errno);
   }
-  return SyncDirectory(std::filesystem::path(path).parent_path());
+  return {};
 }
 
 }  // namespace rmlcell::storage::sqlite

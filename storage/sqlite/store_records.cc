@@ -59,10 +59,7 @@ Status RemoveMachine(WriteContext& context, std::string_view id, Revision expect
   if (const Status fits = CheckRevision(before.revision, expected, "machine " + std::string(id));
       !fits)
     return fits.error();
-  // In the store, and not in the tally: a job of the same transaction counts.
-  const Result<MachineTally::Machines> busy = tables.jobs.Unfinished();
-  if (!busy) return busy.error();
-  if (busy->contains(std::string(id))) {
+  if (UnfinishedOf(context, std::string(id)) > 0) {
     return Error{ErrorCode::kCellPrecondition,
                  "jobs wait for machine " + std::string(id) + " or run; cancel them first",
                  {}};

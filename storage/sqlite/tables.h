@@ -36,6 +36,7 @@ struct Tables {
         artifacts(database),
         uploads(database),
         marks(database),
+        machine_jobs(database),
         log_parts(database),
         buried(database) {}
 
@@ -54,6 +55,7 @@ struct Tables {
   ArtifactTable artifacts;
   UploadTable uploads;
   MarkTable marks;
+  MachineJobsTable machine_jobs;
   LogPartTable log_parts;
   BuriedTable buried;
 };

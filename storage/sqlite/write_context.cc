@@ -2,6 +2,12 @@
 
 namespace rmlcell::storage::sqlite {
 
+std::int64_t UnfinishedOf(const WriteContext& context, const std::string& machine) {
+  const auto growth = GrowthOf(context.moves);
+  const auto found = growth.find(machine);
+  return context.machines.Unfinished(machine) + (found == growth.end() ? 0 : found->second);
+}
+
 Status NoteRecord(WriteContext& context, std::string_view resource, std::string_view change,
                   std::string_view caller) {
   return NoteEvent(context, resource,

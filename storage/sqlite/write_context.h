@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "storage/sqlite/machine_tally.h"
@@ -31,12 +32,16 @@ struct Counters {
 struct WriteContext {
   Tables& tables;
   Counters& counters;
+  const MachineTally& machines;  // as of the newest commit: what `moves` brings is not in it
   WallTime now;                  // of this write: leases, events and records all get this one time
   std::vector<JobMove> moves{};  // added to: for the tally, once they are committed
   bool changed = false;          // set: jobs or events changed, watchers want to know
   bool garbage = false;          // set: a blob may have lost its last reference or hold
   bool ready = false;            // set: a job may have become one that can begin
 };
+
+// Also of this transaction.
+std::int64_t UnfinishedOf(const WriteContext& context, const std::string& machine);
 
 // An event of a record that is no job: it was made, changed or deleted.
 Status NoteRecord(WriteContext& context, std::string_view resource, std::string_view change,

@@ -284,7 +284,8 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
     return Outcome::kCommitted;  // not the fault of any of them, and each alone would wait as long
                                  // again
   }
-  WriteContext context{.tables = connection_.tables, .counters = counters_, .now = {}};
+  WriteContext context{
+      .tables = connection_.tables, .counters = counters_, .machines = machine_jobs_, .now = {}};
   Result<bool> run = RunEach(batch, context, undo, *transaction);
   if (!run) return lose(run.error());
   if (*run) {
@@ -299,7 +300,7 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
     }
   }
   if (!*run) return undo_all(Outcome::kSpoilt);
-  if (const Status kept = KeepMarks(before); !kept) return lose(kept.error());
+  if (const Status kept = KeepMarks(before, context); !kept) return lose(kept.error());
   if (const Status committed = Commit(*transaction); !committed) return lose(committed.error());
   fence_mark_ = FenceMark();
   PublishCounts(context);
@@ -414,10 +415,13 @@ void Writer::Tidy() {
     Result<Transaction> transaction =
         Transaction::Begin(connection_.transactions, Transaction::Kind::kWrite);
     if (!transaction) return transaction.error();
-    WriteContext context{.tables = connection_.tables, .counters = counters_, .now = clock_()};
+    WriteContext context{.tables = connection_.tables,
+                         .counters = counters_,
+                         .machines = machine_jobs_,
+                         .now = clock_()};
     const Result<bool> more = housekeeping_.RunSlice(context);
     if (!more) return more.error();
-    if (const Status kept = KeepMarks(before); !kept) return kept.error();
+    if (const Status kept = KeepMarks(before, context); !kept) return kept.error();
     if (const Status committed = Commit(*transaction); !committed) return committed.error();
     if (context.changed) changed_();
     return more;
@@ -436,14 +440,29 @@ std::int64_t Writer::FenceMark() const {
   return counters_.fence <= fence_mark_ ? fence_mark_ : counters_.fence + kReserved;
 }
 
-Status Writer::KeepMarks(const Counters& before) {
-  MarkTable& marks = connection_.tables.marks;
-  if (counters_.finished_jobs != before.finished_jobs) {
-    if (const Status kept = marks.Set(MarkTable::kFinishedJobs, counters_.finished_jobs); !kept)
-      return kept.error();
+Status Writer::KeepMarks(const Counters& before, const WriteContext& context) {
+  Tables& tables = connection_.tables;
+  for (const auto& [machine, growth] : GrowthOf(context.moves)) {
+    const Status kept =
+        tables.machine_jobs.Set(machine, machine_jobs_.Unfinished(machine) + growth);
+    if (!kept) return kept.error();
   }
-  if (FenceMark() == fence_mark_) return {};
-  return marks.Set(MarkTable::kFence, FenceMark());
+  const auto keep = [&](std::string_view name, std::int64_t was, std::int64_t is) -> Status {
+    return was == is ? Status() : tables.marks.Set(name, is);
+  };
+  if (const Status kept =
+          keep(MarkTable::kFinishedJobs, before.finished_jobs, counters_.finished_jobs);
+      !kept)
+    return kept.error();
+  if (const Status kept =
+          keep(MarkTable::kBlockedJobs, before.blocked_jobs, counters_.blocked_jobs);
+      !kept)
+    return kept.error();
+  if (const Status kept =
+          keep(MarkTable::kRecordEvents, before.record_events, counters_.record_events);
+      !kept)
+    return kept.error();
+  return keep(MarkTable::kFence, fence_mark_, FenceMark());
 }
 
 // Before anybody is told of the change: whoever is, finds it here.

@@ -113,7 +113,7 @@ class Writer {
   void AnswerAll();
   void Tidy();
   std::int64_t FenceMark() const;
-  Status KeepMarks(const Counters& before);
+  Status KeepMarks(const Counters& before, const WriteContext& context);
   void PublishCounts(const WriteContext& context);
   bool LogIsLarge(int pages);
   void CheckpointWhenLarge();

@@ -126,6 +126,14 @@ void ExpectSound(const std::string& path) {
   expect_none("jobs that wait for no reason, or have a reason and do not wait",
               "job WHERE (blocked & 1 <> 0) <> (state = 0 AND held) OR (blocked & 4 <> 0) <>"
               " EXISTS (SELECT 1 FROM job_after WHERE job_after.job = job.id)");
+  expect_none("machines whose jobs are counted wrongly",
+              "(SELECT machine, count(*) AS found FROM job WHERE state < 2 GROUP BY machine)"
+              " AS counted FULL JOIN machine_jobs AS kept USING (machine)"
+              " WHERE found IS NOT kept.unfinished");
+  expect_none("marks that tell a wrong count",
+              "mark WHERE value <> (SELECT count(*) FROM job WHERE state = 0 AND blocked <> 0)"
+              " AND name = 'blocked jobs' OR value <> (SELECT count(*) FROM event WHERE job = 0)"
+              " AND name = 'record events'");
   expect_none("running jobs without a lease, or leases of others",
               "job WHERE (state = 1) <> (id IN (SELECT job FROM lease))");
   expect_none("jobs with a gap in their events",

@@ -173,7 +173,7 @@ TEST_F(SqliteKeep, OldStoreGetsItsMarks) {
   bed_->Close();
   ExecuteIn(
       bed_->path(),
-      "DELETE FROM mark; DELETE FROM migration WHERE number >= 3; DROP INDEX job_unfinished;"
+      "DELETE FROM mark; DROP TABLE machine_jobs;DELETE FROM migration WHERE number >= 3; DROP INDEX job_unfinished;"
       "DROP INDEX job_special; DROP INDEX job_run_queue; DROP INDEX job_run;"
       "DROP INDEX job_not_before; DROP TABLE job_after; DROP TABLE log_part; DROP TABLE job_order;"
       "ALTER TABLE lease DROP COLUMN server; ALTER TABLE event DROP COLUMN resource; ALTER TABLE event DROP COLUMN caller;"

@@ -335,11 +335,28 @@ Result<int> ReadInside(sqlite::ReaderPool& pool, int depth, std::set<sqlite::Tab
 TEST(SqliteWriter, ReadersAreAsManyAsAskedFor) {
   SqliteBed bed;
   for (const auto& [asked, there] : {std::pair{-1, 1}, {0, 1}, {1, 1}, {3, 3}}) {
-    const auto pool = Must(sqlite::ReaderPool::Open(bed.path(), {}, asked));
+    sqlite::ReaderPool pool(bed.path(), {}, asked);
     std::set<sqlite::Tables*> used;
-    Must(ReadInside(*pool, there, used));  // waits for ever for one that is missing
+    Must(ReadInside(pool, there, used));  // waits for ever for one that is missing
     EXPECT_EQ(used.size(), static_cast<std::size_t>(there)) << asked;
   }
+}
+
+// A connection that could not be opened is tried again by the next read, and nobody waits for it.
+TEST(SqliteWriter, ReaderThatCannotBeOpenedIsTriedAgain) {
+  SqliteBed bed;
+  const std::string path = bed.path() + ".not-yet";
+  sqlite::ReaderPool pool(path, {}, 1);
+  std::set<sqlite::Tables*> used;
+  for (int i = 0; i < 2; ++i) {
+    const auto refused = ReadInside(pool, 1, used);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kCellStoreFailed);
+    EXPECT_THAT(refused.error().detail, testing::HasSubstr(path));
+  }
+  ExecuteIn(path, "CREATE TABLE something (it)");
+  Must(ReadInside(pool, 1, used));
+  EXPECT_EQ(used.size(), 1U);
 }
 
 // The end of the store: what waits is written and answered.
