@@ -14,6 +14,15 @@ constexpr int kLevel = 3;
 // Below this a frame saves less room than the time is worth: rows lie in pages of 4 KiB anyway.
 constexpr std::size_t kCompressedMin = 512;
 
+// One for each thread: most chunks are small, and making its tables costs more than using them.
+ZSTD_CCtx* CompressionOfThread() {
+  struct Free {
+    void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
+  };
+  thread_local const std::unique_ptr<ZSTD_CCtx, Free> context(ZSTD_createCCtx());
+  return context.get();
+}
+
 }  // namespace
 
 struct Sha256Sum::State {
@@ -51,9 +60,12 @@ std::string Sha256(std::string_view content) {
 Result<std::string> Encode(std::string_view chunk) {
   if (chunk.size() < kCompressedMin) return std::string(chunk);
   std::string frame(ZSTD_compressBound(chunk.size()), '\0');
-  const std::size_t size =
-      ZSTD_compress(frame.data(), frame.size(), chunk.data(), chunk.size(), kLevel);
-  if (ZSTD_isError(size) != 0) {
+  ZSTD_CCtx* const context = CompressionOfThread();
+  const std::size_t size = context == nullptr
+                               ? 0
+                               : ZSTD_compressCCtx(context, frame.data(), frame.size(),
+                                                   chunk.data(), chunk.size(), kLevel);
+  if (context == nullptr || ZSTD_isError(size) != 0) {
     return Error{ErrorCode::kCellStoreFailed, "not enough memory to compress", {}};
   }
   if (size >= chunk.size()) return std::string(chunk);

@@ -170,14 +170,14 @@ std::vector<const CatalogueEntry*> FindByText(std::string_view text) {
   }
   if (!digits.empty() && (digits.front() == 'E' || digits.front() == 'e')) digits.remove_prefix(1);
   const auto number = ParseInteger(digits);
+  const bool may_be_name = dash == std::string_view::npos && !number;  // no name has either
   ForEachRow([&](const CatalogueEntry& entry) {
     const bool same_family =
         family.empty() || EqualIgnoringCase(family, FamilyPrefix(entry.family));
     const bool same_number = number && *number == entry.number && same_family;
-    if (same_number || EqualIgnoringCase(text, entry.symbol) ||
-        EqualIgnoringCase(text, ConstantName(entry.code))) {
-      found.push_back(&entry);
-    }
+    const bool same_name = may_be_name && (EqualIgnoringCase(text, entry.symbol) ||
+                                           EqualIgnoringCase(text, ConstantName(entry.code)));
+    if (same_number || same_name) found.push_back(&entry);
   });
   return found;
 }

@@ -205,8 +205,10 @@ storage::JobOutcome OutcomeOf(const v1::Outcome& outcome) {
                            .step = outcome.place().step(),
                            .judgement = JudgementBytes(outcome),
                            .verdict = VerdictWord(outcome.verdict())};
-  const auto found = FindByText(outcome.code());
-  if (!outcome.code().empty() && !found.empty()) made.code = found.front()->code;
+  if (!outcome.code().empty()) {
+    const auto found = FindByText(outcome.code());
+    if (!found.empty()) made.code = found.front()->code;
+  }
   // What was stopped is no part: only what ran to its end counts (LIVE-5.08).
   if (outcome.kind() == v1::Outcome::KIND_COMPLETED) {
     made.state = storage::JobState::kSucceeded;

@@ -10,6 +10,7 @@ namespace rmlcell::server {
 namespace {
 
 constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positions a second
+constexpr std::chrono::milliseconds kFirstPosition{10};
 constexpr std::chrono::milliseconds kToolpathInterval{200};
 constexpr std::chrono::milliseconds kHeightsInterval{200};
 constexpr std::size_t kTilesOfALook = 32;           // of at most 8 KiB
@@ -72,8 +73,12 @@ Stop JobDrive::Run(const simulation::BegunRun& begun) {
   simulation::Simulation& simulation = *begun.simulation;
   Slice slice;
   Pacer pacer(options_.pace);
-  Clock::time_point last_position = Clock::now();
-  SendPosition(*begun.run);
+  // The first one soon; a run that is over by then has none, as its end says all.
+  Clock::time_point last_position = Clock::now() - kPositionInterval + kFirstPosition;
+  if (options_.pace > 0.0) {
+    last_position = Clock::now();
+    SendPosition(*begun.run);
+  }
   while (!simulation.finished()) {
     const Clock::time_point begin = Clock::now();
     PlanTime(begin);

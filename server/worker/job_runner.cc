@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
 #include <new>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -383,30 +380,9 @@ class Attempt {
 bool JobRunner::Work(v1::WorkerAssignment assignment) {
   const v1::WorkerLease lease = assignment.lease();
   const std::int64_t memory = assignment.budget().memory_bytes();
-  v1::WorkRequest begun;  // from here on the attempt counts
-  *begun.mutable_heartbeat()->mutable_lease() = lease;
-  line_.Send(begun);
+  heart_.BeatFor(lease);
   Attempt attempt(line_, std::move(assignment), stopping_, processor_time_);
   Attempt::End end = Attempt::End::kFinished;
-  // Translating a large program, a picture of a long path or a slow store may take longer than a
-  // lease.
-  const std::jthread heart([&](const std::stop_token& stop) {
-    std::mutex mutex;
-    std::condition_variable_any wake;
-    v1::WorkRequest message;
-    *message.mutable_heartbeat()->mutable_lease() = lease;
-    for (;;) {
-      std::unique_lock lock(mutex);
-      wake.wait_for(lock, stop, std::chrono::milliseconds(line_.lease_ms() / 3),
-                    [] { return false; });
-      if (stop.stop_requested()) return;
-      try {
-        line_.Send(message);
-      } catch (const std::bad_alloc&) {
-        // The job is at its memory budget, and ends by itself.
-      }
-    }
-  });
   // The outermost frame of a job: whatever leaves it fails this job and not the worker.
   try {
     const MemoryBudget budget(memory);
@@ -422,6 +398,7 @@ bool JobRunner::Work(v1::WorkerAssignment assignment) {
     *message.mutable_hand_back()->mutable_lease() = lease;
     line_.Send(message);
   }
+  heart_.Rest();
   return !attempt.stop_asked();
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rmlcell/v1/worker.pb.h"
+#include "server/worker/heart.h"
 #include "server/worker/job_lease.h"
 #include "server/worker/server_line.h"
 
@@ -18,7 +19,10 @@ class JobRunner {
   // `stopping` becomes true when the process is to end: the job is handed back.
   JobRunner(ServerLine& line, const std::atomic<bool>& stopping,
             ProcessorTime processor_time = ThreadProcessorTime_s)
-      : line_(line), stopping_(stopping), processor_time_(std::move(processor_time)) {}
+      : line_(line),
+        stopping_(stopping),
+        processor_time_(std::move(processor_time)),
+        heart_(line) {}
 
   // Returns when the lease is over: finished, handed back, or lost. False: the worker is to end.
   bool Work(v1::WorkerAssignment assignment);
@@ -27,6 +31,7 @@ class JobRunner {
   ServerLine& line_;
   const std::atomic<bool>& stopping_;
   ProcessorTime processor_time_;
+  Heart heart_;
 };
 
 }  // namespace rmlcell::server
