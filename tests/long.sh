@@ -43,7 +43,7 @@ crashes() {
 
 # What has threads under ThreadSanitizer.
 races() {
-  local targets=(server_events_test server_jobs_test storage_sqlite_test storage_sqlite_conformance_test)
+  local targets=(server_events_test server_log_test server_jobs_test storage_sqlite_test storage_sqlite_conformance_test)
   cmake --preset tsan >/dev/null
   ninja -C build/tsan "${targets[@]}" >build/long/tsan.log
   for target in "${targets[@]}"; do
