@@ -7,6 +7,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/number_text.h"
+#include "engine/machine/machine_states.h"
 
 namespace rmlcell::machine {
 namespace {
@@ -28,26 +29,6 @@ constexpr bool kNeedsPower =
     std::is_same_v<Input, ClearMessage>;
 
 }  // namespace
-
-std::string_view Name(MachineState state) {
-  switch (state) {
-    case MachineState::kOff:
-      return "OFF";
-    case MachineState::kNotZeroed:
-      return "NOT_ZEROED";
-    case MachineState::kIdle:
-      return "IDLE";
-    case MachineState::kRunning:
-      return "RUNNING";
-    case MachineState::kStopping:
-      return "STOPPING";
-    case MachineState::kHeld:
-      return "HELD";
-    case MachineState::kAlarm:
-      break;
-  }
-  return "ALARM";
-}
 
 Result<std::unique_ptr<Machine>> Machine::Make(const MachineFamily& family, Parameters parameters,
                                                MachineMemory memory, std::string_view state,
@@ -265,24 +246,31 @@ Status Machine::MaySource(StartSource source) const {
                {}};
 }
 
+StateGuards Machine::guards() const {
+  return {.zeroed = status().run.zeroed,
+          .run_open = run_ != nullptr,
+          .aborts = abort_behind_,
+          .alarm = alarms_.empty() ? ErrorCode::kCellMachineState : alarms_.front().code,
+          .not_zeroed = family_.info().not_zeroed,
+          .manual = mode_ == Mode::kManual};
+}
+
+// What the table of states refuses, in words.
+Error Machine::Refusal(ErrorCode code) const {
+  const MachineState now = state();
+  if (now == MachineState::kAlarm) return {code, alarms_.front().detail, {}};
+  if (now == MachineState::kNotZeroed && code == family_.info().not_zeroed)
+    return {code, "START with axes that have no reference", {}};
+  return NotNow(now, now == MachineState::kHeld ? "resume or abort the run"
+                     : run_ != nullptr          ? "a run is open; hold or abort it"
+                                                : "no run is open; start one");
+}
+
 Status Machine::MayStart(const StartRun& input) const {
-  switch (state()) {
-    case MachineState::kOff:  // refused by Apply
-      break;
-    case MachineState::kAlarm:
-      return Error{alarms_.front().code, alarms_.front().detail, {}};
-    case MachineState::kRunning:
-    case MachineState::kStopping:
-      return NotNow(state(), "a run is open; hold or abort it");
-    case MachineState::kHeld:
-      return NotNow(state(), "resume or abort the run");
-    case MachineState::kNotZeroed:
-      if (!input.unzeroed && !simulation_until())
-        return Error{family_.info().not_zeroed, "START with axes that have no reference", {}};
-      break;
-    case MachineState::kIdle:
-      break;
-  }
+  StateGuards now = guards();
+  now.unzeroed_start = input.unzeroed || simulation_until();
+  const Transition next = Next(state(), MachineEvent::kStart, now);
+  if (next.code) return Refusal(*next.code);
   if (const Status source = MaySource(input.source); !source) return source.error();
   const Detail slot = Told("program", input.program);
   if (!IsSlot(input.program))
@@ -317,20 +305,9 @@ Status Machine::Act(const StartRun& input) {
 }
 
 Status Machine::Act(const ResumeRun& input) {
-  switch (state()) {
-    case MachineState::kOff:  // refused by Apply
-      break;
-    case MachineState::kAlarm:
-      return Error{alarms_.front().code, alarms_.front().detail, {}};
-    case MachineState::kIdle:
-    case MachineState::kNotZeroed:
-      return NotNow(state(), "no run is open; start one");
-    case MachineState::kRunning:
-      return {};
-    case MachineState::kStopping:
-    case MachineState::kHeld:
-      break;
-  }
+  const Transition next = Next(state(), MachineEvent::kResume, guards());
+  if (next.code) return Refusal(*next.code);
+  if (next.kind == Transition::Kind::kStays && !next.Does(StateAct::kTakeBack)) return {};
   if (const Status source = MaySource(input.source); !source) return source.error();
   if (abort_behind_) return NotNow(state(), "the run ends as soon as it stands");
   if (stopping_ && !family_.info().start_takes_back) {

@@ -15,6 +15,7 @@
 #include "engine/machine/family.h"
 #include "engine/machine/machine_input.h"
 #include "engine/machine/machine_note.h"
+#include "engine/machine/machine_states.h"
 #include "engine/machine/machine_status.h"
 #include "engine/machine/observer.h"
 #include "engine/machine/panel.h"
@@ -125,6 +126,8 @@ class Machine {
   Status Act(const SetSchedules& input);
   Status Act(const ClearMessage& input);
 
+  StateGuards guards() const;
+  Error Refusal(ErrorCode code) const;
   Status MayStart(const StartRun& input) const;
   Status MaySource(StartSource source) const;
   void ToRun(InputKind kind, int index = 0, double value = 0.0);

@@ -14,16 +14,22 @@
 
 namespace rmlcell::machine {
 
-// LIVE-2.03, without what belongs to its host (STARTING, RECOVERING, INSPECT, LOST).
+// LIVE-2.03
 enum class MachineState {
-  kOff,
-  kNotZeroed,  // on and standing, its axes without reference
-  kIdle,       // on and standing, no run is open
-  kRunning,    // a run is open and goes on
-  kStopping,   // comes to rest for HOLD or STOP
-  kHeld,       // a run is open and stands
-  kAlarm,      // an alarm is not acknowledged
+  kOff,         // no power, or not enabled
+  kStarting,    // its host takes its lease and reads its state
+  kRecovering,  // the same after an unclean end
+  kNotZeroed,   // on and standing, its axes without reference
+  kIdle,        // on and standing, no run is open
+  kJogging,     // moves by hand: jog, HOME, ZERO
+  kRunning,     // a run is open and goes on
+  kStopping,    // comes to rest
+  kHeld,        // a run is open and stands
+  kAlarm,       // an alarm is not acknowledged
+  kInspect,     // a run was cut off: a person decides
+  kLost,        // as the server sees it: nothing is heard of its host
 };
+inline constexpr int kMachineStates = static_cast<int>(MachineState::kLost) + 1;
 std::string_view Name(MachineState state);  // "HELD"
 
 // A run that is open, or the last one that was.
