@@ -223,6 +223,8 @@ class LongProducts : public JobTargetRun {
     v1::WorkerAssignment assignment = Mill(kMoment, 0.01);
     MillingOf(assignment).set_height_map(true);
     MillingOf(assignment).set_stl(true);
+    // With a pace it tells at once where it is.
+    assignment.mutable_job()->mutable_simulation()->set_pace(1000.0);
     return assignment;
   }
   static constexpr std::chrono::milliseconds kMeanwhile{60};
