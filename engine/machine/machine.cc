@@ -366,10 +366,14 @@ Status Machine::Act(const EmergencyStop& input) {
   return {};
 }
 
+bool Machine::MayAcknowledge(const Alarm& alarm) const {
+  return !emergency_ || alarm.code != family_.info().emergency_stop;
+}
+
 Status Machine::Act(const Acknowledge& input) {
   const auto found = std::ranges::find(alarms_, input.alarm, &Alarm::id);
   if (found == alarms_.end()) return {};
-  if (emergency_ && found->code == family_.info().emergency_stop)
+  if (!MayAcknowledge(*found))
     return NotNow(state(), "the emergency stop is pressed; release it first");
   alarms_.erase(found);
   return {};

@@ -86,10 +86,17 @@ class Machine {
   Panel panel() const;  // what is to be seen at the machine itself
   const MachineMemory& memory() const { return memory_; }
 
+  // Errors: those of WriteVariable.
+  Status MayWrite(std::string_view name, double value) const {
+    return family_.CheckWrite(parameters_, name, value);
+  }
+
   // "VR[5]" -> "7.0"; nothing for what is no variable of this machine.
   std::optional<VariableValue> ReadVariable(std::string_view name) const;
   std::vector<Place> stack() const;  // of the open run, that in execution last; else nothing
   std::vector<ModalValue> modal_values() const;
+  // Whether acknowledging it does something: its cause is gone.
+  bool MayAcknowledge(const Alarm& alarm) const;
   const std::vector<Breakpoint>& breakpoints() const { return breakpoints_; }
   std::optional<ProgramStep> simulation_until() const;
 

@@ -1,7 +1,13 @@
 #include "server/base/secret.h"
 
+#include <fcntl.h>
 #include <openssl/crypto.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <random>
 
 #include "engine/core/hex.h"
@@ -18,6 +24,30 @@ std::string RandomText() {
   std::string text;
   for (int i = 0; i < 32; ++i) text += HexDigit(device());
   return text;
+}
+
+Result<std::string> KeptSecret(const std::string& path) {
+  const auto failed = [&path](int number) {
+    return Error{ErrorCode::kCellConfiguration, path + ": " + std::strerror(number), {}};
+  };
+  {
+    std::ifstream file(path);
+    std::string secret;
+    if (file >> secret && secret.size() >= 32) return secret;
+  }
+  const std::string made = path + ".new";
+  const int file =
+      ::open(made.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (file < 0) return failed(errno);
+  const std::string secret = RandomText();
+  const bool written =
+      ::write(file, secret.data(), secret.size()) == static_cast<ssize_t>(secret.size()) &&
+      ::fsync(file) == 0;
+  const int number = errno;
+  ::close(file);
+  if (!written) return failed(number);
+  if (::rename(made.c_str(), path.c_str()) != 0) return failed(errno);
+  return secret;
 }
 
 }  // namespace rmlcell::server

@@ -21,6 +21,8 @@
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
 #include "server/jobs/worker_processes.h"
+#include "server/machines/host_processes.h"
+#include "server/machines/hosts.h"
 #include "server/machines/machine_statuses.h"
 #include "server/programs/language_tools.h"
 #include "server/programs/memory_tools.h"
@@ -62,6 +64,9 @@ constexpr std::int64_t kRecordEventsKept = 10'000;
 // What the log of the store grows to between two checkpoints of a cell that is not busy.
 constexpr std::int64_t kLogBytesPrepared = 17 << 20;
 
+// A host that lives finds a server that was started again within this time.
+constexpr std::chrono::milliseconds kHostsComeBack{2'000};
+
 // Keepalive for shop-floor networks: a client that is gone without a word is noticed within a
 // minute.
 constexpr int kKeepaliveTime_ms = 40'000;
@@ -91,6 +96,8 @@ struct Cell::Parts {
   std::unique_ptr<Executor> watching;
   std::unique_ptr<Executor> compute;
   std::unique_ptr<EventFeed> feed;
+  std::unique_ptr<Hosts> hosts;
+  std::unique_ptr<HostProcesses> host_processes;
   std::unique_ptr<MachineStatuses> statuses;
   std::unique_ptr<Dispatcher> dispatcher;
   OpenStreams open;
@@ -130,7 +137,14 @@ struct Cell::Parts {
   Status ListenAt(const std::string& address);
   Status ListenWeb();
   Status StartWorkers(const std::string& join_token);
+  Status StartHosts();
+  std::string WorkerProgram() const;
 };
+
+std::string Cell::Parts::WorkerProgram() const {
+  return config.workers_program.empty() ? PathOfOwnProgram() + "/rmlcell-worker"
+                                        : config.workers_program;
+}
 
 Status Cell::Parts::OpenStore() {
   auto opened = storage::OpenStore({.url = config.store_url,
@@ -181,7 +195,23 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   compute = std::make_unique<Executor>(
       std::max(1, static_cast<int>(std::thread::hardware_concurrency())), kComputeWaitingMax);
   feed = std::make_unique<EventFeed>(*store);
-  statuses = std::make_unique<MachineStatuses>(*store, *feed, *executor);
+  Result<PrivateSocket> own = PrivateSocket::Make(config.state_directory);
+  if (!own) return own.error();
+  private_socket.emplace(*std::move(own));
+  const Result<std::string> host_token = KeptSecret(config.state_directory + "/host.token");
+  if (!host_token) return host_token.error();
+  hosts = std::make_unique<Hosts>(Hosts::Needs{.store = *store,
+                                               .feed = *feed,
+                                               .executor = *executor,
+                                               .server = instance_id,
+                                               .join_token = *host_token});
+  host_processes =
+      std::make_unique<HostProcesses>(HostProcesses::Options{.program = WorkerProgram(),
+                                                             .server = private_socket->address(),
+                                                             .join_token = *host_token,
+                                                             .log_level = config.log_level,
+                                                             .log_format = config.log_format});
+  statuses = std::make_unique<MachineStatuses>(*store, *feed, *executor, *hosts);
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
   programs = std::make_unique<ProgramBook>(*store, config);
@@ -194,15 +224,18 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   const CallNeeds needs{gate, *executor, *compute, config.limit_message_bytes};
   job_service = std::make_unique<JobService>(needs, *watching, *book, *results, *dispatcher, *feed,
                                              open, instance_id);
+  MachineWatchNeeds machine_watch{*watching, open, *store, *feed, instance_id};
+  machine_watch.hosts = hosts.get();
   machine_service = std::make_unique<MachineService>(
-      needs, MachineWatchNeeds{*watching, open, *store, *feed, instance_id});
+      needs, std::move(machine_watch),
+      MachineService::Live{.hosts = hosts.get(), .processes = host_processes.get()});
   program_service =
       std::make_unique<ProgramService>(needs, *store, *programs, *tools, *language, open);
   project_service = std::make_unique<ProjectService>(needs, *projects, *transfer, open);
   handbox_service = std::make_unique<HandboxService>(needs);
-  host_service = std::make_unique<HostService>(needs);
+  host_service = std::make_unique<HostService>(needs, *hosts);
   facts = std::make_unique<JobFactsBook>(*store);
-  const CellRecords records{*store, *book, *programs, *projects};
+  const CellRecords records{*store, *book, *programs, *projects, hosts.get()};
   logs = std::make_unique<SharedLogs>(SharedLogNeeds{records, *feed, *facts, instance_id});
   cell_service = std::make_unique<CellService>(
       needs, CellWatchNeeds{*watching, open, records, *feed, *logs, *facts, watches, instance_id},
@@ -229,9 +262,6 @@ Status Cell::Parts::Serve() {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.SetMaxReceiveMessageSize(static_cast<int>(config.limit_message_bytes + kRefusalBytes));
   builder.SetMaxSendMessageSize(-1);
-  Result<PrivateSocket> own = PrivateSocket::Make(config.state_directory);
-  if (!own) return own.error();
-  private_socket.emplace(*std::move(own));
   if (const Status listens = ListenAt(private_socket->address()); !listens) return listens.error();
   std::vector<int> ports(config.listen_grpc.size(), 0);
   for (std::size_t i = 0; i < ports.size(); ++i) {
@@ -300,10 +330,7 @@ Status Cell::Parts::StartWorkers(const std::string& join_token) {
   int count = static_cast<int>(config.workers_count);
   if (count < 0) count = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const int paced = count > 0 ? static_cast<int>(config.workers_paced) : 0;
-  const std::string program = config.workers_program.empty()
-                                  ? PathOfOwnProgram() + "/rmlcell-worker"
-                                  : config.workers_program;
-  auto started = WorkerProcesses::Start({.program = program,
+  auto started = WorkerProcesses::Start({.program = WorkerProgram(),
                                          .server = private_socket->address(),
                                          .join_token = join_token,
                                          .log_level = config.log_level,
@@ -314,6 +341,19 @@ Status Cell::Parts::StartWorkers(const std::string& join_token) {
                                          .further_count = paced});
   if (!started) return started.error();
   processes = std::move(*started);
+  return {};
+}
+
+// Machines that were enabled when a server had this store last: their hosts may be alive, and come
+// back by themselves.
+Status Cell::Parts::StartHosts() {
+  const auto leases = store->MachineLeases();
+  if (!leases) return leases.error();
+  for (const storage::MachineLease& lease : *leases) {
+    if (lease.pinned) continue;
+    if (const Status enabled = host_processes->Enable(lease.machine, kHostsComeBack); !enabled)
+      return enabled.error();
+  }
   return {};
 }
 
@@ -329,6 +369,7 @@ Result<std::unique_ptr<Cell>> Cell::Start(const Config& config) {
   if (const Status listening = parts.Listen(join_token); !listening) return listening.error();
   if (const Status listening = parts.ListenWeb(); !listening) return listening.error();
   if (const Status started = parts.StartWorkers(join_token); !started) return started.error();
+  if (const Status started = parts.StartHosts(); !started) return started.error();
   return cell;
 }
 
@@ -360,9 +401,11 @@ void Cell::Stop() {
   parts.watching.reset();
   parts.compute.reset();
   parts.statuses.reset();
+  parts.host_processes.reset();
   if (parts.dispatcher != nullptr) parts.dispatcher->Settle();
   parts.executor.reset();
   parts.dispatcher.reset();
+  parts.hosts.reset();
   parts.feed.reset();
   parts.store.reset();
 }

@@ -1,19 +1,15 @@
 #include "server/jobs/worker_processes.h"
 
 #include <signal.h>
-#include <spawn.h>
 #include <spdlog/spdlog.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <memory>
 #include <set>
 #include <vector>
 
-#include "server/jobs/restart_delay.h"
+#include "server/base/child_process.h"
+#include "server/base/restart_delay.h"
 
 namespace rmlcell::server {
 namespace {
@@ -24,17 +20,7 @@ constexpr std::chrono::milliseconds kLook{20};  // how soon a dead worker is not
 
 Result<std::unique_ptr<WorkerProcesses>> WorkerProcesses::Start(Options options) {
   if (options.count + options.further_count > 0) {
-    struct stat file {};
-    int failed =
-        ::access(options.program.c_str(), X_OK) != 0 || ::stat(options.program.c_str(), &file) != 0
-            ? errno
-            : 0;
-    if (failed == 0 && !S_ISREG(file.st_mode)) failed = EACCES;
-    if (failed != 0) {
-      return Error{ErrorCode::kCellConfiguration,
-                   "workers.program " + options.program + ": " + std::strerror(failed),
-                   {}};
-    }
+    if (const Status program = CheckProgram(options.program); !program) return program.error();
   }
   std::unique_ptr<WorkerProcesses> processes(new WorkerProcesses(std::move(options)));
   processes->watcher_ =
@@ -50,40 +36,10 @@ pid_t WorkerProcesses::Spawn(int number) const {
                                     options_.log_format};
   const std::string& pool = number > options_.count ? options_.further_pool : options_.pool;
   if (!pool.empty()) words.insert(words.end(), {"--pool", pool});
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  // Not on the command line, which every user of the host can read.
-  std::string token = "RMLCELL_JOIN_TOKEN=" + options_.join_token;
-  std::vector<char*> environment;
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    if (std::strncmp(*entry, "RMLCELL_", 8) != 0) environment.push_back(*entry);
-  }
-  environment.push_back(token.data());
-  environment.push_back(nullptr);
-  pid_t process = -1;
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  // A group of its own: Ctrl-C at the terminal reaches the server, which stops its workers in
-  // order.
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  // Sockets of the server stay with it: a copy in a worker would keep a port taken, or a connection
-  // of a client open, after the server closed it.
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-  const int failed = posix_spawn(&process, options_.program.c_str(), &actions, &attributes,
-                                 arguments.data(), environment.data());
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  if (failed != 0) {
-    spdlog::error("worker {} cannot be started: {}", number, std::strerror(failed));
-    return -1;
-  }
-  return process;
+  const Result<pid_t> process = StartChild(words, {"RMLCELL_JOIN_TOKEN=" + options_.join_token});
+  if (process) return *process;
+  spdlog::error("worker {} cannot be started: {}", number, process.error().detail);
+  return -1;
 }
 
 void WorkerProcesses::Watch(const std::stop_token& stop) {

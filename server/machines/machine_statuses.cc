@@ -1,6 +1,7 @@
 #include "server/machines/machine_statuses.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "server/base/names.h"
@@ -18,13 +19,19 @@ bool Matters(const storage::EventRecord& event) {
 
 }  // namespace
 
-MachineStatuses::MachineStatuses(storage::Store& store, EventFeed& feed, Executor& executor)
-    : store_(store), machines_(store), feed_(feed), executor_(executor) {
+MachineStatuses::MachineStatuses(storage::Store& store, EventFeed& feed, Executor& executor,
+                                 Hosts& hosts)
+    : store_(store), machines_(store), feed_(feed), hosts_(hosts), executor_(executor) {
+  hosts_.OnChange([this] {
+    host_changed_ = true;
+    Woken();
+  });
   subscription_ = feed_.Subscribe(std::string(EventFeed::kEverything), [this] { Woken(); });
   Woken();
 }
 
 MachineStatuses::~MachineStatuses() {
+  hosts_.OnChange({});
   subscription_.reset();
   std::unique_lock lock(mutex_);
   rests_.wait(lock, [this] { return !looking_; });
@@ -51,7 +58,8 @@ void MachineStatuses::Look() {
       }
       again_ = false;
     }
-    if (!ChangedSinceLastLook()) continue;
+    const bool host_changed = host_changed_.exchange(false);
+    if (!ChangedSinceLastLook() && !host_changed) continue;
     const auto machines = machines_.List();
     const auto unfinished = store_.UnfinishedJobs();
     if (!machines || !unfinished) {
@@ -59,14 +67,21 @@ void MachineStatuses::Look() {
       continue;
     }
     std::map<std::string, std::string> now;
-    for (const auto& [id, machine] : **machines)
-      now[MachineName(id)] = StatusOf(machine, *unfinished).SerializeAsString();
+    std::set<std::string> hosted;  // its host tells of it
+    for (const auto& [id, machine] : **machines) {
+      const std::string name = MachineName(id);
+      if (hosts_.IsHosted(id)) {
+        hosted.insert(name);
+      } else {
+        now[name] = StatusOf(machine, *unfinished).SerializeAsString();
+      }
+    }
     for (const auto& [name, status] : now) {
       const auto before = told_.find(name);
       if (before == told_.end() || before->second != status) feed_.Publish(name, status);
     }
     for (const auto& [name, status] : told_) {
-      if (!now.contains(name)) feed_.Forget(name);
+      if (!now.contains(name) && !hosted.contains(name)) feed_.Forget(name);
     }
     told_ = std::move(now);
   }

@@ -80,18 +80,21 @@ v1::Machine ToProto(const storage::MachineRecord& record) {
   return message;
 }
 
+void AddJobs(std::string_view machine, const std::vector<storage::MachineJobs>& unfinished,
+             v1::MachineStatus& status) {
+  const auto jobs = std::ranges::find(unfinished, machine, &storage::MachineJobs::machine);
+  if (jobs == unfinished.end()) return;
+  status.set_jobs_active(static_cast<std::int32_t>(jobs->unfinished));
+  if (jobs->oldest_running > 0) status.set_simulating_job(JobName(jobs->oldest_running));
+}
+
 v1::MachineStatus StatusOf(const storage::MachineRecord& record,
                            const std::vector<storage::MachineJobs>& unfinished) {
   v1::MachineStatus status;
   status.set_machine(MachineName(record.id));
-  status.set_state(v1::MACHINE_STATE_IDLE);
-  const auto jobs = std::ranges::find(unfinished, record.id, &storage::MachineJobs::machine);
-  if (jobs == unfinished.end()) return status;
-  status.set_jobs_active(static_cast<std::int32_t>(jobs->unfinished));
-  if (jobs->oldest_running > 0) {
-    status.set_state(v1::MACHINE_STATE_RUNNING);
-    status.set_simulating_job(JobName(jobs->oldest_running));
-  }
+  AddJobs(record.id, unfinished, status);
+  status.set_state(status.simulating_job().empty() ? v1::MACHINE_STATE_IDLE
+                                                   : v1::MACHINE_STATE_RUNNING);
   return status;
 }
 

@@ -22,9 +22,14 @@ v1::Machine ToProto(const storage::MachineRecord& record);
 // With what its jobs do, of those that Store::UnfinishedJobs gave.
 v1::Machine ToProto(const storage::MachineRecord& record,
                     const std::vector<storage::MachineJobs>& unfinished);
-// How it stands as far as its jobs tell: for now no machine has a host.
+// How it stands as far as its jobs tell, where it has no host.
 v1::MachineStatus StatusOf(const storage::MachineRecord& record,
                            const std::vector<storage::MachineJobs>& unfinished);
+// The kind of what a host tells of its machine in the log of the cell: a v1::MachineEvent.
+inline constexpr std::string_view kMachineEvent = "machine";
+// What jobs of the queue do with it.
+void AddJobs(std::string_view machine, const std::vector<storage::MachineJobs>& unfinished,
+             v1::MachineStatus& status);
 // What a run on a machine that stands like that begins with (RunSetup::machine_state); empty: on a
 // new machine. CellStoreCorrupt: its host wrote what this version cannot read.
 Result<std::string> StateForRun(std::string_view machine,

@@ -5,6 +5,7 @@
 
 #include "server/base/names.h"
 #include "server/jobs/job_book.h"
+#include "server/machines/hosts.h"
 #include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
 #include "server/records/job_messages.h"
@@ -66,8 +67,11 @@ Status AddMachines(const CellRecords& records, const CellSubscription& subscript
   if (!unfinished) return unfinished.error();
   const auto& names = subscription.wanted().machines().names();
   for (const storage::MachineRecord& machine : *machines) {
-    if (names.empty() || std::ranges::find(names, MachineName(machine.id)) != names.end())
-      *snapshot.add_machines() = ToProto(machine, *unfinished);
+    if (names.empty() || std::ranges::find(names, MachineName(machine.id)) != names.end()) {
+      v1::Machine& made = *snapshot.add_machines();
+      made = ToProto(machine);
+      *made.mutable_status() = StatusOf(records.hosts, machine, *unfinished);
+    }
   }
   return {};
 }
@@ -179,6 +183,8 @@ ReadEvent EventOf(const CellRecords& records, const storage::EventRecord& event)
     read.whole = SetProgram(records, event, *made.mutable_program());
   } else if (event.resource.find("/laserSchedules/") != std::string::npos) {
     read.whole = SetSchedule(records, event, *made.mutable_program());
+  } else if (event.kind == kMachineEvent) {
+    read.whole = made.mutable_machine()->ParseFromString(event.payload);
   } else {
     read.whole = SetMachine(records, event, *made.mutable_machine()->mutable_changed());
   }

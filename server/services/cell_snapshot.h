@@ -6,6 +6,7 @@
 
 namespace rmlcell::server {
 
+class Hosts;
 class JobBook;
 class ProgramBook;
 class ProjectBook;
@@ -16,6 +17,7 @@ struct CellRecords {
   JobBook& jobs;
   ProgramBook& programs;
   ProjectBook& projects;
+  const Hosts* hosts = nullptr;  // none: machines stand as their jobs tell
 };
 
 // What this subscription begins with, as it stands now. Errors: those of the store.

@@ -1,18 +1,23 @@
 #pragma once
 
 #include "rmlcell/v1/host.grpc.pb.h"
-#include "server/services/later.h"
+#include "server/services/call.h"
 
 namespace rmlcell::server {
 
+class Hosts;
+
+// Lines of hosts.
 class HostService final : public v1::HostService::CallbackService {
  public:
-  explicit HostService(CallNeeds needs) : needs_(needs) {}
+  HostService(CallNeeds needs, Hosts& hosts) : needs_(needs), hosts_(hosts) {}
 
-  RMLCELL_LATER_BOTH("HostService", Host)
+  grpc::ServerBidiReactor<v1::HostRequest, v1::HostResponse>* Host(
+      grpc::CallbackServerContext* context) override;
 
  private:
   CallNeeds needs_;
+  Hosts& hosts_;
 };
 
 }  // namespace rmlcell::server

@@ -6,6 +6,7 @@
 #include "engine/families/families.h"
 #include "engine/machine/family.h"
 #include "server/base/names.h"
+#include "server/machines/hosts.h"
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
 #include "server/records/program_place.h"
@@ -70,7 +71,8 @@ grpc::ServerUnaryReactor* MachineService::GetMachine(grpc::CallbackServerContext
   const auto tell = [this, response](const storage::MachineRecord& machine) {
     const auto unfinished = store_.UnfinishedJobs();
     if (!unfinished) return ToGrpcStatus(unfinished.error());
-    *response = ToProto(machine, *unfinished);
+    *response = ToProto(machine);
+    *response->mutable_status() = StatusOf(live_.hosts, machine, *unfinished);
     return grpc::Status::OK;
   };
   return AnswerFromMemory(
@@ -107,7 +109,9 @@ grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerConte
             response->set_next_page_token(*ParseMachineName(response->machines(*size - 1).name()));
             break;
           }
-          *response->add_machines() = ToProto(machine, *unfinished);
+          v1::Machine& made = *response->add_machines();
+          made = ToProto(machine);
+          *made.mutable_status() = StatusOf(live_.hosts, machine, *unfinished);
         }
         return grpc::Status::OK;
       });

@@ -9,11 +9,20 @@
 
 namespace rmlcell::server {
 
+class HostProcesses;
+class Hosts;
+
 class MachineService final : public v1::MachineService::CallbackService {
  public:
-  MachineService(CallNeeds needs, MachineWatchNeeds watch)
+  // Null: no machine lives.
+  struct Live {
+    Hosts* hosts = nullptr;
+    HostProcesses* processes = nullptr;
+  };
+  MachineService(CallNeeds needs, MachineWatchNeeds watch, Live live)
       : needs_(needs),
         watch_needs_(std::move(watch)),
+        live_(live),
         store_(watch_needs_.store),
         machines_(store_) {}
 
@@ -50,44 +59,103 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerWriteReactor<v1::WatchMachineResponse>* WatchMachine(
       grpc::CallbackServerContext* context, const v1::WatchMachineRequest* request) override;
 
-  // Of machines that live.
-  RMLCELL_LATER("MachineService", AcquireControl, v1::AcquireControlResponse)
-  RMLCELL_LATER("MachineService", RenewControl, v1::RenewControlResponse)
-  RMLCELL_LATER("MachineService", ReleaseControl, google::protobuf::Empty)
-  RMLCELL_LATER("MachineService", EnableMachine, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", DisableMachine, v1::MachineStatus)
+  // Of machines that live: machine_orders.cc.
+  grpc::ServerUnaryReactor* AcquireControl(grpc::CallbackServerContext* context,
+                                           const v1::AcquireControlRequest* request,
+                                           v1::AcquireControlResponse* response) override;
+  grpc::ServerUnaryReactor* RenewControl(grpc::CallbackServerContext* context,
+                                         const v1::RenewControlRequest* request,
+                                         v1::RenewControlResponse* response) override;
+  grpc::ServerUnaryReactor* ReleaseControl(grpc::CallbackServerContext* context,
+                                           const v1::ReleaseControlRequest* request,
+                                           google::protobuf::Empty* response) override;
+  grpc::ServerUnaryReactor* StartMachine(grpc::CallbackServerContext* context,
+                                         const v1::StartMachineRequest* request,
+                                         v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* ResumeMachine(grpc::CallbackServerContext* context,
+                                          const v1::ResumeMachineRequest* request,
+                                          v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* StopMachine(grpc::CallbackServerContext* context,
+                                        const v1::StopMachineRequest* request,
+                                        v1::HaltResponse* response) override;
+  grpc::ServerUnaryReactor* HoldMachine(grpc::CallbackServerContext* context,
+                                        const v1::HoldMachineRequest* request,
+                                        v1::HaltResponse* response) override;
+  grpc::ServerUnaryReactor* EmergencyStopMachine(grpc::CallbackServerContext* context,
+                                                 const v1::EmergencyStopMachineRequest* request,
+                                                 v1::HaltResponse* response) override;
+  grpc::ServerUnaryReactor* AbortRun(grpc::CallbackServerContext* context,
+                                     const v1::AbortRunRequest* request,
+                                     v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* SetMode(grpc::CallbackServerContext* context,
+                                    const v1::SetModeRequest* request,
+                                    v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* SetOverride(grpc::CallbackServerContext* context,
+                                        const v1::SetOverrideRequest* request,
+                                        v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* AcknowledgeAlarm(grpc::CallbackServerContext* context,
+                                             const v1::AcknowledgeAlarmRequest* request,
+                                             v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* SetFactor(grpc::CallbackServerContext* context,
+                                      const v1::SetFactorRequest* request,
+                                      v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* ReadVariables(grpc::CallbackServerContext* context,
+                                          const v1::ReadVariablesRequest* request,
+                                          v1::ReadVariablesResponse* response) override;
+  grpc::ServerUnaryReactor* WriteVariables(grpc::CallbackServerContext* context,
+                                           const v1::WriteVariablesRequest* request,
+                                           v1::WriteVariablesResponse* response) override;
+  grpc::ServerUnaryReactor* SetInputs(grpc::CallbackServerContext* context,
+                                      const v1::SetInputsRequest* request,
+                                      v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* SetBreakpoints(grpc::CallbackServerContext* context,
+                                           const v1::SetBreakpointsRequest* request,
+                                           v1::RunState* response) override;
+  grpc::ServerUnaryReactor* SetSimulation(grpc::CallbackServerContext* context,
+                                          const v1::SetSimulationRequest* request,
+                                          v1::RunState* response) override;
+  grpc::ServerUnaryReactor* GetRunState(grpc::CallbackServerContext* context,
+                                        const v1::GetRunStateRequest* request,
+                                        v1::RunState* response) override;
+  grpc::ServerUnaryReactor* ConfirmMachine(grpc::CallbackServerContext* context,
+                                           const v1::ConfirmMachineRequest* request,
+                                           v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* EnableMachine(grpc::CallbackServerContext* context,
+                                          const v1::EnableMachineRequest* request,
+                                          v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* DisableMachine(grpc::CallbackServerContext* context,
+                                           const v1::DisableMachineRequest* request,
+                                           v1::MachineStatus* response) override;
+
   RMLCELL_LATER("MachineService", TakeMachine, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", StartMachine, v1::MachineStatus)
   RMLCELL_LATER("MachineService", ZeroMachine, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", ResumeMachine, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", StopMachine, v1::HaltResponse)
-  RMLCELL_LATER("MachineService", HoldMachine, v1::HaltResponse)
-  RMLCELL_LATER("MachineService", EmergencyStopMachine, v1::HaltResponse)
-  RMLCELL_LATER("MachineService", AbortRun, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", SetMode, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", SetOverride, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", AcknowledgeAlarm, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", SetFactor, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", ReadVariables, v1::ReadVariablesResponse)
-  RMLCELL_LATER("MachineService", WriteVariables, v1::WriteVariablesResponse)
-  RMLCELL_LATER("MachineService", SetInputs, v1::MachineStatus)
   RMLCELL_LATER("MachineService", SetGates, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", SetBreakpoints, v1::RunState)
-  RMLCELL_LATER("MachineService", SetSimulation, v1::RunState)
-  RMLCELL_LATER("MachineService", GetRunState, v1::RunState)
   RMLCELL_LATER("MachineService", PressPanelKey, v1::MachineStatus)
   RMLCELL_LATER("MachineService", HeartbeatPanel, v1::HeartbeatResponse)
   RMLCELL_LATER("MachineService", PreviewStart, v1::PreviewStartResponse)
   RMLCELL_LATER("MachineService", StartAtStep, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", ConfirmMachine, v1::MachineStatus)
   RMLCELL_LATER("MachineService", ArmMachine, v1::ArmMachineResponse)
   RMLCELL_LATER("MachineService", DisarmMachine, v1::MachineStatus)
   RMLCELL_LATER("MachineService", ListDevices, v1::ListDevicesResponse)
   RMLCELL_LATER_READ("MachineService", ExportJournal)
 
  private:
+  // One order to the host of a machine.
+  template <class Request, class Response, class Fill, class Take>
+  grpc::ServerUnaryReactor* Order(grpc::CallbackServerContext* context, const Request* request,
+                                  Response* response, std::string_view method, Fill fill,
+                                  Take take);
+  template <class Request, class Fill>
+  grpc::ServerUnaryReactor* OrderStatus(grpc::CallbackServerContext* context,
+                                        const Request* request, v1::MachineStatus* response,
+                                        std::string_view method, Fill fill);
+  grpc::Status Enable(const std::string& machine, v1::MachineStatus& status);
+  grpc::Status Disable(const std::string& machine, v1::MachineStatus& status);
+  grpc::Status TellStatus(const std::string& machine, v1::MachineStatus& status);
+
   CallNeeds needs_;
   MachineWatchNeeds watch_needs_;
+  Live live_;
   storage::Store& store_;
   KnownMachines machines_;
 };

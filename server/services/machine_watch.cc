@@ -4,7 +4,7 @@
 
 #include "server/base/names.h"
 #include "server/events/event_feed.h"
-#include "server/records/machine_messages.h"
+#include "server/machines/hosts.h"
 #include "server/services/rates.h"
 
 namespace rmlcell::server {
@@ -62,7 +62,7 @@ class MachineWatch final : public PullStream<v1::WatchMachineResponse> {
     if (!machine) return machine.error();
     const auto unfinished = needs_.store.UnfinishedJobs();
     if (!unfinished) return unfinished.error();
-    *message.mutable_status() = StatusOf(*machine, *unfinished);
+    *message.mutable_status() = StatusOf(needs_.hosts, *machine, *unfinished);
     message.set_sequence(*position);
     message.set_log_id(needs_.store.LogId());
     return true;

@@ -11,6 +11,7 @@
 namespace rmlcell::server {
 
 class EventFeed;
+class Hosts;
 
 struct MachineWatchNeeds {
   Executor& executor;
@@ -19,6 +20,7 @@ struct MachineWatchNeeds {
   EventFeed& feed;
   std::string instance_id;
   SteadyClock clock = SteadyTime;
+  const Hosts* hosts = nullptr;  // none: machines stand as their jobs tell
 };
 
 // The status of one machine, now and whenever it changes. Ends with CellUnknownMachine when it is

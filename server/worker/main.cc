@@ -16,6 +16,7 @@
 #include "proto/bridge/findings.h"
 #include "server/base/log.h"
 #include "server/base/version.h"
+#include "server/host/host_process.h"
 #include "server/worker/job_runner.h"
 #include "server/worker/server_line.h"
 
@@ -75,6 +76,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> servers = {"127.0.0.1:50051"};
   std::string name = OwnName();
   std::string pool;
+  std::string host;
   std::string log_level = "info";
   std::string log_format = "text";
   app.set_version_flag("--version", std::string(kVersion));
@@ -85,6 +87,8 @@ int main(int argc, char** argv) {
          "--pool", pool,
          "takes \"paced\" jobs only (simulations with a pace), or \"computing\" ones; else all")
       ->check(CLI::IsMember({"paced", "computing"}));
+  app.add_option("--host", host,
+                 "machines/ID: the host of this machine that lives, in place of a worker");
   app.add_option("--log-level", log_level);
   app.add_option("--log-format", log_format, "text or json");
   app.footer("The join token of the server is taken from the environment: RMLCELL_JOIN_TOKEN.");
@@ -93,7 +97,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 64;
   }
-  if (const Status log = StartLog(name, log_level, log_format, {}); !log) return 69;
+  if (const Status log =
+          StartLog(host.empty() ? name : "host of " + host, log_level, log_format, {});
+      !log)
+    return 69;
   ::signal(SIGPIPE, SIG_IGN);
   // Only noted: the job is handed back by the thread that works on it.
   struct sigaction action {};
@@ -101,6 +108,13 @@ int main(int argc, char** argv) {
   ::sigaction(SIGTERM, &action, nullptr);
   ::sigaction(SIGINT, &action, nullptr);
   const char* token = std::getenv("RMLCELL_JOIN_TOKEN");
+  if (!host.empty()) {
+    const int code = RunHost(
+        {.server = servers.front(), .join_token = token != nullptr ? token : "", .machine = host},
+        stopping);
+    spdlog::shutdown();
+    _exit(code);  // as below
+  }
   auto line = JoinFirst(servers, token != nullptr ? token : "", name, pool);
   if (!line) {
     spdlog::error("{}", bridge::ErrorText(line.error()));

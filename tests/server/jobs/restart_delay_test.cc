@@ -1,4 +1,4 @@
-#include "server/jobs/restart_delay.h"
+#include "server/base/restart_delay.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// server/jobs/restart_delay.h: longer and longer, ten seconds at most.
+// server/base/restart_delay.h: longer and longer, ten seconds at most.
 TEST(RestartDelay, GrowsWithEachShortLife) {
   RestartDelay delay;
   for (const int expected_ms : {100, 300, 700, 1500, 3100, 6300, 10'000, 10'000}) {

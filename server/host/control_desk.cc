@@ -1,0 +1,125 @@
+#include "server/host/control_desk.h"
+
+#include <google/protobuf/util/time_util.h>
+
+#include <utility>
+
+#include "server/base/secret.h"
+
+namespace rmlcell::server {
+namespace {
+
+using google::protobuf::util::TimeUtil;
+
+Error Wrong(std::string detail) { return {ErrorCode::kCellInvalidArgument, std::move(detail), {}}; }
+
+// Characters, not bytes: bytes of a character that follow the first are no start of one.
+std::size_t LengthOf(std::string_view text) {
+  std::size_t length = 0;
+  for (const char c : text) length += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U ? 1 : 0;
+  return length;
+}
+
+}  // namespace
+
+Result<v1::AcquireControlResponse> ControlDesk::Acquire(const v1::AcquireControlRequest& request,
+                                                        const std::string& caller,
+                                                        const HostTime& now) {
+  std::chrono::nanoseconds ttl = kTtl;
+  if (request.has_ttl()) {
+    ttl = std::chrono::nanoseconds(TimeUtil::DurationToNanoseconds(request.ttl()));
+    if (ttl < kTtlMin || ttl > kTtlMax) return Wrong("ttl: allowed are 1 s to 60 s");
+  }
+  if (LengthOf(request.client()) > kClientMax) return Wrong("client: at most 100 characters");
+  if (request.on_loss() != v1::ControlLease::ON_LOSS_UNSPECIFIED &&
+      request.on_loss() != v1::ControlLease::ON_LOSS_HOLD &&
+      request.on_loss() != v1::ControlLease::ON_LOSS_GO_ON)
+    return Wrong("on_loss is none that there is");
+  std::string from;
+  if (lease_) {
+    from = lease_->holder();
+    if (!request.take_over()) {
+      const std::string client = lease_->client().empty() ? "" : " (" + lease_->client() + ")";
+      return Error{ErrorCode::kCellLeaseHeld,
+                   from + client + " has it since " + TimeUtil::ToString(lease_->since()),
+                   {}};
+    }
+    const std::size_t length = LengthOf(request.reason());
+    if (length < 1 || length > kReasonMax)
+      return Wrong("reason: whoever takes control over says why, in 1 to 200 characters");
+  }
+  ttl_ = ttl;
+  token_ = make_token_();
+  lease_.emplace();
+  lease_->set_number(++number_);
+  lease_->set_holder(caller);
+  lease_->set_client(request.client());
+  *lease_->mutable_since() = Stamp(now.wall);
+  lease_->set_on_loss(request.on_loss() == v1::ControlLease::ON_LOSS_GO_ON
+                          ? v1::ControlLease::ON_LOSS_GO_ON
+                          : v1::ControlLease::ON_LOSS_HOLD);
+  Prolong(now);
+  change_.emplace();
+  change_->set_kind(from.empty() ? v1::ControlChanged::KIND_ACQUIRED
+                                 : v1::ControlChanged::KIND_TAKEN_OVER);
+  change_->set_from(from);
+  change_->set_to(caller);
+  if (!from.empty()) change_->set_reason(request.reason());
+  change_->set_lease(number_);
+  v1::AcquireControlResponse response;
+  *response.mutable_lease() = *lease_;
+  response.set_control_token(token_);
+  return response;
+}
+
+void ControlDesk::Prolong(const HostTime& now) {
+  runs_out_ = now.steady + ttl_;
+  *lease_->mutable_expire_time() =
+      Stamp(now.wall + std::chrono::duration_cast<std::chrono::microseconds>(ttl_));
+}
+
+bool ControlDesk::IsToken(std::string_view token) const {
+  return lease_ && KnowsSecret(token, token_);
+}
+
+Status ControlDesk::Check(std::string_view token, const HostTime& now) const {
+  const bool over = lease_ && now.steady >= runs_out_;
+  if (IsToken(token) && !over) return {};
+  const std::string who = lease_ && !over ? ": " + lease_->holder() + " has control" : "";
+  return Error{ErrorCode::kCellControlNeeded,
+               (token.empty() ? "no control token" : "the control token is over") + who,
+               {}};
+}
+
+Result<v1::ControlLease> ControlDesk::Renew(std::string_view token, const HostTime& now) {
+  if (const Status good = Check(token, now); !good) return good.error();
+  Prolong(now);
+  return *lease_;
+}
+
+Status ControlDesk::Release(std::string_view token, const HostTime& now) {
+  if (const Status good = Check(token, now); !good) return good.error();
+  End(v1::ControlChanged::KIND_RELEASED);
+  return {};
+}
+
+std::optional<v1::ControlLease::OnLoss> ControlDesk::Expire(const HostTime& now) {
+  if (!lease_ || now.steady < runs_out_) return std::nullopt;
+  const v1::ControlLease::OnLoss on_loss = lease_->on_loss();
+  End(v1::ControlChanged::KIND_EXPIRED);
+  return on_loss;
+}
+
+void ControlDesk::End(v1::ControlChanged::Kind kind) {
+  change_.emplace();
+  change_->set_kind(kind);
+  change_->set_from(lease_->holder());
+  lease_.reset();
+  token_.clear();
+}
+
+std::optional<std::chrono::nanoseconds> ControlDesk::runs_out() const {
+  return lease_ ? std::optional(runs_out_) : std::nullopt;
+}
+
+}  // namespace rmlcell::server

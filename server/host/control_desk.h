@@ -1,0 +1,62 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/core/result.h"
+#include "rmlcell/v1/machine_control.pb.h"
+#include "rmlcell/v1/run_event.pb.h"
+#include "server/host/host_time.h"
+
+namespace rmlcell::server {
+
+// Who has control of a machine: one client at a time, by a token that is shown once. The host has
+// it, so all servers agree. LIVE-4.01 to 4.03
+class ControlDesk {
+ public:
+  static constexpr std::chrono::milliseconds kTtlMin{1'000};
+  static constexpr std::chrono::milliseconds kTtlMax{60'000};
+  static constexpr std::chrono::milliseconds kTtl{5'000};
+  static constexpr std::size_t kReasonMax = 200;
+  static constexpr std::size_t kClientMax = 100;
+
+  // `make_token`: 128 bits that nobody can guess, as text.
+  explicit ControlDesk(std::function<std::string()> make_token)
+      : make_token_(std::move(make_token)) {}
+
+  // Errors: CellLeaseHeld with who has it, since when; CellInvalidArgument.
+  Result<v1::AcquireControlResponse> Acquire(const v1::AcquireControlRequest& request,
+                                             const std::string& caller, const HostTime& now);
+  // Errors: CellControlNeeded; one that is over comes back by Acquire alone.
+  Result<v1::ControlLease> Renew(std::string_view token, const HostTime& now);
+  Status Release(std::string_view token, const HostTime& now);
+  // CellControlNeeded: no token, or that of a lease that is over, with who has control now.
+  Status Check(std::string_view token, const HostTime& now) const;
+
+  // A lease that has run out by now: it is over, and this says how a run is to be kept.
+  std::optional<v1::ControlLease::OnLoss> Expire(const HostTime& now);
+
+  // Of now; nothing: nobody has control.
+  const std::optional<v1::ControlLease>& lease() const { return lease_; }
+  std::optional<std::chrono::nanoseconds> runs_out() const;
+  // How it changed hands last, for all to read; once.
+  std::optional<v1::ControlChanged> TakeChange() { return std::exchange(change_, std::nullopt); }
+
+ private:
+  bool IsToken(std::string_view token) const;
+  void Prolong(const HostTime& now);
+  void End(v1::ControlChanged::Kind kind);
+
+  std::function<std::string()> make_token_;
+  std::int64_t number_ = 0;
+  std::optional<v1::ControlLease> lease_;
+  std::string token_;
+  std::chrono::nanoseconds ttl_{0};
+  std::chrono::nanoseconds runs_out_{0};
+  std::optional<v1::ControlChanged> change_;
+};
+
+}  // namespace rmlcell::server

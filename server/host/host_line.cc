@@ -1,0 +1,132 @@
+#include "server/host/host_line.h"
+
+#include <grpcpp/grpcpp.h>
+
+#include <utility>
+
+#include "rmlcell/v1/host.grpc.pb.h"
+#include "server/base/credentials.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr std::chrono::seconds kConnectPatience{5};
+// An empty message from time to time: each side knows that the other one is there. LIVE-3.06
+constexpr std::chrono::milliseconds kHeartbeat{250};
+
+ErrorCode CodeOf(const grpc::Status& status) {
+  switch (status.error_code()) {
+    case grpc::StatusCode::UNAUTHENTICATED:
+      return ErrorCode::kCellJoinRefused;
+    case grpc::StatusCode::ABORTED:
+      return ErrorCode::kCellMachineTaken;
+    case grpc::StatusCode::NOT_FOUND:
+      return ErrorCode::kCellUnknownMachine;
+    case grpc::StatusCode::FAILED_PRECONDITION:
+      return ErrorCode::kCellVersionMismatch;
+    default:
+      return ErrorCode::kCellUnavailable;
+  }
+}
+
+}  // namespace
+
+struct HostLine::Stream {
+  std::shared_ptr<grpc::Channel> channel;
+  std::unique_ptr<v1::HostService::Stub> stub;
+  grpc::ClientContext context;
+  std::unique_ptr<grpc::ClientReaderWriter<v1::HostRequest, v1::HostResponse>> line;
+};
+
+HostLine::HostLine() : stream_(std::make_unique<Stream>()) {}
+
+Result<HostLine::Welcome> HostLine::Join(const std::string& server, const v1::HostHello& hello,
+                                         std::function<void(v1::HostResponse)> heard,
+                                         std::function<void()> gone) {
+  std::unique_ptr<HostLine> made(new HostLine());
+  made->heard_ = std::move(heard);
+  made->gone_ = std::move(gone);
+  Stream& stream = *made->stream_;
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);
+  stream.channel = grpc::CreateCustomChannel(server, CredentialsOfChannel(), arguments);
+  if (!stream.channel->WaitForConnected(std::chrono::system_clock::now() + kConnectPatience))
+    return Error{ErrorCode::kCellUnavailable, "no server answers at " + server, {}};
+  stream.stub = v1::HostService::NewStub(stream.channel);
+  stream.line = stream.stub->Host(&stream.context);
+  v1::HostRequest request;
+  *request.mutable_hello() = hello;
+  v1::HostResponse answer;
+  if (!stream.line->Write(request) || !stream.line->Read(&answer) || !answer.has_welcome()) {
+    stream.line->WritesDone();
+    const grpc::Status status = stream.line->Finish();
+    return Error{CodeOf(status), status.error_message(), {}};
+  }
+  Welcome welcome{.message = std::move(*answer.mutable_welcome()), .line = nullptr};
+  made->reader_ = std::thread([line = made.get()] { line->Read(); });
+  made->writer_ = std::thread([line = made.get()] { line->Write(); });
+  welcome.line = std::move(made);
+  return welcome;
+}
+
+HostLine::~HostLine() {
+  if (!reader_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  to_send_.notify_all();
+  writer_.join();
+  stream_->line->WritesDone();
+  stream_->context.TryCancel();
+  reader_.join();
+  static_cast<void>(stream_->line->Finish());
+}
+
+void HostLine::Send(v1::HostRequest message) {
+  {
+    const std::lock_guard lock(mutex_);
+    queue_.push_back(std::move(message));
+  }
+  to_send_.notify_one();
+}
+
+void HostLine::SendStatus(v1::MachineStatus status) {
+  {
+    const std::lock_guard lock(mutex_);
+    status_ = std::move(status);
+  }
+  to_send_.notify_one();
+}
+
+void HostLine::Read() {
+  v1::HostResponse message;
+  while (stream_->line->Read(&message)) heard_(std::move(message));
+  gone_();
+}
+
+void HostLine::Write() {
+  std::int64_t heartbeats = 0;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    to_send_.wait_for(lock, kHeartbeat,
+                      [this] { return ending_ || !queue_.empty() || status_.has_value(); });
+    // What was queued goes out also at the end.
+    if (ending_ && queue_.empty()) return;
+    v1::HostRequest message;
+    if (!queue_.empty()) {
+      message = std::move(queue_.front());
+      queue_.pop_front();
+    } else if (status_) {
+      *message.mutable_status() = *std::exchange(status_, std::nullopt);
+    } else {
+      message.mutable_heartbeat()->set_number(++heartbeats);
+    }
+    lock.unlock();
+    const bool sent = stream_->line->Write(message);
+    lock.lock();
+    if (!sent) return;
+  }
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "engine/core/result.h"
+#include "rmlcell/v1/host.pb.h"
+
+namespace rmlcell::server {
+
+// The line of a host to its server. What is sent waits here until the line takes it: entries in
+// order, of the status the newest alone. Thread-safe.
+class HostLine {
+ public:
+  struct Welcome {
+    v1::HostWelcome message{};
+    std::unique_ptr<HostLine> line;
+  };
+  // `heard` is called for each message, on a thread of this; `gone` once, when the line is. Errors:
+  // CellUnavailable, CellJoinRefused, CellMachineTaken, CellUnknownMachine.
+  static Result<Welcome> Join(const std::string& server, const v1::HostHello& hello,
+                              std::function<void(v1::HostResponse)> heard,
+                              std::function<void()> gone);
+  ~HostLine();
+  HostLine(const HostLine&) = delete;
+  HostLine& operator=(const HostLine&) = delete;
+
+  void Send(v1::HostRequest message);
+  void SendStatus(v1::MachineStatus status);
+
+ private:
+  struct Stream;
+
+  HostLine();
+  void Read();
+  void Write();
+
+  std::unique_ptr<Stream> stream_;
+  std::function<void(v1::HostResponse)> heard_;
+  std::function<void()> gone_;
+  std::mutex mutex_;
+  std::condition_variable to_send_;
+  std::deque<v1::HostRequest> queue_;        // guarded by mutex_
+  std::optional<v1::MachineStatus> status_;  // guarded by mutex_
+  bool ending_ = false;                      // guarded by mutex_
+  std::thread reader_;
+  std::thread writer_;
+};
+
+}  // namespace rmlcell::server

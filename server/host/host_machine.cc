@@ -1,0 +1,462 @@
+#include "server/host/host_machine.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/core/hex.h"
+#include "engine/machine/machine_states.h"
+#include "engine/machine/parameters.h"
+#include "proto/bridge/findings.h"
+#include "proto/bridge/sha256.h"
+#include "server/host/host_messages.h"
+
+namespace rmlcell::server {
+namespace {
+
+// A moving machine says so often where it is, so that a crash takes no more of it. LIVE-3.23
+constexpr std::chrono::milliseconds kMarkInterval{1'000};
+
+const google::protobuf::Message* RequestOf(const v1::HostOrder& order) {
+  const auto* set = order.GetReflection()->GetOneofFieldDescriptor(
+      order, order.GetDescriptor()->FindOneofByName("request"));
+  return set == nullptr ? nullptr : &order.GetReflection()->GetMessage(order, set);
+}
+
+// The text of this field of the request; nothing: it has no such field.
+std::optional<std::string> FieldOf(const v1::HostOrder& order, const std::string& name) {
+  const google::protobuf::Message* request = RequestOf(order);
+  if (request == nullptr) return std::nullopt;
+  const auto* field = request->GetDescriptor()->FindFieldByName(name);
+  if (field == nullptr) return std::nullopt;
+  return request->GetReflection()->GetString(*request, field);
+}
+
+bool IsHalt(const v1::HostOrder& order) {
+  return order.has_stop() || order.has_hold() || order.has_emergency_stop();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTime& now,
+                                                       std::function<std::string()> make_token) {
+  auto parameters = machine::MakeParameters(*setup.family, setup.profile, setup.parameters);
+  if (!parameters) return parameters.error();
+  std::unique_ptr<HostMachine> host(new HostMachine(std::move(setup), std::move(make_token)));
+  Setup& made = host->setup_;
+  auto machine = machine::Machine::Make(*made.family, *std::move(parameters),
+                                        std::move(made.memory), made.state, *host);
+  if (!machine) return machine.error();
+  host->driver_ = std::make_unique<machine::VirtualDriver>(*std::move(machine), now.steady);
+  host->now_ = now;
+  host->inspect_due_ = made.cut_off;
+  return host;
+}
+
+HostMachine::HostMachine(Setup setup, std::function<std::string()> make_token)
+    : setup_(std::move(setup)), desk_(std::move(make_token)) {}
+
+v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& now) {
+  GoOnTo(now);
+  const std::string request_id = FieldOf(order, "request_id").value_or("");
+  const auto known = answered_.find(request_id);
+  if (!request_id.empty() && known != answered_.end()) {
+    v1::HostOrderAnswer again = known->second.answer;
+    again.set_number(order.number());
+    return again;
+  }
+  v1::HostOrderAnswer answer = Carry(order, now);
+  answer.set_number(order.number());
+  *answer.mutable_acted_at() = Stamp(now.wall);
+  if (!request_id.empty()) Remember(request_id, answer);
+  return answer;
+}
+
+void HostMachine::Remember(const std::string& request_id, const v1::HostOrderAnswer& answer) {
+  answered_[request_id] = {.answer = answer, .at = now_.steady};
+  answered_order_.push_back(request_id);
+  while (answered_order_.size() > kAnswersKept ||
+         now_.steady - answered_.at(answered_order_.front()).at > kAnswersKeptFor) {
+    answered_.erase(answered_order_.front());
+    answered_order_.pop_front();
+  }
+}
+
+v1::HostOrderAnswer HostMachine::Carry(const v1::HostOrder& order, const HostTime& now) {
+  Result<v1::HostOrderAnswer> answer = CarryOut(order, now);
+  Notice();
+  if (!answer) return Refuse(answer.error());
+  if (answer->result_case() != v1::HostOrderAnswer::RESULT_NOT_SET) return *std::move(answer);
+  if (IsHalt(order)) {
+    v1::HaltResponse& halt = *answer->mutable_halt();
+    *halt.mutable_status() = StatusAt(now);
+    *halt.mutable_acted_at() = Stamp(now.wall);
+  } else {
+    *answer->mutable_status() = StatusAt(now);
+  }
+  return *std::move(answer);
+}
+
+Status HostMachine::CheckControl(const v1::HostOrder& order, const HostTime& now) const {
+  const std::optional<std::string> token = FieldOf(order, "control_token");
+  return token ? desk_.Check(*token, now) : Status();
+}
+
+// Without a result: the status of the machine is the answer.
+Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, const HostTime& now) {
+  v1::HostOrderAnswer answer;
+  switch (order.request_case()) {
+    case v1::HostOrder::kAcquireControl:
+    case v1::HostOrder::kRenewControl:
+    case v1::HostOrder::kReleaseControl:
+      return Control(order, now);
+    case v1::HostOrder::kReadVariables: {
+      auto values = ReadVariables(machine(), order.read_variables());
+      if (!values) return values.error();
+      values->set_fence(setup_.fence);
+      *answer.mutable_variables() = *std::move(values);
+      return answer;
+    }
+    case v1::HostOrder::kRunState:
+      *answer.mutable_run_state() = RunStateOf(machine());
+      answer.mutable_run_state()->set_fence(setup_.fence);
+      return answer;
+    default:
+      break;
+  }
+  if (const Status control = CheckControl(order, now); !control) return control.error();
+  switch (order.request_case()) {
+    case v1::HostOrder::kFactor:
+      if (const Status set = driver_->SetFactor(now.steady, order.factor().factor()); !set)
+        return set.error();
+      Add(machine().time()).mutable_applied()->mutable_input()->set_factor(order.factor().factor());
+      return answer;
+    case v1::HostOrder::kConfirm:
+      if (const Status confirmed = Confirm(order.confirm()); !confirmed) return confirmed.error();
+      return answer;
+    case v1::HostOrder::kWriteVariables:
+      return Write(order);
+    default:
+      break;
+  }
+  if (const Status acted = Act(order); !acted) return acted.error();
+  if (order.has_breakpoints() || order.has_simulation()) {
+    *answer.mutable_run_state() = RunStateOf(machine());
+    answer.mutable_run_state()->set_fence(setup_.fence);
+  }
+  return answer;
+}
+
+Result<v1::HostOrderAnswer> HostMachine::Control(const v1::HostOrder& order, const HostTime& now) {
+  v1::HostOrderAnswer answer;
+  if (order.has_acquire_control()) {
+    auto acquired = desk_.Acquire(order.acquire_control(), order.caller(), now);
+    if (!acquired) return acquired.error();
+    *answer.mutable_control() = *std::move(acquired);
+  } else if (order.has_renew_control()) {
+    const auto renewed = desk_.Renew(order.renew_control().control_token(), now);
+    if (!renewed) return renewed.error();
+    *answer.mutable_control_kept()->mutable_lease() = *renewed;
+  } else if (const Status released = desk_.Release(order.release_control().control_token(), now);
+             !released) {
+    return released.error();
+  }
+  TellControl();
+  return answer;
+}
+
+// All of them or none, each with what is wrong with it.
+Result<v1::HostOrderAnswer> HostMachine::Write(const v1::HostOrder& order) {
+  v1::HostOrderAnswer answer;
+  v1::WriteVariablesResponse& written = *answer.mutable_written();
+  *written.mutable_variables() = order.write_variables().variables();
+  const auto inputs = InputsOf(order, machine());
+  if (!inputs) return inputs.error();
+  bool all = true;
+  for (std::size_t i = 0; i < inputs->size(); ++i) {
+    const auto& write = std::get<machine::WriteVariable>((*inputs)[i]);
+    const Status may = machine().MayWrite(write.name, write.value);
+    if (may) continue;
+    all = false;
+    *written.mutable_variables(static_cast<int>(i))->mutable_error() =
+        bridge::ToProto(Diagnostic{.code = may.error().code,
+                                   .severity = Lookup(may.error().code).severity,
+                                   .detail = may.error().detail});
+  }
+  for (std::size_t i = 0; all && i < inputs->size(); ++i) {
+    if (const Status done = Apply((*inputs)[i], &order); !done) return done.error();
+  }
+  return answer;
+}
+
+Status HostMachine::Confirm(const v1::ConfirmMachineRequest& request) {
+  if (!inspect_due_)
+    return Error{ErrorCode::kCellMachineState, "nothing waits for a confirmation", {}};
+  const auto& given = request.confirmations();
+  if (std::ranges::find(given, v1::CONFIRMATION_INSPECTED) == given.end())
+    return Error{ErrorCode::kCellInspect, "confirm CONFIRMATION_INSPECTED", {}};
+  inspect_due_ = false;
+  mark_due_ = true;
+  return {};
+}
+
+Status HostMachine::MayApply(const machine::MachineInput& input) const {
+  if (!inspect_due_ || !machine().status().alarms.empty()) return {};
+  const bool starts = std::holds_alternative<machine::StartRun>(input);
+  const bool resumes = std::holds_alternative<machine::ResumeRun>(input);
+  const bool aborts = std::holds_alternative<machine::AbortRun>(input);
+  if (!starts && !resumes && !aborts) return {};
+  const machine::Transition next = machine::Next(machine::MachineState::kInspect,
+                                                 starts    ? machine::MachineEvent::kStart
+                                                 : resumes ? machine::MachineEvent::kResume
+                                                           : machine::MachineEvent::kAbort,
+                                                 {});
+  if (!next.code) return {};
+  return Error{*next.code, "confirm that it was inspected", {}};
+}
+
+Status HostMachine::Act(const v1::HostOrder& order) {
+  const auto inputs = InputsOf(order, machine());
+  if (!inputs) return inputs.error();
+  if (inputs->empty())
+    return Error{ErrorCode::kCellUnimplemented, "the host knows no such order", {}};
+  for (const machine::MachineInput& input : *inputs) {
+    const auto* change = std::get_if<machine::ChangeInput>(&input);
+    if (change != nullptr && !machine().has_inputs())
+      return Error{ErrorCode::kCellNotLive, "the machine has no inputs", {}};
+  }
+  for (const machine::MachineInput& input : *inputs) {
+    if (const Status may = MayApply(input); !may) return may.error();
+    if (const Status done = Apply(input, &order); !done) return done.error();
+  }
+  return {};
+}
+
+Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrder* order) {
+  if (std::holds_alternative<machine::StartRun>(input)) {
+    run_begun_ = machine().time();
+    told_of_run_ = 0;
+  }
+  const SimTime at = machine().time();
+  const Status done = machine().Apply(input);
+  if (!done) return done.error();
+  if (std::holds_alternative<machine::StopRun>(input)) held_for_ = v1::HOLD_REASON_STOP;
+  if (std::holds_alternative<machine::HoldRun>(input)) held_for_ = v1::HOLD_REASON_HOLD;
+  if (std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
+  v1::InputApplied& applied = *Add(at).mutable_applied();
+  applied.set_fence(setup_.fence);
+  applied.set_virtual_time_ns(at.count());
+  *applied.mutable_input() = AppliedOf(input);
+  applied.set_source(v1::START_SOURCE_CONSOLE);
+  if (order != nullptr) {
+    applied.set_caller(order->caller());
+    applied.set_request_id(FieldOf(*order, "request_id").value_or(""));
+    if (FieldOf(*order, "control_token") && desk_.lease()) {
+      applied.set_control_lease(desk_.lease()->number());
+      applied.set_client(desk_.lease()->client());
+    }
+  }
+  mark_due_ = true;
+  return {};
+}
+
+v1::HostOrderAnswer HostMachine::Refuse(const Error& error) const {
+  v1::HostOrderAnswer answer;
+  *answer.mutable_refusal() = bridge::ToErrorDetail(error);
+  v1::MachineRefusal& refusal = *answer.mutable_machine_refusal();
+  refusal.set_machine(setup_.name);
+  refusal.set_state(State());
+  if (desk_.lease()) refusal.set_control_holder(desk_.lease()->holder());
+  return answer;
+}
+
+void HostMachine::GoOnTo(const HostTime& now) {
+  now_ = now;
+  driver_->Pump(now.steady);
+  if (const auto on_loss = desk_.Expire(now)) {
+    TellControl();
+    if (*on_loss == v1::ControlLease::ON_LOSS_HOLD) Hold(v1::HOLD_REASON_CONTROL, now);
+  }
+  Notice();
+}
+
+bool HostMachine::GoOn(const HostTime& now) {
+  now_ = now;
+  const machine::Progress progress = driver_->Pump(now.steady);
+  GoOnTo(now);
+  return progress == machine::Progress::kReached;
+}
+
+void HostMachine::Hold(v1::HoldReason reason, const HostTime& now) {
+  now_ = now;
+  if (machine().state() != machine::MachineState::kRunning) return;
+  if (Apply(machine::StopRun{}, nullptr)) held_for_ = reason;
+  Notice();
+}
+
+void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
+  now_ = now;
+  const auto apply = [this](const machine::MachineInput& input) {
+    static_cast<void>(Apply(input, nullptr));
+  };
+  if (memory.whole()) {
+    for (const auto& [slot, program] : std::map(machine().memory().programs)) {
+      const auto named = [slot = slot](const v1::AssignedProgram& one) {
+        return one.slot() == slot;
+      };
+      if (std::ranges::none_of(memory.programs(), named))
+        apply(machine::DeleteProgram{.slot = slot});
+    }
+  }
+  for (const v1::AssignedProgram& program : memory.programs()) {
+    machine::StoredProgram stored{.name = program.title(),
+                                  .object = machine::Bytes::Of(program.content())};
+    if (!program.executable().empty()) stored.executable = machine::Bytes::Of(program.executable());
+    apply(machine::StoreProgram{.slot = program.slot(), .program = std::move(stored)});
+  }
+  for (const int slot : memory.deleted_programs()) {
+    if (machine().memory().programs.contains(slot)) apply(machine::DeleteProgram{.slot = slot});
+  }
+  if (!memory.schedules_changed()) return;
+  machine::SetSchedules set;  // none that is stored: all that the machine can have
+  if (!memory.schedules().empty()) set.schedules.emplace();
+  for (const v1::AssignedSchedule& schedule : memory.schedules()) {
+    set.schedules->push_back({.number = schedule.number(),
+                              .name = schedule.title(),
+                              .mode = schedule.mode(),
+                              .power_percent = schedule.power_percent()});
+  }
+  apply(set);
+}
+
+// What the machine did by itself.
+void HostMachine::Notice() {
+  const machine::MachineStatus status = machine().status();
+  const std::vector<machine::RunOver> over = machine().TakeRunsOver();
+  const auto begun = [this](const machine::RunNote& run) {
+    if (run.number <= run_told_) return;
+    run_told_ = run.number;
+    v1::RunBegun& told = *Add(run.begun).mutable_run_begun();
+    told.set_run(run.number);
+    told.set_program(run.program);
+    told.set_source(ToProto(run.source));
+  };
+  for (const machine::RunOver& run : over) {
+    begun(run.run);
+    v1::RunOver& told = *Add(run.run.begun + run.lasted).mutable_run_over();
+    told.set_run(run.run.number);
+    told.set_program(run.run.program);
+    *told.mutable_outcome() = bridge::ToProto(run.outcome);
+    told.mutable_outcome()->set_cycle_time_ns(run.lasted.count());
+    held_for_.reset();
+    mark_due_ = true;
+  }
+  if (status.open) begun(*status.open);
+  if (const SimTime lost = driver_->TakeLost(); lost > SimTime(0) && status.open) {
+    v1::ClockSlipped& slipped = *Add(status.time).mutable_clock_slipped();
+    slipped.set_fence(setup_.fence);
+    slipped.set_virtual_time_ns(status.time.count());
+    slipped.set_lost_ns(lost.count());
+  }
+}
+
+void HostMachine::TellControl() {
+  const std::optional<v1::ControlChanged> change = desk_.TakeChange();
+  if (!change) return;
+  v1::InputApplied& applied = *Add(machine().time()).mutable_applied();
+  applied.set_fence(setup_.fence);
+  applied.set_virtual_time_ns(machine().time().count());
+  *applied.mutable_input()->mutable_control() = *change;
+  applied.set_caller(change->to().empty() ? change->from() : change->to());
+  applied.set_control_lease(change->lease());
+}
+
+v1::MachineState HostMachine::State() const {
+  const machine::MachineState state = machine().state();
+  const bool stands =
+      state == machine::MachineState::kIdle || state == machine::MachineState::kNotZeroed;
+  return ToProto(inspect_due_ && stands ? machine::MachineState::kInspect : state);
+}
+
+v1::MachineStatus HostMachine::StatusAt(const HostTime& now) const {
+  v1::MachineStatus status = ToProto(machine());
+  status.set_machine(setup_.name);
+  status.set_fence(setup_.fence);
+  status.set_state(State());
+  *status.mutable_send_time() = Stamp(now.wall);
+  status.set_factor(driver_->factor());
+  status.set_host(setup_.host);
+  if (desk_.lease()) *status.mutable_control() = *desk_.lease();
+  const bool halts =
+      status.state() == v1::MACHINE_STATE_HELD || status.state() == v1::MACHINE_STATE_STOPPING;
+  if (halts && held_for_) status.set_hold_reason(*held_for_);
+  if (inspect_due_) status.add_confirmations_due(v1::CONFIRMATION_INSPECTED);
+  return status;
+}
+
+bool HostMachine::moves() const { return machine::MovesAxes(machine().state()); }
+
+bool HostMachine::run_open() const { return machine().status().open.has_value(); }
+
+v1::JournalEntry& HostMachine::Add(SimTime at) {
+  v1::JournalEntry& entry = entries_.emplace_back();
+  entry.set_sequence(++sequence_);
+  entry.set_fence(setup_.fence);
+  entry.set_virtual_time_ns(at.count());
+  *entry.mutable_time() = Stamp(now_.wall);
+  return entry;
+}
+
+// Where it stands: all that was told before is in it.
+void HostMachine::Mark() {
+  const machine::MachineStatus status = machine().status();
+  v1::MachineMark& mark = *Add(status.time).mutable_mark();
+  mark.set_fence(setup_.fence);
+  mark.set_sequence(sequence_);
+  mark.set_virtual_time_ns(status.time.count());
+  if (status.open) {
+    mark.set_run_time_ns(status.run.time.count());
+    *mark.mutable_place() = bridge::ToProto(status.run.place);
+  }
+  mark.set_state(machine().Save());
+  mark.set_state_sha256(BytesOfHex(bridge::Sha256Hex(mark.state())).value_or(""));
+  mark.set_clean(!status.open && !inspect_due_);
+  mark_due_ = false;
+  marked_at_ = now_.steady;
+}
+
+std::vector<v1::JournalEntry> HostMachine::TakeEntries(const HostTime& now) {
+  now_ = now;
+  const bool moving = moves();
+  if (moving ? now.steady - marked_at_ >= kMarkInterval : mark_due_) Mark();
+  if (moving) mark_due_ = true;  // it comes to rest elsewhere
+  return std::exchange(entries_, {});
+}
+
+void HostMachine::OnHalt(const machine::Halt& halt) {
+  v1::Halted& halted = *Event(halt.at).mutable_halted();
+  halted.set_reason(held_for_.value_or(ToProto(halt.reason)));
+  halted.set_message(std::string(halt.why));
+  *halted.mutable_place() = bridge::ToProto(halt.place);
+  mark_due_ = true;
+}
+
+void HostMachine::OnResume(SimTime at, const machine::Place& place) {
+  *Event(at).mutable_resumed()->mutable_place() = bridge::ToProto(place);
+}
+
+// A program without an end says as much as it likes: the report of a job has the rest.
+bool HostMachine::MayTell() { return ++told_of_run_ <= kToldOfRunMax; }
+
+void HostMachine::OnMessage(SimTime at, const machine::Place& place, std::string_view text) {
+  if (!MayTell()) return;
+  v1::RunMessage& message = *Event(at).mutable_message();
+  message.set_text(bridge::Utf8(std::string(text)));
+  *message.mutable_place() = bridge::ToProto(place);
+}
+
+void HostMachine::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
+  if (!MayTell()) return;
+  *Event(at).mutable_diagnostic() = bridge::ToProto(diagnostic);
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/machine/virtual_driver.h"
+#include "rmlcell/v1/host.pb.h"
+#include "server/host/control_desk.h"
+
+namespace rmlcell::server {
+
+// A machine that lives, as its host has it: orders of clients act on it in the order in which they
+// come, each at one instant of its time; who may move it, what happened, and where it stands. No
+// clock, thread or file: times are given. One thread at a time.
+class HostMachine : private machine::RunObserver {
+ public:
+  struct Setup {
+    std::string name{};  // "machines/mill-1"
+    std::string host{};  // "workshop/4711"
+    std::int64_t fence = 0;
+    const machine::MachineFamily* family = nullptr;
+    std::string profile{};
+    std::map<std::string, std::string> parameters{};
+    machine::MachineMemory memory{};
+    std::string state{};   // as the last mark has it; empty: a new machine
+    bool cut_off = false;  // a run was open then, and nobody has decided yet: INSPECT
+  };
+  static constexpr std::size_t kAnswersKept = 1'024;
+  static constexpr std::chrono::minutes kAnswersKeptFor{10};
+  static constexpr int kToldOfRunMax = 1'000;  // messages and findings of one run
+
+  // Errors: those of machine::MakeParameters and machine::Machine::Make.
+  static Result<std::unique_ptr<HostMachine>> Make(Setup setup, const HostTime& now,
+                                                   std::function<std::string()> make_token);
+
+  // What a client asks. One that was answered before, by its request id, gets the same answer and
+  // acts no more.
+  v1::HostOrderAnswer Do(const v1::HostOrder& order, const HostTime& now);
+  // Time goes on. False: there is more to compute; call again when orders were looked at.
+  bool GoOn(const HostTime& now);
+  // Comes to rest, and holds a run with this reason.
+  void Hold(v1::HoldReason reason, const HostTime& now);
+  // Programs and schedules that were stored meanwhile; they act at the next start.
+  void Change(const v1::HostMemory& memory, const HostTime& now);
+
+  v1::MachineStatus StatusAt(const HostTime& now) const;
+  bool moves() const;     // it is to be asked to go on again and again
+  bool run_open() const;  // it is no time to end
+  // When it is to be looked at again though nobody asks: control runs out.
+  std::optional<std::chrono::nanoseconds> next_look() const { return desk_.runs_out(); }
+
+  // What happened since the last call, in order; a mark is the last one where there is one due.
+  std::vector<v1::JournalEntry> TakeEntries(const HostTime& now);
+
+ private:
+  HostMachine(Setup setup, std::function<std::string()> make_token);
+
+  v1::HostOrderAnswer Carry(const v1::HostOrder& order, const HostTime& now);
+  Result<v1::HostOrderAnswer> CarryOut(const v1::HostOrder& order, const HostTime& now);
+  Status CheckControl(const v1::HostOrder& order, const HostTime& now) const;
+  Result<v1::HostOrderAnswer> Control(const v1::HostOrder& order, const HostTime& now);
+  Result<v1::HostOrderAnswer> Write(const v1::HostOrder& order);
+  Status Confirm(const v1::ConfirmMachineRequest& request);
+  Status Act(const v1::HostOrder& order);
+  Status Apply(const machine::MachineInput& input, const v1::HostOrder* order);
+  Status MayApply(const machine::MachineInput& input) const;
+  v1::HostOrderAnswer Refuse(const Error& error) const;
+  void Remember(const std::string& request_id, const v1::HostOrderAnswer& answer);
+  void GoOnTo(const HostTime& now);
+  void Notice();
+  void TellControl();
+  v1::JournalEntry& Add(SimTime at);
+  v1::RunEvent& Event(SimTime of_run) { return *Add(run_begun_ + of_run).mutable_event(); }
+  void Mark();
+  v1::MachineState State() const;
+
+  // machine::RunObserver
+  bool MayTell();
+  void OnHalt(const machine::Halt& halt) override;
+  void OnResume(SimTime at, const machine::Place& place) override;
+  void OnMessage(SimTime at, const machine::Place& place, std::string_view text) override;
+  void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
+
+  machine::Machine& machine() { return driver_->machine(); }
+  const machine::Machine& machine() const { return driver_->machine(); }
+
+  struct Answered {
+    v1::HostOrderAnswer answer{};
+    std::chrono::nanoseconds at{0};
+  };
+
+  Setup setup_;
+  std::unique_ptr<machine::VirtualDriver> driver_;
+  ControlDesk desk_;
+  std::map<std::string, Answered> answered_;  // by request id
+  std::deque<std::string> answered_order_;    // the oldest first
+  std::vector<v1::JournalEntry> entries_;
+  HostTime now_{};  // of the call under way
+  std::int64_t sequence_ = 0;
+  std::optional<v1::HoldReason> held_for_;  // by the host itself, or for a client
+  std::int64_t run_told_ = 0;               // the newest whose begin was told
+  SimTime run_begun_{0};
+  int told_of_run_ = 0;
+  bool inspect_due_ = false;
+  bool mark_due_ = true;
+  std::chrono::nanoseconds marked_at_{0};
+};
+
+}  // namespace rmlcell::server

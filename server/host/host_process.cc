@@ -1,0 +1,377 @@
+#include "server/host/host_process.h"
+
+#include <google/protobuf/util/time_util.h>
+#include <spdlog/spdlog.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <condition_variable>
+#include <deque>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "engine/families/families.h"
+#include "proto/bridge/findings.h"
+#include "server/base/secret.h"
+#include "server/base/version.h"
+#include "server/host/host_line.h"
+#include "server/host/host_machine.h"
+
+namespace rmlcell::server {
+namespace {
+
+using namespace std::chrono_literals;
+using google::protobuf::util::TimeUtil;
+using std::chrono::nanoseconds;
+
+constexpr int kProtocol = 1;
+constexpr nanoseconds kStatusMoving = 50ms;  // LIVE-3.16
+constexpr nanoseconds kStatusStanding = 1s;
+constexpr nanoseconds kTick = 5ms;       // of a machine that moves
+constexpr nanoseconds kServerLost = 1s;  // LIVE-3.31: then a run is held
+constexpr nanoseconds kEndsWithoutServer = 60s;
+constexpr nanoseconds kRejoin = 200ms;
+constexpr nanoseconds kRestPatience = 10s;
+constexpr std::size_t kUnstoredMax = 100'000;
+
+HostTime Now() {
+  timespec time{};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return {.steady = std::chrono::seconds(time.tv_sec) + nanoseconds(time.tv_nsec),
+          .wall = std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now())};
+}
+
+std::string NameOfComputer() {
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0) return "computer";
+  return name.data();
+}
+
+std::string BootId() {
+  std::ifstream file("/proc/sys/kernel/random/boot_id");
+  std::string id;
+  std::getline(file, id);
+  return id;
+}
+
+class HostProcess {
+ public:
+  HostProcess(const HostOptions& options, const std::atomic<bool>& stopping)
+      : options_(options), stopping_(stopping), name_(NameOfHost()) {}
+
+  ~HostProcess() {
+    if (connector_.joinable()) connector_.join();
+    line_.reset();
+  }
+
+  int Run() {
+    without_server_since_ = Now().steady;
+    while (!ended_) {
+      KeepLine();
+      TakeMessages();
+      if (machine_ != nullptr) Turn();
+      if (ended_) break;
+      if (stopping_) End("it is told to stop");
+      Rest();
+    }
+    return exit_code_;
+  }
+
+ private:
+  v1::HostHello Hello() const {
+    v1::HostHello hello;
+    hello.set_join_token(options_.join_token);
+    hello.set_machine(options_.machine);
+    hello.set_host(name_);
+    hello.set_version(std::string(kVersion));
+    hello.set_protocol(kProtocol);
+    hello.set_boot_id(BootId());
+    hello.set_computer(NameOfComputer());
+    hello.set_fence(fence_);
+    return hello;
+  }
+
+  // A line is looked for beside the machine, which goes on meanwhile.
+  void KeepLine() {
+    std::optional<Result<HostLine::Welcome>> joined;
+    {
+      const std::lock_guard lock(mutex_);
+      joined.swap(joined_);
+    }
+    if (line_ != nullptr && LineGone()) {
+      spdlog::warn("the line to the server is gone");
+      line_.reset();
+      without_server_since_ = Now().steady;
+    }
+    if (joined) {
+      connector_.join();
+      Joined(*std::move(joined));
+    }
+    if (line_ == nullptr && !connector_.joinable() && Now().steady >= next_try_) Connect();
+  }
+
+  bool LineGone() {
+    const std::lock_guard lock(mutex_);
+    return line_gone_;
+  }
+
+  void Connect() {
+    {
+      const std::lock_guard lock(mutex_);
+      line_gone_ = false;
+    }
+    connector_ = std::thread([this, hello = Hello()] {
+      auto welcome = HostLine::Join(
+          options_.server, hello, [this](v1::HostResponse message) { Hear(std::move(message)); },
+          [this] { LineIsGone(); });
+      const std::lock_guard lock(mutex_);
+      joined_.emplace(std::move(welcome));
+      wake_.notify_one();
+    });
+  }
+
+  void Joined(Result<HostLine::Welcome> welcome) {
+    const nanoseconds now = Now().steady;
+    if (!welcome) {
+      next_try_ = now + kRejoin;
+      const ErrorCode code = welcome.error().code;
+      if (code == ErrorCode::kCellUnavailable) return;
+      spdlog::error("{}", bridge::ErrorText(welcome.error()));
+      return Quit(code == ErrorCode::kCellMachineTaken ? 3 : 69);
+    }
+    const v1::HostWelcome& message = welcome->message;
+    if (fence_ != 0 && message.fence() != fence_) {
+      spdlog::error("the machine was given to another host meanwhile");
+      return Quit(3);
+    }
+    fence_ = message.fence();
+    lease_ = nanoseconds(TimeUtil::DurationToNanoseconds(message.lease()));
+    next_renewal_ = now + lease_ / 3;
+    line_ = std::move(welcome->line);
+    if (machine_ == nullptr) {
+      welcome_ = message;
+    } else if (!unstored_.empty()) {
+      SendEntries({unstored_.begin(), unstored_.end()});
+    }
+    status_due_ = now;
+  }
+
+  void Hear(v1::HostResponse message) {
+    const std::lock_guard lock(mutex_);
+    inbox_.push_back(std::move(message));
+    wake_.notify_one();
+  }
+
+  void LineIsGone() {
+    const std::lock_guard lock(mutex_);
+    line_gone_ = true;
+    wake_.notify_one();
+  }
+
+  // What halts is looked at before all else.
+  void TakeMessages() {
+    std::deque<v1::HostResponse> messages;
+    {
+      const std::lock_guard lock(mutex_);
+      messages.swap(inbox_);
+    }
+    std::ranges::stable_partition(messages, [](const v1::HostResponse& message) {
+      return message.has_order() && (message.order().has_stop() || message.order().has_hold() ||
+                                     message.order().has_emergency_stop());
+    });
+    for (v1::HostResponse& message : messages) Take(message);
+  }
+
+  void Take(v1::HostResponse& message) {
+    switch (message.message_case()) {
+      case v1::HostResponse::kMemory:
+        TakeMemory(message.memory());
+        break;
+      case v1::HostResponse::kOrder:
+        TakeOrder(message.order());
+        break;
+      case v1::HostResponse::kEntriesStored:
+        while (!unstored_.empty() &&
+               unstored_.front().sequence() <= message.entries_stored().sequence())
+          unstored_.pop_front();
+        break;
+      case v1::HostResponse::kLeaseLost:
+        spdlog::error("{} has the machine now", message.lease_lost().holder());
+        if (machine_ != nullptr) machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, Now());
+        Quit(3);
+        break;
+      case v1::HostResponse::kStop:
+        End(message.stop().reason());
+        break;
+      default:
+        break;
+    }
+  }
+
+  void TakeMemory(const v1::HostMemory& memory) {
+    const HostTime now = Now();
+    if (machine_ != nullptr) return machine_->Change(memory, now);
+    if (!memory.whole() || !welcome_) return;
+    const machine::MachineFamily* family = families::FindFamily(welcome_->family());
+    if (family == nullptr) return Fail({ErrorCode::kCellUnknownFamily, welcome_->family(), {}});
+    auto made = HostMachine::Make(
+        {.name = options_.machine,
+         .host = name_,
+         .fence = fence_,
+         .family = family,
+         .profile = welcome_->profile(),
+         .parameters = {welcome_->parameters().begin(), welcome_->parameters().end()},
+         .state = welcome_->mark().state(),
+         .cut_off = welcome_->has_mark() && !welcome_->mark().clean()},
+        now, RandomText);
+    if (!made) return Fail(made.error());
+    machine_ = *std::move(made);
+    machine_->Change(memory, now);
+    static_cast<void>(machine_->TakeEntries(now));  // it begins with what the store has
+    spdlog::info("{} lives, fence {}", options_.machine, fence_);
+  }
+
+  void TakeOrder(const v1::HostOrder& order) {
+    v1::HostRequest request;
+    if (machine_ == nullptr) {
+      *request.mutable_answer()->mutable_refusal() =
+          bridge::ToErrorDetail({ErrorCode::kCellNotLive, "the machine is starting", {}});
+      request.mutable_answer()->set_number(order.number());
+    } else {
+      *request.mutable_answer() = machine_->Do(order, Now());
+      status_due_ = Now().steady;
+    }
+    if (line_ != nullptr) line_->Send(std::move(request));
+  }
+
+  // The machine goes on, and what happened is told.
+  void Turn() {
+    const HostTime now = Now();
+    behind_ = !machine_->GoOn(now);
+    if (line_ == nullptr && machine_->moves() && now.steady - without_server_since_ > kServerLost)
+      machine_->Hold(v1::HOLD_REASON_SERVER_LOST, now);
+    SendEntries(Kept(machine_->TakeEntries(now)));
+    const v1::MachineStatus status = machine_->StatusAt(now);
+    const bool changed = status.state() != state_told_;
+    if (line_ != nullptr && (changed || now.steady >= status_due_)) {
+      state_told_ = status.state();
+      status_due_ = now.steady + (machine_->moves() ? kStatusMoving : kStatusStanding);
+      line_->SendStatus(status);
+    }
+    if (line_ != nullptr && now.steady >= next_renewal_) {
+      next_renewal_ = now.steady + lease_ / 3;
+      v1::HostRequest renew;
+      renew.mutable_renew()->set_fence(fence_);
+      line_->Send(std::move(renew));
+    }
+    if (ending_at_ && (!machine_->moves() || now.steady >= *ending_at_)) HandBack(now);
+    if (line_ == nullptr && !machine_->moves() &&
+        now.steady - without_server_since_ > kEndsWithoutServer) {
+      spdlog::warn("no server for {} s", kEndsWithoutServer / 1s);
+      Quit(0);
+    }
+  }
+
+  std::vector<v1::JournalEntry> Kept(std::vector<v1::JournalEntry> entries) {
+    for (const v1::JournalEntry& entry : entries) unstored_.push_back(entry);
+    // Of what nobody takes the newest is worth most: it says where the machine stands.
+    while (unstored_.size() > kUnstoredMax) unstored_.pop_front();
+    return entries;
+  }
+
+  void SendEntries(const std::vector<v1::JournalEntry>& entries) {
+    if (entries.empty() || line_ == nullptr) return;
+    v1::HostRequest request;
+    request.mutable_entries()->set_fence(fence_);
+    for (const v1::JournalEntry& entry : entries) *request.mutable_entries()->add_entries() = entry;
+    line_->Send(std::move(request));
+  }
+
+  // In order: it comes to rest first. LIVE-5.09
+  void End(const std::string& why) {
+    if (ending_at_) return;
+    spdlog::info("{} ends: {}", options_.machine, why);
+    if (machine_ == nullptr) return Quit(0);
+    const HostTime now = Now();
+    machine_->Hold(v1::HOLD_REASON_STOP, now);
+    ending_at_ = now.steady + kRestPatience;
+  }
+
+  void HandBack(const HostTime& now) {
+    SendEntries(Kept(machine_->TakeEntries(now)));
+    if (line_ != nullptr) {
+      v1::HostRequest request;
+      request.mutable_hand_back()->set_fence(fence_);
+      line_->Send(std::move(request));
+    }
+    Quit(0);
+  }
+
+  void Fail(const Error& error) {
+    spdlog::error("{}: {}", options_.machine, bridge::ErrorText(error));
+    Quit(69);
+  }
+
+  void Quit(int code) {
+    ended_ = true;
+    exit_code_ = code;
+  }
+
+  void Rest() {
+    if (behind_) return;
+    nanoseconds longest = 200ms;
+    if (machine_ != nullptr && line_ != nullptr) {
+      const nanoseconds now = Now().steady;
+      longest = machine_->moves()
+                    ? kTick
+                    : std::min({status_due_ - now, next_renewal_ - now, 1'000'000'000ns});
+      if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
+    }
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, std::max<nanoseconds>(longest, 0ns),
+                   [this] { return !inbox_.empty() || joined_ || line_gone_ != line_gone_seen_; });
+    line_gone_seen_ = line_gone_;
+  }
+
+  const HostOptions& options_;
+  const std::atomic<bool>& stopping_;
+  const std::string name_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<v1::HostResponse> inbox_;               // guarded by mutex_
+  std::optional<Result<HostLine::Welcome>> joined_;  // guarded by mutex_
+  bool line_gone_ = false;                           // guarded by mutex_
+  bool line_gone_seen_ = false;
+  std::thread connector_;
+  std::unique_ptr<HostLine> line_;
+  std::optional<v1::HostWelcome> welcome_;
+  std::unique_ptr<HostMachine> machine_;
+  std::deque<v1::JournalEntry> unstored_;
+  std::int64_t fence_ = 0;
+  nanoseconds lease_{0};
+  nanoseconds next_renewal_{0};
+  nanoseconds next_try_{0};
+  nanoseconds status_due_{0};
+  nanoseconds without_server_since_{0};
+  std::optional<nanoseconds> ending_at_;
+  v1::MachineState state_told_ = v1::MACHINE_STATE_UNSPECIFIED;
+  bool behind_ = false;
+  bool ended_ = false;
+  int exit_code_ = 0;
+};
+
+}  // namespace
+
+std::string NameOfHost() { return NameOfComputer() + "/" + std::to_string(::getpid()); }
+
+int RunHost(const HostOptions& options, const std::atomic<bool>& stopping) {
+  return HostProcess(options, stopping).Run();
+}
+
+}  // namespace rmlcell::server

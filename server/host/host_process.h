@@ -1,0 +1,21 @@
+#pragma once
+
+#include <atomic>
+#include <string>
+
+namespace rmlcell::server {
+
+// The host of one machine that lives: a process of its own, which outlives its server.
+struct HostOptions {
+  std::string server{};      // "unix:/path" or "host:port"
+  std::string join_token{};  // of the server
+  std::string machine{};     // "machines/mill-1"
+};
+
+// Until it is to stop, or the machine is another host's: the exit code of the process.
+int RunHost(const HostOptions& options, const std::atomic<bool>& stopping);
+
+// "workshop/4711": of this process.
+std::string NameOfHost();
+
+}  // namespace rmlcell::server

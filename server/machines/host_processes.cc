@@ -1,0 +1,88 @@
+#include "server/machines/host_processes.h"
+
+#include <spdlog/spdlog.h>
+#include <sys/wait.h>
+
+#include <utility>
+
+#include "server/base/child_process.h"
+#include "server/base/names.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr std::chrono::milliseconds kLookAtHosts{50};  // how soon a dead host is noticed
+
+}  // namespace
+
+HostProcesses::HostProcesses(Options options) : options_(std::move(options)) {
+  watcher_ = std::jthread([this](const std::stop_token& stop) { Watch(stop); });
+}
+
+HostProcesses::~HostProcesses() {
+  watcher_.request_stop();
+  watcher_.join();
+}
+
+Status HostProcesses::Enable(const std::string& machine, std::chrono::milliseconds after) {
+  if (const Status program = CheckProgram(options_.program); !program) return program.error();
+  const std::lock_guard lock(mutex_);
+  Place& place = places_[machine];
+  place.wanted = true;
+  if (place.process < 0) {
+    place.delay = {};
+    place.next_start = options_.clock() + after;
+    LookAt(machine, place);
+  }
+  return {};
+}
+
+void HostProcesses::Disable(const std::string& machine) {
+  const std::lock_guard lock(mutex_);
+  if (const auto found = places_.find(machine); found != places_.end())
+    found->second.wanted = false;
+}
+
+bool HostProcesses::IsEnabled(const std::string& machine) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = places_.find(machine);
+  return found != places_.end() && found->second.wanted;
+}
+
+void HostProcesses::LookAt(const std::string& machine, Place& place) {
+  const auto now = options_.clock();
+  int how = 0;
+  if (place.process > 0 && ::waitpid(place.process, &how, WNOHANG) == place.process) {
+    if (place.wanted)
+      spdlog::warn("the host of {} ended with {}", machine,
+                   WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
+    place.next_start = now + place.delay.AfterLife(now - place.started);
+    place.process = -1;
+  }
+  if (place.process > 0 || !place.wanted || now < place.next_start) return;
+  const Result<pid_t> process =
+      StartChild({options_.program, "--host", MachineName(machine), "--server", options_.server,
+                  "--log-level", options_.log_level, "--log-format", options_.log_format},
+                 {"RMLCELL_JOIN_TOKEN=" + options_.join_token});
+  place.started = now;
+  place.next_start = now + std::chrono::seconds(1);
+  if (!process) {
+    spdlog::error("the host of {} cannot be started: {}", machine, process.error().detail);
+    return;
+  }
+  place.process = *process;
+}
+
+void HostProcesses::Watch(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    {
+      const std::lock_guard lock(mutex_);
+      for (auto& [machine, place] : places_) LookAt(machine, place);
+      std::erase_if(places_,
+                    [](const auto& row) { return !row.second.wanted && row.second.process < 0; });
+    }
+    std::this_thread::sleep_for(kLookAtHosts);
+  }
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "engine/core/result.h"
+#include "server/base/restart_delay.h"
+#include "server/base/steady_clock.h"
+
+namespace rmlcell::server {
+
+// Hosts of virtual machines that this server starts: one process for each machine that is enabled,
+// and another one for each that dies, more and more slowly. They are not ended with the server.
+// Thread-safe.
+class HostProcesses {
+ public:
+  struct Options {
+    std::string program{};     // path of rmlcell-worker
+    std::string server{};      // address that they connect to
+    std::string join_token{};  // handed over in the environment, not on the command line
+    std::string log_level{};
+    std::string log_format{};
+    SteadyClock clock = SteadyTime;
+  };
+  explicit HostProcesses(Options options);
+  ~HostProcesses();  // the processes live on
+  HostProcesses(const HostProcesses&) = delete;
+  HostProcesses& operator=(const HostProcesses&) = delete;
+
+  // A process for the machine, now and whenever there is none; `after`: not before.
+  // Error: CellConfiguration, the program is not there.
+  Status Enable(const std::string& machine, std::chrono::milliseconds after = {});
+  // None any more; one that is there goes when its line tells it to.
+  void Disable(const std::string& machine);
+  bool IsEnabled(const std::string& machine) const;
+
+ private:
+  struct Place {
+    pid_t process = -1;
+    bool wanted = true;
+    std::chrono::steady_clock::time_point started{};
+    std::chrono::steady_clock::time_point next_start{};
+    RestartDelay delay{};
+  };
+  void Watch(const std::stop_token& stop);
+  void LookAt(const std::string& machine, Place& place);  // precondition: mutex_ is held
+
+  const Options options_;
+  mutable std::mutex mutex_;
+  std::map<std::string, Place> places_;  // by id of the machine; guarded by mutex_
+  std::jthread watcher_;
+};
+
+}  // namespace rmlcell::server

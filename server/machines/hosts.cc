@@ -1,0 +1,553 @@
+#include "server/machines/hosts.h"
+
+#include <google/protobuf/util/time_util.h>
+#include <signal.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <set>
+#include <utility>
+
+#include "engine/core/number_text.h"
+#include "proto/bridge/findings.h"
+#include "rmlcell/v1/cell.pb.h"
+#include "server/base/names.h"
+#include "server/base/secret.h"
+#include "server/records/job_messages.h"
+#include "server/records/machine_messages.h"
+
+namespace rmlcell::server {
+namespace {
+
+using google::protobuf::util::TimeUtil;
+using Instant = std::chrono::steady_clock::time_point;
+
+constexpr int kProtocol = 1;
+constexpr std::chrono::seconds kObserved{5};  // beyond the lease: its holder is gone (PG-5.09)
+constexpr int kMemoryReadAhead = 1'000;
+constexpr std::size_t kWaitingEntriesMax = 100'000;
+
+Error NotLive(const std::string& why) { return {ErrorCode::kCellNotLive, why, {}}; }
+
+// Whether the process that this host is, on this computer, is gone. LIVE-3.02
+bool IsGone(const std::string& host) {
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0) return false;
+  const std::string here = std::string(name.data()) + "/";
+  if (!host.starts_with(here)) return false;
+  const auto process = ParseInteger(std::string_view(host).substr(here.size()));
+  return process && *process > 1 && ::kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH;
+}
+
+// As it stands in the log of the cell; nothing: it is not told.
+std::optional<v1::MachineEvent> EventOf(const v1::JournalEntry& entry) {
+  v1::MachineEvent event;
+  switch (entry.what_case()) {
+    case v1::JournalEntry::kApplied:
+      *event.mutable_input_applied() = entry.applied();
+      break;
+    case v1::JournalEntry::kEvent:
+      *event.mutable_run() = entry.event();
+      break;
+    case v1::JournalEntry::kRunBegun:
+      *event.mutable_run_begun() = entry.run_begun();
+      event.set_run_number(entry.run_begun().run());
+      break;
+    case v1::JournalEntry::kRunOver:
+      *event.mutable_run_over() = entry.run_over();
+      event.set_run_number(entry.run_over().run());
+      break;
+    case v1::JournalEntry::kClockSlipped:
+      *event.mutable_clock_slipped() = entry.clock_slipped();
+      break;
+    default:
+      return std::nullopt;
+  }
+  event.set_fence(entry.fence());
+  event.set_virtual_time_ns(entry.virtual_time_ns());
+  return event;
+}
+
+storage::NewEvent ToRecord(const v1::MachineEvent& event) {
+  return {.kind = std::string(kMachineEvent),
+          .payload = event.SerializeAsString(),
+          .caller = event.input_applied().caller()};
+}
+
+v1::HostMemory MemoryOf(const storage::MachineMemory& memory) {
+  v1::HostMemory message;
+  message.set_whole(true);
+  for (const storage::ProgramRecord& program : memory.programs) {
+    v1::AssignedProgram& made = *message.add_programs();
+    made.set_slot(program.slot);
+    made.set_title(program.name);
+    made.set_content(program.object);
+    made.set_size(static_cast<std::int64_t>(program.object.size()));
+    if (program.executable) made.set_executable(*program.executable);
+    made.set_object_revision(program.revision);
+  }
+  for (const int slot : memory.deleted) message.add_deleted_programs(slot);
+  message.set_schedules_changed(true);
+  for (const storage::ScheduleRecord& schedule : memory.schedules) {
+    v1::AssignedSchedule& made = *message.add_schedules();
+    made.set_number(schedule.number);
+    made.set_title(schedule.name);
+    made.set_mode(schedule.mode);
+    made.set_power_percent(schedule.power_percent);
+  }
+  return message;
+}
+
+}  // namespace
+
+struct Hosts::Host {
+  std::string id{};
+  std::shared_ptr<HostLink> link;
+  storage::MachineLease lease{};  // does not change but for its count, which nobody looks at
+
+  std::mutex mutex;  // a leaf, like that of Hosts
+  bool gone = false;
+  bool handed_back = false;
+  std::int64_t next_order = 0;
+  struct Pending {
+    Answered done;
+    Instant asked{};
+  };
+  std::map<std::int64_t, Pending> pending;
+  std::optional<v1::MachineStatus> status;
+  Instant heard{};
+  std::vector<v1::JournalEntry> waiting;  // to be stored
+  bool storing = false;
+};
+
+Hosts::Hosts(Needs needs) : needs_(std::move(needs)) {
+  looked_until_ = needs_.feed.position();
+  subscription_ = needs_.feed.Subscribe(std::string(EventFeed::kEverything), [this] {
+    const std::lock_guard lock(mutex_);
+    if (hosts_.empty()) return;
+    needs_.executor.Post([this] { LookAtMemory(); });
+  });
+}
+
+Hosts::~Hosts() { subscription_.reset(); }
+
+void Hosts::OnChange(std::function<void()> changed) {
+  const std::lock_guard lock(changing_);
+  changed_ = std::move(changed);
+}
+
+void Hosts::Changed() {
+  const std::lock_guard lock(changing_);
+  if (changed_) changed_();
+}
+
+Hosts::HostPointer Hosts::Find(const HostLink& link) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, host] : hosts_) {
+    if (host->link.get() == &link) return host;
+  }
+  return nullptr;
+}
+
+Hosts::HostPointer Hosts::Find(const std::string& machine) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = hosts_.find(machine);
+  return found == hosts_.end() ? nullptr : found->second;
+}
+
+Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& hello) {
+  if (!KnowsSecret(hello.join_token(), needs_.join_token))
+    return Error{ErrorCode::kCellJoinRefused, "of a host", {}};
+  if (hello.protocol() != kProtocol)
+    return Error{ErrorCode::kCellVersionMismatch,
+                 "the host speaks protocol " + std::to_string(hello.protocol()) + ", this server " +
+                     std::to_string(kProtocol),
+                 {}};
+  const Result<std::string> machine = ParseMachineName(hello.machine());
+  if (!machine) return machine.error();
+  const std::lock_guard joining(joining_);
+  const Result<storage::MachineLease> lease = Take(hello, *machine);
+  if (!lease) return lease.error();
+  auto host = std::make_shared<Host>();
+  host->id = *machine;
+  host->link = link;
+  host->lease = *lease;
+  host->heard = needs_.clock();
+  if (const Status welcome = Welcome(host, hello); !welcome) return welcome.error();
+  std::shared_ptr<HostLink> before;
+  {
+    const std::lock_guard lock(mutex_);
+    HostPointer& place = hosts_[*machine];
+    if (place != nullptr) before = place->link;
+    place = host;
+  }
+  if (before != nullptr && before != link) before->Close(NotLive("the host has another line"));
+  SendMemory(host);
+  spdlog::info("{} has the host {}, fence {}", hello.machine(), hello.host(), lease->fence);
+  Changed();
+  return {};
+}
+
+// Of a holder that is gone: a process of this computer that is no more, or one that has not renewed
+// its lease for as long as it holds.
+Result<storage::MachineLease> Hosts::Take(const v1::HostHello& hello, const std::string& machine) {
+  storage::MachineClaim claim{
+      .machine = machine, .host = hello.host(), .server = needs_.server, .duration = kLease};
+  Result<storage::MachineLease> lease = needs_.store.TakeMachine(claim);
+  if (lease || lease.error().code != ErrorCode::kCellMachineTaken) {
+    seen_.erase(machine);
+    return lease;
+  }
+  const auto held = needs_.store.MachineLeases();
+  if (!held) return held.error();
+  for (const storage::MachineLease& other : *held) {
+    if (other.machine != machine) continue;
+    const Instant now = needs_.clock();
+    Seen& seen = seen_[machine];
+    if (seen.lease != other) seen = {.lease = other, .since = now};
+    claim.seen = other;
+    claim.by_hand = !other.pinned && IsGone(other.host);
+    if (!claim.by_hand && now - seen.since < other.duration + kObserved) return lease;
+  }
+  lease = needs_.store.TakeMachine(claim);
+  if (lease) seen_.erase(machine);
+  return lease;
+}
+
+Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello) {
+  const Result<storage::MachineRecord> machine = needs_.store.GetMachine(host->id);
+  if (!machine) return machine.error();
+  const auto mark = needs_.store.GetMachineMark(host->id);
+  if (!mark) return mark.error();
+  // A host that comes back knows better.
+  if (hello.fence() != host->lease.fence) {
+    if (const Status told = TellRecovery(*host, *mark); !told) return told.error();
+  }
+  v1::HostResponse message;
+  v1::HostWelcome& welcome = *message.mutable_welcome();
+  welcome.set_fence(host->lease.fence);
+  *welcome.mutable_lease() = TimeUtil::SecondsToDuration(kLease.count());
+  welcome.set_family(machine->family);
+  welcome.set_profile(machine->profile);
+  for (const auto& [name, value] : machine->parameters)
+    (*welcome.mutable_parameters())[name] = value;
+  if (*mark) {
+    v1::MachineMark note;
+    static_cast<void>(note.ParseFromString((*mark)->note));
+    *welcome.mutable_mark() = std::move(note);
+    welcome.mutable_mark()->set_fence((*mark)->fence);
+    welcome.mutable_mark()->set_sequence((*mark)->sequence);
+    welcome.mutable_mark()->set_state((*mark)->state);
+    welcome.mutable_mark()->set_clean((*mark)->clean);
+  }
+  host->link->Send(std::move(message));
+  return {};
+}
+
+// From when to when status was shown that counts no more, and where the program was. LIVE-3.30
+Status Hosts::TellRecovery(const Host& host, const std::optional<storage::MachineMark>& mark) {
+  if (!mark || mark->clean) return {};
+  v1::MachineMark note;
+  static_cast<void>(note.ParseFromString(mark->note));
+  v1::MachineEvent event;
+  v1::Recovered& recovered = *event.mutable_recovered();
+  recovered.set_mark_virtual_time_ns(note.virtual_time_ns());
+  recovered.set_mark_fence(mark->fence);
+  if (note.has_place()) *recovered.mutable_place() = note.place();
+  if (const HostPointer before = Find(host.id)) {
+    const std::lock_guard lock(before->mutex);
+    if (before->status) recovered.set_seen_until_ns(before->status->virtual_time_ns());
+  }
+  event.set_fence(host.lease.fence);
+  event.set_virtual_time_ns(note.virtual_time_ns());
+  storage::MachineWrite write;
+  write.events.push_back(ToRecord(event));
+  return needs_.store.AppendMachine(host.lease, write);
+}
+
+void Hosts::SendMemory(const HostPointer& host) {
+  const auto memory =
+      needs_.store.GetMachineMemory(host->id, [](const storage::MachineRecord&) { return true; });
+  if (!memory) {
+    spdlog::warn("memory of {}: {}", host->id, bridge::ErrorText(memory.error()));
+    return;
+  }
+  v1::HostResponse message;
+  *message.mutable_memory() = MemoryOf(*memory);
+  host->link->Send(std::move(message));
+}
+
+// What was stored in the memory of a machine that is hosted goes to its host.
+void Hosts::LookAtMemory() {
+  std::set<std::string> changed;
+  {
+    const std::lock_guard looking(looking_);
+    for (;;) {
+      const auto events = needs_.feed.EventsAfter(looked_until_, kMemoryReadAhead);
+      if (!events) {
+        looked_until_ = needs_.feed.position();
+        const std::lock_guard lock(mutex_);
+        for (const auto& [id, host] : hosts_) changed.insert(id);
+        break;
+      }
+      if (events->empty()) break;
+      looked_until_ = events->back().position;
+      for (const storage::EventRecord& event : *events) {
+        const std::string_view resource = event.resource;
+        constexpr std::string_view kMachines = "machines/";
+        if (event.job != 0 || !resource.starts_with(kMachines)) continue;
+        const std::size_t end = resource.find('/', kMachines.size());
+        if (end == std::string_view::npos) continue;
+        changed.emplace(resource.substr(kMachines.size(), end - kMachines.size()));
+      }
+    }
+  }
+  for (const std::string& id : changed) {
+    if (const HostPointer host = Find(id)) SendMemory(host);
+  }
+}
+
+void Hosts::Receive(const HostLink& link, v1::HostRequest message) {
+  const HostPointer host = Find(link);
+  if (host == nullptr) return;
+  {
+    const std::lock_guard lock(host->mutex);
+    host->heard = needs_.clock();
+  }
+  switch (message.message_case()) {
+    case v1::HostRequest::kStatus:
+      TakeStatus(host, std::move(*message.mutable_status()));
+      break;
+    case v1::HostRequest::kAnswer:
+      TakeAnswer(host, std::move(*message.mutable_answer()));
+      break;
+    case v1::HostRequest::kEntries:
+      TakeEntries(host, message.entries());
+      break;
+    case v1::HostRequest::kRenew:
+      needs_.executor.Post([this, host] { Renew(host); });
+      break;
+    case v1::HostRequest::kHandBack:
+      HandBack(host);
+      break;
+    case v1::HostRequest::kHeartbeat:
+      DropLate(host);
+      StoreEntries(host);  // what the store did not take a moment ago
+      break;
+    default:
+      break;
+  }
+}
+
+void Hosts::TakeStatus(const HostPointer& host, v1::MachineStatus status) {
+  {
+    const std::lock_guard lock(host->mutex);
+    host->status = status;
+  }
+  Publish(*host, std::move(status));
+}
+
+void Hosts::Publish(const Host& host, v1::MachineStatus status) {
+  const std::string name = MachineName(host.id);
+  if (const auto unfinished = needs_.store.UnfinishedJobs()) AddJobs(host.id, *unfinished, status);
+  needs_.feed.Publish(name, status.SerializeAsString());
+}
+
+void Hosts::TakeAnswer(const HostPointer& host, v1::HostOrderAnswer answer) {
+  Answered done;
+  {
+    const std::lock_guard lock(host->mutex);
+    const auto found = host->pending.find(answer.number());
+    if (found == host->pending.end()) return;
+    done = std::move(found->second.done);
+    host->pending.erase(found);
+  }
+  done(std::move(answer));
+}
+
+void Hosts::DropLate(const HostPointer& host) {
+  std::vector<Answered> late;
+  {
+    const std::lock_guard lock(host->mutex);
+    const Instant now = needs_.clock();
+    std::erase_if(host->pending, [&](auto& row) {
+      if (now - row.second.asked < kAnswerPatience) return false;
+      late.push_back(std::move(row.second.done));
+      return true;
+    });
+  }
+  for (const Answered& done : late) done(NotLive("its host does not answer"));
+}
+
+void Hosts::TakeEntries(const HostPointer& host, const v1::HostEntries& entries) {
+  {
+    const std::lock_guard lock(host->mutex);
+    for (const v1::JournalEntry& entry : entries.entries()) {
+      if (host->waiting.size() >= kWaitingEntriesMax) break;  // it sends them again
+      if (!host->waiting.empty() && entry.sequence() <= host->waiting.back().sequence()) continue;
+      host->waiting.push_back(entry);
+    }
+  }
+  StoreEntries(host);
+}
+
+// One write under way for each machine, with all that has come meanwhile: events, and the newest
+// mark.
+void Hosts::StoreEntries(const HostPointer& host) {
+  {
+    const std::lock_guard lock(host->mutex);
+    if (host->storing || host->waiting.empty()) return;
+    host->storing = true;
+  }
+  needs_.executor.Post([this, host] {
+    std::vector<v1::JournalEntry> entries;
+    {
+      const std::lock_guard lock(host->mutex);
+      entries = host->waiting;
+    }
+    storage::MachineWrite write;
+    for (const v1::JournalEntry& entry : entries) {
+      if (const auto event = EventOf(entry)) write.events.push_back(ToRecord(*event));
+      if (!entry.has_mark()) continue;
+      v1::MachineMark note = entry.mark();
+      note.clear_state();
+      write.mark = storage::MachineMark{.sequence = entry.sequence(),
+                                        .state = entry.mark().state(),
+                                        .note = note.SerializeAsString(),
+                                        .clean = entry.mark().clean()};
+    }
+    const Status stored = needs_.store.AppendMachine(host->lease, write);
+    {
+      const std::lock_guard lock(host->mutex);
+      host->storing = false;
+      if (stored) {
+        const auto count = static_cast<std::ptrdiff_t>(entries.size());
+        host->waiting.erase(host->waiting.begin(), host->waiting.begin() + count);
+      }
+    }
+    if (stored) {
+      v1::HostResponse message;
+      message.mutable_entries_stored()->set_fence(host->lease.fence);
+      message.mutable_entries_stored()->set_sequence(entries.back().sequence());
+      host->link->Send(std::move(message));
+      return StoreEntries(host);
+    }
+    spdlog::warn("what the host of {} tells: {}", host->id, bridge::ErrorText(stored.error()));
+    if (stored.error().code != ErrorCode::kCellLeaseLost) return;
+    v1::HostResponse message;
+    message.mutable_lease_lost()->set_fence(host->lease.fence);
+    host->link->Send(std::move(message));
+  });
+}
+
+void Hosts::Renew(const HostPointer& host) {
+  const auto renewed = needs_.store.RenewMachine(host->lease, needs_.server);
+  v1::HostResponse message;
+  if (renewed) {
+    message.mutable_renewed()->set_fence(host->lease.fence);
+    *message.mutable_renewed()->mutable_lease() = TimeUtil::SecondsToDuration(kLease.count());
+  } else if (renewed.error().code == ErrorCode::kCellLeaseLost) {
+    message.mutable_lease_lost()->set_fence(host->lease.fence);
+  } else {
+    spdlog::warn("the lease of {}: {}", host->id, bridge::ErrorText(renewed.error()));
+    return;
+  }
+  host->link->Send(std::move(message));
+}
+
+// In the order of what it told before.
+void Hosts::HandBack(const HostPointer& host) {
+  {
+    const std::lock_guard lock(host->mutex);
+    host->handed_back = true;
+  }
+  needs_.executor.Post([this, host] {
+    const Status released = needs_.store.ReleaseMachine(host->lease);
+    if (!released)
+      spdlog::warn("the lease of {}: {}", host->id, bridge::ErrorText(released.error()));
+  });
+}
+
+void Hosts::Leave(const HostLink& link) {
+  const HostPointer host = Find(link);
+  if (host == nullptr) return;
+  std::map<std::int64_t, Host::Pending> pending;
+  std::optional<v1::MachineStatus> status;
+  bool handed_back = false;
+  {
+    const std::lock_guard lock(host->mutex);
+    host->gone = true;
+    pending.swap(host->pending);
+    if (host->status) host->status->set_state(v1::MACHINE_STATE_LOST);
+    status = host->status;
+    handed_back = host->handed_back;
+  }
+  if (handed_back) {
+    const std::lock_guard lock(mutex_);
+    if (const auto place = hosts_.find(host->id); place != hosts_.end() && place->second == host)
+      hosts_.erase(place);
+  } else if (status) {
+    Publish(*host, *std::move(status));
+  }
+  for (auto& [number, one] : pending) one.done(NotLive("its host is not heard of any more"));
+  spdlog::info("the host of {} is gone", MachineName(host->id));
+  Changed();
+}
+
+void Hosts::Ask(const std::string& machine, v1::HostOrder order, Answered done) {
+  const HostPointer host = Find(machine);
+  if (host == nullptr) return done(NotLive("the machine has no host: enable it"));
+  bool gone = false;
+  {
+    const std::lock_guard lock(host->mutex);
+    gone = host->gone;
+    order.set_number(++host->next_order);
+    if (!gone) host->pending[order.number()] = {.done = done, .asked = needs_.clock()};
+  }
+  if (gone) return done(NotLive("its host is not heard of"));
+  v1::HostResponse message;
+  *message.mutable_order() = std::move(order);
+  host->link->Send(std::move(message));
+}
+
+void Hosts::End(const std::string& machine, const std::string& why) {
+  const HostPointer host = Find(machine);
+  if (host == nullptr) return;
+  v1::HostResponse message;
+  message.mutable_stop()->set_reason(why);
+  host->link->Send(std::move(message));
+}
+
+bool Hosts::IsHosted(const std::string& machine) const { return Find(machine) != nullptr; }
+
+std::optional<v1::MachineStatus> Hosts::StatusOf(const std::string& machine) const {
+  const HostPointer host = Find(machine);
+  if (host == nullptr) return std::nullopt;
+  v1::MachineStatus status;
+  {
+    const std::lock_guard lock(host->mutex);
+    if (host->status) {
+      status = *host->status;
+    } else {
+      status.set_machine(MachineName(machine));
+      status.set_state(v1::MACHINE_STATE_STARTING);
+      status.set_fence(host->lease.fence);
+      status.set_host(host->lease.host);
+    }
+    status.set_age_ns(std::chrono::nanoseconds(needs_.clock() - host->heard).count());
+  }
+  if (const auto unfinished = needs_.store.UnfinishedJobs()) AddJobs(machine, *unfinished, status);
+  return status;
+}
+
+v1::MachineStatus StatusOf(const Hosts* hosts, const storage::MachineRecord& machine,
+                           const std::vector<storage::MachineJobs>& unfinished) {
+  if (hosts != nullptr) {
+    if (auto status = hosts->StatusOf(machine.id)) return *std::move(status);
+  }
+  return StatusOf(machine, unfinished);
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rmlcell/v1/host.pb.h"
+#include "server/base/executor.h"
+#include "server/base/steady_clock.h"
+#include "server/events/event_feed.h"
+#include "storage/store.h"
+
+namespace rmlcell::server {
+
+// The server's end of the line of a host. Thread-safe; neither blocks.
+class HostLink {
+ public:
+  virtual ~HostLink() = default;
+  virtual void Send(v1::HostResponse message) = 0;
+  virtual void Close(const Error& why) = 0;
+};
+
+// The hosts of machines that live, as this server hears of them: it gives them their leases, hands
+// orders of clients over and stores what they tell. Orders and status never pass the store.
+// Thread-safe. Lock order: mutex_ is a leaf; neither the store nor a link is called under it.
+class Hosts {
+ public:
+  static constexpr std::chrono::seconds kLease{15};
+  static constexpr std::chrono::seconds kAnswerPatience{10};
+
+  struct Needs {
+    storage::Store& store;
+    EventFeed& feed;
+    Executor& executor;
+    std::string server{};      // name of this server
+    std::string join_token{};  // known to its hosts
+    SteadyClock clock = SteadyTime;
+  };
+  explicit Hosts(Needs needs);
+  ~Hosts();
+  Hosts(const Hosts&) = delete;
+  Hosts& operator=(const Hosts&) = delete;
+
+  // From here on a host is heard by this link. May block. Errors: CellJoinRefused,
+  // CellInvalidArgument, CellVersionMismatch, CellUnknownMachine, CellMachineTaken.
+  Status Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& hello);
+  void Receive(const HostLink& link, v1::HostRequest message);
+  void Leave(const HostLink& link);
+
+  // What a client asks of a machine. `done` is called once, on any thread: with the host's answer,
+  // or CellNotLive.
+  using Answered = std::function<void(Result<v1::HostOrderAnswer>)>;
+  void Ask(const std::string& machine, v1::HostOrder order, Answered done);
+  // It comes to rest, gives the machine back and ends.
+  void End(const std::string& machine, const std::string& why);
+
+  bool IsHosted(const std::string& machine) const;
+  // What its host told last, with its age; LOST where it is not heard; nothing: it has no host.
+  std::optional<v1::MachineStatus> StatusOf(const std::string& machine) const;
+  // Called when a machine is hosted, or no more.
+  void OnChange(std::function<void()> changed);
+
+ private:
+  struct Host;
+  using HostPointer = std::shared_ptr<Host>;
+
+  HostPointer Find(const HostLink& link) const;
+  HostPointer Find(const std::string& machine) const;
+  Result<storage::MachineLease> Take(const v1::HostHello& hello, const std::string& machine);
+  Status Welcome(const HostPointer& host, const v1::HostHello& hello);
+  Status TellRecovery(const Host& host, const std::optional<storage::MachineMark>& mark);
+  void SendMemory(const HostPointer& host);
+  void TakeStatus(const HostPointer& host, v1::MachineStatus status);
+  void TakeAnswer(const HostPointer& host, v1::HostOrderAnswer answer);
+  void TakeEntries(const HostPointer& host, const v1::HostEntries& entries);
+  void StoreEntries(const HostPointer& host);
+  void Renew(const HostPointer& host);
+  void HandBack(const HostPointer& host);
+  void DropLate(const HostPointer& host);
+  void Publish(const Host& host, v1::MachineStatus status);
+  void LookAtMemory();
+  void Changed();
+
+  Needs needs_;
+  std::mutex changing_;
+  std::function<void()> changed_;  // guarded by changing_
+  mutable std::mutex mutex_;
+  std::map<std::string, HostPointer> hosts_;  // by id of the machine; guarded by mutex_
+  // Leases of others, and since when they stand unchanged. Of Join alone, guarded by joining_.
+  std::mutex joining_;
+  struct Seen {
+    storage::MachineLease lease{};
+    std::chrono::steady_clock::time_point since{};
+  };
+  std::map<std::string, Seen> seen_;
+  std::int64_t looked_until_ = 0;  // of the log; guarded by looking_
+  std::mutex looking_;
+  std::unique_ptr<EventFeed::Subscription> subscription_;
+};
+
+// As its host tells, or as far as its jobs do.
+v1::MachineStatus StatusOf(const Hosts* hosts, const storage::MachineRecord& machine,
+                           const std::vector<storage::MachineJobs>& unfinished);
+
+}  // namespace rmlcell::server
