@@ -389,6 +389,7 @@ void Cell::Stop() {
   parts.open.StopAll();
   // Workers end when the dispatcher asks for their jobs.
   if (parts.processes != nullptr) parts.processes->StartNoMore();
+  if (parts.hosts != nullptr) parts.hosts->CloseAll();
   if (parts.dispatcher != nullptr) parts.dispatcher->Drain(patience / 2);
   if (parts.processes != nullptr) parts.processes->Stop(patience / 4);
   if (parts.web != nullptr) parts.web->Stop(patience / 4);

@@ -231,20 +231,20 @@ Status HostMachine::Act(const v1::HostOrder& order) {
   return {};
 }
 
+// It stands before what it leads to; of what is refused nothing does.
 Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrder* order) {
   if (std::holds_alternative<machine::StartRun>(input)) {
     run_begun_ = machine().time();
     told_of_run_ = 0;
   }
-  const SimTime at = machine().time();
-  const Status done = machine().Apply(input);
-  if (!done) return done.error();
+  const std::optional<v1::HoldReason> held_for = held_for_;
   if (std::holds_alternative<machine::StopRun>(input)) held_for_ = v1::HOLD_REASON_STOP;
   if (std::holds_alternative<machine::HoldRun>(input)) held_for_ = v1::HOLD_REASON_HOLD;
   if (std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
-  v1::InputApplied& applied = *Add(at).mutable_applied();
+  const std::size_t place = entries_.size();
+  v1::InputApplied& applied = *Add(machine().time()).mutable_applied();
   applied.set_fence(setup_.fence);
-  applied.set_virtual_time_ns(at.count());
+  applied.set_virtual_time_ns(machine().time().count());
   *applied.mutable_input() = AppliedOf(input);
   applied.set_source(v1::START_SOURCE_CONSOLE);
   if (order != nullptr) {
@@ -255,7 +255,15 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
       applied.set_client(desk_.lease()->client());
     }
   }
+  if (const Status done = machine().Apply(input); !done) {
+    entries_.resize(place);
+    sequence_ -= 1;
+    held_for_ = held_for;
+    return done.error();
+  }
   mark_due_ = true;
+  // A crash from here on finds a run that was cut off, however soon it comes.
+  begins_ = begins_ || std::holds_alternative<machine::StartRun>(input);
   return {};
 }
 
@@ -308,6 +316,10 @@ void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
     }
   }
   for (const v1::AssignedProgram& program : memory.programs()) {
+    const auto there = machine().memory().programs.find(program.slot());
+    if (there != machine().memory().programs.end() && *there->second.object == program.content() &&
+        *there->second.executable == program.executable())
+      continue;
     machine::StoredProgram stored{.name = program.title(),
                                   .object = machine::Bytes::Of(program.content())};
     if (!program.executable().empty()) stored.executable = machine::Bytes::Of(program.executable());
@@ -325,7 +337,7 @@ void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
                               .mode = schedule.mode(),
                               .power_percent = schedule.power_percent()});
   }
-  apply(set);
+  if (set.schedules != machine().memory().schedules) apply(set);
 }
 
 // What the machine did by itself.
@@ -420,14 +432,14 @@ void HostMachine::Mark() {
   mark.set_state(machine().Save());
   mark.set_state_sha256(BytesOfHex(bridge::Sha256Hex(mark.state())).value_or(""));
   mark.set_clean(!status.open && !inspect_due_);
-  mark_due_ = false;
+  mark_due_ = begins_ = false;
   marked_at_ = now_.steady;
 }
 
 std::vector<v1::JournalEntry> HostMachine::TakeEntries(const HostTime& now) {
   now_ = now;
   const bool moving = moves();
-  if (moving ? now.steady - marked_at_ >= kMarkInterval : mark_due_) Mark();
+  if (begins_ || (moving ? now.steady - marked_at_ >= kMarkInterval : mark_due_)) Mark();
   if (moving) mark_due_ = true;  // it comes to rest elsewhere
   return std::exchange(entries_, {});
 }

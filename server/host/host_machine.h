@@ -108,6 +108,7 @@ class HostMachine : private machine::RunObserver {
   int told_of_run_ = 0;
   bool inspect_due_ = false;
   bool mark_due_ = true;
+  bool begins_ = false;  // a run began since the last mark
   std::chrono::nanoseconds marked_at_{0};
 };
 

@@ -34,6 +34,7 @@ constexpr int kProtocol = 1;
 constexpr nanoseconds kStatusMoving = 50ms;  // LIVE-3.16
 constexpr nanoseconds kStatusStanding = 1s;
 constexpr nanoseconds kTick = 5ms;       // of a machine that moves
+constexpr nanoseconds kTickHeld = 50ms;  // of a run that stands: its time goes on
 constexpr nanoseconds kServerLost = 1s;  // LIVE-3.31: then a run is held
 constexpr nanoseconds kEndsWithoutServer = 60s;
 constexpr nanoseconds kRejoin = 200ms;
@@ -328,8 +329,9 @@ class HostProcess {
     nanoseconds longest = 200ms;
     if (machine_ != nullptr && line_ != nullptr) {
       const nanoseconds now = Now().steady;
-      longest = machine_->moves()
-                    ? kTick
+      longest = machine_->moves() ? kTick
+                : machine_->run_open()
+                    ? kTickHeld
                     : std::min({status_due_ - now, next_renewal_ - now, 1'000'000'000ns});
       if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
     }

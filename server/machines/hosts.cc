@@ -179,6 +179,7 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   std::shared_ptr<HostLink> before;
   {
     const std::lock_guard lock(mutex_);
+    if (closed_) return Error{ErrorCode::kCellUnavailable, "the server stops", {}};
     HostPointer& place = hosts_[*machine];
     if (place != nullptr) before = place->link;
     place = host;
@@ -518,6 +519,16 @@ void Hosts::End(const std::string& machine, const std::string& why) {
   v1::HostResponse message;
   message.mutable_stop()->set_reason(why);
   host->link->Send(std::move(message));
+}
+
+void Hosts::CloseAll() {
+  std::vector<std::shared_ptr<HostLink>> links;
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    for (const auto& [id, host] : hosts_) links.push_back(host->link);
+  }
+  for (const auto& link : links) link->Close({ErrorCode::kCellUnavailable, "the server stops", {}});
 }
 
 bool Hosts::IsHosted(const std::string& machine) const { return Find(machine) != nullptr; }

@@ -59,6 +59,9 @@ class Hosts {
   // It comes to rest, gives the machine back and ends.
   void End(const std::string& machine, const std::string& why);
 
+  // The server stops: lines end, no host joins any more; machines and their hosts go on.
+  void CloseAll();
+
   bool IsHosted(const std::string& machine) const;
   // What its host told last, with its age; LOST where it is not heard; nothing: it has no host.
   std::optional<v1::MachineStatus> StatusOf(const std::string& machine) const;
@@ -90,6 +93,7 @@ class Hosts {
   std::mutex changing_;
   std::function<void()> changed_;  // guarded by changing_
   mutable std::mutex mutex_;
+  bool closed_ = false;                       // guarded by mutex_
   std::map<std::string, HostPointer> hosts_;  // by id of the machine; guarded by mutex_
   // Leases of others, and since when they stand unchanged. Of Join alone, guarded by joining_.
   std::mutex joining_;

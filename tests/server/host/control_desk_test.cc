@@ -1,0 +1,121 @@
+// Who has control of a machine: live.md, section 4.
+#include "server/host/control_desk.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/util/time_util.h>
+#include <gtest/gtest.h>
+
+namespace rmlcell::server {
+namespace {
+
+using namespace std::chrono_literals;
+using google::protobuf::util::TimeUtil;
+using testing::HasSubstr;
+
+class ControlDeskTest : public testing::Test {
+ protected:
+  HostTime At(std::chrono::milliseconds time) const {
+    return {.steady = time, .wall = WallTime(std::chrono::hours(24) + time)};
+  }
+  static v1::AcquireControlRequest Asked(std::string client = "a client") {
+    v1::AcquireControlRequest request;
+    request.set_machine("machines/mill-1");
+    request.set_client(std::move(client));
+    return request;
+  }
+  static v1::AcquireControlRequest TakingOver(std::string reason) {
+    v1::AcquireControlRequest request = Asked("another");
+    request.set_take_over(true);
+    request.set_reason(std::move(reason));
+    return request;
+  }
+  std::string Acquire(const std::string& caller = "anna") {
+    const auto acquired = desk.Acquire(Asked(), caller, At(0ms));
+    EXPECT_TRUE(acquired);
+    return acquired ? acquired->control_token() : "";
+  }
+  static ErrorCode CodeOf(const Status& status) {
+    return status ? ErrorCode::kCellInternal : status.error().code;
+  }
+
+  int made = 0;
+  ControlDesk desk{[this] { return "token " + std::to_string(++made); }};
+};
+
+// LIVE-4.01: a token that proves it, 5 s where nothing is said; another client is told who has it.
+TEST_F(ControlDeskTest, OneHasItAndOthersAreToldWho) {
+  const auto acquired = desk.Acquire(Asked("console"), "anna", At(0ms));
+  ASSERT_TRUE(acquired);
+  EXPECT_EQ(acquired->lease().number(), 1);
+  EXPECT_EQ(acquired->lease().holder(), "anna");
+  EXPECT_EQ(acquired->lease().on_loss(), v1::ControlLease::ON_LOSS_HOLD);
+  EXPECT_EQ(TimeUtil::TimestampToMilliseconds(acquired->lease().expire_time()) -
+                TimeUtil::TimestampToMilliseconds(acquired->lease().since()),
+            5'000);
+  EXPECT_TRUE(desk.Check(acquired->control_token(), At(4'999ms)));
+  EXPECT_EQ(CodeOf(desk.Check("", At(1ms))), ErrorCode::kCellControlNeeded);
+  EXPECT_EQ(CodeOf(desk.Check("guessed", At(1ms))), ErrorCode::kCellControlNeeded);
+  const auto refused = desk.Acquire(Asked(), "bert", At(1ms));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kCellLeaseHeld);
+  EXPECT_THAT(refused.error().detail, HasSubstr("anna (console) has it since"));
+}
+
+// LIVE-4.01: 1 to 60 s.
+TEST_F(ControlDeskTest, TheTimeHasBounds) {
+  for (const auto& [ms, good] :
+       {std::pair{999, false}, {1'000, true}, {60'000, true}, {60'001, false}}) {
+    ControlDesk fresh{[] { return "t"; }};
+    v1::AcquireControlRequest request = Asked();
+    *request.mutable_ttl() = TimeUtil::MillisecondsToDuration(ms);
+    EXPECT_EQ(bool(fresh.Acquire(request, "anna", At(0ms))), good) << ms;
+  }
+  v1::AcquireControlRequest request = Asked(std::string(101, 'x'));
+  EXPECT_FALSE(desk.Acquire(request, "anna", At(0ms)));
+  request.set_client(std::string(100, 'x'));
+  EXPECT_TRUE(desk.Acquire(request, "anna", At(0ms)));
+}
+
+// LIVE-4.02: renewed from now on; over by the steady clock, and never revived.
+TEST_F(ControlDeskTest, OneThatIsOverIsNotRevived) {
+  const std::string token = Acquire();
+  EXPECT_TRUE(desk.Renew(token, At(4'000ms)));
+  EXPECT_FALSE(desk.Expire(At(8'999ms)));
+  EXPECT_EQ(CodeOf(desk.Check(token, At(9'000ms))), ErrorCode::kCellControlNeeded);
+  EXPECT_FALSE(desk.Renew(token, At(9'000ms)));
+  const auto on_loss = desk.Expire(At(9'000ms));
+  ASSERT_TRUE(on_loss);
+  EXPECT_EQ(*on_loss, v1::ControlLease::ON_LOSS_HOLD);
+  EXPECT_FALSE(desk.lease());
+  EXPECT_FALSE(desk.Expire(At(10'000ms)));
+  EXPECT_FALSE(desk.Renew(token, At(9'001ms)));
+  const std::string next = Acquire("bert");
+  EXPECT_FALSE(desk.Check(token, At(1ms)));
+  EXPECT_TRUE(desk.Release(next, At(1ms)));
+  EXPECT_FALSE(desk.Release(next, At(2ms)));
+}
+
+// LIVE-4.03: with a reason that all can read; the old holder is told who has it.
+TEST_F(ControlDeskTest, IsTakenOverWithAReason) {
+  const std::string token = Acquire();
+  static_cast<void>(desk.TakeChange());
+  for (const std::string& reason : {std::string(), std::string(201, 'r')})
+    EXPECT_FALSE(desk.Acquire(TakingOver(reason), "bert", At(1ms)));
+  EXPECT_TRUE(desk.Check(token, At(1ms)));
+  const auto taken = desk.Acquire(TakingOver("shift change"), "bert", At(1ms));
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->lease().number(), 2);
+  const Status old = desk.Check(token, At(2ms));
+  ASSERT_FALSE(old);
+  EXPECT_THAT(old.error().detail, HasSubstr("bert has control"));
+  const auto change = desk.TakeChange();
+  ASSERT_TRUE(change);
+  EXPECT_EQ(change->kind(), v1::ControlChanged::KIND_TAKEN_OVER);
+  EXPECT_EQ(change->from(), "anna");
+  EXPECT_EQ(change->to(), "bert");
+  EXPECT_EQ(change->reason(), "shift change");
+  EXPECT_FALSE(desk.TakeChange());
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,397 @@
+// A machine as its host has it: orders, answers, journal and marks, by a clock of the test.
+#include "server/host/host_machine.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "engine/families/families.h"
+
+namespace rmlcell::server {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// A square of 20 mm at 1 mm/s: 80 s, with the way there.
+constexpr const char* kSquare =
+    "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PU1000,1000;"
+    "PD3000,1000,3000,3000,1000,3000,1000,1000;PU0,0;";
+
+class HostMachineTest : public testing::Test {
+ protected:
+  void Make(std::string state = {}, bool cut_off = false, std::int64_t fence = 7) {
+    machine::MachineMemory memory;
+    memory.programs[5] = {.name = "square", .object = machine::Bytes::Of(kSquare)};
+    auto made = HostMachine::Make({.name = "machines/mill-1",
+                                   .host = "workshop/1",
+                                   .fence = fence,
+                                   .family = families::FindFamily("rml1"),
+                                   .profile = "srm-20",
+                                   .memory = std::move(memory),
+                                   .state = std::move(state),
+                                   .cut_off = cut_off},
+                                  now_, [this] { return "token " + std::to_string(++tokens_); });
+    ASSERT_TRUE(made) << made.error().detail;
+    host_ = *std::move(made);
+  }
+  // Time goes by, in steps as a host takes them.
+  void Pass(std::chrono::milliseconds time, std::chrono::milliseconds step = 10ms) {
+    for (std::chrono::milliseconds gone{0}; gone < time; gone += step) {
+      now_.steady += step;
+      now_.wall += step;
+      while (!host_->GoOn(now_)) continue;
+    }
+  }
+  v1::HostOrderAnswer Do(const v1::HostOrder& order) {
+    v1::HostOrder numbered = order;
+    numbered.set_number(++number_);
+    numbered.set_caller("anna");
+    const v1::HostOrderAnswer answer = host_->Do(numbered, now_);
+    EXPECT_EQ(answer.number(), number_);
+    return answer;
+  }
+  std::string Control(v1::ControlLease::OnLoss on_loss = v1::ControlLease::ON_LOSS_HOLD) {
+    v1::HostOrder order;
+    v1::AcquireControlRequest& acquire = *order.mutable_acquire_control();
+    acquire.mutable_ttl()->set_seconds(60);
+    acquire.set_on_loss(on_loss);
+    acquire.set_client("a test");
+    return token_ = Do(order).control().control_token();
+  }
+  v1::HostOrder Start(const std::string& id = "", int program = 5) {
+    v1::HostOrder order;
+    order.mutable_start()->set_program(program);
+    order.mutable_start()->set_control_token(token_);
+    order.mutable_start()->set_request_id(id);
+    return order;
+  }
+  v1::HostOrder Resume() {
+    v1::HostOrder order;
+    order.mutable_resume()->set_control_token(token_);
+    return order;
+  }
+  static v1::HostOrder Stop() {
+    v1::HostOrder order;
+    order.mutable_stop();
+    return order;
+  }
+  v1::MachineState State() { return host_->StatusAt(now_).state(); }
+  // What was told since the last look, a word each.
+  std::vector<std::string> Told() {
+    std::vector<std::string> told;
+    for (const v1::JournalEntry& entry : host_->TakeEntries(now_)) {
+      EXPECT_EQ(entry.sequence(), ++sequence_);
+      EXPECT_EQ(entry.fence(), 7);
+      switch (entry.what_case()) {
+        case v1::JournalEntry::kApplied:
+          told.push_back("input " + std::to_string(entry.applied().input().input_case()));
+          break;
+        case v1::JournalEntry::kMark:
+          mark_ = entry.mark();
+          told.push_back(entry.mark().clean() ? "clean mark" : "mark");
+          break;
+        case v1::JournalEntry::kRunBegun:
+          told.push_back("begun");
+          break;
+        case v1::JournalEntry::kRunOver:
+          told.push_back("over " + v1::Outcome::Kind_Name(entry.run_over().outcome().kind()));
+          break;
+        case v1::JournalEntry::kEvent:
+          told.push_back(entry.event().has_halted()    ? "halted"
+                         : entry.event().has_resumed() ? "resumed"
+                                                       : "event");
+          break;
+        default:
+          told.push_back("other");
+      }
+    }
+    return told;
+  }
+  static std::string Input(v1::AppliedInput::InputCase which) {
+    return "input " + std::to_string(which);
+  }
+
+  HostTime now_{.steady = 1h, .wall = WallTime(std::chrono::hours(24 * 365 * 50))};
+  std::unique_ptr<HostMachine> host_;
+  std::string token_;
+  v1::MachineMark mark_;
+  int tokens_ = 0;
+  std::int64_t number_ = 0;
+  std::int64_t sequence_ = 0;
+};
+
+// LIVE-4.04: what moves the machine asks for control, what stops it does not.
+TEST_F(HostMachineTest, ControlIsNeededToMoveAndNotToStop) {
+  Make();
+  EXPECT_EQ(Do(Start()).refusal().code(), "CELL-E9420");
+  token_ = "guessed";
+  EXPECT_EQ(Do(Start()).refusal().code(), "CELL-E9420");
+  Control();
+  EXPECT_EQ(Do(Start()).status().state(), v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(Do(Stop()).halt().status().state(), v1::MACHINE_STATE_STOPPING);
+  const v1::HostOrderAnswer refused = Do(Start());
+  EXPECT_EQ(refused.refusal().code(), "CELL-E9421");
+  EXPECT_EQ(refused.machine_refusal().state(), v1::MACHINE_STATE_STOPPING);
+  EXPECT_EQ(refused.machine_refusal().control_holder(), "anna");
+}
+
+// LIVE-2.10, LIVE-3.23: a run from its start to its end, held and resumed, with what is told of it;
+// a mark where it stands.
+TEST_F(HostMachineTest, ARunIsToldFromItsStartToItsEnd) {
+  Make();
+  EXPECT_THAT(Told(), ElementsAre("clean mark"));
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  Do(Start());
+  EXPECT_THAT(Told(), ElementsAre(Input(v1::AppliedInput::kControl),
+                                  Input(v1::AppliedInput::kStart), "begun", "mark"));
+  Pass(500ms);
+  EXPECT_THAT(Told(), ElementsAre());
+  Do(Stop());
+  Pass(2s);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_STOP);
+  EXPECT_THAT(Told(), ElementsAre(Input(v1::AppliedInput::kStop), "halted", "mark"));
+  Pass(1s);
+  EXPECT_THAT(Told(), ElementsAre());
+  Do(Resume());
+  EXPECT_EQ(Told().front(), Input(v1::AppliedInput::kResume));
+  Pass(3min, 50ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  const std::vector<std::string> told = Told();
+  EXPECT_THAT(told, testing::Contains("over KIND_COMPLETED"));
+  EXPECT_EQ(told.back(), "clean mark");
+}
+
+// LIVE-3.23: moving, it says every second where it is.
+TEST_F(HostMachineTest, MovingItMarksEverySecond) {
+  Make();
+  Control();
+  Do(Start());
+  static_cast<void>(Told());
+  int marks = 0;
+  for (int i = 0; i < 50; ++i) {
+    Pass(100ms);
+    for (const std::string& one : Told()) marks += one == "mark" ? 1 : 0;
+  }
+  EXPECT_EQ(marks, 5);
+  EXPECT_TRUE(mark_.has_run_time_ns());
+  EXPECT_EQ(mark_.place().program(), 5);
+  EXPECT_EQ(mark_.state_sha256().size(), 32U);
+}
+
+// LIVE-3.27: a repeated request gets the first answer and acts no more.
+TEST_F(HostMachineTest, ARepeatedRequestActsOnce) {
+  Make();
+  Control();
+  const v1::HostOrderAnswer first = Do(Start("one"));
+  Do(Stop());
+  Pass(2s);
+  static_cast<void>(Told());
+  v1::HostOrderAnswer again = Do(Start("one"));
+  again.set_number(first.number());
+  EXPECT_EQ(again.SerializeAsString(), first.SerializeAsString());
+  EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
+  EXPECT_THAT(Told(), ElementsAre());
+  // A refusal is an answer, too.
+  EXPECT_TRUE(Do(Start("two")).has_refusal());
+  v1::HostOrder abort;
+  abort.mutable_abort()->set_request_id("three");
+  EXPECT_EQ(Do(abort).status().state(), v1::MACHINE_STATE_IDLE);
+  EXPECT_TRUE(Do(Start("two")).has_refusal());
+  EXPECT_FALSE(Do(Start("four")).has_refusal());
+}
+
+// LIVE-3.30, LIVE-5.10: a run that was cut off is not gone on with; a person decides.
+TEST_F(HostMachineTest, WhatWasCutOffWaitsForAPerson) {
+  Make();
+  Control();
+  Do(Start());
+  Pass(10s);
+  static_cast<void>(Told());
+  EXPECT_FALSE(mark_.clean());
+  const v1::MachineMark cut_off = mark_;
+  const v1::Point tip = host_->StatusAt(now_).tip();
+  Make(cut_off.state(), true);
+  sequence_ = 0;
+  EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
+  EXPECT_THAT(host_->StatusAt(now_).confirmations_due(), ElementsAre(v1::CONFIRMATION_INSPECTED));
+  EXPECT_FALSE(host_->StatusAt(now_).has_run());
+  EXPECT_NEAR(host_->StatusAt(now_).tip().x(), tip.x(), 0.011);  // 1 mm/s, a mark within 10 ms
+  EXPECT_THAT(Told(), ElementsAre("mark"));                      // again one that is not clean
+  Control();
+  EXPECT_EQ(Do(Start()).refusal().code(), "CELL-E9409");
+  EXPECT_EQ(Do(Resume()).refusal().code(), "CELL-E9409");
+  v1::HostOrder confirm;
+  confirm.mutable_confirm()->set_control_token(token_);
+  EXPECT_EQ(Do(confirm).refusal().code(), "CELL-E9409");
+  confirm.mutable_confirm()->add_confirmations(v1::CONFIRMATION_INSPECTED);
+  EXPECT_EQ(Do(confirm).status().state(), v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(Told().back(), "clean mark");
+  EXPECT_EQ(Do(Start()).status().state(), v1::MACHINE_STATE_RUNNING);
+}
+
+// LIVE-4.02: control that runs out holds the run, or lets it go on, as the lease says.
+TEST_F(HostMachineTest, ControlThatIsLostHoldsTheRunOrNot) {
+  for (const v1::ControlLease::OnLoss on_loss :
+       {v1::ControlLease::ON_LOSS_HOLD, v1::ControlLease::ON_LOSS_GO_ON}) {
+    Make();
+    Control(on_loss);
+    v1::HostOrder factor;
+    factor.mutable_factor()->set_control_token(token_);
+    factor.mutable_factor()->set_factor(0.1);
+    Do(factor);
+    Do(Start());
+    Pass(59s, 50ms);
+    EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+    Pass(10s, 50ms);
+    const v1::MachineStatus status = host_->StatusAt(now_);
+    EXPECT_FALSE(status.has_control());
+    if (on_loss == v1::ControlLease::ON_LOSS_HOLD) {
+      EXPECT_EQ(status.state(), v1::MACHINE_STATE_HELD);
+      EXPECT_EQ(status.hold_reason(), v1::HOLD_REASON_CONTROL);
+    } else {
+      EXPECT_EQ(status.state(), v1::MACHINE_STATE_RUNNING);
+    }
+  }
+}
+
+// LIVE-3.11: twice as fast is the same way in half the time.
+TEST_F(HostMachineTest, TimeGoesByItsFactor) {
+  Make();
+  Control();
+  const std::int64_t begin = host_->StatusAt(now_).virtual_time_ns();
+  Pass(1s);
+  EXPECT_EQ(host_->StatusAt(now_).virtual_time_ns() - begin, 1'000'000'000);
+  v1::HostOrder factor;
+  factor.mutable_factor()->set_control_token(token_);
+  factor.mutable_factor()->set_factor(10.0);
+  EXPECT_EQ(Do(factor).status().factor(), 10.0);
+  Pass(1s);
+  EXPECT_EQ(host_->StatusAt(now_).virtual_time_ns() - begin, 11'000'000'000);
+  factor.mutable_factor()->set_factor(100.1);
+  EXPECT_EQ(Do(factor).refusal().code(), "CELL-E9003");
+}
+
+// LIVE-9.07: all of them or none, each with what is wrong with it.
+TEST_F(HostMachineTest, VariablesAreReadAndNotWrittenOnAMill) {
+  Make();
+  v1::HostOrder read;
+  read.mutable_read_variables()->add_variables("Z1");
+  read.mutable_read_variables()->add_variables("NONE");
+  const v1::ReadVariablesResponse values = Do(read).variables();
+  ASSERT_EQ(values.variables_size(), 2);
+  EXPECT_TRUE(values.variables(0).has_value());
+  EXPECT_EQ(values.variables(1).error().code(), "CELL-E9003");
+  EXPECT_EQ(values.fence(), 7);
+  Control();
+  v1::HostOrder write;
+  write.mutable_write_variables()->set_control_token(token_);
+  write.mutable_write_variables()->add_variables()->set_name("Z1");
+  write.mutable_write_variables()->mutable_variables(0)->mutable_value()->set_real(3.0);
+  EXPECT_FALSE(Do(write).written().variables(0).error().code().empty());
+}
+
+// LIVE-3.15, LIVE-3.11: how a host divides time changes nothing that is told of a run.
+TEST_F(HostMachineTest, HowTimeIsDividedChangesNothing) {
+  std::vector<std::string> first;
+  std::string state;
+  for (const std::chrono::milliseconds step : {5ms, 10ms, 20ms, 50ms}) {
+    now_.steady = 1h;
+    Make();
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
+    Do(Start());
+    std::vector<std::string> told;
+    Pass(3min, step);
+    for (const v1::JournalEntry& entry : host_->TakeEntries(now_)) {
+      if (entry.has_run_over()) told.push_back(entry.run_over().SerializeAsString());
+    }
+    ASSERT_EQ(told.size(), 1U);
+    const v1::MachineStatus status = host_->StatusAt(now_);
+    const std::string stands = status.tip().SerializeAsString();
+    if (first.empty()) {
+      first = told;
+      state = stands;
+    }
+    EXPECT_EQ(told, first) << step.count();
+    EXPECT_EQ(stands, state) << step.count();
+  }
+}
+
+// LIVE-10.01, LIVE-2.04: whatever comes, only a machine that runs or stops moves, and time never
+// falls.
+TEST_F(HostMachineTest, RandomOrdersKeepTheInvariants) {
+  std::mt19937 random(1);
+  for (int round = 0; round < 30; ++round) {
+    Make();
+    Control();
+    std::int64_t before = 0;
+    for (int i = 0; i < 200; ++i) {
+      const v1::MachineStatus was = host_->StatusAt(now_);
+      v1::HostOrder order;
+      switch (random() % 9) {
+        case 0:
+          order = Start();
+          break;
+        case 1:
+          order = Resume();
+          break;
+        case 2:
+          order = Stop();
+          break;
+        case 3:
+          order.mutable_hold();
+          break;
+        case 4:
+          order.mutable_abort();
+          break;
+        case 5:
+          order.mutable_emergency_stop();
+          break;
+        case 6:
+          order.mutable_acknowledge_alarm()->set_control_token(token_);
+          order.mutable_acknowledge_alarm()->set_alarm_id(
+              was.alarms().empty() ? 1 : was.alarms(0).id());
+          break;
+        case 7: {
+          order.mutable_inputs()->set_control_token(token_);
+          v1::MachineInput& input = *order.mutable_inputs()->add_inputs();
+          if (random() % 2 == 0) {
+            input.set_emergency_stop_released(true);
+          } else {
+            input.set_door_open(random() % 2 == 0);
+          }
+          break;
+        }
+        default:
+          order.mutable_mode()->set_control_token(token_);
+          order.mutable_mode()->set_mode(random() % 2 == 0 ? v1::OPERATING_MODE_REMOTE
+                                                           : v1::OPERATING_MODE_CYCLE);
+      }
+      Do(order);
+      Pass(std::chrono::milliseconds(10 * (random() % 30)));
+      const v1::MachineStatus is = host_->StatusAt(now_);
+      ASSERT_GE(is.virtual_time_ns(), before);
+      before = is.virtual_time_ns();
+      const bool moves =
+          is.state() == v1::MACHINE_STATE_RUNNING || is.state() == v1::MACHINE_STATE_STOPPING;
+      if (!moves) {
+        ASSERT_EQ(is.speed_mm_s(), 0.0) << v1::MachineState_Name(is.state());
+      }
+      ASSERT_EQ(is.has_run(), moves || is.state() == v1::MACHINE_STATE_HELD);
+      ASSERT_EQ(is.alarms().empty(), is.state() != v1::MACHINE_STATE_ALARM);
+      Control();  // goes on having it
+      v1::HostOrder take;
+      take.mutable_acquire_control()->set_take_over(true);
+      take.mutable_acquire_control()->set_reason("a test");
+      take.mutable_acquire_control()->mutable_ttl()->set_seconds(60);
+      token_ = Do(take).control().control_token();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::server
