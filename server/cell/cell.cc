@@ -211,7 +211,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
                                                              .join_token = *host_token,
                                                              .log_level = config.log_level,
                                                              .log_format = config.log_format});
-  statuses = std::make_unique<MachineStatuses>(*store, *feed, *executor, *hosts);
+  statuses = std::make_unique<MachineStatuses>(*store, *feed, *executor, hosts.get());
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
   programs = std::make_unique<ProgramBook>(*store, config);

@@ -339,85 +339,93 @@ v1::RunState RunStateOf(const machine::Machine& machine) {
   return state;
 }
 
-Result<std::vector<MachineInput>> InputsOf(const v1::HostOrder& order,
-                                           const machine::Machine& machine) {
-  std::vector<MachineInput> inputs;
+namespace {
+
+// Of a run: begin, go on, come to rest, end.
+Result<std::optional<MachineInput>> OfRun(const v1::HostOrder& order,
+                                          const machine::Machine& machine) {
+  using Input = std::optional<MachineInput>;
   switch (order.request_case()) {
     case v1::HostOrder::kStart: {
       const Result<int> program = ProgramOf(order.start(), machine);
       if (!program) return program.error();
-      inputs.emplace_back(machine::StartRun{.program = *program});
-      break;
+      return Input(machine::StartRun{.program = *program});
     }
     case v1::HostOrder::kResume:
-      inputs.emplace_back(machine::ResumeRun{});
-      break;
+      return Input(machine::ResumeRun{});
     case v1::HostOrder::kStop:
-      inputs.emplace_back(machine::StopRun{});
-      break;
+      return Input(machine::StopRun{});
     case v1::HostOrder::kHold:
-      inputs.emplace_back(machine::HoldRun{});
-      break;
+      return Input(machine::HoldRun{});
     case v1::HostOrder::kEmergencyStop:
-      inputs.emplace_back(machine::EmergencyStop{});
-      break;
+      return Input(machine::EmergencyStop{});
     case v1::HostOrder::kAbort: {
       const auto open = machine.status().open;
       const std::int64_t meant = order.abort().run();
-      if (meant != 0 && (!open || open->number != meant))
-        return Error{
-            ErrorCode::kCellMachineState, "run " + std::to_string(meant) + " is not open", {}};
-      inputs.emplace_back(machine::AbortRun{});
-      break;
+      if (meant == 0 || (open && open->number == meant)) return Input(machine::AbortRun{});
+      return Error{
+          ErrorCode::kCellMachineState, "run " + std::to_string(meant) + " is not open", {}};
     }
+    default:
+      return Input();
+  }
+}
+
+// Of how it is set: mode, override, alarms, breakpoints, dry run.
+Result<std::optional<MachineInput>> OfSetting(const v1::HostOrder& order,
+                                              const machine::Machine& machine) {
+  using Input = std::optional<MachineInput>;
+  const int selected = machine.status().shown.program;
+  switch (order.request_case()) {
     case v1::HostOrder::kMode: {
       const auto mode = ModeOf(order.mode().mode());
       if (!mode) return Invalid("mode is none that there is");
-      inputs.emplace_back(machine::ChangeMode{.mode = *mode});
-      break;
+      return Input(machine::ChangeMode{.mode = *mode});
     }
     case v1::HostOrder::kOverride:
-      inputs.emplace_back(machine::ChangeOverride{.percent = order.override().override_percent()});
-      break;
+      return Input(machine::ChangeOverride{.percent = order.override().override_percent()});
     case v1::HostOrder::kAcknowledgeAlarm:
-      inputs.emplace_back(machine::Acknowledge{.alarm = order.acknowledge_alarm().alarm_id()});
-      break;
-    case v1::HostOrder::kWriteVariables:
-      for (const v1::Variable& variable : order.write_variables().variables()) {
-        const Result<double> value = NumberOf(variable);
-        if (!value) return value.error();
-        inputs.emplace_back(machine::WriteVariable{.name = variable.name(), .value = *value});
-      }
-      break;
-    case v1::HostOrder::kInputs:
-      for (const v1::MachineInput& one : order.inputs().inputs()) {
-        Result<MachineInput> input = InputOf(one);
-        if (!input) return input.error();
-        inputs.push_back(*std::move(input));
-      }
-      if (inputs.empty()) return Invalid("inputs: none is given");
-      break;
+      return Input(machine::Acknowledge{.alarm = order.acknowledge_alarm().alarm_id()});
     case v1::HostOrder::kBreakpoints: {
       machine::SetBreakpoints set;
       for (const v1::Breakpoint& one : order.breakpoints().breakpoints())
-        set.breakpoints.push_back(bridge::FromProto(one, machine.status().shown.program));
-      inputs.emplace_back(std::move(set));
-      break;
+        set.breakpoints.push_back(bridge::FromProto(one, selected));
+      return Input(std::move(set));
     }
     case v1::HostOrder::kSimulation: {
       machine::SetSimulation set;
-      if (order.simulation().has_until()) {
-        const v1::StepPlace& until = order.simulation().until();
-        set.until = {
-            .program = until.program() != 0 ? until.program() : machine.status().shown.program,
-            .step = until.step()};
-      }
-      inputs.emplace_back(set);
-      break;
+      const v1::StepPlace& until = order.simulation().until();
+      if (order.simulation().has_until())
+        set.until = {.program = until.program() != 0 ? until.program() : selected,
+                     .step = until.step()};
+      return Input(set);
     }
     default:
-      break;
+      return Input();
   }
+}
+
+}  // namespace
+
+Result<std::vector<MachineInput>> InputsOf(const v1::HostOrder& order,
+                                           const machine::Machine& machine) {
+  std::vector<MachineInput> inputs;
+  for (const auto of : {OfRun, OfSetting}) {
+    Result<std::optional<MachineInput>> input = of(order, machine);
+    if (!input) return input.error();
+    if (*input) inputs.push_back(*std::move(*input));
+  }
+  for (const v1::Variable& variable : order.write_variables().variables()) {
+    const Result<double> value = NumberOf(variable);
+    if (!value) return value.error();
+    inputs.emplace_back(machine::WriteVariable{.name = variable.name(), .value = *value});
+  }
+  for (const v1::MachineInput& one : order.inputs().inputs()) {
+    Result<MachineInput> input = InputOf(one);
+    if (!input) return input.error();
+    inputs.push_back(*std::move(input));
+  }
+  if (order.has_inputs() && inputs.empty()) return Invalid("inputs: none is given");
   return inputs;
 }
 

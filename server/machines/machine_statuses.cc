@@ -20,18 +20,20 @@ bool Matters(const storage::EventRecord& event) {
 }  // namespace
 
 MachineStatuses::MachineStatuses(storage::Store& store, EventFeed& feed, Executor& executor,
-                                 Hosts& hosts)
+                                 Hosts* hosts)
     : store_(store), machines_(store), feed_(feed), hosts_(hosts), executor_(executor) {
-  hosts_.OnChange([this] {
-    host_changed_ = true;
-    Woken();
-  });
+  if (hosts_ != nullptr) {
+    hosts_->OnChange([this] {
+      host_changed_ = true;
+      Woken();
+    });
+  }
   subscription_ = feed_.Subscribe(std::string(EventFeed::kEverything), [this] { Woken(); });
   Woken();
 }
 
 MachineStatuses::~MachineStatuses() {
-  hosts_.OnChange({});
+  if (hosts_ != nullptr) hosts_->OnChange({});
   subscription_.reset();
   std::unique_lock lock(mutex_);
   rests_.wait(lock, [this] { return !looking_; });
@@ -70,7 +72,7 @@ void MachineStatuses::Look() {
     std::set<std::string> hosted;  // its host tells of it
     for (const auto& [id, machine] : **machines) {
       const std::string name = MachineName(id);
-      if (hosts_.IsHosted(id)) {
+      if (hosts_ != nullptr && hosts_->IsHosted(id)) {
         hosted.insert(name);
       } else {
         now[name] = StatusOf(machine, *unfinished).SerializeAsString();

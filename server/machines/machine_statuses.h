@@ -19,8 +19,9 @@ namespace rmlcell::server {
 // looks when a job, a machine or its host changed. Thread-safe.
 class MachineStatuses {
  public:
-  // All of them outlive this.
-  MachineStatuses(storage::Store& store, EventFeed& feed, Executor& executor, Hosts& hosts);
+  // All of them outlive this. Without hosts no machine lives.
+  MachineStatuses(storage::Store& store, EventFeed& feed, Executor& executor,
+                  Hosts* hosts = nullptr);
   ~MachineStatuses();  // waits for a look that is under way
   MachineStatuses(const MachineStatuses&) = delete;
   MachineStatuses& operator=(const MachineStatuses&) = delete;
@@ -33,7 +34,7 @@ class MachineStatuses {
   storage::Store& store_;
   KnownMachines machines_;
   EventFeed& feed_;
-  Hosts& hosts_;
+  Hosts* hosts_;
   Executor& executor_;
   std::mutex mutex_;
   std::condition_variable rests_;

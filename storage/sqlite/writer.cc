@@ -443,9 +443,10 @@ std::int64_t Writer::FenceMark() const {
 Status Writer::KeepMarks(const Counters& before, const WriteContext& context) {
   Tables& tables = connection_.tables;
   for (const auto& [machine, growth] : GrowthOf(context.moves)) {
-    const Status kept =
-        tables.machine_jobs.Set(machine, machine_jobs_.Unfinished(machine) + growth);
-    if (!kept) return kept.error();
+    if (const Status kept =
+            tables.machine_jobs.Set(machine, machine_jobs_.Unfinished(machine) + growth);
+        !kept)
+      return kept.error();
   }
   const auto keep = [&](std::string_view name, std::int64_t was, std::int64_t is) -> Status {
     return was == is ? Status() : tables.marks.Set(name, is);

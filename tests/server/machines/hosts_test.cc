@@ -1,0 +1,315 @@
+// Hosts as the server hears of them, over lines of the test: leases, orders, what is stored.
+#include "server/machines/hosts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mutex>
+#include <optional>
+
+#include "rmlcell/v1/cell.pb.h"
+#include "server/base/executor.h"
+#include "server/records/machine_messages.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+// What the server says to a host.
+class FakeLink final : public HostLink {
+ public:
+  void Send(v1::HostResponse message) override {
+    const std::lock_guard lock(mutex_);
+    messages_.push_back(std::move(message));
+  }
+  void Close(const Error& why) override {
+    const std::lock_guard lock(mutex_);
+    closed_ = why;
+  }
+  std::vector<v1::HostResponse> All() const {
+    const std::lock_guard lock(mutex_);
+    return messages_;
+  }
+  // The newest of a kind, once there is one.
+  std::optional<v1::HostResponse> Newest(v1::HostResponse::MessageCase kind) const {
+    std::optional<v1::HostResponse> newest;
+    EXPECT_TRUE(Eventually([&] {
+      for (const v1::HostResponse& message : All()) {
+        if (message.message_case() == kind) newest = message;
+      }
+      return newest.has_value();
+    }));
+    return newest;
+  }
+  bool closed() const {
+    const std::lock_guard lock(mutex_);
+    return closed_.has_value();
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<v1::HostResponse> messages_;
+  std::optional<Error> closed_;
+};
+
+class HostsTest : public testing::Test {
+ protected:
+  static v1::HostHello Hello(const std::string& host = "elsewhere/1", std::int64_t fence = 0) {
+    v1::HostHello hello;
+    hello.set_join_token("secret");
+    hello.set_machine("machines/mill-1");
+    hello.set_host(host);
+    hello.set_protocol(1);
+    hello.set_fence(fence);
+    return hello;
+  }
+  std::shared_ptr<FakeLink> Joined(const v1::HostHello& hello = Hello()) {
+    auto link = std::make_shared<FakeLink>();
+    const Status joined = hosts.Join(link, hello);
+    EXPECT_TRUE(joined) << (joined ? "" : joined.error().detail);
+    return link;
+  }
+  ErrorCode Refused(const v1::HostHello& hello) {
+    const Status joined = hosts.Join(std::make_shared<FakeLink>(), hello);
+    EXPECT_FALSE(joined);
+    return joined ? ErrorCode::kCellInternal : joined.error().code;
+  }
+  static std::int64_t Fence(const FakeLink& link) {
+    const auto welcome = link.Newest(v1::HostResponse::kWelcome);
+    return welcome ? welcome->welcome().fence() : 0;
+  }
+  void Tell(const FakeLink& link, v1::MachineState state, std::int64_t time_ns = 5) {
+    v1::HostRequest request;
+    request.mutable_status()->set_machine("machines/mill-1");
+    request.mutable_status()->set_state(state);
+    request.mutable_status()->set_virtual_time_ns(time_ns);
+    hosts.Receive(link, std::move(request));
+  }
+  // An entry that is told, and a mark.
+  static v1::HostRequest Entries(std::int64_t fence, std::int64_t first, bool clean) {
+    v1::HostRequest request;
+    v1::HostEntries& entries = *request.mutable_entries();
+    entries.set_fence(fence);
+    v1::JournalEntry& run = *entries.add_entries();
+    run.set_sequence(first);
+    run.set_fence(fence);
+    run.mutable_run_begun()->set_run(1);
+    v1::JournalEntry& mark = *entries.add_entries();
+    mark.set_sequence(first + 1);
+    mark.set_fence(fence);
+    mark.mutable_mark()->set_state("where it stands");
+    mark.mutable_mark()->set_clean(clean);
+    mark.mutable_mark()->set_virtual_time_ns(77);
+    return request;
+  }
+  // The events of the machine in the log of the cell.
+  std::vector<v1::MachineEvent> Told() {
+    std::vector<v1::MachineEvent> told;
+    for (const storage::EventRecord& event : Must(bed.store().AllEvents(0, 10'000))) {
+      if (event.kind != kMachineEvent) continue;
+      EXPECT_EQ(event.resource, "machines/mill-1");
+      told.emplace_back().ParseFromString(event.payload);
+    }
+    return told;
+  }
+
+  ServerBed bed;
+  EventFeed feed{bed.store()};
+  TestSteadyClock clock;
+  Executor executor{2};
+  Hosts hosts{{.store = bed.store(),
+               .feed = feed,
+               .executor = executor,
+               .server = "this server",
+               .join_token = "secret",
+               .clock = clock.clock()}};
+};
+
+// LIVE-3.07: who may join.
+TEST_F(HostsTest, OnlyItsOwnHostsJoin) {
+  v1::HostHello hello = Hello();
+  hello.set_join_token("guessed");
+  EXPECT_EQ(Refused(hello), ErrorCode::kCellJoinRefused);
+  hello = Hello();
+  hello.set_protocol(2);
+  EXPECT_EQ(Refused(hello), ErrorCode::kCellVersionMismatch);
+  hello = Hello();
+  hello.set_machine("machines/none");
+  EXPECT_EQ(Refused(hello), ErrorCode::kCellUnknownMachine);
+  hello.set_machine("none");
+  EXPECT_EQ(Refused(hello), ErrorCode::kCellInvalidArgument);
+  EXPECT_FALSE(hosts.IsHosted("mill-1"));
+  const auto link = Joined();
+  EXPECT_TRUE(hosts.IsHosted("mill-1"));
+  const auto welcome = link->Newest(v1::HostResponse::kWelcome)->welcome();
+  EXPECT_EQ(welcome.family(), "rml1");
+  EXPECT_FALSE(welcome.has_mark());
+  EXPECT_TRUE(link->Newest(v1::HostResponse::kMemory)->memory().whole());
+}
+
+// LIVE-3.02: one host; another one when the lease has stood unchanged for as long as it holds and
+// five seconds more, and then with a higher fence.
+TEST_F(HostsTest, AnotherHostWaitsUntilTheFirstIsGone) {
+  const auto first = Joined();
+  const std::int64_t fence = Fence(*first);
+  EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
+  clock.Advance(std::chrono::seconds(19));
+  EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
+  v1::HostRequest renew;
+  renew.mutable_renew()->set_fence(fence);
+  hosts.Receive(*first, std::move(renew));
+  first->Newest(v1::HostResponse::kRenewed);
+  clock.Advance(std::chrono::seconds(2));
+  EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);  // seen anew
+  clock.Advance(std::chrono::seconds(20));
+  const auto second = Joined(Hello("other/2"));
+  EXPECT_GT(Fence(*second), fence);
+  EXPECT_TRUE(first->closed());
+  // What the first one still says is refused by its fence.
+  hosts.Leave(*first);
+  EXPECT_TRUE(hosts.IsHosted("mill-1"));
+}
+
+// LIVE-3.02: the same host keeps its fence, over another line.
+TEST_F(HostsTest, TheSameHostComesBackWithItsFence) {
+  const auto first = Joined();
+  hosts.Leave(*first);
+  EXPECT_EQ(hosts.StatusOf("mill-1")->state(), v1::MACHINE_STATE_STARTING);
+  const auto again = Joined(Hello("elsewhere/1", Fence(*first)));
+  EXPECT_EQ(Fence(*again), Fence(*first));
+}
+
+// LIVE-3.17, LIVE-2.03: status goes to who watches, with what the queue does; LOST without a line.
+TEST_F(HostsTest, StatusIsThatOfTheHost) {
+  const auto link = Joined();
+  Tell(*link, v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(hosts.StatusOf("mill-1")->state(), v1::MACHINE_STATE_HELD);
+  EXPECT_TRUE(Eventually([&] {
+    const auto latest = feed.LatestAfter("machines/mill-1", 0);
+    v1::MachineStatus status;
+    return latest && status.ParseFromString(*latest->bytes) &&
+           status.state() == v1::MACHINE_STATE_HELD;
+  }));
+  clock.Advance(std::chrono::milliseconds(40));
+  EXPECT_EQ(hosts.StatusOf("mill-1")->age_ns(), 40'000'000);
+  hosts.Leave(*link);
+  EXPECT_EQ(hosts.StatusOf("mill-1")->state(), v1::MACHINE_STATE_LOST);
+  EXPECT_FALSE(hosts.StatusOf("optimo-1"));
+}
+
+// LIVE-3.06: an order goes to the host and its answer back; without a line it says so at once, and
+// without an answer after a while.
+TEST_F(HostsTest, OrdersAreAnswered) {
+  std::vector<std::string> answers;
+  const auto ask = [&] {
+    v1::HostOrder order;
+    order.mutable_stop();
+    hosts.Ask("mill-1", std::move(order), [&](const Result<v1::HostOrderAnswer>& answer) {
+      answers.push_back(answer ? "answered" : CodeText(answer.error().code));
+    });
+  };
+  ask();
+  EXPECT_THAT(answers, testing::ElementsAre("CELL-E9424"));
+  const auto link = Joined();
+  ask();
+  ask();
+  const auto order = link->Newest(v1::HostResponse::kOrder);
+  ASSERT_TRUE(order);
+  EXPECT_EQ(order->order().number(), 2);
+  v1::HostRequest request;
+  request.mutable_answer()->set_number(2);
+  request.mutable_answer()->mutable_halt();
+  hosts.Receive(*link, request);
+  hosts.Receive(*link, request);  // heard twice
+  EXPECT_THAT(answers, testing::ElementsAre("CELL-E9424", "answered"));
+  v1::HostRequest heartbeat;
+  heartbeat.mutable_heartbeat()->set_number(1);
+  clock.Advance(std::chrono::milliseconds(9'999));
+  hosts.Receive(*link, heartbeat);
+  EXPECT_EQ(answers.size(), 2U);
+  clock.Advance(std::chrono::milliseconds(1));
+  hosts.Receive(*link, heartbeat);
+  EXPECT_EQ(answers.size(), 3U);
+  ask();
+  hosts.Leave(*link);
+  EXPECT_THAT(answers, testing::ElementsAre("CELL-E9424", "answered", "CELL-E9424", "CELL-E9424"));
+}
+
+// LIVE-3.25, LIVE-3.30: events and the newest mark are stored together and acknowledged; who hosts
+// it next begins there, and is told that a run was cut off.
+TEST_F(HostsTest, WhatAHostTellsIsStored) {
+  const auto link = Joined();
+  const std::int64_t fence = Fence(*link);
+  hosts.Receive(*link, Entries(fence, 1, false));
+  EXPECT_EQ(link->Newest(v1::HostResponse::kEntriesStored)->entries_stored().sequence(), 2);
+  const auto mark = Must(bed.store().GetMachineMark("mill-1"));
+  ASSERT_TRUE(mark);
+  EXPECT_EQ(mark->state, "where it stands");
+  EXPECT_FALSE(mark->clean);
+  ASSERT_EQ(Told().size(), 1U);
+  EXPECT_TRUE(Told()[0].has_run_begun());
+  EXPECT_EQ(Told()[0].fence(), fence);
+  // The same again is stored once.
+  hosts.Receive(*link, Entries(fence, 1, false));
+  hosts.Leave(*link);
+  clock.Advance(std::chrono::seconds(1));
+  EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
+  clock.Advance(std::chrono::seconds(20));
+  const auto next = Joined(Hello("other/2"));
+  const auto welcome = next->Newest(v1::HostResponse::kWelcome)->welcome();
+  EXPECT_EQ(welcome.mark().state(), "where it stands");
+  EXPECT_FALSE(welcome.mark().clean());
+  EXPECT_EQ(welcome.mark().fence(), fence);
+  ASSERT_TRUE(Told().back().has_recovered());
+  EXPECT_EQ(Told().back().recovered().mark_virtual_time_ns(), 77);
+  EXPECT_EQ(Told().back().recovered().mark_fence(), fence);
+}
+
+// LIVE-3.05: a host whose lease was given away is told so, and nothing of it is stored.
+TEST_F(HostsTest, WhoHasLostItsLeaseStoresNothing) {
+  const auto link = Joined();
+  Must(bed.store().TakeMachine({.machine = "mill-1",
+                                .host = "other/2",
+                                .server = "another",
+                                .duration = std::chrono::seconds(15),
+                                .by_hand = true}));
+  hosts.Receive(*link, Entries(Fence(*link), 1, true));
+  EXPECT_TRUE(link->Newest(v1::HostResponse::kLeaseLost));
+  EXPECT_FALSE(Must(bed.store().GetMachineMark("mill-1")));
+  EXPECT_TRUE(Told().empty());
+}
+
+// LIVE-5.03: what is stored in the memory of a machine goes to its host.
+TEST_F(HostsTest, WhatIsStoredMeanwhileGoesToTheHost) {
+  const auto link = Joined();
+  Must(bed.store().PutPrograms("mill-1", {{.slot = 5, .name = "p", .object = "PA;"}}, {}, "anna"));
+  EXPECT_TRUE(Eventually([&] {
+    const auto memory = link->Newest(v1::HostResponse::kMemory)->memory();
+    return memory.programs_size() == 1 && memory.programs(0).content() == "PA;";
+  }));
+}
+
+// LIVE-5.09: it gives the machine back; the next one takes it at once.
+TEST_F(HostsTest, AMachineThatIsGivenBackIsFree) {
+  const auto link = Joined();
+  hosts.End("mill-1", "a test");
+  EXPECT_EQ(link->Newest(v1::HostResponse::kStop)->stop().reason(), "a test");
+  v1::HostRequest back;
+  back.mutable_hand_back()->set_fence(Fence(*link));
+  hosts.Receive(*link, std::move(back));
+  hosts.Leave(*link);
+  EXPECT_FALSE(hosts.IsHosted("mill-1"));
+  EXPECT_TRUE(Eventually([&] { return Must(bed.store().MachineLeases()).empty(); }));
+  Joined(Hello("other/2"));
+}
+
+// The server stops: lines end, and nobody joins any more.
+TEST_F(HostsTest, AServerThatStopsTakesNoHost) {
+  const auto link = Joined();
+  hosts.CloseAll();
+  EXPECT_TRUE(link->closed());
+  EXPECT_EQ(Refused(Hello("elsewhere/1", Fence(*link))), ErrorCode::kCellUnavailable);
+}
+
+}  // namespace
+}  // namespace rmlcell::server
