@@ -15,6 +15,7 @@ namespace {
 
 // A moving machine says so often where it is, so that a crash takes no more of it. LIVE-3.23
 constexpr std::chrono::milliseconds kMarkInterval{1'000};
+constexpr std::chrono::milliseconds kMarkIntervalOfEvents{100};  // where something waits to be told
 
 const google::protobuf::Message* RequestOf(const v1::HostOrder& order) {
   const auto* set = order.GetReflection()->GetOneofFieldDescriptor(
@@ -436,11 +437,17 @@ void HostMachine::Mark() {
   marked_at_ = now_.steady;
 }
 
+// What happened leaves behind a mark that covers it: the log never tells of more than a crash gives
+// back. LIVE-3.22
 std::vector<v1::JournalEntry> HostMachine::TakeEntries(const HostTime& now) {
   now_ = now;
-  const bool moving = moves();
-  if (begins_ || (moving ? now.steady - marked_at_ >= kMarkInterval : mark_due_)) Mark();
-  if (moving) mark_due_ = true;  // it comes to rest elsewhere
+  const std::chrono::nanoseconds since = now.steady - marked_at_;
+  bool due = begins_ || mark_due_ || !entries_.empty();
+  if (moves() && !begins_)
+    due = since >= (entries_.empty() ? kMarkInterval : kMarkIntervalOfEvents);
+  if (!due) return {};
+  Mark();
+  if (moves()) mark_due_ = true;  // it comes to rest elsewhere
   return std::exchange(entries_, {});
 }
 

@@ -54,7 +54,8 @@ class HostMachine : private machine::RunObserver {
   // When it is to be looked at again though nobody asks: control runs out.
   std::optional<std::chrono::nanoseconds> next_look() const { return desk_.runs_out(); }
 
-  // What happened since the last call, in order; a mark is the last one where there is one due.
+  // What happened since the last call, in order, and behind it where the machine stands; nothing
+  // yet: a machine that moves says so a few times a second at most.
   std::vector<v1::JournalEntry> TakeEntries(const HostTime& now);
 
  private:

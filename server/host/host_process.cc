@@ -143,7 +143,7 @@ class HostProcess {
       next_try_ = now + kRejoin;
       const ErrorCode code = welcome.error().code;
       if (code == ErrorCode::kCellUnavailable) return;
-      spdlog::error("{}", bridge::ErrorText(welcome.error()));
+      spdlog::error("{}", welcome.error().detail);
       return Quit(code == ErrorCode::kCellMachineTaken ? 3 : 69);
     }
     const v1::HostWelcome& message = welcome->message;

@@ -60,6 +60,7 @@ void HostProcesses::LookAt(const std::string& machine, Place& place) {
     place.process = -1;
   }
   if (place.process > 0 || !place.wanted || now < place.next_start) return;
+  if (options_.is_heard && options_.is_heard(machine)) return;
   const Result<pid_t> process =
       StartChild({options_.program, "--host", MachineName(machine), "--server", options_.server,
                   "--log-level", options_.log_level, "--log-format", options_.log_format},

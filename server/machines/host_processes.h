@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -24,6 +25,8 @@ class HostProcesses {
     std::string join_token{};  // handed over in the environment, not on the command line
     std::string log_level{};
     std::string log_format{};
+    // Whether a host of the machine is heard, wherever it came from: then none is started.
+    std::function<bool(const std::string& machine)> is_heard{};
     SteadyClock clock = SteadyTime;
   };
   explicit HostProcesses(Options options);

@@ -119,6 +119,7 @@ struct Hosts::Host {
   std::optional<v1::MachineStatus> status;
   Instant heard{};
   std::vector<v1::JournalEntry> waiting;  // to be stored
+  std::int64_t stored = 0;                // sequence of the last one that is
   bool storing = false;
 };
 
@@ -222,6 +223,8 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello) {
   if (!machine) return machine.error();
   const auto mark = needs_.store.GetMachineMark(host->id);
   if (!mark) return mark.error();
+  // All up to the mark is stored: each write ends with one.
+  if (*mark && (*mark)->fence == host->lease.fence) host->stored = (*mark)->sequence;
   // A host that comes back knows better.
   if (hello.fence() != host->lease.fence) {
     if (const Status told = TellRecovery(*host, *mark); !told) return told.error();
@@ -383,15 +386,27 @@ void Hosts::DropLate(const HostPointer& host) {
 }
 
 void Hosts::TakeEntries(const HostPointer& host, const v1::HostEntries& entries) {
+  std::int64_t stored = 0;
   {
     const std::lock_guard lock(host->mutex);
+    // A host that comes back sends again what it does not know to be stored.
     for (const v1::JournalEntry& entry : entries.entries()) {
-      if (host->waiting.size() >= kWaitingEntriesMax) break;  // it sends them again
-      if (!host->waiting.empty() && entry.sequence() <= host->waiting.back().sequence()) continue;
-      host->waiting.push_back(entry);
+      if (host->waiting.size() >= kWaitingEntriesMax) break;
+      const std::int64_t last =
+          host->waiting.empty() ? host->stored : host->waiting.back().sequence();
+      if (entry.sequence() > last) host->waiting.push_back(entry);
     }
+    if (host->waiting.empty()) stored = host->stored;
   }
+  if (stored > 0) TellStored(*host, stored);
   StoreEntries(host);
+}
+
+void Hosts::TellStored(const Host& host, std::int64_t sequence) {
+  v1::HostResponse message;
+  message.mutable_entries_stored()->set_fence(host.lease.fence);
+  message.mutable_entries_stored()->set_sequence(sequence);
+  host.link->Send(std::move(message));
 }
 
 // One write under way for each machine, with all that has come meanwhile: events, and the newest
@@ -426,13 +441,11 @@ void Hosts::StoreEntries(const HostPointer& host) {
       if (stored) {
         const auto count = static_cast<std::ptrdiff_t>(entries.size());
         host->waiting.erase(host->waiting.begin(), host->waiting.begin() + count);
+        host->stored = entries.back().sequence();
       }
     }
     if (stored) {
-      v1::HostResponse message;
-      message.mutable_entries_stored()->set_fence(host->lease.fence);
-      message.mutable_entries_stored()->set_sequence(entries.back().sequence());
-      host->link->Send(std::move(message));
+      TellStored(*host, entries.back().sequence());
       return StoreEntries(host);
     }
     spdlog::warn("what the host of {} tells: {}", host->id, bridge::ErrorText(stored.error()));
@@ -532,6 +545,13 @@ void Hosts::CloseAll() {
 }
 
 bool Hosts::IsHosted(const std::string& machine) const { return Find(machine) != nullptr; }
+
+bool Hosts::IsHeard(const std::string& machine) const {
+  const HostPointer host = Find(machine);
+  if (host == nullptr) return false;
+  const std::lock_guard lock(host->mutex);
+  return !host->gone;
+}
 
 std::optional<v1::MachineStatus> Hosts::StatusOf(const std::string& machine) const {
   const HostPointer host = Find(machine);

@@ -63,6 +63,7 @@ class Hosts {
   void CloseAll();
 
   bool IsHosted(const std::string& machine) const;
+  bool IsHeard(const std::string& machine) const;  // its host has a line
   // What its host told last, with its age; LOST where it is not heard; nothing: it has no host.
   std::optional<v1::MachineStatus> StatusOf(const std::string& machine) const;
   // Called when a machine is hosted, or no more.
@@ -81,6 +82,7 @@ class Hosts {
   void TakeStatus(const HostPointer& host, v1::MachineStatus status);
   void TakeAnswer(const HostPointer& host, v1::HostOrderAnswer answer);
   void TakeEntries(const HostPointer& host, const v1::HostEntries& entries);
+  static void TellStored(const Host& host, std::int64_t sequence);
   void StoreEntries(const HostPointer& host);
   void Renew(const HostPointer& host);
   void HandBack(const HostPointer& host);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <mutex>
 #include <optional>
 
@@ -249,9 +250,18 @@ TEST_F(HostsTest, WhatAHostTellsIsStored) {
   ASSERT_EQ(Told().size(), 1U);
   EXPECT_TRUE(Told()[0].has_run_begun());
   EXPECT_EQ(Told()[0].fence(), fence);
-  // The same again is stored once.
+  // The same again is stored once, and acknowledged again: over this line and over another one.
   hosts.Receive(*link, Entries(fence, 1, false));
+  EXPECT_EQ(std::ranges::count(link->All(), v1::HostResponse::kEntriesStored,
+                               &v1::HostResponse::message_case),
+            2);
   hosts.Leave(*link);
+  const auto back = Joined(Hello("elsewhere/1", fence));
+  hosts.Receive(*back, Entries(fence, 1, false));
+  EXPECT_EQ(back->Newest(v1::HostResponse::kEntriesStored)->entries_stored().sequence(), 2);
+  hosts.Receive(*back, Entries(fence, 3, false));
+  EXPECT_TRUE(Eventually([&] { return Told().size() == 2; }));
+  hosts.Leave(*back);
   clock.Advance(std::chrono::seconds(1));
   EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
   clock.Advance(std::chrono::seconds(20));
