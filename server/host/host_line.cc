@@ -11,6 +11,7 @@ namespace rmlcell::server {
 namespace {
 
 constexpr std::chrono::seconds kConnectPatience{5};
+constexpr std::chrono::seconds kLastWords{2};
 constexpr int kAgain_ms = 100;
 // An empty message from time to time: each side knows that the other one is there. LIVE-3.06
 constexpr std::chrono::milliseconds kHeartbeat{250};
@@ -84,6 +85,11 @@ HostLine::~HostLine() {
   to_send_.notify_all();
   writer_.join();
   stream_->line->WritesDone();
+  {
+    // What was sent last is lost where the line is cut before the server has taken it.
+    std::unique_lock lock(mutex_);
+    to_send_.wait_for(lock, kLastWords, [this] { return read_all_; });
+  }
   stream_->context.TryCancel();
   reader_.join();
   static_cast<void>(stream_->line->Finish());
@@ -109,6 +115,9 @@ void HostLine::Read() {
   v1::HostResponse message;
   while (stream_->line->Read(&message)) heard_(std::move(message));
   gone_();
+  const std::lock_guard lock(mutex_);
+  read_all_ = true;
+  to_send_.notify_all();
 }
 
 void HostLine::Write() {

@@ -49,6 +49,7 @@ class HostLine {
   std::condition_variable to_send_;
   std::deque<v1::HostRequest> queue_;        // guarded by mutex_
   std::optional<v1::MachineStatus> status_;  // guarded by mutex_
+  bool read_all_ = false;                    // guarded by mutex_
   bool ending_ = false;                      // guarded by mutex_
   std::thread reader_;
   std::thread writer_;
