@@ -209,6 +209,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
       .program = WorkerProgram(),
       .server = private_socket->address(),
       .join_token = *host_token,
+      .journals = config.state_directory + "/hosts",
       .log_level = config.log_level,
       .log_format = config.log_format,
       .is_heard = [this](const std::string& machine) { return hosts->IsHeard(machine); }});

@@ -50,6 +50,14 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
   host->driver_ = std::make_unique<machine::VirtualDriver>(*std::move(machine), now.steady);
   host->now_ = now;
   host->inspect_due_ = made.cut_off;
+  for (const v1::JournalEntry& untold : made.untold) {
+    if (untold.has_mark() || untold.has_intent()) continue;
+    v1::JournalEntry& entry = host->Add(SimTime(0));
+    const std::int64_t sequence = entry.sequence();
+    entry = untold;
+    entry.set_sequence(sequence);
+  }
+  made.untold.clear();
   return host;
 }
 
@@ -341,6 +349,15 @@ void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
   if (set.schedules != machine().memory().schedules) apply(set);
 }
 
+void HostMachine::Begin(const v1::HostMemory& memory, const HostTime& now) {
+  const std::size_t told = entries_.size();
+  const std::int64_t sequence = sequence_;
+  Change(memory, now);
+  entries_.resize(told);
+  sequence_ = sequence;
+  mark_due_ = true;
+}
+
 // What the machine did by itself.
 void HostMachine::Notice() {
   const machine::MachineStatus status = machine().status();
@@ -439,16 +456,30 @@ void HostMachine::Mark() {
 
 // What happened leaves behind a mark that covers it: the log never tells of more than a crash gives
 // back. LIVE-3.22
-std::vector<v1::JournalEntry> HostMachine::TakeEntries(const HostTime& now) {
+std::vector<v1::JournalEntry> HostMachine::TakeEntries(const HostTime& now, bool at_once) {
   now_ = now;
   const std::chrono::nanoseconds since = now.steady - marked_at_;
-  bool due = begins_ || mark_due_ || !entries_.empty();
-  if (moves() && !begins_)
+  bool due = at_once || begins_ || mark_due_ || !entries_.empty();
+  if (moves() && !begins_ && !at_once)
     due = since >= (entries_.empty() ? kMarkInterval : kMarkIntervalOfEvents);
   if (!due) return {};
   Mark();
   if (moves()) mark_due_ = true;  // it comes to rest elsewhere
   return std::exchange(entries_, {});
+}
+
+v1::JournalEntry HostMachine::IntentOf(const v1::HostOrder& order, const HostTime& now) {
+  now_ = now;
+  v1::InputApplied& intent = *Add(machine().time()).mutable_intent();
+  intent.set_fence(setup_.fence);
+  intent.set_virtual_time_ns(machine().time().count());
+  intent.set_caller(order.caller());
+  intent.set_request_id(FieldOf(order, "request_id").value_or(""));
+  if (const auto inputs = InputsOf(order, machine()); inputs && !inputs->empty())
+    *intent.mutable_input() = AppliedOf(inputs->front());
+  v1::JournalEntry entry = std::move(entries_.back());
+  entries_.pop_back();
+  return entry;
 }
 
 void HostMachine::OnHalt(const machine::Halt& halt) {

@@ -27,7 +27,9 @@ class HostMachine : private machine::RunObserver {
     std::string profile{};
     std::map<std::string, std::string> parameters{};
     machine::MachineMemory memory{};
-    std::string state{};   // as the last mark has it; empty: a new machine
+    std::string state{};  // as the last mark has it; empty: a new machine
+    // What happened under an earlier fence and is not in the store yet; marks aside.
+    std::vector<v1::JournalEntry> untold{};
     bool cut_off = false;  // a run was open then, and nobody has decided yet: INSPECT
   };
   static constexpr std::size_t kAnswersKept = 1'024;
@@ -47,6 +49,8 @@ class HostMachine : private machine::RunObserver {
   void Hold(v1::HoldReason reason, const HostTime& now);
   // Programs and schedules that were stored meanwhile; they act at the next start.
   void Change(const v1::HostMemory& memory, const HostTime& now);
+  // The same at the beginning: what is there already did not happen now.
+  void Begin(const v1::HostMemory& memory, const HostTime& now);
 
   v1::MachineStatus StatusAt(const HostTime& now) const;
   bool moves() const;     // it is to be asked to go on again and again
@@ -56,7 +60,10 @@ class HostMachine : private machine::RunObserver {
 
   // What happened since the last call, in order, and behind it where the machine stands; nothing
   // yet: a machine that moves says so a few times a second at most.
-  std::vector<v1::JournalEntry> TakeEntries(const HostTime& now);
+  // `at_once`: it says so now.
+  std::vector<v1::JournalEntry> TakeEntries(const HostTime& now, bool at_once = false);
+  // That this order is about to act: written before it does. LIVE-3.20
+  v1::JournalEntry IntentOf(const v1::HostOrder& order, const HostTime& now);
 
  private:
   HostMachine(Setup setup, std::function<std::string()> make_token);

@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <deque>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -22,6 +23,7 @@
 #include "server/base/version.h"
 #include "server/host/host_line.h"
 #include "server/host/host_machine.h"
+#include "server/host/journal_writer.h"
 
 namespace rmlcell::server {
 namespace {
@@ -38,6 +40,8 @@ constexpr nanoseconds kTickHeld = 50ms;  // of a run that stands: its time goes 
 constexpr nanoseconds kServerLost = 1s;  // LIVE-3.31: then a run is held
 constexpr nanoseconds kEndsWithoutServer = 60s;
 constexpr nanoseconds kRejoin = 200ms;
+constexpr nanoseconds kIntentPatience = 500ms;  // LIVE-3.21
+constexpr nanoseconds kDurablePatience = 1s;
 constexpr nanoseconds kRestPatience = 10s;
 constexpr std::size_t kUnstoredMax = 100'000;
 
@@ -61,12 +65,65 @@ std::string BootId() {
   return id;
 }
 
+// Before or behind what is written. LIVE-3.20
+enum class OrderClass { kActsFirst, kWrittenFirst, kWrittenBehind, kAsks };
+
+OrderClass ClassOf(const v1::HostOrder& order) {
+  switch (order.request_case()) {
+    case v1::HostOrder::kStop:
+    case v1::HostOrder::kHold:
+    case v1::HostOrder::kEmergencyStop:
+    case v1::HostOrder::kAbort:
+      return OrderClass::kActsFirst;
+    case v1::HostOrder::kStart:
+    case v1::HostOrder::kResume:
+    case v1::HostOrder::kMode:
+    case v1::HostOrder::kAcknowledgeAlarm:
+    case v1::HostOrder::kConfirm:
+    case v1::HostOrder::kAcquireControl:
+      return OrderClass::kWrittenFirst;
+    case v1::HostOrder::kReadVariables:
+    case v1::HostOrder::kRunState:
+    case v1::HostOrder::kRenewControl:
+      return OrderClass::kAsks;
+    default:
+      return OrderClass::kWrittenBehind;
+  }
+}
+
+// The newest state that is durable, and what was told before it that the store does not have.
+struct Recovered {
+  bool known = false;
+  v1::MachineMark mark{};
+  std::vector<v1::JournalEntry> untold{};
+};
+
+Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal) {
+  using Number = std::pair<std::int64_t, std::int64_t>;
+  Recovered found{.known = welcome.has_mark(), .mark = welcome.mark()};
+  const Number stored{welcome.mark().fence(), welcome.mark().sequence()};
+  Number newest = stored;
+  for (const v1::JournalEntry& entry : journal) {
+    const Number number{entry.fence(), entry.sequence()};
+    if (!entry.has_mark() || (found.known && number <= newest)) continue;
+    found.known = true;
+    found.mark = entry.mark();
+    newest = number;
+  }
+  for (v1::JournalEntry& entry : journal) {
+    const Number number{entry.fence(), entry.sequence()};
+    if (number > stored && number <= newest) found.untold.push_back(std::move(entry));
+  }
+  return found;
+}
+
 class HostProcess {
  public:
   HostProcess(const HostOptions& options, const std::atomic<bool>& stopping)
       : options_(options), stopping_(stopping), name_(NameOfHost()) {}
 
   ~HostProcess() {
+    writer_.reset();
     if (connector_.joinable()) connector_.join();
     line_.reset();
   }
@@ -76,7 +133,8 @@ class HostProcess {
     while (!ended_) {
       KeepLine();
       TakeMessages();
-      if (machine_ != nullptr) Turn();
+      DoLater();
+      if (machine_ != nullptr && !ended_) Turn();
       if (ended_) break;
       if (stopping_) End("it is told to stop");
       Rest();
@@ -201,6 +259,7 @@ class HostProcess {
         while (!unstored_.empty() &&
                unstored_.front().sequence() <= message.entries_stored().sequence())
           unstored_.pop_front();
+        if (writer_ != nullptr) writer_->Stored(fence_, message.entries_stored().sequence());
         break;
       case v1::HostResponse::kLeaseLost:
         spdlog::error("{} has the machine now", message.lease_lost().holder());
@@ -221,6 +280,11 @@ class HostProcess {
     if (!memory.whole() || !welcome_) return;
     const machine::MachineFamily* family = families::FindFamily(welcome_->family());
     if (family == nullptr) return Fail({ErrorCode::kCellUnknownFamily, welcome_->family(), {}});
+    Result<Journal::Found> journal = Journal::Open(options_.journal);
+    if (!journal) return Fail(journal.error());
+    if (journal->torn_bytes > 0)
+      spdlog::warn("{}: {} bytes at its end were torn", options_.journal, journal->torn_bytes);
+    Recovered found = RecoveredFrom(*welcome_, std::move(journal->entries));
     auto made = HostMachine::Make(
         {.name = options_.machine,
          .host = name_,
@@ -228,27 +292,119 @@ class HostProcess {
          .family = family,
          .profile = welcome_->profile(),
          .parameters = {welcome_->parameters().begin(), welcome_->parameters().end()},
-         .state = welcome_->mark().state(),
-         .cut_off = welcome_->has_mark() && !welcome_->mark().clean()},
+         .state = found.mark.state(),
+         .untold = std::move(found.untold),
+         .cut_off = found.known && !found.mark.clean()},
         now, RandomText);
     if (!made) return Fail(made.error());
     machine_ = *std::move(made);
-    machine_->Change(memory, now);
-    static_cast<void>(machine_->TakeEntries(now));  // it begins with what the store has
+    writer_ = std::make_unique<JournalWriter>(std::move(journal->journal));
+    durable_at_ = now.steady;
+    machine_->Begin(memory, now);
     spdlog::info("{} lives, fence {}", options_.machine, fence_);
   }
 
   void TakeOrder(const v1::HostOrder& order) {
-    v1::HostRequest request;
-    if (machine_ == nullptr) {
-      *request.mutable_answer()->mutable_refusal() =
-          bridge::ToErrorDetail({ErrorCode::kCellNotLive, "the machine is starting", {}});
-      request.mutable_answer()->set_number(order.number());
-    } else {
-      *request.mutable_answer() = machine_->Do(order, Now());
-      status_due_ = Now().steady;
+    if (machine_ == nullptr)
+      return Refuse(order, {ErrorCode::kCellNotLive, "the machine is starting", {}});
+    switch (ClassOf(order)) {
+      case OrderClass::kActsFirst:
+        // Whoever stops the machine stops what has not begun yet, too.
+        for (const auto& parked : parked_) {
+          if (!std::exchange(parked->over, true))
+            Refuse(parked->order, {ErrorCode::kCellMachineState, "it was stopped before", {}});
+        }
+        return SendAnswer(CarryOut(order));
+      case OrderClass::kAsks:
+        return SendAnswer(CarryOut(order));
+      case OrderClass::kWrittenFirst:
+        return WriteFirst(order);
+      case OrderClass::kWrittenBehind:
+        return AnswerWhenDurable(CarryOut(order));
     }
-    if (line_ != nullptr) line_->Send(std::move(request));
+  }
+
+  v1::HostOrderAnswer CarryOut(const v1::HostOrder& order) {
+    status_due_ = Now().steady;
+    return machine_->Do(order, Now());
+  }
+
+  void SendAnswer(v1::HostOrderAnswer answer) {
+    if (line_ == nullptr) return;
+    v1::HostRequest request;
+    *request.mutable_answer() = std::move(answer);
+    line_->Send(std::move(request));
+  }
+
+  void Refuse(const v1::HostOrder& order, const Error& error) {
+    v1::HostOrderAnswer answer;
+    answer.set_number(order.number());
+    *answer.mutable_refusal() = bridge::ToErrorDetail(error);
+    SendAnswer(std::move(answer));
+  }
+
+  // That it is about to act is on the disk before it does. LIVE-3.21
+  void WriteFirst(const v1::HostOrder& order) {
+    if (const auto trouble = writer_->trouble()) return Refuse(order, *trouble);
+    const HostTime now = Now();
+    Write(now, true);
+    auto parked =
+        std::make_shared<Parked>(Parked{.order = order, .until = now.steady + kIntentPatience});
+    parked_.push_back(parked);
+    writer_->Write({machine_->IntentOf(order, now)}, [this, parked] {
+      Later([this, parked] {
+        if (!std::exchange(parked->over, true)) AnswerWhenDurable(CarryOut(parked->order));
+      });
+    });
+  }
+
+  void AnswerWhenDurable(v1::HostOrderAnswer answer) {
+    answers_due_.push_back(std::move(answer));
+    Write(Now(), true);
+  }
+
+  // What happened goes to the disk, and from there to the server.
+  void Write(const HostTime& now, bool at_once) {
+    std::vector<v1::JournalEntry> entries = machine_->TakeEntries(now, at_once);
+    if (entries.empty()) return;
+    auto copy = std::make_shared<const std::vector<v1::JournalEntry>>(entries);
+    writer_->Write(std::move(entries), [this, copy, answers = std::exchange(answers_due_, {})] {
+      Later([this, copy, answers] {
+        durable_at_ = Now().steady;
+        Keep(*copy);
+        SendEntries(*copy);
+        for (const v1::HostOrderAnswer& answer : answers) SendAnswer(answer);
+      });
+    });
+  }
+
+  // On the thread of the machine, in its next turn.
+  void Later(std::function<void()> work) {
+    const std::lock_guard lock(mutex_);
+    later_.push_back(std::move(work));
+    wake_.notify_one();
+  }
+
+  void DoLater() {
+    std::vector<std::function<void()>> work;
+    {
+      const std::lock_guard lock(mutex_);
+      work.swap(later_);
+    }
+    for (const auto& one : work) one();
+  }
+
+  // A disk that does not answer: nothing begins, and what moves is held. LIVE-3.21
+  void LookAtDisk(nanoseconds now) {
+    std::erase_if(parked_, [&](const std::shared_ptr<Parked>& parked) {
+      if (parked->over) return true;
+      if (now < parked->until) return false;
+      parked->over = true;
+      Refuse(parked->order, {ErrorCode::kCellJournal, "the disk does not answer", {}});
+      return true;
+    });
+    if (machine_->moves() && writer_->trouble() && now - durable_at_ > kDurablePatience)
+      machine_->Hold(v1::HOLD_REASON_LATE, Now());
   }
 
   // The machine goes on, and what happened is told.
@@ -257,7 +413,8 @@ class HostProcess {
     behind_ = !machine_->GoOn(now);
     if (line_ == nullptr && machine_->moves() && now.steady - without_server_since_ > kServerLost)
       machine_->Hold(v1::HOLD_REASON_SERVER_LOST, now);
-    SendEntries(Kept(machine_->TakeEntries(now)));
+    LookAtDisk(now.steady);
+    Write(now, false);
     const v1::MachineStatus status = machine_->StatusAt(now);
     const bool changed = status.state() != state_told_;
     if (line_ != nullptr && (changed || now.steady >= status_due_)) {
@@ -279,11 +436,10 @@ class HostProcess {
     }
   }
 
-  std::vector<v1::JournalEntry> Kept(std::vector<v1::JournalEntry> entries) {
+  void Keep(const std::vector<v1::JournalEntry>& entries) {
     for (const v1::JournalEntry& entry : entries) unstored_.push_back(entry);
     // Of what nobody takes the newest is worth most: it says where the machine stands.
     while (unstored_.size() > kUnstoredMax) unstored_.pop_front();
-    return entries;
   }
 
   void SendEntries(const std::vector<v1::JournalEntry>& entries) {
@@ -305,7 +461,9 @@ class HostProcess {
   }
 
   void HandBack(const HostTime& now) {
-    SendEntries(Kept(machine_->TakeEntries(now)));
+    Write(now, true);
+    writer_.reset();  // it writes what waits
+    DoLater();
     if (line_ != nullptr) {
       v1::HostRequest request;
       request.mutable_hand_back()->set_fence(fence_);
@@ -336,8 +494,9 @@ class HostProcess {
       if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
     }
     std::unique_lock lock(mutex_);
-    wake_.wait_for(lock, std::max<nanoseconds>(longest, 0ns),
-                   [this] { return !inbox_.empty() || joined_ || line_gone_ != line_gone_seen_; });
+    wake_.wait_for(lock, std::max<nanoseconds>(longest, 0ns), [this] {
+      return !inbox_.empty() || !later_.empty() || joined_ || line_gone_ != line_gone_seen_;
+    });
     line_gone_seen_ = line_gone_;
   }
 
@@ -347,6 +506,7 @@ class HostProcess {
   std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<v1::HostResponse> inbox_;               // guarded by mutex_
+  std::vector<std::function<void()>> later_;         // guarded by mutex_
   std::optional<Result<HostLine::Welcome>> joined_;  // guarded by mutex_
   bool line_gone_ = false;                           // guarded by mutex_
   bool line_gone_seen_ = false;
@@ -354,6 +514,14 @@ class HostProcess {
   std::unique_ptr<HostLine> line_;
   std::optional<v1::HostWelcome> welcome_;
   std::unique_ptr<HostMachine> machine_;
+  struct Parked {
+    v1::HostOrder order{};
+    nanoseconds until{0};
+    bool over = false;
+  };
+  std::vector<std::shared_ptr<Parked>> parked_;   // their intent is on its way to the disk
+  std::vector<v1::HostOrderAnswer> answers_due_;  // when what goes out next is on the disk
+  nanoseconds durable_at_{0};
   std::deque<v1::JournalEntry> unstored_;
   std::int64_t fence_ = 0;
   nanoseconds lease_{0};
@@ -363,6 +531,7 @@ class HostProcess {
   nanoseconds without_server_since_{0};
   std::optional<nanoseconds> ending_at_;
   v1::MachineState state_told_ = v1::MACHINE_STATE_UNSPECIFIED;
+  std::unique_ptr<JournalWriter> writer_;
   bool behind_ = false;
   bool ended_ = false;
   int exit_code_ = 0;

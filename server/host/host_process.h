@@ -10,6 +10,7 @@ struct HostOptions {
   std::string server{};      // "unix:/path" or "host:port"
   std::string join_token{};  // of the server
   std::string machine{};     // "machines/mill-1"
+  std::string journal{};     // path of its journal
 };
 
 // Until it is to stop, or the machine is another host's: the exit code of the process.

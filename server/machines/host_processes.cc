@@ -1,8 +1,11 @@
 #include "server/machines/host_processes.h"
 
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <cerrno>
+#include <cstring>
 #include <utility>
 
 #include "server/base/child_process.h"
@@ -26,6 +29,9 @@ HostProcesses::~HostProcesses() {
 
 Status HostProcesses::Enable(const std::string& machine, std::chrono::milliseconds after) {
   if (const Status program = CheckProgram(options_.program); !program) return program.error();
+  if (::mkdir(options_.journals.c_str(), S_IRWXU) != 0 && errno != EEXIST)
+    return Error{
+        ErrorCode::kCellConfiguration, options_.journals + ": " + std::strerror(errno), {}};
   const std::lock_guard lock(mutex_);
   Place& place = places_[machine];
   place.wanted = true;
@@ -63,7 +69,8 @@ void HostProcesses::LookAt(const std::string& machine, Place& place) {
   if (options_.is_heard && options_.is_heard(machine)) return;
   const Result<pid_t> process =
       StartChild({options_.program, "--host", MachineName(machine), "--server", options_.server,
-                  "--log-level", options_.log_level, "--log-format", options_.log_format},
+                  "--journal", options_.journals + "/" + machine + ".journal", "--log-level",
+                  options_.log_level, "--log-format", options_.log_format},
                  {"RMLCELL_JOIN_TOKEN=" + options_.join_token});
   place.started = now;
   place.next_start = now + std::chrono::seconds(1);

@@ -23,6 +23,7 @@ class HostProcesses {
     std::string program{};     // path of rmlcell-worker
     std::string server{};      // address that they connect to
     std::string join_token{};  // handed over in the environment, not on the command line
+    std::string journals{};  // folder of their journals; made where it is missing
     std::string log_level{};
     std::string log_format{};
     // Whether a host of the machine is heard, wherever it came from: then none is started.

@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
   std::string name = OwnName();
   std::string pool;
   std::string host;
+  std::string journal;
   std::string log_level = "info";
   std::string log_format = "text";
   app.set_version_flag("--version", std::string(kVersion));
@@ -89,6 +90,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"paced", "computing"}));
   app.add_option("--host", host,
                  "machines/ID: the host of this machine that lives, in place of a worker");
+  app.add_option("--journal", journal, "of a host: the file that it keeps on its disk");
   app.add_option("--log-level", log_level);
   app.add_option("--log-format", log_format, "text or json");
   app.footer("The join token of the server is taken from the environment: RMLCELL_JOIN_TOKEN.");
@@ -109,9 +111,15 @@ int main(int argc, char** argv) {
   ::sigaction(SIGINT, &action, nullptr);
   const char* token = std::getenv("RMLCELL_JOIN_TOKEN");
   if (!host.empty()) {
-    const int code = RunHost(
-        {.server = servers.front(), .join_token = token != nullptr ? token : "", .machine = host},
-        stopping);
+    if (journal.empty()) {
+      spdlog::error("a host needs --journal");
+      return 64;
+    }
+    const int code = RunHost({.server = servers.front(),
+                              .join_token = token != nullptr ? token : "",
+                              .machine = host,
+                              .journal = journal},
+                             stopping);
     spdlog::shutdown();
     _exit(code);  // as below
   }

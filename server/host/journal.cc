@@ -1,0 +1,183 @@
+#include "server/host/journal.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <boost/crc.hpp>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace rmlcell::server {
+namespace {
+
+constexpr std::size_t kHeadBytes = 8;
+constexpr std::uint32_t kRecordMax = 16U << 20;  // no entry is as large: what says so is no length
+
+std::uint32_t Checksum(std::string_view bytes) {
+  boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true> crc;  // CRC-32C
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
+}
+
+void AddNumber(std::uint32_t number, std::string& bytes) {
+  for (int i = 0; i < 4; ++i) bytes += static_cast<char>(number >> (8 * i) & 0xFFU);
+}
+
+std::uint32_t NumberAt(std::string_view bytes) {
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    number |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+  return number;
+}
+
+Error Failed(const std::string& path, int number) {
+  return {ErrorCode::kCellJournal, path + ": " + std::strerror(number), {}};
+}
+
+// Whole, or an error number.
+int WriteAll(int file, std::string_view bytes, std::int64_t at) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(file, bytes.data(), bytes.size(), at);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+    at += written;
+  }
+  return 0;
+}
+
+int SyncFolderOf(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return errno;
+  const int failed = ::fsync(file) == 0 ? 0 : errno;
+  ::close(file);
+  return failed;
+}
+
+Result<std::string> ReadAll(const std::string& path, int file) {
+  std::string bytes;
+  std::array<char, 1 << 16> part{};
+  for (;;) {
+    const ssize_t read = ::pread(file, part.data(), part.size(), static_cast<off_t>(bytes.size()));
+    if (read < 0 && errno == EINTR) continue;
+    if (read < 0) return Failed(path, errno);
+    if (read == 0) return bytes;
+    bytes.append(part.data(), static_cast<std::size_t>(read));
+  }
+}
+
+}  // namespace
+
+std::string RecordsOf(const std::vector<v1::JournalEntry>& entries) {
+  std::string records;
+  for (const v1::JournalEntry& entry : entries) {
+    const std::string bytes = entry.SerializeAsString();
+    AddNumber(static_cast<std::uint32_t>(bytes.size()), records);
+    AddNumber(Checksum(bytes), records);
+    records += bytes;
+  }
+  return records;
+}
+
+ReadRecords ReadJournal(std::string_view bytes) {
+  ReadRecords read;
+  std::int64_t end = 0;
+  while (bytes.size() >= kHeadBytes) {
+    const std::uint32_t length = NumberAt(bytes);
+    // A record has an entry: zeros, which a file may end with, are none.
+    if (length == 0 || length > kRecordMax || bytes.size() - kHeadBytes < length) break;
+    const std::string_view record = bytes.substr(kHeadBytes, length);
+    v1::JournalEntry entry;
+    if (Checksum(record) != NumberAt(bytes.substr(4)) ||
+        !entry.ParseFromArray(record.data(), static_cast<int>(record.size())))
+      break;
+    end += static_cast<std::int64_t>(kHeadBytes + length);
+    bytes.remove_prefix(kHeadBytes + length);
+    read.entries.push_back(std::move(entry));
+    read.ends.push_back(end);
+  }
+  return read;
+}
+
+Result<Journal::Found> Journal::Open(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (file < 0) return Failed(path, errno);
+  std::unique_ptr<Journal> journal(new Journal(path, file, 0));
+  const Result<std::string> bytes = ReadAll(path, file);
+  if (!bytes) return bytes.error();
+  ReadRecords read = ReadJournal(*bytes);
+  for (std::size_t i = 0; i < read.entries.size(); ++i) {
+    journal->places_.push_back({.fence = read.entries[i].fence(),
+                                .sequence = read.entries[i].sequence(),
+                                .end = read.ends[i]});
+  }
+  journal->bytes_ = read.ends.empty() ? 0 : read.ends.back();
+  const auto torn = static_cast<std::int64_t>(bytes->size()) - journal->bytes_;
+  if (torn > 0 && ::ftruncate(file, journal->bytes_) != 0) return Failed(path, errno);
+  if (const int failed = SyncFolderOf(path); failed != 0) return Failed(path, failed);
+  return Found{
+      .journal = std::move(journal), .entries = std::move(read.entries), .torn_bytes = torn};
+}
+
+Journal::~Journal() { ::close(file_); }
+
+Status Journal::Write(const std::vector<v1::JournalEntry>& entries) {
+  if (entries.empty()) return {};
+  const std::string records = RecordsOf(entries);
+  const auto more = static_cast<std::int64_t>(records.size());
+  if (bytes_ + more > kBytesMax)
+    return Error{ErrorCode::kCellJournal, path_ + ": what the store has not taken fills it", {}};
+  int failed = WriteAll(file_, records, bytes_);
+  if (failed == 0 && ::fdatasync(file_) != 0) failed = errno;
+  if (failed != 0) {
+    // Half a record would hide those that come behind it.
+    static_cast<void>(::ftruncate(file_, bytes_));
+    return Failed(path_, failed);
+  }
+  for (const v1::JournalEntry& entry : entries) {
+    bytes_ += static_cast<std::int64_t>(kHeadBytes + entry.ByteSizeLong());
+    places_.push_back({.fence = entry.fence(), .sequence = entry.sequence(), .end = bytes_});
+  }
+  return {};
+}
+
+void Journal::Stored(std::int64_t fence, std::int64_t sequence) {
+  if (bytes_ <= kBytesKept) return;
+  std::size_t gone = 0;
+  while (gone < places_.size() &&
+         (places_[gone].fence < fence ||
+          (places_[gone].fence == fence && places_[gone].sequence <= sequence)))
+    ++gone;
+  if (gone == 0) return;
+  const std::int64_t begin = places_[gone - 1].end;
+  const Result<std::string> all = ReadAll(path_, file_);
+  if (!all || !Rewrite(std::string_view(*all).substr(static_cast<std::size_t>(begin)))) return;
+  places_.erase(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(gone));
+  for (Place& place : places_) place.end -= begin;
+  bytes_ -= begin;
+}
+
+// Beside the old one, which stays until the new one is on the disk.
+Status Journal::Rewrite(std::string_view records) {
+  const std::string made = path_ + ".new";
+  const int file = ::open(made.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (file < 0) return Failed(made, errno);
+  int failed = WriteAll(file, records, 0);
+  if (failed == 0 && ::fdatasync(file) != 0) failed = errno;
+  if (failed == 0 && ::rename(made.c_str(), path_.c_str()) != 0) failed = errno;
+  if (failed != 0) {
+    ::close(file);
+    ::unlink(made.c_str());
+    return Failed(made, failed);
+  }
+  static_cast<void>(SyncFolderOf(path_));
+  ::close(std::exchange(file_, file));
+  return {};
+}
+
+}  // namespace rmlcell::server

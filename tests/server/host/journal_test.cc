@@ -1,0 +1,171 @@
+// The journal of a host: what is written is there again, whatever is torn off its end.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <semaphore>
+
+#include "server/host/journal_writer.h"
+
+namespace rmlcell::server {
+namespace {
+
+class JournalTest : public testing::Test {
+ protected:
+  JournalTest() {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("rmlcell-journal-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+    path_ = (folder_ / "mill-1.journal").string();
+  }
+  ~JournalTest() override { std::filesystem::remove_all(folder_); }
+
+  static v1::JournalEntry Entry(std::int64_t fence, std::int64_t sequence, std::size_t bytes = 20) {
+    v1::JournalEntry entry;
+    entry.set_fence(fence);
+    entry.set_sequence(sequence);
+    entry.mutable_mark()->set_state(std::string(bytes, static_cast<char>('a' + sequence % 26)));
+    return entry;
+  }
+  static std::vector<v1::JournalEntry> Entries(std::int64_t fence, std::int64_t from,
+                                               std::int64_t to, std::size_t bytes = 20) {
+    std::vector<v1::JournalEntry> entries;
+    for (std::int64_t i = from; i <= to; ++i) entries.push_back(Entry(fence, i, bytes));
+    return entries;
+  }
+  Journal::Found Open() {
+    auto found = Journal::Open(path_);
+    EXPECT_TRUE(found) << (found ? "" : found.error().detail);
+    return *std::move(found);
+  }
+  static std::vector<std::int64_t> Numbers(const std::vector<v1::JournalEntry>& entries) {
+    std::vector<std::int64_t> numbers;
+    for (const v1::JournalEntry& entry : entries) numbers.push_back(entry.sequence());
+    return numbers;
+  }
+  std::string Bytes() const {
+    std::ifstream file(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  }
+  void Replace(const std::string& bytes) const {
+    std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
+  }
+
+  std::filesystem::path folder_;
+  std::string path_;
+};
+
+// LIVE-3.24
+TEST_F(JournalTest, WhatIsWrittenIsThereAgain) {
+  {
+    const Journal::Found found = Open();
+    EXPECT_TRUE(found.entries.empty());
+    EXPECT_TRUE(found.journal->Write(Entries(3, 1, 4)));
+    EXPECT_TRUE(found.journal->Write(Entries(3, 5, 5)));
+    EXPECT_EQ(found.journal->bytes(), static_cast<std::int64_t>(Bytes().size()));
+  }
+  const Journal::Found again = Open();
+  EXPECT_THAT(Numbers(again.entries), testing::ElementsAre(1, 2, 3, 4, 5));
+  EXPECT_EQ(again.torn_bytes, 0);
+  EXPECT_EQ(again.entries[1].SerializeAsString(), Entry(3, 2).SerializeAsString());
+}
+
+// LIVE-3.24: cut at every byte, the entries before the cut are there and nothing else, and more can
+// be written behind them.
+TEST_F(JournalTest, IsCutAtTheFirstTornRecord) {
+  ASSERT_TRUE(Open().journal->Write(Entries(3, 1, 3)));
+  const std::string whole = Bytes();
+  const std::size_t record = whole.size() / 3;
+  for (std::size_t length = 0; length <= whole.size(); ++length) {
+    Replace(whole.substr(0, length));
+    {
+      const Journal::Found found = Open();
+      ASSERT_EQ(found.entries.size(), length / record) << length;
+      ASSERT_EQ(found.torn_bytes, static_cast<std::int64_t>(length % record)) << length;
+      ASSERT_TRUE(found.journal->Write({Entry(3, 9)}));
+    }
+    ASSERT_EQ(Open().entries.back().sequence(), 9) << length;
+  }
+}
+
+// LIVE-3.24: a bit that changed ends it, wherever it is.
+TEST_F(JournalTest, AChangedBitIsFound) {
+  ASSERT_TRUE(Open().journal->Write(Entries(3, 1, 3)));
+  const std::string whole = Bytes();
+  const std::size_t record = whole.size() / 3;
+  for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
+    std::string changed = whole;
+    changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ (1 << (bit % 8)));
+    ASSERT_EQ(ReadJournal(changed).entries.size(), bit / 8 / record) << bit;
+  }
+}
+
+// Zeros, which a file may have at its end after a crash, are no entry.
+TEST_F(JournalTest, ZerosAreNoEntry) {
+  ASSERT_TRUE(Open().journal->Write(Entries(3, 1, 2)));
+  Replace(Bytes() + std::string(4'096, '\0'));
+  const Journal::Found found = Open();
+  EXPECT_EQ(found.entries.size(), 2U);
+  EXPECT_EQ(found.torn_bytes, 4'096);
+}
+
+// LIVE-3.24: what the store has is dropped when the file has grown; the rest stays.
+TEST_F(JournalTest, WhatTheStoreHasIsDropped) {
+  const Journal::Found found = Open();
+  Journal& journal = *found.journal;
+  ASSERT_TRUE(journal.Write(Entries(2, 1, 3, 1'000)));
+  journal.Stored(2, 2);
+  EXPECT_EQ(Open().entries.size(), 3U);  // not worth while yet
+  ASSERT_TRUE(journal.Write(Entries(3, 1, 50, 100'000)));
+  journal.Stored(3, 48);
+  EXPECT_LT(journal.bytes(), 250'000);
+  EXPECT_THAT(Numbers(Open().entries), testing::ElementsAre(49, 50));
+  ASSERT_TRUE(journal.Write(Entries(3, 51, 51)));
+  EXPECT_THAT(Numbers(Open().entries), testing::ElementsAre(49, 50, 51));
+}
+
+// LIVE-3.24: not beyond its bound, and then nothing of it.
+TEST_F(JournalTest, HasABound) {
+  const Journal::Found found = Open();
+  Status written;
+  std::int64_t sequence = 0;
+  while (written) written = found.journal->Write({Entry(3, ++sequence, 1 << 20)});
+  EXPECT_EQ(written.error().code, ErrorCode::kCellJournal);
+  EXPECT_LE(found.journal->bytes(), Journal::kBytesMax);
+  EXPECT_EQ(static_cast<std::int64_t>(Bytes().size()), found.journal->bytes());
+}
+
+// LIVE-3.21: a folder that is not there.
+TEST_F(JournalTest, SaysWhereItCannotBe) {
+  const auto found = Journal::Open((folder_ / "none" / "x").string());
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, ErrorCode::kCellJournal);
+  EXPECT_THAT(found.error().detail, testing::HasSubstr("none"));
+}
+
+// LIVE-3.10, LIVE-3.22: on a thread of its own, in order; who waits is told when it is on the disk.
+TEST_F(JournalTest, TheWriterTellsWhenItIsWritten) {
+  std::counting_semaphore<> told(0);
+  std::vector<int> order;
+  {
+    JournalWriter writer(Open().journal);
+    for (int i = 1; i <= 20; ++i) {
+      writer.Write({Entry(3, i)}, [&, i] {
+        order.push_back(i);
+        told.release();
+      });
+    }
+    for (int i = 0; i < 20; ++i) told.acquire();
+    EXPECT_FALSE(writer.trouble());
+    EXPECT_EQ(Open().entries.size(), 20U);
+    writer.Write({Entry(3, 21)}, [] {});
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(order));
+  EXPECT_EQ(Open().entries.size(), 21U);
+}
+
+}  // namespace
+}  // namespace rmlcell::server
