@@ -171,6 +171,7 @@ MachineStatus Machine::status() const {
                        .mode = mode_,
                        .override_percent = override_percent_,
                        .run = run_ != nullptr ? run_->state() : standing_->state(),
+                       .last_run = note_.number,
                        .alarms = alarms_,
                        .shown = shown_,
                        .message = message_};

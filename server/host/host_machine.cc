@@ -58,6 +58,7 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
     entry.set_sequence(sequence);
   }
   made.untold.clear();
+  if (made.open_run) host->TellCutOff(*made.open_run);
   return host;
 }
 
@@ -347,6 +348,19 @@ void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
                               .power_percent = schedule.power_percent()});
   }
   if (set.schedules != machine().memory().schedules) apply(set);
+}
+
+// Whoever watched it begin is told how it ended. LIVE-5.08
+void HostMachine::TellCutOff(const v1::MachineMark& mark) {
+  v1::RunOver& told = *Add(SimTime(mark.virtual_time_ns())).mutable_run_over();
+  told.set_run(machine().status().last_run);
+  told.set_program(machine().status().shown.program);
+  v1::Outcome& outcome = *told.mutable_outcome();
+  outcome = bridge::ToProto(machine::Outcome{.kind = machine::OutcomeKind::kStopped,
+                                             .code = ErrorCode::kCellHostDied});
+  outcome.set_kind(v1::Outcome::KIND_INTERRUPTED);
+  *outcome.mutable_place() = mark.place();
+  outcome.set_cycle_time_ns(mark.run_time_ns());
 }
 
 void HostMachine::Begin(const v1::HostMemory& memory, const HostTime& now) {

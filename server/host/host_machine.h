@@ -31,6 +31,8 @@ class HostMachine : private machine::RunObserver {
     // What happened under an earlier fence and is not in the store yet; marks aside.
     std::vector<v1::JournalEntry> untold{};
     bool cut_off = false;  // a run was open then, and nobody has decided yet: INSPECT
+    // The run that the mark was in the middle of; absent: none, or its end was told already.
+    std::optional<v1::MachineMark> open_run{};
   };
   static constexpr std::size_t kAnswersKept = 1'024;
   static constexpr std::chrono::minutes kAnswersKeptFor{10};
@@ -82,6 +84,7 @@ class HostMachine : private machine::RunObserver {
   void GoOnTo(const HostTime& now);
   void Notice();
   void TellControl();
+  void TellCutOff(const v1::MachineMark& mark);
   v1::JournalEntry& Add(SimTime at);
   v1::RunEvent& Event(SimTime of_run) { return *Add(run_begun_ + of_run).mutable_event(); }
   void Mark();

@@ -294,7 +294,8 @@ class HostProcess {
          .parameters = {welcome_->parameters().begin(), welcome_->parameters().end()},
          .state = found.mark.state(),
          .untold = std::move(found.untold),
-         .cut_off = found.known && !found.mark.clean()},
+         .cut_off = found.known && !found.mark.clean(),
+         .open_run = found.mark.has_run_time_ns() ? std::optional(found.mark) : std::nullopt},
         now, RandomText);
     if (!made) return Fail(made.error());
     machine_ = *std::move(made);

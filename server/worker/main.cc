@@ -69,70 +69,42 @@ Result<std::unique_ptr<ServerLine>> JoinFirst(const std::vector<std::string>& se
   return line;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CLI::App app{"An engine worker: joins a server and works on its jobs.", "rmlcell-worker"};
+struct Options {
   std::vector<std::string> servers = {"127.0.0.1:50051"};
   std::string name = OwnName();
-  std::string pool;
-  std::string host;
-  std::string journal;
+  std::string pool{};
+  std::string host{};  // a machine: its host, and no worker
+  std::string journal{};
   std::string log_level = "info";
   std::string log_format = "text";
+};
+
+void Add(CLI::App& app, Options& options) {
   app.set_version_flag("--version", std::string(kVersion));
-  app.add_option("--server", servers,
+  app.add_option("--server", options.servers,
                  "host:port or unix:/path; of several the first that takes the worker");
-  app.add_option("--name", name, "unique among the workers of the server");
+  app.add_option("--name", options.name, "unique among the workers of the server");
   app.add_option(
-         "--pool", pool,
+         "--pool", options.pool,
          "takes \"paced\" jobs only (simulations with a pace), or \"computing\" ones; else all")
       ->check(CLI::IsMember({"paced", "computing"}));
-  app.add_option("--host", host,
-                 "machines/ID: the host of this machine that lives, in place of a worker");
-  app.add_option("--journal", journal, "of a host: the file that it keeps on its disk");
-  app.add_option("--log-level", log_level);
-  app.add_option("--log-format", log_format, "text or json");
+  auto* journal =
+      app.add_option("--journal", options.journal, "of a host: the file that it keeps on its disk");
+  app.add_option("--host", options.host,
+                 "machines/ID: the host of this machine that lives, in place of a worker")
+      ->needs(journal);
+  app.add_option("--log-level", options.log_level);
+  app.add_option("--log-format", options.log_format, "text or json");
   app.footer("The join token of the server is taken from the environment: RMLCELL_JOIN_TOKEN.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 64;
-  }
-  if (const Status log =
-          StartLog(host.empty() ? name : "host of " + host, log_level, log_format, {});
-      !log)
-    return 69;
-  ::signal(SIGPIPE, SIG_IGN);
-  // Only noted: the job is handed back by the thread that works on it.
-  struct sigaction action {};
-  action.sa_handler = [](int) { stopping = true; };
-  ::sigaction(SIGTERM, &action, nullptr);
-  ::sigaction(SIGINT, &action, nullptr);
-  const char* token = std::getenv("RMLCELL_JOIN_TOKEN");
-  if (!host.empty()) {
-    if (journal.empty()) {
-      spdlog::error("a host needs --journal");
-      return 64;
-    }
-    const int code = RunHost({.server = servers.front(),
-                              .join_token = token != nullptr ? token : "",
-                              .machine = host,
-                              .journal = journal},
-                             stopping);
-    spdlog::shutdown();
-    _exit(code);  // as below
-  }
-  auto line = JoinFirst(servers, token != nullptr ? token : "", name, pool);
-  if (!line) {
-    spdlog::error("{}", bridge::ErrorText(line.error()));
-    return 69;
-  }
+}
+
+// Its jobs, one after the other, until it is told to end.
+void WorkOn(ServerLine& line) {
   pthread_getcpuclockid(pthread_self(), &job_clock);
   std::thread(Guard).detach();
-  JobRunner runner(**line, stopping);
-  while (!stopping && !(*line)->gone()) {
-    std::optional<v1::WorkResponse> message = (*line)->Receive(std::chrono::milliseconds(200));
+  JobRunner runner(line, stopping);
+  while (!stopping && !line.gone()) {
+    std::optional<v1::WorkResponse> message = line.Receive(std::chrono::milliseconds(200));
     if (!message) continue;
     if (message->has_stop()) break;
     if (!message->has_assignment()) continue;
@@ -142,10 +114,51 @@ int main(int argc, char** argv) {
     processor_limit_s = 0.0;
     if (!go_on) break;
   }
-  (*line)->Close();
-  spdlog::debug("worker {} ends", name);
+  line.Close();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"An engine worker: joins a server and works on its jobs.", "rmlcell-worker"};
+  Options options;
+  Add(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 64;
+  }
+  const bool hosts = !options.host.empty();
+  if (const Status log = StartLog(hosts ? "host of " + options.host : options.name,
+                                  options.log_level, options.log_format, {});
+      !log)
+    return 69;
+  ::signal(SIGPIPE, SIG_IGN);
+  // Only noted: the job is handed back by the thread that works on it.
+  struct sigaction action {};
+  action.sa_handler = [](int) { stopping = true; };
+  ::sigaction(SIGTERM, &action, nullptr);
+  ::sigaction(SIGINT, &action, nullptr);
+  const char* given = std::getenv("RMLCELL_JOIN_TOKEN");
+  const std::string token = given != nullptr ? given : "";
+  int code = 0;
+  if (hosts) {
+    code = RunHost({.server = options.servers.front(),
+                    .join_token = token,
+                    .machine = options.host,
+                    .journal = options.journal},
+                   stopping);
+  } else {
+    const auto line = JoinFirst(options.servers, token, options.name, options.pool);
+    if (!line) {
+      spdlog::error("{}", bridge::ErrorText(line.error()));
+      return 69;
+    }
+    WorkOn(**line);
+    spdlog::debug("worker {} ends", options.name);
+  }
   spdlog::shutdown();
   // Static destructors of gRPC may wait for threads that wait for the server: there is nothing to
   // save.
-  _exit(0);
+  _exit(code);
 }

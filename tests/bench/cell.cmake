@@ -15,7 +15,10 @@ if(NOT RMLCELL_ENGINE_ONLY)
   rmlcell_executable(bench_cell_watch_hour
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_watch_hour.cc
     LINKS rmlcell::proto)
-  foreach(bench IN ITEMS submit status stop watch watch_hour)
+  rmlcell_executable(bench_cell_live
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_live.cc
+    LINKS rmlcell::proto)
+  foreach(bench IN ITEMS submit status stop live watch watch_hour)
     set_property(TARGET bench_cell_${bench}
                  PROPERTY LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,rmlcell_proto")
   endforeach()

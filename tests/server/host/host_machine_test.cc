@@ -23,17 +23,19 @@ constexpr const char* kSquare =
 
 class HostMachineTest : public testing::Test {
  protected:
-  void Make(std::string state = {}, bool cut_off = false, std::int64_t fence = 7) {
+  void Make(std::string state = {}, bool cut_off = false,
+            std::optional<v1::MachineMark> open_run = {}) {
     machine::MachineMemory memory;
     memory.programs[5] = {.name = "square", .object = machine::Bytes::Of(kSquare)};
     auto made = HostMachine::Make({.name = "machines/mill-1",
                                    .host = "workshop/1",
-                                   .fence = fence,
+                                   .fence = 7,
                                    .family = families::FindFamily("rml1"),
                                    .profile = "srm-20",
                                    .memory = std::move(memory),
                                    .state = std::move(state),
-                                   .cut_off = cut_off},
+                                   .cut_off = cut_off,
+                                   .open_run = std::move(open_run)},
                                   now_, [this] { return "token " + std::to_string(++tokens_); });
     ASSERT_TRUE(made) << made.error().detail;
     host_ = *std::move(made);
@@ -215,13 +217,15 @@ TEST_F(HostMachineTest, WhatWasCutOffWaitsForAPerson) {
   EXPECT_FALSE(mark_.clean());
   const v1::MachineMark cut_off = mark_;
   const v1::Point tip = host_->StatusAt(now_).tip();
-  Make(cut_off.state(), true);
+  Make(cut_off.state(), true, cut_off);
   sequence_ = 0;
   EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
   EXPECT_THAT(host_->StatusAt(now_).confirmations_due(), ElementsAre(v1::CONFIRMATION_INSPECTED));
   EXPECT_FALSE(host_->StatusAt(now_).has_run());
   EXPECT_NEAR(host_->StatusAt(now_).tip().x(), tip.x(), 0.011);  // 1 mm/s, a mark within 10 ms
-  EXPECT_THAT(Told(), ElementsAre("mark"));                      // again one that is not clean
+  // How the run ended is told once: the next mark, again one that is not clean, is in no run.
+  EXPECT_THAT(Told(), ElementsAre("over KIND_INTERRUPTED", "mark"));
+  EXPECT_FALSE(mark_.has_run_time_ns());
   Control();
   EXPECT_EQ(Do(Start()).refusal().code(), "CELL-E9409");
   EXPECT_EQ(Do(Resume()).refusal().code(), "CELL-E9409");
