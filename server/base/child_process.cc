@@ -1,5 +1,6 @@
 #include "server/base/child_process.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/stat.h>
@@ -21,7 +22,8 @@ Status CheckProgram(const std::string& program) {
                {}};
 }
 
-Result<pid_t> StartChild(std::vector<std::string> words, std::vector<std::string> secrets) {
+Result<pid_t> StartChild(std::vector<std::string> words, std::vector<std::string> secrets,
+                         const std::string& log) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -40,6 +42,12 @@ Result<pid_t> StartChild(std::vector<std::string> words, std::vector<std::string
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
+  if (!log.empty()) {
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(),
+                                     O_WRONLY | O_CREAT | O_APPEND, S_IRUSR | S_IWUSR);
+  }
   posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
   const int failed = posix_spawn(&process, words.front().c_str(), &actions, &attributes,
                                  arguments.data(), environment.data());

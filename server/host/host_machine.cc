@@ -356,8 +356,8 @@ void HostMachine::TellCutOff(const v1::MachineMark& mark) {
   told.set_run(machine().status().last_run);
   told.set_program(machine().status().shown.program);
   v1::Outcome& outcome = *told.mutable_outcome();
-  outcome = bridge::ToProto(machine::Outcome{.kind = machine::OutcomeKind::kStopped,
-                                             .code = ErrorCode::kCellHostDied});
+  outcome = bridge::ToProto(
+      machine::Outcome{.kind = machine::OutcomeKind::kStopped, .code = ErrorCode::kCellHostDied});
   outcome.set_kind(v1::Outcome::KIND_INTERRUPTED);
   *outcome.mutable_place() = mark.place();
   outcome.set_cycle_time_ns(mark.run_time_ns());

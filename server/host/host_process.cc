@@ -33,7 +33,7 @@ using google::protobuf::util::TimeUtil;
 using std::chrono::nanoseconds;
 
 constexpr int kProtocol = 1;
-constexpr nanoseconds kStatusMoving = 50ms;  // LIVE-3.16
+constexpr nanoseconds kStatusMoving = 52ms;  // LIVE-3.16
 constexpr nanoseconds kStatusStanding = 1s;
 constexpr nanoseconds kTick = 5ms;       // of a machine that moves
 constexpr nanoseconds kTickHeld = 50ms;  // of a run that stands: its time goes on
@@ -137,6 +137,7 @@ class HostProcess {
       if (machine_ != nullptr && !ended_) Turn();
       if (ended_) break;
       if (stopping_) End("it is told to stop");
+      EndWithoutServer();
       Rest();
     }
     return exit_code_;
@@ -167,6 +168,8 @@ class HostProcess {
       spdlog::warn("the line to the server is gone");
       line_.reset();
       without_server_since_ = Now().steady;
+      const std::lock_guard lock(mutex_);
+      inbox_.clear();  // asked over a line that cannot be answered over any more
     }
     if (joined) {
       connector_.join();
@@ -235,6 +238,8 @@ class HostProcess {
 
   // What halts is looked at before all else.
   void TakeMessages() {
+    // A line may be heard before it is known to have joined: what it says waits for that.
+    if (line_ == nullptr) return;
     std::deque<v1::HostResponse> messages;
     {
       const std::lock_guard lock(mutex_);
@@ -379,6 +384,14 @@ class HostProcess {
     });
   }
 
+  // One that has not begun yet, too. What moves is brought to rest before.
+  void EndWithoutServer() {
+    if (line_ != nullptr || (machine_ != nullptr && machine_->moves())) return;
+    if (Now().steady - without_server_since_ <= kEndsWithoutServer) return;
+    spdlog::warn("no server for {} s", kEndsWithoutServer / 1s);
+    Quit(0);
+  }
+
   // On the thread of the machine, in its next turn.
   void Later(std::function<void()> work) {
     const std::lock_guard lock(mutex_);
@@ -430,11 +443,6 @@ class HostProcess {
       line_->Send(std::move(renew));
     }
     if (ending_at_ && (!machine_->moves() || now.steady >= *ending_at_)) HandBack(now);
-    if (line_ == nullptr && !machine_->moves() &&
-        now.steady - without_server_since_ > kEndsWithoutServer) {
-      spdlog::warn("no server for {} s", kEndsWithoutServer / 1s);
-      Quit(0);
-    }
   }
 
   void Keep(const std::vector<v1::JournalEntry>& entries) {
@@ -496,7 +504,8 @@ class HostProcess {
     }
     std::unique_lock lock(mutex_);
     wake_.wait_for(lock, std::max<nanoseconds>(longest, 0ns), [this] {
-      return !inbox_.empty() || !later_.empty() || joined_ || line_gone_ != line_gone_seen_;
+      return (line_ != nullptr && !inbox_.empty()) || !later_.empty() || joined_ ||
+             line_gone_ != line_gone_seen_;
     });
     line_gone_seen_ = line_gone_;
   }

@@ -40,6 +40,7 @@ Status HostProcesses::Enable(const std::string& machine, std::chrono::millisecon
     place.next_start = options_.clock() + after;
     LookAt(machine, place);
   }
+  wanted_.notify_one();
   return {};
 }
 
@@ -67,11 +68,11 @@ void HostProcesses::LookAt(const std::string& machine, Place& place) {
   }
   if (place.process > 0 || !place.wanted || now < place.next_start) return;
   if (options_.is_heard && options_.is_heard(machine)) return;
-  const Result<pid_t> process =
-      StartChild({options_.program, "--host", MachineName(machine), "--server", options_.server,
-                  "--journal", options_.journals + "/" + machine + ".journal", "--log-level",
-                  options_.log_level, "--log-format", options_.log_format},
-                 {"RMLCELL_JOIN_TOKEN=" + options_.join_token});
+  const Result<pid_t> process = StartChild(
+      {options_.program, "--host", MachineName(machine), "--server", options_.server, "--journal",
+       options_.journals + "/" + machine + ".journal", "--log-level", options_.log_level,
+       "--log-format", options_.log_format},
+      {"RMLCELL_JOIN_TOKEN=" + options_.join_token}, options_.journals + "/" + machine + ".log");
   place.started = now;
   place.next_start = now + std::chrono::seconds(1);
   if (!process) {
@@ -82,14 +83,14 @@ void HostProcesses::LookAt(const std::string& machine, Place& place) {
 }
 
 void HostProcesses::Watch(const std::stop_token& stop) {
-  while (!stop.stop_requested()) {
-    {
-      const std::lock_guard lock(mutex_);
-      for (auto& [machine, place] : places_) LookAt(machine, place);
-      std::erase_if(places_,
-                    [](const auto& row) { return !row.second.wanted && row.second.process < 0; });
-    }
-    std::this_thread::sleep_for(kLookAtHosts);
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    wanted_.wait(lock, stop, [this] { return !places_.empty(); });
+    if (stop.stop_requested()) return;
+    for (auto& [machine, place] : places_) LookAt(machine, place);
+    std::erase_if(places_,
+                  [](const auto& row) { return !row.second.wanted && row.second.process < 0; });
+    wanted_.wait_for(lock, stop, kLookAtHosts, [] { return false; });
   }
 }
 

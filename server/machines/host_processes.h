@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <condition_variable>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -23,7 +24,7 @@ class HostProcesses {
     std::string program{};     // path of rmlcell-worker
     std::string server{};      // address that they connect to
     std::string join_token{};  // handed over in the environment, not on the command line
-    std::string journals{};  // folder of their journals; made where it is missing
+    std::string journals{};    // folder of their journals; made where it is missing
     std::string log_level{};
     std::string log_format{};
     // Whether a host of the machine is heard, wherever it came from: then none is started.
@@ -56,6 +57,7 @@ class HostProcesses {
   const Options options_;
   mutable std::mutex mutex_;
   std::map<std::string, Place> places_;  // by id of the machine; guarded by mutex_
+  std::condition_variable_any wanted_;
   std::jthread watcher_;
 };
 
