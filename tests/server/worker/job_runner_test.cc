@@ -90,8 +90,8 @@ TEST_F(JobRunnerTest, ASimulationLeavesItsProducts) {
 
 // With a pace somebody looks on: the first position comes at once.
 TEST_F(JobRunnerTest, APacedSimulationTellsItsPosition) {
-  v1::WorkerAssignment assignment = Assignment(
-      v1::JOB_KIND_SIMULATE, "PA;PA;VS8;!MC1;PU1000,1000;Z1000,1000,-50;PU0,0;", "rml1");
+  v1::WorkerAssignment assignment =
+      Assignment(v1::JOB_KIND_SIMULATE, "PA;PA;VS8;!MC1;PU1000,1000;Z1000,1000,-50;PU0,0;", "rml1");
   assignment.mutable_job()->mutable_simulation()->set_pace(1000.0);
   Work(assignment);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
