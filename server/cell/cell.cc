@@ -212,7 +212,8 @@ Status Cell::Parts::Listen(const std::string& join_token) {
       .journals = config.state_directory + "/hosts",
       .log_level = config.log_level,
       .log_format = config.log_format,
-      .is_heard = [this](const std::string& machine) { return hosts->IsHeard(machine); }});
+      .is_heard = [this](const std::string& machine) { return hosts->IsHeard(machine); },
+      .look = [this] { hosts->Look(); }});
   statuses = std::make_unique<MachineStatuses>(*store, *feed, *executor, hosts.get());
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);

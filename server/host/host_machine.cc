@@ -1,6 +1,7 @@
 #include "server/host/host_machine.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "engine/core/hex.h"
@@ -56,6 +57,7 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
     const std::int64_t sequence = entry.sequence();
     entry = untold;
     entry.set_sequence(sequence);
+    entry.set_fence(made.fence);  // known by the number that it has now
   }
   made.untold.clear();
   if (made.open_run) host->TellCutOff(*made.open_run);
@@ -67,9 +69,12 @@ HostMachine::HostMachine(Setup setup, std::function<std::string()> make_token)
 
 v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& now) {
   GoOnTo(now);
-  const std::string request_id = FieldOf(order, "request_id").value_or("");
+  std::string request_id = FieldOf(order, "request_id").value_or("");
+  // One's own, and of the same kind; what halts acts however often it is asked for.
+  if (!request_id.empty())
+    request_id += "\n" + std::to_string(order.request_case()) + "\n" + order.caller();
   const auto known = answered_.find(request_id);
-  if (!request_id.empty() && known != answered_.end()) {
+  if (!request_id.empty() && known != answered_.end() && !IsHalt(order)) {
     v1::HostOrderAnswer again = known->second.answer;
     again.set_number(order.number());
     return again;
@@ -77,7 +82,7 @@ v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& 
   v1::HostOrderAnswer answer = Carry(order, now);
   answer.set_number(order.number());
   *answer.mutable_acted_at() = Stamp(now.wall);
-  if (!request_id.empty()) Remember(request_id, answer);
+  if (!request_id.empty() && !answered_.contains(request_id)) Remember(request_id, answer);
   return answer;
 }
 
@@ -243,14 +248,17 @@ Status HostMachine::Act(const v1::HostOrder& order) {
 
 // It stands before what it leads to; of what is refused nothing does.
 Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrder* order) {
-  if (std::holds_alternative<machine::StartRun>(input)) {
+  const auto before = std::tuple(run_begun_, told_of_run_, held_for_);
+  const bool starts = std::holds_alternative<machine::StartRun>(input);
+  if (starts) {
     run_begun_ = machine().time();
     told_of_run_ = 0;
   }
-  const std::optional<v1::HoldReason> held_for = held_for_;
-  if (std::holds_alternative<machine::StopRun>(input)) held_for_ = v1::HOLD_REASON_STOP;
-  if (std::holds_alternative<machine::HoldRun>(input)) held_for_ = v1::HOLD_REASON_HOLD;
-  if (std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
+  if (starts || std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
+  if (moves()) {
+    if (std::holds_alternative<machine::StopRun>(input)) held_for_ = v1::HOLD_REASON_STOP;
+    if (std::holds_alternative<machine::HoldRun>(input)) held_for_ = v1::HOLD_REASON_HOLD;
+  }
   const std::size_t place = entries_.size();
   v1::InputApplied& applied = *Add(machine().time()).mutable_applied();
   applied.set_fence(setup_.fence);
@@ -268,7 +276,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   if (const Status done = machine().Apply(input); !done) {
     entries_.resize(place);
     sequence_ -= 1;
-    held_for_ = held_for;
+    std::tie(run_begun_, told_of_run_, held_for_) = before;
     return done.error();
   }
   mark_due_ = true;

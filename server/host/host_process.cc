@@ -24,6 +24,8 @@
 #include "server/host/host_line.h"
 #include "server/host/host_machine.h"
 #include "server/host/journal_writer.h"
+#include "server/host/order_class.h"
+#include "server/host/recovered.h"
 
 namespace rmlcell::server {
 namespace {
@@ -63,58 +65,6 @@ std::string BootId() {
   std::string id;
   std::getline(file, id);
   return id;
-}
-
-// Before or behind what is written. LIVE-3.20
-enum class OrderClass { kActsFirst, kWrittenFirst, kWrittenBehind, kAsks };
-
-OrderClass ClassOf(const v1::HostOrder& order) {
-  switch (order.request_case()) {
-    case v1::HostOrder::kStop:
-    case v1::HostOrder::kHold:
-    case v1::HostOrder::kEmergencyStop:
-    case v1::HostOrder::kAbort:
-      return OrderClass::kActsFirst;
-    case v1::HostOrder::kStart:
-    case v1::HostOrder::kResume:
-    case v1::HostOrder::kMode:
-    case v1::HostOrder::kAcknowledgeAlarm:
-    case v1::HostOrder::kConfirm:
-    case v1::HostOrder::kAcquireControl:
-      return OrderClass::kWrittenFirst;
-    case v1::HostOrder::kReadVariables:
-    case v1::HostOrder::kRunState:
-    case v1::HostOrder::kRenewControl:
-      return OrderClass::kAsks;
-    default:
-      return OrderClass::kWrittenBehind;
-  }
-}
-
-// The newest state that is durable, and what was told before it that the store does not have.
-struct Recovered {
-  bool known = false;
-  v1::MachineMark mark{};
-  std::vector<v1::JournalEntry> untold{};
-};
-
-Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal) {
-  using Number = std::pair<std::int64_t, std::int64_t>;
-  Recovered found{.known = welcome.has_mark(), .mark = welcome.mark()};
-  const Number stored{welcome.mark().fence(), welcome.mark().sequence()};
-  Number newest = stored;
-  for (const v1::JournalEntry& entry : journal) {
-    const Number number{entry.fence(), entry.sequence()};
-    if (!entry.has_mark() || (found.known && number <= newest)) continue;
-    found.known = true;
-    found.mark = entry.mark();
-    newest = number;
-  }
-  for (v1::JournalEntry& entry : journal) {
-    const Number number{entry.fence(), entry.sequence()};
-    if (number > stored && number <= newest) found.untold.push_back(std::move(entry));
-  }
-  return found;
 }
 
 class HostProcess {
@@ -168,14 +118,29 @@ class HostProcess {
       spdlog::warn("the line to the server is gone");
       line_.reset();
       without_server_since_ = Now().steady;
-      const std::lock_guard lock(mutex_);
-      inbox_.clear();  // asked over a line that cannot be answered over any more
+      ForgetOrders();
     }
     if (joined) {
       connector_.join();
       Joined(*std::move(joined));
     }
     if (line_ == nullptr && !connector_.joinable() && Now().steady >= next_try_) Connect();
+  }
+
+  // They cannot be answered any more. Nothing of them begins; what halts acts all the same.
+  void ForgetOrders() {
+    std::deque<v1::HostResponse> messages;
+    {
+      const std::lock_guard lock(mutex_);
+      messages.swap(inbox_);
+    }
+    for (const auto& parked : parked_) parked->over = true;
+    answers_due_.clear();
+    ++lines_lost_;
+    if (machine_ == nullptr) return;
+    for (const v1::HostResponse& message : messages) {
+      if (Halts(message)) static_cast<void>(machine_->Do(message.order(), Now()));
+    }
   }
 
   bool LineGone() {
@@ -236,7 +201,28 @@ class HostProcess {
     wake_.notify_one();
   }
 
-  // What halts is looked at before all else.
+  static bool Halts(const v1::HostResponse& message) {
+    return message.has_order() && ClassOf(message.order()) == OrderClass::kActsFirst;
+  }
+
+  // What halts is looked at before all else, and takes along what stood before it and would begin
+  // a motion behind it.
+  void StopFirst(std::deque<v1::HostResponse>& messages) {
+    const auto last = std::find_if(messages.rbegin(), messages.rend(), Halts).base();
+    const auto begins = [](const v1::HostResponse& message) {
+      return message.has_order() && ClassOf(message.order()) == OrderClass::kWrittenFirst;
+    };
+    for (auto message = messages.begin(); message != last; ++message) {
+      if (begins(*message)) Refuse(message->order(), StoppedBefore());
+    }
+    messages.erase(std::remove_if(messages.begin(), last, begins), last);
+    std::ranges::stable_partition(messages, Halts);
+  }
+
+  static Error StoppedBefore() {
+    return {ErrorCode::kCellMachineState, "it was stopped before it began", {}};
+  }
+
   void TakeMessages() {
     // A line may be heard before it is known to have joined: what it says waits for that.
     if (line_ == nullptr) return;
@@ -245,10 +231,7 @@ class HostProcess {
       const std::lock_guard lock(mutex_);
       messages.swap(inbox_);
     }
-    std::ranges::stable_partition(messages, [](const v1::HostResponse& message) {
-      return message.has_order() && (message.order().has_stop() || message.order().has_hold() ||
-                                     message.order().has_emergency_stop());
-    });
+    StopFirst(messages);
     for (v1::HostResponse& message : messages) Take(message);
   }
 
@@ -313,12 +296,14 @@ class HostProcess {
   void TakeOrder(const v1::HostOrder& order) {
     if (machine_ == nullptr)
       return Refuse(order, {ErrorCode::kCellNotLive, "the machine is starting", {}});
-    switch (ClassOf(order)) {
+    const OrderClass kind = ClassOf(order);
+    if (ending_at_ && kind != OrderClass::kActsFirst && kind != OrderClass::kAsks)
+      return Refuse(order, {ErrorCode::kCellNotLive, "its host ends", {}});
+    switch (kind) {
       case OrderClass::kActsFirst:
         // Whoever stops the machine stops what has not begun yet, too.
         for (const auto& parked : parked_) {
-          if (!std::exchange(parked->over, true))
-            Refuse(parked->order, {ErrorCode::kCellMachineState, "it was stopped before", {}});
+          if (!std::exchange(parked->over, true)) Refuse(parked->order, StoppedBefore());
         }
         return SendAnswer(CarryOut(order));
       case OrderClass::kAsks:
@@ -374,14 +359,18 @@ class HostProcess {
     std::vector<v1::JournalEntry> entries = machine_->TakeEntries(now, at_once);
     if (entries.empty()) return;
     auto copy = std::make_shared<const std::vector<v1::JournalEntry>>(entries);
-    writer_->Write(std::move(entries), [this, copy, answers = std::exchange(answers_due_, {})] {
-      Later([this, copy, answers] {
-        durable_at_ = Now().steady;
-        Keep(*copy);
-        SendEntries(*copy);
-        for (const v1::HostOrderAnswer& answer : answers) SendAnswer(answer);
-      });
-    });
+    if (writes_under_way_++ == 0) durable_at_ = now.steady;
+    writer_->Write(std::move(entries),
+                   [this, copy, line = lines_lost_, answers = std::exchange(answers_due_, {})] {
+                     Later([this, copy, line, answers] {
+                       --writes_under_way_;
+                       durable_at_ = Now().steady;
+                       Keep(*copy);
+                       SendEntries(*copy);
+                       if (line != lines_lost_) return;  // they are no answers to what is asked now
+                       for (const v1::HostOrderAnswer& answer : answers) SendAnswer(answer);
+                     });
+                   });
   }
 
   // One that has not begun yet, too. What moves is brought to rest before.
@@ -417,7 +406,7 @@ class HostProcess {
       Refuse(parked->order, {ErrorCode::kCellJournal, "the disk does not answer", {}});
       return true;
     });
-    if (machine_->moves() && writer_->trouble() && now - durable_at_ > kDurablePatience)
+    if (machine_->moves() && writes_under_way_ > 0 && now - durable_at_ > kDurablePatience)
       machine_->Hold(v1::HOLD_REASON_LATE, Now());
   }
 
@@ -470,6 +459,7 @@ class HostProcess {
   }
 
   void HandBack(const HostTime& now) {
+    for (const auto& parked : parked_) parked->over = true;
     Write(now, true);
     writer_.reset();  // it writes what waits
     DoLater();
@@ -531,7 +521,9 @@ class HostProcess {
   };
   std::vector<std::shared_ptr<Parked>> parked_;   // their intent is on its way to the disk
   std::vector<v1::HostOrderAnswer> answers_due_;  // when what goes out next is on the disk
-  nanoseconds durable_at_{0};
+  int writes_under_way_ = 0;
+  nanoseconds durable_at_{0};  // what was written last; where nothing is under way, what begins
+  int lines_lost_ = 0;
   std::deque<v1::JournalEntry> unstored_;
   std::int64_t fence_ = 0;
   nanoseconds lease_{0};
@@ -549,7 +541,10 @@ class HostProcess {
 
 }  // namespace
 
-std::string NameOfHost() { return NameOfComputer() + "/" + std::to_string(::getpid()); }
+// The random part: a number of a process comes again, after a reboot, too.
+std::string NameOfHost() {
+  return NameOfComputer() + "/" + std::to_string(::getpid()) + "/" + RandomText().substr(0, 8);
+}
 
 int RunHost(const HostOptions& options, const std::atomic<bool>& stopping) {
   return HostProcess(options, stopping).Run();

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -50,6 +51,12 @@ void HostProcesses::Disable(const std::string& machine) {
     found->second.wanted = false;
 }
 
+void HostProcesses::Forget(const std::string& machine) {
+  Disable(machine);
+  for (const char* kept : {".journal", ".log"})
+    ::unlink((options_.journals + "/" + machine + kept).c_str());
+}
+
 bool HostProcesses::IsEnabled(const std::string& machine) const {
   const std::lock_guard lock(mutex_);
   const auto found = places_.find(machine);
@@ -90,6 +97,11 @@ void HostProcesses::Watch(const std::stop_token& stop) {
     for (auto& [machine, place] : places_) LookAt(machine, place);
     std::erase_if(places_,
                   [](const auto& row) { return !row.second.wanted && row.second.process < 0; });
+    if (options_.look) {
+      lock.unlock();
+      options_.look();
+      lock.lock();
+    }
     wanted_.wait_for(lock, stop, kLookAtHosts, [] { return false; });
   }
 }

@@ -29,6 +29,7 @@ class HostProcesses {
     std::string log_format{};
     // Whether a host of the machine is heard, wherever it came from: then none is started.
     std::function<bool(const std::string& machine)> is_heard{};
+    std::function<void()> look{};  // called from time to time, while there are hosts
     SteadyClock clock = SteadyTime;
   };
   explicit HostProcesses(Options options);
@@ -41,6 +42,8 @@ class HostProcesses {
   Status Enable(const std::string& machine, std::chrono::milliseconds after = {});
   // None any more; one that is there goes when its line tells it to.
   void Disable(const std::string& machine);
+  // The machine is gone: so is what its host kept.
+  void Forget(const std::string& machine);
   bool IsEnabled(const std::string& machine) const;
 
  private:

@@ -15,6 +15,7 @@
 #include "rmlcell/v1/cell.pb.h"
 #include "server/base/names.h"
 #include "server/base/secret.h"
+#include "server/machines/host_words.h"
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
 
@@ -26,6 +27,7 @@ using Instant = std::chrono::steady_clock::time_point;
 
 constexpr int kProtocol = 1;
 constexpr std::chrono::seconds kObserved{5};  // beyond the lease: its holder is gone (PG-5.09)
+constexpr std::chrono::seconds kSilence{5};   // of a line that has a word four times a second
 constexpr int kMemoryReadAhead = 1'000;
 constexpr std::size_t kWaitingEntriesMax = 100'000;
 
@@ -37,67 +39,9 @@ bool IsGone(const std::string& host) {
   if (::gethostname(name.data(), name.size() - 1) != 0) return false;
   const std::string here = std::string(name.data()) + "/";
   if (!host.starts_with(here)) return false;
-  const auto process = ParseInteger(std::string_view(host).substr(here.size()));
+  const std::string_view rest = std::string_view(host).substr(here.size());
+  const auto process = ParseInteger(rest.substr(0, rest.find('/')));
   return process && *process > 1 && ::kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH;
-}
-
-// As it stands in the log of the cell; nothing: it is not told.
-std::optional<v1::MachineEvent> EventOf(const v1::JournalEntry& entry) {
-  v1::MachineEvent event;
-  switch (entry.what_case()) {
-    case v1::JournalEntry::kApplied:
-      *event.mutable_input_applied() = entry.applied();
-      break;
-    case v1::JournalEntry::kEvent:
-      *event.mutable_run() = entry.event();
-      break;
-    case v1::JournalEntry::kRunBegun:
-      *event.mutable_run_begun() = entry.run_begun();
-      event.set_run_number(entry.run_begun().run());
-      break;
-    case v1::JournalEntry::kRunOver:
-      *event.mutable_run_over() = entry.run_over();
-      event.set_run_number(entry.run_over().run());
-      break;
-    case v1::JournalEntry::kClockSlipped:
-      *event.mutable_clock_slipped() = entry.clock_slipped();
-      break;
-    default:
-      return std::nullopt;
-  }
-  event.set_fence(entry.fence());
-  event.set_virtual_time_ns(entry.virtual_time_ns());
-  return event;
-}
-
-storage::NewEvent ToRecord(const v1::MachineEvent& event) {
-  return {.kind = std::string(kMachineEvent),
-          .payload = event.SerializeAsString(),
-          .caller = event.input_applied().caller()};
-}
-
-v1::HostMemory MemoryOf(const storage::MachineMemory& memory) {
-  v1::HostMemory message;
-  message.set_whole(true);
-  for (const storage::ProgramRecord& program : memory.programs) {
-    v1::AssignedProgram& made = *message.add_programs();
-    made.set_slot(program.slot);
-    made.set_title(program.name);
-    made.set_content(program.object);
-    made.set_size(static_cast<std::int64_t>(program.object.size()));
-    if (program.executable) made.set_executable(*program.executable);
-    made.set_object_revision(program.revision);
-  }
-  for (const int slot : memory.deleted) message.add_deleted_programs(slot);
-  message.set_schedules_changed(true);
-  for (const storage::ScheduleRecord& schedule : memory.schedules) {
-    v1::AssignedSchedule& made = *message.add_schedules();
-    made.set_number(schedule.number);
-    made.set_title(schedule.name);
-    made.set_mode(schedule.mode);
-    made.set_power_percent(schedule.power_percent);
-  }
-  return message;
 }
 
 }  // namespace
@@ -107,10 +51,10 @@ struct Hosts::Host {
   std::shared_ptr<HostLink> link;
   storage::MachineLease lease{};  // does not change but for its count, which nobody looks at
 
-  std::mutex mutex;  // a leaf, like that of Hosts
+  std::mutex mutex;               // a leaf, like that of Hosts
+  std::condition_variable rests;  // nothing of it is being stored
   bool gone = false;
   bool handed_back = false;
-  std::int64_t next_order = 0;
   struct Pending {
     Answered done;
     Instant asked{};
@@ -171,6 +115,7 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   const std::lock_guard joining(joining_);
   const Result<storage::MachineLease> lease = Take(hello, *machine);
   if (!lease) return lease.error();
+  if (const HostPointer before = Find(*machine)) Retire(before);
   auto host = std::make_shared<Host>();
   host->id = *machine;
   host->link = link;
@@ -216,6 +161,19 @@ Result<storage::MachineLease> Hosts::Take(const v1::HostHello& hello, const std:
   lease = needs_.store.TakeMachine(claim);
   if (lease) seen_.erase(machine);
   return lease;
+}
+
+// Its line is nobody's any more: who waits for an answer is told so, and what it was storing is
+// stored, so that the next line knows what is.
+void Hosts::Retire(const HostPointer& host) {
+  std::map<std::int64_t, Host::Pending> pending;
+  {
+    std::unique_lock lock(host->mutex);
+    host->gone = true;
+    pending.swap(host->pending);
+    host->rests.wait(lock, [&host] { return !host->storing; });
+  }
+  for (auto& [number, one] : pending) one.done(NotLive("its host is not heard of any more"));
 }
 
 Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello) {
@@ -414,7 +372,7 @@ void Hosts::TellStored(const Host& host, std::int64_t sequence) {
 void Hosts::StoreEntries(const HostPointer& host) {
   {
     const std::lock_guard lock(host->mutex);
-    if (host->storing || host->waiting.empty()) return;
+    if (host->storing || host->gone || host->waiting.empty()) return;
     host->storing = true;
   }
   needs_.executor.Post([this, host] {
@@ -438,6 +396,7 @@ void Hosts::StoreEntries(const HostPointer& host) {
     {
       const std::lock_guard lock(host->mutex);
       host->storing = false;
+      host->rests.notify_all();
       if (stored) {
         const auto count = static_cast<std::ptrdiff_t>(entries.size());
         host->waiting.erase(host->waiting.begin(), host->waiting.begin() + count);
@@ -471,17 +430,56 @@ void Hosts::Renew(const HostPointer& host) {
   host->link->Send(std::move(message));
 }
 
-// In the order of what it told before.
+// Behind what it told before.
 void Hosts::HandBack(const HostPointer& host) {
   {
     const std::lock_guard lock(host->mutex);
     host->handed_back = true;
   }
   needs_.executor.Post([this, host] {
-    const Status released = needs_.store.ReleaseMachine(host->lease);
-    if (!released)
-      spdlog::warn("the lease of {}: {}", host->id, bridge::ErrorText(released.error()));
+    {
+      std::unique_lock lock(host->mutex);
+      host->rests.wait_for(lock, kAnswerPatience,
+                           [&host] { return !host->storing && host->waiting.empty(); });
+    }
+    Release(host);
   });
+}
+
+void Hosts::Release(const HostPointer& host) {
+  const Status released = needs_.store.ReleaseMachine(host->lease);
+  if (!released) spdlog::warn("the lease of {}: {}", host->id, bridge::ErrorText(released.error()));
+}
+
+void Hosts::Forget(const std::string& machine) {
+  const HostPointer host = Find(machine);
+  if (host == nullptr) return;
+  Retire(host);
+  Release(host);
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto place = hosts_.find(machine); place != hosts_.end() && place->second == host)
+      hosts_.erase(place);
+  }
+  host->link->Close(NotLive("the machine was disabled"));
+  Changed();
+}
+
+void Hosts::Look() {
+  std::vector<HostPointer> all;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, host] : hosts_) all.push_back(host);
+  }
+  for (const HostPointer& host : all) {
+    DropLate(host);
+    bool silent = false;
+    {
+      const std::lock_guard lock(host->mutex);
+      silent = !host->gone && needs_.clock() - host->heard > kSilence;
+    }
+    if (silent) host->link->Close(NotLive("the host is silent"));
+  }
 }
 
 void Hosts::Leave(const HostLink& link) {
@@ -517,7 +515,7 @@ void Hosts::Ask(const std::string& machine, v1::HostOrder order, Answered done) 
   {
     const std::lock_guard lock(host->mutex);
     gone = host->gone;
-    order.set_number(++host->next_order);
+    order.set_number(++next_order_);
     if (!gone) host->pending[order.number()] = {.done = done, .asked = needs_.clock()};
   }
   if (gone) return done(NotLive("its host is not heard of"));
@@ -535,6 +533,7 @@ void Hosts::End(const std::string& machine, const std::string& why) {
 }
 
 void Hosts::CloseAll() {
+  subscription_.reset();
   std::vector<std::shared_ptr<HostLink>> links;
   {
     const std::lock_guard lock(mutex_);
@@ -547,6 +546,10 @@ void Hosts::CloseAll() {
 bool Hosts::IsHosted(const std::string& machine) const { return Find(machine) != nullptr; }
 
 bool Hosts::IsHeard(const std::string& machine) const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (closed_) return true;  // nothing is to be started any more
+  }
   const HostPointer host = Find(machine);
   if (host == nullptr) return false;
   const std::lock_guard lock(host->mutex);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <functional>
 #include <map>
 #include <memory>
@@ -62,6 +64,11 @@ class Hosts {
   // The server stops: lines end, no host joins any more; machines and their hosts go on.
   void CloseAll();
 
+  // It has no host any more, whatever that is doing: of one that is not heard of.
+  void Forget(const std::string& machine);
+  // From time to time: orders that nobody answers, lines that are silent.
+  void Look();
+
   bool IsHosted(const std::string& machine) const;
   bool IsHeard(const std::string& machine) const;  // its host has a line
   // What its host told last, with its age; LOST where it is not heard; nothing: it has no host.
@@ -87,6 +94,8 @@ class Hosts {
   void Renew(const HostPointer& host);
   void HandBack(const HostPointer& host);
   void DropLate(const HostPointer& host);
+  static void Retire(const HostPointer& host);
+  void Release(const HostPointer& host);
   void Publish(const Host& host, v1::MachineStatus status);
   void LookAtMemory();
   void Changed();
@@ -94,6 +103,10 @@ class Hosts {
   Needs needs_;
   std::mutex changing_;
   std::function<void()> changed_;  // guarded by changing_
+  // Over all lines, and those of a server before: an answer is to one order alone.
+  std::atomic<std::int64_t> next_order_ = std::chrono::duration_cast<std::chrono::microseconds>(
+                                              std::chrono::system_clock::now().time_since_epoch())
+                                              .count();
   mutable std::mutex mutex_;
   bool closed_ = false;                       // guarded by mutex_
   std::map<std::string, HostPointer> hosts_;  // by id of the machine; guarded by mutex_

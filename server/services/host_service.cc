@@ -44,6 +44,8 @@ class HostStream final : public grpc::ServerBidiReactor<v1::HostRequest, v1::Hos
   }
 
   void ReadOn() {
+    const std::lock_guard lock(mutex_);
+    if (finished_) return;  // a call that is over reads nothing
     joined_ = true;
     incoming_.Clear();
     StartRead(&incoming_);

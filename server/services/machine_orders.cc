@@ -316,6 +316,7 @@ grpc::Status MachineService::Disable(const std::string& machine, v1::MachineStat
   const auto until = std::chrono::steady_clock::now() + kBegins;
   while (live_.hosts->IsHosted(machine) && std::chrono::steady_clock::now() < until)
     std::this_thread::sleep_for(kBetweenLooks);
+  if (live_.hosts->IsHosted(machine)) live_.hosts->Forget(machine);
   if (const grpc::Status told = TellStatus(machine, status); !told.ok()) return told;
   status.set_state(v1::MACHINE_STATE_OFF);
   return grpc::Status::OK;

@@ -6,6 +6,7 @@
 #include "engine/families/families.h"
 #include "engine/machine/family.h"
 #include "server/base/names.h"
+#include "server/machines/host_processes.h"
 #include "server/machines/hosts.h"
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
@@ -156,7 +157,11 @@ grpc::ServerUnaryReactor* MachineService::DeleteMachine(grpc::CallbackServerCont
                   if (!id) return ToGrpcStatus(id.error());
                   const auto expected = ParseEtag(request->etag());
                   if (!expected) return ToGrpcStatus(expected.error());
+                  if (live_.hosts != nullptr && live_.hosts->IsHosted(*id))
+                    return ToGrpcStatus(
+                        Error{ErrorCode::kCellPrecondition, "it has a host; disable it first", {}});
                   const Status deleted = store_.DeleteMachine(*id, *expected, caller.identity);
+                  if (deleted && live_.processes != nullptr) live_.processes->Forget(*id);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });
 }

@@ -104,7 +104,7 @@ class LiveMachine {
   }
   pid_t host() {
     const std::string host = Now().host();
-    return std::atoi(host.substr(host.rfind('/') + 1).c_str());
+    return std::atoi(host.substr(host.find('/') + 1).c_str());
   }
   // Collects how old each status is that arrives, by the clock that both processes have.
   void Watch() {
@@ -230,7 +230,7 @@ std::vector<double> KillHosts(LiveMachine& machine) {
     const auto there = [&] {
       const v1::MachineStatus now = machine.Now();
       return now.state() != v1::MACHINE_STATE_STARTING && now.state() != v1::MACHINE_STATE_LOST &&
-             now.host().find("/" + std::to_string(victim)) == std::string::npos;
+             now.host().find("/" + std::to_string(victim) + "/") == std::string::npos;
     };
     while (!there()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     found.push_back(SecondsSince(killed) * 1e3);

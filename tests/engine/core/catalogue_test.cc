@@ -221,6 +221,7 @@ const std::map<int, std::string_view> kNumbersOfTheCell = {
     {9108, "CellStoreUnavailable"},
     {9408, "CellLeaseHeld"},
     {9409, "CellInspect"},
+    {9411, "CellHostDied"},
     {9420, "CellControlNeeded"},
     {9421, "CellMachineState"},
     {9422, "CellMachineTaken"},

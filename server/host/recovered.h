@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "rmlcell/v1/host.pb.h"
+
+namespace rmlcell::server {
+
+// The newest state that is durable, and what was told before it that the store does not have.
+struct Recovered {
+  bool known = false;
+  v1::MachineMark mark{};
+  std::vector<v1::JournalEntry> untold{};
+};
+
+Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal);
+
+}  // namespace rmlcell::server

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+
+#include "rmlcell/v1/cell.pb.h"
+#include "rmlcell/v1/host.pb.h"
+#include "storage/store.h"
+
+// What hosts and the store tell one another, each in the words of the other.
+namespace rmlcell::server {
+
+// As it stands in the log of the cell; nothing: it is not told.
+std::optional<v1::MachineEvent> EventOf(const v1::JournalEntry& entry);
+storage::NewEvent ToRecord(const v1::MachineEvent& event);
+v1::HostMemory MemoryOf(const storage::MachineMemory& memory);
+
+}  // namespace rmlcell::server
