@@ -251,8 +251,8 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
     ++rows;
     ASSERT_TRUE(kNumbersOfTheCell.contains(entry.number)) << entry.number;
     EXPECT_EQ(entry.symbol, kNumbersOfTheCell.at(entry.number));
-    const bool budget = (entry.number >= 9301 && entry.number <= 9308) || entry.number == 9432 ||
-                        entry.number == 9437 || entry.number == 9438;
+    const bool budget = (entry.number >= 9301 && entry.number <= 9308) || entry.number == 9411 ||
+                        entry.number == 9432 || entry.number == 9437 || entry.number == 9438;
     const bool verdict = entry.number >= 9601 && entry.number <= 9627;
     const bool held = entry.number == 9430 || entry.number == 9431;
     const bool motion = entry.number >= 9501 && entry.number <= 9505;
