@@ -35,7 +35,7 @@ using google::protobuf::util::TimeUtil;
 using std::chrono::nanoseconds;
 
 constexpr int kProtocol = 1;
-constexpr nanoseconds kStatusMoving = 52ms;  // LIVE-3.16
+constexpr nanoseconds kStatusMoving = 50ms;  // LIVE-3.16
 constexpr nanoseconds kStatusStanding = 1s;
 constexpr nanoseconds kTick = 5ms;       // of a machine that moves
 constexpr nanoseconds kTickHeld = 50ms;  // of a run that stands: its time goes on

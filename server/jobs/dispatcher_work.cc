@@ -179,6 +179,8 @@ void Dispatcher::Assigned(const std::shared_ptr<Worker>& worker, const storage::
 void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job) {
   // A job whose cancel came while its first worker gave it back: there is nothing to begin.
   if (job.job.cancel_requested) return EndWithoutWork(worker, storage::CancelledOutcome());
+  // Its request was answered as it was withdrawn: the worker is not troubled with it.
+  if (draining_) return GiveBack(worker);
   spdlog::debug("{} attempt {} goes to worker {}", JobName(job.lease.job), job.lease.attempt,
                 worker->name);
   if (const Status sent = SendAssignment(*worker, job); !sent) {
