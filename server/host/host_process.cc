@@ -210,7 +210,7 @@ class HostProcess {
   void StopFirst(std::deque<v1::HostResponse>& messages) {
     const auto last = std::find_if(messages.rbegin(), messages.rend(), Halts).base();
     const auto begins = [](const v1::HostResponse& message) {
-      return message.has_order() && ClassOf(message.order()) == OrderClass::kWrittenFirst;
+      return message.has_order() && BeginsMotion(message.order());
     };
     for (auto message = messages.begin(); message != last; ++message) {
       if (begins(*message)) Refuse(message->order(), StoppedBefore());
@@ -303,7 +303,8 @@ class HostProcess {
       case OrderClass::kActsFirst:
         // Whoever stops the machine stops what has not begun yet, too.
         for (const auto& parked : parked_) {
-          if (!std::exchange(parked->over, true)) Refuse(parked->order, StoppedBefore());
+          if (BeginsMotion(parked->order) && !std::exchange(parked->over, true))
+            Refuse(parked->order, StoppedBefore());
         }
         return SendAnswer(CarryOut(order));
       case OrderClass::kAsks:

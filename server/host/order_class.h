@@ -9,4 +9,9 @@ enum class OrderClass { kActsFirst, kWrittenFirst, kWrittenBehind, kAsks };
 
 OrderClass ClassOf(const v1::HostOrder& order);
 
+// What a STOP that comes behind it takes back, as long as it has not acted.
+inline bool BeginsMotion(const v1::HostOrder& order) {
+  return order.has_start() || order.has_resume();
+}
+
 }  // namespace rmlcell::server

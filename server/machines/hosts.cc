@@ -171,7 +171,8 @@ void Hosts::Retire(const HostPointer& host) {
     std::unique_lock lock(host->mutex);
     host->gone = true;
     pending.swap(host->pending);
-    host->rests.wait(lock, [&host] { return !host->storing; });
+    // Not for ever: the thread that is to store may be the one that waits here.
+    host->rests.wait_for(lock, kAnswerPatience, [&host] { return !host->storing; });
   }
   for (auto& [number, one] : pending) one.done(NotLive("its host is not heard of any more"));
 }
@@ -372,7 +373,8 @@ void Hosts::TellStored(const Host& host, std::int64_t sequence) {
 void Hosts::StoreEntries(const HostPointer& host) {
   {
     const std::lock_guard lock(host->mutex);
-    if (host->storing || host->gone || host->waiting.empty()) return;
+    // A line that is gone stores no more, but for what came before the machine was given back.
+    if (host->storing || (host->gone && !host->handed_back) || host->waiting.empty()) return;
     host->storing = true;
   }
   needs_.executor.Post([this, host] {

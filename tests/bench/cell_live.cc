@@ -159,17 +159,6 @@ class LiveMachine {
   std::vector<double> ages_;  // guarded by mutex_
 };
 
-double ProcessorSecondsOf(pid_t process) {
-  std::ifstream status("/proc/" + std::to_string(process) + "/stat");
-  const std::string text{std::istreambuf_iterator<char>(status), {}};
-  std::istringstream fields(text.substr(text.rfind(')') + 1));
-  std::string skipped;
-  for (int i = 0; i < 11; ++i) fields >> skipped;
-  double user = 0.0, system = 0.0;
-  fields >> user >> system;
-  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
-}
-
 double SharedMibOf(pid_t process) {
   std::ifstream status("/proc/" + std::to_string(process) + "/smaps_rollup");
   for (std::string line; std::getline(status, line);) {

@@ -39,6 +39,17 @@ inline void Must(const grpc::Status& status) {
   if (!status.ok()) throw std::runtime_error(status.error_message());
 }
 
+inline double ProcessorSecondsOf(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/stat");
+  const std::string text{std::istreambuf_iterator<char>(status), {}};
+  std::istringstream fields(text.substr(text.rfind(')') + 1));
+  std::string skipped;
+  for (int i = 0; i < 11; ++i) fields >> skipped;
+  double user = 0.0, system = 0.0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
 // rmlcelld on a free port, with its own state.
 class CellServer {
  public:
@@ -85,16 +96,7 @@ class CellServer {
   int web_port() const { return web_port_; }
 
   // Of itself, without its workers.
-  double ProcessorSeconds() const {
-    std::ifstream status("/proc/" + std::to_string(process_) + "/stat");
-    const std::string text{std::istreambuf_iterator<char>(status), {}};
-    std::istringstream fields(text.substr(text.rfind(')') + 1));
-    std::string skipped;
-    for (int i = 0; i < 11; ++i) fields >> skipped;
-    double user = 0.0, system = 0.0;
-    fields >> user >> system;
-    return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
-  }
+  double ProcessorSeconds() const { return ProcessorSecondsOf(process_); }
 
   // What it holds of the memory of the computer.
   double MemoryKiB() const {

@@ -177,7 +177,7 @@ class LiveTest(unittest.TestCase):
             pass
         return told if last in told else None
 
-    # LIVE-3.30, LIVE-5.20: standing where the last mark says, a run that was open cut off.
+    # LIVE-3.30: standing where the last mark says, a run that was open cut off.
     def test_a_host_that_is_killed_is_found_in_inspection(self):
         self.live.enable()
         self.live.store()

@@ -400,7 +400,7 @@ std::string Text(const Transition& one) {
          (one.code ? CodeText(*one.code) : std::string()) + " acts " + std::to_string(one.acts);
 }
 
-// LIVE-2.02, LIVE-2.10, LIVE-10.01, LIVE-10.02: every pair of state and event, with every guard in
+// LIVE-2.02, LIVE-10.01, LIVE-10.02: every pair of state and event, with every guard in
 // both senses.
 TEST(MachineStatesTest, EachCellIsAsTheRulesSayIt) {
   std::mt19937 random(1);

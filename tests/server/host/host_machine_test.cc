@@ -141,7 +141,7 @@ TEST_F(HostMachineTest, ControlIsNeededToMoveAndNotToStop) {
   EXPECT_EQ(refused.machine_refusal().control_holder(), "anna");
 }
 
-// LIVE-2.10, LIVE-3.23: a run from its start to its end, held and resumed, with what is told of it;
+// LIVE-2.02, LIVE-3.23: a run from its start to its end, held and resumed, with what is told of it;
 // a mark where it stands.
 TEST_F(HostMachineTest, ARunIsToldFromItsStartToItsEnd) {
   Make();
