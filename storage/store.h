@@ -83,6 +83,8 @@ struct LossPolicy {
   // False: the worker never said that it began, so this attempt does not count. Of one job at most
   // kUncountedAttemptsMax are let go so, or what kills each worker at once would do so for ever.
   bool counts = true;
+  // A RUN whose machine has certainly not moved for it: given back, it waits again as any other.
+  bool not_begun = false;
 };
 inline constexpr int kUncountedAttemptsMax = 8;  // those that were handed back among them
 
@@ -173,6 +175,9 @@ struct MachineClaim {
 struct MachineWrite {
   std::vector<NewEvent> events{};     // of the machine, into the log of the cell
   std::optional<MachineMark> mark{};  // its fence and time are those of the write
+  // What the job that it runs tells, into the log of that job.
+  std::optional<Lease> job{};
+  std::vector<NewEvent> job_events{};
 };
 
 // The end of a job and all that is written with it.
@@ -275,8 +280,9 @@ class Store {
   virtual Result<MachineLease> RenewMachine(const MachineLease& lease, std::string_view server) = 0;
   virtual Status ReleaseMachine(const MachineLease& lease) = 0;   // CellLeaseLost
   virtual Result<std::vector<MachineLease>> MachineLeases() = 0;  // those that are held, by machine
-  // CellLeaseLost; CellTooLarge: kMachineMarkBytesMax, an event; CellInvalidArgument: a mark that
-  // is not newer than the one that is there. Older ones may be left out.
+  // CellLeaseLost, also of the job; CellTooLarge: kMachineMarkBytesMax, an event;
+  // CellInvalidArgument: a mark that is not newer than the one that is there. Older ones may be
+  // left out.
   virtual Status AppendMachine(const MachineLease& lease, const MachineWrite& write) = 0;
   // Nothing: no host has ever said. CellUnknownMachine.
   virtual Result<std::optional<MachineMark>> GetMachineMark(std::string_view machine) = 0;
@@ -439,8 +445,9 @@ class Store {
   // could be leased does not keep the end from being stored.
   virtual void SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
                           std::optional<JobRequest> next, Done<FinishedJob> done);
-  // Gives the job back to the queue; this attempt does not count. A RUN is interrupted: it may have
-  // moved its machine. Returns the job as it then is. CellLeaseLost.
+  // Gives the job back to the queue; this attempt does not count. A RUN is interrupted, unless the
+  // policy says that it has not begun: it may have moved its machine. Returns the job as it then
+  // is. CellLeaseLost.
   virtual Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) = 0;
   virtual void SendHandBack(const Lease& lease, LossPolicy policy, Done<JobRecord> done);
   // The worker is known to be dead: as if the lease ran out now. CellLeaseLost.

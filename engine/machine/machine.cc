@@ -276,7 +276,7 @@ Status Machine::MayStart(const StartRun& input) const {
   const Detail slot = Told("program", input.program);
   if (!IsSlot(input.program))
     return Error{family_.info().no_slot, "program " + slot + ", allowed are 1 to 99", {}};
-  if (!memory_.programs.contains(input.program))
+  if (!input.brought && !memory_.programs.contains(input.program))
     return Error{family_.info().empty_slot, "no program is stored in slot " + slot, {}};
   return {};
 }
@@ -285,6 +285,7 @@ Status Machine::Act(const StartRun& input) {
   if (const Status may = MayStart(input); !may) return may.error();
   RunSetup setup(parameters_);
   setup.programs = memory_.programs;
+  if (input.brought) setup.programs[input.program] = *input.brought;
   setup.deleted_programs = memory_.deleted;
   setup.main_program = input.program;
   setup.schedules = memory_.schedules;
@@ -297,6 +298,7 @@ Status Machine::Act(const StartRun& input) {
   if (!run) return run.error();
   simulation_.reset();
   changed_.clear();
+  if (input.brought) changed_.insert(input.program);  // what is made of it is not of the memory
   note_ = {
       .number = note_.number + 1, .program = input.program, .source = input.source, .begun = now_};
   shown_ = {.program = input.program};

@@ -25,6 +25,8 @@ struct StartRun {
   int program = 0;
   StartSource source = StartSource::kConsole;
   bool unzeroed = false;  // the program zeroes the axes itself
+  // In the slot of the program, for this run alone; none: what is stored there.
+  std::optional<StoredProgram> brought{};
 };
 struct ResumeRun {
   StartSource source = StartSource::kConsole;

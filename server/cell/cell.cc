@@ -32,6 +32,7 @@
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
 #include "server/results/job_results.h"
+#include "server/runs/run_queue.h"
 #include "server/services/account_service.h"
 #include "server/services/cell_service.h"
 #include "server/services/foreign_calls.h"
@@ -97,6 +98,7 @@ struct Cell::Parts {
   std::unique_ptr<Executor> compute;
   std::unique_ptr<EventFeed> feed;
   std::unique_ptr<Hosts> hosts;
+  std::unique_ptr<RunQueue> runs;
   std::unique_ptr<HostProcesses> host_processes;
   std::unique_ptr<MachineStatuses> statuses;
   std::unique_ptr<Dispatcher> dispatcher;
@@ -205,6 +207,12 @@ Status Cell::Parts::Listen(const std::string& join_token) {
                                                .executor = *executor,
                                                .server = instance_id,
                                                .join_token = *host_token});
+  runs = std::make_unique<RunQueue>(RunQueue::Needs{.store = *store,
+                                                    .hosts = *hosts,
+                                                    .config = config,
+                                                    .executor = *executor,
+                                                    .server = instance_id});
+  hosts->OnNews([this](const std::string& machine) { runs->Wake(machine); });
   host_processes = std::make_unique<HostProcesses>(HostProcesses::Options{
       .program = WorkerProgram(),
       .server = private_socket->address(),
@@ -213,10 +221,15 @@ Status Cell::Parts::Listen(const std::string& join_token) {
       .log_level = config.log_level,
       .log_format = config.log_format,
       .is_heard = [this](const std::string& machine) { return hosts->IsHeard(machine); },
-      .look = [this] { hosts->Look(); }});
+      .look =
+          [this] {
+            hosts->Look();
+            runs->WakeAll();
+          }});
   statuses = std::make_unique<MachineStatuses>(*store, *feed, *executor, hosts.get());
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
+  book->OnRunWaits([this](const std::string& machine) { runs->Wake(machine); });
   programs = std::make_unique<ProgramBook>(*store, config);
   tools = std::make_unique<MemoryTools>(*store, *programs);
   results = std::make_unique<JobResults>(*store, *book, *tools);
@@ -225,8 +238,8 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   transfer = std::make_unique<ProjectTransfer>(*store, *projects, *programs);
   gate.OnChange([this] { open.AskAgain(); });
   const CallNeeds needs{gate, *executor, *compute, config.limit_message_bytes};
-  job_service = std::make_unique<JobService>(needs, *watching, *book, *results, *dispatcher, *feed,
-                                             open, instance_id);
+  job_service = std::make_unique<JobService>(needs, *watching, *book, *results, *dispatcher, *runs,
+                                             *feed, open, instance_id);
   MachineWatchNeeds machine_watch{*watching, open, *store, *feed, instance_id};
   machine_watch.hosts = hosts.get();
   machine_service = std::make_unique<MachineService>(
@@ -409,6 +422,7 @@ void Cell::Stop() {
   if (parts.dispatcher != nullptr) parts.dispatcher->Settle();
   parts.executor.reset();
   parts.dispatcher.reset();
+  parts.runs.reset();
   parts.hosts.reset();
   parts.feed.reset();
   parts.store.reset();

@@ -50,14 +50,8 @@ Result<v1::AcquireControlResponse> ControlDesk::Acquire(const v1::AcquireControl
   }
   ttl_ = ttl;
   token_ = make_token_();
-  lease_.emplace();
-  lease_->set_number(++number_);
-  lease_->set_holder(caller);
+  Give(caller, request.on_loss(), now);
   lease_->set_client(request.client());
-  *lease_->mutable_since() = Stamp(now.wall);
-  lease_->set_on_loss(request.on_loss() == v1::ControlLease::ON_LOSS_GO_ON
-                          ? v1::ControlLease::ON_LOSS_GO_ON
-                          : v1::ControlLease::ON_LOSS_HOLD);
   Prolong(now);
   change_.emplace();
   change_->set_kind(from.empty() ? v1::ControlChanged::KIND_ACQUIRED
@@ -72,6 +66,32 @@ Result<v1::AcquireControlResponse> ControlDesk::Acquire(const v1::AcquireControl
   return response;
 }
 
+void ControlDesk::Give(const std::string& holder, v1::ControlLease::OnLoss on_loss,
+                       const HostTime& now) {
+  of_queue_ = false;
+  lease_.emplace();
+  lease_->set_number(++number_);
+  lease_->set_holder(holder);
+  *lease_->mutable_since() = Stamp(now.wall);
+  lease_->set_on_loss(on_loss == v1::ControlLease::ON_LOSS_GO_ON ? on_loss
+                                                                 : v1::ControlLease::ON_LOSS_HOLD);
+}
+
+void ControlDesk::GiveToQueue(const std::string& job, v1::ControlLease::OnLoss on_loss,
+                              const HostTime& now) {
+  Give("queue/" + job, on_loss, now);
+  token_.clear();
+  of_queue_ = true;
+  change_.emplace();
+  change_->set_kind(v1::ControlChanged::KIND_ACQUIRED);
+  change_->set_to(lease_->holder());
+  change_->set_lease(number_);
+}
+
+void ControlDesk::TakeFromQueue() {
+  if (of_queue_) End(v1::ControlChanged::KIND_RELEASED);
+}
+
 void ControlDesk::Prolong(const HostTime& now) {
   runs_out_ = now.steady + ttl_;
   *lease_->mutable_expire_time() =
@@ -79,11 +99,11 @@ void ControlDesk::Prolong(const HostTime& now) {
 }
 
 bool ControlDesk::IsToken(std::string_view token) const {
-  return lease_ && KnowsSecret(token, token_);
+  return lease_ && !of_queue_ && KnowsSecret(token, token_);
 }
 
 Status ControlDesk::Check(std::string_view token, const HostTime& now) const {
-  const bool over = lease_ && now.steady >= runs_out_;
+  const bool over = lease_ && !of_queue_ && now.steady >= runs_out_;
   if (IsToken(token) && !over) return {};
   const std::string who = lease_ && !over ? ": " + lease_->holder() + " has control" : "";
   return Error{ErrorCode::kCellControlNeeded,
@@ -104,7 +124,7 @@ Status ControlDesk::Release(std::string_view token, const HostTime& now) {
 }
 
 std::optional<v1::ControlLease::OnLoss> ControlDesk::Expire(const HostTime& now) {
-  if (!lease_ || now.steady < runs_out_) return std::nullopt;
+  if (!lease_ || of_queue_ || now.steady < runs_out_) return std::nullopt;
   const v1::ControlLease::OnLoss on_loss = lease_->on_loss();
   End(v1::ControlChanged::KIND_EXPIRED);
   return on_loss;
@@ -116,10 +136,11 @@ void ControlDesk::End(v1::ControlChanged::Kind kind) {
   change_->set_from(lease_->holder());
   lease_.reset();
   token_.clear();
+  of_queue_ = false;
 }
 
 std::optional<std::chrono::nanoseconds> ControlDesk::runs_out() const {
-  return lease_ ? std::optional(runs_out_) : std::nullopt;
+  return lease_ && !of_queue_ ? std::optional(runs_out_) : std::nullopt;
 }
 
 }  // namespace rmlcell::server

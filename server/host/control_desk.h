@@ -36,6 +36,12 @@ class ControlDesk {
   // CellControlNeeded: no token, or that of a lease that is over, with who has control now.
   Status Check(std::string_view token, const HostTime& now) const;
 
+  // For the run of a job when nobody has it: nobody has the token, and it does not run out.
+  // LIVE-4.05
+  void GiveToQueue(const std::string& job, v1::ControlLease::OnLoss on_loss, const HostTime& now);
+  void TakeFromQueue();
+  bool IsOfQueue() const { return of_queue_; }
+
   // A lease that has run out by now: it is over, and this says how a run is to be kept.
   std::optional<v1::ControlLease::OnLoss> Expire(const HostTime& now);
 
@@ -47,6 +53,7 @@ class ControlDesk {
 
  private:
   bool IsToken(std::string_view token) const;
+  void Give(const std::string& holder, v1::ControlLease::OnLoss on_loss, const HostTime& now);
   void Prolong(const HostTime& now);
   void End(v1::ControlChanged::Kind kind);
 
@@ -54,6 +61,7 @@ class ControlDesk {
   std::int64_t number_ = 0;
   std::optional<v1::ControlLease> lease_;
   std::string token_;
+  bool of_queue_ = false;
   std::chrono::nanoseconds ttl_{0};
   std::chrono::nanoseconds runs_out_{0};
   std::optional<v1::ControlChanged> change_;

@@ -45,8 +45,9 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
   if (!parameters) return parameters.error();
   std::unique_ptr<HostMachine> host(new HostMachine(std::move(setup), std::move(make_token)));
   Setup& made = host->setup_;
-  auto machine = machine::Machine::Make(*made.family, *std::move(parameters),
-                                        std::move(made.memory), made.state, *host);
+  host->parameters_.emplace(*std::move(parameters));
+  auto machine = machine::Machine::Make(*made.family, *host->parameters_, std::move(made.memory),
+                                        made.state, *host);
   if (!machine) return machine.error();
   host->driver_ = std::make_unique<machine::VirtualDriver>(*std::move(machine), now.steady);
   host->now_ = now;
@@ -113,12 +114,15 @@ v1::HostOrderAnswer HostMachine::Carry(const v1::HostOrder& order, const HostTim
 
 Status HostMachine::CheckControl(const v1::HostOrder& order, const HostTime& now) const {
   const std::optional<std::string> token = FieldOf(order, "control_token");
-  return token ? desk_.Check(*token, now) : Status();
+  if (!token || (!order.for_job().empty() && desk_.IsOfQueue())) return {};
+  return desk_.Check(*token, now);
 }
 
 // Without a result: the status of the machine is the answer.
 Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, const HostTime& now) {
   v1::HostOrderAnswer answer;
+  if (!order.for_job().empty() && order.for_job() != job_)
+    return Error{ErrorCode::kCellMachineState, order.for_job() + " does not run", {}};
   switch (order.request_case()) {
     case v1::HostOrder::kAcquireControl:
     case v1::HostOrder::kRenewControl:
@@ -150,6 +154,9 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, co
       return answer;
     case v1::HostOrder::kWriteVariables:
       return Write(order);
+    case v1::HostOrder::kRunJob:
+      if (const Status begun = RunJob(order, now); !begun) return begun.error();
+      return answer;
     default:
       break;
   }
@@ -264,7 +271,9 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   applied.set_fence(setup_.fence);
   applied.set_virtual_time_ns(machine().time().count());
   *applied.mutable_input() = AppliedOf(input);
-  applied.set_source(v1::START_SOURCE_CONSOLE);
+  if (starts && !job_.empty()) applied.mutable_input()->mutable_start()->set_job(job_);
+  const bool of_queue = order != nullptr && (order->has_run_job() || !order->for_job().empty());
+  applied.set_source(of_queue ? v1::START_SOURCE_QUEUE : v1::START_SOURCE_CONSOLE);
   if (order != nullptr) {
     applied.set_caller(order->caller());
     applied.set_request_id(FieldOf(*order, "request_id").value_or(""));
@@ -369,6 +378,9 @@ void HostMachine::TellCutOff(const v1::MachineMark& mark) {
   outcome.set_kind(v1::Outcome::KIND_INTERRUPTED);
   *outcome.mutable_place() = mark.place();
   outcome.set_cycle_time_ns(mark.run_time_ns());
+  told.set_job(mark.job());
+  entries_.back().set_job(mark.job());
+  entries_.back().set_run_time_ns(mark.run_time_ns());
 }
 
 void HostMachine::Begin(const v1::HostMemory& memory, const HostTime& now) {
@@ -391,6 +403,7 @@ void HostMachine::Notice() {
     told.set_run(run.number);
     told.set_program(run.program);
     told.set_source(ToProto(run.source));
+    told.set_job(job_);
   };
   for (const machine::RunOver& run : over) {
     begun(run.run);
@@ -399,6 +412,9 @@ void HostMachine::Notice() {
     told.set_program(run.run.program);
     *told.mutable_outcome() = bridge::ToProto(run.outcome);
     told.mutable_outcome()->set_cycle_time_ns(run.lasted.count());
+    told.set_job(std::exchange(job_, {}));
+    desk_.TakeFromQueue();
+    TellControl();
     held_for_.reset();
     mark_due_ = true;
   }
@@ -442,6 +458,8 @@ v1::MachineStatus HostMachine::StatusAt(const HostTime& now) const {
       status.state() == v1::MACHINE_STATE_HELD || status.state() == v1::MACHINE_STATE_STOPPING;
   if (halts && held_for_) status.set_hold_reason(*held_for_);
   if (inspect_due_) status.add_confirmations_due(v1::CONFIRMATION_INSPECTED);
+  if (status.has_run()) status.mutable_run()->set_job(job_);
+  AddBlockers(status);
   return status;
 }
 
@@ -455,6 +473,10 @@ v1::JournalEntry& HostMachine::Add(SimTime at) {
   entry.set_fence(setup_.fence);
   entry.set_virtual_time_ns(at.count());
   *entry.mutable_time() = Stamp(now_.wall);
+  if (!job_.empty()) {
+    entry.set_job(job_);
+    entry.set_run_time_ns((at - run_begun_).count());
+  }
   return entry;
 }
 
@@ -467,6 +489,7 @@ void HostMachine::Mark() {
   mark.set_virtual_time_ns(status.time.count());
   if (status.open) {
     mark.set_run_time_ns(status.run.time.count());
+    mark.set_job(job_);
     *mark.mutable_place() = bridge::ToProto(status.run.place);
   }
   mark.set_state(machine().Save());

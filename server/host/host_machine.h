@@ -73,6 +73,10 @@ class HostMachine : private machine::RunObserver {
   v1::HostOrderAnswer Carry(const v1::HostOrder& order, const HostTime& now);
   Result<v1::HostOrderAnswer> CarryOut(const v1::HostOrder& order, const HostTime& now);
   Status CheckControl(const v1::HostOrder& order, const HostTime& now) const;
+  Status RunJob(const v1::HostOrder& order, const HostTime& now);
+  Result<std::optional<machine::StoredProgram>> ProgramOfJob(
+      const v1::WorkerAssignment& assignment) const;
+  std::optional<Error> WhyNoJob(const std::string& caller) const;
   Result<v1::HostOrderAnswer> Control(const v1::HostOrder& order, const HostTime& now);
   Result<v1::HostOrderAnswer> Write(const v1::HostOrder& order);
   Status Confirm(const v1::ConfirmMachineRequest& request);
@@ -89,6 +93,7 @@ class HostMachine : private machine::RunObserver {
   v1::RunEvent& Event(SimTime of_run) { return *Add(run_begun_ + of_run).mutable_event(); }
   void Mark();
   v1::MachineState State() const;
+  void AddBlockers(v1::MachineStatus& status) const;
 
   // machine::RunObserver
   bool MayTell();
@@ -106,6 +111,7 @@ class HostMachine : private machine::RunObserver {
   };
 
   Setup setup_;
+  std::optional<machine::Parameters> parameters_;
   std::unique_ptr<machine::VirtualDriver> driver_;
   ControlDesk desk_;
   std::map<std::string, Answered> answered_;  // by request id
@@ -120,6 +126,7 @@ class HostMachine : private machine::RunObserver {
   bool inspect_due_ = false;
   bool mark_due_ = true;
   bool begins_ = false;  // a run began since the last mark
+  std::string job_{};    // "jobs/17": whose run is open, or begins; empty: nobody's
   std::chrono::nanoseconds marked_at_{0};
 };
 

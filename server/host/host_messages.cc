@@ -351,6 +351,10 @@ Result<std::optional<MachineInput>> OfRun(const v1::HostOrder& order,
       if (!program) return program.error();
       return Input(machine::StartRun{.program = *program});
     }
+    case v1::HostOrder::kRunJob:
+      return Input(machine::StartRun{.program = order.run_job().main_program(),
+                                     .source = machine::StartSource::kQueue,
+                                     .unzeroed = order.run_job().job().run().unzeroed()});
     case v1::HostOrder::kResume:
       return Input(machine::ResumeRun{});
     case v1::HostOrder::kStop:

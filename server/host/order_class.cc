@@ -10,6 +10,7 @@ OrderClass ClassOf(const v1::HostOrder& order) {
     case v1::HostOrder::kAbort:
       return OrderClass::kActsFirst;
     case v1::HostOrder::kStart:
+    case v1::HostOrder::kRunJob:
     case v1::HostOrder::kResume:
     case v1::HostOrder::kMode:
     case v1::HostOrder::kAcknowledgeAlarm:

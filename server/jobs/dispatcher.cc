@@ -319,6 +319,8 @@ Status Dispatcher::Control(std::int64_t job, const JobOrder& order) {
   const auto record = store_.GetJob(job);
   if (!record) return record.error();
   const bool runs = record->state == storage::JobState::kRunning;
+  if (runs && record->kind == storage::kRunKind)
+    return Error{ErrorCode::kCellNotLive, "no machine is heard of that runs " + JobName(job), {}};
   if (runs && OrderAtOnce(job, order)) return {};
   // Perhaps another server has it; one that waits, or has ended, nobody has.
   const Status put =

@@ -160,9 +160,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
                        .caller = caller,
                        .labels = {job.labels().begin(), job.labels().end()},
                        .specification = {},
-                       .attempts_max = job.attempts_max() > 0
-                                           ? job.attempts_max()
-                                           : static_cast<int>(config_.jobs_attempts),
+                       .attempts_max = AttemptsOf(job),
                        .queued_max = config_.jobs_queued_max,
                        .priority = job.priority(),
                        .held = job.held(),
@@ -222,10 +220,22 @@ void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& cal
     return done(std::move(job));
   }
   store_.Submit(std::move(*made),
-                [done = std::move(done)](const Result<storage::SubmittedJob>& submitted) {
+                [this, done = std::move(done)](const Result<storage::SubmittedJob>& submitted) {
                   if (!submitted) return done(submitted.error());
+                  TellRun(submitted->job);
                   done(ToProto(submitted->job));
                 });
+}
+
+// Once on a machine, whatever happens. LIVE-5.01
+int JobBook::AttemptsOf(const v1::Job& job) const {
+  if (job.kind() == v1::JOB_KIND_RUN) return 1;
+  return job.attempts_max() > 0 ? job.attempts_max() : static_cast<int>(config_.jobs_attempts);
+}
+
+void JobBook::TellRun(const storage::JobRecord& job) {
+  if (run_waits_ && job.kind == storage::kRunKind && job.state == storage::JobState::kQueued)
+    run_waits_(job.machine);
 }
 
 Result<v1::Job> JobBook::Get(std::string_view name) {
@@ -277,6 +287,7 @@ Result<v1::Job> JobBook::LetGo(std::string_view name, std::string_view caller) {
   if (!job) return job.error();
   const auto gone = store_.LetGo(*id, {By(caller, QueueEvent(false, job->priority))});
   if (!gone) return gone.error();
+  TellRun(*gone);
   return WithArtifacts(*gone);
 }
 

@@ -30,10 +30,16 @@ class JobBook {
   // job, and so are those of a target, so that a slot that is stored again meanwhile changes
   // nothing. Errors:
   // CellInvalidArgument, CellUnknownMachine, FamilyInfo::no_slot and empty_slot, CellEmptyProgram,
-  // CellTooLarge, CellParameterRange, CellUnimplemented (RUN), CellRequestIdReused,
+  // CellTooLarge, CellParameterRange, CellUnimplemented, CellRequestIdReused,
   // CellResourceExhausted. `more_come`: others are on their way from the same caller (NewJob).
   void Submit(const v1::SubmitJobRequest& request, const std::string& caller,
               std::function<void(Result<v1::Job>)> done, bool more_come = false);
+
+  // Called when a RUN may have become one that can begin, from any thread, and not for long. Set
+  // before the first call of Submit().
+  void OnRunWaits(std::function<void(const std::string& machine)> waits) {
+    run_waits_ = std::move(waits);
+  }
 
   Result<v1::Job> Get(std::string_view name);
   // The same, serialised, and never waiting for the store. Null: Get() has to be asked, as of each
@@ -83,6 +89,8 @@ class JobBook {
   Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);
   // Whether a job may come behind those that it names. Errors: CellNotFound, CellPrecondition.
   Status CheckAwaited(const storage::NewJob& made);
+  int AttemptsOf(const v1::Job& job) const;
+  void TellRun(const storage::JobRecord& job);
   Result<v1::Job> WithArtifacts(const storage::JobRecord& record);
   Status CheckSize(std::size_t bytes, const std::string& what) const;
   Status AttachProgram(const v1::Job& job, const machine::MachineFamily& family,
@@ -95,6 +103,7 @@ class JobBook {
   const Config& config_;
   KnownMachines machines_;
   ToldJobs told_;
+  std::function<void(const std::string&)> run_waits_;
 };
 
 // The names under which the programs of a job are kept with it: "program" for the one that is

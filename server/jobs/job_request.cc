@@ -24,7 +24,9 @@ constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as
 
 // What the contract has and this version does not do: "" where the job asks for none of it.
 std::string_view FieldOfLater(const v1::Job& job) {
-  if (job.has_run()) return "run";
+  if (job.run().has_step()) return "run.step";
+  if (!job.run().ticket().empty()) return "run.ticket";
+  if (job.run().confirmations_size() > 0) return "run.confirmations";
   if (!job.continues().empty()) return "continues";
   return {};
 }
@@ -94,6 +96,20 @@ bool IsLabel(std::string_view text) {
 
 namespace {
 
+// A RUN has what moves a machine and nothing else: its override and inputs are those of the
+// machine.
+Status CheckRun(const v1::Job& job) {
+  if (job.kind() != v1::JOB_KIND_RUN)
+    return job.has_run() ? InvalidArgument("job.run is for jobs of kind RUN") : Status();
+  if (job.has_simulation())
+    return InvalidArgument("job.simulation is not for jobs of kind RUN: set up the machine");
+  if (job.has_budget()) return InvalidArgument("job.budget: no budget ends a moving machine");
+  if (job.attempts_max() > 1) return InvalidArgument("job.attempts_max: a RUN is attempted once");
+  if (!v1::ControlLease::OnLoss_IsValid(job.run().on_loss()))
+    return InvalidArgument("job.run.on_loss is none that there is");
+  return {};
+}
+
 Status CheckLabels(const v1::Job& job) {
   if (job.labels_size() > kLabelsMax) return InvalidArgument("job.labels has more than 16");
   std::set<std::string_view> labels;
@@ -112,9 +128,8 @@ Status CheckLabels(const v1::Job& job) {
 Status CheckRequest(const v1::SubmitJobRequest& request) {
   const v1::Job& job = request.job();
   if (KindName(job.kind()).empty())
-    return InvalidArgument("job.kind is missing: CHECK or SIMULATE");
-  if (job.kind() == v1::JOB_KIND_RUN)
-    return Error{ErrorCode::kCellUnimplemented, "jobs of kind RUN", {}};
+    return InvalidArgument("job.kind is missing: CHECK, SIMULATE or RUN");
+  if (const Status good = CheckRun(job); !good) return good.error();
   if (job.priority() < storage::kPriorityMin || job.priority() > storage::kPriorityMax)
     return InvalidArgument("job.priority: allowed are -100 to 100");
   if (const Status time = CheckTime(job.not_before_time(), "job.not_before_time"); !time)

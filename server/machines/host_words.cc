@@ -38,6 +38,19 @@ storage::NewEvent ToRecord(const v1::MachineEvent& event) {
           .caller = event.input_applied().caller()};
 }
 
+v1::JobProgress ProgressOf(const v1::MachineStatus& status) {
+  v1::JobProgress progress;
+  progress.set_job(status.run().job());
+  progress.set_attempt(1);  // a RUN has no other
+  progress.set_virtual_time_ns(status.run().run_time_ns());
+  *progress.mutable_place() = status.run().place();
+  progress.set_instruction(status.run().instruction());
+  *progress.mutable_position()->mutable_tip() = status.tip();
+  progress.set_speed_mm_s(status.speed_mm_s());
+  progress.set_override_percent(status.override_percent());
+  return progress;
+}
+
 v1::HostMemory MemoryOf(const storage::MachineMemory& memory) {
   v1::HostMemory message;
   message.set_whole(true);

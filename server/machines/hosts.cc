@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cerrno>
-#include <set>
 #include <utility>
 
 #include "engine/core/number_text.h"
@@ -15,7 +14,9 @@
 #include "rmlcell/v1/cell.pb.h"
 #include "server/base/names.h"
 #include "server/base/secret.h"
+#include "server/machines/host_entries.h"
 #include "server/machines/host_words.h"
+#include "server/machines/hosted.h"
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
 
@@ -28,7 +29,6 @@ using Instant = std::chrono::steady_clock::time_point;
 constexpr int kProtocol = 1;
 constexpr std::chrono::seconds kObserved{5};  // beyond the lease: its holder is gone (PG-5.09)
 constexpr std::chrono::seconds kSilence{5};   // of a line that has a word four times a second
-constexpr int kMemoryReadAhead = 1'000;
 constexpr std::size_t kWaitingEntriesMax = 100'000;
 
 Error NotLive(const std::string& why) { return {ErrorCode::kCellNotLive, why, {}}; }
@@ -46,27 +46,6 @@ bool IsGone(const std::string& host) {
 
 }  // namespace
 
-struct Hosts::Host {
-  std::string id{};
-  std::shared_ptr<HostLink> link;
-  storage::MachineLease lease{};  // does not change but for its count, which nobody looks at
-
-  std::mutex mutex;               // a leaf, like that of Hosts
-  std::condition_variable rests;  // nothing of it is being stored
-  bool gone = false;
-  bool handed_back = false;
-  struct Pending {
-    Answered done;
-    Instant asked{};
-  };
-  std::map<std::int64_t, Pending> pending;
-  std::optional<v1::MachineStatus> status;
-  Instant heard{};
-  std::vector<v1::JournalEntry> waiting;  // to be stored
-  std::int64_t stored = 0;                // sequence of the last one that is
-  bool storing = false;
-};
-
 Hosts::Hosts(Needs needs) : needs_(std::move(needs)) {
   looked_until_ = needs_.feed.position();
   subscription_ = needs_.feed.Subscribe(std::string(EventFeed::kEverything), [this] {
@@ -83,9 +62,19 @@ void Hosts::OnChange(std::function<void()> changed) {
   changed_ = std::move(changed);
 }
 
+void Hosts::OnNews(std::function<void(const std::string&)> news) {
+  const std::lock_guard lock(changing_);
+  news_ = std::move(news);
+}
+
 void Hosts::Changed() {
   const std::lock_guard lock(changing_);
   if (changed_) changed_();
+}
+
+void Hosts::Changed(const std::string& machine) {
+  const std::lock_guard lock(changing_);
+  if (news_) news_(machine);
 }
 
 Hosts::HostPointer Hosts::Find(const HostLink& link) const {
@@ -187,6 +176,7 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello) {
   // A host that comes back knows better.
   if (hello.fence() != host->lease.fence) {
     if (const Status told = TellRecovery(*host, *mark); !told) return told.error();
+    host->fresh = true;
   }
   v1::HostResponse message;
   v1::HostWelcome& welcome = *message.mutable_welcome();
@@ -230,48 +220,6 @@ Status Hosts::TellRecovery(const Host& host, const std::optional<storage::Machin
   return needs_.store.AppendMachine(host.lease, write);
 }
 
-void Hosts::SendMemory(const HostPointer& host) {
-  const auto memory =
-      needs_.store.GetMachineMemory(host->id, [](const storage::MachineRecord&) { return true; });
-  if (!memory) {
-    spdlog::warn("memory of {}: {}", host->id, bridge::ErrorText(memory.error()));
-    return;
-  }
-  v1::HostResponse message;
-  *message.mutable_memory() = MemoryOf(*memory);
-  host->link->Send(std::move(message));
-}
-
-// What was stored in the memory of a machine that is hosted goes to its host.
-void Hosts::LookAtMemory() {
-  std::set<std::string> changed;
-  {
-    const std::lock_guard looking(looking_);
-    for (;;) {
-      const auto events = needs_.feed.EventsAfter(looked_until_, kMemoryReadAhead);
-      if (!events) {
-        looked_until_ = needs_.feed.position();
-        const std::lock_guard lock(mutex_);
-        for (const auto& [id, host] : hosts_) changed.insert(id);
-        break;
-      }
-      if (events->empty()) break;
-      looked_until_ = events->back().position;
-      for (const storage::EventRecord& event : *events) {
-        const std::string_view resource = event.resource;
-        constexpr std::string_view kMachines = "machines/";
-        if (event.job != 0 || !resource.starts_with(kMachines)) continue;
-        const std::size_t end = resource.find('/', kMachines.size());
-        if (end == std::string_view::npos) continue;
-        changed.emplace(resource.substr(kMachines.size(), end - kMachines.size()));
-      }
-    }
-  }
-  for (const std::string& id : changed) {
-    if (const HostPointer host = Find(id)) SendMemory(host);
-  }
-}
-
 void Hosts::Receive(const HostLink& link, v1::HostRequest message) {
   const HostPointer host = Find(link);
   if (host == nullptr) return;
@@ -305,17 +253,23 @@ void Hosts::Receive(const HostLink& link, v1::HostRequest message) {
 }
 
 void Hosts::TakeStatus(const HostPointer& host, v1::MachineStatus status) {
+  bool news = false;
   {
     const std::lock_guard lock(host->mutex);
+    news = !host->status || host->status->state() != status.state() ||
+           host->status->start_blockers_size() != status.start_blockers_size();
     host->status = status;
   }
   Publish(*host, std::move(status));
+  if (news) Changed(host->id);
 }
 
 void Hosts::Publish(const Host& host, v1::MachineStatus status) {
   const std::string name = MachineName(host.id);
   if (const auto unfinished = needs_.store.UnfinishedJobs()) AddJobs(host.id, *unfinished, status);
   needs_.feed.Publish(name, status.SerializeAsString());
+  if (!status.run().job().empty())
+    needs_.feed.Publish(status.run().job(), ProgressOf(status).SerializeAsString());
 }
 
 void Hosts::TakeAnswer(const HostPointer& host, v1::HostOrderAnswer answer) {
@@ -383,30 +337,22 @@ void Hosts::StoreEntries(const HostPointer& host) {
       const std::lock_guard lock(host->mutex);
       entries = host->waiting;
     }
-    storage::MachineWrite write;
-    for (const v1::JournalEntry& entry : entries) {
-      if (const auto event = EventOf(entry)) write.events.push_back(ToRecord(*event));
-      if (!entry.has_mark()) continue;
-      v1::MachineMark note = entry.mark();
-      note.clear_state();
-      write.mark = storage::MachineMark{.sequence = entry.sequence(),
-                                        .state = entry.mark().state(),
-                                        .note = note.SerializeAsString(),
-                                        .clean = entry.mark().clean()};
-    }
-    const Status stored = needs_.store.AppendMachine(host->lease, write);
+    StoredEntries done = server::StoreEntries(needs_.store, host->lease, entries);
+    const Status& stored = done.how;
+    if (done.how && host->fresh)
+      done.how = GiveBackUnbegun(needs_.store, host->id, host->lease.host);
+    if (done.how) host->fresh = false;
     {
       const std::lock_guard lock(host->mutex);
       host->storing = false;
       host->rests.notify_all();
-      if (stored) {
-        const auto count = static_cast<std::ptrdiff_t>(entries.size());
-        host->waiting.erase(host->waiting.begin(), host->waiting.begin() + count);
-        host->stored = entries.back().sequence();
-      }
+      const auto count = static_cast<std::ptrdiff_t>(done.count);
+      host->waiting.erase(host->waiting.begin(), host->waiting.begin() + count);
+      if (count > 0) host->stored = entries[done.count - 1].sequence();
     }
+    if (done.count > 0) TellStored(*host, entries[done.count - 1].sequence());
     if (stored) {
-      TellStored(*host, entries.back().sequence());
+      Changed(host->id);
       return StoreEntries(host);
     }
     spdlog::warn("what the host of {} tells: {}", host->id, bridge::ErrorText(stored.error()));
@@ -543,6 +489,22 @@ void Hosts::CloseAll() {
     for (const auto& [id, host] : hosts_) links.push_back(host->link);
   }
   for (const auto& link : links) link->Close({ErrorCode::kCellUnavailable, "the server stops", {}});
+}
+
+std::string Hosts::MachineThatRuns(const std::string& job) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, host] : hosts_) {
+    const std::lock_guard of_host(host->mutex);
+    if (host->status && host->status->run().job() == job) return id;
+  }
+  return {};
+}
+
+std::vector<std::string> Hosts::Machines() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> machines;
+  for (const auto& [id, host] : hosts_) machines.push_back(id);
+  return machines;
 }
 
 bool Hosts::IsHosted(const std::string& machine) const { return Find(machine) != nullptr; }

@@ -29,7 +29,8 @@ class HostLink {
 
 // The hosts of machines that live, as this server hears of them: it gives them their leases, hands
 // orders of clients over and stores what they tell. Orders and status never pass the store.
-// Thread-safe. Lock order: mutex_ is a leaf; neither the store nor a link is called under it.
+// Thread-safe. Lock order: mutex_, that of a host; neither the store nor a link is called under
+// them.
 class Hosts {
  public:
   static constexpr std::chrono::seconds kLease{15};
@@ -75,6 +76,12 @@ class Hosts {
   std::optional<v1::MachineStatus> StatusOf(const std::string& machine) const;
   // Called when a machine is hosted, or no more.
   void OnChange(std::function<void()> changed);
+  // Called when the state of a machine, or what keeps a job from it, has changed, or something of
+  // it was stored; on any thread, and not for long.
+  void OnNews(std::function<void(const std::string& machine)> news);
+  // The id of the machine that runs this job, as its host says; empty: none that is known.
+  std::string MachineThatRuns(const std::string& job) const;
+  std::vector<std::string> Machines() const;  // ids of those with a host
 
  private:
   struct Host;
@@ -99,10 +106,12 @@ class Hosts {
   void Publish(const Host& host, v1::MachineStatus status);
   void LookAtMemory();
   void Changed();
+  void Changed(const std::string& machine);
 
   Needs needs_;
   std::mutex changing_;
-  std::function<void()> changed_;  // guarded by changing_
+  std::function<void()> changed_;                 // guarded by changing_
+  std::function<void(const std::string&)> news_;  // likewise
   // Over all lines, and those of a server before: an answer is to one order alone.
   std::atomic<std::int64_t> next_order_ = std::chrono::duration_cast<std::chrono::microseconds>(
                                               std::chrono::system_clock::now().time_since_epoch())

@@ -139,7 +139,13 @@ v1::Job ToProto(const storage::JobRecord& record) {
   job.set_priority(record.priority);
   job.set_held(record.held);
   if (record.not_before) *job.mutable_not_before_time() = ToProto(*record.not_before);
-  if (record.state == storage::JobState::kQueued) job.set_wait_reason(ToProto(record.wait));
+  if (record.state == storage::JobState::kQueued) {
+    // A RUN that is ready begins as soon as its machine can.
+    const bool for_machine =
+        record.wait == storage::WaitReason::kNone && record.kind == storage::kRunKind;
+    job.set_wait_reason(for_machine ? v1::WAIT_REASON_MACHINE_NOT_READY : ToProto(record.wait));
+    if (for_machine) job.set_waits_for(MachineName(record.machine));
+  }
   if (record.waits_for > 0) job.set_waits_for(JobName(record.waits_for));
   *job.mutable_create_time() = ToProto(record.created_at);
   if (record.started_at) *job.mutable_start_time() = ToProto(*record.started_at);
@@ -214,6 +220,8 @@ storage::JobOutcome OutcomeOf(const v1::Outcome& outcome) {
     made.state = storage::JobState::kSucceeded;
   } else if (outcome.kind() == v1::Outcome::KIND_CANCELLED) {
     made.state = storage::JobState::kCancelled;
+  } else if (outcome.kind() == v1::Outcome::KIND_INTERRUPTED) {
+    made.state = storage::JobState::kInterrupted;
   }
   return made;
 }

@@ -4,24 +4,10 @@
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
-#include "server/records/job_messages.h"
 #include "server/results/job_results.h"
 #include "server/services/job_streams.h"
 
 namespace rmlcell::server {
-
-namespace {
-
-v1::Job* JobOf(v1::Job* response) { return response; }
-v1::Job* JobOf(v1::HaltJobResponse* response) { return response->mutable_job(); }
-
-void NoteActed(const v1::Job*) {}
-void NoteActed(v1::HaltJobResponse* response) {
-  *response->mutable_acted_at() =
-      ToProto(std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now()));
-}
-
-}  // namespace
 
 // The one method that does not go through the executor. Of callers that come together only the
 // first waits here for the disk; the store answers all others from its own thread, with one commit.
@@ -102,69 +88,6 @@ grpc::ServerUnaryReactor* JobService::DeleteJob(grpc::CallbackServerContext* con
                 });
 }
 
-grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* context,
-                                                const v1::CancelJobRequest* request,
-                                                v1::Job* response) {
-  const Result<std::int64_t> id = ParseJobName(request->name());
-  return AnswerAfter(
-      needs_, context, *request, "JobService/CancelJob",
-      [this, id, request](const Caller& caller) {
-        if (id)
-          dispatcher_.OrderAtOnce(
-              *id, {v1::WorkerControl::KIND_CANCEL, 0.0, caller.identity, request->request_id()});
-      },
-      [this, id, request, response](const Caller& caller) {
-        if (!id) return ToGrpcStatus(id.error());
-        const auto job = dispatcher_.Cancel(*id, caller.identity, request->request_id());
-        if (!job) return ToGrpcStatus(job.error());
-        *response = ToProto(*job);
-        return grpc::Status::OK;
-      });
-}
-
-// Stops stand behind nothing: what the worker of a running job is to do goes out on the thread of
-// the call; the store is asked afterwards, and for a job that this server has given to nobody.
-template <class Request, class Response>
-grpc::ServerUnaryReactor* JobService::Order(grpc::CallbackServerContext* context,
-                                            std::string_view method, const Request& request,
-                                            v1::WorkerControl::Kind kind, Response* response) {
-  const Result<std::int64_t> id = ParseJobName(request.name());
-  auto ordered = std::make_shared<bool>(false);
-  return AnswerAfter(
-      needs_, context, request, method,
-      [this, id, kind, ordered, &request, response](const Caller& caller) {
-        *ordered =
-            id && dispatcher_.OrderAtOnce(*id, {kind, 0.0, caller.identity, request.request_id()});
-        if (*ordered) NoteActed(response);
-      },
-      [this, id, &request, kind, ordered, response](const Caller& caller) {
-        if (!id) return ToGrpcStatus(id.error());
-        if (!*ordered) {
-          Status late =
-              dispatcher_.Control(*id, {kind, 0.0, caller.identity, request.request_id()});
-          // It may wait in the queue.
-          if (!late && late.error().code == ErrorCode::kCellPrecondition)
-            late = OrderWaiting(request.name(), kind, caller.identity);
-          if (!late) return ToGrpcStatus(late.error());
-          NoteActed(response);
-        }
-        return Give(request.name(), JobOf(response));
-      });
-}
-
-Status JobService::OrderWaiting(const std::string& name, v1::WorkerControl::Kind kind,
-                                const std::string& caller) {
-  Result<v1::Job> job = InvalidArgument(name);
-  if (kind == v1::WorkerControl::KIND_HOLD) {
-    job = book_.HoldBack(name, caller);
-  } else if (kind == v1::WorkerControl::KIND_RESUME) {
-    job = book_.LetGo(name, caller);
-  } else {
-    return Error{ErrorCode::kCellPrecondition, name + " does not run", {}};
-  }
-  return job ? Status() : Status(job.error());
-}
-
 JobStreamNeeds JobService::Streams(Executor& lane) const {
   return {.executor = lane,
           .open = open_,
@@ -180,41 +103,6 @@ grpc::Status JobService::Give(const std::string& name, v1::Job* response) {
   if (!job) return ToGrpcStatus(job.error());
   *response = *std::move(job);
   return grpc::Status::OK;
-}
-
-grpc::ServerUnaryReactor* JobService::HoldJob(grpc::CallbackServerContext* context,
-                                              const v1::HoldJobRequest* request,
-                                              v1::HaltJobResponse* response) {
-  return Order(context, "JobService/HoldJob", *request, v1::WorkerControl::KIND_HOLD, response);
-}
-
-grpc::ServerUnaryReactor* JobService::StopJob(grpc::CallbackServerContext* context,
-                                              const v1::StopJobRequest* request,
-                                              v1::HaltJobResponse* response) {
-  return Order(context, "JobService/StopJob", *request, v1::WorkerControl::KIND_STOP, response);
-}
-
-grpc::ServerUnaryReactor* JobService::ResumeJob(grpc::CallbackServerContext* context,
-                                                const v1::ResumeJobRequest* request,
-                                                v1::Job* response) {
-  return Order(context, "JobService/ResumeJob", *request, v1::WorkerControl::KIND_RESUME, response);
-}
-
-grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext* context,
-                                                     const v1::SetJobOverrideRequest* request,
-                                                     v1::Job* response) {
-  return Answer(needs_, context, *request, "JobService/SetJobOverride",
-                [this, request, response](const Caller& caller) {
-                  const double percent = request->override_percent();
-                  const Result<std::int64_t> id = ParseJobName(request->name());
-                  if (!id) return ToGrpcStatus(id.error());
-                  if (const Status valid = book_.CheckOverride(request->name(), percent); !valid)
-                    return ToGrpcStatus(valid.error());
-                  const Status ordered =
-                      dispatcher_.Control(*id, {v1::WorkerControl::KIND_OVERRIDE, percent,
-                                                caller.identity, request->request_id()});
-                  return ordered ? Give(request->name(), response) : ToGrpcStatus(ordered.error());
-                });
 }
 
 grpc::ServerWriteReactor<v1::WatchJobResponse>* JobService::WatchJob(
@@ -379,7 +267,7 @@ grpc::Status JobService::ActOn(const v1::JobChoice& jobs, std::optional<storage:
   if (!names) return ToGrpcStatus(names.error());
   const auto changed = book_.ActOn(*names, act, caller.identity);
   if (!changed) return ToGrpcStatus(changed.error());
-  for (const storage::JobRecord& job : *changed) dispatcher_.TellCancel(job, caller.identity);
+  for (const storage::JobRecord& job : *changed) TellCancel(job, caller);
   response.set_jobs(static_cast<std::int64_t>(changed->size()));
   return grpc::Status::OK;
 }

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "rmlcell/v1/host.pb.h"
 #include "rmlcell/v1/job.grpc.pb.h"
 #include "rmlcell/v1/worker.pb.h"
 #include "server/services/job_streams.h"
@@ -15,6 +16,7 @@ class Dispatcher;
 class EventFeed;
 class JobBook;
 class JobResults;
+class RunQueue;
 
 // Converts, calls, converts: the rules live in server/jobs.
 // GetJob is answered with bytes that are ready (ToldJobs).
@@ -22,12 +24,14 @@ class JobService final
     : public v1::JobService::WithRawCallbackMethod_GetJob<v1::JobService::CallbackService> {
  public:
   JobService(CallNeeds needs, Executor& watches, JobBook& book, JobResults& results,
-             Dispatcher& dispatcher, EventFeed& feed, OpenStreams& open, std::string instance_id)
+             Dispatcher& dispatcher, RunQueue& runs, EventFeed& feed, OpenStreams& open,
+             std::string instance_id)
       : needs_(needs),
         watches_(watches),
         book_(book),
         results_(results),
         dispatcher_(dispatcher),
+        runs_(runs),
         feed_(feed),
         open_(open),
         instance_id_(std::move(instance_id)) {}
@@ -115,6 +119,12 @@ class JobService final
   grpc::ServerUnaryReactor* Order(grpc::CallbackServerContext* context, std::string_view method,
                                   const Request& request, v1::WorkerControl::Kind kind,
                                   Response* response);
+  // Of a job that a machine runs: the order goes to its host.
+  template <class Request, class Response>
+  grpc::ServerUnaryReactor* OrderRun(grpc::CallbackServerContext* context, std::string_view method,
+                                     const Request& request, v1::HostOrder order,
+                                     Response* response);
+  void TellCancel(const storage::JobRecord& job, const Caller& caller);
   grpc::Status Give(const std::string& name, v1::Job* response);
   Status OrderWaiting(const std::string& name, v1::WorkerControl::Kind kind,
                       const std::string& caller);
@@ -125,6 +135,7 @@ class JobService final
   JobBook& book_;
   JobResults& results_;
   Dispatcher& dispatcher_;
+  RunQueue& runs_;
   EventFeed& feed_;
   OpenStreams& open_;
   std::string instance_id_;

@@ -1,16 +1,14 @@
 // What clients ask of machines that live: it goes to the host of the machine, and its answer comes
 // back. Nothing of it waits for the store.
-#include <google/rpc/status.pb.h>
-
 #include <chrono>
 #include <thread>
 #include <utility>
 
-#include "proto/bridge/findings.h"
 #include "server/base/names.h"
 #include "server/machines/host_processes.h"
 #include "server/machines/hosts.h"
 #include "server/services/call.h"
+#include "server/services/host_refusal.h"
 #include "server/services/machine_service.h"
 
 namespace rmlcell::server {
@@ -18,17 +16,6 @@ namespace {
 
 constexpr std::chrono::seconds kBegins{10};  // an enabled machine is heard of by then
 constexpr std::chrono::milliseconds kBetweenLooks{10};
-
-// What the machine says of a refusal, as well.
-grpc::Status RefusalOf(const v1::HostOrderAnswer& answer) {
-  const v1::ErrorDetail& refusal = answer.refusal();
-  const auto found = FindByText(refusal.code());
-  const ErrorCode code = found.empty() ? ErrorCode::kCellInternal : found.front()->code;
-  google::rpc::Status status = bridge::ToRpcStatus({code, refusal.message(), {}});
-  if (answer.has_machine_refusal()) status.add_details()->PackFrom(answer.machine_refusal());
-  return {static_cast<grpc::StatusCode>(status.code()), status.message(),
-          status.SerializeAsString()};
-}
 
 }  // namespace
 

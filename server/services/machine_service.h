@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rmlcell/v1/machine.grpc.pb.h"
+#include "server/records/known_machines.h"
 #include "server/services/later.h"
 #include "server/services/machine_watch.h"
 #include "storage/store.h"

@@ -106,8 +106,8 @@ JobOutcome InterruptedOutcome(const LossPolicy& policy) {
   return interrupted;
 }
 
-bool HandBackAttempt(JobRecord& job) {
-  if (job.kind == kRunKind) return false;
+bool HandBackAttempt(JobRecord& job, const LossPolicy& policy) {
+  if (job.kind == kRunKind && !policy.not_begun) return false;
   job.attempts -= 1;
   return true;
 }

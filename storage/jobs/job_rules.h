@@ -45,7 +45,7 @@ AfterLoss LoseAttempt(JobRecord& job, int begun, const LossPolicy& policy);
 JobOutcome InterruptedOutcome(const LossPolicy& policy);
 // Given back before it came to anything: true, it waits again, and the attempt did not count;
 // false: it is interrupted.
-bool HandBackAttempt(JobRecord& job);
+bool HandBackAttempt(JobRecord& job, const LossPolicy& policy);
 
 // CellPrecondition: it has not ended.
 Status CheckRemoval(const JobRecord& job);

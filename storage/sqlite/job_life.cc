@@ -310,7 +310,7 @@ Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease, const L
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
   if (const Status ended = EndAttempt(context, lease, "handed back"); !ended) return ended.error();
-  const bool waits = HandBackAttempt(row->job);
+  const bool waits = HandBackAttempt(row->job, policy);
   if (waits) {
     SetState(context, *row, JobState::kQueued);
   } else if (const Status cut_off = EndJob(context, *row, InterruptedOutcome(policy)); !cut_off) {

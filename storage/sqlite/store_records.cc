@@ -3,6 +3,7 @@
 
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/host_life.h"
+#include "storage/sqlite/job_life.h"
 #include "storage/sqlite/sqlite_store_impl.h"
 
 namespace rmlcell::storage::sqlite {
@@ -196,7 +197,13 @@ Result<std::vector<MachineLease>> SqliteStore::MachineLeases() {
 }
 
 Status SqliteStore::AppendMachine(const MachineLease& lease, const MachineWrite& write) {
-  return writer_.Do([&](WriteContext& context) { return WriteMachine(context, lease, write); });
+  return writer_.Do([&](WriteContext& context) -> Status {
+    if (const Status written = WriteMachine(context, lease, write); !written)
+      return written.error();
+    if (!write.job) return {};
+    const Result<std::int64_t> told = AppendEvents(context, *write.job, write.job_events);
+    return told ? Status() : Status(told.error());
+  });
 }
 
 Result<std::optional<MachineMark>> SqliteStore::GetMachineMark(std::string_view machine) {

@@ -1,0 +1,99 @@
+// Jobs of the queue on a machine that lives: what keeps them from it, and how they begin.
+#include <algorithm>
+#include <utility>
+
+#include "proto/bridge/findings.h"
+#include "server/host/host_machine.h"
+
+namespace rmlcell::server {
+
+// What keeps a job of this caller from beginning; LIVE-5.02.
+std::optional<Error> HostMachine::WhyNoJob(const std::string& caller) const {
+  const auto& lease = desk_.lease();
+  if (lease && lease->holder() != caller)
+    return Error{ErrorCode::kCellLeaseHeld, lease->holder() + " has control", {}};
+  const machine::MachineStatus status = machine().status();
+  if (inspect_due_) return Error{ErrorCode::kCellInspect, "confirm that it was inspected", {}};
+  if (!status.alarms.empty()) return Error{status.alarms.front().code, {}, {}};
+  if (status.state == machine::MachineState::kOff)
+    return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
+  if (status.open) return Error{ErrorCode::kCellMachineState, "a run is open", {}};
+  if (status.mode != machine::Mode::kRemote)
+    return Error{ErrorCode::kCellMode, "jobs run in REMOTE alone", {}};
+  if (status.run.door_open) return Error{ErrorCode::kCellDoorOpen, {}, {}};
+  return std::nullopt;
+}
+
+// The program that the job brought; nothing: what the memory has is the same.
+Result<std::optional<machine::StoredProgram>> HostMachine::ProgramOfJob(
+    const v1::WorkerAssignment& assignment) const {
+  const auto& programs = assignment.programs();
+  const auto main =
+      std::ranges::find(programs, assignment.main_program(), &v1::AssignedProgram::slot);
+  if (main == programs.end())
+    return Error{ErrorCode::kCellInvalidArgument, "the job came without its program", {}};
+  const auto stored = machine().memory().programs.find(main->slot());
+  if (!main->is_source() && stored != machine().memory().programs.end() &&
+      *stored->second.object == main->content())
+    return std::optional<machine::StoredProgram>();
+  machine::StoredProgram made{.name = main->title().empty() ? main->file_name() : main->title(),
+                              .object = machine::Bytes::Of(main->content())};
+  if (!main->executable().empty()) made.executable = machine::Bytes::Of(main->executable());
+  if (!main->is_source()) return std::optional(std::move(made));
+  machine::Translation translation = setup_.family->Translate(
+      {.name = main->file_name(), .bytes = *made.object, .keeper = made.object.keeper()},
+      *parameters_, {.advice = false, .source = true});
+  if (!translation.ok) {
+    const auto first = std::ranges::find_if(
+        translation.diagnostics, [](const Diagnostic& one) { return IsError(one.severity); });
+    if (first == translation.diagnostics.end())
+      return Error{ErrorCode::kCellInvalidArgument, "the program cannot be translated", {}};
+    return Error{first->code, first->detail, first->where};
+  }
+  if (!translation.as_it_came) made.object = machine::Bytes::Of(std::move(translation.object));
+  made.source = std::make_shared<const machine::SourceNotes>(std::move(translation.source));
+  return std::optional(std::move(made));
+}
+
+// The queue has control for it, where nobody has. LIVE-4.05
+Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
+  if (auto why = WhyNoJob(order.caller())) return *std::move(why);
+  const v1::WorkerAssignment& assignment = order.run_job();
+  auto brought = ProgramOfJob(assignment);
+  if (!brought) return brought.error();
+  const v1::RunOptions& options = assignment.job().run();
+  job_ = assignment.job().name();
+  const Status begun = Apply(machine::StartRun{.program = assignment.main_program(),
+                                               .source = machine::StartSource::kQueue,
+                                               .unzeroed = options.unzeroed(),
+                                               .brought = *std::move(brought)},
+                             &order);
+  if (!begun) {
+    job_.clear();
+    return begun.error();
+  }
+  if (!desk_.lease()) {
+    desk_.GiveToQueue(job_, options.on_loss(), now);
+    TellControl();
+  }
+  return {};
+}
+
+// What keeps jobs in the queue; whoever has control does not keep his own. LIVE-5.02
+void HostMachine::AddBlockers(v1::MachineStatus& status) const {
+  const auto add = [&status](const Error& error) {
+    const v1::ErrorDetail detail = bridge::ToErrorDetail(error);
+    v1::StartBlocker& blocker = *status.add_start_blockers();
+    blocker.set_code(detail.code());
+    blocker.set_symbol(detail.symbol());
+    blocker.set_message(detail.message());
+    blocker.set_advice(detail.advice());
+  };
+  if (const auto why = WhyNoJob(desk_.lease() ? desk_.lease()->holder() : std::string())) add(*why);
+  if (desk_.lease() && !desk_.IsOfQueue())
+    add({ErrorCode::kCellLeaseHeld, desk_.lease()->holder() + " has control", {}});
+  if (!machine().status().run.zeroed && !machine().status().open)
+    add({setup_.family->info().not_zeroed, "the axes have no reference", {}});
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <vector>
+
+#include "server/machines/hosts.h"
+
+namespace rmlcell::server {
+
+// What Hosts knows of one host, by one line of it. Only its own sources include this.
+struct Hosts::Host {
+  std::string id{};
+  std::shared_ptr<HostLink> link;
+  storage::MachineLease lease{};  // does not change but for its count, which nobody looks at
+
+  std::mutex mutex;               // a leaf, like that of Hosts
+  std::condition_variable rests;  // nothing of it is being stored
+  bool gone = false;
+  bool handed_back = false;
+  struct Pending {
+    Answered done;
+    std::chrono::steady_clock::time_point asked{};
+  };
+  std::map<std::int64_t, Pending> pending;
+  std::optional<v1::MachineStatus> status;
+  std::chrono::steady_clock::time_point heard{};
+  std::vector<v1::JournalEntry> waiting;  // to be stored
+  std::int64_t stored = 0;                // sequence of the last one that is
+  bool storing = false;
+  bool fresh = false;  // it followed another one; of who stores alone
+};
+
+}  // namespace rmlcell::server

@@ -1,0 +1,251 @@
+#include "server/runs/run_queue.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "proto/bridge/findings.h"
+#include "server/base/names.h"
+#include "server/jobs/assignment.h"
+#include "server/machines/host_entries.h"
+#include "server/records/job_messages.h"
+#include "storage/jobs/job_rules.h"
+#include "storage/trouble.h"
+
+namespace rmlcell::server {
+namespace {
+
+// Its lease is that of the machine: it does not run out by itself. LIVE-5.01
+constexpr std::chrono::milliseconds kWhileTheMachineIsHeld = std::chrono::days(366);
+
+// Of these another try may go better; of all others the job ends.
+bool MayGoBetterLater(ErrorCode code) {
+  constexpr std::array kLater = {ErrorCode::kCellMachineState, ErrorCode::kCellMode,
+                                 ErrorCode::kCellNotLive,      ErrorCode::kCellInspect,
+                                 ErrorCode::kCellJournal,      ErrorCode::kCellLeaseHeld,
+                                 ErrorCode::kCellDoorOpen};
+  return std::ranges::find(kLater, code) != kLater.end() ||
+         Lookup(code).severity == Severity::kAlarm;
+}
+
+// Whether this is nothing to a job of this caller.
+bool Allows(const v1::StartBlocker& blocker, const v1::MachineStatus& status,
+            const storage::JobRecord& job, bool unzeroed) {
+  const auto found = FindByText(blocker.code());
+  if (found.empty()) return false;
+  const ErrorCode code = found.front()->code;
+  if (code == ErrorCode::kCellLeaseHeld) return status.control().holder() == job.caller;
+  // The last of them: the axes have no reference.
+  return unzeroed && !status.zeroed() && code != ErrorCode::kCellMachineState &&
+         found.front()->family != ErrorFamily::kCell && status.alarms().empty();
+}
+
+// The program of the job alone: the host has the rest.
+Result<v1::WorkerAssignment> ForHost(storage::Store& store, const Config& config,
+                                     const storage::LeasedJob& leased) {
+  Result<AssignmentMessages> made = MakeAssignment(store, config, leased);
+  if (!made) return made.error();
+  v1::WorkerAssignment assignment = std::move(*made->first.mutable_assignment());
+  auto& programs = *assignment.mutable_programs();
+  for (const auto& [slot, bytes] : made->programs) {
+    const auto program = std::ranges::find(programs, slot, &v1::AssignedProgram::slot);
+    if (program != programs.end()) program->set_content(*bytes);
+  }
+  programs.erase(std::remove_if(programs.begin(), programs.end(),
+                                [&](const v1::AssignedProgram& program) {
+                                  return program.slot() != assignment.main_program();
+                                }),
+                 programs.end());
+  assignment.clear_machine_state();
+  assignment.clear_schedules();
+  assignment.clear_deleted_programs();
+  assignment.mutable_lease()->set_job(leased.lease.job);
+  assignment.mutable_lease()->set_attempt(leased.lease.attempt);
+  assignment.mutable_lease()->set_fence(leased.lease.fence);
+  return assignment;
+}
+
+}  // namespace
+
+void RunQueue::Wake(const std::string& machine) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!looking_.insert(machine).second) {
+      once_more_.insert(machine);
+      return;
+    }
+  }
+  needs_.executor.Post([this, machine] { Look(machine); });
+}
+
+void RunQueue::WakeAll() {
+  for (const std::string& machine : needs_.hosts.Machines()) Wake(machine);
+}
+
+// One at a time for each machine.
+void RunQueue::Look(const std::string& machine) {
+  LookOnce(machine);
+  {
+    const std::lock_guard lock(mutex_);
+    if (once_more_.erase(machine) == 0) {
+      looking_.erase(machine);
+      return;
+    }
+  }
+  needs_.executor.Post([this, machine] { Look(machine); });
+}
+
+void RunQueue::LookOnce(const std::string& machine) {
+  const auto status = needs_.hosts.StatusOf(machine);
+  if (!status || status->state() == v1::MACHINE_STATE_LOST ||
+      status->state() == v1::MACHINE_STATE_STARTING)
+    return;
+  if (!IsBusy(machine, *status)) BeginNext(machine, *status);
+}
+
+bool RunQueue::IsBusy(const std::string& machine, const v1::MachineStatus& status) {
+  const auto running = needs_.store.ListJobs({.machine = machine,
+                                              .state = storage::JobState::kRunning,
+                                              .kind = std::string(storage::kRunKind),
+                                              .limit = 1});
+  if (!running) return true;
+  if (running->empty()) return false;
+  const storage::JobRecord& job = running->front();
+  const std::string name = JobName(job.id);
+  {
+    const std::lock_guard lock(mutex_);
+    if (status.run().job() == name) {
+      unheard_of_.erase(job.id);
+    } else {
+      const auto [since, first] = unheard_of_.emplace(job.id, needs_.clock());
+      if (first || needs_.clock() - since->second < kUnheardOf) return true;
+      unheard_of_.erase(since);
+    }
+  }
+  if (status.run().job() == name) {
+    if (job.cancel_requested) Abort(name, job.caller, {});
+    return true;
+  }
+  const auto attempts = needs_.store.ListAttempts(job.id);
+  if (!attempts || attempts->empty() || attempts->back().ended_at) return true;
+  const storage::AttemptRecord& attempt = attempts->back();
+  GiveBack({.lease = {.job = job.id,
+                      .attempt = attempt.number,
+                      .fence = attempt.fence,
+                      .worker = attempt.worker},
+            .job = job},
+           "the host never began it");
+  return true;
+}
+
+void RunQueue::BeginNext(const std::string& machine, const v1::MachineStatus& status) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto rests = rests_until_.find(machine);
+    if (rests != rests_until_.end() && needs_.clock() < rests->second) return;
+    rests_until_.erase(machine);
+  }
+  const auto waiting = needs_.store.ListJobs({.machine = machine,
+                                              .state = storage::JobState::kQueued,
+                                              .kind = std::string(storage::kRunKind),
+                                              .order = storage::JobOrder::kQueue,
+                                              .limit = 1});
+  if (!waiting || waiting->empty() || waiting->front().blocked) return;
+  const auto job = needs_.store.GetJob(waiting->front().id);
+  v1::Job asked;
+  if (!job || !asked.ParseFromString(job->specification)) return;
+  const bool may = std::ranges::all_of(status.start_blockers(), [&](const auto& blocker) {
+    return Allows(blocker, status, *job, asked.run().unzeroed());
+  });
+  if (!may) return;
+  const auto leased =
+      needs_.store.AcquireJobs({.worker = status.host(),
+                                .server = needs_.server,
+                                .kinds = {std::string(storage::kRunKind)},
+                                .run_machines = {machine},
+                                .duration = kWhileTheMachineIsHeld,
+                                .events = {StateEvent(storage::JobState::kRunning)}});
+  if (!leased) {
+    spdlog::warn("a job for {}: {}", machine, bridge::ErrorText(leased.error()));
+    return;
+  }
+  if (!leased->empty()) Begin(machine, leased->front());
+}
+
+void RunQueue::Begin(const std::string& machine, const storage::LeasedJob& leased) {
+  if (leased.job.cancel_requested) return End(leased, storage::CancelledOutcome());
+  Result<v1::WorkerAssignment> assignment = ForHost(needs_.store, needs_.config, leased);
+  if (!assignment) {
+    if (storage::IsTroubleOfTheStore(assignment.error()))
+      return GiveBack(leased, "its program could not be read");
+    return End(leased, {.state = storage::JobState::kFailed,
+                        .code = assignment.error().code,
+                        .detail = assignment.error().detail});
+  }
+  spdlog::info("{} goes to {}", JobName(leased.job.id), machine);
+  v1::HostOrder order;
+  order.set_caller(leased.job.caller);
+  *order.mutable_run_job() = *std::move(assignment);
+  needs_.hosts.Ask(machine, std::move(order),
+                   [this, machine, leased](const Result<v1::HostOrderAnswer>& answer) {
+                     needs_.executor.Post(
+                         [this, machine, leased, answer] { Answered(machine, leased, answer); });
+                   });
+}
+
+// One that was not answered may have begun: what its host says later tells.
+void RunQueue::Answered(const std::string& machine, const storage::LeasedJob& leased,
+                        const Result<v1::HostOrderAnswer>& answer) {
+  if (!answer) return;
+  if (!answer->has_refusal()) return Wake(machine);  // a cancel may have come meanwhile
+  const v1::ErrorDetail& refusal = answer->refusal();
+  const auto found = FindByText(refusal.code());
+  const ErrorCode code = found.empty() ? ErrorCode::kCellInternal : found.front()->code;
+  spdlog::info("{}: {} {}", JobName(leased.job.id), refusal.code(), refusal.message());
+  if (!MayGoBetterLater(code)) {
+    return End(
+        leased,
+        {.state = storage::JobState::kFailed, .code = code, .detail = Detail(refusal.message())});
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    rests_until_[machine] = needs_.clock() + kRests;
+  }
+  GiveBack(leased, CodeText(code) + ": " + refusal.message());
+  // Somebody was at the machine at the same moment: a person lets the job go. LIVE-2.05
+  if (code != ErrorCode::kCellMachineState) return;
+  const auto held = needs_.store.HoldBack(leased.job.id, {QueueEvent(true, leased.job.priority)});
+  if (!held) spdlog::warn("{}: {}", JobName(leased.job.id), bridge::ErrorText(held.error()));
+}
+
+void RunQueue::GiveBack(const storage::LeasedJob& leased, const std::string& why) {
+  const Status back = server::GiveBack(needs_.store, leased.lease, why);
+  if (!back) spdlog::warn("{}: {}", JobName(leased.job.id), bridge::ErrorText(back.error()));
+}
+
+void RunQueue::End(const storage::LeasedJob& leased, const storage::JobOutcome& how) {
+  const v1::Outcome outcome = ToProto(how);
+  const auto ended = needs_.store.Finish(
+      leased.lease, {.outcome = OutcomeOf(outcome), .events = {EndedEvent(outcome)}});
+  if (!ended) spdlog::warn("{}: {}", JobName(leased.job.id), bridge::ErrorText(ended.error()));
+}
+
+void RunQueue::Ask(const std::string& job, v1::HostOrder order, Hosts::Answered done) {
+  const std::string machine = MachineOf(job);
+  if (machine.empty())
+    return done(Error{ErrorCode::kCellNotLive, "no machine is heard of that runs " + job, {}});
+  order.set_for_job(job);
+  needs_.hosts.Ask(machine, std::move(order), std::move(done));
+}
+
+void RunQueue::Abort(const std::string& job, const std::string& caller,
+                     const std::string& request_id) {
+  v1::HostOrder order;
+  order.set_caller(caller);
+  order.mutable_abort()->set_request_id(request_id);
+  Ask(job, std::move(order), [](const Result<v1::HostOrderAnswer>&) {});
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "rmlcell/v1/host.pb.h"
+#include "server/base/executor.h"
+#include "server/base/steady_clock.h"
+#include "server/machines/hosts.h"
+#include "storage/store.h"
+
+namespace rmlcell::server {
+
+struct Config;
+
+// RUN jobs: one at a time goes to the host of its machine, as soon as that can begin it, and is
+// never begun a second time (LIVE-5.01 to 5.04). What the host tells of it, its end among that, is
+// stored by Hosts. Thread-safe.
+class RunQueue {
+ public:
+  struct Needs {
+    storage::Store& store;
+    Hosts& hosts;
+    const Config& config;
+    Executor& executor;
+    std::string server{};  // what the store knows this server by
+    SteadyClock clock = SteadyTime;
+  };
+  // A job that its machine does not run, and that has told nothing for so long, never began.
+  static constexpr std::chrono::seconds kUnheardOf{3};
+
+  // Behind a job that its machine did not take.
+  static constexpr std::chrono::seconds kRests{5};
+
+  explicit RunQueue(Needs needs) : needs_(std::move(needs)) {}
+
+  // Something may have changed: a job was submitted, the machine can start again. Returns at once.
+  void Wake(const std::string& machine);
+  void WakeAll();
+
+  // The machine whose host runs this job, as far as this server has heard; empty: none.
+  std::string MachineOf(const std::string& job) const { return needs_.hosts.MachineThatRuns(job); }
+  // An order for the run of this job; refused where another run is open by then.
+  void Ask(const std::string& job, v1::HostOrder order, Hosts::Answered done);
+  // The run is over as soon as it stands.
+  void Abort(const std::string& job, const std::string& caller, const std::string& request_id);
+
+ private:
+  void Look(const std::string& machine);
+  void LookOnce(const std::string& machine);
+  // Whether a job of the machine is under way. True where that is not known.
+  bool IsBusy(const std::string& machine, const v1::MachineStatus& status);
+  void BeginNext(const std::string& machine, const v1::MachineStatus& status);
+  void Begin(const std::string& machine, const storage::LeasedJob& leased);
+  void Answered(const std::string& machine, const storage::LeasedJob& leased,
+                const Result<v1::HostOrderAnswer>& answer);
+  void GiveBack(const storage::LeasedJob& leased, const std::string& why);
+  void End(const storage::LeasedJob& leased, const storage::JobOutcome& how);
+
+  Needs needs_;
+  std::mutex mutex_;                 // a leaf
+  std::set<std::string> looking_;    // guarded by mutex_; looked at, or a job of it begins
+  std::set<std::string> once_more_;  // guarded by mutex_
+  // Jobs that their machine does not speak of, and since when; guarded by mutex_.
+  std::map<std::int64_t, std::chrono::steady_clock::time_point> unheard_of_;
+  std::map<std::string, std::chrono::steady_clock::time_point> rests_until_;  // guarded by mutex_
+};
+
+}  // namespace rmlcell::server

@@ -1,0 +1,19 @@
+#include "server/services/host_refusal.h"
+
+#include <google/rpc/status.pb.h>
+
+#include "proto/bridge/findings.h"
+
+namespace rmlcell::server {
+
+grpc::Status RefusalOf(const v1::HostOrderAnswer& answer) {
+  const v1::ErrorDetail& refusal = answer.refusal();
+  const auto found = FindByText(refusal.code());
+  const ErrorCode code = found.empty() ? ErrorCode::kCellInternal : found.front()->code;
+  google::rpc::Status status = bridge::ToRpcStatus({code, refusal.message(), {}});
+  if (answer.has_machine_refusal()) status.add_details()->PackFrom(answer.machine_refusal());
+  return {static_cast<grpc::StatusCode>(status.code()), status.message(),
+          status.SerializeAsString()};
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,194 @@
+// Orders for jobs that run, or wait: HOLD, STOP, resume, override, cancel. Those for a job that a
+// machine runs go to its host, all others to its worker.
+#include "server/base/names.h"
+#include "server/jobs/dispatcher.h"
+#include "server/jobs/job_book.h"
+#include "server/records/job_messages.h"
+#include "server/runs/run_queue.h"
+#include "server/services/host_refusal.h"
+#include "server/services/job_service.h"
+
+namespace rmlcell::server {
+
+namespace {
+
+v1::Job* JobOf(v1::Job* response) { return response; }
+v1::Job* JobOf(v1::HaltJobResponse* response) { return response->mutable_job(); }
+
+void NoteActed(const v1::Job*) {}
+void NoteActed(v1::HaltJobResponse* response) {
+  *response->mutable_acted_at() =
+      ToProto(std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now()));
+}
+
+// The same order for a machine that lives.
+template <class Request>
+v1::HostOrder OrderOf(v1::WorkerControl::Kind kind, const Request& request) {
+  v1::HostOrder order;
+  if (kind == v1::WorkerControl::KIND_STOP) {
+    order.mutable_stop()->set_request_id(request.request_id());
+  } else if (kind == v1::WorkerControl::KIND_HOLD) {
+    order.mutable_hold()->set_request_id(request.request_id());
+  } else {
+    order.mutable_resume()->set_request_id(request.request_id());
+  }
+  return order;
+}
+
+v1::HostOrder OrderOf(v1::WorkerControl::Kind, const v1::ResumeJobRequest& request) {
+  v1::HostOrder order;
+  v1::ResumeMachineRequest& resume = *order.mutable_resume();
+  resume.set_control_token(request.control_token());
+  resume.set_request_id(request.request_id());
+  resume.set_accept_displaced(request.accept_displaced());
+  resume.set_restore_process(request.restore_process());
+  return order;
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* context,
+                                                const v1::CancelJobRequest* request,
+                                                v1::Job* response) {
+  const Result<std::int64_t> id = ParseJobName(request->name());
+  return AnswerAfter(
+      needs_, context, *request, "JobService/CancelJob",
+      [this, id, request](const Caller& caller) {
+        if (!id) return;
+        if (!runs_.MachineOf(request->name()).empty())
+          return runs_.Abort(request->name(), caller.identity, request->request_id());
+        dispatcher_.OrderAtOnce(
+            *id, {v1::WorkerControl::KIND_CANCEL, 0.0, caller.identity, request->request_id()});
+      },
+      [this, id, request, response](const Caller& caller) {
+        if (!id) return ToGrpcStatus(id.error());
+        const auto job = dispatcher_.Cancel(*id, caller.identity, request->request_id());
+        if (!job) return ToGrpcStatus(job.error());
+        *response = ToProto(*job);
+        return grpc::Status::OK;
+      });
+}
+
+template <class Request, class Response>
+grpc::ServerUnaryReactor* JobService::OrderRun(grpc::CallbackServerContext* context,
+                                               std::string_view method, const Request& request,
+                                               v1::HostOrder order, Response* response) {
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  const Result<Caller> caller = Admit(needs_.gate, *context, method, &request);
+  const Status size = caller ? CheckSize(needs_, request) : Status();
+  if (!caller || !size) {
+    reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
+    return reactor;
+  }
+  order.set_caller(caller->identity);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto end = [reactor, method, begin, who = *caller](const grpc::Status& status) {
+    LogCall(method, who, status, std::chrono::steady_clock::now() - begin);
+    reactor->Finish(status);
+  };
+  runs_.Ask(
+      request.name(), std::move(order),
+      [this, end, response, name = request.name()](const Result<v1::HostOrderAnswer>& answer) {
+        if (!answer) return end(ToGrpcStatus(answer.error()));
+        if (answer->has_refusal()) return end(RefusalOf(*answer));
+        NoteActed(response);
+        needs_.executor.Post([this, end, response, name] { end(Give(name, JobOf(response))); });
+      });
+  return reactor;
+}
+
+void JobService::TellCancel(const storage::JobRecord& job, const Caller& caller) {
+  if (job.kind == storage::kRunKind && job.state == storage::JobState::kRunning)
+    return runs_.Abort(JobName(job.id), caller.identity, {});
+  dispatcher_.TellCancel(job, caller.identity);
+}
+
+// Stops stand behind nothing: what the worker of a running job is to do goes out on the thread of
+// the call; the store is asked afterwards, and for a job that this server has given to nobody.
+template <class Request, class Response>
+grpc::ServerUnaryReactor* JobService::Order(grpc::CallbackServerContext* context,
+                                            std::string_view method, const Request& request,
+                                            v1::WorkerControl::Kind kind, Response* response) {
+  if (!runs_.MachineOf(request.name()).empty())
+    return OrderRun(context, method, request, OrderOf(kind, request), response);
+  const Result<std::int64_t> id = ParseJobName(request.name());
+  auto ordered = std::make_shared<bool>(false);
+  return AnswerAfter(
+      needs_, context, request, method,
+      [this, id, kind, ordered, &request, response](const Caller& caller) {
+        *ordered =
+            id && dispatcher_.OrderAtOnce(*id, {kind, 0.0, caller.identity, request.request_id()});
+        if (*ordered) NoteActed(response);
+      },
+      [this, id, &request, kind, ordered, response](const Caller& caller) {
+        if (!id) return ToGrpcStatus(id.error());
+        if (!*ordered) {
+          Status late =
+              dispatcher_.Control(*id, {kind, 0.0, caller.identity, request.request_id()});
+          // It may wait in the queue.
+          if (!late && late.error().code == ErrorCode::kCellPrecondition)
+            late = OrderWaiting(request.name(), kind, caller.identity);
+          if (!late) return ToGrpcStatus(late.error());
+          NoteActed(response);
+        }
+        return Give(request.name(), JobOf(response));
+      });
+}
+
+Status JobService::OrderWaiting(const std::string& name, v1::WorkerControl::Kind kind,
+                                const std::string& caller) {
+  Result<v1::Job> job = InvalidArgument(name);
+  if (kind == v1::WorkerControl::KIND_HOLD) {
+    job = book_.HoldBack(name, caller);
+  } else if (kind == v1::WorkerControl::KIND_RESUME) {
+    job = book_.LetGo(name, caller);
+  } else {
+    return Error{ErrorCode::kCellPrecondition, name + " does not run", {}};
+  }
+  return job ? Status() : Status(job.error());
+}
+
+grpc::ServerUnaryReactor* JobService::HoldJob(grpc::CallbackServerContext* context,
+                                              const v1::HoldJobRequest* request,
+                                              v1::HaltJobResponse* response) {
+  return Order(context, "JobService/HoldJob", *request, v1::WorkerControl::KIND_HOLD, response);
+}
+
+grpc::ServerUnaryReactor* JobService::StopJob(grpc::CallbackServerContext* context,
+                                              const v1::StopJobRequest* request,
+                                              v1::HaltJobResponse* response) {
+  return Order(context, "JobService/StopJob", *request, v1::WorkerControl::KIND_STOP, response);
+}
+
+grpc::ServerUnaryReactor* JobService::ResumeJob(grpc::CallbackServerContext* context,
+                                                const v1::ResumeJobRequest* request,
+                                                v1::Job* response) {
+  return Order(context, "JobService/ResumeJob", *request, v1::WorkerControl::KIND_RESUME, response);
+}
+
+grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext* context,
+                                                     const v1::SetJobOverrideRequest* request,
+                                                     v1::Job* response) {
+  if (!runs_.MachineOf(request->name()).empty()) {
+    v1::HostOrder order;
+    v1::SetOverrideRequest& change = *order.mutable_override();
+    change.set_control_token(request->control_token());
+    change.set_request_id(request->request_id());
+    change.set_override_percent(request->override_percent());
+    return OrderRun(context, "JobService/SetJobOverride", *request, std::move(order), response);
+  }
+  return Answer(needs_, context, *request, "JobService/SetJobOverride",
+                [this, request, response](const Caller& caller) {
+                  const double percent = request->override_percent();
+                  const Result<std::int64_t> id = ParseJobName(request->name());
+                  if (!id) return ToGrpcStatus(id.error());
+                  if (const Status valid = book_.CheckOverride(request->name(), percent); !valid)
+                    return ToGrpcStatus(valid.error());
+                  const Status ordered =
+                      dispatcher_.Control(*id, {v1::WorkerControl::KIND_OVERRIDE, percent,
+                                                caller.identity, request->request_id()});
+                  return ordered ? Give(request->name(), response) : ToGrpcStatus(ordered.error());
+                });
+}
+
+}  // namespace rmlcell::server
