@@ -396,14 +396,17 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
       "  rmlcell submit optimo-1 part.S --pace 1 --watch   as fast as the machine would be\n"
       "  rmlcell submit mill-1 part.rml --stock 100x80x10 --tool flat:3   what is left, as a picture\n"
       "  rmlcell submit mill-1 new.rml --stock 100x80x10 --tool flat:3 --target old.stl --products target   beside what should be left\n"
-      "  rmlcell submit optimo-1 part.S --kind check    only what is wrong with it",
+      "  rmlcell submit optimo-1 part.S --kind check    only what is wrong with it\n"
+      "  rmlcell submit mill-1 --slot 7 --kind run      on the machine itself, which lives",
       remote);
   verb->add_option("MACHINE", given.submit.machine)->required();
   verb->add_option("FILE", given.submit.file, "a program for this job only; or give --slot");
   verb->add_option("--slot", given.submit.slot, "slot of a stored program, or where FILE goes")
       ->check(CLI::Range(1, 99));
-  verb->add_option("--kind", given.submit.kind, "simulate or check")
+  verb->add_option("--kind", given.submit.kind, "simulate, check, or run on the machine itself")
       ->check(CLI::IsMember({"simulate", "check", "run"}));
+  verb->add_flag("--unzeroed", given.submit.unzeroed,
+                 "with --kind run: the program zeroes the axes itself");
   verb->add_option("--title", given.submit.title);
   verb->add_option("--label", given.submit.labels, "a word to find the job by; may be repeated")
       ->allow_extra_args(false);
@@ -504,6 +507,7 @@ int main(int argc, char** argv) {
   AddRml1Verbs(app, exit_code);
   AddProgramVerbs(app, remote, given, exit_code);
   AddProjectVerbs(app, remote, given, exit_code);
+  AddMachineVerbs(app, remote, exit_code);
   AddJobVerbs(app, remote, given, exit_code);
   AddProductVerbs(app, remote, given, exit_code);
   const auto named = [&](CLI::App* verb) { return argc > 1 && verb->get_name() == argv[1]; };

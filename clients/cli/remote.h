@@ -48,6 +48,7 @@ struct SubmitRequest {
   std::string file;  // a file, or empty
   int slot = 0;      // of a stored program, or where the file goes
   std::string kind = "simulate";
+  bool unzeroed = false;  // of a run: the program zeroes the axes itself
   std::string title;
   std::vector<std::string> labels;
   std::string request_id;

@@ -1,14 +1,13 @@
 #include <google/protobuf/util/time_util.h>
 
-#include <cstdio>
 #include <filesystem>
-#include <random>
 #include <thread>
 
 #include "clients/cli/findings_text.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/remote_call.h"
+#include "clients/cli/request_id.h"
 #include "clients/cli/terminal.h"
 #include "clients/cli/verdict_text.h"
 #include "engine/families/families.h"
@@ -28,18 +27,6 @@ std::string TimeText(const v1::JobProgress& at) {
   if (at.has_planned_time_ns())
     text += " of " + Fixed(static_cast<double>(at.planned_time_ns()) * kSeconds, 1);
   return text + " s";
-}
-
-// A random id, so that a repeated submission after a lost answer gives the same job.
-std::string NewRequestId() {
-  std::random_device device;
-  std::string id;
-  for (int i = 0; i < 4; ++i) {
-    char room[16];
-    std::snprintf(room, sizeof room, "%08x", device());
-    id += room;
-  }
-  return id;
 }
 
 std::string When(const google::protobuf::Timestamp& time) {
@@ -276,6 +263,8 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
         !parsed)
       return Refuse(parsed.error());
   }
+  if (job.kind() == v1::JOB_KIND_RUN && options.ByteSizeLong() == 0) job.clear_simulation();
+  if (wanted.unzeroed) job.mutable_run()->set_unzeroed(true);
   if (const Status set = SetQueue(wanted, job); !set) return Refuse(set.error());
   request.set_request_id(wanted.request_id.empty() ? NewRequestId() : wanted.request_id);
 
@@ -324,6 +313,30 @@ int Jobs(const Remote& remote, const std::string& filter, const std::string& ord
   return kGood;
 }
 
+namespace {
+
+// Why a job waits; empty: it does not, or for a worker alone.
+std::string WaitText(const v1::Job& job) {
+  switch (job.wait_reason()) {
+    case v1::WAIT_REASON_HELD:
+      return "held; rmlcell resume lets it go";
+    case v1::WAIT_REASON_NOT_BEFORE:
+      return "until " + When(job.not_before_time());
+    case v1::WAIT_REASON_AFTER_JOB:
+      return "for " + job.waits_for();
+    case v1::WAIT_REASON_AFTER_JOB_FAILED:
+      return "for " + job.waits_for() + ", which did not succeed; resume or cancel it";
+    case v1::WAIT_REASON_MACHINE_BUSY:
+      return "for " + job.waits_for() + " on the same machine";
+    case v1::WAIT_REASON_MACHINE_NOT_READY:
+      return "for its machine; rmlcell machine status says why";
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
 int ShowJob(const Remote& remote, const std::string& job) {
   const auto stub = v1::JobService::NewStub(Connect(remote));
   grpc::ClientContext context;
@@ -339,6 +352,7 @@ int ShowJob(const Remote& remote, const std::string& job) {
   }
   Print(response.name() + "  " + StateName(response) + "  " + response.machine() + "  " +
         response.title());
+  if (const std::string why = WaitText(response); !why.empty()) Print("waits     " + why);
   if (response.has_outcome()) {
     const v1::Outcome& outcome = response.outcome();
     Print("outcome   " + OutcomeLine(outcome));

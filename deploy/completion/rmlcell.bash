@@ -84,7 +84,11 @@ _rmlcell_options() {
     put) echo "$remote --etag --check-only --force" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --title --label --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
+      echo "$remote --slot --kind --unzeroed --title --label --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
+    machine) echo "$remote" ;;
+    "machine status" | "machine watch" | "machine enable" | "machine disable" | "machine hold" | "machine stop" | \
+      "machine emergency-stop" | "machine abort" | "machine read") echo "--help" ;;
+    "machine "*) echo "--help --take-over" ;;
     report) echo "$remote --machine-coordinates" ;;
     watch) echo "$remote --after --strict" ;;
     jobs) echo "$remote --filter --order --limit" ;;
@@ -105,7 +109,7 @@ _rmlcell_takes_value() {
       --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --label | --request-id | --pace | --after | --after-job | --before | --not-before | --priority | --filter | --order | --limit | --move | --turn | --shift | \
       --tolerance | --by | --from | --to | --columns | --rows | --within | --gap | --depth | --step | --passes | --overlap | \
-      --dpi | --at | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
+      --dpi | --at | --take-over | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
   esac
   return 1
 }
@@ -160,6 +164,13 @@ _rmlcell_positional() {
     decompile) _rmlcell_files .o ;;
     compile | format | convert | compensate | transform | list) _rmlcell_files .s .si .cmp .o ;;
     diff) _rmlcell_programs_files ;;
+    machine)
+      [[ $count -eq 0 ]] && _rmlcell_offer status watch enable disable hold stop emergency-stop abort start resume mode override \
+        factor acknowledge confirm read write input ;;
+    "machine start") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_slots "${given[0]}"; fi ;;
+    "machine mode") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer remote cycle single repeat manual; fi ;;
+    "machine input") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer door=open door=closed power=on power=off emergency-stop=released; fi ;;
+    "machine "*) [[ $count -eq 0 ]] && _rmlcell_machines ;;
     rml1) [[ $count -eq 0 ]] && _rmlcell_offer explain to-gcode from-gcode move steps tile from-png ;;
     "rml1 from-gcode") _rmlcell_files .nc .gcode .ngc .tap .cnc ;;
     "rml1 from-png") _rmlcell_files .png ;;
@@ -242,8 +253,8 @@ _rmlcell() {
       verb=$word
     elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(list|show|create|update|delete|transfer|take|export|import)$ ]]; then
       verb="projects $word"
-    elif [[ $verb == rml1 && ${#given[@]} -eq 0 ]]; then
-      verb="rml1 $word"
+    elif [[ $verb =~ ^(rml1|machine)$ && ${#given[@]} -eq 0 ]]; then
+      verb="$verb $word"
     else
       given+=("$word")
     fi
@@ -277,7 +288,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff rml1 lsp machines programs put get delete stale projects submit watch jobs job cancel hold resume move report picture artifact
+      diff rml1 lsp machines machine programs put get delete stale projects submit watch jobs job cancel hold resume move report picture artifact
   else
     _rmlcell_positional
   fi

@@ -51,6 +51,9 @@ std::string JudgementBytes(const v1::Outcome& outcome) {
   *judged.mutable_reasons() = outcome.reasons();
   *judged.mutable_arguments() = outcome.arguments();
   if (outcome.has_cycle_time_ns()) judged.set_cycle_time_ns(outcome.cycle_time_ns());
+  // Of a stream, which has no steps.
+  if (outcome.place().has_byte_offset())
+    judged.mutable_place()->set_byte_offset(outcome.place().byte_offset());
   return judged.SerializeAsString();
 }
 

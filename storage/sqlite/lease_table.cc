@@ -28,7 +28,9 @@ LeaseTable::LeaseTable(Database& database)
     : add_(database,
            "INSERT INTO lease (job, attempt, fence, worker, until, server)"
            " VALUES (?1, ?2, ?3, ?4, ?5, ?6)"),
-      end_all_(database, "UPDATE lease SET until = 0"),
+      end_of_workers_(database,
+                      "UPDATE lease SET until = 0"
+                      " WHERE (SELECT kind FROM job WHERE id = lease.job) <> 'RUN'"),
       find_(database,
             "SELECT job, attempt, fence, worker, until, server FROM lease WHERE job = ?1"),
       // No index: there are no more leases than workers, and each renewal would have to keep it.
@@ -57,7 +59,7 @@ Status LeaseTable::Prolong(std::int64_t job, WallTime until) {
 
 Status LeaseTable::Remove(std::int64_t job) { return remove_.With(job).Run(); }
 
-Status LeaseTable::EndAll() { return end_all_.With().Run(); }
+Status LeaseTable::EndThoseOfWorkers() { return end_of_workers_.With().Run(); }
 
 AttemptTable::AttemptTable(Database& database)
     : add_(database,

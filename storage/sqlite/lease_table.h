@@ -17,11 +17,13 @@ class LeaseTable {
   Result<std::vector<Lease>> RunOut(WallTime now);  // by job
   Status Prolong(std::int64_t job, WallTime until);
   Status Remove(std::int64_t job);
-  Status EndAll();  // every lease has run out
+  // Every lease of a worker has run out; a RUN is leased to the host of its machine, which lives
+  // on.
+  Status EndThoseOfWorkers();
 
  private:
   Statement add_;
-  Statement end_all_;
+  Statement end_of_workers_;
   Statement find_;
   Statement run_out_;
   Statement prolong_;

@@ -124,7 +124,7 @@ Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
   if (!released) return Named(released.error(), options.path);
   // One process at a time has this file: whoever gave these leases is gone, and with it the lines
   // to those who held them.
-  const Status ended = connection->tables.leases.EndAll();
+  const Status ended = connection->tables.leases.EndThoseOfWorkers();
   if (!ended) return Named(ended.error(), options.path);
   Result<MachineTally::Machines> machines = connection->tables.machine_jobs.List();
   if (!machines) return Named(machines.error(), options.path);

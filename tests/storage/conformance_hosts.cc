@@ -167,6 +167,46 @@ TEST_P(StoreConformance, TheEndOfARunLeavesTheMachineWhereItIs) {
   EXPECT_EQ(Must(store().GetMachineMark("m"))->state, "after");
 }
 
+// LIVE-3.25: what a job tells on its machine stands in the log of the job, in the transaction of
+// what the machine tells; a job that is not held any more keeps nothing of it.
+TEST_P(StoreConformance, AMachineTellsOfItsJob) {
+  PutMachine("m");
+  const MachineLease host = Must(store().TakeMachine(Claim("a")));
+  Submit("RUN", "m");
+  const LeasedJob leased = Acquire("a", "RUN");
+  MachineWrite write = MarkOf(3, "moving");
+  write.events = {{.kind = "begun", .payload = "m1"}};
+  write.job = leased.lease;
+  write.job_events = {{.kind = "halted", .payload = "j1"}};
+  ASSERT_TRUE(store().AppendMachine(host, write));
+  const std::vector<EventRecord> told = EventsOf(leased.job.id);
+  EXPECT_EQ(told.back().payload, "j1");
+  EXPECT_EQ(told.back().attempt, leased.lease.attempt);
+  EXPECT_EQ(Must(store().GetMachineMark("m"))->sequence, 3);
+  const std::int64_t before = Must(store().LastPosition());
+  write = MarkOf(4, "moving");
+  write.events = {{.kind = "begun", .payload = "m2"}};
+  write.job = leased.lease;
+  write.job->fence += 1;
+  write.job_events = {{.kind = "halted", .payload = "j2"}};
+  EXPECT_EQ(CodeOf(store().AppendMachine(host, write)), ErrorCode::kCellLeaseLost);
+  EXPECT_EQ(Must(store().LastPosition()), before);
+  EXPECT_EQ(Must(store().GetMachineMark("m"))->sequence, 3);
+}
+
+// LIVE-5.01: a RUN is leased to the host of its machine, which lives on when a server goes.
+TEST_P(StoreConformance, ARunOutlivesItsServer) {
+  Submit("RUN");
+  const LeasedJob leased = Acquire("a", "RUN");
+  Submit("CHECK");
+  const LeasedJob check = Acquire("w", "CHECK");
+  Reopen();
+  const auto ended = Must(store().Expire(PolicyOfTests()));
+  for (const JobRecord& job : ended) EXPECT_EQ(job.id, check.job.id);
+  EXPECT_EQ(Must(store().GetJob(leased.job.id)).state, JobState::kRunning);
+  EXPECT_EQ(Must(store().Finish(leased.lease, {})).state, JobState::kSucceeded);
+}
+
 // A machine that is deleted takes its host and its mark along; a fence is never used twice.
 TEST_P(StoreConformance, ADeletedMachineHasNoHost) {
   PutMachine("m");

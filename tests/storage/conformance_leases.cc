@@ -325,6 +325,17 @@ TEST_P(StoreConformance, RunThatIsHandedBackIsInterrupted) {
   EXPECT_EQ(CodeOf(store().HandBack(leased.lease, PolicyOfTests())), ErrorCode::kCellLeaseLost);
 }
 
+// LIVE-5.01: before START it goes back to the queue, and that does not count.
+TEST_P(StoreConformance, RunThatNeverBeganWaitsAgain) {
+  const LeasedJob leased = (Submit("RUN"), Acquire("w", "RUN"));
+  LossPolicy policy = PolicyOfTests();
+  policy.not_begun = true;
+  const JobRecord back = Must(store().HandBack(leased.lease, policy));
+  EXPECT_EQ(back.state, JobState::kQueued);
+  EXPECT_EQ(back.attempts, 0);
+  EXPECT_EQ(Acquire("w", "RUN").lease.attempt, 2);
+}
+
 // scale-out.md section 16 and OPT-1.15: what a run compiled comes with its end, for the object that
 // it had.
 TEST_P(StoreConformance, FinishKeepsExecutablesOfUnchangedObjects) {

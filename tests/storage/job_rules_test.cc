@@ -96,10 +96,13 @@ TEST(JobRules, WhatBecomesOfAJobWhoseHolderIsGone) {
   EXPECT_EQ(LoseAttempt(job, 2, LossPolicy{}), AfterLoss::kEnded);  // nothing to say of a cancel
   job.kind = "RUN";
   EXPECT_EQ(LoseAttempt(job, 2, counts), AfterLoss::kInterrupted);
-  EXPECT_FALSE(HandBackAttempt(job));
+  EXPECT_FALSE(HandBackAttempt(job, {}));
   EXPECT_EQ(job.attempts, 2);
+  EXPECT_TRUE(HandBackAttempt(job, {.not_begun = true}));
+  EXPECT_EQ(job.attempts, 1);
+  job.attempts = 2;
   job.kind = "CHECK";
-  EXPECT_TRUE(HandBackAttempt(job));
+  EXPECT_TRUE(HandBackAttempt(job, {}));
   EXPECT_EQ(job.attempts, 1);
 }
 

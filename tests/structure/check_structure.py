@@ -75,6 +75,8 @@ MAY_INCLUDE = {
     "server/machines": ["engine/core", "proto", "proto/bridge", "server/base", "server/events", "server/records", "storage"],
     # The host of a machine that lives: a process of its own, without the store.
     "server/host": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base"],
+    # RUN jobs, between the queue and the host of their machine.
+    "server/runs": ["engine/core", "proto", "proto/bridge", "server/base", "server/jobs", "server/machines", "server/records", "storage", "storage/jobs"],
     "server/programs": ["engine/core", "engine/machine", "engine/families", RUN, "proto", "proto/bridge", "server/base", "server/records", "storage"],
     "server/projects": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base", "server/records", "server/programs", "storage"],
     # What is asked of jobs that have ended.
@@ -82,14 +84,14 @@ MAY_INCLUDE = {
                        "storage"],
     "server/web": ["engine/core", "proto", "proto/bridge"],
     "server/services": ["engine/core", "engine/machine", "engine/families", TOOLPATH, MATERIAL, "proto", "proto/bridge",
-                        "server/base", "server/auth", "server/events", "server/machines", "server/records", "server/jobs",
+                        "server/base", "server/auth", "server/events", "server/machines", "server/records", "server/jobs", "server/runs",
                         "server/programs", "server/projects", "server/results", "server/web", "storage"],
     # The engine worker: a process of its own, without the store.
     "server/worker": ["engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge",
                       "server/base", "server/host", "server/records"],
     # The wiring of the server.
     "server/cell": ["engine/core", "proto/bridge", "server/base", "server/auth", "server/events", "server/records",
-                    "server/jobs", "server/machines", "server/programs", "server/projects", "server/results", "server/services",
+                    "server/jobs", "server/machines", "server/runs", "server/programs", "server/projects", "server/results", "server/services",
                     "server/web", "storage", "storage/opening"],
     # The language server: no server and no language.
     "clients/lsp": ["engine/core", "engine/machine", "engine/families", RUN],
@@ -139,10 +141,11 @@ PUBLIC = {
     "server/base": ["child_process.h", "config.h", "credentials.h", "executor.h", "log.h", "names.h", "readable.h", "restart_delay.h", "secret.h", "steady_clock.h", "version.h"],
     "server/auth": ["caller.h", "socket_users.h"],
     "server/events": ["event_feed.h"],
-    "server/jobs": ["dispatcher.h", "followed.h", "job_book.h", "job_filter.h", "running_heights.h", "running_toolpath.h", "worker_processes.h"],
+    "server/jobs": ["dispatcher.h", "assignment.h", "followed.h", "job_book.h", "job_filter.h", "running_heights.h", "running_toolpath.h", "worker_processes.h"],
     "server/records": ["file_family.h", "job_messages.h", "known_machines.h", "machine_messages.h", "program_place.h", "toolpath_levels.h", "update_mask.h"],
     "server/host": ["host_process.h"],
-    "server/machines": ["host_processes.h", "hosts.h", "machine_statuses.h"],
+    "server/runs": ["run_queue.h"],
+    "server/machines": ["host_entries.h", "host_processes.h", "hosts.h", "machine_statuses.h"],
     "server/programs": ["content_upload.h", "language_tools.h", "memory_tools.h", "program_book.h", "program_result.h", "program_views.h",
                         "text_tools.h"],
     "server/projects": ["project_archive.h", "project_book.h", "project_transfer.h"],
@@ -170,6 +173,8 @@ ONLY_FOR = {
     "engine/optimo/machine": {header: ["engine/optimo/control"]
                               for header in ("laser_unit.h", "machine_state.h", "system_cycle.h")},
     PATH: {"part_curve.h": [REPORT], "motion_peaks.h": [REPORT]},
+    "server/jobs": {"assignment.h": ["server/runs"]},
+    "server/machines": {"host_entries.h": ["server/runs"]},
     "server/programs": {"program_result.h": ["server/projects", "server/results", "server/services"],
                         "text_tools.h": ["server/projects", "server/services"]},
     "server/web": {"web_server.h": ["server/cell"], "resource_source.h": ["server/services"], "static_page.h": ["server/services"]},

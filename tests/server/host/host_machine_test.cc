@@ -1,130 +1,14 @@
 // A machine as its host has it: orders, answers, journal and marks, by a clock of the test.
-#include "server/host/host_machine.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <random>
 
-#include "engine/families/families.h"
+#include "tests/server/host/host_machine_bed.h"
 
 namespace rmlcell::server {
 namespace {
 
-using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-// A square of 20 mm at 1 mm/s: 80 s, with the way there.
-constexpr const char* kSquare =
-    "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PU1000,1000;"
-    "PD3000,1000,3000,3000,1000,3000,1000,1000;PU0,0;";
-
-class HostMachineTest : public testing::Test {
- protected:
-  void Make(std::string state = {}, bool cut_off = false,
-            std::optional<v1::MachineMark> open_run = {}) {
-    machine::MachineMemory memory;
-    memory.programs[5] = {.name = "square", .object = machine::Bytes::Of(kSquare)};
-    auto made = HostMachine::Make({.name = "machines/mill-1",
-                                   .host = "workshop/1",
-                                   .fence = 7,
-                                   .family = families::FindFamily("rml1"),
-                                   .profile = "srm-20",
-                                   .memory = std::move(memory),
-                                   .state = std::move(state),
-                                   .cut_off = cut_off,
-                                   .open_run = std::move(open_run)},
-                                  now_, [this] { return "token " + std::to_string(++tokens_); });
-    ASSERT_TRUE(made) << made.error().detail;
-    host_ = *std::move(made);
-  }
-  // Time goes by, in steps as a host takes them.
-  void Pass(std::chrono::milliseconds time, std::chrono::milliseconds step = 10ms) {
-    for (std::chrono::milliseconds gone{0}; gone < time; gone += step) {
-      now_.steady += step;
-      now_.wall += step;
-      while (!host_->GoOn(now_)) continue;
-    }
-  }
-  v1::HostOrderAnswer Do(const v1::HostOrder& order) {
-    v1::HostOrder numbered = order;
-    numbered.set_number(++number_);
-    numbered.set_caller("anna");
-    const v1::HostOrderAnswer answer = host_->Do(numbered, now_);
-    EXPECT_EQ(answer.number(), number_);
-    return answer;
-  }
-  std::string Control(v1::ControlLease::OnLoss on_loss = v1::ControlLease::ON_LOSS_HOLD) {
-    v1::HostOrder order;
-    v1::AcquireControlRequest& acquire = *order.mutable_acquire_control();
-    acquire.mutable_ttl()->set_seconds(60);
-    acquire.set_on_loss(on_loss);
-    acquire.set_client("a test");
-    return token_ = Do(order).control().control_token();
-  }
-  v1::HostOrder Start(const std::string& id = "", int program = 5) {
-    v1::HostOrder order;
-    order.mutable_start()->set_program(program);
-    order.mutable_start()->set_control_token(token_);
-    order.mutable_start()->set_request_id(id);
-    return order;
-  }
-  v1::HostOrder Resume() {
-    v1::HostOrder order;
-    order.mutable_resume()->set_control_token(token_);
-    return order;
-  }
-  static v1::HostOrder Stop() {
-    v1::HostOrder order;
-    order.mutable_stop();
-    return order;
-  }
-  v1::MachineState State() { return host_->StatusAt(now_).state(); }
-  // What was told since the last look, a word each.
-  std::vector<std::string> Told() {
-    std::vector<std::string> told;
-    for (const v1::JournalEntry& entry : host_->TakeEntries(now_)) {
-      EXPECT_EQ(entry.sequence(), ++sequence_);
-      EXPECT_EQ(entry.fence(), 7);
-      switch (entry.what_case()) {
-        case v1::JournalEntry::kApplied:
-          told.push_back("input " + std::to_string(entry.applied().input().input_case()));
-          break;
-        case v1::JournalEntry::kMark:
-          mark_ = entry.mark();
-          told.push_back(entry.mark().clean() ? "clean mark" : "mark");
-          break;
-        case v1::JournalEntry::kRunBegun:
-          told.push_back("begun");
-          break;
-        case v1::JournalEntry::kRunOver:
-          told.push_back("over " + v1::Outcome::Kind_Name(entry.run_over().outcome().kind()));
-          break;
-        case v1::JournalEntry::kEvent:
-          told.push_back(entry.event().has_halted()    ? "halted"
-                         : entry.event().has_resumed() ? "resumed"
-                                                       : "event");
-          break;
-        default:
-          told.push_back("other");
-      }
-    }
-    return told;
-  }
-  static std::string Input(v1::AppliedInput::InputCase which) {
-    return "input " + std::to_string(which);
-  }
-
-  HostTime now_{.steady = 1h, .wall = WallTime(std::chrono::hours(24 * 365 * 50))};
-  std::unique_ptr<HostMachine> host_;
-  std::string token_;
-  v1::MachineMark mark_;
-  int tokens_ = 0;
-  std::int64_t number_ = 0;
-  std::int64_t sequence_ = 0;
-};
 
 // LIVE-4.04: what moves the machine asks for control, what stops it does not.
 TEST_F(HostMachineTest, ControlIsNeededToMoveAndNotToStop) {

@@ -136,8 +136,6 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
       {"no kind", kInvalid, [](auto& r) { r.mutable_job()->clear_kind(); }},
       {"unknown kind", kInvalid,
        [](auto& r) { r.mutable_job()->set_kind(static_cast<v1::JobKind>(99)); }},
-      {"RUN", ErrorCode::kCellUnimplemented,
-       [](auto& r) { r.mutable_job()->set_kind(v1::JOB_KIND_RUN); }},
       {"long request_id", kInvalid, [](auto& r) { r.set_request_id(std::string(65, 'r')); }},
       {"long title", kInvalid, [](auto& r) { r.mutable_job()->set_title(std::string(201, 't')); }},
       {"attempts -1", kInvalid, [](auto& r) { r.mutable_job()->set_attempts_max(-1); }},
@@ -223,6 +221,45 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
        }},
   };
   config.limit_program_bytes = 2048;
+  for (const auto& [what, code, change] : cases) {
+    for (const bool validate_only : {false, true}) {
+      v1::SubmitJobRequest request = Simulate();
+      change(request);
+      request.set_validate_only(validate_only);
+      EXPECT_EQ(CodeOf(Submit(request)), code) << what;
+    }
+  }
+  EXPECT_EQ(Jobs(), 0);
+  EXPECT_TRUE(Submit(Simulate(std::string(2047, ';') + "\n")));
+}
+
+// LIVE-5.01, LIVE-5.02: a RUN has what moves a machine and nothing else, and is attempted once.
+TEST_F(JobBookTest, ARunAsksForNothingOfASimulation) {
+  using Change = std::function<void(v1::SubmitJobRequest&)>;
+  constexpr auto kInvalid = ErrorCode::kCellInvalidArgument;
+  const std::vector<std::tuple<std::string, ErrorCode, Change>> cases = {
+      {"RUN options of a check", kInvalid, [](auto& r) { r.mutable_job()->mutable_run(); }},
+      {"RUN with what simulates", kInvalid,
+       [](auto& r) {
+         r.mutable_job()->set_kind(v1::JOB_KIND_RUN);
+         r.mutable_job()->mutable_simulation()->set_override_percent(50);
+       }},
+      {"RUN with a budget", kInvalid,
+       [](auto& r) {
+         r.mutable_job()->set_kind(v1::JOB_KIND_RUN);
+         r.mutable_job()->clear_simulation();
+         r.mutable_job()->mutable_budget()->set_steps(50);
+       }},
+      {"RUN twice", kInvalid,
+       [](auto& r) {
+         r.mutable_job()->set_kind(v1::JOB_KIND_RUN);
+         r.mutable_job()->clear_simulation();
+         r.mutable_job()->set_attempts_max(2);
+       }},
+      {"RUN from a step", ErrorCode::kCellUnimplemented, [](auto& r) {
+         r.mutable_job()->set_kind(v1::JOB_KIND_RUN);
+         r.mutable_job()->mutable_run()->mutable_step()->set_step(3);
+       }}};
   for (const auto& [what, code, change] : cases) {
     for (const bool validate_only : {false, true}) {
       v1::SubmitJobRequest request = Simulate();

@@ -208,7 +208,17 @@ TEST_F(JobLimits, OfPlacesWhereARunHalts) {
 // What the contract has and this version does not do is said, not left out in silence.
 TEST_F(JobLimits, OfWhatComesLater) {
   constexpr ErrorCode kLater = ErrorCode::kCellUnimplemented;
-  EXPECT_EQ(Asked([](v1::Job& job) { job.mutable_run(); }), kLater);
+  const auto run = [&](const std::function<void(v1::RunOptions&)>& change) {
+    return Asked([&](v1::Job& job) {
+      job.clear_simulation();
+      job.set_kind(v1::JOB_KIND_RUN);
+      change(*job.mutable_run());
+    });
+  };
+  EXPECT_EQ(run([](v1::RunOptions&) {}), std::nullopt);
+  EXPECT_EQ(run([](v1::RunOptions& how) { how.set_ticket("t"); }), kLater);
+  EXPECT_EQ(run([](v1::RunOptions& how) { how.add_confirmations(v1::CONFIRMATION_INSPECTED); }),
+            kLater);
   EXPECT_EQ(Asked([](v1::Job& job) { job.set_continues("jobs/1"); }), kLater);
 }
 

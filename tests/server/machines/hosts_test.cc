@@ -5,53 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <mutex>
-#include <optional>
 
 #include "rmlcell/v1/cell.pb.h"
 #include "server/base/executor.h"
 #include "server/records/machine_messages.h"
+#include "tests/server/fake_link.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
 namespace {
-
-// What the server says to a host.
-class FakeLink final : public HostLink {
- public:
-  void Send(v1::HostResponse message) override {
-    const std::lock_guard lock(mutex_);
-    messages_.push_back(std::move(message));
-  }
-  void Close(const Error& why) override {
-    const std::lock_guard lock(mutex_);
-    closed_ = why;
-  }
-  std::vector<v1::HostResponse> All() const {
-    const std::lock_guard lock(mutex_);
-    return messages_;
-  }
-  // The newest of a kind, once there is one.
-  std::optional<v1::HostResponse> Newest(v1::HostResponse::MessageCase kind) const {
-    std::optional<v1::HostResponse> newest;
-    EXPECT_TRUE(Eventually([&] {
-      for (const v1::HostResponse& message : All()) {
-        if (message.message_case() == kind) newest = message;
-      }
-      return newest.has_value();
-    }));
-    return newest;
-  }
-  bool closed() const {
-    const std::lock_guard lock(mutex_);
-    return closed_.has_value();
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::vector<v1::HostResponse> messages_;
-  std::optional<Error> closed_;
-};
 
 class HostsTest : public testing::Test {
  protected:

@@ -1,0 +1,104 @@
+// `rmlcell machine ...`: machines that live.
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "clients/cli/remote_machines.h"
+#include "clients/cli/verbs.h"
+
+namespace rmlcell::cli {
+namespace {
+
+using Act = int (*)(const Remote&, const MachineAct&);
+
+class MachineVerbs {
+ public:
+  MachineVerbs(CLI::App& group, const Remote& remote, int& exit_code)
+      : group_(group), remote_(remote), exit_code_(exit_code) {}
+
+  CLI::App* Add(const char* name, const char* text, Act act) {
+    CLI::App* verb = group_.add_subcommand(name, text);
+    verb->add_option("MACHINE", given_->machine)->required();
+    verb->callback([given = given_, act, &remote = remote_, &code = exit_code_] {
+      code = act(remote, *given);
+    });
+    return verb;
+  }
+  // What only one client does at a time.
+  CLI::App* AddControlled(const char* name, const char* text, Act act) {
+    CLI::App* verb = Add(name, text, act);
+    verb->add_option("--take-over", given_->take_over,
+                     "why control is taken from whoever has it, for all to read");
+    return verb;
+  }
+  MachineAct& given() { return *given_; }
+
+ private:
+  CLI::App& group_;
+  const Remote& remote_;
+  int& exit_code_;
+  std::shared_ptr<MachineAct> given_ = std::make_shared<MachineAct>();
+};
+
+void AddActs(MachineVerbs& verbs) {
+  MachineAct& given = verbs.given();
+  verbs.Add("status", "Show how a machine stands, and what keeps jobs from it", ShowMachine);
+  verbs.Add("watch", "Follow a machine", WatchMachine);
+  verbs.Add("enable", "Switch a machine on: it lives from here on", EnableMachine);
+  verbs.Add("disable", "Switch a machine off", DisableMachine);
+  verbs.Add("hold", "Let a run come to rest after the present instruction", HoldMachine);
+  verbs.Add("stop", "Let a run come to rest at once, on its path", StopMachine);
+  verbs.Add("emergency-stop", "End the run; the machine is in alarm", EmergencyStopMachine);
+  verbs.Add("abort", "End the run that is open", AbortRun);
+  verbs.AddControlled("start", "Start a stored program, or the selected one", StartMachine)
+      ->add_option("SLOT", given.program, "1 to 99")
+      ->check(CLI::Range(1, 99));
+  verbs.AddControlled("resume", "Let a held run go on", ResumeMachine);
+  verbs.AddControlled("mode", "Set the operating mode", SetMode)
+      ->add_option("MODE", given.word)
+      ->required()
+      ->check(CLI::IsMember({"remote", "cycle", "single", "repeat", "manual"}));
+  verbs.AddControlled("override", "Set the override of the programmed speed", SetOverride)
+      ->add_option("PERCENT", given.number)
+      ->required();
+  verbs.AddControlled("factor", "Let the time of a virtual machine go faster or slower", SetFactor)
+      ->add_option("FACTOR", given.number, "virtual seconds a real second, 0.1 to 100")
+      ->required();
+  verbs.AddControlled("acknowledge", "Acknowledge an alarm, or all of them", AcknowledgeAlarms)
+      ->add_option("ALARM", given.alarm, "its number");
+  verbs.AddControlled("confirm", "Say that machine and part were inspected after a run was cut off",
+                      ConfirmMachine);
+  verbs.Add("read", "Read variables, inputs and outputs", ReadVariables)
+      ->add_option("VARIABLES", given.values, "such as VR[0..9], IL[20], X")
+      ->required();
+  verbs.AddControlled("write", "Write variables and outputs", WriteVariables)
+      ->add_option("VALUES", given.values, "such as VR[5]=2.5, OL[3]=on")
+      ->required();
+  verbs.AddControlled("input", "Set inputs, door and power of a virtual machine", SetInputs)
+      ->add_option("VALUES", given.values,
+                   "such as IL[20]=on, door=open, power=off, emergency-stop=released")
+      ->required();
+}
+
+}  // namespace
+
+void AddMachineVerbs(CLI::App& app, Remote& remote, int& exit_code) {
+  CLI::App* group =
+      app.add_subcommand("machine", "Machines that live: enable, start, hold, look at");
+  group->footer(
+      "Examples:\n"
+      "  rmlcell machine enable mill-1                  from here on it lives\n"
+      "  rmlcell machine start mill-1 7                 the program of slot 7\n"
+      "  rmlcell machine watch mill-1\n"
+      "  rmlcell machine stop mill-1; rmlcell machine resume mill-1\n"
+      "  rmlcell submit mill-1 --slot 7 --kind run      the same as a job of the queue\n"
+      "  rmlcell machine status mill-1                  and what keeps jobs from it");
+  group->add_option("--server", remote.server,
+                    "host:port or unix:/path; default: RMLCELL_SERVER, or 127.0.0.1:50051");
+  group->add_flag("--json", remote.json, "print messages as JSON, one line each");
+  group->require_subcommand(1);
+  group->fallthrough();  // --server and --json may stand at the end, too
+  MachineVerbs verbs(*group, remote, exit_code);
+  AddActs(verbs);
+}
+
+}  // namespace rmlcell::cli

@@ -1,0 +1,419 @@
+// Machines that live: how they stand, and what is done with them.
+#include "clients/cli/remote_machines.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "clients/cli/messages.h"
+#include "clients/cli/remote_call.h"
+#include "clients/cli/request_id.h"
+#include "clients/cli/terminal.h"
+#include "engine/core/catalogue.h"
+#include "engine/core/number_text.h"
+#include "rmlcell/v1/machine.grpc.pb.h"
+
+namespace rmlcell::cli {
+namespace {
+
+using Service = v1::MachineService;
+
+// "RUNNING" of "MACHINE_STATE_RUNNING".
+std::string Short(std::string_view name, std::string_view prefix) {
+  return std::string(name.starts_with(prefix) ? name.substr(prefix.size()) : name);
+}
+
+std::string PlaceOf(const v1::MachineRun& run) {
+  const v1::SourcePlace& place = run.place();
+  std::string text =
+      "program " + std::to_string(place.program() > 0 ? place.program() : run.program());
+  if (place.has_byte_offset()) text += ", byte " + std::to_string(place.byte_offset());
+  if (place.step() > 0) text += ", step " + std::to_string(place.step());
+  if (!run.instruction().empty()) text += " " + Visible(run.instruction());
+  return text;
+}
+
+std::string PositionOf(const v1::MachineStatus& status) {
+  std::string text;
+  for (const v1::AxisValue& axis : status.axes()) {
+    const bool turns = axis.unit() == v1::UNIT_RADIAN;
+    text += (text.empty() ? "" : "  ") + axis.axis() + " " + Fixed(axis.value(), turns ? 4 : 3) +
+            (turns ? " rad" : "");
+  }
+  return text;
+}
+
+std::string StatusText(const v1::MachineStatus& status) {
+  std::string text =
+      status.machine() + "  " + Short(v1::MachineState_Name(status.state()), "MACHINE_STATE_");
+  if (status.host().empty()) return text + "; it does not live: rmlcell machine enable";
+  text += " in " + Short(v1::OperatingMode_Name(status.mode()), "OPERATING_MODE_");
+  if (status.hold_reason() != v1::HOLD_REASON_UNSPECIFIED)
+    text += ", held by " + Short(v1::HoldReason_Name(status.hold_reason()), "HOLD_REASON_");
+  text += status.zeroed() ? "" : ", axes without reference";
+  text += status.door_open() ? ", door open" : "";
+  const auto row = [&text](const std::string& head, const std::string& what) {
+    text += "\n" + head + std::string(head.size() < 10 ? 10 - head.size() : 1, ' ') + what;
+  };
+  row("position", PositionOf(status));
+  if (status.has_run()) {
+    const v1::MachineRun& run = status.run();
+    row("run", std::to_string(run.run()) + (run.job().empty() ? "" : " of " + run.job()) + ", " +
+                   PlaceOf(run) + ", " + Duration(static_cast<double>(run.run_time_ns()) * 1e-9));
+  }
+  row("override", Fixed(status.override_percent(), 0) + " %");
+  if (status.factor() != 0.0 && status.factor() != 1.0)
+    row("time", Fixed(status.factor(), 1) + " times as fast");
+  if (status.has_control()) {
+    const std::string& client = status.control().client();
+    row("control",
+        Visible(status.control().holder()) + (client.empty() ? "" : " (" + Visible(client) + ")"));
+  }
+  for (const v1::Alarm& alarm : status.alarms())
+    row("alarm " + std::to_string(alarm.id()),
+        alarm.diagnostic().code() + ": " + Visible(alarm.diagnostic().message()));
+  if (status.has_run()) return text;  // which keeps them, too
+  for (const v1::StartBlocker& blocker : status.start_blockers())
+    row("jobs wait", blocker.code() + ": " + Visible(blocker.message()) + "; " + blocker.advice());
+  return text;
+}
+
+int Show(const Remote& remote, const v1::MachineStatus& status) {
+  Print(remote.json ? Json(status) : StatusText(status));
+  return kGood;
+}
+
+// A call with one answer; the stub is made for it.
+template <class Request, class Response>
+grpc::Status Call(const Remote& remote,
+                  grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
+                                                        Response*),
+                  const Request& request, Response& response) {
+  const auto stub = Service::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  return (stub.get()->*method)(&context, request, &response);
+}
+
+template <class Request>
+Request For(const MachineAct& act) {
+  Request request;
+  request.set_machine(FullName("machines", act.machine));
+  request.set_request_id(NewRequestId());
+  return request;
+}
+
+// Control of a machine for as long as one request takes.
+class Control {
+ public:
+  Control(const Remote& remote, const MachineAct& act) : remote_(remote), act_(act) {
+    auto request = For<v1::AcquireControlRequest>(act);
+    request.set_client("rmlcell");
+    request.set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);
+    request.set_take_over(!act.take_over.empty());
+    request.set_reason(act.take_over);
+    v1::AcquireControlResponse response;
+    status_ = Call(remote, &Service::Stub::AcquireControl, request, response);
+    token_ = response.control_token();
+  }
+  ~Control() {
+    if (token_.empty()) return;
+    v1::ReleaseControlRequest request;
+    request.set_machine(FullName("machines", act_.machine));
+    request.set_control_token(token_);
+    google::protobuf::Empty none;
+    static_cast<void>(Call(remote_, &Service::Stub::ReleaseControl, request, none));
+  }
+  Control(const Control&) = delete;
+  Control& operator=(const Control&) = delete;
+
+  const grpc::Status& status() const { return status_; }
+  const std::string& token() const { return token_; }
+
+ private:
+  const Remote& remote_;
+  const MachineAct& act_;
+  grpc::Status status_;
+  std::string token_;
+};
+
+template <class Request, class Response>
+int WithControl(const Remote& remote, const MachineAct& act,
+                grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
+                                                      Response*),
+                Request request, const std::function<int(const Response&)>& show) {
+  const Control control(remote, act);
+  if (!control.status().ok()) return Refused(control.status(), remote);
+  request.set_control_token(control.token());
+  Response response;
+  const grpc::Status status = Call(remote, method, request, response);
+  return status.ok() ? show(response) : Refused(status, remote);
+}
+
+template <class Request>
+int ShowWithControl(const Remote& remote, const MachineAct& act,
+                    grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
+                                                          v1::MachineStatus*),
+                    Request request) {
+  return WithControl<Request, v1::MachineStatus>(
+      remote, act, method, std::move(request), [&remote](const v1::MachineStatus& status) {
+        v1::MachineStatus later = status;  // when control has been given back
+        later.clear_control();
+        auto& blockers = *later.mutable_start_blockers();
+        blockers.erase(std::remove_if(blockers.begin(), blockers.end(),
+                                      [](const v1::StartBlocker& blocker) {
+                                        return blocker.symbol() ==
+                                               ConstantName(ErrorCode::kCellLeaseHeld);
+                                      }),
+                       blockers.end());
+        return Show(remote, later);
+      });
+}
+
+template <class Request>
+int ShowAfter(const Remote& remote, const MachineAct& act,
+              grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
+                                                    v1::MachineStatus*)) {
+  v1::MachineStatus response;
+  const grpc::Status status = Call(remote, method, For<Request>(act), response);
+  return status.ok() ? Show(remote, response) : Refused(status, remote);
+}
+
+template <class Request>
+int Halt(const Remote& remote, const MachineAct& act,
+         grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
+                                               v1::HaltResponse*)) {
+  v1::HaltResponse response;
+  const grpc::Status status = Call(remote, method, For<Request>(act), response);
+  return status.ok() ? Show(remote, response.status()) : Refused(status, remote);
+}
+
+std::string ValueText(const v1::VariableValue& value) {
+  switch (value.value_case()) {
+    case v1::VariableValue::kReal:
+      return ShortestText(value.real());
+    case v1::VariableValue::kInteger:
+      return std::to_string(value.integer());
+    case v1::VariableValue::kLogical:
+      return value.logical() ? "on" : "off";
+    case v1::VariableValue::kWord:
+      return Visible(value.word());
+    case v1::VariableValue::VALUE_NOT_SET:
+      break;
+  }
+  return "-";
+}
+
+// Each with its value or what is wrong with it; bad when one of them is.
+int ShowVariables(const Remote& remote,
+                  const google::protobuf::RepeatedPtrField<v1::Variable>& variables) {
+  int code = kGood;
+  for (const v1::Variable& variable : variables) {
+    if (variable.has_error()) code = kProgramErrors;
+    if (remote.json) {
+      Print(Json(variable));
+    } else if (variable.has_error()) {
+      Complain(Visible(variable.name()) + ": " + variable.error().code() + ": " +
+               Visible(variable.error().message()));
+    } else {
+      Print(Visible(variable.name()) + " = " + ValueText(variable.value()));
+    }
+  }
+  return code;
+}
+
+// "VR[5]=2.5", "IL[20]=on"; nothing: that is no number and no switch.
+std::optional<v1::Variable> Assigned(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) return std::nullopt;
+  v1::Variable variable;
+  variable.set_name(text.substr(0, equals));
+  const std::string value = text.substr(equals + 1);
+  if (value == "on" || value == "off") {
+    variable.mutable_value()->set_logical(value == "on");
+  } else if (const auto number = ParseDouble(value)) {
+    variable.mutable_value()->set_real(*number);
+  } else {
+    return std::nullopt;
+  }
+  return variable;
+}
+
+int NoAssignment(const std::string& text) {
+  Complain("'" + Visible(text) + "' is none: NAME=VALUE, such as VR[5]=2.5 or IL[20]=on");
+  return kUsage;
+}
+
+}  // namespace
+
+int ShowMachine(const Remote& remote, const MachineAct& act) {
+  v1::GetMachineRequest request;
+  request.set_name(FullName("machines", act.machine));
+  v1::Machine machine;
+  const grpc::Status status = Call(remote, &Service::Stub::GetMachine, request, machine);
+  return status.ok() ? Show(remote, machine.status()) : Refused(status, remote);
+}
+
+// A line for each status on a terminal's last line; elsewhere a line each.
+int WatchMachine(const Remote& remote, const MachineAct& act) {
+  const auto stub = Service::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  v1::WatchMachineRequest request;
+  request.set_name(FullName("machines", act.machine));
+  const auto stream = stub->WatchMachine(&context, request);
+  ProgressLine line;
+  std::string shown;
+  for (v1::WatchMachineResponse message; stream->Read(&message);) {
+    if (!message.has_status()) continue;
+    const v1::MachineStatus& status = message.status();
+    if (remote.json) {
+      Print(Json(status));
+      continue;
+    }
+    const std::string state = Short(v1::MachineState_Name(status.state()), "MACHINE_STATE_");
+    const std::string of = status.run().job();
+    if (std::exchange(shown, state + of) != state + of) {
+      line.Clear();
+      Print(state + (of.empty() ? "" : " " + of));
+    }
+    line.Show(-1.0, PositionOf(status) + (status.has_run() ? "  " + PlaceOf(status.run()) : ""));
+  }
+  line.Clear();
+  const grpc::Status end = stream->Finish();
+  return end.ok() ? kGood : Refused(end, remote);
+}
+
+int EnableMachine(const Remote& remote, const MachineAct& act) {
+  return ShowAfter(remote, act, &Service::Stub::EnableMachine);
+}
+
+int DisableMachine(const Remote& remote, const MachineAct& act) {
+  return ShowAfter(remote, act, &Service::Stub::DisableMachine);
+}
+
+int HoldMachine(const Remote& remote, const MachineAct& act) {
+  return Halt(remote, act, &Service::Stub::HoldMachine);
+}
+
+int StopMachine(const Remote& remote, const MachineAct& act) {
+  return Halt(remote, act, &Service::Stub::StopMachine);
+}
+
+int EmergencyStopMachine(const Remote& remote, const MachineAct& act) {
+  return Halt(remote, act, &Service::Stub::EmergencyStopMachine);
+}
+
+int AbortRun(const Remote& remote, const MachineAct& act) {
+  return ShowAfter(remote, act, &Service::Stub::AbortRun);
+}
+
+int StartMachine(const Remote& remote, const MachineAct& act) {
+  auto request = For<v1::StartMachineRequest>(act);
+  if (act.program > 0) {
+    request.set_program(act.program);
+  } else {
+    request.set_selected(true);
+  }
+  return ShowWithControl(remote, act, &Service::Stub::StartMachine, std::move(request));
+}
+
+int ResumeMachine(const Remote& remote, const MachineAct& act) {
+  return ShowWithControl(remote, act, &Service::Stub::ResumeMachine,
+                         For<v1::ResumeMachineRequest>(act));
+}
+
+int SetMode(const Remote& remote, const MachineAct& act) {
+  auto request = For<v1::SetModeRequest>(act);
+  std::string name = "OPERATING_MODE_";
+  for (const char letter : act.word)
+    name += letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
+  v1::OperatingMode mode = v1::OPERATING_MODE_UNSPECIFIED;
+  v1::OperatingMode_Parse(name, &mode);
+  request.set_mode(mode);
+  return ShowWithControl(remote, act, &Service::Stub::SetMode, std::move(request));
+}
+
+int SetOverride(const Remote& remote, const MachineAct& act) {
+  auto request = For<v1::SetOverrideRequest>(act);
+  request.set_override_percent(act.number);
+  return ShowWithControl(remote, act, &Service::Stub::SetOverride, std::move(request));
+}
+
+int SetFactor(const Remote& remote, const MachineAct& act) {
+  auto request = For<v1::SetFactorRequest>(act);
+  request.set_factor(act.number);
+  return ShowWithControl(remote, act, &Service::Stub::SetFactor, std::move(request));
+}
+
+int AcknowledgeAlarms(const Remote& remote, const MachineAct& act) {
+  std::vector<std::int64_t> alarms = {act.alarm};
+  if (act.alarm == 0) {
+    v1::GetMachineRequest asked;
+    asked.set_name(FullName("machines", act.machine));
+    v1::Machine machine;
+    const grpc::Status status = Call(remote, &Service::Stub::GetMachine, asked, machine);
+    if (!status.ok()) return Refused(status, remote);
+    alarms.clear();
+    for (const v1::Alarm& alarm : machine.status().alarms()) alarms.push_back(alarm.id());
+    if (alarms.empty()) return Show(remote, machine.status());
+  }
+  int code = kGood;
+  for (const std::int64_t alarm : alarms) {
+    auto request = For<v1::AcknowledgeAlarmRequest>(act);
+    request.set_alarm_id(alarm);
+    code = ShowWithControl(remote, act, &Service::Stub::AcknowledgeAlarm, std::move(request));
+    if (code != kGood) break;
+  }
+  return code;
+}
+
+int ConfirmMachine(const Remote& remote, const MachineAct& act) {
+  auto request = For<v1::ConfirmMachineRequest>(act);
+  request.add_confirmations(v1::CONFIRMATION_INSPECTED);
+  return ShowWithControl(remote, act, &Service::Stub::ConfirmMachine, std::move(request));
+}
+
+int ReadVariables(const Remote& remote, const MachineAct& act) {
+  v1::ReadVariablesRequest request;
+  request.set_machine(FullName("machines", act.machine));
+  *request.mutable_variables() = {act.values.begin(), act.values.end()};
+  v1::ReadVariablesResponse response;
+  const grpc::Status status = Call(remote, &Service::Stub::ReadVariables, request, response);
+  return status.ok() ? ShowVariables(remote, response.variables()) : Refused(status, remote);
+}
+
+int WriteVariables(const Remote& remote, const MachineAct& act) {
+  auto request = For<v1::WriteVariablesRequest>(act);
+  for (const std::string& text : act.values) {
+    auto variable = Assigned(text);
+    if (!variable) return NoAssignment(text);
+    *request.add_variables() = *std::move(variable);
+  }
+  return WithControl<v1::WriteVariablesRequest, v1::WriteVariablesResponse>(
+      remote, act, &Service::Stub::WriteVariables, std::move(request),
+      [&remote](const v1::WriteVariablesResponse& written) {
+        return ShowVariables(remote, written.variables());
+      });
+}
+
+int SetInputs(const Remote& remote, const MachineAct& act) {
+  auto request = For<v1::SetInputsRequest>(act);
+  for (const std::string& text : act.values) {
+    v1::MachineInput& input = *request.add_inputs();
+    if (text == "door=open" || text == "door=closed") {
+      input.set_door_open(text == "door=open");
+    } else if (text == "power=on" || text == "power=off") {
+      input.set_power(text == "power=on");
+    } else if (text == "emergency-stop=released") {
+      input.set_emergency_stop_released(true);
+    } else if (auto variable = Assigned(text)) {
+      *input.mutable_input() = *std::move(variable);
+    } else {
+      return NoAssignment(text);
+    }
+  }
+  return ShowWithControl(remote, act, &Service::Stub::SetInputs, std::move(request));
+}
+
+}  // namespace rmlcell::cli

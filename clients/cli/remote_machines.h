@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clients/cli/remote.h"
+
+namespace rmlcell::cli {
+
+// What is done with a machine that lives, by the words of `rmlcell machine`.
+struct MachineAct {
+  std::string machine;
+  std::string take_over;  // why control is taken from whoever has it; empty: it is not
+  int program = 0;
+  double number = 0.0;              // override, factor
+  std::string word;                 // operating mode
+  std::int64_t alarm = 0;           // 0: all of them
+  std::vector<std::string> values;  // variables, or NAME=VALUE
+};
+
+int ShowMachine(const Remote& remote, const MachineAct& act);
+int WatchMachine(const Remote& remote, const MachineAct& act);
+int EnableMachine(const Remote& remote, const MachineAct& act);
+int DisableMachine(const Remote& remote, const MachineAct& act);
+// These need no control, and wait for nothing.
+int HoldMachine(const Remote& remote, const MachineAct& act);
+int StopMachine(const Remote& remote, const MachineAct& act);
+int EmergencyStopMachine(const Remote& remote, const MachineAct& act);
+int AbortRun(const Remote& remote, const MachineAct& act);
+// These take control for a moment; a run goes on when it is given back.
+int StartMachine(const Remote& remote, const MachineAct& act);
+int ResumeMachine(const Remote& remote, const MachineAct& act);
+int SetMode(const Remote& remote, const MachineAct& act);
+int SetOverride(const Remote& remote, const MachineAct& act);
+int SetFactor(const Remote& remote, const MachineAct& act);
+int AcknowledgeAlarms(const Remote& remote, const MachineAct& act);
+int ConfirmMachine(const Remote& remote, const MachineAct& act);
+int ReadVariables(const Remote& remote, const MachineAct& act);
+int WriteVariables(const Remote& remote, const MachineAct& act);
+int SetInputs(const Remote& remote, const MachineAct& act);
+
+}  // namespace rmlcell::cli

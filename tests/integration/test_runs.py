@@ -1,0 +1,223 @@
+#!/usr/bin/env python3
+"""RUN jobs: from the queue to a machine that lives, over gRPC, held, cancelled, cut off and found again (live.md 5)."""
+import os
+import random
+import signal
+import time
+import unittest
+
+from cell import cell_pb2, eventually, grpc, job_pb2
+from live import MILL, SQUARE, Live, LiveTestCase, new_id
+from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
+from rmlcell.v1.machine_status_pb2 import HoldReason  # noqa: E402
+
+# Some seconds, most of them the way down; much less at a hundred times the speed.
+SHORT = "PA;PA;VS10;PU200,0;PU0,0;"
+
+
+class RunsTest(LiveTestCase):
+    def submit(self, text=SHORT, machine=MILL, file_name="a.rml", **fields):
+        return self.cell.jobs().SubmitJob(job_pb2.SubmitJobRequest(request_id=new_id(), job={
+            "kind": "JOB_KIND_RUN", "machine": machine,
+            "inline_program": {"file_name": file_name, "content": text.encode()}, **fields})).name
+
+    def job(self, name):
+        return self.cell.jobs().GetJob(job_pb2.GetJobRequest(name=name))
+
+    def state(self, name):
+        return job_pb2.Job.State.Name(self.job(name).state)[len("STATE_"):]
+
+    def becomes(self, name, *states, patience=30):
+        return eventually(lambda: self.state(name) if self.state(name) in states else None, patience)
+
+    def order(self, method, name, **fields):
+        stub = self.cell.jobs()
+        request = getattr(job_pb2, method + "Request")
+        return getattr(stub, method)(request(name=name, request_id=new_id(), **fields))
+
+    def events(self, name):
+        return [one.event for one in self.cell.jobs().WatchJob(job_pb2.WatchJobRequest(name=name, after_sequence=0), timeout=30)
+                if one.HasField("event")]
+
+    def confirm(self):
+        self.live.acquire(take_over=True, reason="a test")
+        self.live.ask("SetFactor", factor=100.0)
+        self.live.ask("ConfirmMachine", confirmations=[1])
+        self.live.ask("ReleaseControl")
+
+    def enable(self, live=None):
+        """Its time goes by a hundred times as fast."""
+        live = live or self.live
+        live.enable()
+        live.acquire(take_over=True, reason="a test")
+        live.ask("SetFactor", factor=100.0)
+        live.ask("ReleaseControl")
+
+    # LIVE-5.04, LIVE-5.07: RUNNING before it begins, then what happens, then its end, each once.
+    def test_a_run_from_its_submission_to_its_end(self):
+        self.enable()
+        name = self.submit()
+        self.assertEqual(self.becomes(name, "SUCCEEDED", "FAILED"), "SUCCEEDED")
+        events = self.events(name)
+        self.assertEqual([one.sequence for one in events], list(range(1, len(events) + 1)))
+        kinds = [one.WhichOneof("what") for one in events]
+        self.assertEqual(kinds[:2], ["state", "state"])
+        self.assertEqual(kinds.count("run_begun"), 1)
+        self.assertEqual(kinds[-1], "ended")
+        begun = next(one.run_begun for one in events if one.HasField("run_begun"))
+        self.assertEqual((begun.job, begun.source), (name, 2))  # START_SOURCE_QUEUE
+        job = self.job(name)
+        self.assertEqual((job.attempts, job.attempts_max), (1, 1))
+        self.assertGreater(job.outcome.cycle_time_ns, 3 * 10**8)
+        self.assertEqual(MachineState.Name(self.live.status().state), "MACHINE_STATE_IDLE")
+
+    # LIVE-5.05: the same names on job and machine.
+    def test_a_run_is_held_resumed_and_cancelled(self):
+        self.live.enable()
+        name = self.submit(SQUARE)
+        self.live.wait("RUNNING")
+        self.assertEqual(self.live.status().run.job, name)
+        eventually(lambda: self.live.status().tip.z < -0.2)
+        self.order("StopJob", name)
+        held = self.live.wait("HELD")
+        self.assertEqual(HoldReason.Name(held.hold_reason), "HOLD_REASON_STOP")
+        self.assertEqual(self.state(name), "RUNNING")
+        self.order("ResumeJob", name)
+        eventually(lambda: self.live.status().tip != held.tip)
+        self.order("SetJobOverride", name, override_percent=120.0)
+        self.assertEqual(self.live.status().override_percent, 120.0)
+        with self.assertRaises(grpc.RpcError):
+            self.order("SetJobOverride", name, override_percent=1e6)
+        self.order("HoldJob", name)
+        self.order("CancelJob", name)
+        self.assertEqual(self.becomes(name, "CANCELLED", "FAILED"), "CANCELLED")
+        self.assertEqual(self.job(name).outcome.code, "CELL-E9307")
+        self.live.wait("IDLE")
+        kinds = [one.WhichOneof("what") for one in self.events(name)]
+        self.assertIn("halted", kinds)
+        self.assertIn("resumed", kinds)
+        # Whoever resumes it is told in its log.
+        who = [one.input_applied for one in self.events(name) if one.HasField("input_applied")]
+        self.assertTrue(all(one.caller for one in who), who)
+
+    # LIVE-5.02: what keeps it in the queue.
+    def test_a_run_waits_until_its_machine_can_start(self):
+        name = self.submit()
+        job = self.job(name)
+        self.assertEqual(job_pb2.WaitReason.Name(job.wait_reason), "WAIT_REASON_MACHINE_NOT_READY")
+        self.assertEqual(job.waits_for, MILL)
+        self.enable()
+        self.becomes(name, "SUCCEEDED")
+        self.live.acquire(ttl={"seconds": 60})
+        self.live.ask("SetMode", mode="OPERATING_MODE_MANUAL")
+        second = self.submit()
+        third = self.submit(after_jobs=[second])
+        time.sleep(0.3)  # no verdict: whatever would begin has begun
+        self.assertEqual((self.state(second), self.state(third)), ("QUEUED", "QUEUED"))
+        self.assertIn("CELL-E9423", [one.code for one in self.live.status().start_blockers])
+        self.live.ask("SetMode", mode="OPERATING_MODE_REMOTE")
+        self.live.ask("ReleaseControl")
+        self.becomes(second, "SUCCEEDED")
+        self.becomes(third, "SUCCEEDED")
+
+    # LIVE-5.02 (b), LIVE-5.08.
+    def test_a_run_that_cannot_begin_or_is_stopped_by_its_program_fails(self):
+        live = Live(self, self.cell, "machines/optimo-1")
+        self.enable(live)
+        wrong = self.submit("STOP\nNONSENSE\n", live.machine, "A.S")
+        self.assertEqual(self.becomes(wrong, "FAILED"), "FAILED")
+        self.assertTrue(self.job(wrong).outcome.code.startswith("OPT-E"))
+        stopped = self.submit("STOP\n", live.machine, "A.S")
+        self.becomes(stopped, "FAILED")
+        self.assertEqual(self.job(stopped).outcome.code, "OPT-E7507")
+        good = self.submit("DELAY 0.1\n", live.machine, "A.S")
+        self.assertEqual(self.becomes(good, "SUCCEEDED", "FAILED"), "SUCCEEDED")
+
+    # LIVE-5.20, host killed: INTERRUPTED with its place, and the next waits until a person has looked.
+    def test_a_host_that_is_killed_interrupts_its_job(self):
+        self.live.enable()
+        name = self.submit(SQUARE)
+        eventually(lambda: self.live.status().run.run_time_ns > 25 * 10**8)  # more than from one mark to the next
+        second = self.submit()
+        os.kill(self.live.host(), signal.SIGKILL)
+        self.becomes(name, "INTERRUPTED")
+        outcome = self.job(name).outcome
+        self.assertEqual(outcome.code, "CELL-E9411")
+        self.assertGreater(outcome.place.byte_offset, 0)
+        self.live.wait("INSPECT")
+        time.sleep(0.3)  # no verdict: whatever would begin has begun
+        self.assertEqual(self.state(second), "QUEUED")
+        self.confirm()
+        self.becomes(second, "SUCCEEDED")
+
+    # LIVE-3.31, server killed: the job stays RUNNING and held, and goes on when a person resumes it.
+    def test_a_server_that_is_killed_holds_its_job(self):
+        self.live.enable()
+        name = self.submit("PA;PA;VS10;PU2000,0;PU0,0;")
+        eventually(lambda: self.live.status().tip.x > 1.0)
+        self.cell.kill()
+        time.sleep(2.5)  # no verdict: it must have had the time to come to rest
+        self.cell.start()
+        held = self.live.wait("HELD")
+        self.assertEqual(HoldReason.Name(held.hold_reason), "HOLD_REASON_SERVER_LOST")
+        self.assertEqual((self.state(name), held.run.job), ("RUNNING", name))
+        self.order("ResumeJob", name)
+        self.becomes(name, "SUCCEEDED")
+        self.assertEqual([one.WhichOneof("what") for one in self.events(name)].count("run_begun"), 1)
+
+    # LIVE-10.04: kill -9 of host, server or both, at random moments: no run is begun twice, each job ends once, as its
+    # run did, and one that was never begun is done later.
+    def test_crash_rounds(self):
+        rounds = int(os.environ.get("LIVE_ROUNDS", "4"))
+        seed = int(os.environ.get("LIVE_SEED", "1"))
+        choose = random.Random(seed)
+        self.enable()
+        names = []
+        for round_ in range(rounds):
+            names += [self.submit() for _ in range(choose.randrange(1, 4))]
+            time.sleep(choose.random() * 0.8)
+            who = choose.choice(("host", "server", "both"))
+            if who != "server":
+                for process in self.hosts():
+                    os.kill(process, signal.SIGKILL)
+            if who != "host":
+                self.cell.kill()
+                self.cell.start()
+            # Whatever it is in, a person brings it back to work.
+            for _ in range(100):
+                time.sleep(0.1)
+                status = self.live.status()
+                state = MachineState.Name(status.state)[len("MACHINE_STATE_"):]
+                if state == "INSPECT":
+                    self.confirm()
+                elif state == "HELD" and status.run.job:
+                    self.order("ResumeJob", status.run.job)
+                elif state == "IDLE" and all(self.state(one) not in ("QUEUED", "RUNNING") for one in names):
+                    break
+            else:
+                self.fail(f"seed {seed}, round {round_}, {who}: {state}, {[(one, self.state(one)) for one in names]}")
+        for name in names:
+            kinds = [one.WhichOneof("what") for one in self.events(name)]
+            told = f"seed {seed}: {name} {self.state(name)} {kinds}"
+            self.assertIn(self.state(name), ("SUCCEEDED", "INTERRUPTED"), told)
+            self.assertLessEqual(kinds.count("run_begun"), 1, told)
+            self.assertEqual(kinds.count("ended"), 1, told)
+            if self.state(name) == "SUCCEEDED":
+                self.assertEqual(kinds.count("run_begun"), 1, told)
+        begun, over = [], []
+        stream = self.cell.cell_service().WatchCell(cell_pb2.WatchCellRequest(after_sequence=0), timeout=5)
+        try:
+            for message in stream:
+                event = message.event.machine
+                if event.HasField("run_begun"):
+                    begun.append(event.run_begun.job)
+                elif event.HasField("run_over"):
+                    over.append(event.run_over.job)
+        except grpc.RpcError:
+            pass
+        self.assertEqual(begun, over)
+        self.assertEqual(len(begun), len(set(begun)))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,229 @@
+// RUN jobs on a machine as its host has it (live.md 5): what keeps them from it, how they begin,
+// who has control meanwhile, and what is told of them.
+#include <utility>
+
+#include "tests/server/host/host_machine_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class HostJobsTest : public HostMachineTest {
+ protected:
+  static v1::HostOrder Job(const std::string& text = kSquare, int slot = 5) {
+    v1::HostOrder order;
+    v1::WorkerAssignment& assignment = *order.mutable_run_job();
+    assignment.mutable_job()->set_name("jobs/17");
+    assignment.set_main_program(slot);
+    v1::AssignedProgram& program = *assignment.add_programs();
+    program.set_slot(slot);
+    program.set_file_name("square.rml");
+    program.set_is_source(true);
+    program.set_content(text);
+    return order;
+  }
+  static v1::HostOrder For(const std::string& job, v1::HostOrder order) {
+    order.set_for_job(job);
+    return order;
+  }
+  v1::MachineStatus Status() { return host_->StatusAt(now_); }
+  std::vector<std::string> Blockers() {
+    std::vector<std::string> codes;
+    const v1::MachineStatus status = Status();
+    for (const v1::StartBlocker& one : status.start_blockers()) codes.push_back(one.code());
+    return codes;
+  }
+  // Of what was told since the last look, those of this kind.
+  std::vector<v1::JournalEntry> Of(v1::JournalEntry::WhatCase what) {
+    std::vector<v1::JournalEntry> found;
+    for (v1::JournalEntry& entry : host_->TakeEntries(now_, true)) {
+      if (entry.what_case() == what) found.push_back(std::move(entry));
+    }
+    return found;
+  }
+  static v1::HostOrder Mode(v1::OperatingMode mode, const std::string& token) {
+    v1::HostOrder order;
+    order.mutable_mode()->set_mode(mode);
+    order.mutable_mode()->set_control_token(token);
+    return order;
+  }
+};
+
+// LIVE-4.05, LIVE-5.04: it begins at once; the queue has control until its end.
+TEST_F(HostJobsTest, TheQueueHasControlForAJob) {
+  Make();
+  EXPECT_THAT(Blockers(), IsEmpty());
+  EXPECT_EQ(Do(Job()).status().state(), v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(Status().run().job(), "jobs/17");
+  EXPECT_EQ(Status().run().source(), v1::START_SOURCE_QUEUE);
+  EXPECT_EQ(Status().control().holder(), "queue/jobs/17");
+  EXPECT_FALSE(Status().control().has_expire_time());
+  EXPECT_THAT(Blockers(), ElementsAre("CELL-E9421"));
+  const auto entries = host_->TakeEntries(now_, true);
+  EXPECT_THAT(entries, testing::Each(testing::Property(&v1::JournalEntry::job, "jobs/17")));
+  EXPECT_EQ(entries.front().applied().input().start().job(), "jobs/17");
+  EXPECT_EQ(entries.front().applied().source(), v1::START_SOURCE_QUEUE);
+  EXPECT_EQ(entries.back().mark().job(), "jobs/17");
+  EXPECT_FALSE(entries.back().mark().clean());
+  Pass(5s, 50ms);
+  EXPECT_EQ(Status().control().holder(), "queue/jobs/17");
+  Pass(3min, 50ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_FALSE(Status().has_control());
+  const auto over = Of(v1::JournalEntry::kRunOver);
+  ASSERT_EQ(over.size(), 1U);
+  EXPECT_EQ(over.front().run_over().job(), "jobs/17");
+  EXPECT_EQ(over.front().job(), "jobs/17");
+  EXPECT_GT(over.front().run_time_ns(), 80'000'000'000);
+  EXPECT_EQ(over.front().run_over().outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  // What comes behind it is nobody's.
+  EXPECT_EQ(Do(Stop()).halt().status().state(), v1::MACHINE_STATE_IDLE);
+}
+
+// LIVE-5.05: orders for the job need no token while the queue has control, and are for this job.
+TEST_F(HostJobsTest, OrdersForAJobAreForThatJob) {
+  Make();
+  Do(Job());
+  Pass(1s);
+  EXPECT_EQ(Do(For("jobs/18", Stop())).refusal().code(), "CELL-E9421");
+  EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(Do(For("jobs/17", Stop())).halt().status().state(), v1::MACHINE_STATE_STOPPING);
+  Pass(2s);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(Do(Resume()).refusal().code(), "CELL-E9420");
+  EXPECT_EQ(Do(For("jobs/18", Resume())).refusal().code(), "CELL-E9421");
+  EXPECT_EQ(Do(For("jobs/17", Resume())).status().state(), v1::MACHINE_STATE_RUNNING);
+  v1::HostOrder abort;
+  abort.mutable_abort();
+  Do(For("jobs/17", abort));
+  Pass(2s);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(Of(v1::JournalEntry::kRunOver).front().run_over().outcome().kind(),
+            v1::Outcome::KIND_CANCELLED);
+  EXPECT_EQ(Do(For("jobs/17", Stop())).refusal().code(), "CELL-E9421");
+}
+
+// LIVE-4.05: a person takes control over; then the job is resumed with his token alone.
+TEST_F(HostJobsTest, APersonTakesControlOverFromTheQueue) {
+  Make();
+  Do(Job());
+  v1::HostOrder take;
+  take.mutable_acquire_control()->set_client("a test");
+  const v1::HostOrderAnswer held = Do(take);
+  EXPECT_EQ(held.refusal().code(), "CELL-E9408");
+  EXPECT_THAT(held.refusal().message(), HasSubstr("queue/jobs/17"));
+  take.mutable_acquire_control()->set_take_over(true);
+  take.mutable_acquire_control()->set_reason("the clamp is loose");
+  take.mutable_acquire_control()->mutable_ttl()->set_seconds(60);
+  const std::string token = Do(take).control().control_token();
+  EXPECT_FALSE(token.empty());
+  EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(Status().run().job(), "jobs/17");
+  Do(Stop());
+  Pass(2s);
+  EXPECT_EQ(Do(For("jobs/17", Resume())).refusal().code(), "CELL-E9420");
+  token_ = token;
+  EXPECT_EQ(Do(For("jobs/17", Resume())).status().state(), v1::MACHINE_STATE_RUNNING);
+}
+
+// LIVE-5.02 (a): what keeps it in the queue, told in the status and by the refusal alike.
+TEST_F(HostJobsTest, WhatKeepsAJobFromItsMachine) {
+  Make();
+  Control();
+  EXPECT_THAT(Blockers(), ElementsAre("CELL-E9408"));
+  // Whoever has control does not keep his own.
+  v1::HostOrder of_bert = Job();
+  of_bert.set_number(99);
+  of_bert.set_caller("bert");
+  EXPECT_EQ(host_->Do(of_bert, now_).refusal().code(), "CELL-E9408");
+  Do(Mode(v1::OPERATING_MODE_MANUAL, token_));
+  EXPECT_THAT(Blockers(), ElementsAre("CELL-E9423", "CELL-E9408"));
+  EXPECT_EQ(Do(Job()).refusal().code(), "CELL-E9423");
+  Do(Mode(v1::OPERATING_MODE_REMOTE, token_));
+  v1::HostOrder emergency;
+  emergency.mutable_emergency_stop();
+  Do(emergency);
+  ASSERT_EQ(Blockers().size(), 2U);
+  EXPECT_EQ(Do(Job()).refusal().code(), Blockers().front());
+  EXPECT_EQ(Status().alarms(0).diagnostic().code(), Blockers().front());
+}
+
+TEST_F(HostJobsTest, AMachineThatWaitsForAnInspectionBeginsNoJob) {
+  Make({}, true);
+  EXPECT_THAT(Blockers(), ElementsAre("CELL-E9409"));
+  EXPECT_EQ(Do(Job()).refusal().code(), "CELL-E9409");
+  EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
+}
+
+TEST_F(HostJobsTest, ARunThatIsOpenKeepsAJobWaiting) {
+  Make();
+  Control();
+  Do(Start());
+  EXPECT_EQ(Do(Job()).refusal().code(), "CELL-E9421");
+  EXPECT_EQ(Status().run().job(), "");
+}
+
+// LIVE-5.03: what the job brought is for its run alone; nothing of it stays in the memory.
+TEST_F(HostJobsTest, AJobBringsItsProgram) {
+  Make();
+  EXPECT_EQ(Do(Job("PA;PA;VS5;PU100,0;", 9)).status().state(), v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(Status().run().program(), 9);
+  Pass(1min, 50ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  Control();
+  EXPECT_EQ(Do(Start("", 9)).refusal().code(), "CELL-E9004");
+  v1::HostOrder without = Job();
+  without.mutable_run_job()->clear_programs();
+  EXPECT_EQ(Do(without).refusal().code(), "CELL-E9003");
+}
+
+// LIVE-5.01, LIVE-5.20: a run that was cut off is told as the end of its job.
+TEST_F(HostJobsTest, AJobThatWasCutOffIsInterrupted) {
+  Make();
+  Do(Job());
+  Pass(5s, 50ms);
+  v1::MachineMark mark = host_->TakeEntries(now_, true).back().mark();
+  EXPECT_EQ(mark.job(), "jobs/17");
+  const std::int64_t moved = mark.run_time_ns();
+  const std::string state = mark.state();
+  Make(state, true, mark);
+  const auto entries = host_->TakeEntries(now_, true);
+  ASSERT_TRUE(entries.front().has_run_over());
+  EXPECT_EQ(entries.front().job(), "jobs/17");
+  EXPECT_EQ(entries.front().run_over().job(), "jobs/17");
+  EXPECT_EQ(entries.front().run_time_ns(), moved);
+  EXPECT_EQ(entries.front().run_over().outcome().kind(), v1::Outcome::KIND_INTERRUPTED);
+  EXPECT_EQ(entries.front().run_over().outcome().code(), "CELL-E9411");
+  EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
+  EXPECT_FALSE(Status().has_run());
+}
+
+// A source with errors ends the job with the first of them, and nothing has moved. LIVE-5.02 (b)
+TEST_F(HostJobsTest, AProgramWithErrorsBeginsNothing) {
+  machine::MachineMemory memory;
+  auto made = HostMachine::Make({.name = "machines/optimo-1",
+                                 .host = "workshop/1",
+                                 .fence = 7,
+                                 .family = families::FindFamily("optimo"),
+                                 .memory = std::move(memory)},
+                                now_, [] { return std::string("token"); });
+  ASSERT_TRUE(made) << made.error().detail;
+  host_ = *std::move(made);
+  v1::HostOrder job = Job("STOP\nNONSENSE\n");
+  job.mutable_run_job()->mutable_programs(0)->set_file_name("A.S");
+  const v1::HostOrderAnswer refused = Do(job);
+  EXPECT_THAT(refused.refusal().code(), testing::StartsWith("OPT-E"));
+  EXPECT_EQ(refused.refusal().place().line(), 2);
+  EXPECT_THAT(Of(v1::JournalEntry::kApplied), IsEmpty());
+  EXPECT_EQ(Status().run().job(), "");
+  job.mutable_run_job()->mutable_programs(0)->set_content("STOP\n");
+  EXPECT_FALSE(Do(job).has_refusal());
+  Pass(1s);
+  EXPECT_EQ(Of(v1::JournalEntry::kRunOver).front().run_over().outcome().code(), "OPT-E7507");
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,292 @@
+// RUN jobs on their way to the host of their machine, which is a line of the test (live.md 5).
+#include "server/runs/run_queue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <future>
+
+#include "server/base/config.h"
+#include "server/base/names.h"
+#include "server/jobs/job_book.h"
+#include "server/records/job_messages.h"
+#include "tests/server/fake_link.h"
+
+namespace rmlcell::server {
+namespace {
+
+using storage::JobState;
+using testing::HasSubstr;
+
+class RunQueueTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    hosts.OnNews([this](const std::string& machine) { runs.Wake(machine); });
+    book.OnRunWaits([this](const std::string& machine) { runs.Wake(machine); });
+    v1::HostHello hello;
+    hello.set_join_token("secret");
+    hello.set_machine("machines/mill-1");
+    hello.set_host("hall/1");
+    hello.set_protocol(1);
+    ASSERT_TRUE(hosts.Join(link, hello));
+    fence = link->Newest(v1::HostResponse::kWelcome)->welcome().fence();
+  }
+  void TearDown() override {
+    hosts.CloseAll();
+    executor.reset();  // what was posted is done
+  }
+  v1::MachineStatus Idle() {
+    v1::MachineStatus status;
+    status.set_machine("machines/mill-1");
+    status.set_state(v1::MACHINE_STATE_IDLE);
+    status.set_host("hall/1");
+    status.set_zeroed(true);
+    return status;
+  }
+  static void Block(v1::MachineStatus& status, const std::string& code) {
+    status.add_start_blockers()->set_code(code);
+  }
+  void Tell(const v1::MachineStatus& status) {
+    v1::HostRequest request;
+    *request.mutable_status() = status;
+    hosts.Receive(*link, std::move(request));
+  }
+  std::int64_t Submit(const std::function<void(v1::Job&)>& change = [](v1::Job&) {}) {
+    v1::SubmitJobRequest request;
+    v1::Job& job = *request.mutable_job();
+    job.set_kind(v1::JOB_KIND_RUN);
+    job.set_machine("machines/mill-1");
+    job.mutable_inline_program()->set_file_name("a.rml");
+    job.mutable_inline_program()->set_content("PA;PU100,0;");
+    change(job);
+    std::int64_t id = 0;
+    book.Submit(request, "anna", [&](const Result<v1::Job>& made) {
+      if (made) id = *ParseJobName(made->name());
+    });
+    EXPECT_TRUE(Eventually([&] { return id != 0; }));
+    return id;
+  }
+  std::vector<v1::HostOrder> Orders() const {
+    std::vector<v1::HostOrder> orders;
+    for (const v1::HostResponse& message : link->All()) {
+      if (message.has_order()) orders.push_back(message.order());
+    }
+    return orders;
+  }
+  v1::HostOrder NewestOrder(std::size_t count) {
+    EXPECT_TRUE(Eventually([&] { return Orders().size() >= count; }));
+    const auto orders = Orders();
+    return orders.empty() ? v1::HostOrder() : orders.back();
+  }
+  void Refuse(const v1::HostOrder& order, const std::string& code) {
+    v1::HostRequest request;
+    request.mutable_answer()->set_number(order.number());
+    request.mutable_answer()->mutable_refusal()->set_code(code);
+    request.mutable_answer()->mutable_refusal()->set_message("why");
+    hosts.Receive(*link, std::move(request));
+  }
+  void Accept(const v1::HostOrder& order) {
+    v1::HostRequest request;
+    request.mutable_answer()->set_number(order.number());
+    *request.mutable_answer()->mutable_status() = Idle();
+    hosts.Receive(*link, std::move(request));
+  }
+  storage::JobRecord Job(std::int64_t id) { return Must(bed.store().GetJob(id)); }
+  // All that was posted until now, and what that posted, is done.
+  void Settle() {
+    for (int round = 0; round < 5; ++round) {
+      std::promise<void> done;
+      executor->Post([&] { done.set_value(); });
+      done.get_future().wait();
+    }
+  }
+
+  ServerBed bed;
+  EventFeed feed{bed.store()};
+  Config config;
+  TestSteadyClock clock;
+  std::unique_ptr<Executor> executor = std::make_unique<Executor>(1);
+  Hosts hosts{{.store = bed.store(),
+               .feed = feed,
+               .executor = *executor,
+               .server = "this server",
+               .join_token = "secret",
+               .clock = clock.clock()}};
+  RunQueue runs{{.store = bed.store(),
+                 .hosts = hosts,
+                 .config = config,
+                 .executor = *executor,
+                 .server = "this server",
+                 .clock = clock.clock()}};
+  JobBook book{bed.store(), config};
+  std::shared_ptr<FakeLink> link = std::make_shared<FakeLink>();
+  std::int64_t fence = 0;
+};
+
+// LIVE-5.01, LIVE-5.04: it goes to its host as soon as that can begin it, and is RUNNING in the
+// store before; one at a time.
+TEST_F(RunQueueTest, AJobGoesToTheHostOfItsMachine) {
+  const std::int64_t job = Submit();
+  const std::int64_t second = Submit();
+  Settle();
+  EXPECT_TRUE(Orders().empty()) << "nothing is known of the machine";
+  Tell(Idle());
+  const v1::HostOrder order = NewestOrder(1);
+  ASSERT_TRUE(order.has_run_job());
+  EXPECT_EQ(Job(job).state, JobState::kRunning);
+  EXPECT_EQ(order.caller(), "anna");
+  EXPECT_EQ(order.run_job().job().name(), JobName(job));
+  ASSERT_EQ(order.run_job().programs_size(), 1);
+  EXPECT_EQ(order.run_job().programs(0).content(), "PA;PU100,0;");
+  EXPECT_EQ(order.run_job().main_program(), order.run_job().programs(0).slot());
+  Accept(order);
+  v1::MachineStatus running = Idle();
+  running.set_state(v1::MACHINE_STATE_RUNNING);
+  running.mutable_run()->set_job(JobName(job));
+  Tell(running);
+  clock.Advance(std::chrono::minutes(5));
+  runs.WakeAll();
+  Settle();
+  EXPECT_EQ(Orders().size(), 1U);
+  EXPECT_EQ(Job(second).state, JobState::kQueued);
+  EXPECT_EQ(ToProto(Job(second)).wait_reason(), v1::WAIT_REASON_MACHINE_BUSY);
+  EXPECT_EQ(runs.MachineOf(JobName(job)), "mill-1");
+  EXPECT_EQ(runs.MachineOf(JobName(second)), "");
+}
+
+// LIVE-5.02 (a): it waits while the machine says that it cannot start, but for what its submitter
+// himself is.
+TEST_F(RunQueueTest, AJobWaitsUntilItsMachineCanStart) {
+  v1::MachineStatus status = Idle();
+  Block(status, "CELL-E9423");
+  Tell(status);
+  const std::int64_t job = Submit();
+  Settle();
+  EXPECT_TRUE(Orders().empty());
+  EXPECT_EQ(Job(job).state, JobState::kQueued);
+  const v1::Job told = Must(book.Get(JobName(job)));
+  EXPECT_EQ(told.wait_reason(), v1::WAIT_REASON_MACHINE_NOT_READY);
+  EXPECT_EQ(told.waits_for(), "machines/mill-1");
+  status = Idle();
+  Block(status, "CELL-E9408");
+  status.mutable_control()->set_holder("bert");
+  Block(status, "CELL-E9433");
+  Tell(status);
+  Settle();
+  EXPECT_TRUE(Orders().empty());
+  status.clear_start_blockers();
+  Block(status, "CELL-E9408");
+  Tell(status);
+  Settle();
+  EXPECT_TRUE(Orders().empty());
+  status.mutable_control()->set_holder("anna");
+  Tell(status);
+  runs.WakeAll();
+  EXPECT_TRUE(NewestOrder(1).has_run_job());
+}
+
+// LIVE-5.02: axes without reference keep it waiting, unless its program zeroes them itself.
+TEST_F(RunQueueTest, AMachineWithoutReferenceTakesJobsThatZeroIt) {
+  v1::MachineStatus status = Idle();
+  status.set_state(v1::MACHINE_STATE_NOT_ZEROED);
+  status.set_zeroed(false);
+  Block(status, "OPT-E7310");
+  Tell(status);
+  const std::int64_t job = Submit();
+  Settle();
+  EXPECT_TRUE(Orders().empty());
+  Must(bed.store().RequestCancel(job, {}));
+  const std::int64_t zeroes = Submit([](v1::Job& made) { made.mutable_run()->set_unzeroed(true); });
+  EXPECT_EQ(NewestOrder(1).run_job().job().name(), JobName(zeroes));
+  EXPECT_TRUE(NewestOrder(1).run_job().job().run().unzeroed());
+}
+
+// LIVE-5.02 (b): what another try does not mend ends it before anything moves.
+TEST_F(RunQueueTest, AJobThatCannotBeginFails) {
+  Tell(Idle());
+  const std::int64_t job = Submit();
+  Refuse(NewestOrder(1), "OPT-E7102");
+  EXPECT_TRUE(Eventually([&] { return Job(job).state == JobState::kFailed; }));
+  EXPECT_EQ(CodeText(*Job(job).outcome->code), "OPT-E7102");
+  EXPECT_EQ(Job(job).outcome->detail, "why");
+}
+
+// What another try may mend sends it back to the queue, and the machine is left alone for a while.
+TEST_F(RunQueueTest, AJobThatCannotBeginNowWaitsAgain) {
+  Tell(Idle());
+  const std::int64_t job = Submit();
+  Refuse(NewestOrder(1), "CELL-E9429");
+  EXPECT_TRUE(Eventually([&] { return Job(job).state == JobState::kQueued; }));
+  EXPECT_FALSE(Job(job).held);
+  EXPECT_EQ(Job(job).attempts, 0);
+  runs.WakeAll();
+  Settle();
+  EXPECT_EQ(Orders().size(), 1U);
+  clock.Advance(RunQueue::kRests);
+  runs.WakeAll();
+  EXPECT_TRUE(NewestOrder(2).has_run_job());
+}
+
+// LIVE-2.05: somebody stopped the machine at that moment; it does not begin by itself a moment
+// later.
+TEST_F(RunQueueTest, AJobThatWasStoppedBeforeItBeganIsHeld) {
+  Tell(Idle());
+  const std::int64_t job = Submit();
+  Refuse(NewestOrder(1), "CELL-E9421");
+  EXPECT_TRUE(Eventually([&] { return Job(job).state == JobState::kQueued && Job(job).held; }));
+  clock.Advance(std::chrono::minutes(1));
+  runs.WakeAll();
+  Settle();
+  EXPECT_EQ(Orders().size(), 1U);
+  Must(book.LetGo(JobName(job), "bert"));
+  EXPECT_TRUE(NewestOrder(2).has_run_job());
+}
+
+// An order that got lost on its way: the machine stands and speaks of no job.
+TEST_F(RunQueueTest, AJobThatItsHostDoesNotSpeakOfWaitsAgain) {
+  Tell(Idle());
+  const std::int64_t job = Submit();
+  NewestOrder(1);
+  runs.WakeAll();
+  Settle();
+  EXPECT_EQ(Job(job).state, JobState::kRunning);
+  clock.Advance(RunQueue::kUnheardOf);
+  runs.WakeAll();
+  EXPECT_TRUE(Eventually([&] { return Job(job).state == JobState::kQueued; }));
+}
+
+// LIVE-5.05: an order for a job goes to the host that runs it, and says for which it is.
+TEST_F(RunQueueTest, OrdersGoToTheHostThatRunsTheJob) {
+  v1::MachineStatus running = Idle();
+  running.set_state(v1::MACHINE_STATE_RUNNING);
+  running.mutable_run()->set_job("jobs/5");
+  Tell(running);
+  Settle();
+  runs.Abort("jobs/5", "bert", "id");
+  const v1::HostOrder order = NewestOrder(1);
+  EXPECT_TRUE(order.has_abort());
+  EXPECT_EQ(order.for_job(), "jobs/5");
+  EXPECT_EQ(order.caller(), "bert");
+  EXPECT_EQ(order.abort().request_id(), "id");
+  ErrorCode refused = ErrorCode::kCellInternal;
+  runs.Ask("jobs/6", {},
+           [&](const Result<v1::HostOrderAnswer>& answer) { refused = answer.error().code; });
+  EXPECT_EQ(refused, ErrorCode::kCellNotLive);
+}
+
+// A cancel that came while its order was on the way reaches the run as soon as that is known.
+TEST_F(RunQueueTest, ACancelOfAJobThatBeginsEndsItsRun) {
+  Tell(Idle());
+  const std::int64_t job = Submit();
+  const v1::HostOrder order = NewestOrder(1);
+  Must(bed.store().RequestCancel(job, {}));
+  Accept(order);
+  v1::MachineStatus running = Idle();
+  running.set_state(v1::MACHINE_STATE_RUNNING);
+  running.mutable_run()->set_job(JobName(job));
+  Tell(running);
+  EXPECT_TRUE(Eventually([&] { return Orders().back().has_abort(); }));
+}
+
+}  // namespace
+}  // namespace rmlcell::server
