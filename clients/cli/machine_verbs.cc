@@ -52,6 +52,8 @@ void AddActs(MachineVerbs& verbs) {
   verbs.AddControlled("start", "Start a stored program, or the selected one", StartMachine)
       ->add_option("SLOT", given.program, "1 to 99")
       ->check(CLI::Range(1, 99));
+  verbs.AddControlled("zero", "Let the axes find their reference; in REMOTE program 4 follows",
+                      ZeroMachine);
   verbs.AddControlled("resume", "Let a held run go on", ResumeMachine);
   verbs.AddControlled("mode", "Set the operating mode", SetMode)
       ->add_option("MODE", given.word)

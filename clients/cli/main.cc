@@ -368,6 +368,13 @@ void AddQueueOptions(CLI::App& verb, SubmitRequest& submit) {
       ->allow_extra_args(false);
 }
 
+void AddRunOptions(CLI::App& verb, SubmitRequest& submit) {
+  verb.add_option("--kind", submit.kind, "simulate, check, or run on the machine itself")
+      ->check(CLI::IsMember({"simulate", "check", "run"}));
+  verb.add_flag("--unzeroed", submit.unzeroed,
+                "with --kind run: the program zeroes the axes itself");
+}
+
 void AddQueueVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {
   CLI::App* hold = RemoteVerb(app, "hold", "Hold a job: one that waits does not start",
                               "  rmlcell hold 17", remote);
@@ -403,10 +410,7 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
   verb->add_option("FILE", given.submit.file, "a program for this job only; or give --slot");
   verb->add_option("--slot", given.submit.slot, "slot of a stored program, or where FILE goes")
       ->check(CLI::Range(1, 99));
-  verb->add_option("--kind", given.submit.kind, "simulate, check, or run on the machine itself")
-      ->check(CLI::IsMember({"simulate", "check", "run"}));
-  verb->add_flag("--unzeroed", given.submit.unzeroed,
-                 "with --kind run: the program zeroes the axes itself");
+  AddRunOptions(*verb, given.submit);
   verb->add_option("--title", given.submit.title);
   verb->add_option("--label", given.submit.labels, "a word to find the job by; may be repeated")
       ->allow_extra_args(false);

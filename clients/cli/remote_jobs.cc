@@ -171,6 +171,8 @@ std::string WaitText(const v1::Job& job) {
       return "after " + other + ", which did not succeed";
     case v1::WAIT_REASON_MACHINE_BUSY:
       return "its machine runs " + other;
+    case v1::WAIT_REASON_MACHINE_NOT_READY:
+      return "its machine cannot start: rmlcell machine status";
     default:
       return {};
   }
@@ -312,30 +314,6 @@ int Jobs(const Remote& remote, const std::string& filter, const std::string& ord
   PrintRaw(Table(rows));
   return kGood;
 }
-
-namespace {
-
-// Why a job waits; empty: it does not, or for a worker alone.
-std::string WaitText(const v1::Job& job) {
-  switch (job.wait_reason()) {
-    case v1::WAIT_REASON_HELD:
-      return "held; rmlcell resume lets it go";
-    case v1::WAIT_REASON_NOT_BEFORE:
-      return "until " + When(job.not_before_time());
-    case v1::WAIT_REASON_AFTER_JOB:
-      return "for " + job.waits_for();
-    case v1::WAIT_REASON_AFTER_JOB_FAILED:
-      return "for " + job.waits_for() + ", which did not succeed; resume or cancel it";
-    case v1::WAIT_REASON_MACHINE_BUSY:
-      return "for " + job.waits_for() + " on the same machine";
-    case v1::WAIT_REASON_MACHINE_NOT_READY:
-      return "for its machine; rmlcell machine status says why";
-    default:
-      return {};
-  }
-}
-
-}  // namespace
 
 int ShowJob(const Remote& remote, const std::string& job) {
   const auto stub = v1::JobService::NewStub(Connect(remote));

@@ -318,6 +318,11 @@ int StartMachine(const Remote& remote, const MachineAct& act) {
   return ShowWithControl(remote, act, &Service::Stub::StartMachine, std::move(request));
 }
 
+int ZeroMachine(const Remote& remote, const MachineAct& act) {
+  return ShowWithControl(remote, act, &Service::Stub::ZeroMachine,
+                         For<v1::ZeroMachineRequest>(act));
+}
+
 int ResumeMachine(const Remote& remote, const MachineAct& act) {
   return ShowWithControl(remote, act, &Service::Stub::ResumeMachine,
                          For<v1::ResumeMachineRequest>(act));

@@ -29,6 +29,7 @@ int EmergencyStopMachine(const Remote& remote, const MachineAct& act);
 int AbortRun(const Remote& remote, const MachineAct& act);
 // These take control for a moment; a run goes on when it is given back.
 int StartMachine(const Remote& remote, const MachineAct& act);
+int ZeroMachine(const Remote& remote, const MachineAct& act);
 int ResumeMachine(const Remote& remote, const MachineAct& act);
 int SetMode(const Remote& remote, const MachineAct& act);
 int SetOverride(const Remote& remote, const MachineAct& act);

@@ -165,7 +165,7 @@ _rmlcell_positional() {
     compile | format | convert | compensate | transform | list) _rmlcell_files .s .si .cmp .o ;;
     diff) _rmlcell_programs_files ;;
     machine)
-      [[ $count -eq 0 ]] && _rmlcell_offer status watch enable disable hold stop emergency-stop abort start resume mode override \
+      [[ $count -eq 0 ]] && _rmlcell_offer status watch enable disable hold stop emergency-stop abort start zero resume mode override \
         factor acknowledge confirm read write input ;;
     "machine start") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_slots "${given[0]}"; fi ;;
     "machine mode") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer remote cycle single repeat manual; fi ;;

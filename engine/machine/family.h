@@ -54,7 +54,11 @@ struct FamilyInfo {
   std::string_view clamps_parameter{};  // height of the clamps above program zero, mm; empty: none
   double override_min_percent = 1.0;    // of the feed rate, where a person sets it at a machine
   double override_max_percent = 100.0;
-  bool has_repeat = false;        // the mode REPEAT
+  bool has_repeat = false;  // the mode REPEAT
+  // What finds the reference of the axes, as a program; empty: they have it always. Started from
+  // the console it is followed by the program of a slot; 0: by none.
+  std::string_view zero_program{};
+  int home_program = 0;
   bool start_takes_back = false;  // START a HOLD or STOP that has not halted the run yet
   bool has_dry_run = false;       // up to a step, RunSetup::simul
   bool has_breakpoints = false;   // Run::SetBreakpoints

@@ -22,11 +22,11 @@ Error NotNow(MachineState state, std::string_view possible) {
 // STOP and ABORT find nothing to do.
 template <class Input>
 constexpr bool kNeedsPower =
-    std::is_same_v<Input, StartRun> || std::is_same_v<Input, ResumeRun> ||
-    std::is_same_v<Input, Acknowledge> || std::is_same_v<Input, ChangeMode> ||
-    std::is_same_v<Input, ChangeOverride> || std::is_same_v<Input, WriteVariable> ||
-    std::is_same_v<Input, SetBreakpoints> || std::is_same_v<Input, SetSimulation> ||
-    std::is_same_v<Input, ClearMessage>;
+    std::is_same_v<Input, StartRun> || std::is_same_v<Input, ZeroAxes> ||
+    std::is_same_v<Input, ResumeRun> || std::is_same_v<Input, Acknowledge> ||
+    std::is_same_v<Input, ChangeMode> || std::is_same_v<Input, ChangeOverride> ||
+    std::is_same_v<Input, WriteVariable> || std::is_same_v<Input, SetBreakpoints> ||
+    std::is_same_v<Input, SetSimulation> || std::is_same_v<Input, ClearMessage>;
 
 }  // namespace
 
@@ -129,7 +129,7 @@ void Machine::Settle() {
 // What it made of an object that was replaced meanwhile is of no use.
 void Machine::CloseRun() {
   const RunState state = run_->state();
-  const Outcome& outcome = run_->outcome();
+  const Outcome outcome = run_->outcome();
   now_ = std::max(now_, note_.begun + state.time);
   over_.push_back({.run = note_,
                    .outcome = outcome,
@@ -154,6 +154,15 @@ void Machine::CloseRun() {
   run_.reset();
   stopping_ = resume_behind_ = abort_behind_ = false;
   changed_.clear();
+  if (note_.by_hand) GoHome(note_, outcome);
+}
+
+// From the console; at the machine itself it ends at the reference. OPT-4.50
+void Machine::GoHome(const RunNote& zeroed, const Outcome& outcome) {
+  const int home = family_.info().home_program;
+  if (outcome.kind != OutcomeKind::kCompleted || mode_ != Mode::kRemote || home == 0) return;
+  const Status begun = Act(StartRun{.program = home, .source = zeroed.source});
+  if (!begun) Show(begun.error().code);
 }
 
 MachineState Machine::state() const {
@@ -162,7 +171,8 @@ MachineState Machine::state() const {
   if (run_ == nullptr)
     return standing_->state().zeroed ? MachineState::kIdle : MachineState::kNotZeroed;
   if (run_->state().phase == RunPhase::kHalted) return MachineState::kHeld;
-  return stopping_ ? MachineState::kStopping : MachineState::kRunning;
+  if (stopping_) return MachineState::kStopping;
+  return note_.by_hand ? MachineState::kJogging : MachineState::kRunning;
 }
 
 MachineStatus Machine::status() const {
@@ -283,6 +293,10 @@ Status Machine::MayStart(const StartRun& input) const {
 
 Status Machine::Act(const StartRun& input) {
   if (const Status may = MayStart(input); !may) return may.error();
+  return Begin(input, mode_);
+}
+
+Status Machine::Begin(const StartRun& input, Mode mode) {
   RunSetup setup(parameters_);
   setup.programs = memory_.programs;
   if (input.brought) setup.programs[input.program] = *input.brought;
@@ -290,7 +304,7 @@ Status Machine::Act(const StartRun& input) {
   setup.main_program = input.program;
   setup.schedules = memory_.schedules;
   setup.machine_state = standing_->Save();
-  setup.mode = mode_;
+  setup.mode = mode;
   setup.override_percent = override_percent_;
   setup.simul = simulation_;
   setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
@@ -305,6 +319,33 @@ Status Machine::Act(const StartRun& input) {
   run_ = *std::move(run);
   run_->SetBreakpoints(breakpoints_);
   return {};
+}
+
+// LIVE-2.10 x7: in MANUAL, and from the console in REMOTE. OPT-4.49, 4.50
+Status Machine::Act(const ZeroAxes& /*input*/) {
+  const FamilyInfo& info = family_.info();
+  if (info.zero_program.empty())
+    return Error{ErrorCode::kCellNotLive,
+                 "the axes of " + Told("machine", info.title) + " have their reference always",
+                 {}};
+  StateGuards now = guards();
+  now.manual = mode_ == Mode::kManual || mode_ == Mode::kRemote;
+  const Transition next = Next(state(), MachineEvent::kMoveByHand, now);
+  if (next.code == ErrorCode::kCellMode)
+    return Error{ErrorCode::kCellMode, "ZERO works in MANUAL, and from the console in REMOTE", {}};
+  if (next.code) return Refusal(*next.code);
+  if (run_ != nullptr) return NotNow(state(), "a run is open; end it first");
+  Translation zero =
+      family_.Translate({.bytes = info.zero_program}, parameters_, {.advice = false});
+  RMLCELL_CHECK(zero.ok);
+  const int slot = info.home_program;
+  const Status begun =
+      Begin({.program = slot,
+             .unzeroed = true,
+             .brought = StoredProgram{.name = "ZERO", .object = Bytes::Of(std::move(zero.object))}},
+            Mode::kRemote);
+  if (begun) note_.by_hand = true;
+  return begun;
 }
 
 Status Machine::Act(const ResumeRun& input) {
@@ -331,6 +372,8 @@ void Machine::Hold() {
 void Machine::Halt(InputKind key) {
   if (run_ == nullptr || run_->state().phase == RunPhase::kHalted) return;
   resume_behind_ = false;
+  // What is moved by hand is over where it comes to rest.
+  abort_behind_ = abort_behind_ || note_.by_hand;
   ToRun(key);
   stopping_ = true;
 }
@@ -436,7 +479,10 @@ Status Machine::Act(const MoveDoor& input) {
   if (input.open) resume_behind_ = false;
   const bool goes_on = run_ != nullptr && before.phase == RunPhase::kRunning;
   ToRun(InputKind::kDoor, 0, input.open ? 1.0 : 0.0);
-  if (goes_on && run_->state().door_open) stopping_ = true;
+  if (goes_on && run_->state().door_open) {
+    stopping_ = true;
+    abort_behind_ = abort_behind_ || note_.by_hand;
+  }
   return {};
 }
 

@@ -114,6 +114,7 @@ class Machine {
 
   // One for each kind of MachineInput.
   Status Act(const StartRun& input);
+  Status Act(const ZeroAxes& input);
   Status Act(const ResumeRun& input);
   Status Act(const HoldRun& input);
   Status Act(const StopRun& input);
@@ -136,6 +137,8 @@ class Machine {
   StateGuards guards() const;
   Error Refusal(ErrorCode code) const;
   Status MayStart(const StartRun& input) const;
+  Status Begin(const StartRun& input, Mode mode);
+  void GoHome(const RunNote& zeroed, const Outcome& outcome);
   Status MaySource(StartSource source) const;
   void ToRun(InputKind kind, int index = 0, double value = 0.0);
   void Hold();

@@ -28,6 +28,8 @@ struct StartRun {
   // In the slot of the program, for this run alone; none: what is stored there.
   std::optional<StoredProgram> brought{};
 };
+// The axes find their reference; in REMOTE the machine then goes home. STOP and HOLD end it.
+struct ZeroAxes {};
 struct ResumeRun {
   StartSource source = StartSource::kConsole;
 };
@@ -83,9 +85,10 @@ struct SetSchedules {
 // OPT-4.06, 4.29
 struct ClearMessage {};
 
-using MachineInput = std::variant<StartRun, ResumeRun, HoldRun, StopRun, AbortRun, EmergencyStop,
-                                  Acknowledge, ChangeMode, ChangeOverride, ChangeInput, MoveDoor,
-                                  SwitchPower, WriteVariable, SetBreakpoints, SetSimulation,
-                                  StoreProgram, DeleteProgram, SetSchedules, ClearMessage>;
+using MachineInput =
+    std::variant<StartRun, ZeroAxes, ResumeRun, HoldRun, StopRun, AbortRun, EmergencyStop,
+                 Acknowledge, ChangeMode, ChangeOverride, ChangeInput, MoveDoor, SwitchPower,
+                 WriteVariable, SetBreakpoints, SetSimulation, StoreProgram, DeleteProgram,
+                 SetSchedules, ClearMessage>;
 
 }  // namespace rmlcell::machine

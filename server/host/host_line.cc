@@ -31,6 +31,33 @@ ErrorCode CodeOf(const grpc::Status& status) {
   }
 }
 
+// A server that hangs is as good as none.
+class CancelLate {
+ public:
+  explicit CancelLate(grpc::ClientContext& context)
+      : thread_([this, &context] {
+          std::unique_lock lock(mutex_);
+          if (!answered_.wait_for(lock, kConnectPatience, [this] { return over_; }))
+            context.TryCancel();
+        }) {}
+  ~CancelLate() {
+    {
+      const std::lock_guard lock(mutex_);
+      over_ = true;
+    }
+    answered_.notify_one();
+    thread_.join();
+  }
+  CancelLate(const CancelLate&) = delete;
+  CancelLate& operator=(const CancelLate&) = delete;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable answered_;
+  bool over_ = false;   // guarded by mutex_
+  std::thread thread_;  // the last member: it begins with the others made
+};
+
 }  // namespace
 
 struct HostLine::Stream {
@@ -64,7 +91,12 @@ Result<HostLine::Welcome> HostLine::Join(const std::string& server, const v1::Ho
   v1::HostRequest request;
   *request.mutable_hello() = hello;
   v1::HostResponse answer;
-  if (!stream.line->Write(request) || !stream.line->Read(&answer) || !answer.has_welcome()) {
+  bool welcomed = false;
+  {
+    const CancelLate late(stream.context);
+    welcomed = stream.line->Write(request) && stream.line->Read(&answer) && answer.has_welcome();
+  }
+  if (!welcomed) {
     stream.line->WritesDone();
     const grpc::Status status = stream.line->Finish();
     return Error{CodeOf(status), status.error_message(), {}};
@@ -83,9 +115,15 @@ HostLine::~HostLine() {
     ending_ = true;
   }
   to_send_.notify_all();
-  writer_.join();
-  stream_->line->WritesDone();
+  bool written = false;
   {
+    std::unique_lock lock(mutex_);
+    written = to_send_.wait_for(lock, kLastWords, [this] { return written_all_ || cut_; });
+  }
+  if (!written) stream_->context.TryCancel();
+  writer_.join();
+  if (written && !cut_) {
+    stream_->line->WritesDone();
     // What was sent last is lost where the line is cut before the server has taken it.
     std::unique_lock lock(mutex_);
     to_send_.wait_for(lock, kLastWords, [this] { return read_all_; });
@@ -93,6 +131,14 @@ HostLine::~HostLine() {
   stream_->context.TryCancel();
   reader_.join();
   static_cast<void>(stream_->line->Finish());
+}
+
+void HostLine::Cut() {
+  {
+    const std::lock_guard lock(mutex_);
+    cut_ = true;
+  }
+  stream_->context.TryCancel();
 }
 
 void HostLine::Send(v1::HostRequest message) {
@@ -121,27 +167,35 @@ void HostLine::Read() {
 }
 
 void HostLine::Write() {
+  using Clock = std::chrono::steady_clock;
   std::int64_t heartbeats = 0;
+  Clock::time_point next_heartbeat = Clock::now() + kHeartbeat;
   std::unique_lock lock(mutex_);
   for (;;) {
-    to_send_.wait_for(lock, kHeartbeat,
-                      [this] { return ending_ || !queue_.empty() || status_.has_value(); });
+    to_send_.wait_until(lock, next_heartbeat,
+                        [this] { return ending_ || !queue_.empty() || status_.has_value(); });
     // What was queued goes out also at the end.
-    if (ending_ && queue_.empty()) return;
+    if (ending_ && queue_.empty()) break;
     v1::HostRequest message;
-    if (!queue_.empty()) {
+    // Beside all that is told: the server answers it, and so shows that it is there.
+    if (Clock::now() >= next_heartbeat) {
+      next_heartbeat = Clock::now() + kHeartbeat;
+      message.mutable_heartbeat()->set_number(++heartbeats);
+    } else if (!queue_.empty()) {
       message = std::move(queue_.front());
       queue_.pop_front();
     } else if (status_) {
       *message.mutable_status() = *std::exchange(status_, std::nullopt);
     } else {
-      message.mutable_heartbeat()->set_number(++heartbeats);
+      continue;
     }
     lock.unlock();
     const bool sent = stream_->line->Write(message);
     lock.lock();
-    if (!sent) return;
+    if (!sent) break;
   }
+  written_all_ = true;
+  to_send_.notify_all();
 }
 
 }  // namespace rmlcell::server

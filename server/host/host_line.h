@@ -34,6 +34,9 @@ class HostLine {
 
   void Send(v1::HostRequest message);
   void SendStatus(v1::MachineStatus status);
+  // A server that is not heard any more: what was not sent is dropped, and the end waits for
+  // nothing.
+  void Cut();
 
  private:
   struct Stream;
@@ -51,6 +54,8 @@ class HostLine {
   std::optional<v1::MachineStatus> status_;  // guarded by mutex_
   bool read_all_ = false;                    // guarded by mutex_
   bool ending_ = false;                      // guarded by mutex_
+  bool written_all_ = false;                 // guarded by mutex_; nothing more is sent
+  bool cut_ = false;                         // guarded by mutex_
   std::thread reader_;
   std::thread writer_;
 };

@@ -150,7 +150,7 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, co
       Add(machine().time()).mutable_applied()->mutable_input()->set_factor(order.factor().factor());
       return answer;
     case v1::HostOrder::kConfirm:
-      if (const Status confirmed = Confirm(order.confirm()); !confirmed) return confirmed.error();
+      if (const Status confirmed = Confirm(order); !confirmed) return confirmed.error();
       return answer;
     case v1::HostOrder::kWriteVariables:
       return Write(order);
@@ -210,14 +210,20 @@ Result<v1::HostOrderAnswer> HostMachine::Write(const v1::HostOrder& order) {
   return answer;
 }
 
-Status HostMachine::Confirm(const v1::ConfirmMachineRequest& request) {
+Status HostMachine::Confirm(const v1::HostOrder& order) {
   if (!inspect_due_)
     return Error{ErrorCode::kCellMachineState, "nothing waits for a confirmation", {}};
-  const auto& given = request.confirmations();
+  const auto& given = order.confirm().confirmations();
   if (std::ranges::find(given, v1::CONFIRMATION_INSPECTED) == given.end())
     return Error{ErrorCode::kCellInspect, "confirm CONFIRMATION_INSPECTED", {}};
   inspect_due_ = false;
   mark_due_ = true;
+  // Who looked at it, and what he made of the run.
+  const std::string why = order.reason().empty() ? "" : ": " + bridge::Utf8(order.reason());
+  Add(machine().time())
+      .mutable_event()
+      ->mutable_message()
+      ->set_text("inspected by " + order.caller() + why);
   return {};
 }
 
@@ -226,10 +232,12 @@ Status HostMachine::MayApply(const machine::MachineInput& input) const {
   const bool starts = std::holds_alternative<machine::StartRun>(input);
   const bool resumes = std::holds_alternative<machine::ResumeRun>(input);
   const bool aborts = std::holds_alternative<machine::AbortRun>(input);
-  if (!starts && !resumes && !aborts) return {};
+  const bool by_hand = std::holds_alternative<machine::ZeroAxes>(input);
+  if (!starts && !resumes && !aborts && !by_hand) return {};
   const machine::Transition next = machine::Next(machine::MachineState::kInspect,
                                                  starts    ? machine::MachineEvent::kStart
                                                  : resumes ? machine::MachineEvent::kResume
+                                                 : by_hand ? machine::MachineEvent::kMoveByHand
                                                            : machine::MachineEvent::kAbort,
                                                  {});
   if (!next.code) return {};
@@ -257,7 +265,7 @@ Status HostMachine::Act(const v1::HostOrder& order) {
 Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrder* order) {
   const auto before = std::tuple(run_begun_, told_of_run_, held_for_);
   const bool starts = std::holds_alternative<machine::StartRun>(input);
-  if (starts) {
+  if (starts || std::holds_alternative<machine::ZeroAxes>(input)) {
     run_begun_ = machine().time();
     told_of_run_ = 0;
   }
@@ -399,6 +407,7 @@ void HostMachine::Notice() {
   const auto begun = [this](const machine::RunNote& run) {
     if (run.number <= run_told_) return;
     run_told_ = run.number;
+    run_begun_ = run.begun;  // also of one that the machine began itself
     v1::RunBegun& told = *Add(run.begun).mutable_run_begun();
     told.set_run(run.number);
     told.set_program(run.program);
@@ -494,7 +503,8 @@ void HostMachine::Mark() {
   }
   mark.set_state(machine().Save());
   mark.set_state_sha256(BytesOfHex(bridge::Sha256Hex(mark.state())).value_or(""));
-  mark.set_clean(!status.open && !inspect_due_);
+  // What is moved by hand is no run that could be cut off. LIVE-5.20
+  mark.set_clean((!status.open || status.open->by_hand) && !inspect_due_);
   mark_due_ = begins_ = false;
   marked_at_ = now_.steady;
 }

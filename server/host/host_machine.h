@@ -79,7 +79,7 @@ class HostMachine : private machine::RunObserver {
   std::optional<Error> WhyNoJob(const std::string& caller) const;
   Result<v1::HostOrderAnswer> Control(const v1::HostOrder& order, const HostTime& now);
   Result<v1::HostOrderAnswer> Write(const v1::HostOrder& order);
-  Status Confirm(const v1::ConfirmMachineRequest& request);
+  Status Confirm(const v1::HostOrder& order);
   Status Act(const v1::HostOrder& order);
   Status Apply(const machine::MachineInput& input, const v1::HostOrder* order);
   Status MayApply(const machine::MachineInput& input) const;

@@ -135,6 +135,10 @@ struct Applied {
     made.mutable_start()->set_source(ToProto(input.source));
     made.mutable_start()->set_unzeroed(input.unzeroed);
   }
+  void operator()(const machine::ZeroAxes&) const {
+    made.mutable_key()->set_key("ZERO");
+    made.mutable_key()->set_action(v1::KEY_ACTION_TAP);
+  }
   void operator()(const machine::ResumeRun& input) const {
     made.mutable_resume()->set_source(ToProto(input.source));
   }
@@ -355,6 +359,8 @@ Result<std::optional<MachineInput>> OfRun(const v1::HostOrder& order,
       return Input(machine::StartRun{.program = order.run_job().main_program(),
                                      .source = machine::StartSource::kQueue,
                                      .unzeroed = order.run_job().job().run().unzeroed()});
+    case v1::HostOrder::kZero:
+      return Input(machine::ZeroAxes{});
     case v1::HostOrder::kResume:
       return Input(machine::ResumeRun{});
     case v1::HostOrder::kStop:

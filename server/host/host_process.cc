@@ -37,9 +37,11 @@ using std::chrono::nanoseconds;
 constexpr int kProtocol = 1;
 constexpr nanoseconds kStatusMoving = 50ms;  // LIVE-3.16
 constexpr nanoseconds kStatusStanding = 1s;
-constexpr nanoseconds kTick = 5ms;       // of a machine that moves
-constexpr nanoseconds kTickHeld = 50ms;  // of a run that stands: its time goes on
-constexpr nanoseconds kServerLost = 1s;  // LIVE-3.31: then a run is held
+constexpr nanoseconds kTick = 5ms;         // of a machine that moves
+constexpr nanoseconds kTickHeld = 50ms;    // of a run that stands: its time goes on
+constexpr nanoseconds kServerLost = 1s;    // LIVE-3.31: then a run is held
+constexpr nanoseconds kServerSilent = 2s;  // it answers four times a second
+constexpr nanoseconds kRestBefore = 5s;    // LIVE-3.04: so long before its lease ends it rests
 constexpr nanoseconds kEndsWithoutServer = 60s;
 constexpr nanoseconds kRejoin = 200ms;
 constexpr nanoseconds kIntentPatience = 500ms;  // LIVE-3.21
@@ -114,10 +116,14 @@ class HostProcess {
       const std::lock_guard lock(mutex_);
       joined.swap(joined_);
     }
-    if (line_ != nullptr && LineGone()) {
-      spdlog::warn("the line to the server is gone");
+    const nanoseconds now = Now().steady;
+    const bool silent = line_ != nullptr && now - HeardAt() > kServerSilent;
+    if (line_ != nullptr && (silent || LineGone())) {
+      spdlog::warn(silent ? "the server is silent" : "the line to the server is gone");
+      if (silent) line_->Cut();
       line_.reset();
-      without_server_since_ = Now().steady;
+      // Of one that is silent it is not known whether it was stopped or is only late.
+      without_server_since_ = silent ? now - kServerLost : now;
       ForgetOrders();
     }
     if (joined) {
@@ -146,6 +152,11 @@ class HostProcess {
   bool LineGone() {
     const std::lock_guard lock(mutex_);
     return line_gone_;
+  }
+
+  nanoseconds HeardAt() {
+    const std::lock_guard lock(mutex_);
+    return heard_at_;
   }
 
   void Connect() {
@@ -180,6 +191,11 @@ class HostProcess {
     fence_ = message.fence();
     lease_ = nanoseconds(TimeUtil::DurationToNanoseconds(message.lease()));
     next_renewal_ = now + lease_ / 3;
+    renewed_at_ = renewal_sent_ = now;
+    {
+      const std::lock_guard lock(mutex_);
+      heard_at_ = now;
+    }
     line_ = std::move(welcome->line);
     if (machine_ == nullptr) {
       welcome_ = message;
@@ -191,6 +207,8 @@ class HostProcess {
 
   void Hear(v1::HostResponse message) {
     const std::lock_guard lock(mutex_);
+    heard_at_ = Now().steady;
+    if (message.has_heartbeat()) return;
     inbox_.push_back(std::move(message));
     wake_.notify_one();
   }
@@ -248,6 +266,9 @@ class HostProcess {
                unstored_.front().sequence() <= message.entries_stored().sequence())
           unstored_.pop_front();
         if (writer_ != nullptr) writer_->Stored(fence_, message.entries_stored().sequence());
+        break;
+      case v1::HostResponse::kRenewed:
+        renewed_at_ = renewal_sent_;
         break;
       case v1::HostResponse::kLeaseLost:
         spdlog::error("{} has the machine now", message.lease_lost().holder());
@@ -417,6 +438,9 @@ class HostProcess {
     behind_ = !machine_->GoOn(now);
     if (line_ == nullptr && machine_->moves() && now.steady - without_server_since_ > kServerLost)
       machine_->Hold(v1::HOLD_REASON_SERVER_LOST, now);
+    // Another one may take the machine when the lease ends: it rests before. LIVE-3.04
+    if (machine_->moves() && now.steady - renewed_at_ > lease_ - kRestBefore)
+      machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, now);
     LookAtDisk(now.steady);
     Write(now, false);
     const v1::MachineStatus status = machine_->StatusAt(now);
@@ -428,6 +452,7 @@ class HostProcess {
     }
     if (line_ != nullptr && now.steady >= next_renewal_) {
       next_renewal_ = now.steady + lease_ / 3;
+      renewal_sent_ = now.steady;
       v1::HostRequest renew;
       renew.mutable_renew()->set_fence(fence_);
       line_->Send(std::move(renew));
@@ -511,6 +536,7 @@ class HostProcess {
   std::optional<Result<HostLine::Welcome>> joined_;  // guarded by mutex_
   bool line_gone_ = false;                           // guarded by mutex_
   bool line_gone_seen_ = false;
+  nanoseconds heard_at_{0};  // guarded by mutex_
   std::thread connector_;
   std::unique_ptr<HostLine> line_;
   std::optional<v1::HostWelcome> welcome_;
@@ -529,6 +555,8 @@ class HostProcess {
   std::int64_t fence_ = 0;
   nanoseconds lease_{0};
   nanoseconds next_renewal_{0};
+  nanoseconds renewal_sent_{0};
+  nanoseconds renewed_at_{0};  // when that was sent which the server took last
   nanoseconds next_try_{0};
   nanoseconds status_due_{0};
   nanoseconds without_server_since_{0};

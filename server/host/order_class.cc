@@ -11,6 +11,7 @@ OrderClass ClassOf(const v1::HostOrder& order) {
       return OrderClass::kActsFirst;
     case v1::HostOrder::kStart:
     case v1::HostOrder::kRunJob:
+    case v1::HostOrder::kZero:
     case v1::HostOrder::kResume:
     case v1::HostOrder::kMode:
     case v1::HostOrder::kAcknowledgeAlarm:

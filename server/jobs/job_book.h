@@ -41,6 +41,14 @@ class JobBook {
     run_waits_ = std::move(waits);
   }
 
+  // A new job of the same program, as that was: of a RUN that was interrupted. Errors: those of
+  // Submit().
+  void Again(std::string_view name, const std::string& caller, const std::string& request_id,
+             std::function<void(Result<v1::Job>)> done);
+  // The id of the machine that this decision is about. Errors: CellInvalidArgument, CellNotFound,
+  // CellPrecondition: the job is not INTERRUPTED, CellUnimplemented.
+  Result<std::string> MachineToDecide(const v1::DecideInterruptedRequest& request);
+
   Result<v1::Job> Get(std::string_view name);
   // The same, serialised, and never waiting for the store. Null: Get() has to be asked, as of each
   // job that waits in the queue.

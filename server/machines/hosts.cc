@@ -102,15 +102,15 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   const Result<std::string> machine = ParseMachineName(hello.machine());
   if (!machine) return machine.error();
   const std::lock_guard joining(joining_);
-  const Result<storage::MachineLease> lease = Take(hello, *machine);
-  if (!lease) return lease.error();
+  const Result<Taken> taken = Take(hello, *machine);
+  if (!taken) return taken.error();
   if (const HostPointer before = Find(*machine)) Retire(before);
   auto host = std::make_shared<Host>();
   host->id = *machine;
   host->link = link;
-  host->lease = *lease;
+  host->lease = taken->lease;
   host->heard = needs_.clock();
-  if (const Status welcome = Welcome(host, hello); !welcome) return welcome.error();
+  if (const Status welcome = Welcome(host, hello, taken->from); !welcome) return welcome.error();
   std::shared_ptr<HostLink> before;
   {
     const std::lock_guard lock(mutex_);
@@ -121,20 +121,21 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   }
   if (before != nullptr && before != link) before->Close(NotLive("the host has another line"));
   SendMemory(host);
-  spdlog::info("{} has the host {}, fence {}", hello.machine(), hello.host(), lease->fence);
+  spdlog::info("{} has the host {}, fence {}", hello.machine(), hello.host(), host->lease.fence);
   Changed();
   return {};
 }
 
 // Of a holder that is gone: a process of this computer that is no more, or one that has not renewed
 // its lease for as long as it holds.
-Result<storage::MachineLease> Hosts::Take(const v1::HostHello& hello, const std::string& machine) {
+Result<Hosts::Taken> Hosts::Take(const v1::HostHello& hello, const std::string& machine) {
   storage::MachineClaim claim{
       .machine = machine, .host = hello.host(), .server = needs_.server, .duration = kLease};
   Result<storage::MachineLease> lease = needs_.store.TakeMachine(claim);
   if (lease || lease.error().code != ErrorCode::kCellMachineTaken) {
     seen_.erase(machine);
-    return lease;
+    if (!lease) return lease.error();
+    return Taken{.lease = *std::move(lease)};
   }
   const auto held = needs_.store.MachineLeases();
   if (!held) return held.error();
@@ -145,11 +146,12 @@ Result<storage::MachineLease> Hosts::Take(const v1::HostHello& hello, const std:
     if (seen.lease != other) seen = {.lease = other, .since = now};
     claim.seen = other;
     claim.by_hand = !other.pinned && IsGone(other.host);
-    if (!claim.by_hand && now - seen.since < other.duration + kObserved) return lease;
+    if (!claim.by_hand && now - seen.since < other.duration + kObserved) return lease.error();
   }
   lease = needs_.store.TakeMachine(claim);
-  if (lease) seen_.erase(machine);
-  return lease;
+  if (!lease) return lease.error();
+  seen_.erase(machine);
+  return Taken{.lease = *std::move(lease), .from = claim.seen};
 }
 
 // Its line is nobody's any more: who waits for an answer is told so, and what it was storing is
@@ -166,7 +168,8 @@ void Hosts::Retire(const HostPointer& host) {
   for (auto& [number, one] : pending) one.done(NotLive("its host is not heard of any more"));
 }
 
-Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello) {
+Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello,
+                      const std::optional<storage::MachineLease>& from) {
   const Result<storage::MachineRecord> machine = needs_.store.GetMachine(host->id);
   if (!machine) return machine.error();
   const auto mark = needs_.store.GetMachineMark(host->id);
@@ -175,7 +178,7 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello) {
   if (*mark && (*mark)->fence == host->lease.fence) host->stored = (*mark)->sequence;
   // A host that comes back knows better.
   if (hello.fence() != host->lease.fence) {
-    if (const Status told = TellRecovery(*host, *mark); !told) return told.error();
+    if (const Status told = TellRecovery(*host, from, *mark); !told) return told.error();
     host->fresh = true;
   }
   v1::HostResponse message;
@@ -199,11 +202,23 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello) {
   return {};
 }
 
-// From when to when status was shown that counts no more, and where the program was. LIVE-3.30
-Status Hosts::TellRecovery(const Host& host, const std::optional<storage::MachineMark>& mark) {
-  if (!mark || mark->clean) return {};
+// That a host is gone; from when to when status was shown that counts no more, and where the
+// program was. LIVE-3.30, 5.20
+Status Hosts::TellRecovery(const Host& host, const std::optional<storage::MachineLease>& from,
+                           const std::optional<storage::MachineMark>& mark) {
+  storage::MachineWrite write;
   v1::MachineMark note;
-  static_cast<void>(note.ParseFromString(mark->note));
+  if (mark) static_cast<void>(note.ParseFromString(mark->note));
+  if (from) {
+    v1::MachineEvent lost;
+    lost.mutable_host_lost()->set_host(from->host);
+    lost.mutable_host_lost()->set_fence(from->fence);
+    lost.set_fence(host.lease.fence);
+    lost.set_virtual_time_ns(note.virtual_time_ns());
+    write.events.push_back(ToRecord(lost));
+  }
+  if (!mark || mark->clean)
+    return write.events.empty() ? Status() : needs_.store.AppendMachine(host.lease, write);
   v1::MachineEvent event;
   v1::Recovered& recovered = *event.mutable_recovered();
   recovered.set_mark_virtual_time_ns(note.virtual_time_ns());
@@ -215,7 +230,6 @@ Status Hosts::TellRecovery(const Host& host, const std::optional<storage::Machin
   }
   event.set_fence(host.lease.fence);
   event.set_virtual_time_ns(note.virtual_time_ns());
-  storage::MachineWrite write;
   write.events.push_back(ToRecord(event));
   return needs_.store.AppendMachine(host.lease, write);
 }
@@ -243,10 +257,14 @@ void Hosts::Receive(const HostLink& link, v1::HostRequest message) {
     case v1::HostRequest::kHandBack:
       HandBack(host);
       break;
-    case v1::HostRequest::kHeartbeat:
+    case v1::HostRequest::kHeartbeat: {
+      v1::HostResponse answer;
+      answer.mutable_heartbeat()->set_number(message.heartbeat().number());
+      host->link->Send(std::move(answer));
       DropLate(host);
       StoreEntries(host);  // what the store did not take a moment ago
       break;
+    }
     default:
       break;
   }

@@ -33,7 +33,7 @@ class HostLink {
 // them.
 class Hosts {
  public:
-  static constexpr std::chrono::seconds kLease{15};
+  static constexpr std::chrono::seconds kLease{60};  // PG-5.08
   static constexpr std::chrono::seconds kAnswerPatience{10};
 
   struct Needs {
@@ -89,9 +89,15 @@ class Hosts {
 
   HostPointer Find(const HostLink& link) const;
   HostPointer Find(const std::string& machine) const;
-  Result<storage::MachineLease> Take(const v1::HostHello& hello, const std::string& machine);
-  Status Welcome(const HostPointer& host, const v1::HostHello& hello);
-  Status TellRecovery(const Host& host, const std::optional<storage::MachineMark>& mark);
+  struct Taken {
+    storage::MachineLease lease{};
+    std::optional<storage::MachineLease> from{};  // whose host is gone
+  };
+  Result<Taken> Take(const v1::HostHello& hello, const std::string& machine);
+  Status Welcome(const HostPointer& host, const v1::HostHello& hello,
+                 const std::optional<storage::MachineLease>& from);
+  Status TellRecovery(const Host& host, const std::optional<storage::MachineLease>& from,
+                      const std::optional<storage::MachineMark>& mark);
   void SendMemory(const HostPointer& host);
   void TakeStatus(const HostPointer& host, v1::MachineStatus status);
   void TakeAnswer(const HostPointer& host, v1::HostOrderAnswer answer);

@@ -47,6 +47,9 @@ class RunQueue {
   std::string MachineOf(const std::string& job) const { return needs_.hosts.MachineThatRuns(job); }
   // An order for the run of this job; refused where another run is open by then.
   void Ask(const std::string& job, v1::HostOrder order, Hosts::Answered done);
+  void AskMachine(const std::string& machine, v1::HostOrder order, Hosts::Answered done) {
+    needs_.hosts.Ask(machine, std::move(order), std::move(done));
+  }
   // The run is over as soon as it stands.
   void Abort(const std::string& job, const std::string& caller, const std::string& request_id);
 

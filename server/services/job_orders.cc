@@ -97,6 +97,54 @@ grpc::ServerUnaryReactor* JobService::OrderRun(grpc::CallbackServerContext* cont
   return reactor;
 }
 
+// The host has the last word on whether its machine waits for a decision. LIVE-5.10
+grpc::ServerUnaryReactor* JobService::DecideInterrupted(grpc::CallbackServerContext* context,
+                                                        const v1::DecideInterruptedRequest* request,
+                                                        v1::DecideInterruptedResponse* response) {
+  constexpr std::string_view kMethod = "JobService/DecideInterrupted";
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  const Result<Caller> caller = Admit(needs_.gate, *context, kMethod, request);
+  const Status size = caller ? CheckSize(needs_, *request) : Status();
+  if (!caller || !size) {
+    reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
+    return reactor;
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const auto end = [reactor, kMethod, begin, who = *caller](const grpc::Status& status) {
+    LogCall(kMethod, who, status, std::chrono::steady_clock::now() - begin);
+    reactor->Finish(status);
+  };
+  const auto confirmed = [this, request, response, end, who = *caller] {
+    if (request->decision() != v1::DecideInterruptedRequest::DECISION_RESTART)
+      return end(grpc::Status::OK);
+    book_.Again(request->name(), who.identity, request->request_id(),
+                [response, end](const Result<v1::Job>& job) {
+                  if (!job) return end(ToGrpcStatus(job.error()));
+                  response->set_job(job->name());
+                  end(grpc::Status::OK);
+                });
+  };
+  const auto decide = [this, request, end, confirmed, who = *caller] {
+    const Result<std::string> machine = book_.MachineToDecide(*request);
+    if (!machine) return end(ToGrpcStatus(machine.error()));
+    v1::HostOrder order;
+    order.set_caller(who.identity);
+    order.set_reason(request->reason());
+    v1::ConfirmMachineRequest& confirm = *order.mutable_confirm();
+    confirm.set_control_token(request->control_token());
+    confirm.set_request_id(request->request_id());
+    confirm.add_confirmations(v1::CONFIRMATION_INSPECTED);
+    runs_.AskMachine(*machine, std::move(order),
+                     [this, end, confirmed](const Result<v1::HostOrderAnswer>& answer) {
+                       if (!answer) return end(ToGrpcStatus(answer.error()));
+                       if (answer->has_refusal()) return end(RefusalOf(*answer));
+                       needs_.executor.Post(confirmed);
+                     });
+  };
+  if (!needs_.executor.TryPost(decide)) reactor->Finish(ToGrpcStatus(LaneFull()));
+  return reactor;
+}
+
 void JobService::TellCancel(const storage::JobRecord& job, const Caller& caller) {
   if (job.kind == storage::kRunKind && job.state == storage::JobState::kRunning)
     return runs_.Abort(JobName(job.id), caller.identity, {});

@@ -6,7 +6,6 @@
 #include "rmlcell/v1/job.grpc.pb.h"
 #include "rmlcell/v1/worker.pb.h"
 #include "server/services/job_streams.h"
-#include "server/services/later.h"
 #include "server/services/submit_stream.h"
 #include "storage/store.h"
 
@@ -67,6 +66,9 @@ class JobService final
   grpc::ServerUnaryReactor* SetJobOverride(grpc::CallbackServerContext* context,
                                            const v1::SetJobOverrideRequest* request,
                                            v1::Job* response) override;
+  grpc::ServerUnaryReactor* DecideInterrupted(grpc::CallbackServerContext* context,
+                                              const v1::DecideInterruptedRequest* request,
+                                              v1::DecideInterruptedResponse* response) override;
   grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(
       grpc::CallbackServerContext* context, const v1::WatchJobRequest* request) override;
   grpc::ServerUnaryReactor* GetJobReport(grpc::CallbackServerContext* context,
@@ -108,8 +110,6 @@ class JobService final
   grpc::ServerUnaryReactor* GetStepMap(grpc::CallbackServerContext* context,
                                        const v1::GetStepMapRequest* request,
                                        v1::GetStepMapResponse* response) override;
-
-  RMLCELL_LATER("JobService", DecideInterrupted, v1::DecideInterruptedResponse)
 
  private:
   template <class Response>

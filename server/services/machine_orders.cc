@@ -83,6 +83,14 @@ grpc::ServerUnaryReactor* MachineService::StartMachine(grpc::CallbackServerConte
       [](v1::HostOrder& order, const auto& asked) { *order.mutable_start() = asked; });
 }
 
+grpc::ServerUnaryReactor* MachineService::ZeroMachine(grpc::CallbackServerContext* context,
+                                                      const v1::ZeroMachineRequest* request,
+                                                      v1::MachineStatus* response) {
+  return OrderStatus(
+      context, request, response, "MachineService/ZeroMachine",
+      [](v1::HostOrder& order, const auto& asked) { *order.mutable_zero() = asked; });
+}
+
 grpc::ServerUnaryReactor* MachineService::ResumeMachine(grpc::CallbackServerContext* context,
                                                         const v1::ResumeMachineRequest* request,
                                                         v1::MachineStatus* response) {

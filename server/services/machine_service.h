@@ -73,6 +73,9 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerUnaryReactor* StartMachine(grpc::CallbackServerContext* context,
                                          const v1::StartMachineRequest* request,
                                          v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* ZeroMachine(grpc::CallbackServerContext* context,
+                                        const v1::ZeroMachineRequest* request,
+                                        v1::MachineStatus* response) override;
   grpc::ServerUnaryReactor* ResumeMachine(grpc::CallbackServerContext* context,
                                           const v1::ResumeMachineRequest* request,
                                           v1::MachineStatus* response) override;
@@ -129,7 +132,6 @@ class MachineService final : public v1::MachineService::CallbackService {
                                            v1::MachineStatus* response) override;
 
   RMLCELL_LATER("MachineService", TakeMachine, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", ZeroMachine, v1::MachineStatus)
   RMLCELL_LATER("MachineService", SetGates, v1::MachineStatus)
   RMLCELL_LATER("MachineService", PressPanelKey, v1::MachineStatus)
   RMLCELL_LATER("MachineService", HeartbeatPanel, v1::HeartbeatResponse)

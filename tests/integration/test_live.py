@@ -112,7 +112,8 @@ class LiveTest(LiveTestCase):
         # 5 mm/s down at most, and a second from one mark to the next.
         self.assertLess(abs(after.tip.z - before.tip.z), 5.5)
         self.assertEqual(self.live.status().tip, after.tip)
-        self.assertIn("recovered", eventually(lambda: self.told_to("recovered")))
+        told = eventually(lambda: self.told_to("recovered"))
+        self.assertLess(told.index("host_lost"), told.index("recovered"))
         self.live.acquire()
         self.refused("CELL-E9409", "StartMachine", program=5)
         self.refused("CELL-E9409", "ConfirmMachine")
@@ -138,6 +139,23 @@ class LiveTest(LiveTestCase):
         stands = self.live.status().tip
         self.live.ask("ResumeMachine")
         eventually(lambda: self.live.status().tip != stands)
+
+    # A server that hangs is as good as none: a machine that nobody can reach does not go on.
+    def test_a_server_that_hangs_holds_the_run(self):
+        self.live.enable()
+        self.live.store()
+        self.live.acquire(ttl={"seconds": 60})
+        self.live.ask("StartMachine", program=5)
+        eventually(lambda: self.live.status().tip.z < -0.3)
+        before = self.live.status()
+        self.cell.process.send_signal(signal.SIGSTOP)
+        time.sleep(5)  # no verdict: it must have had the time to come to rest
+        self.cell.process.send_signal(signal.SIGCONT)
+        held = self.live.wait("HELD")
+        self.assertEqual(HoldReason.Name(held.hold_reason), "HOLD_REASON_SERVER_LOST")
+        self.assertEqual((held.fence, held.host), (before.fence, before.host))
+        self.live.ask("ResumeMachine")
+        eventually(lambda: self.live.status().tip != held.tip)
 
     # LIVE-10.04: kill -9 of the host, at random moments of a run: no input that was answered is missing in the log
     # or there twice, the machine stands where its last mark says, and each run that began has one end.
@@ -226,6 +244,22 @@ class LiveTest(LiveTestCase):
         state = live.ask("SetBreakpoints", breakpoints=[{"step": {"program": 5, "step": 2}}])
         self.assertEqual(state.breakpoints[0].step.step, 2)
         self.assertEqual(live.ask("GetRunState").breakpoints[0].step.program, 5)
+
+    # OPT-4.50, over gRPC: a machine that lost its reference finds it and goes home.
+    def test_an_optimo_is_zeroed(self):
+        self.live = live = Live(self, self.cell, "machines/optimo-1")
+        live.enable()
+        live.acquire(ttl={"seconds": 60})
+        live.store(4, "COORD ABSOL\nMOVE (100.,200.,-30.,0.,0.)\n", "a.S")
+        live.ask("SetFactor", factor=100.0)
+        live.ask("SetInputs", inputs=[{"power": False}])
+        live.ask("SetInputs", inputs=[{"power": True}])
+        self.assertEqual(MachineState.Name(live.status().state), "MACHINE_STATE_NOT_ZEROED")
+        self.refused("OPT-E7310", "StartMachine", program=4)
+        self.assertEqual(MachineState.Name(live.ask("ZeroMachine").state), "MACHINE_STATE_JOGGING")
+        at_home = live.wait("IDLE")
+        self.assertTrue(at_home.zeroed)
+        self.assertEqual([round(axis.value, 3) for axis in at_home.axes][:2], [100.0, 200.0])
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ import signal
 import time
 import unittest
 
-from cell import cell_pb2, eventually, grpc, job_pb2
+from cell import cell_pb2, detail_of, eventually, grpc, job_pb2
 from live import MILL, SQUARE, Live, LiveTestCase, new_id
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
 from rmlcell.v1.machine_status_pb2 import HoldReason  # noqa: E402
@@ -149,6 +149,49 @@ class RunsTest(LiveTestCase):
         self.assertEqual(self.state(second), "QUEUED")
         self.confirm()
         self.becomes(second, "SUCCEEDED")
+
+    # LIVE-5.10: each decision by hand; the job that was cut off never changes.
+    def test_what_becomes_of_a_run_that_was_cut_off(self):
+        self.enable()
+        name = self.submit(SQUARE, title="a square", labels=["order-7"])
+        eventually(lambda: self.live.status().run.job == name)
+
+        def decide(decision, job=name, reason="looked at", request_id=None):
+            return self.cell.jobs().DecideInterrupted(job_pb2.DecideInterruptedRequest(
+                name=job, control_token=self.live.token, request_id=request_id or new_id(),
+                decision=decision, reason=reason)).job
+
+        def refused(code, *args, **fields):
+            with self.assertRaises(grpc.RpcError) as caught:
+                decide(*args, **fields)
+            self.assertEqual(detail_of(caught.exception).code, code)
+
+        refused("CELL-E9015", "DECISION_ABANDON")  # it runs
+        os.kill(self.live.host(), signal.SIGKILL)
+        self.becomes(name, "INTERRUPTED")
+        self.live.wait("INSPECT")
+        last = self.job(name)
+        refused("CELL-E9420", "DECISION_ABANDON")
+        self.live.acquire(ttl={"seconds": 60})
+        refused("CELL-E9003", "DECISION_ABANDON", reason="")
+        refused("CELL-E9003", "DECISION_UNSPECIFIED")
+        refused("CELL-E9014", "DECISION_RESUME_AT_STEP")
+        request_id = new_id()
+        again = decide("DECISION_RESTART", request_id=request_id)
+        self.live.ask("ReleaseControl")
+        made = self.job(again)
+        self.assertEqual((made.kind, made.title, list(made.labels)), (job_pb2.JOB_KIND_RUN, "a square", ["order-7"]))
+        eventually(lambda: self.live.status().run.job == again)
+        self.assertEqual(self.job(name), last)
+        os.kill(self.live.host(), signal.SIGKILL)
+        self.becomes(again, "INTERRUPTED")
+        self.live.wait("INSPECT")
+        self.live.acquire()
+        self.assertEqual(decide("DECISION_ABANDON", again), "")
+        self.live.ask("ReleaseControl")
+        self.live.wait("IDLE")
+        self.assertEqual(self.state(again), "INTERRUPTED")
+        refused("CELL-E9420", "DECISION_ABANDON", again)
 
     # LIVE-3.31, server killed: the job stays RUNNING and held, and goes on when a person resumes it.
     def test_a_server_that_is_killed_holds_its_job(self):

@@ -14,6 +14,8 @@ constexpr std::string_view kZeroGroups[] = {"ZERO_Z", "ZERO_AB", "ZERO_XY"};
 // Of which only one is on at a time. -1: the output is no gas.
 int OtherGas(int index) { return index == kGas2 ? kGas3 : index == kGas3 ? kGas2 : -1; }
 
+constexpr int kLastZeroGroup = 2;  // X and Y: Moves::ZeroAxes
+
 }  // namespace
 
 void Actuators::Carry(const PassageEffect& effect) {
@@ -44,6 +46,7 @@ void Actuators::Take(const PassageEffect& effect) {
       s_.outputs.table_deg = effect.value;
       return telling_.Signal(machine::Signal::kRotaryTable, 0, effect.value);
     case PassageEffect::Kind::kZeroed:
+      if (effect.index == kLastZeroGroup) s_.zeroed = true;
       return TellZeroed(effect.index);
   }
 }

@@ -28,6 +28,7 @@ struct ActuatorState {
   Beam beam;
   Outputs outputs{};
   int gas_refused = 0;  // OL of the assist gas that was switched on last and is refused, OPT-5.40
+  bool zeroed = true;   // every group of axes has stood at its mechanical zero, OPT-4.48
 };
 
 // What the control switches: beam and shutter (beam.h has what leads from one to the next), assist

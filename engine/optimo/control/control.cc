@@ -400,7 +400,7 @@ machine::RunState Control::Snapshot() const {
   state.tip_speed_mm_s = ride_.tip_speed_mm_s();
   state.override_percent = s_.ride.override_percent;
   state.beam_on = actuators_.beam_on();
-  state.zeroed = s_.moves.zeroed;
+  state.zeroed = s_.actuators.zeroed;
   state.door_open = actuators_.door_open();
   if (now().phase == RunPhase::kHalted) state.halted_by = s_.halts.halted_by;
   return state;

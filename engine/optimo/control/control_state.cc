@@ -13,7 +13,7 @@ ControlState::ControlState(const OptimoParameters& parameters, const MachineStat
   data.area = kept.data;
   halts.breakpoint = kept.breakpoint;
   moves.work_offset = kept.work_offset;
-  moves.zeroed = kept.zeroed;
+  moves.zeroed = actuators.zeroed = kept.zeroed;
 }
 
 MachineState ControlState::Kept() const {
@@ -22,7 +22,7 @@ MachineState ControlState::Kept() const {
           .axes = ride.axes,
           .tool = situation.tool,
           .work_offset = moves.work_offset,
-          .zeroed = moves.zeroed,
+          .zeroed = actuators.zeroed,
           .door_open = actuators.beam.door_open(),
           .selected = counter.selected,
           .breakpoint = halts.breakpoint,

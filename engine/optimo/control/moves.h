@@ -17,7 +17,8 @@ namespace rmlcell::optimo {
 
 struct MoveState {
   WorkOffsetState work_offset{};  // SYSDEF
-  bool zeroed = true;             // the axes know where they are: ZERO. OPT-B.02
+  // The axes know where they are, or will when what was planned is done: ZERO. OPT-B.02
+  bool zeroed = true;
   bool speed_limited_told = false;
 };
 

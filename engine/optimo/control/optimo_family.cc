@@ -42,6 +42,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .override_min_percent = 10.0,  // OPT-4.34
                                        .override_max_percent = 145.0,
                                        .has_repeat = true,
+                                       .zero_program = "ZERO\n",
+                                       .home_program = 4,  // OPT-4.50
                                        .has_dry_run = true,
                                        .has_breakpoints = true,
                                        .no_slot = ErrorCode::kProgramNumber,

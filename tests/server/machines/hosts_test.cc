@@ -116,7 +116,7 @@ TEST_F(HostsTest, AnotherHostWaitsUntilTheFirstIsGone) {
   const auto first = Joined();
   const std::int64_t fence = Fence(*first);
   EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
-  clock.Advance(std::chrono::seconds(19));
+  clock.Advance(Hosts::kLease + std::chrono::seconds(4));
   EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
   v1::HostRequest renew;
   renew.mutable_renew()->set_fence(fence);
@@ -124,7 +124,7 @@ TEST_F(HostsTest, AnotherHostWaitsUntilTheFirstIsGone) {
   first->Newest(v1::HostResponse::kRenewed);
   clock.Advance(std::chrono::seconds(2));
   EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);  // seen anew
-  clock.Advance(std::chrono::seconds(20));
+  clock.Advance(Hosts::kLease + std::chrono::seconds(5));
   const auto second = Joined(Hello("other/2"));
   EXPECT_GT(Fence(*second), fence);
   EXPECT_TRUE(first->closed());
@@ -225,7 +225,9 @@ TEST_F(HostsTest, WhatAHostTellsIsStored) {
   hosts.Leave(*back);
   clock.Advance(std::chrono::seconds(1));
   EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
-  clock.Advance(std::chrono::seconds(20));
+  clock.Advance(Hosts::kLease + std::chrono::seconds(4));
+  EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
+  clock.Advance(std::chrono::seconds(1));
   const auto next = Joined(Hello("other/2"));
   const auto welcome = next->Newest(v1::HostResponse::kWelcome)->welcome();
   EXPECT_EQ(welcome.mark().state(), "where it stands");
@@ -234,6 +236,20 @@ TEST_F(HostsTest, WhatAHostTellsIsStored) {
   ASSERT_TRUE(Told().back().has_recovered());
   EXPECT_EQ(Told().back().recovered().mark_virtual_time_ns(), 77);
   EXPECT_EQ(Told().back().recovered().mark_fence(), fence);
+  // LIVE-5.20: first that its host is gone.
+  const auto told = Told();
+  ASSERT_TRUE(told.at(told.size() - 2).has_host_lost());
+  EXPECT_EQ(told.at(told.size() - 2).host_lost().host(), "elsewhere/1");
+  EXPECT_EQ(told.at(told.size() - 2).host_lost().fence(), fence);
+}
+
+// LIVE-3.06: each side knows that the other one is there.
+TEST_F(HostsTest, AHeartbeatIsAnswered) {
+  const auto link = Joined();
+  v1::HostRequest beat;
+  beat.mutable_heartbeat()->set_number(7);
+  hosts.Receive(*link, beat);
+  EXPECT_EQ(link->Newest(v1::HostResponse::kHeartbeat)->heartbeat().number(), 7);
 }
 
 // LIVE-3.05: a host whose lease was given away is told so, and nothing of it is stored.
