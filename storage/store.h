@@ -85,6 +85,7 @@ struct LossPolicy {
   bool counts = true;
   // A RUN whose machine has certainly not moved for it: given back, it waits again as any other.
   bool not_begun = false;
+  bool held = false;  // of such a one: a person lets it go
 };
 inline constexpr int kUncountedAttemptsMax = 8;  // those that were handed back among them
 

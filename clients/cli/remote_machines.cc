@@ -2,8 +2,10 @@
 #include "clients/cli/remote_machines.h"
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "clients/cli/messages.h"
@@ -84,6 +86,18 @@ int Show(const Remote& remote, const v1::MachineStatus& status) {
   return kGood;
 }
 
+// When the control that was taken for it has been given back.
+int ShowOwn(const Remote& remote, v1::MachineStatus status) {
+  status.clear_control();
+  auto& blockers = *status.mutable_start_blockers();
+  const std::string held = ConstantName(ErrorCode::kCellLeaseHeld);
+  blockers.erase(
+      std::remove_if(blockers.begin(), blockers.end(),
+                     [&held](const v1::StartBlocker& blocker) { return blocker.symbol() == held; }),
+      blockers.end());
+  return Show(remote, status);
+}
+
 // A call with one answer; the stub is made for it.
 template <class Request, class Response>
 grpc::Status Call(const Remote& remote,
@@ -142,13 +156,14 @@ template <class Request, class Response>
 int WithControl(const Remote& remote, const MachineAct& act,
                 grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
                                                       Response*),
-                Request request, const std::function<int(const Response&)>& show) {
+                Request request,
+                const std::function<int(const Response&, const std::string& token)>& show) {
   const Control control(remote, act);
   if (!control.status().ok()) return Refused(control.status(), remote);
   request.set_control_token(control.token());
   Response response;
   const grpc::Status status = Call(remote, method, request, response);
-  return status.ok() ? show(response) : Refused(status, remote);
+  return status.ok() ? show(response, control.token()) : Refused(status, remote);
 }
 
 template <class Request>
@@ -157,17 +172,9 @@ int ShowWithControl(const Remote& remote, const MachineAct& act,
                                                           v1::MachineStatus*),
                     Request request) {
   return WithControl<Request, v1::MachineStatus>(
-      remote, act, method, std::move(request), [&remote](const v1::MachineStatus& status) {
-        v1::MachineStatus later = status;  // when control has been given back
-        later.clear_control();
-        auto& blockers = *later.mutable_start_blockers();
-        blockers.erase(std::remove_if(blockers.begin(), blockers.end(),
-                                      [](const v1::StartBlocker& blocker) {
-                                        return blocker.symbol() ==
-                                               ConstantName(ErrorCode::kCellLeaseHeld);
-                                      }),
-                       blockers.end());
-        return Show(remote, later);
+      remote, act, method, std::move(request),
+      [&remote](const v1::MachineStatus& status, const std::string&) {
+        return ShowOwn(remote, status);
       });
 }
 
@@ -318,9 +325,28 @@ int StartMachine(const Remote& remote, const MachineAct& act) {
   return ShowWithControl(remote, act, &Service::Stub::StartMachine, std::move(request));
 }
 
+// It stops where control is given back: control is kept until it is over.
 int ZeroMachine(const Remote& remote, const MachineAct& act) {
-  return ShowWithControl(remote, act, &Service::Stub::ZeroMachine,
-                         For<v1::ZeroMachineRequest>(act));
+  return WithControl<v1::ZeroMachineRequest, v1::MachineStatus>(
+      remote, act, &Service::Stub::ZeroMachine, For<v1::ZeroMachineRequest>(act),
+      [&](const v1::MachineStatus& begun, const std::string& token) {
+        v1::GetMachineRequest asked;
+        asked.set_name(FullName("machines", act.machine));
+        v1::RenewControlRequest renew;
+        renew.set_machine(asked.name());
+        renew.set_control_token(token);
+        v1::MachineStatus status = begun;
+        while (status.state() == v1::MACHINE_STATE_JOGGING) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(500));
+          v1::Machine machine;
+          v1::RenewControlResponse kept;
+          grpc::Status seen = Call(remote, &Service::Stub::RenewControl, renew, kept);
+          if (seen.ok()) seen = Call(remote, &Service::Stub::GetMachine, asked, machine);
+          if (!seen.ok()) return Refused(seen, remote);
+          status = machine.status();
+        }
+        return ShowOwn(remote, status);
+      });
 }
 
 int ResumeMachine(const Remote& remote, const MachineAct& act) {
@@ -397,7 +423,7 @@ int WriteVariables(const Remote& remote, const MachineAct& act) {
   }
   return WithControl<v1::WriteVariablesRequest, v1::WriteVariablesResponse>(
       remote, act, &Service::Stub::WriteVariables, std::move(request),
-      [&remote](const v1::WriteVariablesResponse& written) {
+      [&remote](const v1::WriteVariablesResponse& written, const std::string&) {
         return ShowVariables(remote, written.variables());
       });
 }

@@ -154,14 +154,13 @@ void Machine::CloseRun() {
   run_.reset();
   stopping_ = resume_behind_ = abort_behind_ = false;
   changed_.clear();
-  if (note_.by_hand) GoHome(note_, outcome);
+  if (note_.by_hand) GoHome(outcome);
 }
 
 // From the console; at the machine itself it ends at the reference. OPT-4.50
-void Machine::GoHome(const RunNote& zeroed, const Outcome& outcome) {
-  const int home = family_.info().home_program;
-  if (outcome.kind != OutcomeKind::kCompleted || mode_ != Mode::kRemote || home == 0) return;
-  const Status begun = Act(StartRun{.program = home, .source = zeroed.source});
+void Machine::GoHome(const Outcome& outcome) {
+  if (!std::exchange(goes_home_, false) || outcome.kind != OutcomeKind::kCompleted) return;
+  const Status begun = Act(StartRun{.program = family_.info().home_program});
   if (!begun) Show(begun.error().code);
 }
 
@@ -296,7 +295,7 @@ Status Machine::Act(const StartRun& input) {
   return Begin(input, mode_);
 }
 
-Status Machine::Begin(const StartRun& input, Mode mode) {
+Status Machine::Begin(const StartRun& input, Mode mode, bool by_hand) {
   RunSetup setup(parameters_);
   setup.programs = memory_.programs;
   if (input.brought) setup.programs[input.program] = *input.brought;
@@ -306,18 +305,19 @@ Status Machine::Begin(const StartRun& input, Mode mode) {
   setup.machine_state = standing_->Save();
   setup.mode = mode;
   setup.override_percent = override_percent_;
-  setup.simul = simulation_;
+  if (!by_hand) setup.simul = simulation_;
   setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
   Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
   if (!run) return run.error();
-  simulation_.reset();
+  if (!by_hand) simulation_.reset();
   changed_.clear();
   if (input.brought) changed_.insert(input.program);  // what is made of it is not of the memory
   note_ = {
       .number = note_.number + 1, .program = input.program, .source = input.source, .begun = now_};
   shown_ = {.program = input.program};
   run_ = *std::move(run);
-  run_->SetBreakpoints(breakpoints_);
+  if (!by_hand) run_->SetBreakpoints(breakpoints_);
+  note_.by_hand = by_hand;
   return {};
 }
 
@@ -338,13 +338,12 @@ Status Machine::Act(const ZeroAxes& /*input*/) {
   Translation zero =
       family_.Translate({.bytes = info.zero_program}, parameters_, {.advice = false});
   RMLCELL_CHECK(zero.ok);
-  const int slot = info.home_program;
   const Status begun =
-      Begin({.program = slot,
+      Begin({.program = info.home_program,
              .unzeroed = true,
              .brought = StoredProgram{.name = "ZERO", .object = Bytes::Of(std::move(zero.object))}},
-            Mode::kRemote);
-  if (begun) note_.by_hand = true;
+            Mode::kRemote, true);
+  goes_home_ = begun && mode_ == Mode::kRemote;
   return begun;
 }
 
@@ -431,7 +430,10 @@ Status Machine::Act(const ChangeMode& input) {
     return Error{
         ErrorCode::kCellMode, Told("machine", family_.info().title) + " has no mode REPEAT", {}};
   }
-  if (input.mode == Mode::kManual) {
+  if (run_ != nullptr && note_.by_hand) return NotNow(state(), "it moves by hand; stop it first");
+  // A job of the queue goes on in REMOTE alone. LIVE-2.11
+  const bool leaves_queue = note_.source == StartSource::kQueue && input.mode != Mode::kRemote;
+  if (input.mode == Mode::kManual || (run_ != nullptr && leaves_queue)) {
     Hold();
   } else if (run_ != nullptr) {
     run_->SetMode(input.mode);

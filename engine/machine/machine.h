@@ -137,8 +137,8 @@ class Machine {
   StateGuards guards() const;
   Error Refusal(ErrorCode code) const;
   Status MayStart(const StartRun& input) const;
-  Status Begin(const StartRun& input, Mode mode);
-  void GoHome(const RunNote& zeroed, const Outcome& outcome);
+  Status Begin(const StartRun& input, Mode mode, bool by_hand = false);
+  void GoHome(const Outcome& outcome);
   Status MaySource(StartSource source) const;
   void ToRun(InputKind kind, int index = 0, double value = 0.0);
   void Hold();
@@ -171,6 +171,7 @@ class Machine {
   bool stopping_ = false;       // a HOLD or STOP of this run has not halted it yet
   bool resume_behind_ = false;  // it was taken back meanwhile: START follows the halt
   bool abort_behind_ = false;   // the run is over once it stands
+  bool goes_home_ = false;      // behind ZERO
   std::set<int> changed_;       // slots whose programs were changed while a run is open
   std::vector<RunOver> over_;
   std::vector<MadeExecutable> made_;

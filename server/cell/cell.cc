@@ -51,6 +51,8 @@ namespace rmlcell::server {
 namespace {
 
 // Threads for work that may block: the store mostly, so there are more of them than cores.
+// RUN jobs whose time has come, or that another server took.
+constexpr std::chrono::seconds kRunsLookedForAfter{1};
 constexpr int kStoreThreads = 8;
 // For watches, which mostly tell what is in memory: however many there are, calls go on beside
 // them.
@@ -222,8 +224,11 @@ Status Cell::Parts::Listen(const std::string& join_token) {
       .log_format = config.log_format,
       .is_heard = [this](const std::string& machine) { return hosts->IsHeard(machine); },
       .look =
-          [this] {
+          [this, next = std::chrono::steady_clock::time_point()]() mutable {
             hosts->Look();
+            const auto now = std::chrono::steady_clock::now();
+            if (now < next) return;
+            next = now + kRunsLookedForAfter;
             runs->WakeAll();
           }});
   statuses = std::make_unique<MachineStatuses>(*store, *feed, *executor, hosts.get());

@@ -61,7 +61,8 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
     entry.set_fence(made.fence);  // known by the number that it has now
   }
   made.untold.clear();
-  if (made.open_run) host->TellCutOff(*made.open_run);
+  host->inspect_job_ = made.inspect_job;
+  if (made.open_run) host->TellCutOff(*made.open_run, ErrorCode::kCellHostDied);
   return host;
 }
 
@@ -121,8 +122,7 @@ Status HostMachine::CheckControl(const v1::HostOrder& order, const HostTime& now
 // Without a result: the status of the machine is the answer.
 Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, const HostTime& now) {
   v1::HostOrderAnswer answer;
-  if (!order.for_job().empty() && order.for_job() != job_)
-    return Error{ErrorCode::kCellMachineState, order.for_job() + " does not run", {}};
+  if (const Status its_own = CheckJob(order); !its_own) return its_own.error();
   switch (order.request_case()) {
     case v1::HostOrder::kAcquireControl:
     case v1::HostOrder::kRenewControl:
@@ -181,6 +181,8 @@ Result<v1::HostOrderAnswer> HostMachine::Control(const v1::HostOrder& order, con
   } else if (const Status released = desk_.Release(order.release_control().control_token(), now);
              !released) {
     return released.error();
+  } else if (machine().state() == machine::MachineState::kJogging) {
+    Hold(v1::HOLD_REASON_CONTROL, now);  // LIVE-4.02
   }
   TellControl();
   return answer;
@@ -217,6 +219,7 @@ Status HostMachine::Confirm(const v1::HostOrder& order) {
   if (std::ranges::find(given, v1::CONFIRMATION_INSPECTED) == given.end())
     return Error{ErrorCode::kCellInspect, "confirm CONFIRMATION_INSPECTED", {}};
   inspect_due_ = false;
+  inspect_job_.clear();
   mark_due_ = true;
   // Who looked at it, and what he made of the run.
   const std::string why = order.reason().empty() ? "" : ": " + bridge::Utf8(order.reason());
@@ -273,6 +276,9 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   if (moves()) {
     if (std::holds_alternative<machine::StopRun>(input)) held_for_ = v1::HOLD_REASON_STOP;
     if (std::holds_alternative<machine::HoldRun>(input)) held_for_ = v1::HOLD_REASON_HOLD;
+    const auto* mode = std::get_if<machine::ChangeMode>(&input);
+    const bool leaves = mode != nullptr && mode->mode != machine::Mode::kRemote && !job_.empty();
+    if (leaves) held_for_ = v1::HOLD_REASON_MODE;
   }
   const std::size_t place = entries_.size();
   v1::InputApplied& applied = *Add(machine().time()).mutable_applied();
@@ -331,7 +337,8 @@ bool HostMachine::GoOn(const HostTime& now) {
 
 void HostMachine::Hold(v1::HoldReason reason, const HostTime& now) {
   now_ = now;
-  if (machine().state() != machine::MachineState::kRunning) return;
+  const machine::MachineState state = machine().state();
+  if (state != machine::MachineState::kRunning && state != machine::MachineState::kJogging) return;
   if (Apply(machine::StopRun{}, nullptr)) held_for_ = reason;
   Notice();
 }
@@ -375,22 +382,6 @@ void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
   if (set.schedules != machine().memory().schedules) apply(set);
 }
 
-// Whoever watched it begin is told how it ended. LIVE-5.08
-void HostMachine::TellCutOff(const v1::MachineMark& mark) {
-  v1::RunOver& told = *Add(SimTime(mark.virtual_time_ns())).mutable_run_over();
-  told.set_run(machine().status().last_run);
-  told.set_program(machine().status().shown.program);
-  v1::Outcome& outcome = *told.mutable_outcome();
-  outcome = bridge::ToProto(
-      machine::Outcome{.kind = machine::OutcomeKind::kStopped, .code = ErrorCode::kCellHostDied});
-  outcome.set_kind(v1::Outcome::KIND_INTERRUPTED);
-  *outcome.mutable_place() = mark.place();
-  outcome.set_cycle_time_ns(mark.run_time_ns());
-  told.set_job(mark.job());
-  entries_.back().set_job(mark.job());
-  entries_.back().set_run_time_ns(mark.run_time_ns());
-}
-
 void HostMachine::Begin(const v1::HostMemory& memory, const HostTime& now) {
   const std::size_t told = entries_.size();
   const std::int64_t sequence = sequence_;
@@ -408,6 +399,7 @@ void HostMachine::Notice() {
     if (run.number <= run_told_) return;
     run_told_ = run.number;
     run_begun_ = run.begun;  // also of one that the machine began itself
+    begins_ = begins_ || !run.by_hand;
     v1::RunBegun& told = *Add(run.begun).mutable_run_begun();
     told.set_run(run.number);
     told.set_program(run.program);
@@ -421,6 +413,9 @@ void HostMachine::Notice() {
     told.set_program(run.run.program);
     *told.mutable_outcome() = bridge::ToProto(run.outcome);
     told.mutable_outcome()->set_cycle_time_ns(run.lasted.count());
+    // Power is no end of the program: the machine was taken away from it. LIVE-2.10 a1
+    if (run.outcome.code == ErrorCode::kCellPowerOff)
+      told.mutable_outcome()->set_kind(v1::Outcome::KIND_INTERRUPTED);
     told.set_job(std::exchange(job_, {}));
     desk_.TakeFromQueue();
     TellControl();
@@ -496,7 +491,8 @@ void HostMachine::Mark() {
   mark.set_fence(setup_.fence);
   mark.set_sequence(sequence_);
   mark.set_virtual_time_ns(status.time.count());
-  if (status.open) {
+  if (inspect_due_ || ended_) mark.set_job(inspect_job_);
+  if (status.open && !ended_) {
     mark.set_run_time_ns(status.run.time.count());
     mark.set_job(job_);
     *mark.mutable_place() = bridge::ToProto(status.run.place);
@@ -504,7 +500,7 @@ void HostMachine::Mark() {
   mark.set_state(machine().Save());
   mark.set_state_sha256(BytesOfHex(bridge::Sha256Hex(mark.state())).value_or(""));
   // What is moved by hand is no run that could be cut off. LIVE-5.20
-  mark.set_clean((!status.open || status.open->by_hand) && !inspect_due_);
+  mark.set_clean((!status.open || status.open->by_hand) && !inspect_due_ && !ended_);
   mark_due_ = begins_ = false;
   marked_at_ = now_.steady;
 }
@@ -532,6 +528,8 @@ v1::JournalEntry HostMachine::IntentOf(const v1::HostOrder& order, const HostTim
   intent.set_request_id(FieldOf(order, "request_id").value_or(""));
   if (const auto inputs = InputsOf(order, machine()); inputs && !inputs->empty())
     *intent.mutable_input() = AppliedOf(inputs->front());
+  if (order.has_run_job())
+    intent.mutable_input()->mutable_start()->set_job(order.run_job().job().name());
   v1::JournalEntry entry = std::move(entries_.back());
   entries_.pop_back();
   return entry;

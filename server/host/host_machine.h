@@ -33,6 +33,7 @@ class HostMachine : private machine::RunObserver {
     bool cut_off = false;  // a run was open then, and nobody has decided yet: INSPECT
     // The run that the mark was in the middle of; absent: none, or its end was told already.
     std::optional<v1::MachineMark> open_run{};
+    std::string inspect_job{};  // whose run it was, where its end was told already
   };
   static constexpr std::size_t kAnswersKept = 1'024;
   static constexpr std::chrono::minutes kAnswersKeptFor{10};
@@ -49,6 +50,8 @@ class HostMachine : private machine::RunObserver {
   bool GoOn(const HostTime& now);
   // Comes to rest, and holds a run with this reason.
   void Hold(v1::HoldReason reason, const HostTime& now);
+  // The host ends in order: a run that is open ends with it. LIVE-5.09
+  void EndRun(const HostTime& now);
   // Programs and schedules that were stored meanwhile; they act at the next start.
   void Change(const v1::HostMemory& memory, const HostTime& now);
   // The same at the beginning: what is there already did not happen now.
@@ -73,6 +76,7 @@ class HostMachine : private machine::RunObserver {
   v1::HostOrderAnswer Carry(const v1::HostOrder& order, const HostTime& now);
   Result<v1::HostOrderAnswer> CarryOut(const v1::HostOrder& order, const HostTime& now);
   Status CheckControl(const v1::HostOrder& order, const HostTime& now) const;
+  Status CheckJob(const v1::HostOrder& order) const;
   Status RunJob(const v1::HostOrder& order, const HostTime& now);
   Result<std::optional<machine::StoredProgram>> ProgramOfJob(
       const v1::WorkerAssignment& assignment) const;
@@ -88,7 +92,7 @@ class HostMachine : private machine::RunObserver {
   void GoOnTo(const HostTime& now);
   void Notice();
   void TellControl();
-  void TellCutOff(const v1::MachineMark& mark);
+  void TellCutOff(const v1::MachineMark& mark, ErrorCode why);
   v1::JournalEntry& Add(SimTime at);
   v1::RunEvent& Event(SimTime of_run) { return *Add(run_begun_ + of_run).mutable_event(); }
   void Mark();
@@ -124,9 +128,12 @@ class HostMachine : private machine::RunObserver {
   SimTime run_begun_{0};
   int told_of_run_ = 0;
   bool inspect_due_ = false;
+  bool ended_ = false;  // by EndRun(): of the run that is open nothing more is told
   bool mark_due_ = true;
-  bool begins_ = false;  // a run began since the last mark
-  std::string job_{};    // "jobs/17": whose run is open, or begins; empty: nobody's
+  bool begins_ = false;                 // a run began since the last mark
+  std::string job_{};                   // "jobs/17": whose run is open, or begins; empty: nobody's
+  std::deque<std::string> begun_jobs_;  // the newest, that of now among them
+  std::string inspect_job_{};           // whose run was cut off, while that is to be looked at
   std::chrono::nanoseconds marked_at_{0};
 };
 

@@ -6,6 +6,11 @@
 #include "server/host/host_machine.h"
 
 namespace rmlcell::server {
+namespace {
+
+constexpr std::size_t kJobsKnown = 16;  // the newest: whoever asks knows of the last one or two
+
+}  // namespace
 
 // What keeps a job of this caller from beginning; LIVE-5.02.
 std::optional<Error> HostMachine::WhyNoJob(const std::string& caller) const {
@@ -72,6 +77,8 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
     job_.clear();
     return begun.error();
   }
+  begun_jobs_.push_back(job_);
+  if (begun_jobs_.size() > kJobsKnown) begun_jobs_.pop_front();
   if (!desk_.lease()) {
     desk_.GiveToQueue(job_, options.on_loss(), now);
     TellControl();
@@ -94,6 +101,54 @@ void HostMachine::AddBlockers(v1::MachineStatus& status) const {
     add({ErrorCode::kCellLeaseHeld, desk_.lease()->holder() + " has control", {}});
   if (!machine().status().run.zeroed && !machine().status().open)
     add({setup_.family->info().not_zeroed, "the axes have no reference", {}});
+}
+
+// Whether an order for a job is for the one that is meant by it here.
+Status HostMachine::CheckJob(const v1::HostOrder& order) const {
+  const std::string& job = order.for_job();
+  if (job.empty()) return {};
+  if (order.has_run_state()) {
+    const bool known = std::ranges::find(begun_jobs_, job) != begun_jobs_.end();
+    return known ? Status() : Error{ErrorCode::kCellNotFound, job + " was not begun here", {}};
+  }
+  if (order.has_confirm()) {
+    if (!inspect_due_ || job == inspect_job_) return {};
+    return Error{ErrorCode::kCellMachineState,
+                 (inspect_job_.empty() ? "a run without a job" : inspect_job_) +
+                     " was cut off here, not " + job,
+                 {}};
+  }
+  if (job == job_) return {};
+  return Error{ErrorCode::kCellMachineState, job + " does not run", {}};
+}
+
+// Whoever watched it begin is told how it ended. LIVE-5.08
+void HostMachine::TellCutOff(const v1::MachineMark& mark, ErrorCode why) {
+  v1::RunOver& told = *Add(SimTime(mark.virtual_time_ns())).mutable_run_over();
+  told.set_run(machine().status().last_run);
+  told.set_program(machine().status().shown.program);
+  v1::Outcome& outcome = *told.mutable_outcome();
+  outcome = bridge::ToProto(machine::Outcome{.kind = machine::OutcomeKind::kStopped, .code = why});
+  outcome.set_kind(v1::Outcome::KIND_INTERRUPTED);
+  *outcome.mutable_place() = mark.place();
+  outcome.set_cycle_time_ns(mark.run_time_ns());
+  told.set_job(mark.job());
+  inspect_job_ = mark.job();
+  entries_.back().set_job(mark.job());
+  entries_.back().set_run_time_ns(mark.run_time_ns());
+}
+
+void HostMachine::EndRun(const HostTime& now) {
+  now_ = now;
+  const machine::MachineStatus status = machine().status();
+  if (!status.open || status.open->by_hand || ended_) return;
+  v1::MachineMark where;
+  where.set_virtual_time_ns(status.time.count());
+  where.set_run_time_ns(status.run.time.count());
+  *where.mutable_place() = bridge::ToProto(status.run.place);
+  where.set_job(job_);
+  TellCutOff(where, ErrorCode::kCellHostStopped);
+  ended_ = true;
 }
 
 }  // namespace rmlcell::server

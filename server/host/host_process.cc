@@ -6,10 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <condition_variable>
 #include <deque>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -23,6 +21,7 @@
 #include "server/base/version.h"
 #include "server/host/host_line.h"
 #include "server/host/host_machine.h"
+#include "server/host/host_name.h"
 #include "server/host/journal_writer.h"
 #include "server/host/order_class.h"
 #include "server/host/recovered.h"
@@ -54,19 +53,6 @@ HostTime Now() {
   clock_gettime(CLOCK_MONOTONIC, &time);
   return {.steady = std::chrono::seconds(time.tv_sec) + nanoseconds(time.tv_nsec),
           .wall = std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now())};
-}
-
-std::string NameOfComputer() {
-  std::array<char, 256> name{};
-  if (::gethostname(name.data(), name.size() - 1) != 0) return "computer";
-  return name.data();
-}
-
-std::string BootId() {
-  std::ifstream file("/proc/sys/kernel/random/boot_id");
-  std::string id;
-  std::getline(file, id);
-  return id;
 }
 
 class HostProcess {
@@ -294,6 +280,13 @@ class HostProcess {
     if (journal->torn_bytes > 0)
       spdlog::warn("{}: {} bytes at its end were torn", options_.journal, journal->torn_bytes);
     Recovered found = RecoveredFrom(*welcome_, std::move(journal->entries));
+    // It may have begun, and moved the machine, before anything of it was on the disk. LIVE-5.04
+    const bool open = found.mark.has_run_time_ns() || !found.begins.empty();
+    if (!found.begins.empty()) {
+      found.mark.set_job(found.begins);
+      found.mark.set_run_time_ns(0);
+      found.mark.clear_place();
+    }
     auto made = HostMachine::Make(
         {.name = options_.machine,
          .host = name_,
@@ -303,8 +296,9 @@ class HostProcess {
          .parameters = {welcome_->parameters().begin(), welcome_->parameters().end()},
          .state = found.mark.state(),
          .untold = std::move(found.untold),
-         .cut_off = found.known && !found.mark.clean(),
-         .open_run = found.mark.has_run_time_ns() ? std::optional(found.mark) : std::nullopt},
+         .cut_off = !found.begins.empty() || (found.known && !found.mark.clean()),
+         .open_run = open ? std::optional(found.mark) : std::nullopt,
+         .inspect_job = found.mark.job()},
         now, RandomText);
     if (!made) return Fail(made.error());
     machine_ = *std::move(made);
@@ -323,18 +317,34 @@ class HostProcess {
     switch (kind) {
       case OrderClass::kActsFirst:
         // Whoever stops the machine stops what has not begun yet, too.
-        for (const auto& parked : parked_) {
-          if (BeginsMotion(parked->order) && !std::exchange(parked->over, true))
-            Refuse(parked->order, StoppedBefore());
-        }
-        return SendAnswer(CarryOut(order));
+        return StopWhatBegins(order);
       case OrderClass::kAsks:
+        if (IsParked(order.for_job()))
+          return Refuse(order, {ErrorCode::kCellNotLive, "it is about to begin", {}});
         return SendAnswer(CarryOut(order));
       case OrderClass::kWrittenFirst:
         return WriteFirst(order);
       case OrderClass::kWrittenBehind:
         return AnswerWhenDurable(CarryOut(order));
     }
+  }
+
+  bool IsParked(const std::string& job) const {
+    return !job.empty() && std::ranges::any_of(parked_, [&](const auto& parked) {
+      return !parked->over && parked->order.run_job().job().name() == job;
+    });
+  }
+
+  // Whoever stops the machine stops what has not begun yet, too; of an order for a job that one.
+  void StopWhatBegins(v1::HostOrder order) {
+    const std::string job = order.for_job();
+    if (IsParked(job)) order.clear_for_job();  // it stops nothing else: the machine stands
+    for (const auto& parked : parked_) {
+      const bool meant = job.empty() || parked->order.run_job().job().name() == job;
+      if (meant && BeginsMotion(parked->order) && !std::exchange(parked->over, true))
+        Refuse(parked->order, StoppedBefore());
+    }
+    SendAnswer(CarryOut(order));
   }
 
   v1::HostOrderAnswer CarryOut(const v1::HostOrder& order) {
@@ -457,6 +467,7 @@ class HostProcess {
       renew.mutable_renew()->set_fence(fence_);
       line_->Send(std::move(renew));
     }
+    if (ending_at_) machine_->Hold(v1::HOLD_REASON_STOP, now);  // whatever began meanwhile
     if (ending_at_ && (!machine_->moves() || now.steady >= *ending_at_)) HandBack(now);
   }
 
@@ -486,6 +497,7 @@ class HostProcess {
 
   void HandBack(const HostTime& now) {
     for (const auto& parked : parked_) parked->over = true;
+    machine_->EndRun(now);
     Write(now, true);
     writer_.reset();  // it writes what waits
     DoLater();
@@ -569,11 +581,6 @@ class HostProcess {
 };
 
 }  // namespace
-
-// The random part: a number of a process comes again, after a reboot, too.
-std::string NameOfHost() {
-  return NameOfComputer() + "/" + std::to_string(::getpid()) + "/" + RandomText().substr(0, 8);
-}
 
 int RunHost(const HostOptions& options, const std::atomic<bool>& stopping) {
   return HostProcess(options, stopping).Run();

@@ -16,7 +16,4 @@ struct HostOptions {
 // Until it is to stop, or the machine is another host's: the exit code of the process.
 int RunHost(const HostOptions& options, const std::atomic<bool>& stopping);
 
-// "workshop/4711/5f3a09c1": of this process, and of no other one.
-std::string NameOfHost();
-
 }  // namespace rmlcell::server

@@ -17,6 +17,10 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
     found.mark = entry.mark();
     newest = number;
   }
+  for (const v1::JournalEntry& entry : journal) {
+    const std::string& job = entry.intent().input().start().job();
+    if (Number(entry.fence(), entry.sequence()) > newest && !job.empty()) found.begins = job;
+  }
   for (v1::JournalEntry& entry : journal) {
     const Number number{entry.fence(), entry.sequence()};
     if (number > stored && number <= newest) found.untold.push_back(std::move(entry));

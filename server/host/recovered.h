@@ -11,6 +11,8 @@ struct Recovered {
   bool known = false;
   v1::MachineMark mark{};
   std::vector<v1::JournalEntry> untold{};
+  // "jobs/17": a job that was about to begin behind the mark; empty: none was.
+  std::string begins{};
 };
 
 Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal);

@@ -64,7 +64,7 @@ class Entries {
   Status Add(const v1::JournalEntry& entry) {
     const bool ends = entry.has_run_over() && !entry.run_over().job().empty();
     const bool behind_end = end_ && entry.job().empty();  // where that left the machine
-    if (ends || (entry.job() != job_ && !behind_end)) {
+    if ((ends && end_) || (entry.job() != job_ && !behind_end)) {
       if (const Status written = Write(); !written) return written.error();
       if (const Status known = FindLease(entry); !known) return known.error();
     }
@@ -150,9 +150,11 @@ StoredEntries StoreEntries(storage::Store& store, const storage::MachineLease& l
   return {.count = all.stored(), .how = written};
 }
 
-Status GiveBack(storage::Store& store, const storage::Lease& lease, const std::string& why) {
+Status GiveBack(storage::Store& store, const storage::Lease& lease, const std::string& why,
+                bool held) {
   storage::LossPolicy policy = LossOf(StoppedOutcome(), {}, why);
   policy.not_begun = true;
+  policy.held = held;
   const auto back = store.HandBack(lease, policy);
   return back ? Status() : Status(back.error());
 }

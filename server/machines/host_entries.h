@@ -24,7 +24,9 @@ StoredEntries StoreEntries(storage::Store& store, const storage::MachineLease& l
 // to be over; any other has moved nothing, and waits again. LIVE-5.20
 Status GiveBackUnbegun(storage::Store& store, const std::string& machine, const std::string& host);
 
-// It waits again, since it never began. `why`: for people, in its log.
-Status GiveBack(storage::Store& store, const storage::Lease& lease, const std::string& why);
+// It waits again, since it never began; `held`: until a person lets it go. `why`: for people, in
+// its log.
+Status GiveBack(storage::Store& store, const storage::Lease& lease, const std::string& why,
+                bool held = false);
 
 }  // namespace rmlcell::server

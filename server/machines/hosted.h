@@ -29,7 +29,8 @@ struct Hosts::Host {
   std::vector<v1::JournalEntry> waiting;  // to be stored
   std::int64_t stored = 0;                // sequence of the last one that is
   bool storing = false;
-  bool fresh = false;  // it followed another one; of who stores alone
+  bool settled = false;  // guarded by mutex: something of it was stored, and so all from before it
+  bool fresh = false;    // it followed another one; of who stores alone
 };
 
 }  // namespace rmlcell::server

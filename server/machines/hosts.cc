@@ -362,6 +362,7 @@ void Hosts::StoreEntries(const HostPointer& host) {
     if (done.how) host->fresh = false;
     {
       const std::lock_guard lock(host->mutex);
+      host->settled = host->settled || done.how;
       host->storing = false;
       host->rests.notify_all();
       const auto count = static_cast<std::ptrdiff_t>(done.count);
@@ -516,6 +517,13 @@ std::string Hosts::MachineThatRuns(const std::string& job) const {
     if (host->status && host->status->run().job() == job) return id;
   }
   return {};
+}
+
+bool Hosts::IsSettled(const std::string& machine) const {
+  const HostPointer host = Find(machine);
+  if (host == nullptr) return false;
+  const std::lock_guard lock(host->mutex);
+  return !host->gone && !host->storing && host->waiting.empty() && host->settled;
 }
 
 std::vector<std::string> Hosts::Machines() const {

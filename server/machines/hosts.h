@@ -82,6 +82,8 @@ class Hosts {
   // The id of the machine that runs this job, as its host says; empty: none that is known.
   std::string MachineThatRuns(const std::string& job) const;
   std::vector<std::string> Machines() const;  // ids of those with a host
+  // Whether all that its host has told is in the store, what an earlier one left among that.
+  bool IsSettled(const std::string& machine) const;
 
  private:
   struct Host;

@@ -20,12 +20,14 @@ namespace {
 // Its lease is that of the machine: it does not run out by itself. LIVE-5.01
 constexpr std::chrono::milliseconds kWhileTheMachineIsHeld = std::chrono::days(366);
 
+constexpr std::size_t kNotedMax = 1'000;
+
 // Of these another try may go better; of all others the job ends.
 bool MayGoBetterLater(ErrorCode code) {
   constexpr std::array kLater = {ErrorCode::kCellMachineState, ErrorCode::kCellMode,
                                  ErrorCode::kCellNotLive,      ErrorCode::kCellInspect,
                                  ErrorCode::kCellJournal,      ErrorCode::kCellLeaseHeld,
-                                 ErrorCode::kCellDoorOpen};
+                                 ErrorCode::kCellDoorOpen,     ErrorCode::kCellUnimplemented};
   return std::ranges::find(kLater, code) != kLater.end() ||
          Lookup(code).severity == Severity::kAlarm;
 }
@@ -105,6 +107,15 @@ void RunQueue::LookOnce(const std::string& machine) {
   if (!IsBusy(machine, *status)) BeginNext(machine, *status);
 }
 
+std::string RunQueue::MachineOf(const std::string& job) const {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto beginning = beginning_.find(job);
+    if (beginning != beginning_.end()) return beginning->second;
+  }
+  return needs_.hosts.MachineThatRuns(job);
+}
+
 bool RunQueue::IsBusy(const std::string& machine, const v1::MachineStatus& status) {
   const auto running = needs_.store.ListJobs({.machine = machine,
                                               .state = storage::JobState::kRunning,
@@ -112,32 +123,55 @@ bool RunQueue::IsBusy(const std::string& machine, const v1::MachineStatus& statu
                                               .limit = 1});
   if (!running) return true;
   if (running->empty()) return false;
+  {
+    // What is left of jobs that are over; there are no more RUNs under way than machines.
+    const std::lock_guard lock(mutex_);
+    if (unheard_of_.size() > kNotedMax) unheard_of_.clear();
+    if (aborted_.size() > kNotedMax) aborted_.clear();
+  }
   const storage::JobRecord& job = running->front();
   const std::string name = JobName(job.id);
-  {
-    const std::lock_guard lock(mutex_);
-    if (status.run().job() == name) {
-      unheard_of_.erase(job.id);
-    } else {
-      const auto [since, first] = unheard_of_.emplace(job.id, needs_.clock());
-      if (first || needs_.clock() - since->second < kUnheardOf) return true;
-      unheard_of_.erase(since);
-    }
-  }
   if (status.run().job() == name) {
-    if (job.cancel_requested) Abort(name, job.caller, {});
+    bool abort = false;
+    if (job.cancel_requested) {
+      const std::lock_guard lock(mutex_);
+      abort = aborted_.insert(job.id).second;
+    }
+    if (abort) Abort(name, job.caller, {});
     return true;
   }
   const auto attempts = needs_.store.ListAttempts(job.id);
   if (!attempts || attempts->empty() || attempts->back().ended_at) return true;
   const storage::AttemptRecord& attempt = attempts->back();
-  GiveBack({.lease = {.job = job.id,
-                      .attempt = attempt.number,
-                      .fence = attempt.fence,
-                      .worker = attempt.worker},
-            .job = job},
-           "the host never began it");
+  {
+    const std::lock_guard lock(mutex_);
+    if (beginning_.contains(name)) return true;
+    const auto [since, first] = unheard_of_.emplace(attempt.fence, needs_.clock());
+    if (first || needs_.clock() - since->second < kUnheardOf) return true;
+    since->second = needs_.clock();  // asked again later, where nobody answers
+  }
+  // What an earlier host had is told by the first that this one tells.
+  if (attempt.worker != status.host() || !needs_.hosts.IsSettled(machine)) return true;
+  AskWhetherBegun(machine, {.lease = {.job = job.id,
+                                      .attempt = attempt.number,
+                                      .fence = attempt.fence,
+                                      .worker = attempt.worker},
+                            .job = job});
   return true;
+}
+
+// Its order may be lost, or its end on the way: the host knows.
+void RunQueue::AskWhetherBegun(const std::string& machine, const storage::LeasedJob& job) {
+  v1::HostOrder order;
+  order.mutable_run_state()->set_machine(MachineName(machine));
+  order.set_for_job(JobName(job.lease.job));
+  needs_.hosts.Ask(
+      machine, std::move(order), [this, job](const Result<v1::HostOrderAnswer>& answer) {
+        if (!answer || !answer->has_refusal() ||
+            answer->refusal().code() != CodeText(ErrorCode::kCellNotFound))
+          return;
+        needs_.executor.Post([this, job] { GiveBack(job, "the host never heard of it"); });
+      });
 }
 
 void RunQueue::BeginNext(const std::string& machine, const v1::MachineStatus& status) {
@@ -185,6 +219,10 @@ void RunQueue::Begin(const std::string& machine, const storage::LeasedJob& lease
                         .detail = assignment.error().detail});
   }
   spdlog::info("{} goes to {}", JobName(leased.job.id), machine);
+  {
+    const std::lock_guard lock(mutex_);
+    beginning_[JobName(leased.job.id)] = machine;
+  }
   v1::HostOrder order;
   order.set_caller(leased.job.caller);
   *order.mutable_run_job() = *std::move(assignment);
@@ -198,6 +236,10 @@ void RunQueue::Begin(const std::string& machine, const storage::LeasedJob& lease
 // One that was not answered may have begun: what its host says later tells.
 void RunQueue::Answered(const std::string& machine, const storage::LeasedJob& leased,
                         const Result<v1::HostOrderAnswer>& answer) {
+  {
+    const std::lock_guard lock(mutex_);
+    beginning_.erase(JobName(leased.job.id));
+  }
   if (!answer) return;
   if (!answer->has_refusal()) return Wake(machine);  // a cancel may have come meanwhile
   const v1::ErrorDetail& refusal = answer->refusal();
@@ -213,15 +255,19 @@ void RunQueue::Answered(const std::string& machine, const storage::LeasedJob& le
     const std::lock_guard lock(mutex_);
     rests_until_[machine] = needs_.clock() + kRests;
   }
-  GiveBack(leased, CodeText(code) + ": " + refusal.message());
-  // Somebody was at the machine at the same moment: a person lets the job go. LIVE-2.05
-  if (code != ErrorCode::kCellMachineState) return;
-  const auto held = needs_.store.HoldBack(leased.job.id, {QueueEvent(true, leased.job.priority)});
-  if (!held) spdlog::warn("{}: {}", JobName(leased.job.id), bridge::ErrorText(held.error()));
+  // Somebody was at the machine at the same moment, or it knows no jobs: a person lets the job go.
+  // LIVE-2.05
+  const bool held = code == ErrorCode::kCellMachineState || code == ErrorCode::kCellUnimplemented;
+  GiveBack(leased, CodeText(code) + ": " + refusal.message(), held);
 }
 
-void RunQueue::GiveBack(const storage::LeasedJob& leased, const std::string& why) {
-  const Status back = server::GiveBack(needs_.store, leased.lease, why);
+void RunQueue::GiveBack(const storage::LeasedJob& leased, const std::string& why, bool held) {
+  {
+    const std::lock_guard lock(mutex_);
+    unheard_of_.erase(leased.lease.fence);
+    aborted_.erase(leased.lease.job);
+  }
+  const Status back = server::GiveBack(needs_.store, leased.lease, why, held);
   if (!back) spdlog::warn("{}: {}", JobName(leased.job.id), bridge::ErrorText(back.error()));
 }
 

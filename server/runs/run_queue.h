@@ -31,7 +31,7 @@ class RunQueue {
     std::string server{};  // what the store knows this server by
     SteadyClock clock = SteadyTime;
   };
-  // A job that its machine does not run, and that has told nothing for so long, never began.
+  // Of a job that its host does not speak of for so long it is asked whether it has begun it.
   static constexpr std::chrono::seconds kUnheardOf{3};
 
   // Behind a job that its machine did not take.
@@ -43,8 +43,9 @@ class RunQueue {
   void Wake(const std::string& machine);
   void WakeAll();
 
-  // The machine whose host runs this job, as far as this server has heard; empty: none.
-  std::string MachineOf(const std::string& job) const { return needs_.hosts.MachineThatRuns(job); }
+  // The machine whose host runs this job, or is about to, as far as this server has heard; empty:
+  // none.
+  std::string MachineOf(const std::string& job) const;
   // An order for the run of this job; refused where another run is open by then.
   void Ask(const std::string& job, v1::HostOrder order, Hosts::Answered done);
   void AskMachine(const std::string& machine, v1::HostOrder order, Hosts::Answered done) {
@@ -56,21 +57,26 @@ class RunQueue {
  private:
   void Look(const std::string& machine);
   void LookOnce(const std::string& machine);
+  void AskWhetherBegun(const std::string& machine, const storage::LeasedJob& job);
   // Whether a job of the machine is under way. True where that is not known.
   bool IsBusy(const std::string& machine, const v1::MachineStatus& status);
   void BeginNext(const std::string& machine, const v1::MachineStatus& status);
   void Begin(const std::string& machine, const storage::LeasedJob& leased);
   void Answered(const std::string& machine, const storage::LeasedJob& leased,
                 const Result<v1::HostOrderAnswer>& answer);
-  void GiveBack(const storage::LeasedJob& leased, const std::string& why);
+  void GiveBack(const storage::LeasedJob& leased, const std::string& why, bool held = false);
   void End(const storage::LeasedJob& leased, const storage::JobOutcome& how);
 
   Needs needs_;
-  std::mutex mutex_;                 // a leaf
+  mutable std::mutex mutex_;         // a leaf
   std::set<std::string> looking_;    // guarded by mutex_; looked at, or a job of it begins
   std::set<std::string> once_more_;  // guarded by mutex_
-  // Jobs that their machine does not speak of, and since when; guarded by mutex_.
+  // Guarded by mutex_. Jobs whose order is not answered, by name, with their machine; jobs that
+  // their machine does not speak of, by their lease, and since when; jobs whose cancel was handed
+  // on.
+  std::map<std::string, std::string> beginning_;
   std::map<std::int64_t, std::chrono::steady_clock::time_point> unheard_of_;
+  std::set<std::int64_t> aborted_;
   std::map<std::string, std::chrono::steady_clock::time_point> rests_until_;  // guarded by mutex_
 };
 

@@ -130,6 +130,7 @@ grpc::ServerUnaryReactor* JobService::DecideInterrupted(grpc::CallbackServerCont
     v1::HostOrder order;
     order.set_caller(who.identity);
     order.set_reason(request->reason());
+    order.set_for_job(request->name());
     v1::ConfirmMachineRequest& confirm = *order.mutable_confirm();
     confirm.set_control_token(request->control_token());
     confirm.set_request_id(request->request_id());

@@ -311,6 +311,18 @@ Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease, const L
   if (!row) return row.error();
   if (const Status ended = EndAttempt(context, lease, "handed back"); !ended) return ended.error();
   const bool waits = HandBackAttempt(row->job, policy);
+  // Nobody but its machine would end a RUN whose cancel came meanwhile, and that may never start.
+  if (waits && row->job.kind == kRunKind && row->job.cancel_requested) {
+    if (const Status over = EndJob(context, *row, CancelledOutcome()); !over) return over.error();
+    if (const Status written = WriteChange(context, *row, lease.attempt, policy.cancelled);
+        !written)
+      return written.error();
+    return std::move(row->job);
+  }
+  if (waits && policy.held) {
+    row->job.held = true;
+    SetBlocked(context, *row, row->blocked | kBlockedByHold);
+  }
   if (waits) {
     SetState(context, *row, JobState::kQueued);
   } else if (const Status cut_off = EndJob(context, *row, InterruptedOutcome(policy)); !cut_off) {

@@ -106,6 +106,18 @@ TEST_F(MachineZeroTest, StopEndsIt) {
   }
 }
 
+// LIVE-2.05: no program begins that was not asked for; nor is a dry run used up.
+TEST_F(MachineZeroTest, TheModeStaysWhileItMoves) {
+  LoadWithoutReference();
+  Good(ChangeMode{Mode::kManual});
+  Good(SetSimulation{ProgramStep{4, 2}});
+  Good(ZeroAxes{});
+  EXPECT_THAT(Refused(ChangeMode{Mode::kRemote}), HasSubstr("CELL-E9421"));
+  GoOn(At(300.0));
+  EXPECT_EQ(machine->TakeRunsOver().size(), 1U);
+  EXPECT_EQ(machine->simulation_until(), (ProgramStep{4, 2}));
+}
+
 // OPT-4.51: the override has no effect on it.
 TEST_F(MachineZeroTest, TheOverrideHasNoEffect) {
   LoadWithoutReference();

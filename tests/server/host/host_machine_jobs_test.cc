@@ -201,6 +201,77 @@ TEST_F(HostJobsTest, AJobThatWasCutOffIsInterrupted) {
   EXPECT_FALSE(Status().has_run());
 }
 
+// Whoever asks is told whether a job was begun here; of one that is over, too.
+TEST_F(HostJobsTest, ItKnowsWhichJobsItBegan) {
+  Make();
+  v1::HostOrder ask;
+  ask.mutable_run_state();
+  EXPECT_EQ(Do(For("jobs/17", ask)).refusal().code(), "CELL-E9004");
+  Do(Job());
+  EXPECT_FALSE(Do(For("jobs/17", ask)).has_refusal());
+  Pass(3min, 50ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_FALSE(Do(For("jobs/17", ask)).has_refusal());
+  EXPECT_EQ(Do(For("jobs/18", ask)).refusal().code(), "CELL-E9004");
+}
+
+// LIVE-2.11: a job whose machine leaves REMOTE is held, and goes on in REMOTE alone.
+TEST_F(HostJobsTest, AJobIsHeldWhereItsMachineLeavesRemote) {
+  Make();
+  Do(Job());
+  v1::HostOrder take;
+  take.mutable_acquire_control()->set_take_over(true);
+  take.mutable_acquire_control()->set_reason("a look");
+  take.mutable_acquire_control()->mutable_ttl()->set_seconds(60);
+  token_ = Do(take).control().control_token();
+  Pass(20s, 50ms);
+  Do(Mode(v1::OPERATING_MODE_SINGLE, token_));
+  Pass(10s, 50ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(Status().hold_reason(), v1::HOLD_REASON_MODE);
+  EXPECT_EQ(Do(Resume()).refusal().code(), "CELL-E9423");
+  Do(Mode(v1::OPERATING_MODE_REMOTE, token_));
+  EXPECT_EQ(Do(Resume()).status().state(), v1::MACHINE_STATE_RUNNING);
+}
+
+// LIVE-5.09: a host that ends in order says so, and the next one waits for an inspection.
+TEST_F(HostJobsTest, AnOrderlyEndCutsTheRunOff) {
+  Make();
+  Do(Job());
+  Pass(5s, 50ms);
+  Do(Stop());
+  Pass(2s);
+  host_->TakeEntries(now_, true);
+  host_->EndRun(now_);
+  const auto entries = host_->TakeEntries(now_, true);
+  ASSERT_TRUE(entries.front().has_run_over());
+  EXPECT_EQ(entries.front().run_over().job(), "jobs/17");
+  EXPECT_EQ(entries.front().run_over().outcome().kind(), v1::Outcome::KIND_INTERRUPTED);
+  EXPECT_EQ(entries.front().run_over().outcome().code(), "CELL-E9432");
+  const v1::MachineMark& mark = entries.back().mark();
+  EXPECT_FALSE(mark.clean());
+  EXPECT_FALSE(mark.has_run_time_ns()) << "its end is told already";
+  EXPECT_EQ(mark.job(), "jobs/17");
+}
+
+// LIVE-5.10: a decision is about the run that was cut off last.
+TEST_F(HostJobsTest, ADecisionIsAboutTheRunThatWasCutOff) {
+  v1::MachineMark mark;
+  mark.set_run_time_ns(5);
+  mark.set_job("jobs/99");
+  Make({}, true, mark);
+  Control();
+  v1::HostOrder confirm;
+  confirm.mutable_confirm()->set_control_token(token_);
+  confirm.mutable_confirm()->add_confirmations(v1::CONFIRMATION_INSPECTED);
+  const v1::HostOrderAnswer refused = Do(For("jobs/3", confirm));
+  EXPECT_EQ(refused.refusal().code(), "CELL-E9421");
+  EXPECT_THAT(refused.refusal().message(), HasSubstr("jobs/99"));
+  EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
+  EXPECT_FALSE(Do(For("jobs/99", confirm)).has_refusal());
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+}
+
 // A source with errors ends the job with the first of them, and nothing has moved. LIVE-5.02 (b)
 TEST_F(HostJobsTest, AProgramWithErrorsBeginsNothing) {
   machine::MachineMemory memory;

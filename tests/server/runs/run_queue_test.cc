@@ -91,6 +91,17 @@ class RunQueueTest : public testing::Test {
     *request.mutable_answer()->mutable_status() = Idle();
     hosts.Receive(*link, std::move(request));
   }
+  // The first that it tells: from here on all of before is in the store.
+  void Mark() {
+    v1::HostRequest request;
+    v1::JournalEntry& entry = *request.mutable_entries()->add_entries();
+    request.mutable_entries()->set_fence(fence);
+    entry.set_sequence(1);
+    entry.set_fence(fence);
+    entry.mutable_run_begun()->set_run(1);
+    hosts.Receive(*link, request);
+    link->Newest(v1::HostResponse::kEntriesStored);
+  }
   storage::JobRecord Job(std::int64_t id) { return Must(bed.store().GetJob(id)); }
   // All that was posted until now, and what that posted, is done.
   void Settle() {
@@ -242,17 +253,70 @@ TEST_F(RunQueueTest, AJobThatWasStoppedBeforeItBeganIsHeld) {
   EXPECT_TRUE(NewestOrder(2).has_run_job());
 }
 
-// An order that got lost on its way: the machine stands and speaks of no job.
-TEST_F(RunQueueTest, AJobThatItsHostDoesNotSpeakOfWaitsAgain) {
+// An order that got lost on its way: the machine stands and speaks of no job. Its host is asked,
+// and what it does not know never began; nothing is concluded from silence.
+TEST_F(RunQueueTest, AJobThatItsHostNeverHeardOfWaitsAgain) {
   Tell(Idle());
+  Mark();
   const std::int64_t job = Submit();
   NewestOrder(1);
-  runs.WakeAll();
+  const auto look = [&] {
+    runs.WakeAll();
+    Settle();
+  };
+  look();
+  clock.Advance(RunQueue::kUnheardOf);
+  look();
+  look();
+  EXPECT_EQ(Orders().size(), 1U) << "its order may still be answered";
+  clock.Advance(Hosts::kAnswerPatience);
+  v1::HostRequest beat;
+  beat.mutable_heartbeat();
+  hosts.Receive(*link, beat);  // the order is given up
+  Settle();
+  look();
+  EXPECT_EQ(Orders().size(), 1U);
+  clock.Advance(RunQueue::kUnheardOf);
+  look();
+  const v1::HostOrder asked = NewestOrder(2);
+  EXPECT_TRUE(asked.has_run_state());
+  EXPECT_EQ(asked.for_job(), JobName(job));
+  Accept(asked);  // it knows it: its end is on the way
   Settle();
   EXPECT_EQ(Job(job).state, JobState::kRunning);
   clock.Advance(RunQueue::kUnheardOf);
-  runs.WakeAll();
-  EXPECT_TRUE(Eventually([&] { return Job(job).state == JobState::kQueued; }));
+  look();
+  Refuse(NewestOrder(3), "CELL-E9424");  // it does not know yet
+  Settle();
+  EXPECT_EQ(Job(job).state, JobState::kRunning);
+  clock.Advance(RunQueue::kUnheardOf);
+  look();
+  Refuse(NewestOrder(4), "CELL-E9004");
+  EXPECT_TRUE(Eventually([&] { return Job(job).attempts == 0; }));
+  EXPECT_FALSE(Job(job).held);
+}
+
+// LIVE-5.05: between its lease and the first word of its host, too.
+TEST_F(RunQueueTest, AJobThatIsAboutToBeginIsStopped) {
+  Tell(Idle());
+  const std::int64_t job = Submit();
+  NewestOrder(1);
+  EXPECT_EQ(runs.MachineOf(JobName(job)), "mill-1");
+  v1::HostOrder stop;
+  stop.mutable_stop();
+  runs.Ask(JobName(job), stop, [](const Result<v1::HostOrderAnswer>&) {});
+  EXPECT_TRUE(NewestOrder(2).has_stop());
+  EXPECT_EQ(NewestOrder(2).for_job(), JobName(job));
+}
+
+// A cancel is not lost with a job that did not begin.
+TEST_F(RunQueueTest, ACancelledJobThatDidNotBeginIsCancelled) {
+  Tell(Idle());
+  const std::int64_t job = Submit();
+  const v1::HostOrder order = NewestOrder(1);
+  Must(bed.store().RequestCancel(job, {}));
+  Refuse(order, "CELL-E9421");
+  EXPECT_TRUE(Eventually([&] { return Job(job).state == JobState::kCancelled; }));
 }
 
 // LIVE-5.05: an order for a job goes to the host that runs it, and says for which it is.
@@ -286,6 +350,9 @@ TEST_F(RunQueueTest, ACancelOfAJobThatBeginsEndsItsRun) {
   running.mutable_run()->set_job(JobName(job));
   Tell(running);
   EXPECT_TRUE(Eventually([&] { return Orders().back().has_abort(); }));
+  runs.WakeAll();
+  Settle();
+  EXPECT_EQ(Orders().size(), 2U) << "once";
 }
 
 }  // namespace
