@@ -142,6 +142,7 @@ struct Cell::Parts {
   Status ListenWeb();
   Status StartWorkers(const std::string& join_token);
   Status StartHosts();
+  std::function<void()> LookAtMachines();
   std::string WorkerProgram() const;
 };
 
@@ -223,14 +224,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
       .log_level = config.log_level,
       .log_format = config.log_format,
       .is_heard = [this](const std::string& machine) { return hosts->IsHeard(machine); },
-      .look =
-          [this, next = std::chrono::steady_clock::time_point()]() mutable {
-            hosts->Look();
-            const auto now = std::chrono::steady_clock::now();
-            if (now < next) return;
-            next = now + kRunsLookedForAfter;
-            runs->WakeAll();
-          }});
+      .look = LookAtMachines()});
   statuses = std::make_unique<MachineStatuses>(*store, *feed, *executor, hosts.get());
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
@@ -363,6 +357,17 @@ Status Cell::Parts::StartWorkers(const std::string& join_token) {
   if (!started) return started.error();
   processes = std::move(*started);
   return {};
+}
+
+// From time to time, while machines live.
+std::function<void()> Cell::Parts::LookAtMachines() {
+  return [this, next = std::chrono::steady_clock::time_point()]() mutable {
+    hosts->Look();
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next) return;
+    next = now + kRunsLookedForAfter;
+    runs->WakeAll();
+  };
 }
 
 // Machines that were enabled when a server had this store last: their hosts may be alive, and come

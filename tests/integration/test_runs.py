@@ -3,10 +3,11 @@
 import os
 import random
 import signal
+import subprocess
 import time
 import unittest
 
-from cell import cell_pb2, detail_of, eventually, grpc, job_pb2
+from cell import BIN, cell_pb2, detail_of, eventually, grpc, job_pb2
 from live import MILL, SQUARE, Live, LiveTestCase, new_id
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
 from rmlcell.v1.machine_status_pb2 import HoldReason  # noqa: E402
@@ -207,6 +208,42 @@ class RunsTest(LiveTestCase):
         self.order("ResumeJob", name)
         self.becomes(name, "SUCCEEDED")
         self.assertEqual([one.WhichOneof("what") for one in self.events(name)].count("run_begun"), 1)
+
+    # The same by the command, which takes control for a moment and gives it back.
+    def test_the_command_enables_starts_and_shows_a_machine(self):
+        file = self.cell.folder / "a.rml"
+        file.write_text(SHORT)
+
+        def rmlcell(*words):
+            done = subprocess.run([BIN / "rmlcell", *words, "--server", f"127.0.0.1:{self.cell.grpc_port}"],
+                                  capture_output=True, text=True, timeout=60)
+            return done.returncode, done.stdout + done.stderr
+
+        self.assertIn("does not live", rmlcell("machine", "status", "mill-1")[1])
+        self.assertEqual(rmlcell("machine", "stop", "mill-1")[0], 3)
+        code, told = rmlcell("machine", "enable", "mill-1")
+        self.assertEqual(code, 0, told)
+        self.assertIn("IDLE in REMOTE", told)
+        code, told = rmlcell("machine", "factor", "mill-1", "100")
+        self.assertIn("100.0 times as fast", told)
+        self.assertNotIn("control", told)
+        rmlcell("put", "mill-1", "7", str(file))
+        self.assertIn("RUNNING in REMOTE", rmlcell("machine", "start", "mill-1", "7")[1])
+        self.live.wait("IDLE")
+        code, told = rmlcell("submit", "mill-1", "--slot", "7", "--kind", "run", "--watch")
+        self.assertEqual(code, 0, told)
+        self.assertIn("ended: completed", told)
+        self.assertEqual(rmlcell("machine", "write", "mill-1", "X")[0], 2)
+        self.assertEqual(rmlcell("machine", "read", "mill-1", "X"), (0, "X = 0\n"))
+        self.assertIn("MANUAL", rmlcell("machine", "mode", "mill-1", "manual")[1])
+        self.assertIn("CELL-E9423", rmlcell("machine", "status", "mill-1")[1])
+        code, told = rmlcell("submit", "mill-1", str(file), "--kind", "run")
+        self.assertIn("its machine cannot start", rmlcell("jobs", "--order", "queue")[1] + rmlcell("job", told.strip())[1])
+        self.live.acquire()
+        self.assertIn("CELL-E9408", rmlcell("machine", "mode", "mill-1", "remote")[1])
+        self.assertEqual(rmlcell("machine", "mode", "mill-1", "remote", "--take-over", "shift change")[0], 0)
+        self.becomes(told.strip(), "SUCCEEDED")
+        self.assertIn("OFF", rmlcell("machine", "disable", "mill-1")[1])
 
     # LIVE-10.04: kill -9 of host, server or both, at random moments: no run is begun twice, each job ends once, as its
     # run did, and one that was never begun is done later.
