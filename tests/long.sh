@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # What takes hours: rare interleavings, races, and inputs that nobody thought of. Writes a summary to
 # tests/results/long.txt. Needs build/release, as tests/run.sh leaves it.
-#   bash tests/long.sh [kills] [crashes] [races] [fuzz] [load] [mutation] [behaviour]      default: all
+#   bash tests/long.sh [kills] [hosts] [crashes] [races] [fuzz] [load] [mutation] [behaviour]      default: all
 # ROUNDS=100, FUZZ_SECONDS=600, LOAD_ROUNDS=20, MUTATIONS=300 and SEED=1 say how much.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 rounds=${ROUNDS:-100}
 seconds=${FUZZ_SECONDS:-600}
-parts=${*:-kills crashes races fuzz load mutation behaviour}
+parts=${*:-kills hosts crashes races fuzz load mutation behaviour}
 export RMLCELL_BIN=$PWD/build/release/bin RMLCELL_STUBS=$PWD/build/release/tests/integration/stubs
 export RMLCELL_SHARED=${RMLCELL_SHARED:-$PWD/../shared}
 
@@ -32,6 +32,19 @@ kills() {
   [ $bad -eq 0 ] || fail kills
 }
 
+# Hosts of machines, the server, or both are killed in the middle of runs and of RUN jobs.
+hosts() {
+  local test
+  for test in test_live.LiveTest test_runs.RunsTest; do
+    if (cd tests/integration && LIVE_ROUNDS=$rounds LIVE_SEED=${SEED:-1} /usr/bin/python3 -B -m unittest "$test.test_crash_rounds") \
+      >"build/long/$test.log" 2>&1; then
+      note "hosts: $rounds rounds of $test, none failed"
+    else
+      fail "hosts, see build/long/$test.log"
+    fi
+  done
+}
+
 # The store at every operation of the disk.
 crashes() {
   if RMLCELL_LONG=1 build/release/tests/storage_sqlite_crash_test >build/long/crashes.log 2>&1; then
@@ -43,7 +56,8 @@ crashes() {
 
 # What has threads under ThreadSanitizer.
 races() {
-  local targets=(server_events_test server_log_test server_jobs_test storage_sqlite_test storage_sqlite_conformance_test)
+  local targets=(server_events_test server_log_test server_jobs_test server_host_test
+    server_machines_test server_runs_test storage_sqlite_test storage_sqlite_conformance_test)
   cmake --preset tsan >/dev/null
   ninja -C build/tsan "${targets[@]}" >build/long/tsan.log
   for target in "${targets[@]}"; do
@@ -154,8 +168,8 @@ behaviour() {
 
 for part in $parts; do
   case $part in
-    kills | crashes | races | fuzz | load | mutation | behaviour) $part ;;
-    *) echo "usage: bash tests/long.sh [kills] [crashes] [races] [fuzz] [load] [mutation] [behaviour]" >&2; exit 2 ;;
+    kills | hosts | crashes | races | fuzz | load | mutation | behaviour) $part ;;
+    *) echo "usage: bash tests/long.sh [kills] [hosts] [crashes] [races] [fuzz] [load] [mutation] [behaviour]" >&2; exit 2 ;;
   esac
 done
 exit $failed
