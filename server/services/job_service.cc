@@ -6,6 +6,7 @@
 #include "server/jobs/job_book.h"
 #include "server/results/job_results.h"
 #include "server/services/job_streams.h"
+#include "server/services/open_stream.h"
 
 namespace rmlcell::server {
 
