@@ -62,8 +62,8 @@ Result<std::optional<machine::StoredProgram>> HostMachine::ProgramOfJob(
 
 // The queue has control for it, where nobody has. LIVE-4.05
 Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
-  mark_due_ =
-      true;  // behind the intent, also where nothing begins: a crash later finds no open one
+  // Behind the intent, also where nothing begins: a crash later on finds no open one.
+  mark_due_ = true;
   if (auto why = WhyNoJob(order.caller())) return *std::move(why);
   const v1::WorkerAssignment& assignment = order.run_job();
   auto brought = ProgramOfJob(assignment);

@@ -121,13 +121,8 @@ Status SetMachine(const storage::MachineMemory& memory, v1::WorkerAssignment& as
   if (!state) return state.error();
   assignment.set_machine_state(*std::move(state));
   assignment.set_default_schedules(memory.schedules.empty());
-  for (const storage::ScheduleRecord& schedule : memory.schedules) {
-    v1::AssignedSchedule& made = *assignment.add_schedules();
-    made.set_number(schedule.number);
-    made.set_title(schedule.name);
-    made.set_mode(schedule.mode);
-    made.set_power_percent(schedule.power_percent);
-  }
+  for (const storage::ScheduleRecord& schedule : memory.schedules)
+    *assignment.add_schedules() = ToAssigned(schedule);
   return {};
 }
 

@@ -65,13 +65,8 @@ v1::HostMemory MemoryOf(const storage::MachineMemory& memory) {
   }
   for (const int slot : memory.deleted) message.add_deleted_programs(slot);
   message.set_schedules_changed(true);
-  for (const storage::ScheduleRecord& schedule : memory.schedules) {
-    v1::AssignedSchedule& made = *message.add_schedules();
-    made.set_number(schedule.number);
-    made.set_title(schedule.name);
-    made.set_mode(schedule.mode);
-    made.set_power_percent(schedule.power_percent);
-  }
+  for (const storage::ScheduleRecord& schedule : memory.schedules)
+    *message.add_schedules() = ToAssigned(schedule);
   return message;
 }
 

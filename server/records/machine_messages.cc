@@ -177,4 +177,13 @@ Status CheckMachine(const storage::MachineRecord& machine) {
   return {};
 }
 
+v1::AssignedSchedule ToAssigned(const storage::ScheduleRecord& schedule) {
+  v1::AssignedSchedule made;
+  made.set_number(schedule.number);
+  made.set_title(schedule.name);
+  made.set_mode(schedule.mode);
+  made.set_power_percent(schedule.power_percent);
+  return made;
+}
+
 }  // namespace rmlcell::server

@@ -9,6 +9,7 @@
 
 #include "engine/core/result.h"
 #include "rmlcell/v1/machine.pb.h"
+#include "rmlcell/v1/worker.pb.h"
 #include "storage/records.h"
 
 namespace rmlcell::machine {
@@ -16,6 +17,9 @@ class MachineFamily;
 }
 
 namespace rmlcell::server {
+
+// As workers and hosts are told of it.
+v1::AssignedSchedule ToAssigned(const storage::ScheduleRecord& schedule);
 
 v1::Family ToProto(const machine::MachineFamily& family);
 v1::Machine ToProto(const storage::MachineRecord& record);

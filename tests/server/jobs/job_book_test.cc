@@ -20,6 +20,20 @@ using storage::JobState;
 
 class JobBookTest : public testing::Test {
  protected:
+  // What is asked for in vain, how it is refused, and what makes it so.
+  using Refusals =
+      std::vector<std::tuple<std::string, ErrorCode, std::function<void(v1::SubmitJobRequest&)>>>;
+  void RefusesEach(const Refusals& cases) {
+    for (const auto& [what, code, change] : cases) {
+      for (const bool validate_only : {false, true}) {
+        v1::SubmitJobRequest request = Simulate();
+        change(request);
+        request.set_validate_only(validate_only);
+        EXPECT_EQ(CodeOf(Submit(request)), code) << what;
+      }
+    }
+    EXPECT_EQ(Jobs(), 0);
+  }
   Result<v1::Job> Submit(const v1::SubmitJobRequest& request) {
     std::optional<Result<v1::Job>> answer;
     std::atomic<bool> done = false;
@@ -130,9 +144,8 @@ TEST_F(JobBookTest, TheSameRequestIsRecognisedWithManyParameters) {
 }
 
 TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
-  using Change = std::function<void(v1::SubmitJobRequest&)>;
   constexpr auto kInvalid = ErrorCode::kCellInvalidArgument;
-  const std::vector<std::tuple<std::string, ErrorCode, Change>> cases = {
+  const Refusals cases = {
       {"no kind", kInvalid, [](auto& r) { r.mutable_job()->clear_kind(); }},
       {"unknown kind", kInvalid,
        [](auto& r) { r.mutable_job()->set_kind(static_cast<v1::JobKind>(99)); }},
@@ -221,23 +234,14 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
        }},
   };
   config.limit_program_bytes = 2048;
-  for (const auto& [what, code, change] : cases) {
-    for (const bool validate_only : {false, true}) {
-      v1::SubmitJobRequest request = Simulate();
-      change(request);
-      request.set_validate_only(validate_only);
-      EXPECT_EQ(CodeOf(Submit(request)), code) << what;
-    }
-  }
-  EXPECT_EQ(Jobs(), 0);
+  RefusesEach(cases);
   EXPECT_TRUE(Submit(Simulate(std::string(2047, ';') + "\n")));
 }
 
 // LIVE-5.01, LIVE-5.02: a RUN has what moves a machine and nothing else, and is attempted once.
 TEST_F(JobBookTest, ARunAsksForNothingOfASimulation) {
-  using Change = std::function<void(v1::SubmitJobRequest&)>;
   constexpr auto kInvalid = ErrorCode::kCellInvalidArgument;
-  const std::vector<std::tuple<std::string, ErrorCode, Change>> cases = {
+  const Refusals cases = {
       {"RUN options of a check", kInvalid, [](auto& r) { r.mutable_job()->mutable_run(); }},
       {"RUN with what simulates", kInvalid,
        [](auto& r) {
@@ -260,16 +264,7 @@ TEST_F(JobBookTest, ARunAsksForNothingOfASimulation) {
          r.mutable_job()->set_kind(v1::JOB_KIND_RUN);
          r.mutable_job()->mutable_run()->mutable_step()->set_step(3);
        }}};
-  for (const auto& [what, code, change] : cases) {
-    for (const bool validate_only : {false, true}) {
-      v1::SubmitJobRequest request = Simulate();
-      change(request);
-      request.set_validate_only(validate_only);
-      EXPECT_EQ(CodeOf(Submit(request)), code) << what;
-    }
-  }
-  EXPECT_EQ(Jobs(), 0);
-  EXPECT_TRUE(Submit(Simulate(std::string(2047, ';') + "\n")));
+  RefusesEach(cases);
 }
 
 // RML1-5A.01, OPT-B.08: the parameters of a job go over those of its machine, and must fit together
