@@ -55,6 +55,11 @@ struct FamilyInfo {
   double override_min_percent = 1.0;    // of the feed rate, where a person sets it at a machine
   double override_max_percent = 100.0;
   bool has_repeat = false;  // the mode REPEAT
+  // Keys that move its axes by hand; empty: none. In MANUAL alone, as one of the modes that a panel
+  // with such keys has, with references; or whatever the mode is.
+  std::string_view jog_axes{};  // "X Y Z A B C"
+  bool jogs_in_manual = false;
+  bool cover_stops_jog = false;  // it has a cover, and keys move nothing while that is open
   // What finds the reference of the axes, as a program; empty: they have it always. Started from
   // the console it is followed by the program of a slot; 0: by none.
   std::string_view zero_program{};

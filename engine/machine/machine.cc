@@ -8,15 +8,10 @@
 #include "engine/core/check.h"
 #include "engine/core/number_text.h"
 #include "engine/machine/machine_states.h"
+#include "engine/machine/refusal.h"
 
 namespace rmlcell::machine {
 namespace {
-
-Error NotNow(MachineState state, std::string_view possible) {
-  return {ErrorCode::kCellMachineState,
-          "the machine is " + Told("state", Name(state)) + ": " + std::string(possible),
-          {}};
-}
 
 // What the machine itself takes, and not what is done to it from outside or to its memory. HOLD,
 // STOP and ABORT find nothing to do.
@@ -26,7 +21,8 @@ constexpr bool kNeedsPower =
     std::is_same_v<Input, ResumeRun> || std::is_same_v<Input, Acknowledge> ||
     std::is_same_v<Input, ChangeMode> || std::is_same_v<Input, ChangeOverride> ||
     std::is_same_v<Input, WriteVariable> || std::is_same_v<Input, SetBreakpoints> ||
-    std::is_same_v<Input, SetSimulation> || std::is_same_v<Input, ClearMessage>;
+    std::is_same_v<Input, SetSimulation> || std::is_same_v<Input, ClearMessage> ||
+    std::is_same_v<Input, PressJog>;
 
 }  // namespace
 
@@ -62,6 +58,7 @@ Status Machine::Take(MachineNote note) {
   now_ = note.time;
   on_ = note.on;
   emergency_ = note.emergency;
+  cover_open_ = note.cover_open;
   mode_ = note.mode;
   override_percent_ = note.override_percent;
   simulation_ = note.simulation;
@@ -78,6 +75,7 @@ std::string Machine::Save() const {
   return WriteMachineNote({.time = now_,
                            .on = on_,
                            .emergency = emergency_,
+                           .cover_open = cover_open_,
                            .mode = mode_,
                            .override_percent = override_percent_,
                            .simulation = simulation_,
@@ -105,6 +103,7 @@ Progress Machine::Advance(SimTime until) {
       run_->Stand(of_run);
     }
   }
+  AdvanceJog(until);
   now_ = until;
   return Progress::kReached;
 }
@@ -167,6 +166,7 @@ void Machine::GoHome(const Outcome& outcome) {
 MachineState Machine::state() const {
   if (!on_) return MachineState::kOff;
   if (!alarms_.empty()) return MachineState::kAlarm;
+  if (jog_.moves()) return jog_.asks() ? MachineState::kJogging : MachineState::kStopping;
   if (run_ == nullptr)
     return standing_->state().zeroed ? MachineState::kIdle : MachineState::kNotZeroed;
   if (run_->state().phase == RunPhase::kHalted) return MachineState::kHeld;
@@ -184,7 +184,11 @@ MachineStatus Machine::status() const {
                        .alarms = alarms_,
                        .shown = shown_,
                        .message = message_};
-  if (run_ == nullptr) return status;
+  if (jog_.moves()) status.run.tip_speed_mm_s = jog_.tip_speed_mm_s();
+  if (run_ == nullptr) {
+    status.run.door_open = status.run.door_open || cover_open_;
+    return status;
+  }
   status.open = note_;
   const RunState& run = status.run;
   if (run.place.step > 0) {
@@ -272,6 +276,7 @@ Error Machine::Refusal(ErrorCode code) const {
   if (now == MachineState::kNotZeroed && code == family_.info().not_zeroed)
     return {code, "START with axes that have no reference", {}};
   return NotNow(now, now == MachineState::kHeld ? "resume or abort the run"
+                     : jog_.moves()             ? kReleaseKeys
                      : run_ != nullptr          ? "a run is open; hold or abort it"
                                                 : "no run is open; start one");
 }
@@ -335,6 +340,7 @@ Status Machine::Act(const ZeroAxes& /*input*/) {
     return Error{ErrorCode::kCellMode, "ZERO works in MANUAL, and from the console in REMOTE", {}};
   if (next.code) return Refusal(*next.code);
   if (run_ != nullptr) return NotNow(state(), "a run is open; end it first");
+  if (jog_.moves()) return NotNow(state(), kReleaseKeys);
   Translation zero =
       family_.Translate({.bytes = info.zero_program}, parameters_, {.advice = false});
   RMLCELL_CHECK(zero.ok);
@@ -369,6 +375,7 @@ void Machine::Hold() {
 }
 
 void Machine::Halt(InputKind key) {
+  jog_.Brake();
   if (run_ == nullptr || run_->state().phase == RunPhase::kHalted) return;
   resume_behind_ = false;
   // What is moved by hand is over where it comes to rest.
@@ -388,8 +395,7 @@ Status Machine::Act(const StopRun& /*input*/) {
 }
 
 Status Machine::Act(const AbortRun& /*input*/) {
-  if (run_ == nullptr) return {};
-  abort_behind_ = true;
+  if (run_ != nullptr) abort_behind_ = true;
   Halt(InputKind::kStop);
   return {};
 }
@@ -398,6 +404,7 @@ Status Machine::Act(const AbortRun& /*input*/) {
 Status Machine::Act(const EmergencyStop& input) {
   emergency_ = input.pressed;
   if (!input.pressed || !on_) return {};
+  jog_.Freeze();
   const Place place = run_ != nullptr ? run_->state().place : Place{};
   const bool ends_run = run_ != nullptr;
   const ErrorCode code = family_.info().emergency_stop;
@@ -430,7 +437,8 @@ Status Machine::Act(const ChangeMode& input) {
     return Error{
         ErrorCode::kCellMode, Told("machine", family_.info().title) + " has no mode REPEAT", {}};
   }
-  if (run_ != nullptr && note_.by_hand) return NotNow(state(), "it moves by hand; stop it first");
+  if (state() == MachineState::kJogging || (run_ != nullptr && note_.by_hand))
+    return NotNow(state(), "it moves by hand; stop it first");
   // A job of the queue goes on in REMOTE alone. LIVE-2.11
   const bool leaves_queue = note_.source == StartSource::kQueue && input.mode != Mode::kRemote;
   if (input.mode == Mode::kManual || (run_ != nullptr && leaves_queue)) {
@@ -457,6 +465,7 @@ Status Machine::Act(const ChangeOverride& input) {
   }
   override_percent_ = input.percent;
   if (run_ != nullptr) ToRun(InputKind::kOverride, 0, input.percent);
+  AskJog();
   return {};
 }
 
@@ -477,6 +486,8 @@ Status Machine::Act(const ChangeInput& input) {
 // An open door acts as STOP. OPT-B.34
 Status Machine::Act(const MoveDoor& input) {
   const RunState before = status().run;
+  cover_open_ = input.open && family_.info().cover_stops_jog;
+  if (input.open) jog_.Brake();
   if (before.door_open == input.open) return {};
   if (input.open) resume_behind_ = false;
   const bool goes_on = run_ != nullptr && before.phase == RunPhase::kRunning;
@@ -494,6 +505,7 @@ Status Machine::Act(const SwitchPower& input) {
     run_->End(OutcomeKind::kStopped, ErrorCode::kCellPowerOff);
     CloseRun();
   }
+  jog_.Freeze();
   on_ = input.on;
   if (on_) {
     if (emergency_) Raise(family_.info().emergency_stop, {}, {});

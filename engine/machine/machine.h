@@ -13,6 +13,8 @@
 #include "engine/core/result.h"
 #include "engine/core/units.h"
 #include "engine/machine/family.h"
+#include "engine/machine/hand_jog.h"
+#include "engine/machine/hand_motion.h"
 #include "engine/machine/machine_input.h"
 #include "engine/machine/machine_note.h"
 #include "engine/machine/machine_states.h"
@@ -72,7 +74,8 @@ class Machine {
   //   CellMode           the mode or the source does not
   //   NotZeroed          START with axes that have no reference
   //   the alarm's own    START and RESUME while there is one
-  //   CellNotLive        it is off
+  //   CellNotLive        it is off, or has no such keys
+  //   CellDoorOpen       a jog key, with the cover open
   //   CellInvalidArgument, ProgramMissing and the like: what the input names is none
   Status Apply(const MachineInput& input);
 
@@ -83,6 +86,8 @@ class Machine {
   SimTime time() const { return now_; }
   MachineState state() const;
   MachineStatus status() const;
+  // When a jog key is let go, at the present override; `fast` as in PressJog. None: it has no keys.
+  std::optional<RunOn> run_on(bool fast = false) const;
   Panel panel() const;  // what is to be seen at the machine itself
   const MachineMemory& memory() const { return memory_; }
 
@@ -133,12 +138,18 @@ class Machine {
   Status Act(const DeleteProgram& input);
   Status Act(const SetSchedules& input);
   Status Act(const ClearMessage& input);
+  Status Act(const PressJog& input);
+  Status Act(const ReleaseJog& input);
+  Status Act(const ReleaseJogs& input);
 
   StateGuards guards() const;
   Error Refusal(ErrorCode code) const;
   Status MayStart(const StartRun& input) const;
   Status Begin(const StartRun& input, Mode mode, bool by_hand = false);
   void GoHome(const Outcome& outcome);
+  Status MayJog(const JogKey& key) const;
+  void AskJog();
+  void AdvanceJog(SimTime until);
   Status MaySource(StartSource source) const;
   void ToRun(InputKind kind, int index = 0, double value = 0.0);
   void Hold();
@@ -156,7 +167,8 @@ class Machine {
 
   SimTime now_{0};
   bool on_ = true;
-  bool emergency_ = false;  // the key is down
+  bool emergency_ = false;   // the key is down
+  bool cover_open_ = false;  // of a machine whose cover stops the jog keys
   Mode mode_ = Mode::kRemote;
   double override_percent_ = 100.0;
   std::vector<Breakpoint> breakpoints_;
@@ -167,6 +179,7 @@ class Machine {
   std::optional<ErrorCode> message_;  // not cleared yet
   RunNote note_{};                    // of the run that was begun last
   std::unique_ptr<Standing> standing_;
+  HandJog jog_;                 // moves nothing while a run is open
   std::unique_ptr<Run> run_;    // open
   bool stopping_ = false;       // a HOLD or STOP of this run has not halted it yet
   bool resume_behind_ = false;  // it was taken back meanwhile: START follows the halt

@@ -8,6 +8,7 @@
 
 #include "engine/machine/inputs.h"
 #include "engine/machine/run_setup.h"
+#include "engine/motion/kinematics/kinematics.h"
 
 namespace rmlcell::machine {
 
@@ -85,10 +86,30 @@ struct SetSchedules {
 // OPT-4.06, 4.29
 struct ClearMessage {};
 
+// A key that moves an axis as long as it is down. C does nothing. OPT-4.20, LIVE-8.03
+enum class JogAxis : std::uint8_t { kX, kY, kZ, kA, kB, kC };
+struct JogKey {
+  JogAxis axis = JogAxis::kX;
+  bool plus = true;
+
+  bool operator==(const JogKey&) const = default;
+};
+using JogReference = motion::JogMode;  // ROB, ABS, TCP: OPT-4.21
+struct PressJog {
+  JogKey key{};
+  JogReference reference = JogReference::kRobot;  // a mill has none
+  bool fast = false;                              // of a mill
+};
+struct ReleaseJog {
+  JogKey key{};
+};
+// As if every key were released: whoever holds them is not heard any more. LIVE-7.05
+struct ReleaseJogs {};
+
 using MachineInput =
     std::variant<StartRun, ZeroAxes, ResumeRun, HoldRun, StopRun, AbortRun, EmergencyStop,
                  Acknowledge, ChangeMode, ChangeOverride, ChangeInput, MoveDoor, SwitchPower,
                  WriteVariable, SetBreakpoints, SetSimulation, StoreProgram, DeleteProgram,
-                 SetSchedules, ClearMessage>;
+                 SetSchedules, ClearMessage, PressJog, ReleaseJog, ReleaseJogs>;
 
 }  // namespace rmlcell::machine

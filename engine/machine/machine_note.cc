@@ -128,6 +128,8 @@ bool TakeLine(std::string_view line, MachineNote& note) {
     words.Take(note.on);
   } else if (key == "emergency") {
     words.Take(note.emergency);
+  } else if (key == "cover_open") {
+    words.Take(note.cover_open);
   } else if (key == "mode") {
     const auto mode =
         std::ranges::find(kModes, words.Next(), static_cast<std::string_view (*)(Mode)>(&Name));
@@ -186,6 +188,7 @@ std::string WriteMachineNote(const MachineNote& note) {
   lines.Add("time", note.time.count());
   lines.Add("on", note.on ? 1 : 0);
   lines.Add("emergency", note.emergency ? 1 : 0);
+  if (note.cover_open) lines.Add("cover_open", 1);
   lines.Add("mode", Name(note.mode));
   lines.Add("override", note.override_percent);
   if (note.simulation) lines.Add("simulation", note.simulation->program, note.simulation->step);

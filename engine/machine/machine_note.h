@@ -37,6 +37,7 @@ struct MachineNote {
   SimTime time{0};
   bool on = true;
   bool emergency = false;  // the key is down
+  bool cover_open = false;
   Mode mode = Mode::kRemote;
   double override_percent = 100.0;
   std::optional<ProgramStep> simulation{};

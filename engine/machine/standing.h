@@ -4,8 +4,10 @@
 #include <string>
 #include <string_view>
 
+#include "engine/machine/hand_motion.h"
 #include "engine/machine/inputs.h"
 #include "engine/machine/run.h"
+#include "engine/motion/geometry/pose.h"
 
 namespace rmlcell::machine {
 
@@ -29,6 +31,13 @@ class Standing {
 
   // An input or the door; keys and the override do nothing here.
   virtual void Apply(const InputChange& /*input*/) {}
+
+  // How jog keys move it now, at this override, or fast where it has that; none: they do not.
+  virtual std::optional<HandMotion> ByHand(double /*override_percent*/, bool /*fast*/) const {
+    return {};
+  }
+  // Moved by hand it stands here now.
+  virtual void MoveTo(const motion::AxisPose& /*axes*/) {}
 
   // A run is over: what would go on by itself stops. LIVE-2.04
   virtual void Rest() {}

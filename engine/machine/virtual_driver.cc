@@ -37,9 +37,15 @@ SimTime VirtualDriver::LateAt(SimTime clock) const {
   return SimTime(std::llround(static_cast<double>(behind.count()) / factor_));
 }
 
+bool VirtualDriver::Moves() const {
+  const MachineState state = machine_->state();
+  return state == MachineState::kJogging || state == MachineState::kStopping ||
+         machine_->status().open;
+}
+
 Progress VirtualDriver::Pump(SimTime clock) {
   const SimTime slept = clock - std::exchange(last_, clock);
-  if (slept > kMadeUp && machine_->status().open) {
+  if (slept > kMadeUp && Moves()) {
     GiveUp(LateAt(clock), clock);
     return Progress::kReached;
   }

@@ -9,7 +9,7 @@ namespace rmlcell::machine {
 // Drives a virtual machine along a clock: its time is `factor` times as fast, in every state
 // (LIVE-3.11). What it is late by is made up for, up to kMadeUp of the clock; beyond that its time
 // goes on from where it stands: it never jumps, and nothing is left out (LIVE-3.14). So whoever has
-// a run open calls more often than that; a machine without one may sleep.
+// a run open, or moves the machine by hand, calls more often than that; one that stands may sleep.
 class VirtualDriver final : public MachineDriver {
  public:
   static constexpr double kFactorMin = 0.1;
@@ -37,6 +37,7 @@ class VirtualDriver final : public MachineDriver {
  private:
   SimTime DueAt(SimTime clock) const;
   SimTime LateAt(SimTime clock) const;  // of the clock
+  bool Moves() const;                   // a run is open, or it is moved by hand
   void Anchor(SimTime clock);
   void GiveUp(SimTime late, SimTime clock);
 

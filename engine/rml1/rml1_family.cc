@@ -31,6 +31,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .clamps_parameter = "CLAMP_HEIGHT",
                                        .override_min_percent = kOverrideMin,
                                        .override_max_percent = 145.0,
+                                       .jog_axes = "X Y Z A",
+                                       .cover_stops_jog = true,
                                        .start_takes_back = true,
                                        .has_breakpoints = true,
                                        .torn = ErrorCode::kRml1IncompleteCommand};

@@ -1,5 +1,7 @@
 #include "engine/rml1/standing.h"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "engine/rml1/machine_state.h"
@@ -7,6 +9,14 @@
 #include "engine/rml1/variables.h"
 
 namespace rmlcell::rml1 {
+namespace {
+
+// No manual says how fast the keys of a panel are, nor how far a tap goes: LIVE-8.03. Of the rotary
+// axis likewise, in degrees.
+constexpr double kJogSlow = 1.0;
+constexpr double kJogStep = 0.01;
+
+}  // namespace
 
 Result<std::unique_ptr<machine::Standing>> MillStanding::Make(Profile profile,
                                                               std::string_view machine_state) {
@@ -44,6 +54,42 @@ std::optional<machine::VariableValue> MillStanding::ReadVariable(std::string_vie
 
 std::vector<machine::ModalValue> MillStanding::modal_values() const {
   return ModalRegisters(device_, *profile_, tool());
+}
+
+std::optional<machine::HandMotion> MillStanding::ByHand(double /*override_percent*/,
+                                                        bool fast) const {
+  constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+  const motion::MachineLimits limits = MillLimits(*profile_);
+  const double mm = 1.0 / profile_->units_per_mm;
+  machine::HandMotion how;
+  how.machine = {.head = motion::MillHead(),
+                 .axes = limits.axes,
+                 .tip_acceleration_mm_s2 = limits.tip_acceleration_mm_s2,
+                 .tip_jerk_mm_s3 = limits.tip_jerk_mm_s3};
+  motion::AxisLimits& axes = how.machine.axes;
+  axes.jerk.setConstant(kNoEnd);
+  axes.travel_min = {profile_->x.low * mm, profile_->y.low * mm, profile_->z.low * mm, -kNoEnd,
+                     0.0};
+  axes.travel_max = {profile_->x.high * mm, profile_->y.high * mm, profile_->z.high * mm, kNoEnd,
+                     0.0};
+  // The highest of Z is that of V and !VZ, which the way down is limited to in programs, too.
+  how.plus = axes.speed;
+  const motion::AxisValues slow = {kJogSlow, kJogSlow, kJogSlow, kJogSlow * kRadPerDegree, 0.0};
+  if (!fast) how.plus = how.plus.cwiseMin(slow);
+  if (!profile_->has_y) how.plus[1] = 0.0;
+  if (!profile_->has_rotary) how.plus[3] = 0.0;
+  how.minus = how.plus;
+  how.least = {kJogStep, kJogStep, kJogStep, kJogStep * kRadPerDegree, 0.0};
+  return how;
+}
+
+void MillStanding::MoveTo(const motion::AxisPose& axes) {
+  const double units = profile_->units_per_mm;
+  const double sense = profile_->rotary_reversed ? -1.0 : 1.0;
+  device_.Restore(device_.registers(), {.x = axes.column.x() * units,
+                                        .y = axes.column.y() * units,
+                                        .z = axes.column.z() * units,
+                                        .a = sense * axes.a_rad / kRadPerDegree});
 }
 
 void MillStanding::Rest() {

@@ -9,8 +9,8 @@
 
 namespace rmlcell::rml1 {
 
-// A mill between two streams: its axes have their reference, and it has neither inputs nor a door
-// that it knows of (RML1-7.08).
+// A mill between two streams: its axes have their reference, and it has no inputs (RML1-7.08). Of
+// its cover the machine knows.
 class MillStanding final : public machine::Standing {
  public:
   // Errors: CellBadText for a machine state that is none.
@@ -20,6 +20,9 @@ class MillStanding final : public machine::Standing {
   machine::RunState state() const override;
   std::optional<machine::VariableValue> ReadVariable(std::string_view name) const override;
   std::vector<machine::ModalValue> modal_values() const override;
+  // LIVE-8.03. No override changes it.
+  std::optional<machine::HandMotion> ByHand(double override_percent, bool fast) const override;
+  void MoveTo(const motion::AxisPose& axes) override;
   void Rest() override;        // the spindle stands
   void CyclePower() override;  // a new machine: RML1-7.08
   std::string Save() const override;

@@ -11,7 +11,7 @@ class Area:
 
 AREAS = {
     "motion": Area(("engine/core", "engine/machine", "engine/motion/geometry", "engine/motion/profile",
-                    "engine/motion/kinematics", "engine/motion/corner", "engine/motion/planner", "engine/motion/ride"),
+                    "engine/motion/kinematics", "engine/motion/corner", "engine/motion/planner", "engine/motion/ride", "engine/motion/jog"),
                    ("core_test", "machine_test", "motion_test", "motion_reference_test", "rml1_test",
                     "simulation_test", "optimo_control_test", "optimo_language_test",
                     "motion_property_test")),

@@ -18,7 +18,8 @@ KINEMATICS = "engine/motion/kinematics"
 CORNER = "engine/motion/corner"
 PLANNER = "engine/motion/planner"
 RIDE = "engine/motion/ride"
-MOTION = [GEOMETRY, PROFILE, KINEMATICS, CORNER, PLANNER, RIDE]  # each may include those before it
+JOG = "engine/motion/jog"
+MOTION = [GEOMETRY, PROFILE, KINEMATICS, CORNER, PLANNER, RIDE, JOG]  # each may include those before it
 ENGINE = ["engine/core", "engine/machine"] + MOTION
 PATH = "engine/simulation/path"
 REPORT = "engine/simulation/report"
@@ -36,6 +37,7 @@ MAY_INCLUDE = {
     CORNER: ["engine/core", GEOMETRY, PROFILE, KINEMATICS],
     PLANNER: ["engine/core", GEOMETRY, PROFILE, KINEMATICS, CORNER],
     RIDE: ["engine/core", GEOMETRY, PROFILE, KINEMATICS, PLANNER],
+    JOG: ["engine/core", GEOMETRY, PROFILE, KINEMATICS],
     "engine/machine": ["engine/core"] + MOTION,
     "engine/rml1": ENGINE,
     "engine/rml1/offline": ENGINE + ["engine/rml1"],
@@ -107,7 +109,8 @@ PUBLIC = {
     CORNER: ["corner.h", "axes_corner.h"],
     PLANNER: ["planner.h", "feed_steps.h"],
     RIDE: ["trajectory.h", "interruption.h", "ride_protocol.h", "path_ride.h"],
-    "engine/machine": ["bytes.h", "driver.h", "family.h", "language_word.h", "machine.h", "machine_note.h", "machine_states.h", "machine_status.h", "panel.h", "run.h", "standing.h", "virtual_driver.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "variable.h", "verdict.h",
+    JOG: ["jog_drive.h"],
+    "engine/machine": ["bytes.h", "driver.h", "family.h", "hand_motion.h", "language_word.h", "machine.h", "machine_note.h", "machine_states.h", "machine_status.h", "panel.h", "run.h", "standing.h", "virtual_driver.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "variable.h", "verdict.h",
                        "tools.h", "editing.h", "run_setup.h", "outcome.h", "inputs.h", "program_file.h"],
     "engine/rml1": ["rml1_family.h", "action.h", "clipping.h", "command_reader.h", "command_table.h", "device.h", "figures.h", "finding.h",
                     "number.h", "physical.h", "profile.h", "programmed.h", "registers.h", "verdict_rules.h"],

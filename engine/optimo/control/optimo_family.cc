@@ -42,6 +42,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .override_min_percent = 10.0,  // OPT-4.34
                                        .override_max_percent = 145.0,
                                        .has_repeat = true,
+                                       .jog_axes = "X Y Z A B C",  // OPT-4.20
+                                       .jogs_in_manual = true,
                                        .zero_program = "ZERO\n",
                                        .home_program = 4,  // OPT-4.50
                                        .has_dry_run = true,

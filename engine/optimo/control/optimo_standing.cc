@@ -1,12 +1,29 @@
 #include "engine/optimo/control/optimo_standing.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "engine/motion/kinematics/kinematics.h"
 #include "engine/optimo/control/modal_values.h"
 #include "engine/optimo/machine/situation.h"
 
 namespace rmlcell::optimo {
+namespace {
+
+// Of the machine's speed, at the ten steps of the override: 10, 25 .. 145 %. OPT-4.34, OPT-4.35
+constexpr std::array kJogShares = {0.0005, 0.003, 0.01, 0.03, 0.09, 0.15, 0.21, 0.27, 0.33, 0.40};
+
+// Between two steps it is the lower one.
+double JogShareOf(double override_percent) {
+  constexpr double kFirst = 10.0;
+  constexpr double kApart = 15.0;
+  const double step = std::floor((override_percent - kFirst) / kApart + 1e-9);
+  return kJogShares[static_cast<std::size_t>(
+      std::clamp(step, 0.0, static_cast<double>(kJogShares.size() - 1)))];
+}
+
+}  // namespace
 
 machine::RunState OptimoStanding::state() const {
   machine::RunState state;
@@ -70,6 +87,22 @@ void OptimoStanding::Apply(const machine::InputChange& input) {
     default:
       break;
   }
+}
+
+std::optional<machine::HandMotion> OptimoStanding::ByHand(double override_percent,
+                                                          bool /*fast*/) const {
+  const motion::MachineLimits& limits = parameters_.limits;
+  machine::HandMotion how;
+  how.machine = {.head = HeadOf(s_.tool, parameters_),
+                 .axes = limits.axes,
+                 .tip_acceleration_mm_s2 = limits.tip_acceleration_mm_s2,
+                 .tip_jerk_mm_s3 = limits.tip_jerk_mm_s3};
+  how.plus.head<3>().setConstant(limits.tip_speed_mm_s);
+  how.plus.tail<2>() = limits.axes.speed.tail<2>();
+  how.plus *= JogShareOf(override_percent);
+  how.minus = how.plus;
+  how.tool_z_down = s_.tool.offset.z_mm < s_.tool.reference[2];  // OPT-4.55
+  return how;
 }
 
 void OptimoStanding::CyclePower() {

@@ -21,6 +21,9 @@ class OptimoStanding final : public machine::Standing {
   std::vector<machine::ModalValue> modal_values() const override;
   std::optional<machine::ProgramStep> simulation_until() const override { return s_.simul; }
   void Apply(const machine::InputChange& input) override;
+  // At the step of the jog table that the override stands for. OPT-4.35
+  std::optional<machine::HandMotion> ByHand(double override_percent, bool fast) const override;
+  void MoveTo(const motion::AxisPose& axes) override { s_.axes = axes; }
   // No reference, no TCP, no BREAK and no SIMUL; outputs and images are 0, and what a program has
   // counted stays. OPT-4.68, OPT-6.08, OPT-6.30, OPT-7.63
   void CyclePower() override;

@@ -1,0 +1,94 @@
+#include "engine/machine/hand_jog.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/motion/profile/speed_profile.h"
+
+namespace rmlcell::machine {
+
+bool HandJog::asks() const { return std::ranges::find(key_, Key::kDown) != key_.end(); }
+
+// Keys add; along a tool that points the other way Z and, to stay right-handed, Y count backwards.
+motion::AxisValues HandJog::Speeds(const HandMotion& how) const {
+  motion::AxisValues speeds;
+  for (int axis = 0; axis < motion::kAxisCount; ++axis) {
+    const auto first = 2 * static_cast<std::size_t>(axis);
+    if (key_[first] == Key::kDown) speeds[axis] += how.plus[axis];
+    if (key_[first + 1] == Key::kDown) speeds[axis] -= how.minus[axis];
+  }
+  if (drive_->mode() == motion::JogMode::kTool && how.tool_z_down) {
+    speeds[1] = -speeds[1];
+    speeds[2] = -speeds[2];
+  }
+  return speeds;
+}
+
+void HandJog::Press(const PressJog& press, const HandMotion& how, const motion::AxisPose& at,
+                    SimTime now) {
+  Key& key = key_[IndexOf(press.key)];
+  if (press.key.axis == JogAxis::kC) return;
+  if (drive_ && (drive_->mode() != press.reference || fast_ != press.fast)) {
+    key = Key::kDown;
+    return Brake();
+  }
+  if (key == Key::kDown) return;
+  if (!drive_) {
+    drive_.emplace(how.machine, press.reference, at);
+    fast_ = press.fast;
+    begun_ = now;
+  }
+  key = Key::kDown;
+  Ask(how);
+}
+
+void HandJog::Release(const JogKey& key, const HandMotion& how) {
+  if (std::exchange(key_[IndexOf(key)], Key::kUp) != Key::kDown) return;
+  drive_->Demand(Speeds(how), how.least);
+  Settle();
+}
+
+void HandJog::ReleaseAll() {
+  Brake();
+  key_.fill(Key::kUp);
+}
+
+void HandJog::Ask(const HandMotion& how) {
+  if (asks()) drive_->Demand(Speeds(how));
+}
+
+void HandJog::Brake() {
+  std::ranges::replace(key_, Key::kDown, Key::kSpent);
+  if (drive_) drive_->Brake();
+  Settle();
+}
+
+void HandJog::Freeze() {
+  std::ranges::replace(key_, Key::kDown, Key::kSpent);
+  drive_.reset();
+}
+
+void HandJog::Advance(SimTime until) {
+  if (drive_) drive_->Advance(ToSeconds(until - begun_));
+}
+
+void HandJog::Settle() {
+  if (drive_ && !asks() && drive_->rests()) drive_.reset();
+}
+
+RunOn RunOnOf(const HandMotion& how) {
+  RunOn on;
+  for (int axis = 0; axis < motion::kAxisCount; ++axis) {
+    const motion::AxisLimits& axes = how.machine.axes;
+    const double speed = std::min(std::max(how.plus[axis], how.minus[axis]), axes.speed[axis]);
+    if (!(speed > 0.0)) continue;
+    const double way = motion::RampLength(
+        speed, 0.0,
+        {.speed = speed, .acceleration = axes.acceleration[axis], .jerk = axes.jerk[axis]});
+    double& most = axis < 3 ? on.mm : on.rad;
+    most = std::max(most, way);
+  }
+  return on;
+}
+
+}  // namespace rmlcell::machine

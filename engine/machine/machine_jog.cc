@@ -1,0 +1,92 @@
+#include <string>
+
+#include "engine/machine/machine.h"
+#include "engine/machine/machine_states.h"
+#include "engine/machine/refusal.h"
+
+// The machine moved by its jog keys, while no run is open. LIVE-8.01 to 8.05
+namespace rmlcell::machine {
+namespace {
+
+constexpr std::string_view kJogNames = "XYZABC";
+
+}  // namespace
+
+// LIVE-2.10, x7
+Status Machine::MayJog(const JogKey& key) const {
+  const FamilyInfo& info = family_.info();
+  if (info.jog_axes.empty()) {
+    return Error{ErrorCode::kCellNotLive,
+                 Told("machine", info.title) + " has no keys that move its axes",
+                 {}};
+  }
+  const std::string name(1, kJogNames[static_cast<std::size_t>(key.axis)]);
+  if (info.jog_axes.find(name) == std::string_view::npos)
+    return Error{
+        ErrorCode::kCellInvalidArgument,
+        "there is no jog key " + Told("axis", name) + ", only " + Told("axes", info.jog_axes),
+        {}};
+  StateGuards now = guards();
+  now.manual = mode_ == Mode::kManual || !info.jogs_in_manual;
+  const Transition next = Next(state(), MachineEvent::kMoveByHand, now);
+  if (next.code == ErrorCode::kCellMode)
+    return Error{ErrorCode::kCellMode,
+                 "the mode is " + Told("mode", Name(mode_)) + ": jog keys work in MANUAL",
+                 {}};
+  if (next.code) return Refusal(*next.code);
+  if (run_ != nullptr) return NotNow(state(), "a run is open; end it first");
+  if (jog_.IsSpent(key)) return NotNow(state(), "the key was down when it stopped; release it");
+  if (cover_open_) return Error{ErrorCode::kCellDoorOpen, "the cover is open", {}};
+  return {};
+}
+
+Status Machine::Act(const PressJog& input) {
+  if (const Status may = MayJog(input.key); !may) return may.error();
+  const FamilyInfo& info = family_.info();
+  PressJog press = input;
+  if (info.jogs_in_manual) {
+    press.fast = false;
+  } else {
+    press.reference = JogReference::kRobot;
+  }
+  const std::optional<HandMotion> how = standing_->ByHand(override_percent_, press.fast);
+  const auto axis = static_cast<int>(press.key.axis);
+  if (!how || (axis < motion::kAxisCount && how->plus[axis] == 0.0))
+    return Error{ErrorCode::kCellInvalidArgument,
+                 "the machine has no axis " +
+                     Told("axis", std::string(1, kJogNames[static_cast<std::size_t>(axis)])),
+                 {}};
+  jog_.Press(press, *how, standing_->state().axes, now_);
+  return {};
+}
+
+Status Machine::Act(const ReleaseJog& input) {
+  if (const auto how = standing_->ByHand(override_percent_, jog_.fast()))
+    jog_.Release(input.key, *how);
+  return {};
+}
+
+Status Machine::Act(const ReleaseJogs& /*input*/) {
+  jog_.ReleaseAll();
+  return {};
+}
+
+// The override is another one.
+void Machine::AskJog() {
+  if (!jog_.asks()) return;
+  if (const auto how = standing_->ByHand(override_percent_, jog_.fast())) jog_.Ask(*how);
+}
+
+void Machine::AdvanceJog(SimTime until) {
+  if (!jog_.moves()) return;
+  jog_.Advance(until);
+  standing_->MoveTo(jog_.axes());
+  jog_.Settle();
+}
+
+std::optional<RunOn> Machine::run_on(bool fast) const {
+  const std::optional<HandMotion> how = standing_->ByHand(override_percent_, fast);
+  return how ? std::optional(RunOnOf(*how)) : std::nullopt;
+}
+
+}  // namespace rmlcell::machine
