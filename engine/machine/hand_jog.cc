@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/motion/profile/speed_profile.h"
-
 namespace rmlcell::machine {
 
 bool HandJog::asks() const { return std::ranges::find(key_, Key::kDown) != key_.end(); }
@@ -76,17 +74,15 @@ void HandJog::Settle() {
   if (drive_ && !asks() && drive_->rests()) drive_.reset();
 }
 
-RunOn RunOnOf(const HandMotion& how) {
+RunOn RunOnOf(const HandMotion& how, JogReference reference, const motion::AxisPose& at) {
   RunOn on;
   for (int axis = 0; axis < motion::kAxisCount; ++axis) {
-    const motion::AxisLimits& axes = how.machine.axes;
-    const double speed = std::min(std::max(how.plus[axis], how.minus[axis]), axes.speed[axis]);
-    if (!(speed > 0.0)) continue;
-    const double way = motion::RampLength(
-        speed, 0.0,
-        {.speed = speed, .acceleration = axes.acceleration[axis], .jerk = axes.jerk[axis]});
+    motion::JogDrive drive(how.machine, reference, at);
+    motion::AxisValues speeds;
+    speeds[axis] = std::max(how.plus[axis], how.minus[axis]);
+    drive.Demand(speeds);
     double& most = axis < 3 ? on.mm : on.rad;
-    most = std::max(most, way);
+    most = std::max(most, drive.RunsOn(axis));
   }
   return on;
 }

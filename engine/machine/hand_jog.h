@@ -53,6 +53,6 @@ class HandJog {
   std::optional<motion::JogDrive> drive_;
 };
 
-RunOn RunOnOf(const HandMotion& how);
+RunOn RunOnOf(const HandMotion& how, JogReference reference, const motion::AxisPose& at);
 
 }  // namespace rmlcell::machine

@@ -86,8 +86,10 @@ class Machine {
   SimTime time() const { return now_; }
   MachineState state() const;
   MachineStatus status() const;
-  // When a jog key is let go, at the present override; `fast` as in PressJog. None: it has no keys.
-  std::optional<RunOn> run_on(bool fast = false) const;
+  // When a jog key is let go, at the present override, of axes that are at their speed; `reference`
+  // and `fast` as in PressJog. None: it has no keys.
+  std::optional<RunOn> run_on(JogReference reference = JogReference::kRobot,
+                              bool fast = false) const;
   Panel panel() const;  // what is to be seen at the machine itself
   const MachineMemory& memory() const { return memory_; }
 

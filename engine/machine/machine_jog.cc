@@ -84,9 +84,11 @@ void Machine::AdvanceJog(SimTime until) {
   jog_.Settle();
 }
 
-std::optional<RunOn> Machine::run_on(bool fast) const {
+std::optional<RunOn> Machine::run_on(JogReference reference, bool fast) const {
   const std::optional<HandMotion> how = standing_->ByHand(override_percent_, fast);
-  return how ? std::optional(RunOnOf(*how)) : std::nullopt;
+  if (!how) return std::nullopt;
+  return RunOnOf(*how, family_.info().jogs_in_manual ? reference : JogReference::kRobot,
+                 standing_->state().axes);
 }
 
 }  // namespace rmlcell::machine

@@ -57,7 +57,7 @@ bool JogDrive::Channel::Fits(const PathState& now, double end, const PathLimits&
 void JogDrive::Channel::Aim(double t_s, double end_place) {
   if (wanted == 0.0) return;
   const double towards = wanted > 0.0 ? 1.0 : -1.0;
-  PathState now = profile.At(t_s - begun_s);
+  PathState now = StateAt(t_s);
   const bool stands = !(now.speed > 0.0);
   if (stands) {
     from = PlaceAt(t_s);
@@ -236,6 +236,34 @@ void JogDrive::ComeAsOne() {
   }
 }
 
+// For how long what moves as one is surely not so near to an end that it had to stop: by the
+// highest speed that it comes to, to rest and all.
+double JogDrive::SureFor() const {
+  AxisValues speed;
+  double stop_s = 0.0;
+  const double reach = mode_ == JogMode::kAbsolute ? machine_.head.reach_mm() : 0.0;
+  for (const std::size_t k : kAxes) {
+    if (!AsOne(k) || !channels_[k].MovesAt(now_s_)) continue;
+    const double most = channels_[k].profile.peak_speed();
+    const PathLimits& within = channels_[k].limits;
+    stop_s = std::max(stop_s, RampTime(most, 0.0, within) + within.acceleration / within.jerk);
+    if (mode_ == JogMode::kTool) {
+      speed.head<3>().array() += most;
+    } else {
+      speed[static_cast<int>(k)] += most;
+      if (k >= kA) speed.head<3>().array() += most * reach;
+    }
+  }
+  const AxisValues at = ValuesOf(anchor_.axes);
+  double sure_s = kNever;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    if (!(speed[axis] > 0.0)) continue;
+    const double room = std::min(at[axis] - low_[axis], high_[axis] - at[axis]);
+    sure_s = std::min(sure_s, room / speed[axis] - stop_s);
+  }
+  return sure_s;
+}
+
 // Whether what moves axes as one could still stop inside all travels a moment from now; if not, it
 // stops at the latest instant at which it can.
 void JogDrive::Look() {
@@ -243,13 +271,16 @@ void JogDrive::Look() {
   const auto moves = [this](std::size_t k) { return AsOne(k) && channels_[k].MovesAt(now_s_); };
   if (std::ranges::none_of(kAxes, moves)) return;
   const auto goes = [this](std::size_t k) { return AsOne(k) && channels_[k].wanted != 0.0; };
+  const bool turns = channels_[kA].MovesAt(now_s_) || channels_[kB].MovesAt(now_s_);
+  const bool short_steps = mode_ == JogMode::kTool && turns;
   if (std::ranges::none_of(kAxes, goes)) {
-    look_s_ = now_s_ + kLookAhead_s;  // for steps of the way that are short
+    if (short_steps) look_s_ = now_s_ + kLookAhead_s;  // for the sake of the way, see After
     return;
   }
   double high = now_s_ + kLookAhead_s;
-  if (ExcessOfStopAt(high) <= kOnLimit) {
-    look_s_ = high;
+  const double sure_s = SureFor();
+  if (sure_s > kLookAhead_s || ExcessOfStopAt(high) <= kOnLimit) {
+    look_s_ = short_steps ? high : std::max(high, now_s_ + sure_s);
     return;
   }
   double low = now_s_;
@@ -360,6 +391,11 @@ void JogDrive::Advance(double until_s) {
 bool JogDrive::rests() const {
   return std::ranges::none_of(channels_,
                               [this](const Channel& channel) { return channel.MovesAt(now_s_); });
+}
+
+double JogDrive::RunsOn(int channel) const {
+  const Channel& one = channels_[static_cast<std::size_t>(channel)];
+  return RampLength(std::abs(one.wanted), 0.0, one.limits);
 }
 
 // Rounding may leave it a last digit beyond an end.

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/motion/geometry/frames.h"
-#include "engine/motion/geometry/pose.h"
+#include "engine/motion/geometry/path.h"
 #include "engine/motion/kinematics/kinematics.h"
 #include "engine/motion/profile/speed_profile.h"
 
@@ -46,6 +46,8 @@ class JogDrive {
   bool rests() const;
   AxisPose axes() const;
   double tip_speed_mm_s() const;
+  // How far one of them runs on from the speed that is asked for now, when it is asked for no more.
+  double RunsOn(int channel) const;
   JogMode mode() const { return mode_; }
 
  private:
@@ -60,9 +62,15 @@ class JogDrive {
     bool due = false;      // the end of the profile was not looked at yet
 
     double ends_s() const { return begun_s + profile.duration_s(); }
-    double PlaceAt(double t_s) const { return from + sense * profile.PlaceAt(t_s - begun_s); }
-    double RateAt(double t_s) const { return sense * profile.At(t_s - begun_s).speed; }
     bool MovesAt(double t_s) const { return t_s < ends_s(); }
+    // By that alone, whatever rounding makes of the time since it began.
+    PathState StateAt(double t_s) const {
+      return MovesAt(t_s) ? profile.At(t_s - begun_s) : profile.end();
+    }
+    double PlaceAt(double t_s) const {
+      return from + sense * (MovesAt(t_s) ? profile.PlaceAt(t_s - begun_s) : profile.end().s);
+    }
+    double RateAt(double t_s) const { return sense * StateAt(t_s).speed; }
     bool Fits(const PathState& now, double end, const PathLimits& within) const;
     void Aim(double t_s, double end_place);
     void Stop(double t_s, double least);
@@ -87,6 +95,7 @@ class JogDrive {
   void AimOne(std::size_t channel);
   void AimAll();
   void ComeAsOne();
+  double SureFor() const;
   void Look();
   double ExcessOfStopAt(double t_s) const;
   Anchor After(const Channels& channels, const Anchor& anchor, double t_s) const;

@@ -379,15 +379,18 @@ TEST(JogDrive, NothingIsCutOffAtTheEnds) {
                       -2.0 + 4.0 * share()};
     const std::array modes = {JogMode::kRobot, JogMode::kAbsolute, JogMode::kTool};
     JogDrive drive(Gantry(), modes[static_cast<std::size_t>(jog % 3)], at);
-    AxisValues speeds;
-    for (int axis = 0; axis < 3; ++axis) speeds[axis] = 200.0 * (share() - 0.4);
-    if (drive.mode() != JogMode::kTool) {
-      for (int axis = 3; axis < 5; ++axis) speeds[axis] = 2.0 * (share() - 0.5);
-    }
-    drive.Demand(speeds);
+    const auto ask = [&] {
+      AxisValues speeds;
+      for (int axis = 0; axis < 3; ++axis) speeds[axis] = 200.0 * (share() - 0.4);
+      if (drive.mode() != JogMode::kTool) {
+        for (int axis = 3; axis < 5; ++axis) speeds[axis] = 2.0 * (share() - 0.5);
+      }
+      drive.Demand(speeds);
+    };
     constexpr double kStep = 1e-3;
     std::array<AxisValues, 3> last{Values(at), Values(at), Values(at)};
     for (int n = 1; n <= 1500; ++n) {
+      if (n % 250 == 1) ask();
       drive.Advance(kStep * n);
       last = {last[1], last[2], Values(drive.axes())};
       const AxisValues push = (last[2] - 2.0 * last[1] + last[0]) / (kStep * kStep);
