@@ -94,6 +94,7 @@ struct JogKey {
 
   bool operator==(const JogKey&) const = default;
 };
+std::string Name(const JogKey& key);   // "X+", as it stands on the key
 using JogReference = motion::JogMode;  // ROB, ABS, TCP: OPT-4.21
 struct PressJog {
   JogKey key{};

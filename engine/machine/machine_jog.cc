@@ -8,9 +8,13 @@
 namespace rmlcell::machine {
 namespace {
 
-constexpr std::string_view kJogNames = "XYZABC";
+std::string AxisOf(const JogKey& key) {
+  return std::string(1, "XYZABC"[static_cast<std::size_t>(key.axis)]);
+}
 
 }  // namespace
+
+std::string Name(const JogKey& key) { return AxisOf(key) + (key.plus ? '+' : '-'); }
 
 // LIVE-2.10, x7
 Status Machine::MayJog(const JogKey& key) const {
@@ -20,11 +24,10 @@ Status Machine::MayJog(const JogKey& key) const {
                  Told("machine", info.title) + " has no keys that move its axes",
                  {}};
   }
-  const std::string name(1, kJogNames[static_cast<std::size_t>(key.axis)]);
-  if (info.jog_axes.find(name) == std::string_view::npos)
+  if (info.jog_axes.find(AxisOf(key)) == std::string_view::npos)
     return Error{
         ErrorCode::kCellInvalidArgument,
-        "there is no jog key " + Told("axis", name) + ", only " + Told("axes", info.jog_axes),
+        "there is no jog key " + Told("key", Name(key)) + ", only " + Told("axes", info.jog_axes),
         {}};
   StateGuards now = guards();
   now.manual = mode_ == Mode::kManual || !info.jogs_in_manual;
@@ -53,8 +56,7 @@ Status Machine::Act(const PressJog& input) {
   const auto axis = static_cast<int>(press.key.axis);
   if (!how || (axis < motion::kAxisCount && how->plus[axis] == 0.0))
     return Error{ErrorCode::kCellInvalidArgument,
-                 "the machine has no axis " +
-                     Told("axis", std::string(1, kJogNames[static_cast<std::size_t>(axis)])),
+                 "the machine has no axis " + Told("axis", AxisOf(press.key)),
                  {}};
   jog_.Press(press, *how, standing_->state().axes, now_);
   return {};

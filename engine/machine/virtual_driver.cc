@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/number_text.h"
+#include "engine/machine/machine_states.h"
 
 namespace rmlcell::machine {
 
@@ -38,9 +39,8 @@ SimTime VirtualDriver::LateAt(SimTime clock) const {
 }
 
 bool VirtualDriver::Moves() const {
-  const MachineState state = machine_->state();
-  return state == MachineState::kJogging || state == MachineState::kStopping ||
-         machine_->status().open;
+  const MachineStatus now = machine_->status();
+  return now.open || MovesAxes(now.state);
 }
 
 Progress VirtualDriver::Pump(SimTime clock) {

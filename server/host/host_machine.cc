@@ -235,7 +235,8 @@ Status HostMachine::MayApply(const machine::MachineInput& input) const {
   const bool starts = std::holds_alternative<machine::StartRun>(input);
   const bool resumes = std::holds_alternative<machine::ResumeRun>(input);
   const bool aborts = std::holds_alternative<machine::AbortRun>(input);
-  const bool by_hand = std::holds_alternative<machine::ZeroAxes>(input);
+  const bool by_hand = std::holds_alternative<machine::ZeroAxes>(input) ||
+                       std::holds_alternative<machine::PressJog>(input);
   if (!starts && !resumes && !aborts && !by_hand) return {};
   const machine::Transition next = machine::Next(machine::MachineState::kInspect,
                                                  starts    ? machine::MachineEvent::kStart

@@ -200,6 +200,19 @@ struct Applied {
     made.mutable_key()->set_key("ERR");
     made.mutable_key()->set_action(v1::KEY_ACTION_TAP);
   }
+  void operator()(const machine::PressJog& input) const {
+    made.mutable_key()->set_key(machine::Name(input.key));
+    made.mutable_key()->set_action(v1::KEY_ACTION_PRESS);
+    made.mutable_key()->set_fast(input.fast);
+  }
+  void operator()(const machine::ReleaseJog& input) const {
+    made.mutable_key()->set_key(machine::Name(input.key));
+    made.mutable_key()->set_action(v1::KEY_ACTION_RELEASE);
+  }
+  // Of no key by name: all of them.
+  void operator()(const machine::ReleaseJogs&) const {
+    made.mutable_key()->set_action(v1::KEY_ACTION_RELEASE);
+  }
 };
 
 }  // namespace

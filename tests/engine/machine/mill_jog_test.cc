@@ -110,7 +110,8 @@ TEST_F(MillJogTest, FastChangedStopsIt) {
 TEST_F(MillJogTest, KeysThatAMillDoesNotHave) {
   LoadWith("srm-20");
   EXPECT_THAT(Refused(PressJog{.key = {JogAxis::kB, true}}), HasSubstr("CELL-E9003"));
-  EXPECT_THAT(Refused(PressJog{.key = {JogAxis::kC, true}}), HasSubstr("there is no jog key C"));
+  EXPECT_THAT(Refused(PressJog{.key = {JogAxis::kC, true}}),
+              HasSubstr("there is no jog key C+, only X Y Z A"));
   EXPECT_THAT(Refused(PressJog{.key = {JogAxis::kA, true}}), HasSubstr("no axis A"));
   LoadWith("srm-20", {{"AXES", "XYZA"}, {"A_SENSE", "LEFT"}});
   Good(PressJog{.key = {JogAxis::kA, true}});

@@ -98,5 +98,20 @@ TEST_F(VirtualDriverTest, NeverJumpsInARun) {
   EXPECT_EQ(Time(), 20.1);
 }
 
+// LIVE-3.14, LF-5: nor by hand: a key does not run on while nobody called.
+TEST_F(VirtualDriverTest, NeverJumpsByHand) {
+  Load("DELAY 10\n");
+  EXPECT_TRUE(driver->Order(Clock(1.0), ChangeMode{Mode::kManual}));
+  EXPECT_TRUE(driver->Order(Clock(1.0), PressJog{}));
+  GoOn(1.0, 1.5);
+  EXPECT_EQ(Time(), 1.5);
+  driver->Pump(Clock(21.5));
+  EXPECT_EQ(Time(), 1.5);
+  EXPECT_TRUE(driver->Order(Clock(21.5), ReleaseJog{}));
+  GoOn(21.5, 22.0);
+  driver->Pump(Clock(32.0));
+  EXPECT_EQ(Time(), 12.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::machine
