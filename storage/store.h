@@ -192,6 +192,14 @@ struct JobEnd {
   MachineWrite machine{};
 };
 
+// What is made of a job that has ended.
+struct LateProducts {
+  std::vector<NewArtifact> artifacts{};
+  std::string judgement{};  // as in JobOutcome; empty: it stays as it is
+  std::string verdict{};
+  std::vector<NewEvent> events{};
+};
+
 // What a worker that is free takes.
 struct JobRequest {
   std::string worker{};
@@ -446,6 +454,9 @@ class Store {
   // could be leased does not keep the end from being stored.
   virtual void SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
                           std::optional<JobRequest> next, Done<FinishedJob> done);
+  // Products that come behind the end of a job, made of what it left; `events` are appended.
+  // CellNotFound; CellPrecondition: it has not ended; CellInvalidArgument: a name that the job has.
+  virtual Result<JobRecord> AddProducts(std::int64_t job, const LateProducts& products) = 0;
   // Gives the job back to the queue; this attempt does not count. A RUN is interrupted, unless the
   // policy says that it has not begun: it may have moved its machine. Returns the job as it then
   // is. CellLeaseLost.

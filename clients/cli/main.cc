@@ -6,6 +6,7 @@
 #include "clients/cli/local.h"
 #include "clients/cli/place_option.h"
 #include "clients/cli/remote.h"
+#include "clients/cli/replay.h"
 #include "clients/cli/terminal.h"
 #include "clients/cli/usage_error.h"
 #include "clients/cli/verbs.h"
@@ -465,6 +466,26 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
   AddQueueVerbs(app, remote, given, exit_code);
 }
 
+void AddReplayVerb(CLI::App& app, Remote& remote, int& exit_code) {
+  auto request = std::make_shared<ReplayRequest>();
+  CLI::App* verb = app.add_subcommand(
+      "replay", "Play what a machine did again, and say whether it comes out the same");
+  verb->footer(
+      "Examples:\n"
+      "  rmlcell replay 17                              the run of a job\n"
+      "  rmlcell replay mill-1 -o now.rmlj              what a machine has recorded last, and keep it\n"
+      "  rmlcell replay now.rmlj                        on another computer, without a server");
+  verb->add_option("WHAT", request->what, "a recording (.rmlj), a job that ran, or a machine")
+      ->required();
+  verb->add_option("--from", request->from,
+                   "from the newest mark at or before this time of the machine, ns");
+  verb->add_option("--to", request->to, "up to this time of the machine, ns");
+  verb->add_option("-o,--output", request->output, "keep the recording in this file");
+  verb->add_option("--server", remote.server,
+                   "host:port or unix:/path; default: RMLCELL_SERVER, or 127.0.0.1:50051");
+  verb->callback([request, &remote, &exit_code] { exit_code = Replay(remote, *request); });
+}
+
 void AddProductVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {
   CLI::App* report = RemoteVerb(app, "report", "Show the report of a job",
                                 "  rmlcell report 17\n"
@@ -514,6 +535,7 @@ int main(int argc, char** argv) {
   AddMachineVerbs(app, remote, exit_code);
   AddJobVerbs(app, remote, given, exit_code);
   AddProductVerbs(app, remote, given, exit_code);
+  AddReplayVerb(app, remote, exit_code);
   const auto named = [&](CLI::App* verb) { return argc > 1 && verb->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty()) {
     Complain(NoSuchVerb(app, argv[1]));

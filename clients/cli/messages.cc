@@ -496,6 +496,9 @@ std::string EventLine(const v1::JobEvent& event) {
       text += "ended: " + OutcomeLine(event.ended());
       if (event.ended().verdict() == v1::VERDICT_UNSPECIFIED) return text;
       return text + "; verdict " + VerdictLine(event.ended().verdict(), event.ended().reasons());
+    case v1::JobEvent::kProductsMade:
+      return text + "report and pictures are made; verdict " +
+             VerdictText(event.products_made().verdict());
     case v1::JobEvent::WHAT_NOT_SET:
       break;
   }

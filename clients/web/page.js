@@ -114,7 +114,7 @@ function takeJobEvent(event) {
     job.state = ENDED[event.ended.kind] ?? "STATE_FAILED";
   }
   if (event.ended) progress.delete(event.job);
-  if (!job || event.ended || (event.state && isFinished(event.state))) refresh(event.job);
+  if (!job || event.ended || event.productsMade || (event.state && isFinished(event.state))) refresh(event.job);
   scheduleDraw();
 }
 

@@ -93,6 +93,7 @@ _rmlcell_options() {
     watch) echo "$remote --after --strict" ;;
     jobs) echo "$remote --filter --order --limit" ;;
     picture | artifact) echo "$remote --output" ;;
+    replay) echo "--help --server --from --to --output" ;;
     "projects list" | "projects show" | "projects create" | "projects update" | "projects delete" | "projects import")
       echo "--help" ;;
     "projects export") echo "--help --output" ;;
@@ -197,6 +198,7 @@ _rmlcell_positional() {
     watch | job) [[ $count -eq 0 ]] && _rmlcell_jobs ;;
     cancel | hold | resume | move) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = false" ;;
     report | picture) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = true" ;;
+    replay) [[ $count -eq 0 ]] && _rmlcell_files .rmlj && _rmlcell_machines && _rmlcell_jobs "kind = RUN" ;;
     artifact)
       case $count in
         0) _rmlcell_jobs "finished = true" ;;

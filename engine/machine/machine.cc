@@ -150,7 +150,7 @@ void Machine::CloseRun() {
   RMLCELL_CHECK(standing);
   standing_ = *std::move(standing);
   standing_->Rest();
-  run_.reset();
+  over_.back().ended = std::move(run_);
   stopping_ = resume_behind_ = abort_behind_ = false;
   changed_.clear();
   if (note_.by_hand) GoHome(outcome);

@@ -47,6 +47,7 @@ struct RunOver {
   SimTime lasted{0};
   std::uint64_t steps = 0;
   std::vector<Figure> figures{};
+  std::unique_ptr<Run> ended{};  // itself, as it ended: for who makes a report of it
 };
 
 enum class Progress {
@@ -100,6 +101,7 @@ class Machine {
 
   // "VR[5]" -> "7.0"; nothing for what is no variable of this machine.
   std::optional<VariableValue> ReadVariable(std::string_view name) const;
+  const Run* open_run() const { return run_.get(); }  // null: none is open
   std::vector<Place> stack() const;  // of the open run, that in execution last; else nothing
   std::vector<ModalValue> modal_values() const;
   // Whether acknowledging it does something: its cause is gone.

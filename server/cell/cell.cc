@@ -32,6 +32,7 @@
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
 #include "server/results/job_results.h"
+#include "server/runs/run_products.h"
 #include "server/runs/run_queue.h"
 #include "server/services/account_service.h"
 #include "server/services/cell_service.h"
@@ -101,6 +102,7 @@ struct Cell::Parts {
   std::unique_ptr<EventFeed> feed;
   std::unique_ptr<Hosts> hosts;
   std::unique_ptr<RunQueue> runs;
+  std::unique_ptr<RunProducts> run_products;
   std::unique_ptr<HostProcesses> host_processes;
   std::unique_ptr<MachineStatuses> statuses;
   std::unique_ptr<Dispatcher> dispatcher;
@@ -137,6 +139,7 @@ struct Cell::Parts {
   Status OpenStore();
   Status MakeMachines();
   Status Listen(const std::string& join_token);
+  void MakeHosts(const std::string& host_token);
   Status Serve();
   Status ListenAt(const std::string& address);
   Status ListenWeb();
@@ -194,6 +197,38 @@ Status Cell::Parts::MakeMachines() {
   return {};
 }
 
+// Machines that live, their hosts, and jobs that run on them.
+void Cell::Parts::MakeHosts(const std::string& host_token) {
+  hosts = std::make_unique<Hosts>(Hosts::Needs{.store = *store,
+                                               .feed = *feed,
+                                               .executor = *executor,
+                                               .server = instance_id,
+                                               .join_token = host_token});
+  runs = std::make_unique<RunQueue>(RunQueue::Needs{.store = *store,
+                                                    .hosts = *hosts,
+                                                    .config = config,
+                                                    .executor = *executor,
+                                                    .server = instance_id});
+  hosts->OnNews([this](const std::string& machine) { runs->Wake(machine); });
+  run_products = std::make_unique<RunProducts>(
+      RunProducts::Needs{.store = *store,
+                         .hosts = *hosts,
+                         .program = WorkerProgram(),
+                         .folder = config.state_directory + "/products",
+                         .log_level = config.log_level,
+                         .log_format = config.log_format});
+  hosts->OnRunOver([this](const std::string& machine) { run_products->Look(machine); });
+  host_processes = std::make_unique<HostProcesses>(HostProcesses::Options{
+      .program = WorkerProgram(),
+      .server = private_socket->address(),
+      .join_token = host_token,
+      .journals = config.state_directory + "/hosts",
+      .log_level = config.log_level,
+      .log_format = config.log_format,
+      .is_heard = [this](const std::string& machine) { return hosts->IsHeard(machine); },
+      .look = LookAtMachines()});
+}
+
 Status Cell::Parts::Listen(const std::string& join_token) {
   executor = std::make_unique<Executor>(kStoreThreads);
   watching = std::make_unique<Executor>(kWatchThreads);
@@ -205,26 +240,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   private_socket.emplace(*std::move(own));
   const Result<std::string> host_token = KeptSecret(config.state_directory + "/host.token");
   if (!host_token) return host_token.error();
-  hosts = std::make_unique<Hosts>(Hosts::Needs{.store = *store,
-                                               .feed = *feed,
-                                               .executor = *executor,
-                                               .server = instance_id,
-                                               .join_token = *host_token});
-  runs = std::make_unique<RunQueue>(RunQueue::Needs{.store = *store,
-                                                    .hosts = *hosts,
-                                                    .config = config,
-                                                    .executor = *executor,
-                                                    .server = instance_id});
-  hosts->OnNews([this](const std::string& machine) { runs->Wake(machine); });
-  host_processes = std::make_unique<HostProcesses>(HostProcesses::Options{
-      .program = WorkerProgram(),
-      .server = private_socket->address(),
-      .join_token = *host_token,
-      .journals = config.state_directory + "/hosts",
-      .log_level = config.log_level,
-      .log_format = config.log_format,
-      .is_heard = [this](const std::string& machine) { return hosts->IsHeard(machine); },
-      .look = LookAtMachines()});
+  MakeHosts(*host_token);
   statuses = std::make_unique<MachineStatuses>(*store, *feed, *executor, hosts.get());
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
@@ -430,6 +446,8 @@ void Cell::Stop() {
   parts.statuses.reset();
   parts.host_processes.reset();
   if (parts.dispatcher != nullptr) parts.dispatcher->Settle();
+  if (parts.hosts != nullptr) parts.hosts->OnRunOver({});
+  parts.run_products.reset();
   parts.executor.reset();
   parts.dispatcher.reset();
   parts.runs.reset();

@@ -8,7 +8,10 @@
 #include "engine/machine/machine_states.h"
 #include "engine/machine/parameters.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/machine_inputs.h"
 #include "proto/bridge/sha256.h"
+#include "proto/recording/told.h"
+#include "server/base/version.h"
 #include "server/host/host_messages.h"
 
 namespace rmlcell::server {
@@ -133,6 +136,12 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, co
       if (!values) return values.error();
       values->set_fence(setup_.fence);
       *answer.mutable_variables() = *std::move(values);
+      return answer;
+    }
+    case v1::HostOrder::kRecording: {
+      auto part = recorder_.Part(order.recording());
+      if (!part) return part.error();
+      *answer.mutable_recording() = *std::move(part);
       return answer;
     }
     case v1::HostOrder::kRunState:
@@ -269,7 +278,9 @@ Status HostMachine::Act(const v1::HostOrder& order) {
 Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrder* order) {
   const auto before = std::tuple(run_begun_, told_of_run_, held_for_);
   const bool starts = std::holds_alternative<machine::StartRun>(input);
-  if (starts || std::holds_alternative<machine::ZeroAxes>(input)) {
+  const bool begins = starts || std::holds_alternative<machine::ZeroAxes>(input);
+  const auto stands = begins ? std::optional(MarkNow()) : std::nullopt;
+  if (begins) {
     run_begun_ = machine().time();
     told_of_run_ = 0;
   }
@@ -285,7 +296,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   v1::InputApplied& applied = *Add(machine().time()).mutable_applied();
   applied.set_fence(setup_.fence);
   applied.set_virtual_time_ns(machine().time().count());
-  *applied.mutable_input() = AppliedOf(input);
+  *applied.mutable_input() = bridge::AppliedOf(input);
   if (starts && !job_.empty()) applied.mutable_input()->mutable_start()->set_job(job_);
   const bool of_queue = order != nullptr && (order->has_run_job() || !order->for_job().empty());
   applied.set_source(of_queue ? v1::START_SOURCE_QUEUE : v1::START_SOURCE_CONSOLE);
@@ -303,6 +314,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
     std::tie(run_begun_, told_of_run_, held_for_) = before;
     return done.error();
   }
+  if (stands) Record(*stands, place);
   mark_due_ = true;
   // A crash from here on finds a run that was cut off, however soon it comes.
   begins_ = begins_ || std::holds_alternative<machine::StartRun>(input);
@@ -374,12 +386,8 @@ void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
   if (!memory.schedules_changed()) return;
   machine::SetSchedules set;  // none that is stored: all that the machine can have
   if (!memory.schedules().empty()) set.schedules.emplace();
-  for (const v1::AssignedSchedule& schedule : memory.schedules()) {
-    set.schedules->push_back({.number = schedule.number(),
-                              .name = schedule.title(),
-                              .mode = schedule.mode(),
-                              .power_percent = schedule.power_percent()});
-  }
+  for (const v1::AssignedSchedule& schedule : memory.schedules())
+    set.schedules->push_back(bridge::FromProto(schedule));
   if (set.schedules != machine().memory().schedules) apply(set);
 }
 
@@ -389,6 +397,7 @@ void HostMachine::Begin(const v1::HostMemory& memory, const HostTime& now) {
   Change(memory, now);
   entries_.resize(told);
   sequence_ = sequence;
+  Record(MarkNow(), told);
   mark_due_ = true;
 }
 
@@ -402,21 +411,13 @@ void HostMachine::Notice() {
     run_begun_ = run.begun;  // also of one that the machine began itself
     begins_ = begins_ || !run.by_hand;
     v1::RunBegun& told = *Add(run.begun).mutable_run_begun();
-    told.set_run(run.number);
-    told.set_program(run.program);
-    told.set_source(ToProto(run.source));
+    told = recording::BegunOf(run);
     told.set_job(job_);
   };
   for (const machine::RunOver& run : over) {
     begun(run.run);
     v1::RunOver& told = *Add(run.run.begun + run.lasted).mutable_run_over();
-    told.set_run(run.run.number);
-    told.set_program(run.run.program);
-    *told.mutable_outcome() = bridge::ToProto(run.outcome);
-    told.mutable_outcome()->set_cycle_time_ns(run.lasted.count());
-    // Power is no end of the program: the machine was taken away from it. LIVE-2.10 a1
-    if (run.outcome.code == ErrorCode::kCellPowerOff)
-      told.mutable_outcome()->set_kind(v1::Outcome::KIND_INTERRUPTED);
+    told = recording::OverOf(run);
     told.set_job(std::exchange(job_, {}));
     desk_.TakeFromQueue();
     TellControl();
@@ -447,7 +448,7 @@ v1::MachineState HostMachine::State() const {
   const machine::MachineState state = machine().state();
   const bool stands =
       state == machine::MachineState::kIdle || state == machine::MachineState::kNotZeroed;
-  return ToProto(inspect_due_ && stands ? machine::MachineState::kInspect : state);
+  return bridge::ToProto(inspect_due_ && stands ? machine::MachineState::kInspect : state);
 }
 
 v1::MachineStatus HostMachine::StatusAt(const HostTime& now) const {
@@ -487,10 +488,18 @@ v1::JournalEntry& HostMachine::Add(SimTime at) {
 
 // Where it stands: all that was told before is in it.
 void HostMachine::Mark() {
-  const machine::MachineStatus status = machine().status();
-  v1::MachineMark& mark = *Add(status.time).mutable_mark();
-  mark.set_fence(setup_.fence);
+  v1::JournalEntry& entry = Add(machine().time());
+  v1::MachineMark mark = MarkNow();
   mark.set_sequence(sequence_);
+  *entry.mutable_mark() = std::move(mark);
+  mark_due_ = begins_ = false;
+  marked_at_ = now_.steady;
+}
+
+v1::MachineMark HostMachine::MarkNow() const {
+  const machine::MachineStatus status = machine().status();
+  v1::MachineMark mark;
+  mark.set_fence(setup_.fence);
   mark.set_virtual_time_ns(status.time.count());
   if (inspect_due_ || ended_) mark.set_job(inspect_job_);
   if (status.open && !ended_) {
@@ -502,8 +511,26 @@ void HostMachine::Mark() {
   mark.set_state_sha256(BytesOfHex(bridge::Sha256Hex(mark.state())).value_or(""));
   // What is moved by hand is no run that could be cut off. LIVE-5.20
   mark.set_clean((!status.open || status.open->by_hand) && !inspect_due_ && !ended_);
-  mark_due_ = begins_ = false;
-  marked_at_ = now_.steady;
+  return mark;
+}
+
+// From this mark on, with all that it depends on; what stands before `entry` was before it.
+void HostMachine::Record(const v1::MachineMark& mark, std::size_t entry) {
+  for (; recorded_ < entry; ++recorded_) recorder_.Add(entries_[recorded_]);
+  v1::MachineRecording head;
+  head.set_engine_version(std::string(kVersion));
+  head.set_machine(setup_.name);
+  head.set_family(std::string(setup_.family->info().id));
+  head.set_profile(setup_.profile);
+  for (const auto& [name, value] : setup_.parameters) (*head.mutable_parameters())[name] = value;
+  head.set_job(job_);
+  head.set_fence(setup_.fence);
+  if (brought_.slot() != 0) head.mutable_brought()->Swap(&brought_);
+  v1::JournalEntry begin;
+  begin.set_fence(setup_.fence);
+  begin.set_virtual_time_ns(mark.virtual_time_ns());
+  *begin.mutable_mark() = mark;
+  recorder_.Begin(std::move(head), machine().memory(), begin);
 }
 
 // What happened leaves behind a mark that covers it: the log never tells of more than a crash gives
@@ -517,6 +544,8 @@ std::vector<v1::JournalEntry> HostMachine::TakeEntries(const HostTime& now, bool
   if (!due) return {};
   Mark();
   if (moves()) mark_due_ = true;  // it comes to rest elsewhere
+  for (; recorded_ < entries_.size(); ++recorded_) recorder_.Add(entries_[recorded_]);
+  recorded_ = 0;
   return std::exchange(entries_, {});
 }
 
@@ -528,7 +557,7 @@ v1::JournalEntry HostMachine::IntentOf(const v1::HostOrder& order, const HostTim
   intent.set_caller(order.caller());
   intent.set_request_id(FieldOf(order, "request_id").value_or(""));
   if (const auto inputs = InputsOf(order, machine()); inputs && !inputs->empty())
-    *intent.mutable_input() = AppliedOf(inputs->front());
+    *intent.mutable_input() = bridge::AppliedOf(inputs->front());
   if (order.has_run_job())
     intent.mutable_input()->mutable_start()->set_job(order.run_job().job().name());
   v1::JournalEntry entry = std::move(entries_.back());
@@ -538,24 +567,19 @@ v1::JournalEntry HostMachine::IntentOf(const v1::HostOrder& order, const HostTim
 
 void HostMachine::OnHalt(const machine::Halt& halt) {
   v1::Halted& halted = *Event(halt.at).mutable_halted();
-  halted.set_reason(held_for_.value_or(ToProto(halt.reason)));
-  halted.set_message(std::string(halt.why));
-  *halted.mutable_place() = bridge::ToProto(halt.place);
+  halted = recording::HaltedOf(halt);
+  if (held_for_) halted.set_reason(*held_for_);
   mark_due_ = true;
 }
 
 void HostMachine::OnResume(SimTime at, const machine::Place& place) {
-  *Event(at).mutable_resumed()->mutable_place() = bridge::ToProto(place);
+  *Event(at).mutable_resumed() = recording::ResumedOf(place);
 }
 
-// A program without an end says as much as it likes: the report of a job has the rest.
-bool HostMachine::MayTell() { return ++told_of_run_ <= kToldOfRunMax; }
+bool HostMachine::MayTell() { return ++told_of_run_ <= recording::kToldOfRunMax; }
 
 void HostMachine::OnMessage(SimTime at, const machine::Place& place, std::string_view text) {
-  if (!MayTell()) return;
-  v1::RunMessage& message = *Event(at).mutable_message();
-  message.set_text(bridge::Utf8(std::string(text)));
-  *message.mutable_place() = bridge::ToProto(place);
+  if (MayTell()) *Event(at).mutable_message() = recording::MessageOf(place, text);
 }
 
 void HostMachine::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {

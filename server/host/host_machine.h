@@ -11,6 +11,7 @@
 #include "engine/machine/virtual_driver.h"
 #include "rmlcell/v1/host.pb.h"
 #include "server/host/control_desk.h"
+#include "server/host/machine_recorder.h"
 
 namespace rmlcell::server {
 
@@ -37,7 +38,6 @@ class HostMachine : private machine::RunObserver {
   };
   static constexpr std::size_t kAnswersKept = 1'024;
   static constexpr std::chrono::minutes kAnswersKeptFor{10};
-  static constexpr int kToldOfRunMax = 1'000;  // messages and findings of one run
 
   // Errors: those of machine::MakeParameters and machine::Machine::Make.
   static Result<std::unique_ptr<HostMachine>> Make(Setup setup, const HostTime& now,
@@ -79,7 +79,7 @@ class HostMachine : private machine::RunObserver {
   Status CheckJob(const v1::HostOrder& order) const;
   Status RunJob(const v1::HostOrder& order, const HostTime& now);
   Result<std::optional<machine::StoredProgram>> ProgramOfJob(
-      const v1::WorkerAssignment& assignment) const;
+      const v1::WorkerAssignment& assignment);
   std::optional<Error> WhyNoJob(const std::string& caller) const;
   Result<v1::HostOrderAnswer> Control(const v1::HostOrder& order, const HostTime& now);
   Result<v1::HostOrderAnswer> Write(const v1::HostOrder& order);
@@ -96,6 +96,8 @@ class HostMachine : private machine::RunObserver {
   v1::JournalEntry& Add(SimTime at);
   v1::RunEvent& Event(SimTime of_run) { return *Add(run_begun_ + of_run).mutable_event(); }
   void Mark();
+  v1::MachineMark MarkNow() const;
+  void Record(const v1::MachineMark& mark, std::size_t entry);
   v1::MachineState State() const;
   void AddBlockers(v1::MachineStatus& status) const;
 
@@ -121,7 +123,10 @@ class HostMachine : private machine::RunObserver {
   std::map<std::string, Answered> answered_;  // by request id
   std::deque<std::string> answered_order_;    // the oldest first
   std::vector<v1::JournalEntry> entries_;
-  HostTime now_{};  // of the call under way
+  MachineRecorder recorder_;
+  std::size_t recorded_ = 0;       // of the entries
+  v1::AssignedProgram brought_{};  // by the job that is about to begin
+  HostTime now_{};                 // of the call under way
   std::int64_t sequence_ = 0;
   std::optional<v1::HoldReason> held_for_;  // by the host itself, or for a client
   std::int64_t run_told_ = 0;               // the newest whose begin was told

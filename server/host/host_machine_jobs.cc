@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "proto/bridge/findings.h"
+#include "proto/recording/recording.h"
 #include "server/host/host_machine.h"
 
 namespace rmlcell::server {
@@ -31,7 +32,7 @@ std::optional<Error> HostMachine::WhyNoJob(const std::string& caller) const {
 
 // The program that the job brought; nothing: what the memory has is the same.
 Result<std::optional<machine::StoredProgram>> HostMachine::ProgramOfJob(
-    const v1::WorkerAssignment& assignment) const {
+    const v1::WorkerAssignment& assignment) {
   const auto& programs = assignment.programs();
   const auto main =
       std::ranges::find(programs, assignment.main_program(), &v1::AssignedProgram::slot);
@@ -41,23 +42,10 @@ Result<std::optional<machine::StoredProgram>> HostMachine::ProgramOfJob(
   if (!main->is_source() && stored != machine().memory().programs.end() &&
       *stored->second.object == main->content())
     return std::optional<machine::StoredProgram>();
-  machine::StoredProgram made{.name = main->title().empty() ? main->file_name() : main->title(),
-                              .object = machine::Bytes::Of(main->content())};
-  if (!main->executable().empty()) made.executable = machine::Bytes::Of(main->executable());
-  if (!main->is_source()) return std::optional(std::move(made));
-  machine::Translation translation = setup_.family->Translate(
-      {.name = main->file_name(), .bytes = *made.object, .keeper = made.object.keeper()},
-      *parameters_, {.advice = false, .source = true});
-  if (!translation.ok) {
-    const auto first = std::ranges::find_if(
-        translation.diagnostics, [](const Diagnostic& one) { return IsError(one.severity); });
-    if (first == translation.diagnostics.end())
-      return Error{ErrorCode::kCellInvalidArgument, "the program cannot be translated", {}};
-    return Error{first->code, first->detail, first->where};
-  }
-  if (!translation.as_it_came) made.object = machine::Bytes::Of(std::move(translation.object));
-  made.source = std::make_shared<const machine::SourceNotes>(std::move(translation.source));
-  return std::optional(std::move(made));
+  auto made = recording::ProgramOf(*main, *setup_.family, *parameters_);
+  if (!made) return made.error();
+  brought_ = *main;
+  return std::optional(*std::move(made));
 }
 
 // The queue has control for it, where nobody has. LIVE-4.05
@@ -66,6 +54,7 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
   mark_due_ = true;
   if (auto why = WhyNoJob(order.caller())) return *std::move(why);
   const v1::WorkerAssignment& assignment = order.run_job();
+  brought_.Clear();
   auto brought = ProgramOfJob(assignment);
   if (!brought) return brought.error();
   const v1::RunOptions& options = assignment.job().run();

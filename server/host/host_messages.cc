@@ -9,6 +9,7 @@
 #include "engine/core/number_text.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/inputs.h"
+#include "proto/bridge/machine_inputs.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
 #include "rmlcell/v1/job.pb.h"
@@ -50,64 +51,9 @@ void SetRun(const machine::Machine& machine, const machine::MachineStatus& statu
   *run.mutable_place() = progress.place();
   run.set_phase(v1::RUN_PHASE_PROGRAM);
   run.set_run_time_ns(status.run.time.count());
-  run.set_source(ToProto(status.open->source));
+  run.set_source(bridge::ToProto(status.open->source));
   run.set_instruction(progress.instruction());
   run.set_dry(machine.simulation_until().has_value());
-}
-
-std::optional<machine::Mode> ModeOf(v1::OperatingMode mode) {
-  switch (mode) {
-    case v1::OPERATING_MODE_MANUAL:
-      return machine::Mode::kManual;
-    case v1::OPERATING_MODE_REPEAT:
-      return machine::Mode::kRepeat;
-    case v1::OPERATING_MODE_CYCLE:
-      return machine::Mode::kCycle;
-    case v1::OPERATING_MODE_SINGLE:
-      return machine::Mode::kSingle;
-    case v1::OPERATING_MODE_REMOTE:
-      return machine::Mode::kRemote;
-    default:
-      return std::nullopt;
-  }
-}
-
-Result<MachineInput> InputOf(const v1::MachineInput& input) {
-  switch (input.what_case()) {
-    case v1::MachineInput::kInput: {
-      v1::ScriptedInput scripted;
-      *scripted.mutable_input()->mutable_from_outside() = input;
-      const Result<machine::InputChange> change = bridge::FromProto(scripted, 100.0);
-      if (!change) return change.error();
-      return MachineInput(machine::ChangeInput{
-          .kind = change->kind, .index = change->index, .value = change->value});
-    }
-    case v1::MachineInput::kDoorOpen:
-      return MachineInput(machine::MoveDoor{.open = input.door_open()});
-    case v1::MachineInput::kPower:
-      return MachineInput(machine::SwitchPower{.on = input.power()});
-    case v1::MachineInput::kEmergencyStopReleased:
-      if (!input.emergency_stop_released()) break;
-      return MachineInput(machine::EmergencyStop{.pressed = false});
-    case v1::MachineInput::kGate:
-      return Error{ErrorCode::kCellUnimplemented, "inputs: a gate", {}};
-    case v1::MachineInput::WHAT_NOT_SET:
-      break;
-  }
-  return Invalid("inputs: one of them says nothing");
-}
-
-Result<double> NumberOf(const v1::Variable& variable) {
-  switch (variable.value().value_case()) {
-    case v1::VariableValue::kReal:
-      return variable.value().real();
-    case v1::VariableValue::kInteger:
-      return static_cast<double>(variable.value().integer());
-    case v1::VariableValue::kLogical:
-      return variable.value().logical() ? 1.0 : 0.0;
-    default:
-      return Invalid("variables: " + variable.name() + " needs a number or a logical value");
-  }
 }
 
 Result<int> ProgramOf(const v1::StartMachineRequest& start, const machine::Machine& machine) {
@@ -127,173 +73,7 @@ Result<int> ProgramOf(const v1::StartMachineRequest& start, const machine::Machi
   return Invalid("say what is started: program or selected");
 }
 
-struct Applied {
-  v1::AppliedInput& made;
-
-  void operator()(const machine::StartRun& input) const {
-    made.mutable_start()->set_program(input.program);
-    made.mutable_start()->set_source(ToProto(input.source));
-    made.mutable_start()->set_unzeroed(input.unzeroed);
-  }
-  void operator()(const machine::ZeroAxes&) const {
-    made.mutable_key()->set_key("ZERO");
-    made.mutable_key()->set_action(v1::KEY_ACTION_TAP);
-  }
-  void operator()(const machine::ResumeRun& input) const {
-    made.mutable_resume()->set_source(ToProto(input.source));
-  }
-  void operator()(const machine::HoldRun&) const { made.set_hold(v1::HOLD_REASON_HOLD); }
-  void operator()(const machine::StopRun&) const { made.set_stop(v1::HOLD_REASON_STOP); }
-  void operator()(const machine::AbortRun&) const { made.set_abort(v1::HOLD_REASON_ABORT); }
-  void operator()(const machine::EmergencyStop& input) const {
-    made.set_emergency_stop(input.pressed);
-  }
-  void operator()(const machine::Acknowledge& input) const {
-    made.set_acknowledged_alarm(input.alarm);
-  }
-  void operator()(const machine::ChangeMode& input) const { made.set_mode(ToProto(input.mode)); }
-  void operator()(const machine::ChangeOverride& input) const {
-    made.set_override_percent(input.percent);
-  }
-  void operator()(const machine::ChangeInput& input) const {
-    const bool logical = input.kind == machine::InputKind::kLogical;
-    v1::Variable& variable = *made.mutable_from_outside()->mutable_input();
-    variable.set_name((logical ? "IL[" : "IA[") + std::to_string(input.index) + "]");
-    if (logical) {
-      variable.mutable_value()->set_logical(input.value != 0.0);
-    } else {
-      variable.mutable_value()->set_real(input.value);
-    }
-  }
-  void operator()(const machine::MoveDoor& input) const {
-    made.mutable_from_outside()->set_door_open(input.open);
-  }
-  void operator()(const machine::SwitchPower& input) const { made.set_power(input.on); }
-  void operator()(const machine::WriteVariable& input) const {
-    made.mutable_variable()->set_name(input.name);
-    made.mutable_variable()->mutable_value()->set_real(input.value);
-  }
-  void operator()(const machine::SetBreakpoints& input) const {
-    v1::Breakpoints& all = *made.mutable_breakpoints();
-    for (const machine::Breakpoint& one : input.breakpoints) {
-      v1::Breakpoint& breakpoint = *all.add_breakpoints();
-      breakpoint.mutable_step()->set_program(one.at.program);
-      breakpoint.mutable_step()->set_step(one.at.step);
-      breakpoint.set_condition(one.condition);
-      breakpoint.set_passes(static_cast<std::int64_t>(one.from_pass));
-    }
-  }
-  void operator()(const machine::SetSimulation& input) const {
-    v1::StepPlace& until = *made.mutable_simulation_until();
-    if (!input.until) return;
-    until.set_program(input.until->program);
-    until.set_step(input.until->step);
-  }
-  void operator()(const machine::StoreProgram& input) const {
-    made.mutable_program_changed()->set_program(input.slot);
-  }
-  void operator()(const machine::DeleteProgram& input) const {
-    made.mutable_program_changed()->set_program(input.slot);
-  }
-  void operator()(const machine::SetSchedules&) const {}
-  void operator()(const machine::ClearMessage&) const {
-    made.mutable_key()->set_key("ERR");
-    made.mutable_key()->set_action(v1::KEY_ACTION_TAP);
-  }
-  void operator()(const machine::PressJog& input) const {
-    made.mutable_key()->set_key(machine::Name(input.key));
-    made.mutable_key()->set_action(v1::KEY_ACTION_PRESS);
-    made.mutable_key()->set_fast(input.fast);
-  }
-  void operator()(const machine::ReleaseJog& input) const {
-    made.mutable_key()->set_key(machine::Name(input.key));
-    made.mutable_key()->set_action(v1::KEY_ACTION_RELEASE);
-  }
-  // Of no key by name: all of them.
-  void operator()(const machine::ReleaseJogs&) const {
-    made.mutable_key()->set_action(v1::KEY_ACTION_RELEASE);
-  }
-};
-
 }  // namespace
-
-v1::MachineState ToProto(machine::MachineState state) {
-  switch (state) {
-    case machine::MachineState::kOff:
-      return v1::MACHINE_STATE_OFF;
-    case machine::MachineState::kStarting:
-      return v1::MACHINE_STATE_STARTING;
-    case machine::MachineState::kRecovering:
-      return v1::MACHINE_STATE_RECOVERING;
-    case machine::MachineState::kNotZeroed:
-      return v1::MACHINE_STATE_NOT_ZEROED;
-    case machine::MachineState::kIdle:
-      return v1::MACHINE_STATE_IDLE;
-    case machine::MachineState::kJogging:
-      return v1::MACHINE_STATE_JOGGING;
-    case machine::MachineState::kRunning:
-      return v1::MACHINE_STATE_RUNNING;
-    case machine::MachineState::kStopping:
-      return v1::MACHINE_STATE_STOPPING;
-    case machine::MachineState::kHeld:
-      return v1::MACHINE_STATE_HELD;
-    case machine::MachineState::kAlarm:
-      return v1::MACHINE_STATE_ALARM;
-    case machine::MachineState::kInspect:
-      return v1::MACHINE_STATE_INSPECT;
-    case machine::MachineState::kLost:
-      break;
-  }
-  return v1::MACHINE_STATE_LOST;
-}
-
-v1::OperatingMode ToProto(machine::Mode mode) {
-  switch (mode) {
-    case machine::Mode::kManual:
-      return v1::OPERATING_MODE_MANUAL;
-    case machine::Mode::kRepeat:
-      return v1::OPERATING_MODE_REPEAT;
-    case machine::Mode::kCycle:
-      return v1::OPERATING_MODE_CYCLE;
-    case machine::Mode::kSingle:
-      return v1::OPERATING_MODE_SINGLE;
-    case machine::Mode::kRemote:
-      break;
-  }
-  return v1::OPERATING_MODE_REMOTE;
-}
-
-v1::StartSource ToProto(machine::StartSource source) {
-  switch (source) {
-    case machine::StartSource::kConsole:
-      return v1::START_SOURCE_CONSOLE;
-    case machine::StartSource::kQueue:
-      return v1::START_SOURCE_QUEUE;
-    case machine::StartSource::kPanel:
-      return v1::START_SOURCE_PANEL;
-    case machine::StartSource::kGate1:
-      return v1::START_SOURCE_GATE_1;
-    case machine::StartSource::kGate2:
-      break;
-  }
-  return v1::START_SOURCE_GATE_2;
-}
-
-v1::HoldReason ToProto(machine::HaltReason reason) {
-  switch (reason) {
-    case machine::HaltReason::kHold:
-      return v1::HOLD_REASON_HOLD;
-    case machine::HaltReason::kStop:
-      return v1::HOLD_REASON_STOP;
-    case machine::HaltReason::kProgram:
-      return v1::HOLD_REASON_PROGRAM;
-    case machine::HaltReason::kBreakpoint:
-      return v1::HOLD_REASON_BREAKPOINT;
-    case machine::HaltReason::kSingle:
-      return v1::HOLD_REASON_SINGLE;
-  }
-  return v1::HOLD_REASON_UNSPECIFIED;
-}
 
 v1::MachineStatus ToProto(const machine::Machine& machine) {
   const machine::MachineStatus status = machine.status();
@@ -301,8 +81,8 @@ v1::MachineStatus ToProto(const machine::Machine& machine) {
   const v1::JobProgress progress = bridge::ToProto(family, status.run, 0);
   v1::MachineStatus message;
   message.set_virtual_time_ns(status.time.count());
-  message.set_state(ToProto(status.state));
-  message.set_mode(ToProto(status.mode));
+  message.set_state(bridge::ToProto(status.state));
+  message.set_mode(bridge::ToProto(status.mode));
   message.set_zeroed(status.run.zeroed);
   message.set_door_open(status.run.door_open);
   for (const machine::Alarm& alarm : status.alarms) {
@@ -318,7 +98,7 @@ v1::MachineStatus ToProto(const machine::Machine& machine) {
   }
   SetRun(machine, status, progress, message);
   if (status.run.halted_by && status.state == machine::MachineState::kHeld)
-    message.set_hold_reason(ToProto(*status.run.halted_by));
+    message.set_hold_reason(bridge::ToProto(*status.run.halted_by));
   if (status.mode == machine::Mode::kRemote) {
     message.add_start_sources(v1::START_SOURCE_CONSOLE);
     message.add_start_sources(v1::START_SOURCE_QUEUE);
@@ -345,8 +125,8 @@ v1::RunState RunStateOf(const machine::Machine& machine) {
     made.set_name(value.name);
     made.set_value(value.value);
   }
-  v1::AppliedInput breakpoints;
-  Applied{breakpoints}(machine::SetBreakpoints{.breakpoints = machine.breakpoints()});
+  v1::AppliedInput breakpoints =
+      bridge::AppliedOf(machine::SetBreakpoints{.breakpoints = machine.breakpoints()});
   state.mutable_breakpoints()->Swap(breakpoints.mutable_breakpoints()->mutable_breakpoints());
   if (const auto until = machine.simulation_until()) {
     state.mutable_simulation_until()->set_program(until->program);
@@ -401,7 +181,7 @@ Result<std::optional<MachineInput>> OfSetting(const v1::HostOrder& order,
   const int selected = machine.status().shown.program;
   switch (order.request_case()) {
     case v1::HostOrder::kMode: {
-      const auto mode = ModeOf(order.mode().mode());
+      const auto mode = bridge::ModeOf(order.mode().mode());
       if (!mode) return Invalid("mode is none that there is");
       return Input(machine::ChangeMode{.mode = *mode});
     }
@@ -439,23 +219,17 @@ Result<std::vector<MachineInput>> InputsOf(const v1::HostOrder& order,
     if (*input) inputs.push_back(*std::move(*input));
   }
   for (const v1::Variable& variable : order.write_variables().variables()) {
-    const Result<double> value = NumberOf(variable);
+    const Result<double> value = bridge::NumberOf(variable);
     if (!value) return value.error();
     inputs.emplace_back(machine::WriteVariable{.name = variable.name(), .value = *value});
   }
   for (const v1::MachineInput& one : order.inputs().inputs()) {
-    Result<MachineInput> input = InputOf(one);
+    Result<MachineInput> input = bridge::FromProto(one);
     if (!input) return input.error();
     inputs.push_back(*std::move(input));
   }
   if (order.has_inputs() && inputs.empty()) return Invalid("inputs: none is given");
   return inputs;
-}
-
-v1::AppliedInput AppliedOf(const MachineInput& input) {
-  v1::AppliedInput made;
-  std::visit(Applied{made}, input);
-  return made;
 }
 
 Result<v1::ReadVariablesResponse> ReadVariables(const machine::Machine& machine,

@@ -11,17 +11,11 @@ namespace rmlcell::server {
 // Without what is the host's: fence, control, factor, times of sending.
 v1::MachineStatus ToProto(const machine::Machine& machine);
 v1::RunState RunStateOf(const machine::Machine& machine);
-v1::MachineState ToProto(machine::MachineState state);
-v1::OperatingMode ToProto(machine::Mode mode);
-v1::StartSource ToProto(machine::StartSource source);
-v1::HoldReason ToProto(machine::HaltReason reason);
 
 // What an order does to a machine, one after the other at one instant; nothing for those that ask
 // something or are the host's own. Errors: CellInvalidArgument, CellUnimplemented.
 Result<std::vector<machine::MachineInput>> InputsOf(const v1::HostOrder& order,
                                                     const machine::Machine& machine);
-// The same as it stands in the journal.
-v1::AppliedInput AppliedOf(const machine::MachineInput& input);
 
 // All of them, ranges spread out; each with its error where there is no such variable.
 Result<v1::ReadVariablesResponse> ReadVariables(const machine::Machine& machine,

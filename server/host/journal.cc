@@ -5,33 +5,14 @@
 #include <unistd.h>
 
 #include <array>
-#include <boost/crc.hpp>
 #include <cerrno>
 #include <cstring>
 #include <utility>
 
+#include "proto/recording/records.h"
+
 namespace rmlcell::server {
 namespace {
-
-constexpr std::size_t kHeadBytes = 8;
-constexpr std::uint32_t kRecordMax = 16U << 20;  // no entry is as large: what says so is no length
-
-std::uint32_t Checksum(std::string_view bytes) {
-  boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true> crc;  // CRC-32C
-  crc.process_bytes(bytes.data(), bytes.size());
-  return crc.checksum();
-}
-
-void AddNumber(std::uint32_t number, std::string& bytes) {
-  for (int i = 0; i < 4; ++i) bytes += static_cast<char>(number >> (8 * i) & 0xFFU);
-}
-
-std::uint32_t NumberAt(std::string_view bytes) {
-  std::uint32_t number = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    number |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
-  return number;
-}
 
 Error Failed(const std::string& path, int number) {
   return {ErrorCode::kCellJournal, path + ": " + std::strerror(number), {}};
@@ -75,31 +56,18 @@ Result<std::string> ReadAll(const std::string& path, int file) {
 
 std::string RecordsOf(const std::vector<v1::JournalEntry>& entries) {
   std::string records;
-  for (const v1::JournalEntry& entry : entries) {
-    const std::string bytes = entry.SerializeAsString();
-    AddNumber(static_cast<std::uint32_t>(bytes.size()), records);
-    AddNumber(Checksum(bytes), records);
-    records += bytes;
-  }
+  for (const v1::JournalEntry& entry : entries)
+    recording::AddRecord(entry.SerializeAsString(), records);
   return records;
 }
 
 ReadRecords ReadJournal(std::string_view bytes) {
   ReadRecords read;
-  std::int64_t end = 0;
-  while (bytes.size() >= kHeadBytes) {
-    const std::uint32_t length = NumberAt(bytes);
-    // A record has an entry: zeros, which a file may end with, are none.
-    if (length == 0 || length > kRecordMax || bytes.size() - kHeadBytes < length) break;
-    const std::string_view record = bytes.substr(kHeadBytes, length);
+  for (const std::string_view record : recording::ReadRecords(bytes).records) {
     v1::JournalEntry entry;
-    if (Checksum(record) != NumberAt(bytes.substr(4)) ||
-        !entry.ParseFromArray(record.data(), static_cast<int>(record.size())))
-      break;
-    end += static_cast<std::int64_t>(kHeadBytes + length);
-    bytes.remove_prefix(kHeadBytes + length);
+    if (!entry.ParseFromArray(record.data(), static_cast<int>(record.size()))) break;
     read.entries.push_back(std::move(entry));
-    read.ends.push_back(end);
+    read.ends.push_back(record.data() + record.size() - bytes.data());
   }
   return read;
 }
@@ -140,7 +108,7 @@ Status Journal::Write(const std::vector<v1::JournalEntry>& entries) {
     return Failed(path_, failed);
   }
   for (const v1::JournalEntry& entry : entries) {
-    bytes_ += static_cast<std::int64_t>(kHeadBytes + entry.ByteSizeLong());
+    bytes_ += recording::kRecordHeadBytes + static_cast<std::int64_t>(entry.ByteSizeLong());
     places_.push_back({.fence = entry.fence(), .sequence = entry.sequence(), .end = bytes_});
   }
   return {};

@@ -20,6 +20,7 @@ OrderClass ClassOf(const v1::HostOrder& order) {
       return OrderClass::kWrittenFirst;
     case v1::HostOrder::kReadVariables:
     case v1::HostOrder::kRunState:
+    case v1::HostOrder::kRecording:
     case v1::HostOrder::kRenewControl:
       return OrderClass::kAsks;
     default:

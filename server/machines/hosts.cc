@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <utility>
@@ -67,6 +68,16 @@ void Hosts::OnNews(std::function<void(const std::string&)> news) {
   news_ = std::move(news);
 }
 
+void Hosts::OnRunOver(std::function<void(const std::string&)> over) {
+  const std::lock_guard lock(changing_);
+  over_ = std::move(over);
+}
+
+void Hosts::RunOver(const std::string& machine) {
+  const std::lock_guard lock(changing_);
+  if (over_) over_(machine);
+}
+
 void Hosts::Changed() {
   const std::lock_guard lock(changing_);
   if (changed_) changed_();
@@ -123,6 +134,7 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   SendMemory(host);
   spdlog::info("{} has the host {}, fence {}", hello.machine(), hello.host(), host->lease.fence);
   Changed();
+  RunOver(host->id);
   return {};
 }
 
@@ -370,8 +382,12 @@ void Hosts::StoreEntries(const HostPointer& host) {
       if (count > 0) host->stored = entries[done.count - 1].sequence();
     }
     if (done.count > 0) TellStored(*host, entries[done.count - 1].sequence());
+    const auto ends = [](const v1::JournalEntry& entry) {
+      return entry.has_run_over() && !entry.run_over().job().empty();
+    };
     if (stored) {
       Changed(host->id);
+      if (std::ranges::any_of(entries, ends)) RunOver(host->id);
       return StoreEntries(host);
     }
     spdlog::warn("what the host of {} tells: {}", host->id, bridge::ErrorText(stored.error()));

@@ -79,6 +79,9 @@ class Hosts {
   // Called when the state of a machine, or what keeps a job from it, has changed, or something of
   // it was stored; on any thread, and not for long.
   void OnNews(std::function<void(const std::string& machine)> news);
+  // Called when the end of a job of the machine is stored, and when its host is heard again; on any
+  // thread, and not for long.
+  void OnRunOver(std::function<void(const std::string& machine)> over);
   // The id of the machine that runs this job, as its host says; empty: none that is known.
   std::string MachineThatRuns(const std::string& job) const;
   std::vector<std::string> Machines() const;  // ids of those with a host
@@ -115,11 +118,13 @@ class Hosts {
   void LookAtMemory();
   void Changed();
   void Changed(const std::string& machine);
+  void RunOver(const std::string& machine);
 
   Needs needs_;
   std::mutex changing_;
   std::function<void()> changed_;                 // guarded by changing_
   std::function<void(const std::string&)> news_;  // likewise
+  std::function<void(const std::string&)> over_;  // likewise
   // Over all lines, and those of a server before: an answer is to one order alone.
   std::atomic<std::int64_t> next_order_ = std::chrono::duration_cast<std::chrono::microseconds>(
                                               std::chrono::system_clock::now().time_since_epoch())

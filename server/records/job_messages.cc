@@ -36,6 +36,8 @@ std::string_view KindOf(const v1::JobEvent& event) {
       return "queue";
     case v1::JobEvent::kEnded:
       return "ended";
+    case v1::JobEvent::kProductsMade:
+      return "products_made";
     case v1::JobEvent::WHAT_NOT_SET:
       break;
   }

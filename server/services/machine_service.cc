@@ -269,4 +269,16 @@ grpc::ServerWriteReactor<v1::WatchMachineResponse>* MachineService::WatchMachine
       [&](const Caller&) { return MakeMachineWatch(watch_needs_, *request); });
 }
 
+grpc::ServerWriteReactor<v1::ExportJournalResponse>* MachineService::ExportJournal(
+    grpc::CallbackServerContext* context, const v1::ExportJournalRequest* request) {
+  return OpenStream<v1::ExportJournalResponse>(
+      needs_, *context, *request, "MachineService/ExportJournal", [&](const Caller&) {
+        return MakeJournalExport({.executor = needs_.executor,
+                                  .open = watch_needs_.open,
+                                  .store = store_,
+                                  .hosts = live_.hosts},
+                                 *request);
+      });
+}
+
 }  // namespace rmlcell::server

@@ -60,6 +60,9 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerWriteReactor<v1::WatchMachineResponse>* WatchMachine(
       grpc::CallbackServerContext* context, const v1::WatchMachineRequest* request) override;
 
+  grpc::ServerWriteReactor<v1::ExportJournalResponse>* ExportJournal(
+      grpc::CallbackServerContext* context, const v1::ExportJournalRequest* request) override;
+
   // Of machines that live: machine_orders.cc.
   grpc::ServerUnaryReactor* AcquireControl(grpc::CallbackServerContext* context,
                                            const v1::AcquireControlRequest* request,
@@ -140,7 +143,6 @@ class MachineService final : public v1::MachineService::CallbackService {
   RMLCELL_LATER("MachineService", ArmMachine, v1::ArmMachineResponse)
   RMLCELL_LATER("MachineService", DisarmMachine, v1::MachineStatus)
   RMLCELL_LATER("MachineService", ListDevices, v1::ListDevicesResponse)
-  RMLCELL_LATER_READ("MachineService", ExportJournal)
 
  private:
   // One order to the host of a machine.

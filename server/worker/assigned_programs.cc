@@ -5,6 +5,7 @@
 
 #include "engine/core/units.h"
 #include "engine/families/families.h"
+#include "proto/bridge/machine_inputs.h"
 
 namespace rmlcell::server {
 
@@ -60,12 +61,8 @@ simulation::ProgramMemory AssignedPrograms::Memory() {
   }
   if (!assignment_.default_schedules()) {
     memory.schedules.emplace();
-    for (const v1::AssignedSchedule& schedule : assignment_.schedules()) {
-      memory.schedules->push_back({.number = schedule.number(),
-                                   .name = schedule.title(),
-                                   .mode = schedule.mode(),
-                                   .power_percent = schedule.power_percent()});
-    }
+    for (const v1::AssignedSchedule& schedule : assignment_.schedules())
+      memory.schedules->push_back(bridge::FromProto(schedule));
   }
   return memory;
 }

@@ -27,6 +27,7 @@
 #include "server/worker/job_output.h"
 #include "server/worker/material_files.h"
 #include "server/worker/memory_budget.h"
+#include "server/worker/step_map.h"
 
 namespace rmlcell::server {
 namespace {
@@ -41,22 +42,6 @@ v1::Outcome OutcomeOf(Stop stop) {
   return stop == Stop::kCancel
              ? OutcomeFor(machine::OutcomeKind::kCancelled, ErrorCode::kCellCancelled)
              : OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
-}
-
-// Which lines the steps of its programs are, as far as their texts are here; nothing for streams,
-// which have no steps.
-std::string StepsOf(const machine::MachineFamily& family, const machine::RunSetup& setup) {
-  if (family.tools() == nullptr) return {};
-  v1::GetStepMapResponse map;
-  for (const auto& [slot, program] : setup.programs) {
-    v1::GetStepMapResponse::ProgramSteps& made = *map.add_programs();
-    made.set_program(slot);
-    made.set_object_sha256(bridge::Sha256Hex(*program.object));
-    if (program.source == nullptr) continue;
-    const std::vector<int>& lines = program.source->step_lines;
-    *made.mutable_lines() = {lines.begin(), lines.end()};
-  }
-  return bridge::StableBytes(map);
 }
 
 // One attempt.
@@ -237,7 +222,7 @@ class Attempt {
       if (auto timetable = simulation::TimetableRun::Of(family, *made->setup))
         drive.timetable = *std::move(timetable);
     }
-    steps_ = StepsOf(family, *made->setup);
+    steps_ = StepMapOf(family, *made->setup);
     Result<simulation::BegunRun> begun =
         simulation::Begin(family, std::move(*made->setup), std::move(products));
     if (!begun) return Refuse(begun.error());

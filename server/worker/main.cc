@@ -18,6 +18,7 @@
 #include "server/base/version.h"
 #include "server/host/host_process.h"
 #include "server/worker/job_runner.h"
+#include "server/worker/replayed_products.h"
 #include "server/worker/server_line.h"
 
 namespace {
@@ -75,6 +76,8 @@ struct Options {
   std::string pool{};
   std::string host{};  // a machine: its host, and no worker
   std::string journal{};
+  std::string recording{};  // to be played, in place of all that
+  std::string into{};
   std::string log_level = "info";
   std::string log_format = "text";
 };
@@ -93,6 +96,10 @@ void Add(CLI::App& app, Options& options) {
   app.add_option("--host", options.host,
                  "machines/ID: the host of this machine that lives, in place of a worker")
       ->needs(journal);
+  auto* into = app.add_option("--into", options.into, "a folder, with --products");
+  app.add_option("--products", options.recording,
+                 "plays this recording of a run again, makes its report and pictures, and ends")
+      ->needs(into);
   app.add_option("--log-level", options.log_level);
   app.add_option("--log-format", options.log_format, "text or json");
   app.footer("The join token of the server is taken from the environment: RMLCELL_JOIN_TOKEN.");
@@ -129,7 +136,10 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 64;
   }
   const bool hosts = !options.host.empty();
-  if (const Status log = StartLog(hosts ? "host of " + options.host : options.name,
+  const bool plays = !options.recording.empty();
+  if (const Status log = StartLog(hosts   ? "host of " + options.host
+                                  : plays ? "products of " + options.recording
+                                          : options.name,
                                   options.log_level, options.log_format, {});
       !log)
     return 69;
@@ -142,7 +152,13 @@ int main(int argc, char** argv) {
   const char* given = std::getenv("RMLCELL_JOIN_TOKEN");
   const std::string token = given != nullptr ? given : "";
   int code = 0;
-  if (hosts) {
+  if (plays) {
+    // What moves or waits goes first.
+    if (::nice(10) == -1) spdlog::debug("it runs at the priority of the others");
+    const Status made = MakeProducts(options.recording, options.into);
+    if (!made) spdlog::error("{}", bridge::ErrorText(made.error()));
+    code = made ? 0 : 1;
+  } else if (hosts) {
     code = RunHost({.server = options.servers.front(),
                     .join_token = token,
                     .machine = options.host,

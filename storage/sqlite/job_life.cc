@@ -304,6 +304,26 @@ Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const Job
   return std::move(row->job);
 }
 
+Result<JobRecord> AddLateProducts(WriteContext& context, std::int64_t job,
+                                  const LateProducts& products,
+                                  const std::vector<const PreparedContent*>& contents) {
+  Result<JobRow> row = GetRow(context, job);
+  if (!row) return row.error();
+  if (!IsFinal(row->job.state))
+    return Error{ErrorCode::kCellPrecondition, "job " + std::to_string(job) + " has not ended", {}};
+  if (const Status added = AddArtifacts(context, job, products.artifacts, contents, nullptr);
+      !added)
+    return added.error();
+  if (!products.verdict.empty() && row->job.outcome) {
+    row->job.outcome->judgement = products.judgement;
+    row->job.outcome->verdict = products.verdict;
+  }
+  if (const Status written = WriteChange(context, *row, kOutsideAnAttempt, products.events);
+      !written)
+    return written.error();
+  return std::move(row->job);
+}
+
 Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease, const LossPolicy& policy) {
   if (const Status final_state = CheckFinal(policy.outcome); !final_state)
     return final_state.error();

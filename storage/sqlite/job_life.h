@@ -44,6 +44,10 @@ Result<std::int64_t> AppendEvents(WriteContext& context, const Lease& lease,
 Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const JobEnd& end,
                             const std::vector<const PreparedContent*>& contents);
 
+Result<JobRecord> AddLateProducts(WriteContext& context, std::int64_t job,
+                                  const LateProducts& products,
+                                  const std::vector<const PreparedContent*>& contents);
+
 Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease, const LossPolicy& policy);
 
 Result<JobRecord> AbandonJob(WriteContext& context, const Lease& lease, const LossPolicy& policy);

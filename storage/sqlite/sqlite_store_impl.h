@@ -116,6 +116,7 @@ class SqliteStore final : public Store {
   void Append(const Lease& lease, std::vector<NewEvent> events, Done<std::int64_t> done) override;
   Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events) override;
   Result<JobRecord> Finish(const Lease& lease, const JobEnd& end) override;
+  Result<JobRecord> AddProducts(std::int64_t job, const LateProducts& products) override;
   void SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,
                   std::optional<JobRequest> next, Done<FinishedJob> done) override;
   Result<JobRecord> HandBack(const Lease& lease, const LossPolicy& policy) override;

@@ -158,16 +158,22 @@ class StagedEnd {
 
   Status Prepare(Writer& writer, const JobEnd& end) {
     staged_.reserve(end.artifacts.size() + end.executables.size());
-    for (const NewArtifact& artifact : end.artifacts) {
-      if (const Status added = Add(StagedContent::Of(writer, artifact)); !added)
-        return added.error();
-      artifacts_.push_back(&staged_.back().content());
-    }
+    if (const Status added = Add(writer, end.artifacts); !added) return added.error();
     for (const NewExecutable& executable : end.executables) {
       if (const Status added = Add(StageExecutable(writer, executable.bytes)); !added)
         return added.error();
     }
     return {};
+  }
+
+  Status Prepare(Writer& writer, const LateProducts& products) {
+    staged_.reserve(products.artifacts.size());
+    return Add(writer, products.artifacts);
+  }
+
+  Result<JobRecord> Run(WriteContext& context, std::int64_t job,
+                        const LateProducts& products) const {
+    return AddLateProducts(context, job, products, artifacts_);
   }
 
   Result<JobRecord> Run(WriteContext& context, const Lease& lease, const JobEnd& end) const {
@@ -183,6 +189,14 @@ class StagedEnd {
   }
 
  private:
+  Status Add(Writer& writer, const std::vector<NewArtifact>& artifacts) {
+    for (const NewArtifact& artifact : artifacts) {
+      if (const Status added = Add(StagedContent::Of(writer, artifact)); !added)
+        return added.error();
+      artifacts_.push_back(&staged_.back().content());
+    }
+    return {};
+  }
   Status Add(Result<StagedContent> content) {
     if (!content) return content.error();
     staged_.push_back(*std::move(content));
@@ -375,6 +389,13 @@ Result<JobRecord> SqliteStore::Finish(const Lease& lease, const JobEnd& end) {
   if (const Status made = staged.Prepare(writer_, end); !made) return made.error();
   return WithSpecification(
       writer_.Do([&](WriteContext& context) { return staged.Run(context, lease, end); }));
+}
+
+Result<JobRecord> SqliteStore::AddProducts(std::int64_t job, const LateProducts& products) {
+  StagedEnd staged;
+  if (const Status made = staged.Prepare(writer_, products); !made) return made.error();
+  return WithSpecification(
+      writer_.Do([&](WriteContext& context) { return staged.Run(context, job, products); }));
 }
 
 void SqliteStore::SendFinish(const Lease& lease, std::shared_ptr<const JobEnd> end,

@@ -72,6 +72,56 @@ class RunsTest(LiveTestCase):
         self.assertGreater(job.outcome.cycle_time_ns, 3 * 10**8)
         self.assertEqual(MachineState.Name(self.live.status().state), "MACHINE_STATE_IDLE")
 
+    # LIVE-3.41, LIVE-5.08: report, pictures and verdict come behind the end, made of what was recorded.
+    def test_a_run_has_a_report_behind_its_end(self):
+        self.enable()
+        name = self.submit()
+        self.assertEqual(self.becomes(name, "SUCCEEDED", "FAILED"), "SUCCEEDED")
+        eventually(lambda: self.events(name)[-1].HasField("products_made"), 30)
+        job = self.job(name)
+        names = {one.name for one in job.artifacts}
+        self.assertLessEqual({"recording", "report", "toolpath", "picture.svg"}, names)
+        report = self.cell.jobs().GetJobReport(job_pb2.GetJobReportRequest(name=name))
+        self.assertAlmostEqual(report.total.times.cycle_s, job.outcome.cycle_time_ns * 1e-9)
+        self.assertEqual(report.outcome.verdict, job.outcome.verdict)
+        self.assertEqual(report.outcome.verdict, self.events(name)[-1].products_made.verdict)
+        # The same program as a simulation, which does not begin at the top of the travel as the machine did.
+        simulated = self.cell.jobs().SubmitJob(job_pb2.SubmitJobRequest(request_id=new_id(), job={
+            "kind": "JOB_KIND_SIMULATE", "machine": MILL,
+            "inline_program": {"file_name": "a.rml", "content": SHORT.encode()}})).name
+        self.assertEqual(self.becomes(simulated, "SUCCEEDED", "FAILED"), "SUCCEEDED")
+        other = self.cell.jobs().GetJobReport(job_pb2.GetJobReportRequest(name=simulated))
+        self.assertEqual(other.total.cut_length_mm, report.total.cut_length_mm)
+        self.assertGreater(report.total.travel_length_mm, other.total.travel_length_mm)
+        picture = self.cell.jobs().GetJobPicture(job_pb2.GetJobPictureRequest(name=name))
+        self.assertIn(b"<svg", picture.content)
+
+    # LIVE-3.40, LIVE-9.16: what a machine has recorded comes as a file, and plays the same without a server.
+    def test_a_recording_is_played_again(self):
+        self.enable()
+        name = self.submit()
+        self.assertEqual(self.becomes(name, "SUCCEEDED", "FAILED"), "SUCCEEDED")
+        file = os.path.join(self.cell.folder, "run.rmlj")
+
+        def replay(what, *more):
+            return subprocess.run([os.path.join(BIN, "rmlcell"), "replay", what, "--server", self.cell.address, *more],
+                                  capture_output=True, text=True, timeout=60)
+        played = replay(name, "-o", file)
+        self.assertEqual(played.returncode, 0, played.stderr)
+        self.assertIn(f"{MILL}, {name}: played again, 1 inputs, 2 events", played.stdout)
+        self.assertEqual(replay(MILL).stdout, played.stdout)
+        self.assertEqual(subprocess.run([os.path.join(BIN, "rmlcell"), "replay", file], capture_output=True, text=True, timeout=60).stdout,
+                         played.stdout)
+        with open(file, "rb") as stream:
+            bytes_there = bytearray(stream.read())
+        bytes_there[len(bytes_there) // 2] ^= 1
+        with open(file, "wb") as stream:
+            stream.write(bytes_there)
+        damaged = replay(file)
+        self.assertEqual(damaged.returncode, 2)
+        self.assertIn("CELL-E9024", damaged.stderr)
+        self.assertIn("CELL-E9004", replay("jobs/999").stderr)
+
     # LIVE-5.05: the same names on job and machine.
     def test_a_run_is_held_resumed_and_cancelled(self):
         self.live.enable()

@@ -55,6 +55,10 @@ class FaultyStore final : public ForwardingStore {
                                     const storage::JobEnd& end) override {
     return Try([&] { return store_.Finish(lease, end); });
   }
+  Result<storage::JobRecord> AddProducts(std::int64_t job,
+                                         const storage::LateProducts& products) override {
+    return Try([&] { return store_.AddProducts(job, products); });
+  }
   Result<storage::JobRecord> HandBack(const storage::Lease& lease,
                                       const storage::LossPolicy& policy) override {
     return Try([&] { return store_.HandBack(lease, policy); });

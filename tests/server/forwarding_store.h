@@ -178,6 +178,10 @@ class ForwardingStore : public storage::Store {
                                     const storage::JobEnd& end) override {
     return store_.Finish(lease, end);
   }
+  Result<storage::JobRecord> AddProducts(std::int64_t job,
+                                         const storage::LateProducts& products) override {
+    return store_.AddProducts(job, products);
+  }
   Result<storage::JobRecord> HandBack(const storage::Lease& lease,
                                       const storage::LossPolicy& policy) override {
     return store_.HandBack(lease, policy);

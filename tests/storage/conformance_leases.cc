@@ -387,6 +387,46 @@ TEST_P(StoreConformance, FinishEndsTheJob) {
   EXPECT_THAT(EndsOf(Must(store().ListAttempts(job.id))), ElementsAre("failed"));
 }
 
+// LIVE-3.41, store.h AddProducts: behind the end, all or nothing, and the end stays what it was.
+TEST_P(StoreConformance, ProductsComeBehindTheEnd) {
+  const LeasedJob leased = (Submit(), Acquire());
+  const LateProducts products{
+      .artifacts = {{.name = "report", .bytes = "{}"}, {.name = "picture.svg", .bytes = "<svg/>"}},
+      .judgement = "why",
+      .verdict = "BAD",
+      .events = {{.kind = "products_made", .payload = "x"}}};
+  EXPECT_EQ(CodeOf(store().AddProducts(leased.job.id, products)), ErrorCode::kCellPrecondition);
+  EXPECT_EQ(CodeOf(store().AddProducts(999, products)), ErrorCode::kCellNotFound);
+  Must(store().Finish(
+      leased.lease,
+      {.outcome = {.state = JobState::kFailed, .code = ErrorCode::kHoleRadiusZero, .step = 7},
+       .artifacts = {{.name = "recording", .bytes = "r"}},
+       .events = {{.kind = "ended", .payload = "x"}}}));
+  const std::uint64_t before = store().JobChanges(leased.job.id);
+  EXPECT_EQ(Must(store().AddProducts(leased.job.id, products)).last_sequence, 2);
+  EXPECT_NE(store().JobChanges(leased.job.id), before);
+  // Once: a second server that made them too changes nothing.
+  EXPECT_EQ(CodeOf(store().AddProducts(leased.job.id,
+                                       {.artifacts = {{.name = "steps", .bytes = "s"},
+                                                      {.name = "report", .bytes = "other"}},
+                                        .verdict = "GOOD"})),
+            ErrorCode::kCellInvalidArgument);
+  Reopen();
+  const JobRecord job = Must(store().GetJob(leased.job.id));
+  EXPECT_EQ(job.state, JobState::kFailed);
+  EXPECT_EQ(job.outcome->code, ErrorCode::kHoleRadiusZero);
+  EXPECT_EQ(job.outcome->step, 7);
+  EXPECT_EQ(job.outcome->judgement, "why");
+  EXPECT_EQ(job.outcome->verdict, "BAD");
+  EXPECT_EQ(Must(store().ListArtifacts(job.id)).size(), 3U);
+  EXPECT_EQ(Must(store().ReadArtifact(job.id, "report")), "{}");
+  ASSERT_EQ(EventsOf(job.id).size(), 2U);
+  EXPECT_EQ(EventsOf(job.id).at(1).kind, "products_made");
+  // What they say is kept where none is known.
+  Must(store().AddProducts(job.id, {.artifacts = {{.name = "steps", .bytes = "s"}}}));
+  EXPECT_EQ(Must(store().GetJob(job.id)).outcome->verdict, "BAD");
+}
+
 TEST_P(StoreConformance, EveryFinalStateIsAnEnd) {
   const std::vector<std::pair<JobState, std::string>> ends = {
       {JobState::kSucceeded, "succeeded"},

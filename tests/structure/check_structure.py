@@ -64,6 +64,7 @@ MAY_INCLUDE = {
     "storage/sqlite": ["engine/core", "storage", "storage/jobs"],
     "storage/opening": ["engine/core", "storage", "storage/sqlite"],
     "proto/bridge": ["engine/core", "engine/machine", "engine/families", REPORT, PICTURE, MATERIAL, RUN, "proto"],
+    "proto/recording": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge"],
     # What every room of the server may use.
     "server/base": ["engine/core", "storage"],
     "server/auth": ["engine/core", "proto", "server/base"],
@@ -76,7 +77,7 @@ MAY_INCLUDE = {
     # How machines stand.
     "server/machines": ["engine/core", "proto", "proto/bridge", "server/base", "server/events", "server/records", "storage"],
     # The host of a machine that lives: a process of its own, without the store.
-    "server/host": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base"],
+    "server/host": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "proto/recording", "server/base"],
     # RUN jobs, between the queue and the host of their machine.
     "server/runs": ["engine/core", "proto", "proto/bridge", "server/base", "server/jobs", "server/machines", "server/records", "storage", "storage/jobs"],
     "server/programs": ["engine/core", "engine/machine", "engine/families", RUN, "proto", "proto/bridge", "server/base", "server/records", "storage"],
@@ -85,11 +86,11 @@ MAY_INCLUDE = {
     "server/results": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base", "server/records", "server/jobs", "server/programs",
                        "storage"],
     "server/web": ["engine/core", "proto", "proto/bridge"],
-    "server/services": ["engine/core", "engine/machine", "engine/families", TOOLPATH, MATERIAL, "proto", "proto/bridge",
+    "server/services": ["engine/core", "engine/machine", "engine/families", TOOLPATH, MATERIAL, "proto", "proto/bridge", "proto/recording",
                         "server/base", "server/auth", "server/events", "server/machines", "server/records", "server/jobs", "server/runs",
                         "server/programs", "server/projects", "server/results", "server/web", "storage"],
     # The engine worker: a process of its own, without the store.
-    "server/worker": ["engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge",
+    "server/worker": ["engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge", "proto/recording",
                       "server/base", "server/host", "server/records"],
     # The wiring of the server.
     "server/cell": ["engine/core", "proto/bridge", "server/base", "server/auth", "server/events", "server/records",
@@ -97,7 +98,7 @@ MAY_INCLUDE = {
                     "server/web", "storage", "storage/opening"],
     # The language server: no server and no language.
     "clients/lsp": ["engine/core", "engine/machine", "engine/families", RUN],
-    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", "engine/rml1/offline", "engine/rml1/board", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge"],
+    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", "engine/rml1/offline", "engine/rml1/board", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge", "proto/recording"],
 }
 # Of these rooms others may include no other header.
 PUBLIC = {
@@ -110,7 +111,7 @@ PUBLIC = {
     PLANNER: ["planner.h", "feed_steps.h"],
     RIDE: ["trajectory.h", "interruption.h", "ride_protocol.h", "path_ride.h"],
     JOG: ["jog_drive.h"],
-    "engine/machine": ["bytes.h", "driver.h", "family.h", "hand_motion.h", "language_word.h", "machine.h", "machine_note.h", "machine_states.h", "machine_status.h", "panel.h", "run.h", "standing.h", "virtual_driver.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "variable.h", "verdict.h",
+    "engine/machine": ["bytes.h", "driver.h", "family.h", "hand_motion.h", "language_word.h", "machine.h", "machine_input.h", "machine_note.h", "machine_states.h", "machine_status.h", "panel.h", "run.h", "standing.h", "virtual_driver.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "variable.h", "verdict.h",
                        "tools.h", "editing.h", "run_setup.h", "outcome.h", "inputs.h", "program_file.h"],
     "engine/rml1": ["rml1_family.h", "action.h", "clipping.h", "command_reader.h", "command_table.h", "device.h", "figures.h", "finding.h",
                     "number.h", "physical.h", "profile.h", "programmed.h", "registers.h", "verdict_rules.h"],
@@ -139,16 +140,17 @@ PUBLIC = {
     "storage/jobs": ["job_rules.h", "queue_rules.h"],
     "storage/sqlite": ["sqlite_store.h"],
     "storage/opening": ["open_store.h"],
-    "proto/bridge": ["comparison.h", "encoding.h", "files.h", "findings.h", "framing.h", "header_date.h", "inputs.h", "milling.h",
+    "proto/bridge": ["comparison.h", "encoding.h", "files.h", "findings.h", "framing.h", "header_date.h", "inputs.h", "machine_inputs.h", "milling.h",
                      "report.h", "series.h", "setup.h", "sha256.h", "spooled_bytes.h"],
+    "proto/recording": ["records.h", "recording.h", "replay.h", "told.h"],
     "server/base": ["child_process.h", "config.h", "credentials.h", "executor.h", "log.h", "names.h", "readable.h", "restart_delay.h", "secret.h", "steady_clock.h", "version.h"],
     "server/auth": ["caller.h", "socket_users.h"],
     "server/events": ["event_feed.h"],
     "server/jobs": ["dispatcher.h", "assignment.h", "followed.h", "job_book.h", "job_filter.h", "running_heights.h", "running_toolpath.h", "worker_processes.h"],
     "server/records": ["file_family.h", "job_messages.h", "known_machines.h", "machine_messages.h", "program_place.h", "toolpath_levels.h", "update_mask.h"],
     "server/host": ["host_process.h"],
-    "server/runs": ["run_queue.h"],
-    "server/machines": ["host_entries.h", "host_processes.h", "hosts.h", "machine_statuses.h"],
+    "server/runs": ["run_products.h", "run_queue.h"],
+    "server/machines": ["host_entries.h", "host_processes.h", "hosts.h", "machine_statuses.h", "recordings.h"],
     "server/programs": ["content_upload.h", "language_tools.h", "memory_tools.h", "program_book.h", "program_result.h", "program_views.h",
                         "text_tools.h"],
     "server/projects": ["project_archive.h", "project_book.h", "project_transfer.h"],

@@ -212,6 +212,9 @@ class FakeLog final : public storage::Store {
   Result<storage::JobRecord> Finish(const storage::Lease&, const storage::JobEnd&) override {
     return No();
   }
+  Result<storage::JobRecord> AddProducts(std::int64_t, const storage::LateProducts&) override {
+    return No();
+  }
   Result<storage::JobRecord> HandBack(const storage::Lease&, const storage::LossPolicy&) override {
     return No();
   }

@@ -1,0 +1,390 @@
+#include "proto/bridge/machine_inputs.h"
+
+#include <string>
+#include <utility>
+
+#include "proto/bridge/inputs.h"
+#include "proto/bridge/setup.h"
+#include "rmlcell/v1/job.pb.h"
+#include "rmlcell/v1/worker.pb.h"
+
+namespace rmlcell::bridge {
+namespace {
+
+using machine::MachineInput;
+
+struct Applied {
+  v1::AppliedInput& made;
+
+  void operator()(const machine::StartRun& input) const {
+    made.mutable_start()->set_program(input.program);
+    made.mutable_start()->set_source(bridge::ToProto(input.source));
+    made.mutable_start()->set_unzeroed(input.unzeroed);
+  }
+  void operator()(const machine::ZeroAxes&) const {
+    made.mutable_key()->set_key("ZERO");
+    made.mutable_key()->set_action(v1::KEY_ACTION_TAP);
+  }
+  void operator()(const machine::ResumeRun& input) const {
+    made.mutable_resume()->set_source(bridge::ToProto(input.source));
+  }
+  void operator()(const machine::HoldRun&) const { made.set_hold(v1::HOLD_REASON_HOLD); }
+  void operator()(const machine::StopRun&) const { made.set_stop(v1::HOLD_REASON_STOP); }
+  void operator()(const machine::AbortRun&) const { made.set_abort(v1::HOLD_REASON_ABORT); }
+  void operator()(const machine::EmergencyStop& input) const {
+    made.set_emergency_stop(input.pressed);
+  }
+  void operator()(const machine::Acknowledge& input) const {
+    made.set_acknowledged_alarm(input.alarm);
+  }
+  void operator()(const machine::ChangeMode& input) const {
+    made.set_mode(bridge::ToProto(input.mode));
+  }
+  void operator()(const machine::ChangeOverride& input) const {
+    made.set_override_percent(input.percent);
+  }
+  void operator()(const machine::ChangeInput& input) const {
+    const bool logical = input.kind == machine::InputKind::kLogical;
+    v1::Variable& variable = *made.mutable_from_outside()->mutable_input();
+    variable.set_name((logical ? "IL[" : "IA[") + std::to_string(input.index) + "]");
+    if (logical) {
+      variable.mutable_value()->set_logical(input.value != 0.0);
+    } else {
+      variable.mutable_value()->set_real(input.value);
+    }
+  }
+  void operator()(const machine::MoveDoor& input) const {
+    made.mutable_from_outside()->set_door_open(input.open);
+  }
+  void operator()(const machine::SwitchPower& input) const { made.set_power(input.on); }
+  void operator()(const machine::WriteVariable& input) const {
+    made.mutable_variable()->set_name(input.name);
+    made.mutable_variable()->mutable_value()->set_real(input.value);
+  }
+  void operator()(const machine::SetBreakpoints& input) const {
+    v1::Breakpoints& all = *made.mutable_breakpoints();
+    for (const machine::Breakpoint& one : input.breakpoints) {
+      v1::Breakpoint& breakpoint = *all.add_breakpoints();
+      breakpoint.mutable_step()->set_program(one.at.program);
+      breakpoint.mutable_step()->set_step(one.at.step);
+      breakpoint.set_condition(one.condition);
+      breakpoint.set_passes(static_cast<std::int64_t>(one.from_pass));
+    }
+  }
+  void operator()(const machine::SetSimulation& input) const {
+    v1::StepPlace& until = *made.mutable_simulation_until();
+    if (!input.until) return;
+    until.set_program(input.until->program);
+    until.set_step(input.until->step);
+  }
+  void operator()(const machine::StoreProgram& input) const {
+    made.mutable_program_changed()->set_program(input.slot);
+  }
+  void operator()(const machine::DeleteProgram& input) const {
+    made.mutable_program_changed()->set_program(input.slot);
+  }
+  void operator()(const machine::SetSchedules&) const {}
+  void operator()(const machine::ClearMessage&) const {
+    made.mutable_key()->set_key("ERR");
+    made.mutable_key()->set_action(v1::KEY_ACTION_TAP);
+  }
+  void operator()(const machine::PressJog& input) const {
+    made.mutable_key()->set_key(machine::Name(input.key));
+    made.mutable_key()->set_action(v1::KEY_ACTION_PRESS);
+    made.mutable_key()->set_fast(input.fast);
+    made.mutable_key()->set_jog_reference(ToProto(input.reference));
+  }
+  void operator()(const machine::ReleaseJog& input) const {
+    made.mutable_key()->set_key(machine::Name(input.key));
+    made.mutable_key()->set_action(v1::KEY_ACTION_RELEASE);
+  }
+  // Of no key by name: all of them.
+  void operator()(const machine::ReleaseJogs&) const {
+    made.mutable_key()->set_action(v1::KEY_ACTION_RELEASE);
+  }
+};
+
+Result<MachineInput> OfWrittenVariable(const v1::Variable& variable) {
+  const Result<double> value = NumberOf(variable);
+  if (!value) return value.error();
+  return MachineInput(machine::WriteVariable{.name = variable.name(), .value = *value});
+}
+
+std::optional<machine::JogKey> JogKeyOf(std::string_view name) {
+  using Axis = machine::JogAxis;
+  for (const Axis axis : {Axis::kX, Axis::kY, Axis::kZ, Axis::kA, Axis::kB, Axis::kC}) {
+    for (const bool plus : {false, true}) {
+      const machine::JogKey key{.axis = axis, .plus = plus};
+      if (machine::Name(key) == name) return key;
+    }
+  }
+  return std::nullopt;
+}
+
+machine::JogReference JogReferenceOf(v1::JogReference reference) {
+  switch (reference) {
+    case v1::JOG_REFERENCE_ABS:
+      return machine::JogReference::kAbsolute;
+    case v1::JOG_REFERENCE_TCP:
+      return machine::JogReference::kTool;
+    default:
+      return machine::JogReference::kRobot;
+  }
+}
+
+Result<MachineInput> OfKey(const v1::PressedKey& key) {
+  if (key.key().empty() && key.action() == v1::KEY_ACTION_RELEASE)
+    return MachineInput(machine::ReleaseJogs{});
+  if (const auto jog = JogKeyOf(key.key())) {
+    if (key.action() == v1::KEY_ACTION_RELEASE) return MachineInput(machine::ReleaseJog{*jog});
+    return MachineInput(machine::PressJog{.key = *jog,
+                                          .reference = JogReferenceOf(key.jog_reference()),
+                                          .fast = key.fast()});
+  }
+  if (key.key() == "ZERO") return MachineInput(machine::ZeroAxes{});
+  if (key.key() == "ERR") return MachineInput(machine::ClearMessage{});
+  return Error{ErrorCode::kCellInvalidArgument, "a key '" + key.key() + "'", {}};
+}
+
+Result<MachineInput> OfStart(const v1::StartInput& start) {
+  const auto source = StartSourceOf(start.source());
+  if (!source) return Error{ErrorCode::kCellInvalidArgument, "a start without a source", {}};
+  return MachineInput(machine::StartRun{
+      .program = start.program(), .source = *source, .unzeroed = start.unzeroed()});
+}
+
+Result<MachineInput> OfMode(v1::OperatingMode mode) {
+  const auto known = ModeOf(mode);
+  if (!known) return Error{ErrorCode::kCellInvalidArgument, "mode is none that there is", {}};
+  return MachineInput(machine::ChangeMode{.mode = *known});
+}
+
+MachineInput OfBreakpoints(const v1::Breakpoints& breakpoints) {
+  machine::SetBreakpoints set;
+  for (const v1::Breakpoint& one : breakpoints.breakpoints())
+    set.breakpoints.push_back(FromProto(one, 0));
+  return set;
+}
+
+MachineInput OfSimulation(const v1::StepPlace& until) {
+  machine::SetSimulation set;
+  if (until.step() != 0) set.until = {.program = until.program(), .step = until.step()};
+  return set;
+}
+
+}  // namespace
+
+v1::MachineState ToProto(machine::MachineState state) {
+  switch (state) {
+    case machine::MachineState::kOff:
+      return v1::MACHINE_STATE_OFF;
+    case machine::MachineState::kStarting:
+      return v1::MACHINE_STATE_STARTING;
+    case machine::MachineState::kRecovering:
+      return v1::MACHINE_STATE_RECOVERING;
+    case machine::MachineState::kNotZeroed:
+      return v1::MACHINE_STATE_NOT_ZEROED;
+    case machine::MachineState::kIdle:
+      return v1::MACHINE_STATE_IDLE;
+    case machine::MachineState::kJogging:
+      return v1::MACHINE_STATE_JOGGING;
+    case machine::MachineState::kRunning:
+      return v1::MACHINE_STATE_RUNNING;
+    case machine::MachineState::kStopping:
+      return v1::MACHINE_STATE_STOPPING;
+    case machine::MachineState::kHeld:
+      return v1::MACHINE_STATE_HELD;
+    case machine::MachineState::kAlarm:
+      return v1::MACHINE_STATE_ALARM;
+    case machine::MachineState::kInspect:
+      return v1::MACHINE_STATE_INSPECT;
+    case machine::MachineState::kLost:
+      break;
+  }
+  return v1::MACHINE_STATE_LOST;
+}
+
+v1::OperatingMode ToProto(machine::Mode mode) {
+  switch (mode) {
+    case machine::Mode::kManual:
+      return v1::OPERATING_MODE_MANUAL;
+    case machine::Mode::kRepeat:
+      return v1::OPERATING_MODE_REPEAT;
+    case machine::Mode::kCycle:
+      return v1::OPERATING_MODE_CYCLE;
+    case machine::Mode::kSingle:
+      return v1::OPERATING_MODE_SINGLE;
+    case machine::Mode::kRemote:
+      break;
+  }
+  return v1::OPERATING_MODE_REMOTE;
+}
+
+v1::StartSource ToProto(machine::StartSource source) {
+  switch (source) {
+    case machine::StartSource::kConsole:
+      return v1::START_SOURCE_CONSOLE;
+    case machine::StartSource::kQueue:
+      return v1::START_SOURCE_QUEUE;
+    case machine::StartSource::kPanel:
+      return v1::START_SOURCE_PANEL;
+    case machine::StartSource::kGate1:
+      return v1::START_SOURCE_GATE_1;
+    case machine::StartSource::kGate2:
+      break;
+  }
+  return v1::START_SOURCE_GATE_2;
+}
+
+v1::HoldReason ToProto(machine::HaltReason reason) {
+  switch (reason) {
+    case machine::HaltReason::kHold:
+      return v1::HOLD_REASON_HOLD;
+    case machine::HaltReason::kStop:
+      return v1::HOLD_REASON_STOP;
+    case machine::HaltReason::kProgram:
+      return v1::HOLD_REASON_PROGRAM;
+    case machine::HaltReason::kBreakpoint:
+      return v1::HOLD_REASON_BREAKPOINT;
+    case machine::HaltReason::kSingle:
+      return v1::HOLD_REASON_SINGLE;
+  }
+  return v1::HOLD_REASON_UNSPECIFIED;
+}
+
+std::optional<machine::StartSource> StartSourceOf(v1::StartSource source) {
+  switch (source) {
+    case v1::START_SOURCE_CONSOLE:
+      return machine::StartSource::kConsole;
+    case v1::START_SOURCE_QUEUE:
+      return machine::StartSource::kQueue;
+    case v1::START_SOURCE_PANEL:
+      return machine::StartSource::kPanel;
+    case v1::START_SOURCE_GATE_1:
+      return machine::StartSource::kGate1;
+    case v1::START_SOURCE_GATE_2:
+      return machine::StartSource::kGate2;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<machine::Mode> ModeOf(v1::OperatingMode mode) {
+  switch (mode) {
+    case v1::OPERATING_MODE_MANUAL:
+      return machine::Mode::kManual;
+    case v1::OPERATING_MODE_REPEAT:
+      return machine::Mode::kRepeat;
+    case v1::OPERATING_MODE_CYCLE:
+      return machine::Mode::kCycle;
+    case v1::OPERATING_MODE_SINGLE:
+      return machine::Mode::kSingle;
+    case v1::OPERATING_MODE_REMOTE:
+      return machine::Mode::kRemote;
+    default:
+      return std::nullopt;
+  }
+}
+
+v1::AppliedInput AppliedOf(const MachineInput& input) {
+  v1::AppliedInput made;
+  std::visit(Applied{made}, input);
+  return made;
+}
+
+Result<MachineInput> FromProto(const v1::MachineInput& input) {
+  switch (input.what_case()) {
+    case v1::MachineInput::kInput: {
+      v1::ScriptedInput scripted;
+      *scripted.mutable_input()->mutable_from_outside() = input;
+      const Result<machine::InputChange> change = FromProto(scripted, 100.0);
+      if (!change) return change.error();
+      return MachineInput(machine::ChangeInput{
+          .kind = change->kind, .index = change->index, .value = change->value});
+    }
+    case v1::MachineInput::kDoorOpen:
+      return MachineInput(machine::MoveDoor{.open = input.door_open()});
+    case v1::MachineInput::kPower:
+      return MachineInput(machine::SwitchPower{.on = input.power()});
+    case v1::MachineInput::kEmergencyStopReleased:
+      if (!input.emergency_stop_released()) break;
+      return MachineInput(machine::EmergencyStop{.pressed = false});
+    case v1::MachineInput::kGate:
+      return Error{ErrorCode::kCellUnimplemented, "inputs: a gate", {}};
+    case v1::MachineInput::WHAT_NOT_SET:
+      break;
+  }
+  return Error{ErrorCode::kCellInvalidArgument, "inputs: one of them says nothing", {}};
+}
+
+Result<double> NumberOf(const v1::Variable& variable) {
+  switch (variable.value().value_case()) {
+    case v1::VariableValue::kReal:
+      return variable.value().real();
+    case v1::VariableValue::kInteger:
+      return static_cast<double>(variable.value().integer());
+    case v1::VariableValue::kLogical:
+      return variable.value().logical() ? 1.0 : 0.0;
+    default:
+      return Error{ErrorCode::kCellInvalidArgument,
+                   "variables: " + variable.name() + " needs a number or a logical value",
+                   {}};
+  }
+}
+
+machine::LaserSchedule FromProto(const v1::AssignedSchedule& schedule) {
+  return {.number = schedule.number(),
+          .name = schedule.title(),
+          .mode = schedule.mode(),
+          .power_percent = schedule.power_percent()};
+}
+
+Result<std::optional<MachineInput>> InputOf(const v1::AppliedInput& applied) {
+  using Known = std::optional<MachineInput>;
+  const auto of = [](Result<MachineInput> input) -> Result<Known> {
+    if (!input) return input.error();
+    return Known(*std::move(input));
+  };
+  switch (applied.input_case()) {
+    case v1::AppliedInput::kKey:
+      return of(OfKey(applied.key()));
+    case v1::AppliedInput::kStart:
+      return of(OfStart(applied.start()));
+    case v1::AppliedInput::kResume:
+      return Known(machine::ResumeRun{
+          .source =
+              StartSourceOf(applied.resume().source()).value_or(machine::StartSource::kConsole)});
+    case v1::AppliedInput::kHold:
+      return Known(machine::HoldRun{});
+    case v1::AppliedInput::kStop:
+      return Known(machine::StopRun{});
+    case v1::AppliedInput::kAbort:
+      return Known(machine::AbortRun{});
+    case v1::AppliedInput::kOverridePercent:
+      return Known(machine::ChangeOverride{.percent = applied.override_percent()});
+    case v1::AppliedInput::kFromOutside:
+      return of(FromProto(applied.from_outside()));
+    case v1::AppliedInput::kVariable:
+      return of(OfWrittenVariable(applied.variable()));
+    case v1::AppliedInput::kMode:
+      return of(OfMode(applied.mode()));
+    case v1::AppliedInput::kAcknowledgedAlarm:
+      return Known(machine::Acknowledge{.alarm = applied.acknowledged_alarm()});
+    case v1::AppliedInput::kBreakpoints:
+      return of(OfBreakpoints(applied.breakpoints()));
+    case v1::AppliedInput::kSimulationUntil:
+      return of(OfSimulation(applied.simulation_until()));
+    case v1::AppliedInput::kEmergencyStop:
+      return Known(machine::EmergencyStop{.pressed = applied.emergency_stop()});
+    case v1::AppliedInput::kPower:
+      return Known(machine::SwitchPower{.on = applied.power()});
+    case v1::AppliedInput::kFactor:
+    case v1::AppliedInput::kControl:
+    case v1::AppliedInput::kProgramChanged:
+    case v1::AppliedInput::INPUT_NOT_SET:
+      break;
+  }
+  return Known();
+}
+
+}  // namespace rmlcell::bridge

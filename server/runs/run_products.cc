@@ -1,0 +1,195 @@
+#include "server/runs/run_products.h"
+
+#include <spdlog/spdlog.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "proto/bridge/findings.h"
+#include "rmlcell/v1/job.pb.h"
+#include "rmlcell/v1/report.pb.h"
+#include "server/base/child_process.h"
+#include "server/base/names.h"
+#include "server/machines/hosts.h"
+#include "server/machines/recordings.h"
+#include "server/records/job_messages.h"
+#include "storage/trouble.h"
+
+namespace rmlcell::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A host has the recordings of its newest runs alone (MachineRecorder::kKept).
+constexpr int kNewest = 4;
+constexpr std::chrono::milliseconds kLookAtProcess{20};
+constexpr std::chrono::seconds kTriedAgainAfter{5};
+
+struct Product {
+  const char* name;
+  const char* media_type;
+};
+constexpr std::array<Product, 4> kProducts = {{{"report", "application/x-protobuf"},
+                                               {"toolpath", "application/octet-stream"},
+                                               {"picture.svg", "image/svg+xml"},
+                                               {"steps", "application/x-protobuf"}}};
+
+std::optional<std::string> ReadWhole(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+bool Has(storage::Store& store, std::int64_t job, std::string_view name) {
+  return static_cast<bool>(store.GetArtifact(job, name));
+}
+
+Error Failed(const std::string& what, const std::error_code& why) {
+  return {ErrorCode::kCellInternal, what + ": " + why.message(), {}};
+}
+
+}  // namespace
+
+RunProducts::RunProducts(Needs needs) : needs_(std::move(needs)) {
+  std::error_code none;
+  fs::remove_all(needs_.folder, none);  // what a server that was killed left there
+  thread_ = std::jthread([this](const std::stop_token& stop) { Work(stop); });
+}
+
+RunProducts::~RunProducts() {
+  thread_.request_stop();
+  thread_.join();
+}
+
+void RunProducts::Look(const std::string& machine) {
+  const std::lock_guard lock(mutex_);
+  machines_.insert(machine);
+  changed_.notify_all();
+}
+
+void RunProducts::Work(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    std::string machine;
+    {
+      std::unique_lock lock(mutex_);
+      if (!changed_.wait(lock, stop, [this] { return !machines_.empty(); })) return;
+      machine = machines_.extract(machines_.begin()).value();
+    }
+    try {
+      LookAt(machine, stop);
+    } catch (const std::exception& error) {
+      spdlog::error("products of the runs of {}: {}", machine, error.what());
+    }
+  }
+}
+
+void RunProducts::LookAt(const std::string& machine, const std::stop_token& stop) {
+  const auto jobs = needs_.store.ListJobs({.machine = machine,
+                                           .kind = std::string(storage::kRunKind),
+                                           .finished = true,
+                                           .limit = kNewest});
+  if (!jobs) return spdlog::warn("runs of {}: {}", machine, bridge::ErrorText(jobs.error()));
+  for (const storage::JobRecord& job : *jobs) {
+    if (stop.stop_requested()) return;
+    if (!job.started_at || given_up_.contains(job.id) || Has(needs_.store, job.id, "report"))
+      continue;
+    const Status made = Make(job, stop);
+    if (made || stop.stop_requested()) continue;
+    if (storage::IsTroubleOfTheStore(made.error()) ||
+        made.error().code == ErrorCode::kCellNotLive) {
+      std::unique_lock lock(mutex_);
+      changed_.wait_for(lock, stop, kTriedAgainAfter, [] { return false; });
+      machines_.insert(machine);
+      return;
+    }
+    given_up_.insert(job.id);
+    spdlog::warn("no report of {}: {}", JobName(job.id), bridge::ErrorText(made.error()));
+  }
+}
+
+Status RunProducts::Make(const storage::JobRecord& job, const std::stop_token& stop) {
+  Result<std::string> recording = RecordingOf(job);
+  if (!recording) return recording.error();
+  const std::string folder = needs_.folder + "/" + std::to_string(job.id);
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) return Failed(folder, failed);
+  const std::string file = folder + "/" + std::string(kRecording);
+  std::ofstream(file, std::ios::binary) << *recording;
+  Status done = Play(file, folder, stop);
+  if (done) done = Store(job, folder);
+  fs::remove_all(folder, failed);
+  return done;
+}
+
+Result<std::string> RunProducts::RecordingOf(const storage::JobRecord& job) {
+  if (Has(needs_.store, job.id, kRecording)) return needs_.store.ReadArtifact(job.id, kRecording);
+  auto promise = std::make_shared<std::promise<Result<std::string>>>();
+  FetchRecording(needs_.hosts, job.machine, JobName(job.id),
+                 [promise](Result<std::string> got) { promise->set_value(std::move(got)); });
+  Result<std::string> got = promise->get_future().get();
+  if (!got) return got.error();
+  const auto kept =
+      needs_.store.AddProducts(job.id, {.artifacts = {{.name = std::string(kRecording),
+                                                       .media_type = "application/octet-stream",
+                                                       .bytes = *got}}});
+  if (!kept) return kept.error();
+  return got;
+}
+
+Status RunProducts::Play(const std::string& recording, const std::string& folder,
+                         const std::stop_token& stop) {
+  const Result<pid_t> process =
+      StartChild({needs_.program, "--products", recording, "--into", folder, "--log-level",
+                  needs_.log_level, "--log-format", needs_.log_format},
+                 {});
+  if (!process) return process.error();
+  const auto until = std::chrono::steady_clock::now() + needs_.patience;
+  int how = 0;
+  while (::waitpid(*process, &how, WNOHANG) == 0) {
+    if (stop.stop_requested() || std::chrono::steady_clock::now() > until) {
+      ::kill(*process, SIGKILL);
+      ::waitpid(*process, &how, 0);
+      return Error{ErrorCode::kCellProcessorBudget, "it took too long to be played", {}};
+    }
+    std::this_thread::sleep_for(kLookAtProcess);
+  }
+  if (WIFEXITED(how) && WEXITSTATUS(how) == 0) return {};
+  return Error{ErrorCode::kCellReplayDiffers, "its recording could not be played: see the log", {}};
+}
+
+// With what the report says of the part.
+Status RunProducts::Store(const storage::JobRecord& job, const std::string& folder) {
+  storage::LateProducts products;
+  for (const Product& product : kProducts) {
+    std::optional<std::string> bytes = ReadWhole(fs::path(folder) / product.name);
+    if (!bytes) continue;
+    products.artifacts.push_back(
+        {.name = product.name, .media_type = product.media_type, .bytes = *std::move(bytes)});
+  }
+  v1::RunReport report;
+  if (products.artifacts.empty() || !report.ParseFromString(products.artifacts.front().bytes))
+    return Error{ErrorCode::kCellInternal, "no report was made", {}};
+  v1::Outcome outcome;
+  if (job.outcome) outcome = ToProto(*job.outcome);
+  outcome.set_verdict(report.outcome().verdict());
+  *outcome.mutable_reasons() = report.outcome().reasons();
+  const storage::JobOutcome judged = OutcomeOf(outcome);
+  products.judgement = judged.judgement;
+  products.verdict = judged.verdict;
+  v1::JobEvent event;
+  event.mutable_products_made()->set_verdict(report.outcome().verdict());
+  products.events.push_back(ToRecord(event));
+  const auto stored = needs_.store.AddProducts(job.id, products);
+  return stored ? Status() : Status(stored.error());
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,340 @@
+// What a machine did, recorded by its host and played again (live.md 3, replay).
+#include <random>
+#include <utility>
+
+#include "proto/recording/replay.h"
+#include "tests/server/host/host_machine_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using recording::Recording;
+using recording::Replayed;
+using testing::HasSubstr;
+
+class RecordingTest : public HostMachineTest {
+ protected:
+  std::string File(const std::string& job = "") {
+    static_cast<void>(host_->TakeEntries(now_, true));
+    std::string file;
+    for (;;) {
+      v1::HostOrder order;
+      order.mutable_recording()->set_job(job);
+      order.mutable_recording()->set_offset(static_cast<std::int64_t>(file.size()));
+      const v1::HostOrderAnswer answer = Do(order);
+      file += answer.recording().chunk();
+      if (answer.recording().chunk().empty() || !answer.has_recording()) return file;
+    }
+  }
+  Recording Recorded(const std::string& job = "") {
+    const auto read = recording::ReadFile(File(job));
+    EXPECT_TRUE(read) << read.error().detail;
+    return read ? *read : Recording();
+  }
+  static Replayed Play(const Recording& what) {
+    const auto played = recording::Replay(what, {});
+    EXPECT_TRUE(played) << played.error().detail;
+    return played ? *played : Replayed();
+  }
+  static std::string DifferenceIn(const Replayed& played) {
+    if (!played.difference) return "";
+    return played.difference->field + ": " + played.difference->recorded + " is " +
+           played.difference->played;
+  }
+  v1::HostOrder Override(double percent) {
+    v1::HostOrder order;
+    order.mutable_override()->set_override_percent(percent);
+    order.mutable_override()->set_control_token(token_);
+    return order;
+  }
+  static std::vector<const v1::JournalEntry*> Of(const Recording& what,
+                                                 v1::JournalEntry::WhatCase kind) {
+    std::vector<const v1::JournalEntry*> found;
+    for (const v1::JournalEntry& entry : what.entries) {
+      if (entry.what_case() == kind) found.push_back(&entry);
+    }
+    return found;
+  }
+  // A run with a stop on the way, at 80 % from then on.
+  void RunWithAStop() {
+    Make();
+    host_->Begin({}, now_);
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
+    Do(Start());
+    Pass(7s, 30ms);
+    static_cast<void>(host_->TakeEntries(now_));
+    Do(Stop());
+    Pass(2s);
+    Do(Override(80.0));
+    Do(Resume());
+    for (int i = 0; i < 140; ++i) {
+      Pass(1s, 50ms);
+      static_cast<void>(host_->TakeEntries(now_));
+    }
+    ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  }
+};
+
+// LIVE-3.40
+TEST_F(RecordingTest, WhatHappenedHappensAgain) {
+  RunWithAStop();
+  const Recording what = Recorded();
+  EXPECT_EQ(what.head.machine(), "machines/mill-1");
+  EXPECT_EQ(what.head.profile(), "srm-20");
+  EXPECT_EQ(what.head.fence(), 7);
+  ASSERT_TRUE(what.entries.front().has_mark());
+  EXPECT_FALSE(what.entries.front().mark().state().empty());
+  const Replayed played = Play(what);
+  EXPECT_EQ(DifferenceIn(played), "");
+  EXPECT_EQ(played.inputs, 4);  // START, STOP, override, RESUME
+  // Begun, halted, resumed, over; and nothing of it was left out.
+  EXPECT_EQ(played.events, 4);
+  EXPECT_EQ(static_cast<std::size_t>(played.marks), Of(what, v1::JournalEntry::kMark).size());
+  EXPECT_GT(played.marks, 60);  // one a second of motion
+  EXPECT_EQ(played.until, SimTime(what.entries.back().virtual_time_ns()));
+}
+
+// LIVE-3.40: the first difference, with entry, field and both values.
+TEST_F(RecordingTest, WhatDidNotHappenIsFound) {
+  RunWithAStop();
+  const Recording what = Recorded();
+  Recording changed = what;
+  for (v1::JournalEntry& entry : changed.entries) {
+    if (entry.has_applied() && entry.applied().input().has_override_percent())
+      entry.mutable_applied()->mutable_input()->set_override_percent(81.0);
+  }
+  Replayed played = Play(changed);
+  ASSERT_TRUE(played.difference);
+  EXPECT_EQ(played.difference->field, "mark.state_sha256");
+  EXPECT_NE(played.difference->recorded, played.difference->played);
+
+  changed = what;
+  v1::JournalEntry& over = *std::ranges::find_if(
+      changed.entries, [](const v1::JournalEntry& entry) { return entry.has_run_over(); });
+  over.mutable_run_over()->mutable_outcome()->set_cycle_time_ns(1);
+  played = Play(changed);
+  ASSERT_TRUE(played.difference);
+  EXPECT_EQ(played.difference->field, "run_over");
+  EXPECT_EQ(played.difference->sequence, over.sequence());
+  EXPECT_THAT(played.difference->recorded, HasSubstr(R"("cycleTimeNs":"1")"));
+
+  changed = what;
+  std::erase_if(changed.entries, [](const v1::JournalEntry& entry) {
+    return entry.has_applied() && entry.applied().input().has_stop();
+  });
+  played = Play(changed);
+  ASSERT_TRUE(played.difference);
+  // It would have gone on: the next mark says so, or the halt that never came.
+  EXPECT_GT(played.inputs, 0);
+}
+
+// LIVE-3.40: up to a time, and from the newest mark that has a state.
+TEST_F(RecordingTest, APartOfIt) {
+  RunWithAStop();
+  const Recording what = Recorded();
+  const SimTime end(what.entries.back().virtual_time_ns());
+  const auto played = recording::Replay(what, {.to = SimTime(3s)});
+  ASSERT_TRUE(played);
+  EXPECT_EQ(played->until, SimTime(3s));
+  EXPECT_EQ(played->inputs, 1);
+  // The run was under way at the marks but the last.
+  const Recording whole = recording::From(what, end - SimTime(60s));
+  EXPECT_EQ(whole.entries.size(), what.entries.size());
+  const Recording last = recording::From(what, end);
+  ASSERT_FALSE(last.entries.empty());
+  EXPECT_LT(last.entries.size(), what.entries.size());
+  EXPECT_TRUE(last.entries.front().mark().clean());
+  EXPECT_EQ(DifferenceIn(Play(last)), "");
+}
+
+// LIVE-3.24, LIVE-3.40: a file that is damaged anywhere, or cut off, says so.
+TEST_F(RecordingTest, ADamagedFileIsRefused) {
+  RunWithAStop();
+  const std::string file = File();
+  std::mt19937 random(1);
+  for (int round = 0; round < 200; ++round) {
+    std::string damaged = file;
+    const std::size_t place = random() % file.size();
+    damaged[place] = static_cast<char>(damaged[place] ^ static_cast<char>(1U << (random() % 8)));
+    const auto read = recording::ReadFile(damaged);
+    ASSERT_FALSE(read) << place;
+    EXPECT_EQ(read.error().code, ErrorCode::kCellBadText);
+  }
+  for (std::size_t end = 0; end < file.size(); end += 97) {
+    const auto read = recording::ReadFile(std::string_view(file).substr(0, end));
+    // Cut between two records it is shorter, and plays as far as it goes.
+    if (read) {
+      EXPECT_EQ(DifferenceIn(Play(*read)), "");
+    }
+  }
+  EXPECT_THAT(recording::ReadFile("G1 X10\n").error().detail, HasSubstr("does not begin as one"));
+}
+
+// LIVE-3.41, LIVE-5.03: with the program that the job brought, also when another is stored since.
+TEST_F(RecordingTest, TheRunOfAJob) {
+  Make();
+  host_->Begin({}, now_);
+  v1::HostOrder order;
+  v1::WorkerAssignment& assignment = *order.mutable_run_job();
+  assignment.mutable_job()->set_name("jobs/17");
+  assignment.set_main_program(5);
+  v1::AssignedProgram& program = *assignment.add_programs();
+  program.set_slot(5);
+  program.set_file_name("there.rml");
+  program.set_is_source(true);
+  program.set_content("PA;PA;VS10;PU200,0;PU0,0;");
+  ASSERT_EQ(Do(order).status().state(), v1::MACHINE_STATE_RUNNING);
+  v1::HostMemory memory;
+  v1::AssignedProgram& stored = *memory.add_programs();
+  stored.set_slot(5);
+  stored.set_content("PA;PA;VS10;PU900,0;PU0,0;");
+  host_->Change(memory, now_);
+  Pass(3min, 50ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  Recording what = Recorded("jobs/17");
+  EXPECT_EQ(what.head.job(), "jobs/17");
+  EXPECT_EQ(what.head.brought().content(), "PA;PA;VS10;PU200,0;PU0,0;");
+  EXPECT_EQ(DifferenceIn(Play(what)), "");
+  // A run later on is another recording; the first is there still.
+  Control();
+  Do(Start());
+  EXPECT_EQ(Recorded().head.job(), "");
+  EXPECT_EQ(Recorded("jobs/17").head.job(), "jobs/17");
+  v1::HostOrder other;
+  other.mutable_recording()->set_job("jobs/18");
+  EXPECT_EQ(Do(other).refusal().code(), "CELL-E9004");
+  // Another program would have gone elsewhere.
+  what.head.mutable_brought()->set_content("PA;PA;VS10;PU201,0;PU0,0;");
+  EXPECT_NE(DifferenceIn(Play(what)), "");
+}
+
+class RecordedSessionTest : public RecordingTest {
+ protected:
+  void MakeOptimo() {
+    const machine::MachineFamily* family = families::FindFamily("optimo");
+    const auto parameters = machine::MakeParameters(*family, "", {});
+    ASSERT_TRUE(parameters);
+    machine::Translation square = family->Translate({.name = "5.S", .bytes = R"(ZERO
+COORD ABSOL
+PATH LIN
+SPEED 20
+VI[3] = 0
+10 VI[3] = VI[3] + 1
+MOVE (100, 0, -10, 0, 0)
+MOVE (100, 50, -20, 0, 0)
+OL[3] = ON
+DELAY 0.5
+MOVE (0, 50, -10, 0, 0)
+MOVE (0, 0, -10, 0, 0)
+IF VI[3] < 4 THEN 10
+WAIT IL[20]
+)"},
+                                                    *parameters, {});
+    machine::MachineMemory memory;
+    if (square.ok) {
+      memory.programs[5] = {.name = "square",
+                            .object = machine::Bytes::Of(std::move(square.object))};
+    }
+    ASSERT_TRUE(square.ok) << square.diagnostics.front().detail;
+    auto made = HostMachine::Make({.name = "machines/optimo-1",
+                                   .host = "workshop/1",
+                                   .fence = 7,
+                                   .family = family,
+                                   .memory = std::move(memory)},
+                                  now_, [this] { return "token " + std::to_string(++tokens_); });
+    ASSERT_TRUE(made) << made.error().detail;
+    host_ = *std::move(made);
+    host_->Begin({}, now_);
+    Control();
+  }
+  v1::HostOrder Input(const std::string& name, double value) {
+    v1::HostOrder order;
+    v1::Variable& variable = *order.mutable_inputs()->add_inputs()->mutable_input();
+    variable.set_name(name);
+    variable.mutable_value()->set_logical(value != 0.0);
+    order.mutable_inputs()->set_control_token(token_);
+    return order;
+  }
+  v1::HostOrder Door(bool open) {
+    v1::HostOrder order;
+    order.mutable_inputs()->add_inputs()->set_door_open(open);
+    order.mutable_inputs()->set_control_token(token_);
+    return order;
+  }
+  // One thing that a person or the world does, drawn.
+  v1::HostOrder Draw(std::mt19937& random) {
+    v1::HostOrder order;
+    switch (random() % 12) {
+      case 0:
+        return Start();
+      case 1:
+        return Resume();
+      case 2:
+        return Stop();
+      case 3:
+        order.mutable_hold();
+        return order;
+      case 4:
+        return Override(1.0 + static_cast<double>(random() % 100));
+      case 5:
+        return Input("IL[20]", static_cast<double>(random() % 2));
+      case 6:
+        return Door(random() % 2 == 0);
+      case 7: {
+        v1::Variable& variable = *order.mutable_write_variables()->add_variables();
+        variable.set_name("VR[" + std::to_string(random() % 10) + "]");
+        variable.mutable_value()->set_real(0.1 * static_cast<double>(random() % 100));
+        order.mutable_write_variables()->set_control_token(token_);
+        return order;
+      }
+      case 8:
+        order.mutable_abort()->set_run(0);
+        return order;
+      case 9:
+        order.mutable_zero()->set_control_token(token_);
+        return order;
+      case 10:
+        order.mutable_factor()->set_factor(static_cast<double>(1 + random() % 20));
+        order.mutable_factor()->set_control_token(token_);
+        return order;
+      default:
+        order.mutable_simulation()->mutable_until()->set_program(5);
+        order.mutable_simulation()->mutable_until()->set_step(static_cast<int>(random() % 9));
+        order.mutable_simulation()->set_control_token(token_);
+        return order;
+    }
+  }
+};
+
+// LIVE-3.13, LIVE-3.40, LIVE-10.01: whatever is done and however its time is divided.
+TEST_F(RecordedSessionTest, AnySessionComesOutTheSame) {
+  std::mt19937 random(20261127);
+  std::int64_t inputs = 0;
+  std::int64_t events = 0;
+  for (int session = 0; session < 40; ++session) {
+    MakeOptimo();
+    const auto play = [&] {
+      const Replayed played = Play(Recorded());
+      EXPECT_EQ(DifferenceIn(played), "") << "session " << session;
+      inputs += played.inputs;
+      events += played.events;
+    };
+    for (int act = 0; act < 40 && !HasFailure(); ++act) {
+      const bool stands = State() == v1::MACHINE_STATE_IDLE;
+      if (stands) play();  // what comes next may begin another recording
+      const bool held = State() == v1::MACHINE_STATE_HELD && random() % 2 == 0;
+      if (held) Do(Door(false));
+      Do(stands ? Start() : held ? Resume() : Draw(random));
+      Pass(std::chrono::milliseconds(1 + random() % 1500),
+           std::chrono::milliseconds(1 + random() % 90));
+      if (random() % 4 == 0) static_cast<void>(host_->TakeEntries(now_));
+      Control();
+    }
+    play();
+  }
+  EXPECT_GT(inputs, 500);
+  EXPECT_GT(events, 200);
+}
+
+}  // namespace
+}  // namespace rmlcell::server
