@@ -58,7 +58,7 @@ Status Machine::Take(MachineNote note) {
   now_ = note.time;
   on_ = note.on;
   emergency_ = note.emergency;
-  cover_open_ = note.cover_open;
+  cover_open_ = note.cover_open && family_.info().cover_stops_jog;
   mode_ = note.mode;
   override_percent_ = note.override_percent;
   simulation_ = note.simulation;

@@ -28,6 +28,10 @@ struct JogMachine {
 // or B turns and the tip is held (OPT-4.56, LIVE-8.02). Until other speeds are asked for it then
 // stands.
 //
+// Where it would still stop is known for the speeds that are asked for. In kTool the way bends
+// while A or B turns: where that is changed on the last millimetres before an end, an axis may be
+// kept from going on by some tenths of a millimetre, and stands on the end before the others stand.
+//
 // Times are seconds since it began, never falling. How the caller divides them changes nothing. It
 // allocates nothing.
 class JogDrive {

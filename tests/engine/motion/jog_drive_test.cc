@@ -135,6 +135,29 @@ TEST(JogDrive, ToolMovesAlongItsAxes) {
   EXPECT_GT(turned.axes().b_rad, 1.3);
 }
 
+// OPT-4.52, OPT-4.53, OPT-4.54: every key with every reference ends where the rule for a way puts
+// it (motion.md 6).
+TEST(JogDrive, EveryKeyGoesWhereItsWayLeads) {
+  const JogMachine machine = Gantry();
+  for (const JogMode mode : {JogMode::kRobot, JogMode::kAbsolute, JogMode::kTool}) {
+    for (int axis = 0; axis < kAxisCount; ++axis) {
+      for (const double sense : {1.0, -1.0}) {
+        JogDrive drive(machine, mode, kMiddle);
+        drive.Demand(Only(axis, sense * (axis < 3 ? 75.0 : 0.5)));
+        drive.Advance(0.8);
+        drive.Brake();
+        drive.Advance(2.0);
+        const AxisValues moved = Values(drive.axes()) - Values(kMiddle);
+        const double way = axis < 3 ? sense * moved.head<3>().norm() : moved[axis];
+        EXPECT_GT(sense * way, axis < 3 ? 55.0 : 0.3);
+        const AxisPose to =
+            Jogged(kMiddle, machine.head, {.mode = mode, .axis = axis, .distance = way});
+        EXPECT_LT((Values(drive.axes()) - Values(to)).norm(), 1e-9) << axis;
+      }
+    }
+  }
+}
+
 // OPT-4.54: "along the tool axes, which turn with the head", also while it turns. Against steps of
 // a tenth of a millisecond.
 TEST(JogDrive, ToolAxesTurnWithTheHead) {
