@@ -13,6 +13,18 @@ namespace {
 
 using machine::MachineInput;
 
+v1::JogReference ReferenceOf(machine::JogReference reference) {
+  switch (reference) {
+    case machine::JogReference::kRobot:
+      return v1::JOG_REFERENCE_ROB;
+    case machine::JogReference::kAbsolute:
+      return v1::JOG_REFERENCE_ABS;
+    case machine::JogReference::kTool:
+      break;
+  }
+  return v1::JOG_REFERENCE_TCP;
+}
+
 struct Applied {
   v1::AppliedInput& made;
 
@@ -92,7 +104,7 @@ struct Applied {
     made.mutable_key()->set_key(machine::Name(input.key));
     made.mutable_key()->set_action(v1::KEY_ACTION_PRESS);
     made.mutable_key()->set_fast(input.fast);
-    made.mutable_key()->set_jog_reference(ToProto(input.reference));
+    made.mutable_key()->set_jog_reference(ReferenceOf(input.reference));
   }
   void operator()(const machine::ReleaseJog& input) const {
     made.mutable_key()->set_key(machine::Name(input.key));
@@ -137,9 +149,8 @@ Result<MachineInput> OfKey(const v1::PressedKey& key) {
     return MachineInput(machine::ReleaseJogs{});
   if (const auto jog = JogKeyOf(key.key())) {
     if (key.action() == v1::KEY_ACTION_RELEASE) return MachineInput(machine::ReleaseJog{*jog});
-    return MachineInput(machine::PressJog{.key = *jog,
-                                          .reference = JogReferenceOf(key.jog_reference()),
-                                          .fast = key.fast()});
+    return MachineInput(machine::PressJog{
+        .key = *jog, .reference = JogReferenceOf(key.jog_reference()), .fast = key.fast()});
   }
   if (key.key() == "ZERO") return MachineInput(machine::ZeroAxes{});
   if (key.key() == "ERR") return MachineInput(machine::ClearMessage{});
