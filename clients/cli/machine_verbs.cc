@@ -75,6 +75,11 @@ void AddActs(MachineVerbs& verbs) {
   verbs.AddControlled("write", "Write variables and outputs", WriteVariables)
       ->add_option("VALUES", given.values, "such as VR[5]=2.5, OL[3]=on")
       ->required();
+  CLI::App* key = verbs.AddControlled("key", "Press a key of the panel of a mill", PressPanelKey);
+  key->add_option("KEY", given.word, "X+, Y-, PAUSE, CONTINUE, STOP, COVER, POWER ...")->required();
+  key->add_option("--for", given.held_s, "hold it for so many seconds; else it is tapped")
+      ->check(CLI::NonNegativeNumber);
+  key->add_flag("--fast", given.fast, "jog at the highest speed");
   verbs.AddControlled("input", "Set inputs, door and power of a virtual machine", SetInputs)
       ->add_option("VALUES", given.values,
                    "such as IL[20]=on, door=open, power=off, emergency-stop=released")

@@ -1,6 +1,8 @@
 // Machines that live: how they stand, and what is done with them.
 #include "clients/cli/remote_machines.h"
 
+#include <google/protobuf/util/time_util.h>
+
 #include <algorithm>
 #include <chrono>
 #include <functional>
@@ -445,6 +447,51 @@ int SetInputs(const Remote& remote, const MachineAct& act) {
     }
   }
   return ShowWithControl(remote, act, &Service::Stub::SetInputs, std::move(request));
+}
+
+// Whoever holds a key says so every 50 ms, or the machine stops.
+int PressPanelKey(const Remote& remote, const MachineAct& act) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kBetweenBeats{50};
+  const Control control(remote, act);
+  if (!control.status().ok()) return Refused(control.status(), remote);
+  const auto stub = Service::NewStub(Connect(remote));
+  v1::PressPanelKeyRequest key;
+  key.set_machine(FullName("machines", act.machine));
+  key.set_control_token(control.token());
+  key.set_key(act.word);
+  key.set_fast(act.fast);
+  v1::MachineStatus status;
+  const auto press = [&](v1::KeyAction action) {
+    key.set_action(action);
+    key.set_sequence(key.sequence() + 1);
+    grpc::ClientContext context;
+    Prepare(context);
+    return stub->PressPanelKey(&context, key, &status);
+  };
+  if (act.held_s <= 0.0) {
+    const grpc::Status tapped = press(v1::KEY_ACTION_TAP);
+    return tapped.ok() ? Show(remote, status) : Refused(tapped, remote);
+  }
+  if (const grpc::Status pressed = press(v1::KEY_ACTION_PRESS); !pressed.ok())
+    return Refused(pressed, remote);
+  v1::HeartbeatPanelRequest beat;
+  beat.set_machine(key.machine());
+  beat.set_control_token(control.token());
+  beat.add_keys_down(act.word);
+  const auto until = Clock::now() + std::chrono::duration<double>(act.held_s);
+  for (auto next = Clock::now(); next < until; next += kBetweenBeats) {
+    std::this_thread::sleep_until(next);
+    beat.set_number(beat.number() + 1);
+    *beat.mutable_sent() = google::protobuf::util::TimeUtil::GetCurrentTime();
+    grpc::ClientContext context;
+    Prepare(context);
+    v1::HeartbeatResponse heard;
+    if (const grpc::Status held = stub->HeartbeatPanel(&context, beat, &heard); !held.ok())
+      return Refused(held, remote);
+  }
+  const grpc::Status released = press(v1::KEY_ACTION_RELEASE);
+  return released.ok() ? Show(remote, status) : Refused(released, remote);
 }
 
 }  // namespace rmlcell::cli

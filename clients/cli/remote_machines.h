@@ -16,6 +16,8 @@ struct MachineAct {
   std::string word;                 // operating mode
   std::int64_t alarm = 0;           // 0: all of them
   std::vector<std::string> values;  // variables, or NAME=VALUE
+  double held_s = 0.0;              // a key; 0: it is tapped
+  bool fast = false;                // likewise
 };
 
 int ShowMachine(const Remote& remote, const MachineAct& act);
@@ -39,5 +41,7 @@ int ConfirmMachine(const Remote& remote, const MachineAct& act);
 int ReadVariables(const Remote& remote, const MachineAct& act);
 int WriteVariables(const Remote& remote, const MachineAct& act);
 int SetInputs(const Remote& remote, const MachineAct& act);
+// A key of the panel of a mill, by its name.
+int PressPanelKey(const Remote& remote, const MachineAct& act);
 
 }  // namespace rmlcell::cli

@@ -1,5 +1,8 @@
 #include "proto/bridge/machine_inputs.h"
 
+#include <algorithm>
+#include <array>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -100,6 +103,18 @@ struct Applied {
     made.mutable_key()->set_key("ERR");
     made.mutable_key()->set_action(v1::KEY_ACTION_TAP);
   }
+  void operator()(const machine::StartAtStep& input) const {
+    v1::StartInput& start = *made.mutable_start();
+    start.set_program(input.program);
+    start.set_source(bridge::ToProto(input.source));
+    start.mutable_step()->set_program(input.target.at.program);
+    start.mutable_step()->set_step(input.target.at.step);
+    start.set_occurrence(static_cast<std::int64_t>(input.target.occurrence));
+    start.set_approach(input.way == machine::ApproachWay::kSafe ? v1::APPROACH_SAFE
+                                                                : v1::APPROACH_DIRECT);
+    start.set_halt_at_entry(input.halt_at_entry);
+    start.set_off_until_work_on(input.off_until_work_on);
+  }
   void operator()(const machine::PressJog& input) const {
     made.mutable_key()->set_key(machine::Name(input.key));
     made.mutable_key()->set_action(v1::KEY_ACTION_PRESS);
@@ -120,17 +135,6 @@ Result<MachineInput> OfWrittenVariable(const v1::Variable& variable) {
   const Result<double> value = NumberOf(variable);
   if (!value) return value.error();
   return MachineInput(machine::WriteVariable{.name = variable.name(), .value = *value});
-}
-
-std::optional<machine::JogKey> JogKeyOf(std::string_view name) {
-  using Axis = machine::JogAxis;
-  for (const Axis axis : {Axis::kX, Axis::kY, Axis::kZ, Axis::kA, Axis::kB, Axis::kC}) {
-    for (const bool plus : {false, true}) {
-      const machine::JogKey key{.axis = axis, .plus = plus};
-      if (machine::Name(key) == name) return key;
-    }
-  }
-  return std::nullopt;
 }
 
 machine::JogReference JogReferenceOf(v1::JogReference reference) {
@@ -160,6 +164,20 @@ Result<MachineInput> OfKey(const v1::PressedKey& key) {
 Result<MachineInput> OfStart(const v1::StartInput& start) {
   const auto source = StartSourceOf(start.source());
   if (!source) return Error{ErrorCode::kCellInvalidArgument, "a start without a source", {}};
+  if (start.has_step()) {
+    // It has acted: whatever a person had to see to was seen to.
+    return MachineInput(machine::StartAtStep{
+        .program = start.program(),
+        .source = *source,
+        .target = {.at = {.program = start.step().program(), .step = start.step().step()},
+                   .occurrence = static_cast<std::uint64_t>(
+                       std::max<std::int64_t>(1, start.occurrence()))},
+        .way = start.approach() == v1::APPROACH_DIRECT ? machine::ApproachWay::kDirect
+                                                       : machine::ApproachWay::kSafe,
+        .off_until_work_on = start.off_until_work_on(),
+        .halt_at_entry = start.halt_at_entry(),
+        .acknowledged = {"clamps", "tool", "origin", "Z0", "table"}});
+  }
   return MachineInput(machine::StartRun{
       .program = start.program(), .source = *source, .unzeroed = start.unzeroed()});
 }
@@ -341,6 +359,37 @@ Result<double> NumberOf(const v1::Variable& variable) {
                    "variables: " + variable.name() + " needs a number or a logical value",
                    {}};
   }
+}
+
+std::vector<v1::AxisValue> AxesOf(std::string_view names, const motion::AxisPose& axes) {
+  const std::array<std::pair<std::string_view, double>, 5> known = {{{"X", axes.column.x()},
+                                                                     {"Y", axes.column.y()},
+                                                                     {"Z", axes.column.z()},
+                                                                     {"A", axes.a_rad},
+                                                                     {"B", axes.b_rad}}};
+  std::vector<v1::AxisValue> values;
+  std::istringstream words{std::string(names)};
+  for (std::string word; words >> word;) {
+    for (const auto& [name, value] : known) {
+      if (name != word) continue;
+      v1::AxisValue& axis = values.emplace_back();
+      axis.set_axis(word);
+      axis.set_value(value);
+      axis.set_unit(name < "X" ? v1::UNIT_RADIAN : v1::UNIT_MILLIMETRE);
+    }
+  }
+  return values;
+}
+
+std::optional<machine::JogKey> JogKeyOf(std::string_view name) {
+  using Axis = machine::JogAxis;
+  for (const Axis axis : {Axis::kX, Axis::kY, Axis::kZ, Axis::kA, Axis::kB, Axis::kC}) {
+    for (const bool plus : {false, true}) {
+      const machine::JogKey key{.axis = axis, .plus = plus};
+      if (machine::Name(key) == name) return key;
+    }
+  }
+  return std::nullopt;
 }
 
 machine::LaserSchedule FromProto(const v1::AssignedSchedule& schedule) {

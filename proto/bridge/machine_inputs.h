@@ -1,12 +1,15 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
+#include <vector>
 
 #include "engine/core/result.h"
 #include "engine/machine/machine_input.h"
 #include "engine/machine/machine_states.h"
 #include "engine/machine/outcome.h"
 #include "engine/machine/run_setup.h"
+#include "engine/motion/geometry/pose.h"
 #include "rmlcell/v1/machine_status.pb.h"
 #include "rmlcell/v1/run_event.pb.h"
 
@@ -32,6 +35,12 @@ Result<std::optional<machine::MachineInput>> InputOf(const v1::AppliedInput& app
 
 // From outside: IL, IA, door, power. Errors: CellInvalidArgument, CellUnimplemented.
 Result<machine::MachineInput> FromProto(const v1::MachineInput& input);
+
+// In the order of the family, "X Y Z A": of those that slide and of those that turn.
+std::vector<v1::AxisValue> AxesOf(std::string_view names, const motion::AxisPose& axes);
+
+// "X+"; nothing for what is no jog key.
+std::optional<machine::JogKey> JogKeyOf(std::string_view name);
 
 machine::LaserSchedule FromProto(const v1::AssignedSchedule& schedule);
 

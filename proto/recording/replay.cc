@@ -29,6 +29,7 @@ class Listener final : public machine::RunObserver {
     begun_ = at;
     told_of_run_ = 0;
   }
+  void SetBegun(SimTime at) { begun_ = at; }
   std::deque<Told>& told() { return told_; }
 
   void OnStep(SimTime at, const machine::Place& place, std::string_view instruction) override {
@@ -204,7 +205,8 @@ class Player {
     if (!*input) return {};
     auto* start = std::get_if<machine::StartRun>(&**input);
     if (start != nullptr) start->brought = std::exchange(brought_, std::nullopt);
-    if (start != nullptr || std::holds_alternative<machine::ZeroAxes>(**input))
+    if (start != nullptr || std::holds_alternative<machine::ZeroAxes>(**input) ||
+        std::holds_alternative<machine::StartAtStep>(**input))
       listener_.BeginRun(machine_->time());
     const Status done = machine_->Apply(**input);
     if (!done) {
@@ -215,6 +217,7 @@ class Player {
     const machine::MachineStatus status = machine_->status();
     if (status.open && status.open->number > begun_) {
       begun_ = status.open->number;
+      listener_.SetBegun(status.open->begun);  // one that begins at a step began before that
       if (options_.begun) options_.begun(*machine_->open_run());
     }
     Notice();

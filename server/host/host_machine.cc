@@ -4,22 +4,15 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/core/hex.h"
 #include "engine/machine/machine_states.h"
 #include "engine/machine/parameters.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/machine_inputs.h"
-#include "proto/bridge/sha256.h"
 #include "proto/recording/told.h"
-#include "server/base/version.h"
 #include "server/host/host_messages.h"
 
 namespace rmlcell::server {
 namespace {
-
-// A moving machine says so often where it is, so that a crash takes no more of it. LIVE-3.23
-constexpr std::chrono::milliseconds kMarkInterval{1'000};
-constexpr std::chrono::milliseconds kMarkIntervalOfEvents{100};  // where something waits to be told
 
 const google::protobuf::Message* RequestOf(const v1::HostOrder& order) {
   const auto* set = order.GetReflection()->GetOneofFieldDescriptor(
@@ -70,7 +63,7 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
 }
 
 HostMachine::HostMachine(Setup setup, std::function<std::string()> make_token)
-    : setup_(std::move(setup)), desk_(std::move(make_token)) {}
+    : setup_(std::move(setup)), desk_(make_token), starts_(std::move(make_token)) {}
 
 v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& now) {
   GoOnTo(now);
@@ -84,9 +77,11 @@ v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& 
     again.set_number(order.number());
     return again;
   }
+  if (auto again = AnsweredKey(order)) return *std::move(again);
   v1::HostOrderAnswer answer = Carry(order, now);
   answer.set_number(order.number());
   *answer.mutable_acted_at() = Stamp(now.wall);
+  if (order.has_panel_key()) keys_.Take(order.panel_key().sequence(), answer);
   if (!request_id.empty() && !answered_.contains(request_id)) Remember(request_id, answer);
   return answer;
 }
@@ -153,6 +148,15 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, co
   }
   if (const Status control = CheckControl(order, now); !control) return control.error();
   switch (order.request_case()) {
+    case v1::HostOrder::kPanelKey:
+      if (const Status pressed = PressKey(order, now); !pressed) return pressed.error();
+      return answer;
+    case v1::HostOrder::kStartAtStep:
+      if (const Status begun = StartAt(order, now); !begun) return begun.error();
+      return answer;
+    case v1::HostOrder::kPanelHeartbeat:
+      *answer.mutable_heartbeat() = HearBeat(order.panel_heartbeat(), now);
+      return answer;
     case v1::HostOrder::kFactor:
       if (const Status set = driver_->SetFactor(now.steady, order.factor().factor()); !set)
         return set.error();
@@ -240,8 +244,13 @@ Status HostMachine::Confirm(const v1::HostOrder& order) {
 }
 
 Status HostMachine::MayApply(const machine::MachineInput& input) const {
+  // What was paused at the panel goes on there alone. LIVE-2.13, RML1-3C.09
+  const bool paused = held_for_ == v1::HOLD_REASON_PANEL && machine().status().open.has_value();
+  if (paused && !by_panel_ && std::holds_alternative<machine::ResumeRun>(input))
+    return Error{ErrorCode::kCellMachineState, "it was paused at its panel: press CONTINUE", {}};
   if (!inspect_due_ || !machine().status().alarms.empty()) return {};
-  const bool starts = std::holds_alternative<machine::StartRun>(input);
+  const bool starts = std::holds_alternative<machine::StartRun>(input) ||
+                      std::holds_alternative<machine::StartAtStep>(input);
   const bool resumes = std::holds_alternative<machine::ResumeRun>(input);
   const bool aborts = std::holds_alternative<machine::AbortRun>(input);
   const bool by_hand = std::holds_alternative<machine::ZeroAxes>(input) ||
@@ -260,6 +269,7 @@ Status HostMachine::MayApply(const machine::MachineInput& input) const {
 Status HostMachine::Act(const v1::HostOrder& order) {
   const auto inputs = InputsOf(order, machine());
   if (!inputs) return inputs.error();
+  if (inputs->empty() && order.has_panel_key()) return {};
   if (inputs->empty())
     return Error{ErrorCode::kCellUnimplemented, "the host knows no such order", {}};
   for (const machine::MachineInput& input : *inputs) {
@@ -277,7 +287,11 @@ Status HostMachine::Act(const v1::HostOrder& order) {
 // It stands before what it leads to; of what is refused nothing does.
 Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrder* order) {
   const auto before = std::tuple(run_begun_, told_of_run_, held_for_);
-  const bool starts = std::holds_alternative<machine::StartRun>(input);
+  const bool starts = std::holds_alternative<machine::StartRun>(input) ||
+                      std::holds_alternative<machine::StartAtStep>(input);
+  memory_changes_ += std::holds_alternative<machine::StoreProgram>(input) ||
+                     std::holds_alternative<machine::DeleteProgram>(input) ||
+                     std::holds_alternative<machine::SetSchedules>(input);
   const bool begins = starts || std::holds_alternative<machine::ZeroAxes>(input);
   const auto stands = begins ? std::optional(MarkNow()) : std::nullopt;
   if (begins) {
@@ -287,7 +301,8 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   if (starts || std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
   if (moves()) {
     if (std::holds_alternative<machine::StopRun>(input)) held_for_ = v1::HOLD_REASON_STOP;
-    if (std::holds_alternative<machine::HoldRun>(input)) held_for_ = v1::HOLD_REASON_HOLD;
+    if (std::holds_alternative<machine::HoldRun>(input))
+      held_for_ = by_panel_ ? v1::HOLD_REASON_PANEL : v1::HOLD_REASON_HOLD;
     const auto* mode = std::get_if<machine::ChangeMode>(&input);
     const bool leaves = mode != nullptr && mode->mode != machine::Mode::kRemote && !job_.empty();
     if (leaves) held_for_ = v1::HOLD_REASON_MODE;
@@ -299,7 +314,9 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   *applied.mutable_input() = bridge::AppliedOf(input);
   if (starts && !job_.empty()) applied.mutable_input()->mutable_start()->set_job(job_);
   const bool of_queue = order != nullptr && (order->has_run_job() || !order->for_job().empty());
-  applied.set_source(of_queue ? v1::START_SOURCE_QUEUE : v1::START_SOURCE_CONSOLE);
+  applied.set_source(of_queue    ? v1::START_SOURCE_QUEUE
+                     : by_panel_ ? v1::START_SOURCE_PANEL
+                                 : v1::START_SOURCE_CONSOLE);
   if (order != nullptr) {
     applied.set_caller(order->caller());
     applied.set_request_id(FieldOf(*order, "request_id").value_or(""));
@@ -317,7 +334,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   if (stands) Record(*stands, place);
   mark_due_ = true;
   // A crash from here on finds a run that was cut off, however soon it comes.
-  begins_ = begins_ || std::holds_alternative<machine::StartRun>(input);
+  begins_ = begins_ || starts;
   return {};
 }
 
@@ -334,6 +351,7 @@ v1::HostOrderAnswer HostMachine::Refuse(const Error& error) const {
 void HostMachine::GoOnTo(const HostTime& now) {
   now_ = now;
   driver_->Pump(now.steady);
+  LetKeysGo(now);
   if (const auto on_loss = desk_.Expire(now)) {
     TellControl();
     if (*on_loss == v1::ControlLease::ON_LOSS_HOLD) Hold(v1::HOLD_REASON_CONTROL, now);
@@ -484,69 +502,6 @@ v1::JournalEntry& HostMachine::Add(SimTime at) {
     entry.set_run_time_ns((at - run_begun_).count());
   }
   return entry;
-}
-
-// Where it stands: all that was told before is in it.
-void HostMachine::Mark() {
-  v1::JournalEntry& entry = Add(machine().time());
-  v1::MachineMark mark = MarkNow();
-  mark.set_sequence(sequence_);
-  *entry.mutable_mark() = std::move(mark);
-  mark_due_ = begins_ = false;
-  marked_at_ = now_.steady;
-}
-
-v1::MachineMark HostMachine::MarkNow() const {
-  const machine::MachineStatus status = machine().status();
-  v1::MachineMark mark;
-  mark.set_fence(setup_.fence);
-  mark.set_virtual_time_ns(status.time.count());
-  if (inspect_due_ || ended_) mark.set_job(inspect_job_);
-  if (status.open && !ended_) {
-    mark.set_run_time_ns(status.run.time.count());
-    mark.set_job(job_);
-    *mark.mutable_place() = bridge::ToProto(status.run.place);
-  }
-  mark.set_state(machine().Save());
-  mark.set_state_sha256(BytesOfHex(bridge::Sha256Hex(mark.state())).value_or(""));
-  // What is moved by hand is no run that could be cut off. LIVE-5.20
-  mark.set_clean((!status.open || status.open->by_hand) && !inspect_due_ && !ended_);
-  return mark;
-}
-
-// From this mark on, with all that it depends on; what stands before `entry` was before it.
-void HostMachine::Record(const v1::MachineMark& mark, std::size_t entry) {
-  for (; recorded_ < entry; ++recorded_) recorder_.Add(entries_[recorded_]);
-  v1::MachineRecording head;
-  head.set_engine_version(std::string(kVersion));
-  head.set_machine(setup_.name);
-  head.set_family(std::string(setup_.family->info().id));
-  head.set_profile(setup_.profile);
-  for (const auto& [name, value] : setup_.parameters) (*head.mutable_parameters())[name] = value;
-  head.set_job(job_);
-  head.set_fence(setup_.fence);
-  if (brought_.slot() != 0) head.mutable_brought()->Swap(&brought_);
-  v1::JournalEntry begin;
-  begin.set_fence(setup_.fence);
-  begin.set_virtual_time_ns(mark.virtual_time_ns());
-  *begin.mutable_mark() = mark;
-  recorder_.Begin(std::move(head), machine().memory(), begin);
-}
-
-// What happened leaves behind a mark that covers it: the log never tells of more than a crash gives
-// back. LIVE-3.22
-std::vector<v1::JournalEntry> HostMachine::TakeEntries(const HostTime& now, bool at_once) {
-  now_ = now;
-  const std::chrono::nanoseconds since = now.steady - marked_at_;
-  bool due = at_once || begins_ || mark_due_ || !entries_.empty();
-  if (moves() && !begins_ && !at_once)
-    due = since >= (entries_.empty() ? kMarkInterval : kMarkIntervalOfEvents);
-  if (!due) return {};
-  Mark();
-  if (moves()) mark_due_ = true;  // it comes to rest elsewhere
-  for (; recorded_ < entries_.size(); ++recorded_) recorder_.Add(entries_[recorded_]);
-  recorded_ = 0;
-  return std::exchange(entries_, {});
 }
 
 v1::JournalEntry HostMachine::IntentOf(const v1::HostOrder& order, const HostTime& now) {

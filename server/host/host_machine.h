@@ -11,7 +11,9 @@
 #include "engine/machine/virtual_driver.h"
 #include "rmlcell/v1/host.pb.h"
 #include "server/host/control_desk.h"
+#include "server/host/key_desk.h"
 #include "server/host/machine_recorder.h"
+#include "server/host/start_desk.h"
 
 namespace rmlcell::server {
 
@@ -46,6 +48,18 @@ class HostMachine : private machine::RunObserver {
   // What a client asks. One that was answered before, by its request id, gets the same answer and
   // acts no more.
   v1::HostOrderAnswer Do(const v1::HostOrder& order, const HostTime& now);
+  // A key that came before another one with a lower number: it is to be brought again.
+  bool WaitsForKeys(const v1::HostOrder& order) const;
+  // What a start at a step would do: worked out by `run`, which takes as long as the run to the step
+  // and may be called on another thread, and answered behind it.
+  struct PreviewTask {
+    machine::StartAtStep start{};
+    StartDesk::Basis basis{};
+    std::function<Result<machine::StartPreview>(const machine::ReachLimits&)> run{};
+  };
+  Result<PreviewTask> PreparePreview(const v1::PreviewStartRequest& request, const HostTime& now);
+  v1::HostOrderAnswer Previewed(const v1::HostOrder& order, PreviewTask task,
+                                Result<machine::StartPreview> made, const HostTime& now);
   // Time goes on. False: there is more to compute; call again when orders were looked at.
   bool GoOn(const HostTime& now);
   // Comes to rest, and holds a run with this reason.
@@ -62,6 +76,7 @@ class HostMachine : private machine::RunObserver {
   bool run_open() const;  // it is no time to end
   // When it is to be looked at again though nobody asks: control runs out.
   std::optional<std::chrono::nanoseconds> next_look() const { return desk_.runs_out(); }
+  bool key_down() const { return dead_man_.holds(); }
 
   // What happened since the last call, in order, and behind it where the machine stands; nothing
   // yet: a machine that moves says so a few times a second at most.
@@ -78,6 +93,14 @@ class HostMachine : private machine::RunObserver {
   Status CheckControl(const v1::HostOrder& order, const HostTime& now) const;
   Status CheckJob(const v1::HostOrder& order) const;
   Status RunJob(const v1::HostOrder& order, const HostTime& now);
+  std::optional<v1::HostOrderAnswer> AnsweredKey(const v1::HostOrder& order) const;
+  Status PressKey(const v1::HostOrder& order, const HostTime& now);
+  Status MayPressKey(const v1::HostOrder& order) const;
+  v1::HeartbeatResponse HearBeat(const v1::HeartbeatPanelRequest& beat, const HostTime& now);
+  void LetKeysGo(const HostTime& now);
+  void EndKeys();
+  StartDesk::Basis Basis() const;
+  Status StartAt(const v1::HostOrder& order, const HostTime& now);
   Result<std::optional<machine::StoredProgram>> ProgramOfJob(
       const v1::WorkerAssignment& assignment);
   std::optional<Error> WhyNoJob(const std::string& caller) const;
@@ -120,6 +143,12 @@ class HostMachine : private machine::RunObserver {
   std::optional<machine::Parameters> parameters_;
   std::unique_ptr<machine::VirtualDriver> driver_;
   ControlDesk desk_;
+  StartDesk starts_;
+  std::uint64_t memory_changes_ = 0;
+  KeyDesk keys_;
+  DeadMan dead_man_;
+  std::int64_t keys_of_ = 0;                  // control lease whose keys they are
+  bool by_panel_ = false;                     // a key is pressed at this moment
   std::map<std::string, Answered> answered_;  // by request id
   std::deque<std::string> answered_order_;    // the oldest first
   std::vector<v1::JournalEntry> entries_;

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include "engine/core/number_text.h"
@@ -21,25 +20,6 @@ using machine::MachineInput;
 
 Error Invalid(std::string detail) {
   return {ErrorCode::kCellInvalidArgument, std::move(detail), {}};
-}
-
-// In the order of the family: of those that slide and of those that turn.
-void AddAxes(std::string_view names, const motion::AxisPose& axes, v1::MachineStatus& status) {
-  const std::array<std::pair<std::string_view, double>, 5> known = {{{"X", axes.column.x()},
-                                                                     {"Y", axes.column.y()},
-                                                                     {"Z", axes.column.z()},
-                                                                     {"A", axes.a_rad},
-                                                                     {"B", axes.b_rad}}};
-  std::istringstream words{std::string(names)};
-  for (std::string word; words >> word;) {
-    for (const auto& [name, value] : known) {
-      if (name != word) continue;
-      v1::AxisValue& axis = *status.add_axes();
-      axis.set_axis(word);
-      axis.set_value(value);
-      axis.set_unit(name < "X" ? v1::UNIT_RADIAN : v1::UNIT_MILLIMETRE);
-    }
-  }
 }
 
 void SetRun(const machine::Machine& machine, const machine::MachineStatus& status,
@@ -105,7 +85,8 @@ v1::MachineStatus ToProto(const machine::Machine& machine) {
   } else if (status.mode != machine::Mode::kManual) {
     message.add_start_sources(v1::START_SOURCE_PANEL);
   }
-  AddAxes(family.axes, status.run.axes, message);
+  for (v1::AxisValue& axis : bridge::AxesOf(family.axes, status.run.axes))
+    *message.add_axes() = std::move(axis);
   *message.mutable_tip() = progress.position().tip();
   if (progress.has_work_tip()) *message.mutable_work_tip() = progress.work_tip();
   message.set_speed_mm_s(status.run.tip_speed_mm_s);
@@ -174,6 +155,36 @@ Result<std::optional<MachineInput>> OfRun(const v1::HostOrder& order,
   }
 }
 
+// Of a key of a mill's panel: what it does when it is pressed, and when it is let go. LIVE-2.13
+Result<std::vector<MachineInput>> OfPanelKey(const v1::PressPanelKeyRequest& request,
+                                             const machine::Machine& machine) {
+  using Inputs = std::vector<MachineInput>;
+  if (machine.family().info().jogs_in_manual)
+    return Error{ErrorCode::kCellNotLive, "the machine has a handbox and no panel", {}};
+  if (request.action() == v1::KEY_ACTION_UNSPECIFIED) return Invalid("action: say which");
+  const std::string& key = request.key();
+  const bool pressed = request.action() != v1::KEY_ACTION_RELEASE;
+  if (const auto jog = bridge::JogKeyOf(key)) {
+    Inputs inputs;
+    if (pressed) inputs.emplace_back(machine::PressJog{.key = *jog, .fast = request.fast()});
+    if (request.action() != v1::KEY_ACTION_PRESS) inputs.emplace_back(machine::ReleaseJog{*jog});
+    return inputs;
+  }
+  if (key == "EMERGENCY_STOP") return Inputs{machine::EmergencyStop{.pressed = pressed}};
+  const machine::MachineStatus status = machine.status();
+  const std::array<std::pair<std::string_view, MachineInput>, 6> acts = {
+      {{"PAUSE", machine::HoldRun{}},
+       {"CONTINUE", machine::ResumeRun{}},
+       {"STOP", machine::AbortRun{}},
+       {"BUFFER_CLEAR", machine::AbortRun{}},
+       {"COVER", machine::MoveDoor{.open = !status.run.door_open}},
+       {"POWER", machine::SwitchPower{.on = status.state == machine::MachineState::kOff}}}};
+  for (const auto& [name, input] : acts) {
+    if (name == key) return pressed ? Inputs{input} : Inputs{};
+  }
+  return Invalid("the panel has no key " + key);
+}
+
 // Of how it is set: mode, override, alarms, breakpoints, dry run.
 Result<std::optional<MachineInput>> OfSetting(const v1::HostOrder& order,
                                               const machine::Machine& machine) {
@@ -212,6 +223,7 @@ Result<std::optional<MachineInput>> OfSetting(const v1::HostOrder& order,
 
 Result<std::vector<MachineInput>> InputsOf(const v1::HostOrder& order,
                                            const machine::Machine& machine) {
+  if (order.has_panel_key()) return OfPanelKey(order.panel_key(), machine);
   std::vector<MachineInput> inputs;
   for (const auto of : {OfRun, OfSetting}) {
     Result<std::optional<MachineInput>> input = of(order, machine);

@@ -6,11 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -19,6 +17,8 @@
 #include "proto/bridge/findings.h"
 #include "server/base/secret.h"
 #include "server/base/version.h"
+#include "server/host/background.h"
+#include "server/host/host_inbox.h"
 #include "server/host/host_line.h"
 #include "server/host/host_machine.h"
 #include "server/host/host_name.h"
@@ -46,6 +46,7 @@ constexpr nanoseconds kRejoin = 200ms;
 constexpr nanoseconds kIntentPatience = 500ms;  // LIVE-3.21
 constexpr nanoseconds kDurablePatience = 1s;
 constexpr nanoseconds kRestPatience = 10s;
+constexpr double kPreviewTime_s = 60.0;  // LIVE-6.01
 constexpr std::size_t kUnstoredMax = 100'000;
 
 HostTime Now() {
@@ -97,14 +98,10 @@ class HostProcess {
 
   // A line is looked for beside the machine, which goes on meanwhile.
   void KeepLine() {
-    std::optional<Result<HostLine::Welcome>> joined;
-    {
-      const std::lock_guard lock(mutex_);
-      joined.swap(joined_);
-    }
+    std::optional<HostInbox::Joined> joined = inbox_.TakeJoined();
     const nanoseconds now = Now().steady;
-    const bool silent = line_ != nullptr && now - HeardAt() > kServerSilent;
-    if (line_ != nullptr && (silent || LineGone())) {
+    const bool silent = line_ != nullptr && now - inbox_.heard_at() > kServerSilent;
+    if (line_ != nullptr && (silent || inbox_.line_gone())) {
       spdlog::warn(silent ? "the server is silent" : "the line to the server is gone");
       if (silent) line_->Cut();
       line_.reset();
@@ -121,13 +118,10 @@ class HostProcess {
 
   // They cannot be answered any more. Nothing of them begins; what halts acts all the same.
   void ForgetOrders() {
-    std::deque<v1::HostResponse> messages;
-    {
-      const std::lock_guard lock(mutex_);
-      messages.swap(inbox_);
-    }
+    const std::deque<v1::HostResponse> messages = inbox_.TakeMessages();
     for (const auto& parked : parked_) parked->over = true;
     answers_due_.clear();
+    keys_waiting_.clear();
     ++lines_lost_;
     if (machine_ == nullptr) return;
     for (const v1::HostResponse& message : messages) {
@@ -135,28 +129,13 @@ class HostProcess {
     }
   }
 
-  bool LineGone() {
-    const std::lock_guard lock(mutex_);
-    return line_gone_;
-  }
-
-  nanoseconds HeardAt() {
-    const std::lock_guard lock(mutex_);
-    return heard_at_;
-  }
-
   void Connect() {
-    {
-      const std::lock_guard lock(mutex_);
-      line_gone_ = false;
-    }
+    inbox_.LineBegins();
     connector_ = std::thread([this, hello = Hello()] {
-      auto welcome = HostLine::Join(
-          options_.server, hello, [this](v1::HostResponse message) { Hear(std::move(message)); },
-          [this] { LineIsGone(); });
-      const std::lock_guard lock(mutex_);
-      joined_.emplace(std::move(welcome));
-      wake_.notify_one();
+      inbox_.HaveJoined(HostLine::Join(
+          options_.server, hello,
+          [this](v1::HostResponse message) { inbox_.Hear(std::move(message), Now().steady); },
+          [this] { inbox_.LineIsGone(); }));
     });
   }
 
@@ -178,10 +157,7 @@ class HostProcess {
     lease_ = nanoseconds(TimeUtil::DurationToNanoseconds(message.lease()));
     next_renewal_ = now + lease_ / 3;
     renewed_at_ = renewal_sent_ = now;
-    {
-      const std::lock_guard lock(mutex_);
-      heard_at_ = now;
-    }
+    inbox_.SetHeardAt(now);
     line_ = std::move(welcome->line);
     if (machine_ == nullptr) {
       welcome_ = message;
@@ -191,38 +167,6 @@ class HostProcess {
     status_due_ = now;
   }
 
-  void Hear(v1::HostResponse message) {
-    const std::lock_guard lock(mutex_);
-    heard_at_ = Now().steady;
-    if (message.has_heartbeat()) return;
-    inbox_.push_back(std::move(message));
-    wake_.notify_one();
-  }
-
-  void LineIsGone() {
-    const std::lock_guard lock(mutex_);
-    line_gone_ = true;
-    wake_.notify_one();
-  }
-
-  static bool Halts(const v1::HostResponse& message) {
-    return message.has_order() && ClassOf(message.order()) == OrderClass::kActsFirst;
-  }
-
-  // What halts is looked at before all else, and takes along what stood before it and would begin
-  // a motion behind it.
-  void StopFirst(std::deque<v1::HostResponse>& messages) {
-    const auto last = std::find_if(messages.rbegin(), messages.rend(), Halts).base();
-    const auto begins = [](const v1::HostResponse& message) {
-      return message.has_order() && BeginsMotion(message.order());
-    };
-    for (auto message = messages.begin(); message != last; ++message) {
-      if (begins(*message)) Refuse(message->order(), StoppedBefore());
-    }
-    messages.erase(std::remove_if(messages.begin(), last, begins), last);
-    std::ranges::stable_partition(messages, Halts);
-  }
-
   static Error StoppedBefore() {
     return {ErrorCode::kCellMachineState, "it was stopped before it began", {}};
   }
@@ -230,12 +174,8 @@ class HostProcess {
   void TakeMessages() {
     // A line may be heard before it is known to have joined: what it says waits for that.
     if (line_ == nullptr) return;
-    std::deque<v1::HostResponse> messages;
-    {
-      const std::lock_guard lock(mutex_);
-      messages.swap(inbox_);
-    }
-    StopFirst(messages);
+    std::deque<v1::HostResponse> messages = inbox_.TakeMessages();
+    for (const v1::HostOrder& taken : StopFirst(messages)) Refuse(taken, StoppedBefore());
     for (v1::HostResponse& message : messages) Take(message);
   }
 
@@ -308,16 +248,26 @@ class HostProcess {
     spdlog::info("{} lives, fence {}", options_.machine, fence_);
   }
 
-  void TakeOrder(const v1::HostOrder& order) {
+  // `until`: of a key, how long it waits for those before it.
+  void TakeOrder(const v1::HostOrder& order,
+                 nanoseconds until = Now().steady + KeyDesk::kPatience) {
     if (machine_ == nullptr)
       return Refuse(order, {ErrorCode::kCellNotLive, "the machine is starting", {}});
+    if (order.has_preview_start()) return Preview(order);
     const OrderClass kind = ClassOf(order);
-    if (ending_at_ && kind != OrderClass::kActsFirst && kind != OrderClass::kAsks)
+    if (machine_->WaitsForKeys(order)) {
+      keys_waiting_.push_back({.order = order, .until = until});
+      return;
+    }
+    if (ending_at_ && kind != OrderClass::kActsFirst && kind != OrderClass::kLetsGo &&
+        kind != OrderClass::kAsks)
       return Refuse(order, {ErrorCode::kCellNotLive, "its host ends", {}});
     switch (kind) {
       case OrderClass::kActsFirst:
         // Whoever stops the machine stops what has not begun yet, too.
         return StopWhatBegins(order);
+      case OrderClass::kLetsGo:
+        return SendAnswer(CarryOut(order));
       case OrderClass::kAsks:
         if (IsParked(order.for_job()))
           return Refuse(order, {ErrorCode::kCellNotLive, "it is about to begin", {}});
@@ -326,6 +276,38 @@ class HostProcess {
         return WriteFirst(order);
       case OrderClass::kWrittenBehind:
         return AnswerWhenDurable(CarryOut(order));
+    }
+  }
+
+  // Beside the machine, which goes on. LIVE-6.01
+  void Preview(const v1::HostOrder& order) {
+    auto prepared = machine_->PreparePreview(order.preview_start(), Now());
+    if (!prepared) return Refuse(order, prepared.error());
+    auto task = std::make_shared<HostMachine::PreviewTask>(*std::move(prepared));
+    const bool begun = background_.Do(
+        [this, order, task, line = lines_lost_](const std::stop_token& stop) {
+          const double until = ThreadTime_s() + kPreviewTime_s;
+          auto made = std::make_shared<Result<machine::StartPreview>>(task->run(
+              {.go_on = [&] { return !stop.stop_requested() && ThreadTime_s() < until; }}));
+          Later([this, order, task, made, line] {
+            background_.Done();
+            v1::HostOrderAnswer answer =
+                machine_->Previewed(order, std::move(*task), std::move(*made), Now());
+            if (line == lines_lost_) SendAnswer(std::move(answer));
+          });
+        });
+    if (!begun)
+      Refuse(order, {ErrorCode::kCellUnavailable, "another start at a step is looked at", {}});
+  }
+
+  // Keys that came before one that is missing. LIVE-7.04
+  void LookAtKeys() {
+    for (Waiting& key : std::exchange(keys_waiting_, {})) {
+      if (machine_->WaitsForKeys(key.order) && Now().steady >= key.until) {
+        Refuse(key.order, {ErrorCode::kCellKeySequence, "keys before it are missing", {}});
+      } else {
+        TakeOrder(key.order, key.until);
+      }
     }
   }
 
@@ -414,19 +396,10 @@ class HostProcess {
   }
 
   // On the thread of the machine, in its next turn.
-  void Later(std::function<void()> work) {
-    const std::lock_guard lock(mutex_);
-    later_.push_back(std::move(work));
-    wake_.notify_one();
-  }
+  void Later(std::function<void()> work) { inbox_.Later(std::move(work)); }
 
   void DoLater() {
-    std::vector<std::function<void()>> work;
-    {
-      const std::lock_guard lock(mutex_);
-      work.swap(later_);
-    }
-    for (const auto& one : work) one();
+    for (const auto& one : inbox_.TakeWork()) one();
   }
 
   // A disk that does not answer: nothing begins, and what moves is held. LIVE-3.21
@@ -452,6 +425,7 @@ class HostProcess {
     if (machine_->moves() && now.steady - renewed_at_ > lease_ - kRestBefore)
       machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, now);
     LookAtDisk(now.steady);
+    LookAtKeys();
     Write(now, false);
     const v1::MachineStatus status = machine_->StatusAt(now);
     const bool changed = status.state() != state_told_;
@@ -530,25 +504,13 @@ class HostProcess {
                     : std::min({status_due_ - now, next_renewal_ - now, 1'000'000'000ns});
       if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
     }
-    std::unique_lock lock(mutex_);
-    wake_.wait_for(lock, std::max<nanoseconds>(longest, 0ns), [this] {
-      return (line_ != nullptr && !inbox_.empty()) || !later_.empty() || joined_ ||
-             line_gone_ != line_gone_seen_;
-    });
-    line_gone_seen_ = line_gone_;
+    inbox_.Wait(longest, line_ != nullptr);
   }
 
   const HostOptions& options_;
   const std::atomic<bool>& stopping_;
   const std::string name_;
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::deque<v1::HostResponse> inbox_;               // guarded by mutex_
-  std::vector<std::function<void()>> later_;         // guarded by mutex_
-  std::optional<Result<HostLine::Welcome>> joined_;  // guarded by mutex_
-  bool line_gone_ = false;                           // guarded by mutex_
-  bool line_gone_seen_ = false;
-  nanoseconds heard_at_{0};  // guarded by mutex_
+  HostInbox inbox_;
   std::thread connector_;
   std::unique_ptr<HostLine> line_;
   std::optional<v1::HostWelcome> welcome_;
@@ -558,6 +520,11 @@ class HostProcess {
     nanoseconds until{0};
     bool over = false;
   };
+  struct Waiting {
+    v1::HostOrder order{};
+    nanoseconds until{0};
+  };
+  std::vector<Waiting> keys_waiting_;
   std::vector<std::shared_ptr<Parked>> parked_;   // their intent is on its way to the disk
   std::vector<v1::HostOrderAnswer> answers_due_;  // when what goes out next is on the disk
   int writes_under_way_ = 0;
@@ -575,6 +542,7 @@ class HostProcess {
   std::optional<nanoseconds> ending_at_;
   v1::MachineState state_told_ = v1::MACHINE_STATE_UNSPECIFIED;
   std::unique_ptr<JournalWriter> writer_;
+  Background background_;  // behind what its work uses
   bool behind_ = false;
   bool ended_ = false;
   int exit_code_ = 0;

@@ -1,15 +1,34 @@
 #include "server/host/order_class.h"
 
+#include <algorithm>
+
 namespace rmlcell::server {
+
+namespace {
+
+// What lets go or halts acts first; what may move is written before.
+OrderClass ClassOf(const v1::PressPanelKeyRequest& key) {
+  const bool halts = key.key() == "PAUSE" || key.key() == "STOP" || key.key() == "BUFFER_CLEAR" ||
+                     key.key() == "EMERGENCY_STOP";
+  if (key.action() == v1::KEY_ACTION_RELEASE) return OrderClass::kLetsGo;
+  return halts ? OrderClass::kActsFirst : OrderClass::kWrittenFirst;
+}
+
+}  // namespace
 
 OrderClass ClassOf(const v1::HostOrder& order) {
   switch (order.request_case()) {
+    case v1::HostOrder::kPanelKey:
+      return ClassOf(order.panel_key());
+    case v1::HostOrder::kPanelHeartbeat:
+      return OrderClass::kAsks;
     case v1::HostOrder::kStop:
     case v1::HostOrder::kHold:
     case v1::HostOrder::kEmergencyStop:
     case v1::HostOrder::kAbort:
       return OrderClass::kActsFirst;
     case v1::HostOrder::kStart:
+    case v1::HostOrder::kStartAtStep:
     case v1::HostOrder::kRunJob:
     case v1::HostOrder::kZero:
     case v1::HostOrder::kResume:
@@ -21,11 +40,30 @@ OrderClass ClassOf(const v1::HostOrder& order) {
     case v1::HostOrder::kReadVariables:
     case v1::HostOrder::kRunState:
     case v1::HostOrder::kRecording:
+    case v1::HostOrder::kPreviewStart:
     case v1::HostOrder::kRenewControl:
       return OrderClass::kAsks;
     default:
       return OrderClass::kWrittenBehind;
   }
+}
+
+bool Halts(const v1::HostResponse& message) {
+  return message.has_order() && ClassOf(message.order()) == OrderClass::kActsFirst;
+}
+
+std::vector<v1::HostOrder> StopFirst(std::deque<v1::HostResponse>& messages) {
+  std::vector<v1::HostOrder> taken;
+  const auto last = std::find_if(messages.rbegin(), messages.rend(), Halts).base();
+  const auto begins = [](const v1::HostResponse& message) {
+    return message.has_order() && BeginsMotion(message.order());
+  };
+  for (auto message = messages.begin(); message != last; ++message) {
+    if (begins(*message)) taken.push_back(message->order());
+  }
+  messages.erase(std::remove_if(messages.begin(), last, begins), last);
+  std::ranges::stable_partition(messages, Halts);
+  return taken;
 }
 
 }  // namespace rmlcell::server

@@ -1,17 +1,33 @@
 #pragma once
 
+#include <deque>
+#include <vector>
+
 #include "rmlcell/v1/host.pb.h"
 
 namespace rmlcell::server {
 
 // Before or behind what is written. LIVE-3.20
-enum class OrderClass { kActsFirst, kWrittenFirst, kWrittenBehind, kAsks };
+enum class OrderClass {
+  kActsFirst,  // it halts, and goes before all that waits
+  kLetsGo,     // a key: it acts at once, in its place
+  kWrittenFirst,
+  kWrittenBehind,
+  kAsks,
+};
 
 OrderClass ClassOf(const v1::HostOrder& order);
 
 // What a STOP that comes behind it takes back, as long as it has not acted.
 inline bool BeginsMotion(const v1::HostOrder& order) {
-  return order.has_start() || order.has_resume() || order.has_run_job() || order.has_zero();
+  return order.has_start() || order.has_resume() || order.has_run_job() || order.has_zero() ||
+         order.has_start_at_step() ||
+         (order.has_panel_key() && ClassOf(order) == OrderClass::kWrittenFirst);
 }
+
+bool Halts(const v1::HostResponse& message);
+// What halts goes before all else, and takes out what stood before it and would begin a motion
+// behind it.
+std::vector<v1::HostOrder> StopFirst(std::deque<v1::HostResponse>& messages);
 
 }  // namespace rmlcell::server

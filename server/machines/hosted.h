@@ -21,7 +21,7 @@ struct Hosts::Host {
   bool handed_back = false;
   struct Pending {
     Answered done;
-    std::chrono::steady_clock::time_point asked{};
+    std::chrono::steady_clock::time_point until{};  // it is answered by then, or never
   };
   std::map<std::int64_t, Pending> pending;
   std::optional<v1::MachineStatus> status;

@@ -320,7 +320,7 @@ void Hosts::DropLate(const HostPointer& host) {
     const std::lock_guard lock(host->mutex);
     const Instant now = needs_.clock();
     std::erase_if(host->pending, [&](auto& row) {
-      if (now - row.second.asked < kAnswerPatience) return false;
+      if (now < row.second.until) return false;
       late.push_back(std::move(row.second.done));
       return true;
     });
@@ -499,7 +499,8 @@ void Hosts::Ask(const std::string& machine, v1::HostOrder order, Answered done) 
     const std::lock_guard lock(host->mutex);
     gone = host->gone;
     order.set_number(++next_order_);
-    if (!gone) host->pending[order.number()] = {.done = done, .asked = needs_.clock()};
+    const auto patience = order.has_preview_start() ? kPreviewPatience : kAnswerPatience;
+    if (!gone) host->pending[order.number()] = {.done = done, .until = needs_.clock() + patience};
   }
   if (gone) return done(NotLive("its host is not heard of"));
   v1::HostResponse message;

@@ -35,6 +35,7 @@ class Hosts {
  public:
   static constexpr std::chrono::seconds kLease{60};  // PG-5.08
   static constexpr std::chrono::seconds kAnswerPatience{10};
+  static constexpr std::chrono::seconds kPreviewPatience{75};  // a run is simulated for it
 
   struct Needs {
     storage::Store& store;

@@ -147,6 +147,44 @@ grpc::ServerUnaryReactor* MachineService::SetInputs(grpc::CallbackServerContext*
       [](v1::HostOrder& order, const auto& asked) { *order.mutable_inputs() = asked; });
 }
 
+grpc::ServerUnaryReactor* MachineService::PreviewStart(grpc::CallbackServerContext* context,
+                                                       const v1::PreviewStartRequest* request,
+                                                       v1::PreviewStartResponse* response) {
+  return Order(
+      context, request, response, "MachineService/PreviewStart",
+      [](v1::HostOrder& order, const auto& asked) { *order.mutable_preview_start() = asked; },
+      [](v1::HostOrderAnswer& answer, v1::PreviewStartResponse& preview) {
+        preview = std::move(*answer.mutable_preview());
+      });
+}
+
+grpc::ServerUnaryReactor* MachineService::StartAtStep(grpc::CallbackServerContext* context,
+                                                      const v1::StartAtStepRequest* request,
+                                                      v1::MachineStatus* response) {
+  return OrderStatus(
+      context, request, response, "MachineService/StartAtStep",
+      [](v1::HostOrder& order, const auto& asked) { *order.mutable_start_at_step() = asked; });
+}
+
+grpc::ServerUnaryReactor* MachineService::PressPanelKey(grpc::CallbackServerContext* context,
+                                                        const v1::PressPanelKeyRequest* request,
+                                                        v1::MachineStatus* response) {
+  return OrderStatus(
+      context, request, response, "MachineService/PressPanelKey",
+      [](v1::HostOrder& order, const auto& asked) { *order.mutable_panel_key() = asked; });
+}
+
+grpc::ServerUnaryReactor* MachineService::HeartbeatPanel(grpc::CallbackServerContext* context,
+                                                         const v1::HeartbeatPanelRequest* request,
+                                                         v1::HeartbeatResponse* response) {
+  return Order(
+      context, request, response, "MachineService/HeartbeatPanel",
+      [](v1::HostOrder& order, const auto& asked) { *order.mutable_panel_heartbeat() = asked; },
+      [](v1::HostOrderAnswer& answer, v1::HeartbeatResponse& heard) {
+        heard = std::move(*answer.mutable_heartbeat());
+      });
+}
+
 grpc::ServerUnaryReactor* MachineService::ConfirmMachine(grpc::CallbackServerContext* context,
                                                          const v1::ConfirmMachineRequest* request,
                                                          v1::MachineStatus* response) {

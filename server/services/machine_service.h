@@ -127,6 +127,18 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerUnaryReactor* ConfirmMachine(grpc::CallbackServerContext* context,
                                            const v1::ConfirmMachineRequest* request,
                                            v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* PreviewStart(grpc::CallbackServerContext* context,
+                                         const v1::PreviewStartRequest* request,
+                                         v1::PreviewStartResponse* response) override;
+  grpc::ServerUnaryReactor* StartAtStep(grpc::CallbackServerContext* context,
+                                        const v1::StartAtStepRequest* request,
+                                        v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* PressPanelKey(grpc::CallbackServerContext* context,
+                                          const v1::PressPanelKeyRequest* request,
+                                          v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* HeartbeatPanel(grpc::CallbackServerContext* context,
+                                           const v1::HeartbeatPanelRequest* request,
+                                           v1::HeartbeatResponse* response) override;
   grpc::ServerUnaryReactor* EnableMachine(grpc::CallbackServerContext* context,
                                           const v1::EnableMachineRequest* request,
                                           v1::MachineStatus* response) override;
@@ -136,10 +148,6 @@ class MachineService final : public v1::MachineService::CallbackService {
 
   RMLCELL_LATER("MachineService", TakeMachine, v1::MachineStatus)
   RMLCELL_LATER("MachineService", SetGates, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", PressPanelKey, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", HeartbeatPanel, v1::HeartbeatResponse)
-  RMLCELL_LATER("MachineService", PreviewStart, v1::PreviewStartResponse)
-  RMLCELL_LATER("MachineService", StartAtStep, v1::MachineStatus)
   RMLCELL_LATER("MachineService", ArmMachine, v1::ArmMachineResponse)
   RMLCELL_LATER("MachineService", DisarmMachine, v1::MachineStatus)
   RMLCELL_LATER("MachineService", ListDevices, v1::ListDevicesResponse)

@@ -1,0 +1,82 @@
+// What a host writes down of its machine: marks, what happened before them, and recordings.
+#include <utility>
+
+#include "engine/core/hex.h"
+#include "proto/bridge/findings.h"
+#include "proto/bridge/sha256.h"
+#include "server/base/version.h"
+#include "server/host/host_machine.h"
+
+namespace rmlcell::server {
+namespace {
+
+// A moving machine says so often where it is, so that a crash takes no more of it. LIVE-3.23
+constexpr std::chrono::milliseconds kMarkInterval{1'000};
+constexpr std::chrono::milliseconds kMarkIntervalOfEvents{100};  // where something waits to be told
+
+}  // namespace
+
+// Where it stands: all that was told before is in it.
+void HostMachine::Mark() {
+  v1::JournalEntry& entry = Add(machine().time());
+  v1::MachineMark mark = MarkNow();
+  mark.set_sequence(sequence_);
+  *entry.mutable_mark() = std::move(mark);
+  mark_due_ = begins_ = false;
+  marked_at_ = now_.steady;
+}
+
+v1::MachineMark HostMachine::MarkNow() const {
+  const machine::MachineStatus status = machine().status();
+  v1::MachineMark mark;
+  mark.set_fence(setup_.fence);
+  mark.set_virtual_time_ns(status.time.count());
+  if (inspect_due_ || ended_) mark.set_job(inspect_job_);
+  if (status.open && !ended_) {
+    mark.set_run_time_ns(status.run.time.count());
+    mark.set_job(job_);
+    *mark.mutable_place() = bridge::ToProto(status.run.place);
+  }
+  mark.set_state(machine().Save());
+  mark.set_state_sha256(BytesOfHex(bridge::Sha256Hex(mark.state())).value_or(""));
+  // What is moved by hand is no run that could be cut off. LIVE-5.20
+  mark.set_clean((!status.open || status.open->by_hand) && !inspect_due_ && !ended_);
+  return mark;
+}
+
+// From this mark on, with all that it depends on; what stands before `entry` was before it.
+void HostMachine::Record(const v1::MachineMark& mark, std::size_t entry) {
+  for (; recorded_ < entry; ++recorded_) recorder_.Add(entries_[recorded_]);
+  v1::MachineRecording head;
+  head.set_engine_version(std::string(kVersion));
+  head.set_machine(setup_.name);
+  head.set_family(std::string(setup_.family->info().id));
+  head.set_profile(setup_.profile);
+  for (const auto& [name, value] : setup_.parameters) (*head.mutable_parameters())[name] = value;
+  head.set_job(job_);
+  head.set_fence(setup_.fence);
+  if (brought_.slot() != 0) head.mutable_brought()->Swap(&brought_);
+  v1::JournalEntry begin;
+  begin.set_fence(setup_.fence);
+  begin.set_virtual_time_ns(mark.virtual_time_ns());
+  *begin.mutable_mark() = mark;
+  recorder_.Begin(std::move(head), machine().memory(), begin);
+}
+
+// What happened leaves behind a mark that covers it: the log never tells of more than a crash gives
+// back. LIVE-3.22
+std::vector<v1::JournalEntry> HostMachine::TakeEntries(const HostTime& now, bool at_once) {
+  now_ = now;
+  const std::chrono::nanoseconds since = now.steady - marked_at_;
+  bool due = at_once || begins_ || mark_due_ || !entries_.empty();
+  if (moves() && !begins_ && !at_once)
+    due = since >= (entries_.empty() ? kMarkInterval : kMarkIntervalOfEvents);
+  if (!due) return {};
+  Mark();
+  if (moves()) mark_due_ = true;  // it comes to rest elsewhere
+  for (; recorded_ < entries_.size(); ++recorded_) recorder_.Add(entries_[recorded_]);
+  recorded_ = 0;
+  return std::exchange(entries_, {});
+}
+
+}  // namespace rmlcell::server

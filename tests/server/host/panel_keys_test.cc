@@ -1,0 +1,161 @@
+// The panel of a mill over the line of its host (live.md 2.13, 7.04 to 7.06, 8.03).
+#include <utility>
+
+#include "tests/server/host/host_machine_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::HasSubstr;
+
+class PanelKeysTest : public HostMachineTest {
+ protected:
+  void MakeAndTake() {
+    Make();
+    host_->Begin({}, now_);
+    Control();
+    sequence_of_keys_ = 0;
+  }
+  v1::HostOrder Key(const std::string& key, v1::KeyAction action = v1::KEY_ACTION_TAP,
+                    std::int64_t sequence = 0) {
+    v1::HostOrder order;
+    v1::PressPanelKeyRequest& pressed = *order.mutable_panel_key();
+    pressed.set_key(key);
+    pressed.set_action(action);
+    pressed.set_control_token(token_);
+    pressed.set_sequence(sequence > 0 ? sequence : ++sequence_of_keys_);
+    return order;
+  }
+  v1::HostOrder Beat(const std::vector<std::string>& keys) {
+    v1::HostOrder order;
+    v1::HeartbeatPanelRequest& beat = *order.mutable_panel_heartbeat();
+    beat.set_control_token(token_);
+    beat.set_number(++beats_);
+    for (const std::string& key : keys) beat.add_keys_down(key);
+    *beat.mutable_sent() = Stamp(now_.wall);
+    return order;
+  }
+  double Axis(const std::string& name) {
+    const v1::MachineStatus status = host_->StatusAt(now_);
+    for (const v1::AxisValue& axis : status.axes()) {
+      if (axis.axis() == name) return axis.value();
+    }
+    ADD_FAILURE() << name;
+    return 0.0;
+  }
+  // Held down for so long, with a beat every 50 ms.
+  void Hold(const std::string& key, std::chrono::milliseconds time) {
+    for (std::chrono::milliseconds gone{0}; gone < time; gone += 50ms) {
+      Pass(50ms);
+      EXPECT_TRUE(Do(Beat({key})).has_heartbeat());
+    }
+  }
+
+  std::int64_t sequence_of_keys_ = 0;
+  std::int64_t beats_ = 0;
+};
+
+// LIVE-8.03: 1 mm/s as long as somebody holds the key; a tap is 0.01 mm.
+TEST_F(PanelKeysTest, AKeyMovesWhileItIsHeld) {
+  MakeAndTake();
+  const double begin = Axis("X");
+  EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).status().state(), v1::MACHINE_STATE_JOGGING);
+  Hold("X+", 1s);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_JOGGING);
+  EXPECT_NEAR(Axis("X") - begin, 1.0, 0.05);
+  Do(Key("X+", v1::KEY_ACTION_RELEASE));
+  Pass(200ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  const double there = Axis("X");
+  Do(Key("X+"));
+  Pass(500ms);
+  EXPECT_NEAR(Axis("X") - there, 0.01, 1e-6);
+}
+
+// LIVE-7.05: 150 ms after the last beat it brakes, and the key moves again when it is pressed anew.
+TEST_F(PanelKeysTest, WhoIsSilentMovesNothing) {
+  MakeAndTake();
+  Do(Key("X+", v1::KEY_ACTION_PRESS));
+  Hold("X+", 500ms);
+  const double heard = Axis("X");
+  Pass(2s);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_LT(Axis("X") - heard, 0.25);  // 1 mm/s for 160 ms, and what it takes to stop
+  // That it was let go is in the journal.
+  const auto told = Told();
+  EXPECT_GE(std::ranges::count(told, Input(v1::AppliedInput::kKey)), 2);
+  EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).status().state(), v1::MACHINE_STATE_JOGGING);
+}
+
+// LIVE-7.04: the same number is the same press; a press behind its release moves nothing.
+TEST_F(PanelKeysTest, NumbersCount) {
+  MakeAndTake();
+  const v1::HostOrder press = Key("Y+", v1::KEY_ACTION_PRESS);
+  EXPECT_FALSE(host_->WaitsForKeys(press));
+  Do(press);
+  Pass(300ms);  // silent: it stands
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(Do(press).status().state(), v1::MACHINE_STATE_JOGGING);  // as it was then
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  const v1::HostOrder late = Key("Y+", v1::KEY_ACTION_PRESS, 2);
+  const v1::HostOrder release = Key("Y+", v1::KEY_ACTION_RELEASE, 3);
+  EXPECT_FALSE(host_->WaitsForKeys(release));
+  Do(release);
+  EXPECT_TRUE(host_->WaitsForKeys(Key("Y-", v1::KEY_ACTION_PRESS, 6)));
+  EXPECT_FALSE(Do(late).has_refusal());
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(Do(Key("Y-", v1::KEY_ACTION_TAP, 0)).refusal().code(), "");
+  EXPECT_EQ(Do(Key("Y-", v1::KEY_ACTION_TAP, 50)).refusal().code(), "CELL-E9434");
+}
+
+// LIVE-2.13, RML1-3C.09: what was paused at the panel goes on there alone.
+TEST_F(PanelKeysTest, APauseAtThePanelEndsThere) {
+  MakeAndTake();
+  Do(Start());
+  Pass(5s, 50ms);
+  EXPECT_FALSE(Do(Key("PAUSE")).has_refusal());
+  for (int i = 0; i < 600 && State() != v1::MACHINE_STATE_HELD; ++i) Pass(100ms, 50ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_PANEL);
+  Control();
+  const v1::HostOrderAnswer refused = Do(Resume());
+  EXPECT_EQ(refused.refusal().code(), "CELL-E9421");
+  EXPECT_THAT(refused.refusal().message(), HasSubstr("CONTINUE"));
+  sequence_of_keys_ = 0;  // another lease
+  EXPECT_EQ(Do(Key("CONTINUE")).status().state(), v1::MACHINE_STATE_RUNNING);
+  // And STOP drops what is left.
+  Do(Key("STOP"));
+  Pass(5s, 50ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+}
+
+// LIVE-2.13, LIVE-8.03: cover, power, emergency stop.
+TEST_F(PanelKeysTest, CoverPowerEmergencyStop) {
+  MakeAndTake();
+  EXPECT_TRUE(Do(Key("COVER")).status().door_open());
+  EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).refusal().code(), "CELL-E9433");
+  EXPECT_FALSE(Do(Key("COVER")).status().door_open());
+  EXPECT_EQ(Do(Key("POWER")).status().state(), v1::MACHINE_STATE_OFF);
+  EXPECT_EQ(Do(Key("POWER")).status().state(), v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(Do(Key("EMERGENCY_STOP", v1::KEY_ACTION_PRESS)).status().state(),
+            v1::MACHINE_STATE_ALARM);
+  EXPECT_EQ(Do(Key("VOLUME")).refusal().code(), "CELL-E9003");
+}
+
+// LIVE-4.02, LIVE-7.06: without control no key; control that is taken over stops what moves.
+TEST_F(PanelKeysTest, KeysAreOfWhoHasControl) {
+  MakeAndTake();
+  Do(Key("X+", v1::KEY_ACTION_PRESS));
+  Hold("X+", 300ms);
+  const std::string before = std::exchange(token_, "no token");
+  EXPECT_EQ(Do(Key("Y+", v1::KEY_ACTION_PRESS)).refusal().code(), "CELL-E9420");
+  token_ = before;
+  v1::HostOrder release;
+  release.mutable_release_control()->set_control_token(token_);
+  Do(release);
+  Pass(300ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+}
+
+}  // namespace
+}  // namespace rmlcell::server
