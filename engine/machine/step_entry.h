@@ -122,6 +122,9 @@ class EnterableRun {
   virtual std::vector<ApproachMotion> PlanApproach(std::string_view machine_state,
                                                    ApproachWay way) const = 0;
 
+  // Whether ApproachWay::kDirect is one of this machine.
+  virtual bool may_enter_directly() const { return false; }
+
   // The machine stands where the order says, with its inputs, its door and its outputs; all else is
   // as this run has it. It approaches as a phase of the run (RunState::approaching), then outputs
   // are switched to what they are there, and the step begins. Precondition: as PlanApproach, whose

@@ -22,6 +22,7 @@ class MillStanding final : public machine::Standing {
   std::vector<machine::ModalValue> modal_values() const override;
   void Rest() override;        // the spindle stands
   void CyclePower() override;  // a new machine: RML1-7.08
+  std::vector<machine::StateItem> items() const override;
   std::string Save() const override;
 
  private:

@@ -196,6 +196,17 @@ struct Applied {
     made.mutable_program_changed()->set_program(input.slot);
   }
   void operator()(const machine::SetSchedules&) const {}
+  void operator()(const machine::StartAtStep& input) const {
+    v1::StartInput& start = *made.mutable_start();
+    start.set_program(input.program);
+    start.set_source(ToProto(input.source));
+    start.mutable_step()->set_program(input.target.at.program);
+    start.mutable_step()->set_step(input.target.at.step);
+    start.set_occurrence(static_cast<std::int64_t>(input.target.occurrence));
+    start.set_approach(input.way == machine::ApproachWay::kSafe ? v1::APPROACH_SAFE
+                                                                : v1::APPROACH_DIRECT);
+    start.set_halt_at_entry(input.halt_at_entry);
+  }
   void operator()(const machine::ClearMessage&) const {
     made.mutable_key()->set_key("ERR");
     made.mutable_key()->set_action(v1::KEY_ACTION_TAP);

@@ -121,6 +121,7 @@ bool Control::HaltsBefore(const Instruction& i, const machine::Place& here) {
 std::vector<machine::StateItem> Control::Items() const {
   std::vector<machine::StateItem> items;
   if (!counter_.empty()) items = ItemsOf(counter_.programs(), Stack(), now().now);
+  items.push_back({"clamps", "below SAFE_Z", machine::StartAction::kAsk});
   for (machine::StateItem& item : ItemsOf(Kept())) items.push_back(std::move(item));
   return items;
 }

@@ -52,6 +52,7 @@ class OptimoRun final : public machine::Run, public machine::EnterableRun {
   std::vector<machine::StateItem> items() const override { return control_.Items(); }
   std::vector<machine::ApproachMotion> PlanApproach(std::string_view machine_state,
                                                     machine::ApproachWay way) const override;
+  bool may_enter_directly() const override { return true; }
   void Enter(const machine::EntryOrder& order) override;
 
  private:

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "engine/machine/standing.h"
-#include "engine/optimo/control/state_items.h"
 #include "engine/optimo/machine/machine_state.h"
 
 namespace rmlcell::optimo {
@@ -25,7 +24,7 @@ class OptimoStanding final : public machine::Standing {
   // No reference, no TCP, no BREAK and no SIMUL; outputs and images are 0, and what a program has
   // counted stays. OPT-4.68, OPT-6.08, OPT-6.30, OPT-7.63
   void CyclePower() override;
-  std::vector<machine::StateItem> items() const override { return ItemsOf(s_); }
+  std::vector<machine::StateItem> items() const override;
   std::string Save() const override { return EncodeMachineState(s_); }
 
  private:

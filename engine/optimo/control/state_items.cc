@@ -76,9 +76,11 @@ void AddProgram(const ProgramContext& program, const std::string& prefix, SimTim
     handlers += (n > 0 ? ", " : "") +
                 (frame.error_label ? std::to_string(*frame.error_label) : std::string("OFF"));
     const std::string level = n > 0 ? " of FUNCTION level " + std::to_string(n) : "";
-    for (std::size_t i = 0; i < frame.parameters.size(); ++i)
+    for (std::size_t i = 0; i < frame.parameters.size(); ++i) {
+      if (frame.parameters[i] == 0.0F) continue;  // as all are that nobody passed
       items.Add(prefix + "PAR[" + std::to_string(i) + "]" + level,
                 ValueText(frame.parameters[i]));
+    }
   }
   items.Add(prefix + "ERR", handlers);
   std::string timer = "OFF";
