@@ -72,7 +72,9 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
   }
   if (!to_see.empty())
     return Error{ErrorCode::kCellMachineState, "nobody has seen to " + std::move(to_see), {}};
-  Result<std::unique_ptr<Run>> run = family_.NewRun(SetupTo(input), observer_);
+  RunSetup setup = SetupTo(input);
+  setup.inputs.clear();  // from here on people and hosts give them
+  Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
   if (!run) return run.error();
   (*run)->Restore(*preview.reach.run->Save());
   (*run)->enterable()->Enter({.machine_state = standing_->Save(),
@@ -81,9 +83,6 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
                               .halt_at_entry = input.halt_at_entry});
   changed_.clear();
   if (input.brought) changed_.insert(input.program);
-  const StepFacts& facts = preview.reach.facts;
-  StepTarget entered = input.target;
-  entered.at = {facts.place.program, facts.place.step};
   run_ = *std::move(run);
   run_->SetMode(mode_);
   run_->SetBreakpoints(breakpoints_);
@@ -91,7 +90,7 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
            .program = input.program,
            .source = input.source,
            .begun = now_ - preview.run_time,
-           .entered = RunEntry{.at = entered, .run_time = preview.run_time}};
+           .entered = RunEntry{.at = preview.reach.target, .run_time = preview.run_time}};
   shown_ = {.program = input.program};
   return {};
 }

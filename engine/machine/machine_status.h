@@ -46,8 +46,8 @@ struct RunNote {
   std::int64_t number = 0;  // counts from 1
   int program = 0;
   StartSource source = StartSource::kConsole;
-  SimTime begun{0};      // of the machine: time of the run counts from here
-  bool by_hand = false;  // no program of anybody: the axes find their reference
+  SimTime begun{0};                   // of the machine: time of the run counts from here
+  bool by_hand = false;               // no program of anybody: the axes find their reference
   std::optional<RunEntry> entered{};  // then `begun` lies before it was begun, by that time
 };
 

@@ -38,19 +38,31 @@ class StepLog final : public StepWatcher {
   Place last_{};
 };
 
-// What comes behind the step, the first time that a clean one does.
+// What comes behind the step, and the first clean one of it.
 class LogBehind final : public StepWatcher, public RunObserver {
  public:
-  LogBehind(const StepCounts& counts, bool at_target) : counts_(counts), skip_(at_target) {}
+  // `target`: none: all that comes is behind. `passes`: the run does, and was halted.
+  LogBehind(StepCounts counts, const std::optional<StepTarget>& target, bool passes)
+      : counts_(std::move(counts)), target_(target), passes_(passes), halted_on_way_(passes) {}
 
   void OnStepDue(const StepFacts& facts) override {
-    ++steps_;
     const ProgramStep at{facts.place.program, facts.place.step};
-    const std::uint64_t occurrence = counts_.Count(at);
-    if (std::exchange(skip_, false) || clean_ || !facts.clean()) return;
-    clean_ = StepTarget{.at = at, .occurrence = occurrence};
+    const StepTarget here{.at = at, .occurrence = counts_.Count(at)};
+    if (target_) {
+      if (here != *target_) {
+        if (facts.clean()) before_ = here;
+        return;
+      }
+      target_.reset();
+      passes_ = passes_ || !facts.stands;
+      return;
+    }
+    ++steps_;
+    // Up to the next motion it stands because it was halted, and the whole run passes.
+    if (!clean_ && facts.clean() && !halted_on_way_) clean_ = here;
   }
   void OnMotion(const MotionDone& done) override {
+    halted_on_way_ = false;
     if (done.beam_on && !beam_over_) beam_way_mm_ += done.travelled - done.from;
   }
   void OnSignal(const SignalChange& change) override {
@@ -59,12 +71,20 @@ class LogBehind final : public StepWatcher, public RunObserver {
 
   void NoBeam() { beam_over_ = true; }
   bool done() const { return steps_ >= kStepsBehindMax || (clean_ && beam_over_); }
-  StepsBehind behind() const { return {.clean_after = clean_, .beam_way_mm = beam_way_mm_}; }
+  StepsBehind behind() const {
+    return {.passes = passes_,
+            .clean_before = before_,
+            .clean_after = clean_,
+            .beam_way_mm = beam_way_mm_};
+  }
 
  private:
   StepCounts counts_;
-  bool skip_;
+  std::optional<StepTarget> target_;  // to come
+  bool passes_;
+  bool halted_on_way_;
   std::uint64_t steps_ = 0;
+  std::optional<StepTarget> before_{};
   std::optional<StepTarget> clean_{};
   double beam_way_mm_ = 0.0;
   bool beam_over_ = false;
@@ -83,8 +103,8 @@ Error NotReached(WayEnd end, const Run& run, const StepTarget& target, const Pla
   switch (end) {
     case WayEnd::kFinished: {
       const std::optional<ErrorCode>& code = run.outcome().code;
-      text += code ? "the run ends with " + Told("code", CodeText(*code))
-                   : Detail("the program ends");
+      text +=
+          code ? "the run ends with " + Told("code", CodeText(*code)) : Detail("the program ends");
       break;
     }
     case WayEnd::kWaitsForEver:
@@ -133,6 +153,7 @@ WayEnd GoUntil(Run& run, const std::function<bool()>& done, const ReachLimits& l
 Result<StepReach> ReachStep(const MachineFamily& family, const RunSetup& setup,
                             const StepTarget& target, const ReachLimits& limits) {
   StepReach reach;
+  reach.target = target;
   reach.nobody = std::make_unique<RunObserver>();
   RunSetup bounded = setup;
   bounded.budget = {.steps = limits.steps_max, .virtual_time = RunBudget().virtual_time};
@@ -153,11 +174,12 @@ Result<StepReach> ReachStep(const MachineFamily& family, const RunSetup& setup,
   }
   StepLog log(reach);
   enterable->WatchSteps(&log);
-  const WayEnd end =
-      GoUntil(*reach.run, [&] { return enterable->reached().has_value(); }, limits);
+  const WayEnd end = GoUntil(
+      *reach.run, [&] { return enterable->reached().has_value(); }, limits);
   enterable->WatchSteps(nullptr);
   if (end == WayEnd::kDone) {
     reach.facts = *enterable->reached();
+    reach.target.at = {reach.facts.place.program, reach.facts.place.step};
   } else {
     reach.unreachable = NotReached(end, *reach.run, target, log.last());
   }
@@ -166,22 +188,26 @@ Result<StepReach> ReachStep(const MachineFamily& family, const RunSetup& setup,
 
 StepsBehind LookBehind(const MachineFamily& family, const RunSetup& setup, const StepReach& reach,
                        const ReachLimits& limits) {
-  LogBehind log(reach.counts, !reach.unreachable);
+  const bool anew = reach.facts.may_pass;
+  const std::optional<StepTarget> target =
+      reach.unreachable ? std::nullopt : std::optional(reach.target);
+  LogBehind log(anew ? StepCounts() : reach.counts, target, reach.facts.passes);
   const Result<std::unique_ptr<Run>> run = family.NewRun(setup, log);
   RMLCELL_CHECK(run);  // as the one before
-  (*run)->Restore(*reach.run->Save());
-  EnterableRun* enterable = (*run)->enterable();
-  enterable->ForgetTarget();
-  enterable->WatchSteps(&log);
-  if ((*run)->state().phase == RunPhase::kHalted) {
-    (*run)->Apply({.at = (*run)->state().time,
-                   .kind = InputKind::kStart,
-                   .index = 0,
-                   .value = 1.0});
+  if (!anew) {
+    (*run)->Restore(*reach.run->Save());
+    (*run)->enterable()->ForgetTarget();
   }
+  (*run)->enterable()->WatchSteps(&log);
+  const RunState state = (*run)->state();
+  if (state.phase == RunPhase::kHalted)
+    (*run)->Apply({.at = state.time, .kind = InputKind::kStart, .index = 0, .value = 1.0});
   if (!(*run)->state().beam_on) log.NoBeam();
-  GoUntil(**run, [&] { return log.done(); }, limits);
-  return log.behind();
+  GoUntil(
+      **run, [&] { return log.done(); }, limits);
+  StepsBehind behind = log.behind();
+  if (!anew) behind.clean_before = reach.clean_before;
+  return behind;
 }
 
 Result<std::uint64_t> OccurrenceAt(const MachineFamily& family, const RunSetup& setup,

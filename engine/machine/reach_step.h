@@ -37,9 +37,10 @@ class StepCounts {
 // A run with nobody looking that has halted before a step.
 struct StepReach {
   std::unique_ptr<RunObserver> nobody{};
-  std::unique_ptr<Run> run{};         // never null
-  std::optional<Error> unreachable{}; // CellStepUnreachable, with the last step that was reached
-  StepFacts facts{};                  // of the step, where it is reached
+  std::unique_ptr<Run> run{};          // never null
+  std::optional<Error> unreachable{};  // CellStepUnreachable, with the last step that was reached
+  StepTarget target{};                 // with its step, where a byte was asked for
+  StepFacts facts{};                   // of the step, where it is reached
   std::optional<StepTarget> clean_before{};  // the last clean step that it came to
   StepCounts counts{};                       // of the steps begun
 };
@@ -49,9 +50,11 @@ struct StepReach {
 Result<StepReach> ReachStep(const MachineFamily& family, const RunSetup& setup,
                             const StepTarget& target, const ReachLimits& limits);
 
-// From there on, or from the beginning where the step is unreachable for what it is: what comes
-// behind, as far as it is looked for.
+// From there on, or from the beginning where the step is unreachable for what it is, or where the
+// halt changed what comes behind; as far as it is looked for.
 struct StepsBehind {
+  bool passes = false;                       // the whole run passes at the step
+  std::optional<StepTarget> clean_before{};  // as StepReach has it, or as a whole run has
   std::optional<StepTarget> clean_after{};
   double beam_way_mm = 0.0;  // until the beam goes off for the first time; 0 where it is not on
 };

@@ -95,7 +95,8 @@ std::vector<Error> RefusalsOfFirstMotion(const MachineFamily& family, const RunS
   (*run)->enterable()->Enter({.machine_state = question.machine_state,
                               .override_percent = question.override_percent,
                               .way = ApproachWay::kDirect});
-  const WayEnd end = GoUntil(**run, [&] { return first.over(); }, limits);
+  const WayEnd end = GoUntil(
+      **run, [&] { return first.over(); }, limits);
   if (!first.beyond().empty())
     return RefusalsOf({{.path = "LIN", .to = (*run)->state().axes, .beyond = first.beyond()}});
   if (end == WayEnd::kFinished && (*run)->outcome().code) {
@@ -104,9 +105,8 @@ std::vector<Error> RefusalsOfFirstMotion(const MachineFamily& family, const RunS
                        Told("code", CodeText(*(*run)->outcome().code)))};
   }
   if (end != WayEnd::kDone || first.path() == "PTP" || first.path() == "LIN") return {};
-  return {Refuse(ErrorCode::kCellApproach,
-                 "the first motion is " + Told("path", first.path()) +
-                     ": without an approach it must be PTP or LIN")};
+  return {Refuse(ErrorCode::kCellApproach, "the first motion is " + Told("path", first.path()) +
+                                               ": without an approach it must be PTP or LIN")};
 }
 
 void ComparePlaces(const StartQuestion& question, const RunState& there, StartPreview& preview) {
@@ -116,7 +116,7 @@ void ComparePlaces(const StartQuestion& question, const RunState& there, StartPr
     }
   }
   if (preview.reach.facts.passes)
-    preview.differences.push_back({"passage", "/FLY", "stop", StartAction::kNone});
+    preview.differences.push_back({"passage", "passed", "stop", StartAction::kNone});
   if (there.override_percent != question.override_percent) {
     preview.differences.push_back({"override", ShortestText(there.override_percent),
                                    ShortestText(question.override_percent), StartAction::kNone});
@@ -137,8 +137,7 @@ std::vector<StartDifference> DifferencesOf(const std::vector<StateItem>& there,
     if (value != item.value) differences.push_back({item.name, item.value, value, item.action});
   }
   for (const StateItem& item : now) {
-    if (left.contains(item.name))
-      differences.push_back({item.name, "", item.value, item.action});
+    if (left.contains(item.name)) differences.push_back({item.name, "", item.value, item.action});
   }
   return differences;
 }
@@ -153,13 +152,14 @@ Result<StartPreview> PreviewStart(const MachineFamily& family, const RunSetup& s
   StartPreview preview;
   preview.reach = *std::move(reach);
   const bool known = !preview.reach.unreachable;
-  preview.clean_before = preview.reach.clean_before;
   // Of a step that the run never came to there is nothing behind.
   const bool behind = known || preview.reach.run->state().phase != RunPhase::kFinished;
-  const StepsBehind after =
-      behind ? LookBehind(family, setup, preview.reach, limits) : StepsBehind();
+  const StepsBehind after = behind ? LookBehind(family, setup, preview.reach, limits)
+                                   : StepsBehind{.clean_before = preview.reach.clean_before};
+  preview.clean_before = after.clean_before;
   preview.clean_after = after.clean_after;
   if (known) {
+    preview.reach.facts.passes = after.passes;
     const RunState state = preview.reach.run->state();
     preview.run_time = state.time;
     if (question.off_until_work_on && preview.reach.facts.work_active)

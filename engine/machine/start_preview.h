@@ -41,8 +41,8 @@ struct StartQuestion {
 // What a start at a step would do. Nothing of it is done.
 struct StartPreview {
   StepReach reach{};  // its run has what is told of any run: stack, modal values, variables
-  std::vector<StateItem> there{};               // all of it; empty: the step is unreachable
-  std::vector<StartDifference> differences{};   // with what is done about each
+  std::vector<StateItem> there{};              // all of it; empty: the step is unreachable
+  std::vector<StartDifference> differences{};  // with what is done about each
   std::vector<ApproachMotion> approach{};
   std::vector<Error> refusals{};  // CellStepUnreachable, CellApproach, ...; empty: it may begin
   std::optional<StepTarget> clean_before{};  // the nearest clean steps, by the order of the run

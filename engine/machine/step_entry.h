@@ -29,13 +29,15 @@ struct StepTarget {
 // How it is when a step is about to begin, where a run would begin with it.
 struct StepFacts {
   Place place{};
-  bool stands = true;            // nothing moves, and no motion is held back
-  bool passes = false;           // a /FLY before it is open: who starts here stops at its target
-  bool work_active = false;      // a WORK is ON; never of a mill
-  bool tool_down = false;        // of a mill: or the tool is below the surface of the work
-  bool beside = false;           // a motion or a WORK of /NEXT goes on
-  bool in_timed_gosub = false;   // control is in a GOSUB that a timer made
-  bool inside_command = false;   // of a stream: a call or an ESC sequence is unfinished
+  bool stands = true;           // nothing moves, and no motion is held back
+  bool passes = false;          // a /FLY before it is open: who starts here stops at its target
+  bool work_active = false;     // a WORK is ON; never of a mill
+  bool tool_down = false;       // of a mill: or the tool is below the surface of the work
+  bool beside = false;          // a motion or a WORK of /NEXT goes on
+  bool in_timed_gosub = false;  // control is in a GOSUB that a timer made
+  bool inside_command = false;  // of a stream: a call or an ESC sequence is unfinished
+  // Of a run that halted here: it may be that it would have passed, and nobody can tell from it.
+  bool may_pass = false;
   bool may_be_entered() const { return !beside && !in_timed_gosub && !inside_command; }
   // A run may begin here without anything that the part would show. LIVE-6.04
   bool clean() const { return stands && !work_active && !tool_down && may_be_entered(); }
@@ -77,7 +79,7 @@ struct OutOfTravel {
 struct ApproachMotion {
   std::string_view path{};  // "PTP", "LIN"; of a mill "PU", "PD"
   motion::AxisPose to{};
-  double feed_mm_s = 0.0;  // without the override; 0: as fast as the axes can
+  double feed_mm_s = 0.0;             // without the override; 0: as fast as the axes can
   std::vector<OutOfTravel> beyond{};  // none: it stays inside
 };
 

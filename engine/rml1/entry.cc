@@ -52,8 +52,7 @@ std::vector<Action> PlanEntry(const Profile& profile, const Registers& there, bo
     Action& made = actions.emplace_back();
     made.to = next;
     made.rapid = rapid;
-    made.speed_mm_s =
-        LimitedSpeed(profile, at, next, rapid ? profile.travel_speed : there.z_speed);
+    made.speed_mm_s = LimitedSpeed(profile, at, next, rapid ? profile.travel_speed : there.z_speed);
     at = next;
   };
   go({from.x, from.y, profile.z.high, from.a}, true);
@@ -70,8 +69,7 @@ std::vector<Action> PlanEntry(const Profile& profile, const Registers& there, bo
 std::vector<machine::OutOfTravel> OutsideOf(const Profile& profile, const Point& at) {
   std::vector<machine::OutOfTravel> outside;
   const auto look = [&](int axis, double value, const Travel& travel) {
-    const double excess =
-        std::max(travel.low - value, value - travel.high) / profile.units_per_mm;
+    const double excess = std::max(travel.low - value, value - travel.high) / profile.units_per_mm;
     if (excess > motion::kTipLengthZero_mm)
       outside.push_back({.axis = axis, .excess = excess, .at_target = true});
   };

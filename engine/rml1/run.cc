@@ -371,8 +371,8 @@ machine::HaltReason MillRun::ReasonOf(HaltCause cause) {
 
 void MillRun::BeginHalt(HaltCause cause) {
   State& s = state_;
-  static constexpr std::array<std::string_view, 7> kWhy = {
-      "", "!NR", "HOLD", "STOP", "SINGLE", "BREAKPOINT", "ENTRY"};
+  static constexpr std::array<std::string_view, 7> kWhy = {"",       "!NR",        "HOLD", "STOP",
+                                                           "SINGLE", "BREAKPOINT", "ENTRY"};
   std::string_view why = kWhy[static_cast<std::size_t>(cause)];
   if (cause == HaltCause::kPause && s.device.actions().front().outside) why = "OVER_AREA";
   s.halt = cause;

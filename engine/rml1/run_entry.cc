@@ -58,6 +58,7 @@ void MillRun::HaltAtTarget() {
   place.byte_offset = -1;
   s.reached = FactsBefore(place);
   s.reached->inside_command = s.device.pending();
+  s.reached->may_pass = s.halts.entry > 1;
   BeginHalt(HaltCause::kEntry);
 }
 
@@ -89,8 +90,7 @@ void MillRun::Enter(const machine::EntryOrder& order) {
   State& s = state_;
   const Point from = PlaceOf(order.machine_state, profile());
   const bool turns = SpindleTurns();
-  const std::vector<Action> way =
-      PlanEntry(profile(), s.device.registers(), turns, from, s.tool);
+  const std::vector<Action> way = PlanEntry(profile(), s.device.registers(), turns, from, s.tool);
   ForgetTarget();
   s.override_percent = std::clamp(order.override_percent, kOverrideMin, kOverrideMax);
   s.tool = from;
@@ -117,8 +117,7 @@ void MillRun::Enter(const machine::EntryOrder& order) {
 
 void MillRun::GoOnApproaching() {
   State& s = state_;
-  if (std::exchange(s.step_over, false) && s.halts.after_each)
-    return BeginHalt(HaltCause::kSingle);
+  if (std::exchange(s.step_over, false) && s.halts.after_each) return BeginHalt(HaltCause::kSingle);
   if (!s.approach.empty()) {
     const Action action = s.approach.front();
     s.approach.pop_front();

@@ -174,16 +174,16 @@ void MillRun::ReportLeg(double travelled) {
                        .spindle_turns = s.device.spindle_turns()},
                       s.device.registers(), s.device.command());
   }
-  observer_.OnMotion({.start = s.busy_from,
-                      .end = s.now,
-                      .place = s.place,
-                      .use = m.action.use,
-                      .motion = &leg,
-                      .travelled = travelled,
-                      .programmed_mm_s = m.action.rapid ? 0.0 : m.leg.feed_mm_s,
-                      .in_work = !m.approach && Physical::IsInWork(m.action.use, from, to,
-                                                                   s.device.registers()),
-                      .approach = m.approach});
+  observer_.OnMotion(
+      {.start = s.busy_from,
+       .end = s.now,
+       .place = s.place,
+       .use = m.action.use,
+       .motion = &leg,
+       .travelled = travelled,
+       .programmed_mm_s = m.action.rapid ? 0.0 : m.leg.feed_mm_s,
+       .in_work = !m.approach && Physical::IsInWork(m.action.use, from, to, s.device.registers()),
+       .approach = m.approach});
   s.motion.first_leg = false;
 }
 

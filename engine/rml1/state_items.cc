@@ -39,9 +39,8 @@ std::vector<machine::StateItem> ItemsOf(const Device& device, const Profile& pro
       {"pending", std::to_string(device.waiting()) + " bytes", kSet},
       {"tool", std::string(fitted), kAsk},
       {"clamps", std::string(fitted), kAsk}};
-  for (const std::string_view name :
-       {"VS", "VZ", "DW", "MC", "RPM", "Z0", "Z1", "Z2", "MODE", "TOOL", "ERR", "COM", "ESC.M",
-        "ESC.T"}) {
+  for (const std::string_view name : {"VS", "VZ", "DW", "MC", "RPM", "Z0", "Z1", "Z2", "MODE",
+                                      "TOOL", "ERR", "COM", "ESC.M", "ESC.T"}) {
     items.push_back({std::string(name), ReadRegister(device, profile, tool, name)->text,
                      name == "Z0" ? kAsk : kSet});
   }

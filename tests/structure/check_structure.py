@@ -107,7 +107,7 @@ PUBLIC = {
     CORNER: ["corner.h", "axes_corner.h"],
     PLANNER: ["planner.h", "feed_steps.h"],
     RIDE: ["trajectory.h", "interruption.h", "ride_protocol.h", "path_ride.h"],
-    "engine/machine": ["bytes.h", "driver.h", "family.h", "language_word.h", "machine.h", "machine_note.h", "machine_states.h", "machine_status.h", "panel.h", "run.h", "standing.h", "virtual_driver.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "variable.h", "verdict.h",
+    "engine/machine": ["bytes.h", "driver.h", "family.h", "language_word.h", "machine.h", "machine_note.h", "machine_states.h", "machine_status.h", "panel.h", "reach_step.h", "run.h", "standing.h", "start_preview.h", "step_entry.h", "virtual_driver.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "variable.h", "verdict.h",
                        "tools.h", "editing.h", "run_setup.h", "outcome.h", "inputs.h", "program_file.h"],
     "engine/rml1": ["rml1_family.h", "action.h", "clipping.h", "command_reader.h", "command_table.h", "device.h", "figures.h", "finding.h",
                     "number.h", "physical.h", "profile.h", "programmed.h", "registers.h", "verdict_rules.h"],

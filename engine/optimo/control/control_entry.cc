@@ -14,9 +14,8 @@ constexpr double kDownSpeed_percent = 10.0;
 
 motion::PathPiece PathOf(const ApproachLeg& leg, const motion::Head& head,
                          const motion::AxisPose& from) {
-  return leg.path == PathType::kPtp
-             ? motion::PathPiece::Joint(from, leg.to)
-             : motion::PathPiece::Line(head.TipOf(from), head.TipOf(leg.to));
+  return leg.path == PathType::kPtp ? motion::PathPiece::Joint(from, leg.to)
+                                    : motion::PathPiece::Line(head.TipOf(from), head.TipOf(leg.to));
 }
 
 // Straight up, across, straight down. One that stands higher than the way across comes down to it
@@ -84,9 +83,8 @@ machine::StepFacts Control::FactsAt(const machine::Place& here) const {
 void Control::NoteStep(const machine::Place& here) {
   EntryState& entry = s_.entry;
   if (!entry.target && step_watcher_ == nullptr) return;
-  std::erase_if(entry.timed_gosubs, [&](const EntryState::TimedGosub& gosub) {
-    return !IsOpen(gosub, counter_);
-  });
+  std::erase_if(entry.timed_gosubs,
+                [&](const EntryState::TimedGosub& gosub) { return !IsOpen(gosub, counter_); });
   if (entry.target && entry.target->at == machine::ProgramStep{here.program, here.step})
     ++entry.passes;
   if (step_watcher_ != nullptr) step_watcher_->OnStepDue(FactsAt(here));
@@ -131,17 +129,14 @@ std::vector<machine::ApproachMotion> Control::PlanApproach(const MachineState& n
   if (way == machine::ApproachWay::kDirect) return {};
   std::vector<machine::ApproachMotion> motions;
   motion::AxisPose from = now.axes;
-  for (const ApproachLeg& leg :
-       LegsBetween(from, ride_.planned_axes(), parameters_.safe_z_mm)) {
+  for (const ApproachLeg& leg : LegsBetween(from, ride_.planned_axes(), parameters_.safe_z_mm)) {
     const bool straight = leg.path == PathType::kLin;
     machine::ApproachMotion& made = motions.emplace_back();
     made.path = NameOfPath(leg.path);
     made.to = leg.to;
-    made.feed_mm_s =
-        straight ? leg.speed_percent / 100.0 * parameters_.limits.tip_speed_mm_s : 0.0;
+    made.feed_mm_s = straight ? leg.speed_percent / 100.0 * parameters_.limits.tip_speed_mm_s : 0.0;
     for (const BeyondTravel& one : travel_.BeyondTravelOf(PathOf(leg, ride_.head(), from))) {
-      made.beyond.push_back(
-          {.axis = one.axis, .excess = one.excess, .at_target = one.at_target});
+      made.beyond.push_back({.axis = one.axis, .excess = one.excess, .at_target = one.at_target});
     }
     from = leg.to;
   }
@@ -170,6 +165,7 @@ void Control::Enter(const MachineState& now, const machine::EntryOrder& order) {
   s_.actuators = ActuatorState(parameters_.laser);
   s_.actuators.outputs = now.outputs;
   s_.actuators.zeroed = s_.moves.zeroed = now.zeroed;
+  if (!s_.simul) s_.simul = now.simul;  // armed for a start of the whole program
   if (now.door_open) s_.actuators.beam = s_.actuators.beam.DoorOpened();
   s_.data.area.il_physical = now.data.il_physical;
   s_.data.area.ia_physical = now.data.ia_physical;
@@ -200,20 +196,18 @@ Status Control::Append(const ApproachLeg& leg) {
   const motion::PathPiece path = PathOf(leg, ride_.head(), ride_.planned_axes());
   const bool straight = leg.path == PathType::kLin;
   const double speed = leg.speed_percent / 100.0 * ride_.override_percent() / 100.0;
-  const motion::MoveCommand command{.kind = straight
-                                                ? motion::MoveCommand::Kind::kContour
-                                                : motion::MoveCommand::Kind::kPointToPointAxes,
+  const motion::MoveCommand command{.kind = straight ? motion::MoveCommand::Kind::kContour
+                                                     : motion::MoveCommand::Kind::kPointToPointAxes,
                                     .path = path,
                                     .head = ride_.head(),
                                     .speed_fraction = std::min(speed, 1.0)};
   return ride_.Append(
       command,
       {.place = now().place,
-       .program_point = motion::ProgramPoint::AsMachine(
-           straight ? ride_.head().TipOf(leg.to).tip : leg.to.column),
+       .program_point = motion::ProgramPoint::AsMachine(straight ? ride_.head().TipOf(leg.to).tip
+                                                                 : leg.to.column),
        .program_a = leg.to.a_rad,
-       .feed_mm_s =
-           straight ? command.speed_fraction * parameters_.limits.tip_speed_mm_s : 0.0,
+       .feed_mm_s = straight ? command.speed_fraction * parameters_.limits.tip_speed_mm_s : 0.0,
        .path = leg.path,
        .approach = true,
        .kind = command.kind,
@@ -226,15 +220,12 @@ void Control::ArriveAtEntry() {
   const EntryState::Arrival arrival = *s_.entry.arrival;
   s_.entry = {};
   const auto carry = [&](PassageEffect::Kind kind, std::size_t index, double value) {
-    actuators_.Carry({.kind = kind,
-                      .place = now().place,
-                      .index = static_cast<int>(index),
-                      .value = value});
+    actuators_.Carry(
+        {.kind = kind, .place = now().place, .index = static_cast<int>(index), .value = value});
   };
   for (const bool on : {false, true}) {  // one assist gas is off before the other is on
     for (std::size_t n = 0; n < arrival.outputs.logical.size(); ++n) {
-      if (arrival.outputs.logical[n] == on)
-        carry(PassageEffect::Kind::kOutput, n, on ? 1.0 : 0.0);
+      if (arrival.outputs.logical[n] == on) carry(PassageEffect::Kind::kOutput, n, on ? 1.0 : 0.0);
     }
   }
   for (std::size_t n = 0; n < arrival.outputs.analogue.size(); ++n)

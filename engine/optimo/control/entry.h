@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/machine/step_entry.h"
-#include "engine/motion/geometry/pose.h"
 #include "engine/optimo/language/ast.h"
 #include "engine/optimo/machine/machine_state.h"
 

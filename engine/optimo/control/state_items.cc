@@ -21,8 +21,7 @@ std::string PlaceText(double value) { return ShortestText(std::round(value * 1e6
 
 std::string PoseText(const motion::AxisPose& axes) {
   return "X " + PlaceText(axes.column.x()) + " Y " + PlaceText(axes.column.y()) + " Z " +
-         PlaceText(axes.column.z()) + " A " + PlaceText(axes.a_rad) + " B " +
-         PlaceText(axes.b_rad);
+         PlaceText(axes.column.z()) + " A " + PlaceText(axes.a_rad) + " B " + PlaceText(axes.b_rad);
 }
 
 std::string ValueText(float value) { return ShortestText(static_cast<double>(value)); }
@@ -78,8 +77,7 @@ void AddProgram(const ProgramContext& program, const std::string& prefix, SimTim
     const std::string level = n > 0 ? " of FUNCTION level " + std::to_string(n) : "";
     for (std::size_t i = 0; i < frame.parameters.size(); ++i) {
       if (frame.parameters[i] == 0.0F) continue;  // as all are that nobody passed
-      items.Add(prefix + "PAR[" + std::to_string(i) + "]" + level,
-                ValueText(frame.parameters[i]));
+      items.Add(prefix + "PAR[" + std::to_string(i) + "]" + level, ValueText(frame.parameters[i]));
     }
   }
   items.Add(prefix + "ERR", handlers);

@@ -133,6 +133,7 @@ void Ride::TellMotion(SimTime until) {
       .travelled = active.PlaceAt(until),
       .profile_start_s = ToSeconds(active.told - active.start),
       .programmed_mm_s = s_.note.feed_mm_s,
+      .in_work = !s_.note.approach,
       .beam_on = beam_.on(),
       .power = beam_.power(),
       .approach = s_.note.approach};

@@ -19,8 +19,8 @@ struct Traced {
 
 std::vector<std::string> NamesOf(const MachineFamily& family) {
   if (family.info().id == "rml1") {
-    return {"X", "Y", "Z", "LX", "LY", "LZ", "VS", "VZ", "DW", "MC", "RPM", "SPINDLE", "Z0", "Z1",
-            "Z2", "MODE", "TOOL", "ERR"};
+    return {"X",  "Y",   "Z",       "LX", "LY", "LZ", "VS",   "VZ",   "DW",
+            "MC", "RPM", "SPINDLE", "Z0", "Z1", "Z2", "MODE", "TOOL", "ERR"};
   }
   std::vector<std::string> names;
   for (int i = 0; i <= 99; ++i) {
@@ -64,7 +64,10 @@ class ReachTest : public StartTest {
       EXPECT_EQ(there.values, traced[i].values) << step;
       EXPECT_EQ(there.axes.column, traced[i].axes.column) << step;
       EXPECT_EQ(there.axes.a_rad, traced[i].axes.a_rad) << step;
-      EXPECT_EQ(there.modal, traced[i].modal) << step;
+      // A program that is called has its own, up to the step behind it.
+      if (i == 0 || whole.steps[i - 1].target.at.program == whole.steps[i].target.at.program) {
+        EXPECT_EQ(there.modal, traced[i].modal) << step;
+      }
       EXPECT_EQ(reach.facts.place.step, whole.steps[i].target.at.step);
     }
   }
@@ -104,12 +107,12 @@ class MillReach : public ReachTest {
   MillReach() : ReachTest("rml1") {}
 };
 
-constexpr const char* kLoop =
+constexpr const char* kPasses =
     "COORD ABSOL\nPATH LIN\nSPEED 20\nVI[2]=0\n"
-    "100 VI[2]=VI[2]+1\nMOVE (521.02+VI[2], 2201.2, -350., 0., 0.)/FLY\nVR[VI[2]]=VI[2]*1.5\n"
+    "100 VI[2]=VI[2]+1\nMOVE (521.02+VI[2], 2201.2, -350., 0., 0.)/FLY\nVR[8]=VI[2]*1.5\n"
     "MOVE (561.02, 2241.2+VI[2], -350., 0.2, 0.1)\nOL[11]=NOT OL[11]\nGOSUB 200\n"
     "IF VI[2] < 3 THEN 100\nCALL 2\nSPEED 30\nFUNCTION 3\nENDTASK\n"
-    "200 VR[9]=VR[9]+VR[VI[2]]\nDELAY .5\nRETURN\n";
+    "200 VR[9]=VR[9]+VR[8]\nDELAY .5\nRETURN\n";
 constexpr const char* kCalled =
     "SYSDEF (10.,20.,-5.,0.,0.,0.)\nCOORD ABSOL\nPATH LIN\nMOVE (500., 2200., -350., 0., 0.)\n"
     "TCP (0.,0.,1.,0.,0.,-5.)\nOA[3]=2.5\nSYSDEF\n";
@@ -123,15 +126,15 @@ constexpr const char* kCut =
     "MOVE (621.02, 2301.2, -350., 0., 0.)\nWORK 1,0/ON\nMOVE (661.02, 2301.2, -350., 0., 0.)\n"
     "WORK 1,0/OFF\nVR[3]=3.\n";
 
-constexpr const char* kStrokes =
-    "VS10;!VZ10;!PZ-100,200;!MC1;PU2010,1510;PU2500,1800;PD4010,1510;PD4010,3510,3800,3600;W50;"
+constexpr const char* kCommands =
+    "VS10;!VZ10;!PZ-100,200;!MC1;PU2010,1510;VS11;PU2500,1800;VS10;PD4010,1510;PD4010,3510,3800,3600;W50;"
     "PD2010,3510;PU1000,1000;Z1200,1200,100,1300,1300,-50;Z1400,1400,-50;!VZ5;PU;PR;PD100,0;PA;"
     "H;!RC9;PU0,0;!MC0;";
 
 // LIVE-6.01: *there* is what the whole run has there, of every step and every pass.
-TEST_F(ReachTest, EveryStepOfALoop) { EveryStep({kLoop, kCalled, kFunction}); }
+TEST_F(ReachTest, EveryStepOfALoop) { EveryStep({kPasses, kCalled, kFunction}); }
 TEST_F(ReachTest, EveryStepOfACut) { EveryStep({kCut}); }
-TEST_F(MillReach, EveryCommand) { EveryStep({kStrokes}); }
+TEST_F(MillReach, EveryCommand) { EveryStep({kCommands}); }
 
 // LIVE-6.01: the time of the run there is that of the whole run, where the machine stands there.
 TEST_F(ReachTest, AtTheTimeOfTheWholeRun) {
@@ -143,22 +146,22 @@ TEST_F(ReachTest, AtTheTimeOfTheWholeRun) {
     EXPECT_EQ(Reach(setup, step.target).run->state().time, step.at) << step.target.at.step;
     ++standing;
   }
-  EXPECT_GT(standing, 10);
+  EXPECT_EQ(standing, 15);
 }
 
 // LIVE-6.04: the nearest clean steps.
 TEST_F(ReachTest, CleanStepsByBruteForce) {
-  const auto work = [](Run& run) {
+  const auto work = [](machine::Run& run) {
     for (const StateItem& item : run.enterable()->items()) {
       if (item.name == "WORK") return item.value != "OFF";
     }
     return true;
   };
   CleanSteps({kCut}, work);
-  CleanSteps({kLoop, kCalled, kFunction}, work);
+  CleanSteps({kPasses, kCalled, kFunction}, work);
 }
 TEST_F(MillReach, CleanStepsByBruteForce) {
-  CleanSteps({kStrokes}, [](const Run& run) {
+  CleanSteps({kCommands}, [](const machine::Run& run) {
     const double z = std::stod(run.ReadVariable("Z")->text);
     return run.ReadVariable("TOOL")->text == "down" || z < 0.0;
   });
@@ -174,7 +177,7 @@ TEST_F(ReachTest, WhatIsNotReached) {
     EXPECT_EQ(reach->unreachable->code, ErrorCode::kCellStepUnreachable);
     return std::string(reach->unreachable->detail);
   };
-  const RunSetup loop = Setup({kLoop, kCalled, kFunction});
+  const RunSetup loop = Setup({kPasses, kCalled, kFunction});
   EXPECT_EQ(why(loop, {.at = {1, 5}, .occurrence = 4}),
             "step 1/5 is not reached for the 4. time: the program ends; the last step reached is "
             "1/15");
@@ -186,28 +189,28 @@ TEST_F(ReachTest, WhatIsNotReached) {
               HasSubstr("waits for what does not come; the last step reached is 1/2"));
   const RunSetup fails = Setup({"VI[2]=0\nVR[1]=1/VI[2]\nVI[2]=2\n"});
   EXPECT_THAT(why(fails, {.at = {1, 3}}), HasSubstr("the run ends with OPT-E"));
-  const RunSetup endless = Setup({"100 VI[2]=VI[2]+1\nGOTO 100\nVI[3]=1\n"});
+  const RunSetup endless = Setup({"100 VI[2]=1\nGOTO 100\nVI[3]=1\n"});
   EXPECT_THAT(why(endless, {.at = {1, 3}}, {.steps_max = 5000}),
               HasSubstr("the run ends with OPT-E"));
   int asked = 0;
-  EXPECT_THAT(why(endless, {.at = {1, 3}},
-                  {.go_on = [&] { return ++asked < 10; }}),
+  EXPECT_THAT(why(endless, {.at = {1, 3}}, {.go_on = [&] { return ++asked < 10; }}),
               HasSubstr("it takes longer than is looked for"));
-  EXPECT_EQ(asked, 11);  // and once for what is behind? no: once more by nobody
+  EXPECT_EQ(asked, 10);
 }
 
 // LIVE-6.01: recorded inputs, and START at halts that no recorded key ends.
 TEST_F(ReachTest, WithRecordedInputs) {
-  RunSetup setup = Setup({"WAIT IL[5]\nPAUSE\nVI[2]=7\nDELAY 1\nVI[3]=IL[6]\nVI[4]=1\n"});
-  setup.inputs = {{At(3.0), InputKind::kLogical, 5, 1.0}, {At(10.0), InputKind::kStart, 0, 1.0},
+  RunSetup setup = Setup({"WAIT IL[5]\nPAUSE\nVI[2]=7\nDELAY 1\nVL[3]=IL[6]\nVI[4]=1\n"});
+  setup.inputs = {{At(3.0), InputKind::kLogical, 5, 1.0},
+                  {At(10.0), InputKind::kStart, 0, 1.0},
                   {At(10.5), InputKind::kLogical, 6, 1.0}};
   StepReach reach = Reach(setup, {.at = {1, 6}});
   EXPECT_EQ(reach.run->state().time, At(11.0));
-  EXPECT_EQ(reach.run->ReadVariable("VI[3]")->text, "1");
+  EXPECT_EQ(reach.run->ReadVariable("VL[3]")->text, "1");
   setup.inputs.resize(1);
   reach = Reach(setup, {.at = {1, 6}});
   EXPECT_EQ(reach.run->state().time, At(4.0));
-  EXPECT_EQ(reach.run->ReadVariable("VI[3]")->text, "0");
+  EXPECT_EQ(reach.run->ReadVariable("VL[3]")->text, "0");
 }
 
 // LIVE-6.01: the pass that an interrupted run was in.

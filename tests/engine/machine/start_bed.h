@@ -42,17 +42,29 @@ class WholeRun final : public RunObserver {
                        left < 1e-9 && done.motion->speed.end().speed > 1e-9});
   }
 
-  // Nothing but the motion of the step itself is under way when it begins, and nothing passes.
+  // No motion of a step before it is under way when it begins, and none is passed.
   bool StandsBefore(const Step& step) const {
+    const auto index = &step - steps.data();
     return std::ranges::none_of(motions, [&](const Motion& motion) {
       const bool covers = motion.start <= step.at && step.at < motion.end;
       const bool passes = motion.end == step.at && motion.passes;
-      return motion.of != step.target.at && (covers || passes);
+      return (covers || passes) && OwnerOf(motion) < index;
     });
   }
 
   std::vector<Step> steps;
   std::vector<Motion> motions;
+
+ private:
+  // The last pass of its step that had begun when the motion did.
+  std::ptrdiff_t OwnerOf(const Motion& motion) const {
+    std::ptrdiff_t owner = -1;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (steps[i].target.at == motion.of && steps[i].at <= motion.start)
+        owner = static_cast<std::ptrdiff_t>(i);
+    }
+    return owner;
+  }
 };
 
 // What a machine does outside, without the time: motions by where they end, signals, waits.
@@ -107,9 +119,7 @@ class StartTest : public MachineTest {
     setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
     return setup;
   }
-  std::string StandingState() const {
-    return (*family_.NewStanding(parameters(), ""))->Save();
-  }
+  std::string StandingState() const { return (*family_.NewStanding(parameters(), ""))->Save(); }
   WholeRun Whole(const RunSetup& setup) const {
     WholeRun whole;
     auto run = family_.NewRun(setup, whole);
@@ -141,8 +151,8 @@ class StartTest : public MachineTest {
     return CodeText(preview.refusals[0].code) + " " + preview.refusals[0].detail;
   }
   // One that begins there, halted at its entry.
-  std::unique_ptr<Run> Entered(const RunSetup& setup, const StepReach& reach,
-                               RunObserver& observer) const {
+  std::unique_ptr<machine::Run> Entered(const RunSetup& setup, const StepReach& reach,
+                                        RunObserver& observer) const {
     RunSetup own = setup;
     own.inputs.clear();
     auto run = family_.NewRun(std::move(own), observer);
@@ -172,8 +182,7 @@ inline std::vector<std::string> ToDo(const std::vector<StartDifference>& differe
   return rows;
 }
 
-inline const StartDifference* Row(const std::vector<StartDifference>& rows,
-                                  std::string_view item) {
+inline const StartDifference* Row(const std::vector<StartDifference>& rows, std::string_view item) {
   const auto found = std::ranges::find(rows, item, &StartDifference::item);
   return found == rows.end() ? nullptr : &*found;
 }
