@@ -152,6 +152,7 @@ void Control::Enter(const MachineState& now, const machine::EntryOrder& order) {
   s_.entry = {.arrival = EntryState::Arrival{.begun = this->now().now,
                                              .outputs = s_.actuators.outputs,
                                              .gas_refused = s_.actuators.gas_refused,
+                                             .works = std::exchange(s_.works.tasks, {}),
                                              .halts = order.halt_at_entry}};
   if (order.way == machine::ApproachWay::kSafe) {
     for (ApproachLeg& leg : LegsBetween(now.axes, there, parameters_.safe_z_mm))
@@ -188,7 +189,9 @@ void Control::GoOnApproaching() {
   if (s_.entry.legs.empty()) return ArriveAtEntry();
   const ApproachLeg leg = s_.entry.legs.front();
   s_.entry.legs.pop_front();
-  if (const Status appended = Append(leg); !appended) return Raise(appended.error());
+  // No error of the program: its ERR has nothing to do with it.
+  if (const Status appended = Append(leg); !appended)
+    return Finish(machine::OutcomeKind::kFailed, appended.error().code, appended.error().detail);
   halts_.EndStep({});
 }
 
@@ -233,6 +236,7 @@ void Control::ArriveAtEntry() {
   carry(PassageEffect::Kind::kSchedule, static_cast<std::size_t>(arrival.outputs.schedule), 0.0);
   s_.actuators.gas_refused = arrival.gas_refused;
   const SimTime lasted = now().now - arrival.begun;
+  s_.works.tasks = arrival.works;
   works_.Shift(lasted);
   for (ProgramContext& context : s_.counter.programs) {
     if (context.timer) context.timer->due += lasted;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/machine/step_entry.h"
+#include "engine/optimo/control/works.h"
 #include "engine/optimo/language/ast.h"
 #include "engine/optimo/machine/machine_state.h"
 
@@ -45,6 +46,7 @@ struct EntryState {
     SimTime begun{0};
     Outputs outputs{};  // what they are there
     int gas_refused = 0;
+    std::vector<WorkTask> works{};  // that go on there: not on the way
     bool halts = false;
   };
   std::optional<Arrival> arrival{};

@@ -18,17 +18,9 @@ constexpr const char* kPlate =
 class StartAtCommand : public StartTest {
  protected:
   StartAtCommand() : StartTest("rml1") {}
-
-  void Observe(const std::string& stream) {
-    MachineMemory memory;
-    memory.programs[1] = Translated(stream);
-    machine = *Machine::Make(family_, parameters(), std::move(memory), "", outside);
-  }
   StepTarget AtByte(const std::string& stream, std::string_view word) const {
     return {.at = {1, 0}, .byte_offset = static_cast<std::int64_t>(stream.find(word))};
   }
-
-  Outside outside;
 };
 
 // LIVE-6.02, LIVE-6.03.
@@ -79,7 +71,7 @@ TEST_F(StartAtCommand, AfterTheEntryNothingIsDifferent) {
 
 // LIVE-6.05: to the top, across at travel speed, spindle on, down at V; LIVE-6.09: marked.
 TEST_F(StartAtCommand, Approaches) {
-  Observe(kPlate);
+  Observe({kPlate});
   const Result<StartPreview> preview = machine->Preview(At1(8));
   ASSERT_TRUE(preview);
   ASSERT_EQ(preview->approach.size(), 2U);  // it stands at the top
@@ -107,7 +99,7 @@ TEST_F(StartAtCommand, Approaches) {
 // LIVE-6.05: one that stands low goes up first; without a spindle that turned there none is
 // started.
 TEST_F(StartAtCommand, GoesUpFirst) {
-  Observe("!MC0;PD100,100;PU300,300;PD400,400;");
+  Observe({"!MC0;PD100,100;PU300,300;PD400,400;"});
   Start();
   GoOn(At(0.9));
   Good(AbortRun{});
@@ -147,7 +139,7 @@ TEST_F(StartAtCommand, GoesOnAsTheWholeRun) {
 
 // LIVE-6.09: HOLD, STOP and SINGLE in the approach; halted at the entry.
 TEST_F(StartAtCommand, IsHaltedInTheApproach) {
-  Observe(kPlate);
+  Observe({kPlate});
   StartAtStep input = At1(8);
   input.halt_at_entry = true;
   Good(input);
@@ -185,6 +177,31 @@ TEST_F(StartAtCommand, IsHaltedInTheApproach) {
   EXPECT_EQ(outside.approach.size(), 1U);
   Good(AbortRun{});
   EXPECT_EQ(state(), MachineState::kIdle);
+}
+
+// LIVE-6.09: whatever keys come in the approach and behind it, it does the same.
+TEST_F(StartAtCommand, IsNotDisturbedByKeys) { StartTest::IsNotDisturbedByKeys({kPlate}, At1(8)); }
+
+// LIVE-6.05: a rotary axis turns on the way across.
+TEST_F(StartAtCommand, TurnsTheRotaryAxis) {
+  const Parameters rotary = *MakeParameters(family_, "mdx-40a-rotary", {});
+  RunSetup setup(rotary);
+  setup.programs[1] = Translated("!MC0;!ZEX1000A90;!ZEX2000A45;");
+  setup.main_program = 1;
+  const std::string now = (*family_.NewStanding(rotary, ""))->Save();
+  const Result<StartPreview> preview =
+      PreviewStart(family_, setup, {.target = {.at = {1, 3}}, .machine_state = now}, {});
+  ASSERT_TRUE(preview);
+  EXPECT_EQ(FirstRefusal(*preview), "none");
+  Outside own;
+  auto run = *family_.NewRun(setup, own);
+  run->Restore(*preview->reach.run->Save());
+  run->enterable()->Enter({.machine_state = now, .halt_at_entry = true});
+  while (run->Advance(run->state().time + At(60.0)) == RunPhase::kRunning) {
+  }
+  EXPECT_THAT(ToDo(DifferencesOf(preview->there, run->enterable()->items())), IsEmpty());
+  EXPECT_NEAR(std::abs(run->state().axes.a_rad), M_PI / 2.0, 1e-9);
+  EXPECT_FALSE(own.approach.empty());
 }
 
 // LIVE-6.04: commands that are none, inside of a list, of a call, of an ESC sequence.

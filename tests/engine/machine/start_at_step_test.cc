@@ -22,16 +22,7 @@ constexpr const char* kSquare =
 
 class StartAt : public StartTest {
  protected:
-  // A machine with another observer.
-  void Observe(const std::vector<std::string>& programs) {
-    MachineMemory memory;
-    for (std::size_t i = 0; i < programs.size(); ++i)
-      memory.programs[static_cast<int>(i) + 1] = Translated(programs[i]);
-    machine = *Machine::Make(family_, parameters(), std::move(memory), "", outside);
-  }
-  const RunState Now() const { return machine->status().run; }
-
-  Outside outside;
+  RunState Now() const { return machine->status().run; }
 };
 
 // LIVE-6.03: one row for each difference, with what is done about it; nothing is done before START.
@@ -184,6 +175,7 @@ TEST_F(StartAt, GoesUpFirst) {
   GoOn(At(260.0));
   EXPECT_THAT(outside.approach, ElementsAre("PTP 300.00 2100.00 -50.00 0.00 0.00",
                                             "LIN 300.00 2100.00 -400.00 0.00 0.00"));
+  EXPECT_EQ(outside.feeds.back(), 25.0);  // SPEED 10 of 500 mm/s, and an override of 50 %
 }
 
 // LIVE-6.09: the run goes on as the whole run does, of every step that may be entered.
@@ -432,6 +424,26 @@ TEST_F(StartAt, TimersHaveWhatTheyHadLeft) {
   }
   EXPECT_EQ(entered->ReadVariable("VI[4]")->text, "1");
 }
+
+// LIVE-6.05, OPT-3.38: what a WORK waits for in the background is looked at from the entry on.
+TEST_F(StartAt, AWorkInTheBackgroundWaitsForTheEntry) {
+  Observe(
+      {"WORKDEF 1,0 (8.,75.,0.,50.)\nCOORD ROBOT\nMOVE (300.,2200.,-80.,0.,0.)\n"
+       "WORK 1,0/ON/END (IL[20])\nVI[2]=1\nVL[1]=IL[87]\nDELAY 1\nVL[2]=IL[87]\n"});
+  Good(ChangeInput{.kind = InputKind::kLogical, .index = 20, .value = 1.0});
+  StartAtStep input = At1(5);
+  input.off_until_work_on = true;
+  input.base = StartBase{.machine_state = StandingState()};  // there IL[20] was 0
+  Good(input);
+  GoOn(At(60.0));
+  EXPECT_EQ(Over().outcome.kind, OutcomeKind::kCompleted);
+  EXPECT_EQ(Value("VL[1]"), "1");
+  EXPECT_EQ(Value("VL[2]"), "0");
+  EXPECT_EQ(std::ranges::count(outside.moves, "signal 1"), 0);
+}
+
+// LIVE-6.09: whatever keys come in the approach and behind it, it does the same.
+TEST_F(StartAt, IsNotDisturbedByKeys) { StartTest::IsNotDisturbedByKeys({kSquare}, At1(14)); }
 
 // A preview that was made for it is used as it is; the same is told whatever the slices.
 TEST_F(StartAt, IsTheSameHoweverItIsDriven) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <random>
 #include <set>
 #include <string>
 #include <utility>
@@ -165,11 +166,59 @@ class StartTest : public MachineTest {
     EXPECT_FALSE((*run)->state().approaching);
     return *std::move(run);
   }
+  void Observe(const std::vector<std::string>& programs) {
+    MachineMemory memory;
+    for (std::size_t i = 0; i < programs.size(); ++i)
+      memory.programs[static_cast<int>(i) + 1] = Translated(programs[i]);
+    outside = Outside();
+    machine = *Machine::Make(family_, parameters(), std::move(memory), "", outside);
+  }
+  // Keys at random times; then it is left alone, and started where it stands.
+  void PressAtRandom(unsigned seed) {
+    std::mt19937 dice(seed);
+    std::uniform_real_distribution<double> pause(0.005, 0.4);
+    std::uniform_int_distribution<int> key(0, 4);
+    const auto press = [&](const MachineInput& input) {
+      const Status done = machine->Apply(input);
+      static_cast<void>(done);  // not every key is one now
+    };
+    while (machine->time() < At(12.0)) {
+      GoOn(machine->time() + At(pause(dice)));
+      const int what = key(dice);
+      if (what == 0) press(StopRun{});
+      if (what == 1) press(HoldRun{});
+      if (what == 2) press(ChangeOverride{50.0 + 90.0 * pause(dice)});
+      if (what > 2) press(ResumeRun{});
+    }
+    press(ChangeOverride{100.0});
+    for (int i = 0; i < 100 && state() != MachineState::kIdle; ++i) {
+      press(ResumeRun{});
+      GoOn(machine->time() + At(20.0));
+    }
+  }
+  void IsNotDisturbedByKeys(const std::vector<std::string>& programs, const StartAtStep& input) {
+    Observe(programs);
+    Good(input);
+    GoOn(At(500.0));
+    const Outside alone = outside;
+    EXPECT_EQ(alone.approach.size(), 2U);
+    for (unsigned seed = 1; seed <= 60; ++seed) {
+      Observe(programs);
+      Good(input);
+      PressAtRandom(seed);
+      EXPECT_EQ(Over().outcome.kind, OutcomeKind::kCompleted) << seed;
+      EXPECT_EQ(outside.approach, alone.approach) << seed;
+      EXPECT_EQ(outside.steps, alone.steps) << seed;
+      EXPECT_FALSE(outside.cuts) << seed;
+    }
+  }
   static StartAtStep At1(int step) {
     return {.program = 1,
             .target = {.at = {1, step}},
             .acknowledged = {"clamps", "table", "tool", "Z0", "origin"}};
   }
+
+  Outside outside;
 };
 
 // Items as "name=value", of all but what a person or nobody sees to.
