@@ -1,6 +1,8 @@
 // What is there before a step (live.md 6): the same as in the whole run, of every step.
 #include "engine/machine/reach_step.h"
 
+#include <fstream>
+#include <iterator>
 #include <map>
 
 #include "tests/engine/machine/start_bed.h"
@@ -30,6 +32,11 @@ std::vector<std::string> NamesOf(const MachineFamily& family) {
   return names;
 }
 
+std::string Published(const std::string& name) {
+  std::ifstream file(std::string(RMLCELL_SHARED_DIR) + "/corpus/" + name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 Traced Look(const Run& run, const std::vector<std::string>& names) {
   Traced traced{.values = {}, .modal = run.modal_values(), .axes = run.state().axes};
   for (const std::string& name : names) traced.values[name] = run.ReadVariable(name)->text;
@@ -40,7 +47,7 @@ class ReachTest : public StartTest {
  protected:
   explicit ReachTest(std::string_view family = "optimo") : StartTest(family) {}
 
-  void EveryStep(const std::vector<std::string>& programs) {
+  void EveryStep(const std::vector<std::string>& programs, bool may_fail = false) {
     const RunSetup setup = Setup(programs);
     const std::vector<std::string> names = NamesOf(family_);
     RunSetup single = setup;
@@ -54,7 +61,7 @@ class ReachTest : public StartTest {
       traced.push_back(Look(**run, names));
       (*run)->Apply({.at = (*run)->state().time, .kind = InputKind::kStart, .value = 1.0});
     }
-    const WholeRun whole = Whole(setup);
+    const WholeRun whole = Whole(setup, may_fail);
     ASSERT_GE(traced.size(), whole.steps.size());
     ASSERT_EQ(heard_single.steps.size(), whole.steps.size());
     for (std::size_t i = 0; i < whole.steps.size(); ++i) {
@@ -62,8 +69,11 @@ class ReachTest : public StartTest {
       const Traced there = Look(*reach.run, names);
       const std::string step = std::to_string(whole.steps[i].target.at.step);
       EXPECT_EQ(there.values, traced[i].values) << step;
-      EXPECT_EQ(there.axes.column, traced[i].axes.column) << step;
-      EXPECT_EQ(there.axes.a_rad, traced[i].axes.a_rad) << step;
+      // A corner that is passed and one that is not round differently.
+      const motion::AxisPose& axes = traced[i].axes;
+      EXPECT_LT((there.axes.column - axes.column).norm(), 1e-9) << step;
+      EXPECT_NEAR(there.axes.a_rad, axes.a_rad, 1e-12) << step;
+      EXPECT_NEAR(there.axes.b_rad, axes.b_rad, 1e-12) << step;
       // A program that is called has its own, up to the step behind it.
       if (i == 0 || whole.steps[i - 1].target.at.program == whole.steps[i].target.at.program) {
         EXPECT_EQ(there.modal, traced[i].modal) << step;
@@ -135,6 +145,25 @@ constexpr const char* kCommands =
 TEST_F(ReachTest, EveryStepOfALoop) { EveryStep({kPasses, kCalled, kFunction}); }
 TEST_F(ReachTest, EveryStepOfACut) { EveryStep({kCut}); }
 TEST_F(MillReach, EveryCommand) { EveryStep({kCommands}); }
+
+// LIVE-6.01: the same of what people published.
+TEST_F(ReachTest, TheCorpus) {
+  if (Published("optimo/sample1.S").empty()) GTEST_SKIP() << "the shared corpus is not here";
+  for (const char* name : {"sample1.S", "sample2-cylind.S", "sample3.S", "ch02-fly.S",
+                           "ch02-hole.S", "ch02-cir.S", "ch03-work1.S", "ch03-work2.S"}) {
+    SCOPED_TRACE(name);
+    EveryStep({Published("optimo/" + std::string(name))}, true);
+  }
+}
+TEST_F(MillReach, TheCorpus) {
+  if (Published("rml1/22-move.rml").empty()) GTEST_SKIP() << "the shared corpus is not here";
+  for (const char* name :
+       {"01-fts_mini_cut.rml", "08-FabMicroISP-brd_cut_microport.rml", "15-output_bis2.rml",
+        "17-3hncholesl.rml", "07-ROUGH_LEFT_EXTRA1.prn", "23-sample-2.rml"}) {
+    SCOPED_TRACE(name);
+    EveryStep({Published("rml1/" + std::string(name))});
+  }
+}
 
 // LIVE-6.01: the time of the run there is that of the whole run, where the machine stands there.
 TEST_F(ReachTest, AtTheTimeOfTheWholeRun) {

@@ -211,6 +211,8 @@ TEST_F(StartAtCommand, IsRefused) {
   ASSERT_TRUE(setup.parameters.Set("SEQUENCES", std::string_view("ALL")));
   const auto why = [&](const StepTarget& target) { return FirstRefusal(PreviewOf(setup, target)); };
   EXPECT_EQ(why({.at = {1, 2}}), "none");
+  EXPECT_EQ(why({.at = {1, 3}}), "none");  // with the call that it stands in
+  EXPECT_EQ(why({.at = {1, 4}}), "none");  // behind that, and with the ESC sequence
   EXPECT_EQ(why(AtByte(stream, "PD200")), "none");
   EXPECT_EQ(PreviewOf(setup, AtByte(stream, "PD200")).reach.target.at.step, 2);
   EXPECT_THAT(
