@@ -45,18 +45,21 @@ std::vector<Error> RefusalsOf(const StepFacts& facts, bool off_until_work_on) {
   return refusals;
 }
 
-std::vector<Error> RefusalsOf(const std::vector<ApproachMotion>& approach) {
+Error RefuseTravel(const OutOfTravel& one, const Detail& motion) {
   constexpr std::array<std::string_view, 5> kAxes = {"X", "Y", "Z", "A", "B"};
+  const std::string unit = one.axis < kFirstTurningAxis ? "mm" : "rad";
+  return Refuse(ErrorCode::kCellApproach,
+                Told("axis", kAxes[static_cast<std::size_t>(one.axis)]) +
+                    (one.at_target ? " of the target" : " on the way") + " of " + motion +
+                    " leaves its travel by " +
+                    Told("excess", one.excess, unit, FixedText(one.excess, 3) + " " + unit));
+}
+
+std::vector<Error> RefusalsOf(const std::vector<ApproachMotion>& approach) {
   std::vector<Error> refusals;
   for (std::size_t n = 0; n < approach.size(); ++n) {
     for (const OutOfTravel& one : approach[n].beyond) {
-      const std::string unit = one.axis < kFirstTurningAxis ? "mm" : "rad";
-      refusals.push_back(
-          Refuse(ErrorCode::kCellApproach,
-                 Told("axis", kAxes[static_cast<std::size_t>(one.axis)]) +
-                     (one.at_target ? " of the target" : " on the way") + " of motion " +
-                     Told("motion", n + 1) + " of the approach leaves its travel by " +
-                     Told("excess", one.excess, unit, FixedText(one.excess, 3) + " " + unit)));
+      refusals.push_back(RefuseTravel(one, "motion " + Told("motion", n + 1) + " of the approach"));
     }
   }
   return refusals;
@@ -97,8 +100,7 @@ std::vector<Error> RefusalsOfFirstMotion(const MachineFamily& family, const RunS
                               .way = ApproachWay::kDirect});
   const WayEnd end = GoUntil(
       **run, [&] { return first.over(); }, limits);
-  if (!first.beyond().empty())
-    return RefusalsOf({{.path = "LIN", .to = (*run)->state().axes, .beyond = first.beyond()}});
+  if (!first.beyond().empty()) return {RefuseTravel(first.beyond().front(), "the first motion")};
   if (end == WayEnd::kFinished && (*run)->outcome().code) {
     return {Refuse(ErrorCode::kCellApproach,
                    "the first motion cannot begin where the machine stands: " +

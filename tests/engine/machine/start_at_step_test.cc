@@ -395,6 +395,8 @@ TEST_F(StartAt, StartsDirectly) {
   EXPECT_EQ(why(3), "none");
   EXPECT_THAT(why(4), HasSubstr("CELL-E9427 the first motion is CIR"));
   EXPECT_THAT(why(6), HasSubstr("CELL-E9427 the first motion is HOLE"));
+  EXPECT_THAT(why(8), HasSubstr("CELL-E9427 Z of the target of the first motion leaves its travel "
+                                "by "));
 }
 
 // LIVE-6.01: of a run that was cut off: the values that it had, and the inputs of now.
