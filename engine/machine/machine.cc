@@ -21,8 +21,8 @@ constexpr bool kNeedsPower =
     std::is_same_v<Input, ResumeRun> || std::is_same_v<Input, Acknowledge> ||
     std::is_same_v<Input, ChangeMode> || std::is_same_v<Input, ChangeOverride> ||
     std::is_same_v<Input, WriteVariable> || std::is_same_v<Input, SetBreakpoints> ||
-    std::is_same_v<Input, SetSimulation> || std::is_same_v<Input, ClearMessage> ||
-    std::is_same_v<Input, PressJog>;
+    std::is_same_v<Input, SetSimulation> || std::is_same_v<Input, StartAtStep> ||
+    std::is_same_v<Input, ClearMessage> || std::is_same_v<Input, PressJog>;
 
 }  // namespace
 

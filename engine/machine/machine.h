@@ -23,6 +23,7 @@
 #include "engine/machine/panel.h"
 #include "engine/machine/run.h"
 #include "engine/machine/standing.h"
+#include "engine/machine/start_preview.h"
 
 namespace rmlcell::machine {
 
@@ -77,12 +78,17 @@ class Machine {
   //   the alarm's own    START and RESUME while there is one
   //   CellNotLive        it is off, or has no such keys
   //   CellDoorOpen       a jog key, with the cover open
+  //   CellStepUnreachable, CellApproach   a start at a step; the detail has the nearest clean steps
   //   CellInvalidArgument, ProgramMissing and the like: what the input names is none
   Status Apply(const MachineInput& input);
 
   const MachineFamily& family() const { return family_; }
   // Inputs, and variables that may be written.
   bool has_inputs() const { return family_.HasVariable(parameters_, "IL[0]"); }
+
+  // What a start at a step would do, and why it would be refused. It takes as long as the run to
+  // the step does; StartAtStep, too. Errors: as Apply, of what the input names.
+  Result<StartPreview> Preview(const StartAtStep& input, const ReachLimits& limits = {}) const;
 
   SimTime time() const { return now_; }
   MachineState state() const;
@@ -145,11 +151,15 @@ class Machine {
   Status Act(const PressJog& input);
   Status Act(const ReleaseJog& input);
   Status Act(const ReleaseJogs& input);
+  Status Act(const StartAtStep& input);  // machine_start_at.cc
 
   StateGuards guards() const;
   Error Refusal(ErrorCode code) const;
   Status MayStart(const StartRun& input) const;
   Status Begin(const StartRun& input, Mode mode, bool by_hand = false);
+  Status MayStartAt(const StartAtStep& input) const;
+  RunSetup SetupTo(const StartAtStep& input) const;
+  Status Enter(const StartAtStep& input, const StartPreview& preview);
   void GoHome(const Outcome& outcome);
   Status MayJog(const JogKey& key) const;
   void AskJog();

@@ -1,16 +1,21 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "engine/machine/inputs.h"
 #include "engine/machine/run_setup.h"
+#include "engine/machine/step_entry.h"
 #include "engine/motion/kinematics/kinematics.h"
 
 namespace rmlcell::machine {
+
+struct StartPreview;  // start_preview.h
 
 // Whoever starts a run. LIVE-2.11
 enum class StartSource {
@@ -107,10 +112,36 @@ struct ReleaseJog {
 // As if every key were released: whoever holds them is not heard any more. LIVE-7.05
 struct ReleaseJogs {};
 
+// As RunSetup has them: what a run began with, and what came while it ran.
+struct StartBase {
+  std::string machine_state{};
+  InputScript inputs{};
+  Mode mode = Mode::kRemote;
+  double override_percent = 100.0;
+};
+
+// A run that begins at a step: the machine goes there first. LIVE-6
+struct StartAtStep {
+  int program = 0;  // the main program
+  StartSource source = StartSource::kConsole;
+  StepTarget target{};
+  ApproachWay way = ApproachWay::kSafe;
+  bool off_until_work_on = false;  // a WORK is ON there: the beam stays off until the next one
+  bool halt_at_entry = false;      // before the step, until RESUME
+  // What the run to the step begins with: that of a run that was cut off. None: the machine as it
+  // stands, with its inputs as they are.
+  std::optional<StartBase> base{};
+  std::set<std::string> acknowledged{};    // items that a person has seen to
+  std::optional<StoredProgram> brought{};  // as StartRun
+  // Of Machine::Preview, of this input on this machine, where nothing has changed since: then
+  // nothing is simulated again. None, in a replay: it is, with the same result.
+  std::shared_ptr<const StartPreview> prepared{};
+};
+
 using MachineInput =
     std::variant<StartRun, ZeroAxes, ResumeRun, HoldRun, StopRun, AbortRun, EmergencyStop,
                  Acknowledge, ChangeMode, ChangeOverride, ChangeInput, MoveDoor, SwitchPower,
                  WriteVariable, SetBreakpoints, SetSimulation, StoreProgram, DeleteProgram,
-                 SetSchedules, ClearMessage, PressJog, ReleaseJog, ReleaseJogs>;
+                 SetSchedules, ClearMessage, StartAtStep, PressJog, ReleaseJog, ReleaseJogs>;
 
 }  // namespace rmlcell::machine

@@ -11,6 +11,7 @@
 #include "engine/machine/machine_input.h"
 #include "engine/machine/machine_note.h"
 #include "engine/machine/run.h"
+#include "engine/machine/step_entry.h"
 
 namespace rmlcell::machine {
 
@@ -32,13 +33,22 @@ enum class MachineState {
 inline constexpr int kMachineStates = static_cast<int>(MachineState::kLost) + 1;
 std::string_view Name(MachineState state);  // "HELD"
 
+// Of a run that begins at a step.
+struct RunEntry {
+  StepTarget at{};
+  SimTime run_time{0};  // of the run where it begins: what lies before was not done by it
+
+  bool operator==(const RunEntry&) const = default;
+};
+
 // A run that is open, or the last one that was.
 struct RunNote {
   std::int64_t number = 0;  // counts from 1
   int program = 0;
   StartSource source = StartSource::kConsole;
-  SimTime begun{0};      // of the machine: time of the run counts from here
-  bool by_hand = false;  // no program of anybody: the axes find their reference
+  SimTime begun{0};                   // of the machine: time of the run counts from here
+  bool by_hand = false;               // no program of anybody: the axes find their reference
+  std::optional<RunEntry> entered{};  // then `begun` lies before it was begun, by that time
 };
 
 // How it is now.

@@ -46,7 +46,8 @@ struct MotionDone {
       0.0;              // feed rate asked for, override included; 0: as fast as the axes can
   bool in_work = true;  // false: a cut or plunge of a tool that nowhere takes material off
   bool beam_on = false;
-  PowerBySpeed power{};  // laser: in force while the beam is on
+  PowerBySpeed power{};   // laser: in force while the beam is on
+  bool approach = false;  // to the step where the run begins: of no program, and never a cut
 };
 
 // A MOVE (or coordinate set) carried out: where the tool now is.
@@ -61,6 +62,7 @@ struct MoveDone {
   double feed_mm_s = 0.0;   // speed limit of the motion
   std::string_view path{};  // "LIN", "CIR", "ZERO_Z", "PU" ...
   bool programmed = true;   // false: the machine went there by a procedure of its own
+  bool approach = false;    // that of a run which begins at a step
 };
 
 // A state that outsiders can see: an output, the beam, a spindle.

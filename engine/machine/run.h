@@ -17,6 +17,8 @@
 
 namespace rmlcell::machine {
 
+class EnterableRun;  // step_entry.h
+
 enum class RunPhase {
   kRunning,   // `until` was reached
   kHalted,    // waits for START; time stands until a key or input comes
@@ -37,6 +39,7 @@ struct RunState {
   bool spindle_on = false;
   bool zeroed = true;  // the axes have their reference
   bool door_open = false;
+  bool approaching = false;               // to the step where the run begins (step_entry.h)
   std::optional<HaltReason> halted_by{};  // in kHalted
   // Program zero in the machine frame, where a program has one: what X 0, Y 0, Z 0 mean now.
   std::optional<motion::MachinePoint> work_origin{};
@@ -115,6 +118,9 @@ class Run {
   virtual std::unique_ptr<RunSnapshot> Save() const = 0;
   // Precondition: the snapshot comes from this run, or one made from an equal setup.
   virtual void Restore(const RunSnapshot& snapshot) = 0;
+
+  // For who lets it begin at a step. Null: the family has no such start.
+  virtual EnterableRun* enterable() { return nullptr; }
 };
 
 // Those of `names` that the run has, in this order.

@@ -3,10 +3,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/machine/hand_motion.h"
 #include "engine/machine/inputs.h"
 #include "engine/machine/run.h"
+#include "engine/machine/step_entry.h"
 #include "engine/motion/geometry/pose.h"
 
 namespace rmlcell::machine {
@@ -44,6 +46,9 @@ class Standing {
 
   // Off and on again: what the machine keeps only while it has power is as it comes.
   virtual void CyclePower() = 0;
+
+  // All that it keeps, by the names of EnterableRun::items.
+  virtual std::vector<StateItem> items() const { return {}; }
 
   virtual std::string Save() const = 0;
 };

@@ -31,10 +31,18 @@ class MillRun::Listener final : public DeviceListener {
   void OnCommand(const CommandPlace& command) override {
     State& state = run_.state_;
     const SourceSpan where = state.lines.At(run_.stream(), command.offset, 0);
+    const machine::Place before = state.place;
     state.place = {.program = run_.setup_.main_program,
                    .step = static_cast<int>(command.number),
                    .line = where.line,
                    .byte_offset = command.offset};
+    if (run_.step_watcher_ != nullptr) {
+      machine::StepFacts facts = run_.FactsBefore(state.place);
+      // Behind a command that was cut off by ESC.K no run can halt.
+      facts.inside_command =
+          before.step + 1 != state.place.step || before.step != state.command_over;
+      run_.step_watcher_->OnStepDue(facts);
+    }
     run_.observer_.OnStep(state.now, state.place, RowOf(command.op).name);
   }
 
@@ -182,6 +190,8 @@ void MillRun::Proceed(std::size_t sent_max) {
     s.wait_left = SimTime::zero();
     return;
   }
+  if (s.approaching) return GoOnApproaching();
+  if (s.halts.entry == 1 && s.sender.sent() == 0 && !s.reached) return HaltAtTarget();
   if (!s.device.actions().empty()) {
     const Action action = s.device.actions().front();
     if (action.kind == Action::Kind::kPause) {
@@ -197,10 +207,12 @@ void MillRun::Proceed(std::size_t sent_max) {
   const std::uint64_t done = s.device.commands_done();
   if (done != s.commands_seen) {
     s.commands_seen = done;
+    s.command_over = s.place.step;
     if (setup_.budget.steps > 0 && done > setup_.budget.steps) {
       End(OutcomeKind::kBudgetExceeded, ErrorCode::kCellStepBudget);
       return;
     }
+    if (s.halts.EntersAfter(s.place.step)) return HaltAtTarget();
     if (s.halts.After(s.place.step)) {
       const bool breaks = s.halts.BreaksAfter(s.place.step);
       const HaltCause cause = breaks ? HaltCause::kBreakpoint : HaltCause::kSingle;
@@ -352,15 +364,15 @@ void MillRun::ChangeOverride(double percent) {
 
 machine::HaltReason MillRun::ReasonOf(HaltCause cause) {
   using enum machine::HaltReason;
-  static constexpr std::array<machine::HaltReason, 6> kReason = {kHold, kProgram, kHold,
-                                                                 kStop, kSingle,  kBreakpoint};
+  static constexpr std::array<machine::HaltReason, 7> kReason = {
+      kHold, kProgram, kHold, kStop, kSingle, kBreakpoint, kBreakpoint};
   return kReason[static_cast<std::size_t>(cause)];
 }
 
 void MillRun::BeginHalt(HaltCause cause) {
   State& s = state_;
-  static constexpr std::array<std::string_view, 6> kWhy = {"",     "!NR",    "HOLD",
-                                                           "STOP", "SINGLE", "BREAKPOINT"};
+  static constexpr std::array<std::string_view, 7> kWhy = {"",       "!NR",        "HOLD", "STOP",
+                                                           "SINGLE", "BREAKPOINT", "ENTRY"};
   std::string_view why = kWhy[static_cast<std::size_t>(cause)];
   if (cause == HaltCause::kPause && s.device.actions().front().outside) why = "OVER_AREA";
   s.halt = cause;
@@ -391,7 +403,7 @@ void MillRun::EndHalt() {
                       .end = s.now,
                       .place = s.place,
                       .kind = machine::WaitKind::kOperator});
-    s.physical.OnHalt(ToSeconds(s.now - s.halted_at));
+    if (!s.approaching) s.physical.OnHalt(ToSeconds(s.now - s.halted_at));
   }
   s.halt = HaltCause::kNone;
   s.phase = RunPhase::kRunning;
@@ -418,11 +430,12 @@ void MillRun::Freeze() {
   }
   s.busy = Busy::kNothing;
   s.ride.Finish();
-  if (s.device.spindle_turns()) EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
+  if (SpindleTurns()) EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
 }
 
 bool MillRun::SpindleTurns() const {
-  return state_.device.spindle_turns() && state_.outcome.kind == OutcomeKind::kCompleted;
+  return state_.device.spindle_turns() && !state_.spindle_to_come &&
+         state_.outcome.kind == OutcomeKind::kCompleted;
 }
 
 void MillRun::CloseWith(OutcomeKind kind, std::optional<ErrorCode> code, Detail detail) {
@@ -446,6 +459,7 @@ machine::RunState MillRun::state() const {
   }
   state.override_percent = s.override_percent;
   state.spindle_on = SpindleTurns();
+  state.approaching = s.approaching;
   if (s.halt != HaltCause::kNone) state.halted_by = ReasonOf(s.halt);
   state.work_origin =
       motion::MachinePoint(profile().origin_x, profile().origin_y, s.device.registers().surface_z) /

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/machine/run.h"
+#include "engine/machine/step_entry.h"
 #include "engine/motion/ride/path_ride.h"
 #include "engine/rml1/device.h"
 #include "engine/rml1/look_ahead.h"
@@ -28,7 +31,7 @@ namespace rmlcell::rml1 {
 // wait in progress end, and where the tool is too fast for that as many motions as it takes; STOP
 // brakes on the path at once and goes on from there; an emergency stop freezes the run, which then
 // ends as STOPPED. Errors of the program never end it (RML1-6.08).
-class MillRun final : public machine::Run {
+class MillRun final : public machine::Run, public machine::EnterableRun {
  public:
   // Errors: CellUnimplemented for a dry run up to a step or mode REPEAT, which a mill does not
   // have; CellParameterRange; CellBadText for a machine state that is none.
@@ -52,13 +55,24 @@ class MillRun final : public machine::Run {
   std::unique_ptr<machine::RunSnapshot> Save() const override;
   void Restore(const machine::RunSnapshot& snapshot) override;
 
+  // run_entry.cc
+  machine::EnterableRun* enterable() override { return this; }
+  Status HaltBefore(const machine::StepTarget& target) override;
+  void ForgetTarget() override;
+  const std::optional<machine::StepFacts>& reached() const override { return state_.reached; }
+  void WatchSteps(machine::StepWatcher* watcher) override { step_watcher_ = watcher; }
+  std::vector<machine::StateItem> items() const override;
+  std::vector<machine::ApproachMotion> PlanApproach(std::string_view machine_state,
+                                                    machine::ApproachWay way) const override;
+  void Enter(const machine::EntryOrder& order) override;
+
  private:
   // Bytes of the stream that one call of Advance reads at most, whatever time they take, and reads
   // ahead at most, so that whoever runs a file of nonsense hears of it every tenth of a second.
   static constexpr std::size_t kBytesPerAdvance = std::size_t{1} << 20;
 
   enum class Busy : std::uint8_t { kNothing, kMotion, kWait };
-  enum class HaltCause : std::uint8_t { kNone, kPause, kHold, kStop, kSingle, kBreakpoint };
+  enum class HaltCause : std::uint8_t { kNone, kPause, kHold, kStop, kSingle, kBreakpoint, kEntry };
 
   // The motion in progress. It is ridden in legs: one, but for a STOP or an override on the way.
   // Between two legs, and until the first is known, none is under way: the tool passes there.
@@ -66,6 +80,7 @@ class MillRun final : public machine::Run {
     Action action;
     Point from;
     bool first_leg = true;
+    bool approach = false;
     LookAhead::Leg leg;
   };
 
@@ -109,6 +124,15 @@ class MillRun final : public machine::Run {
     HaltCause halt_wanted = HaltCause::kNone;  // at the next standstill
     SimTime wait_left{0};                      // of a wait that STOP interrupted
     std::uint64_t commands_seen = 0;
+    int command_over = 0;  // the last one that is over
+
+    std::optional<machine::StepFacts> reached;  // it halted before the command of halts.entry
+    // The way to the command where the run begins, while approaching: what is to come of it.
+    bool approaching = false;
+    std::deque<Action> approach;
+    bool halts_at_entry = false;
+    bool step_over = false;        // a motion of it, after which SINGLE halts
+    bool spindle_to_come = false;  // the device has it turning, and it does not yet
   };
   class Snapshot;
   class Listener;
@@ -117,6 +141,11 @@ class MillRun final : public machine::Run {
           machine::RunObserver& observer);
 
   void PutTool();
+
+  // run_entry.cc
+  machine::StepFacts FactsBefore(const machine::Place& place) const;
+  void HaltAtTarget();
+  void GoOnApproaching();
 
   // run.cc: the course of time.
   SimTime NextInputTime() const;
@@ -162,6 +191,7 @@ class MillRun final : public machine::Run {
   machine::Bytes program_;
   std::size_t released_ = 0;  // bytes that were read up to the last release
   machine::RunObserver& observer_;
+  machine::StepWatcher* step_watcher_ = nullptr;
   State state_;
 };
 

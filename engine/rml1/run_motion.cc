@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/rml1/carriage.h"
+#include "engine/rml1/entry.h"
 #include "engine/rml1/run.h"
 
 namespace rmlcell::rml1 {
@@ -44,6 +45,7 @@ void MillRun::BeginMotion(const Action& action) {
   s.motion.action = action;
   s.motion.from = s.tool;
   s.motion.first_leg = true;
+  s.motion.approach = s.approaching;
   s.ride.Leave();
   s.busy = Busy::kMotion;
   s.busy_from = s.busy_until = s.now;
@@ -95,7 +97,9 @@ void MillRun::EndWait() {
   State& s = state_;
   s.busy = Busy::kNothing;
   const double seconds = ToSeconds(s.now - s.busy_from);
-  if (s.wait_kind == WaitKind::kDwell) {
+  if (s.approaching) {
+    // no work of the program
+  } else if (s.wait_kind == WaitKind::kDwell) {
     s.physical.OnDwell(seconds, s.device.registers());
   } else {
     s.physical.OnSpindleWait(seconds, s.device.registers());
@@ -141,7 +145,10 @@ void MillRun::EndMotion(double speed) {
                                       s.tool.z - s.device.registers().z0},
                     .rotary_a = s.tool.a,
                     .feed_mm_s = s.motion.leg.feed_mm_s,
-                    .path = RowOf(s.device.command().op).name});
+                    .path = s.motion.approach ? NameOfApproach(s.motion.action)
+                                              : RowOf(s.device.command().op).name,
+                    .programmed = !s.motion.approach,
+                    .approach = s.motion.approach});
 }
 
 // The leg is over, or as much of it as was ridden.
@@ -155,24 +162,28 @@ void MillRun::ReportLeg(double travelled) {
   const Point from = m.first_leg ? m.from : ToolAt(path.tip_from());
   const bool to_end = leg.ends_move && travelled >= path.length();
   const Point to = to_end ? m.action.to : ToolAt(path.TipAt(travelled));
-  s.physical.OnRide({.from = from,
-                     .to = to,
-                     .use = m.action.use,
-                     .length_mm = (path.At(travelled).point - path.from().point).norm(),
-                     .time_s = ToSeconds(s.now - s.busy_from),
-                     .first = m.first_leg,
-                     .rapid = m.action.rapid,
-                     .chain = m.action.chain,
-                     .spindle_turns = s.device.spindle_turns()},
-                    s.device.registers(), s.device.command());
-  observer_.OnMotion({.start = s.busy_from,
-                      .end = s.now,
-                      .place = s.place,
-                      .use = m.action.use,
-                      .motion = &leg,
-                      .travelled = travelled,
-                      .programmed_mm_s = m.action.rapid ? 0.0 : m.leg.feed_mm_s,
-                      .in_work = Physical::IsInWork(m.action.use, from, to, s.device.registers())});
+  if (!m.approach) {
+    s.physical.OnRide({.from = from,
+                       .to = to,
+                       .use = m.action.use,
+                       .length_mm = (path.At(travelled).point - path.from().point).norm(),
+                       .time_s = ToSeconds(s.now - s.busy_from),
+                       .first = m.first_leg,
+                       .rapid = m.action.rapid,
+                       .chain = m.action.chain,
+                       .spindle_turns = s.device.spindle_turns()},
+                      s.device.registers(), s.device.command());
+  }
+  observer_.OnMotion(
+      {.start = s.busy_from,
+       .end = s.now,
+       .place = s.place,
+       .use = m.action.use,
+       .motion = &leg,
+       .travelled = travelled,
+       .programmed_mm_s = m.action.rapid ? 0.0 : m.leg.feed_mm_s,
+       .in_work = !m.approach && Physical::IsInWork(m.action.use, from, to, s.device.registers()),
+       .approach = m.approach});
   s.motion.first_leg = false;
 }
 

@@ -16,9 +16,13 @@ namespace rmlcell::rml1 {
 struct CommandHalts {
   bool after_each = false;         // mode SINGLE
   std::vector<int> breakpoints{};  // numbers of commands, in order
+  int entry = 0;                   // before this one; 0: none
 
   bool BreaksAfter(int command) const { return std::ranges::binary_search(breakpoints, command); }
-  bool After(int command) const { return after_each || BreaksAfter(command); }
+  bool EntersAfter(int command) const { return entry > 0 && command + 1 == entry; }
+  bool After(int command) const {
+    return after_each || BreaksAfter(command) || EntersAfter(command);
+  }
 };
 
 // Reads the stream of a run ahead of its tool, through a device of its own: which motions come, and
@@ -28,6 +32,9 @@ class Scout {
  public:
   // `device` as the run's own before the first byte.
   explicit Scout(Device device) : device_(std::move(device)) {}
+  // Between two commands, where all that the device did is carried out.
+  Scout(Device device, const Sender& sender)
+      : device_(std::move(device)), sender_(sender), commands_seen_(device_.commands_done()) {}
 
   // As far as the next motion, or the next place where the tool must stand. False: `sent_max` bytes
   // of the stream were read before that, of which sent() tells. Not behind the end of the stream.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/rml1/machine_state.h"
+#include "engine/rml1/state_items.h"
 #include "engine/rml1/timing.h"
 #include "engine/rml1/variables.h"
 
@@ -99,6 +100,10 @@ void MillStanding::Rest() {
 }
 
 void MillStanding::CyclePower() { device_ = Device(*profile_); }
+
+std::vector<machine::StateItem> MillStanding::items() const {
+  return ItemsOf(device_, *profile_, tool(), "not known");
+}
 
 std::string MillStanding::Save() const {
   return WriteMachineState({.registers = device_.registers(), .at = device_.carriage().physical()});

@@ -25,6 +25,7 @@ class MillStanding final : public machine::Standing {
   void MoveTo(const motion::AxisPose& axes) override;
   void Rest() override;        // the spindle stands
   void CyclePower() override;  // a new machine: RML1-7.08
+  std::vector<machine::StateItem> items() const override;
   std::string Save() const override;
 
  private:

@@ -111,7 +111,7 @@ PUBLIC = {
     PLANNER: ["planner.h", "feed_steps.h"],
     RIDE: ["trajectory.h", "interruption.h", "ride_protocol.h", "path_ride.h"],
     JOG: ["jog_drive.h"],
-    "engine/machine": ["bytes.h", "driver.h", "family.h", "hand_motion.h", "language_word.h", "machine.h", "machine_input.h", "machine_note.h", "machine_states.h", "machine_status.h", "panel.h", "run.h", "standing.h", "virtual_driver.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "variable.h", "verdict.h",
+    "engine/machine": ["bytes.h", "driver.h", "family.h", "hand_motion.h", "language_word.h", "machine.h", "machine_input.h", "machine_note.h", "machine_states.h", "machine_status.h", "panel.h", "run.h", "standing.h", "virtual_driver.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "variable.h", "verdict.h", "reach_step.h", "start_preview.h", "step_entry.h",
                        "tools.h", "editing.h", "run_setup.h", "outcome.h", "inputs.h", "program_file.h"],
     "engine/rml1": ["rml1_family.h", "action.h", "clipping.h", "command_reader.h", "command_table.h", "device.h", "figures.h", "finding.h",
                     "number.h", "physical.h", "profile.h", "programmed.h", "registers.h", "verdict_rules.h"],

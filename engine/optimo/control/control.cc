@@ -402,6 +402,7 @@ machine::RunState Control::Snapshot() const {
   state.beam_on = actuators_.beam_on();
   state.zeroed = s_.actuators.zeroed;
   state.door_open = actuators_.door_open();
+  state.approaching = s_.entry.arrival.has_value();
   if (now().phase == RunPhase::kHalted) state.halted_by = s_.halts.halted_by;
   return state;
 }

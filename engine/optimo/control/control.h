@@ -48,6 +48,15 @@ class Control final : private RideListener {
   std::vector<machine::Figure> figures() const;
   void Restore(const ControlState& state) { s_ = state; }
 
+  // --- control_entry.cc: a run that begins at a step; machine::EnterableRun has what each does ---
+  Status HaltBefore(const machine::StepTarget& target);
+  void ForgetTarget();
+  void WatchSteps(machine::StepWatcher* watcher) { step_watcher_ = watcher; }
+  std::vector<machine::StateItem> Items() const;
+  std::vector<machine::ApproachMotion> PlanApproach(const MachineState& now,
+                                                    machine::ApproachWay way) const;
+  void Enter(const MachineState& now, const machine::EntryOrder& order);
+
  private:
   // --- control.cc: the course of time ---
   bool MayFetch() const;
@@ -61,7 +70,9 @@ class Control final : private RideListener {
   void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, Detail detail);
   void OnMark(std::uint64_t tag) override { effects_.OnMark(tag); }
   void OnMotionBegins(std::uint64_t tag) override { watch_.OnMotionBegins(tag); }
-  void OnMotionTold(const machine::MotionDone& done) override { process_watch_.OnMotion(done); }
+  void OnMotionTold(const machine::MotionDone& done) override {
+    if (!done.approach) process_watch_.OnMotion(done);
+  }
 
   // --- control_fetch.cc: one instruction after the other ---
   void Fetch();
@@ -75,6 +86,15 @@ class Control final : private RideListener {
   void EndModule();
   void TellLeftOn(const Processes& processes);
 
+  // --- control_entry.cc ---
+  machine::StepFacts FactsAt(const machine::Place& here) const;
+  bool HaltsBefore(const Instruction& i, const machine::Place& here);
+  void NoteStep(const machine::Place& here);
+  void NoteTimedGosub();
+  void GoOnApproaching();
+  Status Append(const ApproachLeg& leg);
+  void ArriveAtEntry();
+
   Situation& now() { return s_.situation; }
   const Situation& now() const { return s_.situation; }
 
@@ -82,6 +102,7 @@ class Control final : private RideListener {
   const machine::RunSetup setup_;
   const SystemCycle cycle_;
   ControlState s_;
+  machine::StepWatcher* step_watcher_ = nullptr;
 
   // From the machine up: each knows those before it.
   Telling telling_;

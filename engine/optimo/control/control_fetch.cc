@@ -31,6 +31,7 @@ bool IsAt(const std::optional<machine::ProgramStep>& step, const machine::Place&
 
 // Carries out the next instruction, or finds out that the machine must stand first.
 void Control::Fetch() {
+  if (s_.entry.arrival) return GoOnApproaching();
   const std::uint32_t at = counter_.index().SkipDeclares(counter_.frame().next);
   const bool at_end = at >= counter_.module().instructions.size();
   if (halts_.due()) {
@@ -38,9 +39,10 @@ void Control::Fetch() {
     const bool over = at_end && counter_.call_level() == 1 && !counter_.in_function();
     if (halts_.HaltHere(over)) return;
   }
-  if (!ride_.passing() && !waits_.condition_met()) {
+  if (!ride_.passing() && !waits_.condition_met() && !s_.entry.reached) {
     if (const std::optional<int> label = counter_.TakeDueGosub()) {
       if (const Status made = counter_.Gosub(*label); !made) Raise(made.error());
+      NoteTimedGosub();
       return;
     }
   }
@@ -64,12 +66,14 @@ void Control::Fetch() {
   }
   now().place = here;
   s_.op = i.op;
+  if (HaltsBefore(i, here)) return;
   if (!MayCarryOut(i)) return;
   const bool polls =
       i.reads_machine && i.op != Op::kMove && !waits_.condition_met() && !now().simulating();
   if (polls && waits_.PollingTakesTime(here.program, at)) return;
   if (!waits_.condition_met()) {
     waits_.BeginInstruction();
+    NoteStep(here);
     telling_.observer().OnStep(now().now, now().place, Describe(i.op).name);
     halts_.BeginStep(here);
   }
@@ -108,6 +112,7 @@ bool Control::MayCarryOut(const Instruction& i) {
   if (!passing && !ride_.busy()) return true;
   if (passing && i.op == Op::kCoord && static_cast<CoordType>(i.choice) != counter_.modal().coord) {
     // A failing instruction is an executed step like any other.
+    NoteStep(now().place);
     telling_.observer().OnStep(now().now, now().place, Describe(i.op).name);
     ++s_.steps;
     Raise({ErrorCode::kFlyBeforeCoord, "COORD changes the coordinate type after a /FLY move", {}});

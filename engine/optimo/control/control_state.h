@@ -7,6 +7,7 @@
 #include "engine/optimo/control/actuators.h"
 #include "engine/optimo/control/alarms.h"
 #include "engine/optimo/control/data_access.h"
+#include "engine/optimo/control/entry.h"
 #include "engine/optimo/control/halts.h"
 #include "engine/optimo/control/move_watch.h"
 #include "engine/optimo/control/moves.h"
@@ -47,6 +48,7 @@ struct ControlState {
   HaltState halts{};
   MoveState moves{};
   AlarmState alarms{};
+  EntryState entry{};
 
   std::optional<machine::ProgramStep> simul{};  // SIMUL: arms the next start, OPT-6.16
   Op op = Op::kInvalid;                         // in execution, as it is shown

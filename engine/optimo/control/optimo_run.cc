@@ -28,4 +28,17 @@ void OptimoRun::Restore(const machine::RunSnapshot& snapshot) {
   control_.Restore(own->state);
 }
 
+std::vector<machine::ApproachMotion> OptimoRun::PlanApproach(std::string_view machine_state,
+                                                             machine::ApproachWay way) const {
+  const Result<MachineState> now = DecodeMachineState(machine_state);
+  RMLCELL_CHECK(now);
+  return control_.PlanApproach(*now, way);
+}
+
+void OptimoRun::Enter(const machine::EntryOrder& order) {
+  const Result<MachineState> now = DecodeMachineState(order.machine_state);
+  RMLCELL_CHECK(now);
+  control_.Enter(*now, order);
+}
+
 }  // namespace rmlcell::optimo

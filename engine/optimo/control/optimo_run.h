@@ -3,12 +3,13 @@
 #include <memory>
 
 #include "engine/machine/run.h"
+#include "engine/machine/step_entry.h"
 #include "engine/optimo/control/control.h"
 
 namespace rmlcell::optimo {
 
 // A run of the control behind the interface of all machines.
-class OptimoRun final : public machine::Run {
+class OptimoRun final : public machine::Run, public machine::EnterableRun {
  public:
   OptimoRun(OptimoParameters parameters, machine::RunSetup setup, machine::RunObserver& observer)
       : parameters_(parameters), control_(std::move(parameters), std::move(setup), observer) {}
@@ -38,6 +39,21 @@ class OptimoRun final : public machine::Run {
   }
   std::unique_ptr<machine::RunSnapshot> Save() const override;
   void Restore(const machine::RunSnapshot& snapshot) override;
+
+  machine::EnterableRun* enterable() override { return this; }
+  Status HaltBefore(const machine::StepTarget& target) override {
+    return control_.HaltBefore(target);
+  }
+  void ForgetTarget() override { control_.ForgetTarget(); }
+  const std::optional<machine::StepFacts>& reached() const override {
+    return control_.state().entry.halted;
+  }
+  void WatchSteps(machine::StepWatcher* watcher) override { control_.WatchSteps(watcher); }
+  std::vector<machine::StateItem> items() const override { return control_.Items(); }
+  std::vector<machine::ApproachMotion> PlanApproach(std::string_view machine_state,
+                                                    machine::ApproachWay way) const override;
+  bool may_enter_directly() const override { return true; }
+  void Enter(const machine::EntryOrder& order) override;
 
  private:
   const OptimoParameters parameters_;

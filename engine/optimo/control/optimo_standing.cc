@@ -6,6 +6,7 @@
 
 #include "engine/motion/kinematics/kinematics.h"
 #include "engine/optimo/control/modal_values.h"
+#include "engine/optimo/control/state_items.h"
 #include "engine/optimo/machine/situation.h"
 
 namespace rmlcell::optimo {
@@ -70,6 +71,13 @@ void OptimoStanding::WriteVariable(std::string_view name, double value) {
 
 std::vector<machine::ModalValue> OptimoStanding::modal_values() const {
   return ModalValuesOf(s_.tool, s_.work_offset);
+}
+
+// How high stands what is on the table nobody but a person knows.
+std::vector<machine::StateItem> OptimoStanding::items() const {
+  std::vector<machine::StateItem> items = ItemsOf(s_);
+  items.push_back({"clamps", "not known", machine::StartAction::kAsk});
+  return items;
 }
 
 void OptimoStanding::Apply(const machine::InputChange& input) {

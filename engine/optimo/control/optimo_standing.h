@@ -27,6 +27,7 @@ class OptimoStanding final : public machine::Standing {
   // No reference, no TCP, no BREAK and no SIMUL; outputs and images are 0, and what a program has
   // counted stays. OPT-4.68, OPT-6.08, OPT-6.30, OPT-7.63
   void CyclePower() override;
+  std::vector<machine::StateItem> items() const override;
   std::string Save() const override { return EncodeMachineState(s_); }
 
  private:

@@ -59,6 +59,10 @@ constexpr std::array kTable = {
     Number("MECH_ZERO_Z", "mm", 0, -100'000, 100'000, "mechanical zero, column Z", "OPT-B.60"),
     Number("MECH_ZERO_A", "rad", 0, -1000, 1000, "mechanical zero, A", "OPT-B.60"),
     Number("MECH_ZERO_B", "rad", 0, -1000, 1000, "mechanical zero, B", "OPT-B.60"),
+    Number(
+        "SAFE_Z", "mm", -50, -100'000, 100'000,
+        "Z of the column above all that stands on the table: a start at a step goes across there",
+        "LIVE-6.05"),
     Number("CYCLE", "s", 0.048, 0.001, 1, "system cycle: OA[0], sampling of conditions",
            "OPT-7.69"),
     Number("SETTLE", "s", 0.048, 0, 1, "standstill after a MOVE without /FLY", "OPT-B.20"),
@@ -139,6 +143,7 @@ OptimoParameters Resolve(const machine::Parameters& parameters) {
   made.head_length_mm = parameters.Number("HEAD_LENGTH");
   made.home = PoseOf(PerAxis(parameters, "HOME_", ""));
   made.mechanical_zero = PoseOf(PerAxis(parameters, "MECH_ZERO_", ""));
+  made.safe_z_mm = parameters.Number("SAFE_Z");
   made.cycle_s = parameters.Number("CYCLE");
   made.coord_default =
       parameters.Word("COORD_DEFAULT") == "ABSOL" ? CoordType::kAbsol : CoordType::kRobot;

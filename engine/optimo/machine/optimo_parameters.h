@@ -20,6 +20,7 @@ struct OptimoParameters {
   double head_length_mm = 300.0;
   motion::AxisPose home;
   motion::AxisPose mechanical_zero;
+  double safe_z_mm = -50.0;  // of the column; LIVE-6.05
   double cycle_s = 0.048;
   CoordType coord_default = CoordType::kRobot;
   PathType path_default = PathType::kPtp;

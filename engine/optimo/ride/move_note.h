@@ -18,6 +18,7 @@ struct MoveNote {
   PathType path = PathType::kPtp;
   bool last = true;  // of its MOVE; false: the lead of a hole
   bool fly = false;
+  bool approach = false;  // to the step where the run begins; LIVE-6.09
   motion::MoveCommand::Kind kind = motion::MoveCommand::Kind::kContour;
   double speed_percent = 0.0;  // as programmed; for a change of the override on the way
   double accel_fraction = 1.0;

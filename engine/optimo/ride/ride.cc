@@ -133,8 +133,10 @@ void Ride::TellMotion(SimTime until) {
       .travelled = active.PlaceAt(until),
       .profile_start_s = ToSeconds(active.told - active.start),
       .programmed_mm_s = s_.note.feed_mm_s,
+      .in_work = !s_.note.approach,
       .beam_on = beam_.on(),
-      .power = beam_.power()};
+      .power = beam_.power(),
+      .approach = s_.note.approach};
   listener_.OnMotionTold(done);
   telling_.observer().OnMotion(done);
   active.told = until;
@@ -170,7 +172,9 @@ std::optional<std::uint64_t> Ride::Arrive() {
                               .program_point = s_.note.program_point,
                               .rotary_a = s_.note.program_a,
                               .feed_mm_s = s_.note.feed_mm_s,
-                              .path = NameOfPath(s_.note.path)});
+                              .path = NameOfPath(s_.note.path),
+                              .programmed = !s_.note.approach,
+                              .approach = s_.note.approach});
   return done.motion.tag;
 }
 

@@ -51,6 +51,9 @@ class Travel {
   Result<std::vector<BeyondTravel>> Look(const motion::PathPiece& path,
                                          const machine::Place& place);
 
+  // By what the motion leaves the travel. Nobody is told.
+  std::vector<BeyondTravel> BeyondTravelOf(const motion::PathPiece& path) const;
+
   // Now: where the motion begins, or where it is refused.
   void TellViolations(const machine::Place& place, const std::vector<BeyondTravel>& beyond);
 
@@ -62,8 +65,6 @@ class Travel {
   void Judge(machine::Outcome& outcome) const;
 
  private:
-  std::vector<BeyondTravel> BeyondTravelOf(const motion::PathPiece& path) const;
-
   TravelState& s_;
   const Situation& situation_;
   const OptimoParameters& parameters_;

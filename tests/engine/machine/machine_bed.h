@@ -56,7 +56,7 @@ class MachineTest : public testing::Test {
     const std::string name = family_.info().id == "optimo" ? "a.S" : "a.rml";
     Translation made =
         family_.Translate({.name = name, .bytes = text}, parameters(), {.advice = false});
-    EXPECT_TRUE(made.ok) << text;
+    EXPECT_TRUE(made.ok) << text << (made.diagnostics.empty() ? "" : made.diagnostics[0].detail);
     return {.name = name, .object = Bytes::Of(ObjectOf(std::move(made), text))};
   }
   Parameters parameters() const {

@@ -56,6 +56,7 @@ TEST(MachineRules, StandardParameters) {
                                                     {"MECH_ZERO_Z", 0},
                                                     {"MECH_ZERO_A", 0},
                                                     {"MECH_ZERO_B", 0},
+                                                    {"SAFE_Z", -50},
                                                     {"CYCLE", 0.048},
                                                     {"SETTLE", 0.048},
                                                     {"GAS_CHANNELS", 2},
@@ -112,7 +113,7 @@ TEST(MachineRules, EachParameterHasItsPlace) {
       {"VMAX", 61},        {"AMAX", 62},       {"JMAX", 163},         {"SETTLE", 0.25},
       {"HEAD_LENGTH", 65}, {"CYCLE", 0.064},   {"OBJECT_LIMIT", 201}, {"EXECUTABLE_LIMIT", 202},
       {"CMOS_SIZE", 2003}, {"GOSUB_DEPTH", 5}, {"CALL_TIME", 1.5},    {"LASER_POWER", 204},
-      {"GAS_CHANNELS", 3}};
+      {"GAS_CHANNELS", 3}, {"SAFE_Z", -71}};
   for (const auto& [name, value] : figures) EXPECT_TRUE(p.Set(name, value).ok()) << name;
   for (const char* name : {"TEACH_SIM", "ROTARY_TABLE"}) {
     EXPECT_TRUE(p.Set(name, std::string_view("ON")).ok());

@@ -57,6 +57,7 @@ constexpr Range kRanges[] = {{"VMAX", 1, 2000},
                              {"MECH_ZERO_Z", -100'000, 100'000},
                              {"MECH_ZERO_A", -1000, 1000},
                              {"MECH_ZERO_B", -1000, 1000},
+                             {"SAFE_Z", -100'000, 100'000},
                              {"CYCLE", 0.001, 1},
                              {"SETTLE", 0, 1},
                              {"GAS_CHANNELS", 2, 3},
@@ -75,7 +76,9 @@ TEST(ParameterRanges, BothEndsAreAllowed) {
     if (!info.choices.empty()) {
       EXPECT_EQ(info.standard + info.minimum + info.maximum, 0.0) << info.name;
     }
-    EXPECT_TRUE(info.rule.starts_with("OPT-") || info.rule.starts_with("motion.md")) << info.name;
+    EXPECT_TRUE(info.rule.starts_with("OPT-") || info.rule.starts_with("motion.md") ||
+                info.rule.starts_with("LIVE-"))
+        << info.name;
     EXPECT_NE(info.text.find(' '), std::string_view::npos) << info.name;
   }
   EXPECT_EQ(numbers, static_cast<int>(std::size(kRanges)));

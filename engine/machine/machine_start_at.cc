@@ -1,0 +1,98 @@
+// A run that begins at a step. LIVE-6
+#include <utility>
+
+#include "engine/core/check.h"
+#include "engine/core/number_text.h"
+#include "engine/machine/machine.h"
+#include "engine/machine/machine_states.h"
+
+namespace rmlcell::machine {
+
+// LIVE-2.10
+Status Machine::MayStartAt(const StartAtStep& input) const {
+  const Transition next = Next(state(), MachineEvent::kStartAtStep, guards());
+  if (next.code) return Refusal(*next.code);
+  if (const Status source = MaySource(input.source); !source) return source.error();
+  const Detail slot = Told("program", input.program);
+  if (!IsSlot(input.program))
+    return Error{family_.info().no_slot, "program " + slot + ", allowed are 1 to 99", {}};
+  if (!input.brought && !memory_.programs.contains(input.program))
+    return Error{family_.info().empty_slot, "no program is stored in slot " + slot, {}};
+  return {};
+}
+
+// In SINGLE a run would halt behind each step, and pass no corner: it goes there as in CYCLE. A dry
+// run that is armed waits for the next start.
+RunSetup Machine::SetupTo(const StartAtStep& input) const {
+  const StartBase base = input.base.value_or(StartBase{.machine_state = standing_->Save(),
+                                                       .inputs = {},
+                                                       .mode = mode_,
+                                                       .override_percent = override_percent_});
+  RunSetup setup(parameters_);
+  setup.programs = memory_.programs;
+  if (input.brought) setup.programs[input.program] = *input.brought;
+  setup.deleted_programs = memory_.deleted;
+  setup.main_program = input.program;
+  setup.schedules = memory_.schedules;
+  setup.machine_state = base.machine_state;
+  setup.mode = base.mode == Mode::kSingle ? Mode::kCycle : base.mode;
+  setup.override_percent = base.override_percent;
+  setup.simul = ProgramStep{};
+  setup.inputs = base.inputs;
+  setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
+  return setup;
+}
+
+Result<StartPreview> Machine::Preview(const StartAtStep& input, const ReachLimits& limits) const {
+  if (const Status may = MayStartAt(input); !may) return may.error();
+  return PreviewStart(family_, SetupTo(input),
+                      {.target = input.target,
+                       .way = input.way,
+                       .off_until_work_on = input.off_until_work_on,
+                       .machine_state = standing_->Save(),
+                       .override_percent = override_percent_},
+                      limits);
+}
+
+Status Machine::Act(const StartAtStep& input) {
+  if (const Status may = MayStartAt(input); !may) return may.error();
+  if (input.prepared != nullptr) return Enter(input, *input.prepared);
+  const Result<StartPreview> preview = Preview(input);
+  if (!preview) return preview.error();
+  return Enter(input, *preview);
+}
+
+// The run that went to the step had nobody who looked; this one is told of all that it does.
+Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
+  if (!preview.may_begin()) return preview.refusals.front();
+  Detail to_see;
+  for (const StartDifference& one : preview.differences) {
+    if (one.action == StartAction::kAsk && !input.acknowledged.contains(one.item))
+      to_see += (to_see.empty() ? "" : ", ") + Told("item", one.item);
+  }
+  if (!to_see.empty())
+    return Error{ErrorCode::kCellMachineState, "nobody has seen to " + std::move(to_see), {}};
+  RunSetup setup = SetupTo(input);
+  setup.inputs.clear();  // from here on people and hosts give them
+  Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
+  if (!run) return run.error();
+  (*run)->Restore(*preview.reach.run->Save());
+  (*run)->enterable()->Enter({.machine_state = standing_->Save(),
+                              .override_percent = override_percent_,
+                              .way = input.way,
+                              .halt_at_entry = input.halt_at_entry});
+  changed_.clear();
+  if (input.brought) changed_.insert(input.program);
+  run_ = *std::move(run);
+  run_->SetMode(mode_);
+  run_->SetBreakpoints(breakpoints_);
+  note_ = {.number = note_.number + 1,
+           .program = input.program,
+           .source = input.source,
+           .begun = now_ - preview.run_time,
+           .entered = RunEntry{.at = preview.reach.target, .run_time = preview.run_time}};
+  shown_ = {.program = input.program};
+  return {};
+}
+
+}  // namespace rmlcell::machine
