@@ -75,6 +75,21 @@ void AddActs(MachineVerbs& verbs) {
   verbs.AddControlled("write", "Write variables and outputs", WriteVariables)
       ->add_option("VALUES", given.values, "such as VR[5]=2.5, OL[3]=on")
       ->required();
+  CLI::App* at = verbs.AddControlled(
+      "start-at", "Start a program at a step, behind a safe way there", StartAtStep);
+  at->add_option("STEP", given.step, "PROGRAM/STEP, such as 45/10")->required();
+  at->add_option("--slot", given.program, "the program that is started; default: the selected one")
+      ->check(CLI::Range(1, 99));
+  at->add_option("--occurrence", given.occurrence, "the how manieth time that control comes there");
+  at->add_flag("--direct", given.direct,
+               "without an approach: the first move begins where it stands");
+  at->add_flag("--off-until-work-on", given.off_until_work_on,
+               "a WORK is on there: keep the beam off until the next one");
+  at->add_flag("--preview", given.look, "say what it would do, and do not start");
+  at->add_flag("--halt", given.halt, "halt before the step");
+  at->add_option("--seen", given.seen,
+                 "what you have looked at: clamps, tool, origin-valid, table-clear")
+      ->delimiter(',');
   CLI::App* key = verbs.AddControlled("key", "Press a key of the panel of a mill", PressPanelKey);
   key->add_option("KEY", given.word, "X+, Y-, PAUSE, CONTINUE, STOP, COVER, POWER ...")->required();
   key->add_option("--for", given.held_s, "hold it for so many seconds; else it is tapped")

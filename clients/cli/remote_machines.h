@@ -18,6 +18,13 @@ struct MachineAct {
   std::vector<std::string> values;  // variables, or NAME=VALUE
   double held_s = 0.0;              // a key; 0: it is tapped
   bool fast = false;                // likewise
+  std::string step;                 // "45/10": where a run begins, or "10" of its program
+  std::int64_t occurrence = 0;      // the how manieth time; 0: the first
+  bool direct = false;              // without an approach
+  bool off_until_work_on = false;
+  bool look = false;              // what it would do, and no start
+  bool halt = false;              // before the step
+  std::vector<std::string> seen;  // what a person has seen to: clamps, tool, origin, table
 };
 
 int ShowMachine(const Remote& remote, const MachineAct& act);
@@ -41,6 +48,8 @@ int ConfirmMachine(const Remote& remote, const MachineAct& act);
 int ReadVariables(const Remote& remote, const MachineAct& act);
 int WriteVariables(const Remote& remote, const MachineAct& act);
 int SetInputs(const Remote& remote, const MachineAct& act);
+// A run that begins at a step: what it would do, and the start.
+int StartAtStep(const Remote& remote, const MachineAct& act);
 // A key of the panel of a mill, by its name.
 int PressPanelKey(const Remote& remote, const MachineAct& act);
 

@@ -88,6 +88,8 @@ _rmlcell_options() {
     machine) echo "$remote" ;;
     "machine status" | "machine watch" | "machine enable" | "machine disable" | "machine hold" | "machine stop" | \
       "machine emergency-stop" | "machine abort" | "machine read") echo "--help" ;;
+    "machine start-at")
+      echo "--help --take-over --slot --occurrence --direct --off-until-work-on --preview --halt --seen" ;;
     "machine key") echo "--help --take-over --for --fast" ;;
     "machine "*) echo "--help --take-over" ;;
     report) echo "$remote --machine-coordinates" ;;
@@ -111,7 +113,7 @@ _rmlcell_takes_value() {
       --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --label | --request-id | --pace | --after | --after-job | --before | --not-before | --priority | --filter | --order | --limit | --move | --turn | --shift | \
       --tolerance | --by | --from | --to | --columns | --rows | --within | --gap | --depth | --step | --passes | --overlap | \
-      --dpi | --at | --take-over | --for | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
+      --dpi | --at | --take-over | --for | --occurrence | --seen | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
   esac
   return 1
 }
@@ -168,7 +170,7 @@ _rmlcell_positional() {
     diff) _rmlcell_programs_files ;;
     machine)
       [[ $count -eq 0 ]] && _rmlcell_offer status watch enable disable hold stop emergency-stop abort start zero resume mode override \
-        factor acknowledge confirm read write key input ;;
+        factor acknowledge confirm read write start-at key input ;;
     "machine start") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_slots "${given[0]}"; fi ;;
     "machine mode") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer remote cycle single repeat manual; fi ;;
     "machine key") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer X+ X- Y+ Y- Z+ Z- A+ A- PAUSE CONTINUE STOP BUFFER_CLEAR COVER POWER EMERGENCY_STOP; fi ;;

@@ -9,7 +9,6 @@
 #include "engine/machine/machine_states.h"
 #include "engine/machine/outcome.h"
 #include "engine/machine/run_setup.h"
-#include "engine/motion/geometry/pose.h"
 #include "rmlcell/v1/machine_status.pb.h"
 #include "rmlcell/v1/run_event.pb.h"
 

@@ -16,15 +16,15 @@ StartDesk::Basis HostMachine::Basis() const {
   return {.state = machine::WriteMachineNote(*note), .memory = memory_changes_};
 }
 
-Result<HostMachine::PreviewTask> HostMachine::PreparePreview(
-    const v1::PreviewStartRequest& request, const HostTime& now) {
+Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::PreviewStartRequest& request,
+                                                             const HostTime& now) {
   GoOnTo(now);
   auto start = StartOf(request, machine());
   if (!start) return start.error();
   PreviewTask task{.start = *std::move(start), .basis = Basis()};
   task.run = [&family = *setup_.family, parameters = *parameters_, memory = machine().memory(),
-              state = machine().Save(),
-              start = task.start](const machine::ReachLimits& limits) -> Result<machine::StartPreview> {
+              state = machine().Save(), start = task.start](
+                 const machine::ReachLimits& limits) -> Result<machine::StartPreview> {
     machine::RunObserver nobody;
     auto copy = machine::Machine::Make(family, parameters, memory, state, nobody);
     if (!copy) return copy.error();
@@ -59,7 +59,9 @@ Status HostMachine::StartAt(const v1::HostOrder& order, const HostTime& now) {
   const auto start = starts_.Take(order.start_at_step(), Basis(), now);
   if (!start) return start.error();
   if (const Status may = MayApply(*start); !may) return may.error();
-  return Apply(*start, &order);
+  if (const Status begun = Apply(*start, &order); !begun) return begun.error();
+  if (start->halt_at_entry) held_for_ = v1::HOLD_REASON_ENTRY;
+  return {};
 }
 
 }  // namespace rmlcell::server

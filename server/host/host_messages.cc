@@ -29,7 +29,7 @@ void SetRun(const machine::Machine& machine, const machine::MachineStatus& statu
   run.set_run(status.open->number);
   run.set_program(status.open->program);
   *run.mutable_place() = progress.place();
-  run.set_phase(v1::RUN_PHASE_PROGRAM);
+  run.set_phase(status.run.approaching ? v1::RUN_PHASE_APPROACH : v1::RUN_PHASE_PROGRAM);
   run.set_run_time_ns(status.run.time.count());
   run.set_source(bridge::ToProto(status.open->source));
   run.set_instruction(progress.instruction());

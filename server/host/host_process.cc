@@ -284,8 +284,8 @@ class HostProcess {
     auto prepared = machine_->PreparePreview(order.preview_start(), Now());
     if (!prepared) return Refuse(order, prepared.error());
     auto task = std::make_shared<HostMachine::PreviewTask>(*std::move(prepared));
-    const bool begun = background_.Do(
-        [this, order, task, line = lines_lost_](const std::stop_token& stop) {
+    const bool begun =
+        background_.Do([this, order, task, line = lines_lost_](const std::stop_token& stop) {
           const double until = ThreadTime_s() + kPreviewTime_s;
           auto made = std::make_shared<Result<machine::StartPreview>>(task->run(
               {.go_on = [&] { return !stop.stop_requested() && ThreadTime_s() < until; }}));

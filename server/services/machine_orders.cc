@@ -8,7 +8,7 @@
 #include "server/machines/host_processes.h"
 #include "server/machines/hosts.h"
 #include "server/services/call.h"
-#include "server/services/host_refusal.h"
+#include "server/services/host_order.h"
 #include "server/services/machine_service.h"
 
 namespace rmlcell::server {
@@ -23,45 +23,8 @@ template <class Request, class Response, class Fill, class Take>
 grpc::ServerUnaryReactor* MachineService::Order(grpc::CallbackServerContext* context,
                                                 const Request* request, Response* response,
                                                 std::string_view method, Fill fill, Take take) {
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  const auto refuse = [reactor](const Error& error) {
-    reactor->Finish(ToGrpcStatus(error));
-    return reactor;
-  };
-  const Result<Caller> caller = Admit(needs_.gate, *context, method, request);
-  if (!caller) return refuse(caller.error());
-  if (const Status size = CheckSize(needs_, *request); !size) return refuse(size.error());
-  const Result<std::string> machine = ParseMachineName(request->machine());
-  if (!machine) return refuse(machine.error());
-  if (live_.hosts == nullptr || !live_.hosts->IsHosted(*machine)) {
-    // Without a host there is time to look whether there is such a machine.
-    const bool taken = needs_.executor.TryPost([this, reactor, id = *machine] {
-      const auto known = store_.GetMachine(id);
-      reactor->Finish(ToGrpcStatus(
-          known ? Error{ErrorCode::kCellNotLive, "the machine has no host: enable it", {}}
-                : known.error()));
-    });
-    return taken ? reactor : refuse(LaneFull());
-  }
-  v1::HostOrder order;
-  order.set_caller(caller->identity);
-  fill(order, *request);
-  const auto begin = std::chrono::steady_clock::now();
-  live_.hosts->Ask(
-      *machine, std::move(order),
-      [reactor, response, method, take, begin, who = *caller](Result<v1::HostOrderAnswer> answer) {
-        grpc::Status status;
-        if (!answer) {
-          status = ToGrpcStatus(answer.error());
-        } else if (answer->has_refusal()) {
-          status = RefusalOf(*answer);
-        } else {
-          take(*answer, *response);
-        }
-        LogCall(method, who, status, std::chrono::steady_clock::now() - begin);
-        reactor->Finish(status);
-      });
-  return reactor;
+  return OrderOfHost({needs_, store_, live_.hosts}, context, request, request->machine(), response,
+                     method, fill, take);
 }
 
 template <class Request, class Fill>
