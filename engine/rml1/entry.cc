@@ -1,5 +1,6 @@
 #include "engine/rml1/entry.h"
 
+#include <algorithm>
 #include <cstdint>
 
 #include "engine/core/number_text.h"
