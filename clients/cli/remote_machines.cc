@@ -259,7 +259,7 @@ int NoAssignment(const std::string& text) {
 std::optional<v1::StepPlace> StepOf(const std::string& text) {
   const std::size_t slash = text.find('/');
   const auto step = ParseInteger(slash == std::string::npos ? text : text.substr(slash + 1));
-  const auto program = slash == std::string::npos ? std::optional<std::int64_t>(0)
+  const auto program = slash == std::string::npos ? std::optional<long long>(0)
                                                   : ParseInteger(text.substr(0, slash));
   if (!step || !program || *step < 1 || *step > INT32_MAX || *program < 0 || *program > 99)
     return std::nullopt;
@@ -287,6 +287,7 @@ void PrintPreview(const v1::PreviewStartResponse& preview) {
       to += "  " + axis.axis() + " " + Fixed(axis.value(), axis.unit() == v1::UNIT_RADIAN ? 4 : 3);
     Print("approach  " + motion.path() + to);
   }
+  if (!preview.approach().empty()) Print("          not checked against the part");
   if (preview.missing_cut_mm() > 0.0)
     Print("left out  " + Fixed(preview.missing_cut_mm(), 3) + " mm of cut");
   for (const v1::Diagnostic& refusal : preview.refusals())

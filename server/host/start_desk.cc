@@ -55,6 +55,14 @@ v1::ApproachMotion ToProto(const machine::ApproachMotion& motion,
   for (v1::AxisValue& axis : bridge::AxesOf(family.axes, motion.to))
     *made.add_to() = std::move(axis);
   made.set_feed_mm_s(motion.feed_mm_s);
+  for (const machine::OutOfTravel& one : motion.beyond) {
+    constexpr std::string_view kAxes = "XYZAB";
+    *made.add_findings() = DiagnosticOf(
+        {ErrorCode::kCellApproach,
+         std::string(1, kAxes[static_cast<std::size_t>(one.axis)]) +
+             (one.at_target ? " of its target leaves the travel" : " leaves the travel on the way"),
+         {}});
+  }
   return made;
 }
 

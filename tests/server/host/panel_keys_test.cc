@@ -117,11 +117,9 @@ TEST_F(PanelKeysTest, APauseAtThePanelEndsThere) {
   for (int i = 0; i < 600 && State() != v1::MACHINE_STATE_HELD; ++i) Pass(100ms, 50ms);
   ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
   EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_PANEL);
-  Control();
   const v1::HostOrderAnswer refused = Do(Resume());
   EXPECT_EQ(refused.refusal().code(), "CELL-E9421");
   EXPECT_THAT(refused.refusal().message(), HasSubstr("CONTINUE"));
-  sequence_of_keys_ = 0;  // another lease
   EXPECT_EQ(Do(Key("CONTINUE")).status().state(), v1::MACHINE_STATE_RUNNING);
   // And STOP drops what is left.
   Do(Key("STOP"));
