@@ -1,0 +1,105 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "clients/cli/remote_call.h"
+#include "clients/cli/remote_machines.h"
+#include "clients/cli/request_id.h"
+#include "rmlcell/v1/machine.grpc.pb.h"
+
+// Calls about machines that live: one answer each, and control for as long as one takes.
+namespace rmlcell::cli {
+
+using Service = v1::MachineService;
+
+// "RUNNING" of "MACHINE_STATE_RUNNING".
+std::string Short(std::string_view name, std::string_view prefix);
+
+int Show(const Remote& remote, const v1::MachineStatus& status);
+// When the control that was taken for it has been given back.
+int ShowOwn(const Remote& remote, v1::MachineStatus status);
+
+// A call with one answer; the stub is made for it.
+template <class Request, class Response>
+grpc::Status Call(const Remote& remote,
+                  grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
+                                                        Response*),
+                  const Request& request, Response& response) {
+  const auto stub = Service::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  return (stub.get()->*method)(&context, request, &response);
+}
+
+template <class Request>
+Request For(const MachineAct& act) {
+  Request request;
+  request.set_machine(FullName("machines", act.machine));
+  request.set_request_id(NewRequestId());
+  return request;
+}
+
+// Control of a machine for as long as one request takes.
+class Control {
+ public:
+  Control(const Remote& remote, const MachineAct& act) : remote_(remote), act_(act) {
+    auto request = For<v1::AcquireControlRequest>(act);
+    request.set_client("rmlcell");
+    request.set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);
+    request.set_take_over(!act.take_over.empty());
+    request.set_reason(act.take_over);
+    v1::AcquireControlResponse response;
+    status_ = Call(remote, &Service::Stub::AcquireControl, request, response);
+    token_ = response.control_token();
+  }
+  ~Control() {
+    if (token_.empty()) return;
+    v1::ReleaseControlRequest request;
+    request.set_machine(FullName("machines", act_.machine));
+    request.set_control_token(token_);
+    google::protobuf::Empty none;
+    static_cast<void>(Call(remote_, &Service::Stub::ReleaseControl, request, none));
+  }
+  Control(const Control&) = delete;
+  Control& operator=(const Control&) = delete;
+
+  const grpc::Status& status() const { return status_; }
+  const std::string& token() const { return token_; }
+
+ private:
+  const Remote& remote_;
+  const MachineAct& act_;
+  grpc::Status status_;
+  std::string token_;
+};
+
+template <class Request, class Response>
+int WithControl(const Remote& remote, const MachineAct& act,
+                grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
+                                                      Response*),
+                Request request,
+                const std::function<int(const Response&, const std::string& token)>& show) {
+  const Control control(remote, act);
+  if (!control.status().ok()) return Refused(control.status(), remote);
+  request.set_control_token(control.token());
+  Response response;
+  const grpc::Status status = Call(remote, method, request, response);
+  return status.ok() ? show(response, control.token()) : Refused(status, remote);
+}
+
+template <class Request>
+int ShowWithControl(const Remote& remote, const MachineAct& act,
+                    grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
+                                                          v1::MachineStatus*),
+                    Request request) {
+  return WithControl<Request, v1::MachineStatus>(
+      remote, act, method, std::move(request),
+      [&remote](const v1::MachineStatus& status, const std::string&) {
+        return ShowOwn(remote, status);
+      });
+}
+
+}  // namespace rmlcell::cli
