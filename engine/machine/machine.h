@@ -15,6 +15,7 @@
 #include "engine/machine/family.h"
 #include "engine/machine/hand_jog.h"
 #include "engine/machine/hand_motion.h"
+#include "engine/machine/handbox.h"
 #include "engine/machine/machine_input.h"
 #include "engine/machine/machine_note.h"
 #include "engine/machine/machine_states.h"
@@ -38,6 +39,15 @@ struct MachineMemory {
 struct MadeExecutable {
   int slot = 0;
   std::string bytes{};
+};
+
+// What a key of the handbox did.
+struct KeyAnswer {
+  std::optional<ErrorCode> message{};  // what the control says: it did nothing, or warns
+  int beeps = 0;
+  // A program is to be changed. The caller stores it, then applies StoreProgram with the object, or
+  // DeleteProgram; or RefuseEdit, when that cannot be. LIVE-7.08
+  std::optional<ProgramEdit> edit{};
 };
 
 // A run that is over.
@@ -79,6 +89,11 @@ class Machine {
   //   CellDoorOpen       a jog key, with the cover open
   //   CellInvalidArgument, ProgramMissing and the like: what the input names is none
   Status Apply(const MachineInput& input);
+
+  // The same of PressKey, with what the key did. What the control itself refuses is no error, but a
+  // message. Errors: CellInvalidArgument, no such key; CellNotLive, it is off or has no handbox.
+  // LIVE-7.10
+  Result<KeyAnswer> Press(const PressKey& key);
 
   const MachineFamily& family() const { return family_; }
   // Inputs, and variables that may be written.
@@ -145,6 +160,8 @@ class Machine {
   Status Act(const PressJog& input);
   Status Act(const ReleaseJog& input);
   Status Act(const ReleaseJogs& input);
+  Status Act(const PressKey& input);
+  Status Act(const RefuseEdit& input);
 
   StateGuards guards() const;
   Error Refusal(ErrorCode code) const;
@@ -163,6 +180,9 @@ class Machine {
   void Settle();
   void CloseRun();
   Status Take(MachineNote note);
+  MachineView View() const;
+  void Select(ShownStep shown);
+  void EndEdit(int slot, std::string_view object);
 
   const MachineFamily& family_;
   const Parameters parameters_;
@@ -179,10 +199,12 @@ class Machine {
   std::optional<ProgramStep> simulation_;
   std::vector<Alarm> alarms_;
   std::int64_t last_alarm_ = 0;
-  ShownStep shown_{};                 // what the last run left
+  ShownStep shown_{};                 // what the last run left, or was selected since
+  bool selected_ = false;             // while the open run stands
   std::optional<ErrorCode> message_;  // not cleared yet
   RunNote note_{};                    // of the run that was begun last
   std::unique_ptr<Standing> standing_;
+  std::unique_ptr<Handbox> handbox_;  // null: it has none
   HandJog jog_;                 // moves nothing while a run is open
   std::unique_ptr<Run> run_;    // open
   bool stopping_ = false;       // a HOLD or STOP of this run has not halted it yet

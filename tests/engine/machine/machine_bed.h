@@ -92,7 +92,7 @@ class MachineTest : public testing::Test {
   RunOver Over() {
     std::vector<RunOver> over = machine->TakeRunsOver();
     EXPECT_EQ(over.size(), 1U);
-    return over.empty() ? RunOver() : over.back();
+    return over.empty() ? RunOver() : std::move(over.back());
   }
   std::string Value(std::string_view name) const {
     return machine->ReadVariable(name).value_or(VariableValue{.text = "none"}).text;
