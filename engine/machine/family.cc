@@ -7,12 +7,25 @@
 #include "engine/core/letters.h"
 #include "engine/core/near_words.h"
 #include "engine/core/units.h"
+#include "engine/machine/handbox.h"
 #include "engine/machine/machine_status.h"
 #include "engine/machine/panel.h"
 #include "engine/machine/shape.h"
 #include "engine/machine/standing.h"
 
 namespace rmlcell::machine {
+
+Result<std::unique_ptr<Handbox>> MachineFamily::NewHandbox(const Parameters& /*parameters*/,
+                                                           std::string_view saved) const {
+  if (!saved.empty())
+    return Error{ErrorCode::kCellBadText, "a machine without handbox has a state of one", {}};
+  return std::unique_ptr<Handbox>();
+}
+
+Result<std::string> MachineFamily::UndoEdit(const ProgramEdit& /*edit*/,
+                                            std::string_view /*object*/) const {
+  return Error{ErrorCode::kCellNotLive, Told("machine", info().title) + " has no handbox", {}};
+}
 
 Panel MachineFamily::ShowPanel(const MachineStatus& status) const {
   Panel panel;

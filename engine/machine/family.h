@@ -19,12 +19,14 @@
 
 namespace rmlcell::machine {
 
+class Handbox;         // handbox.h
 class Run;             // run.h
 class RunObserver;     // observer.h
 class Standing;        // standing.h
 struct MachineShape;   // shape.h
 struct MachineStatus;  // machine_status.h
 struct Panel;          // panel.h
+struct ProgramEdit;    // handbox.h
 
 // How a check that runs a program reads the codes of its family.
 struct CheckCodes {
@@ -210,6 +212,15 @@ class MachineFamily {
   // What is to be seen at a machine that is so. That of a machine of which nothing is known but
   // that it has power.
   virtual Panel ShowPanel(const MachineStatus& status) const;
+
+  // What Handbox::Save kept; of nothing, a new one. Null: the machine has none. Errors:
+  // CellBadText.
+  virtual Result<std::unique_ptr<Handbox>> NewHandbox(const Parameters& parameters,
+                                                      std::string_view saved) const;
+
+  // The object before an edit that its handbox made, of that behind it; empty: there was no
+  // program. Errors: CellInvalidArgument, for another object; CellNotLive without handbox.
+  virtual Result<std::string> UndoEdit(const ProgramEdit& edit, std::string_view object) const;
 
   // Checks and translates. Bad programs are diagnostics, not errors.
   virtual Translation Translate(const SourceFile& file, const Parameters& parameters,

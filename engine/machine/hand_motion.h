@@ -17,6 +17,8 @@ struct HandMotion {
 struct RunOn {
   double mm = 0.0;
   double rad = 0.0;
+
+  bool operator==(const RunOn&) const = default;
 };
 
 }  // namespace rmlcell::machine

@@ -54,7 +54,10 @@ Status Machine::Take(MachineNote note) {
   }
   Result<std::unique_ptr<Standing>> standing = family_.NewStanding(parameters_, note.family);
   if (!standing) return standing.error();
+  Result<std::unique_ptr<Handbox>> handbox = family_.NewHandbox(parameters_, note.handbox);
+  if (!handbox) return handbox.error();
   standing_ = *std::move(standing);
+  handbox_ = *std::move(handbox);
   now_ = note.time;
   on_ = note.on;
   emergency_ = note.emergency;
@@ -85,6 +88,7 @@ std::string Machine::Save() const {
                            .last_run = note_.number,
                            .shown = status().shown,
                            .message = message_,
+                           .handbox = handbox_ != nullptr ? handbox_->Save() : std::string(),
                            .family = run_ != nullptr ? run_->SaveMachine() : standing_->Save()});
 }
 
@@ -135,7 +139,7 @@ void Machine::CloseRun() {
                    .lasted = state.time,
                    .steps = run_->steps_executed(),
                    .figures = run_->figures()});
-  shown_ = status().shown;
+  if (!std::exchange(selected_, false)) shown_ = status().shown;
   if (outcome.code) Show(*outcome.code);
   if (outcome.code && Lookup(*outcome.code).severity == Severity::kAlarm)
     Raise(*outcome.code, outcome.detail, outcome.place);
@@ -191,15 +195,13 @@ MachineStatus Machine::status() const {
   }
   status.open = note_;
   const RunState& run = status.run;
-  if (run.place.step > 0) {
+  if (run.place.step > 0 && !selected_) {
     status.shown = {.program = run.place.program,
                     .step = run.place.step,
                     .instruction = std::string(run.instruction)};
   }
   return status;
 }
-
-Panel Machine::panel() const { return family_.ShowPanel(status()); }
 
 std::optional<VariableValue> Machine::ReadVariable(std::string_view name) const {
   return run_ != nullptr ? run_->ReadVariable(name) : standing_->ReadVariable(name);
@@ -241,6 +243,7 @@ void Machine::Show(ErrorCode code) {
 
 void Machine::ToRun(InputKind kind, int index, double value) {
   const InputChange change{.kind = kind, .index = index, .value = value};
+  if (kind == InputKind::kStart) selected_ = false;
   if (run_ != nullptr) {
     run_->Apply(change);
   } else {
@@ -517,6 +520,7 @@ Status Machine::Act(const SwitchPower& input) {
   breakpoints_.clear();  // OPT-6.08
   simulation_.reset();
   standing_->CyclePower();
+  if (handbox_ != nullptr) handbox_->CyclePower();
   return {};
 }
 
@@ -558,32 +562,6 @@ Status Machine::Act(const SetSimulation& input) {
                  {}};
   }
   simulation_ = input.until.value_or(ProgramStep{});
-  return {};
-}
-
-Status Machine::Act(const StoreProgram& input) {
-  if (!IsSlot(input.slot))
-    return Error{family_.info().no_slot,
-                 "program " + Told("program", input.slot) + ", allowed are 1 to 99",
-                 {}};
-  memory_.programs[input.slot] = input.program;
-  memory_.deleted.erase(input.slot);
-  changed_.insert(input.slot);
-  return {};
-}
-
-Status Machine::Act(const DeleteProgram& input) {
-  if (memory_.programs.erase(input.slot) == 0)
-    return Error{family_.info().empty_slot,
-                 "no program is stored in slot " + Told("program", input.slot),
-                 {}};
-  memory_.deleted.insert(input.slot);
-  changed_.insert(input.slot);
-  return {};
-}
-
-Status Machine::Act(const SetSchedules& input) {
-  memory_.schedules = input.schedules;
   return {};
 }
 

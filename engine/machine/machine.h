@@ -15,6 +15,7 @@
 #include "engine/machine/family.h"
 #include "engine/machine/hand_jog.h"
 #include "engine/machine/hand_motion.h"
+#include "engine/machine/handbox.h"
 #include "engine/machine/machine_input.h"
 #include "engine/machine/machine_note.h"
 #include "engine/machine/machine_states.h"
@@ -39,6 +40,15 @@ struct MachineMemory {
 struct MadeExecutable {
   int slot = 0;
   std::string bytes{};
+};
+
+// What a key of the handbox did.
+struct KeyAnswer {
+  std::optional<ErrorCode> message{};  // what the control says: it did nothing, or warns
+  int beeps = 0;
+  // A program is to be changed. The caller stores it, then applies StoreProgram with the object, or
+  // DeleteProgram; or RefuseEdit, when that cannot be. LIVE-7.08
+  std::optional<ProgramEdit> edit{};
 };
 
 // A run that is over.
@@ -81,6 +91,11 @@ class Machine {
   //   CellStepUnreachable, CellApproach   a start at a step; the detail has the nearest clean steps
   //   CellInvalidArgument, ProgramMissing and the like: what the input names is none
   Status Apply(const MachineInput& input);
+
+  // The same of PressKey, with what the key did. What the control itself refuses is no error, but a
+  // message. Errors: CellInvalidArgument, no such key; CellNotLive, it is off or has no handbox.
+  // LIVE-7.10
+  Result<KeyAnswer> Press(const PressKey& key);
 
   const MachineFamily& family() const { return family_; }
   // Inputs, and variables that may be written.
@@ -152,6 +167,8 @@ class Machine {
   Status Act(const ReleaseJog& input);
   Status Act(const ReleaseJogs& input);
   Status Act(const StartAtStep& input);  // machine_start_at.cc
+  Status Act(const PressKey& input);
+  Status Act(const RefuseEdit& input);
 
   StateGuards guards() const;
   Error Refusal(ErrorCode code) const;
@@ -173,6 +190,9 @@ class Machine {
   void Settle();
   void CloseRun();
   Status Take(MachineNote note);
+  MachineView View() const;
+  void Select(ShownStep shown);
+  void EndEdit(int slot, std::string_view object);
 
   const MachineFamily& family_;
   const Parameters parameters_;
@@ -189,17 +209,19 @@ class Machine {
   std::optional<ProgramStep> simulation_;
   std::vector<Alarm> alarms_;
   std::int64_t last_alarm_ = 0;
-  ShownStep shown_{};                 // what the last run left
+  ShownStep shown_{};                 // what the last run left, or was selected since
+  bool selected_ = false;             // while the open run stands
   std::optional<ErrorCode> message_;  // not cleared yet
   RunNote note_{};                    // of the run that was begun last
   std::unique_ptr<Standing> standing_;
-  HandJog jog_;                 // moves nothing while a run is open
-  std::unique_ptr<Run> run_;    // open
-  bool stopping_ = false;       // a HOLD or STOP of this run has not halted it yet
-  bool resume_behind_ = false;  // it was taken back meanwhile: START follows the halt
-  bool abort_behind_ = false;   // the run is over once it stands
-  bool goes_home_ = false;      // behind ZERO
-  std::set<int> changed_;       // slots whose programs were changed while a run is open
+  std::unique_ptr<Handbox> handbox_;  // null: it has none
+  HandJog jog_;                       // moves nothing while a run is open
+  std::unique_ptr<Run> run_;          // open
+  bool stopping_ = false;             // a HOLD or STOP of this run has not halted it yet
+  bool resume_behind_ = false;        // it was taken back meanwhile: START follows the halt
+  bool abort_behind_ = false;         // the run is over once it stands
+  bool goes_home_ = false;            // behind ZERO
+  std::set<int> changed_;             // slots whose programs were changed while a run is open
   std::vector<RunOver> over_;
   std::vector<MadeExecutable> made_;
 };

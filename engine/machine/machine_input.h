@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/core/catalogue.h"
 #include "engine/machine/inputs.h"
 #include "engine/machine/run_setup.h"
 #include "engine/machine/step_entry.h"
@@ -138,10 +139,23 @@ struct StartAtStep {
   std::shared_ptr<const StartPreview> prepared{};
 };
 
+// A key of the handbox, by its name: "REC". LIVE-7.03
+enum class KeyAction : std::uint8_t { kTap, kPress, kRelease };
+struct PressKey {
+  std::string key{};
+  KeyAction action = KeyAction::kTap;
+};
+// The change of a program that a key asked for cannot be stored; its StoreProgram or DeleteProgram
+// is the answer when it can. LIVE-7.08
+struct RefuseEdit {
+  ErrorCode code{};
+};
+
 using MachineInput =
     std::variant<StartRun, ZeroAxes, ResumeRun, HoldRun, StopRun, AbortRun, EmergencyStop,
                  Acknowledge, ChangeMode, ChangeOverride, ChangeInput, MoveDoor, SwitchPower,
                  WriteVariable, SetBreakpoints, SetSimulation, StoreProgram, DeleteProgram,
-                 SetSchedules, ClearMessage, StartAtStep, PressJog, ReleaseJog, ReleaseJogs>;
+                 SetSchedules, ClearMessage, StartAtStep, PressJog, ReleaseJog, ReleaseJogs,
+                 PressKey, RefuseEdit>;
 
 }  // namespace rmlcell::machine

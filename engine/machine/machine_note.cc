@@ -158,6 +158,8 @@ bool TakeLine(std::string_view line, MachineNote& note) {
     const std::vector<const CatalogueEntry*> rows = FindByText(code);
     if (rows.size() != 1 || CodeText(rows.front()->code) != code) return false;
     note.message = rows.front()->code;
+  } else if (key == "handbox") {
+    note.handbox = words.Rest();
   } else {
     return false;
   }
@@ -205,6 +207,7 @@ std::string WriteMachineNote(const MachineNote& note) {
   if (note.shown != ShownStep())
     lines.Add("shown", note.shown.program, note.shown.step, note.shown.instruction);
   if (note.message) lines.Add("message", CodeText(*note.message));
+  if (!note.handbox.empty()) lines.Add("handbox", OneLine(note.handbox));
   lines.Add("family");
   return lines.Take() + note.family;
 }

@@ -47,6 +47,7 @@ struct MachineNote {
   std::int64_t last_run = 0;
   ShownStep shown{};
   std::optional<ErrorCode> message{};
+  std::string handbox{};  // Handbox::Save
   std::string family{};
 
   bool operator==(const MachineNote&) const = default;

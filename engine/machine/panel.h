@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/result.h"
+#include "engine/machine/hand_motion.h"
 
 namespace rmlcell::machine {
 
@@ -18,6 +19,8 @@ struct Panel {
   std::vector<std::string_view> lamps{};
   // What the display tells in place of its default text.
   std::optional<ErrorCode> message{};
+  // How far axes run on when a jog key of a handbox is let go; none: its keys move nothing now.
+  std::optional<RunOn> run_on{};
 
   bool operator==(const Panel&) const = default;
 };

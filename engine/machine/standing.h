@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,9 @@ class Standing {
 
   // What a run left that did not reach the end of its dry run (OPT-6.14): the next one is dry.
   virtual std::optional<ProgramStep> simulation_until() const { return {}; }
+
+  // As if the instruction of this name had set it. Nothing where the machine does not keep it.
+  virtual void SetModal(std::string_view /*name*/, std::span<const double> /*values*/) {}
 
   // An input or the door; keys and the override do nothing here.
   virtual void Apply(const InputChange& /*input*/) {}

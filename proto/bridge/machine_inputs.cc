@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "proto/bridge/inputs.h"
@@ -26,6 +28,35 @@ v1::JogReference ReferenceOf(machine::JogReference reference) {
       break;
   }
   return v1::JOG_REFERENCE_TCP;
+}
+
+// Before the name of a key of the handbox: "ERR" and "X+" alone are what they do to the machine.
+constexpr std::string_view kHandboxKey = "HANDBOX ";
+constexpr std::string_view kRefusedEdit = "REFUSED ";
+
+v1::KeyAction ActionOf(machine::KeyAction action) {
+  switch (action) {
+    case machine::KeyAction::kPress:
+      return v1::KEY_ACTION_PRESS;
+    case machine::KeyAction::kRelease:
+      return v1::KEY_ACTION_RELEASE;
+    case machine::KeyAction::kTap:
+      break;
+  }
+  return v1::KEY_ACTION_TAP;
+}
+
+std::optional<machine::KeyAction> ActionOf(v1::KeyAction action) {
+  switch (action) {
+    case v1::KEY_ACTION_TAP:
+      return machine::KeyAction::kTap;
+    case v1::KEY_ACTION_PRESS:
+      return machine::KeyAction::kPress;
+    case v1::KEY_ACTION_RELEASE:
+      return machine::KeyAction::kRelease;
+    default:
+      return std::nullopt;
+  }
 }
 
 struct Applied {
@@ -129,6 +160,15 @@ struct Applied {
   void operator()(const machine::ReleaseJogs&) const {
     made.mutable_key()->set_action(v1::KEY_ACTION_RELEASE);
   }
+  void operator()(const machine::PressKey& input) const {
+    made.mutable_key()->set_key(std::string(kHandboxKey) + input.key);
+    made.mutable_key()->set_action(ActionOf(input.action));
+  }
+  // The answer that a key of the handbox got, beside that key.
+  void operator()(const machine::RefuseEdit& input) const {
+    made.mutable_key()->set_key(std::string(kRefusedEdit) + CodeText(input.code));
+    made.mutable_key()->set_action(v1::KEY_ACTION_TAP);
+  }
 };
 
 Result<MachineInput> OfWrittenVariable(const v1::Variable& variable) {
@@ -156,6 +196,17 @@ Result<MachineInput> OfKey(const v1::PressedKey& key) {
     return MachineInput(machine::PressJog{
         .key = *jog, .reference = JogReferenceOf(key.jog_reference()), .fast = key.fast()});
   }
+  const std::string_view name = key.key();
+  if (name.starts_with(kHandboxKey)) {
+    const auto action = ActionOf(key.action());
+    if (!action) return Error{ErrorCode::kCellInvalidArgument, "a key without action", {}};
+    return MachineInput(
+        machine::PressKey{.key = std::string(name.substr(kHandboxKey.size())), .action = *action});
+  }
+  if (name.starts_with(kRefusedEdit)) {
+    const auto rows = FindByText(name.substr(kRefusedEdit.size()));
+    if (rows.size() == 1) return MachineInput(machine::RefuseEdit{.code = rows.front()->code});
+  }
   if (key.key() == "ZERO") return MachineInput(machine::ZeroAxes{});
   if (key.key() == "ERR") return MachineInput(machine::ClearMessage{});
   return Error{ErrorCode::kCellInvalidArgument, "a key '" + key.key() + "'", {}};
@@ -170,8 +221,8 @@ Result<MachineInput> OfStart(const v1::StartInput& start) {
         .program = start.program(),
         .source = *source,
         .target = {.at = {.program = start.step().program(), .step = start.step().step()},
-                   .occurrence = static_cast<std::uint64_t>(
-                       std::max<std::int64_t>(1, start.occurrence()))},
+                   .occurrence =
+                       static_cast<std::uint64_t>(std::max<std::int64_t>(1, start.occurrence()))},
         .way = start.approach() == v1::APPROACH_DIRECT ? machine::ApproachWay::kDirect
                                                        : machine::ApproachWay::kSafe,
         .off_until_work_on = start.off_until_work_on(),

@@ -27,7 +27,7 @@ AREAS = {
                     ("optimo_offline_test", "optimo_language_conformance_test", "lsp_test",
                      "server_programs_test")),
     "control": Area(("engine/optimo/machine", "engine/optimo/ride", "engine/optimo/handbox", "engine/optimo/control"),
-                    ("optimo_control_test", "optimo_run_conformance_test", "simulation_test",
+                    ("optimo_control_test", "optimo_handbox_test", "optimo_run_conformance_test", "simulation_test",
                      "motion_reference_test")),
     "simulation": Area(("engine/families", "engine/simulation/path", "engine/simulation/report",
                         "engine/simulation/toolpath", "engine/simulation/picture", "engine/simulation/material",

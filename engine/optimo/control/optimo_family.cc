@@ -10,7 +10,8 @@
 #include "engine/optimo/control/optimo_tools.h"
 #include "engine/optimo/control/process_watch.h"
 #include "engine/optimo/editing/optimo_editing.h"
-#include "engine/optimo/handbox/display.h"
+#include "engine/optimo/handbox/optimo_handbox.h"
+#include "engine/optimo/handbox/steps.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/language/staleness.h"
@@ -110,8 +111,15 @@ class Family final : public machine::MachineFamily {
   machine::MachineShape Shape(const machine::Parameters& parameters) const override {
     return ShapeOf(Resolve(parameters));
   }
-  machine::Panel ShowPanel(const machine::MachineStatus& status) const override {
-    return ShowHandbox(status);
+  Result<std::unique_ptr<machine::Handbox>> NewHandbox(const machine::Parameters& parameters,
+                                                       std::string_view saved) const override {
+    const Result<HandboxModes> modes = OptimoHandbox::ReadModes(saved);
+    if (!modes) return modes.error();
+    return std::unique_ptr<machine::Handbox>(std::make_unique<OptimoHandbox>(parameters, *modes));
+  }
+  Result<std::string> UndoEdit(const machine::ProgramEdit& edit,
+                               std::string_view object) const override {
+    return UndoProgramEdit(edit, object);
   }
 
   machine::Translation Translate(const machine::SourceFile& file,

@@ -80,6 +80,18 @@ std::vector<machine::StateItem> OptimoStanding::items() const {
   return items;
 }
 
+void OptimoStanding::SetModal(std::string_view name, std::span<const double> values) {
+  constexpr std::size_t kValues = 6;
+  const bool all = values.size() == kValues;
+  if (name == "TCP" && all) {
+    s_.tool.offset = {.x_mm = values[0], .y_mm = values[1], .z_mm = values[2]};
+    std::copy_n(values.begin() + 3, 3, s_.tool.reference.begin());
+  } else if (name == "SYSDEF") {
+    s_.work_offset = {.active = all};
+    if (all) std::copy_n(values.begin(), kValues, s_.work_offset.values.begin());
+  }
+}
+
 void OptimoStanding::Apply(const machine::InputChange& input) {
   const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
   switch (input.kind) {

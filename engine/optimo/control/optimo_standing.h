@@ -20,6 +20,8 @@ class OptimoStanding final : public machine::Standing {
   void WriteVariable(std::string_view name, double value) override;
   std::vector<machine::ModalValue> modal_values() const override;
   std::optional<machine::ProgramStep> simulation_until() const override { return s_.simul; }
+  // TCP, with six values; SYSDEF, with six or none.
+  void SetModal(std::string_view name, std::span<const double> values) override;
   void Apply(const machine::InputChange& input) override;
   // At the step of the jog table that the override stands for. OPT-4.35
   std::optional<machine::HandMotion> ByHand(double override_percent, bool fast) const override;

@@ -1,12 +1,16 @@
 #pragma once
 
-#include "engine/machine/machine_status.h"
-#include "engine/machine/panel.h"
+#include <string>
+#include <string_view>
 
+#include "engine/machine/machine_note.h"
+
+// Texts of the display, which has one line of 20 characters. OPT-4.01, OPT-B.74
 namespace rmlcell::optimo {
 
-// Display and lamps of the handbox. The display has 20 characters, blanks while there is no power:
-// program, step and instruction (OPT-4.02), or the number of the message in their place (OPT-4.06).
-machine::Panel ShowHandbox(const machine::MachineStatus& status);
+std::string OnDisplay(std::string text);  // with blanks behind it; what is too long is cut off
+std::string DefaultText(const machine::ShownStep& shown);  // OPT-4.02 to 4.04
+// "P=12 S=0007 CALL": what will be recorded there. OPT-B.75
+std::string PlacedText(const machine::ShownStep& at, std::string_view name);
 
 }  // namespace rmlcell::optimo

@@ -1,0 +1,36 @@
+#include "engine/machine/machine.h"
+#include "engine/machine/program_file.h"
+
+// What is put into the memory of a machine and taken out of it.
+namespace rmlcell::machine {
+
+Status Machine::Act(const StoreProgram& input) {
+  if (!IsSlot(input.slot))
+    return Error{family_.info().no_slot,
+                 "program " + Told("program", input.slot) + ", allowed are 1 to 99",
+                 {}};
+  memory_.programs[input.slot] = input.program;
+  memory_.deleted.erase(input.slot);
+  changed_.insert(input.slot);
+  EndEdit(input.slot, input.program.object != nullptr ? std::string_view(*input.program.object)
+                                                      : std::string_view());
+  return {};
+}
+
+Status Machine::Act(const DeleteProgram& input) {
+  if (memory_.programs.erase(input.slot) == 0)
+    return Error{family_.info().empty_slot,
+                 "no program is stored in slot " + Told("program", input.slot),
+                 {}};
+  memory_.deleted.insert(input.slot);
+  changed_.insert(input.slot);
+  EndEdit(input.slot, {});
+  return {};
+}
+
+Status Machine::Act(const SetSchedules& input) {
+  memory_.schedules = input.schedules;
+  return {};
+}
+
+}  // namespace rmlcell::machine

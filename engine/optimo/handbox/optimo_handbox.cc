@@ -1,0 +1,322 @@
+#include "engine/optimo/handbox/optimo_handbox.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/optimo/handbox/display.h"
+
+// Modes, runs and axes: what acts while nothing is entered.
+namespace rmlcell::optimo {
+namespace {
+
+using machine::JogReference;
+using machine::MachineState;
+using machine::MachineView;
+using machine::Mode;
+using machine::RunPhase;
+
+// In the order of their lamps, and no way round the ends. OPT-4.22
+constexpr std::array kModeSwitch = {Mode::kManual, Mode::kRepeat, Mode::kCycle, Mode::kSingle,
+                                    Mode::kRemote};
+
+// OPT-4.34
+constexpr double kOverrideFirst = 10.0;
+constexpr double kOverrideApart = 15.0;
+constexpr int kOverrideLast = 9;
+
+bool MovesByHand(const MachineView& view) { return view.status.open && view.status.open->by_hand; }
+
+// Of a run that is open, and of axes that find their reference.
+bool RunGoesOn(const MachineView& view) {
+  return view.status.open && view.status.run.phase != RunPhase::kHalted;
+}
+
+std::string_view LampOf(JogReference reference) {
+  switch (reference) {
+    case JogReference::kAbsolute:
+      return "ABS";
+    case JogReference::kTool:
+      return "TCP";
+    case JogReference::kRobot:
+      break;
+  }
+  return "ROB";
+}
+
+// What the control says to what the cell refuses.
+ErrorCode AtHandbox(ErrorCode code) {
+  const bool not_now = code == ErrorCode::kCellMode || code == ErrorCode::kCellMachineState;
+  return not_now ? ErrorCode::kKeyNotEnabled : code;
+}
+
+}  // namespace
+
+void OptimoHandbox::Drop() {
+  form_.reset();
+  question_.reset();
+  ready_.reset();
+  asks_.clear();
+}
+
+Result<machine::HandboxAnswer> OptimoHandbox::Press(std::string_view key, machine::KeyAction action,
+                                                    const MachineView& view) {
+  const std::optional<KnownKey> known = FindKey(key);
+  if (!known)
+    return Error{ErrorCode::kCellInvalidArgument,
+                 "there is no key " + Told("key", std::string(key)) + " on the handbox",
+                 {}};
+  Turn turn{.view = view, .key = *known};
+  if (action != machine::KeyAction::kRelease) {
+    if (view.status.state == MachineState::kOff && known->key != Key::kEmergencyStop)
+      return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
+    told_.reset();
+    if (modes_.beeps) turn.answer.beeps = 1;  // OPT-4.10
+    if (!ActsAlways(turn)) {
+      if (view.status.mode == Mode::kRemote) {
+        Refuse(turn);  // OPT-4.11
+      } else if (!ActsOutsideRemote(turn)) {
+        InManual(turn);
+      }
+    }
+    told_ = turn.answer.message;
+  }
+  // LIVE-7.03: of a TAP no motion is left.
+  if (action != machine::KeyAction::kPress) Release(turn);
+  return std::move(turn.answer);
+}
+
+std::optional<ErrorCode> OptimoHandbox::Done(const Status& done) {
+  std::optional<Ready> ready = std::exchange(ready_when_done_, std::nullopt);
+  if (!done) return told_ = AtHandbox(done.error().code);
+  if (ready) ready_ = std::move(ready);
+  return std::nullopt;
+}
+
+void OptimoHandbox::Release(Turn& turn) {
+  if (turn.key.key == Key::kJog) turn.Ask(machine::ReleaseJog{turn.key.jog});
+  if (turn.key.key == Key::kEmergencyStop) turn.Ask(machine::EmergencyStop{false});
+}
+
+// In every mode. OPT-4.11, OPT-4.14, OPT-4.29, OPT-4.37
+bool OptimoHandbox::ActsAlways(Turn& turn) {
+  switch (turn.key.key) {
+    case Key::kErr:
+      ClearError(turn);
+      return true;
+    case Key::kModeLeft:
+      ChangeMode(turn, -1);
+      return true;
+    case Key::kModeRight:
+      ChangeMode(turn, 1);
+      return true;
+    case Key::kOverridePlus:
+      ChangeOverride(turn, true);
+      return true;
+    case Key::kOverrideMinus:
+      ChangeOverride(turn, false);
+      return true;
+    case Key::kEmergencyStop:
+      Drop();
+      turn.Ask(machine::EmergencyStop{true});
+      return true;
+    default:
+      return false;
+  }
+}
+
+void OptimoHandbox::ClearError(Turn& turn) {
+  if (form_ || question_) {
+    form_.reset();
+    question_.reset();
+    asks_.clear();
+    return;
+  }
+  if (turn.view.status.message) turn.Ask(machine::ClearMessage{});
+}
+
+void OptimoHandbox::ChangeMode(Turn& turn, int by) {
+  if (MovesByHand(turn.view)) return Refuse(turn);
+  const auto at = std::ranges::find(kModeSwitch, turn.view.status.mode) - kModeSwitch.begin();
+  const auto to = std::clamp<std::ptrdiff_t>(at + by, 0, std::ptrdiff_t{kModeSwitch.size()} - 1);
+  if (to == at) return;
+  Drop();
+  // A jog key that is down stops first.
+  if (turn.view.status.state == MachineState::kJogging) turn.Ask(machine::StopRun{});
+  turn.Ask(machine::ChangeMode{kModeSwitch[static_cast<std::size_t>(to)]});
+}
+
+// From a value between two steps it goes to the next one.
+void OptimoHandbox::ChangeOverride(Turn& turn, bool up) {
+  if (MovesByHand(turn.view)) return Refuse(turn);
+  constexpr double kSame = 1e-9;
+  const double at = (turn.view.status.override_percent - kOverrideFirst) / kOverrideApart;
+  const double to = up ? std::floor(at + kSame) + 1.0 : std::ceil(at - kSame) - 1.0;
+  if (to < 0.0 || to > kOverrideLast) return;  // OPT-4.40
+  turn.Ask(machine::ChangeOverride{kOverrideFirst + kOverrideApart * to});
+}
+
+bool OptimoHandbox::ActsOutsideRemote(Turn& turn) {
+  const bool manual = turn.view.status.mode == Mode::kManual;
+  switch (turn.key.key) {
+    case Key::kShift:
+      shift_ = !shift_;
+      return true;
+    case Key::kNote:
+      modes_.beeps = !modes_.beeps;
+      return true;
+    case Key::kJogReference:
+      ChooseReference(turn);
+      return true;
+    case Key::kStart:
+      if (manual) return false;
+      Start(turn);
+      return true;
+    case Key::kHold:
+    case Key::kStop:
+      if (manual && !turn.view.status.open) {
+        Refuse(turn);
+      } else if (turn.key.key == Key::kHold) {
+        turn.Ask(machine::HoldRun{});
+      } else if (std::exchange(shift_, false) && turn.view.status.open &&
+                 turn.view.status.open->source == machine::StartSource::kPanel) {
+        turn.Ask(machine::AbortRun{});
+      } else {
+        turn.Ask(machine::StopRun{});
+      }
+      return true;
+    default:
+      break;
+  }
+  if (manual) return false;
+  // What is left of a handbox that starts programs: which one. OPT-4.32, OPT-4.42
+  const bool steps = turn.key.key == Key::kPrev || turn.key.key == Key::kNext;
+  if (RunGoesOn(turn.view)) {
+    Refuse(turn);
+  } else if (turn.key.key == Key::kJob) {
+    OpenJob(turn);
+  } else if (steps && shift_) {
+    SelectNeighbour(turn, turn.key.key == Key::kNext);
+  } else if (form_) {
+    InForm(turn);
+  } else {
+    Refuse(turn);
+  }
+  return true;
+}
+
+// OPT-4.19, OPT-4.61, OPT-6.31
+void OptimoHandbox::Start(Turn& turn) {
+  const machine::MachineStatus& status = turn.view.status;
+  if (status.open) {
+    // A job of the queue goes on in REMOTE. LIVE-2.11
+    if (status.open->source != machine::StartSource::kPanel) return Refuse(turn);
+    if (status.run.phase == RunPhase::kHalted || status.state == MachineState::kStopping)
+      turn.Ask(machine::ResumeRun{.source = machine::StartSource::kPanel});
+    return;
+  }
+  if (turn.program() == 0) return Refuse(turn, ErrorCode::kNoProgramSelected);
+  Drop();
+  turn.Ask(machine::StartRun{.program = turn.program(), .source = machine::StartSource::kPanel});
+}
+
+// LIVE-7.06: keys that are down stop, and must be released first.
+void OptimoHandbox::ChooseReference(Turn& turn) {
+  if (modes_.reference == turn.key.reference) return;
+  if (turn.view.status.state == MachineState::kJogging) turn.Ask(machine::StopRun{});
+  modes_.reference = turn.key.reference;
+}
+
+void OptimoHandbox::InManual(Turn& turn) {
+  if (RunGoesOn(turn.view) || edit_) return Refuse(turn);
+  if (OpensForm(turn)) return;
+  switch (turn.key.key) {
+    case Key::kJob:
+      return OpenJob(turn);
+    case Key::kJog:
+      return Jog(turn);
+    case Key::kZero:
+      Drop();
+      question_ = Question::kZero;
+      return;
+    case Key::kRec:
+      return Record(turn);
+    case Key::kPrev:
+    case Key::kNext:
+      if (shift_ && !ready_) return SelectNeighbour(turn, turn.key.key == Key::kNext);
+      break;
+    case Key::kDel:
+      if (shift_) return Delete(turn);
+      break;
+    default:
+      break;
+  }
+  if (question_) return Answer(turn);
+  if (form_) return InForm(turn);
+  if (ready_) return Refuse(turn);
+  if (turn.key.key == Key::kDel) return Delete(turn);
+  if (turn.key.key == Key::kPrev || turn.key.key == Key::kNext)
+    return ShowNeighbour(turn, turn.key.key == Key::kNext);
+  Refuse(turn);  // OPT-4.12, 4.13, 4.27, 4.45
+}
+
+// OPT-4.20, OPT-5.15, OPT-5.49; the C keys do nothing.
+void OptimoHandbox::Jog(Turn& turn) {
+  Drop();
+  turn.Ask(machine::PressJog{.key = turn.key.jog, .reference = modes_.reference});
+  if (turn.program() == 0 || turn.key.jog.axis == machine::JogAxis::kC) return;
+  const bool centre = modes_.path == PathType::kHole && !first_point_;
+  ready_when_done_ = centre ? Ready{.as = Ready::As::kCentre, .name = "ENTER CENTER NORMAL"}
+                            : Ready{.as = Ready::As::kPoint, .name = "MOVE"};
+}
+
+machine::Panel OptimoHandbox::panel(const MachineView& view) const {
+  const machine::MachineStatus& status = view.status;
+  machine::Panel panel{.display = OnDisplay("")};
+  if (status.state == MachineState::kOff) return panel;
+  panel.lamps = {machine::Name(status.mode), LampOf(modes_.reference)};
+  if (shift_) panel.lamps.push_back("SHIFT");
+  if (MovesByHand(view)) panel.lamps.push_back("ZERO AXES");  // OPT-4.49
+  panel.message = told_ ? told_ : status.message;
+  const auto show = [&panel](std::string text, bool flashing) {
+    panel.display = OnDisplay(std::move(text));
+    panel.flashing = flashing;
+    return panel;
+  };
+  if (question_) {
+    constexpr std::array<std::string_view, 3> kAsked = {"ZERO AXIS?", "DELETE Y / N ?",
+                                                        "DELETE Y/N"};
+    return show(std::string(kAsked[static_cast<std::size_t>(*question_)]), false);
+  }
+  if (form_) return show(form_->text(), false);
+  machine::ShownStep shown = status.shown;
+  if (ready_) {
+    if (ready_->as == Ready::As::kLink) return show(PlacedText(shown, ready_->name), true);
+    if (ready_->as != Ready::As::kOutput) return show(ready_->name, true);
+    shown.instruction = ready_->name;
+    return show(DefaultText(shown), true);
+  }
+  if (MovesByHand(view)) return show("ZERO AXES", true);
+  // The control knows its own numbers only. OPT-4.06
+  if (panel.message && Lookup(*panel.message).family == ErrorFamily::kOptimo)
+    return show("ERROR " + std::to_string(Lookup(*panel.message).number), false);
+  // A run tells WORK of both. OPT-5.36
+  if (shown.instruction == "WORK") {
+    const Result<std::optional<Steps>> steps = Steps::Of(view.programs, shown.program);
+    if (steps && *steps && (*steps)->Has(shown.step))
+      shown = (*steps)->Show(shown.program, shown.step);
+  }
+  return show(DefaultText(shown), false);
+}
+
+void OptimoHandbox::CyclePower() {
+  Drop();
+  modes_ = {};
+  shift_ = false;
+  told_.reset();
+  edit_.reset();
+  first_point_.reset();
+  next_move_ = {};
+}
+
+}  // namespace rmlcell::optimo
