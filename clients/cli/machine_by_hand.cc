@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -13,6 +14,7 @@
 #include "clients/cli/terminal.h"
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
+#include "rmlcell/v1/handbox.grpc.pb.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -82,6 +84,124 @@ std::vector<std::string> Unseen(const v1::PreviewStartResponse& preview,
   return unseen;
 }
 
+// The keys of a panel of a mill: what is shown is the machine.
+class PanelKeys {
+ public:
+  PanelKeys(const Remote& remote, const v1::CreateHandboxSessionRequest& of)
+      : remote_(remote), stub_(Service::NewStub(Connect(remote))) {
+    key_.set_machine(of.machine());
+    key_.set_control_token(of.control_token());
+    beat_.set_machine(of.machine());
+    beat_.set_control_token(of.control_token());
+  }
+
+  v1::PressPanelKeyRequest& key() { return key_; }
+  v1::HeartbeatPanelRequest& beat() { return beat_; }
+  void SetFast(bool fast) { key_.set_fast(fast); }
+  grpc::Status Press(grpc::ClientContext& context) {
+    return stub_->PressPanelKey(&context, key_, &status_);
+  }
+  grpc::Status Beat(grpc::ClientContext& context, v1::HeartbeatResponse& heard) {
+    return stub_->HeartbeatPanel(&context, beat_, &heard);
+  }
+  int Show() const { return cli::Show(remote_, status_); }
+
+ private:
+  const Remote& remote_;
+  std::unique_ptr<Service::Stub> stub_;
+  v1::PressPanelKeyRequest key_;
+  v1::HeartbeatPanelRequest beat_;
+  v1::MachineStatus status_;
+};
+
+// Those of a handbox: what is shown is its display.
+class HandboxKeys {
+ public:
+  HandboxKeys(const Remote& remote, const v1::HandboxSession& session, const std::string& token)
+      : remote_(remote), stub_(v1::HandboxService::NewStub(Connect(remote))) {
+    key_.set_session(session.name());
+    key_.set_control_token(token);
+    beat_.set_session(session.name());
+    beat_.set_control_token(token);
+  }
+
+  v1::PressKeyRequest& key() { return key_; }
+  v1::HeartbeatHandboxRequest& beat() { return beat_; }
+  void SetFast(bool /*fast*/) {}
+  grpc::Status Press(grpc::ClientContext& context) {
+    return stub_->PressKey(&context, key_, &pressed_);
+  }
+  grpc::Status Beat(grpc::ClientContext& context, v1::HeartbeatResponse& heard) {
+    return stub_->HeartbeatHandbox(&context, beat_, &heard);
+  }
+  int Show() const {
+    if (remote_.json) {
+      Print(Json(pressed_));
+    } else {
+      const v1::HandboxPanel& panel = pressed_.panel();
+      std::string lamps;
+      for (const std::string& lamp : panel.lamps()) lamps += " " + Visible(lamp);
+      Print("[" + Visible(panel.display()) + "]" + (panel.flashing() ? " flashing" : "") + lamps);
+    }
+    if (!pressed_.has_message()) return kGood;
+    Complain(pressed_.message().code() + ": " + Visible(pressed_.message().message()));
+    return kProgramErrors;
+  }
+
+ private:
+  const Remote& remote_;
+  std::unique_ptr<v1::HandboxService::Stub> stub_;
+  v1::PressKeyRequest key_;
+  v1::HeartbeatHandboxRequest beat_;
+  v1::PressKeyResponse pressed_;
+};
+
+template <class Keys>
+grpc::Status PressOne(Keys& keys, const std::string& name, v1::KeyAction action) {
+  keys.key().set_key(name);
+  keys.key().set_action(action);
+  keys.key().set_sequence(keys.key().sequence() + 1);
+  grpc::ClientContext context;
+  Prepare(context);
+  return keys.Press(context);
+}
+
+// Whoever holds a key says so every 50 ms, or the machine stops.
+template <class Keys>
+grpc::Status HoldOne(Keys& keys, const std::string& name, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kBetweenBeats{50};
+  if (const grpc::Status pressed = PressOne(keys, name, v1::KEY_ACTION_PRESS); !pressed.ok())
+    return pressed;
+  keys.beat().add_keys_down(name);
+  const auto until = Clock::now() + std::chrono::duration<double>(seconds);
+  for (auto next = Clock::now(); next < until; next += kBetweenBeats) {
+    std::this_thread::sleep_until(next);
+    keys.beat().set_number(keys.beat().number() + 1);
+    // Not TimeUtil::GetCurrentTime(), which knows whole seconds alone.
+    *keys.beat().mutable_sent() = google::protobuf::util::TimeUtil::NanosecondsToTimestamp(
+        std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count());
+    grpc::ClientContext context;
+    Prepare(context);
+    v1::HeartbeatResponse heard;
+    if (const grpc::Status held = keys.Beat(context, heard); !held.ok()) return held;
+  }
+  return PressOne(keys, name, v1::KEY_ACTION_RELEASE);
+}
+
+// One after the other; the last one is held where that was asked for.
+template <class Keys>
+int PressAll(const Remote& remote, const MachineAct& act, Keys keys) {
+  keys.SetFast(act.fast);
+  for (std::size_t i = 0; i < act.values.size(); ++i) {
+    const bool held = act.held_s > 0.0 && i + 1 == act.values.size();
+    const grpc::Status done = held ? HoldOne(keys, act.values[i], act.held_s)
+                                   : PressOne(keys, act.values[i], v1::KEY_ACTION_TAP);
+    if (!done.ok()) return Refused(done, remote);
+  }
+  return keys.Show();
+}
+
 }  // namespace
 
 int StartAtStep(const Remote& remote, const MachineAct& act) {
@@ -121,51 +241,27 @@ int StartAtStep(const Remote& remote, const MachineAct& act) {
   return ShowWithControl(remote, act, &Service::Stub::StartAtStep, std::move(request));
 }
 
-// Whoever holds a key says so every 50 ms, or the machine stops.
-int PressPanelKey(const Remote& remote, const MachineAct& act) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds kBetweenBeats{50};
+int PressKeys(const Remote& remote, const MachineAct& act) {
   const Control control(remote, act);
   if (!control.status().ok()) return Refused(control.status(), remote);
-  const auto stub = Service::NewStub(Connect(remote));
-  v1::PressPanelKeyRequest key;
-  key.set_machine(FullName("machines", act.machine));
-  key.set_control_token(control.token());
-  key.set_key(act.word);
-  key.set_fast(act.fast);
-  v1::MachineStatus status;
-  const auto press = [&](v1::KeyAction action) {
-    key.set_action(action);
-    key.set_sequence(key.sequence() + 1);
-    grpc::ClientContext context;
-    Prepare(context);
-    return stub->PressPanelKey(&context, key, &status);
-  };
-  if (act.held_s <= 0.0) {
-    const grpc::Status tapped = press(v1::KEY_ACTION_TAP);
-    return tapped.ok() ? Show(remote, status) : Refused(tapped, remote);
-  }
-  if (const grpc::Status pressed = press(v1::KEY_ACTION_PRESS); !pressed.ok())
-    return Refused(pressed, remote);
-  v1::HeartbeatPanelRequest beat;
-  beat.set_machine(key.machine());
-  beat.set_control_token(control.token());
-  beat.add_keys_down(act.word);
-  const auto until = Clock::now() + std::chrono::duration<double>(act.held_s);
-  for (auto next = Clock::now(); next < until; next += kBetweenBeats) {
-    std::this_thread::sleep_until(next);
-    beat.set_number(beat.number() + 1);
-    // Not TimeUtil::GetCurrentTime(), which knows whole seconds alone.
-    *beat.mutable_sent() = google::protobuf::util::TimeUtil::NanosecondsToTimestamp(
-        std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count());
-    grpc::ClientContext context;
-    Prepare(context);
-    v1::HeartbeatResponse heard;
-    if (const grpc::Status held = stub->HeartbeatPanel(&context, beat, &heard); !held.ok())
-      return Refused(held, remote);
-  }
-  const grpc::Status released = press(v1::KEY_ACTION_RELEASE);
-  return released.ok() ? Show(remote, status) : Refused(released, remote);
+  const auto channel = Connect(remote);
+  const auto handbox = v1::HandboxService::NewStub(channel);
+  v1::CreateHandboxSessionRequest open;
+  open.set_machine(FullName("machines", act.machine));
+  open.set_control_token(control.token());
+  v1::HandboxSession session;
+  grpc::ClientContext context;
+  Prepare(context);
+  if (!handbox->CreateHandboxSession(&context, open, &session).ok())
+    return PressAll(remote, act, PanelKeys(remote, open));
+  const int code = PressAll(remote, act, HandboxKeys(remote, session, control.token()));
+  v1::DeleteHandboxSessionRequest close;
+  close.set_name(session.name());
+  google::protobuf::Empty none;
+  grpc::ClientContext closing;
+  Prepare(closing);
+  static_cast<void>(handbox->DeleteHandboxSession(&closing, close, &none));
+  return code;
 }
 
 }  // namespace rmlcell::cli

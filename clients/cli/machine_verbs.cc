@@ -90,9 +90,11 @@ void AddActs(MachineVerbs& verbs) {
   at->add_option("--seen", given.seen,
                  "what you have looked at: clamps, tool, origin-valid, table-clear")
       ->delimiter(',');
-  CLI::App* key = verbs.AddControlled("key", "Press a key of the panel of a mill", PressPanelKey);
-  key->add_option("KEY", given.word, "X+, Y-, PAUSE, CONTINUE, STOP, COVER, POWER ...")->required();
-  key->add_option("--for", given.held_s, "hold it for so many seconds; else it is tapped")
+  CLI::App* key =
+      verbs.AddControlled("key", "Press keys of the panel of a mill, or of a handbox", PressKeys);
+  key->add_option("KEYS", given.values, "X+, PAUSE, CONTINUE, POWER; JOB 4 5 ENT, START, REC ...")
+      ->required();
+  key->add_option("--for", given.held_s, "hold the last one for so many seconds; else it is tapped")
       ->check(CLI::NonNegativeNumber);
   key->add_flag("--fast", given.fast, "jog at the highest speed");
   verbs.AddControlled("input", "Set inputs, door and power of a virtual machine", SetInputs)

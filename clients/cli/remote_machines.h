@@ -50,7 +50,7 @@ int WriteVariables(const Remote& remote, const MachineAct& act);
 int SetInputs(const Remote& remote, const MachineAct& act);
 // A run that begins at a step: what it would do, and the start.
 int StartAtStep(const Remote& remote, const MachineAct& act);
-// A key of the panel of a mill, by its name.
-int PressPanelKey(const Remote& remote, const MachineAct& act);
+// Keys of the panel of a mill, or of a handbox, by their names.
+int PressKeys(const Remote& remote, const MachineAct& act);
 
 }  // namespace rmlcell::cli

@@ -98,6 +98,7 @@ class Machine {
   Result<KeyAnswer> Press(const PressKey& key);
 
   const MachineFamily& family() const { return family_; }
+  bool has_handbox() const { return handbox_ != nullptr; }
   // Inputs, and variables that may be written.
   bool has_inputs() const { return family_.HasVariable(parameters_, "IL[0]"); }
 

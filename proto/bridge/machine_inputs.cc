@@ -34,7 +34,7 @@ v1::JogReference ReferenceOf(machine::JogReference reference) {
 constexpr std::string_view kHandboxKey = "HANDBOX ";
 constexpr std::string_view kRefusedEdit = "REFUSED ";
 
-v1::KeyAction ActionOf(machine::KeyAction action) {
+v1::KeyAction ToldAction(machine::KeyAction action) {
   switch (action) {
     case machine::KeyAction::kPress:
       return v1::KEY_ACTION_PRESS;
@@ -44,19 +44,6 @@ v1::KeyAction ActionOf(machine::KeyAction action) {
       break;
   }
   return v1::KEY_ACTION_TAP;
-}
-
-std::optional<machine::KeyAction> ActionOf(v1::KeyAction action) {
-  switch (action) {
-    case v1::KEY_ACTION_TAP:
-      return machine::KeyAction::kTap;
-    case v1::KEY_ACTION_PRESS:
-      return machine::KeyAction::kPress;
-    case v1::KEY_ACTION_RELEASE:
-      return machine::KeyAction::kRelease;
-    default:
-      return std::nullopt;
-  }
 }
 
 struct Applied {
@@ -162,7 +149,7 @@ struct Applied {
   }
   void operator()(const machine::PressKey& input) const {
     made.mutable_key()->set_key(std::string(kHandboxKey) + input.key);
-    made.mutable_key()->set_action(ActionOf(input.action));
+    made.mutable_key()->set_action(ToldAction(input.action));
   }
   // The answer that a key of the handbox got, beside that key.
   void operator()(const machine::RefuseEdit& input) const {
@@ -198,7 +185,7 @@ Result<MachineInput> OfKey(const v1::PressedKey& key) {
   }
   const std::string_view name = key.key();
   if (name.starts_with(kHandboxKey)) {
-    const auto action = ActionOf(key.action());
+    const auto action = bridge::ActionOf(key.action());
     if (!action) return Error{ErrorCode::kCellInvalidArgument, "a key without action", {}};
     return MachineInput(
         machine::PressKey{.key = std::string(name.substr(kHandboxKey.size())), .action = *action});
@@ -441,6 +428,19 @@ std::optional<machine::JogKey> JogKeyOf(std::string_view name) {
     }
   }
   return std::nullopt;
+}
+
+std::optional<machine::KeyAction> ActionOf(v1::KeyAction action) {
+  switch (action) {
+    case v1::KEY_ACTION_TAP:
+      return machine::KeyAction::kTap;
+    case v1::KEY_ACTION_PRESS:
+      return machine::KeyAction::kPress;
+    case v1::KEY_ACTION_RELEASE:
+      return machine::KeyAction::kRelease;
+    default:
+      return std::nullopt;
+  }
 }
 
 machine::LaserSchedule FromProto(const v1::AssignedSchedule& schedule) {

@@ -38,6 +38,9 @@ Result<machine::MachineInput> FromProto(const v1::MachineInput& input);
 // In the order of the family, "X Y Z A": of those that slide and of those that turn.
 std::vector<v1::AxisValue> AxesOf(std::string_view names, const motion::AxisPose& axes);
 
+// Nothing for what is not stated.
+std::optional<machine::KeyAction> ActionOf(v1::KeyAction action);
+
 // "X+"; nothing for what is no jog key.
 std::optional<machine::JogKey> JogKeyOf(std::string_view name);
 

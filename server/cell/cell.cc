@@ -263,7 +263,8 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   program_service =
       std::make_unique<ProgramService>(needs, *store, *programs, *tools, *language, open);
   project_service = std::make_unique<ProjectService>(needs, *projects, *transfer, open);
-  handbox_service = std::make_unique<HandboxService>(needs);
+  handbox_service = std::make_unique<HandboxService>(
+      needs, HandboxWatchNeeds{*watching, open, *store, *feed, hosts.get()});
   host_service = std::make_unique<HostService>(needs, *hosts);
   facts = std::make_unique<JobFactsBook>(*store);
   const CellRecords records{*store, *book, *programs, *projects, hosts.get()};

@@ -1,6 +1,8 @@
 #include "server/host/host_machine.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -27,6 +29,13 @@ std::optional<std::string> FieldOf(const v1::HostOrder& order, const std::string
   const auto* field = request->GetDescriptor()->FindFieldByName(name);
   if (field == nullptr) return std::nullopt;
   return request->GetReflection()->GetString(*request, field);
+}
+
+// A key that begins a motion, or says YES to one.
+bool MayMove(const machine::PressKey& key) {
+  constexpr std::array<std::string_view, 5> kKeys = {"START", "HOME", "ZERO", "1", "ENT"};
+  return key.action != machine::KeyAction::kRelease &&
+         (bridge::JogKeyOf(key.key) || std::ranges::find(kKeys, key.key) != kKeys.end());
 }
 
 bool IsHalt(const v1::HostOrder& order) {
@@ -81,7 +90,7 @@ v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& 
   v1::HostOrderAnswer answer = Carry(order, now);
   answer.set_number(order.number());
   *answer.mutable_acted_at() = Stamp(now.wall);
-  if (order.has_panel_key()) keys_.Take(order.panel_key().sequence(), answer);
+  RememberKey(order, answer);
   if (!request_id.empty() && !answered_.contains(request_id)) Remember(request_id, answer);
   return answer;
 }
@@ -148,15 +157,16 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, co
   }
   if (const Status control = CheckControl(order, now); !control) return control.error();
   switch (order.request_case()) {
-    case v1::HostOrder::kPanelKey:
-      if (const Status pressed = PressKey(order, now); !pressed) return pressed.error();
-      return answer;
     case v1::HostOrder::kStartAtStep:
       if (const Status begun = StartAt(order, now); !begun) return begun.error();
       return answer;
+    case v1::HostOrder::kPanelKey:
     case v1::HostOrder::kPanelHeartbeat:
-      *answer.mutable_heartbeat() = HearBeat(order.panel_heartbeat(), now);
-      return answer;
+    case v1::HostOrder::kCreateSession:
+    case v1::HostOrder::kKey:
+    case v1::HostOrder::kHandboxHeartbeat:
+    case v1::HostOrder::kDeleteSession:
+      return CarryOutKeys(order, now);
     case v1::HostOrder::kFactor:
       if (const Status set = driver_->SetFactor(now.steady, order.factor().factor()); !set)
         return set.error();
@@ -253,8 +263,10 @@ Status HostMachine::MayApply(const machine::MachineInput& input) const {
                       std::holds_alternative<machine::StartAtStep>(input);
   const bool resumes = std::holds_alternative<machine::ResumeRun>(input);
   const bool aborts = std::holds_alternative<machine::AbortRun>(input);
+  const auto* key = std::get_if<machine::PressKey>(&input);
   const bool by_hand = std::holds_alternative<machine::ZeroAxes>(input) ||
-                       std::holds_alternative<machine::PressJog>(input);
+                       std::holds_alternative<machine::PressJog>(input) ||
+                       (key != nullptr && MayMove(*key));
   if (!starts && !resumes && !aborts && !by_hand) return {};
   const machine::Transition next = machine::Next(machine::MachineState::kInspect,
                                                  starts    ? machine::MachineEvent::kStart
@@ -292,7 +304,10 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   memory_changes_ += std::holds_alternative<machine::StoreProgram>(input) ||
                      std::holds_alternative<machine::DeleteProgram>(input) ||
                      std::holds_alternative<machine::SetSchedules>(input);
-  const bool begins = starts || std::holds_alternative<machine::ZeroAxes>(input);
+  const auto* key = std::get_if<machine::PressKey>(&input);
+  // Of a key nobody knows before what it begins.
+  const bool begins = starts || std::holds_alternative<machine::ZeroAxes>(input) ||
+                      (key != nullptr && !machine().status().open);
   const auto stands = begins ? std::optional(MarkNow()) : std::nullopt;
   if (begins) {
     run_begun_ = machine().time();
@@ -300,7 +315,9 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   }
   if (starts || std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
   if (moves()) {
-    if (std::holds_alternative<machine::StopRun>(input)) held_for_ = v1::HOLD_REASON_STOP;
+    if (std::holds_alternative<machine::StopRun>(input) || (key != nullptr && key->key == "STOP"))
+      held_for_ = v1::HOLD_REASON_STOP;
+    if (key != nullptr && key->key == "HOLD") held_for_ = v1::HOLD_REASON_HOLD;
     if (std::holds_alternative<machine::HoldRun>(input))
       held_for_ = by_panel_ ? v1::HOLD_REASON_PANEL : v1::HOLD_REASON_HOLD;
     const auto* mode = std::get_if<machine::ChangeMode>(&input);
@@ -325,13 +342,17 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
       applied.set_client(desk_.lease()->client());
     }
   }
-  if (const Status done = machine().Apply(input); !done) {
+  const std::int64_t runs = machine().status().last_run;
+  const bool moved = moves();
+  const Status done = key != nullptr ? Press(*key, order) : machine().Apply(input);
+  if (!done) {
     entries_.resize(place);
     sequence_ -= 1;
     std::tie(run_begun_, told_of_run_, held_for_) = before;
     return done.error();
   }
-  if (stands) Record(*stands, place);
+  if (stands && machine().status().last_run != runs) Record(*stands, place);
+  if (key != nullptr && !moved && moves()) held_for_.reset();  // START let it go on
   mark_due_ = true;
   // A crash from here on finds a run that was cut off, however soon it comes.
   begins_ = begins_ || starts;
@@ -388,7 +409,9 @@ void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
         apply(machine::DeleteProgram{.slot = slot});
     }
   }
+  if (memory.whole()) revisions_.clear();
   for (const v1::AssignedProgram& program : memory.programs()) {
+    revisions_[program.slot()] = program.object_revision();
     const auto there = machine().memory().programs.find(program.slot());
     if (there != machine().memory().programs.end() && *there->second.object == program.content() &&
         *there->second.executable == program.executable())

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/machine/handbox.h"
 #include "engine/machine/virtual_driver.h"
 #include "rmlcell/v1/host.pb.h"
 #include "server/host/control_desk.h"
@@ -50,8 +51,8 @@ class HostMachine : private machine::RunObserver {
   v1::HostOrderAnswer Do(const v1::HostOrder& order, const HostTime& now);
   // A key that came before another one with a lower number: it is to be brought again.
   bool WaitsForKeys(const v1::HostOrder& order) const;
-  // What a start at a step would do: worked out by `run`, which takes as long as the run to the step
-  // and may be called on another thread, and answered behind it.
+  // What a start at a step would do: worked out by `run`, which takes as long as the run to the
+  // step and may be called on another thread, and answered behind it.
   struct PreviewTask {
     machine::StartAtStep start{};
     StartDesk::Basis basis{};
@@ -76,7 +77,12 @@ class HostMachine : private machine::RunObserver {
   bool run_open() const;  // it is no time to end
   // When it is to be looked at again though nobody asks: control runs out.
   std::optional<std::chrono::nanoseconds> next_look() const { return desk_.runs_out(); }
-  bool key_down() const { return dead_man_.holds(); }
+  // Programs that were changed at the machine and are to be stored, since the last call. LIVE-7.08
+  std::vector<v1::HostEdit> TakeEdits() { return std::exchange(edits_, {}); }
+  void EditAnswered(const v1::HostEditAnswer& answer, const HostTime& now);
+  void RefuseEdit(ErrorCode code, const HostTime& now);  // of what is not stored yet
+  // Nothing: it has none.
+  std::optional<v1::HandboxPanel> Handbox() const;
 
   // What happened since the last call, in order, and behind it where the machine stands; nothing
   // yet: a machine that moves says so a few times a second at most.
@@ -95,10 +101,20 @@ class HostMachine : private machine::RunObserver {
   Status RunJob(const v1::HostOrder& order, const HostTime& now);
   std::optional<v1::HostOrderAnswer> AnsweredKey(const v1::HostOrder& order) const;
   Status PressKey(const v1::HostOrder& order, const HostTime& now);
-  Status MayPressKey(const v1::HostOrder& order) const;
-  v1::HeartbeatResponse HearBeat(const v1::HeartbeatPanelRequest& beat, const HostTime& now);
+  void RememberKey(const v1::HostOrder& order, const v1::HostOrderAnswer& answer);
+  v1::HeartbeatResponse HearBeat(const v1::HostOrder& order, const HostTime& now);
+  void LetGo(const std::string& key);
   void LetKeysGo(const HostTime& now);
   void EndKeys();
+  Result<v1::HostOrderAnswer> CarryOutKeys(const v1::HostOrder& order, const HostTime& now);
+  Result<v1::HandboxSession> OpenSession();
+  std::string SessionName() const;
+  Status CheckSession(const std::string& name) const;
+  Status CloseSession(const std::string& name);
+  v1::HandboxPanel HandboxNow() const;
+  Result<v1::PressKeyResponse> PressHandboxKey(const v1::HostOrder& order, const HostTime& now);
+  Status Press(const machine::PressKey& key, const v1::HostOrder* order);
+  void Edit(const machine::ProgramEdit& edit, const std::string& caller);
   StartDesk::Basis Basis() const;
   Status StartAt(const v1::HostOrder& order, const HostTime& now);
   Result<std::optional<machine::StoredProgram>> ProgramOfJob(
@@ -147,8 +163,15 @@ class HostMachine : private machine::RunObserver {
   std::uint64_t memory_changes_ = 0;
   KeyDesk keys_;
   DeadMan dead_man_;
-  std::int64_t keys_of_ = 0;                  // control lease whose keys they are
-  bool by_panel_ = false;                     // a key is pressed at this moment
+  std::int64_t keys_of_ = 0;  // control lease whose keys they are
+  bool by_panel_ = false;     // a key is pressed at this moment
+  std::int64_t session_ = 0;  // of the handbox; 0: none is open
+  std::int64_t sessions_ = 0;
+  std::int64_t beeps_ = 0;
+  std::optional<ErrorCode> key_message_{};  // what the control says to the key that is pressed
+  std::vector<v1::HostEdit> edits_;
+  std::int64_t edits_made_ = 0;
+  std::map<int, std::int64_t> revisions_;     // of the programs in the store, by slot
   std::map<std::string, Answered> answered_;  // by request id
   std::deque<std::string> answered_order_;    // the oldest first
   std::vector<v1::JournalEntry> entries_;

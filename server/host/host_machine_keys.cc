@@ -1,8 +1,10 @@
-// Keys of a mill's panel: in their order, held by somebody who is heard, and none beyond control.
+// Keys of a mill's panel and of a handbox: in their order, held by somebody who is heard, and none
+// beyond control.
 #include <google/protobuf/util/time_util.h>
 
 #include <utility>
 
+#include "proto/bridge/findings.h"
 #include "proto/bridge/machine_inputs.h"
 #include "server/host/host_machine.h"
 #include "server/host/order_class.h"
@@ -14,83 +16,254 @@ using google::protobuf::util::TimeUtil;
 
 bool LetsGo(const v1::HostOrder& order) { return ClassOf(order) != OrderClass::kWrittenFirst; }
 
+// What a key is, on whatever it is.
+struct Pressed {
+  std::string key{};
+  v1::KeyAction action{};
+  std::int64_t number = 0;
+};
+std::optional<Pressed> PressedBy(const v1::HostOrder& order) {
+  const auto of = [](const auto& request) {
+    return Pressed{request.key(), request.action(), request.sequence()};
+  };
+  if (order.has_panel_key()) return of(order.panel_key());
+  if (order.has_key()) return of(order.key());
+  return std::nullopt;
+}
+
+// HOME moves as long as it is down, too.
+bool IsHeld(const std::string& key) { return bridge::JogKeyOf(key) || key == "HOME"; }
+
+template <class Beat>
+std::set<std::string> KeysOf(const Beat& beat) {
+  return {beat.keys_down().begin(), beat.keys_down().end()};
+}
+
+template <class Beat>
+std::chrono::nanoseconds SentAt(const Beat& beat) {
+  return std::chrono::nanoseconds(TimeUtil::TimestampToNanoseconds(beat.sent()));
+}
+
 }  // namespace
 
 bool HostMachine::WaitsForKeys(const v1::HostOrder& order) const {
-  if (!order.has_panel_key()) return false;
+  const auto pressed = PressedBy(order);
+  if (!pressed) return false;
   const bool begins = !desk_.lease() || desk_.lease()->number() != keys_of_;
   const KeyDesk none;
-  return (begins ? none : keys_).Look(order.panel_key().sequence(), LetsGo(order)) ==
-         KeyDesk::Turn::kWaits;
+  return (begins ? none : keys_).Look(pressed->number, LetsGo(order)) == KeyDesk::Turn::kWaits;
 }
 
 std::optional<v1::HostOrderAnswer> HostMachine::AnsweredKey(const v1::HostOrder& order) const {
-  if (!order.has_panel_key() || !desk_.lease() || desk_.lease()->number() != keys_of_)
-    return std::nullopt;
-  const std::int64_t number = order.panel_key().sequence();
-  if (keys_.Look(number, LetsGo(order)) != KeyDesk::Turn::kAnswered) return std::nullopt;
-  v1::HostOrderAnswer again = keys_.AnswerOf(number);
+  const auto pressed = PressedBy(order);
+  if (!pressed || !desk_.lease() || desk_.lease()->number() != keys_of_) return std::nullopt;
+  if (keys_.Look(pressed->number, LetsGo(order)) != KeyDesk::Turn::kAnswered) return std::nullopt;
+  v1::HostOrderAnswer again = keys_.AnswerOf(pressed->number);
   again.set_number(order.number());
   return again;
 }
 
-Status HostMachine::MayPressKey(const v1::HostOrder& order) const {
-  const v1::PressPanelKeyRequest& key = order.panel_key();
-  if (key.sequence() < 1)
-    return Error{ErrorCode::kCellInvalidArgument, "sequence counts from 1", {}};
-  if (keys_.Look(key.sequence(), LetsGo(order)) == KeyDesk::Turn::kActs) return {};
-  return Error{ErrorCode::kCellKeySequence,
-               "sequence " + std::to_string(key.sequence()) + " is not the next one",
-               {}};
+void HostMachine::RememberKey(const v1::HostOrder& order, const v1::HostOrderAnswer& answer) {
+  if (const auto pressed = PressedBy(order)) keys_.Take(pressed->number, answer);
 }
 
 // Precondition: whoever presses has control.
 Status HostMachine::PressKey(const v1::HostOrder& order, const HostTime& now) {
-  const v1::PressPanelKeyRequest& key = order.panel_key();
-  if (desk_.lease()->number() != keys_of_) {
-    EndKeys();
-    keys_of_ = desk_.lease()->number();
-  }
-  if (const Status may = MayPressKey(order); !may) return may.error();
-  const bool moves = bridge::JogKeyOf(key.key()).has_value();
-  const bool released = key.action() == v1::KEY_ACTION_RELEASE;
-  if (released) {
-    keys_.Release(key.key(), key.sequence());
-    dead_man_.Release(key.key());
-  } else if (moves && keys_.IsReleased(key.key(), key.sequence())) {
+  const Pressed pressed = *PressedBy(order);
+  if (order.has_panel_key() && desk_.lease()->number() != keys_of_) EndKeys();
+  if (pressed.number < 1)
+    return Error{ErrorCode::kCellInvalidArgument, "sequence counts from 1", {}};
+  if (keys_.Look(pressed.number, LetsGo(order)) != KeyDesk::Turn::kActs)
+    return Error{ErrorCode::kCellKeySequence,
+                 "sequence " + std::to_string(pressed.number) + " is not the next one",
+                 {}};
+  const bool held = IsHeld(pressed.key);
+  if (pressed.action == v1::KEY_ACTION_RELEASE) {
+    keys_.Release(pressed.key, pressed.number);
+    dead_man_.Release(pressed.key);
+  } else if (held && keys_.IsReleased(pressed.key, pressed.number)) {
     return {};
   }
   by_panel_ = true;
   const Status done = Act(order);
   by_panel_ = false;
-  if (done && moves && key.action() == v1::KEY_ACTION_PRESS) dead_man_.Press(key.key(), now);
+  if (done && held && pressed.action == v1::KEY_ACTION_PRESS) dead_man_.Press(pressed.key, now);
   return done;
 }
 
-v1::HeartbeatResponse HostMachine::HearBeat(const v1::HeartbeatPanelRequest& beat,
-                                            const HostTime& now) {
-  dead_man_.Hear(beat.number(), {beat.keys_down().begin(), beat.keys_down().end()},
-                 std::chrono::nanoseconds(TimeUtil::TimestampToNanoseconds(beat.sent())), now);
-  LetKeysGo(now);
+v1::HeartbeatResponse HostMachine::HearBeat(const v1::HostOrder& order, const HostTime& now) {
   v1::HeartbeatResponse heard;
-  *heard.mutable_sent() = beat.sent();
+  const auto hear = [&](const auto& beat) {
+    dead_man_.Hear(beat.number(), KeysOf(beat), SentAt(beat), now);
+    *heard.mutable_sent() = beat.sent();
+  };
+  if (order.has_panel_heartbeat()) {
+    hear(order.panel_heartbeat());
+  } else {
+    hear(order.handbox_heartbeat());
+  }
+  LetKeysGo(now);
   *heard.mutable_received() = Stamp(now.wall);
   return heard;
 }
 
+// Without a result: the status of the machine is the answer.
+Result<v1::HostOrderAnswer> HostMachine::CarryOutKeys(const v1::HostOrder& order,
+                                                      const HostTime& now) {
+  v1::HostOrderAnswer answer;
+  switch (order.request_case()) {
+    case v1::HostOrder::kPanelKey:
+      if (const Status pressed = PressKey(order, now); !pressed) return pressed.error();
+      break;
+    case v1::HostOrder::kCreateSession: {
+      auto session = OpenSession();
+      if (!session) return session.error();
+      *answer.mutable_session() = *std::move(session);
+      break;
+    }
+    case v1::HostOrder::kKey: {
+      auto pressed = PressHandboxKey(order, now);
+      if (!pressed) return pressed.error();
+      *answer.mutable_key() = *std::move(pressed);
+      break;
+    }
+    case v1::HostOrder::kDeleteSession:
+      if (const Status closed = CloseSession(order.delete_session().name()); !closed)
+        return closed.error();
+      break;
+    case v1::HostOrder::kHandboxHeartbeat:
+      if (const Status known = CheckSession(order.handbox_heartbeat().session()); !known)
+        return known.error();
+      *answer.mutable_heartbeat() = HearBeat(order, now);
+      break;
+    default:
+      *answer.mutable_heartbeat() = HearBeat(order, now);
+      break;
+  }
+  return answer;
+}
+
+// As if it was released.
+void HostMachine::LetGo(const std::string& key) {
+  if (session_ > 0) {
+    static_cast<void>(
+        Apply(machine::PressKey{.key = key, .action = machine::KeyAction::kRelease}, nullptr));
+  } else if (const auto jog = bridge::JogKeyOf(key)) {
+    static_cast<void>(Apply(machine::ReleaseJog{*jog}, nullptr));
+  }
+}
+
 void HostMachine::LetKeysGo(const HostTime& now) {
   if (!dead_man_.holds()) return;
-  for (const std::string& key : dead_man_.LetGo(now)) {
-    if (const auto jog = bridge::JogKeyOf(key))
-      static_cast<void>(Apply(machine::ReleaseJog{*jog}, nullptr));
-  }
+  for (const std::string& key : dead_man_.LetGo(now)) LetGo(key);
 }
 
 // Another one presses from here on: what is down is nobody's.
 void HostMachine::EndKeys() {
-  if (dead_man_.holds()) static_cast<void>(Apply(machine::ReleaseJogs{}, nullptr));
+  for (const std::string& key : dead_man_.down()) LetGo(key);
   keys_ = {};
   dead_man_ = {};
+  session_ = 0;
+  keys_of_ = desk_.lease() ? desk_.lease()->number() : 0;
+}
+
+std::string HostMachine::SessionName() const {
+  return setup_.name + "/handboxSessions/" + std::to_string(session_);
+}
+
+// One that presses; it ends with its control. LIVE-7.02
+Result<v1::HandboxSession> HostMachine::OpenSession() {
+  if (!machine().has_handbox())
+    return Error{ErrorCode::kCellNotLive, "the machine has no handbox", {}};
+  EndKeys();
+  session_ = ++sessions_;
+  v1::HandboxSession session;
+  session.set_name(SessionName());
+  *session.mutable_panel() = HandboxNow();
+  return session;
+}
+
+Status HostMachine::CheckSession(const std::string& name) const {
+  const bool its_own = desk_.lease() && desk_.lease()->number() == keys_of_;
+  if (session_ > 0 && its_own && name == SessionName()) return {};
+  return Error{ErrorCode::kCellNotFound, name + ": open another one, this is over", {}};
+}
+
+Status HostMachine::CloseSession(const std::string& name) {
+  if (const Status known = CheckSession(name); !known) return known.error();
+  EndKeys();
+  return {};
+}
+
+std::optional<v1::HandboxPanel> HostMachine::Handbox() const {
+  return machine().has_handbox() ? std::optional(HandboxNow()) : std::nullopt;
+}
+
+v1::HandboxPanel HostMachine::HandboxNow() const {
+  const machine::Panel panel = machine().panel();
+  v1::HandboxPanel made;
+  made.set_display(panel.display);
+  made.set_flashing(panel.flashing);
+  for (const std::string_view lamp : panel.lamps) made.add_lamps(std::string(lamp));
+  made.set_mode(bridge::ToProto(machine().status().mode));
+  made.set_beeps(beeps_);
+  if (panel.message) made.set_message_code(CodeText(*panel.message));
+  const bool its_own = session_ > 0 && desk_.lease() && desk_.lease()->number() == keys_of_;
+  if (its_own) made.set_holder(desk_.lease()->holder());
+  if (panel.run_on) {
+    made.set_run_on_mm(panel.run_on->mm);
+    made.set_run_on_rad(panel.run_on->rad);
+  }
+  return made;
+}
+
+// What the control says is no error: a key was pressed, and the machine answered. LIVE-7.10
+Result<v1::PressKeyResponse> HostMachine::PressHandboxKey(const v1::HostOrder& order,
+                                                          const HostTime& now) {
+  const v1::PressKeyRequest& request = order.key();
+  if (const Status known = CheckSession(request.session()); !known) return known.error();
+  key_message_.reset();
+  if (const Status pressed = PressKey(order, now); !pressed) return pressed.error();
+  v1::PressKeyResponse response;
+  *response.mutable_panel() = HandboxNow();
+  response.set_sequence(request.sequence());
+  if (key_message_) {
+    *response.mutable_message() = bridge::ToProto(
+        Diagnostic{.code = *key_message_, .severity = Lookup(*key_message_).severity});
+  }
+  return response;
+}
+
+Status HostMachine::Press(const machine::PressKey& key, const v1::HostOrder* order) {
+  const Result<machine::KeyAnswer> pressed = machine().Press(key);
+  if (!pressed) return pressed.error();
+  key_message_ = pressed->message;
+  beeps_ += pressed->beeps;
+  if (pressed->edit) Edit(*pressed->edit, order != nullptr ? order->caller() : std::string());
+  return {};
+}
+
+// LIVE-7.08: what is taught is shown when the store has it.
+void HostMachine::Edit(const machine::ProgramEdit& edit, const std::string& caller) {
+  v1::HostEdit& made = edits_.emplace_back();
+  made.set_fence(setup_.fence);
+  made.set_number(++edits_made_);
+  made.set_slot(edit.program);
+  made.set_object(edit.object);
+  made.set_object_revision(revisions_[edit.program]);
+  made.set_caller(caller);
+}
+
+void HostMachine::EditAnswered(const v1::HostEditAnswer& answer, const HostTime& now) {
+  GoOnTo(now);
+  if (answer.number() != edits_made_ || !answer.has_refusal()) return;
+  const auto rows = FindByText(answer.refusal().code());
+  RefuseEdit(rows.empty() ? ErrorCode::kCellStoreFailed : rows.front()->code, now);
+}
+
+void HostMachine::RefuseEdit(ErrorCode code, const HostTime& now) {
+  now_ = now;
+  static_cast<void>(Apply(machine::RefuseEdit{.code = code}, nullptr));
 }
 
 }  // namespace rmlcell::server

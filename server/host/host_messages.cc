@@ -223,6 +223,12 @@ Result<std::optional<MachineInput>> OfSetting(const v1::HostOrder& order,
 
 Result<std::vector<MachineInput>> InputsOf(const v1::HostOrder& order,
                                            const machine::Machine& machine) {
+  if (order.has_key()) {
+    const auto action = bridge::ActionOf(order.key().action());
+    if (!action) return Invalid("action: say which");
+    return std::vector<MachineInput>{
+        machine::PressKey{.key = order.key().key(), .action = *action}};
+  }
   if (order.has_panel_key()) return OfPanelKey(order.panel_key(), machine);
   std::vector<MachineInput> inputs;
   for (const auto of : {OfRun, OfSetting}) {

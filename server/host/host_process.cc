@@ -122,8 +122,11 @@ class HostProcess {
     for (const auto& parked : parked_) parked->over = true;
     answers_due_.clear();
     keys_waiting_.clear();
+    handbox_shown_.clear();
     ++lines_lost_;
     if (machine_ == nullptr) return;
+    machine_->RefuseEdit(ErrorCode::kCellStoreUnavailable,
+                         Now());  // perhaps it is stored: asked anew
     for (const v1::HostResponse& message : messages) {
       if (Halts(message)) static_cast<void>(machine_->Do(message.order(), Now()));
     }
@@ -200,6 +203,9 @@ class HostProcess {
         spdlog::error("{} has the machine now", message.lease_lost().holder());
         if (machine_ != nullptr) machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, Now());
         Quit(3);
+        break;
+      case v1::HostResponse::kEditAnswer:
+        if (machine_ != nullptr) machine_->EditAnswered(message.edit_answer(), Now());
         break;
       case v1::HostResponse::kStop:
         End(message.stop().reason());
@@ -298,6 +304,33 @@ class HostProcess {
         });
     if (!begun)
       Refuse(order, {ErrorCode::kCellUnavailable, "another start at a step is looked at", {}});
+  }
+
+  // What was taught goes to the store; without a server it cannot. LIVE-7.08
+  void SendEdits(const HostTime& now) {
+    for (v1::HostEdit& edit : machine_->TakeEdits()) {
+      if (line_ == nullptr) {
+        machine_->RefuseEdit(ErrorCode::kCellStoreUnavailable, now);
+        continue;
+      }
+      v1::HostRequest request;
+      *request.mutable_edit() = std::move(edit);
+      line_->Send(std::move(request));
+    }
+  }
+
+  // At most 20 times a second, and when it has changed. LIVE-7.02
+  void ShowHandbox(nanoseconds now) {
+    if (line_ == nullptr || now - handbox_shown_at_ < kStatusMoving) return;
+    std::optional<v1::HandboxPanel> panel = machine_->Handbox();
+    if (!panel) return;
+    std::string bytes = panel->SerializeAsString();
+    if (bytes == handbox_shown_) return;
+    handbox_shown_ = std::move(bytes);
+    handbox_shown_at_ = now;
+    v1::HostRequest request;
+    *request.mutable_panel() = *std::move(panel);
+    line_->Send(std::move(request));
   }
 
   // Keys that came before one that is missing. LIVE-7.04
@@ -426,7 +459,9 @@ class HostProcess {
       machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, now);
     LookAtDisk(now.steady);
     LookAtKeys();
+    SendEdits(now);
     Write(now, false);
+    ShowHandbox(now.steady);
     const v1::MachineStatus status = machine_->StatusAt(now);
     const bool changed = status.state() != state_told_;
     if (line_ != nullptr && (changed || now.steady >= status_due_)) {
@@ -540,6 +575,8 @@ class HostProcess {
   nanoseconds status_due_{0};
   nanoseconds without_server_since_{0};
   std::optional<nanoseconds> ending_at_;
+  std::string handbox_shown_;
+  nanoseconds handbox_shown_at_{0};
   v1::MachineState state_told_ = v1::MACHINE_STATE_UNSPECIFIED;
   std::unique_ptr<JournalWriter> writer_;
   Background background_;  // behind what its work uses

@@ -59,6 +59,7 @@ class DeadMan {
   // Keys that nobody holds any more: all of them after a silence, else those that a beat left out.
   std::vector<std::string> LetGo(const HostTime& now);
   bool holds() const { return !down_.empty(); }
+  const std::set<std::string>& down() const { return down_; }
 
  private:
   std::set<std::string> down_;

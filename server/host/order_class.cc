@@ -1,15 +1,19 @@
 #include "server/host/order_class.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 namespace rmlcell::server {
 
 namespace {
 
 // What lets go or halts acts first; what may move is written before.
-OrderClass ClassOf(const v1::PressPanelKeyRequest& key) {
-  const bool halts = key.key() == "PAUSE" || key.key() == "STOP" || key.key() == "BUFFER_CLEAR" ||
-                     key.key() == "EMERGENCY_STOP";
+template <class Request>
+OrderClass ClassOfKey(const Request& key) {
+  constexpr std::array<std::string_view, 5> kHalt = {"PAUSE", "STOP", "HOLD", "BUFFER_CLEAR",
+                                                     "EMERGENCY_STOP"};
+  const bool halts = std::ranges::find(kHalt, key.key()) != kHalt.end();
   if (key.action() == v1::KEY_ACTION_RELEASE) return OrderClass::kLetsGo;
   return halts ? OrderClass::kActsFirst : OrderClass::kWrittenFirst;
 }
@@ -19,8 +23,12 @@ OrderClass ClassOf(const v1::PressPanelKeyRequest& key) {
 OrderClass ClassOf(const v1::HostOrder& order) {
   switch (order.request_case()) {
     case v1::HostOrder::kPanelKey:
-      return ClassOf(order.panel_key());
+      return ClassOfKey(order.panel_key());
+    case v1::HostOrder::kKey:
+      return ClassOfKey(order.key());
     case v1::HostOrder::kPanelHeartbeat:
+    case v1::HostOrder::kHandboxHeartbeat:
+    case v1::HostOrder::kDeleteSession:
       return OrderClass::kAsks;
     case v1::HostOrder::kStop:
     case v1::HostOrder::kHold:

@@ -22,7 +22,8 @@ OrderClass ClassOf(const v1::HostOrder& order);
 inline bool BeginsMotion(const v1::HostOrder& order) {
   return order.has_start() || order.has_resume() || order.has_run_job() || order.has_zero() ||
          order.has_start_at_step() ||
-         (order.has_panel_key() && ClassOf(order) == OrderClass::kWrittenFirst);
+         ((order.has_panel_key() || order.has_key()) &&
+          ClassOf(order) == OrderClass::kWrittenFirst);
 }
 
 bool Halts(const v1::HostResponse& message);

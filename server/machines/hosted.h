@@ -25,6 +25,7 @@ struct Hosts::Host {
   };
   std::map<std::int64_t, Pending> pending;
   std::optional<v1::MachineStatus> status;
+  std::optional<v1::HandboxPanel> handbox;
   std::chrono::steady_clock::time_point heard{};
   std::vector<v1::JournalEntry> waiting;  // to be stored
   std::int64_t stored = 0;                // sequence of the last one that is

@@ -263,6 +263,12 @@ void Hosts::Receive(const HostLink& link, v1::HostRequest message) {
     case v1::HostRequest::kEntries:
       TakeEntries(host, message.entries());
       break;
+    case v1::HostRequest::kPanel:
+      TakePanel(host, std::move(*message.mutable_panel()));
+      break;
+    case v1::HostRequest::kEdit:
+      StoreEdit(host, std::move(*message.mutable_edit()));
+      break;
     case v1::HostRequest::kRenew:
       needs_.executor.Post([this, host] { Renew(host); });
       break;

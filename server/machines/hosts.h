@@ -75,6 +75,10 @@ class Hosts {
   bool IsHeard(const std::string& machine) const;  // its host has a line
   // What its host told last, with its age; LOST where it is not heard; nothing: it has no host.
   std::optional<v1::MachineStatus> StatusOf(const std::string& machine) const;
+  // What is to be seen at its handbox; nothing: it has none, or is not hosted. Changes are
+  // published under the name that follows.
+  std::optional<v1::HandboxPanel> HandboxPanelOf(const std::string& machine) const;
+  static std::string HandboxOf(const std::string& machine) { return "handboxes/" + machine; }
   // Called when a machine is hosted, or no more.
   void OnChange(std::function<void()> changed);
   // Called when the state of a machine, or what keeps a job from it, has changed, or something of
@@ -105,6 +109,8 @@ class Hosts {
   Status TellRecovery(const Host& host, const std::optional<storage::MachineLease>& from,
                       const std::optional<storage::MachineMark>& mark);
   void SendMemory(const HostPointer& host);
+  void StoreEdit(const HostPointer& host, v1::HostEdit edit);
+  void TakePanel(const HostPointer& host, v1::HandboxPanel panel);
   void TakeStatus(const HostPointer& host, v1::MachineStatus status);
   void TakeAnswer(const HostPointer& host, v1::HostOrderAnswer answer);
   void TakeEntries(const HostPointer& host, const v1::HostEntries& entries);

@@ -56,4 +56,42 @@ void Hosts::LookAtMemory() {
   }
 }
 
+// What was taught at the machine. Its host hears of it as of anything that is stored. LIVE-7.08
+void Hosts::StoreEdit(const HostPointer& host, v1::HostEdit edit) {
+  auto shared = std::make_shared<const v1::HostEdit>(std::move(edit));
+  needs_.executor.Post([this, host, shared] {
+    const auto expected = static_cast<storage::Revision>(shared->object_revision());
+    Status done;
+    if (shared->object().empty()) {
+      done = needs_.store.DeleteProgram(host->id, shared->slot(), expected, shared->caller());
+    } else {
+      const auto put = needs_.store.PutPrograms(
+          host->id, {{.slot = shared->slot(), .object = shared->object(), .expected = expected}},
+          {}, shared->caller());
+      if (!put) done = put.error();
+    }
+    v1::HostResponse message;
+    message.mutable_edit_answer()->set_number(shared->number());
+    if (!done)
+      *message.mutable_edit_answer()->mutable_refusal() = bridge::ToErrorDetail(done.error());
+    host->link->Send(std::move(message));
+  });
+}
+
+void Hosts::TakePanel(const HostPointer& host, v1::HandboxPanel panel) {
+  std::string bytes = panel.SerializeAsString();
+  {
+    const std::lock_guard lock(host->mutex);
+    host->handbox = std::move(panel);
+  }
+  needs_.feed.Publish(HandboxOf(host->id), std::move(bytes));
+}
+
+std::optional<v1::HandboxPanel> Hosts::HandboxPanelOf(const std::string& machine) const {
+  const HostPointer host = Find(machine);
+  if (host == nullptr) return std::nullopt;
+  const std::lock_guard lock(host->mutex);
+  return host->handbox;
+}
+
 }  // namespace rmlcell::server

@@ -119,7 +119,7 @@ PUBLIC = {
                             "phrase_words.h", "stream_writer.h", "work_check.h"],
     "engine/rml1/board": ["bitmap.h", "board_stream.h", "png_bitmap.h"],
     "engine/optimo/language": ["ast.h", "checker.h", "compiler.h", "evaluate.h", "formatter.h", "instruction_set.h",
-                               "lexer.h", "linker.h", "operands.h", "printer.h", "program.h", "source_map.h", "staleness.h",
+                               "lexer.h", "linker.h", "operands.h", "printer.h", "program.h", "source_map.h", "staleness.h", "step_edit.h",
                                "units_of_variables.h", "words.h", "start_modes.h"],
     "engine/optimo/offline": ["compensate.h", "contour_advice.h", "convert.h", "fix_program.h", "house_programs.h",
                               "listing.h", "project.h", "semantic_diff.h", "transform.h", "translate.h"],

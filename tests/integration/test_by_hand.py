@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""What a person does at a machine that lives, over gRPC and with the command: keys, teaching, a start at a step (live.md 6 to 8)."""
+import os
+import subprocess
+import threading
+import time
+import unittest
+
+from cell import BIN, detail_of, eventually, grpc, machine_pb2, program_pb2
+from google.protobuf.timestamp_pb2 import Timestamp
+from live import MILL, Live, LiveTestCase
+from rmlcell.v1 import handbox_pb2, handbox_pb2_grpc, project_pb2, project_pb2_grpc
+from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
+from rmlcell.v1.machine_control_pb2 import KeyAction  # noqa: E402
+
+OPTIMO = "machines/optimo-1"
+
+
+class Handbox:
+    """A session: keys by their names, held ones with their beats."""
+
+    def __init__(self, live):
+        self.live = live
+        self.stub = handbox_pb2_grpc.HandboxServiceStub(live.cell.channel())
+        self.session = self.stub.CreateHandboxSession(handbox_pb2.CreateHandboxSessionRequest(
+            machine=live.machine, control_token=live.token)).name
+        self.sequence = self.beats = 0
+
+    def press(self, key, action="KEY_ACTION_TAP"):
+        self.sequence += 1
+        return self.stub.PressKey(handbox_pb2.PressKeyRequest(
+            session=self.session, control_token=self.live.token, key=key, action=KeyAction.Value(action), sequence=self.sequence))
+
+    def keys(self, names):
+        for name in names.split():
+            answer = self.press(name)
+        return answer
+
+    def hold(self, key, seconds):
+        answer = self.press(key, "KEY_ACTION_PRESS")
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            self.beats += 1
+            sent = Timestamp()
+            sent.GetCurrentTime()
+            self.stub.HeartbeatHandbox(handbox_pb2.HeartbeatHandboxRequest(
+                session=self.session, control_token=self.live.token, number=self.beats, keys_down=[key], sent=sent))
+            time.sleep(0.04)
+        self.press(key, "KEY_ACTION_RELEASE")
+        self.live.wait("IDLE")
+        return answer
+
+
+class ByHandTest(LiveTestCase):
+    def optimo(self):
+        live = Live(self, self.cell, OPTIMO)
+        live.enable()
+        live.acquire(ttl={"seconds": 60})
+        return live
+
+    def lists(self, slot):
+        """The steps of a program, as anybody reads them."""
+        text = self.cell.programs().GetProgramContent(program_pb2.GetProgramContentRequest(
+            name=f"{OPTIMO}/programs/{slot}", form="PROGRAM_FORM_LISTING")).content.decode()
+        return [line.strip() for line in text.splitlines() if line.strip()]
+
+    # LIVE-7.07, LIVE-7.08: a program that is taught is an ordinary one: listed, run at the handbox, kept in a project.
+    def test_a_program_is_taught_and_run(self):
+        live = self.optimo()
+        box = Handbox(live)
+        shown = []
+
+        def watch():
+            try:
+                for message in box.stub.WatchHandbox(handbox_pb2.WatchHandboxRequest(machine=OPTIMO), timeout=60):
+                    shown.append(message.panel.display)
+            except grpc.RpcError:
+                pass
+        viewer = threading.Thread(target=watch)
+        viewer.start()
+        self.addCleanup(viewer.join)
+        self.addCleanup(self.cell.stop)
+        box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC")
+        eventually(lambda: "P=12" in box.keys("OVERRIDE_MINUS").panel.display, 10)
+        for key in ("X+", "Y+"):
+            answer = box.hold(key, 0.3)
+            self.assertFalse(answer.HasField("message"), answer.message)
+            steps = len(self.lists(12))
+            box.keys("REC")
+            eventually(lambda: len(self.lists(12)) > steps, 10)
+        self.assertEqual(sum("MOVE" in line for line in self.lists(12)), 2, self.lists(12))
+        box.keys("MODE_RIGHT MODE_RIGHT")  # CYCLE
+        box.keys("START")
+        eventually(lambda: live.status().run.run or live.status().state == 5, 10)
+        live.wait("IDLE")
+        self.assertTrue(any("P=12" in display for display in shown))
+        project = project_pb2_grpc.ProjectServiceStub(self.cell.channel())
+        project.TransferProjectFromMachine(project_pb2.TransferProjectFromMachineRequest(
+            machine=OPTIMO, project_id="taught", slots=[12]))
+        kept = project.GetProject(project_pb2.GetProjectRequest(name="projects/taught"))
+        self.assertEqual([one.slot for one in kept.programs], [12])
+
+    # LIVE-7.02, LIVE-8.04.
+    def test_only_an_optimo_has_a_handbox(self):
+        self.live.enable()
+        self.live.acquire()
+        with self.assertRaises(grpc.RpcError) as caught:
+            Handbox(self.live)
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9424")
+
+    def command(self, *words):
+        return subprocess.run([os.path.join(BIN, "rmlcell"), "machine", *words, "--server", self.cell.address],
+                              capture_output=True, text=True, timeout=60)
+
+    # LIVE-8.03, LIVE-7.05: the command holds a key of a mill's panel.
+    def test_the_command_holds_a_key(self):
+        self.live.enable()
+        begin = self.live.status().axes[0].value
+        held = self.command("key", "mill-1", "X+", "--for", "0.6")
+        self.assertEqual(held.returncode, 0, held.stderr)
+        self.live.wait("IDLE")
+        moved = self.live.status().axes[0].value - begin
+        self.assertGreater(moved, 0.4)  # at 1 mm/s; a dead-man alone would let it go 0.2 mm
+        self.assertLess(moved, 1.2)
+        shown = self.command("key", "optimo-1", "MODE_LEFT")
+        self.assertNotEqual(shown.returncode, 0)  # it does not live
+        Live(self, self.cell, OPTIMO).enable()
+        shown = self.command("key", "optimo-1", "MODE_LEFT", "MODE_LEFT")
+        self.assertEqual(shown.returncode, 0, shown.stderr)
+        self.assertIn("CYCLE", shown.stdout)
+
+    # LIVE-6.03, LIVE-6.05, LIVE-6.08: seen first, asked for what a person sees to, then done.
+    def test_a_start_at_a_step(self):
+        self.live.enable()
+        self.live.acquire()
+        self.live.ask("SetFactor", factor=100.0)
+        self.live.ask("ReleaseControl")
+        self.live.store(7, "PA;PA;VS10;!PZ-50,100;!MC0;PU200,0;PD400,0;PD400,200;PU0,0;")
+        seen = self.command("start-at", "mill-1", "8", "--slot", "7", "--preview")
+        self.assertEqual(seen.returncode, 0, seen.stderr)
+        for row in ("VS", "Z1", "tool", "ASK", "approach", "not checked against the part"):
+            self.assertIn(row, seen.stdout)
+        asked = self.command("start-at", "mill-1", "8", "--slot", "7")
+        self.assertEqual(asked.returncode, 1)
+        self.assertIn("--seen tool,clamps", asked.stderr)
+        begun = self.command("start-at", "mill-1", "8", "--slot", "7", "--seen", "tool,clamps", "--halt")
+        self.assertEqual(begun.returncode, 0, begun.stderr)
+        held = self.live.wait("HELD")
+        self.assertEqual(held.run.place.step, 7)
+        self.live.acquire(take_over=True, reason="a test")
+        self.live.ask("ResumeMachine")
+        self.live.wait("IDLE")
+        stale = self.live
+        with self.assertRaises(grpc.RpcError) as caught:
+            stale.ask("StartAtStep", preview_token="none")
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9428")
+        self.assertEqual(self.command("start-at", "mill-1", "99", "--slot", "7").returncode, 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,185 @@
+// The handbox of an Optimo over the line of its host (live.md 7).
+#include <sstream>
+#include <utility>
+
+#include "proto/recording/replay.h"
+#include "tests/server/host/host_machine_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class HandboxOverTheLine : public HostMachineTest {
+ protected:
+  void MakeAndTake() {
+    auto made = HostMachine::Make({.name = "machines/optimo-1",
+                                   .host = "workshop/1",
+                                   .fence = 7,
+                                   .family = families::FindFamily("optimo")},
+                                  now_, [this] { return "token " + std::to_string(++tokens_); });
+    ASSERT_TRUE(made) << made.error().detail;
+    host_ = *std::move(made);
+    host_->Begin({}, now_);
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
+  }
+  void Open() {
+    v1::HostOrder order;
+    order.mutable_create_session()->set_control_token(token_);
+    const v1::HostOrderAnswer answer = Do(order);
+    ASSERT_TRUE(answer.has_session()) << answer.refusal().message();
+    session_ = answer.session().name();
+    keys_ = 0;
+  }
+  v1::HostOrder Key(const std::string& key, v1::KeyAction action = v1::KEY_ACTION_TAP) {
+    v1::HostOrder order;
+    v1::PressKeyRequest& pressed = *order.mutable_key();
+    pressed.set_session(session_);
+    pressed.set_control_token(token_);
+    pressed.set_key(key);
+    pressed.set_action(action);
+    pressed.set_sequence(++keys_);
+    return order;
+  }
+  v1::PressKeyResponse Press(const std::string& names) {
+    v1::PressKeyResponse last;
+    std::istringstream all(names);
+    for (std::string name; all >> name;) {
+      const v1::HostOrderAnswer answer = Do(Key(name));
+      EXPECT_TRUE(answer.has_key()) << name << ": " << answer.refusal().message();
+      last = answer.key();
+    }
+    return last;
+  }
+  v1::HostOrder Beat(const std::string& key) {
+    v1::HostOrder order;
+    v1::HeartbeatHandboxRequest& beat = *order.mutable_handbox_heartbeat();
+    beat.set_session(session_);
+    beat.set_control_token(token_);
+    beat.set_number(++beats_);
+    beat.add_keys_down(key);
+    *beat.mutable_sent() = Stamp(now_.wall);
+    return order;
+  }
+  // What was asked of the store is there, as its server tells the host then.
+  void Store(const v1::HostEdit& edit) {
+    v1::HostMemory memory;
+    v1::AssignedProgram& program = *memory.add_programs();
+    program.set_slot(edit.slot());
+    program.set_content(edit.object());
+    program.set_object_revision(edit.object_revision() + 1);
+    v1::HostEditAnswer answer;
+    answer.set_number(edit.number());
+    host_->EditAnswered(answer, now_);
+    host_->Change(memory, now_);
+  }
+
+  std::string session_;
+  std::int64_t keys_ = 0;
+  std::int64_t beats_ = 0;
+};
+
+// LIVE-7.02: a session is of whoever has control, and ends with that.
+TEST_F(HandboxOverTheLine, ASessionIsOfWhoHasControl) {
+  MakeAndTake();
+  v1::HostOrder order;
+  order.mutable_create_session()->set_control_token("no token");
+  EXPECT_EQ(Do(order).refusal().code(), "CELL-E9420");
+  Open();
+  EXPECT_EQ(session_, "machines/optimo-1/handboxSessions/1");
+  EXPECT_EQ(Press("MODE_LEFT").panel().holder(), "anna");
+  v1::HostOrder release;
+  release.mutable_release_control()->set_control_token(token_);
+  Do(release);
+  EXPECT_EQ(host_->Handbox()->holder(), "");
+  Control();
+  EXPECT_EQ(Do(Key("MODE_LEFT")).refusal().code(), "CELL-E9004");
+  Open();
+  EXPECT_EQ(session_, "machines/optimo-1/handboxSessions/2");
+}
+
+// LIVE-7.10: what the control says is an answer, what nobody can press is none.
+TEST_F(HandboxOverTheLine, TheControlAnswers) {
+  MakeAndTake();
+  Open();
+  const v1::PressKeyResponse dead = Press("REC");  // in REMOTE
+  EXPECT_EQ(dead.message().code(), "OPT-E7601");
+  EXPECT_EQ(dead.panel().display().size(), 20U);
+  EXPECT_EQ(dead.panel().mode(), v1::OPERATING_MODE_REMOTE);
+  EXPECT_EQ(Do(Key("VOLUME")).refusal().code(), "CELL-E9003");
+  EXPECT_EQ(Do(Key("REC", v1::KEY_ACTION_UNSPECIFIED)).refusal().code(), "CELL-E9003");
+  const v1::PressKeyResponse manual = Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT");
+  EXPECT_EQ(manual.panel().mode(), v1::OPERATING_MODE_MANUAL);
+  EXPECT_FALSE(manual.has_message());
+  EXPECT_GT(manual.panel().run_on_mm(), 0.0);
+  EXPECT_EQ(host_->StatusAt(now_).mode(), v1::OPERATING_MODE_MANUAL);
+}
+
+// LIVE-7.05, LIVE-3.40: a jog key is held by who is heard; keys are played again.
+TEST_F(HandboxOverTheLine, AJogKeyIsHeld) {
+  MakeAndTake();
+  Open();
+  Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT");
+  const auto x = [this] { return host_->StatusAt(now_).axes(0).value(); };
+  const double begin = x();
+  EXPECT_TRUE(Do(Key("X+", v1::KEY_ACTION_PRESS)).has_key());
+  for (int i = 0; i < 10; ++i) {
+    Pass(50ms);
+    EXPECT_TRUE(Do(Beat("X+")).has_heartbeat());
+  }
+  EXPECT_EQ(State(), v1::MACHINE_STATE_JOGGING);
+  EXPECT_GT(x(), begin + 1.0);
+  Pass(1s);  // silent
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  static_cast<void>(host_->TakeEntries(now_, true));
+  v1::HostOrder order;
+  order.mutable_recording();
+  const auto recording = recording::ReadFile(Do(order).recording().chunk());
+  ASSERT_TRUE(recording) << recording.error().detail;
+  const auto played = recording::Replay(*recording, {});
+  ASSERT_TRUE(played) << played.error().detail;
+  EXPECT_FALSE(played->difference) << played->difference->field;
+  EXPECT_EQ(played->inputs, 6);  // four for the mode, the key, that it was let go
+}
+
+// LIVE-7.08: a program that is taught goes to the store, and counts when it is there.
+TEST_F(HandboxOverTheLine, WhatIsTaughtIsStored) {
+  MakeAndTake();
+  Open();
+  Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC");
+  std::vector<v1::HostEdit> edits = host_->TakeEdits();
+  ASSERT_THAT(edits, SizeIs(1));
+  EXPECT_EQ(edits[0].slot(), 12);
+  EXPECT_EQ(edits[0].object_revision(), 0);
+  EXPECT_EQ(edits[0].caller(), "anna");
+  EXPECT_THAT(edits[0].object(), testing::Not(IsEmpty()));
+  Store(edits[0]);
+  EXPECT_THAT(host_->Handbox()->display(), HasSubstr("P=12"));
+  EXPECT_THAT(host_->TakeEdits(), IsEmpty());
+  Press("DLY DEL 0 POINT 5 ENT REC");
+  edits = host_->TakeEdits();
+  ASSERT_THAT(edits, SizeIs(1));
+  EXPECT_EQ(edits[0].object_revision(), 1);
+  // The store is away: the control says so, and nothing is lost.
+  v1::HostEditAnswer refused;
+  refused.set_number(edits[0].number());
+  refused.mutable_refusal()->set_code("CELL-E9108");
+  host_->EditAnswered(refused, now_);
+  EXPECT_EQ(host_->Handbox()->message_code(), "CELL-E9108");
+  EXPECT_TRUE(host_->Handbox()->flashing());
+}
+
+// LIVE-8.04: a mill has no handbox.
+TEST_F(HandboxOverTheLine, AMillHasNone) {
+  Make();
+  Control();
+  v1::HostOrder order;
+  order.mutable_create_session()->set_control_token(token_);
+  EXPECT_EQ(Do(order).refusal().code(), "CELL-E9424");
+  EXPECT_FALSE(host_->Handbox());
+}
+
+}  // namespace
+}  // namespace rmlcell::server
