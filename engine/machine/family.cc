@@ -24,8 +24,7 @@ Result<std::unique_ptr<Handbox>> MachineFamily::NewHandbox(const Parameters& /*p
 
 Result<std::string> MachineFamily::UndoEdit(const ProgramEdit& /*edit*/,
                                             std::string_view /*object*/) const {
-  return Error{
-      ErrorCode::kCellNotLive, Told("machine", info().title) + " has no handbox", {}};
+  return Error{ErrorCode::kCellNotLive, Told("machine", info().title) + " has no handbox", {}};
 }
 
 Panel MachineFamily::ShowPanel(const MachineStatus& status) const {

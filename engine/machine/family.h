@@ -213,7 +213,8 @@ class MachineFamily {
   // that it has power.
   virtual Panel ShowPanel(const MachineStatus& status) const;
 
-  // What Handbox::Save kept; of nothing, a new one. Null: the machine has none. Errors: CellBadText.
+  // What Handbox::Save kept; of nothing, a new one. Null: the machine has none. Errors:
+  // CellBadText.
   virtual Result<std::unique_ptr<Handbox>> NewHandbox(const Parameters& parameters,
                                                       std::string_view saved) const;
 

@@ -90,10 +90,10 @@ class Machine {
   //   CellInvalidArgument, ProgramMissing and the like: what the input names is none
   Status Apply(const MachineInput& input);
 
-  // The same of PressKey, with what the key did. What the control itself refuses is no error, but a
+  // Of a PressedKey, with what the key did. What the control itself refuses is no error, but a
   // message. Errors: CellInvalidArgument, no such key; CellNotLive, it is off or has no handbox.
   // LIVE-7.10
-  Result<KeyAnswer> Press(const PressKey& key);
+  Result<KeyAnswer> PressKey(std::string_view key, KeyAction action = KeyAction::kTap);
 
   const MachineFamily& family() const { return family_; }
   // Inputs, and variables that may be written.
@@ -160,13 +160,13 @@ class Machine {
   Status Act(const PressJog& input);
   Status Act(const ReleaseJog& input);
   Status Act(const ReleaseJogs& input);
-  Status Act(const PressKey& input);
+  Status Act(const PressedKey& input);
   Status Act(const RefuseEdit& input);
 
   StateGuards guards() const;
   Error Refusal(ErrorCode code) const;
   Status MayStart(const StartRun& input) const;
-  Status Begin(const StartRun& input, Mode mode, bool by_hand = false);
+  Status Begin(const StartRun& input, Mode mode, std::optional<HandRun> hand = {});
   void GoHome(const Outcome& outcome);
   Status MayJog(const JogKey& key) const;
   void AskJog();
@@ -182,6 +182,10 @@ class Machine {
   Status Take(MachineNote note);
   MachineView View() const;
   void Select(ShownStep shown);
+  Status MayMoveByHand(bool manual) const;
+  Status BeginByHand(const RunByHand& asked);
+  bool Pauses() const { return note_.by_hand && note_.hand == HandRun::kFunction; }
+  double OverrideOf(std::optional<HandRun> hand) const;
   void EndEdit(int slot, std::string_view object);
 
   const MachineFamily& family_;
@@ -205,13 +209,13 @@ class Machine {
   RunNote note_{};                    // of the run that was begun last
   std::unique_ptr<Standing> standing_;
   std::unique_ptr<Handbox> handbox_;  // null: it has none
-  HandJog jog_;                 // moves nothing while a run is open
-  std::unique_ptr<Run> run_;    // open
-  bool stopping_ = false;       // a HOLD or STOP of this run has not halted it yet
-  bool resume_behind_ = false;  // it was taken back meanwhile: START follows the halt
-  bool abort_behind_ = false;   // the run is over once it stands
-  bool goes_home_ = false;      // behind ZERO
-  std::set<int> changed_;       // slots whose programs were changed while a run is open
+  HandJog jog_;                       // moves nothing while a run is open
+  std::unique_ptr<Run> run_;          // open
+  bool stopping_ = false;             // a HOLD or STOP of this run has not halted it yet
+  bool resume_behind_ = false;        // it was taken back meanwhile: START follows the halt
+  bool abort_behind_ = false;         // the run is over once it stands
+  bool goes_home_ = false;            // behind ZERO
+  std::set<int> changed_;             // slots whose programs were changed while a run is open
   std::vector<RunOver> over_;
   std::vector<MadeExecutable> made_;
 };

@@ -110,7 +110,7 @@ struct ReleaseJogs {};
 
 // A key of the handbox, by its name: "REC". LIVE-7.03
 enum class KeyAction : std::uint8_t { kTap, kPress, kRelease };
-struct PressKey {
+struct PressedKey {
   std::string key{};
   KeyAction action = KeyAction::kTap;
 };
@@ -124,6 +124,7 @@ using MachineInput =
     std::variant<StartRun, ZeroAxes, ResumeRun, HoldRun, StopRun, AbortRun, EmergencyStop,
                  Acknowledge, ChangeMode, ChangeOverride, ChangeInput, MoveDoor, SwitchPower,
                  WriteVariable, SetBreakpoints, SetSimulation, StoreProgram, DeleteProgram,
-                 SetSchedules, ClearMessage, PressJog, ReleaseJog, ReleaseJogs, PressKey, RefuseEdit>;
+                 SetSchedules, ClearMessage, PressJog, ReleaseJog, ReleaseJogs, PressedKey,
+                 RefuseEdit>;
 
 }  // namespace rmlcell::machine

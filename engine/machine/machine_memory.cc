@@ -12,7 +12,8 @@ Status Machine::Act(const StoreProgram& input) {
   memory_.programs[input.slot] = input.program;
   memory_.deleted.erase(input.slot);
   changed_.insert(input.slot);
-  EndEdit(input.slot, input.program.object != nullptr ? std::string_view(*input.program.object) : std::string_view());
+  EndEdit(input.slot, input.program.object != nullptr ? std::string_view(*input.program.object)
+                                                      : std::string_view());
   return {};
 }
 

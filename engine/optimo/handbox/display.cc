@@ -21,8 +21,7 @@ std::string OnDisplay(std::string text) {
 }
 
 std::string DefaultText(const machine::ShownStep& shown) {
-  std::string name =
-      shown.instruction.empty() ? std::string(kNameWidth, '*') : shown.instruction;
+  std::string name = shown.instruction.empty() ? std::string(kNameWidth, '*') : shown.instruction;
   name.resize(kNameWidth, ' ');
   return "P=" + Digits(shown.program, 2) + "S=" + Digits(shown.step, 4) + "I=" + name;
 }

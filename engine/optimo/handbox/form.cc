@@ -21,8 +21,7 @@ std::string WholeText(int value, int digits) {
 
 }  // namespace
 
-Field Field::Real(std::string before, double value, double low, double high,
-                  Decimals decimals) {
+Field Field::Real(std::string before, double value, double low, double high, Decimals decimals) {
   Field field;
   field.before_ = std::move(before);
   field.digits_ = decimals == Decimals::kOne         ? FixedText(value, 1)
@@ -84,6 +83,7 @@ void Field::Type(char c) {
 
 double Field::value() const {
   if (width_ == 0 && !typed_) return given_;
+  if (digits_.find_first_of("0123456789") == std::string::npos) return std::nan("");
   // "12." and ".5" are typed, too.
   std::string text = digits_;
   if (text.ends_with('.')) text += '0';

@@ -29,10 +29,10 @@ class Field {
 
   bool is_choice() const { return !words_.empty(); }
   void Choose(bool next);
-  void Clear();             // DEL
-  void Type(char c);        // a digit, '.' or '-'
-  bool InRange() const;     // OPT-5.10
-  double value() const;     // precondition: InRange
+  void Clear();          // DEL
+  void Type(char c);     // a digit, '.' or '-'
+  bool InRange() const;  // OPT-5.10
+  double value() const;  // precondition: InRange
   int whole() const { return static_cast<int>(value()); }
   std::size_t chosen() const { return chosen_; }
   std::string text() const { return before_ + (is_choice() ? words_[chosen_] : digits_); }
@@ -52,7 +52,7 @@ class Field {
 
 enum class FormKind {
   kJob,
-  kMove,   // SPEED and what a MOVE has besides
+  kMove,      // SPEED and what a MOVE has besides
   kInput,     // of START
   kEndInput,  // of END
   kTime,

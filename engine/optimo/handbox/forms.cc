@@ -31,8 +31,9 @@ bool OptimoHandbox::OpensForm(Turn& turn) {
       form = Form::OfLines(FormKind::kBreak, {Field::Choice("BREAK = ", {"OFF", "ON"}, 0)});
       break;
     case Key::kDyn:
-      form = Form::OfLines(FormKind::kCoord, {Field::Choice("COORD ", {"ABSOL", "ROBOT"},
-                                                            static_cast<std::size_t>(modes_.coord))});
+      form = Form::OfLines(
+          FormKind::kCoord,
+          {Field::Choice("COORD ", {"ABSOL", "ROBOT"}, static_cast<std::size_t>(modes_.coord))});
       break;
     case Key::kPath:
       form = Form::OfLines(FormKind::kPath, {Field::Choice("PATH ", {"PTP", "LIN", "CIR", "HOL"},
@@ -53,15 +54,14 @@ bool OptimoHandbox::OpensForm(Turn& turn) {
       form = Form::OfLines(FormKind::kLink, {Field::Choice("ISTR ", {"GO", "CALL"}, 0)});
       break;
     case Key::kOversh:
-      form = Form::OfLines(
-          FormKind::kOversh,
-          {Field::Real("OVERSH ", modes_.oversh_percent, 0.0, 100.0, Decimals::kIfAny)});
+      form = Form::OfLines(FormKind::kOversh, {Field::Real("OVERSH ", modes_.oversh_percent, 0.0,
+                                                           100.0, Decimals::kIfAny)});
       break;
     case Key::kFunction:
       form = std::exchange(shift_, false)
                  ? Form::OfLines(FormKind::kSysdef, {Field::Choice("SYSDEF = ", {"NO", "YES"}, 0)})
-                 : Form::OfLines(FormKind::kFunction, {Field::Whole("FUNCTION = ", 2, 0, 1,
-                                                                    kSlotMax)});
+                 : Form::OfLines(FormKind::kFunction,
+                                 {Field::Whole("FUNCTION = ", 2, 0, 1, kSlotMax)});
       break;
     case Key::kSimul:
       form.emplace(FormKind::kSimul,
@@ -84,11 +84,12 @@ bool OptimoHandbox::OpensForm(Turn& turn) {
 
 // OPT-5.23
 void OptimoHandbox::OpenMove() {
-  form_ = Form::OfLines(
-      FormKind::kMove,
-      {Field::Real("SPEED ", modes_.speed_percent, 0.0, 100.0), Flag("FLY = ", modes_.fly),
-       Flag("START = ", next_move_.start.has_value()), Flag("TIME = ", next_move_.time_s.has_value()),
-       Flag("END = ", next_move_.end.has_value()), Flag("NEXT = ", next_move_.next)});
+  form_ =
+      Form::OfLines(FormKind::kMove,
+                    {Field::Real("SPEED ", modes_.speed_percent, 0.0, 100.0),
+                     Flag("FLY = ", modes_.fly), Flag("START = ", next_move_.start.has_value()),
+                     Flag("TIME = ", next_move_.time_s.has_value()),
+                     Flag("END = ", next_move_.end.has_value()), Flag("NEXT = ", next_move_.next)});
 }
 
 // OPT-4.73

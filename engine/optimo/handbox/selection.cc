@@ -54,11 +54,11 @@ std::vector<double> PointAt(const machine::MachineView& view, CoordType coord) {
 // OPT-4.57
 void OptimoHandbox::OpenJob(Turn& turn) {
   Drop();
-  form_.emplace(FormKind::kJob, std::vector<Form::Line>{
-                                    {Field::Whole("P=", 2, turn.program(), 1, kSlotMax),
-                                     Field::Whole(" S=", 4, 0, 0, 9999),
-                                     Field::Whole(" T=", 1, 0, 0, 9),
-                                     Field::Whole(" M=", 1, 0, 0, 9)}});
+  form_.emplace(
+      FormKind::kJob,
+      std::vector<Form::Line>{{Field::Whole("P=", 2, turn.program(), 1, kSlotMax),
+                               Field::Whole(" S=", 4, 0, 0, 9999), Field::Whole(" T=", 1, 0, 0, 9),
+                               Field::Whole(" M=", 1, 0, 0, 9)}});
 }
 
 // Nothing: the answer says why.
@@ -95,8 +95,7 @@ void OptimoHandbox::SelectNeighbour(Turn& turn, bool next) {
   Drop();
   if (next && above != programs.end()) return Select(turn, above->first, 0);
   if (next) return;
-  if (turn.program() == 0 && !programs.empty())
-    return Select(turn, programs.rbegin()->first, 0);
+  if (turn.program() == 0 && !programs.empty()) return Select(turn, programs.rbegin()->first, 0);
   if (at != programs.begin()) Select(turn, std::prev(at)->first, 0);
 }
 
@@ -130,6 +129,7 @@ void OptimoHandbox::Answer(Turn& turn) {
   const char c = turn.key.character;
   if (c != '0' && c != '1') return Refuse(turn);
   const Question asked = *std::exchange(question_, std::nullopt);
+  if (asked == Question::kExecution) return AnswerExecution(turn, c == '1');
   if (c == '0') return;
   if (asked == Question::kZero) return turn.Ask(machine::ZeroAxes{});
   const std::optional<Steps> steps = StepsOf(turn, turn.program());
@@ -148,8 +148,7 @@ void OptimoHandbox::Record(Turn& turn) {
     return AskForEdit(turn, CreateProgram(turn.program()),
                       {.program = turn.program(), .step = 1, .instruction = "ENDTASK"});
   }
-  if (ready_->as == Ready::As::kPoint || ready_->as == Ready::As::kCentre)
-    return RecordPoint(turn);
+  if (ready_->as == Ready::As::kPoint || ready_->as == Ready::As::kCentre) return RecordPoint(turn);
   RecordStatement(turn, ready_->statement);
 }
 
@@ -171,8 +170,13 @@ void OptimoHandbox::RecordPoint(Turn& turn) {
 }
 
 std::string OptimoHandbox::MoveText(const machine::MachineView& view) const {
-  std::string text = WithList("MOVE", PointAt(view, modes_.coord));
-  if (first_point_) text += WithList(" /VIA", *first_point_);
+  // First the via point and then the end of a circle; first the centre of a hole. OPT-5.18,
+  // OPT-5.19
+  std::vector<double> target = PointAt(view, modes_.coord);
+  std::vector<double> via = first_point_.value_or(std::vector<double>());
+  if (first_point_ && modes_.path == PathType::kHole) std::swap(target, via);
+  std::string text = WithList("MOVE", target);
+  if (!via.empty()) text += WithList(" /VIA", via);
   if (modes_.fly) text += " /FLY";
   if (next_move_.start) text += " /START (IL[" + std::to_string(*next_move_.start) + "])";
   if (next_move_.end) text += " /END (IL[" + std::to_string(*next_move_.end) + "])";
@@ -198,7 +202,9 @@ void OptimoHandbox::RecordStatement(Turn& turn, std::string_view statement) {
 
 void OptimoHandbox::AskForEdit(Turn& turn, Result<ProgramEdit> edit, ShownStep behind) {
   if (!edit) return Refuse(turn, edit.error().code);
-  if (!HasRoom(turn.view, *edit, parameters_.Number("CMOS_SIZE")))
+  const bool grows =
+      edit->kind == ProgramEdit::Kind::kCreate || edit->kind == ProgramEdit::Kind::kInsert;
+  if (grows && !HasRoom(turn.view, *edit, parameters_.Number("CMOS_SIZE")))
     return Refuse(turn, ErrorCode::kCmosFull);
   edit->note = NoteOf(turn.view);
   // Later steps move up.

@@ -55,8 +55,8 @@ Result<std::optional<Steps>> Steps::Of(const std::map<int, machine::StoredProgra
 
 int Steps::end() const {
   const auto count = static_cast<int>(module_.step_count);
-  const bool closed = !module_.instructions.empty() &&
-                      module_.instructions.back().op == Op::kEndtask;
+  const bool closed =
+      !module_.instructions.empty() && module_.instructions.back().op == Op::kEndtask;
   return closed ? count : count + 1;
 }
 

@@ -13,9 +13,7 @@ namespace {
 
 using Labels = std::vector<std::uint16_t>;
 
-Error NoPlace(std::string_view what) {
-  return {ErrorCode::kObjectCorrupt, std::string(what), {}};
-}
+Error NoPlace(std::string_view what) { return {ErrorCode::kObjectCorrupt, std::string(what), {}}; }
 
 // A module that is put together from instructions of others, one behind the other.
 class Joined {

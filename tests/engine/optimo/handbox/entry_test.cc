@@ -46,8 +46,9 @@ TEST_F(Entry, KeysOpenForms) {
 TEST_F(Entry, FormsAreOfManual) {
   for (const Mode mode : {Mode::kRepeat, Mode::kCycle, Mode::kSingle}) {
     Have({}, mode);
-    for (const char* key : {"MOV", "TCP", "DYN", "PATH", "WORK", "DLY", "OUT", "DEB", "CAL", "F2", "F3", "F6",
-                            "F8", "ZERO", "HOME", "REC", "DEL", "ENT", "NEXT", "5"}) {
+    for (const char* key :
+         {"MOV", "TCP", "DYN", "PATH", "WORK", "DLY", "OUT", "DEB", "CAL",  "F2",
+          "F3",  "F6",  "F8",  "ZERO", "HOME", "REC", "DEL", "ENT", "NEXT", "5"}) {
       Keys(key);
       EXPECT_EQ(Said(), 7601) << key;
     }
@@ -162,7 +163,8 @@ TEST_F(Entry, MovHasSixFields) {
     Keys("NEXT");
     EXPECT_EQ(Shows(), text);
   }
-  for (const char* text : {"END = 0", "TIME = 0", "START = 0", "FLY = 0", "SPEED 70.0", "SPEED 70.0"}) {
+  for (const char* text :
+       {"END = 0", "TIME = 0", "START = 0", "FLY = 0", "SPEED 70.0", "SPEED 70.0"}) {
     Keys("PREV");
     EXPECT_EQ(Shows(), text);
   }
@@ -223,7 +225,8 @@ TEST_F(Entry, TcpHasSixValues) {
   AtStep7();
   const double tip = machine->status().run.tip.tip.z();
   Keys("TCP");
-  for (const char* text : {"Y0 = 0.0", "Z0 = 0.0", "X1 = 0.0", "Y1 = 0.0", "Z1 = -5.0", "Z1 = -5.0"}) {
+  for (const char* text :
+       {"Y0 = 0.0", "Z0 = 0.0", "X1 = 0.0", "Y1 = 0.0", "Z1 = -5.0", "Z1 = -5.0"}) {
     Keys("NEXT");
     EXPECT_EQ(Shows(), text);
   }
@@ -239,12 +242,12 @@ TEST_F(Entry, OutSetsAnOutput) {
   AtStep7();
   Keys("OUT 1 1 NEXT 1");
   EXPECT_EQ(Shows(), "OUT 11 = 1");
-  EXPECT_EQ(Value("OL[11]"), "OFF");
+  EXPECT_EQ(Value("OL[11]"), "0");
   Keys("ENT");
-  EXPECT_EQ(Value("OL[11]"), "ON");
+  EXPECT_EQ(Value("OL[11]"), "1");
   EXPECT_EQ(Shows(), "*P=12S=0007I=LET");
   Keys("REC");
-  EXPECT_EQ(Step7(), "OL[11] = ON");
+  EXPECT_EQ(Step7(), "LET OL[11] = 1");
   Keys("OUT ENT");
   EXPECT_EQ(Said(), 7604);
 }
@@ -254,7 +257,7 @@ TEST_F(Entry, AnOutputThatIsNotFitted) {
   AtStep7();
   Keys("OUT 9 NEXT 1 ENT");
   EXPECT_EQ(Said(), 931);
-  EXPECT_EQ(Value("OL[9]"), "OFF");
+  EXPECT_EQ(Value("OL[9]"), "0");
   EXPECT_EQ(Shows(), "ERROR 931");
 }
 

@@ -104,7 +104,8 @@ TEST_F(Selection, NextAndPrevGoThroughSteps) {
   Keys("NEXT");
   EXPECT_EQ(Said(), 7602);
   Keys("JOB 1 ENT");
-  for (const char* step : {"0001I=SPEED", "0002I=DELAY", "0003I=LET", "0004I=ENDPRG", "0004I=ENDPRG"}) {
+  for (const char* step :
+       {"0001I=SPEED", "0002I=DELAY", "0003I=LET", "0004I=ENDPRG", "0004I=ENDPRG"}) {
     Keys("NEXT");
     EXPECT_EQ(Shows(), "P=01S=" + std::string(step));
   }
@@ -118,10 +119,12 @@ TEST_F(Selection, NextAndPrevGoThroughSteps) {
 
 // OPT-6.43 OPT-5.36 OPT-4.05: DECLAREs are not seen; WORK has names of its own.
 TEST_F(Selection, StepsHaveNames) {
-  Have({{1, "DECLARE A = VR[1]\nDECLARE B = VR[2]\nWORKDEF 0,0\nWORK 0,0/ON\nA = B\nWORK 0,0/OFF\n"
-            "GOSUB 10\nENDTASK\n10 RETURN\n"}});
+  Have({{1,
+         "DECLARE A = VR[1]\nDECLARE B = VR[2]\nWORKDEF 0,0\nWORK 0,0/ON\nA = B\nWORK 0,0/OFF\n"
+         "GOSUB 10\nENDTASK\n10 RETURN\n"}});
   Keys("JOB 1 ENT");
-  for (const char* name : {"WORKDEF", "WORKON", "LET", "WORKOFF", "GOSUB", "ENDTASK", "RETURN", "ENDPRG"}) {
+  for (const char* name :
+       {"WORKDEF", "WORKON", "LET", "WORKOFF", "GOSUB", "ENDTASK", "RETURN", "ENDPRG"}) {
     Keys("NEXT");
     EXPECT_EQ(Shows().substr(12), name);
   }
