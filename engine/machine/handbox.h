@@ -66,9 +66,16 @@ struct ModalSetting {
   std::vector<double> values{};
 };
 
+// A run in MANUAL, of a program that is nowhere stored. It needs what a run needs.
+struct RunByHand {
+  HandRun what = HandRun::kHome;
+  std::string text{};
+};
+
 // What a key asks of the machine, in this order.
 struct HandboxAnswer {
   std::vector<MachineInput> requests{};  // none behind one that is refused
+  std::optional<RunByHand> run{};
   std::optional<ModalSetting> setting{};
   std::optional<ShownStep> shown{};  // the step that is selected now
   // The control cannot do what was asked. A code of the control, or of the cell.
@@ -98,7 +105,9 @@ class Handbox {
 
   virtual Panel panel(const MachineView& view) const = 0;
   virtual JogReference jog_reference() const = 0;  // of the jog keys
-  virtual void CyclePower() = 0;                   // it is as it comes
+  // Of such a run, where the override of the machine is this.
+  virtual double OverrideOf(HandRun run, double override_percent) const = 0;
+  virtual void CyclePower() = 0;  // it is as it comes
 
   // Without what is half entered; empty: it is as it comes. One line.
   virtual std::string Save() const = 0;

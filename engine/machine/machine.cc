@@ -139,7 +139,7 @@ void Machine::CloseRun() {
                    .lasted = state.time,
                    .steps = run_->steps_executed(),
                    .figures = run_->figures()});
-  if (!std::exchange(selected_, false)) shown_ = status().shown;
+  if (!std::exchange(selected_, false) && !note_.by_hand) shown_ = status().shown;
   if (outcome.code) Show(*outcome.code);
   if (outcome.code && Lookup(*outcome.code).severity == Severity::kAlarm)
     Raise(*outcome.code, outcome.detail, outcome.place);
@@ -195,7 +195,7 @@ MachineStatus Machine::status() const {
   }
   status.open = note_;
   const RunState& run = status.run;
-  if (run.place.step > 0 && !selected_) {
+  if (run.place.step > 0 && !selected_ && (!note_.by_hand || Pauses())) {
     status.shown = {.program = run.place.program,
                     .step = run.place.step,
                     .instruction = std::string(run.instruction)};
@@ -303,7 +303,7 @@ Status Machine::Act(const StartRun& input) {
   return Begin(input, mode_);
 }
 
-Status Machine::Begin(const StartRun& input, Mode mode, bool by_hand) {
+Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> hand) {
   RunSetup setup(parameters_);
   setup.programs = memory_.programs;
   if (input.brought) setup.programs[input.program] = *input.brought;
@@ -312,20 +312,22 @@ Status Machine::Begin(const StartRun& input, Mode mode, bool by_hand) {
   setup.schedules = memory_.schedules;
   setup.machine_state = standing_->Save();
   setup.mode = mode;
-  setup.override_percent = override_percent_;
-  if (!by_hand) setup.simul = simulation_;
+  setup.override_percent = OverrideOf(hand);
+  if (!hand) setup.simul = simulation_;
   setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
   Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
   if (!run) return run.error();
-  if (!by_hand) simulation_.reset();
+  if (!hand) simulation_.reset();
   changed_.clear();
   if (input.brought) changed_.insert(input.program);  // what is made of it is not of the memory
   note_ = {
       .number = note_.number + 1, .program = input.program, .source = input.source, .begun = now_};
-  shown_ = {.program = input.program};
+  note_.by_hand = hand.has_value();
+  note_.hand = hand.value_or(HandRun::kZero);
   run_ = *std::move(run);
-  if (!by_hand) run_->SetBreakpoints(breakpoints_);
-  note_.by_hand = by_hand;
+  if (hand) return {};
+  shown_ = {.program = input.program};
+  run_->SetBreakpoints(breakpoints_);
   return {};
 }
 
@@ -336,14 +338,8 @@ Status Machine::Act(const ZeroAxes& /*input*/) {
     return Error{ErrorCode::kCellNotLive,
                  "the axes of " + Told("machine", info.title) + " have their reference always",
                  {}};
-  StateGuards now = guards();
-  now.manual = mode_ == Mode::kManual || mode_ == Mode::kRemote;
-  const Transition next = Next(state(), MachineEvent::kMoveByHand, now);
-  if (next.code == ErrorCode::kCellMode)
-    return Error{ErrorCode::kCellMode, "ZERO works in MANUAL, and from the console in REMOTE", {}};
-  if (next.code) return Refusal(*next.code);
-  if (run_ != nullptr) return NotNow(state(), "a run is open; end it first");
-  if (jog_.moves()) return NotNow(state(), kReleaseKeys);
+  if (const Status may = MayMoveByHand(mode_ == Mode::kManual || mode_ == Mode::kRemote); !may)
+    return may.error();
   Translation zero =
       family_.Translate({.bytes = info.zero_program}, parameters_, {.advice = false});
   RMLCELL_CHECK(zero.ok);
@@ -351,7 +347,7 @@ Status Machine::Act(const ZeroAxes& /*input*/) {
       Begin({.program = info.home_program,
              .unzeroed = true,
              .brought = StoredProgram{.name = "ZERO", .object = Bytes::Of(std::move(zero.object))}},
-            Mode::kRemote, true);
+            Mode::kRemote, HandRun::kZero);
   goes_home_ = begun && mode_ == Mode::kRemote;
   return begun;
 }
@@ -360,7 +356,7 @@ Status Machine::Act(const ResumeRun& input) {
   const Transition next = Next(state(), MachineEvent::kResume, guards());
   if (next.code) return Refusal(*next.code);
   if (next.kind == Transition::Kind::kStays && !next.Does(StateAct::kTakeBack)) return {};
-  if (const Status source = MaySource(input.source); !source) return source.error();
+  if (const Status source = MaySource(input.source); !source && !Pauses()) return source.error();
   if (abort_behind_) return NotNow(state(), "the run ends as soon as it stands");
   if (stopping_ && !family_.info().start_takes_back) {
     resume_behind_ = true;
@@ -382,7 +378,7 @@ void Machine::Halt(InputKind key) {
   if (run_ == nullptr || run_->state().phase == RunPhase::kHalted) return;
   resume_behind_ = false;
   // What is moved by hand is over where it comes to rest.
-  abort_behind_ = abort_behind_ || note_.by_hand;
+  abort_behind_ = abort_behind_ || (note_.by_hand && !Pauses());
   ToRun(key);
   stopping_ = true;
 }
@@ -467,7 +463,10 @@ Status Machine::Act(const ChangeOverride& input) {
         {}};
   }
   override_percent_ = input.percent;
-  if (run_ != nullptr) ToRun(InputKind::kOverride, 0, input.percent);
+  if (run_ != nullptr) {
+    const auto hand = note_.by_hand ? std::optional(note_.hand) : std::nullopt;
+    ToRun(InputKind::kOverride, 0, OverrideOf(hand));
+  }
   AskJog();
   return {};
 }
@@ -497,7 +496,7 @@ Status Machine::Act(const MoveDoor& input) {
   ToRun(InputKind::kDoor, 0, input.open ? 1.0 : 0.0);
   if (goes_on && run_->state().door_open) {
     stopping_ = true;
-    abort_behind_ = abort_behind_ || note_.by_hand;
+    abort_behind_ = abort_behind_ || (note_.by_hand && !Pauses());
   }
   return {};
 }

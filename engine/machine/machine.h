@@ -92,10 +92,10 @@ class Machine {
   //   CellInvalidArgument, ProgramMissing and the like: what the input names is none
   Status Apply(const MachineInput& input);
 
-  // The same of PressKey, with what the key did. What the control itself refuses is no error, but a
+  // Of a PressedKey, with what the key did. What the control itself refuses is no error, but a
   // message. Errors: CellInvalidArgument, no such key; CellNotLive, it is off or has no handbox.
   // LIVE-7.10
-  Result<KeyAnswer> Press(const PressKey& key);
+  Result<KeyAnswer> PressKey(std::string_view key, KeyAction action = KeyAction::kTap);
 
   const MachineFamily& family() const { return family_; }
   bool has_handbox() const { return handbox_ != nullptr; }
@@ -168,13 +168,13 @@ class Machine {
   Status Act(const ReleaseJog& input);
   Status Act(const ReleaseJogs& input);
   Status Act(const StartAtStep& input);  // machine_start_at.cc
-  Status Act(const PressKey& input);
+  Status Act(const PressedKey& input);
   Status Act(const RefuseEdit& input);
 
   StateGuards guards() const;
   Error Refusal(ErrorCode code) const;
   Status MayStart(const StartRun& input) const;
-  Status Begin(const StartRun& input, Mode mode, bool by_hand = false);
+  Status Begin(const StartRun& input, Mode mode, std::optional<HandRun> hand = {});
   Status MayStartAt(const StartAtStep& input) const;
   RunSetup SetupTo(const StartAtStep& input) const;
   Status Enter(const StartAtStep& input, const StartPreview& preview);
@@ -193,6 +193,10 @@ class Machine {
   Status Take(MachineNote note);
   MachineView View() const;
   void Select(ShownStep shown);
+  Status MayMoveByHand(bool manual) const;
+  Status BeginByHand(const RunByHand& asked);
+  bool Pauses() const { return note_.by_hand && note_.hand == HandRun::kFunction; }
+  double OverrideOf(std::optional<HandRun> hand) const;
   void EndEdit(int slot, std::string_view object);
 
   const MachineFamily& family_;

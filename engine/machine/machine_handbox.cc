@@ -1,7 +1,10 @@
 #include <utility>
 
+#include "engine/core/check.h"
 #include "engine/machine/handbox.h"
 #include "engine/machine/machine.h"
+#include "engine/machine/machine_states.h"
+#include "engine/machine/refusal.h"
 
 // The machine and the handbox on it: keys become what they ask for. LIVE-7.01
 namespace rmlcell::machine {
@@ -30,17 +33,18 @@ void Machine::Select(ShownStep shown) {
   selected_ = run_ != nullptr;
 }
 
-Result<KeyAnswer> Machine::Press(const PressKey& key) {
+Result<KeyAnswer> Machine::PressKey(std::string_view key, KeyAction action) {
   if (handbox_ == nullptr)
     return Error{
         ErrorCode::kCellNotLive, Told("machine", family_.info().title) + " has no handbox", {}};
-  Result<HandboxAnswer> asked = handbox_->Press(key.key, key.action, View());
+  Result<HandboxAnswer> asked = handbox_->Press(key, action, View());
   if (!asked) return asked.error();
   Status done;
   for (const MachineInput& request : asked->requests) {
     done = Apply(request);
     if (!done) break;
   }
+  if (done && asked->run) done = BeginByHand(*asked->run);
   if (done && asked->setting) standing_->SetModal(asked->setting->name, asked->setting->values);
   if (done && asked->shown) Select(*std::move(asked->shown));
   const std::optional<ErrorCode> refused = handbox_->Done(done);
@@ -49,8 +53,42 @@ Result<KeyAnswer> Machine::Press(const PressKey& key) {
                    .edit = std::move(asked->edit)};
 }
 
-Status Machine::Act(const PressKey& input) {
-  const Result<KeyAnswer> answer = Press(input);
+// LIVE-2.10 x7
+Status Machine::MayMoveByHand(bool manual) const {
+  StateGuards now = guards();
+  now.manual = manual;
+  const Transition next = Next(state(), MachineEvent::kMoveByHand, now);
+  if (next.code == ErrorCode::kCellMode)
+    return Error{ErrorCode::kCellMode, "ZERO works in MANUAL, and from the console in REMOTE", {}};
+  if (next.code) return Refusal(*next.code);
+  if (run_ != nullptr) return NotNow(state(), "a run is open; end it first");
+  if (jog_.moves()) return NotNow(state(), kReleaseKeys);
+  return {};
+}
+
+double Machine::OverrideOf(std::optional<HandRun> hand) const {
+  if (!hand || *hand == HandRun::kZero || handbox_ == nullptr) return override_percent_;
+  return handbox_->OverrideOf(*hand, override_percent_);
+}
+
+// Its text lies where no program is that it may call.
+Status Machine::BeginByHand(const RunByHand& asked) {
+  if (const Status may = MayMoveByHand(mode_ == Mode::kManual); !may) return may.error();
+  if (!standing_->state().zeroed)
+    return Error{family_.info().not_zeroed, "the axes have no reference", {}};
+  int slot = kSlotMax;
+  while (slot > kSlotMin && memory_.programs.contains(slot)) --slot;
+  Translation made = family_.Translate({.bytes = asked.text}, parameters_, {.advice = false});
+  RMLCELL_CHECK(made.ok);
+  return Begin(
+      {.program = slot,
+       .source = StartSource::kPanel,
+       .brought = StoredProgram{.name = "HANDBOX", .object = Bytes::Of(std::move(made.object))}},
+      Mode::kCycle, asked.what);
+}
+
+Status Machine::Act(const PressedKey& input) {
+  const Result<KeyAnswer> answer = PressKey(input.key, input.action);
   if (!answer) return answer.error();
   return {};
 }

@@ -141,7 +141,7 @@ struct StartAtStep {
 
 // A key of the handbox, by its name: "REC". LIVE-7.03
 enum class KeyAction : std::uint8_t { kTap, kPress, kRelease };
-struct PressKey {
+struct PressedKey {
   std::string key{};
   KeyAction action = KeyAction::kTap;
 };
@@ -156,6 +156,6 @@ using MachineInput =
                  Acknowledge, ChangeMode, ChangeOverride, ChangeInput, MoveDoor, SwitchPower,
                  WriteVariable, SetBreakpoints, SetSimulation, StoreProgram, DeleteProgram,
                  SetSchedules, ClearMessage, StartAtStep, PressJog, ReleaseJog, ReleaseJogs,
-                 PressKey, RefuseEdit>;
+                 PressedKey, RefuseEdit>;
 
 }  // namespace rmlcell::machine

@@ -70,6 +70,7 @@ Status Machine::Act(const ReleaseJog& input) {
 
 Status Machine::Act(const ReleaseJogs& /*input*/) {
   jog_.ReleaseAll();
+  if (run_ != nullptr && note_.by_hand && note_.hand == HandRun::kHome) return Act(AbortRun{});
   return {};
 }
 

@@ -41,13 +41,21 @@ struct RunEntry {
   bool operator==(const RunEntry&) const = default;
 };
 
+// What moves by hand and is a run nevertheless.
+enum class HandRun : std::uint8_t {
+  kZero,      // the axes find their reference
+  kHome,      // to the home position, while the key is down
+  kFunction,  // a part of a program, carried out from the handbox: STOP holds it, START goes on
+};
+
 // A run that is open, or the last one that was.
 struct RunNote {
   std::int64_t number = 0;  // counts from 1
   int program = 0;
   StartSource source = StartSource::kConsole;
   SimTime begun{0};                   // of the machine: time of the run counts from here
-  bool by_hand = false;               // no program of anybody: the axes find their reference
+  bool by_hand = false;               // no program of anybody
+  HandRun hand = HandRun::kZero;      // by_hand: which one
   std::optional<RunEntry> entered{};  // then `begun` lies before it was begun, by that time
 };
 

@@ -147,7 +147,7 @@ struct Applied {
   void operator()(const machine::ReleaseJogs&) const {
     made.mutable_key()->set_action(v1::KEY_ACTION_RELEASE);
   }
-  void operator()(const machine::PressKey& input) const {
+  void operator()(const machine::PressedKey& input) const {
     made.mutable_key()->set_key(std::string(kHandboxKey) + input.key);
     made.mutable_key()->set_action(ToldAction(input.action));
   }
@@ -187,8 +187,8 @@ Result<MachineInput> OfKey(const v1::PressedKey& key) {
   if (name.starts_with(kHandboxKey)) {
     const auto action = bridge::ActionOf(key.action());
     if (!action) return Error{ErrorCode::kCellInvalidArgument, "a key without action", {}};
-    return MachineInput(
-        machine::PressKey{.key = std::string(name.substr(kHandboxKey.size())), .action = *action});
+    return MachineInput(machine::PressedKey{.key = std::string(name.substr(kHandboxKey.size())),
+                                            .action = *action});
   }
   if (name.starts_with(kRefusedEdit)) {
     const auto rows = FindByText(name.substr(kRefusedEdit.size()));

@@ -32,7 +32,7 @@ std::optional<std::string> FieldOf(const v1::HostOrder& order, const std::string
 }
 
 // A key that begins a motion, or says YES to one.
-bool MayMove(const machine::PressKey& key) {
+bool MayMove(const machine::PressedKey& key) {
   constexpr std::array<std::string_view, 5> kKeys = {"START", "HOME", "ZERO", "1", "ENT"};
   return key.action != machine::KeyAction::kRelease &&
          (bridge::JogKeyOf(key.key) || std::ranges::find(kKeys, key.key) != kKeys.end());
@@ -263,7 +263,7 @@ Status HostMachine::MayApply(const machine::MachineInput& input) const {
                       std::holds_alternative<machine::StartAtStep>(input);
   const bool resumes = std::holds_alternative<machine::ResumeRun>(input);
   const bool aborts = std::holds_alternative<machine::AbortRun>(input);
-  const auto* key = std::get_if<machine::PressKey>(&input);
+  const auto* key = std::get_if<machine::PressedKey>(&input);
   const bool by_hand = std::holds_alternative<machine::ZeroAxes>(input) ||
                        std::holds_alternative<machine::PressJog>(input) ||
                        (key != nullptr && MayMove(*key));
@@ -304,7 +304,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   memory_changes_ += std::holds_alternative<machine::StoreProgram>(input) ||
                      std::holds_alternative<machine::DeleteProgram>(input) ||
                      std::holds_alternative<machine::SetSchedules>(input);
-  const auto* key = std::get_if<machine::PressKey>(&input);
+  const auto* key = std::get_if<machine::PressedKey>(&input);
   // Of a key nobody knows before what it begins.
   const bool begins = starts || std::holds_alternative<machine::ZeroAxes>(input) ||
                       (key != nullptr && !machine().status().open);

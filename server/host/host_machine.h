@@ -113,7 +113,7 @@ class HostMachine : private machine::RunObserver {
   Status CloseSession(const std::string& name);
   v1::HandboxPanel HandboxNow() const;
   Result<v1::PressKeyResponse> PressHandboxKey(const v1::HostOrder& order, const HostTime& now);
-  Status Press(const machine::PressKey& key, const v1::HostOrder* order);
+  Status Press(const machine::PressedKey& key, const v1::HostOrder* order);
   void Edit(const machine::ProgramEdit& edit, const std::string& caller);
   StartDesk::Basis Basis() const;
   Status StartAt(const v1::HostOrder& order, const HostTime& now);

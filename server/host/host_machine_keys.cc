@@ -147,7 +147,7 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOutKeys(const v1::HostOrder& order
 void HostMachine::LetGo(const std::string& key) {
   if (session_ > 0) {
     static_cast<void>(
-        Apply(machine::PressKey{.key = key, .action = machine::KeyAction::kRelease}, nullptr));
+        Apply(machine::PressedKey{.key = key, .action = machine::KeyAction::kRelease}, nullptr));
   } else if (const auto jog = bridge::JogKeyOf(key)) {
     static_cast<void>(Apply(machine::ReleaseJog{*jog}, nullptr));
   }
@@ -234,8 +234,8 @@ Result<v1::PressKeyResponse> HostMachine::PressHandboxKey(const v1::HostOrder& o
   return response;
 }
 
-Status HostMachine::Press(const machine::PressKey& key, const v1::HostOrder* order) {
-  const Result<machine::KeyAnswer> pressed = machine().Press(key);
+Status HostMachine::Press(const machine::PressedKey& key, const v1::HostOrder* order) {
+  const Result<machine::KeyAnswer> pressed = machine().PressKey(key.key, key.action);
   if (!pressed) return pressed.error();
   key_message_ = pressed->message;
   beeps_ += pressed->beeps;

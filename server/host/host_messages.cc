@@ -227,7 +227,7 @@ Result<std::vector<MachineInput>> InputsOf(const v1::HostOrder& order,
     const auto action = bridge::ActionOf(order.key().action());
     if (!action) return Invalid("action: say which");
     return std::vector<MachineInput>{
-        machine::PressKey{.key = order.key().key(), .action = *action}};
+        machine::PressedKey{.key = order.key().key(), .action = *action}};
   }
   if (order.has_panel_key()) return OfPanelKey(order.panel_key(), machine);
   std::vector<MachineInput> inputs;

@@ -124,7 +124,7 @@ PUBLIC = {
     "engine/optimo/offline": ["compensate.h", "contour_advice.h", "convert.h", "fix_program.h", "house_programs.h",
                               "listing.h", "project.h", "semantic_diff.h", "transform.h", "translate.h"],
     "engine/optimo/editing": ["optimo_editing.h"],
-    "engine/optimo/handbox": ["optimo_handbox.h", "steps.h"],
+    "engine/optimo/handbox": ["optimo_handbox.h", "override_steps.h", "steps.h"],
     "engine/optimo/machine": ["beam.h", "laser_unit.h", "machine_state.h", "motion_errors.h", "optimo_parameters.h",
                               "situation.h", "system_cycle.h", "telling.h"],
     "engine/optimo/ride": ["ride.h", "travel.h"],

@@ -1,31 +1,14 @@
 #include "engine/optimo/control/optimo_standing.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "engine/motion/kinematics/kinematics.h"
 #include "engine/optimo/control/modal_values.h"
 #include "engine/optimo/control/state_items.h"
+#include "engine/optimo/handbox/override_steps.h"
 #include "engine/optimo/machine/situation.h"
 
 namespace rmlcell::optimo {
-namespace {
-
-// Of the machine's speed, at the ten steps of the override: 10, 25 .. 145 %. OPT-4.34, OPT-4.35
-constexpr std::array kJogShares = {0.0005, 0.003, 0.01, 0.03, 0.09, 0.15, 0.21, 0.27, 0.33, 0.40};
-
-// Between two steps it is the lower one.
-double JogShareOf(double override_percent) {
-  constexpr double kFirst = 10.0;
-  constexpr double kApart = 15.0;
-  const double step = std::floor((override_percent - kFirst) / kApart + 1e-9);
-  return kJogShares[static_cast<std::size_t>(
-      std::clamp(step, 0.0, static_cast<double>(kJogShares.size() - 1)))];
-}
-
-}  // namespace
-
 machine::RunState OptimoStanding::state() const {
   machine::RunState state;
   state.phase = machine::RunPhase::kFinished;

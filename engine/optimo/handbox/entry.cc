@@ -309,26 +309,50 @@ void OptimoHandbox::EnterSimul(Turn& turn) {
   turn.Ask(machine::SetSimulation{.until = until});
 }
 
-// OPT-9.33 to 9.35, without the question: it is recorded, and carried out by no key.
+// OPT-9.33, OPT-9.34
 void OptimoHandbox::EnterFunction(Turn& turn) {
   const Form form = *form_;
-  const auto ready = [this, &turn](const std::vector<double>& values) {
-    const std::string number = std::to_string(function_);
-    const std::string text = "FUNCTION " + number;
-    MakeReady(turn, "FUNCTION = " + std::string(function_ < 10 ? "0" : "") + number,
-              values.empty() ? text : WithList(text, values));
+  const auto ask = [this](const std::vector<double>& values) {
+    const std::string text = "FUNCTION " + std::to_string(function_);
+    function_text_ = values.empty() ? text : WithList(text, values);
+    form_.reset();
+    question_ = Question::kExecution;
   };
   if (form.kind() == FormKind::kFunction) {
     function_ = form.at(0).whole();
     form_ = Form::OfLines(FormKind::kFunctionCount,
                           {Field::Whole("NUMBER PARAMETERS=", 1, 0, 0, kParameterCount)});
   } else if (form.kind() == FormKind::kFunctionValues) {
-    ready(ValuesOf(form, form.count()));
+    ask(ValuesOf(form, form.count()));
   } else if (const auto count = static_cast<std::size_t>(form.at(0).whole()); count > 0) {
     form_ = Form::OfNumbers(FormKind::kFunctionValues, std::span(kParameterNames).first(count), {});
   } else {
-    ready({});
+    ask({});
   }
+  if (question_ && !IsInstruction(function_text_)) {
+    question_.reset();
+    Refuse(turn, ErrorCode::kFieldRange);
+  }
+}
+
+// Carried out with the modes of the handbox, or not: then it is ready to record. OPT-9.35 to 9.37
+void OptimoHandbox::AnswerExecution(Turn& turn, bool yes) {
+  const std::string number = (function_ < 10 ? "0" : "") + std::to_string(function_);
+  if (!yes) {
+    MakeReady(turn, "FUNCTION = " + number, function_text_);
+    return;
+  }
+  constexpr std::array<std::string_view, 4> kPaths = {"PTP", "LIN", "CIR", "HOLE"};
+  const std::string path(kPaths[static_cast<std::size_t>(modes_.path)]);
+  const bool hole = modes_.path == PathType::kHole;
+  const std::string coord = modes_.coord == CoordType::kAbsol ? "ABSOL" : "ROBOT";
+  if (!MakeReady(turn, "FUNC=" + number, function_text_, Ready::As::kLink)) return;
+  turn.answer.run = {.what = machine::HandRun::kFunction,
+                     .text = "COORD " + coord + "\n" +
+                             (hole ? WithList("PATH HOLE", {modes_.radius_mm}) : "PATH " + path) +
+                             "\n" + WithReal("SPEED", modes_.speed_percent) + "\n" +
+                             WithReal("OVERSH", modes_.oversh_percent) + "\n" + function_text_ +
+                             "\n"};
 }
 
 // OPT-9.38

@@ -83,6 +83,7 @@ void Field::Type(char c) {
 
 double Field::value() const {
   if (width_ == 0 && !typed_) return given_;
+  if (digits_.find_first_of("0123456789") == std::string::npos) return std::nan("");
   // "12." and ".5" are typed, too.
   std::string text = digits_;
   if (text.ends_with('.')) text += '0';

@@ -1,10 +1,11 @@
 #include "engine/optimo/handbox/optimo_handbox.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "engine/optimo/handbox/display.h"
+#include "engine/optimo/handbox/modal_text.h"
+#include "engine/optimo/handbox/override_steps.h"
 
 // Modes, runs and axes: what acts while nothing is entered.
 namespace rmlcell::optimo {
@@ -20,12 +21,13 @@ using machine::RunPhase;
 constexpr std::array kModeSwitch = {Mode::kManual, Mode::kRepeat, Mode::kCycle, Mode::kSingle,
                                     Mode::kRemote};
 
-// OPT-4.34
-constexpr double kOverrideFirst = 10.0;
-constexpr double kOverrideApart = 15.0;
-constexpr int kOverrideLast = 9;
+constexpr double kFunctionShare = 0.4;  // of the override, OPT-9.36
+constexpr double kPercent = 100.0;
 
 bool MovesByHand(const MachineView& view) { return view.status.open && view.status.open->by_hand; }
+bool IsByHand(const MachineView& view, machine::HandRun what) {
+  return MovesByHand(view) && view.status.open->hand == what;
+}
 
 // Of a run that is open, and of axes that find their reference.
 bool RunGoesOn(const MachineView& view) {
@@ -83,6 +85,7 @@ Result<machine::HandboxAnswer> OptimoHandbox::Press(std::string_view key, machin
   }
   // LIVE-7.03: of a TAP no motion is left.
   if (action != machine::KeyAction::kPress) Release(turn);
+  if (action == machine::KeyAction::kTap && known->key == Key::kHome) turn.answer.run.reset();
   return std::move(turn.answer);
 }
 
@@ -96,6 +99,8 @@ std::optional<ErrorCode> OptimoHandbox::Done(const Status& done) {
 void OptimoHandbox::Release(Turn& turn) {
   if (turn.key.key == Key::kJog) turn.Ask(machine::ReleaseJog{turn.key.jog});
   if (turn.key.key == Key::kEmergencyStop) turn.Ask(machine::EmergencyStop{false});
+  if (turn.key.key == Key::kHome && IsByHand(turn.view, machine::HandRun::kHome))
+    turn.Ask(machine::AbortRun{});
 }
 
 // In every mode. OPT-4.11, OPT-4.14, OPT-4.29, OPT-4.37
@@ -136,6 +141,7 @@ void OptimoHandbox::ClearError(Turn& turn) {
 }
 
 void OptimoHandbox::ChangeMode(Turn& turn, int by) {
+  if (IsByHand(turn.view, machine::HandRun::kHome)) turn.Ask(machine::AbortRun{});
   if (MovesByHand(turn.view)) return Refuse(turn);
   const auto at = std::ranges::find(kModeSwitch, turn.view.status.mode) - kModeSwitch.begin();
   const auto to = std::clamp<std::ptrdiff_t>(at + by, 0, std::ptrdiff_t{kModeSwitch.size()} - 1);
@@ -146,14 +152,16 @@ void OptimoHandbox::ChangeMode(Turn& turn, int by) {
   turn.Ask(machine::ChangeMode{kModeSwitch[static_cast<std::size_t>(to)]});
 }
 
-// From a value between two steps it goes to the next one.
 void OptimoHandbox::ChangeOverride(Turn& turn, bool up) {
-  if (MovesByHand(turn.view)) return Refuse(turn);
-  constexpr double kSame = 1e-9;
-  const double at = (turn.view.status.override_percent - kOverrideFirst) / kOverrideApart;
-  const double to = up ? std::floor(at + kSame) + 1.0 : std::ceil(at - kSame) - 1.0;
-  if (to < 0.0 || to > kOverrideLast) return;  // OPT-4.40
-  turn.Ask(machine::ChangeOverride{kOverrideFirst + kOverrideApart * to});
+  if (IsByHand(turn.view, machine::HandRun::kZero)) return Refuse(turn);
+  const double now = turn.view.status.override_percent;
+  const double next = NextOverride(now, up);
+  if (next != now) turn.Ask(machine::ChangeOverride{next});
+}
+
+double OptimoHandbox::OverrideOf(machine::HandRun run, double override_percent) const {
+  return run == machine::HandRun::kHome ? JogShareOf(override_percent) * kPercent
+                                        : override_percent * kFunctionShare;
 }
 
 bool OptimoHandbox::ActsOutsideRemote(Turn& turn) {
@@ -169,7 +177,7 @@ bool OptimoHandbox::ActsOutsideRemote(Turn& turn) {
       ChooseReference(turn);
       return true;
     case Key::kStart:
-      if (manual) return false;
+      if (manual && !IsByHand(turn.view, machine::HandRun::kFunction)) return false;
       Start(turn);
       return true;
     case Key::kHold:
@@ -227,6 +235,18 @@ void OptimoHandbox::ChooseReference(Turn& turn) {
   modes_.reference = turn.key.reference;
 }
 
+// OPT-4.15, OPT-4.74: while the key is down.
+void OptimoHandbox::GoHome(Turn& turn) {
+  Drop();
+  if (!turn.view.status.run.zeroed) return Refuse(turn, ErrorCode::kNotZeroed);
+  const auto axis = [this](std::string_view name) { return parameters_.Number(name); };
+  turn.answer.run = {.what = machine::HandRun::kHome,
+                     .text = "COORD ROBOT\nPATH PTP\nSPEED 100\n" +
+                             WithList("MOVE", {axis("HOME_X"), axis("HOME_Y"), axis("HOME_Z"),
+                                               axis("HOME_A"), axis("HOME_B")}) +
+                             "\n"};
+}
+
 void OptimoHandbox::InManual(Turn& turn) {
   if (RunGoesOn(turn.view) || edit_) return Refuse(turn);
   if (OpensForm(turn)) return;
@@ -235,6 +255,8 @@ void OptimoHandbox::InManual(Turn& turn) {
       return OpenJob(turn);
     case Key::kJog:
       return Jog(turn);
+    case Key::kHome:
+      return GoHome(turn);
     case Key::kZero:
       Drop();
       question_ = Question::kZero;
@@ -276,7 +298,8 @@ machine::Panel OptimoHandbox::panel(const MachineView& view) const {
   if (status.state == MachineState::kOff) return panel;
   panel.lamps = {machine::Name(status.mode), LampOf(modes_.reference)};
   if (shift_) panel.lamps.push_back("SHIFT");
-  if (MovesByHand(view)) panel.lamps.push_back("ZERO AXES");  // OPT-4.49
+  const bool zeroes = IsByHand(view, machine::HandRun::kZero);
+  if (zeroes) panel.lamps.push_back("ZERO AXES");  // OPT-4.49
   panel.message = told_ ? told_ : status.message;
   const auto show = [&panel](std::string text, bool flashing) {
     panel.display = OnDisplay(std::move(text));
@@ -284,19 +307,19 @@ machine::Panel OptimoHandbox::panel(const MachineView& view) const {
     return panel;
   };
   if (question_) {
-    constexpr std::array<std::string_view, 3> kAsked = {"ZERO AXIS?", "DELETE Y / N ?",
-                                                        "DELETE Y/N"};
+    constexpr std::array<std::string_view, 4> kAsked = {"ZERO AXIS?", "DELETE Y / N ?",
+                                                        "DELETE Y/N", "EXECUTION?"};
     return show(std::string(kAsked[static_cast<std::size_t>(*question_)]), false);
   }
   if (form_) return show(form_->text(), false);
   machine::ShownStep shown = status.shown;
-  if (ready_) {
+  if (ready_ && !RunGoesOn(view)) {
     if (ready_->as == Ready::As::kLink) return show(PlacedText(shown, ready_->name), true);
     if (ready_->as != Ready::As::kOutput) return show(ready_->name, true);
     shown.instruction = ready_->name;
     return show(DefaultText(shown), true);
   }
-  if (MovesByHand(view)) return show("ZERO AXES", true);
+  if (zeroes) return show("ZERO AXES", true);
   // The control knows its own numbers only. OPT-4.06
   if (panel.message && Lookup(*panel.message).family == ErrorFamily::kOptimo)
     return show("ERROR " + std::to_string(Lookup(*panel.message).number), false);

@@ -49,6 +49,7 @@ class OptimoHandbox final : public machine::Handbox {
 
   machine::Panel panel(const machine::MachineView& view) const override;
   machine::JogReference jog_reference() const override { return modes_.reference; }
+  double OverrideOf(machine::HandRun run, double override_percent) const override;
   void CyclePower() override;
   std::string Save() const override;
 
@@ -63,7 +64,7 @@ class OptimoHandbox final : public machine::Handbox {
     int step() const { return view.status.shown.step; }
     void Ask(machine::MachineInput input) { answer.requests.push_back(std::move(input)); }
   };
-  enum class Question { kZero, kDeleteStep, kDeleteProgram };
+  enum class Question { kZero, kDeleteStep, kDeleteProgram, kExecution };
 
   // An instruction that is ready to record: its name flashes.
   struct Ready {
@@ -72,7 +73,7 @@ class OptimoHandbox final : public machine::Handbox {
       kPoint,   // MOVE, here
       kCentre,  // the first point of a hole
       kOutput,  // shown as LET
-      kLink,    // GO and CALL, with the place where they come
+      kLink,    // GO, CALL and a FUNCTION that was carried out: with the place where they come
     };
     As as = As::kStatement;
     std::string name{};
@@ -102,6 +103,7 @@ class OptimoHandbox final : public machine::Handbox {
   void ClearError(Turn& turn);
   void Start(Turn& turn);
   void ChooseReference(Turn& turn);
+  void GoHome(Turn& turn);
   void Jog(Turn& turn);
 
   // selection.cc: programs, steps, and what changes them
@@ -138,6 +140,7 @@ class OptimoHandbox final : public machine::Handbox {
   void EnterBreak(Turn& turn);
   void EnterSimul(Turn& turn);
   void EnterFunction(Turn& turn);
+  void AnswerExecution(Turn& turn, bool yes);
   void EnterSysdef(Turn& turn);
   void AskNext(Turn& turn);
   // OPT-5.02; with no program selected only what it set stays. False: the control does not take it.
@@ -162,6 +165,7 @@ class OptimoHandbox final : public machine::Handbox {
   int tool_ = 0;
   int process_ = 0;
   int function_ = 0;
+  std::string function_text_{};  // with its parameters
   bool call_ = false;
 };
 

@@ -129,6 +129,7 @@ void OptimoHandbox::Answer(Turn& turn) {
   const char c = turn.key.character;
   if (c != '0' && c != '1') return Refuse(turn);
   const Question asked = *std::exchange(question_, std::nullopt);
+  if (asked == Question::kExecution) return AnswerExecution(turn, c == '1');
   if (c == '0') return;
   if (asked == Question::kZero) return turn.Ask(machine::ZeroAxes{});
   const std::optional<Steps> steps = StepsOf(turn, turn.program());
@@ -169,8 +170,13 @@ void OptimoHandbox::RecordPoint(Turn& turn) {
 }
 
 std::string OptimoHandbox::MoveText(const machine::MachineView& view) const {
-  std::string text = WithList("MOVE", PointAt(view, modes_.coord));
-  if (first_point_) text += WithList(" /VIA", *first_point_);
+  // First the via point and then the end of a circle; first the centre of a hole. OPT-5.18,
+  // OPT-5.19
+  std::vector<double> target = PointAt(view, modes_.coord);
+  std::vector<double> via = first_point_.value_or(std::vector<double>());
+  if (first_point_ && modes_.path == PathType::kHole) std::swap(target, via);
+  std::string text = WithList("MOVE", target);
+  if (!via.empty()) text += WithList(" /VIA", via);
   if (modes_.fly) text += " /FLY";
   if (next_move_.start) text += " /START (IL[" + std::to_string(*next_move_.start) + "])";
   if (next_move_.end) text += " /END (IL[" + std::to_string(*next_move_.end) + "])";
@@ -196,7 +202,9 @@ void OptimoHandbox::RecordStatement(Turn& turn, std::string_view statement) {
 
 void OptimoHandbox::AskForEdit(Turn& turn, Result<ProgramEdit> edit, ShownStep behind) {
   if (!edit) return Refuse(turn, edit.error().code);
-  if (!HasRoom(turn.view, *edit, parameters_.Number("CMOS_SIZE")))
+  const bool grows =
+      edit->kind == ProgramEdit::Kind::kCreate || edit->kind == ProgramEdit::Kind::kInsert;
+  if (grows && !HasRoom(turn.view, *edit, parameters_.Number("CMOS_SIZE")))
     return Refuse(turn, ErrorCode::kCmosFull);
   edit->note = NoteOf(turn.view);
   // Later steps move up.

@@ -27,6 +27,7 @@ TEST(MachineNoteTest, ReadsWhatItWritesAndNothingElse) {
       .last_run = 8,
       .shown = {.program = 12, .step = 7, .instruction = "MOVE"},
       .message = ErrorCode::kLabelNotFound,
+      .handbox = "1 2 0 3 1 12.7 70 100",
       .family = std::string("\0family\nx", 9)};
   const std::string text = WriteMachineNote(note);
   const Result<MachineNote> read = ReadMachineNote(text);

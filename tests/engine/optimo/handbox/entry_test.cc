@@ -242,12 +242,12 @@ TEST_F(Entry, OutSetsAnOutput) {
   AtStep7();
   Keys("OUT 1 1 NEXT 1");
   EXPECT_EQ(Shows(), "OUT 11 = 1");
-  EXPECT_EQ(Value("OL[11]"), "OFF");
+  EXPECT_EQ(Value("OL[11]"), "0");
   Keys("ENT");
-  EXPECT_EQ(Value("OL[11]"), "ON");
+  EXPECT_EQ(Value("OL[11]"), "1");
   EXPECT_EQ(Shows(), "*P=12S=0007I=LET");
   Keys("REC");
-  EXPECT_EQ(Step7(), "OL[11] = ON");
+  EXPECT_EQ(Step7(), "LET OL[11] = 1");
   Keys("OUT ENT");
   EXPECT_EQ(Said(), 7604);
 }
@@ -257,7 +257,7 @@ TEST_F(Entry, AnOutputThatIsNotFitted) {
   AtStep7();
   Keys("OUT 9 NEXT 1 ENT");
   EXPECT_EQ(Said(), 931);
-  EXPECT_EQ(Value("OL[9]"), "OFF");
+  EXPECT_EQ(Value("OL[9]"), "0");
   EXPECT_EQ(Shows(), "ERROR 931");
 }
 

@@ -40,7 +40,7 @@ class HandboxTest : public machine::MachineTest {
     for (std::string name; all >> name;) Do(name, KeyAction::kTap);
   }
   void Do(const std::string& key, KeyAction action) {
-    const Result<machine::KeyAnswer> answer = machine->Press({.key = key, .action = action});
+    const Result<machine::KeyAnswer> answer = machine->PressKey(key, action);
     ASSERT_TRUE(answer) << key << ": " << answer.error().detail;
     message = answer->message;
     beeps += answer->beeps;

@@ -1,4 +1,8 @@
 // Modes, override, SHIFT and the keys without function.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
 #include "tests/engine/optimo/handbox/handbox_bed.h"
 
 namespace rmlcell::optimo {
@@ -117,7 +121,7 @@ TEST_F(ModeKeys, KeysWithoutFunctionDoNothing) {
 TEST_F(ModeKeys, UnknownKeysAreRefused) {
   Have({});
   for (const char* key : {"", "F9", "x+", "D+", "10", "REC "}) {
-    const auto answer = machine->Press({.key = key});
+    const auto answer = machine->PressKey(key);
     ASSERT_FALSE(answer) << key;
     EXPECT_EQ(answer.error().code, ErrorCode::kCellInvalidArgument);
   }
@@ -127,7 +131,7 @@ TEST_F(ModeKeys, UnknownKeysAreRefused) {
 TEST_F(ModeKeys, WithoutPowerNothingIsPressed) {
   Have({});
   Good(machine::SwitchPower{false});
-  EXPECT_EQ(machine->Press({.key = "JOB"}).error().code, ErrorCode::kCellNotLive);
+  EXPECT_EQ(machine->PressKey("JOB").error().code, ErrorCode::kCellNotLive);
   EXPECT_EQ(Shows(), "");
   Do("EMERGENCY_STOP", KeyAction::kPress);
   Good(machine::SwitchPower{true});
@@ -142,7 +146,7 @@ class MillWithoutHandbox : public machine::MachineTest {
 // LIVE-7.01
 TEST_F(MillWithoutHandbox, HasNoKeys) {
   Load({"PU0,0;"});
-  EXPECT_EQ(machine->Press({.key = "START"}).error().code, ErrorCode::kCellNotLive);
+  EXPECT_EQ(machine->PressKey("START").error().code, ErrorCode::kCellNotLive);
 }
 
 // OPT-4.21 OPT-5.11 LIVE-7.01: modes are kept, open forms are not; a new power-up is as it comes.
@@ -187,6 +191,141 @@ TEST_F(ModeKeys, DamagedModesAreRefused) {
     const auto made = machine::Machine::Make(family_, parameters(), {}, other, nobody);
     ASSERT_FALSE(made) << line;
     EXPECT_EQ(made.error().code, ErrorCode::kCellBadText);
+  }
+}
+
+const std::vector<std::string> kEveryKey = {"START",
+                                            "STOP",
+                                            "HOLD",
+                                            "SHIFT",
+                                            "STEP",
+                                            "HOME",
+                                            "ZERO",
+                                            "EMERGENCY_STOP",
+                                            "NOTE",
+                                            "MODE_LEFT",
+                                            "MODE_RIGHT",
+                                            "OVERRIDE_PLUS",
+                                            "OVERRIDE_MINUS",
+                                            "JOG_ROB",
+                                            "JOG_ABS",
+                                            "JOG_TCP",
+                                            "X+",
+                                            "X-",
+                                            "Y+",
+                                            "Y-",
+                                            "Z+",
+                                            "Z-",
+                                            "A+",
+                                            "A-",
+                                            "B+",
+                                            "B-",
+                                            "C+",
+                                            "C-",
+                                            "DEL",
+                                            "MOD",
+                                            "REC",
+                                            "ERR",
+                                            "PREV",
+                                            "NEXT",
+                                            "ENT",
+                                            "JOB",
+                                            "TCP",
+                                            "DYN",
+                                            "PATH",
+                                            "WORK",
+                                            "DLY",
+                                            "MOV",
+                                            "OUT",
+                                            "DEB",
+                                            "CAL",
+                                            "PAR",
+                                            "DISP",
+                                            "F1",
+                                            "F2",
+                                            "F3",
+                                            "F4",
+                                            "F5",
+                                            "F6",
+                                            "F7",
+                                            "F8",
+                                            "0",
+                                            "1",
+                                            "2",
+                                            "3",
+                                            "4",
+                                            "5",
+                                            "6",
+                                            "7",
+                                            "8",
+                                            "9",
+                                            "POINT",
+                                            "MINUS"};
+
+// LIVE-7.03 OPT-4.12: every key in every mode has its function, or does nothing with 7601.
+TEST_F(ModeKeys, EveryKeyInEveryMode) {
+  const std::vector<std::string> always = {"ERR",           "MODE_LEFT",      "MODE_RIGHT",
+                                           "OVERRIDE_PLUS", "OVERRIDE_MINUS", "EMERGENCY_STOP"};
+  const std::vector<std::string> also = {"START", "STOP",    "HOLD",    "SHIFT",  "NOTE",
+                                         "JOB",   "JOG_ROB", "JOG_ABS", "JOG_TCP"};
+  // In MANUAL, with a program at a step and nothing entered.
+  const std::vector<std::string> dead = {
+      "STOP", "HOLD", "STEP", "MOD", "ENT", "PAR", "DISP", "F1", "F4", "F5",    "F7",   "0",
+      "1",    "2",    "3",    "4",   "5",   "6",   "7",    "8",  "9",  "POINT", "MINUS"};
+  const auto is_in = [](const std::vector<std::string>& keys, const std::string& key) {
+    return std::ranges::find(keys, key) != keys.end();
+  };
+  for (const Mode mode :
+       {Mode::kManual, Mode::kRepeat, Mode::kCycle, Mode::kSingle, Mode::kRemote}) {
+    for (const std::string& key : kEveryKey) {
+      Have({{1, "DELAY 1\nDELAY 1\n"}});
+      Keys("JOB 1 NEXT 1 ENT");
+      Good(machine::ChangeMode{mode});
+      Keys(key);
+      const bool acts = is_in(always, key) || (mode == Mode::kManual   ? !is_in(dead, key)
+                                               : mode == Mode::kRemote ? false
+                                                                       : is_in(also, key));
+      EXPECT_EQ(Said(), acts ? 0 : 7601) << key << " in mode " << static_cast<int>(mode);
+    }
+  }
+}
+
+// LIVE-7.01: whatever is pressed, the display has 20 characters, programs can be read, and the
+// machine is kept.
+TEST_F(ModeKeys, AnyKeysInAnyOrder) {
+  Have({{1, "DELAY 1\nMOVE (100.,2201.2,-350.,0.,0.)\nENDTASK\n"},
+        {4, "DELAY 1\n"},
+        {12, "SPEED 5\n"}});
+  std::uint32_t random = 4711;
+  const auto one_of = [&random](std::size_t count) {
+    random = random * 1664525U + 1013904223U;
+    return static_cast<std::size_t>(random >> 8U) % count;
+  };
+  for (int i = 0; i < 20'000; ++i) {
+    const std::string& key = kEveryKey[one_of(kEveryKey.size())];
+    if (key == "EMERGENCY_STOP" && one_of(20) != 0) continue;
+    Do(key, std::array{KeyAction::kTap, KeyAction::kTap, KeyAction::kPress,
+                       KeyAction::kRelease}[one_of(4)]);
+    if (one_of(3) == 0) {
+      const SimTime until =
+          machine->time() + SimTime(static_cast<std::int64_t>(one_of(2'000'000'000)));
+      // One that takes no time and is repeated goes on for ever.
+      if (machine->Advance(until) == machine::Progress::kMoreWork) Good(machine::AbortRun{});
+      heard.told.clear();
+    }
+    Shows();
+    while (!machine->status().alarms.empty()) {
+      Good(machine::EmergencyStop{false});
+      Good(machine::Acknowledge{machine->status().alarms.front().id});
+    }
+    machine->TakeRunsOver();
+    if (i % 500 != 0) continue;
+    for (const auto& [slot, program] : machine->memory().programs)
+      EXPECT_TRUE(DecodeObject(*program.object));
+    machine::RunObserver nobody;
+    const auto kept = machine::Machine::Make(family_, parameters(), {}, machine->Save(), nobody);
+    ASSERT_TRUE(kept);
+    EXPECT_EQ((*kept)->Save(), machine->Save());
   }
 }
 

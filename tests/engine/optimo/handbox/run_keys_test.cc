@@ -6,7 +6,6 @@ namespace {
 
 class RunKeys : public HandboxTest {
  protected:
-  void Until(SimTime end) { GoOn(end); }
   motion::AxisPose axes() const { return machine->status().run.axes; }
 };
 
@@ -53,22 +52,27 @@ TEST_F(RunKeys, SingleAdvancesByAStep) {
 
 // OPT-4.17 OPT-4.18: HOLD behind the instruction, STOP at once; START goes on.
 TEST_F(RunKeys, HoldStopAndStart) {
-  Have({{1, "COORD ROBOT\nPATH LIN\nSPEED 10\nMOVE (100.,0.,0.,0.,0.)\nMOVE (200.,0.,0.,0.,0.)\n"}},
-       Mode::kCycle);
+  Have(
+      {{1,
+        "COORD ABSOL\nPATH PTP\nMOVE (0.,2000.,-400.,0.,0.)\nPATH LIN\nSPEED 10\nMOVE (100.,2000.,-400.,0.,0.)\n"
+        "MOVE (200.,2000.,-400.,0.,0.)\n"}},
+      Mode::kCycle);
   Keys("JOB 1 ENT START");
   GoOn(At(1.0));
+  while (machine->status().shown.step < 6) GoOn(machine->time() + At(0.1));
+  GoOn(machine->time() + At(1.0));
   Keys("STOP");
-  GoOn(At(2.0));
+  GoOn(machine->time() + At(1.0));
   EXPECT_EQ(state(), MachineState::kHeld);
   const double stopped = axes().column.x();
   EXPECT_GT(stopped, 10.0);
   EXPECT_LT(stopped, 90.0);
   Keys("START HOLD");
-  GoOn(At(20.0));
+  GoOn(machine->time() + At(9.0));
   EXPECT_EQ(state(), MachineState::kHeld);
   EXPECT_NEAR(axes().column.x(), 100.0, 1e-6);
   Keys("START");
-  GoOn(At(40.0));
+  GoOn(machine->time() + At(9.0));
   EXPECT_NEAR(axes().column.x(), 200.0, 1e-6);
 }
 
@@ -98,7 +102,7 @@ TEST_F(RunKeys, RepeatBeginsAgain) {
   std::string steps;
   for (int i = 0; i < 4; ++i) {
     GoOn(At(0.5 + i));
-    steps += Shows()[8];
+    steps += Shows()[9];
   }
   EXPECT_EQ(steps, "1212");
   Keys("STOP");
@@ -184,7 +188,7 @@ TEST_F(RunKeys, JogKeysMoveWhileTheyAreDown) {
   EXPECT_EQ(axes().column.x(), moved);
   Keys("X-");  // a TAP leaves no motion
   GoOn(machine->time() + At(2.0));
-  EXPECT_LT(axes().column.x(), moved);
+  EXPECT_EQ(axes().column.x(), moved);
   EXPECT_EQ(state(), MachineState::kIdle);
   const motion::AxisPose before = axes();
   Hold("C+", 1.0);
@@ -284,6 +288,35 @@ TEST_F(RunKeys, AreRepeated) {
   };
   const std::string first = session();
   EXPECT_EQ(session(), first);
+}
+
+// LIVE-7.01: a key is an input like others: with the programs that it led to, it does the same
+// again.
+TEST_F(RunKeys, AreInputsOfTheMachine) {
+  Have({});
+  Keys("JOB 7 ENT REC");
+  Hold("X+", 0.5);
+  Keys("REC MODE_RIGHT MODE_RIGHT START");
+  GoOn(machine->time() + At(0.5));
+  const std::string pressed = machine->Save();
+  Have({});
+  std::size_t stored = 0;
+  const auto apply = [this, &stored](const std::string& key, KeyAction action,
+                                     std::size_t edit_count) {
+    Good(machine::PressedKey{.key = key, .action = action});
+    while (stored < edit_count) Store(edits.at(stored++));
+  };
+  for (const char* key : {"JOB", "7", "ENT"}) apply(key, KeyAction::kTap, 0);
+  apply("REC", KeyAction::kTap, 1);
+  apply("X+", KeyAction::kPress, 1);
+  GoOn(machine->time() + At(0.5));
+  apply("X+", KeyAction::kRelease, 1);
+  GoOn(machine->time() + At(2.0));
+  apply("REC", KeyAction::kTap, 2);
+  for (const char* key : {"MODE_RIGHT", "MODE_RIGHT", "START"}) apply(key, KeyAction::kTap, 2);
+  GoOn(machine->time() + At(0.5));
+  EXPECT_EQ(machine->Save(), pressed);
+  EXPECT_FALSE(machine->Apply(machine::PressedKey{.key = "F9"}));
 }
 
 // LIVE-2.11: a job of the queue goes on in REMOTE only.

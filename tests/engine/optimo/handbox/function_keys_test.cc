@@ -1,0 +1,206 @@
+// FUNCTION from the handbox, and HOME: what runs in MANUAL.
+#include "tests/engine/optimo/handbox/handbox_bed.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+class FunctionKeys : public HandboxTest {
+ protected:
+  // Program 12 of four steps, at the last one; FUNCTION 44 with one parameter.
+  void AtStep4(const std::string& function) {
+    Have({{12, "SPEED 1\nSPEED 2\nSPEED 3\nENDTASK\n"}, {44, function}});
+    Keys("JOB 1 2 NEXT 4 ENT");
+  }
+  motion::AxisPose axes() const { return machine->status().run.axes; }
+};
+
+// OPT-9.32 OPT-9.33 OPT-9.34 OPT-9.35: NO goes back, and REC records without executing.
+TEST_F(FunctionKeys, IsRecordedWithoutExecution) {
+  AtStep4("VR[1] = PAR[0]\nRETURN\n");
+  Keys("F3");
+  EXPECT_EQ(Shows(), "FUNCTION = 00");
+  Keys("4 4 ENT");
+  EXPECT_EQ(Shows(), "NUMBER PARAMETERS=0");
+  Keys("1 ENT");
+  EXPECT_EQ(Shows(), "PAR0 = 0.0");
+  Keys("DEL 7 ENT");
+  EXPECT_EQ(Shows(), "EXECUTION?");
+  Keys("0");
+  EXPECT_EQ(Shows(), "*FUNCTION = 44");
+  Keys("REC");
+  EXPECT_EQ(Program(12).at(3), "FUNCTION 44 (7.0)");
+  EXPECT_EQ(Shows(), "P=12S=0005I=ENDTASK");
+  EXPECT_EQ(Value("VR[1]"), "0.0");
+}
+
+// OPT-9.33: PREV and NEXT go through the parameters; there are eight at most.
+TEST_F(FunctionKeys, ParametersAreGoneThrough) {
+  AtStep4("RETURN\n");
+  Keys("F3 4 4 ENT 9 ENT");
+  EXPECT_EQ(Said(), 7604);
+  Keys("8 ENT");
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(Shows(), "PAR" + std::to_string(i) + " = 0.0");
+    Keys("NEXT");
+  }
+  Keys("PREV DEL MINUS 1 POINT 5 ENT 0 REC");
+  EXPECT_EQ(Program(12).at(3), "FUNCTION 44 (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.5, 0.0)");
+  Keys("F3 0 ENT");
+  EXPECT_EQ(Said(), 7604);
+}
+
+// OPT-9.36 OPT-9.37: YES runs it in MANUAL; then it can be recorded.
+TEST_F(FunctionKeys, YesExecutesIt) {
+  AtStep4("VR[1] = PAR[0]\nDELAY 1\nRETURN\n");
+  Keys("F3 4 4 ENT 1 ENT DEL 7 ENT 1");
+  EXPECT_EQ(Said(), 0);
+  GoOn(At(0.5));
+  EXPECT_EQ(Shows(), "P=44S=0002I=DELAY");
+  EXPECT_THAT(Lamps(), ElementsAre("MANUAL", "ROB"));
+  Keys("REC");
+  EXPECT_EQ(Said(), 7601);
+  Keys("ERR");
+  GoOn(At(2.0));
+  EXPECT_EQ(Over().outcome.kind, machine::OutcomeKind::kCompleted);
+  EXPECT_EQ(Value("VR[1]"), "7.0");
+  EXPECT_EQ(Shows(), "*P=12 S=0004 FUNC=44");
+  Keys("REC");
+  EXPECT_EQ(Program(12).at(3), "FUNCTION 44 (7.0)");
+}
+
+// OPT-9.36: 40 % of the override that is selected, which changes it at once.
+TEST_F(FunctionKeys, MovesAtAShareOfTheOverride) {
+  AtStep4(
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (100.,2201.2,-350.,0.,0.)\nMOVE (900.,2201.2,-350.,0.,0.)\nRETURN\n");
+  Keys("F3 4 4 ENT ENT 1");
+  while (machine->status().shown.step < 5) GoOn(machine->time() + At(0.1));
+  GoOn(machine->time() + At(2.0));
+  EXPECT_NEAR(machine->status().run.tip_speed_mm_s, 20.0, 1e-6);  // 4 % of 500 mm/s
+  Keys("OVERRIDE_MINUS OVERRIDE_MINUS");
+  GoOn(machine->time() + At(2.0));
+  EXPECT_NEAR(machine->status().run.tip_speed_mm_s, 14.0, 1e-6);
+}
+
+// OPT-9.36: STOP holds it, START goes on; SHIFT STOP ends it.
+TEST_F(FunctionKeys, StopStartAndAbort) {
+  AtStep4("DELAY 4\nVR[1] = 5.\nDELAY 4\nRETURN\n");
+  Keys("F3 4 4 ENT ENT 1");
+  GoOn(At(1.0));
+  Keys("STOP");
+  GoOn(At(9.0));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(Value("VR[1]"), "0.0");
+  Keys("MODE_RIGHT");
+  EXPECT_EQ(Said(), 7601);
+  Keys("START");
+  EXPECT_EQ(Said(), 0);
+  GoOn(At(14.0));
+  EXPECT_EQ(Value("VR[1]"), "5.0");
+  Keys("SHIFT STOP");
+  GoOn(At(15.0));
+  EXPECT_EQ(Over().outcome.kind, machine::OutcomeKind::kCancelled);
+  EXPECT_EQ(state(), MachineState::kIdle);
+}
+
+// OPT-9.36: one that is not there, or axes without reference.
+TEST_F(FunctionKeys, WhatCannotBeExecuted) {
+  AtStep4("RETURN\n");
+  Keys("F3 4 5 ENT ENT 1");
+  GoOn(At(1.0));
+  EXPECT_EQ(Over().outcome.code, ErrorCode::kFunctionMissing);
+  Good(machine::SwitchPower{false});
+  Good(machine::SwitchPower{true});
+  Keys("F3 4 4 ENT ENT 1");
+  EXPECT_EQ(Said(), 7310);
+}
+
+// OPT-4.15 OPT-4.35: while it is down, at the speed of jog.
+TEST_F(FunctionKeys, HomeMovesWhileItIsDown) {
+  Have({});
+  const motion::AxisPose home = axes();  // a new machine stands there, OPT-B.02
+  Hold("X+", 4.0);
+  const motion::AxisPose away = axes();
+  Do("HOME", KeyAction::kPress);
+  EXPECT_EQ(Said(), 0);
+  GoOn(machine->time() + At(1.0));
+  EXPECT_EQ(state(), MachineState::kJogging);
+  EXPECT_LE(machine->status().run.tip_speed_mm_s, 105.0 + 1e-6);
+  Do("HOME", KeyAction::kRelease);
+  GoOn(machine->time() + At(2.0));
+  const motion::AxisPose between = axes();
+  EXPECT_LT(between.column.x(), away.column.x() - 50.0);
+  EXPECT_GT(between.column.x(), home.column.x() + 50.0);
+  GoOn(machine->time() + At(5.0));
+  EXPECT_EQ(axes(), between);
+  Keys("HOME");  // a TAP leaves no motion
+  GoOn(machine->time() + At(2.0));
+  EXPECT_EQ(axes(), between);
+  Do("HOME", KeyAction::kPress);
+  GoOn(machine->time() + At(30.0));
+  EXPECT_NEAR(axes().column.x(), home.column.x(), 1e-3);
+  EXPECT_NEAR(axes().column.y(), home.column.y(), 1e-3);
+  EXPECT_EQ(state(), MachineState::kIdle);
+  Do("HOME", KeyAction::kRelease);
+  EXPECT_EQ(Said(), 0);
+}
+
+// OPT-4.35 OPT-4.37: at the step of the override, also one that comes while it moves.
+TEST_F(FunctionKeys, HomeFollowsTheOverride) {
+  Have({});
+  Hold("X+", 4.0);
+  const auto speed = [this] { return machine->status().run.tip_speed_mm_s; };
+  Keys("OVERRIDE_MINUS OVERRIDE_MINUS OVERRIDE_MINUS OVERRIDE_MINUS OVERRIDE_MINUS OVERRIDE_MINUS");
+  Do("HOME", KeyAction::kPress);
+  for (const double share : {0.0005, 0.003, 0.01, 0.03, 0.09, 0.15}) {
+    GoOn(machine->time() + At(0.5));
+    EXPECT_NEAR(speed(), 500.0 * share, 1e-6);
+    Keys("OVERRIDE_PLUS");
+  }
+  Do("HOME", KeyAction::kRelease);
+  GoOn(machine->time() + At(2.0));
+  EXPECT_EQ(state(), MachineState::kIdle);
+}
+
+// OPT-4.74 OPT-4.12 OPT-E.7310
+TEST_F(FunctionKeys, HomeNeedsZeroedAxesAndManual) {
+  Have({});
+  Hold("X+", 1.0);
+  const motion::AxisPose here = axes();
+  for (const Mode mode : {Mode::kRepeat, Mode::kCycle, Mode::kSingle, Mode::kRemote}) {
+    Good(machine::ChangeMode{mode});
+    Hold("HOME", 1.0);
+    EXPECT_EQ(axes(), here);
+  }
+  Good(machine::ChangeMode{Mode::kManual});
+  Good(machine::SwitchPower{false});
+  Good(machine::SwitchPower{true});
+  Do("HOME", KeyAction::kPress);
+  EXPECT_EQ(Said(), 7310);
+  GoOn(machine->time() + At(1.0));
+  EXPECT_EQ(axes(), here);
+}
+
+// LIVE-7.05 LIVE-7.06: nobody is heard any more; a mode key; the emergency stop.
+TEST_F(FunctionKeys, WhatStopsHome) {
+  Have({});
+  Hold("X+", 8.0);
+  const auto stops = [this](const auto& how) {
+    Do("HOME", KeyAction::kPress);
+    GoOn(machine->time() + At(0.5));
+    how();
+    GoOn(machine->time() + At(2.0));
+    const motion::AxisPose stopped = axes();
+    GoOn(machine->time() + At(2.0));
+    EXPECT_EQ(axes(), stopped);
+    EXPECT_FALSE(machine->open_run());
+  };
+  stops([this] { Good(machine::ReleaseJogs{}); });
+  stops([this] { Keys("MODE_RIGHT"); });
+  EXPECT_EQ(machine->status().mode, Mode::kManual);
+  stops([this] { Good(machine::MoveDoor{.open = true}); });
+  Good(machine::MoveDoor{.open = false});
+  stops([this] { Keys("EMERGENCY_STOP"); });
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

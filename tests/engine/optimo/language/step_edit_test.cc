@@ -1,0 +1,90 @@
+// Instructions put into an object and taken out of it.
+#include "engine/optimo/language/step_edit.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "engine/optimo/language/compiler.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+Compilation Compiled(const std::string& text) {
+  Compilation made = Compile(text, {}, {.object_limit = 0, .advice = false});
+  EXPECT_TRUE(made.ok) << text;
+  return made;
+}
+std::string Inserted(const std::string& text, std::uint32_t place, const std::string& step) {
+  const Result<std::string> object = InsertInstruction(Compiled(text).module, place, step);
+  return object ? ObjectToSource(*object).value() : CodeText(object.error().code);
+}
+std::string Removed(const std::string& text, std::uint32_t place) {
+  const Result<std::string> object = RemoveInstruction(Compiled(text).module, place);
+  return object ? ObjectToSource(*object).value() : CodeText(object.error().code);
+}
+std::string Canonical(const std::string& text) { return Decompile(Compiled(text).module); }
+
+// OPT-6.39 OPT-6.40: what comes of it is what the compiler makes of the text with the step.
+TEST(StepEdit, InsertsAnywhere) {
+  const std::string text =
+      "SPEED 5\nMOVE (1.,2.,3.,0.,0.)/VIA (4.,5.,6.,0.,0.)/FLY\nGOTO 10\n10 DELAY 1\n";
+  EXPECT_EQ(Inserted(text, 0, "COORD ABSOL"), Canonical("COORD ABSOL\n" + text));
+  EXPECT_EQ(Inserted(text, 3, "IF VI[1] > 2 THEN 10 ELSE 10"),
+            Canonical("SPEED 5\nMOVE (1.,2.,3.,0.,0.)/VIA (4.,5.,6.,0.,0.)/FLY\nGOTO 10\n"
+                      "IF VI[1] > 2 THEN 10 ELSE 10\n10 DELAY 1\n"));
+  EXPECT_EQ(Inserted(text, 4, "ENDTASK"), Canonical(text + "ENDTASK\n"));
+  EXPECT_EQ(Inserted("", 0, "ENDTASK"), Canonical("ENDTASK\n"));
+}
+
+// OPT-6.43 OPT-6.44: names and sequence numbers.
+TEST(StepEdit, KeepsNamesAndNumbers) {
+  const std::string text =
+      "DECLARE A = VR[1]\nDECLARE B = 7\n10 A = 5.\n20 VR[B] = A\nGOTO 20\n30\n";
+  EXPECT_EQ(Removed(text, 2),
+            Canonical("DECLARE A = VR[1]\nDECLARE B = 7\n10\n20 VR[B] = A\nGOTO 20\n30\n"));
+  EXPECT_EQ(Removed(text, 4),
+            Canonical("DECLARE A = VR[1]\nDECLARE B = 7\n10 A = 5.\n20 VR[B] = A\n30\n"));
+  EXPECT_EQ(
+      Inserted(text, 3, "A = VR[B] + SIN(A)"),
+      Canonical("DECLARE A = VR[1]\nDECLARE B = 7\n10 A = 5.\nA = VR[B] + SIN(A)\n20 VR[B] = A\n"
+                "GOTO 20\n30\n"));
+}
+
+// LIVE-7.09: in and out again, at every place, byte for byte.
+TEST(StepEdit, OutAndInAgainIsTheSame) {
+  const std::string text =
+      "DECLARE A = VR[1]\n10\n20 A = 5.\nDECLARE B = 7\nCONT 3\n30 MOVE (A,0.,0.,0.,0.)/START (IL[B])/TIME (2.,30)\n"
+      "40 GOTO VI[1] (10,20,30)\nDECLARE HALF = PI\nTCP (0.,0.,3./0.,0.,-5.)\nDEFINE PAR[1] = INT\n"
+      "VI[2] = PAR[1]\n50 ENDTASK\n60\n70\n";
+  const Compilation made = Compiled(text);
+  int done = 0;
+  for (std::uint32_t place = 0; place < made.module.instructions.size(); ++place) {
+    const Instruction& instruction = made.module.instructions[place];
+    const Result<std::string> without = RemoveInstruction(made.module, place);
+    if (!without) continue;  // a DECLARE or DEFINE that others need
+    ++done;
+    const Result<std::string> again = InsertInstruction(DecodeObject(*without).value(), place,
+                                                        InstructionText(made.module, place));
+    ASSERT_TRUE(again) << InstructionText(made.module, place) << again.error().detail;
+    EXPECT_EQ(*again, made.object) << static_cast<int>(instruction.op);
+  }
+  EXPECT_GE(done, 8);
+}
+
+// OPT-6.38: what the program then is has errors.
+TEST(StepEdit, WhatTheCompilerRefusesIsRefused) {
+  EXPECT_EQ(Inserted("SPEED 5\n", 0, "SPEED 140"), "OPT-E7004");
+  EXPECT_NE(Removed("DEFINE PAR[0] = LOGIC\nVL[1] = NOT PAR[0]\n", 0).find("OPT-E"),
+            std::string::npos);
+  EXPECT_EQ(Inserted("SPEED 5\n", 0, "SPEED 1\nSPEED 2"), "OPT-E7034");
+  EXPECT_EQ(Inserted("SPEED 5\n", 0, "SPEE 1"), "OPT-E7034");
+  EXPECT_EQ(Inserted("SPEED 5\n", 0, ""), "OPT-E7034");
+  EXPECT_EQ(Inserted("SPEED 5\n", 2, "SPEED 1"), "OPT-E7034");
+  EXPECT_EQ(Inserted("SPEED 5\n", 0, "10 SPEED 1"), "OPT-E7034");
+  EXPECT_EQ(Inserted("SPEED 5\n", 0, "A = 1."), "OPT-E7034");
+  EXPECT_EQ(Removed("SPEED 5\n", 1), "OPT-E7034");
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo
