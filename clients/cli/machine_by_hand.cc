@@ -242,7 +242,8 @@ int StartAtStep(const Remote& remote, const MachineAct& act) {
 }
 
 int PressKeys(const Remote& remote, const MachineAct& act) {
-  const Control control(remote, act);
+  constexpr int kControl_s = 60;
+  const Control control(remote, act, kControl_s);
   if (!control.status().ok()) return Refused(control.status(), remote);
   const auto channel = Connect(remote);
   const auto handbox = v1::HandboxService::NewStub(channel);

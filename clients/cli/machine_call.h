@@ -45,9 +45,12 @@ Request For(const MachineAct& act) {
 // Control of a machine for as long as one request takes.
 class Control {
  public:
-  Control(const Remote& remote, const MachineAct& act) : remote_(remote), act_(act) {
+  // For so long at most; 0: for a moment.
+  Control(const Remote& remote, const MachineAct& act, int seconds = 0)
+      : remote_(remote), act_(act) {
     auto request = For<v1::AcquireControlRequest>(act);
     request.set_client("rmlcell");
+    if (seconds > 0) request.mutable_ttl()->set_seconds(seconds);
     request.set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);
     request.set_take_over(!act.take_over.empty());
     request.set_reason(act.take_over);

@@ -95,7 +95,7 @@ void AddActs(MachineVerbs& verbs) {
   key->add_option("KEYS", given.values, "X+, PAUSE, CONTINUE, POWER; JOB 4 5 ENT, START, REC ...")
       ->required();
   key->add_option("--for", given.held_s, "hold the last one for so many seconds; else it is tapped")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 50.0));
   key->add_flag("--fast", given.fast, "jog at the highest speed");
   verbs.AddControlled("input", "Set inputs, door and power of a virtual machine", SetInputs)
       ->add_option("VALUES", given.values,

@@ -91,8 +91,7 @@ int Replay(const Remote& remote, const ReplayRequest& request) {
   if (request.from) *recording = recording::From(*std::move(recording), SimTime(*request.from));
   const std::string& version = recording->head.engine_version();
   if (version != kVersion)
-    Complain("it was recorded by version " + version + ", and this is " +
-             std::string(kVersion));
+    Complain("it was recorded by version " + version + ", and this is " + std::string(kVersion));
   recording::ReplayOptions options;
   if (request.to) options.to = SimTime(*request.to);
   const Result<recording::Replayed> replayed = recording::Replay(*recording, options);

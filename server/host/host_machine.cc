@@ -86,11 +86,12 @@ v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& 
     again.set_number(order.number());
     return again;
   }
-  if (auto again = AnsweredKey(order)) return *std::move(again);
+  if (auto again = AnsweredKey(order); again && CheckControl(order, now)) return *std::move(again);
+  key_taken_.reset();
   v1::HostOrderAnswer answer = Carry(order, now);
   answer.set_number(order.number());
   *answer.mutable_acted_at() = Stamp(now.wall);
-  RememberKey(order, answer);
+  if (key_taken_) keys_.Take(*key_taken_, answer);
   if (!request_id.empty() && !answered_.contains(request_id)) Remember(request_id, answer);
   return answer;
 }
@@ -344,6 +345,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   }
   const std::int64_t runs = machine().status().last_run;
   const bool moved = moves();
+  const machine::Mode mode = machine().status().mode;
   const Status done = key != nullptr ? Press(*key, order) : machine().Apply(input);
   if (!done) {
     entries_.resize(place);
@@ -353,6 +355,8 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   }
   if (stands && machine().status().last_run != runs) Record(*stands, place);
   if (key != nullptr && !moved && moves()) held_for_.reset();  // START let it go on
+  const bool left = mode == machine::Mode::kRemote && machine().status().mode != mode;
+  if (key != nullptr && left && !job_.empty()) held_for_ = v1::HOLD_REASON_MODE;
   mark_due_ = true;
   // A crash from here on finds a run that was cut off, however soon it comes.
   begins_ = begins_ || starts;
@@ -397,6 +401,7 @@ void HostMachine::Hold(v1::HoldReason reason, const HostTime& now) {
 
 void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
   now_ = now;
+  const std::size_t told = entries_.size();
   const auto apply = [this](const machine::MachineInput& input) {
     static_cast<void>(Apply(input, nullptr));
   };
@@ -424,12 +429,13 @@ void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
   for (const int slot : memory.deleted_programs()) {
     if (machine().memory().programs.contains(slot)) apply(machine::DeleteProgram{.slot = slot});
   }
-  if (!memory.schedules_changed()) return;
   machine::SetSchedules set;  // none that is stored: all that the machine can have
   if (!memory.schedules().empty()) set.schedules.emplace();
   for (const v1::AssignedSchedule& schedule : memory.schedules())
     set.schedules->push_back(bridge::FromProto(schedule));
-  if (set.schedules != machine().memory().schedules) apply(set);
+  if (memory.schedules_changed() && set.schedules != machine().memory().schedules) apply(set);
+  // An entry does not hold what was stored: a recording begins with it.
+  if (entries_.size() > told && !run_open()) Record(MarkNow(), entries_.size());
 }
 
 void HostMachine::Begin(const v1::HostMemory& memory, const HostTime& now) {

@@ -51,6 +51,8 @@ class HostMachine : private machine::RunObserver {
   v1::HostOrderAnswer Do(const v1::HostOrder& order, const HostTime& now);
   // A key that came before another one with a lower number: it is to be brought again.
   bool WaitsForKeys(const v1::HostOrder& order) const;
+  // A key that somebody else refused: its number is used up, and the next one may come.
+  void PassKey(const v1::HostOrder& order, const v1::HostOrderAnswer& refused, const HostTime& now);
   // What a start at a step would do: worked out by `run`, which takes as long as the run to the
   // step and may be called on another thread, and answered behind it.
   struct PreviewTask {
@@ -101,7 +103,6 @@ class HostMachine : private machine::RunObserver {
   Status RunJob(const v1::HostOrder& order, const HostTime& now);
   std::optional<v1::HostOrderAnswer> AnsweredKey(const v1::HostOrder& order) const;
   Status PressKey(const v1::HostOrder& order, const HostTime& now);
-  void RememberKey(const v1::HostOrder& order, const v1::HostOrderAnswer& answer);
   v1::HeartbeatResponse HearBeat(const v1::HostOrder& order, const HostTime& now);
   void LetGo(const std::string& key);
   void LetKeysGo(const HostTime& now);
@@ -110,7 +111,7 @@ class HostMachine : private machine::RunObserver {
   Result<v1::HandboxSession> OpenSession();
   std::string SessionName() const;
   Status CheckSession(const std::string& name) const;
-  Status CloseSession(const std::string& name);
+  Status CloseSession(const std::string& name, const std::string& caller);
   v1::HandboxPanel HandboxNow() const;
   Result<v1::PressKeyResponse> PressHandboxKey(const v1::HostOrder& order, const HostTime& now);
   Status Press(const machine::PressedKey& key, const v1::HostOrder* order);
@@ -168,7 +169,8 @@ class HostMachine : private machine::RunObserver {
   std::int64_t session_ = 0;  // of the handbox; 0: none is open
   std::int64_t sessions_ = 0;
   std::int64_t beeps_ = 0;
-  std::optional<ErrorCode> key_message_{};  // what the control says to the key that is pressed
+  std::optional<std::int64_t> key_taken_{};  // its number, of the key under way
+  std::optional<ErrorCode> key_message_{};   // what the control says to the key that is pressed
   std::vector<v1::HostEdit> edits_;
   std::int64_t edits_made_ = 0;
   std::map<int, std::int64_t> revisions_;     // of the programs in the store, by slot

@@ -66,6 +66,7 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
                              &order);
   if (!begun) {
     job_.clear();
+    brought_.Clear();
     return begun.error();
   }
   begun_jobs_.push_back(job_);

@@ -63,8 +63,13 @@ std::optional<v1::HostOrderAnswer> HostMachine::AnsweredKey(const v1::HostOrder&
   return again;
 }
 
-void HostMachine::RememberKey(const v1::HostOrder& order, const v1::HostOrderAnswer& answer) {
-  if (const auto pressed = PressedBy(order)) keys_.Take(pressed->number, answer);
+// Nobody without control uses up a number of who has it.
+void HostMachine::PassKey(const v1::HostOrder& order, const v1::HostOrderAnswer& refused,
+                          const HostTime& now) {
+  const auto pressed = PressedBy(order);
+  if (!pressed || !CheckControl(order, now) || desk_.lease()->number() != keys_of_) return;
+  if (keys_.Look(pressed->number, LetsGo(order)) == KeyDesk::Turn::kActs)
+    keys_.Take(pressed->number, refused);
 }
 
 // Precondition: whoever presses has control.
@@ -77,6 +82,7 @@ Status HostMachine::PressKey(const v1::HostOrder& order, const HostTime& now) {
     return Error{ErrorCode::kCellKeySequence,
                  "sequence " + std::to_string(pressed.number) + " is not the next one",
                  {}};
+  key_taken_ = pressed.number;
   const bool held = IsHeld(pressed.key);
   if (pressed.action == v1::KEY_ACTION_RELEASE) {
     keys_.Release(pressed.key, pressed.number);
@@ -128,7 +134,8 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOutKeys(const v1::HostOrder& order
       break;
     }
     case v1::HostOrder::kDeleteSession:
-      if (const Status closed = CloseSession(order.delete_session().name()); !closed)
+      if (const Status closed = CloseSession(order.delete_session().name(), order.caller());
+          !closed)
         return closed.error();
       break;
     case v1::HostOrder::kHandboxHeartbeat:
@@ -189,8 +196,10 @@ Status HostMachine::CheckSession(const std::string& name) const {
   return Error{ErrorCode::kCellNotFound, name + ": open another one, this is over", {}};
 }
 
-Status HostMachine::CloseSession(const std::string& name) {
+Status HostMachine::CloseSession(const std::string& name, const std::string& caller) {
   if (const Status known = CheckSession(name); !known) return known.error();
+  if (desk_.lease()->holder() != caller)
+    return Error{ErrorCode::kCellControlNeeded, desk_.lease()->holder() + " has control", {}};
   EndKeys();
   return {};
 }

@@ -295,7 +295,7 @@ class HostProcess {
           const double until = ThreadTime_s() + kPreviewTime_s;
           auto made = std::make_shared<Result<machine::StartPreview>>(task->run(
               {.go_on = [&] { return !stop.stop_requested() && ThreadTime_s() < until; }}));
-          Later([this, order, task, made, line] {
+          inbox_.Later([this, order, task, made, line] {
             background_.Done();
             v1::HostOrderAnswer answer =
                 machine_->Previewed(order, std::move(*task), std::move(*made), Now());
@@ -309,10 +309,7 @@ class HostProcess {
   // What was taught goes to the store; without a server it cannot. LIVE-7.08
   void SendEdits(const HostTime& now) {
     for (v1::HostEdit& edit : machine_->TakeEdits()) {
-      if (line_ == nullptr) {
-        machine_->RefuseEdit(ErrorCode::kCellStoreUnavailable, now);
-        continue;
-      }
+      if (line_ == nullptr) return machine_->RefuseEdit(ErrorCode::kCellStoreUnavailable, now);
       v1::HostRequest request;
       *request.mutable_edit() = std::move(edit);
       line_->Send(std::move(request));
@@ -321,11 +318,13 @@ class HostProcess {
 
   // At most 20 times a second, and when it has changed. LIVE-7.02
   void ShowHandbox(nanoseconds now) {
-    if (line_ == nullptr || now - handbox_shown_at_ < kStatusMoving) return;
+    if (line_ == nullptr) return;
     std::optional<v1::HandboxPanel> panel = machine_->Handbox();
     if (!panel) return;
     std::string bytes = panel->SerializeAsString();
-    if (bytes == handbox_shown_) return;
+    handbox_due_ = bytes != handbox_shown_;
+    if (!handbox_due_ || now - handbox_shown_at_ < kStatusMoving) return;
+    handbox_due_ = false;
     handbox_shown_ = std::move(bytes);
     handbox_shown_at_ = now;
     v1::HostRequest request;
@@ -335,8 +334,12 @@ class HostProcess {
 
   // Keys that came before one that is missing. LIVE-7.04
   void LookAtKeys() {
+    // One that is on its way to the disk is not missing.
+    const bool parked = std::ranges::any_of(parked_, [](const auto& one) {
+      return !one->over && (one->order.has_key() || one->order.has_panel_key());
+    });
     for (Waiting& key : std::exchange(keys_waiting_, {})) {
-      if (machine_->WaitsForKeys(key.order) && Now().steady >= key.until) {
+      if (!parked && Now().steady >= key.until) {
         Refuse(key.order, {ErrorCode::kCellKeySequence, "keys before it are missing", {}});
       } else {
         TakeOrder(key.order, key.until);
@@ -359,6 +362,7 @@ class HostProcess {
       if (meant && BeginsMotion(parked->order) && !std::exchange(parked->over, true))
         Refuse(parked->order, StoppedBefore());
     }
+    for (const Waiting& key : std::exchange(keys_waiting_, {})) Refuse(key.order, StoppedBefore());
     SendAnswer(CarryOut(order));
   }
 
@@ -378,6 +382,7 @@ class HostProcess {
     v1::HostOrderAnswer answer;
     answer.set_number(order.number());
     *answer.mutable_refusal() = bridge::ToErrorDetail(error);
+    if (machine_ != nullptr) machine_->PassKey(order, answer, Now());
     SendAnswer(std::move(answer));
   }
 
@@ -390,7 +395,7 @@ class HostProcess {
         std::make_shared<Parked>(Parked{.order = order, .until = now.steady + kIntentPatience});
     parked_.push_back(parked);
     writer_->Write({machine_->IntentOf(order, now)}, [this, parked] {
-      Later([this, parked] {
+      inbox_.Later([this, parked] {
         if (!std::exchange(parked->over, true)) AnswerWhenDurable(CarryOut(parked->order));
       });
     });
@@ -409,7 +414,7 @@ class HostProcess {
     if (writes_under_way_++ == 0) durable_at_ = now.steady;
     writer_->Write(std::move(entries),
                    [this, copy, line = lines_lost_, answers = std::exchange(answers_due_, {})] {
-                     Later([this, copy, line, answers] {
+                     inbox_.Later([this, copy, line, answers] {
                        --writes_under_way_;
                        durable_at_ = Now().steady;
                        Keep(*copy);
@@ -427,9 +432,6 @@ class HostProcess {
     spdlog::warn("no server for {} s", kEndsWithoutServer / 1s);
     Quit(0);
   }
-
-  // On the thread of the machine, in its next turn.
-  void Later(std::function<void()> work) { inbox_.Later(std::move(work)); }
 
   void DoLater() {
     for (const auto& one : inbox_.TakeWork()) one();
@@ -538,6 +540,8 @@ class HostProcess {
                     ? kTickHeld
                     : std::min({status_due_ - now, next_renewal_ - now, 1'000'000'000ns});
       if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
+      for (const Waiting& key : keys_waiting_) longest = std::min(longest, key.until - now);
+      if (handbox_due_) longest = std::min(longest, handbox_shown_at_ + kStatusMoving - now);
     }
     inbox_.Wait(longest, line_ != nullptr);
   }
@@ -577,6 +581,7 @@ class HostProcess {
   std::optional<nanoseconds> ending_at_;
   std::string handbox_shown_;
   nanoseconds handbox_shown_at_{0};
+  bool handbox_due_ = false;  // it has changed since
   v1::MachineState state_told_ = v1::MACHINE_STATE_UNSPECIFIED;
   std::unique_ptr<JournalWriter> writer_;
   Background background_;  // behind what its work uses

@@ -31,7 +31,7 @@ void KeyDesk::Release(const std::string& key, std::int64_t number) {
 void KeyDesk::Take(std::int64_t number, const v1::HostOrderAnswer& answer) {
   answers_[number] = answer;
   if (answers_.size() > kAnswersKept) answers_.erase(answers_.begin());
-  ahead_.insert(number);
+  if (number > last_ && ahead_.size() < kAnswersKept) ahead_.insert(number);
   while (!ahead_.empty() && *ahead_.begin() == last_ + 1) {
     ++last_;
     ahead_.erase(ahead_.begin());

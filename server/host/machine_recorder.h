@@ -14,7 +14,7 @@ namespace rmlcell::server {
 // run, or of the host, to that of the next one. The newest ones are kept in memory. LIVE-3.40
 class MachineRecorder {
  public:
-  static constexpr std::size_t kKept = 4;
+  static constexpr std::size_t kKept = 8;
   // Of one: what comes behind that is not recorded, and what does not fit at all is none.
   static constexpr std::size_t kBytesMax = std::size_t{64} << 20;
   static constexpr std::size_t kPartBytes = std::size_t{1} << 20;

@@ -521,10 +521,11 @@ Error JobBook::WhyNoArtifact(std::int64_t job, std::string_view name) {
                      ", is there at its end",
                  {}};
   }
-  const std::string later = record->kind == storage::kRunKind && record->started_at
-                                ? " yet: what its machine recorded is played again for it, where it "
-                                  "was not cut off"
-                                : "";
+  const std::string later =
+      record->kind == storage::kRunKind && record->started_at
+          ? " yet: what its machine recorded is played again for it, where it "
+            "was not cut off"
+          : "";
   return Error{ErrorCode::kCellNotFound, JobName(job) + " has no " + Readable(name) + later, {}};
 }
 

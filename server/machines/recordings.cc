@@ -1,5 +1,6 @@
 #include "server/machines/recordings.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -37,8 +38,11 @@ class Fetch : public std::enable_shared_from_this<Fetch> {
     const v1::HostRecordingPart& part = answer->recording();
     if (total_ == 0) total_ = part.total();
     bytes_ += part.chunk();
-    if (part.chunk().empty() || static_cast<std::int64_t>(bytes_.size()) >= total_)
+    if (part.chunk().empty() || static_cast<std::int64_t>(bytes_.size()) >= total_) {
+      // It has grown meanwhile, perhaps by half an entry.
+      bytes_.resize(std::min(bytes_.size(), static_cast<std::size_t>(total_)));
       return done_(std::move(bytes_));
+    }
     Ask();
   }
 

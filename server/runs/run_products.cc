@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <utility>
 
 #include "proto/bridge/findings.h"
+#include "proto/recording/recording.h"
 #include "rmlcell/v1/job.pb.h"
 #include "rmlcell/v1/report.pb.h"
 #include "server/base/child_process.h"
@@ -27,11 +29,13 @@ namespace rmlcell::server {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
 // A host has the recordings of its newest runs alone (MachineRecorder::kKept).
 constexpr int kNewest = 4;
 constexpr std::chrono::milliseconds kLookAtProcess{20};
 constexpr std::chrono::seconds kTriedAgainAfter{5};
+constexpr std::chrono::seconds kFetchPatience{30};
 
 struct Product {
   const char* name;
@@ -71,48 +75,66 @@ RunProducts::~RunProducts() {
 
 void RunProducts::Look(const std::string& machine) {
   const std::lock_guard lock(mutex_);
-  machines_.insert(machine);
+  due_[machine] = Clock::now();
   changed_.notify_all();
 }
 
-void RunProducts::Work(const std::stop_token& stop) {
+// The machine that is due; empty: it is to stop.
+std::string RunProducts::Next(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
-    std::string machine;
-    {
-      std::unique_lock lock(mutex_);
-      if (!changed_.wait(lock, stop, [this] { return !machines_.empty(); })) return;
-      machine = machines_.extract(machines_.begin()).value();
+    const auto first =
+        std::ranges::min_element(due_, {}, [](const auto& row) { return row.second; });
+    if (first == due_.end()) {
+      changed_.wait(lock, stop, [this] { return !due_.empty(); });
+    } else if (first->second > Clock::now()) {
+      const auto until = first->second;
+      changed_.wait_until(lock, stop, until, [&] {
+        return std::ranges::any_of(due_, [&](const auto& row) { return row.second < until; });
+      });
+    } else {
+      return due_.extract(first).key();
     }
+  }
+  return {};
+}
+
+void RunProducts::Work(const std::stop_token& stop) {
+  for (std::string machine = Next(stop); !machine.empty(); machine = Next(stop)) {
+    bool done = true;
     try {
-      LookAt(machine, stop);
+      done = LookAt(machine, stop);
     } catch (const std::exception& error) {
       spdlog::error("products of the runs of {}: {}", machine, error.what());
     }
+    if (done) continue;
+    const std::lock_guard lock(mutex_);
+    due_.try_emplace(machine, Clock::now() + kTriedAgainAfter);
   }
 }
 
-void RunProducts::LookAt(const std::string& machine, const std::stop_token& stop) {
+bool RunProducts::LookAt(const std::string& machine, const std::stop_token& stop) {
   const auto jobs = needs_.store.ListJobs({.machine = machine,
                                            .kind = std::string(storage::kRunKind),
                                            .finished = true,
                                            .limit = kNewest});
-  if (!jobs) return spdlog::warn("runs of {}: {}", machine, bridge::ErrorText(jobs.error()));
+  if (!jobs) {
+    spdlog::warn("runs of {}: {}", machine, bridge::ErrorText(jobs.error()));
+    return false;
+  }
   for (const storage::JobRecord& job : *jobs) {
-    if (stop.stop_requested()) return;
+    if (stop.stop_requested()) return true;
     if (!job.started_at || given_up_.contains(job.id) || Has(needs_.store, job.id, "report"))
       continue;
     const Status made = Make(job, stop);
     if (made || stop.stop_requested()) continue;
-    if (storage::IsTroubleOfTheStore(made.error()) ||
-        made.error().code == ErrorCode::kCellNotLive) {
-      std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, stop, kTriedAgainAfter, [] { return false; });
-      machines_.insert(machine);
-      return;
-    }
+    // A host that is not heard of says when it is again.
+    if (made.error().code == ErrorCode::kCellNotLive) return true;
+    if (storage::IsTroubleOfTheStore(made.error())) return false;
     given_up_.insert(job.id);
     spdlog::warn("no report of {}: {}", JobName(job.id), bridge::ErrorText(made.error()));
   }
+  return true;
 }
 
 Status RunProducts::Make(const storage::JobRecord& job, const std::stop_token& stop) {
@@ -135,8 +157,12 @@ Result<std::string> RunProducts::RecordingOf(const storage::JobRecord& job) {
   auto promise = std::make_shared<std::promise<Result<std::string>>>();
   FetchRecording(needs_.hosts, job.machine, JobName(job.id),
                  [promise](Result<std::string> got) { promise->set_value(std::move(got)); });
-  Result<std::string> got = promise->get_future().get();
+  std::future<Result<std::string>> answer = promise->get_future();
+  if (answer.wait_for(kFetchPatience) != std::future_status::ready)
+    return Error{ErrorCode::kCellNotLive, "the host does not answer", {}};
+  Result<std::string> got = answer.get();
   if (!got) return got.error();
+  if (const auto read = recording::ReadFile(*got); !read) return read.error();
   const auto kept =
       needs_.store.AddProducts(job.id, {.artifacts = {{.name = std::string(kRecording),
                                                        .media_type = "application/octet-stream",

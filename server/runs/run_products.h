@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <set>
 #include <string>
@@ -37,7 +38,9 @@ class RunProducts {
 
  private:
   void Work(const std::stop_token& stop);
-  void LookAt(const std::string& machine, const std::stop_token& stop);
+  std::string Next(const std::stop_token& stop);
+  // False: not now; once more in a while.
+  bool LookAt(const std::string& machine, const std::stop_token& stop);
   Status Make(const storage::JobRecord& job, const std::stop_token& stop);
   Result<std::string> RecordingOf(const storage::JobRecord& job);
   Status Play(const std::string& recording, const std::string& folder, const std::stop_token& stop);
@@ -46,7 +49,8 @@ class RunProducts {
   const Needs needs_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::set<std::string> machines_;  // guarded by mutex_; to be looked at
+  // Guarded by mutex_: machines that are to be looked at, and when.
+  std::map<std::string, std::chrono::steady_clock::time_point> due_;
   std::set<std::int64_t>
       given_up_;  // of the thread alone: jobs that have no recording, or a bad one
   std::jthread thread_;

@@ -103,6 +103,8 @@ class Maker {
     outcome_ = over.outcome;
   }
 
+  bool over() const { return report_.has_value(); }
+
   Status WriteAll() {
     if (!report_)
       return Error{ErrorCode::kCellPrecondition, "the recording ends before the run does", {}};
@@ -150,6 +152,7 @@ Status MakeProducts(const std::string& file, const std::string& folder) {
   options.observer = &maker.observer();
   options.begun = [&maker](const machine::Run& run) { maker.Begin(run); };
   options.over = [&maker](const machine::RunOver& over) { maker.End(over); };
+  options.goes_on = [&maker](SimTime) { return !maker.over(); };  // what comes behind it is not its
   const auto replayed = recording::Replay(*recording, options);
   if (!replayed) return replayed.error();
   if (replayed->difference) return Differs(*replayed->difference);
