@@ -294,7 +294,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff rml1 lsp machines machine programs put get delete stale projects submit watch jobs job cancel hold resume move report picture artifact
+      diff rml1 lsp machines machine programs put get delete stale projects submit watch jobs job cancel hold resume move report picture artifact replay
   else
     _rmlcell_positional
   fi
