@@ -235,7 +235,7 @@ FINDING = re.compile(r"\bErrorCode::k|\b(InvalidArgument|Corrupt|Bad\w*)\(")
 NUMBER_AS_TEXT = re.compile(r"\b(std::to_string|FixedText|TrimmedText|ShortestText|ShortNumber)\(")
 TOLD = re.compile(r"\bTold\w*\(")
 
-SOURCES = ("engine", "storage", "proto/bridge", "server", "clients")
+SOURCES = ("engine", "storage", "proto/bridge", "proto/recording", "server", "clients")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
