@@ -189,6 +189,20 @@ grpc::Status HoldOne(Keys& keys, const std::string& name, double seconds) {
   return PressOne(keys, name, v1::KEY_ACTION_RELEASE);
 }
 
+// Until the axes stand: whoever gives control back before is stopped by that.
+void AwaitRest(const Remote& remote, const MachineAct& act) {
+  constexpr int kLooksMax = 100;
+  v1::GetMachineRequest request;
+  request.set_name(FullName("machines", act.machine));
+  for (int look = 0; look < kLooksMax; ++look) {
+    v1::Machine machine;
+    if (!Call(remote, &Service::Stub::GetMachine, request, machine).ok()) return;
+    const v1::MachineState state = machine.status().state();
+    if (state != v1::MACHINE_STATE_JOGGING && state != v1::MACHINE_STATE_STOPPING) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  }
+}
+
 // One after the other; the last one is held where that was asked for.
 template <class Keys>
 int PressAll(const Remote& remote, const MachineAct& act, Keys keys) {
@@ -198,6 +212,7 @@ int PressAll(const Remote& remote, const MachineAct& act, Keys keys) {
     const grpc::Status done = held ? HoldOne(keys, act.values[i], act.held_s)
                                    : PressOne(keys, act.values[i], v1::KEY_ACTION_TAP);
     if (!done.ok()) return Refused(done, remote);
+    if (held) AwaitRest(remote, act);
   }
   return keys.Show();
 }
