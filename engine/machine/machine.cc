@@ -290,12 +290,7 @@ Status Machine::MayStart(const StartRun& input) const {
   const Transition next = Next(state(), MachineEvent::kStart, now);
   if (next.code) return Refusal(*next.code);
   if (const Status source = MaySource(input.source); !source) return source.error();
-  const Detail slot = Told("program", input.program);
-  if (!IsSlot(input.program))
-    return Error{family_.info().no_slot, "program " + slot + ", allowed are 1 to 99", {}};
-  if (!input.brought && !memory_.programs.contains(input.program))
-    return Error{family_.info().empty_slot, "no program is stored in slot " + slot, {}};
-  return {};
+  return MayRun(family_.info(), memory_, input.program, input.brought.has_value());
 }
 
 Status Machine::Act(const StartRun& input) {

@@ -5,6 +5,7 @@
 #include "engine/core/number_text.h"
 #include "engine/machine/machine.h"
 #include "engine/machine/machine_states.h"
+#include "engine/machine/refusal.h"
 
 namespace rmlcell::machine {
 
@@ -13,12 +14,7 @@ Status Machine::MayStartAt(const StartAtStep& input) const {
   const Transition next = Next(state(), MachineEvent::kStartAtStep, guards());
   if (next.code) return Refusal(*next.code);
   if (const Status source = MaySource(input.source); !source) return source.error();
-  const Detail slot = Told("program", input.program);
-  if (!IsSlot(input.program))
-    return Error{family_.info().no_slot, "program " + slot + ", allowed are 1 to 99", {}};
-  if (!input.brought && !memory_.programs.contains(input.program))
-    return Error{family_.info().empty_slot, "no program is stored in slot " + slot, {}};
-  return {};
+  return MayRun(family_.info(), memory_, input.program, input.brought.has_value());
 }
 
 // In SINGLE a run would halt behind each step, and pass no corner: it goes there as in CYCLE. A dry

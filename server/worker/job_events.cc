@@ -4,6 +4,7 @@
 
 #include "engine/simulation/report/trace.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/machine_inputs.h"
 
 namespace rmlcell::server {
 namespace {
@@ -50,22 +51,6 @@ v1::SignalKind KindOf(machine::Signal signal) {
   return v1::SIGNAL_KIND_OTHER;
 }
 
-v1::HoldReason ReasonOf(machine::HaltReason reason) {
-  switch (reason) {
-    case machine::HaltReason::kHold:
-      return v1::HOLD_REASON_HOLD;
-    case machine::HaltReason::kStop:
-      return v1::HOLD_REASON_STOP;
-    case machine::HaltReason::kProgram:
-      return v1::HOLD_REASON_PROGRAM;
-    case machine::HaltReason::kBreakpoint:
-      return v1::HOLD_REASON_BREAKPOINT;
-    case machine::HaltReason::kSingle:
-      return v1::HOLD_REASON_SINGLE;
-  }
-  return v1::HOLD_REASON_UNSPECIFIED;
-}
-
 }  // namespace
 
 // What somebody ordered is told however much happened before.
@@ -105,7 +90,7 @@ void JobEvents::OnSignal(const machine::SignalChange& change) {
 void JobEvents::OnHalt(const machine::Halt& halt) {
   v1::JobEvent event;
   event.set_virtual_time_ns(halt.at.count());
-  event.mutable_halted()->set_reason(ReasonOf(halt.reason));
+  event.mutable_halted()->set_reason(bridge::ToProto(halt.reason));
   event.mutable_halted()->set_message(std::string(halt.why));
   *event.mutable_halted()->mutable_place() = bridge::ToProto(halt.place);
   Tell(std::move(event));
