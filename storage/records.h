@@ -36,10 +36,20 @@ struct MachineRecord {
   std::string title{};
   std::string profile{};                            // empty: the defaults of the family
   std::map<std::string, std::string> parameters{};  // what differs from the profile
+  std::string options{};                            // how it lives; opaque
   Revision revision = 0;
   WallTime created_at{};
   WallTime updated_at{};
 };
+
+// A change of a program by hand. LIVE-7.09
+struct TeachRecord {
+  std::string machine{};
+  std::int64_t number = 0;  // counts from 1 within the machine
+  int program = 0;          // slot
+  std::string entry{};      // opaque
+};
+inline constexpr std::int64_t kTeachRecordsKept = 10'000;  // the newest, of a machine
 
 // The right to be the host of a machine: to move it, and to say where it stands. LIVE-3.02
 struct MachineLease {

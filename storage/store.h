@@ -208,6 +208,8 @@ struct JobRequest {
   std::vector<std::string> pools{""};
   // Of a RUN: those of these machines; empty: of all.
   std::vector<std::string> run_machines{};
+  // This one alone, though a person holds it; the events let it go.
+  std::optional<std::int64_t> job{};
   int count = 1;
   std::chrono::milliseconds duration{0};  // of each lease
   std::vector<NewEvent> events{};         // appended to each job
@@ -293,6 +295,12 @@ class Store {
   // CellInvalidArgument: a mark that is not newer than the one that is there. Older ones may be
   // left out.
   virtual Status AppendMachine(const MachineLease& lease, const MachineWrite& write) = 0;
+  // Keeps what was taught: returns its number; that of `record` is not looked at. The oldest ones
+  // go, beyond kTeachRecordsKept.
+  virtual Result<std::int64_t> AddTeachRecord(const TeachRecord& record) = 0;
+  // Those before `before` (0: all), the newest first; `program` 0: of all.
+  virtual Result<std::vector<TeachRecord>> ListTeachRecords(std::string_view machine, int program,
+                                                            std::int64_t before, int limit) = 0;
   // Nothing: no host has ever said. CellUnknownMachine.
   virtual Result<std::optional<MachineMark>> GetMachineMark(std::string_view machine) = 0;
 

@@ -39,6 +39,28 @@ class MachineVerbs {
   std::shared_ptr<MachineAct> given_ = std::make_shared<MachineAct>();
 };
 
+void AddStartAt(MachineVerbs& verbs) {
+  MachineAct& given = verbs.given();
+  CLI::App* at = verbs.AddControlled(
+      "start-at", "Start a program at a step, behind a safe way there", StartAtStep);
+  at->add_option("STEP", given.step,
+                 "PROGRAM/STEP, such as 45/10; default: where a run was cut off");
+  at->add_option("--slot", given.program, "the program that is started; default: the selected one")
+      ->check(CLI::Range(1, 99));
+  at->add_option("--occurrence", given.occurrence, "the how manieth time that control comes there");
+  at->add_flag("--direct", given.direct,
+               "without an approach: the first move begins where it stands");
+  at->add_flag("--off-until-work-on", given.off_until_work_on,
+               "a WORK is on there: keep the beam off until the next one");
+  at->add_flag("--preview", given.look, "say what it would do, and do not start");
+  at->add_flag("--halt", given.halt, "halt before the step");
+  at->add_option("--seen", given.seen,
+                 "what you have looked at: clamps, tool, origin-valid, table-clear; behind a run "
+                 "that was cut off: inspected")
+      ->delimiter(',');
+  at->add_option("--reason", given.reason, "why it goes on, for all to read");
+}
+
 void AddActs(MachineVerbs& verbs) {
   MachineAct& given = verbs.given();
   verbs.Add("status", "Show how a machine stands, and what keeps jobs from it", ShowMachine);
@@ -75,21 +97,6 @@ void AddActs(MachineVerbs& verbs) {
   verbs.AddControlled("write", "Write variables and outputs", WriteVariables)
       ->add_option("VALUES", given.values, "such as VR[5]=2.5, OL[3]=on")
       ->required();
-  CLI::App* at = verbs.AddControlled(
-      "start-at", "Start a program at a step, behind a safe way there", StartAtStep);
-  at->add_option("STEP", given.step, "PROGRAM/STEP, such as 45/10")->required();
-  at->add_option("--slot", given.program, "the program that is started; default: the selected one")
-      ->check(CLI::Range(1, 99));
-  at->add_option("--occurrence", given.occurrence, "the how manieth time that control comes there");
-  at->add_flag("--direct", given.direct,
-               "without an approach: the first move begins where it stands");
-  at->add_flag("--off-until-work-on", given.off_until_work_on,
-               "a WORK is on there: keep the beam off until the next one");
-  at->add_flag("--preview", given.look, "say what it would do, and do not start");
-  at->add_flag("--halt", given.halt, "halt before the step");
-  at->add_option("--seen", given.seen,
-                 "what you have looked at: clamps, tool, origin-valid, table-clear")
-      ->delimiter(',');
   CLI::App* key =
       verbs.AddControlled("key", "Press keys of the panel of a mill, or of a handbox", PressKeys);
   key->add_option("KEYS", given.values, "X+, PAUSE, CONTINUE, POWER; JOB 4 5 ENT, START, REC ...")
@@ -99,8 +106,13 @@ void AddActs(MachineVerbs& verbs) {
   key->add_flag("--fast", given.fast, "jog at the highest speed");
   verbs.AddControlled("input", "Set inputs, door and power of a virtual machine", SetInputs)
       ->add_option("VALUES", given.values,
-                   "such as IL[20]=on, door=open, power=off, emergency-stop=released")
+                   "such as IL[20]=on, door=open, gate=1, power=off, emergency-stop=released")
       ->required();
+  verbs.AddControlled("gates", "Set which programs gate 1 and gate 2 start", SetGates)
+      ->add_option("SLOTS", given.gates, "that of gate 1 and that of gate 2; 0: none")
+      ->required()
+      ->expected(2)
+      ->check(CLI::Range(0, 99));
 }
 
 }  // namespace
@@ -115,7 +127,8 @@ void AddMachineVerbs(CLI::App& app, Remote& remote, int& exit_code) {
       "  rmlcell machine watch mill-1\n"
       "  rmlcell machine stop mill-1; rmlcell machine resume mill-1\n"
       "  rmlcell submit mill-1 --slot 7 --kind run      the same as a job of the queue\n"
-      "  rmlcell machine status mill-1                  and what keeps jobs from it");
+      "  rmlcell machine status mill-1                  and what keeps jobs from it\n"
+      "  rmlcell machine start-at mill-1 --preview      where a run was cut off, and how it goes on");
   group->add_option("--server", remote.server,
                     "host:port or unix:/path; default: RMLCELL_SERVER, or 127.0.0.1:50051");
   group->add_flag("--json", remote.json, "print messages as JSON, one line each");
@@ -123,6 +136,7 @@ void AddMachineVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   group->fallthrough();  // --server and --json may stand at the end, too
   MachineVerbs verbs(*group, remote, exit_code);
   AddActs(verbs);
+  AddStartAt(verbs);
 }
 
 }  // namespace rmlcell::cli

@@ -43,8 +43,13 @@ std::string PositionOf(const v1::MachineStatus& status) {
 std::string StatusText(const v1::MachineStatus& status) {
   std::string text =
       status.machine() + "  " + Short(v1::MachineState_Name(status.state()), "MACHINE_STATE_");
+  if (status.has_off_reason()) return text + ": " + Visible(status.off_reason().message());
   if (status.host().empty()) return text + "; it does not live: rmlcell machine enable";
   text += " in " + Short(v1::OperatingMode_Name(status.mode()), "OPERATING_MODE_");
+  if (!status.cut_off_job().empty()) text += ", " + status.cut_off_job() + " was cut off";
+  if (status.cut_off_at().step() > 0)
+    text += " at " + std::to_string(status.cut_off_at().program()) + "/" +
+            std::to_string(status.cut_off_at().step());
   if (status.hold_reason() != v1::HOLD_REASON_UNSPECIFIED)
     text += ", held by " + Short(v1::HoldReason_Name(status.hold_reason()), "HOLD_REASON_");
   text += status.zeroed() ? "" : ", axes without reference";
@@ -354,6 +359,8 @@ int SetInputs(const Remote& remote, const MachineAct& act) {
       input.set_door_open(text == "door=open");
     } else if (text == "power=on" || text == "power=off") {
       input.set_power(text == "power=on");
+    } else if (text == "gate=1" || text == "gate=2") {
+      input.set_gate(text == "gate=1" ? 1 : 2);
     } else if (text == "emergency-stop=released") {
       input.set_emergency_stop_released(true);
     } else if (auto variable = Assigned(text)) {
@@ -363,6 +370,12 @@ int SetInputs(const Remote& remote, const MachineAct& act) {
     }
   }
   return ShowWithControl(remote, act, &Service::Stub::SetInputs, std::move(request));
+}
+
+int SetGates(const Remote& remote, const MachineAct& act) {
+  auto request = For<v1::SetGatesRequest>(act);
+  *request.mutable_gate_programs() = {act.gates.begin(), act.gates.end()};
+  return ShowWithControl(remote, act, &Service::Stub::SetGates, std::move(request));
 }
 
 }  // namespace rmlcell::cli

@@ -25,6 +25,8 @@ struct MachineAct {
   bool look = false;              // what it would do, and no start
   bool halt = false;              // before the step
   std::vector<std::string> seen;  // what a person has seen to: clamps, tool, origin, table
+  std::string reason;             // of a decision, for all to read
+  std::vector<int> gates;         // the program of each; 0: none
 };
 
 int ShowMachine(const Remote& remote, const MachineAct& act);
@@ -48,6 +50,7 @@ int ConfirmMachine(const Remote& remote, const MachineAct& act);
 int ReadVariables(const Remote& remote, const MachineAct& act);
 int WriteVariables(const Remote& remote, const MachineAct& act);
 int SetInputs(const Remote& remote, const MachineAct& act);
+int SetGates(const Remote& remote, const MachineAct& act);
 // A run that begins at a step: what it would do, and the start.
 int StartAtStep(const Remote& remote, const MachineAct& act);
 // Keys of the panel of a mill, or of a handbox, by their names.

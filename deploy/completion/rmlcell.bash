@@ -89,7 +89,7 @@ _rmlcell_options() {
     "machine status" | "machine watch" | "machine enable" | "machine disable" | "machine hold" | "machine stop" | \
       "machine emergency-stop" | "machine abort" | "machine read") echo "--help" ;;
     "machine start-at")
-      echo "--help --take-over --slot --occurrence --direct --off-until-work-on --preview --halt --seen" ;;
+      echo "--help --take-over --slot --occurrence --direct --off-until-work-on --preview --halt --seen --reason" ;;
     "machine key") echo "--help --take-over --for --fast" ;;
     "machine "*) echo "--help --take-over" ;;
     report) echo "$remote --machine-coordinates" ;;
@@ -170,11 +170,11 @@ _rmlcell_positional() {
     diff) _rmlcell_programs_files ;;
     machine)
       [[ $count -eq 0 ]] && _rmlcell_offer status watch enable disable hold stop emergency-stop abort start zero resume mode override \
-        factor acknowledge confirm read write start-at key input ;;
+        factor acknowledge confirm read write start-at key input gates ;;
     "machine start") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_slots "${given[0]}"; fi ;;
     "machine mode") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer remote cycle single repeat manual; fi ;;
     "machine key") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer X+ X- Y+ Y- Z+ Z- A+ A- PAUSE CONTINUE STOP BUFFER_CLEAR COVER POWER EMERGENCY_STOP; fi ;;
-    "machine input") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer door=open door=closed power=on power=off emergency-stop=released; fi ;;
+    "machine input") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer door=open door=closed gate=1 gate=2 power=on power=off emergency-stop=released; fi ;;
     "machine "*) [[ $count -eq 0 ]] && _rmlcell_machines ;;
     rml1) [[ $count -eq 0 ]] && _rmlcell_offer explain to-gcode from-gcode move steps tile from-png ;;
     "rml1 from-gcode") _rmlcell_files .nc .gcode .ngc .tap .cnc ;;

@@ -22,7 +22,8 @@ constexpr bool kNeedsPower =
     std::is_same_v<Input, ChangeMode> || std::is_same_v<Input, ChangeOverride> ||
     std::is_same_v<Input, WriteVariable> || std::is_same_v<Input, SetBreakpoints> ||
     std::is_same_v<Input, SetSimulation> || std::is_same_v<Input, StartAtStep> ||
-    std::is_same_v<Input, ClearMessage> || std::is_same_v<Input, PressJog>;
+    std::is_same_v<Input, ClearMessage> || std::is_same_v<Input, PressJog> ||
+    std::is_same_v<Input, SetGates> || std::is_same_v<Input, PressGate>;
 
 }  // namespace
 
@@ -71,6 +72,7 @@ Status Machine::Take(MachineNote note) {
   note_.number = note.last_run;
   shown_ = std::move(note.shown);
   message_ = note.message;
+  gates_ = note.gates;
   return {};
 }
 
@@ -88,6 +90,7 @@ std::string Machine::Save() const {
                            .last_run = note_.number,
                            .shown = status().shown,
                            .message = message_,
+                           .gates = gates_,
                            .handbox = handbox_ != nullptr ? handbox_->Save() : std::string(),
                            .family = run_ != nullptr ? run_->SaveMachine() : standing_->Save()});
 }
@@ -118,6 +121,7 @@ void Machine::Settle() {
   const RunState state = run_->state();
   if (state.phase == RunPhase::kFinished) return CloseRun();
   if (state.phase != RunPhase::kHalted) return;
+  if (!halted_at_) halted_at_ = state.time;
   now_ = std::max(now_, note_.begun + state.time);
   stopping_ = false;
   if (abort_behind_) {
@@ -157,6 +161,8 @@ void Machine::CloseRun() {
   over_.back().ended = std::move(run_);
   stopping_ = resume_behind_ = abort_behind_ = false;
   changed_.clear();
+  base_.reset();
+  halted_at_.reset();
   if (note_.by_hand) GoHome(outcome);
 }
 
@@ -245,6 +251,7 @@ void Machine::ToRun(InputKind kind, int index, double value) {
   const InputChange change{.kind = kind, .index = index, .value = value};
   if (kind == InputKind::kStart) selected_ = false;
   if (run_ != nullptr) {
+    KeepForBase(change);
     run_->Apply(change);
   } else {
     standing_->Apply(change);
@@ -310,6 +317,10 @@ Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> h
   setup.override_percent = OverrideOf(hand);
   if (!hand) setup.simul = simulation_;
   setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
+  StartBase base{.machine_state = setup.machine_state,
+                 .inputs = {},
+                 .mode = mode,
+                 .override_percent = setup.override_percent};
   Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
   if (!run) return run.error();
   if (!hand) simulation_.reset();
@@ -321,6 +332,8 @@ Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> h
   note_.hand = hand.value_or(HandRun::kZero);
   run_ = *std::move(run);
   if (hand) return {};
+  base_ = std::move(base);
+  not_in_base_ = SimTime(0);
   shown_ = {.program = input.program};
   run_->SetBreakpoints(breakpoints_);
   return {};

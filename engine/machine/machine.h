@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -99,12 +100,17 @@ class Machine {
 
   const MachineFamily& family() const { return family_; }
   bool has_handbox() const { return handbox_ != nullptr; }
+  bool has_gates() const { return has_handbox(); }  // a control of that kind has both
   // Inputs, and variables that may be written.
   bool has_inputs() const { return family_.HasVariable(parameters_, "IL[0]"); }
 
   // What a start at a step would do, and why it would be refused. It takes as long as the run to
   // the step does; StartAtStep, too. Errors: as Apply, of what the input names.
   Result<StartPreview> Preview(const StartAtStep& input, const ReachLimits& limits = {}) const;
+
+  // The how manieth pass through its step the run of its base was in at this time. Errors: as
+  // Preview.
+  Result<std::uint64_t> OccurrenceAt(const StartAtStep& input, SimTime time) const;
 
   SimTime time() const { return now_; }
   MachineState state() const;
@@ -124,12 +130,17 @@ class Machine {
   // "VR[5]" -> "7.0"; nothing for what is no variable of this machine.
   std::optional<VariableValue> ReadVariable(std::string_view name) const;
   const Run* open_run() const { return run_.get(); }  // null: none is open
+  // What the open run began with and what came since, so that it can be simulated again; none: no
+  // run of a program is open, or more came than is kept.
+  const std::optional<StartBase>& base() const { return base_; }
+  SimTime base_time() const;         // where it is, by the time of these inputs
   std::vector<Place> stack() const;  // of the open run, that in execution last; else nothing
   std::vector<ModalValue> modal_values() const;
   // Whether acknowledging it does something: its cause is gone.
   bool MayAcknowledge(const Alarm& alarm) const;
   const std::vector<Breakpoint>& breakpoints() const { return breakpoints_; }
   std::optional<ProgramStep> simulation_until() const;
+  const std::array<int, kGates>& gates() const { return gates_; }
 
   // Runs that ended and executables that were made since the last call.
   std::vector<RunOver> TakeRunsOver() { return std::exchange(over_, {}); }
@@ -170,6 +181,8 @@ class Machine {
   Status Act(const StartAtStep& input);  // machine_start_at.cc
   Status Act(const PressedKey& input);
   Status Act(const RefuseEdit& input);
+  Status Act(const SetGates& input);  // machine_gates.cc
+  Status Act(const PressGate& input);
 
   StateGuards guards() const;
   Error Refusal(ErrorCode code) const;
@@ -184,6 +197,7 @@ class Machine {
   void AdvanceJog(SimTime until);
   Status MaySource(StartSource source) const;
   void ToRun(InputKind kind, int index = 0, double value = 0.0);
+  void KeepForBase(const InputChange& change);
   void Hold();
   void Halt(InputKind key);
   void Raise(ErrorCode code, Detail detail, const Place& place);
@@ -214,10 +228,14 @@ class Machine {
   std::optional<ProgramStep> simulation_;
   std::vector<Alarm> alarms_;
   std::int64_t last_alarm_ = 0;
-  ShownStep shown_{};                 // what the last run left, or was selected since
-  bool selected_ = false;             // while the open run stands
-  std::optional<ErrorCode> message_;  // not cleared yet
-  RunNote note_{};                    // of the run that was begun last
+  ShownStep shown_{};                   // what the last run left, or was selected since
+  bool selected_ = false;               // while the open run stands
+  std::optional<ErrorCode> message_;    // not cleared yet
+  RunNote note_{};                      // of the run that was begun last
+  std::optional<StartBase> base_{};     // of the open run
+  std::optional<SimTime> halted_at_{};  // in its time; it stands since
+  SimTime not_in_base_{0};              // of halts that whoever simulates it does not come to
+  std::array<int, kGates> gates_{};     // programs that they start
   std::unique_ptr<Standing> standing_;
   std::unique_ptr<Handbox> handbox_;  // null: it has none
   HandJog jog_;                       // moves nothing while a run is open

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -151,11 +152,21 @@ struct RefuseEdit {
   ErrorCode code{};
 };
 
+// Gate 1 and gate 2: two inputs that start a program each, in REMOTE. How a gate is wired is not
+// known; the program of each is set. LIVE-2.11
+inline constexpr int kGates = 2;
+struct SetGates {
+  std::array<int, kGates> programs{};  // slots; 0: it starts none
+};
+struct PressGate {
+  int gate = 1;
+};
+
 using MachineInput =
     std::variant<StartRun, ZeroAxes, ResumeRun, HoldRun, StopRun, AbortRun, EmergencyStop,
                  Acknowledge, ChangeMode, ChangeOverride, ChangeInput, MoveDoor, SwitchPower,
                  WriteVariable, SetBreakpoints, SetSimulation, StoreProgram, DeleteProgram,
                  SetSchedules, ClearMessage, StartAtStep, PressJog, ReleaseJog, ReleaseJogs,
-                 PressedKey, RefuseEdit>;
+                 PressedKey, RefuseEdit, SetGates, PressGate>;
 
 }  // namespace rmlcell::machine

@@ -158,6 +158,8 @@ bool TakeLine(std::string_view line, MachineNote& note) {
     const std::vector<const CatalogueEntry*> rows = FindByText(code);
     if (rows.size() != 1 || CodeText(rows.front()->code) != code) return false;
     note.message = rows.front()->code;
+  } else if (key == "gates") {
+    for (int& program : note.gates) words.Take(program, 0, kSlotMax);
   } else if (key == "handbox") {
     note.handbox = words.Rest();
   } else {
@@ -207,6 +209,7 @@ std::string WriteMachineNote(const MachineNote& note) {
   if (note.shown != ShownStep())
     lines.Add("shown", note.shown.program, note.shown.step, note.shown.instruction);
   if (note.message) lines.Add("message", CodeText(*note.message));
+  if (note.gates != std::array<int, kGates>()) lines.Add("gates", note.gates[0], note.gates[1]);
   if (!note.handbox.empty()) lines.Add("handbox", OneLine(note.handbox));
   lines.Add("family");
   return lines.Take() + note.family;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "engine/core/result.h"
 #include "engine/core/units.h"
+#include "engine/machine/machine_input.h"
 #include "engine/machine/outcome.h"
 #include "engine/machine/run_setup.h"
 
@@ -47,6 +49,7 @@ struct MachineNote {
   std::int64_t last_run = 0;
   ShownStep shown{};
   std::optional<ErrorCode> message{};
+  std::array<int, kGates> gates{};
   std::string handbox{};  // Handbox::Save
   std::string family{};
 

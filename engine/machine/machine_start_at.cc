@@ -50,12 +50,42 @@ Result<StartPreview> Machine::Preview(const StartAtStep& input, const ReachLimit
                       limits);
 }
 
+Result<std::uint64_t> Machine::OccurrenceAt(const StartAtStep& input, SimTime time) const {
+  return machine::OccurrenceAt(family_, SetupTo(input), input.target.at, time);
+}
+
 Status Machine::Act(const StartAtStep& input) {
   if (const Status may = MayStartAt(input); !may) return may.error();
   if (input.prepared != nullptr) return Enter(input, *input.prepared);
   const Result<StartPreview> preview = Preview(input);
   if (!preview) return preview.error();
   return Enter(input, *preview);
+}
+
+// Whoever simulates it has no breakpoints, goes on at once where the program halts, and knows no
+// approach: these take no time there.
+void Machine::KeepForBase(const InputChange& change) {
+  constexpr std::size_t kKept = 1'000;
+  const RunState state = run_->state();
+  const bool goes_on = change.kind == InputKind::kStart && state.phase == RunPhase::kHalted;
+  const bool by_key = state.halted_by == HaltReason::kHold || state.halted_by == HaltReason::kStop;
+  if (goes_on) {
+    const SimTime since = halted_at_.value_or(state.time);
+    if (!by_key && !state.approaching) not_in_base_ += state.time - since;
+    halted_at_.reset();
+  }
+  if (!base_ || state.approaching || (goes_on && !by_key)) return;
+  if (base_->inputs.size() >= kKept) return base_.reset();
+  base_->inputs.push_back(change);
+  base_->inputs.back().at = state.time - state.approached - not_in_base_;
+}
+
+SimTime Machine::base_time() const {
+  RMLCELL_CHECK(run_ != nullptr);
+  const RunState state = run_->state();
+  const bool by_key = state.halted_by == HaltReason::kHold || state.halted_by == HaltReason::kStop;
+  const bool stands = state.phase == RunPhase::kHalted && halted_at_ && !by_key;
+  return (stands ? *halted_at_ : state.time) - state.approached - not_in_base_;
 }
 
 // The run that went to the step had nobody who looked; this one is told of all that it does.
@@ -69,6 +99,11 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
   if (!to_see.empty())
     return Error{ErrorCode::kCellMachineState, "nobody has seen to " + std::move(to_see), {}};
   RunSetup setup = SetupTo(input);
+  StartBase base{.machine_state = setup.machine_state,
+                 .inputs = std::move(setup.inputs),
+                 .mode = setup.mode,
+                 .override_percent = setup.override_percent};
+  std::erase_if(base.inputs, [&](const InputChange& one) { return one.at > preview.run_time; });
   setup.inputs.clear();  // from here on people and hosts give them
   Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
   if (!run) return run.error();
@@ -87,6 +122,8 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
            .source = input.source,
            .begun = now_ - preview.run_time,
            .entered = RunEntry{.at = preview.reach.target, .run_time = preview.run_time}};
+  base_ = std::move(base);
+  not_in_base_ = SimTime(0);
   shown_ = {.program = input.program};
   return {};
 }

@@ -226,7 +226,17 @@ Result<std::uint64_t> OccurrenceAt(const MachineFamily& family, const RunSetup& 
   Passes passes(at);
   const Result<std::unique_ptr<Run>> run = family.NewRun(setup, passes);
   if (!run) return run.error();
-  while ((*run)->Advance(time) == RunPhase::kRunning && (*run)->state().time < time) {
+  std::optional<std::pair<SimTime, std::uint64_t>> started;
+  for (;;) {
+    const SimTime before = (*run)->state().time;
+    const RunPhase phase = (*run)->Advance(time);
+    const SimTime now = (*run)->state().time;
+    if (phase == RunPhase::kFinished || now >= time) break;
+    if (phase == RunPhase::kRunning || now > before) continue;
+    const std::pair here{now, (*run)->steps_executed()};
+    if (started == here) break;
+    started = here;
+    (*run)->Apply({.at = now, .kind = InputKind::kStart, .index = 0, .value = 1.0});
   }
   return passes.count;
 }

@@ -40,6 +40,7 @@ struct RunState {
   bool zeroed = true;  // the axes have their reference
   bool door_open = false;
   bool approaching = false;               // to the step where the run begins (step_entry.h)
+  SimTime approached{0};                  // how long that took
   std::optional<HaltReason> halted_by{};  // in kHalted
   // Program zero in the machine frame, where a program has one: what X 0, Y 0, Z 0 mean now.
   std::optional<motion::MachinePoint> work_origin{};

@@ -460,6 +460,7 @@ machine::RunState MillRun::state() const {
   state.override_percent = s.override_percent;
   state.spindle_on = SpindleTurns();
   state.approaching = s.approaching;
+  state.approached = s.approached;
   if (s.halt != HaltCause::kNone) state.halted_by = ReasonOf(s.halt);
   state.work_origin =
       motion::MachinePoint(profile().origin_x, profile().origin_y, s.device.registers().surface_z) /

@@ -129,6 +129,8 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
     std::optional<machine::StepFacts> reached;  // it halted before the command of halts.entry
     // The way to the command where the run begins, while approaching: what is to come of it.
     bool approaching = false;
+    SimTime approach_begun{0};
+    SimTime approached{0};  // how long it took
     std::deque<Action> approach;
     bool halts_at_entry = false;
     bool step_over = false;        // a motion of it, after which SINGLE halts

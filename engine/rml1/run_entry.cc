@@ -103,6 +103,7 @@ void MillRun::Enter(const machine::EntryOrder& order) {
     s.ahead.EndChain();
   }
   s.approaching = true;
+  s.approach_begun = s.now;
   s.halts_at_entry = order.halt_at_entry;
   s.spindle_to_come = turns;
   s.step_over = false;
@@ -126,6 +127,7 @@ void MillRun::GoOnApproaching() {
     return Begin(action);
   }
   s.approaching = false;
+  s.approached = s.now - s.approach_begun;
   if (s.halts_at_entry) BeginHalt(HaltCause::kEntry);
 }
 

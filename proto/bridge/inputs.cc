@@ -58,7 +58,9 @@ Result<InputChange> OfVariable(const v1::Variable& variable) {
   return *change;
 }
 
-Result<InputChange> OfInput(const v1::AppliedInput& input, double override_max) {
+}  // namespace
+
+Result<InputChange> ChangeOf(const v1::AppliedInput& input, double override_max) {
   const auto key = [](InputKind kind) { return InputChange{.kind = kind}; };
   switch (input.input_case()) {
     case v1::AppliedInput::kStart:
@@ -90,6 +92,42 @@ Result<InputChange> OfInput(const v1::AppliedInput& input, double override_max) 
   return Invalid(
       "a simulation takes start, resume, hold, stop, emergency_stop, override_percent, and from_outside with input or door_open");
 }
+
+v1::AppliedInput ToProto(const InputChange& change) {
+  v1::AppliedInput input;
+  v1::MachineInput& outside = *input.mutable_from_outside();
+  switch (change.kind) {
+    case InputKind::kLogical:
+      outside.mutable_input()->set_name("IL[" + std::to_string(change.index) + "]");
+      outside.mutable_input()->mutable_value()->set_logical(change.value != 0.0);
+      break;
+    case InputKind::kAnalogue:
+      outside.mutable_input()->set_name("IA[" + std::to_string(change.index) + "]");
+      outside.mutable_input()->mutable_value()->set_real(change.value);
+      break;
+    case InputKind::kDoor:
+      outside.set_door_open(change.value != 0.0);
+      break;
+    case InputKind::kStart:
+      input.mutable_resume();
+      break;
+    case InputKind::kHold:
+      input.set_hold(v1::HOLD_REASON_HOLD);
+      break;
+    case InputKind::kStop:
+      input.set_stop(v1::HOLD_REASON_STOP);
+      break;
+    case InputKind::kEmergencyStop:
+      input.set_emergency_stop(true);
+      break;
+    case InputKind::kOverride:
+      input.set_override_percent(change.value);
+      break;
+  }
+  return input;
+}
+
+namespace {
 
 // ON, OPEN, TRUE, YES are 1; OFF, CLOSED, FALSE, NO are 0; else a number.
 std::optional<double> ValueOf(std::string_view text) {
@@ -159,7 +197,7 @@ Status CheckOverride(double percent, double override_max) {
 
 Result<machine::InputChange> FromProto(const v1::ScriptedInput& scripted, double override_max) {
   if (scripted.virtual_time_ns() < 0) return Invalid("virtual_time_ns must be 0 or later");
-  Result<InputChange> change = OfInput(scripted.input(), override_max);
+  Result<InputChange> change = ChangeOf(scripted.input(), override_max);
   if (change) change->at = SimTime(scripted.virtual_time_ns());
   return change;
 }

@@ -8,6 +8,7 @@
 #include "engine/machine/variable.h"
 
 namespace rmlcell::v1 {
+class AppliedInput;
 class ScriptedInput;
 class SimulationOptions;
 class Variable;
@@ -20,6 +21,10 @@ namespace rmlcell::bridge {
 // it cannot have: logical ones are true or false, analogue ones finite numbers, and the override is
 // above 0 to `override_max`, percent.
 Result<machine::InputChange> FromProto(const v1::ScriptedInput& scripted, double override_max);
+
+v1::AppliedInput ToProto(const machine::InputChange& change);
+// Errors: as of FromProto, but for its time.
+Result<machine::InputChange> ChangeOf(const v1::AppliedInput& input, double override_max);
 
 // Those of the options in order of time. Errors: of FromProto, but for an override that is high.
 Result<machine::InputScript> InputsOf(const v1::SimulationOptions& options);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -121,6 +122,12 @@ struct Applied {
     made.mutable_key()->set_key("ERR");
     made.mutable_key()->set_action(v1::KEY_ACTION_TAP);
   }
+  void operator()(const machine::SetGates& input) const {
+    for (const int program : input.programs) made.mutable_gates()->add_programs(program);
+  }
+  void operator()(const machine::PressGate& input) const {
+    made.mutable_from_outside()->set_gate(input.gate);
+  }
   void operator()(const machine::StartAtStep& input) const {
     v1::StartInput& start = *made.mutable_start();
     start.set_program(input.program);
@@ -132,6 +139,7 @@ struct Applied {
                                                                 : v1::APPROACH_DIRECT);
     start.set_halt_at_entry(input.halt_at_entry);
     start.set_off_until_work_on(input.off_until_work_on);
+    if (input.base) *start.mutable_base() = bridge::ToProto(*input.base, input.program);
   }
   void operator()(const machine::PressJog& input) const {
     made.mutable_key()->set_key(machine::Name(input.key));
@@ -203,6 +211,12 @@ Result<MachineInput> OfStart(const v1::StartInput& start) {
   const auto source = StartSourceOf(start.source());
   if (!source) return Error{ErrorCode::kCellInvalidArgument, "a start without a source", {}};
   if (start.has_step()) {
+    std::optional<machine::StartBase> base;
+    if (start.has_base()) {
+      auto known = FromProto(start.base());
+      if (!known) return known.error();
+      base = *std::move(known);
+    }
     // It has acted: whatever a person had to see to was seen to.
     return MachineInput(machine::StartAtStep{
         .program = start.program(),
@@ -214,6 +228,7 @@ Result<MachineInput> OfStart(const v1::StartInput& start) {
                                                        : machine::ApproachWay::kSafe,
         .off_until_work_on = start.off_until_work_on(),
         .halt_at_entry = start.halt_at_entry(),
+        .base = std::move(base),
         .acknowledged = {"clamps", "tool", "origin", "Z0", "table"}});
   }
   return MachineInput(machine::StartRun{
@@ -377,11 +392,51 @@ Result<MachineInput> FromProto(const v1::MachineInput& input) {
       if (!input.emergency_stop_released()) break;
       return MachineInput(machine::EmergencyStop{.pressed = false});
     case v1::MachineInput::kGate:
-      return Error{ErrorCode::kCellUnimplemented, "inputs: a gate", {}};
+      return MachineInput(machine::PressGate{.gate = input.gate()});
     case v1::MachineInput::WHAT_NOT_SET:
       break;
   }
   return Error{ErrorCode::kCellInvalidArgument, "inputs: one of them says nothing", {}};
+}
+
+v1::RunBase ToProto(const machine::StartBase& base, int program) {
+  v1::RunBase made;
+  made.set_program(program);
+  made.set_machine_state(base.machine_state);
+  made.set_mode(ToProto(base.mode));
+  made.set_override_percent(base.override_percent);
+  for (const machine::InputChange& change : base.inputs) {
+    v1::RunBaseInput& input = *made.add_inputs();
+    input.set_run_time_ns(change.at.count());
+    *input.mutable_input() = ToProto(change);
+  }
+  return made;
+}
+
+Result<machine::StartBase> FromProto(const v1::RunBase& base) {
+  const auto mode = ModeOf(base.mode());
+  if (!mode) return Error{ErrorCode::kCellInvalidArgument, "mode is none that there is", {}};
+  machine::StartBase made{.machine_state = base.machine_state(),
+                          .inputs = {},
+                          .mode = *mode,
+                          .override_percent = base.override_percent()};
+  for (const v1::RunBaseInput& input : base.inputs()) {
+    auto change = ChangeOf(input.input(), std::numeric_limits<double>::infinity());
+    if (!change) return change.error();
+    change->at = SimTime(input.run_time_ns());
+    made.inputs.push_back(*change);
+  }
+  return made;
+}
+
+Result<machine::SetGates> FromProto(const v1::GatePrograms& gates) {
+  machine::SetGates set;
+  if (gates.programs_size() != machine::kGates)
+    return Error{ErrorCode::kCellInvalidArgument,
+                 "gate_programs: one for gate 1 and one for gate 2; 0 is none",
+                 {}};
+  std::ranges::copy(gates.programs(), set.programs.begin());
+  return set;
 }
 
 Result<double> NumberOf(const v1::Variable& variable) {
@@ -487,6 +542,10 @@ Result<std::optional<MachineInput>> InputOf(const v1::AppliedInput& applied) {
       return of(OfSimulation(applied.simulation_until()));
     case v1::AppliedInput::kEmergencyStop:
       return Known(machine::EmergencyStop{.pressed = applied.emergency_stop()});
+    case v1::AppliedInput::kGates: {
+      const auto gates = FromProto(applied.gates());
+      return of(gates ? Result<MachineInput>(*gates) : gates.error());
+    }
     case v1::AppliedInput::kPower:
       return Known(machine::SwitchPower{.on = applied.power()});
     case v1::AppliedInput::kFactor:

@@ -32,7 +32,11 @@ v1::AppliedInput AppliedOf(const machine::MachineInput& input);
 // CellInvalidArgument.
 Result<std::optional<machine::MachineInput>> InputOf(const v1::AppliedInput& applied);
 
-// From outside: IL, IA, door, power. Errors: CellInvalidArgument, CellUnimplemented.
+// What a run began with, and back. Errors: CellInvalidArgument.
+v1::RunBase ToProto(const machine::StartBase& base, int program);
+Result<machine::StartBase> FromProto(const v1::RunBase& base);
+
+// From outside: IL, IA, door, power, a gate. Errors: CellInvalidArgument.
 Result<machine::MachineInput> FromProto(const v1::MachineInput& input);
 
 // In the order of the family, "X Y Z A": of those that slide and of those that turn.
@@ -43,6 +47,9 @@ std::optional<machine::KeyAction> ActionOf(v1::KeyAction action);
 
 // "X+"; nothing for what is no jog key.
 std::optional<machine::JogKey> JogKeyOf(std::string_view name);
+
+// Errors: CellInvalidArgument.
+Result<machine::SetGates> FromProto(const v1::GatePrograms& gates);
 
 machine::LaserSchedule FromProto(const v1::AssignedSchedule& schedule);
 

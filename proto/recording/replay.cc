@@ -204,9 +204,10 @@ class Player {
                    {}};
     if (!*input) return {};
     auto* start = std::get_if<machine::StartRun>(&**input);
+    auto* enters = std::get_if<machine::StartAtStep>(&**input);
     if (start != nullptr) start->brought = std::exchange(brought_, std::nullopt);
-    if (start != nullptr || std::holds_alternative<machine::ZeroAxes>(**input) ||
-        std::holds_alternative<machine::StartAtStep>(**input))
+    if (enters != nullptr) enters->brought = std::exchange(brought_, std::nullopt);
+    if (start != nullptr || enters != nullptr || std::holds_alternative<machine::ZeroAxes>(**input))
       listener_.BeginRun(machine_->time());
     const Status done = machine_->Apply(**input);
     if (!done) {

@@ -6,12 +6,14 @@
 #include <grpcpp/health_check_service_interface.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <thread>
 
 #include "engine/core/hex.h"
 #include "engine/core/number_text.h"
+#include "proto/bridge/findings.h"
 #include "server/base/credentials.h"
 #include "server/base/executor.h"
 #include "server/base/secret.h"
@@ -31,6 +33,7 @@
 #include "server/projects/project_transfer.h"
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
+#include "server/records/machine_options.h"
 #include "server/results/job_results.h"
 #include "server/runs/run_products.h"
 #include "server/runs/run_queue.h"
@@ -226,7 +229,9 @@ void Cell::Parts::MakeHosts(const std::string& host_token) {
       .log_level = config.log_level,
       .log_format = config.log_format,
       .is_heard = [this](const std::string& machine) { return hosts->IsHeard(machine); },
-      .look = LookAtMachines()});
+      .look = LookAtMachines(),
+      .gave_up = [this](const std::string& machine,
+                        const std::string& why) { hosts->NoteOff(machine, why); }});
 }
 
 Status Cell::Parts::Listen(const std::string& join_token) {
@@ -259,7 +264,10 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   machine_watch.hosts = hosts.get();
   machine_service = std::make_unique<MachineService>(
       needs, std::move(machine_watch),
-      MachineService::Live{.hosts = hosts.get(), .processes = host_processes.get()});
+      MachineService::Live{.hosts = hosts.get(),
+                           .processes = host_processes.get(),
+                           .runs = runs.get(),
+                           .by_default = config.machines_hosts == "all"});
   program_service =
       std::make_unique<ProgramService>(needs, *store, *programs, *tools, *language, open);
   project_service = std::make_unique<ProjectService>(needs, *projects, *transfer, open);
@@ -387,15 +395,23 @@ std::function<void()> Cell::Parts::LookAtMachines() {
   };
 }
 
-// Machines that were enabled when a server had this store last: their hosts may be alive, and come
-// back by themselves.
+// Of virtual machines. Those that had one when a server had this store last may be alive, and come
+// back by themselves. LIVE-3.01
 Status Cell::Parts::StartHosts() {
   const auto leases = store->MachineLeases();
   if (!leases) return leases.error();
-  for (const storage::MachineLease& lease : *leases) {
-    if (lease.pinned) continue;
-    if (const Status enabled = host_processes->Enable(lease.machine, kHostsComeBack); !enabled)
-      return enabled.error();
+  const auto machines = store->ListMachines();
+  if (!machines) return machines.error();
+  for (const storage::MachineRecord& machine : *machines) {
+    const auto lease = std::ranges::find(*leases, machine.id, &storage::MachineLease::machine);
+    const bool had = lease != leases->end();
+    if (had && lease->pinned) continue;
+    if (!IsEnabled(machine, had || config.machines_hosts == "all")) continue;
+    const Status enabled =
+        host_processes->Enable(machine.id, had ? kHostsComeBack : std::chrono::milliseconds(0));
+    if (enabled) continue;
+    if (had) return enabled.error();
+    spdlog::warn("{} does not live: {}", machine.id, bridge::ErrorText(enabled.error()));
   }
   return {};
 }

@@ -12,11 +12,15 @@
 #include "proto/bridge/machine_inputs.h"
 #include "proto/recording/told.h"
 #include "server/host/host_messages.h"
+#include "server/host/host_options.h"
+#include "server/host/order_class.h"
 
 namespace rmlcell::server {
 namespace {
 
 const google::protobuf::Message* RequestOf(const v1::HostOrder& order) {
+  if (order.has_continue_job()) return &order.continue_job().start();
+  if (order.has_by_person()) return &order.by_person();
   const auto* set = order.GetReflection()->GetOneofFieldDescriptor(
       order, order.GetDescriptor()->FindOneofByName("request"));
   return set == nullptr ? nullptr : &order.GetReflection()->GetMessage(order, set);
@@ -67,12 +71,16 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
   }
   made.untold.clear();
   host->inspect_job_ = made.inspect_job;
+  if (made.cut_off) host->cut_off_base_ = made.cut_off_base;
   if (made.open_run) host->TellCutOff(*made.open_run, ErrorCode::kCellHostDied);
   return host;
 }
 
 HostMachine::HostMachine(Setup setup, std::function<std::string()> make_token)
-    : setup_(std::move(setup)), desk_(make_token), starts_(std::move(make_token)) {}
+    : setup_(std::move(setup)),
+      desk_(make_token),
+      starts_(make_token),
+      arms_(std::move(make_token)) {}
 
 v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& now) {
   GoOnTo(now);
@@ -167,6 +175,7 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, co
     case v1::HostOrder::kKey:
     case v1::HostOrder::kHandboxHeartbeat:
     case v1::HostOrder::kDeleteSession:
+    case v1::HostOrder::kUndoTeaching:
       return CarryOutKeys(order, now);
     case v1::HostOrder::kFactor:
       if (const Status set = driver_->SetFactor(now.steady, order.factor().factor()); !set)
@@ -178,8 +187,14 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, co
       return answer;
     case v1::HostOrder::kWriteVariables:
       return Write(order);
+    case v1::HostOrder::kArm:
+    case v1::HostOrder::kDisarm:
+      return Arm(order, now);
     case v1::HostOrder::kRunJob:
       if (const Status begun = RunJob(order, now); !begun) return begun.error();
+      return answer;
+    case v1::HostOrder::kContinueJob:
+      if (const Status begun = ContinueJob(order, now); !begun) return begun.error();
       return answer;
     default:
       break;
@@ -234,24 +249,6 @@ Result<v1::HostOrderAnswer> HostMachine::Write(const v1::HostOrder& order) {
     if (const Status done = Apply((*inputs)[i], &order); !done) return done.error();
   }
   return answer;
-}
-
-Status HostMachine::Confirm(const v1::HostOrder& order) {
-  if (!inspect_due_)
-    return Error{ErrorCode::kCellMachineState, "nothing waits for a confirmation", {}};
-  const auto& given = order.confirm().confirmations();
-  if (std::ranges::find(given, v1::CONFIRMATION_INSPECTED) == given.end())
-    return Error{ErrorCode::kCellInspect, "confirm CONFIRMATION_INSPECTED", {}};
-  inspect_due_ = false;
-  inspect_job_.clear();
-  mark_due_ = true;
-  // Who looked at it, and what he made of the run.
-  const std::string why = order.reason().empty() ? "" : ": " + bridge::Utf8(order.reason());
-  Add(machine().time())
-      .mutable_event()
-      ->mutable_message()
-      ->set_text("inspected by " + order.caller() + why);
-  return {};
 }
 
 Status HostMachine::MayApply(const machine::MachineInput& input) const {
@@ -314,6 +311,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
     run_begun_ = machine().time();
     told_of_run_ = 0;
   }
+  if (starts) arms_.Disarm();
   if (starts || std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
   if (moves()) {
     if (std::holds_alternative<machine::StopRun>(input) || (key != nullptr && key->key == "STOP"))
@@ -331,7 +329,8 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   applied.set_virtual_time_ns(machine().time().count());
   *applied.mutable_input() = bridge::AppliedOf(input);
   if (starts && !job_.empty()) applied.mutable_input()->mutable_start()->set_job(job_);
-  const bool of_queue = order != nullptr && (order->has_run_job() || !order->for_job().empty());
+  const bool of_queue =
+      order != nullptr && (AssignmentOf(*order) != nullptr || !order->for_job().empty());
   applied.set_source(of_queue    ? v1::START_SOURCE_QUEUE
                      : by_panel_ ? v1::START_SOURCE_PANEL
                                  : v1::START_SOURCE_CONSOLE);
@@ -381,7 +380,9 @@ void HostMachine::GoOnTo(const HostTime& now) {
     TellControl();
     if (*on_loss == v1::ControlLease::ON_LOSS_HOLD) Hold(v1::HOLD_REASON_CONTROL, now);
   }
+  arms_.Expire(desk_.lease() ? desk_.lease()->number() : 0, memory_changes_, now);
   Notice();
+  if (std::exchange(late_, false)) Hold(v1::HOLD_REASON_LATE, now);
 }
 
 bool HostMachine::GoOn(const HostTime& now) {
@@ -477,6 +478,7 @@ void HostMachine::Notice() {
     slipped.set_fence(setup_.fence);
     slipped.set_virtual_time_ns(status.time.count());
     slipped.set_lost_ns(lost.count());
+    late_ = late_ || lost >= LateHold(setup_.options);
   }
 }
 
@@ -510,8 +512,13 @@ v1::MachineStatus HostMachine::StatusAt(const HostTime& now) const {
   const bool halts =
       status.state() == v1::MACHINE_STATE_HELD || status.state() == v1::MACHINE_STATE_STOPPING;
   if (halts && held_for_) status.set_hold_reason(*held_for_);
-  if (inspect_due_) status.add_confirmations_due(v1::CONFIRMATION_INSPECTED);
+  if (inspect_due_) {
+    status.add_confirmations_due(v1::CONFIRMATION_INSPECTED);
+    status.set_cut_off_job(inspect_job_);
+    if (cut_off_base_) *status.mutable_cut_off_at() = cut_off_base_->place();
+  }
   if (status.has_run()) status.mutable_run()->set_job(job_);
+  arms_.AddTo(status);
   AddBlockers(status);
   return status;
 }
@@ -542,8 +549,8 @@ v1::JournalEntry HostMachine::IntentOf(const v1::HostOrder& order, const HostTim
   intent.set_request_id(FieldOf(order, "request_id").value_or(""));
   if (const auto inputs = InputsOf(order, machine()); inputs && !inputs->empty())
     *intent.mutable_input() = bridge::AppliedOf(inputs->front());
-  if (order.has_run_job())
-    intent.mutable_input()->mutable_start()->set_job(order.run_job().job().name());
+  if (const v1::WorkerAssignment* assignment = AssignmentOf(order))
+    intent.mutable_input()->mutable_start()->set_job(assignment->job().name());
   v1::JournalEntry entry = std::move(entries_.back());
   entries_.pop_back();
   return entry;

@@ -11,6 +11,7 @@
 #include "engine/machine/handbox.h"
 #include "engine/machine/virtual_driver.h"
 #include "rmlcell/v1/host.pb.h"
+#include "server/host/arm_desk.h"
 #include "server/host/control_desk.h"
 #include "server/host/key_desk.h"
 #include "server/host/machine_recorder.h"
@@ -30,6 +31,7 @@ class HostMachine : private machine::RunObserver {
     const machine::MachineFamily* family = nullptr;
     std::string profile{};
     std::map<std::string, std::string> parameters{};
+    v1::MachineOptions options{};
     machine::MachineMemory memory{};
     std::string state{};  // as the last mark has it; empty: a new machine
     // What happened under an earlier fence and is not in the store yet; marks aside.
@@ -37,7 +39,8 @@ class HostMachine : private machine::RunObserver {
     bool cut_off = false;  // a run was open then, and nobody has decided yet: INSPECT
     // The run that the mark was in the middle of; absent: none, or its end was told already.
     std::optional<v1::MachineMark> open_run{};
-    std::string inspect_job{};  // whose run it was, where its end was told already
+    std::string inspect_job{};                  // whose run it was, where its end was told already
+    std::optional<v1::RunBase> cut_off_base{};  // what it began with; absent: not known
   };
   static constexpr std::size_t kAnswersKept = 1'024;
   static constexpr std::chrono::minutes kAnswersKeptFor{10};
@@ -58,9 +61,12 @@ class HostMachine : private machine::RunObserver {
   struct PreviewTask {
     machine::StartAtStep start{};
     StartDesk::Basis basis{};
-    std::function<Result<machine::StartPreview>(const machine::ReachLimits&)> run{};
+    std::optional<SimTime> occurrence_at{};  // the occurrence is that which its base was in then
+    std::function<Result<machine::StartPreview>(machine::StartAtStep& start,
+                                                const machine::ReachLimits&)>
+        run{};
   };
-  Result<PreviewTask> PreparePreview(const v1::PreviewStartRequest& request, const HostTime& now);
+  Result<PreviewTask> PreparePreview(const v1::HostOrder& order, const HostTime& now);
   v1::HostOrderAnswer Previewed(const v1::HostOrder& order, PreviewTask task,
                                 Result<machine::StartPreview> made, const HostTime& now);
   // Time goes on. False: there is more to compute; call again when orders were looked at.
@@ -117,7 +123,14 @@ class HostMachine : private machine::RunObserver {
   Status Press(const machine::PressedKey& key, const v1::HostOrder* order);
   void Edit(const machine::ProgramEdit& edit, const std::string& caller);
   StartDesk::Basis Basis() const;
+  Result<v1::HostOrderAnswer> Arm(const v1::HostOrder& order, const HostTime& now);
+  Status MayStartJob(const v1::HostOrder& order) const;
   Status StartAt(const v1::HostOrder& order, const HostTime& now);
+  Status ContinueJob(const v1::HostOrder& order, const HostTime& now);
+  void SettleInspection(const v1::HostOrder& order);
+  std::optional<v1::RunBase> BaseNow() const;
+  void BeginsJob(const v1::WorkerAssignment& assignment, const HostTime& now,
+                 v1::ControlLease::OnLoss armed_on_loss = v1::ControlLease::ON_LOSS_UNSPECIFIED);
   Result<std::optional<machine::StoredProgram>> ProgramOfJob(
       const v1::WorkerAssignment& assignment);
   std::optional<Error> WhyNoJob(const std::string& caller) const;
@@ -161,6 +174,7 @@ class HostMachine : private machine::RunObserver {
   std::unique_ptr<machine::VirtualDriver> driver_;
   ControlDesk desk_;
   StartDesk starts_;
+  ArmDesk arms_;
   std::uint64_t memory_changes_ = 0;
   KeyDesk keys_;
   DeadMan dead_man_;
@@ -181,6 +195,7 @@ class HostMachine : private machine::RunObserver {
   std::size_t recorded_ = 0;       // of the entries
   v1::AssignedProgram brought_{};  // by the job that is about to begin
   HostTime now_{};                 // of the call under way
+  bool late_ = false;              // by so much that the run is to be held
   std::int64_t sequence_ = 0;
   std::optional<v1::HoldReason> held_for_;  // by the host itself, or for a client
   std::int64_t run_told_ = 0;               // the newest whose begin was told
@@ -193,6 +208,7 @@ class HostMachine : private machine::RunObserver {
   std::string job_{};                   // "jobs/17": whose run is open, or begins; empty: nobody's
   std::deque<std::string> begun_jobs_;  // the newest, that of now among them
   std::string inspect_job_{};           // whose run was cut off, while that is to be looked at
+  std::optional<v1::RunBase> cut_off_base_{};  // likewise; what it began with
   std::chrono::nanoseconds marked_at_{0};
 };
 

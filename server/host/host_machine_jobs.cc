@@ -53,15 +53,16 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
   // Behind the intent, also where nothing begins: a crash later on finds no open one.
   mark_due_ = true;
   if (auto why = WhyNoJob(order.caller())) return *std::move(why);
+  if (const Status may = MayStartJob(order); !may) return may.error();
   const v1::WorkerAssignment& assignment = order.run_job();
+  const v1::ControlLease::OnLoss armed_on_loss = arms_.on_loss();
   brought_.Clear();
   auto brought = ProgramOfJob(assignment);
   if (!brought) return brought.error();
-  const v1::RunOptions& options = assignment.job().run();
   job_ = assignment.job().name();
   const Status begun = Apply(machine::StartRun{.program = assignment.main_program(),
                                                .source = machine::StartSource::kQueue,
-                                               .unzeroed = options.unzeroed(),
+                                               .unzeroed = assignment.job().run().unzeroed(),
                                                .brought = *std::move(brought)},
                              &order);
   if (!begun) {
@@ -69,12 +70,94 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
     brought_.Clear();
     return begun.error();
   }
+  BeginsJob(assignment, now, armed_on_loss);
+  return {};
+}
+
+// Who starts jobs here. LIVE-5.04
+Status HostMachine::MayStartJob(const v1::HostOrder& order) const {
+  const std::string& job = order.run_job().job().name();
+  switch (setup_.options.start()) {
+    case v1::MachineOptions::START_PERSON:
+      if (order.has_by_person()) return {};
+      return Error{ErrorCode::kCellMode, "a person starts each job here", {}};
+    case v1::MachineOptions::START_ARMED:
+      return arms_.MayStart(
+          job, order.has_by_person() ? std::optional(order.by_person().arm_token()) : std::nullopt);
+    default:
+      return {};
+  }
+}
+
+Result<v1::HostOrderAnswer> HostMachine::Arm(const v1::HostOrder& order, const HostTime& now) {
+  if (order.has_disarm()) {
+    arms_.Disarm();
+    return v1::HostOrderAnswer();
+  }
+  if (setup_.options.start() != v1::MachineOptions::START_ARMED)
+    return Error{ErrorCode::kCellNotLive, "jobs start here without being armed for", {}};
+  if (auto why = WhyNoJob(order.caller())) return *std::move(why);
+  auto armed = arms_.Arm(order.arm(), order.caller(), desk_.lease() ? desk_.lease()->number() : 0,
+                         memory_changes_, now);
+  if (!armed) return armed.error();
+  v1::HostOrderAnswer answer;
+  *answer.mutable_armed() = *std::move(armed);
+  return answer;
+}
+
+void HostMachine::BeginsJob(const v1::WorkerAssignment& assignment, const HostTime& now,
+                            v1::ControlLease::OnLoss armed_on_loss) {
   begun_jobs_.push_back(job_);
   if (begun_jobs_.size() > kJobsKnown) begun_jobs_.pop_front();
-  if (!desk_.lease()) {
-    desk_.GiveToQueue(job_, options.on_loss(), now);
-    TellControl();
+  if (desk_.lease()) return;
+  const v1::ControlLease::OnLoss asked = assignment.job().run().on_loss();
+  desk_.GiveToQueue(job_, asked != v1::ControlLease::ON_LOSS_UNSPECIFIED ? asked : armed_on_loss,
+                    now);
+  TellControl();
+}
+
+// A job whose run begins where that of another one was cut off: whoever decided so has looked at
+// the machine. LIVE-5.10
+Status HostMachine::ContinueJob(const v1::HostOrder& order, const HostTime& now) {
+  mark_due_ = true;
+  const v1::WorkerAssignment& assignment = order.continue_job().assignment();
+  if (!inspect_due_ || inspect_job_ != assignment.job().continues()) {
+    return Error{ErrorCode::kCellMachineState,
+                 assignment.job().continues() + " waits for no decision here",
+                 {}};
   }
+  auto start = starts_.Take(order.continue_job().start(), Basis(), now);
+  if (!start) return start.error();
+  brought_.Clear();
+  auto brought = ProgramOfJob(assignment);
+  if (!brought) return brought.error();
+  const auto object = [this, &assignment](const std::optional<machine::StoredProgram>& one) {
+    const auto& stored = machine().memory().programs;
+    const auto found = stored.find(assignment.main_program());
+    if (one) return *one->object;
+    return found != stored.end() ? *found->second.object : std::string();
+  };
+  const bool same = object(*brought) == object(start->brought);
+  if (start->program != assignment.main_program() || !same || !start->base) {
+    brought_.Clear();
+    return Error{ErrorCode::kCellPreviewStale, "it was for another run", {}};
+  }
+  start->source = machine::StartSource::kQueue;
+  start->brought = *std::move(brought);
+  const auto& request = order.continue_job().start();
+  start->halt_at_entry = !request.has_halt_at_entry() || request.halt_at_entry();
+  job_ = assignment.job().name();
+  inspect_due_ = false;
+  const Status begun = Apply(*start, &order);
+  if (!begun) {
+    inspect_due_ = true;
+    job_.clear();
+    brought_.Clear();
+    return begun.error();
+  }
+  SettleInspection(order);
+  BeginsJob(assignment, now);
+  if (start->halt_at_entry) held_for_ = v1::HOLD_REASON_ENTRY;
   return {};
 }
 
@@ -91,6 +174,10 @@ void HostMachine::AddBlockers(v1::MachineStatus& status) const {
   if (const auto why = WhyNoJob(desk_.lease() ? desk_.lease()->holder() : std::string())) add(*why);
   if (desk_.lease() && !desk_.IsOfQueue())
     add({ErrorCode::kCellLeaseHeld, desk_.lease()->holder() + " has control", {}});
+  if (setup_.options.start() == v1::MachineOptions::START_PERSON)
+    add({ErrorCode::kCellMode, "a person starts each job here", {}});
+  if (setup_.options.start() == v1::MachineOptions::START_ARMED && !status.has_armed_until())
+    add({ErrorCode::kCellNotArmed, "nobody has armed it, or that is over", {}});
   if (!machine().status().run.zeroed && !machine().status().open)
     add({setup_.family->info().not_zeroed, "the axes have no reference", {}});
 }
@@ -112,6 +199,29 @@ Status HostMachine::CheckJob(const v1::HostOrder& order) const {
   }
   if (job == job_) return {};
   return Error{ErrorCode::kCellMachineState, job + " does not run", {}};
+}
+
+Status HostMachine::Confirm(const v1::HostOrder& order) {
+  if (!inspect_due_)
+    return Error{ErrorCode::kCellMachineState, "nothing waits for a confirmation", {}};
+  const auto& given = order.confirm().confirmations();
+  if (std::ranges::find(given, v1::CONFIRMATION_INSPECTED) == given.end())
+    return Error{ErrorCode::kCellInspect, "confirm CONFIRMATION_INSPECTED", {}};
+  SettleInspection(order);
+  return {};
+}
+
+// Who looked at it, and what he made of the run.
+void HostMachine::SettleInspection(const v1::HostOrder& order) {
+  inspect_due_ = false;
+  inspect_job_.clear();
+  cut_off_base_.reset();
+  mark_due_ = true;
+  const std::string why = order.reason().empty() ? "" : ": " + bridge::Utf8(order.reason());
+  Add(machine().time())
+      .mutable_event()
+      ->mutable_message()
+      ->set_text("inspected by " + order.caller() + why);
 }
 
 // Whoever watched it begin is told how it ended. LIVE-5.08
@@ -139,6 +249,7 @@ void HostMachine::EndRun(const HostTime& now) {
   where.set_run_time_ns(status.run.time.count());
   *where.mutable_place() = bridge::ToProto(status.run.place);
   where.set_job(job_);
+  cut_off_base_ = BaseNow();
   TellCutOff(where, ErrorCode::kCellHostStopped);
   ended_ = true;
 }

@@ -31,6 +31,20 @@ std::optional<Pressed> PressedBy(const v1::HostOrder& order) {
   return std::nullopt;
 }
 
+v1::TeachEntry::Act ActOf(machine::ProgramEdit::Kind kind) {
+  switch (kind) {
+    case machine::ProgramEdit::Kind::kCreate:
+      return v1::TeachEntry::ACT_CREATE;
+    case machine::ProgramEdit::Kind::kInsert:
+      return v1::TeachEntry::ACT_INSERT;
+    case machine::ProgramEdit::Kind::kDelete:
+      return v1::TeachEntry::ACT_DELETE;
+    case machine::ProgramEdit::Kind::kRemove:
+      break;
+  }
+  return v1::TeachEntry::ACT_REMOVE;
+}
+
 // HOME moves as long as it is down, too.
 bool IsHeld(const std::string& key) { return bridge::JogKeyOf(key) || key == "HOME"; }
 
@@ -137,6 +151,9 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOutKeys(const v1::HostOrder& order
       if (const Status closed = CloseSession(order.delete_session().name(), order.caller());
           !closed)
         return closed.error();
+      break;
+    case v1::HostOrder::kUndoTeaching:
+      answer.mutable_undone();  // whoever asks has control; the programs are the store's
       break;
     case v1::HostOrder::kHandboxHeartbeat:
       if (const Status known = CheckSession(order.handbox_heartbeat().session()); !known)
@@ -261,6 +278,30 @@ void HostMachine::Edit(const machine::ProgramEdit& edit, const std::string& call
   made.set_object(edit.object);
   made.set_object_revision(revisions_[edit.program]);
   made.set_caller(caller);
+  v1::TeachEntry& taught = *made.mutable_taught();
+  *taught.mutable_time() = Stamp(now_.wall);
+  taught.set_virtual_time_ns(machine().time().count());
+  taught.set_caller(caller);
+  taught.mutable_step()->set_program(edit.program);
+  taught.mutable_step()->set_step(edit.step);
+  taught.set_act(ActOf(edit.kind));
+  taught.set_before(bridge::Utf8(edit.text_before));
+  taught.set_after(bridge::Utf8(edit.text_after));
+  const auto value = [&taught](const char* name, const std::string& text) {
+    v1::ModalValue& added = *taught.add_values();
+    added.set_name(name);
+    added.set_value(text);
+  };
+  value("COORD", edit.note.coord);
+  value("TCP", edit.note.tcp);
+  value("SYSDEF", edit.note.sysdef_active ? "ON" : "OFF");
+  value("MODES", edit.note.modes);
+  for (v1::AxisValue& axis : bridge::AxesOf(setup_.family->info().axes, edit.note.axes))
+    *taught.add_axes() = std::move(axis);
+  taught.mutable_tip()->set_x(edit.note.tip.tip.x());
+  taught.mutable_tip()->set_y(edit.note.tip.tip.y());
+  taught.mutable_tip()->set_z(edit.note.tip.tip.z());
+  taught.set_place(edit.place);
 }
 
 void HostMachine::EditAnswered(const v1::HostEditAnswer& answer, const HostTime& now) {

@@ -31,11 +31,15 @@ v1::MachineMark HostMachine::MarkNow() const {
   v1::MachineMark mark;
   mark.set_fence(setup_.fence);
   mark.set_virtual_time_ns(status.time.count());
-  if (inspect_due_ || ended_) mark.set_job(inspect_job_);
+  if (inspect_due_ || ended_) {
+    mark.set_job(inspect_job_);
+    if (cut_off_base_) *mark.mutable_base() = *cut_off_base_;
+  }
   if (status.open && !ended_) {
     mark.set_run_time_ns(status.run.time.count());
     mark.set_job(job_);
     *mark.mutable_place() = bridge::ToProto(status.run.place);
+    if (auto base = BaseNow()) *mark.mutable_base() = *std::move(base);
   }
   mark.set_state(machine().Save());
   mark.set_state_sha256(BytesOfHex(bridge::Sha256Hex(mark.state())).value_or(""));

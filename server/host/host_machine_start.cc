@@ -1,9 +1,12 @@
 // A start at a step (live.md 6): what it would do, and the start.
+#include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "engine/machine/machine_note.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/machine_inputs.h"
+#include "proto/recording/recording.h"
 #include "server/host/host_machine.h"
 
 namespace rmlcell::server {
@@ -16,21 +19,59 @@ StartDesk::Basis HostMachine::Basis() const {
   return {.state = machine::WriteMachineNote(*note), .memory = memory_changes_};
 }
 
-Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::PreviewStartRequest& request,
+// Of a run that was cut off: there it has the values that it had. LIVE-6.01
+Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder& order,
                                                              const HostTime& now) {
   GoOnTo(now);
+  v1::PreviewStartRequest request = order.preview_start();
+  const bool again = inspect_due_ && cut_off_base_ &&
+                     (request.program() == 0 || request.program() == cut_off_base_->program());
+  if (again) request.set_program(cut_off_base_->program());
+  if (again && request.step().step() == 0) {
+    request.mutable_step()->set_program(cut_off_base_->place().program());
+    request.mutable_step()->set_step(std::max(1, cut_off_base_->place().step()));
+  }
   auto start = StartOf(request, machine());
   if (!start) return start.error();
   PreviewTask task{.start = *std::move(start), .basis = Basis()};
+  if (again) {
+    auto base = bridge::FromProto(*cut_off_base_);
+    if (!base) return base.error();
+    task.start.base = *std::move(base);
+    if (request.occurrence() == 0) task.occurrence_at = SimTime(cut_off_base_->until_ns());
+  }
+  if (again && order.has_brought()) {
+    auto brought = recording::ProgramOf(order.brought(), *setup_.family, *parameters_);
+    if (!brought) return brought.error();
+    const auto stored = machine().memory().programs.find(task.start.program);
+    const bool same =
+        stored != machine().memory().programs.end() && *stored->second.object == *brought->object;
+    if (!same) task.start.brought = *std::move(brought);
+  }
   task.run = [&family = *setup_.family, parameters = *parameters_, memory = machine().memory(),
-              state = machine().Save(), start = task.start](
+              state = machine().Save(), occurrence_at = task.occurrence_at](
+                 machine::StartAtStep& asked,
                  const machine::ReachLimits& limits) -> Result<machine::StartPreview> {
     machine::RunObserver nobody;
     auto copy = machine::Machine::Make(family, parameters, memory, state, nobody);
     if (!copy) return copy.error();
-    return (*copy)->Preview(start, limits);
+    if (occurrence_at) {
+      const auto in = (*copy)->OccurrenceAt(asked, *occurrence_at);
+      if (!in) return in.error();
+      asked.target.occurrence = std::max<std::uint64_t>(1, *in);
+    }
+    return (*copy)->Preview(asked, limits);
   };
   return task;
+}
+
+std::optional<v1::RunBase> HostMachine::BaseNow() const {
+  const machine::MachineStatus status = machine().status();
+  if (!status.open || status.open->by_hand || !machine().base()) return std::nullopt;
+  v1::RunBase base = bridge::ToProto(*machine().base(), status.open->program);
+  base.set_until_ns(machine().base_time().count());
+  *base.mutable_place() = bridge::ToProto(status.run.place);
+  return base;
 }
 
 v1::HostOrderAnswer HostMachine::Previewed(const v1::HostOrder& order, PreviewTask task,
@@ -56,10 +97,22 @@ v1::HostOrderAnswer HostMachine::Previewed(const v1::HostOrder& order, PreviewTa
 }
 
 Status HostMachine::StartAt(const v1::HostOrder& order, const HostTime& now) {
-  const auto start = starts_.Take(order.start_at_step(), Basis(), now);
+  const v1::StartAtStepRequest& request = order.start_at_step();
+  auto start = starts_.Take(request, Basis(), now);
   if (!start) return start.error();
-  if (const Status may = MayApply(*start); !may) return may.error();
-  if (const Status begun = Apply(*start, &order); !begun) return begun.error();
+  // Behind a run of nobody's job that was cut off: whoever has looked may go on.
+  const bool decides = inspect_due_ && inspect_job_.empty() &&
+                       std::ranges::find(request.confirmations(), v1::CONFIRMATION_INSPECTED) !=
+                           request.confirmations().end();
+  if (decides) {
+    inspect_due_ = false;
+    start->halt_at_entry = !request.has_halt_at_entry() || request.halt_at_entry();
+  }
+  Status begun = MayApply(*start);
+  if (begun) begun = Apply(*start, &order);
+  inspect_due_ = inspect_due_ || (decides && !begun);
+  if (!begun) return begun.error();
+  if (decides) SettleInspection(order);
   if (start->halt_at_entry) held_for_ = v1::HOLD_REASON_ENTRY;
   return {};
 }

@@ -95,6 +95,9 @@ v1::MachineStatus ToProto(const machine::Machine& machine) {
   message.mutable_tool()->set_on(status.run.beam_on || status.run.spindle_on);
   for (const std::string_view lamp : machine.panel().lamps) message.add_lamps(std::string(lamp));
   message.set_selected_program(status.shown.program);
+  if (machine.has_gates()) {
+    for (const int program : machine.gates()) message.add_gate_programs(program);
+  }
   return message;
 }
 
@@ -191,6 +194,13 @@ Result<std::optional<MachineInput>> OfSetting(const v1::HostOrder& order,
   using Input = std::optional<MachineInput>;
   const int selected = machine.status().shown.program;
   switch (order.request_case()) {
+    case v1::HostOrder::kGates: {
+      v1::GatePrograms gates;
+      *gates.mutable_programs() = order.gates().gate_programs();
+      const auto set = bridge::FromProto(gates);
+      if (!set) return set.error();
+      return Input(*set);
+    }
     case v1::HostOrder::kMode: {
       const auto mode = bridge::ModeOf(order.mode().mode());
       if (!mode) return Invalid("mode is none that there is");

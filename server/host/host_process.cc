@@ -22,6 +22,7 @@
 #include "server/host/host_line.h"
 #include "server/host/host_machine.h"
 #include "server/host/host_name.h"
+#include "server/host/host_options.h"
 #include "server/host/journal_writer.h"
 #include "server/host/order_class.h"
 #include "server/host/recovered.h"
@@ -38,7 +39,6 @@ constexpr nanoseconds kStatusMoving = 50ms;  // LIVE-3.16
 constexpr nanoseconds kStatusStanding = 1s;
 constexpr nanoseconds kTick = 5ms;         // of a machine that moves
 constexpr nanoseconds kTickHeld = 50ms;    // of a run that stands: its time goes on
-constexpr nanoseconds kServerLost = 1s;    // LIVE-3.31: then a run is held
 constexpr nanoseconds kServerSilent = 2s;  // it answers four times a second
 constexpr nanoseconds kRestBefore = 5s;    // LIVE-3.04: so long before its lease ends it rests
 constexpr nanoseconds kEndsWithoutServer = 60s;
@@ -106,7 +106,7 @@ class HostProcess {
       if (silent) line_->Cut();
       line_.reset();
       // Of one that is silent it is not known whether it was stopped or is only late.
-      without_server_since_ = silent ? now - kServerLost : now;
+      without_server_since_ = silent ? now - kServerSilent : now;
       ForgetOrders();
     }
     if (joined) {
@@ -226,26 +226,15 @@ class HostProcess {
     if (journal->torn_bytes > 0)
       spdlog::warn("{}: {} bytes at its end were torn", options_.journal, journal->torn_bytes);
     Recovered found = RecoveredFrom(*welcome_, std::move(journal->entries));
-    // It may have begun, and moved the machine, before anything of it was on the disk. LIVE-5.04
-    const bool open = found.mark.has_run_time_ns() || !found.begins.empty();
-    if (!found.begins.empty()) {
-      found.mark.set_job(found.begins);
-      found.mark.set_run_time_ns(0);
-      found.mark.clear_place();
-    }
-    auto made = HostMachine::Make(
-        {.name = options_.machine,
-         .host = name_,
-         .fence = fence_,
-         .family = family,
-         .profile = welcome_->profile(),
-         .parameters = {welcome_->parameters().begin(), welcome_->parameters().end()},
-         .state = found.mark.state(),
-         .untold = std::move(found.untold),
-         .cut_off = !found.begins.empty() || (found.known && !found.mark.clean()),
-         .open_run = open ? std::optional(found.mark) : std::nullopt,
-         .inspect_job = found.mark.job()},
-        now, RandomText);
+    HostMachine::Setup setup = SetupOf(std::move(found));
+    setup.name = options_.machine;
+    setup.host = name_;
+    setup.fence = fence_;
+    setup.family = family;
+    setup.profile = welcome_->profile();
+    setup.options = welcome_->options();
+    setup.parameters = {welcome_->parameters().begin(), welcome_->parameters().end()};
+    auto made = HostMachine::Make(std::move(setup), now, RandomText);
     if (!made) return Fail(made.error());
     machine_ = *std::move(made);
     writer_ = std::make_unique<JournalWriter>(std::move(journal->journal));
@@ -287,13 +276,14 @@ class HostProcess {
 
   // Beside the machine, which goes on. LIVE-6.01
   void Preview(const v1::HostOrder& order) {
-    auto prepared = machine_->PreparePreview(order.preview_start(), Now());
+    auto prepared = machine_->PreparePreview(order, Now());
     if (!prepared) return Refuse(order, prepared.error());
     auto task = std::make_shared<HostMachine::PreviewTask>(*std::move(prepared));
     const bool begun =
         background_.Do([this, order, task, line = lines_lost_](const std::stop_token& stop) {
           const double until = ThreadTime_s() + kPreviewTime_s;
           auto made = std::make_shared<Result<machine::StartPreview>>(task->run(
+              task->start,
               {.go_on = [&] { return !stop.stop_requested() && ThreadTime_s() < until; }}));
           inbox_.Later([this, order, task, made, line] {
             background_.Done();
@@ -347,9 +337,14 @@ class HostProcess {
     }
   }
 
+  static std::string JobOf(const v1::HostOrder& order) {
+    const v1::WorkerAssignment* assignment = AssignmentOf(order);
+    return assignment != nullptr ? assignment->job().name() : std::string();
+  }
+
   bool IsParked(const std::string& job) const {
     return !job.empty() && std::ranges::any_of(parked_, [&](const auto& parked) {
-      return !parked->over && parked->order.run_job().job().name() == job;
+      return !parked->over && JobOf(parked->order) == job;
     });
   }
 
@@ -358,7 +353,7 @@ class HostProcess {
     const std::string job = order.for_job();
     if (IsParked(job)) order.clear_for_job();  // it stops nothing else: the machine stands
     for (const auto& parked : parked_) {
-      const bool meant = job.empty() || parked->order.run_job().job().name() == job;
+      const bool meant = job.empty() || JobOf(parked->order) == job;
       if (meant && BeginsMotion(parked->order) && !std::exchange(parked->over, true))
         Refuse(parked->order, StoppedBefore());
     }
@@ -454,7 +449,8 @@ class HostProcess {
   void Turn() {
     const HostTime now = Now();
     behind_ = !machine_->GoOn(now);
-    if (line_ == nullptr && machine_->moves() && now.steady - without_server_since_ > kServerLost)
+    if (line_ == nullptr && machine_->moves() &&
+        now.steady - without_server_since_ > GoesOnWithoutServer(welcome_->options()))
       machine_->Hold(v1::HOLD_REASON_SERVER_LOST, now);
     // Another one may take the machine when the lease ends: it rests before. LIVE-3.04
     if (machine_->moves() && now.steady - renewed_at_ > lease_ - kRestBefore)

@@ -36,6 +36,7 @@ void MachineRecorder::Add(const v1::JournalEntry& entry) {
   if (entry.has_mark() && !entry.mark().clean()) {
     v1::JournalEntry shorter = entry;
     shorter.mutable_mark()->clear_state();
+    shorter.mutable_mark()->clear_base();
     recording::AddEntry(shorter, file);
   } else {
     recording::AddEntry(entry, file);

@@ -18,10 +18,19 @@ OrderClass ClassOfKey(const Request& key) {
   return halts ? OrderClass::kActsFirst : OrderClass::kWrittenFirst;
 }
 
+// A gate begins a run.
+OrderClass ClassOfInputs(const v1::SetInputsRequest& request) {
+  return std::ranges::any_of(request.inputs(), &v1::MachineInput::has_gate)
+             ? OrderClass::kWrittenFirst
+             : OrderClass::kWrittenBehind;
+}
+
 }  // namespace
 
 OrderClass ClassOf(const v1::HostOrder& order) {
   switch (order.request_case()) {
+    case v1::HostOrder::kInputs:
+      return ClassOfInputs(order.inputs());
     case v1::HostOrder::kPanelKey:
       return ClassOfKey(order.panel_key());
     case v1::HostOrder::kKey:
@@ -34,11 +43,14 @@ OrderClass ClassOf(const v1::HostOrder& order) {
     case v1::HostOrder::kHold:
     case v1::HostOrder::kEmergencyStop:
     case v1::HostOrder::kAbort:
+    case v1::HostOrder::kDisarm:
       return OrderClass::kActsFirst;
     case v1::HostOrder::kStart:
     case v1::HostOrder::kStartAtStep:
     case v1::HostOrder::kRunJob:
+    case v1::HostOrder::kContinueJob:
     case v1::HostOrder::kZero:
+    case v1::HostOrder::kArm:
     case v1::HostOrder::kResume:
     case v1::HostOrder::kMode:
     case v1::HostOrder::kAcknowledgeAlarm:
@@ -50,6 +62,7 @@ OrderClass ClassOf(const v1::HostOrder& order) {
     case v1::HostOrder::kRecording:
     case v1::HostOrder::kPreviewStart:
     case v1::HostOrder::kRenewControl:
+    case v1::HostOrder::kUndoTeaching:
       return OrderClass::kAsks;
     default:
       return OrderClass::kWrittenBehind;

@@ -21,9 +21,15 @@ OrderClass ClassOf(const v1::HostOrder& order);
 // What a STOP that comes behind it takes back, as long as it has not acted.
 inline bool BeginsMotion(const v1::HostOrder& order) {
   return order.has_start() || order.has_resume() || order.has_run_job() || order.has_zero() ||
-         order.has_start_at_step() ||
-         ((order.has_panel_key() || order.has_key()) &&
+         order.has_continue_job() || order.has_start_at_step() ||
+         ((order.has_panel_key() || order.has_key() || order.has_inputs()) &&
           ClassOf(order) == OrderClass::kWrittenFirst);
+}
+
+// Of an order that begins the run of a job; null: it does not.
+inline const v1::WorkerAssignment* AssignmentOf(const v1::HostOrder& order) {
+  if (order.has_run_job()) return &order.run_job();
+  return order.has_continue_job() ? &order.continue_job().assignment() : nullptr;
 }
 
 bool Halts(const v1::HostResponse& message);

@@ -28,4 +28,24 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
   return found;
 }
 
+HostMachine::Setup SetupOf(Recovered found) {
+  // It may have begun, and moved the machine, before anything of it was on the disk. LIVE-5.04
+  const bool began = !found.begins.empty();
+  const bool open = found.mark.has_run_time_ns() || began;
+  if (began) {
+    found.mark.set_job(found.begins);
+    found.mark.set_run_time_ns(0);
+    found.mark.clear_place();
+    found.mark.clear_base();
+  }
+  HostMachine::Setup setup;
+  setup.state = found.mark.state();
+  setup.untold = std::move(found.untold);
+  setup.cut_off = began || (found.known && !found.mark.clean());
+  setup.inspect_job = found.mark.job();
+  if (found.mark.has_base()) setup.cut_off_base = found.mark.base();
+  if (open) setup.open_run = std::move(found.mark);
+  return setup;
+}
+
 }  // namespace rmlcell::server

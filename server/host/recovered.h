@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "rmlcell/v1/host.pb.h"
+#include "server/host/host_machine.h"
 
 namespace rmlcell::server {
 
@@ -16,5 +17,8 @@ struct Recovered {
 };
 
 Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal);
+
+// All that a host takes over of it.
+HostMachine::Setup SetupOf(Recovered found);
 
 }  // namespace rmlcell::server

@@ -128,6 +128,29 @@ Status SetMachine(const storage::MachineMemory& memory, v1::WorkerAssignment& as
 
 }  // namespace
 
+Result<v1::AssignedProgram> ProgramOfJob(storage::Store& store, std::int64_t id) {
+  const auto record = store.GetJob(id);
+  if (!record) return record.error();
+  v1::Job job;
+  if (!job.ParseFromString(record->specification))
+    return Error{ErrorCode::kCellStoreCorrupt, "the specification of " + JobName(id), {}};
+  Result<std::string> bytes = store.ReadArtifact(id, kMainAttachment);
+  if (!bytes) return bytes.error();
+  v1::AssignedProgram program;
+  program.set_slot(InlineSlotOf(job));
+  if (job.program_source_case() == v1::Job::kProgram) {
+    const auto name = ParseProgramName(job.program());
+    if (!name) return name.error();
+    program.set_slot(name->slot);
+  }
+  const std::optional<BroughtProgram> brought = ProgramBrought(job);
+  if (brought) program.set_file_name(brought->file_name);
+  program.set_is_source(brought && brought->form != v1::PROGRAM_FORM_OBJECT);
+  program.set_size(static_cast<std::int64_t>(bytes->size()));
+  program.set_content(*std::move(bytes));
+  return program;
+}
+
 Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& config,
                                           const storage::LeasedJob& leased) {
   auto memory =

@@ -25,4 +25,7 @@ struct AssignmentMessages {
 Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& config,
                                           const storage::LeasedJob& leased);
 
+// The program of a job alone, whole. Errors: as above.
+Result<v1::AssignedProgram> ProgramOfJob(storage::Store& store, std::int64_t job);
+
 }  // namespace rmlcell::server

@@ -133,7 +133,7 @@ Status JobBook::AttachFurther(const v1::Job& job, const machine::MachineFamily& 
 }
 
 Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
-                                         const std::string& caller) {
+                                         const std::string& caller, const std::string& continues) {
   const v1::Job& job = request.job();
   if (const Status good = CheckRequest(request); !good) return good.error();
   const Result<std::string> machine_id = ParseMachineName(job.machine());
@@ -163,7 +163,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
                        .attempts_max = AttemptsOf(job),
                        .queued_max = config_.jobs_queued_max,
                        .priority = job.priority(),
-                       .held = job.held(),
+                       .held = job.held() || !continues.empty(),
                        .not_before = not_before,
                        .after = *std::move(after),
                        .attachments = {},
@@ -185,6 +185,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   if (const Status further = AttachFurther(job, family, made, specification); !further)
     return further.error();
   if (!job.has_simulation()) specification.clear_simulation();
+  specification.set_continues(continues);
   made.specification = bridge::StableBytes(specification);
   return made;
 }
@@ -199,8 +200,9 @@ Status JobBook::CheckAwaited(const storage::NewJob& made) {
 }
 
 void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& caller,
-                     std::function<void(Result<v1::Job>)> done, bool more_come) {
-  Result<storage::NewJob> made = Prepare(request, caller);
+                     std::function<void(Result<v1::Job>)> done, bool more_come,
+                     const std::string& continues) {
+  Result<storage::NewJob> made = Prepare(request, caller, continues);
   if (made) made->more_come = more_come;
   if (!made || request.validate_only()) {
     // Repeated after an answer that was lost: what it needed may be gone by now, its job is there.
@@ -225,56 +227,6 @@ void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& cal
                   TellRun(submitted->job);
                   done(ToProto(submitted->job));
                 });
-}
-
-Result<std::string> JobBook::MachineToDecide(const v1::DecideInterruptedRequest& request) {
-  using Request = v1::DecideInterruptedRequest;
-  constexpr std::size_t kReasonMax = 200;
-  if (request.decision() == Request::DECISION_RESUME_AT_STEP)
-    return Error{ErrorCode::kCellUnimplemented, "decision RESUME_AT_STEP", {}};
-  if (request.decision() != Request::DECISION_RESTART &&
-      request.decision() != Request::DECISION_ABANDON)
-    return InvalidArgument("decision: RESTART or ABANDON");
-  if (request.reason().empty() || request.reason().size() > kReasonMax)
-    return InvalidArgument("reason: why, in 1 to 200 characters");
-  const Result<std::int64_t> id = ParseJobName(request.name());
-  if (!id) return id.error();
-  const Result<storage::JobRecord> job = store_.GetJob(*id);
-  if (!job) return job.error();
-  if (job->state != storage::JobState::kInterrupted)
-    return Error{ErrorCode::kCellPrecondition, request.name() + " was not interrupted", {}};
-  return job->machine;
-}
-
-void JobBook::Again(std::string_view name, const std::string& caller, const std::string& request_id,
-                    std::function<void(Result<v1::Job>)> done) {
-  const Result<std::int64_t> id = ParseJobName(name);
-  if (!id) return done(id.error());
-  const Result<storage::JobRecord> first = store_.GetJob(*id);
-  if (!first) return done(first.error());
-  Result<std::string> bytes = store_.ReadArtifact(*id, kMainAttachment);
-  if (!bytes) return done(bytes.error());
-  const v1::Job told = ToProto(*first);
-  v1::SubmitJobRequest request;
-  request.set_request_id(request_id);
-  v1::Job& job = *request.mutable_job();
-  job.set_kind(told.kind());
-  job.set_machine(told.machine());
-  job.set_title(told.title());
-  *job.mutable_labels() = told.labels();
-  job.set_priority(told.priority());
-  if (told.has_run()) *job.mutable_run() = told.run();
-  v1::ProgramText& program = *job.mutable_inline_program();
-  program.set_content(*std::move(bytes));
-  if (const auto brought = ProgramBrought(told)) {
-    program.set_file_name(brought->file_name);
-    program.set_form(brought->form);
-    job.set_inline_slot(told.inline_slot());
-  } else if (const auto stored = ParseProgramName(told.program())) {
-    program.set_form(v1::PROGRAM_FORM_OBJECT);
-    job.set_inline_slot(stored->slot);
-  }
-  Submit(request, caller, std::move(done));
 }
 
 // Once on a machine, whatever happens. LIVE-5.01

@@ -33,7 +33,9 @@ class JobBook {
   // CellTooLarge, CellParameterRange, CellUnimplemented, CellRequestIdReused,
   // CellResourceExhausted. `more_come`: others are on their way from the same caller (NewJob).
   void Submit(const v1::SubmitJobRequest& request, const std::string& caller,
-              std::function<void(Result<v1::Job>)> done, bool more_come = false);
+              std::function<void(Result<v1::Job>)> done, bool more_come = false) {
+    Submit(request, caller, std::move(done), more_come, {});
+  }
 
   // Called when a RUN may have become one that can begin, from any thread, and not for long. Set
   // before the first call of Submit().
@@ -41,12 +43,13 @@ class JobBook {
     run_waits_ = std::move(waits);
   }
 
-  // A new job of the same program, as that was: of a RUN that was interrupted. Errors: those of
-  // Submit().
+  // A new job of the same program, as that was: of a RUN that was interrupted. `continues`: it is
+  // to go on where that was cut off, and is held until it is told where (RunQueue::Continue).
+  // Errors: those of Submit().
   void Again(std::string_view name, const std::string& caller, const std::string& request_id,
-             std::function<void(Result<v1::Job>)> done);
+             bool continues, std::function<void(Result<v1::Job>)> done);
   // The id of the machine that this decision is about. Errors: CellInvalidArgument, CellNotFound,
-  // CellPrecondition: the job is not INTERRUPTED, CellUnimplemented.
+  // CellPrecondition: the job is not INTERRUPTED.
   Result<std::string> MachineToDecide(const v1::DecideInterruptedRequest& request);
 
   Result<v1::Job> Get(std::string_view name);
@@ -94,7 +97,11 @@ class JobBook {
  private:
   // Of a job that is not there, has not ended, or left none such.
   Error WhyNoArtifact(std::int64_t job, std::string_view name);
-  Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);
+  void Submit(const v1::SubmitJobRequest& request, const std::string& caller,
+              std::function<void(Result<v1::Job>)> done, bool more_come,
+              const std::string& continues);
+  Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller,
+                                  const std::string& continues);
   // Whether a job may come behind those that it names. Errors: CellNotFound, CellPrecondition.
   Status CheckAwaited(const storage::NewJob& made);
   int AttemptsOf(const v1::Job& job) const;

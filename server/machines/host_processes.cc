@@ -36,6 +36,7 @@ Status HostProcesses::Enable(const std::string& machine, std::chrono::millisecon
   const std::lock_guard lock(mutex_);
   Place& place = places_[machine];
   place.wanted = true;
+  place.ends.clear();
   if (place.process < 0) {
     place.delay = {};
     place.next_start = options_.clock() + after;
@@ -67,11 +68,10 @@ void HostProcesses::LookAt(const std::string& machine, Place& place) {
   const auto now = options_.clock();
   int how = 0;
   if (place.process > 0 && ::waitpid(place.process, &how, WNOHANG) == place.process) {
-    if (place.wanted)
-      spdlog::warn("the host of {} ended with {}", machine,
-                   WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
     place.next_start = now + place.delay.AfterLife(now - place.started);
     place.process = -1;
+    const bool in_order = WIFEXITED(how) && WEXITSTATUS(how) == 0;
+    if (place.wanted && !in_order) NoteEnd(machine, place, how);
   }
   if (place.process > 0 || !place.wanted || now < place.next_start) return;
   if (options_.is_heard && options_.is_heard(machine)) return;
@@ -89,6 +89,20 @@ void HostProcesses::LookAt(const std::string& machine, Place& place) {
   place.process = *process;
 }
 
+void HostProcesses::NoteEnd(const std::string& machine, Place& place, int how) {
+  const std::string with = WIFSIGNALED(how) ? "signal " + std::to_string(WTERMSIG(how))
+                                            : "code " + std::to_string(WEXITSTATUS(how));
+  spdlog::warn("the host of {} ended with {}", machine, with);
+  const auto now = options_.clock();
+  place.ends.push_back(now);
+  while (now - place.ends.front() > kEndsWithin) place.ends.pop_front();
+  if (place.ends.size() < kEndsMax) return;
+  place.wanted = false;
+  given_up_[machine] = "its host ended " + std::to_string(kEndsMax) +
+                       " times within a minute, the last time with " + with + "; see " +
+                       options_.journals + "/" + machine + ".log, then enable it";
+}
+
 void HostProcesses::Watch(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -97,11 +111,14 @@ void HostProcesses::Watch(const std::stop_token& stop) {
     for (auto& [machine, place] : places_) LookAt(machine, place);
     std::erase_if(places_,
                   [](const auto& row) { return !row.second.wanted && row.second.process < 0; });
-    if (options_.look) {
-      lock.unlock();
-      options_.look();
-      lock.lock();
+    const std::map<std::string, std::string> given_up = std::exchange(given_up_, {});
+    lock.unlock();
+    for (const auto& [machine, why] : given_up) {
+      spdlog::error("{}: {}", machine, why);
+      if (options_.gave_up) options_.gave_up(machine, why);
     }
+    if (options_.look) options_.look();
+    lock.lock();
     wanted_.wait_for(lock, stop, kLookAtHosts, [] { return false; });
   }
 }

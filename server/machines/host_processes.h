@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -30,8 +31,14 @@ class HostProcesses {
     // Whether a host of the machine is heard, wherever it came from: then none is started.
     std::function<bool(const std::string& machine)> is_heard{};
     std::function<void()> look{};  // called from time to time, while there are hosts
+    // Told when none is started any more, because too many have died: until a person enables it.
+    std::function<void(const std::string& machine, const std::string& why)> gave_up{};
     SteadyClock clock = SteadyTime;
   };
+  // So many that died within that time are enough. LIVE-3.01
+  static constexpr std::size_t kEndsMax = 5;
+  static constexpr std::chrono::seconds kEndsWithin{60};
+
   explicit HostProcesses(Options options);
   ~HostProcesses();  // the processes live on
   HostProcesses(const HostProcesses&) = delete;
@@ -53,13 +60,17 @@ class HostProcesses {
     std::chrono::steady_clock::time_point started{};
     std::chrono::steady_clock::time_point next_start{};
     RestartDelay delay{};
+    std::deque<std::chrono::steady_clock::time_point> ends{};  // the newest
   };
   void Watch(const std::stop_token& stop);
-  void LookAt(const std::string& machine, Place& place);  // precondition: mutex_ is held
+  // Preconditions: mutex_ is held.
+  void LookAt(const std::string& machine, Place& place);
+  void NoteEnd(const std::string& machine, Place& place, int how);
 
   const Options options_;
   mutable std::mutex mutex_;
-  std::map<std::string, Place> places_;  // by id of the machine; guarded by mutex_
+  std::map<std::string, Place> places_;          // by id of the machine; guarded by mutex_
+  std::map<std::string, std::string> given_up_;  // and why; not told yet; guarded by mutex_
   std::condition_variable_any wanted_;
   std::jthread watcher_;
 };

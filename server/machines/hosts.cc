@@ -1,20 +1,14 @@
 #include "server/machines/hosts.h"
 
 #include <google/protobuf/util/time_util.h>
-#include <signal.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <utility>
 
-#include "engine/core/number_text.h"
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/cell.pb.h"
 #include "server/base/names.h"
-#include "server/base/secret.h"
 #include "server/machines/host_entries.h"
 #include "server/machines/host_words.h"
 #include "server/machines/hosted.h"
@@ -27,23 +21,10 @@ namespace {
 using google::protobuf::util::TimeUtil;
 using Instant = std::chrono::steady_clock::time_point;
 
-constexpr int kProtocol = 1;
-constexpr std::chrono::seconds kObserved{5};  // beyond the lease: its holder is gone (PG-5.09)
-constexpr std::chrono::seconds kSilence{5};   // of a line that has a word four times a second
+constexpr std::chrono::seconds kSilence{5};  // of a line that has a word four times a second
 constexpr std::size_t kWaitingEntriesMax = 100'000;
 
 Error NotLive(const std::string& why) { return {ErrorCode::kCellNotLive, why, {}}; }
-
-// Whether the process that this host is, on this computer, is gone. LIVE-3.02
-bool IsGone(const std::string& host) {
-  std::array<char, 256> name{};
-  if (::gethostname(name.data(), name.size() - 1) != 0) return false;
-  const std::string here = std::string(name.data()) + "/";
-  if (!host.starts_with(here)) return false;
-  const std::string_view rest = std::string_view(host).substr(here.size());
-  const auto process = ParseInteger(rest.substr(0, rest.find('/')));
-  return process && *process > 1 && ::kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH;
-}
 
 }  // namespace
 
@@ -100,150 +81,6 @@ Hosts::HostPointer Hosts::Find(const std::string& machine) const {
   const std::lock_guard lock(mutex_);
   const auto found = hosts_.find(machine);
   return found == hosts_.end() ? nullptr : found->second;
-}
-
-Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& hello) {
-  if (!KnowsSecret(hello.join_token(), needs_.join_token))
-    return Error{ErrorCode::kCellJoinRefused, "of a host", {}};
-  if (hello.protocol() != kProtocol)
-    return Error{ErrorCode::kCellVersionMismatch,
-                 "the host speaks protocol " + std::to_string(hello.protocol()) + ", this server " +
-                     std::to_string(kProtocol),
-                 {}};
-  const Result<std::string> machine = ParseMachineName(hello.machine());
-  if (!machine) return machine.error();
-  const std::lock_guard joining(joining_);
-  const Result<Taken> taken = Take(hello, *machine);
-  if (!taken) return taken.error();
-  if (const HostPointer before = Find(*machine)) Retire(before);
-  auto host = std::make_shared<Host>();
-  host->id = *machine;
-  host->link = link;
-  host->lease = taken->lease;
-  host->heard = needs_.clock();
-  if (const Status welcome = Welcome(host, hello, taken->from); !welcome) return welcome.error();
-  std::shared_ptr<HostLink> before;
-  {
-    const std::lock_guard lock(mutex_);
-    if (closed_) return Error{ErrorCode::kCellUnavailable, "the server stops", {}};
-    HostPointer& place = hosts_[*machine];
-    if (place != nullptr) before = place->link;
-    place = host;
-  }
-  if (before != nullptr && before != link) before->Close(NotLive("the host has another line"));
-  SendMemory(host);
-  spdlog::info("{} has the host {}, fence {}", hello.machine(), hello.host(), host->lease.fence);
-  Changed();
-  RunOver(host->id);
-  return {};
-}
-
-// Of a holder that is gone: a process of this computer that is no more, or one that has not renewed
-// its lease for as long as it holds.
-Result<Hosts::Taken> Hosts::Take(const v1::HostHello& hello, const std::string& machine) {
-  storage::MachineClaim claim{
-      .machine = machine, .host = hello.host(), .server = needs_.server, .duration = kLease};
-  Result<storage::MachineLease> lease = needs_.store.TakeMachine(claim);
-  if (lease || lease.error().code != ErrorCode::kCellMachineTaken) {
-    seen_.erase(machine);
-    if (!lease) return lease.error();
-    return Taken{.lease = *std::move(lease)};
-  }
-  const auto held = needs_.store.MachineLeases();
-  if (!held) return held.error();
-  for (const storage::MachineLease& other : *held) {
-    if (other.machine != machine) continue;
-    const Instant now = needs_.clock();
-    Seen& seen = seen_[machine];
-    if (seen.lease != other) seen = {.lease = other, .since = now};
-    claim.seen = other;
-    claim.by_hand = !other.pinned && IsGone(other.host);
-    if (!claim.by_hand && now - seen.since < other.duration + kObserved) return lease.error();
-  }
-  lease = needs_.store.TakeMachine(claim);
-  if (!lease) return lease.error();
-  seen_.erase(machine);
-  return Taken{.lease = *std::move(lease), .from = claim.seen};
-}
-
-// Its line is nobody's any more: who waits for an answer is told so, and what it was storing is
-// stored, so that the next line knows what is.
-void Hosts::Retire(const HostPointer& host) {
-  std::map<std::int64_t, Host::Pending> pending;
-  {
-    std::unique_lock lock(host->mutex);
-    host->gone = true;
-    pending.swap(host->pending);
-    // Not for ever: the thread that is to store may be the one that waits here.
-    host->rests.wait_for(lock, kAnswerPatience, [&host] { return !host->storing; });
-  }
-  for (auto& [number, one] : pending) one.done(NotLive("its host is not heard of any more"));
-}
-
-Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello,
-                      const std::optional<storage::MachineLease>& from) {
-  const Result<storage::MachineRecord> machine = needs_.store.GetMachine(host->id);
-  if (!machine) return machine.error();
-  const auto mark = needs_.store.GetMachineMark(host->id);
-  if (!mark) return mark.error();
-  // All up to the mark is stored: each write ends with one.
-  if (*mark && (*mark)->fence == host->lease.fence) host->stored = (*mark)->sequence;
-  // A host that comes back knows better.
-  if (hello.fence() != host->lease.fence) {
-    if (const Status told = TellRecovery(*host, from, *mark); !told) return told.error();
-    host->fresh = true;
-  }
-  v1::HostResponse message;
-  v1::HostWelcome& welcome = *message.mutable_welcome();
-  welcome.set_fence(host->lease.fence);
-  *welcome.mutable_lease() = TimeUtil::SecondsToDuration(kLease.count());
-  welcome.set_family(machine->family);
-  welcome.set_profile(machine->profile);
-  for (const auto& [name, value] : machine->parameters)
-    (*welcome.mutable_parameters())[name] = value;
-  if (*mark) {
-    v1::MachineMark note;
-    static_cast<void>(note.ParseFromString((*mark)->note));
-    *welcome.mutable_mark() = std::move(note);
-    welcome.mutable_mark()->set_fence((*mark)->fence);
-    welcome.mutable_mark()->set_sequence((*mark)->sequence);
-    welcome.mutable_mark()->set_state((*mark)->state);
-    welcome.mutable_mark()->set_clean((*mark)->clean);
-  }
-  host->link->Send(std::move(message));
-  return {};
-}
-
-// That a host is gone; from when to when status was shown that counts no more, and where the
-// program was. LIVE-3.30, 5.20
-Status Hosts::TellRecovery(const Host& host, const std::optional<storage::MachineLease>& from,
-                           const std::optional<storage::MachineMark>& mark) {
-  storage::MachineWrite write;
-  v1::MachineMark note;
-  if (mark) static_cast<void>(note.ParseFromString(mark->note));
-  if (from) {
-    v1::MachineEvent lost;
-    lost.mutable_host_lost()->set_host(from->host);
-    lost.mutable_host_lost()->set_fence(from->fence);
-    lost.set_fence(host.lease.fence);
-    lost.set_virtual_time_ns(note.virtual_time_ns());
-    write.events.push_back(ToRecord(lost));
-  }
-  if (!mark || mark->clean)
-    return write.events.empty() ? Status() : needs_.store.AppendMachine(host.lease, write);
-  v1::MachineEvent event;
-  v1::Recovered& recovered = *event.mutable_recovered();
-  recovered.set_mark_virtual_time_ns(note.virtual_time_ns());
-  recovered.set_mark_fence(mark->fence);
-  if (note.has_place()) *recovered.mutable_place() = note.place();
-  if (const HostPointer before = Find(host.id)) {
-    const std::lock_guard lock(before->mutex);
-    if (before->status) recovered.set_seen_until_ns(before->status->virtual_time_ns());
-  }
-  event.set_fence(host.lease.fence);
-  event.set_virtual_time_ns(note.virtual_time_ns());
-  write.events.push_back(ToRecord(event));
-  return needs_.store.AppendMachine(host.lease, write);
 }
 
 void Hosts::Receive(const HostLink& link, v1::HostRequest message) {
@@ -454,6 +291,21 @@ void Hosts::Forget(const std::string& machine) {
   Changed();
 }
 
+void Hosts::NoteOff(const std::string& machine, const std::string& why) {
+  Forget(machine);
+  {
+    const std::lock_guard lock(mutex_);
+    off_[machine] = why;
+  }
+  Changed();
+}
+
+std::optional<Error> Hosts::WhyOff(const std::string& machine) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = off_.find(machine);
+  return found != off_.end() ? std::optional(NotLive(found->second)) : std::nullopt;
+}
+
 void Hosts::Look() {
   std::vector<HostPointer> all;
   {
@@ -594,7 +446,14 @@ v1::MachineStatus StatusOf(const Hosts* hosts, const storage::MachineRecord& mac
   if (hosts != nullptr) {
     if (auto status = hosts->StatusOf(machine.id)) return *std::move(status);
   }
-  return StatusOf(machine, unfinished);
+  v1::MachineStatus status = StatusOf(machine, unfinished);
+  const auto off = hosts != nullptr ? hosts->WhyOff(machine.id) : std::nullopt;
+  if (off) {
+    status.set_state(v1::MACHINE_STATE_OFF);
+    *status.mutable_off_reason() = bridge::ToProto(
+        Diagnostic{.code = off->code, .severity = Severity::kRequest, .detail = off->detail});
+  }
+  return status;
 }
 
 }  // namespace rmlcell::server

@@ -68,6 +68,9 @@ class Hosts {
 
   // It has no host any more, whatever that is doing: of one that is not heard of.
   void Forget(const std::string& machine);
+  // The same, and why: told until it has one again.
+  void NoteOff(const std::string& machine, const std::string& why);
+  std::optional<Error> WhyOff(const std::string& machine) const;
   // From time to time: orders that nobody answers, lines that are silent.
   void Look();
 
@@ -139,6 +142,7 @@ class Hosts {
   mutable std::mutex mutex_;
   bool closed_ = false;                       // guarded by mutex_
   std::map<std::string, HostPointer> hosts_;  // by id of the machine; guarded by mutex_
+  std::map<std::string, std::string> off_;    // likewise
   // Leases of others, and since when they stand unchanged. Of Join alone, guarded by joining_.
   std::mutex joining_;
   struct Seen {

@@ -6,6 +6,7 @@
 #include "proto/bridge/findings.h"
 #include "server/machines/host_words.h"
 #include "server/machines/hosted.h"
+#include "server/machines/teach_book.h"
 
 namespace rmlcell::server {
 namespace {
@@ -62,6 +63,7 @@ void Hosts::StoreEdit(const HostPointer& host, v1::HostEdit edit) {
   needs_.executor.Post([this, host, shared] {
     const auto expected = static_cast<storage::Revision>(shared->object_revision());
     Status done;
+    storage::Revision after = 0;
     if (shared->object().empty()) {
       done = needs_.store.DeleteProgram(host->id, shared->slot(), expected, shared->caller());
     } else {
@@ -69,6 +71,13 @@ void Hosts::StoreEdit(const HostPointer& host, v1::HostEdit edit) {
           host->id, {{.slot = shared->slot(), .object = shared->object(), .expected = expected}},
           {}, shared->caller());
       if (!put) done = put.error();
+      if (put) after = put->front().revision;
+    }
+    if (done && shared->has_taught()) {
+      const auto kept = TeachBook(needs_.store).Add(host->id, shared->taught(), expected, after);
+      // The program is stored: what was taught stands, and cannot be taken back.
+      if (!kept)
+        spdlog::error("what was taught at {}: {}", host->id, bridge::ErrorText(kept.error()));
     }
     v1::HostResponse message;
     message.mutable_edit_answer()->set_number(shared->number());

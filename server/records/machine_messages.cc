@@ -11,12 +11,14 @@
 #include "proto/bridge/setup.h"
 #include "server/base/names.h"
 #include "server/records/job_messages.h"
+#include "server/records/machine_options.h"
 #include "server/records/update_mask.h"
 
 namespace rmlcell::server {
 namespace {
 
-constexpr std::array<std::string_view, 3> kMachineFields = {"title", "profile", "parameters"};
+constexpr std::array<std::string_view, 4> kMachineFields = {"title", "profile", "parameters",
+                                                            "options"};
 
 std::vector<std::string> WordsOf(std::string_view text) {
   std::vector<std::string> words;
@@ -74,6 +76,7 @@ v1::Machine ToProto(const storage::MachineRecord& record) {
   for (const auto& [name, value] : record.parameters) (*message.mutable_parameters())[name] = value;
   message.mutable_connection()->set_kind(v1::MachineConnection::KIND_VIRTUAL);
   *message.mutable_status() = StatusOf(record, {});
+  if (auto options = OptionsOf(record)) *message.mutable_options() = *std::move(options);
   message.set_etag(std::to_string(record.revision));
   *message.mutable_create_time() = ToProto(record.created_at);
   *message.mutable_update_time() = ToProto(record.updated_at);
@@ -146,7 +149,8 @@ storage::MachineRecord FromProto(const v1::Machine& message, const std::string& 
           .family = message.family(),
           .title = message.title(),
           .profile = message.profile(),
-          .parameters = {message.parameters().begin(), message.parameters().end()}};
+          .parameters = {message.parameters().begin(), message.parameters().end()},
+          .options = message.has_options() ? BytesOf(message.options()) : std::string()};
 }
 
 Result<storage::MachineRecord> Updated(storage::MachineRecord machine, const v1::Machine& wanted,
@@ -159,6 +163,7 @@ Result<storage::MachineRecord> Updated(storage::MachineRecord machine, const v1:
   if (named->contains("title")) machine.title = std::move(values.title);
   if (named->contains("profile")) machine.profile = std::move(values.profile);
   if (named->contains("parameters")) machine.parameters = std::move(values.parameters);
+  if (named->contains("options")) machine.options = std::move(values.options);
   if (const Status good = CheckMachine(machine); !good) return good.error();
   return machine;
 }
@@ -174,7 +179,8 @@ Status CheckMachine(const storage::MachineRecord& machine) {
   if (const Status good = CheckTitle(machine.title, "title"); !good) return good.error();
   const auto parameters = machine::MakeParameters(*family, machine.profile, machine.parameters);
   if (!parameters) return parameters.error();
-  return {};
+  const auto options = OptionsOf(machine);
+  return options ? CheckOptions(*options) : Status();
 }
 
 v1::AssignedSchedule ToAssigned(const storage::ScheduleRecord& schedule) {

@@ -24,12 +24,26 @@ constexpr std::size_t kNotedMax = 1'000;
 
 // Of these another try may go better; of all others the job ends.
 bool MayGoBetterLater(ErrorCode code) {
-  constexpr std::array kLater = {ErrorCode::kCellMachineState, ErrorCode::kCellMode,
-                                 ErrorCode::kCellNotLive,      ErrorCode::kCellInspect,
-                                 ErrorCode::kCellJournal,      ErrorCode::kCellLeaseHeld,
-                                 ErrorCode::kCellDoorOpen,     ErrorCode::kCellUnimplemented};
+  constexpr std::array kLater = {
+      ErrorCode::kCellMachineState, ErrorCode::kCellMode,          ErrorCode::kCellNotLive,
+      ErrorCode::kCellInspect,      ErrorCode::kCellJournal,       ErrorCode::kCellLeaseHeld,
+      ErrorCode::kCellDoorOpen,     ErrorCode::kCellUnimplemented, ErrorCode::kCellNotArmed};
   return std::ranges::find(kLater, code) != kLater.end() ||
          Lookup(code).severity == Severity::kAlarm;
+}
+
+ErrorCode CodeOf(const v1::ErrorDetail& refusal) {
+  const auto found = FindByText(refusal.code());
+  return found.empty() ? ErrorCode::kCellInternal : found.front()->code;
+}
+
+// What was answered when it began, to whoever asks again: a begin, or why there was none.
+Result<v1::HostOrderAnswer> AsItBegan(const storage::JobRecord& job) {
+  const auto& outcome = job.outcome;
+  if (job.state == storage::JobState::kFailed && outcome && outcome->code &&
+      Lookup(*outcome->code).family == ErrorFamily::kCell)
+    return Error{*outcome->code, outcome->detail, {}};
+  return v1::HostOrderAnswer();
 }
 
 // Whether this is nothing to a job of this caller.
@@ -190,6 +204,8 @@ void RunQueue::BeginNext(const std::string& machine, const v1::MachineStatus& st
   const auto job = needs_.store.GetJob(waiting->front().id);
   v1::Job asked;
   if (!job || !asked.ParseFromString(job->specification)) return;
+  const std::string& armed_for = status.armed_for();
+  if (!armed_for.empty() && armed_for != JobName(job->id)) return;
   const bool may = std::ranges::all_of(status.start_blockers(), [&](const auto& blocker) {
     return Allows(blocker, status, *job, asked.run().unzeroed());
   });
@@ -208,43 +224,66 @@ void RunQueue::BeginNext(const std::string& machine, const v1::MachineStatus& st
   if (!leased->empty()) Begin(machine, leased->front());
 }
 
+// Where it goes on a person says, and nobody else. LIVE-2.05
 void RunQueue::Begin(const std::string& machine, const storage::LeasedJob& leased) {
-  if (leased.job.cancel_requested) return End(leased, storage::CancelledOutcome());
+  v1::Job job;
+  if (job.ParseFromString(leased.job.specification) && !job.continues().empty()) {
+    return End(leased, {.state = storage::JobState::kFailed,
+                        .code = ErrorCode::kCellPreviewStale,
+                        .detail = "decide again where " + job.continues() + " goes on"});
+  }
+  v1::HostOrder order;
+  order.set_caller(leased.job.caller);
+  order.mutable_run_job();
+  Send(machine, leased, std::move(order),
+       [this, machine, leased](const Result<v1::HostOrderAnswer>& answer) {
+         needs_.executor.Post(
+             [this, machine, leased, answer] { Answered(machine, leased, answer); });
+       });
+}
+
+// With its program. `done` is not called where it does not go out.
+void RunQueue::Send(const std::string& machine, const storage::LeasedJob& leased,
+                    v1::HostOrder order, Hosts::Answered done) {
+  if (leased.job.cancel_requested) {
+    End(leased, storage::CancelledOutcome());
+    return done(Error{ErrorCode::kCellCancelled, JobName(leased.job.id) + " was cancelled", {}});
+  }
   Result<v1::WorkerAssignment> assignment = ForHost(needs_.store, needs_.config, leased);
   if (!assignment) {
-    if (storage::IsTroubleOfTheStore(assignment.error()))
-      return GiveBack(leased, "its program could not be read");
-    return End(leased, {.state = storage::JobState::kFailed,
-                        .code = assignment.error().code,
-                        .detail = assignment.error().detail});
+    if (storage::IsTroubleOfTheStore(assignment.error())) {
+      GiveBack(leased, "its program could not be read", order.has_continue_job());
+    } else {
+      End(leased, {.state = storage::JobState::kFailed,
+                   .code = assignment.error().code,
+                   .detail = assignment.error().detail});
+    }
+    return done(assignment.error());
   }
   spdlog::info("{} goes to {}", JobName(leased.job.id), machine);
   {
     const std::lock_guard lock(mutex_);
     beginning_[JobName(leased.job.id)] = machine;
   }
-  v1::HostOrder order;
-  order.set_caller(leased.job.caller);
-  *order.mutable_run_job() = *std::move(assignment);
+  (order.has_continue_job() ? *order.mutable_continue_job()->mutable_assignment()
+                            : *order.mutable_run_job()) = *std::move(assignment);
   needs_.hosts.Ask(machine, std::move(order),
-                   [this, machine, leased](const Result<v1::HostOrderAnswer>& answer) {
-                     needs_.executor.Post(
-                         [this, machine, leased, answer] { Answered(machine, leased, answer); });
+                   [this, leased, done = std::move(done)](Result<v1::HostOrderAnswer> answer) {
+                     {
+                       const std::lock_guard lock(mutex_);
+                       beginning_.erase(JobName(leased.job.id));
+                     }
+                     done(std::move(answer));
                    });
 }
 
 // One that was not answered may have begun: what its host says later tells.
 void RunQueue::Answered(const std::string& machine, const storage::LeasedJob& leased,
                         const Result<v1::HostOrderAnswer>& answer) {
-  {
-    const std::lock_guard lock(mutex_);
-    beginning_.erase(JobName(leased.job.id));
-  }
   if (!answer) return;
   if (!answer->has_refusal()) return Wake(machine);  // a cancel may have come meanwhile
   const v1::ErrorDetail& refusal = answer->refusal();
-  const auto found = FindByText(refusal.code());
-  const ErrorCode code = found.empty() ? ErrorCode::kCellInternal : found.front()->code;
+  const ErrorCode code = CodeOf(refusal);
   spdlog::info("{}: {} {}", JobName(leased.job.id), refusal.code(), refusal.message());
   if (!MayGoBetterLater(code)) {
     return End(
@@ -259,6 +298,47 @@ void RunQueue::Answered(const std::string& machine, const storage::LeasedJob& le
   // LIVE-2.05
   const bool held = code == ErrorCode::kCellMachineState || code == ErrorCode::kCellUnimplemented;
   GiveBack(leased, CodeText(code) + ": " + refusal.message(), held);
+}
+
+Result<v1::AssignedProgram> RunQueue::ProgramOf(std::int64_t job) {
+  return ProgramOfJob(needs_.store, job);
+}
+
+void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answered done) {
+  const auto job = needs_.store.GetJob(id);
+  if (!job) return done(job.error());
+  if (job->kind != storage::kRunKind)
+    return done(Error{ErrorCode::kCellPrecondition, JobName(id) + " is no RUN", {}});
+  if (job->state != storage::JobState::kQueued) return done(AsItBegan(*job));
+  const auto status = needs_.hosts.StatusOf(job->machine);
+  if (!status) return done(Error{ErrorCode::kCellNotLive, job->machine + " has no host", {}});
+  const auto leased =
+      needs_.store.AcquireJobs({.worker = status->host(),
+                                .server = needs_.server,
+                                .kinds = {std::string(storage::kRunKind)},
+                                .job = id,
+                                .duration = kWhileTheMachineIsHeld,
+                                .events = {StateEvent(storage::JobState::kRunning)}});
+  if (!leased) return done(leased.error());
+  if (leased->empty())
+    return done(Error{ErrorCode::kCellMachineState, "another job runs on " + job->machine, {}});
+  const bool continues = order.has_continue_job();
+  Send(job->machine, leased->front(), std::move(order),
+       [this, machine = job->machine, leased = leased->front(), continues,
+        done = std::move(done)](Result<v1::HostOrderAnswer> answer) {
+         needs_.executor.Post([this, machine, leased, continues, answer, done] {
+           if (!answer || !answer->has_refusal()) {
+             Wake(machine);
+           } else if (continues) {
+             End(leased, {.state = storage::JobState::kFailed,
+                          .code = CodeOf(answer->refusal()),
+                          .detail = Detail(answer->refusal().message())});
+           } else {
+             GiveBack(leased, answer->refusal().code() + ": " + answer->refusal().message());
+           }
+           done(answer);
+         });
+       });
 }
 
 void RunQueue::GiveBack(const storage::LeasedJob& leased, const std::string& why, bool held) {

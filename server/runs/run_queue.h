@@ -51,6 +51,12 @@ class RunQueue {
   void AskMachine(const std::string& machine, v1::HostOrder order, Hosts::Answered done) {
     needs_.hosts.Ask(machine, std::move(order), std::move(done));
   }
+  // The program of a job, whole. Errors: those of the store.
+  Result<v1::AssignedProgram> ProgramOf(std::int64_t job);
+  // A person begins this job of the queue: as `order` says, without its program, a run_job or a
+  // continue_job. Where its machine refuses that, the first waits on, and the other has ended. May
+  // block. `done` is called once, on any thread. LIVE-5.04, 5.10
+  void BeginByPerson(std::int64_t job, v1::HostOrder order, Hosts::Answered done);
   // The run is over as soon as it stands.
   void Abort(const std::string& job, const std::string& caller, const std::string& request_id);
 
@@ -62,6 +68,8 @@ class RunQueue {
   bool IsBusy(const std::string& machine, const v1::MachineStatus& status);
   void BeginNext(const std::string& machine, const v1::MachineStatus& status);
   void Begin(const std::string& machine, const storage::LeasedJob& leased);
+  void Send(const std::string& machine, const storage::LeasedJob& leased, v1::HostOrder order,
+            Hosts::Answered done);
   void Answered(const std::string& machine, const storage::LeasedJob& leased,
                 const Result<v1::HostOrderAnswer>& answer);
   void GiveBack(const storage::LeasedJob& leased, const std::string& why, bool held = false);

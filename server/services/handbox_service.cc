@@ -2,18 +2,11 @@
 
 #include <utility>
 
+#include "server/services/handbox_stream.h"
 #include "server/services/host_order.h"
 #include "server/services/open_stream.h"
 
 namespace rmlcell::server {
-namespace {
-
-// "machines/optimo-1" of "machines/optimo-1/handboxSessions/3".
-std::string MachineOfSession(const std::string& session) {
-  return session.substr(0, session.find("/handboxSessions/"));
-}
-
-}  // namespace
 
 template <class Request, class Response, class Fill, class Take>
 grpc::ServerUnaryReactor* HandboxService::Order(grpc::CallbackServerContext* context,
@@ -66,6 +59,63 @@ grpc::ServerUnaryReactor* HandboxService::DeleteHandboxSession(
       "HandboxService/DeleteHandboxSession",
       [](v1::HostOrder& order, const auto& asked) { *order.mutable_delete_session() = asked; },
       [](v1::HostOrderAnswer&, google::protobuf::Empty&) {});
+}
+
+grpc::ServerBidiReactor<v1::HandboxStreamRequest, v1::HandboxStreamResponse>*
+HandboxService::HandboxStream(grpc::CallbackServerContext* context) {
+  return MakeHandboxStream(needs_, *context, watch_needs_.hosts, watch_needs_.open);
+}
+
+grpc::ServerUnaryReactor* HandboxService::ListTeachEntries(
+    grpc::CallbackServerContext* context, const v1::ListTeachEntriesRequest* request,
+    v1::ListTeachEntriesResponse* response) {
+  return Answer(needs_, context, *request, "HandboxService/ListTeachEntries",
+                [this, request, response](const Caller&) {
+                  auto listed = taught_.List(*request);
+                  if (!listed) return ToGrpcStatus(listed.error());
+                  *response = *std::move(listed);
+                  return grpc::Status::OK;
+                });
+}
+
+// The store has the program, the host knows who has control.
+grpc::ServerUnaryReactor* HandboxService::UndoTeachEntries(
+    grpc::CallbackServerContext* context, const v1::UndoTeachEntriesRequest* request,
+    v1::UndoTeachEntriesResponse* response) {
+  constexpr std::string_view kMethod = "HandboxService/UndoTeachEntries";
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  const Result<Caller> caller = Admit(needs_.gate, *context, kMethod, request);
+  const Result<ProgramName> name = ParseProgramName(request->program());
+  if (!caller || !name) {
+    reactor->Finish(ToGrpcStatus(caller ? name.error() : caller.error()));
+    return reactor;
+  }
+  if (watch_needs_.hosts == nullptr || !watch_needs_.hosts->IsHosted(name->machine)) {
+    reactor->Finish(
+        ToGrpcStatus(Error{ErrorCode::kCellNotLive, "the machine has no host: enable it", {}}));
+    return reactor;
+  }
+  const auto end = [reactor, kMethod, begin = std::chrono::steady_clock::now(),
+                    who = *caller](const grpc::Status& status) {
+    LogCall(kMethod, who, status, std::chrono::steady_clock::now() - begin);
+    reactor->Finish(status);
+  };
+  const auto carry = [this, request, response, end, who = caller->identity] {
+    auto entry = taught_.TakeBack(*request, who);
+    if (!entry) return end(ToGrpcStatus(entry.error()));
+    *response->mutable_entry() = *std::move(entry);
+    end(grpc::Status::OK);
+  };
+  v1::HostOrder order;
+  order.set_caller(caller->identity);
+  *order.mutable_undo_teaching() = *request;
+  watch_needs_.hosts->Ask(name->machine, std::move(order),
+                          [this, end, carry](const Result<v1::HostOrderAnswer>& answer) {
+                            if (!answer) return end(ToGrpcStatus(answer.error()));
+                            if (answer->has_refusal()) return end(RefusalOf(*answer));
+                            needs_.executor.Post(carry);
+                          });
+  return reactor;
 }
 
 grpc::ServerWriteReactor<v1::WatchHandboxResponse>* HandboxService::WatchHandbox(

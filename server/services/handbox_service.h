@@ -1,15 +1,16 @@
 #pragma once
 
 #include "rmlcell/v1/handbox.grpc.pb.h"
+#include "server/machines/teach_book.h"
 #include "server/services/handbox_watch.h"
-#include "server/services/later.h"
 
 namespace rmlcell::server {
 
 // The handbox of a machine that lives: whoever has control presses its keys, anybody may look.
 class HandboxService final : public v1::HandboxService::CallbackService {
  public:
-  HandboxService(CallNeeds needs, HandboxWatchNeeds watch) : needs_(needs), watch_needs_(watch) {}
+  HandboxService(CallNeeds needs, HandboxWatchNeeds watch)
+      : needs_(needs), watch_needs_(watch), taught_(watch.store) {}
 
   grpc::ServerUnaryReactor* CreateHandboxSession(grpc::CallbackServerContext* context,
                                                  const v1::CreateHandboxSessionRequest* request,
@@ -26,9 +27,15 @@ class HandboxService final : public v1::HandboxService::CallbackService {
   grpc::ServerWriteReactor<v1::WatchHandboxResponse>* WatchHandbox(
       grpc::CallbackServerContext* context, const v1::WatchHandboxRequest* request) override;
 
-  RMLCELL_LATER_BOTH("HandboxService", HandboxStream)
-  RMLCELL_LATER("HandboxService", ListTeachEntries, v1::ListTeachEntriesResponse)
-  RMLCELL_LATER("HandboxService", UndoTeachEntries, v1::UndoTeachEntriesResponse)
+  grpc::ServerBidiReactor<v1::HandboxStreamRequest, v1::HandboxStreamResponse>* HandboxStream(
+      grpc::CallbackServerContext* context) override;
+
+  grpc::ServerUnaryReactor* ListTeachEntries(grpc::CallbackServerContext* context,
+                                             const v1::ListTeachEntriesRequest* request,
+                                             v1::ListTeachEntriesResponse* response) override;
+  grpc::ServerUnaryReactor* UndoTeachEntries(grpc::CallbackServerContext* context,
+                                             const v1::UndoTeachEntriesRequest* request,
+                                             v1::UndoTeachEntriesResponse* response) override;
 
  private:
   template <class Request, class Response, class Fill, class Take>
@@ -38,6 +45,7 @@ class HandboxService final : public v1::HandboxService::CallbackService {
 
   CallNeeds needs_;
   HandboxWatchNeeds watch_needs_;
+  TeachBook taught_;
 };
 
 }  // namespace rmlcell::server

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,14 +14,18 @@
 
 namespace rmlcell::server {
 
+// Adds to an order what the store has; on a thread that may wait for it.
+using HostOrderPrepare = std::function<Status(v1::HostOrder&)>;
+
 struct HostOrderNeeds {
   const CallNeeds& needs;
   storage::Store& store;
-  Hosts* hosts = nullptr;  // null: no machine lives
+  Hosts* hosts = nullptr;      // null: no machine lives
+  HostOrderPrepare prepare{};  // none: nothing is missing
 };
 
 // One order to the host of a machine, whose name the request has. `fill` puts the request into the
-// order, `take` the answer into the response. Nothing of it waits for the store.
+// order, `take` the answer into the response. Without `prepare` nothing of it waits for the store.
 template <class Request, class Response, class Fill, class Take>
 grpc::ServerUnaryReactor* OrderOfHost(const HostOrderNeeds& of,
                                       grpc::CallbackServerContext* context, const Request* request,
@@ -50,21 +55,30 @@ grpc::ServerUnaryReactor* OrderOfHost(const HostOrderNeeds& of,
   order.set_caller(caller->identity);
   fill(order, *request);
   const auto begin = std::chrono::steady_clock::now();
-  of.hosts->Ask(
-      *machine, std::move(order),
-      [reactor, response, method, take, begin, who = *caller](Result<v1::HostOrderAnswer> answer) {
-        grpc::Status status;
-        if (!answer) {
-          status = ToGrpcStatus(answer.error());
-        } else if (answer->has_refusal()) {
-          status = RefusalOf(*answer);
-        } else {
-          take(*answer, *response);
-        }
-        LogCall(method, who, status, std::chrono::steady_clock::now() - begin);
-        reactor->Finish(status);
+  const auto answered = [reactor, response, method, take, begin,
+                         who = *caller](Result<v1::HostOrderAnswer> answer) {
+    grpc::Status status;
+    if (!answer) {
+      status = ToGrpcStatus(answer.error());
+    } else if (answer->has_refusal()) {
+      status = RefusalOf(*answer);
+    } else {
+      take(*answer, *response);
+    }
+    LogCall(method, who, status, std::chrono::steady_clock::now() - begin);
+    reactor->Finish(status);
+  };
+  if (!of.prepare) {
+    of.hosts->Ask(*machine, std::move(order), answered);
+    return reactor;
+  }
+  const bool taken = of.needs.executor.TryPost(
+      [hosts = of.hosts, prepare = of.prepare, machine = *machine, order, answered]() mutable {
+        const Status prepared = prepare(order);
+        if (!prepared) return answered(prepared.error());
+        hosts->Ask(machine, std::move(order), answered);
       });
-  return reactor;
+  return taken ? reactor : refuse(LaneFull());
 }
 
 }  // namespace rmlcell::server

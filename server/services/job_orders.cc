@@ -117,16 +117,18 @@ grpc::ServerUnaryReactor* JobService::DecideInterrupted(grpc::CallbackServerCont
   const auto confirmed = [this, request, response, end, who = *caller] {
     if (request->decision() != v1::DecideInterruptedRequest::DECISION_RESTART)
       return end(grpc::Status::OK);
-    book_.Again(request->name(), who.identity, request->request_id(),
+    book_.Again(request->name(), who.identity, request->request_id(), false,
                 [response, end](const Result<v1::Job>& job) {
                   if (!job) return end(ToGrpcStatus(job.error()));
                   response->set_job(job->name());
                   end(grpc::Status::OK);
                 });
   };
-  const auto decide = [this, request, end, confirmed, who = *caller] {
+  const auto decide = [this, request, response, end, confirmed, who = *caller] {
     const Result<std::string> machine = book_.MachineToDecide(*request);
     if (!machine) return end(ToGrpcStatus(machine.error()));
+    if (request->decision() == v1::DecideInterruptedRequest::DECISION_RESUME_AT_STEP)
+      return ResumeAtStep(*request, *machine, who.identity, *response, end);
     v1::HostOrder order;
     order.set_caller(who.identity);
     order.set_reason(request->reason());
@@ -144,6 +146,38 @@ grpc::ServerUnaryReactor* JobService::DecideInterrupted(grpc::CallbackServerCont
   };
   if (!needs_.executor.TryPost(decide)) reactor->Finish(ToGrpcStatus(LaneFull()));
   return reactor;
+}
+
+// A new job goes on; where its start is refused it ends, and the machine waits for another
+// decision.
+void JobService::ResumeAtStep(const v1::DecideInterruptedRequest& request,
+                              const std::string& machine, const std::string& caller,
+                              v1::DecideInterruptedResponse& response,
+                              const std::function<void(const grpc::Status&)>& end) {
+  v1::HostOrder order;
+  order.set_caller(caller);
+  order.set_reason(request.reason());
+  v1::StartAtStepRequest& start = *order.mutable_continue_job()->mutable_start();
+  start.set_machine(MachineName(machine));
+  start.set_control_token(request.control_token());
+  start.set_request_id(request.request_id());
+  start.set_preview_token(request.preview_token());
+  *start.mutable_confirmations() = request.confirmations();
+  if (request.has_halt_at_entry()) start.set_halt_at_entry(request.halt_at_entry());
+  const auto made = [this, order, &response, end](const Result<v1::Job>& job) {
+    if (!job) return end(ToGrpcStatus(job.error()));
+    needs_.executor.Post([this, order, name = job->name(), &response, end] {
+      const Result<std::int64_t> id = ParseJobName(name);
+      const auto answered = [name, &response, end](const Result<v1::HostOrderAnswer>& answer) {
+        if (!answer) return end(ToGrpcStatus(answer.error()));
+        if (answer->has_refusal()) return end(RefusalOf(*answer));
+        response.set_job(name);
+        end(grpc::Status::OK);
+      };
+      runs_.BeginByPerson(id ? *id : 0, order, answered);
+    });
+  };
+  book_.Again(request.name(), caller, request.request_id(), true, made);
 }
 
 void JobService::TellCancel(const storage::JobRecord& job, const Caller& caller) {

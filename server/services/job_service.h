@@ -124,6 +124,9 @@ class JobService final
   grpc::ServerUnaryReactor* OrderRun(grpc::CallbackServerContext* context, std::string_view method,
                                      const Request& request, v1::HostOrder order,
                                      Response* response);
+  void ResumeAtStep(const v1::DecideInterruptedRequest& request, const std::string& machine,
+                    const std::string& caller, v1::DecideInterruptedResponse& response,
+                    const std::function<void(const grpc::Status&)>& end);
   void TellCancel(const storage::JobRecord& job, const Caller& caller);
   grpc::Status Give(const std::string& name, v1::Job* response);
   Status OrderWaiting(const std::string& name, v1::WorkerControl::Kind kind,

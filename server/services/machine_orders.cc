@@ -1,12 +1,17 @@
 // What clients ask of machines that live: it goes to the host of the machine, and its answer comes
 // back. Nothing of it waits for the store.
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 #include <thread>
 #include <utility>
 
+#include "proto/bridge/findings.h"
 #include "server/base/names.h"
 #include "server/machines/host_processes.h"
 #include "server/machines/hosts.h"
+#include "server/records/machine_options.h"
+#include "server/runs/run_queue.h"
 #include "server/services/call.h"
 #include "server/services/host_order.h"
 #include "server/services/machine_service.h"
@@ -22,9 +27,10 @@ constexpr std::chrono::milliseconds kBetweenLooks{10};
 template <class Request, class Response, class Fill, class Take>
 grpc::ServerUnaryReactor* MachineService::Order(grpc::CallbackServerContext* context,
                                                 const Request* request, Response* response,
-                                                std::string_view method, Fill fill, Take take) {
-  return OrderOfHost({needs_, store_, live_.hosts}, context, request, request->machine(), response,
-                     method, fill, take);
+                                                std::string_view method, Fill fill, Take take,
+                                                HostOrderPrepare prepare) {
+  return OrderOfHost({needs_, store_, live_.hosts, std::move(prepare)}, context, request,
+                     request->machine(), response, method, fill, take);
 }
 
 template <class Request, class Fill>
@@ -41,6 +47,7 @@ grpc::ServerUnaryReactor* MachineService::OrderStatus(grpc::CallbackServerContex
 grpc::ServerUnaryReactor* MachineService::StartMachine(grpc::CallbackServerContext* context,
                                                        const v1::StartMachineRequest* request,
                                                        v1::MachineStatus* response) {
+  if (request->has_job()) return StartJob(context, *request, *response);
   return OrderStatus(
       context, request, response, "MachineService/StartMachine",
       [](v1::HostOrder& order, const auto& asked) { *order.mutable_start() = asked; });
@@ -110,15 +117,103 @@ grpc::ServerUnaryReactor* MachineService::SetInputs(grpc::CallbackServerContext*
       [](v1::HostOrder& order, const auto& asked) { *order.mutable_inputs() = asked; });
 }
 
+grpc::ServerUnaryReactor* MachineService::SetGates(grpc::CallbackServerContext* context,
+                                                   const v1::SetGatesRequest* request,
+                                                   v1::MachineStatus* response) {
+  return OrderStatus(
+      context, request, response, "MachineService/SetGates",
+      [](v1::HostOrder& order, const auto& asked) { *order.mutable_gates() = asked; });
+}
+
+grpc::ServerUnaryReactor* MachineService::ArmMachine(grpc::CallbackServerContext* context,
+                                                     const v1::ArmMachineRequest* request,
+                                                     v1::ArmMachineResponse* response) {
+  return Order(
+      context, request, response, "MachineService/ArmMachine",
+      [](v1::HostOrder& order, const auto& asked) { *order.mutable_arm() = asked; },
+      [](v1::HostOrderAnswer& answer, v1::ArmMachineResponse& armed) {
+        armed = std::move(*answer.mutable_armed());
+      });
+}
+
+grpc::ServerUnaryReactor* MachineService::DisarmMachine(grpc::CallbackServerContext* context,
+                                                        const v1::DisarmMachineRequest* request,
+                                                        v1::MachineStatus* response) {
+  return OrderStatus(
+      context, request, response, "MachineService/DisarmMachine",
+      [](v1::HostOrder& order, const auto& asked) { *order.mutable_disarm() = asked; });
+}
+
+// A RUN job that waits for a person. LIVE-5.04
+grpc::ServerUnaryReactor* MachineService::StartJob(grpc::CallbackServerContext* context,
+                                                   const v1::StartMachineRequest& request,
+                                                   v1::MachineStatus& response) {
+  constexpr std::string_view kMethod = "MachineService/StartMachine";
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  const auto refuse = [reactor](const Error& error) {
+    reactor->Finish(ToGrpcStatus(error));
+    return reactor;
+  };
+  const Result<Caller> caller = Admit(needs_.gate, *context, kMethod, &request);
+  if (!caller) return refuse(caller.error());
+  const Result<std::int64_t> id = ParseJobName(request.job());
+  if (!id) return refuse(id.error());
+  if (live_.runs == nullptr) return refuse({ErrorCode::kCellNotLive, "no machine lives here", {}});
+  const auto answered = [reactor, &response, kMethod, begin = std::chrono::steady_clock::now(),
+                         who = *caller](const Result<v1::HostOrderAnswer>& answer) {
+    grpc::Status status;
+    if (!answer) {
+      status = ToGrpcStatus(answer.error());
+    } else if (answer->has_refusal()) {
+      status = RefusalOf(*answer);
+    } else {
+      response = answer->status();
+    }
+    LogCall(kMethod, who, status, std::chrono::steady_clock::now() - begin);
+    reactor->Finish(status);
+  };
+  const bool taken =
+      needs_.executor.TryPost([this, &request, id = *id, answered, who = caller->identity] {
+        const auto job = store_.GetJob(id);
+        if (!job) return answered(job.error());
+        if (MachineName(job->machine) != request.machine())
+          return answered(Error{ErrorCode::kCellInvalidArgument,
+                                "job: " + request.job() + " is for " + MachineName(job->machine),
+                                {}});
+        v1::HostOrder order;
+        order.set_caller(who);
+        *order.mutable_by_person() = request;
+        order.mutable_run_job();
+        live_.runs->BeginByPerson(id, std::move(order), answered);
+      });
+  return taken ? reactor : refuse(LaneFull());
+}
+
 grpc::ServerUnaryReactor* MachineService::PreviewStart(grpc::CallbackServerContext* context,
                                                        const v1::PreviewStartRequest* request,
                                                        v1::PreviewStartResponse* response) {
+  // The program that a job brought is with the job, and not with the machine.
+  const auto machine = ParseMachineName(request->machine());
+  const auto status =
+      machine && live_.hosts != nullptr ? live_.hosts->StatusOf(*machine) : std::nullopt;
+  HostOrderPrepare prepare;
+  if (status && live_.runs != nullptr && !status->cut_off_job().empty()) {
+    prepare = [runs = live_.runs, job = status->cut_off_job()](v1::HostOrder& order) -> Status {
+      const auto id = ParseJobName(job);
+      if (!id) return id.error();
+      auto brought = runs->ProgramOf(*id);
+      if (!brought) return brought.error();
+      *order.mutable_brought() = *std::move(brought);
+      return {};
+    };
+  }
   return Order(
       context, request, response, "MachineService/PreviewStart",
       [](v1::HostOrder& order, const auto& asked) { *order.mutable_preview_start() = asked; },
       [](v1::HostOrderAnswer& answer, v1::PreviewStartResponse& preview) {
         preview = std::move(*answer.mutable_preview());
-      });
+      },
+      std::move(prepare));
 }
 
 grpc::ServerUnaryReactor* MachineService::StartAtStep(grpc::CallbackServerContext* context,
@@ -281,11 +376,12 @@ grpc::Status MachineService::TellStatus(const std::string& machine, v1::MachineS
 }
 
 // Until its host is heard of.
-grpc::Status MachineService::Enable(const std::string& machine, v1::MachineStatus& status) {
-  const auto record = store_.GetMachine(machine);
-  if (!record) return ToGrpcStatus(record.error());
+grpc::Status MachineService::Enable(const std::string& machine, const std::string& caller,
+                                    v1::MachineStatus& status) {
   if (live_.processes == nullptr)
     return ToGrpcStatus(Error{ErrorCode::kCellNotLive, "this server starts no hosts", {}});
+  if (const Status kept = KeepEnabled(machine, true, caller); !kept)
+    return ToGrpcStatus(kept.error());
   if (const Status enabled = live_.processes->Enable(machine); !enabled)
     return ToGrpcStatus(enabled.error());
   const auto until = std::chrono::steady_clock::now() + kBegins;
@@ -300,19 +396,55 @@ grpc::Status MachineService::Enable(const std::string& machine, v1::MachineStatu
   return TellStatus(machine, status);
 }
 
-grpc::Status MachineService::Disable(const std::string& machine, v1::MachineStatus& status) {
-  const auto record = store_.GetMachine(machine);
-  if (!record) return ToGrpcStatus(record.error());
-  if (live_.processes == nullptr) return TellStatus(machine, status);
+// What a person says stands, also with the next server.
+Status MachineService::KeepEnabled(const std::string& machine, bool enabled,
+                                   const std::string& caller) {
+  auto record = store_.GetMachine(machine);
+  if (!record) return record.error();
+  const bool stands = IsEnabled(*record, live_.by_default || live_.hosts->IsHosted(machine));
+  if (stands == enabled) return {};
+  v1::MachineOptions options = OptionsOf(*record).value_or(v1::MachineOptions());
+  options.set_enabled(enabled);
+  record->options = BytesOf(options);
+  const auto put = store_.PutMachine(*record, record->revision, caller);
+  return put ? Status() : Status(put.error());
+}
+
+Status MachineService::EndHost(const std::string& machine, const std::string& why) {
   const auto now = live_.hosts->StatusOf(machine);
   if (now && now->has_run())
-    return ToGrpcStatus(Error{ErrorCode::kCellMachineState, "a run is open; abort it first", {}});
+    return Error{ErrorCode::kCellMachineState, "a run is open; abort it first", {}};
   live_.processes->Disable(machine);
-  live_.hosts->End(machine, "it was disabled");
+  live_.hosts->End(machine, why);
   const auto until = std::chrono::steady_clock::now() + kBegins;
   while (live_.hosts->IsHosted(machine) && std::chrono::steady_clock::now() < until)
     std::this_thread::sleep_for(kBetweenLooks);
   if (live_.hosts->IsHosted(machine)) live_.hosts->Forget(machine);
+  return {};
+}
+
+// What it was made or changed to: a machine that is enabled lives.
+void MachineService::FollowOptions(const storage::MachineRecord& machine) {
+  if (live_.processes == nullptr) return;
+  Status done;
+  if (IsEnabled(machine, live_.by_default)) {
+    done = live_.processes->Enable(machine.id);
+  } else if (live_.hosts->IsHosted(machine.id) && OptionsOf(machine)) {
+    done = EndHost(machine.id, "it was disabled");
+  }
+  if (!done) spdlog::warn("{}: {}", machine.id, bridge::ErrorText(done.error()));
+}
+
+grpc::Status MachineService::Disable(const std::string& machine, const std::string& caller,
+                                     v1::MachineStatus& status) {
+  if (live_.processes == nullptr) return TellStatus(machine, status);
+  const auto now = live_.hosts->StatusOf(machine);
+  if (now && now->has_run())
+    return ToGrpcStatus(Error{ErrorCode::kCellMachineState, "a run is open; abort it first", {}});
+  if (const Status kept = KeepEnabled(machine, false, caller); !kept)
+    return ToGrpcStatus(kept.error());
+  if (const Status ended = EndHost(machine, "it was disabled"); !ended)
+    return ToGrpcStatus(ended.error());
   if (const grpc::Status told = TellStatus(machine, status); !told.ok()) return told;
   status.set_state(v1::MACHINE_STATE_OFF);
   return grpc::Status::OK;
@@ -322,9 +454,10 @@ grpc::ServerUnaryReactor* MachineService::EnableMachine(grpc::CallbackServerCont
                                                         const v1::EnableMachineRequest* request,
                                                         v1::MachineStatus* response) {
   return Answer(needs_.Computing(), context, *request, "MachineService/EnableMachine",
-                [this, request, response](const Caller&) {
+                [this, request, response](const Caller& caller) {
                   const auto machine = ParseMachineName(request->machine());
-                  return machine ? Enable(*machine, *response) : ToGrpcStatus(machine.error());
+                  return machine ? Enable(*machine, caller.identity, *response)
+                                 : ToGrpcStatus(machine.error());
                 });
 }
 
@@ -332,9 +465,10 @@ grpc::ServerUnaryReactor* MachineService::DisableMachine(grpc::CallbackServerCon
                                                          const v1::DisableMachineRequest* request,
                                                          v1::MachineStatus* response) {
   return Answer(needs_.Computing(), context, *request, "MachineService/DisableMachine",
-                [this, request, response](const Caller&) {
+                [this, request, response](const Caller& caller) {
                   const auto machine = ParseMachineName(request->machine());
-                  return machine ? Disable(*machine, *response) : ToGrpcStatus(machine.error());
+                  return machine ? Disable(*machine, caller.identity, *response)
+                                 : ToGrpcStatus(machine.error());
                 });
 }
 

@@ -11,6 +11,7 @@
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
 #include "server/records/program_place.h"
+#include "server/services/journal_export.h"
 
 namespace rmlcell::server {
 namespace {
@@ -19,7 +20,6 @@ constexpr PageSizes kMachinePages{.fallback = 100, .max = 1000};
 
 // What the contract has and this version does not do.
 Status CheckNothingOfLater(const v1::Machine& machine) {
-  if (machine.has_options()) return Error{ErrorCode::kCellUnimplemented, "machine.options", {}};
   if (machine.connection().kind() == v1::MachineConnection::KIND_DEVICE ||
       !machine.connection().device().empty())
     return Error{ErrorCode::kCellUnimplemented, "machine.connection: a device", {}};
@@ -60,6 +60,7 @@ grpc::ServerUnaryReactor* MachineService::CreateMachine(grpc::CallbackServerCont
                   }
                   const auto stored = store_.PutMachine(record, 0, caller.identity);
                   if (!stored) return ToGrpcStatus(stored.error());
+                  FollowOptions(*stored);
                   *response = ToProto(*stored);
                   return grpc::Status::OK;
                 });
@@ -143,6 +144,7 @@ grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerCont
                       *record, *expected == storage::kAnyRevision ? record->revision : *expected,
                       caller.identity);
                   if (!stored) return ToGrpcStatus(stored.error());
+                  if (stored->options != stands->options) FollowOptions(*stored);
                   *response = ToProto(*stored);
                   return grpc::Status::OK;
                 });
@@ -151,15 +153,20 @@ grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* MachineService::DeleteMachine(grpc::CallbackServerContext* context,
                                                         const v1::DeleteMachineRequest* request,
                                                         google::protobuf::Empty*) {
-  return Answer(needs_, context, *request, "MachineService/DeleteMachine",
+  return Answer(needs_.Computing(), context, *request, "MachineService/DeleteMachine",
                 [this, request](const Caller& caller) {
                   const auto id = ParseMachineName(request->name());
                   if (!id) return ToGrpcStatus(id.error());
                   const auto expected = ParseEtag(request->etag());
                   if (!expected) return ToGrpcStatus(expected.error());
-                  if (live_.hosts != nullptr && live_.hosts->IsHosted(*id))
-                    return ToGrpcStatus(
-                        Error{ErrorCode::kCellPrecondition, "it has a host; disable it first", {}});
+                  if (live_.hosts != nullptr && live_.hosts->IsHosted(*id)) {
+                    const auto stands = store_.GetMachine(*id);
+                    if (!stands) return ToGrpcStatus(stands.error());
+                    if (*expected != storage::kAnyRevision && *expected != stands->revision)
+                      return ToGrpcStatus(Error{ErrorCode::kCellEtagMismatch, request->name(), {}});
+                    if (const Status ended = EndHost(*id, "it was deleted"); !ended)
+                      return ToGrpcStatus(ended.error());
+                  }
                   const Status deleted = store_.DeleteMachine(*id, *expected, caller.identity);
                   if (deleted && live_.processes != nullptr) live_.processes->Forget(*id);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());

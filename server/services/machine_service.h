@@ -4,6 +4,7 @@
 
 #include "rmlcell/v1/machine.grpc.pb.h"
 #include "server/records/known_machines.h"
+#include "server/services/host_order.h"
 #include "server/services/later.h"
 #include "server/services/machine_watch.h"
 #include "storage/store.h"
@@ -12,6 +13,7 @@ namespace rmlcell::server {
 
 class HostProcesses;
 class Hosts;
+class RunQueue;
 
 class MachineService final : public v1::MachineService::CallbackService {
  public:
@@ -19,6 +21,8 @@ class MachineService final : public v1::MachineService::CallbackService {
   struct Live {
     Hosts* hosts = nullptr;
     HostProcesses* processes = nullptr;
+    RunQueue* runs = nullptr;
+    bool by_default = false;  // where the record of a machine does not say so
   };
   MachineService(CallNeeds needs, MachineWatchNeeds watch, Live live)
       : needs_(needs),
@@ -115,6 +119,9 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerUnaryReactor* SetInputs(grpc::CallbackServerContext* context,
                                       const v1::SetInputsRequest* request,
                                       v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* SetGates(grpc::CallbackServerContext* context,
+                                     const v1::SetGatesRequest* request,
+                                     v1::MachineStatus* response) override;
   grpc::ServerUnaryReactor* SetBreakpoints(grpc::CallbackServerContext* context,
                                            const v1::SetBreakpointsRequest* request,
                                            v1::RunState* response) override;
@@ -127,6 +134,12 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerUnaryReactor* ConfirmMachine(grpc::CallbackServerContext* context,
                                            const v1::ConfirmMachineRequest* request,
                                            v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* ArmMachine(grpc::CallbackServerContext* context,
+                                       const v1::ArmMachineRequest* request,
+                                       v1::ArmMachineResponse* response) override;
+  grpc::ServerUnaryReactor* DisarmMachine(grpc::CallbackServerContext* context,
+                                          const v1::DisarmMachineRequest* request,
+                                          v1::MachineStatus* response) override;
   grpc::ServerUnaryReactor* PreviewStart(grpc::CallbackServerContext* context,
                                          const v1::PreviewStartRequest* request,
                                          v1::PreviewStartResponse* response) override;
@@ -147,23 +160,29 @@ class MachineService final : public v1::MachineService::CallbackService {
                                            v1::MachineStatus* response) override;
 
   RMLCELL_LATER("MachineService", TakeMachine, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", SetGates, v1::MachineStatus)
-  RMLCELL_LATER("MachineService", ArmMachine, v1::ArmMachineResponse)
-  RMLCELL_LATER("MachineService", DisarmMachine, v1::MachineStatus)
   RMLCELL_LATER("MachineService", ListDevices, v1::ListDevicesResponse)
 
  private:
   // One order to the host of a machine.
   template <class Request, class Response, class Fill, class Take>
   grpc::ServerUnaryReactor* Order(grpc::CallbackServerContext* context, const Request* request,
-                                  Response* response, std::string_view method, Fill fill,
-                                  Take take);
+                                  Response* response, std::string_view method, Fill fill, Take take,
+                                  HostOrderPrepare prepare = {});
   template <class Request, class Fill>
   grpc::ServerUnaryReactor* OrderStatus(grpc::CallbackServerContext* context,
                                         const Request* request, v1::MachineStatus* response,
                                         std::string_view method, Fill fill);
-  grpc::Status Enable(const std::string& machine, v1::MachineStatus& status);
-  grpc::Status Disable(const std::string& machine, v1::MachineStatus& status);
+  grpc::ServerUnaryReactor* StartJob(grpc::CallbackServerContext* context,
+                                     const v1::StartMachineRequest& request,
+                                     v1::MachineStatus& response);
+  grpc::Status Enable(const std::string& machine, const std::string& caller,
+                      v1::MachineStatus& status);
+  grpc::Status Disable(const std::string& machine, const std::string& caller,
+                       v1::MachineStatus& status);
+  Status KeepEnabled(const std::string& machine, bool enabled, const std::string& caller);
+  // It comes to rest and has no host any more. Error: CellMachineState, a run is open.
+  Status EndHost(const std::string& machine, const std::string& why);
+  void FollowOptions(const storage::MachineRecord& machine);
   grpc::Status TellStatus(const std::string& machine, v1::MachineStatus& status);
 
   CallNeeds needs_;

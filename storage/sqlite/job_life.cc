@@ -221,6 +221,8 @@ Result<LeasedJob> LeaseJob(WriteContext& context, std::int64_t id, const JobRequ
   Result<JobRow> row = GetRow(context, id);
   if (!row) return row.error();
   JobRecord& job = row->job;
+  job.held = false;
+  SetBlocked(context, *row, 0);
   SetState(context, *row, JobState::kRunning);
   job.attempts += 1;
   row->attempts_begun += 1;

@@ -4,7 +4,7 @@ namespace rmlcell::storage::sqlite {
 namespace {
 
 std::string SelectMachine(const std::string& which) {
-  return "SELECT id, family, title, profile, revision, created_at, updated_at"
+  return "SELECT id, family, title, profile, revision, created_at, updated_at, options"
          " FROM machine " +
          which;
 }
@@ -17,8 +17,8 @@ MachineTable::MachineTable(Database& database)
       list_(database, SelectMachine("ORDER BY id")),
       put_(database,
            "INSERT OR REPLACE INTO machine"
-           " (id, family, title, profile, revision, created_at, updated_at)"
-           " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)"),
+           " (id, family, title, profile, revision, created_at, updated_at, options)"
+           " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)"),
       parameters_(database, "SELECT name, value FROM machine_parameter WHERE machine = ?1"),
       remove_(database, "DELETE FROM machine WHERE id = ?1"),
       remove_parameters_(database, "DELETE FROM machine_parameter WHERE machine = ?1"),
@@ -40,9 +40,10 @@ Result<std::vector<MachineRecord>> MachineTable::List() {
 }
 
 Status MachineTable::Put(const MachineRecord& machine, const Stamp& stamp) {
-  if (const Status put = put_.With(machine.id, machine.family, machine.title, machine.profile,
-                                   stamp.revision, stamp.created_at, stamp.updated_at)
-                             .Run();
+  if (const Status put =
+          put_.With(machine.id, machine.family, machine.title, machine.profile, stamp.revision,
+                    stamp.created_at, stamp.updated_at, machine.options)
+              .Run();
       !put)
     return put.error();
   if (const Status removed = remove_parameters_.With(machine.id).Run(); !removed)
@@ -65,6 +66,7 @@ Result<MachineRecord> MachineTable::Read(const Query& row) {
                         .title = row.Text(2),
                         .profile = row.Text(3),
                         .parameters = {},
+                        .options = row.Text(7),
                         .revision = row.Integer(4),
                         .created_at = row.Time(5),
                         .updated_at = row.Time(6)};

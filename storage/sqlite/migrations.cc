@@ -81,6 +81,11 @@ constexpr Migration kMigrations[] = {
      "INSERT INTO mark SELECT 'blocked jobs', count(*) FROM job INDEXED BY job_unfinished"
      " WHERE state < 2 AND state = 0 AND blocked <> 0;"
      "INSERT INTO mark SELECT 'record events', count(*) FROM event WHERE job = 0;"},
+    {14, "how machines live, and what was taught at them",
+     "ALTER TABLE machine ADD COLUMN options BLOB NOT NULL DEFAULT '';"
+     "CREATE TABLE taught (machine TEXT NOT NULL, number INTEGER NOT NULL,"
+     " program INTEGER NOT NULL, entry BLOB NOT NULL, PRIMARY KEY (machine, number))"
+     " WITHOUT ROWID;"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

@@ -52,6 +52,19 @@ void Take(const std::optional<Head>& other, std::optional<Head>& first) {
   if (other && (!first || other->IsBefore(*first))) first = other;
 }
 
+// The one that is asked for, where it waits and its machine runs none.
+Result<std::optional<std::int64_t>> ThatOne(WriteContext& context, std::int64_t job) {
+  const Result<JobRow> row = GetRow(context, job);
+  if (!row) return row.error();
+  if (row->job.state != JobState::kQueued) return std::optional<std::int64_t>();
+  if (row->job.kind == kRunKind) {
+    const auto running = context.tables.queue.RunningRun(row->job.machine);
+    if (!running) return running.error();
+    if (*running) return std::optional<std::int64_t>();
+  }
+  return std::optional(job);
+}
+
 // Of machines that run none.
 Result<std::optional<Head>> NextRun(WriteContext& context, const JobRequest& request) {
   QueueTable& queue = context.tables.queue;
@@ -107,6 +120,7 @@ Status LetFollowersGo(WriteContext& context, std::int64_t job) {
 }
 
 Result<std::optional<std::int64_t>> NextFor(WriteContext& context, const JobRequest& request) {
+  if (request.job) return ThatOne(context, *request.job);
   std::optional<Head> first;
   for (const std::string& kind : request.kinds) {
     if (kind == kRunKind) {

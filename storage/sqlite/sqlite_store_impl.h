@@ -52,6 +52,9 @@ class SqliteStore final : public Store {
   Status ReleaseMachine(const MachineLease& lease) override;
   Result<std::vector<MachineLease>> MachineLeases() override;
   Status AppendMachine(const MachineLease& lease, const MachineWrite& write) override;
+  Result<std::int64_t> AddTeachRecord(const TeachRecord& record) override;
+  Result<std::vector<TeachRecord>> ListTeachRecords(std::string_view machine, int program,
+                                                    std::int64_t before, int limit) override;
   Result<std::optional<MachineMark>> GetMachineMark(std::string_view machine) override;
 
   Result<std::vector<ProgramSummary>> ListPrograms(std::string_view machine, int after_slot,

@@ -129,7 +129,8 @@ class StandingRequest final : public WriteOperation {
     const auto* request = dynamic_cast<const StandingRequest*>(&other);
     return request != nullptr && request->request_.kinds == request_.kinds &&
            request->request_.pools == request_.pools &&
-           request->request_.run_machines == request_.run_machines;
+           request->request_.run_machines == request_.run_machines &&
+           request->request_.job == request_.job;
   }
 
  private:
@@ -340,8 +341,9 @@ Result<std::vector<TakenOrder>> SqliteStore::TakeOrders(std::string_view server)
 }
 
 Result<std::vector<LeasedJob>> SqliteStore::AcquireJobs(const JobRequest& request) {
-  // Most who ask find nothing, and that must not keep the writer busy.
-  if (!writer_.any_ready_job()) return std::vector<LeasedJob>();
+  // Most who ask find nothing, and that must not keep the writer busy. One that is asked for by its
+  // number may be held.
+  if (!request.job && !writer_.any_ready_job()) return std::vector<LeasedJob>();
   Result<std::vector<LeasedJob>> leased =
       writer_.Do([&](WriteContext& context) { return LeaseJobs(context, request); });
   if (!leased) return leased;

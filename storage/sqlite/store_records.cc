@@ -72,6 +72,7 @@ Status RemoveMachine(WriteContext& context, std::string_view id, Revision expect
       !buried)
     return buried.error();
   if (const Status forgotten = ForgetHost(context, id); !forgotten) return forgotten.error();
+  if (const Status forgotten = tables.taught.Remove(id); !forgotten) return forgotten.error();
   context.garbage = true;  // of its programs
   return NoteRecord(context, MachineName(id), kDeleted, caller);
 }
@@ -212,6 +213,36 @@ Result<std::optional<MachineMark>> SqliteStore::GetMachineMark(std::string_view 
     if (!known) return known.error();
     if (!*known) return Error{ErrorCode::kCellUnknownMachine, std::string(machine), {}};
     return tables.hosts.Mark(machine);
+  });
+}
+
+Result<std::int64_t> SqliteStore::AddTeachRecord(const TeachRecord& record) {
+  return writer_.Do([&](WriteContext& context) -> Result<std::int64_t> {
+    Tables& tables = context.tables;
+    const auto known = tables.machines.Find(record.machine);
+    if (!known) return known.error();
+    if (!*known) return Error{ErrorCode::kCellUnknownMachine, record.machine, {}};
+    const Result<std::int64_t> last = tables.taught.Last(record.machine);
+    if (!last) return last.error();
+    TeachRecord added = record;
+    added.number = *last + 1;
+    if (const Status done = tables.taught.Add(added); !done) return done.error();
+    if (const Status removed =
+            tables.taught.RemoveUpTo(record.machine, added.number - kTeachRecordsKept);
+        !removed)
+      return removed.error();
+    return added.number;
+  });
+}
+
+Result<std::vector<TeachRecord>> SqliteStore::ListTeachRecords(std::string_view machine,
+                                                               int program, std::int64_t before,
+                                                               int limit) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<TeachRecord>> {
+    const auto known = tables.machines.Find(machine);
+    if (!known) return known.error();
+    if (!*known) return Error{ErrorCode::kCellUnknownMachine, std::string(machine), {}};
+    return tables.taught.List(machine, program, before, std::max(limit, 0));
   });
 }
 

@@ -13,6 +13,7 @@
 #include "storage/sqlite/project_table.h"
 #include "storage/sqlite/queue_table.h"
 #include "storage/sqlite/schedule_table.h"
+#include "storage/sqlite/taught_table.h"
 #include "storage/sqlite/transaction.h"
 #include "storage/sqlite/upload_table.h"
 
@@ -32,6 +33,7 @@ struct Tables {
         attempts(database),
         orders(database),
         hosts(database),
+        taught(database),
         events(database),
         artifacts(database),
         uploads(database),
@@ -51,6 +53,7 @@ struct Tables {
   AttemptTable attempts;
   OrderTable orders;
   HostTable hosts;
+  TaughtTable taught;
   EventTable events;
   ArtifactTable artifacts;
   UploadTable uploads;

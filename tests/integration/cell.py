@@ -57,11 +57,13 @@ class Cell:
     def start(self):
         log = self.folder / "log"
         log.write_text("")
+        # A process for each machine, for those who look at machines that live.
+        hosts = [] if "--machines.hosts" in self.flags else ["--machines.hosts", "enabled"]
         paced = [] if "--workers.paced" in self.flags else ["--workers.paced", str(self.workers)]
         self.process = subprocess.Popen(
             [BIN / "rmlcelld", "--state.directory", self.folder / "store",
              "--listen.grpc", f"127.0.0.1:{self.grpc_port}", "--listen.web", f"127.0.0.1:{self.web_port}",
-             "--workers.count", str(self.workers), *paced, "--log.file", log, "--log.level", "debug", *self.flags])
+             "--workers.count", str(self.workers), *paced, *hosts, "--log.file", log, "--log.level", "debug", *self.flags])
         until = time.monotonic() + 60
         while "is ready" not in log.read_text(errors="replace"):
             if self.process.poll() is not None or time.monotonic() > until:

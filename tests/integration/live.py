@@ -62,6 +62,19 @@ class Live:
         return int(self.status().host.split("/")[1])
 
 
+def hosts_of(cell):
+    """Processes of its machines."""
+    found = []
+    for entry in os.listdir("/proc"):
+        try:
+            words = pathlib.Path(f"/proc/{entry}/cmdline").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        if b"--host" in words and any(str(cell.folder).encode() in word for word in words):
+            found.append(int(entry))
+    return found
+
+
 class LiveTestCase(unittest.TestCase):
     """A server with a machine that may live; its host ends with the test."""
 
@@ -77,15 +90,7 @@ class LiveTestCase(unittest.TestCase):
             os.kill(process, signal.SIGKILL)
 
     def hosts(self):
-        found = []
-        for entry in os.listdir("/proc"):
-            try:
-                words = pathlib.Path(f"/proc/{entry}/cmdline").read_bytes().split(b"\0")
-            except OSError:
-                continue
-            if b"--host" in words and any(str(self.cell.folder).encode() in word for word in words):
-                found.append(int(entry))
-        return found
+        return hosts_of(self.cell)
 
     def refused(self, code, method, **fields):
         with self.assertRaises(grpc.RpcError) as caught:

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What a person does at a machine that lives, over gRPC and with the command: keys, teaching, a start at a step (live.md 6 to 8)."""
 import os
+import queue
 import subprocess
 import threading
 import time
@@ -8,7 +9,7 @@ import unittest
 
 from cell import BIN, detail_of, eventually, grpc, machine_pb2, program_pb2
 from google.protobuf.timestamp_pb2 import Timestamp
-from live import MILL, Live, LiveTestCase
+from live import MILL, Live, LiveTestCase, new_id
 from rmlcell.v1 import handbox_pb2, handbox_pb2_grpc, project_pb2, project_pb2_grpc
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
 from rmlcell.v1.machine_control_pb2 import KeyAction  # noqa: E402
@@ -99,6 +100,96 @@ class ByHandTest(LiveTestCase):
             machine=OPTIMO, project_id="taught", slots=[12]))
         kept = project.GetProject(project_pb2.GetProjectRequest(name="projects/taught"))
         self.assertEqual([one.slot for one in kept.programs], [12])
+
+    # LIVE-7.09, LIVE-9.15: what was taught is listed, and taken back as long as nobody else changed the program.
+    def test_what_was_taught_is_taken_back(self):
+        live = self.optimo()
+        box = Handbox(live)
+        box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC")
+        eventually(lambda: "P=12" in box.keys("OVERRIDE_MINUS").panel.display, 10)
+        made = self.lists(12)
+        box.hold("X+", 0.2)
+        box.keys("REC")
+        eventually(lambda: len(self.lists(12)) > len(made), 10)
+
+        def entries():
+            return box.stub.ListTeachEntries(handbox_pb2.ListTeachEntriesRequest(machine=OPTIMO)).entries
+        taught = entries()
+        acts = [handbox_pb2.TeachEntry.Act.Name(one.act) for one in taught]
+        self.assertEqual(acts, ["ACT_INSERT", "ACT_CREATE"])
+        self.assertIn("MOVE", taught[0].after)
+        self.assertGreater(taught[0].axes[0].value, 0)
+        self.assertEqual((taught[0].step.program, taught[0].caller), (12, "local"))
+
+        def undo(number, token=live.token):
+            return box.stub.UndoTeachEntries(handbox_pb2.UndoTeachEntriesRequest(
+                program=f"{OPTIMO}/programs/12", down_to=number, request_id=new_id(), control_token=token)).entry
+        with self.assertRaises(grpc.RpcError) as caught:
+            undo(taught[0].number, "none")
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9420")
+        self.assertEqual(handbox_pb2.TeachEntry.Act.Name(undo(taught[0].number).act), "ACT_UNDO")
+        self.assertEqual(self.lists(12), made)
+        self.assertEqual(len(entries()), 3)
+        self.cell.programs().PutProgram(program_pb2.PutProgramRequest(
+            name=f"{OPTIMO}/programs/12", program={"file_name": "a.S", "content": b"DELAY 1\n"}))
+        with self.assertRaises(grpc.RpcError) as caught:
+            undo(taught[1].number)
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9006")
+
+    # LIVE-9.15, LIVE-7.04: keys and beats in one stream; a refusal ends nothing.
+    def test_a_handbox_in_one_stream(self):
+        live = self.optimo()
+        box = Handbox(live)
+        sent = queue.Queue()
+        answers = box.stub.HandboxStream(iter(sent.get, None), timeout=60)
+
+        def key(name, sequence, action="KEY_ACTION_TAP", token=live.token):
+            sent.put(handbox_pb2.HandboxStreamRequest(key=handbox_pb2.PressKeyRequest(
+                session=box.session, control_token=token, key=name, action=KeyAction.Value(action), sequence=sequence)))
+        for number in range(1, 5):
+            key("MODE_LEFT", number)
+        for number in range(1, 5):
+            self.assertEqual(next(answers).key.sequence, number)
+        begin = live.status().axes[0].value
+        key("X+", 5, "KEY_ACTION_PRESS")
+        self.assertEqual(next(answers).key.sequence, 5)
+        for number in range(1, 9):
+            now = Timestamp()
+            now.GetCurrentTime()
+            sent.put(handbox_pb2.HandboxStreamRequest(heartbeat=handbox_pb2.HeartbeatHandboxRequest(
+                session=box.session, control_token=live.token, number=number, keys_down=["X+"], sent=now)))
+            self.assertTrue(next(answers).HasField("heartbeat"))
+            time.sleep(0.04)
+        key("X+", 6, "KEY_ACTION_RELEASE", token="none")
+        self.assertEqual(next(answers).refusal.code, "CELL-E9420")
+        sent.put(handbox_pb2.HandboxStreamRequest())
+        self.assertEqual(next(answers).refusal.code, "CELL-E9003")
+        key("X+", 6, "KEY_ACTION_RELEASE")
+        self.assertEqual(next(answers).key.sequence, 6)
+        live.wait("IDLE")
+        self.assertGreater(live.status().axes[0].value, begin)
+        sent.put(None)
+        self.assertEqual(list(answers), [])
+
+    # LIVE-2.11: a gate starts the program that it is set to.
+    def test_a_gate_starts_its_program(self):
+        live = self.optimo()
+        self.cell.programs().PutProgram(program_pb2.PutProgramRequest(
+            name=f"{OPTIMO}/programs/45", program={"file_name": "a.S", "content": b"VI[3] = 7\n"}))
+        with self.assertRaises(grpc.RpcError) as caught:
+            live.ask("SetInputs", inputs=[{"gate": 1}])
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9423")
+        status = live.ask("SetGates", gate_programs=[45, 0])
+        self.assertEqual(list(status.gate_programs), [45, 0])
+        with self.assertRaises(grpc.RpcError) as caught:
+            live.ask("SetGates", gate_programs=[45])
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
+        eventually(lambda: live.ask("SetInputs", inputs=[{"gate": 1}]), 10)
+        live.wait("IDLE")
+        value = live.ask("ReadVariables", variables=["VI[3]"]).variables[0].value
+        self.assertEqual(value.integer, 7)
+        self.assertEqual(self.command("gates", "optimo-1", "0", "45", "--take-over", "a test").returncode, 0)
+        self.assertEqual(list(live.status().gate_programs), [0, 45])
 
     # LIVE-7.02, LIVE-8.04.
     def test_only_an_optimo_has_a_handbox(self):

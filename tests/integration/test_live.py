@@ -7,8 +7,8 @@ import threading
 import time
 import unittest
 
-from cell import cell_pb2, detail_of, eventually, grpc, machine_pb2
-from live import MILL, Live, LiveTestCase, new_id
+from cell import Cell, cell_pb2, detail_of, eventually, grpc, machine_pb2
+from live import MILL, Live, LiveTestCase, hosts_of, new_id
 from rmlcell.v1 import machine_control_pb2 as control  # noqa: E402
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
 from rmlcell.v1.machine_status_pb2 import HoldReason  # noqa: E402
@@ -31,6 +31,35 @@ class LiveTest(LiveTestCase):
         for _ in range(10):
             self.live.ask("DisableMachine")
             self.assertEqual(MachineState.Name(self.live.enable().state), "MACHINE_STATE_IDLE")
+
+    # LIVE-3.01: virtual machines live by themselves; one whose hosts die and die is OFF, says why, and lives again when a person says so.
+    def test_machines_live_by_default(self):
+        cell = Cell("--machines.hosts", "all", workers=1)
+        cell.start()
+        self.addCleanup(cell.close)
+        mill, optimo = Live(self, cell), Live(self, cell, "machines/optimo-1")
+        self.addCleanup(lambda: [os.kill(one, signal.SIGKILL) for one in hosts_of(cell)])
+        mill.wait("IDLE")
+        optimo.wait("IDLE")
+        made = cell.machines().CreateMachine(machine_pb2.CreateMachineRequest(machine_id="mill-2", machine={"family": "rml1"}))
+        second = Live(self, cell, made.name)
+        second.wait("IDLE")
+        cell.machines().DeleteMachine(machine_pb2.DeleteMachineRequest(name=made.name))
+        eventually(lambda: len(hosts_of(cell)) == 2)
+        optimo.ask("DisableMachine")
+        self.assertFalse(cell.machines().GetMachine(machine_pb2.GetMachineRequest(name=optimo.machine)).options.enabled)
+        for _ in range(5):
+            fence = mill.wait("IDLE").fence
+            os.kill(mill.host(), signal.SIGKILL)
+            eventually(lambda: (lambda now: now.fence > fence or now.HasField("off_reason"))(mill.status()))
+        off = mill.wait("OFF")
+        self.assertIn("ended 5 times within a minute", off.off_reason.message)
+        self.assertEqual(hosts_of(cell), [])
+        self.assertEqual(MachineState.Name(mill.enable().state), "MACHINE_STATE_IDLE")
+        cell.kill()
+        cell.start()
+        mill.wait("IDLE")
+        self.assertEqual(len(hosts_of(cell)), 1)  # what a person has said stands
 
     def test_a_run_is_held_resumed_and_aborted(self):
         self.live.enable()
@@ -188,6 +217,7 @@ class LiveTest(LiveTestCase):
             self.assertLessEqual(after.virtual_time_ns, before.virtual_time_ns + 10**9, place)
             self.live.acquire(take_over=True, reason="a test")
             self.live.ask("ConfirmMachine", confirmations=[1])
+            self.live.enable()  # a person knows why its hosts die
         self.live.ask("DisableMachine")
         inputs, begun, over, times = [], [], [], []
         stream = self.cell.cell_service().WatchCell(cell_pb2.WatchCellRequest(after_sequence=0), timeout=5)

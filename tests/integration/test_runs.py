@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from cell import BIN, cell_pb2, detail_of, eventually, grpc, job_pb2
+from cell import BIN, cell_pb2, detail_of, eventually, grpc, job_pb2, machine_pb2
 from live import MILL, SQUARE, Live, LiveTestCase, new_id
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
 from rmlcell.v1.machine_status_pb2 import HoldReason  # noqa: E402
@@ -226,7 +226,7 @@ class RunsTest(LiveTestCase):
         self.live.acquire(ttl={"seconds": 60})
         refused("CELL-E9003", "DECISION_ABANDON", reason="")
         refused("CELL-E9003", "DECISION_UNSPECIFIED")
-        refused("CELL-E9014", "DECISION_RESUME_AT_STEP")
+        refused("CELL-E9003", "DECISION_RESUME_AT_STEP")  # no preview
         request_id = new_id()
         again = decide("DECISION_RESTART", request_id=request_id)
         self.live.ask("ReleaseControl")
@@ -243,6 +243,98 @@ class RunsTest(LiveTestCase):
         self.live.wait("IDLE")
         self.assertEqual(self.state(again), "INTERRUPTED")
         refused("CELL-E9420", "DECISION_ABANDON", again)
+
+    # LIVE-5.10, LIVE-6.01: a new job goes on where the old one was cut off, with the program that the old one brought; the old one
+    # stays as it was.
+    def test_a_run_that_was_cut_off_goes_on_at_a_step(self):
+        self.live.enable()
+        self.live.acquire()
+        self.live.ask("SetFactor", factor=10.0)
+        self.live.ask("ReleaseControl")
+        name = self.submit(SQUARE)
+        eventually(lambda: self.live.status().run.place.step >= 8)
+        time.sleep(1.2)  # no verdict: a mark is there by then
+        os.kill(self.live.host(), signal.SIGKILL)
+        self.becomes(name, "INTERRUPTED")
+        status = self.live.wait("INSPECT")
+        self.assertEqual(status.cut_off_job, name)
+        old = self.job(name)
+
+        def rmlcell(*words):
+            done = subprocess.run([BIN / "rmlcell", *words, "--server", self.cell.address], capture_output=True, text=True, timeout=60)
+            return done.returncode, done.stdout + done.stderr
+        self.assertIn(f"{name} was cut off at ", rmlcell("machine", "status", "mill-1")[1])
+        code, told = rmlcell("machine", "start-at", "mill-1", "--preview")
+        self.assertEqual(code, 0, told)
+        self.assertIn("approach", told)
+        code, told = rmlcell("machine", "start-at", "mill-1")
+        self.assertEqual(code, 1)
+        self.assertIn("--seen ", told)
+        self.assertIn("inspected", told)
+        self.assertEqual(MachineState.Name(self.live.status().state), "MACHINE_STATE_INSPECT")
+        code, told = rmlcell("machine", "start-at", "mill-1", "--seen", "inspected,tool,clamps,origin-valid", "--reason", "all is well")
+        self.assertEqual(code, 0, told)
+        new = told.strip().splitlines()[-1].split()[0]
+        self.assertIn(f"{new} goes on with {name}", told)
+        self.live.acquire(take_over=True, reason="a test")
+        self.live.ask("SetFactor", factor=100.0)
+        self.live.ask("ReleaseControl")
+        self.assertEqual(self.becomes(new, "SUCCEEDED", "FAILED"), "SUCCEEDED")
+        job = self.job(new)
+        self.assertEqual((job.continues, job.kind), (name, job_pb2.JOB_KIND_RUN))
+        self.assertEqual(self.job(name), old)
+        begun = [one.run_begun for one in self.events(new) if one.HasField("run_begun")]
+        self.assertEqual([one.job for one in begun], [new])
+
+    # LIVE-5.10, LIVE-2.05: a job whose begin was refused has ended, and is never begun from its top by anybody.
+    def test_a_refused_decision_begins_nothing(self):
+        self.enable()
+        name = self.submit(SQUARE)
+        eventually(lambda: self.live.status().run.place.step >= 8)
+        os.kill(self.live.host(), signal.SIGKILL)
+        self.becomes(name, "INTERRUPTED")
+        self.live.wait("INSPECT")
+        self.live.acquire(ttl={"seconds": 60})
+        request = job_pb2.DecideInterruptedRequest(
+            name=name, control_token=self.live.token, request_id=new_id(), decision="DECISION_RESUME_AT_STEP", reason="why not",
+            preview_token="none")
+        for _ in range(2):  # asked again: the same answer
+            with self.assertRaises(grpc.RpcError) as caught:
+                self.cell.jobs().DecideInterrupted(request)
+            self.assertEqual(detail_of(caught.exception).code, "CELL-E9428", detail_of(caught.exception))
+        listed = self.cell.jobs().ListJobs(job_pb2.ListJobsRequest()).jobs
+        self.assertEqual(sorted(job_pb2.Job.State.Name(one.state) for one in listed), ["STATE_FAILED", "STATE_INTERRUPTED"])
+        self.assertEqual(MachineState.Name(self.live.status().state), "MACHINE_STATE_INSPECT")
+
+    # LIVE-5.04, LIVE-9.13: jobs that a person starts, and jobs that their machine is armed for.
+    def test_who_starts_a_job(self):
+        self.enable()
+        self.live.ask("DisableMachine")
+
+        def lives_with(start):
+            machine = self.cell.machines().GetMachine(machine_pb2.GetMachineRequest(name=MILL))
+            machine.options.start = machine_pb2.MachineOptions.Start.Value(start)
+            machine.options.enabled = True
+            self.cell.machines().UpdateMachine(machine_pb2.UpdateMachineRequest(machine=machine, update_mask={"paths": ["options"]}))
+            eventually(lambda: self.live.status().host)
+            self.live.wait("IDLE")
+            self.live.acquire(ttl={"seconds": 60})
+            self.live.ask("SetFactor", factor=100.0)
+
+        lives_with("START_PERSON")
+        name = self.submit()
+        self.assertIn("CELL-E9423", [one.code for one in self.live.status().start_blockers])
+        self.assertEqual(self.live.ask("StartMachine", job=name).run.job, name)
+        self.becomes(name, "SUCCEEDED")
+        self.live.ask("DisableMachine")
+        lives_with("START_ARMED")
+        name = self.submit()
+        self.refused("CELL-E9406", "StartMachine", job=name)
+        self.assertEqual(self.state(name), "QUEUED")
+        seen = ["CONFIRMATION_TOOL", "CONFIRMATION_ORIGIN_VALID", "CONFIRMATION_CLAMPS", "CONFIRMATION_COVER"]
+        armed = self.live.ask("ArmMachine", job=name, confirmations=seen)
+        self.assertTrue(armed.arm_token)
+        self.becomes(name, "SUCCEEDED")
 
     # LIVE-3.31, server killed: the job stays RUNNING and held, and goes on when a person resumes it.
     def test_a_server_that_is_killed_holds_its_job(self):
@@ -320,6 +412,8 @@ class RunsTest(LiveTestCase):
                 state = MachineState.Name(status.state)[len("MACHINE_STATE_"):]
                 if state == "INSPECT":
                     self.confirm()
+                elif state == "OFF":  # too many of its hosts have died within a minute
+                    self.enable()
                 elif state == "HELD" and status.run.job:
                     self.order("ResumeJob", status.run.job)
                 elif state == "IDLE" and all(self.state(one) not in ("QUEUED", "RUNNING") for one in names):

@@ -43,6 +43,14 @@ class ForwardingStore : public storage::Store {
                        const storage::MachineWrite& write) override {
     return store_.AppendMachine(lease, write);
   }
+  Result<std::int64_t> AddTeachRecord(const storage::TeachRecord& record) override {
+    return store_.AddTeachRecord(record);
+  }
+  Result<std::vector<storage::TeachRecord>> ListTeachRecords(std::string_view machine, int program,
+                                                             std::int64_t before,
+                                                             int limit) override {
+    return store_.ListTeachRecords(machine, program, before, limit);
+  }
   Result<std::optional<storage::MachineMark>> GetMachineMark(std::string_view machine) override {
     return store_.GetMachineMark(machine);
   }

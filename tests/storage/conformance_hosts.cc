@@ -221,5 +221,75 @@ TEST_P(StoreConformance, ADeletedMachineHasNoHost) {
   EXPECT_GT(Must(store().TakeMachine(Claim("a"))).fence, lease.fence);
 }
 
+// LIVE-7.09: what was taught, newest first, counted within the machine; it goes with the machine.
+TEST_P(StoreConformance, WhatWasTaughtIsKept) {
+  PutMachine("m");
+  PutMachine("n");
+  const auto add = [&](const std::string& machine, int program, const std::string& entry) {
+    return Must(store().AddTeachRecord({.machine = machine, .program = program, .entry = entry}));
+  };
+  EXPECT_EQ(add("m", 12, "a"), 1);
+  EXPECT_EQ(add("m", 13, std::string("b\0c", 3)), 2);
+  EXPECT_EQ(add("n", 12, "d"), 1);
+  EXPECT_EQ(add("m", 12, "e"), 3);
+  const auto listed = [&](int program, std::int64_t before, int limit) {
+    std::vector<std::string> entries;
+    for (const TeachRecord& one : Must(other().ListTeachRecords("m", program, before, limit)))
+      entries.push_back(std::to_string(one.number) + one.entry);
+    return entries;
+  };
+  EXPECT_THAT(listed(0, 0, 10), ElementsAre("3e", std::string("2b\0c", 4), "1a"));
+  EXPECT_THAT(listed(12, 0, 10), ElementsAre("3e", "1a"));
+  EXPECT_THAT(listed(12, 3, 10), ElementsAre("1a"));
+  EXPECT_THAT(listed(0, 0, 1), ElementsAre("3e"));
+  EXPECT_THAT(listed(0, 0, 0), IsEmpty());
+  EXPECT_EQ(CodeOf(store().AddTeachRecord({.machine = "none"})), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(store().ListTeachRecords("none", 0, 0, 1)), ErrorCode::kCellUnknownMachine);
+  ASSERT_TRUE(store().DeleteMachine("m", kAnyRevision));
+  PutMachine("m");
+  EXPECT_THAT(listed(0, 0, 10), IsEmpty());
+}
+
+// How a machine lives is part of its record.
+TEST_P(StoreConformance, AMachineHasOptions) {
+  MachineRecord machine{.id = "m", .family = "optimo", .options = std::string("a\0b", 3)};
+  const MachineRecord put = Must(store().PutMachine(machine, 0));
+  EXPECT_EQ(Must(other().GetMachine("m")).options, machine.options);
+  machine.options.clear();
+  Must(store().PutMachine(machine, put.revision));
+  EXPECT_EQ(Must(other().GetMachine("m")).options, "");
+  EXPECT_EQ(Must(other().ListMachines()).front().options, "");
+}
+
+// LIVE-5.04, LIVE-5.10: a job that a person begins is leased by its number, though it is held and
+// others stand before it; of a machine that runs none.
+TEST_P(StoreConformance, OneJobIsLeasedByItsNumber) {
+  PutMachine("m");
+  const auto submit = [&](bool held) {
+    return Must(store().SubmitAndWait({.machine = "m", .kind = "RUN", .held = held})).job.id;
+  };
+  const std::int64_t held = submit(true);
+  const auto lease = [&](std::int64_t job) {
+    return Must(store().AcquireJobs(
+        {.worker = "w", .kinds = {"RUN"}, .job = job, .duration = seconds(60)}));
+  };
+  const auto leased = lease(held);
+  ASSERT_EQ(leased.size(), 1U);
+  EXPECT_EQ(leased[0].job.id, held);
+  const JobRecord running = Must(other().GetJob(held));
+  EXPECT_EQ(running.state, JobState::kRunning);
+  EXPECT_FALSE(running.held);
+  const std::int64_t first = submit(false);
+  const std::int64_t later = submit(false);
+  EXPECT_THAT(lease(later), IsEmpty());  // the machine is busy
+  EXPECT_THAT(lease(held), IsEmpty());   // it does not wait
+  Must(store().Finish(leased[0].lease, {.outcome = {.state = JobState::kSucceeded}}));
+  EXPECT_EQ(lease(later).size(), 1U);
+  EXPECT_EQ(Must(other().GetJob(first)).state, JobState::kQueued);
+  EXPECT_EQ(CodeOf(store().AcquireJobs(
+                {.worker = "w", .kinds = {"RUN"}, .job = 4711, .duration = seconds(60)})),
+            ErrorCode::kCellNotFound);
+}
+
 }  // namespace
 }  // namespace rmlcell::storage

@@ -75,7 +75,7 @@ MAY_INCLUDE = {
     "server/jobs": ["engine/core", "engine/machine", "engine/families", MATERIAL, "proto", "proto/bridge", "server/base",
                     "server/events", "server/records", "storage", "storage/jobs"],
     # How machines stand.
-    "server/machines": ["engine/core", "proto", "proto/bridge", "server/base", "server/events", "server/records", "storage"],
+    "server/machines": ["engine/core", "engine/families", "engine/machine", "proto", "proto/bridge", "server/base", "server/events", "server/records", "storage"],
     # The host of a machine that lives: a process of its own, without the store.
     "server/host": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "proto/recording", "server/base"],
     # RUN jobs, between the queue and the host of their machine.
@@ -147,10 +147,11 @@ PUBLIC = {
     "server/auth": ["caller.h", "socket_users.h"],
     "server/events": ["event_feed.h"],
     "server/jobs": ["dispatcher.h", "assignment.h", "followed.h", "job_book.h", "job_filter.h", "running_heights.h", "running_toolpath.h", "worker_processes.h"],
-    "server/records": ["file_family.h", "job_messages.h", "known_machines.h", "machine_messages.h", "program_place.h", "toolpath_levels.h", "update_mask.h"],
+    "server/records": ["file_family.h", "job_messages.h", "known_machines.h", "machine_messages.h", "machine_options.h", "program_place.h", "toolpath_levels.h", "update_mask.h"],
     "server/host": ["host_process.h"],
     "server/runs": ["run_products.h", "run_queue.h"],
-    "server/machines": ["host_entries.h", "host_processes.h", "hosts.h", "machine_statuses.h", "recordings.h"],
+    "server/machines": ["host_entries.h", "host_processes.h", "hosts.h", "machine_statuses.h", "recordings.h",
+                        "teach_book.h"],
     "server/programs": ["content_upload.h", "language_tools.h", "memory_tools.h", "program_book.h", "program_result.h", "program_views.h",
                         "text_tools.h"],
     "server/projects": ["project_archive.h", "project_book.h", "project_transfer.h"],

@@ -403,6 +403,7 @@ machine::RunState Control::Snapshot() const {
   state.zeroed = s_.actuators.zeroed;
   state.door_open = actuators_.door_open();
   state.approaching = s_.entry.arrival.has_value();
+  state.approached = s_.entry.approached;
   if (now().phase == RunPhase::kHalted) state.halted_by = s_.halts.halted_by;
   return state;
 }

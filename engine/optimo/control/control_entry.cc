@@ -236,6 +236,7 @@ void Control::ArriveAtEntry() {
   carry(PassageEffect::Kind::kSchedule, static_cast<std::size_t>(arrival.outputs.schedule), 0.0);
   s_.actuators.gas_refused = arrival.gas_refused;
   const SimTime lasted = now().now - arrival.begun;
+  s_.entry.approached = lasted;
   s_.works.tasks = arrival.works;
   works_.Shift(lasted);
   for (ProgramContext& context : s_.counter.programs) {

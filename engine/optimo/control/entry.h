@@ -51,6 +51,7 @@ struct EntryState {
   };
   std::optional<Arrival> arrival{};
   std::deque<ApproachLeg> legs{};  // to come
+  SimTime approached{0};           // how long the way took
 };
 
 }  // namespace rmlcell::optimo

@@ -187,6 +187,7 @@ const std::map<int, std::string_view> kNumbersOfTheCell = {
     {9308, "CellWaitsForever"},
     {9309, "CellVersionMismatch"},
     {9310, "CellJoinRefused"},
+    {9406, "CellNotArmed"},
     {9601, "CellGouge"},
     {9602, "CellBelowBlock"},
     {9603, "CellBlockUntouched"},

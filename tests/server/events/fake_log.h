@@ -110,6 +110,11 @@ class FakeLog final : public storage::Store {
   Status AppendMachine(const storage::MachineLease&, const storage::MachineWrite&) override {
     return No();
   }
+  Result<std::int64_t> AddTeachRecord(const storage::TeachRecord&) override { return No(); }
+  Result<std::vector<storage::TeachRecord>> ListTeachRecords(std::string_view, int, std::int64_t,
+                                                             int) override {
+    return No();
+  }
   Result<std::optional<storage::MachineMark>> GetMachineMark(std::string_view) override {
     return No();
   }

@@ -32,10 +32,13 @@ class HostMachineTest : public testing::Test {
                                    .fence = 7,
                                    .family = families::FindFamily("rml1"),
                                    .profile = "srm-20",
+                                   .options = options_,
                                    .memory = std::move(memory),
                                    .state = std::move(state),
                                    .cut_off = cut_off,
-                                   .open_run = std::move(open_run)},
+                                   .open_run = std::move(open_run),
+                                   .inspect_job = inspect_job_,
+                                   .cut_off_base = cut_off_base_},
                                   now_, [this] { return "token " + std::to_string(++tokens_); });
     ASSERT_TRUE(made) << made.error().detail;
     host_ = *std::move(made);
@@ -124,6 +127,11 @@ class HostMachineTest : public testing::Test {
   int tokens_ = 0;
   std::int64_t number_ = 0;
   std::int64_t sequence_ = 0;
+
+  // Of the next host that is made.
+  v1::MachineOptions options_;
+  std::string inspect_job_;
+  std::optional<v1::RunBase> cut_off_base_;
 };
 
 }  // namespace rmlcell::server

@@ -23,13 +23,13 @@ class StartAtTest : public HostMachineTest {
     order.set_number(++number_);
     order.mutable_preview_start()->set_program(program);
     order.mutable_preview_start()->mutable_step()->set_step(step);
-    auto task = host_->PreparePreview(order.preview_start(), now_);
+    auto task = host_->PreparePreview(order, now_);
     if (!task) {
       v1::HostOrderAnswer refused;
       refused.mutable_refusal()->set_code(CodeText(task.error().code));
       return refused;
     }
-    Result<machine::StartPreview> made = task->run({});
+    Result<machine::StartPreview> made = task->run(task->start, {});
     return host_->Previewed(order, *std::move(task), std::move(made), now_);
   }
   v1::HostOrder StartAt(const std::string& token, bool halt = false) {

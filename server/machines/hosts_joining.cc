@@ -1,0 +1,189 @@
+// A host gets its machine: by a lease, and with what it must know of it.
+#include <google/protobuf/util/time_util.h>
+#include <signal.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <utility>
+
+#include "engine/core/number_text.h"
+#include "proto/bridge/findings.h"
+#include "rmlcell/v1/cell.pb.h"
+#include "server/base/names.h"
+#include "server/base/secret.h"
+#include "server/machines/host_entries.h"
+#include "server/machines/host_words.h"
+#include "server/machines/hosted.h"
+#include "server/records/job_messages.h"
+#include "server/records/machine_options.h"
+
+namespace rmlcell::server {
+namespace {
+
+using google::protobuf::util::TimeUtil;
+
+constexpr int kProtocol = 1;
+constexpr std::chrono::seconds kObserved{5};  // beyond the lease: its holder is gone (PG-5.09)
+
+// Whether the process that this host is, on this computer, is gone. LIVE-3.02
+bool IsGone(const std::string& host) {
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0) return false;
+  const std::string here = std::string(name.data()) + "/";
+  if (!host.starts_with(here)) return false;
+  const std::string_view rest = std::string_view(host).substr(here.size());
+  const auto process = ParseInteger(rest.substr(0, rest.find('/')));
+  return process && *process > 1 && ::kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH;
+}
+
+}  // namespace
+
+Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& hello) {
+  if (!KnowsSecret(hello.join_token(), needs_.join_token))
+    return Error{ErrorCode::kCellJoinRefused, "of a host", {}};
+  if (hello.protocol() != kProtocol)
+    return Error{ErrorCode::kCellVersionMismatch,
+                 "the host speaks protocol " + std::to_string(hello.protocol()) + ", this server " +
+                     std::to_string(kProtocol),
+                 {}};
+  const Result<std::string> machine = ParseMachineName(hello.machine());
+  if (!machine) return machine.error();
+  const std::lock_guard joining(joining_);
+  const Result<Taken> taken = Take(hello, *machine);
+  if (!taken) return taken.error();
+  if (const HostPointer before = Find(*machine)) Retire(before);
+  auto host = std::make_shared<Host>();
+  host->id = *machine;
+  host->link = link;
+  host->lease = taken->lease;
+  host->heard = needs_.clock();
+  if (const Status welcome = Welcome(host, hello, taken->from); !welcome) return welcome.error();
+  std::shared_ptr<HostLink> before;
+  {
+    const std::lock_guard lock(mutex_);
+    if (closed_) return Error{ErrorCode::kCellUnavailable, "the server stops", {}};
+    HostPointer& place = hosts_[*machine];
+    if (place != nullptr) before = place->link;
+    place = host;
+    off_.erase(*machine);
+  }
+  if (before != nullptr && before != link) before->Close(NotLive("the host has another line"));
+  SendMemory(host);
+  spdlog::info("{} has the host {}, fence {}", hello.machine(), hello.host(), host->lease.fence);
+  Changed();
+  RunOver(host->id);
+  return {};
+}
+
+// Of a holder that is gone: a process of this computer that is no more, or one that has not renewed
+// its lease for as long as it holds.
+Result<Hosts::Taken> Hosts::Take(const v1::HostHello& hello, const std::string& machine) {
+  storage::MachineClaim claim{
+      .machine = machine, .host = hello.host(), .server = needs_.server, .duration = kLease};
+  Result<storage::MachineLease> lease = needs_.store.TakeMachine(claim);
+  if (lease || lease.error().code != ErrorCode::kCellMachineTaken) {
+    seen_.erase(machine);
+    if (!lease) return lease.error();
+    return Taken{.lease = *std::move(lease)};
+  }
+  const auto held = needs_.store.MachineLeases();
+  if (!held) return held.error();
+  for (const storage::MachineLease& other : *held) {
+    if (other.machine != machine) continue;
+    const Instant now = needs_.clock();
+    Seen& seen = seen_[machine];
+    if (seen.lease != other) seen = {.lease = other, .since = now};
+    claim.seen = other;
+    claim.by_hand = !other.pinned && IsGone(other.host);
+    if (!claim.by_hand && now - seen.since < other.duration + kObserved) return lease.error();
+  }
+  lease = needs_.store.TakeMachine(claim);
+  if (!lease) return lease.error();
+  seen_.erase(machine);
+  return Taken{.lease = *std::move(lease), .from = claim.seen};
+}
+
+// Its line is nobody's any more: who waits for an answer is told so, and what it was storing is
+// stored, so that the next line knows what is.
+void Hosts::Retire(const HostPointer& host) {
+  std::map<std::int64_t, Host::Pending> pending;
+  {
+    std::unique_lock lock(host->mutex);
+    host->gone = true;
+    pending.swap(host->pending);
+    // Not for ever: the thread that is to store may be the one that waits here.
+    host->rests.wait_for(lock, kAnswerPatience, [&host] { return !host->storing; });
+  }
+  for (auto& [number, one] : pending) one.done(NotLive("its host is not heard of any more"));
+}
+
+Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello,
+                      const std::optional<storage::MachineLease>& from) {
+  const Result<storage::MachineRecord> machine = needs_.store.GetMachine(host->id);
+  if (!machine) return machine.error();
+  const auto mark = needs_.store.GetMachineMark(host->id);
+  if (!mark) return mark.error();
+  // All up to the mark is stored: each write ends with one.
+  if (*mark && (*mark)->fence == host->lease.fence) host->stored = (*mark)->sequence;
+  // A host that comes back knows better.
+  if (hello.fence() != host->lease.fence) {
+    if (const Status told = TellRecovery(*host, from, *mark); !told) return told.error();
+    host->fresh = true;
+  }
+  v1::HostResponse message;
+  v1::HostWelcome& welcome = *message.mutable_welcome();
+  welcome.set_fence(host->lease.fence);
+  *welcome.mutable_lease() = TimeUtil::SecondsToDuration(kLease.count());
+  welcome.set_family(machine->family);
+  welcome.set_profile(machine->profile);
+  for (const auto& [name, value] : machine->parameters)
+    (*welcome.mutable_parameters())[name] = value;
+  if (auto options = OptionsOf(*machine)) *welcome.mutable_options() = *std::move(options);
+  if (*mark) {
+    v1::MachineMark note;
+    static_cast<void>(note.ParseFromString((*mark)->note));
+    *welcome.mutable_mark() = std::move(note);
+    welcome.mutable_mark()->set_fence((*mark)->fence);
+    welcome.mutable_mark()->set_sequence((*mark)->sequence);
+    welcome.mutable_mark()->set_state((*mark)->state);
+    welcome.mutable_mark()->set_clean((*mark)->clean);
+  }
+  host->link->Send(std::move(message));
+  return {};
+}
+
+// That a host is gone; from when to when status was shown that counts no more, and where the
+// program was. LIVE-3.30, 5.20
+Status Hosts::TellRecovery(const Host& host, const std::optional<storage::MachineLease>& from,
+                           const std::optional<storage::MachineMark>& mark) {
+  storage::MachineWrite write;
+  v1::MachineMark note;
+  if (mark) static_cast<void>(note.ParseFromString(mark->note));
+  if (from) {
+    v1::MachineEvent lost;
+    lost.mutable_host_lost()->set_host(from->host);
+    lost.mutable_host_lost()->set_fence(from->fence);
+    lost.set_fence(host.lease.fence);
+    lost.set_virtual_time_ns(note.virtual_time_ns());
+    write.events.push_back(ToRecord(lost));
+  }
+  if (!mark || mark->clean)
+    return write.events.empty() ? Status() : needs_.store.AppendMachine(host.lease, write);
+  v1::MachineEvent event;
+  v1::Recovered& recovered = *event.mutable_recovered();
+  recovered.set_mark_virtual_time_ns(note.virtual_time_ns());
+  recovered.set_mark_fence(mark->fence);
+  if (note.has_place()) *recovered.mutable_place() = note.place();
+  if (const HostPointer before = Find(host.id)) {
+    const std::lock_guard lock(before->mutex);
+    if (before->status) recovered.set_seen_until_ns(before->status->virtual_time_ns());
+  }
+  event.set_fence(host.lease.fence);
+  event.set_virtual_time_ns(note.virtual_time_ns());
+  write.events.push_back(ToRecord(event));
+  return needs_.store.AppendMachine(host.lease, write);
+}
+
+}  // namespace rmlcell::server

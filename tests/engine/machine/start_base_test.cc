@@ -1,0 +1,209 @@
+// A start at a step of a run that was cut off: with what it began with and what came meanwhile
+// (live.md 6.01), and the gates (2.11).
+#include "tests/engine/machine/start_bed.h"
+
+namespace rmlcell::machine {
+namespace {
+
+using testing::HasSubstr;
+
+class StartBaseTest : public StartTest {
+ protected:
+  // As a host finds it again: what the machine keeps, standing.
+  std::unique_ptr<Machine> Found() {
+    auto found = Machine::Make(family_, parameters(), machine->memory(), machine->Save(), nobody_);
+    EXPECT_TRUE(found);
+    return *std::move(found);
+  }
+  // When the step began last, in the time of the run.
+  SimTime Begun(const std::string& step) const {
+    SimTime begun{-1};
+    for (const std::string& line : heard.told) {
+      if (line.find(" " + step + " step") != std::string::npos)
+        begun = SimTime(std::stoll(line.substr(0, line.find(' '))));
+    }
+    return begun;
+  }
+  static std::string There(const StartPreview& preview, std::string_view item) {
+    const auto found = std::ranges::find(preview.there, item, &StateItem::name);
+    return found == preview.there.end() ? "none" : found->value;
+  }
+  static ChangeInput Logical(int index, bool on) {
+    return {.index = index, .value = on ? 1.0 : 0.0};
+  }
+  StartAtStep Again(int step) const {
+    StartAtStep start = At1(step);
+    start.base = machine->base();
+    return start;
+  }
+
+  RunObserver nobody_;
+};
+
+// LIVE-6.01: a pulse that is over, a variable that was counted on, a HOLD, a breakpoint at which it
+// stood for long: the run comes to the step when it did, with the values that it had.
+TEST_F(StartBaseTest, HasTheValuesThatTheRunHad) {
+  Load({"VI[1]=VI[1]+1\nWAIT IL[20]\nVI[2]=VI[1]\nDELAY 10\nVI[3]=7\nDELAY 5\n"});
+  Good(SetBreakpoints{.breakpoints = {{.at = {1, 1}}}});
+  Start();
+  GoOn(At(100.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  const SimTime stood = At(100.0) - Begun("1/1");
+  Good(ResumeRun{});
+  GoOn(At(103.0));
+  Good(Logical(20, true));
+  GoOn(At(104.0));
+  Good(Logical(20, false));
+  GoOn(At(106.0));
+  Good(StopRun{});
+  GoOn(At(126.0));
+  Good(ResumeRun{});
+  GoOn(At(130.0));
+  ASSERT_TRUE(machine->base());
+  const std::vector<InputChange>& inputs = machine->base()->inputs;
+  ASSERT_EQ(inputs.size(), 4U);
+  EXPECT_EQ(inputs[0].kind, InputKind::kLogical);
+  EXPECT_EQ(inputs[1].at - inputs[0].at, At(1.0));
+  EXPECT_EQ(inputs[2].kind, InputKind::kStop);
+  EXPECT_EQ(inputs[3].kind, InputKind::kStart);
+  EXPECT_EQ(inputs[3].at - inputs[2].at, At(20.0));
+
+  const auto found = Found();
+  const Result<StartPreview> preview = found->Preview(Again(5));
+  ASSERT_TRUE(preview) << preview.error().detail;
+  ASSERT_TRUE(preview->may_begin()) << preview->refusals[0].detail;
+  EXPECT_EQ(There(*preview, "VI[1]"), "1");
+  EXPECT_EQ(There(*preview, "VI[2]"), "1");
+  GoOn(At(200.0));
+  ASSERT_GT(Begun("1/5"), At(126.0));
+  // Its breakpoint is behind the step: a step of nothing but a calculation.
+  const SimTime late = Begun("1/5") - stood - preview->run_time;
+  EXPECT_LE(late, At(0.0));
+  EXPECT_GT(late, At(-0.1));
+
+  StartAtStep as_it_stands = At1(5);
+  const Result<StartPreview> other = found->Preview(as_it_stands);
+  ASSERT_TRUE(other);
+  ASSERT_FALSE(other->may_begin());
+  EXPECT_THAT(other->refusals[0].detail, HasSubstr("waits for what does not come"));
+}
+
+// LIVE-6.01: the default occurrence is the one that the run was in.
+TEST_F(StartBaseTest, KnowsHowOftenItHadComeThere) {
+  Load({"10 VI[3]=VI[3]+1\nDELAY 1\nIF VI[3] < 100 THEN 10\nDELAY 3\n"});
+  Good(SetBreakpoints{.breakpoints = {{.at = {1, 3}, .from_pass = 7}}});
+  Start();
+  GoOn(At(60.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  Good(SetBreakpoints{});
+  Good(ResumeRun{});
+  GoOn(At(65.0));
+  Good(HoldRun{});
+  GoOn(At(75.0));
+  Good(ResumeRun{});
+  GoOn(At(90.4));
+  const auto passes = std::ranges::count_if(heard.told, [](const std::string& line) {
+    return line.find(" 1/2 step") != std::string::npos;
+  });
+  ASSERT_GT(passes, 15);
+  const StartAtStep start = Again(2);
+  const auto in = Found()->OccurrenceAt(start, machine->base_time());
+  ASSERT_TRUE(in) << in.error().detail;
+  EXPECT_EQ(*in, static_cast<std::uint64_t>(passes));
+}
+
+// LIVE-6.01: cut off once more behind its entry, it still knows the time of the whole run, in which
+// the way there takes none.
+TEST_F(StartBaseTest, ARunThatWasEnteredCanBeCutOffAgain) {
+  const char* program =
+      "COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (521.02, 2201.2, -380., 0., 0.)\nDELAY 10\n"
+      "VI[1]=VI[1]+1\nDELAY 20\n";
+  Load({program});
+  Start();
+  GoOn(At(5.0));
+  const StartAtStep start = Again(5);
+  machine = Found();
+  const Result<StartPreview> preview = machine->Preview(start);
+  ASSERT_TRUE(preview && preview->may_begin());
+  Good(start);
+  while (machine->status().run.approaching) GoOn(machine->time() + At(0.01));
+  const SimTime approached = machine->status().run.approached;
+  EXPECT_GT(approached, At(1.0));
+  const SimTime begun = machine->status().open->begun;
+  GoOn(begun + preview->run_time + approached + At(3.0));
+  EXPECT_EQ(machine->base_time(), preview->run_time + At(3.0));
+  Good(Logical(7, true));
+  ASSERT_EQ(machine->base()->inputs.size(), 1U);
+  EXPECT_EQ(machine->base()->inputs[0].at, preview->run_time + At(3.0));
+  EXPECT_EQ(machine->base()->machine_state, start.base->machine_state);
+}
+
+// A run of nobody's program has none, and one to which more comes than is kept has none any more.
+TEST_F(StartBaseTest, KeepsAThousandInputs) {
+  Load({"DELAY 100\n"});
+  EXPECT_FALSE(machine->base());
+  Start();
+  for (int i = 0; i < 1'000; ++i) Good(Logical(3, i % 2 == 0));
+  ASSERT_TRUE(machine->base());
+  EXPECT_EQ(machine->base()->inputs.size(), 1'000U);
+  Good(Logical(3, true));
+  EXPECT_FALSE(machine->base());
+  Good(AbortRun{});
+  GoOn(At(1.0));
+  Start();
+  EXPECT_TRUE(machine->base());
+}
+
+class GatesTest : public MachineTest {
+ protected:
+  explicit GatesTest(std::string_view family = "optimo") : MachineTest(family) {}
+};
+
+// LIVE-2.11: two inputs with a program each, in REMOTE alone.
+TEST_F(GatesTest, EachStartsItsProgram) {
+  Load({"VI[1]=1\n", "VI[2]=2\n", "DELAY 5\n"});
+  EXPECT_THAT(Refused(PressGate{.gate = 1}), HasSubstr("CELL-E9423"));
+  Good(SetGates{.programs = {2, 3}});
+  EXPECT_THAT(Refused(PressGate{.gate = 3}), HasSubstr("CELL-E9003"));
+  EXPECT_THAT(Refused(SetGates{.programs = {100, 0}}), HasSubstr("CELL-E9003"));
+  Good(PressGate{.gate = 1});
+  GoOn(At(1.0));
+  const RunOver first = Over();
+  EXPECT_EQ(first.run.program, 2);
+  EXPECT_EQ(first.run.source, StartSource::kGate1);
+  EXPECT_EQ(Value("VI[2]"), "2");
+  Good(PressGate{.gate = 2});
+  EXPECT_EQ(machine->status().open->source, StartSource::kGate2);
+  EXPECT_THAT(Refused(PressGate{.gate = 1}), HasSubstr("CELL-E9421"));
+  GoOn(At(10.0));
+  for (const Mode mode : {Mode::kManual, Mode::kSingle, Mode::kCycle, Mode::kRepeat}) {
+    Good(ChangeMode{mode});
+    EXPECT_THAT(Refused(PressGate{.gate = 1}), HasSubstr("CELL-E9423"));
+  }
+}
+
+// LIVE-2.11: what they start outlives a host; a program that is not there is the control's error.
+TEST_F(GatesTest, AreKept) {
+  Load({"VI[1]=1\n"});
+  Good(SetGates{.programs = {0, 44}});
+  Load({"VI[1]=1\n"}, machine->Save());
+  EXPECT_EQ(machine->gates(), (std::array<int, kGates>{0, 44}));
+  EXPECT_THAT(Refused(PressGate{.gate = 1}), HasSubstr("CELL-E9423"));
+  EXPECT_THAT(Refused(PressGate{.gate = 2}), HasSubstr("OPT-E7102"));
+  Good(SwitchPower{false});
+  EXPECT_THAT(Refused(PressGate{.gate = 2}), HasSubstr("CELL-E9424"));
+}
+
+class NoGatesTest : public GatesTest {
+ protected:
+  NoGatesTest() : GatesTest("rml1") {}
+};
+
+TEST_F(NoGatesTest, OfAMill) {
+  Load({"PU0,0;"});
+  EXPECT_THAT(Refused(SetGates{}), HasSubstr("CELL-E9424"));
+  EXPECT_THAT(Refused(PressGate{.gate = 1}), HasSubstr("CELL-E9424"));
+}
+
+}  // namespace
+}  // namespace rmlcell::machine

@@ -1,0 +1,169 @@
+// Jobs that a person starts, or arms their machine for (live.md 5.04, devices.md 1.41).
+#include "server/host/arm_desk.h"
+
+#include "tests/server/host/host_machine_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class ArmTest : public HostMachineTest {
+ protected:
+  void MakeWith(v1::MachineOptions::Start start) {
+    options_.set_start(start);
+    Make();
+    host_->Begin({}, now_);
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
+  }
+  v1::HostOrder Arm(const std::string& job = "", int seconds = 0) {
+    v1::HostOrder order;
+    v1::ArmMachineRequest& arm = *order.mutable_arm();
+    arm.set_control_token(token_);
+    arm.set_request_id("arm " + std::to_string(++arms_));
+    arm.set_job(job);
+    for (const auto one : {v1::CONFIRMATION_TOOL, v1::CONFIRMATION_ORIGIN_VALID,
+                           v1::CONFIRMATION_CLAMPS, v1::CONFIRMATION_COVER})
+      arm.add_confirmations(one);
+    if (seconds > 0) arm.mutable_armed_for()->set_seconds(seconds);
+    return order;
+  }
+  static v1::HostOrder Job(const std::string& name = "jobs/17") {
+    v1::HostOrder order;
+    order.set_caller("anna");
+    v1::WorkerAssignment& assignment = *order.mutable_run_job();
+    assignment.mutable_job()->set_name(name);
+    assignment.set_main_program(5);
+    v1::AssignedProgram& program = *assignment.add_programs();
+    program.set_slot(5);
+    program.set_file_name("a.rml");
+    program.set_is_source(true);
+    program.set_content(kSquare);
+    return order;
+  }
+  v1::HostOrder ByPerson(const std::string& arm_token, const std::string& name = "jobs/17") {
+    v1::HostOrder order = Job(name);
+    order.mutable_by_person()->set_control_token(token_);
+    order.mutable_by_person()->set_request_id("start " + std::to_string(++arms_));
+    order.mutable_by_person()->set_arm_token(arm_token);
+    return order;
+  }
+  std::string Code(const v1::HostOrder& order) { return Do(order).refusal().code(); }
+  bool IsArmed() { return host_->StatusAt(now_).has_armed_until(); }
+  std::vector<std::string> Blockers() {
+    std::vector<std::string> codes;
+    const v1::MachineStatus status = host_->StatusAt(now_);
+    for (const v1::StartBlocker& one : status.start_blockers()) {
+      if (one.code() != "CELL-E9408") codes.push_back(one.code());
+    }
+    return codes;
+  }
+  int arms_ = 0;
+};
+
+// LIVE-5.04: where a person starts jobs, the queue does not.
+TEST_F(ArmTest, APersonStartsTheJob) {
+  MakeWith(v1::MachineOptions::START_PERSON);
+  EXPECT_THAT(Blockers(), ElementsAre("CELL-E9423"));
+  EXPECT_EQ(Code(Job()), "CELL-E9423");
+  EXPECT_EQ(Code(Arm()), "CELL-E9424");
+  v1::HostOrder stranger = ByPerson("");
+  stranger.mutable_by_person()->set_control_token("none");
+  EXPECT_EQ(Code(stranger), "CELL-E9420");
+  EXPECT_EQ(Do(ByPerson("")).status().run().job(), "jobs/17");
+}
+
+// LIVE-5.04, LIVE-9.13: armed for one job, it starts; then it is armed for none.
+TEST_F(ArmTest, TheQueueStartsWhatItIsArmedFor) {
+  MakeWith(v1::MachineOptions::START_ARMED);
+  EXPECT_THAT(Blockers(), ElementsAre("CELL-E9406"));
+  EXPECT_EQ(Code(Job()), "CELL-E9406");
+  v1::HostOrder careless = Arm("jobs/17");
+  careless.mutable_arm()->clear_confirmations();
+  EXPECT_THAT(Do(careless).refusal().message(), HasSubstr("CONFIRMATION_TOOL"));
+  ASSERT_NE(Do(Arm("jobs/17")).armed().arm_token(), "");
+  EXPECT_THAT(Blockers(), IsEmpty());
+  EXPECT_EQ(host_->StatusAt(now_).armed_by(), "anna");
+  EXPECT_EQ(host_->StatusAt(now_).armed_for(), "jobs/17");
+  EXPECT_EQ(Code(Job("jobs/18")), "CELL-E9406");
+  EXPECT_EQ(Do(Job()).status().run().job(), "jobs/17");
+  EXPECT_FALSE(IsArmed());
+}
+
+// LIVE-9.13: a person who starts it shows the token that it was armed with.
+TEST_F(ArmTest, APersonStartsWithTheTokenOfTheArming) {
+  MakeWith(v1::MachineOptions::START_ARMED);
+  const std::string token = Do(Arm()).armed().arm_token();
+  EXPECT_EQ(Code(ByPerson("none")), "CELL-E9406");
+  EXPECT_EQ(Do(ByPerson(token)).status().run().job(), "jobs/17");
+}
+
+// DEV-1.41: it ends by time, with control, with another program, and when somebody says so.
+TEST_F(ArmTest, ItEndsByItself) {
+  MakeWith(v1::MachineOptions::START_ARMED);
+  Do(Arm());
+  Pass(50s, 1s);
+  EXPECT_TRUE(IsArmed());
+  v1::HostOrder renew;
+  renew.mutable_renew_control()->set_control_token(token_);
+  Do(renew);
+  Pass(50s, 1s);
+  Do(renew);
+  Pass(19s, 1s);
+  EXPECT_TRUE(IsArmed());
+  Pass(2s, 1s);
+  EXPECT_FALSE(IsArmed());
+
+  Do(Arm("", 5));
+  Pass(5s, 1s);
+  EXPECT_FALSE(IsArmed());
+  EXPECT_EQ(Code(Arm("", 601)), "CELL-E9003");
+
+  Do(Arm());
+  v1::HostOrder release;
+  release.mutable_release_control()->set_control_token(token_);
+  Do(release);
+  Pass(1s);
+  EXPECT_FALSE(IsArmed());
+
+  Control();
+  Do(Arm());
+  v1::HostMemory memory;
+  memory.add_programs()->set_slot(6);
+  memory.mutable_programs(0)->set_content("PU0,0;");
+  host_->Change(memory, now_);
+  Pass(1s);
+  EXPECT_FALSE(IsArmed());
+
+  Do(Arm());
+  v1::HostOrder disarm;
+  disarm.mutable_disarm();
+  Do(disarm);
+  EXPECT_FALSE(IsArmed());
+  EXPECT_EQ(Code(Job()), "CELL-E9406");
+}
+
+// LIVE-3.14: late by more than the machine allows, a run is held; by less it goes on.
+TEST_F(ArmTest, ALateHostHoldsItsRun) {
+  MakeWith(v1::MachineOptions::START_QUEUE);
+  Do(Start("begin"));
+  Pass(5s, 50ms);
+  Pass(700ms, 700ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+  Pass(20s, 20s);
+  Pass(5s, 50ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_LATE);
+  options_.mutable_late_hold()->set_seconds(30);
+  MakeWith(v1::MachineOptions::START_QUEUE);
+  Do(Start("begin"));
+  Pass(5s, 50ms);
+  Pass(20s, 20s);
+  Pass(5s, 50ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,189 @@
+// A run that was cut off goes on at a step, as the run of another job (live.md 5.10, 6).
+#include <utility>
+
+#include "tests/server/host/host_machine_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::HasSubstr;
+
+class ContinueJobTest : public HostMachineTest {
+ protected:
+  static v1::WorkerAssignment Assignment(const std::string& job,
+                                         const std::string& text = kSquare) {
+    v1::WorkerAssignment assignment;
+    assignment.mutable_job()->set_name(job);
+    assignment.set_main_program(5);
+    v1::AssignedProgram& program = *assignment.add_programs();
+    program.set_slot(5);
+    program.set_file_name("square.rml");
+    program.set_is_source(true);
+    program.set_content(text);
+    return assignment;
+  }
+  // The job runs for a while; its host dies and another one takes the machine over.
+  void CutOff(std::chrono::milliseconds after, const std::string& text = kSquare) {
+    Make();
+    host_->Begin({}, now_);
+    v1::HostOrder order;
+    *order.mutable_run_job() = Assignment("jobs/17", text);
+    ASSERT_FALSE(Do(order).has_refusal());
+    Pass(after, 50ms);
+    Again();
+  }
+  void Again() {
+    v1::MachineMark mark;
+    for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true)) {
+      if (entry.has_mark()) mark = entry.mark();
+    }
+    ASSERT_FALSE(mark.clean());
+    inspect_job_ = mark.job();
+    cut_off_base_ = mark.has_base() ? std::optional(mark.base()) : std::nullopt;
+    std::optional<v1::MachineMark> open;
+    if (mark.has_run_time_ns()) open = mark;
+    Make(mark.state(), true, open);
+    host_->Begin({}, now_);
+    ASSERT_EQ(State(), v1::MACHINE_STATE_INSPECT);
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
+  }
+  v1::HostOrderAnswer Preview(int step, const std::string& text = kSquare) {
+    v1::HostOrder order;
+    order.set_number(++number_);
+    if (step > 0) order.mutable_preview_start()->mutable_step()->set_step(step);
+    order.mutable_preview_start();
+    *order.mutable_brought() = Assignment("", text).programs(0);
+    auto task = host_->PreparePreview(order, now_);
+    if (!task) {
+      v1::HostOrderAnswer refused;
+      refused.mutable_refusal()->set_message(task.error().detail);
+      return refused;
+    }
+    auto made = task->run(task->start, {});
+    return host_->Previewed(order, *std::move(task), std::move(made), now_);
+  }
+  v1::HostOrder Continue(const std::string& token, const std::string& continues = "jobs/17",
+                         const std::string& text = kSquare) {
+    v1::HostOrder order;
+    order.set_reason("the tool is whole");
+    v1::ContinueJob& job = *order.mutable_continue_job();
+    *job.mutable_assignment() = Assignment("jobs/18", text);
+    job.mutable_assignment()->mutable_job()->set_continues(continues);
+    job.mutable_start()->set_control_token(token_);
+    job.mutable_start()->set_request_id("continue " + token);
+    job.mutable_start()->set_preview_token(token);
+    job.mutable_start()->add_confirmations(v1::CONFIRMATION_TOOL);
+    job.mutable_start()->add_confirmations(v1::CONFIRMATION_CLAMPS);
+    job.mutable_start()->add_confirmations(v1::CONFIRMATION_ORIGIN_VALID);
+    return order;
+  }
+  void Until(v1::MachineState state) {
+    for (int i = 0; i < 6000 && State() != state; ++i) Pass(100ms, 50ms);
+    ASSERT_EQ(State(), state);
+  }
+};
+
+// LIVE-5.10, LIVE-6.09: a new job goes on where the old one was; it halts at its entry, and ends.
+TEST_F(ContinueJobTest, ANewJobGoesOnWhereTheOldOneWas) {
+  CutOff(45s);
+  EXPECT_EQ(host_->StatusAt(now_).cut_off_job(), "jobs/17");
+  const int cut_off_at = host_->StatusAt(now_).cut_off_at().step();
+  EXPECT_GT(cut_off_at, 7);
+  const v1::HostOrderAnswer preview = Preview(0);
+  ASSERT_TRUE(preview.has_preview()) << preview.refusal().message();
+  const std::string token = preview.preview().preview_token();
+  ASSERT_NE(token, "");
+  EXPECT_GT(preview.preview().run_time_ns(), 4'000'000'000);  // the way to that command
+  const v1::HostOrderAnswer begun = Do(Continue(token));
+  ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
+  EXPECT_EQ(begun.status().run().job(), "jobs/18");
+  EXPECT_EQ(begun.status().run().phase(), v1::RUN_PHASE_APPROACH);
+  Until(v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_ENTRY);
+  EXPECT_EQ(host_->StatusAt(now_).run().place().step(), cut_off_at - 1);  // the next to begin
+  Do(Resume());
+  Until(v1::MACHINE_STATE_IDLE);
+  bool over = false;
+  for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true)) {
+    if (!entry.has_run_over() || entry.run_over().job() != "jobs/18") continue;
+    over = true;
+    EXPECT_EQ(entry.run_over().outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  }
+  EXPECT_TRUE(over);
+}
+
+// LIVE-5.10, LIVE-2.05: what is refused moves nothing, and the machine waits on.
+TEST_F(ContinueJobTest, WhatIsRefusedLeavesTheDecisionOpen) {
+  CutOff(45s);
+  const std::string token = Preview(0).preview().preview_token();
+  EXPECT_EQ(Do(Continue("another")).refusal().code(), "CELL-E9428");
+  EXPECT_THAT(Do(Continue(token, "jobs/16")).refusal().message(), HasSubstr("jobs/16"));
+  EXPECT_EQ(Do(Continue(token + " ", "jobs/17", "PU0,0;")).refusal().code(), "CELL-E9428");
+  v1::HostOrder unseen = Continue(token);
+  unseen.mutable_continue_job()->mutable_start()->set_request_id("unseen");
+  unseen.mutable_continue_job()->mutable_start()->clear_confirmations();
+  EXPECT_THAT(Do(unseen).refusal().message(), HasSubstr("tool"));
+  v1::HostOrder stranger = Continue(token);
+  stranger.mutable_continue_job()->mutable_start()->set_request_id("stranger");
+  stranger.mutable_continue_job()->mutable_start()->set_control_token("none");
+  EXPECT_EQ(Do(stranger).refusal().code(), "CELL-E9420");
+  EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
+  EXPECT_EQ(host_->StatusAt(now_).cut_off_job(), "jobs/17");
+  // The direct way is for runs of nobody's job.
+  v1::HostOrder direct;
+  *direct.mutable_start_at_step() = Continue(token).continue_job().start();
+  direct.mutable_start_at_step()->add_confirmations(v1::CONFIRMATION_INSPECTED);
+  EXPECT_EQ(Do(direct).refusal().code(), "CELL-E9409");
+  v1::HostOrder at_last = Continue(token);
+  at_last.mutable_continue_job()->mutable_start()->set_request_id("at last");
+  EXPECT_FALSE(Do(at_last).has_refusal());
+}
+
+// LIVE-5.10: the base outlives a second host that died before anybody decided, and a continued run
+// that is cut off again has one.
+TEST_F(ContinueJobTest, CutOffAgainAndAgain) {
+  CutOff(45s);
+  Again();
+  EXPECT_EQ(host_->StatusAt(now_).cut_off_job(), "jobs/17");
+  const int at = host_->StatusAt(now_).cut_off_at().step();
+  v1::HostOrder order = Continue(Preview(0).preview().preview_token());
+  order.mutable_continue_job()->mutable_start()->set_halt_at_entry(false);
+  ASSERT_FALSE(Do(order).has_refusal());
+  for (int i = 0; i < 2000; ++i) {
+    if (host_->StatusAt(now_).run().place().step() > at) break;
+    Pass(100ms, 50ms);
+  }
+  Again();
+  EXPECT_EQ(host_->StatusAt(now_).cut_off_job(), "jobs/18");
+  EXPECT_GT(host_->StatusAt(now_).cut_off_at().step(), at);
+  const v1::HostOrderAnswer preview = Preview(0);
+  ASSERT_TRUE(preview.has_preview()) << preview.refusal().message();
+  EXPECT_NE(preview.preview().preview_token(), "");
+}
+
+// LIVE-6.08: a run of nobody's job goes on directly, when whoever starts it says that he has
+// looked.
+TEST_F(ContinueJobTest, ARunOfNobodysJobGoesOnDirectly) {
+  Make();
+  host_->Begin({}, now_);
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  Do(Start("begin"));
+  Pass(45s, 50ms);
+  Again();
+  EXPECT_EQ(host_->StatusAt(now_).cut_off_job(), "");
+  v1::HostOrder order;
+  *order.mutable_start_at_step() =
+      Continue(Preview(0).preview().preview_token()).continue_job().start();
+  EXPECT_EQ(Do(order).refusal().code(), "CELL-E9409");
+  order.mutable_start_at_step()->set_request_id("once more");
+  order.mutable_start_at_step()->add_confirmations(v1::CONFIRMATION_INSPECTED);
+  const v1::HostOrderAnswer begun = Do(order);
+  ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
+  Until(v1::MACHINE_STATE_HELD);
+  Do(Resume());
+  Until(v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(host_->StatusAt(now_).confirmations_due_size(), 0);
+}
+
+}  // namespace
+}  // namespace rmlcell::server
