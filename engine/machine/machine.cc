@@ -309,7 +309,7 @@ Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> h
   setup.mode = mode;
   setup.override_percent = OverrideOf(hand);
   if (!hand) setup.simul = simulation_;
-  setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
+  setup.budget = kLiveBudget;
   Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
   if (!run) return run.error();
   if (!hand) simulation_.reset();

@@ -35,7 +35,7 @@ RunSetup Machine::SetupTo(const StartAtStep& input) const {
   setup.override_percent = base.override_percent;
   setup.simul = ProgramStep{};
   setup.inputs = base.inputs;
-  setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
+  setup.budget = kLiveBudget;
   return setup;
 }
 

@@ -137,6 +137,7 @@ RunPhase MillRun::Advance(SimTime until) {
   }
   const std::size_t sent_max = s.sender.sent() + kBytesPerAdvance;
   const std::size_t ahead_max = s.scout.sent() + kBytesPerAdvance;
+  const std::uint64_t commands_max = s.commands_seen + kCommandsPerAdvance;
   const SimTime limit =
       setup_.budget.virtual_time > SimTime::zero() ? setup_.budget.virtual_time : kForever;
   while (s.phase != RunPhase::kFinished) {
@@ -166,7 +167,7 @@ RunPhase MillRun::Advance(SimTime until) {
       if (!PlanLeg(ahead_max)) return s.phase = RunPhase::kRunning;
     } else if (s.busy != Busy::kNothing) {
       EndBusy();
-    } else if (s.sender.sent() < sent_max) {
+    } else if (s.sender.sent() < sent_max && s.commands_seen < commands_max) {
       Proceed(sent_max);
     } else {
       return s.phase = RunPhase::kRunning;
@@ -178,6 +179,12 @@ RunPhase MillRun::Advance(SimTime until) {
 // The next thing that takes no time, or the start of one that does.
 void MillRun::Proceed(std::size_t sent_max) {
   State& s = state_;
+  if (s.time_stands && !Moves()) {
+    Freeze();
+    return CloseWith(OutcomeKind::kFailed, ErrorCode::kCellStepBudget,
+                     "more than " + Told("steps", setup_.budget.steps_at_one_instant) +
+                         " commands were executed at one instant");
+  }
   // STOP alone halts in the middle of a motion.
   const bool ends_motion_first = s.rest_left && s.halt_wanted != HaltCause::kStop;
   if (s.halt_wanted != HaltCause::kNone && !Moves() && !ends_motion_first) {
@@ -212,6 +219,10 @@ void MillRun::Proceed(std::size_t sent_max) {
       End(OutcomeKind::kBudgetExceeded, ErrorCode::kCellStepBudget);
       return;
     }
+    if (TimeStands()) {
+      s.time_stands = true;
+      return PressStop();
+    }
     if (s.halts.EntersAfter(s.place.step)) return HaltAtTarget();
     if (s.halts.After(s.place.step)) {
       const bool breaks = s.halts.BreaksAfter(s.place.step);
@@ -222,6 +233,17 @@ void MillRun::Proceed(std::size_t sent_max) {
     }
   }
   Interpret(sent_max);
+}
+
+// LIVE-3.01: 10 million commands behind one another move nothing and wait for nothing.
+bool MillRun::TimeStands() {
+  State& s = state_;
+  if (s.instant != s.now) {
+    s.instant = s.now;
+    s.commands_before = s.commands_seen;
+  }
+  const std::uint64_t most = setup_.budget.steps_at_one_instant;
+  return most > 0 && s.commands_seen - s.commands_before > most;
 }
 
 // Bytes, until one of them makes something happen, or so many of them.

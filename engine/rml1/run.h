@@ -71,6 +71,9 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
   // ahead at most, so that whoever runs a file of nonsense hears of it every tenth of a second.
   static constexpr std::size_t kBytesPerAdvance = std::size_t{1} << 20;
 
+  // Commands, likewise: whoever drives a machine that lives looks at its inputs between. LIVE-3.12
+  static constexpr std::uint64_t kCommandsPerAdvance = 20'000;
+
   enum class Busy : std::uint8_t { kNothing, kMotion, kWait };
   enum class HaltCause : std::uint8_t { kNone, kPause, kHold, kStop, kSingle, kBreakpoint, kEntry };
 
@@ -124,6 +127,9 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
     HaltCause halt_wanted = HaltCause::kNone;  // at the next standstill
     SimTime wait_left{0};                      // of a wait that STOP interrupted
     std::uint64_t commands_seen = 0;
+    SimTime instant{-1};                // when a command was over last
+    std::uint64_t commands_before = 0;  // done before that instant
+    bool time_stands = false;           // too many at one instant: it fails where it comes to rest
     int command_over = 0;  // the last one that is over
 
     std::optional<machine::StepFacts> reached;  // it halted before the command of halts.entry
@@ -150,6 +156,7 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
   // run.cc: the course of time.
   SimTime NextInputTime() const;
   void Proceed(std::size_t sent_max);
+  bool TimeStands();
   void Interpret(std::size_t sent_max);
   void Finish();
   void Handle(const machine::InputChange& input);

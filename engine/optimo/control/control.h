@@ -77,6 +77,7 @@ class Control final : private RideListener {
   // --- control_fetch.cc: one instruction after the other ---
   void Fetch();
   bool StandFirst();
+  bool TimeStands();
   bool MayCarryOut(const Instruction& i);
   bool NeedsStandstill(const Instruction& i);
   void EndSimulation(const machine::Place& here);
