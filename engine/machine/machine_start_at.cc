@@ -80,6 +80,7 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
   changed_.clear();
   if (input.brought) changed_.insert(input.program);
   run_ = *std::move(run);
+  viewed_from_.reset();
   run_->SetMode(mode_);
   run_->SetBreakpoints(breakpoints_);
   note_ = {.number = note_.number + 1,

@@ -109,7 +109,7 @@ PUBLIC = {
     KINEMATICS: ["kinematics.h", "axes.h", "machine_limits.h", "axis_demand.h", "speed_bound.h"],
     CORNER: ["corner.h", "axes_corner.h"],
     PLANNER: ["planner.h", "feed_steps.h"],
-    RIDE: ["trajectory.h", "interruption.h", "ride_protocol.h", "path_ride.h"],
+    RIDE: ["trajectory.h", "interruption.h", "ride_protocol.h", "path_ride.h", "motion_under_way.h"],
     JOG: ["jog_drive.h"],
     "engine/machine": ["bytes.h", "driver.h", "family.h", "hand_motion.h", "language_word.h", "machine.h", "machine_input.h", "machine_note.h", "machine_states.h", "machine_status.h", "panel.h", "run.h", "standing.h", "virtual_driver.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "variable.h", "verdict.h", "reach_step.h", "start_preview.h", "step_entry.h", "handbox.h",
                        "tools.h", "editing.h", "run_setup.h", "outcome.h", "inputs.h", "program_file.h"],
@@ -172,7 +172,7 @@ ONLY_FOR = {
     CORNER: {"corner.h": [PLANNER], "axes_corner.h": [PLANNER]},
     PLANNER: {"feed_steps.h": ["engine/rml1"]},
     RIDE: {"interruption.h": ["engine/optimo/ride"], "ride_protocol.h": ["engine/rml1"],
-           "path_ride.h": ["engine/optimo/ride", "engine/rml1"]},
+           "path_ride.h": ["engine/optimo/ride", "engine/rml1"], "motion_under_way.h": ["engine/machine"]},
     "engine/machine": {"editing.h": ["clients/lsp", "engine/optimo/editing", "server/programs"], "profile_files.h": ["engine/rml1"],
                        "program_file.h": ["engine/rml1/offline"]},
     "engine/optimo/machine": {header: ["engine/optimo/control"]

@@ -66,8 +66,7 @@ void Control::Fetch() {
   }
   if (TimeStands()) {
     return Raise({ErrorCode::kStepBudget,
-                  "more than " + Told("steps", s_.steps - s_.steps_before) +
-                      " steps were executed at one instant",
+                  Told("steps", s_.steps - s_.steps_before) + " steps were executed at one instant",
                   {}});
   }
   now().place = here;
