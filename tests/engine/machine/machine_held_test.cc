@@ -304,7 +304,7 @@ TEST_F(HeldTest, AMarkHasTheAxesWhereTheyAre) {
   EXPECT_EQ(Axes(), at);
 }
 
-// LIVE-3.15: where a run is on its way to a step, the way is the one that was looked at.
+// LIVE-6.05: where a run is on its way to a step, the way is the one that was looked at.
 TEST_F(HeldTest, OnTheWayToAStepNothingIsMoved) {
   Load({kCorner});
   Good(StartAtStep{.program = 1, .target = {.at = {1, 5}}, .acknowledged = {"clamps"}});
