@@ -76,7 +76,11 @@ void AddActs(MachineVerbs& verbs) {
       ->check(CLI::Range(1, 99));
   verbs.AddControlled("zero", "Let the axes find their reference; in REMOTE program 4 follows",
                       ZeroMachine);
-  verbs.AddControlled("resume", "Let a held run go on", ResumeMachine);
+  CLI::App* resume = verbs.AddControlled("resume", "Let a held run go on", ResumeMachine);
+  resume->add_flag("--accept-displaced", given.accept_displaced,
+                   "keys have moved the machine meanwhile: go on from where it stands");
+  resume->add_flag("--restore-process", given.restore_process,
+                   "a spindle that a person has stopped meanwhile turns again");
   verbs.AddControlled("mode", "Set the operating mode", SetMode)
       ->add_option("MODE", given.word)
       ->required()

@@ -273,8 +273,10 @@ int ZeroMachine(const Remote& remote, const MachineAct& act) {
 }
 
 int ResumeMachine(const Remote& remote, const MachineAct& act) {
-  return ShowWithControl(remote, act, &Service::Stub::ResumeMachine,
-                         For<v1::ResumeMachineRequest>(act));
+  auto request = For<v1::ResumeMachineRequest>(act);
+  request.set_accept_displaced(act.accept_displaced);
+  request.set_restore_process(act.restore_process);
+  return ShowWithControl(remote, act, &Service::Stub::ResumeMachine, std::move(request));
 }
 
 int SetMode(const Remote& remote, const MachineAct& act) {

@@ -27,6 +27,8 @@ struct MachineAct {
   std::vector<std::string> seen;  // what a person has seen to: clamps, tool, origin, table
   std::string reason;             // of a decision, for all to read
   std::vector<int> gates;         // the program of each; 0: none
+  bool accept_displaced = false;  // it goes on from where keys have moved it
+  bool restore_process = false;   // a spindle that a person stopped turns again
 };
 
 int ShowMachine(const Remote& remote, const MachineAct& act);

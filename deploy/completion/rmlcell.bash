@@ -91,6 +91,7 @@ _rmlcell_options() {
     "machine start-at")
       echo "--help --take-over --slot --occurrence --direct --off-until-work-on --preview --halt --seen --reason" ;;
     "machine key") echo "--help --take-over --for --fast" ;;
+    "machine resume") echo "--help --take-over --accept-displaced --restore-process" ;;
     "machine "*) echo "--help --take-over" ;;
     report) echo "$remote --machine-coordinates" ;;
     watch) echo "$remote --after --strict" ;;
@@ -173,7 +174,7 @@ _rmlcell_positional() {
         factor acknowledge confirm read write start-at key input gates ;;
     "machine start") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_slots "${given[0]}"; fi ;;
     "machine mode") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer remote cycle single repeat manual; fi ;;
-    "machine key") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer X+ X- Y+ Y- Z+ Z- A+ A- PAUSE CONTINUE STOP BUFFER_CLEAR COVER POWER EMERGENCY_STOP; fi ;;
+    "machine key") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer X+ X- Y+ Y- Z+ Z- A+ A- PAUSE CONTINUE STOP BUFFER_CLEAR VIEW SPINDLE Z0 ORIGIN HOME COVER POWER EMERGENCY_STOP; fi ;;
     "machine input") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer door=open door=closed gate=1 gate=2 power=on power=off emergency-stop=released; fi ;;
     "machine "*) [[ $count -eq 0 ]] && _rmlcell_machines ;;
     rml1) [[ $count -eq 0 ]] && _rmlcell_offer explain to-gcode from-gcode move steps tile from-png ;;

@@ -5,7 +5,10 @@
 
 namespace rmlcell::machine {
 
-bool HandJog::asks() const { return std::ranges::find(key_, Key::kDown) != key_.end(); }
+bool HandJog::asks() const {
+  if (travel_) return !travel_->brakes();
+  return std::ranges::find(key_, Key::kDown) != key_.end();
+}
 
 // Keys add; along a tool that points the other way Z and, to stay right-handed, Y count backwards.
 motion::AxisValues HandJog::Speeds(const HandMotion& how) const {
@@ -40,6 +43,12 @@ void HandJog::Press(const PressJog& press, const HandMotion& how, const motion::
   Ask(how);
 }
 
+void HandJog::Travel(const std::vector<motion::AxisPose>& way, const HandMotion& how,
+                     const motion::AxisPose& at, SimTime now) {
+  travel_.emplace(way, how, at, now);
+  Settle();
+}
+
 void HandJog::Release(const JogKey& key, const HandMotion& how) {
   if (std::exchange(key_[IndexOf(key)], Key::kUp) != Key::kDown) return;
   drive_->Demand(Speeds(how), how.least);
@@ -52,25 +61,29 @@ void HandJog::ReleaseAll() {
 }
 
 void HandJog::Ask(const HandMotion& how) {
-  if (asks()) drive_->Demand(Speeds(how));
+  if (drive_ && asks()) drive_->Demand(Speeds(how));
 }
 
 void HandJog::Brake() {
   std::ranges::replace(key_, Key::kDown, Key::kSpent);
   if (drive_) drive_->Brake();
+  if (travel_) travel_->Brake();
   Settle();
 }
 
 void HandJog::Freeze() {
   std::ranges::replace(key_, Key::kDown, Key::kSpent);
   drive_.reset();
+  travel_.reset();
 }
 
 void HandJog::Advance(SimTime until) {
+  if (travel_) travel_->Advance(until);
   if (drive_) drive_->Advance(ToSeconds(until - begun_));
 }
 
 void HandJog::Settle() {
+  if (travel_ && travel_->rests()) travel_.reset();
   if (drive_ && !asks() && drive_->rests()) drive_.reset();
 }
 

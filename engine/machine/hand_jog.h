@@ -4,27 +4,34 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "engine/core/units.h"
 #include "engine/machine/hand_motion.h"
+#include "engine/machine/hand_travel.h"
 #include "engine/machine/machine_input.h"
 #include "engine/motion/jog/jog_drive.h"
 
 namespace rmlcell::machine {
 
-// The jog keys of a machine and what they move. A key that was down when something else stopped the
-// motion moves nothing until it was released (LIVE-7.06): it is spent. Keys are looked at when they
-// change, and never remembered for later (LIVE-8.05).
+// The jog keys of a machine and what they move; keys that send it somewhere move it alone. A key
+// that was down when something else stopped the motion moves nothing until it was released
+// (LIVE-7.06): it is spent. Keys are looked at when they change, and never remembered for later
+// (LIVE-8.05).
 class HandJog {
  public:
-  bool asks() const;                                 // a key is down that moves something
-  bool moves() const { return drive_.has_value(); }  // asks, or does not stand yet
+  bool asks() const;  // a key is down that moves something, or it was sent somewhere
+  bool moves() const { return drive_ || travel_; }  // asks, or does not stand yet
+  bool travels() const { return travel_.has_value(); }
   bool IsSpent(const JogKey& key) const { return key_[IndexOf(key)] == Key::kSpent; }
 
   // Of keys that move together all have one reference, and all are fast or none: another one stops
   // them all, and is spent itself. `at`: where the machine stands, when nothing moves.
   // Precondition: it asks, or nothing moves.
   void Press(const PressJog& press, const HandMotion& how, const motion::AxisPose& at, SimTime now);
+  // Precondition: nothing moves.
+  void Travel(const std::vector<motion::AxisPose>& way, const HandMotion& how,
+              const motion::AxisPose& at, SimTime now);
   void Release(const JogKey& key, const HandMotion& how);
   void ReleaseAll();
   void Ask(const HandMotion& how);  // the same keys, with these speeds
@@ -35,8 +42,10 @@ class HandJog {
   void Settle();  // what stands and is asked for nothing moves no more
 
   // Precondition: moves().
-  motion::AxisPose axes() const { return drive_->axes(); }
-  double tip_speed_mm_s() const { return drive_->tip_speed_mm_s(); }
+  motion::AxisPose axes() const { return travel_ ? travel_->axes() : drive_->axes(); }
+  double tip_speed_mm_s() const {
+    return travel_ ? travel_->tip_speed_mm_s() : drive_->tip_speed_mm_s();
+  }
   bool fast() const { return fast_; }
 
  private:
@@ -51,6 +60,7 @@ class HandJog {
   bool fast_ = false;
   SimTime begun_{0};
   std::optional<motion::JogDrive> drive_;
+  std::optional<HandTravel> travel_;
 };
 
 RunOn RunOnOf(const HandMotion& how, JogReference reference, const motion::AxisPose& at);

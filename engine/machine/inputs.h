@@ -12,7 +12,7 @@ enum class InputKind {
   kLogical,   // IL[index] = value
   kAnalogue,  // IA[index] = value
   kDoor,      // operator door; value 1: open
-  kStart,     // keys; START also resumes a paused mill
+  kStart,     // keys; START also resumes a paused mill; value 1: with the spindle that was stopped
   kHold,
   kStop,
   kEmergencyStop,

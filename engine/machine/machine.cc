@@ -23,7 +23,8 @@ constexpr bool kNeedsPower =
     std::is_same_v<Input, WriteVariable> || std::is_same_v<Input, SetBreakpoints> ||
     std::is_same_v<Input, SetSimulation> || std::is_same_v<Input, StartAtStep> ||
     std::is_same_v<Input, ClearMessage> || std::is_same_v<Input, PressJog> ||
-    std::is_same_v<Input, SetGates> || std::is_same_v<Input, PressGate>;
+    std::is_same_v<Input, SetGates> || std::is_same_v<Input, PressGate> ||
+    std::is_same_v<Input, PressPanel>;
 
 }  // namespace
 
@@ -160,6 +161,8 @@ void Machine::CloseRun() {
   standing_->Rest();
   over_.back().ended = std::move(run_);
   stopping_ = resume_behind_ = abort_behind_ = false;
+  held_at_.reset();
+  viewed_from_.reset();
   changed_.clear();
   base_.reset();
   halted_at_.reset();
@@ -316,7 +319,7 @@ Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> h
   setup.mode = mode;
   setup.override_percent = OverrideOf(hand);
   if (!hand) setup.simul = simulation_;
-  setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
+  setup.budget = kLiveBudget;
   StartBase base{.machine_state = setup.machine_state,
                  .inputs = {},
                  .mode = mode,
@@ -328,6 +331,7 @@ Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> h
   if (input.brought) changed_.insert(input.program);  // what is made of it is not of the memory
   note_ = {
       .number = note_.number + 1, .program = input.program, .source = input.source, .begun = now_};
+  viewed_from_.reset();
   note_.by_hand = hand.has_value();
   note_.hand = hand.value_or(HandRun::kZero);
   run_ = *std::move(run);
@@ -358,21 +362,6 @@ Status Machine::Act(const ZeroAxes& /*input*/) {
             Mode::kRemote, HandRun::kZero);
   goes_home_ = begun && mode_ == Mode::kRemote;
   return begun;
-}
-
-Status Machine::Act(const ResumeRun& input) {
-  const Transition next = Next(state(), MachineEvent::kResume, guards());
-  if (next.code) return Refusal(*next.code);
-  if (next.kind == Transition::Kind::kStays && !next.Does(StateAct::kTakeBack)) return {};
-  if (const Status source = MaySource(input.source); !source && !Pauses()) return source.error();
-  if (abort_behind_) return NotNow(state(), "the run ends as soon as it stands");
-  if (stopping_ && !family_.info().start_takes_back) {
-    resume_behind_ = true;
-  } else {
-    stopping_ = false;
-    ToRun(InputKind::kStart);
-  }
-  return {};
 }
 
 // What is on its way to rest stays there, whatever was asked for meanwhile.
@@ -412,6 +401,7 @@ Status Machine::Act(const EmergencyStop& input) {
   emergency_ = input.pressed;
   if (!input.pressed || !on_) return {};
   jog_.Freeze();
+  if (run_ == nullptr) standing_->Rest();
   const Place place = run_ != nullptr ? run_->state().place : Place{};
   const bool ends_run = run_ != nullptr;
   const ErrorCode code = family_.info().emergency_stop;
@@ -498,6 +488,7 @@ Status Machine::Act(const MoveDoor& input) {
   const RunState before = status().run;
   cover_open_ = input.open && family_.info().cover_stops_jog;
   if (input.open) jog_.Brake();
+  if (cover_open_ && run_ == nullptr) standing_->Rest();  // a spindle that a key started
   if (before.door_open == input.open) return {};
   if (input.open) resume_behind_ = false;
   const bool goes_on = run_ != nullptr && before.phase == RunPhase::kRunning;

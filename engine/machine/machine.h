@@ -88,7 +88,8 @@ class Machine {
   //   NotZeroed          START with axes that have no reference
   //   the alarm's own    START and RESUME while there is one
   //   CellNotLive        it is off, or has no such keys
-  //   CellDoorOpen       a jog key, with the cover open
+  //   CellDoorOpen       a jog key or one of the panel that moves something, with the cover open
+  //   CellDisplaced      RESUME of a run whose machine keys have moved; the detail has how far
   //   CellStepUnreachable, CellApproach   a start at a step; the detail has the nearest clean steps
   //   CellInvalidArgument, ProgramMissing and the like: what the input names is none
   Status Apply(const MachineInput& input);
@@ -157,7 +158,7 @@ class Machine {
   // One for each kind of MachineInput.
   Status Act(const StartRun& input);
   Status Act(const ZeroAxes& input);
-  Status Act(const ResumeRun& input);
+  Status Act(const ResumeRun& input);  // machine_held.cc
   Status Act(const HoldRun& input);
   Status Act(const StopRun& input);
   Status Act(const AbortRun& input);
@@ -179,6 +180,7 @@ class Machine {
   Status Act(const ReleaseJog& input);
   Status Act(const ReleaseJogs& input);
   Status Act(const StartAtStep& input);  // machine_start_at.cc
+  Status Act(const PressPanel& input);   // machine_panel.cc
   Status Act(const PressedKey& input);
   Status Act(const RefuseEdit& input);
   Status Act(const SetGates& input);  // machine_gates.cc
@@ -193,6 +195,12 @@ class Machine {
   Status Enter(const StartAtStep& input, const StartPreview& preview);
   void GoHome(const Outcome& outcome);
   Status MayJog(const JogKey& key) const;
+  std::unique_ptr<Standing> StandingOfRun() const;
+  std::optional<HandMotion> ByHand(bool fast) const;
+  void MoveTo(const motion::AxisPose& axes);
+  Status MayGoOn(const ResumeRun& input) const;
+  Status MayPress(PanelKey key) const;
+  void SendTo(PanelKey key);
   void AskJog();
   void AdvanceJog(SimTime until);
   Status MaySource(StartSource source) const;
@@ -237,14 +245,16 @@ class Machine {
   SimTime not_in_base_{0};              // of halts that whoever simulates it does not come to
   std::array<int, kGates> gates_{};     // programs that they start
   std::unique_ptr<Standing> standing_;
-  std::unique_ptr<Handbox> handbox_;  // null: it has none
-  HandJog jog_;                       // moves nothing while a run is open
-  std::unique_ptr<Run> run_;          // open
-  bool stopping_ = false;             // a HOLD or STOP of this run has not halted it yet
-  bool resume_behind_ = false;        // it was taken back meanwhile: START follows the halt
-  bool abort_behind_ = false;         // the run is over once it stands
-  bool goes_home_ = false;            // behind ZERO
-  std::set<int> changed_;             // slots whose programs were changed while a run is open
+  std::unique_ptr<Handbox> handbox_;         // null: it has none
+  HandJog jog_;                              // moves nothing while a run goes on
+  std::unique_ptr<Run> run_;                 // open
+  bool stopping_ = false;                    // a HOLD or STOP of this run has not halted it yet
+  bool resume_behind_ = false;               // it was taken back meanwhile: START follows the halt
+  bool abort_behind_ = false;                // the run is over once it stands
+  bool goes_home_ = false;                   // behind ZERO
+  std::optional<motion::AxisPose> held_at_;  // of the run, and keys have moved it since
+  std::optional<motion::AxisPose> viewed_from_;  // by VIEW, which goes back there
+  std::set<int> changed_;  // slots whose programs were changed while a run is open
   std::vector<RunOver> over_;
   std::vector<MadeExecutable> made_;
 };

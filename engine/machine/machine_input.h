@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -40,6 +41,8 @@ struct StartRun {
 struct ZeroAxes {};
 struct ResumeRun {
   StartSource source = StartSource::kConsole;
+  bool accept_displaced = false;  // keys moved it in the hold, and it goes on from where it stands
+  bool restore_process = false;   // a spindle that a person stopped in the hold turns again
 };
 struct HoldRun {};   // behind what is in progress
 struct StopRun {};   // at once, on the path
@@ -114,6 +117,15 @@ struct ReleaseJog {
 // As if every key were released: whoever holds them is not heard any more. LIVE-7.05
 struct ReleaseJogs {};
 
+// A key of a mill's panel besides those that pause, go on, stop, open the cover and jog. VIEW takes
+// the tool out of the way, and the second time back; SPINDLE stops it, and lets it turn again; Z0
+// and ORIGIN set registers where the tool stands; HOME goes where H does. LIVE-2.13
+enum class PanelKey : std::uint8_t { kView, kSpindle, kZ0, kOrigin, kHome };
+std::string_view Name(PanelKey key);  // "VIEW", as it stands on the key
+struct PressPanel {
+  PanelKey key = PanelKey::kView;
+};
+
 // As RunSetup has them: what a run began with, and what came while it ran.
 struct StartBase {
   std::string machine_state{};
@@ -167,6 +179,6 @@ using MachineInput =
                  Acknowledge, ChangeMode, ChangeOverride, ChangeInput, MoveDoor, SwitchPower,
                  WriteVariable, SetBreakpoints, SetSimulation, StoreProgram, DeleteProgram,
                  SetSchedules, ClearMessage, StartAtStep, PressJog, ReleaseJog, ReleaseJogs,
-                 PressedKey, RefuseEdit, SetGates, PressGate>;
+                 PressedKey, RefuseEdit, SetGates, PressGate, PressPanel>;
 
 }  // namespace rmlcell::machine

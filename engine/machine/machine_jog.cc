@@ -4,7 +4,7 @@
 #include "engine/machine/machine_states.h"
 #include "engine/machine/refusal.h"
 
-// The machine moved by its jog keys, while no run is open. LIVE-8.01 to 8.05
+// The machine moved by its jog keys, while no run goes on. LIVE-8.01 to 8.05
 namespace rmlcell::machine {
 namespace {
 
@@ -37,7 +37,9 @@ Status Machine::MayJog(const JogKey& key) const {
                  "the mode is " + Told("mode", Name(mode_)) + ": jog keys work in MANUAL",
                  {}};
   if (next.code) return Refusal(*next.code);
-  if (run_ != nullptr) return NotNow(state(), "a run is open; end it first");
+  if (run_ != nullptr && !run_->may_be_moved())
+    return NotNow(state(), "a run is open; end it first");
+  if (jog_.travels()) return NotNow(state(), kReleaseKeys);
   if (jog_.IsSpent(key)) return NotNow(state(), "the key was down when it stopped; release it");
   if (cover_open_) return Error{ErrorCode::kCellDoorOpen, "the cover is open", {}};
   return {};
@@ -52,19 +54,19 @@ Status Machine::Act(const PressJog& input) {
   } else {
     press.reference = JogReference::kRobot;
   }
-  const std::optional<HandMotion> how = standing_->ByHand(override_percent_, press.fast);
+  const std::optional<HandMotion> how = ByHand(press.fast);
   const auto axis = static_cast<int>(press.key.axis);
   if (!how || (axis < motion::kAxisCount && how->plus[axis] == 0.0))
     return Error{ErrorCode::kCellInvalidArgument,
                  "the machine has no axis " + Told("axis", AxisOf(press.key)),
                  {}};
-  jog_.Press(press, *how, standing_->state().axes, now_);
+  viewed_from_.reset();
+  jog_.Press(press, *how, status().run.axes, now_);
   return {};
 }
 
 Status Machine::Act(const ReleaseJog& input) {
-  if (const auto how = standing_->ByHand(override_percent_, jog_.fast()))
-    jog_.Release(input.key, *how);
+  if (const auto how = ByHand(jog_.fast())) jog_.Release(input.key, *how);
   return {};
 }
 
@@ -77,21 +79,22 @@ Status Machine::Act(const ReleaseJogs& /*input*/) {
 // The override is another one.
 void Machine::AskJog() {
   if (!jog_.asks()) return;
-  if (const auto how = standing_->ByHand(override_percent_, jog_.fast())) jog_.Ask(*how);
+  if (const auto how = ByHand(jog_.fast())) jog_.Ask(*how);
 }
 
 void Machine::AdvanceJog(SimTime until) {
   if (!jog_.moves()) return;
   jog_.Advance(until);
-  standing_->MoveTo(jog_.axes());
+  const motion::AxisPose axes = jog_.axes();
   jog_.Settle();
+  MoveTo(axes);
 }
 
 std::optional<RunOn> Machine::run_on(JogReference reference, bool fast) const {
-  const std::optional<HandMotion> how = standing_->ByHand(override_percent_, fast);
+  const std::optional<HandMotion> how = ByHand(fast);
   if (!how) return std::nullopt;
   return RunOnOf(*how, family_.info().jogs_in_manual ? reference : JogReference::kRobot,
-                 standing_->state().axes);
+                 status().run.axes);
 }
 
 }  // namespace rmlcell::machine

@@ -35,7 +35,7 @@ RunSetup Machine::SetupTo(const StartAtStep& input) const {
   setup.override_percent = base.override_percent;
   setup.simul = ProgramStep{};
   setup.inputs = base.inputs;
-  setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
+  setup.budget = kLiveBudget;
   return setup;
 }
 
@@ -115,6 +115,7 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
   changed_.clear();
   if (input.brought) changed_.insert(input.program);
   run_ = *std::move(run);
+  viewed_from_.reset();
   run_->SetMode(mode_);
   run_->SetBreakpoints(breakpoints_);
   note_ = {.number = note_.number + 1,

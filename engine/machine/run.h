@@ -79,6 +79,17 @@ class Run {
   // halts take no time leaves it out.
   virtual void Stand(SimTime /*until*/) {}
 
+  // Halted: whether it goes on from wherever keys have moved the machine meanwhile. False: it goes
+  // on where it was halted.
+  virtual bool may_be_moved() const { return false; }
+  // Halted: keys have moved the machine, it stands here now. A run that may be moved goes on from
+  // here: what was interrupted to where it was to end, or what comes next.
+  virtual void MoveTo(const motion::AxisPose& /*axes*/) {}
+
+  // Halted: a key stops the spindle, or lets it turn again. Stopped so it stays, until the program
+  // starts it anew or START comes with the value 1. Errors: CellMachineState.
+  virtual Status SwitchSpindle() { return {}; }
+
   // From the end of the present instruction on; one that the machine does not have changes nothing.
   // Precondition: not MANUAL.
   virtual void SetMode(Mode /*mode*/) {}

@@ -64,7 +64,14 @@ struct Breakpoint {
 struct RunBudget {
   std::uint64_t steps = 100'000'000;
   SimTime virtual_time = std::chrono::hours(24 * 30);
+  // With no virtual time between them. The run comes to rest and fails with the code of `steps`.
+  std::uint64_t steps_at_one_instant = 0;
 };
+
+// A machine that lives has no other budget: nobody waits for its time, but a program that lets none
+// pass would keep it for ever. LIVE-3.01
+inline constexpr RunBudget kLiveBudget = {
+    .steps = 0, .virtual_time = SimTime(0), .steps_at_one_instant = 10'000'000};
 
 // All that a run depends on: same setup, same result, on any worker.
 struct RunSetup {

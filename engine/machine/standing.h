@@ -8,6 +8,7 @@
 
 #include "engine/machine/hand_motion.h"
 #include "engine/machine/inputs.h"
+#include "engine/machine/machine_input.h"
 #include "engine/machine/run.h"
 #include "engine/machine/step_entry.h"
 #include "engine/motion/geometry/pose.h"
@@ -45,7 +46,13 @@ class Standing {
   // Moved by hand it stands here now.
   virtual void MoveTo(const motion::AxisPose& /*axes*/) {}
 
-  // A run is over: what would go on by itself stops. LIVE-2.04
+  // Keys of its panel. Whether somebody has described that one; what SPINDLE, Z0 and ORIGIN do here
+  // and now, which CellMachineState refuses; where VIEW and HOME go to, place by place.
+  virtual bool HasPanelKey(PanelKey /*key*/) const { return false; }
+  virtual Status PressPanel(PanelKey /*key*/) { return {}; }
+  virtual std::vector<motion::AxisPose> WayOf(PanelKey /*key*/) const { return {}; }
+
+  // A run is over, or nothing may go on: what would by itself stops. LIVE-2.04
   virtual void Rest() {}
 
   // Off and on again: what the machine keeps only while it has power is as it comes.

@@ -1,5 +1,6 @@
 #include "engine/rml1/machine_state.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -63,6 +64,21 @@ Error Bad(Detail detail) {
   return {ErrorCode::kCellBadText, "machine state: " + std::move(detail), {}};
 }
 
+// "origin 100 250\n", and nothing behind it.
+Result<Point> ReadOrigin(std::string_view text) {
+  constexpr std::string_view kOrigin = "origin ";
+  if (!text.starts_with(kOrigin) || text.find('\n') + 1 != text.size())
+    return Bad("more lines than expected");
+  text.remove_prefix(kOrigin.size());
+  text.remove_suffix(1);
+  const std::size_t blank = std::min(text.find(' '), text.size() - 1);
+  const std::optional<double> x = ParseDouble(text.substr(0, blank));
+  const std::optional<double> y = ParseDouble(text.substr(blank + 1));
+  if (!x || !y || !(std::abs(*x) <= kFar && std::abs(*y) <= kFar))
+    return Bad(Told("name", "origin") + " is out of range");
+  return Point{.x = *x, .y = *y};
+}
+
 }  // namespace
 
 std::string WriteMachineState(const MachineState& state) {
@@ -73,7 +89,21 @@ std::string WriteMachineState(const MachineState& state) {
     text += ShortestText(field.read(state));
     text += '\n';
   }
+  if (state.origin)
+    text += "origin " + ShortestText(state.origin->x) + " " + ShortestText(state.origin->y) + "\n";
   return text;
+}
+
+void UseOrigin(const std::optional<Point>& origin, Profile& profile) {
+  if (!origin) return;
+  profile.origin_by_panel = true;
+  profile.origin_x = origin->x;
+  profile.origin_y = origin->y;
+}
+
+std::optional<Point> OriginOf(const Profile& profile) {
+  if (!profile.origin_by_panel) return std::nullopt;
+  return Point{.x = profile.origin_x, .y = profile.origin_y};
 }
 
 Result<MachineState> ReadMachineState(std::string_view text, const Profile& profile) {
@@ -97,7 +127,10 @@ Result<MachineState> ReadMachineState(std::string_view text, const Profile& prof
     field.write(state, *value);
     text.remove_prefix(end + 1);
   }
-  if (!text.empty()) return Bad("more lines than expected");
+  if (text.empty()) return state;
+  Result<Point> origin = ReadOrigin(text);
+  if (!origin) return origin.error();
+  state.origin = *origin;
   return state;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,8 +16,15 @@ namespace rmlcell::rml1 {
 struct MachineState {
   Registers registers;
   Point at;  // machine coordinates
+  std::optional<Point>
+      origin{};  // X and Y as ORIGIN of the panel set it; none: that of the profile
 };
 std::string WriteMachineState(const MachineState& state);
+
+// As of a machine where the panel has set the origin; none: as it is.
+void UseOrigin(const std::optional<Point>& origin, Profile& profile);
+// That which the panel has set; none: it is the profile's.
+std::optional<Point> OriginOf(const Profile& profile);
 
 // Errors: CellBadText when the text is none of ours or of another version. A place or a setting
 // beyond `profile` is no error: it is limited when the run begins.

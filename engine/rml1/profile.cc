@@ -73,6 +73,7 @@ void ReadFigures(const machine::Parameters& from, Profile& profile) {
   profile.rotary_acceleration_deg_s2 = from.Number("A_ACCELERATION");
   profile.rotary_step_deg = from.Number("A_STEP");
   profile.step_mm = from.Number("STEP");
+  profile.jog_step_mm = from.Number("JOG_STEP");
   profile.buffer_bytes = static_cast<std::size_t>(from.Number("BUFFER"));
 }
 
@@ -85,6 +86,7 @@ void ReadWords(const machine::Parameters& from, Profile& profile) {
   profile.commands.setting = SettingOf(from.Word("COMMAND"));
   profile.commands.axis_command = from.Word("AXIS_COMMAND") == "YES";
   profile.commands.skipped = SkippedNames(from.Word("SKIP"));
+  profile.panel_described = from.Word("PANEL") == "FULL";
   profile.pause_outside = from.Word("OVER_AREA") == "PAUSE";
   profile.seven_bits = from.Word("DATA_BITS") == "7";
   profile.all_sequences = from.Word("SEQUENCES") == "ALL";

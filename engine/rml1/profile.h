@@ -62,6 +62,10 @@ struct Profile {
   double rotary_step_deg = 0.0;
 
   CommandSet commands;
+  bool panel_described = false;  // its keys are known: LIVE-2.13
+  bool origin_by_panel = false;  // ORIGIN has set it: kept beside the registers
+  double jog_step_mm = 0.01;     // of a jog key that is tapped
+
   bool pause_outside = false;  // OVER_AREA (RML1-5A.35)
   bool seven_bits = false;
   bool all_sequences = false;

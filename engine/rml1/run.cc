@@ -82,11 +82,17 @@ Result<std::unique_ptr<MillRun>> MillRun::Make(machine::RunSetup setup,
   }
   const Result<Profile> profile = MakeProfile(setup.parameters);
   if (!profile) return profile.error();
+  Profile as_set = *profile;
+  std::optional<MachineState> kept;
+  if (!setup.machine_state.empty()) {
+    const Result<MachineState> read = ReadMachineState(setup.machine_state, *profile);
+    if (!read) return read.error();
+    UseOrigin(read->origin, as_set);
+    kept = *read;
+  }
   std::unique_ptr<MillRun> run(
-      new MillRun(std::move(setup), std::make_shared<const Profile>(*profile), observer));
-  if (!run->setup_.machine_state.empty()) {
-    const Result<MachineState> kept = ReadMachineState(run->setup_.machine_state, *profile);
-    if (!kept) return kept.error();
+      new MillRun(std::move(setup), std::make_shared<const Profile>(as_set), observer));
+  if (kept) {
     run->state_.device.Restore(kept->registers, kept->at);
     run->PutTool();
   }
@@ -137,6 +143,7 @@ RunPhase MillRun::Advance(SimTime until) {
   }
   const std::size_t sent_max = s.sender.sent() + kBytesPerAdvance;
   const std::size_t ahead_max = s.scout.sent() + kBytesPerAdvance;
+  const std::uint64_t commands_max = s.commands_seen + kCommandsPerAdvance;
   const SimTime limit =
       setup_.budget.virtual_time > SimTime::zero() ? setup_.budget.virtual_time : kForever;
   while (s.phase != RunPhase::kFinished) {
@@ -166,7 +173,7 @@ RunPhase MillRun::Advance(SimTime until) {
       if (!PlanLeg(ahead_max)) return s.phase = RunPhase::kRunning;
     } else if (s.busy != Busy::kNothing) {
       EndBusy();
-    } else if (s.sender.sent() < sent_max) {
+    } else if (s.sender.sent() < sent_max && s.commands_seen < commands_max) {
       Proceed(sent_max);
     } else {
       return s.phase = RunPhase::kRunning;
@@ -178,6 +185,12 @@ RunPhase MillRun::Advance(SimTime until) {
 // The next thing that takes no time, or the start of one that does.
 void MillRun::Proceed(std::size_t sent_max) {
   State& s = state_;
+  if (s.time_stands && !Moves()) {
+    Freeze();
+    return CloseWith(OutcomeKind::kFailed, ErrorCode::kCellStepBudget,
+                     Told("steps", setup_.budget.steps_at_one_instant) +
+                         " commands were executed at one instant");
+  }
   // STOP alone halts in the middle of a motion.
   const bool ends_motion_first = s.rest_left && s.halt_wanted != HaltCause::kStop;
   if (s.halt_wanted != HaltCause::kNone && !Moves() && !ends_motion_first) {
@@ -206,11 +219,19 @@ void MillRun::Proceed(std::size_t sent_max) {
   }
   const std::uint64_t done = s.device.commands_done();
   if (done != s.commands_seen) {
+    if (s.instant != s.now) {
+      s.instant = s.now;
+      s.commands_before = s.commands_seen;
+    }
     s.commands_seen = done;
     s.command_over = s.place.step;
     if (setup_.budget.steps > 0 && done > setup_.budget.steps) {
       End(OutcomeKind::kBudgetExceeded, ErrorCode::kCellStepBudget);
       return;
+    }
+    if (TimeStands()) {
+      s.time_stands = true;
+      return PressStop();
     }
     if (s.halts.EntersAfter(s.place.step)) return HaltAtTarget();
     if (s.halts.After(s.place.step)) {
@@ -222,6 +243,12 @@ void MillRun::Proceed(std::size_t sent_max) {
     }
   }
   Interpret(sent_max);
+}
+
+// LIVE-3.01: so many commands behind one another move nothing and wait for nothing.
+bool MillRun::TimeStands() const {
+  const std::uint64_t most = setup_.budget.steps_at_one_instant;
+  return most > 0 && state_.commands_seen - state_.commands_before >= most;
 }
 
 // Bytes, until one of them makes something happen, or so many of them.
@@ -288,7 +315,7 @@ std::vector<machine::ModalValue> MillRun::modal_values() const {
 void MillRun::Handle(const machine::InputChange& input) {
   switch (input.kind) {
     case InputKind::kStart:
-      PressStart();
+      PressStart(input.value != 0.0);
       break;
     case InputKind::kHold:
       PressHold();
@@ -312,9 +339,9 @@ void MillRun::Handle(const machine::InputChange& input) {
 
 // Also takes back a HOLD or STOP that has not halted it yet; the tool that brakes for a STOP comes
 // to rest first.
-void MillRun::PressStart() {
+void MillRun::PressStart(bool spindle) {
   State& s = state_;
-  if (s.halt != HaltCause::kNone) return EndHalt();
+  if (s.halt != HaltCause::kNone) return EndHalt(spindle);
   s.halt_wanted = HaltCause::kNone;
   if (!Moves() || !s.ride.protocol().may_resume()) return;
   s.ride.protocol().Resume();
@@ -395,8 +422,9 @@ void MillRun::BeginHalt(HaltCause cause) {
   observer_.OnDiagnostic(s.now, diagnostic);
 }
 
-void MillRun::EndHalt() {
+void MillRun::EndHalt(bool spindle) {
   State& s = state_;
+  s.away.reset();
   if (s.halt == HaltCause::kPause) s.device.actions().Pop();
   if (s.now > s.halted_at) {
     observer_.OnWait({.start = s.halted_at,
@@ -409,6 +437,35 @@ void MillRun::EndHalt() {
   s.phase = RunPhase::kRunning;
   s.clock.Set(s.now);
   observer_.OnResume(s.now, s.place);
+  if (!spindle || !s.spindle_stopped) return;
+  TurnSpindle();
+  if (s.wait_left <= SimTime::zero()) BeginWait(machine::WaitKind::kSpinUp, profile().spin_up_s);
+}
+
+void MillRun::TurnSpindle() {
+  state_.spindle_stopped = false;
+  EmitSignal(machine::Signal::kSpindle, 1.0, state_.device.registers().rpm);
+}
+
+Status MillRun::SwitchSpindle() {
+  State& s = state_;
+  if (SpindleTurns()) {
+    EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
+    s.spindle_stopped = true;
+  } else if (s.spindle_stopped) {
+    TurnSpindle();
+  } else {
+    return Error{ErrorCode::kCellMachineState, "the program has not started the spindle", {}};
+  }
+  return {};
+}
+
+// VIEW moves it out of the way and back: it goes on where it was halted.
+void MillRun::MoveTo(const motion::AxisPose& axes) {
+  constexpr double kSame_mm = 1e-6;
+  const motion::TipPose here{.tip = axes.column, .a_rad = axes.a_rad, .b_rad = axes.b_rad};
+  state_.away.reset();
+  if ((axes.column - TipNow().tip).norm() > kSame_mm) state_.away = ToolAt(here);
 }
 
 void MillRun::End(OutcomeKind kind, ErrorCode code) {
@@ -421,6 +478,7 @@ void MillRun::End(OutcomeKind kind, ErrorCode code) {
 // The tool stands where it is, and the spindle stops.
 void MillRun::Freeze() {
   State& s = state_;
+  if (s.away) s.tool = *std::exchange(s.away, std::nullopt);
   if (const motion::MotionUnderWay* leg = s.ride.under_way()) {
     const Point stopped_at = ToolAt(TipNow());
     ReportLeg(leg->At(s.now).s);
@@ -434,7 +492,7 @@ void MillRun::Freeze() {
 }
 
 bool MillRun::SpindleTurns() const {
-  return state_.device.spindle_turns() && !state_.spindle_to_come &&
+  return state_.device.spindle_turns() && !state_.spindle_to_come && !state_.spindle_stopped &&
          state_.outcome.kind == OutcomeKind::kCompleted;
 }
 
@@ -487,7 +545,9 @@ std::vector<machine::Figure> MillRun::figures() const {
 
 // A run that is cut short, here or later, leaves the tool where it stands, and the spindle off.
 std::string MillRun::SaveMachine() const {
-  MachineState kept{.registers = state_.device.registers(), .at = ToolAt(TipNow())};
+  MachineState kept{.registers = state_.device.registers(),
+                    .at = state_.away.value_or(ToolAt(TipNow())),
+                    .origin = OriginOf(profile())};
   kept.registers.spindle_on = state_.phase == RunPhase::kFinished && SpindleTurns();
   return WriteMachineState(kept);
 }

@@ -41,6 +41,8 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
   machine::RunPhase Advance(SimTime until) override;
   void Apply(const machine::InputChange& input) override;
   void Stand(SimTime until) override;
+  void MoveTo(const motion::AxisPose& axes) override;
+  Status SwitchSpindle() override;
   void SetMode(machine::Mode mode) override;
   void End(machine::OutcomeKind kind, ErrorCode code) override;
   machine::RunState state() const override;
@@ -70,6 +72,9 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
   // Bytes of the stream that one call of Advance reads at most, whatever time they take, and reads
   // ahead at most, so that whoever runs a file of nonsense hears of it every tenth of a second.
   static constexpr std::size_t kBytesPerAdvance = std::size_t{1} << 20;
+
+  // Commands, likewise: whoever drives a machine that lives looks at its inputs between. LIVE-3.12
+  static constexpr std::uint64_t kCommandsPerAdvance = 20'000;
 
   enum class Busy : std::uint8_t { kNothing, kMotion, kWait };
   enum class HaltCause : std::uint8_t { kNone, kPause, kHold, kStop, kSingle, kBreakpoint, kEntry };
@@ -124,7 +129,10 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
     HaltCause halt_wanted = HaltCause::kNone;  // at the next standstill
     SimTime wait_left{0};                      // of a wait that STOP interrupted
     std::uint64_t commands_seen = 0;
-    int command_over = 0;  // the last one that is over
+    SimTime instant{-1};                // when a command was over last
+    std::uint64_t commands_before = 0;  // done before that instant
+    bool time_stands = false;           // too many at one instant: it fails where it comes to rest
+    int command_over = 0;               // the last one that is over
 
     std::optional<machine::StepFacts> reached;  // it halted before the command of halts.entry
     // The way to the command where the run begins, while approaching: what is to come of it.
@@ -135,6 +143,8 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
     bool halts_at_entry = false;
     bool step_over = false;        // a motion of it, after which SINGLE halts
     bool spindle_to_come = false;  // the device has it turning, and it does not yet
+    bool spindle_stopped = false;  // likewise, and a person has stopped it
+    std::optional<Point> away;     // halted: where VIEW has taken the tool
   };
   class Snapshot;
   class Listener;
@@ -152,18 +162,20 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
   // run.cc: the course of time.
   SimTime NextInputTime() const;
   void Proceed(std::size_t sent_max);
+  bool TimeStands() const;
   void Interpret(std::size_t sent_max);
   void Finish();
   void Handle(const machine::InputChange& input);
   void Freeze();
-  void PressStart();
+  void PressStart(bool spindle);
   void PressHold();
   void HaltBehindMotion(HaltCause cause);
   void PressStop();
   void ChangeOverride(double percent);
   static machine::HaltReason ReasonOf(HaltCause cause);
   void BeginHalt(HaltCause cause);
-  void EndHalt();
+  void EndHalt(bool spindle);
+  void TurnSpindle();
   void CloseWith(machine::OutcomeKind kind, std::optional<ErrorCode> code, Detail detail);
   std::string_view stream() const;
 

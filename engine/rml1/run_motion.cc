@@ -1,6 +1,7 @@
 // How a run carries out the actions of its device.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/rml1/carriage.h"
 #include "engine/rml1/entry.h"
@@ -14,10 +15,12 @@ void MillRun::Begin(const Action& action) {
   if (action.kind == Action::Kind::kMotion) return BeginMotion(action);
   switch (action.kind) {
     case Action::Kind::kSpindleStart:
+      state_.spindle_stopped = false;
       EmitSignal(Signal::kSpindle, 1.0, action.rpm);
       BeginWait(WaitKind::kSpinUp, profile().spin_up_s);
       break;
     case Action::Kind::kSpindleStop:
+      if (std::exchange(state_.spindle_stopped, false)) break;  // it stands already
       EmitSignal(Signal::kSpindle, 0.0, 0.0);
       if (action.waits) BeginWait(WaitKind::kSpinUp, profile().spin_down_s);
       break;
@@ -171,7 +174,7 @@ void MillRun::ReportLeg(double travelled) {
                        .first = m.first_leg,
                        .rapid = m.action.rapid,
                        .chain = m.action.chain,
-                       .spindle_turns = s.device.spindle_turns()},
+                       .spindle_turns = s.device.spindle_turns() && !s.spindle_stopped},
                       s.device.registers(), s.device.command());
   }
   observer_.OnMotion(
@@ -218,6 +221,7 @@ void MillRun::ResumeMotion() {
 
 motion::TipPose MillRun::TipNow() const {
   const State& s = state_;
+  if (s.away) return PoseOf(profile(), *s.away);
   const motion::MotionUnderWay* leg = s.ride.under_way();
   return leg == nullptr ? PoseOf(profile(), s.tool) : leg->TipAt(s.now);
 }

@@ -12,10 +12,10 @@
 namespace rmlcell::rml1 {
 namespace {
 
-// No manual says how fast the keys of a panel are, nor how far a tap goes: LIVE-8.03. Of the rotary
-// axis likewise, in degrees.
+// No manual says how fast the keys of a panel are, nor how far a tap turns: LIVE-8.03. Of the
+// rotary axis likewise, in degrees.
 constexpr double kJogSlow = 1.0;
-constexpr double kJogStep = 0.01;
+constexpr double kRotaryStep = 0.01;
 
 }  // namespace
 
@@ -25,13 +25,69 @@ Result<std::unique_ptr<machine::Standing>> MillStanding::Make(Profile profile,
   if (!machine_state.empty()) {
     const Result<MachineState> kept = ReadMachineState(machine_state, *made->profile_);
     if (!kept) return kept.error();
+    if (kept->origin) {
+      Profile as_set = made->as_delivered_;
+      UseOrigin(kept->origin, as_set);
+      made->UseProfile(std::move(as_set));
+    }
     made->device_.Restore(kept->registers, kept->at);
   }
   return std::unique_ptr<machine::Standing>(std::move(made));
 }
 
 MillStanding::MillStanding(Profile profile)
-    : profile_(std::make_unique<const Profile>(std::move(profile))), device_(*profile_) {}
+    : as_delivered_(std::move(profile)),
+      profile_(std::make_unique<const Profile>(as_delivered_)),
+      device_(*profile_) {}
+
+// What the device holds goes over to that of the other one.
+void MillStanding::UseProfile(Profile profile) {
+  auto next = std::make_unique<const Profile>(std::move(profile));
+  Device device(*next);
+  device.Restore(device_.registers(), device_.carriage().physical());
+  device_ = device;
+  profile_ = std::move(next);
+}
+
+// SPINDLE starts nothing that !MC 0 forbids (RML1-3C.05).
+Status MillStanding::PressPanel(machine::PanelKey key) {
+  const Point at = device_.carriage().physical();
+  Registers registers = device_.registers();
+  switch (key) {
+    case machine::PanelKey::kSpindle:
+      if (!registers.spindle_on && !registers.rotation)
+        return Error{ErrorCode::kCellMachineState, "!MC 0 forbids the spindle to turn", {}};
+      registers.spindle_on = !registers.spindle_on;
+      break;
+    case machine::PanelKey::kZ0:
+      registers.z0 = at.z;
+      break;
+    case machine::PanelKey::kOrigin: {
+      Profile as_set = *profile_;
+      UseOrigin(at, as_set);
+      UseProfile(std::move(as_set));
+      break;
+    }
+    case machine::PanelKey::kView:
+    case machine::PanelKey::kHome:
+      break;
+  }
+  device_.Restore(registers, at);
+  return {};
+}
+
+// Up, and across: HOME to the origin as H does (RML1-3A.40); VIEW to the corner where the table is
+// farthest out, which no manual tells.
+std::vector<motion::AxisPose> MillStanding::WayOf(machine::PanelKey key) const {
+  const bool home = key == machine::PanelKey::kHome;
+  const double mm = 1.0 / profile_->units_per_mm;
+  motion::AxisPose up = state().axes;
+  up.column.z() = profile_->z.high * mm;
+  motion::AxisPose there = up;
+  there.column.x() = (home ? profile_->origin_x : profile_->x.low) * mm;
+  there.column.y() = (home ? profile_->origin_y : profile_->y.high) * mm;
+  return {up, there};
+}
 
 ToolNow MillStanding::tool() const {
   return {.at = device_.carriage().physical(), .spindle_turns = device_.spindle_turns()};
@@ -80,7 +136,8 @@ std::optional<machine::HandMotion> MillStanding::ByHand(double /*override_percen
   if (!profile_->has_y) how.plus[1] = 0.0;
   if (!profile_->has_rotary) how.plus[3] = 0.0;
   how.minus = how.plus;
-  how.least = {kJogStep, kJogStep, kJogStep, kJogStep * kRadPerDegree, 0.0};
+  const double step = profile_->jog_step_mm;
+  how.least = {step, step, step, kRotaryStep * kRadPerDegree, 0.0};
   return how;
 }
 
@@ -99,14 +156,19 @@ void MillStanding::Rest() {
   device_.Restore(registers, device_.carriage().physical());
 }
 
-void MillStanding::CyclePower() { device_ = Device(*profile_); }
+void MillStanding::CyclePower() {
+  UseProfile(as_delivered_);
+  device_ = Device(*profile_);
+}
 
 std::vector<machine::StateItem> MillStanding::items() const {
   return ItemsOf(device_, *profile_, tool(), "not known");
 }
 
 std::string MillStanding::Save() const {
-  return WriteMachineState({.registers = device_.registers(), .at = device_.carriage().physical()});
+  return WriteMachineState({.registers = device_.registers(),
+                            .at = device_.carriage().physical(),
+                            .origin = OriginOf(*profile_)});
 }
 
 }  // namespace rmlcell::rml1

@@ -23,6 +23,9 @@ class MillStanding final : public machine::Standing {
   // LIVE-8.03. No override changes it.
   std::optional<machine::HandMotion> ByHand(double override_percent, bool fast) const override;
   void MoveTo(const motion::AxisPose& axes) override;
+  bool HasPanelKey(machine::PanelKey /*key*/) const override { return profile_->panel_described; }
+  Status PressPanel(machine::PanelKey key) override;
+  std::vector<motion::AxisPose> WayOf(machine::PanelKey key) const override;
   void Rest() override;        // the spindle stands
   void CyclePower() override;  // a new machine: RML1-7.08
   std::vector<machine::StateItem> items() const override;
@@ -32,6 +35,9 @@ class MillStanding final : public machine::Standing {
   explicit MillStanding(Profile profile);
   ToolNow tool() const;
 
+  void UseProfile(Profile profile);
+
+  const Profile as_delivered_;              // with the origin of the parameters
   std::unique_ptr<const Profile> profile_;  // of the device
   Device device_;
 };

@@ -64,8 +64,10 @@ Result<InputChange> ChangeOf(const v1::AppliedInput& input, double override_max)
   const auto key = [](InputKind kind) { return InputChange{.kind = kind}; };
   switch (input.input_case()) {
     case v1::AppliedInput::kStart:
-    case v1::AppliedInput::kResume:
       return key(InputKind::kStart);
+    case v1::AppliedInput::kResume:
+      return InputChange{.kind = InputKind::kStart,
+                         .value = input.resume().restore_process() ? 1.0 : 0.0};
     case v1::AppliedInput::kHold:
       return key(InputKind::kHold);
     case v1::AppliedInput::kStop:
@@ -109,7 +111,7 @@ v1::AppliedInput ToProto(const InputChange& change) {
       outside.set_door_open(change.value != 0.0);
       break;
     case InputKind::kStart:
-      input.mutable_resume();
+      input.mutable_resume()->set_restore_process(change.value != 0.0);
       break;
     case InputKind::kHold:
       input.set_hold(v1::HOLD_REASON_HOLD);

@@ -61,6 +61,8 @@ struct Applied {
   }
   void operator()(const machine::ResumeRun& input) const {
     made.mutable_resume()->set_source(bridge::ToProto(input.source));
+    made.mutable_resume()->set_accept_displaced(input.accept_displaced);
+    made.mutable_resume()->set_restore_process(input.restore_process);
   }
   void operator()(const machine::HoldRun&) const { made.set_hold(v1::HOLD_REASON_HOLD); }
   void operator()(const machine::StopRun&) const { made.set_stop(v1::HOLD_REASON_STOP); }
@@ -124,6 +126,10 @@ struct Applied {
   }
   void operator()(const machine::SetGates& input) const {
     for (const int program : input.programs) made.mutable_gates()->add_programs(program);
+  }
+  void operator()(const machine::PressPanel& input) const {
+    made.mutable_key()->set_key(std::string(machine::Name(input.key)));
+    made.mutable_key()->set_action(v1::KEY_ACTION_TAP);
   }
   void operator()(const machine::PressGate& input) const {
     made.mutable_from_outside()->set_gate(input.gate);
@@ -202,6 +208,7 @@ Result<MachineInput> OfKey(const v1::PressedKey& key) {
     const auto rows = FindByText(name.substr(kRefusedEdit.size()));
     if (rows.size() == 1) return MachineInput(machine::RefuseEdit{.code = rows.front()->code});
   }
+  if (const auto panel = PanelKeyOf(name)) return MachineInput(machine::PressPanel{*panel});
   if (key.key() == "ZERO") return MachineInput(machine::ZeroAxes{});
   if (key.key() == "ERR") return MachineInput(machine::ClearMessage{});
   return Error{ErrorCode::kCellInvalidArgument, "a key '" + key.key() + "'", {}};
@@ -498,6 +505,15 @@ std::optional<machine::KeyAction> ActionOf(v1::KeyAction action) {
   }
 }
 
+std::optional<machine::PanelKey> PanelKeyOf(std::string_view name) {
+  using machine::PanelKey;
+  for (const PanelKey key : {PanelKey::kView, PanelKey::kSpindle, PanelKey::kZ0, PanelKey::kOrigin,
+                             PanelKey::kHome}) {
+    if (machine::Name(key) == name) return key;
+  }
+  return std::nullopt;
+}
+
 machine::LaserSchedule FromProto(const v1::AssignedSchedule& schedule) {
   return {.number = schedule.number(),
           .name = schedule.title(),
@@ -519,7 +535,9 @@ Result<std::optional<MachineInput>> InputOf(const v1::AppliedInput& applied) {
     case v1::AppliedInput::kResume:
       return Known(machine::ResumeRun{
           .source =
-              StartSourceOf(applied.resume().source()).value_or(machine::StartSource::kConsole)});
+              StartSourceOf(applied.resume().source()).value_or(machine::StartSource::kConsole),
+          .accept_displaced = applied.resume().accept_displaced(),
+          .restore_process = applied.resume().restore_process()});
     case v1::AppliedInput::kHold:
       return Known(machine::HoldRun{});
     case v1::AppliedInput::kStop:

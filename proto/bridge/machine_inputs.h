@@ -45,6 +45,9 @@ std::vector<v1::AxisValue> AxesOf(std::string_view names, const motion::AxisPose
 // Nothing for what is not stated.
 std::optional<machine::KeyAction> ActionOf(v1::KeyAction action);
 
+// "VIEW"; nothing for what is none of those keys.
+std::optional<machine::PanelKey> PanelKeyOf(std::string_view name);
+
 // "X+"; nothing for what is no jog key.
 std::optional<machine::JogKey> JogKeyOf(std::string_view name);
 

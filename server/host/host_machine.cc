@@ -10,6 +10,7 @@
 #include "engine/machine/parameters.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/machine_inputs.h"
+#include "proto/bridge/standard_words.h"
 #include "proto/recording/told.h"
 #include "server/host/host_messages.h"
 #include "server/host/host_options.h"
@@ -44,6 +45,11 @@ bool MayMove(const machine::PressedKey& key) {
 
 bool IsHalt(const v1::HostOrder& order) {
   return order.has_stop() || order.has_hold() || order.has_emergency_stop();
+}
+
+bool MovesByHand(machine::PanelKey key) {
+  return key == machine::PanelKey::kView || key == machine::PanelKey::kHome ||
+         key == machine::PanelKey::kSpindle;
 }
 
 }  // namespace
@@ -262,8 +268,10 @@ Status HostMachine::MayApply(const machine::MachineInput& input) const {
   const bool resumes = std::holds_alternative<machine::ResumeRun>(input);
   const bool aborts = std::holds_alternative<machine::AbortRun>(input);
   const auto* key = std::get_if<machine::PressedKey>(&input);
+  const auto* panel = std::get_if<machine::PressPanel>(&input);
   const bool by_hand = std::holds_alternative<machine::ZeroAxes>(input) ||
                        std::holds_alternative<machine::PressJog>(input) ||
+                       (panel != nullptr && MovesByHand(panel->key)) ||
                        (key != nullptr && MayMove(*key));
   if (!starts && !resumes && !aborts && !by_hand) return {};
   const machine::Transition next = machine::Next(machine::MachineState::kInspect,
@@ -520,6 +528,7 @@ v1::MachineStatus HostMachine::StatusAt(const HostTime& now) const {
   if (status.has_run()) status.mutable_run()->set_job(job_);
   arms_.AddTo(status);
   AddBlockers(status);
+  *status.mutable_words() = bridge::StandardWordsOf(status);
   return status;
 }
 

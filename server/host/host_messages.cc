@@ -139,7 +139,8 @@ Result<std::optional<MachineInput>> OfRun(const v1::HostOrder& order,
     case v1::HostOrder::kZero:
       return Input(machine::ZeroAxes{});
     case v1::HostOrder::kResume:
-      return Input(machine::ResumeRun{});
+      return Input(machine::ResumeRun{.accept_displaced = order.resume().accept_displaced(),
+                                      .restore_process = order.resume().restore_process()});
     case v1::HostOrder::kStop:
       return Input(machine::StopRun{});
     case v1::HostOrder::kHold:
@@ -173,6 +174,8 @@ Result<std::vector<MachineInput>> OfPanelKey(const v1::PressPanelKeyRequest& req
     if (request.action() != v1::KEY_ACTION_PRESS) inputs.emplace_back(machine::ReleaseJog{*jog});
     return inputs;
   }
+  if (const auto panel = bridge::PanelKeyOf(key))
+    return pressed ? Inputs{machine::PressPanel{*panel}} : Inputs{};
   if (key == "EMERGENCY_STOP") return Inputs{machine::EmergencyStop{.pressed = pressed}};
   const machine::MachineStatus status = machine.status();
   const std::array<std::pair<std::string_view, MachineInput>, 6> acts = {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "proto/bridge/findings.h"
+#include "proto/bridge/standard_words.h"
 #include "rmlcell/v1/cell.pb.h"
 #include "server/base/names.h"
 #include "server/machines/host_entries.h"
@@ -453,6 +454,8 @@ v1::MachineStatus StatusOf(const Hosts* hosts, const storage::MachineRecord& mac
     *status.mutable_off_reason() = bridge::ToProto(
         Diagnostic{.code = off->code, .severity = Severity::kRequest, .detail = off->detail});
   }
+  if (status.state() == v1::MACHINE_STATE_OFF)
+    *status.mutable_words() = bridge::StandardWordsOf(status);
   return status;
 }
 

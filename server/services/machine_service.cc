@@ -9,6 +9,7 @@
 #include "server/machines/host_processes.h"
 #include "server/machines/hosts.h"
 #include "server/records/job_messages.h"
+#include "server/records/machine_capabilities.h"
 #include "server/records/machine_messages.h"
 #include "server/records/program_place.h"
 #include "server/services/journal_export.h"
@@ -75,6 +76,8 @@ grpc::ServerUnaryReactor* MachineService::GetMachine(grpc::CallbackServerContext
     if (!unfinished) return ToGrpcStatus(unfinished.error());
     *response = ToProto(machine);
     *response->mutable_status() = StatusOf(live_.hosts, machine, *unfinished);
+    if (live_.hosts != nullptr && live_.hosts->IsHosted(machine.id))
+      *response->mutable_capabilities() = CapabilitiesOf(machine);
     return grpc::Status::OK;
   };
   return AnswerFromMemory(

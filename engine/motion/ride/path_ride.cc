@@ -115,6 +115,12 @@ void PathRide::HoldBehind(std::uint64_t tag) {
   protocol_.Hold();
 }
 
+void PathRide::HoldBack(std::uint64_t from_tag, std::vector<AppendedCommand> commands) {
+  std::erase_if(appended_, [&](const AppendedCommand& command) { return command.tag >= from_tag; });
+  interrupted_.clear();
+  held_.assign(std::make_move_iterator(commands.begin()), std::make_move_iterator(commands.end()));
+}
+
 bool PathRide::TakeUpInterrupted() {
   if (interrupted_.empty()) return false;
   to_come_.insert(to_come_.begin(), interrupted_.begin(), interrupted_.end());

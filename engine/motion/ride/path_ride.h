@@ -105,6 +105,10 @@ class PathRide {
   void ChangeHeld(Change change) {
     for (AppendedCommand& command : held_) change(command);
   }
+  const std::deque<PlannedItem>& interrupted() const { return interrupted_; }
+  // The machine was moved while it stood: what a STOP interrupted is of no use. Its commands from
+  // this tag on, and those held back, become these, which are held back.
+  void HoldBack(std::uint64_t from_tag, std::vector<AppendedCommand> commands);
   // START: they are the caller's to plan, and held back no longer.
   std::deque<AppendedCommand> TakeHeld() { return std::exchange(held_, {}); }
 

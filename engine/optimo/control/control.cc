@@ -282,6 +282,11 @@ void Control::Stand(SimTime until) {
   if (now().phase == RunPhase::kHalted) now().now = std::max(now().now, until);
 }
 
+void Control::MoveTo(const motion::AxisPose& axes) {
+  ride_.MoveTo(axes);
+  ChangeOutside();
+}
+
 void Control::SetMode(machine::Mode mode) {
   if (now().phase != RunPhase::kFinished) halts_.SetMode(mode);
 }
@@ -327,7 +332,10 @@ std::vector<machine::Place> Control::Stack() const {
 
 void Control::PressStart() {
   if (now().phase != RunPhase::kHalted) return;
-  if (!actuators_.door_blocks_start()) return halts_.Resume();
+  if (!actuators_.door_blocks_start()) {
+    if (const Status resumed = halts_.Resume(); !resumed) Raise(resumed.error());
+    return;
+  }
   // An alarm: no ERR catches it (OPT-B.56).
   constexpr ErrorCode kCode = ErrorCode::kShutterInterlock;
   const Detail detail = "START with the operator door open";

@@ -30,6 +30,11 @@ class Control final : private RideListener {
   void Apply(const machine::InputChange& input);
   void End(machine::OutcomeKind kind, ErrorCode code);
   void Stand(SimTime until);
+  // On its way to a step it may not: that way is the one that was looked at.
+  bool may_be_moved() const {
+    return now().phase == machine::RunPhase::kHalted && !s_.entry.arrival && ride_.may_be_moved();
+  }
+  void MoveTo(const motion::AxisPose& axes);
   void SetMode(machine::Mode mode);
   // Precondition: Writable.
   void WriteVariable(Variable variable, float number);
@@ -77,6 +82,7 @@ class Control final : private RideListener {
   // --- control_fetch.cc: one instruction after the other ---
   void Fetch();
   bool StandFirst();
+  bool TimeStands();
   bool MayCarryOut(const Instruction& i);
   bool NeedsStandstill(const Instruction& i);
   void EndSimulation(const machine::Place& here);

@@ -64,6 +64,11 @@ void Control::Fetch() {
     return Finish(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kStepBudget,
                   Told("steps", s_.steps) + " steps were executed");
   }
+  if (TimeStands()) {
+    return Raise({ErrorCode::kStepBudget,
+                  Told("steps", s_.steps - s_.steps_before) + " steps were executed at one instant",
+                  {}});
+  }
   now().place = here;
   s_.op = i.op;
   if (HaltsBefore(i, here)) return;
@@ -87,6 +92,16 @@ void Control::Fetch() {
   ++s_.steps;
   works_.MarkStale();
   if (now().running()) halts_.EndStep(here);
+}
+
+// LIVE-3.01: a program that lets no time pass, repetitions of one included, goes on for ever.
+bool Control::TimeStands() {
+  if (s_.instant != now().now) {
+    s_.instant = now().now;
+    s_.steps_before = s_.steps;
+  }
+  const std::uint64_t most = setup_.budget.steps_at_one_instant;
+  return most > 0 && s_.steps - s_.steps_before >= most;
 }
 
 // True: something moves, and the instruction is fetched again when it is over.

@@ -162,7 +162,7 @@ void Halts::Tell() const {
                               .kind = machine::WaitKind::kOperator});
 }
 
-void Halts::Resume() {
+Status Halts::Resume() {
   Tell();
   // A wait that was under way lasts as long as before: time stood still for it.
   const SimTime stood = situation_.now - s_.halted_at;
@@ -171,8 +171,10 @@ void Halts::Resume() {
   situation_.phase = machine::RunPhase::kRunning;
   telling_.observer().OnResume(situation_.now, situation_.place);
   actuators_.Return();
-  ride_.Resume();
-  if (s_.place_ahead) situation_.place = *std::exchange(s_.place_ahead, std::nullopt);
+  const Status rides = ride_.Resume();
+  const std::optional<machine::Place> ahead = std::exchange(s_.place_ahead, std::nullopt);
+  if (ahead && rides) situation_.place = *ahead;
+  return rides;
 }
 
 }  // namespace rmlcell::optimo

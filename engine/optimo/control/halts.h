@@ -113,8 +113,8 @@ class Halts {
   void HaltOnPath();
   // The halt up to now: the operator is waited for.
   void Tell() const;
-  // START. The door was looked at.
-  void Resume();
+  // START. The door was looked at. Errors: of Ride::Resume; the place is that of its move.
+  Status Resume();
 
  private:
   void HaltByKey(bool stop);

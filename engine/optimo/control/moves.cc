@@ -188,20 +188,25 @@ Result<bool> Moves::AppendPath(const Programmed& move) {
   if (modal.path != PathType::kCir) {
     return Append(move.i, motion::PathPiece::Line(from, target), move.note);
   }
-  const Result<motion::PathPiece> path = CirclePath(move.i, from, target);
+  MoveNote note = move.note;
+  if (move.i.Has(kVia)) {
+    const Result<motion::TipPose> via = ViaOf(move.i);
+    if (!via) return via.error();
+    note.via = via->tip;
+  }
+  const Result<motion::PathPiece> path = CirclePath(from, target, note.via);
   if (!path) return path.error();
-  return Append(move.i, *path, move.note);
+  return Append(move.i, *path, note);
 }
 
-Result<motion::PathPiece> Moves::CirclePath(const Instruction& i, const motion::TipPose& from,
-                                            const motion::TipPose& target) {
-  if (!i.Has(kVia)) {
+Result<motion::PathPiece> Moves::CirclePath(const motion::TipPose& from,
+                                            const motion::TipPose& target,
+                                            const std::optional<motion::MachinePoint>& via) {
+  if (!via) {
     telling_.Warn(ErrorCode::kViaMissing, "CIR without /VIA is a straight line", "OPT-2.21");
     return motion::PathPiece::Line(from, target);
   }
-  const Result<motion::TipPose> via = ViaOf(i);
-  if (!via) return via.error();
-  const Result<motion::PathPiece::Arc3> arc = motion::PathPiece::ArcThrough(from, via->tip, target);
+  const Result<motion::PathPiece::Arc3> arc = motion::PathPiece::ArcThrough(from, *via, target);
   if (!arc) return OnOptimo(arc.error());
   if (arc->kind == motion::PathPiece::ArcCase::kLineWarned) {
     telling_.Warn(ErrorCode::kArcIsStraight, "the three points lie on a line", "OPT-B.16");

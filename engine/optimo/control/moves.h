@@ -68,8 +68,8 @@ class Moves {
   MoveNote NoteOf(const Instruction& i, const Coordinates& target);
   Result<bool> AppendPath(const Programmed& move);
   Result<bool> AppendHole(const Programmed& move, const motion::TipPose& from);
-  Result<motion::PathPiece> CirclePath(const Instruction& i, const motion::TipPose& from,
-                                       const motion::TipPose& target);
+  Result<motion::PathPiece> CirclePath(const motion::TipPose& from, const motion::TipPose& target,
+                                       const std::optional<motion::MachinePoint>& via);
   // False: nothing is on its way. It ends where it begins, or the MOVE stands until its /TIME.
   Result<bool> Append(const Instruction& i, const motion::PathPiece& path, MoveNote note,
                       bool settles = true);

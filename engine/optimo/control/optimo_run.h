@@ -17,6 +17,8 @@ class OptimoRun final : public machine::Run, public machine::EnterableRun {
   machine::RunPhase Advance(SimTime until) override { return control_.Advance(until); }
   void Apply(const machine::InputChange& input) override { control_.Apply(input); }
   void Stand(SimTime until) override { control_.Stand(until); }
+  bool may_be_moved() const override { return control_.may_be_moved(); }
+  void MoveTo(const motion::AxisPose& axes) override { control_.MoveTo(axes); }
   void SetMode(machine::Mode mode) override { control_.SetMode(mode); }
   void End(machine::OutcomeKind kind, ErrorCode code) override { control_.End(kind, code); }
   machine::RunState state() const override { return control_.Snapshot(); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/machine/observer.h"
@@ -22,7 +23,8 @@ struct MoveNote {
   motion::MoveCommand::Kind kind = motion::MoveCommand::Kind::kContour;
   double speed_percent = 0.0;  // as programmed; for a change of the override on the way
   double accel_fraction = 1.0;
-  std::vector<BeyondTravel> beyond{};  // a forecast: told when the motion begins
+  std::optional<motion::MachinePoint> via{};  // of an arc: through it, wherever it begins
+  std::vector<BeyondTravel> beyond{};         // a forecast: told when the motion begins
 };
 
 }  // namespace rmlcell::optimo

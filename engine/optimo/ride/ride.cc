@@ -49,7 +49,11 @@ Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
     return OnOptimo(appended.error());
   s_.notes.emplace_back(command.tag, note);
   s_.planned_axes = motion::AxesOn(command.path, command.head, command.path.to());
-  if (note.fly || passing()) s_.path.Append({.tag = command.tag, .move = command});
+  if (note.fly || passing()) {
+    s_.path.Append({.tag = command.tag, .move = command});
+  } else {
+    s_.alone.push_back({.tag = command.tag, .move = command});
+  }
   s_.program = note.fly ? GoesOn::kAhead : GoesOn::kNo;
   s_.run_ahead = 0;
   Drain();
@@ -105,6 +109,7 @@ void Ride::Start() {
     }
     travel_.TellSpeedHeld(motion, s_.note.place, s_.note.feed_mm_s);
     while (!s_.notes.empty() && s_.notes.front().first < tag) s_.notes.pop_front();
+    while (!s_.alone.empty() && s_.alone.front().tag < tag) s_.alone.pop_front();
     s_.path.ForgetBefore(tag);
     listener_.OnMotionBegins(tag);
   }

@@ -46,6 +46,9 @@ struct RideState {
   std::uint64_t next_tag = 1;
   std::deque<std::pair<std::uint64_t, MoveNote>> notes{};  // of motions not over, by tag
   int run_ahead = 0;                                       // see Ride::RunsAhead
+  // Commands outside of /FLY passages whose motions are not over; those inside are in `path`.
+  std::deque<motion::AppendedCommand> alone{};
+  std::optional<motion::AxisPose> moved_from{};  // halted there, and moved by hand since
   double override_percent = 100.0;
 
   // Commands are kept in it while /FLY passages are open.
@@ -166,12 +169,20 @@ class Ride {
   bool Stop();
   // It has come to rest for either: the place of the move that was under way.
   machine::Place Rest();
-  // START
-  void Resume();
+  // START. Errors, of a machine that was moved: those of a MOVE from there; then nothing is left to
+  // ride.
+  Status Resume();
   // Motions not begun are planned with the new value. The one under way goes over to it from where
   // it is; a bend that has begun, or is too near to slow down before it, keeps its shape and speed.
   // A machine that brakes for a stop too near for anything else goes on braking. OPT-4.38
   void ChangeOverride(double percent);
+
+  // --- ride_moved.cc: moved by hand while it is halted. OPT-6.42, LIVE-5.06 ---
+
+  bool may_be_moved() const;
+  // It stands here now. At START the move that was interrupted goes to its end from here, a circle
+  // through its via point; a hole goes back to where it was left.
+  void MoveTo(const motion::AxisPose& axes);
 
  private:
   struct ChainPlace {
@@ -200,6 +211,11 @@ class Ride {
   void HoldBehind(std::uint64_t tag, std::vector<motion::PlannedItem> kept);
   void HoldCommandsBehind(std::uint64_t target);
   void PlanHeld();
+
+  Status GoFromHere();
+  std::vector<motion::AppendedCommand> NotOver() const;
+  Status BeginHere(std::vector<motion::AppendedCommand>& rest, std::size_t first);
+  void LeadBack(std::vector<motion::AppendedCommand>& rest, std::size_t circle);
 
   double FractionOf(const MoveNote& note) const;
   void AdaptToOverride(motion::AppendedCommand& item);

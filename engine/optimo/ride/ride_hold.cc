@@ -154,6 +154,7 @@ void Ride::HoldCommandsBehind(std::uint64_t target) {
 // START after such a HOLD: the moves that were held back, from rest.
 void Ride::PlanHeld() {
   if (s_.path.held().empty()) return;
+  const bool alone = !s_.alone.empty() && s_.path.held().front().tag <= s_.alone.back().tag;
   for (motion::AppendedCommand& item : s_.path.TakeHeld()) {
     if (!item.move) {
       s_.planner.Mark(item.tag);
@@ -161,7 +162,7 @@ void Ride::PlanHeld() {
       // It was accepted before, with the same limits.
       RMLCELL_CHECK(bool(s_.planner.Append(*item.move)));
     }
-    s_.path.Append(std::move(item));
+    if (!alone) s_.path.Append(std::move(item));
   }
   if (!passing()) s_.planner.Stop();
   Drain();

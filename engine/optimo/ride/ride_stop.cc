@@ -23,7 +23,8 @@ machine::Place Ride::Rest() {
   return s_.halted_behind;
 }
 
-void Ride::Resume() {
+Status Ride::Resume() {
+  Status from_here = GoFromHere();
   const bool interrupted = s_.path.TakeUpInterrupted();
   PlanHeld();
   if (!busy()) EndBeside();
@@ -32,6 +33,7 @@ void Ride::Resume() {
     Start();
     AdaptMotions();
   }
+  return from_here;
 }
 
 }  // namespace rmlcell::optimo

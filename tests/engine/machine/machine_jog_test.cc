@@ -258,18 +258,6 @@ TEST_F(MachineJogTest, WhatRefusesAKey) {
   EXPECT_THAT(Refused(press), HasSubstr("CELL-E9424"));
 }
 
-// A run that is held stays as it is: what it goes on with stands where it was held.
-TEST_F(MachineJogTest, AHeldRunRefusesAKey) {
-  Load({"DELAY 5\nDELAY 5\n"});
-  Good(ChangeMode{Mode::kCycle});
-  Good(StartRun{.program = 1, .source = StartSource::kPanel});
-  GoOnFor(0.5);
-  Good(ChangeMode{Mode::kManual});
-  GoOnFor(20.0);
-  ASSERT_EQ(state(), MachineState::kHeld);
-  EXPECT_THAT(Refused(PressJog{.key = kXPlus}), HasSubstr("CELL-E9421 the machine is HELD"));
-}
-
 // LIVE-7.06, LIVE-2.10: what stops the jog; the key must be released before it moves again, another
 // one moves at once.
 TEST_F(MachineJogTest, WhatStopsIt) {

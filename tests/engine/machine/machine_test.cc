@@ -39,6 +39,26 @@ TEST_F(MachineTest, KeepsWhatARunLeavesAndItsTimeGoesOn) {
   EXPECT_EQ(Value("VI[98]"), "2");  // executions of the program
 }
 
+// LIVE-2.12, OPT-4.17: HOLD of an Optimo in REMOTE is STOP: it halts on the path. In CYCLE it halts
+// behind the motion.
+TEST_F(MachineTest, HoldInRemoteIsStop) {
+  const char* program =
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02, 2201.2, -350., 0., 0.)\nDELAY 1\n";
+  const auto held_at = [&](Mode mode, StartSource source) {
+    Load({program});
+    Good(ChangeMode{mode});
+    Good(StartRun{.program = 1, .source = source});
+    GoOn(At(2.0));
+    Good(HoldRun{});
+    while (state() != MachineState::kHeld) GoOn(machine->time() + At(0.1));
+    return machine->status().run.axes.column.x();
+  };
+  const double on_path = held_at(Mode::kRemote, StartSource::kConsole);
+  EXPECT_GT(on_path, 21.1);
+  EXPECT_LT(on_path, 500.0);
+  EXPECT_NEAR(held_at(Mode::kCycle, StartSource::kPanel), 521.02, 1e-4);
+}
+
 // LIVE-3.15, LIVE-3.11: a run of the machine is that of a simulation with the same inputs at the
 // same times, however time is divided.
 TEST_F(MachineTest, RunsAsASimulation) {

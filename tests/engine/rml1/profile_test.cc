@@ -293,6 +293,7 @@ TEST(Profile, ParametersHaveTheirRanges) {
                                {"A_ACCELERATION", 0.1, 1e7},
                                {"A_STEP", 1e-6, 10},
                                {"STEP", 1e-6, 10},
+                               {"JOG_STEP", 1e-4, 10},
                                {"BUFFER", 256, 16777216}};
   std::size_t numbers = 0;
   for (const machine::ParameterInfo& info : ParameterTable()) numbers += info.choices.empty();

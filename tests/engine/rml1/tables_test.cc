@@ -116,6 +116,8 @@ constexpr std::array kParameters = {
     Row{"A_SENSE", "", 0, 0, 0, "RIGHT LEFT"},
     Row{"A_STEP", "deg", 0.01, 1e-6, 10.0, ""},
     Row{"STEP", "mm", 0.01, 1e-6, 10.0, ""},
+    Row{"PANEL", "", 0, 0, 0, "PLAIN FULL"},
+    Row{"JOG_STEP", "mm", 0.01, 1e-4, 10.0, ""},
     Row{"COMMAND", "", 0, 0, 0, "AUTO MODE1 MODE2"},
     Row{"AXIS_COMMAND", "", 0, 0, 0, "YES NO"},
     Row{"SKIP", "", 0, 0, 0, "NONE TOOL_CHANGE VPANEL PNC3000"},

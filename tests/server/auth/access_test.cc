@@ -4,7 +4,9 @@
 #include <google/protobuf/descriptor.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <set>
 #include <string>
 #include <vector>
@@ -134,6 +136,63 @@ TEST(Access, OfWhatNeedsControl) {
                                    "HeartbeatPanel", "StartAtStep", "ConfirmMachine", "ArmMachine",
                                    "CreateHandboxSession", "PressKey", "HeartbeatHandbox",
                                    "HandboxStream", "UndoTeachEntries", "DecideInterrupted"));
+}
+
+// What the API of machines that live asks for: permission, token, and a UUID by which a repeated
+// request is known.
+struct MethodRow {
+  const char* name;
+  v1::Permission permission;
+  bool token;
+  bool id;
+};
+
+void ExpectRows(std::initializer_list<MethodRow> rows) {
+  const AccessTable table;
+  for (const MethodRow& row : rows) {
+    const std::vector<const MethodDescriptor*> all = Methods();
+    const auto method =
+        std::ranges::find_if(all, [&](const auto* one) { return one->name() == row.name; });
+    ASSERT_NE(method, all.end()) << row.name;
+    const v1::Access* access = table.Find(PathOf(**method));
+    EXPECT_EQ(access->permission(), row.permission) << row.name;
+    EXPECT_EQ(access->needs_control() == v1::CONTROL_NEED_ALWAYS, row.token) << row.name;
+    const auto* request = (*method)->input_type();
+    EXPECT_EQ(request->FindFieldByName("request_id") != nullptr, row.id) << row.name;
+    if (row.token && !(*method)->client_streaming())
+      EXPECT_NE(request->FindFieldByName("control_token"), nullptr) << row.name;
+  }
+}
+
+// LIVE-9.01, LIVE-9.03, LIVE-9.04, LIVE-9.05, LIVE-9.06
+TEST(Access, OfMachinesThatLive) {
+  ExpectRows({{"EnableMachine", v1::PERMISSION_ADMINISTER, false, true},
+              {"DisableMachine", v1::PERMISSION_ADMINISTER, false, true},
+              {"TakeMachine", v1::PERMISSION_ADMINISTER, false, true},
+              {"StartMachine", v1::PERMISSION_OPERATE, true, true},
+              {"ZeroMachine", v1::PERMISSION_OPERATE, true, true},
+              {"ResumeMachine", v1::PERMISSION_OPERATE, true, true},
+              {"StopMachine", v1::PERMISSION_STOP, false, true},
+              {"HoldMachine", v1::PERMISSION_STOP, false, true},
+              {"EmergencyStopMachine", v1::PERMISSION_STOP, false, true},
+              {"AbortRun", v1::PERMISSION_OPERATE, false, true},
+              {"SetMode", v1::PERMISSION_OPERATE, true, true},
+              {"SetOverride", v1::PERMISSION_OPERATE, true, true},
+              {"AcknowledgeAlarm", v1::PERMISSION_OPERATE, true, true},
+              {"SetFactor", v1::PERMISSION_OPERATE, true, true}});
+}
+
+// LIVE-9.08, LIVE-9.10, LIVE-9.11, LIVE-9.12, LIVE-9.14
+TEST(Access, OfWhatActsOnMachinesThatLive) {
+  ExpectRows({{"SetInputs", v1::PERMISSION_OPERATE, true, true},
+              {"PressPanelKey", v1::PERMISSION_OPERATE, true, false},  // by its sequence
+              {"PreviewStart", v1::PERMISSION_OPERATE, false, true},
+              {"StartAtStep", v1::PERMISSION_OPERATE, true, true},
+              {"DecideInterrupted", v1::PERMISSION_OPERATE, true, true},
+              {"ConfirmMachine", v1::PERMISSION_OPERATE, true, true},
+              {"WatchMachine", v1::PERMISSION_VIEW, false, false},
+              {"WatchCell", v1::PERMISSION_VIEW, false, false},
+              {"WatchHandbox", v1::PERMISSION_VIEW, false, false}});
 }
 
 // A job that simulates has no machine to move; a RUN has.

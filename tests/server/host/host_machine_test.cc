@@ -1,5 +1,6 @@
 // A machine as its host has it: orders, answers, journal and marks, by a clock of the test.
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "tests/server/host/host_machine_bed.h"
@@ -23,6 +24,54 @@ TEST_F(HostMachineTest, ControlIsNeededToMoveAndNotToStop) {
   EXPECT_EQ(refused.refusal().code(), "CELL-E9421");
   EXPECT_EQ(refused.machine_refusal().state(), v1::MACHINE_STATE_STOPPING);
   EXPECT_EQ(refused.machine_refusal().control_holder(), "anna");
+}
+
+// LIVE-2.01, LIVE-3.16, LIVE-2.14: each thing in a field of its own, with units; a mill in the
+// middle of a cut of 1 mm/s.
+TEST_F(HostMachineTest, TheStatusTellsAllOfIt) {
+  Make();
+  v1::MachineStatus status = host_->StatusAt(now_);
+  EXPECT_EQ(status.state(), v1::MACHINE_STATE_IDLE);
+  EXPECT_FALSE(status.has_run());
+  EXPECT_EQ(status.words().execution(), "READY");
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  Do(Start());
+  Pass(30s, 50ms);
+  status = host_->StatusAt(now_);
+  EXPECT_EQ(status.machine(), "machines/mill-1");
+  EXPECT_EQ(status.fence(), 7);
+  EXPECT_EQ(status.virtual_time_ns(), 30'000'000'000);
+  EXPECT_EQ(status.send_time().seconds(), now_.wall.time_since_epoch() / 1s);
+  EXPECT_EQ(status.state(), v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(status.mode(), v1::OPERATING_MODE_REMOTE);
+  EXPECT_TRUE(status.zeroed());
+  EXPECT_FALSE(status.door_open());
+  EXPECT_EQ(status.alarms_size(), 0);
+  EXPECT_EQ(status.run().run(), 1);
+  EXPECT_EQ(status.run().program(), 5);
+  EXPECT_EQ(status.run().place().step(), 8);
+  EXPECT_EQ(status.run().phase(), v1::RUN_PHASE_PROGRAM);
+  EXPECT_EQ(status.run().run_time_ns(), 30'000'000'000);
+  EXPECT_EQ(status.run().source(), v1::START_SOURCE_CONSOLE);
+  EXPECT_EQ(status.hold_reason(), v1::HOLD_REASON_UNSPECIFIED);
+  EXPECT_EQ(status.control().holder(), "anna");
+  ASSERT_EQ(status.axes_size(), 4);
+  EXPECT_EQ(status.axes(0).axis(), "X");
+  EXPECT_EQ(status.axes(0).unit(), v1::UNIT_MILLIMETRE);
+  EXPECT_EQ(status.axes(3).unit(), v1::UNIT_RADIAN);
+  EXPECT_NEAR(status.speed_mm_s(), 1.0, 1e-9);
+  EXPECT_EQ(status.position_source(), v1::POSITION_SOURCE_PLANNED);
+  EXPECT_EQ(status.override_percent(), 100.0);
+  EXPECT_EQ(status.factor(), 1.0);
+  EXPECT_EQ(status.host(), "workshop/1");
+  EXPECT_EQ(status.words().execution(), "ACTIVE");
+  EXPECT_EQ(status.words().item_state(), "Executing");
+  // A second later it is a millimetre further, along one axis.
+  Pass(1s, 50ms);
+  const v1::MachineStatus later = host_->StatusAt(now_);
+  const double x = later.axes(0).value() - status.axes(0).value();
+  const double y = later.axes(1).value() - status.axes(1).value();
+  EXPECT_NEAR(std::abs(x) + std::abs(y), 1.0, 1e-6);
 }
 
 // LIVE-2.02, LIVE-3.23: a run from its start to its end, held and resumed, with what is told of it;

@@ -1,0 +1,93 @@
+// A run that is held: keys move the machine while it stays open, and it goes on. LIVE-5.06
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "engine/core/check.h"
+#include "engine/core/number_text.h"
+#include "engine/machine/machine.h"
+#include "engine/machine/machine_states.h"
+#include "engine/machine/refusal.h"
+
+namespace rmlcell::machine {
+namespace {
+
+// Nobody brings a machine back to where it was by hand more closely, and no status is nearer.
+// LIVE-3.17
+constexpr double kBack_mm = 0.01;
+constexpr double kBack_rad = 0.0001;
+
+// "X by 12.500 mm, B by -0.1000 rad"; empty: it stands where it was.
+Detail DisplacementOf(const motion::AxisPose& from, const motion::AxisPose& to) {
+  const motion::MachineVector moved = to.column - from.column;
+  const std::array<double, motion::kAxisCount> by = {moved.x(), moved.y(), moved.z(),
+                                                     to.a_rad - from.a_rad, to.b_rad - from.b_rad};
+  Detail text;
+  for (std::size_t axis = 0; axis < by.size(); ++axis) {
+    const bool turns = axis >= 3;
+    if (std::abs(by[axis]) <= (turns ? kBack_rad : kBack_mm)) continue;
+    const std::string name(1, "XYZAB"[axis]);
+    const std::string_view unit = turns ? "rad" : "mm";
+    if (!text.empty()) text += ", ";
+    text +=
+        name + " by " +
+        Told(name, by[axis], unit, FixedText(by[axis], turns ? 4 : 3) + " " + std::string(unit));
+  }
+  return text;
+}
+
+}  // namespace
+
+// Of the open run, as it stands now.
+std::unique_ptr<Standing> Machine::StandingOfRun() const {
+  Result<std::unique_ptr<Standing>> now = family_.NewStanding(parameters_, run_->SaveMachine());
+  RMLCELL_CHECK(now);
+  return *std::move(now);
+}
+
+std::optional<HandMotion> Machine::ByHand(bool fast) const {
+  if (run_ == nullptr) return standing_->ByHand(override_percent_, fast);
+  return StandingOfRun()->ByHand(override_percent_, fast);
+}
+
+void Machine::MoveTo(const motion::AxisPose& axes) {
+  if (run_ == nullptr) {
+    standing_->MoveTo(axes);
+  } else {
+    if (!held_at_) held_at_ = run_->state().axes;
+    run_->MoveTo(axes);
+  }
+  if (viewed_from_ && !jog_.asks() && DisplacementOf(*viewed_from_, axes).empty())
+    viewed_from_.reset();
+}
+
+// Who presses START at the machine sees where it stands; but what cannot go on from there does not.
+Status Machine::MayGoOn(const ResumeRun& input) const {
+  if (jog_.moves()) return NotNow(state(), kReleaseKeys);
+  if (!held_at_) return {};
+  const bool asked = !input.accept_displaced && input.source != StartSource::kPanel;
+  if (!asked && run_->may_be_moved()) return {};
+  Detail moved = DisplacementOf(*held_at_, run_->state().axes);
+  if (moved.empty()) return {};
+  return Error{ErrorCode::kCellDisplaced, "it was moved in " + std::move(moved), {}};
+}
+
+Status Machine::Act(const ResumeRun& input) {
+  const Transition next = Next(state(), MachineEvent::kResume, guards());
+  if (next.code) return Refusal(*next.code);
+  if (next.kind == Transition::Kind::kStays && !next.Does(StateAct::kTakeBack)) return {};
+  if (const Status source = MaySource(input.source); !source && !Pauses()) return source.error();
+  if (abort_behind_) return NotNow(state(), "the run ends as soon as it stands");
+  if (const Status may = MayGoOn(input); !may) return may.error();
+  if (stopping_ && !family_.info().start_takes_back) {
+    resume_behind_ = true;
+    return {};
+  }
+  stopping_ = false;
+  held_at_.reset();
+  ToRun(InputKind::kStart, 0, input.restore_process ? 1.0 : 0.0);
+  return {};
+}
+
+}  // namespace rmlcell::machine
