@@ -191,6 +191,7 @@ class HandboxTerminalTest(LiveTestCase):
         self.cell.kill()
         self.assertEqual(terminal.process.wait(timeout=60), 3, terminal.text())
         self.cell.start()
+        self.assertTrue(eventually(lambda: self.optimo.status().axes, 30))  # its host is heard of again
         self.assert_stands()
         self.assert_given_back(terminal, 3)
         self.assertIn(b"rmlcell: ", terminal.seen.split(b"\x1b[?1049l")[-1])
@@ -215,6 +216,7 @@ class HandboxTerminalTest(LiveTestCase):
         terminal = self.terminal(rows=20, columns=70)
         self.assertTrue(terminal.shows("too small: 70 x 20"), terminal.text())
         terminal.type(TO_MANUAL)
+        self.assertTrue(eventually(terminal.all_read, 10))
         terminal.resize(24, 80)
         self.assertTrue(terminal.shows("s START"), terminal.text())
         terminal.type("P")
@@ -236,7 +238,7 @@ class HandboxTerminalTest(LiveTestCase):
         mill = Terminal().start("handbox", "mill-1", "--server", self.cell.address)
         self.addCleanup(mill.end)
         self.assertEqual(mill.process.wait(timeout=60), 3)
-        self.assertTrue(mill.shows("the machine has no handbox"), mill.text())
+        self.assertTrue(eventually(lambda: b"has no handbox" in mill.seen, 10), mill.seen)
         self.assertNotIn(b"1049", mill.seen)
 
 
