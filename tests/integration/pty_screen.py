@@ -35,9 +35,9 @@ class Terminal:
         fcntl.ioctl(self.master, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
 
     def start(self, *words):
-        self.process = subprocess.Popen(
-            [os.path.join(BIN, "rmlcell"), *words], stdin=self.slave, stdout=self.slave, stderr=self.slave,
-            start_new_session=True, preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0))
+        # Not preexec_fn: Python code between fork and exec hangs now and then beside the threads of gRPC.
+        self.process = subprocess.Popen(["setsid", "--ctty", os.path.join(BIN, "rmlcell"), *words],
+                                        stdin=self.slave, stdout=self.slave, stderr=self.slave)
         return self
 
     def end(self):

@@ -102,7 +102,7 @@ class HandboxTerminalTest(LiveTestCase):
         self.assertTrue(terminal.shows("x>X+"), terminal.text())
         self.assert_moves(terminal)
         self.assertTrue(terminal.shows(" JOGGING "), terminal.text())
-        self.assertNotEqual(terminal.lines()[6], shown)
+        self.assertTrue(eventually(lambda: terminal.lines()[6] != shown, 30), shown)
         terminal.type("\x1b[<0;1;1m")
         self.assert_stands()
         self.assertTrue(terminal.shows("x X+"), terminal.text())
