@@ -63,10 +63,6 @@ class Terminal:
     def type(self, text):
         os.write(self.master, text.encode())
 
-    def all_read(self):
-        """Nothing that was typed waits for the command."""
-        return struct.unpack("i", fcntl.ioctl(self.slave, termios.FIONREAD, struct.pack("i", 0)))[0] == 0
-
     def mouse(self, button, down):
         """On the button of a key, by what stands there: "x X+"."""
         row, column = self.place_of(button)

@@ -10,6 +10,7 @@ import unittest
 from cell import BIN, eventually, grpc
 from live import Live, LiveTestCase
 from pty_screen import Terminal
+from rmlcell.v1 import handbox_pb2, handbox_pb2_grpc  # noqa: E402
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
 
 OPTIMO = "machines/optimo-1"
@@ -66,6 +67,10 @@ class HandboxTerminalTest(LiveTestCase):
             self.assertEqual(terminal.seen.count(f"\x1b[?{mode}h".encode()), 1)
             self.assertEqual(terminal.seen.count(f"\x1b[?{mode}l".encode()), 1)
         self.assertTrue(eventually(self.may_acquire, 30), "control is not given back")
+
+    def message_of_handbox(self):
+        stub = handbox_pb2_grpc.HandboxServiceStub(self.cell.channel())
+        return next(stub.WatchHandbox(handbox_pb2.WatchHandboxRequest(machine=OPTIMO), timeout=30)).panel.message_code
 
     def may_acquire(self):
         try:
@@ -215,8 +220,8 @@ class HandboxTerminalTest(LiveTestCase):
     def test_a_terminal_that_is_too_small(self):
         terminal = self.terminal(rows=20, columns=70)
         self.assertTrue(terminal.shows("too small: 70 x 20"), terminal.text())
-        terminal.type(TO_MANUAL)
-        self.assertTrue(eventually(terminal.all_read, 10))
+        terminal.type(TO_MANUAL + " ")  # STOP is heard, and refused in REMOTE
+        self.assertTrue(eventually(self.message_of_handbox, 30))
         terminal.resize(24, 80)
         self.assertTrue(terminal.shows("s START"), terminal.text())
         terminal.type("P")
