@@ -1,6 +1,4 @@
 // What a person presses at a machine that lives.
-#include <google/protobuf/util/time_util.h>
-
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -9,12 +7,12 @@
 #include <thread>
 #include <vector>
 
+#include "clients/cli/handbox_hands.h"
 #include "clients/cli/machine_call.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
-#include "rmlcell/v1/handbox.grpc.pb.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -22,12 +20,12 @@ namespace {
 // The keys of a panel of a mill: what is shown is the machine.
 class PanelKeys {
  public:
-  PanelKeys(const Remote& remote, const v1::CreateHandboxSessionRequest& of)
+  PanelKeys(const Remote& remote, const std::string& machine, const std::string& token)
       : remote_(remote), stub_(Service::NewStub(Connect(remote))) {
-    key_.set_machine(of.machine());
-    key_.set_control_token(of.control_token());
-    beat_.set_machine(of.machine());
-    beat_.set_control_token(of.control_token());
+    key_.set_machine(machine);
+    key_.set_control_token(token);
+    beat_.set_machine(machine);
+    beat_.set_control_token(token);
   }
 
   v1::PressPanelKeyRequest& key() { return key_; }
@@ -113,29 +111,13 @@ grpc::Status HoldOne(Keys& keys, const std::string& name, double seconds) {
   for (auto next = Clock::now(); next < until; next += kBetweenBeats) {
     std::this_thread::sleep_until(next);
     keys.beat().set_number(keys.beat().number() + 1);
-    // Not TimeUtil::GetCurrentTime(), which knows whole seconds alone.
-    *keys.beat().mutable_sent() = google::protobuf::util::TimeUtil::NanosecondsToTimestamp(
-        std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count());
+    *keys.beat().mutable_sent() = SentNow();
     grpc::ClientContext context;
     Prepare(context);
     v1::HeartbeatResponse heard;
     if (const grpc::Status held = keys.Beat(context, heard); !held.ok()) return held;
   }
   return PressOne(keys, name, v1::KEY_ACTION_RELEASE);
-}
-
-// Until the axes stand: whoever gives control back before is stopped by that.
-void AwaitRest(const Remote& remote, const MachineAct& act) {
-  constexpr int kLooksMax = 100;
-  v1::GetMachineRequest request;
-  request.set_name(FullName("machines", act.machine));
-  for (int look = 0; look < kLooksMax; ++look) {
-    v1::Machine machine;
-    if (!Call(remote, &Service::Stub::GetMachine, request, machine).ok()) return;
-    const v1::MachineState state = machine.status().state();
-    if (state != v1::MACHINE_STATE_JOGGING && state != v1::MACHINE_STATE_STOPPING) return;
-    std::this_thread::sleep_for(std::chrono::milliseconds(30));
-  }
 }
 
 // One after the other; the last one is held where that was asked for.
@@ -147,7 +129,7 @@ int PressAll(const Remote& remote, const MachineAct& act, Keys keys) {
     const grpc::Status done = held ? HoldOne(keys, act.values[i], act.held_s)
                                    : PressOne(keys, act.values[i], v1::KEY_ACTION_TAP);
     if (!done.ok()) return Refused(done, remote);
-    if (held) AwaitRest(remote, act);
+    if (held) AwaitRest(remote, act.machine);
   }
   return keys.Show();
 }
@@ -158,24 +140,11 @@ int PressKeys(const Remote& remote, const MachineAct& act) {
   constexpr int kControl_s = 60;
   const Control control(remote, act, kControl_s);
   if (!control.status().ok()) return Refused(control.status(), remote);
-  const auto channel = Connect(remote);
-  const auto handbox = v1::HandboxService::NewStub(channel);
-  v1::CreateHandboxSessionRequest open;
-  open.set_machine(FullName("machines", act.machine));
-  open.set_control_token(control.token());
-  v1::HandboxSession session;
-  grpc::ClientContext context;
-  Prepare(context);
-  if (!handbox->CreateHandboxSession(&context, open, &session).ok())
-    return PressAll(remote, act, PanelKeys(remote, open));
-  const int code = PressAll(remote, act, HandboxKeys(remote, session, control.token()));
-  v1::DeleteHandboxSessionRequest close;
-  close.set_name(session.name());
-  google::protobuf::Empty none;
-  grpc::ClientContext closing;
-  Prepare(closing);
-  static_cast<void>(handbox->DeleteHandboxSession(&closing, close, &none));
-  return code;
+  const std::string machine = FullName("machines", act.machine);
+  const HandboxSession handbox(Connect(remote), machine, control.token());
+  if (handbox.status().ok())
+    return PressAll(remote, act, HandboxKeys(remote, handbox.session(), control.token()));
+  return PressAll(remote, act, PanelKeys(remote, machine, control.token()));
 }
 
 }  // namespace rmlcell::cli

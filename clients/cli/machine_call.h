@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -22,15 +23,19 @@ int Show(const Remote& remote, const v1::MachineStatus& status);
 // When the control that was taken for it has been given back.
 int ShowOwn(const Remote& remote, v1::MachineStatus status);
 
+// Until the axes stand, 3 s at most: whoever gives control back before is stopped by that.
+void AwaitRest(const Remote& remote, const std::string& machine);
+
 // A call with one answer; the stub is made for it.
 template <class Request, class Response>
 grpc::Status Call(const Remote& remote,
                   grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
                                                         Response*),
-                  const Request& request, Response& response) {
+                  const Request& request, Response& response,
+                  std::chrono::seconds patience = kUnaryDeadline) {
   const auto stub = Service::NewStub(Connect(remote));
   grpc::ClientContext context;
-  Prepare(context);
+  Prepare(context, patience);
   return (stub.get()->*method)(&context, request, &response);
 }
 
@@ -46,10 +51,11 @@ Request For(const MachineAct& act) {
 class Control {
  public:
   // For so long at most; 0: for a moment.
-  Control(const Remote& remote, const MachineAct& act, int seconds = 0)
+  Control(const Remote& remote, const MachineAct& act, int seconds = 0,
+          const std::string& client = "rmlcell")
       : remote_(remote), act_(act) {
     auto request = For<v1::AcquireControlRequest>(act);
-    request.set_client("rmlcell");
+    request.set_client(client);
     if (seconds > 0) request.mutable_ttl()->set_seconds(seconds);
     request.set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);
     request.set_take_over(!act.take_over.empty());
@@ -64,7 +70,8 @@ class Control {
     request.set_machine(FullName("machines", act_.machine));
     request.set_control_token(token_);
     google::protobuf::Empty none;
-    static_cast<void>(Call(remote_, &Service::Stub::ReleaseControl, request, none));
+    static_cast<void>(
+        Call(remote_, &Service::Stub::ReleaseControl, request, none, kGivingBackPatience));
   }
   Control(const Control&) = delete;
   Control& operator=(const Control&) = delete;
@@ -72,7 +79,19 @@ class Control {
   const grpc::Status& status() const { return status_; }
   const std::string& token() const { return token_; }
 
+  // At a third of its time; so that it does not run out.
+  grpc::Status Renew(std::chrono::seconds patience) const {
+    v1::RenewControlRequest request;
+    request.set_machine(FullName("machines", act_.machine));
+    request.set_control_token(token_);
+    v1::RenewControlResponse renewed;
+    return Call(remote_, &Service::Stub::RenewControl, request, renewed, patience);
+  }
+
  private:
+  // Whoever ends is not kept by a server that has gone: control runs out by itself.
+  static constexpr std::chrono::seconds kGivingBackPatience{5};
+
   const Remote& remote_;
   const MachineAct& act_;
   grpc::Status status_;

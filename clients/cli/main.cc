@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "clients/cli/handbox_terminal.h"
 #include "clients/cli/local.h"
 #include "clients/cli/place_option.h"
 #include "clients/cli/remote.h"
@@ -466,6 +467,25 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
   AddQueueVerbs(app, remote, given, exit_code);
 }
 
+void AddHandboxVerb(CLI::App& app, Remote& remote, int& exit_code) {
+  auto request = std::make_shared<HandboxRequest>();
+  CLI::App* verb = app.add_subcommand(
+      "handbox", "The handbox of a machine that lives, on the whole terminal: keys and mouse");
+  verb->footer(
+      "Examples:\n"
+      "  rmlcell handbox optimo-1                       q or Ctrl-C quits; Space is STOP\n"
+      "  rmlcell handbox optimo-1 --take-over 'shift change'\n\n"
+      "The screen shows what to type for each key. A jog key or HOME moves axes while it is down by\n"
+      "mouse, or while it repeats on the keyboard: a tap moves nothing. The machine stops by itself\n"
+      "when this command, the terminal or the line to it is cut off.");
+  verb->add_option("MACHINE", request->machine)->required();
+  verb->add_option("--take-over", request->take_over,
+                   "why control is taken from whoever has it, for all to read");
+  verb->add_option("--server", remote.server,
+                   "host:port or unix:/path; default: RMLCELL_SERVER, or 127.0.0.1:50051");
+  verb->callback([request, &remote, &exit_code] { exit_code = Handbox(remote, *request); });
+}
+
 void AddReplayVerb(CLI::App& app, Remote& remote, int& exit_code) {
   auto request = std::make_shared<ReplayRequest>();
   CLI::App* verb = app.add_subcommand(
@@ -533,6 +553,7 @@ int main(int argc, char** argv) {
   AddProgramVerbs(app, remote, given, exit_code);
   AddProjectVerbs(app, remote, given, exit_code);
   AddMachineVerbs(app, remote, exit_code);
+  AddHandboxVerb(app, remote, exit_code);
   AddJobVerbs(app, remote, given, exit_code);
   AddProductVerbs(app, remote, given, exit_code);
   AddReplayVerb(app, remote, exit_code);

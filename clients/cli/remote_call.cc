@@ -11,8 +11,6 @@
 namespace rmlcell::cli {
 namespace {
 
-constexpr std::chrono::seconds kUnaryDeadline{60};
-
 // What makes the program be refused, each with code, place and advice; the rest is counted. The
 // message of the call says the first of it again, without its place.
 void ComplainOf(const v1::ErrorDetail& detail, const std::string& message) {
@@ -57,8 +55,8 @@ std::shared_ptr<grpc::Channel> Connect(const Remote& remote) {
   return grpc::CreateCustomChannel(remote.server, grpc::InsecureChannelCredentials(), arguments);
 }
 
-void Prepare(grpc::ClientContext& context) {
-  context.set_deadline(std::chrono::system_clock::now() + kUnaryDeadline);
+void Prepare(grpc::ClientContext& context, std::chrono::seconds patience) {
+  context.set_deadline(std::chrono::system_clock::now() + patience);
 }
 
 int Refused(const grpc::Status& status, const Remote& remote) {

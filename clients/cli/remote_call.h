@@ -2,6 +2,7 @@
 
 #include <grpcpp/grpcpp.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -13,7 +14,8 @@ namespace rmlcell::cli {
 std::shared_ptr<grpc::Channel> Connect(const Remote& remote);
 
 // A context with a deadline: unary calls never hang.
-void Prepare(grpc::ClientContext& context);
+inline constexpr std::chrono::seconds kUnaryDeadline{60};
+void Prepare(grpc::ClientContext& context, std::chrono::seconds patience = kUnaryDeadline);
 
 // Prints what the server said, findings included. Returns the exit code that fits.
 int Refused(const grpc::Status& status, const Remote& remote);

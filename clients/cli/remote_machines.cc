@@ -177,6 +177,21 @@ int ShowOwn(const Remote& remote, v1::MachineStatus status) {
   return Show(remote, status);
 }
 
+void AwaitRest(const Remote& remote, const std::string& machine) {
+  constexpr int kLooksMax = 100;
+  constexpr std::chrono::milliseconds kBetweenLooks{30};
+  constexpr std::chrono::seconds kPatience{5};
+  v1::GetMachineRequest request;
+  request.set_name(FullName("machines", machine));
+  for (int look = 0; look < kLooksMax; ++look) {
+    v1::Machine now;
+    if (!Call(remote, &Service::Stub::GetMachine, request, now, kPatience).ok()) return;
+    const v1::MachineState state = now.status().state();
+    if (state != v1::MACHINE_STATE_JOGGING && state != v1::MACHINE_STATE_STOPPING) return;
+    std::this_thread::sleep_for(kBetweenLooks);
+  }
+}
+
 int ShowMachine(const Remote& remote, const MachineAct& act) {
   v1::GetMachineRequest request;
   request.set_name(FullName("machines", act.machine));

@@ -97,6 +97,7 @@ _rmlcell_options() {
     watch) echo "$remote --after --strict" ;;
     jobs) echo "$remote --filter --order --limit" ;;
     picture | artifact) echo "$remote --output" ;;
+    handbox) echo "--help --take-over --server" ;;
     replay) echo "--help --server --from --to --output" ;;
     "projects list" | "projects show" | "projects create" | "projects update" | "projects delete" | "projects import")
       echo "--help" ;;
@@ -183,7 +184,7 @@ _rmlcell_positional() {
     "rml1 "*) _rmlcell_files .rml .prn ;;
     explain) _rmlcell_codes ;;
     parameters) [[ $count -eq 0 ]] && _rmlcell_offer optimo rml1 ;;
-    programs | stale) [[ $count -eq 0 ]] && _rmlcell_machines ;;
+    programs | stale | handbox) [[ $count -eq 0 ]] && _rmlcell_machines ;;
     put)
       case $count in
         0) _rmlcell_machines ;;
@@ -295,7 +296,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff rml1 lsp machines machine programs put get delete stale projects submit watch jobs job cancel hold resume move report picture artifact replay
+      diff rml1 lsp machines machine handbox programs put get delete stale projects submit watch jobs job cancel hold resume move report picture artifact replay
   else
     _rmlcell_positional
   fi

@@ -286,6 +286,7 @@ TEST(RpcCodes, OfEveryErrorThatIsNoWrongArgument) {
                                            {ErrorCode::kCellMachineState, 9},
                                            {ErrorCode::kCellMode, 9},
                                            {ErrorCode::kCellDisplaced, 9},
+                                           {ErrorCode::kCellNotArmed, 9},
                                            {ErrorCode::kCellStepUnreachable, 9},
                                            {ErrorCode::kCellApproach, 9},
                                            {ErrorCode::kCellDoorOpen, 9},
