@@ -20,6 +20,8 @@ state=$(mktemp -d)
 server=
 clean_up() {
   if [ -n "$server" ] && kill -0 "$server" 2>/dev/null; then
+    # Their hosts would outlive the server for a while.
+    for machine in mill-1 optimo-1; do rmlcell machine disable "$machine" >/dev/null 2>&1 || true; done
     kill "$server"
     wait "$server" 2>/dev/null || true
   fi
@@ -55,6 +57,7 @@ job() {  # machine, slot, program, picture
 }
 job mill-1 7 deploy/examples/coaster.rml build/quickstart/coaster.svg
 job optimo-1 12 deploy/examples/bracket.S build/quickstart/bracket.svg
+show rmlcell machine status mill-1  # it stands there between jobs
 
 say "It works. What to try next:"
 cat <<TEXT

@@ -208,7 +208,8 @@ struct JobRequest {
   std::vector<std::string> pools{""};
   // Of a RUN: those of these machines; empty: of all.
   std::vector<std::string> run_machines{};
-  // This one alone, though a person holds it; the events let it go.
+  // This one alone, though a person holds it. CellPrecondition: it waits for its time, or for
+  // another job.
   std::optional<std::int64_t> job{};
   int count = 1;
   std::chrono::milliseconds duration{0};  // of each lease

@@ -111,7 +111,8 @@ class Machine {
 
   // The how manieth pass through its step the run of its base was in at this time. Errors: as
   // Preview.
-  Result<std::uint64_t> OccurrenceAt(const StartAtStep& input, SimTime time) const;
+  Result<std::uint64_t> OccurrenceAt(const StartAtStep& input, SimTime time,
+                                     const ReachLimits& limits = {}) const;
 
   SimTime time() const { return now_; }
   MachineState state() const;

@@ -85,6 +85,8 @@ Status Machine::Act(const ResumeRun& input) {
     return {};
   }
   stopping_ = false;
+  // Whoever simulates it knows nothing of that, nor of a spindle that is started anew.
+  if (held_at_ || input.restore_process) base_.reset();
   held_at_.reset();
   ToRun(InputKind::kStart, 0, input.restore_process ? 1.0 : 0.0);
   return {};

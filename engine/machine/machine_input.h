@@ -181,4 +181,10 @@ using MachineInput =
                  SetSchedules, ClearMessage, StartAtStep, PressJog, ReleaseJog, ReleaseJogs,
                  PressedKey, RefuseEdit, SetGates, PressGate, PressPanel>;
 
+// Whether a run of a program begins with it.
+inline bool BeginsRun(const MachineInput& input) {
+  return std::holds_alternative<StartRun>(input) || std::holds_alternative<StartAtStep>(input) ||
+         std::holds_alternative<PressGate>(input);
+}
+
 }  // namespace rmlcell::machine

@@ -55,7 +55,10 @@ Status Machine::Act(const PressPanel& input) {
     SendTo(input.key);
     return {};
   }
-  return run_ != nullptr ? run_->SwitchSpindle() : standing_->PressPanel(input.key);
+  if (run_ == nullptr) return standing_->PressPanel(input.key);
+  const Status switched = run_->SwitchSpindle();
+  if (switched) base_.reset();  // a simulation knows nothing of that
+  return switched;
 }
 
 // VIEW a second time brings it back, as it came.

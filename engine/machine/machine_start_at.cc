@@ -50,8 +50,9 @@ Result<StartPreview> Machine::Preview(const StartAtStep& input, const ReachLimit
                       limits);
 }
 
-Result<std::uint64_t> Machine::OccurrenceAt(const StartAtStep& input, SimTime time) const {
-  return machine::OccurrenceAt(family_, SetupTo(input), input.target.at, time);
+Result<std::uint64_t> Machine::OccurrenceAt(const StartAtStep& input, SimTime time,
+                                            const ReachLimits& limits) const {
+  return machine::OccurrenceAt(family_, SetupTo(input), input.target.at, time, limits);
 }
 
 Status Machine::Act(const StartAtStep& input) {
@@ -74,15 +75,19 @@ void Machine::KeepForBase(const InputChange& change) {
     if (!by_key && !state.approaching) not_in_base_ += state.time - since;
     halted_at_.reset();
   }
-  if (!base_ || state.approaching || (goes_on && !by_key)) return;
+  // On the way to its entry keys halt what is no part of it.
+  const bool key = change.kind == InputKind::kStart || change.kind == InputKind::kHold ||
+                   change.kind == InputKind::kStop;
+  if (!base_ || (state.approaching && key) || (goes_on && !by_key)) return;
   if (base_->inputs.size() >= kKept) return base_.reset();
   base_->inputs.push_back(change);
-  base_->inputs.back().at = state.time - state.approached - not_in_base_;
+  base_->inputs.back().at = base_time();
 }
 
 SimTime Machine::base_time() const {
   RMLCELL_CHECK(run_ != nullptr);
   const RunState state = run_->state();
+  if (state.approaching) return note_.entered->run_time;
   const bool by_key = state.halted_by == HaltReason::kHold || state.halted_by == HaltReason::kStop;
   const bool stands = state.phase == RunPhase::kHalted && halted_at_ && !by_key;
   return (stands ? *halted_at_ : state.time) - state.approached - not_in_base_;

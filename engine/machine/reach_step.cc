@@ -211,7 +211,7 @@ StepsBehind LookBehind(const MachineFamily& family, const RunSetup& setup, const
 }
 
 Result<std::uint64_t> OccurrenceAt(const MachineFamily& family, const RunSetup& setup,
-                                   const ProgramStep& at, SimTime time) {
+                                   const ProgramStep& at, SimTime time, const ReachLimits& limits) {
   class Passes final : public RunObserver {
    public:
     explicit Passes(const ProgramStep& at) : at_(at) {}
@@ -228,8 +228,10 @@ Result<std::uint64_t> OccurrenceAt(const MachineFamily& family, const RunSetup& 
   if (!run) return run.error();
   std::optional<std::pair<SimTime, std::uint64_t>> started;
   for (;;) {
+    if (limits.go_on && !limits.go_on())
+      return Unreachable("where it was cut off takes longer than is looked for");
     const SimTime before = (*run)->state().time;
-    const RunPhase phase = (*run)->Advance(time);
+    const RunPhase phase = (*run)->Advance(std::min(time, Later(before, kSlice)));
     const SimTime now = (*run)->state().time;
     if (phase == RunPhase::kFinished || now >= time) break;
     if (phase == RunPhase::kRunning || now > before) continue;

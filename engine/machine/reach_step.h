@@ -62,9 +62,9 @@ StepsBehind LookBehind(const MachineFamily& family, const RunSetup& setup, const
                        const ReachLimits& limits);
 
 // The how manieth pass through the step a run was in at this time of its own; 0: it had not come
-// there. Errors: as ReachStep.
+// there. Errors: as ReachStep; CellStepUnreachable, it takes longer than is looked for.
 Result<std::uint64_t> OccurrenceAt(const MachineFamily& family, const RunSetup& setup,
-                                   const ProgramStep& at, SimTime time);
+                                   const ProgramStep& at, SimTime time, const ReachLimits& limits);
 
 // Goes on until `done`, which is asked between two calls of Advance, with START at every halt.
 enum class WayEnd { kDone, kFinished, kWaitsForEver, kGivenUp };

@@ -152,6 +152,8 @@ std::vector<ConfigKey> MakeKeys() {
       {"machines.hosts",
        "which virtual machines live when nobody has said so: all, or those that are enabled",
        RMLCELL_WORD(machines_hosts, "all", "enabled")},
+      {"machines.hosts_max", "machines that live at the same time, 0 to 10000",
+       RMLCELL_INTEGER(machines_hosts_max, 0, 10'000)},
       {"workers.count",
        "engine workers that the server starts, 0 to 256; -1: one per processor core",
        RMLCELL_INTEGER(workers_count, -1, 256)},

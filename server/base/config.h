@@ -29,10 +29,11 @@ struct Config {
   std::string state_directory;  // empty: $XDG_STATE_HOME/rmlcell, or ~/.local/state/rmlcell
   std::string store_url;        // "sqlite:/path/of/cell.db"; empty: cell.db in state_directory
 
-  std::string machines_hosts = "all";  // virtual machines that live: all, enabled
-  std::int64_t workers_count = -1;     // -1: one per processor core; 0: none of its own
-  std::int64_t workers_paced = 4;      // further ones, for simulations with a pace
-  std::string workers_program;         // empty: rmlcell-worker beside the server
+  std::string machines_hosts = "all";     // virtual machines that live: all, enabled
+  std::int64_t machines_hosts_max = 100;  // at the same time
+  std::int64_t workers_count = -1;        // -1: one per processor core; 0: none of its own
+  std::int64_t workers_paced = 4;         // further ones, for simulations with a pace
+  std::string workers_program;            // empty: rmlcell-worker beside the server
   std::string workers_join_token;  // empty: made anew at each start, known to its own workers only
   std::int64_t workers_lease_ms = 10'000;
 

@@ -226,12 +226,17 @@ void Cell::Parts::MakeHosts(const std::string& host_token) {
       .server = private_socket->address(),
       .join_token = host_token,
       .journals = config.state_directory + "/hosts",
+      .most = static_cast<std::size_t>(config.machines_hosts_max),
       .log_level = config.log_level,
       .log_format = config.log_format,
       .is_heard = [this](const std::string& machine) { return hosts->IsHeard(machine); },
       .look = LookAtMachines(),
-      .gave_up = [this](const std::string& machine,
-                        const std::string& why) { hosts->NoteOff(machine, why); }});
+      .gave_up =
+          [this](const std::string& machine, const std::string& why) {
+            // A person may have enabled it meanwhile, or an older host have come back.
+            if (!hosts->IsHeard(machine) && !host_processes->IsEnabled(machine))
+              hosts->NoteOff(machine, why);
+          }});
 }
 
 Status Cell::Parts::Listen(const std::string& join_token) {
@@ -410,8 +415,10 @@ Status Cell::Parts::StartHosts() {
     const Status enabled =
         host_processes->Enable(machine.id, had ? kHostsComeBack : std::chrono::milliseconds(0));
     if (enabled) continue;
-    if (had) return enabled.error();
+    const bool full = enabled.error().code == ErrorCode::kCellResourceExhausted;
+    if (had && !full) return enabled.error();
     spdlog::warn("{} does not live: {}", machine.id, bridge::ErrorText(enabled.error()));
+    if (full) break;
   }
   return {};
 }

@@ -263,8 +263,7 @@ Status HostMachine::MayApply(const machine::MachineInput& input) const {
   if (paused && !by_panel_ && std::holds_alternative<machine::ResumeRun>(input))
     return Error{ErrorCode::kCellMachineState, "it was paused at its panel: press CONTINUE", {}};
   if (!inspect_due_ || !machine().status().alarms.empty()) return {};
-  const bool starts = std::holds_alternative<machine::StartRun>(input) ||
-                      std::holds_alternative<machine::StartAtStep>(input);
+  const bool starts = machine::BeginsRun(input);
   const bool resumes = std::holds_alternative<machine::ResumeRun>(input);
   const bool aborts = std::holds_alternative<machine::AbortRun>(input);
   const auto* key = std::get_if<machine::PressedKey>(&input);
@@ -305,8 +304,7 @@ Status HostMachine::Act(const v1::HostOrder& order) {
 // It stands before what it leads to; of what is refused nothing does.
 Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrder* order) {
   const auto before = std::tuple(run_begun_, told_of_run_, held_for_);
-  const bool starts = std::holds_alternative<machine::StartRun>(input) ||
-                      std::holds_alternative<machine::StartAtStep>(input);
+  const bool starts = machine::BeginsRun(input);
   memory_changes_ += std::holds_alternative<machine::StoreProgram>(input) ||
                      std::holds_alternative<machine::DeleteProgram>(input) ||
                      std::holds_alternative<machine::SetSchedules>(input);
@@ -336,7 +334,8 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   applied.set_fence(setup_.fence);
   applied.set_virtual_time_ns(machine().time().count());
   *applied.mutable_input() = bridge::AppliedOf(input);
-  if (starts && !job_.empty()) applied.mutable_input()->mutable_start()->set_job(job_);
+  if (!job_.empty() && applied.input().has_start())
+    applied.mutable_input()->mutable_start()->set_job(job_);
   const bool of_queue =
       order != nullptr && (AssignmentOf(*order) != nullptr || !order->for_job().empty());
   applied.set_source(of_queue    ? v1::START_SOURCE_QUEUE
@@ -481,12 +480,13 @@ void HostMachine::Notice() {
     mark_due_ = true;
   }
   if (status.open) begun(*status.open);
-  if (const SimTime lost = driver_->TakeLost(); lost > SimTime(0) && status.open) {
+  const SimTime lost = driver_->TakeLost();
+  late_ = late_ || lost >= LateHold(setup_.options);
+  if (lost > SimTime(0) && status.open) {
     v1::ClockSlipped& slipped = *Add(status.time).mutable_clock_slipped();
     slipped.set_fence(setup_.fence);
     slipped.set_virtual_time_ns(status.time.count());
     slipped.set_lost_ns(lost.count());
-    late_ = late_ || lost >= LateHold(setup_.options);
   }
 }
 

@@ -54,6 +54,11 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
   mark_due_ = true;
   if (auto why = WhyNoJob(order.caller())) return *std::move(why);
   if (const Status may = MayStartJob(order); !may) return may.error();
+  if (!order.run_job().job().continues().empty()) {
+    return Error{ErrorCode::kCellPreviewStale,
+                 "decide again where " + order.run_job().job().continues() + " goes on",
+                 {}};
+  }
   const v1::WorkerAssignment& assignment = order.run_job();
   const v1::ControlLease::OnLoss armed_on_loss = arms_.on_loss();
   brought_.Clear();

@@ -56,7 +56,7 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
     auto copy = machine::Machine::Make(family, parameters, memory, state, nobody);
     if (!copy) return copy.error();
     if (occurrence_at) {
-      const auto in = (*copy)->OccurrenceAt(asked, *occurrence_at);
+      const auto in = (*copy)->OccurrenceAt(asked, *occurrence_at, limits);
       if (!in) return in.error();
       asked.target.occurrence = std::max<std::uint64_t>(1, *in);
     }
@@ -104,10 +104,9 @@ Status HostMachine::StartAt(const v1::HostOrder& order, const HostTime& now) {
   const bool decides = inspect_due_ && inspect_job_.empty() &&
                        std::ranges::find(request.confirmations(), v1::CONFIRMATION_INSPECTED) !=
                            request.confirmations().end();
-  if (decides) {
-    inspect_due_ = false;
-    start->halt_at_entry = !request.has_halt_at_entry() || request.halt_at_entry();
-  }
+  if (decides) inspect_due_ = false;
+  if (!request.has_halt_at_entry())
+    start->halt_at_entry = decides || setup_.options.halt_at_entry();
   Status begun = MayApply(*start);
   if (begun) begun = Apply(*start, &order);
   inspect_due_ = inspect_due_ || (decides && !begun);

@@ -19,7 +19,9 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
   }
   for (const v1::JournalEntry& entry : journal) {
     const std::string& job = entry.intent().input().start().job();
-    if (Number(entry.fence(), entry.sequence()) > newest && !job.empty()) found.begins = job;
+    if (Number(entry.fence(), entry.sequence()) <= newest || job.empty()) continue;
+    found.begins = job;
+    found.begins_at_step = entry.intent().input().start().has_step();
   }
   for (v1::JournalEntry& entry : journal) {
     const Number number{entry.fence(), entry.sequence()};
@@ -36,7 +38,7 @@ HostMachine::Setup SetupOf(Recovered found) {
     found.mark.set_job(found.begins);
     found.mark.set_run_time_ns(0);
     found.mark.clear_place();
-    found.mark.clear_base();
+    if (!found.begins_at_step) found.mark.clear_base();
   }
   HostMachine::Setup setup;
   setup.state = found.mark.state();

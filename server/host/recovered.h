@@ -14,6 +14,7 @@ struct Recovered {
   std::vector<v1::JournalEntry> untold{};
   // "jobs/17": a job that was about to begin behind the mark; empty: none was.
   std::string begins{};
+  bool begins_at_step = false;  // where another one was cut off, which the mark tells of
 };
 
 Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal);

@@ -15,6 +15,7 @@
 namespace rmlcell::server {
 namespace {
 
+constexpr int kNotMine = 3;                            // exit code of a host
 constexpr std::chrono::milliseconds kLookAtHosts{50};  // how soon a dead host is noticed
 
 }  // namespace
@@ -34,6 +35,12 @@ Status HostProcesses::Enable(const std::string& machine, std::chrono::millisecon
     return Error{
         ErrorCode::kCellConfiguration, options_.journals + ": " + std::strerror(errno), {}};
   const std::lock_guard lock(mutex_);
+  if (!places_.contains(machine) && places_.size() >= options_.most) {
+    return Error{
+        ErrorCode::kCellResourceExhausted,
+        std::to_string(options_.most) + " machines live, as many as machines.hosts_max allows",
+        {}};
+  }
   Place& place = places_[machine];
   place.wanted = true;
   place.ends.clear();
@@ -70,11 +77,18 @@ void HostProcesses::LookAt(const std::string& machine, Place& place) {
   if (place.process > 0 && ::waitpid(place.process, &how, WNOHANG) == place.process) {
     place.next_start = now + place.delay.AfterLife(now - place.started);
     place.process = -1;
-    const bool in_order = WIFEXITED(how) && WEXITSTATUS(how) == 0;
-    if (place.wanted && !in_order) NoteEnd(machine, place, how);
+    // In order, or because the machine is another host's: it is asked for again.
+    const bool fine = WIFEXITED(how) && (WEXITSTATUS(how) == 0 || WEXITSTATUS(how) == kNotMine);
+    if (place.wanted && !fine) NoteEnd(machine, place, how);
   }
   if (place.process > 0 || !place.wanted || now < place.next_start) return;
   if (options_.is_heard && options_.is_heard(machine)) return;
+  if (starts_left_ > 0) Start(machine, place);
+}
+
+void HostProcesses::Start(const std::string& machine, Place& place) {
+  --starts_left_;
+  const auto now = options_.clock();
   const Result<pid_t> process = StartChild(
       {options_.program, "--host", MachineName(machine), "--server", options_.server, "--journal",
        options_.journals + "/" + machine + ".journal", "--log-level", options_.log_level,
@@ -108,6 +122,7 @@ void HostProcesses::Watch(const std::stop_token& stop) {
   for (;;) {
     wanted_.wait(lock, stop, [this] { return !places_.empty(); });
     if (stop.stop_requested()) return;
+    starts_left_ = kStartsAtOnce;
     for (auto& [machine, place] : places_) LookAt(machine, place);
     std::erase_if(places_,
                   [](const auto& row) { return !row.second.wanted && row.second.process < 0; });

@@ -26,6 +26,7 @@ class HostProcesses {
     std::string server{};      // address that they connect to
     std::string join_token{};  // handed over in the environment, not on the command line
     std::string journals{};    // folder of their journals; made where it is missing
+    std::size_t most = 100;    // machines at the same time
     std::string log_level{};
     std::string log_format{};
     // Whether a host of the machine is heard, wherever it came from: then none is started.
@@ -38,6 +39,8 @@ class HostProcesses {
   // So many that died within that time are enough. LIVE-3.01
   static constexpr std::size_t kEndsMax = 5;
   static constexpr std::chrono::seconds kEndsWithin{60};
+  // So that those that are there go on undisturbed when a server with many begins.
+  static constexpr int kStartsAtOnce = 4;
 
   explicit HostProcesses(Options options);
   ~HostProcesses();  // the processes live on
@@ -45,7 +48,7 @@ class HostProcesses {
   HostProcesses& operator=(const HostProcesses&) = delete;
 
   // A process for the machine, now and whenever there is none; `after`: not before.
-  // Error: CellConfiguration, the program is not there.
+  // Errors: CellConfiguration, the program is not there; CellResourceExhausted.
   Status Enable(const std::string& machine, std::chrono::milliseconds after = {});
   // None any more; one that is there goes when its line tells it to.
   void Disable(const std::string& machine);
@@ -65,11 +68,13 @@ class HostProcesses {
   void Watch(const std::stop_token& stop);
   // Preconditions: mutex_ is held.
   void LookAt(const std::string& machine, Place& place);
+  void Start(const std::string& machine, Place& place);
   void NoteEnd(const std::string& machine, Place& place, int how);
 
   const Options options_;
   mutable std::mutex mutex_;
   std::map<std::string, Place> places_;          // by id of the machine; guarded by mutex_
+  int starts_left_ = kStartsAtOnce;              // in this round; guarded by mutex_
   std::map<std::string, std::string> given_up_;  // and why; not told yet; guarded by mutex_
   std::condition_variable_any wanted_;
   std::jthread watcher_;

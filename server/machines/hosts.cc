@@ -301,6 +301,11 @@ void Hosts::NoteOff(const std::string& machine, const std::string& why) {
   Changed();
 }
 
+void Hosts::ClearOff(const std::string& machine) {
+  const std::lock_guard lock(mutex_);
+  off_.erase(machine);
+}
+
 std::optional<Error> Hosts::WhyOff(const std::string& machine) const {
   const std::lock_guard lock(mutex_);
   const auto found = off_.find(machine);

@@ -70,6 +70,7 @@ class Hosts {
   void Forget(const std::string& machine);
   // The same, and why: told until it has one again.
   void NoteOff(const std::string& machine, const std::string& why);
+  void ClearOff(const std::string& machine);
   std::optional<Error> WhyOff(const std::string& machine) const;
   // From time to time: orders that nobody answers, lines that are silent.
   void Look();

@@ -36,12 +36,14 @@ std::string BytesOf(const v1::MachineOptions& options) {
   v1::MachineOptions stated = options;
   if (stated.start() == v1::MachineOptions::START_UNSPECIFIED)
     stated.set_start(v1::MachineOptions::START_QUEUE);
+  if (stated.enabled()) stated.clear_disabled();
   return bridge::StableBytes(stated);
 }
 
 bool IsEnabled(const storage::MachineRecord& record, bool by_default) {
   const auto options = OptionsOf(record);
-  return options ? options->enabled() : by_default;
+  if (!options || (!options->enabled() && !options->disabled())) return by_default;
+  return options->enabled();
 }
 
 Status CheckOptions(const v1::MachineOptions& options) {
@@ -52,8 +54,10 @@ Status CheckOptions(const v1::MachineOptions& options) {
   if (options.server_lost() == v1::MachineOptions::SERVER_LOST_FINISH)
     return Invalid("server_lost: FINISH is for machines with a device");
   if (options.pace() != v1::MachineOptions::PACE_UNSPECIFIED || options.has_lead() ||
-      options.has_lead_max() || options.hold() != v1::MachineOptions::DEVICE_HOLD_UNSPECIFIED)
-    return Invalid("pace, lead, lead_max and hold are for machines with a device");
+      options.has_lead_max() || options.hold() != v1::MachineOptions::DEVICE_HOLD_UNSPECIFIED ||
+      options.home() || options.unattended())
+    return Invalid(
+        "pace, lead, lead_max, hold, home and unattended are for machines with a device");
   if (const Status good = CheckTime(options.has_server_lost_after(), options.server_lost_after(),
                                     "server_lost_after");
       !good)

@@ -37,13 +37,19 @@ ErrorCode CodeOf(const v1::ErrorDetail& refusal) {
   return found.empty() ? ErrorCode::kCellInternal : found.front()->code;
 }
 
-// What was answered when it began, to whoever asks again: a begin, or why there was none.
-Result<v1::HostOrderAnswer> AsItBegan(const storage::JobRecord& job) {
+// Why a job that does not wait any more is not begun; nothing: it runs.
+std::optional<Error> WhyNotBegun(const storage::JobRecord& job) {
+  if (job.state == storage::JobState::kRunning) return std::nullopt;
   const auto& outcome = job.outcome;
   if (job.state == storage::JobState::kFailed && outcome && outcome->code &&
       Lookup(*outcome->code).family == ErrorFamily::kCell)
     return Error{*outcome->code, outcome->detail, {}};
-  return v1::HostOrderAnswer();
+  return Error{ErrorCode::kCellPrecondition, JobName(job.id) + " waits no more", {}};
+}
+
+bool Continues(const storage::JobRecord& job) {
+  v1::Job specification;
+  return specification.ParseFromString(job.specification) && !specification.continues().empty();
 }
 
 // Whether this is nothing to a job of this caller.
@@ -226,11 +232,10 @@ void RunQueue::BeginNext(const std::string& machine, const v1::MachineStatus& st
 
 // Where it goes on a person says, and nobody else. LIVE-2.05
 void RunQueue::Begin(const std::string& machine, const storage::LeasedJob& leased) {
-  v1::Job job;
-  if (job.ParseFromString(leased.job.specification) && !job.continues().empty()) {
+  if (Continues(leased.job)) {
     return End(leased, {.state = storage::JobState::kFailed,
                         .code = ErrorCode::kCellPreviewStale,
-                        .detail = "decide again where " + job.continues() + " goes on"});
+                        .detail = "decide again where it goes on"});
   }
   v1::HostOrder order;
   order.set_caller(leased.job.caller);
@@ -307,11 +312,26 @@ Result<v1::AssignedProgram> RunQueue::ProgramOf(std::int64_t job) {
 void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answered done) {
   const auto job = needs_.store.GetJob(id);
   if (!job) return done(job.error());
+  const bool continues = order.has_continue_job();
+  const auto status = needs_.hosts.StatusOf(job->machine);
+  if (job->state != storage::JobState::kQueued) {
+    if (auto why = WhyNotBegun(*job)) return done(*std::move(why));
+    v1::HostOrderAnswer begun;
+    if (status) *begun.mutable_status() = *status;
+    return done(std::move(begun));
+  }
+  // It waits for nobody else: it is over, or it stays as it is.
+  const auto refuse = [this, id, continues, &done](const Error& why) {
+    if (continues && !storage::IsTroubleOfTheStore(why))
+      static_cast<void>(
+          needs_.store.RequestCancel(id, {EndedEvent(ToProto(storage::CancelledOutcome()))}));
+    done(why);
+  };
   if (job->kind != storage::kRunKind)
     return done(Error{ErrorCode::kCellPrecondition, JobName(id) + " is no RUN", {}});
-  if (job->state != storage::JobState::kQueued) return done(AsItBegan(*job));
-  const auto status = needs_.hosts.StatusOf(job->machine);
-  if (!status) return done(Error{ErrorCode::kCellNotLive, job->machine + " has no host", {}});
+  if (!continues && Continues(*job))
+    return done(Error{ErrorCode::kCellPreviewStale, "decide again where it goes on", {}});
+  if (!status) return refuse({ErrorCode::kCellNotLive, job->machine + " has no host", {}});
   const auto leased =
       needs_.store.AcquireJobs({.worker = status->host(),
                                 .server = needs_.server,
@@ -319,10 +339,9 @@ void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answer
                                 .job = id,
                                 .duration = kWhileTheMachineIsHeld,
                                 .events = {StateEvent(storage::JobState::kRunning)}});
-  if (!leased) return done(leased.error());
+  if (!leased) return refuse(leased.error());
   if (leased->empty())
-    return done(Error{ErrorCode::kCellMachineState, "another job runs on " + job->machine, {}});
-  const bool continues = order.has_continue_job();
+    return refuse({ErrorCode::kCellMachineState, "another job runs on " + job->machine, {}});
   Send(job->machine, leased->front(), std::move(order),
        [this, machine = job->machine, leased = leased->front(), continues,
         done = std::move(done)](Result<v1::HostOrderAnswer> answer) {
@@ -334,7 +353,8 @@ void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answer
                           .code = CodeOf(answer->refusal()),
                           .detail = Detail(answer->refusal().message())});
            } else {
-             GiveBack(leased, answer->refusal().code() + ": " + answer->refusal().message());
+             // Nobody else lets it go: whoever began it may have pressed STOP since. LIVE-2.05
+             GiveBack(leased, answer->refusal().code() + ": " + answer->refusal().message(), true);
            }
            done(answer);
          });

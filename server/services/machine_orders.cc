@@ -1,5 +1,5 @@
 // What clients ask of machines that live: it goes to the host of the machine, and its answer comes
-// back. Nothing of it waits for the store.
+// back. Nothing of it waits for the store, but what begins with something that the store has.
 #include <spdlog/spdlog.h>
 
 #include <chrono>
@@ -382,6 +382,7 @@ grpc::Status MachineService::Enable(const std::string& machine, const std::strin
     return ToGrpcStatus(Error{ErrorCode::kCellNotLive, "this server starts no hosts", {}});
   if (const Status kept = KeepEnabled(machine, true, caller); !kept)
     return ToGrpcStatus(kept.error());
+  live_.hosts->ClearOff(machine);
   if (const Status enabled = live_.processes->Enable(machine); !enabled)
     return ToGrpcStatus(enabled.error());
   const auto until = std::chrono::steady_clock::now() + kBegins;
@@ -405,6 +406,7 @@ Status MachineService::KeepEnabled(const std::string& machine, bool enabled,
   if (stands == enabled) return {};
   v1::MachineOptions options = OptionsOf(*record).value_or(v1::MachineOptions());
   options.set_enabled(enabled);
+  options.set_disabled(!enabled);
   record->options = BytesOf(options);
   const auto put = store_.PutMachine(*record, record->revision, caller);
   return put ? Status() : Status(put.error());
@@ -415,6 +417,7 @@ Status MachineService::EndHost(const std::string& machine, const std::string& wh
   if (now && now->has_run())
     return Error{ErrorCode::kCellMachineState, "a run is open; abort it first", {}};
   live_.processes->Disable(machine);
+  live_.hosts->ClearOff(machine);
   live_.hosts->End(machine, why);
   const auto until = std::chrono::steady_clock::now() + kBegins;
   while (live_.hosts->IsHosted(machine) && std::chrono::steady_clock::now() < until)
@@ -433,6 +436,10 @@ void MachineService::FollowOptions(const storage::MachineRecord& machine) {
     done = EndHost(machine.id, "it was disabled");
   }
   if (!done) spdlog::warn("{}: {}", machine.id, bridge::ErrorText(done.error()));
+}
+
+void MachineService::Restore(const std::string& machine) {
+  if (const auto record = store_.GetMachine(machine)) FollowOptions(*record);
 }
 
 grpc::Status MachineService::Disable(const std::string& machine, const std::string& caller,

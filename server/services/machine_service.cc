@@ -125,7 +125,7 @@ grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerContext* context,
                                                         const v1::UpdateMachineRequest* request,
                                                         v1::Machine* response) {
-  return Answer(needs_, context, *request, "MachineService/UpdateMachine",
+  return Answer(needs_.Computing(), context, *request, "MachineService/UpdateMachine",
                 [this, request, response](const Caller& caller) {
                   const auto id = ParseMachineName(request->machine().name());
                   if (!id) return ToGrpcStatus(id.error());
@@ -172,6 +172,7 @@ grpc::ServerUnaryReactor* MachineService::DeleteMachine(grpc::CallbackServerCont
                   }
                   const Status deleted = store_.DeleteMachine(*id, *expected, caller.identity);
                   if (deleted && live_.processes != nullptr) live_.processes->Forget(*id);
+                  if (!deleted) Restore(*id);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });
 }

@@ -183,6 +183,7 @@ class MachineService final : public v1::MachineService::CallbackService {
   // It comes to rest and has no host any more. Error: CellMachineState, a run is open.
   Status EndHost(const std::string& machine, const std::string& why);
   void FollowOptions(const storage::MachineRecord& machine);
+  void Restore(const std::string& machine);  // it was not deleted after all
   grpc::Status TellStatus(const std::string& machine, v1::MachineStatus& status);
 
   CallNeeds needs_;

@@ -57,6 +57,10 @@ Result<std::optional<std::int64_t>> ThatOne(WriteContext& context, std::int64_t 
   const Result<JobRow> row = GetRow(context, job);
   if (!row) return row.error();
   if (row->job.state != JobState::kQueued) return std::optional<std::int64_t>();
+  if ((row->blocked & ~kBlockedByHold) != 0)
+    return Error{ErrorCode::kCellPrecondition,
+                 "job " + std::to_string(job) + " waits for its time, or for another job",
+                 {}};
   if (row->job.kind == kRunKind) {
     const auto running = context.tables.queue.RunningRun(row->job.machine);
     if (!running) return running.error();

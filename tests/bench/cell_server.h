@@ -62,8 +62,8 @@ class CellServer {
     if (process_ == 0) {
       execl(program.c_str(), program.c_str(), "--state.directory", (folder_ / "store").c_str(),
             "--listen.grpc", "127.0.0.1:0", "--listen.web", "127.0.0.1:0", "--log.file",
-            log.c_str(), "--jobs.queued_max", "1000000", "--machines.hosts", "enabled", "--workers.count",
-            std::to_string(workers).c_str(), nullptr);
+            log.c_str(), "--jobs.queued_max", "1000000", "--machines.hosts", "enabled",
+            "--workers.count", std::to_string(workers).c_str(), nullptr);
       _exit(127);
     }
     for (int tries = 0; tries < 300 && address_.empty(); ++tries) {

@@ -304,6 +304,9 @@ class RunsTest(LiveTestCase):
             self.assertEqual(detail_of(caught.exception).code, "CELL-E9428", detail_of(caught.exception))
         listed = self.cell.jobs().ListJobs(job_pb2.ListJobsRequest()).jobs
         self.assertEqual(sorted(job_pb2.Job.State.Name(one.state) for one in listed), ["STATE_FAILED", "STATE_INTERRUPTED"])
+        with self.assertRaises(grpc.RpcError) as caught:
+            self.live.ask("StartMachine", job=next(one.name for one in listed if one.continues))
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9428")
         self.assertEqual(MachineState.Name(self.live.status().state), "MACHINE_STATE_INSPECT")
 
     # LIVE-5.04, LIVE-9.13: jobs that a person starts, and jobs that their machine is armed for.
@@ -330,7 +333,8 @@ class RunsTest(LiveTestCase):
         lives_with("START_ARMED")
         name = self.submit()
         self.refused("CELL-E9406", "StartMachine", job=name)
-        self.assertEqual(self.state(name), "QUEUED")
+        self.assertEqual((self.state(name), self.job(name).held), ("QUEUED", True))  # nobody else begins it
+        self.order("ResumeJob", name)
         seen = ["CONFIRMATION_TOOL", "CONFIRMATION_ORIGIN_VALID", "CONFIRMATION_CLAMPS", "CONFIRMATION_COVER"]
         armed = self.live.ask("ArmMachine", job=name, confirmations=seen)
         self.assertTrue(armed.arm_token)

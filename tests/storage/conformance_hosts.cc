@@ -286,9 +286,16 @@ TEST_P(StoreConformance, OneJobIsLeasedByItsNumber) {
   Must(store().Finish(leased[0].lease, {.outcome = {.state = JobState::kSucceeded}}));
   EXPECT_EQ(lease(later).size(), 1U);
   EXPECT_EQ(Must(other().GetJob(first)).state, JobState::kQueued);
-  EXPECT_EQ(CodeOf(store().AcquireJobs(
-                {.worker = "w", .kinds = {"RUN"}, .job = 4711, .duration = seconds(60)})),
-            ErrorCode::kCellNotFound);
+  const auto code = [&](std::int64_t job) {
+    return CodeOf(store().AcquireJobs(
+        {.worker = "w", .kinds = {"RUN"}, .job = job, .duration = seconds(60)}));
+  };
+  EXPECT_EQ(code(4711), ErrorCode::kCellNotFound);
+  // One that waits for another one is begun by nobody.
+  const std::int64_t follower =
+      Must(store().SubmitAndWait({.machine = "m", .kind = "RUN", .held = true, .after = {first}}))
+          .job.id;
+  EXPECT_EQ(code(follower), ErrorCode::kCellPrecondition);
 }
 
 }  // namespace

@@ -245,10 +245,10 @@ TEST_F(ReachTest, WithRecordedInputs) {
 // LIVE-6.01: the pass that an interrupted run was in.
 TEST_F(ReachTest, TheOccurrenceOfARunThatWasCutOff) {
   const RunSetup setup = Setup({"100 DELAY 1\nVI[2]=VI[2]+1\nIF VI[2] < 5 THEN 100\n"});
-  EXPECT_EQ(*OccurrenceAt(family_, setup, {1, 1}, At(0.5)), 1U);
-  EXPECT_EQ(*OccurrenceAt(family_, setup, {1, 1}, At(2.5)), 3U);
-  EXPECT_EQ(*OccurrenceAt(family_, setup, {1, 2}, At(2.5)), 2U);
-  EXPECT_EQ(*OccurrenceAt(family_, setup, {1, 4}, At(2.5)), 0U);
+  EXPECT_EQ(*OccurrenceAt(family_, setup, {1, 1}, At(0.5), {}), 1U);
+  EXPECT_EQ(*OccurrenceAt(family_, setup, {1, 1}, At(2.5), {}), 3U);
+  EXPECT_EQ(*OccurrenceAt(family_, setup, {1, 2}, At(2.5), {}), 2U);
+  EXPECT_EQ(*OccurrenceAt(family_, setup, {1, 4}, At(2.5), {}), 0U);
 }
 
 }  // namespace

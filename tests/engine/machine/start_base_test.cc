@@ -138,6 +138,49 @@ TEST_F(StartBaseTest, ARunThatWasEnteredCanBeCutOffAgain) {
   EXPECT_EQ(machine->base()->machine_state, start.base->machine_state);
 }
 
+// LIVE-6.01: what comes while it stands at a breakpoint comes there, and what comes on the way to
+// an entry comes at the entry.
+TEST_F(StartBaseTest, InputsOfAHaltComeInTheHalt) {
+  Load({"DELAY 2\nVI[1]=1\nDELAY 5\nVI[2]=2\nDELAY 30\n"});
+  Good(SetBreakpoints{.breakpoints = {{.at = {1, 2}}}});
+  Start();
+  GoOn(At(50.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  const SimTime halted = machine->base_time();
+  EXPECT_LT(halted, At(3.0));
+  Good(Logical(3, true));
+  GoOn(At(60.0));
+  Good(ResumeRun{});
+  GoOn(At(61.0));
+  Good(HoldRun{});
+  const std::vector<InputChange>& inputs = machine->base()->inputs;
+  ASSERT_EQ(inputs.size(), 2U);
+  EXPECT_EQ(inputs[0].at, halted);
+  EXPECT_EQ(inputs[1].at, halted + At(1.0));
+}
+
+TEST_F(StartBaseTest, TheWayToAnEntryTakesNoTime) {
+  Load({"COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (521.02, 2201.2, -380., 0., 0.)\nDELAY 10\n"});
+  Start();
+  GoOn(At(5.0));
+  const StartAtStep start = Again(5);
+  machine = Found();
+  const Result<StartPreview> preview = machine->Preview(start);
+  ASSERT_TRUE(preview && preview->may_begin());
+  Good(start);
+  GoOn(machine->time() + At(0.5));
+  ASSERT_TRUE(machine->status().run.approaching);
+  EXPECT_EQ(machine->base_time(), preview->run_time);
+  Good(Logical(7, true));
+  Good(StopRun{});
+  GoOn(machine->time() + At(3.0));
+  Good(ResumeRun{});
+  ASSERT_EQ(machine->base()->inputs.size(), 1U);
+  EXPECT_EQ(machine->base()->inputs[0].at, preview->run_time);
+  while (machine->status().run.approaching) GoOn(machine->time() + At(0.01));
+  EXPECT_LT(machine->base_time() - preview->run_time, At(0.02));
+}
+
 // A run of nobody's program has none, and one to which more comes than is kept has none any more.
 TEST_F(StartBaseTest, KeepsAThousandInputs) {
   Load({"DELAY 100\n"});

@@ -159,8 +159,9 @@ void ExpectRows(std::initializer_list<MethodRow> rows) {
     EXPECT_EQ(access->needs_control() == v1::CONTROL_NEED_ALWAYS, row.token) << row.name;
     const auto* request = (*method)->input_type();
     EXPECT_EQ(request->FindFieldByName("request_id") != nullptr, row.id) << row.name;
-    if (row.token && !(*method)->client_streaming())
+    if (row.token && !(*method)->client_streaming()) {
       EXPECT_NE(request->FindFieldByName("control_token"), nullptr) << row.name;
+    }
   }
 }
 

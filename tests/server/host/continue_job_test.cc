@@ -185,5 +185,16 @@ TEST_F(ContinueJobTest, ARunOfNobodysJobGoesOnDirectly) {
   EXPECT_EQ(host_->StatusAt(now_).confirmations_due_size(), 0);
 }
 
+// LIVE-2.05, LIVE-5.10: a job that goes on with another one is begun from its top by nobody.
+TEST_F(ContinueJobTest, NobodyBeginsItFromItsTop) {
+  Make();
+  host_->Begin({}, now_);
+  v1::HostOrder order;
+  *order.mutable_run_job() = Assignment("jobs/18");
+  order.mutable_run_job()->mutable_job()->set_continues("jobs/17");
+  EXPECT_EQ(Do(order).refusal().code(), "CELL-E9428");
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

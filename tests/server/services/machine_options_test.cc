@@ -25,9 +25,14 @@ TEST(MachineOptions, WhoSaysWhetherAMachineLives) {
   EXPECT_FALSE(IsEnabled(record, false));
   record.options = BytesOf(v1::MachineOptions());
   ASSERT_TRUE(OptionsOf(record));
+  EXPECT_TRUE(IsEnabled(record, true));  // it says nothing of that
+  v1::MachineOptions disabled;
+  disabled.set_disabled(true);
+  record.options = BytesOf(disabled);
   EXPECT_FALSE(IsEnabled(record, true));
   v1::MachineOptions enabled;
   enabled.set_enabled(true);
+  enabled.set_disabled(true);
   record.options = BytesOf(enabled);
   EXPECT_TRUE(IsEnabled(record, false));
   EXPECT_EQ(OptionsOf(record)->start(), v1::MachineOptions::START_QUEUE);
@@ -43,7 +48,7 @@ TEST(MachineOptions, WhatAVirtualMachineHas) {
   EXPECT_TRUE(CheckOptions(options));
   const auto refused = [](const v1::MachineOptions& wrong) {
     const Status checked = CheckOptions(wrong);
-    return checked ? std::string("taken") : checked.error().detail;
+    return checked ? std::string("taken") : std::string(checked.error().detail);
   };
   v1::MachineOptions wrong = options;
   wrong.set_server_lost(v1::MachineOptions::SERVER_LOST_FINISH);

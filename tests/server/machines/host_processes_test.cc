@@ -1,0 +1,128 @@
+// Hosts as processes: started, started again, given up, and never more than there is room for
+// (live.md 3.01).
+#include "server/machines/host_processes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A host in place of the real one: a shell script that notes that it lives, then does `what`.
+class HostProcessesTest : public testing::Test {
+ protected:
+  HostProcesses::Options Options(const std::string& what, std::size_t most = 100) {
+    const std::string path = folder_.File("host");
+    std::ofstream(path) << "#!/bin/sh\necho $2 >> " << lives() << "\n" << what << "\n";
+    ::chmod(path.c_str(), 0700);
+    return {.program = path,
+            .server = "127.0.0.1:1",
+            .join_token = "secret",
+            .journals = folder_.File("journals"),
+            .most = most,
+            .log_level = "info",
+            .log_format = "json",
+            .gave_up =
+                [this](const std::string& machine, const std::string& why) {
+                  const std::lock_guard lock(mutex_);
+                  given_up_.push_back(machine + ": " + why);
+                },
+            .clock = steady_.clock()};
+  }
+  std::string lives() { return folder_.File("lives"); }
+  // So many were started of this machine.
+  int Lives(const std::string& machine) {
+    std::ifstream file(lives());
+    int count = 0;
+    for (std::string line; std::getline(file, line);) count += line == "machines/" + machine;
+    return count;
+  }
+  std::vector<std::string> GivenUp() {
+    const std::lock_guard lock(mutex_);
+    return given_up_;
+  }
+  // The clock goes on until there are so many; each dies at once.
+  bool LivesBecome(const std::string& machine, int count) {
+    return Eventually([&] {
+      steady_.Advance(std::chrono::milliseconds(500));
+      return Lives(machine) >= count;
+    });
+  }
+
+  TestSteadyClock steady_;
+  storage::TestDirectory folder_;
+  std::mutex mutex_;
+  std::vector<std::string> given_up_;
+};
+
+// LIVE-3.01: five that died within a minute are enough, and a person lets it live again.
+TEST_F(HostProcessesTest, OneThatDiesAndDiesIsGivenUp) {
+  HostProcesses processes(Options("exit 3"));
+  ASSERT_TRUE(processes.Enable("mill-1"));
+  ASSERT_TRUE(LivesBecome("mill-1", 5));
+  ASSERT_TRUE(Eventually([&] { return !GivenUp().empty(); }));
+  EXPECT_THAT(GivenUp()[0], HasSubstr("mill-1: its host ended 5 times within a minute"));
+  EXPECT_THAT(GivenUp()[0], HasSubstr("code 3"));
+  EXPECT_FALSE(processes.IsEnabled("mill-1"));
+  steady_.Advance(std::chrono::seconds(100));
+  ASSERT_TRUE(steady_.GoneRound());
+  EXPECT_EQ(Lives("mill-1"), 5);
+  ASSERT_TRUE(processes.Enable("mill-1"));
+  EXPECT_TRUE(LivesBecome("mill-1", 9));
+  EXPECT_TRUE(processes.IsEnabled("mill-1"));
+}
+
+// LIVE-3.01: an end in order counts for nothing, and neither do deaths that lie apart.
+TEST_F(HostProcessesTest, EndsThatAreNoTroubleAreNotCounted) {
+  HostProcesses processes(Options("exit 0"));
+  ASSERT_TRUE(processes.Enable("mill-1"));
+  EXPECT_TRUE(LivesBecome("mill-1", 8));
+  EXPECT_THAT(GivenUp(), IsEmpty());
+}
+
+TEST_F(HostProcessesTest, DeathsThatLieApartAreNotCounted) {
+  HostProcesses processes(Options("exit 3"));
+  ASSERT_TRUE(processes.Enable("mill-1"));
+  for (int lives = 1; lives <= 8; ++lives) {
+    ASSERT_TRUE(Eventually([&] { return Lives("mill-1") >= lives; }));
+    ASSERT_TRUE(steady_.GoneRound());
+    steady_.Advance(std::chrono::seconds(20));
+  }
+  EXPECT_THAT(GivenUp(), IsEmpty());
+}
+
+// As many as there is room for; one that is there already is no further one.
+TEST_F(HostProcessesTest, NoMoreThanThereIsRoomFor) {
+  HostProcesses processes(Options("echo $$ >> " + folder_.File("pids") + "; exec sleep 60", 2));
+  ASSERT_TRUE(processes.Enable("a"));
+  ASSERT_TRUE(processes.Enable("b"));
+  EXPECT_EQ(CodeOf(processes.Enable("c")), ErrorCode::kCellResourceExhausted);
+  EXPECT_TRUE(processes.Enable("a"));
+  ASSERT_TRUE(Eventually([&] { return Lives("a") == 1 && Lives("b") == 1; }));
+  EXPECT_EQ(Lives("c"), 0);
+  ASSERT_TRUE(Eventually([&] {
+    std::ifstream pids(folder_.File("pids"));
+    int count = 0;
+    for (std::string line; std::getline(pids, line);) ++count;
+    return count == 2;
+  }));
+  std::ifstream file(folder_.File("pids"));
+  for (pid_t process = 0; file >> process;) ::kill(process, SIGKILL);
+}
+
+}  // namespace
+}  // namespace rmlcell::server
