@@ -507,8 +507,8 @@ std::optional<machine::KeyAction> ActionOf(v1::KeyAction action) {
 
 std::optional<machine::PanelKey> PanelKeyOf(std::string_view name) {
   using machine::PanelKey;
-  for (const PanelKey key : {PanelKey::kView, PanelKey::kSpindle, PanelKey::kZ0, PanelKey::kOrigin,
-                             PanelKey::kHome}) {
+  for (const PanelKey key :
+       {PanelKey::kView, PanelKey::kSpindle, PanelKey::kZ0, PanelKey::kOrigin, PanelKey::kHome}) {
     if (machine::Name(key) == name) return key;
   }
   return std::nullopt;

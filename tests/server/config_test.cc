@@ -48,7 +48,7 @@ std::vector<KeyCase> AllKeys() {
       {"web.connections_max", "10", "100000", "100000", {"9", "100001", "ten", ""}, no_integer},
       {"state.directory", "'/a b'", "/a \"b\"", R"("/a \"b\"")", {}, no_text},
       {"store.url", "'sqlite:/a'", "sqlite:/b", R"("sqlite:/b")", {}, no_text},
-      {"machines.hosts", "'enabled'", "all", R"("all")", {"none", "ALL", ""}, no_text},
+      {"machines.hosts", "'all'", "enabled", R"("enabled")", {"none", "ALL", ""}, no_text},
       {"machines.hosts_max", "0", "10000", "10000", {"-1", "10001"}, no_integer},
       {"workers.count", "-1", "256", "256", {"-2", "257", "2.5", "0x10", " 3"}, no_integer},
       {"workers.paced", "0", "256", "256", {"-1", "257", "2.5"}, no_integer},

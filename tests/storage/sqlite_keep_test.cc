@@ -182,7 +182,7 @@ TEST_F(SqliteKeep, OldStoreGetsItsMarks) {
       "ALTER TABLE job DROP COLUMN held; ALTER TABLE job DROP COLUMN not_before;"
       "ALTER TABLE job DROP COLUMN blocked; ALTER TABLE job DROP COLUMN family;"
       "ALTER TABLE job DROP COLUMN outcome_verdict; DROP TABLE machine_lock;"
-      "DROP TABLE machine_mark; DROP TABLE upload; ALTER TABLE machine ADD COLUMN state BLOB;"
+      "DROP TABLE machine_mark; DROP TABLE upload; DROP TABLE taught; ALTER TABLE machine DROP COLUMN options; ALTER TABLE machine ADD COLUMN state BLOB;"
       "ALTER TABLE machine ADD COLUMN state_blob INTEGER;"
       "ALTER TABLE job DROP COLUMN labels; ALTER TABLE artifact DROP COLUMN sha256; ALTER TABLE artifact DROP COLUMN size;"
       "ALTER TABLE job_specification DROP COLUMN attachment;"

@@ -54,6 +54,9 @@ def code(cell):
 KEYS = {code(row[0]): {"environment": code(row[1]), "default": code(row[2]), "allowed": row[3]}
         for row in rows("| key | environment |")}
 
+# Keys that take one of some words.
+WORDS = ("log.level", "log.format", "machines.hosts")
+
 
 class Page(unittest.TestCase):
     def test_every_key_of_the_server_stands_on_the_page_and_no_other(self):
@@ -110,7 +113,7 @@ class Page(unittest.TestCase):
         self.assertGreaterEqual(ranges, 13)
 
     def test_every_word_is_taken_and_another_refused(self):
-        for name in ("log.level", "log.format"):
+        for name in WORDS:
             for word in KEYS[name]["allowed"].split(", "):
                 self.assertEqual(configure(f"--{name}", word).returncode, 0, word)
             self.assertEqual(configure(f"--{name}", "loud").returncode, 78)
@@ -176,7 +179,7 @@ class Page(unittest.TestCase):
             bounds = [type(default)(float(bound)) for bound in match.groups()]
             other = next(bound for bound in bounds if bound != default)
             return str(other), other
-        if name in ("log.level", "log.format"):
+        if name in WORDS:
             other = next(word for word in row["allowed"].split(", ") if word != default)
             return other, other
         return "/some/where", "/some/where"
