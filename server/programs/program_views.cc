@@ -18,7 +18,7 @@ constexpr int kThumbnailMax_px = 400;  // narrower ones show one view
 // Of real time; what is drawn until then is what there is to see.
 constexpr std::chrono::seconds kFollowedFor{5};
 
-struct Followed {
+struct FollowedProgram {
   simulation::SimulationResult result;
   bool complete = false;
 };
@@ -38,8 +38,8 @@ Result<machine::RunSetup> SetupOf(const ProgramBook::Opened& opened) {
 }
 
 // A halt lasts no longer than it takes to press START.
-Result<Followed> Follow(const machine::MachineFamily& family, machine::RunSetup setup,
-                        simulation::SimulationRequest request) {
+Result<FollowedProgram> Follow(const machine::MachineFamily& family, machine::RunSetup setup,
+                               simulation::SimulationRequest request) {
   const auto until = std::chrono::steady_clock::now() + kFollowedFor;
   request.options = {.at_halt = simulation::AtHalt::kStart,
                      .progress = [until](const simulation::Progress&) {
@@ -51,7 +51,7 @@ Result<Followed> Follow(const machine::MachineFamily& family, machine::RunSetup 
   const machine::OutcomeKind how = result->report.outcome.kind;
   const bool complete =
       how != machine::OutcomeKind::kCancelled && how != machine::OutcomeKind::kBudgetExceeded;
-  return Followed{*std::move(result), complete};
+  return FollowedProgram{*std::move(result), complete};
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ Result<ProgramViews::Drawing> ProgramViews::Prepare(const v1::GetProgramPictureR
   const auto shared = std::make_shared<machine::RunSetup>(*std::move(setup));
   return Drawing{.etag = etag,
                  .draw = [&family, shared, asked, etag]() -> Result<v1::GetProgramPictureResponse> {
-                   Result<Followed> followed = Follow(family, std::move(*shared), asked);
+                   Result<FollowedProgram> followed = Follow(family, std::move(*shared), asked);
                    if (!followed) return followed.error();
                    v1::GetProgramPictureResponse response;
                    response.set_content(std::move(followed->result.svg));
@@ -101,11 +101,11 @@ Result<ProgramViews::Toolpath> ProgramViews::Path(const v1::StreamProgramToolpat
   if (!setup) return setup.error();
   Toolpath path;
   const simulation::ToolpathOptions options;
-  Result<Followed> followed = Follow(*opened->memory.family, *std::move(setup),
-                                     {.products = {.toolpath = [&](std::string_view block) {
-                                        bridge::AddFrame(block, path.frames);
-                                        return true;
-                                      }}});
+  Result<FollowedProgram> followed = Follow(*opened->memory.family, *std::move(setup),
+                                            {.products = {.toolpath = [&](std::string_view block) {
+                                               bridge::AddFrame(block, path.frames);
+                                               return true;
+                                             }}});
   if (!followed) return followed.error();
   const v1::RunReport report =
       bridge::ToProto(opened->memory.family->info(), followed->result.report, {});

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,19 +10,13 @@
 #include "engine/machine/handbox.h"
 #include "engine/machine/run.h"
 #include "engine/machine/standing.h"
+#include "server/records/machine_messages.h"
 
 namespace rmlcell::server {
 namespace {
 
 constexpr double kOverrideApart_percent = 15.0;  // OPT-4.34, and the panels of mills have the same
 constexpr std::string_view kAxes = "XYZAB";      // as HandMotion counts them
-
-std::vector<std::string> WordsOf(std::string_view text) {
-  std::istringstream stream{std::string(text)};
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
 
 void AddJog(const machine::FamilyInfo& info, const machine::Standing& standing,
             v1::MachineCapabilities& capabilities) {

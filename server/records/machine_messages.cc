@@ -20,13 +20,6 @@ namespace {
 constexpr std::array<std::string_view, 4> kMachineFields = {"title", "profile", "parameters",
                                                             "options"};
 
-std::vector<std::string> WordsOf(std::string_view text) {
-  std::vector<std::string> words;
-  std::istringstream stream{std::string(text)};
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
 v1::ParameterInfo ToProto(const machine::ParameterInfo& info) {
   v1::ParameterInfo message;
   message.set_name(std::string(info.name));
@@ -44,6 +37,13 @@ v1::ParameterInfo ToProto(const machine::ParameterInfo& info) {
 }
 
 }  // namespace
+
+std::vector<std::string> WordsOf(std::string_view text) {
+  std::vector<std::string> words;
+  std::istringstream stream{std::string(text)};
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
 
 v1::Family ToProto(const machine::MachineFamily& family) {
   const machine::FamilyInfo& info = family.info();

@@ -21,6 +21,9 @@ namespace rmlcell::server {
 // As workers and hosts are told of it.
 v1::AssignedSchedule ToAssigned(const storage::ScheduleRecord& schedule);
 
+// "X Y Z": each of them.
+std::vector<std::string> WordsOf(std::string_view text);
+
 v1::Family ToProto(const machine::MachineFamily& family);
 v1::Machine ToProto(const storage::MachineRecord& record);
 // With what its jobs do, of those that Store::UnfinishedJobs gave.

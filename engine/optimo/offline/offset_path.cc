@@ -15,7 +15,7 @@ constexpr double kTangent = 1.0 - 1e-9;  // n1 . n2 of a joint without a corner
 constexpr double kNoRadius = 5e-6;       // half of the last decimal written (OPT-8.11)
 constexpr double kInPlane = 1.0 - 1e-6;  // cosine between the axis of an arc and the tool
 
-ProgramVector Unit(const ProgramVector& v) {
+ProgramVector Normalised(const ProgramVector& v) {
   const double norm = v.norm();
   return norm < kTiny ? ProgramVector{} : v * (1.0 / norm);
 }
@@ -61,7 +61,7 @@ std::optional<PlaneVector> NearestMeeting(const PlaneCurve& a, const PlaneCurve&
 // Towards the centre: the offset makes the arc smaller.
 double OffsetRadius(const Leg& arc, const ProgramVector& at, const ProgramVector& normal,
                     double offset) {
-  const ProgramVector inward = Unit(arc.centre - at);
+  const ProgramVector inward = Normalised(arc.centre - at);
   return arc.radius - offset * normal.dot(inward);
 }
 
@@ -100,7 +100,7 @@ std::optional<ProgramVector> Corner(const Leg& before, const Leg& after, double 
   const bool arc = before.is_arc || after.is_arc;
   if (arc && cosine < kTangent && InPlane(before, before.tangent_to, tool) &&
       InPlane(after, after.tangent_from, tool)) {
-    const ProgramVector ahead = Unit(before.tangent_to);
+    const ProgramVector ahead = Normalised(before.tangent_to);
     const CornerPlane plane{.corner = before.to, .ex = ahead, .ey = tool.cross(ahead)};
     const auto meeting = NearestMeeting(CurveOf(before, plane, before.tangent_to, n1, offset),
                                         CurveOf(after, plane, after.tangent_from, n2, offset));
@@ -124,7 +124,7 @@ bool ArcIsConsumed(const Leg& leg, double offset) {
 
 ProgramVector LeftNormal(const ProgramVector& tool, const ProgramVector& tangent) {
   const ProgramVector side = tool.cross(tangent);
-  return side.norm() < 1e-6 ? ProgramVector{} : Unit(side);
+  return side.norm() < 1e-6 ? ProgramVector{} : Normalised(side);
 }
 
 void Prepare(Leg& leg) {
@@ -138,10 +138,10 @@ void Prepare(Leg& leg) {
       const ProgramVector to_centre = normal.cross(p * q.dot(q) - q * p.dot(p)) * (0.5 / area2);
       leg.is_arc = true;
       leg.centre = leg.from + to_centre;
-      leg.axis = Unit(normal);
+      leg.axis = Normalised(normal);
       leg.radius = to_centre.norm();
       const auto tangent = [&](const ProgramVector& at) {
-        return Unit(leg.axis.cross(at - leg.centre));
+        return Normalised(leg.axis.cross(at - leg.centre));
       };
       leg.tangent_from = tangent(leg.from);
       leg.tangent_via = tangent(*leg.via);
@@ -149,12 +149,12 @@ void Prepare(Leg& leg) {
       return;
     }
   }
-  leg.tangent_from = leg.tangent_to = leg.tangent_via = Unit(leg.to - leg.from);
+  leg.tangent_from = leg.tangent_to = leg.tangent_via = Normalised(leg.to - leg.from);
 }
 
 double ShareAtVia(const Leg& leg) {
   if (!leg.is_arc) return 0.5;
-  const ProgramVector e = Unit(leg.from - leg.centre), f = leg.axis.cross(e);
+  const ProgramVector e = Normalised(leg.from - leg.centre), f = leg.axis.cross(e);
   const auto angle = [&](const ProgramVector& at) {
     const double turned = std::atan2((at - leg.centre).dot(f), (at - leg.centre).dot(e));
     return turned > 0.0 ? turned : turned + 2.0 * std::numbers::pi;
@@ -164,9 +164,9 @@ double ShareAtVia(const Leg& leg) {
 
 std::optional<ProgramVector> HoleEnd(const ProgramVector& from, const ProgramVector& centre,
                                      const ProgramVector& beside, double radius) {
-  const ProgramVector axis = Unit(beside - centre);
+  const ProgramVector axis = Normalised(beside - centre);
   const ProgramVector out = from - centre;
-  const ProgramVector towards = Unit(out - axis * out.dot(axis));
+  const ProgramVector towards = Normalised(out - axis * out.dot(axis));
   if (IsZero(axis) || IsZero(towards)) return std::nullopt;
   return centre + towards * radius;
 }
