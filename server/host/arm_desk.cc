@@ -1,17 +1,14 @@
 #include "server/host/arm_desk.h"
 
-#include <google/protobuf/util/time_util.h>
-
 #include <algorithm>
 #include <array>
 #include <utility>
 
 #include "server/base/secret.h"
+#include "server/host/host_options.h"
 
 namespace rmlcell::server {
 namespace {
-
-using google::protobuf::util::TimeUtil;
 
 Error NotArmed(std::string detail) { return {ErrorCode::kCellNotArmed, std::move(detail), {}}; }
 
@@ -32,7 +29,7 @@ Result<v1::ArmMachineResponse> ArmDesk::Arm(const v1::ArmMachineRequest& request
                                             std::uint64_t memory, const HostTime& now) {
   std::chrono::nanoseconds lasts = kLasts;
   if (request.has_armed_for()) {
-    lasts = std::chrono::nanoseconds(TimeUtil::DurationToNanoseconds(request.armed_for()));
+    lasts = DurationOf(request.armed_for());
     if (lasts < std::chrono::seconds(1) || lasts > kLongest)
       return Error{ErrorCode::kCellInvalidArgument, "armed_for: 1 s to 600 s", {}};
   }
@@ -56,12 +53,11 @@ Result<v1::ArmMachineResponse> ArmDesk::Arm(const v1::ArmMachineRequest& request
   return response;
 }
 
-bool ArmDesk::Expire(std::int64_t control_lease, std::uint64_t memory, const HostTime& now) {
-  if (!armed_) return false;
+void ArmDesk::Expire(std::int64_t control_lease, std::uint64_t memory, const HostTime& now) {
+  if (!armed_) return;
   const bool stands = now.steady < armed_->until && control_lease == armed_->control_lease &&
                       memory == armed_->memory;
   if (!stands) armed_.reset();
-  return !stands;
 }
 
 Status ArmDesk::MayStart(const std::string& job, const std::optional<std::string>& token) const {

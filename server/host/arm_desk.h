@@ -27,8 +27,8 @@ class ArmDesk {
                                      const std::string& caller, std::int64_t control_lease,
                                      std::uint64_t memory, const HostTime& now);
   void Disarm() { armed_.reset(); }
-  // Whether it is over by now: time, another control lease, another memory. True: it has ended.
-  bool Expire(std::int64_t control_lease, std::uint64_t memory, const HostTime& now);
+  // It is over by time, with another control lease, with another memory.
+  void Expire(std::int64_t control_lease, std::uint64_t memory, const HostTime& now);
 
   // Error: CellNotArmed. `token`: of the person who starts it; none: the queue does.
   Status MayStart(const std::string& job, const std::optional<std::string>& token) const;

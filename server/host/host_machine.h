@@ -61,7 +61,6 @@ class HostMachine : private machine::RunObserver {
   struct PreviewTask {
     machine::StartAtStep start{};
     StartDesk::Basis basis{};
-    std::optional<SimTime> occurrence_at{};  // the occurrence is that which its base was in then
     std::function<Result<machine::StartPreview>(machine::StartAtStep& start,
                                                 const machine::ReachLimits&)>
         run{};

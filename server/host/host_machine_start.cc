@@ -34,11 +34,13 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
   auto start = StartOf(request, machine());
   if (!start) return start.error();
   PreviewTask task{.start = *std::move(start), .basis = Basis()};
+  std::optional<SimTime> occurrence_at;
   if (again) {
     auto base = bridge::FromProto(*cut_off_base_);
     if (!base) return base.error();
     task.start.base = *std::move(base);
-    if (request.occurrence() == 0) task.occurrence_at = SimTime(cut_off_base_->until_ns());
+    // The pass that it was in.
+    if (request.occurrence() == 0) occurrence_at = SimTime(cut_off_base_->until_ns());
   }
   if (again && order.has_brought()) {
     auto brought = recording::ProgramOf(order.brought(), *setup_.family, *parameters_);
@@ -49,9 +51,9 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
     if (!same) task.start.brought = *std::move(brought);
   }
   task.run = [&family = *setup_.family, parameters = *parameters_, memory = machine().memory(),
-              state = machine().Save(), occurrence_at = task.occurrence_at](
-                 machine::StartAtStep& asked,
-                 const machine::ReachLimits& limits) -> Result<machine::StartPreview> {
+              state = machine().Save(),
+              occurrence_at](machine::StartAtStep& asked,
+                             const machine::ReachLimits& limits) -> Result<machine::StartPreview> {
     machine::RunObserver nobody;
     auto copy = machine::Machine::Make(family, parameters, memory, state, nobody);
     if (!copy) return copy.error();

@@ -159,7 +159,9 @@ Result<v1::TeachEntry> TeachBook::TakeBack(const v1::UndoTeachEntriesRequest& re
 
 Result<v1::TeachEntry> TeachBook::Carry(const Undo& undo, const std::string& caller) {
   storage::Revision after = 0;
-  if (undo.object.empty()) {
+  if (undo.object.empty() && undo.expected == 0) {
+    // It was made and removed since: there is nothing to change.
+  } else if (undo.object.empty()) {
     if (const Status gone = store_.DeleteProgram(undo.machine, undo.program, undo.expected, caller);
         !gone)
       return gone.error();

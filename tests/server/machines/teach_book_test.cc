@@ -88,6 +88,19 @@ TEST_F(TeachBookTest, WhatWasTaughtIsTakenBack) {
   EXPECT_EQ(CodeOf(book.TakeBack(DownTo(99), "anna")), ErrorCode::kCellNotFound);
 }
 
+// LIVE-7.09: of a program that was made and removed there is nothing to change, and it is an entry.
+TEST_F(TeachBookTest, WhatWasMadeAndRemovedIsTakenBack) {
+  v1::TeachEntry entry;
+  entry.mutable_step()->set_program(12);
+  entry.set_act(v1::TeachEntry::ACT_CREATE);
+  Must(book.Add("optimo-1", entry, 0, 1));
+  entry.set_act(v1::TeachEntry::ACT_REMOVE);
+  entry.set_before("     DELAY 9.0\n");
+  Must(book.Add("optimo-1", entry, 1, 0));
+  EXPECT_EQ(Must(book.TakeBack(DownTo(1), "anna")).number(), 3);
+  EXPECT_EQ(Revision(), 0);
+}
+
 // LIVE-7.09: not over a change that somebody else made.
 TEST_F(TeachBookTest, AnotherChangeIsNotTakenBack) {
   Stored("DELAY 9.0\n");
