@@ -67,13 +67,23 @@ void AddActs(MachineVerbs& verbs) {
   verbs.Add("watch", "Follow a machine", WatchMachine);
   verbs.Add("enable", "Switch a machine on: it lives from here on", EnableMachine);
   verbs.Add("disable", "Switch a machine off", DisableMachine);
+  verbs
+      .Add("options", "Show how a machine lives, or change that: who starts jobs, what halts it",
+           MachineOptions)
+      ->add_option("VALUES", given.values,
+                   "such as start=person, ticket-needed=on, server-lost=go-on, late-hold=2 (s)");
+  CLI::App* take =
+      verbs.Add("take", "Give a machine to another computer, whoever is its host", TakeMachine);
+  take->add_option("--reason", given.reason, "why, for all to read")->required();
+  take->add_option("--computer", given.computer, "whose host gets it; default: this one");
   verbs.Add("hold", "Let a run come to rest after the present instruction", HoldMachine);
   verbs.Add("stop", "Let a run come to rest at once, on its path", StopMachine);
   verbs.Add("emergency-stop", "End the run; the machine is in alarm", EmergencyStopMachine);
   verbs.Add("abort", "End the run that is open", AbortRun);
-  verbs.AddControlled("start", "Start a stored program, or the selected one", StartMachine)
-      ->add_option("SLOT", given.program, "1 to 99")
-      ->check(CLI::Range(1, 99));
+  CLI::App* start = verbs.AddControlled(
+      "start", "Start a stored program, the selected one, or a job of the queue", StartMachine);
+  CLI::Option* slot = start->add_option("SLOT", given.program, "1 to 99")->check(CLI::Range(1, 99));
+  start->add_option("--job", given.job, "a RUN job that waits for a person")->excludes(slot);
   verbs.AddControlled("zero", "Let the axes find their reference; in REMOTE program 4 follows",
                       ZeroMachine);
   CLI::App* resume = verbs.AddControlled("resume", "Let a held run go on", ResumeMachine);
@@ -132,6 +142,7 @@ void AddMachineVerbs(CLI::App& app, Remote& remote, int& exit_code) {
       "  rmlcell machine stop mill-1; rmlcell machine resume mill-1\n"
       "  rmlcell submit mill-1 --slot 7 --kind run      the same as a job of the queue\n"
       "  rmlcell machine status mill-1                  and what keeps jobs from it\n"
+      "  rmlcell machine options mill-1 start=person    nobody else starts jobs there\n"
       "  rmlcell machine start-at mill-1 --preview      where a run was cut off, and how it goes on");
   group->add_option("--server", remote.server,
                     "host:port or unix:/path; default: RMLCELL_SERVER, or 127.0.0.1:50051");

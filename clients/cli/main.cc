@@ -375,6 +375,8 @@ void AddRunOptions(CLI::App& verb, SubmitRequest& submit) {
       ->check(CLI::IsMember({"simulate", "check", "run"}));
   verb.add_flag("--unzeroed", submit.unzeroed,
                 "with --kind run: the program zeroes the axes itself");
+  verb.add_option("--ticket", submit.ticket,
+                  "with --kind run: the simulation that proves the program, such as 17");
 }
 
 void AddQueueVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {

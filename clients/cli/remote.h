@@ -49,6 +49,7 @@ struct SubmitRequest {
   int slot = 0;      // of a stored program, or where the file goes
   std::string kind = "simulate";
   bool unzeroed = false;  // of a run: the program zeroes the axes itself
+  std::string ticket;     // of a run: the simulation that proves it, "17"; empty: none
   std::string title;
   std::vector<std::string> labels;
   std::string request_id;

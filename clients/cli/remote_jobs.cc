@@ -267,6 +267,7 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   }
   if (job.kind() == v1::JOB_KIND_RUN && options.ByteSizeLong() == 0) job.clear_simulation();
   if (wanted.unzeroed) job.mutable_run()->set_unzeroed(true);
+  if (!wanted.ticket.empty()) job.mutable_run()->set_ticket(FullName("jobs", wanted.ticket));
   if (const Status set = SetQueue(wanted, job); !set) return Refuse(set.error());
   request.set_request_id(wanted.request_id.empty() ? NewRequestId() : wanted.request_id);
 

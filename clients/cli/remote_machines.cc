@@ -255,7 +255,9 @@ int AbortRun(const Remote& remote, const MachineAct& act) {
 
 int StartMachine(const Remote& remote, const MachineAct& act) {
   auto request = For<v1::StartMachineRequest>(act);
-  if (act.program > 0) {
+  if (!act.job.empty()) {
+    request.set_job(FullName("jobs", act.job));
+  } else if (act.program > 0) {
     request.set_program(act.program);
   } else {
     request.set_selected(true);

@@ -29,12 +29,17 @@ struct MachineAct {
   std::vector<int> gates;         // the program of each; 0: none
   bool accept_displaced = false;  // it goes on from where keys have moved it
   bool restore_process = false;   // a spindle that a person stopped turns again
+  std::string job;                // "17": one that a person starts
+  std::string computer;           // whose host gets the machine; empty: this one
 };
 
 int ShowMachine(const Remote& remote, const MachineAct& act);
 int WatchMachine(const Remote& remote, const MachineAct& act);
 int EnableMachine(const Remote& remote, const MachineAct& act);
 int DisableMachine(const Remote& remote, const MachineAct& act);
+// How it lives: told, or changed by NAME=VALUE.
+int MachineOptions(const Remote& remote, const MachineAct& act);
+int TakeMachine(const Remote& remote, const MachineAct& act);
 // These need no control, and wait for nothing.
 int HoldMachine(const Remote& remote, const MachineAct& act);
 int StopMachine(const Remote& remote, const MachineAct& act);

@@ -84,13 +84,16 @@ _rmlcell_options() {
     put) echo "$remote --etag --check-only --force" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --unzeroed --title --label --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
+      echo "$remote --slot --kind --unzeroed --ticket --title --label --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
     machine) echo "$remote" ;;
     "machine status" | "machine watch" | "machine enable" | "machine disable" | "machine hold" | "machine stop" | \
       "machine emergency-stop" | "machine abort" | "machine read") echo "--help" ;;
     "machine start-at")
       echo "--help --take-over --slot --occurrence --direct --off-until-work-on --preview --halt --seen --reason" ;;
     "machine key") echo "--help --take-over --for --fast" ;;
+    "machine start") echo "--help --take-over --job" ;;
+    "machine options") echo "--help" ;;
+    "machine take") echo "--help --reason --computer" ;;
     "machine resume") echo "--help --take-over --accept-displaced --restore-process" ;;
     "machine "*) echo "--help --take-over" ;;
     report) echo "$remote --machine-coordinates" ;;
@@ -115,7 +118,7 @@ _rmlcell_takes_value() {
       --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --label | --request-id | --pace | --after | --after-job | --before | --not-before | --priority | --filter | --order | --limit | --move | --turn | --shift | \
       --tolerance | --by | --from | --to | --columns | --rows | --within | --gap | --depth | --step | --passes | --overlap | \
-      --dpi | --at | --take-over | --for | --occurrence | --seen | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
+      --dpi | --at | --take-over | --for | --ticket | --job | --reason | --computer | --occurrence | --seen | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
   esac
   return 1
 }
@@ -172,8 +175,9 @@ _rmlcell_positional() {
     diff) _rmlcell_programs_files ;;
     machine)
       [[ $count -eq 0 ]] && _rmlcell_offer status watch enable disable hold stop emergency-stop abort start zero resume mode override \
-        factor acknowledge confirm read write start-at key input gates ;;
+        factor acknowledge confirm read write start-at key input gates options take ;;
     "machine start") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_slots "${given[0]}"; fi ;;
+    "machine options") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer start=queue start=armed start=person ticket-needed=on ticket-needed=off server-lost=hold server-lost=go-on halt-at-entry=on halt-at-entry=off; fi ;;
     "machine mode") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer remote cycle single repeat manual; fi ;;
     "machine key") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer X+ X- Y+ Y- Z+ Z- A+ A- PAUSE CONTINUE STOP BUFFER_CLEAR VIEW SPINDLE Z0 ORIGIN HOME COVER POWER EMERGENCY_STOP; fi ;;
     "machine input") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer door=open door=closed gate=1 gate=2 power=on power=off emergency-stop=released; fi ;;

@@ -19,32 +19,11 @@
 namespace rmlcell::server {
 namespace {
 
-const google::protobuf::Message* RequestOf(const v1::HostOrder& order) {
-  if (order.has_continue_job()) return &order.continue_job().start();
-  if (order.has_by_person()) return &order.by_person();
-  const auto* set = order.GetReflection()->GetOneofFieldDescriptor(
-      order, order.GetDescriptor()->FindOneofByName("request"));
-  return set == nullptr ? nullptr : &order.GetReflection()->GetMessage(order, set);
-}
-
-// The text of this field of the request; nothing: it has no such field.
-std::optional<std::string> FieldOf(const v1::HostOrder& order, const std::string& name) {
-  const google::protobuf::Message* request = RequestOf(order);
-  if (request == nullptr) return std::nullopt;
-  const auto* field = request->GetDescriptor()->FindFieldByName(name);
-  if (field == nullptr) return std::nullopt;
-  return request->GetReflection()->GetString(*request, field);
-}
-
 // A key that begins a motion, or says YES to one.
 bool MayMove(const machine::PressedKey& key) {
   constexpr std::array<std::string_view, 5> kKeys = {"START", "HOME", "ZERO", "1", "ENT"};
   return key.action != machine::KeyAction::kRelease &&
          (bridge::JogKeyOf(key.key) || std::ranges::find(kKeys, key.key) != kKeys.end());
-}
-
-bool IsHalt(const v1::HostOrder& order) {
-  return order.has_stop() || order.has_hold() || order.has_emergency_stop();
 }
 
 bool MovesByHand(machine::PanelKey key) {
@@ -79,6 +58,7 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
   host->inspect_job_ = made.inspect_job;
   if (made.cut_off) host->cut_off_base_ = made.cut_off_base;
   if (made.open_run) host->TellCutOff(*made.open_run, ErrorCode::kCellHostDied);
+  host->answered_.Recover(std::exchange(made.answered, {}), host->StatusAt(now), now);
   return host;
 }
 
@@ -90,13 +70,9 @@ HostMachine::HostMachine(Setup setup, std::function<std::string()> make_token)
 
 v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& now) {
   GoOnTo(now);
-  std::string request_id = FieldOf(order, "request_id").value_or("");
-  // One's own, and of the same kind; what halts acts however often it is asked for.
-  if (!request_id.empty())
-    request_id += "\n" + std::to_string(order.request_case()) + "\n" + order.caller();
-  const auto known = answered_.find(request_id);
-  if (!request_id.empty() && known != answered_.end() && !IsHalt(order)) {
-    v1::HostOrderAnswer again = known->second.answer;
+  const std::string request = AnsweredRequests::KeyOf(order);
+  if (const v1::HostOrderAnswer* known = answered_.Find(request)) {
+    v1::HostOrderAnswer again = *known;
     again.set_number(order.number());
     return again;
   }
@@ -106,18 +82,10 @@ v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& 
   answer.set_number(order.number());
   *answer.mutable_acted_at() = Stamp(now.wall);
   if (key_taken_) keys_.Take(*key_taken_, answer);
-  if (!request_id.empty() && !answered_.contains(request_id)) Remember(request_id, answer);
+  answered_.Keep(request, answer, now);
+  if (auto entry = AnsweredRequests::EntryOf(order, answer))
+    *Add(machine().time()).mutable_answered() = *std::move(entry);
   return answer;
-}
-
-void HostMachine::Remember(const std::string& request_id, const v1::HostOrderAnswer& answer) {
-  answered_[request_id] = {.answer = answer, .at = now_.steady};
-  answered_order_.push_back(request_id);
-  while (answered_order_.size() > kAnswersKept ||
-         now_.steady - answered_.at(answered_order_.front()).at > kAnswersKeptFor) {
-    answered_.erase(answered_order_.front());
-    answered_order_.pop_front();
-  }
 }
 
 v1::HostOrderAnswer HostMachine::Carry(const v1::HostOrder& order, const HostTime& now) {

@@ -11,6 +11,7 @@
 #include "engine/machine/handbox.h"
 #include "engine/machine/virtual_driver.h"
 #include "rmlcell/v1/host.pb.h"
+#include "server/host/answered_requests.h"
 #include "server/host/arm_desk.h"
 #include "server/host/control_desk.h"
 #include "server/host/key_desk.h"
@@ -41,9 +42,9 @@ class HostMachine : private machine::RunObserver {
     std::optional<v1::MachineMark> open_run{};
     std::string inspect_job{};                  // whose run it was, where its end was told already
     std::optional<v1::RunBase> cut_off_base{};  // what it began with; absent: not known
+    // Requests that an earlier host answered, and did as far as the state has it.
+    std::vector<v1::JournalEntry> answered{};
   };
-  static constexpr std::size_t kAnswersKept = 1'024;
-  static constexpr std::chrono::minutes kAnswersKeptFor{10};
 
   // Errors: those of machine::MakeParameters and machine::Machine::Make.
   static Result<std::unique_ptr<HostMachine>> Make(Setup setup, const HostTime& now,
@@ -132,6 +133,8 @@ class HostMachine : private machine::RunObserver {
                  v1::ControlLease::OnLoss armed_on_loss = v1::ControlLease::ON_LOSS_UNSPECIFIED);
   Result<std::optional<machine::StoredProgram>> ProgramOfJob(
       const v1::WorkerAssignment& assignment);
+  Status CheckTicket(const v1::WorkerAssignment& assignment,
+                     const std::optional<machine::StoredProgram>& brought) const;
   std::optional<Error> WhyNoJob(const std::string& caller) const;
   Result<v1::HostOrderAnswer> Control(const v1::HostOrder& order, const HostTime& now);
   Result<v1::HostOrderAnswer> Write(const v1::HostOrder& order);
@@ -163,11 +166,6 @@ class HostMachine : private machine::RunObserver {
   machine::Machine& machine() { return driver_->machine(); }
   const machine::Machine& machine() const { return driver_->machine(); }
 
-  struct Answered {
-    v1::HostOrderAnswer answer{};
-    std::chrono::nanoseconds at{0};
-  };
-
   Setup setup_;
   std::optional<machine::Parameters> parameters_;
   std::unique_ptr<machine::VirtualDriver> driver_;
@@ -186,9 +184,8 @@ class HostMachine : private machine::RunObserver {
   std::optional<ErrorCode> key_message_{};   // what the control says to the key that is pressed
   std::vector<v1::HostEdit> edits_;
   std::int64_t edits_made_ = 0;
-  std::map<int, std::int64_t> revisions_;     // of the programs in the store, by slot
-  std::map<std::string, Answered> answered_;  // by request id
-  std::deque<std::string> answered_order_;    // the oldest first
+  std::map<int, std::int64_t> revisions_;  // of the programs in the store, by slot
+  AnsweredRequests answered_;
   std::vector<v1::JournalEntry> entries_;
   MachineRecorder recorder_;
   std::size_t recorded_ = 0;       // of the entries

@@ -3,12 +3,14 @@
 #include <utility>
 
 #include "proto/bridge/findings.h"
+#include "proto/bridge/ticket.h"
 #include "proto/recording/recording.h"
 #include "server/host/host_machine.h"
 
 namespace rmlcell::server {
 namespace {
 
+constexpr std::size_t kChangesTold = 8;
 constexpr std::size_t kJobsKnown = 16;  // the newest: whoever asks knows of the last one or two
 
 }  // namespace
@@ -64,6 +66,10 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
   brought_.Clear();
   auto brought = ProgramOfJob(assignment);
   if (!brought) return brought.error();
+  if (const Status same = CheckTicket(assignment, *brought); !same) {
+    brought_.Clear();
+    return same.error();
+  }
   job_ = assignment.job().name();
   const Status begun = Apply(machine::StartRun{.program = assignment.main_program(),
                                                .source = machine::StartSource::kQueue,
@@ -77,6 +83,32 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
   }
   BeginsJob(assignment, now, armed_on_loss);
   return {};
+}
+
+// Whether what would run is what was simulated, where the machine asks for that, or the job has it.
+// LIVE-5.02
+Status HostMachine::CheckTicket(const v1::WorkerAssignment& assignment,
+                                const std::optional<machine::StoredProgram>& brought) const {
+  if (!assignment.has_ticket()) {
+    if (!setup_.options.ticket_needed()) return {};
+    return Error{ErrorCode::kCellTicket, "jobs need one here", {}};
+  }
+  const machine::MachineMemory& memory = machine().memory();
+  std::map<int, machine::StoredProgram> programs = memory.programs;
+  if (brought) programs[assignment.main_program()] = *brought;
+  const std::vector<std::string> changed =
+      bridge::ChangedSince(assignment.ticket(), {.family = *setup_.family,
+                                                 .parameters = *parameters_,
+                                                 .programs = programs,
+                                                 .schedules = memory.schedules,
+                                                 .main_program = assignment.main_program()});
+  if (changed.empty()) return {};
+  std::string text = "other than in " + assignment.ticket().job() + ": ";
+  for (std::size_t i = 0; i < std::min(changed.size(), kChangesTold); ++i)
+    text += (i == 0 ? "" : ", ") + changed[i];
+  if (changed.size() > kChangesTold)
+    text += " and " + std::to_string(changed.size() - kChangesTold) + " more";
+  return Error{ErrorCode::kCellTicket, Detail(std::move(text)), {}};
 }
 
 // Who starts jobs here. LIVE-5.04

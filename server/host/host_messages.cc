@@ -16,6 +16,14 @@
 namespace rmlcell::server {
 namespace {
 
+const google::protobuf::Message* RequestOf(const v1::HostOrder& order) {
+  if (order.has_continue_job()) return &order.continue_job().start();
+  if (order.has_by_person()) return &order.by_person();
+  const auto* set = order.GetReflection()->GetOneofFieldDescriptor(
+      order, order.GetDescriptor()->FindOneofByName("request"));
+  return set == nullptr ? nullptr : &order.GetReflection()->GetMessage(order, set);
+}
+
 using machine::MachineInput;
 
 Error Invalid(std::string detail) {
@@ -54,6 +62,14 @@ Result<int> ProgramOf(const v1::StartMachineRequest& start, const machine::Machi
 }
 
 }  // namespace
+
+std::optional<std::string> FieldOf(const v1::HostOrder& order, const std::string& name) {
+  const google::protobuf::Message* request = RequestOf(order);
+  if (request == nullptr) return std::nullopt;
+  const auto* field = request->GetDescriptor()->FindFieldByName(name);
+  if (field == nullptr) return std::nullopt;
+  return request->GetReflection()->GetString(*request, field);
+}
 
 v1::MachineStatus ToProto(const machine::Machine& machine) {
   const machine::MachineStatus status = machine.status();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/machine/machine.h"
@@ -16,6 +18,9 @@ v1::RunState RunStateOf(const machine::Machine& machine);
 // something or are the host's own. Errors: CellInvalidArgument, CellUnimplemented.
 Result<std::vector<machine::MachineInput>> InputsOf(const v1::HostOrder& order,
                                                     const machine::Machine& machine);
+
+// The text of this field of the request; nothing: it has no such field.
+std::optional<std::string> FieldOf(const v1::HostOrder& order, const std::string& name);
 
 // All of them, ranges spread out; each with its error where there is no such variable.
 Result<v1::ReadVariablesResponse> ReadVariables(const machine::Machine& machine,

@@ -2,7 +2,6 @@
 
 #include <google/protobuf/util/time_util.h>
 #include <spdlog/spdlog.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,19 +12,22 @@
 #include <thread>
 #include <utility>
 
-#include "engine/families/families.h"
 #include "proto/bridge/findings.h"
 #include "server/base/secret.h"
 #include "server/base/version.h"
 #include "server/host/background.h"
+#include "server/host/further_lines.h"
+#include "server/host/host_clock.h"
 #include "server/host/host_inbox.h"
 #include "server/host/host_line.h"
 #include "server/host/host_machine.h"
 #include "server/host/host_name.h"
 #include "server/host/host_options.h"
 #include "server/host/journal_writer.h"
+#include "server/host/lease_clock.h"
 #include "server/host/order_class.h"
 #include "server/host/recovered.h"
+#include "server/host/servers_in_turn.h"
 
 namespace rmlcell::server {
 namespace {
@@ -40,7 +42,6 @@ constexpr nanoseconds kStatusStanding = 1s;
 constexpr nanoseconds kTick = 5ms;         // of a machine that moves
 constexpr nanoseconds kTickHeld = 50ms;    // of a run that stands: its time goes on
 constexpr nanoseconds kServerSilent = 2s;  // it answers four times a second
-constexpr nanoseconds kRestBefore = 5s;    // LIVE-3.04: so long before its lease ends it rests
 constexpr nanoseconds kEndsWithoutServer = 60s;
 constexpr nanoseconds kRejoin = 200ms;
 constexpr nanoseconds kIntentPatience = 500ms;  // LIVE-3.21
@@ -48,13 +49,6 @@ constexpr nanoseconds kDurablePatience = 1s;
 constexpr nanoseconds kRestPatience = 10s;
 constexpr double kPreviewTime_s = 60.0;  // LIVE-6.01
 constexpr std::size_t kUnstoredMax = 100'000;
-
-HostTime Now() {
-  timespec time{};
-  clock_gettime(CLOCK_MONOTONIC, &time);
-  return {.steady = std::chrono::seconds(time.tv_sec) + nanoseconds(time.tv_nsec),
-          .wall = std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now())};
-}
 
 class HostProcess {
  public:
@@ -64,6 +58,7 @@ class HostProcess {
   ~HostProcess() {
     writer_.reset();
     if (connector_.joinable()) connector_.join();
+    further_.Keep({}, {});
     line_.reset();
   }
 
@@ -114,6 +109,7 @@ class HostProcess {
       Joined(*std::move(joined));
     }
     if (line_ == nullptr && !connector_.joinable() && Now().steady >= next_try_) Connect();
+    if (line_ == nullptr && further_.IsHeard()) without_server_since_ = Now().steady;
   }
 
   // They cannot be answered any more. Nothing of them begins; what halts acts all the same.
@@ -134,12 +130,19 @@ class HostProcess {
 
   void Connect() {
     inbox_.LineBegins();
-    connector_ = std::thread([this, hello = Hello()] {
+    joining_since_ = SinceBoot();
+    KeepFurther();
+    connector_ = std::thread([this, hello = Hello(), server = servers_.present()] {
       inbox_.HaveJoined(HostLine::Join(
-          options_.server, hello,
+          server, hello,
           [this](v1::HostResponse message) { inbox_.Hear(std::move(message), Now().steady); },
           [this] { inbox_.LineIsGone(); }));
     });
+  }
+
+  // To all but the one that stores what happens here. LIVE-3.06
+  void KeepFurther() {
+    if (fence_ != 0) further_.Keep(servers_.others(), Hello());
   }
 
   void Joined(Result<HostLine::Welcome> welcome) {
@@ -147,6 +150,7 @@ class HostProcess {
     if (!welcome) {
       next_try_ = now + kRejoin;
       const ErrorCode code = welcome.error().code;
+      servers_.Next();
       if (code == ErrorCode::kCellUnavailable) return;
       spdlog::error("{}", welcome.error().detail);
       return Quit(code == ErrorCode::kCellMachineTaken ? 3 : 69);
@@ -157,11 +161,11 @@ class HostProcess {
       return Quit(3);
     }
     fence_ = message.fence();
-    lease_ = nanoseconds(TimeUtil::DurationToNanoseconds(message.lease()));
-    next_renewal_ = now + lease_ / 3;
-    renewed_at_ = renewal_sent_ = now;
+    lease_.Given(nanoseconds(TimeUtil::DurationToNanoseconds(message.lease())), joining_since_);
     inbox_.SetHeardAt(now);
     line_ = std::move(welcome->line);
+    for (const std::string& server : message.servers()) servers_.Add(server);
+    KeepFurther();
     if (machine_ == nullptr) {
       welcome_ = message;
     } else if (!unstored_.empty()) {
@@ -175,9 +179,9 @@ class HostProcess {
   }
 
   void TakeMessages() {
+    std::deque<v1::HostResponse> messages = further_.TakeMessages();
     // A line may be heard before it is known to have joined: what it says waits for that.
-    if (line_ == nullptr) return;
-    std::deque<v1::HostResponse> messages = inbox_.TakeMessages();
+    if (line_ != nullptr) std::ranges::move(inbox_.TakeMessages(), std::back_inserter(messages));
     for (const v1::HostOrder& taken : StopFirst(messages)) Refuse(taken, StoppedBefore());
     for (v1::HostResponse& message : messages) Take(message);
   }
@@ -197,7 +201,7 @@ class HostProcess {
         if (writer_ != nullptr) writer_->Stored(fence_, message.entries_stored().sequence());
         break;
       case v1::HostResponse::kRenewed:
-        renewed_at_ = renewal_sent_;
+        lease_.Renewed();
         break;
       case v1::HostResponse::kLeaseLost:
         spdlog::error("{} has the machine now", message.lease_lost().holder());
@@ -219,25 +223,10 @@ class HostProcess {
     const HostTime now = Now();
     if (machine_ != nullptr) return machine_->Change(memory, now);
     if (!memory.whole() || !welcome_) return;
-    const machine::MachineFamily* family = families::FindFamily(welcome_->family());
-    if (family == nullptr) return Fail({ErrorCode::kCellUnknownFamily, welcome_->family(), {}});
-    Result<Journal::Found> journal = Journal::Open(options_.journal);
-    if (!journal) return Fail(journal.error());
-    if (journal->torn_bytes > 0)
-      spdlog::warn("{}: {} bytes at its end were torn", options_.journal, journal->torn_bytes);
-    Recovered found = RecoveredFrom(*welcome_, std::move(journal->entries));
-    HostMachine::Setup setup = SetupOf(std::move(found));
-    setup.name = options_.machine;
-    setup.host = name_;
-    setup.fence = fence_;
-    setup.family = family;
-    setup.profile = welcome_->profile();
-    setup.options = welcome_->options();
-    setup.parameters = {welcome_->parameters().begin(), welcome_->parameters().end()};
-    auto made = HostMachine::Make(std::move(setup), now, RandomText);
-    if (!made) return Fail(made.error());
-    machine_ = *std::move(made);
-    writer_ = std::make_unique<JournalWriter>(std::move(journal->journal));
+    auto opened = OpenMachine(*welcome_, options_, name_, now);
+    if (!opened) return Fail(opened.error());
+    machine_ = std::move(opened->machine);
+    writer_ = std::make_unique<JournalWriter>(std::move(opened->journal));
     durable_at_ = now.steady;
     machine_->Begin(memory, now);
     spdlog::info("{} lives, fence {}", options_.machine, fence_);
@@ -308,7 +297,7 @@ class HostProcess {
 
   // At most 20 times a second, and when it has changed. LIVE-7.02
   void ShowHandbox(nanoseconds now) {
-    if (line_ == nullptr) return;
+    if (!IsHeard()) return;
     std::optional<v1::HandboxPanel> panel = machine_->Handbox();
     if (!panel) return;
     std::string bytes = panel->SerializeAsString();
@@ -317,6 +306,8 @@ class HostProcess {
     handbox_due_ = false;
     handbox_shown_ = std::move(bytes);
     handbox_shown_at_ = now;
+    further_.SendPanel(*panel);
+    if (line_ == nullptr) return;
     v1::HostRequest request;
     *request.mutable_panel() = *std::move(panel);
     line_->Send(std::move(request));
@@ -366,8 +357,11 @@ class HostProcess {
     return machine_->Do(order, Now());
   }
 
+  // By a server, whichever.
+  bool IsHeard() const { return line_ != nullptr || further_.IsHeard(); }
+
   void SendAnswer(v1::HostOrderAnswer answer) {
-    if (line_ == nullptr) return;
+    if (further_.Answer(answer) || line_ == nullptr) return;
     v1::HostRequest request;
     *request.mutable_answer() = std::move(answer);
     line_->Send(std::move(request));
@@ -414,15 +408,18 @@ class HostProcess {
                        durable_at_ = Now().steady;
                        Keep(*copy);
                        SendEntries(*copy);
-                       if (line != lines_lost_) return;  // they are no answers to what is asked now
-                       for (const v1::HostOrderAnswer& answer : answers) SendAnswer(answer);
+                       for (const v1::HostOrderAnswer& answer : answers) {
+                         // It is no answer to what is asked now, over another line.
+                         if (answer.number() > 0 && line != lines_lost_) continue;
+                         SendAnswer(answer);
+                       }
                      });
                    });
   }
 
   // One that has not begun yet, too. What moves is brought to rest before.
   void EndWithoutServer() {
-    if (line_ != nullptr || (machine_ != nullptr && machine_->moves())) return;
+    if (IsHeard() || (machine_ != nullptr && machine_->moves())) return;
     if (Now().steady - without_server_since_ <= kEndsWithoutServer) return;
     spdlog::warn("no server for {} s", kEndsWithoutServer / 1s);
     Quit(0);
@@ -449,11 +446,11 @@ class HostProcess {
   void Turn() {
     const HostTime now = Now();
     behind_ = !machine_->GoOn(now);
-    if (line_ == nullptr && machine_->moves() &&
+    if (!IsHeard() && machine_->moves() &&
         now.steady - without_server_since_ > GoesOnWithoutServer(welcome_->options()))
       machine_->Hold(v1::HOLD_REASON_SERVER_LOST, now);
     // Another one may take the machine when the lease ends: it rests before. LIVE-3.04
-    if (machine_->moves() && now.steady - renewed_at_ > lease_ - kRestBefore)
+    if (machine_->moves() && lease_.MustStop(SinceBoot()))
       machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, now);
     LookAtDisk(now.steady);
     LookAtKeys();
@@ -462,14 +459,14 @@ class HostProcess {
     ShowHandbox(now.steady);
     const v1::MachineStatus status = machine_->StatusAt(now);
     const bool changed = status.state() != state_told_;
-    if (line_ != nullptr && (changed || now.steady >= status_due_)) {
+    if (IsHeard() && (changed || now.steady >= status_due_)) {
       state_told_ = status.state();
       status_due_ = now.steady + (machine_->moves() ? kStatusMoving : kStatusStanding);
-      line_->SendStatus(status);
+      further_.SendStatus(status);
+      if (line_ != nullptr) line_->SendStatus(status);
     }
-    if (line_ != nullptr && now.steady >= next_renewal_) {
-      next_renewal_ = now.steady + lease_ / 3;
-      renewal_sent_ = now.steady;
+    if (line_ != nullptr && lease_.RenewalDue(SinceBoot())) {
+      lease_.Renews(SinceBoot());
       v1::HostRequest renew;
       renew.mutable_renew()->set_fence(fence_);
       line_->Send(std::move(renew));
@@ -528,13 +525,16 @@ class HostProcess {
 
   void Rest() {
     if (behind_) return;
-    nanoseconds longest = 200ms;
-    if (machine_ != nullptr && line_ != nullptr) {
+    nanoseconds longest = line_ != nullptr ? kStatusStanding : kRejoin;
+    if (machine_ != nullptr) {
       const nanoseconds now = Now().steady;
-      longest = machine_->moves() ? kTick
-                : machine_->run_open()
-                    ? kTickHeld
-                    : std::min({status_due_ - now, next_renewal_ - now, 1'000'000'000ns});
+      if (IsHeard()) longest = std::min(longest, status_due_ - now);
+      if (line_ != nullptr) longest = std::min(longest, lease_.next_renewal() - SinceBoot());
+      if (machine_->moves()) {
+        longest = kTick;
+      } else if (machine_->run_open()) {
+        longest = kTickHeld;
+      }
       if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
       for (const Waiting& key : keys_waiting_) longest = std::min(longest, key.until - now);
       if (handbox_due_) longest = std::min(longest, handbox_shown_at_ + kStatusMoving - now);
@@ -548,6 +548,7 @@ class HostProcess {
   HostInbox inbox_;
   std::thread connector_;
   std::unique_ptr<HostLine> line_;
+  ServersInTurn servers_{options_.server};
   std::optional<v1::HostWelcome> welcome_;
   std::unique_ptr<HostMachine> machine_;
   struct Parked {
@@ -567,10 +568,8 @@ class HostProcess {
   int lines_lost_ = 0;
   std::deque<v1::JournalEntry> unstored_;
   std::int64_t fence_ = 0;
-  nanoseconds lease_{0};
-  nanoseconds next_renewal_{0};
-  nanoseconds renewal_sent_{0};
-  nanoseconds renewed_at_{0};  // when that was sent which the server took last
+  LeaseClock lease_;
+  nanoseconds joining_since_{0};  // by SinceBoot
   nanoseconds next_try_{0};
   nanoseconds status_due_{0};
   nanoseconds without_server_since_{0};
@@ -581,6 +580,7 @@ class HostProcess {
   v1::MachineState state_told_ = v1::MACHINE_STATE_UNSPECIFIED;
   std::unique_ptr<JournalWriter> writer_;
   Background background_;  // behind what its work uses
+  FurtherLines further_{[this] { inbox_.Later([] {}); }};
   bool behind_ = false;
   bool ended_ = false;
   int exit_code_ = 0;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "proto/recording/records.h"
+#include "server/host/answered_requests.h"
 
 namespace rmlcell::server {
 namespace {
@@ -50,6 +51,19 @@ Result<std::string> ReadAll(const std::string& path, int file) {
     if (read == 0) return bytes;
     bytes.append(part.data(), static_cast<std::size_t>(read));
   }
+}
+
+// The answers that somebody may still ask for. LIVE-3.27
+std::vector<v1::JournalEntry> NewestAnswers(std::vector<v1::JournalEntry> entries) {
+  if (entries.empty()) return {};
+  const auto now = WallTime(std::chrono::microseconds(
+      google::protobuf::util::TimeUtil::TimestampToMicroseconds(entries.back().time())));
+  std::erase_if(entries, [now](const v1::JournalEntry& entry) {
+    return !entry.has_answered() || !IsAskedFor(entry, now);
+  });
+  if (entries.size() > AnsweredRequests::kKept)
+    entries.erase(entries.begin(), entries.end() - AnsweredRequests::kKept);
+  return entries;
 }
 
 }  // namespace
@@ -122,12 +136,25 @@ void Journal::Stored(std::int64_t fence, std::int64_t sequence) {
           (places_[gone].fence == fence && places_[gone].sequence <= sequence)))
     ++gone;
   if (gone == 0) return;
-  const std::int64_t begin = places_[gone - 1].end;
+  const auto begin = static_cast<std::size_t>(places_[gone - 1].end);
   const Result<std::string> all = ReadAll(path_, file_);
-  if (!all || !Rewrite(std::string_view(*all).substr(static_cast<std::size_t>(begin)))) return;
+  if (!all) return;
+  const std::vector<v1::JournalEntry> asked_for =
+      NewestAnswers(ReadJournal(std::string_view(*all).substr(0, begin)).entries);
+  std::string records = RecordsOf(asked_for);
+  const auto moved = static_cast<std::int64_t>(begin) - static_cast<std::int64_t>(records.size());
+  records.append(*all, begin);
+  if (!Rewrite(records)) return;
   places_.erase(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(gone));
-  for (Place& place : places_) place.end -= begin;
-  bytes_ -= begin;
+  for (Place& place : places_) place.end -= moved;
+  std::vector<Place> kept;
+  std::int64_t end = 0;
+  for (const v1::JournalEntry& entry : asked_for) {
+    end += recording::kRecordHeadBytes + static_cast<std::int64_t>(entry.ByteSizeLong());
+    kept.push_back({.fence = entry.fence(), .sequence = entry.sequence(), .end = end});
+  }
+  places_.insert(places_.begin(), kept.begin(), kept.end());
+  bytes_ -= moved;
 }
 
 // Beside the old one, which stays until the new one is on the disk.

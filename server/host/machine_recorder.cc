@@ -31,7 +31,7 @@ void MachineRecorder::Begin(v1::MachineRecording head, const machine::MachineMem
 
 // The state of a run under way is known by its digest: nothing is played from there.
 void MachineRecorder::Add(const v1::JournalEntry& entry) {
-  if (kept_.empty() || kept_.back().full) return;
+  if (kept_.empty() || kept_.back().full || entry.has_answered()) return;
   std::string& file = kept_.back().file;
   if (entry.has_mark() && !entry.mark().clean()) {
     v1::JournalEntry shorter = entry;

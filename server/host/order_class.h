@@ -18,6 +18,10 @@ enum class OrderClass {
 
 OrderClass ClassOf(const v1::HostOrder& order);
 
+inline bool IsHalt(const v1::HostOrder& order) {
+  return order.has_stop() || order.has_hold() || order.has_emergency_stop();
+}
+
 // What a STOP that comes behind it takes back, as long as it has not acted.
 inline bool BeginsMotion(const v1::HostOrder& order) {
   return order.has_start() || order.has_resume() || order.has_run_job() || order.has_zero() ||

@@ -1,7 +1,12 @@
 #include "server/host/recovered.h"
 
+#include <spdlog/spdlog.h>
+
 #include <cstdint>
 #include <utility>
+
+#include "engine/families/families.h"
+#include "server/base/secret.h"
 
 namespace rmlcell::server {
 
@@ -25,7 +30,12 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
   }
   for (v1::JournalEntry& entry : journal) {
     const Number number{entry.fence(), entry.sequence()};
-    if (number > stored && number <= newest) found.untold.push_back(std::move(entry));
+    if (number > newest) continue;
+    if (entry.has_answered()) {
+      found.answered.push_back(std::move(entry));
+    } else if (number > stored) {
+      found.untold.push_back(std::move(entry));
+    }
   }
   return found;
 }
@@ -43,11 +53,33 @@ HostMachine::Setup SetupOf(Recovered found) {
   HostMachine::Setup setup;
   setup.state = found.mark.state();
   setup.untold = std::move(found.untold);
+  setup.answered = std::move(found.answered);
   setup.cut_off = began || (found.known && !found.mark.clean());
   setup.inspect_job = found.mark.job();
   if (found.mark.has_base()) setup.cut_off_base = found.mark.base();
   if (open) setup.open_run = std::move(found.mark);
   return setup;
+}
+
+Result<OpenedMachine> OpenMachine(const v1::HostWelcome& welcome, const HostOptions& options,
+                                  const std::string& host, const HostTime& now) {
+  const machine::MachineFamily* family = families::FindFamily(welcome.family());
+  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, welcome.family(), {}};
+  Result<Journal::Found> journal = Journal::Open(options.journal);
+  if (!journal) return journal.error();
+  if (journal->torn_bytes > 0)
+    spdlog::warn("{}: {} bytes at its end were torn", options.journal, journal->torn_bytes);
+  HostMachine::Setup setup = SetupOf(RecoveredFrom(welcome, std::move(journal->entries)));
+  setup.name = options.machine;
+  setup.host = host;
+  setup.fence = welcome.fence();
+  setup.family = family;
+  setup.profile = welcome.profile();
+  setup.options = welcome.options();
+  setup.parameters = {welcome.parameters().begin(), welcome.parameters().end()};
+  auto made = HostMachine::Make(std::move(setup), now, RandomText);
+  if (!made) return made.error();
+  return OpenedMachine{.machine = *std::move(made), .journal = std::move(journal->journal)};
 }
 
 }  // namespace rmlcell::server

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "rmlcell/v1/host.pb.h"
 #include "server/host/host_machine.h"
+#include "server/host/host_process.h"
+#include "server/host/journal.h"
 
 namespace rmlcell::server {
 
@@ -14,6 +18,8 @@ struct Recovered {
   std::vector<v1::JournalEntry> untold{};
   // "jobs/17": a job that was about to begin behind the mark; empty: none was.
   std::string begins{};
+  // Requests that were answered before the mark, as far as the journal has them. LIVE-3.27
+  std::vector<v1::JournalEntry> answered{};
   bool begins_at_step = false;  // where another one was cut off, which the mark tells of
 };
 
@@ -21,5 +27,14 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
 
 // All that a host takes over of it.
 HostMachine::Setup SetupOf(Recovered found);
+
+// The machine as server and journal have it. Errors: CellUnknownFamily; those of Journal::Open and
+// HostMachine::Make.
+struct OpenedMachine {
+  std::unique_ptr<HostMachine> machine;
+  std::unique_ptr<Journal> journal;
+};
+Result<OpenedMachine> OpenMachine(const v1::HostWelcome& welcome, const HostOptions& options,
+                                  const std::string& host, const HostTime& now);
 
 }  // namespace rmlcell::server

@@ -137,12 +137,7 @@ Result<v1::AssignedProgram> ProgramOfJob(storage::Store& store, std::int64_t id)
   Result<std::string> bytes = store.ReadArtifact(id, kMainAttachment);
   if (!bytes) return bytes.error();
   v1::AssignedProgram program;
-  program.set_slot(InlineSlotOf(job));
-  if (job.program_source_case() == v1::Job::kProgram) {
-    const auto name = ParseProgramName(job.program());
-    if (!name) return name.error();
-    program.set_slot(name->slot);
-  }
+  program.set_slot(MainSlotOf(job));
   const std::optional<BroughtProgram> brought = ProgramBrought(job);
   if (brought) program.set_file_name(brought->file_name);
   program.set_is_source(brought && brought->form != v1::PROGRAM_FORM_OBJECT);
@@ -174,13 +169,8 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   if (!main_bytes) return main_bytes.error();
 
   ProgramsOfAssignment programs(assignment, messages);
-  int main_slot = InlineSlotOf(job);
+  const int main_slot = MainSlotOf(job);
   const bool stored_main = job.program_source_case() == v1::Job::kProgram;
-  if (stored_main) {
-    const auto name = ParseProgramName(job.program());
-    if (!name) return name.error();
-    main_slot = name->slot;
-  }
   std::string main_title;
   std::optional<std::string> main_executable;
   storage::Revision main_revision = 0;

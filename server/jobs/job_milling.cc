@@ -80,7 +80,7 @@ Status SettleMilling(storage::Store& store, const Config& config,
     return InvalidArgument("job.simulation.milling is for mills: this machine removes no material");
   }
   if (!options.has_milling()) {
-    const int slot = job.has_program() ? ParseProgramName(job.program())->slot : InlineSlotOf(job);
+    const int slot = MainSlotOf(job);
     Result<v1::Milling> milling = MillingOfProject(store, options.milling_project(), slot);
     if (!milling) return milling.error();
     *job.mutable_simulation()->mutable_milling() = *std::move(milling);

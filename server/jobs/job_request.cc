@@ -25,7 +25,6 @@ constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as
 // What the contract has and this version does not do: "" where the job asks for none of it.
 std::string_view FieldOfLater(const v1::Job& job) {
   if (job.run().has_step()) return "run.step";
-  if (!job.run().ticket().empty()) return "run.ticket";
   if (job.run().confirmations_size() > 0) return "run.confirmations";
   if (!job.continues().empty()) return "continues";
   return {};
@@ -107,6 +106,8 @@ Status CheckRun(const v1::Job& job) {
   if (job.attempts_max() > 1) return InvalidArgument("job.attempts_max: a RUN is attempted once");
   if (!v1::ControlLease::OnLoss_IsValid(job.run().on_loss()))
     return InvalidArgument("job.run.on_loss is none that there is");
+  if (!job.run().ticket().empty() && !ParseJobName(job.run().ticket()))
+    return InvalidArgument("job.run.ticket: the simulation, such as jobs/17");
   return {};
 }
 

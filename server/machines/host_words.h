@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "rmlcell/v1/cell.pb.h"
 #include "rmlcell/v1/host.pb.h"
@@ -16,5 +17,7 @@ storage::NewEvent ToRecord(const v1::MachineEvent& event);
 // Where the job of its run is.
 v1::JobProgress ProgressOf(const v1::MachineStatus& status);
 v1::HostMemory MemoryOf(const storage::MachineMemory& memory);
+
+inline Error NotLive(const std::string& why) { return {ErrorCode::kCellNotLive, why, {}}; }
 
 }  // namespace rmlcell::server

@@ -9,6 +9,8 @@
 
 namespace rmlcell::server {
 
+using Instant = std::chrono::steady_clock::time_point;
+
 // What Hosts knows of one host, by one line of it. Only its own sources include this.
 struct Hosts::Host {
   std::string id{};

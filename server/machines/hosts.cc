@@ -20,12 +20,9 @@ namespace rmlcell::server {
 namespace {
 
 using google::protobuf::util::TimeUtil;
-using Instant = std::chrono::steady_clock::time_point;
 
 constexpr std::chrono::seconds kSilence{5};  // of a line that has a word four times a second
 constexpr std::size_t kWaitingEntriesMax = 100'000;
-
-Error NotLive(const std::string& why) { return {ErrorCode::kCellNotLive, why, {}}; }
 
 }  // namespace
 

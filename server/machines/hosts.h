@@ -36,6 +36,7 @@ class Hosts {
   static constexpr std::chrono::seconds kLease{60};  // PG-5.08
   static constexpr std::chrono::seconds kAnswerPatience{10};
   static constexpr std::chrono::seconds kPreviewPatience{75};  // a run is simulated for it
+  static constexpr std::chrono::minutes kGivenFor{10};
 
   struct Needs {
     storage::Store& store;
@@ -43,6 +44,9 @@ class Hosts {
     Executor& executor;
     std::string server{};      // name of this server
     std::string join_token{};  // known to its hosts
+    // "host:port" or "unix:/path": every server of the store, this one among them. Empty: none but
+    // this. LIVE-3.06
+    std::vector<std::string> servers{};
     SteadyClock clock = SteadyTime;
   };
   explicit Hosts(Needs needs);
@@ -72,6 +76,10 @@ class Hosts {
   void NoteOff(const std::string& machine, const std::string& why);
   void ClearOff(const std::string& machine);
   std::optional<Error> WhyOff(const std::string& machine) const;
+  // The next host of this computer gets the machine, whoever has it, if it comes within kGivenFor.
+  // LIVE-3.03
+  void GiveTo(const std::string& machine, const std::string& computer, const std::string& caller,
+              const std::string& reason);
   // From time to time: orders that nobody answers, lines that are silent.
   void Look();
 
@@ -106,11 +114,17 @@ class Hosts {
   struct Taken {
     storage::MachineLease lease{};
     std::optional<storage::MachineLease> from{};  // whose host is gone
+    std::string by_hand{};                        // who gave it to this one, and why; "": nobody
+  };
+  struct Given {
+    std::string computer{};
+    std::string told{};  // "taken by anna: the computer of the hall burns"
+    std::chrono::steady_clock::time_point until{};
   };
   Result<Taken> Take(const v1::HostHello& hello, const std::string& machine);
-  Status Welcome(const HostPointer& host, const v1::HostHello& hello,
-                 const std::optional<storage::MachineLease>& from);
-  Status TellRecovery(const Host& host, const std::optional<storage::MachineLease>& from,
+  std::optional<Given> GivenTo(const v1::HostHello& hello, const std::string& machine);
+  Status Welcome(const HostPointer& host, const v1::HostHello& hello, const Taken& taken);
+  Status TellRecovery(const Host& host, const Taken& taken,
                       const std::optional<storage::MachineMark>& mark);
   void SendMemory(const HostPointer& host);
   void StoreEdit(const HostPointer& host, v1::HostEdit edit);
@@ -151,7 +165,8 @@ class Hosts {
     std::chrono::steady_clock::time_point since{};
   };
   std::map<std::string, Seen> seen_;
-  std::int64_t looked_until_ = 0;  // of the log; guarded by looking_
+  std::map<std::string, Given> given_;  // by machine; guarded by joining_
+  std::int64_t looked_until_ = 0;       // of the log; guarded by looking_
   std::mutex looking_;
   std::unique_ptr<EventFeed::Subscription> subscription_;
 };

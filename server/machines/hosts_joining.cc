@@ -38,6 +38,11 @@ bool IsGone(const std::string& host) {
   return process && *process > 1 && ::kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH;
 }
 
+// "hall/4711" is of the computer "hall".
+bool IsOf(const std::string& host, const std::string& computer) {
+  return !computer.empty() && host.starts_with(computer + "/");
+}
+
 }  // namespace
 
 Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& hello) {
@@ -59,7 +64,7 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   host->link = link;
   host->lease = taken->lease;
   host->heard = needs_.clock();
-  if (const Status welcome = Welcome(host, hello, taken->from); !welcome) return welcome.error();
+  if (const Status welcome = Welcome(host, hello, *taken); !welcome) return welcome.error();
   std::shared_ptr<HostLink> before;
   {
     const std::lock_guard lock(mutex_);
@@ -77,11 +82,33 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   return {};
 }
 
+void Hosts::GiveTo(const std::string& machine, const std::string& computer,
+                   const std::string& caller, const std::string& reason) {
+  const std::lock_guard joining(joining_);
+  given_[machine] = {.computer = computer,
+                     .told = "taken by " + caller + ": " + bridge::Utf8(reason),
+                     .until = needs_.clock() + kGivenFor};
+}
+
+// Precondition: joining_ is held.
+std::optional<Hosts::Given> Hosts::GivenTo(const v1::HostHello& hello, const std::string& machine) {
+  const auto given = given_.find(machine);
+  if (given == given_.end() || given->second.computer != hello.computer() ||
+      given->second.until < needs_.clock())
+    return std::nullopt;
+  return given->second;
+}
+
 // Of a holder that is gone: a process of this computer that is no more, or one that has not renewed
-// its lease for as long as it holds.
+// its lease for as long as it holds. What has a device nobody else can have at the same time: who
+// has the lock of it on the same computer has the machine, and a host of another one gets it from a
+// person alone. LIVE-3.02, 3.03
 Result<Hosts::Taken> Hosts::Take(const v1::HostHello& hello, const std::string& machine) {
-  storage::MachineClaim claim{
-      .machine = machine, .host = hello.host(), .server = needs_.server, .duration = kLease};
+  storage::MachineClaim claim{.machine = machine,
+                              .host = hello.host(),
+                              .server = needs_.server,
+                              .duration = kLease,
+                              .pinned = hello.has_device()};
   Result<storage::MachineLease> lease = needs_.store.TakeMachine(claim);
   if (lease || lease.error().code != ErrorCode::kCellMachineTaken) {
     seen_.erase(machine);
@@ -90,19 +117,27 @@ Result<Hosts::Taken> Hosts::Take(const v1::HostHello& hello, const std::string& 
   }
   const auto held = needs_.store.MachineLeases();
   if (!held) return held.error();
+  const std::optional<Given> given = GivenTo(hello, machine);
   for (const storage::MachineLease& other : *held) {
     if (other.machine != machine) continue;
     const Instant now = needs_.clock();
     Seen& seen = seen_[machine];
     if (seen.lease != other) seen = {.lease = other, .since = now};
     claim.seen = other;
-    claim.by_hand = !other.pinned && IsGone(other.host);
-    if (!claim.by_hand && now - seen.since < other.duration + kObserved) return lease.error();
+    const bool could = !other.pinned || hello.has_device();
+    claim.by_hand =
+        could &&
+        (given || (other.pinned ? IsOf(other.host, hello.computer()) : IsGone(other.host)));
+    if (!claim.by_hand && (other.pinned || now - seen.since < other.duration + kObserved))
+      return lease.error();
   }
   lease = needs_.store.TakeMachine(claim);
   if (!lease) return lease.error();
   seen_.erase(machine);
-  return Taken{.lease = *std::move(lease), .from = claim.seen};
+  if (given) given_.erase(machine);
+  return Taken{.lease = *std::move(lease),
+               .from = claim.seen,
+               .by_hand = given ? given->told : std::string()};
 }
 
 // Its line is nobody's any more: who waits for an answer is told so, and what it was storing is
@@ -119,8 +154,7 @@ void Hosts::Retire(const HostPointer& host) {
   for (auto& [number, one] : pending) one.done(NotLive("its host is not heard of any more"));
 }
 
-Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello,
-                      const std::optional<storage::MachineLease>& from) {
+Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello, const Taken& taken) {
   const Result<storage::MachineRecord> machine = needs_.store.GetMachine(host->id);
   if (!machine) return machine.error();
   const auto mark = needs_.store.GetMachineMark(host->id);
@@ -129,13 +163,14 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello,
   if (*mark && (*mark)->fence == host->lease.fence) host->stored = (*mark)->sequence;
   // A host that comes back knows better.
   if (hello.fence() != host->lease.fence) {
-    if (const Status told = TellRecovery(*host, from, *mark); !told) return told.error();
+    if (const Status told = TellRecovery(*host, taken, *mark); !told) return told.error();
     host->fresh = true;
   }
   v1::HostResponse message;
   v1::HostWelcome& welcome = *message.mutable_welcome();
   welcome.set_fence(host->lease.fence);
   *welcome.mutable_lease() = TimeUtil::SecondsToDuration(kLease.count());
+  *welcome.mutable_servers() = {needs_.servers.begin(), needs_.servers.end()};
   welcome.set_family(machine->family);
   welcome.set_profile(machine->profile);
   for (const auto& [name, value] : machine->parameters)
@@ -156,15 +191,22 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello,
 
 // That a host is gone; from when to when status was shown that counts no more, and where the
 // program was. LIVE-3.30, 5.20
-Status Hosts::TellRecovery(const Host& host, const std::optional<storage::MachineLease>& from,
+Status Hosts::TellRecovery(const Host& host, const Taken& taken,
                            const std::optional<storage::MachineMark>& mark) {
   storage::MachineWrite write;
   v1::MachineMark note;
   if (mark) static_cast<void>(note.ParseFromString(mark->note));
-  if (from) {
+  if (!taken.by_hand.empty()) {
+    v1::MachineEvent given;
+    given.mutable_run()->mutable_message()->set_text(taken.by_hand);
+    given.set_fence(host.lease.fence);
+    given.set_virtual_time_ns(note.virtual_time_ns());
+    write.events.push_back(ToRecord(given));
+  }
+  if (taken.from) {
     v1::MachineEvent lost;
-    lost.mutable_host_lost()->set_host(from->host);
-    lost.mutable_host_lost()->set_fence(from->fence);
+    lost.mutable_host_lost()->set_host(taken.from->host);
+    lost.mutable_host_lost()->set_fence(taken.from->fence);
     lost.set_fence(host.lease.fence);
     lost.set_virtual_time_ns(note.virtual_time_ns());
     write.events.push_back(ToRecord(lost));

@@ -120,6 +120,11 @@ int InlineSlotOf(const v1::Job& job) {
   return job.inline_slot() > 0 ? job.inline_slot() : kSlotMin;
 }
 
+int MainSlotOf(const v1::Job& job) {
+  const auto stored = ParseProgramName(job.program());
+  return stored ? stored->slot : InlineSlotOf(job);
+}
+
 std::optional<BroughtProgram> ProgramBrought(const v1::Job& job) {
   if (job.has_inline_program())
     return BroughtProgram{job.inline_program().file_name(), job.inline_program().form()};

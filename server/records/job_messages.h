@@ -26,6 +26,9 @@ v1::WaitReason ToProto(storage::WaitReason reason);
 // The slot that an inline program stands in for its job.
 int InlineSlotOf(const v1::Job& job);
 
+// Slot of the program that it starts.
+int MainSlotOf(const v1::Job& job);
+
 // A program that a job brought with it, in the message or by its bytes' name: what it is called and
 // what its bytes are. Nothing: a stored one.
 struct BroughtProgram {

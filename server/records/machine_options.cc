@@ -46,6 +46,11 @@ bool IsEnabled(const storage::MachineRecord& record, bool by_default) {
   return options->enabled();
 }
 
+bool LivesOtherwise(const storage::MachineRecord& before, const storage::MachineRecord& now) {
+  return before.options != now.options || before.profile != now.profile ||
+         before.parameters != now.parameters;
+}
+
 Status CheckOptions(const v1::MachineOptions& options) {
   if (!v1::MachineOptions::Start_IsValid(options.start()))
     return Invalid("start is none that there is");

@@ -11,6 +11,7 @@
 #include "server/jobs/assignment.h"
 #include "server/machines/host_entries.h"
 #include "server/records/job_messages.h"
+#include "server/runs/run_ticket.h"
 #include "storage/jobs/job_rules.h"
 #include "storage/trouble.h"
 
@@ -64,9 +65,10 @@ bool Allows(const v1::StartBlocker& blocker, const v1::MachineStatus& status,
          found.front()->family != ErrorFamily::kCell && status.alarms().empty();
 }
 
-// The program of the job alone: the host has the rest.
+// The program of the job alone: the host has the rest. Where it goes on with a run, a person has
+// looked at what it does, and it needs no ticket.
 Result<v1::WorkerAssignment> ForHost(storage::Store& store, const Config& config,
-                                     const storage::LeasedJob& leased) {
+                                     const storage::LeasedJob& leased, bool continues) {
   Result<AssignmentMessages> made = MakeAssignment(store, config, leased);
   if (!made) return made.error();
   v1::WorkerAssignment assignment = std::move(*made->first.mutable_assignment());
@@ -83,6 +85,12 @@ Result<v1::WorkerAssignment> ForHost(storage::Store& store, const Config& config
   assignment.clear_machine_state();
   assignment.clear_schedules();
   assignment.clear_deleted_programs();
+  const std::string& simulation = assignment.job().run().ticket();
+  if (!simulation.empty() && !continues) {
+    Result<v1::RunTicket> ticket = TicketOf(store, simulation);
+    if (!ticket) return ticket.error();
+    *assignment.mutable_ticket() = *std::move(ticket);
+  }
   assignment.mutable_lease()->set_job(leased.lease.job);
   assignment.mutable_lease()->set_attempt(leased.lease.attempt);
   assignment.mutable_lease()->set_fence(leased.lease.fence);
@@ -254,7 +262,8 @@ void RunQueue::Send(const std::string& machine, const storage::LeasedJob& leased
     End(leased, storage::CancelledOutcome());
     return done(Error{ErrorCode::kCellCancelled, JobName(leased.job.id) + " was cancelled", {}});
   }
-  Result<v1::WorkerAssignment> assignment = ForHost(needs_.store, needs_.config, leased);
+  Result<v1::WorkerAssignment> assignment =
+      ForHost(needs_.store, needs_.config, leased, order.has_continue_job());
   if (!assignment) {
     if (storage::IsTroubleOfTheStore(assignment.error())) {
       GiveBack(leased, "its program could not be read", order.has_continue_job());

@@ -21,6 +21,8 @@ namespace {
 
 constexpr std::chrono::seconds kBegins{10};  // an enabled machine is heard of by then
 constexpr std::chrono::milliseconds kBetweenLooks{10};
+constexpr std::size_t kReasonMax = 200;
+constexpr std::size_t kComputerMax = 253;  // of the name of a host, RFC 1035
 
 }  // namespace
 
@@ -438,6 +440,17 @@ void MachineService::FollowOptions(const storage::MachineRecord& machine) {
   if (!done) spdlog::warn("{}: {}", machine.id, bridge::ErrorText(done.error()));
 }
 
+// Its host has it as it was when it began: another one follows.
+void MachineService::FollowChange(const storage::MachineRecord& before,
+                                  const storage::MachineRecord& now) {
+  if (live_.processes == nullptr || !LivesOtherwise(before, now)) return;
+  if (live_.hosts->IsHosted(now.id)) {
+    const Status ended = EndHost(now.id, "the machine was changed");
+    if (!ended) spdlog::warn("{}: {}", now.id, bridge::ErrorText(ended.error()));
+  }
+  FollowOptions(now);
+}
+
 void MachineService::Restore(const std::string& machine) {
   if (const auto record = store_.GetMachine(machine)) FollowOptions(*record);
 }
@@ -455,6 +468,40 @@ grpc::Status MachineService::Disable(const std::string& machine, const std::stri
   if (const grpc::Status told = TellStatus(machine, status); !told.ok()) return told;
   status.set_state(v1::MACHINE_STATE_OFF);
   return grpc::Status::OK;
+}
+
+// Until a host of that computer has it.
+grpc::Status MachineService::GiveTo(const v1::TakeMachineRequest& request,
+                                    const std::string& caller, v1::MachineStatus& status) {
+  const auto machine = ParseMachineName(request.machine());
+  if (!machine) return ToGrpcStatus(machine.error());
+  if (request.reason().empty() || request.reason().size() > kReasonMax)
+    return ToGrpcStatus(InvalidArgument("reason: why, in 1 to 200 characters"));
+  if (request.computer().empty() || request.computer().size() > kComputerMax ||
+      request.computer().find('/') != std::string::npos)
+    return ToGrpcStatus(InvalidArgument("computer: its name, as `hostname` says it there"));
+  if (const auto known = store_.GetMachine(*machine); !known) return ToGrpcStatus(known.error());
+  if (live_.hosts == nullptr)
+    return ToGrpcStatus(Error{ErrorCode::kCellNotLive, "no machine lives here", {}});
+  live_.hosts->GiveTo(*machine, request.computer(), caller, request.reason());
+  const auto until = std::chrono::steady_clock::now() + kBegins;
+  while (std::chrono::steady_clock::now() < until) {
+    const auto now = live_.hosts->StatusOf(*machine);
+    if (now && now->state() != v1::MACHINE_STATE_LOST &&
+        now->host().starts_with(request.computer() + "/"))
+      break;
+    std::this_thread::sleep_for(kBetweenLooks);
+  }
+  return TellStatus(*machine, status);
+}
+
+grpc::ServerUnaryReactor* MachineService::TakeMachine(grpc::CallbackServerContext* context,
+                                                      const v1::TakeMachineRequest* request,
+                                                      v1::MachineStatus* response) {
+  return Answer(needs_.Computing(), context, *request, "MachineService/TakeMachine",
+                [this, request, response](const Caller& caller) {
+                  return GiveTo(*request, caller.identity, *response);
+                });
 }
 
 grpc::ServerUnaryReactor* MachineService::EnableMachine(grpc::CallbackServerContext* context,

@@ -11,6 +11,7 @@
 #include "server/records/job_messages.h"
 #include "server/records/machine_capabilities.h"
 #include "server/records/machine_messages.h"
+#include "server/records/machine_options.h"
 #include "server/records/program_place.h"
 #include "server/services/journal_export.h"
 
@@ -125,32 +126,39 @@ grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerContext* context,
                                                         const v1::UpdateMachineRequest* request,
                                                         v1::Machine* response) {
-  return Answer(needs_.Computing(), context, *request, "MachineService/UpdateMachine",
-                [this, request, response](const Caller& caller) {
-                  const auto id = ParseMachineName(request->machine().name());
-                  if (!id) return ToGrpcStatus(id.error());
-                  if (const Status now = CheckNothingOfLater(request->machine()); !now)
-                    return ToGrpcStatus(now.error());
-                  const auto expected = ParseEtag(request->machine().etag());
-                  if (!expected) return ToGrpcStatus(expected.error());
-                  const auto stands = store_.GetMachine(*id);
-                  if (!stands) return ToGrpcStatus(stands.error());
-                  const auto record = Updated(*stands, request->machine(), request->update_mask());
-                  if (!record) return ToGrpcStatus(record.error());
-                  if (request->validate_only()) {
-                    *response = ToProto(*record);
-                    return grpc::Status::OK;
-                  }
-                  // Read and written by the same revision: a change in between is refused, not
-                  // lost.
-                  const auto stored = store_.PutMachine(
-                      *record, *expected == storage::kAnyRevision ? record->revision : *expected,
-                      caller.identity);
-                  if (!stored) return ToGrpcStatus(stored.error());
-                  if (stored->options != stands->options) FollowOptions(*stored);
-                  *response = ToProto(*stored);
-                  return grpc::Status::OK;
-                });
+  return Answer(
+      needs_.Computing(), context, *request, "MachineService/UpdateMachine",
+      [this, request, response](const Caller& caller) {
+        const auto id = ParseMachineName(request->machine().name());
+        if (!id) return ToGrpcStatus(id.error());
+        if (const Status now = CheckNothingOfLater(request->machine()); !now)
+          return ToGrpcStatus(now.error());
+        const auto expected = ParseEtag(request->machine().etag());
+        if (!expected) return ToGrpcStatus(expected.error());
+        const auto stands = store_.GetMachine(*id);
+        if (!stands) return ToGrpcStatus(stands.error());
+        const auto record = Updated(*stands, request->machine(), request->update_mask());
+        if (!record) return ToGrpcStatus(record.error());
+        if (LivesOtherwise(*stands, *record) && live_.hosts != nullptr) {
+          const auto now = live_.hosts->StatusOf(*id);
+          if (now && now->has_run())
+            return ToGrpcStatus(Error{
+                ErrorCode::kCellMachineState, "a run is open: change it when that is over", {}});
+        }
+        if (request->validate_only()) {
+          *response = ToProto(*record);
+          return grpc::Status::OK;
+        }
+        // Read and written by the same revision: a change in between is refused, not
+        // lost.
+        const auto stored = store_.PutMachine(
+            *record, *expected == storage::kAnyRevision ? record->revision : *expected,
+            caller.identity);
+        if (!stored) return ToGrpcStatus(stored.error());
+        FollowChange(*stands, *stored);
+        *response = ToProto(*stored);
+        return grpc::Status::OK;
+      });
 }
 
 grpc::ServerUnaryReactor* MachineService::DeleteMachine(grpc::CallbackServerContext* context,

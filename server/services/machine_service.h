@@ -158,8 +158,10 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerUnaryReactor* DisableMachine(grpc::CallbackServerContext* context,
                                            const v1::DisableMachineRequest* request,
                                            v1::MachineStatus* response) override;
+  grpc::ServerUnaryReactor* TakeMachine(grpc::CallbackServerContext* context,
+                                        const v1::TakeMachineRequest* request,
+                                        v1::MachineStatus* response) override;
 
-  RMLCELL_LATER("MachineService", TakeMachine, v1::MachineStatus)
   RMLCELL_LATER("MachineService", ListDevices, v1::ListDevicesResponse)
 
  private:
@@ -179,10 +181,14 @@ class MachineService final : public v1::MachineService::CallbackService {
                       v1::MachineStatus& status);
   grpc::Status Disable(const std::string& machine, const std::string& caller,
                        v1::MachineStatus& status);
+  grpc::Status GiveTo(const v1::TakeMachineRequest& request, const std::string& caller,
+                      v1::MachineStatus& status);
   Status KeepEnabled(const std::string& machine, bool enabled, const std::string& caller);
   // It comes to rest and has no host any more. Error: CellMachineState, a run is open.
   Status EndHost(const std::string& machine, const std::string& why);
   void FollowOptions(const storage::MachineRecord& machine);
+  // The host of a machine that was changed begins anew; not while a run is open.
+  void FollowChange(const storage::MachineRecord& before, const storage::MachineRecord& now);
   void Restore(const std::string& machine);  // it was not deleted after all
   grpc::Status TellStatus(const std::string& machine, v1::MachineStatus& status);
 

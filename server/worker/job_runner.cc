@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <new>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "proto/bridge/series.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
+#include "proto/bridge/ticket.h"
 #include "server/worker/assigned_programs.h"
 #include "server/worker/job_drive.h"
 #include "server/worker/job_events.h"
@@ -223,6 +225,7 @@ class Attempt {
         drive.timetable = *std::move(timetable);
     }
     steps_ = StepMapOf(family, *made->setup);
+    depends_on_ = bridge::DigestsOf(bridge::DependenciesOf(family, *made->setup));
     Result<simulation::BegunRun> begun =
         simulation::Begin(family, std::move(*made->setup), std::move(products));
     if (!begun) return Refuse(begun.error());
@@ -249,6 +252,7 @@ class Attempt {
     machine::MarkJudged(report.judgement, before.diagnostics);
     machine::MarkJudged(report.judgement, before.diagnostics_dropped);
     bridge::AddFindingsOfText(before.diagnostics, before.diagnostics_dropped, message);
+    message.mutable_inputs()->insert(depends_on_.begin(), depends_on_.end());
     outcome_ = message.outcome();
     outcome_.set_cycle_time_ns(report.cycle_time.count());
     return SendProducts(message, picture, milling);
@@ -356,8 +360,9 @@ class Attempt {
   JobEvents events_;
   v1::Outcome outcome_;
   std::map<int, std::string> executables_;
-  std::string steps_;   // GetStepMapResponse
-  std::string series_;  // SeriesTable
+  std::string steps_;                              // GetStepMapResponse
+  std::map<std::string, std::string> depends_on_;  // RunReport.inputs
+  std::string series_;                             // SeriesTable
 };
 
 }  // namespace

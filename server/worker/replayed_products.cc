@@ -1,8 +1,10 @@
 #include "server/worker/replayed_products.h"
 
 #include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "engine/machine/machine_note.h"
@@ -14,6 +16,7 @@
 #include "proto/bridge/report.h"
 #include "proto/bridge/series.h"
 #include "proto/bridge/spooled_bytes.h"
+#include "proto/bridge/ticket.h"
 #include "proto/recording/replay.h"
 #include "server/worker/step_map.h"
 
@@ -89,6 +92,7 @@ class Maker {
                                                        simulation::DescribeInputs(family, setup),
                                                        std::move(products));
     steps_ = StepMapOf(family, setup);
+    depends_on_ = bridge::DigestsOf(bridge::DependenciesOf(family, setup));
   }
 
   machine::RunObserver& observer() { return *recorder_; }
@@ -109,6 +113,7 @@ class Maker {
     if (!report_)
       return Error{ErrorCode::kCellPrecondition, "the recording ends before the run does", {}};
     v1::RunReport report = bridge::ToProto(family_.info(), *report_, {});
+    report.mutable_inputs()->insert(depends_on_.begin(), depends_on_.end());
     if (outcome_.code != report_->outcome.code)
       *report.mutable_outcome() = bridge::ToProto(outcome_, report_->judgement);
     if (!toolpath_.Close()) return Error{ErrorCode::kCellFileUnwritable, folder_ + "/toolpath", {}};
@@ -124,6 +129,7 @@ class Maker {
   ToolpathFile toolpath_;
   std::unique_ptr<simulation::Recorder> recorder_;
   std::string steps_;
+  std::map<std::string, std::string> depends_on_;
   bool begun_ = false;
   std::optional<simulation::RunReport> report_;
   machine::Outcome outcome_{};

@@ -188,6 +188,7 @@ const std::map<int, std::string_view> kNumbersOfTheCell = {
     {9309, "CellVersionMismatch"},
     {9310, "CellJoinRefused"},
     {9406, "CellNotArmed"},
+    {9407, "CellTicket"},
     {9601, "CellGouge"},
     {9602, "CellBelowBlock"},
     {9603, "CellBlockUntouched"},

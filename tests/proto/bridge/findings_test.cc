@@ -287,6 +287,7 @@ TEST(RpcCodes, OfEveryErrorThatIsNoWrongArgument) {
                                            {ErrorCode::kCellMode, 9},
                                            {ErrorCode::kCellDisplaced, 9},
                                            {ErrorCode::kCellNotArmed, 9},
+                                           {ErrorCode::kCellTicket, 9},
                                            {ErrorCode::kCellStepUnreachable, 9},
                                            {ErrorCode::kCellApproach, 9},
                                            {ErrorCode::kCellDoorOpen, 9},

@@ -243,6 +243,74 @@ TEST_F(HostsTest, WhatAHostTellsIsStored) {
   EXPECT_EQ(told.at(told.size() - 2).host_lost().fence(), fence);
 }
 
+// LIVE-3.03: a machine with a device is never taken by waiting, whoever holds the lock of the
+// device elsewhere.
+TEST_F(HostsTest, AMachineWithADeviceWaitsForAPerson) {
+  v1::HostHello hello = Hello("hall/1");
+  hello.set_computer("hall");
+  hello.set_has_device(true);
+  const auto first = Joined(hello);
+  EXPECT_TRUE(Must(bed.store().MachineLeases()).front().pinned);
+  hosts.Leave(*first);
+  v1::HostHello other = Hello("office/2");
+  other.set_computer("office");
+  other.set_has_device(true);
+  EXPECT_EQ(Refused(other), ErrorCode::kCellMachineTaken);
+  clock.Advance(std::chrono::minutes(10));
+  EXPECT_EQ(Refused(other), ErrorCode::kCellMachineTaken);
+
+  hosts.GiveTo("mill-1", "cellar", "anna", "a mistake");
+  EXPECT_EQ(Refused(other), ErrorCode::kCellMachineTaken);
+  hosts.GiveTo("mill-1", "office", "anna", "the hall is without power");
+  other.set_has_device(false);
+  EXPECT_EQ(Refused(other), ErrorCode::kCellMachineTaken);
+  other.set_has_device(true);
+  const auto second = Joined(other);
+  EXPECT_GT(Fence(*second), Fence(*first));
+  const auto told = Told();
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told.at(0).run().message().text(), "taken by anna: the hall is without power");
+  EXPECT_EQ(told.at(1).host_lost().host(), "hall/1");
+
+  // Given once, taken once.
+  v1::HostHello third = Hello("cellar/3");
+  third.set_computer("cellar");
+  third.set_has_device(true);
+  EXPECT_EQ(Refused(third), ErrorCode::kCellMachineTaken);
+}
+
+// LIVE-3.03: who has the lock of the device on the same computer has the machine: whoever had it is
+// gone.
+TEST_F(HostsTest, TheNextHostOfTheComputerThatHasTheDeviceGetsTheMachine) {
+  v1::HostHello hello = Hello("hall/1");
+  hello.set_computer("hall");
+  hello.set_has_device(true);
+  const auto first = Joined(hello);
+  hosts.Leave(*first);
+  hello.set_host("hall/2");
+  hello.set_has_device(false);
+  EXPECT_EQ(Refused(hello), ErrorCode::kCellMachineTaken);
+  hello.set_has_device(true);
+  EXPECT_GT(Fence(*Joined(hello)), Fence(*first));
+}
+
+// LIVE-3.03: a virtual machine is given by hand, too, and what is given is given for a while.
+TEST_F(HostsTest, WhatAPersonGaveIsTakenWithinTenMinutes) {
+  const auto first = Joined();
+  v1::HostHello other = Hello("office/2");
+  other.set_computer("office");
+  hosts.GiveTo("mill-1", "office", "anna", "moved");
+  clock.Advance(Hosts::kGivenFor + std::chrono::seconds(1));
+  v1::HostRequest renew;
+  renew.mutable_renew()->set_fence(Fence(*first));
+  hosts.Receive(*first, std::move(renew));
+  first->Newest(v1::HostResponse::kRenewed);
+  EXPECT_EQ(Refused(other), ErrorCode::kCellMachineTaken);
+  hosts.GiveTo("mill-1", "office", "anna", "moved");
+  Joined(other);
+  EXPECT_TRUE(first->closed());
+}
+
 // LIVE-3.06: each side knows that the other one is there.
 TEST_F(HostsTest, AHeartbeatIsAnswered) {
   const auto link = Joined();

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "rmlcell/v1/host.pb.h"
+
+namespace rmlcell::server {
+
+// Lines of a host to the other servers of its cell, beside the one that stores what it tells: what
+// a client asks of any of them reaches the machine, and the status of the machine reaches them all,
+// past the store. LIVE-3.06. Thread-safe.
+class FurtherLines {
+ public:
+  static constexpr std::size_t kServersMax = 8;
+
+  // `wake`: something has come; called on threads of this.
+  explicit FurtherLines(std::function<void()> wake);
+  ~FurtherLines();
+  FurtherLines(const FurtherLines&) = delete;
+  FurtherLines& operator=(const FurtherLines&) = delete;
+
+  // From here on to these and to no others, which are greeted so.
+  void Keep(const std::vector<std::string>& servers, v1::HostHello hello);
+
+  // What came since the last call: orders, by numbers that no other line has, and that the host is
+  // to end.
+  std::deque<v1::HostResponse> TakeMessages();
+  // True where the order came over one of these lines: it is answered there, if that still stands.
+  bool Answer(const v1::HostOrderAnswer& answer);
+  void SendStatus(const v1::MachineStatus& status);
+  void SendPanel(const v1::HandboxPanel& panel);
+
+  // Whether one of them stands and is heard.
+  bool IsHeard() const;
+
+ private:
+  class Line;
+  struct Asked {
+    std::string server{};
+    std::int64_t line = 0;    // the how manieth to that server
+    std::int64_t number = 0;  // by the server
+  };
+  void Hear(Line& line, v1::HostResponse message);
+  v1::HostHello hello() const;
+
+  std::function<void()> wake_;
+  mutable std::mutex mutex_;
+  v1::HostHello hello_;                                 // guarded by mutex_
+  std::map<std::string, std::unique_ptr<Line>> lines_;  // by server; of the thread of the machine
+  std::vector<std::unique_ptr<Line>> ended_;            // likewise: until their threads are over
+  std::deque<v1::HostResponse> messages_;               // guarded by mutex_
+  std::map<std::int64_t, Asked> asked_;                 // by own number; guarded by mutex_
+  std::int64_t next_ = -1;                              // counts down; guarded by mutex_
+};
+
+}  // namespace rmlcell::server

@@ -1,0 +1,153 @@
+// Requests that are repeated, also behind a crash of the host (live.md 3.27).
+#include "server/host/answered_requests.h"
+
+#include <filesystem>
+
+#include "server/host/journal.h"
+#include "server/host/recovered.h"
+#include "tests/server/host/host_machine_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+class AnsweredTest : public HostMachineTest {
+ protected:
+  void SetUp() override {
+    Make();
+    host_->Begin({}, now_);
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
+  }
+  // All that is on the disk by now.
+  void Keep() {
+    for (v1::JournalEntry& entry : host_->TakeEntries(now_, true)) disk_.push_back(entry);
+  }
+  // Another host, with what the first `count` entries of the disk say.
+  void Crash(std::size_t count, std::chrono::minutes later = std::chrono::minutes(0)) {
+    now_.steady += later;
+    now_.wall += later;
+    v1::HostWelcome welcome;
+    HostMachine::Setup setup =
+        SetupOf(RecoveredFrom(welcome, {disk_.begin(), disk_.begin() + static_cast<long>(count)}));
+    setup.name = "machines/mill-1";
+    setup.host = "workshop/2";
+    setup.fence = 8;
+    setup.family = families::FindFamily("rml1");
+    setup.profile = "srm-20";
+    setup.memory.programs[5] = {.name = "square", .object = machine::Bytes::Of(kSquare)};
+    auto made = HostMachine::Make(std::move(setup), now_,
+                                  [this] { return "token " + std::to_string(++tokens_); });
+    ASSERT_TRUE(made) << made.error().detail;
+    host_ = *std::move(made);
+    host_->Begin({}, now_);
+  }
+  v1::HostOrder Factor(const std::string& id) {
+    v1::HostOrder order;
+    order.mutable_factor()->set_factor(2.0);
+    order.mutable_factor()->set_control_token(token_);
+    order.mutable_factor()->set_request_id(id);
+    return order;
+  }
+  std::vector<v1::JournalEntry> disk_;
+};
+
+// LIVE-3.27: what the state has is not done again; the token of then proves nothing any more, and
+// the repeat needs none.
+TEST_F(AnsweredTest, ARepeatBehindACrashGetsTheFirstAnswer) {
+  const v1::HostOrder start = Start("the one");
+  EXPECT_TRUE(Do(start).status().has_run());
+  Pass(2s);
+  Keep();
+  Crash(disk_.size());
+  const v1::HostOrderAnswer again = Do(start);
+  EXPECT_FALSE(again.has_refusal()) << again.refusal().message();
+  EXPECT_EQ(again.status().state(), v1::MACHINE_STATE_INSPECT);
+  EXPECT_FALSE(host_->StatusAt(now_).has_run());
+  // Another one is looked at.
+  EXPECT_EQ(Do(Start("another")).refusal().code(), "CELL-E9420");
+}
+
+// LIVE-3.27: a refusal is an answer, too.
+TEST_F(AnsweredTest, ARefusalIsRepeatedToo) {
+  const v1::HostOrder none = Start("none", 6);
+  const std::string code = Do(none).refusal().code();
+  EXPECT_FALSE(code.empty());
+  Keep();
+  Crash(disk_.size());
+  Control();
+  v1::HostOrder again = none;
+  EXPECT_EQ(Do(again).refusal().code(), code);
+}
+
+// LIVE-3.27: what lies behind the newest mark did not happen to the machine that is found: its
+// repeat acts.
+TEST_F(AnsweredTest, WhatTheStateDoesNotHaveActs) {
+  Keep();
+  const std::size_t before = disk_.size();
+  const v1::HostOrder start = Start("the one");
+  Do(start);
+  Keep();
+  ASSERT_TRUE(disk_.back().has_mark());
+  for (std::size_t cut = before; cut < disk_.size(); ++cut) {
+    Crash(cut);
+    Control();
+    v1::HostOrder again = start;
+    again.mutable_start()->set_control_token(token_);
+    EXPECT_TRUE(Do(again).status().has_run()) << cut;
+  }
+}
+
+// LIVE-3.27: for ten minutes, and of one caller and one kind.
+TEST_F(AnsweredTest, AnAnswerIsKeptForTenMinutes) {
+  Do(Factor("faster"));
+  Keep();
+  Crash(disk_.size(), std::chrono::minutes(9));
+  EXPECT_TRUE(Do(Factor("faster")).has_status());
+  Crash(disk_.size(), std::chrono::minutes(2));
+  EXPECT_EQ(Do(Factor("faster")).refusal().code(), "CELL-E9420");
+}
+
+v1::JournalEntry Entry(std::int64_t sequence, std::int64_t second) {
+  v1::JournalEntry entry;
+  entry.set_fence(7);
+  entry.set_sequence(sequence);
+  entry.mutable_time()->set_seconds(1'700'000'000 + second);
+  return entry;
+}
+
+// LIVE-3.27, LIVE-3.24: answers that may still be asked for outlive the trimming of the journal.
+TEST(AnsweredJournal, AnswersOutliveWhatIsStored) {
+  const std::string path = testing::TempDir() + "/answered.journal";
+  std::filesystem::remove(path);
+  auto opened = Journal::Open(path);
+  ASSERT_TRUE(opened);
+  std::unique_ptr<Journal> journal = std::move(opened->journal);
+  std::int64_t sequence = 0;
+  const auto answered = [&](std::int64_t second, const std::string& id) {
+    v1::JournalEntry entry = Entry(++sequence, second);
+    entry.mutable_answered()->set_request_id(id);
+    ASSERT_TRUE(journal->Write({entry}));
+  };
+  answered(0, "old");
+  answered(700, "new");
+  for (int i = 0; i < 45; ++i) {
+    v1::JournalEntry mark = Entry(++sequence, 1000);
+    mark.mutable_mark()->set_state(std::string(100'000, 's'));
+    ASSERT_TRUE(journal->Write({mark}));
+  }
+  answered(1001, "behind");
+  journal->Stored(7, sequence - 1);
+  EXPECT_LT(journal->bytes(), 1'000);
+  answered(1002, "last");
+  journal.reset();
+  const auto again = Journal::Open(path);
+  ASSERT_TRUE(again);
+  std::vector<std::string> ids;
+  for (const v1::JournalEntry& entry : again->entries) ids.push_back(entry.answered().request_id());
+  EXPECT_THAT(ids, testing::ElementsAre("new", "behind", "last"));
+  EXPECT_EQ(again->torn_bytes, 0);
+  // What was kept is dropped in its turn.
+  EXPECT_EQ(again->entries.front().sequence(), 2);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

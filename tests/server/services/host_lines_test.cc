@@ -1,0 +1,219 @@
+// A host and the servers of its cell, over the wire (live.md 3.06).
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "server/base/executor.h"
+#include "server/events/event_feed.h"
+#include "server/host/host_process.h"
+#include "server/machines/hosts.h"
+#include "server/services/host_service.h"
+#include "tests/server/forwarding_store.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr const char* kMill = "mill-1";
+
+// Takes nothing of a machine while it is stopped.
+class StoppedStore final : public ForwardingStore {
+ public:
+  using ForwardingStore::ForwardingStore;
+  Status AppendMachine(const storage::MachineLease& lease,
+                       const storage::MachineWrite& write) override {
+    {
+      std::unique_lock lock(mutex_);
+      goes_on_.wait(lock, [this] { return !stopped_; });
+    }
+    return ForwardingStore::AppendMachine(lease, write);
+  }
+  void Stop(bool stopped) {
+    const std::lock_guard lock(mutex_);
+    stopped_ = stopped;
+    goes_on_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable goes_on_;
+  bool stopped_ = false;
+};
+
+// One of the servers of a cell, as far as hosts know it.
+struct OneServer {
+  OneServer(storage::Store& store, std::string name, const std::string& folder,
+            const std::vector<std::string>& servers)
+      : feed(store),
+        hosts({.store = store,
+               .feed = feed,
+               .executor = executor,
+               .server = name,
+               .join_token = "secret",
+               .servers = servers}) {
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort(AddressOf(folder, name), grpc::InsecureServerCredentials());
+    builder.RegisterService(&service);
+    server = builder.BuildAndStart();
+  }
+  ~OneServer() { End(); }
+  static std::string AddressOf(const std::string& folder, const std::string& name) {
+    return "unix:" + folder + "/" + name;
+  }
+  void End() {
+    hosts.CloseAll();
+    server->Shutdown(std::chrono::system_clock::now());
+    server->Wait();
+  }
+
+  v1::MachineState State() {
+    const auto status = hosts.StatusOf(kMill);
+    return status ? status->state() : v1::MACHINE_STATE_UNSPECIFIED;
+  }
+  bool Becomes(v1::MachineState state) {
+    return Eventually([&] { return State() == state; });
+  }
+  v1::HostOrderAnswer Ask(v1::HostOrder order) {
+    order.set_caller("anna");
+    std::promise<Result<v1::HostOrderAnswer>> answered;
+    hosts.Ask(kMill, std::move(order),
+              [&](Result<v1::HostOrderAnswer> answer) { answered.set_value(std::move(answer)); });
+    Result<v1::HostOrderAnswer> answer = answered.get_future().get();
+    EXPECT_TRUE(answer) << answer.error().detail;
+    if (!answer) return {};
+    EXPECT_FALSE(answer->has_refusal()) << answer->refusal().message();
+    return *std::move(answer);
+  }
+
+  EventFeed feed;
+  Executor executor{4};
+  Hosts hosts;
+  Gate gate{"a secret of the web port"};
+  HostService service{{gate, executor, executor, 1 << 20}, hosts};
+  std::unique_ptr<grpc::Server> server;
+};
+
+class HostLinesTest : public testing::Test {
+ protected:
+  HostLinesTest() : folder_(testing::TempDir() + "/host-lines") {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    Must(store_.PutPrograms(
+        kMill, {{.slot = 5, .name = "p", .object = "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PD8000,0;"}}, {},
+        "anna"));
+    const std::vector<std::string> servers = {OneServer::AddressOf(folder_, "a"),
+                                              OneServer::AddressOf(folder_, "b")};
+    a_ = std::make_unique<OneServer>(store_, "a", folder_, servers);
+    b_ = std::make_unique<OneServer>(store_, "b", folder_, servers);
+    host_ = std::thread([this] {
+      RunHost({.server = OneServer::AddressOf(folder_, "a"),
+               .join_token = "secret",
+               .machine = "machines/mill-1",
+               .journal = folder_ + "/journal"},
+              stopping_);
+    });
+  }
+  ~HostLinesTest() override {
+    store_.Stop(false);
+    stopping_ = true;
+    host_.join();
+    a_.reset();
+    b_.reset();
+  }
+  void Control(OneServer& server) {
+    v1::HostOrder order;
+    order.mutable_acquire_control()->mutable_ttl()->set_seconds(60);
+    order.mutable_acquire_control()->set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);
+    order.mutable_acquire_control()->set_client("a test");
+    token_ = server.Ask(order).control().control_token();
+    EXPECT_NE(token_, "");
+  }
+  void Start(OneServer& server) {
+    v1::HostOrder order;
+    order.mutable_start()->set_program(5);
+    order.mutable_start()->set_control_token(token_);
+    order.mutable_start()->set_request_id("start " + std::to_string(++requests_));
+    server.Ask(order);
+  }
+  void Resume(OneServer& server) {
+    v1::HostOrder order;
+    order.mutable_resume()->set_control_token(token_);
+    order.mutable_resume()->set_request_id("resume " + std::to_string(++requests_));
+    server.Ask(order);
+  }
+  static void Stop(OneServer& server) {
+    v1::HostOrder order;
+    order.mutable_stop();
+    server.Ask(order);
+  }
+
+  std::string folder_;
+  ServerBed bed_;
+  StoppedStore store_{bed_.store()};
+  std::unique_ptr<OneServer> a_;
+  std::unique_ptr<OneServer> b_;
+  std::atomic<bool> stopping_ = false;
+  std::thread host_;
+  std::string token_;
+  int requests_ = 0;
+};
+
+// LIVE-3.06, LIVE-4.01: either server shows the machine and orders it, and control is the host's.
+TEST_F(HostLinesTest, EitherServerReachesTheMachine) {
+  ASSERT_TRUE(a_->Becomes(v1::MACHINE_STATE_IDLE));
+  ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_IDLE));
+  Control(*b_);
+  Start(*a_);
+  EXPECT_TRUE(b_->Becomes(v1::MACHINE_STATE_RUNNING));
+  EXPECT_EQ(a_->hosts.StatusOf(kMill)->control().holder(), "anna");
+  Stop(*b_);
+  EXPECT_TRUE(a_->Becomes(v1::MACHINE_STATE_HELD));
+  Resume(*b_);
+  EXPECT_TRUE(a_->Becomes(v1::MACHINE_STATE_RUNNING));
+}
+
+// LIVE-3.06, LIVE-4.07: STOP and status never pass the store, whichever server got the call.
+TEST_F(HostLinesTest, AStopPassesNoStore) {
+  ASSERT_TRUE(a_->Becomes(v1::MACHINE_STATE_IDLE));
+  ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_IDLE));
+  Control(*a_);
+  Start(*a_);
+  ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_RUNNING));
+  store_.Stop(true);
+  Stop(*b_);
+  EXPECT_TRUE(a_->Becomes(v1::MACHINE_STATE_HELD));
+  EXPECT_TRUE(b_->Becomes(v1::MACHINE_STATE_HELD));
+  Resume(*a_);
+  EXPECT_TRUE(b_->Becomes(v1::MACHINE_STATE_RUNNING));
+  Stop(*a_);
+  EXPECT_TRUE(b_->Becomes(v1::MACHINE_STATE_HELD));
+}
+
+// LIVE-3.06, LIVE-3.31: one server goes; the run does not, and the other one stores what happens.
+TEST_F(HostLinesTest, TheOtherServerGoesOnWithTheMachine) {
+  ASSERT_TRUE(a_->Becomes(v1::MACHINE_STATE_IDLE));
+  ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_IDLE));
+  Control(*b_);
+  Start(*b_);
+  ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_RUNNING));
+  const std::int64_t fence = Must(store_.MachineLeases()).front().fence;
+  a_->End();
+  EXPECT_TRUE(Eventually([&] { return b_->hosts.IsSettled(kMill); }));
+  EXPECT_EQ(b_->State(), v1::MACHINE_STATE_RUNNING);
+  const storage::MachineLease lease = Must(store_.MachineLeases()).front();
+  EXPECT_EQ(lease.server, "b");
+  EXPECT_EQ(lease.fence, fence);
+  Stop(*b_);
+  EXPECT_TRUE(b_->Becomes(v1::MACHINE_STATE_HELD));
+  EXPECT_EQ(b_->hosts.StatusOf(kMill)->hold_reason(), v1::HOLD_REASON_STOP);
+}
+
+}  // namespace
+}  // namespace rmlcell::server
