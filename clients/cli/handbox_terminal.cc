@@ -36,7 +36,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kBetweenBeats{50};  // LIVE-7.05
 constexpr milliseconds kBetweenFlashes{400};
 constexpr milliseconds kBetweenDraws{50};
 // What has begun as a sequence of a terminal and does not go on is none. Longer than a slow line

@@ -99,16 +99,14 @@ grpc::Status PressOne(Keys& keys, const std::string& name, v1::KeyAction action)
   return keys.Press(context);
 }
 
-// Whoever holds a key says so every 50 ms, or the machine stops.
+// Whoever holds a key says so again and again, or the machine stops.
 template <class Keys>
 grpc::Status HoldOne(Keys& keys, const std::string& name, double seconds) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds kBetweenBeats{50};
   if (const grpc::Status pressed = PressOne(keys, name, v1::KEY_ACTION_PRESS); !pressed.ok())
     return pressed;
   keys.beat().add_keys_down(name);
-  const auto until = Clock::now() + std::chrono::duration<double>(seconds);
-  for (auto next = Clock::now(); next < until; next += kBetweenBeats) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  for (auto next = std::chrono::steady_clock::now(); next < until; next += kBetweenBeats) {
     std::this_thread::sleep_until(next);
     keys.beat().set_number(keys.beat().number() + 1);
     *keys.beat().mutable_sent() = SentNow();

@@ -16,6 +16,9 @@ namespace rmlcell::cli {
 
 using Service = v1::MachineService;
 
+// Whoever holds a key says so that often. LIVE-7.05
+inline constexpr std::chrono::milliseconds kBetweenBeats{50};
+
 // "RUNNING" of "MACHINE_STATE_RUNNING".
 std::string Short(std::string_view name, std::string_view prefix);
 

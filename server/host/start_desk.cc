@@ -10,15 +10,16 @@
 namespace rmlcell::server {
 namespace {
 
-struct SeenTo {
+struct ConfirmedItem {
   std::string_view item;
   v1::Confirmation confirmation;
 };
-constexpr std::array<SeenTo, 5> kSeenTo = {{{"clamps", v1::CONFIRMATION_CLAMPS},
-                                            {"tool", v1::CONFIRMATION_TOOL},
-                                            {"origin", v1::CONFIRMATION_ORIGIN_VALID},
-                                            {"Z0", v1::CONFIRMATION_ORIGIN_VALID},
-                                            {"table", v1::CONFIRMATION_TABLE_CLEAR}}};
+constexpr std::array<ConfirmedItem, 5> kConfirmedItems = {
+    {{"clamps", v1::CONFIRMATION_CLAMPS},
+     {"tool", v1::CONFIRMATION_TOOL},
+     {"origin", v1::CONFIRMATION_ORIGIN_VALID},
+     {"Z0", v1::CONFIRMATION_ORIGIN_VALID},
+     {"table", v1::CONFIRMATION_TABLE_CLEAR}}};
 
 v1::StartAction ToProto(machine::StartAction action) {
   switch (action) {
@@ -107,8 +108,8 @@ v1::PreviewStartResponse ToProto(const machine::StartPreview& preview,
     made.set_now(bridge::Utf8(one.now));
     made.set_action(ToProto(one.action));
     if (one.action != machine::StartAction::kAsk) continue;
-    const auto* seen = std::ranges::find(kSeenTo, one.item, &SeenTo::item);
-    if (seen != kSeenTo.end()) made.set_confirmation(seen->confirmation);
+    const auto* seen = std::ranges::find(kConfirmedItems, one.item, &ConfirmedItem::item);
+    if (seen != kConfirmedItems.end()) made.set_confirmation(seen->confirmation);
   }
   for (const machine::ApproachMotion& motion : preview.approach)
     *response.add_approach() = ToProto(motion, family);
@@ -137,7 +138,7 @@ Result<machine::StartAtStep> StartDesk::Take(const v1::StartAtStepRequest& reque
   if (basis.state != basis_.state) return stale("the machine was changed");
   machine::StartAtStep start = start_;
   if (request.has_halt_at_entry()) start.halt_at_entry = request.halt_at_entry();
-  for (const SeenTo& one : kSeenTo) {
+  for (const ConfirmedItem& one : kConfirmedItems) {
     if (std::ranges::find(request.confirmations(), one.confirmation) !=
         request.confirmations().end())
       start.acknowledged.insert(std::string(one.item));

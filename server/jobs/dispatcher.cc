@@ -20,7 +20,7 @@ namespace {
 constexpr int kEventsWindow = 256;
 // What the store did not take or give.
 constexpr std::chrono::milliseconds kTimesLookedAtAfter{1000};
-constexpr std::chrono::milliseconds kTriedAgainAfter{100};
+constexpr std::chrono::milliseconds kStoreAskedAgainAfter{100};
 // While jobs run. A server does not hear at once what is asked of another one.
 constexpr std::chrono::milliseconds kOrdersLookedForAfter{200};
 
@@ -226,7 +226,7 @@ void Dispatcher::LookAtOrders(const std::stop_token& stop) {
         to_look_at_.wait(lock, stop, changed);
       }
       if (!later_) continue;
-      to_look_at_.wait_for(lock, stop, kTriedAgainAfter, [] { return false; });
+      to_look_at_.wait_for(lock, stop, kStoreAskedAgainAfter, [] { return false; });
       later_ = false;
     }
     TryAgain();

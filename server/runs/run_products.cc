@@ -34,7 +34,7 @@ using Clock = std::chrono::steady_clock;
 // A host has the recordings of its newest runs alone (MachineRecorder::kKept).
 constexpr int kNewest = 4;
 constexpr std::chrono::milliseconds kLookAtProcess{20};
-constexpr std::chrono::seconds kTriedAgainAfter{5};
+constexpr std::chrono::seconds kMachineLookedAtAgainAfter{5};
 constexpr std::chrono::seconds kFetchPatience{30};
 
 struct Product {
@@ -109,7 +109,7 @@ void RunProducts::Work(const std::stop_token& stop) {
     }
     if (done) continue;
     const std::lock_guard lock(mutex_);
-    due_.try_emplace(machine, Clock::now() + kTriedAgainAfter);
+    due_.try_emplace(machine, Clock::now() + kMachineLookedAtAgainAfter);
   }
 }
 

@@ -12,8 +12,6 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr std::size_t kChunkBytes = 256 << 10;
-
 class JournalExport final : public PullStream<v1::ExportJournalResponse> {
  public:
   JournalExport(const JournalExportNeeds& needs, const v1::ExportJournalRequest& request)

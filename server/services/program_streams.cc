@@ -11,8 +11,6 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr std::size_t kChunkBytes = 256 << 10;
-
 // A program that comes in chunks: stored when all are there and the digest is right.
 class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
  public:

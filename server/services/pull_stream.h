@@ -4,6 +4,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -15,6 +16,9 @@
 #include "server/services/rpc_status.h"
 
 namespace rmlcell::server {
+
+// Of a file that is sent in pieces, in each message.
+inline constexpr std::size_t kChunkBytes = 256 << 10;
 
 // When a client comes back after a server has stopped.
 v1::Reconnect ServerStopped();

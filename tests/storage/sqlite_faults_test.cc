@@ -70,6 +70,7 @@ TEST_F(SqliteFaults, FailedSyncIsNotAcknowledged) {
 // Every single operation of a script fails once, at every operation of the disk that it makes;
 // after each failure the store is as before or as after that step, and goes on.
 TEST_F(SqliteFaults, EveryStepSurvivesAFailureAtEveryOperation) {
+  const std::string body = Noise(1'300'000, 1);
   for (const int code : {SQLITE_FULL, SQLITE_IOERR_WRITE}) {
     int failures = 0;
     for (std::int64_t after = 0;; ++after) {
@@ -106,10 +107,8 @@ TEST_F(SqliteFaults, EveryStepSurvivesAFailureAtEveryOperation) {
       ASSERT_TRUE(leased);
       EXPECT_EQ(leased->job.id, id);
       insist([&] { return status_of(store().AppendAndWait(leased->lease, {{.kind = "e"}})); });
-      insist([&] {
-        return status_of(
-            store().PutProject({.id = "p", .body = Noise(1'300'000, 1)}, kAnyRevision));
-      });
+      insist(
+          [&] { return status_of(store().PutProject({.id = "p", .body = body}, kAnyRevision)); });
       insist([&] {
         return status_of(
             store().Finish(leased->lease, {.artifacts = {{.name = "r", .bytes = name}}}));

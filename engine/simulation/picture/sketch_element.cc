@@ -47,10 +47,10 @@ class LookKey {
   double per_cell_;
 };
 
-// The straight stretch that grows: direction from its first element that is long enough.
-class Stretch {
+// What goes on straight: direction from its first element that is long enough.
+class StraightRun {
  public:
-  explicit Stretch(double tolerance) : tolerance_(tolerance) {}
+  explicit StraightRun(double tolerance) : tolerance_(tolerance) {}
 
   void Begin(const SketchElement& element) {
     const MachineVector way = element.to - element.from;
@@ -98,16 +98,16 @@ class SeenKeys {
 }  // namespace
 
 void MergeStraight(std::vector<SketchElement>& elements, double tolerance) {
-  Stretch stretch(tolerance);
+  StraightRun straight(tolerance);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     SketchElement element = elements[i];
     if (element.arc >= 0 && (element.from - element.middle).norm() <= tolerance) element.arc = -1;
-    if (kept > 0 && stretch.Takes(elements[kept - 1], element)) {
+    if (kept > 0 && straight.Takes(elements[kept - 1], element)) {
       elements[kept - 1].to = element.to;
       continue;
     }
-    stretch.Begin(element);
+    straight.Begin(element);
     elements[kept++] = element;
   }
   elements.resize(kept);

@@ -126,9 +126,9 @@ v1::WatchJobResponse End(std::int64_t sequence, v1::Outcome::Kind kind,
 
 class RemoteJobs : public testing::Test {
  protected:
-  Told Watch(bool strict = false, std::int64_t after = 0, bool json = false) {
+  Told Watch(bool strict = false, std::int64_t after = 0, bool as_json = false) {
     jobs.watches.clear();
-    return Hear([&] { return WatchJob(server.remote(json), "17", after, strict); });
+    return Hear([&] { return WatchJob(server.remote(as_json), "17", after, strict); });
   }
   // The one request that a submission makes.
   v1::SubmitJobRequest Submitted(const SubmitRequest& wanted) {

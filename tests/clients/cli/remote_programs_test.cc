@@ -182,9 +182,9 @@ struct FakeProjects final : v1::ProjectService::Service {
 
 class RemoteVerbs : public testing::Test {
  protected:
-  Told Put(const std::string& bytes, const PutOptions& options = {}, bool json = false) {
+  Told Put(const std::string& bytes, const PutOptions& options = {}, bool as_json = false) {
     const std::string file = folder.Put("12.S", bytes);
-    return Hear([&] { return PutProgram(server.remote(json), "m", 12, file, options); });
+    return Hear([&] { return PutProgram(server.remote(as_json), "m", 12, file, options); });
   }
 
   CliFolder folder;

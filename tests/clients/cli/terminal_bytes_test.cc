@@ -14,7 +14,7 @@ namespace {
 using Kind = TerminalEvent::Kind;
 
 // "X+ /down:X+ /up": what is told, in order.
-std::string Told(const std::vector<TerminalEvent>& events) {
+std::string EventsText(const std::vector<TerminalEvent>& events) {
   const std::map<Kind, std::string> kKinds = {{Kind::kTyped, ""},      {Kind::kMouseDown, "/down:"},
                                               {Kind::kMouseUp, "/up"}, {Kind::kAnswers, "/answers"},
                                               {Kind::kLeft, "/left"},  {Kind::kQuit, "/quit"}};
@@ -26,7 +26,7 @@ std::string Told(const std::vector<TerminalEvent>& events) {
   return told;
 }
 
-std::string Of(std::string_view bytes) { return Told(TerminalBytes().Read(bytes)); }
+std::string Of(std::string_view bytes) { return EventsText(TerminalBytes().Read(bytes)); }
 
 std::string ByteByByte(std::string_view bytes) {
   TerminalBytes reader;
@@ -36,7 +36,7 @@ std::string ByteByByte(std::string_view bytes) {
       events.push_back(event);
   }
   EXPECT_FALSE(reader.begun());
-  return Told(events);
+  return EventsText(events);
 }
 
 // What terminals send for keys that are no character.
@@ -122,18 +122,18 @@ TEST(TerminalBytes, DoNotTypeWhatIsPasted) {
   EXPECT_EQ(ByteByByte(pasted + "x"), "X+");
   EXPECT_EQ(Of("\x1b[200~ss\x03x"), "/quit X+");
   TerminalBytes reader;
-  EXPECT_EQ(Told(reader.Read("\x1b[200~ss")), "");
+  EXPECT_EQ(EventsText(reader.Read("\x1b[200~ss")), "");
   reader.GiveUp();  // its end was lost
-  EXPECT_EQ(Told(reader.Read("s")), "START");
+  EXPECT_EQ(EventsText(reader.Read("s")), "START");
 }
 
 TEST(TerminalBytes, GiveUpWhatDoesNotGoOn) {
   TerminalBytes reader;
-  EXPECT_EQ(Told(reader.Read("\x1b")), "");
+  EXPECT_EQ(EventsText(reader.Read("\x1b")), "");
   EXPECT_TRUE(reader.begun());
   reader.GiveUp();
   EXPECT_FALSE(reader.begun());
-  EXPECT_EQ(Told(reader.Read("x")), "X+");
+  EXPECT_EQ(EventsText(reader.Read("x")), "X+");
 }
 
 // Whatever comes: nothing crashes, Ctrl-C is heard, and in one piece it is the same as in bytes.

@@ -24,7 +24,7 @@ MoveCommand LineTo(const MachinePoint& from, const MachinePoint& to, std::uint64
 }
 
 // "1 m7 2": motions by tag, marks with an m before it.
-std::string Drain(Planner& planner) {
+std::string TagsOfRest(Planner& planner) {
   std::string text;
   while (const std::optional<PlannedItem> item = planner.Next()) {
     if (!text.empty()) text += ' ';
@@ -75,7 +75,7 @@ TEST(Planner, KeepsTheOrderOfMotionsAndMarks) {
   planner.Mark(12);
   planner.Stop();
   // Straight on with equal limits: nothing between the two but the marks.
-  EXPECT_EQ(Drain(planner), "m9 1 m10 m11 2 m12");
+  EXPECT_EQ(TagsOfRest(planner), "m9 1 m10 m11 2 m12");
 }
 
 // OPT-B.22: SPEED 0 and ACCEL below 0.1 are refused, and the planner is as before.
@@ -92,7 +92,7 @@ TEST(Planner, RefusesWhatWouldNeverArrive) {
   move.acceleration_fraction = 0.001;
   EXPECT_TRUE(planner.Append(move));
   planner.Stop();
-  EXPECT_EQ(Drain(planner), "1");
+  EXPECT_EQ(TagsOfRest(planner), "1");
 }
 
 // A path of length zero adds nothing, whatever the speed. OPT-2.02
@@ -102,7 +102,7 @@ TEST(Planner, NothingToDoIsNoError) {
   move.speed_fraction = 0.0;
   EXPECT_TRUE(planner.Append(move));
   planner.Stop();
-  EXPECT_EQ(Drain(planner), "");
+  EXPECT_EQ(TagsOfRest(planner), "");
 }
 
 TEST(Planner, RefusesWhatIsNotANumber) {
@@ -121,7 +121,7 @@ TEST(Planner, MarksActHalfWayThroughTheBlend) {
   ASSERT_TRUE(planner.Append(LineTo({}, {10, 0, 0}, 1, true)));
   planner.Mark(7);
   ASSERT_TRUE(planner.Append(LineTo({10, 0, 0}, {10, 10, 0}, 2)));
-  EXPECT_EQ(Drain(planner), "1 1 m7 2 2");
+  EXPECT_EQ(TagsOfRest(planner), "1 1 m7 2 2");
 }
 
 // The halves meet at the point of the curve nearest to the corner: OPT-B.24 gives its
@@ -237,7 +237,7 @@ TEST(Planner, MoveToWhereTheMachineIs) {
     ASSERT_TRUE(planner.Append(LineTo({}, {10, 0, 0}, 1, true)));
     ASSERT_TRUE(planner.Append(LineTo({10, 0, 0}, {10, 0, 0}, 2, fly)));
     ASSERT_TRUE(planner.Append(LineTo({10, 0, 0}, {10, 10, 0}, 3)));
-    EXPECT_EQ(Drain(planner), fly ? "1 1 3 3" : "1 3");
+    EXPECT_EQ(TagsOfRest(planner), fly ? "1 1 3 3" : "1 3");
   }
 }
 
@@ -326,8 +326,8 @@ TEST(Planner, CopyIsASnapshot) {
   Planner copy = planner;
   ASSERT_TRUE(planner.Append(LineTo({10, 0, 0}, {10, 10, 0}, 2)));
   copy.Stop();
-  EXPECT_EQ(Drain(planner), "1 1 2 2");
-  EXPECT_EQ(Drain(copy), "1");
+  EXPECT_EQ(TagsOfRest(planner), "1 1 2 2");
+  EXPECT_EQ(TagsOfRest(copy), "1");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-MoveCommand MoveOn(const PathPiece& path, bool fly = false) {
+MoveCommand MoveAlong(const PathPiece& path, bool fly = false) {
   MoveCommand move;
   move.path = path;
   move.speed_fraction = 0.1;
@@ -22,7 +22,7 @@ MoveCommand MoveOn(const PathPiece& path, bool fly = false) {
   return move;
 }
 MoveCommand LineOf(const TipPose& from, const TipPose& to, bool fly = false) {
-  return MoveOn(PathPiece::Line(from, to), fly);
+  return MoveAlong(PathPiece::Line(from, to), fly);
 }
 
 std::vector<PlannedMotion> Drained(Planner& planner) {
@@ -196,7 +196,7 @@ TEST(Tolerance, ArcsGoOnFromWhereTheLineEnds) {
     Planner planner(StandardMachine());
     ASSERT_TRUE(planner.Append(LineOf({}, {{50, 0, 0}}, true)));
     ASSERT_TRUE(planner.Append(
-        MoveOn(PathPiece::Circle({{50 + gap, 0, 0}}, {50 + gap, 20, 0}, {0, 0, 1}, 1.5, 0, 0))));
+        MoveAlong(PathPiece::Circle({{50 + gap, 0, 0}}, {50 + gap, 20, 0}, {0, 0, 1}, 1.5, 0, 0))));
     for (const PlannedMotion& motion : Drained(planner)) {
       if (!motion.ends_move) continue;
       EXPECT_EQ(motion.corner.passage, gap < 1e-6 ? Passage::kBlend : Passage::kStop);
@@ -248,7 +248,7 @@ TEST(BeginMoving, GoesOnAtTheSpeed) {
 TEST(BeginMoving, InAxesBySigma) {
   Planner planner(StandardMachine());
   planner.BeginMoving(0.1);
-  MoveCommand move = MoveOn(PathPiece::Joint({}, {{1000, 0, 0}}));
+  MoveCommand move = MoveAlong(PathPiece::Joint({}, {{1000, 0, 0}}));
   move.kind = MoveCommand::Kind::kPointToPointAxes;
   move.speed_fraction = 0.5;
   ASSERT_TRUE(planner.Append(move));
@@ -315,7 +315,7 @@ TEST(Tolerance, HolesAtTheBoundItself) {
 // Numbers of exactly 1e12, times of exactly 1e9 s, gaps of exactly 1e-3 mm. OPT-B.22
 TEST(Tolerance, MovesAtTheBoundItself) {
   const auto code = [](const PathPiece& path) {
-    MoveCommand move = MoveOn(path);
+    MoveCommand move = MoveAlong(path);
     move.speed_fraction = 1.0;
     const Status status = Planner(StandardMachine()).Append(move);
     return status ? std::optional<ErrorCode>() : status.error().code;
@@ -339,7 +339,7 @@ TEST(Tolerance, MovesAtTheBoundItself) {
       StandardMachine());  // an arc that begins 1e-6 mm behind the line goes on from it
   ASSERT_TRUE(round_on.Append(LineOf({{-50, 0, 0}}, {}, true)));
   ASSERT_TRUE(round_on.Append(
-      MoveOn(PathPiece::Circle({{1e-6, 0, 0}}, {1e-6, 20, 0}, {0, 0, 1}, 1.5, 0, 0))));
+      MoveAlong(PathPiece::Circle({{1e-6, 0, 0}}, {1e-6, 20, 0}, {0, 0, 1}, 1.5, 0, 0))));
   EXPECT_EQ(Drained(round_on)[1].corner.passage, Passage::kBlend);
 }
 

@@ -7,16 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "engine/families/families.h"
 #include "engine/simulation/material/milling_text.h"
 #include "engine/simulation/run/simulate.h"
 #include "engine/simulation/verdict/verdict.h"
+#include "tests/engine/simulation/mill.h"
 #include "tests/engine/simulation/verdict_text.h"
 
 namespace rmlcell::simulation {
 namespace {
-
-const machine::MachineFamily& Mill() { return *families::FindFamily("rml1"); }
 
 // T1 has 200 x 150 x 60 mm in steps of 0.01 mm, Z0 20 mm below the top; Z travels at 60 mm/s.
 std::vector<machine::Figure> FiguresOf(const std::string& stream) {

@@ -23,7 +23,7 @@ using machine::MotionUse;
 using motion::MachineVector;
 using motion::PathPiece;
 
-machine::MachineShape Mill() {
+machine::MachineShape DrawnMill() {
   machine::MachineShape shape;
   shape.travel.Add(MachineVector{0, 0, -60});
   shape.travel.Add(MachineVector{200, 150, 0});
@@ -93,8 +93,8 @@ Script SomeLaserWork() {
 // A standalone document: well-formed, nothing that runs, nothing from outside.
 TEST(Picture, IsStandaloneAndWellFormed) {
   for (const std::string& svg :
-       {SvgOf(SomeMilling(), Mill()), SvgOf(SomeLaserWork(), LaserWithTravel()),
-        SvgOf(Script(), Mill()), SvgOf(Script(), {})}) {
+       {SvgOf(SomeMilling(), DrawnMill()), SvgOf(SomeLaserWork(), LaserWithTravel()),
+        SvgOf(Script(), DrawnMill()), SvgOf(Script(), {})}) {
     EXPECT_EQ(XmlFault(svg), "");
     EXPECT_TRUE(svg.starts_with("<?xml"));
     EXPECT_EQ(CountOf(svg, "<svg"), 1u);
@@ -117,7 +117,7 @@ TEST(Picture, TextIsEscaped) {
   report.engine_version = "&";
   report.outcome.kind = machine::OutcomeKind::kFailed;
   report.outcome.code = ErrorCode::kHoleRadiusZero;
-  const std::string svg = SvgOf(SomeMilling(), Mill(), report);
+  const std::string svg = SvgOf(SomeMilling(), DrawnMill(), report);
   EXPECT_EQ(XmlFault(svg), "");
   EXPECT_EQ(CountOf(svg, "<script"), 0u);
   EXPECT_EQ(CountOf(svg, "<b>"), 0u);
@@ -127,12 +127,12 @@ TEST(Picture, TextIsEscaped) {
 TEST(Picture, LongTitlesAreCut) {
   RunReport report = Completed();
   for (int k = 0; k < 100; ++k) report.title += "ö";
-  EXPECT_EQ(XmlFault(SvgOf(SomeMilling(), Mill(), report)), "");
+  EXPECT_EQ(XmlFault(SvgOf(SomeMilling(), DrawnMill(), report)), "");
 }
 
 // One view for a mill, four panels for five axes, or what is asked for.
 TEST(Picture, ViewsOfTheMachine) {
-  const std::string mill = SvgOf(SomeMilling(), Mill());
+  const std::string mill = SvgOf(SomeMilling(), DrawnMill());
   EXPECT_EQ(CountOf(mill, "<clipPath"), 1u);
   EXPECT_EQ(CountOf(mill, ">XY from above<"), 1u);
   const std::string laser = SvgOf(SomeLaserWork(), LaserWithTravel());
@@ -184,7 +184,7 @@ TEST(Picture, DotsArePierces) {
 
 // Cut and travel in different strokes, plunges and pierces as dots; legend, scale, envelope.
 TEST(Picture, ShowsWhatTheIssueAsksFor) {
-  const std::string mill = SvgOf(SomeMilling(), Mill());
+  const std::string mill = SvgOf(SomeMilling(), DrawnMill());
   EXPECT_EQ(CountOf(mill, "<path"), 1u + 2u);  // travel; two depths of cut
   for (const char* word : {">travel<", ">plunge<", ">start<", ">end<", ">travel of the machine<",
                            ">X mm<", ">Y mm<", ">GOOD, completed<"}) {
@@ -202,12 +202,12 @@ TEST(Picture, CountsFromTheWorkOriginUnlessTheMachinesIsWanted) {
                          .Line({10, 10, 5}, {10, 10, -21}, {.use = MotionUse::kPlunge})
                          .Line({10, 10, -21}, {60, 10, -21}, {.use = MotionUse::kCut})
                          .Line({60, 10, -21}, {60, 50, -23}, {.use = MotionUse::kCut});
-  const std::string work = SvgOf(cut, Mill(), Completed(), {});
+  const std::string work = SvgOf(cut, DrawnMill(), Completed(), {});
   EXPECT_EQ(CountOf(work, ">cut, Z -1.00 to -3.00<"), 1);
   EXPECT_EQ(CountOf(work, "from the work origin, mm"), 1);
   EXPECT_EQ(CountOf(work, ">50</text>"), 1);  // X ends there
   EXPECT_EQ(CountOf(work, ">60</text>"), 0);
-  const std::string machine = SvgOf(cut, Mill(), Completed(), {.machine_frame = true});
+  const std::string machine = SvgOf(cut, DrawnMill(), Completed(), {.machine_frame = true});
   EXPECT_EQ(CountOf(machine, ">cut, Z -21.00 to -23.00<"), 1);
   EXPECT_EQ(CountOf(machine, "machine frame, mm"), 1);
   EXPECT_EQ(CountOf(machine, ">60</text>"), 1);
@@ -227,12 +227,12 @@ TEST(Picture, DepthsHaveShadesFromAboveOnly) {
     const std::string svg = SvgOf(script, shape, Completed(), {.views = views});
     return CountOf(svg, ">cut, Z 19.00 to ") == 1;  // Z 0 of the work is at -20
   };
-  EXPECT_TRUE(shaded(milled(2.0), Mill(), {}));
-  EXPECT_TRUE(shaded(milled(0.011), Mill(), {PictureView::kXY}));
-  EXPECT_FALSE(shaded(milled(0.009), Mill(), {PictureView::kXY}));
-  EXPECT_FALSE(shaded(milled(2.0), Mill(), {PictureView::kXZ}));
-  EXPECT_FALSE(shaded(milled(2.0), Mill(), {PictureView::kXY, PictureView::kXZ}));
-  machine::MachineShape head = Mill();
+  EXPECT_TRUE(shaded(milled(2.0), DrawnMill(), {}));
+  EXPECT_TRUE(shaded(milled(0.011), DrawnMill(), {PictureView::kXY}));
+  EXPECT_FALSE(shaded(milled(0.009), DrawnMill(), {PictureView::kXY}));
+  EXPECT_FALSE(shaded(milled(2.0), DrawnMill(), {PictureView::kXZ}));
+  EXPECT_FALSE(shaded(milled(2.0), DrawnMill(), {PictureView::kXY, PictureView::kXZ}));
+  machine::MachineShape head = DrawnMill();
   head.five_axis = true;
   EXPECT_FALSE(shaded(milled(2.0), head, {PictureView::kXY}));
 }
@@ -244,7 +244,7 @@ TEST(Picture, FailureIsShown) {
                     .code = ErrorCode::kHoleRadiusZero,
                     .detail = "",
                     .place = {.program = 45, .step = 7}};
-  const std::string svg = SvgOf(SomeMilling(), Mill(), report);
+  const std::string svg = SvgOf(SomeMilling(), DrawnMill(), report);
   EXPECT_GE(CountOf(svg, "failed  OPT-E348  at 45/7"), 1u);
   EXPECT_GE(CountOf(svg, ">where it ended<"), 1u);
 }
@@ -253,10 +253,10 @@ TEST(Picture, FailureIsShown) {
 // beyond X 200 and 25 mm beyond Y 150.
 TEST(Picture, WhatIsLostIsDrawn) {
   Script script = SomeMilling();
-  EXPECT_EQ(CountOf(SvgOf(script, Mill()), "class=\"lost\""), 0u);
-  EXPECT_EQ(CountOf(SvgOf(script, Mill()), "beyond the travel"), 0u);
+  EXPECT_EQ(CountOf(SvgOf(script, DrawnMill()), "class=\"lost\""), 0u);
+  EXPECT_EQ(CountOf(SvgOf(script, DrawnMill()), "beyond the travel"), 0u);
   script.Lost({200, 40, -21}, {260, 40, -21}).Lost({40, 150, -21}, {40, 175, -21});
-  const std::string svg = SvgOf(script, Mill());
+  const std::string svg = SvgOf(script, DrawnMill());
   EXPECT_EQ(XmlFault(svg), "");
   EXPECT_EQ(CountOf(svg, "<g class=\"lost\""), 1u);
   EXPECT_EQ(CountOf(svg, "class=\"lost\""), 2u);  // the other one in the legend
@@ -275,14 +275,14 @@ TEST(Picture, WhatIsLostIsDrawn) {
 // it. Where nothing was cut all of it is shown, with the way of the tip.
 TEST(Picture, WhatIsLostFarAwayIsCut) {
   const auto shown = [](double lost_from, double lost_to, MotionUse use) {
-    PathSketch sketch(Mill(), 1000);
+    PathSketch sketch(DrawnMill(), 1000);
     motion::PlannedMotion planned;
     planned.path = LineFrom({0, 10, -21}, {100, 10, -21});
     sketch.Add({.use = use, .motion = &planned, .travelled = 100.0});
     sketch.AddLost({.from = {lost_from, 10, -21}, .to = {lost_to, 10, -21}});
     EXPECT_EQ(sketch.lost_mm(), lost_to - lost_from);
     EXPECT_EQ(sketch.box().max.x(), 100.0);  // the tip was never there
-    return BoxToShow(sketch, Mill().travel);
+    return BoxToShow(sketch, DrawnMill().travel);
   };
   const double margin = 1.06;  // of the extent from X 0
   EXPECT_NEAR(shown(200, 250, MotionUse::kCut).max.x(), 250.0 * margin, 1e-9);
@@ -292,7 +292,7 @@ TEST(Picture, WhatIsLostFarAwayIsCut) {
 
 // Memory stays bounded however much is lost.
 TEST(Picture, ManyLostLinesAreThinned) {
-  PathSketch sketch(Mill(), 1000);
+  PathSketch sketch(DrawnMill(), 1000);
   double length = 0.0;
   for (int i = 0; i < 100'000; ++i) {
     const double y = 0.001 * i;
@@ -310,14 +310,14 @@ TEST(Picture, NamesTheProfile) {
   RunReport report = Completed();
   report.family = "rml1";
   report.machine = {.profile = "mdx-15", .named = true};
-  std::string svg = SvgOf(SomeMilling(), Mill(), report);
+  std::string svg = SvgOf(SomeMilling(), DrawnMill(), report);
   EXPECT_EQ(CountOf(svg, " (mdx-15)<"), 1u);
   EXPECT_EQ(CountOf(svg, "changed"), 0u);
   report.machine = {.profile = "srm-20",
                     .named = false,
                     .changes = {{"X_MAX", "100", "203.2"}},
                     .changed_by = "a<b.toml"};
-  svg = SvgOf(SomeMilling(), Mill(), report);
+  svg = SvgOf(SomeMilling(), DrawnMill(), report);
   EXPECT_EQ(XmlFault(svg), "");
   EXPECT_EQ(CountOf(svg, ">Roland monoFab SRM-20 (srm-20): no profile was named<"), 1u);
   EXPECT_EQ(CountOf(svg, ">changed: X_MAX 100 (profile: 203.2); by a&lt;b.toml<"), 1u);
@@ -413,7 +413,7 @@ TEST(Picture, ArcTurnsTheRightWay) {
 // Bounded: a million moves give a picture of bounded size that says it is coarser, in bounded
 // memory.
 TEST(Picture, MillionMovesGiveABoundedPicture) {
-  PictureRecorder recorder(Mill());
+  PictureRecorder recorder(DrawnMill());
   motion::PlannedMotion planned;
   motion::MachinePoint at{0, 0, -21};
   // Scattered lines that cannot be merged: the worst case.
@@ -441,10 +441,10 @@ TEST(Picture, MillionMovesGiveABoundedPicture) {
 // Nothing moved: the travel of the machine, and a word; there is no part whose place could be
 // shown.
 TEST(Picture, NothingMoved) {
-  const std::string svg = SvgOf(Script(), Mill());
+  const std::string svg = SvgOf(Script(), DrawnMill());
   EXPECT_EQ(CountOf(svg, ">nothing moved<"), 1u);
   EXPECT_EQ(CountOf(svg, ">Place on the machine<"), 0u);
-  EXPECT_EQ(CountOf(SvgOf(SomeMilling(), Mill()), ">Place on the machine<"), 1u);
+  EXPECT_EQ(CountOf(SvgOf(SomeMilling(), DrawnMill()), ">Place on the machine<"), 1u);
   EXPECT_EQ(CountOf(SvgOf(SomeMilling(), {}), ">Place on the machine<"), 0u);
 }
 
@@ -499,7 +499,7 @@ TEST(Picture, WidthIsLimited) {
                                            {641, 641, 641},
                                            {8191, 8191, 8191},
                                            {9000, 8192, 8192}}) {
-    const std::string svg = SvgOf(Script(), Mill(), Completed(), {.width_px = asked});
+    const std::string svg = SvgOf(Script(), DrawnMill(), Completed(), {.width_px = asked});
     EXPECT_EQ(CountOf(svg, "viewBox=\"0 0 " + std::to_string(made) + " "), 1u) << asked;
     EXPECT_EQ(CountOf(svg, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
                                std::to_string(shown) + "\" "),

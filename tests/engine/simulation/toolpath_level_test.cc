@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "tests/engine/simulation/polyline_distance.h"
+
 namespace rmlcell::simulation {
 namespace {
 
@@ -63,27 +65,21 @@ motion::MachinePoint Place(const ToolpathPoint& p) {
   return {static_cast<double>(p.x_um), static_cast<double>(p.y_um), static_cast<double>(p.z_um)};
 }
 
-double ToSegment(const motion::MachinePoint& p, const MachineVector& a, const MachineVector& b) {
-  const MachineVector along = b - a;
-  const double squared = along.dot(along);
-  const double t = squared > 0.0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0.0;
-  return (p - (a + along * t)).norm();
-}
-
-double ToPolyline(const motion::MachinePoint& p, const std::vector<ToolpathPoint>& points) {
-  double best = HUGE_VAL;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    best = std::min(best, ToSegment(p, Place(points[i - 1]), Place(points[i])));
-  return best;
+std::vector<motion::MachinePoint> PlacesOf(const std::vector<ToolpathPoint>& points) {
+  std::vector<motion::MachinePoint> places;
+  for (const ToolpathPoint& point : points) places.push_back(Place(point));
+  return places;
 }
 
 // The farthest that any place of one polyline lies from the other, um.
 double Farthest(const std::vector<ToolpathPoint>& of, const std::vector<ToolpathPoint>& from) {
+  const std::vector<motion::MachinePoint> places = PlacesOf(of);
+  const std::vector<motion::MachinePoint> line = PlacesOf(from);
   double worst = 0.0;
-  for (std::size_t i = 1; i < of.size(); ++i) {
+  for (std::size_t i = 1; i < places.size(); ++i) {
     for (int k = 0; k < 4; ++k) {
-      const MachineVector a = Place(of[i - 1]);
-      worst = std::max(worst, ToPolyline(a + (Place(of[i]) - a) * (k / 4.0), from));
+      const MachineVector way = places[i] - places[i - 1];
+      worst = std::max(worst, DistanceToPolyline(places[i - 1] + way * (k / 4.0), line));
     }
   }
   return worst;

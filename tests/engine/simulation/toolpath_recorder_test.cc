@@ -10,6 +10,7 @@
 #include "engine/core/units.h"
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/polyline_distance.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -42,30 +43,24 @@ Recorded Record(const Script& script, ToolpathOptions options = {}) {
   return recorded;
 }
 
-double DistanceToSegment(const motion::MachinePoint& p, const MachineVector& a,
-                         const MachineVector& b) {
-  const MachineVector along = b - a;
-  const double squared = along.dot(along);
-  const double t = squared > 0.0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0.0;
-  return (p - (a + along * t)).norm();
-}
-
 MachineVector Millimetres(const ToolpathPoint& p) {
   return {p.x_um / 1000.0, p.y_um / 1000.0, p.z_um / 1000.0};
 }
 
+std::vector<motion::MachinePoint> PointsOf(const ToolpathBlock& block) {
+  std::vector<motion::MachinePoint> points;
+  for (const ToolpathPoint& point : block.points) points.push_back(Millimetres(point));
+  return points;
+}
+
 // The farthest that any point of the path is from the polyline of the first block.
 double WorstDistance(const PathPiece& path, const motion::Head& head, const ToolpathBlock& block) {
+  const std::vector<motion::MachinePoint> points = PointsOf(block);
   double worst = 0.0;
   for (int k = 0; k <= 2000; ++k) {
     const double s = path.length() * k / 2000;
     const motion::MachinePoint tip = motion::TipOn(path, head, path.At(s)).tip;
-    double best = HUGE_VAL;
-    for (std::size_t i = 1; i < block.points.size(); ++i) {
-      best = std::min(best, DistanceToSegment(tip, Millimetres(block.points[i - 1]),
-                                              Millimetres(block.points[i])));
-    }
-    worst = std::max(worst, best);
+    worst = std::max(worst, DistanceToPolyline(tip, points));
   }
   return worst;
 }
@@ -284,14 +279,8 @@ TEST(ToolpathRecorder, MergingStaysWithinTheTolerance) {
   const ToolpathBlock& block = recorded.blocks[0];
   EXPECT_LT(block.points.size(), 200u);
   double worst = 0.0;
-  for (const motion::MachinePoint& vertex : vertices) {
-    double best = HUGE_VAL;
-    for (std::size_t i = 1; i < block.points.size(); ++i) {
-      best = std::min(best, DistanceToSegment(vertex, Millimetres(block.points[i - 1]),
-                                              Millimetres(block.points[i])));
-    }
-    worst = std::max(worst, best);
-  }
+  for (const motion::MachinePoint& vertex : vertices)
+    worst = std::max(worst, DistanceToPolyline(vertex, PointsOf(block)));
   EXPECT_LE(worst, tolerance + 0.001);
 }
 

@@ -14,6 +14,7 @@
 #include "engine/families/families.h"
 #include "engine/simulation/material/milling_text.h"
 #include "engine/simulation/run/simulate.h"
+#include "tests/engine/simulation/mill.h"
 #include "tests/engine/simulation/verdict_text.h"
 
 namespace rmlcell::simulation {
@@ -21,8 +22,6 @@ namespace {
 
 using machine::Judgement;
 using machine::Verdict;
-
-const machine::MachineFamily& Mill() { return *families::FindFamily("rml1"); }
 
 machine::Parameters MillOf(const std::string& profile) {
   return *machine::MakeParameters(Mill(), profile, {});

@@ -15,8 +15,6 @@ using machine::InputKind;
 
 constexpr double kCycle_s = 0.048;
 constexpr double kReal_mm = 1e-4;  // literals have seven digits (OPT-B.37)
-// The tip at home, with the head pointing down, is 300 mm below the column.
-const motion::MachinePoint kHomeTip{21.02, 2201.2, -350.0};
 
 // OPT-2.05: five absolute coordinates in the active system.
 TEST(MotionRules, AMoveEndsAtItsFiveCoordinates) {

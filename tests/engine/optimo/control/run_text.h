@@ -10,6 +10,9 @@
 
 namespace rmlcell::optimo::testing {
 
+// The tip where a new machine stands: home, the head 300 mm long and straight down. OPT-B.02
+inline const motion::MachinePoint kHomeTip{21.02, 2201.2, -350.0};
+
 // What a run told, as words in order: "beam on 95", "shutter open", "OL[11] 1", "schedule 11",
 // "wait pierce 1.5", "halt STOP", "E7408" ...
 struct Ran {

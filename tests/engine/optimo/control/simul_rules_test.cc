@@ -16,9 +16,6 @@ using machine::ProgramStep;
 using ::testing::ElementsAre;
 using ::testing::UnorderedElementsAre;
 
-// The tip where a new machine stands: home, the head 300 mm long and straight down. OPT-B.02
-const motion::MachinePoint kHomeTip{21.02, 2201.2, -350.0};
-
 ProgramStep Step(int step, int program = 1) { return {.program = program, .step = step}; }
 
 MachineState StateOf(const Ran& ran) {

@@ -11,7 +11,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr std::uint32_t kRounds = 4000;
+constexpr std::uint32_t kExpressionSeeds = 4000;
 
 class ReferenceAccess : public VariableAccess {
  public:
@@ -67,18 +67,19 @@ void Agree(std::uint32_t seed, bool logical, Outcomes& outcomes) {
 // OPT-7.72, OPT-7.74, OPT-7.80, OPT-7.83, OPT-B.37
 TEST(ExpressionProperties, NumbersAgreeWithASecondEvaluator) {
   Outcomes outcomes;
-  for (std::uint32_t seed = 1; seed <= kRounds && !HasFatalFailure(); ++seed)
+  for (std::uint32_t seed = 1; seed <= kExpressionSeeds && !HasFatalFailure(); ++seed)
     Agree(seed, false, outcomes);
-  EXPECT_GT(outcomes[0], static_cast<int>(kRounds) / 2);  // values, not errors, most of the time
+  EXPECT_GT(outcomes[0],
+            static_cast<int>(kExpressionSeeds) / 2);  // values, not errors, most of the time
   for (const int error : {7201, 7202, 7204}) EXPECT_GT(outcomes[error], 10) << error;
 }
 
 // OPT-7.85, OPT-7.87, OPT-7.90, OPT-B.44
 TEST(ExpressionProperties, ConditionsAgreeWithASecondEvaluator) {
   Outcomes outcomes;
-  for (std::uint32_t seed = 1; seed <= kRounds && !HasFatalFailure(); ++seed)
+  for (std::uint32_t seed = 1; seed <= kExpressionSeeds && !HasFatalFailure(); ++seed)
     Agree(seed, true, outcomes);
-  EXPECT_GT(outcomes[0], static_cast<int>(kRounds) / 2);
+  EXPECT_GT(outcomes[0], static_cast<int>(kExpressionSeeds) / 2);
   EXPECT_GT(outcomes[7201], 10);
 }
 

@@ -12,7 +12,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr std::uint32_t kRounds = 400;
+constexpr std::uint32_t kProgramSeeds = 400;
 
 void DumpExpression(const Module& module, Expression expression, std::ostream& out) {
   const auto name = [&](std::uint16_t n) {
@@ -55,7 +55,7 @@ Module ParseGood(const std::string& text) {
 
 // OPT-1.05, OPT-1.06, OPT-B.69
 TEST(Properties, CompileDecompileCompileIsIdentity) {
-  for (std::uint32_t seed = 1; seed <= kRounds; ++seed) {
+  for (std::uint32_t seed = 1; seed <= kProgramSeeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const std::string text = RandomProgram(seed).Make(40);
     const Compilation compiled = MustCompile(text);
@@ -70,7 +70,7 @@ TEST(Properties, CompileDecompileCompileIsIdentity) {
 
 // The tree of a text is the tree of what is printed of it. OPT-B.35, OPT-B.39, OPT-B.40, OPT-B.41
 TEST(Properties, ParsePrintParseIsIdentity) {
-  for (std::uint32_t seed = 1; seed <= kRounds; ++seed) {
+  for (std::uint32_t seed = 1; seed <= kProgramSeeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Module module = ParseGood(RandomProgram(seed).Make(40));
     const std::string printed = Decompile(module);
@@ -82,7 +82,7 @@ TEST(Properties, ParsePrintParseIsIdentity) {
 // The places of nodes that were not kept are found again, statement by statement. OPT-B.35,
 // OPT-2.43
 TEST(Properties, PlacesOfNodesAreFoundAgain) {
-  for (std::uint32_t seed = 1; seed <= kRounds; ++seed) {
+  for (std::uint32_t seed = 1; seed <= kProgramSeeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const std::string text = RandomProgram(seed).Make(40);
     Findings findings;
@@ -104,7 +104,7 @@ TEST(Properties, PlacesOfNodesAreFoundAgain) {
 
 // OPT-B.40
 TEST(Properties, FormattingIsIdempotentAndChangesNothing) {
-  for (std::uint32_t seed = 1; seed <= kRounds; ++seed) {
+  for (std::uint32_t seed = 1; seed <= kProgramSeeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const std::string text = RandomProgram(seed).Make(40);
     const std::string formatted = Format(text).text;

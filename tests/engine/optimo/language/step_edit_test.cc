@@ -23,18 +23,18 @@ std::string Removed(const std::string& text, std::uint32_t place) {
   const Result<std::string> object = RemoveInstruction(Compiled(text).module, place);
   return object ? ObjectToSource(*object).value() : CodeText(object.error().code);
 }
-std::string Canonical(const std::string& text) { return Decompile(Compiled(text).module); }
+std::string Decompiled(const std::string& text) { return Decompile(Compiled(text).module); }
 
 // OPT-6.39 OPT-6.40: what comes of it is what the compiler makes of the text with the step.
 TEST(StepEdit, InsertsAnywhere) {
   const std::string text =
       "SPEED 5\nMOVE (1.,2.,3.,0.,0.)/VIA (4.,5.,6.,0.,0.)/FLY\nGOTO 10\n10 DELAY 1\n";
-  EXPECT_EQ(Inserted(text, 0, "COORD ABSOL"), Canonical("COORD ABSOL\n" + text));
+  EXPECT_EQ(Inserted(text, 0, "COORD ABSOL"), Decompiled("COORD ABSOL\n" + text));
   EXPECT_EQ(Inserted(text, 3, "IF VI[1] > 2 THEN 10 ELSE 10"),
-            Canonical("SPEED 5\nMOVE (1.,2.,3.,0.,0.)/VIA (4.,5.,6.,0.,0.)/FLY\nGOTO 10\n"
-                      "IF VI[1] > 2 THEN 10 ELSE 10\n10 DELAY 1\n"));
-  EXPECT_EQ(Inserted(text, 4, "ENDTASK"), Canonical(text + "ENDTASK\n"));
-  EXPECT_EQ(Inserted("", 0, "ENDTASK"), Canonical("ENDTASK\n"));
+            Decompiled("SPEED 5\nMOVE (1.,2.,3.,0.,0.)/VIA (4.,5.,6.,0.,0.)/FLY\nGOTO 10\n"
+                       "IF VI[1] > 2 THEN 10 ELSE 10\n10 DELAY 1\n"));
+  EXPECT_EQ(Inserted(text, 4, "ENDTASK"), Decompiled(text + "ENDTASK\n"));
+  EXPECT_EQ(Inserted("", 0, "ENDTASK"), Decompiled("ENDTASK\n"));
 }
 
 // OPT-6.43 OPT-6.44: names and sequence numbers.
@@ -42,13 +42,13 @@ TEST(StepEdit, KeepsNamesAndNumbers) {
   const std::string text =
       "DECLARE A = VR[1]\nDECLARE B = 7\n10 A = 5.\n20 VR[B] = A\nGOTO 20\n30\n";
   EXPECT_EQ(Removed(text, 2),
-            Canonical("DECLARE A = VR[1]\nDECLARE B = 7\n10\n20 VR[B] = A\nGOTO 20\n30\n"));
+            Decompiled("DECLARE A = VR[1]\nDECLARE B = 7\n10\n20 VR[B] = A\nGOTO 20\n30\n"));
   EXPECT_EQ(Removed(text, 4),
-            Canonical("DECLARE A = VR[1]\nDECLARE B = 7\n10 A = 5.\n20 VR[B] = A\n30\n"));
+            Decompiled("DECLARE A = VR[1]\nDECLARE B = 7\n10 A = 5.\n20 VR[B] = A\n30\n"));
   EXPECT_EQ(
       Inserted(text, 3, "A = VR[B] + SIN(A)"),
-      Canonical("DECLARE A = VR[1]\nDECLARE B = 7\n10 A = 5.\nA = VR[B] + SIN(A)\n20 VR[B] = A\n"
-                "GOTO 20\n30\n"));
+      Decompiled("DECLARE A = VR[1]\nDECLARE B = 7\n10 A = 5.\nA = VR[B] + SIN(A)\n20 VR[B] = A\n"
+                 "GOTO 20\n30\n"));
 }
 
 // LIVE-7.09: in and out again, at every place, byte for byte.

@@ -197,9 +197,9 @@ TEST(SemanticAspects, OfTargets) {
     EXPECT_EQ(diff.steps.size(), 1U) << a << b;
     return diff.steps.empty() ? std::vector<std::string>() : diff.steps[0].what;
   };
-  using Texts = std::vector<std::string>;
-  EXPECT_EQ(what("GOTO 1", "GOTO 4"), (Texts{"goes to step 2 -> the end"}));
-  EXPECT_EQ(what("GOTO 4", "GOTO 3"), (Texts{"goes to the end -> step 4"}));
+  using Whats = std::vector<std::string>;
+  EXPECT_EQ(what("GOTO 1", "GOTO 4"), (Whats{"goes to step 2 -> the end"}));
+  EXPECT_EQ(what("GOTO 4", "GOTO 3"), (Whats{"goes to the end -> step 4"}));
   EXPECT_EQ(what("IF VL[1] THEN 1 ELSE 2", "IF VL[1] THEN 1 ELSE 3").back(),
             "goes to step 3 -> step 4");
   EXPECT_EQ(what("GOTO VI[1] (1, 2)", "GOTO VI[1] (3, 2)").back(), "goes to step 2 -> step 4");
