@@ -7,10 +7,10 @@ import unittest
 from cell import BIN, eventually, job_pb2, machine_pb2, program_pb2
 from live import MILL, Live, LiveTestCase, new_id
 
-MAIN = "PROGRAM 10\nCALL 44\nEND\n"
-CALLED = "PROGRAM 44\nDELAY 1\nEND\n"
+MAIN = "CALL 44\n"
+CALLED = "DELAY 1\n"
 OPTIMO = "machines/optimo-1"
-SHORT = "PA;PA;VS10;PU200,0;PU0,0;"
+SHORT = "PA;PA;VS10;!VZ5;!PZ-50,100;!MC1;PU200,0;PD400,0;PU0,0;!MC0;H;"
 
 
 class TicketsTest(LiveTestCase):
@@ -85,7 +85,7 @@ class TicketsTest(LiveTestCase):
         self.assertEqual(self.ended(sent.stdout.strip())[0], "SUCCEEDED")
         other = os.path.join(self.cell.folder, "b.rml")
         with open(other, "w", encoding="utf-8") as stream:
-            stream.write(SHORT.replace("200", "201"))
+            stream.write(SHORT.replace("PD400", "PD401"))
         sent = self.command("submit", "mill-1", other, "--kind", "run", "--ticket", number)
         state, why = self.ended(sent.stdout.strip())
         self.assertEqual(state, "FAILED")
@@ -115,7 +115,7 @@ class TicketsTest(LiveTestCase):
         nameless = self.command("machine", "take", "mill-1", "--reason", "x", "--computer", "a/b")
         self.assertEqual(nameless.returncode, 2, nameless.stderr)
         unknown = self.command("machine", "take", "none", "--reason", "x")
-        self.assertIn("CELL-E9006", unknown.stderr)
+        self.assertIn("CELL-E9009", unknown.stderr)
 
 
 if __name__ == "__main__":

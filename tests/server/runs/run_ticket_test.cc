@@ -118,7 +118,7 @@ TEST_F(RunTicketTest, ADryRunIsNone) {
   const std::int64_t job = Submit([](v1::Job& wanted) {
     wanted.set_machine("machines/optimo-1");
     wanted.mutable_inline_program()->set_file_name("7.S");
-    wanted.mutable_inline_program()->set_content("PROGRAM 7\nDELAY 1\nEND\n");
+    wanted.mutable_inline_program()->set_content("DELAY 1\n");
     wanted.mutable_simulation()->mutable_simul()->set_step(1);
   });
   End(JobState::kSucceeded, v1::VERDICT_GOOD, Report());
