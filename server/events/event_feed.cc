@@ -115,15 +115,17 @@ std::optional<std::vector<storage::EventRecord>> EventFeed::FromTail(std::int64_
 void EventFeed::Publish(const std::string& resource, std::string bytes) {
   auto shared = std::make_shared<const std::string>(std::move(bytes));
   const std::lock_guard lock(mutex_);
-  const bool first = arriving_.empty();
-  arriving_[resource] = std::move(shared);
-  if (first) wake_.notify_one();  // the thread may have gone to sleep until the next poll
+  const bool first = arriving_.insert_or_assign(resource, std::move(shared)).second;
+  if (!first) return;
+  ++arrivals_;
+  wake_.notify_one();  // the thread may have gone to sleep until the next poll
 }
 
 void EventFeed::Forget(const std::string& resource) {
   const std::lock_guard lock(mutex_);
   arriving_.erase(resource);
   latest_.erase(resource);
+  told_at_.erase(resource);
 }
 
 std::optional<Latest> EventFeed::LatestAfter(const std::string& resource, std::uint64_t seen) {
@@ -162,31 +164,49 @@ void EventFeed::Run(const std::stop_token& stop) {
     std::vector<std::string> moved;
     {
       std::unique_lock lock(mutex_);
-      const bool quiet = arriving_.empty();
+      const std::uint64_t arrivals = arrivals_;
       const bool hinted = hinted_;
-      wake_.wait_for(lock, stop, rhythm.Next(hinted, !quiet) - timing_.clock(),
-                     [&] { return (!hinted && hinted_) || (quiet && !arriving_.empty()); });
+      const FeedRhythm::Instant next = std::min(rhythm.NextLook(hinted), NextLatest(rhythm));
+      wake_.wait_for(lock, stop, next - timing_.clock(),
+                     [&] { return (!hinted && hinted_) || arrivals != arrivals_; });
       const auto now = timing_.clock();
       read = rhythm.TakeLook(now, hinted_);
       if (read) hinted_ = false;
-      // Watchers see what arrived only from here on: one that is woken by many events gets no more
-      // of it.
-      if (!arriving_.empty() && rhythm.TakeLatest(now)) {
-        for (auto& [resource, bytes] : arriving_) {
-          latest_[resource] = {
-              .resource = resource, .version = ++version_, .bytes = std::move(bytes)};
-          moved.push_back(resource);
-        }
-        arriving_.clear();
-      }
+      moved = TakeLatest(rhythm, now);
     }
     if (stop.stop_requested()) return;
     if (read) {
       const Look look = ReadNewEvents(stop);
       rhythm.Told(timing_.clock(), look.events, look.watchers);
     }
-    if (!moved.empty()) Wake(moved);
+    if (!moved.empty()) rhythm.ToldLatest(timing_.clock(), Wake(moved));
   }
+}
+
+FeedRhythm::Instant EventFeed::NextLatest(const FeedRhythm& rhythm) const {
+  FeedRhythm::Instant next = FeedRhythm::Instant::max();
+  for (const auto& [resource, bytes] : arriving_)
+    next = std::min(next, rhythm.LatestDue(ToldAt(resource)));
+  return next;
+}
+
+FeedRhythm::Instant EventFeed::ToldAt(const std::string& resource) const {
+  const auto found = told_at_.find(resource);
+  return found != told_at_.end() ? found->second : FeedRhythm::Instant();
+}
+
+// Watchers see what arrived only from here on: one that is woken by many events gets no more of it.
+std::vector<std::string> EventFeed::TakeLatest(const FeedRhythm& rhythm, FeedRhythm::Instant now) {
+  std::vector<std::string> moved;
+  std::erase_if(arriving_, [&](auto& row) {
+    auto& [resource, bytes] = row;
+    if (rhythm.LatestDue(ToldAt(resource)) > now) return false;
+    latest_[resource] = {.resource = resource, .version = ++version_, .bytes = std::move(bytes)};
+    told_at_[resource] = now;
+    moved.push_back(resource);
+    return true;
+  });
+  return moved;
 }
 
 EventFeed::Look EventFeed::ReadNewEvents(const std::stop_token& stop) {

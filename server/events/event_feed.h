@@ -28,8 +28,8 @@ struct Latest {
 
 // Wakes watchers when there is something for them. Durable events are never handed over here: a
 // watcher keeps a cursor and reads the log when its writer is free, so one that does not read costs
-// a cursor. What stands for now is latest-wins and changes, as watchers see it, at most every
-// FeedRhythm::kLatestInterval.
+// a cursor. What stands for now is latest-wins, and what stands of one resource changes, as
+// watchers see it, at most every FeedRhythm::kLatestInterval.
 //
 // Knows no gRPC: the race detector sees all of it. Thread-safe. Lock order: mutex_ is a leaf;
 // neither the store nor a watcher is called under it.
@@ -73,7 +73,7 @@ class EventFeed {
     return store_.JobEvents(job, after_sequence, limit);
   }
 
-  // Seen by watchers at the next interval; at once when there was none for a while.
+  // Seen by watchers at once when this one was not told for an interval, else when that is over.
   void Publish(const std::string& resource, std::string bytes);
   void Forget(const std::string& resource);
   // What stands for now of this resource when it is newer than `seen`.
@@ -98,6 +98,10 @@ class EventFeed {
     std::size_t watchers = 0;
   };
   Look ReadNewEvents(const std::stop_token& stop);
+  // Of what arrived. Precondition: mutex_ is held.
+  FeedRhythm::Instant NextLatest(const FeedRhythm& rhythm) const;
+  FeedRhythm::Instant ToldAt(const std::string& resource) const;
+  std::vector<std::string> TakeLatest(const FeedRhythm& rhythm, FeedRhythm::Instant now);
   bool SkipGoneEvents();
   void DropEventsOf(std::string_view job);                      // precondition: mutex_ is held
   std::size_t Wake(const std::vector<std::string>& resources);  // and those of everything
@@ -118,7 +122,9 @@ class EventFeed {
   // By resource.
   std::map<std::string, std::deque<storage::EventRecord>> tails_;       // of jobs that are watched
   std::map<std::string, std::shared_ptr<const std::string>> arriving_;  // not told yet
+  std::uint64_t arrivals_ = 0;  // counts those that did not wait already
   std::map<std::string, Latest> latest_;
+  std::map<std::string, FeedRhythm::Instant> told_at_;  // of latest_, by the clock of the feed
   std::multimap<std::string, std::shared_ptr<Watcher>> watchers_;
   std::unique_ptr<storage::Store::Subscription> store_watch_;
   std::jthread thread_;

@@ -7,14 +7,16 @@
 
 namespace rmlcell::server {
 
-// When the feed looks at the log, and when it tells the next positions. A look that wakes watchers
-// costs as many messages: under load the next one waits a little, so that more events go in each.
+// When the feed looks at the log, and when it tells the next positions. What wakes watchers costs
+// as many messages: under load the next time waits a little, so that more goes in each.
 class FeedRhythm {
  public:
   using Instant = std::chrono::steady_clock::time_point;
 
-  // Watchers are told of positions no more often than this.
+  // Watchers are told of one position no more often than this, and of all of them no more often
+  // than kLatestWaitMin, or what the messages of the last time cost.
   static constexpr std::chrono::milliseconds kLatestInterval{50};
+  static constexpr std::chrono::milliseconds kLatestWaitMin{5};
   // What a message to a watcher costs, about; how many events a look should bring for each that it
   // waits again; and how old an event may get by that.
   static constexpr std::chrono::microseconds kMessageTime{50};
@@ -30,10 +32,9 @@ class FeedRhythm {
         next_hinted_(begin),
         next_latest_(begin) {}
 
-  // The next moment at which something is due.
-  Instant Next(bool hinted, bool positions_wait) const {
-    const Instant look = hinted ? std::min(next_hinted_, next_poll_) : next_poll_;
-    return positions_wait ? std::min(look, next_latest_) : look;
+  // The next moment at which the log is to be looked at.
+  Instant NextLook(bool hinted) const {
+    return hinted ? std::min(next_hinted_, next_poll_) : next_poll_;
   }
 
   // Whether to look at the log now; a look puts off the next one.
@@ -50,11 +51,14 @@ class FeedRhythm {
     next_hinted_ = now + std::min<std::chrono::microseconds>(wait, kWaitMax);
   }
 
-  // Whether positions that wait are told now; that puts off the next ones.
-  bool TakeLatest(Instant now) {
-    if (now < next_latest_) return false;
-    next_latest_ = now + kLatestInterval;
-    return true;
+  // When a position that was told then is told again, if it waits.
+  Instant LatestDue(Instant told) const { return std::max(next_latest_, told + kLatestInterval); }
+
+  // Positions were told to so many watchers.
+  void ToldLatest(Instant now, std::size_t watchers) {
+    const std::chrono::microseconds cost = message_time_ * static_cast<std::int64_t>(watchers);
+    next_latest_ =
+        now + std::clamp<std::chrono::microseconds>(cost, kLatestWaitMin, kLatestInterval);
   }
 
  private:

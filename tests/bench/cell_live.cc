@@ -1,7 +1,8 @@
 // Machines that live: STOP from the call to its answer, which comes when it has acted, the age of
 // status as it arrives, answers to what is written to the disk first, the processor time of hosts,
 // and how soon a host that was killed is found again. On a cell with nothing else to do, and beside
-// 8 clients that check large programs. Ends with 1 when a goal of live.md 10.20 to 10.25 is missed.
+// 8 clients that check large programs. Ends with 1 when a goal is missed: LIVE-10.20, LIVE-10.21,
+// LIVE-10.22, LIVE-10.24, LIVE-10.25.
 //   bench_cell_live RMLCELLD [FOLDER [STOPS]]
 #include <grpcpp/grpcpp.h>
 

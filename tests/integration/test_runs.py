@@ -391,7 +391,7 @@ class RunsTest(LiveTestCase):
         self.becomes(told.strip(), "SUCCEEDED")
         self.assertIn("OFF", rmlcell("machine", "disable", "mill-1")[1])
 
-    # LIVE-10.04: kill -9 of host, server or both, at random moments: no run is begun twice, each job ends once, as its
+    # LIVE-10.04, LIVE-3.35: kill -9 of host, server or both, at random moments: no run is begun twice, each job ends once, as its
     # run did, and one that was never begun is done later.
     def test_crash_rounds(self):
         rounds = int(os.environ.get("LIVE_ROUNDS", "4"))

@@ -118,6 +118,34 @@ TEST_F(HostMachineTest, MovingItMarksEverySecond) {
   EXPECT_EQ(mark_.state_sha256().size(), 32U);
 }
 
+// LIVE-3.26: whatever happens while it moves, what was told goes to the disk ten times a second, one
+// write for all of it; what asks for an answer goes at once.
+TEST_F(HostMachineTest, MovingItWritesTenTimesASecond) {
+  Make();
+  Control();
+  Do(Start());
+  Pass(5s);
+  static_cast<void>(host_->TakeEntries(now_, true));
+  int writes = 0;
+  int told = 0;
+  v1::HostOrder stop;
+  stop.mutable_stop();
+  for (int i = 0; i < 400; ++i) {
+    // STOP and its taking back act first, and are written behind.
+    if (i % 4 == 0) Do(stop);
+    if (i % 4 == 1) Do(Resume());
+    Pass(5ms, 5ms);
+    const auto entries = host_->TakeEntries(now_, false);
+    if (!entries.empty()) ++writes;
+    told += static_cast<int>(entries.size());
+  }
+  EXPECT_GE(told, 200);
+  EXPECT_LE(writes, 21);  // of 2 s
+  EXPECT_GE(writes, 18);
+  Do(Resume());
+  EXPECT_FALSE(host_->TakeEntries(now_, true).empty());
+}
+
 // LIVE-3.27: a repeated request gets the first answer and acts no more.
 TEST_F(HostMachineTest, ARepeatedRequestActsOnce) {
   Make();

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstddef>
+
 namespace rmlcell::server {
 namespace {
 
@@ -40,6 +43,43 @@ TEST(Recovered, TheNewestMarkCounts) {
   ASSERT_EQ(found.untold.size(), 2U);
   EXPECT_TRUE(found.untold.front().has_run_begun());
   EXPECT_EQ(found.begins, "");
+}
+
+// LIVE-3.33: the computer is gone with its disk: what the store has is what there is.
+// LIVE-3.32: of what was not synced nothing is known, and nothing of it is told.
+TEST(Recovered, WithoutAJournalTheMarkOfTheStoreCounts) {
+  v1::HostWelcome welcome;
+  welcome.mutable_mark()->set_fence(7);
+  welcome.mutable_mark()->set_sequence(2);
+  welcome.mutable_mark()->set_state("where it stood");
+  welcome.mutable_mark()->set_run_time_ns(5);
+  welcome.mutable_mark()->set_job("jobs/17");
+  const Recovered found = RecoveredFrom(welcome, {});
+  EXPECT_EQ(found.mark.sequence(), 2);
+  EXPECT_TRUE(found.untold.empty());
+  const HostMachine::Setup setup = SetupOf(found);
+  EXPECT_EQ(setup.state, "where it stood");
+  EXPECT_TRUE(setup.cut_off);
+  EXPECT_EQ(setup.inspect_job, "jobs/17");
+}
+
+// LIVE-3.32: cut behind each entry, the newest mark before the cut is the state, and what was told
+// behind it is gone.
+TEST(Recovered, PowerThatFailsTakesWhatWasNotSynced) {
+  v1::JournalEntry told = Entry(2);
+  told.mutable_run_begun();
+  v1::JournalEntry later = Entry(4);
+  later.mutable_run_over();
+  const std::vector<v1::JournalEntry> disk = {Mark(1), told, Mark(3), later, Mark(5)};
+  const std::array<std::int64_t, 6> state = {0, 1, 1, 3, 3, 5};
+  const std::array<std::size_t, 6> untold = {0, 1, 1, 3, 3, 5};
+  for (std::size_t cut = 0; cut <= disk.size(); ++cut) {
+    const Recovered found =
+        RecoveredFrom({}, {disk.begin(), disk.begin() + static_cast<std::ptrdiff_t>(cut)});
+    EXPECT_EQ(found.mark.sequence(), state[cut]) << cut;
+    EXPECT_EQ(found.untold.size(), untold[cut]) << cut;
+    EXPECT_EQ(found.known, cut > 0);
+  }
 }
 
 // LIVE-5.04: a job that was about to begin may have moved the machine; behind a mark it has not.

@@ -243,6 +243,24 @@ TEST_F(HostsTest, WhatAHostTellsIsStored) {
   EXPECT_EQ(told.at(told.size() - 2).host_lost().fence(), fence);
 }
 
+// LIVE-3.18: status was shown that is ahead of what is stored: it counts for nothing, and how far it
+// went is told.
+TEST_F(HostsTest, StatusDecidesNothing) {
+  const auto link = Joined();
+  hosts.Receive(*link, Entries(Fence(*link), 1, false));
+  EXPECT_TRUE(Eventually([&] { return !Told().empty(); }));
+  Tell(*link, v1::MACHINE_STATE_RUNNING, 99);
+  EXPECT_EQ(hosts.StatusOf("mill-1")->virtual_time_ns(), 99);
+  hosts.Leave(*link);
+  EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
+  clock.Advance(Hosts::kLease + std::chrono::seconds(5));
+  const auto next = Joined(Hello("other/2"));
+  EXPECT_EQ(next->Newest(v1::HostResponse::kWelcome)->welcome().mark().virtual_time_ns(), 77);
+  ASSERT_TRUE(Told().back().has_recovered());
+  EXPECT_EQ(Told().back().recovered().mark_virtual_time_ns(), 77);
+  EXPECT_EQ(Told().back().recovered().seen_until_ns(), 99);
+}
+
 // LIVE-3.03: a machine with a device is never taken by waiting, whoever holds the lock of the
 // device elsewhere.
 TEST_F(HostsTest, AMachineWithADeviceWaitsForAPerson) {

@@ -179,7 +179,7 @@ TEST_F(HostLinesTest, EitherServerReachesTheMachine) {
   EXPECT_TRUE(a_->Becomes(v1::MACHINE_STATE_RUNNING));
 }
 
-// LIVE-3.06, LIVE-4.07: STOP and status never pass the store, whichever server got the call.
+// LIVE-3.06, LIVE-4.07, LIVE-3.34: STOP and status never pass the store, whichever server got the call.
 TEST_F(HostLinesTest, AStopPassesNoStore) {
   ASSERT_TRUE(a_->Becomes(v1::MACHINE_STATE_IDLE));
   ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_IDLE));

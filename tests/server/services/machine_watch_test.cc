@@ -42,6 +42,28 @@ TEST_F(MachineWatchTest, TellsTheStatusNowAndAfterEachChange) {
   EXPECT_EQ(last.status().state(), v1::MACHINE_STATE_IDLE);
 }
 
+// LIVE-4.06: a hundred look on, each from its own place; those that stop reading cost the others
+// nothing.
+TEST_F(MachineWatchTest, AHundredLookOnAndSomeDoNotRead) {
+  ASSERT_TRUE(
+      Eventually([&] { return room.feed.LatestAfter("machines/optimo-1", 0).has_value(); }));
+  std::vector<OpenedStream<v1::WatchMachineResponse>> watches;
+  for (int i = 0; i < 100; ++i) watches.push_back(room.WatchMachine(Of("machines/optimo-1")));
+  for (auto& watch : watches) {
+    EXPECT_EQ(watch.Next().status().jobs_active(), 0);
+  }
+  room.Submit();
+  for (std::size_t i = 0; i < watches.size(); i += 2) {
+    EXPECT_EQ(watches[i].Next().status().jobs_active(), 1) << i;
+  }
+  room.Finish(room.bed.Lease());
+  for (std::size_t i = 0; i < watches.size(); ++i) {
+    v1::WatchMachineResponse last = watches[i].Next();
+    while (last.has_status() && last.status().jobs_active() > 0) last = watches[i].Next();
+    EXPECT_TRUE(last.has_status()) << i;
+  }
+}
+
 TEST_F(MachineWatchTest, EndsWithTheMachine) {
   auto watch = room.WatchMachine(Of("machines/mill-1"));
   EXPECT_EQ(watch.Next().status().machine(), "machines/mill-1");
