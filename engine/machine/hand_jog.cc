@@ -6,7 +6,7 @@
 namespace rmlcell::machine {
 
 bool HandJog::asks() const {
-  if (travel_) return !travel_->brakes();
+  if (way_) return !way_->brakes();
   return std::ranges::find(key_, Key::kDown) != key_.end();
 }
 
@@ -43,12 +43,6 @@ void HandJog::Press(const PressJog& press, const HandMotion& how, const motion::
   Ask(how);
 }
 
-void HandJog::Travel(const std::vector<motion::AxisPose>& way, const HandMotion& how,
-                     const motion::AxisPose& at, SimTime now) {
-  travel_.emplace(way, how, at, now);
-  Settle();
-}
-
 void HandJog::Release(const JogKey& key, const HandMotion& how) {
   if (std::exchange(key_[IndexOf(key)], Key::kUp) != Key::kDown) return;
   drive_->Demand(Speeds(how), how.least);
@@ -67,23 +61,23 @@ void HandJog::Ask(const HandMotion& how) {
 void HandJog::Brake() {
   std::ranges::replace(key_, Key::kDown, Key::kSpent);
   if (drive_) drive_->Brake();
-  if (travel_) travel_->Brake();
+  if (way_) way_->Brake();
   Settle();
 }
 
 void HandJog::Freeze() {
   std::ranges::replace(key_, Key::kDown, Key::kSpent);
   drive_.reset();
-  travel_.reset();
+  way_.reset();
 }
 
 void HandJog::Advance(SimTime until) {
-  if (travel_) travel_->Advance(until);
+  if (way_) way_->Advance(until);
   if (drive_) drive_->Advance(ToSeconds(until - begun_));
 }
 
 void HandJog::Settle() {
-  if (travel_ && travel_->rests()) travel_.reset();
+  if (way_ && way_->rests()) way_.reset();
   if (drive_ && !asks() && drive_->rests()) drive_.reset();
 }
 

@@ -3,12 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <vector>
+#include <utility>
 
 #include "engine/core/units.h"
 #include "engine/machine/hand_motion.h"
-#include "engine/machine/hand_travel.h"
+#include "engine/machine/hand_way.h"
 #include "engine/machine/machine_input.h"
 #include "engine/motion/jog/jog_drive.h"
 
@@ -21,8 +22,10 @@ namespace rmlcell::machine {
 class HandJog {
  public:
   bool asks() const;  // a key is down that moves something, or it was sent somewhere
-  bool moves() const { return drive_ || travel_; }  // asks, or does not stand yet
-  bool travels() const { return travel_.has_value(); }
+  bool moves() const { return drive_ || way_; }  // asks, or does not stand yet
+  // On which it was sent; null: it was not.
+  const HandWay* way() const { return way_.get(); }
+  HandWay* way() { return way_.get(); }
   bool IsSpent(const JogKey& key) const { return key_[IndexOf(key)] == Key::kSpent; }
 
   // Of keys that move together all have one reference, and all are fast or none: another one stops
@@ -30,8 +33,7 @@ class HandJog {
   // Precondition: it asks, or nothing moves.
   void Press(const PressJog& press, const HandMotion& how, const motion::AxisPose& at, SimTime now);
   // Precondition: nothing moves.
-  void Travel(const std::vector<motion::AxisPose>& way, const HandMotion& how,
-              const motion::AxisPose& at, SimTime now);
+  void Send(std::unique_ptr<HandWay> way) { way_ = std::move(way); }
   void Release(const JogKey& key, const HandMotion& how);
   void ReleaseAll();
   void Ask(const HandMotion& how);  // the same keys, with these speeds
@@ -42,10 +44,8 @@ class HandJog {
   void Settle();  // what stands and is asked for nothing moves no more
 
   // Precondition: moves().
-  motion::AxisPose axes() const { return travel_ ? travel_->axes() : drive_->axes(); }
-  double tip_speed_mm_s() const {
-    return travel_ ? travel_->tip_speed_mm_s() : drive_->tip_speed_mm_s();
-  }
+  motion::AxisPose axes() const { return way_ ? way_->axes() : drive_->axes(); }
+  double tip_speed_mm_s() const { return way_ ? way_->tip_speed_mm_s() : drive_->tip_speed_mm_s(); }
   bool fast() const { return fast_; }
 
  private:
@@ -60,7 +60,7 @@ class HandJog {
   bool fast_ = false;
   SimTime begun_{0};
   std::optional<motion::JogDrive> drive_;
-  std::optional<HandTravel> travel_;
+  std::unique_ptr<HandWay> way_;
 };
 
 RunOn RunOnOf(const HandMotion& how, JogReference reference, const motion::AxisPose& at);

@@ -198,11 +198,13 @@ MachineStatus Machine::status() const {
                        .shown = shown_,
                        .message = message_};
   if (jog_.moves()) status.run.tip_speed_mm_s = jog_.tip_speed_mm_s();
+  if (jog_.way() != nullptr) status.by_hand = jog_.way()->what();
   if (run_ == nullptr) {
     status.run.door_open = status.run.door_open || cover_open_;
     return status;
   }
   status.open = note_;
+  if (!status.by_hand && note_.by_hand) status.by_hand = note_.hand;
   const RunState& run = status.run;
   if (run.place.step > 0 && !selected_ && (!note_.by_hand || Pauses())) {
     status.shown = {.program = run.place.program,
@@ -343,15 +345,19 @@ Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> h
   return {};
 }
 
-// LIVE-2.10 x7: in MANUAL, and from the console in REMOTE. OPT-4.49, 4.50
+// LIVE-2.10 x7: in MANUAL, and from the console in REMOTE, but not beside a run that is held: there
+// program 4 follows, and a machine has one run. OPT-4.49, 4.50
 Status Machine::Act(const ZeroAxes& /*input*/) {
   const FamilyInfo& info = family_.info();
   if (info.zero_program.empty())
     return Error{ErrorCode::kCellNotLive,
                  "the axes of " + Told("machine", info.title) + " have their reference always",
                  {}};
-  if (const Status may = MayMoveByHand(mode_ == Mode::kManual || mode_ == Mode::kRemote); !may)
+  const bool goes_home = mode_ == Mode::kRemote && run_ == nullptr;
+  if (const Status may = MayMoveByHand(mode_ == Mode::kManual || goes_home); !may)
     return may.error();
+  if (run_ != nullptr)
+    return SendByHand({.what = HandRun::kZero, .text = std::string(info.zero_program)});
   Translation zero =
       family_.Translate({.bytes = info.zero_program}, parameters_, {.advice = false});
   RMLCELL_CHECK(zero.ok);
@@ -360,7 +366,7 @@ Status Machine::Act(const ZeroAxes& /*input*/) {
              .unzeroed = true,
              .brought = StoredProgram{.name = "ZERO", .object = Bytes::Of(std::move(zero.object))}},
             Mode::kRemote, HandRun::kZero);
-  goes_home_ = begun && mode_ == Mode::kRemote;
+  goes_home_ = begun && goes_home;
   return begun;
 }
 
@@ -401,7 +407,6 @@ Status Machine::Act(const EmergencyStop& input) {
   emergency_ = input.pressed;
   if (!input.pressed || !on_) return {};
   jog_.Freeze();
-  if (run_ == nullptr) standing_->Rest();
   const Place place = run_ != nullptr ? run_->state().place : Place{};
   const bool ends_run = run_ != nullptr;
   const ErrorCode code = family_.info().emergency_stop;
@@ -488,7 +493,6 @@ Status Machine::Act(const MoveDoor& input) {
   const RunState before = status().run;
   cover_open_ = input.open && family_.info().cover_stops_jog;
   if (input.open) jog_.Brake();
-  if (cover_open_ && run_ == nullptr) standing_->Rest();  // a spindle that a key started
   if (before.door_open == input.open) return {};
   if (input.open) resume_behind_ = false;
   const bool goes_on = run_ != nullptr && before.phase == RunPhase::kRunning;

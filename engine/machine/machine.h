@@ -200,6 +200,7 @@ class Machine {
   std::optional<HandMotion> ByHand(bool fast) const;
   void MoveTo(const motion::AxisPose& axes);
   Status MayGoOn(const ResumeRun& input) const;
+  Status SendByHand(const RunByHand& asked);
   Status MayPress(PanelKey key) const;
   void SendTo(PanelKey key);
   void AskJog();

@@ -59,10 +59,13 @@ Status Machine::MayMoveByHand(bool manual) const {
   now.manual = manual;
   const Transition next = Next(state(), MachineEvent::kMoveByHand, now);
   if (next.code == ErrorCode::kCellMode)
-    return Error{ErrorCode::kCellMode, "ZERO works in MANUAL, and from the console in REMOTE", {}};
+    return Error{ErrorCode::kCellMode,
+                 "ZERO works in MANUAL, and from the console in REMOTE while no run is open",
+                 {}};
   if (next.code) return Refusal(*next.code);
-  if (run_ != nullptr) return NotNow(state(), "a run is open; end it first");
   if (jog_.moves()) return NotNow(state(), kReleaseKeys);
+  if (run_ != nullptr && !run_->may_be_moved())
+    return NotNow(state(), "a run is open; end it first");
   return {};
 }
 
@@ -74,8 +77,12 @@ double Machine::OverrideOf(std::optional<HandRun> hand) const {
 // Its text lies where no program is that it may call.
 Status Machine::BeginByHand(const RunByHand& asked) {
   if (const Status may = MayMoveByHand(mode_ == Mode::kManual); !may) return may.error();
-  if (!standing_->state().zeroed)
+  if (!status().run.zeroed)
     return Error{family_.info().not_zeroed, "the axes have no reference", {}};
+  if (run_ != nullptr) {
+    if (asked.what != HandRun::kFunction) return SendByHand(asked);
+    return NotNow(state(), "a run is open; end it first");
+  }
   int slot = kSlotMax;
   while (slot > kSlotMin && memory_.programs.contains(slot)) --slot;
   Translation made = family_.Translate({.bytes = asked.text}, parameters_, {.advice = false});

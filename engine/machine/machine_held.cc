@@ -1,4 +1,5 @@
-// A run that is held: keys move the machine while it stays open, and it goes on. LIVE-5.06
+// A run that is held: keys, HOME and ZERO move the machine while it stays open, and it goes on.
+// LIVE-5.06
 #include <array>
 #include <cmath>
 #include <string>
@@ -6,6 +7,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/number_text.h"
+#include "engine/machine/hand_program.h"
 #include "engine/machine/machine.h"
 #include "engine/machine/machine_states.h"
 #include "engine/machine/refusal.h"
@@ -60,6 +62,25 @@ void Machine::MoveTo(const motion::AxisPose& axes) {
   }
   if (viewed_from_ && !jog_.asks() && DisplacementOf(*viewed_from_, axes).empty())
     viewed_from_.reset();
+}
+
+// HOME and ZERO beside the open run, which has BREAK and SIMUL for itself. OPT-4.49
+Status Machine::SendByHand(const RunByHand& asked) {
+  Translation made = family_.Translate({.bytes = asked.text}, parameters_, {.advice = false});
+  RMLCELL_CHECK(made.ok);
+  RunSetup setup(parameters_);
+  setup.main_program = kSlotMax;
+  setup.programs[kSlotMax] = {.name = "HANDBOX", .object = Bytes::Of(std::move(made.object))};
+  setup.machine_state = run_->SaveMachine();
+  setup.override_percent = OverrideOf(asked.what);
+  setup.breakpoint = setup.simul = ProgramStep{};
+  setup.budget = kLiveBudget;
+  Result<std::unique_ptr<HandProgram>> way =
+      HandProgram::Make(family_, std::move(setup), asked.what, now_);
+  if (!way) return way.error();
+  jog_.Send(*std::move(way));
+  AdvanceJog(now_);
+  return {};
 }
 
 // Who presses START at the machine sees where it stands; but what cannot go on from there does not.

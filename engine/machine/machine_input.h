@@ -118,8 +118,8 @@ struct ReleaseJog {
 struct ReleaseJogs {};
 
 // A key of a mill's panel besides those that pause, go on, stop, open the cover and jog. VIEW takes
-// the tool out of the way, and the second time back; SPINDLE stops it, and lets it turn again; Z0
-// and ORIGIN set registers where the tool stands; HOME goes where H does. LIVE-2.13
+// the tool out of the way, and the second time back; SPINDLE stops it in a hold, and lets it turn
+// again; Z0 and ORIGIN set registers where the tool stands; HOME goes where H does. LIVE-2.13
 enum class PanelKey : std::uint8_t { kView, kSpindle, kZ0, kOrigin, kHome };
 std::string_view Name(PanelKey key);  // "VIEW", as it stands on the key
 struct PressPanel {

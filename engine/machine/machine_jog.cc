@@ -39,7 +39,7 @@ Status Machine::MayJog(const JogKey& key) const {
   if (next.code) return Refusal(*next.code);
   if (run_ != nullptr && !run_->may_be_moved())
     return NotNow(state(), "a run is open; end it first");
-  if (jog_.travels()) return NotNow(state(), kReleaseKeys);
+  if (jog_.way() != nullptr) return NotNow(state(), kReleaseKeys);
   if (jog_.IsSpent(key)) return NotNow(state(), "the key was down when it stopped; release it");
   if (cover_open_) return Error{ErrorCode::kCellDoorOpen, "the cover is open", {}};
   return {};
@@ -79,6 +79,8 @@ Status Machine::Act(const ReleaseJogs& /*input*/) {
 // The override is another one.
 void Machine::AskJog() {
   if (!jog_.asks()) return;
+  if (HandWay* way = jog_.way(); way != nullptr && way->what())
+    way->ChangeOverride(OverrideOf(way->what()));
   if (const auto how = ByHand(jog_.fast())) jog_.Ask(*how);
 }
 
@@ -86,8 +88,10 @@ void Machine::AdvanceJog(SimTime until) {
   if (!jog_.moves()) return;
   jog_.Advance(until);
   const motion::AxisPose axes = jog_.axes();
+  const bool zeroed = jog_.way() != nullptr && jog_.way()->zeroed();
   jog_.Settle();
   MoveTo(axes);
+  if (zeroed && run_ != nullptr && !run_->state().zeroed) run_->SetZeroed();
 }
 
 std::optional<RunOn> Machine::run_on(JogReference reference, bool fast) const {

@@ -1,7 +1,9 @@
 // The keys of a mill's panel. LIVE-2.13, LIVE-8.03
+#include <memory>
 #include <string>
 #include <utility>
 
+#include "engine/machine/hand_travel.h"
 #include "engine/machine/machine.h"
 #include "engine/machine/machine_states.h"
 #include "engine/machine/refusal.h"
@@ -43,6 +45,10 @@ Status Machine::MayPress(PanelKey key) const {
   if (next.code) return Refusal(*next.code);
   if (jog_.moves()) return NotNow(state(), kReleaseKeys);
   if (run_ != nullptr && !WorksInHold(key)) return NotNow(state(), "a run is open; end it first");
+  // In no other state that stands a spindle turns. LIVE-2.04
+  if (run_ == nullptr && key == PanelKey::kSpindle)
+    return NotNow(state(),
+                  "SPINDLE stops the spindle of a run that is held, and lets it turn again");
   const bool safe = key == PanelKey::kZ0 || key == PanelKey::kOrigin ||
                     (key == PanelKey::kSpindle && status().run.spindle_on);
   if (cover_open_ && !safe) return Error{ErrorCode::kCellDoorOpen, "the cover is open", {}};
@@ -55,7 +61,10 @@ Status Machine::Act(const PressPanel& input) {
     SendTo(input.key);
     return {};
   }
-  if (run_ == nullptr) return standing_->PressPanel(input.key);
+  if (run_ == nullptr) {
+    standing_->PressPanel(input.key);
+    return {};
+  }
   const Status switched = run_->SwitchSpindle();
   if (switched) base_.reset();  // a simulation knows nothing of that
   return switched;
@@ -76,7 +85,9 @@ void Machine::SendTo(PanelKey key) {
     viewed_from_ = at;
   }
   const std::optional<HandMotion> how = ByHand(true);
-  if (how) jog_.Travel(way, *how, at, now_);
+  if (!how) return;
+  jog_.Send(std::make_unique<HandTravel>(way, *how, at, now_));
+  AdvanceJog(now_);
 }
 
 }  // namespace rmlcell::machine

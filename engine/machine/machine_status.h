@@ -67,7 +67,8 @@ struct MachineStatus {
   double override_percent = 100.0;
   RunState run{};  // the machine's own where no run is open: phase kFinished
   std::optional<RunNote> open{};
-  std::int64_t last_run = 0;  // number of the newest that was begun
+  std::optional<HandRun> by_hand{};  // is under way: the open run, or beside one that is held
+  std::int64_t last_run = 0;         // number of the newest that was begun
   std::vector<Alarm> alarms{};
   ShownStep shown{};
   // The machine's own code of the last error, alarm or end of a run that nobody has cleared from

@@ -85,6 +85,8 @@ class Run {
   // Halted: keys have moved the machine, it stands here now. A run that may be moved goes on from
   // here: what was interrupted to where it was to end, or what comes next.
   virtual void MoveTo(const motion::AxisPose& /*axes*/) {}
+  // Halted: the axes have found their reference meanwhile.
+  virtual void SetZeroed() {}
 
   // Halted: a key stops the spindle, or lets it turn again. Stopped so it stays, until the program
   // starts it anew or START comes with the value 1. Errors: CellMachineState.

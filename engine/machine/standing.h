@@ -46,10 +46,10 @@ class Standing {
   // Moved by hand it stands here now.
   virtual void MoveTo(const motion::AxisPose& /*axes*/) {}
 
-  // Keys of its panel. Whether somebody has described that one; what SPINDLE, Z0 and ORIGIN do here
-  // and now, which CellMachineState refuses; where VIEW and HOME go to, place by place.
+  // Keys of its panel. Whether somebody has described that one; what Z0 and ORIGIN do here; where
+  // VIEW and HOME go to, place by place.
   virtual bool HasPanelKey(PanelKey /*key*/) const { return false; }
-  virtual Status PressPanel(PanelKey /*key*/) { return {}; }
+  virtual void PressPanel(PanelKey /*key*/) {}
   virtual std::vector<motion::AxisPose> WayOf(PanelKey /*key*/) const { return {}; }
 
   // A run is over, or nothing may go on: what would by itself stops. LIVE-2.04

@@ -49,16 +49,10 @@ void MillStanding::UseProfile(Profile profile) {
   profile_ = std::move(next);
 }
 
-// SPINDLE starts nothing that !MC 0 forbids (RML1-3C.05).
-Status MillStanding::PressPanel(machine::PanelKey key) {
+void MillStanding::PressPanel(machine::PanelKey key) {
   const Point at = device_.carriage().physical();
   Registers registers = device_.registers();
   switch (key) {
-    case machine::PanelKey::kSpindle:
-      if (!registers.spindle_on && !registers.rotation)
-        return Error{ErrorCode::kCellMachineState, "!MC 0 forbids the spindle to turn", {}};
-      registers.spindle_on = !registers.spindle_on;
-      break;
     case machine::PanelKey::kZ0:
       registers.z0 = at.z;
       break;
@@ -70,10 +64,10 @@ Status MillStanding::PressPanel(machine::PanelKey key) {
     }
     case machine::PanelKey::kView:
     case machine::PanelKey::kHome:
+    case machine::PanelKey::kSpindle:
       break;
   }
   device_.Restore(registers, at);
-  return {};
 }
 
 // Up, and across: HOME to the origin as H does (RML1-3A.40); VIEW to the corner where the table is

@@ -207,7 +207,8 @@ class Player {
     auto* enters = std::get_if<machine::StartAtStep>(&**input);
     if (start != nullptr) start->brought = std::exchange(brought_, std::nullopt);
     if (enters != nullptr) enters->brought = std::exchange(brought_, std::nullopt);
-    if (machine::BeginsRun(**input) || std::holds_alternative<machine::ZeroAxes>(**input))
+    const bool zeroes = std::holds_alternative<machine::ZeroAxes>(**input);
+    if (machine::BeginsRun(**input) || (zeroes && !machine_->status().open))
       listener_.BeginRun(machine_->time());
     const Status done = machine_->Apply(**input);
     if (!done) {

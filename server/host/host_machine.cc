@@ -277,9 +277,10 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
                      std::holds_alternative<machine::DeleteProgram>(input) ||
                      std::holds_alternative<machine::SetSchedules>(input);
   const auto* key = std::get_if<machine::PressedKey>(&input);
-  // Of a key nobody knows before what it begins.
-  const bool begins = starts || std::holds_alternative<machine::ZeroAxes>(input) ||
-                      (key != nullptr && !machine().status().open);
+  // Of a key nobody knows before what it begins; while a run is held neither it nor ZERO begins
+  // one.
+  const bool by_hand = key != nullptr || std::holds_alternative<machine::ZeroAxes>(input);
+  const bool begins = starts || (by_hand && !machine().status().open);
   const auto stands = begins ? std::optional(MarkNow()) : std::nullopt;
   if (begins) {
     run_begun_ = machine().time();
@@ -328,7 +329,9 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
     return done.error();
   }
   if (stands && machine().status().last_run != runs) Record(*stands, place);
-  if (key != nullptr && !moved && moves()) held_for_.reset();  // START let it go on
+  // START let it go on; keys that move the machine in a hold do not.
+  const bool goes_on = machine().status().run.phase == machine::RunPhase::kRunning;
+  if (key != nullptr && !moved && goes_on) held_for_.reset();
   const bool left = mode == machine::Mode::kRemote && machine().status().mode != mode;
   if (key != nullptr && left && !job_.empty()) held_for_ = v1::HOLD_REASON_MODE;
   mark_due_ = true;

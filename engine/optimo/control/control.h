@@ -35,6 +35,7 @@ class Control final : private RideListener {
     return now().phase == machine::RunPhase::kHalted && !s_.entry.arrival && ride_.may_be_moved();
   }
   void MoveTo(const motion::AxisPose& axes);
+  void SetZeroed() { s_.moves.zeroed = s_.actuators.zeroed = true; }
   void SetMode(machine::Mode mode);
   // Precondition: Writable.
   void WriteVariable(Variable variable, float number);

@@ -19,6 +19,7 @@ class OptimoRun final : public machine::Run, public machine::EnterableRun {
   void Stand(SimTime until) override { control_.Stand(until); }
   bool may_be_moved() const override { return control_.may_be_moved(); }
   void MoveTo(const motion::AxisPose& axes) override { control_.MoveTo(axes); }
+  void SetZeroed() override { control_.SetZeroed(); }
   void SetMode(machine::Mode mode) override { control_.SetMode(mode); }
   void End(machine::OutcomeKind kind, ErrorCode code) override { control_.End(kind, code); }
   machine::RunState state() const override { return control_.Snapshot(); }

@@ -24,14 +24,16 @@ constexpr std::array kModeSwitch = {Mode::kManual, Mode::kRepeat, Mode::kCycle, 
 constexpr double kFunctionShare = 0.4;  // of the override, OPT-9.36
 constexpr double kPercent = 100.0;
 
-bool MovesByHand(const MachineView& view) { return view.status.open && view.status.open->by_hand; }
+bool MovesByHand(const MachineView& view) { return view.status.by_hand.has_value(); }
 bool IsByHand(const MachineView& view, machine::HandRun what) {
-  return MovesByHand(view) && view.status.open->hand == what;
+  return view.status.by_hand == what;
 }
 
-// Of a run that is open, and of axes that find their reference.
+// A run that is open, or HOME or ZERO; these two do not halt without being over.
 bool RunGoesOn(const MachineView& view) {
-  return view.status.open && view.status.run.phase != RunPhase::kHalted;
+  if (!view.status.open) return false;
+  return view.status.run.phase != RunPhase::kHalted || IsByHand(view, machine::HandRun::kHome) ||
+         IsByHand(view, machine::HandRun::kZero);
 }
 
 std::string_view LampOf(JogReference reference) {
@@ -100,7 +102,7 @@ void OptimoHandbox::Release(Turn& turn) {
   if (turn.key.key == Key::kJog) turn.Ask(machine::ReleaseJog{turn.key.jog});
   if (turn.key.key == Key::kEmergencyStop) turn.Ask(machine::EmergencyStop{false});
   if (turn.key.key == Key::kHome && IsByHand(turn.view, machine::HandRun::kHome))
-    turn.Ask(machine::AbortRun{});
+    turn.Ask(machine::StopRun{});
 }
 
 // In every mode. OPT-4.11, OPT-4.14, OPT-4.29, OPT-4.37
@@ -141,7 +143,7 @@ void OptimoHandbox::ClearError(Turn& turn) {
 }
 
 void OptimoHandbox::ChangeMode(Turn& turn, int by) {
-  if (IsByHand(turn.view, machine::HandRun::kHome)) turn.Ask(machine::AbortRun{});
+  if (IsByHand(turn.view, machine::HandRun::kHome)) turn.Ask(machine::StopRun{});
   if (MovesByHand(turn.view)) return Refuse(turn);
   const auto at = std::ranges::find(kModeSwitch, turn.view.status.mode) - kModeSwitch.begin();
   const auto to = std::clamp<std::ptrdiff_t>(at + by, 0, std::ptrdiff_t{kModeSwitch.size()} - 1);

@@ -6,55 +6,12 @@
 #include <random>
 #include <sstream>
 
-#include "tests/engine/machine/machine_bed.h"
+#include "tests/engine/machine/held_bed.h"
 
 namespace rmlcell::machine {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr JogKey kHeldXPlus{JogAxis::kX, true};
-constexpr JogKey kHeldXMinus{JogAxis::kX, false};
-constexpr JogKey kHeldYPlus{JogAxis::kY, true};
-constexpr JogKey kHeldZPlus{JogAxis::kZ, true};
-constexpr JogKey kHeldBPlus{JogAxis::kB, true};
-
-// At 50 mm/s; from home, (21.02, 2201.2, -350) of the tip, in X first.
-constexpr const char* kCorner =
-    "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02, 2201.2, -350., 0., 0.)\n"
-    "MOVE (521.02, 2301.2, -350., 0., 0.)\n";
-
-class HeldTest : public MachineTest {
- protected:
-  // In REMOTE, stopped at this time, then in MANUAL at 200 mm/s.
-  void LoadHeld(const std::string& program, double stopped_s,
-                const MachineInput& stop = StopRun{}) {
-    Load({program});
-    Start();
-    GoOn(At(stopped_s));
-    Good(stop);
-    GoOnFor(10.0);
-    ASSERT_EQ(state(), MachineState::kHeld);
-    Good(ChangeMode{Mode::kManual});
-    Good(ChangeOverride{145.0});
-    ASSERT_EQ(state(), MachineState::kHeld);
-  }
-  void Jog(const JogKey& key, double seconds, JogReference reference = JogReference::kRobot) {
-    Good(PressJog{.key = key, .reference = reference});
-    EXPECT_EQ(state(), MachineState::kJogging);
-    GoOnFor(seconds);
-    Good(ReleaseJog{key});
-    GoOnFor(1.0);
-    EXPECT_EQ(state(), MachineState::kHeld);
-  }
-  void BackInRemote() {
-    Good(ChangeMode{Mode::kRemote});
-    Good(ChangeOverride{100.0});
-  }
-  motion::MachinePoint Tip() const { return machine->status().run.tip.tip; }
-  motion::AxisPose Axes() const { return machine->status().run.axes; }
-  void GoOnFor(double seconds) { GoOn(machine->time() + At(seconds)); }
-};
 
 // LIVE-2.10: HELD + jog is JOGGING, at rest HELD again; the run stays open, and the status shows
 // where the axes are.
@@ -317,14 +274,13 @@ TEST_F(HeldTest, OnTheWayToAStepNothingIsMoved) {
   EXPECT_THAT(Refused(PressJog{.key = kHeldYPlus}), HasSubstr("CELL-E9421"));
 }
 
-// LIVE-5.06, LIVE-3.11: whatever is stopped and moved where, the axes never jump, the run comes to
-// its end, and nothing depends on how time is divided.
+// LIVE-5.06, LIVE-3.11, OPT-4.49: whatever is stopped and moved where, by keys, HOME or ZERO, the
+// axes never jump, the run comes to its end, and nothing depends on how time is divided.
 class HeldAnywhereTest : public HeldTest {
  protected:
-  // Where it ends, and when.
-  std::string Run(unsigned seed, double part_s) {
-    std::mt19937 random(seed);
-    const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
+  int below(unsigned n) { return static_cast<int>(random_() % n); }
+
+  std::string Program() {
     std::ostringstream program;
     program << "COORD ABSOL\nSPEED " << 15 + below(40) << "\n";
     for (int n = 0; n < 6; ++n) {
@@ -353,7 +309,42 @@ class HeldAnywhereTest : public HeldTest {
       }
     }
     program << "PATH LIN\nMOVE (500., 2000., -400., 0., 0.)\n";
-    Load({program.str()});
+    return program.str();
+  }
+
+  // A jog key, HOME or ZERO; sometimes another override on the way, and a STOP.
+  void MoveByHand(double part_s) {
+    const int which = below(4);
+    const JogKey key{static_cast<JogAxis>(below(5)), below(2) != 0};
+    const KeyAction press = KeyAction::kPress;
+    if (which < 2) {
+      Good(PressJog{.key = key, .reference = static_cast<JogReference>(below(3))});
+    } else if (which == 2) {
+      EXPECT_FALSE(machine->PressKey("HOME", press)->message);
+    } else {
+      Good(ZeroAxes{});
+    }
+    GoOnSmoothly(0.001 * below(700), part_s);
+    if (below(3) == 0) Good(ChangeOverride{40.0 + below(100)});
+    GoOnSmoothly(0.001 * below(which < 2 ? 100 : 9000), part_s);
+    if (below(4) == 0) Good(StopRun{});
+    if (which < 2) {
+      Good(ReleaseJog{key});
+    } else if (which == 2) {
+      EXPECT_TRUE(machine->PressKey("HOME", KeyAction::kRelease));
+    }
+    made_ += machine->Save();
+    GoOnSmoothly(which == 3 ? 80.0 : 1.0, part_s);
+    made_ += machine->Save();
+    EXPECT_EQ(state(), MachineState::kHeld);
+  }
+
+  // The marks on the way, where it ends, and when.
+  std::string Run(unsigned seed, double part_s) {
+    random_.seed(seed);
+    made_.clear();
+    const std::string program = Program();
+    Load({program});
     const bool cycle = seed % 2 == 0;  // HOLD there, STOP in REMOTE
     const StartSource source = cycle ? StartSource::kPanel : StartSource::kConsole;
     if (cycle) Good(ChangeMode{Mode::kCycle});
@@ -364,13 +355,7 @@ class HeldAnywhereTest : public HeldTest {
     Good(ChangeOverride{70.0 + below(70)});
     GoOnSmoothly(20.0, part_s);
     if (state() != MachineState::kHeld) return "over";
-    for (int n = below(3); n >= 0; --n) {
-      const JogKey key{static_cast<JogAxis>(below(5)), below(2) != 0};
-      Good(PressJog{.key = key, .reference = static_cast<JogReference>(below(3))});
-      GoOnSmoothly(0.001 * below(700), part_s);
-      Good(ReleaseJog{key});
-      GoOnSmoothly(1.0, part_s);
-    }
+    for (int n = below(3); n >= 0; --n) MoveByHand(part_s);
     Good(ChangeMode{cycle ? Mode::kCycle : Mode::kRemote});
     Good(ResumeRun{.source = source, .accept_displaced = true});
     GoOnSmoothly(400.0, part_s);
@@ -378,11 +363,11 @@ class HeldAnywhereTest : public HeldTest {
     const bool arc = over.outcome.code == ErrorCode::kTargetOutOfTravel;
     EXPECT_TRUE(over.outcome.kind == OutcomeKind::kCompleted || arc)
         << seed << " " << over.outcome.detail << "\n"
-        << program.str();
+        << program;
     std::ostringstream end;
     end.precision(12);
     const motion::AxisPose at = Axes();
-    end << over.lasted.count() << " " << at.column.transpose() << " " << at.a_rad << " "
+    end << made_ << over.lasted.count() << " " << at.column.transpose() << " " << at.a_rad << " "
         << at.b_rad;
     return end.str();
   }
@@ -400,6 +385,10 @@ class HeldAnywhereTest : public HeldTest {
       }
     }
   }
+
+ private:
+  std::mt19937 random_;
+  std::string made_;
 };
 
 TEST_F(HeldAnywhereTest, NothingJumpsAndNothingDependsOnHowTimeIsDivided) {

@@ -1,6 +1,8 @@
 // The keys of a mill's panel: VIEW, SPINDLE, Z0, ORIGIN, HOME, and the step of its jog keys.
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "tests/engine/machine/machine_bed.h"
 
 namespace rmlcell::machine {
@@ -183,31 +185,80 @@ TEST_F(MillPanelTest, Z0AndOriginAreWhereTheToolStands) {
               1e-9);
 }
 
-// LIVE-2.13, RML1-3C.05: on and off where it stands; !MC 0 forbids it; with the cover open it stops
-// and does not start.
-TEST_F(MillPanelTest, SpindleWhereItStands) {
-  LoadDescribed("!MC0;");
-  Good(kPressSpindle);
-  EXPECT_TRUE(Turns());
-  EXPECT_EQ(state(), MachineState::kIdle);
-  Good(kPressSpindle);
+// LIVE-2.04, LIVE-2.13: on a machine without a run nothing turns, and the key says what it is for;
+// nor does it start what the program has not started.
+TEST_F(MillPanelTest, SpindleIsForAHold) {
+  LoadDescribed("PA;!MC0;PU1000,1000;!NR;PU0,0;");
+  const std::string refused = Refused(kPressSpindle);
+  EXPECT_THAT(refused, HasSubstr("CELL-E9421 the machine is IDLE: SPINDLE stops the spindle of a"));
   EXPECT_FALSE(Turns());
-  Good(kPressSpindle);
+  Good(PressJog{.key = {JogAxis::kX, true}});
+  EXPECT_THAT(Refused(kPressSpindle), HasSubstr("CELL-E9421"));
+  Good(ReleaseJogs{});
+  ToRest();
+  Start();
+  GoOnFor(20.0);
+  ASSERT_EQ(state(), MachineState::kHeld);
+  EXPECT_THAT(Refused(kPressSpindle), HasSubstr("CELL-E9421 the program has not started"));
+  EXPECT_FALSE(Turns());
+}
+
+// LIVE-8.03: with the cover open nothing is moved, and registers are set.
+TEST_F(MillPanelTest, WithTheCoverOpen) {
+  LoadDescribed();
   Good(MoveDoor{true});
-  EXPECT_FALSE(Turns());
-  EXPECT_THAT(Refused(kPressSpindle), HasSubstr("CELL-E9433"));
   EXPECT_THAT(Refused(kPressView), HasSubstr("CELL-E9433"));
   EXPECT_THAT(Refused(kPressHome), HasSubstr("CELL-E9433"));
   Good(kPressZ0);
-  Good(MoveDoor{false});
-  Good(kPressSpindle);
-  Good(EmergencyStop{});
-  EXPECT_FALSE(Turns());
-  Good(EmergencyStop{false});
-  Good(Acknowledge{machine->status().alarms.front().id});
-  Start();
-  GoOnFor(5.0);
-  EXPECT_THAT(Refused(kPressSpindle), HasSubstr("CELL-E9421 !MC 0 forbids"));
+  Good(kPressOrigin);
+}
+
+// LIVE-2.04: whatever is pressed when, the spindle turns only in a state that moves axes, and in
+// HELD; what stands has no speed.
+TEST_F(MillPanelTest, WhatTurnsWhere) {
+  std::mt19937 random(4);
+  int turned_held = 0;
+  for (int round = 0; round < 20; ++round) {
+    LoadDescribed("PA;VS10;!MC1;PU500,500;PD;PD900,500;!NR;PD900,900;PU;");
+    for (int n = 0; n < 100; ++n) {
+      const auto any = [&](const MachineInput& input) { static_cast<void>(machine->Apply(input)); };
+      switch (random() % 12) {
+        case 0:
+          any(StartRun{.program = 1});
+          break;
+        case 1:
+          any(ResumeRun{.restore_process = random() % 2 == 0});
+          break;
+        case 2:
+          any(StopRun{});
+          break;
+        case 3:
+          any(HoldRun{});
+          break;
+        case 4:
+          any(random() % 4 == 0 ? MachineInput(AbortRun{}) : MachineInput(ReleaseJogs{}));
+          break;
+        case 5:
+          any(MoveDoor{.open = random() % 3 == 0});
+          break;
+        case 6:
+          any(PressJog{.key = {JogAxis::kX, random() % 2 == 0}});
+          break;
+        case 7:
+          any(SwitchPower{random() % 6 != 0});
+          break;
+        default:
+          any(kEveryKey[random() % kEveryKey.size()]);
+          break;
+      }
+      const bool still = !MovesAxes(state());
+      ASSERT_TRUE(!still || state() == MachineState::kHeld || !Turns()) << Name(state());
+      ASSERT_TRUE(!still || TipSpeed() == 0.0) << Name(state());
+      turned_held += state() == MachineState::kHeld && Turns() ? 1 : 0;
+      GoOnFor(static_cast<double>(random() % 4000) * 1e-3);
+    }
+  }
+  EXPECT_GT(turned_held, 20);
 }
 
 // LIVE-2.10: a run that goes on refuses all keys; one that is held all but VIEW and SPINDLE.

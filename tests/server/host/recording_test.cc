@@ -1,4 +1,5 @@
 // What a machine did, recorded by its host and played again (live.md 3, replay).
+#include <algorithm>
 #include <random>
 #include <utility>
 
@@ -334,6 +335,54 @@ TEST_F(RecordedSessionTest, AnySessionComesOutTheSame) {
   }
   EXPECT_GT(inputs, 500);
   EXPECT_GT(events, 200);
+}
+
+// LIVE-2.10, LIVE-3.40, OPT-4.49: ZERO of a held run begins no other one: why it is held and how
+// long it takes stays, and what was recorded is played again.
+TEST_F(RecordedSessionTest, ZeroInAHold) {
+  MakeOptimo();
+  Do(Start());
+  Pass(50s, 50ms);  // behind the ZERO of the program
+  v1::HostOrder hold;
+  hold.mutable_hold();
+  Do(hold);
+  Pass(5s, 50ms);
+  Control();
+  ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
+  const std::int64_t run = host_->StatusAt(now_).run().run();
+  const auto mode = [this](v1::OperatingMode to) {
+    v1::HostOrder order;
+    order.mutable_mode()->set_mode(to);
+    order.mutable_mode()->set_control_token(token_);
+    EXPECT_FALSE(Do(order).has_refusal());
+  };
+  mode(v1::OPERATING_MODE_MANUAL);
+  v1::HostOrder zero;
+  zero.mutable_zero()->set_control_token(token_);
+  EXPECT_EQ(Do(zero).status().state(), v1::MACHINE_STATE_JOGGING);
+  Pass(30s, 50ms);
+  Control();
+  const v1::MachineStatus held = host_->StatusAt(now_);
+  EXPECT_EQ(held.state(), v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(held.hold_reason(), v1::HOLD_REASON_HOLD);
+  EXPECT_EQ(held.run().run(), run);
+  mode(v1::OPERATING_MODE_REMOTE);
+  v1::HostOrder resume = Resume();
+  EXPECT_EQ(Do(resume).refusal().code(), "CELL-E9425");
+  resume.mutable_resume()->set_accept_displaced(true);
+  EXPECT_EQ(Do(resume).status().state(), v1::MACHINE_STATE_RUNNING);
+  Pass(100s, 50ms);
+  const Recording what = Recorded();
+  const Replayed played = Play(what);
+  EXPECT_EQ(DifferenceIn(played), "");
+  EXPECT_EQ(played.inputs, 6);  // START, HOLD, mode, ZERO, mode, RESUME
+  EXPECT_EQ(Of(what, v1::JournalEntry::kRunBegun).size(), 1U);
+  for (const v1::JournalEntry& entry : what.entries)
+    EXPECT_LE(entry.virtual_time_ns(), played.until.count()) << "events count from its begin";
+  const auto marks = Of(what, v1::JournalEntry::kMark);
+  EXPECT_EQ(std::ranges::count_if(
+                marks, [](const v1::JournalEntry* entry) { return entry->mark().clean(); }),
+            1);  // before it began
 }
 
 }  // namespace
