@@ -199,10 +199,8 @@ MachineStatus Machine::status() const {
                        .message = message_};
   if (jog_.moves()) status.run.tip_speed_mm_s = jog_.tip_speed_mm_s();
   if (jog_.way() != nullptr) status.by_hand = jog_.way()->what();
-  if (run_ == nullptr) {
-    status.run.door_open = status.run.door_open || cover_open_;
-    return status;
-  }
+  status.run.door_open = status.run.door_open || cover_open_;
+  if (run_ == nullptr) return status;
   status.open = note_;
   if (!status.by_hand && note_.by_hand) status.by_hand = note_.hand;
   const RunState& run = status.run;
@@ -302,6 +300,7 @@ Status Machine::MayStart(const StartRun& input) const {
   const Transition next = Next(state(), MachineEvent::kStart, now);
   if (next.code) return Refusal(*next.code);
   if (const Status source = MaySource(input.source); !source) return source.error();
+  if (CoverStops()) return Error{ErrorCode::kCellDoorOpen, "the cover is open", {}};
   return MayRun(family_.info(), memory_, input.program, input.brought.has_value());
 }
 
@@ -488,10 +487,23 @@ Status Machine::Act(const ChangeInput& input) {
   return {};
 }
 
-// An open door acts as STOP. OPT-B.34
+// Nothing begins behind it, and nothing goes on.
+bool Machine::CoverStops() const { return cover_open_ && standing_->cover() != CoverAct::kNone; }
+
+// An open door acts as STOP, the cover of a mill as its model has it. OPT-B.34, DEV-3.12
 Status Machine::Act(const MoveDoor& input) {
   const RunState before = status().run;
-  cover_open_ = input.open && family_.info().cover_stops_jog;
+  const bool covered = family_.info().cover_stops_jog;
+  cover_open_ = input.open && covered;
+  if (covered && input.open && !before.door_open && run_ != nullptr) {
+    const bool goes_on = before.phase == RunPhase::kRunning;
+    if (goes_on && standing_->cover() == CoverAct::kEmergency) {
+      const Status stopped = Act(EmergencyStop{});
+      emergency_ = false;  // no key is down
+      return stopped;
+    }
+    if (standing_->cover() == CoverAct::kPause) Halt(InputKind::kStop);
+  }
   if (input.open) jog_.Brake();
   if (before.door_open == input.open) return {};
   if (input.open) resume_behind_ = false;

@@ -210,6 +210,7 @@ class Machine {
   void KeepForBase(const InputChange& change);
   void Hold();
   void Halt(InputKind key);
+  bool CoverStops() const;
   void Raise(ErrorCode code, Detail detail, const Place& place);
   void Show(ErrorCode code);
   void Settle();

@@ -86,6 +86,7 @@ Status Machine::SendByHand(const RunByHand& asked) {
 // Who presses START at the machine sees where it stands; but what cannot go on from there does not.
 Status Machine::MayGoOn(const ResumeRun& input) const {
   if (jog_.moves()) return NotNow(state(), kReleaseKeys);
+  if (CoverStops()) return Error{ErrorCode::kCellDoorOpen, "the cover is open", {}};
   if (!held_at_) return {};
   const bool asked = !input.accept_displaced && input.source != StartSource::kPanel;
   if (!asked && run_->may_be_moved()) return {};

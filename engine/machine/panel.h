@@ -10,6 +10,12 @@
 
 namespace rmlcell::machine {
 
+enum class CoverAct {
+  kNone,       // nothing
+  kPause,      // it comes to rest, and goes on when the cover is closed and somebody resumes it
+  kEmergency,  // as an emergency stop
+};
+
 // What is to be seen at the machine itself: the handbox of an Optimo, the panel of a mill.
 struct Panel {
   // One line, as wide as the display is; empty: it has none.

@@ -9,6 +9,7 @@
 #include "engine/machine/hand_motion.h"
 #include "engine/machine/inputs.h"
 #include "engine/machine/machine_input.h"
+#include "engine/machine/panel.h"
 #include "engine/machine/run.h"
 #include "engine/machine/step_entry.h"
 #include "engine/motion/geometry/pose.h"
@@ -21,6 +22,9 @@ namespace rmlcell::machine {
 class Standing {
  public:
   virtual ~Standing() = default;
+
+  // What its cover does to a run when it is opened. DEV-3.12
+  virtual CoverAct cover() const { return CoverAct::kNone; }
 
   // At time 0, in kFinished.
   virtual RunState state() const = 0;

@@ -47,6 +47,7 @@ constexpr std::array kParameters = {
     ParameterInfo{"A_STEP",         "deg",     0.01, 1e-6,     10.0, {}, "mechanical resolution of the rotary axis", "RML1-3D.29"},
     ParameterInfo{"STEP",           "mm",      0.01, 1e-6,     10.0, {}, "mechanical resolution of X, Y and Z", "RML1-9.22"},
     ParameterInfo::OfWord("PANEL", "PLAIN FULL", "keys of the panel: PLAIN, which nobody has described, pauses, opens the cover and switches power; FULL has VIEW, SPINDLE, Z0, ORIGIN and HOME, too", "RML1-3C.11"),
+    ParameterInfo::OfWord("COVER", "PAUSE EMERGENCY NONE", "what opening the cover does to a run: it comes to rest and goes on when somebody resumes it behind a closed cover; an emergency stop; nothing", "DEV-3.12"),
     ParameterInfo{"JOG_STEP",       "mm",      0.01, 1e-4,     10.0, {}, "how far a tap of a jog key goes", "RML1-9.22"},
     ParameterInfo::OfWord("COMMAND", "AUTO MODE1 MODE2", "command set", "RML1-9.01"),
     ParameterInfo::OfWord("AXIS_COMMAND", "YES NO", "the model has !ZE", "RML1-3D.01"),

@@ -9,6 +9,11 @@
 namespace rmlcell::rml1 {
 namespace {
 
+machine::CoverAct CoverOf(std::string_view word) {
+  if (word == "NONE") return machine::CoverAct::kNone;
+  return word == "EMERGENCY" ? machine::CoverAct::kEmergency : machine::CoverAct::kPause;
+}
+
 // "X_MIN is 100, not below X_MAX, which is 50".
 Error Misfit(const machine::Parameters& parameters, const std::string& what,
              std::string_view against) {
@@ -87,6 +92,7 @@ void ReadWords(const machine::Parameters& from, Profile& profile) {
   profile.commands.axis_command = from.Word("AXIS_COMMAND") == "YES";
   profile.commands.skipped = SkippedNames(from.Word("SKIP"));
   profile.panel_described = from.Word("PANEL") == "FULL";
+  profile.cover = CoverOf(from.Word("COVER"));
   profile.pause_outside = from.Word("OVER_AREA") == "PAUSE";
   profile.seven_bits = from.Word("DATA_BITS") == "7";
   profile.all_sequences = from.Word("SEQUENCES") == "ALL";

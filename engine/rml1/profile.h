@@ -3,6 +3,7 @@
 #include <span>
 
 #include "engine/core/result.h"
+#include "engine/machine/panel.h"
 #include "engine/machine/parameters.h"
 #include "engine/machine/profile_files.h"
 #include "engine/motion/planner/feed_steps.h"
@@ -63,6 +64,7 @@ struct Profile {
 
   CommandSet commands;
   bool panel_described = false;  // its keys are known: LIVE-2.13
+  machine::CoverAct cover = machine::CoverAct::kPause;
   bool origin_by_panel = false;  // ORIGIN has set it: kept beside the registers
   double jog_step_mm = 0.01;     // of a jog key that is tapped
 

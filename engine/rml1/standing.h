@@ -24,6 +24,7 @@ class MillStanding final : public machine::Standing {
   std::optional<machine::HandMotion> ByHand(double override_percent, bool fast) const override;
   void MoveTo(const motion::AxisPose& axes) override;
   bool HasPanelKey(machine::PanelKey /*key*/) const override { return profile_->panel_described; }
+  machine::CoverAct cover() const override { return profile_->cover; }
   void PressPanel(machine::PanelKey key) override;
   std::vector<motion::AxisPose> WayOf(machine::PanelKey key) const override;
   void Rest() override;        // the spindle stands

@@ -117,10 +117,12 @@ Result<v1::ControlLease> ControlDesk::Renew(std::string_view token, const HostTi
   return *lease_;
 }
 
-Status ControlDesk::Release(std::string_view token, const HostTime& now) {
+Result<v1::ControlLease::OnLoss> ControlDesk::Release(std::string_view token,
+                                                      const HostTime& now) {
   if (const Status good = Check(token, now); !good) return good.error();
+  const v1::ControlLease::OnLoss on_loss = lease_->on_loss();
   End(v1::ControlChanged::KIND_RELEASED);
-  return {};
+  return on_loss;
 }
 
 std::optional<v1::ControlLease::OnLoss> ControlDesk::Expire(const HostTime& now) {

@@ -32,7 +32,7 @@ class ControlDesk {
                                              const std::string& caller, const HostTime& now);
   // Errors: CellControlNeeded; one that is over comes back by Acquire alone.
   Result<v1::ControlLease> Renew(std::string_view token, const HostTime& now);
-  Status Release(std::string_view token, const HostTime& now);
+  Result<v1::ControlLease::OnLoss> Release(std::string_view token, const HostTime& now);
   // CellControlNeeded: no token, or that of a lease that is over, with who has control now.
   Status Check(std::string_view token, const HostTime& now) const;
 

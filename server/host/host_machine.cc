@@ -191,14 +191,22 @@ Result<v1::HostOrderAnswer> HostMachine::Control(const v1::HostOrder& order, con
     const auto renewed = desk_.Renew(order.renew_control().control_token(), now);
     if (!renewed) return renewed.error();
     *answer.mutable_control_kept()->mutable_lease() = *renewed;
-  } else if (const Status released = desk_.Release(order.release_control().control_token(), now);
-             !released) {
-    return released.error();
-  } else if (machine().state() == machine::MachineState::kJogging) {
-    Hold(v1::HOLD_REASON_CONTROL, now);  // LIVE-4.02
+  } else {
+    const auto on_loss = desk_.Release(order.release_control().control_token(), now);
+    if (!on_loss) return on_loss.error();
+    LoseControl(*on_loss, now);
+    return answer;
   }
   TellControl();
   return answer;
+}
+
+// Whoever moves it by hand is gone; a run does what he wanted for that case. LIVE-4.02
+void HostMachine::LoseControl(v1::ControlLease::OnLoss on_loss, const HostTime& now) {
+  TellControl();
+  if (on_loss == v1::ControlLease::ON_LOSS_HOLD ||
+      machine().state() == machine::MachineState::kJogging)
+    Hold(v1::HOLD_REASON_CONTROL, now);
 }
 
 // All of them or none, each with what is wrong with it.
@@ -354,10 +362,7 @@ void HostMachine::GoOnTo(const HostTime& now) {
   now_ = now;
   driver_->Pump(now.steady);
   LetKeysGo(now);
-  if (const auto on_loss = desk_.Expire(now)) {
-    TellControl();
-    if (*on_loss == v1::ControlLease::ON_LOSS_HOLD) Hold(v1::HOLD_REASON_CONTROL, now);
-  }
+  if (const auto on_loss = desk_.Expire(now)) LoseControl(*on_loss, now);
   arms_.Expire(desk_.lease() ? desk_.lease()->number() : 0, memory_changes_, now);
   Notice();
   if (std::exchange(late_, false)) Hold(v1::HOLD_REASON_LATE, now);

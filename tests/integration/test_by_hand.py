@@ -92,14 +92,84 @@ class ByHandTest(LiveTestCase):
         self.assertEqual(sum("MOVE" in line for line in self.lists(12)), 2, self.lists(12))
         box.keys("MODE_RIGHT MODE_RIGHT")  # CYCLE
         box.keys("START")
-        eventually(lambda: live.status().run.run or live.status().state == 5, 10)
-        live.wait("IDLE")
+        self.assertTrue(eventually(lambda: live.status().run.run, 10))
+        self.assertIsNotNone(live.wait("IDLE"))
         self.assertTrue(any("P=12" in display for display in shown))
         project = project_pb2_grpc.ProjectServiceStub(self.cell.channel())
         project.TransferProjectFromMachine(project_pb2.TransferProjectFromMachineRequest(
             machine=OPTIMO, project_id="taught", slots=[12]))
         kept = project.GetProject(project_pb2.GetProjectRequest(name="projects/taught"))
         self.assertEqual([one.slot for one in kept.programs], [12])
+
+    # LIVE-10.07: a shift at the handbox: a program with LIN, CIR and HOLE is taught, corrected, stopped at a breakpoint,
+    # simulated to a step, run step by step and whole, and kept in a project.
+    def test_a_shift_at_the_handbox(self):
+        live = self.optimo()
+        box = Handbox(live)
+
+        def shows():
+            return box.press("JOG_ROB").panel.display
+
+        def taught(keys, steps):
+            """What is recorded is in the store when the name flashes no more."""
+            box.keys(keys)
+            eventually(lambda: len(self.lists(12)) == steps and not box.press("JOG_ROB").panel.flashing, 10)
+
+        box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC")
+        eventually(lambda: "P=12" in shows(), 10)
+        end = len(self.lists(12))
+        taught("DYN NEXT ENT REC", end + 1)  # COORD ABSOL
+        taught("PATH NEXT ENT REC", end + 2)  # LIN
+        box.hold("X+", 0.4)
+        taught("REC", end + 3)
+        taught("PATH NEXT ENT REC", end + 4)  # CIR
+        box.hold("X+", 0.4)
+        box.keys("REC")  # the via point
+        box.hold("Y+", 0.4)
+        taught("REC", end + 5)
+        taught("PATH NEXT ENT DEL 5 ENT REC", end + 6)  # HOLE
+        box.hold("Y+", 0.4)
+        box.keys("REC")  # the centre
+        box.hold("Z-", 0.2)
+        taught("REC", end + 7)
+        taught("DLY DEL 3 ENT REC", end + 8)
+        listing = self.lists(12)
+        self.assertEqual([word for line in listing for word in ("PATH LIN", "PATH CIR", "PATH HOLE", "/VIA", "DELAY") if word in line],
+                         ["PATH LIN", "PATH CIR", "/VIA", "PATH HOLE", "/VIA", "DELAY"], listing)
+
+        # The DELAY goes, and comes again shorter.
+        taught("PREV DEL 1", end + 7)
+        taught("DLY DEL 1 ENT REC", end + 8)
+        self.assertIn("DELAY 1.0", self.lists(12)[7])
+
+        def held_at(step):
+            held = eventually(lambda: (lambda now: now if MachineState.Name(now.state) == "MACHINE_STATE_HELD"
+                                       and now.run.place.step == step else None)(live.status()), 60)
+            self.assertIsNotNone(held, live.status())
+            self.assertEqual(held.run.program, 12)
+
+        def ended():
+            self.assertIsNotNone(live.wait("IDLE", 60))
+            self.assertNotIn("ERROR", shows())
+
+        # CYCLE, with a breakpoint behind the third step.
+        box.keys("DEB NEXT ENT 3 ENT MODE_RIGHT MODE_RIGHT START")
+        held_at(3)
+        box.keys("START")
+        ended()
+        # Simulated up to its fourth step, which then moves.
+        box.keys("MODE_LEFT MODE_LEFT DEB ENT F6 4 ENT MODE_RIGHT MODE_RIGHT START")
+        self.assertTrue(eventually(lambda: live.status().run.run, 10))
+        ended()
+        # In SINGLE each START is a step.
+        box.keys("MODE_RIGHT START")
+        held_at(1)
+        box.keys("START")
+        held_at(2)
+        live.ask("AbortRun")
+        live.wait("IDLE")
+        project_pb2_grpc.ProjectServiceStub(self.cell.channel()).TransferProjectFromMachine(
+            project_pb2.TransferProjectFromMachineRequest(machine=OPTIMO, project_id="shift", slots=[12]))
 
     # LIVE-7.09, LIVE-9.15: what was taught is listed, and taken back as long as nobody else changed the program.
     def test_what_was_taught_is_taken_back(self):

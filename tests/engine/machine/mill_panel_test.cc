@@ -213,6 +213,64 @@ TEST_F(MillPanelTest, WithTheCoverOpen) {
   Good(kPressOrigin);
 }
 
+// DEV-3.12, LIVE-2.10 a9: the cover of most mills lets a run come to rest; closing it moves
+// nothing, and resuming goes on.
+TEST_F(MillPanelTest, AnOpenCoverPauses) {
+  LoadWith({}, {}, "PA;VS10;PU1000,1000;PU2000,2000;");
+  Good(StartRun{.program = 1});
+  GoOnFor(1.0);
+  ASSERT_EQ(state(), MachineState::kRunning);
+  Good(MoveDoor{true});
+  EXPECT_TRUE(machine->status().run.door_open);
+  ToRest();
+  EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_THAT(Refused(ResumeRun{}), HasSubstr("CELL-E9433"));
+  const motion::MachinePoint stands = machine->status().run.axes.column;
+  Good(MoveDoor{false});
+  GoOnFor(5.0);
+  EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(machine->status().run.axes.column, stands);
+  Good(ResumeRun{});
+  GoOnFor(100.0);
+  EXPECT_EQ(state(), MachineState::kIdle);
+  EXPECT_NEAR(machine->status().run.axes.column.x(), 20.0, 1e-9);
+  Good(MoveDoor{true});
+  EXPECT_THAT(Refused(StartRun{.program = 1}), HasSubstr("CELL-E9433"));
+}
+
+// DEV-3.12: one whose cover is none runs on.
+TEST_F(MillPanelTest, ACoverThatIsNoneStopsNothing) {
+  LoadWith({{"COVER", "NONE"}}, {}, "PA;VS10;PU1000,1000;PU2000,2000;");
+  Good(MoveDoor{true});
+  Good(StartRun{.program = 1});
+  GoOnFor(1.0);
+  Good(MoveDoor{false});
+  Good(MoveDoor{true});
+  GoOnFor(1.0);
+  EXPECT_EQ(state(), MachineState::kRunning);
+}
+
+// DEV-3.12: where it is an emergency stop the run is over; in a pause it is none.
+TEST_F(MillPanelTest, ACoverThatIsAnEmergencyStop) {
+  LoadWith({{"COVER", "EMERGENCY"}}, {}, "PA;VS10;PU1000,1000;PU2000,2000;");
+  Good(StartRun{.program = 1});
+  GoOnFor(1.0);
+  Good(StopRun{});
+  ToRest();
+  Good(MoveDoor{true});
+  EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_THAT(Refused(ResumeRun{}), HasSubstr("CELL-E9433"));
+  Good(MoveDoor{false});
+  Good(ResumeRun{});
+  GoOnFor(0.5);
+  Good(MoveDoor{true});
+  GoOnFor(1.0);
+  EXPECT_EQ(state(), MachineState::kAlarm);
+  ASSERT_EQ(machine->status().alarms.size(), 1U);
+  Good(Acknowledge{.alarm = machine->status().alarms.front().id});
+  EXPECT_EQ(state(), MachineState::kIdle);
+}
+
 // LIVE-2.04: whatever is pressed when, the spindle turns only in a state that moves axes, and in
 // HELD; what stands has no speed.
 TEST_F(MillPanelTest, WhatTurnsWhere) {

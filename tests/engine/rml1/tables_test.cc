@@ -117,6 +117,7 @@ constexpr std::array kParameters = {
     Row{"A_STEP", "deg", 0.01, 1e-6, 10.0, ""},
     Row{"STEP", "mm", 0.01, 1e-6, 10.0, ""},
     Row{"PANEL", "", 0, 0, 0, "PLAIN FULL"},
+    Row{"COVER", "", 0, 0, 0, "PAUSE EMERGENCY NONE"},
     Row{"JOG_STEP", "mm", 0.01, 1e-4, 10.0, ""},
     Row{"COMMAND", "", 0, 0, 0, "AUTO MODE1 MODE2"},
     Row{"AXIS_COMMAND", "", 0, 0, 0, "YES NO"},

@@ -100,6 +100,28 @@ TEST_F(HandboxOverTheLine, ASessionIsOfWhoHasControl) {
   EXPECT_EQ(session_, "machines/optimo-1/handboxSessions/2");
 }
 
+// LIVE-7.07, OPT-4.19: START in CYCLE begins the program that is selected, without a job.
+TEST_F(HandboxOverTheLine, StartBeginsTheSelectedProgram) {
+  MakeAndTake();
+  Open();
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
+  auto made =
+      family.Translate({.name = "12.S", .bytes = "DELAY 1\nDELAY 1\n"},
+                       *machine::MakeParameters(family, "", {}), {.advice = false, .source = true});
+  ASSERT_TRUE(made.ok);
+  v1::HostMemory memory;
+  memory.add_programs()->set_slot(12);
+  memory.mutable_programs(0)->set_content(made.object);
+  host_->Change(memory, now_);
+  Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT MODE_RIGHT MODE_RIGHT");
+  const v1::PressKeyResponse begun = Press("START");
+  EXPECT_FALSE(begun.has_message()) << begun.message().code();
+  EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(host_->StatusAt(now_).run().program(), 12);
+  Pass(3s);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+}
+
 // LIVE-7.10: what the control says is an answer, what nobody can press is none.
 TEST_F(HandboxOverTheLine, TheControlAnswers) {
   MakeAndTake();

@@ -61,7 +61,7 @@ class AnyMessages {
     if (field == "job" || field == "continues") return "jobs/" + std::to_string(Below(3));
     if (field == "variable" || field == "variables" || field == "name_of_variable")
       return OneOf(std::array<const char*, 6>{"VR[0]", "VI[3]", "OL[3]", "IL[20]", "X", "VX[7]"});
-    return OneOf(std::array<const char*, 4>{"", "a text", "VR[1]", "\xff\xfe"});
+    return OneOf(std::array<const char*, 3>{"", "a text", "VR[1]"});
   }
   double Number() {
     return OneOf(std::array<double, 10>{-1.0, 0.0, 0.3, 1.0, 10.0, 50.0, 100.0, 1e9,

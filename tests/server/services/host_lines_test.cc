@@ -2,6 +2,7 @@
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <filesystem>
@@ -15,13 +16,14 @@
 #include "server/host/host_process.h"
 #include "server/machines/hosts.h"
 #include "server/services/host_service.h"
+#include "tests/server/fake_link.h"
 #include "tests/server/forwarding_store.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
 namespace {
 
-constexpr const char* kMill = "mill-1";
+constexpr const char* kHosted = "mill-1";
 
 // Takes nothing of a machine while it is stopped.
 class StoppedStore final : public ForwardingStore {
@@ -74,7 +76,7 @@ struct OneServer {
   }
 
   v1::MachineState State() {
-    const auto status = hosts.StatusOf(kMill);
+    const auto status = hosts.StatusOf(kHosted);
     return status ? status->state() : v1::MACHINE_STATE_UNSPECIFIED;
   }
   bool Becomes(v1::MachineState state) {
@@ -83,7 +85,7 @@ struct OneServer {
   v1::HostOrderAnswer Ask(v1::HostOrder order) {
     order.set_caller("anna");
     std::promise<Result<v1::HostOrderAnswer>> answered;
-    hosts.Ask(kMill, std::move(order),
+    hosts.Ask(kHosted, std::move(order),
               [&](Result<v1::HostOrderAnswer> answer) { answered.set_value(std::move(answer)); });
     Result<v1::HostOrderAnswer> answer = answered.get_future().get();
     EXPECT_TRUE(answer) << answer.error().detail;
@@ -106,7 +108,7 @@ class HostLinesTest : public testing::Test {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     Must(store_.PutPrograms(
-        kMill, {{.slot = 5, .name = "p", .object = "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PD8000,0;"}}, {},
+        kHosted, {{.slot = 5, .name = "p", .object = "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PD8000,0;"}}, {},
         "anna"));
     const std::vector<std::string> servers = {OneServer::AddressOf(folder_, "a"),
                                               OneServer::AddressOf(folder_, "b")};
@@ -172,14 +174,15 @@ TEST_F(HostLinesTest, EitherServerReachesTheMachine) {
   Control(*b_);
   Start(*a_);
   EXPECT_TRUE(b_->Becomes(v1::MACHINE_STATE_RUNNING));
-  EXPECT_EQ(a_->hosts.StatusOf(kMill)->control().holder(), "anna");
+  EXPECT_EQ(a_->hosts.StatusOf(kHosted)->control().holder(), "anna");
   Stop(*b_);
   EXPECT_TRUE(a_->Becomes(v1::MACHINE_STATE_HELD));
   Resume(*b_);
   EXPECT_TRUE(a_->Becomes(v1::MACHINE_STATE_RUNNING));
 }
 
-// LIVE-3.06, LIVE-4.07, LIVE-3.34: STOP and status never pass the store, whichever server got the call.
+// LIVE-3.06, LIVE-4.07, LIVE-3.34: STOP and status never pass the store, whichever server got the
+// call.
 TEST_F(HostLinesTest, AStopPassesNoStore) {
   ASSERT_TRUE(a_->Becomes(v1::MACHINE_STATE_IDLE));
   ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_IDLE));
@@ -196,6 +199,54 @@ TEST_F(HostLinesTest, AStopPassesNoStore) {
   EXPECT_TRUE(b_->Becomes(v1::MACHINE_STATE_HELD));
 }
 
+// LIVE-10.05, LIVE-4.01: whoever asks whichever server at the same time, one has control.
+TEST_F(HostLinesTest, OneHasControlWhicheverServerIsAsked) {
+  ASSERT_TRUE(a_->Becomes(v1::MACHINE_STATE_IDLE));
+  ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_IDLE));
+  for (int round = 0; round < 20; ++round) {
+    std::array<std::promise<std::string>, 2> tokens;
+    const std::array<OneServer*, 2> servers = {a_.get(), b_.get()};
+    for (std::size_t i = 0; i < servers.size(); ++i) {
+      v1::HostOrder order;
+      order.set_caller(i == 0 ? "anna" : "bert");
+      order.mutable_acquire_control()->mutable_ttl()->set_seconds(60);
+      order.mutable_acquire_control()->set_client("a test");
+      servers[i]->hosts.Ask(kHosted, std::move(order),
+                            [&tokens, i](const Result<v1::HostOrderAnswer>& answer) {
+                              tokens[i].set_value(answer ? answer->control().control_token() : "");
+                            });
+    }
+    const std::string first = tokens[0].get_future().get();
+    const std::string second = tokens[1].get_future().get();
+    EXPECT_NE(first.empty(), second.empty());
+    v1::HostOrder release;
+    release.mutable_release_control()->set_control_token(first + second);
+    a_->Ask(std::move(release));
+  }
+}
+
+// LIVE-10.05, LIVE-3.02: another host is told that the machine is taken, by either server, and
+// touches nothing.
+TEST_F(HostLinesTest, AnotherHostIsRefusedByEitherServer) {
+  ASSERT_TRUE(a_->Becomes(v1::MACHINE_STATE_IDLE));
+  ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_IDLE));
+  Control(*a_);
+  Start(*a_);
+  const std::int64_t fence = Must(store_.MachineLeases()).front().fence;
+  v1::HostHello hello;
+  hello.set_join_token("secret");
+  hello.set_machine("machines/mill-1");
+  hello.set_host("elsewhere/1");
+  hello.set_protocol(1);
+  for (OneServer* server : {a_.get(), b_.get()}) {
+    const Status joined = server->hosts.Join(std::make_shared<FakeLink>(), hello);
+    ASSERT_FALSE(joined);
+    EXPECT_EQ(joined.error().code, ErrorCode::kCellMachineTaken);
+  }
+  EXPECT_EQ(Must(store_.MachineLeases()).front().fence, fence);
+  EXPECT_EQ(a_->State(), v1::MACHINE_STATE_RUNNING);
+}
+
 // LIVE-3.06, LIVE-3.31: one server goes; the run does not, and the other one stores what happens.
 TEST_F(HostLinesTest, TheOtherServerGoesOnWithTheMachine) {
   ASSERT_TRUE(a_->Becomes(v1::MACHINE_STATE_IDLE));
@@ -205,14 +256,14 @@ TEST_F(HostLinesTest, TheOtherServerGoesOnWithTheMachine) {
   ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_RUNNING));
   const std::int64_t fence = Must(store_.MachineLeases()).front().fence;
   a_->End();
-  EXPECT_TRUE(Eventually([&] { return b_->hosts.IsSettled(kMill); }));
+  EXPECT_TRUE(Eventually([&] { return b_->hosts.IsSettled(kHosted); }));
   EXPECT_EQ(b_->State(), v1::MACHINE_STATE_RUNNING);
   const storage::MachineLease lease = Must(store_.MachineLeases()).front();
   EXPECT_EQ(lease.server, "b");
   EXPECT_EQ(lease.fence, fence);
   Stop(*b_);
   EXPECT_TRUE(b_->Becomes(v1::MACHINE_STATE_HELD));
-  EXPECT_EQ(b_->hosts.StatusOf(kMill)->hold_reason(), v1::HOLD_REASON_STOP);
+  EXPECT_EQ(b_->hosts.StatusOf(kHosted)->hold_reason(), v1::HOLD_REASON_STOP);
 }
 
 }  // namespace
