@@ -2,8 +2,9 @@
 // status as it arrives, answers to what is written to the disk first, the processor time of hosts,
 // and how soon a host that was killed is found again. On a cell with nothing else to do, and beside
 // 8 clients that check large programs. Ends with 1 when a goal is missed: LIVE-10.20, LIVE-10.21,
-// LIVE-10.22, LIVE-10.24, LIVE-10.25.
+// LIVE-10.22, LIVE-10.23, LIVE-10.24, LIVE-10.25.
 //   bench_cell_live RMLCELLD [FOLDER [STOPS]]
+#include <google/protobuf/util/time_util.h>
 #include <grpcpp/grpcpp.h>
 
 #include <atomic>
@@ -29,6 +30,8 @@ namespace v1 = rmlcell::v1;
 
 constexpr int kClients = 8;
 constexpr int kStandingSeconds = 10;
+constexpr int kMachines = 100;
+constexpr int kMovingSeconds = 20;
 
 std::string Lines(int count, int longest) {
   std::string text = "PA;PA;VS1;!VZ1;!PZ0,200;!MC1;PU0,0;";
@@ -42,6 +45,14 @@ std::string NewId() {
   char text[40];
   std::snprintf(text, sizeof text, "00000000-0000-4000-8000-%012d", ++made);
   return text;
+}
+
+double WallSeconds() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+double SecondsOf(const google::protobuf::Timestamp& time) {
+  return static_cast<double>(time.seconds()) + time.nanos() * 1e-9;
 }
 
 class LiveMachine {
@@ -103,6 +114,44 @@ class LiveMachine {
   void Await(v1::MachineState state) {
     while (Now().state() != state) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
+  // From the last heartbeat of a jog key that is down until the machine brakes, by the clock that
+  // both processes have. It stands then.
+  double SecondsToBrake() {
+    v1::PressPanelKeyRequest press;
+    press.set_machine(name_);
+    press.set_control_token(token_);
+    press.set_key(++keys_ % 4 < 2 ? "X+" : "X-");
+    press.set_action(v1::KEY_ACTION_PRESS);
+    press.set_sequence(keys_);
+    Status(&v1::MachineService::Stub::PressPanelKey, press);
+    double sent = 0.0;
+    for (int beat = 0; beat < 6; ++beat) {
+      v1::HeartbeatPanelRequest heartbeat;
+      heartbeat.set_machine(name_);
+      heartbeat.set_control_token(token_);
+      heartbeat.set_number(++beats_);
+      heartbeat.add_keys_down(press.key());
+      sent = WallSeconds();
+      *heartbeat.mutable_sent() = google::protobuf::util::TimeUtil::MicrosecondsToTimestamp(
+          static_cast<std::int64_t>(sent * 1e6));
+      grpc::ClientContext context;
+      v1::HeartbeatResponse heard;
+      Must(calls_->HeartbeatPanel(&context, heartbeat, &heard));
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    double braked = 0.0;
+    for (;;) {
+      const v1::MachineStatus now = Now();
+      if (now.state() == v1::MACHINE_STATE_JOGGING) continue;
+      braked = SecondsOf(now.send_time());
+      break;
+    }
+    Await(v1::MACHINE_STATE_IDLE);
+    press.set_action(v1::KEY_ACTION_RELEASE);
+    press.set_sequence(++keys_);
+    Status(&v1::MachineService::Stub::PressPanelKey, press);
+    return braked - sent;
+  }
   pid_t host() {
     const std::string host = Now().host();
     return std::atoi(host.substr(host.find('/') + 1).c_str());
@@ -116,11 +165,9 @@ class LiveMachine {
       v1::WatchMachineResponse message;
       while (events_->Read(&message)) {
         if (message.status().state() != v1::MACHINE_STATE_RUNNING) continue;
-        const auto now = std::chrono::system_clock::now().time_since_epoch();
-        const auto& sent = message.status().send_time();
-        const double at = static_cast<double>(sent.seconds()) + sent.nanos() * 1e-9;
+        const double age = WallSeconds() - SecondsOf(message.status().send_time());
         const std::lock_guard lock(mutex_);
-        ages_.push_back(std::chrono::duration<double>(now).count() - at);
+        ages_.push_back(age);
       }
     });
   }
@@ -153,6 +200,8 @@ class LiveMachine {
   const std::string name_;
   std::unique_ptr<v1::MachineService::Stub> calls_;
   std::string token_;
+  std::int64_t keys_ = 0;
+  std::int64_t beats_ = 0;
   grpc::ClientContext watching_;
   std::unique_ptr<grpc::ClientReader<v1::WatchMachineResponse>> events_;
   std::thread watcher_;
@@ -210,6 +259,49 @@ Times MeasureBesideClients(const CellServer& server, LiveMachine& machine, int s
   return busy;
 }
 
+// A hundred machines that all move, at the speed of the clock.
+struct Hundred {
+  double cores = 0.0;   // of hosts and server
+  double lost_s = 0.0;  // of virtual time, of the one that lost most
+};
+
+Hundred MoveAHundred(const CellServer& server) {
+  const auto calls = v1::MachineService::NewStub(server.Connect());
+  std::vector<std::unique_ptr<LiveMachine>> machines;
+  for (int i = 0; i < kMachines; ++i) {
+    v1::CreateMachineRequest create;
+    create.set_machine_id("m-" + std::to_string(i));
+    create.mutable_machine()->set_family("rml1");
+    create.mutable_machine()->set_profile("srm-20");
+    grpc::ClientContext context;
+    v1::Machine made;
+    Must(calls->CreateMachine(&context, create, &made));
+    machines.push_back(std::make_unique<LiveMachine>(server, "machines/" + create.machine_id()));
+    machines.back()->Start();
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(5));  // all are on their way
+  const auto used = [&] {
+    double seconds = server.ProcessorSeconds();
+    for (const auto& machine : machines) seconds += ProcessorSecondsOf(machine->host());
+    return seconds;
+  };
+  std::vector<v1::MachineStatus> began;
+  const double before = used();
+  const auto begin = Clock::now();
+  for (const auto& machine : machines) began.push_back(machine->Now());
+  std::this_thread::sleep_for(std::chrono::seconds(kMovingSeconds));
+  Hundred hundred;
+  hundred.cores = (used() - before) / SecondsSince(begin);
+  for (std::size_t i = 0; i < machines.size(); ++i) {
+    const v1::MachineStatus now = machines[i]->Now();
+    const double passed = SecondsOf(now.send_time()) - SecondsOf(began[i].send_time());
+    const double lived =
+        static_cast<double>(now.virtual_time_ns() - began[i].virtual_time_ns()) * 1e-9;
+    hundred.lost_s = std::max(hundred.lost_s, passed - lived);
+  }
+  return hundred;
+}
+
 // Until another host is heard of, ms.
 std::vector<double> KillHosts(LiveMachine& machine) {
   std::vector<double> found;
@@ -254,6 +346,12 @@ int main(int argc, char** argv) {
     const double before = ProcessorSecondsOf(host);
     std::this_thread::sleep_for(std::chrono::seconds(kStandingSeconds));
     const double standing = (ProcessorSecondsOf(host) - before) / kStandingSeconds * 100.0;
+    std::vector<double> brakes;
+    for (int i = 0; i < std::min(stops, 50); ++i) {
+      if (i % 20 == 0) machine.TakeControl();
+      brakes.push_back(machine.SecondsToBrake() * 1e3);
+    }
+    machine.TakeControl();
     machine.Watch();
     machine.Start();
     const Times idle = Measure(machine, stops);
@@ -270,15 +368,23 @@ int main(int argc, char** argv) {
 
     const std::vector<double> found = KillHosts(machine);
     Print("host killed to its successor", found);
+    Print("last heartbeat of a jog key to braking", brakes);
 
     row("10.21: age of status, p99 beside 8 clients, ms", Quantile(busy.ages, 0.99), 100.0);
     row("10.21: the same, p50", Quantile(busy.ages, 0.5), 10.0);
     row("10.22: STOP, p99 beside 8 clients, ms", Quantile(busy.stops, 0.99), 50.0);
     row("10.22: STOP, p50 idle, ms", Quantile(idle.stops, 0.5), 5.0);
+    row("10.23: last heartbeat of a jog key to braking, most, ms", Quantile(brakes, 1.0), 200.0);
     row("10.24: written first, p99, ms", Quantile(idle.resumes, 0.99), 15.0);
     row("10.25: host killed to its successor, most, ms", Quantile(found, 1.0), 2000.0);
     row("10.20: a standing machine, share of a core, %", standing, 0.1);
     row("10.20: memory of a host, PSS, MiB", SharedMibOf(machine.host()), 16.0);
+  }
+  {
+    const CellServer server(argv[1], folder, 0);
+    const Hundred hundred = MoveAHundred(server);
+    row("10.20: a hundred machines that move, cores", hundred.cores, 1.6);
+    row("10.20: virtual time that one of them lost, ms", hundred.lost_s * 1e3, 1.0);
   }
   std::filesystem::remove_all(folder);
   return good ? 0 : 1;

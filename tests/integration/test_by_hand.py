@@ -184,7 +184,8 @@ class ByHandTest(LiveTestCase):
 
         def entries():
             return box.stub.ListTeachEntries(handbox_pb2.ListTeachEntriesRequest(machine=OPTIMO)).entries
-        taught = entries()
+        # It is told a moment behind what was stored.
+        taught = eventually(lambda: entries() if len(entries()) == 2 else None, 10) or entries()
         acts = [handbox_pb2.TeachEntry.Act.Name(one.act) for one in taught]
         self.assertEqual(acts, ["ACT_INSERT", "ACT_CREATE"])
         self.assertIn("MOVE", taught[0].after)

@@ -70,7 +70,7 @@ class ConcurrentActs : public HostMachineTest {
         may_move_ = false;  // ON_LOSS_HOLD
         break;
       }
-      case Deed::kDoor: {
+      case Deed::kDoor: {  // of a mill whose cover pauses (DEV-3.12)
         v1::HostOrder order;
         order.mutable_inputs()->set_control_token(own_token_);
         order.mutable_inputs()->add_inputs()->set_door_open(true);
