@@ -14,6 +14,7 @@ Status Machine::MayStartAt(const StartAtStep& input) const {
   const Transition next = Next(state(), MachineEvent::kStartAtStep, guards());
   if (next.code) return Refusal(*next.code);
   if (const Status source = MaySource(input.source); !source) return source.error();
+  if (CoverStops()) return Error{ErrorCode::kCellDoorOpen, "the cover is open", {}};
   return MayRun(family_.info(), memory_, input.program, input.brought.has_value());
 }
 

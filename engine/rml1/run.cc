@@ -330,9 +330,11 @@ void MillRun::Handle(const machine::InputChange& input) {
       Freeze();
       CloseWith(OutcomeKind::kStopped, std::nullopt, "emergency stop");  // it has no number
       break;
+    case InputKind::kDoor:
+      MoveCover(input.value != 0.0);
+      break;
     case InputKind::kLogical:
     case InputKind::kAnalogue:
-    case InputKind::kDoor:
       break;  // a mill has no inputs
   }
 }
@@ -406,6 +408,7 @@ void MillRun::BeginHalt(HaltCause cause) {
   s.halt_wanted = HaltCause::kNone;
   s.halted_at = s.now;
   if (s.ride.protocol().comes_to_rest()) s.ride.protocol().Rest();
+  if (s.cover_open) StopBehindCover();
   observer_.OnHalt({.at = s.now, .place = s.place, .reason = ReasonOf(cause), .why = why});
   const bool for_ever = cause == HaltCause::kPause && s.next_input == setup_.inputs.size();
   if (!for_ever) return;
@@ -437,9 +440,23 @@ void MillRun::EndHalt(bool spindle) {
   s.phase = RunPhase::kRunning;
   s.clock.Set(s.now);
   observer_.OnResume(s.now, s.place);
-  if (!spindle || !s.spindle_stopped) return;
+  const bool by_cover = std::exchange(s.stopped_by_cover, false);
+  if (!(spindle || by_cover) || !s.spindle_stopped) return;
   TurnSpindle();
   if (s.wait_left <= SimTime::zero()) BeginWait(machine::WaitKind::kSpinUp, profile().spin_up_s);
+}
+
+// Whoever closes it starts nothing; what it has stopped goes on with the run. DEV-3.12
+void MillRun::MoveCover(bool open) {
+  State& s = state_;
+  s.cover_open = open && profile().cover != machine::CoverAct::kNone;
+  if (s.cover_open && s.halt != HaltCause::kNone) StopBehindCover();
+}
+
+void MillRun::StopBehindCover() {
+  if (!SpindleTurns()) return;
+  EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
+  state_.spindle_stopped = state_.stopped_by_cover = true;
 }
 
 void MillRun::TurnSpindle() {

@@ -143,8 +143,10 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
     bool halts_at_entry = false;
     bool step_over = false;        // a motion of it, after which SINGLE halts
     bool spindle_to_come = false;  // the device has it turning, and it does not yet
-    bool spindle_stopped = false;  // likewise, and a person has stopped it
-    std::optional<Point> away;     // halted: where VIEW has taken the tool
+    bool spindle_stopped = false;  // likewise, and a person has stopped it, or the cover
+    bool stopped_by_cover = false;
+    bool cover_open = false;    // of a mill whose cover stops its runs
+    std::optional<Point> away;  // halted: where VIEW has taken the tool
   };
   class Snapshot;
   class Listener;
@@ -176,6 +178,8 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
   void BeginHalt(HaltCause cause);
   void EndHalt(bool spindle);
   void TurnSpindle();
+  void MoveCover(bool open);
+  void StopBehindCover();
   void CloseWith(machine::OutcomeKind kind, std::optional<ErrorCode> code, Detail detail);
   std::string_view stream() const;
 

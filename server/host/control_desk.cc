@@ -117,8 +117,7 @@ Result<v1::ControlLease> ControlDesk::Renew(std::string_view token, const HostTi
   return *lease_;
 }
 
-Result<v1::ControlLease::OnLoss> ControlDesk::Release(std::string_view token,
-                                                      const HostTime& now) {
+Result<v1::ControlLease::OnLoss> ControlDesk::Release(std::string_view token, const HostTime& now) {
   if (const Status good = Check(token, now); !good) return good.error();
   const v1::ControlLease::OnLoss on_loss = lease_->on_loss();
   End(v1::ControlChanged::KIND_RELEASED);

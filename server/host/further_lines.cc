@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "server/host/host_line.h"
+#include "server/host/order_class.h"
 
 namespace rmlcell::server {
 namespace {
@@ -45,6 +46,10 @@ class FurtherLines::Line {
 
   const std::string& server() const { return server_; }
   std::int64_t count() const { return count_; }
+  bool Stands(std::int64_t count) const {
+    const std::lock_guard lock(mutex_);
+    return line_ != nullptr && count == count_;
+  }
 
   // On the line that is the `count`th alone; 0: on whichever stands.
   void Send(v1::HostRequest message, std::int64_t count = 0) {
@@ -91,9 +96,13 @@ class FurtherLines::Line {
     spdlog::info("a line to {}, too", server_);
     std::unique_ptr<HostLine> ended;
     {
-      std::unique_lock lock(mutex_);
+      const std::lock_guard lock(mutex_);
       line_ = std::move(joined->line);
       heard_at_ = Now().count();
+    }
+    lines_.IsThere();
+    {
+      std::unique_lock lock(mutex_);
       while (!ending_ && !gone_ && Now() - std::chrono::nanoseconds(heard_at_) <= kServerSilent)
         changed_.wait_for(lock, kServerSilent / 2);
       ended = std::move(line_);
@@ -165,9 +174,43 @@ void FurtherLines::Hear(Line& line, v1::HostResponse message) {
   wake_();
 }
 
+// What a server has given up begins nothing; what halts acts all the same.
 std::deque<v1::HostResponse> FurtherLines::TakeMessages() {
+  std::deque<v1::HostResponse> messages;
+  {
+    const std::lock_guard lock(mutex_);
+    messages.swap(messages_);
+  }
+  std::erase_if(messages, [this](const v1::HostResponse& message) {
+    return message.has_order() && !Halts(message) && !IsAskedFor(message.order().number());
+  });
+  return messages;
+}
+
+bool FurtherLines::IsAskedFor(std::int64_t number) const {
+  if (number >= 0) return true;
+  Asked asked;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = asked_.find(number);
+    if (found == asked_.end()) return false;
+    asked = found->second;
+  }
+  const auto line = lines_.find(asked.server);
+  return line != lines_.end() && line->second->Stands(asked.line);
+}
+
+void FurtherLines::IsThere() {
+  {
+    const std::lock_guard lock(mutex_);
+    fresh_ = true;
+  }
+  wake_();
+}
+
+bool FurtherLines::TakeFresh() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(messages_, {});
+  return std::exchange(fresh_, false);
 }
 
 bool FurtherLines::Answer(const v1::HostOrderAnswer& answer) {

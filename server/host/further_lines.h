@@ -39,6 +39,11 @@ class FurtherLines {
   void SendStatus(const v1::MachineStatus& status);
   void SendPanel(const v1::HandboxPanel& panel);
 
+  // Whether whoever asked this still waits for it, over the line that brought it; of a number that
+  // none of these lines has true.
+  bool IsAskedFor(std::int64_t number) const;
+  // Whether one of them stands that was not there the last time: it knows nothing yet.
+  bool TakeFresh();
   // Whether one of them stands and is heard.
   bool IsHeard() const;
 
@@ -50,16 +55,19 @@ class FurtherLines {
     std::int64_t number = 0;  // by the server
   };
   void Hear(Line& line, v1::HostResponse message);
+  void IsThere();
   v1::HostHello hello() const;
 
   std::function<void()> wake_;
   mutable std::mutex mutex_;
-  v1::HostHello hello_;                                 // guarded by mutex_
-  std::map<std::string, std::unique_ptr<Line>> lines_;  // by server; of the thread of the machine
-  std::vector<std::unique_ptr<Line>> ended_;            // likewise: until their threads are over
-  std::deque<v1::HostResponse> messages_;               // guarded by mutex_
-  std::map<std::int64_t, Asked> asked_;                 // by own number; guarded by mutex_
-  std::int64_t next_ = -1;                              // counts down; guarded by mutex_
+  v1::HostHello hello_;                    // guarded by mutex_
+  std::deque<v1::HostResponse> messages_;  // guarded by mutex_
+  std::map<std::int64_t, Asked> asked_;    // by own number; guarded by mutex_
+  std::int64_t next_ = -1;                 // counts down; guarded by mutex_
+  bool fresh_ = false;                     // guarded by mutex_
+  // Of the thread of the machine; the last members: their threads use the others.
+  std::map<std::string, std::unique_ptr<Line>> lines_;  // by server
+  std::vector<std::unique_ptr<Line>> ended_;            // until their threads are over
 };
 
 }  // namespace rmlcell::server

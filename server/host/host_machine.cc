@@ -296,7 +296,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   }
   if (starts) arms_.Disarm();
   if (starts || std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
-  if (moves()) {
+  if (moves() && !MovesInHold()) {
     if (std::holds_alternative<machine::StopRun>(input) || (key != nullptr && key->key == "STOP"))
       held_for_ = v1::HOLD_REASON_STOP;
     if (key != nullptr && key->key == "HOLD") held_for_ = v1::HOLD_REASON_HOLD;
@@ -379,8 +379,15 @@ void HostMachine::Hold(v1::HoldReason reason, const HostTime& now) {
   now_ = now;
   const machine::MachineState state = machine().state();
   if (state != machine::MachineState::kRunning && state != machine::MachineState::kJogging) return;
-  if (Apply(machine::StopRun{}, nullptr)) held_for_ = reason;
+  const bool held_before = MovesInHold();
+  if (Apply(machine::StopRun{}, nullptr) && !held_before) held_for_ = reason;
   Notice();
+}
+
+// A held run is held for what it was, whatever stops the keys that move its machine. LIVE-2.13
+bool HostMachine::MovesInHold() const {
+  const machine::MachineStatus status = machine().status();
+  return status.state == machine::MachineState::kJogging && status.open && !status.open->by_hand;
 }
 
 void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {

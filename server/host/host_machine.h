@@ -147,6 +147,7 @@ class HostMachine : private machine::RunObserver {
   void GoOnTo(const HostTime& now);
   void Notice();
   void TellControl();
+  bool MovesInHold() const;
   void LoseControl(v1::ControlLease::OnLoss on_loss, const HostTime& now);
   void TellCutOff(const v1::MachineMark& mark, ErrorCode why);
   v1::JournalEntry& Add(SimTime at);

@@ -37,9 +37,8 @@ using google::protobuf::util::TimeUtil;
 using std::chrono::nanoseconds;
 
 constexpr int kProtocol = 1;
-constexpr nanoseconds kStatusMoving = 50ms;  // LIVE-3.16
-constexpr nanoseconds kStatusStanding = 1s;
-constexpr nanoseconds kTick = 5ms;         // of a machine that moves
+constexpr nanoseconds kStatusMoving = 50ms, kStatusStanding = 1s;  // LIVE-3.16
+constexpr nanoseconds kTick = 5ms;                                 // of a machine that moves
 constexpr nanoseconds kTickHeld = 50ms;    // of a run that stands: its time goes on
 constexpr nanoseconds kServerSilent = 2s;  // it answers four times a second
 constexpr nanoseconds kEndsWithoutServer = 60s;
@@ -110,15 +109,16 @@ class HostProcess {
     }
     if (line_ == nullptr && !connector_.joinable() && Now().steady >= next_try_) Connect();
     if (line_ == nullptr && further_.IsHeard()) without_server_since_ = Now().steady;
+    if (further_.TakeFresh()) ShowAnew();
   }
 
   // They cannot be answered any more. Nothing of them begins; what halts acts all the same.
   void ForgetOrders() {
     const std::deque<v1::HostResponse> messages = inbox_.TakeMessages();
-    for (const auto& parked : parked_) parked->over = true;
-    answers_due_.clear();
-    keys_waiting_.clear();
-    handbox_shown_.clear();
+    // Those of the other servers have numbers of the host's own, below 0.
+    for (const auto& parked : parked_) parked->over = parked->over || parked->order.number() > 0;
+    std::erase_if(answers_due_, [](const auto& answer) { return answer.number() > 0; });
+    std::erase_if(keys_waiting_, [](const Waiting& key) { return key.order.number() > 0; });
     ++lines_lost_;
     if (machine_ == nullptr) return;
     machine_->RefuseEdit(ErrorCode::kCellStoreUnavailable,
@@ -131,13 +131,18 @@ class HostProcess {
   void Connect() {
     inbox_.LineBegins();
     joining_since_ = SinceBoot();
-    KeepFurther();
     connector_ = std::thread([this, hello = Hello(), server = servers_.present()] {
       inbox_.HaveJoined(HostLine::Join(
           server, hello,
           [this](v1::HostResponse message) { inbox_.Hear(std::move(message), Now().steady); },
           [this] { inbox_.LineIsGone(); }));
     });
+  }
+
+  // A server that has come knows nothing yet.
+  void ShowAnew() {
+    handbox_shown_.clear();
+    status_due_ = Now().steady;
   }
 
   // To all but the one that stores what happens here. LIVE-3.06
@@ -153,7 +158,8 @@ class HostProcess {
       servers_.Next();
       if (code == ErrorCode::kCellUnavailable) return;
       spdlog::error("{}", welcome.error().detail);
-      return Quit(code == ErrorCode::kCellMachineTaken ? 3 : 69);
+      if (code == ErrorCode::kCellMachineTaken) return Quit(3);
+      return servers_.others().empty() ? Quit(69) : void();  // another server may take it
     }
     const v1::HostWelcome& message = welcome->message;
     if (fence_ != 0 && message.fence() != fence_) {
@@ -171,7 +177,7 @@ class HostProcess {
     } else if (!unstored_.empty()) {
       SendEntries({unstored_.begin(), unstored_.end()});
     }
-    status_due_ = now;
+    ShowAnew();
   }
 
   static Error StoppedBefore() {
@@ -278,7 +284,7 @@ class HostProcess {
             background_.Done();
             v1::HostOrderAnswer answer =
                 machine_->Previewed(order, std::move(*task), std::move(*made), Now());
-            if (line == lines_lost_) SendAnswer(std::move(answer));
+            if (order.number() < 0 || line == lines_lost_) SendAnswer(std::move(answer));
           });
         });
     if (!begun)
@@ -385,7 +391,9 @@ class HostProcess {
     parked_.push_back(parked);
     writer_->Write({machine_->IntentOf(order, now)}, [this, parked] {
       inbox_.Later([this, parked] {
-        if (!std::exchange(parked->over, true)) AnswerWhenDurable(CarryOut(parked->order));
+        const bool begins = !std::exchange(parked->over, true);
+        if (begins && further_.IsAskedFor(parked->order.number()))
+          AnswerWhenDurable(CarryOut(parked->order));
       });
     });
   }
@@ -530,11 +538,8 @@ class HostProcess {
       const nanoseconds now = Now().steady;
       if (IsHeard()) longest = std::min(longest, status_due_ - now);
       if (line_ != nullptr) longest = std::min(longest, lease_.next_renewal() - SinceBoot());
-      if (machine_->moves()) {
-        longest = kTick;
-      } else if (machine_->run_open()) {
-        longest = kTickHeld;
-      }
+      if (machine_->run_open()) longest = kTickHeld;
+      if (machine_->moves()) longest = kTick;
       if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
       for (const Waiting& key : keys_waiting_) longest = std::min(longest, key.until - now);
       if (handbox_due_) longest = std::min(longest, handbox_shown_at_ + kStatusMoving - now);

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
+#include <optional>
+#include <utility>
 
 namespace rmlcell::server {
 
@@ -17,19 +18,18 @@ class LeaseClock {
     duration_ = duration;
     since_ = asked;
     next_ = asked + duration_ / 3;
-    sent_.clear();
+    sent_.reset();
   }
   bool RenewalDue(std::chrono::nanoseconds now) const { return now >= next_; }
   std::chrono::nanoseconds next_renewal() const { return next_; }
   void Renews(std::chrono::nanoseconds now) {
-    sent_.push_back(now);
+    sent_ = now;
     next_ = now + duration_ / 3;
   }
-  // The oldest one that is not confirmed is: it holds from when that was sent.
+  // It holds from when the newest was sent: an answer to one before it, which the store did not
+  // take at once, is of a moment ago, since a line that is silent for longer is cut off.
   void Renewed() {
-    if (sent_.empty()) return;
-    since_ = sent_.front();
-    sent_.pop_front();
+    if (sent_) since_ = *std::exchange(sent_, std::nullopt);
   }
   bool MustStop(std::chrono::nanoseconds now) const {
     return now - since_ >= duration_ - kRestsBefore - kStops;
@@ -39,7 +39,7 @@ class LeaseClock {
   std::chrono::nanoseconds duration_{0};
   std::chrono::nanoseconds since_{0};  // when what was confirmed last was sent
   std::chrono::nanoseconds next_{0};
-  std::deque<std::chrono::nanoseconds> sent_{};  // renewals that are not confirmed
+  std::optional<std::chrono::nanoseconds> sent_{};  // the newest renewal, while nothing confirms it
 };
 
 }  // namespace rmlcell::server

@@ -11,8 +11,8 @@ namespace {
 // What lets go or halts acts first; what may move is written before.
 template <class Request>
 OrderClass ClassOfKey(const Request& key) {
-  constexpr std::array<std::string_view, 5> kHalt = {"PAUSE", "STOP", "HOLD", "BUFFER_CLEAR",
-                                                     "EMERGENCY_STOP"};
+  constexpr std::array<std::string_view, 6> kHalt = {"PAUSE",        "STOP",           "HOLD",
+                                                     "BUFFER_CLEAR", "EMERGENCY_STOP", "COVER"};
   const bool halts = std::ranges::find(kHalt, key.key()) != kHalt.end();
   if (key.action() == v1::KEY_ACTION_RELEASE) return OrderClass::kLetsGo;
   return halts ? OrderClass::kActsFirst : OrderClass::kWrittenFirst;

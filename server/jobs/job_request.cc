@@ -1,5 +1,6 @@
 #include "server/jobs/job_request.h"
 
+#include <algorithm>
 #include <set>
 
 #include "engine/core/number_text.h"
@@ -83,6 +84,11 @@ Result<std::vector<std::int64_t>> AwaitedJobs(const v1::Job& job) {
     if (!id) return id.error();
     jobs.push_back(*id);
   }
+  // What is to prove it is over before.
+  const std::string& ticket = job.run().ticket();
+  const auto proof = ParseJobName(ticket);
+  if (!ticket.empty() && proof && std::ranges::find(jobs, *proof) == jobs.end())
+    jobs.push_back(*proof);
   return jobs;
 }
 

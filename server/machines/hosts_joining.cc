@@ -110,14 +110,15 @@ Result<Hosts::Taken> Hosts::Take(const v1::HostHello& hello, const std::string& 
                               .duration = kLease,
                               .pinned = hello.has_device()};
   Result<storage::MachineLease> lease = needs_.store.TakeMachine(claim);
+  const std::optional<Given> given = GivenTo(hello, machine);
   if (lease || lease.error().code != ErrorCode::kCellMachineTaken) {
     seen_.erase(machine);
     if (!lease) return lease.error();
+    if (given) given_.erase(machine);
     return Taken{.lease = *std::move(lease)};
   }
   const auto held = needs_.store.MachineLeases();
   if (!held) return held.error();
-  const std::optional<Given> given = GivenTo(hello, machine);
   for (const storage::MachineLease& other : *held) {
     if (other.machine != machine) continue;
     const Instant now = needs_.clock();

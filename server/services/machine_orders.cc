@@ -387,16 +387,20 @@ grpc::Status MachineService::Enable(const std::string& machine, const std::strin
   live_.hosts->ClearOff(machine);
   if (const Status enabled = live_.processes->Enable(machine); !enabled)
     return ToGrpcStatus(enabled.error());
+  AwaitLife(machine);
+  return TellStatus(machine, status);
+}
+
+void MachineService::AwaitLife(const std::string& machine) {
   const auto until = std::chrono::steady_clock::now() + kBegins;
   for (;;) {
     const auto now = live_.hosts->StatusOf(machine);
     const bool begins = !now || now->state() == v1::MACHINE_STATE_STARTING ||
                         now->state() == v1::MACHINE_STATE_RECOVERING ||
                         now->state() == v1::MACHINE_STATE_LOST;
-    if (!begins || std::chrono::steady_clock::now() >= until) break;
+    if (!begins || std::chrono::steady_clock::now() >= until) return;
     std::this_thread::sleep_for(kBetweenLooks);
   }
-  return TellStatus(machine, status);
 }
 
 // What a person says stands, also with the next server.
@@ -444,11 +448,13 @@ void MachineService::FollowOptions(const storage::MachineRecord& machine) {
 void MachineService::FollowChange(const storage::MachineRecord& before,
                                   const storage::MachineRecord& now) {
   if (live_.processes == nullptr || !LivesOtherwise(before, now)) return;
-  if (live_.hosts->IsHosted(now.id)) {
+  const bool lived = live_.hosts->IsHosted(now.id);
+  if (lived) {
     const Status ended = EndHost(now.id, "the machine was changed");
     if (!ended) spdlog::warn("{}: {}", now.id, bridge::ErrorText(ended.error()));
   }
   FollowOptions(now);
+  if (lived && IsEnabled(now, live_.by_default)) AwaitLife(now.id);
 }
 
 void MachineService::Restore(const std::string& machine) {
@@ -483,13 +489,21 @@ grpc::Status MachineService::GiveTo(const v1::TakeMachineRequest& request,
   if (const auto known = store_.GetMachine(*machine); !known) return ToGrpcStatus(known.error());
   if (live_.hosts == nullptr)
     return ToGrpcStatus(Error{ErrorCode::kCellNotLive, "no machine lives here", {}});
+  const auto is_there = [&] {
+    const auto now = live_.hosts->StatusOf(*machine);
+    return now && now->state() != v1::MACHINE_STATE_LOST &&
+           now->host().starts_with(request.computer() + "/");
+  };
+  if (is_there()) return TellStatus(*machine, status);
   live_.hosts->GiveTo(*machine, request.computer(), caller, request.reason());
   const auto until = std::chrono::steady_clock::now() + kBegins;
-  while (std::chrono::steady_clock::now() < until) {
-    const auto now = live_.hosts->StatusOf(*machine);
-    if (now && now->state() != v1::MACHINE_STATE_LOST &&
-        now->host().starts_with(request.computer() + "/"))
-      break;
+  while (!is_there()) {
+    if (std::chrono::steady_clock::now() >= until)
+      return ToGrpcStatus(
+          Error{ErrorCode::kCellNotLive,
+                "no host of " + request.computer() +
+                    " has come yet: the next one within ten minutes has the machine",
+                {}});
     std::this_thread::sleep_for(kBetweenLooks);
   }
   return TellStatus(*machine, status);

@@ -183,6 +183,7 @@ class MachineService final : public v1::MachineService::CallbackService {
                        v1::MachineStatus& status);
   grpc::Status GiveTo(const v1::TakeMachineRequest& request, const std::string& caller,
                       v1::MachineStatus& status);
+  void AwaitLife(const std::string& machine);  // of one that begins, at most kBegins
   Status KeepEnabled(const std::string& machine, bool enabled, const std::string& caller);
   // It comes to rest and has no host any more. Error: CellMachineState, a run is open.
   Status EndHost(const std::string& machine, const std::string& why);

@@ -80,7 +80,7 @@ class TicketsTest(LiveTestCase):
         with open(file, "w", encoding="utf-8") as stream:
             stream.write(SHORT)
         number = first.split("/")[1]
-        sent = self.command("submit", "mill-1", file, "--kind", "run", "--ticket", number, "--after-job", number)
+        sent = self.command("submit", "mill-1", file, "--kind", "run", "--ticket", number)
         self.assertEqual(sent.returncode, 0, sent.stderr)
         self.assertEqual(self.ended(sent.stdout.strip())[0], "SUCCEEDED")
         other = os.path.join(self.cell.folder, "b.rml")

@@ -216,14 +216,16 @@ TEST_F(MillPanelTest, WithTheCoverOpen) {
 // DEV-3.12, LIVE-2.10 a9: the cover of most mills lets a run come to rest; closing it moves
 // nothing, and resuming goes on.
 TEST_F(MillPanelTest, AnOpenCoverPauses) {
-  LoadWith({}, {}, "PA;VS10;PU1000,1000;PU2000,2000;");
+  LoadWith({}, {}, "PA;VS10;!MC1;PU1000,1000;PU2000,2000;");
   Good(StartRun{.program = 1});
-  GoOnFor(1.0);
+  GoOnFor(3.0);
   ASSERT_EQ(state(), MachineState::kRunning);
+  ASSERT_TRUE(Turns());
   Good(MoveDoor{true});
   EXPECT_TRUE(machine->status().run.door_open);
   ToRest();
   EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_FALSE(Turns());
   EXPECT_THAT(Refused(ResumeRun{}), HasSubstr("CELL-E9433"));
   const motion::MachinePoint stands = machine->status().run.axes.column;
   Good(MoveDoor{false});
@@ -231,11 +233,22 @@ TEST_F(MillPanelTest, AnOpenCoverPauses) {
   EXPECT_EQ(state(), MachineState::kHeld);
   EXPECT_EQ(machine->status().run.axes.column, stands);
   Good(ResumeRun{});
+  GoOnFor(1.0);
+  EXPECT_TRUE(Turns());
+  Good(HoldRun{});
+  ToRest();
+  EXPECT_TRUE(Turns());  // LIVE-2.04: in a hold it turns on
+  Good(MoveDoor{true});
+  EXPECT_FALSE(Turns());
+  Good(MoveDoor{false});
+  EXPECT_FALSE(Turns());
+  Good(ResumeRun{});
   GoOnFor(100.0);
   EXPECT_EQ(state(), MachineState::kIdle);
   EXPECT_NEAR(machine->status().run.axes.column.x(), 20.0, 1e-9);
   Good(MoveDoor{true});
   EXPECT_THAT(Refused(StartRun{.program = 1}), HasSubstr("CELL-E9433"));
+  EXPECT_THAT(Refused(StartAtStep{.program = 1}), HasSubstr("CELL-E9433"));
 }
 
 // DEV-3.12: one whose cover is none runs on.

@@ -118,8 +118,8 @@ TEST_F(HostMachineTest, MovingItMarksEverySecond) {
   EXPECT_EQ(mark_.state_sha256().size(), 32U);
 }
 
-// LIVE-3.26: whatever happens while it moves, what was told goes to the disk ten times a second, one
-// write for all of it; what asks for an answer goes at once.
+// LIVE-3.26: whatever happens while it moves, what was told goes to the disk ten times a second,
+// one write for all of it; what asks for an answer goes at once.
 TEST_F(HostMachineTest, MovingItWritesTenTimesASecond) {
   Make();
   Control();

@@ -216,7 +216,8 @@ TEST_F(JobLimits, OfWhatComesLater) {
     });
   };
   EXPECT_EQ(run([](v1::RunOptions&) {}), std::nullopt);
-  EXPECT_EQ(run([](v1::RunOptions& how) { how.set_ticket("t"); }), kLater);
+  EXPECT_EQ(run([](v1::RunOptions& how) { how.set_ticket("t"); }), kInvalid);
+  EXPECT_EQ(run([](v1::RunOptions& how) { how.set_ticket("jobs/99"); }), ErrorCode::kCellNotFound);
   EXPECT_EQ(run([](v1::RunOptions& how) { how.add_confirmations(v1::CONFIRMATION_INSPECTED); }),
             kLater);
   EXPECT_EQ(Asked([](v1::Job& job) { job.set_continues("jobs/1"); }), kLater);

@@ -243,8 +243,8 @@ TEST_F(HostsTest, WhatAHostTellsIsStored) {
   EXPECT_EQ(told.at(told.size() - 2).host_lost().fence(), fence);
 }
 
-// LIVE-3.18: status was shown that is ahead of what is stored: it counts for nothing, and how far it
-// went is told.
+// LIVE-3.18: status was shown that is ahead of what is stored: it counts for nothing, and how far
+// it went is told.
 TEST_F(HostsTest, StatusDecidesNothing) {
   const auto link = Joined();
   hosts.Receive(*link, Entries(Fence(*link), 1, false));

@@ -108,8 +108,8 @@ class HostLinesTest : public testing::Test {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     Must(store_.PutPrograms(
-        kHosted, {{.slot = 5, .name = "p", .object = "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PD8000,0;"}}, {},
-        "anna"));
+        kHosted, {{.slot = 5, .name = "p", .object = "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PD8000,0;"}},
+        {}, "anna"));
     const std::vector<std::string> servers = {OneServer::AddressOf(folder_, "a"),
                                               OneServer::AddressOf(folder_, "b")};
     a_ = std::make_unique<OneServer>(store_, "a", folder_, servers);
