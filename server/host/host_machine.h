@@ -80,6 +80,7 @@ class HostMachine : private machine::RunObserver {
   // The same at the beginning: what is there already did not happen now.
   void Begin(const v1::HostMemory& memory, const HostTime& now);
 
+  v1::MachineState State() const;
   v1::MachineStatus StatusAt(const HostTime& now) const;
   bool moves() const;     // it is to be asked to go on again and again
   bool run_open() const;  // it is no time to end
@@ -155,7 +156,6 @@ class HostMachine : private machine::RunObserver {
   void Mark();
   v1::MachineMark MarkNow() const;
   void Record(const v1::MachineMark& mark, std::size_t entry);
-  v1::MachineState State() const;
   void AddBlockers(v1::MachineStatus& status) const;
 
   // machine::RunObserver

@@ -465,10 +465,10 @@ class HostProcess {
     SendEdits(now);
     Write(now, false);
     ShowHandbox(now.steady);
-    const v1::MachineStatus status = machine_->StatusAt(now);
-    const bool changed = status.state() != state_told_;
-    if (IsHeard() && (changed || now.steady >= status_due_)) {
-      state_told_ = status.state();
+    const v1::MachineState state = machine_->State();
+    if (IsHeard() && (state != state_told_ || now.steady >= status_due_)) {
+      const v1::MachineStatus status = machine_->StatusAt(now);
+      state_told_ = state;
       status_due_ = now.steady + (machine_->moves() ? kStatusMoving : kStatusStanding);
       further_.SendStatus(status);
       if (line_ != nullptr) line_->SendStatus(status);
