@@ -8,17 +8,15 @@
 #include <thread>
 #include <utility>
 
+#include "server/host/host_clock.h"
 #include "server/host/host_line.h"
 #include "server/host/order_class.h"
 
 namespace rmlcell::server {
 namespace {
 
-constexpr std::chrono::seconds kServerSilent{2};  // it answers four times a second
-constexpr std::chrono::milliseconds kAgain{500};
+constexpr std::chrono::milliseconds kLooksAgain{500};
 constexpr std::size_t kAskedMax = 10'000;
-
-std::chrono::nanoseconds Now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
 }  // namespace
 
@@ -62,14 +60,14 @@ class FurtherLines::Line {
   }
   bool IsHeard() const {
     const std::lock_guard lock(mutex_);
-    return line_ != nullptr && Now() - std::chrono::nanoseconds(heard_at_) <= kServerSilent;
+    return line_ != nullptr && Now().steady - std::chrono::nanoseconds(heard_at_) <= kServerSilent;
   }
 
  private:
   void Run() {
     while (!Ends(std::chrono::milliseconds(0))) {
       Stand();
-      if (Ends(kAgain)) break;
+      if (Ends(kLooksAgain)) break;
     }
     over_ = true;
   }
@@ -98,12 +96,13 @@ class FurtherLines::Line {
     {
       const std::lock_guard lock(mutex_);
       line_ = std::move(joined->line);
-      heard_at_ = Now().count();
+      heard_at_ = Now().steady.count();
     }
     lines_.IsThere();
     {
       std::unique_lock lock(mutex_);
-      while (!ending_ && !gone_ && Now() - std::chrono::nanoseconds(heard_at_) <= kServerSilent)
+      while (!ending_ && !gone_ &&
+             Now().steady - std::chrono::nanoseconds(heard_at_) <= kServerSilent)
         changed_.wait_for(lock, kServerSilent / 2);
       ended = std::move(line_);
     }
@@ -112,7 +111,7 @@ class FurtherLines::Line {
   }
 
   void Hear(v1::HostResponse message) {
-    heard_at_ = Now().count();
+    heard_at_ = Now().steady.count();
     if (message.has_order() || message.has_stop()) lines_.Hear(*this, std::move(message));
   }
 

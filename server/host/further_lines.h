@@ -1,7 +1,5 @@
 #pragma once
 
-#include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -17,7 +15,7 @@ namespace rmlcell::server {
 
 // Lines of a host to the other servers of its cell, beside the one that stores what it tells: what
 // a client asks of any of them reaches the machine, and the status of the machine reaches them all,
-// past the store. LIVE-3.06. Thread-safe.
+// past the store. Of the thread of the machine. LIVE-3.06
 class FurtherLines {
  public:
   static constexpr std::size_t kServersMax = 8;

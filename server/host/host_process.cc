@@ -39,9 +39,8 @@ using std::chrono::nanoseconds;
 constexpr int kProtocol = 1;
 // A server tells one in 50 ms, and so catches up with one that came late. LIVE-3.16
 constexpr nanoseconds kStatusMoving = 55ms, kStatusStanding = 1s;
-constexpr nanoseconds kTick = 10ms;        // of a machine that moves: orders wake it
-constexpr nanoseconds kTickHeld = 50ms;    // of a run that stands: its time goes on
-constexpr nanoseconds kServerSilent = 2s;  // it answers four times a second
+constexpr nanoseconds kTick = 10ms;      // of a machine that moves: orders wake it
+constexpr nanoseconds kTickHeld = 50ms;  // of a run that stands: its time goes on
 constexpr nanoseconds kEndsWithoutServer = 60s;
 constexpr nanoseconds kRejoin = 200ms;
 constexpr nanoseconds kIntentPatience = 500ms;  // LIVE-3.21
