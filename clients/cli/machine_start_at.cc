@@ -13,6 +13,7 @@
 #include "clients/cli/terminal.h"
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
+#include "proto/bridge/milling.h"
 #include "rmlcell/v1/job.grpc.pb.h"
 
 namespace rmlcell::cli {
@@ -50,7 +51,13 @@ void PrintPreview(const v1::PreviewStartResponse& preview) {
       to += "  " + axis.axis() + " " + Fixed(axis.value(), axis.unit() == v1::UNIT_RADIAN ? 4 : 3);
     Print("approach  " + motion.path() + to);
   }
-  if (!preview.approach().empty()) Print("          not checked against the part");
+  for (const v1::ApproachMotion& motion : preview.approach()) {
+    for (const v1::Diagnostic& finding : motion.findings())
+      Complain(motion.path() + ": " + Visible(finding.message()));
+  }
+  if (!preview.approach().empty())
+    Print(preview.part_checked() ? "          checked against the part"
+                                 : "          not checked against the part");
   if (preview.missing_cut_mm() > 0.0)
     Print("left out  " + Fixed(preview.missing_cut_mm(), 3) + " mm of cut");
   for (const v1::Diagnostic& refusal : preview.refusals())
@@ -132,6 +139,14 @@ int StartAtStep(const Remote& remote, const MachineAct& act) {
   asked.set_occurrence(act.occurrence);
   asked.set_approach(act.direct ? v1::APPROACH_DIRECT : v1::APPROACH_SAFE);
   asked.set_off_until_work_on(act.off_until_work_on);
+  if (!act.stock.empty()) {
+    const Status described = bridge::SetBlockAndTool(act.stock, act.tool, *asked.mutable_milling());
+    if (!described) {
+      Complain(bridge::ErrorText(described.error()));
+      return kUsage;
+    }
+    if (act.untouched) asked.set_part_so_far(v1::PART_SO_FAR_UNTOUCHED);
+  }
   const auto stub = Service::NewStub(Connect(remote));
   grpc::ClientContext context;  // it takes as long as the way there does
   v1::PreviewStartResponse preview;

@@ -52,6 +52,13 @@ void AddStartAt(MachineVerbs& verbs) {
                "without an approach: the first move begins where it stands");
   at->add_flag("--off-until-work-on", given.off_until_work_on,
                "a WORK is on there: keep the beam off until the next one");
+  CLI::Option* stock = at->add_option(
+      "--stock", given.stock, "mill: the block on the table, such as 100x80x10; with --tool");
+  CLI::Option* tool =
+      at->add_option("--tool", given.tool, "what mills it, such as flat:3")->needs(stock);
+  stock->needs(tool);
+  at->add_flag("--untouched", given.untouched, "nothing of that block has been cut yet")
+      ->needs(stock);
   at->add_flag("--preview", given.look, "say what it would do, and do not start");
   at->add_flag("--halt", given.halt, "halt before the step");
   at->add_option("--seen", given.seen,

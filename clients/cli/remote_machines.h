@@ -22,6 +22,9 @@ struct MachineAct {
   std::int64_t occurrence = 0;      // the how manieth time; 0: the first
   bool direct = false;              // without an approach
   bool off_until_work_on = false;
+  std::string stock;  // block and tool on the table of a mill, as for `submit`
+  std::string tool;
+  bool untouched = false;         // nothing has been cut of that block
   bool look = false;              // what it would do, and no start
   bool halt = false;              // before the step
   std::vector<std::string> seen;  // what a person has seen to: clamps, tool, origin, table

@@ -107,7 +107,9 @@ class Machine {
 
   // What a start at a step would do, and why it would be refused. It takes as long as the run to
   // the step does; StartAtStep, too. Errors: as Apply, of what the input names.
-  Result<StartPreview> Preview(const StartAtStep& input, const ReachLimits& limits = {}) const;
+  // `part`: what its way is looked at against; null: nobody knows it.
+  Result<StartPreview> Preview(const StartAtStep& input, const ReachLimits& limits = {},
+                               PartOnTable* part = nullptr, const PartSoFar& so_far = {}) const;
 
   // The how manieth pass through its step the run of its base was in at this time. Errors: as
   // Preview.

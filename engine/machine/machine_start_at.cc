@@ -40,14 +40,17 @@ RunSetup Machine::SetupTo(const StartAtStep& input) const {
   return setup;
 }
 
-Result<StartPreview> Machine::Preview(const StartAtStep& input, const ReachLimits& limits) const {
+Result<StartPreview> Machine::Preview(const StartAtStep& input, const ReachLimits& limits,
+                                      PartOnTable* part, const PartSoFar& so_far) const {
   if (const Status may = MayStartAt(input); !may) return may.error();
   return PreviewStart(family_, SetupTo(input),
                       {.target = input.target,
                        .way = input.way,
                        .off_until_work_on = input.off_until_work_on,
                        .machine_state = standing_->Save(),
-                       .override_percent = override_percent_},
+                       .override_percent = override_percent_,
+                       .part = part,
+                       .part_so_far = so_far},
                       limits);
 }
 

@@ -150,6 +150,24 @@ WayEnd GoUntil(Run& run, const std::function<bool()>& done, const ReachLimits& l
   return WayEnd::kDone;
 }
 
+Status GoUntilTime(Run& run, SimTime time, const ReachLimits& limits) {
+  std::optional<std::pair<SimTime, std::uint64_t>> started;
+  for (;;) {
+    if (limits.go_on && !limits.go_on())
+      return Unreachable("where it was cut off takes longer than is looked for");
+    const SimTime before = run.state().time;
+    const RunPhase phase = run.Advance(std::min(time, Later(before, kSlice)));
+    const SimTime now = run.state().time;
+    if (phase == RunPhase::kFinished || now >= time) break;
+    if (phase == RunPhase::kRunning || now > before) continue;
+    const std::pair here{now, run.steps_executed()};
+    if (started == here) break;
+    started = here;
+    run.Apply({.at = now, .kind = InputKind::kStart, .index = 0, .value = 1.0});
+  }
+  return {};
+}
+
 Result<StepReach> ReachStep(const MachineFamily& family, const RunSetup& setup,
                             const StepTarget& target, const ReachLimits& limits) {
   StepReach reach;
@@ -226,20 +244,7 @@ Result<std::uint64_t> OccurrenceAt(const MachineFamily& family, const RunSetup& 
   Passes passes(at);
   const Result<std::unique_ptr<Run>> run = family.NewRun(setup, passes);
   if (!run) return run.error();
-  std::optional<std::pair<SimTime, std::uint64_t>> started;
-  for (;;) {
-    if (limits.go_on && !limits.go_on())
-      return Unreachable("where it was cut off takes longer than is looked for");
-    const SimTime before = (*run)->state().time;
-    const RunPhase phase = (*run)->Advance(std::min(time, Later(before, kSlice)));
-    const SimTime now = (*run)->state().time;
-    if (phase == RunPhase::kFinished || now >= time) break;
-    if (phase == RunPhase::kRunning || now > before) continue;
-    const std::pair here{now, (*run)->steps_executed()};
-    if (started == here) break;
-    started = here;
-    (*run)->Apply({.at = now, .kind = InputKind::kStart, .index = 0, .value = 1.0});
-  }
+  if (const Status went = GoUntilTime(**run, time, limits); !went) return went.error();
   return passes.count;
 }
 

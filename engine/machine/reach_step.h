@@ -66,6 +66,10 @@ StepsBehind LookBehind(const MachineFamily& family, const RunSetup& setup, const
 Result<std::uint64_t> OccurrenceAt(const MachineFamily& family, const RunSetup& setup,
                                    const ProgramStep& at, SimTime time, const ReachLimits& limits);
 
+// Goes on until this time of its own, with START at every halt that nothing ends; less far where it
+// ends or waits for ever. Error: CellStepUnreachable, it takes longer than is looked for.
+Status GoUntilTime(Run& run, SimTime time, const ReachLimits& limits);
+
 // Goes on until `done`, which is asked between two calls of Advance, with START at every halt.
 enum class WayEnd { kDone, kFinished, kWaitsForEver, kGivenUp };
 WayEnd GoUntil(Run& run, const std::function<bool()>& done, const ReachLimits& limits);

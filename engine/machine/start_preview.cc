@@ -58,9 +58,14 @@ Error RefuseTravel(const OutOfTravel& one, const Detail& motion) {
 std::vector<Error> RefusalsOf(const std::vector<ApproachMotion>& approach) {
   std::vector<Error> refusals;
   for (std::size_t n = 0; n < approach.size(); ++n) {
-    for (const OutOfTravel& one : approach[n].beyond) {
-      refusals.push_back(RefuseTravel(one, "motion " + Told("motion", n + 1) + " of the approach"));
-    }
+    const Detail motion = "motion " + Told("motion", n + 1) + " of the approach";
+    for (const OutOfTravel& one : approach[n].beyond) refusals.push_back(RefuseTravel(one, motion));
+    const double depth = approach[n].into_part_mm;
+    if (depth <= 0.0) continue;
+    refusals.push_back(Refuse(ErrorCode::kCellApproach,
+                              motion + " goes " +
+                                  Told("depth", depth, "mm", FixedText(depth, 3) + " mm") +
+                                  " into the part"));
   }
   return refusals;
 }
@@ -109,6 +114,35 @@ std::vector<Error> RefusalsOfFirstMotion(const MachineFamily& family, const RunS
   if (end != WayEnd::kDone || first.path() == "PTP" || first.path() == "LIN") return {};
   return {Refuse(ErrorCode::kCellApproach, "the first motion is " + Told("path", first.path()) +
                                                ": without an approach it must be PTP or LIN")};
+}
+
+// What has cut it by now: in virtual time, with the inputs of the run.
+Status CutPart(const MachineFamily& family, const RunSetup& setup, const StartQuestion& question,
+               const ReachLimits& limits) {
+  RunSetup bounded = setup;
+  bounded.budget = {.steps = limits.steps_max, .virtual_time = RunBudget().virtual_time};
+  const Result<std::unique_ptr<Run>> run = family.NewRun(std::move(bounded), *question.part);
+  if (!run) return run.error();
+  if (const auto origin = (*run)->state().work_origin) question.part->BeginAt(*origin);
+  const PartSoFar& so_far = question.part_so_far;
+  if (so_far.untouched) return {};
+  if (so_far.cut_until) return GoUntilTime(**run, *so_far.cut_until, limits);
+  EnterableRun& enterable = *(*run)->enterable();
+  if (const Status goes = enterable.HaltBefore(question.target); !goes) return goes.error();
+  const WayEnd end = GoUntil(
+      **run, [&] { return enterable.reached().has_value(); }, limits);
+  if (end != WayEnd::kDone)
+    return Refuse(ErrorCode::kCellStepUnreachable, "what cuts the part takes too long to be seen");
+  return {};
+}
+
+void LookAtPart(const PartOnTable& part, const motion::MachinePoint& from,
+                std::vector<ApproachMotion>& approach) {
+  motion::MachinePoint at = from;
+  for (ApproachMotion& motion : approach) {
+    motion.into_part_mm = part.DepthOf(at, motion.to.column);
+    at = motion.to.column;
+  }
 }
 
 void ComparePlaces(const StartQuestion& question, const RunState& there, StartPreview& preview) {
@@ -171,6 +205,11 @@ Result<StartPreview> PreviewStart(const MachineFamily& family, const RunSetup& s
     ComparePlaces(question, state, preview);
     preview.approach =
         preview.reach.run->enterable()->PlanApproach(question.machine_state, question.way);
+    if (question.part != nullptr) {
+      if (const Status cut = CutPart(family, setup, question, limits); !cut) return cut.error();
+      preview.part_checked = true;
+      LookAtPart(*question.part, (*standing)->state().axes.column, preview.approach);
+    }
     preview.refusals = RefusalsOf(preview.reach.facts, question.off_until_work_on);
     const auto add = [&](std::vector<Error> more) {
       for (Error& one : more) preview.refusals.push_back(std::move(one));

@@ -8,6 +8,7 @@
 #include "engine/core/result.h"
 #include "engine/core/units.h"
 #include "engine/machine/family.h"
+#include "engine/machine/part_on_table.h"
 #include "engine/machine/reach_step.h"
 #include "engine/machine/run_setup.h"
 #include "engine/machine/step_entry.h"
@@ -29,6 +30,12 @@ struct StartDifference {
 std::vector<StartDifference> DifferencesOf(const std::vector<StateItem>& there,
                                            const std::vector<StateItem>& now);
 
+// What has cut the part until now: the run to the step, or one that was cut off before, or nothing.
+struct PartSoFar {
+  bool untouched = false;
+  std::optional<SimTime> cut_until{};  // time of the run; none: to the step
+};
+
 // Where a run is to begin, and how it comes there.
 struct StartQuestion {
   StepTarget target{};
@@ -36,6 +43,9 @@ struct StartQuestion {
   bool off_until_work_on = false;
   std::string machine_state{};  // of the machine as it stands now: Standing::Save
   double override_percent = 100.0;
+  // Null: nobody knows it, and the way is not checked against it.
+  PartOnTable* part = nullptr;
+  PartSoFar part_so_far{};
 };
 
 // What a start at a step would do. Nothing of it is done.
@@ -48,13 +58,14 @@ struct StartPreview {
   std::optional<StepTarget> clean_before{};  // the nearest clean steps, by the order of the run
   std::optional<StepTarget> clean_after{};
   SimTime run_time{0};          // when the step is reached
+  bool part_checked = false;    // the way was looked at against the part
   double missing_cut_mm = 0.0;  // off_until_work_on: what would be cut before the beam is on again
 
   bool may_begin() const { return refusals.empty(); }
 };
 
-// `setup`: what the run to the step begins with, and its inputs. Nothing knows the part here: the
-// way is not checked against it. Errors: those of ReachStep and of MachineFamily::NewStanding.
+// `setup`: what the run to the step begins with, and its inputs. Errors: those of ReachStep and of
+// MachineFamily::NewStanding.
 Result<StartPreview> PreviewStart(const MachineFamily& family, const RunSetup& setup,
                                   const StartQuestion& question, const ReachLimits& limits);
 

@@ -81,6 +81,7 @@ struct ApproachMotion {
   motion::AxisPose to{};
   double feed_mm_s = 0.0;             // without the override; 0: as fast as the axes can
   std::vector<OutOfTravel> beyond{};  // none: it stays inside
+  double into_part_mm = 0.0;          // how deep it goes into the part, where that is known
 };
 
 // How a run is entered.

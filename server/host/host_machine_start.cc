@@ -4,12 +4,35 @@
 #include <utility>
 
 #include "engine/machine/machine_note.h"
+#include "engine/machine/shape.h"
+#include "engine/simulation/material/milled_part.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/machine_inputs.h"
+#include "proto/bridge/milling.h"
 #include "proto/recording/recording.h"
 #include "server/host/host_machine.h"
 
 namespace rmlcell::server {
+namespace {
+
+// Block and tool, in cells as a job has them when it names none: what is compared with it, or told
+// of its chips, does not count here.
+Result<std::optional<simulation::Milling>> PartOf(const v1::PreviewStartRequest& request,
+                                                  const machine::MachineShape& shape) {
+  if (!request.has_milling()) return std::optional<simulation::Milling>();
+  const auto invalid = [](const std::string& why) {
+    return Error{ErrorCode::kCellInvalidArgument, "milling" + why, {}};
+  };
+  if (!shape.has_work_origin) return invalid(": this machine removes no material");
+  v1::Milling wanted;
+  *wanted.mutable_stock() = request.milling().stock();
+  *wanted.mutable_tool() = request.milling().tool();
+  auto milling = bridge::FromProto(wanted);
+  if (!milling) return invalid("." + milling.error().detail);
+  return std::optional(*std::move(milling));
+}
+
+}  // namespace
 
 // Its time goes on while it stands, and changes nothing.
 StartDesk::Basis HostMachine::Basis() const {
@@ -33,6 +56,11 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
   }
   auto start = StartOf(request, machine());
   if (!start) return start.error();
+  auto part = PartOf(request, setup_.family->Shape(*parameters_));
+  if (!part) return part.error();
+  machine::PartSoFar so_far{.untouched = request.part_so_far() == v1::PART_SO_FAR_UNTOUCHED};
+  if (again && request.part_so_far() == v1::PART_SO_FAR_UNSPECIFIED)
+    so_far.cut_until = SimTime(cut_off_base_->until_ns());
   PreviewTask task{.start = *std::move(start), .basis = Basis()};
   std::optional<SimTime> occurrence_at;
   if (again) {
@@ -51,9 +79,9 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
     if (!same) task.start.brought = *std::move(brought);
   }
   task.run = [&family = *setup_.family, parameters = *parameters_, memory = machine().memory(),
-              state = machine().Save(),
-              occurrence_at](machine::StartAtStep& asked,
-                             const machine::ReachLimits& limits) -> Result<machine::StartPreview> {
+              state = machine().Save(), occurrence_at, milling = *std::move(part),
+              so_far](machine::StartAtStep& asked,
+                      const machine::ReachLimits& limits) -> Result<machine::StartPreview> {
     machine::RunObserver nobody;
     auto copy = machine::Machine::Make(family, parameters, memory, state, nobody);
     if (!copy) return copy.error();
@@ -62,7 +90,9 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
       if (!in) return in.error();
       asked.target.occurrence = std::max<std::uint64_t>(1, *in);
     }
-    return (*copy)->Preview(asked, limits);
+    std::optional<simulation::MilledPart> on_table;
+    if (milling) on_table.emplace(*milling);
+    return (*copy)->Preview(asked, limits, on_table ? &*on_table : nullptr, so_far);
   };
   return task;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "engine/core/number_text.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/machine_inputs.h"
 
@@ -64,6 +65,9 @@ v1::ApproachMotion ToProto(const machine::ApproachMotion& motion,
              (one.at_target ? " of its target leaves the travel" : " leaves the travel on the way"),
          {}});
   }
+  if (motion.into_part_mm > 0.0)
+    *made.add_findings() = DiagnosticOf(
+        {ErrorCode::kCellApproach, FixedText(motion.into_part_mm, 3) + " mm into the part", {}});
   return made;
 }
 
@@ -118,6 +122,7 @@ v1::PreviewStartResponse ToProto(const machine::StartPreview& preview,
   if (preview.clean_after) *response.mutable_clean_after() = PlaceOf(*preview.clean_after);
   response.set_run_time_ns(preview.run_time.count());
   response.set_missing_cut_mm(preview.missing_cut_mm);
+  response.set_part_checked(preview.part_checked);
   return response;
 }
 

@@ -128,12 +128,19 @@ Status SetMachine(const storage::MachineMemory& memory, v1::WorkerAssignment& as
 
 }  // namespace
 
-Result<v1::AssignedProgram> ProgramOfJob(storage::Store& store, std::int64_t id) {
+Result<v1::Job> SpecificationOf(storage::Store& store, std::int64_t id) {
   const auto record = store.GetJob(id);
   if (!record) return record.error();
   v1::Job job;
   if (!job.ParseFromString(record->specification))
     return Error{ErrorCode::kCellStoreCorrupt, "the specification of " + JobName(id), {}};
+  return job;
+}
+
+Result<v1::AssignedProgram> ProgramOfJob(storage::Store& store, std::int64_t id) {
+  const Result<v1::Job> specification = SpecificationOf(store, id);
+  if (!specification) return specification.error();
+  const v1::Job& job = *specification;
   Result<std::string> bytes = store.ReadArtifact(id, kMainAttachment);
   if (!bytes) return bytes.error();
   v1::AssignedProgram program;

@@ -27,5 +27,7 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
 
 // The program of a job alone, whole. Errors: as above.
 Result<v1::AssignedProgram> ProgramOfJob(storage::Store& store, std::int64_t job);
+// What it is as it was handed in, settled.
+Result<v1::Job> SpecificationOf(storage::Store& store, std::int64_t job);
 
 }  // namespace rmlcell::server

@@ -318,6 +318,10 @@ Result<v1::AssignedProgram> RunQueue::ProgramOf(std::int64_t job) {
   return ProgramOfJob(needs_.store, job);
 }
 
+Result<v1::Job> RunQueue::SpecificationOf(std::int64_t job) {
+  return server::SpecificationOf(needs_.store, job);
+}
+
 void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answered done) {
   const auto job = needs_.store.GetJob(id);
   if (!job) return done(job.error());

@@ -53,6 +53,7 @@ class RunQueue {
   }
   // The program of a job, whole. Errors: those of the store.
   Result<v1::AssignedProgram> ProgramOf(std::int64_t job);
+  Result<v1::Job> SpecificationOf(std::int64_t job);
   // A person begins this job of the queue: as `order` says, without its program, a run_job or a
   // continue_job. Where its machine refuses that, the first waits on, and the other has ended. May
   // block. `done` is called once, on any thread. LIVE-5.04, 5.10

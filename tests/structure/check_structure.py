@@ -77,7 +77,7 @@ MAY_INCLUDE = {
     # How machines stand.
     "server/machines": ["engine/core", "engine/families", "engine/machine", "proto", "proto/bridge", "server/base", "server/events", "server/records", "storage"],
     # The host of a machine that lives: a process of its own, without the store.
-    "server/host": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "proto/recording", "server/base"],
+    "server/host": ["engine/core", "engine/machine", "engine/families", MATERIAL, "proto", "proto/bridge", "proto/recording", "server/base"],
     # RUN jobs, between the queue and the host of their machine.
     "server/runs": ["engine/core", "proto", "proto/bridge", "proto/recording", "server/base", "server/jobs", "server/machines", "server/records", "storage", "storage/jobs"],
     "server/programs": ["engine/core", "engine/machine", "engine/families", RUN, "proto", "proto/bridge", "server/base", "server/records", "storage"],
@@ -112,7 +112,7 @@ PUBLIC = {
     RIDE: ["trajectory.h", "interruption.h", "ride_protocol.h", "path_ride.h", "motion_under_way.h"],
     JOG: ["jog_drive.h"],
     "engine/machine": ["bytes.h", "driver.h", "family.h", "hand_motion.h", "language_word.h", "machine.h", "machine_input.h", "machine_note.h", "machine_states.h", "machine_status.h", "panel.h", "run.h", "standing.h", "virtual_driver.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "variable.h", "verdict.h", "reach_step.h", "start_preview.h", "step_entry.h", "handbox.h",
-                       "tools.h", "editing.h", "run_setup.h", "outcome.h", "inputs.h", "program_file.h"],
+                       "tools.h", "editing.h", "run_setup.h", "outcome.h", "inputs.h", "part_on_table.h", "program_file.h"],
     "engine/rml1": ["rml1_family.h", "action.h", "clipping.h", "command_reader.h", "command_table.h", "device.h", "figures.h", "finding.h",
                     "number.h", "physical.h", "profile.h", "programmed.h", "registers.h", "verdict_rules.h"],
     "engine/rml1/offline": ["byte_sink.h", "explain.h", "from_gcode.h", "rewrite.h", "stream_diff.h", "tile.h", "to_gcode.h",
@@ -133,7 +133,7 @@ PUBLIC = {
     REPORT: ["report.h", "report_recorder.h", "finding_list.h", "facts.h", "trace.h", "samples.h"],
     TOOLPATH: ["toolpath_recorder.h", "toolpath_level.h"],
     PICTURE: ["picture.h", "picture_difference.h", "plot.h", "time_envelope.h"],
-    MATERIAL: ["height_grid.h", "height_map.h", "height_tiles.h", "milling_recorder.h", "milling_text.h", "relief.h", "standard_cell.h", "stl.h", "target.h", "target_files.h"],
+    MATERIAL: ["height_grid.h", "height_map.h", "height_tiles.h", "milled_part.h", "milling_recorder.h", "milling_text.h", "relief.h", "standard_cell.h", "stl.h", "target.h", "target_files.h"],
     VERDICT: ["verdict.h"],
     RUN: ["simulate.h", "version.h", "input_description.h", "motion_check.h", "rehearsal.h", "joint_check.h", "milled_target.h", "timetable.h", "trial_run.h"],
     "storage": ["content.h", "records.h", "store.h", "trouble.h"],

@@ -8,6 +8,9 @@
 
 namespace rmlcell::simulation {
 
+// A tool that is less deep in a block is clear of it: rounding of heights and places.
+inline constexpr double kGougeLeast_mm = 1e-3;
+
 // A block of material before it is milled, in the machine frame of the mill: mm.
 struct Stock {
   double x_min = 0.0;

@@ -9,8 +9,6 @@ namespace {
 
 using machine::MotionUse;
 
-constexpr double kGougeLeast_mm = 1e-3;  // less is rounding of heights and places
-
 // The part of a straight move that keeps within limits, by shares of its way.
 struct PartOfMove {
   double low = 0.0;

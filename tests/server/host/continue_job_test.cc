@@ -47,9 +47,11 @@ class ContinueJobTest : public HostMachineTest {
     ASSERT_EQ(State(), v1::MACHINE_STATE_INSPECT);
     Control(v1::ControlLease::ON_LOSS_GO_ON);
   }
-  v1::HostOrderAnswer Preview(int step, const std::string& text = kSquare) {
+  v1::HostOrderAnswer Preview(int step, const std::string& text = kSquare,
+                              v1::PreviewStartRequest asked = {}) {
     v1::HostOrder order;
     order.set_number(++number_);
+    *order.mutable_preview_start() = std::move(asked);
     if (step > 0) order.mutable_preview_start()->mutable_step()->set_step(step);
     order.mutable_preview_start();
     *order.mutable_brought() = Assignment("", text).programs(0);
@@ -110,6 +112,45 @@ TEST_F(ContinueJobTest, ANewJobGoesOnWhereTheOldOneWas) {
     EXPECT_EQ(entry.run_over().outcome().kind(), v1::Outcome::KIND_COMPLETED);
   }
   EXPECT_TRUE(over);
+}
+
+// LIVE-6.07: where the part is known the way is looked at against what the run had cut of it.
+TEST_F(ContinueJobTest, TheWayIsLookedAtAgainstThePart) {
+  const std::string sides =
+      "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PU1000,1000;PD3000,1000;PD3000,3000;PD1000,3000;PU0,0;";
+  CutOff(45s, sides);  // on the second side, its ninth command
+  v1::PreviewStartRequest asked;
+  v1::Stock& block = *asked.mutable_milling()->mutable_stock();
+  block.set_size_x_mm(60);
+  block.set_size_y_mm(60);
+  block.set_size_z_mm(5);
+  v1::MillTool& tool = *asked.mutable_milling()->mutable_tool();
+  tool.set_shape(v1::MillTool::SHAPE_FLAT);
+  tool.set_diameter_mm(3);
+  const v1::PreviewStartResponse there = Preview(0, sides, asked).preview();
+  EXPECT_TRUE(there.part_checked());
+  EXPECT_NE(there.preview_token(), "");
+  // Where that side ends it has not been yet.
+  const v1::PreviewStartResponse ahead = Preview(10, sides, asked).preview();
+  EXPECT_TRUE(ahead.part_checked());
+  EXPECT_EQ(ahead.preview_token(), "");
+  ASSERT_EQ(ahead.refusals().size(), 1);
+  EXPECT_EQ(ahead.refusals(0).code(), "CELL-E9427");
+  EXPECT_THAT(ahead.refusals(0).message(),
+              testing::HasSubstr("motion 2 of the approach goes 0.500 mm into the part"));
+  ASSERT_EQ(ahead.approach().size(), 2);
+  EXPECT_TRUE(ahead.approach(0).findings().empty());
+  EXPECT_EQ(ahead.approach(1).findings(0).code(), "CELL-E9427");
+  // A person who knows that it was cut before, or that this block is a new one, says so.
+  asked.set_part_so_far(v1::PART_SO_FAR_CUT_TO_STEP);
+  EXPECT_NE(Preview(10, sides, asked).preview().preview_token(), "");
+  asked.set_part_so_far(v1::PART_SO_FAR_UNTOUCHED);
+  EXPECT_EQ(Preview(0, sides, asked).preview().preview_token(), "");
+  asked.mutable_milling()->mutable_tool()->set_diameter_mm(-3);
+  EXPECT_THAT(Preview(0, sides, asked).refusal().message(), testing::HasSubstr("milling.tool"));
+  // Nobody knows it.
+  EXPECT_FALSE(Preview(10, sides).preview().part_checked());
+  EXPECT_NE(Preview(10, sides).preview().preview_token(), "");
 }
 
 // LIVE-5.10, LIVE-2.05: what is refused moves nothing, and the machine waits on.

@@ -1,0 +1,80 @@
+// The way to a step, against the block that lies on the table of a mill (live.md 6).
+#include "engine/simulation/material/milled_part.h"
+#include "engine/simulation/material/milling_text.h"
+#include "tests/engine/machine/start_bed.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+// SRM-20: 100 units a mm, Z 0 is as high as it goes. 1 mm deep round a square of 20 mm; the eighth
+// command begins at its second corner, the tool in the work.
+constexpr const char* kSquare =
+    "VS10;!VZ8;!PZ-100,200;!RC9;!MC1;PU2010,1510;PD4010,1510;PD4010,3510;PU2010,3510;!MC0;";
+
+class StartOnPart : public machine::StartTest {
+ protected:
+  StartOnPart() : StartTest("rml1") {}
+  machine::StartPreview On(const char* block, const machine::PartSoFar& so_far,
+                           const char* tool = "flat:3", int step = 8) const {
+    Milling milling{.stock = ParseStock(block).value(), .tool = ParseTool(tool).value()};
+    MilledPart part(milling);
+    auto preview = machine::PreviewStart(family_, Setup({kSquare}),
+                                         {.target = {.at = {1, step}},
+                                          .machine_state = StandingState(),
+                                          .part = &part,
+                                          .part_so_far = so_far},
+                                         {});
+    EXPECT_TRUE(preview);
+    EXPECT_TRUE(preview->part_checked);
+    return *std::move(preview);
+  }
+};
+
+// LIVE-6.07: what the program cut before the step is gone; a new block is in the way, by the depth
+// of the cut.
+TEST_F(StartOnPart, WhatIsCutBeforeIsNotInTheWay) {
+  EXPECT_TRUE(On("60x60x5", {}).may_begin());
+  const machine::StartPreview new_block = On("60x60x5", {.untouched = true});
+  EXPECT_THAT(FirstRefusal(new_block),
+              AllOf(HasSubstr("CELL-E9427"),
+                    HasSubstr("motion 2 of the approach goes 1.000 mm into the part")));
+  EXPECT_EQ(new_block.approach[0].into_part_mm, 0.0);
+  // Of a block that lies elsewhere.
+  EXPECT_TRUE(On("5x5x5@60,60,0", {.untouched = true}).may_begin());
+}
+
+// LIVE-6.07: a run that was cut off has cut what it came to, and no more.
+TEST_F(StartOnPart, ARunThatWasCutOffLeftTheRest) {
+  const SimTime there = On("60x60x5", {}).run_time;
+  EXPECT_TRUE(On("60x60x5", {.cut_until = there}).may_begin());
+  // It had not come to the second corner: 1 s and 10 mm short of it.
+  const machine::StartPreview short_of = On("60x60x5", {.cut_until = there - At(1.0)});
+  EXPECT_THAT(FirstRefusal(short_of), HasSubstr("motion 2 of the approach goes 1.000 mm"));
+  EXPECT_TRUE(On("60x60x5", {.cut_until = there + At(100.0)}).may_begin());
+  EXPECT_FALSE(On("60x60x5", {.cut_until = SimTime(0)}).may_begin());
+}
+
+// LIVE-6.07: the way across is as high as the mill goes, which is too low for this block; and a
+// shank that is wider than its cutter goes where that was not.
+TEST_F(StartOnPart, TheWayAcrossAndTheShankCount) {
+  const machine::StartPreview high = On("60x60x7@0,0,2", {.untouched = true}, "flat:3", 7);
+  EXPECT_EQ(high.approach[0].path, "PU");
+  EXPECT_NEAR(high.approach[0].into_part_mm, 2.0, 1e-6);
+  EXPECT_NEAR(high.approach[1].into_part_mm, 2.0, 1e-6);  // down beside it on nothing but that
+  const machine::StartPreview shank = On("60x60x5", {}, "flat:3:flute=0.4:shank=6");
+  EXPECT_NEAR(shank.approach[1].into_part_mm, 0.6, 1e-6);
+  EXPECT_FALSE(shank.may_begin());
+}
+
+// LIVE-6.07: nobody who knows the part: nothing is said about it.
+TEST_F(StartOnPart, WithoutAPartNothingIsLookedAt) {
+  const machine::StartPreview preview = PreviewOf(Setup({kSquare}), {.at = {1, 8}});
+  EXPECT_FALSE(preview.part_checked);
+  EXPECT_TRUE(preview.may_begin());
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation
