@@ -13,6 +13,7 @@
 #include "clients/cli/terminal.h"
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
+#include "proto/bridge/findings.h"
 #include "proto/bridge/milling.h"
 #include "rmlcell/v1/job.grpc.pb.h"
 

@@ -15,7 +15,8 @@ inline std::chrono::nanoseconds TimeBy(clockid_t clock) {
   return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
-// Longer than a server is silent that is there: it answers four times a second.
+// Longer than a server is silent that is there: it answers four times a second, or about once where
+// the machine stands.
 inline constexpr std::chrono::seconds kServerSilent{2};
 
 // It goes on while the computer sleeps.
