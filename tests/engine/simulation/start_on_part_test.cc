@@ -6,12 +6,13 @@
 namespace rmlcell::simulation {
 namespace {
 
+using machine::At;
 using testing::AllOf;
 using testing::HasSubstr;
 
 // SRM-20: 100 units a mm, Z 0 is as high as it goes. 1 mm deep round a square of 20 mm; the eighth
 // command begins at its second corner, the tool in the work.
-constexpr const char* kSquare =
+constexpr const char* kTwoSides =
     "VS10;!VZ8;!PZ-100,200;!RC9;!MC1;PU2010,1510;PD4010,1510;PD4010,3510;PU2010,3510;!MC0;";
 
 class StartOnPart : public machine::StartTest {
@@ -21,7 +22,7 @@ class StartOnPart : public machine::StartTest {
                            const char* tool = "flat:3", int step = 8) const {
     Milling milling{.stock = ParseStock(block).value(), .tool = ParseTool(tool).value()};
     MilledPart part(milling);
-    auto preview = machine::PreviewStart(family_, Setup({kSquare}),
+    auto preview = machine::PreviewStart(family_, Setup({kTwoSides}),
                                          {.target = {.at = {1, step}},
                                           .machine_state = StandingState(),
                                           .part = &part,
@@ -71,7 +72,7 @@ TEST_F(StartOnPart, TheWayAcrossAndTheShankCount) {
 
 // LIVE-6.07: nobody who knows the part: nothing is said about it.
 TEST_F(StartOnPart, WithoutAPartNothingIsLookedAt) {
-  const machine::StartPreview preview = PreviewOf(Setup({kSquare}), {.at = {1, 8}});
+  const machine::StartPreview preview = PreviewOf(Setup({kTwoSides}), {.at = {1, 8}});
   EXPECT_FALSE(preview.part_checked);
   EXPECT_TRUE(preview.may_begin());
 }
