@@ -123,10 +123,17 @@ Status CutPart(const MachineFamily& family, const RunSetup& setup, const StartQu
   bounded.budget = {.steps = limits.steps_max, .virtual_time = RunBudget().virtual_time};
   const Result<std::unique_ptr<Run>> run = family.NewRun(std::move(bounded), *question.part);
   if (!run) return run.error();
-  if (const auto origin = (*run)->state().work_origin) question.part->BeginAt(*origin);
+  const RunState begun = (*run)->state();
+  question.part->BeginAt(begun.work_origin.value_or(motion::MachinePoint(motion::MachineVector{})),
+                         begun.axes.column);
   const PartSoFar& so_far = question.part_so_far;
   if (so_far.untouched) return {};
-  if (so_far.cut_until) return GoUntilTime(**run, *so_far.cut_until, limits);
+  if (so_far.cut_until) {
+    if (const Status went = GoUntilTime(**run, *so_far.cut_until, limits); !went)
+      return went.error();
+    question.part->EndAt((*run)->state().axes.column);
+    return {};
+  }
   EnterableRun& enterable = *(*run)->enterable();
   if (const Status goes = enterable.HaltBefore(question.target); !goes) return goes.error();
   const WayEnd end = GoUntil(

@@ -12,12 +12,16 @@ class MilledPart final : public machine::PartOnTable {
   // Precondition: CheckMilling is well.
   explicit MilledPart(const Milling& milling);
 
-  void BeginAt(const motion::MachinePoint& work_origin) override { origin_ = work_origin; }
+  void BeginAt(const motion::MachinePoint& work_origin, const motion::MachinePoint& at) override;
   void OnMotion(const machine::MotionDone& done) override;
+  void EndAt(const motion::MachinePoint& at) override { Cut(at_, at); }
   double DepthOf(const motion::MachinePoint& from, const motion::MachinePoint& to) const override;
 
  private:
+  void Cut(const motion::MachinePoint& from, const motion::MachinePoint& to);
+
   motion::MachinePoint origin_;  // of the block's frame, machine frame
+  motion::MachinePoint at_;      // the end of the last motion that was told
   MillTool tool_;
   HeightField material_;
 };

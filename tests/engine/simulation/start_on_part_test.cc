@@ -18,6 +18,9 @@ constexpr const char* kTwoSides =
 class StartOnPart : public machine::StartTest {
  protected:
   StartOnPart() : StartTest("rml1") {}
+  double WorkZero() const {
+    return (*family_.NewStanding(parameters(), ""))->state().work_origin->z();
+  }
   machine::StartPreview On(const char* block, const machine::PartSoFar& so_far,
                            const char* tool = "flat:3", int step = 8) const {
     Milling milling{.stock = ParseStock(block).value(), .tool = ParseTool(tool).value()};
@@ -61,10 +64,14 @@ TEST_F(StartOnPart, ARunThatWasCutOffLeftTheRest) {
 // LIVE-6.07: the way across is as high as the mill goes, which is too low for this block; and a
 // shank that is wider than its cutter goes where that was not.
 TEST_F(StartOnPart, TheWayAcrossAndTheShankCount) {
-  const machine::StartPreview high = On("60x60x7@0,0,2", {.untouched = true}, "flat:3", 7);
+  // Its first corner is reached 2 mm above the work; the way there is at the top.
+  const double top = On("60x60x5", {}, "flat:3", 7).approach[0].to.column.z() - WorkZero();
+  const std::string block =
+      "60x60x" + std::to_string(top + 8.0) + "@0,0," + std::to_string(top + 3.0);
+  const machine::StartPreview high = On(block.c_str(), {.untouched = true}, "flat:3", 7);
   EXPECT_EQ(high.approach[0].path, "PU");
-  EXPECT_NEAR(high.approach[0].into_part_mm, 2.0, 1e-6);
-  EXPECT_NEAR(high.approach[1].into_part_mm, 2.0, 1e-6);  // down beside it on nothing but that
+  EXPECT_NEAR(high.approach[0].into_part_mm, 3.0, 1e-5);
+  EXPECT_NEAR(high.approach[1].into_part_mm, top + 1.0, 1e-5);
   const machine::StartPreview shank = On("60x60x5", {}, "flat:3:flute=0.4:shank=6");
   EXPECT_NEAR(shank.approach[1].into_part_mm, 0.6, 1e-6);
   EXPECT_FALSE(shank.may_begin());

@@ -137,10 +137,11 @@ TEST_F(ContinueJobTest, TheWayIsLookedAtAgainstThePart) {
   ASSERT_EQ(ahead.refusals().size(), 1);
   EXPECT_EQ(ahead.refusals(0).code(), "CELL-E9427");
   EXPECT_THAT(ahead.refusals(0).message(),
-              testing::HasSubstr("motion 2 of the approach goes 0.500 mm into the part"));
-  ASSERT_EQ(ahead.approach().size(), 2);
+              testing::HasSubstr("motion 3 of the approach goes 0.500 mm into the part"));
+  ASSERT_EQ(ahead.approach().size(), 3);  // up from where it stands, across, down
   EXPECT_TRUE(ahead.approach(0).findings().empty());
-  EXPECT_EQ(ahead.approach(1).findings(0).code(), "CELL-E9427");
+  EXPECT_TRUE(ahead.approach(1).findings().empty());
+  EXPECT_EQ(ahead.approach(2).findings(0).code(), "CELL-E9427");
   // A person who knows that it was cut before, or that this block is a new one, says so.
   asked.set_part_so_far(v1::PART_SO_FAR_CUT_TO_STEP);
   EXPECT_NE(Preview(10, sides, asked).preview().preview_token(), "");
