@@ -118,7 +118,7 @@ TEST_F(ContinueJobTest, ANewJobGoesOnWhereTheOldOneWas) {
 TEST_F(ContinueJobTest, TheWayIsLookedAtAgainstThePart) {
   const std::string sides =
       "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PU1000,1000;PD3000,1000;PD3000,3000;PD1000,3000;PU0,0;";
-  CutOff(45s, sides);  // on the second side, its ninth command
+  CutOff(35s, sides);  // on the second side, its ninth command
   v1::PreviewStartRequest asked;
   v1::Stock& block = *asked.mutable_milling()->mutable_stock();
   block.set_size_x_mm(60);
