@@ -98,7 +98,7 @@ class FurtherLines::Line {
       line_ = std::move(joined->line);
       heard_at_ = Now().steady.count();
     }
-    lines_.IsThere();
+    lines_.NoteCome();
     {
       std::unique_lock lock(mutex_);
       while (!ending_ && !gone_ &&
@@ -199,7 +199,7 @@ bool FurtherLines::IsAskedFor(std::int64_t number) const {
   return line != lines_.end() && line->second->Stands(asked.line);
 }
 
-void FurtherLines::IsThere() {
+void FurtherLines::NoteCome() {
   {
     const std::lock_guard lock(mutex_);
     fresh_ = true;

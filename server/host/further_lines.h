@@ -53,7 +53,7 @@ class FurtherLines {
     std::int64_t number = 0;  // by the server
   };
   void Hear(Line& line, v1::HostResponse message);
-  void IsThere();
+  void NoteCome();
   v1::HostHello hello() const;
 
   std::function<void()> wake_;

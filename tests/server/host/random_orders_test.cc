@@ -59,7 +59,7 @@ class AnyMessages {
     if (field == "request_id") return Below(6) == 0 ? "" : "id " + std::to_string(Below(5'000));
     if (field == "key" || field == "keys_down") return OneOf(kKeys);
     if (field == "job" || field == "continues") return "jobs/" + std::to_string(Below(3));
-    if (field == "variable" || field == "variables" || field == "name_of_variable")
+    if (field == "variable" || field == "variables")
       return OneOf(std::array<const char*, 6>{"VR[0]", "VI[3]", "OL[3]", "IL[20]", "X", "VX[7]"});
     return OneOf(std::array<const char*, 3>{"", "a text", "VR[1]"});
   }
