@@ -10,8 +10,8 @@
 
 #include "clients/cli/machine_call.h"
 #include "clients/cli/messages.h"
+#include "clients/cli/start_words.h"
 #include "clients/cli/terminal.h"
-#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/milling.h"
@@ -19,20 +19,6 @@
 
 namespace rmlcell::cli {
 namespace {
-
-// "45/10", or "10" of the main program; nothing for what is none.
-std::optional<v1::StepPlace> StepOf(const std::string& text) {
-  const std::size_t slash = text.find('/');
-  const auto step = ParseInteger(slash == std::string::npos ? text : text.substr(slash + 1));
-  const auto program = slash == std::string::npos ? std::optional<long long>(0)
-                                                  : ParseInteger(text.substr(0, slash));
-  if (!step || !program || *step < 1 || *step > INT32_MAX || *program < 0 || *program > 99)
-    return std::nullopt;
-  v1::StepPlace place;
-  place.set_program(static_cast<int>(*program));
-  place.set_step(static_cast<int>(*step));
-  return place;
-}
 
 std::string PlaceText(const v1::StepPlace& place) {
   return std::to_string(place.program()) + "/" + std::to_string(place.step());
@@ -66,12 +52,6 @@ void PrintPreview(const v1::PreviewStartResponse& preview) {
   if (preview.refusals().empty()) return;
   if (preview.has_clean_before()) Print("clean before: " + PlaceText(preview.clean_before()));
   if (preview.has_clean_after()) Print("clean behind: " + PlaceText(preview.clean_after()));
-}
-
-std::string SeenName(v1::Confirmation confirmation) {
-  std::string name = Short(v1::Confirmation_Name(confirmation), "CONFIRMATION_");
-  std::ranges::transform(name, name.begin(), [](char c) { return c == '_' ? '-' : LowerCase(c); });
-  return name;
 }
 
 // Of what a person must see to, that which was not said; empty: all of it was.

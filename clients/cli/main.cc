@@ -377,6 +377,11 @@ void AddRunOptions(CLI::App& verb, SubmitRequest& submit) {
                 "with --kind run: the program zeroes the axes itself");
   verb.add_option("--ticket", submit.ticket,
                   "with --kind run: the simulation that proves the program, such as 17");
+  verb.add_option("--step", submit.step,
+                  "with --kind run: begin at PROGRAM/STEP, such as 45/10, behind a safe way there");
+  verb.add_option("--seen", submit.seen,
+                  "what you have looked at for that: clamps, tool, origin-valid, table-clear")
+      ->delimiter(',');
 }
 
 void AddQueueVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {

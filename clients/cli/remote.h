@@ -48,8 +48,10 @@ struct SubmitRequest {
   std::string file;  // a file, or empty
   int slot = 0;      // of a stored program, or where the file goes
   std::string kind = "simulate";
-  bool unzeroed = false;  // of a run: the program zeroes the axes itself
-  std::string ticket;     // of a run: the simulation that proves it, "17"; empty: none
+  bool unzeroed = false;          // of a run: the program zeroes the axes itself
+  std::string ticket;             // of a run: the simulation that proves it, "17"; empty: none
+  std::string step;               // of a run: where it begins, "45/10"; empty: at its beginning
+  std::vector<std::string> seen;  // likewise: what somebody has looked at
   std::string title;
   std::vector<std::string> labels;
   std::string request_id;

@@ -8,6 +8,7 @@
 #include "clients/cli/program_files.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/request_id.h"
+#include "clients/cli/start_words.h"
 #include "clients/cli/terminal.h"
 #include "clients/cli/verdict_text.h"
 #include "engine/families/families.h"
@@ -178,6 +179,25 @@ std::string WaitText(const v1::Job& job) {
   }
 }
 
+// Of a run: where it begins.
+Status SetStart(const SubmitRequest& wanted, v1::Job& job) {
+  if (!wanted.step.empty()) {
+    const auto step = StepOf(wanted.step);
+    if (!step)
+      return InvalidArgument("'" + wanted.step +
+                             "' is no step: PROGRAM/STEP, such as 45/10, or a step");
+    *job.mutable_run()->mutable_step() = *step;
+  }
+  for (const std::string& seen : wanted.seen) {
+    const auto confirmation = ConfirmationOf(seen);
+    if (!confirmation)
+      return InvalidArgument("'" + seen +
+                             "' is nothing to look at: clamps, tool, origin-valid, table-clear");
+    job.mutable_run()->add_confirmations(*confirmation);
+  }
+  return {};
+}
+
 // When the job may start, and before whom.
 Status SetQueue(const SubmitRequest& wanted, v1::Job& job) {
   job.set_priority(wanted.priority);
@@ -268,6 +288,7 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   if (job.kind() == v1::JOB_KIND_RUN && options.ByteSizeLong() == 0) job.clear_simulation();
   if (wanted.unzeroed) job.mutable_run()->set_unzeroed(true);
   if (!wanted.ticket.empty()) job.mutable_run()->set_ticket(FullName("jobs", wanted.ticket));
+  if (const Status set = SetStart(wanted, job); !set) return Refuse(set.error());
   if (const Status set = SetQueue(wanted, job); !set) return Refuse(set.error());
   request.set_request_id(wanted.request_id.empty() ? NewRequestId() : wanted.request_id);
 

@@ -84,7 +84,7 @@ _rmlcell_options() {
     put) echo "$remote --etag --check-only --force" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --unzeroed --ticket --title --label --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
+      echo "$remote --slot --kind --unzeroed --ticket --step --seen --title --label --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
     machine) echo "$remote" ;;
     "machine status" | "machine watch" | "machine enable" | "machine disable" | "machine hold" | "machine stop" | \
       "machine emergency-stop" | "machine abort" | "machine read") echo "--help" ;;

@@ -168,7 +168,7 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, co
       if (const Status begun = RunJob(order, now); !begun) return begun.error();
       return answer;
     case v1::HostOrder::kContinueJob:
-      if (const Status begun = ContinueJob(order, now); !begun) return begun.error();
+      if (const Status begun = BeginJobAtStep(order, now); !begun) return begun.error();
       return answer;
     default:
       break;

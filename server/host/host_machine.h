@@ -125,9 +125,10 @@ class HostMachine : private machine::RunObserver {
   void Edit(const machine::ProgramEdit& edit, const std::string& caller);
   StartDesk::Basis Basis() const;
   Result<v1::HostOrderAnswer> Arm(const v1::HostOrder& order, const HostTime& now);
-  Status MayStartJob(const v1::HostOrder& order) const;
+  Status MayStartJob(const v1::HostOrder& order, const v1::WorkerAssignment& assignment) const;
+  Status MayBeginAtStep(const v1::HostOrder& order, const v1::WorkerAssignment& assignment) const;
   Status StartAt(const v1::HostOrder& order, const HostTime& now);
-  Status ContinueJob(const v1::HostOrder& order, const HostTime& now);
+  Status BeginJobAtStep(const v1::HostOrder& order, const HostTime& now);
   void SettleInspection(const v1::HostOrder& order);
   std::optional<v1::RunBase> BaseNow() const;
   void BeginsJob(const v1::WorkerAssignment& assignment, const HostTime& now,

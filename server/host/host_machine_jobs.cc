@@ -55,7 +55,7 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
   // Behind the intent, also where nothing begins: a crash later on finds no open one.
   mark_due_ = true;
   if (auto why = WhyNoJob(order.caller())) return *std::move(why);
-  if (const Status may = MayStartJob(order); !may) return may.error();
+  if (const Status may = MayStartJob(order, order.run_job()); !may) return may.error();
   if (!order.run_job().job().continues().empty()) {
     return Error{ErrorCode::kCellPreviewStale,
                  "decide again where " + order.run_job().job().continues() + " goes on",
@@ -112,8 +112,9 @@ Status HostMachine::CheckTicket(const v1::WorkerAssignment& assignment,
 }
 
 // Who starts jobs here. LIVE-5.04
-Status HostMachine::MayStartJob(const v1::HostOrder& order) const {
-  const std::string& job = order.run_job().job().name();
+Status HostMachine::MayStartJob(const v1::HostOrder& order,
+                                const v1::WorkerAssignment& assignment) const {
+  const std::string& job = assignment.job().name();
   switch (setup_.options.start()) {
     case v1::MachineOptions::START_PERSON:
       if (order.has_by_person()) return {};
@@ -153,16 +154,26 @@ void HostMachine::BeginsJob(const v1::WorkerAssignment& assignment, const HostTi
   TellControl();
 }
 
-// A job whose run begins where that of another one was cut off: whoever decided so has looked at
-// the machine. LIVE-5.10
-Status HostMachine::ContinueJob(const v1::HostOrder& order, const HostTime& now) {
+// Whether a job may begin at a step: where that of another one was cut off, a person has looked at
+// the machine and decided so. LIVE-5.10
+Status HostMachine::MayBeginAtStep(const v1::HostOrder& order,
+                                   const v1::WorkerAssignment& assignment) const {
+  const std::string& cut_off = assignment.job().continues();
+  if (cut_off.empty()) {
+    if (auto why = WhyNoJob(order.caller())) return *std::move(why);
+    return MayStartJob(order, assignment);
+  }
+  if (inspect_due_ && inspect_job_ == cut_off) return {};
+  return Error{ErrorCode::kCellMachineState, cut_off + " waits for no decision here", {}};
+}
+
+// A job whose run begins at a step, as the preview of its start has it.
+Status HostMachine::BeginJobAtStep(const v1::HostOrder& order, const HostTime& now) {
   mark_due_ = true;
   const v1::WorkerAssignment& assignment = order.continue_job().assignment();
-  if (!inspect_due_ || inspect_job_ != assignment.job().continues()) {
-    return Error{ErrorCode::kCellMachineState,
-                 assignment.job().continues() + " waits for no decision here",
-                 {}};
-  }
+  const bool continues = !assignment.job().continues().empty();
+  if (const Status may = MayBeginAtStep(order, assignment); !may) return may.error();
+  const v1::ControlLease::OnLoss armed_on_loss = arms_.on_loss();
   auto start = starts_.Take(order.continue_job().start(), Basis(), now);
   if (!start) return start.error();
   brought_.Clear();
@@ -175,25 +186,32 @@ Status HostMachine::ContinueJob(const v1::HostOrder& order, const HostTime& now)
     return found != stored.end() ? *found->second.object : std::string();
   };
   const bool same = object(*brought) == object(start->brought);
-  if (start->program != assignment.main_program() || !same || !start->base) {
+  if (start->program != assignment.main_program() || !same ||
+      continues != start->base.has_value()) {
     brought_.Clear();
     return Error{ErrorCode::kCellPreviewStale, "it was for another run", {}};
+  }
+  const Status proved = continues ? Status() : CheckTicket(assignment, *brought);
+  if (!proved) {
+    brought_.Clear();
+    return proved.error();
   }
   start->source = machine::StartSource::kQueue;
   start->brought = *std::move(brought);
   const auto& request = order.continue_job().start();
-  start->halt_at_entry = !request.has_halt_at_entry() || request.halt_at_entry();
+  start->halt_at_entry = request.has_halt_at_entry() ? request.halt_at_entry()
+                                                     : continues || setup_.options.halt_at_entry();
   job_ = assignment.job().name();
   inspect_due_ = false;
   const Status begun = Apply(*start, &order);
   if (!begun) {
-    inspect_due_ = true;
+    inspect_due_ = continues;
     job_.clear();
     brought_.Clear();
     return begun.error();
   }
-  SettleInspection(order);
-  BeginsJob(assignment, now);
+  if (continues) SettleInspection(order);
+  BeginsJob(assignment, now, armed_on_loss);
   if (start->halt_at_entry) held_for_ = v1::HOLD_REASON_ENTRY;
   return {};
 }

@@ -70,7 +70,8 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
     // The pass that it was in.
     if (request.occurrence() == 0) occurrence_at = SimTime(cut_off_base_->until_ns());
   }
-  if (again && order.has_brought()) {
+  // Of a job: what it brings is run, and not what is stored.
+  if (order.has_brought() && (again || order.brought().slot() == task.start.program)) {
     auto brought = recording::ProgramOf(order.brought(), *setup_.family, *parameters_);
     if (!brought) return brought.error();
     const auto stored = machine().memory().programs.find(task.start.program);

@@ -45,6 +45,10 @@ void JobBook::Again(std::string_view name, const std::string& caller, const std:
   *job.mutable_labels() = told.labels();
   job.set_priority(told.priority());
   if (told.has_run()) *job.mutable_run() = told.run();
+  if (continues) {  // where, a preview has said
+    job.mutable_run()->clear_step();
+    job.mutable_run()->clear_confirmations();
+  }
   v1::ProgramText& program = *job.mutable_inline_program();
   program.set_content(*std::move(bytes));
   if (const auto brought = ProgramBrought(told)) {

@@ -25,8 +25,6 @@ constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as
 
 // What the contract has and this version does not do: "" where the job asks for none of it.
 std::string_view FieldOfLater(const v1::Job& job) {
-  if (job.run().has_step()) return "run.step";
-  if (job.run().confirmations_size() > 0) return "run.confirmations";
   if (!job.continues().empty()) return "continues";
   return {};
 }
@@ -103,6 +101,23 @@ namespace {
 
 // A RUN has what moves a machine and nothing else: its override and inputs are those of the
 // machine.
+// Where it begins, and what a person has seen to there. LIVE-6.03
+Status CheckStep(const v1::RunOptions& run) {
+  constexpr int kConfirmationsMax = 16;
+  if (run.confirmations_size() > 0 && !run.has_step())
+    return InvalidArgument("job.run.confirmations: they are asked for by a start at a step alone");
+  if (!run.has_step()) return {};
+  if (run.step().step() < 1) return InvalidArgument("job.run.step.step: steps count from 1");
+  if (run.step().program() < 0 || run.step().program() > 99)
+    return InvalidArgument("job.run.step.program: 1 to 99, or 0 for the program itself");
+  if (run.unzeroed())
+    return InvalidArgument("job.run.unzeroed: what zeroes the axes begins at its first step");
+  if (run.confirmations_size() > kConfirmationsMax)
+    return InvalidArgument("job.run.confirmations has more than 16");
+  const bool known = std::ranges::all_of(run.confirmations(), v1::Confirmation_IsValid);
+  return known ? Status() : InvalidArgument("job.run.confirmations: one is none that there is");
+}
+
 Status CheckRun(const v1::Job& job) {
   if (job.kind() != v1::JOB_KIND_RUN)
     return job.has_run() ? InvalidArgument("job.run is for jobs of kind RUN") : Status();
@@ -114,7 +129,7 @@ Status CheckRun(const v1::Job& job) {
     return InvalidArgument("job.run.on_loss is none that there is");
   if (!job.run().ticket().empty() && !ParseJobName(job.run().ticket()))
     return InvalidArgument("job.run.ticket: the simulation, such as jobs/17");
-  return {};
+  return CheckStep(job.run());
 }
 
 Status CheckLabels(const v1::Job& job) {

@@ -48,9 +48,23 @@ std::optional<Error> WhyNotBegun(const storage::JobRecord& job) {
   return Error{ErrorCode::kCellPrecondition, JobName(job.id) + " waits no more", {}};
 }
 
-bool Continues(const storage::JobRecord& job) {
+v1::Job SpecificationOf(const storage::JobRecord& job) {
   v1::Job specification;
-  return specification.ParseFromString(job.specification) && !specification.continues().empty();
+  if (!specification.ParseFromString(job.specification)) specification.Clear();
+  return specification;
+}
+
+bool Continues(const storage::JobRecord& job) { return !SpecificationOf(job).continues().empty(); }
+
+// What a preview that may not begin says, as a host that refuses the job would.
+v1::HostOrderAnswer RefusedBy(const v1::PreviewStartResponse& preview) {
+  v1::HostOrderAnswer answer;
+  v1::ErrorDetail& refusal = *answer.mutable_refusal();
+  refusal.set_code(CodeText(ErrorCode::kCellStepUnreachable));
+  if (preview.refusals().empty()) return answer;
+  refusal.set_code(preview.refusals(0).code());
+  refusal.set_message(preview.refusals(0).message());
+  return answer;
 }
 
 // Whether this is nothing to a job of this caller.
@@ -262,11 +276,13 @@ void RunQueue::Send(const std::string& machine, const storage::LeasedJob& leased
     End(leased, storage::CancelledOutcome());
     return done(Error{ErrorCode::kCellCancelled, JobName(leased.job.id) + " was cancelled", {}});
   }
-  Result<v1::WorkerAssignment> assignment =
-      ForHost(needs_.store, needs_.config, leased, order.has_continue_job());
+  const bool continues = Continues(leased.job);
+  if (!order.has_continue_job() && SpecificationOf(leased.job).run().has_step())
+    return LookAtStep(machine, leased, std::move(order), std::move(done));
+  Result<v1::WorkerAssignment> assignment = ForHost(needs_.store, needs_.config, leased, continues);
   if (!assignment) {
     if (storage::IsTroubleOfTheStore(assignment.error())) {
-      GiveBack(leased, "its program could not be read", order.has_continue_job());
+      GiveBack(leased, "its program could not be read", continues);
     } else {
       End(leased, {.state = storage::JobState::kFailed,
                    .code = assignment.error().code,
@@ -291,6 +307,47 @@ void RunQueue::Send(const std::string& machine, const storage::LeasedJob& leased
                    });
 }
 
+// One that begins at a step: what it would do comes first, as a person has it. LIVE-6.08
+void RunQueue::LookAtStep(const std::string& machine, const storage::LeasedJob& leased,
+                          v1::HostOrder order, Hosts::Answered done) {
+  auto program = ProgramOf(leased.job.id);
+  if (!program) {
+    GiveBack(leased, "its program could not be read");
+    return done(program.error());
+  }
+  const v1::RunOptions run = SpecificationOf(leased.job).run();
+  v1::HostOrder question;
+  question.set_caller(order.caller());
+  v1::PreviewStartRequest& asked = *question.mutable_preview_start();
+  asked.set_machine(MachineName(machine));
+  asked.set_program(program->slot());
+  *asked.mutable_step() = run.step();
+  *question.mutable_brought() = *std::move(program);
+  if (auto milling = MillingOf(leased.job.id)) *asked.mutable_milling() = *std::move(milling);
+  {
+    const std::lock_guard lock(mutex_);
+    beginning_[JobName(leased.job.id)] = machine;
+  }
+  needs_.hosts.Ask(machine, std::move(question),
+                   [this, machine, leased, run, order = std::move(order),
+                    done = std::move(done)](Result<v1::HostOrderAnswer> answer) mutable {
+                     {
+                       const std::lock_guard lock(mutex_);
+                       beginning_.erase(JobName(leased.job.id));
+                     }
+                     if (!answer || answer->has_refusal()) return done(std::move(answer));
+                     const v1::PreviewStartResponse& preview = answer->preview();
+                     if (preview.preview_token().empty()) return done(RefusedBy(preview));
+                     v1::StartAtStepRequest& start = *order.mutable_continue_job()->mutable_start();
+                     start.set_machine(MachineName(machine));
+                     start.set_preview_token(preview.preview_token());
+                     *start.mutable_confirmations() = run.confirmations();
+                     needs_.executor.Post([this, machine, leased, order, done] {
+                       Send(machine, leased, order, done);
+                     });
+                   });
+}
+
 // One that was not answered may have begun: what its host says later tells.
 void RunQueue::Answered(const std::string& machine, const storage::LeasedJob& leased,
                         const Result<v1::HostOrderAnswer>& answer) {
@@ -299,7 +356,9 @@ void RunQueue::Answered(const std::string& machine, const storage::LeasedJob& le
   const v1::ErrorDetail& refusal = answer->refusal();
   const ErrorCode code = CodeOf(refusal);
   spdlog::info("{}: {} {}", JobName(leased.job.id), refusal.code(), refusal.message());
-  if (!MayGoBetterLater(code)) {
+  // Somebody has looked at another start meanwhile, or the machine was changed.
+  const bool looked_at_again = code == ErrorCode::kCellPreviewStale && !Continues(leased.job);
+  if (!looked_at_again && !MayGoBetterLater(code)) {
     return End(
         leased,
         {.state = storage::JobState::kFailed, .code = code, .detail = Detail(refusal.message())});
@@ -318,8 +377,14 @@ Result<v1::AssignedProgram> RunQueue::ProgramOf(std::int64_t job) {
   return ProgramOfJob(needs_.store, job);
 }
 
-Result<v1::Job> RunQueue::SpecificationOf(std::int64_t job) {
-  return server::SpecificationOf(needs_.store, job);
+std::optional<v1::Milling> RunQueue::MillingOf(std::int64_t job) {
+  const auto run = SpecificationOf(needs_.store, job);
+  if (!run) return std::nullopt;
+  const auto id = ParseJobName(run->run().ticket());
+  if (!id) return std::nullopt;
+  const auto simulation = SpecificationOf(needs_.store, *id);
+  if (!simulation || !simulation->simulation().has_milling()) return std::nullopt;
+  return simulation->simulation().milling();
 }
 
 void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answered done) {

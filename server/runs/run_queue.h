@@ -53,7 +53,8 @@ class RunQueue {
   }
   // The program of a job, whole. Errors: those of the store.
   Result<v1::AssignedProgram> ProgramOf(std::int64_t job);
-  Result<v1::Job> SpecificationOf(std::int64_t job);
+  // Block and tool of the simulation that proves it; none: nobody has told them.
+  std::optional<v1::Milling> MillingOf(std::int64_t job);
   // A person begins this job of the queue: as `order` says, without its program, a run_job or a
   // continue_job. Where its machine refuses that, the first waits on, and the other has ended. May
   // block. `done` is called once, on any thread. LIVE-5.04, 5.10
@@ -71,6 +72,8 @@ class RunQueue {
   void Begin(const std::string& machine, const storage::LeasedJob& leased);
   void Send(const std::string& machine, const storage::LeasedJob& leased, v1::HostOrder order,
             Hosts::Answered done);
+  void LookAtStep(const std::string& machine, const storage::LeasedJob& leased, v1::HostOrder order,
+                  Hosts::Answered done);
   void Answered(const std::string& machine, const storage::LeasedJob& leased,
                 const Result<v1::HostOrderAnswer>& answer);
   void GiveBack(const storage::LeasedJob& leased, const std::string& why, bool held = false);

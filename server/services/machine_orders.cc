@@ -194,7 +194,7 @@ grpc::ServerUnaryReactor* MachineService::StartJob(grpc::CallbackServerContext* 
 grpc::ServerUnaryReactor* MachineService::PreviewStart(grpc::CallbackServerContext* context,
                                                        const v1::PreviewStartRequest* request,
                                                        v1::PreviewStartResponse* response) {
-  // The program that a job brought, and the block that it mills, are with the job.
+  // The program that a job brought is with the job, its block with the simulation that proves it.
   const auto machine = ParseMachineName(request->machine());
   const auto status =
       machine && live_.hosts != nullptr ? live_.hosts->StatusOf(*machine) : std::nullopt;
@@ -206,11 +206,9 @@ grpc::ServerUnaryReactor* MachineService::PreviewStart(grpc::CallbackServerConte
       auto brought = runs->ProgramOf(*id);
       if (!brought) return brought.error();
       *order.mutable_brought() = *std::move(brought);
-      const auto cut_off = runs->SpecificationOf(*id);
-      if (!cut_off) return cut_off.error();
       v1::PreviewStartRequest& asked = *order.mutable_preview_start();
-      if (!asked.has_milling() && cut_off->simulation().has_milling())
-        *asked.mutable_milling() = cut_off->simulation().milling();
+      if (asked.has_milling()) return {};
+      if (auto milling = runs->MillingOf(*id)) *asked.mutable_milling() = *std::move(milling);
       return {};
     };
   }

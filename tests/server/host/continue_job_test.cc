@@ -154,6 +154,51 @@ TEST_F(ContinueJobTest, TheWayIsLookedAtAgainstThePart) {
   EXPECT_NE(Preview(10, sides).preview().preview_token(), "");
 }
 
+// LIVE-6.05, LIVE-5.02: a job of the queue that begins at a step of the program that it brought:
+// the approach is its first phase, it halts at its entry where the machine has that, and it ends.
+TEST_F(ContinueJobTest, AJobBeginsAtAStep) {
+  for (const bool halts : {false, true}) {
+    options_.set_halt_at_entry(halts);
+    Make();
+    host_->Begin({}, now_);
+    const std::string text = std::string(kSquare) + "PU100,100;";  // other than what is stored
+    v1::PreviewStartRequest asked;
+    asked.set_program(5);
+    const v1::PreviewStartResponse preview = Preview(8, text, asked).preview();
+    ASSERT_NE(preview.preview_token(), "");
+    const v1::HostOrder order = Continue(preview.preview_token(), "", text);
+    // Of another program than the one that was looked at.
+    v1::HostOrder other = order;
+    other.mutable_continue_job()->mutable_assignment()->mutable_programs(0)->set_content(kSquare);
+    other.mutable_continue_job()->mutable_start()->set_request_id("other");
+    EXPECT_EQ(Do(other).refusal().code(), "CELL-E9428");
+    v1::HostOrder unseen = order;
+    unseen.mutable_continue_job()->mutable_start()->clear_confirmations();
+    unseen.mutable_continue_job()->mutable_start()->set_request_id("unseen");
+    EXPECT_EQ(Do(unseen).refusal().code(), "CELL-E9421");
+    const v1::HostOrderAnswer begun = Do(order);
+    ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
+    EXPECT_EQ(begun.status().run().job(), "jobs/18");
+    EXPECT_EQ(begun.status().run().phase(), v1::RUN_PHASE_APPROACH);
+    EXPECT_TRUE(begun.status().cut_off_job().empty());
+    if (halts) {
+      Until(v1::MACHINE_STATE_HELD);
+      EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_ENTRY);
+      Control(v1::ControlLease::ON_LOSS_GO_ON);
+      Do(Resume());
+    }
+    Until(v1::MACHINE_STATE_IDLE);
+    // A mode in which the queue starts nothing.
+    v1::HostOrder mode;
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
+    mode.mutable_mode()->set_control_token(token_);
+    mode.mutable_mode()->set_mode(v1::OPERATING_MODE_CYCLE);
+    ASSERT_FALSE(Do(mode).has_refusal());
+    const std::string token = Preview(8, text, asked).preview().preview_token();
+    EXPECT_EQ(Do(Continue(token, "", text)).refusal().code(), "CELL-E9423");
+  }
+}
+
 // LIVE-5.10, LIVE-2.05: what is refused moves nothing, and the machine waits on.
 TEST_F(ContinueJobTest, WhatIsRefusedLeavesTheDecisionOpen) {
   CutOff(45s);

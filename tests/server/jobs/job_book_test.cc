@@ -260,9 +260,10 @@ TEST_F(JobBookTest, ARunAsksForNothingOfASimulation) {
          r.mutable_job()->clear_simulation();
          r.mutable_job()->set_attempts_max(2);
        }},
-      {"RUN from a step", ErrorCode::kCellUnimplemented, [](auto& r) {
+      {"RUN from no step", kInvalid, [](auto& r) {
          r.mutable_job()->set_kind(v1::JOB_KIND_RUN);
-         r.mutable_job()->mutable_run()->mutable_step()->set_step(3);
+         r.mutable_job()->clear_simulation();
+         r.mutable_job()->mutable_run()->mutable_step()->set_step(0);
        }}};
   RefusesEach(cases);
 }

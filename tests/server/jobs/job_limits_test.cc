@@ -218,8 +218,27 @@ TEST_F(JobLimits, OfWhatComesLater) {
   EXPECT_EQ(run([](v1::RunOptions&) {}), std::nullopt);
   EXPECT_EQ(run([](v1::RunOptions& how) { how.set_ticket("t"); }), kInvalid);
   EXPECT_EQ(run([](v1::RunOptions& how) { how.set_ticket("jobs/99"); }), ErrorCode::kCellNotFound);
-  EXPECT_EQ(run([](v1::RunOptions& how) { how.add_confirmations(v1::CONFIRMATION_INSPECTED); }),
-            kLater);
+  // LIVE-6.03: where it begins at a step, and only there, somebody has seen to something.
+  const auto at = [&](int program, int step, const std::function<void(v1::RunOptions&)>& change) {
+    return run([&](v1::RunOptions& how) {
+      how.mutable_step()->set_program(program);
+      how.mutable_step()->set_step(step);
+      change(how);
+    });
+  };
+  const auto nothing = [](v1::RunOptions&) {};
+  for (const int program : {0, 1, 99}) EXPECT_EQ(at(program, 1, nothing), std::nullopt);
+  for (const int program : {-1, 100}) EXPECT_EQ(at(program, 1, nothing), kInvalid);
+  for (const int step : {0, -1}) EXPECT_EQ(at(1, step, nothing), kInvalid);
+  const auto seen = [](v1::RunOptions& how) { how.add_confirmations(v1::CONFIRMATION_TOOL); };
+  EXPECT_EQ(at(1, 1, seen), std::nullopt);
+  EXPECT_EQ(run(seen), kInvalid);
+  EXPECT_EQ(at(1, 1,
+               [](v1::RunOptions& how) {
+                 for (int i = 0; i < 17; ++i) how.add_confirmations(v1::CONFIRMATION_TOOL);
+               }),
+            kInvalid);
+  EXPECT_EQ(at(1, 1, [](v1::RunOptions& how) { how.set_unzeroed(true); }), kInvalid);
   EXPECT_EQ(Asked([](v1::Job& job) { job.set_continues("jobs/1"); }), kLater);
 }
 

@@ -85,6 +85,15 @@ class RunQueueTest : public testing::Test {
     request.mutable_answer()->mutable_refusal()->set_message("why");
     hosts.Receive(*link, std::move(request));
   }
+  // What a start at a step would do: with a token, or with why not.
+  void Look(const v1::HostOrder& order, const std::string& token, const std::string& code = {}) {
+    v1::HostRequest request;
+    request.mutable_answer()->set_number(order.number());
+    v1::PreviewStartResponse& preview = *request.mutable_answer()->mutable_preview();
+    preview.set_preview_token(token);
+    if (!code.empty()) preview.add_refusals()->set_code(code);
+    hosts.Receive(*link, std::move(request));
+  }
   void Accept(const v1::HostOrder& order) {
     v1::HostRequest request;
     request.mutable_answer()->set_number(order.number());
@@ -133,6 +142,54 @@ class RunQueueTest : public testing::Test {
   std::shared_ptr<FakeLink> link = std::make_shared<FakeLink>();
   std::int64_t fence = 0;
 };
+
+// LIVE-6.03, LIVE-6.08: one that begins at a step is looked at first, and then begins there with
+// what somebody has seen to.
+TEST_F(RunQueueTest, AJobThatBeginsAtAStepIsLookedAtFirst) {
+  Tell(Idle());
+  const std::int64_t job = Submit([](v1::Job& asked) {
+    asked.set_inline_slot(7);
+    asked.mutable_run()->mutable_step()->set_step(2);
+    asked.mutable_run()->add_confirmations(v1::CONFIRMATION_TOOL);
+  });
+  const v1::HostOrder question = NewestOrder(1);
+  ASSERT_TRUE(question.has_preview_start());
+  EXPECT_EQ(question.preview_start().program(), 7);
+  EXPECT_EQ(question.preview_start().step().step(), 2);
+  EXPECT_EQ(question.brought().slot(), 7);
+  EXPECT_EQ(question.brought().content(), "PA;PU100,0;");
+  EXPECT_EQ(question.caller(), "anna");
+  EXPECT_EQ(runs.MachineOf(JobName(job)), "mill-1");
+  Look(question, "a token");
+  const v1::HostOrder order = NewestOrder(2);
+  ASSERT_TRUE(order.has_continue_job());
+  EXPECT_EQ(order.continue_job().assignment().job().name(), JobName(job));
+  EXPECT_EQ(order.continue_job().start().preview_token(), "a token");
+  ASSERT_EQ(order.continue_job().start().confirmations_size(), 1);
+  EXPECT_EQ(order.continue_job().start().confirmations(0), v1::CONFIRMATION_TOOL);
+  Accept(order);
+  Settle();
+  EXPECT_EQ(Job(job).state, JobState::kRunning);
+}
+
+// LIVE-6.04, LIVE-6.08: where it may not begin there it ends before anything moves; where somebody
+// looked at another start meanwhile it waits, and is looked at again.
+TEST_F(RunQueueTest, AJobThatMayNotBeginAtItsStepEnds) {
+  const auto at = [](v1::Job& asked) { asked.mutable_run()->mutable_step()->set_step(2); };
+  Tell(Idle());
+  const std::int64_t refused = Submit(at);
+  Look(NewestOrder(1), "", "CELL-E9426");
+  EXPECT_TRUE(Eventually([&] { return Job(refused).state == JobState::kFailed; }));
+  EXPECT_EQ(Job(refused).outcome->code, ErrorCode::kCellStepUnreachable);
+  const std::int64_t waits = Submit(at);
+  Look(NewestOrder(2), "a token");
+  Refuse(NewestOrder(3), "CELL-E9428");
+  EXPECT_TRUE(Eventually([&] { return Job(waits).state == JobState::kQueued; }));
+  EXPECT_FALSE(Job(waits).blocked);
+  clock.Advance(RunQueue::kRests);
+  runs.WakeAll();
+  EXPECT_TRUE(NewestOrder(4).has_preview_start());
+}
 
 // LIVE-5.01, LIVE-5.04: it goes to its host as soon as that can begin it, and is RUNNING in the
 // store before; one at a time.
