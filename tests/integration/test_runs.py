@@ -96,6 +96,27 @@ class RunsTest(LiveTestCase):
         picture = self.cell.jobs().GetJobPicture(job_pb2.GetJobPictureRequest(name=name))
         self.assertIn(b"<svg", picture.content)
 
+    # LIVE-6.03, LIVE-6.04: a job begins at a step with what somebody has seen to, and not without; nor where no step is.
+    def test_a_job_begins_at_a_step(self):
+        self.enable()
+        program = "PA;PA;VS10;PU200,0;PU400,0;PU0,0;"
+        ended = {"SUCCEEDED", "FAILED"}
+        seen = ["CONFIRMATION_TOOL", "CONFIRMATION_CLAMPS", "CONFIRMATION_ORIGIN_VALID"]
+        unseen = self.submit(program, run={"step": {"step": 5}})
+        self.assertEqual(self.becomes(unseen, *ended), "FAILED")
+        self.assertIn("nobody has seen to", self.job(unseen).outcome.message)
+        none = self.submit(program, run={"step": {"step": 50}, "confirmations": seen})
+        self.assertEqual(self.becomes(none, *ended), "FAILED")
+        self.assertEqual(self.job(none).outcome.code, "CELL-E9426")
+        self.assertFalse(any(one.HasField("run_begun") for one in self.events(none)))
+        name = self.submit(program, run={"step": {"step": 5}, "confirmations": seen})
+        self.assertEqual(self.becomes(name, *ended), "SUCCEEDED", self.job(name).outcome)
+        eventually(lambda: self.events(name)[-1].HasField("products_made"), 30)
+        given = subprocess.run([os.path.join(BIN, "rmlcell"), "submit", "mill-1", "--kind", "run", "--step", "x", "--slot", "7",
+                                "--server", self.cell.address], capture_output=True, text=True, timeout=30)
+        self.assertEqual(given.returncode, 2, given.stderr)
+        self.assertIn("is no step", given.stderr)
+
     # LIVE-3.40, LIVE-9.16: what a machine has recorded comes as a file, and plays the same without a server.
     def test_a_recording_is_played_again(self):
         self.enable()
