@@ -17,8 +17,12 @@ namespace rmlcell::server {
 namespace {
 
 const google::protobuf::Message* RequestOf(const v1::HostOrder& order) {
-  if (order.has_continue_job()) return &order.continue_job().start();
   if (order.has_by_person()) return &order.by_person();
+  if (order.has_continue_job()) {  // a person decided that, or it is the queue's, as run_job
+    const v1::ContinueJob& job = order.continue_job();
+    if (job.assignment().job().continues().empty()) return &job.assignment();
+    return &job.start();
+  }
   const auto* set = order.GetReflection()->GetOneofFieldDescriptor(
       order, order.GetDescriptor()->FindOneofByName("request"));
   return set == nullptr ? nullptr : &order.GetReflection()->GetMessage(order, set);

@@ -166,7 +166,7 @@ TEST_F(ContinueJobTest, AJobBeginsAtAStep) {
     asked.set_program(5);
     const v1::PreviewStartResponse preview = Preview(8, text, asked).preview();
     ASSERT_NE(preview.preview_token(), "");
-    const v1::HostOrder order = Continue(preview.preview_token(), "", text);
+    v1::HostOrder order = Continue(preview.preview_token(), "", text);
     // Of another program than the one that was looked at.
     v1::HostOrder other = order;
     other.mutable_continue_job()->mutable_assignment()->mutable_programs(0)->set_content(kSquare);
@@ -176,6 +176,7 @@ TEST_F(ContinueJobTest, AJobBeginsAtAStep) {
     unseen.mutable_continue_job()->mutable_start()->clear_confirmations();
     unseen.mutable_continue_job()->mutable_start()->set_request_id("unseen");
     EXPECT_EQ(Do(unseen).refusal().code(), "CELL-E9421");
+    order.mutable_continue_job()->mutable_start()->clear_control_token();  // the queue has none
     const v1::HostOrderAnswer begun = Do(order);
     ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
     EXPECT_EQ(begun.status().run().job(), "jobs/18");
