@@ -10,8 +10,8 @@
 namespace rmlcell::motion {
 
 // The curve between two lines passed with a steady head (PlainCorner) depends on the angle alone,
-// but for its scale, the cut: its figures at cut 1, some of them from tables. Each table is made
-// when it is first asked, and never changed. motion.md 4.2, 4.3. `half_sine` and `half_cosine` are
+// but for its scale, the cut: its figures at cut 1, some of them from tables (corner_nodes.h).
+// motion.md 4.2, 4.3. `half_sine` and `half_cosine` are
 // those of half the turn.
 inline double CornerRho(double half_cosine) { return 2.0 * std::sqrt(half_cosine); }
 
