@@ -161,6 +161,7 @@ TEST_F(ContinueJobTest, AJobBeginsAtAStep) {
     options_.set_halt_at_entry(halts);
     Make();
     host_->Begin({}, now_);
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
     const std::string text = std::string(kSquare) + "PU100,100;";  // other than what is stored
     v1::PreviewStartRequest asked;
     asked.set_program(5);
@@ -185,13 +186,11 @@ TEST_F(ContinueJobTest, AJobBeginsAtAStep) {
     if (halts) {
       Until(v1::MACHINE_STATE_HELD);
       EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_ENTRY);
-      Control(v1::ControlLease::ON_LOSS_GO_ON);
       Do(Resume());
     }
     Until(v1::MACHINE_STATE_IDLE);
     // A mode in which the queue starts nothing.
     v1::HostOrder mode;
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
     mode.mutable_mode()->set_control_token(token_);
     mode.mutable_mode()->set_mode(v1::OPERATING_MODE_CYCLE);
     ASSERT_FALSE(Do(mode).has_refusal());
