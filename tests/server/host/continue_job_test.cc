@@ -191,6 +191,7 @@ TEST_F(ContinueJobTest, AJobBeginsAtAStep) {
     Until(v1::MACHINE_STATE_IDLE);
     // A mode in which the queue starts nothing.
     v1::HostOrder mode;
+    Control(v1::ControlLease::ON_LOSS_GO_ON);  // that of before has run out
     mode.mutable_mode()->set_control_token(token_);
     mode.mutable_mode()->set_mode(v1::OPERATING_MODE_CYCLE);
     ASSERT_FALSE(Do(mode).has_refusal());
