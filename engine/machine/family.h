@@ -253,6 +253,13 @@ class MachineFamily {
   // Errors: ObjectCorrupt (7034), CellInvalidArgument for that of another program.
   virtual Status CheckExecutable(std::string_view /*executable*/, int /*slot*/) const { return {}; }
 
+  // Whether all programs are there that a run of this one can come to. Errors: those that the run
+  // would end with.
+  virtual Status CheckCalls(const std::map<int, StoredProgram>& /*programs*/,
+                            const Parameters& /*parameters*/, int /*main_slot*/) const {
+    return {};
+  }
+
   // Which executables of a program memory are stale, by slot. `deleted` as in RunSetup.
   virtual std::vector<StaleExecutable> FindStaleExecutables(
       const std::map<int, StoredProgram>& /*programs*/, const std::set<int>& /*deleted*/) const {

@@ -144,7 +144,8 @@ void Machine::CloseRun() {
                    .lasted = state.time,
                    .steps = run_->steps_executed(),
                    .figures = run_->figures()});
-  if (!std::exchange(selected_, false) && !note_.by_hand) shown_ = status().shown;
+  const bool selects = !std::exchange(selected_, false) && !note_.by_hand && !comes_along_;
+  if (selects) shown_ = status().shown;
   if (outcome.code) Show(*outcome.code);
   if (outcome.code && Lookup(*outcome.code).severity == Severity::kAlarm)
     Raise(*outcome.code, outcome.detail, outcome.place);
@@ -336,10 +337,11 @@ Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> h
   note_.by_hand = hand.has_value();
   note_.hand = hand.value_or(HandRun::kZero);
   run_ = *std::move(run);
+  comes_along_ = !hand && input.brought.has_value();
   if (hand) return {};
   base_ = std::move(base);
   not_in_base_ = SimTime(0);
-  shown_ = {.program = input.program};
+  if (!comes_along_) shown_ = {.program = input.program};
   run_->SetBreakpoints(breakpoints_);
   return {};
 }

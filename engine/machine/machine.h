@@ -125,6 +125,11 @@ class Machine {
                               bool fast = false) const;
   Panel panel() const;  // what is to be seen at the machine itself
   const MachineMemory& memory() const { return memory_; }
+  // What START without a program takes; 0: none. Of a run whose program came along what was
+  // selected before.
+  int selected_program() const {
+    return run_ != nullptr && comes_along_ ? shown_.program : status().shown.program;
+  }
 
   // Errors: those of WriteVariable.
   Status MayWrite(std::string_view name, double value) const {
@@ -243,6 +248,7 @@ class Machine {
   std::int64_t last_alarm_ = 0;
   ShownStep shown_{};                   // what the last run left, or was selected since
   bool selected_ = false;               // while the open run stands
+  bool comes_along_ = false;            // the open run is of a program that nobody has selected
   std::optional<ErrorCode> message_;    // not cleared yet
   RunNote note_{};                      // of the run that was begun last
   std::optional<StartBase> base_{};     // of the open run

@@ -134,7 +134,8 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
            .entered = RunEntry{.at = preview.reach.target, .run_time = preview.run_time}};
   base_ = std::move(base);
   not_in_base_ = SimTime(0);
-  shown_ = {.program = input.program};
+  comes_along_ = input.brought.has_value();
+  if (!comes_along_) shown_ = {.program = input.program};
   return {};
 }
 

@@ -101,4 +101,10 @@ v1::StandardWords StandardWordsOf(const v1::MachineStatus& status) {
   return words;
 }
 
+bool IsAtRest(v1::MachineState state) {
+  return state == v1::MACHINE_STATE_OFF || state == v1::MACHINE_STATE_NOT_ZEROED ||
+         state == v1::MACHINE_STATE_IDLE || state == v1::MACHINE_STATE_ALARM ||
+         state == v1::MACHINE_STATE_INSPECT;
+}
+
 }  // namespace rmlcell::bridge

@@ -9,4 +9,7 @@ namespace rmlcell::bridge {
 // machines with a device. Computed of the rest of the status, and stored nowhere. LIVE-2.14, 2.15
 v1::StandardWords StandardWordsOf(const v1::MachineStatus& status);
 
+// Whether it stands and has no run open: nothing is to be held there.
+bool IsAtRest(v1::MachineState state);
+
 }  // namespace rmlcell::bridge

@@ -212,6 +212,9 @@ void Cell::Parts::MakeHosts(const std::string& host_token) {
                                                     .config = config,
                                                     .executor = *executor,
                                                     .server = instance_id});
+  hosts->OnAwaited([this](const std::string& machine) {
+    return host_processes != nullptr && host_processes->IsEnabled(machine);
+  });
   hosts->OnNews([this](const std::string& machine) { runs->Wake(machine); });
   run_products = std::make_unique<RunProducts>(
       RunProducts::Needs{.store = *store,

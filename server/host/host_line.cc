@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "proto/bridge/standard_words.h"
 #include "rmlcell/v1/host.grpc.pb.h"
 #include "server/base/credentials.h"
 
@@ -19,12 +20,6 @@ constexpr int kAgain_ms = 100;
 // costs. LIVE-3.06, LIVE-3.12
 constexpr std::chrono::milliseconds kHeartbeat{250};
 constexpr std::chrono::milliseconds kHeartbeatAtRest{1200};
-
-bool Rests(v1::MachineState state) {
-  return state == v1::MACHINE_STATE_OFF || state == v1::MACHINE_STATE_NOT_ZEROED ||
-         state == v1::MACHINE_STATE_IDLE || state == v1::MACHINE_STATE_ALARM ||
-         state == v1::MACHINE_STATE_INSPECT;
-}
 
 ErrorCode CodeOf(const grpc::Status& status) {
   switch (status.error_code()) {
@@ -199,7 +194,7 @@ void HostLine::Write() {
       queue_.pop_front();
     } else if (status_) {
       *message.mutable_status() = *std::exchange(status_, std::nullopt);
-      const bool rested = std::exchange(rests, Rests(message.status().state()));
+      const bool rested = std::exchange(rests, bridge::IsAtRest(message.status().state()));
       if (rests || rested) next_heartbeat = Clock::now();
     } else {
       continue;

@@ -135,7 +135,7 @@ class HostMachine : private machine::RunObserver {
                  v1::ControlLease::OnLoss armed_on_loss = v1::ControlLease::ON_LOSS_UNSPECIFIED);
   Result<std::optional<machine::StoredProgram>> ProgramOfJob(
       const v1::WorkerAssignment& assignment);
-  Status CheckTicket(const v1::WorkerAssignment& assignment,
+  Status CheckPrograms(const v1::WorkerAssignment& assignment,
                      const std::optional<machine::StoredProgram>& brought) const;
   std::optional<Error> WhyNoJob(const std::string& caller) const;
   Result<v1::HostOrderAnswer> Control(const v1::HostOrder& order, const HostTime& now);

@@ -66,9 +66,9 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
   brought_.Clear();
   auto brought = ProgramOfJob(assignment);
   if (!brought) return brought.error();
-  if (const Status same = CheckTicket(assignment, *brought); !same) {
+  if (const Status may = CheckPrograms(assignment, *brought); !may) {
     brought_.Clear();
-    return same.error();
+    return may.error();
   }
   job_ = assignment.job().name();
   const Status begun = Apply(machine::StartRun{.program = assignment.main_program(),
@@ -85,17 +85,20 @@ Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
   return {};
 }
 
-// Whether what would run is what was simulated, where the machine asks for that, or the job has it.
-// LIVE-5.02
-Status HostMachine::CheckTicket(const v1::WorkerAssignment& assignment,
-                                const std::optional<machine::StoredProgram>& brought) const {
+// Whether all is there that would run, and it is what was simulated, where the machine asks for
+// that, or the job has it. LIVE-5.02
+Status HostMachine::CheckPrograms(const v1::WorkerAssignment& assignment,
+                                  const std::optional<machine::StoredProgram>& brought) const {
+  const machine::MachineMemory& memory = machine().memory();
+  std::map<int, machine::StoredProgram> programs = memory.programs;
+  if (brought) programs[assignment.main_program()] = *brought;
+  const Status there =
+      setup_.family->CheckCalls(programs, *parameters_, assignment.main_program());
+  if (!there) return there.error();
   if (!assignment.has_ticket()) {
     if (!setup_.options.ticket_needed()) return {};
     return Error{ErrorCode::kCellTicket, "jobs need one here", {}};
   }
-  const machine::MachineMemory& memory = machine().memory();
-  std::map<int, machine::StoredProgram> programs = memory.programs;
-  if (brought) programs[assignment.main_program()] = *brought;
   const std::vector<std::string> changed =
       bridge::ChangedSince(assignment.ticket(), {.family = *setup_.family,
                                                  .parameters = *parameters_,
@@ -191,10 +194,10 @@ Status HostMachine::BeginJobAtStep(const v1::HostOrder& order, const HostTime& n
     brought_.Clear();
     return Error{ErrorCode::kCellPreviewStale, "it was for another run", {}};
   }
-  const Status proved = continues ? Status() : CheckTicket(assignment, *brought);
-  if (!proved) {
+  const Status whole = continues ? Status() : CheckPrograms(assignment, *brought);
+  if (!whole) {
     brought_.Clear();
-    return proved.error();
+    return whole.error();
   }
   start->source = machine::StartSource::kQueue;
   start->brought = *std::move(brought);

@@ -53,7 +53,7 @@ Result<int> ProgramOf(const v1::StartMachineRequest& start, const machine::Machi
     case v1::StartMachineRequest::kProgram:
       return start.program();
     case v1::StartMachineRequest::kSelected: {
-      const int selected = machine.status().shown.program;
+      const int selected = machine.selected_program();
       if (selected > 0) return selected;
       return Invalid("selected: no program was started yet; name one");
     }
@@ -114,7 +114,7 @@ v1::MachineStatus ToProto(const machine::Machine& machine) {
   message.set_override_percent(status.override_percent);
   message.mutable_tool()->set_on(status.run.beam_on || status.run.spindle_on);
   for (const std::string_view lamp : machine.panel().lamps) message.add_lamps(std::string(lamp));
-  message.set_selected_program(status.shown.program);
+  message.set_selected_program(machine.selected_program());
   if (machine.has_gates()) {
     for (const int program : machine.gates()) message.add_gate_programs(program);
   }
@@ -215,7 +215,7 @@ Result<std::vector<MachineInput>> OfPanelKey(const v1::PressPanelKeyRequest& req
 Result<std::optional<MachineInput>> OfSetting(const v1::HostOrder& order,
                                               const machine::Machine& machine) {
   using Input = std::optional<MachineInput>;
-  const int selected = machine.status().shown.program;
+  const int selected = machine.selected_program();
   switch (order.request_case()) {
     case v1::HostOrder::kGates: {
       v1::GatePrograms gates;

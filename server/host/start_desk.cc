@@ -79,7 +79,7 @@ Result<machine::StartAtStep> StartOf(const v1::PreviewStartRequest& request,
     return Error{ErrorCode::kCellInvalidArgument, std::move(why), {}};
   };
   machine::StartAtStep start;
-  const int selected = machine.status().shown.program;
+  const int selected = machine.selected_program();
   start.program = request.program() != 0 ? request.program() : selected;
   if (start.program == 0) return invalid("program: none was started yet; name one");
   start.target.at = {

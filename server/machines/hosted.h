@@ -27,6 +27,7 @@ struct Hosts::Host {
   };
   std::map<std::int64_t, Pending> pending;
   std::optional<v1::MachineStatus> status;
+  bool here = false;  // on the computer of this server
   std::optional<v1::HandboxPanel> handbox;
   std::chrono::steady_clock::time_point heard{};
   std::vector<v1::JournalEntry> waiting;  // to be stored

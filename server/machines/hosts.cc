@@ -15,14 +15,28 @@
 #include "server/machines/hosted.h"
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
+#include "server/records/machine_options.h"
 
 namespace rmlcell::server {
 namespace {
 
 using google::protobuf::util::TimeUtil;
 
-constexpr std::chrono::seconds kSilence{5};  // of a line that has a word four times a second
+// A line that is silent is closed; the machine is LOST before: of one that moves or has a run open,
+// which has a word four times a second, after one second, or three over a network; of one that
+// rests and has a word each second somewhat later. LIVE-2.10
+constexpr std::chrono::seconds kSilence{5};
+constexpr std::chrono::milliseconds kLostHere{1'000};
+constexpr std::chrono::milliseconds kLostElsewhere{3'000};
+constexpr std::chrono::milliseconds kLostAtRest{2'500};
 constexpr std::size_t kWaitingEntriesMax = 100'000;
+
+// Nothing moves as far as anybody knows. LIVE-2.04, LIVE-2.14
+void SetLost(v1::MachineStatus& status) {
+  status.set_state(v1::MACHINE_STATE_LOST);
+  status.clear_speed_mm_s();
+  *status.mutable_words() = bridge::StandardWordsOf(status);
+}
 
 }  // namespace
 
@@ -55,6 +69,20 @@ void Hosts::OnRunOver(std::function<void(const std::string&)> over) {
 void Hosts::RunOver(const std::string& machine) {
   const std::lock_guard lock(changing_);
   if (over_) over_(machine);
+}
+
+void Hosts::OnAwaited(std::function<bool(const std::string&)> is_awaited) {
+  const std::lock_guard lock(mutex_);
+  is_awaited_ = std::move(is_awaited);
+}
+
+bool Hosts::IsAwaited(const std::string& machine) const {
+  std::function<bool(const std::string&)> is_awaited;
+  {
+    const std::lock_guard lock(mutex_);
+    is_awaited = is_awaited_;
+  }
+  return is_awaited && is_awaited(machine);
 }
 
 void Hosts::Changed() {
@@ -318,9 +346,26 @@ void Hosts::Look() {
   for (const HostPointer& host : all) {
     DropLate(host);
     bool silent = false;
+    std::optional<v1::MachineStatus> lost;
     {
       const std::lock_guard lock(host->mutex);
-      silent = !host->gone && needs_.clock() - host->heard > kSilence;
+      const auto quiet = needs_.clock() - host->heard;
+      silent = !host->gone && quiet > kSilence;
+      const std::chrono::milliseconds patience =
+          host->status && bridge::IsAtRest(host->status->state()) ? kLostAtRest
+          : host->here                                            ? kLostHere
+                                                                  : kLostElsewhere;
+      const bool told = host->status && host->status->state() != v1::MACHINE_STATE_LOST &&
+                        host->status->state() != v1::MACHINE_STATE_STARTING;
+      if (!host->gone && told && quiet > patience) {
+        SetLost(*host->status);
+        lost = host->status;
+      }
+    }
+    if (lost) {
+      spdlog::warn("the host of {} is silent", MachineName(host->id));
+      Publish(*host, *std::move(lost));
+      Changed(host->id);
     }
     if (silent) host->link->Close(NotLive("the host is silent"));
   }
@@ -336,7 +381,7 @@ void Hosts::Leave(const HostLink& link) {
     const std::lock_guard lock(host->mutex);
     host->gone = true;
     pending.swap(host->pending);
-    if (host->status) host->status->set_state(v1::MACHINE_STATE_LOST);
+    if (host->status) SetLost(*host->status);
     status = host->status;
     handed_back = host->handed_back;
   }
@@ -451,12 +496,16 @@ v1::MachineStatus StatusOf(const Hosts* hosts, const storage::MachineRecord& mac
   }
   v1::MachineStatus status = StatusOf(machine, unfinished);
   const auto off = hosts != nullptr ? hosts->WhyOff(machine.id) : std::nullopt;
+  const bool disabled = hosts != nullptr && !IsEnabled(machine, true);
+  if (hosts != nullptr && hosts->IsAwaited(machine.id))
+    status.set_state(v1::MACHINE_STATE_STARTING);
+  if (disabled) status.set_state(v1::MACHINE_STATE_OFF);
   if (off) {
     status.set_state(v1::MACHINE_STATE_OFF);
     *status.mutable_off_reason() = bridge::ToProto(
         Diagnostic{.code = off->code, .severity = Severity::kRequest, .detail = off->detail});
   }
-  if (status.state() == v1::MACHINE_STATE_OFF)
+  if (status.state() == v1::MACHINE_STATE_OFF || status.state() == v1::MACHINE_STATE_STARTING)
     *status.mutable_words() = bridge::StandardWordsOf(status);
   return status;
 }

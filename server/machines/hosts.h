@@ -91,6 +91,9 @@ class Hosts {
   // published under the name that follows.
   std::optional<v1::HandboxPanel> HandboxPanelOf(const std::string& machine) const;
   static std::string HandboxOf(const std::string& machine) { return "handboxes/" + machine; }
+  // Asked whether a host of a machine that has none is about to come; any thread.
+  void OnAwaited(std::function<bool(const std::string& machine)> is_awaited);
+  bool IsAwaited(const std::string& machine) const;
   // Called when a machine is hosted, or no more.
   void OnChange(std::function<void()> changed);
   // Called when the state of a machine, or what keeps a job from it, has changed, or something of
@@ -147,9 +150,10 @@ class Hosts {
 
   Needs needs_;
   std::mutex changing_;
-  std::function<void()> changed_;                 // guarded by changing_
-  std::function<void(const std::string&)> news_;  // likewise
-  std::function<void(const std::string&)> over_;  // likewise
+  std::function<bool(const std::string&)> is_awaited_;  // guarded by mutex_
+  std::function<void()> changed_;                       // guarded by changing_
+  std::function<void(const std::string&)> news_;        // likewise
+  std::function<void(const std::string&)> over_;        // likewise
   // Over all lines, and those of a server before: an answer is to one order alone.
   std::atomic<std::int64_t> next_order_ = std::chrono::duration_cast<std::chrono::microseconds>(
                                               std::chrono::system_clock::now().time_since_epoch())

@@ -27,20 +27,24 @@ using google::protobuf::util::TimeUtil;
 constexpr int kProtocol = 1;
 constexpr std::chrono::seconds kObserved{5};  // beyond the lease: its holder is gone (PG-5.09)
 
-// Whether the process that this host is, on this computer, is gone. LIVE-3.02
-bool IsGone(const std::string& host) {
+// Empty: it has no name.
+std::string ThisComputer() {
   std::array<char, 256> name{};
-  if (::gethostname(name.data(), name.size() - 1) != 0) return false;
-  const std::string here = std::string(name.data()) + "/";
-  if (!host.starts_with(here)) return false;
-  const std::string_view rest = std::string_view(host).substr(here.size());
-  const auto process = ParseInteger(rest.substr(0, rest.find('/')));
-  return process && *process > 1 && ::kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH;
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
 // "hall/4711" is of the computer "hall".
 bool IsOf(const std::string& host, const std::string& computer) {
   return !computer.empty() && host.starts_with(computer + "/");
+}
+
+// Whether the process that this host is, on this computer, is gone. LIVE-3.02
+bool IsGone(const std::string& host) {
+  const std::string here = ThisComputer();
+  if (!IsOf(host, here)) return false;
+  const std::string_view rest = std::string_view(host).substr(here.size() + 1);
+  const auto process = ParseInteger(rest.substr(0, rest.find('/')));
+  return process && *process > 1 && ::kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH;
 }
 
 }  // namespace
@@ -64,6 +68,7 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   host->link = link;
   host->lease = taken->lease;
   host->heard = needs_.clock();
+  host->here = IsOf(hello.host(), ThisComputer());
   if (const Status welcome = Welcome(host, hello, *taken); !welcome) return welcome.error();
   std::shared_ptr<HostLink> before;
   {

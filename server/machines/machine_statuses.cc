@@ -75,7 +75,7 @@ void MachineStatuses::Look() {
       if (hosts_ != nullptr && hosts_->IsHosted(id)) {
         hosted.insert(name);
       } else {
-        now[name] = StatusOf(machine, *unfinished).SerializeAsString();
+        now[name] = StatusOf(hosts_, machine, *unfinished).SerializeAsString();
       }
     }
     for (const auto& [name, status] : now) {

@@ -90,6 +90,14 @@ machine::StaleReason ReasonOf(StaleReason reason) {
   return machine::StaleReason::kDamaged;
 }
 
+ObjectLookup ObjectsOf(const std::map<int, machine::StoredProgram>& programs) {
+  return [&programs](int slot) -> std::optional<std::string_view> {
+    const auto found = programs.find(slot);
+    if (found == programs.end() || found->second.object == nullptr) return std::nullopt;
+    return std::string_view(*found->second.object);
+  };
+}
+
 class Family final : public machine::MachineFamily {
  public:
   const machine::FamilyInfo& info() const override { return kInfo; }
@@ -161,6 +169,20 @@ class Family final : public machine::MachineFamily {
                  {}};
   }
 
+  Status CheckCalls(const std::map<int, machine::StoredProgram>& programs,
+                    const machine::Parameters& parameters, int main_slot) const override {
+    const OptimoParameters resolved = Resolve(parameters);
+    // What was made before is what runs, whatever became of its parts. OPT-1.15
+    return optimo::CheckCalls(main_slot, [&](int slot) {
+      const auto found = programs.find(slot);
+      if (found != programs.end() && found->second.executable != nullptr)
+        return DecodeExecutable(*found->second.executable);
+      return Link(slot, ObjectsOf(programs),
+                  {.executable_limit = static_cast<std::uint32_t>(resolved.executable_limit),
+                   .rotary_table = resolved.rotary_table});
+    });
+  }
+
   std::vector<machine::StaleExecutable> FindStaleExecutables(
       const std::map<int, machine::StoredProgram>& programs,
       const std::set<int>& deleted) const override {
@@ -168,14 +190,9 @@ class Family final : public machine::MachineFamily {
     for (const auto& [slot, program] : programs) {
       if (program.executable != nullptr) executables[slot] = *program.executable;
     }
-    const ObjectLookup lookup = [&](int slot) -> std::optional<std::string_view> {
-      const auto found = programs.find(slot);
-      if (found == programs.end() || found->second.object == nullptr) return std::nullopt;
-      return std::string_view(*found->second.object);
-    };
     std::vector<machine::StaleExecutable> stale;
     for (const StaleExecutable& one :
-         optimo::FindStaleExecutables(executables, {lookup, deleted})) {
+         optimo::FindStaleExecutables(executables, {ObjectsOf(programs), deleted})) {
       machine::StaleExecutable& made = stale.emplace_back();
       made.slot = one.slot;
       for (const StalePart& part : one.parts) {

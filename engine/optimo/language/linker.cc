@@ -1,6 +1,7 @@
 #include "engine/optimo/language/linker.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -82,6 +83,18 @@ bool HasEntry(const Module& module) {
 
 Error At(ErrorCode code, Detail detail) { return {code, std::move(detail), {}}; }
 
+// Of CALL and GO with a number; what is computed nobody knows before.
+std::vector<int> CalledSlots(const Module& module) {
+  std::vector<int> slots;
+  for (const Instruction& i : module.instructions) {
+    if (i.op != Op::kCall && i.op != Op::kGo) continue;
+    const Expression nodes = module.Value(i, 0);
+    if (nodes.size() == 1 && nodes[0].op != Node::kVariable)
+      slots.push_back(static_cast<int>(nodes[0].number));
+  }
+  return slots;
+}
+
 }  // namespace
 
 const LinkedModule* Executable::Find(int slot) const {
@@ -145,6 +158,23 @@ Result<Executable> Link(int main_slot, const ObjectLookup& lookup, const LinkOpt
                                                  ToldSize("limit", options.executable_limit));
   }
   return executable;
+}
+
+Status CheckCalls(int main_slot, const std::function<Result<Executable>(int)>& executable_of) {
+  std::set<int> known{main_slot};
+  std::vector<int> to_look_at{main_slot};
+  while (!to_look_at.empty()) {
+    const int slot = to_look_at.back();
+    to_look_at.pop_back();
+    const Result<Executable> executable = executable_of(slot);
+    if (!executable) return executable.error();
+    for (const LinkedModule& module : executable->modules) {
+      for (const int called : CalledSlots(module.module)) {
+        if (known.insert(called).second) to_look_at.push_back(called);
+      }
+    }
+  }
+  return {};
 }
 
 std::uint32_t ExecutableSize(const Executable& executable) {

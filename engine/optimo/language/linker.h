@@ -43,6 +43,10 @@ using ObjectLookup = std::function<std::optional<std::string_view>(int slot)>;
 // 7104, TooManyFunctions 7105, ExecutableTooLong 7106, FunctionEntry 7108.
 Result<Executable> Link(int main_slot, const ObjectLookup& lookup, const LinkOptions& options);
 
+// Whether all is there that a run of the program can come to, where CALL and GO name a program by
+// its number and not by a computed one. `executable_of` is asked once for each. Errors: its own.
+Status CheckCalls(int main_slot, const std::function<Result<Executable>(int slot)>& executable_of);
+
 // Bytes of the size model, OPT-B.72.
 std::uint32_t ExecutableSize(const Executable& executable);
 
