@@ -214,6 +214,7 @@ int WatchMachine(const Remote& remote, const MachineAct& act) {
     const v1::MachineStatus& status = message.status();
     if (remote.json) {
       Print(Json(status));
+      std::fflush(stdout);  // whoever reads it from a pipe wants it now
       continue;
     }
     const std::string state = Short(v1::MachineState_Name(status.state()), "MACHINE_STATE_");
@@ -221,6 +222,7 @@ int WatchMachine(const Remote& remote, const MachineAct& act) {
     if (std::exchange(shown, state + of) != state + of) {
       line.Clear();
       Print(state + (of.empty() ? "" : " " + of));
+      std::fflush(stdout);
     }
     line.Show(-1.0, PositionOf(status) + (status.has_run() ? "  " + PlaceOf(status.run()) : ""));
   }

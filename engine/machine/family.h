@@ -74,6 +74,7 @@ struct FamilyInfo {
   // its own words: a machine without program memory has no slots.
   ErrorCode no_slot = ErrorCode::kCellInvalidArgument;      // a number that is none
   ErrorCode empty_slot = ErrorCode::kCellNotFound;          // a slot without program
+  ErrorCode in_use = ErrorCode::kCellMachineState;          // its program, by an open run
   ErrorCode no_schedule = ErrorCode::kCellInvalidArgument;  // a number that is no laser schedule
   ErrorCode travel_left = ErrorCode::kCellTravelLeft;       // a motion leaves the travel of an axis
   ErrorCode not_zeroed = ErrorCode::kCellMachineState;      // its axes have no reference

@@ -203,6 +203,11 @@ MachineStatus Machine::status() const {
   status.run.door_open = status.run.door_open || cover_open_;
   if (run_ == nullptr) return status;
   status.open = note_;
+  // What lies before was not done again. LIVE-6.09
+  if (status.run.approaching && note_.entered) {
+    status.run.place.program = note_.entered->at.at.program;
+    status.run.place.step = note_.entered->at.at.step;
+  }
   if (!status.by_hand && note_.by_hand) status.by_hand = note_.hand;
   const RunState& run = status.run;
   if (run.place.step > 0 && !selected_ && (!note_.by_hand || Pauses())) {
@@ -427,7 +432,10 @@ bool Machine::MayAcknowledge(const Alarm& alarm) const {
 
 Status Machine::Act(const Acknowledge& input) {
   const auto found = std::ranges::find(alarms_, input.alarm, &Alarm::id);
-  if (found == alarms_.end()) return {};
+  if (found == alarms_.end()) {  // somebody else was first, or there never was one
+    if (input.alarm > 0 && input.alarm <= last_alarm_) return {};
+    return InvalidArgument("no alarm has the number " + Told("alarm", input.alarm));
+  }
   if (!MayAcknowledge(*found))
     return NotNow(state(), "the emergency stop is pressed; release it first");
   alarms_.erase(found);

@@ -101,6 +101,9 @@ class Machine {
 
   const MachineFamily& family() const { return family_; }
   bool has_handbox() const { return handbox_ != nullptr; }
+  // What a key asked for is not over: what was taught is being stored, or an axis that was let go
+  // does not stand yet. Other keys do nothing until then.
+  bool settles() const;
   bool has_gates() const { return has_handbox(); }  // a control of that kind has both
   // Inputs, and variables that may be written.
   bool has_inputs() const { return family_.HasVariable(parameters_, "IL[0]"); }
@@ -110,6 +113,9 @@ class Machine {
   // `part`: what its way is looked at against; null: nobody knows it.
   Result<StartPreview> Preview(const StartAtStep& input, const ReachLimits& limits = {},
                                PartOnTable* part = nullptr, const PartSoFar& so_far = {}) const;
+
+  // Whether it may be begun now, as far as the machine goes. Errors: as Apply.
+  Status MayBegin(const StartAtStep& input) const { return MayStartAt(input); }
 
   // The how manieth pass through its step the run of its base was in at this time. Errors: as
   // Preview.
@@ -125,6 +131,13 @@ class Machine {
                               bool fast = false) const;
   Panel panel() const;  // what is to be seen at the machine itself
   const MachineMemory& memory() const { return memory_; }
+  // Whether a door or cover that opens now brings a run to rest. OPT-B.34, DEV-3.12
+  bool DoorStops() const {
+    return !family_.info().cover_stops_jog || standing_->cover() == CoverAct::kPause;
+  }
+  // Slots of the memory that the open run is in: what was started, and what called each other from
+  // there.
+  std::set<int> loaded_programs() const;
   // What START without a program takes; 0: none. Of a run whose program came along what was
   // selected before.
   int selected_program() const {

@@ -27,6 +27,11 @@ Panel Machine::panel() const {
   return panel;
 }
 
+bool Machine::settles() const {
+  const bool edits = handbox_ != nullptr && handbox_->open_edit() != nullptr;
+  return edits || (jog_.moves() && !jog_.asks());
+}
+
 // While a run stands, what it stands at is not what is looked at any more.
 void Machine::Select(ShownStep shown) {
   shown_ = std::move(shown);

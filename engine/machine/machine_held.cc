@@ -87,6 +87,10 @@ Status Machine::SendByHand(const RunByHand& asked) {
 Status Machine::MayGoOn(const ResumeRun& input) const {
   if (jog_.moves()) return NotNow(state(), kReleaseKeys);
   if (CoverStops()) return Error{ErrorCode::kCellDoorOpen, "the cover is open", {}};
+  // The key at the machine is the control's own; who is elsewhere loses no part by it.
+  if (input.source != StartSource::kPanel) {
+    if (const Status may = run_->MayGoOn(); !may) return may.error();
+  }
   if (!held_at_) return {};
   const bool asked = !input.accept_displaced && input.source != StartSource::kPanel;
   if (!asked && run_->may_be_moved()) return {};

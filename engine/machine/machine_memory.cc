@@ -33,4 +33,14 @@ Status Machine::Act(const SetSchedules& input) {
   return {};
 }
 
+std::set<int> Machine::loaded_programs() const {
+  std::set<int> loaded;
+  if (run_ == nullptr || note_.by_hand) return loaded;
+  for (const Place& place : run_->stack()) loaded.insert(place.program);
+  loaded.insert(note_.program);
+  if (comes_along_) loaded.erase(note_.program);
+  loaded.erase(0);
+  return loaded;
+}
+
 }  // namespace rmlcell::machine

@@ -100,6 +100,9 @@ class Run {
   // caller.
   virtual void End(OutcomeKind kind, ErrorCode code) = 0;
 
+  // Of a run that is halted: what START would end it with, for who asks before (OPT-B.56).
+  virtual Status MayGoOn() const { return {}; }
+
   virtual RunState state() const = 0;
   virtual const Outcome& outcome() const = 0;  // meaningful after kFinished
   virtual std::uint64_t steps_executed() const = 0;

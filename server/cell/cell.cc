@@ -276,6 +276,11 @@ Status Cell::Parts::Listen(const std::string& join_token) {
                            .processes = host_processes.get(),
                            .runs = runs.get(),
                            .by_default = config.machines_hosts == "all"});
+  programs->OnInUse([this](const std::string& machine, int slot) {
+    const auto status = hosts->StatusOf(machine);
+    return status && std::ranges::find(status->run().loaded_programs(), slot) !=
+                         status->run().loaded_programs().end();
+  });
   program_service =
       std::make_unique<ProgramService>(needs, *store, *programs, *tools, *language, open);
   project_service = std::make_unique<ProjectService>(needs, *projects, *transfer, open);

@@ -1,17 +1,35 @@
 #include "server/host/answered_requests.h"
 
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+
+#include <memory>
 #include <utility>
 
+#include "proto/bridge/sha256.h"
 #include "server/host/host_messages.h"
 #include "server/host/order_class.h"
 
 namespace rmlcell::server {
 namespace {
 
+constexpr std::size_t kDigestDigits = 32;
 constexpr std::size_t kBytesMax = 4'096;  // of an answer; those that act have less
 
 std::string KeyOf(const std::string& request_id, int kind, const std::string& caller) {
   return request_id.empty() ? "" : request_id + "\n" + std::to_string(kind) + "\n" + caller;
+}
+
+// The same for the same content, maps included.
+std::string BytesOf(const google::protobuf::Message& message) {
+  std::string bytes;
+  {
+    google::protobuf::io::StringOutputStream stream(&bytes);
+    google::protobuf::io::CodedOutputStream out(&stream);
+    out.SetSerializationDeterministic(true);
+    message.SerializeToCodedStream(&out);
+  }
+  return bytes;
 }
 
 std::chrono::microseconds AgeOf(const v1::JournalEntry& entry, WallTime now) {
@@ -37,9 +55,24 @@ const v1::HostOrderAnswer* AnsweredRequests::Find(const std::string& key) const 
   return key.empty() || found == answered_.end() ? nullptr : &found->second.answer;
 }
 
-void AnsweredRequests::Keep(const std::string& key, const v1::HostOrderAnswer& answer,
-                            const HostTime& now) {
-  Keep(key, {.answer = answer, .at = now.steady}, now.steady);
+std::string AnsweredRequests::DigestOf(const v1::HostOrder& order) {
+  const google::protobuf::Message* asked = RequestOf(order);
+  if (asked == nullptr) return {};
+  const std::unique_ptr<google::protobuf::Message> copy(asked->New());
+  copy->CopyFrom(*asked);
+  if (const auto* token = copy->GetDescriptor()->FindFieldByName("control_token"))
+    copy->GetReflection()->ClearField(copy.get(), token);
+  return bridge::Sha256Hex(BytesOf(*copy)).substr(0, kDigestDigits);
+}
+
+bool AnsweredRequests::IsAnother(const std::string& key, const std::string& digest) const {
+  const std::string& known = answered_.at(key).digest;
+  return !known.empty() && known != digest;
+}
+
+void AnsweredRequests::Keep(const std::string& key, const std::string& digest,
+                            const v1::HostOrderAnswer& answer, const HostTime& now) {
+  Keep(key, {.answer = answer, .digest = digest, .at = now.steady}, now.steady);
 }
 
 void AnsweredRequests::Keep(const std::string& key, Answered answered,
@@ -67,6 +100,7 @@ std::optional<v1::AnsweredRequest> AnsweredRequests::EntryOf(const v1::HostOrder
   entry.set_caller(order.caller());
   *entry.mutable_answer() = answer;
   entry.set_by_status(answer.has_status());
+  entry.set_digest(DigestOf(order));
   if (answer.has_status()) entry.mutable_answer()->clear_status();
   if (entry.ByteSizeLong() > kBytesMax) return std::nullopt;
   return entry;
@@ -80,7 +114,10 @@ void AnsweredRequests::Recover(const std::vector<v1::JournalEntry>& entries,
     v1::HostOrderAnswer answer = one.answer();
     if (one.by_status()) *answer.mutable_status() = status;
     Keep(server::KeyOf(one.request_id(), one.kind(), one.caller()),
-         {.answer = std::move(answer), .at = now.steady - AgeOf(entry, now.wall)}, now.steady);
+         {.answer = std::move(answer),
+          .digest = one.digest(),
+          .at = now.steady - AgeOf(entry, now.wall)},
+         now.steady);
   }
 }
 

@@ -24,8 +24,14 @@ class AnsweredRequests {
   // is asked for.
   static std::string KeyOf(const v1::HostOrder& order);
 
+  // Of what is asked, whoever proves with which token that he may.
+  static std::string DigestOf(const v1::HostOrder& order);
+
   const v1::HostOrderAnswer* Find(const std::string& key) const;
-  void Keep(const std::string& key, const v1::HostOrderAnswer& answer, const HostTime& now);
+  // Whether it was something else that was asked under this key. Precondition: Find.
+  bool IsAnother(const std::string& key, const std::string& digest) const;
+  void Keep(const std::string& key, const std::string& digest, const v1::HostOrderAnswer& answer,
+            const HostTime& now);
 
   // As the journal has it; nothing: nobody needs it behind a crash, or it is a secret.
   static std::optional<v1::AnsweredRequest> EntryOf(const v1::HostOrder& order,
@@ -37,6 +43,7 @@ class AnsweredRequests {
  private:
   struct Answered {
     v1::HostOrderAnswer answer{};
+    std::string digest{};
     std::chrono::nanoseconds at{0};
   };
   void Keep(const std::string& key, Answered answered, std::chrono::nanoseconds now);

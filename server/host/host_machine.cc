@@ -70,8 +70,19 @@ HostMachine::HostMachine(Setup setup, std::function<std::string()> make_token)
 
 v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& now) {
   GoOnTo(now);
+  const auto refuse = [&](const Error& error) {
+    v1::HostOrderAnswer refused = Refuse(error);
+    refused.set_number(order.number());
+    return refused;
+  };
+  constexpr std::size_t kRequestIdMax = 64;
+  if (FieldOf(order, "request_id").value_or("").size() > kRequestIdMax)
+    return refuse(InvalidArgument("request_id is longer than 64 characters"));
   const std::string request = AnsweredRequests::KeyOf(order);
+  const std::string digest = request.empty() ? "" : AnsweredRequests::DigestOf(order);
   if (const v1::HostOrderAnswer* known = answered_.Find(request)) {
+    if (answered_.IsAnother(request, digest))
+      return refuse({ErrorCode::kCellRequestIdReused, {}, {}});
     v1::HostOrderAnswer again = *known;
     again.set_number(order.number());
     return again;
@@ -82,7 +93,7 @@ v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& 
   answer.set_number(order.number());
   *answer.mutable_acted_at() = Stamp(now.wall);
   if (key_taken_) keys_.Take(*key_taken_, answer);
-  answered_.Keep(request, answer, now);
+  answered_.Keep(request, digest, answer, now);
   if (auto entry = AnsweredRequests::EntryOf(order, answer))
     *Add(machine().time()).mutable_answered() = *std::move(entry);
   return answer;
@@ -277,6 +288,23 @@ Status HostMachine::Act(const v1::HostOrder& order) {
   return {};
 }
 
+// Why a run that goes on will stand, where this brings it to rest. LIVE-2.01
+void HostMachine::NoteHold(const machine::MachineInput& input) {
+  if (!moves() || MovesInHold()) return;
+  const auto* key = std::get_if<machine::PressedKey>(&input);
+  if (std::holds_alternative<machine::StopRun>(input) || (key != nullptr && key->key == "STOP"))
+    held_for_ = v1::HOLD_REASON_STOP;
+  if (key != nullptr && key->key == "HOLD") held_for_ = v1::HOLD_REASON_HOLD;
+  if (std::holds_alternative<machine::HoldRun>(input))
+    held_for_ = by_panel_ ? v1::HOLD_REASON_PANEL : v1::HOLD_REASON_HOLD;
+  const auto* mode = std::get_if<machine::ChangeMode>(&input);
+  const bool leaves = mode != nullptr && (mode->mode == machine::Mode::kManual ||
+                                          (mode->mode != machine::Mode::kRemote && !job_.empty()));
+  if (leaves) held_for_ = v1::HOLD_REASON_MODE;
+  const auto* door = std::get_if<machine::MoveDoor>(&input);
+  if (door != nullptr && door->open && machine().DoorStops()) held_for_ = v1::HOLD_REASON_DOOR;
+}
+
 // It stands before what it leads to; of what is refused nothing does.
 Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrder* order) {
   const auto before = std::tuple(run_begun_, told_of_run_, held_for_);
@@ -296,16 +324,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   }
   if (starts) arms_.Disarm();
   if (starts || std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
-  if (moves() && !MovesInHold()) {
-    if (std::holds_alternative<machine::StopRun>(input) || (key != nullptr && key->key == "STOP"))
-      held_for_ = v1::HOLD_REASON_STOP;
-    if (key != nullptr && key->key == "HOLD") held_for_ = v1::HOLD_REASON_HOLD;
-    if (std::holds_alternative<machine::HoldRun>(input))
-      held_for_ = by_panel_ ? v1::HOLD_REASON_PANEL : v1::HOLD_REASON_HOLD;
-    const auto* mode = std::get_if<machine::ChangeMode>(&input);
-    const bool leaves = mode != nullptr && mode->mode != machine::Mode::kRemote && !job_.empty();
-    if (leaves) held_for_ = v1::HOLD_REASON_MODE;
-  }
+  NoteHold(input);
   const std::size_t place = entries_.size();
   v1::InputApplied& applied = *Add(machine().time()).mutable_applied();
   applied.set_fence(setup_.fence);

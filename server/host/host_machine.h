@@ -54,7 +54,9 @@ class HostMachine : private machine::RunObserver {
   // acts no more.
   v1::HostOrderAnswer Do(const v1::HostOrder& order, const HostTime& now);
   // A key that came before another one with a lower number: it is to be brought again.
-  bool WaitsForKeys(const v1::HostOrder& order) const;
+  // Or while what keys before it asked for is not over, but one that moves does not wait for that.
+  bool WaitsForKeys(const v1::HostOrder& order, const HostTime& now) const;
+  bool Settles() const { return machine().settles(); }
   // A key that somebody else refused: its number is used up, and the next one may come.
   void PassKey(const v1::HostOrder& order, const v1::HostOrderAnswer& refused, const HostTime& now);
   // What a start at a step would do: worked out by `run`, which takes as long as the run to the
@@ -71,6 +73,8 @@ class HostMachine : private machine::RunObserver {
                                 Result<machine::StartPreview> made, const HostTime& now);
   // Time goes on. False: there is more to compute; call again when orders were looked at.
   bool GoOn(const HostTime& now);
+  // The disk does not answer, or does again: that keeps jobs from it.
+  void NoteDisk(bool is_late) { disk_is_late_ = is_late; }
   // Comes to rest, and holds a run with this reason.
   void Hold(v1::HoldReason reason, const HostTime& now);
   // The host ends in order: a run that is open ends with it. LIVE-5.09
@@ -110,6 +114,7 @@ class HostMachine : private machine::RunObserver {
   Status RunJob(const v1::HostOrder& order, const HostTime& now);
   std::optional<v1::HostOrderAnswer> AnsweredKey(const v1::HostOrder& order) const;
   Status PressKey(const v1::HostOrder& order, const HostTime& now);
+  static Status CheckBeat(const v1::HostOrder& order);
   v1::HeartbeatResponse HearBeat(const v1::HostOrder& order, const HostTime& now);
   void LetGo(const std::string& key);
   void LetKeysGo(const HostTime& now);
@@ -136,7 +141,7 @@ class HostMachine : private machine::RunObserver {
   Result<std::optional<machine::StoredProgram>> ProgramOfJob(
       const v1::WorkerAssignment& assignment);
   Status CheckPrograms(const v1::WorkerAssignment& assignment,
-                     const std::optional<machine::StoredProgram>& brought) const;
+                       const std::optional<machine::StoredProgram>& brought) const;
   std::optional<Error> WhyNoJob(const std::string& caller) const;
   Result<v1::HostOrderAnswer> Control(const v1::HostOrder& order, const HostTime& now);
   Result<v1::HostOrderAnswer> Write(const v1::HostOrder& order);
@@ -150,6 +155,7 @@ class HostMachine : private machine::RunObserver {
   void Notice();
   void TellControl();
   bool MovesInHold() const;
+  void NoteHold(const machine::MachineInput& input);
   void LoseControl(v1::ControlLease::OnLoss on_loss, const HostTime& now);
   void TellCutOff(const v1::MachineMark& mark, ErrorCode why);
   v1::JournalEntry& Add(SimTime at);
@@ -194,6 +200,7 @@ class HostMachine : private machine::RunObserver {
   std::size_t recorded_ = 0;       // of the entries
   v1::AssignedProgram brought_{};  // by the job that is about to begin
   HostTime now_{};                 // of the call under way
+  bool disk_is_late_ = false;      // nothing that was to be written is
   bool late_ = false;              // by so much that the run is to be held
   std::int64_t sequence_ = 0;
   std::optional<v1::HoldReason> held_for_;  // by the host itself, or for a client

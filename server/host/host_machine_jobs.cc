@@ -92,9 +92,9 @@ Status HostMachine::CheckPrograms(const v1::WorkerAssignment& assignment,
   const machine::MachineMemory& memory = machine().memory();
   std::map<int, machine::StoredProgram> programs = memory.programs;
   if (brought) programs[assignment.main_program()] = *brought;
-  const Status there =
-      setup_.family->CheckCalls(programs, *parameters_, assignment.main_program());
-  if (!there) return there.error();
+  const int main = assignment.main_program();
+  if (const Status there = setup_.family->CheckCalls(programs, *parameters_, main); !there)
+    return there.error();
   if (!assignment.has_ticket()) {
     if (!setup_.options.ticket_needed()) return {};
     return Error{ErrorCode::kCellTicket, "jobs need one here", {}};
@@ -229,6 +229,7 @@ void HostMachine::AddBlockers(v1::MachineStatus& status) const {
     blocker.set_message(detail.message());
     blocker.set_advice(detail.advice());
   };
+  if (disk_is_late_) add({ErrorCode::kCellJournal, "the disk does not answer", {}});
   if (const auto why = WhyNoJob(desk_.lease() ? desk_.lease()->holder() : std::string())) add(*why);
   if (desk_.lease() && !desk_.IsOfQueue())
     add({ErrorCode::kCellLeaseHeld, desk_.lease()->holder() + " has control", {}});

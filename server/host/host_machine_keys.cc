@@ -60,9 +60,10 @@ std::chrono::nanoseconds SentAt(const Beat& beat) {
 
 }  // namespace
 
-bool HostMachine::WaitsForKeys(const v1::HostOrder& order) const {
+bool HostMachine::WaitsForKeys(const v1::HostOrder& order, const HostTime& now) const {
   const auto pressed = PressedBy(order);
-  if (!pressed) return false;
+  if (!pressed || !CheckControl(order, now)) return false;
+  if (Settles() && !LetsGo(order) && !IsHeld(pressed->key)) return true;
   const bool begins = !desk_.lease() || desk_.lease()->number() != keys_of_;
   const KeyDesk none;
   return (begins ? none : keys_).Look(pressed->number, LetsGo(order)) == KeyDesk::Turn::kWaits;
@@ -109,6 +110,13 @@ Status HostMachine::PressKey(const v1::HostOrder& order, const HostTime& now) {
   by_panel_ = false;
   if (done && held && pressed.action == v1::KEY_ACTION_PRESS) dead_man_.Press(pressed.key, now);
   return done;
+}
+
+// How old a beat is decides whether the machine goes on.
+Status HostMachine::CheckBeat(const v1::HostOrder& order) {
+  const bool told = order.has_panel_heartbeat() ? order.panel_heartbeat().has_sent()
+                                                : order.handbox_heartbeat().has_sent();
+  return told ? Status() : InvalidArgument("sent: when it was sent, by the clock of the client");
 }
 
 v1::HeartbeatResponse HostMachine::HearBeat(const v1::HostOrder& order, const HostTime& now) {
@@ -158,9 +166,11 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOutKeys(const v1::HostOrder& order
     case v1::HostOrder::kHandboxHeartbeat:
       if (const Status known = CheckSession(order.handbox_heartbeat().session()); !known)
         return known.error();
+      if (const Status told = CheckBeat(order); !told) return told.error();
       *answer.mutable_heartbeat() = HearBeat(order, now);
       break;
     default:
+      if (const Status told = CheckBeat(order); !told) return told.error();
       *answer.mutable_heartbeat() = HearBeat(order, now);
       break;
   }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "engine/core/number_text.h"
 #include "engine/machine/machine_note.h"
 #include "engine/machine/shape.h"
 #include "engine/simulation/material/milled_part.h"
@@ -15,8 +16,7 @@
 namespace rmlcell::server {
 namespace {
 
-// Block and tool, in cells as a job has them when it names none: what is compared with it, or told
-// of its chips, does not count here.
+// Block and tool; what is to be left of it does not count here.
 Result<std::optional<simulation::Milling>> PartOf(const v1::PreviewStartRequest& request,
                                                   const machine::MachineShape& shape) {
   if (!request.has_milling()) return std::optional<simulation::Milling>();
@@ -24,11 +24,15 @@ Result<std::optional<simulation::Milling>> PartOf(const v1::PreviewStartRequest&
     return Error{ErrorCode::kCellInvalidArgument, "milling" + why, {}};
   };
   if (!shape.has_work_origin) return invalid(": this machine removes no material");
-  v1::Milling wanted;
-  *wanted.mutable_stock() = request.milling().stock();
-  *wanted.mutable_tool() = request.milling().tool();
+  v1::Milling wanted = request.milling();
+  wanted.clear_target();
   auto milling = bridge::FromProto(wanted);
   if (!milling) return invalid("." + milling.error().detail);
+  // A tool that falls between two cells would cut nothing and meet nothing.
+  if (milling->stock.cell > milling->tool.radius_mm)
+    return invalid(
+        ".cell_mm: the tool is thinner than two cells of the block; give a smaller block, or cells of " +
+        ShortestText(milling->tool.radius_mm) + " mm");
   return std::optional(*std::move(milling));
 }
 
@@ -56,8 +60,11 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
   }
   auto start = StartOf(request, machine());
   if (!start) return start.error();
+  if (const Status may = machine().MayBegin(*start); !may) return may.error();
   auto part = PartOf(request, setup_.family->Shape(*parameters_));
   if (!part) return part.error();
+  if (!v1::PartSoFar_IsValid(request.part_so_far()))
+    return InvalidArgument("part_so_far is none that there is");
   machine::PartSoFar so_far{.untouched = request.part_so_far() == v1::PART_SO_FAR_UNTOUCHED};
   if (again && request.part_so_far() == v1::PART_SO_FAR_UNSPECIFIED)
     so_far.cut_until = SimTime(cut_off_base_->until_ns());

@@ -16,18 +16,6 @@
 namespace rmlcell::server {
 namespace {
 
-const google::protobuf::Message* RequestOf(const v1::HostOrder& order) {
-  if (order.has_by_person()) return &order.by_person();
-  if (order.has_continue_job()) {  // a person decided that, or it is the queue's, as run_job
-    const v1::ContinueJob& job = order.continue_job();
-    if (job.assignment().job().continues().empty()) return &job.assignment();
-    return &job.start();
-  }
-  const auto* set = order.GetReflection()->GetOneofFieldDescriptor(
-      order, order.GetDescriptor()->FindOneofByName("request"));
-  return set == nullptr ? nullptr : &order.GetReflection()->GetMessage(order, set);
-}
-
 using machine::MachineInput;
 
 Error Invalid(std::string detail) {
@@ -46,6 +34,7 @@ void SetRun(const machine::Machine& machine, const machine::MachineStatus& statu
   run.set_source(bridge::ToProto(status.open->source));
   run.set_instruction(progress.instruction());
   run.set_dry(machine.simulation_until().has_value());
+  for (const int program : machine.loaded_programs()) run.add_loaded_programs(program);
 }
 
 Result<int> ProgramOf(const v1::StartMachineRequest& start, const machine::Machine& machine) {
@@ -66,6 +55,18 @@ Result<int> ProgramOf(const v1::StartMachineRequest& start, const machine::Machi
 }
 
 }  // namespace
+
+const google::protobuf::Message* RequestOf(const v1::HostOrder& order) {
+  if (order.has_by_person()) return &order.by_person();
+  if (order.has_continue_job()) {  // a person decided that, or it is the queue's, as run_job
+    const v1::ContinueJob& job = order.continue_job();
+    if (job.assignment().job().continues().empty()) return &job.assignment();
+    return &job.start();
+  }
+  const auto* set = order.GetReflection()->GetOneofFieldDescriptor(
+      order, order.GetDescriptor()->FindOneofByName("request"));
+  return set == nullptr ? nullptr : &order.GetReflection()->GetMessage(order, set);
+}
 
 std::optional<std::string> FieldOf(const v1::HostOrder& order, const std::string& name) {
   const google::protobuf::Message* request = RequestOf(order);

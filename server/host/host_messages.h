@@ -19,6 +19,8 @@ v1::RunState RunStateOf(const machine::Machine& machine);
 Result<std::vector<machine::MachineInput>> InputsOf(const v1::HostOrder& order,
                                                     const machine::Machine& machine);
 
+// What a client asked with it; null: nothing.
+const google::protobuf::Message* RequestOf(const v1::HostOrder& order);
 // The text of this field of the request; nothing: it has no such field.
 std::optional<std::string> FieldOf(const v1::HostOrder& order, const std::string& name);
 

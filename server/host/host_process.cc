@@ -245,7 +245,7 @@ class HostProcess {
       return Refuse(order, {ErrorCode::kCellNotLive, "the machine is starting", {}});
     if (order.has_preview_start()) return Preview(order);
     const OrderClass kind = ClassOf(order);
-    if (machine_->WaitsForKeys(order)) {
+    if (machine_->WaitsForKeys(order, Now())) {
       keys_waiting_.push_back({.order = order, .until = until});
       return;
     }
@@ -326,7 +326,7 @@ class HostProcess {
       return !one->over && (one->order.has_key() || one->order.has_panel_key());
     });
     for (Waiting& key : std::exchange(keys_waiting_, {})) {
-      if (!parked && Now().steady >= key.until) {
+      if (!parked && !machine_->Settles() && Now().steady >= key.until) {
         Refuse(key.order, {ErrorCode::kCellKeySequence, "keys before it are missing", {}});
       } else {
         TakeOrder(key.order, key.until);
@@ -446,8 +446,9 @@ class HostProcess {
       Refuse(parked->order, {ErrorCode::kCellJournal, "the disk does not answer", {}});
       return true;
     });
-    if (machine_->moves() && writes_under_way_ > 0 && now - durable_at_ > kDurablePatience)
-      machine_->Hold(v1::HOLD_REASON_LATE, Now());
+    const bool late = writes_under_way_ > 0 && now - durable_at_ > kDurablePatience;
+    machine_->NoteDisk(late);
+    if (machine_->moves() && late) machine_->Hold(v1::HOLD_REASON_LATE, Now());
   }
 
   // The machine goes on, and what happened is told.

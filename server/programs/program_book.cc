@@ -369,6 +369,9 @@ Status ProgramBook::Delete(const v1::DeleteProgramRequest& request, std::string_
       if (fits.error().code != ErrorCode::kCellNotFound) return fits.error();
     }
   }
+  if (!place->executable && is_in_use_ && is_in_use_(machine, place->slot))
+    return Error{
+        place->family->info().in_use, "a run of " + MachineName(machine) + " is in it", {}};
   const Status deleted = place->executable
                              ? store_.DeleteExecutable(machine, place->slot, caller)
                              : store_.DeleteProgram(machine, place->slot, *expected, caller);

@@ -22,6 +22,12 @@ class ProgramBook {
  public:
   ProgramBook(storage::Store& store, const Config& config) : store_(store), config_(config) {}
 
+  // Asked whether a run of the machine is in the program of a slot, before that is deleted.
+  // OPT-4.63
+  void OnInUse(std::function<bool(const std::string& machine, int slot)> is_in_use) {
+    is_in_use_ = std::move(is_in_use);
+  }
+
   struct Put {
     std::string name;  // resource name
     std::string file_name;
@@ -91,6 +97,7 @@ class ProgramBook {
 
   storage::Store& store_;
   const Config& config_;
+  std::function<bool(const std::string&, int)> is_in_use_{};
 };
 
 }  // namespace rmlcell::server

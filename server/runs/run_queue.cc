@@ -11,6 +11,7 @@
 #include "server/jobs/assignment.h"
 #include "server/machines/host_entries.h"
 #include "server/records/job_messages.h"
+#include "server/records/machine_options.h"
 #include "server/runs/run_ticket.h"
 #include "storage/jobs/job_rules.h"
 #include "storage/trouble.h"
@@ -57,14 +58,38 @@ v1::Job SpecificationOf(const storage::JobRecord& job) {
 bool Continues(const storage::JobRecord& job) { return !SpecificationOf(job).continues().empty(); }
 
 // What a preview that may not begin says, as a host that refuses the job would.
-v1::HostOrderAnswer RefusedBy(const v1::PreviewStartResponse& preview) {
+v1::HostOrderAnswer RefusedFor(ErrorCode code, const std::string& why) {
   v1::HostOrderAnswer answer;
-  v1::ErrorDetail& refusal = *answer.mutable_refusal();
-  refusal.set_code(CodeText(ErrorCode::kCellStepUnreachable));
-  if (preview.refusals().empty()) return answer;
-  refusal.set_code(preview.refusals(0).code());
-  refusal.set_message(preview.refusals(0).message());
+  answer.mutable_refusal()->set_code(CodeText(code));
+  answer.mutable_refusal()->set_message(why);
   return answer;
+}
+v1::HostOrderAnswer RefusedBy(const v1::PreviewStartResponse& preview) {
+  if (preview.refusals().empty()) return RefusedFor(ErrorCode::kCellStepUnreachable, {});
+  v1::HostOrderAnswer answer = RefusedFor(ErrorCode::kCellInternal, preview.refusals(0).message());
+  answer.mutable_refusal()->set_code(preview.refusals(0).code());
+  return answer;
+}
+
+// Whether jobs of this machine start when their turn comes, and no person says so. LIVE-5.04
+bool StartsByItself(storage::Store& store, const std::string& machine) {
+  const auto record = store.GetMachine(machine);
+  if (!record) return true;
+  const auto options = OptionsOf(*record);
+  return !options || (options->start() != v1::MachineOptions::START_PERSON &&
+                      options->start() != v1::MachineOptions::START_ARMED);
+}
+
+// Of what a start at a step asks a person, that which the job does not say that it was seen to.
+std::string UnseenOf(const v1::PreviewStartResponse& preview, const v1::RunOptions& run) {
+  std::string unseen;
+  for (const v1::StartDifference& one : preview.differences()) {
+    const bool seen =
+        one.action() != v1::START_ACTION_ASK ||
+        std::ranges::find(run.confirmations(), one.confirmation()) != run.confirmations().end();
+    if (!seen) unseen += (unseen.empty() ? "" : ", ") + one.item();
+  }
+  return unseen;
 }
 
 // Whether this is nothing to a job of this caller.
@@ -328,24 +353,27 @@ void RunQueue::LookAtStep(const std::string& machine, const storage::LeasedJob& 
     const std::lock_guard lock(mutex_);
     beginning_[JobName(leased.job.id)] = machine;
   }
-  needs_.hosts.Ask(machine, std::move(question),
-                   [this, machine, leased, run, order = std::move(order),
-                    done = std::move(done)](Result<v1::HostOrderAnswer> answer) mutable {
-                     {
-                       const std::lock_guard lock(mutex_);
-                       beginning_.erase(JobName(leased.job.id));
-                     }
-                     if (!answer || answer->has_refusal()) return done(std::move(answer));
-                     const v1::PreviewStartResponse& preview = answer->preview();
-                     if (preview.preview_token().empty()) return done(RefusedBy(preview));
-                     v1::StartAtStepRequest& start = *order.mutable_continue_job()->mutable_start();
-                     start.set_machine(MachineName(machine));
-                     start.set_preview_token(preview.preview_token());
-                     *start.mutable_confirmations() = run.confirmations();
-                     needs_.executor.Post([this, machine, leased, order, done] {
-                       Send(machine, leased, order, done);
-                     });
-                   });
+  needs_.hosts.Ask(
+      machine, std::move(question),
+      [this, machine, leased, run, order = std::move(order),
+       done = std::move(done)](Result<v1::HostOrderAnswer> answer) mutable {
+        {
+          const std::lock_guard lock(mutex_);
+          beginning_.erase(JobName(leased.job.id));
+        }
+        if (!answer || answer->has_refusal()) return done(std::move(answer));
+        const v1::PreviewStartResponse& preview = answer->preview();
+        if (preview.preview_token().empty()) return done(RefusedBy(preview));
+        if (const std::string unseen = UnseenOf(preview, run); !unseen.empty())
+          return done(RefusedFor(ErrorCode::kCellInvalidArgument,
+                                 "job.run.confirmations: nobody has seen to " + unseen));
+        v1::StartAtStepRequest& start = *order.mutable_continue_job()->mutable_start();
+        start.set_machine(MachineName(machine));
+        start.set_preview_token(preview.preview_token());
+        *start.mutable_confirmations() = run.confirmations();
+        needs_.executor.Post(
+            [this, machine, leased, order, done] { Send(machine, leased, order, done); });
+      });
 }
 
 // One that was not answered may have begun: what its host says later tells.
@@ -431,8 +459,10 @@ void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answer
                           .code = CodeOf(answer->refusal()),
                           .detail = Detail(answer->refusal().message())});
            } else {
-             // Nobody else lets it go: whoever began it may have pressed STOP since. LIVE-2.05
-             GiveBack(leased, answer->refusal().code() + ": " + answer->refusal().message(), true);
+             // Where the queue starts jobs it is not to begin by itself: whoever began it may have
+             // pressed STOP since. LIVE-2.05
+             GiveBack(leased, answer->refusal().code() + ": " + answer->refusal().message(),
+                      StartsByItself(needs_.store, machine));
            }
            done(answer);
          });

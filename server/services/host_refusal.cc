@@ -11,6 +11,11 @@ grpc::Status RefusalOf(const v1::HostOrderAnswer& answer) {
   const auto found = FindByText(refusal.code());
   const ErrorCode code = found.empty() ? ErrorCode::kCellInternal : found.front()->code;
   google::rpc::Status status = bridge::ToRpcStatus({code, refusal.message(), {}});
+  // It is not asked wrongly: the machine does not stand for it now.
+  const Severity severity = Lookup(code).severity;
+  if (severity == Severity::kAlarm || severity == Severity::kFatal ||
+      severity == Severity::kMessage)
+    status.set_code(grpc::StatusCode::FAILED_PRECONDITION);
   if (answer.has_machine_refusal()) status.add_details()->PackFrom(answer.machine_refusal());
   return {static_cast<grpc::StatusCode>(status.code()), status.message(),
           status.SerializeAsString()};

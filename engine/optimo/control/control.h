@@ -31,6 +31,10 @@ class Control final : private RideListener {
   void End(machine::OutcomeKind kind, ErrorCode code);
   void Stand(SimTime until);
   // On its way to a step it may not: that way is the one that was looked at.
+  Status MayGoOn() const {
+    if (now().phase != machine::RunPhase::kHalted || !actuators_.door_blocks_start()) return {};
+    return Error{ErrorCode::kShutterInterlock, "close the operator door first", {}};
+  }
   bool may_be_moved() const {
     return now().phase == machine::RunPhase::kHalted && !s_.entry.arrival && ride_.may_be_moved();
   }

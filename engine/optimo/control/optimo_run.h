@@ -18,6 +18,7 @@ class OptimoRun final : public machine::Run, public machine::EnterableRun {
   void Apply(const machine::InputChange& input) override { control_.Apply(input); }
   void Stand(SimTime until) override { control_.Stand(until); }
   bool may_be_moved() const override { return control_.may_be_moved(); }
+  Status MayGoOn() const override { return control_.MayGoOn(); }
   void MoveTo(const motion::AxisPose& axes) override { control_.MoveTo(axes); }
   void SetZeroed() override { control_.SetZeroed(); }
   void SetMode(machine::Mode mode) override { control_.SetMode(mode); }

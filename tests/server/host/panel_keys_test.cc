@@ -91,7 +91,7 @@ TEST_F(PanelKeysTest, WhoIsSilentMovesNothing) {
 TEST_F(PanelKeysTest, NumbersCount) {
   MakeAndTake();
   const v1::HostOrder press = Key("Y+", v1::KEY_ACTION_PRESS);
-  EXPECT_FALSE(host_->WaitsForKeys(press));
+  EXPECT_FALSE(host_->WaitsForKeys(press, now_));
   Do(press);
   Pass(300ms);  // silent: it stands
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
@@ -99,9 +99,9 @@ TEST_F(PanelKeysTest, NumbersCount) {
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
   const v1::HostOrder late = Key("Y+", v1::KEY_ACTION_PRESS, 2);
   const v1::HostOrder release = Key("Y+", v1::KEY_ACTION_RELEASE, 3);
-  EXPECT_FALSE(host_->WaitsForKeys(release));
+  EXPECT_FALSE(host_->WaitsForKeys(release, now_));
   Do(release);
-  EXPECT_TRUE(host_->WaitsForKeys(Key("Y-", v1::KEY_ACTION_PRESS, 6)));
+  EXPECT_TRUE(host_->WaitsForKeys(Key("Y-", v1::KEY_ACTION_PRESS, 6), now_));
   EXPECT_FALSE(Do(late).has_refusal());
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
   EXPECT_EQ(Do(Key("Y-", v1::KEY_ACTION_TAP, 0)).refusal().code(), "");

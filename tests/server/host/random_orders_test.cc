@@ -206,7 +206,7 @@ class RandomOrders : public HostMachineTest {
       v1::HostOrder order = any.Order();
       order.set_caller("anna");
       order.set_number(++number_);
-      const bool waits = host_->WaitsForKeys(order);
+      const bool waits = host_->WaitsForKeys(order, now_);
       if (!waits) static_cast<void>(host_->Do(order, now_));
       if (BeginsMotion(order) || waits) {
         Pass(10ms);

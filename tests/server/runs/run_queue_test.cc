@@ -181,14 +181,28 @@ TEST_F(RunQueueTest, AJobThatMayNotBeginAtItsStepEnds) {
   Look(NewestOrder(1), "", "CELL-E9426");
   EXPECT_TRUE(Eventually([&] { return Job(refused).state == JobState::kFailed; }));
   EXPECT_EQ(Job(refused).outcome->code, ErrorCode::kCellStepUnreachable);
+  const std::int64_t unseen = Submit(at);
+  {
+    v1::HostRequest request;
+    request.mutable_answer()->set_number(NewestOrder(2).number());
+    v1::PreviewStartResponse& preview = *request.mutable_answer()->mutable_preview();
+    preview.set_preview_token("a token");
+    v1::StartDifference& tool = *preview.add_differences();
+    tool.set_item("tool");
+    tool.set_action(v1::START_ACTION_ASK);
+    tool.set_confirmation(v1::CONFIRMATION_TOOL);
+    hosts.Receive(*link, std::move(request));
+  }
+  EXPECT_TRUE(Eventually([&] { return Job(unseen).state == JobState::kFailed; }));
+  EXPECT_THAT(Job(unseen).outcome->detail, HasSubstr("nobody has seen to tool"));
   const std::int64_t waits = Submit(at);
-  Look(NewestOrder(2), "a token");
-  Refuse(NewestOrder(3), "CELL-E9428");
+  Look(NewestOrder(3), "a token");
+  Refuse(NewestOrder(4), "CELL-E9428");
   EXPECT_TRUE(Eventually([&] { return Job(waits).state == JobState::kQueued; }));
   EXPECT_FALSE(Job(waits).blocked);
   clock.Advance(RunQueue::kRests);
   runs.WakeAll();
-  EXPECT_TRUE(NewestOrder(4).has_preview_start());
+  EXPECT_TRUE(NewestOrder(5).has_preview_start());
 }
 
 // LIVE-5.01, LIVE-5.04: it goes to its host as soon as that can begin it, and is RUNNING in the

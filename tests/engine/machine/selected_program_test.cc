@@ -1,0 +1,102 @@
+// What a machine that lives has selected, and which programs its run is in (live.md 2, 5).
+#include "tests/engine/machine/machine_bed.h"
+
+namespace rmlcell::machine {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class SelectedProgram : public MachineTest {};
+
+// LIVE-5.04: the program that a job brings is nobody's choice: START takes what was selected
+// before.
+TEST_F(SelectedProgram, WhatAJobBringsIsNotSelected) {
+  Load({"DELAY 1\n", "DELAY 1\n", "DELAY 1\n"});
+  Start(3);
+  GoOn(At(5.0));
+  Over();
+  EXPECT_EQ(machine->selected_program(), 3);
+  Good(StartRun{.program = 1, .source = StartSource::kQueue, .brought = Translated("DELAY 2\n")});
+  GoOn(At(5.5));
+  EXPECT_EQ(machine->selected_program(), 3);
+  EXPECT_EQ(machine->status().open->program, 1);
+  GoOn(At(20.0));
+  Over();
+  EXPECT_EQ(machine->selected_program(), 3);
+  EXPECT_EQ(machine->status().shown.program, 3);
+  Start(2);
+  EXPECT_EQ(machine->selected_program(), 2);
+}
+
+// LIVE-5.03, OPT-4.63: in use are what was started and what called each other from there, and
+// nothing that a job brought.
+TEST_F(SelectedProgram, ProgramsThatARunIsInAreInUse) {
+  Load({"CALL 2\nDELAY 1\n", "DELAY 1\nCALL 3\nDELAY 1\n", "DELAY 5\n", "DELAY 1\n"});
+  EXPECT_THAT(machine->loaded_programs(), IsEmpty());
+  Start(1);
+  GoOn(At(0.5));
+  EXPECT_THAT(machine->loaded_programs(), ElementsAre(1, 2));
+  GoOn(At(3.0));
+  EXPECT_THAT(machine->loaded_programs(), ElementsAre(1, 2, 3));
+  GoOn(At(30.0));
+  EXPECT_THAT(machine->loaded_programs(), IsEmpty());
+  Over();
+  Good(StartRun{
+      .program = 4, .source = StartSource::kQueue, .brought = Translated("CALL 3\nDELAY 1\n")});
+  GoOn(At(31.0));
+  EXPECT_THAT(machine->loaded_programs(), ElementsAre(3));
+}
+
+// LIVE-5.02: what is called by a number is there before anything moves, and FUNCTIONs of what is
+// called, too; what is computed nobody knows before.
+TEST_F(SelectedProgram, CalledProgramsAreLookedFor) {
+  const auto check = [&](const std::vector<std::string>& programs) {
+    std::map<int, StoredProgram> memory;
+    for (std::size_t i = 0; i < programs.size(); ++i)
+      memory[static_cast<int>(i) + 1] = Translated(programs[i]);
+    const Status all = family_.CheckCalls(memory, parameters(), 1);
+    return all ? std::string("all") : CodeText(all.error().code) + " " + all.error().detail;
+  };
+  EXPECT_EQ(check({"CALL 2\n", "GO 3\n", "CALL 1\n"}), "all");
+  EXPECT_THAT(check({"CALL 2\n", "CALL 77\n"}), HasSubstr("OPT-E7102"));
+  EXPECT_THAT(check({"DELAY 1\nGO 79\n"}), HasSubstr("OPT-E7102"));
+  EXPECT_THAT(check({"CALL 2\n", "FUNCTION 50\n"}), HasSubstr("OPT-E7103"));
+  EXPECT_EQ(check({"VI[1] = 77\nCALL VI[1]\n"}), "all");
+}
+
+// LIVE-9.06: an alarm that never was cannot be acknowledged; one that is no more can, again.
+TEST_F(SelectedProgram, AnAlarmThatNeverWasIsNotAcknowledged) {
+  Load({"DELAY 1\n"});
+  Good(EmergencyStop{});
+  Good(EmergencyStop{.pressed = false});
+  const std::int64_t alarm = machine->status().alarms.at(0).id;
+  EXPECT_THAT(Refused(Acknowledge{.alarm = alarm + 1}), HasSubstr("CELL-E9003"));
+  EXPECT_THAT(Refused(Acknowledge{.alarm = 0}), HasSubstr("CELL-E9003"));
+  Good(Acknowledge{.alarm = alarm});
+  EXPECT_THAT(machine->status().alarms, IsEmpty());
+  Good(Acknowledge{.alarm = alarm});
+}
+
+// LIVE-2.10, OPT-B.56: with the door open and the beam to come RESUME from afar is refused and the
+// run stays held; the key at the machine is the control's own.
+TEST_F(SelectedProgram, ResumeFromAfarLosesNoPart) {
+  const auto hold = [&] {
+    Load({"COORD ABSOL\nPATH LIN\nWORKDEF 2,0 (12)\nWORK 2,0/ON\nWAIT IL[20]\nWORK 2,0/OFF\n"});
+    Start();
+    GoOn(machine->time() + At(3.0));
+    Good(MoveDoor{.open = true});
+    GoOn(machine->time() + At(3.0));
+    ASSERT_EQ(state(), MachineState::kHeld);
+  };
+  hold();
+  EXPECT_THAT(Refused(ResumeRun{.source = StartSource::kConsole}), HasSubstr("OPT-E7410"));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  Good(MoveDoor{.open = false});
+  Good(ResumeRun{.source = StartSource::kConsole});
+  EXPECT_EQ(state(), MachineState::kRunning);
+}
+
+}  // namespace
+}  // namespace rmlcell::machine
