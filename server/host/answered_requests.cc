@@ -1,11 +1,9 @@
 #include "server/host/answered_requests.h"
 
-#include <google/protobuf/io/coded_stream.h>
-#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
-
 #include <memory>
 #include <utility>
 
+#include "proto/bridge/encoding.h"
 #include "proto/bridge/sha256.h"
 #include "server/host/host_messages.h"
 #include "server/host/order_class.h"
@@ -18,18 +16,6 @@ constexpr std::size_t kBytesMax = 4'096;  // of an answer; those that act have l
 
 std::string KeyOf(const std::string& request_id, int kind, const std::string& caller) {
   return request_id.empty() ? "" : request_id + "\n" + std::to_string(kind) + "\n" + caller;
-}
-
-// The same for the same content, maps included.
-std::string BytesOf(const google::protobuf::Message& message) {
-  std::string bytes;
-  {
-    google::protobuf::io::StringOutputStream stream(&bytes);
-    google::protobuf::io::CodedOutputStream out(&stream);
-    out.SetSerializationDeterministic(true);
-    message.SerializeToCodedStream(&out);
-  }
-  return bytes;
 }
 
 std::chrono::microseconds AgeOf(const v1::JournalEntry& entry, WallTime now) {
@@ -62,7 +48,7 @@ std::string AnsweredRequests::DigestOf(const v1::HostOrder& order) {
   copy->CopyFrom(*asked);
   if (const auto* token = copy->GetDescriptor()->FindFieldByName("control_token"))
     copy->GetReflection()->ClearField(copy.get(), token);
-  return bridge::Sha256Hex(BytesOf(*copy)).substr(0, kDigestDigits);
+  return bridge::Sha256Hex(bridge::StableBytes(*copy)).substr(0, kDigestDigits);
 }
 
 bool AnsweredRequests::IsAnother(const std::string& key, const std::string& digest) const {

@@ -96,6 +96,22 @@ TEST_F(AnsweredTest, WhatTheStateDoesNotHaveActs) {
   }
 }
 
+// LIVE-3.27: an id that was used for something else is refused, also behind a crash, whatever token
+// proves it; and so is one that is no id.
+TEST_F(AnsweredTest, AnIdIsForOneRequest) {
+  EXPECT_TRUE(Do(Start("the one")).status().has_run());
+  EXPECT_EQ(Do(Start("the one", 6)).refusal().code(), "CELL-E9019");
+  v1::HostOrder renewed = Start("the one");
+  renewed.mutable_start()->set_control_token("another token");
+  EXPECT_FALSE(Do(renewed).has_refusal());
+  EXPECT_EQ(Do(Start(std::string(65, 'a'))).refusal().code(), "CELL-E9003");
+  Pass(2s);
+  Keep();
+  Crash(disk_.size());
+  EXPECT_EQ(Do(Start("the one", 6)).refusal().code(), "CELL-E9019");
+  EXPECT_FALSE(Do(Start("the one")).has_refusal());
+}
+
 // LIVE-3.27: for ten minutes, and of one caller and one kind.
 TEST_F(AnsweredTest, AnAnswerIsKeptForTenMinutes) {
   Do(Factor("faster"));

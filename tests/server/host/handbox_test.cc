@@ -193,6 +193,41 @@ TEST_F(HandboxOverTheLine, WhatIsTaughtIsStored) {
   EXPECT_TRUE(host_->Handbox()->flashing());
 }
 
+// LIVE-7.04, LIVE-7.08: keys wait while what was taught is being stored; one that moves does not.
+TEST_F(HandboxOverTheLine, KeysWaitForWhatIsBeingStored) {
+  MakeAndTake();
+  Open();
+  Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC");
+  const std::vector<v1::HostEdit> edits = host_->TakeEdits();
+  ASSERT_THAT(edits, SizeIs(1));
+  const v1::HostOrder next = Key("PREV");
+  EXPECT_TRUE(host_->WaitsForKeys(next, now_));
+  EXPECT_TRUE(host_->Settles());
+  v1::HostOrder jog = next;
+  jog.mutable_key()->set_key("X+");
+  jog.mutable_key()->set_action(v1::KEY_ACTION_PRESS);
+  EXPECT_FALSE(host_->WaitsForKeys(jog, now_));
+  // Whoever has lost control is told so, and not that keys are missing.
+  v1::HostOrder stranger = next;
+  stranger.mutable_key()->set_control_token("another token");
+  stranger.mutable_key()->set_sequence(keys_ + 5);
+  EXPECT_FALSE(host_->WaitsForKeys(stranger, now_));
+  EXPECT_EQ(Do(stranger).refusal().code(), "CELL-E9420");
+  Store(edits[0]);
+  EXPECT_FALSE(host_->WaitsForKeys(next, now_));
+  EXPECT_TRUE(Do(next).has_key());
+}
+
+// LIVE-4.03: how old a heartbeat is must be known.
+TEST_F(HandboxOverTheLine, AHeartbeatSaysWhenItWasSent) {
+  MakeAndTake();
+  Open();
+  v1::HostOrder beat = Beat("X+");
+  beat.mutable_handbox_heartbeat()->clear_sent();
+  EXPECT_EQ(Do(beat).refusal().code(), "CELL-E9003");
+  EXPECT_FALSE(Do(Beat("X+")).has_refusal());
+}
+
 // LIVE-8.04: a mill has no handbox.
 TEST_F(HandboxOverTheLine, AMillHasNone) {
   Make();

@@ -78,6 +78,17 @@ TEST_F(StartAtTest, APreviewSaysWhatItWouldDo) {
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
 }
 
+// LIVE-6.04: nothing is previewed that could not begin.
+TEST_F(StartAtTest, ARunThatIsOpenHasNoPreview) {
+  MakeAndTake();
+  Do(Start());
+  Pass(1s);
+  EXPECT_EQ(Preview(8).refusal().code(), "CELL-E9421");
+  Do(Stop());
+  Until(v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(Preview(8).refusal().code(), "CELL-E9421");
+}
+
 // LIVE-6.09, LIVE-3.40: the approach is a phase of the run; it halts before the step, goes on,
 // ends, and comes out the same when it is played again.
 TEST_F(StartAtTest, ItBeginsWhereItWasAsked) {

@@ -9,6 +9,7 @@
 #include "rmlcell/v1/cell.pb.h"
 #include "server/base/executor.h"
 #include "server/records/machine_messages.h"
+#include "server/records/machine_options.h"
 #include "tests/server/fake_link.h"
 #include "tests/server/server_bed.h"
 
@@ -158,6 +159,46 @@ TEST_F(HostsTest, StatusIsThatOfTheHost) {
   hosts.Leave(*link);
   EXPECT_EQ(hosts.StatusOf("mill-1")->state(), v1::MACHINE_STATE_LOST);
   EXPECT_FALSE(hosts.StatusOf("optimo-1"));
+}
+
+// LIVE-2.10: a host that is silent is LOST: over a network after three seconds while a run is open,
+// sooner where the machine rests; nothing moves then as far as anybody knows, and it is not lost
+// any more when it is heard.
+TEST_F(HostsTest, ASilentHostIsLost) {
+  const auto link = Joined();
+  v1::HostRequest moving;
+  moving.mutable_status()->set_machine("machines/mill-1");
+  moving.mutable_status()->set_state(v1::MACHINE_STATE_RUNNING);
+  moving.mutable_status()->set_speed_mm_s(2.0);
+  hosts.Receive(*link, moving);
+  const auto state_after = [&](std::chrono::milliseconds time) {
+    clock.Advance(time);
+    hosts.Look();
+    return hosts.StatusOf("mill-1")->state();
+  };
+  EXPECT_EQ(state_after(std::chrono::milliseconds(3'000)), v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(state_after(std::chrono::milliseconds(1)), v1::MACHINE_STATE_LOST);
+  EXPECT_EQ(hosts.StatusOf("mill-1")->speed_mm_s(), 0.0);
+  EXPECT_EQ(hosts.StatusOf("mill-1")->words().item_state(), "NotAvailable");
+  Tell(*link, v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(state_after(std::chrono::milliseconds(2'500)), v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(state_after(std::chrono::milliseconds(1)), v1::MACHINE_STATE_LOST);
+  EXPECT_FALSE(link->closed());
+  state_after(std::chrono::milliseconds(2'500));
+  EXPECT_TRUE(link->closed());
+}
+
+// LIVE-2.03: OFF where somebody switched it off, STARTING where its host is about to come.
+TEST_F(HostsTest, WithoutAHost) {
+  storage::MachineRecord machine = Must(bed.store().GetMachine("mill-1"));
+  const auto state = [&] { return StatusOf(&hosts, machine, {}).state(); };
+  EXPECT_EQ(state(), v1::MACHINE_STATE_IDLE);  // nobody has said that it lives
+  hosts.OnAwaited([](const std::string& id) { return id == "mill-1"; });
+  EXPECT_EQ(state(), v1::MACHINE_STATE_STARTING);
+  v1::MachineOptions options;
+  options.set_disabled(true);
+  machine.options = BytesOf(options);
+  EXPECT_EQ(state(), v1::MACHINE_STATE_OFF);
 }
 
 // LIVE-3.06: an order goes to the host and its answer back; without a line it says so at once, and
