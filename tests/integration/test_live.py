@@ -7,7 +7,7 @@ import threading
 import time
 import unittest
 
-from cell import Cell, cell_pb2, detail_of, eventually, grpc, machine_pb2
+from cell import Cell, cell_pb2, detail_of, eventually, grpc, machine_pb2, program_pb2
 from live import MILL, Live, LiveTestCase, hosts_of, new_id
 from rmlcell.v1 import machine_control_pb2 as control  # noqa: E402
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
@@ -26,6 +26,7 @@ class LiveTest(LiveTestCase):
         self.assertEqual(self.live.status().fence, first.fence)
         self.assertEqual(MachineState.Name(self.live.ask("DisableMachine").state), "MACHINE_STATE_OFF")
         eventually(lambda: not self.hosts())
+        self.assertEqual(MachineState.Name(self.live.status().state), "MACHINE_STATE_OFF")
         self.refused("CELL-E9424", "StopMachine")
         self.assertGreater(self.live.enable().fence, first.fence)
         for _ in range(10):
@@ -69,6 +70,11 @@ class LiveTest(LiveTestCase):
         self.refused("CELL-E9408", "AcquireControl")
         started = self.live.ask("StartMachine", program=5)
         self.assertEqual(MachineState.Name(started.state), "MACHINE_STATE_RUNNING")
+        # LIVE-5.03: what it is in stays.
+        self.assertEqual(list(started.run.loaded_programs), [5])
+        with self.assertRaises(grpc.RpcError) as in_use:
+            self.cell.programs().DeleteProgram(program_pb2.DeleteProgramRequest(name=f"{MILL}/programs/5"))
+        self.assertEqual(detail_of(in_use.exception).code, "CELL-E9421")
         seen = []
         threading.Thread(target=self.watch, args=(seen,), daemon=True).start()
         eventually(lambda: len({round(one.tip.z, 3) for one in seen}) > 5)
