@@ -83,7 +83,7 @@ TEST_F(SelectedProgram, AnAlarmThatNeverWasIsNotAcknowledged) {
 // run stays held; the key at the machine is the control's own.
 TEST_F(SelectedProgram, ResumeFromAfarLosesNoPart) {
   const auto hold = [&] {
-    Load({"COORD ABSOL\nPATH LIN\nWORKDEF 2,0 (12)\nWORK 2,0/ON\nWAIT IL[20]\nWORK 2,0/OFF\n"});
+    Load({"COORD ABSOL\nPATH LIN\nWORK 0,0/ON\nWAIT IL[20]\nWORK 0,0/OFF\n"});
     Start();
     GoOn(machine->time() + At(3.0));
     Good(MoveDoor{.open = true});
