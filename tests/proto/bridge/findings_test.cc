@@ -292,7 +292,10 @@ TEST(RpcCodes, OfEveryErrorThatIsNoWrongArgument) {
                                            {ErrorCode::kCellApproach, 9},
                                            {ErrorCode::kCellDoorOpen, 9},
                                            {ErrorCode::kCellKeySequence, 9},
-                                           {ErrorCode::kCellReplayDiffers, 9}};
+                                           {ErrorCode::kCellReplayDiffers, 9},
+                                           {ErrorCode::kCellHostStopped, 9},
+                                           {ErrorCode::kCellEmergencyStop, 9},
+                                           {ErrorCode::kCellPowerOff, 9}};
   for (const CatalogueEntry& entry : Catalogue()) {
     const auto other = others.find(entry.code);
     EXPECT_EQ(RpcCode(entry.code), other == others.end() ? 3 : other->second)
