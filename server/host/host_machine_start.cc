@@ -60,7 +60,6 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
   }
   auto start = StartOf(request, machine());
   if (!start) return start.error();
-  if (const Status may = machine().MayBegin(*start); !may) return may.error();
   auto part = PartOf(request, setup_.family->Shape(*parameters_));
   if (!part) return part.error();
   if (!v1::PartSoFar_IsValid(request.part_so_far()))
@@ -86,6 +85,7 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
         stored != machine().memory().programs.end() && *stored->second.object == *brought->object;
     if (!same) task.start.brought = *std::move(brought);
   }
+  if (const Status may = machine().MayBegin(task.start); !may) return may.error();
   task.run = [&family = *setup_.family, parameters = *parameters_, memory = machine().memory(),
               state = machine().Save(), occurrence_at, milling = *std::move(part),
               so_far](machine::StartAtStep& asked,

@@ -42,7 +42,8 @@ Status HostProcesses::Enable(const std::string& machine, std::chrono::millisecon
         {}};
   }
   Place& place = places_[machine];
-  place.wanted = true;
+  // The one that was told to end may still be there: that is no failed start.
+  if (!std::exchange(place.wanted, true)) place.follows = place.process > 0;
   place.ends.clear();
   if (place.process < 0) {
     place.delay = {};
@@ -75,7 +76,12 @@ void HostProcesses::LookAt(const std::string& machine, Place& place) {
   const auto now = options_.clock();
   int how = 0;
   if (place.process > 0 && ::waitpid(place.process, &how, WNOHANG) == place.process) {
-    place.next_start = now + place.delay.AfterLife(now - place.started);
+    if (std::exchange(place.follows, false)) {
+      place.delay = {};
+      place.next_start = now;
+    } else {
+      place.next_start = now + place.delay.AfterLife(now - place.started);
+    }
     place.process = -1;
     // In order, or because the machine is another host's: it is asked for again.
     const bool fine = WIFEXITED(how) && (WEXITSTATUS(how) == 0 || WEXITSTATUS(how) == kNotMine);

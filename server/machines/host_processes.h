@@ -60,6 +60,7 @@ class HostProcesses {
   struct Place {
     pid_t process = -1;
     bool wanted = true;
+    bool follows = false;  // its last one was told to end, and the next comes at once
     std::chrono::steady_clock::time_point started{};
     std::chrono::steady_clock::time_point next_start{};
     RestartDelay delay{};

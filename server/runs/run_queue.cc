@@ -71,13 +71,13 @@ v1::HostOrderAnswer RefusedBy(const v1::PreviewStartResponse& preview) {
   return answer;
 }
 
-// Whether jobs of this machine start when their turn comes, and no person says so. LIVE-5.04
+// Whether jobs of this machine start when their turn comes, once somebody has armed it or not at
+// all, and no person says so of each. LIVE-5.04
 bool StartsByItself(storage::Store& store, const std::string& machine) {
   const auto record = store.GetMachine(machine);
   if (!record) return true;
   const auto options = OptionsOf(*record);
-  return !options || (options->start() != v1::MachineOptions::START_PERSON &&
-                      options->start() != v1::MachineOptions::START_ARMED);
+  return !options || options->start() != v1::MachineOptions::START_PERSON;
 }
 
 // Of what a start at a step asks a person, that which the job does not say that it was seen to.
