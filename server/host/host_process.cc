@@ -15,6 +15,7 @@
 #include "proto/bridge/findings.h"
 #include "server/base/secret.h"
 #include "server/base/version.h"
+#include "server/host/answers_due.h"
 #include "server/host/background.h"
 #include "server/host/further_lines.h"
 #include "server/host/host_clock.h"
@@ -117,7 +118,7 @@ class HostProcess {
     const std::deque<v1::HostResponse> messages = inbox_.TakeMessages();
     // Those of the other servers have numbers of the host's own, below 0.
     for (const auto& parked : parked_) parked->over = parked->over || parked->order.number() > 0;
-    std::erase_if(answers_due_, [](const auto& answer) { return answer.number() > 0; });
+    answers_due_.ForgetLine();
     std::erase_if(keys_waiting_, [](const Waiting& key) { return key.order.number() > 0; });
     ++lines_lost_;
     if (machine_ == nullptr) return;
@@ -399,7 +400,7 @@ class HostProcess {
   }
 
   void AnswerWhenDurable(v1::HostOrderAnswer answer) {
-    answers_due_.push_back(std::move(answer));
+    answers_due_.Add(std::move(answer));
     Write(Now(), true);
   }
 
@@ -409,20 +410,17 @@ class HostProcess {
     if (entries.empty()) return;
     auto copy = std::make_shared<const std::vector<v1::JournalEntry>>(entries);
     if (writes_under_way_++ == 0) durable_at_ = now.steady;
-    writer_->Write(std::move(entries),
-                   [this, copy, line = lines_lost_, answers = std::exchange(answers_due_, {})] {
-                     inbox_.Later([this, copy, line, answers] {
-                       --writes_under_way_;
-                       durable_at_ = Now().steady;
-                       Keep(*copy);
-                       SendEntries(*copy);
-                       for (const v1::HostOrderAnswer& answer : answers) {
-                         // It is no answer to what is asked now, over another line.
-                         if (answer.number() > 0 && line != lines_lost_) continue;
-                         SendAnswer(answer);
-                       }
-                     });
-                   });
+    const auto due = answers_due_.Begin(now.steady);
+    writer_->Write(std::move(entries), [this, copy, due] {
+      inbox_.Later([this, copy, due] {
+        --writes_under_way_;
+        durable_at_ = Now().steady;
+        Keep(*copy);
+        SendEntries(*copy);
+        answers_due_.End(due);
+        for (const v1::HostOrderAnswer& answer : due->answers) SendAnswer(answer);
+      });
+    });
   }
 
   // One that has not begun yet, too. What moves is brought to rest before.
@@ -448,6 +446,8 @@ class HostProcess {
     });
     const bool late = writes_under_way_ > 0 && now - durable_at_ > kDurablePatience;
     machine_->NoteDisk(late);
+    for (v1::HostOrderAnswer& answer : answers_due_.TakeLate(now, kDurablePatience))
+      SendAnswer(std::move(answer));
     if (machine_->moves() && late) machine_->Hold(v1::HOLD_REASON_LATE, Now());
   }
 
@@ -564,8 +564,8 @@ class HostProcess {
     nanoseconds until{0};
   };
   std::vector<Waiting> keys_waiting_;
-  std::vector<std::shared_ptr<Parked>> parked_;   // their intent is on its way to the disk
-  std::vector<v1::HostOrderAnswer> answers_due_;  // when what goes out next is on the disk
+  std::vector<std::shared_ptr<Parked>> parked_;  // their intent is on its way to the disk
+  AnswersDue answers_due_;
   int writes_under_way_ = 0;
   nanoseconds durable_at_{0};  // what was written last; where nothing is under way, what begins
   int lines_lost_ = 0;
