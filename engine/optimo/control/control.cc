@@ -54,6 +54,7 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
       effects_(s_.effects, actuators_, ride_),
       counter_(s_.counter, now(), parameters_, setup_, telling_),
       data_(s_.data, now(), parameters_, counter_, ride_, effects_, observer),
+      plain_(counter_, s_.data, now(), parameters_, telling_),
       waits_(s_.waits, now(), s_.actuators.beam, cycle_, telling_, ride_),
       watch_(s_.watch, now(), cycle_, counter_, ride_, data_, waits_),
       process_watch_(s_.process_watch, s_.actuators),
@@ -80,7 +81,7 @@ RunPhase Control::Advance(SimTime until) {
   int carried_out = 0;
   for (;;) {
     if (now().phase == RunPhase::kFinished) return now().phase;
-    ApplyScripted();
+    if (ScriptedIsDue()) ApplyScripted();
     if (now().phase == RunPhase::kFinished) return now().phase;
     const bool scripted = s_.next_input < setup_.inputs.size();
     if (now().phase == RunPhase::kHalted) {
@@ -92,6 +93,7 @@ RunPhase Control::Advance(SimTime until) {
       continue;
     }
     if (MayFetch()) {
+      carried_out += FetchPlain(kStepsPerAdvance - carried_out);
       if (++carried_out > kStepsPerAdvance) return now().phase;
       Fetch();
       continue;
@@ -101,7 +103,8 @@ RunPhase Control::Advance(SimTime until) {
     const SimTime to = std::min({next, until, setup_.budget.virtual_time});
     now().now = std::max(now().now, to);
     if (next > until) return now().phase;
-    ApplyScripted();  // an input of this instant is seen by the conditions of this instant
+    if (ScriptedIsDue())
+      ApplyScripted();  // an input of this instant is seen by the conditions of this instant
     if (!now().running()) continue;
     ActOnTime();
   }
@@ -224,8 +227,7 @@ void Control::ActOnPending() {
 }
 
 void Control::ApplyScripted() {
-  while (s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= now().now &&
-         now().phase != RunPhase::kFinished) {
+  while (ScriptedIsDue() && now().phase != RunPhase::kFinished) {
     const machine::InputChange input = setup_.inputs[s_.next_input++];
     // Of several overrides of one instant the last one counts (motion.md 10, property 12).
     if (input.kind == machine::InputKind::kOverride && s_.next_input < setup_.inputs.size()) {

@@ -6,6 +6,7 @@
 
 #include "engine/optimo/control/control_state.h"
 #include "engine/optimo/control/flow.h"
+#include "engine/optimo/control/plain_steps.h"
 #include "engine/optimo/machine/system_cycle.h"
 #include "engine/optimo/machine/telling.h"
 
@@ -73,6 +74,9 @@ class Control final : private RideListener {
   SimTime NextEvent(SimTime until) const;
   void ActOnTime();
   void ActOnPending();
+  bool ScriptedIsDue() const {
+    return s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= now().now;
+  }
   void ApplyScripted();
   void PressStart();
   void ChangeOutside();
@@ -85,9 +89,12 @@ class Control final : private RideListener {
   }
 
   // --- control_fetch.cc: one instruction after the other ---
+  int FetchPlain(int most);
+  bool OnlyProgram() const;
   void Fetch();
   bool StandFirst();
-  bool TimeStands();
+  void NoteInstant();
+  std::uint64_t StepsToGo() const;
   bool MayCarryOut(const Instruction& i);
   bool NeedsStandstill(const Instruction& i);
   void EndSimulation(const machine::Place& here);
@@ -123,6 +130,7 @@ class Control final : private RideListener {
   PassageEffects effects_;
   ProgramCounter counter_;
   DataAccess data_;
+  PlainSteps plain_;
   Waits waits_;
   MoveWatch watch_;
   ProcessWatch process_watch_;

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "engine/optimo/control/control.h"
 
 // One instruction after the other.
@@ -28,6 +30,32 @@ bool IsAt(const std::optional<machine::ProgramStep>& step, const machine::Place&
 }
 
 }  // namespace
+
+// Nothing that Fetch looks at between two instructions is there, and no plain step brings any of it
+// about. Between two /FLY moves none of them needs a standstill.
+bool Control::OnlyProgram() const {
+  return !s_.entry.arrival && !s_.entry.target && step_watcher_ == nullptr && !now().simulating() &&
+         !waits_.condition_met() && !ride_.busy() && halts_.idle() &&
+         !counter_.may_be_interrupted();
+}
+
+// Plain steps, as many as come one behind the other and are allowed: how many that were. What comes
+// next is left to Fetch.
+int Control::FetchPlain(int most) {
+  if (!plain_.come() || !OnlyProgram() || s_.steps >= setup_.budget.steps) return 0;
+  NoteInstant();
+  const bool ahead = ride_.passing();
+  if (ahead) most = std::min(most, ride_.may_run_ahead());
+  const std::uint64_t allowed = std::min(static_cast<std::uint64_t>(most), StepsToGo());
+  const PlainSteps::Done done = plain_.CarryOut(allowed);
+  if (done.steps == 0) return 0;
+  if (ahead) ride_.RanAhead(static_cast<int>(done.steps));
+  s_.op = done.last;
+  s_.steps += done.steps;
+  waits_.BeginInstruction();
+  works_.MarkStale();
+  return static_cast<int>(done.steps);
+}
 
 // Carries out the next instruction, or finds out that the machine must stand first.
 void Control::Fetch() {
@@ -60,11 +88,12 @@ void Control::Fetch() {
     EndSimulation(here);
     if (!now().running()) return;
   }
+  NoteInstant();
   if (s_.steps >= setup_.budget.steps) {
     return Finish(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kStepBudget,
                   Told("steps", s_.steps) + " steps were executed");
   }
-  if (TimeStands()) {
+  if (StepsToGo() == 0) {
     return Raise({ErrorCode::kStepBudget,
                   Told("steps", s_.steps - s_.steps_before) + " steps were executed at one instant",
                   {}});
@@ -94,14 +123,19 @@ void Control::Fetch() {
   if (now().running()) halts_.EndStep(here);
 }
 
-// LIVE-3.01: a program that lets no time pass, repetitions of one included, goes on for ever.
-bool Control::TimeStands() {
-  if (s_.instant != now().now) {
-    s_.instant = now().now;
-    s_.steps_before = s_.steps;
-  }
-  const std::uint64_t most = setup_.budget.steps_at_one_instant;
-  return most > 0 && s_.steps - s_.steps_before >= most;
+void Control::NoteInstant() {
+  if (s_.instant == now().now) return;
+  s_.instant = now().now;
+  s_.steps_before = s_.steps;
+}
+
+// Up to the budget. LIVE-3.01: a program that lets no time pass, repetitions of one included, goes
+// on for ever.
+std::uint64_t Control::StepsToGo() const {
+  const std::uint64_t to_go = setup_.budget.steps - s_.steps;
+  const std::uint64_t at_once = setup_.budget.steps_at_one_instant;
+  if (at_once == 0) return to_go;
+  return std::min(to_go, at_once - std::min(at_once, s_.steps - s_.steps_before));
 }
 
 // True: something moves, and the instruction is fetched again when it is over.

@@ -6,7 +6,6 @@ namespace {
 constexpr int kFirstWorkFlag = 87;  // IL[87 + p], OPT-3.37
 constexpr int kLastWorkFlag = 94;
 constexpr int kMotionFlag = 95;  // OPT-7.68
-constexpr int kFirstOwnVi = 98;  // the control writes VI[98] and VI[99] itself
 
 // PAR of an activation that need not be the innermost any more.
 class WithParameters final : public VariableAccess {
@@ -53,9 +52,6 @@ double DataAccess::InputNow(VariableGroup group, int index) const {
 bool DataAccess::IsOfTheRun(Variable variable) const {
   const int n = variable.index;
   switch (variable.group) {
-    case VariableGroup::kVi:
-      if (n >= kFirstOwnVi) return true;
-      break;
     case VariableGroup::kIl:
       return n >= kFirstWorkFlag && n <= kMotionFlag;
     case VariableGroup::kIa:
@@ -69,11 +65,15 @@ bool DataAccess::IsOfTheRun(Variable variable) const {
     default:
       break;
   }
-  const auto& written = s_.written[static_cast<std::size_t>(variable.group)];
-  return written[static_cast<std::size_t>(n)];
+  return s_.written[NumberOf(variable)];
 }
 
 float DataAccess::Read(Variable variable) {
+  // What programs compute with comes first.
+  if (variable.group == VariableGroup::kVr && s_.written[NumberOf(variable)])
+    return s_.area.vr[variable.index];
+  if (variable.group == VariableGroup::kPar && counter_.in_function())
+    return counter_.frame().parameters[variable.index % kParameterCount];
   const bool of_the_run = IsOfTheRun(variable);
   const float value = ValueOf(variable);
   if (!of_the_run) TellAssumed(variable, value);
@@ -131,7 +131,7 @@ float DataAccess::Peek(Variable variable) const {
 
 // On error nothing was written.
 Status DataAccess::Write(Variable variable, float number) {
-  s_.written[static_cast<std::size_t>(variable.group)][variable.index] = true;
+  s_.written[NumberOf(variable)] = true;
   return Put(variable, number, PassageEffects::When::kPassage);
 }
 

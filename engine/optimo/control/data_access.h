@@ -1,20 +1,30 @@
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <optional>
 
 #include "engine/optimo/control/passage_effects.h"
+#include "engine/optimo/control/plain_code.h"
 #include "engine/optimo/control/program_counter.h"
 #include "engine/optimo/language/evaluate.h"
 #include "engine/optimo/ride/ride.h"
 
 namespace rmlcell::optimo {
 
+// Variables by NumberOf.
+using WrittenVariables = std::array<bool, kVariableGroups * kVariablesOfGroup>;
+
 struct DataState {
   DataArea area{};
-  // By the run itself; by group.
-  std::array<std::bitset<kVariableCount>, kVariableGroups> written{};
+  WrittenVariables written = WrittenByControl();  // by the run itself
+
+  // VI[98] and VI[99], before any instruction.
+  static constexpr WrittenVariables WrittenByControl() {
+    WrittenVariables written{};
+    written[NumberOf({VariableGroup::kVi, 98})] = true;
+    written[NumberOf({VariableGroup::kVi, 99})] = true;
+    return written;
+  }
 };
 
 // Variables, the images of inputs and outputs, and the expressions that read them; the instructions
@@ -47,7 +57,12 @@ class DataAccess : private VariableAccess {
   Result<std::array<double, N>> Reals(int count, ExpressionAt at) {
     std::array<double, N> values{};
     for (int n = 0; n < count; ++n) {
-      const Result<double> value = Real(at(n));
+      const Expression expression = at(n);
+      if (IsWrittenOut(expression)) {
+        values[static_cast<std::size_t>(n)] = static_cast<double>(expression.front().number);
+        continue;
+      }
+      const Result<double> value = Real(expression);
       if (!value) return value.error();
       values[static_cast<std::size_t>(n)] = *value;
     }
@@ -80,6 +95,10 @@ class DataAccess : private VariableAccess {
   Status ConnectOutputs(std::uint8_t groups);
 
  private:
+  // Most numbers of a program stand there as they are.
+  static bool IsWrittenOut(Expression expression) {
+    return expression.size() == 1 && expression.front().op != Node::kVariable;
+  }
   float Read(Variable variable) override;
   float ValueOf(Variable variable);
   float Peek(Variable variable) const;

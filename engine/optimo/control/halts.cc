@@ -10,6 +10,11 @@ bool Halts::due() const {
          s_.after_step != AfterStep::kNone;
 }
 
+bool Halts::idle() const {
+  return !s_.hold && !s_.stop && s_.after_step == AfterStep::kNone && !s_.breakpoint &&
+         s_.watched.empty() && !s_.watched_halts && situation_.mode != machine::Mode::kSingle;
+}
+
 bool Halts::breaks_at(const machine::Place& place) const {
   return s_.breakpoint && s_.breakpoint->program == place.program &&
          s_.breakpoint->step == place.step;

@@ -79,6 +79,8 @@ class Halts {
   // The run is to halt before the next instruction; one whose condition is met is finished before a
   // HOLD (OPT-4.17), and a motion that may be held back before a STOP.
   bool due() const;
+  // No step has to do with halts: none is due, and none comes behind whatever step.
+  bool idle() const;
   // A STOP waits until more of the motions is planned, or until the one under way is over.
   bool stop_waits() const { return s_.stop; }
   // The run halts behind the step at this place: nothing may pass its target without a stop.

@@ -58,11 +58,13 @@ bool Moves::NeedsStandstill(const Instruction& i) {
 }
 
 Result<Moves::Coordinates> Moves::TargetOf(const Instruction& i) {
-  return data_.Reals<5>(5, [&](int n) { return counter_.module().Value(i, n); });
+  const Module& module = counter_.module();
+  return data_.Reals<5>(5, [&](int n) { return module.Value(i, n); });
 }
 
 Result<motion::TipPose> Moves::ViaOf(const Instruction& i) {
-  const auto via = data_.Reals<5>(5, [&](int n) { return counter_.module().Via(i, n); });
+  const Module& module = counter_.module();
+  const auto via = data_.Reals<5>(5, [&](int n) { return module.Via(i, n); });
   if (!via) return via.error();
   return TipAt(*via);
 }
@@ -114,11 +116,11 @@ Status Moves::Move(const Instruction& i) {
   if (!target) return target.error();
   if (situation_.simulating()) return {};  // no motion, the position does not change: OPT-6.18
 
-  const Programmed move{.i = i,
-                        .target = *target,
-                        .note = NoteOf(i, *target),
-                        .first_tag = ride_.next_tag(),
-                        .ran_ahead = ride_.passing()};
+  Programmed move{.i = i,
+                  .target = *target,
+                  .note = NoteOf(i, *target),
+                  .first_tag = ride_.next_tag(),
+                  .ran_ahead = ride_.passing()};
   if (i.Has(kEnd)) {
     const Result<bool> met = data_.Truth(data_.RangeOf(counter_.module().End(i)));
     if (!met) return met.error();
@@ -176,7 +178,7 @@ MoveNote Moves::NoteOf(const Instruction& i, const Coordinates& target) {
           .fly = fly && !may_end_early && !i.Has(kNext)};
 }
 
-Result<bool> Moves::AppendPath(const Programmed& move) {
+Result<bool> Moves::AppendPath(Programmed& move) {
   const Modal& modal = counter_.modal();
   const motion::AxisPose& axes = ride_.planned_axes();
   if (modal.coord == CoordType::kRobot) {
@@ -188,15 +190,14 @@ Result<bool> Moves::AppendPath(const Programmed& move) {
   if (modal.path != PathType::kCir) {
     return Append(move.i, motion::PathPiece::Line(from, target), move.note);
   }
-  MoveNote note = move.note;
   if (move.i.Has(kVia)) {
     const Result<motion::TipPose> via = ViaOf(move.i);
     if (!via) return via.error();
-    note.via = via->tip;
+    move.note.via = via->tip;
   }
-  const Result<motion::PathPiece> path = CirclePath(from, target, note.via);
+  const Result<motion::PathPiece> path = CirclePath(from, target, move.note.via);
   if (!path) return path.error();
-  return Append(move.i, *path, note);
+  return Append(move.i, *path, move.note);
 }
 
 Result<motion::PathPiece> Moves::CirclePath(const motion::TipPose& from,
@@ -215,7 +216,7 @@ Result<motion::PathPiece> Moves::CirclePath(const motion::TipPose& from,
 }
 
 // motion.md 3.3: a line to the circle, a stop, one full turn.
-Result<bool> Moves::AppendHole(const Programmed& move, const motion::TipPose& from) {
+Result<bool> Moves::AppendHole(Programmed& move, const motion::TipPose& from) {
   const Instruction& i = move.i;
   const double radius = counter_.modal().hole_radius_mm;
   const motion::TipPose target = TipAt(move.target);
@@ -271,7 +272,7 @@ double Moves::SpeedFraction() {
   return 1.0;
 }
 
-Result<bool> Moves::Append(const Instruction& i, const motion::PathPiece& path, MoveNote note,
+Result<bool> Moves::Append(const Instruction& i, const motion::PathPiece& path, MoveNote& note,
                            bool settles) {
   Result<std::vector<BeyondTravel>> beyond = travel_.Look(path, note.place);
   if (!beyond) return beyond.error();

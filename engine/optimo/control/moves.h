@@ -66,12 +66,13 @@ class Moves {
   // False: it waits for its /START.
   Result<bool> MayBegin(const Instruction& i);
   MoveNote NoteOf(const Instruction& i, const Coordinates& target);
-  Result<bool> AppendPath(const Programmed& move);
-  Result<bool> AppendHole(const Programmed& move, const motion::TipPose& from);
+  Result<bool> AppendPath(Programmed& move);
+  Result<bool> AppendHole(Programmed& move, const motion::TipPose& from);
   Result<motion::PathPiece> CirclePath(const motion::TipPose& from, const motion::TipPose& target,
                                        const std::optional<motion::MachinePoint>& via);
-  // False: nothing is on its way. It ends where it begins, or the MOVE stands until its /TIME.
-  Result<bool> Append(const Instruction& i, const motion::PathPiece& path, MoveNote note,
+  // Writes down in the note what it knows of the motion. False: nothing is on its way. It ends
+  // where it begins, or the MOVE stands until its /TIME.
+  Result<bool> Append(const Instruction& i, const motion::PathPiece& path, MoveNote& note,
                       bool settles = true);
   Result<bool> NeverEnds(const Instruction& i, Detail why);
   void TellStanding(const MoveNote& note);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/units.h"
+#include "engine/optimo/control/plain_code.h"
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/machine/laser_unit.h"
 
@@ -18,6 +19,7 @@ namespace rmlcell::optimo {
 struct LoadedProgram {
   Executable executable{};
   std::vector<ModuleIndex> index{};  // parallel to executable.modules
+  std::vector<PlainCode> plain{};    // likewise
 
   int slot() const { return executable.modules.front().slot; }
 };

@@ -8,8 +8,6 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr std::size_t kFunctionLevels = 4;  // OPT-9.08
-
 // What a repeated timer missed meanwhile is not made up for.
 void SkipMissed(ProgramTimer& timer, SimTime now) {
   if (timer.due <= now) timer.due += ((now - timer.due) / timer.period + 1) * timer.period;
@@ -35,6 +33,9 @@ Loaded Load(Executable executable) {
   loaded->index.reserve(loaded->executable.modules.size());
   for (const LinkedModule& linked : loaded->executable.modules)
     loaded->index.emplace_back(linked.module);
+  loaded->plain.reserve(loaded->index.size());
+  for (std::size_t n = 0; n < loaded->index.size(); ++n)
+    loaded->plain.emplace_back(loaded->executable, n, loaded->index[n]);
   return loaded;
 }
 

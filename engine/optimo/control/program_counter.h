@@ -38,6 +38,8 @@ struct ProgramCounterState {
 //   any       GO, the end of its program                kNone: each program has its own
 class ProgramCounter {
  public:
+  static constexpr std::size_t kFunctionLevels = 4;  // OPT-9.08
+
   ProgramCounter(ProgramCounterState& state, const Situation& situation,
                  const OptimoParameters& parameters, const machine::RunSetup& setup,
                  const Telling& telling)
@@ -68,6 +70,8 @@ class ProgramCounter {
   std::size_t level() const { return program().frames.size(); }  // 1: the main module
   bool in_function() const { return level() > 1; }
   bool in_gosub() const { return !frame().returns.empty(); }
+  // A TIMER is set, or a GOSUB due: instructions may be followed by one that no program asks for.
+  bool may_be_interrupted() const { return program().timer || program().due_gosub; }
 
   // The executable of a slot: the stored one, or made of the object now (OPT-1.11).
   // Errors: ProgramMissing, ObjectCorrupt, CallNotExecutable, CmosFull, those of Link.

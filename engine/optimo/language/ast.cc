@@ -57,11 +57,6 @@ bool IsReadOnly(Variable variable) {
   }
 }
 
-int Arity(Node node) {
-  if (node < Node::kNegate) return 0;
-  return node < Node::kPower ? 1 : 2;
-}
-
 bool IsLiteral(const ExprNode& node) {
   return node.name == kNoName && (node.op == Node::kInteger || node.op == Node::kReal);
 }

@@ -77,7 +77,10 @@ enum class Node : std::uint8_t {
   kXor,
 };
 inline constexpr int kNodeCount = static_cast<int>(Node::kXor) + 1;
-int Arity(Node node);  // 0 leaf, 1, 2
+inline int Arity(Node node) {  // 0 leaf, 1, 2
+  if (node < Node::kNegate) return 0;
+  return node < Node::kPower ? 1 : 2;
+}
 
 inline constexpr std::uint16_t kNoName = 0xFFFF;
 

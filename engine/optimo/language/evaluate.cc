@@ -6,24 +6,16 @@
 namespace rmlcell::optimo {
 namespace {
 
-struct Outcome {
-  float number = 0.0F;
-  bool good = true;
-  ErrorCode code{};  // where it is not good
-};
-
 Outcome Fail(ErrorCode code) { return {0.0F, false, code}; }
+
+Outcome OfFloat(float result) {
+  if (BecomesReal(result)) return {result};
+  return Fail(std::isnan(result) ? ErrorCode::kDomain : ErrorCode::kRealOverflow);
+}
 
 // Functions are computed in double precision and rounded once (OPT-B.38). Outside its domain a
 // function is not a number.
-Outcome Round(double value) {
-  if (std::isnan(value)) return Fail(ErrorCode::kDomain);
-  const auto rounded = static_cast<float>(value);
-  const double magnitude = std::fabs(static_cast<double>(rounded));
-  if (!(magnitude <= kRealMax)) return Fail(ErrorCode::kRealOverflow);
-  if (magnitude < kRealMin) return {0.0F};
-  return {rounded};
-}
+Outcome Round(double value) { return OfFloat(static_cast<float>(value)); }
 
 // OPT-7.81: any base with an integer exponent; 0^0 is 1.
 Outcome Power(double base, double exponent) {
@@ -66,23 +58,24 @@ Outcome Function(Node op, double x) {
   }
 }
 
+Outcome Unary(Node op, float operand) {
+  switch (op) {
+    case Node::kNegate:
+      return {operand == 0.0F ? 0.0F : -operand};
+    case Node::kNot:
+      return {operand == 0.0F ? 1.0F : 0.0F};
+    default:
+      return Function(op, static_cast<double>(operand));
+  }
+}
+
 Outcome Binary(Node op, double a, double b) {
   const auto truth = [](bool value) { return Outcome{value ? 1.0F : 0.0F}; };
   switch (op) {
     case Node::kPower:
       return Power(a, b);
-    // The double product, quotient, sum and difference of two floats, rounded to 24 bits, are the
-    // rightly rounded ones: 53 >= 2 * 24 + 2.
-    case Node::kMultiply:
-      return Round(a * b);
-    case Node::kDivide:
-      return b == 0.0 ? Fail(ErrorCode::kDivisionByZero) : Round(a / b);
     case Node::kMod:
       return Modulo(a, b);
-    case Node::kAdd:
-      return Round(a + b);
-    case Node::kSubtract:
-      return Round(a - b);
     case Node::kLess:
       return truth(a < b);
     case Node::kLessEqual:
@@ -117,36 +110,35 @@ std::string DetailOf(ErrorCode code) {
 
 }  // namespace
 
+Outcome Operate(Node op, float left, float right) {
+  switch (op) {
+    case Node::kMultiply:
+      return OfFloat(left * right);
+    case Node::kDivide:
+      return right == 0.0F ? Fail(ErrorCode::kDivisionByZero) : OfFloat(left / right);
+    case Node::kAdd:
+      return OfFloat(left + right);
+    case Node::kSubtract:
+      return OfFloat(left - right);
+    default:
+      return Arity(op) == 1 ? Unary(op, left)
+                            : Binary(op, static_cast<double>(left), static_cast<double>(right));
+  }
+}
+
 Result<Value> Evaluate(Expression expression, VariableAccess& variables) {
   float stack[kOperandStackMax];
   std::size_t top = 0;
   for (const ExprNode& node : expression) {
-    Outcome outcome;
-    switch (Arity(node.op)) {
-      case 0:
-        RMLCELL_CHECK(top < kOperandStackMax);
-        outcome.number = node.op == Node::kVariable ? variables.Read(node.variable()) : node.number;
-        break;
-      case 1: {
-        RMLCELL_CHECK(top >= 1);
-        const float operand = stack[--top];
-        if (node.op == Node::kNegate) {
-          outcome.number = operand == 0.0F ? 0.0F : -operand;
-        } else if (node.op == Node::kNot) {
-          outcome.number = operand == 0.0F ? 1.0F : 0.0F;
-        } else {
-          outcome = Function(node.op, static_cast<double>(operand));
-        }
-        break;
-      }
-      default: {
-        RMLCELL_CHECK(top >= 2);
-        top -= 2;
-        outcome =
-            Binary(node.op, static_cast<double>(stack[top]), static_cast<double>(stack[top + 1]));
-        break;
-      }
+    const int arity = Arity(node.op);
+    if (arity == 0) {
+      RMLCELL_CHECK(top < kOperandStackMax);
+      stack[top++] = node.op == Node::kVariable ? variables.Read(node.variable()) : node.number;
+      continue;
     }
+    RMLCELL_CHECK(top >= static_cast<std::size_t>(arity));
+    top -= static_cast<std::size_t>(arity);
+    const Outcome outcome = Operate(node.op, stack[top], arity == 2 ? stack[top + 1] : 0.0F);
     if (!outcome.good) return Error{outcome.code, DetailOf(outcome.code), {}};
     stack[top++] = outcome.number;
   }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <bit>
+#include <cstdint>
+
 #include "engine/core/result.h"
 #include "engine/optimo/language/ast.h"
 
@@ -21,6 +24,26 @@ inline constexpr double kRealMax = 9223372036854775808.0;         // 2^63, OPT-7
 inline constexpr double kRealMin = 1.0 / 18446744073709551616.0;  // 2^-64
 inline constexpr int kIntegerMin = -32768;
 inline constexpr int kIntegerMax = 32767;
+
+// Of the result of an operation: one too small becomes 0. False: beyond 2^63, or no number at all.
+inline bool BecomesReal(float& result) {
+  constexpr auto kLeast = std::bit_cast<std::uint32_t>(static_cast<float>(kRealMin));
+  constexpr auto kMost = std::bit_cast<std::uint32_t>(static_cast<float>(kRealMax));
+  const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(result) & 0x7FFF'FFFFU;
+  if (magnitude - kLeast <= kMost - kLeast) return true;
+  if (magnitude >= kLeast) return false;
+  result = 0.0F;
+  return true;
+}
+
+// What an operator gives: a number, or why there is none.
+struct Outcome {
+  float number = 0.0F;
+  bool good = true;
+  ErrorCode code{};  // where it is not good
+};
+// An operator or function; with one operand `right` is not looked at. Errors as those of Evaluate.
+Outcome Operate(Node op, float left, float right);
 
 // What an expression may read. A read of IL or IA may refresh the image first (OPT-7.97).
 class VariableAccess {

@@ -24,12 +24,15 @@ Telling::Telling(const Situation& situation, const machine::RunSetup& setup,
   }
 }
 
-machine::Place Telling::PlaceOf(int slot, std::uint32_t step) const {
+std::span<const int> Telling::LinesOf(int slot) const {
   const machine::SourceNotes* source = sources_[static_cast<std::size_t>(slot)];
-  const bool known = source != nullptr && step >= 1 && step <= source->step_lines.size();
-  return {.program = slot,
-          .step = static_cast<int>(step),
-          .line = known ? source->step_lines[step - 1] : 0};
+  return source != nullptr ? std::span<const int>(source->step_lines) : std::span<const int>();
+}
+
+machine::Place Telling::PlaceOf(int slot, std::uint32_t step) const {
+  const std::span<const int> lines = LinesOf(slot);
+  const bool known = step >= 1 && step <= lines.size();
+  return {.program = slot, .step = static_cast<int>(step), .line = known ? lines[step - 1] : 0};
 }
 
 void Telling::Warn(ErrorCode code, Detail detail, std::string_view rule) const {

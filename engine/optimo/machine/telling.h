@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -27,6 +28,8 @@ class Telling {
 
   // A step of a program, with its line where the source is known.
   machine::Place PlaceOf(int slot, std::uint32_t step) const;
+  // Of each step from 1 on; none where the source is not known.
+  std::span<const int> LinesOf(int slot) const;
 
   void Warn(ErrorCode code, Detail detail, std::string_view rule) const;
   void WarnAt(const machine::Place& place, ErrorCode code, Detail detail,

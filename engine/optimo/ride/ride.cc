@@ -13,6 +13,7 @@ constexpr int kRunAheadMax = 10'000;
 
 template <class Notes>
 auto* Find(Notes& notes, std::uint64_t tag) {
+  if (!notes.empty() && notes.front().first == tag) return &notes.front().second;  // mostly
   const auto found =
       std::ranges::lower_bound(notes, tag, {}, [](const auto& row) { return row.first; });
   return found != notes.end() && found->first == tag ? &found->second : nullptr;
@@ -86,10 +87,12 @@ void Ride::GoOnBeside(std::uint64_t tag, bool ran_ahead) {
 }
 
 bool Ride::RunsAhead() {
-  if (s_.run_ahead >= kRunAheadMax) return false;
-  ++s_.run_ahead;
+  if (may_run_ahead() == 0) return false;
+  RanAhead(1);
   return true;
 }
+
+int Ride::may_run_ahead() const { return std::max(0, kRunAheadMax - s_.run_ahead); }
 
 void Ride::Start() {
   while (waits_to_start()) {
@@ -100,6 +103,7 @@ void Ride::Start() {
     const motion::PlannedMotion& motion = s_.path.Begin(situation_.now).motion;
     const std::uint64_t tag = motion.tag;
     s_.note = {};
+    while (!s_.notes.empty() && s_.notes.front().first < tag) s_.notes.pop_front();
     if (s_.program == GoesOn::kComes && tag >= s_.beside_from) s_.program = GoesOn::kBeside;
     if (MoveNote* note = NoteOf(tag)) {
       const std::vector<BeyondTravel> beyond = std::move(note->beyond);
@@ -108,8 +112,7 @@ void Ride::Start() {
       s_.note = *note;
     }
     travel_.TellSpeedHeld(motion, s_.note.place, s_.note.feed_mm_s);
-    while (!s_.notes.empty() && s_.notes.front().first < tag) s_.notes.pop_front();
-    while (!s_.alone.empty() && s_.alone.front().tag < tag) s_.alone.pop_front();
+    std::erase_if(s_.alone, [tag](const auto& command) { return command.tag < tag; });
     s_.path.ForgetBefore(tag);
     listener_.OnMotionBegins(tag);
   }

@@ -46,8 +46,9 @@ struct RideState {
   std::uint64_t next_tag = 1;
   std::deque<std::pair<std::uint64_t, MoveNote>> notes{};  // of motions not over, by tag
   int run_ahead = 0;                                       // see Ride::RunsAhead
-  // Commands outside of /FLY passages whose motions are not over; those inside are in `path`.
-  std::deque<motion::AppendedCommand> alone{};
+  // Commands outside of /FLY passages whose motions are not over; those inside are in `path`. They
+  // are few: the program waits for them.
+  std::vector<motion::AppendedCommand> alone{};
   std::optional<motion::AxisPose> moved_from{};  // halted there, and moved by hand since
   double override_percent = 100.0;
 
@@ -129,6 +130,9 @@ class Ride {
   // One more instruction is carried out between two motions of a passage. False: they are too many,
   // and the passage becomes a stop.
   bool RunsAhead();
+  // How many more may be, and that so many were.
+  int may_run_ahead() const;
+  void RanAhead(int instructions) { s_.run_ahead += instructions; }
 
   // Marks take effect at once, motions begin.
   void Start();

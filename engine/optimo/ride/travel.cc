@@ -48,6 +48,33 @@ Detail ToldSpeed(std::string_view name, double speed_mm_s, std::string_view unit
   return Told(name, speed_mm_s, "mm/s", FixedText(speed_mm_s, 3).append(unit));
 }
 
+// Whether no axis can leave its travel on the way, seen from the ends alone: straight ways in the
+// axes or with a steady head are inside where their ends are, and the column stands off the tip by
+// no more than its reach. False says nothing.
+bool StaysInside(const motion::PathPiece& path, const motion::Head& head,
+                 const motion::AxisLimits& limits) {
+  using Way = motion::PathPiece::Kind;
+  // Each of them is looked at: one that is no number is outside.
+  const auto within = [&](std::size_t axis, double one, double other, double around) {
+    const double least = limits.travel_min[axis] + around;
+    const double most = limits.travel_max[axis] - around;
+    return one >= least && one <= most && other >= least && other <= most;
+  };
+  const auto inside = [&](const motion::MachinePoint& one, const motion::MachinePoint& other,
+                          double around) {
+    return within(0, one.x(), other.x(), around) && within(1, one.y(), other.y(), around) &&
+           within(2, one.z(), other.z(), around);
+  };
+  const motion::PathPose &from = path.from(), &to = path.to();
+  if (!within(3, from.a_rad, to.a_rad, 0.0) || !within(4, from.b_rad, to.b_rad, 0.0)) return false;
+  if (path.kind() == Way::kJoint) return inside(from.point, to.point, 0.0);
+  if (path.kind() != Way::kLine && path.kind() != Way::kRotary) return false;
+  if (inside(from.point, to.point, head.reach_mm())) return true;
+  const bool steady = from.a_rad == to.a_rad && from.b_rad == to.b_rad;
+  return steady &&
+         inside(head.ColumnOf(path.tip_from()).column, head.ColumnOf(path.tip_to()).column, 0.0);
+}
+
 }  // namespace
 
 // Every axis that leaves its travel, the target first where that lies outside. A motion that comes
@@ -58,6 +85,7 @@ std::vector<BeyondTravel> Travel::BeyondTravelOf(const motion::PathPiece& path) 
   const auto axes_at = [&](const motion::PathPose& place) {
     return motion::AxesOn(path, head, place);
   };
+  if (StaysInside(path, head, limits)) return {};
   const auto worst = motion::ExcessOfEach(path, head, limits);
   std::vector<BeyondTravel> beyond;
   for (int axis = 0; axis < motion::kAxisCount; ++axis) {

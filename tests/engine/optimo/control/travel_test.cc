@@ -84,6 +84,23 @@ TEST(Travel, AnArcLeavesItOnTheWay) {
   EXPECT_EQ(CodeOf(RunText(program)), 7301);
 }
 
+// OPT-B.08: both ends are inside, the head bent along Y; half way it points along X, the column
+// 300 sin(1) off the tip: to one side out of the travel. A way with the head steady stays inside.
+TEST(Travel, AHeadThatTurnsLeavesItOnTheWay) {
+  std::vector<machine::TravelViolation> violations;
+  for (const std::string a : {"3.14159", "-3.14159"}) {
+    const Ran ran = RunText(kAbsol + "MOVE (3550.,1000.,-400.,0.,1.)\nMOVE (3550.,1000.,-400.," +
+                                a + ",1.)\nMOVE (3550.,1500.,-400.," + a + ",1.)\n",
+                            {.forecast = true});
+    violations.insert(violations.end(), ran.violations.begin(), ran.violations.end());
+  }
+  ASSERT_EQ(violations.size(), 1U);
+  EXPECT_EQ(violations[0].axis, 0);
+  EXPECT_FALSE(violations[0].at_target);
+  EXPECT_EQ(violations[0].place.step, 4);
+  EXPECT_NEAR(violations[0].excess, 3550.0 + 300.0 * std::sin(1.0) - 3600.0, 0.1);
+}
+
 // OPT-B.37: 12.6 is 4e-7 more in the REAL arithmetic of the control. The end of a travel is inside.
 TEST(Travel, TheVeryEndOfItIsInside) {
   const Ran ran = RunText(
