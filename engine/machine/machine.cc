@@ -89,7 +89,7 @@ std::string Machine::Save() const {
                            .alarms = alarms_,
                            .last_alarm = last_alarm_,
                            .last_run = note_.number,
-                           .shown = status().shown,
+                           .shown = of_a_job_ ? shown_ : status().shown,
                            .message = message_,
                            .gates = gates_,
                            .handbox = handbox_ != nullptr ? handbox_->Save() : std::string(),
@@ -144,7 +144,7 @@ void Machine::CloseRun() {
                    .lasted = state.time,
                    .steps = run_->steps_executed(),
                    .figures = run_->figures()});
-  const bool selects = !std::exchange(selected_, false) && !note_.by_hand && !comes_along_;
+  const bool selects = !std::exchange(selected_, false) && !note_.by_hand && !of_a_job_;
   if (selects) shown_ = status().shown;
   if (outcome.code) Show(*outcome.code);
   if (outcome.code && Lookup(*outcome.code).severity == Severity::kAlarm)
@@ -343,10 +343,11 @@ Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> h
   note_.hand = hand.value_or(HandRun::kZero);
   run_ = *std::move(run);
   comes_along_ = !hand && input.brought.has_value();
+  of_a_job_ = !hand && input.source == StartSource::kQueue;
   if (hand) return {};
   base_ = std::move(base);
   not_in_base_ = SimTime(0);
-  if (!comes_along_) shown_ = {.program = input.program};
+  if (!of_a_job_) shown_ = {.program = input.program};
   run_->SetBreakpoints(breakpoints_);
   return {};
 }

@@ -141,7 +141,7 @@ class Machine {
   // What START without a program takes; 0: none. Of a run whose program came along what was
   // selected before.
   int selected_program() const {
-    return run_ != nullptr && comes_along_ ? shown_.program : status().shown.program;
+    return run_ != nullptr && of_a_job_ ? shown_.program : status().shown.program;
   }
 
   // Errors: those of WriteVariable.
@@ -261,7 +261,8 @@ class Machine {
   std::int64_t last_alarm_ = 0;
   ShownStep shown_{};                   // what the last run left, or was selected since
   bool selected_ = false;               // while the open run stands
-  bool comes_along_ = false;            // the open run is of a program that nobody has selected
+  bool comes_along_ = false;            // the program of the open run is not of the memory
+  bool of_a_job_ = false;               // the open run is: nobody here has selected its program
   std::optional<ErrorCode> message_;    // not cleared yet
   RunNote note_{};                      // of the run that was begun last
   std::optional<StartBase> base_{};     // of the open run

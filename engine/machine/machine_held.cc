@@ -90,6 +90,8 @@ Status Machine::MayGoOn(const ResumeRun& input) const {
   // The key at the machine is the control's own; who is elsewhere loses no part by it.
   if (input.source != StartSource::kPanel) {
     if (const Status may = run_->MayGoOn(); !may) return may.error();
+    if (stopping_ && run_->state().door_open)
+      return Error{ErrorCode::kCellDoorOpen, "it comes to rest for the door", {}};
   }
   if (!held_at_) return {};
   const bool asked = !input.accept_displaced && input.source != StartSource::kPanel;

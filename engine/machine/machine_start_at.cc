@@ -135,7 +135,8 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
   base_ = std::move(base);
   not_in_base_ = SimTime(0);
   comes_along_ = input.brought.has_value();
-  if (!comes_along_) shown_ = {.program = input.program};
+  of_a_job_ = input.source == StartSource::kQueue;
+  if (!of_a_job_) shown_ = {.program = input.program};
   return {};
 }
 

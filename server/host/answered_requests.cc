@@ -48,7 +48,9 @@ std::string AnsweredRequests::DigestOf(const v1::HostOrder& order) {
   copy->CopyFrom(*asked);
   if (const auto* token = copy->GetDescriptor()->FindFieldByName("control_token"))
     copy->GetReflection()->ClearField(copy.get(), token);
-  return bridge::Sha256Hex(bridge::StableBytes(*copy)).substr(0, kDigestDigits);
+  // Orders for a job have it beside what is asked.
+  const std::string about = order.for_job() + "\n" + order.reason() + "\n";
+  return bridge::Sha256Hex(about + bridge::StableBytes(*copy)).substr(0, kDigestDigits);
 }
 
 bool AnsweredRequests::IsAnother(const std::string& key, const std::string& digest) const {

@@ -18,22 +18,33 @@ class AnswersDue {
   // With one write.
   struct Batch {
     std::vector<v1::HostOrderAnswer> answers{};
+    std::vector<v1::HostOrderAnswer> of_jobs{};
     std::chrono::nanoseconds since{0};
   };
 
-  void Add(v1::HostOrderAnswer answer) { next_.push_back(std::move(answer)); }
+  // `of_a_job`: its queue asks again where it hears nothing, and would take a refusal for a run
+  // that never began.
+  void Add(v1::HostOrderAnswer answer, bool of_a_job) {
+    (of_a_job ? next_of_jobs_ : next_).push_back(std::move(answer));
+  }
   // The line to the server is gone, whose orders have numbers above 0: what is asked over the next
   // one is something else.
   void ForgetLine() {
     const auto of_the_line = [](const auto& answer) { return answer.number() > 0; };
     std::erase_if(next_, of_the_line);
-    for (const auto& batch : under_way_) std::erase_if(batch->answers, of_the_line);
+    std::erase_if(next_of_jobs_, of_the_line);
+    for (const auto& batch : under_way_) {
+      std::erase_if(batch->answers, of_the_line);
+      std::erase_if(batch->of_jobs, of_the_line);
+    }
   }
 
   // Of what is written from now on.
   std::shared_ptr<Batch> Begin(std::chrono::nanoseconds now) {
-    auto batch = std::make_shared<Batch>(Batch{.answers = std::exchange(next_, {}), .since = now});
-    if (!batch->answers.empty()) under_way_.push_back(batch);
+    auto batch = std::make_shared<Batch>(Batch{.answers = std::exchange(next_, {}),
+                                               .of_jobs = std::exchange(next_of_jobs_, {}),
+                                               .since = now});
+    if (!batch->answers.empty() || !batch->of_jobs.empty()) under_way_.push_back(batch);
     return batch;
   }
   void End(const std::shared_ptr<Batch>& batch) { under_way_.remove(batch); }
@@ -43,19 +54,20 @@ class AnswersDue {
   std::vector<v1::HostOrderAnswer> TakeLate(std::chrono::nanoseconds now,
                                             std::chrono::nanoseconds patience) {
     std::vector<v1::HostOrderAnswer> late;
-    while (!under_way_.empty() && now - under_way_.front()->since > patience) {
-      for (v1::HostOrderAnswer& answer : std::exchange(under_way_.front()->answers, {})) {
+    for (const auto& batch : under_way_) {
+      if (now - batch->since <= patience) break;
+      for (v1::HostOrderAnswer& answer : std::exchange(batch->answers, {})) {
         *answer.mutable_refusal() = bridge::ToErrorDetail(
             {ErrorCode::kCellJournal, "it acts, but the disk does not answer", {}});
         late.push_back(std::move(answer));
       }
-      under_way_.pop_front();
     }
     return late;
   }
 
  private:
   std::vector<v1::HostOrderAnswer> next_;
+  std::vector<v1::HostOrderAnswer> next_of_jobs_;
   std::list<std::shared_ptr<Batch>> under_way_;  // the oldest first
 };
 

@@ -76,13 +76,17 @@ v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& 
     return refused;
   };
   constexpr std::size_t kRequestIdMax = 64;
-  if (FieldOf(order, "request_id").value_or("").size() > kRequestIdMax)
+  // What brings it to rest acts, whatever is wrong with its id.
+  const bool halts = ClassOf(order) == OrderClass::kActsFirst;
+  halts_ += halts ? 1 : 0;
+  if (!halts && FieldOf(order, "request_id").value_or("").size() > kRequestIdMax)
     return refuse(InvalidArgument("request_id is longer than 64 characters"));
   const std::string request = AnsweredRequests::KeyOf(order);
   const std::string digest = request.empty() ? "" : AnsweredRequests::DigestOf(order);
-  if (const v1::HostOrderAnswer* known = answered_.Find(request)) {
-    if (answered_.IsAnother(request, digest))
-      return refuse({ErrorCode::kCellRequestIdReused, {}, {}});
+  const v1::HostOrderAnswer* known = answered_.Find(request);
+  const bool another = known != nullptr && answered_.IsAnother(request, digest);
+  if (known != nullptr && !(halts && another)) {
+    if (another) return refuse({ErrorCode::kCellRequestIdReused, {}, {}});
     v1::HostOrderAnswer again = *known;
     again.set_number(order.number());
     return again;
@@ -290,7 +294,7 @@ Status HostMachine::Act(const v1::HostOrder& order) {
 
 // Why a run that goes on will stand, where this brings it to rest. LIVE-2.01
 void HostMachine::NoteHold(const machine::MachineInput& input) {
-  if (!moves() || MovesInHold()) return;
+  if (!moves() || MovesInHold() || held_for_ == v1::HOLD_REASON_PANEL) return;
   const auto* key = std::get_if<machine::PressedKey>(&input);
   if (std::holds_alternative<machine::StopRun>(input) || (key != nullptr && key->key == "STOP"))
     held_for_ = v1::HOLD_REASON_STOP;

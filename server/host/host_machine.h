@@ -200,6 +200,7 @@ class HostMachine : private machine::RunObserver {
   std::size_t recorded_ = 0;       // of the entries
   v1::AssignedProgram brought_{};  // by the job that is about to begin
   HostTime now_{};                 // of the call under way
+  std::uint64_t halts_ = 0;        // that somebody asked for
   bool disk_is_late_ = false;      // nothing that was to be written is
   bool late_ = false;              // by so much that the run is to be held
   std::int64_t sequence_ = 0;

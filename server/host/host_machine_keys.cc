@@ -63,10 +63,11 @@ std::chrono::nanoseconds SentAt(const Beat& beat) {
 bool HostMachine::WaitsForKeys(const v1::HostOrder& order, const HostTime& now) const {
   const auto pressed = PressedBy(order);
   if (!pressed || !CheckControl(order, now)) return false;
-  if (Settles() && !LetsGo(order) && !IsHeld(pressed->key)) return true;
   const bool begins = !desk_.lease() || desk_.lease()->number() != keys_of_;
   const KeyDesk none;
-  return (begins ? none : keys_).Look(pressed->number, LetsGo(order)) == KeyDesk::Turn::kWaits;
+  const KeyDesk::Turn turn = (begins ? none : keys_).Look(pressed->number, LetsGo(order));
+  if (turn != KeyDesk::Turn::kActs) return turn == KeyDesk::Turn::kWaits;
+  return Settles() && !LetsGo(order) && !IsHeld(pressed->key);
 }
 
 std::optional<v1::HostOrderAnswer> HostMachine::AnsweredKey(const v1::HostOrder& order) const {

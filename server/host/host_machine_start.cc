@@ -41,9 +41,9 @@ Result<std::optional<simulation::Milling>> PartOf(const v1::PreviewStartRequest&
 // Its time goes on while it stands, and changes nothing.
 StartDesk::Basis HostMachine::Basis() const {
   Result<machine::MachineNote> note = machine::ReadMachineNote(machine().Save());
-  if (!note) return {.memory = memory_changes_};
+  if (!note) return {.memory = memory_changes_, .halts = halts_};
   note->time = SimTime(0);
-  return {.state = machine::WriteMachineNote(*note), .memory = memory_changes_};
+  return {.state = machine::WriteMachineNote(*note), .memory = memory_changes_, .halts = halts_};
 }
 
 // Of a run that was cut off: there it has the values that it had. LIVE-6.01

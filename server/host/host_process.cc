@@ -40,13 +40,10 @@ using std::chrono::nanoseconds;
 constexpr int kProtocol = 1;
 // A server tells one in 50 ms, and so catches up with one that came late. LIVE-3.16
 constexpr nanoseconds kStatusMoving = 55ms, kStatusStanding = 1s;
-constexpr nanoseconds kTick = 10ms;      // of a machine that moves: orders wake it
-constexpr nanoseconds kTickHeld = 50ms;  // of a run that stands: its time goes on
-constexpr nanoseconds kEndsWithoutServer = 60s;
-constexpr nanoseconds kRejoin = 200ms;
-constexpr nanoseconds kIntentPatience = 500ms;  // LIVE-3.21
-constexpr nanoseconds kDurablePatience = 1s;
-constexpr nanoseconds kRestPatience = 10s;
+// Of a machine that moves: orders wake it; of a run that stands: its time goes on.
+constexpr nanoseconds kTick = 10ms, kTickHeld = 50ms;
+constexpr nanoseconds kIntentPatience = 500ms, kDurablePatience = 1s;  // LIVE-3.21
+constexpr nanoseconds kEndsWithoutServer = 60s, kRejoin = 200ms, kRestPatience = 10s;
 constexpr double kPreviewTime_s = 60.0;  // LIVE-6.01
 constexpr std::size_t kUnstoredMax = 100'000;
 
@@ -266,7 +263,7 @@ class HostProcess {
       case OrderClass::kWrittenFirst:
         return WriteFirst(order);
       case OrderClass::kWrittenBehind:
-        return AnswerWhenDurable(CarryOut(order));
+        return AnswerWhenDurable(CarryOut(order), order);
     }
   }
 
@@ -283,13 +280,15 @@ class HostProcess {
               {.go_on = [&] { return !stop.stop_requested() && ThreadTime_s() < until; }}));
           inbox_.Later([this, order, task, made, line] {
             background_.Done();
+            looked_at_for_.clear();
             v1::HostOrderAnswer answer =
                 machine_->Previewed(order, std::move(*task), std::move(*made), Now());
             if (order.number() < 0 || line == lines_lost_) SendAnswer(std::move(answer));
           });
         });
     if (!begun)
-      Refuse(order, {ErrorCode::kCellUnavailable, "another start at a step is looked at", {}});
+      return Refuse(order, {ErrorCode::kCellUnavailable, "another start is looked at", {}});
+    looked_at_for_ = order.for_job();
   }
 
   // What was taught goes to the store; without a server it cannot. LIVE-7.08
@@ -327,11 +326,13 @@ class HostProcess {
       return !one->over && (one->order.has_key() || one->order.has_panel_key());
     });
     for (Waiting& key : std::exchange(keys_waiting_, {})) {
-      if (!parked && !machine_->Settles() && Now().steady >= key.until) {
+      const HostTime now = Now();
+      // Their patience begins behind what they wait for.
+      if (parked || machine_->Settles()) key.until = now.steady + KeyDesk::kPatience;
+      const bool missing = now.steady >= key.until && machine_->WaitsForKeys(key.order, now);
+      if (!missing) TakeOrder(key.order, key.until);
+      if (missing)
         Refuse(key.order, {ErrorCode::kCellKeySequence, "keys before it are missing", {}});
-      } else {
-        TakeOrder(key.order, key.until);
-      }
     }
   }
 
@@ -341,9 +342,8 @@ class HostProcess {
   }
 
   bool IsParked(const std::string& job) const {
-    return !job.empty() && std::ranges::any_of(parked_, [&](const auto& parked) {
-      return !parked->over && JobOf(parked->order) == job;
-    });
+    const auto of_it = [&](const auto& one) { return !one->over && JobOf(one->order) == job; };
+    return !job.empty() && (job == looked_at_for_ || std::ranges::any_of(parked_, of_it));
   }
 
   // Whoever stops the machine stops what has not begun yet, too; of an order for a job that one.
@@ -394,13 +394,13 @@ class HostProcess {
       inbox_.Later([this, parked] {
         const bool begins = !std::exchange(parked->over, true);
         if (begins && further_.IsAskedFor(parked->order.number()))
-          AnswerWhenDurable(CarryOut(parked->order));
+          AnswerWhenDurable(CarryOut(parked->order), parked->order);
       });
     });
   }
 
-  void AnswerWhenDurable(v1::HostOrderAnswer answer) {
-    answers_due_.Add(std::move(answer));
+  void AnswerWhenDurable(v1::HostOrderAnswer answer, const v1::HostOrder& order) {
+    answers_due_.Add(std::move(answer), AssignmentOf(order) != nullptr);
     Write(Now(), true);
   }
 
@@ -418,7 +418,8 @@ class HostProcess {
         Keep(*copy);
         SendEntries(*copy);
         answers_due_.End(due);
-        for (const v1::HostOrderAnswer& answer : due->answers) SendAnswer(answer);
+        for (const auto* answers : {&due->answers, &due->of_jobs})
+          std::ranges::for_each(*answers, [this](const auto& answer) { SendAnswer(answer); });
       });
     });
   }
@@ -566,6 +567,7 @@ class HostProcess {
   std::vector<Waiting> keys_waiting_;
   std::vector<std::shared_ptr<Parked>> parked_;  // their intent is on its way to the disk
   AnswersDue answers_due_;
+  std::string looked_at_for_;  // the job whose start at a step is worked out; empty: none
   int writes_under_way_ = 0;
   nanoseconds durable_at_{0};  // what was written last; where nothing is under way, what begins
   int lines_lost_ = 0;

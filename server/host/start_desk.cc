@@ -140,6 +140,9 @@ Result<machine::StartAtStep> StartDesk::Take(const v1::StartAtStepRequest& reque
   if (token_.empty() || request.preview_token() != token_) return stale("it is not the newest one");
   if (now.steady >= until_) return stale("it is older than 120 s");
   if (basis.memory != basis_.memory) return stale("programs or schedules were changed");
+  // Whoever pressed STOP has stopped what would have begun. LIVE-2.05
+  if (basis.halts != basis_.halts)
+    return Error{ErrorCode::kCellMachineState, "it was stopped before it began", {}};
   if (basis.state != basis_.state) return stale("the machine was changed");
   machine::StartAtStep start = start_;
   if (request.has_halt_at_entry()) start.halt_at_entry = request.halt_at_entry();

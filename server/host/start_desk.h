@@ -28,6 +28,7 @@ class StartDesk {
   struct Basis {
     std::string state{};       // of the machine
     std::uint64_t memory = 0;  // counts up when programs or schedules change
+    std::uint64_t halts = 0;   // counts up when somebody halts it, whatever it does
     bool operator==(const Basis&) const = default;
   };
 

@@ -99,8 +99,6 @@ bool IsLabel(std::string_view text) {
 
 namespace {
 
-// A RUN has what moves a machine and nothing else: its override and inputs are those of the
-// machine.
 // Where it begins, and what a person has seen to there. LIVE-6.03
 Status CheckStep(const v1::RunOptions& run) {
   constexpr int kConfirmationsMax = 16;
@@ -118,6 +116,8 @@ Status CheckStep(const v1::RunOptions& run) {
   return known ? Status() : InvalidArgument("job.run.confirmations: one is none that there is");
 }
 
+// A RUN has what moves a machine and nothing else: its override and inputs are those of the
+// machine.
 Status CheckRun(const v1::Job& job) {
   if (job.kind() != v1::JOB_KIND_RUN)
     return job.has_run() ? InvalidArgument("job.run is for jobs of kind RUN") : Status();

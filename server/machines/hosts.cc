@@ -31,6 +31,10 @@ constexpr std::chrono::milliseconds kLostElsewhere{3'000};
 constexpr std::chrono::milliseconds kLostAtRest{2'500};
 constexpr std::size_t kWaitingEntriesMax = 100'000;
 
+bool Halts(const v1::HostOrder& order) {
+  return order.has_stop() || order.has_hold() || order.has_emergency_stop() || order.has_abort();
+}
+
 // Nothing moves as far as anybody knows. LIVE-2.04, LIVE-2.14
 void SetLost(v1::MachineStatus& status) {
   status.set_state(v1::MACHINE_STATE_LOST);
@@ -401,17 +405,23 @@ void Hosts::Ask(const std::string& machine, v1::HostOrder order, Answered done) 
   const HostPointer host = Find(machine);
   if (host == nullptr) return done(NotLive("the machine has no host: enable it"));
   bool gone = false;
+  bool lost = false;
   {
     const std::lock_guard lock(host->mutex);
     gone = host->gone;
+    lost = host->status && host->status->state() == v1::MACHINE_STATE_LOST;
     order.set_number(++next_order_);
     const auto patience = order.has_preview_start() ? kPreviewPatience : kAnswerPatience;
-    if (!gone) host->pending[order.number()] = {.done = done, .until = needs_.clock() + patience};
+    if (!gone && !lost)
+      host->pending[order.number()] = {.done = done, .until = needs_.clock() + patience};
   }
   if (gone) return done(NotLive("its host is not heard of"));
+  // Nothing begins that nobody sees; what halts acts when it comes there. LIVE-2.10
+  if (lost && !Halts(order)) return done(NotLive("its host is silent"));
   v1::HostResponse message;
   *message.mutable_order() = std::move(order);
   host->link->Send(std::move(message));
+  if (lost) done(NotLive("its host is silent: whether it halts is not known"));
 }
 
 void Hosts::End(const std::string& machine, const std::string& why) {

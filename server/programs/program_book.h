@@ -22,8 +22,8 @@ class ProgramBook {
  public:
   ProgramBook(storage::Store& store, const Config& config) : store_(store), config_(config) {}
 
-  // Asked whether a run of the machine is in the program of a slot, before that is deleted.
-  // OPT-4.63
+  // Asked whether a run of the machine is in the program of a slot, before that is deleted: as its
+  // host told last, so that one that begins in this moment is not known. OPT-4.63
   void OnInUse(std::function<bool(const std::string& machine, int slot)> is_in_use) {
     is_in_use_ = std::move(is_in_use);
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "proto/bridge/findings.h"
+#include "proto/bridge/milling.h"
 #include "server/base/names.h"
 #include "server/jobs/assignment.h"
 #include "server/machines/host_entries.h"
@@ -26,10 +27,11 @@ constexpr std::size_t kNotedMax = 1'000;
 
 // Of these another try may go better; of all others the job ends.
 bool MayGoBetterLater(ErrorCode code) {
-  constexpr std::array kLater = {
-      ErrorCode::kCellMachineState, ErrorCode::kCellMode,          ErrorCode::kCellNotLive,
-      ErrorCode::kCellInspect,      ErrorCode::kCellJournal,       ErrorCode::kCellLeaseHeld,
-      ErrorCode::kCellDoorOpen,     ErrorCode::kCellUnimplemented, ErrorCode::kCellNotArmed};
+  constexpr std::array kLater = {ErrorCode::kCellMachineState, ErrorCode::kCellMode,
+                                 ErrorCode::kCellNotLive,      ErrorCode::kCellInspect,
+                                 ErrorCode::kCellJournal,      ErrorCode::kCellLeaseHeld,
+                                 ErrorCode::kCellDoorOpen,     ErrorCode::kCellUnimplemented,
+                                 ErrorCode::kCellNotArmed,     ErrorCode::kCellUnavailable};
   return std::ranges::find(kLater, code) != kLater.end() ||
          Lookup(code).severity == Severity::kAlarm;
 }
@@ -306,13 +308,7 @@ void RunQueue::Send(const std::string& machine, const storage::LeasedJob& leased
     return LookAtStep(machine, leased, std::move(order), std::move(done));
   Result<v1::WorkerAssignment> assignment = ForHost(needs_.store, needs_.config, leased, continues);
   if (!assignment) {
-    if (storage::IsTroubleOfTheStore(assignment.error())) {
-      GiveBack(leased, "its program could not be read", continues);
-    } else {
-      End(leased, {.state = storage::JobState::kFailed,
-                   .code = assignment.error().code,
-                   .detail = assignment.error().detail});
-    }
+    EndUnread(leased, assignment.error(), continues);
     return done(assignment.error());
   }
   spdlog::info("{} goes to {}", JobName(leased.job.id), machine);
@@ -332,17 +328,36 @@ void RunQueue::Send(const std::string& machine, const storage::LeasedJob& leased
                    });
 }
 
+// Whose program, or what else it needs, could not be had.
+void RunQueue::EndUnread(const storage::LeasedJob& leased, const Error& why, bool held) {
+  if (storage::IsTroubleOfTheStore(why))
+    return GiveBack(leased, "its program could not be read", held);
+  End(leased, {.state = storage::JobState::kFailed, .code = why.code, .detail = why.detail});
+}
+
+// As it is by now; nothing: it is not this server's any more, or somebody has cancelled it.
+std::optional<storage::LeasedJob> RunQueue::StillLeased(const storage::LeasedJob& leased) {
+  const auto job = needs_.store.GetJob(leased.job.id);
+  const auto attempts = needs_.store.ListAttempts(leased.job.id);
+  if (!job || !attempts || attempts->empty() || job->state != storage::JobState::kRunning)
+    return std::nullopt;
+  const storage::AttemptRecord& attempt = attempts->back();
+  if (attempt.fence != leased.lease.fence || attempt.ended_at) return std::nullopt;
+  return storage::LeasedJob{.lease = leased.lease, .job = *job};
+}
+
 // One that begins at a step: what it would do comes first, as a person has it. LIVE-6.08
 void RunQueue::LookAtStep(const std::string& machine, const storage::LeasedJob& leased,
                           v1::HostOrder order, Hosts::Answered done) {
   auto program = ProgramOf(leased.job.id);
   if (!program) {
-    GiveBack(leased, "its program could not be read");
+    EndUnread(leased, program.error(), false);
     return done(program.error());
   }
   const v1::RunOptions run = SpecificationOf(leased.job).run();
   v1::HostOrder question;
   question.set_caller(order.caller());
+  question.set_for_job(JobName(leased.job.id));
   v1::PreviewStartRequest& asked = *question.mutable_preview_start();
   asked.set_machine(MachineName(machine));
   asked.set_program(program->slot());
@@ -371,8 +386,11 @@ void RunQueue::LookAtStep(const std::string& machine, const storage::LeasedJob& 
         start.set_machine(MachineName(machine));
         start.set_preview_token(preview.preview_token());
         *start.mutable_confirmations() = run.confirmations();
-        needs_.executor.Post(
-            [this, machine, leased, order, done] { Send(machine, leased, order, done); });
+        needs_.executor.Post([this, machine, leased, order, done] {
+          // It took a while: somebody may have stopped it meanwhile.
+          if (const auto now = StillLeased(leased)) return Send(machine, *now, order, done);
+          done(Error{ErrorCode::kCellLeaseLost, JobName(leased.job.id) + " was taken away", {}});
+        });
       });
 }
 
@@ -412,7 +430,13 @@ std::optional<v1::Milling> RunQueue::MillingOf(std::int64_t job) {
   if (!id) return std::nullopt;
   const auto simulation = SpecificationOf(needs_.store, *id);
   if (!simulation || !simulation->simulation().has_milling()) return std::nullopt;
-  return simulation->simulation().milling();
+  // Its cells were for pictures; where they cannot be fine enough nobody is refused for it.
+  v1::Milling milling = simulation->simulation().milling();
+  milling.clear_cell_mm();
+  milling.clear_target();
+  const auto read = bridge::FromProto(milling);
+  if (!read || read->stock.cell > read->tool.radius_mm) return std::nullopt;
+  return milling;
 }
 
 void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answered done) {

@@ -76,6 +76,8 @@ class RunQueue {
                   Hosts::Answered done);
   void Answered(const std::string& machine, const storage::LeasedJob& leased,
                 const Result<v1::HostOrderAnswer>& answer);
+  void EndUnread(const storage::LeasedJob& leased, const Error& why, bool held);
+  std::optional<storage::LeasedJob> StillLeased(const storage::LeasedJob& leased);
   void GiveBack(const storage::LeasedJob& leased, const std::string& why, bool held = false);
   void End(const storage::LeasedJob& leased, const storage::JobOutcome& how);
 
