@@ -1,9 +1,12 @@
 #include "engine/simulation/material/height_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "engine/core/number_text.h"
+#include "engine/simulation/material/tool_sweep.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -11,36 +14,37 @@ namespace {
 using motion::MachinePoint;
 using motion::MachineVector;
 
-struct Span {
-  double low = HUGE_VAL;
-  double high = -HUGE_VAL;
-  void Include(double a, double b) {
-    low = std::min(low, a);
-    high = std::max(high, b);
+// The greatest of what is found over the cells of a row, place by place from its begin and over
+// its last four: many places are compared at once, which the cells of a row are not for one result.
+class Greatest {
+ public:
+  explicit Greatest(float least) {
+    places_.fill(least);
+    last_four_.fill(least);
   }
-};
 
-// Where a row at `y` meets the way of a disc of `radius`: the hull of what it has in common with
-// the disc at both ends and with the strip between.
-Span SweptPart(const MachinePoint& from, const MachinePoint& to, double radius, double y) {
-  Span span;
-  for (const MachinePoint& centre : {from, to}) {
-    const double half_2 = radius * radius - (y - centre.y()) * (y - centre.y());
-    if (half_2 < 0.0) continue;
-    span.Include(centre.x() - std::sqrt(half_2), centre.x() + std::sqrt(half_2));
+  // Calls `each` with a cell, a number of cells from there on, and where theirs is noted. In fours,
+  // the last of which may lie over the one before: one by one the last three take as long as all
+  // others. What is found there is noted apart: the places would wait for each other.
+  template <class Each>
+  void Over(std::size_t count, Each each) {
+    if (count < 4) return each(std::size_t{0}, count, places_.data());
+    each(std::size_t{0}, count & ~std::size_t{3}, places_.data());
+    each(count - 4, std::size_t{4}, last_four_.data());
   }
-  const PlanVector way = PlanOf(to - from);
-  if (std::abs(way.y()) * radius <= 0.0) return span;
-  // The strip is bounded by lines along the way, `radius` off it; the row meets both.
-  const PlanVector off = PlanVector(-way.y(), way.x()) / LengthOf(way) * radius;
-  for (const double side : {-1.0, 1.0}) {
-    const double share = (y - (from.y() + side * off.y())) / way.y();
-    if (share < 0.0 || share > 1.0) continue;
-    const double x = from.x() + side * off.x() + share * way.x();
-    span.Include(x, x);
+
+  float of_all() const {
+    std::array<float, 4> four = last_four_;
+    for (std::size_t place = 0; place < places_.size(); place += 4) {
+      for (std::size_t k = 0; k < 4; ++k) four[k] = std::max(four[k], places_[place + k]);
+    }
+    return *std::max_element(four.begin(), four.end());
   }
-  return span;
-}
+
+ private:
+  std::array<float, ToolSweep::kPieceCells> places_;
+  std::array<float, 4> last_four_;
+};
 
 bool IsFiniteBlock(const Stock& s) {
   for (const double v : {s.x_min, s.x_max, s.y_min, s.y_max, s.bottom, s.top, s.cell}) {
@@ -88,114 +92,103 @@ HeightField::HeightField(const Stock& stock, std::size_t columns, std::size_t ro
       rows_(rows),
       heights_(columns * rows, static_cast<float>(stock.top)) {}
 
-// Visits the cells whose centres the tool comes over, with the least height of its surface there.
-template <class Visit>
-void HeightField::ForEachSwept(const MillTool& tool, const MachinePoint& from,
-                               const MachinePoint& to, Rows rows, Visit visit) const {
-  if (std::min(from.z(), to.z()) >= stock_.top) return;
-  const ToolPass pass(tool, from, to);
-  switch (tool.shape) {
-    case MillTool::Shape::kFlat:
-      return ForEachUnder(
-          pass, rows,
-          [&pass](double along, double across) { return pass.LeastOfFlat(along, across); }, visit);
-    case MillTool::Shape::kBall:
-      return ForEachUnder(
-          pass, rows,
-          [&pass](double along, double across) { return pass.LeastOfBall(along, across); }, visit);
-    case MillTool::Shape::kVee:
-      return ForEachUnder(
-          pass, rows,
-          [&pass](double along, double across) { return pass.LeastOfVee(along, across); }, visit);
-  }
-}
-
-template <class Least, class Visit>
-void HeightField::ForEachUnder(const ToolPass& pass, Rows rows, Least least, Visit visit) const {
-  const auto cell_at = [&](double place, double begin, std::size_t count) {
-    const double index = std::ceil((place - begin) / stock_.cell - 0.5);
-    return static_cast<std::size_t>(std::clamp(index, 0.0, static_cast<double>(count)));
-  };
-  const MachinePoint& from = pass.from();
-  const MachinePoint& to = pass.to();
-  const double y_low = std::min(from.y(), to.y()) - pass.radius_mm();
-  const double y_high = std::max(from.y(), to.y()) + pass.radius_mm();
-  const std::size_t end_row =
-      std::min(std::min(rows.end, rows_), cell_at(y_high, stock_.y_min, rows_) + 1);
-  for (std::size_t row = std::max(rows.begin, cell_at(y_low, stock_.y_min, rows_)); row < end_row;
-       ++row) {
-    const double y = stock_.y_min + (static_cast<double>(row) + 0.5) * stock_.cell;
-    const Span span = SweptPart(from, to, pass.radius_mm(), y);
-    if (!(span.low <= span.high)) continue;
-    const std::size_t first = cell_at(span.low, stock_.x_min, columns_);
-    const std::size_t end = std::min(columns_, cell_at(span.high, stock_.x_min, columns_) + 1);
-    for (std::size_t column = first; column < end; ++column) {
-      const double x = stock_.x_min + (static_cast<double>(column) + 0.5) * stock_.cell - from.x();
-      visit(row * columns_ + column, static_cast<float>(least(pass.AlongOf(x, y - from.y()),
-                                                              pass.AcrossOf(x, y - from.y()))));
-    }
-  }
-}
-
 double HeightField::Cut(const MillTool& tool, const MachinePoint& from, const MachinePoint& to,
                         Rows rows) {
+  if (std::min(from.z(), to.z()) >= stock_.top) return 0.0;
+  ToolSweep sweep(*this, tool, from, to, rows);
+  if (sweep.is_level()) return CutLevel(sweep);
   const auto bottom = static_cast<float>(stock_.bottom);
-  float most = 0.0f;
-  ForEachSwept(tool, from, to, rows, [&](std::size_t cell, float height) {
-    const float before = heights_[cell];
-    most = std::max(most, std::max(before, bottom) - std::max(height, bottom));
-    heights_[cell] = std::min(before, height);
-  });
-  return static_cast<double>(most);
+  Greatest taken(0.0f);
+  for (auto pieces = sweep.Next(); !pieces.empty(); pieces = sweep.Next()) {
+    for (const ToolSweep::Piece& piece : pieces) {
+      taken.Over(piece.heights.size(), [&](std::size_t first, std::size_t count, float* most) {
+        const float* const heights = piece.heights.data() + first;
+        float* const cells = heights_.data() + piece.cell + first;
+        for (std::size_t k = 0; k < count; ++k) {
+          most[k] = std::max(most[k], std::max(cells[k], bottom) - std::max(heights[k], bottom));
+          cells[k] = std::min(cells[k], heights[k]);
+        }
+      });
+    }
+  }
+  return static_cast<double>(taken.of_all());
 }
 
-double HeightField::ShankDepthOf(const MillTool& tool, const MachinePoint& from,
-                                 const MachinePoint& to) const {
-  struct Collar {
-    double radius_mm;
-    double from_mm;
-  };
-  const double shank = tool.shank_radius_mm > 0.0 ? tool.shank_radius_mm : tool.radius_mm;
-  double deepest = 0.0;
-  for (const Collar& collar : {Collar{tool.flute_mm > 0.0 ? shank : 0.0, tool.flute_mm},
-                               Collar{tool.holder_radius_mm, tool.holder_from_mm}}) {
-    if (!(collar.radius_mm > 0.0) || std::min(from.z(), to.z()) + collar.from_mm >= stock_.top)
-      continue;
-    const ToolPass pass({.radius_mm = collar.radius_mm}, from, to);
-    ForEachUnder(
-        pass, all_rows(),
-        [&](double along, double across) {
-          return pass.LeastBefore(along, across, tool.radius_mm) + collar.from_mm;
-        },
-        [&](std::size_t cell, float height) {
-          const double end = std::max(static_cast<double>(height), stock_.bottom);
-          deepest = std::max(deepest, static_cast<double>(heights_[cell]) - end);
-        });
+// The most is taken off the highest cell.
+double HeightField::CutLevel(ToolSweep& sweep) {
+  const auto bottom = static_cast<float>(stock_.bottom);
+  const float level = sweep.level();
+  Greatest before(bottom);
+  for (auto row = sweep.NextLevel(); row.count > 0; row = sweep.NextLevel()) {
+    before.Over(row.count, [&](std::size_t first, std::size_t count, float* highest) {
+      float* const cells = heights_.data() + row.cell + first;
+      for (std::size_t k = 0; k < count; ++k) {
+        highest[k] = std::max(highest[k], cells[k]);
+        cells[k] = std::min(cells[k], level);
+      }
+    });
   }
-  return deepest;
+  return static_cast<double>(std::max(0.0f, before.of_all() - std::max(level, bottom)));
 }
 
 double HeightField::DepthOf(const MillTool& tool, const MachinePoint& from,
                             const MachinePoint& to) const {
+  if (std::min(from.z(), to.z()) >= stock_.top) return 0.0;
   const auto bottom = static_cast<float>(stock_.bottom);
-  float deepest = 0.0f;
-  ForEachSwept(tool, from, to, all_rows(), [&](std::size_t cell, float height) {
-    if (heights_[cell] > bottom)
-      deepest = std::max(deepest, heights_[cell] - std::max(height, bottom));
-  });
-  return static_cast<double>(deepest);
+  Greatest depth(0.0f);
+  ToolSweep sweep(*this, tool, from, to, all_rows());
+  for (auto pieces = sweep.Next(); !pieces.empty(); pieces = sweep.Next()) {
+    for (const ToolSweep::Piece& piece : pieces) {
+      depth.Over(piece.heights.size(), [&](std::size_t first, std::size_t count, float* most) {
+        const float* const heights = piece.heights.data() + first;
+        const float* const cells = heights_.data() + piece.cell + first;
+        for (std::size_t k = 0; k < count; ++k)
+          most[k] = std::max(most[k], std::max(cells[k], bottom) - std::max(heights[k], bottom));
+      });
+    }
+  }
+  return static_cast<double>(depth.of_all());
+}
+
+double HeightField::ShankDepthOf(const MillTool& tool, const MachinePoint& from,
+                                 const MachinePoint& to) const {
+  using Collar = ToolSweep::Collar;
+  const double shank = tool.shank_radius_mm > 0.0 ? tool.shank_radius_mm : tool.radius_mm;
+  double deepest = 0.0;
+  for (const Collar& collar : {Collar{tool.flute_mm > 0.0 ? shank : 0.0, tool.flute_mm},
+                               Collar{tool.holder_radius_mm, tool.holder_from_mm}}) {
+    if (!(collar.radius_mm > 0.0) || std::min(from.z(), to.z()) + collar.raised_mm >= stock_.top)
+      continue;
+    ToolSweep sweep(*this, collar, tool, from, to);
+    for (auto pieces = sweep.Next(); !pieces.empty(); pieces = sweep.Next()) {
+      for (const ToolSweep::Piece& piece : pieces) {
+        for (std::size_t k = 0; k < piece.heights.size(); ++k) {
+          const double end = std::max(static_cast<double>(piece.heights[k]), stock_.bottom);
+          deepest = std::max(deepest, static_cast<double>(heights_[piece.cell + k]) - end);
+        }
+      }
+    }
+  }
+  return deepest;
 }
 
 double HeightField::removed_mm3() const {
+  // Each row by itself, and some at a time: one sum waits for each of its numbers.
+  constexpr std::size_t kRows = 4;
   double sum = 0.0;
-  for (std::size_t row = 0; row < rows_; ++row) {
-    double of_row = 0.0;
+  for (std::size_t first = 0; first < rows_; first += kRows) {
+    const std::size_t count = std::min(kRows, rows_ - first);
+    std::array<const float*, kRows> rows;
+    for (std::size_t k = 0; k < kRows; ++k)
+      rows[k] = &heights_[(first + std::min(k, count - 1)) * columns_];
+    std::array<double, kRows> of_rows{};
     for (std::size_t column = 0; column < columns_; ++column) {
-      const double height =
-          std::max(static_cast<double>(heights_[row * columns_ + column]), stock_.bottom);
-      of_row += stock_.top - height;
+      for (std::size_t k = 0; k < kRows; ++k) {
+        const auto height = static_cast<double>(rows[k][column]);
+        of_rows[k] += stock_.top - std::max(height, stock_.bottom);
+      }
     }
-    sum += of_row;
+    for (std::size_t k = 0; k < count; ++k) sum += of_rows[k];
   }
   return sum * stock_.cell * stock_.cell;
 }
@@ -206,8 +199,14 @@ double HeightField::remaining_mm3() const {
 }
 
 double HeightField::deepest_cut_mm() const {
-  const double least = *std::min_element(heights_.begin(), heights_.end());
-  return std::max(0.0, stock_.top - std::max(least, stock_.bottom));
+  std::array<float, 64> least;  // of each place in as many
+  least.fill(static_cast<float>(stock_.top));
+  for (std::size_t cell = 0; cell < heights_.size(); cell += least.size()) {
+    const std::size_t count = std::min(least.size(), heights_.size() - cell);
+    for (std::size_t k = 0; k < count; ++k) least[k] = std::min(least[k], heights_[cell + k]);
+  }
+  const double deepest = *std::min_element(least.begin(), least.end());
+  return std::max(0.0, stock_.top - std::max(deepest, stock_.bottom));
 }
 
 }  // namespace rmlcell::simulation

@@ -8,6 +8,8 @@
 
 namespace rmlcell::simulation {
 
+class ToolSweep;
+
 // A tool that is less deep in a block is clear of it: rounding of heights and places.
 inline constexpr double kGougeLeast_mm = 1e-3;
 
@@ -83,12 +85,7 @@ class HeightField {
 
  private:
   HeightField(const Stock& stock, std::size_t columns, std::size_t rows);
-
-  template <class Visit>
-  void ForEachSwept(const MillTool& tool, const motion::MachinePoint& from,
-                    const motion::MachinePoint& to, Rows rows, Visit visit) const;
-  template <class Least, class Visit>
-  void ForEachUnder(const ToolPass& pass, Rows rows, Least least, Visit visit) const;
+  double CutLevel(ToolSweep& sweep);
 
   Stock stock_;
   std::size_t columns_;

@@ -76,49 +76,27 @@ ToolPass::ToolPass(const MillTool& tool, const motion::MachinePoint& from,
       radius_(tool.radius_mm),
       tip_radius_(tool.tip_radius_mm),
       length_(LengthOf(PlanOf(to - from))),
-      upright_(!(length_ > 0.0)),
-      z_(upright_ ? std::min(from.z(), to.z()) : from.z()) {
+      z_(from.z()) {
   if (tool.shape == MillTool::Shape::kVee) rise_ = 1.0 / std::tan(tool.half_angle_rad);
-  if (upright_) return;
+  if (!(length_ > 0.0)) {
+    z_ = std::min(from.z(), to.z());
+    return;
+  }
   way_ = PlanOf(to - from) / length_;
   slope_ = (to.z() - from.z()) / length_;
   lead_ = slope_ / std::sqrt(1.0 + slope_ * slope_);
 }
 
-// The height over the point is convex in the tool's place: its least is at an end, where it stands
-// still, or where the flat tip begins.
-double ToolPass::LeastOfVee(double along, double across) const {
-  const Reach r = ReachOf(along, across);
-  if (!r.hit) return HUGE_VAL;
-  const auto at = [&](double place) {
-    const double t = std::clamp(place, r.low, r.high);
-    const double distance = std::hypot(along - t, across);
-    return z_ + slope_ * t + std::max(0.0, distance - tip_radius_) * rise_;
-  };
-  double least = std::min(at(r.low), at(r.high));
-  const double steepness = slope_ / rise_;
-  if (std::abs(steepness) < 1.0) {
-    const double ahead = across * steepness / std::sqrt(1.0 - steepness * steepness);
-    least = std::min(least, at(along - ahead));
-  }
-  const double flat_2 = tip_radius_ * tip_radius_ - across * across;
-  if (flat_2 > 0.0) {
-    least = std::min(least, at(along - std::sqrt(flat_2)));
-    least = std::min(least, at(along + std::sqrt(flat_2)));
-  }
-  return least;
-}
-
 double ToolPass::LeastBefore(double along, double across, double cutter_radius) const {
-  const Reach r = ReachOf(along, across);
-  if (!r.hit) return HUGE_VAL;
+  const double half = std::sqrt(HalfChord2(radius_, across));
+  const double low = Kept(along - half);
+  const double high = std::max(low, Kept(along + half));
   const auto lower_of = [&](double a, double b) { return z_ + std::min(slope_ * a, slope_ * b); };
-  const double half_2 = cutter_radius * cutter_radius - across * across;
-  if (half_2 < 0.0) return lower_of(r.low, r.high);
-  const double half = std::sqrt(half_2);
-  const double cut_from = std::max(0.0, along - half);
-  if (cut_from > std::min(length_, along + half)) return lower_of(r.low, r.high);
-  return upright_ ? HUGE_VAL : lower_of(std::min(r.low, cut_from), cut_from);
+  if (std::abs(across) > cutter_radius + kOnEdge_mm) return lower_of(low, high);
+  const double cutter_half = std::sqrt(HalfChord2(cutter_radius, across));
+  const double cut_from = std::max(0.0, along - cutter_half);
+  if (cut_from > std::min(length_, along + cutter_half) + kOnEdge_mm) return lower_of(low, high);
+  return length_ > 0.0 ? lower_of(std::min(low, cut_from), cut_from) : HUGE_VAL;
 }
 
 std::optional<double> SweptHeight(const MillTool& tool, const motion::MachinePoint& from,
@@ -126,11 +104,18 @@ std::optional<double> SweptHeight(const MillTool& tool, const motion::MachinePoi
   const ToolPass pass(tool, from, to);
   const double along = pass.AlongOf(x - from.x(), y - from.y());
   const double across = pass.AcrossOf(x - from.x(), y - from.y());
-  const double least = tool.shape == MillTool::Shape::kFlat   ? pass.LeastOfFlat(along, across)
-                       : tool.shape == MillTool::Shape::kBall ? pass.LeastOfBall(along, across)
-                                                              : pass.LeastOfVee(along, across);
-  if (std::isinf(least)) return std::nullopt;
-  return least;
+  if (!pass.Covers(along, across)) return std::nullopt;
+  switch (tool.shape) {
+    case MillTool::Shape::kFlat:
+      return to.z() > from.z() ? pass.LeastOfFlatUp(along, across)
+                               : pass.LeastOfFlatDown(along, across);
+    case MillTool::Shape::kBall:
+      return pass.plunges() ? pass.LeastOfPlungedBall(along, across)
+                            : pass.LeastOfBall(along, across);
+    case MillTool::Shape::kVee:
+      return pass.LeastOfVee(along, across);
+  }
+  return std::nullopt;
 }
 
 }  // namespace rmlcell::simulation

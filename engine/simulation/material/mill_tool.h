@@ -38,69 +38,110 @@ double WidthAt(const MillTool& tool, double height_mm);
 // shape, a shank of a tool that cuts all along, a holder that begins below the shank.
 Status CheckTool(const MillTool& tool);
 
+// A point this little beyond the edge of a tool is under it: round measures put many centres of
+// cells on the very edge, where the last digits of a sum would decide otherwise.
+inline constexpr double kOnEdge_mm = 1e-9;
+
 // A tool on a straight move, seen from a point: `along` the move from its start and `across` it.
-// The least height that the tool's surface has over the point on the way, in closed form; infinite
-// where the tool does not come over it.
+// The least height that the tool's surface has over the point on the way, in closed form, for a
+// point that the tool comes over. Without a branch: whoever asks goes along a row of cells.
 class ToolPass {
  public:
   ToolPass(const MillTool& tool, const motion::MachinePoint& from, const motion::MachinePoint& to);
 
   const motion::MachinePoint& from() const { return from_; }
   const motion::MachinePoint& to() const { return to_; }
+  const motion::MachinePoint& lower_end() const { return rises() ? from_ : to_; }
   double radius_mm() const { return radius_; }
+  bool rises() const { return slope_ > 0.0; }
+  bool is_level() const { return !(slope_ < 0.0) && !(slope_ > 0.0); }  // or straight down
+  bool plunges() const { return !(length_ > 0.0); }
+  // Of a flat tool, where it comes to stand at its lower end.
+  double least_height() const { return z_ + slope_ * (rises() ? 0.0 : length_); }
 
-  // Of a point at (x, y) from the start of the move. A plunge: all of its distance is across. By
-  // single coordinates: whoever asks goes along a row of cells, and only x changes.
+  // Of a point at (x, y) from the start of the move. By single coordinates: along a row only x
+  // changes.
   double AlongOf(double x, double y) const { return x * way_.x() + y * way_.y(); }
-  double AcrossOf(double x, double y) const {
-    return upright_ ? std::sqrt(x * x + y * y) : std::abs(y * way_.x() - x * way_.y());
+  double AcrossOf(double x, double y) const { return y * way_.x() - x * way_.y(); }
+
+  bool Covers(double along, double across) const {
+    const double beyond = along - Kept(along);
+    const double reach = radius_ + kOnEdge_mm;
+    return across * across + beyond * beyond <= reach * reach;
   }
 
-  double LeastOfFlat(double along, double across) const {
-    const Reach r = ReachOf(along, across);
-    return r.hit ? z_ + slope_ * (slope_ > 0.0 ? r.low : r.high) : HUGE_VAL;
+  // Of a flat tool: on the way up where it comes, on the way down where it leaves.
+  double LeastOfFlatUp(double along, double across) const {
+    return z_ + slope_ * std::max(0.0, along - std::sqrt(HalfChord2(radius_, across)));
+  }
+  double LeastOfFlatDown(double along, double across) const {
+    return z_ + slope_ * std::min(length_, along + std::sqrt(HalfChord2(radius_, across)));
   }
   double LeastOfBall(double along, double across) const {
-    const Reach r = ReachOf(along, across);
-    const double t = std::clamp(along - lead_ * r.half, r.low, r.high);
-    const double rise_2 = r.half * r.half - (along - t) * (along - t);
-    return r.hit ? z_ + slope_ * t + radius_ - std::sqrt(std::max(0.0, rise_2)) : HUGE_VAL;
+    const double half = std::sqrt(HalfChord2(radius_, across));
+    return BallAt(Kept(along - lead_ * half), half, along);
+  }
+  double LeastOfLevelBall(double along, double across) const {
+    return BallAt(Kept(along), std::sqrt(HalfChord2(radius_, across)), along);
+  }
+  double LeastOfPlungedBall(double along, double across) const {
+    const double distance = std::sqrt(along * along + across * across);
+    return z_ + radius_ - std::sqrt(HalfChord2(radius_, distance));
   }
   double LeastOfVee(double along, double across) const;
+  double LeastOfLevelVee(double along, double across) const {
+    return VeeAt(Kept(along), along, across);
+  }
 
   // Of what is as wide as this pass and follows a cutter: its own least height over the point while
-  // the cutter has not been there. Infinite where it never comes, or comes behind the cutter on a
-  // plunge, whose cutting part has taken everything on its way down.
+  // the cutter has not been there. Infinite where it comes behind the cutter on a plunge, whose
+  // cutting part has taken everything on its way down.
   double LeastBefore(double along, double across, double cutter_radius) const;
 
  private:
-  // The tool is over the point while its own place along the move lies in low..high.
-  struct Reach {
-    double half;
-    double low;
-    double high;
-    bool hit;
-  };
-  Reach ReachOf(double along, double across) const {
-    const double half_2 = radius_ * radius_ - across * across;
-    const double half = std::sqrt(std::max(0.0, half_2));
-    const double low = std::max(0.0, along - half);
-    const double high = std::min(length_, along + half);
-    return {half, low, std::max(low, high), half_2 >= 0.0 && low <= high};
+  double Kept(double along) const { return std::min(length_, std::max(0.0, along)); }
+  static double HalfChord2(double radius, double across) {
+    return std::max(0.0, radius * radius - across * across);
+  }
+  double BallAt(double place, double half, double along) const {
+    const double rise_2 = half * half - (along - place) * (along - place);
+    return z_ + slope_ * place + radius_ - std::sqrt(std::max(0.0, rise_2));
+  }
+  double VeeAt(double place, double along, double across) const {
+    const double distance = std::sqrt((along - place) * (along - place) + across * across);
+    return z_ + slope_ * place + std::max(0.0, distance - tip_radius_) * rise_;
   }
 
   motion::MachinePoint from_;
   motion::MachinePoint to_;
   double radius_;
   double tip_radius_;
-  double rise_ = 0.0;  // of a vee tool by its radius
-  double length_;      // seen from above
-  bool upright_;       // a plunge
-  PlanVector way_;     // of length 1; zero on a plunge
+  double rise_ = 0.0;         // of a vee tool by its radius
+  double length_;             // seen from above; 0: a plunge
+  PlanVector way_{1.0, 0.0};  // of length 1; a plunge goes any way
   double z_;
   double slope_ = 0.0;  // of z along the move
   double lead_ = 0.0;   // of a ball: how far ahead of the point its axis is, by half a chord
 };
+
+// The height over the point is convex in the tool's place: its least is at an end, where it stands
+// still, or where the flat tip begins.
+inline double ToolPass::LeastOfVee(double along, double across) const {
+  const double half = std::sqrt(HalfChord2(radius_, across));
+  const double low = Kept(along - half);
+  const double high = std::max(low, Kept(along + half));
+  const auto at = [&](double place) {
+    return VeeAt(std::min(high, std::max(low, place)), along, across);
+  };
+  double least = std::min(at(low), at(high));
+  const double steepness = slope_ / rise_;
+  if (std::abs(steepness) < 1.0) {
+    const double ahead = std::abs(across) * steepness / std::sqrt(1.0 - steepness * steepness);
+    least = std::min(least, at(along - ahead));
+  }
+  const double flat = std::sqrt(HalfChord2(tip_radius_, across));
+  return std::min(least, std::min(at(along - flat), at(along + flat)));
+}
 
 // The same for any shape, at a point of the plane; nothing where the tool does not come over it.
 std::optional<double> SweptHeight(const MillTool& tool, const motion::MachinePoint& from,

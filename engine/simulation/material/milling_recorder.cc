@@ -71,17 +71,6 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
   if (path.kind() != motion::PathPiece::Kind::kLine) return;  // the rotary axis alone
   const motion::MachinePoint from = path.At(done.from).point - origin_;
   const motion::MachinePoint to = path.At(done.travelled).point - origin_;
-  if (done.programmed_mm_s <= 0.0) {
-    const double depth = material_.DepthOf(tool_, from, to);
-    if (depth > kGougeLeast_mm) {
-      ++figures_.gouges;
-      if (depth > figures_.gouge_depth_mm) {
-        figures_.gouge_depth_mm = depth;
-        figures_.gouge_place = done.place;
-        figures_.gouge_at = done.start;
-      }
-    }
-  }
   NoteReach(from, to, done.place);
   NoteBelow(from, to, done.place);
   const bool cuts = done.use == MotionUse::kCut || done.use == MotionUse::kPlunge;
@@ -92,6 +81,14 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
     figures_.shank_place = done.place;
   }
   const double taken = material_.Cut(tool_, from, to);
+  if (done.programmed_mm_s <= 0.0 && taken > kGougeLeast_mm) {
+    ++figures_.gouges;
+    if (taken > figures_.gouge_depth_mm) {
+      figures_.gouge_depth_mm = taken;
+      figures_.gouge_place = done.place;
+      figures_.gouge_at = done.start;
+    }
+  }
   if (changes_ && taken > 0.0) NoteChange(from, to);
   // A plunge, or a ramp of more than 45 degrees, is no pass; at travel speed it is a gouge.
   const double across = LengthOf(PlanOf(to - from));

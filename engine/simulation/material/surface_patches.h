@@ -26,11 +26,23 @@ class VertexGrid {
     return field_.stock().y_min + CellsTo(row, field_.rows()) * field_.stock().cell;
   }
   double z(std::size_t column, std::size_t row) const {
-    const float height =
-        field_.height(CellOf(column, field_.columns()), CellOf(row, field_.rows()));
-    return std::max(static_cast<double>(height), field_.stock().bottom);
+    return std::max(static_cast<double>(Height(column, row)), bottom());
   }
   double bottom() const { return field_.stock().bottom; }
+  // As they are below the bottom, too: of one vertex, and of some of a row from a column on.
+  float Height(std::size_t column, std::size_t row) const {
+    return field_.height(CellOf(column, field_.columns()), CellOf(row, field_.rows()));
+  }
+  void Heights(std::size_t column, std::size_t count, std::size_t row, float* heights) const {
+    const float* const cells =
+        field_.heights().data() + CellOf(row, field_.rows()) * field_.columns();
+    const std::size_t left = CellOf(column, field_.columns());
+    const std::size_t right = CellOf(column + count - 1, field_.columns());
+    heights[0] = cells[left];
+    heights[count - 1] = cells[right];
+    if (column == 0) ++heights;  // the ring is as high as what is within it
+    std::copy(cells + left, cells + right + 1, heights);
+  }
 
  private:
   static std::size_t CellOf(std::size_t vertex, std::size_t cells) {
