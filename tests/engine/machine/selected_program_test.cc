@@ -22,10 +22,20 @@ TEST_F(SelectedProgram, WhatAJobBringsIsNotSelected) {
   GoOn(At(5.5));
   EXPECT_EQ(machine->selected_program(), 3);
   EXPECT_EQ(machine->status().open->program, 1);
+  // Neither by who finds the machine behind a crash.
+  const std::string state = machine->Save();
+  RunObserver nobody;
+  const auto found = Machine::Make(family_, parameters(), machine->memory(), state, nobody);
+  ASSERT_TRUE(found);
+  EXPECT_EQ((*found)->selected_program(), 3);
   GoOn(At(20.0));
   Over();
   EXPECT_EQ(machine->selected_program(), 3);
   EXPECT_EQ(machine->status().shown.program, 3);
+  Good(StartRun{.program = 2, .source = StartSource::kQueue});  // as it is stored
+  GoOn(At(40.0));
+  Over();
+  EXPECT_EQ(machine->selected_program(), 3);
   Start(2);
   EXPECT_EQ(machine->selected_program(), 2);
 }

@@ -178,6 +178,22 @@ TEST_F(HostsTest, ASilentHostIsLost) {
   };
   EXPECT_EQ(state_after(std::chrono::milliseconds(3'000)), v1::MACHINE_STATE_RUNNING);
   EXPECT_EQ(state_after(std::chrono::milliseconds(1)), v1::MACHINE_STATE_LOST);
+  // Nothing begins there; what halts is handed over all the same.
+  const auto refused = [&](const std::function<void(v1::HostOrder&)>& set) {
+    v1::HostOrder order;
+    set(order);
+    std::string code;
+    hosts.Ask("mill-1", std::move(order), [&](const Result<v1::HostOrderAnswer>& answer) {
+      code = answer ? "answered" : CodeText(answer.error().code);
+    });
+    return code;
+  };
+  EXPECT_EQ(refused([](v1::HostOrder& order) { order.mutable_start()->set_program(5); }),
+            "CELL-E9424");
+  const auto is_order = [](const v1::HostResponse& message) { return message.has_order(); };
+  EXPECT_TRUE(std::ranges::none_of(link->All(), is_order));
+  EXPECT_EQ(refused([](v1::HostOrder& order) { order.mutable_stop(); }), "CELL-E9424");
+  EXPECT_TRUE(link->Newest(v1::HostResponse::kOrder));
   EXPECT_EQ(hosts.StatusOf("mill-1")->speed_mm_s(), 0.0);
   EXPECT_EQ(hosts.StatusOf("mill-1")->words().item_state(), "NotAvailable");
   Tell(*link, v1::MACHINE_STATE_IDLE);

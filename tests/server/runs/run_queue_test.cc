@@ -205,6 +205,25 @@ TEST_F(RunQueueTest, AJobThatMayNotBeginAtItsStepEnds) {
   EXPECT_TRUE(NewestOrder(5).has_preview_start());
 }
 
+// LIVE-2.05: a job that is cancelled while its step is looked at does not begin; one that finds the
+// host looking at another start waits.
+TEST_F(RunQueueTest, WhatIsStoppedWhileItsStepIsLookedAtDoesNotBegin) {
+  const auto at = [](v1::Job& asked) { asked.mutable_run()->mutable_step()->set_step(2); };
+  Tell(Idle());
+  const std::int64_t cancelled = Submit(at);
+  const v1::HostOrder question = NewestOrder(1);
+  EXPECT_EQ(question.for_job(), JobName(cancelled));
+  ASSERT_TRUE(bed.store().RequestCancel(cancelled, {}));
+  Look(question, "a token");
+  EXPECT_TRUE(Eventually([&] { return Job(cancelled).state == JobState::kCancelled; }));
+  for (const v1::HostOrder& order : Orders()) EXPECT_FALSE(order.has_continue_job());
+  const std::int64_t waits = Submit(at);
+  EXPECT_TRUE(Eventually([&] { return Orders().back().for_job() == JobName(waits); }));
+  Refuse(Orders().back(), "CELL-E9002");
+  EXPECT_TRUE(Eventually([&] { return Job(waits).state == JobState::kQueued; }));
+  EXPECT_FALSE(Job(waits).blocked);
+}
+
 // LIVE-5.01, LIVE-5.04: it goes to its host as soon as that can begin it, and is RUNNING in the
 // store before; one at a time.
 TEST_F(RunQueueTest, AJobGoesToTheHostOfItsMachine) {
