@@ -28,16 +28,19 @@ MotionUse UseOfThreeAxis(const Point& from, const Point& to, bool same_xy, doubl
 
 double LimitedSpeed(const Profile& profile, const Point& from, const Point& to,
                     double wanted_mm_s) {
+  const double xy_highest = std::max(profile.xy_speeds.maximum_mm_s, profile.travel_speed);
+  const double z_highest = profile.z_speeds.maximum_mm_s;
+  // No axis goes further than the tool.
+  if (wanted_mm_s <= std::min(xy_highest, z_highest) && from.a == to.a) return wanted_mm_s;
   const double length = DistanceXYZ(from, to);
   if (!(length > 0.0)) return wanted_mm_s;
   double speed = wanted_mm_s;
   const auto limit = [&](double way, double highest) {
     if (std::abs(way) * speed > highest * length) speed = highest * length / std::abs(way);
   };
-  const double xy_highest = std::max(profile.xy_speeds.maximum_mm_s, profile.travel_speed);
   limit(to.x - from.x, xy_highest);
   limit(to.y - from.y, xy_highest);
-  limit(to.z - from.z, profile.z_speeds.maximum_mm_s);
+  limit(to.z - from.z, z_highest);
   // The rotary axis turns in step: degrees per mm of path, RML1-3D.29.
   limit((to.a - from.a) * profile.units_per_mm, profile.rotary_speed_deg_s);
   return speed;
@@ -45,6 +48,7 @@ double LimitedSpeed(const Profile& profile, const Point& from, const Point& to,
 
 Carriage::Carriage(const Profile& profile)
     : range_{profile.x, profile.y, profile.z},
+      inside_(range_.WithoutFaces()),
       zero_(motion::kTipLengthZero_mm * profile.units_per_mm) {
   Place({profile.origin_x, profile.origin_y, profile.z.high, 0.0});
 }
@@ -60,6 +64,10 @@ void Carriage::ToToolHeight(const Context& context) {
   const double before = logical_.z;
   logical_.z = z;
   if (registers.tool_down) NoteLostDepth(context, before);
+  if (!outside_ && logical_ == physical_) {  // it is there, as nearly always
+    parked_ = false;
+    return;
+  }
   if (!range_.HasXY(logical_)) return;
   Point to = range_.Nearest(logical_);
   to.a = physical_.a;
@@ -80,6 +88,7 @@ void Carriage::MoveXY(const Context& context, double x, double y) {
   const Point to{x, y, from.z, from.a};
   if (SamePoint(from, to, zero_)) return;
   logical_ = to;
+  if (range_.HasXY(from) && range_.HasXY(to)) return GoTwoAxis(context, to);
   const double length = DistanceXYZ(from, to);
   const Share share = ShareInXY(range_, from, to);
   const bool follows = !share.empty() && (share.high - share.low) * length > zero_;
@@ -92,18 +101,7 @@ void Carriage::MoveXY(const Context& context, double x, double y) {
       parked_ = false;
       PauseAtEntry(context, MayPauseXY(context));
     }
-    Point end = range_.Nearest(Between(from, to, share.high));
-    end.a = physical_.a;
-    if (registers.tool_down) {
-      Go(context, end,
-         {.speed_mm_s = registers.xy_speed,
-          .use = MotionUse::kCut,
-          .chain = Chain::kToolDown,
-          .dwells = true});
-    } else {
-      Go(context, end,
-         {.speed_mm_s = context.profile.travel_speed, .chain = Chain::kToolUp, .rapid = true});
-    }
+    GoTwoAxis(context, Between(from, to, share.high));
   }
   if (registers.tool_down) {
     const double all_of_it = HUGE_VAL;  // whatever its height: a tool that is down cuts
@@ -119,6 +117,21 @@ void Carriage::MoveXY(const Context& context, double x, double y) {
   if (follows || range_.HasXY(from)) LeaveXY(context);
 }
 
+void Carriage::GoTwoAxis(const Context& context, const Point& to) {
+  Point end = range_.Nearest(to);
+  end.a = physical_.a;
+  if (context.registers.tool_down) {
+    Go(context, end,
+       {.speed_mm_s = context.registers.xy_speed,
+        .use = MotionUse::kCut,
+        .chain = Chain::kToolDown,
+        .dwells = true});
+  } else {
+    Go(context, end,
+       {.speed_mm_s = context.profile.travel_speed, .chain = Chain::kToolUp, .rapid = true});
+  }
+}
+
 // The tool goes up at the boundary, so that it can come back over the work (RML1-5A.30, 5A.32).
 void Carriage::LeaveXY(const Context& context) {
   outside_ = true;
@@ -132,6 +145,15 @@ void Carriage::LeaveXY(const Context& context) {
 
 void Carriage::MoveXYZ(const Context& context, const Point& to) {
   if (SamePoint(logical_, to, zero_)) return;
+  // Most lines: the tool is where the commands are, and nothing is cut off.
+  const bool free =
+      !outside_ && logical_ == physical_ && inside_.HasWithin(logical_) && inside_.HasWithin(to);
+  if (free) {
+    logical_ = to;
+    parked_ = false;
+    GoThreeAxis(context, to, true);
+    return;
+  }
   const Pieces pieces = Pieces::Cut(range_, logical_, to, zero_);
   logical_ = to;
   parked_ = false;
@@ -153,18 +175,21 @@ void Carriage::MoveXYZ(const Context& context, const Point& to) {
 
 // A piece that the tool follows: inside, or sliding along the bottom.
 void Carriage::Follow(const Context& context, const Piece& piece, bool& dwell) {
-  const Registers& registers = context.registers;
   const Point begin = range_.Nearest(piece.from);
   const Point end = range_.Nearest(piece.to);
   Recover(context, begin, {.pass_z = range_.top(), .to_tool_height = false}, dwell);
   if (piece.region == Region::kInside) PauseAtEntry(context, true);
-  const bool moved =
-      Go(context, end,
-         {.speed_mm_s = registers.z_speed,
-          .use = UseOfThreeAxis(physical_, end, SameXY(physical_, end), registers.surface_z),
-          .chain = Chain::kThreeAxis,
-          .dwells = dwell});
+  const bool moved = GoThreeAxis(context, end, dwell);
   dwell = dwell && !moved;
+}
+
+bool Carriage::GoThreeAxis(const Context& context, const Point& to, bool dwells) {
+  const Registers& registers = context.registers;
+  return Go(context, to,
+            {.speed_mm_s = registers.z_speed,
+             .use = UseOfThreeAxis(physical_, to, SameXY(physical_, to), registers.surface_z),
+             .chain = Chain::kThreeAxis,
+             .dwells = dwells});
 }
 
 // While the tool stands outside, A has fallen behind the line; it turns alone (RML1-9.30).
@@ -319,11 +344,15 @@ void Carriage::NoteLost(const Point& from, const Point& to, double surface_z) {
 // The tool goes down beyond the travel, or not as deep as the program says (RML1-9.23).
 void Carriage::NoteLostDepth(const Context& context, double from_z) {
   const Registers& registers = context.registers;
+  const double depth = registers.z0 + registers.z1;
+  if (depth >= from_z && depth >= range_.bottom()) return;
+  const double reached = range_.HasXY(logical_) ? range_.bottom() : from_z;
+  if (!(depth < reached)) return;
   Point from = logical_;
   Point to = logical_;
-  to.z = registers.z0 + registers.z1;
-  from.z = range_.HasXY(logical_) ? range_.bottom() : from_z;
-  if (to.z < from.z) NoteLost(from, to, registers.surface_z);
+  from.z = reached;
+  to.z = depth;
+  NoteLost(from, to, registers.surface_z);
 }
 
 bool Carriage::SameXY(const Point& a, const Point& b) const {

@@ -91,6 +91,8 @@ class Carriage {
   };
 
   bool Go(const Context& context, const Point& to, const Stroke& stroke);
+  void GoTwoAxis(const Context& context, const Point& to);
+  bool GoThreeAxis(const Context& context, const Point& to, bool dwells);
   struct Recovery {
     double pass_z = 0.0;          // height of the way across
     bool to_tool_height = false;  // of a two-dimensional command
@@ -109,7 +111,8 @@ class Carriage {
   bool SameXY(const Point& a, const Point& b) const;
 
   CuttingRange range_;
-  double zero_;  // device units: shorter motions are none
+  CuttingRange inside_;  // of that, clear of its faces
+  double zero_;          // device units: shorter motions are none
   Point logical_;
   Point physical_;
   bool outside_ = false;  // the commands have left the range and not come back to it

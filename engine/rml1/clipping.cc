@@ -8,8 +8,6 @@
 namespace rmlcell::rml1 {
 namespace {
 
-motion::ProgramVector XyzOf(const Point& p) { return {p.x, p.y, p.z}; }
-
 // The shares of the way from `from` to `to` between which low <= value <= high, cut into `share`.
 void Narrow(Share& share, double from, double to, const Travel& travel) {
   const double low = travel.low - CuttingRange::kFaceTolerance;
@@ -45,15 +43,16 @@ Point OnLine(const CuttingRange& range, const Point& from, const Point& to, doub
 
 }  // namespace
 
+CuttingRange CuttingRange::WithoutFaces() const {
+  const auto narrowed = [](const Travel& travel) -> Travel {
+    return {travel.low + 2.0 * kFaceTolerance, travel.high - 2.0 * kFaceTolerance};
+  };
+  return {narrowed(x), narrowed(y), narrowed(z)};
+}
+
 Point CuttingRange::Nearest(const Point& p) const {
   return {std::clamp(p.x, x.low, x.high), std::clamp(p.y, y.low, y.high),
           std::clamp(p.z, z.low, z.high), p.a};
-}
-
-double DistanceXYZ(const Point& a, const Point& b) { return (XyzOf(a) - XyzOf(b)).norm(); }
-
-bool SamePoint(const Point& a, const Point& b, double zero) {
-  return DistanceXYZ(a, b) <= zero && std::abs(a.a - b.a) <= kSameAngle_deg;
 }
 
 Point Between(const Point& from, const Point& to, double share) {

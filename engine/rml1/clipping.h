@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
+#include "engine/motion/geometry/frames.h"
 #include "engine/rml1/action.h"
 #include "engine/rml1/profile.h"
 
@@ -22,6 +24,13 @@ struct CuttingRange {
     return p.x >= x.low - kFaceTolerance && p.x <= x.high + kFaceTolerance &&
            p.y >= y.low - kFaceTolerance && p.y <= y.high + kFaceTolerance;
   }
+  // Not beyond a face, nor on it.
+  bool HasWithin(const Point& p) const {
+    return p.x > x.low && p.x < x.high && p.y > y.low && p.y < y.high && p.z > z.low &&
+           p.z < z.high;
+  }
+  // The same without what is so close to a face that it counts as on it.
+  CuttingRange WithoutFaces() const;
   double top() const { return z.high; }
   double bottom() const { return z.low; }
   // The nearest point of the range.
@@ -65,10 +74,14 @@ Share ShareInXY(const CuttingRange& range, const Point& from, const Point& to);
 // from + (to - from) * share, the ends exactly.
 Point Between(const Point& from, const Point& to, double share);
 
-double DistanceXYZ(const Point& a, const Point& b);
+inline double DistanceXYZ(const Point& a, const Point& b) {
+  return motion::ProgramVector(a.x - b.x, a.y - b.y, a.z - b.z).norm();
+}
 
 // Not further apart than `zero` device units, and the same angle.
-bool SamePoint(const Point& a, const Point& b, double zero);
 inline constexpr double kSameAngle_deg = 1e-9;  // rounding errors of angles computed on a line
+inline bool SamePoint(const Point& a, const Point& b, double zero) {
+  return DistanceXYZ(a, b) <= zero && std::abs(a.a - b.a) <= kSameAngle_deg;
+}
 
 }  // namespace rmlcell::rml1

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/rml1/receive_path.h"
+
 namespace rmlcell::rml1 {
 namespace {
 
@@ -23,6 +25,18 @@ char LetterOf(unsigned char byte) {
 int LengthFrom(std::int64_t first, std::int64_t last) {
   constexpr std::int64_t kLengthMax = 1'000'000'000;
   return static_cast<int>(std::min(last - first + 1, kLengthMax));
+}
+
+// Blanks, and one comma unless there was one, or none may come (rml1.md 0.4 rule 1).
+const char* SkipSeparators(const char* at, const char* end, bool& comma) {
+  for (; at != end; ++at) {
+    if (*at == ',' && !comma) {
+      comma = true;
+    } else if (!IsBlank(static_cast<unsigned char>(*at))) {
+      break;
+    }
+  }
+  return at;
 }
 
 Reading Nothing() { return {}; }
@@ -59,6 +73,95 @@ Reading CommandReader::Put(unsigned char byte, std::int64_t offset) {
       return IsTerminator(byte) ? EndList() : Nothing();
   }
   return Nothing();
+}
+
+bool CommandReader::ReadParameter(ByteSpan& bytes) {
+  if (HasAll()) return false;
+  bool comma = comma_ || count_ == 0;
+  const char* const at = SkipSeparators(bytes.at(), bytes.end(), comma);
+  if (at != bytes.at()) {
+    state_ = State::kBetween;
+    comma_ = comma && count_ > 0;
+    bytes.SkipTo(at);
+  }
+  const bool begins = state_ == State::kBetween && at != bytes.end() &&
+                      NumberReader::CanBegin(static_cast<unsigned char>(*at));
+  if (!begins) return false;
+  const char* const behind = NumberReader::ReadWhole(at, bytes.end(), number_);
+  if (behind == nullptr || !ReceivePath::AlwaysPasses(*behind)) return false;
+  number_offset_ = bytes.offset();
+  bytes.SkipTo(behind);
+  state_ = State::kAfterNumber;
+  CountParameter();
+  return true;
+}
+
+bool CommandReader::ReadSet(ByteSpan& bytes, std::array<double, 3>& set) {
+  // Sign, six digits and the byte behind them: so many need no look at the end of the bytes.
+  constexpr std::ptrdiff_t kRoom = 8;
+  constexpr std::ptrdiff_t kDigitsMax = 6;
+  const char* at = bytes.at();
+  const char* const end = bytes.end();
+  bool separated = state_ == State::kBetween;
+  bool comma = comma_ || count_ == 0;
+  for (std::size_t i = 0; i < row_->values; ++i) {
+    const char* const before = at;
+    at = SkipSeparators(at, end, comma);
+    if (end - at < kRoom || (at == before && !separated)) return false;
+    separated = comma = false;
+    const bool negative = *at == '-';
+    if (negative) ++at;
+    int whole = 0;
+    std::ptrdiff_t digits = 0;
+    for (; digits < kDigitsMax && NumberReader::IsDigit(at[digits]); ++digits) {
+      whole = whole * 10 + (at[digits] - '0');
+    }
+    if (digits == 0) return false;
+    at += digits;
+    set[i] = static_cast<double>(negative ? -whole : whole);  // never -0
+  }
+  if (*at == '.' || NumberReader::IsDigit(*at) || !ReceivePath::AlwaysPasses(*at)) return false;
+  bytes.SkipTo(at);
+  state_ = State::kAfterNumber;
+  comma_ = false;
+  count_ = 2;
+  return true;
+}
+
+bool CommandReader::SkipStatementEnds(ByteSpan& bytes) {
+  bool ended = false;
+  const char* at = bytes.at();
+  for (; at != bytes.end(); ++at) {
+    const auto byte = static_cast<unsigned char>(*at);
+    if (IsTerminator(byte)) {
+      ended = true;
+    } else if (!IsBlank(byte)) {
+      break;
+    }
+  }
+  bytes.SkipTo(at);
+  return ended;
+}
+
+bool CommandReader::ReadName(ByteSpan& bytes) {
+  const char* const at = bytes.at();
+  const char first = LetterOf(static_cast<unsigned char>(*at));
+  if (first == 0) return false;
+  const bool mode1 = set_.setting != CommandSetting::kMode2 && !in_call_;
+  const bool may_be_pair = !mode1 || (set_.setting != CommandSetting::kMode1 && BeginsMode2(first));
+  const CommandRow* row = nullptr;
+  if (!may_be_pair) {
+    row = FindMode1(first, set_.skipped);
+  } else if (at + 1 != bytes.end()) {
+    const char second = LetterOf(static_cast<unsigned char>(at[1]));
+    row = second != 0 ? FindMode2(first, second) : nullptr;
+  }
+  if (row == nullptr) return false;
+  letter_ = first;
+  command_offset_ = bytes.offset();
+  bytes.SkipTo(at + (may_be_pair ? 2 : 1));
+  Found(*row, true);
+  return true;
 }
 
 void CommandReader::SkipGroups() { state_ = State::kAxisSkip; }
@@ -180,8 +283,7 @@ Reading CommandReader::InNumber(unsigned char byte) {
   number_ = reader_.value();
   state_ =
       reader_.has_digit() ? State::kAfterNumber : State::kListOver;  // a lone period: RML1-2.31
-  comma_ = false;
-  count_ = std::min(count_ + 1, 2);
+  CountParameter();
   return Again(Reading::Kind::kParameter);
 }
 

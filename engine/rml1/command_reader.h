@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 
+#include "engine/rml1/byte_span.h"
 #include "engine/rml1/command_table.h"
 #include "engine/rml1/number.h"
 
@@ -56,6 +59,35 @@ class CommandReader {
   // `offset` is the place of the byte in the stream; it is only handed back by the accessors.
   Reading Put(unsigned char byte, std::int64_t offset);
 
+  // Whether a parameter may begin with this byte, or separators before one.
+  bool ParameterMayBegin(char byte) const {
+    const bool separates = byte == ',' || byte == ' ' || byte == '\t';
+    return state_ == State::kBetween || (state_ == State::kAfterNumber && separates);
+  }
+  // Reads the parameter that comes next, when all of it stands in the bytes, with the byte behind
+  // it, and none of these is one that the receive path may take or change: what Put would make of
+  // them one by one, up to the reading kParameter, whose byte is left. False: what comes next is
+  // for Put; separators were taken. Precondition, here and below: ParameterMayBegin.
+  bool ReadParameter(ByteSpan& bytes);
+  // The same of a whole set, as nearly all are written: of whole numbers with six digits at most.
+  // False: nothing was taken. Preconditions: a command with sets, and the next parameter is the
+  // first of one.
+  bool ReadSet(ByteSpan& bytes, std::array<double, 3>& set);
+
+  // Whether a parameter list ends right before this byte: what Put would say with kEnd.
+  bool ListEndsBefore(char byte) const {
+    return state_ == State::kAfterNumber && !ParameterMayBegin(byte);
+  }
+  void EndListHere() { state_ = State::kSearch; }
+
+  bool searches() const { return state_ == State::kSearch; }
+  // Takes blanks, line ends and semicolons between commands. True: a statement ended.
+  // Precondition, here and below: searches().
+  bool SkipStatementEnds(ByteSpan& bytes);
+  // Reads the name of a command that stands whole in the bytes, as Put does up to the reading
+  // kCommand. False: nothing was taken, and it is for Put. Precondition: not empty.
+  bool ReadName(ByteSpan& bytes);
+
   // Valid after the readings that name them.
   const CommandRow& row() const { return *row_; }
   const Number& number() const { return number_; }
@@ -108,6 +140,10 @@ class CommandReader {
   Reading EndList();
   Reading Refuse(ReadError error, std::int64_t offset, int length, bool taken);
   Reading RefuseAxis(ReadError error, std::int64_t offset, unsigned char byte);
+  void CountParameter() {
+    comma_ = false;
+    count_ = std::min(count_ + 1, 2);
+  }
   bool HasAll() const { return row_->shape == Shape::kFixed && count_ >= row_->values; }
 
   CommandSet set_;

@@ -46,7 +46,10 @@ bool GoesAcross(const CutWatch::Ride& ride) { return Across(ride) > kSameHeight;
 bool DropsSteeply(const CutWatch::Ride& ride) {
   if (ride.plunge) return true;
   if (!ride.in_work || ride.from.a != ride.to.a) return false;
-  return ride.from.z - ride.to.z > Across(ride);
+  const double drop = ride.from.z - ride.to.z;
+  // No way is shorter across than along one axis: most cuts need no more than that.
+  if (drop <= std::abs(ride.to.x - ride.from.x)) return false;
+  return drop > Across(ride);
 }
 
 bool RisesSteeply(const CutWatch::Ride& ride) { return ride.to.z - ride.from.z > Across(ride); }
@@ -65,7 +68,7 @@ double BelowSurface_mm(const CutWatch::Ride& ride, const Registers& registers) {
 void CutWatch::OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command) {
   const bool down = DropsSteeply(ride);
   if (!down && (fast_so_far_.mm > 0.0 || slow_mm_ > 0.0)) EndWayDown(ride);
-  OnVisit(ride, registers, command);
+  OnVisit(ride, registers, command, down);
   OnPlace(ride, registers, command);
   if (ride.in_work) {
     if (!(down && Fast(ride))) EndAlong(ride.speed_mm_s);
@@ -137,10 +140,10 @@ CutWatch::Way CutWatch::fast_plunge() const {
   return way;
 }
 
-void CutWatch::OnVisit(const Ride& ride, const Registers& registers, const CommandPlace& command) {
+void CutWatch::OnVisit(const Ride& ride, const Registers& registers, const CommandPlace& command,
+                       bool down) {
   const double mm = ride.in_work ? BelowSurface_mm(ride, registers) : 0.0;
   if (mm > 0.0) {
-    const bool down = DropsSteeply(ride);
     const bool enters = down ? !visit_.crosses : !visit_.entered;
     if (enters) visit_.enters_fast = Fast(ride);
     visit_.entered = true;

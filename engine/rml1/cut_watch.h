@@ -83,7 +83,8 @@ class CutWatch {
   static void AddLimited(LimitedWay& way, const SpeedLimit& limit, double mm,
                          const CommandPlace& command);
   static void Join(Way& way, const Way& other);
-  void OnVisit(const Ride& ride, const Registers& registers, const CommandPlace& command);
+  void OnVisit(const Ride& ride, const Registers& registers, const CommandPlace& command,
+               bool down);
   void OnWayDown(const Ride& ride, const Registers& registers, const CommandPlace& command);
   void OnCrossing(const Ride& ride, double mm, const CommandPlace& command);
   void EndVisit();

@@ -1,6 +1,7 @@
 #include "engine/rml1/device.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rmlcell::rml1 {
 namespace {
@@ -119,8 +120,76 @@ bool Device::Step(DeviceListener& listener) {
     buffer_.Pop();
     ++bytes_read_;
   }
-  if (reading.kind != Reading::Kind::kNothing) OnReading(reading, entry, listener);
+  if (reading.kind == Reading::Kind::kNothing) return true;
+  listener.OnReading(reading, reader_, entry.offset);
+  Act(reading, entry.byte, listener);
   return true;
+}
+
+Device::Taken Device::Read(std::string_view bytes, std::int64_t offset, std::uint64_t commands,
+                           DeviceListener& listener) {
+  ByteSpan span(bytes, offset);
+  const std::uint64_t done_max = commands_done_ + commands;
+  const auto happened = [&] { return !actions_.empty() || commands_done_ >= done_max; };
+  std::size_t received = 0;  // bytes that went through the buffer: Step counts them
+  bool again = false;        // the byte in front is to be looked at again
+  while (!span.empty() && !happened()) {
+    const char front = *span.at();
+    if (path_.pending() || !ReceivePath::AlwaysPasses(front)) {
+      Receive(span.front(), span.offset(), listener);
+      span.Skip();
+      ++received;
+      again = false;
+      while (!happened() && Step(listener)) {
+      }
+    } else if (reader_.ParameterMayBegin(front) && TakeParameters(span, listener)) {
+      again = true;
+    } else if (reader_.ListEndsBefore(front)) {
+      reader_.EndListHere();
+      OnEnd(listener);
+      again = true;
+    } else {
+      again = TakeByte(span, listener);
+    }
+  }
+  bytes_read_ += span.read() - received;
+  return {.bytes = span.read(), .next = again};
+}
+
+// A whole set, or a whole parameter. A set that may lead out of the range of numbers is read number
+// by number.
+bool Device::TakeParameters(ByteSpan& bytes, DeviceListener& listener) {
+  constexpr double kNear = 7'000'000;
+  const CommandRow& row = reader_.row();
+  bool whole = row.shape == Shape::kSets && operands_.count == 0 && !operands_.dropped;
+  for (int i = 0; whole && i < 3 && IsRelative(row); ++i) whole = std::abs(Present(i)) <= kNear;
+  if (whole && reader_.ReadSet(bytes, operands_.set)) {
+    operands_.any = true;
+    CarryOutSet(listener);
+    return true;
+  }
+  if (!reader_.ReadParameter(bytes)) return false;
+  OnParameter(listener);
+  return true;
+}
+
+// One byte, unless it is for the receive path, and what needs no byte of its own before it. True:
+// it is to be looked at again.
+bool Device::TakeByte(ByteSpan& bytes, DeviceListener& listener) {
+  if (reader_.searches()) {
+    if (reader_.SkipStatementEnds(bytes)) programmed_.OnStatementEnd();
+    if (bytes.empty()) return false;
+    if (reader_.ReadName(bytes)) {
+      OnName();
+      return false;
+    }
+  }
+  if (bytes.empty() || !ReceivePath::AlwaysPasses(*bytes.at())) return false;
+  const unsigned char byte = bytes.front();
+  const Reading reading = reader_.Put(byte, bytes.offset());
+  if (reading.taken) bytes.Skip();
+  if (reading.kind != Reading::Kind::kNothing) Act(reading, byte, listener);
+  return !reading.taken;
 }
 
 bool Device::spindle_turns() const {
@@ -131,19 +200,13 @@ bool Device::spindle_turns() const {
   return registers_.spindle_on;
 }
 
-void Device::OnReading(const Reading& reading, const DataBuffer::Entry& at,
-                       DeviceListener& listener) {
-  listener.OnReading(reading, reader_, at.offset);
+// What the reading of this byte means.
+void Device::Act(const Reading& reading, unsigned char byte, DeviceListener& listener) {
   switch (reading.kind) {
     case Reading::Kind::kNothing:
       break;
     case Reading::Kind::kCommand:
-      ++command_.number;
-      command_.offset = reader_.command_offset();
-      command_.op = reader_.row().op;
-      operands_ = {};
-      told_ = false;
-      ClearGroup();
+      OnName();
       break;
     case Reading::Kind::kCall:
       programmed_.OnCommand(Op::kCall);
@@ -161,7 +224,7 @@ void Device::OnReading(const Reading& reading, const DataBuffer::Entry& at,
       OnEnd(listener);
       break;
     case Reading::Kind::kError:
-      OnReadError(at, listener);
+      OnReadError(byte, listener);
       break;
     case Reading::Kind::kStatementEnd:
       programmed_.OnStatementEnd();
@@ -169,7 +232,16 @@ void Device::OnReading(const Reading& reading, const DataBuffer::Entry& at,
   }
 }
 
-void Device::OnReadError(const DataBuffer::Entry& at, DeviceListener& listener) {
+void Device::OnName() {
+  ++command_.number;
+  command_.offset = reader_.command_offset();
+  command_.op = reader_.row().op;
+  operands_.Begin();
+  told_ = false;
+  if (reader_.row().shape == Shape::kAxes) ClearGroup();
+}
+
+void Device::OnReadError(unsigned char byte, DeviceListener& listener) {
   const ReadError error = reader_.error();
   const bool in_axes = error == ReadError::kAxisTwice || error == ReadError::kAxisValue ||
                        error == ReadError::kAxisLetter;
@@ -184,9 +256,16 @@ void Device::OnReadError(const DataBuffer::Entry& at, DeviceListener& listener) 
        .offset = reader_.error_offset(),
        .length = reader_.error_length(),
        .step = in_axes ? static_cast<int>(command_.number) : 0,
-       .byte = at.byte,
+       .byte = byte,
        .op = command_.op},
       listener);
+}
+
+void Device::CarryOutSet(DeviceListener& listener) {
+  BeginCommand(listener);
+  RunSet(listener);
+  operands_.ran = true;
+  operands_.count = 0;
 }
 
 void Device::OnParameter(DeviceListener& listener) {
@@ -202,10 +281,7 @@ void Device::OnParameter(DeviceListener& listener) {
     return;
   }
   if (operands_.count < row.values) return;
-  BeginCommand(listener);
-  RunSet(listener);
-  operands_.ran = true;
-  operands_.count = 0;
+  CarryOutSet(listener);
 }
 
 // The parameter list is over.

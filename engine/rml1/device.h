@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "engine/rml1/action.h"
 #include "engine/rml1/carriage.h"
@@ -42,8 +43,9 @@ class DeviceListener {
 // power-on state, and nothing of it grows without bound (RML1-7.07).
 //
 // To run it: Receive a byte, then call Step until it returns false, carrying out and popping the
-// actions after each step. An action kPause stays at the front until the resume key is pressed:
-// bytes that are received meanwhile wait in the buffer (RML1-3C.08).
+// actions after each step; Read does both with many bytes at once. An action kPause stays at the
+// front until the resume key is pressed: bytes that are received meanwhile wait in the buffer
+// (RML1-3C.08).
 class Device {
  public:
   // `profile` must outlive the device and its copies.
@@ -61,6 +63,18 @@ class Device {
   // Interprets as far as the next thing that happens; at most one byte. False when the buffer is
   // empty. Precondition: no action is waiting.
   bool Step(DeviceListener& listener);
+
+  // What Receive does with the bytes, each followed by Step until the buffer is empty, up to the
+  // one that makes something happen: an action waits, or so many commands are over. A byte that did
+  // so and must be looked at again is left: it is received a second time. The listener hears of no
+  // readings. Precondition: the buffer is empty, and no action waits.
+  struct Taken {
+    std::size_t bytes = 0;  // from the front
+    bool next = false;      // the byte behind them has been looked at
+  };
+  static constexpr std::uint64_t kAnyCommands = std::uint64_t{1} << 62;
+  Taken Read(std::string_view bytes, std::int64_t offset, std::uint64_t commands,
+             DeviceListener& listener);
 
   ActionQueue& actions() { return actions_; }
   const ActionQueue& actions() const { return actions_; }
@@ -128,6 +142,11 @@ class Device {
     bool any = false;               // a parameter was read
     bool ran = false;               // a set was executed
     bool dropped = false;           // a value was out of range: the rest of the list is dropped
+
+    void Begin() {
+      count = 0;
+      any = ran = dropped = false;
+    }
   };
   // The group of !ZE in progress.
   struct Group {
@@ -139,8 +158,12 @@ class Device {
 
   Carriage::Context context() { return {*profile_, registers_, actions_}; }
   void ToBuffer(unsigned char byte, std::int64_t offset, DeviceListener& listener);
-  void OnReading(const Reading& reading, const DataBuffer::Entry& at, DeviceListener& listener);
-  void OnReadError(const DataBuffer::Entry& at, DeviceListener& listener);
+  void Act(const Reading& reading, unsigned char byte, DeviceListener& listener);
+  void OnReadError(unsigned char byte, DeviceListener& listener);
+  bool TakeParameters(ByteSpan& bytes, DeviceListener& listener);
+  bool TakeByte(ByteSpan& bytes, DeviceListener& listener);
+  void OnName();
+  void CarryOutSet(DeviceListener& listener);
   void OnParameter(DeviceListener& listener);
   void OnEnd(DeviceListener& listener);
 
@@ -148,6 +171,10 @@ class Device {
   void BeginCommand(DeviceListener& listener);
   void ApplyEffects(const CommandRow& row);
   void NoteClipping(double lost_before, DeviceListener& listener);
+  bool IsRelative(const CommandRow& row) const {
+    return row.mode == ModeChange::kNone ? !registers_.absolute : row.mode == ModeChange::kRelative;
+  }
+  double Present(int index) const;
   bool TakeCoordinate(DeviceListener& listener);
   void RunSet(DeviceListener& listener);
   void RunBare(DeviceListener& listener);

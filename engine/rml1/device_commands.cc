@@ -65,24 +65,25 @@ void Device::GivePlace(bool x, bool y) {
   if (both && registers_.place_given_by == 0) registers_.place_given_by = registers_.act;
 }
 
+// Where the logical position is, by the numbers of a set.
+double Device::Present(int index) const {
+  const Point& logical = carriage_.logical();
+  if (index == 0) return logical.x - profile_->origin_x;
+  if (index == 1) return logical.y - profile_->origin_y;
+  return logical.z - registers_.z0;
+}
+
 // One number of a set. False: it is out of range, and so are its set and the later ones
 // (RML1-2.34, RML1-2.35).
 bool Device::TakeCoordinate(DeviceListener& listener) {
-  const CommandRow& row = reader_.row();
   const Number& number = reader_.number();
-  const bool relative =
-      row.mode == ModeChange::kNone ? !registers_.absolute : row.mode == ModeChange::kRelative;
-  const Point& logical = carriage_.logical();
-  const std::array<double, 3> present = {logical.x - profile_->origin_x,
-                                         logical.y - profile_->origin_y, logical.z - registers_.z0};
-  const auto index = static_cast<std::size_t>(operands_.count);
-  const double result = number.single + (relative ? present[index] : 0.0);
+  const bool relative = IsRelative(reader_.row());
+  const double result = relative ? number.single + Present(operands_.count) : number.single;
   if (!number.Within(kFloatMin, kFloatMax) || !InFloatRange(result)) {
     Report(FindingKind::kValueRange, listener, relative ? result : number.decimal);
     return false;
   }
-  operands_.set[index] = number.single;
-  ++operands_.count;
+  operands_.set[static_cast<std::size_t>(operands_.count++)] = number.single;
   return true;
 }
 

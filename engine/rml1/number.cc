@@ -75,6 +75,31 @@ Number NumberReader::value() const {
   return number;
 }
 
+// Of digits from `first` on, with a period among or behind them.
+const char* NumberReader::ReadDecimal(const char* first, const char* end, bool negative,
+                                      Number& number) {
+  const char* at = first;
+  std::int64_t whole = 0;
+  for (; at != end && IsDigit(*at) && at - first < kExactDigits; ++at) {
+    whole = whole * 10 + (*at - '0');
+  }
+  if (at == end || *at != '.' || whole >= Number::kMagnitudeMax) return nullptr;
+  const char* const behind = at + 1;
+  std::int64_t digits = whole;
+  for (++at; at != end && IsDigit(*at) && at - first <= kExactDigits; ++at) {
+    digits = digits * 10 + (*at - '0');
+  }
+  const bool ordinary = at != end && !IsDigit(*at) && at - first > 1;
+  if (!ordinary) return nullptr;
+  const double power = kPowersOfTen[static_cast<std::size_t>(at - behind)];
+  number.magnitude = whole;
+  number.negative = negative;
+  number.fraction = digits != whole * static_cast<std::int64_t>(power);
+  number.decimal = static_cast<double>(negative ? -digits : digits) / power;
+  number.single = static_cast<double>(static_cast<float>(number.decimal));
+  return IsHalfwayBetweenSingles(number.decimal) ? nullptr : at;
+}
+
 void NumberReader::ConvertExactly(Number& number) const {
   std::array<char, 160> room{};  // 18 + 96 digits, one for the rest, an exponent
   char* end = std::to_chars(room.data(), room.data() + room.size(), digits_).ptr;

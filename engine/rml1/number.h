@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace rmlcell::rml1 {
@@ -38,6 +39,7 @@ struct Number {
 // Form: optional sign, digits with at most one period among them (RML1-2.25).
 class NumberReader {
  public:
+  static bool IsDigit(int byte) { return byte >= '0' && byte <= '9'; }
   static bool CanBegin(unsigned char byte) {
     return IsDigit(byte) || byte == '+' || byte == '-' || byte == '.';
   }
@@ -62,10 +64,28 @@ class NumberReader {
   // The value read; 0 when no digit came, as a lone period counts (RML1-2.31).
   Number value() const;
 
+  // The same of a number that stands whole in the bytes, with the byte behind it, and is of
+  // ordinary length: what nearly every number of a program is. Returns where it ends; nullptr: it
+  // must be taken byte by byte. Precondition: `at` is not `end`, and CanBegin(*at).
+  static const char* ReadWhole(const char* at, const char* end, Number& number) {
+    const bool negative = *at == '-';
+    const char* const first = at + (negative || *at == '+' ? 1 : 0);
+    std::int64_t digits = 0;
+    for (at = first; at != end && IsDigit(*at); ++at) digits = digits * 10 + (*at - '0');
+    const bool ordinary = at != end && at != first && at - first <= kOrdinaryDigits;
+    if (!ordinary || *at == '.') return ReadDecimal(first, end, negative, number);
+    const double value = static_cast<double>(negative ? -digits : digits);  // never -0
+    number = {.single = value, .decimal = value, .magnitude = digits, .negative = negative};
+    return at;
+  }
+
  private:
-  static bool IsDigit(unsigned char byte) { return byte >= '0' && byte <= '9'; }
+  static const char* ReadDecimal(const char* first, const char* end, bool negative, Number& number);
   void TakeDigit(unsigned char byte);
   void ConvertExactly(Number& number) const;
+
+  // Whole numbers of so many digits are 4-byte values as they are.
+  static constexpr std::ptrdiff_t kOrdinaryDigits = 7;
 
   // A decimal halfway between two 4-byte values has at most 113 significant digits: with that many
   // kept, and one bit for the rest, every number is rounded right.

@@ -1,6 +1,7 @@
 #include "engine/rml1/programmed.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -61,8 +62,11 @@ void Programmed::OnHeights(int count, const Number& z1, const Number& z2) {
   if (count > 1 && z2.truncated() >= 0) now_.z2 = static_cast<double>(z2.truncated());
 }
 
-void Programmed::OnStatementEnd() {
-  if (!begun_ && !spoilt_) return;  // an empty statement
+void Programmed::EndStatement() {
+  for (; counted_ != 0; counted_ &= counted_ - 1) {
+    const auto op = static_cast<std::size_t>(std::countr_zero(counted_));
+    (spoilt_ ? counts_ : counts_at_statement_)[op] = (spoilt_ ? counts_at_statement_ : counts_)[op];
+  }
   if (spoilt_) {
     now_ = at_statement_;
     ++other_;

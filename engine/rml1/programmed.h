@@ -27,7 +27,8 @@ class Programmed {
  public:
   // A name was read, and the command behind it begins.
   void OnCommand(Op op) {
-    ++now_.counts[static_cast<std::size_t>(op)];
+    ++counts_[static_cast<std::size_t>(op)];
+    counted_ |= std::uint64_t{1} << static_cast<unsigned>(op);
     begun_ = true;
   }
 
@@ -52,12 +53,14 @@ class Programmed {
 
   // The command search discarded letters, or something else. A statement ended.
   void OnDiscarded(bool letters) { spoilt_ = spoilt_ || letters || !begun_; }
-  void OnStatementEnd();
+  void OnStatementEnd() {
+    if (begun_ || spoilt_) EndStatement();  // else it is empty
+  }
   // The end of the data ends the last statement too.
   void Finish() { OnStatementEnd(); }
 
   std::uint64_t commands() const;  // without ^, which is counted beside them
-  std::uint64_t count(Op op) const { return now_.counts[static_cast<std::size_t>(op)]; }
+  std::uint64_t count(Op op) const { return counts_[static_cast<std::size_t>(op)]; }
   std::uint64_t other() const { return other_; }
   const Extent& x() const { return now_.x_extent; }
   const Extent& y() const { return now_.y_extent; }
@@ -87,16 +90,21 @@ class Programmed {
     Extent z_extent;
     std::uint32_t z_grain = 0;
     double lowest_lift = kNone;
-    std::array<std::uint64_t, kOpCount> counts{};
   };
+  using Counts = std::array<std::uint64_t, kOpCount>;
 
+  void EndStatement();
   void ApplyEffects(const CommandRow& row);
   void ToToolHeight();
   void AddHeight(double z);
   void GoTo(double x, double y, double z, bool two_axis_cut);
 
   State now_;
-  State at_statement_;   // what a spoilt statement falls back to
+  State at_statement_;  // what a spoilt statement falls back to
+  Counts counts_{};
+  Counts counts_at_statement_{};
+  std::uint64_t counted_ = 0;  // by this statement: a bit for each Op
+  static_assert(kOpCount <= 64);
   bool begun_ = false;   // the statement has a command
   bool spoilt_ = false;  // it has something that is no command
   std::uint64_t other_ = 0;

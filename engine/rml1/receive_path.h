@@ -53,6 +53,11 @@ class ReceivePath {
     return data;
   }
 
+  // Bytes that go to the data buffer as they are, whatever the link, outside of a sequence.
+  static bool AlwaysPasses(char byte) {
+    return static_cast<unsigned char>(byte) < 0x80 && byte != kEscape;
+  }
+
   bool pending() const { return state_ != State::kPlain; }
 
   // What the last such sequence left; the first 6 or 5 entries count.

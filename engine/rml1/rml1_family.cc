@@ -143,11 +143,13 @@ class StreamReading {
 
  private:
   void Read(std::string_view part, std::int64_t offset) {
-    for (const char c : part) {
-      device_.Receive(static_cast<unsigned char>(c), offset++, findings_);
-      while (device_.Step(findings_)) {
+    while (!part.empty()) {
+      const std::size_t read = device_.Read(part, offset, Device::kAnyCommands, findings_).bytes;
+      part.remove_prefix(read);
+      offset += static_cast<std::int64_t>(read);
+      do {
         while (!device_.actions().empty()) CarryOut();
-      }
+      } while (device_.Step(findings_));
     }
   }
   void CarryOut() {

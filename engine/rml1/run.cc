@@ -255,13 +255,17 @@ bool MillRun::TimeStands() const {
 void MillRun::Interpret(std::size_t sent_max) {
   State& s = state_;
   Listener listener(*this);
+  const auto happened = [&s] {
+    return !s.device.actions().empty() || s.device.commands_done() != s.commands_seen;
+  };
   for (;;) {
     while (s.device.Step(listener)) {
-      if (!s.device.actions().empty() || s.device.commands_done() != s.commands_seen) return;
+      if (happened()) return;
     }
     if (s.sender.done(stream())) return Finish();
-    if (s.sender.sent() >= sent_max) return;
-    s.sender.SendByte(s.device, stream(), listener);
+    if (s.sender.given() >= sent_max) return;
+    s.sender.Send(s.device, stream(), sent_max, 1, listener);
+    if (happened()) return;
   }
 }
 
@@ -542,7 +546,7 @@ machine::RunState MillRun::state() const {
       profile().units_per_mm;
   const double size = static_cast<double>(stream().size());
   state.progress =
-      size > 0.0 ? static_cast<double>(s.sender.sent() - s.device.waiting()) / size : 1.0;
+      size > 0.0 ? static_cast<double>(s.sender.given() - s.device.waiting()) / size : 1.0;
   return state;
 }
 

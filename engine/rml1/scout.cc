@@ -8,26 +8,30 @@ bool Scout::Read(std::string_view stream, const CommandHalts& halts, std::size_t
                  LookAhead& ahead) {
   RMLCELL_CHECK(!over_);
   DeviceListener silent;
+  const std::uint64_t commands = halts.any() ? 1 : Device::kAnyCommands;
   for (;;) {
     while (device_.Step(silent)) {
-      bool found = TakeActions(stream, ahead);
-      if (device_.commands_done() != commands_seen_) {
-        commands_seen_ = device_.commands_done();
-        if (halts.After(static_cast<int>(device_.command().number))) {
-          ahead.EndChain();
-          found = true;
-        }
-      }
-      if (found) return true;
+      if (TakeWhatHappened(stream, halts, ahead)) return true;
     }
     if (sender_.done(stream)) {
       over_ = true;
       ahead.EndChain();
       return true;
     }
-    if (sender_.sent() >= sent_max) return false;
-    sender_.SendByte(device_, stream, silent);
+    if (sender_.given() >= sent_max) return false;
+    sender_.Send(device_, stream, sent_max, commands, silent);
+    if (TakeWhatHappened(stream, halts, ahead)) return true;
   }
+}
+
+// True: a motion, or a place where the tool must stand.
+bool Scout::TakeWhatHappened(std::string_view stream, const CommandHalts& halts, LookAhead& ahead) {
+  const bool acts = TakeActions(stream, ahead);
+  if (device_.commands_done() == commands_seen_) return acts;
+  commands_seen_ = device_.commands_done();
+  if (!halts.After(static_cast<int>(device_.command().number))) return acts;
+  ahead.EndChain();
+  return true;
 }
 
 // Everything but a motion needs a tool that stands: a dwell, the spindle, a pause.

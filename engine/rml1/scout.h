@@ -18,6 +18,7 @@ struct CommandHalts {
   std::vector<int> breakpoints{};  // numbers of commands, in order
   int entry = 0;                   // before this one; 0: none
 
+  bool any() const { return after_each || !breakpoints.empty() || entry > 0; }
   bool BreaksAfter(int command) const { return std::ranges::binary_search(breakpoints, command); }
   bool EntersAfter(int command) const { return entry > 0 && command + 1 == entry; }
   bool After(int command) const {
@@ -45,6 +46,7 @@ class Scout {
 
  private:
   bool TakeActions(std::string_view stream, LookAhead& ahead);
+  bool TakeWhatHappened(std::string_view stream, const CommandHalts& halts, LookAhead& ahead);
 
   Device device_;
   Sender sender_;

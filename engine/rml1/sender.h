@@ -7,29 +7,39 @@
 
 namespace rmlcell::rml1 {
 
-// The other end of the link: hands a stored stream to a device byte by byte, so that nothing of the
-// program is held but the byte in hand (RML1-9.06).
+// The other end of the link: hands a stored stream to a device, so that nothing of the program is
+// held but the byte in hand (RML1-9.06).
 class Sender {
  public:
-  std::size_t sent() const { return sent_; }
-  bool done(std::string_view stream) const { return sent_ == stream.size(); }
+  // Bytes that the device has seen, and those of them that it need not see again.
+  std::size_t sent() const { return given_ + (in_hand_ ? 1 : 0); }
+  std::size_t given() const { return given_; }
+  bool done(std::string_view stream) const { return given_ == stream.size(); }
 
-  // Precondition: not done.
-  void SendByte(Device& device, std::string_view stream, DeviceListener& listener) {
-    const auto byte = static_cast<unsigned char>(stream[sent_]);
-    device.Receive(byte, static_cast<std::int64_t>(sent_), listener);
-    ++sent_;
+  // As many bytes as Device::Read takes, and no more than up to `sent_max`. Preconditions: not
+  // done; fewer were given; and those of Read.
+  void Send(Device& device, std::string_view stream, std::size_t sent_max, std::uint64_t commands,
+            DeviceListener& listener) {
+    const Device::Taken taken = device.Read(stream.substr(given_, sent_max - given_),
+                                            static_cast<std::int64_t>(given_), commands, listener);
+    given_ += taken.bytes;
+    in_hand_ = taken.next;
   }
 
   // While the device is paused the sender goes on until flow control stops it (RML1-9.35). Two
   // places are kept free: a byte behind ESC may bring the ESC with it.
   void FillBuffer(Device& device, std::string_view stream, DeviceListener& listener) {
     constexpr std::size_t kSpare = 2;
-    while (!done(stream) && device.room() >= kSpare) SendByte(device, stream, listener);
+    for (; !done(stream) && device.room() >= kSpare; ++given_) {
+      const auto byte = static_cast<unsigned char>(stream[given_]);
+      device.Receive(byte, static_cast<std::int64_t>(given_), listener);
+      in_hand_ = false;
+    }
   }
 
  private:
-  std::size_t sent_ = 0;
+  std::size_t given_ = 0;
+  bool in_hand_ = false;  // the byte behind these has been looked at
 };
 
 }  // namespace rmlcell::rml1

@@ -1,0 +1,196 @@
+// A device that reads spans does what one does that is given the same bytes one by one, wherever
+// the stream is cut.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <sstream>
+
+#include "engine/rml1/device.h"
+#include "tests/engine/rml1/run_support.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+// Writes down all that a device tells and does.
+class Witness final : public DeviceListener {
+ public:
+  explicit Witness(const Profile& profile) : device_(profile) { text_ << std::hexfloat; }
+
+  void ByteByByte(std::string_view stream) {
+    for (std::size_t at = 0; at < stream.size(); ++at) {
+      device_.Receive(static_cast<unsigned char>(stream[at]), static_cast<std::int64_t>(at), *this);
+      Work();
+    }
+  }
+
+  // `most`: bytes of a span.
+  void BySpans(std::string_view stream, std::size_t most, std::mt19937_64& dice) {
+    for (std::size_t at = 0; at < stream.size();) {
+      const std::size_t length = 1 + dice() % most;
+      const std::uint64_t commands = dice() % 2 == 0 ? 1 : Device::kAnyCommands;
+      const Device::Taken taken =
+          device_.Read(stream.substr(at, length), static_cast<std::int64_t>(at), commands, *this);
+      EXPECT_LE(taken.bytes, length);
+      EXPECT_TRUE(!taken.next || taken.bytes < length);
+      at += taken.bytes;
+      if (dice() % 16 == 0) device_ = Device(device_);  // a copy goes on as the original would
+      TakeActions();
+      Work();
+    }
+  }
+
+  // With what it is at the end.
+  std::string Text() {
+    device_.EndOfData();
+    const Registers& r = device_.registers();
+    const Point& at = device_.carriage().logical();
+    text_ << "end " << at.x << ' ' << at.y << ' ' << at.z << ' ' << at.a << ' ' << r.absolute
+          << r.tool_down << r.mode_given << r.heights_given << r.x_given << r.y_given << ' '
+          << r.act << ' ' << r.place_given_by << ' ' << r.xy_speed << ' ' << r.z_speed << ' '
+          << r.z0 << ' ' << r.z1 << ' ' << r.z2 << ' ' << r.rpm << ' ' << r.dwell_ms << '\n'
+          << device_.commands_done() << ' ' << device_.speeds_limited() << ' '
+          << device_.positions_refused() << ' ' << device_.foreign_percent() << ' '
+          << device_.pending() << ' ' << (device_.pending() ? device_.pending_offset() : 0) << ' '
+          << device_.waiting() << '\n';
+    const Programmed& p = device_.programmed();
+    text_ << p.commands() << ' ' << p.other() << ' ' << p.cut_length() << ' ' << p.travel_length()
+          << ' ' << p.x().low << ' ' << p.y().high << ' ' << p.z().low << ' ' << p.z_grain() << ' '
+          << p.lowest_lift() << '\n';
+    for (int op = 0; op < kOpCount; ++op) text_ << p.count(static_cast<Op>(op)) << ' ';
+    return text_.str();
+  }
+
+  void OnCommand(const CommandPlace& command) override { Put("command", command); }
+  void OnFinding(const Finding& finding) override { Put("finding", finding); }
+  void OnCounted(const Finding& finding) override { Put("counted", finding); }
+  void OnLost(const Carriage::LostLine& line) override {
+    text_ << "lost " << line.from.x << ' ' << line.to.x << ' ' << line.to.z << '\n';
+  }
+  void OnAbort(std::int64_t offset) override { text_ << "abort " << offset << '\n'; }
+
+ private:
+  void Work() {
+    while (device_.Step(*this)) TakeActions();
+  }
+  void TakeActions() {
+    for (; !device_.actions().empty(); device_.actions().Pop()) {
+      const Action& action = device_.actions().front();
+      text_ << "action " << static_cast<int>(action.kind) << ' ' << action.to.x << ' '
+            << action.to.y << ' ' << action.to.z << ' ' << action.to.a << ' ' << action.speed_mm_s
+            << ' ' << action.rapid << static_cast<int>(action.use) << static_cast<int>(action.chain)
+            << action.waits << action.outside << ' ' << action.rpm << ' ' << action.dwell_ms << ' '
+            << device_.spindle_turns() << ' ' << device_.command().number << '\n';
+    }
+  }
+  void Put(std::string_view what, const CommandPlace& place) {
+    text_ << what << ' ' << place.number << ' ' << place.offset << ' ' << static_cast<int>(place.op)
+          << '\n';
+  }
+  void Put(std::string_view what, const Finding& finding) {
+    text_ << what << ' ' << static_cast<int>(finding.kind) << ' ' << finding.offset << ' '
+          << finding.length << ' ' << finding.step << ' ' << static_cast<int>(finding.byte) << ' '
+          << static_cast<int>(finding.op) << ' ' << finding.value << '\n';
+  }
+
+  Device device_;
+  std::ostringstream text_;
+};
+
+// clang-format off
+constexpr std::string_view kPieces[] = {
+    "PD", "PU", "PA", "PR", "Z", "M", "D", "I", "VS", "V", "F", "!PZ", "!ZZ", "!MC", "!ZE X1Y",
+    "!NR", "^PD", "^", "IN;", "H;", "!DW", "!ZO", "!ZM-", "@", ",", ",", ",", " ", ";", ";\n",
+    "\n", "\r\n", "\t", ",,", ", ", "-", "+", ".", "..", ":", "100", "2000", "-35", "0", "00",
+    "-0", "12.5", "-7.25", "1.", ".5", "999999", "1000000", "8388607", "8388608", "-8388609",
+    "16777217", "33554433.0", "3.1415926535897932384", "12345678901234567890", "0.1", "7000000",
+    "1.2.3", "\x1b.K", "\x1b.B", "\x1b", "\x1b.M1;2:", "\xb1", "Q", "pd", "p d",
+};
+// clang-format on
+
+// Commands, numbers and separators in an order that often makes sense, with what does not.
+std::string RandomStream(std::mt19937_64& dice) {
+  constexpr std::uint64_t kPiecesMax = 120;
+  std::string stream;
+  for (std::uint64_t n = dice() % kPiecesMax; n > 0; --n) {
+    if (dice() % 3 == 0) {  // a whole command
+      stream += kPieces[dice() % 8];
+      for (std::uint64_t k = 1 + dice() % 6; k > 0; --k) {
+        stream += std::to_string(static_cast<int>(dice() % 9000) - 500);
+        if (k > 1) stream += dice() % 4 == 0 ? ' ' : ',';
+      }
+      stream += dice() % 8 == 0 ? "" : ";";
+    } else {
+      stream += kPieces[dice() % std::size(kPieces)];
+    }
+  }
+  return stream;
+}
+
+machine::Parameters RandomMachine(std::mt19937_64& dice) {
+  machine::Parameters parameters = ParametersOf(dice() % 4 == 0 ? "t1a" : "t1");
+  const auto set = [&](const char* name, std::string_view value) {
+    if (dice() % 4 != 0) return;
+    EXPECT_TRUE(parameters.Set(name, value).ok());
+  };
+  set("COMMAND", dice() % 2 == 0 ? "MODE1" : "MODE2");
+  set("OVER_AREA", "PAUSE");
+  set("DATA_BITS", "7");
+  set("SEQUENCES", "ALL");
+  set("SKIP", "VPANEL");
+  return parameters;
+}
+
+TEST(SpanReading, IsReadingByteByByte) {
+  constexpr int kStreams = 3000;
+  for (int n = 0; n < kStreams; ++n) {
+    std::mt19937_64 dice(static_cast<std::uint64_t>(n));
+    const Profile profile = MakeProfile(RandomMachine(dice)).value();
+    const std::string stream = RandomStream(dice);
+    Witness bytes(profile);
+    bytes.ByteByByte(stream);
+    const std::string expected = bytes.Text();
+    for (const std::size_t most :
+         {std::size_t{1}, std::size_t{3}, std::size_t{20}, stream.size() + 1}) {
+      Witness spans(profile);
+      spans.BySpans(stream, most, dice);
+      ASSERT_EQ(spans.Text(), expected) << "stream " << n << ", spans of " << most << ":\n"
+                                        << stream;
+    }
+  }
+}
+
+// Numbers that stand whole are read as byte by byte, or not at all.
+TEST(SpanReading, ReadsWholeNumbersAsByteByByte) {
+  std::mt19937_64 dice(1);
+  for (int n = 0; n < 200'000; ++n) {
+    std::string text(dice() % 3 == 0 ? (dice() % 2 == 0 ? "-" : "+") : "");
+    for (std::uint64_t k = dice() % 9; k > 0; --k) text += static_cast<char>('0' + dice() % 10);
+    if (dice() % 2 == 0) text += '.';
+    for (std::uint64_t k = dice() % 9; k > 0; --k) text += static_cast<char>('0' + dice() % 10);
+    text += ';';
+    if (!NumberReader::CanBegin(static_cast<unsigned char>(text[0]))) continue;
+    NumberReader reader;
+    reader.Begin(static_cast<unsigned char>(text[0]));
+    std::size_t length = 1;
+    while (reader.Take(static_cast<unsigned char>(text[length]))) ++length;
+    const Number expected = reader.value();
+    Number number;
+    const char* const end = text.data() + text.size();
+    const char* const behind = NumberReader::ReadWhole(text.data(), end, number);
+    if (behind == nullptr) continue;
+    ASSERT_EQ(behind, text.data() + length) << text;
+    ASSERT_TRUE(reader.has_digit()) << text;
+    ASSERT_EQ(number.single, expected.single) << text;
+    ASSERT_EQ(std::signbit(number.single), std::signbit(expected.single)) << text;
+    ASSERT_EQ(number.decimal, expected.decimal) << text;
+    ASSERT_EQ(number.magnitude, expected.magnitude) << text;
+    ASSERT_EQ(number.negative, expected.negative) << text;
+    ASSERT_EQ(number.fraction, expected.fraction) << text;
+    ASSERT_EQ(NumberReader::ReadWhole(text.data(), behind, number), nullptr) << text;  // cut off
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1
