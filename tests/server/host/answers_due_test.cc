@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-v1::HostOrderAnswer Answer(std::int64_t number) {
+v1::HostOrderAnswer AnswerTo(std::int64_t number) {
   v1::HostOrderAnswer answer;
   answer.set_number(number);
   answer.mutable_status();
@@ -27,10 +27,10 @@ std::vector<std::int64_t> NumbersOf(const std::vector<v1::HostOrderAnswer>& answ
 // LIVE-3.21: they go out with the write that began behind them, once.
 TEST(AnswersDue, GoOutWithTheirWrite) {
   AnswersDue due;
-  due.Add(Answer(1), false);
-  due.Add(Answer(2), false);
+  due.Add(AnswerTo(1), false);
+  due.Add(AnswerTo(2), false);
   const auto first = due.Begin(0ns);
-  due.Add(Answer(3), false);
+  due.Add(AnswerTo(3), false);
   const auto second = due.Begin(1ns);
   EXPECT_THAT(NumbersOf(first->answers), ElementsAre(1, 2));
   EXPECT_THAT(NumbersOf(second->answers), ElementsAre(3));
@@ -43,9 +43,9 @@ TEST(AnswersDue, GoOutWithTheirWrite) {
 // not answered again.
 TEST(AnswersDue, LateOnesAreToldSo) {
   AnswersDue due;
-  due.Add(Answer(1), false);
+  due.Add(AnswerTo(1), false);
   const auto first = due.Begin(5s);
-  due.Add(Answer(2), false);
+  due.Add(AnswerTo(2), false);
   const auto second = due.Begin(6s);
   EXPECT_THAT(due.TakeLate(6s, 1s), IsEmpty());
   const auto late = due.TakeLate(6s + 1ns, 1s);
@@ -58,8 +58,8 @@ TEST(AnswersDue, LateOnesAreToldSo) {
 // LIVE-5.07: the queue would begin a job again that was refused: it hears when it is on the disk.
 TEST(AnswersDue, ThatOfAJobIsNeverARefusal) {
   AnswersDue due;
-  due.Add(Answer(1), true);
-  due.Add(Answer(2), false);
+  due.Add(AnswerTo(1), true);
+  due.Add(AnswerTo(2), false);
   const auto batch = due.Begin(0ns);
   EXPECT_THAT(NumbersOf(due.TakeLate(60s, 1s)), ElementsAre(2));
   EXPECT_THAT(NumbersOf(batch->of_jobs), ElementsAre(1));
@@ -69,11 +69,11 @@ TEST(AnswersDue, ThatOfAJobIsNeverARefusal) {
 // LIVE-3.06: over another line nobody has asked for them; those of further servers stay.
 TEST(AnswersDue, AreOfTheirLine) {
   AnswersDue due;
-  due.Add(Answer(1), false);
-  due.Add(Answer(-1), false);
+  due.Add(AnswerTo(1), false);
+  due.Add(AnswerTo(-1), false);
   const auto batch = due.Begin(0ns);
-  due.Add(Answer(2), false);
-  due.Add(Answer(-2), false);
+  due.Add(AnswerTo(2), false);
+  due.Add(AnswerTo(-2), false);
   due.ForgetLine();
   EXPECT_THAT(NumbersOf(batch->answers), ElementsAre(-1));
   EXPECT_THAT(NumbersOf(due.Begin(0ns)->answers), ElementsAre(-2));
