@@ -19,18 +19,18 @@ using ToolShape = MillTool::Shape;
 
 // A move in steps of 5 um: centres of cells of 0.1 mm and places of programs are multiples of that,
 // and whether a tool comes over a centre is a question of integers.
-struct StepBounds {
+struct PlaceInSteps {
   std::int64_t x = 0;
   std::int64_t y = 0;
   std::int64_t z = 0;
 };
-MachinePoint PointAt(const StepBounds& s) {
+MachinePoint PointAt(const PlaceInSteps& s) {
   const auto mm = [](std::int64_t steps) { return static_cast<double>(steps) / 200.0; };
   return {mm(s.x), mm(s.y), mm(s.z)};
 }
 
 enum class Side { kBeyond, kOnEdge, kUnder };
-Side SideOf(const StepBounds& from, const StepBounds& to, std::int64_t radius, std::int64_t x,
+Side SideOf(const PlaceInSteps& from, const PlaceInSteps& to, std::int64_t radius, std::int64_t x,
             std::int64_t y) {
   const std::int64_t wx = to.x - from.x, wy = to.y - from.y;
   const std::int64_t along = (x - from.x) * wx + (y - from.y) * wy;
@@ -41,7 +41,7 @@ Side SideOf(const StepBounds& from, const StepBounds& to, std::int64_t radius, s
     distance = across * across;
     reach = radius * radius * length_2;
   } else {
-    const StepBounds& end = along <= 0 ? from : to;
+    const PlaceInSteps& end = along <= 0 ? from : to;
     distance = (x - end.x) * (x - end.x) + (y - end.y) * (y - end.y);
     reach = radius * radius;
   }
@@ -69,9 +69,9 @@ TEST(ToolSweep, FlatToolIsExactOnEveryCentre) {
     ASSERT_EQ(field.columns(), 150u);
     ASSERT_EQ(field.rows(), 100u);
     std::vector<std::int64_t> exact(field.heights().size(), 0);
-    StepBounds from{x(random), y(random), z(random)};
+    PlaceInSteps from{x(random), y(random), z(random)};
     for (int move = 0; move < 12; ++move) {
-      StepBounds to{x(random), y(random), z(random)};
+      PlaceInSteps to{x(random), y(random), z(random)};
       const std::int64_t kind = pick(random);
       if (kind < 2) to.x = from.x;  // along an axis, and straight down
       if (kind == 1 || kind == 2) to.y = from.y;
