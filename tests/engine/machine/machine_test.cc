@@ -259,7 +259,8 @@ TEST_F(MachineTest, WhatIsAskedForLastCounts) {
 }
 
 // live.md 2.10 a9, LIVE-2.05: a door that opens behind a RESUME keeps the run where it comes to
-// rest; a START that the open door makes an alarm ends the run at once, with its own time.
+// rest; the key START that the open door makes an alarm ends the run at once, with its own time.
+// From afar it is refused, and the run stays held.
 TEST_F(MachineTest, ADoorBehindAResume) {
   Load({"COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (1521.02, 2201.2, -350., 0., 0.)\n"});
   Start();
@@ -269,11 +270,22 @@ TEST_F(MachineTest, ADoorBehindAResume) {
   Good(MoveDoor{true});
   GoOn(At(10.0));
   EXPECT_EQ(state(), MachineState::kHeld);
-  Load({"COORD ABSOL\nPATH LIN\nSPEED 20\nWORK 0,0/ON\nMOVE (1521.02, 2201.2, -350., 0., 0.)\n"});
+  const char* cuts =
+      "COORD ABSOL\nPATH LIN\nSPEED 20\nWORK 0,0/ON\nMOVE (1521.02, 2201.2, -350., 0., 0.)\n";
+  Load({cuts});
   Start();
   GoOn(At(3.0));
   Good(MoveDoor{true});
-  Good(ResumeRun{});
+  EXPECT_THAT(Refused(ResumeRun{}), HasSubstr("CELL-E9433"));
+  GoOn(At(10.0));
+  EXPECT_THAT(Refused(ResumeRun{}), HasSubstr("OPT-E7410"));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  Load({cuts});
+  Good(ChangeMode{Mode::kCycle});
+  Good(StartRun{.program = 1, .source = StartSource::kPanel});
+  GoOn(At(3.0));
+  Good(MoveDoor{true});
+  Good(ResumeRun{.source = StartSource::kPanel});
   GoOn(At(33.0));
   EXPECT_EQ(state(), MachineState::kAlarm);
   const RunOver over = Over();
