@@ -25,7 +25,7 @@ CALL_S = 120
 STRANGE = ("", "x", -1, 0, 1, 64, 99, 100, 101, 0.5, 1e300, True, None, [], {}, "machines/none", "machines/mill-1", "machines/optimo-1/programs/1",
            "jobs/1", "a" * 300, "../x", "\u00e9", [1], {"a": "b"}, "99999999999999999999", "MODE", "!")
 LEFT_OUT = ((re.compile(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z"), b"TIME"),
-            (re.compile(rb'"instanceId": ?"[^"]*"'), b'"instanceId":"ID"'),
+            (re.compile(rb'"(instanceId|logId)": ?"[^"]*"'), b'"ID":"ID"'),
             (re.compile(rb"127\.0\.0\.1:\d+"), b"HOST"),
             (re.compile(rb"behaviour-\w+"), b"FOLDER"), (re.compile(rb"id: [^\n]*"), b"id:"), (re.compile(rb"'content-length', '\d+'"), b"length"), (DATE, b"- DATE"))
 
@@ -49,7 +49,7 @@ class Session:
         log.write_text("", encoding="utf-8")
         self.process = subprocess.Popen(
             [self.binaries / "rmlcelld", "--state.directory", self.folder / "state", "--listen.grpc", "127.0.0.1:0", "--listen.web", "127.0.0.1:0",
-             "--workers.count", "1", "--log.file", log, *words], env=self.environment, preexec_fn=self.limits, stdin=subprocess.DEVNULL,
+             "--workers.count", "1", "--machines.hosts", "enabled", "--log.file", log, *words], env=self.environment, preexec_fn=self.limits, stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         until = time.monotonic() + START_S
         while not (ready := re.search(r"web on http://127\.0\.0\.1:(\d+)/", log.read_text(errors="replace"))):
