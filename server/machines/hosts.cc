@@ -369,6 +369,13 @@ void Hosts::Look() {
     if (lost) {
       spdlog::warn("the host of {} is silent", MachineName(host->id));
       Publish(*host, *std::move(lost));
+      // It may have been heard in this moment, and told before this: the newest is told last.
+      std::optional<v1::MachineStatus> heard;
+      {
+        const std::lock_guard lock(host->mutex);
+        if (host->status->state() != v1::MACHINE_STATE_LOST) heard = host->status;
+      }
+      if (heard) Publish(*host, *std::move(heard));
       Changed(host->id);
     }
     if (silent) host->link->Close(NotLive("the host is silent"));
