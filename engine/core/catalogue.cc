@@ -10,7 +10,8 @@
 namespace rmlcell {
 namespace {
 
-constexpr std::array kCatalogue = {
+// A plain array: how many a std::array has clang++ finds out for no more than 256.
+constexpr CatalogueEntry kRows[] = {
 #define RMLCELL_ERROR(family, number, symbol, severity, when, advice, ...) \
   CatalogueEntry{ErrorCode::k##symbol,                                     \
                  ErrorFamily::k##family,                                   \
@@ -22,6 +23,7 @@ constexpr std::array kCatalogue = {
 #include "engine/core/catalogue.def"
 #undef RMLCELL_ERROR
 };
+constexpr std::span<const CatalogueEntry> kCatalogue(kRows);
 
 constexpr bool IsIndexedByCode() {
   for (std::size_t i = 0; i < kCatalogue.size(); ++i) {
