@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -162,7 +161,9 @@ Result<MillTool> ParseTool(std::string_view text) {
   const std::string_view shape = text.substr(0, colon);
   const auto known = std::ranges::find(kShapes, shape, &ShapeName::name);
   if (known == std::end(kShapes)) {
-    const Detail near = Nearest(shape, kShapes | std::views::transform(&ShapeName::name));
+    std::vector<std::string_view> names;
+    for (const ShapeName& one : kShapes) names.push_back(one.name);
+    const Detail near = Nearest(shape, names);
     return wrong(near.empty() ? Detail() : "'" + Told("shape", shape) + "' is no shape" + near, 0);
   }
   const std::size_t named = text.find('=');

@@ -67,7 +67,7 @@ class TargetRaster {
 
 bool TargetRaster::Raise(const StlTriangle& triangle) {
   const auto& [a, b, c] = triangle.corners;
-  const auto edge_to = [&a](const std::array<float, 3>& corner) -> motion::MachineVector {
+  const auto edge_to = [&a = a](const std::array<float, 3>& corner) -> motion::MachineVector {
     return {double{corner[0]} - a[0], double{corner[1]} - a[1], double{corner[2]} - a[2]};
   };
   const motion::MachineVector normal = edge_to(b).cross(edge_to(c));

@@ -189,12 +189,12 @@ void PlotPage::DrawHeader() {
     outcome += ": " + Shortened(judged.reasons.front().said, kReasonPlotted);
   const TextStyle small{.size = 14.0,
                         .colour = judged.verdict == machine::Verdict::kGood ? kFaint : "#b42318"};
-  constexpr std::string_view kCaption = "cycle time";
+  constexpr std::string_view kCycleTime = "cycle time";
   AppendText(body_, {kPageMargin, 64.0},
-             Fitted(outcome, right - kPageMargin - kTextGap - TextWidth(kCaption, small), small),
+             Fitted(outcome, right - kPageMargin - kTextGap - TextWidth(kCycleTime, small), small),
              small);
   AppendText(body_, {right, 40.0}, duration, {.size = 24.0, .anchor = "end", .bold = true});
-  AppendText(body_, {right, 64.0}, kCaption, {.size = 14.0, .colour = kFaint, .anchor = "end"});
+  AppendText(body_, {right, 64.0}, kCycleTime, {.size = 14.0, .colour = kFaint, .anchor = "end"});
 }
 
 void PlotPage::DrawTimeGrid(double top, double bottom) {
