@@ -464,8 +464,11 @@ class RunsTest(LiveTestCase):
                     over.append(event.run_over.job)
         except grpc.RpcError:
             pass
-        self.assertEqual(begun, over)
-        self.assertEqual(len(begun), len(set(begun)))
+        # Of one whose host died before its beginning was on the disk nobody knows whether it moved: it is cut off without.
+        unseen = [name for name in over if name not in set(begun)]
+        self.assertEqual(begun, [name for name in over if name not in unseen])
+        self.assertEqual({self.state(name) for name in unseen} - {"INTERRUPTED"}, set(), unseen)
+        self.assertEqual(len(over), len(set(over)))
 
 
 if __name__ == "__main__":
