@@ -70,10 +70,12 @@ class NumberReader {
   static const char* ReadWhole(const char* at, const char* end, Number& number) {
     const bool negative = *at == '-';
     const char* const first = at + (negative || *at == '+' ? 1 : 0);
-    std::int64_t digits = 0;
-    for (at = first; at != end && IsDigit(*at); ++at) digits = digits * 10 + (*at - '0');
+    std::uint64_t read = 0;  // of longer ones what is left of it: they are read anew
+    for (at = first; at != end && IsDigit(*at); ++at)
+      read = read * 10 + static_cast<unsigned char>(*at - '0');
     const bool ordinary = at != end && at != first && at - first <= kOrdinaryDigits;
     if (!ordinary || *at == '.') return ReadDecimal(first, end, negative, number);
+    const auto digits = static_cast<std::int64_t>(read);
     const double value = static_cast<double>(negative ? -digits : digits);  // never -0
     number = {.single = value, .decimal = value, .magnitude = digits, .negative = negative};
     return at;
