@@ -335,7 +335,8 @@ void RunQueue::EndUnread(const storage::LeasedJob& leased, const Error& why, boo
   End(leased, {.state = storage::JobState::kFailed, .code = why.code, .detail = why.detail});
 }
 
-// As it is by now; nothing: it is not this server's any more, or somebody has cancelled it.
+// As it is by now, with a cancel that came meanwhile; nothing: it is not this server's any more, or
+// the store does not say.
 std::optional<storage::LeasedJob> RunQueue::StillLeased(const storage::LeasedJob& leased) {
   const auto job = needs_.store.GetJob(leased.job.id);
   const auto attempts = needs_.store.ListAttempts(leased.job.id);

@@ -14,7 +14,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <random>
 #include <string>
@@ -23,11 +22,13 @@
 
 #include "engine/simulation/material/height_field.h"
 #include "tests/bench/bare_sweep.h"
+#include "tests/bench/processor_time.h"
 
 namespace {
 
 namespace bench = rmlcell::bench;
 using namespace rmlcell::simulation;  // NOLINT: one program, one subject
+using rmlcell::bench::Median, rmlcell::bench::Seconds;
 using rmlcell::motion::MachinePoint;
 
 constexpr Stock kBlock{.x_max = 200.0, .y_max = 200.0, .bottom = -20.0, .top = 0.0, .cell = 0.1};
@@ -112,19 +113,6 @@ std::vector<Part> PartsOf(const std::vector<Move>& moves, double radius_mm) {
     }
   }
   return parts;
-}
-
-// Of the processor: the machine is shared.
-template <class Work>
-double Seconds(Work work) {
-  const std::clock_t begin = std::clock();
-  work();
-  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-}
-
-double Median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
 }
 
 bool Compare(const std::string& name, const MillTool& tool, const std::vector<Move>& moves,

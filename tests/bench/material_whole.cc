@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <optional>
 #include <random>
 #include <string>
@@ -20,10 +19,12 @@
 #include "engine/simulation/material/stl.h"
 #include "engine/simulation/run/simulate.h"
 #include "tests/bench/bare_sweep.h"
+#include "tests/bench/processor_time.h"
 
 namespace {
 
 using namespace rmlcell;  // NOLINT: one program, one subject
+using bench::Median, bench::Seconds;
 
 constexpr double kCamsimCells = 31.6 * 0.37e9;
 
@@ -52,18 +53,6 @@ std::string Stream() {
       stream += At(x, y, -2.0 - 1.5 * std::sin(0.1 * x) * std::cos(0.1 * y));
   }
   return stream + "PU0,0;!MC0;";
-}
-
-template <class Work>
-double Seconds(Work work) {
-  const std::clock_t begin = std::clock();
-  work();
-  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-}
-
-double Median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
 }
 
 // Cells a second of the straightforward sweep, on the walk of CAD programs with slopes.
