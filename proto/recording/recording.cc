@@ -41,11 +41,13 @@ std::string FileOf(const Recording& recording) {
   return file;
 }
 
-Result<Recording> ReadFile(std::string_view file) {
+namespace {
+
+Result<Recording> Parse(std::string_view file, bool may_be_torn) {
   if (!file.starts_with(kTitle)) return Bad(0, "it does not begin as one");
   const Records read = ReadRecords(file.substr(kTitle.size()));
   const auto end = kTitle.size() + static_cast<std::size_t>(read.end);
-  if (end != file.size()) return Bad(end, "from here on it is damaged or cut off");
+  if (end != file.size() && !may_be_torn) return Bad(end, "from here on it is damaged or cut off");
   if (read.records.empty()) return Bad(end, "it has no head");
   Recording recording;
   const auto parse = [](std::string_view record, auto& message) {
@@ -59,6 +61,25 @@ Result<Recording> ReadFile(std::string_view file) {
   }
   if (recording.entries.empty() || !HasState(recording.entries.front()))
     return Bad(end, "it does not say where the machine stood");
+  return recording;
+}
+
+}  // namespace
+
+Result<Recording> ReadFile(std::string_view file) { return Parse(file, false); }
+
+Result<Recording> ReadFileUpTo(std::string_view file, std::int64_t fence, std::int64_t sequence) {
+  Result<Recording> recording = Parse(file, true);
+  if (!recording) return recording;
+  const bool earlier = recording->entries.front().fence() < fence;
+  const auto last = std::ranges::find_if(recording->entries, [&](const v1::JournalEntry& entry) {
+    return (entry.fence() == fence && entry.sequence() == sequence) ||
+           (earlier && entry.has_run_over());
+  });
+  if (last == recording->entries.end())
+    return Bad(file.size(),
+               "entry " + std::to_string(sequence) + " is not there, up to which it is needed");
+  recording->entries.erase(std::next(last), recording->entries.end());
   return recording;
 }
 

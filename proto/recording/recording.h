@@ -28,6 +28,9 @@ std::string FileOf(const Recording& recording);
 
 // Errors: CellBadText for bytes that are none, with the byte from which on they are not.
 Result<Recording> ReadFile(std::string_view file);
+// The same of a file that a crash may have torn, up to this entry; of an earlier fence, up to the
+// end of its run. Errors: also where that is not there.
+Result<Recording> ReadFileUpTo(std::string_view file, std::int64_t fence, std::int64_t sequence);
 
 // From the newest mark with a state that is not behind this time; all of it where there is none.
 Recording From(Recording recording, SimTime time);

@@ -167,7 +167,10 @@ class Player {
 
   Status Take(const v1::JournalEntry& entry) {
     entry_ = &entry;
-    if (IsOfHost(entry)) return {};
+    if (IsOfHost(entry)) {
+      if (entry.has_run_over() && options_.cut_off) CutOff(entry.run_over().outcome());
+      return {};
+    }
     switch (entry.what_case()) {
       case v1::JournalEntry::kApplied:
         return Apply(entry.applied().input());
@@ -194,6 +197,12 @@ class Player {
         break;
     }
     return {};
+  }
+
+  // It ends where it is, as one that loses its power does.
+  void CutOff(const v1::Outcome& outcome) {
+    if (!machine_->status().open || !machine_->Apply(machine::SwitchPower{.on = false})) return;
+    for (const machine::RunOver& over : machine_->TakeRunsOver()) options_.cut_off(over, outcome);
   }
 
   Status Apply(const v1::AppliedInput& applied) {

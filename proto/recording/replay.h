@@ -34,6 +34,9 @@ struct ReplayOptions {
   // A run stands at its beginning, and is over.
   std::function<void(const machine::Run&)> begun{};
   std::function<void(const machine::RunOver&)> over{};
+  // A run was cut off by the end of its host, with this outcome: it is over there, and nothing
+  // behind it is played. Empty: the machine stands in the middle of it.
+  std::function<void(const machine::RunOver&, const v1::Outcome&)> cut_off{};
   // Where it is, once in a while. False: it ends there.
   std::function<bool(SimTime)> goes_on{};
 };

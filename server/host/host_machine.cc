@@ -55,6 +55,8 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
     entry.set_fence(made.fence);  // known by the number that it has now
   }
   made.untold.clear();
+  host->recorded_ = host->entries_.size();  // by the earlier host
+  if (made.recording) host->recorder_.Recover(*std::exchange(made.recording, {}));
   host->inspect_job_ = made.inspect_job;
   if (made.cut_off) host->cut_off_base_ = made.cut_off_base;
   if (made.open_run) host->TellCutOff(*made.open_run, ErrorCode::kCellHostDied);

@@ -44,6 +44,8 @@ class HostMachine : private machine::RunObserver {
     std::optional<v1::RunBase> cut_off_base{};  // what it began with; absent: not known
     // Requests that an earlier host answered, and did as far as the state has it.
     std::vector<v1::JournalEntry> answered{};
+    // Of the newest run of a job, as an earlier host has it.
+    std::optional<MachineRecorder::OfJob> recording{};
   };
 
   // Errors: those of machine::MakeParameters and machine::Machine::Make.
@@ -101,6 +103,8 @@ class HostMachine : private machine::RunObserver {
   // yet: a machine that moves says so a few times a second at most.
   // `at_once`: it says so now.
   std::vector<v1::JournalEntry> TakeEntries(const HostTime& now, bool at_once = false);
+  // Behind it: what they are in the recording.
+  MachineRecorder::Fresh TakeRecorded() { return recorder_.TakeFresh(); }
   // That this order is about to act: written before it does. LIVE-3.20
   v1::JournalEntry IntentOf(const v1::HostOrder& order, const HostTime& now);
 

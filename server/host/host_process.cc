@@ -390,7 +390,7 @@ class HostProcess {
     auto parked =
         std::make_shared<Parked>(Parked{.order = order, .until = now.steady + kIntentPatience});
     parked_.push_back(parked);
-    writer_->Write({machine_->IntentOf(order, now)}, [this, parked] {
+    writer_->Write({machine_->IntentOf(order, now)}, {}, [this, parked] {
       inbox_.Later([this, parked] {
         const bool begins = !std::exchange(parked->over, true);
         if (begins && further_.IsAskedFor(parked->order.number()))
@@ -411,7 +411,7 @@ class HostProcess {
     auto copy = std::make_shared<const std::vector<v1::JournalEntry>>(entries);
     if (writes_under_way_++ == 0) durable_at_ = now.steady;
     const auto due = answers_due_.Begin(now.steady);
-    writer_->Write(std::move(entries), [this, copy, due] {
+    writer_->Write(std::move(entries), machine_->TakeRecorded(), [this, copy, due] {
       inbox_.Later([this, copy, due] {
         --writes_under_way_;
         durable_at_ = Now().steady;

@@ -41,6 +41,7 @@ class Journal {
   void Stored(std::int64_t fence, std::int64_t sequence);
 
   std::int64_t bytes() const { return bytes_; }
+  const std::string& path() const { return path_; }
 
  private:
   Journal(std::string path, int file, std::int64_t bytes)

@@ -10,7 +10,9 @@ constexpr std::chrono::milliseconds kAgain{100};
 }  // namespace
 
 JournalWriter::JournalWriter(std::unique_ptr<Journal> journal)
-    : journal_(std::move(journal)), thread_([this] { Run(); }) {}
+    : journal_(std::move(journal)),
+      recording_(RecordingFile::PathBeside(journal_->path())),
+      thread_([this] { Run(); }) {}
 
 JournalWriter::~JournalWriter() {
   {
@@ -21,9 +23,11 @@ JournalWriter::~JournalWriter() {
   thread_.join();
 }
 
-void JournalWriter::Write(std::vector<v1::JournalEntry> entries, std::function<void()> written) {
+void JournalWriter::Write(std::vector<v1::JournalEntry> entries, MachineRecorder::Fresh recorded,
+                          std::function<void()> written) {
   {
     const std::lock_guard lock(mutex_);
+    if (recorded.begins || !recorded.bytes.empty()) recorded_.push_back(std::move(recorded));
     waiting_.push_back({.entries = std::move(entries), .written = std::move(written)});
   }
   work_.notify_one();
@@ -64,7 +68,9 @@ void JournalWriter::Run() {
       entries.insert(entries.end(), batch.entries.begin(), batch.entries.end());
       written.push_back(batch.written);
     }
+    const std::deque<MachineRecorder::Fresh> recorded = std::exchange(recorded_, {});
     lock.unlock();
+    for (const MachineRecorder::Fresh& fresh : recorded) recording_.Add(fresh);
     const Status done = journal_->Write(entries);
     if (done) {
       for (const auto& tell : written) tell();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/host/journal.h"
+#include "server/host/recording_file.h"
 
 namespace rmlcell::server {
 
@@ -24,7 +25,9 @@ class JournalWriter {
   JournalWriter& operator=(const JournalWriter&) = delete;
 
   // `written` is called on the thread of this when all of it is on the disk.
-  void Write(std::vector<v1::JournalEntry> entries, std::function<void()> written);
+  // `recorded` is what its recording has of them.
+  void Write(std::vector<v1::JournalEntry> entries, MachineRecorder::Fresh recorded,
+             std::function<void()> written);
   void Stored(std::int64_t fence, std::int64_t sequence);  // as Journal::Stored
 
   // Why the newest try failed; nothing: it did not.
@@ -38,9 +41,11 @@ class JournalWriter {
   void Run();
 
   std::unique_ptr<Journal> journal_;  // of the thread alone
+  RecordingFile recording_;           // likewise
   mutable std::mutex mutex_;
   std::condition_variable work_;
   std::deque<Batch> waiting_;                                    // guarded by mutex_
+  std::deque<MachineRecorder::Fresh> recorded_;                  // guarded by mutex_
   std::optional<std::pair<std::int64_t, std::int64_t>> stored_;  // guarded by mutex_
   std::optional<Error> trouble_;                                 // guarded by mutex_
   bool ending_ = false;                                          // guarded by mutex_

@@ -25,6 +25,8 @@ void MachineRecorder::Begin(v1::MachineRecording head, const machine::MachineMem
     recording::SetMemory(memory, head);
     made.file = recording::BeginFile(head, mark);
   }
+  goes_to_file_ = !made.job.empty() && !made.full;
+  if (goes_to_file_) fresh_ = {.begins = true, .bytes = made.file};
   kept_.push_back(std::move(made));
   if (kept_.size() > kKept) kept_.pop_front();
 }
@@ -33,6 +35,7 @@ void MachineRecorder::Begin(v1::MachineRecording head, const machine::MachineMem
 void MachineRecorder::Add(const v1::JournalEntry& entry) {
   if (kept_.empty() || kept_.back().full || entry.has_answered()) return;
   std::string& file = kept_.back().file;
+  const std::size_t before = file.size();
   if (entry.has_mark() && !entry.mark().clean()) {
     v1::JournalEntry shorter = entry;
     shorter.mutable_mark()->clear_state();
@@ -42,6 +45,13 @@ void MachineRecorder::Add(const v1::JournalEntry& entry) {
     recording::AddEntry(entry, file);
   }
   kept_.back().full = file.size() > kBytesMax;
+  if (goes_to_file_) fresh_.bytes.append(file, before);
+}
+
+void MachineRecorder::Recover(OfJob recorded) {
+  goes_to_file_ = true;
+  fresh_ = {.begins = true, .bytes = recorded.file};
+  kept_.push_back({.job = std::move(recorded.job), .file = std::move(recorded.file)});
 }
 
 Result<v1::HostRecordingPart> MachineRecorder::Part(const v1::HostRecordingRequest& request) const {

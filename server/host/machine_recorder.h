@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "engine/machine/machine.h"
 #include "rmlcell/v1/host.pb.h"
@@ -24,6 +25,22 @@ class MachineRecorder {
              const v1::JournalEntry& mark);
   void Add(const v1::JournalEntry& entry);
 
+  // What an earlier host recorded of the run of a job (recording::FileOf).
+  struct OfJob {
+    std::string job{};  // "jobs/17"
+    std::string file{};
+  };
+  // What comes next belongs to it: how the run ended.
+  void Recover(OfJob recorded);
+
+  // What came since the last call to the recording of the newest run, where it is one of a job: for
+  // a file that outlives the host.
+  struct Fresh {
+    bool begins = false;  // another recording
+    std::string bytes{};
+  };
+  Fresh TakeFresh() { return std::exchange(fresh_, {}); }
+
   // Error: CellNotFound, with why.
   Result<v1::HostRecordingPart> Part(const v1::HostRecordingRequest& request) const;
 
@@ -33,7 +50,9 @@ class MachineRecorder {
     std::string file{};  // empty: it was too large from the beginning
     bool full = false;
   };
-  std::deque<Kept> kept_;  // the newest last
+  std::deque<Kept> kept_;      // the newest last
+  bool goes_to_file_ = false;  // the newest
+  Fresh fresh_{};
 };
 
 }  // namespace rmlcell::server

@@ -3,10 +3,14 @@
 #include <spdlog/spdlog.h>
 
 #include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <utility>
 
 #include "engine/families/families.h"
+#include "proto/recording/recording.h"
 #include "server/base/secret.h"
+#include "server/host/recording_file.h"
 
 namespace rmlcell::server {
 
@@ -61,6 +65,18 @@ HostMachine::Setup SetupOf(Recovered found) {
   return setup;
 }
 
+std::optional<MachineRecorder::OfJob> RecordingOf(const v1::MachineMark& mark,
+                                                  const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return {};
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const auto recording = recording::ReadFileUpTo(bytes, mark.fence(), mark.sequence());
+  if (!recording) spdlog::warn("{}: {}", path, recording.error().detail);
+  if (!recording || (!mark.job().empty() && recording->head.job() != mark.job())) return {};
+  return MachineRecorder::OfJob{.job = recording->head.job(),
+                                .file = recording::FileOf(*recording)};
+}
+
 Result<OpenedMachine> OpenMachine(const v1::HostWelcome& welcome, const HostOptions& options,
                                   const std::string& host, const HostTime& now) {
   const machine::MachineFamily* family = families::FindFamily(welcome.family());
@@ -69,7 +85,10 @@ Result<OpenedMachine> OpenMachine(const v1::HostWelcome& welcome, const HostOpti
   if (!journal) return journal.error();
   if (journal->torn_bytes > 0)
     spdlog::warn("{}: {} bytes at its end were torn", options.journal, journal->torn_bytes);
-  HostMachine::Setup setup = SetupOf(RecoveredFrom(welcome, std::move(journal->entries)));
+  Recovered found = RecoveredFrom(welcome, std::move(journal->entries));
+  auto recording = RecordingOf(found.mark, RecordingFile::PathBeside(options.journal));
+  HostMachine::Setup setup = SetupOf(std::move(found));
+  setup.recording = std::move(recording);
   setup.name = options.machine;
   setup.host = host;
   setup.fence = welcome.fence();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,11 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
 
 // All that a host takes over of it.
 HostMachine::Setup SetupOf(Recovered found);
+
+// What is there of the newest run of a job (RecordingFile), up to this mark. Nothing: not all of
+// it, or the mark is in the middle of another run.
+std::optional<MachineRecorder::OfJob> RecordingOf(const v1::MachineMark& mark,
+                                                  const std::string& path);
 
 // The machine as server and journal have it. Errors: CellUnknownFamily; those of Journal::Open and
 // HostMachine::Make.

@@ -9,6 +9,7 @@
 
 #include "engine/machine/machine_note.h"
 #include "engine/simulation/run/simulate.h"
+#include "engine/simulation/verdict/verdict.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/framing.h"
@@ -106,6 +107,18 @@ class Maker {
     // An emergency stop ends a run of a machine that has no number for it, too.
     outcome_ = over.outcome;
   }
+  // By the end of its host, which is no end of a program.
+  void CutOff(const machine::RunOver& over, const v1::Outcome& outcome) {
+    if (!begun_ || report_) return;
+    End(over);
+    cut_off_ = outcome;
+    report_->outcome.kind = machine::OutcomeKind::kFailed;  // no part is left that could be good
+    report_->outcome.code = outcome.code() == CodeText(ErrorCode::kCellHostStopped)
+                                ? ErrorCode::kCellHostStopped
+                                : ErrorCode::kCellHostDied;
+    report_->judgement = simulation::Judge(*report_);
+    outcome_ = report_->outcome;
+  }
 
   bool over() const { return report_.has_value(); }
 
@@ -116,6 +129,13 @@ class Maker {
     report.mutable_inputs()->insert(depends_on_.begin(), depends_on_.end());
     if (outcome_.code != report_->outcome.code)
       *report.mutable_outcome() = bridge::ToProto(outcome_, report_->judgement);
+    if (cut_off_) {
+      const v1::Verdict verdict = report.outcome().verdict();
+      auto reasons = report.outcome().reasons();
+      *report.mutable_outcome() = *cut_off_;
+      report.mutable_outcome()->set_verdict(verdict);
+      *report.mutable_outcome()->mutable_reasons() = std::move(reasons);
+    }
     if (!toolpath_.Close()) return Error{ErrorCode::kCellFileUnwritable, folder_ + "/toolpath", {}};
     Status written = Write(folder_ + "/report", bridge::StableBytes(report));
     if (written) written = Write(folder_ + "/picture.svg", recorder_->Svg(*report_, {}));
@@ -133,6 +153,7 @@ class Maker {
   bool begun_ = false;
   std::optional<simulation::RunReport> report_;
   machine::Outcome outcome_{};
+  std::optional<v1::Outcome> cut_off_;
 };
 
 Error Differs(const recording::Difference& difference) {
@@ -158,6 +179,9 @@ Status MakeProducts(const std::string& file, const std::string& folder) {
   options.observer = &maker.observer();
   options.begun = [&maker](const machine::Run& run) { maker.Begin(run); };
   options.over = [&maker](const machine::RunOver& over) { maker.End(over); };
+  options.cut_off = [&maker](const machine::RunOver& over, const v1::Outcome& outcome) {
+    maker.CutOff(over, outcome);
+  };
   options.goes_on = [&maker](SimTime) { return !maker.over(); };  // what comes behind it is not its
   const auto replayed = recording::Replay(*recording, options);
   if (!replayed) return replayed.error();

@@ -9,7 +9,7 @@ import unittest
 
 from cell import BIN, cell_pb2, detail_of, eventually, grpc, job_pb2, machine_pb2
 from live import MILL, SQUARE, Live, LiveTestCase, new_id
-from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
+from rmlcell.v1.common_pb2 import MachineState, VERDICT_BAD  # noqa: E402
 from rmlcell.v1.machine_status_pb2 import HoldReason  # noqa: E402
 
 # Some seconds, most of them the way down; much less at a hundred times the speed.
@@ -217,6 +217,18 @@ class RunsTest(LiveTestCase):
         self.assertEqual(outcome.code, "CELL-E9411")
         self.assertGreater(outcome.place.byte_offset, 0)
         self.live.wait("INSPECT")
+        # LIVE-3.40, 3.41: what it did up to there is played again, and its report is no good one.
+        self.assertTrue(eventually(lambda: self.events(name)[-1].HasField("products_made"), 30))
+        report = self.cell.jobs().GetJobReport(job_pb2.GetJobReportRequest(name=name))
+        self.assertEqual(report.outcome.kind, outcome.KIND_INTERRUPTED)
+        self.assertEqual(report.outcome.code, "CELL-E9411")
+        self.assertEqual(report.outcome.place.byte_offset, outcome.place.byte_offset)
+        self.assertEqual(report.outcome.verdict, VERDICT_BAD)
+        self.assertAlmostEqual(report.total.times.cycle_s, outcome.cycle_time_ns * 1e-9)
+        self.assertGreater(report.total.travel_length_mm, 0)
+        played = subprocess.run([os.path.join(BIN, "rmlcell"), "replay", name, "--server", self.cell.address],
+                                capture_output=True, text=True, timeout=60)
+        self.assertEqual((played.returncode, played.stderr), (0, ""))
         time.sleep(0.3)  # no verdict: whatever would begin has begun
         self.assertEqual(self.state(second), "QUEUED")
         self.confirm()
@@ -242,6 +254,7 @@ class RunsTest(LiveTestCase):
         os.kill(self.live.host(), signal.SIGKILL)
         self.becomes(name, "INTERRUPTED")
         self.live.wait("INSPECT")
+        self.assertTrue(eventually(lambda: self.events(name)[-1].HasField("products_made"), 30))
         last = self.job(name)
         refused("CELL-E9420", "DECISION_ABANDON")
         self.live.acquire(ttl={"seconds": 60})
@@ -412,6 +425,15 @@ class RunsTest(LiveTestCase):
         self.becomes(told.strip(), "SUCCEEDED")
         self.assertIn("OFF", rmlcell("machine", "disable", "mill-1")[1])
 
+    # LIVE-3.40: that of a run which was cut off, too.
+    def every_recording_comes_out_the_same(self, names):
+        for name in names:
+            if "recording" not in {one.name for one in self.job(name).artifacts}:
+                continue
+            played = subprocess.run([BIN / "rmlcell", "replay", name, "--server", f"127.0.0.1:{self.cell.grpc_port}"],
+                                    capture_output=True, text=True, timeout=60)
+            self.assertEqual((played.returncode, played.stderr), (0, ""), f"{name} {self.state(name)}: {played.stdout}")
+
     # LIVE-10.04, LIVE-3.35: kill -9 of host, server or both, at random moments: no run is begun twice, each job ends once, as its
     # run did, and one that was never begun is done later.
     def test_crash_rounds(self):
@@ -453,6 +475,7 @@ class RunsTest(LiveTestCase):
             self.assertEqual(kinds.count("ended"), 1, told)
             if self.state(name) == "SUCCEEDED":
                 self.assertEqual(kinds.count("run_begun"), 1, told)
+        self.every_recording_comes_out_the_same(names)
         begun, over = [], []
         stream = self.cell.cell_service().WatchCell(cell_pb2.WatchCellRequest(after_sequence=0), timeout=5)
         try:

@@ -38,7 +38,8 @@ class HostMachineTest : public testing::Test {
                                    .cut_off = cut_off,
                                    .open_run = std::move(open_run),
                                    .inspect_job = inspect_job_,
-                                   .cut_off_base = cut_off_base_},
+                                   .cut_off_base = cut_off_base_,
+                                   .recording = recording_},
                                   now_, [this] { return "token " + std::to_string(++tokens_); });
     ASSERT_TRUE(made) << made.error().detail;
     host_ = *std::move(made);
@@ -132,6 +133,7 @@ class HostMachineTest : public testing::Test {
   v1::MachineOptions options_;
   std::string inspect_job_;
   std::optional<v1::RunBase> cut_off_base_;
+  std::optional<MachineRecorder::OfJob> recording_;
 };
 
 }  // namespace rmlcell::server

@@ -153,7 +153,7 @@ TEST_F(JournalTest, TheWriterTellsWhenItIsWritten) {
   {
     JournalWriter writer(Open().journal);
     for (int i = 1; i <= 20; ++i) {
-      writer.Write({Entry(3, i)}, [&, i] {
+      writer.Write({Entry(3, i)}, {}, [&, i] {
         order.push_back(i);
         told.release();
       });
@@ -161,7 +161,7 @@ TEST_F(JournalTest, TheWriterTellsWhenItIsWritten) {
     for (int i = 0; i < 20; ++i) told.acquire();
     EXPECT_FALSE(writer.trouble());
     EXPECT_EQ(Open().entries.size(), 20U);
-    writer.Write({Entry(3, 21)}, [] {});
+    writer.Write({Entry(3, 21)}, {}, [] {});
   }
   EXPECT_TRUE(std::ranges::is_sorted(order));
   EXPECT_EQ(Open().entries.size(), 21U);
