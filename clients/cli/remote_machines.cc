@@ -63,6 +63,13 @@ std::string StatusText(const v1::MachineStatus& status) {
     row("run", std::to_string(run.run()) + (run.job().empty() ? "" : " of " + run.job()) + ", " +
                    PlaceOf(run) + ", " + Duration(static_cast<double>(run.run_time_ns()) * 1e-9));
   }
+  if (status.has_last_run() && !status.has_run()) {
+    const v1::LastRun& last = status.last_run();
+    row("last run", std::to_string(last.run()) +
+                        (last.job().empty() ? ", program " + std::to_string(last.program())
+                                            : " of " + last.job()) +
+                        ": " + OutcomeLine(last.outcome()));
+  }
   row("override", Fixed(status.override_percent(), 0) + " %");
   if (status.factor() != 0.0 && status.factor() != 1.0)
     row("time", Fixed(status.factor(), 1) + " times as fast");
@@ -264,7 +271,14 @@ int StartMachine(const Remote& remote, const MachineAct& act) {
   } else {
     request.set_selected(true);
   }
-  return ShowWithControl(remote, act, &Service::Stub::StartMachine, std::move(request));
+  return WithControl<v1::StartMachineRequest, v1::MachineStatus>(
+      remote, act, &Service::Stub::StartMachine, std::move(request),
+      [&remote](const v1::MachineStatus& status, const std::string&) {
+        const int shown = ShowOwn(remote, status);
+        const bool failed =
+            !status.has_run() && status.last_run().outcome().kind() == v1::Outcome::KIND_FAILED;
+        return shown == kGood && failed ? kProgramErrors : shown;
+      });
 }
 
 // It stops where control is given back: control is kept until it is over.

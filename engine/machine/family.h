@@ -56,6 +56,7 @@ struct FamilyInfo {
   std::string_view clamps_parameter{};  // height of the clamps above program zero, mm; empty: none
   double override_min_percent = 1.0;    // of the feed rate, where a person sets it at a machine
   double override_max_percent = 100.0;
+  double override_step_percent = 0.0;  // from the least one on; 0: it is set to any
   bool has_repeat = false;  // the mode REPEAT
   // Keys that move its axes by hand; empty: none. In MANUAL alone, as one of the modes that a panel
   // with such keys has, with references; or whatever the mode is.

@@ -57,6 +57,7 @@ struct MachineView {
   const std::map<int, StoredProgram>& programs;  // by slot
   std::vector<ModalValue> modal_values;
   std::set<int> loaded;  // programs of the open run that are on their way
+  bool compiles = false;  // the run that has just begun made an executable
 };
 
 // A modal value that the machine keeps while no run is open, given by hand: "TCP" with six values,

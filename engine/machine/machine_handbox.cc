@@ -9,12 +9,21 @@
 // The machine and the handbox on it: keys become what they ask for. LIVE-7.01
 namespace rmlcell::machine {
 
+namespace {
+
+// An executable takes no time here; whoever looks 20 times a second still sees that it was made.
+constexpr SimTime kCompilingIsShown = std::chrono::milliseconds(250);
+
+}  // namespace
+
 MachineView Machine::View() const {
   MachineView view{.status = status(),
                    .programs = memory_.programs,
                    .modal_values = modal_values(),
                    .loaded = {}};
   if (run_ == nullptr) return view;
+  view.compiles = !note_.by_hand && view.status.run.time < kCompilingIsShown &&
+                  !run_->made_executables().empty();
   view.loaded.insert(note_.program);
   for (const Place& place : run_->stack()) view.loaded.insert(place.program);
   return view;

@@ -45,6 +45,9 @@ class ControlDesk {
   // A lease that has run out by now: it is over, and this says how a run is to be kept.
   std::optional<v1::ControlLease::OnLoss> Expire(const HostTime& now);
 
+  // Number of the newest lease; whoever comes behind a crash goes on with it.
+  std::int64_t number() const { return number_; }
+  void CountFrom(std::int64_t number) { number_ = number; }
   // Of now; nothing: nobody has control.
   const std::optional<v1::ControlLease>& lease() const { return lease_; }
   std::optional<std::chrono::nanoseconds> runs_out() const;

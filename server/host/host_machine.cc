@@ -46,6 +46,7 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
   host->driver_ = std::make_unique<machine::VirtualDriver>(*std::move(machine), now.steady);
   host->now_ = now;
   host->inspect_due_ = made.cut_off;
+  host->desk_.CountFrom(made.control_lease);
   for (const v1::JournalEntry& untold : made.untold) {
     if (untold.has_mark() || untold.has_intent()) continue;
     v1::JournalEntry& entry = host->Add(SimTime(0));
@@ -482,6 +483,7 @@ void HostMachine::Notice() {
     v1::RunOver& told = *Add(run.run.begun + run.lasted).mutable_run_over();
     told = recording::OverOf(run);
     told.set_job(std::exchange(job_, {}));
+    if (!run.run.by_hand) last_run_ = LastRunOf(told);
     desk_.TakeFromQueue();
     TellControl();
     held_for_.reset();
@@ -534,6 +536,7 @@ v1::MachineStatus HostMachine::StatusAt(const HostTime& now) const {
     if (cut_off_base_) *status.mutable_cut_off_at() = cut_off_base_->place();
   }
   if (status.has_run()) status.mutable_run()->set_job(job_);
+  if (last_run_) *status.mutable_last_run() = *last_run_;
   arms_.AddTo(status);
   AddBlockers(status);
   *status.mutable_words() = bridge::StandardWordsOf(status);
@@ -554,22 +557,6 @@ v1::JournalEntry& HostMachine::Add(SimTime at) {
     entry.set_job(job_);
     entry.set_run_time_ns((at - run_begun_).count());
   }
-  return entry;
-}
-
-v1::JournalEntry HostMachine::IntentOf(const v1::HostOrder& order, const HostTime& now) {
-  now_ = now;
-  v1::InputApplied& intent = *Add(machine().time()).mutable_intent();
-  intent.set_fence(setup_.fence);
-  intent.set_virtual_time_ns(machine().time().count());
-  intent.set_caller(order.caller());
-  intent.set_request_id(FieldOf(order, "request_id").value_or(""));
-  if (const auto inputs = InputsOf(order, machine()); inputs && !inputs->empty())
-    *intent.mutable_input() = bridge::AppliedOf(inputs->front());
-  if (const v1::WorkerAssignment* assignment = AssignmentOf(order))
-    intent.mutable_input()->mutable_start()->set_job(assignment->job().name());
-  v1::JournalEntry entry = std::move(entries_.back());
-  entries_.pop_back();
   return entry;
 }
 

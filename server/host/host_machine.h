@@ -44,6 +44,7 @@ class HostMachine : private machine::RunObserver {
     std::optional<v1::RunBase> cut_off_base{};  // what it began with; absent: not known
     // Requests that an earlier host answered, and did as far as the state has it.
     std::vector<v1::JournalEntry> answered{};
+    std::int64_t control_lease = 0;  // number of the newest one
     // Of the newest run of a job, as an earlier host has it.
     std::optional<MachineRecorder::OfJob> recording{};
   };
@@ -212,6 +213,7 @@ class HostMachine : private machine::RunObserver {
   std::int64_t run_told_ = 0;               // the newest whose begin was told
   SimTime run_begun_{0};
   int told_of_run_ = 0;
+  std::optional<v1::LastRun> last_run_{};
   bool inspect_due_ = false;
   bool ended_ = false;  // by EndRun(): of the run that is open nothing more is told
   bool mark_due_ = true;

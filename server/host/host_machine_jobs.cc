@@ -294,6 +294,7 @@ void HostMachine::TellCutOff(const v1::MachineMark& mark, ErrorCode why) {
   *outcome.mutable_place() = mark.place();
   outcome.set_cycle_time_ns(mark.run_time_ns());
   told.set_job(mark.job());
+  last_run_ = LastRunOf(told);
   inspect_job_ = mark.job();
   entries_.back().set_job(mark.job());
   entries_.back().set_run_time_ns(mark.run_time_ns());

@@ -31,6 +31,7 @@ v1::MachineMark HostMachine::MarkNow() const {
   v1::MachineMark mark;
   mark.set_fence(setup_.fence);
   mark.set_virtual_time_ns(status.time.count());
+  mark.set_control_lease(desk_.number());
   if (inspect_due_ || ended_) {
     mark.set_job(inspect_job_);
     if (cut_off_base_) *mark.mutable_base() = *cut_off_base_;
@@ -46,6 +47,22 @@ v1::MachineMark HostMachine::MarkNow() const {
   // What is moved by hand is no run that could be cut off. LIVE-5.20
   mark.set_clean((!status.open || status.open->by_hand) && !inspect_due_ && !ended_);
   return mark;
+}
+
+v1::JournalEntry HostMachine::IntentOf(const v1::HostOrder& order, const HostTime& now) {
+  now_ = now;
+  v1::InputApplied& intent = *Add(machine().time()).mutable_intent();
+  intent.set_fence(setup_.fence);
+  intent.set_virtual_time_ns(machine().time().count());
+  intent.set_caller(order.caller());
+  intent.set_request_id(FieldOf(order, "request_id").value_or(""));
+  if (const auto inputs = InputsOf(order, machine()); inputs && !inputs->empty())
+    *intent.mutable_input() = bridge::AppliedOf(inputs->front());
+  if (const v1::WorkerAssignment* assignment = AssignmentOf(order))
+    intent.mutable_input()->mutable_start()->set_job(assignment->job().name());
+  v1::JournalEntry entry = std::move(entries_.back());
+  entries_.pop_back();
+  return entry;
 }
 
 // From this mark on, with all that it depends on; what stands before `entry` was before it.

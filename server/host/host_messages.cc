@@ -56,6 +56,15 @@ Result<int> ProgramOf(const v1::StartMachineRequest& start, const machine::Machi
 
 }  // namespace
 
+v1::LastRun LastRunOf(const v1::RunOver& over) {
+  v1::LastRun last;
+  last.set_run(over.run());
+  last.set_program(over.program());
+  last.set_job(over.job());
+  *last.mutable_outcome() = over.outcome();
+  return last;
+}
+
 const google::protobuf::Message* RequestOf(const v1::HostOrder& order) {
   if (order.has_by_person()) return &order.by_person();
   if (order.has_continue_job()) {  // a person decided that, or it is the queue's, as run_job
@@ -212,6 +221,18 @@ Result<std::vector<MachineInput>> OfPanelKey(const v1::PressPanelKeyRequest& req
   return Invalid("the panel has no key " + key);
 }
 
+// OPT-4.34. What is out of its range the machine refuses.
+Status CheckOverrideStep(double percent, const machine::FamilyInfo& info) {
+  const double apart = info.override_step_percent;
+  if (apart <= 0.0 || percent < info.override_min_percent || percent > info.override_max_percent ||
+      std::remainder(percent - info.override_min_percent, apart) == 0.0)
+    return {};
+  std::string steps;
+  for (double step = info.override_min_percent; step <= info.override_max_percent; step += apart)
+    steps += (steps.empty() ? "" : ", ") + ShortestText(step);
+  return Invalid("an override of " + ShortestText(percent) + " %: the steps are " + steps);
+}
+
 // Of how it is set: mode, override, alarms, breakpoints, dry run.
 Result<std::optional<MachineInput>> OfSetting(const v1::HostOrder& order,
                                               const machine::Machine& machine) {
@@ -230,8 +251,12 @@ Result<std::optional<MachineInput>> OfSetting(const v1::HostOrder& order,
       if (!mode) return Invalid("mode is none that there is");
       return Input(machine::ChangeMode{.mode = *mode});
     }
-    case v1::HostOrder::kOverride:
-      return Input(machine::ChangeOverride{.percent = order.override().override_percent()});
+    case v1::HostOrder::kOverride: {
+      const double percent = order.override().override_percent();
+      if (auto step = CheckOverrideStep(percent, machine.family().info()); !step)
+        return step.error();
+      return Input(machine::ChangeOverride{.percent = percent});
+    }
     case v1::HostOrder::kAcknowledgeAlarm:
       return Input(machine::Acknowledge{.alarm = order.acknowledge_alarm().alarm_id()});
     case v1::HostOrder::kBreakpoints: {

@@ -13,6 +13,7 @@ namespace rmlcell::server {
 // Without what is the host's: fence, control, factor, times of sending.
 v1::MachineStatus ToProto(const machine::Machine& machine);
 v1::RunState RunStateOf(const machine::Machine& machine);
+v1::LastRun LastRunOf(const v1::RunOver& over);
 
 // What an order does to a machine, one after the other at one instant; nothing for those that ask
 // something or are the host's own. Errors: CellInvalidArgument, CellUnimplemented.

@@ -56,6 +56,7 @@ HostMachine::Setup SetupOf(Recovered found) {
   }
   HostMachine::Setup setup;
   setup.state = found.mark.state();
+  setup.control_lease = found.mark.control_lease();
   setup.untold = std::move(found.untold);
   setup.answered = std::move(found.answered);
   setup.cut_off = began || (found.known && !found.mark.clean());

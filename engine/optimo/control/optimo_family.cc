@@ -42,6 +42,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .default_profile = "standard",
                                        .override_min_percent = 10.0,  // OPT-4.34
                                        .override_max_percent = 145.0,
+                                       .override_step_percent = 15.0,
                                        .has_repeat = true,
                                        .jog_axes = "X Y Z A B C",  // OPT-4.20
                                        .jogs_in_manual = true,

@@ -325,6 +325,7 @@ machine::Panel OptimoHandbox::panel(const MachineView& view) const {
   // The control knows its own numbers only. OPT-4.06
   if (panel.message && Lookup(*panel.message).family == ErrorFamily::kOptimo)
     return show("ERROR " + std::to_string(Lookup(*panel.message).number), false);
+  if (view.compiles) return show("COMPILING", false);  // OPT-4.08
   // A run tells WORK of both. OPT-5.36
   if (shown.instruction == "WORK") {
     const Result<std::optional<Steps>> steps = Steps::Of(view.programs, shown.program);

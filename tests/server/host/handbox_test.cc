@@ -122,6 +122,30 @@ TEST_F(HandboxOverTheLine, StartBeginsTheSelectedProgram) {
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
 }
 
+// LIVE-9.06, OPT-4.34: the override has ten steps, from afar as well; a mill is set to any.
+TEST_F(HandboxOverTheLine, TheOverrideHasTenSteps) {
+  MakeAndTake();
+  const auto set = [this](double percent) {
+    v1::HostOrder order;
+    order.mutable_override()->set_control_token(token_);
+    order.mutable_override()->set_override_percent(percent);
+    return Do(order);
+  };
+  for (int step = 0; step < 10; ++step) EXPECT_FALSE(set(10.0 + 15.0 * step).has_refusal()) << step;
+  for (const double between : {11.0, 50.0, 80.0, 120.0, 144.9}) {
+    const v1::HostOrderAnswer answer = set(between);
+    EXPECT_EQ(answer.refusal().code(), "CELL-E9003") << between;
+    EXPECT_THAT(answer.refusal().message(),
+                testing::HasSubstr("10, 25, 40, 55, 70, 85, 100, 115, 130, 145"));
+  }
+  for (const double beyond : {-5.0, 9.0, 146.0, 160.0})
+    EXPECT_THAT(set(beyond).refusal().message(), testing::HasSubstr("it is 10 to 145 %"));
+  EXPECT_EQ(host_->StatusAt(now_).override_percent(), 145.0);
+  Make();
+  Control();
+  EXPECT_FALSE(set(80.0).has_refusal());
+}
+
 // LIVE-7.10: what the control says is an answer, what nobody can press is none.
 TEST_F(HandboxOverTheLine, TheControlAnswers) {
   MakeAndTake();

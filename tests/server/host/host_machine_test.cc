@@ -94,8 +94,13 @@ TEST_F(HostMachineTest, ARunIsToldFromItsStartToItsEnd) {
   EXPECT_THAT(Told(), ElementsAre());
   Do(Resume());
   EXPECT_EQ(Told().front(), Input(v1::AppliedInput::kResume));
+  EXPECT_FALSE(host_->StatusAt(now_).has_last_run());
   Pass(3min, 50ms);
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  const v1::LastRun last = host_->StatusAt(now_).last_run();
+  EXPECT_EQ(last.run(), 1);
+  EXPECT_EQ(last.program(), 5);
+  EXPECT_EQ(last.outcome().kind(), v1::Outcome::KIND_COMPLETED);
   const std::vector<std::string> told = Told();
   EXPECT_THAT(told, testing::Contains("over KIND_COMPLETED"));
   EXPECT_EQ(told.back(), "clean mark");

@@ -63,6 +63,13 @@ TEST(Recovered, WithoutAJournalTheMarkOfTheStoreCounts) {
   EXPECT_EQ(setup.inspect_job, "jobs/17");
 }
 
+// LIVE-4.01: the numbers of control leases count on.
+TEST(Recovered, ControlLeasesCountOn) {
+  v1::HostWelcome welcome;
+  welcome.mutable_mark()->set_control_lease(41);
+  EXPECT_EQ(SetupOf(RecoveredFrom(welcome, {})).control_lease, 41);
+}
+
 // LIVE-3.32: cut behind each entry, the newest mark before the cut is the state, and what was told
 // behind it is gone.
 TEST(Recovered, PowerThatFailsTakesWhatWasNotSynced) {

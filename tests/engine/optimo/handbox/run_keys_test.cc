@@ -38,6 +38,25 @@ TEST_F(RunKeys, StartBeginsAtStepOne) {
   EXPECT_EQ(Shows(), "P=45S=0001I=DELAY");
 }
 
+// OPT-4.08 OPT-6.34 LIVE-7.07: at the first START after a change, and not at the next one.
+TEST_F(RunKeys, CompilingIsShownAtTheFirstStart) {
+  Have({{3, "DELAY 1\nDELAY 1\n"}}, Mode::kSingle);
+  Keys("JOB 3 ENT START");
+  EXPECT_EQ(Shows(), "COMPILING");
+  GoOn(At(0.3));
+  EXPECT_EQ(Shows(), "P=03S=0001I=DELAY");
+  GoOn(At(2.0));
+  Keys("START");
+  EXPECT_EQ(Shows(), "P=03S=0001I=DELAY");
+  GoOn(At(4.0));
+  Keys("START");
+  GoOn(At(5.0));
+  EXPECT_EQ(Over().outcome.kind, machine::OutcomeKind::kCompleted);
+  Keys("START");
+  GoOn(At(5.1));
+  EXPECT_EQ(Shows(), "P=03S=0001I=DELAY");
+}
+
 // OPT-4.62 OPT-6.31: in SINGLE each START is a step; one that comes too early is ignored.
 TEST_F(RunKeys, SingleAdvancesByAStep) {
   Have({{3, "DELAY 1\nDELAY 1\nDELAY 1\n"}}, Mode::kSingle);
