@@ -72,6 +72,8 @@ void AddActs(MachineVerbs& verbs) {
   MachineAct& given = verbs.given();
   verbs.Add("status", "Show how a machine stands, and what keeps jobs from it", ShowMachine);
   verbs.Add("watch", "Follow a machine", WatchMachine);
+  verbs.Add("log", "Show what happened at a machine, and who did it", ShowMachineLog)
+      ->add_flag("--follow", given.follow, "go on with what comes");
   verbs.Add("enable", "Switch a machine on: it lives from here on", EnableMachine);
   verbs.Add("disable", "Switch a machine off", DisableMachine);
   verbs

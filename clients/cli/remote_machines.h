@@ -33,11 +33,13 @@ struct MachineAct {
   bool accept_displaced = false;  // it goes on from where keys have moved it
   bool restore_process = false;   // a spindle that a person stopped turns again
   std::string job;                // "17": one that a person starts
+  bool follow = false;            // what comes, too
   std::string computer;           // whose host gets the machine; empty: this one
 };
 
 int ShowMachine(const Remote& remote, const MachineAct& act);
 int WatchMachine(const Remote& remote, const MachineAct& act);
+int ShowMachineLog(const Remote& remote, const MachineAct& act);
 int EnableMachine(const Remote& remote, const MachineAct& act);
 int DisableMachine(const Remote& remote, const MachineAct& act);
 // How it lives: told, or changed by NAME=VALUE.

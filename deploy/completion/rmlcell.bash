@@ -90,6 +90,7 @@ _rmlcell_options() {
       "machine emergency-stop" | "machine abort" | "machine read") echo "--help" ;;
     "machine start-at")
       echo "--help --take-over --slot --occurrence --direct --off-until-work-on --stock --tool --untouched --preview --halt --seen --reason" ;;
+    "machine log") echo "--help --follow" ;;
     "machine key") echo "--help --take-over --for --fast" ;;
     "machine start") echo "--help --take-over --job" ;;
     "machine options") echo "--help" ;;

@@ -225,6 +225,10 @@ void HostMachine::LoseControl(v1::ControlLease::OnLoss on_loss, const HostTime& 
   if (on_loss == v1::ControlLease::ON_LOSS_HOLD ||
       machine().state() == machine::MachineState::kJogging)
     Hold(v1::HOLD_REASON_CONTROL, now);
+  // Nobody has it: the run of a job is the queue's again. LIVE-4.05
+  if (job_.empty() || !run_open() || ended_) return;
+  desk_.GiveToQueue(job_, on_loss, now);
+  TellControl();
 }
 
 // All of them or none, each with what is wrong with it.

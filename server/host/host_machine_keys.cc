@@ -324,6 +324,7 @@ void HostMachine::EditAnswered(const v1::HostEditAnswer& answer, const HostTime&
 
 void HostMachine::RefuseEdit(ErrorCode code, const HostTime& now) {
   now_ = now;
+  if (edits_made_ == 0 || !machine().settles()) return;  // nothing is on its way
   static_cast<void>(Apply(machine::RefuseEdit{.code = code}, nullptr));
 }
 

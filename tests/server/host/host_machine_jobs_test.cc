@@ -129,6 +129,34 @@ TEST_F(HostJobsTest, APersonTakesControlOverFromTheQueue) {
   EXPECT_EQ(Do(For("jobs/17", Resume())).status().state(), v1::MACHINE_STATE_RUNNING);
 }
 
+// LIVE-4.05, LIVE-4.02: when he gives it back the run is the queue's again, held as he wanted; and
+// when it runs out.
+TEST_F(HostJobsTest, TheQueueHasControlAgain) {
+  for (const bool runs_out : {false, true}) {
+    Make();
+    Do(Job());
+    v1::HostOrder take;
+    take.mutable_acquire_control()->set_take_over(true);
+    take.mutable_acquire_control()->set_reason("it chatters");
+    const std::string token = Do(take).control().control_token();
+    if (runs_out) {
+      Pass(6s);
+    } else {
+      v1::HostOrder release;
+      release.mutable_release_control()->set_control_token(token);
+      Do(release);
+      Pass(3s);
+    }
+    EXPECT_EQ(Status().control().holder(), "queue/jobs/17") << runs_out;
+    EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
+    EXPECT_EQ(Status().hold_reason(), v1::HOLD_REASON_CONTROL);
+    EXPECT_EQ(Do(For("jobs/17", Resume())).status().state(), v1::MACHINE_STATE_RUNNING);
+    Pass(3min, 50ms);
+    EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+    EXPECT_FALSE(Status().has_control());
+  }
+}
+
 // LIVE-5.02 (a): what keeps it in the queue, told in the status and by the refusal alike.
 TEST_F(HostJobsTest, WhatKeepsAJobFromItsMachine) {
   Make();

@@ -47,7 +47,7 @@ TEST_F(RunKeys, CompilingIsShownAtTheFirstStart) {
   EXPECT_EQ(Shows(), "P=03S=0001I=DELAY");
   GoOn(At(2.0));
   Keys("START");
-  EXPECT_EQ(Shows(), "P=03S=0001I=DELAY");
+  EXPECT_EQ(Shows(), "P=03S=0002I=DELAY");
   GoOn(At(4.0));
   Keys("START");
   GoOn(At(5.0));
