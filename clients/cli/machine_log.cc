@@ -100,7 +100,7 @@ std::string InputText(const v1::AppliedInput& input) {
     case Input::kBreakpoints: {
       std::string text = "breakpoints";
       for (const v1::Breakpoint& one : input.breakpoints().breakpoints())
-        text += " " + StepText(one.at());
+        text += " " + StepText(one.step());
       return text + (input.breakpoints().breakpoints().empty() ? " none" : "");
     }
     case Input::kSimulationUntil:
@@ -174,15 +174,6 @@ std::string MachineText(const v1::MachineEvent& event) {
   }
 }
 
-// Of a RUN job: what its machine does not tell itself.
-std::string JobText(const v1::JobEvent& event) {
-  if (event.has_halted()) return HaltText(event.halted());
-  if (event.has_resumed()) return "goes on" + At(event.resumed().place());
-  if (event.has_message()) return Visible(event.message().text());
-  if (event.has_diagnostic()) return FindingLine(event.diagnostic());
-  return "";
-}
-
 std::string ClockText(const google::protobuf::Timestamp& time) {
   const std::time_t seconds = time.seconds();
   std::tm parts{};
@@ -205,18 +196,14 @@ void Tell(const Remote& remote, const v1::CellEvent& event) {
 }  // namespace
 
 std::string MachineLogLine(const v1::CellEvent& event) {
-  std::string text;
-  std::int64_t virtual_ns = 0;
-  if (event.has_machine()) {
-    text = MachineText(event.machine());
-    virtual_ns = event.machine().virtual_time_ns();
-  } else if (event.has_job()) {
-    text = JobText(event.job());
-  }
+  std::string text = MachineText(event.machine());
   if (text.empty()) return text;
   if (!event.caller().empty()) text = Visible(event.caller()) + ": " + text;
+  const std::int64_t virtual_ns = event.machine().virtual_time_ns();
   return virtual_ns > 0 ? text + "  [" + Seconds(virtual_ns) + "]" : text;
 }
+
+namespace {
 
 // The newest event of the cell, as the status of this machine has it.
 grpc::Status Newest(const Remote& remote, const std::string& machine, std::int64_t& sequence) {
@@ -233,6 +220,8 @@ grpc::Status Newest(const Remote& remote, const std::string& machine, std::int64
   return grpc::Status::OK;
 }
 
+}  // namespace
+
 // What the log of the cell still has, and with `follow` what comes.
 int ShowMachineLog(const Remote& remote, const MachineAct& act) {
   const std::string name = FullName("machines", act.machine);
@@ -247,10 +236,6 @@ int ShowMachineLog(const Remote& remote, const MachineAct& act) {
   v1::Subscription& machine = *request.add_subscriptions();
   machine.set_id("machine");
   machine.mutable_machines()->add_names(name);
-  v1::Subscription& jobs = *request.add_subscriptions();
-  jobs.set_id("jobs");
-  jobs.mutable_jobs()->set_filter("kind = RUN AND machine = " + name);
-  jobs.mutable_jobs()->set_events_only(true);
   const auto stream = stub->WatchCell(&context, request);
   for (v1::WatchCellResponse message; stream->Read(&message);) {
     if (message.has_event()) {

@@ -6,8 +6,8 @@
 
 namespace rmlcell::cli {
 
-// What happened at a machine, as a line of its log without the time: "anna: override 55 %". Empty:
-// nothing that belongs there, such as what a job tells of inputs, which its machine tells, too.
+// What happened at a machine, as a line of its log without the time of day: "anna: override 55 %
+// [12.5 s]". Empty: nothing that belongs there, such as a change of its record.
 std::string MachineLogLine(const v1::CellEvent& event);
 
 }  // namespace rmlcell::cli

@@ -76,13 +76,13 @@ TEST(MachineLog, AHostThatWasLost) {
             "found again at 17.000 s at 1/9; what was shown up to 17.250 s is void");
 }
 
-// The inputs of a job are those of its machine, which tells them.
-TEST(MachineLog, WhatTheMachineTellsIsToldOnce) {
+// Records are listed elsewhere; what a job tells its machine tells, too.
+TEST(MachineLog, WhatDoesNotBelongThere) {
   v1::CellEvent event;
-  event.mutable_job()->mutable_input_applied()->mutable_input()->set_override_percent(55.0);
+  event.mutable_machine()->mutable_changed();
   EXPECT_EQ(MachineLogLine(event), "");
   event.mutable_job()->mutable_halted()->set_message("STOP");
-  EXPECT_EQ(MachineLogLine(event), "halted: STOP");
+  EXPECT_EQ(MachineLogLine(event), "");
 }
 
 }  // namespace
