@@ -127,8 +127,11 @@ std::string InputText(const v1::AppliedInput& input) {
 }
 
 std::string HaltText(const v1::Halted& halted) {
-  return "halted" + At(halted.place()) +
-         (halted.message().empty() ? "" : ": " + Visible(halted.message()));
+  const std::string message = Visible(halted.message());
+  const std::string reason = Short(v1::HoldReason_Name(halted.reason()), "HOLD_REASON_");
+  const bool told = reason == "UNSPECIFIED" || message.find(reason) != std::string::npos;
+  return "halted" + At(halted.place()) + (message.empty() ? "" : ": " + message) +
+         (told ? "" : " (" + reason + ")");
 }
 
 std::string RunText(const v1::RunEvent& event) {
@@ -213,7 +216,10 @@ grpc::Status Newest(const Remote& remote, const std::string& machine, std::int64
   request.set_name(machine);
   const auto stream = stub->WatchMachine(&context, request);
   v1::WatchMachineResponse first;
-  if (!stream->Read(&first)) return stream->Finish();
+  if (!stream->Read(&first)) {
+    const grpc::Status end = stream->Finish();
+    return end.ok() ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "the server tells nothing") : end;
+  }
   sequence = first.sequence();
   context.TryCancel();
   static_cast<void>(stream->Finish());
@@ -242,6 +248,7 @@ int ShowMachineLog(const Remote& remote, const MachineAct& act) {
       Tell(remote, message.event());
       std::fflush(stdout);  // whoever reads it from a pipe wants it now
     }
+    if (message.has_gap()) Complain("events are missing here: the log was cut meanwhile");
     // A status follows what happened before it.
     if (message.sequence() >= newest && !act.follow) {
       context.TryCancel();

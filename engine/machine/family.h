@@ -57,7 +57,7 @@ struct FamilyInfo {
   double override_min_percent = 1.0;    // of the feed rate, where a person sets it at a machine
   double override_max_percent = 100.0;
   double override_step_percent = 0.0;  // from the least one on; 0: it is set to any
-  bool has_repeat = false;  // the mode REPEAT
+  bool has_repeat = false;             // the mode REPEAT
   // Keys that move its axes by hand; empty: none. In MANUAL alone, as one of the modes that a panel
   // with such keys has, with references; or whatever the mode is.
   std::string_view jog_axes{};  // "X Y Z A B C"

@@ -56,7 +56,7 @@ struct MachineView {
   MachineStatus status;
   const std::map<int, StoredProgram>& programs;  // by slot
   std::vector<ModalValue> modal_values;
-  std::set<int> loaded;  // programs of the open run that are on their way
+  std::set<int> loaded;   // programs of the open run that are on their way
   bool compiles = false;  // the run that has just begun made an executable
 };
 

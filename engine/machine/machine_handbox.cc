@@ -11,7 +11,8 @@ namespace rmlcell::machine {
 
 namespace {
 
-// An executable takes no time here; whoever looks 20 times a second still sees that it was made.
+// Of the run. An executable takes no time here; whoever looks 20 times a second still sees that it
+// was made, at the speed of the machine.
 constexpr SimTime kCompilingIsShown = std::chrono::milliseconds(250);
 
 }  // namespace

@@ -43,20 +43,31 @@ std::string FileOf(const Recording& recording) {
 
 namespace {
 
-Result<Recording> Parse(std::string_view file, bool may_be_torn) {
+bool Parse(std::string_view record, google::protobuf::MessageLite& message) {
+  return message.ParseFromArray(record.data(), static_cast<int>(record.size()));
+}
+
+// Title and head; behind them come entries.
+Result<Records> ReadTitled(std::string_view file, v1::MachineRecording& head) {
   if (!file.starts_with(kTitle)) return Bad(0, "it does not begin as one");
-  const Records read = ReadRecords(file.substr(kTitle.size()));
-  const auto end = kTitle.size() + static_cast<std::size_t>(read.end);
-  if (end != file.size() && !may_be_torn) return Bad(end, "from here on it is damaged or cut off");
-  if (read.records.empty()) return Bad(end, "it has no head");
+  Records read = ReadRecords(file.substr(kTitle.size()));
+  read.end += static_cast<std::int64_t>(kTitle.size());
+  if (read.records.empty()) return Bad(static_cast<std::size_t>(read.end), "it has no head");
+  if (!Parse(read.records.front(), head)) return Bad(kTitle.size(), "no head is there");
+  return read;
+}
+
+}  // namespace
+
+Result<Recording> ReadFile(std::string_view file) {
   Recording recording;
-  const auto parse = [](std::string_view record, auto& message) {
-    return message.ParseFromArray(record.data(), static_cast<int>(record.size()));
-  };
-  if (!parse(read.records.front(), recording.head)) return Bad(kTitle.size(), "no head is there");
-  for (std::size_t i = 1; i < read.records.size(); ++i) {
-    if (!parse(read.records[i], recording.entries.emplace_back()))
-      return Bad(static_cast<std::size_t>(read.records[i].data() - file.data()),
+  const Result<Records> read = ReadTitled(file, recording.head);
+  if (!read) return read.error();
+  const auto end = static_cast<std::size_t>(read->end);
+  if (end != file.size()) return Bad(end, "from here on it is damaged or cut off");
+  for (std::size_t i = 1; i < read->records.size(); ++i) {
+    if (!Parse(read->records[i], recording.entries.emplace_back()))
+      return Bad(static_cast<std::size_t>(read->records[i].data() - file.data()),
                  "no entry is there");
   }
   if (recording.entries.empty() || !HasState(recording.entries.front()))
@@ -64,23 +75,25 @@ Result<Recording> Parse(std::string_view file, bool may_be_torn) {
   return recording;
 }
 
-}  // namespace
-
-Result<Recording> ReadFile(std::string_view file) { return Parse(file, false); }
-
-Result<Recording> ReadFileUpTo(std::string_view file, std::int64_t fence, std::int64_t sequence) {
-  Result<Recording> recording = Parse(file, true);
-  if (!recording) return recording;
-  const bool earlier = recording->entries.front().fence() < fence;
-  const auto last = std::ranges::find_if(recording->entries, [&](const v1::JournalEntry& entry) {
-    return (entry.fence() == fence && entry.sequence() == sequence) ||
-           (earlier && entry.has_run_over());
-  });
-  if (last == recording->entries.end())
-    return Bad(file.size(),
-               "entry " + std::to_string(sequence) + " is not there, up to which it is needed");
-  recording->entries.erase(std::next(last), recording->entries.end());
-  return recording;
+Result<Durable> DurableIn(std::string_view file, std::int64_t fence, std::int64_t sequence) {
+  v1::MachineRecording head;
+  const Result<Records> read = ReadTitled(file, head);
+  if (!read) return read.error();
+  const std::pair mark(fence, sequence);
+  Durable found{.job = head.job()};
+  for (std::size_t i = 1; i < read->records.size(); ++i) {
+    const std::string_view record = read->records[i];
+    v1::JournalEntry entry;
+    if (!Parse(record, entry)) break;
+    const std::pair number(entry.fence(), entry.sequence());
+    if (number > mark) break;
+    found.whole = entry.has_run_over() && entry.run_over().job() == head.job();
+    found.bytes = static_cast<std::size_t>(record.data() - file.data()) + record.size();
+    if (found.whole || number == mark) return found;
+  }
+  return Bad(
+      static_cast<std::size_t>(read->end),
+      "it does not reach entry " + std::to_string(sequence) + " of fence " + std::to_string(fence));
 }
 
 Recording From(Recording recording, SimTime time) {

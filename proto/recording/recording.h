@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -28,9 +29,15 @@ std::string FileOf(const Recording& recording);
 
 // Errors: CellBadText for bytes that are none, with the byte from which on they are not.
 Result<Recording> ReadFile(std::string_view file);
-// The same of a file that a crash may have torn, up to this entry; of an earlier fence, up to the
-// end of its run. Errors: also where that is not there.
-Result<Recording> ReadFileUpTo(std::string_view file, std::int64_t fence, std::int64_t sequence);
+// What counts of the file of a job's run whose host is gone, when the machine is taken back to a
+// mark: all up to the end of the run where that is not behind the mark, else up to the mark.
+struct Durable {
+  std::string job{};      // "jobs/17"
+  std::size_t bytes = 0;  // of the file
+  bool whole = false;     // the run is over
+};
+// The file may be torn. Errors: as ReadFile; CellBadText too where neither is there.
+Result<Durable> DurableIn(std::string_view file, std::int64_t fence, std::int64_t sequence);
 
 // From the newest mark with a state that is not behind this time; all of it where there is none.
 Recording From(Recording recording, SimTime time);

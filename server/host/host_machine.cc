@@ -423,6 +423,12 @@ bool HostMachine::MovesInHold() const {
 void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
   now_ = now;
   const std::size_t told = entries_.size();
+  TakeMemory(memory);
+  // An entry does not hold what was stored: a recording begins with it.
+  if (entries_.size() > told && !run_open()) Record(MarkNow(), entries_.size());
+}
+
+void HostMachine::TakeMemory(const v1::HostMemory& memory) {
   const auto apply = [this](const machine::MachineInput& input) {
     static_cast<void>(Apply(input, nullptr));
   };
@@ -455,14 +461,14 @@ void HostMachine::Change(const v1::HostMemory& memory, const HostTime& now) {
   for (const v1::AssignedSchedule& schedule : memory.schedules())
     set.schedules->push_back(bridge::FromProto(schedule));
   if (memory.schedules_changed() && set.schedules != machine().memory().schedules) apply(set);
-  // An entry does not hold what was stored: a recording begins with it.
-  if (entries_.size() > told && !run_open()) Record(MarkNow(), entries_.size());
 }
 
 void HostMachine::Begin(const v1::HostMemory& memory, const HostTime& now) {
+  now_ = now;
   const std::size_t told = entries_.size();
   const std::int64_t sequence = sequence_;
-  Change(memory, now);
+  for (; recorded_ < told; ++recorded_) recorder_.Add(entries_[recorded_]);
+  TakeMemory(memory);
   entries_.resize(told);
   sequence_ = sequence;
   Record(MarkNow(), told);

@@ -168,6 +168,7 @@ class HostMachine : private machine::RunObserver {
   void Mark();
   v1::MachineMark MarkNow() const;
   void Record(const v1::MachineMark& mark, std::size_t entry);
+  void TakeMemory(const v1::HostMemory& memory);
   void AddBlockers(v1::MachineStatus& status) const;
 
   // machine::RunObserver

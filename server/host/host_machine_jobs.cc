@@ -287,7 +287,7 @@ void HostMachine::SettleInspection(const v1::HostOrder& order) {
 void HostMachine::TellCutOff(const v1::MachineMark& mark, ErrorCode why) {
   v1::RunOver& told = *Add(SimTime(mark.virtual_time_ns())).mutable_run_over();
   told.set_run(machine().status().last_run);
-  told.set_program(machine().status().shown.program);
+  told.set_program(mark.base().program());
   v1::Outcome& outcome = *told.mutable_outcome();
   outcome = bridge::ToProto(machine::Outcome{.kind = machine::OutcomeKind::kStopped, .code = why});
   outcome.set_kind(v1::Outcome::KIND_INTERRUPTED);
@@ -309,6 +309,7 @@ void HostMachine::EndRun(const HostTime& now) {
   where.set_run_time_ns(status.run.time.count());
   *where.mutable_place() = bridge::ToProto(status.run.place);
   where.set_job(job_);
+  where.mutable_base()->set_program(status.open->program);
   cut_off_base_ = BaseNow();
   TellCutOff(where, ErrorCode::kCellHostStopped);
   ended_ = true;

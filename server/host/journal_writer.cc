@@ -72,6 +72,7 @@ void JournalWriter::Run() {
     lock.unlock();
     for (const MachineRecorder::Fresh& fresh : recorded) recording_.Add(fresh);
     const Status done = journal_->Write(entries);
+    if (!done) recording_.Drop();  // the journal needs its room
     if (done) {
       for (const auto& tell : written) tell();
     }

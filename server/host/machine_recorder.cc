@@ -33,7 +33,7 @@ void MachineRecorder::Begin(v1::MachineRecording head, const machine::MachineMem
 
 // The state of a run under way is known by its digest: nothing is played from there.
 void MachineRecorder::Add(const v1::JournalEntry& entry) {
-  if (kept_.empty() || kept_.back().full || entry.has_answered()) return;
+  if (kept_.empty() || kept_.back().full || kept_.back().over || entry.has_answered()) return;
   std::string& file = kept_.back().file;
   const std::size_t before = file.size();
   if (entry.has_mark() && !entry.mark().clean()) {
@@ -46,12 +46,14 @@ void MachineRecorder::Add(const v1::JournalEntry& entry) {
   }
   kept_.back().full = file.size() > kBytesMax;
   if (goes_to_file_) fresh_.bytes.append(file, before);
+  // Behind its end the file is as it stays.
+  if (entry.has_run_over() && entry.run_over().job() == kept_.back().job) goes_to_file_ = false;
 }
 
 void MachineRecorder::Recover(OfJob recorded) {
-  goes_to_file_ = true;
-  fresh_ = {.begins = true, .bytes = recorded.file};
-  kept_.push_back({.job = std::move(recorded.job), .file = std::move(recorded.file)});
+  goes_to_file_ = !recorded.whole;
+  kept_.push_back(
+      {.job = std::move(recorded.job), .file = std::move(recorded.file), .over = recorded.whole});
 }
 
 Result<v1::HostRecordingPart> MachineRecorder::Part(const v1::HostRecordingRequest& request) const {

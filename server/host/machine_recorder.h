@@ -25,12 +25,12 @@ class MachineRecorder {
              const v1::JournalEntry& mark);
   void Add(const v1::JournalEntry& entry);
 
-  // What an earlier host recorded of the run of a job (recording::FileOf).
+  // What an earlier host recorded of the run of a job.
   struct OfJob {
     std::string job{};  // "jobs/17"
     std::string file{};
+    bool whole = false;  // else what comes next belongs to it: how the run ended
   };
-  // What comes next belongs to it: how the run ended.
   void Recover(OfJob recorded);
 
   // What came since the last call to the recording of the newest run, where it is one of a job: for
@@ -49,6 +49,7 @@ class MachineRecorder {
     std::string job{};
     std::string file{};  // empty: it was too large from the beginning
     bool full = false;
+    bool over = false;  // nothing belongs to it any more
   };
   std::deque<Kept> kept_;      // the newest last
   bool goes_to_file_ = false;  // the newest

@@ -31,16 +31,27 @@ void RecordingFile::Close() {
   file_ = -1;
 }
 
+void RecordingFile::Open(int how) {
+  Close();
+  file_ = ::open(path_.c_str(), how | O_WRONLY | O_APPEND | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  dropped_ = false;
+}
+
+void RecordingFile::Drop() {
+  Close();
+  ::unlink(path_.c_str());
+  dropped_ = true;
+}
+
 void RecordingFile::Add(const MachineRecorder::Fresh& fresh) {
   if (fresh.begins) {
-    Close();
-    file_ = ::open(path_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, S_IRUSR | S_IWUSR);
-    if (file_ < 0) spdlog::warn("{}: {}", path_, std::strerror(errno));
+    Open(O_CREAT | O_TRUNC);
+  } else if (file_ < 0 && !dropped_) {
+    Open(0);
   }
-  if (file_ < 0 || WriteAll(file_, fresh.bytes)) return;
+  if (dropped_ || (file_ >= 0 && WriteAll(file_, fresh.bytes))) return;
   spdlog::warn("{}: {}; a run that is cut off has no report", path_, std::strerror(errno));
-  Close();
-  ::unlink(path_.c_str());  // half of a recording is none, and its room is needed
+  Drop();
 }
 
 }  // namespace rmlcell::server

@@ -1,18 +1,23 @@
 #include "server/host/recovered.h"
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "engine/families/families.h"
+#include "proto/bridge/files.h"
 #include "proto/recording/recording.h"
 #include "server/base/secret.h"
 #include "server/host/recording_file.h"
 
 namespace rmlcell::server {
+namespace {
+
+constexpr std::int64_t kRecordingFileMax = 2 * MachineRecorder::kBytesMax;  // with a last entry
+
+}  // namespace
 
 Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal) {
   using Number = std::pair<std::int64_t, std::int64_t>;
@@ -66,16 +71,23 @@ HostMachine::Setup SetupOf(Recovered found) {
   return setup;
 }
 
-std::optional<MachineRecorder::OfJob> RecordingOf(const v1::MachineMark& mark,
-                                                  const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return {};
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  const auto recording = recording::ReadFileUpTo(bytes, mark.fence(), mark.sequence());
-  if (!recording) spdlog::warn("{}: {}", path, recording.error().detail);
-  if (!recording || (!mark.job().empty() && recording->head.job() != mark.job())) return {};
-  return MachineRecorder::OfJob{.job = recording->head.job(),
-                                .file = recording::FileOf(*recording)};
+std::optional<MachineRecorder::OfJob> RecoverRecording(const Recovered& found,
+                                                       const std::string& path) {
+  if (::access(path.c_str(), F_OK) != 0) return {};
+  Result<std::string> bytes = bridge::ReadFile(path, kRecordingFileMax);
+  const auto durable = bytes
+                           ? recording::DurableIn(*bytes, found.mark.fence(), found.mark.sequence())
+                           : Result<recording::Durable>(bytes.error());
+  const bool of_another =
+      durable && !durable->whole && (!found.begins.empty() || durable->job != found.mark.job());
+  if (!durable || of_another || ::truncate(path.c_str(), static_cast<off_t>(durable->bytes)) != 0) {
+    spdlog::warn("{}: {}", path, !durable ? durable.error().detail : "it is of another run");
+    ::unlink(path.c_str());  // no later mark is to find it
+    return {};
+  }
+  bytes->resize(durable->bytes);
+  return MachineRecorder::OfJob{
+      .job = durable->job, .file = *std::move(bytes), .whole = durable->whole};
 }
 
 Result<OpenedMachine> OpenMachine(const v1::HostWelcome& welcome, const HostOptions& options,
@@ -87,7 +99,7 @@ Result<OpenedMachine> OpenMachine(const v1::HostWelcome& welcome, const HostOpti
   if (journal->torn_bytes > 0)
     spdlog::warn("{}: {} bytes at its end were torn", options.journal, journal->torn_bytes);
   Recovered found = RecoveredFrom(welcome, std::move(journal->entries));
-  auto recording = RecordingOf(found.mark, RecordingFile::PathBeside(options.journal));
+  auto recording = RecoverRecording(found, RecordingFile::PathBeside(options.journal));
   HostMachine::Setup setup = SetupOf(std::move(found));
   setup.recording = std::move(recording);
   setup.name = options.machine;

@@ -29,10 +29,11 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
 // All that a host takes over of it.
 HostMachine::Setup SetupOf(Recovered found);
 
-// What is there of the newest run of a job (RecordingFile), up to this mark. Nothing: not all of
-// it, or the mark is in the middle of another run.
-std::optional<MachineRecorder::OfJob> RecordingOf(const v1::MachineMark& mark,
-                                                  const std::string& path);
+// What is there of the newest run of a job (RecordingFile), and true of a machine that is taken
+// back to the mark; the file is cut there. Nothing: not all of it, or of another run; then it is
+// gone.
+std::optional<MachineRecorder::OfJob> RecoverRecording(const Recovered& found,
+                                                       const std::string& path);
 
 // The machine as server and journal have it. Errors: CellUnknownFamily; those of Journal::Open and
 // HostMachine::Make.

@@ -206,6 +206,10 @@ Status RunProducts::Store(const storage::JobRecord& job, const std::string& fold
     return Error{ErrorCode::kCellInternal, "no report was made", {}};
   v1::Outcome outcome;
   if (job.outcome) outcome = ToProto(*job.outcome);
+  // A part is not made by a run that did not come to its end.
+  if ((outcome.kind() == v1::Outcome::KIND_COMPLETED) !=
+      (report.outcome().kind() == v1::Outcome::KIND_COMPLETED))
+    return Error{ErrorCode::kCellReplayDiffers, "its recording ends otherwise than the job", {}};
   outcome.set_verdict(report.outcome().verdict());
   *outcome.mutable_reasons() = report.outcome().reasons();
   const storage::JobOutcome judged = OutcomeOf(outcome);

@@ -24,8 +24,6 @@ TEST(MachineLog, SaysWhoDidWhat) {
   EXPECT_EQ(MachineLogLine(event), "anna: override 55 %  [1.500 s]");
   InputOf(event).set_stop(v1::HOLD_REASON_STOP);
   EXPECT_EQ(MachineLogLine(event), "anna: STOP  [1.500 s]");
-  InputOf(event).set_stop(v1::HOLD_REASON_CONTROL);
-  EXPECT_EQ(MachineLogLine(event), "anna: STOP (CONTROL)  [1.500 s]");
   v1::ControlChanged& control = *InputOf(event).mutable_control();
   control.set_kind(v1::ControlChanged::KIND_TAKEN_OVER);
   control.set_from("queue/jobs/1");
@@ -60,6 +58,11 @@ TEST(MachineLog, ARunWithItsEnd) {
   halted.mutable_place()->set_program(45);
   halted.mutable_place()->set_step(7);
   EXPECT_EQ(MachineLogLine(event), "halted at 45/7: breakpoint");
+  halted.set_message("STOP");
+  halted.set_reason(v1::HOLD_REASON_STOP);
+  EXPECT_EQ(MachineLogLine(event), "halted at 45/7: STOP");
+  halted.set_reason(v1::HOLD_REASON_CONTROL);
+  EXPECT_EQ(MachineLogLine(event), "halted at 45/7: STOP (CONTROL)");
 }
 
 TEST(MachineLog, AHostThatWasLost) {

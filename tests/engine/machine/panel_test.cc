@@ -16,14 +16,18 @@ class HandboxDisplay : public MachineTest {
   }
 };
 
-// OPT-4.02 OPT-4.03 OPT-4.04 OPT-3.48: nothing is selected after power-up; a run selects its
-// program, and behind its end the display stands at ENDTASK.
+// OPT-4.02 OPT-4.03 OPT-4.04 OPT-3.48 OPT-4.08: nothing is selected after power-up; a run selects
+// its program, makes its executable, and behind its end the display stands at ENDTASK.
 TEST_F(HandboxDisplay, PointsAtProgramAndStep) {
   Load({});
   EXPECT_EQ(Display(), "P=00S=0000I=********");
   Store(12, "DELAY 1\nDELAY 2\nMOVE (100.,0.,-400.,0.,0.)\nENDTASK\n");
   Start(12);
-  EXPECT_EQ(Display(), "P=12S=0000I=********");
+  EXPECT_EQ(Display(), "COMPILING           ");
+  GoOn(At(0.249));
+  EXPECT_EQ(Display(), "COMPILING           ");
+  GoOn(At(0.25));
+  EXPECT_EQ(Display(), "P=12S=0001I=DELAY   ");
   GoOn(At(2.0));
   EXPECT_EQ(Display(), "P=12S=0002I=DELAY   ");
   GoOn(At(3.001));
@@ -90,7 +94,7 @@ TEST_F(HandboxDisplay, Has20CharactersAndIsKept) {
   Load({"FUNCTION 2\nDELAY 1\nMOVE (9.,0.,-400.,0.,0.)\n", "PATH LIN\nRETURN\n"});
   look();
   Start();
-  for (int i = 1; i < 8; ++i) {
+  for (int i = 2; i < 8; ++i) {  // behind COMPILING, which is of the run
     GoOn(At(0.2 * i));
     look();
   }

@@ -1,9 +1,10 @@
-// The recording of a run that the death of its host cut off (live.md 3, replay).
+// The recording of a run that the end of its host cut off (live.md 3, replay).
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <utility>
 
-#include "proto/recording/records.h"
 #include "proto/recording/replay.h"
 #include "server/host/recording_file.h"
 #include "server/host/recovered.h"
@@ -12,16 +13,17 @@
 namespace rmlcell::server {
 namespace {
 
+namespace fs = std::filesystem;
 using recording::Recording;
 
 class CutOffRecordingTest : public HostMachineTest {
  protected:
   void SetUp() override {
     path_ = testing::TempDir() + "/cut_off." + std::to_string(::getpid());
-    std::filesystem::remove(path_);
+    fs::remove(path_);
     file_.emplace(path_);
   }
-  void TearDown() override { std::filesystem::remove(path_); }
+  void TearDown() override { fs::remove(path_); }
 
   // As a host does it: what is recorded goes to the file.
   std::vector<v1::JournalEntry> Write() {
@@ -41,24 +43,46 @@ class CutOffRecordingTest : public HostMachineTest {
     }
     return WriteMark();
   }
-  void BeginJob(const std::string& name = "jobs/17") {
+  static v1::HostOrder Job(const std::string& text, const std::string& file_name) {
     v1::HostOrder order;
     v1::WorkerAssignment& assignment = *order.mutable_run_job();
-    assignment.mutable_job()->set_name(name);
+    assignment.mutable_job()->set_name("jobs/17");
     assignment.set_main_program(5);
     v1::AssignedProgram& program = *assignment.add_programs();
     program.set_slot(5);
-    program.set_file_name("square.rml");
+    program.set_file_name(file_name);
     program.set_is_source(true);
-    program.set_content(kSquare);
-    ASSERT_FALSE(Do(order).has_refusal());
+    program.set_content(text);
+    return order;
+  }
+  void BeginJob(const std::string& text = kSquare, const std::string& file_name = "square.rml") {
+    const v1::HostOrderAnswer answer = Do(Job(text, file_name));
+    ASSERT_FALSE(answer.has_refusal()) << answer.refusal().message();
+  }
+  void Live() {
+    Make();
+    host_->Begin(memory_, now_);
+  }
+  void LiveAsOptimo() {
+    auto made = HostMachine::Make({.name = "machines/optimo-1",
+                                   .host = "workshop/1",
+                                   .fence = 7,
+                                   .family = families::FindFamily("optimo")},
+                                  now_, [this] { return "token " + std::to_string(++tokens_); });
+    ASSERT_TRUE(made) << made.error().detail;
+    host_ = *std::move(made);
+    host_->Begin({}, now_);
+  }
+  std::optional<MachineRecorder::OfJob> Found(const v1::MachineMark& mark) const {
+    return RecoverRecording({.known = true, .mark = mark}, path_);
   }
   // The next host, which finds this mark, and what of the run is in the file.
   void DiesAt(const v1::MachineMark& mark) {
-    recording_ = RecordingOf(mark, path_);
+    recording_ = Found(mark);
+    file_.emplace(path_);
     inspect_job_ = mark.job();
-    Make(mark.state(), true, mark);
-    host_->Begin({}, now_);
+    Make(mark.state(), !mark.clean(), mark.has_run_time_ns() ? std::optional(mark) : std::nullopt);
+    host_->Begin(memory_, now_);
   }
   std::string Served(const std::string& job) {
     v1::HostOrder order;
@@ -66,15 +90,51 @@ class CutOffRecordingTest : public HostMachineTest {
     const v1::HostOrderAnswer answer = Do(order);
     return answer.has_recording() ? answer.recording().chunk() : answer.refusal().code();
   }
+  std::string FileNow() const {
+    std::ifstream file(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  // Cut at each mark on the way, each is played again without a difference, and is over there.
+  void CutAnywhere(std::chrono::milliseconds time) {
+    std::vector<v1::MachineMark> marks;
+    for (std::chrono::milliseconds gone{0}; gone < time; gone += 230ms) {
+      Pass(230ms, 10ms);
+      marks.push_back(WriteMark());
+    }
+    const std::string whole = FileNow();
+    for (const v1::MachineMark& mark : marks) {
+      ASSERT_EQ(mark.job(), "jobs/17");
+      std::ofstream(path_, std::ios::binary | std::ios::trunc) << whole;
+      const auto found = Found(mark);
+      ASSERT_TRUE(found) << mark.run_time_ns();
+      Recording cut = *recording::ReadFile(found->file);
+      v1::JournalEntry& end = cut.entries.emplace_back();
+      end.set_virtual_time_ns(mark.virtual_time_ns());
+      end.mutable_run_over()->mutable_outcome()->set_kind(v1::Outcome::KIND_INTERRUPTED);
+      int times = 0;
+      recording::ReplayOptions options;
+      options.cut_off = [&](const machine::RunOver& over, const v1::Outcome&) {
+        ++times;
+        EXPECT_EQ(over.lasted, SimTime(mark.run_time_ns()));
+      };
+      const auto played = recording::Replay(cut, options);
+      ASSERT_TRUE(played) << played.error().detail;
+      EXPECT_FALSE(played->difference) << mark.run_time_ns() << played->difference->field;
+      EXPECT_EQ(times, 1) << mark.run_time_ns();
+    }
+  }
 
   std::string path_;
   std::optional<RecordingFile> file_;
+  v1::HostMemory memory_;
 };
 
 // LIVE-3.40, LIVE-3.41: what the run did up to the mark is played again, and it is over there.
 TEST_F(CutOffRecordingTest, ARunThatWasCutOffIsPlayedUpToItsMark) {
-  Make();
-  host_->Begin({}, now_);
+  v1::AssignedProgram& stored = *memory_.add_programs();  // its host is told of it when it begins
+  stored.set_slot(9);
+  stored.set_content(kSquare);
+  Live();
   BeginJob();
   const v1::MachineMark mark = RunFor(7s);
   ASSERT_EQ(mark.job(), "jobs/17");
@@ -85,48 +145,67 @@ TEST_F(CutOffRecordingTest, ARunThatWasCutOffIsPlayedUpToItsMark) {
   EXPECT_EQ(read->head.job(), "jobs/17");
   ASSERT_TRUE(read->entries.back().has_run_over());
   EXPECT_EQ(read->entries.back().virtual_time_ns(), mark.virtual_time_ns());
-  int times = 0;
+  EXPECT_EQ(read->entries.back().run_over().program(), 5);
+  std::vector<std::string> codes;
   recording::ReplayOptions options;
   options.cut_off = [&](const machine::RunOver& over, const v1::Outcome& outcome) {
-    ++times;
+    codes.push_back(outcome.code());
     EXPECT_EQ(over.lasted, SimTime(mark.run_time_ns()));
     EXPECT_EQ(outcome.kind(), v1::Outcome::KIND_INTERRUPTED);
-    EXPECT_EQ(outcome.code(), "CELL-E9411");
   };
   const auto played = recording::Replay(*read, options);
   ASSERT_TRUE(played) << played.error().detail;
   EXPECT_FALSE(played->difference);
-  EXPECT_EQ(times, 1);
+  EXPECT_THAT(codes, testing::ElementsAre("CELL-E9411"));
   EXPECT_EQ(played->until, SimTime(mark.virtual_time_ns()));
   EXPECT_GE(played->marks, 14);  // two a second
 }
 
-// LIVE-3.40: the host that found it dies, too; its marks are behind the end of the run.
-TEST_F(CutOffRecordingTest, ItOutlivesTheNextHost) {
-  Make();
-  host_->Begin({}, now_);
+// LIVE-3.40: wherever it is cut, moving, at rest, held or waiting; a mill and a laser.
+TEST_F(CutOffRecordingTest, WhereverItIsCut) {
+  Live();
   BeginJob();
-  DiesAt(RunFor(3s));
+  CutAnywhere(5s);
+  Do(Stop());
+  CutAnywhere(3s);
+  fs::remove(path_);
+  file_.emplace(path_);
+  LiveAsOptimo();
+  BeginJob(
+      "COORD ABSOL\nPATH PTP\nMOVE (0.,2000.,-400.,0.,0.)\nPATH LIN\nSPEED 10\nWORK 0,0/ON\n"
+      "MOVE (100.,2000.,-400.,0.,0.)/FLY\nMOVE (100.,2100.,-400.,0.,0.)\nWORK 0,0/OFF\n"
+      "OL[16] = ON\nDELAY 300\n",
+      "A.S");
+  CutAnywhere(20s);
+}
+
+// LIVE-3.40: the host that found it dies, too, before and behind its first mark.
+TEST_F(CutOffRecordingTest, ItOutlivesTheNextHost) {
+  Live();
+  BeginJob();
+  const v1::MachineMark mark = RunFor(3s);
+  DiesAt(mark);
+  DiesAt(mark);
   const std::string served = Served("jobs/17");
-  v1::MachineMark mark = WriteMark();
-  mark.set_fence(8);  // the fence of this host, had it been given another one
-  ASSERT_EQ(mark.job(), "jobs/17");
-  mark.set_sequence(mark.sequence() + 1000);
-  recording_.reset();
-  const auto again = RecordingOf(mark, path_);
+  v1::MachineMark next = WriteMark();
+  ASSERT_EQ(next.job(), "jobs/17");
+  EXPECT_EQ(FileNow(), served);
+  next.set_fence(8);  // of this host, had it been given another one
+  const auto again = Found(next);
   ASSERT_TRUE(again);
+  EXPECT_TRUE(again->whole);
   EXPECT_EQ(again->file, served);
 }
 
 // LIVE-5.09: a host that ends in order leaves it with the end of the run.
 TEST_F(CutOffRecordingTest, AnOrderlyEndLeavesIt) {
-  Make();
-  host_->Begin({}, now_);
+  Live();
   BeginJob();
   RunFor(3s);
   host_->EndRun(now_);
-  const auto left = RecordingOf(WriteMark(), path_);
+  const auto left = Found(WriteMark());
   ASSERT_TRUE(left);
+  EXPECT_TRUE(left->whole);
   std::vector<std::string> codes;
   recording::ReplayOptions options;
   options.cut_off = [&](const machine::RunOver&, const v1::Outcome& outcome) {
@@ -137,42 +216,56 @@ TEST_F(CutOffRecordingTest, AnOrderlyEndLeavesIt) {
   EXPECT_THAT(codes, testing::ElementsAre("CELL-E9432"));
 }
 
-// LIVE-3.40: a file that is torn in front of the mark, of another run, or not there is none.
+// LIVE-3.40: what is torn in front of the mark, of another run, or behind what is durable is none,
+// and is gone: no later mark finds it.
 TEST_F(CutOffRecordingTest, HalfOfOneIsNone) {
-  Make();
-  host_->Begin({}, now_);
+  Live();
+  const v1::MachineMark before = WriteMark();
   BeginJob();
   const v1::MachineMark mark = RunFor(3s);
-  ASSERT_TRUE(RecordingOf(mark, path_));
+  const std::string whole = FileNow();
+  const auto none = [&](const Recovered& found, const std::string& bytes) {
+    std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
+    EXPECT_FALSE(RecoverRecording(found, path_));
+    EXPECT_FALSE(fs::exists(path_));
+  };
   v1::MachineMark of_another = mark;
   of_another.set_job("jobs/18");
-  EXPECT_FALSE(RecordingOf(of_another, path_));
+  none({.known = true, .mark = of_another}, whole);
   v1::MachineMark later = mark;
   later.set_sequence(mark.sequence() + 1);
-  EXPECT_FALSE(RecordingOf(later, path_));
-  const auto size = std::filesystem::file_size(path_);
-  std::filesystem::resize_file(path_, size - 1);
-  EXPECT_FALSE(RecordingOf(mark, path_));
-  std::filesystem::remove(path_);
-  EXPECT_FALSE(RecordingOf(mark, path_));
+  none({.known = true, .mark = later}, whole);
+  none({.known = true, .mark = mark}, whole.substr(0, whole.size() - 1));
+  none({.known = true, .mark = before}, whole);
+  none({.known = true, .mark = before, .begins = "jobs/17"}, whole);
+  none({.known = true, .mark = mark}, "no recording");
+  fs::create_directory(path_);
+  EXPECT_FALSE(Found(mark));
+  fs::remove(path_);
+  EXPECT_FALSE(Found(mark));
 }
 
-// A host that ends behind the end of a run has what is needed for its report; the next run begins
-// another file, one by hand does not go there.
-TEST_F(CutOffRecordingTest, TheFileIsOfTheNewestRunOfAJob) {
-  Make();
-  host_->Begin({}, now_);
+// LIVE-3.41: a run whose end is durable has its recording whatever the machine did behind it; the
+// end of another run is not its own.
+TEST_F(CutOffRecordingTest, ARunThatIsOverStaysAsItWas) {
+  Live();
   BeginJob();
-  const v1::MachineMark over = RunFor(120s);
-  ASSERT_TRUE(over.clean());
-  const auto whole = RecordingOf(over, path_);
-  ASSERT_TRUE(whole);
-  EXPECT_EQ(whole->job, "jobs/17");
-  Control();
+  ASSERT_TRUE(RunFor(120s).clean());
+  const std::string whole = FileNow();
+  RunFor(60s);
+  EXPECT_EQ(FileNow(), whole);  // nothing of what comes behind its end
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
   ASSERT_FALSE(Do(Start()).has_refusal());
-  RunFor(1s);
-  EXPECT_FALSE(host_->TakeRecorded().begins);
-  EXPECT_EQ(RecordingOf(over, path_)->file, whole->file);
+  const v1::MachineMark later = RunFor(3s);
+  ASSERT_FALSE(later.clean());
+  ASSERT_EQ(later.job(), "");
+  EXPECT_EQ(FileNow(), whole);
+  DiesAt(later);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
+  const Recording read = *recording::ReadFile(Served("jobs/17"));
+  EXPECT_EQ(read.entries.back().run_over().outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  WriteMark();
+  EXPECT_EQ(recording::ReadFile(FileNow())->entries.size(), read.entries.size());
 }
 
 }  // namespace

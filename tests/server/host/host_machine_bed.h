@@ -39,6 +39,7 @@ class HostMachineTest : public testing::Test {
                                    .open_run = std::move(open_run),
                                    .inspect_job = inspect_job_,
                                    .cut_off_base = cut_off_base_,
+                                   .control_lease = control_lease_,
                                    .recording = recording_},
                                   now_, [this] { return "token " + std::to_string(++tokens_); });
     ASSERT_TRUE(made) << made.error().detail;
@@ -133,6 +134,7 @@ class HostMachineTest : public testing::Test {
   v1::MachineOptions options_;
   std::string inspect_job_;
   std::optional<v1::RunBase> cut_off_base_;
+  std::int64_t control_lease_ = 0;
   std::optional<MachineRecorder::OfJob> recording_;
 };
 

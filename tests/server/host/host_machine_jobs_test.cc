@@ -157,6 +157,22 @@ TEST_F(HostJobsTest, TheQueueHasControlAgain) {
   }
 }
 
+// LIVE-4.02: or it goes on, as he wanted.
+TEST_F(HostJobsTest, TheRunGoesOnWithTheQueue) {
+  Make();
+  Do(Job());
+  v1::HostOrder take;
+  take.mutable_acquire_control()->set_take_over(true);
+  take.mutable_acquire_control()->set_reason("slower");
+  take.mutable_acquire_control()->set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);
+  v1::HostOrder release;
+  release.mutable_release_control()->set_control_token(Do(take).control().control_token());
+  Do(release);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(Status().control().holder(), "queue/jobs/17");
+  EXPECT_EQ(Status().control().on_loss(), v1::ControlLease::ON_LOSS_GO_ON);
+}
+
 // LIVE-5.02 (a): what keeps it in the queue, told in the status and by the refusal alike.
 TEST_F(HostJobsTest, WhatKeepsAJobFromItsMachine) {
   Make();

@@ -106,6 +106,18 @@ TEST_F(HostMachineTest, ARunIsToldFromItsStartToItsEnd) {
   EXPECT_EQ(told.back(), "clean mark");
 }
 
+// LIVE-4.01: control leases are counted on by the next host.
+TEST_F(HostMachineTest, ControlLeasesAreCountedOn) {
+  Make();
+  Control();
+  Told();
+  EXPECT_EQ(mark_.control_lease(), 1);
+  control_lease_ = 41;
+  Make();
+  Control();
+  EXPECT_EQ(host_->StatusAt(now_).control().number(), 42);
+}
+
 // LIVE-3.23: moving, it says every second where it is.
 TEST_F(HostMachineTest, MovingItMarksEverySecond) {
   Make();

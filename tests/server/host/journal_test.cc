@@ -167,5 +167,29 @@ TEST_F(JournalTest, TheWriterTellsWhenItIsWritten) {
   EXPECT_EQ(Open().entries.size(), 21U);
 }
 
+// LIVE-3.40: what is recorded is in its file in front of what is durable, once; where the journal
+// has no room there is none until another run begins.
+TEST_F(JournalTest, TheWriterKeepsTheRecording) {
+  const auto recorded = [this] {
+    std::ifstream file(path_ + ".run", std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  std::counting_semaphore<> told(0);
+  std::string seen;
+  JournalWriter writer(Open().journal);
+  writer.Write({Entry(3, 1)}, {.begins = true, .bytes = "one "}, [&] { told.release(); });
+  writer.Write({Entry(3, 2)}, {.bytes = "two "}, [&] {
+    seen = recorded();
+    told.release();
+  });
+  told.acquire();
+  told.acquire();
+  EXPECT_EQ(seen, "one two ");
+  // More than it may ever have: it is tried again and again.
+  writer.Write(Entries(3, 3, 70, std::size_t{1} << 20), {.bytes = "three "}, [] {});
+  while (!writer.trouble()) std::this_thread::yield();
+  EXPECT_FALSE(std::filesystem::exists(path_ + ".run"));
+}
+
 }  // namespace
 }  // namespace rmlcell::server
