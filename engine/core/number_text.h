@@ -13,6 +13,10 @@ std::string FixedText(double value, int decimals);
 // Up to `decimals` decimals, trailing zeros removed, at least one decimal kept: "12.7", "0.0".
 std::string TrimmedText(double value, int decimals);
 
+// The same behind what stands in `text`, for who writes millions of them.
+void AppendFixed(std::string& text, double value, int decimals);
+void AppendTrimmed(std::string& text, double value, int decimals);
+
 // The shortest text that reads back to the same value: "0.1", "12", "1e-07".
 std::string ShortestText(double value);
 

@@ -129,7 +129,7 @@ PUBLIC = {
                               "situation.h", "system_cycle.h", "telling.h"],
     "engine/optimo/ride": ["ride.h", "travel.h"],
     "engine/optimo/control": ["optimo_family.h"],
-    PATH: ["part_curve.h", "path_extent.h", "polyline.h", "profile_phases.h", "motion_peaks.h"],
+    PATH: ["part_curve.h", "part_shape.h", "path_extent.h", "polyline.h", "profile_phases.h", "motion_peaks.h"],
     REPORT: ["report.h", "report_recorder.h", "finding_list.h", "facts.h", "trace.h", "samples.h"],
     TOOLPATH: ["toolpath_recorder.h", "toolpath_level.h"],
     PICTURE: ["picture.h", "picture_difference.h", "plot.h", "time_envelope.h"],
@@ -166,7 +166,7 @@ PUBLIC = {
 }
 # Public headers that are for some of the rooms only: doors between neighbours.
 ONLY_FOR = {
-    GEOMETRY: {"corner_curve.h": [CORNER], "corner_table.h": [CORNER], "blend_curve.h": [RIDE], "least.h": MOTION,
+    GEOMETRY: {"corner_curve.h": [CORNER], "corner_table.h": [CORNER, PATH], "blend_curve.h": [RIDE], "least.h": MOTION,
                "hole.h": ["engine/optimo/control"], "pose.h": ["engine/machine"]},
     PROFILE: {"speed_passes.h": [PLANNER], "ramp_plan.h": [PLANNER]},
     KINEMATICS: {"axes.h": MOTION, "axis_demand.h": MOTION},

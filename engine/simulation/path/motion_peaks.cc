@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/core/units.h"
+#include "engine/motion/geometry/corner_table.h"
 #include "engine/motion/ride/trajectory.h"
 #include "engine/simulation/path/part_curve.h"
+#include "engine/simulation/path/peak_bounds.h"
 #include "engine/simulation/path/profile_phases.h"
 
 namespace rmlcell::simulation {
@@ -14,6 +17,7 @@ namespace {
 using motion::AxisValues;
 using motion::MachinePoint;
 using motion::MachineVector;
+using motion::PathDerivatives;
 using motion::PathPiece;
 
 constexpr int kSamplesMin = 4;    // of a phase: ends and three between
@@ -110,14 +114,82 @@ class PlainArc {
   double a_;  // rotary axis of a mill
 };
 
-// `look(t, state)` gives the machine at a time of the profile and the state of the path there.
+// What the machine does where a path has this pose and these derivatives by s: as
+// motion::PointAt, but for where it is.
+Instant Passed(const motion::PathPose& pose, const PathDerivatives& first,
+               const PathDerivatives& second, const motion::Head& head,
+               const motion::PathState& state) {
+  const double square = state.speed * state.speed;
+  Instant at;
+  at.tip_velocity = first.point * state.speed;
+  at.tip_acceleration = first.point * state.acceleration + second.point * square;
+  const double a = first.a * state.speed;
+  const double b = first.b * state.speed;
+  const double a_change = first.a * state.acceleration + second.a * square;
+  const double b_change = first.b * state.acceleration + second.b * square;
+  at.axis_velocity = FollowingTip(at.tip_velocity, a, b);
+  at.axis_acceleration = FollowingTip(at.tip_acceleration, a_change, b_change);
+  if (a == 0.0 && b == 0.0 && a_change == 0.0 && b_change == 0.0) return at;
+  const motion::BothAxisRates swing =
+      head.RatesOfBoth(pose.a_rad, pose.b_rad, {{}, a, b}, {{}, a_change, b_change});
+  for (int i = 0; i < 3; ++i) {
+    at.axis_velocity[i] += swing.first[i];
+    at.axis_acceleration[i] += swing.second[i];
+  }
+  return at;
+}
+
+// The curve of a blend, whose derivatives are by its parameter.
+class Bend {
+ public:
+  Bend(const motion::PlannedMotion& motion, PartShape& shape)
+      : path_(motion.path), head_(motion.head) {
+    if (const PathPiece::PlainPart* plain = path_.plain_corner()) {
+      measure_.emplace(plain->corner);
+      if (measure_->known()) {
+        curve_ = path_.curve();
+        per_mm_ = 1.0 / plain->total;
+        return;
+      }
+    }
+    part_ = &shape.curve();
+    curve_ = part_->curve();
+  }
+
+  Instant At(const motion::PathState& state) const {
+    const double u = part_ != nullptr
+                         ? part_->ParameterAt(state.s)
+                         : measure_->ParameterAt((path_.curve_start() + state.s) * per_mm_);
+    const PathDerivatives d = curve_.Derivative(u, 1);
+    const PathDerivatives e = curve_.Derivative(u, 2);
+    // motion::CornerCurve::FirstByLength and SecondByLength
+    const double per_mm = 1.0 / d.point.norm();
+    const double square = 1.0 / d.point.dot(d.point);
+    const double along = d.point.dot(e.point) * square;
+    const PathDerivatives first{d.point * per_mm, d.a * per_mm, d.b * per_mm};
+    const PathDerivatives second{(e.point - d.point * along) * square, (e.a - d.a * along) * square,
+                                 (e.b - d.b * along) * square};
+    const bool turns = d.a != 0.0 || d.b != 0.0 || e.a != 0.0 || e.b != 0.0;
+    return Passed(turns ? curve_.At(u) : path_.from(), first, second, head_, state);
+  }
+
+ private:
+  const PathPiece& path_;
+  const motion::Head& head_;
+  motion::CornerCurve curve_;
+  std::optional<motion::PlainMeasure> measure_;
+  double per_mm_ = 0.0;
+  const PartCurve* part_ = nullptr;  // where the measure is not known
+};
+
+// `look(state)` gives the machine at a state of the path. That is of the phase which is looked at:
+// asked by its time, the end of a phase is the beginning of the next one, where the acceleration
+// may be another.
 template <class Look>
 MotionPeaks Sampled(const motion::PlannedMotion& motion, double from_s, double to_s, Look look) {
   const PathPiece& path = motion.path;
-  const PathPart whole{path, motion.head, 0.0, path.length()};
-  const double turning = PartCurve(whole).turning_rad() / path.length();
+  const double turning = TurningOf({path, motion.head, 0.0, path.length()}) / path.length();
   MotionPeaks peaks;
-  double phase_start = from_s;
   ForEachPhase(motion.speed, from_s, to_s, [&](const PhasePart& part) {
     const double way = part.PlaceAt(part.duration_s) - part.start.s;
     const double wanted = std::ceil(turning * std::abs(way) / kPeakSampleAngle_rad);
@@ -126,42 +198,83 @@ MotionPeaks Sampled(const motion::PlannedMotion& motion, double from_s, double t
     Instant before;
     for (int k = 0; k <= samples; ++k) {
       const double t = part.duration_s * k / samples;
-      const motion::PathState state{part.PlaceAt(t), part.SpeedAt(t), part.AccelerationAt(t)};
-      const Instant here = look(phase_start + t, state);
+      const Instant here = look({part.PlaceAt(t), part.SpeedAt(t), part.AccelerationAt(t)});
       Add(peaks, here);
       if (k > 0) AddJerk(peaks, before, here, part.duration_s / samples);
       before = here;
     }
-    phase_start += part.duration_s;
   });
   return peaks;
 }
 
+Instant Passed(const motion::TrajectoryPoint& point) {
+  return {point.tip_velocity, point.tip_acceleration, point.axis_velocity, point.axis_acceleration};
+}
+
+// Where axes do not follow the tip, or derivatives change along the way.
+MotionPeaks Curved(const motion::PlannedMotion& motion, PartShape& shape, bool five_axis,
+                   double from_s, double to_s) {
+  const PathPiece& path = motion.path;
+  const auto of_machine = [&](Instant at) {
+    if (five_axis) return at;
+    at.axis_velocity = FollowingTip(at.tip_velocity, at.axis_velocity[3], 0.0);
+    at.axis_acceleration = FollowingTip(at.tip_acceleration, at.axis_acceleration[3], 0.0);
+    return at;
+  };
+  const bool blend = path.kind() == PathPiece::Kind::kBlend;
+  if (path.in_axes()) {
+    return Sampled(motion, from_s, to_s, [&](const motion::PathState& state) {
+      if (!blend) return of_machine(Passed(motion::PointAt(path, motion.head, state)));
+      const motion::CornerCurve& curve = shape.curve().curve();
+      const double u = shape.curve().ParameterAt(state.s);
+      const motion::PathPlace place{true, curve.At(u), curve.FirstByLength(u),
+                                    curve.SecondByLength(u)};
+      return of_machine(Passed(motion::PointAt(place, motion.head, state)));
+    });
+  }
+  if (blend) {
+    const Bend bend(motion, shape);
+    return Sampled(motion, from_s, to_s,
+                   [&](const motion::PathState& state) { return of_machine(bend.At(state)); });
+  }
+  return Sampled(motion, from_s, to_s, [&](const motion::PathState& state) {
+    return of_machine(
+        Passed(path.At(state.s), path.First(state.s), path.Second(state.s), motion.head, state));
+  });
+}
+
 }  // namespace
 
-MotionPeaks PeaksOf(const motion::PlannedMotion& motion, bool five_axis, double from_s,
-                    double to_s) {
+void MotionPeaks::Raise(const MotionPeaks& other) {
+  tip_speed = std::max(tip_speed, other.tip_speed);
+  tip_acceleration = std::max(tip_acceleration, other.tip_acceleration);
+  tip_jerk = std::max(tip_jerk, other.tip_jerk);
+  for (std::size_t i = 0; i < motion::kAxisCount; ++i) {
+    axis_speed[i] = std::max(axis_speed[i], other.axis_speed[i]);
+    axis_acceleration[i] = std::max(axis_acceleration[i], other.axis_acceleration[i]);
+    axis_jerk[i] = std::max(axis_jerk[i], other.axis_jerk[i]);
+  }
+}
+
+MotionPeaks PeaksBeyond(const MotionPeaks& known, const motion::PlannedMotion& motion,
+                        PartShape& shape, bool five_axis, double from_s, double to_s) {
+  if (StaysWithin(known, motion, shape, five_axis, from_s, to_s)) return {};
+  return PeaksOf(motion, shape, five_axis, from_s, to_s);
+}
+
+MotionPeaks PeaksOf(const motion::PlannedMotion& motion, PartShape& shape, bool five_axis,
+                    double from_s, double to_s) {
   const PathPiece& path = motion.path;
   const bool curved =
       path.kind() == PathPiece::Kind::kArc || path.kind() == PathPiece::Kind::kBlend;
-  const bool head_turns = five_axis && Turns(path);
+  const bool head_turns = five_axis && shape.turns();
   if (!curved && !head_turns) return Straight(motion, five_axis, from_s, to_s);
   if (path.kind() == PathPiece::Kind::kArc && !head_turns) {
     const PlainArc arc(path);
     return Sampled(motion, from_s, to_s,
-                   [&](double /*t*/, const motion::PathState& state) { return arc.At(state); });
+                   [&](const motion::PathState& state) { return arc.At(state); });
   }
-  const motion::MotionView view(motion);
-  return Sampled(motion, from_s, to_s, [&](double t, const motion::PathState&) {
-    const motion::TrajectoryPoint point = view.At(t);
-    Instant at{point.tip_velocity, point.tip_acceleration, point.axis_velocity,
-               point.axis_acceleration};
-    if (!five_axis) {
-      at.axis_velocity = FollowingTip(at.tip_velocity, point.axis_velocity[3], 0.0);
-      at.axis_acceleration = FollowingTip(at.tip_acceleration, point.axis_acceleration[3], 0.0);
-    }
-    return at;
-  });
+  return Curved(motion, shape, five_axis, from_s, to_s);
 }
 
 }  // namespace rmlcell::simulation

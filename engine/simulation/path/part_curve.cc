@@ -1,5 +1,6 @@
 #include "engine/simulation/path/part_curve.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/units.h"
@@ -24,29 +25,59 @@ MachinePoint TipAt(const PathPiece& path, const motion::Head& head, double s) {
   return motion::TipOn(path, head, path.At(s)).tip;
 }
 
-PartCurve::PartCurve(const PathPart& part) : part_(part), begin_(part.from), end_(part.to) {
+double TurningOf(const PathPart& part) {
   const PathPiece& path = part.path;
-  turning_rad_ = (std::abs(path.a_rate()) + std::abs(path.b_rate())) * (part.to - part.from);
-  if (path.kind() == PathPiece::Kind::kArc)
-    turning_rad_ += (part.to - part.from) / path.radius_mm();
-  if (blend()) {
-    turning_rad_ += kPi;
-    curve_ = path.curve();
-    const motion::CornerLength length(curve_);
-    begin_ = length.ParameterAt(curve_, path.curve_start() + part.from);
-    end_ = length.ParameterAt(curve_, path.curve_start() + part.to);
+  double turning = (std::abs(path.a_rate()) + std::abs(path.b_rate())) * (part.to - part.from);
+  if (path.kind() == PathPiece::Kind::kArc) turning += (part.to - part.from) / path.radius_mm();
+  return path.kind() == PathPiece::Kind::kBlend ? turning + kPi : turning;
+}
+
+CurveMeasure::Look CurveMeasure::LookOf(const motion::CornerCurve& curve) {
+  Look look;
+  const motion::PathPose from = curve.At(0.0);
+  const motion::PathPose to = curve.At(1.0);
+  look[0] = {from.point, from.a_rad, from.b_rad};
+  look[1] = {to.point, to.a_rad, to.b_rad};
+  for (std::size_t order = 1; order <= 3; ++order) {
+    look[2 * order] = curve.Derivative(0.0, static_cast<int>(order));
+    look[2 * order + 1] = curve.Derivative(1.0, static_cast<int>(order));
+  }
+  return look;
+}
+
+const motion::CornerLength& CurveMeasure::Of(const motion::CornerCurve& curve) {
+  const Look look = LookOf(curve);
+  const bool same =
+      length_ && std::equal(look.begin(), look.end(), look_.begin(),
+                            [](const motion::PathDerivatives& x, const motion::PathDerivatives& y) {
+                              return x.point == y.point && x.a == y.a && x.b == y.b;
+                            });
+  if (!same) {
+    look_ = look;
+    length_.emplace(curve);
+  }
+  return *length_;
+}
+
+PartCurve::PartCurve(const PathPart& part, CurveMeasure& measure)
+    : part_(part), begin_(part.from), end_(part.to), turning_rad_(TurningOf(part)) {
+  if (bends()) {
+    curve_ = part.path.curve();
+    length_ = &measure.Of(curve_);
+    begin_ = ParameterAt(part.from);
+    end_ = ParameterAt(part.to);
   }
 }
 
 motion::PathPose PartCurve::Pose(double p) const {
-  return blend() ? curve_.At(p) : part_.path.At(p);
+  return bends() ? curve_.At(p) : part_.path.At(p);
 }
 
 motion::PathDerivatives PartCurve::Rate(double p) const {
   if (part_.path.kind() == PathPiece::Kind::kRotary) {
     return {{}, part_.path.a_rate(), part_.path.b_rate()};
   }
-  return blend() ? curve_.Derivative(p, 1) : part_.path.First(p);
+  return bends() ? curve_.Derivative(p, 1) : part_.path.First(p);
 }
 
 // What the turning of the head adds to the motion of the column over that of the tip.

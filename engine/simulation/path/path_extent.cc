@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
+#include "engine/simulation/path/part_shape.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -27,7 +28,7 @@ constexpr int kBisections = 40;  // halves an interval until the extreme is exac
 constexpr double kStanding = 1e-12;
 
 struct TurningPoints {
-  std::array<double, kTurningPointsMax> p{};
+  std::array<double, kTurningPointsMax> p;  // the first `count`
   std::size_t count = 0;
 
   void Add(double at) {
@@ -66,40 +67,46 @@ TurningPoints ArcTurns(const PathPart& part, std::size_t coordinate) {
   return turning;
 }
 
-// Everything else: sign changes of the derivative, bisected.
-template <class Rate>
-TurningPoints SampledTurns(const PartCurve& curve, Rate rate) {
-  TurningPoints turning;
+// Everything else: sign changes of the derivatives, bisected. `rates(p)` gives N of them; those of
+// which `one_way` says that they keep their sign are not looked at.
+template <std::size_t N, class Rates>
+std::array<TurningPoints, N> SampledTurns(const PartCurve& curve,
+                                          const std::array<bool, N>& one_way, Rates rates) {
+  std::array<TurningPoints, N> turning;
+  if (std::all_of(one_way.begin(), one_way.end(), [](bool keeps) { return keeps; })) return turning;
   const int intervals = Intervals(curve);
   const double step = (curve.end() - curve.begin()) / intervals;
   double p = curve.begin();
-  double here = rate(p);
+  std::array<double, N> here = rates(p);
   for (int k = 1; k <= intervals; ++k) {
     const double next_p = k == intervals ? curve.end() : curve.begin() + step * k;
-    const double next = rate(next_p);
-    if ((here < 0.0 && next > 0.0) || (here > 0.0 && next < 0.0)) {
-      double low = p;
-      double high = next_p;
-      for (int i = 0; i < kBisections; ++i) {
-        const double middle = 0.5 * (low + high);
-        ((rate(middle) > 0.0) == (here > 0.0) ? low : high) = middle;
+    const std::array<double, N> next = rates(next_p);
+    for (std::size_t i = 0; i < N; ++i) {
+      if (one_way[i]) continue;
+      if ((here[i] < 0.0 && next[i] > 0.0) || (here[i] > 0.0 && next[i] < 0.0)) {
+        double low = p;
+        double high = next_p;
+        for (int halving = 0; halving < kBisections; ++halving) {
+          const double middle = 0.5 * (low + high);
+          ((rates(middle)[i] > 0.0) == (here[i] > 0.0) ? low : high) = middle;
+        }
+        turning[i].Add(0.5 * (low + high));
       }
-      turning.Add(0.5 * (low + high));
+      if (next[i] != 0.0) here[i] = next[i];
     }
     p = next_p;
-    if (next != 0.0) here = next;
   }
   return turning;
 }
 
-// From `begin` over the turning points to `end`.
+// From the value at the start over those at the turning points to that at the end.
 template <class Value>
 CoordinateSweep SweepOver(double begin, const TurningPoints& turning, double end, Value value) {
   CoordinateSweep sweep;
-  double last = value(begin);
+  double last = begin;
   sweep.minimum = sweep.maximum = last;
   for (std::size_t k = 0; k <= turning.count; ++k) {
-    const double next = value(k < turning.count ? turning.p[k] : end);
+    const double next = k < turning.count ? value(turning.p[k]) : end;
     const int sign = next > last ? 1 : next < last ? -1 : 0;
     if (sign != 0) {
       if (sweep.first_sign == 0) sweep.first_sign = sign;
@@ -114,21 +121,69 @@ CoordinateSweep SweepOver(double begin, const TurningPoints& turning, double end
   return sweep;
 }
 
+std::array<double, 3> Values(const MachineVector& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
 template <class Position, class Rate>
-PointSweep Sampled(const PartCurve& curve, Position position, Rate rate) {
+PointSweep Sampled(const PartCurve& curve, const std::array<bool, 3>& one_way, Position position,
+                   Rate rate) {
+  const auto turning = SampledTurns<3>(curve, one_way, [&](double p) { return Values(rate(p)); });
+  const MachinePoint begin = position(curve.begin());
+  const MachinePoint end = position(curve.end());
   PointSweep sweep;
   for (std::size_t i = 0; i < 3; ++i) {
-    const TurningPoints turning = SampledTurns(curve, [&](double p) { return rate(p)[i]; });
-    sweep[i] =
-        SweepOver(curve.begin(), turning, curve.end(), [&](double p) { return position(p)[i]; });
+    sweep[i] = SweepOver(begin[i], turning[i], end[i], [&](double p) { return position(p)[i]; });
   }
   return sweep;
 }
 
+// The rate of a blend in Bernstein's form over the part, which it cannot leave: where all five
+// coefficients of an axis have one sign, well beyond rounding, or are nothing at all, the axis goes
+// one way. X Y Z of the pose, A, B.
+std::array<bool, motion::kAxisCount> OneWayOfBlend(const PartCurve& curve) {
+  constexpr double kSureShare = 1e-12;
+  const double whole = curve.end() - curve.begin();
+  std::array<motion::PathDerivatives, 3> begin;
+  std::array<motion::PathDerivatives, 2> end;
+  for (int k = 0; k < 3; ++k) {
+    begin[static_cast<std::size_t>(k)] = curve.Derivative(curve.begin(), k + 1);
+    if (k < 2) end[static_cast<std::size_t>(k)] = curve.Derivative(curve.end(), k + 1);
+  }
+  const auto of = [](const motion::PathDerivatives& d, std::size_t axis) {
+    return axis == 3 ? d.a : axis == 4 ? d.b : d.point[axis];
+  };
+  std::array<bool, motion::kAxisCount> one_way{};
+  for (std::size_t i = 0; i < one_way.size(); ++i) {
+    std::array<double, 5> c;
+    c[0] = of(begin[0], i);
+    c[1] = c[0] + 0.25 * whole * of(begin[1], i);
+    c[2] = 2.0 * c[1] - c[0] + whole * whole / 12.0 * of(begin[2], i);
+    c[4] = of(end[0], i);
+    c[3] = c[4] - 0.25 * whole * of(end[1], i);
+    const auto [least, most] = std::minmax_element(c.begin(), c.end());
+    const double sure = kSureShare * std::max(-*least, *most);
+    one_way[i] = sure == 0.0 || *least > sure || *most < -sure;
+  }
+  return one_way;
+}
+
+// Which of X, Y and Z of the column go one way all along, as far as can be told for less than it
+// takes to look.
+std::array<bool, 3> OneWayOfColumn(PartShape& shape) {
+  std::array<bool, 3> one_way{};
+  const AxisPieces* pieces = shape.pieces();
+  if (pieces == nullptr) return one_way;
+  for (std::size_t i = 0; i < 3; ++i) one_way[i] = pieces->GoesOneWay(static_cast<int>(i));
+  return one_way;
+}
+
 PointSweep ArcSweep(const PathPart& part) {
+  const MachinePoint begin = part.path.At(part.from).point;
+  const MachinePoint end = part.path.At(part.to).point;
   PointSweep sweep;
   for (std::size_t i = 0; i < 3; ++i) {
-    sweep[i] = SweepOver(part.from, ArcTurns(part, i), part.to,
+    sweep[i] = SweepOver(begin[i], ArcTurns(part, i), end[i],
                          [&](double s) { return part.path.At(s).point[i]; });
   }
   return sweep;
@@ -143,63 +198,79 @@ machine::Box BoxOf(const PointSweep& sweep) {
   return box;
 }
 
-PointSweep TipSweep(const PathPart& part) {
+PointSweep TipSweep(PartShape& shape) {
+  const PathPart& part = shape.part();
   const PathPiece::Kind kind = part.path.kind();
   if (kind == PathPiece::Kind::kArc) return ArcSweep(part);
-  const bool bows = part.path.in_axes() && Turns(part.path);
+  const bool bows = part.path.in_axes() && shape.turns();
   if (!bows && kind != PathPiece::Kind::kBlend) {
-    return Straight(TipAt(part.path, part.head, part.from), TipAt(part.path, part.head, part.to));
+    return Straight(shape.tip_from(), shape.tip_to());
   }
-  const PartCurve curve(part);
+  const PartCurve& curve = shape.curve();
+  std::array<bool, 3> one_way{};
+  if (!part.path.in_axes()) {
+    const auto of_pose = OneWayOfBlend(curve);
+    std::copy_n(of_pose.begin(), one_way.size(), one_way.begin());
+  }
   return Sampled(
-      curve, [&](double p) { return curve.Tip(p); }, [&](double p) { return curve.TipRate(p); });
+      curve, one_way, [&](double p) { return curve.Tip(p); },
+      [&](double p) { return curve.TipRate(p); });
 }
 
-PointSweep ColumnSweep(const PathPart& part) {
+PointSweep ColumnSweep(PartShape& shape) {
+  const PathPart& part = shape.part();
   const PathPiece& path = part.path;
   if (path.kind() == PathPiece::Kind::kJoint) {
     return Straight(path.At(part.from).point, path.At(part.to).point);
   }
-  if (!Turns(path) && !path.in_axes()) {  // as the tip goes, somewhere above it
+  if (!path.in_axes() && !shape.turns()) {  // as the tip goes, somewhere above it
     const MachineVector arm = part.head.ColumnOf(path.tip_from()).column - path.from().point;
-    PointSweep sweep = TipSweep(part);
+    PointSweep sweep = shape.tip();
     for (std::size_t i = 0; i < 3; ++i) {
       sweep[i].minimum += arm[i];
       sweep[i].maximum += arm[i];
     }
     return sweep;
   }
-  const PartCurve curve(part);
+  const PartCurve& curve = shape.curve();
   return Sampled(
-      curve, [&](double p) { return curve.Column(p); },
+      curve, OneWayOfColumn(shape), [&](double p) { return curve.Column(p); },
       [&](double p) { return curve.ColumnRate(p); });
 }
 
-std::array<CoordinateSweep, 2> RotarySweep(const PathPart& part) {
-  if (part.path.kind() != PathPiece::Kind::kBlend || !Turns(part.path)) {
+std::array<CoordinateSweep, 2> RotarySweep(PartShape& shape) {
+  const PathPart& part = shape.part();
+  if (part.path.kind() != PathPiece::Kind::kBlend || !shape.turns()) {
     const motion::PathPose from = part.path.At(part.from);
     const motion::PathPose to = part.path.At(part.to);
     return {Straight(from.a_rad, to.a_rad), Straight(from.b_rad, to.b_rad)};
   }
-  const PartCurve curve(part);
-  const TurningPoints a = SampledTurns(curve, [&](double p) { return curve.Rate(p).a; });
-  const TurningPoints b = SampledTurns(curve, [&](double p) { return curve.Rate(p).b; });
-  return {SweepOver(curve.begin(), a, curve.end(), [&](double p) { return curve.Pose(p).a_rad; }),
-          SweepOver(curve.begin(), b, curve.end(), [&](double p) { return curve.Pose(p).b_rad; })};
+  const PartCurve& curve = shape.curve();
+  const auto of_pose = OneWayOfBlend(curve);
+  const auto turning = SampledTurns<2>(curve, {of_pose[3], of_pose[4]}, [&](double p) {
+    const motion::PathDerivatives rate = curve.Rate(p);
+    return std::array<double, 2>{rate.a, rate.b};
+  });
+  const motion::PathPose begin = curve.Pose(curve.begin());
+  const motion::PathPose end = curve.Pose(curve.end());
+  return {
+      SweepOver(begin.a_rad, turning[0], end.a_rad, [&](double p) { return curve.Pose(p).a_rad; }),
+      SweepOver(begin.b_rad, turning[1], end.b_rad, [&](double p) { return curve.Pose(p).b_rad; })};
 }
 
-double TipLength(const PathPart& part) {
+double TipLength(PartShape& shape) {
+  const PathPart& part = shape.part();
   const PathPiece& path = part.path;
   if (path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0)) return 0.0;
   if (!path.in_axes()) return part.to - part.from;
-  if (path.kind() == PathPiece::Kind::kJoint && !Turns(path)) {
+  if (path.kind() == PathPiece::Kind::kJoint && !shape.turns()) {
     return (path.to().point - path.from().point).norm() * (part.to - part.from) / path.length();
   }
   // Gauss-Legendre with five nodes on panels of at most kSampleAngle_rad: error below 1e-12 of the
   // length, unless the tip all but stands somewhere.
   constexpr std::array kNodes = {0.0, 0.5384693101056831, 0.9061798459386640};
   constexpr std::array kWeights = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-  const PartCurve curve(part);
+  const PartCurve& curve = shape.curve();
   const int panels = Intervals(curve);
   const double half = 0.5 * (curve.end() - curve.begin()) / panels;
   double length = 0.0;

@@ -22,14 +22,16 @@ using PointSweep = std::array<CoordinateSweep, 3>;  // x y z
 
 machine::Box BoxOf(const PointSweep& sweep);
 
-// Of the tip, machine frame.
-PointSweep TipSweep(const PathPart& part);
+class PartShape;  // part_shape.h: what these share
+
+// Of the tip, machine frame. Once for each shape: PartShape::tip() keeps it.
+PointSweep TipSweep(PartShape& shape);
 // Of the column of a gantry.
-PointSweep ColumnSweep(const PathPart& part);
+PointSweep ColumnSweep(PartShape& shape);
 // Of A and B.
-std::array<CoordinateSweep, 2> RotarySweep(const PathPart& part);
+std::array<CoordinateSweep, 2> RotarySweep(PartShape& shape);
 
 // Length of the tip's way, mm; to 1e-9 where the tip bows because the head turns (COORD ROBOT).
-double TipLength(const PathPart& part);
+double TipLength(PartShape& shape);
 
 }  // namespace rmlcell::simulation

@@ -51,10 +51,15 @@ PathSketch::PathSketch(const machine::MachineShape& shape, std::size_t elements_
 }
 
 void PathSketch::Add(const machine::MotionDone& done) {
+  PartShape shape({done.motion->path, done.motion->head, done.from, done.travelled});
+  Add(done, shape);
+}
+
+void PathSketch::Add(const machine::MotionDone& done, PartShape& shape) {
   const motion::PathPiece& path = done.motion->path;
-  const PathPart part{path, done.motion->head, done.from, done.travelled};
-  const MachinePoint from = TipAt(path, part.head, part.from);
-  const MachinePoint to = TipAt(path, part.head, part.to);
+  const PathPart& part = shape.part();
+  const MachinePoint from = shape.tip_from();
+  const MachinePoint to = shape.tip_to();
   if (!IsFinite(from) || !IsFinite(to)) return;
   if (!moved_) start_ = from;
   moved_ = true;
@@ -69,7 +74,7 @@ void PathSketch::Add(const machine::MotionDone& done) {
                         .skims = tool_in && !done.in_work};
   skims_ = skims_ || element.skims;
   cuts_ = cuts_ || (element.cuts && !element.skims);
-  const machine::Box box = BoxOf(TipSweep(part));
+  const machine::Box box = BoxOf(shape.tip());
   box_.Add(box);
   if (element.cuts) cut_box_.Add(box);
   if (done.use == machine::MotionUse::kPlunge && done.in_work) {
@@ -89,13 +94,12 @@ void PathSketch::Add(const machine::MotionDone& done) {
                         .sweep_rad = (part.to - part.from) / path.radius_mm()});
     Push(element);
   } else {
-    PushCurve(done, element);
+    PushCurve(shape, element);
   }
 }
 
-void PathSketch::PushCurve(const machine::MotionDone& done, SketchElement element) {
-  const PathPart part{done.motion->path, done.motion->head, done.from, done.travelled};
-  ForEachVertex(part, kCurveTolerance_mm, [&](double /*s*/, const MachinePoint& tip) {
+void PathSketch::PushCurve(PartShape& shape, SketchElement element) {
+  ForEachVertex(shape, kCurveTolerance_mm, [&](double /*s*/, const MachinePoint& tip) {
     element.to = tip;
     if (element.from != element.to) Push(element);
     element.from = tip;

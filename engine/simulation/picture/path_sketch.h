@@ -5,7 +5,7 @@
 
 #include "engine/machine/observer.h"
 #include "engine/machine/shape.h"
-#include "engine/simulation/path/path_extent.h"
+#include "engine/simulation/path/part_shape.h"
 #include "engine/simulation/picture/sketch_element.h"
 
 namespace rmlcell::simulation {
@@ -36,6 +36,8 @@ class PathSketch {
   PathSketch(const machine::MachineShape& shape, std::size_t elements_max);
 
   void Add(const machine::MotionDone& done);
+  // The same for who has the shape of what was ridden.
+  void Add(const machine::MotionDone& done, PartShape& shape);
   void AddPierce();  // where the tip is
   void AddLost(const machine::LostWay& way);
 
@@ -62,7 +64,7 @@ class PathSketch {
 
  private:
   void Push(const SketchElement& element);
-  void PushCurve(const machine::MotionDone& done, SketchElement element);
+  void PushCurve(PartShape& shape, SketchElement element);
   void AddDot(const SketchDot& dot);
   void AddTool(const machine::MotionDone& done);
   void Coarsen();

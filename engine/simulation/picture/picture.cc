@@ -21,7 +21,12 @@ PictureRecorder::PictureRecorder(const machine::MachineShape& shape)
 PictureRecorder::~PictureRecorder() = default;
 
 void PictureRecorder::OnMotion(const machine::MotionDone& done) {
-  state_->sketch.Add(done);
+  PartShape shape({done.motion->path, done.motion->head, done.from, done.travelled});
+  Add(done, shape);
+}
+
+void PictureRecorder::Add(const machine::MotionDone& done, PartShape& shape) {
+  state_->sketch.Add(done, shape);
   state_->stands_since_beam_on = false;
 }
 

@@ -12,6 +12,7 @@
 // picture.
 namespace rmlcell::simulation {
 
+class PartShape;
 class PathSketch;
 
 // Path elements kept while a run goes on: 2 MB, and as much while they are drawn. Longer programs
@@ -37,6 +38,8 @@ class PictureRecorder final : public machine::RunObserver {
   ~PictureRecorder() override;
 
   void OnMotion(const machine::MotionDone& done) override;
+  // The same for who has the shape of what was ridden.
+  void Add(const machine::MotionDone& done, PartShape& shape);
   void OnLost(const machine::LostWay& way) override;
   void OnWait(const machine::Wait& wait) override;
   void OnSignal(const machine::SignalChange& change) override;

@@ -32,19 +32,20 @@ void AxisLog::Add(const Motion& motion) {
   for (std::size_t i = 0; i < kFirstRotary; ++i) AddSweep(axes_[i], motion.xyz[i]);
   AddSweep(axes_[3], motion.ab[0]);
   AddSweep(axes_[4], motion.ab[1]);
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    axes_[i].peak_speed = std::max(axes_[i].peak_speed, motion.peaks.axis_speed[i]);
-    axes_[i].peak_acceleration =
-        std::max(axes_[i].peak_acceleration, motion.peaks.axis_acceleration[i]);
-    axes_[i].peak_jerk = std::max(axes_[i].peak_jerk, motion.peaks.axis_jerk[i]);
-  }
+  peaks_.Raise(motion.peaks);
   tip_path_.Add(motion.tip_path_mm);
-  tip_peak_speed_ = std::max(tip_peak_speed_, motion.peaks.tip_speed);
-  tip_peak_acceleration_ = std::max(tip_peak_acceleration_, motion.peaks.tip_acceleration);
-  tip_peak_jerk_ = std::max(tip_peak_jerk_, motion.peaks.tip_jerk);
   if (!motion.tip_limited) return;
   limited_peak_speed_ = std::max(limited_peak_speed_, motion.peaks.tip_speed);
   limited_peak_acceleration_ = std::max(limited_peak_acceleration_, motion.peaks.tip_acceleration);
+}
+
+MotionPeaks AxisLog::Known(bool tip_limited) const {
+  MotionPeaks known = peaks_;
+  if (tip_limited) {
+    known.tip_speed = limited_peak_speed_;
+    known.tip_acceleration = limited_peak_acceleration_;
+  }
+  return known;
 }
 
 void AxisLog::WriteTo(ScopeFigures& scope) const {
@@ -58,9 +59,9 @@ void AxisLog::WriteTo(ScopeFigures& scope) const {
                         .travel = axis.travel.value(),
                         .minimum = axis.minimum,
                         .maximum = axis.maximum,
-                        .peak_speed = axis.peak_speed,
-                        .peak_acceleration = axis.peak_acceleration,
-                        .peak_jerk = axis.peak_jerk,
+                        .peak_speed = peaks_.axis_speed[i],
+                        .peak_acceleration = peaks_.axis_acceleration[i],
+                        .peak_jerk = peaks_.axis_jerk[i],
                         .reversals = axis.reversals};
     if (shape_.limits) {
       figures.speed_limit = shape_.limits->axes.speed[i];
@@ -71,12 +72,12 @@ void AxisLog::WriteTo(ScopeFigures& scope) const {
   }
   scope.tip_figures = {.name = "tip",
                        .travel = tip_path_.value(),
-                       .peak_speed = tip_peak_speed_,
-                       .peak_acceleration = tip_peak_acceleration_,
-                       .peak_jerk = tip_peak_jerk_};
+                       .peak_speed = peaks_.tip_speed,
+                       .peak_acceleration = peaks_.tip_acceleration,
+                       .peak_jerk = peaks_.tip_jerk};
   if (shape_.limits) {
-    const bool speed_limited = tip_peak_speed_ <= limited_peak_speed_;
-    const bool acceleration_limited = tip_peak_acceleration_ <= limited_peak_acceleration_;
+    const bool speed_limited = peaks_.tip_speed <= limited_peak_speed_;
+    const bool acceleration_limited = peaks_.tip_acceleration <= limited_peak_acceleration_;
     scope.tip_figures.speed_limit = speed_limited ? shape_.limits->tip_speed_mm_s : 0.0;
     scope.tip_figures.acceleration_limit =
         acceleration_limited ? shape_.limits->tip_acceleration_mm_s2 : 0.0;

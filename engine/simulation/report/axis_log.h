@@ -29,6 +29,10 @@ class AxisLog {
   };
   void Add(const Motion& motion);
 
+  // The highest of what was added; a motion that stays within them need not be looked at for its
+  // own. Those of the tip are the ones that `tip_limited` motions have reached, if that is one.
+  MotionPeaks Known(bool tip_limited) const;
+
   // Writes axes, tip_figures and the range of the axes. A rotary axis that a mill never turned is
   // left out.
   void WriteTo(ScopeFigures& figures) const;
@@ -41,18 +45,13 @@ class AxisLog {
     motion::LongSum travel;
     int last_sign = 0;
     std::uint64_t reversals = 0;
-    double peak_speed = 0.0;
-    double peak_acceleration = 0.0;
-    double peak_jerk = 0.0;
   };
   void AddSweep(Axis& axis, const CoordinateSweep& sweep);
 
   machine::MachineShape shape_;
   std::array<Axis, motion::kAxisCount> axes_{};
   motion::LongSum tip_path_;
-  double tip_peak_speed_ = 0.0;
-  double tip_peak_acceleration_ = 0.0;
-  double tip_peak_jerk_ = 0.0;
+  MotionPeaks peaks_;
   // The same of motions in which the tip has limits: a peak above them has no share of one.
   double limited_peak_speed_ = 0.0;
   double limited_peak_acceleration_ = 0.0;

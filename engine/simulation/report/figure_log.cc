@@ -13,6 +13,12 @@ void FigureLog::Add(const Motion& motion) {
   if (motion.cuts) cut_.Add(motion.tip);
 }
 
+void FigureLog::TakeFigures(const FigureLog& other) {
+  const BeamTimes beam = beam_;
+  *this = other;
+  beam_ = beam;
+}
+
 void FigureLog::WriteTo(ScopeFigures& figures, SimTime beam_on) const {
   figures.beam = beam_.Histogram(beam_on);
   figures.corners = corners_.corners();

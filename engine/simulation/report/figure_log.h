@@ -23,9 +23,14 @@ class FigureLog {
     const std::optional<SlowMove>& slow;
   };
   void Add(const Motion& motion);
+  MotionPeaks Known(bool tip_limited) const { return axes_.Known(tip_limited); }
   void AddProgrammed(const motion::ProgramPoint& point) { programmed_.Add(point); }
 
+  // All but the times of the beam.
+  void TakeFigures(const FigureLog& other);
+
   BeamTimes& beam() { return beam_; }
+  const BeamTimes& beam() const { return beam_; }
 
   // Everything but the work, which is its own table. `beam_on` is the sum of the beam's histograms.
   void WriteTo(ScopeFigures& figures, SimTime beam_on) const;

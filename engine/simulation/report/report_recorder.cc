@@ -108,12 +108,15 @@ void ReportRecorder::OnStep(SimTime at, const machine::Place& place,
   time_.Leave(at, Now());
   place_ = place;
   contours_.Step();
-  WorkFigures work;
-  work.steps = 1;
-  work_.Add(place, work);
+  work_.AddStep(place);
 }
 
 void ReportRecorder::OnMotion(const machine::MotionDone& done) {
+  PartShape shape({done.motion->path, done.motion->head, done.from, done.travelled});
+  Add(done, shape);
+}
+
+void ReportRecorder::Add(const machine::MotionDone& done, PartShape& shape) {
   const motion::PlannedMotion& motion = *done.motion;
   const SimTime claimed = time_.Claim(done.start, done.end, Now());
 
@@ -124,7 +127,7 @@ void ReportRecorder::OnMotion(const machine::MotionDone& done) {
 
   const double profile_end_s =
       done.profile_start_s + std::min(profile_left_s, ToSeconds(done.end - done.start));
-  const double length = TipLength({motion.path, motion.head, done.from, done.travelled});
+  const double length = TipLength(shape);
   AddLengths(done, length, work);
   work.shutter_open = ShutterShare(done.end, claimed);
   if (done.beam_on) {
@@ -136,7 +139,7 @@ void ReportRecorder::OnMotion(const machine::MotionDone& done) {
                      way > 0.0 ? length / way : 0.0, done.power, contours_.PaceOf(done));
     work.cut_energy_j += beam_.Standing(ToSeconds(work.time.settling), done.power.constant_percent);
   }
-  AddShape(done, profile_end_s, work);
+  AddShape(done, shape, profile_end_s, work);
   stands_since_beam_on_ = false;
   work_.Add(done.place, work);
 }
@@ -150,19 +153,23 @@ void ReportRecorder::AddLengths(const machine::MotionDone& done, double length, 
   plunging_ = plunge;
 }
 
-void ReportRecorder::AddShape(const machine::MotionDone& done, double profile_end_s,
-                              const WorkFigures& work) {
-  const motion::PlannedMotion& motion = *done.motion;
-  const PathPart part{motion.path, motion.head, done.from, done.travelled};
-  const PointSweep tip = TipSweep(part);
-  const PointSweep column = shape_.five_axis ? ColumnSweep(part) : tip;
-  const std::array<CoordinateSweep, 2> rotary = RotarySweep(part);
-  const MotionPeaks peaks = PeaksOf(motion, shape_.five_axis, done.profile_start_s, profile_end_s);
+void ReportRecorder::AddShape(const machine::MotionDone& done, PartShape& shape,
+                              double profile_end_s, const WorkFigures& work) {
+  const PointSweep& tip = shape.tip();
+  const PointSweep column = shape_.five_axis ? ColumnSweep(shape) : tip;
+  const std::array<CoordinateSweep, 2> rotary = RotarySweep(shape);
+  FigureLog* log = LogOf(done.place.program);
+  if (!HasItsOwn(done.place.program)) log = nullptr;
+  const bool tip_limited = !shape_.five_axis || done.programmed_mm_s > 0.0;
+  // What a program has reached the job has, too.
+  const MotionPeaks peaks =
+      PeaksBeyond((log != nullptr ? *log : job_).Known(tip_limited), *done.motion, shape,
+                  shape_.five_axis, done.profile_start_s, profile_end_s);
   const AxisLog::Motion axes{.xyz = column,
                              .ab = rotary,
                              .peaks = peaks,
                              .tip_path_mm = work.tip_path_mm,
-                             .tip_limited = !shape_.five_axis || done.programmed_mm_s > 0.0};
+                             .tip_limited = tip_limited};
   if (done.beam_on) {
     contours_.Add({.done = done, .work = work, .column = column, .rotary = rotary});
   } else {
@@ -179,13 +186,28 @@ void ReportRecorder::AddShape(const machine::MotionDone& done, double profile_en
                                   .cuts = Cuts(done),
                                   .slow = slow};
   job_.Add(figures);
-  if (FigureLog* log = LogOf(done.place.program)) log->Add(figures);
+  if (log != nullptr) log->Add(figures);
+}
+
+// Whether the figures of a program are other than those of the job: not as long as no other one has
+// any. To be asked before the job is told of what belongs to that program.
+bool ReportRecorder::HasItsOwn(int program) {
+  if (!only_program_ && !several_programs_) only_program_ = program;
+  if (only_program_ == program) return false;
+  if (only_program_) {
+    if (const auto first = programs_.find(*only_program_); first != programs_.end())
+      first->second.TakeFigures(job_);
+    several_programs_ = true;
+    only_program_.reset();
+  }
+  return true;
 }
 
 void ReportRecorder::OnMove(const machine::MoveDone& move) {
   if (!move.programmed) return;  // where it ends is asked of the run
+  FigureLog* log = LogOf(move.place.program);
+  if (HasItsOwn(move.place.program) && log != nullptr) log->AddProgrammed(move.program_point);
   job_.AddProgrammed(move.program_point);
-  if (FigureLog* log = LogOf(move.place.program)) log->AddProgrammed(move.program_point);
   last_ = {.tip = move.tip,
            .axes = move.axes,
            .program_point = move.program_point,
@@ -289,7 +311,9 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   report.beam = beam_.Histogram(report.total.beam_on);
   for (auto& [program, figures] : report.programs) {
     const auto log = programs_.find(program);
-    if (log != programs_.end()) log->second.WriteTo(figures, figures.total.beam_on);
+    if (log == programs_.end()) continue;
+    (only_program_ == program ? job_ : log->second).WriteTo(figures, figures.total.beam_on);
+    figures.beam = log->second.beam().Histogram(figures.total.beam_on);
   }
   report.slow_moves = slow_moves_.moves();
   report.slow_moves_dropped = slow_moves_.dropped();

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <optional>
+
 #include "engine/machine/observer.h"
 #include "engine/simulation/report/beam_work.h"
 #include "engine/simulation/report/contour_log.h"
@@ -23,6 +26,8 @@ class ReportRecorder final : public machine::RunObserver {
 
   void OnStep(SimTime at, const machine::Place& place, std::string_view instruction) override;
   void OnMotion(const machine::MotionDone& done) override;
+  // The same for who has the shape of what was ridden.
+  void Add(const machine::MotionDone& done, PartShape& shape);
   void OnMove(const machine::MoveDone& move) override;
   void OnSignal(const machine::SignalChange& change) override;
   void OnWait(const machine::Wait& wait) override;
@@ -44,8 +49,10 @@ class ReportRecorder final : public machine::RunObserver {
   void CountStandstill(const TimeLedger::Gap& gap);
   bool Cuts(const machine::MotionDone& done) const;
   void AddLengths(const machine::MotionDone& done, double length, WorkFigures& work);
-  void AddShape(const machine::MotionDone& done, double profile_end_s, const WorkFigures& work);
+  void AddShape(const machine::MotionDone& done, PartShape& shape, double profile_end_s,
+                const WorkFigures& work);
   FigureLog* LogOf(int program);
+  bool HasItsOwn(int program);
   SimTime ShutterShare(SimTime end, SimTime claimed);
   void CloseShutter(SimTime at, const machine::Place& place);
 
@@ -54,6 +61,8 @@ class ReportRecorder final : public machine::RunObserver {
   WorkTable work_;
   FigureLog job_;
   std::map<int, FigureLog> programs_;  // of those that work_ has room for
+  std::optional<int> only_program_;    // its figures, but for the beam, are those of job_
+  bool several_programs_ = false;
   BeamWork beam_;
   ContourLog contours_;
   MoveSpeeds speeds_;

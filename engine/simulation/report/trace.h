@@ -68,6 +68,7 @@ std::string_view WaitKindName(machine::WaitKind kind);  // "dwell"
 // One line of text without line end: "12.345678 45/7 move LIN tip 1.0 2.0 3.0 A 0.0 B 0.0
 // feed 50.0".
 std::string TraceText(const TraceRecord& record);
+void AppendTraceText(const TraceRecord& record, std::string& line);  // the same
 
 // Takes one record; false: no more.
 using TraceSink = std::function<bool(const TraceRecord&)>;

@@ -1,3 +1,5 @@
+#include <array>
+#include <charconv>
 #include <string>
 
 #include "engine/core/hex.h"
@@ -13,12 +15,19 @@ constexpr int kLengthDecimals = 6;  // as in every report: motion.md 8.2
 constexpr int kAngleDecimals = 6;
 
 void Word(std::string& line, std::string_view word) {
-  if (!line.empty()) line += ' ';
+  line += ' ';
   line += word;
 }
 
+void Whole(std::string& line, char before, int value) {
+  std::array<char, 16> room;
+  room[0] = before;
+  line.append(room.data(), std::to_chars(room.data() + 1, room.data() + room.size(), value).ptr);
+}
+
 void Number(std::string& line, double value, int decimals) {
-  Word(line, TrimmedText(value, decimals));
+  line += ' ';
+  AppendTrimmed(line, value, decimals);
 }
 
 void Point(std::string& line, std::string_view name, const motion::MachinePoint& point) {
@@ -140,8 +149,15 @@ std::string_view WaitKindName(machine::WaitKind kind) {
 }
 
 std::string TraceText(const TraceRecord& record) {
-  std::string line = FixedText(ToSeconds(record.at), kTimeDecimals);
-  Word(line, std::to_string(record.place.program) + '/' + std::to_string(record.place.step));
+  std::string line;
+  AppendTraceText(record, line);
+  return line;
+}
+
+void AppendTraceText(const TraceRecord& record, std::string& line) {
+  AppendFixed(line, ToSeconds(record.at), kTimeDecimals);
+  Whole(line, ' ', record.place.program);
+  Whole(line, '/', record.place.step);
   Word(line, TraceKindName(record.kind));
   switch (record.kind) {
     case TraceKind::kMove:
@@ -179,7 +195,6 @@ std::string TraceText(const TraceRecord& record) {
       }
       break;
   }
-  return line;
 }
 
 }  // namespace rmlcell::simulation

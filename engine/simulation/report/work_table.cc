@@ -31,15 +31,19 @@ void WorkTable::Sum::Add(const WorkFigures& work) {
   counts.beam_switches += work.beam_switches;
   counts.pierces += work.pierces;
   counts.plunges += work.plunges;
-  tip_path.Add(work.tip_path_mm);
-  cut.Add(work.cut_mm);
-  travel.Add(work.travel_mm);
-  plunge.Add(work.plunge_mm);
-  cut_energy.Add(work.cut_energy_j);
+  // Nothing is added most of the time, to most of them.
+  const auto add = [](motion::LongSum& sum, double value) {
+    if (value != 0.0) sum.Add(value);
+  };
+  add(tip_path, work.tip_path_mm);
+  add(cut, work.cut_mm);
+  add(travel, work.travel_mm);
+  add(plunge, work.plunge_mm);
+  add(cut_energy, work.cut_energy_j);
   if (work.cut_mm >= kMeanLengthMin_mm) {
     counts.energy_j_per_mm_max = std::max(counts.energy_j_per_mm_max, work.energy_j_per_mm());
   }
-  pierce_energy.Add(work.pierce_energy_j);
+  add(pierce_energy, work.pierce_energy_j);
 }
 
 WorkFigures WorkTable::Sum::Total() const {
@@ -55,15 +59,21 @@ WorkFigures WorkTable::Sum::Total() const {
 
 WorkTable::Sum* WorkTable::StepOf(const machine::Place& place) {
   const std::pair key{place.program, place.step};
-  if (last_sum_ != nullptr && key == last_step_) return last_sum_;
-  auto found = steps_.find(key);
-  if (found == steps_.end()) {
-    if (steps_.size() >= kReportedStepsMax) return nullptr;
-    found = steps_.emplace(key, Step{.line = place.line, .sum = {}}).first;
-  }
+  if (key == last_step_) return last_sum_;
+  const bool behind = steps_.empty() || key > steps_.rbegin()->first;
+  auto found = behind ? steps_.end() : steps_.find(key);
+  if (found == steps_.end() && steps_.size() < kReportedStepsMax)
+    found = steps_.emplace_hint(steps_.end(), key, Step{.line = place.line, .sum = {}});
   last_step_ = key;
-  last_sum_ = &found->second.sum;
+  last_sum_ = found != steps_.end() ? &found->second.sum : nullptr;
   return last_sum_;
+}
+
+void WorkTable::AddStep(const machine::Place& place) {
+  ++total_.counts.steps;
+  Sum* step = StepOf(place);
+  ++(step != nullptr ? *step : rest_).counts.steps;
+  if (Sum* program = ProgramOf(place.program); program != nullptr) ++program->counts.steps;
 }
 
 WorkTable::Sum* WorkTable::ProgramOf(int program) {

@@ -16,6 +16,9 @@ class WorkTable {
   WorkTable(const WorkTable&) = delete;  // it remembers places within itself
   WorkTable& operator=(const WorkTable&) = delete;
 
+  // A step was executed at `place`, and nothing else yet.
+  void AddStep(const machine::Place& place);
+
   // `work` was done at `place`.
   void Add(const machine::Place& place, const WorkFigures& work);
 
@@ -46,9 +49,9 @@ class WorkTable {
   Sum rest_;
   std::map<int, Sum> programs_;
   std::map<std::pair<int, int>, Step> steps_;  // by program and step
-  // Most work is at the step of the work before it.
+  // Most work is at the step of the work before it, or at one behind all others.
   std::pair<int, int> last_step_{-1, -1};
-  Sum* last_sum_ = nullptr;
+  Sum* last_sum_ = nullptr;  // null: counted in rest_, or no step yet
   int last_program_ = -1;
   Sum* last_program_sum_ = nullptr;
 };

@@ -14,15 +14,23 @@ __extension__ using Wide = unsigned __int128;
 
 // The published constants of FNV-1a with 128 bits.
 constexpr Wide kOffset = (Wide{0x6c62272e07bb0142} << 64) | 0x62b821756295c58d;
-constexpr Wide kPrime = (Wide{1} << 88) | 0x13B;
+// The prime is 2^88 + 0x13B.
+constexpr std::uint64_t kPrimeLow = 0x13B;
+constexpr int kPrimeShift = 88 - 64;
 
 class Fnv1a {
  public:
   void Raw(std::string_view bytes) {
+    // In halves: the upper half of the prime is a single bit, a shift in place of a product.
+    auto low = static_cast<std::uint64_t>(hash_);
+    auto high = static_cast<std::uint64_t>(hash_ >> 64);
     for (const char c : bytes) {
-      hash_ ^= static_cast<unsigned char>(c);
-      hash_ *= kPrime;
+      low ^= static_cast<unsigned char>(c);
+      const Wide product = Wide{low} * kPrimeLow;
+      high = high * kPrimeLow + static_cast<std::uint64_t>(product >> 64) + (low << kPrimeShift);
+      low = static_cast<std::uint64_t>(product);
     }
+    hash_ = (Wide{high} << 64) | low;
   }
   // Every field goes in with its length or at fixed width: no two setups have the same bytes.
   void Text(std::string_view text) {

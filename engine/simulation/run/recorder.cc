@@ -12,8 +12,8 @@ namespace rmlcell::simulation {
 
 struct Recorder::State {
   State(const machine::MachineShape& shape, InputDescription description, Products products)
-      : inputs(std::move(description)), report(shape) {
-    Join(products.also);
+      : inputs(std::move(description)), also(products.also), report(shape) {
+    Join(also);
     Join(&report);
     if (products.trace) {
       Join(&trace.emplace(std::move(products.trace), products.trace_records_max));
@@ -39,6 +39,8 @@ struct Recorder::State {
   }
 
   InputDescription inputs;
+  machine::RunObserver* also;
+  CurveMeasure measure;
   ReportRecorder report;
   std::optional<TraceRecorder> trace;
   std::optional<ToolpathRecorder> toolpath;
@@ -59,7 +61,16 @@ void Recorder::OnStep(SimTime at, const machine::Place& place, std::string_view 
   state_->All([&](machine::RunObserver& to) { to.OnStep(at, place, instruction); });
 }
 void Recorder::OnMotion(const machine::MotionDone& done) {
-  state_->All([&](machine::RunObserver& to) { to.OnMotion(done); });
+  State& of = *state_;
+  if (of.also != nullptr) of.also->OnMotion(done);
+  // Three want to know how it goes; curves are measured once.
+  PartShape shape({done.motion->path, done.motion->head, done.from, done.travelled}, of.measure);
+  of.report.Add(done, shape);
+  if (of.toolpath) of.toolpath->Add(done, shape);
+  if (of.picture) of.picture->Add(done, shape);
+  if (of.plot) of.plot->OnMotion(done);
+  if (of.samples) of.samples->OnMotion(done);
+  if (of.milling) of.milling->OnMotion(done);
 }
 void Recorder::OnMove(const machine::MoveDone& move) {
   state_->All([&](machine::RunObserver& to) { to.OnMove(move); });

@@ -100,10 +100,14 @@ int ToolpathRecorder::SpeedClassOf(double mm_s) const {
 }
 
 void ToolpathRecorder::OnMotion(const machine::MotionDone& done) {
+  PartShape shape({done.motion->path, done.motion->head, done.from, done.travelled});
+  Add(done, shape);
+}
+
+void ToolpathRecorder::Add(const machine::MotionDone& done, PartShape& shape) {
   if (writer_.closed()) return;
   const motion::PathPiece& path = done.motion->path;
-  const motion::Head& head = done.motion->head;
-  const MachineVector first = TipAt(path, head, done.from);
+  const MachinePoint& first = shape.tip_from();
   const ToolpathPoint first_point = PointOf(path, done.from, first);
   // Along a way that is not that of the tip its speed is not known here.
   const double peak_mm_s = path.by_sigma() ? 0.0 : done.motion->speed.peak_speed();
@@ -124,12 +128,11 @@ void ToolpathRecorder::OnMotion(const machine::MotionDone& done) {
   const int reached_class = SpeedClassOf(peak_mm_s);
   SimTime at = done.start;
   writer_.Reach(reached_class);
-  ForEachVertex({path, head, done.from, done.travelled}, chord_tolerance_mm_,
-                [&](double s, const MachinePoint& tip) {
-                  at = TimeAt(done, s, at);
-                  Vertex(tip, PointOf(path, s, tip), at);
-                  if (writer_.open()) writer_.Reach(reached_class);
-                });
+  ForEachVertex(shape, chord_tolerance_mm_, [&](double s, const MachinePoint& tip) {
+    at = TimeAt(done, s, at);
+    Vertex(tip, PointOf(path, s, tip), at);
+    if (writer_.open()) writer_.Reach(reached_class);
+  });
   writer_.EndAt(Microseconds(done.end));
 }
 

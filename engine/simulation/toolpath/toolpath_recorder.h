@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/machine/shape.h"
+#include "engine/simulation/path/part_shape.h"
 #include "engine/simulation/toolpath/toolpath_writer.h"
 
 namespace rmlcell::simulation {
@@ -27,6 +28,8 @@ class ToolpathRecorder final : public machine::RunObserver {
   ToolpathRecorder(const machine::MachineShape& shape, ToolpathOptions options, ToolpathSink sink);
 
   void OnMotion(const machine::MotionDone& done) override;
+  // The same for who has the shape of what was ridden.
+  void Add(const machine::MotionDone& done, PartShape& shape);
 
   // Once, when the run is over: hands out what is left.
   void Finish();

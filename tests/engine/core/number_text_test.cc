@@ -4,9 +4,12 @@
 
 #include <clocale>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <random>
+#include <string>
 
 namespace rmlcell {
 namespace {
@@ -22,6 +25,38 @@ TEST(NumberText, FixedDecimalsAreRoundedFromTheExactValue) {
   EXPECT_EQ(FixedText(-1.25, 1), "-1.2");
   EXPECT_EQ(FixedText(999.9999, 3), "1000.000");
   EXPECT_EQ(FixedText(1e15, 2), "1000000000000000.00");
+}
+
+// Whichever way it is written: as the C library has it, which looks at the exact value. Near the
+// middle between two texts, at powers of ten, small and large.
+TEST(NumberText, FixedDecimalsOfManyNumbers) {
+  std::mt19937_64 dice(7);
+  std::uniform_real_distribution<double> exponent(-9.0, 14.0);
+  std::uniform_int_distribution<std::int64_t> whole(0, 2'000'000'000);
+  for (int k = 0; k < 200'000; ++k) {
+    const int decimals = 1 + k % 7;
+    const double scale = std::pow(10.0, decimals);
+    const auto step = static_cast<double>(whole(dice));
+    double value = std::pow(10.0, exponent(dice));
+    if (k % 3 == 1) value = (step + 0.5) / scale;
+    if (k % 3 == 2) value = std::nextafter((step + 0.5) / scale, k % 2 == 0 ? 0.0 : 1e300);
+    if (k % 5 == 0) value = step / scale;
+    if (k % 2 == 0) value = -value;
+    char expected[64];
+    std::snprintf(expected, sizeof expected, "%.*f", decimals, value);
+    const std::string text = expected;
+    const bool nothing = text.find_first_not_of("-0.") == std::string::npos;
+    ASSERT_EQ(FixedText(value, decimals), nothing && text[0] == '-' ? text.substr(1) : text) << k;
+  }
+}
+
+TEST(NumberText, AppendedBehindWhatStandsThere) {
+  std::string text = "-0.";
+  AppendFixed(text, -1e-9, 3);
+  AppendTrimmed(text, 2.50, 3);
+  AppendFixed(text, 1e13, 1);
+  AppendTrimmed(text, 100.0, 0);
+  EXPECT_EQ(text, "-0.0.0002.510000000000000.0100");
 }
 
 TEST(NumberText, ThereIsNoNegativeZero) {

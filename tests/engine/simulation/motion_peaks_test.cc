@@ -6,6 +6,7 @@
 
 #include "engine/core/units.h"
 #include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/shape_of.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using motion::PathPiece;
 
 MotionPeaks Whole(const motion::PlannedMotion& planned, bool five_axis) {
-  return PeaksOf(planned, five_axis, 0.0, planned.speed.duration_s());
+  return PeaksBetween(planned, five_axis, 0.0, planned.speed.duration_s());
 }
 
 // motion.md 12, S01: 100 mm at 50 mm/s reach 50 mm/s; the ramp is short (50 <= a2/j = 100), so the
@@ -61,7 +62,7 @@ TEST(MotionPeaks, PeakBetweenTwoPhasesIsSeen) {
 // Up to a time within the profile only: after 1 ms with 40000 mm/s3 the speed is j t2/2 = 0.02.
 TEST(MotionPeaks, PartOfTheProfile) {
   const auto planned = Planned(LineFrom({0, 0, 0}, {100, 0, 0}));
-  const MotionPeaks peaks = PeaksOf(planned, false, 0.0, 0.001);
+  const MotionPeaks peaks = PeaksBetween(planned, false, 0.0, 0.001);
   EXPECT_NEAR(peaks.tip_speed, 0.02, 1e-12);
   EXPECT_NEAR(peaks.tip_acceleration, 40.0, 1e-9);
 }
@@ -76,7 +77,7 @@ TEST(MotionPeaks, CircleAcceleratesAcross) {
   EXPECT_GE(peaks.tip_acceleration, std::sqrt(50.0 * 40000.0) * (1 - 1e-9));
   EXPECT_NEAR(peaks.axis_speed[0], 50.0, 50.0 * 0.002);
   EXPECT_LE(peaks.axis_speed[0], 50.0 + 1e-9);
-  const MotionPeaks cruise = PeaksOf(circle, false, 0.5, 2.0);
+  const MotionPeaks cruise = PeaksBetween(circle, false, 0.5, 2.0);
   EXPECT_NEAR(cruise.tip_acceleration, 2500.0 / 20.0, 1e-9);
 }
 
@@ -87,7 +88,7 @@ TEST(MotionPeaks, ColumnIsSwungByTheHead) {
   planned.path = PathPiece::Line({{0, 0, 0}, 0.528, 1.5708}, {{1, 0, 0}, 0.534, 1.5708});
   planned.head = motion::GantryHead{.length_mm = 300.0};
   planned.speed = motion::SpeedProfile::Span(1.0, 50.0, 50.0, kSlowLimits);
-  const MotionPeaks peaks = PeaksOf(planned, true, 0.0, 1e-9);
+  const MotionPeaks peaks = PeaksBetween(planned, true, 0.0, 1e-9);
   EXPECT_NEAR(peaks.axis_speed[0], 127.743476981, 1e-5);
   EXPECT_NEAR(peaks.axis_speed[1], 45.342604543, 1e-5);
   EXPECT_NEAR(peaks.axis_speed[3], 0.3, 1e-9);
@@ -156,13 +157,29 @@ TEST(MotionPeaks, SamplesLieAsCloseOnAnyArc) {
     ASSERT_TRUE(arc);
     planned.path = arc->path;
     planned.speed = motion::SpeedProfile::Steady(planned.path.length(), 60.0);
-    const MotionPeaks peaks = PeaksOf(planned, true, 0.0, planned.speed.duration_s());
+    const MotionPeaks peaks = PeaksBetween(planned, true, 0.0, planned.speed.duration_s());
     const double highest = 60.0 * 60.0 / radius;
     EXPECT_NEAR(peaks.axis_acceleration[0], highest, 0.002 * highest) << radius;
     EXPECT_NEAR(peaks.axis_acceleration[1], highest, 0.002 * highest) << radius;
     EXPECT_NEAR(peaks.axis_speed[0], 60.0, 0.002 * 60.0) << radius;
     EXPECT_NEAR(peaks.tip_acceleration, highest, 1e-6 * highest) << radius;
   }
+}
+
+// Jerks are those within the phases: from 2000 mm/s2 to none and on to -2000 the acceleration
+// steps, and nothing else changes it on a line with a head that turns evenly (but for the turning,
+// which 1e-6 rad leave at nothing).
+TEST(MotionPeaks, AStepBetweenPhasesIsNoJerk) {
+  motion::PlannedMotion planned;
+  planned.path = PathPiece::Line({{0, 0, 0}, 0.0, 0.0}, {{100, 0, 0}, 1e-6, 0.0});
+  planned.head = motion::GantryHead{.length_mm = 300.0};
+  planned.speed =
+      motion::SpeedProfile::Span(100.0, 0.0, 0.0, {.speed = 50.0, .acceleration = 2000.0});
+  ASSERT_EQ(planned.speed.phase_count(), 3);
+  const MotionPeaks peaks = Whole(planned, true);
+  EXPECT_NEAR(peaks.tip_acceleration, 2000.0, 1e-9);
+  EXPECT_NEAR(peaks.tip_jerk, 0.0, 1e-6);
+  EXPECT_NEAR(peaks.axis_jerk[0], 0.0, 1e-6);
 }
 
 }  // namespace

@@ -48,13 +48,13 @@ TEST(PartCurve, TurnsWhereOneAxisTurns) {
 // most on top; only the part counts.
 TEST(PartCurve, TurningOfAPart) {
   const PathPiece line = PathPiece::Line({{0, 0, 0}, 0.0, 0.5}, {{10, 0, 0}, 0.3, 0.1});
-  EXPECT_NEAR(PartCurve({line, kArm, 0.0, 10.0}).turning_rad(), 0.7, 1e-12);
-  EXPECT_NEAR(PartCurve({line, kArm, 5.0, 10.0}).turning_rad(), 0.35, 1e-12);
+  EXPECT_NEAR(TurningOf({line, kArm, 0.0, 10.0}), 0.7, 1e-12);
+  EXPECT_NEAR(TurningOf({line, kArm, 5.0, 10.0}), 0.35, 1e-12);
   const PathPiece arc = PathPiece::Circle({{20, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0.0, 0.0);
-  EXPECT_NEAR(PartCurve({arc, kArm, 0.0, 20.0}).turning_rad(), 1.0, 1e-12);
-  EXPECT_NEAR(PartCurve({arc, kArm, 20.0, 50.0}).turning_rad(), 1.5, 1e-12);
+  EXPECT_NEAR(TurningOf({arc, kArm, 0.0, 20.0}), 1.0, 1e-12);
+  EXPECT_NEAR(TurningOf({arc, kArm, 20.0, 50.0}), 1.5, 1e-12);
   const auto corner = PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}});
-  EXPECT_NEAR(PartCurve({corner[1].path, kArm, 0.0, 1.0}).turning_rad(), kPi, 1e-12);
+  EXPECT_NEAR(TurningOf({corner[1].path, kArm, 0.0, 1.0}), kPi, 1e-12);
 }
 
 // Rates are the derivatives of the places, of tip and column, whatever kind of path it is.
@@ -68,7 +68,8 @@ TEST(PartCurve, RatesAreDerivatives) {
         PathPiece::Joint({{0, 0, 300}, 0.1, 0.5}, {{10, 5, 302}, 0.8, -0.4}), corner[1].path,
         corner[2].path}) {
     const PathPart part{path, kArm, 0.25 * path.length(), 0.75 * path.length()};
-    const PartCurve curve(part);
+    CurveMeasure measure;
+    const PartCurve curve(part, measure);
     const double p = 0.5 * (curve.begin() + curve.end());
     const double step = 1e-6 * (curve.end() - curve.begin());
     const motion::MachinePoint tip = (curve.Tip(p + step) - curve.Tip(p - step)) * (0.5 / step);

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "engine/core/units.h"
-#include "engine/simulation/path/polyline.h"
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/shape_of.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -28,7 +28,7 @@ PathPiece CircleXY(double sweep) {
 // counter-clockwise end at (0,-10): X reaches -10 and Y reaches 10 on the way.
 TEST(PathExtent, ArcReachesItsQuadrants) {
   const PathPiece arc = CircleXY(1.5 * kPi);
-  const PointSweep sweep = TipSweep({arc, Head{}, 0.0, arc.length()});
+  const PointSweep sweep = TipSweepOf({arc, Head{}, 0.0, arc.length()});
   EXPECT_NEAR(sweep[0].minimum, -10.0, 1e-12);
   EXPECT_NEAR(sweep[0].maximum, 10.0, 1e-12);
   EXPECT_NEAR(sweep[1].minimum, -10.0, 1e-12);
@@ -47,7 +47,7 @@ TEST(PathExtent, ArcReachesItsQuadrants) {
 TEST(PathExtent, PartOfAnArc) {
   const PathPiece arc = CircleXY(kTurn);
   const double eighth = 10.0 * kPi / 4.0;
-  const PointSweep sweep = TipSweep({arc, Head{}, eighth, 3.0 * eighth});
+  const PointSweep sweep = TipSweepOf({arc, Head{}, eighth, 3.0 * eighth});
   EXPECT_NEAR(sweep[0].minimum, -10.0 * kHalfRoot2, 1e-12);
   EXPECT_NEAR(sweep[0].maximum, 10.0 * kHalfRoot2, 1e-12);
   EXPECT_EQ(sweep[0].turns, 0);
@@ -63,7 +63,7 @@ TEST(PathExtent, TiltedCircle) {
   const motion::MachinePoint start{20.0 + 3.0 / std::sqrt(2.0), 30.0 - 3.0 / std::sqrt(2.0), 40.0};
   const PathPiece circle =
       PathPiece::Circle({start}, {20, 30, 40}, {third, third, third}, kTurn, 0.0, 0.0);
-  const PointSweep sweep = TipSweep({circle, Head{}, 0.0, circle.length()});
+  const PointSweep sweep = TipSweepOf({circle, Head{}, 0.0, circle.length()});
   const double reach = 3.0 * std::sqrt(2.0 / 3.0);
   const double centre[3] = {20, 30, 40};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -78,7 +78,7 @@ TEST(PathExtent, TiltedCircle) {
 TEST(PathExtent, NearlyStraightArc) {
   const auto arc = PathPiece::ArcThrough({{0, 0, 0}}, {50, 0.01, 0}, {{100, 0, 0}});
   ASSERT_TRUE(arc);
-  const PointSweep sweep = TipSweep({arc->path, Head{}, 0.0, arc->path.length()});
+  const PointSweep sweep = TipSweepOf({arc->path, Head{}, 0.0, arc->path.length()});
   EXPECT_NEAR(sweep[1].maximum, 0.01, 1e-9);
   EXPECT_NEAR(sweep[1].minimum, 0.0, 1e-9);
   EXPECT_NEAR(sweep[0].maximum, 100.0, 1e-9);
@@ -90,7 +90,7 @@ TEST(PathExtent, ColumnSwingsAboutAStandingTip) {
   const PathPiece turn = PathPiece::Line({{0, 0, 0}, 0.0, -kPi / 2}, {{0, 0, 0}, 0.0, kPi / 2});
   const Head head = GantryHead{.length_mm = 300.0};
   const PathPart part{turn, head, 0.0, 1.0};
-  const PointSweep column = ColumnSweep(part);
+  const PointSweep column = ColumnSweepOf(part);
   EXPECT_NEAR(column[1].maximum, 300.0, 1e-9);
   EXPECT_NEAR(column[1].minimum, -300.0, 1e-9);
   EXPECT_NEAR(column[1].travel, 600.0, 1e-9);
@@ -99,15 +99,15 @@ TEST(PathExtent, ColumnSwingsAboutAStandingTip) {
   EXPECT_NEAR(column[2].minimum, 0.0, 1e-9);
   EXPECT_NEAR(column[2].travel, 600.0, 1e-9);
   EXPECT_EQ(column[2].turns, 1);
-  const PointSweep tip = TipSweep(part);
+  const PointSweep tip = TipSweepOf(part);
   EXPECT_EQ(tip[0].travel + tip[1].travel + tip[2].travel, 0.0);
-  EXPECT_EQ(TipLength(part), 0.0);
+  EXPECT_EQ(TipLengthOf(part), 0.0);
 }
 
 // Without a turn of the head the column goes as the tip does, 300 mm above.
 TEST(PathExtent, ColumnFollowsAnArcOfTheTip) {
   const PathPiece arc = CircleXY(1.5 * kPi);
-  const PointSweep column = ColumnSweep({arc, GantryHead{.length_mm = 300.0}, 0.0, arc.length()});
+  const PointSweep column = ColumnSweepOf({arc, GantryHead{.length_mm = 300.0}, 0.0, arc.length()});
   EXPECT_NEAR(column[0].minimum, -10.0, 1e-9);
   EXPECT_NEAR(column[1].maximum, 10.0, 1e-9);
   EXPECT_NEAR(column[2].minimum, 300.0, 1e-9);
@@ -119,23 +119,23 @@ TEST(PathExtent, ColumnFollowsAnArcOfTheTip) {
 TEST(PathExtent, TipBowsWhenTheHeadTurnsInRobotCoordinates) {
   const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 0.0, 0.0}, {{0, 0, 0}, 0.0, kPi / 2});
   const PathPart part{joint, GantryHead{.length_mm = 300.0}, 0.0, 1.0};
-  EXPECT_NEAR(TipLength(part), 300.0 * kPi / 2, 1e-9);
-  const PointSweep tip = TipSweep(part);
+  EXPECT_NEAR(TipLengthOf(part), 300.0 * kPi / 2, 1e-9);
+  const PointSweep tip = TipSweepOf(part);
   EXPECT_NEAR(tip[2].minimum, -300.0, 1e-9);
   EXPECT_NEAR(tip[2].maximum, 0.0, 1e-9);
   EXPECT_NEAR(tip[1].maximum, 300.0, 1e-9);  // u = (0, -1, 0): the tip is on the other side
-  EXPECT_EQ(ColumnSweep(part)[1].travel, 0.0);
+  EXPECT_EQ(ColumnSweepOf(part)[1].travel, 0.0);
 }
 
 // From B = -1 to B = 1 the tip passes the lowest point of its circle, which no end of the move is.
 TEST(PathExtent, TipTurnsRoundInTheMiddleOfABow) {
   const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 0.0, -1.0}, {{0, 0, 0}, 0.0, 1.0});
   const PathPart part{joint, GantryHead{.length_mm = 300.0}, 0.0, 1.0};
-  const PointSweep tip = TipSweep(part);
+  const PointSweep tip = TipSweepOf(part);
   EXPECT_NEAR(tip[2].minimum, -300.0, 1e-9);
   EXPECT_NEAR(tip[2].maximum, -300.0 * std::cos(1.0), 1e-9);
   EXPECT_EQ(tip[2].turns, 1);
-  EXPECT_NEAR(TipLength(part), 600.0, 1e-9);
+  EXPECT_NEAR(TipLengthOf(part), 600.0, 1e-9);
 }
 
 // A curve that bulges: at a corner of 135 degrees between lines along +X and (-1,1)/sqrt(2) the tip
@@ -145,7 +145,7 @@ TEST(PathExtent, CurveTurnsRound) {
   int turns = 0;
   for (const motion::PlannedMotion& planned :
        PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{0, 100, 0}})) {
-    const PointSweep sweep = TipSweep({planned.path, Head{}, 0.0, planned.path.length()});
+    const PointSweep sweep = TipSweepOf({planned.path, Head{}, 0.0, planned.path.length()});
     double sampled = -1e9;
     for (int k = 0; k <= 5000; ++k) {
       sampled = std::max(sampled, planned.path.At(planned.path.length() * k / 5000).point.x());
@@ -164,8 +164,8 @@ TEST(PathExtent, CurveTurnsRound) {
 // A straight move in COORD ROBOT without a turn: the tip goes as the column does.
 TEST(PathExtent, StraightJointMove) {
   const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 1.0, 0.5}, {{30, 40, 0}, 1.0, 0.5});
-  EXPECT_NEAR(TipLength({joint, Head{}, 0.0, 1.0}), 50.0, 1e-12);
-  EXPECT_NEAR(TipLength({joint, Head{}, 0.25, 0.75}), 25.0, 1e-12);
+  EXPECT_NEAR(TipLengthOf({joint, Head{}, 0.0, 1.0}), 50.0, 1e-12);
+  EXPECT_NEAR(TipLengthOf({joint, Head{}, 0.25, 0.75}), 25.0, 1e-12);
 }
 
 // What is left of a move that was stopped on its target.
@@ -173,7 +173,7 @@ TEST(PathExtent, StandingHasNoLength) {
   const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 0.0, 0.2}, {{30, 40, 0}, 1.0, 0.5});
   const PathPiece here = joint.Standing(1.0);
   EXPECT_TRUE(here.in_axes());
-  EXPECT_EQ(TipLength({here, Head{}, 0.0, 0.0}), 0.0);
+  EXPECT_EQ(TipLengthOf({here, Head{}, 0.0, 0.0}), 0.0);
 }
 
 // A passage in COORD ROBOT (motion.md 4.5) in which the head turns: extent and length of the tip's
@@ -194,7 +194,7 @@ TEST(PathExtent, PassageInAxes) {
     if (planned.path.kind() != PathPiece::Kind::kBlend) continue;
     ++bends;
     const PathPart part{planned.path, planned.head, 0.0, planned.path.length()};
-    const PointSweep tip = TipSweep(part), column = ColumnSweep(part);
+    const PointSweep tip = TipSweepOf(part), column = ColumnSweepOf(part);
     double length = 0.0, highest = -1e9, column_highest = -1e9;
     motion::MachinePoint last = TipAt(planned.path, planned.head, 0.0);
     for (int k = 0; k <= 10000; ++k) {
@@ -205,13 +205,14 @@ TEST(PathExtent, PassageInAxes) {
       highest = std::max(highest, here.x());
       column_highest = std::max(column_highest, planned.path.At(s).point.x());
     }
-    EXPECT_NEAR(TipLength(part), length, 1e-6);
+    EXPECT_NEAR(TipLengthOf(part), length, 1e-6);
     EXPECT_NEAR(tip[0].maximum, highest, 1e-6);
     EXPECT_NEAR(column[0].maximum, column_highest, 1e-6);
     int vertices = 0;
     double drawn = 0.0;
     motion::MachinePoint vertex = TipAt(planned.path, planned.head, 0.0);
-    ForEachVertex(part, 0.01, [&](double, const motion::MachinePoint& next) {
+    PartShape shape(part);
+    ForEachVertex(shape, 0.01, [&](double, const motion::MachinePoint& next) {
       ++vertices;
       drawn += (next - vertex).norm();
       vertex = next;

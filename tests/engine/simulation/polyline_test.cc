@@ -44,7 +44,8 @@ TEST(Polyline, ASwingIsCutAsTheToleranceAllows) {
       double before = part.from;
       motion::MachinePoint from = TipAt(path, head, before);
       double worst = 0.0;
-      ForEachVertex(part, tolerance, [&](double s, const motion::MachinePoint& tip) {
+      PartShape shape(part);
+      ForEachVertex(shape, tolerance, [&](double s, const motion::MachinePoint& tip) {
         EXPECT_GT(s, before);
         EXPECT_NEAR((tip - TipAt(path, head, s)).norm(), 0.0, 1e-9);
         const motion::MachinePoint middle = TipAt(path, head, 0.5 * (before + s));
@@ -71,11 +72,11 @@ TEST(Polyline, AWholeTurnIsNoPoint) {
       motion::PathPiece::Joint({{0, 0, 300}, 0.0, 0.0}, {{0, 0, 300}, 0.0, kTurn});
   double way = 0.0;
   motion::MachinePoint from = TipAt(path, head, 0.0);
-  ForEachVertex({path, head, 0.0, path.length()}, 1.0,
-                [&](double, const motion::MachinePoint& tip) {
-                  way += (from - tip).norm();
-                  from = tip;
-                });
+  PartShape shape({path, head, 0.0, path.length()});
+  ForEachVertex(shape, 1.0, [&](double, const motion::MachinePoint& tip) {
+    way += (from - tip).norm();
+    from = tip;
+  });
   EXPECT_NEAR(way, 300.0 * kTurn, 10.0);
 }
 

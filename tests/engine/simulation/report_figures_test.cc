@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "engine/families/families.h"
-#include "engine/simulation/path/motion_peaks.h"
 #include "engine/simulation/run/simulate.h"
+#include "tests/engine/simulation/shape_of.h"
 
 // The figures of motion.md 8.2 for whole programs, each worked out by hand. The standard machine
 // stands at column (21.02, 2201.2, -50), tip 300 mm below it; 500 mm/s, 2000 mm/s2, 40,000 mm/s3
@@ -80,7 +80,7 @@ TEST(ReportFigures, JerkOfAnArc) {
   ASSERT_TRUE(arc);
   planned.path = arc->path;
   planned.speed = motion::SpeedProfile::Steady(planned.path.length(), 60.0);
-  const MotionPeaks peaks = PeaksOf(planned, true, 0.0, planned.speed.duration_s());
+  const MotionPeaks peaks = PeaksBetween(planned, true, 0.0, planned.speed.duration_s());
   EXPECT_NEAR(peaks.tip_jerk, 540.0, 0.5);
   EXPECT_NEAR(peaks.axis_jerk[0], 540.0, 1.0);
   EXPECT_NEAR(peaks.axis_jerk[1], 540.0, 1.0);

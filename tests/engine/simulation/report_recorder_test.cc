@@ -8,6 +8,7 @@
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/laser_shape.h"
+#include "tests/engine/simulation/shape_of.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -361,6 +362,34 @@ TEST(ReportRecorder, TheBeamCountsInItsProgram) {
   EXPECT_EQ(second.by_speed[1], FromSeconds(2.0));
   EXPECT_EQ(second.by_speed[0], FromSeconds(0.75));
   EXPECT_EQ(report.beam.by_power[10], FromSeconds(1.5));
+}
+
+// motion.md 8.2: peaks are those of the program that reaches them, also behind higher ones of
+// another program: 100 mm at 50 mm/s along (3,4,0)/5, then a corner from X to Y with a start from
+// rest.
+TEST(ReportRecorder, PeaksCountInTheirProgram) {
+  const auto corner = PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}});
+  ASSERT_EQ(corner.size(), 4u);
+  MotionPeaks bend;
+  for (const std::size_t half : {1u, 2u})
+    bend.Raise(PeaksBetween(corner[half], true, 0.0, corner[half].speed.duration_s()));
+  const motion::PathLimits fast{.speed = 300.0, .acceleration = 5000.0};
+  Script script;
+  script.Step(1, 1).Motion(Planned(LineFrom({}, {300, 400, 0}), fast));
+  script.Step(2, 1).Motion(corner[1]).Motion(corner[2]);
+  script.Step(1, 2).Motion(Planned(LineFrom({300, 400, 0}, {}), fast));
+  const RunReport report = ReportOf(script, Laser());
+  const ScopeFigures& first = report.programs.at(1);
+  const ScopeFigures& second = report.programs.at(2);
+  EXPECT_NEAR(first.tip_figures.peak_speed, 300.0, 1e-9);
+  EXPECT_NEAR(first.axes[1].peak_acceleration, 4000.0, 1e-6);
+  EXPECT_NEAR(second.tip_figures.peak_speed, 50.0, 1e-6);
+  EXPECT_EQ(second.tip_figures.peak_acceleration, bend.tip_acceleration);
+  EXPECT_EQ(second.axes[0].peak_acceleration, bend.axis_acceleration[0]);
+  EXPECT_EQ(second.axes[1].peak_jerk, bend.axis_jerk[1]);
+  EXPECT_EQ(report.axes[0].peak_speed, first.axes[0].peak_speed);
+  EXPECT_NEAR(first.axes[0].travel, 600.0, 1e-9);
+  EXPECT_NEAR(report.axes[0].travel, 600.0 + second.axes[0].travel, 1e-9);
 }
 
 // A report has room for 128 programs; each of those has all of its figures, whenever it first
