@@ -1,5 +1,6 @@
 // Plans a contour of short lines and nothing else: motion_instructions.py counts what that costs.
-//   motion_count jerk|trapezoid|mill|five_axis|arcs|short|ramps LINES
+//   motion_count jerk|trapezoid|mill|five_axis|arcs|short|ramps|zigzag LINES
+//   motion_count walk|walk_trapezoid|walk_mill|walk_five_axis LINES
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -25,22 +26,28 @@ std::vector<MoveCommand> Arcs(int count) {
 }
 
 int Main(std::string_view what, int count) {
-  MachineLimits machine = StandardMachine();
+  const bool walk = what.starts_with("walk");
+  MachineLimits machine = walk ? WalkMachine() : StandardMachine();
   std::vector<MoveCommand> loop;
-  if (what == "arcs") {
+  if (walk) {
+    loop = Walk(2400, what == "walk_five_axis");
+  } else if (what == "arcs") {
     loop = Arcs(600);
   } else if (what == "ramps") {  // bends use up the lines: the speed changes all the time
     loop = Contour(600, false, 0.3);
   } else if (what == "short") {  // sharp bends, all at one low speed
     loop = Polyline(Legs(600, 0.8, 0.5 * kPi, true), 0.3);
     loop.back().fly = true;
+  } else if (what == "zigzag") {  // as long as its bends: no line is left between them
+    loop = Polyline(Legs(600, 2.0, 0.5 * kPi, true), 0.3);
+    loop.back().fly = true;
   } else {
     loop = Contour(600, what == "five_axis");
   }
-  if (what == "trapezoid") {
+  if (what.ends_with("trapezoid")) {
     machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
   }
-  if (what == "mill") {  // polylines as they are, acceleration-limited: motion.md section 7
+  if (what.ends_with("mill")) {  // polylines as they are, acceleration-limited: motion.md section 7
     machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
     machine.corners = MachineLimits::Corners::kThrough;
     machine.junction_jump_mm_s = 3.0;
@@ -68,7 +75,8 @@ int Main(std::string_view what, int count) {
 int main(int argc, char** argv) {
   if (argc != 3) {
     std::fprintf(stderr,
-                 "usage: motion_count jerk|trapezoid|mill|five_axis|arcs|short|ramps LINES\n");
+                 "usage: motion_count jerk|trapezoid|mill|five_axis|arcs|short|ramps|zigzag|"
+                 "walk|walk_trapezoid|walk_mill|walk_five_axis LINES\n");
     return 2;
   }
   return rmlcell::motion::Main(argv[1], std::atoi(argv[2]));

@@ -34,6 +34,50 @@ inline std::vector<MoveCommand> Contour(int count, bool head, double speed_fract
   return chain;
 }
 
+// The walk of the speed goals: lines of 0.05 to 2 mm whose heading changes by a normal of 0.35 rad,
+// with a little Z, at 25 mm/s, 3,000 mm/s2 and 50,000 mm/s3. With `head` A and B step by up to a
+// degree a line.
+inline MachineLimits WalkMachine() {
+  MachineLimits machine = StandardMachine();
+  machine.tip_acceleration_mm_s2 = 3000.0;
+  machine.tip_jerk_mm_s3 = 50000.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    machine.axes.acceleration[axis] = 3000.0;
+    machine.axes.jerk[axis] = 50000.0;
+  }
+  return machine;
+}
+inline std::vector<MoveCommand> Walk(int count, bool head) {
+  constexpr double kHeading_rad = 0.35;
+  constexpr double kStep_rad = kPi / 180.0;
+  constexpr double kSpeed_mm_s = 25.0;
+  Dice dice(1);
+  std::vector<MoveCommand> chain;
+  TipPose at{{1000.0, 900.0, -200.0}, 0.0, 0.5};
+  double heading = 0.0;
+  for (int k = 0; k < count; ++k) {
+    // Box and Muller's normal.
+    heading += kHeading_rad * std::sqrt(-2.0 * std::log(1.0 - dice.Uniform(0.0, 1.0))) *
+               std::cos(dice.Uniform(0.0, kTurn));
+    const double step = dice.Uniform(0.05, 2.0);
+    TipPose to = at;
+    to.tip +=
+        MachineVector{step * std::cos(heading), step * std::sin(heading), dice.Uniform(-0.1, 0.1)};
+    if (head) {
+      to.a_rad += dice.Uniform(-kStep_rad, kStep_rad);
+      to.b_rad += dice.Uniform(-kStep_rad, kStep_rad);
+    }
+    MoveCommand move;
+    move.path = PathPiece::Line(at, to);
+    move.speed_fraction = kSpeed_mm_s / MachineLimits{}.tip_speed_mm_s;
+    move.fly = true;
+    move.tag = static_cast<std::uint64_t>(k);
+    chain.push_back(move);
+    at = to;
+  }
+  return chain;
+}
+
 // Through the points, /FLY at each, from rest to rest.
 inline std::vector<MoveCommand> Polyline(const std::vector<MachinePoint>& points,
                                          double speed_fraction) {

@@ -1,11 +1,14 @@
 // How many segments a second the planner takes, against a bare two-pass loop in the same run
 // (rounds interleaved, medians), and whether cost and memory stay flat with the length of the
 // program. Run by hand:
-//   motion_planner_bench [--flat]
-// Prints one JSON object a line.
+//   motion_planner_bench [--flat | --tail]
+// --tail: how long one more segment takes, taken and given out, on every path: the least of some
+// rounds for each segment, since other work on the machine is not the planner's. Prints one JSON
+// object a line.
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -121,12 +124,67 @@ void Flat() {
   }
 }
 
+// Microseconds of one more segment, each the least over the rounds.
+std::vector<double> EachSegment(const std::vector<MoveCommand>& chain,
+                                const MachineLimits& machine) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kTailRounds = 5;
+  std::vector<double> least(chain.size(), HUGE_VAL);
+  double sum = 0.0;
+  for (int round = 0; round < kTailRounds; ++round) {
+    Planner planner(machine);
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+      const Clock::time_point begin = Clock::now();
+      if (!planner.Append(chain[k])) return {};
+      while (const PlannedItem* item = planner.NextInPlace()) {
+        sum += std::get<PlannedMotion>(*item).speed.duration_s();
+      }
+      const std::chrono::duration<double, std::micro> took = Clock::now() - begin;
+      least[k] = std::min(least[k], took.count());
+    }
+  }
+  return sum > 0.0 ? least : std::vector<double>{};
+}
+
+void Tail() {
+  constexpr int kSegments = 20'000;
+  MachineLimits trapezoid = WalkMachine();
+  trapezoid.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  const auto print = [](const char* path, const std::vector<MoveCommand>& chain,
+                        const MachineLimits& machine) {
+    std::vector<double> us = EachSegment(chain, machine);
+    if (us.empty()) return;
+    double sum = 0.0;
+    for (const double each : us) sum += each;
+    std::sort(us.begin(), us.end());
+    const auto at = [&](double share) {
+      return us[static_cast<std::size_t>(share * static_cast<double>(us.size() - 1))];
+    };
+    std::printf(
+        "{\"path\": \"%s\", \"mean_us\": %.2f, \"p50_us\": %.2f, \"p99_us\": %.2f, \"p99.9_us\": "
+        "%.2f, \"most_us\": %.2f}\n",
+        path, sum / static_cast<double>(us.size()), at(0.5), at(0.99), at(0.999), us.back());
+    std::fflush(stdout);
+  };
+  std::vector<MoveCommand> zigzag = Polyline(Legs(kSegments, 2.0, 0.5 * kPi, true), 0.3);
+  zigzag.back().fly = true;
+  print("cruise", Contour(kSegments, false), StandardMachine());
+  print("walk", Walk(kSegments, false), WalkMachine());
+  print("walk trapezoid", Walk(kSegments, false), trapezoid);
+  print("ramps", Contour(kSegments, false, 0.3), StandardMachine());
+  print("zigzag", zigzag, StandardMachine());
+  print("five axes", Contour(kSegments, true), StandardMachine());
+  print("five axes walk", Walk(kSegments, true), WalkMachine());
+}
+
 }  // namespace
 }  // namespace rmlcell::motion
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::strcmp(argv[1], "--flat") == 0) {
     rmlcell::motion::Flat();
+  } else if (argc > 1 && std::strcmp(argv[1], "--tail") == 0) {
+    rmlcell::motion::Tail();
   } else {
     rmlcell::motion::Rates();
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace rmlcell::motion {
 namespace {
@@ -10,60 +11,40 @@ namespace {
 constexpr double kLastDigits = 1e-9;  // last digits must not decide
 constexpr double kWorthwhile = 1.01;  // less to gain than this is not worth more stretches
 
-// Whether the ramp between these speeds keeps below those that stand at equal steps of `length`.
-bool RampFits(std::span<const double> most, double length, double from, double to,
-              const PathLimits& limits) {
-  const SpeedProfile ramp =
-      SpeedProfile::Span(RampLength(from, to, limits), from, to,
-                         {.speed = to, .acceleration = limits.acceleration, .jerk = limits.jerk});
-  const double steps = static_cast<double>(most.size() - 1);
-  const double per_mm = steps / length;
-  constexpr int kPlaces = 8;  // of each phase, closer where it begins
-  // Between the steps, rounded down where the speeds bend upwards; from the first on they may begin
-  // flat.
-  const auto most_at = [&](std::size_t step, double share) {
-    const double rise = most[step + 1] - most[step];
-    const double bend = step == 0 ? 2.0 * rise : rise - (most[step] - most[step - 1]);
-    return most[step] + rise * share - std::max(bend, 0.0) * 0.5 * share * (1.0 - share);
+// Ramps below the speeds that stand at equal steps of `length`.
+class RampsBelow {
+ public:
+  RampsBelow(std::span<const double> most, double length, const PathLimits& limits)
+      : most_(most),
+        steps_(static_cast<double>(most.size() - 1)),
+        per_mm_(steps_ / length),
+        step_mm_(length / steps_),
+        limits_(limits) {}
+
+  // The highest speed to which there are ramps from any speed up to the first of them; that one
+  // when there is none above it.
+  double HighestUpTo(double high) {
+    const double start = most_.front();
+    if (!(high > start)) return start;
+    if (BoundsFit(start, high)) return high;
+    const auto from_start = [&](double to) { return Fits(start, to); };
+    const double found = Highest(high, from_start);  // nearly always good for slower ones
+    if (SlowerFit(found)) return found;
+    return Highest(high, [&](double to) { return from_start(to) && SlowerFit(to); });
+  }
+
+ private:
+  // A place of a ramp: of one of its phases, closer where that begins.
+  struct Place {
+    int phase = 0;
+    int part = 1;
   };
-  for (int k = 0; k < ramp.phase_count(); ++k) {
-    const SpeedProfile::Phase& phase = ramp.phase(k);
-    for (int i = 1; i <= kPlaces; ++i) {
-      const double t = phase.duration_s * (i * i) / (kPlaces * kPlaces);
-      const double a = phase.start.acceleration;
-      const double x =
-          (phase.start.s + t * (phase.start.speed + t * (0.5 * a + t * phase.jerk / 6.0))) * per_mm;
-      if (x >= steps) return true;  // the rest lies beyond
-      const double speed = phase.start.speed + t * (a + 0.5 * t * phase.jerk);
-      const auto step = static_cast<std::size_t>(x);
-      const double here = most_at(step, x - static_cast<double>(step));
-      if (speed > here * (1.0 + kLastDigits)) return false;
-    }
-  }
-  const auto reached = static_cast<std::size_t>(std::clamp(ramp.end().s * per_mm, 0.0, steps));
-  return std::ranges::all_of(most.subspan(reached + 1),
-                             [&](double here) { return to <= here * (1.0 + kLastDigits); });
-}
+  static constexpr int kParts = 8;
 
-// From lower speeds too. Who starts slower has more time on the way and is nearly everywhere
-// behind, but not where the bend opens slowly.
-bool SlowerRampsFit(std::span<const double> most, double length, double to,
-                    const PathLimits& limits) {
-  for (const double share : {0.0, 0.25, 0.5, 0.75}) {
-    if (!RampFits(most, length, most.front() * share, to, limits)) return false;
-  }
-  return true;
-}
-
-// The highest speed to which there are ramps from any speed up to most[0]; most[0] when there is
-// none above it.
-double HighestAfter(std::span<const double> most, double length, double high,
-                    const PathLimits& limits) {
-  const double start = most.front();
-  if (!(high > start)) return start;
-  const auto highest = [&](auto fits) {
+  template <class Fits>
+  double Highest(double high, Fits fits) {
     if (fits(high)) return high;
-    double low = start;
+    double low = most_.front();
     double above = high;
     constexpr int kHalvings = 6;  // to 1 % of the gain
     for (int k = 0; k < kHalvings; ++k) {
@@ -71,12 +52,95 @@ double HighestAfter(std::span<const double> most, double length, double high,
       (fits(middle) ? low : above) = middle;
     }
     return low;
-  };
-  const auto from_start = [&](double to) { return RampFits(most, length, start, to, limits); };
-  const double found = highest(from_start);  // nearly always good for slower ones
-  if (SlowerRampsFit(most, length, found, limits)) return found;
-  return highest(
-      [&](double to) { return from_start(to) && SlowerRampsFit(most, length, to, limits); });
+  }
+
+  // Between the steps, rounded down where the speeds bend upwards; from the first on they may begin
+  // flat.
+  double MostAt(std::size_t step, double share) const {
+    const double rise = most_[step + 1] - most_[step];
+    const double bend = step == 0 ? 2.0 * rise : rise - (most_[step] - most_[step - 1]);
+    return most_[step] + rise * share - std::max(bend, 0.0) * 0.5 * share * (1.0 - share);
+  }
+
+  enum class Look { kBelow, kAbove, kBeyond };  // the last step
+  Look At(const SpeedProfile& ramp, const Place& place) const {
+    const SpeedProfile::Phase& phase = ramp.phase(place.phase);
+    const double t = phase.duration_s * (place.part * place.part) / (kParts * kParts);
+    const double a = phase.start.acceleration;
+    const double x =
+        (phase.start.s + t * (phase.start.speed + t * (0.5 * a + t * phase.jerk / 6.0))) * per_mm_;
+    if (x >= steps_) return Look::kBeyond;
+    const double speed = phase.start.speed + t * (a + 0.5 * t * phase.jerk);
+    const auto step = static_cast<std::size_t>(x);
+    const double here = MostAt(step, x - static_cast<double>(step));
+    return speed > here * (1.0 + kLastDigits) ? Look::kAbove : Look::kBelow;
+  }
+
+  // Whether the ramp between these speeds keeps below.
+  bool Fits(double from, double to) {
+    const SpeedProfile ramp = SpeedProfile::OneRamp(from, to, limits_);
+    // What was too fast last is most often so again, and one place is enough to say no.
+    if (worst_.phase < ramp.phase_count() && At(ramp, worst_) == Look::kAbove) return false;
+    for (Place place; place.phase < ramp.phase_count(); ++place.phase) {
+      for (place.part = 1; place.part <= kParts; ++place.part) {
+        const Look look = At(ramp, place);
+        if (look == Look::kBeyond) return true;  // the rest lies there too
+        if (look == Look::kBelow) continue;
+        worst_ = place;
+        return false;
+      }
+    }
+    const auto reached = static_cast<std::size_t>(std::clamp(ramp.end().s * per_mm_, 0.0, steps_));
+    return std::ranges::all_of(most_.subspan(reached + 1),
+                               [&](double here) { return to <= here * (1.0 + kLastDigits); });
+  }
+
+  // From lower speeds too. Who starts slower has more time on the way and is nearly everywhere
+  // behind, but not where the bend opens slowly.
+  bool SlowerFit(double to) {
+    constexpr double kFastest = 0.75;
+    if (BoundsFit(kFastest * most_.front(), to)) return true;
+    for (const double share : {0.0, 0.25, 0.5, kFastest}) {
+      if (!Fits(most_.front() * share, to)) return false;
+    }
+    return true;
+  }
+
+  bool BoundsFit(double fastest, double to) const;
+
+  std::span<const double> most_;
+  double steps_;
+  double per_mm_;
+  double step_mm_;
+  const PathLimits& limits_;
+  Place worst_{.phase = SpeedProfile::kPhasesMax};
+};
+
+// Whether all ramps to `to` keep below that begin at `fastest` or slower, by bounds: no is only a
+// maybe. Where x of the way from the speed f is gone the time is at most x / f, so the speed is at
+// most f + j x^2 / (2 f^2), and from rest (4.5 j x^2)^(1/3). At one place it falls with f while it
+// is above 2 f and rises from there on: the larger one of the two bounds all starts between.
+bool RampsBelow::BoundsFit(double fastest, double to) const {
+  const double square_mm2 = step_mm_ * step_mm_;
+  const double growth = limits_.jerk * square_mm2 / (2.0 * fastest * fastest);
+  const double from_rest = 4.5 * limits_.jerk * square_mm2;  // cubed, after one step
+  const double start = most_[0];
+  // The first step: limits and bound both begin flat.
+  double rise = most_[1] - start;
+  double room = most_[1] - fastest - growth;
+  if (!(rise >= 0.0 && room >= 0.0 && from_rest <= start * start * start)) return false;
+  for (std::size_t k = 2; k < most_.size(); ++k) {
+    const auto square = static_cast<double>(k * k);
+    const double rise_before = std::exchange(rise, most_[k] - most_[k - 1]);
+    const double room_before = std::exchange(room, most_[k] - fastest - growth * square);
+    // Between the steps both sag.
+    const double bend = std::max(rise - rise_before, 0.0);
+    const double least = std::min(most_[k], most_[k - 1]) - 0.125 * bend;
+    if (least >= to) continue;  // no ramp is faster
+    if (!(std::min(room_before, room) >= 0.25 * std::max(0.5 * bend - growth, 0.0))) return false;
+    if (!(from_rest * square <= least * least * least)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -104,7 +168,7 @@ BendStretches StretchesOf(const BendSpeeds& speeds, double half_length_mm,
   const BendStretches steady{.start = least, .open = least, .middle = least};
   if (most[top] < kWorthwhile * most[0]) return steady;
   if (most[top] < kWorthwhile * most[kSteps]) {  // most open in the middle
-    const double high = HighestAfter(most, half_length_mm, most[kSteps], limits);
+    const double high = RampsBelow(most, half_length_mm, limits).HighestUpTo(most[kSteps]);
     if (!(high > most[0])) return steady;
     return {.start = most[0], .open = high, .middle = high};
   }
@@ -112,10 +176,10 @@ BendStretches StretchesOf(const BendSpeeds& speeds, double half_length_mm,
   std::array<double, kSteps + 1> back;
   std::ranges::reverse_copy(most, back.begin());
   const auto steps_back = kSteps - top;
-  const double high = std::min(
-      HighestAfter(most.first(top + 1), step_mm * static_cast<double>(top), most[top], limits),
-      HighestAfter(std::span(back).first(steps_back + 1), step_mm * static_cast<double>(steps_back),
-                   most[top], limits));
+  RampsBelow up(most.first(top + 1), step_mm * static_cast<double>(top), limits);
+  RampsBelow down(std::span<const double>(back).first(steps_back + 1),
+                  step_mm * static_cast<double>(steps_back), limits);
+  const double high = std::min(up.HighestUpTo(most[top]), down.HighestUpTo(most[top]));
   if (high < std::max(most[0], most[kSteps])) return steady;
   return {.count = 2, .start = most[0], .open = high, .middle = most[kSteps]};
 }

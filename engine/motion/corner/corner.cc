@@ -1,11 +1,9 @@
 #include "engine/motion/corner/corner.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "engine/motion/geometry/corner_table.h"
-#include "engine/motion/geometry/least.h"
 #include "engine/motion/kinematics/axes.h"
 
 namespace rmlcell::motion {
@@ -148,40 +146,6 @@ bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits&
     enough = enough && first * speed <= axes.speed[i] && second * square <= axes.acceleration[i];
   }
   return enough;
-}
-
-double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
-                    double enough) {
-  const double normal = machine.normal_acceleration();
-  const double jerk = machine.normal_jerk();
-  // By the normal acceleration, by the jerk and by the speed and acceleration of each axis.
-  const auto allowed = [&](double u) {
-    const PathDerivatives first = curve.FirstByLength(u);
-    const PathDerivatives second = curve.SecondByLength(u);
-    const double kappa = second.point.norm();
-    const AxisDerivatives q = ThroughHead(head, curve.At(u), first, second);
-    std::array<double, 2 + 2 * kAxisCount> speeds;
-    speeds[0] = kappa > 0.0 ? std::sqrt(normal / kappa) : HUGE_VAL;
-    speeds[1] = HUGE_VAL;
-    if (std::isfinite(jerk)) {
-      const double per_cube = curve.JerkPerCube(u);
-      if (per_cube > 0.0) speeds[1] = std::cbrt(jerk / per_cube);
-    }
-    std::ranges::copy(SpeedsWithinAxes(q, machine.axes), speeds.begin() + 2);
-    return speeds;
-  };
-  constexpr int kIntervals = 48;
-  const double least = LeastOfAll(allowed, 1.0, kIntervals, enough);
-  // Near a cusp all happens between two samples: as far about the sharpest place as the curve needs
-  // to turn.
-  const double sharpest = curve.SlowestPlace();
-  const double width = curve.Speed(sharpest) / curve.Derivative(sharpest, 2).point.norm();
-  if (!(width * kIntervals < 4.0)) return least;
-  constexpr double kWidths = 8.0;
-  const double from = std::max(0.0, sharpest - kWidths * width);
-  const double to = std::min(1.0, sharpest + kWidths * width);
-  return std::min(least, LeastOfAll([&](double u) { return allowed(from + u); }, to - from,
-                                    kIntervals, enough));
 }
 
 }  // namespace rmlcell::motion

@@ -107,29 +107,44 @@ PathDerivatives CornerCurve::Derivative(double u, int order) const {
   return {Third(tip_, u), Third(a_, u), Third(b_, u)};
 }
 
+CornerCurve::HeadPlace CornerCurve::HeadAt(double u) const {
+  if (!turns_) return {a_[0], b_[0]};
+  return {Value(a_, u), Value(b_, u)};
+}
+
+MachineVector CornerCurve::TipDerivative(double u, int order) const {
+  if (order == 1) return First(tip_, u);
+  return order == 2 ? Second(tip_, u) : Third(tip_, u);
+}
+
 PathDerivatives CornerCurve::FirstByLength(double u) const {
   const PathDerivatives d = Derivative(u, 1);
-  const double per_mm = 1.0 / (in_axes() ? way_s_ : d.point.norm());
+  if (!in_axes()) return FirstByLength(d);
+  const double per_s = 1.0 / way_s_;
+  return {d.point * per_s, d.a * per_s, d.b * per_s};
+}
+
+PathDerivatives CornerCurve::FirstByLength(const PathDerivatives& d) {
+  const double per_mm = 1.0 / d.point.norm();
   return {d.point * per_mm, d.a * per_mm, d.b * per_mm};
 }
 
 PathDerivatives CornerCurve::SecondByLength(double u) const {
-  const PathDerivatives d = Derivative(u, 1);
   const PathDerivatives e = Derivative(u, 2);
-  if (in_axes()) {
-    const double square = 1.0 / (way_s_ * way_s_);
-    return {e.point * square, e.a * square, e.b * square};
-  }
+  if (!in_axes()) return SecondByLength(Derivative(u, 1), e);
+  const double square = 1.0 / (way_s_ * way_s_);
+  return {e.point * square, e.a * square, e.b * square};
+}
+
+PathDerivatives CornerCurve::SecondByLength(const PathDerivatives& d, const PathDerivatives& e) {
   const double square = 1.0 / d.point.dot(d.point);
   const double along = d.point.dot(e.point) * square;  // d(|p'|)/du over |p'|
   return {(e.point - d.point * along) * square, (e.a - d.a * along) * square,
           (e.b - d.b * along) * square};
 }
 
-double CornerCurve::JerkPerCube(double u) const {
-  const MachineVector first = First(tip_, u);
-  const MachineVector second = Second(tip_, u);
-  const MachineVector third = Third(tip_, u);
+double CornerCurve::JerkPerCube(const MachineVector& first, const MachineVector& second,
+                                const MachineVector& third) {
   const double square = first.dot(first);
   const double speed = std::sqrt(square);
   const MachineVector cross = first.cross(second);

@@ -61,13 +61,31 @@ class CornerCurve {
   PathPose At(double u) const;
   PathDerivatives Derivative(double u, int order) const;  // by u; order 1 to 3
 
+  // What the head does at u, and the third derivative of the tip alone, as of At and Derivative.
+  struct HeadPlace {
+    double a_rad = 0.0;
+    double b_rad = 0.0;
+  };
+  HeadPlace HeadAt(double u) const;
+  MachineVector TipDerivative(double u, int order) const;
+
   // Derivatives by s, which is arc length but in_axes: first (the tangent), second (the curvature
   // vector).
   PathDerivatives FirstByLength(double u) const;
   PathDerivatives SecondByLength(double u) const;
 
   // Path jerk per speed cubed: sqrt(kappa'^2 + kappa^4).
-  double JerkPerCube(double u) const;
+  double JerkPerCube(double u) const {
+    return JerkPerCube(TipDerivative(u, 1), TipDerivative(u, 2), TipDerivative(u, 3));
+  }
+
+  // The same from the derivatives by u, for who asks for several of them at one place; s is arc
+  // length.
+  static PathDerivatives FirstByLength(const PathDerivatives& first);
+  static PathDerivatives SecondByLength(const PathDerivatives& first,
+                                        const PathDerivatives& second);
+  static double JerkPerCube(const MachineVector& first, const MachineVector& second,
+                            const MachineVector& third);
 
   // Bounds of the derivatives by u, from control points: cheap, and good on gentle curves.
   struct Bounds {

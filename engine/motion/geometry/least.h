@@ -35,40 +35,43 @@ double LeastBySections(F f, double low, double high) {
   return std::min(at_left, at_right);
 }
 
-// The least of several positive values over [0, length], to some 1e-9: `f` gives them all for a
-// place, as an array. Each is sampled at `intervals` equal steps, at least three, and is smooth
-// between them. A valley of one may be the lowest place of all though others are lower at the
-// samples about it, so each value's are looked at by themselves. Who only asks whether anything
-// falls below `enough` gets some value above that when nothing does.
-template <class F>
-double LeastOfAll(F f, double length, int intervals, double enough = HUGE_VAL) {
-  using Values = decltype(f(length));
+// Where a value is low its reciprocal, what is asked of the machine, has a peak. That bends
+// downwards, so it stays below its sides drawn on: from the sample `beside` over the one `at`.
+inline double DrawnOn(double beside, double at) { return 2.0 / at - 1.0 / beside; }
+
+// At an end there is but one side, and curves may change their bend just there: it is looked at
+// also when it is near the least.
+inline double MostAskedAtEnd(double inner, double next, double end) {
+  constexpr double kNear = 0.95;
+  return std::max(DrawnOn(inner, next), 1.0 / (kNear * end));
+}
+
+// The least of several positive values over [0, length], to some 1e-9. `values_at(k)` gives them
+// all, as an array, at the k-th of `intervals` equal steps, at least three, between which each is
+// smooth; `one` gives one of them at any place. A valley of one may be the lowest place of all
+// though others are lower at the samples about it, so each value's are looked at by themselves. Who
+// only asks whether anything falls below `enough` gets some value above that when nothing does.
+template <class ValuesAt, class One>
+double LeastOfSampled(ValuesAt values_at, One one, double length, int intervals,
+                      double enough = HUGE_VAL) {
+  using Values = decltype(values_at(0));
   constexpr double kGain = 1e-12;  // relative; less is rounding
   constexpr int kKept = 64;        // samples kept for the second look; the others are taken again
   const auto place = [&](int k) { return length * k / intervals; };
   std::array<Values, kKept + 1> kept;
   double best = HUGE_VAL;
   for (int k = 0; k <= intervals; ++k) {
-    const Values values = f(place(k));
+    const Values values = values_at(k);
     if (k <= kKept) kept[static_cast<std::size_t>(k)] = values;
     for (const double value : values) best = std::min(best, value);
   }
   const auto sample = [&](int k) {
-    return k <= kKept ? kept[static_cast<std::size_t>(k)] : f(place(k));
-  };
-  // Where a value is low its reciprocal, what is asked of the machine, has a peak. That bends
-  // downwards, so it stays below its sides drawn on: from the sample `beside` over the one `at`.
-  const auto drawn_on = [](double beside, double at) { return 2.0 / at - 1.0 / beside; };
-  // At an end there is but one side, and curves may change their bend just there: it is looked at
-  // also when it is near the least.
-  constexpr double kNear = 0.95;
-  const auto at_end = [&](double inner, double next, double end) {
-    return std::max(drawn_on(inner, next), 1.0 / (kNear * end));
+    return k <= kKept ? kept[static_cast<std::size_t>(k)] : values_at(k);
   };
   const auto look = [&](std::size_t which, double most_asked, int from, int to) {
     if (!(most_asked * std::min(best, enough) > 1.0 + kGain)) return;
-    const auto one = [&](double x) { return f(x)[which]; };
-    best = std::min(best, LeastBySections(one, place(from), place(to)));
+    best = std::min(
+        best, LeastBySections([&](double x) { return one(which, x); }, place(from), place(to)));
   };
   Values before = sample(0);
   Values here = sample(1);
@@ -77,17 +80,25 @@ double LeastOfAll(F f, double length, int intervals, double enough = HUGE_VAL) {
     for (std::size_t i = 0; i < here.size(); ++i) {
       const double a = before[i], b = here[i], c = after[i];
       if (b <= a && b <= c) {
-        look(i, drawn_on(std::max(a, c), b), k - 1, k + 1);
+        look(i, DrawnOn(std::max(a, c), b), k - 1, k + 1);
       } else if (k == 1 && a < b) {
-        look(i, at_end(c, b, a), 0, 1);
+        look(i, MostAskedAtEnd(c, b, a), 0, 1);
       } else if (k == intervals - 1 && c < b) {
-        look(i, at_end(a, b, c), k, intervals);
+        look(i, MostAskedAtEnd(a, b, c), k, intervals);
       }
     }
     before = here;
     here = after;
   }
   return best;
+}
+
+// The same of values that are only known together: `f` gives them for a place.
+template <class F>
+double LeastOfAll(F f, double length, int intervals, double enough = HUGE_VAL) {
+  return LeastOfSampled([&](int k) { return f(length * k / intervals); },
+                        [&](std::size_t which, double x) { return f(x)[which]; }, length, intervals,
+                        enough);
 }
 
 // The same of a single value.

@@ -147,6 +147,138 @@ std::optional<PathLimits> LimitsOnShortTurn(const PathPiece& path, const Head& h
   return std::nullopt;
 }
 
+// The extremes along a piece at which the head turns, searched for at the same places for all
+// limits. On a line the ends alone tell them wherever it is proven that what an axis is asked for
+// rises or falls all the way, or stays below what counts: the search would find the same to the
+// last bit.
+class AxisSearch {
+ public:
+  AxisSearch(const PathPiece& path, const Head& head, const AxisLimits& axes,
+             const AxisShares& shares, int intervals)
+      : path_(path),
+        head_(head),
+        axes_(axes),
+        shares_(shares),
+        intervals_(intervals),
+        line_(path.kind() != PathPiece::Kind::kArc),
+        start_(DerivativesAt(path, head, 0.0)),
+        end_(DerivativesAt(path, head, Place(intervals))) {
+    const double arm = head.reach_mm();
+    const double rate = std::abs(path.a_rate()) + std::abs(path.b_rate());
+    const double square = path.length() * path.length();
+    const double angles = 1.0 + std::max(std::abs(path.from().a_rad), std::abs(path.to().a_rad)) +
+                          std::max(std::abs(path.from().b_rad), std::abs(path.to().b_rad));
+    const double whirl = arm * rate * rate;
+    first_ = {.bend = whirl * rate * square,
+              .margin = kMargin * angles * (path.First(0.0).point.norm() + arm * rate)};
+    second_ = {.bend = whirl * rate * rate * square, .margin = kMargin * angles * whirl};
+  }
+
+  // The lower of `most` and what the axes allow: speed, then acceleration at that speed, jerk.
+  double Speed(double most) {
+    const auto allowed = [&](const AxisDerivatives& q) { return SpeedsAllowed(q, axes_, shares_); };
+    const double least = std::min({most, Least(allowed(start_)), Least(allowed(end_))});
+    bool known = line_;
+    for (const std::size_t i : kLinearAxes) {
+      const double bend = 0.5 * shares_.acceleration * axes_.acceleration[i];
+      known = known &&
+              EndsTell(start_.first[i], end_.first[i], first_,
+                       shares_.speed * axes_.speed[i] / least) &&
+              EndsTell(start_.second[i], end_.second[i], second_, bend / (least * least));
+    }
+    return known ? least : std::min(most, Search(allowed));
+  }
+  double Acceleration(double most, double speed) {
+    const auto allowed = [&](const AxisDerivatives& q) {
+      return AccelerationsAllowed(q, axes_, shares_, speed);
+    };
+    const double least = std::min({most, Least(allowed(start_)), Least(allowed(end_))});
+    bool known = line_;
+    for (const std::size_t i : kLinearAxes) known = known && EndsTellRoom(i, speed, least);
+    return known ? least : std::min(most, Search(allowed));
+  }
+  double Jerk(double most) {
+    const auto allowed = [&](const AxisDerivatives& q) { return JerksAllowed(q, axes_, shares_); };
+    const double least = std::min({most, Least(allowed(start_)), Least(allowed(end_))});
+    bool known = line_;
+    for (const std::size_t i : kLinearAxes) {
+      known = known && EndsTell(start_.first[i], end_.first[i], first_,
+                                shares_.acceleration * axes_.jerk[i] / least);
+    }
+    return known ? least : std::min(most, Search(allowed));
+  }
+
+ private:
+  // Of a derivative along the line: how much its own second derivative may bend it over the length,
+  // and by how much more it must change from end to end for its course to show above rounding at
+  // the place next to an end that a search looks at, 7e-10 of the length away.
+  struct Drift {
+    double bend;
+    double margin;
+  };
+  static constexpr double kMargin = 3e-5;
+  static constexpr double kSurely = 1.0 + 1e-9;
+
+  double Place(int k) const { return path_.length() * k / intervals_; }
+
+  static bool EndsTell(double start, double end, const Drift& drift, double enough) {
+    const double high = std::max(std::abs(start), std::abs(end));
+    if ((high + 0.125 * drift.bend) * kSurely <= enough) return true;
+    const double low = std::min(std::abs(start), std::abs(end));
+    return start * end > 0.0 && high - low - drift.bend > drift.margin;
+  }
+
+  // The same of (a - |q''| v^2) / |q'|: where one end has the least, what is above that by cross
+  // products is bent no more than its parts are.
+  bool EndsTellRoom(std::size_t axis, double speed, double least) const {
+    const double square = speed * speed;
+    const double most = shares_.acceleration * axes_.acceleration[axis];
+    const double along[2] = {std::abs(start_.first[axis]), std::abs(end_.first[axis])};
+    const double across[2] = {std::abs(start_.second[axis]), std::abs(end_.second[axis])};
+    const double taken = (std::max(across[0], across[1]) + 0.125 * second_.bend) * square;
+    if ((std::max(along[0], along[1]) + 0.125 * first_.bend) * least * kSurely <= most - taken) {
+      return true;
+    }
+    const double left[2] = {most - across[0] * square, most - across[1] * square};
+    const int low = left[0] * along[1] < left[1] * along[0] ? 0 : 1;
+    const double above = left[1 - low] * along[low] - left[low] * along[1 - low];
+    const double bend = square * second_.bend * along[low] + left[low] * first_.bend;
+    const double margin = square * second_.margin * along[low] + left[low] * first_.margin;
+    return left[low] > 0.0 && start_.first[axis] * end_.first[axis] > 0.0 &&
+           std::min(along[0], along[1]) > first_.bend &&
+           start_.second[axis] * end_.second[axis] > 0.0 &&
+           std::min(across[0], across[1]) > second_.bend && above - bend > margin;
+  }
+
+  template <class Allowed>
+  double Search(Allowed allowed) {
+    const int known = std::min(intervals_ + 1, static_cast<int>(kept_.size()));
+    for (; sampled_ < known; ++sampled_) {
+      kept_[static_cast<std::size_t>(sampled_)] = DerivativesAt(path_, head_, Place(sampled_));
+    }
+    return LeastOfSampled(
+        [&](int k) {
+          return allowed(k < known ? kept_[static_cast<std::size_t>(k)]
+                                   : DerivativesAt(path_, head_, Place(k)));
+        },
+        [&](std::size_t which, double s) { return allowed(DerivativesAt(path_, head_, s))[which]; },
+        path_.length(), intervals_);
+  }
+
+  const PathPiece& path_;
+  const Head& head_;
+  const AxisLimits& axes_;
+  const AxisShares& shares_;
+  int intervals_;
+  bool line_;
+  AxisDerivatives start_;
+  AxisDerivatives end_;
+  Drift first_;
+  Drift second_;
+  int sampled_ = 0;  // of kept_
+  std::array<AxisDerivatives, 65> kept_;
+};
+
 }  // namespace
 
 SpeedsOfAxes SpeedsWithinAxes(const AxisDerivatives& q, const AxisLimits& axes) {
@@ -207,21 +339,10 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   if (!(turning <= kTurningMax_rad)) return by_bounds();
   const int intervals =
       std::max(static_cast<int>(std::ceil(turning / kSampleAngle_rad)), kIntervalsMin);
-  const auto least = [&](auto allowed) {
-    return LeastOfAll([&](double s) { return allowed(DerivativesAt(path, head, s)); },
-                      path.length(), intervals);
-  };
-  limits.speed =
-      std::min(limits.speed,
-               least([&](const AxisDerivatives& q) { return SpeedsAllowed(q, axes, shares); }));
-  limits.acceleration = std::min(limits.acceleration, least([&](const AxisDerivatives& q) {
-                                   return AccelerationsAllowed(q, axes, shares, limits.speed);
-                                 }));
-  if (std::isfinite(limits.jerk)) {
-    limits.jerk =
-        std::min(limits.jerk,
-                 least([&](const AxisDerivatives& q) { return JerksAllowed(q, axes, shares); }));
-  }
+  AxisSearch search(path, head, axes, shares, intervals);
+  limits.speed = search.Speed(limits.speed);
+  limits.acceleration = search.Acceleration(limits.acceleration, limits.speed);
+  if (std::isfinite(limits.jerk)) limits.jerk = search.Jerk(limits.jerk);
   return limits;
 }
 

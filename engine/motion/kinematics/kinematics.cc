@@ -26,17 +26,6 @@ struct HeadVector {
     n = y * sin_b + z * cos_b;
   }
   MachineVector Value() const { return {x * cos_a - m * sin_a, x * sin_a + m * cos_a, n}; }
-  // Its columns: by A and by B.
-  Eigen::Matrix<double, 3, 2> Jacobian() const {
-    Eigen::Matrix<double, 3, 2> by;
-    by << -x * sin_a - m * cos_a, n * sin_a,  //
-        x * cos_a - m * sin_a, -n * cos_a,    //
-        0.0, m;
-    return by;
-  }
-  MachineVector ByAA() const { return {m * sin_a - x * cos_a, -x * sin_a - m * cos_a, 0.0}; }
-  MachineVector ByAB() const { return {n * cos_a, n * sin_a, 0.0}; }
-  MachineVector ByBB() const { return {m * sin_a, -m * cos_a, -n}; }
 };
 
 AxisValues Together(const MachinePoint& column, double a, double b) {
@@ -93,10 +82,16 @@ MachineVector GantryHead::Offset(double a_rad, double b_rad) const {
 Swing GantryHead::SwingOf(double a_rad, double b_rad, const TipRates& first,
                           const TipRates& second) const {
   const HeadVector w(*this, a_rad, b_rad);
-  const Eigen::Matrix<double, 3, 2> by = w.Jacobian();
-  return {.first = by * Eigen::Vector2d(first.a, first.b),
-          .second = by * Eigen::Vector2d(second.a, second.b) + w.ByAA() * (first.a * first.a) +
-                    w.ByAB() * (2.0 * first.a * first.b) + w.ByBB() * (first.b * first.b)};
+  // w by A, and by B; motion.md 2.4. Written out: of matrices g++ keeps the parts on the stack.
+  const double ax = -w.x * w.sin_a - w.m * w.cos_a, ay = w.x * w.cos_a - w.m * w.sin_a;
+  const double bx = w.n * w.sin_a, by = -w.n * w.cos_a, bz = w.m;
+  const double aa = first.a * first.a, ab = 2.0 * first.a * first.b, bb = first.b * first.b;
+  return {.first = {ax * first.a + bx * first.b, ay * first.a + by * first.b, bz * first.b},
+          .second = {ax * second.a + bx * second.b + (w.m * w.sin_a - w.x * w.cos_a) * aa +
+                         w.n * w.cos_a * ab + w.m * w.sin_a * bb,
+                     ay * second.a + by * second.b + (-w.x * w.sin_a - w.m * w.cos_a) * aa +
+                         w.n * w.sin_a * ab - w.m * w.cos_a * bb,
+                     bz * second.b - w.n * bb}};
 }
 
 double GantryHead::reach_mm() const {

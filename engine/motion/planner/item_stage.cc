@@ -12,17 +12,42 @@ namespace {
 // Spans timed together: each gives at most three cells, itself and two stretches of a bend.
 constexpr std::size_t kSectionMax = RampPlan::kCellsMax / 3;
 
+// To make cells of a span, and to give it out.
+constexpr int kMaking = 2;
+constexpr int kEmitting = 3;
+
 }  // namespace
+
+ItemStage::Ramps& ItemStage::Ramps::operator=(const Ramps& other) {
+  if (this == &other) return *this;
+  cells = other.cells;
+  most.reserve(other.most.capacity());
+  most = other.most;
+  for (RampCell& cell : cells) {
+    if (cell.most.empty()) continue;
+    const std::ptrdiff_t begin = cell.most.data() - other.most.data();
+    cell.most = std::span(most).subspan(static_cast<std::size_t>(begin), cell.most.size());
+  }
+  plan = other.plan;
+  plan.FindCellsAt(cells);
+  return *this;
+}
 
 const PlannedItem* ItemStage::Next() {
   while (items_.empty()) {
+    if (!MayGoOn()) return nullptr;
     if (section_left_ == 0) {
       section_left_ = SectionSize();
       if (section_left_ == 0) return nullptr;
-      PlanSection();
+      BeginSection();
+    }
+    if (!section_planned()) {
+      allowance_ -= PlanSection();
+      continue;
     }
     items_.Rewind();
     EmitMove();
+    allowance_ -= kEmitting;
   }
   const PlannedItem* item = &items_.front();  // nothing is written there before the next call
   items_.PopFront();
@@ -57,8 +82,9 @@ bool ItemStage::EndsSection(const Span& span, std::size_t last_knot) const {
   return IsBlend(span.report.passage) && !varies;
 }
 
-// Times the spans of the section that begins with the oldest one.
-void ItemStage::PlanSection() {
+// The section that begins with the oldest span: one profile times it, or ramps that PlanSection
+// finds.
+void ItemStage::BeginSection() {
   // Only a chain that begins moving can be too fast: the passes see to the rest.
   constexpr double kRoom = 1.0 + 1e-9;
   const Span& first = spans().front();
@@ -74,32 +100,43 @@ void ItemStage::PlanSection() {
     lone_ = SpeedProfile::Span(first.length, last_speed_, speeds().speed(), first.limits);
     return;
   }
-  // What lies between the knots at both ends, each with the speed of level 1 at its end. The curve
-  // behind the last knot is passed steadily, unless it has knots itself.
-  cells_.clear();
-  most_.clear();
-  most_.reserve(section_left_ * (2 * BendSpeeds::kSteps + 1));  // cells look into it
-  std::size_t knot = 0;
-  for (std::size_t k = 0; k < section_left_; ++k) {
-    const Span& span = spans()[spans().first() + k];
-    const double speed = speeds().speed(knot);
-    const bool blend = IsBlend(span.report.passage);
-    const bool free = blend && !span.in_stretches;
-    if (span.length > 0.0) {
-      cells_.push_back({span.length, span.limits, speed, free ? RampCell::kNoCap : span.cap, {}});
-    } else if (!cells_.empty() && !free) {  // a bend begins where the last one ends
-      cells_.back().end_cap = std::min(cells_.back().end_cap, span.cap);
-    }
-    if (span.in_stretches) {
-      AddCurve(span, knot);
-    } else if (blend && k + 1 < section_left_) {
-      PathLimits limits = LimitsOnCurve(legs(), span.corner_move, span.report.cut_mm);
-      limits.speed = span.cap;
-      cells_.push_back({span.curve_length, limits, speed, RampCell::kNoCap, {}});
-    }
-    knot += span.knots();
+  section_.cells.clear();
+  section_.most.clear();
+  section_.most.reserve(section_left_ * (2 * BendSpeeds::kSteps + 1));  // cells look into it
+  section_size_ = section_left_;
+  built_ = built_knots_ = 0;
+}
+
+// Times them, a little at a time: returns its work.
+int ItemStage::PlanSection() {
+  if (built_ == section_size_) return section_.plan.GoOn();
+  AddSpan(spans()[spans().first() + built_], built_ + 1 == section_size_);
+  ++built_;
+  if (built_ == section_size_ && !section_.cells.empty())
+    section_.plan.Begin(section_.cells, last_speed_);
+  return kMaking;
+}
+
+// What lies between the knots at both ends, each with the speed of level 1 at its end. The curve
+// behind the last knot is passed steadily, unless it has knots itself.
+void ItemStage::AddSpan(const Span& span, bool last) {
+  const double speed = speeds().speed(built_knots_);
+  const bool blend = IsBlend(span.report.passage);
+  const bool free = blend && !span.in_stretches;
+  if (span.length > 0.0) {
+    section_.cells.push_back(
+        {span.length, span.limits, speed, free ? RampCell::kNoCap : span.cap, {}});
+  } else if (!section_.cells.empty() && !free) {  // a bend begins where the last one ends
+    section_.cells.back().end_cap = std::min(section_.cells.back().end_cap, span.cap);
   }
-  if (!cells_.empty()) ramps_.Plan(cells_, last_speed_);
+  if (span.in_stretches) {
+    AddCurve(span, built_knots_);
+  } else if (blend && !last) {
+    PathLimits limits = LimitsOnCurve(legs(), span.corner_move, span.report.cut_mm);
+    limits.speed = span.cap;
+    section_.cells.push_back({span.curve_length, limits, speed, RampCell::kNoCap, {}});
+  }
+  built_knots_ += span.knots();
 }
 
 // The stretches of the curve behind a span whose own knot is `knot`.
@@ -110,10 +147,10 @@ void ItemStage::AddCurve(const Span& span, std::size_t knot) {
   std::span<const double> most;
   if (count <= 2 && span.stretches.open > span.stretches.start) {
     const BendSpeeds half = SpeedsAlong(legs(), span);
-    const std::size_t begin = most_.size();
-    most_.insert(most_.end(), half.most.begin(), half.most.end());
-    most_.insert(most_.end(), half.most.rbegin() + 1, half.most.rend());
-    most = std::span(most_).subspan(begin);
+    const std::size_t begin = section_.most.size();
+    section_.most.insert(section_.most.end(), half.most.begin(), half.most.end());
+    section_.most.insert(section_.most.end(), half.most.rbegin() + 1, half.most.rend());
+    most = std::span(section_.most).subspan(begin);
   }
   double begin = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -124,7 +161,7 @@ void ItemStage::AddCurve(const Span& span, std::size_t knot) {
       const std::size_t steps = 2 * BendSpeeds::kSteps / count;
       cell.most = most.subspan(k * steps, steps + 1);
     }
-    cells_.push_back(cell);
+    section_.cells.push_back(cell);
     begin = stretch.end;
   }
 }
@@ -140,19 +177,19 @@ void ItemStage::TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double t
 
 // The ramp of the present cell; another one begins at its beginning.
 const SpeedProfile& ItemStage::PresentRamp() {
-  const std::size_t ramp = ramps_.timing()[section_cell_].ramp;
+  const std::size_t ramp = section_.plan.timing()[section_cell_].ramp;
   if (ramp != place_ramp_) {
     place_ramp_ = ramp;
     place_ = {};
   }
-  return ramps_.ramps()[ramp];
+  return section_.plan.ramps()[ramp];
 }
 
 // The part of the span to `to` of its length, or to its end.
 void ItemStage::TakePart(SpeedProfile& speed, double to, bool to_end) {
   if (alone_) return TakeRamp(speed, lone_, to_end ? spans().front().length : to);
   const SpeedProfile& ramp = PresentRamp();
-  const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
+  const RampPlan::Timing& timing = section_.plan.timing()[section_cell_];
   TakeRamp(speed, ramp, to_end ? timing.to : std::min(timing.from + to, timing.to));
 }
 
@@ -161,7 +198,7 @@ void ItemStage::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to
   const SpeedProfile& ramp = PresentRamp();
   double on_ramp_to = 0.0;
   for (bool more = true; more;) {
-    const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
+    const RampPlan::Timing& timing = section_.plan.timing()[section_cell_];
     const double start = cells.at == 0 ? 0.0 : cells.end[cells.at - 1];
     const double end = cells.end[cells.at];
     const bool whole = to >= end;
@@ -171,7 +208,7 @@ void ItemStage::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to
       ++cells.at;
     }
     more = whole && cells.at < cells.count && to > end &&
-           ramps_.timing()[section_cell_].ramp == place_ramp_;
+           section_.plan.timing()[section_cell_].ramp == place_ramp_;
     if (!more) to = std::min(to, end);
   }
   TakeRamp(speed, ramp, on_ramp_to);
@@ -254,8 +291,8 @@ void ItemStage::EmitCurve(const Span& span) {
     }
     // The speed in the middle, which is an end of a stretch when there are some.
     const std::size_t cell = section_cell_ + (cells.count > 1 ? cells.count / 2 - 1 : 0);
-    const RampPlan::Timing& timing = ramps_.timing()[cell];
-    const SpeedProfile& ramp = ramps_.ramps()[timing.ramp];
+    const RampPlan::Timing& timing = section_.plan.timing()[cell];
+    const SpeedProfile& ramp = section_.plan.ramps()[timing.ramp];
     const double middle = cells.count > 1 ? timing.to : 0.5 * (timing.from + timing.to);
     curve_speed_ = ramp.At(ramp.TimeAt(middle)).speed;
   }
@@ -322,7 +359,7 @@ void ItemStage::EmitCurvePart(const Span& span, Number move, const Shape& shape,
                    machine().curve_tangential * machine().tip_acceleration_mm_s2);
       motion.limits.speed = curve_speed_;
     } else {
-      motion.limits = cells_[section_cell_].limits;  // the ramp runs through both halves
+      motion.limits = section_.cells[section_cell_].limits;  // the ramp runs through both halves
       if (span.in_stretches) {
         motion.restart_speed =
             std::min({span.stretches.start, span.stretches.open, span.stretches.middle});

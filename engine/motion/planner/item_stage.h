@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -26,12 +27,26 @@ class ItemStage {
   bool starts_too_fast() const { return starts_too_fast_; }  // see Planner::BeginMoving
   const PlannedItem* Next();                                 // see Planner::NextInPlace
 
+  // What may be worked on: a little more, or all there is.
+  void AllowMore() {
+    const Number waiting = spans().end() - spans().first();
+    allowance_ = std::min(allowance_, 0) + kWorkEach;
+    if (waiting >= kFewWait) allowance_ += kWorkEach * static_cast<int>(waiting / kFewWait);
+  }
+  void AllowAll() { allowed_to_ = spans().end(); }
+
   // The section that is given out and the items and marks that wait, a line each.
   std::string Dump() const;
 
  private:
   using Number = SpanStage::Number;
   using Move = LegStage::Move;
+
+  // What is worked with each move, in cells timed by themselves (RampPlan::GoOn): more than lines
+  // take in the mean whose bends use them up. Where more than a few spans wait it grows, so that
+  // they never become many.
+  static constexpr int kWorkEach = 14;
+  static constexpr Number kFewWait = 128;
 
   struct WaitingMark {
     std::uint64_t tag = 0;
@@ -62,9 +77,15 @@ class ItemStage {
   const Ring<Move>& moves() const { return legs().moves(); }
   const MachineLimits& machine() const { return legs().machine(); }
 
+  bool MayGoOn() const { return spans().first() < allowed_to_ || allowance_ > 0; }
   std::size_t SectionSize();
   bool EndsSection(const Span& span, std::size_t last_knot) const;
-  void PlanSection();
+  void BeginSection();
+  int PlanSection();
+  bool section_planned() const {
+    return alone_ || (built_ == section_size_ && section_.plan.done());
+  }
+  void AddSpan(const Span& span, bool last);
   void AddCurve(const Span& span, std::size_t knot);
   void TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double to);
   const SpeedProfile& PresentRamp();
@@ -91,17 +112,33 @@ class ItemStage {
 
   // The section that is given out move by move, so that a span of thousands of them takes no room.
   std::size_t section_left_ = 0;  // its spans from the oldest one on
-  bool alone_ = false;            // it has but one span, timed by lone_; else by ramps_
+  bool alone_ = false;            // it has but one span, timed by lone_; else by section_
   SpeedProfile lone_;
-  std::vector<RampCell> cells_;
-  std::vector<double> most_;  // of the bends among them: RampCell::most
-  RampPlan ramps_;
-  std::size_t section_cell_ = 0;  // the present one of cells_
-  std::size_t place_ramp_ = 0;    // of ramps_
+  std::size_t section_size_ = 0;  // spans, with those that are out
+  std::size_t built_ = 0;         // of them, whose cells are there
+  std::size_t built_knots_ = 0;
+  // A copy looks at its own cells, and they at their own speeds.
+  struct Ramps {
+    std::vector<RampCell> cells;
+    std::vector<double> most;  // of the bends among them: RampCell::most
+    RampPlan plan;
+
+    Ramps() = default;
+    Ramps(const Ramps& other) { *this = other; }
+    Ramps& operator=(const Ramps& other);
+  };
+  Ramps section_;
+  std::size_t section_cell_ = 0;  // the present one of its cells
+  std::size_t place_ramp_ = 0;    // of its ramps
   SpeedProfile::Place place_;     // on it, or on lone_: where the last part ended
   bool emitting_ = false;         // some moves of the oldest span are out already
   Number emit_move_ = 0;          // its next
   double emit_done_ = 0.0;        // length of those that are out
+
+  // Spans are timed and given out a few with each move: the rest of a batch waits for those that
+  // follow.
+  int allowance_ = 0;      // in the work of RampPlan::GoOn
+  Number allowed_to_ = 0;  // spans before it are not counted
 
   Ring<WaitingMark> marks_;
   Ring<PlannedItem> items_;  // final, not yet taken: those of one move and the curve behind it

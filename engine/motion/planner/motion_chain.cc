@@ -9,15 +9,44 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits, bool
     spans().BeginAt(speed);
     items_.BeginAt(speed);
   }
-  if (work) Work();
+  if (!spreads_work_) {
+    if (work) Finish();
+  } else if (!move.fly) {
+    Finish();
+  } else {
+    items_.AllowMore();
+    if (work || spans().CanResolve()) Work();
+  }
 }
 
+// A batch of legs is decided at once, and takes a hundred times as long as one: what it gives to do
+// is done a little with each of the moves that follow.
 void MotionChain::Work() {
+  legs().Settle();
+  // A corner at which the head turns takes ten times as long as one of two lines: one of those, two
+  // of these.
+  if (spans().Resolve(false) && spans().AllPlain()) spans().Resolve(false);
+  spans().Settle();
+  if (IsFull()) ResolveAll();
+  if (IsFull()) Starve();
+}
+
+// The machine stands behind the last move: all that was appended comes out.
+void MotionChain::Finish() {
+  ResolveAll();
+  if (IsFull()) Starve();
+  items_.AllowAll();
+}
+
+void MotionChain::ResolveAll() {
   legs().Settle();
   while (spans().Resolve(false)) {
   }
   spans().Settle();
-  if (legs().moves().end() - spans().OldestOpenMove() >= legs().window()) Starve();
+}
+
+bool MotionChain::IsFull() const {
+  return legs().moves().end() - spans().OldestOpenMove() >= legs().window();
 }
 
 // The window is full: what is there must do.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -11,7 +12,8 @@ namespace rmlcell::motion {
 // item_stage.h). This decides when each has something to do.
 class MotionChain final {
  public:
-  MotionChain(const MachineLimits& machine, std::size_t window) : items_(machine, window) {}
+  MotionChain(const MachineLimits& machine, std::size_t window)
+      : items_(machine, window), spreads_work_(std::isfinite(machine.tip_jerk_mm_s3)) {}
 
   PathLimits LimitsFor(const MoveCommand& move) const { return legs().LimitsFor(move); }
 
@@ -25,7 +27,7 @@ class MotionChain final {
   bool starts_too_fast() const { return items_.starts_too_fast(); }
   void Mark(std::uint64_t tag) { items_.AddMark(tag); }
   void Stop() {
-    if (legs().End()) Work();
+    if (legs().End()) Finish();
   }
   const PlannedItem* Next() { return items_.Next(); }  // see Planner::NextInPlace
 
@@ -46,9 +48,13 @@ class MotionChain final {
   const LegStage& legs() const { return spans().leg_stage(); }
 
   void Work();
+  void Finish();
+  void ResolveAll();
+  bool IsFull() const;
   void Starve();
 
-  ItemStage items_;  // which owns the stage before it, and that the first one
+  ItemStage items_;    // which owns the stage before it, and that the first one
+  bool spreads_work_;  // over the moves: without a limit on jerk a batch is done at once sooner
   std::uint64_t starved_ = 0;
 };
 

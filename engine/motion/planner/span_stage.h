@@ -26,6 +26,10 @@ class SpanStage {
   // The end of the next leg becomes a corner with its curve, and its run spans, where that can be
   // decided. False: not yet.
   bool Resolve(bool accept_what_is_there);
+  // Whether the next leg may be ready for that.
+  bool CanResolve() const { return leg_stage_.knows_speed_of(leg_stage_.next()); }
+  // Whether all corners that wait are of two lines and passed with a steady head.
+  bool AllPlain() const { return curves_.empty(); }
   // The passes over spans, when there is enough for them to do; else what is known must do.
   void Settle() {
     if (speeds_.ends_at_rest() || speeds_.open_count() >= speeds_next_) {

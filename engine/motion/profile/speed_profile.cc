@@ -55,19 +55,57 @@ struct ValueAndSlope {
   double slope;
 };
 
-// Length of a ramp between `low` and low + change, and its derivative by change.
-ValueAndSlope RampLengthBy(double low, double change, const PathLimits& limits) {
+// Length of a ramp between `low` and low + change.
+double RampLengthBy(double low, double change, const PathLimits& limits) {
   const double a = limits.acceleration;
   const double j = limits.jerk;
   const double mean = low + 0.5 * change;
-  if (std::isinf(j)) return {mean * change / a, (low + change) / a};
-  if (change <= a * a / j) {
-    const double root = std::sqrt(change / j);
-    return {2.0 * mean * root, change > 0.0 ? root + mean / (root * j) : HUGE_VAL};
-  }
-  const double time = change / a + a / j;
-  return {mean * time, 0.5 * time + mean / a};
+  if (std::isinf(j)) return mean * change / a;
+  if (change <= a * a / j) return 2.0 * mean * std::sqrt(change / j);
+  return mean * (change / a + a / j);
 }
+
+// The same with its derivative by y, where the change grows with y^2: smooth in y, increasing and
+// convex. With a limit on jerk.
+class RampLengthByRoot {
+ public:
+  explicit RampLengthByRoot(const PathLimits& limits)
+      : a_(limits.acceleration),
+        j_(limits.jerk),
+        short_(a_ * a_ / j_),
+        edge_(a_ / j_),
+        root_(std::sqrt(j_)) {}
+
+  // From `top` up by y^2.
+  ValueAndSlope Up(double top, double y) const {
+    const double up = y * y;
+    const double mean = top + 0.5 * up;
+    if (up <= short_) {
+      // The slope is that of (2 top + y^2) y / sqrt(j).
+      return {2.0 * mean * std::sqrt(up / j_), (2.0 * top + 3.0 * up) / root_};
+    }
+    const double time = up / a_ + edge_;
+    return {mean * time, (0.5 * time + mean / a_) * 2.0 * y};
+  }
+  // Down by `drop` + y^2 to `low`.
+  ValueAndSlope Down(double low, double drop, double y) const {
+    const double down = drop + y * y;
+    const double mean = low + 0.5 * down;
+    const bool moves = down > 0.0 && y > 0.0;
+    if (down <= short_) {
+      const double root = std::sqrt(down / j_);
+      return {2.0 * mean * root, moves ? (root + mean / (root * j_)) * 2.0 * y : 0.0};
+    }
+    const double time = down / a_ + edge_;
+    return {mean * time, moves ? (0.5 * time + mean / a_) * 2.0 * y : 0.0};
+  }
+
+ private:
+  double a_, j_;
+  double short_;  // changes up to here never reach the acceleration
+  double edge_;
+  double root_;
+};
 
 // How far a profile between `top` and top - drop rises above the top when it never cruises.
 double PeakRise(double length, double top, double drop, const PathLimits& limits) {
@@ -81,19 +119,26 @@ double PeakRise(double length, double top, double drop, const PathLimits& limits
   }
   // By y = sqrt(rise) both ramp lengths are smooth, increasing and convex.
   const double low = top - drop;
-  const auto both = [&](double y) {
-    const double up = y * y;
-    const double down = drop + up;
-    const ValueAndSlope from_top = RampLengthBy(top, up, limits);
-    const double top_slope =
-        !std::isinf(j) && up <= a * a / j
-            ? (2.0 * top + 3.0 * up) / std::sqrt(j)  // of (2 top + y^2) y / sqrt(j)
-            : from_top.slope * 2.0 * y;
-    const ValueAndSlope from_low = RampLengthBy(low, down, limits);
-    const double low_slope = down > 0.0 && y > 0.0 ? from_low.slope * 2.0 * y : 0.0;
-    return ValueAndSlope{from_top.value + from_low.value, top_slope + low_slope};
-  };
-  const double y = Root(both, length, std::sqrt(std::max(limits.speed - top, 0.0)));
+  const double high = std::sqrt(std::max(limits.speed - top, 0.0));
+  double y = 0.0;
+  if (std::isinf(j)) {
+    const auto both = [&](double root) {
+      const double up = root * root;
+      const double down = drop + up;
+      const double low_slope = down > 0.0 && root > 0.0 ? (low + down) / a * 2.0 * root : 0.0;
+      return ValueAndSlope{(top + 0.5 * up) * up / a + (low + 0.5 * down) * down / a,
+                           (top + up) / a * 2.0 * root + low_slope};
+    };
+    y = Root(both, length, high);
+  } else {
+    const RampLengthByRoot ramp(limits);
+    const auto both = [&](double root) {
+      const ValueAndSlope up = ramp.Up(top, root);
+      const ValueAndSlope down = ramp.Down(low, drop, root);
+      return ValueAndSlope{up.value + down.value, up.slope + down.slope};
+    };
+    y = Root(both, length, high);
+  }
   return y * y;
 }
 
@@ -149,6 +194,15 @@ SpeedProfile SpeedProfile::Span(double length, double v0, double v1, const PathL
   profile.end_ = {std::max(length, 0.0), v1, 0.0};
   PathState state{0.0, v0, 0.0};
   if (length > 0.0) profile.AddSpan(state, length, v1, limits);
+  return profile;
+}
+
+SpeedProfile SpeedProfile::OneRamp(double v0, double v1, const PathLimits& limits) {
+  SpeedProfile profile;
+  profile.peak_speed_ = std::max(v0, v1);
+  profile.end_ = {RampLength(v0, v1, limits), v1, 0.0};
+  PathState state{0.0, v0, 0.0};
+  profile.AddRamp(state, std::abs(v1 - v0), v1 < v0 ? -1.0 : 1.0, v1, limits);
   return profile;
 }
 
@@ -214,8 +268,8 @@ void SpeedProfile::AddSpan(PathState& state, double end_s, double v1, const Path
   // The peak as a rise above the higher end: where the two are close, their difference has no
   // digits.
   double rise = std::max(limits.speed - top, 0.0);
-  double cruise = length - RampLength(top, top + rise, limits) -
-                  RampLengthBy(top - drop, drop + rise, limits).value;
+  double cruise =
+      length - RampLength(top, top + rise, limits) - RampLengthBy(top - drop, drop + rise, limits);
   if (cruise < 0.0) {
     rise = direct >= length * (1.0 - kRoundingRoom) ? 0.0 : PeakRise(length, top, drop, limits);
     cruise = 0.0;
@@ -277,10 +331,30 @@ PathState SpeedProfile::At(double t_s) const {
 
 void SpeedProfile::Advance(Place& place, double s) const {
   place.s = s;
+  place.time_s = Place::kNotAsked;
   while (place.phase < count_ && s >= PhaseEnd(place.phase)) {
     place.phase_start_s += phases_[static_cast<std::size_t>(place.phase)].duration_s;
     ++place.phase;
   }
+}
+
+// Within a phase v^2 changes by twice the acceleration for each mm, and that is largest at one of
+// its ends.
+double SpeedProfile::SpeedAtMost(const Place& place) const {
+  if (place.phase >= count_) return end_.speed;
+  const Phase& phase = phases_[static_cast<std::size_t>(place.phase)];
+  const double from = phase.start.acceleration;
+  const double to = from + phase.duration_s * phase.jerk;
+  const bool last = place.phase + 1 == count_;
+  const PathState& end = last ? end_ : phases_[static_cast<std::size_t>(place.phase) + 1].start;
+  // Up from the start and down from the end; a little more, for what rounding leaves of places and
+  // ends.
+  constexpr double kMore = 1.0 + 1e-10;
+  const double up = std::max({from, to, 0.0}) * std::max(place.s - phase.start.s, 0.0);
+  const double down = std::max({-from, -to, 0.0}) * std::max(end.s - place.s, 0.0);
+  const double square = std::min(phase.start.speed * phase.start.speed + 2.0 * up,
+                                 end.speed * end.speed + 2.0 * down);
+  return std::sqrt(square) * kMore;
 }
 
 // How long after the start of a phase it has gone `wanted`.
@@ -334,6 +408,7 @@ SpeedProfile SpeedProfile::ChangingPartTo(Place& place, double s_to) const {
   const double t_from = TimeOf(begin);
   Advance(place, s_to);
   const double t_to = s_to >= end_.s ? duration_s_ : TimeOf(place);
+  if (s_to < end_.s) place.time_s = t_to;  // where the next part begins
   SpeedProfile part;
   double time = begin.phase_start_s;
   for (int k = begin.phase; k < count_ && time < t_to; ++k) {

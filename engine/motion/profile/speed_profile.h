@@ -42,6 +42,9 @@ class SpeedProfile {
   // from v0 to v1 fits into the length (see Reach).
   static SpeedProfile Span(double length, double v0, double v1, const PathLimits& limits);
 
+  // The ramp from `v0` to `v1`, over the length that it takes.
+  static SpeedProfile OneRamp(double v0, double v1, const PathLimits& limits);
+
   // From any state on, to speed `v1` at `end_s`: first the acceleration is brought to zero, then
   // over to the speed of `limits`, which may be below the present one (override, motion.md
   // section 6). Where the way left is too short for that the present speed is kept for as long as
@@ -73,8 +76,13 @@ class SpeedProfile {
     double s = 0.0;
     int phase = 0;               // the one that s lies in
     double phase_start_s = 0.0;  // when it begins
+    double time_s = kNotAsked;   // when s is passed, once a part has ended there
+    static constexpr double kNotAsked = -1.0;
   };
   void Advance(Place& place, double s) const;
+  // The speed there, as At(TimeAt(s)) has it; and what it is at most, without looking for the time.
+  double SpeedAt(const Place& place) const { return At(TimeOf(place)).speed; }
+  double SpeedAtMost(const Place& place) const;
   // Sets `part` to the part from `place` to `s_to`, where `place` is afterwards.
   [[gnu::always_inline]] void PartTo(Place& place, double s_to, SpeedProfile& part) const {
     const Phase& phase = phases_[static_cast<std::size_t>(place.phase)];
@@ -82,6 +90,7 @@ class SpeedProfile {
         s_to < PhaseEnd(place.phase) && place.s >= phase.start.s) {
       const double length = s_to - place.s;
       place.s = s_to;
+      place.time_s = Place::kNotAsked;
       part.SetSteady(length, phase.start.speed);
     } else {
       part = ChangingPartTo(place, s_to);
@@ -133,6 +142,7 @@ class SpeedProfile {
     return index + 1 < count_ ? phases_[static_cast<std::size_t>(index) + 1].start.s : end_.s;
   }
   double TimeOf(const Place& place) const {
+    if (place.time_s != Place::kNotAsked) return place.time_s;
     if (place.phase >= count_) return place.phase_start_s;
     const Phase& phase = phases_[static_cast<std::size_t>(place.phase)];
     return place.phase_start_s + TimeWithin(phase, place.s - phase.start.s);

@@ -124,6 +124,8 @@ TEST(ItemStageDump, SectionsAreGivenOutMoveByMove) {
   }
   EXPECT_EQ(items.Next(), nullptr);  // no speed of a span is known
   spans.Settle();
+  EXPECT_EQ(items.Next(), nullptr);  // nothing may be worked on yet
+  items.AllowAll();
   EXPECT_EQ(items.Dump(), "mark 4: waits for move 2\n");
   EXPECT_EQ(std::get<PlannedMotion>(*items.Next()).tag, 7U);
   EXPECT_EQ(items.Dump(), "section: 1 spans, from 0.000, one profile\nmark 4: waits for move 2\n");
@@ -160,6 +162,7 @@ TEST(ItemStageDump, SectionsHaveAsManySpansAsThereIsRoomFor) {
   while (spans.Resolve(false)) {
   }
   spans.Settle();
+  items.AllowAll();
   ASSERT_NE(items.Next(), nullptr);
   EXPECT_TRUE(items.Dump().starts_with("section: 852 spans, ")) << items.Dump().substr(0, 60);
 }
