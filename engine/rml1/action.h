@@ -52,7 +52,7 @@ class ActionQueue {
  public:
   static constexpr std::size_t kCapacity = 40;
 
-  bool empty() const { return head_ == end_; }
+  bool empty() const { return end_ == 0; }
   const Action& front() const { return actions_[head_]; }
   std::span<const Action> all() const { return {actions_.data() + head_, end_ - head_}; }
   void Pop() {

@@ -24,11 +24,15 @@ MotionUse UseOfThreeAxis(const Point& from, const Point& to, bool same_xy, doubl
   return std::min(from.z, to.z) < surface_z ? MotionUse::kCut : MotionUse::kTravel;
 }
 
+double FastestXY(const Profile& profile) {
+  return std::max(profile.xy_speeds.maximum_mm_s, profile.travel_speed);
+}
+
 }  // namespace
 
 double LimitedSpeed(const Profile& profile, const Point& from, const Point& to,
                     double wanted_mm_s) {
-  const double xy_highest = std::max(profile.xy_speeds.maximum_mm_s, profile.travel_speed);
+  const double xy_highest = FastestXY(profile);
   const double z_highest = profile.z_speeds.maximum_mm_s;
   // No axis goes further than the tool.
   if (wanted_mm_s <= std::min(xy_highest, z_highest) && from.a == to.a) return wanted_mm_s;
@@ -49,26 +53,31 @@ double LimitedSpeed(const Profile& profile, const Point& from, const Point& to,
 Carriage::Carriage(const Profile& profile)
     : range_{profile.x, profile.y, profile.z},
       inside_(range_.WithoutFaces()),
-      zero_(motion::kTipLengthZero_mm * profile.units_per_mm) {
+      zero_(motion::kTipLengthZero_mm * profile.units_per_mm),
+      slowest_axis_(std::min(FastestXY(profile), profile.z_speeds.maximum_mm_s)) {
   Place({profile.origin_x, profile.origin_y, profile.z.high, 0.0});
 }
 
 void Carriage::Place(const Point& at) {
   physical_ = logical_ = range_.Nearest(at);
   outside_ = parked_ = false;
+  Settle();
 }
 
-void Carriage::ToToolHeight(const Context& context) {
-  const Registers& registers = context.registers;
-  const double z = registers.tool_z(context.profile);
+void Carriage::ChangeToolHeight(Context context, double z) {
   const double before = logical_.z;
   logical_.z = z;
-  if (registers.tool_down) NoteLostDepth(context, before);
-  if (!outside_ && logical_ == physical_) {  // it is there, as nearly always
+  if (context.registers.tool_down) NoteLostDepth(context, before);
+  if (!outside_ && logical_ == physical_) {
     parked_ = false;
-    return;
+  } else if (range_.HasXY(logical_)) {
+    BringToToolHeight(context);
   }
-  if (!range_.HasXY(logical_)) return;
+  Settle();
+}
+
+void Carriage::BringToToolHeight(const Context& context) {
+  const Registers& registers = context.registers;
   Point to = range_.Nearest(logical_);
   to.a = physical_.a;
   bool no_dwell = false;
@@ -78,15 +87,20 @@ void Carriage::ToToolHeight(const Context& context) {
   PauseAtEntry(context, MayPauseXY(context));
   Go(context, to,
      {.speed_mm_s = registers.z_speed,
-      .use = UseOfHeight(physical_.z, z, registers.tool_down),
+      .use = UseOfHeight(physical_.z, logical_.z, registers.tool_down),
       .dwells = true});
 }
 
-void Carriage::MoveXY(const Context& context, double x, double y) {
+void Carriage::MoveXYCut(Context context, double x, double y) {
+  const Point to{x, y, logical_.z, logical_.a};
+  if (SamePoint(logical_, to, zero_)) return;
+  FollowXY(context, to);
+  Settle();
+}
+
+void Carriage::FollowXY(const Context& context, const Point& to) {
   const Registers& registers = context.registers;
   const Point from = logical_;
-  const Point to{x, y, from.z, from.a};
-  if (SamePoint(from, to, zero_)) return;
   logical_ = to;
   if (range_.HasXY(from) && range_.HasXY(to)) return GoTwoAxis(context, to);
   const double length = DistanceXYZ(from, to);
@@ -120,16 +134,7 @@ void Carriage::MoveXY(const Context& context, double x, double y) {
 void Carriage::GoTwoAxis(const Context& context, const Point& to) {
   Point end = range_.Nearest(to);
   end.a = physical_.a;
-  if (context.registers.tool_down) {
-    Go(context, end,
-       {.speed_mm_s = context.registers.xy_speed,
-        .use = MotionUse::kCut,
-        .chain = Chain::kToolDown,
-        .dwells = true});
-  } else {
-    Go(context, end,
-       {.speed_mm_s = context.profile.travel_speed, .chain = Chain::kToolUp, .rapid = true});
-  }
+  Go(context, end, StrokeXY(context));
 }
 
 // The tool goes up at the boundary, so that it can come back over the work (RML1-5A.30, 5A.32).
@@ -143,12 +148,14 @@ void Carriage::LeaveXY(const Context& context) {
      {.speed_mm_s = context.registers.z_speed, .use = MotionUse::kRetract, .dwells = true});
 }
 
-void Carriage::MoveXYZ(const Context& context, const Point& to) {
+void Carriage::MoveXYZCut(Context context, Point to) {
   if (SamePoint(logical_, to, zero_)) return;
-  // Most lines: the tool is where the commands are, and nothing is cut off.
-  const bool free =
-      !outside_ && logical_ == physical_ && inside_.HasWithin(logical_) && inside_.HasWithin(to);
-  if (free) {
+  FollowXYZ(context, to);
+  Settle();
+}
+
+void Carriage::FollowXYZ(const Context& context, const Point& to) {
+  if (free_ && inside_.HasWithin(to)) {
     logical_ = to;
     parked_ = false;
     GoThreeAxis(context, to, true);
@@ -259,6 +266,7 @@ void Carriage::MoveZ(const Context& context, double z) {
       .use = UseOfThreeAxis(physical_, to, true, context.registers.surface_z)});
   logical_.z = z;
   parked_ = false;
+  Settle();
 }
 
 void Carriage::RaiseForInitialise(const Context& context) {
@@ -285,21 +293,7 @@ void Carriage::GoHome(const Context& context) {
 // Returns whether there was a motion.
 bool Carriage::Go(const Context& context, const Point& to, const Stroke& stroke) {
   if (SamePoint(physical_, to, zero_)) return false;
-  Registers& registers = context.registers;
-  if (stroke.starts_spindle && registers.rotation && !registers.spindle_on) {
-    registers.spindle_on = true;
-    context.queue.Push(Action::Kind::kSpindleStart).rpm = registers.rpm;
-  }
-  if (stroke.dwells && registers.dwell_ms > 0) {
-    context.queue.Push(Action::Kind::kDwell).dwell_ms = registers.dwell_ms;
-  }
-  Action& action = context.queue.Push(Action::Kind::kMotion);
-  action.to = to;
-  action.speed_mm_s = LimitedSpeed(context.profile, physical_, to, stroke.speed_mm_s);
-  action.rapid = stroke.rapid;
-  action.use = stroke.use;
-  action.chain = stroke.chain;
-  physical_ = to;
+  Drive(context, to, stroke);
   return true;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -25,6 +27,9 @@ struct LostCut {
   Extent z;
 };
 
+// The highest speed up to `wanted` at which no axis exceeds its own; motion.md section 7.
+double LimitedSpeed(const Profile& profile, const Point& from, const Point& to, double wanted_mm_s);
+
 // The axes of the device: turns commanded points into physical motions.
 //
 // It keeps two positions, in device units from the machine's zero. The logical one follows the
@@ -46,12 +51,34 @@ class Carriage {
 
   // Two-dimensional commands: brings the tool to the height of its state. While X or Y lies
   // outside, only the logical height changes (RML1-5A.33, 5A.37).
-  void ToToolHeight(const Context& context);
+  void ToToolHeight(const Context& context) {
+    const double z = context.registers.tool_z(context.profile);
+    if (!free_ || z != logical_.z) return ChangeToolHeight(context, z);
+    parked_ = false;
+  }
   // Then to one point, at the height and speed of the tool state (RML1-5A.30 to 5A.32).
-  void MoveXY(const Context& context, double x, double y);
+  [[gnu::always_inline]] void MoveXY(const Context& context, double x, double y) {
+    const bool free = free_ && inside_.HasXYWithin(x, y) && IsAside(x, y);
+    if (!free) return MoveXYCut(context, x, y);
+    logical_.x = x;
+    logical_.y = y;
+    Drive(context, logical_, StrokeXY(context));
+  }
 
   // Three-axis commands: one set, clipped at the six faces (RML1-5A.01 to 5A.29, 5A.34).
-  void MoveXYZ(const Context& context, const Point& to);
+  [[gnu::always_inline]] void MoveXYZ(const Context& context, const Point& to) {
+    const bool free = free_ && inside_.HasWithin(to) && IsAside(to.x, to.y);
+    if (!free) return MoveXYZCut(context, to);
+    parked_ = false;
+    const Registers& registers = context.registers;
+    const bool cuts = std::min(logical_.z, to.z) < registers.surface_z;
+    logical_ = to;
+    Drive(context, to,
+          {.speed_mm_s = registers.z_speed,
+           .use = cuts ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
+           .chain = Chain::kThreeAxis,
+           .dwells = true});
+  }
 
   // !ZM (RML1-3C.25, 3C.37).
   void MoveZ(const Context& context, double z);
@@ -90,7 +117,33 @@ class Carriage {
     bool starts_spindle = true;
   };
 
+  static Stroke StrokeXY(const Context& context) {
+    if (!context.registers.tool_down) {
+      return {.speed_mm_s = context.profile.travel_speed, .chain = Chain::kToolUp, .rapid = true};
+    }
+    return {.speed_mm_s = context.registers.xy_speed,
+            .use = machine::MotionUse::kCut,
+            .chain = Chain::kToolDown,
+            .dwells = true};
+  }
+
+  // Whether X or Y alone is further than what counts as no way: no way is shorter than along an
+  // axis, nor its root of a sum of squares, however it is rounded.
+  bool IsAside(double x, double y) const {
+    return std::abs(x - logical_.x) > zero_ || std::abs(y - logical_.y) > zero_;
+  }
+  // Behind all that may change what it is.
+  void Settle() { free_ = !outside_ && logical_ == physical_ && inside_.HasWithin(logical_); }
+  // What they take are values, so that nothing has to be in memory for the lines that are free.
+  void ChangeToolHeight(Context context, double z);
+  void BringToToolHeight(const Context& context);
+  void MoveXYCut(Context context, double x, double y);
+  void MoveXYZCut(Context context, Point to);
+  void FollowXY(const Context& context, const Point& to);
+  void FollowXYZ(const Context& context, const Point& to);
+
   bool Go(const Context& context, const Point& to, const Stroke& stroke);
+  void Drive(const Context& context, const Point& to, const Stroke& stroke);
   void GoTwoAxis(const Context& context, const Point& to);
   bool GoThreeAxis(const Context& context, const Point& to, bool dwells);
   struct Recovery {
@@ -113,10 +166,14 @@ class Carriage {
   CuttingRange range_;
   CuttingRange inside_;  // of that, clear of its faces
   double zero_;          // device units: shorter motions are none
+  double slowest_axis_;  // mm/s, of X, Y and Z at their fastest
   Point logical_;
   Point physical_;
   bool outside_ = false;  // the commands have left the range and not come back to it
-  bool parked_ = false;   // a two-axis motion left the tool at its boundary, at a safe height
+  // The tool is where the commands are, and clear of all faces: a line to another place of that
+  // kind is what it says. Nearly all lines are.
+  bool free_ = false;
+  bool parked_ = false;  // a two-axis motion left the tool at its boundary, at a safe height
   double clipped_length_ = 0.0;
   std::uint64_t clipped_sets_ = 0;
   LostCut lost_;
@@ -125,7 +182,28 @@ class Carriage {
   std::size_t lost_count_ = 0;
 };
 
-// The highest speed up to `wanted` at which no axis exceeds its own; motion.md section 7.
-double LimitedSpeed(const Profile& profile, const Point& from, const Point& to, double wanted_mm_s);
+// Precondition: it is not there. Always inline: the stroke is known where it is called.
+[[gnu::always_inline]] inline void Carriage::Drive(const Context& context, const Point& to,
+                                                   const Stroke& stroke) {
+  Registers& registers = context.registers;
+  if (stroke.starts_spindle && registers.rotation && !registers.spindle_on) {
+    registers.spindle_on = true;
+    context.queue.Push(Action::Kind::kSpindleStart).rpm = registers.rpm;
+  }
+  if (stroke.dwells && registers.dwell_ms > 0) {
+    context.queue.Push(Action::Kind::kDwell).dwell_ms = registers.dwell_ms;
+  }
+  // No axis goes further than the tool.
+  const bool any_axis_can = stroke.speed_mm_s <= slowest_axis_ && physical_.a == to.a;
+  Action& action = context.queue.Push(Action::Kind::kMotion);
+  action.to = to;
+  action.speed_mm_s = any_axis_can
+                          ? stroke.speed_mm_s
+                          : LimitedSpeed(context.profile, physical_, action.to, stroke.speed_mm_s);
+  action.rapid = stroke.rapid;
+  action.use = stroke.use;
+  action.chain = stroke.chain;
+  physical_ = to;
+}
 
 }  // namespace rmlcell::rml1

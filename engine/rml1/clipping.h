@@ -25,9 +25,11 @@ struct CuttingRange {
            p.y >= y.low - kFaceTolerance && p.y <= y.high + kFaceTolerance;
   }
   // Not beyond a face, nor on it.
+  bool HasXYWithin(double px, double py) const {
+    return px > x.low && px < x.high && py > y.low && py < y.high;
+  }
   bool HasWithin(const Point& p) const {
-    return p.x > x.low && p.x < x.high && p.y > y.low && p.y < y.high && p.z > z.low &&
-           p.z < z.high;
+    return HasXYWithin(p.x, p.y) && p.z > z.low && p.z < z.high;
   }
   // The same without what is so close to a face that it counts as on it.
   CuttingRange WithoutFaces() const;

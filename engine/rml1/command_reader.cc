@@ -2,18 +2,8 @@
 
 #include <algorithm>
 
-#include "engine/rml1/receive_path.h"
-
 namespace rmlcell::rml1 {
 namespace {
-
-constexpr unsigned char kCarriageReturn = '\r';
-constexpr unsigned char kLineFeed = '\n';
-
-bool IsBlank(unsigned char byte) { return byte == ' ' || byte == '\t'; }
-bool IsTerminator(unsigned char byte) {
-  return byte == ';' || byte == kCarriageReturn || byte == kLineFeed;
-}
 
 // The letter in upper case, or 0. Bytes of 0x80 or more are no letters (RML1-1.09, RML1-1.10).
 char LetterOf(unsigned char byte) {
@@ -32,11 +22,23 @@ const char* SkipSeparators(const char* at, const char* end, bool& comma) {
   for (; at != end; ++at) {
     if (*at == ',' && !comma) {
       comma = true;
-    } else if (!IsBlank(static_cast<unsigned char>(*at))) {
+    } else if (*at != ' ' && *at != '\t') {
       break;
     }
   }
   return at;
+}
+
+// A whole number of six digits at most. Returns where it ends; nullptr: it is none. Precondition: a
+// sign and eight bytes can be read. Always inline: a set has three.
+[[gnu::always_inline]] inline const char* ReadNumber(const char* at, double& number) {
+  constexpr unsigned kDigitsMax = 6;
+  const std::ptrdiff_t negative = *at == '-' ? 1 : 0;
+  const DigitWord word(at + negative);
+  const unsigned count = word.count();
+  if (count - 1U >= kDigitsMax) return nullptr;
+  number = static_cast<double>((word.value(count) ^ -negative) + negative);  // never -0
+  return at + negative + count;
 }
 
 Reading Nothing() { return {}; }
@@ -70,7 +72,7 @@ Reading CommandReader::Put(unsigned char byte, std::int64_t offset) {
     case State::kAxisNumber:
       return InAxisNumber(byte, offset);
     case State::kAxisSkip:
-      return IsTerminator(byte) ? EndList() : Nothing();
+      return EndsStatement(byte) ? EndList() : Nothing();
   }
   return Nothing();
 }
@@ -96,54 +98,50 @@ bool CommandReader::ReadParameter(ByteSpan& bytes) {
   return true;
 }
 
-bool CommandReader::ReadSet(ByteSpan& bytes, std::array<double, 3>& set) {
-  // Sign, six digits and the byte behind them: so many need no look at the end of the bytes.
-  constexpr std::ptrdiff_t kRoom = 8;
-  constexpr std::ptrdiff_t kDigitsMax = 6;
-  const char* at = bytes.at();
-  const char* const end = bytes.end();
+// Parted by one comma or blank each, as by nearly all who write them; else with any separators. By
+// itself: what it needs in registers the reading around it does not.
+[[gnu::noinline]] const char* CommandReader::ReadNumbers(const char* at, const char* end,
+                                                         std::array<double, 3>& set) const {
+  constexpr std::ptrdiff_t kRoom = 3 * (2 + DigitWord::kBytes);  // separator, sign and digits
+  if (end - at < kRoom) return nullptr;
+  const auto separates = [](char byte) { return byte == ',' || byte == ' '; };
+  const char* behind = at;
+  if (state_ == State::kBetween) {
+    behind += *at == ' ' ? 1 : 0;
+  } else if (separates(*at)) {
+    ++behind;
+  } else {
+    return ReadApart(at, end, set);
+  }
+  behind = ReadNumber(behind, set[0]);
+  if (behind == nullptr || !separates(*behind)) return ReadApart(at, end, set);
+  behind = ReadNumber(behind + 1, set[1]);
+  if (behind == nullptr) return ReadApart(at, end, set);
+  if (row_->values == 3) {
+    if (!separates(*behind)) return ReadApart(at, end, set);
+    behind = ReadNumber(behind + 1, set[2]);
+    if (behind == nullptr) return ReadApart(at, end, set);
+  }
+  const bool ends = *behind == ';' || (*behind != '.' && ReceivePath::AlwaysPasses(*behind));
+  return ends ? behind : nullptr;
+}
+
+const char* CommandReader::ReadApart(const char* at, const char* end,
+                                     std::array<double, 3>& set) const {
+  constexpr std::ptrdiff_t kRoom = 1 + DigitWord::kBytes;  // a sign, and the digits
   bool separated = state_ == State::kBetween;
   bool comma = comma_ || count_ == 0;
   for (std::size_t i = 0; i < row_->values; ++i) {
-    const char* const before = at;
-    at = SkipSeparators(at, end, comma);
-    if (end - at < kRoom || (at == before && !separated)) return false;
+    const char* const first = SkipSeparators(at, end, comma);
+    if (end - first < kRoom || (first == at && !separated)) return nullptr;
     separated = comma = false;
-    const bool negative = *at == '-';
-    if (negative) ++at;
-    int whole = 0;
-    std::ptrdiff_t digits = 0;
-    for (; digits < kDigitsMax && NumberReader::IsDigit(at[digits]); ++digits) {
-      whole = whole * 10 + (at[digits] - '0');
-    }
-    if (digits == 0) return false;
-    at += digits;
-    set[i] = static_cast<double>(negative ? -whole : whole);  // never -0
+    at = ReadNumber(first, set[i]);
+    if (at == nullptr) return nullptr;
   }
-  if (*at == '.' || NumberReader::IsDigit(*at) || !ReceivePath::AlwaysPasses(*at)) return false;
-  bytes.SkipTo(at);
-  state_ = State::kAfterNumber;
-  comma_ = false;
-  count_ = 2;
-  return true;
+  return *at != '.' && ReceivePath::AlwaysPasses(*at) ? at : nullptr;
 }
 
-bool CommandReader::SkipStatementEnds(ByteSpan& bytes) {
-  bool ended = false;
-  const char* at = bytes.at();
-  for (; at != bytes.end(); ++at) {
-    const auto byte = static_cast<unsigned char>(*at);
-    if (IsTerminator(byte)) {
-      ended = true;
-    } else if (!IsBlank(byte)) {
-      break;
-    }
-  }
-  bytes.SkipTo(at);
-  return ended;
-}
-
-bool CommandReader::ReadName(ByteSpan& bytes) {
+bool CommandReader::FindName(ByteSpan& bytes) {
   const char* const at = bytes.at();
   const char first = LetterOf(static_cast<unsigned char>(*at));
   if (first == 0) return false;
@@ -157,10 +155,15 @@ bool CommandReader::ReadName(ByteSpan& bytes) {
     row = second != 0 ? FindMode2(first, second) : nullptr;
   }
   if (row == nullptr) return false;
-  letter_ = first;
   command_offset_ = bytes.offset();
-  bytes.SkipTo(at + (may_be_pair ? 2 : 1));
+  const bool in_call = in_call_;
+  const std::uint8_t length = may_be_pair ? 2 : 1;
   Found(*row, true);
+  if (!in_call) {
+    name_bytes_ = length;
+    std::copy_n(at, length, name_.begin());
+  }
+  bytes.SkipTo(at + length);
   return true;
 }
 
@@ -174,7 +177,7 @@ void CommandReader::Drop() {
 // The command search (RML1-2.01 to 2.06, 3A.29 to 3A.36).
 Reading CommandReader::Search(unsigned char byte, std::int64_t offset) {
   if (byte <= 0x20 || byte == ';') {
-    return {IsTerminator(byte) ? Reading::Kind::kStatementEnd : Reading::Kind::kNothing, true};
+    return {EndsStatement(byte) ? Reading::Kind::kStatementEnd : Reading::Kind::kNothing, true};
   }
   const bool mode1 = set_.setting != CommandSetting::kMode2 && !in_call_;
   if (const char letter = LetterOf(byte); letter != 0) {
@@ -200,6 +203,7 @@ Reading CommandReader::Search(unsigned char byte, std::int64_t offset) {
   }
   if (mode1 && byte == '^') {
     in_call_ = true;
+    name_[0] = kNoName;
     call_offset_ = offset;
     return {Reading::Kind::kCall, true};
   }
@@ -253,11 +257,11 @@ Reading CommandReader::AfterMarkLetter(unsigned char byte, std::int64_t offset) 
 
 Reading CommandReader::Found(const CommandRow& row, bool taken) {
   row_ = &row;
+  name_[0] = kNoName;
   in_call_ = false;
-  comma_ = false;
-  count_ = 0;
   axes_named_ = 0;
-  state_ = row.shape == Shape::kAxes ? State::kAxis : State::kBetween;
+  BeginList();
+  if (row.shape == Shape::kAxes) state_ = State::kAxis;
   return {Reading::Kind::kCommand, taken};
 }
 
@@ -301,7 +305,7 @@ Reading CommandReader::Axis(unsigned char byte, std::int64_t offset) {
     axes_named_ = 0;
     return {Reading::Kind::kGroup, true};
   }
-  if (IsTerminator(byte)) {
+  if (EndsStatement(byte)) {
     state_ = State::kAxisEnd;
     return Again(Reading::Kind::kGroup);
   }
@@ -355,7 +359,7 @@ Reading CommandReader::RefuseAxis(ReadError error, std::int64_t offset, unsigned
   error_offset_ = offset;
   error_length_ = 1;
   state_ = State::kAxisSkip;
-  return {Reading::Kind::kError, !IsTerminator(byte)};
+  return {Reading::Kind::kError, !EndsStatement(byte)};
 }
 
 }  // namespace rmlcell::rml1

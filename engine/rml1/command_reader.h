@@ -6,7 +6,9 @@
 
 #include "engine/rml1/byte_span.h"
 #include "engine/rml1/command_table.h"
+#include "engine/rml1/digit_word.h"
 #include "engine/rml1/number.h"
+#include "engine/rml1/receive_path.h"
 
 namespace rmlcell::rml1 {
 
@@ -72,7 +74,15 @@ class CommandReader {
   // The same of a whole set, as nearly all are written: of whole numbers with six digits at most.
   // False: nothing was taken. Preconditions: a command with sets, and the next parameter is the
   // first of one.
-  bool ReadSet(ByteSpan& bytes, std::array<double, 3>& set);
+  bool ReadSet(ByteSpan& bytes, std::array<double, 3>& set) {
+    const char* const behind = ReadNumbers(bytes.at(), bytes.end(), set);
+    if (behind == nullptr) return false;
+    bytes.SkipTo(behind);
+    state_ = State::kAfterNumber;
+    comma_ = false;
+    count_ = 2;
+    return true;
+  }
 
   // Whether a parameter list ends right before this byte: what Put would say with kEnd.
   bool ListEndsBefore(char byte) const {
@@ -83,10 +93,32 @@ class CommandReader {
   bool searches() const { return state_ == State::kSearch; }
   // Takes blanks, line ends and semicolons between commands. True: a statement ended.
   // Precondition, here and below: searches().
-  bool SkipStatementEnds(ByteSpan& bytes);
+  static bool SkipStatementEnds(ByteSpan& bytes) {
+    const char* at = bytes.at();
+    bool ended = bytes.end() - at > 2 && at[0] == ';' && at[1] == '\n';  // nearly always
+    if (ended) at += 2;
+    for (; at != bytes.end() && *at <= ';'; ++at) {
+      if (EndsStatement(*at)) {
+        ended = true;
+      } else if (!IsBlank(*at)) {
+        break;
+      }
+    }
+    bytes.SkipTo(at);
+    return ended;
+  }
   // Reads the name of a command that stands whole in the bytes, as Put does up to the reading
-  // kCommand. False: nothing was taken, and it is for Put. Precondition: not empty.
-  bool ReadName(ByteSpan& bytes);
+  // kCommand: none has axes. False: nothing was taken, and it is for Put. Precondition: not empty.
+  bool ReadName(ByteSpan& bytes) {
+    const char* const at = bytes.at();
+    const bool again =
+        at[0] == name_[0] && (name_bytes_ == 1 || (at + 1 != bytes.end() && at[1] == name_[1]));
+    if (!again) return FindName(bytes);
+    command_offset_ = bytes.offset();
+    bytes.SkipTo(at + name_bytes_);
+    BeginList();
+    return true;
+  }
 
   // Valid after the readings that name them.
   const CommandRow& row() const { return *row_; }
@@ -125,6 +157,19 @@ class CommandReader {
     kAxisSkip,  // !ZE: after an error
   };
 
+  static bool IsBlank(int byte) { return byte == ' ' || byte == '\t'; }
+  static bool EndsStatement(int byte) { return byte == ';' || byte == '\r' || byte == '\n'; }
+  // The numbers of a set. Returns where they end; nullptr: it is no such set.
+  const char* ReadNumbers(const char* at, const char* end, std::array<double, 3>& set) const;
+  const char* ReadApart(const char* at, const char* end, std::array<double, 3>& set) const;
+
+  bool FindName(ByteSpan& bytes);
+  void BeginList() {
+    comma_ = false;
+    count_ = 0;
+    state_ = State::kBetween;
+  }
+
   Reading Search(unsigned char byte, std::int64_t offset);
   Reading SecondLetter(unsigned char byte, std::int64_t offset);
   Reading AfterMark(unsigned char byte, std::int64_t offset);
@@ -151,6 +196,11 @@ class CommandReader {
   bool in_call_ = false;
   bool comma_ = false;  // the one comma that may stand between two parameters was there
   char letter_ = 0;     // first letter of the name in progress
+  // The name of row() as it was written, where it stood whole and no call is open: found again
+  // without a search, for most commands are what the one before them was. Else what begins none.
+  static constexpr char kNoName = ';';
+  std::array<char, 2> name_ = {kNoName};
+  std::uint8_t name_bytes_ = 1;
   char axis_ = 0;
   ReadError error_ = ReadError::kForeignCharacter;
   int error_length_ = 0;

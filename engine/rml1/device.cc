@@ -112,8 +112,7 @@ void Device::ReportLineError(std::int64_t offset, DeviceListener& listener) {
   Log(link_errors_, {.kind = FindingKind::kLineError, .offset = offset}, listener);
 }
 
-bool Device::Step(DeviceListener& listener) {
-  if (buffer_.empty()) return false;
+bool Device::StepOn(DeviceListener& listener) {
   const DataBuffer::Entry entry = buffer_.front();
   const Reading reading = reader_.Put(entry.byte, entry.offset);
   if (reading.taken) {
@@ -126,44 +125,55 @@ bool Device::Step(DeviceListener& listener) {
   return true;
 }
 
-Device::Taken Device::Read(std::string_view bytes, std::int64_t offset, std::uint64_t commands,
-                           DeviceListener& listener) {
-  ByteSpan span(bytes, offset);
-  const std::uint64_t done_max = commands_done_ + commands;
-  const auto happened = [&] { return !actions_.empty() || commands_done_ >= done_max; };
-  std::size_t received = 0;  // bytes that went through the buffer: Step counts them
-  bool again = false;        // the byte in front is to be looked at again
-  while (!span.empty() && !happened()) {
-    const char front = *span.at();
-    if (path_.pending() || !ReceivePath::AlwaysPasses(front)) {
-      Receive(span.front(), span.offset(), listener);
-      span.Skip();
-      ++received;
-      again = false;
-      while (!happened() && Step(listener)) {
-      }
-    } else if (reader_.ParameterMayBegin(front) && TakeParameters(span, listener)) {
-      again = true;
-    } else if (reader_.ListEndsBefore(front)) {
-      reader_.EndListHere();
-      OnEnd(listener);
-      again = true;
-    } else {
-      again = TakeByte(span, listener);
-    }
+bool Device::IsFarFromLimits() const {
+  constexpr double kNear = 7'000'000;
+  return std::abs(Present(0)) <= kNear && std::abs(Present(1)) <= kNear &&
+         std::abs(Present(2)) <= kNear;
+}
+
+// By itself: what it needs in registers the reading around it does not.
+[[gnu::noinline]] void Device::CarryOutSet(DeviceListener& listener) {
+  BeginCommand(listener);
+  operands_.ran = true;
+  operands_.count = 0;
+  const CommandRow& row = reader_.row();
+  const auto [a, b, c] = operands_.set;
+  ++registers_.act;
+  ReliesOnZ0();
+  const double lost = carriage_.lost().length;
+  ApplyEffects(row);
+  ReliesOnMode();
+  Point to = carriage_.logical();
+  if (registers_.absolute) {
+    GivePlace(true, true);
+    to.x = a + profile_->origin_x;
+    if (profile_->has_y) to.y = b + profile_->origin_y;
+    to.z = registers_.z0;
+  } else {
+    to.x += a;
+    if (profile_->has_y) to.y += b;
   }
-  bytes_read_ += span.read() - received;
-  return {.bytes = span.read(), .next = again};
+  if (row.values == 3) {
+    to.z += c;
+    programmed_.OnSetXYZ(a, b, c);
+    carriage_.MoveXYZ(context(), to);
+  } else {
+    programmed_.OnSetXY(row, a, b);
+    ReliesOnHeights();
+    carriage_.ToToolHeight(context());
+    carriage_.MoveXY(context(), to.x, to.y);
+  }
+  NoteClipping(lost, listener);
 }
 
 // A whole set, or a whole parameter. A set that may lead out of the range of numbers is read number
 // by number.
-bool Device::TakeParameters(ByteSpan& bytes, DeviceListener& listener) {
-  constexpr double kNear = 7'000'000;
+[[gnu::always_inline]] inline bool Device::TakeParameters(ByteSpan& bytes,
+                                                          DeviceListener& listener) {
   const CommandRow& row = reader_.row();
-  bool whole = row.shape == Shape::kSets && operands_.count == 0 && !operands_.dropped;
-  for (int i = 0; whole && i < 3 && IsRelative(row); ++i) whole = std::abs(Present(i)) <= kNear;
-  if (whole && reader_.ReadSet(bytes, operands_.set)) {
+  const bool begins_set = row.shape == Shape::kSets && operands_.count == 0 && !operands_.dropped;
+  const bool in_range = begins_set && (!IsRelative(row) || IsFarFromLimits());
+  if (in_range && reader_.ReadSet(bytes, operands_.set)) {
     operands_.any = true;
     CarryOutSet(listener);
     return true;
@@ -173,23 +183,57 @@ bool Device::TakeParameters(ByteSpan& bytes, DeviceListener& listener) {
   return true;
 }
 
-// One byte, unless it is for the receive path, and what needs no byte of its own before it. True:
-// it is to be looked at again.
-bool Device::TakeByte(ByteSpan& bytes, DeviceListener& listener) {
-  if (reader_.searches()) {
-    if (reader_.SkipStatementEnds(bytes)) programmed_.OnStatementEnd();
-    if (bytes.empty()) return false;
-    if (reader_.ReadName(bytes)) {
-      OnName();
-      return false;
-    }
-  }
+// One byte, unless it is for the receive path. True: it is to be looked at again.
+inline bool Device::TakeByte(ByteSpan& bytes, DeviceListener& listener) {
   if (bytes.empty() || !ReceivePath::AlwaysPasses(*bytes.at())) return false;
   const unsigned char byte = bytes.front();
   const Reading reading = reader_.Put(byte, bytes.offset());
   if (reading.taken) bytes.Skip();
   if (reading.kind != Reading::Kind::kNothing) Act(reading, byte, listener);
   return !reading.taken;
+}
+
+// A byte that is for the receive path, and all that comes of it.
+[[gnu::noinline]] void Device::TakeThroughBuffer(const ByteSpan& bytes, std::uint64_t done_max,
+                                                 DeviceListener& listener) {
+  Receive(bytes.front(), bytes.offset(), listener);
+  --bytes_read_;  // Step counts what comes out of the buffer
+  while (!Happened(done_max) && Step(listener)) {
+  }
+}
+
+Device::Taken Device::Read(std::string_view bytes, std::int64_t offset, std::uint64_t commands,
+                           DeviceListener& listener) {
+  ByteSpan span(bytes, offset);
+  const std::uint64_t done_max = commands_done_ + commands;
+  bool again = false;  // the byte in front is to be looked at again
+  while (!span.empty() && !Happened(done_max)) {
+    if (path_.pending() || !ReceivePath::AlwaysPasses(*span.at())) {
+      TakeThroughBuffer(span, done_max, listener);
+      span.Skip();
+      again = false;
+      continue;
+    }
+    if (reader_.ListEndsBefore(*span.at())) {
+      reader_.EndListHere();
+      EndCommand(listener);
+      again = true;
+      if (Happened(done_max)) break;
+    }
+    if (reader_.searches()) {
+      again = false;
+      if (CommandReader::SkipStatementEnds(span)) programmed_.OnStatementEnd();
+      if (span.empty()) break;
+      if (reader_.ReadName(span)) {
+        OnName();
+        if (span.empty()) break;
+      }
+    }
+    again = reader_.ParameterMayBegin(*span.at()) && TakeParameters(span, listener);
+    if (!again) again = TakeByte(span, listener);
+  }
+  bytes_read_ += span.read();
+  return {.bytes = span.read(), .next = again};
 }
 
 bool Device::spindle_turns() const {
@@ -207,6 +251,7 @@ void Device::Act(const Reading& reading, unsigned char byte, DeviceListener& lis
       break;
     case Reading::Kind::kCommand:
       OnName();
+      if (reader_.row().shape == Shape::kAxes) ClearGroup();
       break;
     case Reading::Kind::kCall:
       programmed_.OnCommand(Op::kCall);
@@ -232,15 +277,6 @@ void Device::Act(const Reading& reading, unsigned char byte, DeviceListener& lis
   }
 }
 
-void Device::OnName() {
-  ++command_.number;
-  command_.offset = reader_.command_offset();
-  command_.op = reader_.row().op;
-  operands_.Begin();
-  told_ = false;
-  if (reader_.row().shape == Shape::kAxes) ClearGroup();
-}
-
 void Device::OnReadError(unsigned char byte, DeviceListener& listener) {
   const ReadError error = reader_.error();
   const bool in_axes = error == ReadError::kAxisTwice || error == ReadError::kAxisValue ||
@@ -259,13 +295,6 @@ void Device::OnReadError(unsigned char byte, DeviceListener& listener) {
        .byte = byte,
        .op = command_.op},
       listener);
-}
-
-void Device::CarryOutSet(DeviceListener& listener) {
-  BeginCommand(listener);
-  RunSet(listener);
-  operands_.ran = true;
-  operands_.count = 0;
 }
 
 void Device::OnParameter(DeviceListener& listener) {

@@ -62,7 +62,7 @@ class Device {
 
   // Interprets as far as the next thing that happens; at most one byte. False when the buffer is
   // empty. Precondition: no action is waiting.
-  bool Step(DeviceListener& listener);
+  bool Step(DeviceListener& listener) { return !buffer_.empty() && StepOn(listener); }
 
   // What Receive does with the bytes, each followed by Step until the buffer is empty, up to the
   // one that makes something happen: an action waits, or so many commands are over. A byte that did
@@ -157,26 +157,67 @@ class Device {
   };
 
   Carriage::Context context() { return {*profile_, registers_, actions_}; }
+  bool StepOn(DeviceListener& listener);
   void ToBuffer(unsigned char byte, std::int64_t offset, DeviceListener& listener);
   void Act(const Reading& reading, unsigned char byte, DeviceListener& listener);
   void OnReadError(unsigned char byte, DeviceListener& listener);
+  // An action waits, or so many commands are over.
+  bool Happened(std::uint64_t done_max) const {
+    return !actions_.empty() || commands_done_ >= done_max;
+  }
+  void TakeThroughBuffer(const ByteSpan& bytes, std::uint64_t done_max, DeviceListener& listener);
+  bool IsFarFromLimits() const;  // of numbers, by more than a whole set may lead
   bool TakeParameters(ByteSpan& bytes, DeviceListener& listener);
   bool TakeByte(ByteSpan& bytes, DeviceListener& listener);
-  void OnName();
+  void OnName() {
+    ++command_.number;
+    command_.offset = reader_.command_offset();
+    command_.op = reader_.row().op;
+    operands_.Begin();
+    told_ = false;
+  }
   void CarryOutSet(DeviceListener& listener);
+  void EndCommand(DeviceListener& listener) {
+    if (operands_.ran && operands_.count == 0) {  // sets, all of them carried out
+      ++commands_done_;
+    } else {
+      OnEnd(listener);
+    }
+  }
   void OnParameter(DeviceListener& listener);
   void OnEnd(DeviceListener& listener);
 
   // device_commands.cc
-  void BeginCommand(DeviceListener& listener);
-  void ApplyEffects(const CommandRow& row);
-  void NoteClipping(double lost_before, DeviceListener& listener);
+  // Right before the first effect, so that a name that is dropped again was never a command.
+  void BeginCommand(DeviceListener& listener) {
+    if (told_) return;
+    told_ = true;
+    programmed_.OnCommand(command_.op);
+    listener.OnCommand(command_);
+  }
+  void ApplyEffects(const CommandRow& row) {
+    if (row.mode != ModeChange::kNone) {
+      registers_.absolute = row.mode == ModeChange::kAbsolute;
+      registers_.mode_given = true;
+    }
+    if (row.tool != ToolChange::kNone) registers_.tool_down = row.tool == ToolChange::kDown;
+  }
+  // A lift above the top or a parking place beyond the travel costs nothing: it is only counted.
+  void NoteClipping(double lost_before, DeviceListener& listener) {
+    if (carriage_.lost().length > lost_before) TellClipping(listener);
+  }
+  void TellClipping(DeviceListener& listener);
   bool IsRelative(const CommandRow& row) const {
     return row.mode == ModeChange::kNone ? !registers_.absolute : row.mode == ModeChange::kRelative;
   }
-  double Present(int index) const;
+  // Where the logical position is, by the numbers of a set.
+  double Present(int index) const {
+    const Point& logical = carriage_.logical();
+    if (index == 0) return logical.x - profile_->origin_x;
+    if (index == 1) return logical.y - profile_->origin_y;
+    return logical.z - registers_.z0;
+  }
   bool TakeCoordinate(DeviceListener& listener);
-  void RunSet(DeviceListener& listener);
   void RunBare(DeviceListener& listener);
   void RunFixed(DeviceListener& listener);
   void OnAxisValue(DeviceListener& listener);
@@ -192,10 +233,22 @@ class Device {
   void MoveMachineZ(DeviceListener& listener);
   void SetZ0(DeviceListener& listener);
   void MoveZ0(double z);
-  void ReliesOnZ0();
-  void ReliesOnMode();
-  void ReliesOnHeights();
-  void GivePlace(bool x, bool y);
+  // When something goes by it, or the machine is left with it.
+  void ReliesOnZ0() {
+    if (z0_moved_by_.number != 0) NoteMovedZ0();
+  }
+  void NoteMovedZ0();
+  // A coordinate is read in the mode that is in force.
+  void ReliesOnMode() {
+    if (!registers_.mode_given && assumed_.mode.number == 0) assumed_.mode = command_;
+  }
+  void ReliesOnHeights() {
+    if (!registers_.heights_given && assumed_.heights.number == 0) assumed_.heights = command_;
+  }
+  void GivePlace(bool x, bool y) {
+    if (registers_.place_given_by == 0) NotePlace(x, y);  // else both are given for good
+  }
+  void NotePlace(bool x, bool y);
   void RestoreDefaults();
   void StopSpindle(bool waits);
 

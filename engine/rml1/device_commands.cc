@@ -33,44 +33,11 @@ int StageSpeed(const Profile& profile, std::int64_t stage) {
 
 }  // namespace
 
-// Right before the first effect, so that a name that is dropped again was never a command.
-void Device::BeginCommand(DeviceListener& listener) {
-  if (told_) return;
-  told_ = true;
-  programmed_.OnCommand(command_.op);
-  listener.OnCommand(command_);
-}
-
-void Device::ApplyEffects(const CommandRow& row) {
-  if (row.mode != ModeChange::kNone) {
-    registers_.absolute = row.mode == ModeChange::kAbsolute;
-    registers_.mode_given = true;
-  }
-  if (row.tool != ToolChange::kNone) registers_.tool_down = row.tool == ToolChange::kDown;
-}
-
-// A coordinate is read in the mode that is in force.
-void Device::ReliesOnMode() {
-  if (!registers_.mode_given && assumed_.mode.number == 0) assumed_.mode = command_;
-}
-
-void Device::ReliesOnHeights() {
-  if (!registers_.heights_given && assumed_.heights.number == 0) assumed_.heights = command_;
-}
-
-void Device::GivePlace(bool x, bool y) {
+void Device::NotePlace(bool x, bool y) {
   registers_.x_given = registers_.x_given || x;
   registers_.y_given = registers_.y_given || y;
   const bool both = registers_.x_given && registers_.y_given;
-  if (both && registers_.place_given_by == 0) registers_.place_given_by = registers_.act;
-}
-
-// Where the logical position is, by the numbers of a set.
-double Device::Present(int index) const {
-  const Point& logical = carriage_.logical();
-  if (index == 0) return logical.x - profile_->origin_x;
-  if (index == 1) return logical.y - profile_->origin_y;
-  return logical.z - registers_.z0;
+  if (both) registers_.place_given_by = registers_.act;
 }
 
 // One number of a set. False: it is out of range, and so are its set and the later ones
@@ -85,33 +52,6 @@ bool Device::TakeCoordinate(DeviceListener& listener) {
   }
   operands_.set[static_cast<std::size_t>(operands_.count++)] = number.single;
   return true;
-}
-
-void Device::RunSet(DeviceListener& listener) {
-  const CommandRow& row = reader_.row();
-  const auto [a, b, c] = operands_.set;
-  ++registers_.act;
-  ReliesOnZ0();
-  const double lost = carriage_.lost().length;
-  ApplyEffects(row);
-  ReliesOnMode();
-  const Point& logical = carriage_.logical();
-  const bool absolute = registers_.absolute;
-  if (absolute) GivePlace(true, true);
-  const double x = a + (absolute ? profile_->origin_x : logical.x);
-  double y = b + (absolute ? profile_->origin_y : logical.y);
-  if (!profile_->has_y) y = logical.y;
-  if (row.values == 3) {
-    const double z = c + (absolute ? registers_.z0 : logical.z);
-    programmed_.OnSetXYZ(a, b, c);
-    carriage_.MoveXYZ(context(), {x, y, z, logical.a});
-  } else {
-    programmed_.OnSetXY(row, a, b);
-    ReliesOnHeights();
-    carriage_.ToToolHeight(context());
-    carriage_.MoveXY(context(), x, y);
-  }
-  NoteClipping(lost, listener);
 }
 
 // A command with sets, without any parameter.
@@ -129,9 +69,7 @@ void Device::RunBare(DeviceListener& listener) {
   NoteClipping(lost, listener);
 }
 
-// A lift above the top or a parking place beyond the travel costs nothing: it is only counted.
-void Device::NoteClipping(double lost_before, DeviceListener& listener) {
-  if (!(carriage_.lost().length > lost_before)) return;
+void Device::TellClipping(DeviceListener& listener) {
   for (const Carriage::LostLine& line : carriage_.lost_lines()) listener.OnLost(line);
   carriage_.ForgetLostLines();
   if (first_lost_.number == 0) first_lost_ = command_;
@@ -414,8 +352,7 @@ void Device::MoveZ0(double z) {
   z0_moved_by_ = command_;
 }
 
-// When something goes by it, or the machine is left with it.
-void Device::ReliesOnZ0() {
+void Device::NoteMovedZ0() {
   const double up = registers_.z0 - registers_.surface_z;
   const auto note = [&](double by, MovedZ0& furthest) {
     if (!(by > furthest.by)) return;

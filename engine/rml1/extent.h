@@ -8,10 +8,13 @@ struct Extent {
   double high = 0.0;
   bool known = false;
 
-  void Add(double value) {
+  // True: it is another one now.
+  bool Add(double value) {
+    if (known && value >= low && value <= high) return false;
     if (!known || value < low) low = value;
     if (!known || value > high) high = value;
     known = true;
+    return true;
   }
 };
 

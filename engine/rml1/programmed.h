@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 
+#include "engine/motion/geometry/frames.h"
 #include "engine/rml1/command_table.h"
 #include "engine/rml1/extent.h"
 #include "engine/rml1/number.h"
@@ -29,12 +32,31 @@ class Programmed {
   void OnCommand(Op op) {
     ++counts_[static_cast<std::size_t>(op)];
     counted_ |= std::uint64_t{1} << static_cast<unsigned>(op);
-    begun_ = true;
   }
 
   // A complete set of a two-dimensional or three-axis command, as numbers of the stream.
-  void OnSetXY(const CommandRow& row, double x, double y);
-  void OnSetXYZ(double x, double y, double z);
+  [[gnu::always_inline]] void OnSetXY(const CommandRow& row, double x, double y) {
+    ApplyEffects(row);
+    ToToolHeight();
+    if (!now_.absolute) {
+      x += way_.x;
+      y += way_.y;
+    }
+    if (now_.x_extent.Add(x)) changed_ = true;
+    if (now_.y_extent.Add(y)) changed_ = true;
+    GoTo(x, y, way_.z, now_.tool_down);
+  }
+  [[gnu::always_inline]] void OnSetXYZ(double x, double y, double z) {
+    if (!now_.absolute) {
+      x += way_.x;
+      y += way_.y;
+      z += way_.z;
+    }
+    if (now_.x_extent.Add(x)) changed_ = true;
+    if (now_.y_extent.Add(y)) changed_ = true;
+    AddHeight(z);
+    GoTo(x, y, z, false);
+  }
   // !ZE: the axes that are named.
   struct AxisGroup {
     bool has_x = false;
@@ -52,9 +74,9 @@ class Programmed {
   void OnHeights(int count, const Number& z1, const Number& z2);
 
   // The command search discarded letters, or something else. A statement ended.
-  void OnDiscarded(bool letters) { spoilt_ = spoilt_ || letters || !begun_; }
+  void OnDiscarded(bool letters) { spoilt_ = spoilt_ || letters || counted_ == 0; }
   void OnStatementEnd() {
-    if (begun_ || spoilt_) EndStatement();  // else it is empty
+    if (counted_ != 0 || spoilt_) EndStatement();  // else it is empty
   }
   // The end of the data ends the last statement too.
   void Finish() { OnStatementEnd(); }
@@ -69,22 +91,25 @@ class Programmed {
   std::uint32_t z_grain() const { return now_.z_grain; }
   // The lowest way across above Z 0; 0: there is none.
   double lowest_lift() const { return now_.lowest_lift < kNone ? now_.lowest_lift : 0.0; }
-  double cut_length() const { return now_.cut_length; }
-  double travel_length() const { return now_.travel_length; }
+  double cut_length() const { return way_.cut_length; }
+  double travel_length() const { return way_.travel_length; }
 
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();
 
-  struct State {
+  // What every set changes, and what few do: most statements leave it as it was.
+  struct Way {
     double x = 0.0;
     double y = 0.0;
     double z = 0.0;
+    double cut_length = 0.0;
+    double travel_length = 0.0;
+  };
+  struct State {
     double z1 = 0.0;
     double z2 = 0.0;
     bool absolute = true;
     bool tool_down = false;
-    double cut_length = 0.0;
-    double travel_length = 0.0;
     Extent x_extent;
     Extent y_extent;
     Extent z_extent;
@@ -93,19 +118,57 @@ class Programmed {
   };
   using Counts = std::array<std::uint64_t, kOpCount>;
 
-  void EndStatement();
-  void ApplyEffects(const CommandRow& row);
-  void ToToolHeight();
-  void AddHeight(double z);
-  void GoTo(double x, double y, double z, bool two_axis_cut);
+  void EndStatement() {
+    if (spoilt_) return DropStatement();
+    for (; counted_ != 0; counted_ &= counted_ - 1) {
+      const auto op = static_cast<std::size_t>(std::countr_zero(counted_));
+      counts_at_statement_[op] = counts_[op];
+    }
+    way_at_statement_ = way_;
+    if (changed_) at_statement_ = now_;
+    changed_ = false;
+  }
+  void DropStatement();
+  void ApplyEffects(const CommandRow& row) {
+    if (row.mode != ModeChange::kNone) Set(now_.absolute, row.mode == ModeChange::kAbsolute);
+    if (row.tool != ToolChange::kNone) Set(now_.tool_down, row.tool == ToolChange::kDown);
+  }
+  template <typename T>
+  void Set(T& value, T to) {
+    if (value == to) return;
+    value = to;
+    changed_ = true;
+  }
+  void ToToolHeight() {
+    const double z = now_.tool_down ? now_.z1 : now_.z2;
+    if (z != way_.z) GoToHeight(z);
+  }
+  void GoToHeight(double z);
+  void AddHeight(double z) {
+    if (now_.z_extent.Add(z)) changed_ = true;
+    if (now_.z_grain != 1 && z != way_.z) AddGrain(z);
+  }
+  void AddGrain(double z);
+  [[gnu::always_inline]] void GoTo(double x, double y, double z, bool two_axis_cut) {
+    const double length = motion::ProgramVector(x - way_.x, y - way_.y, z - way_.z).norm();
+    const bool below = way_.z < 0.0 || z < 0.0;
+    if (way_.z > 0.0 && z > 0.0 && (x != way_.x || y != way_.y)) AddLift(std::min(way_.z, z));
+    (below || two_axis_cut ? way_.cut_length : way_.travel_length) += length;
+    way_.x = x;
+    way_.y = y;
+    way_.z = z;
+  }
+  void AddLift(double z) { Set(now_.lowest_lift, std::min(now_.lowest_lift, z)); }
 
+  Way way_;
   State now_;
-  State at_statement_;  // what a spoilt statement falls back to
+  Way way_at_statement_;  // what a spoilt statement falls back to
+  State at_statement_;
+  bool changed_ = false;  // now_, since then
   Counts counts_{};
   Counts counts_at_statement_{};
-  std::uint64_t counted_ = 0;  // by this statement: a bit for each Op
+  std::uint64_t counted_ = 0;  // commands of this statement: a bit for each Op
   static_assert(kOpCount <= 64);
-  bool begun_ = false;   // the statement has a command
   bool spoilt_ = false;  // it has something that is no command
   std::uint64_t other_ = 0;
 };

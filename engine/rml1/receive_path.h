@@ -55,7 +55,7 @@ class ReceivePath {
 
   // Bytes that go to the data buffer as they are, whatever the link, outside of a sequence.
   static bool AlwaysPasses(char byte) {
-    return static_cast<unsigned char>(byte) < 0x80 && byte != kEscape;
+    return static_cast<signed char>(byte) >= 0 && byte != kEscape;
   }
 
   bool pending() const { return state_ != State::kPlain; }

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <random>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "engine/rml1/device.h"
+#include "engine/rml1/digit_word.h"
 #include "tests/engine/rml1/run_support.h"
 
 namespace rmlcell::rml1 {
@@ -159,6 +162,73 @@ TEST(SpanReading, IsReadingByteByByte) {
                                         << stream;
     }
   }
+}
+
+// Of eight bytes the digits in front count, whatever stands behind them.
+TEST(DigitWord, IsTheNumberThatTheBytesBeginWith) {
+  EXPECT_EQ(DigitWord("1234567;").count(), 7U);
+  EXPECT_EQ(DigitWord("12345678").count(), 7U);  // more than six
+  EXPECT_EQ(DigitWord(",1234567").count(), 0U);
+  EXPECT_EQ(DigitWord("9/999999").count(), 1U);  // the byte below 0, that above 9, and the highest
+  EXPECT_EQ(DigitWord("9:999999").count(), 1U);
+  EXPECT_EQ(DigitWord("9\xff"
+                      "999999")
+                .count(),
+            1U);
+  EXPECT_EQ(DigitWord("0,999999").value(1), 0);
+  EXPECT_EQ(DigitWord("90;99999").value(2), 90);
+  EXPECT_EQ(DigitWord("007 9999").value(3), 7);
+  EXPECT_EQ(DigitWord("1234-999").value(4), 1234);
+  EXPECT_EQ(DigitWord("99999\n99").value(5), 99999);
+  EXPECT_EQ(DigitWord("102030;9").value(6), 102030);
+  EXPECT_EQ(DigitWord("1020304;").value(7), 1020304);
+}
+
+// A statement that is spoilt takes back what it alone has changed, and no more: extents, lengths
+// and the mode are those of the statements before it.
+TEST(SpanReading, ASpoiltStatementTakesBackWhatItChanged) {
+  const Profile profile = MakeProfile(ParametersOf("t1")).value();
+  Device device(profile);
+  DeviceListener nobody;
+  const auto read = [&](std::string_view text) {
+    while (!text.empty()) {
+      text.remove_prefix(device.Read(text, 0, Device::kAnyCommands, nobody).bytes);
+      while (!device.actions().empty()) device.actions().Pop();
+    }
+  };
+  read("IN;PA;PD300,400;\nPD300,1400;\nPD500,1400;\nPR9000,0 QQ;\nPD0,1400;\nIN");
+  const Programmed& p = device.programmed();
+  EXPECT_EQ(p.x().high, 500.0);  // of the statement before, which changed nothing else
+  EXPECT_EQ(p.y().high, 1400.0);
+  EXPECT_EQ(p.cut_length(), 500.0 + 1000.0 + 200.0 + 500.0);  // absolute again, from there
+  EXPECT_EQ(p.other(), 1U);
+  EXPECT_EQ(p.count(Op::kPR), 0U);
+  EXPECT_EQ(p.count(Op::kPD), 4U);
+}
+
+// A line to a face, along it and away again is the line of its ends, as one clear of all faces is.
+TEST(SpanReading, LinesToAFaceAndFromItArePlain) {
+  const Profile profile = MakeProfile(ParametersOf("t1")).value();
+  Device device(profile);
+  DeviceListener nobody;
+  std::vector<double> ends;
+  const auto read = [&](std::string_view text) {
+    while (!text.empty()) {
+      text.remove_prefix(device.Read(text, 0, Device::kAnyCommands, nobody).bytes);
+      for (; !device.actions().empty(); device.actions().Pop()) {
+        const Action& action = device.actions().front();
+        if (action.kind == Action::Kind::kMotion) ends.push_back(action.to.x);
+      }
+    }
+  };
+  const auto face = static_cast<int>(profile.x.high - profile.origin_x);
+  const std::string out = std::to_string(face);
+  read("^IN;Z100,100,-10;\nZ" + out + ",100,-10;\nZ" + out + ",200,-10;\nZ100,200,-10;\n");
+  const double inside = 100.0 + profile.origin_x;
+  ASSERT_GE(ends.size(), 4U);
+  const std::vector<double> last(ends.end() - 4, ends.end());
+  EXPECT_EQ(last, (std::vector<double>{inside, profile.x.high, profile.x.high, inside}));
+  EXPECT_EQ(device.carriage().clipped_sets(), 0U);
 }
 
 // Numbers that stand whole are read as byte by byte, or not at all.
