@@ -135,6 +135,9 @@ class Player {
     }
     if (!replayed_.difference && options_.to != SimTime::max() && options_.to > machine_->time())
       static_cast<void>(GoTo(options_.to));
+    // What ends with the last entry is told when the machine goes on behind it.
+    if (!replayed_.difference && !ends_.empty())
+      static_cast<void>(GoTo(machine_->time() + SimTime(1)));
     CompareRest();
     replayed_.until = machine_->time();
     return replayed_;

@@ -264,6 +264,16 @@ TEST_F(CutOffRecordingTest, ARunThatIsOverStaysAsItWas) {
   EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
   const Recording read = *recording::ReadFile(Served("jobs/17"));
   EXPECT_EQ(read.entries.back().run_over().outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  int times = 0;
+  recording::ReplayOptions options;
+  options.over = [&](const machine::RunOver& over) {
+    ++times;
+    EXPECT_EQ(over.outcome.kind, machine::OutcomeKind::kCompleted);
+  };
+  const auto played = recording::Replay(read, options);
+  ASSERT_TRUE(played);
+  EXPECT_FALSE(played->difference);
+  EXPECT_EQ(times, 1);  // though nothing is recorded behind it
   WriteMark();
   EXPECT_EQ(recording::ReadFile(FileNow())->entries.size(), read.entries.size());
 }
