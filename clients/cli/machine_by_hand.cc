@@ -120,7 +120,7 @@ grpc::Status HoldOne(Keys& keys, const std::string& name, double seconds) {
 
 // One after the other; the last one is held where that was asked for.
 template <class Keys>
-int PressAll(const Remote& remote, const MachineAct& act, Keys keys) {
+int PressAll(const Remote& remote, const MachineAct& act, const Control& control, Keys keys) {
   keys.SetFast(act.fast);
   for (std::size_t i = 0; i < act.values.size(); ++i) {
     const bool held = act.held_s > 0.0 && i + 1 == act.values.size();
@@ -128,6 +128,16 @@ int PressAll(const Remote& remote, const MachineAct& act, Keys keys) {
                                    : PressOne(keys, act.values[i], v1::KEY_ACTION_TAP);
     if (!done.ok()) return Refused(done, remote);
     if (held) AwaitRest(remote, act.machine);
+  }
+  constexpr std::chrono::seconds kRenewalPatience{5};
+  // HOME, ZERO and FUNCTION go on by themselves; giving control back would stop them.
+  constexpr std::chrono::milliseconds kBetweenLooks{100};
+  constexpr int kLooksBetweenRenewals = 100;
+  for (int look = 1;; ++look) {
+    const auto now = StatusNow(remote, act.machine);
+    if (!now || now->state() != v1::MACHINE_STATE_JOGGING) break;
+    if (look % kLooksBetweenRenewals == 0 && !control.Renew(kRenewalPatience).ok()) break;
+    std::this_thread::sleep_for(kBetweenLooks);
   }
   return keys.Show();
 }
@@ -141,8 +151,8 @@ int PressKeys(const Remote& remote, const MachineAct& act) {
   const std::string machine = FullName("machines", act.machine);
   const HandboxSession handbox(Connect(remote), machine, control.token());
   if (handbox.status().ok())
-    return PressAll(remote, act, HandboxKeys(remote, handbox.session(), control.token()));
-  return PressAll(remote, act, PanelKeys(remote, machine, control.token()));
+    return PressAll(remote, act, control, HandboxKeys(remote, handbox.session(), control.token()));
+  return PressAll(remote, act, control, PanelKeys(remote, machine, control.token()));
 }
 
 }  // namespace rmlcell::cli

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,12 +23,17 @@ inline constexpr std::chrono::milliseconds kBetweenBeats{50};
 // "RUNNING" of "MACHINE_STATE_RUNNING".
 std::string Short(std::string_view name, std::string_view prefix);
 
+std::string ValueText(const v1::VariableValue& value);
+
 int Show(const Remote& remote, const v1::MachineStatus& status);
 // When the control that was taken for it has been given back.
 int ShowOwn(const Remote& remote, v1::MachineStatus status);
 
 // Until the axes stand, 3 s at most: whoever gives control back before is stopped by that.
 void AwaitRest(const Remote& remote, const std::string& machine);
+
+// How a machine stands, where it can be told.
+std::optional<v1::MachineStatus> StatusNow(const Remote& remote, const std::string& machine);
 
 // A call with one answer; the stub is made for it.
 template <class Request, class Response>

@@ -54,10 +54,15 @@ std::string StartText(const v1::StartInput& start) {
   return text + (start.job().empty() ? "" : " of " + start.job());
 }
 
+std::string VariableText(const v1::Variable& variable) {
+  return Visible(variable.name()) + " = " +
+         (variable.has_value() ? ValueText(variable.value()) : Visible(variable.text()));
+}
+
 std::string OutsideText(const v1::MachineInput& input) {
   switch (input.what_case()) {
     case v1::MachineInput::kInput:
-      return Visible(input.input().name()) + " = " + Visible(input.input().text());
+      return VariableText(input.input());
     case v1::MachineInput::kDoorOpen:
       return input.door_open() ? "opens the door" : "closes the door";
     case v1::MachineInput::kGate:
@@ -90,7 +95,7 @@ std::string InputText(const v1::AppliedInput& input) {
     case Input::kFromOutside:
       return OutsideText(input.from_outside());
     case Input::kVariable:
-      return "writes " + Visible(input.variable().name());
+      return VariableText(input.variable());
     case Input::kMode:
       return "mode " + Short(v1::OperatingMode_Name(input.mode()), "OPERATING_MODE_");
     case Input::kAcknowledgedAlarm:
@@ -201,7 +206,9 @@ void Tell(const Remote& remote, const v1::CellEvent& event) {
 std::string MachineLogLine(const v1::CellEvent& event) {
   std::string text = MachineText(event.machine());
   if (text.empty()) return text;
-  if (!event.caller().empty()) text = Visible(event.caller()) + ": " + text;
+  const std::string client = Visible(event.machine().input_applied().client());
+  if (!event.caller().empty())
+    text = Visible(event.caller()) + (client.empty() ? "" : " (" + client + ")") + ": " + text;
   const std::int64_t virtual_ns = event.machine().virtual_time_ns();
   return virtual_ns > 0 ? text + "  [" + Seconds(virtual_ns) + "]" : text;
 }

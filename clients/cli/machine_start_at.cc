@@ -84,7 +84,7 @@ int GoOnWithJob(const Remote& remote, const MachineAct& act, const std::string& 
   request.set_reason(act.reason.empty() ? "resumed at a step" : act.reason);
   request.set_preview_token(start.preview_token());
   *request.mutable_confirmations() = start.confirmations();
-  request.set_halt_at_entry(act.halt);
+  if (act.halt || act.goes_on) request.set_halt_at_entry(act.halt);
   const auto stub = v1::JobService::NewStub(Connect(remote));
   grpc::ClientContext context;
   Prepare(context);
@@ -154,7 +154,7 @@ int StartAtStep(const Remote& remote, const MachineAct& act) {
     return kProgramErrors;
   }
   request.set_preview_token(preview.preview_token());
-  if (act.halt) request.set_halt_at_entry(true);
+  if (act.halt || act.goes_on) request.set_halt_at_entry(act.halt);
   if (inspect && !machine.status().cut_off_job().empty())
     return GoOnWithJob(remote, act, machine.status().cut_off_job(), request);
   return ShowWithControl(remote, act, &Service::Stub::StartAtStep, std::move(request));

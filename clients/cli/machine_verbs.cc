@@ -60,7 +60,10 @@ void AddStartAt(MachineVerbs& verbs) {
   at->add_flag("--untouched", given.untouched, "nothing of that block has been cut yet")
       ->needs(stock);
   at->add_flag("--preview", given.look, "say what it would do, and do not start");
-  at->add_flag("--halt", given.halt, "halt before the step");
+  CLI::Option* halt =
+      at->add_flag("--halt", given.halt,
+                   "halt before the step; behind a run that was cut off it does so by itself");
+  at->add_flag("--no-halt", given.goes_on, "begin the step at once")->excludes(halt);
   at->add_option("--seen", given.seen,
                  "what you have looked at: clamps, tool, origin-valid, table-clear; behind a run "
                  "that was cut off: inspected")

@@ -105,22 +105,6 @@ int Halt(const Remote& remote, const MachineAct& act,
   return status.ok() ? Show(remote, response.status()) : Refused(status, remote);
 }
 
-std::string ValueText(const v1::VariableValue& value) {
-  switch (value.value_case()) {
-    case v1::VariableValue::kReal:
-      return ShortestText(value.real());
-    case v1::VariableValue::kInteger:
-      return std::to_string(value.integer());
-    case v1::VariableValue::kLogical:
-      return value.logical() ? "on" : "off";
-    case v1::VariableValue::kWord:
-      return Visible(value.word());
-    case v1::VariableValue::VALUE_NOT_SET:
-      break;
-  }
-  return "-";
-}
-
 // Each with its value or what is wrong with it; bad when one of them is.
 int ShowVariables(const Remote& remote,
                   const google::protobuf::RepeatedPtrField<v1::Variable>& variables) {
@@ -163,6 +147,22 @@ int NoAssignment(const std::string& text) {
 
 }  // namespace
 
+std::string ValueText(const v1::VariableValue& value) {
+  switch (value.value_case()) {
+    case v1::VariableValue::kReal:
+      return ShortestText(value.real());
+    case v1::VariableValue::kInteger:
+      return std::to_string(value.integer());
+    case v1::VariableValue::kLogical:
+      return value.logical() ? "on" : "off";
+    case v1::VariableValue::kWord:
+      return Visible(value.word());
+    case v1::VariableValue::VALUE_NOT_SET:
+      break;
+  }
+  return "-";
+}
+
 std::string Short(std::string_view name, std::string_view prefix) {
   return std::string(name.starts_with(prefix) ? name.substr(prefix.size()) : name);
 }
@@ -184,16 +184,22 @@ int ShowOwn(const Remote& remote, v1::MachineStatus status) {
   return Show(remote, status);
 }
 
-void AwaitRest(const Remote& remote, const std::string& machine) {
-  constexpr int kLooksMax = 100;
-  constexpr std::chrono::milliseconds kBetweenLooks{30};
+std::optional<v1::MachineStatus> StatusNow(const Remote& remote, const std::string& machine) {
   constexpr std::chrono::seconds kPatience{5};
   v1::GetMachineRequest request;
   request.set_name(FullName("machines", machine));
+  v1::Machine now;
+  if (!Call(remote, &Service::Stub::GetMachine, request, now, kPatience).ok()) return {};
+  return now.status();
+}
+
+void AwaitRest(const Remote& remote, const std::string& machine) {
+  constexpr int kLooksMax = 100;
+  constexpr std::chrono::milliseconds kBetweenLooks{30};
   for (int look = 0; look < kLooksMax; ++look) {
-    v1::Machine now;
-    if (!Call(remote, &Service::Stub::GetMachine, request, now, kPatience).ok()) return;
-    const v1::MachineState state = now.status().state();
+    const auto now = StatusNow(remote, machine);
+    if (!now) return;
+    const v1::MachineState state = now->state();
     if (state != v1::MACHINE_STATE_JOGGING && state != v1::MACHINE_STATE_STOPPING) return;
     std::this_thread::sleep_for(kBetweenLooks);
   }
@@ -273,10 +279,18 @@ int StartMachine(const Remote& remote, const MachineAct& act) {
   }
   return WithControl<v1::StartMachineRequest, v1::MachineStatus>(
       remote, act, &Service::Stub::StartMachine, std::move(request),
-      [&remote](const v1::MachineStatus& status, const std::string&) {
+      [&](const v1::MachineStatus& begun, const std::string&) {
+        // What fails at once does so behind the answer.
+        constexpr std::chrono::milliseconds kBetweenLooks{20};
+        v1::MachineStatus status = begun;
+        for (int look = 0; look < 10 && status.run().run_time_ns() == 0 && status.has_run();
+             ++look) {
+          std::this_thread::sleep_for(kBetweenLooks);
+          if (auto now = StatusNow(remote, act.machine)) status = *std::move(now);
+        }
         const int shown = ShowOwn(remote, status);
-        const bool failed =
-            !status.has_run() && status.last_run().outcome().kind() == v1::Outcome::KIND_FAILED;
+        const bool failed = !status.has_run() && status.last_run().run() == begun.run().run() &&
+                            status.last_run().outcome().kind() == v1::Outcome::KIND_FAILED;
         return shown == kGood && failed ? kProgramErrors : shown;
       });
 }

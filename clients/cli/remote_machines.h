@@ -27,6 +27,7 @@ struct MachineAct {
   bool untouched = false;         // nothing has been cut of that block
   bool look = false;              // what it would do, and no start
   bool halt = false;              // before the step
+  bool goes_on = false;           // the step is begun at once
   std::vector<std::string> seen;  // what a person has seen to: clamps, tool, origin, table
   std::string reason;             // of a decision, for all to read
   std::vector<int> gates;         // the program of each; 0: none

@@ -64,11 +64,9 @@ std::string CountText(const v1::Findings& found) {
 
 int ExitOf(const v1::Outcome& outcome, bool strict) {
   if (outcome.verdict() != v1::VERDICT_UNSPECIFIED) return ExitOf(outcome.verdict(), strict);
-  // A job that ended before anything was judged, or that an older server ran.
-  return outcome.kind() == v1::Outcome::KIND_COMPLETED ||
-                 outcome.kind() == v1::Outcome::KIND_STOPPED
-             ? kGood
-             : kProgramErrors;
+  // A job that ended before anything was judged, as a run on a machine does: what was halted made
+  // no part. LIVE-5.08
+  return outcome.kind() == v1::Outcome::KIND_COMPLETED ? kGood : kProgramErrors;
 }
 
 }  // namespace rmlcell::cli

@@ -89,7 +89,7 @@ _rmlcell_options() {
     "machine status" | "machine watch" | "machine enable" | "machine disable" | "machine hold" | "machine stop" | \
       "machine emergency-stop" | "machine abort" | "machine read") echo "--help" ;;
     "machine start-at")
-      echo "--help --take-over --slot --occurrence --direct --off-until-work-on --stock --tool --untouched --preview --halt --seen --reason" ;;
+      echo "--help --take-over --slot --occurrence --direct --off-until-work-on --stock --tool --untouched --preview --halt --no-halt --seen --reason" ;;
     "machine log") echo "--help --follow" ;;
     "machine key") echo "--help --take-over --for --fast" ;;
     "machine start") echo "--help --take-over --job" ;;

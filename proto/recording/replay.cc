@@ -136,21 +136,27 @@ class Player {
     if (!replayed_.difference && options_.to != SimTime::max() && options_.to > machine_->time())
       static_cast<void>(GoTo(options_.to));
     // What ends with the last entry is told when the machine goes on behind it.
-    if (!replayed_.difference && !ends_.empty())
+    if (!stopped_ && !replayed_.difference && !ends_.empty())
       static_cast<void>(GoTo(machine_->time() + SimTime(1)));
-    CompareRest();
+    if (!stopped_) CompareRest();
     replayed_.until = machine_->time();
     return replayed_;
   }
 
  private:
   bool GoTo(SimTime time) {
-    if (options_.goes_on && !options_.goes_on(machine_->time())) return false;
+    if (!GoesOn()) return false;
     while (time > machine_->time() && machine_->Advance(time) == machine::Progress::kMoreWork) {
-      if (options_.goes_on && !options_.goes_on(machine_->time())) return false;
+      if (!GoesOn()) return false;
     }
     Notice();
     return true;
+  }
+
+  // Who has what he wanted is not told what is missing behind it.
+  bool GoesOn() {
+    stopped_ = stopped_ || (options_.goes_on && !options_.goes_on(machine_->time()));
+    return !stopped_;
   }
 
   void Notice() {
@@ -298,6 +304,7 @@ class Player {
   std::deque<v1::RunOver> over_;                // that no entry has told yet
   std::deque<const v1::JournalEntry*> ends_;    // that the machine has not played yet
   std::deque<const v1::JournalEntry*> events_;  // likewise
+  bool stopped_ = false;
   Replayed replayed_{};
 };
 

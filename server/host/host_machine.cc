@@ -333,6 +333,8 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
     run_begun_ = machine().time();
     told_of_run_ = 0;
   }
+  const auto* power = std::get_if<machine::SwitchPower>(&input);
+  if (power != nullptr && !power->on && !inspect_due_) cut_off_base_ = BaseNow();
   if (starts) arms_.Disarm();
   if (starts || std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
   NoteHold(input);
@@ -484,7 +486,9 @@ void HostMachine::Notice() {
     run_told_ = run.number;
     run_begun_ = run.begun;  // also of one that the machine began itself
     begins_ = begins_ || !run.by_hand;
-    v1::RunBegun& told = *Add(run.begun).mutable_run_begun();
+    // One that begins at a step began before that, by its own time; nothing is told of the past.
+    const SimTime at = std::max(run.begun, told_until_);
+    v1::RunBegun& told = *Add(at).mutable_run_begun();
     told = recording::BegunOf(run);
     told.set_job(job_);
   };
@@ -494,6 +498,10 @@ void HostMachine::Notice() {
     told = recording::OverOf(run);
     told.set_job(std::exchange(job_, {}));
     if (!run.run.by_hand) last_run_ = LastRunOf(told);
+    if (!run.run.by_hand && run.outcome.code == ErrorCode::kCellPowerOff) {  // LIVE-5.10
+      inspect_due_ = true;
+      inspect_job_ = told.job();
+    }
     desk_.TakeFromQueue();
     TellControl();
     held_for_.reset();
@@ -562,34 +570,13 @@ v1::JournalEntry& HostMachine::Add(SimTime at) {
   entry.set_sequence(++sequence_);
   entry.set_fence(setup_.fence);
   entry.set_virtual_time_ns(at.count());
+  told_until_ = std::max(told_until_, at);
   *entry.mutable_time() = Stamp(now_.wall);
   if (!job_.empty()) {
     entry.set_job(job_);
     entry.set_run_time_ns((at - run_begun_).count());
   }
   return entry;
-}
-
-void HostMachine::OnHalt(const machine::Halt& halt) {
-  v1::Halted& halted = *Event(halt.at).mutable_halted();
-  halted = recording::HaltedOf(halt);
-  if (held_for_) halted.set_reason(*held_for_);
-  mark_due_ = true;
-}
-
-void HostMachine::OnResume(SimTime at, const machine::Place& place) {
-  *Event(at).mutable_resumed() = recording::ResumedOf(place);
-}
-
-bool HostMachine::MayTell() { return ++told_of_run_ <= recording::kToldOfRunMax; }
-
-void HostMachine::OnMessage(SimTime at, const machine::Place& place, std::string_view text) {
-  if (MayTell()) *Event(at).mutable_message() = recording::MessageOf(place, text);
-}
-
-void HostMachine::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
-  if (!MayTell()) return;
-  *Event(at).mutable_diagnostic() = bridge::ToProto(diagnostic);
 }
 
 }  // namespace rmlcell::server

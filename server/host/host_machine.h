@@ -214,6 +214,7 @@ class HostMachine : private machine::RunObserver {
   std::int64_t run_told_ = 0;               // the newest whose begin was told
   SimTime run_begun_{0};
   int told_of_run_ = 0;
+  SimTime told_until_{0};  // of the newest entry
   std::optional<v1::LastRun> last_run_{};
   bool inspect_due_ = false;
   bool ended_ = false;  // by EndRun(): of the run that is open nothing more is told

@@ -3,9 +3,13 @@
 
 #include "engine/core/hex.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/machine_inputs.h"
 #include "proto/bridge/sha256.h"
+#include "proto/recording/told.h"
 #include "server/base/version.h"
 #include "server/host/host_machine.h"
+#include "server/host/host_messages.h"
+#include "server/host/order_class.h"
 
 namespace rmlcell::server {
 namespace {
@@ -98,6 +102,28 @@ std::vector<v1::JournalEntry> HostMachine::TakeEntries(const HostTime& now, bool
   for (; recorded_ < entries_.size(); ++recorded_) recorder_.Add(entries_[recorded_]);
   recorded_ = 0;
   return std::exchange(entries_, {});
+}
+
+void HostMachine::OnHalt(const machine::Halt& halt) {
+  v1::Halted& halted = *Event(halt.at).mutable_halted();
+  halted = recording::HaltedOf(halt);
+  if (held_for_) halted.set_reason(*held_for_);
+  mark_due_ = true;
+}
+
+void HostMachine::OnResume(SimTime at, const machine::Place& place) {
+  *Event(at).mutable_resumed() = recording::ResumedOf(place);
+}
+
+bool HostMachine::MayTell() { return ++told_of_run_ <= recording::kToldOfRunMax; }
+
+void HostMachine::OnMessage(SimTime at, const machine::Place& place, std::string_view text) {
+  if (MayTell()) *Event(at).mutable_message() = recording::MessageOf(place, text);
+}
+
+void HostMachine::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
+  if (!MayTell()) return;
+  *Event(at).mutable_diagnostic() = bridge::ToProto(diagnostic);
 }
 
 }  // namespace rmlcell::server

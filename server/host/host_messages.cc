@@ -1,5 +1,6 @@
 #include "server/host/host_messages.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -18,6 +19,25 @@ namespace {
 
 using machine::MachineInput;
 
+// Instructions that wait for an input or a time, of either family.
+constexpr std::array<std::string_view, 3> kWaiting = {"WAIT", "DELAY", "DW"};
+
+// Of those that the machine has, up to the last one.
+void AddOutputs(const machine::Machine& machine, v1::MachineStatus& message) {
+  for (const std::string_view bank : {"OL", "OA"}) {
+    for (int index = 0;; ++index) {
+      const std::string name = std::string(bank) + "[" + std::to_string(index) + "]";
+      const auto value = machine.ReadVariable(name);
+      if (!value) break;
+      const double number = value->text == "on" ? 1.0 : ParseDouble(value->text).value_or(0.0);
+      if (number == 0.0) continue;
+      v1::OutputValue& made = *message.add_outputs();
+      made.set_name(name);
+      made.set_value(number);
+    }
+  }
+}
+
 Error Invalid(std::string detail) {
   return {ErrorCode::kCellInvalidArgument, std::move(detail), {}};
 }
@@ -33,6 +53,8 @@ void SetRun(const machine::Machine& machine, const machine::MachineStatus& statu
   run.set_run_time_ns(status.run.time.count());
   run.set_source(bridge::ToProto(status.open->source));
   run.set_instruction(progress.instruction());
+  run.set_waits(status.state == machine::MachineState::kHeld ||
+                std::ranges::find(kWaiting, progress.instruction()) != kWaiting.end());
   run.set_dry(machine.simulation_until().has_value());
   for (const int program : machine.loaded_programs()) run.add_loaded_programs(program);
 }
@@ -122,7 +144,10 @@ v1::MachineStatus ToProto(const machine::Machine& machine) {
   message.set_speed_mm_s(status.run.tip_speed_mm_s);
   message.set_position_source(v1::POSITION_SOURCE_PLANNED);
   message.set_override_percent(status.override_percent);
+  AddOutputs(machine, message);
   message.mutable_tool()->set_on(status.run.beam_on || status.run.spindle_on);
+  if (const auto rpm = machine.ReadVariable("RPM"); rpm && status.run.spindle_on)
+    message.mutable_tool()->set_speed_rpm(ParseDouble(rpm->text).value_or(0.0));
   for (const std::string_view lamp : machine.panel().lamps) message.add_lamps(std::string(lamp));
   message.set_selected_program(machine.selected_program());
   if (machine.has_gates()) {

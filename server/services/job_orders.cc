@@ -64,6 +64,12 @@ grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* con
         if (!id) return ToGrpcStatus(id.error());
         const auto job = dispatcher_.Cancel(*id, caller.identity, request->request_id());
         if (!job) return ToGrpcStatus(job.error());
+        if (job->kind == storage::kRunKind && job->state == storage::JobState::kRunning &&
+            runs_.MachineOf(request->name()).empty())
+          return ToGrpcStatus(Error{
+              ErrorCode::kCellNotLive,
+              "the host of its machine is not heard of: it is told when it is, or the run is cut off then",
+              {}});
         *response = ToProto(*job);
         return grpc::Status::OK;
       });

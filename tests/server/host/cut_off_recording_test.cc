@@ -278,5 +278,24 @@ TEST_F(CutOffRecordingTest, ARunThatIsOverStaysAsItWas) {
   EXPECT_EQ(recording::ReadFile(FileNow())->entries.size(), read.entries.size());
 }
 
+// LIVE-3.41: a run that an input ends has its report: who plays it stops there.
+TEST_F(CutOffRecordingTest, ARunThatAnInputEndsIsPlayedToItsEnd) {
+  Live();
+  BeginJob();
+  RunFor(3s);
+  v1::HostOrder stop;
+  stop.mutable_emergency_stop();
+  Do(stop);
+  RunFor(1s);
+  int times = 0;
+  recording::ReplayOptions options;
+  options.over = [&](const machine::RunOver&) { ++times; };
+  options.goes_on = [&](SimTime) { return times == 0; };
+  const auto played = recording::Replay(*recording::ReadFile(Served("jobs/17")), options);
+  ASSERT_TRUE(played);
+  EXPECT_EQ(times, 1);
+  EXPECT_FALSE(played->difference) << played->difference->field << played->difference->played;
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -106,6 +106,68 @@ TEST_F(HostMachineTest, ARunIsToldFromItsStartToItsEnd) {
   EXPECT_EQ(told.back(), "clean mark");
 }
 
+// LIVE-5.10, LIVE-2.10 a1: who takes its power away cuts a run off; a person looks before the next.
+TEST_F(HostMachineTest, PowerThatGoesCutsARunOff) {
+  Make();
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  Do(Start());
+  Pass(7s, 50ms);
+  const auto power = [this](bool on) {
+    v1::HostOrder order;
+    order.mutable_inputs()->set_control_token(token_);
+    order.mutable_inputs()->add_inputs()->set_power(on);
+    return Do(order);
+  };
+  power(false);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_OFF);
+  EXPECT_THAT(Told(), testing::Contains("over KIND_INTERRUPTED"));
+  EXPECT_FALSE(mark_.clean());
+  power(true);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
+  EXPECT_GT(host_->StatusAt(now_).cut_off_at().step(), 0);
+  EXPECT_EQ(Do(Start()).refusal().code(), "CELL-E9409");
+  v1::HostOrder confirm;
+  confirm.mutable_confirm()->set_control_token(token_);
+  confirm.mutable_confirm()->add_confirmations(v1::CONFIRMATION_INSPECTED);
+  EXPECT_FALSE(Do(confirm).has_refusal());
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  power(false);  // no run is open
+  power(true);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+}
+
+// LIVE-3.16: what is on, and that it waits; a mill has no outputs, but a spindle.
+TEST_F(HostMachineTest, TheStatusHasOutputsAndWaits) {
+  auto made = HostMachine::Make({.name = "machines/optimo-1",
+                                 .host = "workshop/1",
+                                 .fence = 7,
+                                 .family = families::FindFamily("optimo")},
+                                now_, [this] { return "token " + std::to_string(++tokens_); });
+  ASSERT_TRUE(made);
+  host_ = *std::move(made);
+  v1::HostOrder job;
+  v1::WorkerAssignment& assignment = *job.mutable_run_job();
+  assignment.mutable_job()->set_name("jobs/17");
+  assignment.set_main_program(5);
+  v1::AssignedProgram& program = *assignment.add_programs();
+  program.set_slot(5);
+  program.set_file_name("a.S");
+  program.set_is_source(true);
+  program.set_content("DELAY 5\nOL[3] = ON\nOA[1] = 2.5\nWAIT IL[20]\n");
+  ASSERT_FALSE(Do(job).has_refusal());
+  Pass(1s);
+  EXPECT_TRUE(host_->StatusAt(now_).run().waits());
+  EXPECT_EQ(host_->StatusAt(now_).outputs_size(), 0);
+  Pass(5s);
+  const v1::MachineStatus status = host_->StatusAt(now_);
+  EXPECT_TRUE(status.run().waits());
+  ASSERT_EQ(status.outputs_size(), 2);
+  EXPECT_EQ(status.outputs(0).name(), "OL[3]");
+  EXPECT_EQ(status.outputs(0).value(), 1.0);
+  EXPECT_EQ(status.outputs(1).name(), "OA[1]");
+  EXPECT_EQ(status.outputs(1).value(), 2.5);
+}
+
 // LIVE-4.01: control leases are counted on by the next host.
 TEST_F(HostMachineTest, ControlLeasesAreCountedOn) {
   Make();
