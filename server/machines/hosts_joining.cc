@@ -171,6 +171,11 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello, const
   if (hello.fence() != host->lease.fence) {
     if (const Status told = TellRecovery(*host, taken, *mark); !told) return told.error();
     host->fresh = true;
+  } else {
+    // One that stands says nothing more by itself; what it has to say comes before its first
+    // status.
+    const std::lock_guard lock(host->mutex);
+    host->settled = true;
   }
   v1::HostResponse message;
   v1::HostWelcome& welcome = *message.mutable_welcome();

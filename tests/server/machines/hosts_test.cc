@@ -143,6 +143,16 @@ TEST_F(HostsTest, TheSameHostComesBackWithItsFence) {
   EXPECT_EQ(Fence(*again), Fence(*first));
 }
 
+// LIVE-5.20, server killed: a host that outlives it may be asked what it knows, though it has
+// nothing to say by itself; one that follows another says first what that one did.
+TEST_F(HostsTest, AHostThatCameBackIsSettled) {
+  const auto first = Joined();
+  EXPECT_FALSE(hosts.IsSettled("mill-1"));
+  hosts.Leave(*first);
+  const auto again = Joined(Hello("elsewhere/1", Fence(*first)));
+  EXPECT_TRUE(hosts.IsSettled("mill-1"));
+}
+
 // LIVE-3.17, LIVE-2.03: status goes to who watches, with what the queue does; LOST without a line.
 TEST_F(HostsTest, StatusIsThatOfTheHost) {
   const auto link = Joined();
