@@ -33,8 +33,7 @@ struct Hosts::Host {
   std::vector<v1::JournalEntry> waiting;  // to be stored
   std::int64_t stored = 0;                // sequence of the last one that is
   bool storing = false;
-  bool settled = false;  // guarded by mutex: something of it was stored, and so all from before it;
-                         // or it came back
+  bool settled = false;  // guarded by mutex: all that was before it is stored
   bool fresh = false;    // it followed another one; of who stores alone
 };
 
