@@ -34,7 +34,7 @@ TEST(ExitCodes, FollowTheOutcomeWhereNothingWasJudged) {
     return ExitOf(Ended(kind, v1::VERDICT_UNSPECIFIED), true);
   };
   EXPECT_EQ(exit_of(v1::Outcome::KIND_COMPLETED), kGood);
-  EXPECT_EQ(exit_of(v1::Outcome::KIND_STOPPED), kGood);
+  EXPECT_EQ(exit_of(v1::Outcome::KIND_STOPPED), kProgramErrors);
   EXPECT_EQ(exit_of(v1::Outcome::KIND_FAILED), kProgramErrors);
   EXPECT_EQ(exit_of(v1::Outcome::KIND_CANCELLED), kProgramErrors);
   EXPECT_EQ(exit_of(v1::Outcome::KIND_BUDGET_EXCEEDED), kProgramErrors);
