@@ -311,6 +311,10 @@ class RunsTest(LiveTestCase):
         self.assertEqual(code, 0, told)
         new = told.strip().splitlines()[-1].split()[0]
         self.assertIn(f"{new} goes on with {name}", told)
+        # LIVE-6.09: it halts where the step begins, and goes on when a person says so.
+        self.assertEqual(self.live.wait("HELD").hold_reason, HoldReason.Value("HOLD_REASON_ENTRY"))
+        code, told = rmlcell("resume", new)
+        self.assertEqual(code, 0, told)
         self.live.acquire(take_over=True, reason="a test")
         self.live.ask("SetFactor", factor=100.0)
         self.live.ask("ReleaseControl")
