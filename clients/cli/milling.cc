@@ -99,8 +99,8 @@ Result<simulation::Milling> MillingOf(const MillingOptions& options,
 }
 
 Status WriteMaterial(const simulation::HeightField& material,
-                     const std::optional<simulation::Target>& target,
-                     const MillingOptions& options) {
+                     const std::optional<simulation::Target>& target, const MillingOptions& options,
+                     simulation::ParallelFor& parallel) {
   struct Product {
     const std::string& file;
     std::function<bool(const Sink&)> write;
@@ -109,7 +109,7 @@ Status WriteMaterial(const simulation::HeightField& material,
   const Product products[] = {
       {options.stl,
        [&](const Sink& sink) {
-         return simulation::WriteStl(material, options.stl_tolerance_mm, sink);
+         return simulation::WriteStl(material, options.stl_tolerance_mm, sink, &parallel);
        }},
       {options.relief, [&](const Sink& sink) { return simulation::WriteRelief(material, sink); }},
       {options.height_map,

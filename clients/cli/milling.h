@@ -6,6 +6,7 @@
 
 #include "engine/machine/shape.h"
 #include "engine/simulation/material/milling_recorder.h"
+#include "engine/simulation/material/parallel_for.h"
 #include "engine/simulation/run/rehearsal.h"
 
 namespace CLI {
@@ -53,9 +54,9 @@ Result<simulation::Milling> MillingOf(const MillingOptions& options,
                                       const machine::MachineShape& shape,
                                       const simulation::ProgramMemory& machine);
 
-// The files that were asked for. Errors: CellFileUnwritable.
+// The files that were asked for, with the help of `parallel`. Errors: CellFileUnwritable.
 Status WriteMaterial(const simulation::HeightField& material,
-                     const std::optional<simulation::Target>& target,
-                     const MillingOptions& options);
+                     const std::optional<simulation::Target>& target, const MillingOptions& options,
+                     simulation::ParallelFor& parallel);
 
 }  // namespace rmlcell::cli

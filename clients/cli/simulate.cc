@@ -23,6 +23,7 @@
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/spooled_bytes.h"
+#include "proto/bridge/thread_pool.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -121,9 +122,10 @@ class RunProducts {
   }
 
   // A picture or plot that goes to standard output ("-") is not written here.
-  Status Write(const simulation::SimulationResult& result) {
+  Status Write(const simulation::SimulationResult& result, simulation::ParallelFor& parallel) {
     if (result.material) {
-      if (const Status written = WriteMaterial(*result.material, result.target, options_.milling);
+      if (const Status written =
+              WriteMaterial(*result.material, result.target, options_.milling, parallel);
           !written)
         return written.error();
     }
@@ -286,6 +288,7 @@ int Simulate(const SimulateOptions& options) {
   simulation::PreparedRun& run = prepared->run;
   if (!run.setup) return TellWhyNot(options, prepared->memory, run);
 
+  bridge::ThreadPool threads(bridge::ThreadsForMaterial());
   simulation::SimulationRequest request;
   RunProducts products(options, family.info());
   if (const Status asked = products.AskFor(request); !asked) return Refuse(asked.error());
@@ -294,6 +297,7 @@ int Simulate(const SimulateOptions& options) {
         MillingOf(options.milling, family.Shape(run.setup->parameters), prepared->memory);
     if (!milling) return Refuse(milling.error());
     request.products.milling = *std::move(milling);
+    request.products.parallel = &threads;
   }
   request.variables = prepared->variables;
   ProgressLine progress;
@@ -310,7 +314,8 @@ int Simulate(const SimulateOptions& options) {
       simulation::Simulate(family, *std::move(run.setup), std::move(request));
   progress.Clear();
   if (!result) return Refuse(result.error());
-  if (const Status written = products.Write(*result); !written) return Refuse(written.error());
+  if (const Status written = products.Write(*result, threads); !written)
+    return Refuse(written.error());
   for (const std::string& name : prepared->variables) {
     if (std::ranges::find(result->variables, name, &machine::NamedVariable::name) !=
         result->variables.end())

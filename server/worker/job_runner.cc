@@ -246,7 +246,7 @@ class Attempt {
     // What made them is large, and so is the report as a message.
     begun.simulation.reset();
     begun.run.reset();
-    const simulation::MillingRecorder* milling = begun.recorder->milling();
+    simulation::MillingRecorder* milling = begun.recorder->milling();
     if (milling == nullptr) begun.recorder.reset();
     v1::RunReport message = bridge::ToProto(Family(), report, values);
     machine::MarkJudged(report.judgement, before.diagnostics);
@@ -287,7 +287,7 @@ class Attempt {
   // All of them; or the report alone, which then says why the rest is not there. A job that is
   // cancelled meanwhile leaves no files of its block.
   End SendProducts(v1::RunReport& report, const std::string& picture,
-                   const simulation::MillingRecorder* milling) {
+                   simulation::MillingRecorder* milling) {
     const v1::SimulationOptions& options = assignment_.job().simulation();
     std::string bytes = bridge::StableBytes(report);
     const std::size_t smaller = bytes.size() + picture.size();

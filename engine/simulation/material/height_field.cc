@@ -151,7 +151,7 @@ double HeightField::DepthOf(const MillTool& tool, const MachinePoint& from,
 }
 
 double HeightField::ShankDepthOf(const MillTool& tool, const MachinePoint& from,
-                                 const MachinePoint& to) const {
+                                 const MachinePoint& to, Rows rows) const {
   using Collar = ToolSweep::Collar;
   const double shank = tool.shank_radius_mm > 0.0 ? tool.shank_radius_mm : tool.radius_mm;
   double deepest = 0.0;
@@ -159,7 +159,7 @@ double HeightField::ShankDepthOf(const MillTool& tool, const MachinePoint& from,
                                Collar{tool.holder_radius_mm, tool.holder_from_mm}}) {
     if (!(collar.radius_mm > 0.0) || std::min(from.z(), to.z()) + collar.raised_mm >= stock_.top)
       continue;
-    ToolSweep sweep(*this, collar, tool, from, to);
+    ToolSweep sweep(*this, collar, tool, from, to, rows);
     for (auto pieces = sweep.Next(); !pieces.empty(); pieces = sweep.Next()) {
       for (const ToolSweep::Piece& piece : pieces) {
         for (std::size_t k = 0; k < piece.heights.size(); ++k) {
@@ -193,9 +193,9 @@ double HeightField::removed_mm3() const {
   return sum * stock_.cell * stock_.cell;
 }
 
-double HeightField::remaining_mm3() const {
+double HeightField::whole_mm3() const {
   const double cells = static_cast<double>(heights_.size());
-  return cells * stock_.cell * stock_.cell * (stock_.top - stock_.bottom) - removed_mm3();
+  return cells * stock_.cell * stock_.cell * (stock_.top - stock_.bottom);
 }
 
 double HeightField::deepest_cut_mm() const {

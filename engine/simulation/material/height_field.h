@@ -68,7 +68,11 @@ class HeightField {
   // How deep shank or holder would go into what is there on that move, where the tool has not cut
   // it away before them; 0 when they stay clear. Before Cut of the same move.
   double ShankDepthOf(const MillTool& tool, const motion::MachinePoint& from,
-                      const motion::MachinePoint& to) const;
+                      const motion::MachinePoint& to, Rows rows) const;
+  double ShankDepthOf(const MillTool& tool, const motion::MachinePoint& from,
+                      const motion::MachinePoint& to) const {
+    return ShankDepthOf(tool, from, to, all_rows());
+  }
 
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
@@ -80,7 +84,8 @@ class HeightField {
 
   // Not below the bottom: what a tool cuts under the block is not its.
   double removed_mm3() const;
-  double remaining_mm3() const;
+  double remaining_mm3() const { return whole_mm3() - removed_mm3(); }
+  double whole_mm3() const;       // before anything was removed
   double deepest_cut_mm() const;  // below the top
 
  private:

@@ -47,10 +47,13 @@ Status CheckMilling(const Milling& milling) {
   return {};
 }
 
-MillingRecorder::MillingRecorder(const machine::MachineShape& shape, const Milling& milling)
+MillingRecorder::MillingRecorder(const machine::MachineShape& shape, const Milling& milling,
+                                 ParallelFor* parallel)
     : origin_(shape.has_work_origin ? shape.work_origin : motion::MachineVector{}),
       tool_(milling.tool),
       material_(HeightField::Of(milling.stock).value()),
+      parallel_(parallel != nullptr && parallel->width() > 1 ? parallel : nullptr),
+      batch_(material_, tool_),
       target_(milling.target),
       chips_(milling.chips),
       fast_z_mm_s_(shape.limits ? machine::kTravelShareOfZ * shape.limits->axes.speed.z()
@@ -75,34 +78,50 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
   NoteBelow(from, to, done.place);
   const bool cuts = done.use == MotionUse::kCut || done.use == MotionUse::kPlunge;
   if (cuts && done.programmed_mm_s > 0.0) NoteBeside(from, to, done.place);
-  const double shank_depth = material_.ShankDepthOf(tool_, from, to);
-  if (shank_depth > std::max(figures_.shank_depth_mm, kGougeLeast_mm)) {
-    figures_.shank_depth_mm = shank_depth;
-    figures_.shank_place = done.place;
+  const Passed passed{from, to, done.place, done.start, done.programmed_mm_s, rpm_};
+  if (parallel_ == nullptr)
+    return Note(passed, CutMove(material_, tool_, from, to, material_.all_rows()));
+  batch_.Add(from, to);
+  waiting_.push_back(passed);
+  if (batch_.full()) CutWaiting();
+}
+
+void MillingRecorder::CutWaiting() {
+  if (waiting_.empty()) return;
+  const std::span<const MoveBatch::Taken> taken = batch_.Cut(material_, *parallel_);
+  for (std::size_t k = 0; k < waiting_.size(); ++k) Note(waiting_[k], taken[k]);
+  waiting_.clear();
+}
+
+void MillingRecorder::Note(const Passed& passed, const MoveBatch::Taken& of_move) {
+  const auto& [from, to, place, start, programmed_mm_s, rpm] = passed;
+  if (of_move.shank_depth_mm > std::max(figures_.shank_depth_mm, kGougeLeast_mm)) {
+    figures_.shank_depth_mm = of_move.shank_depth_mm;
+    figures_.shank_place = place;
   }
-  const double taken = material_.Cut(tool_, from, to);
-  if (done.programmed_mm_s <= 0.0 && taken > kGougeLeast_mm) {
+  const double taken = of_move.most_mm;
+  if (programmed_mm_s <= 0.0 && taken > kGougeLeast_mm) {
     ++figures_.gouges;
     if (taken > figures_.gouge_depth_mm) {
       figures_.gouge_depth_mm = taken;
-      figures_.gouge_place = done.place;
-      figures_.gouge_at = done.start;
+      figures_.gouge_place = place;
+      figures_.gouge_at = start;
     }
   }
   if (changes_ && taken > 0.0) NoteChange(from, to);
   // A plunge, or a ramp of more than 45 degrees, is no pass; at travel speed it is a gouge.
   const double across = LengthOf(PlanOf(to - from));
-  const bool is_pass = done.programmed_mm_s > 0.0 && across >= std::abs(to.z() - from.z());
+  const bool is_pass = programmed_mm_s > 0.0 && across >= std::abs(to.z() - from.z());
   if (is_pass && taken > figures_.deepest_pass_mm) {
     figures_.deepest_pass_mm = taken;
-    figures_.pass_place = done.place;
+    figures_.pass_place = place;
   }
-  if (done.programmed_mm_s <= 0.0 || taken <= kGougeLeast_mm) return;
+  if (programmed_mm_s <= 0.0 || taken <= kGougeLeast_mm) return;
   if (is_pass) {
-    figures_.pass_mm_s = std::max(figures_.pass_mm_s, done.programmed_mm_s);
-    NoteChip(done.programmed_mm_s, done.place);
+    figures_.pass_mm_s = std::max(figures_.pass_mm_s, programmed_mm_s);
+    NoteChip(passed);
   } else if (to.z() < from.z()) {
-    NotePlunge(done.programmed_mm_s, taken, done.place);
+    NotePlunge(passed, taken);
   }
 }
 
@@ -113,37 +132,43 @@ void MillingRecorder::NoteChange(const motion::MachinePoint& from, const motion:
 }
 
 std::vector<HeightTile> MillingRecorder::TakeChanges(std::size_t most) {
+  CutWaiting();
   if (!changes_) changes_.emplace(material_);
   return changes_->Take(material_, most);
 }
 
-// What an edge takes off at one turn; 0: nobody told how fast the spindle turns.
-double MillingRecorder::ChipOf(double feed_mm_s) const {
-  return rpm_ > 0.0 ? feed_mm_s / (rpm_ / 60.0 * tool_.flutes) : 0.0;
+const HeightField& MillingRecorder::material() {
+  CutWaiting();
+  return material_;
 }
 
-void MillingRecorder::NotePlunge(double feed_mm_s, double taken_mm, const machine::Place& place) {
-  if (feed_mm_s >= fast_z_mm_s_ && taken_mm > figures_.fast_plunge_mm) {
+// What an edge takes off at one turn; 0: nobody told how fast the spindle turns.
+double MillingRecorder::ChipOf(const Passed& passed) const {
+  return passed.rpm > 0.0 ? passed.programmed_mm_s / (passed.rpm / 60.0 * tool_.flutes) : 0.0;
+}
+
+void MillingRecorder::NotePlunge(const Passed& passed, double taken_mm) {
+  if (passed.programmed_mm_s >= fast_z_mm_s_ && taken_mm > figures_.fast_plunge_mm) {
     figures_.fast_plunge_mm = taken_mm;
-    figures_.fast_plunge_mm_s = feed_mm_s;
-    figures_.fast_plunge_place = place;
+    figures_.fast_plunge_mm_s = passed.programmed_mm_s;
+    figures_.fast_plunge_place = passed.place;
   }
   if (!chips_ || !(chips_->plunge_most_mm > 0.0)) return;
-  const double percent = 100.0 * ChipOf(feed_mm_s) / chips_->plunge_most_mm;
+  const double percent = 100.0 * ChipOf(passed) / chips_->plunge_most_mm;
   if (percent <= figures_.chips->plunge_percent) return;
   figures_.chips->plunge_percent = percent;
-  figures_.chips->plunge_place = place;
+  figures_.chips->plunge_place = passed.place;
 }
 
 // At the feed rate asked for: on ramps and in corners an edge takes less for a moment.
-void MillingRecorder::NoteChip(double feed_mm_s, const machine::Place& place) {
-  if (!chips_ || !(rpm_ > 0.0)) return;
-  const double chip_mm = ChipOf(feed_mm_s);
-  const double edge_mm_s = rpm_ / 60.0 * 2.0 * kPi * tool_.radius_mm;
+void MillingRecorder::NoteChip(const Passed& passed) {
+  if (!chips_ || !(passed.rpm > 0.0)) return;
+  const double chip_mm = ChipOf(passed);
+  const double edge_mm_s = passed.rpm / 60.0 * 2.0 * kPi * tool_.radius_mm;
   const auto note = [&](double percent, double& most, machine::Place& where) {
     if (percent <= most) return;
     most = percent;
-    where = place;
+    where = passed.place;
   };
   ChipFigures& figures = *figures_.chips;
   note(100.0 * chip_mm / chips_->most_mm, figures.thick_percent, figures.thick_place);
@@ -211,10 +236,11 @@ void MillingRecorder::NoteBeside(const motion::MachinePoint& from, const motion:
   }
 }
 
-MillingFigures MillingRecorder::Figures() const {
+MillingFigures MillingRecorder::Figures() {
+  CutWaiting();
   MillingFigures figures = figures_;
   figures.removed_mm3 = material_.removed_mm3();
-  figures.remaining_mm3 = material_.remaining_mm3();
+  figures.remaining_mm3 = material_.whole_mm3() - figures.removed_mm3;
   figures.deepest_cut_mm = material_.deepest_cut_mm();
   figures.tool_diameter_mm = 2.0 * tool_.radius_mm;
   figures.cell_mm = material_.stock().cell;

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "engine/machine/observer.h"
 #include "engine/machine/shape.h"
 #include "engine/simulation/material/chip_load.h"
 #include "engine/simulation/material/height_field.h"
 #include "engine/simulation/material/height_tiles.h"
+#include "engine/simulation/material/move_batch.h"
+#include "engine/simulation/material/parallel_for.h"
 #include "engine/simulation/material/target.h"
 #include "engine/simulation/report/report.h"
 
@@ -30,8 +33,10 @@ Status CheckMilling(const Milling& milling);
 // motion.md section 9.
 class MillingRecorder final : public machine::RunObserver {
  public:
-  // Precondition: CheckMilling is well.
-  MillingRecorder(const machine::MachineShape& shape, const Milling& milling);
+  // Precondition: CheckMilling is well. `parallel` cuts moves, many at a time; null: each is cut as
+  // it comes. Outlives this.
+  MillingRecorder(const machine::MachineShape& shape, const Milling& milling,
+                  ParallelFor* parallel = nullptr);
 
   // Where the work origin of the machine is, before the first motion: it may have been set since.
   void BeginAt(const motion::MachinePoint& work_origin) { origin_ = work_origin; }
@@ -39,8 +44,9 @@ class MillingRecorder final : public machine::RunObserver {
   void OnMotion(const machine::MotionDone& done) override;
   void OnSignal(const machine::SignalChange& change) override;
 
-  MillingFigures Figures() const;
-  const HeightField& material() const { return material_; }
+  // Of all motions up to now: those that wait to be cut are cut first.
+  MillingFigures Figures();
+  const HeightField& material();
   // For who looks on while it mills: at most `most` tiles that have changed since they were taken
   // last. From the first call on it is noted where something is taken off.
   std::vector<HeightTile> TakeChanges(std::size_t most);
@@ -48,6 +54,18 @@ class MillingRecorder final : public machine::RunObserver {
   const std::optional<Target>& target() const { return target_; }
 
  private:
+  // A motion that was cut, or waits to be.
+  struct Passed {
+    motion::MachinePoint from;
+    motion::MachinePoint to;
+    machine::Place place;
+    SimTime start;
+    double programmed_mm_s;  // not above 0: at travel speed
+    double rpm;              // as it was then
+  };
+
+  void CutWaiting();
+  void Note(const Passed& passed, const MoveBatch::Taken& taken);
   void NoteChange(const motion::MachinePoint& from, const motion::MachinePoint& to);
   void NoteBelow(const motion::MachinePoint& from, const motion::MachinePoint& to,
                  const machine::Place& place);
@@ -55,13 +73,16 @@ class MillingRecorder final : public machine::RunObserver {
                  const machine::Place& place);
   void NoteBeside(const motion::MachinePoint& from, const motion::MachinePoint& to,
                   const machine::Place& place);
-  double ChipOf(double feed_mm_s) const;
-  void NotePlunge(double feed_mm_s, double taken_mm, const machine::Place& place);
-  void NoteChip(double feed_mm_s, const machine::Place& place);
+  double ChipOf(const Passed& passed) const;
+  void NotePlunge(const Passed& passed, double taken_mm);
+  void NoteChip(const Passed& passed);
 
   motion::MachinePoint origin_;  // of the block's frame, machine frame
   MillTool tool_;
   HeightField material_;
+  ParallelFor* parallel_;
+  MoveBatch batch_;
+  std::vector<Passed> waiting_;  // those of the batch
   std::optional<HeightChanges> changes_;
   std::optional<Target> target_;
   std::optional<ChipRange> chips_;

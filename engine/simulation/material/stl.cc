@@ -1,9 +1,12 @@
 #include "engine/simulation/material/stl.h"
 
+#include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/simulation/material/surface_patches.h"
 
@@ -27,23 +30,32 @@ struct Outline {
 };
 
 // The corners of patches on the sides of a rectangle: its neighbours end there.
-void FindOutline(const SurfacePatches& patches, const Patch& patch, Outline& outline) {
+void FindOutline(const CornerSet& corners, const Patch& patch, Outline& outline) {
   const auto along_x = [&](std::size_t row, std::vector<Vertex>& side) {
     side.clear();
-    for (std::size_t column = patch.left; column <= patch.right; ++column) {
-      if (patches.corner(column, row)) side.push_back({column, row});
-    }
+    corners.ForEachInRow(row, patch.left, patch.right, [&](std::size_t column) {
+      side.push_back({column, row});
+    });
   };
   const auto along_y = [&](std::size_t column, std::vector<Vertex>& side) {
     side.clear();
-    for (std::size_t row = patch.front; row <= patch.back; ++row) {
-      if (patches.corner(column, row)) side.push_back({column, row});
-    }
+    corners.ForEachInColumn(column, patch.front, patch.back, [&](std::size_t row) {
+      side.push_back({column, row});
+    });
   };
   along_x(patch.front, outline.front);
   along_x(patch.back, outline.back);
   along_y(patch.left, outline.left);
   along_y(patch.right, outline.right);
+}
+
+// As many triangles as FillOutline draws: two less than there are vertices on the sides, of which
+// those of the corners are counted twice.
+std::size_t TrianglesOf(const CornerSet& corners, const Patch& patch) {
+  return corners.CountInRow(patch.front, patch.left, patch.right) +
+         corners.CountInRow(patch.back, patch.left, patch.right) +
+         corners.CountInColumn(patch.left, patch.front, patch.back) +
+         corners.CountInColumn(patch.right, patch.front, patch.back) - 6;
 }
 
 // Triangles of a rectangle between the vertices of its sides, none without area: a fan to the left
@@ -87,22 +99,25 @@ void ForEachWall(const VertexGrid& grid, std::span<const Vertex> edge, bool back
   }
 }
 
-// The surface of the body, triangle by triangle; no further than the patch where `wanted` becomes
-// false.
+// The surface of a section of the body, triangle by triangle.
 template <class Visit>
-void ForEachTriangle(const VertexGrid& grid, const SurfacePatches& patches, const bool& wanted,
+void ForEachTriangle(const VertexGrid& grid, const SurfacePatches& patches, std::size_t section,
                      Visit visit) {
   Outline outline;
-  patches.ForEach([&](const Patch& patch) {
-    FindOutline(patches, patch, outline);
+  patches.ForEach(section, [&](const Patch& patch) {
+    FindOutline(patches.corners(), patch, outline);
     const auto at = [&](Vertex v) {
       return MachineVector{grid.x(v.column), grid.y(v.row), grid.z(v.column, v.row)};
     };
     FillOutline(outline, [&](Vertex a, Vertex b, Vertex c) { visit(at(a), at(b), at(c)); });
-    return wanted;
   });
-  if (!wanted) return;
-  FindOutline(patches, {0, grid.columns() - 1, 0, grid.rows() - 1}, outline);
+}
+
+// Its walls and its base.
+template <class Visit>
+void ForEachTriangleBelow(const VertexGrid& grid, const SurfacePatches& patches, Visit visit) {
+  Outline outline;
+  FindOutline(patches.corners(), patches.Whole(), outline);
   ForEachWall(grid, outline.front, false, visit);
   ForEachWall(grid, outline.right, false, visit);
   ForEachWall(grid, outline.back, true, visit);
@@ -113,47 +128,116 @@ void ForEachTriangle(const VertexGrid& grid, const SurfacePatches& patches, cons
   FillOutline(outline, [&](Vertex a, Vertex b, Vertex c) { visit(below(a), below(c), below(b)); });
 }
 
-void PutLittle(std::string& bytes, std::uint32_t value) {
-  for (int shift = 0; shift < 32; shift += 8)
-    bytes += static_cast<char>(static_cast<unsigned char>(value >> shift & 0xFF));
+void PutLittle(std::uint32_t value, char* bytes) {
+  for (int k = 0; k < 4; ++k)
+    bytes[k] = static_cast<char>(static_cast<unsigned char>(value >> 8 * k & 0xFF));
 }
 
-void PutVector(std::string& bytes, const MachineVector& v) {
-  for (const double c : {v.x(), v.y(), v.z()})
-    PutLittle(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(c)));
+constexpr std::size_t kTriangleBytes = 50;
+
+void PutTriangle(std::string& bytes, const MachineVector& a, const MachineVector& b,
+                 const MachineVector& c) {
+  std::array<char, kTriangleBytes> triangle{};
+  char* at = triangle.data();
+  const auto put = [&at](const MachineVector& v) {
+    for (const double part : {v.x(), v.y(), v.z()}) {
+      PutLittle(std::bit_cast<std::uint32_t>(static_cast<float>(part)), at);
+      at += 4;
+    }
+  };
+  put((b - a).cross(c - a).normalized());
+  put(a);
+  put(b);
+  put(c);
+  bytes.append(triangle.data(), triangle.size());
+}
+
+// Gives the bytes of a file out in portions, in the order in which they come.
+class Portions {
+ public:
+  explicit Portions(const std::function<bool(std::string_view)>& sink) : sink_(sink) {}
+
+  std::string& bytes() { return bytes_; }
+  bool GiveOut(bool all) {
+    std::size_t given = 0;
+    for (; bytes_.size() - given >= kPortion; given += kPortion) {
+      if (!sink_(std::string_view(bytes_).substr(given, kPortion))) return false;
+    }
+    if (all) return sink_(std::string_view(bytes_).substr(given));
+    bytes_.erase(0, given);
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t kPortion = 1 << 20;
+  const std::function<bool(std::string_view)>& sink_;
+  std::string bytes_;
+};
+
+// Nothing: it is not wanted any more.
+std::optional<std::size_t> CountTriangles(const VertexGrid& grid, const SurfacePatches& patches,
+                                          const std::function<bool(std::string_view)>& sink) {
+  constexpr std::size_t kCounted = 1 << 20;
+  std::size_t count = 0;
+  std::size_t asked_at = kCounted;
+  ForEachTriangleBelow(grid, patches, [&](auto&&...) { ++count; });
+  for (std::size_t section = 0; section < patches.sections(); ++section) {
+    patches.ForEach(section,
+                    [&](const Patch& patch) { count += TrianglesOf(patches.corners(), patch); });
+    if (count < asked_at) continue;
+    asked_at = count + kCounted;
+    if (!sink({})) return std::nullopt;
+  }
+  return count;
+}
+
+// Of each section by itself, several at the same time.
+bool WriteSections(const VertexGrid& grid, const SurfacePatches& patches, ParallelFor& parallel,
+                   Portions& portions) {
+  std::vector<std::string> written(parallel.width() > 1 ? 4 * parallel.width() : 1);
+  for (std::size_t first = 0; first < patches.sections(); first += written.size()) {
+    const std::size_t count = std::min(written.size(), patches.sections() - first);
+    const auto write = [&](std::size_t section, std::string& bytes) {
+      ForEachTriangle(grid, patches, section, [&](const auto& a, const auto& b, const auto& c) {
+        PutTriangle(bytes, a, b, c);
+      });
+    };
+    if (count == 1) {
+      write(first, portions.bytes());
+    } else {
+      parallel.Run(count, [&](std::size_t k) {
+        written[k].clear();
+        write(first + k, written[k]);
+      });
+      for (std::size_t k = 0; k < count; ++k) portions.bytes() += written[k];
+    }
+    if (!portions.GiveOut(false)) return false;
+  }
+  return true;
 }
 
 }  // namespace
 
 bool WriteStl(const HeightField& field, double tolerance_mm,
-              const std::function<bool(std::string_view)>& sink) {
-  constexpr std::size_t kPortion = 1 << 20;
+              const std::function<bool(std::string_view)>& sink, ParallelFor* parallel) {
+  SerialFor serial;
+  ParallelFor& threads = parallel != nullptr ? *parallel : serial;
   const VertexGrid grid(field);
-  const SurfacePatches patches(grid, tolerance_mm, [&] { return sink({}); });
+  const SurfacePatches patches(
+      grid, tolerance_mm, [&] { return sink({}); }, threads);
   if (!patches.complete()) return false;
-  bool wanted = true;
-  std::uint32_t triangles = 0;
-  ForEachTriangle(grid, patches, wanted,
-                  [&](const MachineVector&, const MachineVector&, const MachineVector&) {
-                    if (++triangles % kPortion == 0) wanted = wanted && sink({});
-                  });
-  if (!wanted) return false;
-  std::string bytes = "what is left of the block, mm";  // must not begin with "solid"
-  bytes.resize(80, ' ');
-  PutLittle(bytes, triangles);
-  ForEachTriangle(grid, patches, wanted,
-                  [&](const MachineVector& a, const MachineVector& b, const MachineVector& c) {
-                    if (!wanted) return;
-                    PutVector(bytes, (b - a).cross(c - a).normalized());
-                    PutVector(bytes, a);
-                    PutVector(bytes, b);
-                    PutVector(bytes, c);
-                    bytes.append(2, '\0');
-                    if (bytes.size() < kPortion) return;
-                    wanted = sink(bytes);
-                    bytes.clear();
-                  });
-  return wanted && sink(bytes);
+  const std::optional<std::size_t> triangles = CountTriangles(grid, patches, sink);
+  if (!triangles) return false;
+  Portions portions(sink);
+  std::string& bytes = portions.bytes();
+  bytes = "what is left of the block, mm";  // must not begin with "solid"
+  bytes.resize(84, ' ');
+  PutLittle(static_cast<std::uint32_t>(*triangles), bytes.data() + 80);
+  if (!WriteSections(grid, patches, threads, portions)) return false;
+  ForEachTriangleBelow(grid, patches, [&](const auto& a, const auto& b, const auto& c) {
+    PutTriangle(bytes, a, b, c);
+  });
+  return portions.GiveOut(true);
 }
 
 }  // namespace rmlcell::simulation

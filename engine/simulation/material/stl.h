@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "engine/simulation/material/height_field.h"
+#include "engine/simulation/material/parallel_for.h"
 
 namespace rmlcell::simulation {
 
@@ -15,9 +16,10 @@ inline constexpr double kStlTolerance_mm = 0.01;
 // surface is nowhere further than the tolerance above or below that of the heights, which lie over
 // the centres of the cells; plane ground is two triangles (surface_patches.h). motion.md section 9.
 // The bytes are valid during the call of `sink`; it returns false when it wants no more, and so
-// does this. While nothing is ready yet it is asked with no bytes, some times a second.
-// Precondition: the tolerance is not below 0.
+// does this. While nothing is ready yet it is asked with no bytes, some times a second. `parallel`
+// looks at several parts of the surface at the same time; null: one after the other. The bytes are
+// the same. Precondition: the tolerance is not below 0.
 bool WriteStl(const HeightField& field, double tolerance_mm,
-              const std::function<bool(std::string_view)>& sink);
+              const std::function<bool(std::string_view)>& sink, ParallelFor* parallel = nullptr);
 
 }  // namespace rmlcell::simulation

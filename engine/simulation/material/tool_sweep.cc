@@ -7,6 +7,16 @@ namespace rmlcell::simulation {
 
 using motion::MachinePoint;
 
+namespace {
+
+std::size_t ColumnAt(const HeightField& field, double x) {
+  const double cells = (x - field.stock().x_min) / field.stock().cell;
+  return static_cast<std::size_t>(
+      std::min(static_cast<double>(field.columns()), std::max(0.0, cells)));
+}
+
+}  // namespace
+
 ToolSweep::Surface ToolSweep::SurfaceOf(const MillTool& tool, const ToolPass& pass) {
   switch (tool.shape) {
     case MillTool::Shape::kFlat:
@@ -28,6 +38,8 @@ ToolSweep::ToolSweep(const HeightField& field, const ToolPass& pass, Surface sur
     : field_(field),
       pass_(pass),
       surface_(surface),
+      leftmost_(ColumnAt(field, std::min(pass.from().x(), pass.to().x()) - pass.radius_mm())),
+      rightmost_(ColumnAt(field, std::max(pass.from().x(), pass.to().x()) + pass.radius_mm()) + 1),
       swept_(field, pass.from(), pass.to(), pass.radius_mm()),
       row_(std::max(rows.begin, swept_.rows().begin)),
       end_row_(std::min(rows.end, swept_.rows().end)) {
@@ -47,9 +59,9 @@ ToolSweep::ToolSweep(const HeightField& field, const MillTool& tool, const Machi
     : ToolSweep(field, tool, ToolPass(tool, from, to), rows) {}
 
 ToolSweep::ToolSweep(const HeightField& field, const Collar& collar, const MillTool& tool,
-                     const MachinePoint& from, const MachinePoint& to)
+                     const MachinePoint& from, const MachinePoint& to, HeightField::Rows rows)
     : ToolSweep(field, ToolPass({.radius_mm = collar.radius_mm}, from, to), Surface::kCollar,
-                field.all_rows()) {
+                rows) {
   collar_ = collar;
   cutter_radius_mm_ = tool.radius_mm;
 }
@@ -144,23 +156,24 @@ std::span<const ToolSweep::Piece> ToolSweep::NextBy(Least least) {
   return std::span<const Piece>(pieces_).first(told);
 }
 
-// Of a column and those of a piece that begins there, and more of them on both sides: the rows of
-// a disc begin further left and end further right than its first one.
-const double* ToolSweep::PlacesFrom(std::size_t column) {
+// Of some columns of a piece, with those that are worked out besides, and more of them on both
+// sides: the rows of a disc begin further left and end further right than its first one.
+const double* ToolSweep::PlacesOf(std::size_t begin, std::size_t end) {
   constexpr std::size_t kLeft = 32;
   static_assert(kLeft + kPieceCells + kMoreWorkedOut <= kPlaces);
-  const std::size_t end = column + kPieceCells + kMoreWorkedOut;
-  if (!has_places_ || column < first_place_ || end > first_place_ + kPlaces) {
-    has_places_ = true;
-    first_place_ = std::max(column, kLeft) - kLeft;
+  if (begin < first_place_ || end + kMoreWorkedOut > end_place_) {
+    const bool all_fit = end + kMoreWorkedOut <= leftmost_ + kPlaces;
+    first_place_ = std::min(begin, all_fit ? leftmost_ : std::max(begin, kLeft) - kLeft);
+    end_place_ = std::min(first_place_ + kPlaces, std::max(end, rightmost_) + kMoreWorkedOut);
     const Stock& stock = field_.stock();
     const auto first = static_cast<std::int32_t>(first_place_);
-    for (std::int32_t k = 0; k < static_cast<std::int32_t>(kPlaces); ++k) {
+    const auto count = static_cast<std::int32_t>(end_place_ - first_place_);
+    for (std::int32_t k = 0; k < count; ++k) {
       places_[static_cast<std::size_t>(k)] =
           stock.x_min + (static_cast<double>(first + k) + 0.5) * stock.cell - pass_.from().x();
     }
   }
-  return &places_[column - first_place_];
+  return &places_[begin - first_place_];
 }
 
 // Up to kMoreWorkedOut more than are asked for: the last ones by themselves would take as long as
@@ -171,7 +184,7 @@ void ToolSweep::WorkOut(std::size_t row, std::size_t begin, std::size_t end, Lea
   if (begin == end) return;
   const Stock& stock = field_.stock();
   const double y = stock.y_min + (static_cast<double>(row) + 0.5) * stock.cell - pass_.from().y();
-  const double* const x = PlacesFrom(begin);
+  const double* const x = PlacesOf(begin, end);
   const std::size_t count = (end - begin + kMoreWorkedOut) & ~kMoreWorkedOut;
   for (std::size_t k = 0; k < count; ++k)
     heights[k] = static_cast<float>(least(pass_.AlongOf(x[k], y), pass_.AcrossOf(x[k], y)));

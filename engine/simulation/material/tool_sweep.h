@@ -29,7 +29,8 @@ class ToolSweep {
     double raised_mm = 0.0;
   };
   ToolSweep(const HeightField& field, const Collar& collar, const MillTool& tool,
-            const motion::MachinePoint& from, const motion::MachinePoint& to);
+            const motion::MachinePoint& from, const motion::MachinePoint& to,
+            HeightField::Rows rows);
 
   static constexpr std::size_t kPieceCells = 64;  // more than most tools come over in a row
   struct Piece {
@@ -72,7 +73,7 @@ class ToolSweep {
   std::span<const Piece> NextBy(Least least);
   template <class Least>
   void WorkOut(std::size_t row, std::size_t begin, std::size_t end, Least least, float* heights);
-  const double* PlacesFrom(std::size_t column);
+  const double* PlacesOf(std::size_t begin, std::size_t end);
 
   const HeightField& field_;
   ToolPass pass_;
@@ -81,10 +82,12 @@ class ToolSweep {
   double cutter_radius_mm_ = 0.0;
 
   // How far some columns are from the start of the move: rows that follow need the same.
-  static constexpr std::size_t kPlaces = 128;
+  static constexpr std::size_t kPlaces = 2048;  // 16 KiB, half of what is nearest to a processor
   std::array<double, kPlaces> places_;
   std::size_t first_place_ = 0;
-  bool has_places_ = false;
+  std::size_t end_place_ = 0;
+  std::size_t leftmost_;  // columns that it comes over, about
+  std::size_t rightmost_;
 
   SweptRows swept_;
   std::optional<SweptRows> stood_;  // of a flat tool on a slope: it leaves one height there

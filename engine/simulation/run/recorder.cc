@@ -26,7 +26,7 @@ struct Recorder::State {
     if (products.samples) {
       Join(&samples.emplace(shape, products.samples_hz, std::move(products.samples)));
     }
-    if (products.milling) Join(&milling.emplace(shape, *products.milling));
+    if (products.milling) Join(&milling.emplace(shape, *products.milling, products.parallel));
   }
 
   void Join(machine::RunObserver* observer) {
@@ -167,11 +167,7 @@ RunReport Recorder::Report(const machine::Run& run) const {
   return report;
 }
 
-const MillingRecorder* Recorder::milling() const {
-  return state_->milling ? &*state_->milling : nullptr;
-}
-
-MillingRecorder* Recorder::milling() { return state_->milling ? &*state_->milling : nullptr; }
+MillingRecorder* Recorder::milling() const { return state_->milling ? &*state_->milling : nullptr; }
 
 std::string Recorder::Svg(const RunReport& report, const PictureOptions& options) const {
   return state_->picture ? state_->picture->Svg(report, options) : std::string();

@@ -25,6 +25,7 @@ struct Products {
   SampleSink samples{};  // empty: no samples
   double samples_hz = 1000.0;
   std::optional<Milling> milling{};      // checked; nothing: material is not modelled
+  ParallelFor* parallel = nullptr;       // for its material; may be null; outlives the recorder
   machine::RunObserver* also = nullptr;  // told everything too, before the products; may be null
 };
 
@@ -68,8 +69,7 @@ class Recorder final : public machine::RunObserver {
   void Finish(const machine::Run& run);
 
   // Null when material is not modelled.
-  const MillingRecorder* milling() const;
-  MillingRecorder* milling();
+  MillingRecorder* milling() const;
 
   // Empty when no picture was asked for.
   std::string Svg(const RunReport& report, const PictureOptions& options) const;

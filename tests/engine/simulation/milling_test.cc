@@ -7,6 +7,7 @@
 #include "engine/simulation/material/milling_recorder.h"
 #include "engine/simulation/material/milling_text.h"
 #include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/thread_for.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -49,6 +50,47 @@ TEST(MillingRecorder, TakesOffWhatTheToolSweeps) {
   Tell(recorder, {5, 6, -2}, {15, 6, -2}, 8.0, 3);
   EXPECT_NEAR(recorder.Figures().removed_mm3, 2.0 * (30.0 + kPi * 2.25), 0.3);
   EXPECT_EQ(recorder.Figures().gouges, 0u);
+}
+
+// Motions wait to be cut together, and what is told of them is the same, of each at its place.
+TEST(MillingRecorder, TellsTheSameWithThreads) {
+  Milling milling = kSlot;
+  milling.tool.flutes = 2;
+  milling.tool.flute_mm = 1.0;
+  milling.tool.shank_radius_mm = 2.0;
+  milling.chips = ChipsOf("wax", 3.0).value();
+  ThreadFor threads(2);
+  MillingRecorder alone(MillShape(), milling);
+  MillingRecorder together(MillShape(), milling, &threads);
+  for (MillingRecorder* recorder : {&alone, &together}) {
+    for (int k = 0; k < 300; ++k) {
+      recorder->OnSignal({.signal = machine::Signal::kSpindleSpeed, .value = 6000.0 + 10.0 * k});
+      const double y = 1.0 + 0.03 * k;
+      const double z = -1.0 - 0.5 * std::sin(k);
+      Tell(*recorder, {2, y, z}, {18, y + 1.0, z - 0.3}, k % 50 == 7 ? 0.0 : 8.0 + k % 3, k);
+    }
+  }
+  EXPECT_TRUE(together.material().heights() == alone.material().heights());
+  EXPECT_EQ(threads.most(), 2u);
+  const MillingFigures one = alone.Figures();
+  const MillingFigures two = together.Figures();
+  EXPECT_GT(one.gouges, 1u);
+  EXPECT_EQ(two.gouges, one.gouges);
+  EXPECT_EQ(two.gouge_depth_mm, one.gouge_depth_mm);
+  EXPECT_EQ(two.gouge_place, one.gouge_place);
+  EXPECT_EQ(two.gouge_at, one.gouge_at);
+  EXPECT_GT(one.shank_depth_mm, 0.0);
+  EXPECT_EQ(two.shank_depth_mm, one.shank_depth_mm);
+  EXPECT_EQ(two.shank_place, one.shank_place);
+  EXPECT_EQ(two.deepest_pass_mm, one.deepest_pass_mm);
+  EXPECT_EQ(two.pass_place, one.pass_place);
+  EXPECT_EQ(two.removed_mm3, one.removed_mm3);
+  EXPECT_EQ(two.remaining_mm3, one.remaining_mm3);
+  EXPECT_GT(one.chips->thick_percent, 0.0);
+  EXPECT_EQ(two.chips->thick_percent, one.chips->thick_percent);
+  EXPECT_EQ(two.chips->thick_place, one.chips->thick_place);
+  EXPECT_EQ(two.chips->speed_percent, one.chips->speed_percent);
+  EXPECT_EQ(two.chips->speed_place, one.chips->speed_place);
 }
 
 // motion.md 9: travel below the surface is a gouge, with step and depth; through a slot it is none.

@@ -9,6 +9,7 @@
 
 #include "engine/core/units.h"
 #include "tests/engine/simulation/stl_mesh.h"
+#include "tests/engine/simulation/thread_for.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -254,6 +255,33 @@ TEST(Stl, OneCellIsABox) {
 }
 
 TEST(Stl, TheSameBytesEachTime) { EXPECT_EQ(StlOf(Milled(3), 0.01), StlOf(Milled(3), 0.01)); }
+
+// Sections of the surface are divided and written each by itself: threads change no byte of it.
+TEST(Stl, TheSameBytesWithSeveralThreads) {
+  HeightField field =
+      HeightField::Of({.x_max = 60.0, .y_max = 40.0, .bottom = -9.0, .top = 0.0, .cell = 0.1})
+          .value();
+  for (int k = 0; k < 60; ++k) {  // waves, and slots across them
+    const motion::MachinePoint at{k * 1.0, 3.0 + k % 7, -2.0 - std::sin(0.3 * k)};
+    field.Cut({.shape = MillTool::Shape::kBall, .radius_mm = 1.5}, at, {at.x() + 1.0, 36.0, -3.0});
+    if (k % 9 == 0) field.Cut({.radius_mm = 0.7}, {at.x(), 0, -6}, {at.x(), 40, -6});
+  }
+  const std::string alone = StlOf(field, 0.01);
+  EXPECT_GT(alone.size(), std::size_t{1} << 20);
+  for (const std::size_t width : {2u, 3u, 8u}) {
+    ThreadFor threads(width);
+    std::string bytes;
+    EXPECT_TRUE(WriteStl(
+        field, 0.01,
+        [&](std::string_view part) {
+          bytes += part;
+          return true;
+        },
+        &threads));
+    EXPECT_TRUE(bytes == alone) << width << " threads";
+    EXPECT_GT(threads.most(), 1u);
+  }
+}
 
 // A large body is handed over in portions; nothing more once nobody wants it.
 TEST(Stl, LargeBodiesComeInPortions) {

@@ -1,0 +1,63 @@
+#include "proto/bridge/thread_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <latch>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace rmlcell::bridge {
+namespace {
+
+TEST(ThreadPool, DoesEachPieceOnce) {
+  for (const std::size_t width : {1u, 2u, 5u}) {
+    ThreadPool pool(width);
+    EXPECT_EQ(pool.width(), width);
+    for (const std::size_t count : {0u, 1u, 2u, 3u, 100u}) {
+      std::vector<int> done(count);  // each piece has its own
+      pool.Run(count, [&](std::size_t k) { ++done[k]; });
+      EXPECT_EQ(done, std::vector<int>(count, 1)) << width << " threads";
+    }
+  }
+}
+
+// Two pieces that wait for each other end only when both are under way.
+TEST(ThreadPool, HasPiecesUnderWayTogether) {
+  ThreadPool pool(2);
+  for (int round = 0; round < 100; ++round) {
+    std::latch both(2);
+    pool.Run(2, [&](std::size_t) { both.arrive_and_wait(); });
+  }
+}
+
+TEST(ThreadPool, OfOneWorksInTheThreadThatCalls) {
+  ThreadPool pool(1);
+  std::set<std::thread::id> threads;
+  pool.Run(10, [&](std::size_t) { threads.insert(std::this_thread::get_id()); });
+  EXPECT_EQ(threads, std::set<std::thread::id>{std::this_thread::get_id()});
+}
+
+// After all others have ended, and the pool goes on.
+TEST(ThreadPool, TellsWhatAPieceThrew) {
+  ThreadPool pool(2);
+  std::atomic<int> done = 0;
+  const auto third_throws = [&](std::size_t k) {
+    if (k == 2) throw std::runtime_error("the third");
+    ++done;
+  };
+  EXPECT_THROW(pool.Run(8, third_throws), std::runtime_error);
+  EXPECT_EQ(done, 7);
+  pool.Run(8, [&](std::size_t) { ++done; });
+  EXPECT_EQ(done, 15);
+}
+
+TEST(ThreadPool, OfMaterialHasTwoThreadsAtMost) {
+  EXPECT_GE(ThreadsForMaterial(), 1u);
+  EXPECT_LE(ThreadsForMaterial(), 2u);
+}
+
+}  // namespace
+}  // namespace rmlcell::bridge
