@@ -106,7 +106,9 @@ class RampsBelow {
     return true;
   }
 
-  bool BoundsFit(double fastest, double to) const;
+  bool BoundsFit(double fastest, double to) const {
+    return RampsFitByBounds(most_, step_mm_, limits_.jerk, fastest, to);
+  }
 
   std::span<const double> most_;
   double steps_;
@@ -116,34 +118,34 @@ class RampsBelow {
   Place worst_{.phase = SpeedProfile::kPhasesMax};
 };
 
-// Whether all ramps to `to` keep below that begin at `fastest` or slower, by bounds: no is only a
-// maybe. Where x of the way from the speed f is gone the time is at most x / f, so the speed is at
+}  // namespace
+
+// Where x of the way from the speed f is gone the time is at most x / f, so the speed is at
 // most f + j x^2 / (2 f^2), and from rest (4.5 j x^2)^(1/3). At one place it falls with f while it
 // is above 2 f and rises from there on: the larger one of the two bounds all starts between.
-bool RampsBelow::BoundsFit(double fastest, double to) const {
-  const double square_mm2 = step_mm_ * step_mm_;
-  const double growth = limits_.jerk * square_mm2 / (2.0 * fastest * fastest);
-  const double from_rest = 4.5 * limits_.jerk * square_mm2;  // cubed, after one step
-  const double start = most_[0];
+bool RampsFitByBounds(std::span<const double> most, double step_mm, double jerk, double fastest,
+                      double to) {
+  const double square_mm2 = step_mm * step_mm;
+  const double growth = jerk * square_mm2 / (2.0 * fastest * fastest);
+  const double from_rest = 4.5 * jerk * square_mm2;  // cubed, after one step
+  const double start = most[0];
   // The first step: limits and bound both begin flat.
-  double rise = most_[1] - start;
-  double room = most_[1] - fastest - growth;
+  double rise = most[1] - start;
+  double room = most[1] - fastest - growth;
   if (!(rise >= 0.0 && room >= 0.0 && from_rest <= start * start * start)) return false;
-  for (std::size_t k = 2; k < most_.size(); ++k) {
+  for (std::size_t k = 2; k < most.size(); ++k) {
     const auto square = static_cast<double>(k * k);
-    const double rise_before = std::exchange(rise, most_[k] - most_[k - 1]);
-    const double room_before = std::exchange(room, most_[k] - fastest - growth * square);
+    const double rise_before = std::exchange(rise, most[k] - most[k - 1]);
+    const double room_before = std::exchange(room, most[k] - fastest - growth * square);
     // Between the steps both sag.
     const double bend = std::max(rise - rise_before, 0.0);
-    const double least = std::min(most_[k], most_[k - 1]) - 0.125 * bend;
+    const double least = std::min(most[k], most[k - 1]) - 0.125 * bend;
     if (least >= to) continue;  // no ramp is faster
     if (!(std::min(room_before, room) >= 0.25 * std::max(0.5 * bend - growth, 0.0))) return false;
     if (!(from_rest * square <= least * least * least)) return false;
   }
   return true;
 }
-
-}  // namespace
 
 std::array<double, BendStretches::kAbrupt> AbruptSpeeds(const BendSpeeds& speeds) {
   constexpr std::size_t kHalf = BendStretches::kAbrupt / 2;

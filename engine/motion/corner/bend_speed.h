@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "engine/motion/geometry/corner_table.h"
 #include "engine/motion/kinematics/machine_limits.h"
@@ -35,5 +36,10 @@ std::array<double, BendStretches::kAbrupt> AbruptSpeeds(const BendSpeeds& speeds
 // `limits` are those of the ramps (their speed does not count).
 BendStretches StretchesOf(const BendSpeeds& speeds, double half_length_mm,
                           const PathLimits& limits);
+
+// Whether all ramps to `to` that begin at `fastest` or slower keep below the speeds `most` at equal
+// steps of `step_mm`, by bounds: no is only a maybe. Precondition: fastest <= most.front().
+bool RampsFitByBounds(std::span<const double> most, double step_mm, double jerk, double fastest,
+                      double to);
 
 }  // namespace rmlcell::motion

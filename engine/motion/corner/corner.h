@@ -99,7 +99,8 @@ bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits&
 
 // The highest speed at which a curve can be passed: normal acceleration, jerk and axes.
 // motion.md 4.3; to 1e-9. When it is above `enough` that is all that can be told from it.
+// `of_lines`: it lies between two lines, and the tip can pass it at `enough`, as Corner knows.
 double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
-                    double enough = HUGE_VAL);
+                    double enough = HUGE_VAL, bool of_lines = false);
 
 }  // namespace rmlcell::motion

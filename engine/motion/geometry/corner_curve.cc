@@ -193,6 +193,19 @@ CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
   return bounds;
 }
 
+CurveRates::CurveRates(const CornerCurve& curve) {
+  for (std::size_t k = 0; k < first_.size(); ++k) {
+    const MachineVector& tip = curve.tip_[k + 1];
+    const double order = static_cast<double>(k + 1);
+    const Values c{tip.x(), tip.y(), tip.z(), curve.a_[k + 1], curve.b_[k + 1], 0.0};
+    for (std::size_t i = 0; i < c.size(); ++i) first_[k][i] = order * c[i];
+    if (k == 0) continue;
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      second_[k - 1][i] = static_cast<double>(k) * first_[k][i];
+    }
+  }
+}
+
 double CornerCurve::Speed(double u) const { return First(tip_, u).norm(); }
 
 double CornerCurve::Integral(double from, double to) const {

@@ -111,6 +111,7 @@ class CornerCurve {
   double Integral(double u_from, double u_to) const;  // arc length, one panel
 
  private:
+  friend class CurveRates;
   static double Scale(const MachineVector& tangent_in, const MachineVector& tangent_out,
                       double cut_mm);
   void FitEnds(const CurveEnd& from, const CurveEnd& to, double scale);
@@ -120,6 +121,35 @@ class CornerCurve {
   std::array<MachineVector, 6> tip_{};
   std::array<double, 6> a_{};
   std::array<double, 6> b_{};
+};
+
+// The derivatives of a curve by u, for who asks for them at many places.
+class CurveRates {
+ public:
+  // Of X Y Z A B; the last is nothing: they are worked out in pairs.
+  using Values = std::array<double, 6>;
+
+  explicit CurveRates(const CornerCurve& curve);
+
+  Values First(double u) const {
+    Values values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = (((first_[4][i] * u + first_[3][i]) * u + first_[2][i]) * u + first_[1][i]) * u +
+                  first_[0][i];
+    }
+    return values;
+  }
+  Values Second(double u) const {
+    Values values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = ((second_[3][i] * u + second_[2][i]) * u + second_[1][i]) * u + second_[0][i];
+    }
+    return values;
+  }
+
+ private:
+  std::array<Values, 5> first_;  // coefficients of u^0 .. u^4
+  std::array<Values, 4> second_;
 };
 
 // Arc length along a corner curve by Gauss-Legendre on eight panels; on sixteen, narrower towards

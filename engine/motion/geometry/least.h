@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace rmlcell::motion {
 
@@ -35,6 +36,72 @@ double LeastBySections(F f, double low, double high) {
   return std::min(at_left, at_right);
 }
 
+// The most of `f`, smooth and with one peak between the outer two of three places of which the
+// middle one has the highest value: by parabolas through the three best places, whose last three
+// are so near each other that what is left is below rounding. Where that does not come about, by
+// sections.
+template <class F>
+double MostByParabolas(F f, std::array<double, 3> x, std::array<double, 3> y) {
+  constexpr int kSteps = 16;
+  const double width = x[2] - x[0];
+  const double tight = 5e-3 * width;
+  double left = x[0], right = x[2];
+  // The best place, and two others.
+  double best = x[1], second = x[0], third = x[2];
+  double most = y[1], at_second = y[0], at_third = y[2];
+  for (int step = 0; step < kSteps; ++step) {
+    const double r = (best - second) * (most - at_third);
+    const double q = (best - third) * (most - at_second);
+    const bool near = std::max(std::abs(best - second), std::abs(best - third)) <= 2.0 * tight;
+    double next = best - 0.5 * ((best - third) * q - (best - second) * r) / (q - r);
+    if (!(next > left && next < right)) {
+      if (most == at_second && most == at_third && near) return most;  // flat to the last digits
+      next = 0.5 * (best + (right - best > best - left ? right : left));
+    } else if (std::abs(next - best) < 0.5 * tight) {
+      if (near && std::abs(next - best) < 1e-6 * width) return most;
+      // Not so near that the values differ by rounding alone.
+      if (!near) next = best + (right - best > best - left ? tight : -tight);
+    }
+    const double value = f(next);
+    if (near && std::abs(next - best) <= 2.0 * tight) return std::max(most, value);
+    if (value > most) {
+      (next > best ? left : right) = best;
+      third = std::exchange(second, std::exchange(best, next));
+      at_third = std::exchange(at_second, std::exchange(most, value));
+    } else {
+      (next > best ? right : left) = next;
+      if (value >= at_second || second == best) {
+        third = std::exchange(second, next);
+        at_third = std::exchange(at_second, value);
+      } else {
+        third = next;
+        at_third = value;
+      }
+    }
+  }
+  return std::max(most, -LeastBySections([&](double at) { return -f(at); }, left, right));
+}
+
+// The most of `f` between an end, at which it is higher than at the place `inner`, and that place:
+// at the end itself, unless it rises from there. By parabolas or, right beside the end, by
+// sections.
+template <class F>
+double MostNearEnd(F f, double end, double at_end, double inner, double at_inner) {
+  const double middle = 0.5 * (end + inner);
+  const double at_middle = f(middle);
+  if (at_middle > at_end) {
+    const bool up = end < inner;
+    return up ? MostByParabolas(f, {end, middle, inner}, {at_end, at_middle, at_inner})
+              : MostByParabolas(f, {inner, middle, end}, {at_inner, at_middle, at_end});
+  }
+  // So near that a peak before it is no higher than the end by 1e-9, and so far that a slope shows
+  // above rounding.
+  constexpr double kBeside = 1e-5;
+  if (!(f(end + kBeside * (inner - end)) > at_end)) return at_end;
+  return std::max(at_end, -LeastBySections([&](double x) { return -f(x); }, std::min(end, middle),
+                                           std::max(end, middle)));
+}
+
 // Where a value is low its reciprocal, what is asked of the machine, has a peak. That bends
 // downwards, so it stays below its sides drawn on: from the sample `beside` over the one `at`.
 inline double DrawnOn(double beside, double at) { return 2.0 / at - 1.0 / beside; }
@@ -46,12 +113,16 @@ inline double MostAskedAtEnd(double inner, double next, double end) {
   return std::max(DrawnOn(inner, next), 1.0 / (kNear * end));
 }
 
+// How the least between samples is closed in on: to the last digits, or to some 1e-10 in a fifth of
+// the places.
+enum class Closing { kSections, kParabolas };
+
 // The least of several positive values over [0, length], to some 1e-9. `values_at(k)` gives them
 // all, as an array, at the k-th of `intervals` equal steps, at least three, between which each is
 // smooth; `one` gives one of them at any place. A valley of one may be the lowest place of all
 // though others are lower at the samples about it, so each value's are looked at by themselves. Who
 // only asks whether anything falls below `enough` gets some value above that when nothing does.
-template <class ValuesAt, class One>
+template <Closing kClosing = Closing::kSections, class ValuesAt, class One>
 double LeastOfSampled(ValuesAt values_at, One one, double length, int intervals,
                       double enough = HUGE_VAL) {
   using Values = decltype(values_at(0));
@@ -68,10 +139,15 @@ double LeastOfSampled(ValuesAt values_at, One one, double length, int intervals,
   const auto sample = [&](int k) {
     return k <= kKept ? kept[static_cast<std::size_t>(k)] : values_at(k);
   };
-  const auto look = [&](std::size_t which, double most_asked, int from, int to) {
-    if (!(most_asked * std::min(best, enough) > 1.0 + kGain)) return;
+  const auto matters = [&](double most_asked) {
+    return most_asked * std::min(best, enough) > 1.0 + kGain;
+  };
+  const auto sections = [&](std::size_t which, int from, int to) {
     best = std::min(
         best, LeastBySections([&](double x) { return one(which, x); }, place(from), place(to)));
+  };
+  const auto less = [&](std::size_t which) {
+    return [&one, which](double x) { return -one(which, x); };
   };
   Values before = sample(0);
   Values here = sample(1);
@@ -80,11 +156,22 @@ double LeastOfSampled(ValuesAt values_at, One one, double length, int intervals,
     for (std::size_t i = 0; i < here.size(); ++i) {
       const double a = before[i], b = here[i], c = after[i];
       if (b <= a && b <= c) {
-        look(i, DrawnOn(std::max(a, c), b), k - 1, k + 1);
-      } else if (k == 1 && a < b) {
-        look(i, MostAskedAtEnd(c, b, a), 0, 1);
-      } else if (k == intervals - 1 && c < b) {
-        look(i, MostAskedAtEnd(a, b, c), k, intervals);
+        if (!matters(DrawnOn(std::max(a, c), b))) continue;
+        if constexpr (kClosing == Closing::kSections) {
+          sections(i, k - 1, k + 1);
+        } else {
+          best = std::min(best, -MostByParabolas(less(i), {place(k - 1), place(k), place(k + 1)},
+                                                 {-a, -b, -c}));
+        }
+      } else if ((k == 1 && a < b) || (k == intervals - 1 && c < b)) {
+        const bool first = k == 1 && a < b;
+        if (!matters(first ? MostAskedAtEnd(c, b, a) : MostAskedAtEnd(a, b, c))) continue;
+        const int end = first ? 0 : intervals;
+        if constexpr (kClosing == Closing::kSections) {
+          sections(i, std::min(k, end), std::max(k, end));
+        } else {
+          best = std::min(best, -MostNearEnd(less(i), place(end), first ? -a : -c, place(k), -b));
+        }
       }
     }
     before = here;

@@ -149,8 +149,7 @@ std::optional<PathLimits> LimitsOnShortTurn(const PathPiece& path, const Head& h
 
 // The extremes along a piece at which the head turns, searched for at the same places for all
 // limits. On a line the ends alone tell them wherever it is proven that what an axis is asked for
-// rises or falls all the way, or stays below what counts: the search would find the same to the
-// last bit.
+// rises or falls all the way, or stays below what counts: the search would find the same.
 class AxisSearch {
  public:
   AxisSearch(const PathPiece& path, const Head& head, const AxisLimits& axes,
@@ -256,7 +255,7 @@ class AxisSearch {
     for (; sampled_ < known; ++sampled_) {
       kept_[static_cast<std::size_t>(sampled_)] = DerivativesAt(path_, head_, Place(sampled_));
     }
-    return LeastOfSampled(
+    return LeastOfSampled<Closing::kParabolas>(
         [&](int k) {
           return allowed(k < known ? kept_[static_cast<std::size_t>(k)]
                                    : DerivativesAt(path_, head_, Place(k)));

@@ -9,25 +9,6 @@
 namespace rmlcell::motion {
 namespace {
 
-// The vector from the tip to the column in the machine frame, w(A, B) = Rz(A) Rx(B) r, and its
-// derivatives.
-struct HeadVector {
-  double sin_a, cos_a;
-  double x;     // r_x
-  double m, n;  // r turned about the tool's X axis: components across and along Z
-
-  HeadVector(const GantryHead& head, double a_rad, double b_rad)
-      : sin_a(std::sin(a_rad)), cos_a(std::cos(a_rad)), x(-head.tool.x_mm) {
-    const double sin_b = std::sin(b_rad);
-    const double cos_b = std::cos(b_rad);
-    const double y = -head.tool.y_mm;
-    const double z = head.length_mm - head.tool.z_mm;
-    m = y * cos_b - z * sin_b;
-    n = y * sin_b + z * cos_b;
-  }
-  MachineVector Value() const { return {x * cos_a - m * sin_a, x * sin_a + m * cos_a, n}; }
-};
-
 AxisValues Together(const MachinePoint& column, double a, double b) {
   return {column.x(), column.y(), column.z(), a, b};
 }
@@ -75,23 +56,12 @@ void ForEachRangePoint(const PathPiece& path, Look look) {
 
 }  // namespace
 
+// w(A, B) = Rz(A) Rx(B) r
 MachineVector GantryHead::Offset(double a_rad, double b_rad) const {
-  return HeadVector(*this, a_rad, b_rad).Value();
-}
-
-Swing GantryHead::SwingOf(double a_rad, double b_rad, const TipRates& first,
-                          const TipRates& second) const {
-  const HeadVector w(*this, a_rad, b_rad);
-  // w by A, and by B; motion.md 2.4. Written out: of matrices g++ keeps the parts on the stack.
-  const double ax = -w.x * w.sin_a - w.m * w.cos_a, ay = w.x * w.cos_a - w.m * w.sin_a;
-  const double bx = w.n * w.sin_a, by = -w.n * w.cos_a, bz = w.m;
-  const double aa = first.a * first.a, ab = 2.0 * first.a * first.b, bb = first.b * first.b;
-  return {.first = {ax * first.a + bx * first.b, ay * first.a + by * first.b, bz * first.b},
-          .second = {ax * second.a + bx * second.b + (w.m * w.sin_a - w.x * w.cos_a) * aa +
-                         w.n * w.cos_a * ab + w.m * w.sin_a * bb,
-                     ay * second.a + by * second.b + (-w.x * w.sin_a - w.m * w.cos_a) * aa +
-                         w.n * w.sin_a * ab - w.m * w.cos_a * bb,
-                     bz * second.b - w.n * bb}};
+  const HeadSines at = HeadSines::At(a_rad, b_rad);
+  const double x = -tool.x_mm, y = -tool.y_mm, z = length_mm - tool.z_mm;
+  const double m = y * at.cos_b - z * at.sin_b;
+  return {x * at.cos_a - m * at.sin_a, x * at.sin_a + m * at.cos_a, y * at.sin_b + z * at.cos_b};
 }
 
 double GantryHead::reach_mm() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <variant>
 
 #include "engine/motion/geometry/frames.h"
@@ -44,6 +45,33 @@ struct Swing {
   MachineVector second;
 };
 
+// The sines of both angles of a head.
+struct HeadSines {
+  double sin_a, cos_a, sin_b, cos_b;
+
+  static HeadSines At(double a_rad, double b_rad) {
+    return {std::sin(a_rad), std::cos(a_rad), std::sin(b_rad), std::cos(b_rad)};
+  }
+  // Where the head has turned on by a little, to the last digits without a sine. Precondition: both
+  // at most kLittle_rad.
+  HeadSines Turned(double a_rad, double b_rad) const {
+    const OfSmall a(a_rad), b(b_rad);
+    return {sin_a * a.cosine + cos_a * a.sine, cos_a * a.cosine - sin_a * a.sine,
+            sin_b * b.cosine + cos_b * b.sine, cos_b * b.cosine - sin_b * b.sine};
+  }
+  static constexpr double kLittle_rad = 0.1;  // the first term left out is 3e-17
+
+ private:
+  struct OfSmall {
+    double sine, cosine;
+    explicit OfSmall(double x) {
+      const double z = x * x;
+      sine = x * (1.0 - z * (1.0 / 6.0 - z * (1.0 / 120.0 - z * (1.0 / 5040.0 - z / 362880.0))));
+      cosine = 1.0 - z * (0.5 - z * (1.0 / 24.0 - z * (1.0 / 720.0 - z / 40320.0)));
+    }
+  };
+};
+
 // Where the column stands off the tip, and how that changes when the head turns: all that one
 // machine's kinematics differs in from another's. A new one is one class with these members, named
 // in Head::Kind.
@@ -55,7 +83,10 @@ struct GantryHead {
 
   MachineVector Offset(double a_rad, double b_rad) const;
   // motion.md 2.4
-  Swing SwingOf(double a_rad, double b_rad, const TipRates& first, const TipRates& second) const;
+  Swing SwingOf(double a_rad, double b_rad, const TipRates& first, const TipRates& second) const {
+    return SwingAt(HeadSines::At(a_rad, b_rad), first, second);
+  }
+  Swing SwingAt(const HeadSines& at, const TipRates& first, const TipRates& second) const;
   // The farthest that the column ever stands off: bounds of the above.
   double reach_mm() const;
 
@@ -67,6 +98,7 @@ struct GantryHead {
 struct MillHead {
   MachineVector Offset(double, double) const { return {}; }
   Swing SwingOf(double, double, const TipRates&, const TipRates&) const { return {}; }
+  Swing SwingAt(const HeadSines&, const TipRates&, const TipRates&) const { return {}; }
   double reach_mm() const { return 0.0; }
 
   bool operator==(const MillHead&) const = default;
@@ -89,6 +121,10 @@ class Head {
   AxisValues Rates(double a_rad, double b_rad, const TipRates& first) const;
   BothAxisRates RatesOfBoth(double a_rad, double b_rad, const TipRates& first,
                             const TipRates& second) const;
+  // What the column does beyond the tip, where the sines are known.
+  Swing SwingAt(const HeadSines& at, const TipRates& first, const TipRates& second) const {
+    return std::visit([&](const auto& head) { return head.SwingAt(at, first, second); }, kind_);
+  }
 
   // Whether two put the tip at the same place; a TCP that changes it is a stop. motion.md 3.6.
   bool operator==(const Head&) const = default;
@@ -149,5 +185,23 @@ struct PlacedExcess {
 };
 std::array<PlacedExcess, kAxisCount> ExcessOfEach(const PathPiece& path, const Head& head,
                                                   const AxisLimits& limits);
+
+// Written out: of matrices g++ keeps the parts on the stack.
+inline Swing GantryHead::SwingAt(const HeadSines& at, const TipRates& first,
+                                 const TipRates& second) const {
+  const double x = -tool.x_mm, y = -tool.y_mm, z = length_mm - tool.z_mm;
+  const double m = y * at.cos_b - z * at.sin_b;
+  const double n = y * at.sin_b + z * at.cos_b;
+  // The vector from the tip to the column by A, and by B.
+  const double ax = -x * at.sin_a - m * at.cos_a, ay = x * at.cos_a - m * at.sin_a;
+  const double bx = n * at.sin_a, by = -n * at.cos_a, bz = m;
+  const double aa = first.a * first.a, ab = 2.0 * first.a * first.b, bb = first.b * first.b;
+  return {.first = {ax * first.a + bx * first.b, ay * first.a + by * first.b, bz * first.b},
+          .second = {ax * second.a + bx * second.b + (m * at.sin_a - x * at.cos_a) * aa +
+                         n * at.cos_a * ab + m * at.sin_a * bb,
+                     ay * second.a + by * second.b + (-x * at.sin_a - m * at.cos_a) * aa +
+                         n * at.sin_a * ab - m * at.cos_a * bb,
+                     bz * second.b - n * bb}};
+}
 
 }  // namespace rmlcell::motion

@@ -37,6 +37,7 @@ const PlannedItem* ItemStage::Next() {
   while (items_.empty()) {
     if (!MayGoOn()) return nullptr;
     if (section_left_ == 0) {
+      if (speeds().final_count() <= section_knots_) return nullptr;  // nothing new
       section_left_ = SectionSize();
       if (section_left_ == 0) return nullptr;
       BeginSection();
@@ -46,8 +47,8 @@ const PlannedItem* ItemStage::Next() {
       continue;
     }
     items_.Rewind();
-    EmitMove();
     allowance_ -= kEmitting;
+    EmitMove();
   }
   const PlannedItem* item = &items_.front();  // nothing is written there before the next call
   items_.PopFront();
@@ -57,7 +58,6 @@ const PlannedItem* ItemStage::Next() {
 // How many spans are timed together next; 0 when that is not known yet.
 std::size_t ItemStage::SectionSize() {
   const std::size_t known = speeds().final_count();
-  if (known <= section_knots_) return 0;
   while (spans().first() + section_seen_ < spans().end()) {
     const Span& span = spans()[spans().first() + section_seen_];
     if (section_knots_ + span.knots() > known) break;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,8 @@ class ItemStage {
     allowance_ = std::min(allowance_, 0) + kWorkEach;
     if (waiting >= kFewWait) allowance_ += kWorkEach * static_cast<int>(waiting / kFewWait);
   }
-  void AllowAll() { allowed_to_ = spans().end(); }
+  void AllowAll() { allowed_to_ = std::max(allowed_to_, spans().end()); }
+  void AllowAlways() { allowed_to_ = std::numeric_limits<Number>::max(); }
 
   // The section that is given out and the items and marks that wait, a line each.
   std::string Dump() const;

@@ -10,7 +10,7 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits, bool
     items_.BeginAt(speed);
   }
   if (!spreads_work_) {
-    if (work) Finish();
+    if (work) ResolveAll();
   } else if (!move.fly) {
     Finish();
   } else {
@@ -28,13 +28,11 @@ void MotionChain::Work() {
   if (spans().Resolve(false) && spans().AllPlain()) spans().Resolve(false);
   spans().Settle();
   if (IsFull()) ResolveAll();
-  if (IsFull()) Starve();
 }
 
 // The machine stands behind the last move: all that was appended comes out.
 void MotionChain::Finish() {
   ResolveAll();
-  if (IsFull()) Starve();
   items_.AllowAll();
 }
 
@@ -43,6 +41,7 @@ void MotionChain::ResolveAll() {
   while (spans().Resolve(false)) {
   }
   spans().Settle();
+  if (IsFull()) Starve();
 }
 
 bool MotionChain::IsFull() const {

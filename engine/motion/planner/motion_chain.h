@@ -13,7 +13,9 @@ namespace rmlcell::motion {
 class MotionChain final {
  public:
   MotionChain(const MachineLimits& machine, std::size_t window)
-      : items_(machine, window), spreads_work_(std::isfinite(machine.tip_jerk_mm_s3)) {}
+      : items_(machine, window), spreads_work_(std::isfinite(machine.tip_jerk_mm_s3)) {
+    if (!spreads_work_) items_.AllowAlways();
+  }
 
   PathLimits LimitsFor(const MoveCommand& move) const { return legs().LimitsFor(move); }
 

@@ -177,7 +177,7 @@ double SpanStage::SpeedOn(const Span& span, const Leg& leg, double cut, double w
   if (axes_follow) return speed;
   const CornerCurve curve =
       span.plain ? CornerCurve(PlainCornerAt(leg_stage_, leg.last_move, cut)) : curves_.back();
-  return std::min(speed, SpeedOnCurve(curve, head, machine(), speed));
+  return std::min(speed, SpeedOnCurve(curve, head, machine(), speed, leg.corner.lines()));
 }
 
 void SpanStage::MakeCurve(Span& span, const Leg& leg, double cut) {

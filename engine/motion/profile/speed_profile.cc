@@ -403,6 +403,10 @@ SpeedProfile SpeedProfile::Part(double s_from, double s_to) const {
   return part;
 }
 
+void SpeedProfile::TakeChangingPartTo(Place& place, double s_to, SpeedProfile& part) const {
+  part = ChangingPartTo(place, s_to);
+}
+
 SpeedProfile SpeedProfile::ChangingPartTo(Place& place, double s_to) const {
   const Place begin = place;
   const double t_from = TimeOf(begin);

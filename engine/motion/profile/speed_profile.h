@@ -93,7 +93,7 @@ class SpeedProfile {
       place.time_s = Place::kNotAsked;
       part.SetSteady(length, phase.start.speed);
     } else {
-      part = ChangingPartTo(place, s_to);
+      TakeChangingPartTo(place, s_to, part);
     }
   }
 
@@ -138,6 +138,8 @@ class SpeedProfile {
  private:
   static double TimeWithin(const Phase& phase, double wanted);
   SpeedProfile ChangingPartTo(Place& place, double s_to) const;
+  // Apart, so that who takes steady parts has no room to make for one that changes.
+  [[gnu::noinline]] void TakeChangingPartTo(Place& place, double s_to, SpeedProfile& part) const;
   double PhaseEnd(int index) const {
     return index + 1 < count_ ? phases_[static_cast<std::size_t>(index) + 1].start.s : end_.s;
   }

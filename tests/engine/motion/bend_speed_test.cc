@@ -209,6 +209,50 @@ TEST(BendStretches, RampsFromLowerSpeedsKeepTheSpeedsToo) {
   }
 }
 
+// Where the bounds say that all ramps fit, they do, from any speed and at any place (brute force,
+// 400 places of each of 21 ramps), straight between the steps. Bends that open in any way; half of
+// them much as a ramp from the start does, where those from rest are a tenth faster.
+TEST(RampsFitByBounds, OnlyWhereEveryRampDoes) {
+  Dice dice(46);
+  int yes = 0, near = 0;
+  for (int round = 0; round < 4000; ++round) {
+    const double start = dice.Magnitude(2.0, 60.0), half_mm = dice.Magnitude(0.02, 20.0);
+    const double share = dice.Magnitude(0.3, 6.0), power = dice.Magnitude(0.6, 2.5);
+    // What jerk makes of the start on the whole way, by the bound f + j x^2 / (2 f^2).
+    const double jerk = 2.0 * share * start * start * start / (half_mm * half_mm);
+    const bool as_the_ramp = dice.Chance(0.5);
+    const double more = dice.Uniform(1.0, 1.6);
+    const BendSpeeds opens = Speeds([&](std::size_t k) {
+      const double x = static_cast<double>(k) / BendSpeeds::kSteps;
+      const double from_rest = std::cbrt(9.0 * share * x * x);
+      return start * (as_the_ramp ? more * std::max(1.0 + share * x * x, 0.9 * from_rest)
+                                  : 1.0 + share * more * std::pow(x, power));
+    });
+    const double step_mm = half_mm / BendSpeeds::kSteps;
+    const double fastest = std::min(start, opens.most.front());
+    const double to = start + (opens.most.back() - start) * dice.Uniform(0.2, 1.0);
+    if (!RampsFitByBounds(opens.most, step_mm, jerk, fastest, to)) continue;
+    ++yes;
+    const PathLimits limits{.speed = 1e9, .acceleration = 1e12, .jerk = jerk};
+    for (int from = 0; from <= 20; ++from) {
+      const double slow = fastest * from / 20.0;
+      const SpeedProfile up = SpeedProfile::OneRamp(slow, to, limits);
+      for (int k = 0; k <= 400; ++k) {
+        const PathState state = up.At(up.duration_s() * k / 400.0);
+        const double x = state.s / step_mm;
+        if (x >= BendSpeeds::kSteps) break;
+        const auto step = static_cast<std::size_t>(x);
+        const double here = opens.most[step] + (opens.most[step + 1] - opens.most[step]) *
+                                                   (x - static_cast<double>(step));
+        ASSERT_LE(state.speed, here * (1 + 1e-9)) << round << " from " << slow << " at " << x;
+        if (k > 0 && state.speed > 0.97 * here) ++near;
+      }
+    }
+  }
+  EXPECT_GT(yes, 500);
+  EXPECT_GT(near, 500);
+}
+
 // Open between the start and the middle: two stretches, each up and down again, both as far as the
 // side that is the shorter way allows.
 TEST(BendStretches, OpenBetween) {

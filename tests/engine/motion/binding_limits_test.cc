@@ -9,6 +9,7 @@
 #include "engine/motion/kinematics/axis_demand.h"
 #include "engine/motion/kinematics/speed_bound.h"
 #include "engine/motion/planner/planner.h"
+#include "tests/engine/motion/random_chain.h"
 #include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {
@@ -156,6 +157,51 @@ TEST(BindingLimits, ShortTurnsAreWithinOnePercent) {
       near(LimitsOf(move, by_jerk).jerk, jerk);
     }
   }
+}
+
+// Where the ends of a line do not tell the limits they are searched for: never above what 20,000
+// places allow, and within 1 % below it (1e-9 where the head turns far). One axis alone is weak.
+TEST(BindingLimits, RandomTurnsAgainstBruteForce) {
+  Dice dice(46);
+  int far = 0;
+  for (int round = 0; round < 150; ++round) {
+    const double turn = dice.Magnitude(0.02, 3.0);
+    const TipPose from{{0, 0, 0}, dice.Uniform(-3.0, 3.0), dice.Uniform(-2.0, 2.0)};
+    const TipPose to{dice.Direction() * dice.Magnitude(1.0, 300.0),
+                     from.a_rad + dice.Uniform(-1.0, 1.0) * turn,
+                     from.b_rad + dice.Uniform(-1.0, 1.0) * turn};
+    const PathPiece line = PathPiece::Line(from, to);
+    const Head head = GantryHead{
+        .tool = {dice.Uniform(-9.0, 9.0), dice.Uniform(-9.0, 9.0), dice.Uniform(0.0, 90.0)}};
+    const auto axis = static_cast<std::size_t>(dice.Uniform(0.0, 4.999));
+    MachineLimits machine = Strong();
+    machine.axes.speed[axis] = dice.Magnitude(0.5, 500.0);
+    machine.axes.acceleration[axis] = dice.Magnitude(1.0, 2000.0);
+    machine.axes.jerk[axis] = dice.Magnitude(10.0, 40000.0);
+    const PathLimits limits = LimitsOf(MoveOn(line, head), machine);
+    PathLimits least{machine.tip_speed_mm_s, machine.tip_acceleration_mm_s2,
+                     machine.tip_jerk_mm_s3};
+    constexpr int kPlaces = 20000;
+    for (int k = 0; k <= kPlaces; ++k) {
+      const AxisDerivatives q = DerivativesAt(line, head, line.length() * k / kPlaces);
+      const double first = std::abs(q.first[axis]), second = std::abs(q.second[axis]);
+      const double room = machine.axes.acceleration[axis] - second * limits.speed * limits.speed;
+      least.speed = std::min({least.speed, machine.axes.speed[axis] / first,
+                              std::sqrt(0.5 * machine.axes.acceleration[axis] / second)});
+      least.acceleration = std::min(least.acceleration, room / first);
+      least.jerk = std::min(least.jerk, machine.axes.jerk[axis] / first);
+    }
+    const bool searched = turn > 0.5;
+    far += searched ? 1 : 0;
+    const auto near = [&](double got, double exact) {
+      EXPECT_LE(got, exact * (1.0 + 1e-7)) << round << " axis " << axis << " turn " << turn;
+      EXPECT_GE(got, exact * 0.99) << round << " axis " << axis << " turn " << turn;
+    };
+    near(limits.speed, least.speed);
+    near(limits.acceleration, least.acceleration);
+    near(limits.jerk, least.jerk);
+  }
+  EXPECT_GT(far, 40);
 }
 
 // V <= sqrt(a_n R), a <= curve_tangential a_max: R = 50 and a_max = 2000, whose shares are 1600 and

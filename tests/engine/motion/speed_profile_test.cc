@@ -161,6 +161,33 @@ TEST(Span, PlaceAtAnyTime) {
   EXPECT_EQ(SpeedProfile::Span(0.0, 0, 0, kPathLimits).duration_s(), 0.0);
 }
 
+// Without the time of a place being sought, its speed is bounded: never from below, and by no more
+// than the ends of its phase have.
+TEST(SpeedAtMost, IsNeverBelowTheSpeedThere) {
+  Dice dice(46);
+  int near = 0, places = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const double j = dice.Chance(0.2) ? kNoJerkLimit : dice.Magnitude(100.0, 1e6);
+    const PathLimits limits{dice.Magnitude(1.0, 500.0), dice.Magnitude(50.0, 5000.0), j};
+    const double v0 = dice.Chance(0.3) ? 0.0 : limits.speed * dice.Uniform(0.0, 1.0);
+    const double v1 = dice.Chance(0.3) ? 0.0 : limits.speed * dice.Uniform(0.0, 1.0);
+    const double length = RampLength(v0, v1, limits) * dice.Magnitude(1.0001, 20.0) + 1e-3;
+    const SpeedProfile profile = SpeedProfile::Span(length, v0, v1, limits);
+    SpeedProfile::Place place;
+    for (int k = 0; k <= 60; ++k) {
+      profile.Advance(place, std::min(length * k / 60.0, length));
+      const double speed = profile.SpeedAt(place), most = profile.SpeedAtMost(place);
+      // At rest a place tells the speed to the root of its last digits.
+      ASSERT_GE(most, speed - 1e-5 * profile.peak_speed()) << round << " at " << k;
+      // Brute force: nowhere in its phase is it faster by more than the phase itself.
+      ASSERT_LE(most, profile.peak_speed() * (1 + 1e-9)) << round << " at " << k;
+      ++places;
+      if (most <= speed * 1.05) ++near;
+    }
+  }
+  EXPECT_GT(near, places / 2);  // and it tells something
+}
+
 // OPT-B.31, case O03: from 100 mm/s to rest takes 0.1 s and 5 mm.
 TEST(StopFrom, CruisingIsOneRamp) {
   const PathLimits limits{100.0, 2000.0, 40000.0};
