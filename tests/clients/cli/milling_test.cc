@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/families/families.h"
+#include "engine/simulation/material/parallel_for.h"
 #include "tests/clients/cli/cli_folder.h"
 
 namespace rmlcell::cli {
@@ -70,13 +71,14 @@ TEST(WriteMaterial, AFileThatCannotBeWrittenIsAnError) {
   const auto material = simulation::HeightField::Of(
       {.x_min = 0, .x_max = 2, .y_min = 0, .y_max = 2, .bottom = -1, .top = 0, .cell = 1});
   ASSERT_TRUE(material);
+  simulation::SerialFor alone;
   for (const std::string& path : {folder.File("none/a.stl"), std::string("/dev/full")}) {
-    const Status written = WriteMaterial(*material, {}, {.stl = path});
+    const Status written = WriteMaterial(*material, {}, {.stl = path}, alone);
     ASSERT_FALSE(written) << path;
     EXPECT_EQ(written.error().code, ErrorCode::kCellFileUnwritable);
     EXPECT_THAT(written.error().detail, HasSubstr(path));
   }
-  EXPECT_TRUE(WriteMaterial(*material, {}, {.stl = folder.File("a.stl")}));
+  EXPECT_TRUE(WriteMaterial(*material, {}, {.stl = folder.File("a.stl")}, alone));
   // A binary STL: 80 bytes of heading, the number of triangles, 50 bytes for each.
   const std::string bytes = folder.Read("a.stl");
   ASSERT_GT(bytes.size(), 84U);
