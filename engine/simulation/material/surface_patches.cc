@@ -232,7 +232,8 @@ bool SomeAreRough(const Patch& patch, const CornerPlane& plane, double tolerance
   for (std::size_t y = 0; y <= kPlacesAcross; ++y) {
     const std::size_t row = patch.front + (patch.back - patch.front) * y / kPlacesAcross;
     for (std::size_t x = 0; x <= kPlacesAcross; ++x) {
-      const double above = plane.Above(patch.left + (patch.right - patch.left) * x / kPlacesAcross, row);
+      const double above =
+          plane.Above(patch.left + (patch.right - patch.left) * x / kPlacesAcross, row);
       low = std::min(low, above);
       high = std::max(high, above);
     }
