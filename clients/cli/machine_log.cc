@@ -4,7 +4,6 @@
 #include <google/protobuf/util/time_util.h>
 
 #include <cstdio>
-#include <ctime>
 #include <string_view>
 
 #include "clients/cli/findings_text.h"
@@ -183,14 +182,9 @@ std::string MachineText(const v1::MachineEvent& event) {
 }
 
 std::string ClockText(const google::protobuf::Timestamp& time) {
-  const std::time_t seconds = time.seconds();
-  std::tm parts{};
-  localtime_r(&seconds, &parts);
-  char room[32];
-  const std::size_t size = std::strftime(room, sizeof room, "%F %T", &parts);
   char thousandths[8];
   std::snprintf(thousandths, sizeof thousandths, ".%03d", time.nanos() / 1'000'000);
-  return std::string(room, size) + thousandths;
+  return When(time) + thousandths;
 }
 
 void Tell(const Remote& remote, const v1::CellEvent& event) {

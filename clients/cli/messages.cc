@@ -1,6 +1,7 @@
 #include "clients/cli/messages.h"
 
 #include <algorithm>
+#include <ctime>
 #include <functional>
 #include <tuple>
 
@@ -44,6 +45,15 @@ std::string StateName(v1::Job::State state) {
   std::string name = v1::Job::State_Name(state);
   if (name.starts_with("STATE_")) name.erase(0, 6);
   return LowerCase(name);
+}
+
+std::string When(const google::protobuf::Timestamp& time) {
+  const std::time_t seconds = time.seconds();
+  std::tm parts{};
+  localtime_r(&seconds, &parts);
+  char room[32];
+  const std::size_t size = std::strftime(room, sizeof room, "%F %T", &parts);
+  return {room, size};
 }
 
 std::string OutcomeLine(const v1::Outcome& outcome) {

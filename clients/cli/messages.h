@@ -1,6 +1,7 @@
 #pragma once
 
 #include <google/protobuf/message.h>
+#include <google/protobuf/timestamp.pb.h>
 
 #include <string>
 
@@ -13,6 +14,9 @@ class DiffProgramsResponse;
 }
 
 namespace rmlcell::cli {
+
+// By the clock of this place, to the second: "2026-11-27 15:25:43".
+std::string When(const google::protobuf::Timestamp& time);
 
 // One line; zero values are shown, since people look for them.
 std::string Json(const google::protobuf::Message& message);

@@ -30,15 +30,6 @@ std::string TimeText(const v1::JobProgress& at) {
   return text + " s";
 }
 
-std::string When(const google::protobuf::Timestamp& time) {
-  const std::time_t seconds = time.seconds();
-  std::tm parts{};
-  localtime_r(&seconds, &parts);
-  char room[32];
-  const std::size_t size = std::strftime(room, sizeof room, "%F %T", &parts);
-  return {room, size};
-}
-
 // What a job may bring along in one message; larger programs are stored first.
 constexpr std::size_t kInlineBytesMax = 3 << 20;
 
