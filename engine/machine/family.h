@@ -68,8 +68,12 @@ struct FamilyInfo {
   std::string_view zero_program{};
   int home_program = 0;
   bool start_takes_back = false;  // START a HOLD or STOP that has not halted the run yet
-  bool has_dry_run = false;       // up to a step, RunSetup::simul
-  bool has_breakpoints = false;   // Run::SetBreakpoints
+  std::span<const std::string_view> output_banks{};  // variables "OL[n]": what a run switches
+  std::string_view spindle_speed{};  // variable: rpm of a spindle that turns; empty: it has none
+  // Instructions that wait for an input or a time.
+  std::span<const std::string_view> waiting{};
+  bool has_dry_run = false;      // up to a step, RunSetup::simul
+  bool has_breakpoints = false;  // Run::SetBreakpoints
 
   // What the machine calls what the cell finds. What has no number in its manual the cell says in
   // its own words: a machine without program memory has no slots.

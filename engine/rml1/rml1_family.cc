@@ -18,6 +18,8 @@
 namespace rmlcell::rml1 {
 namespace {
 
+constexpr std::array<std::string_view, 1> kWaiting = {"DW"};
+
 constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .title = "Roland mill or engraver, RML-1",
                                        .extensions = ".RML .PRN",
@@ -34,6 +36,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .jog_axes = "X Y Z A",
                                        .cover_stops_jog = true,
                                        .start_takes_back = true,
+                                       .spindle_speed = "RPM",
+                                       .waiting = kWaiting,
                                        .has_breakpoints = true,
                                        .torn = ErrorCode::kRml1IncompleteCommand};
 

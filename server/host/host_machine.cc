@@ -47,6 +47,8 @@ Result<std::unique_ptr<HostMachine>> HostMachine::Make(Setup setup, const HostTi
   host->now_ = now;
   host->inspect_due_ = made.cut_off;
   host->desk_.CountFrom(made.control_lease);
+  host->last_run_ = std::exchange(made.last_run, {});
+  if (made.factor > 0.0) static_cast<void>(host->driver_->SetFactor(now.steady, made.factor));
   for (const v1::JournalEntry& untold : made.untold) {
     if (untold.has_mark() || untold.has_intent()) continue;
     v1::JournalEntry& entry = host->Add(SimTime(0));
@@ -412,7 +414,12 @@ void HostMachine::Hold(v1::HoldReason reason, const HostTime& now) {
   const machine::MachineState state = machine().state();
   if (state != machine::MachineState::kRunning && state != machine::MachineState::kJogging) return;
   const bool held_before = MovesInHold();
-  if (Apply(machine::StopRun{}, nullptr) && !held_before) held_for_ = reason;
+  // Who only lost control gets the part as HOLD leaves it. LIVE-4.02
+  const bool after_instruction =
+      reason == v1::HOLD_REASON_CONTROL && state == machine::MachineState::kRunning;
+  const Status done =
+      after_instruction ? Apply(machine::HoldRun{}, nullptr) : Apply(machine::StopRun{}, nullptr);
+  if (done && !held_before) held_for_ = reason;
   Notice();
 }
 

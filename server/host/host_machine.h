@@ -45,6 +45,8 @@ class HostMachine : private machine::RunObserver {
     // Requests that an earlier host answered, and did as far as the state has it.
     std::vector<v1::JournalEntry> answered{};
     std::int64_t control_lease = 0;  // number of the newest one
+    double factor = 0.0;             // of its time; 0: as the clock
+    std::optional<v1::LastRun> last_run{};
     // Of the newest run of a job, as an earlier host has it.
     std::optional<MachineRecorder::OfJob> recording{};
   };

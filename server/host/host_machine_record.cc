@@ -36,6 +36,8 @@ v1::MachineMark HostMachine::MarkNow() const {
   mark.set_fence(setup_.fence);
   mark.set_virtual_time_ns(status.time.count());
   mark.set_control_lease(desk_.number());
+  if (driver_->factor() != 1.0) mark.set_factor(driver_->factor());
+  if (last_run_) *mark.mutable_last_run() = *last_run_;
   if (inspect_due_ || ended_) {
     mark.set_job(inspect_job_);
     if (cut_off_base_) *mark.mutable_base() = *cut_off_base_;

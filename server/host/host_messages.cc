@@ -19,12 +19,9 @@ namespace {
 
 using machine::MachineInput;
 
-// Instructions that wait for an input or a time, of either family.
-constexpr std::array<std::string_view, 3> kWaiting = {"WAIT", "DELAY", "DW"};
-
 // Of those that the machine has, up to the last one.
 void AddOutputs(const machine::Machine& machine, v1::MachineStatus& message) {
-  for (const std::string_view bank : {"OL", "OA"}) {
+  for (const std::string_view bank : machine.family().info().output_banks) {
     for (int index = 0;; ++index) {
       const std::string name = std::string(bank) + "[" + std::to_string(index) + "]";
       const auto value = machine.ReadVariable(name);
@@ -45,6 +42,7 @@ Error Invalid(std::string detail) {
 void SetRun(const machine::Machine& machine, const machine::MachineStatus& status,
             const v1::JobProgress& progress, v1::MachineStatus& message) {
   if (!status.open) return;
+  const auto waiting = machine.family().info().waiting;
   v1::MachineRun& run = *message.mutable_run();
   run.set_run(status.open->number);
   run.set_program(status.open->program);
@@ -54,7 +52,7 @@ void SetRun(const machine::Machine& machine, const machine::MachineStatus& statu
   run.set_source(bridge::ToProto(status.open->source));
   run.set_instruction(progress.instruction());
   run.set_waits(status.state == machine::MachineState::kHeld ||
-                std::ranges::find(kWaiting, progress.instruction()) != kWaiting.end());
+                std::ranges::find(waiting, progress.instruction()) != waiting.end());
   run.set_dry(machine.simulation_until().has_value());
   for (const int program : machine.loaded_programs()) run.add_loaded_programs(program);
 }
@@ -146,8 +144,10 @@ v1::MachineStatus ToProto(const machine::Machine& machine) {
   message.set_override_percent(status.override_percent);
   AddOutputs(machine, message);
   message.mutable_tool()->set_on(status.run.beam_on || status.run.spindle_on);
-  if (const auto rpm = machine.ReadVariable("RPM"); rpm && status.run.spindle_on)
-    message.mutable_tool()->set_speed_rpm(ParseDouble(rpm->text).value_or(0.0));
+  if (status.run.spindle_on && !family.spindle_speed.empty()) {
+    if (const auto rpm = machine.ReadVariable(family.spindle_speed))
+      message.mutable_tool()->set_speed_rpm(ParseDouble(rpm->text).value_or(0.0));
+  }
   for (const std::string_view lamp : machine.panel().lamps) message.add_lamps(std::string(lamp));
   message.set_selected_program(machine.selected_program());
   if (machine.has_gates()) {

@@ -62,6 +62,8 @@ HostMachine::Setup SetupOf(Recovered found) {
   HostMachine::Setup setup;
   setup.state = found.mark.state();
   setup.control_lease = found.mark.control_lease();
+  setup.factor = found.mark.factor();
+  if (found.mark.has_last_run()) setup.last_run = found.mark.last_run();
   setup.untold = std::move(found.untold);
   setup.answered = std::move(found.answered);
   setup.cut_off = began || (found.known && !found.mark.clean());

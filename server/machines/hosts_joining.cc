@@ -222,7 +222,8 @@ Status Hosts::TellRecovery(const Host& host, const Taken& taken,
     lost.set_virtual_time_ns(note.virtual_time_ns());
     write.events.push_back(ToRecord(lost));
   }
-  if (!mark || mark->clean)
+  // Where the host handed it back, or none had it before, all that was shown is true.
+  if (!mark || (mark->clean && !taken.from))
     return write.events.empty() ? Status() : needs_.store.AppendMachine(host.lease, write);
   v1::MachineEvent event;
   v1::Recovered& recovered = *event.mutable_recovered();

@@ -2,6 +2,7 @@
 
 #include <grpc/grpc_security_constants.h>
 
+#include "google/api/field_behavior.pb.h"
 #include "google/rpc/status.pb.h"
 #include "proto/bridge/findings.h"
 
@@ -13,6 +14,22 @@ constexpr std::size_t kDetailsMax = 6 << 10;
 // The text stands in them twice, and once in the message: with a name of a megabyte in it nothing
 // would arrive.
 constexpr std::size_t kErrorTextMax = 1000;
+
+// What moves a machine is not repeated by a client that lost the answer: it says which request it
+// is.
+Status CheckRequestId(const google::protobuf::Message& request) {
+  const auto* field = request.GetDescriptor()->FindFieldByName("request_id");
+  if (field == nullptr || !request.GetReflection()->GetString(request, field).empty()) return {};
+  const auto& behaviour = field->options();
+  for (int i = 0; i < behaviour.ExtensionSize(google::api::field_behavior); ++i) {
+    if (behaviour.GetExtension(google::api::field_behavior, i) == google::api::REQUIRED)
+      return Error{ErrorCode::kCellInvalidArgument,
+                   "request_id: a UUID of your making, new for each request; the same again for "
+                   "one that is repeated",
+                   {}};
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -38,9 +55,9 @@ grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& dia
   return {static_cast<grpc::StatusCode>(rich.code()), rich.message(), rich.SerializeAsString()};
 }
 
-Status CheckSize(const CallNeeds& needs, const google::protobuf::Message& request) {
+Status CheckRequest(const CallNeeds& needs, const google::protobuf::Message& request) {
   const auto size = static_cast<std::int64_t>(request.ByteSizeLong());
-  if (size <= needs.message_bytes_max) return {};
+  if (size <= needs.message_bytes_max) return CheckRequestId(request);
   return Error{
       ErrorCode::kCellTooLarge,
       "the message has " + std::to_string(size) + " bytes, one call takes " +

@@ -43,8 +43,9 @@ void LogCall(std::string_view method, const Caller& caller, const grpc::Status& 
 // gRPC refuses an oversized message without a word of ours. It is told to let this much more in, so
 // that whoever is a little over gets the code and the advice; larger ones are not worth the memory.
 inline constexpr std::int64_t kRefusalBytes = 16 << 20;
-// Error: CellTooLarge.
-Status CheckSize(const CallNeeds& needs, const google::protobuf::Message& request);
+// What every request must be, whatever it asks for. Errors: CellTooLarge; CellInvalidArgument
+// without a request id where the contract requires one.
+Status CheckRequest(const CallNeeds& needs, const google::protobuf::Message& request);
 
 // Bytes of a program or product in one answer; larger ones go by a stream.
 inline constexpr std::int64_t kUnaryBytes = 3 << 20;
@@ -62,9 +63,9 @@ grpc::ServerUnaryReactor* AnswerFromMemory(const CallNeeds& needs,
                                            Work work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   Result<Caller> caller = Admit(needs.gate, *context, method, &request);
-  const Status size = caller ? CheckSize(needs, request) : Status{};
-  if (!caller || !size) {
-    reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
+  const Status good = caller ? CheckRequest(needs, request) : Status{};
+  if (!caller || !good) {
+    reactor->Finish(ToGrpcStatus(caller ? good.error() : caller.error()));
     return reactor;
   }
   if (const std::optional<grpc::Status> known = from_memory(*caller)) {

@@ -27,7 +27,7 @@ class HandboxStream final : public KeyAnswers {
       *response.mutable_refusal() = bridge::ToErrorDetail(error);
       answer(std::move(response));
     };
-    if (const Status size = CheckSize(needs(), *request); !size) return refuse(size.error());
+    if (const Status good = CheckRequest(needs(), *request); !good) return refuse(good.error());
     v1::HostOrder order;
     order.set_caller(caller().identity);
     std::string session;

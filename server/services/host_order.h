@@ -38,7 +38,7 @@ grpc::ServerUnaryReactor* OrderOfHost(const HostOrderNeeds& of,
   };
   const Result<Caller> caller = Admit(of.needs.gate, *context, method, request);
   if (!caller) return refuse(caller.error());
-  if (const Status size = CheckSize(of.needs, *request); !size) return refuse(size.error());
+  if (const Status good = CheckRequest(of.needs, *request); !good) return refuse(good.error());
   const Result<std::string> machine = ParseMachineName(machine_name);
   if (!machine) return refuse(machine.error());
   if (of.hosts == nullptr || !of.hosts->IsHosted(*machine)) {

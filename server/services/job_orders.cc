@@ -81,9 +81,9 @@ grpc::ServerUnaryReactor* JobService::OrderRun(grpc::CallbackServerContext* cont
                                                v1::HostOrder order, Response* response) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   const Result<Caller> caller = Admit(needs_.gate, *context, method, &request);
-  const Status size = caller ? CheckSize(needs_, request) : Status();
-  if (!caller || !size) {
-    reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
+  const Status good = caller ? CheckRequest(needs_, request) : Status();
+  if (!caller || !good) {
+    reactor->Finish(ToGrpcStatus(caller ? good.error() : caller.error()));
     return reactor;
   }
   order.set_caller(caller->identity);
@@ -110,9 +110,9 @@ grpc::ServerUnaryReactor* JobService::DecideInterrupted(grpc::CallbackServerCont
   constexpr std::string_view kMethod = "JobService/DecideInterrupted";
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   const Result<Caller> caller = Admit(needs_.gate, *context, kMethod, request);
-  const Status size = caller ? CheckSize(needs_, *request) : Status();
-  if (!caller || !size) {
-    reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
+  const Status good = caller ? CheckRequest(needs_, *request) : Status();
+  if (!caller || !good) {
+    reactor->Finish(ToGrpcStatus(caller ? good.error() : caller.error()));
     return reactor;
   }
   const auto begin = std::chrono::steady_clock::now();

@@ -17,9 +17,9 @@ grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* con
                                                 v1::Job* response) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   const Result<Caller> caller = Admit(needs_.gate, *context, "JobService/SubmitJob", request);
-  const Status size = CheckSize(needs_, *request);
-  if (!caller || !size) {
-    reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
+  const Status good = CheckRequest(needs_, *request);
+  if (!caller || !good) {
+    reactor->Finish(ToGrpcStatus(caller ? good.error() : caller.error()));
     return reactor;
   }
   const auto begin = std::chrono::steady_clock::now();

@@ -158,6 +158,7 @@ grpc::ServerUnaryReactor* MachineService::StartJob(grpc::CallbackServerContext* 
   };
   const Result<Caller> caller = Admit(needs_.gate, *context, kMethod, &request);
   if (!caller) return refuse(caller.error());
+  if (const Status good = CheckRequest(needs_, request); !good) return refuse(good.error());
   const Result<std::int64_t> id = ParseJobName(request.job());
   if (!id) return refuse(id.error());
   if (live_.runs == nullptr) return refuse({ErrorCode::kCellNotLive, "no machine lives here", {}});

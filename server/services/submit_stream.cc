@@ -32,7 +32,7 @@ class SubmitStream final : public SubmitAnswers {
       }
       answer(std::move(response));
     };
-    if (const Status size = CheckSize(needs(), *request); !size) return submitted(size.error());
+    if (const Status good = CheckRequest(needs(), *request); !good) return submitted(good.error());
     book_.Submit(
         request->submission(), caller().identity,
         [request, submitted](const Result<v1::Job>& job) { submitted(job); }, /*more_come=*/true);

@@ -30,6 +30,7 @@ namespace v1 = rmlcell::v1;
 
 constexpr int kClients = 8;
 constexpr int kStandingSeconds = 10;
+constexpr int kSettlingSeconds = 10;  // a host that has just come sets its lines up
 constexpr int kMachines = 100;
 constexpr int kMovingSeconds = 20;
 
@@ -57,7 +58,8 @@ double SecondsOf(const google::protobuf::Timestamp& time) {
 
 class LiveMachine {
  public:
-  LiveMachine(const CellServer& server, std::string name)
+  LiveMachine(const CellServer& server, std::string name, const std::string& file = "lines.rml",
+              const std::string& content = Lines(2'000, 5'000))
       : name_(std::move(name)), calls_(v1::MachineService::NewStub(server.Connect())) {
     v1::EnableMachineRequest enable;
     enable.set_machine(name_);
@@ -65,8 +67,8 @@ class LiveMachine {
     Status(&v1::MachineService::Stub::EnableMachine, enable);
     v1::PutProgramRequest put;
     put.set_name(name_ + "/programs/5");
-    put.mutable_program()->set_file_name("lines.rml");
-    put.mutable_program()->set_content(Lines(2'000, 5'000));
+    put.mutable_program()->set_file_name(file);
+    put.mutable_program()->set_content(content);
     grpc::ClientContext context;
     v1::Program stored;
     Must(v1::ProgramService::NewStub(server.Connect())->PutProgram(&context, put, &stored));
@@ -336,6 +338,15 @@ void Print(const char* what, const std::vector<double>& values) {
               Quantile(values, 0.99), Quantile(values, 1.0), values.size());
 }
 
+// In percent.
+double ShareOfStanding(LiveMachine& machine) {
+  const pid_t host = machine.host();
+  std::this_thread::sleep_for(std::chrono::seconds(kSettlingSeconds));
+  const double before = ProcessorSecondsOf(host);
+  std::this_thread::sleep_for(std::chrono::seconds(kStandingSeconds));
+  return (ProcessorSecondsOf(host) - before) / kStandingSeconds * 100.0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -352,10 +363,7 @@ int main(int argc, char** argv) {
   {
     const CellServer server(argv[1], folder, 2);
     LiveMachine machine(server, "machines/mill-1");
-    const pid_t host = machine.host();
-    const double before = ProcessorSecondsOf(host);
-    std::this_thread::sleep_for(std::chrono::seconds(kStandingSeconds));
-    const double standing = (ProcessorSecondsOf(host) - before) / kStandingSeconds * 100.0;
+    const double standing = ShareOfStanding(machine);
     std::vector<double> brakes;
     for (int i = 0; i < std::min(stops, 50); ++i) {
       if (i % 20 == 0) machine.TakeControl();
@@ -387,8 +395,13 @@ int main(int argc, char** argv) {
     row("10.23: last heartbeat of a jog key to braking, most, ms", Quantile(brakes, 1.0), 200.0);
     row("10.24: written first, p99, ms", Quantile(idle.resumes, 0.99), 15.0);
     row("10.25: host killed to its successor, most, ms", Quantile(found, 1.0), 2000.0);
-    row("10.20: a standing machine, share of a core, %", standing, 0.1);
+    row("10.20: a mill that stands, share of a core, %", standing, 0.1);
     row("10.20: memory of a host, PSS, MiB", SharedMibOf(machine.host()), 16.0);
+  }
+  {
+    const CellServer server(argv[1], folder, 0);
+    LiveMachine laser(server, "machines/optimo-1", "wait.S", "DELAY 1\n");
+    row("10.20: a laser that stands, share of a core, %", ShareOfStanding(laser), 0.1);
   }
   {
     const CellServer server(argv[1], folder, 0);

@@ -30,6 +30,9 @@ constexpr std::array kNotGiven = {ErrorCode::kProgramMissing, ErrorCode::kFuncti
 constexpr machine::CheckCodes kCheck = {
     .of_motion = kOfMotion, .by_speed = kBySpeed, .not_given = kNotGiven, .work_offset = "SYSDEF"};
 
+constexpr std::array<std::string_view, 2> kOutputBanks = {"OL", "OA"};
+constexpr std::array<std::string_view, 2> kWaiting = {"WAIT", "DELAY"};
+
 constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .title = "Amada OPTIMO 5-axis laser",
                                        .extensions = ".S .SI .CMP .O",
@@ -48,6 +51,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .jogs_in_manual = true,
                                        .zero_program = "ZERO\n",
                                        .home_program = 4,  // OPT-4.50
+                                       .output_banks = kOutputBanks,
+                                       .waiting = kWaiting,
                                        .has_dry_run = true,
                                        .has_breakpoints = true,
                                        .no_slot = ErrorCode::kProgramNumber,

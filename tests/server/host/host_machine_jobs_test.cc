@@ -141,11 +141,12 @@ TEST_F(HostJobsTest, TheQueueHasControlAgain) {
     const std::string token = Do(take).control().control_token();
     if (runs_out) {
       Pass(6s);
+      Pass(40s, 50ms);  // to the end of a side
     } else {
       v1::HostOrder release;
       release.mutable_release_control()->set_control_token(token);
       Do(release);
-      Pass(3s);
+      Pass(43s, 50ms);
     }
     EXPECT_EQ(Status().control().holder(), "queue/jobs/17") << runs_out;
     EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);

@@ -278,7 +278,8 @@ TEST_F(HostMachineTest, WhatWasCutOffWaitsForAPerson) {
   EXPECT_EQ(Do(Start()).status().state(), v1::MACHINE_STATE_RUNNING);
 }
 
-// LIVE-4.02: control that runs out holds the run, or lets it go on, as the lease says.
+// LIVE-4.02: control that runs out holds the run, or lets it go on, as the lease says. A mill comes
+// to rest where its HOLD does, at the end of a side of the square.
 TEST_F(HostMachineTest, ControlThatIsLostHoldsTheRunOrNot) {
   for (const v1::ControlLease::OnLoss on_loss :
        {v1::ControlLease::ON_LOSS_HOLD, v1::ControlLease::ON_LOSS_GO_ON}) {
@@ -295,8 +296,14 @@ TEST_F(HostMachineTest, ControlThatIsLostHoldsTheRunOrNot) {
     const v1::MachineStatus status = host_->StatusAt(now_);
     EXPECT_FALSE(status.has_control());
     if (on_loss == v1::ControlLease::ON_LOSS_HOLD) {
-      EXPECT_EQ(status.state(), v1::MACHINE_STATE_HELD);
+      EXPECT_EQ(status.state(), v1::MACHINE_STATE_STOPPING);
       EXPECT_EQ(status.hold_reason(), v1::HOLD_REASON_CONTROL);
+      Pass(250s, 50ms);
+      const v1::MachineStatus held = host_->StatusAt(now_);
+      EXPECT_EQ(held.state(), v1::MACHINE_STATE_HELD);
+      EXPECT_EQ(held.hold_reason(), v1::HOLD_REASON_CONTROL);
+      EXPECT_NEAR(std::abs(held.tip().x() - 20.0), 10.0, 1e-6);
+      EXPECT_NEAR(std::abs(held.tip().y() - 20.0), 10.0, 1e-6);
     } else {
       EXPECT_EQ(status.state(), v1::MACHINE_STATE_RUNNING);
     }

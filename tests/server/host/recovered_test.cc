@@ -63,11 +63,18 @@ TEST(Recovered, WithoutAJournalTheMarkOfTheStoreCounts) {
   EXPECT_EQ(setup.inspect_job, "jobs/17");
 }
 
-// LIVE-4.01: the numbers of control leases count on.
-TEST(Recovered, ControlLeasesCountOn) {
+// LIVE-4.01: the numbers of control leases count on; time goes as fast as it did, and what the
+// newest run came to is known.
+TEST(Recovered, WhatAMarkHasBesideTheMachineGoesOn) {
   v1::HostWelcome welcome;
   welcome.mutable_mark()->set_control_lease(41);
-  EXPECT_EQ(SetupOf(RecoveredFrom(welcome, {})).control_lease, 41);
+  welcome.mutable_mark()->set_factor(10.0);
+  welcome.mutable_mark()->mutable_last_run()->set_run(7);
+  const HostMachine::Setup setup = SetupOf(RecoveredFrom(welcome, {}));
+  EXPECT_EQ(setup.control_lease, 41);
+  EXPECT_EQ(setup.factor, 10.0);
+  ASSERT_TRUE(setup.last_run);
+  EXPECT_EQ(setup.last_run->run(), 7);
 }
 
 // LIVE-3.32: cut behind each entry, the newest mark before the cut is the state, and what was told

@@ -328,6 +328,30 @@ TEST_F(HostsTest, StatusDecidesNothing) {
   EXPECT_EQ(Told().back().recovered().seen_until_ns(), 99);
 }
 
+// LIVE-3.30, LIVE-5.20: of one that was moved by hand, too, whose marks are clean, it is told how
+// far what was shown is void; where the host gave it back in order nothing is.
+TEST_F(HostsTest, WhatWasShownOfOneMovedByHandIsVoid) {
+  const auto link = Joined();
+  hosts.Receive(*link, Entries(Fence(*link), 1, true));
+  EXPECT_TRUE(Eventually([&] { return !Told().empty(); }));
+  Tell(*link, v1::MACHINE_STATE_JOGGING, 99);
+  hosts.Leave(*link);
+  EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
+  clock.Advance(Hosts::kLease + std::chrono::seconds(5));
+  const auto next = Joined(Hello("other/2"));
+  ASSERT_TRUE(Told().back().has_recovered());
+  EXPECT_EQ(Told().back().recovered().mark_virtual_time_ns(), 77);
+  EXPECT_EQ(Told().back().recovered().seen_until_ns(), 99);
+  const std::size_t told = Told().size();
+  v1::HostRequest back;
+  back.mutable_hand_back()->set_fence(Fence(*next));
+  hosts.Receive(*next, back);
+  hosts.Leave(*next);
+  EXPECT_TRUE(Eventually([&] { return !hosts.IsHosted("mill-1"); }));
+  Joined(Hello("third/3"));
+  EXPECT_EQ(Told().size(), told);
+}
+
 // LIVE-3.03: a machine with a device is never taken by waiting, whoever holds the lock of the
 // device elsewhere.
 TEST_F(HostsTest, AMachineWithADeviceWaitsForAPerson) {

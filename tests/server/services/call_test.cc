@@ -116,7 +116,7 @@ TEST(CallSize, AMessageOfTheLimitPassesAndOneByteMoreDoesNot) {
   request.set_message(std::string(1000, 'x'));
   const auto size = static_cast<std::int64_t>(request.SerializeAsString().size());
   const auto check = [&](std::int64_t bytes_max) {
-    return CheckSize(
+    return CheckRequest(
         {.gate = gate, .executor = executor, .compute = executor, .message_bytes_max = bytes_max},
         request);
   };
@@ -130,6 +130,28 @@ TEST(CallSize, AMessageOfTheLimitPassesAndOneByteMoreDoesNot) {
             0U)
       << refused.error().detail;
   EXPECT_NE(refused.error().detail.find("by chunks"), std::string::npos);
+}
+
+// LIVE-9.03, LIVE-9.04: what moves a machine says which request it is, what stops it need not; of
+// what only reads nobody asks.
+TEST(CallRequestId, IsAskedForWhereTheContractRequiresIt) {
+  const Gate gate("secret");
+  Executor executor(1);
+  const auto check = [&](const google::protobuf::Message& request) {
+    return CheckRequest(
+        {.gate = gate, .executor = executor, .compute = executor, .message_bytes_max = 1000},
+        request);
+  };
+  v1::StartMachineRequest start;
+  const Status refused = check(start);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(refused.error().detail.find("request_id: "), 0U);
+  start.set_request_id("one");
+  EXPECT_TRUE(check(start));
+  EXPECT_TRUE(check(v1::StopMachineRequest()));
+  EXPECT_TRUE(check(v1::SubmitJobRequest()));
+  EXPECT_TRUE(check(v1::GetMachineRequest()));
 }
 
 }  // namespace
