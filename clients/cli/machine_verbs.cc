@@ -77,6 +77,11 @@ void AddActs(MachineVerbs& verbs) {
   verbs.Add("watch", "Follow a machine", WatchMachine);
   verbs.Add("log", "Show what happened at a machine, and who did it", ShowMachineLog)
       ->add_flag("--follow", given.follow, "go on with what comes");
+  CLI::App* taught = verbs.AddControlled(
+      "taught", "Show what was taught at a handbox, or take it back", ShowTaught);
+  taught->add_option("--slot", given.program, "of this program alone")->check(CLI::Range(1, 99));
+  taught->add_option("--undo", given.undo, "take entries of a program back, down to this number")
+      ->check(CLI::PositiveNumber);
   verbs.Add("enable", "Switch a machine on: it lives from here on", EnableMachine);
   verbs.Add("disable", "Switch a machine off", DisableMachine);
   verbs

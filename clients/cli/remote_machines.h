@@ -36,11 +36,14 @@ struct MachineAct {
   std::string job;                // "17": one that a person starts
   bool follow = false;            // what comes, too
   std::string computer;           // whose host gets the machine; empty: this one
+  std::int64_t undo = 0;          // the oldest entry of what was taught that is taken back; 0: none
 };
 
 int ShowMachine(const Remote& remote, const MachineAct& act);
 int WatchMachine(const Remote& remote, const MachineAct& act);
 int ShowMachineLog(const Remote& remote, const MachineAct& act);
+// What was taught at its handbox, or the taking back of the newest of it.
+int ShowTaught(const Remote& remote, const MachineAct& act);
 int EnableMachine(const Remote& remote, const MachineAct& act);
 int DisableMachine(const Remote& remote, const MachineAct& act);
 // How it lives: told, or changed by NAME=VALUE.

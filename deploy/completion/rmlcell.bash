@@ -91,6 +91,7 @@ _rmlcell_options() {
     "machine start-at")
       echo "--help --take-over --slot --occurrence --direct --off-until-work-on --stock --tool --untouched --preview --halt --no-halt --seen --reason" ;;
     "machine log") echo "--help --follow" ;;
+    "machine taught") echo "--help --take-over --slot --undo" ;;
     "machine key") echo "--help --take-over --for --fast" ;;
     "machine start") echo "--help --take-over --job" ;;
     "machine options") echo "--help" ;;
@@ -176,7 +177,7 @@ _rmlcell_positional() {
     diff) _rmlcell_programs_files ;;
     machine)
       [[ $count -eq 0 ]] && _rmlcell_offer status watch enable disable hold stop emergency-stop abort start zero resume mode override \
-        factor acknowledge confirm read write start-at key input gates options take ;;
+        factor acknowledge confirm read write start-at key input gates options take taught ;;
     "machine start") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_slots "${given[0]}"; fi ;;
     "machine options") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer start=queue start=armed start=person ticket-needed=on ticket-needed=off server-lost=hold server-lost=go-on halt-at-entry=on halt-at-entry=off; fi ;;
     "machine mode") if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer remote cycle single repeat manual; fi ;;

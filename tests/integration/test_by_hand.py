@@ -192,15 +192,33 @@ class ByHandTest(LiveTestCase):
         self.assertGreater(taught[0].axes[0].value, 0)
         self.assertEqual((taught[0].step.program, taught[0].caller), (12, "local"))
 
-        def undo(number, token=live.token):
+        def undo(number, token=None):
             return box.stub.UndoTeachEntries(handbox_pb2.UndoTeachEntriesRequest(
-                program=f"{OPTIMO}/programs/12", down_to=number, request_id=new_id(), control_token=token)).entry
+                program=f"{OPTIMO}/programs/12", down_to=number, request_id=new_id(),
+                control_token=token or live.token)).entry
         with self.assertRaises(grpc.RpcError) as caught:
             undo(taught[0].number, "none")
         self.assertEqual(detail_of(caught.exception).code, "CELL-E9420")
         self.assertEqual(handbox_pb2.TeachEntry.Act.Name(undo(taught[0].number).act), "ACT_UNDO")
         self.assertEqual(self.lists(12), made)
         self.assertEqual(len(entries()), 3)
+        # The command lists it, oldest first, and takes it back.
+        box.hold("X+", 0.2)
+        box.keys("REC")
+        eventually(lambda: len(entries()) == 4, 10)
+        live.ask("ReleaseControl")
+        listed = self.command("taught", "optimo-1", "--slot", "12")
+        lines = listed.stdout.splitlines()
+        self.assertEqual(len(lines), 4, listed.stderr)
+        self.assertRegex(lines[0], r"^1  \S+ \S+  local  12  create")
+        self.assertRegex(lines[1], r"^2  \S+ \S+  local  12/1  insert  MOVE .*COORD")
+        self.assertIn("undo    down to 2", lines[2])
+        self.assertIn("there is no entry 40", self.command("taught", "optimo-1", "--undo", "40").stderr)
+        undone = self.command("taught", "optimo-1", "--undo", "4")
+        self.assertEqual(undone.returncode, 0, undone.stderr)
+        self.assertIn("undo    down to 4", undone.stdout)
+        self.assertEqual(self.lists(12), made)
+        live.acquire()
         self.cell.programs().PutProgram(program_pb2.PutProgramRequest(
             name=f"{OPTIMO}/programs/12", program={"file_name": "a.S", "content": b"DELAY 1\n"}))
         with self.assertRaises(grpc.RpcError) as caught:
