@@ -103,6 +103,11 @@ int StartAtStep(const Remote& remote, const MachineAct& act) {
     Complain("'" + Visible(act.step) + "' is no step: PROGRAM/STEP, such as 45/10, or a step");
     return kUsage;
   }
+  for (const std::string& seen : act.seen) {
+    if (ConfirmationOf(seen)) continue;
+    Complain("--seen '" + Visible(seen) + "': nothing is called so; see --help");
+    return kUsage;
+  }
   v1::GetMachineRequest which;
   which.set_name(FullName("machines", act.machine));
   v1::Machine machine;

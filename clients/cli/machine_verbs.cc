@@ -4,6 +4,7 @@
 
 #include "clients/cli/remote_machines.h"
 #include "clients/cli/verbs.h"
+#include "engine/core/number_text.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -133,7 +134,10 @@ void AddActs(MachineVerbs& verbs) {
   key->add_option("KEYS", given.values, "X+, PAUSE, CONTINUE, POWER; JOB 4 5 ENT, START, REC ...")
       ->required();
   key->add_option("--for", given.held_s, "hold the last one for so many seconds; else it is tapped")
-      ->check(CLI::Range(0.0, 50.0));
+      ->check(CLI::Range(0.0, 50.0))
+      ->check([](const std::string& text) {  // what is no number lies in every range
+        return ParseDouble(text) ? std::string() : "'" + text + "' is no number of seconds";
+      });
   key->add_flag("--fast", given.fast, "jog at the highest speed");
   verbs.AddControlled("input", "Set inputs, door and power of a virtual machine", SetInputs)
       ->add_option("VALUES", given.values,

@@ -44,7 +44,10 @@ std::string StatusText(const v1::MachineStatus& status) {
   std::string text =
       status.machine() + "  " + Short(v1::MachineState_Name(status.state()), "MACHINE_STATE_");
   if (status.has_off_reason()) return text + ": " + Visible(status.off_reason().message());
-  if (status.host().empty()) return text + "; it does not live: rmlcell machine enable";
+  const bool comes = status.state() == v1::MACHINE_STATE_STARTING ||
+                     status.state() == v1::MACHINE_STATE_RECOVERING;
+  if (status.host().empty())
+    return comes ? text : text + "; it does not live: rmlcell machine enable";
   text += " in " + Short(v1::OperatingMode_Name(status.mode()), "OPERATING_MODE_");
   if (!status.cut_off_job().empty()) text += ", " + status.cut_off_job() + " was cut off";
   if (status.cut_off_at().step() > 0)

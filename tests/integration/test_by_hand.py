@@ -302,6 +302,7 @@ class ByHandTest(LiveTestCase):
         moved = self.live.status().axes[0].value - begin
         self.assertGreater(moved, 0.4)  # at 1 mm/s; a dead-man alone would let it go 0.2 mm
         self.assertLess(moved, 1.2)
+        self.assertEqual(self.command("key", "mill-1", "X+", "--for", "nan").returncode, 2)
         shown = self.command("key", "optimo-1", "MODE_LEFT")
         self.assertNotEqual(shown.returncode, 0)  # it does not live
         Live(self, self.cell, OPTIMO).enable()
@@ -323,6 +324,9 @@ class ByHandTest(LiveTestCase):
         asked = self.command("start-at", "mill-1", "8", "--slot", "7")
         self.assertEqual(asked.returncode, 1)
         self.assertIn("--seen tool,clamps", asked.stderr)
+        wrong = self.command("start-at", "mill-1", "8", "--slot", "7", "--seen", "tool,clamp")
+        self.assertEqual(wrong.returncode, 2)
+        self.assertIn("--seen 'clamp'", wrong.stderr)
         begun = self.command("start-at", "mill-1", "8", "--slot", "7", "--seen", "tool,clamps", "--halt")
         self.assertEqual(begun.returncode, 0, begun.stderr)
         held = self.live.wait("HELD")
