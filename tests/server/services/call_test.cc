@@ -6,6 +6,9 @@
 #include "google/rpc/status.pb.h"
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/common.pb.h"
+#include "rmlcell/v1/job.pb.h"
+#include "rmlcell/v1/machine.pb.h"
+#include "rmlcell/v1/machine_control.pb.h"
 #include "tests/engine/core/untold.h"
 
 namespace rmlcell::server {
