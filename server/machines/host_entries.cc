@@ -159,6 +159,33 @@ Status GiveBack(storage::Store& store, const storage::Lease& lease, const std::s
   return back ? Status() : Status(back.error());
 }
 
+Status EndWithoutHost(storage::Store& store, const std::string& machine) {
+  const auto running = store.ListJobs({.machine = machine,
+                                       .state = storage::JobState::kRunning,
+                                       .kind = std::string(storage::kRunKind)});
+  if (!running) return running.error();
+  const auto mark = store.GetMachineMark(machine);
+  if (!mark) return mark.error();
+  v1::MachineMark note;
+  if (*mark) static_cast<void>(note.ParseFromString((*mark)->note));
+  for (const storage::JobRecord& job : *running) {
+    const auto lease = LeaseOf(store, JobName(job.id));
+    if (!lease) return lease.error();
+    if (!*lease) continue;
+    v1::Outcome outcome;
+    outcome.set_kind(v1::Outcome::KIND_INTERRUPTED);
+    outcome.set_code(CodeText(ErrorCode::kCellHostDied));
+    if (note.job() == JobName(job.id)) {
+      *outcome.mutable_place() = note.place();
+      outcome.set_cycle_time_ns(note.run_time_ns());
+    }
+    const auto ended =
+        store.Finish(**lease, {.outcome = OutcomeOf(outcome), .events = {EndedEvent(outcome)}});
+    if (!ended && ended.error().code != ErrorCode::kCellLeaseLost) return ended.error();
+  }
+  return {};
+}
+
 Status GiveBackUnbegun(storage::Store& store, const std::string& machine, const std::string& host) {
   const auto running = store.ListJobs({.machine = machine,
                                        .state = storage::JobState::kRunning,

@@ -24,6 +24,11 @@ StoredEntries StoreEntries(storage::Store& store, const storage::MachineLease& l
 // to be over; any other has moved nothing, and waits again. LIVE-5.20
 Status GiveBackUnbegun(storage::Store& store, const std::string& machine, const std::string& host);
 
+// Of a machine that no host comes for any more: a job that ran there, or was given to its host, is
+// cut off where the newest mark has it, and nobody waits for it. A host that comes later may know
+// more; the job stays as it is.
+Status EndWithoutHost(storage::Store& store, const std::string& machine);
+
 // It waits again, since it never began; `held`: until a person lets it go. `why`: for people, in
 // its log.
 Status GiveBack(storage::Store& store, const storage::Lease& lease, const std::string& why,

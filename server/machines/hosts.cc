@@ -327,7 +327,11 @@ void Hosts::NoteOff(const std::string& machine, const std::string& why) {
     const std::lock_guard lock(mutex_);
     off_[machine] = why;
   }
-  Changed();
+  needs_.executor.Post([this, machine] {
+    if (const Status ended = EndWithoutHost(needs_.store, machine); !ended)
+      spdlog::warn("jobs of {}: {}", machine, bridge::ErrorText(ended.error()));
+    Changed();
+  });
 }
 
 void Hosts::ClearOff(const std::string& machine) {

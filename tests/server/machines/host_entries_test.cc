@@ -183,5 +183,36 @@ TEST_F(HostEntriesTest, AJobThatNeverBeganWaitsAgain) {
   EXPECT_EQ(EventsOf(job).back().state(), v1::Job::STATE_QUEUED);
 }
 
+// LIVE-3.01, LIVE-5.08: where no host comes any more the job is cut off where the newest mark has
+// it; a host that comes later all the same tells of its machine, and the job stays as it is.
+TEST_F(HostEntriesTest, AJobWhoseMachineIsOffIsCutOff) {
+  const std::int64_t job = SubmitRun();
+  Acquire();
+  Add(job).mutable_run_begun()->set_job(JobName(job));
+  Mark(false);
+  v1::MachineMark& mark = *entries.back().mutable_mark();
+  mark.set_job(JobName(job));
+  mark.set_run_time_ns(77);
+  mark.mutable_place()->set_program(5);
+  mark.mutable_place()->set_step(12);
+  ASSERT_TRUE(StoreEntries(bed.store(), lease, entries).how);
+  ASSERT_TRUE(EndWithoutHost(bed.store(), "optimo-1"));
+  EXPECT_EQ(Must(bed.store().GetJob(job)).state, JobState::kRunning);
+  ASSERT_TRUE(EndWithoutHost(bed.store(), "mill-1"));
+  const storage::JobRecord ended = Must(bed.store().GetJob(job));
+  EXPECT_EQ(ended.state, JobState::kInterrupted);
+  ASSERT_TRUE(ended.outcome);
+  EXPECT_EQ(ended.outcome->code, ErrorCode::kCellHostDied);
+  const v1::Outcome told = EventsOf(job).back().ended();
+  EXPECT_EQ(told.kind(), v1::Outcome::KIND_INTERRUPTED);
+  EXPECT_EQ(told.place().step(), 12);
+  EXPECT_EQ(told.cycle_time_ns(), 77);
+  entries.clear();
+  Over(job, v1::Outcome::KIND_INTERRUPTED, "CELL-E9411");
+  Mark(false);
+  ASSERT_TRUE(StoreEntries(bed.store(), lease, entries).how);
+  EXPECT_EQ(EventsOf(job).back().ended().cycle_time_ns(), 77) << "told once";
+}
+
 }  // namespace
 }  // namespace rmlcell::server
