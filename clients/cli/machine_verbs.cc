@@ -72,7 +72,8 @@ void AddStartAt(MachineVerbs& verbs) {
   at->add_option("--reason", given.reason, "why it goes on, for all to read");
 }
 
-void AddActs(MachineVerbs& verbs) {
+// How it stands, what happened to it, and how it lives.
+void AddLife(MachineVerbs& verbs) {
   MachineAct& given = verbs.given();
   verbs.Add("status", "Show how a machine stands, and what keeps jobs from it", ShowMachine);
   verbs.Add("watch", "Follow a machine", WatchMachine);
@@ -94,6 +95,10 @@ void AddActs(MachineVerbs& verbs) {
       verbs.Add("take", "Give a machine to another computer, whoever is its host", TakeMachine);
   take->add_option("--reason", given.reason, "why, for all to read")->required();
   take->add_option("--computer", given.computer, "whose host gets it; default: this one");
+}
+
+void AddActs(MachineVerbs& verbs) {
+  MachineAct& given = verbs.given();
   verbs.Add("hold", "Let a run come to rest after the present instruction", HoldMachine);
   verbs.Add("stop", "Let a run come to rest at once, on its path", StopMachine);
   verbs.Add("emergency-stop", "End the run; the machine is in alarm", EmergencyStopMachine);
@@ -171,6 +176,7 @@ void AddMachineVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   group->require_subcommand(1);
   group->fallthrough();  // --server and --json may stand at the end, too
   MachineVerbs verbs(*group, remote, exit_code);
+  AddLife(verbs);
   AddActs(verbs);
   AddStartAt(verbs);
 }

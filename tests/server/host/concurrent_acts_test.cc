@@ -20,7 +20,7 @@ class ConcurrentActs : public HostMachineTest {
     disk_.clear();
     holder_ = "anna";
     token_.clear();
-    door_open_ = may_move_ = false;
+    door_open_ = may_move_ = holds_ = false;
     Control(v1::ControlLease::ON_LOSS_HOLD);
     own_token_ = token_;
   }
@@ -67,7 +67,8 @@ class ConcurrentActs : public HostMachineTest {
         EXPECT_EQ(!By("anna", order).has_refusal(), holder_ == "anna");
         if (holder_ != "anna") break;
         holder_.clear();
-        may_move_ = false;  // ON_LOSS_HOLD
+        may_move_ = false;  // ON_LOSS_HOLD: after the present instruction
+        holds_ = true;
         break;
       }
       case Deed::kDoor: {  // of a mill whose cover pauses (DEV-3.12)
@@ -106,6 +107,7 @@ class ConcurrentActs : public HostMachineTest {
   // Where it may not move it comes to rest, and stays there.
   void Look() {
     Pass(3s);
+    if (holds_) Pass(25s, 50ms);  // a side of the square takes 20 s
     const v1::MachineState state = host_->StatusAt(now_).state();
     EXPECT_EQ(state == v1::MACHINE_STATE_RUNNING, may_move_) << state;
     if (may_move_) return;
@@ -121,6 +123,7 @@ class ConcurrentActs : public HostMachineTest {
   std::string own_token_;
   bool door_open_ = false;
   bool may_move_ = false;
+  bool holds_ = false;
   bool inspect_ = false;
 };
 
