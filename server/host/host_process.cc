@@ -541,7 +541,8 @@ class HostProcess {
       if (machine_->moves()) longest = std::min(longest, kTick);
       if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
       for (const Waiting& key : keys_waiting_) longest = std::min(longest, key.until - now);
-      if (handbox_due_) longest = std::min(longest, handbox_shown_at_ + kStatusMoving - now);
+      if (handbox_due_ && IsHeard())
+        longest = std::min(longest, handbox_shown_at_ + kStatusMoving - now);
     }
     inbox_.Wait(longest, line_ != nullptr);
   }

@@ -260,6 +260,37 @@ class ByHandTest(LiveTestCase):
         sent.put(None)
         self.assertEqual(list(answers), [])
 
+    # LIVE-3.12: a standing machine sleeps, also when the server goes while its handbox has something to show.
+    def test_a_handbox_that_nobody_sees_costs_nothing(self):
+        live = self.optimo()
+        box = Handbox(live)
+        pid = live.host()
+        gone = threading.Event()
+
+        def press():
+            try:
+                while not gone.is_set():
+                    box.keys("OVERRIDE_MINUS OVERRIDE_PLUS")
+            except grpc.RpcError:
+                pass
+        presses = threading.Thread(target=press)
+        presses.start()
+        time.sleep(0.5)
+        self.cell.kill()
+        gone.set()
+        presses.join()
+
+        def wakes():  # of its main thread
+            lines = open(f"/proc/{pid}/status", encoding="utf-8").read().splitlines()
+            return sum(int(line.split()[1]) for line in lines if "voluntary_ctxt_switches" in line)
+        time.sleep(0.5)
+        before = wakes()
+        time.sleep(2)
+        self.assertLess(wakes() - before, 400)
+        self.cell.start()
+        live.wait("IDLE")
+        self.assertEqual(live.host(), pid)
+
     # LIVE-2.11: a gate starts the program that it is set to.
     def test_a_gate_starts_its_program(self):
         live = self.optimo()
