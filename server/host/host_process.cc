@@ -303,7 +303,7 @@ class HostProcess {
 
   // At most 20 times a second, and when it has changed. LIVE-7.02
   void ShowHandbox(nanoseconds now) {
-    if (!IsHeard()) return;
+    if (!IsHeard()) return void(handbox_due_ = false);
     std::optional<v1::HandboxPanel> panel = machine_->Handbox();
     if (!panel) return;
     std::string bytes = panel->SerializeAsString();
@@ -541,8 +541,7 @@ class HostProcess {
       if (machine_->moves()) longest = std::min(longest, kTick);
       if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
       for (const Waiting& key : keys_waiting_) longest = std::min(longest, key.until - now);
-      if (handbox_due_ && IsHeard())
-        longest = std::min(longest, handbox_shown_at_ + kStatusMoving - now);
+      if (handbox_due_) longest = std::min(longest, handbox_shown_at_ + kStatusMoving - now);
     }
     inbox_.Wait(longest, line_ != nullptr);
   }
