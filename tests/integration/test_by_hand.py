@@ -270,7 +270,7 @@ class ByHandTest(LiveTestCase):
         def press():
             try:
                 while not gone.is_set():
-                    box.keys("OVERRIDE_MINUS OVERRIDE_MINUS OVERRIDE_MINUS OVERRIDE_PLUS OVERRIDE_PLUS OVERRIDE_PLUS")
+                    box.keys("MODE_LEFT MODE_LEFT MODE_RIGHT MODE_RIGHT")
             except grpc.RpcError:
                 pass
         presses = threading.Thread(target=press)
