@@ -72,8 +72,9 @@ struct FamilyInfo {
   std::string_view spindle_speed{};  // variable: rpm of a spindle that turns; empty: it has none
   // Instructions that wait for an input or a time.
   std::span<const std::string_view> waiting{};
-  bool has_dry_run = false;      // up to a step, RunSetup::simul
-  bool has_breakpoints = false;  // Run::SetBreakpoints
+  bool steps_come_again = false;  // in loops and calls; else a run comes to each of them once
+  bool has_dry_run = false;       // up to a step, RunSetup::simul
+  bool has_breakpoints = false;   // Run::SetBreakpoints
 
   // What the machine calls what the cell finds. What has no number in its manual the cell says in
   // its own words: a machine without program memory has no slots.

@@ -104,6 +104,8 @@ class Handbox {
   // It is not, and was asked for in vain.
   virtual void EditRefused(ErrorCode code) = 0;
 
+  // Something is half entered: a mask, or a question.
+  virtual bool has_open_mask() const = 0;
   virtual Panel panel(const MachineView& view) const = 0;
   virtual JogReference jog_reference() const = 0;  // of the jog keys
   // Of such a run, where the override of the machine is this.

@@ -17,6 +17,7 @@ enum class InputKind {
   kStop,
   kEmergencyStop,
   kOverride,  // override in percent
+  kVariable,  // a variable by its name, written by hand (Machine: WriteVariable)
 };
 
 struct InputChange {
@@ -24,6 +25,7 @@ struct InputChange {
   InputKind kind = InputKind::kLogical;
   int index = 0;
   double value = 0.0;
+  std::string name{};  // of the variable
 
   bool operator==(const InputChange&) const = default;
 };

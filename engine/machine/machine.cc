@@ -553,6 +553,7 @@ Status Machine::Act(const WriteVariable& input) {
   if (const Status good = family_.CheckWrite(parameters_, input.name, input.value); !good)
     return good.error();
   if (run_ != nullptr) {
+    KeepForBase({.kind = InputKind::kVariable, .value = input.value, .name = input.name});
     run_->WriteVariable(input.name, input.value);
   } else {
     standing_->WriteVariable(input.name, input.value);

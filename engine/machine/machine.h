@@ -104,6 +104,8 @@ class Machine {
   // What a key asked for is not over: what was taught is being stored, or an axis that was let go
   // does not stand yet. Other keys do nothing until then.
   bool settles() const;
+  // Something is half entered at its handbox.
+  bool has_open_mask() const { return handbox_ != nullptr && handbox_->has_open_mask(); }
   bool has_gates() const { return has_handbox(); }  // a control of that kind has both
   // Inputs, and variables that may be written.
   bool has_inputs() const { return family_.HasVariable(parameters_, "IL[0]"); }

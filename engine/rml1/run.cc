@@ -339,7 +339,8 @@ void MillRun::Handle(const machine::InputChange& input) {
       break;
     case InputKind::kLogical:
     case InputKind::kAnalogue:
-      break;  // a mill has no inputs
+    case InputKind::kVariable:
+      break;  // a mill has no inputs, and no variable that is written
   }
 }
 

@@ -125,6 +125,10 @@ v1::AppliedInput ToProto(const InputChange& change) {
     case InputKind::kOverride:
       input.set_override_percent(change.value);
       break;
+    case InputKind::kVariable:
+      input.mutable_variable()->set_name(change.name);
+      input.mutable_variable()->mutable_value()->set_real(change.value);
+      break;
   }
   return input;
 }

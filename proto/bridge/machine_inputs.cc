@@ -420,6 +420,18 @@ v1::RunBase ToProto(const machine::StartBase& base, int program) {
   return made;
 }
 
+namespace {
+
+Result<machine::InputChange> BaseInputOf(const v1::AppliedInput& input) {
+  if (!input.has_variable()) return ChangeOf(input, std::numeric_limits<double>::infinity());
+  const Result<double> value = NumberOf(input.variable());
+  if (!value) return value.error();
+  return machine::InputChange{
+      .kind = machine::InputKind::kVariable, .value = *value, .name = input.variable().name()};
+}
+
+}  // namespace
+
 Result<machine::StartBase> FromProto(const v1::RunBase& base) {
   const auto mode = ModeOf(base.mode());
   if (!mode) return Error{ErrorCode::kCellInvalidArgument, "mode is none that there is", {}};
@@ -428,7 +440,7 @@ Result<machine::StartBase> FromProto(const v1::RunBase& base) {
                           .mode = *mode,
                           .override_percent = base.override_percent()};
   for (const v1::RunBaseInput& input : base.inputs()) {
-    auto change = ChangeOf(input.input(), std::numeric_limits<double>::infinity());
+    auto change = BaseInputOf(input.input());
     if (!change) return change.error();
     change->at = SimTime(input.run_time_ns());
     made.inputs.push_back(*change);

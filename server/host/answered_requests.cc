@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kDigestDigits = 32;
 constexpr std::size_t kBytesMax = 4'096;  // of an answer; those that act have less
 
-std::string KeyOf(const std::string& request_id, int kind, const std::string& caller) {
-  return request_id.empty() ? "" : request_id + "\n" + std::to_string(kind) + "\n" + caller;
+std::string KeyOf(const std::string& request_id, const std::string& caller) {
+  return request_id.empty() ? "" : request_id + "\n" + caller;
 }
 
 std::chrono::microseconds AgeOf(const v1::JournalEntry& entry, WallTime now) {
@@ -32,8 +32,7 @@ bool IsAskedFor(const v1::JournalEntry& answered, WallTime now) {
 
 std::string AnsweredRequests::KeyOf(const v1::HostOrder& order) {
   if (IsHalt(order)) return {};
-  return server::KeyOf(FieldOf(order, "request_id").value_or(""), order.request_case(),
-                       order.caller());
+  return server::KeyOf(FieldOf(order, "request_id").value_or(""), order.caller());
 }
 
 const v1::HostOrderAnswer* AnsweredRequests::Find(const std::string& key) const {
@@ -49,7 +48,8 @@ std::string AnsweredRequests::DigestOf(const v1::HostOrder& order) {
   if (const auto* token = copy->GetDescriptor()->FindFieldByName("control_token"))
     copy->GetReflection()->ClearField(copy.get(), token);
   // Orders for a job have it beside what is asked.
-  const std::string about = order.for_job() + "\n" + order.reason() + "\n";
+  const std::string about =
+      std::to_string(order.request_case()) + "\n" + order.for_job() + "\n" + order.reason() + "\n";
   return bridge::Sha256Hex(about + bridge::StableBytes(*copy)).substr(0, kDigestDigits);
 }
 
@@ -101,7 +101,7 @@ void AnsweredRequests::Recover(const std::vector<v1::JournalEntry>& entries,
     const v1::AnsweredRequest& one = entry.answered();
     v1::HostOrderAnswer answer = one.answer();
     if (one.by_status()) *answer.mutable_status() = status;
-    Keep(server::KeyOf(one.request_id(), one.kind(), one.caller()),
+    Keep(server::KeyOf(one.request_id(), one.caller()),
          {.answer = std::move(answer),
           .digest = one.digest(),
           .at = now.steady - AgeOf(entry, now.wall)},

@@ -204,9 +204,13 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOut(const v1::HostOrder& order, co
 Result<v1::HostOrderAnswer> HostMachine::Control(const v1::HostOrder& order, const HostTime& now) {
   v1::HostOrderAnswer answer;
   if (order.has_acquire_control()) {
+    const bool taken_over = desk_.lease().has_value();
     auto acquired = desk_.Acquire(order.acquire_control(), order.caller(), now);
     if (!acquired) return acquired.error();
     *answer.mutable_control() = *std::move(acquired);
+    // What the earlier holder was about to enter is nobody's. LIVE-4.03
+    if (taken_over && machine().has_open_mask())
+      static_cast<void>(Apply(machine::PressedKey{.key = "ERR"}, nullptr));
   } else if (order.has_renew_control()) {
     const auto renewed = desk_.Renew(order.renew_control().control_token(), now);
     if (!renewed) return renewed.error();

@@ -105,6 +105,11 @@ Status HostMachine::PressKey(const v1::HostOrder& order, const HostTime& now) {
     dead_man_.Release(pressed.key);
   } else if (held && keys_.IsReleased(pressed.key, pressed.number)) {
     return {};
+  } else if (held && dead_man_.IsStopped(pressed.key)) {
+    if (pressed.action == v1::KEY_ACTION_TAP) dead_man_.Release(pressed.key);
+    return Error{ErrorCode::kCellKeySequence,
+                 pressed.key + " was stopped, since nobody was heard who held it: release it first",
+                 {}};
   }
   by_panel_ = true;
   const Status done = Act(order);

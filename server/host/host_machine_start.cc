@@ -51,13 +51,21 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
                                                              const HostTime& now) {
   GoOnTo(now);
   v1::PreviewStartRequest request = order.preview_start();
-  const bool again = inspect_due_ && cut_off_base_ &&
-                     (request.program() == 0 || request.program() == cut_off_base_->program());
-  if (again) request.set_program(cut_off_base_->program());
-  if (again && request.step().step() == 0) {
+  const bool behind_it = inspect_due_ && cut_off_base_ &&
+                         (request.program() == 0 || request.program() == cut_off_base_->program());
+  if (behind_it) request.set_program(cut_off_base_->program());
+  if (behind_it && request.step().step() == 0) {
     request.mutable_step()->set_program(cut_off_base_->place().program());
     request.mutable_step()->set_step(std::max(1, cut_off_base_->place().step()));
   }
+  const bool again = behind_it && !cut_off_base_->incomplete();
+  // The wrong pass of a loop would leave out a part of the work, or cut it twice.
+  if (behind_it && !again && request.occurrence() == 0 && cut_off_base_->place().step() > 0 &&
+      setup_.family->info().steps_come_again)
+    return Error{ErrorCode::kCellStepUnreachable,
+                 "name the occurrence: in which pass the run was is not known, since it was moved "
+                 "in a hold or more came to it than is kept; variables are as the machine has them",
+                 {}};
   auto start = StartOf(request, machine());
   if (!start) return start.error();
   auto part = PartOf(request, setup_.family->Shape(*parameters_));
@@ -107,9 +115,15 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
 
 std::optional<v1::RunBase> HostMachine::BaseNow() const {
   const machine::MachineStatus status = machine().status();
-  if (!status.open || status.open->by_hand || !machine().base()) return std::nullopt;
-  v1::RunBase base = bridge::ToProto(*machine().base(), status.open->program);
-  base.set_until_ns(machine().base_time().count());
+  if (!status.open || status.open->by_hand) return std::nullopt;
+  v1::RunBase base;
+  if (machine().base()) {
+    base = bridge::ToProto(*machine().base(), status.open->program);
+    base.set_until_ns(machine().base_time().count());
+  } else {
+    base.set_program(status.open->program);
+    base.set_incomplete(true);
+  }
   *base.mutable_place() = bridge::ToProto(status.run.place);
   return base;
 }

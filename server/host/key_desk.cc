@@ -44,8 +44,12 @@ void DeadMan::Press(const std::string& key, const HostTime& now) {
 }
 
 void DeadMan::Release(const std::string& key) {
-  if (key.empty()) return down_.clear();
+  if (key.empty()) {
+    down_.clear();
+    stopped_.clear();
+  }
   down_.erase(key);
+  stopped_.erase(key);
 }
 
 bool DeadMan::Hear(std::int64_t number, const std::set<std::string>& keys_down, nanoseconds sent,
@@ -63,7 +67,10 @@ bool DeadMan::Hear(std::int64_t number, const std::set<std::string>& keys_down, 
 
 std::vector<std::string> DeadMan::LetGo(const HostTime& now) {
   std::set<std::string> gone = std::exchange(missed_, {});
-  if (now.steady - heard_ > kSilence) gone = down_;
+  if (now.steady - heard_ > kSilence) {
+    gone = down_;
+    stopped_.insert(down_.begin(), down_.end());
+  }
   std::vector<std::string> keys;
   for (const std::string& key : gone) {
     if (down_.erase(key) > 0) keys.push_back(key);

@@ -51,6 +51,8 @@ class DeadMan {
 
   void Press(const std::string& key, const HostTime& now);
   void Release(const std::string& key);  // empty: every key
+  // A silence has stopped it, and it was not released since: it moves nothing. LIVE-7.06
+  bool IsStopped(const std::string& key) const { return stopped_.contains(key); }
   // `sent`: by the clock of the client, which may be any. False: it was overtaken, or is so late
   // that it counts for nothing.
   bool Hear(std::int64_t number, const std::set<std::string>& keys_down,
@@ -63,7 +65,8 @@ class DeadMan {
 
  private:
   std::set<std::string> down_;
-  std::set<std::string> missed_;  // by the newest beat
+  std::set<std::string> missed_;   // by the newest beat
+  std::set<std::string> stopped_;  // by a silence
   std::chrono::nanoseconds heard_{0};
   std::int64_t newest_ = 0;
   bool any_delay_ = false;

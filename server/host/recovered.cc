@@ -36,6 +36,7 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
     if (Number(entry.fence(), entry.sequence()) <= newest || job.empty()) continue;
     found.begins = job;
     found.begins_at_step = entry.intent().input().start().has_step();
+    found.begins_program = entry.intent().input().start().program();
   }
   for (v1::JournalEntry& entry : journal) {
     const Number number{entry.fence(), entry.sequence()};
@@ -57,7 +58,14 @@ HostMachine::Setup SetupOf(Recovered found) {
     found.mark.set_job(found.begins);
     found.mark.set_run_time_ns(0);
     found.mark.clear_place();
-    if (!found.begins_at_step) found.mark.clear_base();
+    // Of a program that had not begun its first step.
+    if (!found.begins_at_step) {
+      found.mark.clear_base();
+      found.mark.mutable_base()->set_program(found.begins_program);
+      found.mark.mutable_base()->set_incomplete(true);
+      found.mark.mutable_base()->mutable_place()->set_program(found.begins_program);
+      *found.mark.mutable_place() = found.mark.base().place();
+    }
   }
   HostMachine::Setup setup;
   setup.state = found.mark.state();

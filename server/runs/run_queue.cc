@@ -185,6 +185,14 @@ std::string RunQueue::MachineOf(const std::string& job) const {
   return needs_.hosts.MachineThatRuns(job);
 }
 
+bool RunQueue::IsToBeDecided(const std::string& job) const {
+  const std::vector<std::string> machines = needs_.hosts.Machines();
+  return std::ranges::any_of(machines, [&](const std::string& machine) {
+    const auto status = needs_.hosts.StatusOf(machine);
+    return status && status->cut_off_job() == job;
+  });
+}
+
 bool RunQueue::IsBusy(const std::string& machine, const v1::MachineStatus& status) {
   const auto running = needs_.store.ListJobs({.machine = machine,
                                               .state = storage::JobState::kRunning,

@@ -51,6 +51,8 @@ class RunQueue {
   void AskMachine(const std::string& machine, v1::HostOrder order, Hosts::Answered done) {
     needs_.hosts.Ask(machine, std::move(order), std::move(done));
   }
+  // It was cut off, and its machine waits for somebody to decide what becomes of that. LIVE-5.10
+  bool IsToBeDecided(const std::string& job) const;
   // The program of a job, whole. Errors: those of the store.
   Result<v1::AssignedProgram> ProgramOf(std::int64_t job);
   // Block and tool of the simulation that proves it; none: nobody has told them.

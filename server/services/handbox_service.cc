@@ -86,8 +86,9 @@ grpc::ServerUnaryReactor* HandboxService::UndoTeachEntries(
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   const Result<Caller> caller = Admit(needs_.gate, *context, kMethod, request);
   const Result<ProgramName> name = ParseProgramName(request->program());
-  if (!caller || !name) {
-    reactor->Finish(ToGrpcStatus(caller ? name.error() : caller.error()));
+  const Status good = CheckRequest(needs_, *request);
+  if (!caller || !name || !good) {
+    reactor->Finish(ToGrpcStatus(!caller ? caller.error() : name ? good.error() : name.error()));
     return reactor;
   }
   if (watch_needs_.hosts == nullptr || !watch_needs_.hosts->IsHosted(name->machine)) {

@@ -51,21 +51,22 @@ grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* con
                                                 const v1::CancelJobRequest* request,
                                                 v1::Job* response) {
   const Result<std::int64_t> id = ParseJobName(request->name());
+  const bool is_heard = id && !runs_.MachineOf(request->name()).empty();
   return AnswerAfter(
       needs_, context, *request, "JobService/CancelJob",
-      [this, id, request](const Caller& caller) {
+      [this, id, is_heard, request](const Caller& caller) {
         if (!id) return;
-        if (!runs_.MachineOf(request->name()).empty())
-          return runs_.Abort(request->name(), caller.identity, request->request_id());
+        if (is_heard) return runs_.Abort(request->name(), caller.identity, request->request_id());
         dispatcher_.OrderAtOnce(
             *id, {v1::WorkerControl::KIND_CANCEL, 0.0, caller.identity, request->request_id()});
       },
-      [this, id, request, response](const Caller& caller) {
+      [this, id, is_heard, request, response](const Caller& caller) {
         if (!id) return ToGrpcStatus(id.error());
         const auto job = dispatcher_.Cancel(*id, caller.identity, request->request_id());
         if (!job) return ToGrpcStatus(job.error());
+        // Its run may be over by now, and the store not know it yet.
         if (job->kind == storage::kRunKind && job->state == storage::JobState::kRunning &&
-            runs_.MachineOf(request->name()).empty())
+            !is_heard && runs_.MachineOf(request->name()).empty())
           return ToGrpcStatus(Error{
               ErrorCode::kCellNotLive,
               "the host of its machine is not heard of: it is told when it is, or the run is cut off then",

@@ -84,6 +84,12 @@ grpc::ServerUnaryReactor* JobService::DeleteJob(grpc::CallbackServerContext* con
                                                 google::protobuf::Empty*) {
   return Answer(needs_, context, *request, "JobService/DeleteJob",
                 [this, request](const Caller& caller) {
+                  if (runs_.IsToBeDecided(request->name()))
+                    return ToGrpcStatus(
+                        Error{ErrorCode::kCellInspect,
+                              "its machine waits for a decision about it: go on with it, begin it "
+                              "anew, or give it up",
+                              {}});
                   const Status deleted = book_.Delete(request->name(), caller.identity);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });

@@ -273,6 +273,9 @@ void Control::Apply(const machine::InputChange& input) {
     case machine::InputKind::kStop:
       halts_.Stop();
       break;
+    case machine::InputKind::kVariable:
+      WriteVariable(input.name, input.value);
+      break;
     case machine::InputKind::kEmergencyStop:  // no motion is modelled after it (motion.md 6)
       data_.SetLastError(ErrorCode::kEmergencyStop);
       End(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop);
@@ -293,10 +296,14 @@ void Control::SetMode(machine::Mode mode) {
   if (now().phase != RunPhase::kFinished) halts_.SetMode(mode);
 }
 
-void Control::WriteVariable(Variable variable, float number) {
+void Control::WriteVariable(std::string_view name, double value) {
   if (now().phase == RunPhase::kFinished) return;
+  const std::optional<Variable> variable = VariableNamed(name);
+  if (!variable) return;
+  const Result<float> number = Writable(*variable, value, parameters_);
+  if (!number) return;
   ChangeOutside();
-  data_.WriteFromOutside(variable, number);
+  data_.WriteFromOutside(*variable, *number);
 }
 
 void Control::SetBreakpoints(const std::vector<machine::Breakpoint>& breakpoints) {

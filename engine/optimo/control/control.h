@@ -42,8 +42,8 @@ class Control final : private RideListener {
   void MoveTo(const motion::AxisPose& axes);
   void SetZeroed() { s_.moves.zeroed = s_.actuators.zeroed = true; }
   void SetMode(machine::Mode mode);
-  // Precondition: Writable.
-  void WriteVariable(Variable variable, float number);
+  // Of one that is not Writable nothing.
+  void WriteVariable(std::string_view name, double value);
   // Precondition: their conditions can be read.
   void SetBreakpoints(const std::vector<machine::Breakpoint>& breakpoints);
 

@@ -53,6 +53,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .home_program = 4,  // OPT-4.50
                                        .output_banks = kOutputBanks,
                                        .waiting = kWaiting,
+                                       .steps_come_again = true,
                                        .has_dry_run = true,
                                        .has_breakpoints = true,
                                        .no_slot = ErrorCode::kProgramNumber,

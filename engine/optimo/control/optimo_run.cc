@@ -12,10 +12,7 @@ class Snapshot final : public machine::RunSnapshot {
 }  // namespace
 
 void OptimoRun::WriteVariable(std::string_view name, double value) {
-  const std::optional<Variable> variable = VariableNamed(name);
-  if (!variable) return;
-  if (const Result<float> number = Writable(*variable, value, parameters_); number)
-    control_.WriteVariable(*variable, *number);
+  control_.WriteVariable(name, value);
 }
 
 std::unique_ptr<machine::RunSnapshot> OptimoRun::Save() const {

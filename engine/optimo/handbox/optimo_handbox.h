@@ -43,6 +43,7 @@ class OptimoHandbox final : public machine::Handbox {
                                        const machine::MachineView& view) override;
   std::optional<ErrorCode> Done(const Status& done) override;
 
+  bool has_open_mask() const override { return form_ || question_ || ready_; }
   const machine::ProgramEdit* open_edit() const override { return edit_ ? &*edit_ : nullptr; }
   std::optional<machine::ShownStep> EditStored() override;
   void EditRefused(ErrorCode code) override;

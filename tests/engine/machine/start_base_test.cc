@@ -138,6 +138,35 @@ TEST_F(StartBaseTest, ARunThatWasEnteredCanBeCutOffAgain) {
   EXPECT_EQ(machine->base()->machine_state, start.base->machine_state);
 }
 
+// LIVE-6.01: what was written by hand while it ran is there again, when it was written: the loop
+// ends in the pass in which it did, and no work is left out.
+TEST_F(StartBaseTest, HasWhatWasWrittenMeanwhile) {
+  Load({"VI[0]=0\n10 VI[0]=VI[0]+1\nDELAY 2\nVI[2]=VI[2]+VI[5]\nIF VI[0] < 6 THEN 10\nDELAY 30\n"});
+  Good(WriteVariable{.name = "VI[5]", .value = 1.0});
+  Start();
+  GoOn(At(5.0));  // in the third pass
+  Good(WriteVariable{.name = "VI[5]", .value = 10.0});
+  GoOn(At(9.0));
+  Good(WriteVariable{.name = "VI[0]", .value = 9.0});
+  GoOn(At(14.0));
+  const InputScript& inputs = machine->base()->inputs;
+  ASSERT_EQ(inputs.size(), 2U);
+  EXPECT_EQ(inputs[0].kind, InputKind::kVariable);
+  EXPECT_EQ(inputs[0].name, "VI[5]");
+  EXPECT_EQ(inputs[1].at - inputs[0].at, At(4.0));
+  const auto value = [&](std::string_view name) { return machine->ReadVariable(name)->text; };
+  const std::string counted = value("VI[0]");
+  const std::string sum = value("VI[2]");
+  EXPECT_EQ(counted, "9");
+  EXPECT_NE(sum, "5");
+
+  const auto found = Found();
+  const Result<StartPreview> preview = found->Preview(Again(6));
+  ASSERT_TRUE(preview) << preview.error().detail;
+  EXPECT_EQ(There(*preview, "VI[0]"), counted);
+  EXPECT_EQ(There(*preview, "VI[2]"), sum);
+}
+
 // LIVE-6.01: what comes while it stands at a breakpoint comes there, and what comes on the way to
 // an entry comes at the entry.
 TEST_F(StartBaseTest, InputsOfAHaltComeInTheHalt) {

@@ -101,6 +101,8 @@ TEST_F(AnsweredTest, WhatTheStateDoesNotHaveActs) {
 TEST_F(AnsweredTest, AnIdIsForOneRequest) {
   EXPECT_TRUE(Do(Start("the one")).status().has_run());
   EXPECT_EQ(Do(Start("the one", 6)).refusal().code(), "CELL-E9019");
+  EXPECT_EQ(Do(Factor("the one")).refusal().code(), "CELL-E9019") << "of another method";
+  EXPECT_EQ(host_->StatusAt(now_).factor(), 1.0);
   v1::HostOrder renewed = Start("the one");
   renewed.mutable_start()->set_control_token("another token");
   EXPECT_FALSE(Do(renewed).has_refusal());

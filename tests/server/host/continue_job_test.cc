@@ -200,6 +200,36 @@ TEST_F(ContinueJobTest, AJobBeginsAtAStep) {
   }
 }
 
+// LIVE-5.10, LIVE-6.01: more came to it than is kept: where it was is known all the same. A stream
+// comes to each of its commands once.
+TEST_F(ContinueJobTest, WhereItWasIsKnownWhateverCame) {
+  Make();
+  host_->Begin({}, now_);
+  v1::HostOrder order;
+  *order.mutable_run_job() = Assignment("jobs/17");
+  ASSERT_FALSE(Do(order).has_refusal());
+  Pass(40s, 50ms);
+  v1::HostOrder take;
+  take.mutable_acquire_control()->set_take_over(true);
+  take.mutable_acquire_control()->set_reason("slower");
+  take.mutable_acquire_control()->set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);
+  token_ = Do(take).control().control_token();
+  for (int i = 0; i < 1'001; ++i) {
+    v1::HostOrder slower;
+    slower.mutable_override()->set_control_token(token_);
+    slower.mutable_override()->set_override_percent(i % 2 == 0 ? 99.0 : 100.0);
+    ASSERT_FALSE(Do(slower).has_refusal());
+  }
+  Pass(1s);
+  const int step = host_->StatusAt(now_).run().place().step();
+  ASSERT_GT(step, 5);
+  Again();
+  EXPECT_TRUE(cut_off_base_->incomplete());
+  EXPECT_EQ(host_->StatusAt(now_).cut_off_at().step(), step);
+  const v1::PreviewStartResponse preview = Preview(0).preview();
+  EXPECT_NE(preview.preview_token(), "");
+}
+
 // LIVE-5.10, LIVE-2.05: what is refused moves nothing, and the machine waits on.
 TEST_F(ContinueJobTest, WhatIsRefusedLeavesTheDecisionOpen) {
   CutOff(45s);

@@ -100,6 +100,26 @@ TEST_F(HandboxOverTheLine, ASessionIsOfWhoHasControl) {
   EXPECT_EQ(session_, "machines/optimo-1/handboxSessions/2");
 }
 
+// LIVE-4.03: a mask that was open when control is taken over is nobody's; one stays open while
+// nobody takes anything from anybody.
+TEST_F(HandboxOverTheLine, AMaskEndsWhereControlIsTakenOver) {
+  MakeAndTake();
+  Open();
+  Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT MOV");
+  const std::string mask = Press("DEL 3").panel().display();
+  EXPECT_THAT(mask, HasSubstr("SPEED"));
+  v1::HostOrder take;
+  take.mutable_acquire_control()->set_client("another");
+  EXPECT_EQ(Do(take).refusal().code(), "CELL-E9408");
+  EXPECT_EQ(host_->Handbox()->display(), mask);
+  take.mutable_acquire_control()->set_take_over(true);
+  take.mutable_acquire_control()->set_reason("the next shift");
+  token_ = Do(take).control().control_token();
+  EXPECT_THAT(host_->Handbox()->display(), testing::Not(HasSubstr("SPEED")));
+  Open();
+  EXPECT_THAT(Press("ENT").panel().display(), testing::Not(HasSubstr("SPEED")));
+}
+
 // LIVE-7.07, OPT-4.19: START in CYCLE begins the program that is selected, without a job.
 TEST_F(HandboxOverTheLine, StartBeginsTheSelectedProgram) {
   MakeAndTake();

@@ -72,7 +72,8 @@ TEST_F(PanelKeysTest, AKeyMovesWhileItIsHeld) {
   EXPECT_NEAR(Axis("X") - there, 0.01, 1e-6);
 }
 
-// LIVE-7.05: 150 ms after the last beat it brakes, and the key moves again when it is pressed anew.
+// LIVE-7.05, LIVE-7.06: 150 ms after the last beat it brakes, and the key moves again when it has
+// been released: a keyboard that repeats its presses would move the machine on and on.
 TEST_F(PanelKeysTest, WhoIsSilentMovesNothing) {
   MakeAndTake();
   Do(Key("X+", v1::KEY_ACTION_PRESS));
@@ -84,6 +85,9 @@ TEST_F(PanelKeysTest, WhoIsSilentMovesNothing) {
   // That it was let go is in the journal.
   const auto told = Told();
   EXPECT_GE(std::ranges::count(told, Input(v1::AppliedInput::kKey)), 2);
+  EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).refusal().code(), "CELL-E9434");
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_FALSE(Do(Key("X+", v1::KEY_ACTION_RELEASE)).has_refusal());
   EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).status().state(), v1::MACHINE_STATE_JOGGING);
 }
 

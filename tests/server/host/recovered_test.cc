@@ -100,6 +100,15 @@ TEST(Recovered, PowerThatFailsTakesWhatWasNotSynced) {
 TEST(Recovered, AJobThatWasAboutToBeginMayHaveMoved) {
   EXPECT_EQ(RecoveredFrom({}, {Mark(1), Intent(2, "jobs/17")}).begins, "jobs/17");
   EXPECT_EQ(RecoveredFrom({}, {Mark(1), Intent(2, "jobs/17"), Mark(3)}).begins, "");
+  // LIVE-5.20: it was cut off before its first step.
+  v1::JournalEntry begins = Intent(2, "jobs/17");
+  begins.mutable_intent()->mutable_input()->mutable_start()->set_program(45);
+  const HostMachine::Setup setup = SetupOf(RecoveredFrom({}, {Mark(1), begins}));
+  ASSERT_TRUE(setup.open_run);
+  EXPECT_EQ(setup.open_run->place().program(), 45);
+  EXPECT_EQ(setup.open_run->place().step(), 0);
+  ASSERT_TRUE(setup.cut_off_base);
+  EXPECT_EQ(setup.cut_off_base->program(), 45);
   v1::HostWelcome welcome;  // the store knows more than the journal
   welcome.mutable_mark()->set_fence(8);
   welcome.mutable_mark()->set_sequence(1);
