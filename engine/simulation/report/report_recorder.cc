@@ -296,8 +296,8 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   RunReport report;
   report.finished = state.phase == machine::RunPhase::kFinished;
   if (report.finished) report.outcome = run.outcome();
-  report.cycle_time = time_.reached();
-  report.steps_executed = run.steps_executed();
+  report.cycle_time = time_.counted();
+  report.steps_executed = run.steps_executed() - steps_before_;
   report.halts = halts_;
   report.final_position = last_;
   report.final_position.tip = state.tip;

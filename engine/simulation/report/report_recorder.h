@@ -37,6 +37,12 @@ class ReportRecorder final : public machine::RunObserver {
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
   void OnCounted(SimTime at, const Diagnostic& diagnostic) override;
 
+  // Once, first: of a run that begins at a step its time and its steps up to there are nobody's.
+  void Begin(SimTime at, std::uint64_t steps) {
+    time_.BeginAt(at);
+    steps_before_ = steps;
+  }
+
   // Once, when the run is over: what nothing was told about since is standstill.
   void Finish(SimTime at);
 
@@ -72,6 +78,7 @@ class ReportRecorder final : public machine::RunObserver {
   machine::Place place_;
   bool halted_ = false;
   std::uint64_t halts_ = 0;
+  std::uint64_t steps_before_ = 0;
 
   bool beam_on_ = false;
   bool stands_since_beam_on_ = false;  // no motion yet: a dwell is a pierce

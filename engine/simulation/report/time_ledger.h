@@ -27,6 +27,9 @@ class TimeLedger {
   // than kGapsMax are open.
   explicit TimeLedger(TakeGap count) : count_(std::move(count)) {}
 
+  // What lies before is not counted. Once, first.
+  void BeginAt(SimTime time) { begun_ = reached_ = time; }
+
   // Time goes on to `until` without a word; `now` describes what goes on.
   void Leave(SimTime until, const Gap& now);
 
@@ -36,6 +39,7 @@ class TimeLedger {
   void Close();
 
   SimTime reached() const { return reached_; }
+  SimTime counted() const { return reached_ - begun_; }
 
  private:
   // Waits behind one motion follow each other without gaps, nearly.
@@ -43,6 +47,7 @@ class TimeLedger {
   void Open(const Gap& gap);
 
   TakeGap count_;
+  SimTime begun_{0};
   SimTime reached_{0};  // everything before is counted, or in a gap
   std::array<Gap, kGapsMax> gaps_{};
   std::size_t open_ = 0;

@@ -112,6 +112,7 @@ void Recorder::OnAssumed(const machine::Assumed& assumed) {
 
 void Recorder::Begin(const machine::Run& run) {
   const machine::RunState state = run.state();
+  state_->report.Begin(state.time, run.steps_executed());
   if (state_->samples) state_->samples->StandsAt(state.tip, state.axes);
   if (state_->milling && state.work_origin) state_->milling->BeginAt(*state.work_origin);
 }

@@ -26,6 +26,17 @@ TEST_F(TimeLedgerTest, WhatFollowsEachOtherIsClaimedWhole) {
   EXPECT_EQ(ledger.reached(), SimTime(15));
 }
 
+// LIVE-6.09: of a run that begins at a step what lies before is nobody's.
+TEST_F(TimeLedgerTest, WhatLiesBeforeTheBeginIsNotCounted) {
+  ledger.BeginAt(SimTime(100));
+  EXPECT_EQ(ledger.Claim(SimTime(103), SimTime(110), At(1)), SimTime(7));
+  ledger.Close();
+  ASSERT_EQ(counted.size(), 1u);
+  EXPECT_EQ(counted[0].start, SimTime(100));
+  EXPECT_EQ(counted[0].length(), SimTime(3));
+  EXPECT_EQ(ledger.counted(), SimTime(10));
+}
+
 TEST_F(TimeLedgerTest, TimeThatNobodyClaimsIsCountedAtTheEnd) {
   ledger.Leave(SimTime(4), At(1));
   ledger.Leave(SimTime(6), At(2));
