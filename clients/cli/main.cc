@@ -377,8 +377,15 @@ void AddRunOptions(CLI::App& verb, SubmitRequest& submit) {
                 "with --kind run: the program zeroes the axes itself");
   verb.add_option("--ticket", submit.ticket,
                   "with --kind run: the simulation that proves the program, such as 17");
-  verb.add_option("--step", submit.step,
-                  "with --kind run: begin at PROGRAM/STEP, such as 45/10, behind a safe way there");
+  CLI::Option* step = verb.add_option(
+      "--step", submit.step,
+      "with --kind run: begin at PROGRAM/STEP, such as 45/10, behind a safe way there");
+  verb.add_option("--occurrence", submit.occurrence,
+                  "the how manieth time that control comes there")
+      ->needs(step);
+  verb.add_flag("--off-until-work-on", submit.off_until_work_on,
+                "a WORK is on there: keep the beam off until the next one")
+      ->needs(step);
   verb.add_option("--seen", submit.seen,
                   "what you have looked at for that: clamps, tool, origin-valid, table-clear")
       ->delimiter(',');

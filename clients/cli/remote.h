@@ -52,6 +52,8 @@ struct SubmitRequest {
   std::string ticket;             // of a run: the simulation that proves it, "17"; empty: none
   std::string step;               // of a run: where it begins, "45/10"; empty: at its beginning
   std::vector<std::string> seen;  // likewise: what somebody has looked at
+  std::int64_t occurrence = 0;    // likewise: the how manieth time; 0: the first
+  bool off_until_work_on = false;
   std::string title;
   std::vector<std::string> labels;
   std::string request_id;

@@ -178,6 +178,8 @@ Status SetStart(const SubmitRequest& wanted, v1::Job& job) {
       return InvalidArgument("'" + wanted.step +
                              "' is no step: PROGRAM/STEP, such as 45/10, or a step");
     *job.mutable_run()->mutable_step() = *step;
+    job.mutable_run()->set_occurrence(wanted.occurrence);
+    job.mutable_run()->set_off_until_work_on(wanted.off_until_work_on);
   }
   for (const std::string& seen : wanted.seen) {
     const auto confirmation = ConfirmationOf(seen);

@@ -84,7 +84,7 @@ _rmlcell_options() {
     put) echo "$remote --etag --check-only --force" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --unzeroed --ticket --step --seen --title --label --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
+      echo "$remote --slot --kind --unzeroed --ticket --step --occurrence --off-until-work-on --seen --title --label --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
     machine) echo "$remote" ;;
     "machine status" | "machine watch" | "machine enable" | "machine disable" | "machine hold" | "machine stop" | \
       "machine emergency-stop" | "machine abort" | "machine read") echo "--help" ;;
@@ -120,7 +120,7 @@ _rmlcell_takes_value() {
       --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --label | --request-id | --pace | --after | --after-job | --before | --not-before | --priority | --filter | --order | --limit | --move | --turn | --shift | \
       --tolerance | --by | --from | --to | --columns | --rows | --within | --gap | --depth | --step | --passes | --overlap | \
-      --dpi | --at | --take-over | --for | --ticket | --job | --reason | --computer | --occurrence | --seen | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
+      --dpi | --at | --take-over | --for | --ticket | --job | --reason | --computer | --occurrence | --undo | --seen | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
   esac
   return 1
 }

@@ -48,6 +48,8 @@ void JobBook::Again(std::string_view name, const std::string& caller, const std:
   if (continues) {  // where, a preview has said
     job.mutable_run()->clear_step();
     job.mutable_run()->clear_confirmations();
+    job.mutable_run()->clear_occurrence();
+    job.mutable_run()->clear_off_until_work_on();
   }
   v1::ProgramText& program = *job.mutable_inline_program();
   program.set_content(*std::move(bytes));

@@ -104,7 +104,10 @@ Status CheckStep(const v1::RunOptions& run) {
   constexpr int kConfirmationsMax = 16;
   if (run.confirmations_size() > 0 && !run.has_step())
     return InvalidArgument("job.run.confirmations: they are asked for by a start at a step alone");
+  if (!run.has_step() && (run.occurrence() != 0 || run.off_until_work_on()))
+    return InvalidArgument("job.run.step: say where it begins");
   if (!run.has_step()) return {};
+  if (run.occurrence() < 0) return InvalidArgument("job.run.occurrence counts from 1");
   if (run.step().step() < 1) return InvalidArgument("job.run.step.step: steps count from 1");
   if (run.step().program() < 0 || run.step().program() > 99)
     return InvalidArgument("job.run.step.program: 1 to 99, or 0 for the program itself");

@@ -371,6 +371,8 @@ void RunQueue::LookAtStep(const std::string& machine, const storage::LeasedJob& 
   asked.set_machine(MachineName(machine));
   asked.set_program(program->slot());
   *asked.mutable_step() = run.step();
+  asked.set_occurrence(run.occurrence());
+  asked.set_off_until_work_on(run.off_until_work_on());
   *question.mutable_brought() = *std::move(program);
   if (auto milling = MillingOf(leased.job.id)) *asked.mutable_milling() = *std::move(milling);
   {

@@ -239,6 +239,14 @@ TEST_F(JobLimits, OfWhatComesLater) {
                }),
             kInvalid);
   EXPECT_EQ(at(1, 1, [](v1::RunOptions& how) { how.set_unzeroed(true); }), kInvalid);
+  // LIVE-6.01, LIVE-6.04: in which pass, and without the beam up to the next WORK.
+  const auto pass = [](v1::RunOptions& how) { how.set_occurrence(3); };
+  const auto dark = [](v1::RunOptions& how) { how.set_off_until_work_on(true); };
+  EXPECT_EQ(at(1, 1, pass), std::nullopt);
+  EXPECT_EQ(at(1, 1, dark), std::nullopt);
+  EXPECT_EQ(run(pass), kInvalid);
+  EXPECT_EQ(run(dark), kInvalid);
+  EXPECT_EQ(at(1, 1, [](v1::RunOptions& how) { how.set_occurrence(-1); }), kInvalid);
   EXPECT_EQ(Asked([](v1::Job& job) { job.set_continues("jobs/1"); }), kLater);
 }
 
