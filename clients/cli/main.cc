@@ -565,6 +565,7 @@ int main(int argc, char** argv) {
   AddTextToolVerbs(app, exit_code);
   AddRml1Verbs(app, exit_code);
   AddProgramVerbs(app, remote, given, exit_code);
+  AddSpecialVerb(app, remote, exit_code);
   AddProjectVerbs(app, remote, given, exit_code);
   AddMachineVerbs(app, remote, exit_code);
   AddHandboxVerb(app, remote, exit_code);

@@ -82,6 +82,7 @@ _rmlcell_options() {
     machines | programs | delete | stale | projects | job | cancel | hold | resume) echo "$remote" ;;
     move) echo "$remote --before --priority" ;;
     put) echo "$remote --etag --check-only --force" ;;
+    special) echo "$remote --replace" ;;
     get) echo "$remote --form --output" ;;
     submit)
       echo "$remote --slot --kind --unzeroed --ticket --step --occurrence --off-until-work-on --seen --title --label --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --priority --hold --not-before --after-job --watch --strict" ;;
@@ -197,6 +198,7 @@ _rmlcell_positional() {
         1) [[ -n $cur ]] || _rmlcell_slots "${given[0]}" ;;
         2) _rmlcell_programs_files ;;
       esac ;;
+    special) if [[ $count -eq 0 ]]; then _rmlcell_machines; else _rmlcell_offer 1 2 4 90; fi ;;
     get | delete)
       case $count in
         0) _rmlcell_machines ;;
@@ -302,7 +304,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff rml1 lsp machines machine handbox programs put get delete stale projects submit watch jobs job cancel hold resume move report picture artifact replay
+      diff rml1 lsp machines machine handbox programs put get delete stale special projects submit watch jobs job cancel hold resume move report picture artifact replay
   else
     _rmlcell_positional
   fi

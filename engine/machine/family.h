@@ -137,6 +137,15 @@ struct TransferPlan {
   UntoldFindings diagnostics_dropped{};
 };
 
+// A program of the product's own that programs of the family count on, and that its machines do not
+// have when they are new: stored when somebody asks for it.
+struct SpecialProgram {
+  int slot = 0;
+  std::string_view name{};       // "Z-UP"
+  std::string_view file_name{};  // "2.S"
+  std::string_view source{};
+};
+
 // A figure that runs of a family may give (Run::figures): its name never changes meaning.
 struct FigureInfo {
   std::string_view name{};  // "programmed.cut_length"
@@ -233,8 +242,13 @@ class MachineFamily {
   virtual Translation Translate(const SourceFile& file, const Parameters& parameters,
                                 const CheckOptions& options) const = 0;
 
-  // What there is to say about storing a customer's program in this slot (1..99).
-  virtual std::vector<Diagnostic> CheckSlot(int /*slot*/) const { return {}; }
+  // What there is to say about storing a program of these bytes in this slot (1..99).
+  virtual std::vector<Diagnostic> CheckSlot(int /*slot*/, std::string_view /*program*/) const {
+    return {};
+  }
+
+  // By slot; a family may have none.
+  virtual std::span<const SpecialProgram> special_programs() const { return {}; }
 
   // What is wrong with a process definition by itself, whatever the programs say (OPT-3.01
   // to 3.08).

@@ -200,7 +200,7 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
       {.name = BaseName(put.file_name), .bytes = put.bytes, .is_object = is_object}, *parameters,
       {.forced = put.force});
   if (!translation.ok) return FirstError(translation);
-  for (Diagnostic& found : family.CheckSlot(place->slot)) {
+  for (Diagnostic& found : family.CheckSlot(place->slot, put.bytes)) {
     found.file = BaseName(put.file_name);
     translation.diagnostics.push_back(std::move(found));
   }

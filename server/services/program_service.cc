@@ -6,6 +6,7 @@
 #include "server/programs/memory_tools.h"
 #include "server/programs/program_book.h"
 #include "server/programs/program_views.h"
+#include "server/programs/special_programs.h"
 #include "server/programs/text_tools.h"
 #include "server/services/open_stream.h"
 #include "server/services/program_streams.h"
@@ -37,6 +38,19 @@ grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext
                                        .caller = caller.identity});
                   if (!stored) return ToGrpcStatus(stored.error);
                   *response = *stored.value;
+                  return grpc::Status::OK;
+                });
+}
+
+grpc::ServerUnaryReactor* ProgramService::StoreSpecialPrograms(
+    grpc::CallbackServerContext* context, const v1::StoreSpecialProgramsRequest* request,
+    v1::StoreSpecialProgramsResponse* response) {
+  return Answer(needs_.Computing(), context, *request, "ProgramService/StoreSpecialPrograms",
+                [this, request, response](const Caller& caller) {
+                  Result<v1::StoreSpecialProgramsResponse> stored =
+                      server::StoreSpecialPrograms(store_, *request, caller.identity);
+                  if (!stored) return ToGrpcStatus(stored.error());
+                  *response = *std::move(stored);
                   return grpc::Status::OK;
                 });
 }

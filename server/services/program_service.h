@@ -31,6 +31,9 @@ class ProgramService final : public v1::ProgramService::CallbackService {
   grpc::ServerUnaryReactor* PutProgram(grpc::CallbackServerContext* context,
                                        const v1::PutProgramRequest* request,
                                        v1::Program* response) override;
+  grpc::ServerUnaryReactor* StoreSpecialPrograms(
+      grpc::CallbackServerContext* context, const v1::StoreSpecialProgramsRequest* request,
+      v1::StoreSpecialProgramsResponse* response) override;
   grpc::ServerReadReactor<v1::UploadProgramRequest>* UploadProgram(
       grpc::CallbackServerContext* context, v1::Program* response) override;
   grpc::ServerReadReactor<v1::UploadContentRequest>* UploadContent(

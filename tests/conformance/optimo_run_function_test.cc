@@ -21,7 +21,7 @@ using ::testing::ElementsAre;
 constexpr double kRadPerDegree = M_PI / 180.0;
 
 void StoreHousePrograms(OptimoMachine& machine) {
-  for (const HouseProgram& program : HousePrograms())
+  for (const machine::SpecialProgram& program : HousePrograms())
     machine.Store(program.slot, std::string(program.source));
 }
 
@@ -250,6 +250,48 @@ TEST(OptimoRunSamples, SensorCalibration) {
   EXPECT_NEAR((tip - motion::MachinePoint(1000.0, 1000.0, -400.0)).norm(), 0.0, 1e-4);
 }
 
+// OPT-10.12, OPT-B.82: ours calls whatever 2 is, assigns what the listed one does in as many steps,
+// and leaves no offset.
+TEST(OptimoRunSamples, OurSensorCalibration) {
+  const std::string source(HousePrograms().front().source);
+  const Compilation compiled = Compile(source, "1.S", {});
+  ASSERT_TRUE(compiled.ok);
+  EXPECT_EQ(compiled.module.instructions.size(), 10U);
+  EXPECT_EQ(compiled.module.instructions.front().op, Op::kCall);
+  EXPECT_EQ(compiled.module.instructions.front().numbers[0], 2);
+  OptimoMachine machine;
+  machine.Store(2, "SYSDEF (10.,20.,30.,0.,0.,0.)\nVI[3]=VI[3]+1\n");
+  const Ran ran = machine.Run(source + "MOVE (1000.,1000.,-400.,0.,0.)\n");
+  EXPECT_TRUE(ran.completed());
+  EXPECT_EQ(ran.Var("VI[3]"), "1");
+  const std::pair<int, double> values[] = {{43, -105.5}, {44, 2217.2}, {45, -962.0}, {46, 0.0},
+                                           {47, 0.0},    {48, -942.0}, {49, -600.0}};
+  for (const auto& [variable, wanted] : values)
+    EXPECT_NEAR(ran.Number("VR[" + std::to_string(variable) + "]"), wanted, 1e-4) << variable;
+  const motion::MachinePoint tip = ran.run().state().tip.tip;
+  EXPECT_NEAR((tip - motion::MachinePoint(1000.0, 1000.0, -400.0)).norm(), 0.0, 1e-4);
+}
+
+// OPT-10.12, OPT-10.13: behind it the head is up, and the tip comes to the same place with another
+// focus height: 3 mm of it are 3 mm of the column. All of it within the travel of a new machine.
+TEST(OptimoRunSamples, OurSensorCalibrationCorrectsTheFocusHeight) {
+  const std::string source(HousePrograms().front().source);
+  for (const auto& [tool, column_z] :
+       {std::pair{"TCP (0,0,0/0,0,-5)\n", -662.0}, {"TCP (0,0,3/0,0,-5)\n", -665.0}}) {
+    OptimoMachine machine;
+    StoreHousePrograms(machine);
+    machine.Store(90, tool);
+    const Ran ran = machine.Run("MOVE (1000.,1000.,-600.,0.8,0.5)\n" + source +
+                                "MOVE (XBLOCK,YBLOCK,ZBLOCK,ABLOCK,BBLOCK)\n");
+    EXPECT_TRUE(ran.completed());
+    ASSERT_EQ(ran.moves.size(), 4U);
+    EXPECT_NEAR(ran.moves[2].axes.column.z(), -50.0, 1e-6);
+    EXPECT_NEAR(ran.moves[3].axes.column.x(), -105.5, 1e-3);
+    EXPECT_NEAR(ran.moves[3].axes.column.y(), 2217.2, 1e-3);
+    EXPECT_NEAR(ran.moves[3].axes.column.z(), column_z, 1e-3);
+  }
+}
+
 // OPT-10.11, OPT-8.11: moves under compensation are written with five decimals, all their numbers.
 TEST(OptimoRunSamples, SampleThreeGoesOnInFiveDecimals) {
   const std::string source = CorpusProgram("sample3.S");
@@ -311,13 +353,25 @@ TEST(OptimoRunSamples, HomeReturn) {
 
 // OPT-B.82: the programs of the house need no comment by the checker.
 TEST(OptimoRunSamples, HouseProgramsAreClean) {
-  ASSERT_EQ(HousePrograms().size(), 3U);
-  for (const HouseProgram& program : HousePrograms()) {
+  ASSERT_EQ(HousePrograms().size(), 4U);
+  for (const machine::SpecialProgram& program : HousePrograms()) {
     const Compilation compiled = Compile(program.source, program.name, {});
     EXPECT_TRUE(compiled.ok);
     for (const Diagnostic& d : compiled.diagnostics)
       ADD_FAILURE() << FormatDiagnostic(d, program.source);
   }
+}
+
+// OPT-10.17: 1 to 7 are reserved for programs like these, which nobody is warned of; any other text
+// there is a customer's.
+TEST(OptimoRunSamples, OurNumbersAreReservedForOthers) {
+  const machine::MachineFamily& family = OptimoFamily();
+  for (const machine::SpecialProgram& program : family.special_programs()) {
+    EXPECT_TRUE(family.CheckSlot(program.slot, program.source).empty()) << program.slot;
+    const std::string changed = std::string(program.source) + "DELAY 1\n";
+    EXPECT_EQ(family.CheckSlot(program.slot, changed).size(), program.slot <= 7 ? 1U : 0U);
+  }
+  EXPECT_EQ(family.CheckSlot(5, HousePrograms().front().source).size(), 1U);
 }
 
 // OPT-B.57: an error that climbs out of two FUNCTIONs leaves no level behind: four fit again.

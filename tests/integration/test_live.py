@@ -12,6 +12,7 @@ from live import MILL, Live, LiveTestCase, hosts_of, new_id
 from rmlcell.v1 import machine_control_pb2 as control  # noqa: E402
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
 from rmlcell.v1.machine_status_pb2 import HoldReason  # noqa: E402
+from rmlcell.v1.report_pb2 import Outcome  # noqa: E402
 
 
 class LiveTest(LiveTestCase):
@@ -296,6 +297,34 @@ class LiveTest(LiveTestCase):
         at_home = live.wait("IDLE")
         self.assertTrue(at_home.zeroed)
         self.assertEqual([round(axis.value, 3) for axis in at_home.axes][:2], [100.0, 200.0])
+
+    # OPT-B.82, OPT-4.50, OPT-10.13, OPT-10.15: a new machine has neither program 2 nor 4; the product has them.
+    def test_a_new_optimo_is_given_the_special_programs(self):
+        self.live = live = Live(self, self.cell, "machines/optimo-1")
+        live.enable()
+        live.acquire(ttl={"seconds": 60})
+        live.store(12, "SYSDEF (10.,20.,30.,0.,0.,0.)\nCOORD ABSOL\nMOVE (1000.,900.,-600.,0.8,0.5)\nCALL 2\n"
+                       "COORD ABSOL\nMOVE (1000.,900.,-600.,0.,0.)\nCALL 2\n", "12.S")
+        self.refused("OPT-E7102", "StartMachine", program=12)
+        programs = self.cell.programs()
+        stored = programs.StoreSpecialPrograms(program_pb2.StoreSpecialProgramsRequest(parent=live.machine)).programs
+        self.assertEqual([one.name.split("/")[-1] for one in stored], ["1", "2", "4", "90"])
+        for one in stored:
+            text = programs.GetProgramContent(program_pb2.GetProgramContentRequest(name=one.name)).content
+            found = programs.CheckProgram(program_pb2.CheckProgramRequest(
+                machine=live.machine, program={"file_name": one.file_name, "content": text})).findings
+            self.assertEqual((found.ok, list(found.diagnostics)), (True, []), one.title)
+        live.ask("SetFactor", factor=100.0)
+        live.ask("SetInputs", inputs=[{"power": False}])
+        live.ask("SetInputs", inputs=[{"power": True}])
+        self.assertEqual(MachineState.Name(live.ask("ZeroMachine").state), "MACHINE_STATE_JOGGING")
+        home = [round(axis.value, 3) for axis in live.wait("IDLE").axes]
+        self.assertEqual(home, [21.02, 2201.2, -50.0, 0.0, 0.0])
+        live.ask("StartMachine", program=12)
+        up = eventually(lambda: (lambda now: now if now.last_run.program == 12 else None)(live.status()))
+        self.assertEqual(Outcome.Name(up.last_run.outcome), "OUTCOME_COMPLETED")
+        # Not 10 mm beside it: the first CALL 2 left no offset.
+        self.assertEqual([round(axis.value, 3) for axis in up.axes], [1000.0, 900.0, -50.0, 0.0, 0.0])
 
 
 if __name__ == "__main__":

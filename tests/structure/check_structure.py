@@ -153,7 +153,7 @@ PUBLIC = {
     "server/machines": ["host_entries.h", "host_processes.h", "hosts.h", "machine_statuses.h", "recordings.h",
                         "teach_book.h"],
     "server/programs": ["content_upload.h", "language_tools.h", "memory_tools.h", "program_book.h", "program_result.h", "program_views.h",
-                        "text_tools.h"],
+                        "special_programs.h", "text_tools.h"],
     "server/projects": ["project_archive.h", "project_book.h", "project_transfer.h"],
     "server/services": ["account_service.h", "cell_service.h", "foreign_calls.h", "handbox_service.h", "host_service.h",
                         "job_service.h", "machine_service.h", "program_service.h",

@@ -15,6 +15,7 @@
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/language/staleness.h"
+#include "engine/optimo/offline/house_programs.h"
 #include "engine/optimo/offline/project.h"
 #include "engine/optimo/offline/translate.h"
 
@@ -150,7 +151,12 @@ class Family final : public machine::MachineFamily {
   const machine::Editing* editing() const override { return &OptimoEditing(); }
   std::vector<machine::LanguageWord> words() const override { return OptimoWords(); }
 
-  std::vector<Diagnostic> CheckSlot(int slot) const override { return CheckProgramNumber(slot); }
+  std::vector<Diagnostic> CheckSlot(int slot, std::string_view program) const override {
+    return CheckProgramNumber(slot, program);
+  }
+  std::span<const machine::SpecialProgram> special_programs() const override {
+    return HousePrograms();
+  }
 
   std::vector<Diagnostic> CheckProcess(
       const machine::ProcessDefinition& definition) const override {

@@ -220,7 +220,7 @@ class HoverText {
     const auto neighbour = FindNeighbour(around_, number);
     if (!neighbour) {
       text += "\n\nThere is no file " + std::to_string(number) + ".S in this folder.";
-      for (const HouseProgram& house : HousePrograms()) {
+      for (const machine::SpecialProgram& house : HousePrograms()) {
         if (house.slot == number) text += " On the control it is " + std::string(house.name) + ".";
       }
       return text;

@@ -167,7 +167,7 @@ void Planner::AddDraft(const machine::ProjectProgram& program) {
   } else {
     draft.text = std::string(program.file.bytes);
   }
-  for (const Diagnostic& found : CheckProgramNumber(program.slot))
+  for (const Diagnostic& found : CheckProgramNumber(program.slot, program.file.bytes))
     Report(found.code, found.detail, found.rule, &draft);
   Survey(draft);
 }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/core/letters.h"
+#include "engine/optimo/offline/house_programs.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -68,8 +69,8 @@ FileForm FormOfFile(std::string_view name, std::string_view bytes) {
                                                                  : FileForm::kMetricSource;
 }
 
-std::vector<Diagnostic> CheckProgramNumber(int slot) {
-  if (slot < 1 || slot > kAmadaProgramMax) return {};
+std::vector<Diagnostic> CheckProgramNumber(int slot, std::string_view text) {
+  if (slot < 1 || slot > kAmadaProgramMax || IsHouseProgram(slot, text)) return {};
   Diagnostic reserved{.code = ErrorCode::kReservedVariable,
                       .severity = Lookup(ErrorCode::kReservedVariable).severity,
                       .detail = "programs 1 to 7 are reserved for Amada",

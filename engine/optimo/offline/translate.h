@@ -20,7 +20,8 @@ machine::Translation TranslateOptimo(
     std::uint32_t object_limit = kObjectLimitStandard,
     const ContourMachine& contour_machine = ContourMachine::Standard());
 
-// 7413 for the program numbers that are reserved for Amada (OPT-10.17).
-std::vector<Diagnostic> CheckProgramNumber(int slot);
+// 7413 for the program numbers that are reserved for Amada (OPT-10.17), unless the text is the
+// product's own program of this number.
+std::vector<Diagnostic> CheckProgramNumber(int slot, std::string_view text);
 
 }  // namespace rmlcell::optimo

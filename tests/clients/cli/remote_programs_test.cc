@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "clients/cli/remote.h"
+#include "clients/cli/verbs.h"
 #include "engine/core/result.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
@@ -41,6 +43,13 @@ struct FakePrograms final : v1::ProgramService::Service {
                           v1::Program* response) override {
     put = *request;
     *response = stored;
+    return refusal;
+  }
+  grpc::Status StoreSpecialPrograms(grpc::ServerContext*,
+                                    const v1::StoreSpecialProgramsRequest* request,
+                                    v1::StoreSpecialProgramsResponse* response) override {
+    special = *request;
+    *response->add_programs() = stored;
     return refusal;
   }
   grpc::Status UploadProgram(grpc::ServerContext*,
@@ -90,6 +99,7 @@ struct FakePrograms final : v1::ProgramService::Service {
   v1::ListProgramsResponse list;
   v1::ListStaleExecutablesResponse stale;
   v1::PutProgramRequest put;
+  v1::StoreSpecialProgramsRequest special;
   v1::UploadProgramRequest::Header header;
   std::vector<std::string> chunks;
   v1::DownloadProgramRequest download;
@@ -304,6 +314,36 @@ TEST_F(RemoteVerbs, AProgramComesInTheFormThatIsAskedFor) {
   const Told told = get("", folder.File("none/a.S"));
   EXPECT_EQ(told.exit_code, 2);
   EXPECT_THAT(told.errors, HasSubstr("CELL-E9023"));
+}
+
+TEST_F(RemoteVerbs, SpecialProgramsAreStored) {
+  programs.stored.set_name("machines/m/programs/2");
+  programs.stored.set_title("Z-UP");
+  const auto special = [&](const std::string& words, bool json = false) {
+    Remote remote = server.remote(json);
+    int exit_code = -1;
+    CLI::App app;
+    AddSpecialVerb(app, remote, exit_code);
+    return Hear([&] {
+      app.parse("special " + words);
+      return exit_code;
+    });
+  };
+  Told told = special("m");
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_EQ(told.output, "machines/m/programs/2 stored: Z-UP\n");
+  EXPECT_EQ(programs.special.parent(), "machines/m");
+  EXPECT_EQ(programs.special.slots_size(), 0);
+  EXPECT_FALSE(programs.special.replace());
+  told = special("machines/m 2 90 --replace", true);
+  EXPECT_THAT(told.output, AllOf(StartsWith("{"), HasSubstr("\"Z-UP\"")));
+  EXPECT_EQ(programs.special.parent(), "machines/m");
+  EXPECT_THAT(programs.special.slots(), ElementsAre(2, 90));
+  EXPECT_TRUE(programs.special.replace());
+  programs.refusal = {grpc::StatusCode::ALREADY_EXISTS, "2 is there"};
+  told = special("m");
+  EXPECT_NE(told.exit_code, 0);
+  EXPECT_THAT(told.errors, HasSubstr("2 is there"));
 }
 
 TEST_F(RemoteVerbs, StaleExecutablesHaveTheirReasons) {
