@@ -66,7 +66,7 @@ Result<storage::ProgramWrite> WriteOf(const machine::SpecialProgram& program,
                                       const machine::MachineFamily& family,
                                       const machine::Parameters& parameters, bool replace) {
   machine::Translation made = family.Translate(
-      {.name = program.file_name, .bytes = program.source, .is_object = false}, parameters, {});
+      {.name = std::string(program.file_name), .bytes = program.source}, parameters, {});
   if (!made.ok) {
     const auto wrong = std::ranges::find_if(made.diagnostics, [](const Diagnostic& diagnostic) {
       return IsError(diagnostic.severity);
