@@ -20,7 +20,7 @@ struct SpecialWords {
 int StoreSpecial(const Remote& remote, const SpecialWords& words) {
   const auto stub = v1::ProgramService::NewStub(Connect(remote));
   grpc::ClientContext context;
-  Prepare(context);
+  cli::Prepare(context);
   v1::StoreSpecialProgramsRequest request;
   request.set_parent(FullName("machines", words.machine));
   request.mutable_slots()->Add(words.slots.begin(), words.slots.end());

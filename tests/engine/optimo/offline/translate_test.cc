@@ -126,16 +126,16 @@ TEST(Translate, AnEmptyFileIsNoProgram) {
 // OPT-10.17, OPT-E.7413
 TEST(Translate, NumbersUpToSevenAreReserved) {
   for (const int slot : {1, 5, 7}) {
-    const std::vector<Diagnostic> found = CheckProgramNumber(slot);
+    const std::vector<Diagnostic> found = CheckProgramNumber(slot, "DELAY 1\n");
     ASSERT_EQ(found.size(), 1U) << slot;
     EXPECT_EQ(Lookup(found[0].code).number, 7413);
     EXPECT_EQ(found[0].severity, Severity::kWarning);
     EXPECT_EQ(found[0].rule, "OPT-10.17");
     EXPECT_EQ(found[0].program, slot);
   }
-  EXPECT_TRUE(CheckProgramNumber(0).empty());
-  EXPECT_TRUE(CheckProgramNumber(8).empty());
-  EXPECT_TRUE(CheckProgramNumber(99).empty());
+  EXPECT_TRUE(CheckProgramNumber(0, "").empty());
+  EXPECT_TRUE(CheckProgramNumber(8, "").empty());
+  EXPECT_TRUE(CheckProgramNumber(99, "").empty());
 }
 
 }  // namespace
