@@ -270,6 +270,14 @@ TEST(RpcCodes, OfEveryErrorThatIsNoWrongArgument) {
                                            {ErrorCode::kCellPrecondition, 9},
                                            {ErrorCode::kCellVersionMismatch, 9},
                                            {ErrorCode::kProgramInUse, 9},
+                                           // Of a START: the state of the machine, x1 and x5.
+                                           {ErrorCode::kNotZeroed, 9},
+                                           {ErrorCode::kEmergencyStop, 9},
+                                           {ErrorCode::kShutterInterlock, 9},
+                                           {ErrorCode::kTargetOutOfTravel, 9},
+                                           {ErrorCode::kGas3NotFitted, 9},
+                                           {ErrorCode::kKeyNotEnabled, 9},
+                                           {ErrorCode::kNoProgramSelected, 9},
                                            {ErrorCode::kCellResourceExhausted, 8},
                                            {ErrorCode::kCellTooLarge, 8},
                                            {ErrorCode::kCmosFull, 8},
@@ -301,6 +309,17 @@ TEST(RpcCodes, OfEveryErrorThatIsNoWrongArgument) {
     EXPECT_EQ(RpcCode(entry.code), other == others.end() ? 3 : other->second)
         << CodeText(entry.code);
   }
+}
+
+// LIVE-9.03, OPT-E7310, LIVE-2.10 x1 and x5: what the state of a machine refuses can be asked for
+// again in another one; what a program has wrong cannot.
+TEST(RpcCodes, WhatTheStateRefusesIsNoWrongArgument) {
+  for (const CatalogueEntry& entry : Catalogue()) {
+    const bool alarm = entry.severity == Severity::kAlarm;
+    if (!alarm && entry.severity != Severity::kCompile) continue;
+    EXPECT_EQ(RpcCode(entry.code), alarm ? 9 : 3) << entry.symbol;
+  }
+  EXPECT_EQ(ToRpcStatus({ErrorCode::kNotZeroed, "START", {}}).code(), 9);
 }
 
 TEST(RpcStatus, CarriesCodeTextPlaceAndFindings) {
