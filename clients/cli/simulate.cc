@@ -292,6 +292,7 @@ int Simulate(const SimulateOptions& options) {
   simulation::SimulationRequest request;
   RunProducts products(options, family.info());
   if (const Status asked = products.AskFor(request); !asked) return Refuse(asked.error());
+  request.products.each_step = options.json;  // texts have nothing of single steps
   if (!options.milling.block.stock.empty()) {
     Result<simulation::Milling> milling =
         MillingOf(options.milling, family.Shape(run.setup->parameters), prepared->memory);

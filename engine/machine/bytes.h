@@ -48,6 +48,6 @@ class Bytes {
 };
 
 // So many bytes are read between two calls of Release.
-inline constexpr std::size_t kReleaseEvery = std::size_t{1} << 20;
+inline constexpr std::size_t kReleaseEvery = std::size_t{1} << 18;
 
 }  // namespace rmlcell::machine

@@ -2,9 +2,10 @@
 // run, rounds interleaved: lines taken a second, machine time of the plan, positions given a
 // second. Started by motion_linuxcnc.sh, which provides the library. LinuxCNC 2.9 limits speed and
 // acceleration, not jerk: our machine time is told for both kinds, the comparison is with
-// trapezoids.
+// trapezoids. Behind them the walk of the goals with a limit on jerk (P1, P2), taken and given out,
+// beside tpAddLine and beside the bare loop of bare_plan.h.
 //   motion_linuxcnc_bench LIBPEER.SO
-// Prints one JSON object a line.
+// Prints one JSON object a line; ends with 1 when a goal is missed.
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -14,10 +15,16 @@
 #include <string>
 
 #include "engine/motion/ride/trajectory.h"
+#include "tests/bench/bare_plan.h"
 #include "tests/bench/motion_paths.h"
 
 namespace rmlcell::motion {
 namespace {
+
+constexpr int kRounds = 5;
+constexpr double kSampleGoal = 20.0;  // P5
+constexpr double kLineGoal = 4.0;     // P1, of tpAddLine
+constexpr double kBareGoal = 0.25;    // P1 and P2, of the bare loop
 
 double Now() {
   timespec now{};
@@ -56,12 +63,14 @@ struct Outcome {
   double machine_time_s = 0.0;
 };
 
-Outcome RunPeer(const Peer& peer, const std::vector<MoveCommand>& chain, double* sum) {
+// `tolerance_mm` 0: no limit to how far a blend may leave the path.
+Outcome RunPeer(const Peer& peer, const std::vector<MoveCommand>& chain,
+                const MachineLimits& machine, double tolerance_mm, double* sum) {
   constexpr double kCycle_s = 0.001;
   const MachinePoint& start = chain.front().path.from().point;
   const double xyz[3] = {start.x(), start.y(), start.z()};
-  const MachineLimits machine = StandardMachine();
-  if (peer.open(kCycle_s, machine.tip_speed_mm_s, machine.tip_acceleration_mm_s2, 0.0, xyz) != 0) {
+  if (peer.open(kCycle_s, machine.tip_speed_mm_s, machine.tip_acceleration_mm_s2, tolerance_mm,
+                xyz) != 0) {
     return {};
   }
   double adding = 0.0;
@@ -144,15 +153,16 @@ Outcome RunOurs(const std::vector<MoveCommand>& chain, const MachineLimits& mach
           times.elapsed_s()};
 }
 
-void Compare(const Peer& peer, const char* name, const std::vector<MoveCommand>& chain) {
-  constexpr int kRounds = 5;
+// False: positions are not given as many times as fast as the goal asks for.
+bool Compare(const Peer& peer, const char* name, const std::vector<MoveCommand>& chain) {
   MachineLimits trapezoid = StandardMachine();
   trapezoid.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
   std::vector<double> lines[3], given[3], samples[3];
   double time[3] = {};
   double sum = 0.0;
   for (int round = 0; round < kRounds; ++round) {
-    const Outcome outcomes[3] = {RunPeer(peer, chain, &sum), RunOurs(chain, trapezoid, &sum),
+    const Outcome outcomes[3] = {RunPeer(peer, chain, StandardMachine(), 0.0, &sum),
+                                 RunOurs(chain, trapezoid, &sum),
                                  RunOurs(chain, StandardMachine(), &sum)};
     for (int k = 0; k < 3; ++k) {
       lines[k].push_back(outcomes[k].lines_per_s);
@@ -171,6 +181,37 @@ void Compare(const Peer& peer, const char* name, const std::vector<MoveCommand>&
       Median(lines[1]) / Median(lines[0]), Median(given[1]) / Median(lines[0]), Median(samples[0]),
       Median(samples[1]), Median(samples[1]) / Median(samples[0]), time[0], time[1], time[2], sum);
   std::fflush(stdout);
+  return Median(samples[1]) >= kSampleGoal * Median(samples[0]);
+}
+
+// The walk: ours is all that a line costs until its motions are out. The peer has no limit on jerk,
+// and with it no head: of five axes the bare loop alone is beside ours.
+bool CompareWalk(const Peer& peer, bool head) {
+  constexpr int kLines = 40'000;
+  constexpr double kTolerance_mm = 0.01;
+  const std::vector<MoveCommand> chain = Walk(kLines, head);
+  bench::BarePlan bare(kLines, head ? 5 : 3);
+  std::vector<double> rate, of_peer, of_bare;
+  double sum = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    const double begin = Now();
+    sum += bare.Run();
+    const double bare_per_s = kLines / (Now() - begin);
+    rate.push_back(RunOurs(chain, WalkMachine(), &sum).given_per_s);
+    of_bare.push_back(rate.back() / bare_per_s);
+    if (head) continue;
+    const Outcome rival = RunPeer(peer, chain, WalkMachine(), kTolerance_mm, &sum);
+    of_peer.push_back(rate.back() / rival.lines_per_s);
+  }
+  const double to_peer = head ? kLineGoal : Median(of_peer);
+  std::printf(
+      "{\"path\": \"walk, %d axes, jerk\", \"lines\": %d, \"lines_per_s\": %.0f, "
+      "\"peer_ratio\": %.3f, \"peer_goal\": %.0f, \"bare_ratio\": %.4f, \"bare_goal\": %.2f, "
+      "\"sum\": %.6g}\n",
+      head ? 5 : 3, kLines, Median(rate), head ? 0.0 : to_peer, head ? 0.0 : kLineGoal,
+      Median(of_bare), kBareGoal, sum);
+  std::fflush(stdout);
+  return to_peer >= kLineGoal && Median(of_bare) >= kBareGoal;
 }
 
 int Main(const char* library_path) {
@@ -183,17 +224,22 @@ int Main(const char* library_path) {
     std::fprintf(stderr, "motion_linuxcnc_bench: %s\n", dlerror());
     return 1;
   }
-  Compare(peer, "contour 2.5 mm, 30 mm/s", Contour(1200, false));
-  Compare(peer, "contour 2.5 mm, 150 mm/s", Contour(3000, false, 0.3));
-  Compare(peer, "square 40 mm, 40 mm/s", Polyline(Legs(400, 40.0, 0.5 * kPi, false), 0.08));
-  Compare(peer, "polygon, 5 mm legs, 3 deg, 100 mm/s",
-          Polyline(Legs(2400, 5.0, 3.0 * kPi / 180.0, false), 0.2));
-  Compare(peer, "long legs 300 mm, 90 deg, 350 mm/s",
-          Polyline(Legs(100, 300.0, 0.5 * kPi, true), 0.7));
-  Compare(peer, "zigzag 2 mm, 90 deg, 150 mm/s", Polyline(Legs(400, 2.0, 0.5 * kPi, true), 0.3));
-  Compare(peer, "zigzag 4.3 mm, 140 deg, 125 mm/s",
-          Polyline(Legs(400, 4.3, 140.0 * kPi / 180.0, true), 0.25));
-  return 0;
+  bool reached = true;
+  reached &= Compare(peer, "contour 2.5 mm, 30 mm/s", Contour(1200, false));
+  reached &= Compare(peer, "contour 2.5 mm, 150 mm/s", Contour(3000, false, 0.3));
+  reached &=
+      Compare(peer, "square 40 mm, 40 mm/s", Polyline(Legs(400, 40.0, 0.5 * kPi, false), 0.08));
+  reached &= Compare(peer, "polygon, 5 mm legs, 3 deg, 100 mm/s",
+                     Polyline(Legs(2400, 5.0, 3.0 * kPi / 180.0, false), 0.2));
+  reached &= Compare(peer, "long legs 300 mm, 90 deg, 350 mm/s",
+                     Polyline(Legs(100, 300.0, 0.5 * kPi, true), 0.7));
+  reached &= Compare(peer, "zigzag 2 mm, 90 deg, 150 mm/s",
+                     Polyline(Legs(400, 2.0, 0.5 * kPi, true), 0.3));
+  reached &= Compare(peer, "zigzag 4.3 mm, 140 deg, 125 mm/s",
+                     Polyline(Legs(400, 4.3, 140.0 * kPi / 180.0, true), 0.25));
+  reached &= CompareWalk(peer, false);
+  reached &= CompareWalk(peer, true);
+  return reached ? 0 : 1;
 }
 
 }  // namespace

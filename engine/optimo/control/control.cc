@@ -125,7 +125,7 @@ SimTime Control::NextEvent(SimTime until) const {
   const bool last_input = s_.next_input >= setup_.inputs.size();
   SimTime next = ride_.NextEvent();
   if (!last_input) next = std::min(next, std::max(time, setup_.inputs[s_.next_input].at));
-  if (!alarms_.deferred()) next = std::min(next, watch_.NextEvent(last_input));
+  if (!watch_.idle() && !alarms_.deferred()) next = std::min(next, watch_.NextEvent(last_input));
   const Pending& pending = waits_.pending();
   switch (pending.kind) {
     case Pending::Kind::kTime:
@@ -146,7 +146,7 @@ SimTime Control::NextEvent(SimTime until) const {
       break;
   }
   if (WaitsForEver()) next = kForever;  // ticks would show nothing new
-  if (!alarms_.deferred()) next = std::min(next, works_.NextEvent());
+  if (!works_.idle() && !alarms_.deferred()) next = std::min(next, works_.NextEvent());
   if (waits_.input_changed() && pending.kind == Pending::Kind::kCondition) next = time;
   const SimTime budget = setup_.budget.virtual_time;
   return std::max(budget, time + SimTime(1)) <= until ? std::min(next, budget) : next;
@@ -162,14 +162,14 @@ void Control::ActOnTime() {
   ride_.Start();
   if (ride_.protocol().comes_to_rest() && !ride_.busy()) return halts_.HaltOnPath();
   if (halts_.StopNow()) return;
-  if (!alarms_.deferred()) {
+  if (!watch_.idle() && !alarms_.deferred()) {
     const bool rides = watch_.watches();
     if (const Status looked = watch_.Look(); !looked) {
       Raise(looked.error());
       if (rides) ride_.EndHere();
     }
   }
-  if (now().running() && !alarms_.deferred()) {
+  if (!works_.idle() && now().running() && !alarms_.deferred()) {
     if (const std::optional<Works::Failure> failure = works_.Run()) {
       const machine::Place in_execution = std::exchange(now().place, failure->place);
       Raise(failure->error);

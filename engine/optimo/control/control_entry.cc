@@ -199,22 +199,22 @@ Status Control::Append(const ApproachLeg& leg) {
   const motion::PathPiece path = PathOf(leg, ride_.head(), ride_.planned_axes());
   const bool straight = leg.path == PathType::kLin;
   const double speed = leg.speed_percent / 100.0 * ride_.override_percent() / 100.0;
-  const motion::MoveCommand command{.kind = straight ? motion::MoveCommand::Kind::kContour
-                                                     : motion::MoveCommand::Kind::kPointToPointAxes,
-                                    .path = path,
-                                    .head = ride_.head(),
-                                    .speed_fraction = std::min(speed, 1.0)};
-  return ride_.Append(
-      command,
-      {.place = now().place,
-       .program_point = motion::ProgramPoint::AsMachine(straight ? ride_.head().TipOf(leg.to).tip
-                                                                 : leg.to.column),
-       .program_a = leg.to.a_rad,
-       .feed_mm_s = straight ? command.speed_fraction * parameters_.limits.tip_speed_mm_s : 0.0,
-       .path = leg.path,
-       .approach = true,
-       .kind = command.kind,
-       .speed_percent = leg.speed_percent});
+  motion::MoveCommand command{.kind = straight ? motion::MoveCommand::Kind::kContour
+                                               : motion::MoveCommand::Kind::kPointToPointAxes,
+                              .path = path,
+                              .head = ride_.head(),
+                              .speed_fraction = std::min(speed, 1.0)};
+  const MoveNote note{
+      .place = now().place,
+      .program_point = motion::ProgramPoint::AsMachine(straight ? ride_.head().TipOf(leg.to).tip
+                                                                : leg.to.column),
+      .program_a = leg.to.a_rad,
+      .feed_mm_s = straight ? command.speed_fraction * parameters_.limits.tip_speed_mm_s : 0.0,
+      .path = leg.path,
+      .approach = true,
+      .kind = command.kind,
+      .speed_percent = leg.speed_percent};
+  return ride_.Append(std::move(command), note);
 }
 
 // What the program had switched on or off is so from here, and what is left of its times begins.

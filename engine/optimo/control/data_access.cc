@@ -70,10 +70,7 @@ bool DataAccess::IsOfTheRun(Variable variable) const {
 
 float DataAccess::Read(Variable variable) {
   // What programs compute with comes first.
-  if (variable.group == VariableGroup::kVr && s_.written[NumberOf(variable)])
-    return s_.area.vr[variable.index];
-  if (variable.group == VariableGroup::kPar && counter_.in_function())
-    return counter_.frame().parameters[variable.index % kParameterCount];
+  if (const float* known = Known(variable)) return *known;
   const bool of_the_run = IsOfTheRun(variable);
   const float value = ValueOf(variable);
   if (!of_the_run) TellAssumed(variable, value);
@@ -203,7 +200,47 @@ void DataAccess::CountExecution(bool selected_anew) {
 
 Result<Value> DataAccess::Eval(Expression expression) { return Evaluate(expression, *this); }
 
+// The variable, if the run has given it its value and reading it tells nothing.
+const float* DataAccess::Known(Variable variable) const {
+  if (variable.group == VariableGroup::kVr && s_.written[NumberOf(variable)])
+    return &s_.area.vr[variable.index];
+  if (variable.group == VariableGroup::kPar && counter_.in_function())
+    return &counter_.frame().parameters[variable.index % kParameterCount];
+  return nullptr;
+}
+
+// Sums and products of what is known, as Operate gives them: most of what coordinates are made of.
+// Nothing: it is not as usual, and Evaluate looks at it anew.
+std::optional<float> DataAccess::SumOfKnown(Expression expression) const {
+  constexpr std::size_t kRoom = 8;
+  float stack[kRoom];
+  std::size_t top = 0;
+  for (const ExprNode& node : expression) {
+    if (Arity(node.op) == 0) {
+      const float* number = node.op == Node::kVariable ? Known(node.variable()) : &node.number;
+      if (number == nullptr || top == kRoom) return std::nullopt;
+      stack[top++] = *number;
+      continue;
+    }
+    if (top < 2) return std::nullopt;
+    const float right = stack[--top];
+    float& result = stack[top - 1];
+    if (node.op == Node::kAdd) {
+      result += right;
+    } else if (node.op == Node::kSubtract) {
+      result -= right;
+    } else if (node.op == Node::kMultiply) {
+      result *= right;
+    } else {
+      return std::nullopt;
+    }
+    if (!BecomesReal(result)) return std::nullopt;
+  }
+  return stack[0];
+}
+
 Result<double> DataAccess::Real(Expression expression) {
+  if (const std::optional<float> sum = SumOfKnown(expression)) return static_cast<double>(*sum);
   const Result<Value> value = Evaluate(expression, *this);
   if (!value) return value.error();
   return static_cast<double>(value->number);

@@ -100,6 +100,8 @@ class DataAccess : private VariableAccess {
     return expression.size() == 1 && expression.front().op != Node::kVariable;
   }
   float Read(Variable variable) override;
+  const float* Known(Variable variable) const;
+  std::optional<float> SumOfKnown(Expression expression) const;
   float ValueOf(Variable variable);
   float Peek(Variable variable) const;
   bool IsOfTheRun(Variable variable) const;

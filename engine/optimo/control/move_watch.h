@@ -74,6 +74,8 @@ class MoveWatch {
   void Clear();
 
   // --- time passes ---
+  // Nothing of a MOVE is to be watched: no time and no condition ends anything.
+  bool idle() const { return s_.stage == WatchStage::kIdle && !s_.time && !s_.end; }
   bool stands() const { return s_.stage == WatchStage::kStands; }
   // A motion of it is under way, and nothing has ended it yet.
   bool watches() const;

@@ -302,7 +302,7 @@ Result<bool> Moves::Append(const Instruction& i, const motion::PathPiece& path, 
     TellStanding(note);
     return false;
   }
-  const Status appended = ride_.Append(command, note);
+  const Status appended = ride_.Append(std::move(command), note);
   if (appended) return true;
   if (appended.error().code == ErrorCode::kNoMotion) return NeverEnds(i, appended.error().detail);
   if (note.beyond.empty()) return appended.error();
@@ -435,7 +435,8 @@ Status Moves::ZeroGroup(int group, const motion::AxisPose& to) {
   command.speed_fraction = 0.1;  // no override: OPT-4.51
   if (command.path.length() > 0.0) {
     const MoveNote note{.place = situation_.place, .path = PathType::kPtp, .last = false};
-    if (const Status appended = ride_.Append(command, note); !appended) return appended.error();
+    if (const Status appended = ride_.Append(std::move(command), note); !appended)
+      return appended.error();
   }
   ride_.PutAt(to);
   effects_.ShowBehind(

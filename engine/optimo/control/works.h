@@ -80,6 +80,7 @@ class Works {
   // Whether a motion must be over before this WORK. OPT-2.48
   bool NeedsStandstill(const Instruction& i) const;
 
+  bool idle() const { return s_.tasks.empty(); }  // nothing is in the background
   // Those in the background: when they are to be looked at next. A condition that nothing can have
   // changed since it was tested last is not tested again.
   SimTime NextEvent() const;

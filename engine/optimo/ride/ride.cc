@@ -43,7 +43,7 @@ void Ride::Drain() {
     s_.path.Plan(std::move(*item));
 }
 
-Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
+Status Ride::Append(motion::MoveCommand&& command, const MoveNote& note) {
   RMLCELL_CHECK(s_.program == GoesOn::kNo || passing());
   command.tag = s_.next_tag++;
   if (const Status appended = s_.planner.Append(command); !appended)

@@ -118,8 +118,9 @@ class Ride {
   void PutAt(const motion::AxisPose& axes) { s_.planned_axes = axes; }
 
   // The motion behind all others. Precondition: none of /NEXT goes on. Errors: of Planner::Append;
-  // nothing has changed then.
-  Status Append(motion::MoveCommand command, const MoveNote& note);
+  // nothing has changed then but
+  // the tag of the command.
+  Status Append(motion::MoveCommand&& command, const MoveNote& note);
   // Something that happens behind what was appended: its tag.
   std::uint64_t AppendMark();
   // The machine stands behind what was appended: the passage that is open becomes a stop.

@@ -182,25 +182,45 @@ class Bend {
   const PartCurve* part_ = nullptr;  // where the measure is not known
 };
 
+// When a motion is ridden, and where of that peaks are looked for.
+struct Ridden {
+  double from_s;
+  double to_s;
+  const OpenSlices& open;
+};
+
 // `look(state)` gives the machine at a state of the path. That is of the phase which is looked at:
 // asked by its time, the end of a phase is the beginning of the next one, where the acceleration
 // may be another.
+// Samples that lie in no open slice are passed over, and so is what is between two of them.
 template <class Look>
-MotionPeaks Sampled(const motion::PlannedMotion& motion, double from_s, double to_s, Look look) {
+MotionPeaks Sampled(const motion::PlannedMotion& motion, const Ridden& ridden, Look look) {
   const PathPiece& path = motion.path;
   const double turning = TurningOf({path, motion.head, 0.0, path.length()}) / path.length();
   MotionPeaks peaks;
-  ForEachPhase(motion.speed, from_s, to_s, [&](const PhasePart& part) {
+  std::size_t phases = 0;
+  ForEachPhase(motion.speed, ridden.from_s, ridden.to_s, [&](const PhasePart& part) {
+    const std::size_t phase = phases++;
     const double way = part.PlaceAt(part.duration_s) - part.start.s;
     const double wanted = std::ceil(turning * std::abs(way) / kPeakSampleAngle_rad);
     const int samples =
         static_cast<int>(std::clamp(wanted, double{kSamplesMin}, double{kSamplesMax}));
+    const auto open_before = [&](int k) {  // between the sample before and this one
+      if (k < 1 || k > samples) return false;
+      constexpr auto kOf = static_cast<int>(OpenSlices::kOfPhase);
+      for (int slice = (k - 1) * kOf / samples; slice * samples < k * kOf; ++slice) {
+        if (ridden.open.IsOpen(phase, static_cast<std::size_t>(slice))) return true;
+      }
+      return false;
+    };
     Instant before;
     for (int k = 0; k <= samples; ++k) {
+      const bool from_before = open_before(k);
+      if (!from_before && !open_before(k + 1)) continue;
       const double t = part.duration_s * k / samples;
       const Instant here = look({part.PlaceAt(t), part.SpeedAt(t), part.AccelerationAt(t)});
       Add(peaks, here);
-      if (k > 0) AddJerk(peaks, before, here, part.duration_s / samples);
+      if (from_before) AddJerk(peaks, before, here, part.duration_s / samples);
       before = here;
     }
   });
@@ -213,7 +233,7 @@ Instant Passed(const motion::TrajectoryPoint& point) {
 
 // Where axes do not follow the tip, or derivatives change along the way.
 MotionPeaks Curved(const motion::PlannedMotion& motion, PartShape& shape, bool five_axis,
-                   double from_s, double to_s) {
+                   const Ridden& ridden) {
   const PathPiece& path = motion.path;
   const auto of_machine = [&](Instant at) {
     if (five_axis) return at;
@@ -223,7 +243,7 @@ MotionPeaks Curved(const motion::PlannedMotion& motion, PartShape& shape, bool f
   };
   const bool blend = path.kind() == PathPiece::Kind::kBlend;
   if (path.in_axes()) {
-    return Sampled(motion, from_s, to_s, [&](const motion::PathState& state) {
+    return Sampled(motion, ridden, [&](const motion::PathState& state) {
       if (!blend) return of_machine(Passed(motion::PointAt(path, motion.head, state)));
       const motion::CornerCurve& curve = shape.curve().curve();
       const double u = shape.curve().ParameterAt(state.s);
@@ -234,13 +254,27 @@ MotionPeaks Curved(const motion::PlannedMotion& motion, PartShape& shape, bool f
   }
   if (blend) {
     const Bend bend(motion, shape);
-    return Sampled(motion, from_s, to_s,
+    return Sampled(motion, ridden,
                    [&](const motion::PathState& state) { return of_machine(bend.At(state)); });
   }
-  return Sampled(motion, from_s, to_s, [&](const motion::PathState& state) {
+  return Sampled(motion, ridden, [&](const motion::PathState& state) {
     return of_machine(
         Passed(path.At(state.s), path.First(state.s), path.Second(state.s), motion.head, state));
   });
+}
+
+MotionPeaks PeaksIn(const motion::PlannedMotion& motion, PartShape& shape, bool five_axis,
+                    const Ridden& ridden) {
+  const PathPiece& path = motion.path;
+  const bool curved =
+      path.kind() == PathPiece::Kind::kArc || path.kind() == PathPiece::Kind::kBlend;
+  const bool head_turns = five_axis && shape.turns();
+  if (!curved && !head_turns) return Straight(motion, five_axis, ridden.from_s, ridden.to_s);
+  if (path.kind() == PathPiece::Kind::kArc && !head_turns) {
+    const PlainArc arc(path);
+    return Sampled(motion, ridden, [&](const motion::PathState& state) { return arc.At(state); });
+  }
+  return Curved(motion, shape, five_axis, ridden);
 }
 
 }  // namespace
@@ -258,23 +292,14 @@ void MotionPeaks::Raise(const MotionPeaks& other) {
 
 MotionPeaks PeaksBeyond(const MotionPeaks& known, const motion::PlannedMotion& motion,
                         PartShape& shape, bool five_axis, double from_s, double to_s) {
-  if (StaysWithin(known, motion, shape, five_axis, from_s, to_s)) return {};
-  return PeaksOf(motion, shape, five_axis, from_s, to_s);
+  const OpenSlices open = MayExceed(known, motion, shape, five_axis, from_s, to_s);
+  if (!open.any()) return {};
+  return PeaksIn(motion, shape, five_axis, {from_s, to_s, open});
 }
 
 MotionPeaks PeaksOf(const motion::PlannedMotion& motion, PartShape& shape, bool five_axis,
                     double from_s, double to_s) {
-  const PathPiece& path = motion.path;
-  const bool curved =
-      path.kind() == PathPiece::Kind::kArc || path.kind() == PathPiece::Kind::kBlend;
-  const bool head_turns = five_axis && shape.turns();
-  if (!curved && !head_turns) return Straight(motion, five_axis, from_s, to_s);
-  if (path.kind() == PathPiece::Kind::kArc && !head_turns) {
-    const PlainArc arc(path);
-    return Sampled(motion, from_s, to_s,
-                   [&](const motion::PathState& state) { return arc.At(state); });
-  }
-  return Curved(motion, shape, five_axis, from_s, to_s);
+  return PeaksIn(motion, shape, five_axis, {from_s, to_s, OpenSlices::All()});
 }
 
 }  // namespace rmlcell::simulation

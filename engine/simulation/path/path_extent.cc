@@ -23,6 +23,9 @@ constexpr double kSampleAngle_rad = 0.2;
 constexpr int kIntervalsMin = 8;
 constexpr int kIntervalsMax = 1024;
 constexpr int kBisections = 40;  // halves an interval until the extreme is exact to the last digit
+constexpr double kAimShare = 0x1p-36;  // of an interval: how near to an extreme is aimed before
+constexpr int kAims = 10;              // at it, at most
+constexpr double kSureRate = 1e-3;     // of the highest: an end of the interval that surely moves
 
 // Below this share of the path's speed a coordinate counts as standing: rounding, not motion.
 constexpr double kStanding = 1e-12;
@@ -67,6 +70,49 @@ TurningPoints ArcTurns(const PathPart& part, std::size_t coordinate) {
   return turning;
 }
 
+// Where a derivative changes its sign: at `low` it still has that of the beginning, at `high` not
+// any more.
+struct Bracket {
+  double low;
+  double high;
+};
+struct RateAt {
+  double p;
+  double rate;
+};
+
+// Secants that keep the change between them (the Illinois method), then a look at both sides of
+// where they lead. What a bisection asks outside of that is known: it decides, as before, so that
+// the place is the same to the last digit. Not where an end is so near to standing that rounding
+// may change signs beside the place: `scale` is the highest rate that is about.
+template <class Rate>
+Bracket AimAt(RateAt low, RateAt high, double scale, Rate rate) {
+  Bracket bracket{low.p, high.p};
+  if (std::min(std::abs(low.rate), std::abs(high.rate)) < kSureRate * scale) return bracket;
+  const double near = kAimShare * (high.p - low.p);
+  const bool positive = low.rate > 0.0;
+  const auto look = [&](double at) {
+    const double there = rate(at);
+    ((there > 0.0) == positive ? bracket.low : bracket.high) = at;
+    return there;
+  };
+  double at = low.p;
+  for (int aim = 0; aim < kAims; ++aim) {
+    const double last = at;
+    at = low.p - low.rate * (high.p - low.p) / (high.rate - low.rate);
+    if (!(at > bracket.low && at < bracket.high)) return bracket;
+    const double there = look(at);
+    const bool before = bracket.low == at;
+    if (before == (low.p == last)) (before ? high : low).rate *= 0.5;  // the other end stays
+    (before ? low : high) = {at, there};
+    if (std::abs(at - last) < near) break;
+  }
+  for (const double beside : {at - near, at + near}) {
+    if (beside > bracket.low && beside < bracket.high) look(beside);
+  }
+  return bracket;
+}
+
 // Everything else: sign changes of the derivatives, bisected. `rates(p)` gives N of them; those of
 // which `one_way` says that they keep their sign are not looked at.
 template <std::size_t N, class Rates>
@@ -84,11 +130,20 @@ std::array<TurningPoints, N> SampledTurns(const PartCurve& curve,
     for (std::size_t i = 0; i < N; ++i) {
       if (one_way[i]) continue;
       if ((here[i] < 0.0 && next[i] > 0.0) || (here[i] > 0.0 && next[i] < 0.0)) {
+        const bool rises = here[i] > 0.0;
+        double scale = 0.0;
+        for (std::size_t n = 0; n < N; ++n)
+          scale = std::max({scale, std::abs(here[n]), std::abs(next[n])});
+        const auto rate = [&](double at) { return rates(at)[i]; };
+        const Bracket around = AimAt({p, here[i]}, {next_p, next[i]}, scale, rate);
         double low = p;
         double high = next_p;
         for (int halving = 0; halving < kBisections; ++halving) {
           const double middle = 0.5 * (low + high);
-          ((rates(middle)[i] > 0.0) == (here[i] > 0.0) ? low : high) = middle;
+          const bool before = middle <= around.low    ? true
+                              : middle >= around.high ? false
+                                                      : (rate(middle) > 0.0) == rises;
+          (before ? low : high) = middle;
         }
         turning[i].Add(0.5 * (low + high));
       }

@@ -25,9 +25,6 @@ constexpr double kRoundingShare = 1e-6;
 constexpr double kAccelerationShare = 1e-13;
 constexpr double kSamplesOfPhase = 512.0;
 
-// Of a phase, where the path is looked at in many pieces.
-constexpr int kSlices = 4;
-
 // What a phase of the profile does, at most.
 struct PhaseBounds {
   double speed = 0.0;
@@ -201,59 +198,71 @@ class PassedPieces {
   std::array<double, AxisPieces::kMany + 1> most_{};
 };
 
-// Whether `stays(part, bounds)` of every phase, looked at in `slices` of even time.
+// Whether `stays(part, bounds)` of every phase.
 template <class Stays>
-bool AllPhases(const motion::SpeedProfile& profile, double from_s, double to_s, int slices,
-               Stays stays) {
+bool AllPhases(const motion::SpeedProfile& profile, double from_s, double to_s, Stays stays) {
   bool all = true;
-  ForEachPhase(profile, from_s, to_s, [&](const PhasePart& phase) {
-    for (int k = 0; all && k < slices; ++k) {
-      PhasePart part = phase;
-      part.duration_s = phase.duration_s / slices;
-      const double t = part.duration_s * k;
-      part.start = {phase.PlaceAt(t), phase.SpeedAt(t), phase.AccelerationAt(t)};
-      all = stays(part, BoundsOf(part));
-    }
-  });
+  ForEachPhase(profile, from_s, to_s,
+               [&](const PhasePart& phase) { all = all && stays(phase, BoundsOf(phase)); });
   return all;
 }
 
-bool TurningStaysWithin(const MotionPeaks& known, const motion::PlannedMotion& motion,
-                        const AxisPieces& pieces, double begin, double from_s, double to_s) {
-  if (!pieces.known()) return false;
-  const PassedPieces passed(pieces);
+// The slices of which `stays` is not true.
+template <class Stays>
+OpenSlices SlicesBut(const motion::SpeedProfile& profile, double from_s, double to_s, Stays stays) {
+  OpenSlices open = OpenSlices::None();
+  std::size_t phases = 0;
+  ForEachPhase(profile, from_s, to_s, [&](const PhasePart& phase) {
+    for (std::size_t k = 0; k < OpenSlices::kOfPhase; ++k) {
+      PhasePart part = phase;
+      part.duration_s = phase.duration_s / static_cast<double>(OpenSlices::kOfPhase);
+      const double t = part.duration_s * static_cast<double>(k);
+      part.start = {phase.PlaceAt(t), phase.SpeedAt(t), phase.AccelerationAt(t)};
+      if (!stays(part, BoundsOf(part))) open.Open(phases, k);
+    }
+    ++phases;
+  });
+  return open;
+}
+
+OpenSlices OpenOfTurning(const MotionPeaks& known, const motion::PlannedMotion& motion,
+                         PartShape& shape, double from_s, double to_s) {
+  const AxisPieces* pieces = shape.pieces();
+  if (pieces == nullptr || !pieces->known()) return OpenSlices::All();
   const bool stands = motion.path.kind() == PathPiece::Kind::kRotary;
-  const int slices = pieces.pieces().size() > AxisPieces::kFew ? kSlices : 1;
-  return AllPhases(motion.speed, from_s, to_s, slices,
-                   [&](const PhasePart& part, const PhaseBounds& by) {
-                     return passed.StayWithin(known, stands, part.start.s - begin,
-                                              part.PlaceAt(part.duration_s) - begin, by);
-                   });
+  const double begin = shape.part().from;
+  const auto by_pieces = [&](const PassedPieces& passed) {
+    return [&](const PhasePart& part, const PhaseBounds& by) {
+      return passed.StayWithin(known, stands, part.start.s - begin,
+                               part.PlaceAt(part.duration_s) - begin, by);
+    };
+  };
+  const PassedPieces few(*pieces);
+  if (AllPhases(motion.speed, from_s, to_s, by_pieces(few))) return OpenSlices::None();
+  const AxisPieces more(shape.curve(), AxisPieces::kMany);
+  if (!more.known()) return OpenSlices::All();
+  const PassedPieces many(more);
+  return SlicesBut(motion.speed, from_s, to_s, by_pieces(many));
 }
 
 }  // namespace
 
-bool StaysWithin(const MotionPeaks& known, const motion::PlannedMotion& motion, PartShape& shape,
-                 bool five_axis, double from_s, double to_s) {
+OpenSlices MayExceed(const MotionPeaks& known, const motion::PlannedMotion& motion,
+                     PartShape& shape, bool five_axis, double from_s, double to_s) {
   const PathPiece& path = motion.path;
   const bool blend = path.kind() == PathPiece::Kind::kBlend;
   const bool arc = path.kind() == PathPiece::Kind::kArc;
   const bool head_turns = five_axis && shape.turns();
-  if (path.in_axes() || !(blend || arc || head_turns) || (arc && head_turns)) return false;
+  if (path.in_axes() || !(blend || arc || head_turns) || (arc && head_turns))
+    return OpenSlices::All();
   const PathPiece::PlainPart* plain = blend ? path.plain_corner() : nullptr;
-  if (arc || plain != nullptr) {
-    const std::optional<FlatBend> bend = arc ? BendOf(path) : BendOf(plain->corner);
-    const auto stays = [&](const PhasePart&, const PhaseBounds& by) {
-      return BendStaysWithin(known, *bend, by);
-    };
-    return bend && AllPhases(motion.speed, from_s, to_s, 1, stays);
-  }
-  const AxisPieces* pieces = shape.pieces();
-  if (pieces == nullptr) return false;
-  const double begin = shape.part().from;
-  if (TurningStaysWithin(known, motion, *pieces, begin, from_s, to_s)) return true;
-  const AxisPieces many(shape.curve(), AxisPieces::kMany);
-  return TurningStaysWithin(known, motion, many, begin, from_s, to_s);
+  if (!arc && plain == nullptr) return OpenOfTurning(known, motion, shape, from_s, to_s);
+  const std::optional<FlatBend> bend = arc ? BendOf(path) : BendOf(plain->corner);
+  const auto stays = [&](const PhasePart&, const PhaseBounds& by) {
+    return BendStaysWithin(known, *bend, by);
+  };
+  const bool within = bend && AllPhases(motion.speed, from_s, to_s, stays);
+  return within ? OpenSlices::None() : OpenSlices::All();
 }
 
 }  // namespace rmlcell::simulation

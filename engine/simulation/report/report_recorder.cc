@@ -51,9 +51,10 @@ std::string_view OutcomeText(machine::OutcomeKind kind) {
   return "unknown";
 }
 
-ReportRecorder::ReportRecorder(const machine::MachineShape& shape)
+ReportRecorder::ReportRecorder(const machine::MachineShape& shape, bool each_step)
     : shape_(shape),
       time_([this](const TimeLedger::Gap& gap) { CountStandstill(gap); }),
+      each_step_(each_step),
       job_(shape),
       beam_(shape.laser_watts, TipSpeedMax(shape)),
       contours_(shape),
@@ -303,7 +304,7 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   report.final_position.tip = state.tip;
   report.final_position.axes = state.axes;
   report.work_origin = state.work_origin;
-  work_.WriteTo(report);
+  work_.WriteTo(report, each_step_);
   if (shutter_open_) {
     report.total.shutter_open += time_.reached() - shutter_since_ - shutter_counted_;
   }

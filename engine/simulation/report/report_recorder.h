@@ -22,7 +22,8 @@ namespace rmlcell::simulation {
 // waiting for the operator, while halted).
 class ReportRecorder final : public machine::RunObserver {
  public:
-  explicit ReportRecorder(const machine::MachineShape& shape);
+  // Without `each_step` the report has no row for each step, of which there may be ten thousand.
+  explicit ReportRecorder(const machine::MachineShape& shape, bool each_step = true);
 
   void OnStep(SimTime at, const machine::Place& place, std::string_view instruction) override;
   void OnMotion(const machine::MotionDone& done) override;
@@ -65,6 +66,7 @@ class ReportRecorder final : public machine::RunObserver {
   machine::MachineShape shape_;
   TimeLedger time_;
   WorkTable work_;
+  bool each_step_;
   FigureLog job_;
   std::map<int, FigureLog> programs_;  // of those that work_ has room for
   std::optional<int> only_program_;    // its figures, but for the beam, are those of job_

@@ -8,6 +8,21 @@ namespace {
 // Energy by length says nothing on less: a rest of a motion that was told in parts.
 constexpr double kMeanLengthMin_mm = 1e-3;
 
+// Nothing is added most of the time, to most of them.
+void AddTo(motion::LongSum& sum, double value) {
+  if (value != 0.0) sum.Add(value);
+}
+
+// Whether there is anything of what WorkTable::Rest counts.
+bool HasRest(const WorkFigures& work) {
+  const TimeParts& time = work.time;
+  const SimTime::rep times = time.settling.count() | time.dwell.count() | time.pierce.count() |
+                             time.condition.count() | time.operator_wait.count() |
+                             time.spin_up.count() | time.load.count() | time.standstill.count();
+  return times != 0 || (work.beam_switches | work.pierces | work.plunges) != 0 ||
+         work.plunge_mm != 0.0 || work.pierce_energy_j != 0.0;
+}
+
 }  // namespace
 
 SimTime TimeParts::total() const {
@@ -15,45 +30,56 @@ SimTime TimeParts::total() const {
          standstill;
 }
 
+void WorkTable::Rest::Add(const WorkFigures& work) {
+  time.settling += work.time.settling;
+  time.dwell += work.time.dwell;
+  time.pierce += work.time.pierce;
+  time.condition += work.time.condition;
+  time.operator_wait += work.time.operator_wait;
+  time.spin_up += work.time.spin_up;
+  time.load += work.time.load;
+  time.standstill += work.time.standstill;
+  beam_switches += work.beam_switches;
+  pierces += work.pierces;
+  plunges += work.plunges;
+  AddTo(plunge, work.plunge_mm);
+  AddTo(pierce_energy, work.pierce_energy_j);
+}
+
 void WorkTable::Sum::Add(const WorkFigures& work) {
-  counts.steps += work.steps;
-  counts.time.motion += work.time.motion;
-  counts.time.settling += work.time.settling;
-  counts.time.dwell += work.time.dwell;
-  counts.time.pierce += work.time.pierce;
-  counts.time.condition += work.time.condition;
-  counts.time.operator_wait += work.time.operator_wait;
-  counts.time.spin_up += work.time.spin_up;
-  counts.time.load += work.time.load;
-  counts.time.standstill += work.time.standstill;
-  counts.beam_on += work.beam_on;
-  counts.shutter_open += work.shutter_open;
-  counts.beam_switches += work.beam_switches;
-  counts.pierces += work.pierces;
-  counts.plunges += work.plunges;
-  // Nothing is added most of the time, to most of them.
-  const auto add = [](motion::LongSum& sum, double value) {
-    if (value != 0.0) sum.Add(value);
-  };
-  add(tip_path, work.tip_path_mm);
-  add(cut, work.cut_mm);
-  add(travel, work.travel_mm);
-  add(plunge, work.plunge_mm);
-  add(cut_energy, work.cut_energy_j);
-  if (work.cut_mm >= kMeanLengthMin_mm) {
-    counts.energy_j_per_mm_max = std::max(counts.energy_j_per_mm_max, work.energy_j_per_mm());
-  }
-  add(pierce_energy, work.pierce_energy_j);
+  steps += work.steps;
+  motion += work.time.motion;
+  beam_on += work.beam_on;
+  shutter_open += work.shutter_open;
+  AddTo(tip_path, work.tip_path_mm);
+  AddTo(cut, work.cut_mm);
+  AddTo(travel, work.travel_mm);
+  AddTo(cut_energy, work.cut_energy_j);
+  if (work.cut_mm >= kMeanLengthMin_mm)
+    energy_j_per_mm_max = std::max(energy_j_per_mm_max, work.energy_j_per_mm());
+  if (!HasRest(work)) return;
+  if (rest == nullptr) rest = std::make_unique<Rest>();
+  rest->Add(work);
 }
 
 WorkFigures WorkTable::Sum::Total() const {
-  WorkFigures figures = counts;
-  figures.tip_path_mm = tip_path.value();
-  figures.cut_mm = cut.value();
-  figures.travel_mm = travel.value();
-  figures.plunge_mm = plunge.value();
-  figures.cut_energy_j = cut_energy.value();
-  figures.pierce_energy_j = pierce_energy.value();
+  WorkFigures figures{.steps = steps,
+                      .tip_path_mm = tip_path.value(),
+                      .cut_mm = cut.value(),
+                      .travel_mm = travel.value(),
+                      .beam_on = beam_on,
+                      .shutter_open = shutter_open,
+                      .cut_energy_j = cut_energy.value(),
+                      .energy_j_per_mm_max = energy_j_per_mm_max};
+  if (rest != nullptr) {
+    figures.time = rest->time;
+    figures.beam_switches = rest->beam_switches;
+    figures.pierces = rest->pierces;
+    figures.plunges = rest->plunges;
+    figures.plunge_mm = rest->plunge.value();
+    figures.pierce_energy_j = rest->pierce_energy.value();
+  }
+  figures.time.motion = motion;
   return figures;
 }
 
@@ -70,10 +96,10 @@ WorkTable::Sum* WorkTable::StepOf(const machine::Place& place) {
 }
 
 void WorkTable::AddStep(const machine::Place& place) {
-  ++total_.counts.steps;
+  ++total_.steps;
   Sum* step = StepOf(place);
-  ++(step != nullptr ? *step : rest_).counts.steps;
-  if (Sum* program = ProgramOf(place.program); program != nullptr) ++program->counts.steps;
+  ++(step != nullptr ? *step : rest_).steps;
+  if (Sum* program = ProgramOf(place.program); program != nullptr) ++program->steps;
 }
 
 WorkTable::Sum* WorkTable::ProgramOf(int program) {
@@ -91,7 +117,7 @@ void WorkTable::Add(const machine::Place& place, const WorkFigures& work) {
   if (Sum* program = ProgramOf(place.program); program != nullptr) program->Add(work);
 }
 
-void WorkTable::WriteTo(RunReport& report) const {
+void WorkTable::WriteTo(RunReport& report, bool each_step) const {
   report.total = total_.Total();
   report.rest = rest_.Total();
   for (const auto& [program, sum] : programs_) {
@@ -99,13 +125,15 @@ void WorkTable::WriteTo(RunReport& report) const {
     report.programs[program].total.energy_j_per_mm_max = 0.0;
   }
   report.steps.clear();
-  report.steps.reserve(steps_.size());
+  if (each_step) report.steps.reserve(steps_.size());
   double& highest = report.total.energy_j_per_mm_max;
   highest = report.rest.energy_j_per_mm();
   for (const auto& [key, step] : steps_) {
-    report.steps.push_back(
-        {.program = key.first, .step = key.second, .line = step.line, .figures = step.sum.Total()});
-    const double mean = report.steps.back().figures.energy_j_per_mm();
+    const WorkFigures figures = step.sum.Total();
+    const double mean = figures.energy_j_per_mm();
+    if (each_step)
+      report.steps.push_back(
+          {.program = key.first, .step = key.second, .line = step.line, .figures = figures});
     highest = std::max(highest, mean);
     const auto program = report.programs.find(key.first);
     if (program == report.programs.end()) continue;

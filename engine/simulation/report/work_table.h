@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "engine/motion/ride/trajectory.h"
@@ -25,14 +26,30 @@ class WorkTable {
   // Whether what a program does is counted by program; once it is, it stays so.
   bool HasRoomFor(int program) { return ProgramOf(program) != nullptr; }
 
-  // Writes total, steps, rest and the totals of the programs of the report.
-  void WriteTo(RunReport& report) const;
+  // Writes total, rest and the totals of the programs of the report; with `each_step` its steps.
+  void WriteTo(RunReport& report, bool each_step = true) const;
 
  private:
-  // Sums of a million small lengths keep their digits.
+  // What most steps have nothing of.
+  struct Rest {
+    TimeParts time;  // but motion
+    std::uint64_t beam_switches = 0;
+    std::uint64_t pierces = 0;
+    std::uint64_t plunges = 0;
+    motion::LongSum plunge, pierce_energy;
+
+    void Add(const WorkFigures& work);
+  };
+  // Sums of a million small lengths keep their digits. There are as many as steps in a report: what
+  // is in most of them stands here, the rest where there is any.
   struct Sum {
-    WorkFigures counts;
-    motion::LongSum tip_path, cut, travel, plunge, cut_energy, pierce_energy;
+    std::uint64_t steps = 0;
+    SimTime motion{0};
+    SimTime beam_on{0};
+    SimTime shutter_open{0};
+    motion::LongSum tip_path, cut, travel, cut_energy;
+    double energy_j_per_mm_max = 0.0;
+    std::unique_ptr<Rest> rest;
 
     void Add(const WorkFigures& work);
     WorkFigures Total() const;

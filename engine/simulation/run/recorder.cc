@@ -12,7 +12,7 @@ namespace rmlcell::simulation {
 
 struct Recorder::State {
   State(const machine::MachineShape& shape, InputDescription description, Products products)
-      : inputs(std::move(description)), also(products.also), report(shape) {
+      : inputs(std::move(description)), also(products.also), report(shape, products.each_step) {
     Join(also);
     Join(&report);
     if (products.trace) {

@@ -20,6 +20,7 @@ struct Products {
   std::uint64_t trace_records_max = kTraceRecordsMax;
   ToolpathSink toolpath{};  // empty: no toolpath
   ToolpathOptions toolpath_options{};
+  bool each_step = true;  // the report has a row for each step
   bool picture = false;
   bool plot = false;
   SampleSink samples{};  // empty: no samples

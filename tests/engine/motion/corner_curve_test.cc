@@ -36,6 +36,29 @@ CornerCurve Turning(double degrees, double cut) {
   return CornerCurve(EndAt(in, 50.0 - cut), EndAt(out, cut), cut);
 }
 
+// Eight nodes of Gauss and Legendre, the two at equal distances from the middle together: to the
+// last digit what Speed gives there, since places by length, and with them plans, hang on it.
+TEST(CornerCurve, ItsLengthIsMadeOfItsSpeeds) {
+  constexpr std::array kNodes{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                              0.9602898564975363};
+  constexpr std::array kWeights{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                0.1012285362903763};
+  for (const CornerCurve& curve :
+       {CornerCurve(PlainAt(75.0, 0.7)), Turning(40.0, 1.3), Turning(130.0, 0.02)}) {
+    for (const double to : {0.01, 0.3, 0.77, 1.0}) {
+      const double from = 0.1 * to;
+      const double middle = 0.5 * (from + to);
+      const double half = 0.5 * (to - from);
+      double sum = 0.0;
+      for (std::size_t k = 0; k < kNodes.size(); ++k) {
+        sum += kWeights[k] *
+               (curve.Speed(middle - half * kNodes[k]) + curve.Speed(middle + half * kNodes[k]));
+      }
+      EXPECT_EQ(curve.Integral(from, to), half * sum) << to;
+    }
+  }
+}
+
 // p(u) of 4.2 in its Hermite form, at u = 1/2: p0/2 + p1/2 + (5/32)(v0 - v1) + (c0 + c1)/64.
 TEST(CornerCurve, MiddleOfTheHermiteForm) {
   const CurveEnd from{.pose = {{1, 2, 3}, 0.5, -0.5},

@@ -118,5 +118,28 @@ TEST(ExpressionRun, Domains) {
   }
 }
 
+// OPT-2.35, OPT-7.62, OPT-B.37: numbers of other instructions than LET are the same: rounded to 24
+// bits by each operation, too small ones 0, too large ones an error. 1000 + 0.00003 is 1000 in 24
+// bits, whose steps are 0.00006 there.
+TEST(ExpressionRun, NumbersOfInstructions) {
+  const struct {
+    Row row;
+    double x_mm;
+  } cases[] = {{{"1000 2.5 4", "X + Y * Z", ""}, 1010.0},
+               {{"1000 2.5 4", "X - Y - Z", ""}, 993.5},
+               {{"1000 0.00003", "X + Y + Y", ""}, 1000.0},
+               {{"1000 1E-12", "X + Y * Y * 1E+18", ""}, 1000.0},
+               {{"3000 2.5", "X / Y - 100", ""}, 1100.0},
+               {{"-900", "-X", ""}, 900.0},
+               {{"1000 1", "X+(Y+(Y+(Y+(Y+(Y+(Y+(Y+(Y+Y))))))))", ""}, 1009.0}};
+  for (const auto& [row, x_mm] : cases) {
+    const Ran ran = RunText(ProgramOf(row) + "COORD ABSOL\nPATH LIN\nMOVE (" + row.expression +
+                            ", 900., -400., 0., 0.)\n");
+    ASSERT_EQ(ran.moves.size(), 1U) << row.expression;
+    EXPECT_EQ(ran.moves.front().program_point.x(), x_mm) << row.expression;
+  }
+  EXPECT_EQ(CodeOf(RunText("VR[1] = 5E+18\nSPEED VR[1] + VR[1]\n")), 7202);  // beyond 2^63
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::expression_run

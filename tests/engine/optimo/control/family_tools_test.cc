@@ -166,11 +166,11 @@ TEST(FamilyTools, RefusesWhatIsNoObject) {
 
 // OPT-10.17: programs 1 to 7 are reserved.
 TEST(FamilyTools, ReservedPrograms) {
-  EXPECT_TRUE(OptimoFamily().CheckSlot(0).empty());
-  ASSERT_EQ(OptimoFamily().CheckSlot(1).size(), 1U);
-  EXPECT_EQ(OptimoFamily().CheckSlot(1)[0].program, 1);
-  EXPECT_EQ(OptimoFamily().CheckSlot(7).size(), 1U);
-  EXPECT_TRUE(OptimoFamily().CheckSlot(8).empty());
+  EXPECT_TRUE(OptimoFamily().CheckSlot(0, "DELAY 1\n").empty());
+  ASSERT_EQ(OptimoFamily().CheckSlot(1, "DELAY 1\n").size(), 1U);
+  EXPECT_EQ(OptimoFamily().CheckSlot(1, "DELAY 1\n")[0].program, 1);
+  EXPECT_EQ(OptimoFamily().CheckSlot(7, "DELAY 1\n").size(), 1U);
+  EXPECT_TRUE(OptimoFamily().CheckSlot(8, "DELAY 1\n").empty());
 }
 
 TEST(FamilyTools, NamesOfVariables) {
