@@ -20,6 +20,9 @@ inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 // it, and rows of its own would be one more page to write with each job.
 inline constexpr std::size_t kContentInRowMax = std::size_t{2} << 10;
 
+// The same of what a job made: with its names the row of an artifact still fits on its page.
+inline constexpr std::size_t kProductInRowMax = std::size_t{7} << 9;
+
 // A specification, state or body up to this size is kept in its record, not shared and not
 // compressed.
 inline constexpr std::size_t kContentInRecordMax = std::size_t{16} << 10;

@@ -254,7 +254,8 @@ inline std::string NameOfSchedule(std::string_view machine, int number) {
   return MachineName(machine) + "/laserSchedules/" + std::to_string(number);
 }
 
-// A product of a job: report, toolpath, picture. Bytes are kept once by content, compressed.
+// A product of a job: report, toolpath, picture. Bytes are kept compressed, large ones once for all
+// jobs that have the same.
 struct NewArtifact {
   std::string name{};  // "report", "toolpath", "picture.svg"
   std::string media_type{};

@@ -513,7 +513,7 @@ class Store {
   virtual Result<std::unique_ptr<BlobReader>> OpenArtifact(std::int64_t job,
                                                            std::string_view name) = 0;
 
-  // --- contents by their SHA-256: all but small programs, which are kept with their job alone
+  // --- contents by their SHA-256: all but the small ones that a job has alone
   virtual Result<std::string> ReadBlob(std::string_view sha256) = 0;  // CellNotFound
   // Piece by piece. CellNotFound.
   virtual Result<std::unique_ptr<BlobReader>> OpenBlob(std::string_view sha256) = 0;

@@ -70,35 +70,41 @@ Result<JobRecord> LoseJob(WriteContext& context, const Lease& lease, std::string
   return std::move(row->job);
 }
 
-// The bytes first, then the rows that name them. Those of `with_job` stand in its own row already.
+// Whole, and of a size to stand in the row that names it.
+bool FitsInRow(const PreparedContent& content, std::size_t bytes_max) {
+  return !content.must_exist && content.staged_blob == 0 && content.encoded.size() <= bytes_max;
+}
+
+Result<bool> AddArtifact(WriteContext& context, std::int64_t job, const NewArtifact& artifact,
+                         const PreparedContent& content) {
+  ArtifactTable& table = context.tables.artifacts;
+  if (FitsInRow(content, kProductInRowMax) && !table.recent().CameBefore(content.sha256))
+    return table.AddWhole(job, artifact, content);
+  const Result<std::int64_t> blob = context.tables.blobs.PutBlob(content);
+  if (!blob) return blob.error();
+  return table.Add(job, artifact, *blob);
+}
+
+// But for `with_job`, which stands with the specification already.
 Status AddArtifacts(WriteContext& context, std::int64_t job,
                     const std::vector<NewArtifact>& artifacts,
                     const std::vector<const PreparedContent*>& contents,
                     const PreparedContent* with_job) {
-  ArtifactTable& table = context.tables.artifacts;
   for (std::size_t i = 0; i < artifacts.size(); ++i) {
-    if (contents[i] == with_job) {
-      const Result<bool> kept = table.AddWithJob(job, artifacts[i], *with_job);
-      if (!kept) return kept.error();
-      if (!*kept) return InvalidArgument("two artifacts named " + artifacts[i].name);
-      continue;
-    }
-    const Result<std::int64_t> blob = context.tables.blobs.PutBlob(*contents[i]);
-    if (!blob) return blob.error();
-    const Result<bool> added = table.Add(job, artifacts[i], *blob);
+    if (contents[i] == with_job) continue;
+    const Result<bool> added = AddArtifact(context, job, artifacts[i], *contents[i]);
     if (!added) return added.error();
     if (!*added) return InvalidArgument("two artifacts named " + artifacts[i].name);
   }
   return {};
 }
 
-// The program of most jobs: a page of its own, and one of the index of contents, would be two more
-// to write with each of them.
+// The program of most jobs: a row of its own, with the index of those, would be two more pages to
+// write with each of them.
 const PreparedContent* KeptWithJob(const JobContents& contents) {
   if (contents.attachments.empty()) return nullptr;
   const PreparedContent& first = *contents.attachments.front();
-  const bool whole = !first.must_exist && first.staged_blob == 0;
-  return whole && first.encoded.size() <= kContentInRowMax ? &first : nullptr;
+  return FitsInRow(first, kContentInRowMax) ? &first : nullptr;
 }
 
 Status PutWhatItBrings(WriteContext& context, std::int64_t id, const NewJob& job,
@@ -107,8 +113,10 @@ Status PutWhatItBrings(WriteContext& context, std::int64_t id, const NewJob& job
   if (!job.specification.empty() || with_job != nullptr) {
     const Result<ContentColumns> columns = context.tables.blobs.Put(*contents.specification);
     if (!columns) return columns.error();
-    std::optional<Bytes> attachment;
-    if (with_job != nullptr) attachment = Bytes{with_job->encoded};
+    const std::optional<JobTable::Attachment> attachment =
+        with_job == nullptr
+            ? std::nullopt
+            : std::optional(JobTable::Attachment{job.attachments.front(), *with_job});
     if (const Status put = context.tables.jobs.PutSpecification(id, *columns, attachment); !put)
       return put.error();
   }

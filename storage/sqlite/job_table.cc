@@ -168,12 +168,12 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
       set_events_gone_(database, "UPDATE job SET events_gone_until = ?2 WHERE id = ?1"),
       put_specification_(database,
                          "INSERT INTO job_specification"
-                         " (job, specification, specification_blob, attachment)"
-                         " VALUES (?1, ?2, ?3, ?4)"),
+                         " (job, specification, specification_blob, attachment_name,"
+                         " attachment_media_type, attachment_sha256, attachment_size, attachment)"
+                         " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)"),
       specification_(
           database,
           "SELECT specification, specification_blob FROM job_specification WHERE job = ?1"),
-      attachment_(database, "SELECT attachment FROM job_specification WHERE job = ?1"),
       last_id_(database, "SELECT ifnull(max(id), 0) FROM job"),
       running_(
           database,
@@ -230,23 +230,18 @@ Status JobTable::SetEventsGoneUntil(std::int64_t id, std::int64_t sequence) {
 }
 
 Status JobTable::PutSpecification(std::int64_t id, const ContentColumns& specification,
-                                  const std::optional<Bytes>& attachment) {
-  return put_specification_.With(id, specification.bytes, specification.blob, attachment).Run();
-}
-
-Result<std::string> JobTable::Attachment(std::int64_t id, std::size_t size,
-                                         std::string_view sha256) {
-  Query query = attachment_.With(id);
-  const Result<bool> row = query.Step();
-  if (!row) return row.error();
-  std::string content;
-  const bool there = *row && !query.IsNull(0) && size <= kChunkBytes;
-  if (!there || !Decode(query.View(0), size, content) || Sha256(content) != sha256) {
-    return Error{ErrorCode::kCellStoreCorrupt,
-                 "the program that is kept with job " + std::to_string(id) + " is damaged",
-                 {}};
+                                  const std::optional<Attachment>& attachment) {
+  if (!attachment) {
+    return put_specification_
+        .With(id, specification.bytes, specification.blob, std::nullopt, std::nullopt, std::nullopt,
+              std::nullopt, std::nullopt)
+        .Run();
   }
-  return content;
+  const auto& [artifact, content] = *attachment;
+  return put_specification_
+      .With(id, specification.bytes, specification.blob, artifact.name, artifact.media_type,
+            Bytes{content.sha256}, content.bytes.size(), Bytes{content.encoded})
+      .Run();
 }
 
 Result<std::string> JobTable::Specification(std::int64_t id) {

@@ -36,12 +36,14 @@ class JobTable {
   Status SetLastSequence(std::int64_t id, std::int64_t sequence);
   Status SetEventsGoneUntil(std::int64_t id, std::int64_t sequence);
 
-  // `attachment`: encoded, of the artifact whose bytes are kept with the job.
+  // An artifact that is kept with the specification of its job.
+  struct Attachment {
+    const NewArtifact& artifact;
+    const PreparedContent& content;
+  };
   Status PutSpecification(std::int64_t id, const ContentColumns& specification,
-                          const std::optional<Bytes>& attachment);
+                          const std::optional<Attachment>& attachment);
   Result<std::string> Specification(std::int64_t id);  // empty when there is none
-  // Of this size. CellStoreCorrupt: it does not have this SHA-256 (32 bytes).
-  Result<std::string> Attachment(std::int64_t id, std::size_t size, std::string_view sha256);
 
   Result<std::int64_t> LastId();
 
@@ -75,7 +77,6 @@ class JobTable {
   Statement set_events_gone_;
   Statement put_specification_;
   Statement specification_;
-  Statement attachment_;
   Statement last_id_;
   Statement running_;
   Statement oldest_finished_;

@@ -86,6 +86,24 @@ constexpr Migration kMigrations[] = {
      "CREATE TABLE taught (machine TEXT NOT NULL, number INTEGER NOT NULL,"
      " program INTEGER NOT NULL, entry BLOB NOT NULL, PRIMARY KEY (machine, number))"
      " WITHOUT ROWID;"},
+    // An artifact without a blob has its bytes in its row. That of a small program has no row: all
+    // of it stands with the specification.
+    {15, "small products in the rows of their artifacts",
+     "ALTER TABLE artifact RENAME TO artifact_before;"
+     "CREATE TABLE artifact (id INTEGER PRIMARY KEY, job INTEGER NOT NULL, name TEXT NOT NULL,"
+     " media_type TEXT NOT NULL, blob INTEGER, sha256 BLOB, size INTEGER, content BLOB);"
+     "INSERT INTO artifact (job, name, media_type, blob)"
+     " SELECT job, name, media_type, blob FROM artifact_before WHERE blob <> 0;"
+     "CREATE UNIQUE INDEX artifact_by_job ON artifact (job, name);"
+     "ALTER TABLE job_specification ADD COLUMN attachment_name TEXT;"
+     "ALTER TABLE job_specification ADD COLUMN attachment_media_type TEXT;"
+     "ALTER TABLE job_specification ADD COLUMN attachment_sha256 BLOB;"
+     "ALTER TABLE job_specification ADD COLUMN attachment_size INTEGER;"
+     "UPDATE job_specification SET (attachment_name, attachment_media_type, attachment_sha256,"
+     " attachment_size) = (SELECT name, media_type, sha256, size FROM artifact_before"
+     " WHERE artifact_before.job = job_specification.job AND artifact_before.blob = 0)"
+     " WHERE attachment IS NOT NULL;"
+     "DROP TABLE artifact_before;"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

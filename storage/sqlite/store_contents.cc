@@ -64,19 +64,34 @@ class WholeReader final : public BlobReader {
   const std::size_t size_;
 };
 
-Result<ArtifactRecord> FindArtifact(Tables& tables, std::int64_t job, std::string_view name) {
-  const Result<std::optional<ArtifactRecord>> artifact = tables.artifacts.Get(job, name);
-  if (!artifact) return artifact.error();
-  if (*artifact) return **artifact;
+template <class T>
+Result<T> FoundArtifact(Tables& tables, Result<std::optional<T>> found, std::int64_t job,
+                        std::string_view name) {
+  if (!found) return found.error();
+  if (*found) return **std::move(found);
   if (const auto row = GetRow(tables, job); !row) return row.error();
   return Error{ErrorCode::kCellNotFound,
                "job " + std::to_string(job) + " has no artifact " + std::string(name),
                {}};
 }
 
-Result<std::string> KeptWithJob(Tables& tables, const ArtifactRecord& artifact) {
-  return tables.jobs.Attachment(artifact.job, static_cast<std::size_t>(artifact.size),
-                                *BytesOfHex(artifact.sha256));
+Result<ArtifactTable::Place> FindArtifact(Tables& tables, std::int64_t job, std::string_view name) {
+  return FoundArtifact(tables, tables.artifacts.Find(job, name), job, name);
+}
+
+// The bytes that stand in the row of their artifact, or with their job.
+Result<std::string> ReadRow(const ArtifactTable::Place& place) {
+  const ArtifactRecord& artifact = place.artifact;
+  const auto size = static_cast<std::size_t>(artifact.size);
+  std::string content;
+  if (size > kChunkBytes || !Decode(place.encoded, size, content) ||
+      HexOf(Sha256(content)) != artifact.sha256) {
+    return Error{ErrorCode::kCellStoreCorrupt,
+                 "the bytes of artifact " + artifact.name + " of job " +
+                     std::to_string(artifact.job) + " are damaged",
+                 {}};
+  }
+  return content;
 }
 
 // A content that nobody names yet becomes one that is kept for so long.
@@ -165,34 +180,32 @@ Result<std::vector<ArtifactRecord>> SqliteStore::ListArtifacts(std::int64_t job)
 }
 
 Result<ArtifactRecord> SqliteStore::GetArtifact(std::int64_t job, std::string_view name) {
-  return readers_->Read([&](Tables& tables) { return FindArtifact(tables, job, name); });
+  return readers_->Read([&](Tables& tables) {
+    return FoundArtifact(tables, tables.artifacts.Get(job, name), job, name);
+  });
 }
 
 Result<std::string> SqliteStore::ReadArtifact(std::int64_t job, std::string_view name) {
   return readers_->Read([&](Tables& tables) -> Result<std::string> {
-    const Result<ArtifactRecord> artifact = FindArtifact(tables, job, name);
-    if (!artifact) return artifact.error();
-    const Result<std::int64_t> blob = tables.artifacts.BlobOf(job, name);
-    if (!blob) return blob.error();
-    return *blob == ArtifactTable::kWithJob ? KeptWithJob(tables, *artifact)
-                                            : tables.blobs.Read(*blob);
+    const Result<ArtifactTable::Place> place = FindArtifact(tables, job, name);
+    if (!place) return place.error();
+    return place->blob ? tables.blobs.Read(*place->blob) : ReadRow(*place);
   });
 }
 
 Result<std::unique_ptr<BlobReader>> SqliteStore::OpenArtifact(std::int64_t job,
                                                               std::string_view name) {
   return readers_->Read([&](Tables& tables) -> Result<std::unique_ptr<BlobReader>> {
-    const Result<ArtifactRecord> artifact = FindArtifact(tables, job, name);
-    if (!artifact) return artifact.error();
-    const Result<std::int64_t> blob = tables.artifacts.BlobOf(job, name);
-    if (!blob) return blob.error();
-    if (*blob == ArtifactTable::kWithJob) {
-      Result<std::string> content = KeptWithJob(tables, *artifact);
+    const Result<ArtifactTable::Place> place = FindArtifact(tables, job, name);
+    if (!place) return place.error();
+    if (!place->blob) {
+      Result<std::string> content = ReadRow(*place);
       if (!content) return content.error();
       return std::unique_ptr<BlobReader>(std::make_unique<WholeReader>(*std::move(content)));
     }
+    const ArtifactRecord& artifact = place->artifact;
     return std::unique_ptr<BlobReader>(std::make_unique<ContentReader>(
-        *readers_, *BytesOfHex(artifact->sha256), static_cast<std::size_t>(artifact->size)));
+        *readers_, *BytesOfHex(artifact.sha256), static_cast<std::size_t>(artifact.size)));
   });
 }
 

@@ -316,7 +316,8 @@ TEST_P(StoreConformance, ArtifactsComeBack) {
   EXPECT_EQ(artifacts[2].job, leased.job.id);
   EXPECT_TRUE(Must(store().ReadBlob(artifacts[2].sha256)) == toolpath);
   EXPECT_TRUE(Must(store().ReadBlob(artifacts[1].sha256)) == picture);
-  EXPECT_EQ(Must(store().ReadBlob(artifacts[0].sha256)), "");
+  EXPECT_TRUE(Must(store().ReadArtifact(leased.job.id, "toolpath")) == toolpath);
+  EXPECT_EQ(Must(store().ReadArtifact(leased.job.id, "empty")), "");
   const ArtifactRecord one = Must(store().GetArtifact(leased.job.id, "picture.svg"));
   EXPECT_EQ(one.sha256, artifacts[1].sha256);
   EXPECT_EQ(one.media_type, "image/svg+xml");

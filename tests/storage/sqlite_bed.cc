@@ -114,6 +114,16 @@ void ExpectSound(const std::string& path) {
               " (SELECT count(*) FROM upload WHERE upload.blob = blob.id) +"
               " (SELECT count(*) FROM artifact WHERE artifact.blob = blob.id) AS found FROM blob)"
               " WHERE told <> found");
+  expect_none("artifacts with two places for their bytes, or none",
+              "artifact WHERE (blob IS NULL) = (content IS NULL) OR (content IS NULL) <>"
+              " (sha256 IS NULL) OR (content IS NULL) <> (size IS NULL)");
+  expect_none("programs that are kept with their jobs in part",
+              "job_specification WHERE (attachment IS NULL) <> (attachment_name IS NULL) OR"
+              " (attachment IS NULL) <> (attachment_media_type IS NULL) OR"
+              " (attachment IS NULL) <> (attachment_sha256 IS NULL) OR"
+              " (attachment IS NULL) <> (attachment_size IS NULL)");
+  expect_none("two artifacts of a job with one name",
+              "artifact JOIN job_specification USING (job) WHERE name = attachment_name");
   expect_none("chunks without a blob", "blob_chunk WHERE blob NOT IN (SELECT id FROM blob)");
   for (const char* table :
        {"job_specification", "lease", "attempt", "event", "artifact", "job_after"}) {

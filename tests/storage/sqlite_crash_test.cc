@@ -17,6 +17,8 @@
 #include <set>
 #include <sstream>
 
+#include "engine/core/hex.h"
+#include "storage/content.h"
 #include "tests/storage/crash_scenario.h"
 #include "tests/storage/sqlite_bed.h"
 
@@ -144,7 +146,9 @@ void ExpectJobIsWhole(Store& store, const JobRecord& job, const Acknowledged& to
   }
   if (job.state == JobState::kSucceeded) {
     const ArtifactRecord report = Must(store.GetArtifact(job.id, "report"));
-    EXPECT_TRUE(Must(store.ReadBlob(report.sha256)) == crash::ReportOf(job.id));
+    const std::string bytes = Must(store.ReadArtifact(job.id, "report"));
+    EXPECT_TRUE(bytes == crash::ReportOf(job.id));
+    EXPECT_EQ(report.sha256, HexOf(Sha256(bytes)));
   }
 }
 

@@ -81,8 +81,8 @@ TEST_F(SqliteKeep, OldFinishedJobsGo) {
   EXPECT_EQ(CodeOf(store().JobEvents(7, 0, 10)), ErrorCode::kCellNotFound);
   EXPECT_EQ(Count("event"), 6);
   EXPECT_EQ(Count("attempt"), 3);
-  EXPECT_EQ(Count("artifact"), 6);
-  WaitForCount("blob", 3);  // reports; programs go with their jobs
+  EXPECT_EQ(Count("artifact"), 3);  // reports; programs go with their jobs
+  EXPECT_EQ(Count("job_specification"), 3);
   EXPECT_EQ(Must(store().ReadArtifact(8, "report")), "report 8");
 }
 
@@ -184,8 +184,14 @@ TEST_F(SqliteKeep, OldStoreGetsItsMarks) {
       "ALTER TABLE job DROP COLUMN outcome_verdict; DROP TABLE machine_lock;"
       "DROP TABLE machine_mark; DROP TABLE upload; DROP TABLE taught; ALTER TABLE machine DROP COLUMN options; ALTER TABLE machine ADD COLUMN state BLOB;"
       "ALTER TABLE machine ADD COLUMN state_blob INTEGER;"
-      "ALTER TABLE job DROP COLUMN labels; ALTER TABLE artifact DROP COLUMN sha256; ALTER TABLE artifact DROP COLUMN size;"
+      "ALTER TABLE job DROP COLUMN labels; DROP TABLE artifact; DELETE FROM job_specification;"
+      "CREATE TABLE artifact (job INTEGER NOT NULL, name TEXT NOT NULL, media_type TEXT NOT NULL,"
+      " blob INTEGER NOT NULL, PRIMARY KEY (job, name)) WITHOUT ROWID;"
       "ALTER TABLE job_specification DROP COLUMN attachment;"
+      "ALTER TABLE job_specification DROP COLUMN attachment_name;"
+      "ALTER TABLE job_specification DROP COLUMN attachment_media_type;"
+      "ALTER TABLE job_specification DROP COLUMN attachment_sha256;"
+      "ALTER TABLE job_specification DROP COLUMN attachment_size;"
       "CREATE INDEX job_unfinished ON job (state, kind) WHERE state < 2;"
       "PRAGMA user_version = 2");
   bed_->options().keep_finished_jobs = 3;
@@ -249,7 +255,7 @@ TEST_F(SqliteKeep, BoundAppliesToWhatIsThere) {
   bed_->Reopen();
   WaitForCount("job", 5);
   WaitForCount("event", 10);
-  WaitForCount("artifact", 10);
+  WaitForCount("artifact", 5);
   EXPECT_THAT(Jobs(), ElementsAre(201, 200, 199, 198, 197));
 }
 

@@ -140,12 +140,12 @@ TEST(SqliteOpen, LockIsFreeAfterTheStoreIsClosed) {
 TEST(SqliteOpen, NewerStoreIsRefused) {
   SqliteBed bed;
   bed.Close();
-  ExecuteIn(bed.path(), "PRAGMA user_version = 15");
+  ExecuteIn(bed.path(), "PRAGMA user_version = 16");
   const std::string before = ReadFile(bed.path());
   const auto refused = bed.Open();
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kCellStoreNewer);
-  EXPECT_THAT(refused.error().detail, HasSubstr("version 15"));
+  EXPECT_THAT(refused.error().detail, HasSubstr("version 16"));
   EXPECT_THAT(refused.error().detail, HasSubstr(bed.path()));
   EXPECT_TRUE(ReadFile(bed.path()) == before);
   ExecuteIn(bed.path(), "PRAGMA user_version = 1");

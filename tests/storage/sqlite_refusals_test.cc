@@ -6,6 +6,7 @@
 
 #include <future>
 
+#include "storage/content.h"
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/migrations.h"
 #include "storage/sqlite/store_files.h"
@@ -28,9 +29,10 @@ TEST(SqliteRefusals, RecordsWithoutTheirBytes) {
   Must(bed.store().PutMachine({.id = "m"}, 0));
   Must(bed.store().PutPrograms("m", {{.slot = 1, .object = "gone"}, {.slot = 2, .object = "b"}},
                                {}));
-  Must(bed.store().SubmitAndWait({.kind = "CHECK",
-                                  .attachments = {{.name = "main", .bytes = "main bytes"},
-                                                  {.name = "lost", .bytes = "lost bytes"}}}));
+  Must(bed.store().SubmitAndWait(
+      {.kind = "CHECK",
+       .attachments = {{.name = "main", .bytes = "main bytes"},
+                       {.name = "lost", .bytes = Noise(kProductInRowMax + 1, 1)}}}));
   bed.Close();
   ExecuteIn(bed.path(),
             "DELETE FROM blob WHERE id = (SELECT object_blob FROM program WHERE slot = 1)"
@@ -84,7 +86,7 @@ TEST(SqliteRefusals, AProgramThatIsDamagedInItsJob) {
     bed.Reopen();
     const auto read = bed.store().ReadArtifact(1, "main");
     ASSERT_EQ(CodeOf(read), kCorruptFile) << damage;
-    EXPECT_THAT(read.error().detail, HasSubstr("kept with job 1"));
+    EXPECT_THAT(read.error().detail, HasSubstr("main of job 1 are damaged"));
     EXPECT_EQ(CodeOf(bed.store().OpenArtifact(1, "main")), kCorruptFile);
   }
 }

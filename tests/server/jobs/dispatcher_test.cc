@@ -181,11 +181,10 @@ TEST(DispatcherFinish, StoresOutcomeProductsAndLastEventTogether) {
   EXPECT_EQ(worker.Released(), true);
   EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
   const auto report = Must(bed.server.store().GetArtifact(job, "report"));
-  EXPECT_EQ(Must(bed.server.store().ReadBlob(report.sha256)), "first second");
+  EXPECT_EQ(Must(bed.server.store().ReadArtifact(job, "report")), "first second");
   EXPECT_EQ(report.media_type, "text/plain");
   EXPECT_EQ(Must(bed.server.store().GetArtifact(job, "empty")).size, 0);
-  const auto picture = Must(bed.server.store().GetArtifact(job, "picture.svg"));
-  EXPECT_EQ(Must(bed.server.store().ReadBlob(picture.sha256)), "small");
+  EXPECT_EQ(Must(bed.server.store().ReadArtifact(job, "picture.svg")), "small");
   const std::vector<v1::JobEvent> events = bed.Events(job);
   ASSERT_TRUE(events.back().has_ended());
   EXPECT_EQ(events.back().ended().kind(), v1::Outcome::KIND_COMPLETED);
@@ -353,8 +352,7 @@ TEST(DispatcherLease, NothingOfAStaleWorkerIsKept) {
   second.Finish();
   EXPECT_EQ(second.Released(), true);
   EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
-  const auto report = Must(bed.server.store().GetArtifact(job, "report"));
-  EXPECT_EQ(Must(bed.server.store().ReadBlob(report.sha256)), "good");
+  EXPECT_EQ(Must(bed.server.store().ReadArtifact(job, "report")), "good");
   for (const v1::JobEvent& event : bed.Events(job)) EXPECT_NE(event.message().text(), "stale");
 }
 
