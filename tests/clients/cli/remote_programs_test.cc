@@ -319,8 +319,8 @@ TEST_F(RemoteVerbs, AProgramComesInTheFormThatIsAskedFor) {
 TEST_F(RemoteVerbs, SpecialProgramsAreStored) {
   programs.stored.set_name("machines/m/programs/2");
   programs.stored.set_title("Z-UP");
-  const auto special = [&](const std::string& words, bool json = false) {
-    Remote remote = server.remote(json);
+  const auto special = [&](const std::string& words, bool as_json = false) {
+    Remote remote = server.remote(as_json);
     int exit_code = -1;
     CLI::App app;
     AddSpecialVerb(app, remote, exit_code);
