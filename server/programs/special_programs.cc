@@ -13,7 +13,7 @@
 namespace rmlcell::server {
 namespace {
 
-using Programs = std::vector<machine::SpecialProgram>;
+using SpecialSet = std::vector<machine::SpecialProgram>;
 
 // "1, 2, 4, 90".
 std::string SlotsOf(const auto& programs) {
@@ -24,8 +24,8 @@ std::string SlotsOf(const auto& programs) {
 }
 
 // Those that are asked for, by slot, each once.
-Result<Programs> Choose(const machine::MachineFamily& family,
-                        const v1::StoreSpecialProgramsRequest& request) {
+Result<SpecialSet> Choose(const machine::MachineFamily& family,
+                          const v1::StoreSpecialProgramsRequest& request) {
   const auto all = family.special_programs();
   if (all.empty()) {
     return Error{ErrorCode::kCellPrecondition,
@@ -38,7 +38,7 @@ Result<Programs> Choose(const machine::MachineFamily& family,
     return InvalidArgument("there is no special program " + std::to_string(slot) + "; there are " +
                            SlotsOf(all));
   }
-  Programs chosen;
+  SpecialSet chosen;
   for (const machine::SpecialProgram& program : all) {
     if (request.slots().empty() || std::ranges::count(request.slots(), program.slot) > 0)
       chosen.push_back(program);
@@ -47,10 +47,10 @@ Result<Programs> Choose(const machine::MachineFamily& family,
 }
 
 // All of them at once: the store would name the first.
-Status CheckEmpty(storage::Store& store, const std::string& machine, const Programs& programs) {
+Status CheckEmpty(storage::Store& store, const std::string& machine, const SpecialSet& programs) {
   const auto stored = store.ListPrograms(machine, 0, kSlotMax);
   if (!stored) return stored.error();
-  Programs filled;
+  SpecialSet filled;
   for (const machine::SpecialProgram& program : programs) {
     if (std::ranges::find(*stored, program.slot, &storage::ProgramSummary::slot) != stored->end())
       filled.push_back(program);
@@ -62,11 +62,12 @@ Status CheckEmpty(storage::Store& store, const std::string& machine, const Progr
                {}};
 }
 
-Result<storage::ProgramWrite> WriteOf(const machine::SpecialProgram& program,
-                                      const machine::MachineFamily& family,
-                                      const machine::Parameters& parameters, bool replace) {
+Result<storage::ProgramWrite> SpecialWrite(const machine::SpecialProgram& program,
+                                           const machine::MachineFamily& family,
+                                           const machine::Parameters& parameters, bool replace) {
   machine::Translation made = family.Translate(
-      {.name = std::string(program.file_name), .bytes = program.source}, parameters, {});
+      {.name = std::string(program.file_name), .bytes = program.source, .is_object = false},
+      parameters, {});
   if (!made.ok) {
     const auto wrong = std::ranges::find_if(made.diagnostics, [](const Diagnostic& diagnostic) {
       return IsError(diagnostic.severity);
@@ -93,7 +94,7 @@ Result<v1::StoreSpecialProgramsResponse> StoreSpecialPrograms(
   if (!machine) return machine.error();
   const machine::MachineFamily* family = families::FindFamily(machine->family);
   if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
-  const Result<Programs> chosen = Choose(*family, request);
+  const Result<SpecialSet> chosen = Choose(*family, request);
   if (!chosen) return chosen.error();
   if (!request.replace()) {
     if (const Status empty = CheckEmpty(store, *id, *chosen); !empty) return empty.error();
@@ -103,7 +104,8 @@ Result<v1::StoreSpecialProgramsResponse> StoreSpecialPrograms(
   if (!parameters) return parameters.error();
   std::vector<storage::ProgramWrite> writes;
   for (const machine::SpecialProgram& program : *chosen) {
-    Result<storage::ProgramWrite> write = WriteOf(program, *family, *parameters, request.replace());
+    Result<storage::ProgramWrite> write =
+        SpecialWrite(program, *family, *parameters, request.replace());
     if (!write) return write.error();
     writes.push_back(*std::move(write));
   }

@@ -322,7 +322,7 @@ class LiveTest(LiveTestCase):
         self.assertEqual(home, [21.02, 2201.2, -50.0, 0.0, 0.0])
         live.ask("StartMachine", program=12)
         up = eventually(lambda: (lambda now: now if now.last_run.program == 12 else None)(live.status()))
-        self.assertEqual(Outcome.Name(up.last_run.outcome), "OUTCOME_COMPLETED")
+        self.assertEqual(up.last_run.outcome.kind, Outcome.KIND_COMPLETED)
         # Not 10 mm beside it: the first CALL 2 left no offset.
         self.assertEqual([round(axis.value, 3) for axis in up.axes], [1000.0, 900.0, -50.0, 0.0, 0.0])
 
