@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/number_text.h"
@@ -256,9 +257,13 @@ TEST(OptimoRunSamples, OurSensorCalibration) {
   const std::string source(HousePrograms().front().source);
   const Compilation compiled = Compile(source, "1.S", {});
   ASSERT_TRUE(compiled.ok);
-  EXPECT_EQ(compiled.module.instructions.size(), 10U);
-  EXPECT_EQ(compiled.module.instructions.front().op, Op::kCall);
-  EXPECT_EQ(compiled.module.instructions.front().numbers[0], 2);
+  EXPECT_EQ(compiled.module.step_count, 10U);
+  const auto first = std::ranges::find_if(
+      compiled.module.instructions,
+      [](const Instruction& instruction) { return instruction.op != Op::kDeclare; });
+  ASSERT_NE(first, compiled.module.instructions.end());
+  EXPECT_EQ(first->op, Op::kCall);
+  EXPECT_EQ(first->numbers[0], 2);
   OptimoMachine machine;
   machine.Store(2, "SYSDEF (10.,20.,30.,0.,0.,0.)\nVI[3]=VI[3]+1\n");
   const Ran ran = machine.Run(source + "MOVE (1000.,1000.,-400.,0.,0.)\n");
