@@ -320,10 +320,10 @@ class LiveTest(LiveTestCase):
         live.ask("SetInputs", inputs=[{"power": False}])
         live.ask("SetInputs", inputs=[{"power": True}])
         self.assertEqual(MachineState.Name(live.ask("ZeroMachine").state), "MACHINE_STATE_JOGGING")
-        home = [round(axis.value, 3) for axis in live.wait("IDLE").axes]
-        self.assertEqual(home, [21.02, 2201.2, -50.0, 0.0, 0.0])
+        at_home = live.wait("IDLE")
+        self.assertEqual([round(axis.value, 3) for axis in at_home.axes], [21.02, 2201.2, -50.0, 0.0, 0.0])
         live.ask("StartMachine", program=12)
-        up = eventually(lambda: (lambda now: now if now.last_run.run > run.run else None)(live.status()))
+        up = eventually(lambda: (lambda now: now if now.last_run.run > at_home.last_run.run else None)(live.status()))
         self.assertEqual(up.last_run.outcome.kind, Outcome.KIND_COMPLETED)
         # Not 10 mm beside it: the first CALL 2 left no offset.
         self.assertEqual([round(axis.value, 3) for axis in up.axes], [1000.0, 900.0, -50.0, 0.0, 0.0])
