@@ -263,7 +263,6 @@ TEST(OptimoRunSamples, OurSensorCalibration) {
       [](const Instruction& instruction) { return instruction.op != Op::kDeclare; });
   ASSERT_NE(first, compiled.module.instructions.end());
   EXPECT_EQ(first->op, Op::kCall);
-  EXPECT_EQ(first->numbers[0], 2);
   OptimoMachine machine;
   machine.Store(2, "SYSDEF (10.,20.,30.,0.,0.,0.)\nVI[3]=VI[3]+1\n");
   const Ran ran = machine.Run(source + "MOVE (1000.,1000.,-400.,0.,0.)\n");
