@@ -45,6 +45,7 @@ void HandJog::Press(const PressJog& press, const HandMotion& how, const motion::
 
 void HandJog::Release(const JogKey& key, const HandMotion& how) {
   if (std::exchange(key_[IndexOf(key)], Key::kUp) != Key::kDown) return;
+  drive_->KeepTo(how.key_speeds());
   drive_->Demand(Speeds(how), how.least);
   Settle();
 }
@@ -55,7 +56,9 @@ void HandJog::ReleaseAll() {
 }
 
 void HandJog::Ask(const HandMotion& how) {
-  if (drive_ && asks()) drive_->Demand(Speeds(how));
+  if (!drive_ || !asks()) return;
+  drive_->KeepTo(how.key_speeds());
+  drive_->Demand(Speeds(how));
 }
 
 void HandJog::Brake() {
@@ -87,9 +90,10 @@ RunOn RunOnOf(const HandMotion& how, JogReference reference, const motion::AxisP
     motion::JogDrive drive(how.machine, reference, at);
     motion::AxisValues speeds;
     speeds[axis] = std::max(how.plus[axis], how.minus[axis]);
+    drive.KeepTo(how.key_speeds());
     drive.Demand(speeds);
-    double& most = axis < 3 ? on.mm : on.rad;
-    most = std::max(most, drive.RunsOn(axis));
+    on.mm = std::max(on.mm, drive.LinearRunsOn(axis));
+    if (axis >= 3) on.rad = std::max(on.rad, drive.RunsOn(axis));
   }
   return on;
 }

@@ -11,6 +11,9 @@ struct HandMotion {
   motion::AxisValues minus{};  // likewise, without sign
   motion::AxisValues least{};  // way of a key that is pressed and released at once
   bool tool_z_down = false;    // jog along the tool is reversed, Jog::tool_z_down
+
+  // The faster one of each axis.
+  motion::AxisValues key_speeds() const { return plus.cwiseMax(minus); }
 };
 
 // How far axes run on when a key is let go. LIVE-8.01

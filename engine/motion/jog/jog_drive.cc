@@ -96,7 +96,7 @@ void JogDrive::Channel::Stop(double t_s, double least) {
 }
 
 JogDrive::JogDrive(const JogMachine& machine, JogMode mode, const AxisPose& at)
-    : machine_(machine), mode_(mode) {
+    : machine_(machine), mode_(mode), most_(machine.axes.speed) {
   const AxisValues values = ValuesOf(at);
   low_ = machine.axes.travel_min.cwiseMin(values);
   high_ = machine.axes.travel_max.cwiseMax(values);
@@ -142,7 +142,7 @@ double JogDrive::ShareOfTool(const AxisValues& speeds) const {
     double speed = 0.0;
     for (int k = 0; k < 3; ++k)
       speed += (turns ? 1.0 : std::abs(along(axis, k))) * std::abs(speeds[k]);
-    if (speed > 0.0) share = std::min(share, machine_.axes.speed[axis] / speed);
+    if (speed > 0.0) share = std::min(share, most_[axis] / speed);
     if (turning > 0.0 && all > 0.0)
       share = std::min(share, 0.5 * machine_.axes.acceleration[axis] / (all * turning));
   }
@@ -155,8 +155,7 @@ double JogDrive::ShareOfHeldTip(const AxisValues& speeds) const {
   const double reach = machine_.head.reach_mm();
   const double a = std::max(std::abs(speeds[kA]), std::abs(channels_[kA].RateAt(now_s_)));
   const double b = std::max(std::abs(speeds[kB]), std::abs(channels_[kB].RateAt(now_s_)));
-  const MachineVector aside = anchor_.axes.column - machine_.head.TipOf(anchor_.axes).tip;
-  const double radius = b > 0.0 ? reach : LengthOf(PlanOf(aside));
+  const double radius = b > 0.0 ? reach : RadiusAboutA();
   const double inward = a * a * radius + (2.0 * a + b) * b * reach;
   double share = 1.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -165,15 +164,56 @@ double JogDrive::ShareOfHeldTip(const AxisValues& speeds) const {
     if (inward > 0.0)
       share = std::min(share, std::sqrt(0.5 * machine_.axes.acceleration[axis] / inward));
   }
-  return share;
+  return keeps_stop_ ? share * ShareOfStop(share * speeds, radius) : share;
+}
+
+// How far the column stands aside of the tip, which it goes round when A alone turns.
+double JogDrive::RadiusAboutA() const {
+  return LengthOf(PlanOf(anchor_.axes.column - machine_.head.TipOf(anchor_.axes).tip));
+}
+
+// Whether X, Y or Z goes no faster, with the tip held, than by its own key, and comes to rest as
+// near and as soon. Speeds and ways are those along the circles: those of the axis are never more.
+bool JogDrive::StopsAsItsKey(const AxisValues& speeds, double radius, int axis) const {
+  const auto k = static_cast<std::size_t>(axis);
+  const PathLimits& own = channels_[k].limits;
+  const double a = std::abs(speeds[kA]);
+  const double b = std::abs(speeds[kB]);
+  const double reach = machine_.head.reach_mm();
+  const double speed = std::abs(speeds[axis]) + (axis < 2 ? a * radius : 0.0) + b * reach;
+  const double time =
+      std::max(RampTime(a, 0.0, channels_[kA].limits), RampTime(b, 0.0, channels_[kB].limits));
+  const double way = RampLength(std::abs(speeds[axis]), 0.0, own) +
+                     (axis < 2 ? radius * RampLength(a, 0.0, channels_[kA].limits) : 0.0) +
+                     reach * RampLength(b, 0.0, channels_[kB].limits);
+  return speed <= most_[axis] && time <= RampTime(most_[axis], 0.0, own) &&
+         way <= RampLength(most_[axis], 0.0, own);
+}
+
+// A turn brakes more gently than an axis (the rest of the acceleration keeps the column on its
+// circle), and so has to be slower than the axis. Of what is asked for: what still goes faster
+// brakes. LIVE-8.01
+double JogDrive::ShareOfStop(const AxisValues& speeds, double radius) const {
+  const auto stops = [&](double share) {
+    return StopsAsItsKey(share * speeds, radius, 0) && StopsAsItsKey(share * speeds, radius, 1) &&
+           StopsAsItsKey(share * speeds, radius, 2);
+  };
+  if (stops(1.0)) return 1.0;
+  double low = 0.0;
+  double high = 1.0;
+  constexpr int kHalvings = 52;  // to the last digits
+  for (int n = 0; n < kHalvings; ++n) {
+    const double middle = 0.5 * (low + high);
+    (stops(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 // The speeds that no axis is too slow for.
 AxisValues JogDrive::Within(AxisValues speeds) const {
-  const AxisValues& most = machine_.axes.speed;
   const int alone_from = mode_ == JogMode::kTool ? 3 : 0;
   for (int k = alone_from; k < kAxisCount; ++k)
-    speeds[k] = std::clamp(speeds[k], -most[k], most[k]);
+    speeds[k] = std::clamp(speeds[k], -most_[k], most_[k]);
   if (mode_ == JogMode::kTool) speeds.head<3>() *= ShareOfTool(speeds);
   if (mode_ == JogMode::kAbsolute && Turns(speeds)) speeds *= ShareOfHeldTip(speeds);
   return speeds;
@@ -203,6 +243,11 @@ void JogDrive::AimOne(std::size_t channel) {
 void JogDrive::AimAll() {
   coupled_ = Coupled();
   for (const std::size_t k : kAxes) AimOne(k);
+}
+
+void JogDrive::KeepTo(const AxisValues& key_speeds) {
+  most_ = machine_.axes.speed.cwiseMin(key_speeds);
+  keeps_stop_ = true;
 }
 
 void JogDrive::Demand(const AxisValues& speeds, const AxisValues& least) {
@@ -396,6 +441,12 @@ bool JogDrive::rests() const {
 double JogDrive::RunsOn(int channel) const {
   const Channel& one = channels_[static_cast<std::size_t>(channel)];
   return RampLength(std::abs(one.wanted), 0.0, one.limits);
+}
+
+double JogDrive::LinearRunsOn(int channel) const {
+  if (channel < 3) return RunsOn(channel);
+  if (mode_ != JogMode::kAbsolute) return 0.0;
+  return RunsOn(channel) * (channel == 3 ? RadiusAboutA() : machine_.head.reach_mm());
 }
 
 // Rounding may leave it a last digit beyond an end.

@@ -39,6 +39,11 @@ class JogDrive {
   // It stands at `at`; an axis that stands outside its travel may go back, and no farther.
   JogDrive(const JogMachine& machine, JogMode mode, const AxisPose& at);
 
+  // Of the demands behind it: what each axis is moved at by its own key. Whatever moves them, no
+  // axis X, Y or Z goes faster than this, nor, along the axes of the tool or while the tip is held,
+  // runs on farther; and with the tip held not longer either. None was told: as fast as it can.
+  void KeepTo(const AxisValues& key_speeds);
+
   // From now on: X Y Z A B, or those of the tool, mm/s and rad/s with sign. Lowered so that no axis
   // goes faster than it can, together where they move axes as one. `least`: how far each goes at
   // least, from where it began to move, though its speed becomes 0: one step of a mill.
@@ -52,6 +57,8 @@ class JogDrive {
   double tip_speed_mm_s() const;
   // How far one of them runs on from the speed that is asked for now, when it is asked for no more.
   double RunsOn(int channel) const;
+  // And X, Y or Z at most with it: of a turn with the tip held along the circle, from here.
+  double LinearRunsOn(int channel) const;
   JogMode mode() const { return mode_; }
 
  private:
@@ -90,6 +97,9 @@ class JogDrive {
   AxisValues Within(AxisValues speeds) const;
   double ShareOfTool(const AxisValues& speeds) const;
   double ShareOfHeldTip(const AxisValues& speeds) const;
+  double ShareOfStop(const AxisValues& speeds, double radius) const;
+  bool StopsAsItsKey(const AxisValues& speeds, double radius, int axis) const;
+  double RadiusAboutA() const;
   bool Turns(const AxisValues& speeds) const;
   bool Coupled() const;
   bool AsOne(std::size_t channel) const {
@@ -107,7 +117,9 @@ class JogDrive {
 
   const JogMachine machine_;
   const JogMode mode_;
-  AxisValues low_;  // travel
+  AxisValues most_;          // speed of each axis
+  bool keeps_stop_ = false;  // the way and the time from there, too
+  AxisValues low_;           // travel
   AxisValues high_;
   Channels channels_{};
   Anchor anchor_{};
