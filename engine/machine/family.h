@@ -235,7 +235,7 @@ class MachineFamily {
                                                       std::string_view saved) const;
 
   // The object before an edit that its handbox made, of that behind it; empty: there was no
-  // program. Errors: CellInvalidArgument, for another object; CellNotLive without handbox.
+  // program. Errors: CellEtagMismatch, for another object; CellNotLive without handbox.
   virtual Result<std::string> UndoEdit(const ProgramEdit& edit, std::string_view object) const;
 
   // Checks and translates. Bad programs are diagnostics, not errors.

@@ -15,7 +15,7 @@ using machine::ProgramEdit;
 constexpr std::string_view kEndMarker = "ENDPRG";
 
 Error AnotherObject() {
-  return {ErrorCode::kCellInvalidArgument, "the program is not the one behind the edit", {}};
+  return {ErrorCode::kCellEtagMismatch, "the program is not the one behind the edit", {}};
 }
 
 std::string ObjectOfText(std::string_view text) {
@@ -29,8 +29,10 @@ Result<std::string> UndoStep(const ProgramEdit& edit, std::string_view object) {
   const Result<Module> module = DecodeObject(object);
   if (!module) return module.error();
   const auto place = static_cast<std::uint32_t>(edit.place);
-  if (edit.kind == ProgramEdit::Kind::kDelete)
-    return InsertInstruction(*module, place, edit.text_before);
+  if (edit.kind == ProgramEdit::Kind::kDelete) {
+    Result<std::string> before = InsertInstruction(*module, place, edit.text_before);
+    return before ? std::move(before) : AnotherObject();  // there it was one instruction
+  }
   if (place >= module->instructions.size() || InstructionText(*module, place) != edit.text_after)
     return AnotherObject();
   return RemoveInstruction(*module, place);

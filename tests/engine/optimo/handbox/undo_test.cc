@@ -50,8 +50,22 @@ TEST_F(Undo, NeedsTheProgramBehindTheEdit) {
   ASSERT_EQ(edits.size(), 2U);
   const Result<std::string> wrong = family_.UndoEdit(edits[0], ObjectAt(12));
   ASSERT_FALSE(wrong);
-  EXPECT_EQ(wrong.error().code, ErrorCode::kCellInvalidArgument);
-  EXPECT_FALSE(family_.UndoEdit(edits[1], "no object"));
+  EXPECT_EQ(wrong.error().code, ErrorCode::kCellEtagMismatch);
+  const Result<std::string> none = family_.UndoEdit(edits[1], "no object");
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::kCellEtagMismatch);
+  // Somebody else's program came between two edits, and looks the same from outside: what was taken
+  // out or put in does not belong there.
+  Have({{12, kTaught}});
+  Keys("JOB 1 2 NEXT 2 ENT DEL 1 MOV ENT REC");
+  const machine::Translation other = family_.Translate({.bytes = "ENDTASK\n"}, parameters(), {});
+  for (machine::ProgramEdit edit : edits) {
+    edit.object = other.object;
+    edit.place = std::max(edit.place, 1) + 1;
+    const Result<std::string> before = family_.UndoEdit(edit, other.object);
+    ASSERT_FALSE(before);
+    EXPECT_EQ(before.error().code, ErrorCode::kCellEtagMismatch);
+  }
 }
 
 // LIVE-7.09 OPT-B.69: sessions of any keys; undo all is the object before, byte for byte.
