@@ -149,8 +149,10 @@ std::string WarningLine(const HandboxView& view) {
   if (status.has_run()) {
     const v1::MachineRun& run = status.run();
     const int program = run.place().program() > 0 ? run.place().program() : run.program();
-    add("run " + std::to_string(run.run()) + ", program " + std::to_string(program) + ", step " +
-        std::to_string(run.place().step()));
+    add("run " + std::to_string(run.run()) +
+        (program > 0 ? ", program " + std::to_string(program) + ", step " +
+                           std::to_string(run.place().step())
+                     : ", by hand"));
   }
   return Line(view.marks).Add(text, Look::kBold).Take();
 }

@@ -22,8 +22,8 @@ namespace {
 
 std::string PlaceOf(const v1::MachineRun& run) {
   const v1::SourcePlace& place = run.place();
-  std::string text =
-      "program " + std::to_string(place.program() > 0 ? place.program() : run.program());
+  const int program = place.program() > 0 ? place.program() : run.program();
+  std::string text = program > 0 ? "program " + std::to_string(program) : "by hand";
   if (place.has_byte_offset()) text += ", byte " + std::to_string(place.byte_offset());
   if (place.step() > 0) text += ", step " + std::to_string(place.step());
   if (!run.instruction().empty()) text += " " + Visible(run.instruction());

@@ -32,6 +32,7 @@ inline double ToSeconds(SimTime time) { return static_cast<double>(time.count())
 // A place in the program memory of a machine. The executable of slot n lives at n + 100.
 inline constexpr int kSlotMin = 1;
 inline constexpr int kSlotMax = 99;
+inline constexpr int kNoProgram = 0;  // in no slot: no instruction can name it
 inline constexpr int kExecutableOffset = 100;
 inline bool IsSlot(int number) { return number >= kSlotMin && number <= kSlotMax; }
 

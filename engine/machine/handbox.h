@@ -104,6 +104,9 @@ class Handbox {
   // It is not, and was asked for in vain.
   virtual void EditRefused(ErrorCode code) = 0;
 
+  // What was carried out from it ended with an error, which is shown.
+  virtual void FunctionFailed() = 0;
+
   // Something is half entered: a mask, or a question.
   virtual bool has_open_mask() const = 0;
   virtual Panel panel(const MachineView& view) const = 0;

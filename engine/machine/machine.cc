@@ -137,7 +137,8 @@ void Machine::Settle() {
 // What it made of an object that was replaced meanwhile is of no use.
 void Machine::CloseRun() {
   const RunState state = run_->state();
-  const Outcome outcome = run_->outcome();
+  Outcome outcome = run_->outcome();
+  outcome.place = OfMemory(outcome.place);
   now_ = std::max(now_, note_.begun + state.time);
   over_.push_back({.run = note_,
                    .outcome = outcome,
@@ -167,14 +168,7 @@ void Machine::CloseRun() {
   changed_.clear();
   base_.reset();
   halted_at_.reset();
-  if (note_.by_hand) GoHome(outcome);
-}
-
-// From the console; at the machine itself it ends at the reference. OPT-4.50
-void Machine::GoHome(const Outcome& outcome) {
-  if (!std::exchange(goes_home_, false) || outcome.kind != OutcomeKind::kCompleted) return;
-  const Status begun = Act(StartRun{.program = family_.info().home_program});
-  if (!begun) Show(begun.error().code);
+  if (note_.by_hand) EndByHand(outcome);
 }
 
 MachineState Machine::state() const {
@@ -209,6 +203,7 @@ MachineStatus Machine::status() const {
     status.run.place.step = note_.entered->at.at.step;
   }
   if (!status.by_hand && note_.by_hand) status.by_hand = note_.hand;
+  status.run.place = OfMemory(status.run.place);
   const RunState& run = status.run;
   if (run.place.step > 0 && !selected_ && (!note_.by_hand || Pauses())) {
     status.shown = {.program = run.place.program,
@@ -352,31 +347,6 @@ Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> h
   return {};
 }
 
-// LIVE-2.10 x7: in MANUAL, and from the console in REMOTE, but not beside a run that is held: there
-// program 4 follows, and a machine has one run. OPT-4.49, 4.50
-Status Machine::Act(const ZeroAxes& /*input*/) {
-  const FamilyInfo& info = family_.info();
-  if (info.zero_program.empty())
-    return Error{ErrorCode::kCellNotLive,
-                 "the axes of " + Told("machine", info.title) + " have their reference always",
-                 {}};
-  const bool goes_home = mode_ == Mode::kRemote && run_ == nullptr;
-  if (const Status may = MayMoveByHand(mode_ == Mode::kManual || goes_home); !may)
-    return may.error();
-  if (run_ != nullptr)
-    return SendByHand({.what = HandRun::kZero, .text = std::string(info.zero_program)});
-  Translation zero =
-      family_.Translate({.bytes = info.zero_program}, parameters_, {.advice = false});
-  RMLCELL_CHECK(zero.ok);
-  const Status begun =
-      Begin({.program = info.home_program,
-             .unzeroed = true,
-             .brought = StoredProgram{.name = "ZERO", .object = Bytes::Of(std::move(zero.object))}},
-            Mode::kRemote, HandRun::kZero);
-  goes_home_ = begun && goes_home;
-  return begun;
-}
-
 // What is on its way to rest stays there, whatever was asked for meanwhile.
 void Machine::Hold() {
   resume_behind_ = false;
@@ -414,7 +384,7 @@ Status Machine::Act(const EmergencyStop& input) {
   emergency_ = input.pressed;
   if (!input.pressed || !on_) return {};
   jog_.Freeze();
-  const Place place = run_ != nullptr ? run_->state().place : Place{};
+  const Place place = run_ != nullptr ? OfMemory(run_->state().place) : Place{};
   const bool ends_run = run_ != nullptr;
   const ErrorCode code = family_.info().emergency_stop;
   ToRun(InputKind::kEmergencyStop);

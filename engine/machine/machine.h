@@ -216,7 +216,8 @@ class Machine {
   Status MayStartAt(const StartAtStep& input) const;
   RunSetup SetupTo(const StartAtStep& input) const;
   Status Enter(const StartAtStep& input, const StartPreview& preview);
-  void GoHome(const Outcome& outcome);
+  void EndByHand(const Outcome& outcome);
+  Place OfMemory(const Place& place) const;
   Status MayJog(const JogKey& key) const;
   std::unique_ptr<Standing> StandingOfRun() const;
   std::optional<HandMotion> ByHand(bool fast) const;

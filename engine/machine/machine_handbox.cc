@@ -63,6 +63,7 @@ Result<KeyAnswer> Machine::PressKey(std::string_view key, KeyAction action) {
   if (done && asked->setting) standing_->SetModal(asked->setting->name, asked->setting->values);
   if (done && asked->shown) Select(*std::move(asked->shown));
   const std::optional<ErrorCode> refused = handbox_->Done(done);
+  Settle();  // a FUNCTION may have failed before anything moved
   return KeyAnswer{.message = refused ? refused : asked->message,
                    .beeps = asked->beeps,
                    .edit = std::move(asked->edit)};
@@ -89,7 +90,6 @@ double Machine::OverrideOf(std::optional<HandRun> hand) const {
   return handbox_->OverrideOf(*hand, override_percent_);
 }
 
-// Its text lies where no program is that it may call.
 Status Machine::BeginByHand(const RunByHand& asked) {
   if (const Status may = MayMoveByHand(mode_ == Mode::kManual); !may) return may.error();
   if (!status().run.zeroed)
@@ -98,15 +98,63 @@ Status Machine::BeginByHand(const RunByHand& asked) {
     if (asked.what != HandRun::kFunction) return SendByHand(asked);
     return NotNow(state(), "a run is open; end it first");
   }
-  int slot = kSlotMax;
-  while (slot > kSlotMin && memory_.programs.contains(slot)) --slot;
   Translation made = family_.Translate({.bytes = asked.text}, parameters_, {.advice = false});
   RMLCELL_CHECK(made.ok);
   return Begin(
-      {.program = slot,
+      {.program = kNoProgram,
        .source = StartSource::kPanel,
        .brought = StoredProgram{.name = "HANDBOX", .object = Bytes::Of(std::move(made.object))}},
       Mode::kCycle, asked.what);
+}
+
+// LIVE-2.10 x7: in MANUAL, and from the console in REMOTE, but not beside a run that is held: there
+// program 4 follows, and a machine has one run. OPT-4.49, 4.50
+Status Machine::Act(const ZeroAxes& /*input*/) {
+  const FamilyInfo& info = family_.info();
+  if (info.zero_program.empty())
+    return Error{ErrorCode::kCellNotLive,
+                 "the axes of " + Told("machine", info.title) + " have their reference always",
+                 {}};
+  const bool goes_home = mode_ == Mode::kRemote && run_ == nullptr;
+  if (const Status may = MayMoveByHand(mode_ == Mode::kManual || goes_home); !may)
+    return may.error();
+  if (run_ != nullptr)
+    return SendByHand({.what = HandRun::kZero, .text = std::string(info.zero_program)});
+  Translation zero =
+      family_.Translate({.bytes = info.zero_program}, parameters_, {.advice = false});
+  RMLCELL_CHECK(zero.ok);
+  const Status begun =
+      Begin({.program = kNoProgram,
+             .unzeroed = true,
+             .brought = StoredProgram{.name = "ZERO", .object = Bytes::Of(std::move(zero.object))}},
+            Mode::kRemote, HandRun::kZero);
+  goes_home_ = begun && goes_home;
+  return begun;
+}
+
+// Of what runs by hand the text is in no slot, and its steps are not those of anybody's program.
+Place Machine::OfMemory(const Place& place) const {
+  return note_.by_hand && place.program == kNoProgram ? Place{} : place;
+}
+
+// ZERO from the console goes on; at the machine itself it ends at the reference (OPT-4.50). What
+// failed is not there to be recorded (OPT-9.37).
+void Machine::EndByHand(const Outcome& outcome) {
+  const bool failed = outcome.code && Lookup(*outcome.code).family != ErrorFamily::kCell;
+  if (failed && handbox_ != nullptr && note_.hand == HandRun::kFunction) handbox_->FunctionFailed();
+  if (!std::exchange(goes_home_, false) || outcome.kind != OutcomeKind::kCompleted) return;
+  const Status begun = Act(StartRun{.program = family_.info().home_program});
+  if (begun) return;
+  const Error& error = begun.error();
+  Show(error.code);
+  // By the time of the run that is over: none has begun. Nobody called for it who were answered.
+  const SimTime at = over_.back().lasted;
+  observer_.OnDiagnostic(at, {.code = error.code,
+                              .severity = Lookup(error.code).severity,
+                              .detail = error.detail,
+                              .rule = "OPT-4.50",
+                              .program = family_.info().home_program,
+                              .at = at});
 }
 
 Status Machine::Act(const PressedKey& input) {

@@ -69,8 +69,8 @@ Status Machine::SendByHand(const RunByHand& asked) {
   Translation made = family_.Translate({.bytes = asked.text}, parameters_, {.advice = false});
   RMLCELL_CHECK(made.ok);
   RunSetup setup(parameters_);
-  setup.main_program = kSlotMax;
-  setup.programs[kSlotMax] = {.name = "HANDBOX", .object = Bytes::Of(std::move(made.object))};
+  setup.main_program = kNoProgram;
+  setup.programs[kNoProgram] = {.name = "HANDBOX", .object = Bytes::Of(std::move(made.object))};
   setup.machine_state = run_->SaveMachine();
   setup.override_percent = OverrideOf(asked.what);
   setup.breakpoint = setup.simul = ProgramStep{};

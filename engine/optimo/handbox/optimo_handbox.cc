@@ -335,6 +335,13 @@ machine::Panel OptimoHandbox::panel(const MachineView& view) const {
   return show(DefaultText(shown), false);
 }
 
+// Nothing is ready to record that nobody has seen work: the display is free for the error, and REC
+// does what it does with nothing flashing. NO of F3 records it all the same. OPT-4.06, OPT-9.35
+void OptimoHandbox::FunctionFailed() {
+  Drop();
+  told_.reset();
+}
+
 void OptimoHandbox::CyclePower() {
   Drop();
   modes_ = {};

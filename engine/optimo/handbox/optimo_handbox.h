@@ -48,6 +48,8 @@ class OptimoHandbox final : public machine::Handbox {
   std::optional<machine::ShownStep> EditStored() override;
   void EditRefused(ErrorCode code) override;
 
+  void FunctionFailed() override;
+
   machine::Panel panel(const machine::MachineView& view) const override;
   machine::JogReference jog_reference() const override { return modes_.reference; }
   double OverrideOf(machine::HandRun run, double override_percent) const override;

@@ -129,6 +129,7 @@ Result<Executable> Link(int main_slot, const ObjectLookup& lookup, const LinkOpt
       const int slot = i.numbers[0];
       const auto function = [slot] { return "FUNCTION " + Told("function", slot); };
       const auto place = [&, step = i.step] {
+        if (executable.modules[m].slot == kNoProgram) return function();  // given by hand
         return function() + " in program " + Told("program", executable.modules[m].slot) +
                ", step " + Told("step", step);
       };

@@ -6,6 +6,7 @@
 namespace rmlcell::machine {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 
 constexpr const char* kHome = "COORD ABSOL\nMOVE (100.,200.,-30.,0.,0.)\n";
@@ -62,6 +63,17 @@ TEST_F(MachineZeroTest, WithoutAHomeProgramItStandsAtItsZero) {
   EXPECT_EQ(machine->TakeRunsOver().size(), 1U);
   EXPECT_EQ(CodeText(*machine->status().message), "OPT-E7102");
   EXPECT_NEAR(machine->status().run.axes.column.norm(), 0.0, 1e-9);
+  // Who hears of runs is told, too: nobody at the console sees the display.
+  EXPECT_THAT(heard.told.back(), EndsWith(" 0/0 finding OPT-E7102"));
+}
+
+// LIVE-3.16: the procedure is no program of the memory.
+TEST_F(MachineZeroTest, TheProcedureIsNoProgram) {
+  LoadWithoutReference();
+  Good(ZeroAxes{});
+  GoOn(At(1.0));
+  EXPECT_EQ(machine->status().open->program, 0);
+  EXPECT_EQ(machine->status().run.place, Place());
 }
 
 // OPT-4.49: in MANUAL it ends at the reference.

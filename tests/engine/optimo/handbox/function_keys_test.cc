@@ -114,6 +114,71 @@ TEST_F(FunctionKeys, WhatCannotBeExecuted) {
   EXPECT_EQ(Said(), 7310);
 }
 
+// OPT-4.06 OPT-9.37: what fails shows its number at once, and until ERR; it is not ready to record
+// then, and REC is as with nothing flashing. NO records it all the same (OPT-9.35).
+TEST_F(FunctionKeys, WhatFailsIsShownAndNotReadyToRecord) {
+  AtStep4("COORD ROBOT\nPATH LIN\nMOVE (100.,2201.2,-350.,0.,0.)\nRETURN\n");
+  const std::string before = ObjectAt(12);
+  Keys("F3 4 5 ENT ENT 1");
+  EXPECT_EQ(Shows(), "ERROR 7103");
+  GoOn(At(1.0));
+  EXPECT_EQ(Shows(), "ERROR 7103");
+  EXPECT_EQ(machine->panel().message, ErrorCode::kFunctionMissing);
+  Keys("ERR");
+  EXPECT_EQ(Shows(), "P=12S=0004I=ENDTASK");
+  Keys("F3 4 4 ENT ENT 1");
+  GoOn(At(2.0));
+  EXPECT_EQ(Shows(), "ERROR 7302");
+  Keys("REC");
+  EXPECT_EQ(Said(), 0);
+  EXPECT_EQ(Shows(), "ERROR 7302");
+  EXPECT_EQ(ObjectAt(12), before);
+  Keys("ERR");
+  EXPECT_EQ(Shows(), "P=12S=0004I=ENDTASK");
+  Keys("F3 4 4 ENT ENT 0 REC");
+  EXPECT_EQ(Program(12).at(3), "FUNCTION 44");
+}
+
+// OPT-9.19: without a rotary table 99 is an ordinary function, missing where it is not stored, and
+// carried out where it is, in whatever slots there are programs. OPT-9.06: it is nobody's main
+// program.
+TEST_F(FunctionKeys, Function99IsAnOrdinaryOne) {
+  AtStep4("RETURN\n");
+  Keys("F3 9 9 ENT ENT 1");
+  GoOn(At(1.0));
+  const machine::RunOver over = Over();
+  EXPECT_EQ(over.outcome.code, ErrorCode::kFunctionMissing);
+  EXPECT_EQ(std::string(over.outcome.detail), "no object for FUNCTION 99");
+  EXPECT_EQ(over.run.program, 0);
+  Keys("ERR");
+  for (int slot = kSlotMin; slot <= kSlotMax; ++slot)
+    Good(machine::StoreProgram{.slot = slot, .program = Translated("VR[1] = 9.\nRETURN\n")});
+  Keys("F3 9 9 ENT ENT 1");
+  GoOn(At(2.0));
+  EXPECT_EQ(Over().outcome.kind, machine::OutcomeKind::kCompleted);
+  EXPECT_EQ(Value("VR[1]"), "9.0");
+  EXPECT_EQ(Shows(), "*P=12 S=0004 FUNC=99");
+}
+
+// LIVE-3.16: what runs by hand is no program of the memory, until a FUNCTION is in one.
+TEST_F(FunctionKeys, WhatRunsByHandIsNoProgram) {
+  AtStep4("DELAY 1\nRETURN\n");
+  Hold("X+", 4.0);
+  Keys("ERR");
+  const auto place = [this] { return machine->status().run.place; };
+  Do("HOME", KeyAction::kPress);
+  GoOn(machine->time() + At(1.0));
+  EXPECT_EQ(state(), MachineState::kJogging);
+  EXPECT_EQ(machine->status().open->program, 0);
+  EXPECT_EQ(place(), machine::Place());
+  Do("HOME", KeyAction::kRelease);
+  GoOn(machine->time() + At(2.0));
+  Keys("F3 4 4 ENT ENT 1");
+  GoOn(machine->time() + At(0.5));
+  EXPECT_EQ(place().program, 44);
+  EXPECT_EQ(place().step, 1);
+}
+
 // OPT-4.15 OPT-4.35: while it is down, at the speed of jog.
 TEST_F(FunctionKeys, HomeMovesWhileItIsDown) {
   Have({});
