@@ -251,6 +251,7 @@ TEST_F(ContinueJobTest, WhatIsRefusedLeavesTheDecisionOpen) {
   v1::HostOrder direct;
   *direct.mutable_start_at_step() = Continue(token).continue_job().start();
   direct.mutable_start_at_step()->add_confirmations(v1::CONFIRMATION_INSPECTED);
+  direct.mutable_start_at_step()->set_request_id("direct");
   EXPECT_EQ(Do(direct).refusal().code(), "CELL-E9409");
   v1::HostOrder at_last = Continue(token);
   at_last.mutable_continue_job()->mutable_start()->set_request_id("at last");

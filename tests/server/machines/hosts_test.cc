@@ -347,7 +347,7 @@ TEST_F(HostsTest, WhatWasShownOfOneMovedByHandIsVoid) {
   back.mutable_hand_back()->set_fence(Fence(*next));
   hosts.Receive(*next, back);
   hosts.Leave(*next);
-  EXPECT_TRUE(Eventually([&] { return !hosts.IsHosted("mill-1"); }));
+  EXPECT_TRUE(Eventually([&] { return Must(bed.store().MachineLeases()).empty(); }));
   Joined(Hello("third/3"));
   EXPECT_EQ(Told().size(), told);
 }
