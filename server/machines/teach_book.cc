@@ -111,6 +111,7 @@ Result<TeachBook::Undo> TeachBook::Prepare(const v1::UndoTeachEntriesRequest& re
                    {}};
   std::int64_t before = 0;
   bool newest = true;
+  std::string stands = EtagOf(undo.expected);  // behind the next older entry; empty: nobody knows
   for (;;) {
     const auto records = store_.ListTeachRecords(name->machine, name->slot, before, kPages.max);
     if (!records) return records.error();
@@ -119,26 +120,30 @@ Result<TeachBook::Undo> TeachBook::Prepare(const v1::UndoTeachEntriesRequest& re
       if (record.number < request.down_to()) return none;
       const auto entry = EntryOf(record);
       if (!entry) return entry.error();
+      const bool is_undone = before != 0 && record.number >= before;
+      if (!is_undone && !stands.empty() && entry->etag_after() != stands)
+        return Error{ErrorCode::kCellEtagMismatch,
+                     request.program() + " was changed otherwise since entry " +
+                         std::to_string(record.number),
+                     {}};
       if (std::exchange(newest, false)) {
-        if (entry->etag_after() != EtagOf(undo.expected))
-          return Error{ErrorCode::kCellEtagMismatch,
-                       request.program() + " was changed otherwise since entry " +
-                           std::to_string(record.number),
-                       {}};
         if (entry->act() == v1::TeachEntry::ACT_UNDO &&
             entry->undone_down_to() == request.down_to()) {
           undo.done = *entry;
           return undo;
         }
       }
-      if (before != 0 && record.number >= before) continue;
+      if (is_undone && record.number == before) stands = entry->etag_before();
+      if (is_undone) continue;
       before = record.number;
+      stands = entry->etag_before();
       if (entry->act() == v1::TeachEntry::ACT_UNDO) {
         if (record.number == request.down_to())
           return Error{ErrorCode::kCellInvalidArgument,
                        "down_to: what was taken back is taught again, not taken back again",
                        {}};
         before = entry->undone_down_to();
+        stands.clear();
         continue;
       }
       auto object = family->UndoEdit(EditOf(*entry, undo.object), undo.object);

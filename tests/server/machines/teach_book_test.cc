@@ -112,5 +112,19 @@ TEST_F(TeachBookTest, AnotherChangeIsNotTakenBack) {
   EXPECT_EQ(CodeOf(book.TakeBack(DownTo(5), "anna")), ErrorCode::kCellNotFound);
 }
 
+// LIVE-7.09: nor one that somebody made between two entries, though their steps are where they were.
+TEST_F(TeachBookTest, AChangeBetweenIsNotTakenBack) {
+  Stored("DELAY 9.0\n");
+  Teach(v1::TeachEntry::ACT_INSERT, "DELAY 1.0\nDELAY 9.0\n", 1, "", "DELAY 1.0");
+  Stored("DELAY 1.0\nDELAY 9.0\nDELAY 8.0\n");
+  const std::string between = Object();
+  Teach(v1::TeachEntry::ACT_INSERT, "DELAY 1.0\nDELAY 2.0\nDELAY 9.0\nDELAY 8.0\n", 2, "",
+        "DELAY 2.0");
+  EXPECT_EQ(CodeOf(book.TakeBack(DownTo(1), "anna")), ErrorCode::kCellEtagMismatch);
+  Must(book.TakeBack(DownTo(2), "anna"));
+  EXPECT_EQ(Object(), between);
+  EXPECT_EQ(CodeOf(book.TakeBack(DownTo(1), "anna")), ErrorCode::kCellEtagMismatch);
+}
+
 }  // namespace
 }  // namespace rmlcell::server
