@@ -112,7 +112,8 @@ TEST_F(TeachBookTest, AnotherChangeIsNotTakenBack) {
   EXPECT_EQ(CodeOf(book.TakeBack(DownTo(5), "anna")), ErrorCode::kCellNotFound);
 }
 
-// LIVE-7.09: nor one that somebody made between two entries, though their steps are where they were.
+// LIVE-7.09: nor one that somebody made between two entries, though their steps are where they
+// were.
 TEST_F(TeachBookTest, AChangeBetweenIsNotTakenBack) {
   Stored("DELAY 9.0\n");
   Teach(v1::TeachEntry::ACT_INSERT, "DELAY 1.0\nDELAY 9.0\n", 1, "", "DELAY 1.0");
