@@ -157,6 +157,8 @@ class Machine {
   // What the open run began with and what came since, so that it can be simulated again; none: no
   // run of a program is open, or more came than is kept.
   const std::optional<StartBase>& base() const { return base_; }
+  // What a run would begin with now.
+  StartBase BaseOfNow() const;
   SimTime base_time() const;         // where it is, by the time of these inputs
   std::vector<Place> stack() const;  // of the open run, that in execution last; else nothing
   std::vector<ModalValue> modal_values() const;

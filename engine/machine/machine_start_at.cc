@@ -18,13 +18,17 @@ Status Machine::MayStartAt(const StartAtStep& input) const {
   return MayRun(family_.info(), memory_, input.program, input.brought.has_value());
 }
 
+StartBase Machine::BaseOfNow() const {
+  return {.machine_state = standing_->Save(),
+          .inputs = {},
+          .mode = mode_,
+          .override_percent = override_percent_};
+}
+
 // In SINGLE a run would halt behind each step, and pass no corner: it goes there as in CYCLE. A dry
 // run that is armed waits for the next start.
 RunSetup Machine::SetupTo(const StartAtStep& input) const {
-  const StartBase base = input.base.value_or(StartBase{.machine_state = standing_->Save(),
-                                                       .inputs = {},
-                                                       .mode = mode_,
-                                                       .override_percent = override_percent_});
+  const StartBase base = input.base ? *input.base : BaseOfNow();
   RunSetup setup(parameters_);
   setup.programs = memory_.programs;
   if (input.brought) setup.programs[input.program] = *input.brought;

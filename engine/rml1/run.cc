@@ -149,7 +149,8 @@ RunPhase MillRun::Advance(SimTime until) {
   while (s.phase != RunPhase::kFinished) {
     const bool halted = s.halt != HaltCause::kNone;
     const bool scripted = s.next_input < setup_.inputs.size();
-    if (halted && !scripted) return s.phase = RunPhase::kHalted;
+    // A key that was pressed behind a step is not for who comes to it. LIVE-6.01
+    if (halted && (!scripted || s.halt == HaltCause::kEntry)) return s.phase = RunPhase::kHalted;
     const SimTime input_at = NextInputTime();
     SimTime next = s.now;  // of what happens next
     if (halted) {

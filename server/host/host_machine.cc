@@ -209,8 +209,7 @@ Result<v1::HostOrderAnswer> HostMachine::Control(const v1::HostOrder& order, con
     if (!acquired) return acquired.error();
     *answer.mutable_control() = *std::move(acquired);
     // What the earlier holder was about to enter is nobody's. LIVE-4.03
-    if (taken_over && machine().has_open_mask())
-      static_cast<void>(Apply(machine::PressedKey{.key = "ERR"}, nullptr));
+    if (taken_over) DropMask();
   } else if (order.has_renew_control()) {
     const auto renewed = desk_.Renew(order.renew_control().control_token(), now);
     if (!renewed) return renewed.error();
@@ -334,7 +333,9 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   // one.
   const bool by_hand = key != nullptr || std::holds_alternative<machine::ZeroAxes>(input);
   const bool begins = starts || (by_hand && !machine().status().open);
-  const auto stands = begins ? std::optional(MarkNow()) : std::nullopt;
+  // What is half entered stands in no mark: then the recording goes on, with the keys that did it.
+  const auto stands =
+      begins && !machine().has_open_mask() ? std::optional(MarkNow()) : std::nullopt;
   if (begins) {
     run_begun_ = machine().time();
     told_of_run_ = 0;

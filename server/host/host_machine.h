@@ -126,6 +126,7 @@ class HostMachine : private machine::RunObserver {
   void LetGo(const std::string& key);
   void LetKeysGo(const HostTime& now);
   void EndKeys();
+  void DropMask();
   Result<v1::HostOrderAnswer> CarryOutKeys(const v1::HostOrder& order, const HostTime& now);
   Result<v1::HandboxSession> OpenSession();
   std::string SessionName() const;

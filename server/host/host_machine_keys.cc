@@ -198,9 +198,17 @@ void HostMachine::LetKeysGo(const HostTime& now) {
   for (const std::string& key : dead_man_.LetGo(now)) LetGo(key);
 }
 
-// Another one presses from here on: what is down is nobody's.
+// As a person does it: the first ERR may take an error from the display.
+void HostMachine::DropMask() {
+  constexpr int kTimes = 3;
+  for (int i = 0; i < kTimes && machine().has_open_mask(); ++i)
+    static_cast<void>(Apply(machine::PressedKey{.key = "ERR"}, nullptr));
+}
+
+// Another one presses from here on: what is down, and what is half entered, is nobody's.
 void HostMachine::EndKeys() {
   for (const std::string& key : dead_man_.down()) LetGo(key);
+  DropMask();
   keys_ = {};
   dead_man_ = {};
   session_ = 0;

@@ -77,6 +77,7 @@ Result<HostMachine::PreviewTask> HostMachine::PreparePreview(const v1::HostOrder
     so_far.cut_until = SimTime(cut_off_base_->until_ns());
   PreviewTask task{.start = *std::move(start), .basis = Basis()};
   std::optional<SimTime> occurrence_at;
+  if (behind_it && !again) task.start.base = machine().BaseOfNow();
   if (again) {
     auto base = bridge::FromProto(*cut_off_base_);
     if (!base) return base.error();

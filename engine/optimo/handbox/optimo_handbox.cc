@@ -139,7 +139,8 @@ void OptimoHandbox::ClearError(Turn& turn) {
     asks_.clear();
     return;
   }
-  if (turn.view.status.message) turn.Ask(machine::ClearMessage{});
+  if (turn.view.status.message) return turn.Ask(machine::ClearMessage{});
+  ready_.reset();
 }
 
 void OptimoHandbox::ChangeMode(Turn& turn, int by) {

@@ -138,6 +138,28 @@ TEST_F(StartBaseTest, ARunThatWasEnteredCanBeCutOffAgain) {
   EXPECT_EQ(machine->base()->machine_state, start.base->machine_state);
 }
 
+// LIVE-6.01, LIVE-5.08: a START that ended a STOP behind the step is not for who comes to the step:
+// he would go on to the end of the program, and nothing of it would be cut.
+TEST_F(StartBaseTest, AKeyBehindTheStepIsNotForIt) {
+  Load({"VI[1]=1\nDELAY 2\nVI[2]=1\nDELAY 10\nVI[3]=1\nDELAY 30\n"});
+  Start();
+  GoOn(At(5.0));  // in step 4
+  Good(StopRun{});
+  GoOn(At(8.0));
+  Good(ResumeRun{});
+  GoOn(At(9.0));
+  const SimTime until = machine->base_time();
+  const auto found = Found();
+  for (const int step : {1, 2, 3, 4}) {
+    const Result<StartPreview> preview = found->Preview(Again(step));
+    ASSERT_TRUE(preview) << preview.error().detail;
+    EXPECT_LT(preview->run_time, until) << step;
+    EXPECT_EQ(preview->reach.facts.place.step, step);
+    EXPECT_EQ(There(*preview, "VI[3]"), "0") << step;
+    EXPECT_EQ(There(*preview, "VI[2]"), step < 4 ? "0" : "1") << step;
+  }
+}
+
 // LIVE-6.01: what was written by hand while it ran is there again, when it was written: the loop
 // ends in the pass in which it did, and no work is left out.
 TEST_F(StartBaseTest, HasWhatWasWrittenMeanwhile) {

@@ -200,6 +200,29 @@ TEST_F(ContinueJobTest, AJobBeginsAtAStep) {
   }
 }
 
+// LIVE-6.01: of a mill, held and let go on in the step in which it was cut off.
+TEST_F(ContinueJobTest, AKeyBehindTheStepIsNotForIt) {
+  Make();
+  host_->Begin({}, now_);
+  v1::HostOrder order;
+  *order.mutable_run_job() = Assignment("jobs/17");
+  ASSERT_FALSE(Do(order).has_refusal());
+  Pass(40s, 50ms);
+  const std::int64_t at = host_->StatusAt(now_).run().run_time_ns();
+  Do(Stop());
+  Pass(2s);
+  v1::HostOrder resume = Resume();
+  resume.set_for_job("jobs/17");
+  Do(resume);
+  Pass(1s);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+  Again();
+  const v1::PreviewStartResponse preview = Preview(0).preview();
+  EXPECT_NE(preview.preview_token(), "");
+  EXPECT_GT(preview.run_time_ns(), 0);
+  EXPECT_LE(preview.run_time_ns(), at);
+}
+
 // LIVE-5.10, LIVE-6.01: more came to it than is kept: where it was is known all the same. A stream
 // comes to each of its commands once.
 TEST_F(ContinueJobTest, WhereItWasIsKnownWhateverCame) {
@@ -227,7 +250,10 @@ TEST_F(ContinueJobTest, WhereItWasIsKnownWhateverCame) {
   EXPECT_TRUE(cut_off_base_->incomplete());
   EXPECT_EQ(host_->StatusAt(now_).cut_off_at().step(), step);
   const v1::PreviewStartResponse preview = Preview(0).preview();
-  EXPECT_NE(preview.preview_token(), "");
+  ASSERT_NE(preview.preview_token(), "");
+  const v1::HostOrderAnswer begun = Do(Continue(preview.preview_token()));
+  EXPECT_FALSE(begun.has_refusal()) << begun.refusal().message();
+  EXPECT_EQ(begun.status().run().job(), "jobs/18");
 }
 
 // LIVE-5.10, LIVE-2.05: what is refused moves nothing, and the machine waits on.
