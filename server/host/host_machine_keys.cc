@@ -198,11 +198,13 @@ void HostMachine::LetKeysGo(const HostTime& now) {
   for (const std::string& key : dead_man_.LetGo(now)) LetGo(key);
 }
 
-// As a person does it: the first ERR may take an error from the display.
+// As a person does it: ERR leaves a mask; what flashes to be recorded gives way to another one.
+// OPT-5.06
 void HostMachine::DropMask() {
-  constexpr int kTimes = 3;
-  for (int i = 0; i < kTimes && machine().has_open_mask(); ++i)
-    static_cast<void>(Apply(machine::PressedKey{.key = "ERR"}, nullptr));
+  for (const char* key : {"ERR", "MOV", "ERR"}) {
+    if (machine().has_open_mask())
+      static_cast<void>(Apply(machine::PressedKey{.key = key}, nullptr));
+  }
 }
 
 // Another one presses from here on: what is down, and what is half entered, is nobody's.

@@ -139,8 +139,7 @@ void OptimoHandbox::ClearError(Turn& turn) {
     asks_.clear();
     return;
   }
-  if (turn.view.status.message) return turn.Ask(machine::ClearMessage{});
-  ready_.reset();
+  if (turn.view.status.message) turn.Ask(machine::ClearMessage{});
 }
 
 void OptimoHandbox::ChangeMode(Turn& turn, int by) {

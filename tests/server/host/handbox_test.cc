@@ -118,6 +118,10 @@ TEST_F(HandboxOverTheLine, AMaskEndsWhereControlIsTakenOver) {
   EXPECT_THAT(host_->Handbox()->display(), testing::Not(HasSubstr("SPEED")));
   Open();
   EXPECT_THAT(Press("ENT").panel().display(), testing::Not(HasSubstr("SPEED")));
+  // What flashes to be recorded, and with the session.
+  EXPECT_TRUE(Press("MOV DEL 4 ENT").panel().flashing());
+  Open();
+  EXPECT_FALSE(host_->Handbox()->flashing());
 }
 
 // LIVE-7.07, OPT-4.19: START in CYCLE begins the program that is selected, without a job.
