@@ -260,6 +260,22 @@ class ByHandTest(LiveTestCase):
         sent.put(None)
         self.assertEqual(list(answers), [])
 
+    # LIVE-3.40, LIVE-7.07: a FUNCTION that was carried out from the handbox is played again, with the keys that entered it.
+    def test_a_function_is_played_again(self):
+        live = self.optimo()
+        self.cell.programs().PutProgram(program_pb2.PutProgramRequest(
+            name=f"{OPTIMO}/programs/44", program={"file_name": "a.S", "content": b"VR[1] = 7.5\nDELAY 0.1\nRETURN\n"}))
+        box = Handbox(live)
+        box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC")
+        self.assertTrue(eventually(lambda: "P=12" in box.keys("OVERRIDE_MINUS").panel.display, 10))
+        box.keys("F3 4 4 ENT ENT 1")
+        self.assertTrue(eventually(
+            lambda: live.ask("ReadVariables", variables=["VR[1]"]).variables[0].value.real == 7.5, 10))
+        live.wait("IDLE")
+        played = subprocess.run([os.path.join(BIN, "rmlcell"), "replay", OPTIMO, "--server", self.cell.address],
+                                capture_output=True, text=True, timeout=60)
+        self.assertEqual(played.returncode, 0, played.stdout + played.stderr)
+
     # LIVE-3.12: a standing machine sleeps, also when the server goes while its handbox has something to show.
     def test_a_handbox_that_nobody_sees_costs_nothing(self):
         live = self.optimo()
