@@ -29,6 +29,12 @@ std::optional<Error> HostMachine::WhyNoJob(const std::string& caller) const {
   if (status.mode != machine::Mode::kRemote)
     return Error{ErrorCode::kCellMode, "jobs run in REMOTE alone", {}};
   if (status.run.door_open) return Error{ErrorCode::kCellDoorOpen, {}, {}};
+  // Nothing would be cut, and the job count as a part.
+  if (machine().simulation_until())
+    return Error{ErrorCode::kCellMachineState,
+                 "SIMUL is armed, and the run would be dry: end that at the handbox, or by "
+                 "SetSimulation without a step",
+                 {}};
   return std::nullopt;
 }
 

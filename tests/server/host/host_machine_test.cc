@@ -154,6 +154,21 @@ TEST_F(HostMachineTest, TheStatusHasOutputsAndWaits) {
   program.set_file_name("a.S");
   program.set_is_source(true);
   program.set_content("DELAY 5\nOL[3] = ON\nOA[1] = 2.5\nWAIT IL[20]\n");
+  // LIVE-5.02, OPT-6.14: SIMUL that is armed would have the job count without a cut.
+  const auto simulation = [this](int step) {
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
+    v1::HostOrder order;
+    order.mutable_simulation()->set_control_token(token_);
+    order.mutable_simulation()->mutable_until()->set_program(5);
+    order.mutable_simulation()->mutable_until()->set_step(step);
+    EXPECT_FALSE(Do(order).has_refusal());
+    v1::HostOrder release;
+    release.mutable_release_control()->set_control_token(token_);
+    Do(release);
+  };
+  simulation(3);
+  EXPECT_EQ(Do(job).refusal().code(), "CELL-E9421");
+  simulation(0);
   ASSERT_FALSE(Do(job).has_refusal());
   Pass(1s);
   EXPECT_TRUE(host_->StatusAt(now_).run().waits());
