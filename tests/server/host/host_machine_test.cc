@@ -159,8 +159,8 @@ TEST_F(HostMachineTest, TheStatusHasOutputsAndWaits) {
     Control(v1::ControlLease::ON_LOSS_GO_ON);
     v1::HostOrder order;
     order.mutable_simulation()->set_control_token(token_);
-    order.mutable_simulation()->mutable_until()->set_program(5);
-    order.mutable_simulation()->mutable_until()->set_step(step);
+    if (step > 0) order.mutable_simulation()->mutable_until()->set_program(5);
+    if (step > 0) order.mutable_simulation()->mutable_until()->set_step(step);
     EXPECT_FALSE(Do(order).has_refusal());
     v1::HostOrder release;
     release.mutable_release_control()->set_control_token(token_);
