@@ -328,8 +328,9 @@ void Hosts::NoteOff(const std::string& machine, const std::string& why) {
     off_[machine] = why;
   }
   needs_.executor.Post([this, machine] {
-    if (const Status ended = EndWithoutHost(needs_.store, machine); !ended)
-      spdlog::warn("jobs of {}: {}", machine, bridge::ErrorText(ended.error()));
+    // The host of another server may have it by now, and run a job of it.
+    const Status ended = IsAbandoned(machine) ? EndWithoutHost(needs_.store, machine) : Status();
+    if (!ended) spdlog::warn("jobs of {}: {}", machine, bridge::ErrorText(ended.error()));
     Changed();
   });
 }

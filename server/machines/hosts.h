@@ -114,6 +114,8 @@ class Hosts {
 
   HostPointer Find(const HostLink& link) const;
   HostPointer Find(const std::string& machine) const;
+  // Nobody has it, or a process of this computer that is no more.
+  bool IsAbandoned(const std::string& machine) const;
   struct Taken {
     storage::MachineLease lease{};
     std::optional<storage::MachineLease> from{};  // whose host is gone

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <utility>
@@ -48,6 +49,13 @@ bool IsGone(const std::string& host) {
 }
 
 }  // namespace
+
+bool Hosts::IsAbandoned(const std::string& machine) const {
+  const auto held = needs_.store.MachineLeases();
+  return held && std::ranges::none_of(*held, [&](const storage::MachineLease& lease) {
+           return lease.machine == machine && !IsGone(lease.host);
+         });
+}
 
 Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& hello) {
   if (!KnowsSecret(hello.join_token(), needs_.join_token))

@@ -86,7 +86,11 @@ class CellServer {
   std::shared_ptr<grpc::Channel> Connect() const {
     grpc::ChannelArguments arguments;
     arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
-    return grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), arguments);
+    auto channel =
+        grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), arguments);
+    // A first try now and then fails beside a busy server; no call is to be lost for it.
+    channel->WaitForConnected(std::chrono::system_clock::now() + std::chrono::seconds(10));
+    return channel;
   }
 
   int web_port() const { return web_port_; }

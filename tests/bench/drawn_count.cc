@@ -18,8 +18,8 @@
 
 #include "engine/families/families.h"
 #include "engine/optimo/language/compiler.h"
-#include "engine/simulation/run/simulate.h"
 #include "tests/bench/planner_calls.h"
+#include "tests/bench/report_stages.h"
 #include "tests/bench/rml1_reading.h"
 
 namespace rmlcell::bench {
@@ -95,32 +95,19 @@ bool RunToEnd(const machine::MachineFamily& family, machine::RunSetup setup,
 }
 
 // Through the places that a device reads, at one feed rate.
-bool WriteGcode(const rml1::Profile& profile, std::string_view text) {
-  rml1::Device device(profile);
-  rml1::DeviceListener nobody;
+void WriteGcode(const rml1::Profile& profile, std::string_view text) {
   std::printf("G21 G90 G94 G64 P0.01\nF1500\n");
-  for (std::size_t at = 0; at < text.size();) {
-    at += device
-              .Read(text.substr(at), static_cast<std::int64_t>(at), rml1::Device::kAnyCommands,
-                    nobody)
-              .bytes;
-    do {
-      for (; !device.actions().empty(); device.actions().Pop()) {
-        const rml1::Action& action = device.actions().front();
-        if (action.kind != rml1::Action::Kind::kMotion) continue;
-        std::printf("G1 X%.3f Y%.3f Z%.3f\n", 0.01 * action.to.x, 0.01 * action.to.y,
-                    0.01 * action.to.z);
-      }
-    } while (device.Step(nobody));
-  }
+  ForEachMove(profile, text, [](const rml1::Action& action) {
+    std::printf("G1 X%.3f Y%.3f Z%.3f\n", 0.01 * action.to.x, 0.01 * action.to.y,
+                0.01 * action.to.z);
+  });
   std::printf("M2\n");
-  return true;
 }
 
 int OfText(std::string_view stage, const std::string& text) {
   const Result<machine::Parameters> parameters = WideMachine();
   const Result<rml1::Profile> profile = rml1::MakeProfile(*parameters);
-  if (stage == "gcode") return WriteGcode(*profile, text) ? 0 : 1;
+  if (stage == "gcode") return WriteGcode(*profile, text), 0;
   if (stage == "check") return CheckText(*parameters, text) ? 0 : 1;
   const int moves = ReadPlaces(*profile, text).moves;
   if (stage == "moves") std::printf("%d\n", moves);
@@ -142,20 +129,7 @@ int OfRun(std::string_view stage, const machine::MachineFamily& family, machine:
     if (!RunToEnd(family, std::move(setup), nobody)) return 1;
     return PrintTail() ? 0 : 1;
   }
-  std::uint64_t bytes = 0;
-  simulation::SimulationRequest request;
-  if (stage == "toolpath" || stage == "all") {
-    request.products.toolpath = [&bytes](std::string_view block) {
-      bytes += block.size();
-      return true;
-    };
-  }
-  request.products.picture = stage == "picture" || stage == "all";
-  const auto result = simulation::Simulate(family, std::move(setup), std::move(request));
-  if (!result) return 1;
-  std::printf("%llu bytes of toolpath, %zu of picture\n", static_cast<unsigned long long>(bytes),
-              result->svg.size());
-  return result->report.outcome.kind == machine::OutcomeKind::kCompleted ? 0 : 1;
+  return SimulateStage(stage, family, std::move(setup));
 }
 
 int Main(const std::filesystem::path& path, std::string_view stage, int times) {

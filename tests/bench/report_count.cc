@@ -15,7 +15,7 @@
 
 #include "engine/families/families.h"
 #include "engine/optimo/language/compiler.h"
-#include "engine/simulation/run/simulate.h"
+#include "tests/bench/report_stages.h"
 #include "tests/bench/rml1_reading.h"
 #include "tests/bench/rml1_texts.h"
 
@@ -49,18 +49,6 @@ std::string OptimoWalk(int moves, bool head) {
   return text + "WORK 1,0 /OFF\nENDTASK\n";
 }
 
-simulation::SimulationRequest RequestOf(std::string_view stage, std::uint64_t& bytes) {
-  simulation::SimulationRequest request;
-  if (stage == "toolpath" || stage == "all") {
-    request.products.toolpath = [&bytes](std::string_view block) {
-      bytes += block.size();
-      return true;
-    };
-  }
-  request.products.picture = stage == "picture" || stage == "all";
-  return request;
-}
-
 bool RunToEnd(const machine::MachineFamily& family, machine::RunSetup setup) {
   machine::RunObserver nobody;
   const auto run = family.NewRun(std::move(setup), nobody);
@@ -88,12 +76,7 @@ int Main(std::string_view path, std::string_view stage, int moves) {
   setup.programs[1].object = std::move(object);
   setup.budget.steps = 0;
   if (stage == "plan") return RunToEnd(family, std::move(setup)) ? 0 : 1;
-  std::uint64_t bytes = 0;
-  const auto result = simulation::Simulate(family, std::move(setup), RequestOf(stage, bytes));
-  if (!result) return 1;
-  std::printf("%llu bytes of toolpath, %zu of picture\n", static_cast<unsigned long long>(bytes),
-              result->svg.size());
-  return result->report.outcome.kind == machine::OutcomeKind::kCompleted ? 0 : 1;
+  return SimulateStage(stage, family, std::move(setup));
 }
 
 }  // namespace

@@ -17,15 +17,12 @@ inline Result<machine::Parameters> WideMachine() {
       {{"X_MIN", "-200"}, {"X_MAX", "200"}, {"Y_MIN", "-200"}, {"Y_MAX", "200"}});
 }
 
-// Moves of a device, whose places were checked against the travel, and the sum of their X, Y, Z.
-struct Places {
-  int moves = 0;
-  double sum = 0.0;
-};
-inline Places ReadPlaces(const rml1::Profile& profile, std::string_view text) {
+// To `take` each move of a device, whose place was checked against the travel. False: the device
+// has told of an error.
+template <class Take>
+bool ForEachMove(const rml1::Profile& profile, std::string_view text, Take take) {
   rml1::Device device(profile);
   rml1::DeviceListener nobody;
-  Places places;
   for (std::size_t at = 0; at < text.size();) {
     at += device
               .Read(text.substr(at), static_cast<std::int64_t>(at), rml1::Device::kAnyCommands,
@@ -34,13 +31,25 @@ inline Places ReadPlaces(const rml1::Profile& profile, std::string_view text) {
     do {
       for (; !device.actions().empty(); device.actions().Pop()) {
         const rml1::Action& action = device.actions().front();
-        if (action.kind != rml1::Action::Kind::kMotion) continue;
-        places.sum += action.to.x + action.to.y + action.to.z;
-        ++places.moves;
+        if (action.kind == rml1::Action::Kind::kMotion) take(action);
       }
     } while (device.Step(nobody));
   }
-  return device.command_errors().total() == 0 ? places : Places{};
+  return device.command_errors().total() == 0;
+}
+
+// How many there are, and the sum of their X, Y, Z.
+struct Places {
+  int moves = 0;
+  double sum = 0.0;
+};
+inline Places ReadPlaces(const rml1::Profile& profile, std::string_view text) {
+  Places places;
+  const bool good = ForEachMove(profile, text, [&places](const rml1::Action& action) {
+    places.sum += action.to.x + action.to.y + action.to.z;
+    ++places.moves;
+  });
+  return good ? places : Places{};
 }
 
 // By the family, with all that a check tells. False: it is refused.

@@ -232,6 +232,19 @@ TEST(OptimoRunSamples, SampleTwoCutsItsWholeLength) {
   EXPECT_NEAR(machine.Run("OVERSH 0\n" + source).BeamLength(), 1886.232, 1e-3);
 }
 
+// What program 1 leaves behind a program 2 that counts in VI[3] and moves the coordinates, and a
+// move to (1000, 1000, -400).
+void ExpectCalibrated(const Ran& ran) {
+  EXPECT_TRUE(ran.completed());
+  EXPECT_EQ(ran.Var("VI[3]"), "1");
+  const std::pair<int, double> values[] = {{43, -105.5}, {44, 2217.2}, {45, -962.0}, {46, 0.0},
+                                           {47, 0.0},    {48, -942.0}, {49, -600.0}};
+  for (const auto& [variable, wanted] : values)
+    EXPECT_NEAR(ran.Number("VR[" + std::to_string(variable) + "]"), wanted, 1e-4) << variable;
+  const motion::MachinePoint tip = ran.run().state().tip.tip;
+  EXPECT_NEAR((tip - motion::MachinePoint(1000.0, 1000.0, -400.0)).norm(), 0.0, 1e-4);
+}
+
 // OPT-10.12: program 1 runs program 2, here one that moves the coordinates, and goes on in tip
 // coordinates of the machine: 350 mm below, where the column stands at -50.
 TEST(OptimoRunSamples, SensorCalibration) {
@@ -240,15 +253,8 @@ TEST(OptimoRunSamples, SensorCalibration) {
   OptimoMachine machine;
   machine.Store(2, "SYSDEF (10.,20.,30.,0.,0.,0.)\nVI[3]=VI[3]+1\n");
   const Ran ran = machine.Run(source + "VR[1] = IA[2]\nMOVE (1000.,1000.,-400.,0.,0.)\n");
-  EXPECT_TRUE(ran.completed());
-  EXPECT_EQ(ran.Var("VI[3]"), "1");
-  const std::pair<int, double> values[] = {{43, -105.5}, {44, 2217.2}, {45, -962.0}, {46, 0.0},
-                                           {47, 0.0},    {48, -942.0}, {49, -600.0}};
-  for (const auto& [variable, wanted] : values)
-    EXPECT_NEAR(ran.Number("VR[" + std::to_string(variable) + "]"), wanted, 1e-4) << variable;
+  ExpectCalibrated(ran);
   EXPECT_NEAR(ran.Number("VR[1]"), -350.0, 1e-4);
-  const motion::MachinePoint tip = ran.run().state().tip.tip;
-  EXPECT_NEAR((tip - motion::MachinePoint(1000.0, 1000.0, -400.0)).norm(), 0.0, 1e-4);
 }
 
 // OPT-10.12, OPT-B.82: ours calls whatever 2 is, assigns what the listed one does in as many steps,
@@ -266,14 +272,7 @@ TEST(OptimoRunSamples, OurSensorCalibration) {
   OptimoMachine machine;
   machine.Store(2, "SYSDEF (10.,20.,30.,0.,0.,0.)\nVI[3]=VI[3]+1\n");
   const Ran ran = machine.Run(source + "MOVE (1000.,1000.,-400.,0.,0.)\n");
-  EXPECT_TRUE(ran.completed());
-  EXPECT_EQ(ran.Var("VI[3]"), "1");
-  const std::pair<int, double> values[] = {{43, -105.5}, {44, 2217.2}, {45, -962.0}, {46, 0.0},
-                                           {47, 0.0},    {48, -942.0}, {49, -600.0}};
-  for (const auto& [variable, wanted] : values)
-    EXPECT_NEAR(ran.Number("VR[" + std::to_string(variable) + "]"), wanted, 1e-4) << variable;
-  const motion::MachinePoint tip = ran.run().state().tip.tip;
-  EXPECT_NEAR((tip - motion::MachinePoint(1000.0, 1000.0, -400.0)).norm(), 0.0, 1e-4);
+  ExpectCalibrated(ran);
 }
 
 // OPT-10.12, OPT-10.13: behind it the head is up, and the tip comes to the same place with another

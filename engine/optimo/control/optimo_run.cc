@@ -11,10 +11,6 @@ class Snapshot final : public machine::RunSnapshot {
 
 }  // namespace
 
-void OptimoRun::WriteVariable(std::string_view name, double value) {
-  control_.WriteVariable(name, value);
-}
-
 std::unique_ptr<machine::RunSnapshot> OptimoRun::Save() const {
   return std::make_unique<Snapshot>(control_.state());
 }

@@ -12,7 +12,7 @@ namespace rmlcell::optimo {
 class OptimoRun final : public machine::Run, public machine::EnterableRun {
  public:
   OptimoRun(OptimoParameters parameters, machine::RunSetup setup, machine::RunObserver& observer)
-      : parameters_(parameters), control_(std::move(parameters), std::move(setup), observer) {}
+      : control_(std::move(parameters), std::move(setup), observer) {}
 
   machine::RunPhase Advance(SimTime until) override { return control_.Advance(until); }
   void Apply(const machine::InputChange& input) override { control_.Apply(input); }
@@ -29,7 +29,9 @@ class OptimoRun final : public machine::Run, public machine::EnterableRun {
   std::optional<machine::VariableValue> ReadVariable(std::string_view name) const override {
     return ReadByName(control_.state().data.area, name);
   }
-  void WriteVariable(std::string_view name, double value) override;
+  void WriteVariable(std::string_view name, double value) override {
+    control_.WriteVariable(name, value);
+  }
   void SetBreakpoints(const std::vector<machine::Breakpoint>& breakpoints) override {
     control_.SetBreakpoints(breakpoints);
   }
@@ -60,7 +62,6 @@ class OptimoRun final : public machine::Run, public machine::EnterableRun {
   void Enter(const machine::EntryOrder& order) override;
 
  private:
-  const OptimoParameters parameters_;
   Control control_;
 };
 

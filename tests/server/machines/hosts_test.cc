@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "rmlcell/v1/cell.pb.h"
 #include "server/base/executor.h"
@@ -451,6 +452,28 @@ TEST_F(HostsTest, WhatIsStoredMeanwhileGoesToTheHost) {
     const auto memory = link->Newest(v1::HostResponse::kMemory)->memory();
     return memory.programs_size() == 1 && memory.programs(0).content() == "PA;";
   }));
+}
+
+// LIVE-3.01, LIVE-5.08: a job whose machine nobody comes for is cut off; not one that the host of
+// another server runs there.
+TEST_F(HostsTest, AMachineThatIsOffHasNoJobThatRuns) {
+  const storage::MachineLease other = Must(bed.store().TakeMachine(
+      {.machine = "mill-1", .host = "elsewhere/9", .server = "s", .duration = Hosts::kLease}));
+  const auto submitted = Must(bed.store().SubmitAndWait(
+      {.machine = "mill-1", .kind = "RUN", .specification = "", .attempts_max = 1}));
+  Must(bed.store().AcquireJobs(
+      {.worker = "elsewhere/9", .kinds = {"RUN"}, .duration = std::chrono::hours(1)}));
+  std::atomic<int> looks = 0;
+  hosts.OnChange([&looks] { ++looks; });
+  const auto state = [&] { return Must(bed.store().GetJob(submitted.job.id)).state; };
+  hosts.NoteOff("mill-1", "its host ended 5 times");
+  EXPECT_TRUE(Eventually([&] { return looks == 1; }));
+  EXPECT_EQ(state(), storage::JobState::kRunning);
+  ASSERT_TRUE(bed.store().ReleaseMachine(other));
+  hosts.NoteOff("mill-1", "its host ended 5 times");
+  EXPECT_TRUE(Eventually([&] { return looks == 2; }));
+  EXPECT_EQ(state(), storage::JobState::kInterrupted);
+  hosts.OnChange({});
 }
 
 // LIVE-5.09: it gives the machine back; the next one takes it at once.
