@@ -67,8 +67,7 @@ struct FamilyInfo {
   // the console it is followed by the program of a slot; 0: by none.
   std::string_view zero_program{};
   int home_program = 0;
-  bool start_takes_back = false;  // START a HOLD or STOP that has not halted the run yet
-  std::span<const std::string_view> output_banks{};  // variables "OL[n]": what a run switches
+  bool start_takes_back = false;     // START a HOLD or STOP that has not halted the run yet
   std::string_view spindle_speed{};  // variable: rpm of a spindle that turns; empty: it has none
   // Instructions that wait for an input or a time.
   std::span<const std::string_view> waiting{};

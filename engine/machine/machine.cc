@@ -179,7 +179,7 @@ MachineState Machine::state() const {
     return standing_->state().zeroed ? MachineState::kIdle : MachineState::kNotZeroed;
   if (run_->state().phase == RunPhase::kHalted) return MachineState::kHeld;
   if (stopping_) return MachineState::kStopping;
-  return note_.by_hand ? MachineState::kJogging : MachineState::kRunning;
+  return note_.by_hand && !Pauses() ? MachineState::kJogging : MachineState::kRunning;
 }
 
 MachineStatus Machine::status() const {
@@ -215,6 +215,10 @@ MachineStatus Machine::status() const {
 
 std::optional<VariableValue> Machine::ReadVariable(std::string_view name) const {
   return run_ != nullptr ? run_->ReadVariable(name) : standing_->ReadVariable(name);
+}
+
+MachineOutputs Machine::outputs() const {
+  return run_ != nullptr ? run_->outputs() : standing_->outputs();
 }
 
 std::vector<Place> Machine::stack() const {
@@ -326,16 +330,22 @@ Status Machine::Begin(const StartRun& input, Mode mode, std::optional<HandRun> h
                  .inputs = {},
                  .mode = mode,
                  .override_percent = setup.override_percent};
+  const RunNote before = std::exchange(note_, {.number = note_.number + 1,
+                                               .program = input.program,
+                                               .source = input.source,
+                                               .begun = now_,
+                                               .by_hand = hand.has_value(),
+                                               .hand = hand.value_or(HandRun::kZero)});
+  observer_.OnRunBegun(note_);
   Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
-  if (!run) return run.error();
+  if (!run) {
+    note_ = before;
+    return run.error();
+  }
   if (!hand) simulation_.reset();
   changed_.clear();
   if (input.brought) changed_.insert(input.program);  // what is made of it is not of the memory
-  note_ = {
-      .number = note_.number + 1, .program = input.program, .source = input.source, .begun = now_};
   viewed_from_.reset();
-  note_.by_hand = hand.has_value();
-  note_.hand = hand.value_or(HandRun::kZero);
   run_ = *std::move(run);
   comes_along_ = !hand && input.brought.has_value();
   of_a_job_ = !hand && input.source == StartSource::kQueue;

@@ -22,6 +22,7 @@
 #include "engine/machine/machine_states.h"
 #include "engine/machine/machine_status.h"
 #include "engine/machine/observer.h"
+#include "engine/machine/outputs.h"
 #include "engine/machine/panel.h"
 #include "engine/machine/run.h"
 #include "engine/machine/standing.h"
@@ -153,6 +154,7 @@ class Machine {
 
   // "VR[5]" -> "7.0"; nothing for what is no variable of this machine.
   std::optional<VariableValue> ReadVariable(std::string_view name) const;
+  MachineOutputs outputs() const;
   const Run* open_run() const { return run_.get(); }  // null: none is open
   // What the open run began with and what came since, so that it can be simulated again; none: no
   // run of a program is open, or more came than is kept.

@@ -147,7 +147,12 @@ void Machine::EndByHand(const Outcome& outcome) {
   if (begun) return;
   const Error& error = begun.error();
   Show(error.code);
-  // By the time of the run that is over: none has begun. Nobody called for it who were answered.
+  // Nobody called for it who were answered: what was called for is ZERO, and that has failed.
+  Outcome& whole = over_.back().outcome;
+  whole.kind = OutcomeKind::kFailed;
+  whole.code = error.code;
+  whole.detail = error.detail;
+  whole.place = {.program = family_.info().home_program};
   const SimTime at = over_.back().lasted;
   observer_.OnDiagnostic(at, {.code = error.code,
                               .severity = Lookup(error.code).severity,

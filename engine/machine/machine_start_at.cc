@@ -118,8 +118,18 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
                  .override_percent = setup.override_percent};
   std::erase_if(base.inputs, [&](const InputChange& one) { return one.at > preview.run_time; });
   setup.inputs.clear();  // from here on people and hosts give them
+  const RunNote before = std::exchange(
+      note_, {.number = note_.number + 1,
+              .program = input.program,
+              .source = input.source,
+              .begun = now_ - preview.run_time,
+              .entered = RunEntry{.at = preview.reach.target, .run_time = preview.run_time}});
+  observer_.OnRunBegun(note_);
   Result<std::unique_ptr<Run>> run = family_.NewRun(std::move(setup), observer_);
-  if (!run) return run.error();
+  if (!run) {
+    note_ = before;
+    return run.error();
+  }
   (*run)->Restore(*preview.reach.run->Save());
   (*run)->enterable()->Enter({.machine_state = standing_->Save(),
                               .override_percent = override_percent_,
@@ -131,11 +141,6 @@ Status Machine::Enter(const StartAtStep& input, const StartPreview& preview) {
   viewed_from_.reset();
   run_->SetMode(mode_);
   run_->SetBreakpoints(breakpoints_);
-  note_ = {.number = note_.number + 1,
-           .program = input.program,
-           .source = input.source,
-           .begun = now_ - preview.run_time,
-           .entered = RunEntry{.at = preview.reach.target, .run_time = preview.run_time}};
   base_ = std::move(base);
   not_in_base_ = SimTime(0);
   comes_along_ = input.brought.has_value();

@@ -141,11 +141,15 @@ struct Assumed {
   std::optional<InputKind> input{};  // that a script of inputs sets it by, where one can
 };
 
+struct RunNote;  // machine_status.h
+
 // Told everything that a run does, in order of virtual time. Structs are valid during the call
 // only. Default bodies do nothing: override what you need. No method may call back into the run.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
+  // Of a machine that lives: this run begins, and those before it are over. Once, first.
+  virtual void OnRunBegun(const RunNote&) {}
   virtual void OnStep(SimTime /*at*/, const Place&, std::string_view /*instruction*/) {}
   virtual void OnMotion(const MotionDone&) {}
   virtual void OnMove(const MoveDone&) {}
@@ -153,6 +157,8 @@ class RunObserver {
   virtual void OnWait(const Wait&) {}
   virtual void OnHalt(const Halt&) {}
   virtual void OnResume(SimTime /*at*/, const Place&) {}
+  // Of a run that begins at a step: its approach is over. LIVE-6.09
+  virtual void OnEntered(SimTime /*at*/) {}
   virtual void OnProgram(SimTime /*at*/, const Place&, std::string_view /*what*/, int /*program*/) {
   }
   virtual void OnMessage(SimTime /*at*/, const Place&, std::string_view /*text*/) {}

@@ -11,6 +11,7 @@
 #include "engine/core/result.h"
 #include "engine/core/units.h"
 #include "engine/machine/outcome.h"
+#include "engine/machine/outputs.h"
 #include "engine/machine/run_setup.h"
 #include "engine/machine/variable.h"
 #include "engine/motion/geometry/pose.h"
@@ -39,6 +40,7 @@ struct RunState {
   bool spindle_on = false;
   bool zeroed = true;  // the axes have their reference
   bool door_open = false;
+  bool dry = false;                       // up to a step: beam and axes stay as they are
   bool approaching = false;               // to the step where the run begins (step_entry.h)
   SimTime approached{0};                  // how long that took
   std::optional<HaltReason> halted_by{};  // in kHalted
@@ -109,6 +111,7 @@ class Run {
 
   // "VR[5]" -> real "7.0"; nothing when the family has no such variable.
   virtual std::optional<VariableValue> ReadVariable(std::string_view /*name*/) const { return {}; }
+  virtual MachineOutputs outputs() const { return {}; }
   // At the present time. The family says which may be written (MachineFamily::CheckWrite).
   virtual void WriteVariable(std::string_view /*name*/, double /*value*/) {}
 

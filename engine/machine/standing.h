@@ -9,6 +9,7 @@
 #include "engine/machine/hand_motion.h"
 #include "engine/machine/inputs.h"
 #include "engine/machine/machine_input.h"
+#include "engine/machine/outputs.h"
 #include "engine/machine/panel.h"
 #include "engine/machine/run.h"
 #include "engine/machine/step_entry.h"
@@ -32,6 +33,7 @@ class Standing {
   // As those of Run.
   virtual std::optional<VariableValue> ReadVariable(std::string_view name) const = 0;
   virtual void WriteVariable(std::string_view /*name*/, double /*value*/) {}
+  virtual MachineOutputs outputs() const { return {}; }
   virtual std::vector<ModalValue> modal_values() const { return {}; }
 
   // What a run left that did not reach the end of its dry run (OPT-6.14): the next one is dry.

@@ -128,6 +128,7 @@ void MillRun::GoOnApproaching() {
   }
   s.approaching = false;
   s.approached = s.now - s.approach_begun;
+  observer_.OnEntered(s.now);
   if (s.halts_at_entry) BeginHalt(HaltCause::kEntry);
 }
 

@@ -25,13 +25,13 @@ class Listener final : public machine::RunObserver {
 
   explicit Listener(machine::RunObserver* also) : also_(also != nullptr ? *also : nobody_) {}
 
-  void BeginRun(SimTime at) {
-    begun_ = at;
-    told_of_run_ = 0;
-  }
-  void SetBegun(SimTime at) { begun_ = at; }
   std::deque<Told>& told() { return told_; }
 
+  void OnRunBegun(const machine::RunNote& run) override {
+    begun_ = run.begun;  // one that begins at a step began before that
+    told_of_run_ = 0;
+    also_.OnRunBegun(run);
+  }
   void OnStep(SimTime at, const machine::Place& place, std::string_view instruction) override {
     also_.OnStep(at, place, instruction);
   }
@@ -47,6 +47,7 @@ class Listener final : public machine::RunObserver {
     *Event(at).mutable_resumed() = ResumedOf(place);
     also_.OnResume(at, place);
   }
+  void OnEntered(SimTime at) override { also_.OnEntered(at); }
   void OnProgram(SimTime at, const machine::Place& place, std::string_view what,
                  int program) override {
     also_.OnProgram(at, place, what, program);
@@ -167,11 +168,7 @@ class Player {
     while (!over_.empty() && !ends_.empty()) CompareEnd();
     while (!listener_.told().empty() && !events_.empty()) CompareEvent();
     static_cast<void>(machine_->TakeMadeExecutables());
-    const machine::MachineStatus status = machine_->status();
-    if (status.open && status.open->number > begun_) {
-      begun_ = status.open->number;
-      listener_.BeginRun(status.open->begun);
-    }
+    begun_ = std::max(begun_, machine_->status().last_run);
   }
 
   Status Take(const v1::JournalEntry& entry) {
@@ -225,9 +222,6 @@ class Player {
     auto* enters = std::get_if<machine::StartAtStep>(&**input);
     if (start != nullptr) start->brought = std::exchange(brought_, std::nullopt);
     if (enters != nullptr) enters->brought = std::exchange(brought_, std::nullopt);
-    const bool zeroes = std::holds_alternative<machine::ZeroAxes>(**input);
-    if (machine::BeginsRun(**input) || (zeroes && !machine_->status().open))
-      listener_.BeginRun(machine_->time());
     const Status done = machine_->Apply(**input);
     if (!done) {
       Compare("applied", TextOf(applied), bridge::ErrorText(done.error()));
@@ -237,7 +231,6 @@ class Player {
     const machine::MachineStatus status = machine_->status();
     if (status.open && status.open->number > begun_) {
       begun_ = status.open->number;
-      listener_.SetBegun(status.open->begun);  // one that begins at a step began before that
       if (options_.begun) options_.begun(*machine_->open_run());
     }
     Notice();

@@ -336,16 +336,13 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   // What is half entered stands in no mark: then the recording goes on, with the keys that did it.
   const auto stands =
       begins && !machine().has_open_mask() ? std::optional(MarkNow()) : std::nullopt;
-  if (begins) {
-    run_begun_ = machine().time();
-    told_of_run_ = 0;
-  }
   const auto* power = std::get_if<machine::SwitchPower>(&input);
   if (power != nullptr && !power->on && !inspect_due_) cut_off_base_ = BaseNow();
   if (starts) arms_.Disarm();
   if (starts || std::holds_alternative<machine::ResumeRun>(input)) held_for_.reset();
   NoteHold(input);
   const std::size_t place = entries_.size();
+  const std::int64_t sequence = sequence_;
   v1::InputApplied& applied = *Add(machine().time()).mutable_applied();
   applied.set_fence(setup_.fence);
   applied.set_virtual_time_ns(machine().time().count());
@@ -371,7 +368,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   const Status done = key != nullptr ? Press(*key, order) : machine().Apply(input);
   if (!done) {
     entries_.resize(place);
-    sequence_ -= 1;
+    sequence_ = sequence;
     std::tie(run_begun_, told_of_run_, held_for_) = before;
     return done.error();
   }
@@ -492,34 +489,7 @@ void HostMachine::Begin(const v1::HostMemory& memory, const HostTime& now) {
 // What the machine did by itself.
 void HostMachine::Notice() {
   const machine::MachineStatus status = machine().status();
-  const std::vector<machine::RunOver> over = machine().TakeRunsOver();
-  const auto begun = [this](const machine::RunNote& run) {
-    if (run.number <= run_told_) return;
-    run_told_ = run.number;
-    run_begun_ = run.begun;  // also of one that the machine began itself
-    begins_ = begins_ || !run.by_hand;
-    // One that begins at a step began before that, by its own time; nothing is told of the past.
-    const SimTime at = std::max(run.begun, told_until_);
-    v1::RunBegun& told = *Add(at).mutable_run_begun();
-    told = recording::BegunOf(run);
-    told.set_job(job_);
-  };
-  for (const machine::RunOver& run : over) {
-    begun(run.run);
-    v1::RunOver& told = *Add(run.run.begun + run.lasted).mutable_run_over();
-    told = recording::OverOf(run);
-    told.set_job(std::exchange(job_, {}));
-    if (!run.run.by_hand) last_run_ = LastRunOf(told);
-    if (!run.run.by_hand && run.outcome.code == ErrorCode::kCellPowerOff) {  // LIVE-5.10
-      inspect_due_ = true;
-      inspect_job_ = told.job();
-    }
-    desk_.TakeFromQueue();
-    TellControl();
-    held_for_.reset();
-    mark_due_ = true;
-  }
-  if (status.open) begun(*status.open);
+  for (const machine::RunOver& over : machine().TakeRunsOver()) TellOver(over);
   const SimTime lost = driver_->TakeLost();
   late_ = late_ || lost >= LateHold(setup_.options);
   if (lost > SimTime(0) && status.open) {

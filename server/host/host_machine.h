@@ -161,6 +161,7 @@ class HostMachine : private machine::RunObserver {
   void Remember(const std::string& request_id, const v1::HostOrderAnswer& answer);
   void GoOnTo(const HostTime& now);
   void Notice();
+  void TellOver(const machine::RunOver& run);
   void TellControl();
   bool MovesInHold() const;
   void NoteHold(const machine::MachineInput& input);
@@ -175,6 +176,7 @@ class HostMachine : private machine::RunObserver {
   void AddBlockers(v1::MachineStatus& status) const;
 
   // machine::RunObserver
+  void OnRunBegun(const machine::RunNote& run) override;
   bool MayTell();
   void OnHalt(const machine::Halt& halt) override;
   void OnResume(SimTime at, const machine::Place& place) override;
@@ -214,7 +216,6 @@ class HostMachine : private machine::RunObserver {
   bool late_ = false;              // by so much that the run is to be held
   std::int64_t sequence_ = 0;
   std::optional<v1::HoldReason> held_for_;  // by the host itself, or for a client
-  std::int64_t run_told_ = 0;               // the newest whose begin was told
   SimTime run_begun_{0};
   int told_of_run_ = 0;
   SimTime told_until_{0};  // of the newest entry

@@ -122,6 +122,9 @@ Status HostMachine::PressKey(const v1::HostOrder& order, const HostTime& now) {
 Status HostMachine::CheckBeat(const v1::HostOrder& order) {
   const bool told = order.has_panel_heartbeat() ? order.panel_heartbeat().has_sent()
                                                 : order.handbox_heartbeat().has_sent();
+  const std::int64_t number = order.has_panel_heartbeat() ? order.panel_heartbeat().number()
+                                                          : order.handbox_heartbeat().number();
+  if (number < 1) return InvalidArgument("number counts from 1");
   return told ? Status() : InvalidArgument("sent: when it was sent, by the clock of the client");
 }
 

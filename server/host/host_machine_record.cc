@@ -106,6 +106,33 @@ std::vector<v1::JournalEntry> HostMachine::TakeEntries(const HostTime& now, bool
   return std::exchange(entries_, {});
 }
 
+// Whoever began it: before anything of it is told.
+void HostMachine::OnRunBegun(const machine::RunNote& run) {
+  for (const machine::RunOver& over : machine().TakeRunsOver()) TellOver(over);
+  run_begun_ = run.begun;
+  told_of_run_ = 0;
+  begins_ = begins_ || !run.by_hand;
+  // One that begins at a step began before that, by its own time; nothing is told of the past.
+  v1::RunBegun& told = *Add(std::max(run.begun, told_until_)).mutable_run_begun();
+  told = recording::BegunOf(run);
+  told.set_job(job_);
+}
+
+void HostMachine::TellOver(const machine::RunOver& run) {
+  v1::RunOver& told = *Add(run.run.begun + run.lasted).mutable_run_over();
+  told = recording::OverOf(run);
+  told.set_job(std::exchange(job_, {}));
+  if (!run.run.by_hand) last_run_ = LastRunOf(told);
+  if (!run.run.by_hand && run.outcome.code == ErrorCode::kCellPowerOff) {  // LIVE-5.10
+    inspect_due_ = true;
+    inspect_job_ = told.job();
+  }
+  desk_.TakeFromQueue();
+  TellControl();
+  held_for_.reset();
+  mark_due_ = true;
+}
+
 void HostMachine::OnHalt(const machine::Halt& halt) {
   v1::Halted& halted = *Event(halt.at).mutable_halted();
   halted = recording::HaltedOf(halt);

@@ -19,20 +19,14 @@ namespace {
 
 using machine::MachineInput;
 
-// Of those that the machine has, up to the last one.
-void AddOutputs(const machine::Machine& machine, v1::MachineStatus& message) {
-  for (const std::string_view bank : machine.family().info().output_banks) {
-    for (int index = 0;; ++index) {
-      const std::string name = std::string(bank) + "[" + std::to_string(index) + "]";
-      const auto value = machine.ReadVariable(name);
-      if (!value) break;
-      const double number = value->text == "on" ? 1.0 : ParseDouble(value->text).value_or(0.0);
-      if (number == 0.0) continue;
-      v1::OutputValue& made = *message.add_outputs();
-      made.set_name(name);
-      made.set_value(number);
-    }
+void SetOutputs(const machine::MachineOutputs& outputs, v1::MachineStatus& message) {
+  for (const machine::OutputNow& one : outputs.on) {
+    v1::OutputValue& made = *message.add_outputs();
+    made.set_name(one.name);
+    made.set_value(one.value);
   }
+  message.mutable_tool()->set_power_percent(outputs.power_percent);
+  message.mutable_tool()->set_laser_schedule(outputs.laser_schedule);
 }
 
 Error Invalid(std::string detail) {
@@ -53,7 +47,7 @@ void SetRun(const machine::Machine& machine, const machine::MachineStatus& statu
   run.set_instruction(progress.instruction());
   run.set_waits(status.state == machine::MachineState::kHeld ||
                 std::ranges::find(waiting, progress.instruction()) != waiting.end());
-  run.set_dry(machine.simulation_until().has_value());
+  run.set_dry(status.run.dry);
   for (const int program : machine.loaded_programs()) run.add_loaded_programs(program);
 }
 
@@ -142,7 +136,7 @@ v1::MachineStatus ToProto(const machine::Machine& machine) {
   message.set_speed_mm_s(status.run.tip_speed_mm_s);
   message.set_position_source(v1::POSITION_SOURCE_PLANNED);
   message.set_override_percent(status.override_percent);
-  AddOutputs(machine, message);
+  SetOutputs(machine.outputs(), message);
   message.mutable_tool()->set_on(status.run.beam_on || status.run.spindle_on);
   if (status.run.spindle_on && !family.spindle_speed.empty()) {
     if (const auto rpm = machine.ReadVariable(family.spindle_speed))

@@ -408,6 +408,14 @@ std::vector<machine::Figure> Control::figures() const {
   return figures;
 }
 
+machine::MachineOutputs Control::outputs() const {
+  machine::MachineOutputs outputs = OutputsOf(s_.actuators.outputs);
+  const Beam& beam = s_.actuators.beam;
+  if (beam.shutter_open()) outputs.on.push_back({.name = "shutter", .value = 1.0});
+  if (beam.on()) outputs.power_percent = beam.power().PercentAt(ride_.tip_speed_mm_s());
+  return outputs;
+}
+
 machine::RunState Control::Snapshot() const {
   machine::RunState state;
   state.time = now().now;
@@ -421,6 +429,7 @@ machine::RunState Control::Snapshot() const {
   state.beam_on = actuators_.beam_on();
   state.zeroed = s_.actuators.zeroed;
   state.door_open = actuators_.door_open();
+  state.dry = now().simulated_until.has_value();
   state.approaching = s_.entry.arrival.has_value();
   state.approached = s_.entry.approached;
   if (now().phase == RunPhase::kHalted) state.halted_by = s_.halts.halted_by;

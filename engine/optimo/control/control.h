@@ -56,6 +56,7 @@ class Control final : private RideListener {
   const ControlState& state() const { return s_; }
   // What the machine keeps of it, where it is now: in the middle of a motion, too.
   MachineState Kept() const;
+  machine::MachineOutputs outputs() const;
   std::vector<machine::Figure> figures() const;
   void Restore(const ControlState& state) { s_ = state; }
 

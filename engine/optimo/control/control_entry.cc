@@ -235,6 +235,7 @@ void Control::ArriveAtEntry() {
     carry(PassageEffect::Kind::kAnalogue, n, static_cast<double>(arrival.outputs.analogue[n]));
   carry(PassageEffect::Kind::kSchedule, static_cast<std::size_t>(arrival.outputs.schedule), 0.0);
   s_.actuators.gas_refused = arrival.gas_refused;
+  telling_.observer().OnEntered(now().now);
   const SimTime lasted = now().now - arrival.begun;
   s_.entry.approached = lasted;
   s_.works.tasks = arrival.works;

@@ -31,7 +31,6 @@ constexpr std::array kNotGiven = {ErrorCode::kProgramMissing, ErrorCode::kFuncti
 constexpr machine::CheckCodes kCheck = {
     .of_motion = kOfMotion, .by_speed = kBySpeed, .not_given = kNotGiven, .work_offset = "SYSDEF"};
 
-constexpr std::array<std::string_view, 2> kOutputBanks = {"OL", "OA"};
 constexpr std::array<std::string_view, 2> kWaiting = {"WAIT", "DELAY"};
 
 constexpr machine::FamilyInfo kInfo = {.id = "optimo",
@@ -52,7 +51,6 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .jogs_in_manual = true,
                                        .zero_program = "ZERO\n",
                                        .home_program = 4,  // OPT-4.50
-                                       .output_banks = kOutputBanks,
                                        .waiting = kWaiting,
                                        .steps_come_again = true,
                                        .has_dry_run = true,

@@ -29,6 +29,7 @@ class OptimoRun final : public machine::Run, public machine::EnterableRun {
   std::optional<machine::VariableValue> ReadVariable(std::string_view name) const override {
     return ReadByName(control_.state().data.area, name);
   }
+  machine::MachineOutputs outputs() const override { return control_.outputs(); }
   void WriteVariable(std::string_view name, double value) override {
     control_.WriteVariable(name, value);
   }

@@ -18,6 +18,7 @@ class OptimoStanding final : public machine::Standing {
   // Outputs follow their images: UPDATE ON is in force when no program runs. A second assist gas
   // stays off beside the first (OPT-5.40).
   void WriteVariable(std::string_view name, double value) override;
+  machine::MachineOutputs outputs() const override { return OutputsOf(s_.outputs); }
   std::vector<machine::ModalValue> modal_values() const override;
   std::optional<machine::ProgramStep> simulation_until() const override { return s_.simul; }
   // TCP, with six values; SYSDEF, with six or none.

@@ -187,6 +187,23 @@ std::optional<Variable> VariableNamed(std::string_view name) {
   return std::nullopt;
 }
 
+machine::MachineOutputs OutputsOf(const Outputs& outputs) {
+  machine::MachineOutputs made{.laser_schedule = outputs.schedule};
+  const auto add = [&made](std::string name, double value) {
+    if (value != 0.0) made.on.push_back({.name = std::move(name), .value = value});
+  };
+  const auto numbered = [](const char* bank, std::size_t n) {
+    return bank + ("[" + std::to_string(n) + "]");
+  };
+  for (std::size_t n = 0; n < outputs.logical.size(); ++n) {
+    if (outputs.logical[n]) add(numbered("OL", n), 1.0);
+  }
+  for (std::size_t n = 0; n < outputs.analogue.size(); ++n)
+    add(numbered("OA", n), static_cast<double>(outputs.analogue[n]));
+  add("rotary_table", outputs.table_deg);
+  return made;
+}
+
 std::optional<machine::VariableValue> ReadByName(const DataArea& data, std::string_view name) {
   const std::optional<Variable> variable = VariableNamed(name);
   if (!variable) return std::nullopt;

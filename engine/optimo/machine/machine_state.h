@@ -84,6 +84,9 @@ struct MachineState {
   std::optional<machine::ProgramStep> simul{};       // of SIMUL: arms the next start, OPT-6.16
 };
 
+// Its terminals, as people are shown them; what the beam does is not in it.
+machine::MachineOutputs OutputsOf(const Outputs& outputs);
+
 // As it leaves the factory. OPT-B.02
 MachineState NewMachine(const OptimoParameters& parameters);
 

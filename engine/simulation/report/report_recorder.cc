@@ -104,6 +104,18 @@ bool ReportRecorder::Cuts(const machine::MotionDone& done) const {
   return done.beam_on || (shape_.laser_watts <= 0.0 && tool_in && done.in_work);
 }
 
+void ReportRecorder::Begin(const machine::Run& run) {
+  const machine::RunState state = run.state();
+  time_.BeginAt(state.time);
+  steps_before_ = run.steps_executed();
+  approaching_ = state.approaching;
+}
+
+void ReportRecorder::OnEntered(SimTime at) {
+  time_.BeginAt(at);
+  approaching_ = false;
+}
+
 void ReportRecorder::OnStep(SimTime at, const machine::Place& place,
                             std::string_view /*instruction*/) {
   time_.Leave(at, Now());
@@ -118,6 +130,7 @@ void ReportRecorder::OnMotion(const machine::MotionDone& done) {
 }
 
 void ReportRecorder::Add(const machine::MotionDone& done, PartShape& shape) {
+  if (done.approach) return;
   const motion::PlannedMotion& motion = *done.motion;
   const SimTime claimed = time_.Claim(done.start, done.end, Now());
 
@@ -243,6 +256,7 @@ void ReportRecorder::OnSignal(const machine::SignalChange& change) {
 }
 
 void ReportRecorder::OnWait(const machine::Wait& wait) {
+  if (approaching_) return;
   const SimTime claimed = time_.Claim(wait.start, wait.end, Now());
   WorkFigures work;
   PartOf(work.time, wait.kind) = claimed;
@@ -263,6 +277,7 @@ void ReportRecorder::OnWait(const machine::Wait& wait) {
 }
 
 void ReportRecorder::OnHalt(const machine::Halt& halt) {
+  if (approaching_) return;
   time_.Leave(halt.at, Now());
   contours_.Halt();
   halted_ = true;
@@ -270,6 +285,7 @@ void ReportRecorder::OnHalt(const machine::Halt& halt) {
 }
 
 void ReportRecorder::OnResume(SimTime at, const machine::Place& /*place*/) {
+  if (approaching_) return;
   time_.Leave(at, Now());
   halted_ = false;
 }
@@ -287,6 +303,7 @@ void ReportRecorder::OnCounted(SimTime at, const Diagnostic& diagnostic) {
 }
 
 void ReportRecorder::Finish(SimTime at) {
+  if (approaching_) OnEntered(at);  // it never came there
   time_.Leave(at, Now());
   time_.Close();
   if (shutter_open_) CloseShutter(at, place_);

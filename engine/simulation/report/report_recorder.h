@@ -34,15 +34,14 @@ class ReportRecorder final : public machine::RunObserver {
   void OnWait(const machine::Wait& wait) override;
   void OnHalt(const machine::Halt& halt) override;
   void OnResume(SimTime at, const machine::Place& place) override;
+  void OnEntered(SimTime at) override;
   void OnViolation(const machine::TravelViolation& violation) override;
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
   void OnCounted(SimTime at, const Diagnostic& diagnostic) override;
 
-  // Once, first: of a run that begins at a step its time and its steps up to there are nobody's.
-  void Begin(SimTime at, std::uint64_t steps) {
-    time_.BeginAt(at);
-    steps_before_ = steps;
-  }
+  // Once, first: of a run that begins at a step its time and its steps up to there are nobody's,
+  // and so is what it does on the way there. LIVE-6.09
+  void Begin(const machine::Run& run);
 
   // Once, when the run is over: what nothing was told about since is standstill.
   void Finish(SimTime at);
@@ -81,6 +80,7 @@ class ReportRecorder final : public machine::RunObserver {
   bool halted_ = false;
   std::uint64_t halts_ = 0;
   std::uint64_t steps_before_ = 0;
+  bool approaching_ = false;
 
   bool beam_on_ = false;
   bool stands_since_beam_on_ = false;  // no motion yet: a dwell is a pierce

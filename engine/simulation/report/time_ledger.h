@@ -27,8 +27,11 @@ class TimeLedger {
   // than kGapsMax are open.
   explicit TimeLedger(TakeGap count) : count_(std::move(count)) {}
 
-  // What lies before is not counted. Once, first.
-  void BeginAt(SimTime time) { begun_ = reached_ = time; }
+  // What lies before is not counted.
+  void BeginAt(SimTime time) {
+    begun_ = reached_ = time;
+    open_ = 0;
+  }
 
   // Time goes on to `until` without a word; `now` describes what goes on.
   void Leave(SimTime until, const Gap& now);

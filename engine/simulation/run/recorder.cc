@@ -87,6 +87,9 @@ void Recorder::OnHalt(const machine::Halt& halt) {
 void Recorder::OnResume(SimTime at, const machine::Place& place) {
   state_->All([&](machine::RunObserver& to) { to.OnResume(at, place); });
 }
+void Recorder::OnEntered(SimTime at) {
+  state_->All([&](machine::RunObserver& to) { to.OnEntered(at); });
+}
 void Recorder::OnProgram(SimTime at, const machine::Place& place, std::string_view what,
                          int program) {
   state_->All([&](machine::RunObserver& to) { to.OnProgram(at, place, what, program); });
@@ -112,7 +115,7 @@ void Recorder::OnAssumed(const machine::Assumed& assumed) {
 
 void Recorder::Begin(const machine::Run& run) {
   const machine::RunState state = run.state();
-  state_->report.Begin(state.time, run.steps_executed());
+  state_->report.Begin(run);
   if (state_->samples) state_->samples->StandsAt(state.tip, state.axes);
   if (state_->milling && state.work_origin) state_->milling->BeginAt(*state.work_origin);
 }

@@ -43,6 +43,7 @@ class Recorder final : public machine::RunObserver {
   void OnWait(const machine::Wait& wait) override;
   void OnHalt(const machine::Halt& halt) override;
   void OnResume(SimTime at, const machine::Place& place) override;
+  void OnEntered(SimTime at) override;
   void OnProgram(SimTime at, const machine::Place& place, std::string_view what,
                  int program) override;
   void OnMessage(SimTime at, const machine::Place& place, std::string_view text) override;
