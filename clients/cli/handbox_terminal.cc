@@ -242,6 +242,7 @@ void HandboxLoop::KeepHeld() {
 
 void HandboxLoop::Draw() {
   drawn_at_ = now_;
+  if (view_.status.machine().empty()) return;  // not heard yet
   view_.down = held_.down();
   view_.flash = now_.time_since_epoch() / kBetweenFlashes % 2 == 1;
   std::vector<std::string> lines = HandboxLines(view_);

@@ -130,12 +130,16 @@ int PressAll(const Remote& remote, const MachineAct& act, const Control& control
     if (held) AwaitRest(remote, act.machine);
   }
   constexpr std::chrono::seconds kRenewalPatience{5};
-  // HOME, ZERO and FUNCTION go on by themselves; giving control back would stop them.
+  // HOME, ZERO and FUNCTION go on by themselves; giving control back would stop what jogs.
   constexpr std::chrono::milliseconds kBetweenLooks{100};
   constexpr int kLooksBetweenRenewals = 100;
+  const auto by_hand = [](const v1::MachineStatus& status) {
+    return status.state() == v1::MACHINE_STATE_JOGGING ||
+           (status.state() == v1::MACHINE_STATE_RUNNING && status.run().program() == 0);
+  };
   for (int look = 1;; ++look) {
     const auto now = StatusNow(remote, act.machine);
-    if (!now || now->state() != v1::MACHINE_STATE_JOGGING) break;
+    if (!now || !by_hand(*now)) break;
     if (look % kLooksBetweenRenewals == 0 && !control.Renew(kRenewalPatience).ok()) break;
     std::this_thread::sleep_for(kBetweenLooks);
   }

@@ -106,7 +106,14 @@ void AddActs(MachineVerbs& verbs) {
   CLI::App* start = verbs.AddControlled(
       "start", "Start a stored program, the selected one, or a job of the queue", StartMachine);
   CLI::Option* slot = start->add_option("SLOT", given.program, "1 to 99")->check(CLI::Range(1, 99));
-  start->add_option("--job", given.job, "a RUN job that waits for a person")->excludes(slot);
+  CLI::Option* job = start->add_option("--job", given.job, "a RUN job that waits for a person");
+  job->excludes(slot);
+  start
+      ->add_option("--seen", given.seen,
+                   "arm the machine for the job: you have looked at tool, origin-valid, clamps "
+                   "and cover")
+      ->delimiter(',')
+      ->needs(job);
   verbs.AddControlled("zero", "Let the axes find their reference; in REMOTE program 4 follows",
                       ZeroMachine);
   CLI::App* resume = verbs.AddControlled("resume", "Let a held run go on", ResumeMachine);

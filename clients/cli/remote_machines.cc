@@ -12,6 +12,7 @@
 #include "clients/cli/messages.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/request_id.h"
+#include "clients/cli/start_words.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/catalogue.h"
 #include "engine/core/number_text.h"
@@ -271,6 +272,50 @@ int AbortRun(const Remote& remote, const MachineAct& act) {
   return ShowAfter(remote, act, &Service::Stub::AbortRun);
 }
 
+namespace {
+
+// What fails at once does so behind the answer.
+int ShowBegun(const Remote& remote, const MachineAct& act, const v1::MachineStatus& begun) {
+  constexpr std::chrono::milliseconds kBetweenLooks{20};
+  v1::MachineStatus status = begun;
+  for (int look = 0; look < 10 && status.run().run_time_ns() == 0 && status.has_run(); ++look) {
+    std::this_thread::sleep_for(kBetweenLooks);
+    if (auto now = StatusNow(remote, act.machine)) status = *std::move(now);
+  }
+  const int shown = ShowOwn(remote, status);
+  const bool failed = !status.has_run() && status.last_run().run() == begun.run().run() &&
+                      status.last_run().outcome().kind() == v1::Outcome::KIND_FAILED;
+  return shown == kGood && failed ? kProgramErrors : shown;
+}
+
+// Armed and started are one here: whoever gives control back has it armed no more. DEV-1.41
+int ArmAndStart(const Remote& remote, const MachineAct& act, v1::StartMachineRequest start) {
+  auto arm = For<v1::ArmMachineRequest>(act);
+  arm.set_job(start.job());
+  arm.set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);  // as every run that is started here
+  for (const std::string& seen : act.seen) {
+    const auto confirmation = ConfirmationOf(seen);
+    if (!confirmation) {
+      Complain("--seen '" + Visible(seen) + "': nothing is called so; see --help");
+      return kUsage;
+    }
+    arm.add_confirmations(*confirmation);
+  }
+  const Control control(remote, act);
+  if (!control.status().ok()) return Refused(control.status(), remote);
+  arm.set_control_token(control.token());
+  v1::ArmMachineResponse armed;
+  grpc::Status status = Call(remote, &Service::Stub::ArmMachine, arm, armed);
+  if (!status.ok()) return Refused(status, remote);
+  start.set_control_token(control.token());
+  start.set_arm_token(armed.arm_token());
+  v1::MachineStatus begun;
+  status = Call(remote, &Service::Stub::StartMachine, start, begun);
+  return status.ok() ? ShowBegun(remote, act, begun) : Refused(status, remote);
+}
+
+}  // namespace
+
 int StartMachine(const Remote& remote, const MachineAct& act) {
   auto request = For<v1::StartMachineRequest>(act);
   if (!act.job.empty()) {
@@ -280,21 +325,11 @@ int StartMachine(const Remote& remote, const MachineAct& act) {
   } else {
     request.set_selected(true);
   }
+  if (!act.seen.empty()) return ArmAndStart(remote, act, std::move(request));
   return WithControl<v1::StartMachineRequest, v1::MachineStatus>(
       remote, act, &Service::Stub::StartMachine, std::move(request),
       [&](const v1::MachineStatus& begun, const std::string&) {
-        // What fails at once does so behind the answer.
-        constexpr std::chrono::milliseconds kBetweenLooks{20};
-        v1::MachineStatus status = begun;
-        for (int look = 0; look < 10 && status.run().run_time_ns() == 0 && status.has_run();
-             ++look) {
-          std::this_thread::sleep_for(kBetweenLooks);
-          if (auto now = StatusNow(remote, act.machine)) status = *std::move(now);
-        }
-        const int shown = ShowOwn(remote, status);
-        const bool failed = !status.has_run() && status.last_run().run() == begun.run().run() &&
-                            status.last_run().outcome().kind() == v1::Outcome::KIND_FAILED;
-        return shown == kGood && failed ? kProgramErrors : shown;
+        return ShowBegun(remote, act, begun);
       });
 }
 

@@ -94,7 +94,7 @@ _rmlcell_options() {
     "machine log") echo "--help --follow" ;;
     "machine taught") echo "--help --take-over --slot --undo" ;;
     "machine key") echo "--help --take-over --for --fast" ;;
-    "machine start") echo "--help --take-over --job" ;;
+    "machine start") echo "--help --take-over --job --seen" ;;
     "machine options") echo "--help" ;;
     "machine take") echo "--help --reason --computer" ;;
     "machine resume") echo "--help --take-over --accept-displaced --restore-process" ;;

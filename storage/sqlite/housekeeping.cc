@@ -88,9 +88,12 @@ bool Housekeeping::HasOldEvents(const Counters& counters) const {
 }
 
 Result<bool> Housekeeping::RunSlice(WriteContext& context) const {
+  bool more_jobs = false;
   if (IsDue(context.counters)) {
     if (const Status kept = KeepCounters(context); !kept) return kept.error();
-    if (const Status jobs = RemoveOldJobs(context); !jobs) return jobs.error();
+    const Result<bool> jobs = RemoveOldJobs(context);
+    if (!jobs) return jobs.error();
+    more_jobs = *jobs;
     if (const Status events = RemoveOldEvents(context); !events) return events.error();
     if (const Status events = RemoveOldRecordEvents(context); !events) return events.error();
   }
@@ -98,15 +101,16 @@ Result<bool> Housekeeping::RunSlice(WriteContext& context) const {
   if (!more_uploads) return more_uploads.error();
   const Result<bool> swept = context.tables.blobs.Sweep(kBlobsPerSlice, kChunksPerSlice);
   if (!swept) return swept.error();
-  return *swept || *more_uploads || IsDue(context.counters);
+  return *swept || *more_uploads || more_jobs || HasOldEvents(context.counters) ||
+         HasOldRecordEvents(context.counters);
 }
 
-Status Housekeeping::RemoveOldJobs(WriteContext& context) const {
+Result<bool> Housekeeping::RemoveOldJobs(WriteContext& context) const {
   int events_left = kEventsPerSlice;
   for (int i = 0; i < kJobsPerSlice && HasOldJobs(context.counters); ++i) {
     const Result<std::optional<std::int64_t>> job = context.tables.jobs.OldestFinished();
     if (!job) return job.error();
-    if (!*job) return {};
+    if (!*job) return false;
     // Events first: a job with very many takes several slices and is there until the last of them.
     const Result<std::optional<EventTable::Removed>> removed =
         context.tables.events.RemoveOfJob(**job, events_left);
@@ -114,11 +118,11 @@ Status Housekeeping::RemoveOldJobs(WriteContext& context) const {
     if (*removed) {
       if (const Status noted = NoteGone(context, **removed); !noted) return noted.error();
       events_left -= static_cast<int>((*removed)->count);
-      if (events_left <= 0) return {};
+      if (events_left <= 0) return true;
     }
     if (const Status gone = RemoveJob(context, **job); !gone) return gone.error();
   }
-  return {};
+  return HasOldJobs(context.counters);
 }
 
 Status Housekeeping::RemoveOldRecordEvents(WriteContext& context) const {

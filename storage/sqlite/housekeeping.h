@@ -31,7 +31,7 @@ class Housekeeping {
  private:
   bool HasOldJobs(const Counters& counters) const;
   bool HasOldEvents(const Counters& counters) const;
-  Status RemoveOldJobs(WriteContext& context) const;
+  Result<bool> RemoveOldJobs(WriteContext& context) const;  // whether more of them may go
   Status RemoveOldEvents(WriteContext& context) const;
   bool HasOldRecordEvents(const Counters& counters) const;
   Status RemoveOldRecordEvents(WriteContext& context) const;

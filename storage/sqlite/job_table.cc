@@ -180,6 +180,8 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
           "SELECT machine, id FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 1"),
       oldest_finished_(database,
                        "SELECT id FROM job INDEXED BY job_finished_by_time WHERE state >= 2"
+                       " AND NOT (state = 5 AND EXISTS (SELECT 1 FROM machine_mark"
+                       " WHERE machine_mark.machine = job.machine AND NOT clean))"
                        " ORDER BY finished_at, id LIMIT 1"),
       remove_(database, "DELETE FROM job WHERE id = ?1"),
       remove_specification_(database,

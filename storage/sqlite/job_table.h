@@ -48,7 +48,8 @@ class JobTable {
   Result<std::int64_t> LastId();
 
   // For the bound on finished jobs.
-  Result<std::optional<std::int64_t>> OldestFinished();  // by the time it ended
+  // By the time it ended. None that was cut off while its machine waits for a decision about it.
+  Result<std::optional<std::int64_t>> OldestFinished();
   // Returns the blob of its specification, whose reference is the caller's affair.
   Result<std::optional<std::int64_t>> Remove(std::int64_t id);
 

@@ -382,6 +382,23 @@ class RunsTest(LiveTestCase):
         armed = self.live.ask("ArmMachine", job=name, confirmations=seen)
         self.assertTrue(armed.arm_token)
         self.becomes(name, "SUCCEEDED")
+        # The same by the command, in one go.
+        self.live.ask("ReleaseControl")
+        name = self.submit()
+
+        def start(seen):
+            return subprocess.run([BIN / "rmlcell", "machine", "start", "mill-1", "--job", name.split("/")[1], "--seen", seen, "--server",
+                                   f"127.0.0.1:{self.cell.grpc_port}"], capture_output=True, text=True, timeout=60)
+
+        refused = start("tool,origin-valid,clamps")
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertIn("CELL-E9406", refused.stderr)
+        self.assertEqual(start("tool,hat").returncode, 2)
+        self.assertEqual(self.state(name), "QUEUED")
+        begun = start("tool,origin-valid,clamps,cover")
+        self.assertEqual(begun.returncode, 0, begun.stderr)
+        self.assertIn(name, begun.stdout)
+        self.becomes(name, "SUCCEEDED")
 
     # LIVE-3.31, server killed: the job stays RUNNING and held, and goes on when a person resumes it.
     def test_a_server_that_is_killed_holds_its_job(self):

@@ -149,6 +149,30 @@ TEST_F(SqliteKeep, OpeningTakesItsCountersFromMarks) {
   EXPECT_EQ(Acquire().fence, 70'004);
 }
 
+// LIVE-5.10: of a run that was cut off a person decides by what is known of it: it stays, whatever
+// else ends meanwhile, until its machine stands as if no run was open.
+TEST_F(SqliteKeep, WhatWaitsForADecisionStays) {
+  Open(0, 0);
+  for (int i = 0; i < 2; ++i) RunJob();
+  bed_->Close();
+  const std::string mark = "INSERT OR REPLACE INTO machine_mark VALUES ('mill-1', 1, 1, x'', x'', ";
+  ExecuteIn(bed_->path(), "UPDATE job SET state = 5, machine = 'mill-1' WHERE id = 1;" + mark +
+                              "0, 0)");
+  bed_->options().keep_finished_jobs = 1;
+  bed_->Reopen();
+  EXPECT_EQ(RunJob(), 3);
+  Eventually([&] { return Jobs() == std::vector<std::int64_t>{1}; });
+  RunJob();  // and another: nothing else is left to go
+  Eventually([&] { return Jobs() == std::vector<std::int64_t>{1}; });
+  EXPECT_EQ(Jobs(), std::vector<std::int64_t>{1});
+  bed_->Close();
+  ExecuteIn(bed_->path(), mark + "1, 0)");
+  bed_->Reopen();
+  EXPECT_EQ(RunJob(), 5);
+  Eventually([&] { return Jobs() == std::vector<std::int64_t>{5}; });
+  EXPECT_EQ(Jobs(), std::vector<std::int64_t>{5});
+}
+
 // A write that is undone changes no mark.
 TEST_F(SqliteKeep, MarksFollowWhatIsCommitted) {
   Open(0, 0);

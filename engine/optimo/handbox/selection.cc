@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/machine/machine_states.h"
 #include "engine/optimo/handbox/modal_text.h"
 #include "engine/optimo/handbox/optimo_handbox.h"
 #include "engine/optimo/language/operands.h"
@@ -154,10 +155,8 @@ void OptimoHandbox::Record(Turn& turn) {
 
 // OPT-5.15 to 5.22, OPT-6.41: circle and hole have two points, and the second one makes the step.
 void OptimoHandbox::RecordPoint(Turn& turn) {
-  const machine::MachineState state = turn.view.status.state;
   if (!turn.view.status.run.zeroed) return Refuse(turn, ErrorCode::kNotZeroed);
-  if (state == machine::MachineState::kJogging || state == machine::MachineState::kStopping)
-    return Refuse(turn);
+  if (machine::MovesAxes(turn.view.status.state)) return Refuse(turn);
   const bool two = modes_.path == PathType::kCir || modes_.path == PathType::kHole;
   if (two && !first_point_) {
     if (!StepsOf(turn, turn.program())) return;

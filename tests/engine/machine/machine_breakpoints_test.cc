@@ -163,5 +163,48 @@ TEST_F(MachineTest, BreakpointsHaveLimits) {
   EXPECT_EQ(machine->breakpoints().size(), kBreakpointsMax);
 }
 
+// LIVE-3.16, OPT-6.24, OPT-6.28: halted in a dry run it is seen to be dry, and what the program
+// switches is an image, not at the terminals.
+TEST_F(MachineTest, ADryRunIsSeenToBeDry) {
+  Load({"OL[3] = ON\nOA[2] = 1.5\nDELAY 1\nDELAY 1\nWAIT IL[5]\n"});
+  Good(SetSimulation{.until = ProgramStep{1, 4}});
+  Good(SetBreakpoints{{{.at = {1, 3}}}});
+  Start();
+  GoOn(At(0.5));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  EXPECT_TRUE(machine->status().run.dry);
+  EXPECT_EQ(Value("OL[3]"), "1");
+  EXPECT_THAT(machine->outputs().on, IsEmpty());
+  Good(ResumeRun{});
+  GoOn(At(1.0));  // in the DELAY that is real
+  EXPECT_FALSE(machine->status().run.dry);
+  const std::vector<OutputNow> on = {{"OL[3]", 1.0}, {"OA[2]", 1.5}};
+  EXPECT_EQ(machine->outputs().on, on);
+  Good(AbortRun{});
+  GoOn(At(2.0));
+  EXPECT_FALSE(machine->status().run.dry);
+  EXPECT_EQ(machine->outputs().on, on);  // no end of a run switches them off: OPT-B.54
+}
+
+// LIVE-3.16: what the laser does now: its power, the schedule that is selected, shutter and table.
+TEST_F(MachineTest, TheLaserIsSeenAtWork) {
+  Load({"WORKDEF 2,1 (7)\nWORK 2,1/ON\nWORKDEF 0,0\nWORK 0,0/ON\nDELAY 5\nWORK 0,0/OFF\n"});
+  LaserSchedule schedule;
+  schedule.number = 7;
+  schedule.power_percent = 60.0;
+  Good(SetSchedules{.schedules = std::vector{schedule}});
+  EXPECT_EQ(machine->outputs().power_percent, 0.0);
+  Start();
+  GoOn(At(3.0));
+  const MachineOutputs cutting = machine->outputs();
+  EXPECT_EQ(cutting.power_percent, 60.0);
+  EXPECT_EQ(cutting.laser_schedule, 7);
+  EXPECT_THAT(cutting.on, ElementsAre(OutputNow{"shutter", 1.0}));
+  GoOn(At(60.0));
+  EXPECT_EQ(machine->outputs().power_percent, 0.0);
+  EXPECT_EQ(machine->outputs().laser_schedule, 7);
+  EXPECT_THAT(machine->outputs().on, IsEmpty());
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

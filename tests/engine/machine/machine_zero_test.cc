@@ -60,7 +60,12 @@ TEST_F(MachineZeroTest, WithoutAHomeProgramItStandsAtItsZero) {
   Good(ZeroAxes{});
   GoOn(At(300.0));
   EXPECT_EQ(state(), MachineState::kIdle);
-  EXPECT_EQ(machine->TakeRunsOver().size(), 1U);
+  // What was called for has failed, though the axes have their reference.
+  const RunOver over = Over();
+  EXPECT_EQ(over.outcome.kind, OutcomeKind::kFailed);
+  EXPECT_EQ(over.outcome.code, ErrorCode::kProgramMissing);
+  EXPECT_EQ(over.outcome.place.program, 4);
+  EXPECT_TRUE(machine->status().run.zeroed);
   EXPECT_EQ(CodeText(*machine->status().message), "OPT-E7102");
   EXPECT_NEAR(machine->status().run.axes.column.norm(), 0.0, 1e-9);
   // Who hears of runs is told, too: nobody at the console sees the display.

@@ -1,6 +1,7 @@
 // The way to a step, against the block that lies on the table of a mill (live.md 6).
 #include "engine/simulation/material/milled_part.h"
 #include "engine/simulation/material/milling_text.h"
+#include "engine/simulation/run/recorder.h"
 #include "tests/engine/machine/start_bed.h"
 
 namespace rmlcell::simulation {
@@ -82,6 +83,52 @@ TEST_F(StartOnPart, WithoutAPartNothingIsLookedAt) {
   const machine::StartPreview preview = PreviewOf(Setup({kTwoSides}), {.at = {1, 8}});
   EXPECT_FALSE(preview.part_checked);
   EXPECT_TRUE(preview.may_begin());
+}
+
+// What is reported of a run of kTwoSides that begins at its eighth command; it is ended at `until`.
+class EnteredReport : public machine::StartTest {
+ protected:
+  EnteredReport() : StartTest("rml1") {}
+  RunReport ReportOf(SimTime until) {
+    machine::MachineMemory memory;
+    memory.programs[1] = Translated(kTwoSides);
+    Recorder recorder(family_.Shape(parameters()), {}, {});
+    machine = *machine::Machine::Make(family_, parameters(), std::move(memory), "", recorder);
+    Good(At1(8));
+    recorder.Begin(*machine->open_run());
+    GoOn(machine->time() + until);
+    if (machine->open_run() != nullptr) {
+      Good(machine::AbortRun{});
+      GoOn(machine->time() + At(20.0));
+    }
+    const machine::RunOver over = Over();
+    recorder.Finish(*over.ended);
+    return recorder.Report(*over.ended);
+  }
+};
+
+// LIVE-6.09: from the second corner one side of 20 mm is cut, and one passed over, 3 mm higher. The
+// way to that corner, and the spindle that starts there, are in no figure.
+TEST_F(EnteredReport, TheApproachIsNotCounted) {
+  const RunReport report = ReportOf(At(500.0));
+  EXPECT_EQ(report.outcome.kind, machine::OutcomeKind::kCompleted);
+  EXPECT_NEAR(report.total.cut_mm, 20.0, 1e-9);
+  EXPECT_NEAR(report.total.travel_mm, 23.0, 1e-9);
+  EXPECT_EQ(report.total.plunges, 0U);
+  EXPECT_EQ(report.total.time.spin_up, SimTime(0));
+  EXPECT_EQ(report.total.steps, 3U);
+  EXPECT_EQ(report.cycle_time, report.total.time.motion + report.total.time.settling +
+                                   report.total.time.standstill);
+  EXPECT_GT(report.cycle_time, At(2.0));  // 20 mm at 10 mm/s
+  EXPECT_LT(report.cycle_time, At(6.0));
+}
+
+// LIVE-6.09: one that never came to its step has done nothing.
+TEST_F(EnteredReport, AnApproachAloneIsNothing) {
+  const RunReport report = ReportOf(At(0.3));
+  EXPECT_EQ(report.outcome.kind, machine::OutcomeKind::kCancelled);
+  EXPECT_EQ(report.cycle_time, SimTime(0));
+  EXPECT_EQ(report.total, WorkFigures());
 }
 
 }  // namespace

@@ -183,6 +183,27 @@ TEST_F(HostMachineTest, TheStatusHasOutputsAndWaits) {
   EXPECT_EQ(status.outputs(1).value(), 2.5);
 }
 
+// LIVE-3.22: one order. What fails as soon as it begins was begun before; so with a job.
+TEST_F(HostMachineTest, ARunBeginsBeforeAnythingIsToldOfIt) {
+  machine::MachineMemory memory;
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
+  memory.programs[5] = {.name = "a", .object = machine::Bytes::Of("no object")};
+  auto made = HostMachine::Make({.name = "machines/optimo-1",
+                                 .host = "workshop/1",
+                                 .fence = 7,
+                                 .family = &family,
+                                 .memory = std::move(memory)},
+                                now_, [this] { return "token " + std::to_string(++tokens_); });
+  ASSERT_TRUE(made);
+  host_ = *std::move(made);
+  Control();
+  Told();
+  ASSERT_FALSE(Do(Start("one")).has_refusal());
+  Pass(100ms);
+  EXPECT_THAT(Told(), ElementsAre(Input(v1::AppliedInput::kStart), "begun", "event",
+                                  "over KIND_FAILED", "clean mark"));
+}
+
 // LIVE-4.01: control leases are counted on by the next host.
 TEST_F(HostMachineTest, ControlLeasesAreCountedOn) {
   Make();
