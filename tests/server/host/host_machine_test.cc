@@ -198,7 +198,7 @@ TEST_F(HostMachineTest, ARunBeginsBeforeAnythingIsToldOfIt) {
   host_ = *std::move(made);
   Control();
   Told();
-  ASSERT_FALSE(Do(Start("one")).has_refusal());
+  ASSERT_FALSE(Do(Start()).has_refusal());
   Pass(100ms);
   EXPECT_THAT(Told(), ElementsAre(Input(v1::AppliedInput::kStart), "begun", "event",
                                   "over KIND_FAILED", "clean mark"));
