@@ -143,6 +143,9 @@ void Machine::CloseRun() {
   over_.push_back({.run = note_,
                    .outcome = outcome,
                    .lasted = state.time,
+                   .worked = state.approaching ? SimTime(0)
+                                               : state.time - state.approached -
+                                                     note_.entered.value_or(RunEntry{}).run_time,
                    .steps = run_->steps_executed(),
                    .figures = run_->figures()});
   const bool selects = !std::exchange(selected_, false) && !note_.by_hand && !of_a_job_;

@@ -58,6 +58,7 @@ struct RunOver {
   RunNote run{};
   Outcome outcome{};
   SimTime lasted{0};
+  SimTime worked{0};  // without what lies before the step where it began, and the way there
   std::uint64_t steps = 0;
   std::vector<Figure> figures{};
   std::unique_ptr<Run> ended{};  // itself, as it ended: for who makes a report of it

@@ -20,9 +20,7 @@ v1::RunOver OverOf(const machine::RunOver& run) {
   told.set_run(run.run.number);
   told.set_program(run.run.program);
   *told.mutable_outcome() = bridge::ToProto(run.outcome);
-  // What lies before the step at which it began was not done by it.
-  const SimTime before = run.run.entered ? run.run.entered->run_time : SimTime(0);
-  told.mutable_outcome()->set_cycle_time_ns((run.lasted - before).count());
+  told.mutable_outcome()->set_cycle_time_ns(run.worked.count());
   if (run.outcome.code == ErrorCode::kCellPowerOff)
     told.mutable_outcome()->set_kind(v1::Outcome::KIND_INTERRUPTED);
   return told;

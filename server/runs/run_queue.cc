@@ -481,8 +481,13 @@ void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answer
                                 .duration = kWhileTheMachineIsHeld,
                                 .events = {StateEvent(storage::JobState::kRunning)}});
   if (!leased) return refuse(leased.error());
-  if (leased->empty())
+  if (leased->empty()) {
+    // The queue, which may begin it as well, was first; or another one runs.
+    const auto now = needs_.store.GetJob(id);
+    if (now && now->state != storage::JobState::kQueued)
+      return BeginByPerson(id, std::move(order), std::move(done));
     return refuse({ErrorCode::kCellMachineState, "another job runs on " + job->machine, {}});
+  }
   Send(job->machine, leased->front(), std::move(order),
        [this, machine = job->machine, leased = leased->front(), continues,
         done = std::move(done)](Result<v1::HostOrderAnswer> answer) {

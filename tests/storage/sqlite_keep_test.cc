@@ -156,8 +156,8 @@ TEST_F(SqliteKeep, WhatWaitsForADecisionStays) {
   for (int i = 0; i < 2; ++i) RunJob();
   bed_->Close();
   const std::string mark = "INSERT OR REPLACE INTO machine_mark VALUES ('mill-1', 1, 1, x'', x'', ";
-  ExecuteIn(bed_->path(), "UPDATE job SET state = 5, machine = 'mill-1' WHERE id = 1;" + mark +
-                              "0, 0)");
+  ExecuteIn(bed_->path(),
+            "UPDATE job SET state = 5, machine = 'mill-1' WHERE id = 1;" + mark + "0, 0)");
   bed_->options().keep_finished_jobs = 1;
   bed_->Reopen();
   EXPECT_EQ(RunJob(), 3);

@@ -103,7 +103,9 @@ class EnteredReport : public machine::StartTest {
     }
     const machine::RunOver over = Over();
     recorder.Finish(*over.ended);
-    return recorder.Report(*over.ended);
+    RunReport report = recorder.Report(*over.ended);
+    EXPECT_EQ(over.worked, report.cycle_time);  // as its job is told
+    return report;
   }
 };
 
