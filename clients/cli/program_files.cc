@@ -26,17 +26,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<simulation::MemoryProgram> ReadProgram(const std::string& file, int slot,
-                                              bool may_be_empty) {
-  Result<machine::Bytes> bytes = bridge::ReadProgram(file, kFileBytesMax);
-  if (!bytes) return bytes.error();
-  if ((*bytes)->empty() && !may_be_empty) return Error{ErrorCode::kCellEmptyProgram, file, {}};
+using bridge::ProgramStream;
+
+Result<simulation::MemoryProgram> ProgramOf(const std::string& file, int slot, bool may_be_empty,
+                                            machine::Bytes bytes) {
+  if (bytes->empty() && !may_be_empty) return Error{ErrorCode::kCellEmptyProgram, file, {}};
   return simulation::MemoryProgram{.slot = slot,
                                    .name = fs::path(file).stem().string(),
                                    .file_name = file,
-                                   .bytes = *std::move(bytes),
+                                   .bytes = std::move(bytes),
                                    .is_source = true,
                                    .executable = nullptr};
+}
+
+// `before_wait` of nothing: all of it.
+Result<ProgramStream::Opened> ReadProgram(const std::string& file,
+                                          const std::function<void()>& before_wait) {
+  if (before_wait) return ProgramStream::Open(file, kFileBytesMax, before_wait);
+  Result<machine::Bytes> bytes = bridge::ReadProgram(file, kFileBytesMax);
+  if (!bytes) return bytes.error();
+  return ProgramStream::Opened{.bytes = *std::move(bytes)};
 }
 
 }  // namespace
@@ -213,6 +222,7 @@ struct FoundFiles {
   std::vector<std::pair<int, std::string>> files;  // slot 0: to be chosen
   std::set<std::string> in_folders;
   const machine::MachineFamily* family = nullptr;  // of the first of them; null: none yet
+  std::string first{};                             // file among the arguments
 };
 
 // A folder may hold programs of several machines: only those of the family of the first file count.
@@ -253,13 +263,10 @@ Status AddNamed(const std::string& text, FoundFiles& found) {
   return {};
 }
 
-}  // namespace
-
-Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
-                              const std::vector<std::string>& slots, int main_slot,
-                              const std::string& family_id, EmptyInFolders empty) {
+// Each as it is named, in order. Errors: CellUsage; CellUnknownFamily.
+Result<FoundFiles> Find(const std::vector<std::string>& files,
+                        const std::vector<std::string>& slots, const std::string& family_id) {
   FoundFiles found;
-  std::string first_file;
   std::error_code ignored;
   const auto named_file = std::ranges::find_if(
       files, [&](const std::string& file) { return !fs::is_directory(file, ignored); });
@@ -272,7 +279,7 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
   for (const std::string& file : files) {
     std::error_code error;
     if (!fs::is_directory(file, error)) {
-      if (first_file.empty()) first_file = file;
+      if (found.first.empty()) found.first = file;
       found.files.emplace_back(SlotFromName(file).value_or(0), file);
       continue;
     }
@@ -284,10 +291,14 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
   if (found.files.empty())
     return Error{
         ErrorCode::kCellUsage, "no program: give a file, or a folder with files like 12.S", {}};
+  return found;
+}
 
+Result<LoadedFiles> Load(FoundFiles found, int main_slot, const std::string& family_id,
+                         EmptyInFolders empty, std::function<void()> before_wait) {
   std::map<int, std::string> used;
   for (auto& [slot, file] : found.files) {
-    if (slot == 0 && file == first_file) slot = main_slot;  // 0: none is asked for
+    if (slot == 0 && file == found.first) slot = main_slot;  // 0: none is asked for
     const auto [row, is_new] = used.emplace(slot, file);
     if (!is_new && slot != 0) {
       return Error{ErrorCode::kCellUsage,
@@ -303,6 +314,8 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
     found.family = *family;
   }
   loaded.family = found.family;
+  const bool one_stream = found.files.size() == 1 && found.family->tools() == nullptr;
+  if (!one_stream) before_wait = nullptr;
   int free_slot = 1;
   for (auto& [slot, file] : found.files) {
     if (slot == 0) {
@@ -311,10 +324,14 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
     }
     if (!IsSlot(slot))
       return Error{found.family->info().no_slot, "program number is " + std::to_string(slot), {}};
-    Result<simulation::MemoryProgram> program =
-        ReadProgram(file, slot, empty == EmptyInFolders::kTaken && found.in_folders.contains(file));
+    auto opened = ReadProgram(file, before_wait);
+    if (!opened) return opened.error();
+    loaded.stream = std::move(opened->stream);
+    auto program =
+        ProgramOf(file, slot, empty == EmptyInFolders::kTaken && found.in_folders.contains(file),
+                  std::move(opened->bytes));
     if (!program) return program.error();
-    if (file == first_file) loaded.main_slot = slot;
+    if (file == found.first) loaded.main_slot = slot;
     loaded.programs.push_back(std::move(*program));
   }
   if (main_slot > 0) loaded.main_slot = main_slot;
@@ -325,6 +342,25 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
         ErrorCode::kCellUsage, "several programs: say which one is started, such as --main 12", {}};
   }
   return loaded;
+}
+
+}  // namespace
+
+Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
+                              const std::vector<std::string>& slots, int main_slot,
+                              const std::string& family_id, EmptyInFolders empty) {
+  auto found = Find(files, slots, family_id);
+  if (!found) return found.error();
+  return Load(*std::move(found), main_slot, family_id, empty, nullptr);
+}
+
+Result<LoadedFiles> OpenFiles(const std::vector<std::string>& files,
+                              const std::vector<std::string>& slots, int main_slot,
+                              const std::string& family_id, std::function<void()> before_wait) {
+  auto found = Find(files, slots, family_id);
+  if (!found) return found.error();
+  return Load(*std::move(found), main_slot, family_id, EmptyInFolders::kRefused,
+              std::move(before_wait));
 }
 
 }  // namespace rmlcell::cli

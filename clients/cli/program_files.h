@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +10,7 @@
 #include "clients/cli/machine_choice.h"
 #include "engine/simulation/run/rehearsal.h"
 #include "proto/bridge/files.h"
+#include "proto/bridge/program_stream.h"
 
 namespace rmlcell::cli {
 
@@ -18,6 +21,8 @@ struct LoadedFiles {
   const machine::MachineFamily* family = nullptr;
   std::vector<simulation::MemoryProgram> programs;
   int main_slot = 0;
+  // Of the only program: more of it comes while it runs. Null: all is there.
+  std::shared_ptr<const bridge::ProgramStream> stream;
 };
 
 // Files and folders given to a local run. Folders bring their numbered programs ("12.S", "44.rml");
@@ -30,6 +35,12 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
                               const std::vector<std::string>& slots, int main_slot,
                               const std::string& family_id,
                               EmptyInFolders empty = EmptyInFolders::kRefused);
+
+// The same of what is run at once: a stream alone is read as it comes; `before_wait` as that of
+// ProgramStream.
+Result<LoadedFiles> OpenFiles(const std::vector<std::string>& files,
+                              const std::vector<std::string>& slots, int main_slot,
+                              const std::string& family_id, std::function<void()> before_wait);
 
 // "progs/44.S" -> 44: the name of a program file tells its slot. Nothing: it tells none.
 std::optional<int> SlotFromName(const std::filesystem::path& path);

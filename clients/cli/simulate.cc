@@ -1,10 +1,13 @@
 #include "engine/simulation/run/simulate.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <ranges>
 #include <set>
+#include <system_error>
 #include <tuple>
 
 #include "clients/cli/findings_text.h"
@@ -145,6 +148,14 @@ class RunProducts {
         ErrorCode::kCellFileUnwritable, options_.samples[1] + ": not written to its end", {}};
   }
 
+  // Of what turned out to be no program.
+  void Discard() {
+    if (!samples_.is_open()) return;
+    samples_.close();
+    std::error_code ignored;
+    std::filesystem::remove(options_.samples[1], ignored);
+  }
+
   // Of --trace with --json: a part of the report.
   void MoveTraceTo(v1::RunReport& report) {
     report.mutable_trace_records()->Swap(traced_.mutable_trace_records());
@@ -195,7 +206,8 @@ class RunProducts {
 
 // The programs of a run. Streams call no others: a second one would be loaded and never run.
 Result<LoadedFiles> LoadPrograms(const SimulateOptions& options, const std::string& family) {
-  Result<LoadedFiles> loaded = LoadFiles(options.files, options.slots, options.main_slot, family);
+  Result<LoadedFiles> loaded = OpenFiles(options.files, options.slots, options.main_slot, family,
+                                         [] { std::fflush(stdout); });
   if (!loaded || loaded->family->tools() != nullptr || loaded->programs.size() == 1 ||
       options.main_slot != 0) {
     return loaded;
@@ -211,9 +223,40 @@ Result<LoadedFiles> LoadPrograms(const SimulateOptions& options, const std::stri
 struct PreparedCommand {
   LoadedFiles loaded;
   simulation::ProgramMemory memory;
+  simulation::RunOptions how;
   simulation::PreparedRun run;
   std::vector<std::string> variables;
 };
+
+// A stream that comes runs as it comes, and is checked when all of it is there; unless its
+// beginning is no program already: then it is read to its end first, as others are.
+void LookAtBeginning(LoadedFiles& loaded, simulation::ProgramMemory& memory) {
+  simulation::MemoryProgram& program = memory.programs.front();
+  const auto parameters =
+      machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
+  if (!parameters) return;  // the run is told so
+  if (simulation::TranslateProgram(*memory.family, *parameters, program, {.advice = false}).ok) {
+    auto unchecked = std::make_shared<machine::Translation>();
+    unchecked->ok = unchecked->as_it_came = true;
+    program.translation = std::move(unchecked);
+    return;
+  }
+  program.bytes.ReadAll();
+  loaded.programs.front().bytes = program.bytes;
+}
+
+// Behind its run. Errors: those of reading it; of PrepareRun.
+Status CheckWhole(PreparedCommand& prepared) {
+  simulation::MemoryProgram& program = prepared.memory.programs.front();
+  if (const bool was_checked = program.translation == nullptr; was_checked) return {};
+  program.bytes.ReadAll();
+  program.translation = nullptr;
+  if (const Status& read = prepared.loaded.stream->status(); !read) return read.error();
+  Result<simulation::PreparedRun> whole = simulation::PrepareRun(prepared.memory, prepared.how);
+  if (!whole) return whole.error();
+  prepared.run = *std::move(whole);
+  return {};
+}
 
 Result<PreparedCommand> Prepare(const SimulateOptions& options) {
   Result<bridge::MachineFile> machine = ReadMachine(options.machine);
@@ -248,6 +291,7 @@ Result<PreparedCommand> Prepare(const SimulateOptions& options) {
   const Result<simulation::RunOptions> how =
       bridge::RunOptionsOf(*message, *budget, loaded->main_slot, machine::Mode::kCycle);
   if (!how) return how.error();
+  if (loaded->stream != nullptr) LookAtBeginning(*loaded, memory);
   Result<simulation::PreparedRun> run = simulation::PrepareRun(memory, *how);
   if (!run) return run.error();
   for (const int slot : *to_make) {
@@ -255,7 +299,7 @@ Result<PreparedCommand> Prepare(const SimulateOptions& options) {
     if (const Status made = simulation::MakeExecutable(*loaded->family, *run->setup, slot); !made)
       return made.error();
   }
-  return PreparedCommand{*std::move(loaded), std::move(memory), *std::move(run),
+  return PreparedCommand{*std::move(loaded), std::move(memory), *how, *std::move(run),
                          *std::move(variables)};
 }
 
@@ -315,6 +359,12 @@ int Simulate(const SimulateOptions& options) {
       simulation::Simulate(family, *std::move(run.setup), std::move(request));
   progress.Clear();
   if (!result) return Refuse(result.error());
+  if (prepared->loaded.stream != nullptr) {
+    const Status whole = CheckWhole(*prepared);
+    if (!whole || !run.setup) products.Discard();
+    if (!whole) return Refuse(whole.error());
+    if (!run.setup) return TellWhyNot(options, prepared->memory, run);
+  }
   if (const Status written = products.Write(*result, threads); !written)
     return Refuse(written.error());
   for (const std::string& name : prepared->variables) {

@@ -14,6 +14,13 @@ class BytesKeeper {
   virtual ~BytesKeeper() = default;
   // Who reads is past a good part of the bytes: those need not stay in memory. They stay readable.
   virtual void Release() const {}
+
+  // Where the bytes still come while they are read, as from a pipe: waits until there are `size` of
+  // them, or all. What was `known` stays where it is.
+  virtual std::string_view ReadOn(std::string_view known, std::size_t /*size*/) const {
+    return known;
+  }
+  virtual bool IsWhole(std::string_view /*known*/) const { return true; }
 };
 
 // A program as the machine keeps it: object bytes of an Optimo program, the raw stream of a mill.
@@ -35,6 +42,13 @@ class Bytes {
   bool operator==(std::nullptr_t) const { return !given_; }
   std::string_view operator*() const { return bytes_; }
   const std::string_view* operator->() const { return &bytes_; }
+
+  // Of bytes that still come: until so many are known here, or all.
+  void ReadOn(std::size_t size) {
+    if (keeper_ != nullptr && bytes_.size() < size) bytes_ = keeper_->ReadOn(bytes_, size);
+  }
+  void ReadAll() { ReadOn(std::string_view::npos); }
+  bool whole() const { return keeper_ == nullptr || keeper_->IsWhole(bytes_); }
 
   const BytesKeeper* keeper() const { return keeper_.get(); }  // may be null
   void Release() const {

@@ -141,8 +141,9 @@ RunPhase MillRun::Advance(SimTime until) {
     program_.Release();
     released_ = s.scout.sent();
   }
-  const std::size_t sent_max = s.sender.sent() + kBytesPerAdvance;
-  const std::size_t ahead_max = s.scout.sent() + kBytesPerAdvance;
+  const std::size_t known = Await();
+  const std::size_t sent_max = std::min(s.sender.sent() + kBytesPerAdvance, known);
+  const std::size_t ahead_max = std::min(s.scout.sent() + kBytesPerAdvance, known);
   const std::uint64_t commands_max = s.commands_seen + kCommandsPerAdvance;
   const SimTime limit =
       setup_.budget.virtual_time > SimTime::zero() ? setup_.budget.virtual_time : kForever;
@@ -210,7 +211,7 @@ void MillRun::Proceed(std::size_t sent_max) {
     const Action action = s.device.actions().front();
     if (action.kind == Action::Kind::kPause) {
       Listener listener(*this);
-      s.sender.FillBuffer(s.device, stream(), listener);
+      s.sender.FillBuffer(s.device, program_, listener);
       BeginHalt(HaltCause::kPause);
       return;
     }
@@ -547,8 +548,10 @@ machine::RunState MillRun::state() const {
       motion::MachinePoint(profile().origin_x, profile().origin_y, s.device.registers().surface_z) /
       profile().units_per_mm;
   const double size = static_cast<double>(stream().size());
-  state.progress =
-      size > 0.0 ? static_cast<double>(s.sender.given() - s.device.waiting()) / size : 1.0;
+  if (program_.whole()) {
+    state.progress =
+        size > 0.0 ? static_cast<double>(s.sender.given() - s.device.waiting()) / size : 1.0;
+  }
   return state;
 }
 
@@ -562,7 +565,9 @@ std::vector<machine::Figure> MillRun::figures() const {
       state_.device, state_.physical,
       state_.phase == RunPhase::kFinished && state_.outcome.kind == OutcomeKind::kCompleted,
       state_.ahead.starved());
-  PlaceFigures(stream(), program_.keeper(), setup_.main_program, figures);
+  machine::Bytes whole = program_;  // of a run that was ended before its stream had come
+  whole.ReadAll();
+  PlaceFigures(*whole, whole.keeper(), setup_.main_program, figures);
   return figures;
 }
 

@@ -73,6 +73,9 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
   // ahead at most, so that whoever runs a file of nonsense hears of it every tenth of a second.
   static constexpr std::size_t kBytesPerAdvance = std::size_t{1} << 20;
 
+  // Of a stream that still comes: so many are waited for, then what they make it do is done.
+  static constexpr std::size_t kBytesAwaited = std::size_t{1} << 14;
+
   // Commands, likewise: whoever drives a machine that lives looks at its inputs between. LIVE-3.12
   static constexpr std::uint64_t kCommandsPerAdvance = 20'000;
 
@@ -182,6 +185,7 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
   void StopBehindCover();
   void CloseWith(machine::OutcomeKind kind, std::optional<ErrorCode> code, Detail detail);
   std::string_view stream() const;
+  std::size_t Await();
 
   // run_motion.cc: one action after the other.
   void Begin(const Action& action);

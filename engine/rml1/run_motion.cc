@@ -1,6 +1,7 @@
 // How a run carries out the actions of its device.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/rml1/carriage.h"
@@ -54,11 +55,19 @@ void MillRun::BeginMotion(const Action& action) {
   s.busy_from = s.busy_until = s.now;
 }
 
+// How many bytes may be read before the stream is asked again. Where it still comes the last one
+// that is here waits: with it the stream would seem to be over.
+std::size_t MillRun::Await() {
+  if (program_.whole()) return std::numeric_limits<std::size_t>::max();
+  program_.ReadOn(std::max(state_.sender.sent(), state_.scout.sent()) + kBytesAwaited);
+  return program_.whole() ? std::numeric_limits<std::size_t>::max() : stream().size() - 1;
+}
+
 // False: the bytes that may be read ahead now are used up.
 bool MillRun::PlanLeg(std::size_t sent_max) {
   State& s = state_;
   while (!s.ahead.NextLeg(s.ride.place().motion, s.motion.leg)) {
-    if (!s.scout.Read(stream(), state_.halts, sent_max, s.ahead)) return false;
+    if (!s.scout.Read(program_, state_.halts, sent_max, s.ahead)) return false;
   }
   if (s.motion.leg.halts && !(s.ahead.speed() > 0.0)) {  // at rest for a STOP
     s.busy = Busy::kNothing;

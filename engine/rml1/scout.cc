@@ -4,7 +4,7 @@
 
 namespace rmlcell::rml1 {
 
-bool Scout::Read(std::string_view stream, const CommandHalts& halts, std::size_t sent_max,
+bool Scout::Read(machine::Bytes& stream, const CommandHalts& halts, std::size_t sent_max,
                  LookAhead& ahead) {
   RMLCELL_CHECK(!over_);
   DeviceListener silent;
@@ -13,19 +13,19 @@ bool Scout::Read(std::string_view stream, const CommandHalts& halts, std::size_t
     while (device_.Step(silent)) {
       if (TakeWhatHappened(stream, halts, ahead)) return true;
     }
-    if (sender_.done(stream)) {
+    if (sender_.done(*stream)) {
       over_ = true;
       ahead.EndChain();
       return true;
     }
     if (sender_.given() >= sent_max) return false;
-    sender_.Send(device_, stream, sent_max, commands, silent);
+    sender_.Send(device_, *stream, sent_max, commands, silent);
     if (TakeWhatHappened(stream, halts, ahead)) return true;
   }
 }
 
 // True: a motion, or a place where the tool must stand.
-bool Scout::TakeWhatHappened(std::string_view stream, const CommandHalts& halts, LookAhead& ahead) {
+bool Scout::TakeWhatHappened(machine::Bytes& stream, const CommandHalts& halts, LookAhead& ahead) {
   const bool acts = TakeActions(stream, ahead);
   if (device_.commands_done() == commands_seen_) return acts;
   commands_seen_ = device_.commands_done();
@@ -35,7 +35,7 @@ bool Scout::TakeWhatHappened(std::string_view stream, const CommandHalts& halts,
 }
 
 // Everything but a motion needs a tool that stands: a dwell, the spindle, a pause.
-bool Scout::TakeActions(std::string_view stream, LookAhead& ahead) {
+bool Scout::TakeActions(machine::Bytes& stream, LookAhead& ahead) {
   if (device_.actions().empty()) return false;
   DeviceListener silent;
   do {

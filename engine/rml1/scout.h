@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <string_view>
 #include <vector>
 
+#include "engine/machine/bytes.h"
 #include "engine/machine/run.h"
 #include "engine/rml1/device.h"
 #include "engine/rml1/look_ahead.h"
@@ -39,14 +39,14 @@ class Scout {
 
   // As far as the next motion, or the next place where the tool must stand. False: `sent_max` bytes
   // of the stream were read before that, of which sent() tells. Not behind the end of the stream.
-  bool Read(std::string_view stream, const CommandHalts& halts, std::size_t sent_max,
+  bool Read(machine::Bytes& stream, const CommandHalts& halts, std::size_t sent_max,
             LookAhead& ahead);
 
   std::size_t sent() const { return sender_.sent(); }
 
  private:
-  bool TakeActions(std::string_view stream, LookAhead& ahead);
-  bool TakeWhatHappened(std::string_view stream, const CommandHalts& halts, LookAhead& ahead);
+  bool TakeActions(machine::Bytes& stream, LookAhead& ahead);
+  bool TakeWhatHappened(machine::Bytes& stream, const CommandHalts& halts, LookAhead& ahead);
 
   Device device_;
   Sender sender_;

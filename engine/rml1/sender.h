@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include "engine/machine/bytes.h"
 #include "engine/rml1/device.h"
 
 namespace rmlcell::rml1 {
@@ -28,10 +29,12 @@ class Sender {
 
   // While the device is paused the sender goes on until flow control stops it (RML1-9.35). Two
   // places are kept free: a byte behind ESC may bring the ESC with it.
-  void FillBuffer(Device& device, std::string_view stream, DeviceListener& listener) {
+  void FillBuffer(Device& device, machine::Bytes& stream, DeviceListener& listener) {
     constexpr std::size_t kSpare = 2;
-    for (; !done(stream) && device.room() >= kSpare; ++given_) {
-      const auto byte = static_cast<unsigned char>(stream[given_]);
+    for (; device.room() >= kSpare; ++given_) {
+      stream.ReadOn(given_ + 2);  // it is not over where only what has come is
+      if (done(*stream)) return;
+      const auto byte = static_cast<unsigned char>((*stream)[given_]);
       device.Receive(byte, static_cast<std::int64_t>(given_), listener);
       in_hand_ = false;
     }

@@ -6,19 +6,15 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
+#include "proto/bridge/nameless_file.h"
 #include "rmlcell/v1/job.pb.h"
 
 namespace rmlcell::bridge {
 namespace {
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 
 Error BadText(const std::string& name, int line, int column, const std::string& what) {
   return {ErrorCode::kCellBadText, name + ":" + std::to_string(line) + ": " + what,
@@ -29,7 +25,7 @@ Error BadText(const std::string& name, int line, int column, const std::string& 
 
 Status ReadParts(const std::string& path, std::int64_t limit,
                  const std::function<void(std::string_view)>& part) {
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
+  const OpenFile file(std::fopen(path.c_str(), "rb"));
   if (file == nullptr) return Error{ErrorCode::kCellFileUnreadable, path, {}};
   std::int64_t size = 0;
   char room[1 << 16];

@@ -1,13 +1,8 @@
 #include "proto/bridge/spooled_bytes.h"
 
-#include <fcntl.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include "engine/core/check.h"
@@ -33,14 +28,6 @@ class Mapped final : public machine::BytesKeeper {
   std::size_t size_;
 };
 
-std::FILE* NamelessFile() {
-  std::error_code none;
-  const std::filesystem::path folder = std::filesystem::temp_directory_path(none);
-  if (none) return nullptr;
-  const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
-  return file < 0 ? std::tmpfile() : ::fdopen(file, "w+b");
-}
-
 }  // namespace
 
 void SpooledBytes::append(std::string_view bytes) {
@@ -54,7 +41,7 @@ void SpooledBytes::append(std::string_view bytes) {
 
 // What is held, to the end of the file.
 bool SpooledBytes::Spool() {
-  if (file_ == nullptr) file_.reset(NamelessFile());
+  if (file_ == nullptr) file_ = NamelessFile();
   if (file_ == nullptr || std::fwrite(held_.data(), 1, held_.size(), file_.get()) != held_.size() ||
       std::fflush(file_.get()) != 0)
     return false;

@@ -1,13 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <string>
 #include <string_view>
 
 #include "engine/core/result.h"
 #include "engine/machine/bytes.h"
+#include "proto/bridge/nameless_file.h"
 
 namespace rmlcell::bridge {
 
@@ -28,15 +27,11 @@ class SpooledBytes {
   machine::Bytes Finish();
 
  private:
-  struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-
   bool Spool();
   void TakeBack();
 
   std::string held_;  // the newest bytes, or all
-  std::unique_ptr<std::FILE, CloseFile> file_;
+  OpenFile file_;
   std::int64_t spooled_ = 0;  // bytes in the file, before those that are held
   bool in_memory_ = false;    // there is no room for a file
 };

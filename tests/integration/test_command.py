@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 from cell import BIN, ENDLESS, SQUARE, Cell, eventually, inline_job, job_pb2, submit
-from command import InFolder, ask
+from command import InFolder, ask, run
 
 
 class Local(InFolder):
@@ -213,6 +213,36 @@ class Local(InFolder):
         self.assertIn("pw-1993", ask("parameters").stdout)
         self.assertEqual(ask("parameters", "lathe").returncode, 2)
         self.assertEqual(ask("parameters", "rml1", "--profile", "none").returncode, 2)
+
+    # What another program writes is run as it comes, and told before the rest is there; all of it gives the same as a file does.
+    def test_a_stream_runs_as_it_comes(self):
+        begin = "PA;PA;VS15;!VZ8;!PZ-100,200;PU500,500;\n"
+        moves = "".join(f"PD{k * 37 % 9000},{k * 91 % 8000};\n" for k in range(12_000))
+        stream = begin + moves + "PU0,0;H;"
+        self.assertGreater(len(stream), 2 << 16)
+        options = ["--family", "rml1", "--profile", "srm-20", "--trace"]
+        command = subprocess.Popen([BIN / "rmlcell", "simulate", "/dev/stdin", *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
+        command.stdin.write(stream[:60_000].encode())
+        command.stdin.flush()
+        first = b""
+        while b" move PD " not in first:  # the rest of it is not written yet
+            first = command.stdout.readline()
+            self.assertTrue(first)
+        rest, _ = command.communicate(stream[60_000:].encode(), timeout=60)
+        whole = run("simulate", self.file("stdin", stream), *options)
+        self.assertTrue(whole.encode().endswith(first + rest))
+        self.assertEqual(command.returncode, 0)
+
+    # Its beginning is a program, and what follows is none: refused as it was when all of it was read first.
+    def test_what_turns_out_to_be_no_program_leaves_nothing(self):
+        path = self.folder / "half.rml"
+        path.write_bytes(b"PA;PA;VS15;" + b"PD100,200;PD200,300;" * 2_500 + b"\xff" * 200_000)
+        samples = self.folder / "half.csv"
+        done = ask("simulate", path, "--profile", "srm-20", "--samples", "10", samples, "--json")
+        self.assertEqual(done.returncode, 1)
+        found = json.loads(done.stdout)
+        self.assertEqual(found["diagnostics"][0]["code"], "RML1-E8007")
+        self.assertFalse(samples.exists())
 
     def test_the_picture_is_written(self):
         picture = self.folder / "p.svg"

@@ -1,5 +1,6 @@
 #include "engine/simulation/run/input_description.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -108,6 +109,11 @@ std::string Fnv1a128(std::string_view bytes) {
   return hash.Digits();
 }
 
+bool IsWhole(const machine::RunSetup& setup) {
+  return std::ranges::all_of(setup.programs,
+                             [](const auto& one) { return one.second.object.whole(); });
+}
+
 InputDescription DescribeInputs(const machine::MachineFamily& family,
                                 const machine::RunSetup& setup) {
   InputDescription description;
@@ -116,12 +122,19 @@ InputDescription DescribeInputs(const machine::MachineFamily& family,
   if (main != setup.programs.end()) description.title = main->second.name;
   description.changed_parameters = setup.parameters.Changed();
   description.machine = setup.parameters.Used();
+  for (const machine::InputChange& input : setup.inputs)
+    description.input_times.push_back(input.at);
+  if (IsWhole(setup)) description.hash = FingerprintOf(family, setup);
+  return description;
+}
 
+std::string FingerprintOf(const machine::MachineFamily& family, const machine::RunSetup& setup) {
   Fnv1a hash;
   hash.Text(family.info().id);
   hash.Text(kEngineVersion);
-  hash.Number(description.changed_parameters.size());
-  for (const auto& [name, value] : description.changed_parameters) {
+  const auto changed = setup.parameters.Changed();
+  hash.Number(changed.size());
+  for (const auto& [name, value] : changed) {
     hash.Text(name);
     hash.Text(value);
   }
@@ -143,13 +156,11 @@ InputDescription DescribeInputs(const machine::MachineFamily& family,
     hash.Number(static_cast<std::uint64_t>(input.kind));
     hash.Integer(input.index);
     hash.Real(input.value);
-    description.input_times.push_back(input.at);
   }
   hash.Number(setup.forecast ? 1 : 0);
   hash.Number(setup.budget.steps);
   hash.Integer(setup.budget.virtual_time.count());
-  description.hash = hash.Digits();
-  return description;
+  return hash.Digits();
 }
 
 }  // namespace rmlcell::simulation

@@ -55,12 +55,18 @@ Result<BegunRun> Begin(const machine::MachineFamily& family, machine::RunSetup s
 
 Result<SimulationResult> Simulate(const machine::MachineFamily& family, machine::RunSetup setup,
                                   SimulationRequest request) {
+  std::optional<machine::RunSetup> comes;
+  if (!IsWhole(setup)) comes = setup;
   Result<BegunRun> begun = Begin(family, std::move(setup), std::move(request.products));
   if (!begun) return begun.error();
   const Recorder& recorder = *begun->recorder;
   const machine::Run& run = *begun->run;
   SimulationResult result;
   result.report = RunToEnd(*begun->simulation, request.options);
+  if (comes) {
+    for (auto& [slot, program] : comes->programs) program.object.ReadAll();
+    result.report.inputs_hash = FingerprintOf(family, *comes);
+  }
   if (recorder.milling() != nullptr) {
     result.material = recorder.milling()->material();
     result.target = recorder.milling()->target();

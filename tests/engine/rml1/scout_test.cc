@@ -11,7 +11,8 @@ namespace {
 class ScoutTest : public testing::Test {
  protected:
   bool Read(std::string_view stream, std::size_t sent_max, const CommandHalts& halts = {}) {
-    return scout_.Read(stream, halts, sent_max, ahead_);
+    machine::Bytes bytes = machine::Bytes::Borrowed(stream);
+    return scout_.Read(bytes, halts, sent_max, ahead_);
   }
 
   const Profile profile_ = MakeProfile(ParametersOf("t1")).value();

@@ -1,0 +1,122 @@
+#include "proto/bridge/program_stream.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+namespace rmlcell::bridge {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kLimit = std::int64_t{1} << 22;
+
+class ProgramStreamTest : public testing::Test {
+ protected:
+  ProgramStreamTest()
+      : folder_(testing::TempDir() + "program_stream." + std::to_string(::getpid())) {
+    fs::create_directories(folder_);
+  }
+  ~ProgramStreamTest() override { fs::remove_all(folder_); }
+
+  static std::string Numbered(std::size_t size) {
+    std::string text;
+    for (std::uint64_t n = 0; text.size() < size; ++n) text += std::to_string(n) + ';';
+    text.resize(size);
+    return text;
+  }
+  std::string File(const std::string& text) {
+    std::ofstream(folder_ + "/a", std::ios::binary) << text;
+    return folder_ + "/a";
+  }
+  ProgramStream::Opened Open(const std::string& path) {
+    auto opened = ProgramStream::Open(path, kLimit, [this] { ++waits_; });
+    EXPECT_TRUE(opened) << opened.error().detail;
+    return *std::move(opened);
+  }
+
+  const std::string folder_;
+  int waits_ = 0;
+};
+
+TEST_F(ProgramStreamTest, AShortOneIsWhole) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{5}, ProgramStream::kBeginning - 1}) {
+    const std::string text = Numbered(size);
+    const ProgramStream::Opened opened = Open(File(text));
+    EXPECT_EQ(opened.stream, nullptr);
+    EXPECT_TRUE(opened.bytes.whole());
+    EXPECT_TRUE(*opened.bytes == text);
+  }
+}
+
+TEST_F(ProgramStreamTest, ALongOneIsReadOn) {
+  const std::string text = Numbered(1'000'000);
+  ProgramStream::Opened opened = Open(File(text));
+  ASSERT_NE(opened.stream, nullptr);
+  machine::Bytes again = opened.bytes;
+  const char* const begin = opened.bytes->data();
+  EXPECT_EQ(opened.bytes->size(), ProgramStream::kBeginning);
+  EXPECT_FALSE(opened.bytes.whole());
+  opened.bytes.ReadOn(100'000);
+  EXPECT_GE(opened.bytes->size(), 100'000U);
+  EXPECT_LT(opened.bytes->size(), 200'000U);
+  opened.bytes.Release();
+  opened.bytes.ReadAll();
+  EXPECT_TRUE(opened.bytes.whole());
+  EXPECT_TRUE(*opened.bytes == text);
+  EXPECT_EQ(opened.bytes->data(), begin);  // it stays where it was
+  EXPECT_FALSE(again.whole());             // that is not known there yet
+  again.ReadAll();
+  EXPECT_TRUE(*again == text);
+  EXPECT_TRUE(opened.stream->status());
+  EXPECT_EQ(waits_, 0);
+}
+
+// What comes from a pipe is there before the rest of it is written.
+TEST_F(ProgramStreamTest, APipeIsWaitedFor) {
+  const std::string path = folder_ + "/pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const std::string text = Numbered(50'000);
+  std::thread writer([&] {
+    std::ofstream pipe(path, std::ios::binary);
+    pipe << text.substr(0, 40'000) << std::flush;
+    std::ifstream answer(folder_ + "/answer");  // a pipe, too: until the test has seen that
+    std::string word;
+    answer >> word;
+    pipe << text.substr(40'000);
+  });
+  ASSERT_EQ(::mkfifo((folder_ + "/answer").c_str(), 0600), 0);
+  ProgramStream::Opened opened = Open(path);
+  opened.bytes.ReadOn(40'000);
+  EXPECT_EQ(opened.bytes->size(), 40'000U);
+  EXPECT_FALSE(opened.bytes.whole());
+  std::ofstream(folder_ + "/answer") << "go on";
+  opened.bytes.ReadAll();
+  EXPECT_TRUE(*opened.bytes == text);
+  writer.join();
+}
+
+TEST_F(ProgramStreamTest, WhatCannotBeReadIsTold) {
+  const auto refused = [](const std::string& path, std::int64_t limit) {
+    const auto opened = ProgramStream::Open(path, limit, nullptr);
+    return opened ? std::string() : CodeText(opened.error().code) + " " + opened.error().detail;
+  };
+  EXPECT_EQ(refused(folder_ + "/none", kLimit), "CELL-E9022 " + folder_ + "/none");
+  EXPECT_EQ(refused(folder_, kLimit), "CELL-E9022 " + folder_ + " is a directory");
+  EXPECT_EQ(refused(File("12345"), 4), "CELL-E9007 " + folder_ + "/a is larger than 4 bytes");
+  // Of a long one it is seen where it is.
+  auto opened = ProgramStream::Open(File(Numbered(200'000)), 100'000, nullptr);
+  ASSERT_TRUE(opened);
+  opened->bytes.ReadAll();
+  EXPECT_TRUE(opened->bytes.whole());
+  ASSERT_FALSE(opened->stream->status());
+  EXPECT_EQ(opened->stream->status().error().code, ErrorCode::kCellTooLarge);
+}
+
+}  // namespace
+}  // namespace rmlcell::bridge
