@@ -42,6 +42,11 @@ void SetLost(v1::MachineStatus& status) {
   *status.mutable_words() = bridge::StandardWordsOf(status);
 }
 
+bool RunsPrograms(const v1::HostOrder& order) {
+  return order.has_start() || order.has_zero() || order.has_preview_start() ||
+         order.has_start_at_step() || order.has_run_job() || order.has_continue_job();
+}
+
 }  // namespace
 
 Hosts::Hosts(Needs needs) : needs_(std::move(needs)) {
@@ -432,6 +437,14 @@ void Hosts::Ask(const std::string& machine, v1::HostOrder order, Answered done) 
   if (lost && !Halts(order)) return done(NotLive("its host is silent"));
   v1::HostResponse message;
   *message.mutable_order() = std::move(order);
+  if (RunsPrograms(message.order())) {
+    // Whoever has stored a program, and was told so, may begin it.
+    auto waits = std::make_shared<v1::HostResponse>(std::move(message));
+    return needs_.executor.Post([this, host, waits] {
+      LookAtMemory(true);
+      host->link->Send(std::move(*waits));
+    });
+  }
   host->link->Send(std::move(message));
   if (lost) done(NotLive("its host is silent: whether it halts is not known"));
 }

@@ -145,7 +145,7 @@ class Hosts {
   static void Retire(const HostPointer& host);
   void Release(const HostPointer& host);
   void Publish(const Host& host, v1::MachineStatus status);
-  void LookAtMemory();
+  void LookAtMemory(bool at_once = false);
   void Changed();
   void Changed(const std::string& machine);
   void RunOver(const std::string& machine);

@@ -27,29 +27,29 @@ void Hosts::SendMemory(const HostPointer& host) {
   host->link->Send(std::move(message));
 }
 
-// What was stored in the memory of a machine that is hosted goes to its host.
-void Hosts::LookAtMemory() {
+// What was stored in the memory of a machine that is hosted goes to its host. `at_once`: also what
+// watchers have not been told yet.
+void Hosts::LookAtMemory(bool at_once) {
+  const std::lock_guard looking(looking_);  // until it is sent: who comes next may rely on it
   std::set<std::string> changed;
-  {
-    const std::lock_guard looking(looking_);
-    for (;;) {
-      const auto events = needs_.feed.EventsAfter(looked_until_, kMemoryReadAhead);
-      if (!events) {
-        looked_until_ = needs_.feed.position();
-        const std::lock_guard lock(mutex_);
-        for (const auto& [id, host] : hosts_) changed.insert(id);
-        break;
-      }
-      if (events->empty()) break;
-      looked_until_ = events->back().position;
-      for (const storage::EventRecord& event : *events) {
-        const std::string_view resource = event.resource;
-        constexpr std::string_view kMachines = "machines/";
-        if (event.job != 0 || !resource.starts_with(kMachines)) continue;
-        const std::size_t end = resource.find('/', kMachines.size());
-        if (end == std::string_view::npos) continue;
-        changed.emplace(resource.substr(kMachines.size(), end - kMachines.size()));
-      }
+  for (;;) {
+    const auto events = at_once ? needs_.store.AllEvents(looked_until_, kMemoryReadAhead)
+                                : needs_.feed.EventsAfter(looked_until_, kMemoryReadAhead);
+    if (!events) {
+      looked_until_ = needs_.feed.position();
+      const std::lock_guard lock(mutex_);
+      for (const auto& [id, host] : hosts_) changed.insert(id);
+      break;
+    }
+    if (events->empty()) break;
+    looked_until_ = events->back().position;
+    for (const storage::EventRecord& event : *events) {
+      const std::string_view resource = event.resource;
+      constexpr std::string_view kMachines = "machines/";
+      if (event.job != 0 || !resource.starts_with(kMachines)) continue;
+      const std::size_t end = resource.find('/', kMachines.size());
+      if (end == std::string_view::npos) continue;
+      changed.emplace(resource.substr(kMachines.size(), end - kMachines.size()));
     }
   }
   for (const std::string& id : changed) {

@@ -311,6 +311,33 @@ TEST_F(HostsTest, WhatAHostTellsIsStored) {
   EXPECT_EQ(told.at(told.size() - 2).host_lost().fence(), fence);
 }
 
+// LIVE-5.03: whoever stored a program and begins it at once begins that one: the host has it before
+// the order, however late watchers hear of what is stored.
+TEST_F(HostsTest, WhatWasStoredIsThereBeforeItIsBegun) {
+  const auto link = Joined();
+  for (int round = 1; round <= 30; ++round) {
+    const std::string object = "PU" + std::to_string(round) + ",0;";
+    const auto put = bed.store().PutPrograms(
+        "mill-1", {{.slot = 5, .object = object, .expected = {}}}, {}, "me");
+    ASSERT_TRUE(put) << put.error().detail;
+    v1::HostOrder order;
+    order.mutable_start()->set_program(5);
+    hosts.Ask("mill-1", order, [](const Result<v1::HostOrderAnswer>&) {});
+    std::string known;  // when the newest order came
+    EXPECT_TRUE(Eventually([&] {
+      int orders = 0;
+      std::string newest;
+      for (const v1::HostResponse& message : link->All()) {
+        for (const v1::AssignedProgram& program : message.memory().programs())
+          newest = program.content();
+        if (message.has_order() && ++orders == round) known = newest;
+      }
+      return orders == round;
+    }));
+    ASSERT_EQ(known, object);
+  }
+}
+
 // LIVE-3.18: status was shown that is ahead of what is stored: it counts for nothing, and how far
 // it went is told.
 TEST_F(HostsTest, StatusDecidesNothing) {
