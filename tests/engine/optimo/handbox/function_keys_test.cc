@@ -175,6 +175,7 @@ TEST_F(FunctionKeys, WhatRunsByHandIsNoProgram) {
   GoOn(machine->time() + At(2.0));
   Keys("F3 4 4 ENT ENT 1");
   GoOn(machine->time() + At(0.5));
+  EXPECT_EQ(state(), MachineState::kRunning);  // LIVE-2.03: jog, HOME and ZERO are by hand
   EXPECT_EQ(place().program, 44);
   EXPECT_EQ(place().step, 1);
 }
