@@ -15,6 +15,7 @@
 #include "clients/cli/start_words.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/catalogue.h"
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
 
@@ -134,8 +135,9 @@ std::optional<v1::Variable> Assigned(const std::string& text) {
   v1::Variable variable;
   variable.set_name(text.substr(0, equals));
   const std::string value = text.substr(equals + 1);
-  if (value == "on" || value == "off") {
-    variable.mutable_value()->set_logical(value == "on");
+  const bool on = EqualIgnoringCase(value, "on");
+  if (on || EqualIgnoringCase(value, "off")) {
+    variable.mutable_value()->set_logical(on);
   } else if (const auto number = ParseDouble(value)) {
     variable.mutable_value()->set_real(*number);
   } else {

@@ -104,6 +104,9 @@ class Handbox {
   // It is not, and was asked for in vain.
   virtual void EditRefused(ErrorCode code) = 0;
 
+  // The program that is selected was changed elsewhere: the step that is shown now.
+  virtual ShownStep ShowAgain(const MachineView& view) const = 0;
+
   // What was carried out from it ended with an error, which is shown.
   virtual void FunctionFailed() = 0;
 

@@ -208,7 +208,7 @@ MachineStatus Machine::status() const {
   if (!status.by_hand && note_.by_hand) status.by_hand = note_.hand;
   status.run.place = OfMemory(status.run.place);
   const RunState& run = status.run;
-  if (run.place.step > 0 && !selected_ && (!note_.by_hand || Pauses())) {
+  if (run.place.step > 0 && !selected_ && !note_.by_hand) {
     status.shown = {.program = run.place.program,
                     .step = run.place.step,
                     .instruction = std::string(run.instruction)};
@@ -233,8 +233,9 @@ std::vector<ModalValue> Machine::modal_values() const {
 }
 
 std::optional<ProgramStep> Machine::simulation_until() const {
-  const std::optional<ProgramStep> until =
-      simulation_ || run_ != nullptr ? simulation_ : standing_->simulation_until();
+  const std::optional<ProgramStep> until = simulation_       ? simulation_
+                                           : run_ != nullptr ? run_->simulation_until()
+                                                             : standing_->simulation_until();
   return until && until->step > 0 ? until : std::nullopt;
 }
 
@@ -432,6 +433,8 @@ Status Machine::Act(const ChangeMode& input) {
     return Error{
         ErrorCode::kCellMode, Told("machine", family_.info().title) + " has no mode REPEAT", {}};
   }
+  if (run_ != nullptr && Pauses())
+    return NotNow(state(), "a FUNCTION of the handbox is open; go on with it, or end it");
   if (state() == MachineState::kJogging || (run_ != nullptr && note_.by_hand))
     return NotNow(state(), "it moves by hand; stop it first");
   // A job of the queue goes on in REMOTE alone. LIVE-2.11

@@ -168,6 +168,7 @@ class Machine {
   // Whether acknowledging it does something: its cause is gone.
   bool MayAcknowledge(const Alarm& alarm) const;
   const std::vector<Breakpoint>& breakpoints() const { return breakpoints_; }
+  // Up to where the open run is dry, or the next one will be.
   std::optional<ProgramStep> simulation_until() const;
   const std::array<int, kGates>& gates() const { return gates_; }
 
@@ -250,7 +251,8 @@ class Machine {
   Status BeginByHand(const RunByHand& asked);
   bool Pauses() const { return note_.by_hand && note_.hand == HandRun::kFunction; }
   double OverrideOf(std::optional<HandRun> hand) const;
-  void EndEdit(int slot, std::string_view object);
+  bool EndEdit(int slot, std::string_view object);
+  void ShowAgain(int slot);
 
   const MachineFamily& family_;
   const Parameters parameters_;

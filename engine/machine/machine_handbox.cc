@@ -173,11 +173,19 @@ Status Machine::Act(const RefuseEdit& input) {
   return {};
 }
 
-// The program of this slot is this one now; nothing: there is none.
-void Machine::EndEdit(int slot, std::string_view object) {
+// The program of this slot is this one now; nothing: there is none. Whether a key asked for that.
+bool Machine::EndEdit(int slot, std::string_view object) {
   const ProgramEdit* edit = handbox_ != nullptr ? handbox_->open_edit() : nullptr;
-  if (edit == nullptr || edit->program != slot || edit->object != object) return;
+  if (edit == nullptr || edit->program != slot || edit->object != object) return false;
   if (std::optional<ShownStep> shown = handbox_->EditStored()) Select(*std::move(shown));
+  return true;
+}
+
+// LIVE-7.02. What a run is at is shown as it was read.
+void Machine::ShowAgain(int slot) {
+  const bool of_run = run_ != nullptr && !selected_ && !note_.by_hand;
+  if (handbox_ == nullptr || of_run || shown_.program != slot) return;
+  shown_ = handbox_->ShowAgain(View());
 }
 
 }  // namespace rmlcell::machine

@@ -12,8 +12,9 @@ Status Machine::Act(const StoreProgram& input) {
   memory_.programs[input.slot] = input.program;
   memory_.deleted.erase(input.slot);
   changed_.insert(input.slot);
-  EndEdit(input.slot, input.program.object != nullptr ? std::string_view(*input.program.object)
-                                                      : std::string_view());
+  const std::string_view object =
+      input.program.object != nullptr ? *input.program.object : std::string_view();
+  if (!EndEdit(input.slot, object)) ShowAgain(input.slot);
   return {};
 }
 
@@ -24,7 +25,7 @@ Status Machine::Act(const DeleteProgram& input) {
                  {}};
   memory_.deleted.insert(input.slot);
   changed_.insert(input.slot);
-  EndEdit(input.slot, {});
+  if (!EndEdit(input.slot, {})) ShowAgain(input.slot);
   return {};
 }
 
@@ -35,7 +36,7 @@ Status Machine::Act(const SetSchedules& input) {
 
 std::set<int> Machine::loaded_programs() const {
   std::set<int> loaded;
-  if (run_ == nullptr || note_.by_hand) return loaded;
+  if (run_ == nullptr || (note_.by_hand && !Pauses())) return loaded;
   for (const Place& place : run_->stack()) loaded.insert(place.program);
   loaded.insert(note_.program);
   if (comes_along_) loaded.erase(note_.program);

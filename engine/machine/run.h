@@ -41,6 +41,7 @@ struct RunState {
   bool zeroed = true;  // the axes have their reference
   bool door_open = false;
   bool dry = false;                       // up to a step: beam and axes stay as they are
+  std::int64_t executions = 0;            // times that the program was carried out whole
   bool approaching = false;               // to the step where the run begins (step_entry.h)
   SimTime approached{0};                  // how long that took
   std::optional<HaltReason> halted_by{};  // in kHalted
@@ -112,6 +113,8 @@ class Run {
   // "VR[5]" -> real "7.0"; nothing when the family has no such variable.
   virtual std::optional<VariableValue> ReadVariable(std::string_view /*name*/) const { return {}; }
   virtual MachineOutputs outputs() const { return {}; }
+  // While it is dry: up to this step.
+  virtual std::optional<ProgramStep> simulation_until() const { return {}; }
   // At the present time. The family says which may be written (MachineFamily::CheckWrite).
   virtual void WriteVariable(std::string_view /*name*/, double /*value*/) {}
 

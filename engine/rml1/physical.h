@@ -53,6 +53,8 @@ class Physical {
     Extent a;  // degrees
     WorkExtent work;
   };
+  // What was done so far was done by nobody. LIVE-6.09
+  void ForgetTotals() { totals_ = {}; }
   const Totals& totals() const { return totals_; }
   const CutWatch& watch() const { return watch_; }
   const Profile& profile() const { return *profile_; }

@@ -91,6 +91,8 @@ void MillRun::Enter(const machine::EntryOrder& order) {
   const Point from = PlaceOf(order.machine_state, profile());
   const bool turns = SpindleTurns();
   const std::vector<Action> way = PlanEntry(profile(), s.device.registers(), turns, from, s.tool);
+  s.place = s.reached->place;
+  s.physical.ForgetTotals();
   ForgetTarget();
   s.override_percent = std::clamp(order.override_percent, kOverrideMin, kOverrideMax);
   s.tool = from;

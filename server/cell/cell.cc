@@ -281,6 +281,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
     return status && std::ranges::find(status->run().loaded_programs(), slot) !=
                          status->run().loaded_programs().end();
   });
+  programs->OnStored([this] { hosts->TakeStored(); });
   program_service =
       std::make_unique<ProgramService>(needs, *store, *programs, *tools, *language, open);
   project_service = std::make_unique<ProjectService>(needs, *projects, *transfer, open);

@@ -265,6 +265,11 @@ Status HostMachine::MayApply(const machine::MachineInput& input) const {
   const bool paused = held_for_ == v1::HOLD_REASON_PANEL && machine().status().open.has_value();
   if (paused && !by_panel_ && std::holds_alternative<machine::ResumeRun>(input))
     return Error{ErrorCode::kCellMachineState, "it was paused at its panel: press CONTINUE", {}};
+  const bool pauses = machine().status().run.halted_by == machine::HaltReason::kProgram;
+  if (pauses && !by_panel_ && std::holds_alternative<machine::ResumeRun>(input))
+    return Error{ErrorCode::kCellMachineState,
+                 "its program has paused it for whoever stands there: press CONTINUE",
+                 {}};
   if (!inspect_due_ || !machine().status().alarms.empty()) return {};
   const bool starts = machine::BeginsRun(input);
   const bool resumes = std::holds_alternative<machine::ResumeRun>(input);
@@ -336,6 +341,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   // What is half entered stands in no mark: then the recording goes on, with the keys that did it.
   const auto stands =
       begins && !machine().has_open_mask() ? std::optional(MarkNow()) : std::nullopt;
+  if (begins) run_begun_ = machine().time();
   const auto* power = std::get_if<machine::SwitchPower>(&input);
   if (power != nullptr && !power->on && !inspect_due_) cut_off_base_ = BaseNow();
   if (starts) arms_.Disarm();
@@ -490,6 +496,8 @@ void HostMachine::Begin(const v1::HostMemory& memory, const HostTime& now) {
 void HostMachine::Notice() {
   const machine::MachineStatus status = machine().status();
   for (const machine::RunOver& over : machine().TakeRunsOver()) TellOver(over);
+  for (const machine::Alarm& alarm : status.alarms) alarms_since_.try_emplace(alarm.id, now_.wall);
+  if (status.alarms.empty()) alarms_since_.clear();
   const SimTime lost = driver_->TakeLost();
   late_ = late_ || lost >= LateHold(setup_.options);
   if (lost > SimTime(0) && status.open) {
@@ -526,6 +534,10 @@ v1::MachineStatus HostMachine::StatusAt(const HostTime& now) const {
   *status.mutable_send_time() = Stamp(now.wall);
   status.set_factor(driver_->factor());
   status.set_host(setup_.host);
+  for (v1::Alarm& alarm : *status.mutable_alarms()) {
+    if (const auto since = alarms_since_.find(alarm.id()); since != alarms_since_.end())
+      *alarm.mutable_time() = Stamp(since->second);
+  }
   if (desk_.lease()) *status.mutable_control() = *desk_.lease();
   const bool halts =
       status.state() == v1::MACHINE_STATE_HELD || status.state() == v1::MACHINE_STATE_STOPPING;

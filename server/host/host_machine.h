@@ -215,7 +215,8 @@ class HostMachine : private machine::RunObserver {
   bool disk_is_late_ = false;      // nothing that was to be written is
   bool late_ = false;              // by so much that the run is to be held
   std::int64_t sequence_ = 0;
-  std::optional<v1::HoldReason> held_for_;  // by the host itself, or for a client
+  std::map<std::int64_t, WallTime> alarms_since_;  // by number
+  std::optional<v1::HoldReason> held_for_;         // by the host itself, or for a client
   SimTime run_begun_{0};
   int told_of_run_ = 0;
   SimTime told_until_{0};  // of the newest entry

@@ -50,8 +50,10 @@ v1::MachineMark HostMachine::MarkNow() const {
   }
   mark.set_state(machine().Save());
   mark.set_state_sha256(BytesOfHex(bridge::Sha256Hex(mark.state())).value_or(""));
-  // What is moved by hand is no run that could be cut off. LIVE-5.20
-  mark.set_clean((!status.open || status.open->by_hand) && !inspect_due_ && !ended_);
+  // What is moved by hand is no run that could be cut off (LIVE-5.20); a FUNCTION may cut.
+  const bool moved =
+      status.open && status.open->by_hand && status.open->hand != machine::HandRun::kFunction;
+  mark.set_clean((!status.open || moved) && !inspect_due_ && !ended_);
   return mark;
 }
 

@@ -48,6 +48,7 @@ void SetRun(const machine::Machine& machine, const machine::MachineStatus& statu
   run.set_waits(status.state == machine::MachineState::kHeld ||
                 std::ranges::find(waiting, progress.instruction()) != waiting.end());
   run.set_dry(status.run.dry);
+  run.set_executions(status.run.executions);
   for (const int program : machine.loaded_programs()) run.add_loaded_programs(program);
 }
 
@@ -325,6 +326,10 @@ Result<std::vector<MachineInput>> InputsOf(const v1::HostOrder& order,
     inputs.push_back(*std::move(input));
   }
   if (order.has_inputs() && inputs.empty()) return Invalid("inputs: none is given");
+  const auto gates = std::ranges::count_if(inputs, [](const MachineInput& one) {
+    return std::holds_alternative<machine::PressGate>(one);
+  });
+  if (gates > 1) return Invalid("inputs: one gate at a time, for each of them starts a program");
   return inputs;
 }
 

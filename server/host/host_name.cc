@@ -9,17 +9,27 @@
 
 namespace rmlcell::server {
 
+namespace {
+
 std::string NameOfComputer() {
   std::array<char, 256> name{};
   if (::gethostname(name.data(), name.size() - 1) != 0) return "computer";
   return name.data();
 }
 
+// Anew with each start of the computer.
 std::string BootId() {
   std::ifstream file("/proc/sys/kernel/random/boot_id");
   std::string id;
   std::getline(file, id);
   return id;
+}
+
+}  // namespace
+
+void AddComputer(v1::HostHello& hello) {
+  hello.set_boot_id(BootId());
+  hello.set_computer(NameOfComputer());
 }
 
 // The random part: a number of a process comes again, after a reboot, too.

@@ -82,9 +82,9 @@ class HostProcess {
     hello.set_host(name_);
     hello.set_version(std::string(kVersion));
     hello.set_protocol(kProtocol);
-    hello.set_boot_id(BootId());
-    hello.set_computer(NameOfComputer());
+    AddComputer(hello);
     hello.set_fence(fence_);
+    if (fence_ == 0) AddNewestMark(options_.journal, hello);
     return hello;
   }
 

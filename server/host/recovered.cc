@@ -50,6 +50,20 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
   return found;
 }
 
+void AddNewestMark(const std::string& journal, v1::HostHello& hello) {
+  const Result<Journal::Found> opened = Journal::Open(journal);
+  if (!opened) return;  // OpenMachine says why
+  const auto newest = std::ranges::find_if(opened->entries.rbegin(), opened->entries.rend(),
+                                           [](const auto& entry) { return entry.has_mark(); });
+  if (newest == opened->entries.rend()) return;
+  v1::MachineMark& mark = *hello.mutable_journal_mark();
+  mark = newest->mark();
+  mark.set_fence(newest->fence());
+  mark.set_sequence(newest->sequence());
+  mark.clear_state();
+  mark.clear_base();
+}
+
 HostMachine::Setup SetupOf(Recovered found) {
   // It may have begun, and moved the machine, before anything of it was on the disk. LIVE-5.04
   const bool began = !found.begins.empty();

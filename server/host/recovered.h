@@ -27,6 +27,9 @@ struct Recovered {
 
 Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal);
 
+// That of this journal, without the state, where it has one.
+void AddNewestMark(const std::string& journal, v1::HostHello& hello);
+
 // All that a host takes over of it.
 HostMachine::Setup SetupOf(Recovered found);
 

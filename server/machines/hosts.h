@@ -94,6 +94,9 @@ class Hosts {
   // Asked whether a host of a machine that has none is about to come; any thread.
   void OnAwaited(std::function<bool(const std::string& machine)> is_awaited);
   bool IsAwaited(const std::string& machine) const;
+  // What was stored in the memory of machines is on its way to their hosts, before any order that
+  // is sent from here on.
+  void TakeStored() { LookAtMemory(true); }
   // Called when a machine is hosted, or no more.
   void OnChange(std::function<void()> changed);
   // Called when the state of a machine, or what keeps a job from it, has changed, or something of
@@ -130,7 +133,7 @@ class Hosts {
   std::optional<Given> GivenTo(const v1::HostHello& hello, const std::string& machine);
   Status Welcome(const HostPointer& host, const v1::HostHello& hello, const Taken& taken);
   Status TellRecovery(const Host& host, const Taken& taken,
-                      const std::optional<storage::MachineMark>& mark);
+                      const std::optional<v1::MachineMark>& mark);
   void SendMemory(const HostPointer& host);
   void StoreEdit(const HostPointer& host, v1::HostEdit edit);
   void TakePanel(const HostPointer& host, v1::HandboxPanel panel);

@@ -48,6 +48,25 @@ bool IsGone(const std::string& host) {
   return process && *process > 1 && ::kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH;
 }
 
+// Where the machine stands: by the store, or by what its host found beside it.
+std::optional<v1::MachineMark> NewerOf(const std::optional<storage::MachineMark>& stored,
+                                       const v1::HostHello& hello) {
+  std::optional<v1::MachineMark> mark;
+  if (stored) {
+    mark.emplace();
+    static_cast<void>(mark->ParseFromString(stored->note));
+    mark->set_fence(stored->fence);
+    mark->set_sequence(stored->sequence);
+    mark->set_clean(stored->clean);
+  }
+  if (!hello.has_journal_mark()) return mark;
+  const auto number = [](const v1::MachineMark& one) {
+    return std::pair(one.fence(), one.sequence());
+  };
+  if (!mark || number(*mark) < number(hello.journal_mark())) mark = hello.journal_mark();
+  return mark;
+}
+
 }  // namespace
 
 bool Hosts::IsAbandoned(const std::string& machine) const {
@@ -177,7 +196,8 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello, const
   if (*mark && (*mark)->fence == host->lease.fence) host->stored = (*mark)->sequence;
   // A host that comes back knows better.
   if (hello.fence() != host->lease.fence) {
-    if (const Status told = TellRecovery(*host, taken, *mark); !told) return told.error();
+    if (const Status told = TellRecovery(*host, taken, NewerOf(*mark, hello)); !told)
+      return told.error();
     host->fresh = true;
   } else {
     // One that stands says nothing more by itself; what it has to say comes before its first
@@ -211,10 +231,9 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello, const
 // That a host is gone; from when to when status was shown that counts no more, and where the
 // program was. LIVE-3.30, 5.20
 Status Hosts::TellRecovery(const Host& host, const Taken& taken,
-                           const std::optional<storage::MachineMark>& mark) {
+                           const std::optional<v1::MachineMark>& mark) {
   storage::MachineWrite write;
-  v1::MachineMark note;
-  if (mark) static_cast<void>(note.ParseFromString(mark->note));
+  const v1::MachineMark note = mark.value_or(v1::MachineMark());
   if (!taken.by_hand.empty()) {
     v1::MachineEvent given;
     given.mutable_run()->mutable_message()->set_text(taken.by_hand);
@@ -231,12 +250,12 @@ Status Hosts::TellRecovery(const Host& host, const Taken& taken,
     write.events.push_back(ToRecord(lost));
   }
   // Where the host handed it back, or none had it before, all that was shown is true.
-  if (!mark || (mark->clean && !taken.from))
+  if (!mark || (mark->clean() && !taken.from))
     return write.events.empty() ? Status() : needs_.store.AppendMachine(host.lease, write);
   v1::MachineEvent event;
   v1::Recovered& recovered = *event.mutable_recovered();
   recovered.set_mark_virtual_time_ns(note.virtual_time_ns());
-  recovered.set_mark_fence(mark->fence);
+  recovered.set_mark_fence(mark->fence());
   if (note.has_place()) *recovered.mutable_place() = note.place();
   if (const HostPointer before = Find(host.id)) {
     const std::lock_guard lock(before->mutex);

@@ -234,6 +234,7 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
   }
   const auto stored = store_.PutPrograms(machine.id, {std::move(write)}, {}, put.caller);
   if (!stored) return stored.error();
+  TellStored();
   v1::Program program = ToProto(machine.id, stored->front());
   *program.mutable_findings() = std::move(findings);
   return program;
@@ -284,6 +285,7 @@ ProgramResult<v1::Program> ProgramBook::StoreExecutable(const Put& put, const Pr
     if (!kept) return kept.error();
     if (!*kept)
       return Error{ErrorCode::kCellEtagMismatch, "the object was stored again meanwhile", {}};
+    TellStored();
   }
   v1::Program program = ToProto(machine_id, **found);
   program.set_name(NameOfProgram(machine_id, slot + kExecutableOffset));
@@ -377,6 +379,7 @@ Status ProgramBook::Delete(const v1::DeleteProgramRequest& request, std::string_
                              : store_.DeleteProgram(machine, place->slot, *expected, caller);
   if (!deleted && deleted.error().code == ErrorCode::kCellNotFound)
     return EmptySlot(*place->family, request.name());
+  if (deleted) TellStored();
   return deleted;
 }
 

@@ -27,6 +27,11 @@ class ProgramBook {
   void OnInUse(std::function<bool(const std::string& machine, int slot)> is_in_use) {
     is_in_use_ = std::move(is_in_use);
   }
+  // Before who stored something in the memory of a machine is answered. LIVE-3.20
+  void OnStored(std::function<void()> stored) { on_stored_ = std::move(stored); }
+  void TellStored() const {
+    if (on_stored_) on_stored_();
+  }
 
   struct Put {
     std::string name;  // resource name
@@ -98,6 +103,7 @@ class ProgramBook {
   storage::Store& store_;
   const Config& config_;
   std::function<bool(const std::string&, int)> is_in_use_{};
+  std::function<void()> on_stored_{};
 };
 
 }  // namespace rmlcell::server

@@ -303,6 +303,7 @@ ProgramResult<v1::TransferProjectResponse> ProjectTransfer::ToMachine(
       return Error{ErrorCode::kCellEtagMismatch, stored.error().detail, {}};
     return stored.error();
   }
+  programs_.TellStored();
   if (const Status told =
           SetStored(store_, *machine_id, *stored, !load.schedules.empty(), response);
       !told)

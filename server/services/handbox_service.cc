@@ -104,6 +104,7 @@ grpc::ServerUnaryReactor* HandboxService::UndoTeachEntries(
   const auto carry = [this, request, response, end, who = caller->identity] {
     auto entry = taught_.TakeBack(*request, who);
     if (!entry) return end(ToGrpcStatus(entry.error()));
+    watch_needs_.hosts->TakeStored();
     *response->mutable_entry() = *std::move(entry);
     end(grpc::Status::OK);
   };

@@ -256,6 +256,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
                                                 .power_percent = wanted.power_percent()},
                                                *expected, caller.identity);
         if (!stored) return ToGrpcStatus(stored.error());
+        if (live_.hosts != nullptr) live_.hosts->TakeStored();
         *response = ToProto(*stored);
         return grpc::Status::OK;
       });
@@ -277,6 +278,7 @@ grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(
                     return ToGrpcStatus(known.error());
                   const Status deleted = store_.DeleteSchedule(
                       name->machine, static_cast<int>(name->number), caller.identity);
+                  if (deleted && live_.hosts != nullptr) live_.hosts->TakeStored();
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });
 }

@@ -50,6 +50,7 @@ grpc::ServerUnaryReactor* ProgramService::StoreSpecialPrograms(
                   Result<v1::StoreSpecialProgramsResponse> stored =
                       server::StoreSpecialPrograms(store_, *request, caller.identity);
                   if (!stored) return ToGrpcStatus(stored.error());
+                  programs_.TellStored();
                   *response = *std::move(stored);
                   return grpc::Status::OK;
                 });

@@ -104,8 +104,10 @@ class Maker {
     if (report_) return;
     recorder_->Finish(*over.ended);
     report_ = recorder_->Report(*over.ended);
-    // An emergency stop ends a run of a machine that has no number for it, too.
-    outcome_ = over.outcome;
+    // An emergency stop ends a run of a machine that has no number for it, too: it has failed.
+    if (over.outcome.code == report_->outcome.code) return;
+    report_->outcome = over.outcome;
+    report_->judgement = simulation::Judge(*report_);
   }
   // By the end of its host, which is no end of a program.
   void CutOff(const machine::RunOver& over, const v1::Outcome& outcome) {
@@ -117,7 +119,6 @@ class Maker {
                                 ? ErrorCode::kCellHostStopped
                                 : ErrorCode::kCellHostDied;
     report_->judgement = simulation::Judge(*report_);
-    outcome_ = report_->outcome;
   }
 
   bool over() const { return report_.has_value(); }
@@ -127,8 +128,6 @@ class Maker {
       return Error{ErrorCode::kCellPrecondition, "the recording ends before the run does", {}};
     v1::RunReport report = bridge::ToProto(family_.info(), *report_, {});
     report.mutable_inputs()->insert(depends_on_.begin(), depends_on_.end());
-    if (outcome_.code != report_->outcome.code)
-      *report.mutable_outcome() = bridge::ToProto(outcome_, report_->judgement);
     if (cut_off_) {
       const v1::Verdict verdict = report.outcome().verdict();
       auto reasons = report.outcome().reasons();
@@ -152,7 +151,6 @@ class Maker {
   std::map<std::string, std::string> depends_on_;
   bool begun_ = false;
   std::optional<simulation::RunReport> report_;
-  machine::Outcome outcome_{};
   std::optional<v1::Outcome> cut_off_;
 };
 

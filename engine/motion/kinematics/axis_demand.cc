@@ -274,8 +274,8 @@ class AxisSearch {
   AxisDerivatives end_;
   Drift first_;
   Drift second_;
-  int sampled_ = 0;  // of kept_
-  std::array<AxisDerivatives, 65> kept_;
+  int sampled_ = 0;                        // of kept_
+  std::array<AxisDerivatives, 257> kept_;  // of the head all the way round on a circle, and more
 };
 
 }  // namespace

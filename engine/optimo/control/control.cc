@@ -430,6 +430,7 @@ machine::RunState Control::Snapshot() const {
   state.zeroed = s_.actuators.zeroed;
   state.door_open = actuators_.door_open();
   state.dry = now().simulated_until.has_value();
+  state.executions = s_.executions;
   state.approaching = s_.entry.arrival.has_value();
   state.approached = s_.entry.approached;
   if (now().phase == RunPhase::kHalted) state.halted_by = s_.halts.halted_by;

@@ -347,6 +347,7 @@ void Control::EndModule() {
     return;
   }
   actuators_.ShutDown();
+  ++s_.executions;
   if (now().mode != machine::Mode::kRepeat) {
     return Finish(machine::OutcomeKind::kCompleted, std::nullopt, {});
   }

@@ -55,6 +55,7 @@ struct ControlState {
   std::size_t next_input = 0;                   // of the script
   std::uint64_t steps = 0;
   std::uint64_t steps_at_repeat = 0;  // REPEAT: executed before this repetition
+  std::int64_t executions = 0;        // of the main program, to its end
   SimTime instant{-1};                // of the instruction that was carried out last
   std::uint64_t steps_before = 0;     // executed before that instant
   machine::Outcome outcome{};

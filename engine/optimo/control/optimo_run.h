@@ -30,6 +30,9 @@ class OptimoRun final : public machine::Run, public machine::EnterableRun {
     return ReadByName(control_.state().data.area, name);
   }
   machine::MachineOutputs outputs() const override { return control_.outputs(); }
+  std::optional<machine::ProgramStep> simulation_until() const override {
+    return control_.state().situation.simulated_until;
+  }
   void WriteVariable(std::string_view name, double value) override {
     control_.WriteVariable(name, value);
   }

@@ -48,6 +48,7 @@ class OptimoHandbox final : public machine::Handbox {
   std::optional<machine::ShownStep> EditStored() override;
   void EditRefused(ErrorCode code) override;
 
+  machine::ShownStep ShowAgain(const machine::MachineView& view) const override;
   void FunctionFailed() override;
 
   machine::Panel panel(const machine::MachineView& view) const override;

@@ -87,6 +87,16 @@ void OptimoHandbox::Select(Turn& turn, int program, int step) {
     turn.answer.shown = steps->Show(program, step);
 }
 
+// Who stood at its end stands there still.
+ShownStep OptimoHandbox::ShowAgain(const machine::MachineView& view) const {
+  const ShownStep& shown = view.status.shown;
+  const auto steps = Steps::Of(view.programs, shown.program);
+  if (!steps || !*steps || shown.step == 0) return {.program = shown.program};
+  const bool at_end = shown.instruction == "ENDTASK" || shown.instruction == "ENDPRG";
+  const int at = at_end ? (*steps)->end() : shown.step;
+  return (*steps)->Show(shown.program, at);
+}
+
 // OPT-4.32
 void OptimoHandbox::SelectNeighbour(Turn& turn, bool next) {
   shift_ = false;

@@ -206,5 +206,24 @@ TEST_F(MachineTest, TheLaserIsSeenAtWork) {
   EXPECT_THAT(machine->outputs().on, IsEmpty());
 }
 
+// LIVE-7.07: how often the program was carried out to its end; and up to where it is dry.
+TEST_F(MachineTest, ARunSaysHowFarItIs) {
+  Load({"DELAY 1\nDELAY 1\n"});
+  Good(ChangeMode{Mode::kRepeat});
+  Good(SetSimulation{.until = ProgramStep{1, 2}});
+  Good(SetBreakpoints{{{.at = {1, 1}}}});
+  Good(StartRun{.program = 1, .source = StartSource::kPanel});
+  GoOn(At(0.1));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(machine->simulation_until(), (ProgramStep{1, 2}));
+  Good(SetBreakpoints{});
+  Good(ResumeRun{.source = StartSource::kPanel});
+  GoOn(At(0.6));  // the first round has one DELAY that is real
+  EXPECT_FALSE(machine->simulation_until());
+  EXPECT_EQ(machine->status().run.executions, 0);
+  GoOn(At(5.6));
+  EXPECT_EQ(machine->status().run.executions, 3);
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -123,6 +123,13 @@ TEST_F(EnteredReport, TheApproachIsNotCounted) {
   EXPECT_EQ(report.cycle_time, report.total.time.motion + At(2.0));
   EXPECT_GT(report.total.time.motion, At(2.0));  // 20 mm at 10 mm/s
   EXPECT_LT(report.total.time.motion, At(6.0));
+  // The mill's own figures are of the same time.
+  double up_and_down_s = 0.0;
+  for (const machine::Figure& figure : report.figures) {
+    if (figure.name == "tool_up_time" || figure.name == "tool_down_time")
+      up_and_down_s += figure.value;
+  }
+  EXPECT_NEAR(up_and_down_s, ToSeconds(report.cycle_time), 1e-9);
 }
 
 // LIVE-6.09: one that never came to its step has done nothing.

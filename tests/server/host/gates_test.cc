@@ -52,6 +52,10 @@ TEST_F(GatesOverTheLine, AGateBeginsARun) {
   Pass(30s, 100ms);
   static_cast<void>(host_->TakeEntries(now_, true));
   EXPECT_EQ(Do(Gate(1)).refusal().code(), "CELL-E9423");
+  v1::HostOrder both = Gate(2);
+  both.mutable_inputs()->add_inputs()->set_gate(1);
+  EXPECT_EQ(Do(both).refusal().code(), "CELL-E9003");  // or one of them had acted
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
   const v1::HostOrderAnswer begun = Do(Gate(2));
   ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
   EXPECT_EQ(begun.status().run().source(), v1::START_SOURCE_GATE_2);

@@ -204,6 +204,20 @@ TEST_F(HostMachineTest, ARunBeginsBeforeAnythingIsToldOfIt) {
                                   "over KIND_FAILED", "clean mark"));
 }
 
+// LIVE-3.16: since when there is an alarm, by the clock on the wall.
+TEST_F(HostMachineTest, AnAlarmSaysSinceWhen) {
+  Make();
+  Pass(1s);
+  const WallTime pressed = now_.wall;
+  v1::HostOrder order;
+  order.mutable_emergency_stop();
+  Do(order);
+  Pass(3s);
+  const v1::MachineStatus status = host_->StatusAt(now_);
+  ASSERT_EQ(status.alarms_size(), 1);
+  EXPECT_EQ(status.alarms(0).time().seconds(), Stamp(pressed).seconds());
+}
+
 // LIVE-4.01: control leases are counted on by the next host.
 TEST_F(HostMachineTest, ControlLeasesAreCountedOn) {
   Make();

@@ -101,6 +101,7 @@ TEST_F(StartAtTest, ItBeginsWhereItWasAsked) {
   Until(v1::MACHINE_STATE_HELD);
   EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_ENTRY);
   EXPECT_EQ(host_->StatusAt(now_).run().phase(), v1::RUN_PHASE_PROGRAM);
+  EXPECT_EQ(host_->StatusAt(now_).run().place().step(), 8);  // where a crash would leave it
   static_cast<void>(host_->TakeEntries(now_, true));
   Do(Resume());
   Until(v1::MACHINE_STATE_IDLE);

@@ -356,6 +356,29 @@ TEST_F(HostsTest, StatusDecidesNothing) {
   EXPECT_EQ(Told().back().recovered().seen_until_ns(), 99);
 }
 
+// LIVE-3.30: the newest mark of journal and store is where it stands; nothing before it is void.
+TEST_F(HostsTest, TheMarkOfTheJournalMayBeNewer) {
+  const auto link = Joined();
+  const std::int64_t fence = Fence(*link);
+  hosts.Receive(*link, Entries(fence, 1, false));
+  EXPECT_TRUE(Eventually([&] { return !Told().empty(); }));
+  Tell(*link, v1::MACHINE_STATE_RUNNING, 99);
+  hosts.Leave(*link);
+  v1::HostHello hello = Hello("other/2");
+  EXPECT_EQ(Refused(hello), ErrorCode::kCellMachineTaken);
+  clock.Advance(Hosts::kLease + std::chrono::seconds(5));
+  v1::MachineMark& mark = *hello.mutable_journal_mark();
+  mark.set_fence(fence);
+  mark.set_sequence(5);
+  mark.set_virtual_time_ns(91);
+  mark.mutable_place()->set_step(4);
+  Joined(hello);
+  ASSERT_TRUE(Told().back().has_recovered());
+  EXPECT_EQ(Told().back().recovered().mark_virtual_time_ns(), 91);
+  EXPECT_EQ(Told().back().recovered().place().step(), 4);
+  EXPECT_EQ(Told().back().recovered().seen_until_ns(), 99);
+}
+
 // LIVE-3.30, LIVE-5.20: of one that was moved by hand, too, whose marks are clean, it is told how
 // far what was shown is void; where the host gave it back in order nothing is.
 TEST_F(HostsTest, WhatWasShownOfOneMovedByHandIsVoid) {

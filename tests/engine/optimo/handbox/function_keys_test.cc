@@ -73,7 +73,7 @@ TEST_F(FunctionKeys, MovesAtAShareOfTheOverride) {
   AtStep4(
       "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (100.,2201.2,-350.,0.,0.)\nMOVE (900.,2201.2,-350.,0.,0.)\nRETURN\n");
   Keys("F3 4 4 ENT ENT 1");
-  while (machine->status().shown.step < 5) GoOn(machine->time() + At(0.1));
+  while (machine->status().run.place.step < 5) GoOn(machine->time() + At(0.1));
   GoOn(machine->time() + At(2.0));
   EXPECT_NEAR(machine->status().run.tip_speed_mm_s, 20.0, 1e-6);  // 4 % of 500 mm/s
   Keys("OVERRIDE_MINUS OVERRIDE_MINUS");
@@ -178,6 +178,40 @@ TEST_F(FunctionKeys, WhatRunsByHandIsNoProgram) {
   EXPECT_EQ(state(), MachineState::kRunning);  // LIVE-2.03: jog, HOME and ZERO are by hand
   EXPECT_EQ(place().program, 44);
   EXPECT_EQ(place().step, 1);
+  EXPECT_EQ(machine->loaded_programs(), std::set<int>{44});  // it cannot be deleted meanwhile
+}
+
+// OPT-9.37: whatever a FUNCTION runs, what is selected and taught into is the program as before.
+TEST_F(FunctionKeys, TheSelectedProgramStays) {
+  AtStep4("DELAY 4\nDELAY 4\nRETURN\n");
+  Keys("F3 4 4 ENT ENT 1");
+  GoOn(At(1.0));
+  EXPECT_EQ(machine->selected_program(), 12);
+  Keys("STOP");
+  GoOn(At(2.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(machine->selected_program(), 12);
+  const std::string before = ObjectAt(44);
+  Keys("REC");
+  EXPECT_EQ(ObjectAt(44), before);
+  Keys("SHIFT STOP");
+  GoOn(At(3.0));
+  EXPECT_EQ(machine->selected_program(), 12);
+}
+
+// LIVE-7.02, LIVE-7.08: what is shown of a program follows what is stored of it by others.
+TEST_F(FunctionKeys, TheDisplayFollowsWhatIsStored) {
+  AtStep4("RETURN\n");
+  ASSERT_EQ(Shows(), "P=12S=0004I=ENDTASK");
+  Good(machine::StoreProgram{.slot = 12, .program = Translated("SPEED 1\nDELAY 2\n")});
+  EXPECT_EQ(Shows(), "P=12S=0003I=ENDPRG");
+  Keys("PREV");
+  EXPECT_EQ(Shows(), "P=12S=0002I=DELAY");
+  Good(machine::StoreProgram{.slot = 12, .program = Translated("SPEED 1\nSPEED 2\nDELAY 3\n")});
+  EXPECT_EQ(Shows(), "P=12S=0002I=SPEED");
+  Good(machine::DeleteProgram{.slot = 12});
+  EXPECT_EQ(machine->status().shown.step, 0);
+  EXPECT_EQ(machine->selected_program(), 12);
 }
 
 // OPT-4.15 OPT-4.35: while it is down, at the speed of jog.
