@@ -280,7 +280,13 @@ namespace {
 int ShowBegun(const Remote& remote, const MachineAct& act, const v1::MachineStatus& begun) {
   constexpr std::chrono::milliseconds kBetweenLooks{20};
   v1::MachineStatus status = begun;
-  for (int look = 0; look < 10 && status.run().run_time_ns() == 0 && status.has_run(); ++look) {
+  const std::string job = act.job.empty() ? std::string() : FullName("jobs", act.job);
+  const auto looks = [&] {  // of a job that the queue was quicker to begin, until it has
+    if (status.has_run() && status.run().job() == job) return status.run().run_time_ns() == 0;
+    return !job.empty() && status.last_run().job() != job;
+  };
+  const int looks_max = job.empty() ? 10 : 50;
+  for (int look = 0; look < looks_max && looks(); ++look) {
     std::this_thread::sleep_for(kBetweenLooks);
     if (auto now = StatusNow(remote, act.machine)) status = *std::move(now);
   }

@@ -317,8 +317,7 @@ TEST_F(HostsTest, WhatWasStoredIsThereBeforeItIsBegun) {
   const auto link = Joined();
   for (int round = 1; round <= 30; ++round) {
     const std::string object = "PU" + std::to_string(round) + ",0;";
-    const auto put = bed.store().PutPrograms(
-        "mill-1", {{.slot = 5, .object = object, .expected = {}}}, {}, "me");
+    const auto put = bed.store().PutPrograms("mill-1", {{.slot = 5, .object = object}}, {}, "me");
     ASSERT_TRUE(put) << put.error().detail;
     v1::HostOrder order;
     order.mutable_start()->set_program(5);
