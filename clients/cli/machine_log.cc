@@ -73,6 +73,8 @@ std::string OutsideText(const v1::MachineInput& input) {
   }
 }
 
+}  // namespace
+
 std::string InputText(const v1::AppliedInput& input) {
   using Input = v1::AppliedInput;
   switch (input.input_case()) {
@@ -129,6 +131,8 @@ std::string InputText(const v1::AppliedInput& input) {
   }
   return "an input of a later version";
 }
+
+namespace {
 
 std::string HaltText(const v1::Halted& halted) {
   const std::string message = Visible(halted.message());

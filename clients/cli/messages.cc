@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "clients/cli/findings_text.h"
+#include "clients/cli/machine_log.h"
 #include "clients/cli/terminal.h"
 #include "clients/cli/verdict_text.h"
 #include "engine/core/diagnostic.h"
@@ -496,7 +497,8 @@ std::string EventLine(const v1::JobEvent& event) {
     case v1::JobEvent::kExecutableMade:
       return text + "compiling program " + std::to_string(event.executable_made().program());
     case v1::JobEvent::kInputApplied:
-      return text + "input of " + Visible(event.input_applied().caller());
+      return text + Visible(event.input_applied().caller()) + ": " +
+             InputText(event.input_applied().input());
     case v1::JobEvent::kRunBegun:
       return text + "run " + std::to_string(event.run_begun().run()) + " begins";
     case v1::JobEvent::kQueue:

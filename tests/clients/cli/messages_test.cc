@@ -82,7 +82,8 @@ TEST_F(Messages, AnEventIsOneLine) {
   event.mutable_executable_made()->set_program(44);
   EXPECT_EQ(EventLine(event), "#12  1.500 s  compiling program 44");
   event.mutable_input_applied()->set_caller("local");
-  EXPECT_EQ(EventLine(event), "#12  1.500 s  input of local");
+  event.mutable_input_applied()->mutable_input()->set_override_percent(55.0);
+  EXPECT_EQ(EventLine(event), "#12  1.500 s  local: override 55 %");
   event.mutable_run_begun()->set_run(3);
   EXPECT_EQ(EventLine(event), "#12  1.500 s  run 3 begins");
   event.mutable_queue()->set_priority(7);
