@@ -178,7 +178,7 @@ TEST_F(PanelKeysTest, APauseOfTheProgramEndsAtThePanel) {
   EXPECT_FALSE(Do(Key("CONTINUE")).has_refusal());
   Pass(5s);
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
-  EXPECT_EQ(host_->StatusAt(now_).last_run().outcome().kind(), v1::Outcome::KIND_SUCCEEDED);
+  EXPECT_EQ(host_->StatusAt(now_).last_run().outcome().kind(), v1::Outcome::KIND_COMPLETED);
 }
 
 }  // namespace
