@@ -174,7 +174,8 @@ std::string MachineText(const v1::MachineEvent& event) {
       const v1::Recovered& found = event.recovered();
       std::string text =
           "found again at " + Seconds(found.mark_virtual_time_ns()) + At(found.place());
-      if (found.seen_until_ns() > found.mark_virtual_time_ns())
+      if (Seconds(found.seen_until_ns()) != Seconds(found.mark_virtual_time_ns()) &&
+          found.seen_until_ns() > found.mark_virtual_time_ns())
         text += "; what was shown up to " + Seconds(found.seen_until_ns()) + " is void";
       return text;
     }
