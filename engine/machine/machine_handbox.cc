@@ -32,7 +32,15 @@ MachineView Machine::View() const {
 
 Panel Machine::panel() const {
   if (handbox_ == nullptr) return family_.ShowPanel(status());
-  Panel panel = handbox_->panel(View());
+  MachineView view = View();
+  // A FUNCTION shows where it is; what is selected, and taught into, is another program. OPT-9.37
+  const RunState& run = view.status.run;
+  if (run_ != nullptr && Pauses() && run.phase == RunPhase::kRunning && run.place.step > 0) {
+    view.status.shown = {.program = run.place.program,
+                         .step = run.place.step,
+                         .instruction = std::string(run.instruction)};
+  }
+  Panel panel = handbox_->panel(view);
   if (on_ && mode_ == Mode::kManual) panel.run_on = run_on(handbox_->jog_reference());
   return panel;
 }

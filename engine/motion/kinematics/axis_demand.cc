@@ -253,11 +253,12 @@ class AxisSearch {
   double Search(Allowed allowed) {
     const int known = std::min(intervals_ + 1, static_cast<int>(kept_.size()));
     for (; sampled_ < known; ++sampled_) {
-      kept_[static_cast<std::size_t>(sampled_)] = DerivativesAt(path_, head_, Place(sampled_));
+      kept_[static_cast<std::size_t>(sampled_)] =
+          ToKeep(DerivativesAt(path_, head_, Place(sampled_)));
     }
     return LeastOfSampled<Closing::kParabolas>(
         [&](int k) {
-          return allowed(k < known ? kept_[static_cast<std::size_t>(k)]
+          return allowed(k < known ? AsKept(kept_[static_cast<std::size_t>(k)])
                                    : DerivativesAt(path_, head_, Place(k)));
         },
         [&](std::size_t which, double s) { return allowed(DerivativesAt(path_, head_, s))[which]; },
@@ -274,8 +275,27 @@ class AxisSearch {
   AxisDerivatives end_;
   Drift first_;
   Drift second_;
-  int sampled_ = 0;                        // of kept_
-  std::array<AxisDerivatives, 257> kept_;  // of the head all the way round on a circle, and more
+  // Bare numbers, which cost nothing before they are there; enough for a head that turns all the
+  // way round on a circle.
+  using Kept = std::array<double, 2 * kAxisCount>;
+  static Kept ToKeep(const AxisDerivatives& q) {
+    Kept kept;
+    for (const std::size_t i : kAxes) {
+      kept[i] = q.first[i];
+      kept[kAxisCount + i] = q.second[i];
+    }
+    return kept;
+  }
+  static AxisDerivatives AsKept(const Kept& kept) {
+    AxisDerivatives q;
+    for (const std::size_t i : kAxes) {
+      q.first[i] = kept[i];
+      q.second[i] = kept[kAxisCount + i];
+    }
+    return q;
+  }
+  int sampled_ = 0;  // of kept_
+  std::array<Kept, 257> kept_;
 };
 
 }  // namespace

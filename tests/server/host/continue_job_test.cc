@@ -102,7 +102,7 @@ TEST_F(ContinueJobTest, ANewJobGoesOnWhereTheOldOneWas) {
   EXPECT_EQ(begun.status().run().phase(), v1::RUN_PHASE_APPROACH);
   Until(v1::MACHINE_STATE_HELD);
   EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_ENTRY);
-  EXPECT_EQ(host_->StatusAt(now_).run().place().step(), cut_off_at - 1);  // the next to begin
+  EXPECT_EQ(host_->StatusAt(now_).run().place().step(), cut_off_at);  // the next to begin
   Do(Resume());
   Until(v1::MACHINE_STATE_IDLE);
   bool over = false;

@@ -162,13 +162,14 @@ TEST_F(PanelKeysTest, KeysAreOfWhoHasControl) {
 // LIVE-2.13, RML1-3C.09: what !NR pauses goes on at the panel alone, as what its key has paused.
 TEST_F(PanelKeysTest, APauseOfTheProgramEndsAtThePanel) {
   MakeAndTake();
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
   v1::HostMemory memory;
   v1::AssignedProgram& program = *memory.add_programs();
   program.set_slot(6);
   program.set_content("PA;PU100,0;!NR;PU200,0;");
   host_->Change(memory, now_);
   ASSERT_FALSE(Do(Start("", 6)).has_refusal());
-  Pass(5s);
+  Pass(60s, 100ms);
   ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
   EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_PROGRAM);
   const v1::HostOrderAnswer refused = Do(Resume());
@@ -176,7 +177,7 @@ TEST_F(PanelKeysTest, APauseOfTheProgramEndsAtThePanel) {
   EXPECT_THAT(refused.refusal().message(), HasSubstr("CONTINUE"));
   EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
   EXPECT_FALSE(Do(Key("CONTINUE")).has_refusal());
-  Pass(5s);
+  Pass(60s, 100ms);
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
   EXPECT_EQ(host_->StatusAt(now_).last_run().outcome().kind(), v1::Outcome::KIND_COMPLETED);
 }
