@@ -377,7 +377,7 @@ class ByHandTest(LiveTestCase):
         begun = self.command("start-at", "mill-1", "8", "--slot", "7", "--seen", "tool,clamps", "--halt")
         self.assertEqual(begun.returncode, 0, begun.stderr)
         held = self.live.wait("HELD")
-        self.assertEqual(held.run.place.step, 7)
+        self.assertEqual(held.run.place.step, 8)
         self.live.acquire(take_over=True, reason="a test")
         self.live.ask("ResumeMachine")
         self.live.wait("IDLE")
