@@ -10,10 +10,10 @@ using testing::HasSubstr;
 
 class PanelKeysTest : public HostMachineTest {
  protected:
-  void MakeAndTake() {
+  void MakeAndTake(v1::ControlLease::OnLoss on_loss = v1::ControlLease::ON_LOSS_HOLD) {
     Make();
     host_->Begin({}, now_);
-    Control();
+    Control(on_loss);
     sequence_of_keys_ = 0;
   }
   v1::HostOrder Key(const std::string& key, v1::KeyAction action = v1::KEY_ACTION_TAP,
@@ -161,14 +161,14 @@ TEST_F(PanelKeysTest, KeysAreOfWhoHasControl) {
 
 // LIVE-2.13, RML1-3C.09: what !NR pauses goes on at the panel alone, as what its key has paused.
 TEST_F(PanelKeysTest, APauseOfTheProgramEndsAtThePanel) {
-  MakeAndTake();
-  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  MakeAndTake(v1::ControlLease::ON_LOSS_GO_ON);
   v1::HostMemory memory;
   v1::AssignedProgram& program = *memory.add_programs();
   program.set_slot(6);
   program.set_content("PA;PU100,0;!NR;PU200,0;");
   host_->Change(memory, now_);
-  ASSERT_FALSE(Do(Start("", 6)).has_refusal());
+  const v1::HostOrderAnswer begun = Do(Start("", 6));
+  ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
   Pass(60s, 100ms);
   ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
   EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_PROGRAM);
