@@ -169,7 +169,7 @@ TEST_F(PanelKeysTest, APauseOfTheProgramEndsAtThePanel) {
   host_->Change(memory, now_);
   const v1::HostOrderAnswer begun = Do(Start("", 6));
   ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
-  Pass(60s, 100ms);
+  Pass(20s, 100ms);
   ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
   EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_PROGRAM);
   const v1::HostOrderAnswer refused = Do(Resume());
@@ -177,7 +177,7 @@ TEST_F(PanelKeysTest, APauseOfTheProgramEndsAtThePanel) {
   EXPECT_THAT(refused.refusal().message(), HasSubstr("CONTINUE"));
   EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
   EXPECT_FALSE(Do(Key("CONTINUE")).has_refusal());
-  Pass(60s, 100ms);
+  Pass(20s, 100ms);
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
   EXPECT_EQ(host_->StatusAt(now_).last_run().outcome().kind(), v1::Outcome::KIND_COMPLETED);
 }
