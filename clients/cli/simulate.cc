@@ -9,6 +9,7 @@
 #include <set>
 #include <system_error>
 #include <tuple>
+#include <utility>
 
 #include "clients/cli/findings_text.h"
 #include "clients/cli/local.h"
@@ -229,26 +230,26 @@ struct PreparedCommand {
 };
 
 // A stream that comes runs as it comes, and is checked when all of it is there; unless its
-// beginning is no program already: then it is read to its end first, as others are.
-void LookAtBeginning(LoadedFiles& loaded, simulation::ProgramMemory& memory) {
+// beginning is no program already: then it is read to its end first, as others are. Errors: those
+// of reading it; of MakeParameters.
+Status LookAtBeginning(LoadedFiles& loaded, simulation::ProgramMemory& memory) {
   simulation::MemoryProgram& program = memory.programs.front();
   const auto parameters =
       machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
-  if (!parameters) return;  // the run is told so
+  if (!parameters) return parameters.error();
   if (simulation::TranslateProgram(*memory.family, *parameters, program, {.advice = false}).ok) {
     auto unchecked = std::make_shared<machine::Translation>();
     unchecked->ok = unchecked->as_it_came = true;
     program.translation = std::move(unchecked);
-    return;
+    return {};
   }
   program.bytes.ReadAll();
-  loaded.programs.front().bytes = program.bytes;
+  return std::exchange(loaded.stream, nullptr)->status();
 }
 
 // Behind its run. Errors: those of reading it; of PrepareRun.
 Status CheckWhole(PreparedCommand& prepared) {
   simulation::MemoryProgram& program = prepared.memory.programs.front();
-  if (const bool was_checked = program.translation == nullptr; was_checked) return {};
   program.bytes.ReadAll();
   program.translation = nullptr;
   if (const Status& read = prepared.loaded.stream->status(); !read) return read.error();
@@ -291,7 +292,9 @@ Result<PreparedCommand> Prepare(const SimulateOptions& options) {
   const Result<simulation::RunOptions> how =
       bridge::RunOptionsOf(*message, *budget, loaded->main_slot, machine::Mode::kCycle);
   if (!how) return how.error();
-  if (loaded->stream != nullptr) LookAtBeginning(*loaded, memory);
+  if (loaded->stream != nullptr) {
+    if (const Status looked = LookAtBeginning(*loaded, memory); !looked) return looked.error();
+  }
   Result<simulation::PreparedRun> run = simulation::PrepareRun(memory, *how);
   if (!run) return run.error();
   for (const int slot : *to_make) {

@@ -442,6 +442,11 @@ void Hosts::Ask(const std::string& machine, v1::HostOrder order, Answered done) 
     auto waits = std::make_shared<v1::HostResponse>(std::move(message));
     return needs_.executor.Post([this, host, waits] {
       LookAtMemory(true);
+      {
+        const std::lock_guard lock(host->mutex);
+        // Who was told meanwhile that nobody answers is not to see it begin.
+        if (!host->pending.contains(waits->order().number())) return;
+      }
       host->link->Send(std::move(*waits));
     });
   }

@@ -48,23 +48,24 @@ bool IsGone(const std::string& host) {
   return process && *process > 1 && ::kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH;
 }
 
+v1::MachineMark MarkOf(const storage::MachineMark& stored) {
+  v1::MachineMark mark;
+  static_cast<void>(mark.ParseFromString(stored.note));
+  mark.set_fence(stored.fence);
+  mark.set_sequence(stored.sequence);
+  mark.set_clean(stored.clean);
+  return mark;
+}
+
 // Where the machine stands: by the store, or by what its host found beside it.
 std::optional<v1::MachineMark> NewerOf(const std::optional<storage::MachineMark>& stored,
                                        const v1::HostHello& hello) {
-  std::optional<v1::MachineMark> mark;
-  if (stored) {
-    mark.emplace();
-    static_cast<void>(mark->ParseFromString(stored->note));
-    mark->set_fence(stored->fence);
-    mark->set_sequence(stored->sequence);
-    mark->set_clean(stored->clean);
-  }
+  const auto mark = stored ? std::optional(MarkOf(*stored)) : std::nullopt;
   if (!hello.has_journal_mark()) return mark;
   const auto number = [](const v1::MachineMark& one) {
     return std::pair(one.fence(), one.sequence());
   };
-  if (!mark || number(*mark) < number(hello.journal_mark())) mark = hello.journal_mark();
-  return mark;
+  return !mark || number(*mark) < number(hello.journal_mark()) ? hello.journal_mark() : mark;
 }
 
 }  // namespace
@@ -216,13 +217,8 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello, const
     (*welcome.mutable_parameters())[name] = value;
   if (auto options = OptionsOf(*machine)) *welcome.mutable_options() = *std::move(options);
   if (*mark) {
-    v1::MachineMark note;
-    static_cast<void>(note.ParseFromString((*mark)->note));
-    *welcome.mutable_mark() = std::move(note);
-    welcome.mutable_mark()->set_fence((*mark)->fence);
-    welcome.mutable_mark()->set_sequence((*mark)->sequence);
+    *welcome.mutable_mark() = MarkOf(**mark);
     welcome.mutable_mark()->set_state((*mark)->state);
-    welcome.mutable_mark()->set_clean((*mark)->clean);
   }
   host->link->Send(std::move(message));
   return {};

@@ -31,6 +31,13 @@ void Hosts::SendMemory(const HostPointer& host) {
 // watchers have not been told yet.
 void Hosts::LookAtMemory(bool at_once) {
   const std::lock_guard looking(looking_);  // until it is sent: who comes next may rely on it
+  {
+    const std::lock_guard lock(mutex_);
+    if (hosts_.empty()) {  // who joins is sent all of it
+      looked_until_ = needs_.feed.position();
+      return;
+    }
+  }
   std::set<std::string> changed;
   for (;;) {
     const auto events = at_once ? needs_.store.AllEvents(looked_until_, kMemoryReadAhead)

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <future>
+#include <memory>
 
 #include "rmlcell/v1/cell.pb.h"
 #include "server/base/executor.h"
@@ -335,6 +337,36 @@ TEST_F(HostsTest, WhatWasStoredIsThereBeforeItIsBegun) {
     }));
     ASSERT_EQ(known, object);
   }
+}
+
+// LIVE-2.05: what waited for the store so long that its caller was told so begins nothing later.
+TEST_F(HostsTest, AnOrderThatWasGivenUpIsNotSent) {
+  const auto link = Joined();
+  std::promise<void> goes_on;
+  const std::shared_future<void> wait = goes_on.get_future().share();
+  for (int thread = 0; thread < 2; ++thread) executor.Post([wait] { wait.wait(); });
+  std::promise<ErrorCode> told;
+  v1::HostOrder order;
+  order.mutable_start()->set_program(5);
+  hosts.Ask("mill-1", order, [&told](const Result<v1::HostOrderAnswer>& answer) {
+    told.set_value(answer ? ErrorCode::kCellInternal : answer.error().code);
+  });
+  clock.Advance(Hosts::kAnswerPatience + std::chrono::seconds(1));
+  v1::HostRequest beat;
+  beat.mutable_heartbeat()->set_number(1);
+  hosts.Receive(*link, std::move(beat));
+  EXPECT_EQ(told.get_future().get(), ErrorCode::kCellNotLive);
+  goes_on.set_value();
+  std::promise<void> over;
+  for (int thread = 0; thread < 2; ++thread)
+    executor.Post([&over, last = thread == 1] {
+      if (last) over.set_value();
+    });
+  over.get_future().wait();
+  // An order that is wanted comes, and is the only one.
+  hosts.Ask("mill-1", order, [](const Result<v1::HostOrderAnswer>&) {});
+  EXPECT_EQ(link->Newest(v1::HostResponse::kOrder)->order().number(), 2);
+  EXPECT_EQ(std::ranges::count_if(link->All(), &v1::HostResponse::has_order), 1);
 }
 
 // LIVE-3.18: status was shown that is ahead of what is stored: it counts for nothing, and how far
