@@ -142,7 +142,7 @@ class HostMachine : private machine::RunObserver {
   Status MayBeginAtStep(const v1::HostOrder& order, const v1::WorkerAssignment& assignment) const;
   Status StartAt(const v1::HostOrder& order, const HostTime& now);
   Status BeginJobAtStep(const v1::HostOrder& order, const HostTime& now);
-  void SettleInspection(const v1::HostOrder& order);
+  void SettleInspection(const v1::HostOrder& order, std::size_t place);
   std::optional<v1::RunBase> BaseNow() const;
   void BeginsJob(const v1::WorkerAssignment& assignment, const HostTime& now,
                  v1::ControlLease::OnLoss armed_on_loss = v1::ControlLease::ON_LOSS_UNSPECIFIED);

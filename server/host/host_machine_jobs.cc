@@ -212,6 +212,7 @@ Status HostMachine::BeginJobAtStep(const v1::HostOrder& order, const HostTime& n
                                                      : continues || setup_.options.halt_at_entry();
   job_ = assignment.job().name();
   inspect_due_ = false;
+  const std::size_t told = entries_.size();
   const Status begun = Apply(*start, &order);
   if (!begun) {
     inspect_due_ = continues;
@@ -219,7 +220,7 @@ Status HostMachine::BeginJobAtStep(const v1::HostOrder& order, const HostTime& n
     brought_.Clear();
     return begun.error();
   }
-  if (continues) SettleInspection(order);
+  if (continues) SettleInspection(order, told);
   BeginsJob(assignment, now, armed_on_loss);
   if (start->halt_at_entry) held_for_ = v1::HOLD_REASON_ENTRY;
   return {};
@@ -272,12 +273,12 @@ Status HostMachine::Confirm(const v1::HostOrder& order) {
   const auto& given = order.confirm().confirmations();
   if (std::ranges::find(given, v1::CONFIRMATION_INSPECTED) == given.end())
     return Error{ErrorCode::kCellInspect, "confirm CONFIRMATION_INSPECTED", {}};
-  SettleInspection(order);
+  SettleInspection(order, entries_.size());
   return {};
 }
 
-// Who looked at it, and what he made of the run.
-void HostMachine::SettleInspection(const v1::HostOrder& order) {
+// Who looked at it, and what he made of the run; it stands before the entries that it let come.
+void HostMachine::SettleInspection(const v1::HostOrder& order, std::size_t place) {
   inspect_due_ = false;
   inspect_job_.clear();
   cut_off_base_.reset();
@@ -287,6 +288,10 @@ void HostMachine::SettleInspection(const v1::HostOrder& order) {
       .mutable_event()
       ->mutable_message()
       ->set_text("inspected by " + order.caller() + why);
+  const auto begin = entries_.begin() + static_cast<std::ptrdiff_t>(place);
+  std::rotate(begin, entries_.end() - 1, entries_.end());
+  std::int64_t number = sequence_ - (entries_.end() - begin);
+  std::for_each(begin, entries_.end(), [&](v1::JournalEntry& one) { one.set_sequence(++number); });
 }
 
 // Whoever watched it begin is told how it ended. LIVE-5.08

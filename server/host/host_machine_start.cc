@@ -162,11 +162,12 @@ Status HostMachine::StartAt(const v1::HostOrder& order, const HostTime& now) {
   if (decides) inspect_due_ = false;
   if (!request.has_halt_at_entry())
     start->halt_at_entry = decides || setup_.options.halt_at_entry();
+  const std::size_t told = entries_.size();
   Status begun = MayApply(*start);
   if (begun) begun = Apply(*start, &order);
   inspect_due_ = inspect_due_ || (decides && !begun);
   if (!begun) return begun.error();
-  if (decides) SettleInspection(order);
+  if (decides) SettleInspection(order, told);
   if (start->halt_at_entry) held_for_ = v1::HOLD_REASON_ENTRY;
   return {};
 }

@@ -1,5 +1,6 @@
 // A run that was cut off goes on at a step, as the run of another job (live.md 5.10, 6).
 #include <utility>
+#include <vector>
 
 #include "tests/server/host/host_machine_bed.h"
 
@@ -46,6 +47,14 @@ class ContinueJobTest : public HostMachineTest {
     host_->Begin({}, now_);
     ASSERT_EQ(State(), v1::MACHINE_STATE_INSPECT);
     Control(v1::ControlLease::ON_LOSS_GO_ON);
+  }
+  // Whoever reads the log sees that somebody looked, and then that the machine began.
+  static void ExpectInspectedAndBegun(const std::vector<v1::JournalEntry>& entries) {
+    ASSERT_GE(entries.size(), 2U);
+    EXPECT_THAT(entries[0].event().message().text(), HasSubstr("inspected by "));
+    EXPECT_TRUE(entries[1].applied().has_input());
+    for (std::size_t i = 1; i < entries.size(); ++i)
+      EXPECT_EQ(entries[i].sequence(), entries[i - 1].sequence() + 1);
   }
   v1::HostOrderAnswer Preview(int step, const std::string& text = kSquare,
                               v1::PreviewStartRequest asked = {}) {
@@ -293,7 +302,9 @@ TEST_F(ContinueJobTest, CutOffAgainAndAgain) {
   const int at = host_->StatusAt(now_).cut_off_at().step();
   v1::HostOrder order = Continue(Preview(0).preview().preview_token());
   order.mutable_continue_job()->mutable_start()->set_halt_at_entry(false);
+  host_->TakeEntries(now_, true);
   ASSERT_FALSE(Do(order).has_refusal());
+  ExpectInspectedAndBegun(host_->TakeEntries(now_, true));
   for (int i = 0; i < 2000; ++i) {
     if (host_->StatusAt(now_).run().place().step() > at) break;
     Pass(100ms, 50ms);
@@ -322,8 +333,10 @@ TEST_F(ContinueJobTest, ARunOfNobodysJobGoesOnDirectly) {
   EXPECT_EQ(Do(order).refusal().code(), "CELL-E9409");
   order.mutable_start_at_step()->set_request_id("once more");
   order.mutable_start_at_step()->add_confirmations(v1::CONFIRMATION_INSPECTED);
+  host_->TakeEntries(now_, true);
   const v1::HostOrderAnswer begun = Do(order);
   ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
+  ExpectInspectedAndBegun(host_->TakeEntries(now_, true));
   Until(v1::MACHINE_STATE_HELD);
   Do(Resume());
   Until(v1::MACHINE_STATE_IDLE);
