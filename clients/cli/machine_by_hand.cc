@@ -127,7 +127,9 @@ int PressAll(const Remote& remote, const MachineAct& act, const Control& control
     const grpc::Status done = held ? HoldOne(keys, act.values[i], act.held_s)
                                    : PressOne(keys, act.values[i], v1::KEY_ACTION_TAP);
     if (!done.ok()) return Refused(done, remote);
-    if (held) AwaitRest(remote, act.machine);
+    // A step of one key is over before the next one.
+    const bool steps = act.values[i].ends_with('+') || act.values[i].ends_with('-');
+    if (held || (steps && i + 1 < act.values.size())) AwaitRest(remote, act.machine);
   }
   constexpr std::chrono::seconds kRenewalPatience{5};
   // HOME, ZERO and FUNCTION go on by themselves; giving control back would stop what jogs.

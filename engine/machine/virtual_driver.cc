@@ -45,6 +45,10 @@ bool VirtualDriver::Moves() const {
 
 Progress VirtualDriver::Pump(SimTime clock) {
   const SimTime slept = clock - std::exchange(last_, clock);
+  if (waits_) {
+    Anchor(clock);
+    return Progress::kReached;
+  }
   if (slept > kMadeUp && Moves()) {
     GiveUp(LateAt(clock), clock);
     return Progress::kReached;
@@ -52,6 +56,12 @@ Progress VirtualDriver::Pump(SimTime clock) {
   if (machine_->Advance(DueAt(clock)) == Progress::kReached) return Progress::kReached;
   if (LateAt(clock) > kMadeUp) GiveUp(LateAt(clock), clock);
   return Progress::kMoreWork;
+}
+
+void VirtualDriver::Wait(bool waits, SimTime clock) {
+  if (waits == waits_) return;
+  Pump(clock);
+  waits_ = waits;
 }
 
 // It acts where the machine is: never at a time before.

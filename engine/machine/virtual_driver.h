@@ -28,6 +28,8 @@ class VirtualDriver final : public MachineDriver {
   // Errors: CellInvalidArgument outside kFactorMin to kFactorMax.
   Status SetFactor(SimTime clock, double factor);
   double factor() const { return factor_; }
+  // The time of the machine stands, and nothing of it is made up for, as long as it waits.
+  void Wait(bool waits, SimTime clock);
   // Time of the clock that was given up since the last call, because it was late.
   SimTime TakeLost() { return std::exchange(lost_, SimTime(0)); }
 
@@ -47,6 +49,7 @@ class VirtualDriver final : public MachineDriver {
   SimTime time_;   // of the machine there
   SimTime last_;   // call
   SimTime lost_{0};
+  bool waits_ = false;
 };
 
 }  // namespace rmlcell::machine

@@ -208,8 +208,10 @@ Result<v1::HostOrderAnswer> HostMachine::Control(const v1::HostOrder& order, con
     auto acquired = desk_.Acquire(order.acquire_control(), order.caller(), now);
     if (!acquired) return acquired.error();
     *answer.mutable_control() = *std::move(acquired);
-    // What the earlier holder was about to enter is nobody's. LIVE-4.03
+    // What the earlier holder was about to enter is nobody's, nor what he moved by hand. LIVE-4.03
     if (taken_over) DropMask();
+    if (taken_over && machine().state() == machine::MachineState::kJogging)
+      Hold(v1::HOLD_REASON_CONTROL, now);
   } else if (order.has_renew_control()) {
     const auto renewed = desk_.Renew(order.renew_control().control_token(), now);
     if (!renewed) return renewed.error();
@@ -412,6 +414,9 @@ void HostMachine::GoOnTo(const HostTime& now) {
 
 bool HostMachine::GoOn(const HostTime& now) {
   now_ = now;
+  // What halts it is not put off; it has not moved then.
+  driver_->Wait(begin_stored_by_ > 0 && machine().state() == machine::MachineState::kRunning,
+                now.steady);
   const machine::Progress progress = driver_->Pump(now.steady);
   GoOnTo(now);
   return progress == machine::Progress::kReached;
@@ -428,7 +433,21 @@ void HostMachine::Hold(v1::HoldReason reason, const HostTime& now) {
   const Status done =
       after_instruction ? Apply(machine::HoldRun{}, nullptr) : Apply(machine::StopRun{}, nullptr);
   if (done && !held_before) held_for_ = reason;
+  if (done) TellWhyHeld(reason);
   Notice();
+}
+
+// Where no person held it the log says what is to be done. LIVE-3.14, LIVE-3.21, LIVE-3.31
+void HostMachine::TellWhyHeld(v1::HoldReason reason) {
+  std::optional<ErrorCode> code;
+  if (reason == v1::HOLD_REASON_LATE)
+    code = disk_is_late_ ? ErrorCode::kCellJournal : ErrorCode::kCellHostLate;
+  if (reason == v1::HOLD_REASON_SERVER_LOST) code = ErrorCode::kCellServerLost;
+  if (!code) return;
+  Add(machine().time())
+      .mutable_event()
+      ->mutable_message()
+      ->set_text("held: " + bridge::ErrorText(Error{*code, {}, {}}));
 }
 
 // A held run is held for what it was, whatever stops the keys that move its machine. LIVE-2.13

@@ -80,6 +80,11 @@ class HostMachine : private machine::RunObserver {
   bool GoOn(const HostTime& now);
   // The disk does not answer, or does again: that keeps jobs from it.
   void NoteDisk(bool is_late) { disk_is_late_ = is_late; }
+  // All entries up to this one are in the store: the run of a job may move from then on, so that a
+  // job that the store knows nothing more of has moved nothing. LIVE-5.04
+  void NoteStored(std::int64_t sequence) {
+    if (sequence >= begin_stored_by_) begin_stored_by_ = 0;
+  }
   // Comes to rest, and holds a run with this reason.
   void Hold(v1::HoldReason reason, const HostTime& now);
   // The host ends in order: a run that is open ends with it. LIVE-5.09
@@ -142,6 +147,7 @@ class HostMachine : private machine::RunObserver {
   Status MayBeginAtStep(const v1::HostOrder& order, const v1::WorkerAssignment& assignment) const;
   Status StartAt(const v1::HostOrder& order, const HostTime& now);
   Status BeginJobAtStep(const v1::HostOrder& order, const HostTime& now);
+  void TellWhyHeld(v1::HoldReason reason);
   void SettleInspection(const v1::HostOrder& order, std::size_t place);
   std::optional<v1::RunBase> BaseNow() const;
   void BeginsJob(const v1::WorkerAssignment& assignment, const HostTime& now,
@@ -221,6 +227,7 @@ class HostMachine : private machine::RunObserver {
   int told_of_run_ = 0;
   SimTime told_until_{0};  // of the newest entry
   std::optional<v1::LastRun> last_run_{};
+  std::int64_t begin_stored_by_ = 0;  // the entry that the run of a job waits for; 0: none
   bool inspect_due_ = false;
   bool ended_ = false;  // by EndRun(): of the run that is open nothing more is told
   bool mark_due_ = true;

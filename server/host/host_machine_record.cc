@@ -124,6 +124,7 @@ void HostMachine::TellOver(const machine::RunOver& run) {
   v1::RunOver& told = *Add(run.run.begun + run.lasted).mutable_run_over();
   told = recording::OverOf(run);
   told.set_job(std::exchange(job_, {}));
+  begin_stored_by_ = 0;
   if (!run.run.by_hand) last_run_ = LastRunOf(told);
   if (!run.run.by_hand && run.outcome.code == ErrorCode::kCellPowerOff) {  // LIVE-5.10
     inspect_due_ = true;

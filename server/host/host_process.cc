@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -38,10 +39,8 @@ using google::protobuf::util::TimeUtil;
 using std::chrono::nanoseconds;
 
 constexpr int kProtocol = 1;
-// A server tells one in 50 ms, and so catches up with one that came late. LIVE-3.16
-constexpr nanoseconds kStatusMoving = 55ms, kStatusStanding = 1s;
-// Of a machine that moves: orders wake it; of a run that stands: its time goes on.
-constexpr nanoseconds kTick = 10ms, kTickHeld = 50ms;
+constexpr nanoseconds kStatusMoving = 50ms, kStatusStanding = 1s;  // LIVE-3.16
+constexpr nanoseconds kTick = 10ms, kTickHeld = 50ms;  // of what moves; of a run that stands
 constexpr nanoseconds kIntentPatience = 500ms, kDurablePatience = 1s;  // LIVE-3.21
 constexpr nanoseconds kEndsWithoutServer = 60s, kRejoin = 200ms, kRestPatience = 10s;
 constexpr double kPreviewTime_s = 60.0;  // LIVE-6.01
@@ -203,6 +202,7 @@ class HostProcess {
                unstored_.front().sequence() <= message.entries_stored().sequence())
           unstored_.pop_front();
         if (writer_ != nullptr) writer_->Stored(fence_, message.entries_stored().sequence());
+        if (machine_ != nullptr) machine_->NoteStored(message.entries_stored().sequence());
         break;
       case v1::HostResponse::kRenewed:
         lease_.Renewed();
@@ -424,9 +424,11 @@ class HostProcess {
     });
   }
 
-  // One that has not begun yet, too. What moves is brought to rest before.
+  // One that has not begun yet, too. What moves is brought to rest before, and a run that is held
+  // waits for a person, as long as there is somewhere to keep it. LIVE-3.31
   void EndWithoutServer() {
-    if (IsHeard() || (machine_ != nullptr && machine_->moves())) return;
+    const bool waits = machine_ != nullptr && (machine_->moves() || machine_->run_open());
+    if (IsHeard() || (waits && std::filesystem::exists(options_.journal))) return;
     if (Now().steady - without_server_since_ <= kEndsWithoutServer) return;
     spdlog::warn("no server for {} s", kEndsWithoutServer / 1s);
     Quit(0);
@@ -575,8 +577,7 @@ class HostProcess {
   std::int64_t fence_ = 0;
   LeaseClock lease_;
   nanoseconds joining_since_{0};  // by SinceBoot
-  nanoseconds next_try_{0};
-  nanoseconds status_due_{0};
+  nanoseconds next_try_{0}, status_due_{0};
   nanoseconds without_server_since_{0};
   std::optional<nanoseconds> ending_at_;
   std::string handbox_shown_;
@@ -586,8 +587,7 @@ class HostProcess {
   std::unique_ptr<JournalWriter> writer_;
   Background background_;  // behind what its work uses
   FurtherLines further_{[this] { inbox_.Later([] {}); }};
-  bool behind_ = false;
-  bool ended_ = false;
+  bool behind_ = false, ended_ = false;
   int exit_code_ = 0;
 };
 

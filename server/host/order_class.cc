@@ -8,20 +8,24 @@ namespace rmlcell::server {
 
 namespace {
 
-// What lets go or halts acts first; what may move is written before.
+// What lets go, slows down or halts acts first; what may move is written before.
 template <class Request>
 OrderClass ClassOfKey(const Request& key) {
-  constexpr std::array<std::string_view, 6> kHalt = {"PAUSE",        "STOP",           "HOLD",
-                                                     "BUFFER_CLEAR", "EMERGENCY_STOP", "COVER"};
+  constexpr std::array<std::string_view, 5> kHalt = {"PAUSE", "STOP", "HOLD", "BUFFER_CLEAR",
+                                                     "EMERGENCY_STOP"};
+  constexpr std::array<std::string_view, 2> kSlow = {"COVER", "OVERRIDE_MINUS"};
   const bool halts = std::ranges::find(kHalt, key.key()) != kHalt.end();
-  if (key.action() == v1::KEY_ACTION_RELEASE) return OrderClass::kLetsGo;
+  const bool slows = std::ranges::find(kSlow, key.key()) != kSlow.end();
+  if (slows || key.action() == v1::KEY_ACTION_RELEASE) return OrderClass::kLetsGo;
   return halts ? OrderClass::kActsFirst : OrderClass::kWrittenFirst;
 }
 
-// A gate begins a run.
+// A gate begins a run; the door stops one.
 OrderClass ClassOfInputs(const v1::SetInputsRequest& request) {
-  return std::ranges::any_of(request.inputs(), &v1::MachineInput::has_gate)
-             ? OrderClass::kWrittenFirst
+  if (std::ranges::any_of(request.inputs(), &v1::MachineInput::has_gate))
+    return OrderClass::kWrittenFirst;
+  return std::ranges::any_of(request.inputs(), &v1::MachineInput::door_open)
+             ? OrderClass::kLetsGo
              : OrderClass::kWrittenBehind;
 }
 

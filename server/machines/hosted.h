@@ -24,8 +24,13 @@ struct Hosts::Host {
   struct Pending {
     Answered done;
     std::chrono::steady_clock::time_point until{};  // it is answered by then, or never
+    bool halts = false;
   };
   std::map<std::int64_t, Pending> pending;
+  // What halts, and came when it was gone: for the line that comes behind it. LIVE-2.10
+  std::vector<v1::HostOrder> kept{};
+  Instant kept_since{};
+  bool has_successor = false;
   std::optional<v1::MachineStatus> status;
   bool here = false;  // on the computer of this server
   std::optional<v1::HandboxPanel> handbox;

@@ -30,6 +30,8 @@ constexpr std::chrono::milliseconds kLostHere{1'000};
 constexpr std::chrono::milliseconds kLostElsewhere{3'000};
 constexpr std::chrono::milliseconds kLostAtRest{2'500};
 constexpr std::size_t kWaitingEntriesMax = 100'000;
+constexpr std::size_t kKeptMax = 16;  // of what halts a machine whose line is gone
+constexpr const char* kHaltsUnseen = "its host is silent: whether it halts is not known";
 
 bool Halts(const v1::HostOrder& order) {
   return order.has_stop() || order.has_hold() || order.has_emergency_stop() || order.has_abort();
@@ -361,6 +363,7 @@ void Hosts::Look() {
     DropLate(host);
     bool silent = false;
     std::optional<v1::MachineStatus> lost;
+    std::vector<Answered> halts;  // that nobody has answered yet
     {
       const std::lock_guard lock(host->mutex);
       const auto quiet = needs_.clock() - host->heard;
@@ -374,8 +377,13 @@ void Hosts::Look() {
       if (!host->gone && told && quiet > patience) {
         SetLost(*host->status);
         lost = host->status;
+        std::erase_if(host->pending, [&halts](auto& row) {
+          if (row.second.halts) halts.push_back(std::move(row.second.done));
+          return row.second.halts;
+        });
       }
     }
+    for (const Answered& done : halts) done(NotLive(kHaltsUnseen));
     if (lost) {
       spdlog::warn("the host of {} is silent", MachineName(host->id));
       Publish(*host, *std::move(lost));
@@ -429,8 +437,15 @@ void Hosts::Ask(const std::string& machine, v1::HostOrder order, Answered done) 
     lost = host->status && host->status->state() == v1::MACHINE_STATE_LOST;
     order.set_number(++next_order_);
     const auto patience = order.has_preview_start() ? kPreviewPatience : kAnswerPatience;
-    if (!gone && !lost)
-      host->pending[order.number()] = {.done = done, .until = needs_.clock() + patience};
+    if (!gone && !lost) {
+      host->pending[order.number()] = {
+          .done = done, .until = needs_.clock() + patience, .halts = Halts(order)};
+    }
+    if (gone && !host->has_successor && Halts(order) && host->kept.size() < kKeptMax) {
+      if (host->kept.empty()) host->kept_since = needs_.clock();
+      host->kept.push_back(order);
+      return done(NotLive("not delivered: it acts if this host is heard of again"));
+    }
   }
   if (gone) return done(NotLive("its host is not heard of"));
   // Nothing begins that nobody sees; what halts acts when it comes there. LIVE-2.10
@@ -451,7 +466,7 @@ void Hosts::Ask(const std::string& machine, v1::HostOrder order, Answered done) 
     });
   }
   host->link->Send(std::move(message));
-  if (lost) done(NotLive("its host is silent: whether it halts is not known"));
+  if (lost) done(NotLive(kHaltsUnseen));
 }
 
 void Hosts::End(const std::string& machine, const std::string& why) {

@@ -146,6 +146,7 @@ class Hosts {
   void HandBack(const HostPointer& host);
   void DropLate(const HostPointer& host);
   static void Retire(const HostPointer& host);
+  void HandOver(Host& before, const Host& host) const;
   void Release(const HostPointer& host);
   void Publish(const Host& host, v1::MachineStatus status);
   void LookAtMemory(bool at_once = false);

@@ -98,16 +98,17 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   host->heard = needs_.clock();
   host->here = IsOf(hello.host(), ThisComputer());
   if (const Status welcome = Welcome(host, hello, *taken); !welcome) return welcome.error();
-  std::shared_ptr<HostLink> before;
+  HostPointer before;
   {
     const std::lock_guard lock(mutex_);
     if (closed_) return Error{ErrorCode::kCellUnavailable, "the server stops", {}};
     HostPointer& place = hosts_[*machine];
-    if (place != nullptr) before = place->link;
-    place = host;
+    before = std::exchange(place, host);
     off_.erase(*machine);
   }
-  if (before != nullptr && before != link) before->Close(NotLive("the host has another line"));
+  if (before != nullptr && before->link != link)
+    before->link->Close(NotLive("the host has another line"));
+  if (before != nullptr) HandOver(*before, *host);
   SendMemory(host);
   spdlog::info("{} has the host {}, fence {}", hello.machine(), hello.host(), host->lease.fence);
   Changed();
@@ -186,6 +187,23 @@ void Hosts::Retire(const HostPointer& host) {
     host->rests.wait_for(lock, kAnswerPatience, [&host] { return !host->storing; });
   }
   for (auto& [number, one] : pending) one.done(NotLive("its host is not heard of any more"));
+}
+
+// What would have halted it, and found no line. Of another fence it stands already. LIVE-2.10
+void Hosts::HandOver(Host& before, const Host& host) const {
+  std::vector<v1::HostOrder> kept;
+  {
+    const std::lock_guard lock(before.mutex);
+    before.has_successor = true;
+    const bool late = needs_.clock() - before.kept_since > kLease;
+    kept.swap(before.kept);
+    if (late || before.lease.fence != host.lease.fence) return;
+  }
+  for (v1::HostOrder& order : kept) {
+    v1::HostResponse message;
+    *message.mutable_order() = std::move(order);
+    host.link->Send(std::move(message));
+  }
 }
 
 Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello, const Taken& taken) {

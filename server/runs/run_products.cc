@@ -56,8 +56,24 @@ bool Has(storage::Store& store, std::int64_t job, std::string_view name) {
   return static_cast<bool>(store.GetArtifact(job, name));
 }
 
-Error Failed(const std::string& what, const std::error_code& why) {
-  return {ErrorCode::kCellInternal, what + ": " + why.message(), {}};
+// Tried again: it is not the recording's fault.
+Error NoDisk(const std::string& what, const std::error_code& why) {
+  return {ErrorCode::kCellStoreFailed, what + ": " + why.message(), {}};
+}
+
+// Whether what is played has room to write to.
+bool IsFull(const std::string& folder) {
+  constexpr std::uintmax_t kRoom = std::uintmax_t{1} << 20;
+  std::error_code failed;
+  const fs::space_info space = fs::space(folder, failed);
+  return !failed && space.available < kRoom;
+}
+
+Status WriteWhole(const std::string& file, const std::string& bytes) {
+  std::ofstream out(file, std::ios::binary);
+  out << bytes;
+  out.close();
+  return out ? Status() : Status(NoDisk(file, std::make_error_code(std::errc::io_error)));
 }
 
 }  // namespace
@@ -143,10 +159,12 @@ Status RunProducts::Make(const storage::JobRecord& job, const std::stop_token& s
   const std::string folder = needs_.folder + "/" + std::to_string(job.id);
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) return Failed(folder, failed);
+  if (failed) return NoDisk(folder, failed);
   const std::string file = folder + "/" + std::string(kRecording);
-  std::ofstream(file, std::ios::binary) << *recording;
-  Status done = Play(file, folder, stop);
+  Status done = WriteWhole(file, *recording);
+  if (done) done = Play(file, folder, stop);
+  if (!done && IsFull(folder))
+    done = NoDisk(folder, std::make_error_code(std::errc::no_space_on_device));
   if (done) done = Store(job, folder);
   fs::remove_all(folder, failed);
   return done;
