@@ -147,6 +147,7 @@ class HostMachine : private machine::RunObserver {
   Status MayBeginAtStep(const v1::HostOrder& order, const v1::WorkerAssignment& assignment) const;
   Status StartAt(const v1::HostOrder& order, const HostTime& now);
   Status BeginJobAtStep(const v1::HostOrder& order, const HostTime& now);
+  void AddMadeExecutables(v1::JournalEntry& entry);
   void TellWhyHeld(v1::HoldReason reason);
   void SettleInspection(const v1::HostOrder& order, std::size_t place);
   std::optional<v1::RunBase> BaseNow() const;

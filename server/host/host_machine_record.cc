@@ -121,7 +121,9 @@ void HostMachine::OnRunBegun(const machine::RunNote& run) {
 }
 
 void HostMachine::TellOver(const machine::RunOver& run) {
-  v1::RunOver& told = *Add(run.run.begun + run.lasted).mutable_run_over();
+  v1::JournalEntry& entry = Add(run.run.begun + run.lasted);
+  AddMadeExecutables(entry);
+  v1::RunOver& told = *entry.mutable_run_over();
   told = recording::OverOf(run);
   told.set_job(std::exchange(job_, {}));
   begin_stored_by_ = 0;
@@ -134,6 +136,22 @@ void HostMachine::TellOver(const machine::RunOver& run) {
   TellControl();
   held_for_.reset();
   mark_due_ = true;
+}
+
+// The store keeps them with the end of the run; what is too much for one entry is made again by the
+// next run. LIVE-5.07
+void HostMachine::AddMadeExecutables(v1::JournalEntry& entry) {
+  constexpr std::size_t kBytesMax = std::size_t{1} << 20;
+  std::size_t bytes = 0;
+  for (machine::MadeExecutable& made : machine().TakeMadeExecutables()) {
+    const auto revision = revisions_.find(made.slot);
+    bytes += made.bytes.size();
+    if (revision == revisions_.end() || bytes > kBytesMax) continue;
+    v1::LinkedExecutable& executable = *entry.add_executables();
+    executable.set_slot(made.slot);
+    executable.set_object_revision(revision->second);
+    executable.set_content(std::move(made.bytes));
+  }
 }
 
 void HostMachine::OnHalt(const machine::Halt& halt) {

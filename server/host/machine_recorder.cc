@@ -41,6 +41,10 @@ void MachineRecorder::Add(const v1::JournalEntry& entry) {
     shorter.mutable_mark()->clear_state();
     shorter.mutable_mark()->clear_base();
     recording::AddEntry(shorter, file);
+  } else if (!entry.executables().empty()) {
+    v1::JournalEntry shorter = entry;
+    shorter.clear_executables();  // a replay makes them again
+    recording::AddEntry(shorter, file);
   } else {
     recording::AddEntry(entry, file);
   }

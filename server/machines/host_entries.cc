@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "server/base/names.h"
 #include "server/machines/host_words.h"
 #include "server/records/job_messages.h"
+#include "storage/trouble.h"
 
 namespace rmlcell::server {
 namespace {
@@ -73,6 +75,9 @@ class Entries {
       if (const auto event = JobEventOf(entry)) write_.job_events.push_back(ToRecord(*event));
     }
     if (ends && job_lease_) end_ = entry.run_over().outcome();
+    for (const v1::LinkedExecutable& made : entry.executables()) {
+      made_.push_back({made.slot(), made.object_revision(), made.content()});
+    }
     if (entry.has_mark()) SetMark(entry);
     ++added_;
     return {};
@@ -94,7 +99,15 @@ class Entries {
     if (end) return Finish(*end, std::move(write));
     if (write.events.empty() && write.job_events.empty() && !write.mark) return {};
     if (!write.job_events.empty()) write.job = job_lease_;
-    return store_.AppendMachine(lease_, write);
+    if (const Status written = store_.AppendMachine(lease_, write); !written)
+      return written.error();
+    // Of a run without a job, which has no end to be written with.
+    for (const storage::NewExecutable& made : std::exchange(made_, {})) {
+      const auto kept =
+          store_.PutExecutable(lease_.machine, made.slot, made.object_revision, made.bytes);
+      if (!kept && storage::IsTroubleOfTheStore(kept.error())) return kept.error();
+    }
+    return {};
   }
 
   Status FindLease(const v1::JournalEntry& entry) {
@@ -121,6 +134,7 @@ class Entries {
     end.events = std::exchange(write.job_events, {});
     end.events.push_back(EndedEvent(outcome));
     end.machine = std::move(write);
+    end.executables = std::exchange(made_, {});
     const storage::Lease job = *std::exchange(job_lease_, std::nullopt);
     job_.clear();
     const auto finished = store_.Finish(job, end);
@@ -133,6 +147,7 @@ class Entries {
   std::string job_{};
   std::optional<storage::Lease> job_lease_{};
   std::optional<v1::Outcome> end_{};
+  std::vector<storage::NewExecutable> made_{};  // by runs that are over
   std::size_t added_ = 0;
   std::size_t stored_ = 0;
 };
