@@ -76,7 +76,7 @@ void AnsweredRequests::Keep(const std::string& key, Answered answered,
 std::optional<v1::AnsweredRequest> AnsweredRequests::EntryOf(const v1::HostOrder& order,
                                                              const v1::HostOrderAnswer& answer) {
   const OrderClass kind = ClassOf(order);
-  if (kind != OrderClass::kWrittenFirst && kind != OrderClass::kWrittenBehind) return std::nullopt;
+  if (kind == OrderClass::kActsFirst || kind == OrderClass::kAsks) return std::nullopt;
   // What they prove is over with the host.
   if (answer.has_control() || answer.has_control_kept() || answer.has_armed() ||
       answer.has_session() || answer.has_key())

@@ -62,6 +62,11 @@ class HostMachine : private machine::RunObserver {
   // Or while what keys before it asked for is not over, but one that moves does not wait for that.
   bool WaitsForKeys(const v1::HostOrder& order, const HostTime& now) const;
   bool Settles() const { return machine().settles(); }
+  // A lower override acts, and is answered, whatever the disk does. LIVE-3.20
+  bool SlowsDown(const v1::HostOrder& order) const {
+    return order.has_override() &&
+           order.override().override_percent() < machine().status().override_percent;
+  }
   // A key that somebody else refused: its number is used up, and the next one may come.
   void PassKey(const v1::HostOrder& order, const v1::HostOrderAnswer& refused, const HostTime& now);
   // What a start at a step would do: worked out by `run`, which takes as long as the run to the

@@ -242,7 +242,7 @@ class HostProcess {
     if (machine_ == nullptr)
       return Refuse(order, {ErrorCode::kCellNotLive, "the machine is starting", {}});
     if (order.has_preview_start()) return Preview(order);
-    const OrderClass kind = ClassOf(order);
+    const OrderClass kind = machine_->SlowsDown(order) ? OrderClass::kLetsGo : ClassOf(order);
     if (machine_->WaitsForKeys(order, Now())) {
       keys_waiting_.push_back({.order = order, .until = until});
       return;

@@ -513,12 +513,29 @@ grpc::Status MachineService::GiveTo(const v1::TakeMachineRequest& request,
   return TellStatus(*machine, status);
 }
 
+template <class Request, class Act>
+grpc::Status MachineService::Once(const Request& request, const std::string& caller,
+                                  v1::MachineStatus& status, Act act) {
+  const auto machine = ParseMachineName(request.machine());
+  if (!machine) return ToGrpcStatus(machine.error());
+  const std::string content =
+      std::string(Request::descriptor()->name()) + '\n' + request.SerializeAsString();
+  const auto again = repeated_.IsRepeat(caller, request.request_id(), content);
+  if (!again) return ToGrpcStatus(again.error());
+  if (*again) return TellStatus(*machine, status);
+  const grpc::Status done = act(*machine);
+  if (done.ok()) repeated_.Keep(caller, request.request_id(), content);
+  return done;
+}
+
 grpc::ServerUnaryReactor* MachineService::TakeMachine(grpc::CallbackServerContext* context,
                                                       const v1::TakeMachineRequest* request,
                                                       v1::MachineStatus* response) {
   return Answer(needs_.Computing(), context, *request, "MachineService/TakeMachine",
                 [this, request, response](const Caller& caller) {
-                  return GiveTo(*request, caller.identity, *response);
+                  return Once(*request, caller.identity, *response, [&](const std::string&) {
+                    return GiveTo(*request, caller.identity, *response);
+                  });
                 });
 }
 
@@ -527,9 +544,9 @@ grpc::ServerUnaryReactor* MachineService::EnableMachine(grpc::CallbackServerCont
                                                         v1::MachineStatus* response) {
   return Answer(needs_.Computing(), context, *request, "MachineService/EnableMachine",
                 [this, request, response](const Caller& caller) {
-                  const auto machine = ParseMachineName(request->machine());
-                  return machine ? Enable(*machine, caller.identity, *response)
-                                 : ToGrpcStatus(machine.error());
+                  return Once(*request, caller.identity, *response, [&](const std::string& id) {
+                    return Enable(id, caller.identity, *response);
+                  });
                 });
 }
 
@@ -538,9 +555,9 @@ grpc::ServerUnaryReactor* MachineService::DisableMachine(grpc::CallbackServerCon
                                                          v1::MachineStatus* response) {
   return Answer(needs_.Computing(), context, *request, "MachineService/DisableMachine",
                 [this, request, response](const Caller& caller) {
-                  const auto machine = ParseMachineName(request->machine());
-                  return machine ? Disable(*machine, caller.identity, *response)
-                                 : ToGrpcStatus(machine.error());
+                  return Once(*request, caller.identity, *response, [&](const std::string& id) {
+                    return Disable(id, caller.identity, *response);
+                  });
                 });
 }
 

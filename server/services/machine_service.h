@@ -7,6 +7,7 @@
 #include "server/services/host_order.h"
 #include "server/services/later.h"
 #include "server/services/machine_watch.h"
+#include "server/services/repeated_requests.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
@@ -177,6 +178,10 @@ class MachineService final : public v1::MachineService::CallbackService {
   grpc::ServerUnaryReactor* StartJob(grpc::CallbackServerContext* context,
                                      const v1::StartMachineRequest& request,
                                      v1::MachineStatus& response);
+  // Carries a request out that is no repeat of one that was. LIVE-9.01
+  template <class Request, class Act>
+  grpc::Status Once(const Request& request, const std::string& caller, v1::MachineStatus& status,
+                    Act act);
   grpc::Status Enable(const std::string& machine, const std::string& caller,
                       v1::MachineStatus& status);
   grpc::Status Disable(const std::string& machine, const std::string& caller,
@@ -198,6 +203,7 @@ class MachineService final : public v1::MachineService::CallbackService {
   Live live_;
   storage::Store& store_;
   KnownMachines machines_;
+  RepeatedRequests repeated_;
 };
 
 }  // namespace rmlcell::server

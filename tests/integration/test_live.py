@@ -176,6 +176,24 @@ class LiveTest(LiveTestCase):
         self.live.ask("ResumeMachine")
         eventually(lambda: self.live.status().tip != stands)
 
+    # LIVE-3.31: a run that is held waits for its server, however long that is away.
+    @unittest.skipUnless(os.environ.get("RMLCELL_LONG"), "takes more than a minute")
+    def test_a_held_run_waits_for_its_server(self):
+        self.live.enable()
+        self.live.store()
+        self.live.acquire(ttl={"seconds": 600}, on_loss="ON_LOSS_GO_ON")
+        self.live.ask("StartMachine", program=5)
+        eventually(lambda: self.live.status().tip.z < -0.3)
+        self.live.ask("StopMachine")
+        before = self.live.wait("HELD")
+        self.cell.kill()
+        time.sleep(70)  # no verdict: longer than a host that has nothing to keep waits
+        self.cell.start()
+        held = self.live.wait("HELD")
+        self.assertEqual((held.fence, held.host, held.run.run, held.tip), (before.fence, before.host, before.run.run, before.tip))
+        self.live.ask("ResumeMachine")
+        eventually(lambda: self.live.status().tip != held.tip)
+
     # A server that hangs is as good as none: a machine that nobody can reach does not go on.
     def test_a_server_that_hangs_holds_the_run(self):
         self.live.enable()

@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from cell import BIN, cell_pb2, detail_of, eventually, grpc, job_pb2, machine_pb2
+from cell import BIN, cell_pb2, detail_of, eventually, grpc, job_pb2, machine_pb2, program_pb2
 from live import MILL, SQUARE, Live, LiveTestCase, new_id
 from rmlcell.v1.common_pb2 import MachineState, VERDICT_BAD  # noqa: E402
 from rmlcell.v1.machine_status_pb2 import HoldReason  # noqa: E402
@@ -53,6 +53,32 @@ class RunsTest(LiveTestCase):
         live.acquire(take_over=True, reason="a test")
         live.ask("SetFactor", factor=100.0)
         live.ask("ReleaseControl")
+
+    # LIVE-5.07: what a run compiled is in the store behind its end, of a job and of nobody's.
+    def test_executables_of_a_run_are_kept(self):
+        live = Live(self, self.cell, "machines/optimo-1")
+        live.enable()
+        live.acquire(take_over=True, reason="a test")
+        live.ask("SetFactor", factor=100.0)
+        live.store(46, "CALL 47\nDELAY 0.1\n", "a.S")
+        live.store(47, "DELAY 0.1\nRETURN\n", "b.S")
+        live.store(48, "DELAY 0.1\n", "c.S")
+
+        def kept():
+            listed = self.cell.programs().ListPrograms(program_pb2.ListProgramsRequest(parent="machines/optimo-1"))
+            return {one.slot for one in listed.programs if one.executable_bytes > 0}
+
+        self.assertEqual(kept(), set())
+        live.ask("ReleaseControl")
+        name = self.cell.jobs().SubmitJob(job_pb2.SubmitJobRequest(request_id=new_id(), job={
+            "kind": "JOB_KIND_RUN", "machine": "machines/optimo-1", "program": "machines/optimo-1/programs/46", "run": {"unzeroed": True}})).name
+        self.assertEqual(self.becomes(name, "SUCCEEDED", "FAILED"), "SUCCEEDED")
+        self.assertEqual(kept(), {46, 47})
+        live.acquire()
+        live.ask("ZeroMachine")
+        live.wait("IDLE")
+        live.ask("StartMachine", program=48)
+        eventually(lambda: kept() == {46, 47, 48})
 
     # LIVE-5.04, LIVE-5.07: RUNNING before it begins, then what happens, then its end, each once.
     def test_a_run_from_its_submission_to_its_end(self):

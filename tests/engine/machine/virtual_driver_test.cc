@@ -98,6 +98,21 @@ TEST_F(VirtualDriverTest, NeverJumpsInARun) {
   EXPECT_EQ(Time(), 20.1);
 }
 
+// LIVE-5.04: as long as it waits its time stands, none of that is lost, and none is made up for.
+TEST_F(VirtualDriverTest, TimeThatItWaitsIsNoneOfIts) {
+  Load("DELAY 10\n");
+  EXPECT_TRUE(driver->Start(Clock(1.0), {.program = 1}));
+  const SimTime begun = driver->machine().time();
+  driver->Wait(true, Clock(1.0));
+  driver->Pump(Clock(1.04));
+  driver->Pump(Clock(9.0));
+  EXPECT_EQ(driver->machine().time(), begun);
+  driver->Wait(false, Clock(9.0));
+  driver->Pump(Clock(9.05));
+  EXPECT_EQ(driver->machine().time(), begun + FromSeconds(0.05));
+  EXPECT_EQ(driver->TakeLost(), SimTime(0));
+}
+
 // LIVE-3.14, LF-5: nor by hand: a key does not run on while nobody called.
 TEST_F(VirtualDriverTest, NeverJumpsByHand) {
   Load("DELAY 10\n");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -59,6 +60,7 @@ class HostMachineTest : public testing::Test {
     numbered.set_caller("anna");
     const v1::HostOrderAnswer answer = host_->Do(numbered, now_);
     EXPECT_EQ(answer.number(), number_);
+    if (stores_) host_->NoteStored(std::numeric_limits<std::int64_t>::max());
     return answer;
   }
   std::string Control(v1::ControlLease::OnLoss on_loss = v1::ControlLease::ON_LOSS_HOLD) {
@@ -129,6 +131,7 @@ class HostMachineTest : public testing::Test {
   int tokens_ = 0;
   std::int64_t number_ = 0;
   std::int64_t sequence_ = 0;
+  bool stores_ = true;  // what happens is in the store at once
 
   // Of the next host that is made.
   v1::MachineOptions options_;

@@ -106,6 +106,42 @@ TEST_F(HostJobsTest, OrdersForAJobAreForThatJob) {
   EXPECT_EQ(Do(For("jobs/17", Stop())).refusal().code(), "CELL-E9421");
 }
 
+// LIVE-5.04: nothing of the run of a job moves before its begin is in the store; that wait is no
+// time of the machine. A STOP is not put off by it, and has stopped nothing that moved.
+TEST_F(HostJobsTest, ARunOfAJobMovesWhenItsBeginIsStored) {
+  for (const bool stopped : {false, true}) {
+    Make();
+    stores_ = false;
+    const v1::MachineStatus before = Status();
+    ASSERT_FALSE(Do(Job()).has_refusal());
+    Pass(40s, 50ms);
+    EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+    EXPECT_EQ(Status().virtual_time_ns(), before.virtual_time_ns());
+    if (stopped) {
+      Do(For("jobs/17", Stop()));
+      Pass(1s);
+      EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
+      for (int i = 0; i < before.axes_size(); ++i)
+        EXPECT_EQ(Status().axes(i).value(), before.axes(i).value());
+      Do(For("jobs/17", Resume()));
+      Pass(5s);
+    }
+    std::int64_t newest = 0;
+    for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true)) {
+      EXPECT_FALSE(entry.has_clock_slipped());
+      if (entry.has_run_begun()) newest = entry.sequence();
+    }
+    const std::int64_t waited = Status().virtual_time_ns();
+    host_->NoteStored(newest - 1);
+    Pass(1s);
+    EXPECT_EQ(Status().virtual_time_ns(), waited);
+    host_->NoteStored(newest + 1);
+    Pass(10ms);
+    Pass(5s);
+    EXPECT_EQ(Status().virtual_time_ns() - waited, 5'000'000'000);
+  }
+}
+
 // LIVE-4.05: a person takes control over; then the job is resumed with his token alone.
 TEST_F(HostJobsTest, APersonTakesControlOverFromTheQueue) {
   Make();

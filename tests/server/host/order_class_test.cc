@@ -78,6 +78,9 @@ TEST(OrderClass, OfKeys) {
   EXPECT_EQ(ClassOf(of("EMERGENCY_STOP", v1::KEY_ACTION_PRESS)), OrderClass::kActsFirst);
   EXPECT_EQ(ClassOf(of("X+", v1::KEY_ACTION_PRESS)), OrderClass::kWrittenFirst);
   EXPECT_EQ(ClassOf(of("X+", v1::KEY_ACTION_RELEASE)), OrderClass::kLetsGo);
+  EXPECT_EQ(ClassOf(of("COVER", v1::KEY_ACTION_TAP)), OrderClass::kLetsGo);
+  EXPECT_EQ(ClassOf(of("OVERRIDE_MINUS", v1::KEY_ACTION_TAP)), OrderClass::kLetsGo);
+  EXPECT_EQ(ClassOf(of("OVERRIDE_PLUS", v1::KEY_ACTION_TAP)), OrderClass::kWrittenFirst);
   EXPECT_TRUE(BeginsMotion(of("X+", v1::KEY_ACTION_PRESS)));
   EXPECT_FALSE(BeginsMotion(of("X+", v1::KEY_ACTION_RELEASE)));
 }
@@ -85,8 +88,10 @@ TEST(OrderClass, OfKeys) {
 // LIVE-3.20: a gate begins a run, and the other inputs do not.
 TEST(OrderClass, OfInputs) {
   v1::HostOrder order;
-  order.mutable_inputs()->add_inputs()->set_door_open(true);
+  order.mutable_inputs()->add_inputs()->set_door_open(false);
   EXPECT_EQ(ClassOf(order), OrderClass::kWrittenBehind);
+  order.mutable_inputs()->mutable_inputs(0)->set_door_open(true);  // it stops what cuts
+  EXPECT_EQ(ClassOf(order), OrderClass::kLetsGo);
   EXPECT_FALSE(BeginsMotion(order));
   order.mutable_inputs()->add_inputs()->set_gate(2);
   EXPECT_EQ(ClassOf(order), OrderClass::kWrittenFirst);

@@ -159,6 +159,22 @@ TEST_F(PanelKeysTest, KeysAreOfWhoHasControl) {
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
 }
 
+// LIVE-4.03, LIVE-7.06: what is moved by hand brakes when somebody else takes control, and not only
+// when nobody says any more that its key is down.
+TEST_F(PanelKeysTest, ATakeOverStopsWhatIsMovedByHand) {
+  MakeAndTake();
+  Do(Key("X+", v1::KEY_ACTION_PRESS));
+  Hold("X+", 300ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_JOGGING);
+  v1::HostOrder take;
+  take.mutable_acquire_control()->set_client("another");
+  take.mutable_acquire_control()->set_take_over(true);
+  take.mutable_acquire_control()->set_reason("it comes too near");
+  take.mutable_acquire_control()->mutable_ttl()->set_seconds(60);
+  ASSERT_FALSE(Do(take).has_refusal());
+  EXPECT_EQ(State(), v1::MACHINE_STATE_STOPPING);
+}
+
 // LIVE-2.13, RML1-3C.09: what !NR pauses goes on at the panel alone, as what its key has paused.
 TEST_F(PanelKeysTest, APauseOfTheProgramEndsAtThePanel) {
   MakeAndTake(v1::ControlLease::ON_LOSS_GO_ON);

@@ -104,6 +104,41 @@ TEST_F(HostEntriesTest, TheRunOfAJobIsToldInItsLog) {
   EXPECT_TRUE(mark->clean);
 }
 
+// LIVE-5.07, OPT-1.15: what a run compiled is kept with its end, also that of a run that no job is
+// for; of a program that was stored anew meanwhile nothing is.
+TEST_F(HostEntriesTest, ExecutablesAreKeptWithTheEnd) {
+  std::vector<storage::ProgramWrite> programs(3);
+  for (int i = 0; i < 3; ++i) {
+    programs[static_cast<std::size_t>(i)].slot = 46 + i;
+    programs[static_cast<std::size_t>(i)].object = "object";
+  }
+  const auto put = Must(bed.store().PutPrograms("mill-1", programs, {}));
+  const auto made = [&](v1::JournalEntry& entry, int slot, std::int64_t later = 0) {
+    v1::LinkedExecutable& executable = *entry.add_executables();
+    executable.set_slot(slot);
+    executable.set_object_revision(put.at(static_cast<std::size_t>(slot - 46)).revision + later);
+    executable.set_content("made of " + std::to_string(slot));
+  };
+  const auto executable_of = [&](int slot) {
+    const auto program = Must(bed.store().GetProgram("mill-1", slot));
+    return program.executable.value_or("");
+  };
+  const std::int64_t job = SubmitRun();
+  Acquire();
+  Over(job, v1::Outcome::KIND_COMPLETED);
+  made(entries.back(), 46);
+  made(entries.back(), 48, 1);
+  Mark(true);
+  Add().mutable_run_over()->set_run(2);
+  made(entries.back(), 47);
+  Mark(true);
+  ASSERT_TRUE(StoreEntries(bed.store(), lease, entries).how);
+  EXPECT_EQ(Must(bed.store().GetJob(job)).state, JobState::kSucceeded);
+  EXPECT_EQ(executable_of(46), "made of 46");
+  EXPECT_EQ(executable_of(47), "made of 47");
+  EXPECT_EQ(executable_of(48), "");
+}
+
 // LIVE-5.08: how a run ends is how its job ends, with the place.
 TEST_F(HostEntriesTest, TheOutcomeOfARunIsThatOfItsJob) {
   const std::vector<std::tuple<v1::Outcome::Kind, std::string, JobState>> cases = {
