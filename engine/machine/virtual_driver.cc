@@ -60,7 +60,7 @@ Progress VirtualDriver::Pump(SimTime clock) {
 
 void VirtualDriver::Wait(bool waits, SimTime clock) {
   if (waits == waits_) return;
-  Pump(clock);
+  Anchor(last_ = clock);
   waits_ = waits;
 }
 

@@ -14,9 +14,8 @@ class FeedRhythm {
   using Instant = std::chrono::steady_clock::time_point;
 
   // Watchers are told of one position no more often than this, and of all of them no more often
-  // than kLatestWaitMin, or what the messages of the last time cost. A machine tells one in 50 ms:
-  // one that came late must not put off all that follow.
-  static constexpr std::chrono::milliseconds kLatestInterval{45};
+  // than kLatestWaitMin, or what the messages of the last time cost.
+  static constexpr std::chrono::milliseconds kLatestInterval{50};
   static constexpr std::chrono::milliseconds kLatestWaitMin{5};
   // What a message to a watcher costs, about; how many events a look should bring for each that it
   // waits again; and how old an event may get by that.

@@ -30,6 +30,7 @@
 #include "server/host/order_class.h"
 #include "server/host/recovered.h"
 #include "server/host/servers_in_turn.h"
+#include "server/host/status_rhythm.h"
 
 namespace rmlcell::server {
 namespace {
@@ -39,7 +40,7 @@ using google::protobuf::util::TimeUtil;
 using std::chrono::nanoseconds;
 
 constexpr int kProtocol = 1;
-constexpr nanoseconds kStatusMoving = 50ms, kStatusStanding = 1s;  // LIVE-3.16
+constexpr nanoseconds kStatusMoving = 51ms, kStatusStanding = 1s;  // LIVE-3.16
 constexpr nanoseconds kTick = 10ms, kTickHeld = 50ms;  // of what moves; of a run that stands
 constexpr nanoseconds kIntentPatience = 500ms, kDurablePatience = 1s;  // LIVE-3.21
 constexpr nanoseconds kEndsWithoutServer = 60s, kRejoin = 200ms, kRestPatience = 10s;
@@ -139,7 +140,7 @@ class HostProcess {
   // A server that has come knows nothing yet.
   void ShowAnew() {
     handbox_shown_.clear();
-    status_due_ = Now().steady;
+    rhythm_.TellAt(Now().steady);
   }
 
   // To all but the one that stores what happens here. LIVE-3.06
@@ -360,7 +361,7 @@ class HostProcess {
   }
 
   v1::HostOrderAnswer CarryOut(const v1::HostOrder& order) {
-    status_due_ = Now().steady;
+    rhythm_.TellAt(Now().steady);
     return machine_->Do(order, Now());
   }
 
@@ -470,10 +471,10 @@ class HostProcess {
     Write(now, false);
     ShowHandbox(now.steady);
     const v1::MachineState state = machine_->State();
-    if (IsHeard() && (state != state_told_ || now.steady >= status_due_)) {
+    if (IsHeard() && (state != state_told_ || rhythm_.IsDue(now.steady))) {
       const v1::MachineStatus status = machine_->StatusAt(now);
       state_told_ = state;
-      status_due_ = now.steady + (machine_->moves() ? kStatusMoving : kStatusStanding);
+      rhythm_.Told(now.steady, machine_->moves() ? kStatusMoving : kStatusStanding);
       further_.SendStatus(status);
       if (line_ != nullptr) line_->SendStatus(status);
     }
@@ -537,7 +538,7 @@ class HostProcess {
     nanoseconds longest = line_ != nullptr ? kStatusStanding : kRejoin;
     if (machine_ != nullptr) {
       const nanoseconds now = Now().steady;
-      if (IsHeard()) longest = std::min(longest, status_due_ - now);
+      if (IsHeard()) longest = std::min(longest, rhythm_.due() - now);
       if (line_ != nullptr) longest = std::min(longest, lease_.next_renewal() - SinceBoot());
       if (machine_->run_open()) longest = std::min(longest, kTickHeld);
       if (machine_->moves()) longest = std::min(longest, kTick);
@@ -577,11 +578,10 @@ class HostProcess {
   std::int64_t fence_ = 0;
   LeaseClock lease_;
   nanoseconds joining_since_{0};  // by SinceBoot
-  nanoseconds next_try_{0}, status_due_{0};
-  nanoseconds without_server_since_{0};
+  nanoseconds next_try_{0}, without_server_since_{0}, handbox_shown_at_{0};
+  StatusRhythm rhythm_;
   std::optional<nanoseconds> ending_at_;
   std::string handbox_shown_;
-  nanoseconds handbox_shown_at_{0};
   bool handbox_due_ = false;  // it has changed since
   v1::MachineState state_told_ = v1::MACHINE_STATE_UNSPECIFIED;
   std::unique_ptr<JournalWriter> writer_;
