@@ -61,22 +61,20 @@ class RunsTest(LiveTestCase):
         live.acquire(take_over=True, reason="a test")
         live.ask("SetFactor", factor=100.0)
         live.store(46, "CALL 47\nDELAY 0.1\n", "a.S")
-        live.store(47, "DELAY 0.1\nRETURN\n", "b.S")
+        live.store(47, "DELAY 0.1\n", "b.S")
         live.store(48, "DELAY 0.1\n", "c.S")
 
         def kept():
             listed = self.cell.programs().ListPrograms(program_pb2.ListProgramsRequest(parent="machines/optimo-1"))
-            return {one.slot for one in listed.programs if one.executable_bytes > 0}
+            return {int(one.name.split("/")[-1]) for one in listed.programs if one.HasField("executable_bytes")}
 
         self.assertEqual(kept(), set())
         live.ask("ReleaseControl")
         name = self.cell.jobs().SubmitJob(job_pb2.SubmitJobRequest(request_id=new_id(), job={
-            "kind": "JOB_KIND_RUN", "machine": "machines/optimo-1", "program": "machines/optimo-1/programs/46", "run": {"unzeroed": True}})).name
-        self.assertEqual(self.becomes(name, "SUCCEEDED", "FAILED"), "SUCCEEDED")
+            "kind": "JOB_KIND_RUN", "machine": "machines/optimo-1", "program": "machines/optimo-1/programs/46"})).name
+        self.assertEqual(self.becomes(name, "SUCCEEDED", "FAILED"), "SUCCEEDED", self.job(name).outcome)
         self.assertEqual(kept(), {46, 47})
         live.acquire()
-        live.ask("ZeroMachine")
-        live.wait("IDLE")
         live.ask("StartMachine", program=48)
         eventually(lambda: kept() == {46, 47, 48})
 
