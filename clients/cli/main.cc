@@ -512,8 +512,10 @@ void AddReplayVerb(CLI::App& app, Remote& remote, int& exit_code) {
   verb->add_option("WHAT", request->what, "a recording (.rmlj), a job that ran, or a machine")
       ->required();
   verb->add_option("--from", request->from,
-                   "from the newest mark at or before this time of the machine, ns");
-  verb->add_option("--to", request->to, "up to this time of the machine, ns");
+                   "from the newest mark at or before this time of the machine, ns")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--to", request->to, "up to this time of the machine, ns")
+      ->check(CLI::NonNegativeNumber);
   verb->add_option("-o,--output", request->output, "keep the recording in this file");
   verb->add_option("--server", remote.server,
                    "host:port or unix:/path; default: RMLCELL_SERVER, or 127.0.0.1:50051");

@@ -62,7 +62,8 @@ Fetched Fetch(const Remote& remote, const std::string& what) {
   const bool is_job =
       what.starts_with("jobs/") || what.find_first_not_of("0123456789") == std::string::npos;
   if (is_job) return FetchOfJob(remote, what);
-  if (what.ends_with(".rmlj"))
+  const bool is_path = what.find('/') != std::string::npos && !what.starts_with("machines/");
+  if (what.ends_with(".rmlj") || is_path)
     return {.exit_code = Refuse({ErrorCode::kCellFileUnreadable, what + ": no such file", {}})};
   v1::ExportJournalRequest request;
   request.set_machine(FullName("machines", what));

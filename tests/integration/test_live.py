@@ -181,7 +181,7 @@ class LiveTest(LiveTestCase):
     def test_a_held_run_waits_for_its_server(self):
         self.live.enable()
         self.live.store()
-        self.live.acquire(ttl={"seconds": 600}, on_loss="ON_LOSS_GO_ON")
+        self.live.acquire(ttl={"seconds": 60}, on_loss="ON_LOSS_GO_ON")
         self.live.ask("StartMachine", program=5)
         eventually(lambda: self.live.status().tip.z < -0.3)
         self.live.ask("StopMachine")
@@ -191,6 +191,7 @@ class LiveTest(LiveTestCase):
         self.cell.start()
         held = self.live.wait("HELD")
         self.assertEqual((held.fence, held.host, held.run.run, held.tip), (before.fence, before.host, before.run.run, before.tip))
+        self.live.acquire()
         self.live.ask("ResumeMachine")
         eventually(lambda: self.live.status().tip != held.tip)
 
