@@ -75,6 +75,7 @@ fuzz_one() {
   program=$(find build/fuzz -name "$target" -type f -perm -u+x | head -n 1)
   case $target in
     optimo_*) seeds=tests/fuzz/corpus/optimo-$(echo "$target" | cut -d_ -f2) ;;
+    machine_*) seeds=tests/fuzz/corpus/machine-$(echo "$target" | cut -d_ -f2) ;;
     rml1_device*) seeds=tests/fuzz/corpus/rml1 ;;
     rml1_*) seeds=tests/fuzz/corpus/rml1-$(echo "$target" | cut -d_ -f2) ;;
     lsp_*) seeds=tests/fuzz/corpus/lsp ;;
@@ -91,6 +92,7 @@ fuzz() {
   command -v clang++ >/dev/null || bash deploy/setup.sh --fuzz
   cmake --preset fuzz >/dev/null
   local targets=(motion_planner_fuzz optimo_text_fuzz optimo_object_fuzz optimo_convert_fuzz optimo_compensate_fuzz
+                 optimo_run_fuzz machine_state_fuzz machine_keys_fuzz machine_inputs_fuzz material_fuzz profile_fuzz
                  rml1_device_fuzz rml1_walk_fuzz rml1_gcode_fuzz rml1_png_fuzz lsp_fuzz)
   ninja -C build/fuzz "${targets[@]}" >build/long/fuzz_build.log
   export -f fuzz_one
