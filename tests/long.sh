@@ -72,9 +72,11 @@ races() {
 # One decoder of foreign bytes, from its committed seeds. What is found is kept beside the log.
 fuzz_one() {
   local target=$1 program seeds=tests/fuzz/corpus/$1 found=build/long/$1
-  program=$(find build/fuzz -name "$target" -type f -perm -u+x | head -n 1)
+  program=$(find build/fuzz build/fuzz-server -name "$target" -type f -perm -u+x | head -n 1)
   case $target in
     optimo_*) seeds=tests/fuzz/corpus/optimo-$(echo "$target" | cut -d_ -f2) ;;
+    host_*) seeds=tests/fuzz/corpus/host-$(echo "$target" | cut -d_ -f2) ;;
+    machine_*) seeds=tests/fuzz/corpus/machine-$(echo "$target" | cut -d_ -f2) ;;
     rml1_device*) seeds=tests/fuzz/corpus/rml1 ;;
     rml1_*) seeds=tests/fuzz/corpus/rml1-$(echo "$target" | cut -d_ -f2) ;;
     lsp_*) seeds=tests/fuzz/corpus/lsp ;;
@@ -91,8 +93,14 @@ fuzz() {
   command -v clang++ >/dev/null || bash deploy/setup.sh --fuzz
   cmake --preset fuzz >/dev/null
   local targets=(motion_planner_fuzz optimo_text_fuzz optimo_object_fuzz optimo_convert_fuzz optimo_compensate_fuzz
+                 optimo_run_fuzz machine_state_fuzz machine_keys_fuzz machine_inputs_fuzz material_fuzz profile_fuzz
                  rml1_device_fuzz rml1_walk_fuzz rml1_gcode_fuzz rml1_png_fuzz lsp_fuzz)
   ninja -C build/fuzz "${targets[@]}" >build/long/fuzz_build.log
+  # What reads messages needs all of the server.
+  local of_server=(host_journal_fuzz host_messages_fuzz)
+  cmake --preset fuzz-server >/dev/null
+  ninja -C build/fuzz-server "${of_server[@]}" >>build/long/fuzz_build.log
+  targets+=("${of_server[@]}")
   export -f fuzz_one
   export seconds
   printf '%s\n' "${targets[@]}" |

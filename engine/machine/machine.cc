@@ -100,8 +100,10 @@ Progress Machine::Advance(SimTime until) {
   RMLCELL_CHECK(until >= now_);
   if (run_ != nullptr) {
     const SimTime of_run = until - note_.begun;
+    const std::int64_t number = note_.number;
     run_->Advance(of_run);
     Settle();
+    if (run_ != nullptr && note_.number != number) return Progress::kMoreWork;  // behind ZERO
     if (run_ != nullptr) {
       const RunState state = run_->state();
       if (state.phase == RunPhase::kRunning && state.time < of_run) {

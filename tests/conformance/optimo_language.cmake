@@ -6,5 +6,6 @@ rmlcell_test(optimo_language_conformance_test conformance
 # Programs that run on the virtual machine: what it does, row by row.
 rmlcell_test(optimo_run_conformance_test conformance
   SOURCES optimo_machine.cc optimo_run_motion_test.cc optimo_run_process_test.cc
-          optimo_run_program_test.cc optimo_run_function_test.cc optimo_run_fly_test.cc
-  LINKS rmlcell::engine_optimo_control rmlcell::engine_optimo_offline)
+          optimo_run_program_test.cc optimo_run_function_test.cc optimo_run_fly_test.cc optimo_run_replay_test.cc
+          ../fuzz/optimo_run_input.cc
+  LINKS rmlcell::engine_optimo_control rmlcell::engine_optimo_offline rmlcell::engine_families)

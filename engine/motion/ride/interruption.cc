@@ -159,19 +159,19 @@ Restart RestartWith(std::span<const PlannedMotion> ahead, double s, double ease)
 }  // namespace
 
 bool FromFits(const PathState& state, double end_s, double v1, const PathLimits& limits) {
-  constexpr double kRoom = 1e-9;  // lengths that other formulas gave
+  constexpr double kRoomOfFits = 1e-9;  // lengths that other formulas gave
   double speed = state.speed;
   double left = end_s - state.s;
-  const double room = kRoom * std::max(left, 0.0);
+  const double room = kRoomOfFits * std::max(left, 0.0);
   const double a = state.acceleration;
   if (a != 0.0 && std::isfinite(limits.jerk)) {
     const double time = std::abs(a) / limits.jerk;
     left -= time * (speed + a * time / 3.0);
     speed += 0.5 * a * time;
   }
-  if (speed < -kRoom * state.speed || left < -room) return false;
+  if (speed < -kRoomOfFits * state.speed || left < -room) return false;
   // Between speeds that differ by rounding a ramp needs no way.
-  if (std::abs(speed - v1) <= kRoom * std::max(speed, v1)) return true;
+  if (std::abs(speed - v1) <= kRoomOfFits * std::max(speed, v1)) return true;
   return RampLength(std::max(speed, 0.0), v1, limits) <= left + room;
 }
 

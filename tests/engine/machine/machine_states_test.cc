@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 #include <string>
 
@@ -417,6 +418,114 @@ TEST(MachineStatesTest, EachCellIsAsTheRulesSayIt) {
       }
     }
   }
+}
+
+// What happens to a machine of a family, one after the other, as far as its states know.
+class Sequence {
+ public:
+  Sequence(bool mill, std::mt19937& random) : mill_(mill), random_(random) {
+    guards_.zeroed = mill_ || Maybe();  // a mill has its reference always
+  }
+
+  MachineState state() const { return state_; }
+  MachineEvent DrawEvent() { return static_cast<MachineEvent>(random_() % kMachineEvents); }
+  // Facts change in between: some of those that hang on the machine, all that come with the event.
+  const StateGuards& DrawGuards() {
+    const StateGuards any = RandomGuards(random_);
+    guards_.unzeroed_start = any.unzeroed_start;
+    guards_.manual = any.manual;
+    guards_.single = any.single;
+    guards_.from_panel = any.from_panel;
+    guards_.own = any.own;
+    guards_.holds_on_loss = any.holds_on_loss;
+    guards_.alarm_left = any.alarm_left;
+    guards_.alarm = Maybe() ? kAlarmCode : ErrorCode::kCellEmergencyStop;
+    guards_.not_zeroed = mill_ ? ErrorCode::kCellMachineState : ErrorCode::kNotZeroed;
+    return guards_;
+  }
+  // What an event leaves behind where it acted.
+  void Go(MachineEvent event, const Transition& next) {
+    const bool acts = next.kind == Kind::kGoes || next.kind == Kind::kStays;
+    const MachineState from = state_;
+    if (next.kind == Kind::kGoes) state_ = next.to;
+    // A host that is ready says what it found: STARTING and RECOVERING answer as LOST.
+    if (!acts) return;
+    if (state_ == kRunning) guards_.run_open = true;
+    for (const StateAct end : {kEndInterrupted, kEndFailed, kEndCancelled}) {
+      if (next.Does(end) && state_ != kStopping) guards_.run_open = false;
+    }
+    if (event == kProgramEnded || event == kProgramFails || event == kConfirm)
+      guards_.run_open = false;
+    if (event == kAbort && from != state_) guards_.aborts = true;
+    if (event == kMachineLeaseLost) guards_.lease_gone = true;
+    if (!MovesAxes(state_)) guards_.aborts = guards_.lease_gone = false;
+    if (event == kHostReady) guards_.inspect_due = state_ == kInspect;
+    if (event == kConfirm || event == kStartAtStep) guards_.inspect_due = false;
+    if (!mill_ && event == kPowerOff && Maybe()) guards_.zeroed = false;
+    if (event == kAtRest && Maybe()) guards_.zeroed = true;
+  }
+
+ private:
+  bool Maybe() { return random_() % 2 == 0; }
+
+  const bool mill_;
+  std::mt19937& random_;
+  MachineState state_ = kStarting;
+  StateGuards guards_{};
+};
+
+// The events of class B: a person or a program asks for a motion. LIVE-2.05, 3.20
+bool AsksForMotion(MachineEvent event) {
+  return event == kStart || event == kResume || event == kStartKey || event == kStartAtStep ||
+         event == kMoveByHand;
+}
+
+// LIVE-10.01, LIVE-2.04, LIVE-2.05: whatever happens in whatever order to a machine of either
+// family: table and rules give the same state, code and acts; axes move in three states alone; and
+// what brings a machine that stands into one of those is asked for, or is a host that is back and
+// moved all the while.
+TEST(MachineStatesTest, AnySequenceOfEventsIsAsTheRulesSayIt) {
+  constexpr int kSequences = 100'000;
+  constexpr int kEvents = 12;
+  std::mt19937 random(4);
+  std::array<int, kMachineStates> seen{};
+  int moved = 0;
+  for (int i = 0; i < kSequences; ++i) {
+    Sequence machine(i % 2 == 0, random);
+    std::string told;
+    for (int event = 0; event < kEvents; ++event) {
+      const MachineState from = machine.state();
+      // A new host begins each sequence, and often those that are lost.
+      const bool begins = event == 0 || (from == kStarting && random() % 2 == 0);
+      const MachineEvent what = begins ? kHostReady : machine.DrawEvent();
+      const StateGuards& guards = machine.DrawGuards();
+      const Transition expected = Plainly(from, what, guards);
+      const Transition given = Next(from, what, guards);
+      ASSERT_EQ(given, expected) << "sequence " << i << ":" << told << " " << Name(from) << ", "
+                                 << Name(what) << ": " << Text(given) << " in place of "
+                                 << Text(expected);
+      const bool goes = given.kind == Kind::kGoes;
+      if (goes && !MovesAxes(from) && MovesAxes(given.to)) {
+        ++moved;
+        ASSERT_TRUE(AsksForMotion(what) || (what == kHostBack && given.to == guards.own))
+            << "sequence " << i << ":" << told << " " << Name(from) << ", " << Name(what);
+      }
+      if (!goes) {
+        ASSERT_EQ(given.to, Transition{}.to);
+      }
+      ASSERT_EQ(given.code.has_value(), given.kind == Kind::kRefused || given.kind == Kind::kKept);
+      ++seen[static_cast<std::size_t>(machine.state())];
+      machine.Go(what, given);
+      told += " ";
+      told += Name(what);
+    }
+  }
+  for (int state = 0; state < kMachineStates; ++state) {
+    if (static_cast<MachineState>(state) == kRecovering) continue;  // answers as STARTING does
+    EXPECT_GT(seen[static_cast<std::size_t>(state)], 1'000)
+        << Name(static_cast<MachineState>(state));
+  }
+  EXPECT_GT(moved, 10'000);
 }
 
 // LIVE-2.05: into a state that moves axes comes nobody by time, a line that is back, the end of a
