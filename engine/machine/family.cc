@@ -87,6 +87,24 @@ Status MachineFamily::CheckBreakpoint(const Breakpoint& breakpoint) const {
   return {};
 }
 
+// A stream is read on the way: what is no program of this machine shows when it is read before.
+Status MachineFamily::CheckNeeds(const std::map<int, StoredProgram>& programs,
+                                 const std::vector<LaserSchedule>& /*schedules*/,
+                                 const Parameters& parameters, int main_slot) const {
+  const auto main = programs.find(main_slot);
+  if (main == programs.end() || main->second.object == nullptr)
+    return Error{info().empty_slot, "program " + Told("program", main_slot), {}};
+  if (main->second.source != nullptr) return {};  // it was translated for this machine just now
+  const Bytes& object = main->second.object;
+  const Translation translation =
+      Translate({.name = main->second.name, .bytes = *object, .keeper = object.keeper()},
+                parameters, {.advice = false});
+  for (const Diagnostic& one : translation.diagnostics) {
+    if (!translation.ok && IsError(one.severity)) return Error{one.code, one.detail, one.where};
+  }
+  return {};
+}
+
 TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
                                          const TransferOptions& /*options*/) const {
   TransferPlan plan{.ok = true};

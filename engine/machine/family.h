@@ -98,6 +98,12 @@ inline InputKind HoldKey(const FamilyInfo& info, Mode mode) {
   return works ? InputKind::kHold : InputKind::kStop;
 }
 
+// Of a program memory: objects and executables together.
+struct MemoryLimit {
+  std::int64_t bytes = 0;
+  ErrorCode full = ErrorCode::kCellTooLarge;  // what the machine calls it that there is no room
+};
+
 // A process definition of a project: WORKDEF n, p with its parameters. OPT-3.01 to 3.08.
 struct ProcessDefinition {
   int kind = 0;     // n
@@ -273,12 +279,18 @@ class MachineFamily {
   // Errors: ObjectCorrupt (7034), CellInvalidArgument for that of another program.
   virtual Status CheckExecutable(std::string_view /*executable*/, int /*slot*/) const { return {}; }
 
-  // Whether all programs are there that a run of this one can come to. Errors: those that the run
-  // would end with.
-  virtual Status CheckCalls(const std::map<int, StoredProgram>& /*programs*/,
-                            const Parameters& /*parameters*/, int /*main_slot*/) const {
-    return {};
+  // What all programs and executables of a machine with these parameters may have together;
+  // nothing: as much as comes.
+  virtual std::optional<MemoryLimit> ProgramMemory(const Parameters& /*parameters*/) const {
+    return std::nullopt;
   }
+
+  // Whether all is there that a run of this program can come to and names: programs that can be
+  // read, schedules, room for the executables that it makes. `schedules` as in RunSetup. Errors:
+  // those that the run would end with.
+  virtual Status CheckNeeds(const std::map<int, StoredProgram>& programs,
+                            const std::vector<LaserSchedule>& schedules,
+                            const Parameters& parameters, int main_slot) const;
 
   // Which executables of a program memory are stale, by slot. `deleted` as in RunSetup.
   virtual std::vector<StaleExecutable> FindStaleExecutables(

@@ -35,7 +35,7 @@ struct MachineMemory {
   std::map<int, StoredProgram> programs{};  // by slot 1..99
   // Slots that held a program once and are empty now: deleting counts as altering (OPT-1.13).
   std::set<int> deleted{};
-  std::optional<std::vector<LaserSchedule>> schedules{};  // none: all that the machine can have
+  std::vector<LaserSchedule> schedules{};  // stored; the others are as the machine has them
 };
 
 // What runs left in the memory: the executable of an object, at slot + 100 (OPT-1.11).

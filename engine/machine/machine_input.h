@@ -89,7 +89,7 @@ struct DeleteProgram {
   int slot = 0;
 };
 struct SetSchedules {
-  std::optional<std::vector<LaserSchedule>> schedules{};  // none: all that the machine can have
+  std::vector<LaserSchedule> schedules{};  // stored; the others are as the machine has them
 };
 
 // The key that clears the display and not its cause: ERR of a handbox. It acts in every mode.

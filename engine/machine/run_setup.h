@@ -81,9 +81,9 @@ struct RunSetup {
   std::map<int, StoredProgram> programs{};  // by slot 1..99
   // Slots that held a program once and are empty now: deleting counts as altering (OPT-1.13).
   std::set<int> deleted_programs{};
-  int main_program = 0;                                   // slot to start
-  std::optional<std::vector<LaserSchedule>> schedules{};  // none: all that the machine can have
-  std::string machine_state{};                            // from SaveMachine; empty: a new machine
+  int main_program = 0;                    // slot to start
+  std::vector<LaserSchedule> schedules{};  // stored; the others are as the machine has them
+  std::string machine_state{};             // from SaveMachine; empty: a new machine
   Mode mode = Mode::kCycle;
   double override_percent = 100.0;
   std::optional<ProgramStep> breakpoint{};  // halt after this step; step 0 ends the kept one

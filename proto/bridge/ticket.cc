@@ -60,8 +60,7 @@ std::map<std::string, std::string> DigestsOf(const RunDependencies& run) {
   }
   for (const auto& [slot, program] : run.programs)
     digests["programs/" + std::to_string(slot)] = DigestOf(program.object);
-  if (!run.schedules) return digests;
-  for (const machine::LaserSchedule& schedule : *run.schedules)
+  for (const machine::LaserSchedule& schedule : run.schedules)
     digests["schedules/" + std::to_string(schedule.number)] = DigestOf(schedule);
   return digests;
 }

@@ -17,7 +17,7 @@ struct RunDependencies {
   const machine::Parameters& parameters;
   const std::map<int, machine::StoredProgram>&
       programs;  // by slot, the one that is started among them
-  const std::optional<std::vector<machine::LaserSchedule>>& schedules;
+  const std::vector<machine::LaserSchedule>& schedules;  // that were stored
   int main_program = 0;
 };
 

@@ -140,9 +140,8 @@ void SetMemory(const machine::MachineMemory& memory, v1::MachineRecording& head)
     message.set_executable(std::string(*program.executable));
   }
   for (const int slot : memory.deleted) head.add_deleted_programs(slot);
-  head.set_default_schedules(!memory.schedules);
-  if (!memory.schedules) return;
-  for (const machine::LaserSchedule& schedule : *memory.schedules) {
+  head.set_default_schedules(memory.schedules.empty());
+  for (const machine::LaserSchedule& schedule : memory.schedules) {
     v1::AssignedSchedule& made = *head.add_schedules();
     made.set_number(schedule.number);
     made.set_title(schedule.name);
@@ -159,10 +158,8 @@ machine::MachineMemory MemoryOf(const v1::MachineRecording& head) {
     if (!program.executable().empty()) made.executable = machine::Bytes::Of(program.executable());
   }
   memory.deleted = {head.deleted_programs().begin(), head.deleted_programs().end()};
-  if (head.default_schedules()) return memory;
-  memory.schedules.emplace();
   for (const v1::AssignedSchedule& schedule : head.schedules())
-    memory.schedules->push_back(bridge::FromProto(schedule));
+    memory.schedules.push_back(bridge::FromProto(schedule));
   return memory;
 }
 

@@ -492,10 +492,9 @@ void HostMachine::TakeMemory(const v1::HostMemory& memory) {
   for (const int slot : memory.deleted_programs()) {
     if (machine().memory().programs.contains(slot)) apply(machine::DeleteProgram{.slot = slot});
   }
-  machine::SetSchedules set;  // none that is stored: all that the machine can have
-  if (!memory.schedules().empty()) set.schedules.emplace();
+  machine::SetSchedules set;
   for (const v1::AssignedSchedule& schedule : memory.schedules())
-    set.schedules->push_back(bridge::FromProto(schedule));
+    set.schedules.push_back(bridge::FromProto(schedule));
   if (memory.schedules_changed() && set.schedules != machine().memory().schedules) apply(set);
 }
 

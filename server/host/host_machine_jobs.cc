@@ -99,7 +99,9 @@ Status HostMachine::CheckPrograms(const v1::WorkerAssignment& assignment,
   std::map<int, machine::StoredProgram> programs = memory.programs;
   if (brought) programs[assignment.main_program()] = *brought;
   const int main = assignment.main_program();
-  if (const Status there = setup_.family->CheckCalls(programs, *parameters_, main); !there)
+  if (const Status there =
+          setup_.family->CheckNeeds(programs, memory.schedules, *parameters_, main);
+      !there)
     return there.error();
   if (!assignment.has_ticket()) {
     if (!setup_.options.ticket_needed()) return {};

@@ -147,13 +147,11 @@ Status AddMemory(storage::MachineMemory memory, simulation::ProgramMemory& input
     if (program.executable) made.executable = machine::Bytes::Of(*std::move(program.executable));
   }
   input.deleted_programs = std::move(memory.deleted);
-  if (memory.schedules.empty()) return {};
-  input.schedules.emplace();
   for (const storage::ScheduleRecord& schedule : memory.schedules) {
-    input.schedules->push_back({.number = schedule.number,
-                                .name = schedule.name,
-                                .mode = schedule.mode,
-                                .power_percent = schedule.power_percent});
+    input.schedules.push_back({.number = schedule.number,
+                               .name = schedule.name,
+                               .mode = schedule.mode,
+                               .power_percent = schedule.power_percent});
   }
   return {};
 }

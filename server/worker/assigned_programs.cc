@@ -59,11 +59,8 @@ simulation::ProgramMemory AssignedPrograms::Memory() {
     if (!program.executable().empty()) made.executable = machine::Bytes::Of(program.executable());
     memory.programs.push_back(std::move(made));
   }
-  if (!assignment_.default_schedules()) {
-    memory.schedules.emplace();
-    for (const v1::AssignedSchedule& schedule : assignment_.schedules())
-      memory.schedules->push_back(bridge::FromProto(schedule));
-  }
+  for (const v1::AssignedSchedule& schedule : assignment_.schedules())
+    memory.schedules.push_back(bridge::FromProto(schedule));
   return memory;
 }
 

@@ -200,8 +200,8 @@ OptimoMachine& OptimoMachine::Delete(int slot) {
   if (programs_.erase(slot) > 0) deleted_.insert(slot);
   return *this;
 }
-OptimoMachine& OptimoMachine::Schedules(std::vector<machine::LaserSchedule> only) {
-  schedules_ = std::move(only);
+OptimoMachine& OptimoMachine::Schedules(std::vector<machine::LaserSchedule> stored) {
+  schedules_ = std::move(stored);
   return *this;
 }
 OptimoMachine& OptimoMachine::LoseZero() {

@@ -77,7 +77,7 @@ class OptimoMachine {
   OptimoMachine& Store(int slot, const std::string& source);  // deletes its executable, OPT-1.12
   OptimoMachine& StoreExecutable(int slot, const std::string& bytes);
   OptimoMachine& Delete(int slot);
-  OptimoMachine& Schedules(std::vector<machine::LaserSchedule> only);  // no others are stored
+  OptimoMachine& Schedules(std::vector<machine::LaserSchedule> stored);
   OptimoMachine& LoseZero();  // as a power cycle does, OPT-B.02
   // Executables that runs made are kept, as the cell does.
   bool HasExecutable(int slot) const;
@@ -101,7 +101,7 @@ class OptimoMachine {
   machine::Parameters parameters_;
   std::map<int, machine::StoredProgram> programs_;
   std::set<int> deleted_;
-  std::optional<std::vector<machine::LaserSchedule>> schedules_;
+  std::vector<machine::LaserSchedule> schedules_;
   std::string state_;
 };
 

@@ -96,7 +96,9 @@ TEST(OptimoRunProcess, SchedulesChangeUnderTheBeam) {
   EXPECT_EQ(ran.Count("beam on 100.0"), 1);
   EXPECT_EQ(ran.Count("beam off"), 1);
   EXPECT_NEAR(ran.Find("schedule 16")->at_s, 0.5, 1e-9);
-  const Ran missing = OptimoMachine().Schedules({{.number = 15}}).Run(program);
+  OptimoMachine lacks_it;
+  lacks_it.Set("SCHEDULES", "15");
+  const Ran missing = lacks_it.Run(program);
   EXPECT_EQ(missing.code(), 7404);  // OPT-E.7404
 }
 

@@ -108,17 +108,14 @@ void Actuators::MoveDoor(bool open) {
 }
 
 double Actuators::SchedulePower() const {
-  if (s_.outputs.schedule == 0 || !setup_.schedules) return kFullPower;
-  for (const machine::LaserSchedule& schedule : *setup_.schedules) {
+  for (const machine::LaserSchedule& schedule : setup_.schedules) {
     if (schedule.number == s_.outputs.schedule) return schedule.power_percent;
   }
   return kFullPower;
 }
 
 bool Actuators::HasSchedule(int number) const {
-  return !setup_.schedules || std::ranges::any_of(*setup_.schedules, [&](const auto& schedule) {
-    return schedule.number == number;
-  });
+  return optimo::HasSchedule(parameters_, setup_.schedules, number);
 }
 
 void Actuators::TellZeroed(int group) {

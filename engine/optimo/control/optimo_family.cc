@@ -9,6 +9,7 @@
 #include "engine/optimo/control/optimo_standing.h"
 #include "engine/optimo/control/optimo_tools.h"
 #include "engine/optimo/control/process_watch.h"
+#include "engine/optimo/control/run_needs.h"
 #include "engine/optimo/editing/optimo_editing.h"
 #include "engine/optimo/handbox/optimo_handbox.h"
 #include "engine/optimo/handbox/steps.h"
@@ -97,14 +98,6 @@ machine::StaleReason ReasonOf(StaleReason reason) {
   return machine::StaleReason::kDamaged;
 }
 
-ObjectLookup ObjectsOf(const std::map<int, machine::StoredProgram>& programs) {
-  return [&programs](int slot) -> std::optional<std::string_view> {
-    const auto found = programs.find(slot);
-    if (found == programs.end() || found->second.object == nullptr) return std::nullopt;
-    return std::string_view(*found->second.object);
-  };
-}
-
 class Family final : public machine::MachineFamily {
  public:
   const machine::FamilyInfo& info() const override { return kInfo; }
@@ -181,18 +174,18 @@ class Family final : public machine::MachineFamily {
                  {}};
   }
 
-  Status CheckCalls(const std::map<int, machine::StoredProgram>& programs,
+  std::optional<machine::MemoryLimit> ProgramMemory(
+      const machine::Parameters& parameters) const override {
+    return machine::MemoryLimit{.bytes = static_cast<std::int64_t>(Resolve(parameters).cmos_bytes),
+                                .full = ErrorCode::kCmosFull};
+  }
+
+  Status CheckNeeds(const std::map<int, machine::StoredProgram>& programs,
+                    const std::vector<machine::LaserSchedule>& schedules,
                     const machine::Parameters& parameters, int main_slot) const override {
-    const OptimoParameters resolved = Resolve(parameters);
-    // What was made before is what runs, whatever became of its parts. OPT-1.15
-    return optimo::CheckCalls(main_slot, [&](int slot) {
-      const auto found = programs.find(slot);
-      if (found != programs.end() && found->second.executable != nullptr)
-        return DecodeExecutable(*found->second.executable);
-      return Link(slot, ObjectsOf(programs),
-                  {.executable_limit = static_cast<std::uint32_t>(resolved.executable_limit),
-                   .rotary_table = resolved.rotary_table});
-    });
+    return optimo::CheckNeeds(
+        {.programs = programs, .schedules = schedules, .parameters = Resolve(parameters)},
+        main_slot);
   }
 
   std::vector<machine::StaleExecutable> FindStaleExecutables(

@@ -1,5 +1,6 @@
 #include "engine/optimo/machine/optimo_parameters.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -80,6 +81,8 @@ constexpr std::array kTable = {
     Number("CMOS_SIZE", "bytes", 1'048'576, 1000, 1e12, "all objects and executables", "OPT-B.73"),
     Number("GOSUB_DEPTH", "", 16, 1, 1000, "GOSUBs inside each other", "OPT-7.21"),
     Number("CALL_TIME", "s", 0, 0, 600, "loading a CALLed program", "OPT-7.11"),
+    Number("SCHEDULES", "", 63, 0, 63,
+           "laser schedules 1 to this are there, CW with 100 %, where none was stored", "OPT-3.44"),
     Number("LASER_POWER", "W", 1500, 1, 100'000, "rated power, for energy figures", "motion.md 1"),
 };
 
@@ -157,6 +160,7 @@ OptimoParameters Resolve(const machine::Parameters& parameters) {
   made.cmos_bytes = parameters.Number("CMOS_SIZE");
   made.gosub_depth = static_cast<int>(parameters.Number("GOSUB_DEPTH"));
   made.call_time_s = parameters.Number("CALL_TIME");
+  made.schedules = static_cast<int>(parameters.Number("SCHEDULES"));
   made.laser_w = parameters.Number("LASER_POWER");
   return made;
 }
@@ -172,6 +176,12 @@ machine::MachineShape ShapeOf(const OptimoParameters& parameters) {
   shape.limits = parameters.limits;
   shape.laser_watts = parameters.laser_w;
   return shape;
+}
+
+bool HasSchedule(const OptimoParameters& parameters,
+                 const std::vector<machine::LaserSchedule>& stored, int number) {
+  return number <= parameters.schedules ||
+         std::ranges::find(stored, number, &machine::LaserSchedule::number) != stored.end();
 }
 
 ContourMachine ContourMachineOf(const OptimoParameters& parameters) {

@@ -5,6 +5,7 @@
 
 #include "engine/core/result.h"
 #include "engine/machine/parameters.h"
+#include "engine/machine/run_setup.h"
 #include "engine/machine/shape.h"
 #include "engine/motion/planner/planner.h"
 #include "engine/optimo/language/ast.h"
@@ -33,6 +34,7 @@ struct OptimoParameters {
   double cmos_bytes = 1'048'576.0;
   int gosub_depth = 16;
   double call_time_s = 0.0;
+  int schedules = 63;  // laser schedules 1 to this are there without being stored; OPT-3.44
   double laser_w = 1500.0;
 };
 
@@ -46,6 +48,10 @@ Status CheckFit(const machine::Parameters& parameters);
 // Precondition: `parameters` are of OptimoParameterTable, and fit together.
 OptimoParameters Resolve(const machine::Parameters& parameters);
 machine::MachineShape ShapeOf(const OptimoParameters& parameters);
+// Whether a program may select it: one that was stored, or that the machine has by default.
+// OPT-3.44
+bool HasSchedule(const OptimoParameters& parameters,
+                 const std::vector<machine::LaserSchedule>& stored, int number);
 // What the advice on paths needs to know of it.
 ContourMachine ContourMachineOf(const OptimoParameters& parameters);
 

@@ -90,10 +90,10 @@ void AddPrograms(Fnv1a& hash, const machine::RunSetup& setup) {
 }
 
 void AddSchedules(Fnv1a& hash, const machine::RunSetup& setup) {
-  hash.Number(setup.schedules ? 1 : 0);
-  if (!setup.schedules) return;
-  hash.Number(setup.schedules->size());
-  for (const machine::LaserSchedule& schedule : *setup.schedules) {
+  hash.Number(setup.schedules.empty() ? 0 : 1);
+  if (setup.schedules.empty()) return;
+  hash.Number(setup.schedules.size());
+  for (const machine::LaserSchedule& schedule : setup.schedules) {
     hash.Integer(schedule.number);
     hash.Text(schedule.name);
     hash.Text(schedule.mode);

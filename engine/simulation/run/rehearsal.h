@@ -34,7 +34,7 @@ struct ProgramMemory {
   machine::OwnMachine own{};    // whose machine it is, and where its figures are from
   std::vector<MemoryProgram> programs{};  // a later one of the same slot replaces an earlier one
   std::vector<int> deleted_programs{};    // slots that are empty now and were not always
-  std::optional<std::vector<machine::LaserSchedule>> schedules{};  // none: all at their defaults
+  std::vector<machine::LaserSchedule> schedules{};  // that were stored
   std::string machine_state{};
   MemoryGiven given = MemoryGiven::kInPart;  // how a check takes a program that is missing
 };

@@ -66,7 +66,7 @@ TEST_F(SelectedProgram, CalledProgramsAreLookedFor) {
     std::map<int, StoredProgram> memory;
     for (std::size_t i = 0; i < programs.size(); ++i)
       memory[static_cast<int>(i) + 1] = Translated(programs[i]);
-    const Status all = family_.CheckCalls(memory, parameters(), 1);
+    const Status all = family_.CheckNeeds(memory, {}, parameters(), 1);
     return all ? std::string("all") : CodeText(all.error().code) + " " + all.error().detail;
   };
   EXPECT_EQ(check({"CALL 2\n", "GO 3\n", "CALL 1\n"}), "all");
@@ -74,6 +74,54 @@ TEST_F(SelectedProgram, CalledProgramsAreLookedFor) {
   EXPECT_THAT(check({"DELAY 1\nGO 79\n"}), HasSubstr("OPT-E7102"));
   EXPECT_THAT(check({"CALL 2\n", "FUNCTION 50\n"}), HasSubstr("OPT-E7103"));
   EXPECT_EQ(check({"VI[1] = 77\nCALL VI[1]\n"}), "all");
+}
+
+// LIVE-5.02 (b), OPT-3.44: the schedules that it names, also in what it calls and in FUNCTIONs.
+TEST_F(SelectedProgram, NamedSchedulesAreLookedFor) {
+  Parameters few = parameters();
+  ASSERT_TRUE(few.Set("SCHEDULES", 11.0));
+  const auto check = [&](const std::vector<std::string>& programs) {
+    std::map<int, StoredProgram> memory;
+    for (std::size_t i = 0; i < programs.size(); ++i)
+      memory[static_cast<int>(i) + 1] = Translated(programs[i]);
+    const Status all = family_.CheckNeeds(memory, {{.number = 20}}, few, 1);
+    return all ? std::string("all") : CodeText(all.error().code) + " " + all.error().detail;
+  };
+  EXPECT_EQ(check({"WORKDEF 2,0 (11)\n"}), "all");
+  EXPECT_EQ(check({"WORKDEF 2,0 (20)\n"}), "all");
+  EXPECT_EQ(check({"WORKDEF 2,0 (12)\n"}), "OPT-E7404 laser schedule 12, of program 1, step 1");
+  EXPECT_EQ(check({"DELAY 1\nWORKDEF 1,3 (8.,75.,0.,50.,12)\n"}),
+            "OPT-E7404 laser schedule 12, of program 1, step 2");
+  EXPECT_EQ(check({"WORKDEF 1,3 (8.,75.,0.,50.)\nVI[1] = 12\nWORKDEF 2,0 (VI[1])\n"}), "all");
+  EXPECT_EQ(check({"CALL 2\n", "WORKDEF 2,0 (63)\n"}),
+            "OPT-E7404 laser schedule 63, of program 2, step 1");
+  EXPECT_EQ(check({"FUNCTION 2\n", "WORKDEF 2,0 (63)\n"}),
+            "OPT-E7404 laser schedule 63, of program 2, step 1");
+  EXPECT_EQ(check({"DELAY 1\n", "WORKDEF 2,0 (63)\n"}), "all");  // nobody calls it
+  ASSERT_TRUE(few.Set("LASER", "EFA51"));
+  EXPECT_EQ(check({"WORKDEF 2,0 (12)\n"}), "all");  // WORK 2 is refused there, OPT-3.43
+}
+
+// LIVE-5.02 (b), OPT-B.73: room for the executables that the run makes, as it counts them.
+TEST_F(SelectedProgram, RoomForExecutablesIsLookedFor) {
+  std::map<int, StoredProgram> memory = {{1, Translated("CALL 2\nDELAY 1\n")},
+                                         {2, Translated("DELAY 2\n")}};
+  const auto check = [&](double bytes) {
+    Parameters small = parameters();
+    EXPECT_TRUE(small.Set("CMOS_SIZE", bytes));
+    const Status all = family_.CheckNeeds(memory, {}, small, 1);
+    return all ? std::string("all") : CodeText(all.error().code) + " " + all.error().detail;
+  };
+  // What else is stored takes room, too.
+  memory[3].object = Bytes::Of(std::string(2000, 'x'));
+  double least = 2000.0;
+  while (check(least) != "all") ++least;
+  EXPECT_LT(least, 2400.0);
+  EXPECT_THAT(check(least - 1.0), HasSubstr("OPT-E7109 no room for executable 102"));
+  EXPECT_THAT(check(2000.0), HasSubstr("OPT-E7109 no room for executable 101"));
+  // One that was made before takes its place already, and the run makes it no more.
+  memory[2].executable = Bytes::Of(std::string("damaged"));
+  EXPECT_THAT(check(1e6), HasSubstr("OPT-E7034"));
 }
 
 // LIVE-9.06: an alarm that never was cannot be acknowledged; one that is no more can, again.

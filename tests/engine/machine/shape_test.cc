@@ -61,7 +61,8 @@ TEST(RunSetup, Defaults) {
   EXPECT_EQ(setup.budget.steps, 100'000'000u);
   EXPECT_EQ(setup.budget.virtual_time, FromSeconds(30.0 * 24.0 * 3600.0));
   EXPECT_FALSE(setup.forecast);
-  EXPECT_FALSE(setup.schedules || setup.breakpoint || setup.simul);
+  EXPECT_TRUE(setup.schedules.empty());
+  EXPECT_FALSE(setup.breakpoint || setup.simul);
   EXPECT_EQ(LaserSchedule{}.mode, "CW");
   EXPECT_EQ(LaserSchedule{}.power_percent, 100.0);
   EXPECT_EQ(RunState{}.override_percent, 100.0);

@@ -47,7 +47,6 @@ TEST(DescribeInputs, EveryFieldChangesTheHash) {
       [](machine::RunSetup& s) { s.main_program = 2; },
       [](machine::RunSetup& s) { s.deleted_programs = {44}; },
       [](machine::RunSetup& s) { s.deleted_programs = {45}; },
-      [](machine::RunSetup& s) { s.schedules.emplace(); },
       [](machine::RunSetup& s) { s.schedules = {{.number = 1, .name = "", .mode = "CW"}}; },
       [](machine::RunSetup& s) {
         s.schedules = {{.number = 1, .name = "", .mode = "CW", .power_percent = 99.0}};

@@ -92,7 +92,7 @@ TEST(PrepareRun, TakesEverythingOver) {
   input.profile = "mc-1000ipm";
   input.parameters = {{"CYCLE", "0.064"}, {"SETTLE", "0.5"}};
   input.deleted_programs = {3, 4};
-  input.schedules = std::vector<machine::LaserSchedule>{};
+  input.schedules = {{.number = 11}};
   input.machine_state = "state";
   v1::SimulationOptions options;
   (*options.mutable_parameters())["SETTLE"] = "0.25";
@@ -113,7 +113,7 @@ TEST(PrepareRun, TakesEverythingOver) {
   EXPECT_EQ(setup.parameters.Number("SETTLE"), 0.25);  // the job's over the machine's
   EXPECT_THAT(setup.deleted_programs, ElementsAre(3, 4));
   EXPECT_EQ(setup.main_program, 12);
-  EXPECT_TRUE(setup.schedules);
+  EXPECT_EQ(setup.schedules.size(), 1U);
   EXPECT_EQ(setup.machine_state, "state");
   EXPECT_EQ(setup.mode, machine::Mode::kRemote);
   EXPECT_TRUE(setup.forecast);

@@ -49,7 +49,7 @@ struct Memory {
   const machine::MachineFamily& family;
   machine::Parameters parameters;
   std::map<int, machine::StoredProgram> programs{};
-  std::optional<std::vector<machine::LaserSchedule>> schedules{};
+  std::vector<machine::LaserSchedule> schedules{};
   int main_program = 10;
 };
 
@@ -74,7 +74,7 @@ TEST(Ticket, BindsTheWholeMemoryWhereProgramsCallEachOther) {
 
   // A name is for people.
   memory.programs[44].name = "another";
-  memory.schedules->front().name = "steel";
+  memory.schedules.front().name = "steel";
   EXPECT_THAT(ChangedSince(ticket, memory.Run()), IsEmpty());
 
   memory.Put(44, "called too");
@@ -85,9 +85,9 @@ TEST(Ticket, BindsTheWholeMemoryWhereProgramsCallEachOther) {
   memory.programs.erase(44);
   EXPECT_THAT(ChangedSince(ticket, memory.Run()), ElementsAre("programs/44"));
   memory.Put(44, "called");
-  memory.schedules->front().power_percent = 81.0;
+  memory.schedules.front().power_percent = 81.0;
   EXPECT_THAT(ChangedSince(ticket, memory.Run()), ElementsAre("schedules/3"));
-  memory.schedules->front().power_percent = 80.0;
+  memory.schedules.front().power_percent = 80.0;
   memory.main_program = 44;
   EXPECT_THAT(ChangedSince(ticket, memory.Run()), ElementsAre("program 44 instead of 10"));
 }

@@ -27,7 +27,7 @@ class TicketTest : public HostMachineTest {
     for (const auto& [name, digest] : bridge::DigestsOf({.family = family,
                                       .parameters = *parameters,
                                       .programs = programs,
-                                      .schedules = std::nullopt,
+                                      .schedules = {},
                                       .main_program = 5}))
       (*ticket.mutable_inputs())[name] = digest;
     return ticket;

@@ -124,7 +124,7 @@ TEST_F(AssignmentTest, ABudgetIsWhatTheJobWantsButNoMoreThanTheServerAllows) {
   EXPECT_EQ(budget.virtual_time_ns(), FromSeconds(config.limit_virtual_time_s).count());
 }
 
-// OPT-3.44: schedules are records of the machine.
+// OPT-3.44: schedules are records of the machine; those that nobody stored it has by default.
 TEST_F(AssignmentTest, BringsTheLaserSchedulesOfTheMachine) {
   Put(1, "object");
   Must(bed.store().PutSchedule(

@@ -95,8 +95,7 @@ TEST(AssignedPrograms, HaveTheMachineAsItStands) {
   EXPECT_EQ(memory.parameters_of, "");  // nobody changed any
   EXPECT_EQ(memory.machine_state, "state");
   EXPECT_EQ(memory.deleted_programs.size(), 1U);
-  ASSERT_TRUE(memory.schedules);
-  EXPECT_TRUE(memory.schedules->empty());
+  EXPECT_TRUE(memory.schedules.empty());
   (*assignment.mutable_parameters())["OBJECT_LIMIT"] = "30000";
   v1::AssignedSchedule& schedule = *assignment.add_schedules();
   schedule.set_number(11);
@@ -106,13 +105,11 @@ TEST(AssignedPrograms, HaveTheMachineAsItStands) {
   memory = AssignedPrograms(assignment).Memory();
   EXPECT_EQ(memory.parameters.at("OBJECT_LIMIT"), "30000");
   EXPECT_EQ(memory.parameters_of, "machines/laser-1");
-  ASSERT_EQ(memory.schedules->size(), 1U);
-  EXPECT_EQ(memory.schedules->front().number, 11);
-  EXPECT_EQ(memory.schedules->front().name, "fine");
-  EXPECT_EQ(memory.schedules->front().mode, "PULSE");
-  EXPECT_EQ(memory.schedules->front().power_percent, 50.0);
-  assignment.set_default_schedules(true);
-  EXPECT_FALSE(AssignedPrograms(assignment).Memory().schedules);
+  ASSERT_EQ(memory.schedules.size(), 1U);
+  EXPECT_EQ(memory.schedules.front().number, 11);
+  EXPECT_EQ(memory.schedules.front().name, "fine");
+  EXPECT_EQ(memory.schedules.front().mode, "PULSE");
+  EXPECT_EQ(memory.schedules.front().power_percent, 50.0);
 }
 
 }  // namespace

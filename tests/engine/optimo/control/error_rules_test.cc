@@ -208,7 +208,7 @@ INSTANTIATE_TEST_SUITE_P(
             7404,
             2,
             "WORKDEF 2,0 (12)\nWORK 2,0/ON\n",
-            {.schedules = std::vector<machine::LaserSchedule>{{.number = 11}}}}),
+            {.parameters = {{"SCHEDULES", "11"}}}}),
     NameOf);
 
 // OPT-E.7405, OPT-E.7406, OPT-E.7407, OPT-E.7410

@@ -311,11 +311,30 @@ TEST(LaserRules, NoSchedulesOnTheEfa51) {
 
 // OPT-3.44: a schedule that is not stored cannot be selected.
 TEST(LaserRules, ASelectedScheduleMustBeStored) {
-  std::vector<machine::LaserSchedule> schedules{{.number = 11}};
-  EXPECT_EQ(CodeOf(RunText("WORKDEF 2,0 (12)\nWORK 2,0/ON\n", {.schedules = schedules})), 7404);
-  EXPECT_EQ(
-      CodeOf(RunText("WORKDEF 2,0 (11)\nWORK 2,0/ON\nWORK 2,0/OFF\n", {.schedules = schedules})),
-      0);
+  const auto code = [](int number, std::vector<machine::LaserSchedule> stored) {
+    const std::string text =
+        "WORKDEF 2,0 (" + std::to_string(number) + ")\nWORK 2,0/ON\nWORK 2,0/OFF\n";
+    return CodeOf(RunText(text, {.parameters = {{"SCHEDULES", "11"}}, .schedules = stored}));
+  };
+  EXPECT_EQ(code(12, {}), 7404);
+  EXPECT_EQ(code(11, {}), 0);
+  EXPECT_EQ(code(12, {{.number = 12}}), 0);
+  EXPECT_EQ(code(13, {{.number = 12}}), 7404);
+}
+
+// OPT-3.44, SCHEDULES: one that is stored takes the place of its number; the others stay.
+TEST(LaserRules, AStoredScheduleLeavesTheOthers) {
+  const RunOptions options{.schedules = {{.number = 12, .power_percent = 40.0}}};
+  const auto beam = [&](int number) {
+    return RunText("WORKDEF 2,0 (" + std::to_string(number) +
+                       ")\nWORK 2,0/ON\nWORK 0,0/ON\nWORK 0,0/OFF\nWORK 2,0/OFF\n",
+                   options);
+  };
+  EXPECT_TRUE(beam(12).Told("beam on 40.0"));
+  for (const int number : {1, 11, 13, 63}) {
+    EXPECT_EQ(CodeOf(beam(number)), 0) << number;
+    EXPECT_TRUE(beam(number).Told("beam on 100.0")) << number;
+  }
 }
 
 // OPT-3.63: no set-up is needed before WORK 1.

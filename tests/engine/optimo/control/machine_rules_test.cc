@@ -64,7 +64,8 @@ TEST(MachineRules, StandardParameters) {
                                                     {"EXECUTABLE_LIMIT", 32'768},
                                                     {"CMOS_SIZE", 1'048'576},
                                                     {"GOSUB_DEPTH", 16},
-                                                    {"CALL_TIME", 0}};
+                                                    {"CALL_TIME", 0},
+                                                    {"SCHEDULES", 63}};
   for (const auto& [name, value] : figures) EXPECT_EQ(p.Number(name), value) << name;
   EXPECT_NEAR(p.Number("AXIS_SPEED_A"), 6.283185, 1e-6);
   EXPECT_NEAR(p.Number("AXIS_SPEED_B"), 6.283185, 1e-6);
@@ -113,7 +114,7 @@ TEST(MachineRules, EachParameterHasItsPlace) {
       {"VMAX", 61},        {"AMAX", 62},       {"JMAX", 163},         {"SETTLE", 0.25},
       {"HEAD_LENGTH", 65}, {"CYCLE", 0.064},   {"OBJECT_LIMIT", 201}, {"EXECUTABLE_LIMIT", 202},
       {"CMOS_SIZE", 2003}, {"GOSUB_DEPTH", 5}, {"CALL_TIME", 1.5},    {"LASER_POWER", 204},
-      {"GAS_CHANNELS", 3}, {"SAFE_Z", -71}};
+      {"GAS_CHANNELS", 3}, {"SAFE_Z", -71},    {"SCHEDULES", 11}};
   for (const auto& [name, value] : figures) EXPECT_TRUE(p.Set(name, value).ok()) << name;
   for (const char* name : {"TEACH_SIM", "ROTARY_TABLE"}) {
     EXPECT_TRUE(p.Set(name, std::string_view("ON")).ok());

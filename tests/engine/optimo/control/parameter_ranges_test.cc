@@ -66,6 +66,7 @@ constexpr Range kRanges[] = {{"VMAX", 1, 2000},
                              {"CMOS_SIZE", 1000, 1e12},
                              {"GOSUB_DEPTH", 1, 1000},
                              {"CALL_TIME", 0, 600},
+                             {"SCHEDULES", 0, 63},
                              {"LASER_POWER", 1, 100'000}};
 
 // OPT-B.01: every number of the machine has its range.

@@ -74,7 +74,7 @@ struct RunOptions {
   // counts.
   std::optional<SimTime> restore_at;
   std::string machine_state;
-  std::optional<std::vector<machine::LaserSchedule>> schedules;
+  std::vector<machine::LaserSchedule> schedules;
   std::map<int, std::string> executables;      // by slot
   SimTime slice = std::chrono::seconds(1000);  // of one Advance
   bool forecast = false;
