@@ -6,6 +6,7 @@
 #include "proto/bridge/ticket.h"
 #include "proto/recording/recording.h"
 #include "server/host/host_machine.h"
+#include "server/host/host_messages.h"
 
 namespace rmlcell::server {
 namespace {

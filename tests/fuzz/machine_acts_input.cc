@@ -141,6 +141,59 @@ MachineMemory MemoryOf(const MachineFamily& family, const Parameters& parameters
   return memory;
 }
 
+// What sets it up, moves it by hand, or changes its memory.
+MachineInput SettingOf(unsigned kind, unsigned with, const MachineMemory& programs) {
+  const int slot = 1 + static_cast<int>(with % 6);
+  constexpr std::array kValues = {0.0, 1.0, 0.3, -7.5, 10.0, 99.0, 145.0, 1e30};
+  constexpr std::array kNames = {"VR[3]", "VI[3]", "VI[4]", "OL[3]", "IL[20]",
+                                 "VL[1]", "X",     "VX[7]", "RPM",   "none"};
+  constexpr std::array kPanel = {PanelKey::kView, PanelKey::kSpindle, PanelKey::kZ0,
+                                 PanelKey::kOrigin, PanelKey::kHome};
+  const JogKey jog{.axis = static_cast<JogAxis>(with % 6), .plus = (with & 8U) != 0};
+  switch (kind) {
+    case 18:
+      return WriteVariable{.name = OneOf(kNames, with), .value = OneOf(kValues, with >> 4)};
+    case 19:
+      return SetBreakpoints{with % 4 == 0
+                                ? std::vector<Breakpoint>()
+                                : std::vector<Breakpoint>{
+                                      {.at = {.program = slot, .step = static_cast<int>(with >> 5)},
+                                       .condition = with % 4 == 1 ? "VI[3] > 2" : "",
+                                       .from_pass = 1 + with % 3}}};
+    case 20:
+      return SetSimulation{with % 3 == 0
+                               ? std::optional<ProgramStep>()
+                               : ProgramStep{.program = slot, .step = static_cast<int>(with >> 5)}};
+    case 21: {
+      const auto found = programs.programs.find(1 + static_cast<int>(with >> 4) % 5);
+      return StoreProgram{
+          .slot = slot,
+          .program = found == programs.programs.end() ? StoredProgram{.name = "b"} : found->second};
+    }
+    case 22:
+      return DeleteProgram{.slot = slot};
+    case 23:
+      return ClearMessage{};
+    case 24:
+    case 25:
+      return PressJog{.key = jog,
+                      .reference = static_cast<JogReference>(with >> 4 & 1U),
+                      .fast = (with & 64U) != 0};
+    case 26:
+      return ReleaseJog{jog};
+    case 27:
+      return ReleaseJogs{};
+    case 28:
+      return SetGates{{slot, static_cast<int>(with >> 5)}};
+    case 29:
+      return PressGate{1 + static_cast<int>(with % 3)};
+    case 30:
+      return PressPanel{OneOf(kPanel, with)};
+    default:
+      return KeyOf(with, with >> 1);
+  }
+}
+
 // What an input of this kind and argument is.
 MachineInput InputOf(unsigned kind, unsigned with, const MachineMemory& programs) {
   const int slot = 1 + static_cast<int>(with % 6);
@@ -148,11 +201,6 @@ MachineInput InputOf(unsigned kind, unsigned with, const MachineMemory& programs
                                  Mode::kManual};
   constexpr std::array kSources = {StartSource::kConsole, StartSource::kPanel, StartSource::kQueue};
   constexpr std::array kValues = {0.0, 1.0, 0.3, -7.5, 10.0, 99.0, 145.0, 1e30};
-  constexpr std::array kNames = {"VR[3]", "VI[3]", "VI[4]", "OL[3]", "IL[20]",
-                                 "VL[1]", "X",     "VX[7]", "RPM",   "none"};
-  constexpr std::array kPanel = {PanelKey::kView, PanelKey::kSpindle, PanelKey::kZ0,
-                                 PanelKey::kOrigin, PanelKey::kHome};
-  const JogKey jog{.axis = static_cast<JogAxis>(with % 6), .plus = (with & 8U) != 0};
   switch (kind % 32) {
     case 0:
     case 1:
@@ -194,46 +242,8 @@ MachineInput InputOf(unsigned kind, unsigned with, const MachineMemory& programs
       return MoveDoor{.open = with % 2 == 0};
     case 17:
       return SwitchPower{.on = with % 8 != 0};
-    case 18:
-      return WriteVariable{.name = OneOf(kNames, with), .value = OneOf(kValues, with >> 4)};
-    case 19:
-      return SetBreakpoints{with % 4 == 0
-                                ? std::vector<Breakpoint>()
-                                : std::vector<Breakpoint>{
-                                      {.at = {.program = slot, .step = static_cast<int>(with >> 5)},
-                                       .condition = with % 4 == 1 ? "VI[3] > 2" : "",
-                                       .from_pass = 1 + with % 3}}};
-    case 20:
-      return SetSimulation{with % 3 == 0
-                               ? std::optional<ProgramStep>()
-                               : ProgramStep{.program = slot, .step = static_cast<int>(with >> 5)}};
-    case 21: {
-      const auto found = programs.programs.find(1 + static_cast<int>(with >> 4) % 5);
-      return StoreProgram{
-          .slot = slot,
-          .program = found == programs.programs.end() ? StoredProgram{.name = "b"} : found->second};
-    }
-    case 22:
-      return DeleteProgram{.slot = slot};
-    case 23:
-      return ClearMessage{};
-    case 24:
-    case 25:
-      return PressJog{.key = jog,
-                      .reference = static_cast<JogReference>(with >> 4 & 1U),
-                      .fast = (with & 64U) != 0};
-    case 26:
-      return ReleaseJog{jog};
-    case 27:
-      return ReleaseJogs{};
-    case 28:
-      return SetGates{{slot, static_cast<int>(with >> 5)}};
-    case 29:
-      return PressGate{1 + static_cast<int>(with % 3)};
-    case 30:
-      return PressPanel{OneOf(kPanel, with)};
     default:
-      return KeyOf(with, with >> 1);
+      return SettingOf(kind % 32, with, programs);
   }
 }
 
