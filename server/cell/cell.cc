@@ -34,6 +34,7 @@
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
 #include "server/records/machine_options.h"
+#include "server/records/program_memory.h"
 #include "server/results/job_results.h"
 #include "server/runs/run_products.h"
 #include "server/runs/run_queue.h"
@@ -162,7 +163,8 @@ Status Cell::Parts::OpenStore() {
                                     .directory = config.state_directory,
                                     .keep_finished_jobs = config.jobs_keep_finished,
                                     .keep_record_events = kRecordEventsKept,
-                                    .log_bytes_prepared = kLogBytesPrepared});
+                                    .log_bytes_prepared = kLogBytesPrepared,
+                                    .program_memory = LimitOfMemory});
   if (!opened) {
     Error error = opened.error();
     if (error.code == ErrorCode::kCellStoreCorrupt) {
