@@ -218,6 +218,7 @@ void Cell::Parts::MakeHosts(const std::string& host_token) {
     return host_processes != nullptr && host_processes->IsEnabled(machine);
   });
   hosts->OnNews([this](const std::string& machine) { runs->Wake(machine); });
+  book->OnToldToWait([this](v1::Job& job) { runs->TellWhyItWaits(job); });
   run_products = std::make_unique<RunProducts>(
       RunProducts::Needs{.store = *store,
                          .hosts = *hosts,
@@ -260,6 +261,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
   book->OnRunWaits([this](const std::string& machine) { runs->Wake(machine); });
+  book->OnToldToWait([this](v1::Job& job) { runs->TellWhyItWaits(job); });
   programs = std::make_unique<ProgramBook>(*store, config);
   tools = std::make_unique<MemoryTools>(*store, *programs);
   results = std::make_unique<JobResults>(*store, *book, *tools);
