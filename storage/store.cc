@@ -1,6 +1,7 @@
 #include "storage/store.h"
 
 #include <future>
+#include <string>
 
 namespace rmlcell::storage {
 namespace {
@@ -35,6 +36,15 @@ Result<std::optional<LeasedJob>> Store::Acquire(std::string_view worker,
   if (!leased) return leased.error();
   if (leased->empty()) return std::optional<LeasedJob>();
   return std::optional(std::move(leased->front()));
+}
+
+Status CheckRoom(const std::optional<ProgramMemoryLimit>& limit, std::int64_t before,
+                 std::int64_t after) {
+  if (!limit || after <= limit->bytes || after <= before) return {};
+  return Error{limit->full,
+               "the program memory has " + std::to_string(limit->bytes) + " bytes, and " +
+                   std::to_string(after) + " would be in it",
+               {}};
 }
 
 void Store::SendRequestCancel(std::int64_t job, std::vector<NewEvent> events,

@@ -235,6 +235,19 @@ struct MachineMemory {
   std::vector<ScheduleRecord> schedules{};  // by number
 };
 
+// What the program memory of a machine holds at most: its objects and executables together.
+struct ProgramMemoryLimit {
+  std::int64_t bytes = 0;
+  ErrorCode full = ErrorCode::kCellTooLarge;  // what the machine calls it that there is no room
+};
+// Nothing: as much as comes. Asked inside a write: it calls no store.
+using ProgramMemoryOf = std::function<std::optional<ProgramMemoryLimit>(const MachineRecord&)>;
+
+// Whether a program memory of `before` bytes may become one of `after`. One that is too full
+// already, as its limit was another one, may shrink. Errors: `full`.
+Status CheckRoom(const std::optional<ProgramMemoryLimit>& limit, std::int64_t before,
+                 std::int64_t after);
+
 // What to write into one slot. All writes of one call are made, or none.
 struct ProgramWrite {
   int slot = 0;
@@ -321,7 +334,7 @@ class Store {
   // Replaces objects, deletes the executables of these slots and no others (OPT-1.12, OPT-1.13),
   // stores schedules (whatever is there; their `machine` is not looked at). Summaries in the order
   // of `programs`. CellInvalidArgument: a slot or number out of range or twice; CellTooLarge:
-  // kProgramBytesMax.
+  // kProgramBytesMax; ProgramMemoryLimit::full.
   virtual Result<std::vector<ProgramSummary>> PutPrograms(
       std::string_view machine, const std::vector<ProgramWrite>& programs,
       const std::vector<ScheduleRecord>& schedules, std::string_view caller = {}) = 0;
@@ -330,6 +343,7 @@ class Store {
                                std::string_view caller = {}) = 0;
   // Kept only while the object still has `object_revision` (OPT-1.15); else nothing happens and
   // false is returned, also when there is no object. The revision stays as it is.
+  // ProgramMemoryLimit::full.
   virtual Result<bool> PutExecutable(std::string_view machine, int slot, Revision object_revision,
                                      std::string_view executable, std::string_view caller = {}) = 0;
   // The object stays (OPT-1.14). CellNotFound: no program, or no executable.

@@ -163,6 +163,8 @@ std::string WaitText(const v1::Job& job) {
       return "after " + other + ", which did not succeed";
     case v1::WAIT_REASON_MACHINE_BUSY:
       return "its machine runs " + other;
+    case v1::WAIT_REASON_CONTROL:
+      return job.waits_for();
     case v1::WAIT_REASON_MACHINE_NOT_READY:
       return "its machine cannot start: rmlcell machine status";
     default:

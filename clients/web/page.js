@@ -200,6 +200,7 @@ const WAITS = {
   WAIT_REASON_AFTER_JOB_FAILED: "Somebody decides: it was to follow",
   WAIT_REASON_MACHINE_BUSY: "Its machine runs",
   WAIT_REASON_MACHINE_NOT_READY: "Its machine cannot start now",
+  WAIT_REASON_CONTROL: "Its machine is not free,",
 };
 // Products that programs read, and people do not.
 const FOR_PROGRAMS = ["steps", "series"];
@@ -391,7 +392,7 @@ function endText(outcome) {
 
 function waitText(job) {
   const [collection, id] = (job.waitsFor ?? "").split("/");
-  const whom = collection === "jobs" ? `#${id}` : id;
+  const whom = collection === "jobs" ? `#${id}` : id ?? collection;
   return [WAITS[job.waitReason], whom].filter(Boolean).join(" ");
 }
 

@@ -34,6 +34,7 @@
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
 #include "server/records/machine_options.h"
+#include "server/records/program_memory.h"
 #include "server/results/job_results.h"
 #include "server/runs/run_products.h"
 #include "server/runs/run_queue.h"
@@ -162,7 +163,8 @@ Status Cell::Parts::OpenStore() {
                                     .directory = config.state_directory,
                                     .keep_finished_jobs = config.jobs_keep_finished,
                                     .keep_record_events = kRecordEventsKept,
-                                    .log_bytes_prepared = kLogBytesPrepared});
+                                    .log_bytes_prepared = kLogBytesPrepared,
+                                    .program_memory = LimitOfMemory});
   if (!opened) {
     Error error = opened.error();
     if (error.code == ErrorCode::kCellStoreCorrupt) {
@@ -216,6 +218,7 @@ void Cell::Parts::MakeHosts(const std::string& host_token) {
     return host_processes != nullptr && host_processes->IsEnabled(machine);
   });
   hosts->OnNews([this](const std::string& machine) { runs->Wake(machine); });
+  book->OnToldToWait([this](v1::Job& job) { runs->TellWhyItWaits(job); });
   run_products = std::make_unique<RunProducts>(
       RunProducts::Needs{.store = *store,
                          .hosts = *hosts,
@@ -258,6 +261,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
   book->OnRunWaits([this](const std::string& machine) { runs->Wake(machine); });
+  book->OnToldToWait([this](v1::Job& job) { runs->TellWhyItWaits(job); });
   programs = std::make_unique<ProgramBook>(*store, config);
   tools = std::make_unique<MemoryTools>(*store, *programs);
   results = std::make_unique<JobResults>(*store, *book, *tools);

@@ -27,6 +27,7 @@ class ArmDesk {
                                      const std::string& caller, std::int64_t control_lease,
                                      std::uint64_t memory, const HostTime& now);
   void Disarm() { armed_.reset(); }
+  bool is_armed() const { return armed_.has_value(); }
   // It is over by time, with another control lease, with another memory.
   void Expire(std::int64_t control_lease, std::uint64_t memory, const HostTime& now);
 

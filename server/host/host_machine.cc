@@ -111,7 +111,11 @@ v1::HostOrderAnswer HostMachine::Do(const v1::HostOrder& order, const HostTime& 
 v1::HostOrderAnswer HostMachine::Carry(const v1::HostOrder& order, const HostTime& now) {
   Result<v1::HostOrderAnswer> answer = CarryOut(order, now);
   Notice();
-  if (!answer) return Refuse(answer.error());
+  if (!answer) {
+    v1::HostOrderAnswer refused = Refuse(answer.error());
+    AddBlockers(order, refused);
+    return refused;
+  }
   if (answer->result_case() != v1::HostOrderAnswer::RESULT_NOT_SET) return *std::move(answer);
   if (IsHalt(order)) {
     v1::HaltResponse& halt = *answer->mutable_halt();

@@ -162,7 +162,9 @@ class HostMachine : private machine::RunObserver {
       const v1::WorkerAssignment& assignment);
   Status CheckPrograms(const v1::WorkerAssignment& assignment,
                        const std::optional<machine::StoredProgram>& brought) const;
-  std::optional<Error> WhyNoJob(const std::string& caller) const;
+  std::vector<Error> WhyNoJob(const std::string& caller) const;
+  std::vector<Error> WhyNoStart(const std::string& caller) const;
+  void AddBlockers(const v1::HostOrder& order, v1::HostOrderAnswer& refused) const;
   Result<v1::HostOrderAnswer> Control(const v1::HostOrder& order, const HostTime& now);
   Result<v1::HostOrderAnswer> Write(const v1::HostOrder& order);
   Status Confirm(const v1::HostOrder& order);

@@ -14,29 +14,41 @@ namespace {
 constexpr std::size_t kChangesTold = 8;
 constexpr std::size_t kJobsKnown = 16;  // the newest: whoever asks knows of the last one or two
 
+v1::StartBlocker BlockerOf(const Error& error) {
+  const v1::ErrorDetail detail = bridge::ToErrorDetail(error);
+  v1::StartBlocker blocker;
+  blocker.set_code(detail.code());
+  blocker.set_symbol(detail.symbol());
+  blocker.set_message(detail.message());
+  blocker.set_advice(detail.advice());
+  return blocker;
+}
+
 }  // namespace
 
-// What keeps a job of this caller from beginning; LIVE-5.02.
-std::optional<Error> HostMachine::WhyNoJob(const std::string& caller) const {
+// All that keeps a job of this caller from beginning. LIVE-5.02 (a)
+std::vector<Error> HostMachine::WhyNoJob(const std::string& caller) const {
+  std::vector<Error> why;
   const auto& lease = desk_.lease();
   if (lease && lease->holder() != caller)
-    return Error{ErrorCode::kCellLeaseHeld, lease->holder() + " has control", {}};
+    why.push_back({ErrorCode::kCellLeaseHeld, lease->holder() + " has control", {}});
   const machine::MachineStatus status = machine().status();
-  if (inspect_due_) return Error{ErrorCode::kCellInspect, "confirm that it was inspected", {}};
-  if (!status.alarms.empty()) return Error{status.alarms.front().code, {}, {}};
+  if (inspect_due_) why.push_back({ErrorCode::kCellInspect, "confirm that it was inspected", {}});
+  for (const machine::Alarm& alarm : status.alarms) why.push_back({alarm.code, {}, {}});
   if (status.state == machine::MachineState::kOff)
-    return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
-  if (status.open) return Error{ErrorCode::kCellMachineState, "a run is open", {}};
+    why.push_back({ErrorCode::kCellNotLive, "the machine is OFF", {}});
+  if (status.open) why.push_back({ErrorCode::kCellMachineState, "a run is open", {}});
   if (status.mode != machine::Mode::kRemote)
-    return Error{ErrorCode::kCellMode, "jobs run in REMOTE alone", {}};
-  if (status.run.door_open) return Error{ErrorCode::kCellDoorOpen, {}, {}};
+    why.push_back({ErrorCode::kCellMode, "jobs run in REMOTE alone", {}});
+  if (status.run.door_open) why.push_back({ErrorCode::kCellDoorOpen, {}, {}});
   // Nothing would be cut, and the job count as a part.
-  if (machine().simulation_until())
-    return Error{ErrorCode::kCellMachineState,
-                 "SIMUL is armed, and the run would be dry: end that at the handbox, or by "
-                 "SetSimulation without a step",
-                 {}};
-  return std::nullopt;
+  if (machine().simulation_until()) {
+    why.push_back({ErrorCode::kCellMachineState,
+                   "SIMUL is armed, and the run would be dry: end that at the handbox, or by "
+                   "SetSimulation without a step",
+                   {}});
+  }
+  return why;
 }
 
 // The program that the job brought; nothing: what the memory has is the same.
@@ -61,7 +73,7 @@ Result<std::optional<machine::StoredProgram>> HostMachine::ProgramOfJob(
 Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
   // Behind the intent, also where nothing begins: a crash later on finds no open one.
   mark_due_ = true;
-  if (auto why = WhyNoJob(order.caller())) return *std::move(why);
+  if (auto why = WhyNoJob(order.caller()); !why.empty()) return std::move(why.front());
   if (const Status may = MayStartJob(order, order.run_job()); !may) return may.error();
   if (!order.run_job().job().continues().empty()) {
     return Error{ErrorCode::kCellPreviewStale,
@@ -146,7 +158,7 @@ Result<v1::HostOrderAnswer> HostMachine::Arm(const v1::HostOrder& order, const H
   }
   if (setup_.options.start() != v1::MachineOptions::START_ARMED)
     return Error{ErrorCode::kCellNotLive, "jobs start here without being armed for", {}};
-  if (auto why = WhyNoJob(order.caller())) return *std::move(why);
+  if (auto why = WhyNoJob(order.caller()); !why.empty()) return std::move(why.front());
   auto armed = arms_.Arm(order.arm(), order.caller(), desk_.lease() ? desk_.lease()->number() : 0,
                          memory_changes_, now);
   if (!armed) return armed.error();
@@ -173,7 +185,7 @@ Status HostMachine::MayBeginAtStep(const v1::HostOrder& order,
                                    const v1::WorkerAssignment& assignment) const {
   const std::string& cut_off = assignment.job().continues();
   if (cut_off.empty()) {
-    if (auto why = WhyNoJob(order.caller())) return *std::move(why);
+    if (auto why = WhyNoJob(order.caller()); !why.empty()) return std::move(why.front());
     return MayStartJob(order, assignment);
   }
   if (inspect_due_ && inspect_job_ == cut_off) return {};
@@ -230,26 +242,40 @@ Status HostMachine::BeginJobAtStep(const v1::HostOrder& order, const HostTime& n
   return {};
 }
 
-// What keeps jobs in the queue; whoever has control does not keep his own. LIVE-5.02
-void HostMachine::AddBlockers(v1::MachineStatus& status) const {
-  const auto add = [&status](const Error& error) {
-    const v1::ErrorDetail detail = bridge::ToErrorDetail(error);
-    v1::StartBlocker& blocker = *status.add_start_blockers();
-    blocker.set_code(detail.code());
-    blocker.set_symbol(detail.symbol());
-    blocker.set_message(detail.message());
-    blocker.set_advice(detail.advice());
-  };
-  if (disk_is_late_) add({ErrorCode::kCellJournal, "the disk does not answer", {}});
-  if (const auto why = WhyNoJob(desk_.lease() ? desk_.lease()->holder() : std::string())) add(*why);
-  if (desk_.lease() && !desk_.IsOfQueue())
-    add({ErrorCode::kCellLeaseHeld, desk_.lease()->holder() + " has control", {}});
+// All that keeps jobs of this caller from being begun by the queue. LIVE-5.02 (a)
+std::vector<Error> HostMachine::WhyNoStart(const std::string& caller) const {
+  std::vector<Error> why;
+  if (disk_is_late_) why.push_back({ErrorCode::kCellJournal, "the disk does not answer", {}});
+  for (Error& one : WhyNoJob(caller)) why.push_back(std::move(one));
   if (setup_.options.start() == v1::MachineOptions::START_PERSON)
-    add({ErrorCode::kCellMode, "a person starts each job here", {}});
-  if (setup_.options.start() == v1::MachineOptions::START_ARMED && !status.has_armed_until())
-    add({ErrorCode::kCellNotArmed, "nobody has armed it, or that is over", {}});
+    why.push_back({ErrorCode::kCellMode, "a person starts each job here", {}});
+  if (setup_.options.start() == v1::MachineOptions::START_ARMED && !arms_.is_armed())
+    why.push_back({ErrorCode::kCellNotArmed, "nobody has armed it, or that is over", {}});
   if (!machine().status().run.zeroed && !machine().status().open)
-    add({setup_.family->info().not_zeroed, "the axes have no reference", {}});
+    why.push_back({setup_.family->info().not_zeroed, "the axes have no reference", {}});
+  return why;
+}
+
+// What keeps jobs in the queue; whoever has control does not keep his own.
+void HostMachine::AddBlockers(v1::MachineStatus& status) const {
+  std::vector<Error> why = WhyNoStart(desk_.lease() ? desk_.lease()->holder() : std::string());
+  if (desk_.lease() && !desk_.IsOfQueue())
+    why.push_back({ErrorCode::kCellLeaseHeld, desk_.lease()->holder() + " has control", {}});
+  for (const Error& one : why) *status.add_start_blockers() = BlockerOf(one);
+}
+
+// The answer to a start that is refused for the machine as it stands: all that is in the way, what
+// it was refused for first. What keeps the queue alone does not keep a person.
+void HostMachine::AddBlockers(const v1::HostOrder& order, v1::HostOrderAnswer& refused) const {
+  const bool of_a_job = order.has_run_job() || order.has_continue_job();
+  if (!of_a_job && !order.has_start() && !order.has_arm()) return;
+  std::vector<Error> why =
+      of_a_job && !order.has_by_person() ? WhyNoStart(order.caller()) : WhyNoJob(order.caller());
+  const auto named = std::ranges::find_if(
+      why, [&](const Error& one) { return CodeText(one.code) == refused.refusal().code(); });
+  if (named == why.end()) return;
+  std::rotate(why.begin(), named, named + 1);
+  for (const Error& one : why) *refused.add_start_blockers() = BlockerOf(one);
 }
 
 // Whether an order for a job is for the one that is meant by it here.

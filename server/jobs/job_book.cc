@@ -225,7 +225,9 @@ void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& cal
                 [this, done = std::move(done)](const Result<storage::SubmittedJob>& submitted) {
                   if (!submitted) return done(submitted.error());
                   TellRun(submitted->job);
-                  done(ToProto(submitted->job));
+                  v1::Job job = ToProto(submitted->job);
+                  AddWhyItWaits(job);
+                  done(std::move(job));
                 });
 }
 
@@ -238,6 +240,10 @@ int JobBook::AttemptsOf(const v1::Job& job) const {
 void JobBook::TellRun(const storage::JobRecord& job) {
   if (run_waits_ && job.kind == storage::kRunKind && job.state == storage::JobState::kQueued)
     run_waits_(job.machine);
+}
+
+void JobBook::AddWhyItWaits(v1::Job& job) const {
+  if (told_to_wait_ && job.wait_reason() == v1::WAIT_REASON_MACHINE_NOT_READY) told_to_wait_(job);
 }
 
 Result<v1::Job> JobBook::Get(std::string_view name) {
@@ -256,6 +262,7 @@ Result<v1::Job> JobBook::Get(std::string_view name) {
     if (before) job->set_position_in_queue(*before);
     // Else it has begun meanwhile.
   }
+  AddWhyItWaits(*job);
   // What one waits for, and how long, changes without it.
   if (record->state != storage::JobState::kQueued) told_.Keep(*id, changes, *job);
   return job;

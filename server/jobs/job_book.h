@@ -43,6 +43,10 @@ class JobBook {
     run_waits_ = std::move(waits);
   }
 
+  // Called with a RUN that waits for its machine, as GetJob and SubmitJob are about to tell it:
+  // with what keeps that from beginning it. From any thread, and not for long. Set as above.
+  void OnToldToWait(std::function<void(v1::Job&)> told) { told_to_wait_ = std::move(told); }
+
   // A new job of the same program, as that was: of a RUN that was interrupted. `continues`: it is
   // to go on where that was cut off, and is held until it is told where (RunQueue::Continue).
   // Errors: those of Submit().
@@ -105,6 +109,7 @@ class JobBook {
   // Whether a job may come behind those that it names. Errors: CellNotFound, CellPrecondition.
   Status CheckAwaited(const storage::NewJob& made);
   int AttemptsOf(const v1::Job& job) const;
+  void AddWhyItWaits(v1::Job& job) const;
   void TellRun(const storage::JobRecord& job);
   Result<v1::Job> WithArtifacts(const storage::JobRecord& record);
   Status CheckSize(std::size_t bytes, const std::string& what) const;
@@ -119,6 +124,7 @@ class JobBook {
   KnownMachines machines_;
   ToldJobs told_;
   std::function<void(const std::string&)> run_waits_;
+  std::function<void(v1::Job&)> told_to_wait_;
 };
 
 // The names under which the programs of a job are kept with it: "program" for the one that is

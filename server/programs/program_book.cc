@@ -14,6 +14,7 @@
 #include "server/records/file_family.h"
 #include "server/records/job_messages.h"
 #include "server/records/machine_messages.h"
+#include "server/records/program_memory.h"
 #include "server/records/program_place.h"
 
 namespace rmlcell::server {
@@ -64,6 +65,17 @@ v1::Findings FindingsWhenStored(simulation::CheckedProgram& check) {
   const machine::Translation& translation = check.translation;
   return bridge::FindingsOf(true, translation.diagnostics, translation.diagnostics_dropped,
                             translation.figures);
+}
+
+v1::Program ProgramToBe(const std::string& name, const storage::ProgramWrite& write,
+                        v1::Findings findings) {
+  v1::Program program;
+  program.set_name(name);
+  program.set_title(write.name);
+  program.set_file_name(write.source_name);
+  program.set_object_bytes(static_cast<std::int64_t>(write.object.size()));
+  *program.mutable_findings() = std::move(findings);
+  return program;
 }
 
 machine::Translation TranslateFor(const machine::MachineFamily& family,
@@ -222,13 +234,8 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
   if (put.validate_only) {
     if (const auto fits = FindExpected(machine.id, place->slot, *expected); !fits)
       return fits.error();
-    v1::Program program;
-    program.set_name(put.name);
-    program.set_title(write.name);
-    program.set_file_name(write.source_name);
-    program.set_object_bytes(static_cast<std::int64_t>(write.object.size()));
-    *program.mutable_findings() = std::move(findings);
-    return program;
+    if (const Status room = CheckRoomFor(store_, machine, {&write, 1}); !room) return room.error();
+    return ProgramToBe(put.name, write, std::move(findings));
   }
   const auto stored = store_.PutPrograms(machine.id, {std::move(write)}, {}, put.caller);
   if (!stored) return stored.error();
@@ -277,7 +284,11 @@ ProgramResult<v1::Program> ProgramBook::StoreExecutable(const Put& put, const Pr
   }
   if (const Status good = place.family->CheckExecutable(put.bytes, slot); !good)
     return good.error();
-  if (!put.validate_only) {
+  if (put.validate_only) {
+    const auto bytes = static_cast<std::int64_t>(put.bytes.size());
+    if (const Status room = CheckRoomForExecutable(store_, place.machine, slot, bytes); !room)
+      return room.error();
+  } else {
     const auto kept =
         store_.PutExecutable(machine_id, slot, (*found)->revision, put.bytes, put.caller);
     if (!kept) return kept.error();

@@ -46,7 +46,8 @@ class ProgramBook {
   };
   // All or nothing. Errors: CellEmptyProgram, CellTooLarge, the first compile error,
   // CellEtagMismatch, CellUnknownMachine, FamilyInfo::no_slot, empty_slot for an executable without
-  // its object and CellInvalidArgument for that of another program (OPT-1.15).
+  // its object and CellInvalidArgument for that of another program (OPT-1.15),
+  // MachineFamily::ProgramMemory where there is no room (OPT-B.73).
   ProgramResult<v1::Program> Store(Put put);
 
   Result<v1::Program> Get(std::string_view name);

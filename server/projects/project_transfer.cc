@@ -19,6 +19,7 @@
 #include "server/projects/project_book.h"
 #include "server/records/file_family.h"
 #include "server/records/machine_messages.h"
+#include "server/records/program_memory.h"
 #include "server/records/program_place.h"
 
 namespace rmlcell::server {
@@ -293,7 +294,11 @@ ProgramResult<v1::TransferProjectResponse> ProjectTransfer::ToMachine(
   std::ranges::sort(load.schedules, {}, &storage::ScheduleRecord::number);
   for (const storage::ScheduleRecord& schedule : load.schedules)
     *response.add_items() = ItemOf(schedule, *held);
-  if (request.validate_only()) return response;
+  if (request.validate_only()) {
+    if (const Status room = CheckRoomFor(store_, *machine, load.programs); !room)
+      return room.error();
+    return response;
+  }
   const auto stored = store_.PutPrograms(*machine_id, load.programs, load.schedules, caller);
   if (!stored) {
     // Of a slot that was filled or emptied since it was read.

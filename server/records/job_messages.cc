@@ -137,6 +137,7 @@ v1::Job ToProto(const storage::JobRecord& record) {
   v1::Job job;
   // A specification that cannot be read leaves the rest of the job visible.
   if (!job.ParseFromString(record.specification)) job.Clear();
+  job.clear_start_blockers();
   job.set_name(JobName(record.id));
   job.set_machine(MachineName(record.machine));
   job.set_title(record.title);

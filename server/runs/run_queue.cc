@@ -96,12 +96,12 @@ std::string UnseenOf(const v1::PreviewStartResponse& preview, const v1::RunOptio
 
 // Whether this is nothing to a job of this caller.
 bool Allows(const v1::StartBlocker& blocker, const v1::MachineStatus& status,
-            const storage::JobRecord& job, bool unzeroed) {
+            const std::string& caller, bool unzeroed) {
   const auto found = FindByText(blocker.code());
   if (found.empty()) return false;
   const ErrorCode code = found.front()->code;
-  if (code == ErrorCode::kCellLeaseHeld) return status.control().holder() == job.caller;
-  // The last of them: the axes have no reference.
+  if (code == ErrorCode::kCellLeaseHeld) return status.control().holder() == caller;
+  // Else it is that the axes have no reference.
   return unzeroed && !status.zeroed() && code != ErrorCode::kCellMachineState &&
          found.front()->family != ErrorFamily::kCell && status.alarms().empty();
 }
@@ -270,7 +270,7 @@ void RunQueue::BeginNext(const std::string& machine, const v1::MachineStatus& st
   const std::string& armed_for = status.armed_for();
   if (!armed_for.empty() && armed_for != JobName(job->id)) return;
   const bool may = std::ranges::all_of(status.start_blockers(), [&](const auto& blocker) {
-    return Allows(blocker, status, *job, asked.run().unzeroed());
+    return Allows(blocker, status, job->caller, asked.run().unzeroed());
   });
   if (!may) return;
   const auto leased =
@@ -507,6 +507,37 @@ void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answer
            done(answer);
          });
        });
+}
+
+void RunQueue::TellWhyItWaits(v1::Job& job) const {
+  const auto add = [&job](const Error& error) {
+    const v1::ErrorDetail detail = bridge::ToErrorDetail(error);
+    v1::StartBlocker& blocker = *job.add_start_blockers();
+    blocker.set_code(detail.code());
+    blocker.set_symbol(detail.symbol());
+    blocker.set_message(detail.message());
+    blocker.set_advice(detail.advice());
+  };
+  if (job.wait_reason() != v1::WAIT_REASON_MACHINE_NOT_READY) return;
+  const auto machine = ParseMachineName(job.machine());
+  const auto status = machine ? needs_.hosts.StatusOf(*machine) : std::nullopt;
+  const bool heard_of = status && status->state() != v1::MACHINE_STATE_LOST &&
+                        status->state() != v1::MACHINE_STATE_STARTING;
+  if (!heard_of) return add({ErrorCode::kCellNotLive, "no host tells of it", {}});
+  for (const v1::StartBlocker& blocker : status->start_blockers()) {
+    if (!Allows(blocker, *status, job.caller(), job.run().unzeroed()))
+      *job.add_start_blockers() = blocker;
+  }
+  const std::string& armed_for = status->armed_for();
+  if (!armed_for.empty() && armed_for != job.name())
+    add({ErrorCode::kCellNotArmed, "it is armed for " + armed_for, {}});
+  const std::string& holder = status->control().holder();
+  const bool by_somebody_else = std::ranges::any_of(
+      job.start_blockers(), [held = CodeText(ErrorCode::kCellLeaseHeld)](
+                                const v1::StartBlocker& one) { return one.code() == held; });
+  if (!by_somebody_else) return;
+  job.set_wait_reason(v1::WAIT_REASON_CONTROL);
+  job.set_waits_for("control: " + holder);
 }
 
 void RunQueue::GiveBack(const storage::LeasedJob& leased, const std::string& why, bool held) {

@@ -32,7 +32,8 @@ Result<std::unique_ptr<Store>> OpenStore(const StoreChoice& choice) {
                                                      : choice.url.substr(kEmbedded.size()),
                           .keep_finished_jobs = choice.keep_finished_jobs,
                           .keep_record_events = choice.keep_record_events,
-                          .log_bytes_prepared = choice.log_bytes_prepared});
+                          .log_bytes_prepared = choice.log_bytes_prepared,
+                          .program_memory = choice.program_memory});
 }
 
 }  // namespace rmlcell::storage

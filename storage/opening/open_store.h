@@ -17,6 +17,7 @@ struct StoreChoice {
   std::int64_t keep_finished_jobs = 0;  // 0: all
   std::int64_t keep_record_events = 0;
   std::int64_t log_bytes_prepared = 0;
+  ProgramMemoryOf program_memory{};  // of each machine; nothing to ask: as much as comes
 };
 
 // Whether there is a store of this kind; nothing is opened. Errors: CellConfiguration.

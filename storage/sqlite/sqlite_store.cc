@@ -150,7 +150,8 @@ Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
                           .record_events = options.keep_record_events},
                  .waiting_operations_max = options.waiting_operations_max,
                  .waiting_bytes_max = options.waiting_bytes_max,
-                 .group_window = options.group_window}}));
+                 .group_window = options.group_window,
+                 .program_memory = options.program_memory}}));
 }
 
 }  // namespace

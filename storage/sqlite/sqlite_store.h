@@ -50,6 +50,9 @@ struct SqliteOptions {
   // system then has nothing to note down. About 50 ms at the opening for 16 MiB.
   std::int64_t log_bytes_prepared = 0;
 
+  // Of each machine; nothing to ask: all hold as much as comes.
+  ProgramMemoryOf program_memory{};
+
   // Reads every page before the store is opened, and refuses a damaged file as a whole. Without it
   // damage shows when the record is read, and the rest is served. Takes seconds for each GB.
   bool check_whole_file = false;

@@ -183,7 +183,7 @@ class StagedEnd {
     for (std::size_t i = 0; job && i < executables.size(); ++i) {
       const NewExecutable& made = end.executables[i];
       const auto kept = PutExecutableBlob(context, job->machine, made.slot, made.object_revision,
-                                          executables[i].content(), {});
+                                          executables[i].content(), WithoutRoom::kDropped, {});
       if (!kept) return kept.error();
     }
     return job;

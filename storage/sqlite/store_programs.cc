@@ -319,6 +319,8 @@ Result<std::vector<ProgramSummary>> SqliteStore::PutPrograms(
   if (!staged) return staged.error();
   return writer_.Do([&](WriteContext& context) -> Result<std::vector<ProgramSummary>> {
     if (const Status known = CheckMachine(context.tables, machine); !known) return known.error();
+    const Result<MemoryUse> before = UseOfMemory(context, machine);
+    if (!before) return before.error();
     std::vector<ProgramSummary> summaries;
     for (std::size_t i = 0; i < programs.size(); ++i) {
       Result<ProgramSummary> put =
@@ -326,6 +328,10 @@ Result<std::vector<ProgramSummary>> SqliteStore::PutPrograms(
       if (!put) return put.error();
       summaries.push_back(*std::move(put));
     }
+    const Result<MemoryUse> after = UseOfMemory(context, machine);
+    if (!after) return after.error();
+    if (const Status room = CheckRoom(before->limit, before->bytes, after->bytes); !room)
+      return room.error();
     for (ScheduleRecord schedule : schedules) {
       schedule.machine = machine;
       const Result<ScheduleRecord> put =
@@ -349,7 +355,8 @@ Result<bool> SqliteStore::PutExecutable(std::string_view machine, int slot,
   const Result<StagedContent> staged = StageExecutable(writer_, executable);
   if (!staged) return staged.error();
   return writer_.Do([&](WriteContext& context) {
-    return PutExecutableBlob(context, machine, slot, object_revision, staged->content(), caller);
+    return PutExecutableBlob(context, machine, slot, object_revision, staged->content(),
+                             WithoutRoom::kRefused, caller);
   });
 }
 

@@ -32,6 +32,7 @@ struct Counters {
 struct WriteContext {
   Tables& tables;
   Counters& counters;
+  const ProgramMemoryOf& program_memory;
   const MachineTally& machines;  // as of the newest commit: what `moves` brings is not in it
   WallTime now;                  // of this write: leases, events and records all get this one time
   std::vector<JobMove> moves{};  // added to: for the tally, once they are committed

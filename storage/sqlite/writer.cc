@@ -284,8 +284,11 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
     return Outcome::kCommitted;  // not the fault of any of them, and each alone would wait as long
                                  // again
   }
-  WriteContext context{
-      .tables = connection_.tables, .counters = counters_, .machines = machine_jobs_, .now = {}};
+  WriteContext context{.tables = connection_.tables,
+                       .counters = counters_,
+                       .program_memory = options_.program_memory,
+                       .machines = machine_jobs_,
+                       .now = {}};
   Result<bool> run = RunEach(batch, context, undo, *transaction);
   if (!run) return lose(run.error());
   if (*run) {
@@ -417,6 +420,7 @@ void Writer::Tidy() {
     if (!transaction) return transaction.error();
     WriteContext context{.tables = connection_.tables,
                          .counters = counters_,
+                         .program_memory = options_.program_memory,
                          .machines = machine_jobs_,
                          .now = clock_()};
     const Result<bool> more = housekeeping_.RunSlice(context);

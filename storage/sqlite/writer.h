@@ -34,6 +34,7 @@ class Writer {
     std::size_t waiting_operations_max;
     std::size_t waiting_bytes_max;
     std::chrono::microseconds group_window;
+    ProgramMemoryOf program_memory;
   };
 
   // `changed` is called by whoever has the turn after a commit that changed jobs or events.

@@ -2,10 +2,20 @@
 
 #include "rmlcell/v1/job.pb.h"
 #include "server/jobs/job_book.h"
+#include "server/records/program_memory.h"
 
 namespace rmlcell::server {
+namespace {
 
-ServerBed::ServerBed(storage::SqliteOptions options) : bed_(std::move(options)) {
+// As the server has its store.
+storage::SqliteOptions WithMemoryLimits(storage::SqliteOptions options) {
+  options.program_memory = LimitOfMemory;
+  return options;
+}
+
+}  // namespace
+
+ServerBed::ServerBed(storage::SqliteOptions options) : bed_(WithMemoryLimits(std::move(options))) {
   Must(store().PutMachine({.id = "optimo-1", .family = "optimo", .title = "Laser"}, 0));
   Must(store().PutMachine({.id = "mill-1", .family = "rml1", .title = "Mill"}, 0));
 }

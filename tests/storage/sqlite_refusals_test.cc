@@ -213,10 +213,11 @@ class SqliteOwnWriter : public SqliteAlone {
   std::atomic<int> commits_ = 0;
 };
 
-constexpr Writer::Options kRoomy{.keep = {},
-                                 .waiting_operations_max = 100,
-                                 .waiting_bytes_max = std::size_t{100} << 20,
-                                 .group_window = {}};
+const Writer::Options kRoomy{.keep = {},
+                             .waiting_operations_max = 100,
+                             .waiting_bytes_max = std::size_t{100} << 20,
+                             .group_window = {},
+                             .program_memory = {}};
 
 // A write that runs out of memory, or meets another mistake, fails alone, and nothing of it stays.
 TEST_F(SqliteOwnWriter, WriteThatThrows) {

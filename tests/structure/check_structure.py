@@ -147,7 +147,7 @@ PUBLIC = {
     "server/auth": ["caller.h", "socket_users.h"],
     "server/events": ["event_feed.h"],
     "server/jobs": ["dispatcher.h", "assignment.h", "followed.h", "job_book.h", "job_filter.h", "running_heights.h", "running_toolpath.h", "worker_processes.h"],
-    "server/records": ["file_family.h", "job_messages.h", "known_machines.h", "machine_capabilities.h", "machine_messages.h", "machine_options.h", "program_place.h", "toolpath_levels.h", "update_mask.h"],
+    "server/records": ["file_family.h", "job_messages.h", "known_machines.h", "machine_capabilities.h", "machine_messages.h", "machine_options.h", "program_memory.h", "program_place.h", "toolpath_levels.h", "update_mask.h"],
     "server/host": ["host_process.h"],
     "server/runs": ["run_products.h", "run_queue.h"],
     "server/machines": ["host_entries.h", "host_processes.h", "hosts.h", "machine_statuses.h", "recordings.h",

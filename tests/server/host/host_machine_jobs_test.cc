@@ -232,6 +232,40 @@ TEST_F(HostJobsTest, WhatKeepsAJobFromItsMachine) {
   EXPECT_EQ(Status().alarms(0).diagnostic().code(), Blockers().front());
 }
 
+// LIVE-5.02 (a): all of it at once, in the status and with the refusal, where what refused it is
+// first.
+TEST_F(HostJobsTest, AllThatKeepsAJobIsTold) {
+  Make();
+  Control();
+  Do(Mode(v1::OPERATING_MODE_MANUAL, token_));
+  v1::HostOrder door;
+  door.mutable_inputs()->add_inputs()->set_door_open(true);
+  door.mutable_inputs()->set_control_token(token_);
+  ASSERT_FALSE(Do(door).has_refusal());
+  EXPECT_THAT(Blockers(), ElementsAre("CELL-E9423", "CELL-E9433", "CELL-E9408"));
+  const auto told = [](const v1::HostOrderAnswer& answer) {
+    std::vector<std::string> codes = {answer.refusal().code() + ":"};
+    for (const v1::StartBlocker& one : answer.start_blockers()) codes.push_back(one.code());
+    return codes;
+  };
+  EXPECT_THAT(told(Do(Job())), ElementsAre("CELL-E9423:", "CELL-E9423", "CELL-E9433"));
+  EXPECT_THAT(told(Do(Start("a start"))), ElementsAre("CELL-E9423:", "CELL-E9423", "CELL-E9433"));
+  v1::HostOrder of_bert = Job();
+  of_bert.set_number(99);
+  of_bert.set_caller("bert");
+  EXPECT_THAT(told(host_->Do(of_bert, now_)),
+              ElementsAre("CELL-E9408:", "CELL-E9408", "CELL-E9423", "CELL-E9433"));
+  v1::HostOrder emergency;
+  emergency.mutable_emergency_stop();
+  Do(emergency);
+  EXPECT_EQ(Blockers().size(), 4U);
+  EXPECT_EQ(Blockers().front(), Status().alarms(0).diagnostic().code());
+  // What is wrong with the order itself is no matter of how the machine stands.
+  v1::HostOrder without_token = Start();
+  without_token.mutable_start()->clear_control_token();
+  EXPECT_THAT(told(Do(without_token)), ElementsAre("CELL-E9420:"));
+}
+
 TEST_F(HostJobsTest, AMachineThatWaitsForAnInspectionBeginsNoJob) {
   Make({}, true);
   EXPECT_THAT(Blockers(), ElementsAre("CELL-E9409"));

@@ -45,6 +45,12 @@ class AssignmentTest : public testing::Test {
     Must(bed.store().PutPrograms(
         machine, {{.slot = slot, .name = "p" + std::to_string(slot), .object = object}}, {}));
   }
+  // A memory of more than the megabyte that an Optimo has.
+  void WidenMemory() {
+    storage::MachineRecord machine = Must(bed.store().GetMachine("optimo-1"));
+    machine.parameters["CMOS_SIZE"] = "1e9";
+    Must(bed.store().PutMachine(machine, storage::kAnyRevision));
+  }
   static std::map<int, std::string> Contents(const v1::WorkerAssignment& assignment) {
     std::map<int, std::string> contents;
     for (const v1::AssignedProgram& program : assignment.programs())
@@ -249,6 +255,7 @@ TEST_F(AssignmentTest, BringsTitlesAndTheExecutableOfTheMainProgram) {
 // Programs of up to 64 KiB go with the assignment, as long as all of them together have up to 1
 // MiB.
 TEST_F(AssignmentTest, FollowsTheAssignmentFromAByteMoreThanGoesWithIt) {
+  WidenMemory();
   constexpr std::size_t kInline = 65'536;
   Put(1, std::string(kInline + 1, 'm'));
   for (int slot = 2; slot <= 17; ++slot) Put(slot, std::string(kInline, 'a'));
@@ -280,6 +287,7 @@ TEST_F(AssignmentTest, WhatCannotBeReadIsAnError) {
 
 // One message is limited: many programs of moderate size follow it as well.
 TEST_F(AssignmentTest, WhatDoesNotFitIntoOneMessageFollowsIt) {
+  WidenMemory();
   for (int slot = 1; slot <= 40; ++slot)
     Put(slot, std::string(60'000, static_cast<char>('a' + slot % 26)));
   const auto made = Must(MakeAssignment(bed.store(), config, Lease(Stored(1))));

@@ -45,6 +45,40 @@ class ProgramBookTest : public testing::Test {
   ProgramBook programs{bed.store(), config};
 };
 
+// OPT-B.73, OPT-E.7109: what would exceed the memory of its machine is refused, and changes
+// nothing.
+TEST_F(ProgramBookTest, WhatHasNoRoomIsRefused) {
+  storage::MachineRecord machine = Must(bed.store().GetMachine("optimo-1"));
+  machine.parameters = {{"CMOS_SIZE", "2000"}};
+  Must(bed.store().PutMachine(machine, storage::kAnyRevision));
+  std::string large;
+  for (int i = 0; i < 1000; ++i) large += "DELAY 1\n";
+  const auto refused = Store(45, large);
+  EXPECT_EQ(CodeOf(refused), ErrorCode::kCmosFull);
+  EXPECT_THAT(refused.error.error.detail, testing::HasSubstr("the program memory has 2000 bytes"));
+  EXPECT_EQ(CodeOf(programs.Get(Name(45))), ErrorCode::kProgramMissing);
+  // Said as well where it is only asked.
+  EXPECT_EQ(CodeOf(programs.Store(
+                {.name = Name(45), .file_name = "part.S", .bytes = large, .validate_only = true})),
+            ErrorCode::kCmosFull);
+  ASSERT_TRUE(Store(45, "DELAY 1\n"));
+  const std::int64_t object = Get(45).object_bytes();
+  const std::string executable = ExecutableOf(45, "DELAY 1\n");
+  machine = Must(bed.store().GetMachine("optimo-1"));
+  machine.parameters = {{"CMOS_SIZE", "1000"}};
+  Must(bed.store().PutMachine(machine, storage::kAnyRevision));
+  std::string rest = "DELAY 2\n";
+  while (Store(46, rest)) rest += "DELAY 2\n";
+  const std::int64_t left = 1000 - object - Get(46).object_bytes();
+  ASSERT_LT(left, static_cast<std::int64_t>(executable.size()));
+  EXPECT_EQ(CodeOf(StoreExecutable(145, executable)), ErrorCode::kCmosFull);
+  EXPECT_FALSE(Get(45).has_executable_bytes());
+  // A mill keeps what comes.
+  EXPECT_TRUE(programs.Store({.name = Name(1, "mill-1"),
+                              .file_name = "a.rml",
+                              .bytes = "PA;" + std::string(100'000, ';')}));
+}
+
 // OPT-1.10: objects under numbers 1 to 99.
 TEST_F(ProgramBookTest, StoresSourceAsObjectAndGivesBothBack) {
   const auto stored = Store(45, "SPEED 5\nSTOP\n");

@@ -91,6 +91,27 @@ class ProjectTransferTest : public testing::Test {
   ProjectTransfer transfer{bed.store(), projects, programs};
 };
 
+// OPT-B.73: all of a project or nothing of it.
+TEST_F(ProjectTransferTest, WhatHasNoRoomIsNotBrought) {
+  v1::CreateProjectRequest request;
+  request.set_project_id("large");
+  for (const int slot : {20, 21}) {
+    v1::ProjectProgram& program = *request.mutable_project()->add_programs();
+    program.set_slot(slot);
+    program.mutable_source()->set_file_name("a.S");
+    std::string text;
+    for (int i = 0; i < 200; ++i) text += "DELAY 1\n";
+    program.mutable_source()->set_content(text);
+  }
+  Made(projects.Create(request, "anna"));
+  storage::MachineRecord machine = Must(bed.store().GetMachine("optimo-1"));
+  machine.parameters = {{"CMOS_SIZE", "1000"}};
+  Must(bed.store().PutMachine(machine, storage::kAnyRevision));
+  EXPECT_EQ(Refusal(Bring("large", true)), ErrorCode::kCmosFull);
+  EXPECT_EQ(Refusal(Bring("large")), ErrorCode::kCmosFull);
+  EXPECT_TRUE(Must(bed.store().ListPrograms("optimo-1", 0, 99)).empty());
+}
+
 // OPT-8.68: to the PC and back, programs and schedules are identical.
 TEST_F(ProjectTransferTest, ToThePcAndBackNothingIsChanged) {
   const std::string text = "SPEED 5   ; slow\nSTOP\n";

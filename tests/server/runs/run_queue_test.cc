@@ -23,6 +23,7 @@ class RunQueueTest : public testing::Test {
   void SetUp() override {
     hosts.OnNews([this](const std::string& machine) { runs.Wake(machine); });
     book.OnRunWaits([this](const std::string& machine) { runs.Wake(machine); });
+    book.OnToldToWait([this](v1::Job& job) { runs.TellWhyItWaits(job); });
     v1::HostHello hello;
     hello.set_join_token("secret");
     hello.set_machine("machines/mill-1");
@@ -284,6 +285,55 @@ TEST_F(RunQueueTest, AJobWaitsUntilItsMachineCanStart) {
   Tell(status);
   runs.WakeAll();
   EXPECT_TRUE(NewestOrder(1).has_run_job());
+}
+
+// LIVE-5.02, LIVE-4.05: at submit and whenever it is asked for it tells all that keeps it waiting,
+// and who has control.
+TEST_F(RunQueueTest, AJobThatWaitsTellsWhy) {
+  const auto codes = [](const v1::Job& job) {
+    std::vector<std::string> told;
+    for (const v1::StartBlocker& one : job.start_blockers()) told.push_back(one.code());
+    return told;
+  };
+  v1::MachineStatus status = Idle();
+  Block(status, "CELL-E9423");
+  Block(status, "CELL-E9433");
+  Block(status, "CELL-E9408");
+  status.mutable_control()->set_holder("bert");
+  Tell(status);
+  v1::SubmitJobRequest request;
+  request.mutable_job()->set_kind(v1::JOB_KIND_RUN);
+  request.mutable_job()->set_machine("machines/mill-1");
+  request.mutable_job()->mutable_inline_program()->set_file_name("a.rml");
+  request.mutable_job()->mutable_inline_program()->set_content("PA;PU100,0;");
+  request.mutable_job()->add_start_blockers()->set_code("of the client");
+  std::promise<v1::Job> submitted;
+  book.Submit(request, "anna", [&](Result<v1::Job> made) { submitted.set_value(*made); });
+  const v1::Job job = submitted.get_future().get();
+  EXPECT_THAT(codes(job), testing::ElementsAre("CELL-E9423", "CELL-E9433", "CELL-E9408"));
+  EXPECT_EQ(job.wait_reason(), v1::WAIT_REASON_CONTROL);
+  EXPECT_EQ(job.waits_for(), "control: bert");
+  const v1::Job asked = Must(book.Get(job.name()));
+  EXPECT_THAT(codes(asked), testing::ElementsAre("CELL-E9423", "CELL-E9433", "CELL-E9408"));
+  EXPECT_EQ(asked.waits_for(), "control: bert");
+
+  // His own control does not keep it.
+  status.mutable_control()->set_holder("anna");
+  Tell(status);
+  EXPECT_THAT(codes(Must(book.Get(job.name()))), testing::ElementsAre("CELL-E9423", "CELL-E9433"));
+  EXPECT_EQ(Must(book.Get(job.name())).wait_reason(), v1::WAIT_REASON_MACHINE_NOT_READY);
+  status = Idle();
+  status.set_armed_for("jobs/99");
+  Tell(status);
+  EXPECT_THAT(codes(Must(book.Get(job.name()))), testing::ElementsAre("CELL-E9406"));
+  status = Idle();
+  status.set_state(v1::MACHINE_STATE_LOST);
+  Tell(status);
+  EXPECT_THAT(codes(Must(book.Get(job.name()))), testing::ElementsAre("CELL-E9424"));
+  Tell(Idle());
+  Accept(NewestOrder(1));
+  Settle();
+  EXPECT_THAT(codes(Must(book.Get(job.name()))), testing::IsEmpty());
 }
 
 // LIVE-5.02: axes without reference keep it waiting, unless its program zeroes them itself.

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/common.pb.h"
 #include "rmlcell/v1/job.pb.h"
 #include "rmlcell/v1/machine.pb.h"
 #include "rmlcell/v1/machine_control.pb.h"
+#include "server/services/host_refusal.h"
 #include "tests/engine/core/untold.h"
 
 namespace rmlcell::server {
@@ -30,6 +32,32 @@ std::vector<Diagnostic> Findings(std::size_t count) {
                      .severity = Severity::kAlarm,
                      .detail = std::string(100, 'd')};
   return std::vector<Diagnostic>(count, finding);
+}
+
+// LIVE-5.02: all that fails, where a machine refuses a start.
+TEST(CallStatus, ARefusedStartTellsAllThatIsInTheWay) {
+  v1::HostOrderAnswer answer;
+  answer.mutable_refusal()->set_code("CELL-E9423");
+  answer.mutable_refusal()->set_message("jobs run in REMOTE alone");
+  answer.mutable_machine_refusal()->set_machine("machines/mill-1");
+  for (const char* code : {"CELL-E9423", "CELL-E9433"}) {
+    v1::StartBlocker& blocker = *answer.add_start_blockers();
+    blocker.set_code(code);
+    blocker.set_message(std::string("why ") + code);
+  }
+  google::rpc::Status rich;
+  ASSERT_TRUE(rich.ParseFromString(RefusalOf(answer).error_details()));
+  google::rpc::PreconditionFailure all;
+  for (const google::protobuf::Any& one : rich.details()) one.UnpackTo(&all);
+  ASSERT_EQ(all.violations_size(), 2);
+  EXPECT_EQ(all.violations(0).type(), "CELL-E9423");
+  EXPECT_EQ(all.violations(1).type(), "CELL-E9433");
+  EXPECT_EQ(all.violations(1).subject(), "machines/mill-1");
+  EXPECT_EQ(all.violations(1).description(), "why CELL-E9433");
+  answer.clear_start_blockers();
+  ASSERT_TRUE(rich.ParseFromString(RefusalOf(answer).error_details()));
+  for (const google::protobuf::Any& one : rich.details())
+    EXPECT_FALSE(one.Is<google::rpc::PreconditionFailure>());
 }
 
 TEST(CallStatus, HasCodeTextAndFindings) {
