@@ -32,11 +32,12 @@ kills() {
   [ $bad -eq 0 ] || fail kills
 }
 
-# Hosts of machines, the server, or both are killed in the middle of runs and of RUN jobs.
+# Hosts of machines, the server, or both are killed in the middle of runs, of RUN jobs, of jogs, of teaching and of
+# recovery, and stopped for up to 20 s.
 hosts() {
   local test
-  for test in test_live.LiveTest test_runs.RunsTest; do
-    if (cd tests/integration && LIVE_ROUNDS=$rounds LIVE_SEED=${SEED:-1} /usr/bin/python3 -B -m unittest "$test.test_crash_rounds") \
+  for test in test_live.LiveTest.test_crash_rounds test_runs.RunsTest.test_crash_rounds test_live_crashes.LiveCrashesTest; do
+    if (cd tests/integration && LIVE_ROUNDS=$rounds LIVE_STOPPED_S=20 LIVE_SEED=${SEED:-1} /usr/bin/python3 -B -m unittest "$test") \
       >"build/long/$test.log" 2>&1; then
       note "hosts: $rounds rounds of $test, none failed"
     else
@@ -57,7 +58,7 @@ crashes() {
 # What has threads under ThreadSanitizer.
 races() {
   local targets=(server_events_test server_log_test server_jobs_test server_host_test
-    server_machines_test server_runs_test storage_sqlite_test storage_sqlite_conformance_test)
+    server_host_threads_test server_machines_test server_runs_test storage_sqlite_test storage_sqlite_conformance_test)
   cmake --preset tsan >/dev/null
   ninja -C build/tsan "${targets[@]}" >build/long/tsan.log
   for target in "${targets[@]}"; do

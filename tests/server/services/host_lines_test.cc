@@ -1,5 +1,5 @@
-// A host and the servers of its cell, over the wire (live.md 3.06).
-#include <grpcpp/grpcpp.h>
+// A host and the servers of its cell, over the wire, or without it for the race detector
+// (live.md 3.06).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,10 +15,10 @@
 #include "server/events/event_feed.h"
 #include "server/host/host_process.h"
 #include "server/machines/hosts.h"
-#include "server/services/host_service.h"
 #include "tests/server/fake_link.h"
 #include "tests/server/forwarding_store.h"
 #include "tests/server/server_bed.h"
+#include "tests/server/services/listening.h"
 
 namespace rmlcell::server {
 namespace {
@@ -59,20 +59,15 @@ struct OneServer {
                .executor = executor,
                .server = name,
                .join_token = "secret",
-               .servers = servers}) {
-    grpc::ServerBuilder builder;
-    builder.AddListeningPort(AddressOf(folder, name), grpc::InsecureServerCredentials());
-    builder.RegisterService(&service);
-    server = builder.BuildAndStart();
-  }
+               .servers = servers}),
+        listening(AddressOf(folder, name), hosts, executor) {}
   ~OneServer() { End(); }
   static std::string AddressOf(const std::string& folder, const std::string& name) {
     return "unix:" + folder + "/" + name;
   }
   void End() {
     hosts.CloseAll();
-    server->Shutdown(std::chrono::system_clock::now());
-    server->Wait();
+    listening.End();
   }
 
   v1::MachineState State() {
@@ -97,9 +92,7 @@ struct OneServer {
   EventFeed feed;
   Executor executor{4};
   Hosts hosts;
-  Gate gate{"a secret of the web port"};
-  HostService service{{gate, executor, executor, 1 << 20}, hosts};
-  std::unique_ptr<grpc::Server> server;
+  Listening listening;
 };
 
 class HostLinesTest : public testing::Test {

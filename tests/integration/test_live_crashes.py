@@ -1,0 +1,240 @@
+#!/usr/bin/env python3
+"""Hosts of machines that are killed or stopped while somebody jogs or teaches, while they recover, and in runs (live.md 10.04)."""
+import os
+import random
+import signal
+import threading
+import time
+import unittest
+
+from cell import cell_pb2, eventually, grpc, program_pb2
+from live import Live, LiveTestCase, hosts_of, new_id
+from rmlcell.v1 import handbox_pb2  # noqa: E402
+from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
+from rmlcell.v1.machine_control_pb2 import KeyAction  # noqa: E402
+from rmlcell.v1.machine_status_pb2 import HoldReason  # noqa: E402
+from test_by_hand import OPTIMO, Handbox
+
+ROUNDS = int(os.environ.get("LIVE_ROUNDS", "3"))
+SEED = int(os.environ.get("LIVE_SEED", "1"))
+STOPPED_S = float(os.environ.get("LIVE_STOPPED_S", "2.5"))  # a host is stopped for so long at most
+RECOVERS = ("STARTING", "RECOVERING", "LOST")
+STANDS = ("IDLE", "NOT_ZEROED", "INSPECT")
+
+
+def name_of(status):
+    return MachineState.Name(status.state)[len("MACHINE_STATE_"):]
+
+
+def axes_of(status):
+    return [round(one.value, 6) for one in status.axes]
+
+
+class LiveCrashesTest(LiveTestCase):
+    def setUp(self):
+        super().setUp()
+        self.choose = random.Random(SEED)
+
+    def optimo(self):
+        self.live = Live(self, self.cell, OPTIMO)
+        self.live.enable()
+        return self.live
+
+    def recovered(self, fence):
+        """How it stands with its next host."""
+        return eventually(lambda: (lambda now: now if now.fence > fence and name_of(now) not in RECOVERS else None)(self.live.status()))
+
+    def settle(self, status):
+        """A person looks, and knows why its hosts die."""
+        if name_of(status) == "INSPECT":
+            self.live.acquire(take_over=True, reason="a test")
+            self.live.ask("ConfirmMachine", confirmations=[1])
+        self.live.enable()
+
+    def stands_still(self, status, place):
+        """LIVE-2.05: nothing moves by itself behind a recovery."""
+        self.assertIn(name_of(status), STANDS, place)
+        time.sleep(0.3)
+        later = self.live.status()
+        self.assertEqual(axes_of(later), axes_of(status), place)
+        self.assertEqual(name_of(later), name_of(status), place)
+
+    def told(self):
+        """What the log tells of machines, in order."""
+        events = []
+        try:
+            for message in self.cell.cell_service().WatchCell(cell_pb2.WatchCellRequest(after_sequence=0), timeout=3):
+                if message.HasField("event") and message.event.HasField("machine"):
+                    events.append(message.event.machine)
+        except grpc.RpcError:
+            pass
+        return events
+
+    # In the middle of a key that moves an axis: the machine stands behind, where the key had brought it to or before.
+    def test_rounds_of_a_jog(self):
+        live = self.optimo()
+        answered = []
+        for round_ in range(ROUNDS):
+            live.acquire(take_over=True, reason="a test", ttl={"seconds": 60})
+            box = Handbox(live)
+            box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT")
+            begun = live.status()
+            key = self.choose.choice(("X+", "X-", "Y+", "Y-"))
+            pressed = threading.Event()
+
+            whole = box.press
+
+            def press(name, action="KEY_ACTION_TAP"):
+                answer = whole(name, action)
+                if action == "KEY_ACTION_PRESS":
+                    answered.append(f"HANDBOX {name}")
+                    pressed.set()
+                return answer
+            box.press = press
+
+            def jog():
+                try:
+                    box.hold(key, 5.0)
+                except (grpc.RpcError, AssertionError):
+                    pressed.set()
+            hand = threading.Thread(target=jog, daemon=True)
+            hand.start()
+            pressed.wait(10)
+            time.sleep(self.choose.random() * 0.5)
+            before = live.status()
+            os.kill(live.host(), signal.SIGKILL)
+            place = f"seed {SEED}, round {round_}: {key}, {name_of(before)}"
+            after = self.recovered(before.fence)
+            hand.join(60)
+            self.stands_still(after, place)
+            self.assertLessEqual(after.virtual_time_ns, before.virtual_time_ns + 10**9, place)
+            for axis, (first, seen, now) in enumerate(zip(axes_of(begun), axes_of(before), axes_of(after))):
+                # Not behind where it began, and not farther than it runs on from where it was seen.
+                low, high = sorted((first, seen))
+                self.assertTrue(low - 300 <= now <= high + 300 if axis < 2 else abs(now - first) < 1e-3, f"{place}: {axis} {first} {seen} {now}")
+            self.settle(after)
+        keys = [one.input_applied.input.key for one in self.told() if one.HasField("input_applied") and one.input_applied.input.HasField("key")]
+        self.assertEqual([one.key for one in keys if one.action == KeyAction.Value("KEY_ACTION_PRESS")], answered)
+
+    # While steps are taught: the program has what was seen in it, perhaps what was on its way, and what the book of teaching tells.
+    def test_rounds_of_teaching(self):
+        live = self.optimo()
+        slot = 12
+        for round_ in range(ROUNDS):
+            live.acquire(take_over=True, reason="a test", ttl={"seconds": 60})
+            box = Handbox(live)
+            box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT")
+            if round_ == 0:
+                box.keys("REC")
+                eventually(lambda: self.steps(slot))
+            seen = len(self.steps(slot))
+            asked = 0
+            until = time.monotonic() + 0.2 + self.choose.random() * 0.8
+            host = live.host()
+
+            def kill():
+                time.sleep(max(0.0, until - time.monotonic()))
+                os.kill(host, signal.SIGKILL)
+            before = live.status()
+            killer = threading.Thread(target=kill)
+            killer.start()
+            try:
+                while True:
+                    box.keys("DLY DEL 3 ENT")
+                    asked += 1
+                    box.keys("REC")
+                    eventually(lambda: len(self.steps(slot)) == seen + 1, 1)
+                    seen += 1
+            except (grpc.RpcError, AssertionError):
+                pass
+            killer.join()
+            place = f"seed {SEED}, round {round_}: {seen} steps seen, {asked} asked for"
+            after = self.recovered(before.fence)
+            self.stands_still(after, place)
+            steps = len(self.steps(slot))
+            self.assertIn(steps, (seen, seen + 1), place)
+            book = box.stub.ListTeachEntries(handbox_pb2.ListTeachEntriesRequest(machine=OPTIMO, program=slot, page_size=1000)).entries
+            inserted = sum(handbox_pb2.TeachEntry.Act.Name(one.act) == "ACT_INSERT" for one in book)
+            self.assertEqual(sum("DELAY" in line for line in self.steps(slot)), inserted, place)
+            self.settle(after)
+
+    def steps(self, slot):
+        try:
+            text = self.cell.programs().GetProgramContent(program_pb2.GetProgramContentRequest(
+                name=f"{OPTIMO}/programs/{slot}", form="PROGRAM_FORM_LISTING")).content.decode()
+        except grpc.RpcError:
+            return []
+        return [line.strip() for line in text.splitlines() if line.strip()]
+
+    # And again while the next hosts take over: what was open is told to be over once, and it stands where the first mark says.
+    def test_rounds_of_recovery(self):
+        self.live.enable()
+        self.live.store()
+        for round_ in range(ROUNDS):
+            self.live.acquire(take_over=True, reason="a test", ttl={"seconds": 60})
+            self.live.ask("StartMachine", program=5)
+            time.sleep(0.1 + self.choose.random() * 0.6)
+            before = self.live.status()
+            os.kill(self.live.host(), signal.SIGKILL)
+            killed = 0
+            for _ in range(self.choose.randrange(1, 3)):
+                process = eventually(lambda: hosts_of(self.cell))[0]
+                time.sleep(self.choose.random() * 0.15)
+                try:
+                    os.kill(process, signal.SIGKILL)
+                    killed += 1
+                except ProcessLookupError:
+                    continue
+                eventually(lambda gone=process: gone not in hosts_of(self.cell))
+                self.live.enable()
+            place = f"seed {SEED}, round {round_}: {killed} of its next hosts were killed"
+            after = self.recovered(before.fence)
+            self.assertEqual(name_of(after), "INSPECT", place)
+            self.stands_still(after, place)
+            self.assertLessEqual(after.virtual_time_ns, before.virtual_time_ns + 10**9, place)
+            self.settle(after)
+        self.live.ask("DisableMachine")
+        events = self.told()
+        begun = [one.run_begun.run for one in events if one.HasField("run_begun")]
+        over = [one.run_over.run for one in events if one.HasField("run_over")]
+        self.assertEqual(begun, sorted(set(begun)), f"seed {SEED}")
+        self.assertEqual(over, begun, f"seed {SEED}")
+        fences = [one.fence for one in events if one.fence]
+        self.assertEqual(fences, sorted(fences), f"seed {SEED}")
+
+    # Stopped and let go on: the same host has the machine, no time of it falls, and one that was late holds the run.
+    def test_rounds_of_a_host_that_stands_still(self):
+        self.live.enable()
+        self.live.store()
+        for round_ in range(ROUNDS):
+            self.live.acquire(take_over=True, reason="a test", ttl={"seconds": 60})
+            request_id = new_id()
+            self.live.ask("StartMachine", program=5, request_id=request_id)
+            time.sleep(0.1 + self.choose.random() * 0.3)
+            before = self.live.status()
+            stopped = 0.05 + self.choose.random() * (STOPPED_S - 0.05) if round_ else STOPPED_S
+            process = self.live.host()
+            os.kill(process, signal.SIGSTOP)
+            time.sleep(stopped)
+            os.kill(process, signal.SIGCONT)
+            place = f"seed {SEED}, round {round_}: {stopped:.2f} s"
+            after = eventually(lambda: (lambda now: now if name_of(now) in ("RUNNING", "HELD") and now.age_ns < 10**8 else None)(self.live.status()))
+            self.assertEqual(after.fence, before.fence, place)
+            self.assertGreaterEqual(after.virtual_time_ns, before.virtual_time_ns, place)
+            if stopped > 1.3:
+                held = self.live.wait("HELD")
+                self.assertIn(HoldReason.Name(held.hold_reason), ("HOLD_REASON_LATE", "HOLD_REASON_SERVER_LOST"), place)
+                self.assertLess(held.virtual_time_ns - before.virtual_time_ns, (stopped + 3.0) * 10**9, place)
+            self.live.ask("StartMachine", program=5, request_id=request_id)  # answered again, begun no more
+            self.live.ask("AbortRun")
+            self.live.wait("IDLE")
+        events = self.told()
+        begun = [one.run_begun.run for one in events if one.HasField("run_begun")]
+        self.assertEqual(len(begun), ROUNDS)
+        self.assertEqual([one.run_over.run for one in events if one.HasField("run_over")], begun)
+        times = [(one.fence, one.virtual_time_ns) for one in events if one.HasField("input_applied")]
+        self.assertEqual(times, sorted(times))
+
+
+if __name__ == "__main__":
+    unittest.main()
