@@ -243,7 +243,8 @@ void JobBook::TellRun(const storage::JobRecord& job) {
 }
 
 void JobBook::AddWhyItWaits(v1::Job& job) const {
-  if (told_to_wait_ && job.wait_reason() == v1::WAIT_REASON_MACHINE_NOT_READY) told_to_wait_(job);
+  const bool waits = job.kind() == v1::JOB_KIND_RUN && job.state() == v1::Job::STATE_QUEUED;
+  if (told_to_wait_ && waits) told_to_wait_(job);
 }
 
 Result<v1::Job> JobBook::Get(std::string_view name) {

@@ -43,8 +43,8 @@ class JobBook {
     run_waits_ = std::move(waits);
   }
 
-  // Called with a RUN that waits for its machine, as GetJob and SubmitJob are about to tell it:
-  // with what keeps that from beginning it. From any thread, and not for long. Set as above.
+  // Called with a RUN that waits, as GetJob and SubmitJob are about to tell it: with what keeps its
+  // machine from beginning it. From any thread, and not for long. Set as above.
   void OnToldToWait(std::function<void(v1::Job&)> told) { told_to_wait_ = std::move(told); }
 
   // A new job of the same program, as that was: of a RUN that was interrupted. `continues`: it is

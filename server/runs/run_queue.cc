@@ -518,7 +518,6 @@ void RunQueue::TellWhyItWaits(v1::Job& job) const {
     blocker.set_message(detail.message());
     blocker.set_advice(detail.advice());
   };
-  if (job.wait_reason() != v1::WAIT_REASON_MACHINE_NOT_READY) return;
   const auto machine = ParseMachineName(job.machine());
   const auto status = machine ? needs_.hosts.StatusOf(*machine) : std::nullopt;
   const bool heard_of = status && status->state() != v1::MACHINE_STATE_LOST &&
@@ -535,7 +534,7 @@ void RunQueue::TellWhyItWaits(v1::Job& job) const {
   const bool by_somebody_else = std::ranges::any_of(
       job.start_blockers(), [held = CodeText(ErrorCode::kCellLeaseHeld)](
                                 const v1::StartBlocker& one) { return one.code() == held; });
-  if (!by_somebody_else) return;
+  if (!by_somebody_else || job.wait_reason() != v1::WAIT_REASON_MACHINE_NOT_READY) return;
   job.set_wait_reason(v1::WAIT_REASON_CONTROL);
   job.set_waits_for("control: " + holder);
 }

@@ -61,8 +61,8 @@ class RunQueue {
   // continue_job. Where its machine refuses that, the first waits on, and the other has ended. May
   // block. `done` is called once, on any thread. LIVE-5.04, 5.10
   void BeginByPerson(std::int64_t job, v1::HostOrder order, Hosts::Answered done);
-  // Into a RUN that waits for its machine: all that keeps it from beginning now, and who has
-  // control, where that is somebody else. LIVE-4.05, LIVE-5.02
+  // Into a RUN that waits: all that keeps its machine from beginning it now; and who has control,
+  // where it waits for nothing but its machine, and somebody else is there. LIVE-4.05, LIVE-5.02
   void TellWhyItWaits(v1::Job& job) const;
   // The run is over as soon as it stands.
   void Abort(const std::string& job, const std::string& caller, const std::string& request_id);

@@ -206,6 +206,7 @@ class RunsTest(LiveTestCase):
         job = self.job(name)
         self.assertEqual(job_pb2.WaitReason.Name(job.wait_reason), "WAIT_REASON_MACHINE_NOT_READY")
         self.assertEqual(job.waits_for, MILL)
+        self.assertEqual([one.code for one in job.start_blockers], ["CELL-E9424"])
         self.enable()
         self.becomes(name, "SUCCEEDED")
         self.live.acquire(ttl={"seconds": 60})
@@ -215,6 +216,8 @@ class RunsTest(LiveTestCase):
         time.sleep(0.3)  # no verdict: whatever would begin has begun
         self.assertEqual((self.state(second), self.state(third)), ("QUEUED", "QUEUED"))
         self.assertIn("CELL-E9423", [one.code for one in self.live.status().start_blockers])
+        self.assertIn("CELL-E9423", [one.code for one in self.job(second).start_blockers])
+        self.assertIn("CELL-E9423", [one.code for one in self.job(third).start_blockers])
         self.live.ask("SetMode", mode="OPERATING_MODE_REMOTE")
         self.live.ask("ReleaseControl")
         self.becomes(second, "SUCCEEDED")
@@ -232,6 +235,12 @@ class RunsTest(LiveTestCase):
         self.assertEqual(self.job(stopped).outcome.code, "OPT-E7507")
         good = self.submit("DELAY 0.1\n", live.machine, "A.S")
         self.assertEqual(self.becomes(good, "SUCCEEDED", "FAILED"), "SUCCEEDED")
+        # OPT-3.44: one that is stored takes the place of its number, and no other goes.
+        self.cell.machines().PutLaserSchedule(machine_pb2.PutLaserScheduleRequest(laser_schedule={
+            "name": f"{live.machine}/laserSchedules/12", "power_percent": 40}))
+        for kind in ("JOB_KIND_RUN", "JOB_KIND_SIMULATE"):
+            other = self.submit("WORKDEF 2,0 (11)\nWORK 2,0/ON\nWORK 2,0/OFF\n", live.machine, "A.S", kind=kind)
+            self.assertEqual(self.becomes(other, "SUCCEEDED", "FAILED"), "SUCCEEDED", kind)
 
     # LIVE-5.20, host killed: INTERRUPTED with its place, and the next waits until a person has looked.
     def test_a_host_that_is_killed_interrupts_its_job(self):

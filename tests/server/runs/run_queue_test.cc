@@ -317,6 +317,11 @@ TEST_F(RunQueueTest, AJobThatWaitsTellsWhy) {
   EXPECT_THAT(codes(asked), testing::ElementsAre("CELL-E9423", "CELL-E9433", "CELL-E9408"));
   EXPECT_EQ(asked.waits_for(), "control: bert");
 
+  // It is told also where something else keeps it first.
+  Must(book.HoldBack(job.name(), "anna"));
+  EXPECT_EQ(codes(Must(book.Get(job.name()))).size(), 3U);
+  EXPECT_EQ(Must(book.Get(job.name())).wait_reason(), v1::WAIT_REASON_HELD);
+  Must(book.LetGo(job.name(), "anna"));
   // His own control does not keep it.
   status.mutable_control()->set_holder("anna");
   Tell(status);
