@@ -218,7 +218,6 @@ void Cell::Parts::MakeHosts(const std::string& host_token) {
     return host_processes != nullptr && host_processes->IsEnabled(machine);
   });
   hosts->OnNews([this](const std::string& machine) { runs->Wake(machine); });
-  book->OnToldToWait([this](v1::Job& job) { runs->TellWhyItWaits(job); });
   run_products = std::make_unique<RunProducts>(
       RunProducts::Needs{.store = *store,
                          .hosts = *hosts,
