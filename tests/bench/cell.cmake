@@ -17,7 +17,7 @@ if(NOT RMLCELL_ENGINE_ONLY)
     LINKS rmlcell::proto)
   rmlcell_executable(bench_cell_live
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_live.cc
-    LINKS rmlcell::proto)
+    LINKS rmlcell::proto SQLite::SQLite3)
   foreach(bench IN ITEMS submit status stop live watch watch_hour)
     set_property(TARGET bench_cell_${bench}
                  PROPERTY LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,rmlcell_proto")
