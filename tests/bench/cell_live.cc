@@ -192,6 +192,13 @@ void Print(const char* what, const std::vector<double>& values) {
               Quantile(values, 0.99), Quantile(values, 1.0), values.size());
 }
 
+void Print(const char* when, const Times& times) {
+  std::printf("%s:\n", when);
+  Print("STOP, call to its answer", times.stops);
+  Print("RESUME, written to the disk first", times.resumes);
+  Print("status, age as it arrives", times.ages);
+}
+
 // In percent.
 double ShareOfStanding(LiveMachine& machine) {
   const pid_t host = machine.host();
@@ -227,17 +234,9 @@ int main(int argc, char** argv) {
     machine.Watch();
     machine.Start();
     const Times idle = Measure(machine, stops);
-    std::printf("nothing else:\n");
-    Print("STOP, call to its answer", idle.stops);
-    Print("RESUME, written to the disk first", idle.resumes);
-    Print("status, age as it arrives", idle.ages);
-
+    Print("nothing else", idle);
     const Times busy = BesideClients(server, [&] { return Measure(machine, stops); });
-    std::printf("beside %d clients that check:\n", kClients);
-    Print("STOP, call to its answer", busy.stops);
-    Print("RESUME, written to the disk first", busy.resumes);
-    Print("status, age as it arrives", busy.ages);
-
+    Print("beside clients that check", busy);
     const Times stopped = BesideClients(
         server, [&] { return MeasureStopped(machine, folder / "store" / "cell.db", stops); });
     Print("STOP, the store stopped", stopped.stops);
