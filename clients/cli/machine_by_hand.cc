@@ -13,6 +13,7 @@
 #include "clients/cli/terminal.h"
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
+#include "proto/bridge/machine_inputs.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -128,7 +129,7 @@ int PressAll(const Remote& remote, const MachineAct& act, const Control& control
                                    : PressOne(keys, act.values[i], v1::KEY_ACTION_TAP);
     if (!done.ok()) return Refused(done, remote);
     // A step of one key is over before the next one.
-    const bool steps = act.values[i].ends_with('+') || act.values[i].ends_with('-');
+    const bool steps = bridge::JogKeyOf(act.values[i]).has_value();
     if (held || (steps && i + 1 < act.values.size())) AwaitRest(remote, act.machine);
   }
   constexpr std::chrono::seconds kRenewalPatience{5};

@@ -164,7 +164,7 @@ std::string WaitText(const v1::Job& job) {
     case v1::WAIT_REASON_MACHINE_BUSY:
       return "its machine runs " + other;
     case v1::WAIT_REASON_CONTROL:
-      return job.waits_for();
+      return Visible(job.waits_for());
     case v1::WAIT_REASON_MACHINE_NOT_READY:
       return "its machine cannot start: rmlcell machine status";
     default:

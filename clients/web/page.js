@@ -392,7 +392,8 @@ function endText(outcome) {
 
 function waitText(job) {
   const [collection, id] = (job.waitsFor ?? "").split("/");
-  const whom = collection === "jobs" ? `#${id}` : id ?? collection;
+  const name = collection === "jobs" ? `#${id}` : id;
+  const whom = job.waitReason === "WAIT_REASON_CONTROL" ? job.waitsFor : name;
   return [WAITS[job.waitReason], whom].filter(Boolean).join(" ");
 }
 

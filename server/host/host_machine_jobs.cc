@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "proto/bridge/findings.h"
+#include "proto/bridge/start_blocker.h"
 #include "proto/bridge/ticket.h"
 #include "proto/recording/recording.h"
 #include "server/host/host_machine.h"
@@ -13,16 +14,6 @@ namespace {
 
 constexpr std::size_t kChangesTold = 8;
 constexpr std::size_t kJobsKnown = 16;  // the newest: whoever asks knows of the last one or two
-
-v1::StartBlocker BlockerOf(const Error& error) {
-  const v1::ErrorDetail detail = bridge::ToErrorDetail(error);
-  v1::StartBlocker blocker;
-  blocker.set_code(detail.code());
-  blocker.set_symbol(detail.symbol());
-  blocker.set_message(detail.message());
-  blocker.set_advice(detail.advice());
-  return blocker;
-}
 
 }  // namespace
 
@@ -261,7 +252,7 @@ void HostMachine::AddBlockers(v1::MachineStatus& status) const {
   std::vector<Error> why = WhyNoStart(desk_.lease() ? desk_.lease()->holder() : std::string());
   if (desk_.lease() && !desk_.IsOfQueue())
     why.push_back({ErrorCode::kCellLeaseHeld, desk_.lease()->holder() + " has control", {}});
-  for (const Error& one : why) *status.add_start_blockers() = BlockerOf(one);
+  for (const Error& one : why) *status.add_start_blockers() = bridge::ToStartBlocker(one);
 }
 
 // The answer to a start that is refused for the machine as it stands: all that is in the way, what
@@ -275,7 +266,7 @@ void HostMachine::AddBlockers(const v1::HostOrder& order, v1::HostOrderAnswer& r
       why, [&](const Error& one) { return CodeText(one.code) == refused.refusal().code(); });
   if (named == why.end()) return;
   std::rotate(why.begin(), named, named + 1);
-  for (const Error& one : why) *refused.add_start_blockers() = BlockerOf(one);
+  for (const Error& one : why) *refused.add_start_blockers() = bridge::ToStartBlocker(one);
 }
 
 // Whether an order for a job is for the one that is meant by it here.

@@ -36,14 +36,14 @@ void MachineRecorder::Add(const v1::JournalEntry& entry) {
   if (kept_.empty() || kept_.back().full || kept_.back().over || entry.has_answered()) return;
   std::string& file = kept_.back().file;
   const std::size_t before = file.size();
-  if (entry.has_mark() && !entry.mark().clean()) {
-    v1::JournalEntry shorter = entry;
-    shorter.mutable_mark()->clear_state();
-    shorter.mutable_mark()->clear_base();
-    recording::AddEntry(shorter, file);
-  } else if (!entry.executables().empty()) {
+  const bool in_a_run = entry.has_mark() && !entry.mark().clean();
+  if (in_a_run || !entry.executables().empty()) {
     v1::JournalEntry shorter = entry;
     shorter.clear_executables();  // a replay makes them again
+    if (in_a_run) {
+      shorter.mutable_mark()->clear_state();
+      shorter.mutable_mark()->clear_base();
+    }
     recording::AddEntry(shorter, file);
   } else {
     recording::AddEntry(entry, file);

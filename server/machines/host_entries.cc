@@ -8,7 +8,6 @@
 #include "server/base/names.h"
 #include "server/machines/host_words.h"
 #include "server/records/job_messages.h"
-#include "storage/trouble.h"
 
 namespace rmlcell::server {
 namespace {
@@ -101,11 +100,11 @@ class Entries {
     if (!write.job_events.empty()) write.job = job_lease_;
     if (const Status written = store_.AppendMachine(lease_, write); !written)
       return written.error();
-    // Of a run without a job, which has no end to be written with.
+    // Of a run without a job, which has no end to be written with. One that is not kept is made
+    // again by the next run; what was written above must not be written again for it.
     for (const storage::NewExecutable& made : std::exchange(made_, {})) {
-      const auto kept =
-          store_.PutExecutable(lease_.machine, made.slot, made.object_revision, made.bytes);
-      if (!kept && storage::IsTroubleOfTheStore(kept.error())) return kept.error();
+      static_cast<void>(
+          store_.PutExecutable(lease_.machine, made.slot, made.object_revision, made.bytes));
     }
     return {};
   }

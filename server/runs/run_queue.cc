@@ -8,6 +8,7 @@
 
 #include "proto/bridge/findings.h"
 #include "proto/bridge/milling.h"
+#include "proto/bridge/start_blocker.h"
 #include "server/base/names.h"
 #include "server/jobs/assignment.h"
 #include "server/machines/host_entries.h"
@@ -511,12 +512,7 @@ void RunQueue::BeginByPerson(std::int64_t id, v1::HostOrder order, Hosts::Answer
 
 void RunQueue::TellWhyItWaits(v1::Job& job) const {
   const auto add = [&job](const Error& error) {
-    const v1::ErrorDetail detail = bridge::ToErrorDetail(error);
-    v1::StartBlocker& blocker = *job.add_start_blockers();
-    blocker.set_code(detail.code());
-    blocker.set_symbol(detail.symbol());
-    blocker.set_message(detail.message());
-    blocker.set_advice(detail.advice());
+    *job.add_start_blockers() = bridge::ToStartBlocker(error);
   };
   const auto machine = ParseMachineName(job.machine());
   const auto status = machine ? needs_.hosts.StatusOf(*machine) : std::nullopt;

@@ -43,20 +43,8 @@ class CutOffRecordingTest : public HostMachineTest {
     }
     return WriteMark();
   }
-  static v1::HostOrder Job(const std::string& text, const std::string& file_name) {
-    v1::HostOrder order;
-    v1::WorkerAssignment& assignment = *order.mutable_run_job();
-    assignment.mutable_job()->set_name("jobs/17");
-    assignment.set_main_program(5);
-    v1::AssignedProgram& program = *assignment.add_programs();
-    program.set_slot(5);
-    program.set_file_name(file_name);
-    program.set_is_source(true);
-    program.set_content(text);
-    return order;
-  }
   void BeginJob(const std::string& text = kSquare, const std::string& file_name = "square.rml") {
-    const v1::HostOrderAnswer answer = Do(Job(text, file_name));
+    const v1::HostOrderAnswer answer = Do(JobOf(text, file_name));
     ASSERT_FALSE(answer.has_refusal()) << answer.refusal().message();
   }
   void Live() {

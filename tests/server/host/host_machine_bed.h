@@ -78,6 +78,19 @@ class HostMachineTest : public testing::Test {
     order.mutable_start()->set_request_id(id);
     return order;
   }
+  // A job that brings its source.
+  static v1::HostOrder JobOf(const std::string& text, const std::string& file_name = "A.S") {
+    v1::HostOrder order;
+    v1::WorkerAssignment& assignment = *order.mutable_run_job();
+    assignment.mutable_job()->set_name("jobs/17");
+    assignment.set_main_program(5);
+    v1::AssignedProgram& program = *assignment.add_programs();
+    program.set_slot(5);
+    program.set_file_name(file_name);
+    program.set_is_source(true);
+    program.set_content(text);
+    return order;
+  }
   v1::HostOrder Resume() {
     v1::HostOrder order;
     order.mutable_resume()->set_control_token(token_);

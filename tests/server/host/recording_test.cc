@@ -175,16 +175,8 @@ TEST_F(RecordingTest, ADamagedFileIsRefused) {
 TEST_F(RecordingTest, TheRunOfAJob) {
   Make();
   host_->Begin({}, now_);
-  v1::HostOrder order;
-  v1::WorkerAssignment& assignment = *order.mutable_run_job();
-  assignment.mutable_job()->set_name("jobs/17");
-  assignment.set_main_program(5);
-  v1::AssignedProgram& program = *assignment.add_programs();
-  program.set_slot(5);
-  program.set_file_name("there.rml");
-  program.set_is_source(true);
-  program.set_content("PA;PA;VS10;PU200,0;PU0,0;");
-  ASSERT_EQ(Do(order).status().state(), v1::MACHINE_STATE_RUNNING);
+  ASSERT_EQ(Do(JobOf("PA;PA;VS10;PU200,0;PU0,0;", "there.rml")).status().state(),
+            v1::MACHINE_STATE_RUNNING);
   v1::HostMemory memory;
   v1::AssignedProgram& stored = *memory.add_programs();
   stored.set_slot(5);

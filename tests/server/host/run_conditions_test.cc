@@ -51,18 +51,6 @@ class RunConditionsTest : public HostMachineTest {
     memory_.set_schedules_changed(true);
     host_->Change(std::exchange(memory_, {}), now_);
   }
-  static v1::HostOrder JobOf(const std::string& text, const char* file_name = "A.S") {
-    v1::HostOrder order;
-    v1::WorkerAssignment& assignment = *order.mutable_run_job();
-    assignment.mutable_job()->set_name("jobs/17");
-    assignment.set_main_program(5);
-    v1::AssignedProgram& program = *assignment.add_programs();
-    program.set_slot(5);
-    program.set_file_name(file_name);
-    program.set_is_source(true);
-    program.set_content(text);
-    return order;
-  }
   // The code that a job ends with before anything moves, and what is said of it; of one that
   // begins, how its run ends.
   std::pair<std::string, std::string> Ends(const v1::HostOrder& order) {
