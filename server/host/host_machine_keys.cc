@@ -14,8 +14,6 @@ namespace {
 
 using google::protobuf::util::TimeUtil;
 
-bool LetsGo(const v1::HostOrder& order) { return ClassOf(order) != OrderClass::kWrittenFirst; }
-
 // What a key is, on whatever it is.
 struct Pressed {
   std::string key{};
@@ -29,6 +27,13 @@ std::optional<Pressed> PressedBy(const v1::HostOrder& order) {
   if (order.has_panel_key()) return of(order.panel_key());
   if (order.has_key()) return of(order.key());
   return std::nullopt;
+}
+
+// It waits for no key before it. What slows down does not wait for the disk, but has its place
+// among the keys. LIVE-7.04
+bool LetsGo(const v1::HostOrder& order) {
+  return ClassOf(order) == OrderClass::kActsFirst ||
+         PressedBy(order)->action == v1::KEY_ACTION_RELEASE;
 }
 
 v1::TeachEntry::Act ActOf(machine::ProgramEdit::Kind kind) {

@@ -251,6 +251,11 @@ TEST_F(HandboxOverTheLine, KeysWaitForWhatIsBeingStored) {
   const v1::HostOrder next = Key("PREV");
   EXPECT_TRUE(host_->WaitsForKeys(next, now_));
   EXPECT_TRUE(host_->Settles());
+  v1::HostOrder slower = next;  // it overtakes no key that was pressed before
+  slower.mutable_key()->set_key("OVERRIDE_MINUS");
+  EXPECT_TRUE(host_->WaitsForKeys(slower, now_));
+  slower.mutable_key()->set_sequence(keys_ + 2);
+  EXPECT_TRUE(host_->WaitsForKeys(slower, now_));
   v1::HostOrder jog = next;
   jog.mutable_key()->set_key("X+");
   jog.mutable_key()->set_action(v1::KEY_ACTION_PRESS);
