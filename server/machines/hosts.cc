@@ -209,7 +209,7 @@ void Hosts::DropLate(const HostPointer& host) {
 }
 
 void Hosts::TakeEntries(const HostPointer& host, const v1::HostEntries& entries) {
-  std::int64_t stored = 0;
+  bool all_stored = false;
   {
     const std::lock_guard lock(host->mutex);
     // A host that comes back sends again what it does not know to be stored.
@@ -219,16 +219,18 @@ void Hosts::TakeEntries(const HostPointer& host, const v1::HostEntries& entries)
           host->waiting.empty() ? host->stored : host->waiting.back().sequence();
       if (entry.sequence() > last) host->waiting.push_back(entry);
     }
-    if (host->waiting.empty()) stored = host->stored;
+    all_stored = host->waiting.empty() && host->stored > 0;
   }
-  if (stored > 0) TellStored(*host, stored);
+  if (all_stored) TellStored(*host);
   StoreEntries(host);
 }
 
-void Hosts::TellStored(const Host& host, std::int64_t sequence) {
+// Sent under the lock: what is stored meanwhile is not told before it.
+void Hosts::TellStored(Host& host) {
+  const std::lock_guard lock(host.mutex);
   v1::HostResponse message;
   message.mutable_entries_stored()->set_fence(host.lease.fence);
-  message.mutable_entries_stored()->set_sequence(sequence);
+  message.mutable_entries_stored()->set_sequence(host.stored);
   host.link->Send(std::move(message));
 }
 
@@ -261,7 +263,7 @@ void Hosts::StoreEntries(const HostPointer& host) {
       host->waiting.erase(host->waiting.begin(), host->waiting.begin() + count);
       if (count > 0) host->stored = entries[done.count - 1].sequence();
     }
-    if (done.count > 0) TellStored(*host, entries[done.count - 1].sequence());
+    if (done.count > 0) TellStored(*host);
     const auto ends = [](const v1::JournalEntry& entry) {
       return entry.has_run_over() && !entry.run_over().job().empty();
     };

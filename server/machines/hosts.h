@@ -140,7 +140,7 @@ class Hosts {
   void TakeStatus(const HostPointer& host, v1::MachineStatus status);
   void TakeAnswer(const HostPointer& host, v1::HostOrderAnswer answer);
   void TakeEntries(const HostPointer& host, const v1::HostEntries& entries);
-  static void TellStored(const Host& host, std::int64_t sequence);
+  static void TellStored(Host& host);
   void StoreEntries(const HostPointer& host);
   void Renew(const HostPointer& host);
   void HandBack(const HostPointer& host);
