@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "proto/bridge/sha256.h"
 #include "server/base/secret.h"
 
 namespace rmlcell::server {
@@ -49,7 +50,8 @@ Result<v1::AcquireControlResponse> ControlDesk::Acquire(const v1::AcquireControl
       return Wrong("reason: whoever takes control over says why, in 1 to 200 characters");
   }
   ttl_ = ttl;
-  token_ = make_token_();
+  const std::string token = make_token_();
+  token_sha256_ = bridge::Sha256Hex(token);
   Give(caller, request.on_loss(), now);
   lease_->set_client(request.client());
   Prolong(now);
@@ -62,7 +64,7 @@ Result<v1::AcquireControlResponse> ControlDesk::Acquire(const v1::AcquireControl
   change_->set_lease(number_);
   v1::AcquireControlResponse response;
   *response.mutable_lease() = *lease_;
-  response.set_control_token(token_);
+  response.set_control_token(token);
   return response;
 }
 
@@ -80,7 +82,7 @@ void ControlDesk::Give(const std::string& holder, v1::ControlLease::OnLoss on_lo
 void ControlDesk::GiveToQueue(const std::string& job, v1::ControlLease::OnLoss on_loss,
                               const HostTime& now) {
   Give("queue/" + job, on_loss, now);
-  token_.clear();
+  token_sha256_.clear();
   of_queue_ = true;
   change_.emplace();
   change_->set_kind(v1::ControlChanged::KIND_ACQUIRED);
@@ -99,7 +101,7 @@ void ControlDesk::Prolong(const HostTime& now) {
 }
 
 bool ControlDesk::IsToken(std::string_view token) const {
-  return lease_ && !of_queue_ && KnowsSecret(token, token_);
+  return lease_ && !of_queue_ && KnowsSecret(bridge::Sha256Hex(token), token_sha256_);
 }
 
 Status ControlDesk::Check(std::string_view token, const HostTime& now) const {
@@ -136,7 +138,7 @@ void ControlDesk::End(v1::ControlChanged::Kind kind) {
   change_->set_kind(kind);
   change_->set_from(lease_->holder());
   lease_.reset();
-  token_.clear();
+  token_sha256_.clear();
   of_queue_ = false;
 }
 

@@ -63,7 +63,7 @@ class ControlDesk {
   std::function<std::string()> make_token_;
   std::int64_t number_ = 0;
   std::optional<v1::ControlLease> lease_;
-  std::string token_;
+  std::string token_sha256_;  // whoever reads the memory of this has no token
   bool of_queue_ = false;
   std::chrono::nanoseconds ttl_{0};
   std::chrono::nanoseconds runs_out_{0};

@@ -336,9 +336,9 @@ void HostMachine::NoteHold(const machine::MachineInput& input) {
 Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrder* order) {
   const auto before = std::tuple(run_begun_, told_of_run_, held_for_);
   const bool starts = machine::BeginsRun(input);
-  memory_changes_ += std::holds_alternative<machine::StoreProgram>(input) ||
-                     std::holds_alternative<machine::DeleteProgram>(input) ||
-                     std::holds_alternative<machine::SetSchedules>(input);
+  program_changes_ += std::holds_alternative<machine::StoreProgram>(input) ||
+                      std::holds_alternative<machine::DeleteProgram>(input);
+  schedule_changes_ += std::holds_alternative<machine::SetSchedules>(input);
   const auto* key = std::get_if<machine::PressedKey>(&input);
   // Of a key nobody knows before what it begins; while a run is held neither it nor ZERO begins
   // one.
@@ -411,7 +411,7 @@ void HostMachine::GoOnTo(const HostTime& now) {
   driver_->Pump(now.steady);
   LetKeysGo(now);
   if (const auto on_loss = desk_.Expire(now)) LoseControl(*on_loss, now);
-  arms_.Expire(desk_.lease() ? desk_.lease()->number() : 0, memory_changes_, now);
+  arms_.Expire(desk_.lease() ? desk_.lease()->number() : 0, memory_changes(), now);
   Notice();
   if (std::exchange(late_, false)) Hold(v1::HOLD_REASON_LATE, now);
 }
@@ -522,7 +522,7 @@ void HostMachine::Notice() {
   if (status.alarms.empty()) alarms_since_.clear();
   const SimTime lost = driver_->TakeLost();
   late_ = late_ || lost >= LateHold(setup_.options);
-  if (lost > SimTime(0) && status.open) {
+  if (lost > SimTime(0) && (status.open || moves())) {
     v1::ClockSlipped& slipped = *Add(status.time).mutable_clock_slipped();
     slipped.set_fence(setup_.fence);
     slipped.set_virtual_time_ns(status.time.count());

@@ -206,7 +206,8 @@ class HostMachine : private machine::RunObserver {
   ControlDesk desk_;
   StartDesk starts_;
   ArmDesk arms_;
-  std::uint64_t memory_changes_ = 0;
+  std::uint64_t memory_changes() const { return program_changes_ + schedule_changes_; }
+  std::uint64_t program_changes_ = 0, schedule_changes_ = 0;
   KeyDesk keys_;
   DeadMan dead_man_;
   std::int64_t keys_of_ = 0;  // control lease whose keys they are

@@ -151,7 +151,7 @@ Result<v1::HostOrderAnswer> HostMachine::Arm(const v1::HostOrder& order, const H
     return Error{ErrorCode::kCellNotLive, "jobs start here without being armed for", {}};
   if (auto why = WhyNoJob(order.caller()); !why.empty()) return std::move(why.front());
   auto armed = arms_.Arm(order.arm(), order.caller(), desk_.lease() ? desk_.lease()->number() : 0,
-                         memory_changes_, now);
+                         memory_changes(), now);
   if (!armed) return armed.error();
   v1::HostOrderAnswer answer;
   *answer.mutable_armed() = *std::move(armed);

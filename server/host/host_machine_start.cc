@@ -36,14 +36,41 @@ Result<std::optional<simulation::Milling>> PartOf(const v1::PreviewStartRequest&
   return std::optional(*std::move(milling));
 }
 
+std::string TextOf(const machine::ProgramStep& at) {
+  return std::to_string(at.program) + "/" + std::to_string(at.step);
+}
+
+// What is not among the values that a program has.
+std::vector<StartDesk::Named> NamedIn(const machine::MachineNote& note, bool door_open) {
+  std::vector<StartDesk::Named> named{{"mode", std::string(machine::Name(note.mode))},
+                                      {"override", ShortestText(note.override_percent)},
+                                      {"cover", note.cover_open ? "open" : "closed"},
+                                      {"door", door_open ? "open" : "closed"},
+                                      {"emergency stop", note.emergency ? "down" : "released"},
+                                      {"last run", std::to_string(note.last_run)},
+                                      {"last alarm", std::to_string(note.last_alarm)}};
+  if (note.simulation) named.push_back({"SIMUL", TextOf(*note.simulation)});
+  for (const machine::Breakpoint& one : note.breakpoints)
+    named.push_back({"BREAK " + TextOf(one.at), "set"});
+  return named;
+}
+
 }  // namespace
 
 // Its time goes on while it stands, and changes nothing.
 StartDesk::Basis HostMachine::Basis() const {
+  StartDesk::Basis basis{
+      .programs = program_changes_, .schedules = schedule_changes_, .halts = halts_};
   Result<machine::MachineNote> note = machine::ReadMachineNote(machine().Save());
-  if (!note) return {.memory = memory_changes_, .halts = halts_};
+  if (!note) return basis;
   note->time = SimTime(0);
-  return {.state = machine::WriteMachineNote(*note), .memory = memory_changes_, .halts = halts_};
+  basis.state = machine::WriteMachineNote(*note);
+  basis.named = NamedIn(*note, machine().status().run.door_open);
+  if (const auto standing = setup_.family->NewStanding(*parameters_, note->family)) {
+    for (machine::StateItem& item : (*standing)->items())
+      basis.named.push_back({std::move(item.name), std::move(item.value)});
+  }
+  return basis;
 }
 
 // Of a run that was cut off: there it has the values that it had. LIVE-6.01

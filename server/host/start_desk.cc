@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 #include "engine/core/number_text.h"
@@ -71,6 +72,24 @@ v1::ApproachMotion ToProto(const machine::ApproachMotion& motion,
   return made;
 }
 
+// Since a preview, where it has a name that people know: ": override 90 (was 100), ...".
+std::string NewOf(const StartDesk::Basis& before, const StartDesk::Basis& now) {
+  constexpr std::size_t kNamed = 5;
+  std::map<std::string_view, std::pair<std::string_view, std::string_view>> values;
+  for (const auto& one : before.named) values[one.name].first = one.value;
+  for (const auto& one : now.named) values[one.name].second = one.value;
+  std::string text;
+  std::size_t count = 0;
+  for (const auto& [name, value] : values) {
+    if (value.first == value.second) continue;
+    if (++count > kNamed) return text + ", and more";
+    const auto or_none = [](std::string_view one) { return one.empty() ? "none" : one; };
+    text += std::string(count == 1 ? ": " : ", ") + std::string(name) + " " +
+            std::string(or_none(value.second)) + " (was " + std::string(or_none(value.first)) + ")";
+  }
+  return text;
+}
+
 }  // namespace
 
 Result<machine::StartAtStep> StartOf(const v1::PreviewStartRequest& request,
@@ -136,14 +155,17 @@ std::string StartDesk::Keep(machine::StartAtStep start, Basis basis, const HostT
 
 Result<machine::StartAtStep> StartDesk::Take(const v1::StartAtStepRequest& request,
                                              const Basis& basis, const HostTime& now) const {
-  const auto stale = [](const char* why) { return Error{ErrorCode::kCellPreviewStale, why, {}}; };
+  const auto stale = [](std::string why) {
+    return Error{ErrorCode::kCellPreviewStale, std::move(why), {}};
+  };
   if (token_.empty() || request.preview_token() != token_) return stale("it is not the newest one");
   if (now.steady >= until_) return stale("it is older than 120 s");
-  if (basis.memory != basis_.memory) return stale("programs or schedules were changed");
+  if (basis.programs != basis_.programs) return stale("programs were changed");
+  if (basis.schedules != basis_.schedules) return stale("laser schedules were changed");
   // Whoever pressed STOP has stopped what would have begun. LIVE-2.05
   if (basis.halts != basis_.halts)
     return Error{ErrorCode::kCellMachineState, "it was stopped before it began", {}};
-  if (basis.state != basis_.state) return stale("the machine was changed");
+  if (basis.state != basis_.state) return stale("the machine was changed" + NewOf(basis_, basis));
   machine::StartAtStep start = start_;
   if (request.has_halt_at_entry()) start.halt_at_entry = request.halt_at_entry();
   for (const ConfirmedItem& one : kConfirmedItems) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/machine/machine.h"
 #include "rmlcell/v1/host.pb.h"
@@ -24,11 +25,18 @@ class StartDesk {
  public:
   static constexpr std::chrono::seconds kLasts{120};
 
+  struct Named {
+    std::string name{};  // "override", "IL"
+    std::string value{};
+    bool operator==(const Named&) const = default;
+  };
   // All that a preview depends on; two that are equal give the same preview.
   struct Basis {
-    std::string state{};       // of the machine
-    std::uint64_t memory = 0;  // counts up when programs or schedules change
-    std::uint64_t halts = 0;   // counts up when somebody halts it, whatever it does
+    std::string state{};          // of the machine
+    std::vector<Named> named{};   // of it, by the names that people know
+    std::uint64_t programs = 0;   // counts up when one changes
+    std::uint64_t schedules = 0;  // likewise
+    std::uint64_t halts = 0;      // counts up when somebody halts it, whatever it does
     bool operator==(const Basis&) const = default;
   };
 

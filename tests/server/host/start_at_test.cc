@@ -131,14 +131,14 @@ TEST_F(StartAtTest, AStalePreviewStartsNothing) {
   stored.set_slot(6);
   stored.set_content("PU0,0;");
   host_->Change(memory, now_);
-  EXPECT_THAT(refused(second).message(), HasSubstr("programs"));
+  EXPECT_THAT(refused(second).message(), HasSubstr("programs were changed"));
   const std::string third = Preview(8).preview().preview_token();
   Pass(1s);  // time alone changes nothing
   v1::HostOrder door;
   door.mutable_inputs()->add_inputs()->set_door_open(true);
   door.mutable_inputs()->set_control_token(token_);
   Do(door);
-  EXPECT_THAT(refused(third).message(), HasSubstr("machine was changed"));
+  EXPECT_THAT(refused(third).message(), HasSubstr("machine was changed: door open (was closed)"));
   door.mutable_inputs()->mutable_inputs(0)->set_door_open(false);
   Do(door);
   const std::string fourth = Preview(8).preview().preview_token();
