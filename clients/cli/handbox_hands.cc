@@ -12,6 +12,8 @@
 namespace rmlcell::cli {
 namespace {
 
+using google::protobuf::util::TimeUtil;
+
 // So many may be without an answer: then the line stands, and the machine has stopped long since.
 constexpr int kBeatsUnderWayMax = 20;
 
@@ -24,7 +26,7 @@ bool Halts(const KeyStroke& stroke) {
 
 google::protobuf::Timestamp SentNow() {
   // Not TimeUtil::GetCurrentTime(), which knows whole seconds alone.
-  return google::protobuf::util::TimeUtil::NanosecondsToTimestamp(
+  return TimeUtil::NanosecondsToTimestamp(
       std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count());
 }
 
@@ -59,6 +61,7 @@ struct HandboxHands::BeatCall {
   grpc::ClientContext context;
   v1::HeartbeatHandboxRequest request;
   v1::HeartbeatResponse response;
+  std::chrono::steady_clock::time_point begun = std::chrono::steady_clock::now();
 };
 
 HandboxHands::HandboxHands(const std::shared_ptr<grpc::Channel>& channel,
@@ -142,11 +145,15 @@ void HandboxHands::Beat(const std::set<std::string>& down) {
   call->request.set_number(++beats_);
   call->request.mutable_keys_down()->Add(down.begin(), down.end());
   *call->request.mutable_sent() = SentNow();
-  stub_->async()->HeartbeatHandbox(&call->context, &call->request, &call->response,
-                                   [this, call](grpc::Status status) {
-                                     const std::unique_ptr<BeatCall> own(call);
-                                     End({.status = std::move(status)}, false);
-                                   });
+  if (const std::int64_t took = round_trip_ns_; took > 0)
+    *call->request.mutable_round_trip() = TimeUtil::NanosecondsToDuration(took);
+  stub_->async()->HeartbeatHandbox(
+      &call->context, &call->request, &call->response, [this, call](grpc::Status status) {
+        const std::unique_ptr<BeatCall> own(call);
+        const std::chrono::nanoseconds took = std::chrono::steady_clock::now() - own->begun;
+        round_trip_ns_ = took.count();
+        End({.status = std::move(status)}, false);
+      });
 }
 
 void HandboxHands::End(KeyAnswer answer, bool in_turn) {

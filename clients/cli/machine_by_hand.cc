@@ -1,4 +1,6 @@
 // What a person presses at a machine that lives.
+#include <google/protobuf/util/time_util.h>
+
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -17,6 +19,8 @@
 
 namespace rmlcell::cli {
 namespace {
+
+using google::protobuf::util::TimeUtil;
 
 // The keys of a panel of a mill: what is shown is the machine.
 class PanelKeys {
@@ -114,7 +118,10 @@ grpc::Status HoldOne(Keys& keys, const std::string& name, double seconds) {
     grpc::ClientContext context;
     Prepare(context);
     v1::HeartbeatResponse heard;
+    const auto begun = std::chrono::steady_clock::now();
     if (const grpc::Status held = keys.Beat(context, heard); !held.ok()) return held;
+    const std::chrono::nanoseconds took = std::chrono::steady_clock::now() - begun;
+    *keys.beat().mutable_round_trip() = TimeUtil::NanosecondsToDuration(took.count());
   }
   return PressOne(keys, name, v1::KEY_ACTION_RELEASE);
 }

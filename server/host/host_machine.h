@@ -131,8 +131,11 @@ class HostMachine : private machine::RunObserver {
   Status RunJob(const v1::HostOrder& order, const HostTime& now);
   std::optional<v1::HostOrderAnswer> AnsweredKey(const v1::HostOrder& order) const;
   Status PressKey(const v1::HostOrder& order, const HostTime& now);
-  static Status CheckBeat(const v1::HostOrder& order);
-  v1::HeartbeatResponse HearBeat(const v1::HostOrder& order, const HostTime& now);
+  // Of a panel or of a handbox.
+  template <class Beat>
+  static Status CheckBeat(const Beat& beat);
+  template <class Beat>
+  Result<v1::HeartbeatResponse> HearBeat(const Beat& beat, const HostTime& now);
   void LetGo(const std::string& key);
   void LetKeysGo(const HostTime& now);
   void EndKeys();
@@ -210,6 +213,7 @@ class HostMachine : private machine::RunObserver {
   std::uint64_t program_changes_ = 0, schedule_changes_ = 0;
   KeyDesk keys_;
   DeadMan dead_man_;
+  LineSpeed line_speed_;
   std::int64_t keys_of_ = 0;  // control lease whose keys they are
   bool by_panel_ = false;     // a key is pressed at this moment
   std::int64_t session_ = 0;  // of the handbox; 0: none is open

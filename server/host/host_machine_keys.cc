@@ -105,11 +105,14 @@ Status HostMachine::PressKey(const v1::HostOrder& order, const HostTime& now) {
                  {}};
   key_taken_ = pressed.number;
   const bool held = IsHeld(pressed.key);
+  const bool holds = held && pressed.action == v1::KEY_ACTION_PRESS;
   if (pressed.action == v1::KEY_ACTION_RELEASE) {
     keys_.Release(pressed.key, pressed.number);
     dead_man_.Release(pressed.key);
   } else if (held && keys_.IsReleased(pressed.key, pressed.number)) {
     return {};
+  } else if (const auto slow = holds ? line_speed_.WhySlow(now) : std::nullopt) {
+    return Error{ErrorCode::kCellKeySequence, *slow, {}};
   } else if (held && dead_man_.IsStopped(pressed.key)) {
     if (pressed.action == v1::KEY_ACTION_TAP) dead_man_.Release(pressed.key);
     return Error{ErrorCode::kCellKeySequence,
@@ -119,32 +122,34 @@ Status HostMachine::PressKey(const v1::HostOrder& order, const HostTime& now) {
   by_panel_ = true;
   const Status done = Act(order);
   by_panel_ = false;
-  if (done && held && pressed.action == v1::KEY_ACTION_PRESS) dead_man_.Press(pressed.key, now);
+  if (done && holds) dead_man_.Press(pressed.key, now);
   return done;
 }
 
 // How old a beat is decides whether the machine goes on.
-Status HostMachine::CheckBeat(const v1::HostOrder& order) {
-  const bool told = order.has_panel_heartbeat() ? order.panel_heartbeat().has_sent()
-                                                : order.handbox_heartbeat().has_sent();
-  const std::int64_t number = order.has_panel_heartbeat() ? order.panel_heartbeat().number()
-                                                          : order.handbox_heartbeat().number();
-  if (number < 1) return InvalidArgument("number counts from 1");
-  return told ? Status() : InvalidArgument("sent: when it was sent, by the clock of the client");
+template <class Beat>
+Status HostMachine::CheckBeat(const Beat& beat) {
+  if (beat.number() < 1) return InvalidArgument("number counts from 1");
+  if (TimeUtil::DurationToNanoseconds(beat.round_trip()) < 0)
+    return InvalidArgument("round_trip: below 0");
+  return beat.has_sent() ? Status()
+                         : InvalidArgument("sent: when it was sent, by the clock of the client");
 }
 
-v1::HeartbeatResponse HostMachine::HearBeat(const v1::HostOrder& order, const HostTime& now) {
-  v1::HeartbeatResponse heard;
-  const auto hear = [&](const auto& beat) {
-    dead_man_.Hear(beat.number(), KeysOf(beat), SentAt(beat), now);
-    *heard.mutable_sent() = beat.sent();
-  };
-  if (order.has_panel_heartbeat()) {
-    hear(order.panel_heartbeat());
-  } else {
-    hear(order.handbox_heartbeat());
-  }
+template <class Beat>
+Result<v1::HeartbeatResponse> HostMachine::HearBeat(const Beat& beat, const HostTime& now) {
+  if (const Status told = CheckBeat(beat); !told) return told.error();
+  dead_man_.Hear(beat.number(), KeysOf(beat), SentAt(beat), now);
+  std::optional<std::chrono::nanoseconds> round_trip;
+  if (beat.has_round_trip())
+    round_trip = std::chrono::nanoseconds(TimeUtil::DurationToNanoseconds(beat.round_trip()));
+  line_speed_.Hear(now.wall.time_since_epoch() - SentAt(beat), round_trip, now);
+  const auto slow = dead_man_.holds() ? line_speed_.WhySlow(now) : std::nullopt;
+  if (slow) dead_man_.Lose();
   LetKeysGo(now);
+  if (slow) return Error{ErrorCode::kCellKeySequence, *slow, {}};
+  v1::HeartbeatResponse heard;
+  *heard.mutable_sent() = beat.sent();
   *heard.mutable_received() = Stamp(now.wall);
   return heard;
 }
@@ -177,16 +182,20 @@ Result<v1::HostOrderAnswer> HostMachine::CarryOutKeys(const v1::HostOrder& order
     case v1::HostOrder::kUndoTeaching:
       answer.mutable_undone();  // whoever asks has control; the programs are the store's
       break;
-    case v1::HostOrder::kHandboxHeartbeat:
+    case v1::HostOrder::kHandboxHeartbeat: {
       if (const Status known = CheckSession(order.handbox_heartbeat().session()); !known)
         return known.error();
-      if (const Status told = CheckBeat(order); !told) return told.error();
-      *answer.mutable_heartbeat() = HearBeat(order, now);
+      auto heard = HearBeat(order.handbox_heartbeat(), now);
+      if (!heard) return heard.error();
+      *answer.mutable_heartbeat() = *std::move(heard);
       break;
-    default:
-      if (const Status told = CheckBeat(order); !told) return told.error();
-      *answer.mutable_heartbeat() = HearBeat(order, now);
+    }
+    default: {
+      auto heard = HearBeat(order.panel_heartbeat(), now);
+      if (!heard) return heard.error();
+      *answer.mutable_heartbeat() = *std::move(heard);
       break;
+    }
   }
   return answer;
 }
@@ -221,6 +230,7 @@ void HostMachine::EndKeys() {
   DropMask();
   keys_ = {};
   dead_man_ = {};
+  line_speed_ = {};
   session_ = 0;
   keys_of_ = desk_.lease() ? desk_.lease()->number() : 0;
 }

@@ -65,6 +65,11 @@ bool DeadMan::Hear(std::int64_t number, const std::set<std::string>& keys_down, 
   return true;
 }
 
+void DeadMan::Lose() {
+  missed_ = down_;
+  stopped_.insert(down_.begin(), down_.end());
+}
+
 std::vector<std::string> DeadMan::LetGo(const HostTime& now) {
   std::set<std::string> gone = std::exchange(missed_, {});
   if (now.steady - heard_ > kSilence) {
@@ -76,6 +81,40 @@ std::vector<std::string> DeadMan::LetGo(const HostTime& now) {
     if (down_.erase(key) > 0) keys.push_back(key);
   }
   return keys;
+}
+
+void LineSpeed::Newest::Add(nanoseconds value) { values[count++ % kBeatsLooked] = value; }
+
+std::optional<nanoseconds> LineSpeed::Newest::least() const {
+  if (count < kBeatsNeeded) return std::nullopt;
+  return *std::min_element(
+      values.begin(), values.begin() + static_cast<std::ptrdiff_t>(std::min(count, kBeatsLooked)));
+}
+
+void LineSpeed::Hear(nanoseconds delay, std::optional<nanoseconds> round_trip,
+                     const HostTime& now) {
+  if (now.steady - heard_ > kKnownFor) delays_ = round_trips_ = {};
+  heard_ = now.steady;
+  delays_.Add(delay);
+  if (round_trip) round_trips_.Add(*round_trip);
+}
+
+std::optional<std::string> LineSpeed::WhySlow(const HostTime& now) const {
+  if (now.steady - heard_ > kKnownFor) return std::nullopt;
+  const auto slow = [](nanoseconds took, nanoseconds allowed, const char* way) {
+    using std::chrono::milliseconds;
+    return std::to_string(std::chrono::ceil<milliseconds>(took).count()) + " ms " + way +
+           ", at most " + std::to_string(std::chrono::ceil<milliseconds>(allowed).count()) + " ms";
+  };
+  const auto round_trip = round_trips_.least();
+  const auto delay = delays_.least();
+  if (round_trip && *round_trip > 2 * kDelayMax)
+    return "the line: " + slow(*round_trip, 2 * kDelayMax, "there and back");
+  const bool by_clocks = round_trips_.count == 0 && delay && *delay < kClocksAgree;
+  if (by_clocks && *delay > kDelayMax)
+    return "the line, or another clock: a heartbeat takes " + slow(*delay, kDelayMax, "to come") +
+           "; one that tells round_trip needs no clock";
+  return std::nullopt;
 }
 
 }  // namespace rmlcell::server

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -58,6 +61,8 @@ class DeadMan {
   bool Hear(std::int64_t number, const std::set<std::string>& keys_down,
             std::chrono::nanoseconds sent, const HostTime& now);
 
+  // Whatever is down is let go, as after a silence.
+  void Lose();
   // Keys that nobody holds any more: all of them after a silence, else those that a beat left out.
   std::vector<std::string> LetGo(const HostTime& now);
   bool holds() const { return !down_.empty(); }
@@ -71,6 +76,36 @@ class DeadMan {
   std::int64_t newest_ = 0;
   bool any_delay_ = false;
   std::chrono::nanoseconds least_delay_{0};  // of both clocks together, and so of any sign
+};
+
+// Whether a line is fast enough for keys that move a machine as long as they are down: 40 ms each
+// way. By the fastest of the newest beats, so that one that was late for once makes no slow line.
+// LIVE-7.05
+class LineSpeed {
+ public:
+  static constexpr std::chrono::milliseconds kDelayMax{40};
+  static constexpr std::chrono::seconds kClocksAgree{1};  // clocks that differ by more tell nothing
+  static constexpr std::chrono::seconds kKnownFor{2};     // behind the newest beat
+  static constexpr std::size_t kBeatsLooked = 8;
+  static constexpr std::size_t kBeatsNeeded = 3;
+
+  // `delay`: by both clocks, which may differ. `round_trip`: where the client told it.
+  void Hear(std::chrono::nanoseconds delay, std::optional<std::chrono::nanoseconds> round_trip,
+            const HostTime& now);
+  // How slow it is, for people to read; nothing: fast enough, or not known.
+  std::optional<std::string> WhySlow(const HostTime& now) const;
+
+ private:
+  struct Newest {
+    void Add(std::chrono::nanoseconds value);
+    std::optional<std::chrono::nanoseconds> least() const;  // nothing: too few
+
+    std::array<std::chrono::nanoseconds, kBeatsLooked> values{};
+    std::size_t count = 0;
+  };
+  Newest delays_;
+  Newest round_trips_;
+  std::chrono::nanoseconds heard_{0};
 };
 
 }  // namespace rmlcell::server

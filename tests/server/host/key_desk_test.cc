@@ -164,5 +164,66 @@ TEST_F(DeadManTest, TheClockOfTheClientIsItsOwn) {
   EXPECT_FALSE(Beat({"X+"}, -1h + 101ms));
 }
 
+class LineSpeedTest : public testing::Test {
+ protected:
+  void Beats(int count, std::chrono::nanoseconds delay,
+             std::optional<std::chrono::nanoseconds> round_trip = {}) {
+    for (int i = 0; i < count; ++i) {
+      now_.steady += 50ms;
+      speed_.Hear(delay, round_trip, now_);
+    }
+  }
+  bool IsSlow() const { return speed_.WhySlow(now_).has_value(); }
+
+  LineSpeed speed_;
+  HostTime now_{.steady = 1h, .wall = {}};
+};
+
+// LIVE-7.05: up to 40 ms; by three beats, so that one tells nothing.
+TEST_F(LineSpeedTest, ALineThatIsSteadyAndSlowIsFound) {
+  EXPECT_FALSE(IsSlow());
+  Beats(8, 40ms);
+  EXPECT_FALSE(IsSlow());
+  speed_ = {};
+  Beats(2, 41ms);
+  EXPECT_FALSE(IsSlow());
+  Beats(1, 41ms);
+  EXPECT_TRUE(IsSlow());
+  EXPECT_THAT(*speed_.WhySlow(now_), testing::HasSubstr("41 ms"));
+  Beats(1, 39ms);
+  EXPECT_FALSE(IsSlow());
+}
+
+// What the client measured needs no clock: it counts alone.
+TEST_F(LineSpeedTest, TheWayThereAndBackCountsAlone) {
+  Beats(4, 500ms, 80ms);
+  EXPECT_FALSE(IsSlow());
+  speed_ = {};
+  Beats(2, 0ms, 81ms);
+  EXPECT_FALSE(IsSlow());
+  Beats(1, 0ms, 81ms);
+  EXPECT_TRUE(IsSlow());
+}
+
+// Clocks that are not of one time tell nothing of a line.
+TEST_F(LineSpeedTest, AnotherClockIsNoSlowLine) {
+  Beats(8, 1s);
+  EXPECT_FALSE(IsSlow());
+  speed_ = {};
+  Beats(8, -1h);
+  EXPECT_FALSE(IsSlow());
+}
+
+// It may be faster later on: after 2 s without a beat nothing is known of it.
+TEST_F(LineSpeedTest, IsForgotten) {
+  Beats(8, 60ms);
+  now_.steady += 2s;
+  EXPECT_TRUE(IsSlow());
+  now_.steady += 1ms;
+  EXPECT_FALSE(IsSlow());
+  Beats(2, 60ms);
+  EXPECT_FALSE(IsSlow());
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -91,6 +91,43 @@ TEST_F(PanelKeysTest, WhoIsSilentMovesNothing) {
   EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).status().state(), v1::MACHINE_STATE_JOGGING);
 }
 
+// LIVE-7.05: a line that is steady and slow would run on for too long: the key is let go by the
+// third beat, and refused until the line is fast or forgotten.
+TEST_F(PanelKeysTest, ASlowLineMovesNothing) {
+  MakeAndTake();
+  Do(Key("X+", v1::KEY_ACTION_PRESS));
+  v1::HostOrderAnswer heard;
+  for (int i = 0; i < 3; ++i) {
+    Pass(50ms);
+    v1::HostOrder beat = Beat({"X+"});
+    beat.mutable_panel_heartbeat()->mutable_round_trip()->set_nanos(100'000'000);
+    EXPECT_EQ(State(), v1::MACHINE_STATE_JOGGING);
+    heard = Do(beat);
+  }
+  EXPECT_EQ(heard.refusal().code(), "CELL-E9434");
+  EXPECT_THAT(heard.refusal().message(), HasSubstr("100 ms"));
+  Pass(200ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_FALSE(Do(Key("X+", v1::KEY_ACTION_RELEASE)).has_refusal());
+  EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).refusal().code(), "CELL-E9434");
+  EXPECT_FALSE(Do(Key("X+")).has_refusal());  // a step ends by itself
+  Pass(3s);
+  EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).status().state(), v1::MACHINE_STATE_JOGGING);
+}
+
+// LIVE-3.14: time that is lost while it moves by hand is told, too.
+TEST_F(PanelKeysTest, TimeThatIsLostInAJogIsTold) {
+  MakeAndTake();
+  Do(Key("X+", v1::KEY_ACTION_PRESS));
+  Pass(100ms);
+  static_cast<void>(host_->TakeEntries(now_, true));
+  Pass(300ms, 300ms);
+  std::int64_t lost = 0;
+  for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true))
+    lost += entry.clock_slipped().lost_ns();
+  EXPECT_GT(lost, 0);
+}
+
 // LIVE-7.04: the same number is the same press; a press behind its release moves nothing.
 TEST_F(PanelKeysTest, NumbersCount) {
   MakeAndTake();
