@@ -168,22 +168,22 @@ void FurtherLines::Hear(Line& line, v1::HostResponse message) {
       asked_[next_] = {.server = line.server(), .line = line.count(), .number = order.number()};
       order.set_number(next_--);
     }
-    messages_.push_back(std::move(message));
+    messages_.Add(std::move(message));
   }
   wake_();
 }
 
 // What a server has given up begins nothing; what halts acts all the same.
-std::deque<v1::HostResponse> FurtherLines::TakeMessages() {
-  std::deque<v1::HostResponse> messages;
+WaitingMessages::Taken FurtherLines::TakeMessages() {
+  WaitingMessages::Taken taken;
   {
     const std::lock_guard lock(mutex_);
-    messages.swap(messages_);
+    taken = messages_.Take();
   }
-  std::erase_if(messages, [this](const v1::HostResponse& message) {
+  std::erase_if(taken.messages, [this](const v1::HostResponse& message) {
     return message.has_order() && !Halts(message) && !IsAskedFor(message.order().number());
   });
-  return messages;
+  return taken;
 }
 
 bool FurtherLines::IsAskedFor(std::int64_t number) const {

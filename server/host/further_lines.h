@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "rmlcell/v1/host.pb.h"
+#include "server/host/waiting_messages.h"
 
 namespace rmlcell::server {
 
@@ -31,7 +32,7 @@ class FurtherLines {
 
   // What came since the last call: orders, by numbers that no other line has, and that the host is
   // to end.
-  std::deque<v1::HostResponse> TakeMessages();
+  WaitingMessages::Taken TakeMessages();
   // True where the order came over one of these lines: it is answered there, if that still stands.
   bool Answer(const v1::HostOrderAnswer& answer);
   void SendStatus(const v1::MachineStatus& status);
@@ -58,11 +59,11 @@ class FurtherLines {
 
   std::function<void()> wake_;
   mutable std::mutex mutex_;
-  v1::HostHello hello_;                    // guarded by mutex_
-  std::deque<v1::HostResponse> messages_;  // guarded by mutex_
-  std::map<std::int64_t, Asked> asked_;    // by own number; guarded by mutex_
-  std::int64_t next_ = -1;                 // counts down; guarded by mutex_
-  bool fresh_ = false;                     // guarded by mutex_
+  v1::HostHello hello_;                  // guarded by mutex_
+  WaitingMessages messages_;             // guarded by mutex_
+  std::map<std::int64_t, Asked> asked_;  // by own number; guarded by mutex_
+  std::int64_t next_ = -1;               // counts down; guarded by mutex_
+  bool fresh_ = false;                   // guarded by mutex_
   // Of the thread of the machine; the last members: their threads use the others.
   std::map<std::string, std::unique_ptr<Line>> lines_;  // by server
   std::vector<std::unique_ptr<Line>> ended_;            // until their threads are over

@@ -11,7 +11,7 @@ void HostInbox::Hear(v1::HostResponse message, nanoseconds now) {
   const std::lock_guard lock(mutex_);
   heard_at_ = now;
   if (message.has_heartbeat()) return;
-  messages_.push_back(std::move(message));
+  messages_.Add(std::move(message));
   wake_.notify_one();
 }
 
@@ -38,9 +38,9 @@ void HostInbox::Later(std::function<void()> work) {
   wake_.notify_one();
 }
 
-std::deque<v1::HostResponse> HostInbox::TakeMessages() {
+WaitingMessages::Taken HostInbox::TakeMessages() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(messages_, {});
+  return messages_.Take();
 }
 
 std::vector<std::function<void()>> HostInbox::TakeWork() {

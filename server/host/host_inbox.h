@@ -2,13 +2,13 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "server/host/host_line.h"
+#include "server/host/waiting_messages.h"
 
 namespace rmlcell::server {
 
@@ -26,7 +26,7 @@ class HostInbox {
   void Later(std::function<void()> work);
 
   // All that came since the last call.
-  std::deque<v1::HostResponse> TakeMessages();
+  WaitingMessages::Taken TakeMessages();
   std::vector<std::function<void()>> TakeWork();
   std::optional<Joined> TakeJoined();
   bool line_gone() const;
@@ -39,7 +39,7 @@ class HostInbox {
  private:
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::deque<v1::HostResponse> messages_;
+  WaitingMessages messages_;
   std::vector<std::function<void()>> work_;
   std::optional<Joined> joined_;
   bool line_gone_ = false;

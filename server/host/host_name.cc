@@ -2,39 +2,34 @@
 
 #include <unistd.h>
 
-#include <array>
-#include <fstream>
-
+#include "server/base/host_protocol.h"
 #include "server/base/secret.h"
+#include "server/base/this_computer.h"
+#include "server/base/version.h"
+#include "server/host/recovered.h"
 
 namespace rmlcell::server {
 
-namespace {
-
-std::string NameOfComputer() {
-  std::array<char, 256> name{};
-  if (::gethostname(name.data(), name.size() - 1) != 0) return "computer";
-  return name.data();
-}
-
-// Anew with each start of the computer.
-std::string BootId() {
-  std::ifstream file("/proc/sys/kernel/random/boot_id");
-  std::string id;
-  std::getline(file, id);
-  return id;
-}
-
-}  // namespace
-
-void AddComputer(v1::HostHello& hello) {
-  hello.set_boot_id(BootId());
+v1::HostHello HelloOf(const HostOptions& options, const std::string& name, std::int64_t fence) {
+  v1::HostHello hello;
+  hello.set_join_token(options.join_token);
+  hello.set_machine(options.machine);
+  hello.set_host(name);
+  hello.set_version(std::string(kVersion));
+  hello.set_protocol(kHostProtocol);
+  hello.set_boot_id(NameOfBoot());
   hello.set_computer(NameOfComputer());
+  hello.set_fence(fence);
+  if (fence == 0) AddNewestMark(options.journal, hello);
+  return hello;
 }
 
-// The random part: a number of a process comes again, after a reboot, too.
+// The boot, since a number of a process comes again, and two computers may have one name; the
+// random part, since it comes again in one boot, too.
 std::string NameOfHost() {
-  return NameOfComputer() + "/" + std::to_string(::getpid()) + "/" + RandomText().substr(0, 8);
+  const std::string computer = NameOfComputer();
+  return (computer.empty() ? "computer" : computer) + "/" + std::to_string(::getpid()) + "/" +
+         NameOfBoot() + RandomText().substr(0, 8);
 }
 
 }  // namespace rmlcell::server

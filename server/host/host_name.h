@@ -1,13 +1,17 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "rmlcell/v1/host.pb.h"
+#include "server/host/host_process.h"
 
 namespace rmlcell::server {
 
-// "workshop/4711/5f3a09c1": of this process, and of no other one.
+// "workshop/4711/5f3a09c1b06e77d2": of this process, and of no other one.
 std::string NameOfHost();
-void AddComputer(v1::HostHello& hello);  // that this process runs on
+// How it greets a server. `fence`: of the machine that it has; 0: none, it says what its journal
+// knows.
+v1::HostHello HelloOf(const HostOptions& options, const std::string& name, std::int64_t fence);
 
 }  // namespace rmlcell::server

@@ -28,9 +28,12 @@
 #include "server/host/journal_writer.h"
 #include "server/host/lease_clock.h"
 #include "server/host/order_class.h"
+#include "server/host/parked_orders.h"
 #include "server/host/recovered.h"
 #include "server/host/servers_in_turn.h"
 #include "server/host/status_rhythm.h"
+#include "server/host/unstored_entries.h"
+#include "server/host/waiting_messages.h"
 
 namespace rmlcell::server {
 namespace {
@@ -39,13 +42,11 @@ using namespace std::chrono_literals;
 using google::protobuf::util::TimeUtil;
 using std::chrono::nanoseconds;
 
-constexpr int kProtocol = 1;
 constexpr nanoseconds kStatusMoving = 51ms, kStatusStanding = 1s;  // LIVE-3.16
 constexpr nanoseconds kTick = 10ms, kTickHeld = 50ms;  // of what moves; of a run that stands
 constexpr nanoseconds kIntentPatience = 500ms, kDurablePatience = 1s;  // LIVE-3.21
 constexpr nanoseconds kEndsWithoutServer = 60s, kRejoin = 200ms, kRestPatience = 10s;
 constexpr double kPreviewTime_s = 60.0;  // LIVE-6.01
-constexpr std::size_t kUnstoredMax = 100'000;
 
 class HostProcess {
  public:
@@ -75,18 +76,7 @@ class HostProcess {
   }
 
  private:
-  v1::HostHello Hello() const {
-    v1::HostHello hello;
-    hello.set_join_token(options_.join_token);
-    hello.set_machine(options_.machine);
-    hello.set_host(name_);
-    hello.set_version(std::string(kVersion));
-    hello.set_protocol(kProtocol);
-    AddComputer(hello);
-    hello.set_fence(fence_);
-    if (fence_ == 0) AddNewestMark(options_.journal, hello);
-    return hello;
-  }
+  v1::HostHello Hello() const { return HelloOf(options_, name_, fence_); }
 
   // A line is looked for beside the machine, which goes on meanwhile.
   void KeepLine() {
@@ -105,16 +95,17 @@ class HostProcess {
       connector_.join();
       Joined(*std::move(joined));
     }
-    if (line_ == nullptr && !connector_.joinable() && Now().steady >= next_try_) Connect();
+    if (line_ == nullptr && !connector_.joinable() && !lost_until_ && Now().steady >= next_try_)
+      Connect();
     if (line_ == nullptr && further_.IsHeard()) without_server_since_ = Now().steady;
     if (further_.TakeFresh()) ShowAnew();
   }
 
   // They cannot be answered any more. Nothing of them begins; what halts acts all the same.
   void ForgetOrders() {
-    const std::deque<v1::HostResponse> messages = inbox_.TakeMessages();
+    const std::deque<v1::HostResponse> messages = inbox_.TakeMessages().messages;
     // Those of the other servers have numbers of the host's own, below 0.
-    for (const auto& parked : parked_) parked->over = parked->over || parked->order.number() > 0;
+    parked_.ForgetLine();
     answers_due_.ForgetLine();
     std::erase_if(keys_waiting_, [](const Waiting& key) { return key.order.number() > 0; });
     ++lines_lost_;
@@ -156,13 +147,15 @@ class HostProcess {
       servers_.Next();
       if (code == ErrorCode::kCellUnavailable) return;
       spdlog::error("{}", welcome.error().detail);
-      if (code == ErrorCode::kCellMachineTaken) return Quit(3);
+      if (code == ErrorCode::kCellMachineTaken) return LoseMachine("another host");
+      // Behind an upgrade by more than one version: what it moves comes to rest. LIVE-3.07
+      if (code == ErrorCode::kCellVersionMismatch && machine_ != nullptr)
+        return End("its server is of another version");
       return servers_.others().empty() ? Quit(69) : void();  // another server may take it
     }
     const v1::HostWelcome& message = welcome->message;
     if (fence_ != 0 && message.fence() != fence_) {
-      spdlog::error("the machine was given to another host meanwhile");
-      return Quit(3);
+      return LoseMachine("another host");
     }
     fence_ = message.fence();
     lease_.Given(nanoseconds(TimeUtil::DurationToNanoseconds(message.lease())), joining_since_);
@@ -173,7 +166,7 @@ class HostProcess {
     if (machine_ == nullptr) {
       welcome_ = message;
     } else if (!unstored_.empty()) {
-      SendEntries({unstored_.begin(), unstored_.end()});
+      SendEntries(unstored_.all());
     }
     ShowAnew();
   }
@@ -183,11 +176,22 @@ class HostProcess {
   }
 
   void TakeMessages() {
-    std::deque<v1::HostResponse> messages = further_.TakeMessages();
+    WaitingMessages::Taken taken = further_.TakeMessages();
     // A line may be heard before it is known to have joined: what it says waits for that.
-    if (line_ != nullptr) std::ranges::move(inbox_.TakeMessages(), std::back_inserter(messages));
-    for (const v1::HostOrder& taken : StopFirst(messages)) Refuse(taken, StoppedBefore());
-    for (v1::HostResponse& message : messages) Take(message);
+    if (line_ != nullptr) taken.Append(inbox_.TakeMessages());
+    for (const v1::HostOrder& order : StopFirst(taken.messages)) Refuse(order, StoppedBefore());
+    v1::HostOrder order;
+    for (const std::int64_t number : taken.stops) {
+      order.mutable_stop();
+      order.set_number(number);
+      StopWhatBegins(order);
+    }
+    order.clear_stop();
+    for (const std::int64_t number : taken.refused) {
+      order.set_number(number);
+      Refuse(order, {ErrorCode::kCellUnavailable, "too many orders wait for it", {}});
+    }
+    for (v1::HostResponse& message : taken.messages) Take(message);
   }
 
   void Take(v1::HostResponse& message) {
@@ -199,9 +203,7 @@ class HostProcess {
         TakeOrder(message.order());
         break;
       case v1::HostResponse::kEntriesStored:
-        while (!unstored_.empty() &&
-               unstored_.front().sequence() <= message.entries_stored().sequence())
-          unstored_.pop_front();
+        unstored_.Stored(message.entries_stored().sequence());
         if (writer_ != nullptr) writer_->Stored(fence_, message.entries_stored().sequence());
         if (machine_ != nullptr) machine_->NoteStored(message.entries_stored().sequence());
         break;
@@ -209,9 +211,7 @@ class HostProcess {
         lease_.Renewed();
         break;
       case v1::HostResponse::kLeaseLost:
-        spdlog::error("{} has the machine now", message.lease_lost().holder());
-        if (machine_ != nullptr) machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, Now());
-        Quit(3);
+        LoseMachine(message.lease_lost().holder());
         break;
       case v1::HostResponse::kEditAnswer:
         if (machine_ != nullptr) machine_->EditAnswered(message.edit_answer(), Now());
@@ -323,9 +323,7 @@ class HostProcess {
   // Keys that came before one that is missing. LIVE-7.04
   void LookAtKeys() {
     // One that is on its way to the disk is not missing.
-    const bool parked = std::ranges::any_of(parked_, [](const auto& one) {
-      return !one->over && (one->order.has_key() || one->order.has_panel_key());
-    });
+    const bool parked = parked_.HasKey();
     for (Waiting& key : std::exchange(keys_waiting_, {})) {
       const HostTime now = Now();
       // Their patience begins behind what they wait for.
@@ -337,25 +335,15 @@ class HostProcess {
     }
   }
 
-  static std::string JobOf(const v1::HostOrder& order) {
-    const v1::WorkerAssignment* assignment = AssignmentOf(order);
-    return assignment != nullptr ? assignment->job().name() : std::string();
-  }
-
   bool IsParked(const std::string& job) const {
-    const auto of_it = [&](const auto& one) { return !one->over && JobOf(one->order) == job; };
-    return !job.empty() && (job == looked_at_for_ || std::ranges::any_of(parked_, of_it));
+    return !job.empty() && (job == looked_at_for_ || parked_.HasJob(job));
   }
 
   // Whoever stops the machine stops what has not begun yet, too; of an order for a job that one.
   void StopWhatBegins(v1::HostOrder order) {
     const std::string job = order.for_job();
     if (IsParked(job)) order.clear_for_job();  // it stops nothing else: the machine stands
-    for (const auto& parked : parked_) {
-      const bool meant = job.empty() || JobOf(parked->order) == job;
-      if (meant && BeginsMotion(parked->order) && !std::exchange(parked->over, true))
-        Refuse(parked->order, StoppedBefore());
-    }
+    for (const v1::HostOrder& taken : parked_.TakeMotions(job)) Refuse(taken, StoppedBefore());
     for (const Waiting& key : std::exchange(keys_waiting_, {})) Refuse(key.order, StoppedBefore());
     SendAnswer(CarryOut(order));
   }
@@ -388,9 +376,7 @@ class HostProcess {
     if (const auto trouble = writer_->trouble()) return Refuse(order, *trouble);
     const HostTime now = Now();
     Write(now, true);
-    auto parked =
-        std::make_shared<Parked>(Parked{.order = order, .until = now.steady + kIntentPatience});
-    parked_.push_back(parked);
+    const auto parked = parked_.Add(order, now.steady + kIntentPatience);
     writer_->Write({machine_->IntentOf(order, now)}, {}, [this, parked] {
       inbox_.Later([this, parked] {
         const bool begins = !std::exchange(parked->over, true);
@@ -416,7 +402,7 @@ class HostProcess {
       inbox_.Later([this, copy, due] {
         --writes_under_way_;
         durable_at_ = Now().steady;
-        Keep(*copy);
+        unstored_.Add(*copy);
         SendEntries(*copy);
         answers_due_.End(due);
         for (const auto* answers : {&due->answers, &due->of_jobs})
@@ -441,13 +427,8 @@ class HostProcess {
 
   // A disk that does not answer: nothing begins, and what moves is held. LIVE-3.21
   void LookAtDisk(nanoseconds now) {
-    std::erase_if(parked_, [&](const std::shared_ptr<Parked>& parked) {
-      if (parked->over) return true;
-      if (now < parked->until) return false;
-      parked->over = true;
-      Refuse(parked->order, {ErrorCode::kCellJournal, "the disk does not answer", {}});
-      return true;
-    });
+    for (const v1::HostOrder& order : parked_.TakeLate(now))
+      Refuse(order, {ErrorCode::kCellJournal, "the disk does not answer", {}});
     const bool late = writes_under_way_ > 0 && now - durable_at_ > kDurablePatience;
     machine_->NoteDisk(late);
     for (v1::HostOrderAnswer& answer : answers_due_.TakeLate(now, kDurablePatience))
@@ -485,17 +466,38 @@ class HostProcess {
       line_->Send(std::move(renew));
     }
     if (ending_at_) machine_->Hold(v1::HOLD_REASON_STOP, now);  // whatever began meanwhile
+    if (lost_until_ && (!machine_->moves() || now.steady >= *lost_until_)) return GiveUp(now);
     if (ending_at_ && (!machine_->moves() || now.steady >= *ending_at_)) HandBack(now);
   }
 
-  void Keep(const std::vector<v1::JournalEntry>& entries) {
-    for (const v1::JournalEntry& entry : entries) unstored_.push_back(entry);
-    // Of what nobody takes the newest is worth most: it says where the machine stands.
-    while (unstored_.size() > kUnstoredMax) unstored_.pop_front();
+  // Another host has the machine: this one brakes, and touches nothing any more. LIVE-3.05
+  void LoseMachine(const std::string& holder) {
+    if (lost_until_) return;
+    spdlog::error("{}", bridge::ErrorText(Error{
+                            ErrorCode::kCellMachineTaken, holder + " has the machine now", {}}));
+    if (machine_ == nullptr) return Quit(3);
+    machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, Now());
+    lost_until_ = Now().steady + kRestPatience;
+  }
+
+  // What the store does not take from it is kept for people to look at.
+  void GiveUp(const HostTime& now) {
+    parked_.ForgetAll();
+    Write(now, true);
+    writer_.reset();
+    DoLater();
+    const Result<std::string> orphan = unstored_.KeepAsOrphan(options_.journal);
+    if (!orphan) spdlog::error("{}", bridge::ErrorText(orphan.error()));
+    if (orphan && !orphan->empty())
+      spdlog::error("{}", bridge::ErrorText(Error{
+                              ErrorCode::kCellMachineTaken,
+                              "what happened here and is not in the log is kept in " + *orphan,
+                              {}}));
+    Quit(3);
   }
 
   void SendEntries(const std::vector<v1::JournalEntry>& entries) {
-    if (entries.empty() || line_ == nullptr) return;
+    if (entries.empty() || line_ == nullptr || lost_until_) return;
     v1::HostRequest request;
     request.mutable_entries()->set_fence(fence_);
     for (const v1::JournalEntry& entry : entries) *request.mutable_entries()->add_entries() = entry;
@@ -513,7 +515,7 @@ class HostProcess {
   }
 
   void HandBack(const HostTime& now) {
-    for (const auto& parked : parked_) parked->over = true;
+    parked_.ForgetAll();
     machine_->EndRun(now);
     Write(now, true);
     writer_.reset();  // it writes what waits
@@ -558,29 +560,25 @@ class HostProcess {
   ServersInTurn servers_{options_.server};
   std::optional<v1::HostWelcome> welcome_;
   std::unique_ptr<HostMachine> machine_;
-  struct Parked {
-    v1::HostOrder order{};
-    nanoseconds until{0};
-    bool over = false;
-  };
   struct Waiting {
     v1::HostOrder order{};
     nanoseconds until{0};
   };
   std::vector<Waiting> keys_waiting_;
-  std::vector<std::shared_ptr<Parked>> parked_;  // their intent is on its way to the disk
+  ParkedOrders parked_;
   AnswersDue answers_due_;
   std::string looked_at_for_;  // the job whose start at a step is worked out; empty: none
   int writes_under_way_ = 0;
   nanoseconds durable_at_{0};  // what was written last; where nothing is under way, what begins
   int lines_lost_ = 0;
-  std::deque<v1::JournalEntry> unstored_;
+  UnstoredEntries unstored_;
   std::int64_t fence_ = 0;
   LeaseClock lease_;
   nanoseconds joining_since_{0};  // by SinceBoot
   nanoseconds next_try_{0}, without_server_since_{0}, handbox_shown_at_{0};
   StatusRhythm rhythm_;
   std::optional<nanoseconds> ending_at_;
+  std::optional<nanoseconds> lost_until_;  // another host has the machine; so long this one brakes
   std::string handbox_shown_;
   bool handbox_due_ = false;  // it has changed since
   v1::MachineState state_told_ = v1::MACHINE_STATE_UNSPECIFIED;

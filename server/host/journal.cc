@@ -11,6 +11,7 @@
 
 #include "proto/recording/records.h"
 #include "server/host/answered_requests.h"
+#include "server/host/unstored_entries.h"
 
 namespace rmlcell::server {
 namespace {
@@ -93,11 +94,8 @@ Result<Journal::Found> Journal::Open(const std::string& path) {
   const Result<std::string> bytes = ReadAll(path, file);
   if (!bytes) return bytes.error();
   ReadRecords read = ReadJournal(*bytes);
-  for (std::size_t i = 0; i < read.entries.size(); ++i) {
-    journal->places_.push_back({.fence = read.entries[i].fence(),
-                                .sequence = read.entries[i].sequence(),
-                                .end = read.ends[i]});
-  }
+  for (std::size_t i = 0; i < read.entries.size(); ++i)
+    journal->places_.push_back(PlaceOf(read.entries[i], read.ends[i]));
   journal->bytes_ = read.ends.empty() ? 0 : read.ends.back();
   const auto torn = static_cast<std::int64_t>(bytes->size()) - journal->bytes_;
   if (torn > 0 && ::ftruncate(file, journal->bytes_) != 0) return Failed(path, errno);
@@ -112,6 +110,9 @@ Status Journal::Write(const std::vector<v1::JournalEntry>& entries) {
   if (entries.empty()) return {};
   const std::string records = RecordsOf(entries);
   const auto more = static_cast<std::int64_t>(records.size());
+  if (bytes_ + more > kBytesMax && bytes_ + more - BytesOfOldMarks() <= kBytesMax) {
+    if (const Status made = DropOldMarks(); !made) return made.error();
+  }
   if (bytes_ + more > kBytesMax)
     return Error{ErrorCode::kCellJournal, path_ + ": what the store has not taken fills it", {}};
   int failed = WriteAll(file_, records, bytes_);
@@ -123,8 +124,37 @@ Status Journal::Write(const std::vector<v1::JournalEntry>& entries) {
   }
   for (const v1::JournalEntry& entry : entries) {
     bytes_ += recording::kRecordHeadBytes + static_cast<std::int64_t>(entry.ByteSizeLong());
-    places_.push_back({.fence = entry.fence(), .sequence = entry.sequence(), .end = bytes_});
+    places_.push_back(PlaceOf(entry, bytes_));
   }
+  return {};
+}
+
+Journal::Place Journal::PlaceOf(const v1::JournalEntry& entry, std::int64_t end) {
+  return {
+      .fence = entry.fence(), .sequence = entry.sequence(), .end = end, .mark = entry.has_mark()};
+}
+
+std::int64_t Journal::BytesOfOldMarks() const {
+  std::int64_t bytes = 0;
+  bool newer = false;
+  for (std::size_t i = places_.size(); i-- > 0;) {
+    if (!places_[i].mark) continue;
+    if (newer) bytes += places_[i].end - (i > 0 ? places_[i - 1].end : 0);
+    newer = true;
+  }
+  return bytes;
+}
+
+Status Journal::DropOldMarks() {
+  const Result<std::string> all = ReadAll(path_, file_);
+  if (!all) return all.error();
+  const std::string records = RecordsOf(WithoutOldMarks(ReadJournal(*all).entries));
+  if (const Status done = Rewrite(records); !done) return done.error();
+  const ReadRecords read = ReadJournal(records);
+  places_.clear();
+  for (std::size_t i = 0; i < read.entries.size(); ++i)
+    places_.push_back(PlaceOf(read.entries[i], read.ends[i]));
+  bytes_ = static_cast<std::int64_t>(records.size());
   return {};
 }
 
@@ -151,7 +181,7 @@ void Journal::Stored(std::int64_t fence, std::int64_t sequence) {
   std::int64_t end = 0;
   for (const v1::JournalEntry& entry : asked_for) {
     end += recording::kRecordHeadBytes + static_cast<std::int64_t>(entry.ByteSizeLong());
-    kept.push_back({.fence = entry.fence(), .sequence = entry.sequence(), .end = end});
+    kept.push_back(PlaceOf(entry, end));
   }
   places_.insert(places_.begin(), kept.begin(), kept.end());
   bytes_ -= moved;

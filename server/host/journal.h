@@ -33,8 +33,9 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  // In order, and on the disk when this returns. After an error nothing of it is there, as far as
-  // anybody reads. Errors: CellJournal: the disk is full or fails, or there is no room.
+  // In order, and on the disk when this returns. Where there is no room, marks that have a newer
+  // one behind them make some. After an error nothing of it is there, as far as anybody reads.
+  // Errors: CellJournal: the disk is full or fails, or there is no room.
   Status Write(const std::vector<v1::JournalEntry>& entries);
   // All up to this entry is in the store, and a mark behind which everything else lies is the last
   // of it: it is dropped when it is worth while.
@@ -46,13 +47,17 @@ class Journal {
  private:
   Journal(std::string path, int file, std::int64_t bytes)
       : path_(std::move(path)), file_(file), bytes_(bytes) {}
-  Status Rewrite(std::string_view records);
-
   struct Place {
     std::int64_t fence = 0;
     std::int64_t sequence = 0;
     std::int64_t end = 0;  // of its record in the file
+    bool mark = false;
   };
+  Status Rewrite(std::string_view records);
+  static Place PlaceOf(const v1::JournalEntry& entry, std::int64_t end);
+  std::int64_t BytesOfOldMarks() const;
+  Status DropOldMarks();
+
   const std::string path_;
   int file_;
   std::int64_t bytes_;

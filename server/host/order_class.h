@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <string>
 #include <vector>
 
 #include "rmlcell/v1/host.pb.h"
@@ -34,6 +35,11 @@ inline bool BeginsMotion(const v1::HostOrder& order) {
 inline const v1::WorkerAssignment* AssignmentOf(const v1::HostOrder& order) {
   if (order.has_run_job()) return &order.run_job();
   return order.has_continue_job() ? &order.continue_job().assignment() : nullptr;
+}
+
+inline std::string JobOf(const v1::HostOrder& order) {
+  const v1::WorkerAssignment* assignment = AssignmentOf(order);
+  return assignment != nullptr ? assignment->job().name() : std::string();
 }
 
 bool Halts(const v1::HostResponse& message);

@@ -2,18 +2,18 @@
 #include <google/protobuf/util/time_util.h>
 #include <signal.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <utility>
 
 #include "engine/core/number_text.h"
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/cell.pb.h"
+#include "server/base/host_protocol.h"
 #include "server/base/names.h"
 #include "server/base/secret.h"
+#include "server/base/this_computer.h"
 #include "server/machines/host_entries.h"
 #include "server/machines/host_words.h"
 #include "server/machines/hosted.h"
@@ -25,26 +25,23 @@ namespace {
 
 using google::protobuf::util::TimeUtil;
 
-constexpr int kProtocol = 1;
 constexpr std::chrono::seconds kObserved{5};  // beyond the lease: its holder is gone (PG-5.09)
-
-// Empty: it has no name.
-std::string ThisComputer() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
 
 // "hall/4711" is of the computer "hall".
 bool IsOf(const std::string& host, const std::string& computer) {
   return !computer.empty() && host.starts_with(computer + "/");
 }
 
-// Whether the process that this host is, on this computer, is gone. LIVE-3.02
+// Whether the process that this host is, of the present boot of this computer, is gone. Of another
+// boot it may be of another computer that has the same name. LIVE-3.02
 bool IsGone(const std::string& host) {
-  const std::string here = ThisComputer();
-  if (!IsOf(host, here)) return false;
+  const std::string here = NameOfComputer();
+  const std::string boot = NameOfBoot();
+  if (!IsOf(host, here) || boot.empty()) return false;
   const std::string_view rest = std::string_view(host).substr(here.size() + 1);
-  const auto process = ParseInteger(rest.substr(0, rest.find('/')));
+  const std::size_t slash = rest.find('/');
+  if (slash == std::string_view::npos || !rest.substr(slash + 1).starts_with(boot)) return false;
+  const auto process = ParseInteger(rest.substr(0, slash));
   return process && *process > 1 && ::kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH;
 }
 
@@ -80,10 +77,10 @@ bool Hosts::IsAbandoned(const std::string& machine) const {
 Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& hello) {
   if (!KnowsSecret(hello.join_token(), needs_.join_token))
     return Error{ErrorCode::kCellJoinRefused, "of a host", {}};
-  if (hello.protocol() != kProtocol)
+  if (!TakesHost(static_cast<int>(hello.protocol())))
     return Error{ErrorCode::kCellVersionMismatch,
                  "the host speaks protocol " + std::to_string(hello.protocol()) + ", this server " +
-                     std::to_string(kProtocol),
+                     std::to_string(kHostProtocol),
                  {}};
   const Result<std::string> machine = ParseMachineName(hello.machine());
   if (!machine) return machine.error();
@@ -96,7 +93,7 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   host->link = link;
   host->lease = taken->lease;
   host->heard = needs_.clock();
-  host->here = IsOf(hello.host(), ThisComputer());
+  host->here = IsOf(hello.host(), NameOfComputer());
   if (const Status welcome = Welcome(host, hello, *taken); !welcome) return welcome.error();
   HostPointer before;
   {

@@ -15,6 +15,7 @@
 #include "engine/core/units.h"
 #include "proto/bridge/findings.h"
 #include "server/base/log.h"
+#include "server/base/this_computer.h"
 #include "server/base/version.h"
 #include "server/host/host_process.h"
 #include "server/worker/job_runner.h"
@@ -52,9 +53,7 @@ void Guard() {
 
 // "hall-3/4711": unique among the workers of all computers.
 std::string OwnName() {
-  std::array<char, 256> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0) host = {};
-  return std::string(host.data()) + "/" + std::to_string(::getpid());
+  return NameOfComputer() + "/" + std::to_string(::getpid());
 }
 
 // A server that is away, or of another version, leaves it to the next.

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Hosts of machines that are killed or stopped while somebody jogs or teaches, while they recover, and in runs (live.md 10.04)."""
+import contextlib
 import os
 import random
 import signal
+import sqlite3
 import threading
 import time
 import unittest
@@ -115,6 +117,28 @@ class LiveCrashesTest(LiveTestCase):
             self.settle(after)
         keys = [one.input_applied.input.key for one in self.told() if one.HasField("input_applied") and one.input_applied.input.HasField("key")]
         self.assertEqual([one.key for one in keys if one.action == KeyAction.Value("KEY_ACTION_PRESS")], answered)
+
+    def test_a_host_whose_machine_is_another_ones(self):
+        """LIVE-3.05: it brakes, ends, and what the log does not take from it is kept and told."""
+        live = self.optimo()
+        live.acquire(take_over=True, reason="a test", ttl={"seconds": 60})
+        box = Handbox(live)
+        box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT")
+        host = live.host()
+        with contextlib.closing(sqlite3.connect(self.cell.folder / "store" / "cell.db", timeout=10)) as store, store:
+            changed = store.execute("UPDATE machine_lock SET fence = fence + 1, host = 'another/1'").rowcount
+        self.assertEqual(changed, 1)
+        with self.assertRaises((grpc.RpcError, AssertionError)):
+            for _ in range(40):
+                box.hold("X+", 0.3)
+        eventually(lambda: not os.path.exists(f"/proc/{host}"))
+        journals = self.cell.folder / "store" / "journals"
+        orphan = [name for name in os.listdir(journals) if name.endswith(".orphan")]
+        self.assertEqual(len(orphan), 1, os.listdir(journals))
+        self.assertGreater((journals / orphan[0]).stat().st_size, 0)
+        told = (journals / "optimo-1.log").read_text(encoding="utf-8")
+        self.assertIn("CELL-E9422", told)
+        self.assertIn(orphan[0], told)
 
     # While steps are taught: the program has what was seen in it, perhaps what was on its way, and what the book of teaching tells.
     def test_rounds_of_teaching(self):

@@ -143,7 +143,7 @@ PUBLIC = {
     "proto/bridge": ["comparison.h", "encoding.h", "files.h", "findings.h", "framing.h", "header_date.h", "inputs.h", "machine_inputs.h", "milling.h",
                      "program_stream.h", "report.h", "series.h", "setup.h", "standard_words.h", "start_blocker.h", "sha256.h", "spooled_bytes.h", "thread_pool.h", "ticket.h"],
     "proto/recording": ["records.h", "recording.h", "replay.h", "told.h"],
-    "server/base": ["child_process.h", "config.h", "credentials.h", "executor.h", "log.h", "names.h", "readable.h", "restart_delay.h", "secret.h", "steady_clock.h", "version.h"],
+    "server/base": ["child_process.h", "config.h", "credentials.h", "executor.h", "host_protocol.h", "log.h", "names.h", "readable.h", "restart_delay.h", "secret.h", "steady_clock.h", "this_computer.h", "version.h"],
     "server/auth": ["caller.h", "socket_users.h"],
     "server/events": ["event_feed.h"],
     "server/jobs": ["dispatcher.h", "assignment.h", "followed.h", "job_book.h", "job_filter.h", "running_heights.h", "running_toolpath.h", "worker_processes.h"],

@@ -9,6 +9,7 @@
 #include <semaphore>
 
 #include "server/host/journal_writer.h"
+#include "server/host/unstored_entries.h"
 
 namespace rmlcell::server {
 namespace {
@@ -28,6 +29,13 @@ class JournalTest : public testing::Test {
     entry.set_fence(fence);
     entry.set_sequence(sequence);
     entry.mutable_mark()->set_state(std::string(bytes, static_cast<char>('a' + sequence % 26)));
+    return entry;
+  }
+  static v1::JournalEntry Event(std::int64_t fence, std::int64_t sequence, std::size_t bytes = 20) {
+    v1::JournalEntry entry;
+    entry.set_fence(fence);
+    entry.set_sequence(sequence);
+    entry.mutable_event()->mutable_message()->set_text(std::string(bytes, 'x'));
     return entry;
   }
   static std::vector<v1::JournalEntry> Entries(std::int64_t fence, std::int64_t from,
@@ -132,10 +140,68 @@ TEST_F(JournalTest, HasABound) {
   const Journal::Found found = Open();
   Status written;
   std::int64_t sequence = 0;
-  while (written) written = found.journal->Write({Entry(3, ++sequence, 1 << 20)});
+  while (written) written = found.journal->Write({Event(3, ++sequence, 1 << 20)});
   EXPECT_EQ(written.error().code, ErrorCode::kCellJournal);
   EXPECT_LE(found.journal->bytes(), Journal::kBytesMax);
   EXPECT_EQ(static_cast<std::int64_t>(Bytes().size()), found.journal->bytes());
+}
+
+// LIVE-3.24: where it is full older marks go first, and what happened stays.
+TEST_F(JournalTest, OldMarksGoFirst) {
+  const Journal::Found found = Open();
+  std::vector<std::int64_t> kept;
+  std::int64_t sequence = 0;
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_TRUE(found.journal->Write({Event(3, ++sequence, 1 << 20)})) << i;
+    kept.push_back(sequence);
+    ASSERT_TRUE(found.journal->Write({Entry(3, ++sequence, 1 << 20)})) << i;
+  }
+  const std::int64_t newest = sequence;
+  while (found.journal->Write({Event(3, ++sequence, 1 << 20)})) kept.push_back(sequence);
+  EXPECT_GT(kept.size(), 60U);
+  kept.push_back(newest);
+  std::ranges::sort(kept);
+  EXPECT_EQ(Numbers(Open().entries), kept);
+  EXPECT_LE(found.journal->bytes(), Journal::kBytesMax);
+  found.journal->Stored(3, newest);  // it knows where they lie
+  EXPECT_EQ(Open().entries.front().sequence(), newest + 1);
+}
+
+// LIVE-3.25: events that the store has not taken are never left out, older marks may be.
+TEST_F(JournalTest, WhatIsNotStoredIsKept) {
+  UnstoredEntries unstored;
+  std::int64_t sequence = 0;
+  const auto add = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      unstored.Add({Event(3, sequence + 1), Entry(3, sequence + 2)});
+      sequence += 2;
+    }
+  };
+  add(150'000);
+  const std::vector<v1::JournalEntry> all = unstored.all();
+  EXPECT_EQ(std::ranges::count_if(all, &v1::JournalEntry::has_event), 150'000);
+  EXPECT_LT(std::ranges::count_if(all, &v1::JournalEntry::has_mark), 100'000);
+  EXPECT_TRUE(all.back().has_mark());
+  EXPECT_TRUE(std::ranges::is_sorted(Numbers(all)));
+  unstored.Stored(sequence - 2);
+  EXPECT_THAT(Numbers(unstored.all()), testing::ElementsAre(sequence - 1, sequence));
+  unstored.Stored(sequence);
+  EXPECT_TRUE(unstored.empty());
+}
+
+// LIVE-3.05: what another host's machine does not take is kept beside the journal.
+TEST_F(JournalTest, WhatNobodyTakesIsAnOrphan) {
+  UnstoredEntries unstored;
+  EXPECT_EQ(*unstored.KeepAsOrphan(path_), "");
+  unstored.Add({Event(3, 7), Entry(3, 8)});
+  const Result<std::string> orphan = unstored.KeepAsOrphan(path_);
+  ASSERT_TRUE(orphan);
+  EXPECT_EQ(*orphan, path_ + ".orphan");
+  std::ifstream file(*orphan, std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  EXPECT_THAT(Numbers(ReadJournal(bytes).entries), testing::ElementsAre(7, 8));
+  EXPECT_EQ(unstored.KeepAsOrphan((folder_ / "none" / "x").string()).error().code,
+            ErrorCode::kCellJournal);
 }
 
 // LIVE-3.21: a folder that is not there.

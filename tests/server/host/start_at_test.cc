@@ -138,7 +138,7 @@ TEST_F(StartAtTest, AStalePreviewStartsNothing) {
   door.mutable_inputs()->add_inputs()->set_door_open(true);
   door.mutable_inputs()->set_control_token(token_);
   Do(door);
-  EXPECT_THAT(refused(third).message(), HasSubstr("machine was changed: door open (was closed)"));
+  EXPECT_THAT(refused(third).message(), HasSubstr("machine was changed: cover open (was closed)"));
   door.mutable_inputs()->mutable_inputs(0)->set_door_open(false);
   Do(door);
   const std::string fourth = Preview(8).preview().preview_token();
