@@ -24,18 +24,24 @@ std::string PlaceText(const v1::StepPlace& place) {
   return std::to_string(place.program()) + "/" + std::to_string(place.step());
 }
 
-// What is different there, how the machine goes there, and why it may not.
-void PrintPreview(const v1::PreviewStartResponse& preview) {
+std::string LengthText(const v1::AxisValue& axis) {
+  const bool turns = axis.unit() == v1::UNIT_RADIAN;
+  return Fixed(axis.value(), turns ? 4 : 3) + (turns ? " rad" : " mm");
+}
+
+// What is different there, how the machine goes there, and why it may not. `in_program_units`: the
+// values of this machine are those of its language.
+void PrintPreview(const v1::PreviewStartResponse& preview, bool in_program_units) {
   std::vector<std::vector<std::string>> rows = {{"ITEM", "THERE", "NOW", "DONE ABOUT IT"}};
   for (const v1::StartDifference& one : preview.differences()) {
     rows.push_back({one.item(), Visible(one.there()), Visible(one.now()),
                     Short(v1::StartAction_Name(one.action()), "START_ACTION_")});
   }
   if (rows.size() > 1) PrintRaw(Table(rows));
+  if (rows.size() > 1 && in_program_units) Print("          places in units of the program");
   for (const v1::ApproachMotion& motion : preview.approach()) {
     std::string to;
-    for (const v1::AxisValue& axis : motion.to())
-      to += "  " + axis.axis() + " " + Fixed(axis.value(), axis.unit() == v1::UNIT_RADIAN ? 4 : 3);
+    for (const v1::AxisValue& axis : motion.to()) to += "  " + axis.axis() + " " + LengthText(axis);
     Print("approach  " + motion.path() + to);
   }
   for (const v1::ApproachMotion& motion : preview.approach()) {
@@ -141,7 +147,7 @@ int StartAtStep(const Remote& remote, const MachineAct& act) {
   if (remote.json) {
     Print(Json(preview));
   } else {
-    PrintPreview(preview);
+    PrintPreview(preview, machine.family() == "rml1");
   }
   if (preview.preview_token().empty()) return kProgramErrors;
   auto request = For<v1::StartAtStepRequest>(act);

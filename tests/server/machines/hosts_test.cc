@@ -1,4 +1,7 @@
 // Hosts as the server hears of them, over lines of the test: leases, orders, what is stored.
+#include <unistd.h>
+
+#include "server/base/this_computer.h"
 #include "tests/server/machines/hosts_bed.h"
 
 namespace rmlcell::server {
@@ -47,6 +50,21 @@ TEST_F(HostsTest, AnotherHostWaitsUntilTheFirstIsGone) {
   // What the first one still says is refused by its fence.
   hosts.Leave(*first);
   EXPECT_TRUE(hosts.IsHosted("mill-1"));
+}
+
+// LIVE-3.02: a process of this computer's present boot that is gone holds nothing; one of another
+// boot may be of another computer of that name, and is waited for.
+TEST_F(HostsTest, AProcessThatIsGoneIsNotWaitedFor) {
+  const std::string gone = NameOfComputer() + "/2147483646/";
+  const std::string other = NameOfBoot() == "00000000" ? "11111111" : "00000000";
+  hosts.Leave(*Joined(Hello(gone + other + "5f3a09c1")));
+  EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
+  clock.Advance(Hosts::kLease + std::chrono::seconds(5));
+  hosts.Leave(*Joined(Hello(gone + NameOfBoot() + "5f3a09c1")));
+  const std::string lives =
+      NameOfComputer() + "/" + std::to_string(::getpid()) + "/" + NameOfBoot() + "b06e77d2";
+  hosts.Leave(*Joined(Hello(lives)));
+  EXPECT_EQ(Refused(Hello("other/2")), ErrorCode::kCellMachineTaken);
 }
 
 // LIVE-3.02: the same host keeps its fence, over another line.
