@@ -52,9 +52,7 @@ void Guard() {
 }
 
 // "hall-3/4711": unique among the workers of all computers.
-std::string OwnName() {
-  return NameOfComputer() + "/" + std::to_string(::getpid());
-}
+std::string OwnName() { return NameOfComputer() + "/" + std::to_string(::getpid()); }
 
 // A server that is away, or of another version, leaves it to the next.
 Result<std::unique_ptr<ServerLine>> JoinFirst(const std::vector<std::string>& servers,
