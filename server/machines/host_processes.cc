@@ -62,7 +62,7 @@ void HostProcesses::Disable(const std::string& machine) {
 
 void HostProcesses::Forget(const std::string& machine) {
   Disable(machine);
-  for (const char* kept : {".journal", ".journal.run", ".log"})
+  for (const char* kept : {".journal", ".journal.run", ".journal.orphan", ".log"})
     ::unlink((options_.journals + "/" + machine + kept).c_str());
 }
 

@@ -132,7 +132,7 @@ class LiveCrashesTest(LiveTestCase):
             for _ in range(40):
                 box.hold("X+", 0.3)
         eventually(lambda: not os.path.exists(f"/proc/{host}"))
-        journals = self.cell.folder / "store" / "journals"
+        journals = self.cell.folder / "store" / "hosts"
         orphan = [name for name in os.listdir(journals) if name.endswith(".orphan")]
         self.assertEqual(len(orphan), 1, os.listdir(journals))
         self.assertGreater((journals / orphan[0]).stat().st_size, 0)
