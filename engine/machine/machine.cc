@@ -556,6 +556,11 @@ Status Machine::Act(const SetBreakpoints& input) {
                  {}};
   }
   for (const Breakpoint& breakpoint : input.breakpoints) {
+    if (breakpoint.condition.size() > kBreakpointConditionMax) {
+      return Error{ErrorCode::kCellInvalidArgument,
+                   "a condition has at most " + Told("most", kBreakpointConditionMax) + " bytes",
+                   {}};
+    }
     if (const Status good = family_.CheckBreakpoint(breakpoint); !good) return good.error();
   }
   breakpoints_ = input.breakpoints;

@@ -11,6 +11,8 @@
 namespace rmlcell::machine {
 namespace {
 
+constexpr std::size_t kBreakpointsRead = 10'000;  // as many as a machine once could have
+
 constexpr std::string_view kHeader = "rmlcell machine 1";
 constexpr std::size_t kAlarmsMax = 10'000;  // of one kind there is one
 constexpr std::array kModes = {Mode::kRemote, Mode::kCycle, Mode::kSingle, Mode::kRepeat,
@@ -115,7 +117,7 @@ void TakeBreakpoint(Words& words, MachineNote& note) {
   words.Take(breakpoint.at);
   words.Take(breakpoint.from_pass, 1, static_cast<long long>(kBreakpointPassMax));
   breakpoint.condition = words.Rest();
-  if (note.breakpoints.size() >= kBreakpointsMax) return words.Refuse();
+  if (note.breakpoints.size() >= kBreakpointsRead) return words.Refuse();
   note.breakpoints.push_back(std::move(breakpoint));
 }
 

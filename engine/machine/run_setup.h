@@ -48,7 +48,9 @@ struct ProgramStep {
   bool operator==(const ProgramStep&) const = default;
 };
 
-inline constexpr std::size_t kBreakpointsMax = 10'000;  // nobody sets as many
+// Of a machine that lives: it is kept in each mark, of at most 16 KiB. LIVE-3.23
+inline constexpr std::size_t kBreakpointsMax = 100;
+inline constexpr std::size_t kBreakpointConditionMax = 80;  // bytes
 inline constexpr std::uint64_t kBreakpointPassMax = 1'000'000'000'000;
 
 // Where somebody who watches a run wants it to halt: behind this step, as behind HOLD.

@@ -163,6 +163,28 @@ TEST_F(MachineTest, BreakpointsHaveLimits) {
   EXPECT_EQ(machine->breakpoints().size(), kBreakpointsMax);
 }
 
+// LIVE-3.23: at most 16 KiB, with every variable used and as many breakpoints as there may be.
+TEST_F(MachineTest, AMarkIsSmall) {
+  std::string all;
+  for (int i = 1; i <= 97; ++i) {
+    const std::string index = "[" + std::to_string(i) + "] = ";
+    all += "VR" + index + "-1.234567\nVI" + index + "-123456\nVL" + index + "ON\n";
+    if (i <= 64) all += "OL" + index + "ON\nOA" + index + "-1.234567\n";
+  }
+  const std::string condition = "VR[97] > -1.234567 AND VR[96] > -1.234567 AND VI[97] > -123456";
+  Load({all});
+  Start();
+  GoOn(At(100.0));
+  EXPECT_EQ(Value("VI[97]"), "-123456");
+  std::vector<Breakpoint> many;
+  for (int i = 1; i <= static_cast<int>(kBreakpointsMax); ++i)
+    many.push_back({.at = {99, 9'900 + i}, .condition = condition, .from_pass = 1'000'000'000'000});
+  Good(SetBreakpoints{many});
+  EXPECT_LE(machine->Save().size(), 16U * 1024U);
+  many[0].condition = std::string(kBreakpointConditionMax + 1, ' ');
+  EXPECT_THAT(Refused(SetBreakpoints{many}), HasSubstr("at most 80 bytes"));
+}
+
 // LIVE-3.16, OPT-6.24, OPT-6.28: halted in a dry run it is seen to be dry, and what the program
 // switches is an image, not at the terminals.
 TEST_F(MachineTest, ADryRunIsSeenToBeDry) {
