@@ -514,7 +514,8 @@ void AddReplayVerb(CLI::App& app, Remote& remote, int& exit_code) {
   verb->add_option("--from", request->from,
                    "from the newest mark at or before this time of the machine, ns")
       ->check(CLI::NonNegativeNumber);
-  verb->add_option("--to", request->to, "up to this time of the machine, ns")
+  verb->add_option("--to", request->to,
+                   "up to this time of the machine, ns, and say how it stood there")
       ->check(CLI::NonNegativeNumber);
   verb->add_option("-o,--output", request->output, "keep the recording in this file");
   verb->add_option("--server", remote.server,

@@ -9,8 +9,10 @@
 #include "clients/cli/remote_call.h"
 #include "clients/cli/terminal.h"
 #include "clients/cli/version.h"
+#include "engine/core/number_text.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/machine_inputs.h"
 #include "proto/recording/replay.h"
 #include "rmlcell/v1/job.grpc.pb.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
@@ -70,6 +72,22 @@ Fetched Fetch(const Remote& remote, const std::string& what) {
   return FetchFrom(remote, request);
 }
 
+// Where it stood, and what it did there.
+void TellStand(const machine::Machine& machine) {
+  const machine::MachineStatus now = machine.status();
+  std::string text = "at " + Duration(ToSeconds(now.time)) +
+                     " of the machine: " + std::string(machine::Name(now.state));
+  if (now.open && now.run.place.step > 0)
+    text +=
+        " at " + std::to_string(now.run.place.program) + "/" + std::to_string(now.run.place.step);
+  for (const v1::AxisValue& axis : bridge::AxesOf(machine.family().info().axes, now.run.axes)) {
+    const bool turns = axis.unit() == v1::UNIT_RADIAN;
+    text += "  " + axis.axis() + " " + FixedText(axis.value(), turns ? 4 : 3) +
+            (turns ? " rad" : " mm");
+  }
+  Print(text);
+}
+
 void TellResult(const recording::Recording& recording, const recording::Replayed& replayed) {
   const v1::MachineRecording& head = recording.head;
   Print(head.machine() + (head.job().empty() ? "" : ", " + head.job()) + ": played again, " +
@@ -94,7 +112,10 @@ int Replay(const Remote& remote, const ReplayRequest& request) {
   if (version != kVersion)
     Complain("it was recorded by version " + version + ", and this is " + std::string(kVersion));
   recording::ReplayOptions options;
-  if (request.to) options.to = SimTime(*request.to);
+  if (request.to) {
+    options.to = SimTime(*request.to);
+    options.stands = TellStand;
+  }
   const Result<recording::Replayed> replayed = recording::Replay(*recording, options);
   if (!replayed) return Refuse(replayed.error());
   if (!replayed->difference) {

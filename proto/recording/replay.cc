@@ -136,6 +136,7 @@ class Player {
     }
     if (!replayed_.difference && options_.to != SimTime::max() && options_.to > machine_->time())
       static_cast<void>(GoTo(options_.to));
+    if (options_.stands && !stopped_ && !replayed_.difference) options_.stands(*machine_);
     // What ends with the last entry is told when the machine goes on behind it.
     if (!stopped_ && !replayed_.difference && !ends_.empty())
       static_cast<void>(GoTo(machine_->time() + SimTime(1)));

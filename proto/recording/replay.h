@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/machine/family.h"
+#include "engine/machine/machine.h"
 #include "proto/recording/recording.h"
 
 namespace rmlcell::recording {
@@ -37,6 +38,8 @@ struct ReplayOptions {
   // A run was cut off by the end of its host, with this outcome: it is over there, and nothing
   // behind it is played. Empty: the machine stands in the middle of it.
   std::function<void(const machine::RunOver&, const v1::Outcome&)> cut_off{};
+  // How it stands at `to`, where all before came out the same.
+  std::function<void(const machine::Machine&)> stands{};
   // Where it is, once in a while. False: it ends there.
   std::function<bool(SimTime)> goes_on{};
 };

@@ -2,12 +2,14 @@
 """Machines that live: hosts as processes, over gRPC and the web, held, killed and found again (live.md)."""
 import os
 import random
+import re
 import signal
 import threading
 import time
 import unittest
 
 from cell import Cell, cell_pb2, detail_of, eventually, grpc, machine_pb2, program_pb2
+from command import ask
 from live import MILL, Live, LiveTestCase, hosts_of, new_id
 from rmlcell.v1 import machine_control_pb2 as control  # noqa: E402
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
@@ -97,12 +99,44 @@ class LiveTest(LiveTestCase):
         times = [one.virtual_time_ns for one in seen]
         self.assertEqual(times, sorted(times))
 
-    def watch(self, seen):
+    def watch(self, seen, machine=MILL):
         try:
-            for message in self.cell.machines().WatchMachine(machine_pb2.WatchMachineRequest(name=MILL)):
+            for message in self.cell.machines().WatchMachine(machine_pb2.WatchMachineRequest(name=machine)):
                 seen.append(message.status)
         except grpc.RpcError:
             pass
+
+    def test_status_lies_on_the_trajectory(self):
+        """LIVE-10.21, LIVE-3.16: each position at its virtual time, with holds and overrides between, at factors 1 and 10."""
+        self.live = live = Live(self, self.cell, "machines/optimo-1")
+        live.enable()
+        live.acquire(ttl={"seconds": 60})
+        live.store(5, "COORD ABSOL\nPATH LIN\nSPEED 20\n" + "".join(
+            f"MOVE ({1000 + 37 * i % 200}., {500 + 53 * i % 170}., {-400 + 7 * i % 30}., 0., 0.)\n" for i in range(60)), "a.S")
+        seen = []
+        threading.Thread(target=self.watch, args=(seen, live.machine), daemon=True).start()
+        live.ask("StartMachine", program=5)
+        for factor in (1.0, 10.0):
+            live.ask("SetFactor", factor=factor)
+            for percent in (100.0, 40.0):
+                live.ask("SetOverride", percent=percent)
+                before = len(seen)
+                eventually(lambda: len(seen) > before + 15)
+                live.ask("StopMachine")
+                live.wait("HELD")
+                live.ask("ResumeMachine")
+        live.ask("AbortRun")
+        live.wait("IDLE")
+        kept = str(self.cell.folder / "run.rmlj")
+        self.cell.command("replay", "optimo-1", "-o", kept)
+        moving = [one for one in seen if MachineState.Name(one.state) in ("MACHINE_STATE_RUNNING", "MACHINE_STATE_STOPPING")]
+        self.assertGreater(len({tuple(round(axis.value, 3) for axis in one.axes) for one in moving}), 40)
+        for one in random.Random(1).sample(moving, 24):
+            told = ask("replay", kept, "--to", str(one.virtual_time_ns)).stdout.splitlines()[0]
+            self.assertIn(MachineState.Name(one.state)[len("MACHINE_STATE_"):], told)
+            for axis in one.axes:
+                there = float(re.search(rf"  {axis.axis} (-?[0-9.]+) ", told + " ").group(1))
+                self.assertLessEqual(abs(there - axis.value), 0.01, f"{one.virtual_time_ns}: {axis.axis}: {told}")
 
     def test_a_run_to_its_end_is_in_the_log(self):
         self.live.enable()
