@@ -119,7 +119,7 @@ class LiveTest(LiveTestCase):
         for factor in (1.0, 10.0):
             live.ask("SetFactor", factor=factor)
             for percent in (100.0, 40.0):
-                live.ask("SetOverride", percent=percent)
+                live.ask("SetOverride", override_percent=percent)
                 before = len(seen)
                 eventually(lambda: len(seen) > before + 15)
                 live.ask("StopMachine")
