@@ -125,7 +125,15 @@ Times MeasureStopped(LiveMachine& machine, const std::filesystem::path& store, i
   return times;
 }
 
-// A hundred machines that all move, at the speed of the clock.
+// A laser that cuts corner by corner for as long as anybody looks.
+std::string Rounds() {
+  return "COORD ABSOL\nPATH LIN\nSPEED 20\nVI[1] = 0\nWORK 0,0/ON\n"
+         "10 MOVE (1000., 500., -400., 0., 0.)\nMOVE (1060., 510., -390., 0.1, 0.)\n"
+         "MOVE (1020., 580., -410., 0., 0.1)\nMOVE (990., 540., -400., 0.1, 0.1)\n"
+         "VI[1] = VI[1] + 1\nIF VI[1] < 10000 THEN 10\nWORK 0,0/OFF\n";
+}
+
+// A hundred machines that all move, at the speed of the clock: mills and lasers in turn.
 struct Hundred {
   double cores = 0.0;   // of hosts and server
   double lost_s = 0.0;  // of virtual time, of the one that lost most
@@ -135,14 +143,17 @@ Hundred MoveAHundred(const CellServer& server) {
   const auto calls = v1::MachineService::NewStub(server.Connect());
   std::vector<std::unique_ptr<LiveMachine>> machines;
   for (int i = 0; i < kMachines; ++i) {
+    const bool mill = i % 2 == 0;
     v1::CreateMachineRequest create;
     create.set_machine_id("m-" + std::to_string(i));
-    create.mutable_machine()->set_family("rml1");
-    create.mutable_machine()->set_profile("srm-20");
+    create.mutable_machine()->set_family(mill ? "rml1" : "optimo");
+    if (mill) create.mutable_machine()->set_profile("srm-20");
     grpc::ClientContext context;
     v1::Machine made;
     Must(calls->CreateMachine(&context, create, &made));
-    machines.push_back(std::make_unique<LiveMachine>(server, "machines/" + create.machine_id()));
+    const std::string name = "machines/" + create.machine_id();
+    machines.push_back(mill ? std::make_unique<LiveMachine>(server, name)
+                            : std::make_unique<LiveMachine>(server, name, "round.S", Rounds()));
     machines.back()->Start();
   }
   std::this_thread::sleep_for(std::chrono::seconds(5));  // all are on their way
