@@ -168,14 +168,14 @@ TEST_F(MachineTest, AMarkIsSmall) {
   std::string all;
   for (int i = 1; i <= 97; ++i) {
     const std::string index = "[" + std::to_string(i) + "] = ";
-    all += "VR" + index + "-1.234567\nVI" + index + "-123456\nVL" + index + "ON\n";
+    all += "VR" + index + "-1.234567\nVI" + index + "-12345\nVL" + index + "ON\n";
     if (i <= 64) all += "OL" + index + "ON\nOA" + index + "-1.234567\n";
   }
-  const std::string condition = "VR[97] > -1.234567 AND VR[96] > -1.234567 AND VI[97] > -123456";
+  const std::string condition = "VR[97] > -1.234567 AND VR[96] > -1.234567 AND VI[97] > -12345";
   Load({all});
   Start();
   GoOn(At(100.0));
-  EXPECT_EQ(Value("VI[97]"), "-123456");
+  EXPECT_EQ(Value("VI[97]"), "-12345");
   std::vector<Breakpoint> many;
   for (int i = 1; i <= static_cast<int>(kBreakpointsMax); ++i)
     many.push_back({.at = {99, 9'900 + i}, .condition = condition, .from_pass = 1'000'000'000'000});
