@@ -169,7 +169,7 @@ TEST_F(MachineTest, AMarkIsSmall) {
   for (int i = 1; i <= 97; ++i) {
     const std::string index = "[" + std::to_string(i) + "] = ";
     all += "VR" + index + "-1.234567\nVI" + index + "-12345\nVL" + index + "ON\n";
-    if (i <= 64) all += "OL" + index + "ON\nOA" + index + "-1.234567\n";
+    if (i >= 10 && i <= 64) all += "OL" + index + "ON\nOA" + index + "-1.234567\n";
   }
   const std::string condition = "VR[97] > -1.234567 AND VR[96] > -1.234567 AND VI[97] > -12345";
   Load({all});
