@@ -1,5 +1,6 @@
 #include "proto/recording/replay.h"
 
+#include <algorithm>
 #include <deque>
 #include <memory>
 #include <utility>
@@ -134,8 +135,12 @@ class Player {
       if (const Status played = Take(entry); !played) return played.error();
       if (replayed_.difference) break;
     }
-    if (!replayed_.difference && options_.to != SimTime::max() && options_.to > machine_->time())
-      static_cast<void>(GoTo(options_.to));
+    const SimTime to =
+        options_.stands
+            ? std::min(options_.to, SimTime(recording_.entries.back().virtual_time_ns()))
+            : options_.to;
+    if (!replayed_.difference && to != SimTime::max() && to > machine_->time())
+      static_cast<void>(GoTo(to));
     if (options_.stands && !stopped_ && !replayed_.difference) options_.stands(*machine_);
     // What ends with the last entry is told when the machine goes on behind it.
     if (!stopped_ && !replayed_.difference && !ends_.empty())

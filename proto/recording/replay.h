@@ -38,7 +38,8 @@ struct ReplayOptions {
   // A run was cut off by the end of its host, with this outcome: it is over there, and nothing
   // behind it is played. Empty: the machine stands in the middle of it.
   std::function<void(const machine::RunOver&, const v1::Outcome&)> cut_off{};
-  // How it stands at `to`, where all before came out the same.
+  // How it stands at `to`, or with the last entry where that comes first: what came behind it is
+  // not known. Told where all before came out the same.
   std::function<void(const machine::Machine&)> stands{};
   // Where it is, once in a while. False: it ends there.
   std::function<bool(SimTime)> goes_on{};

@@ -2,6 +2,7 @@
 
 #include <google/protobuf/util/time_util.h>
 
+#include <cstdlib>
 #include <utility>
 
 #include "proto/bridge/sha256.h"
@@ -28,8 +29,10 @@ Result<v1::AcquireControlResponse> ControlDesk::Acquire(const v1::AcquireControl
                                                         const HostTime& now) {
   std::chrono::nanoseconds ttl = kTtl;
   if (request.has_ttl()) {
-    ttl = std::chrono::nanoseconds(TimeUtil::DurationToNanoseconds(request.ttl()));
-    if (ttl < kTtlMin || ttl > kTtlMax) return Wrong("ttl: allowed are 1 s to 60 s");
+    // The nanoseconds of what is far beyond it are no number.
+    const bool known = std::abs(request.ttl().seconds()) <= kTtlMax / std::chrono::seconds(1);
+    if (known) ttl = std::chrono::nanoseconds(TimeUtil::DurationToNanoseconds(request.ttl()));
+    if (!known || ttl < kTtlMin || ttl > kTtlMax) return Wrong("ttl: allowed are 1 s to 60 s");
   }
   if (LengthOf(request.client()) > kClientMax) return Wrong("client: at most 100 characters");
   if (request.on_loss() != v1::ControlLease::ON_LOSS_UNSPECIFIED &&

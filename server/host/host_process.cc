@@ -149,8 +149,9 @@ class HostProcess {
       spdlog::error("{}", welcome.error().detail);
       if (code == ErrorCode::kCellMachineTaken) return LoseMachine("another host");
       // Behind an upgrade by more than one version: what it moves comes to rest. LIVE-3.07
-      if (code == ErrorCode::kCellVersionMismatch && machine_ != nullptr)
-        return End("its server is of another version");
+      if (code == ErrorCode::kCellVersionMismatch && machine_ != nullptr && !IsHeard() &&
+          ++refused_by_ > servers_.others().size())
+        return End("its servers are of another version");
       return servers_.others().empty() ? Quit(69) : void();  // another server may take it
     }
     const v1::HostWelcome& message = welcome->message;
@@ -160,6 +161,7 @@ class HostProcess {
     fence_ = message.fence();
     lease_.Given(nanoseconds(TimeUtil::DurationToNanoseconds(message.lease())), joining_since_);
     inbox_.SetHeardAt(now);
+    refused_by_ = 0;
     line_ = std::move(welcome->line);
     for (const std::string& server : message.servers()) servers_.Add(server);
     KeepFurther();
@@ -180,17 +182,12 @@ class HostProcess {
     // A line may be heard before it is known to have joined: what it says waits for that.
     if (line_ != nullptr) taken.Append(inbox_.TakeMessages());
     for (const v1::HostOrder& order : StopFirst(taken.messages)) Refuse(order, StoppedBefore());
-    v1::HostOrder order;
-    for (const std::int64_t number : taken.stops) {
-      order.mutable_stop();
-      order.set_number(number);
-      StopWhatBegins(order);
+    if (!taken.stops.empty()) {
+      for (const v1::HostOrder& order : taken.TakeMotions()) Refuse(order, StoppedBefore());
     }
-    order.clear_stop();
-    for (const std::int64_t number : taken.refused) {
-      order.set_number(number);
+    for (const v1::HostOrder& order : taken.stops) TakeOrder(order);
+    for (const v1::HostOrder& order : taken.refused)
       Refuse(order, {ErrorCode::kCellUnavailable, "too many orders wait for it", {}});
-    }
     for (v1::HostResponse& message : taken.messages) Take(message);
   }
 
@@ -248,8 +245,8 @@ class HostProcess {
       keys_waiting_.push_back({.order = order, .until = until});
       return;
     }
-    if (ending_at_ && kind != OrderClass::kActsFirst && kind != OrderClass::kLetsGo &&
-        kind != OrderClass::kAsks)
+    if ((ending_at_ || lost_until_) && kind != OrderClass::kActsFirst &&
+        kind != OrderClass::kLetsGo && kind != OrderClass::kAsks)
       return Refuse(order, {ErrorCode::kCellNotLive, "its host ends", {}});
     switch (kind) {
       case OrderClass::kActsFirst:
@@ -466,6 +463,7 @@ class HostProcess {
       line_->Send(std::move(renew));
     }
     if (ending_at_) machine_->Hold(v1::HOLD_REASON_STOP, now);  // whatever began meanwhile
+    if (lost_until_) machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, now);
     if (lost_until_ && (!machine_->moves() || now.steady >= *lost_until_)) return GiveUp(now);
     if (ending_at_ && (!machine_->moves() || now.steady >= *ending_at_)) HandBack(now);
   }
@@ -476,13 +474,13 @@ class HostProcess {
     spdlog::error("{}", bridge::ErrorText(Error{
                             ErrorCode::kCellMachineTaken, holder + " has the machine now", {}}));
     if (machine_ == nullptr) return Quit(3);
+    parked_.ForgetAll();
     machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, Now());
     lost_until_ = Now().steady + kRestPatience;
   }
 
   // What the store does not take from it is kept for people to look at.
   void GiveUp(const HostTime& now) {
-    parked_.ForgetAll();
     Write(now, true);
     writer_.reset();
     DoLater();
@@ -498,10 +496,8 @@ class HostProcess {
 
   void SendEntries(const std::vector<v1::JournalEntry>& entries) {
     if (entries.empty() || line_ == nullptr || lost_until_) return;
-    v1::HostRequest request;
-    request.mutable_entries()->set_fence(fence_);
-    for (const v1::JournalEntry& entry : entries) *request.mutable_entries()->add_entries() = entry;
-    line_->Send(std::move(request));
+    for (v1::HostRequest& request : EntriesInParts(entries, fence_))
+      line_->Send(std::move(request));
   }
 
   // In order: it comes to rest first. LIVE-5.09
@@ -571,6 +567,7 @@ class HostProcess {
   int writes_under_way_ = 0;
   nanoseconds durable_at_{0};  // what was written last; where nothing is under way, what begins
   int lines_lost_ = 0;
+  std::size_t refused_by_ = 0;  // servers of another version, one after the other
   UnstoredEntries unstored_;
   std::int64_t fence_ = 0;
   LeaseClock lease_;

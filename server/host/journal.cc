@@ -4,14 +4,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "proto/recording/records.h"
 #include "server/host/answered_requests.h"
-#include "server/host/unstored_entries.h"
 
 namespace rmlcell::server {
 namespace {
@@ -130,17 +131,16 @@ Status Journal::Write(const std::vector<v1::JournalEntry>& entries) {
 }
 
 Journal::Place Journal::PlaceOf(const v1::JournalEntry& entry, std::int64_t end) {
-  return {
-      .fence = entry.fence(), .sequence = entry.sequence(), .end = end, .mark = entry.has_mark()};
+  return {.fence = entry.fence(), .sequence = entry.sequence(), .end = end, .kind = KindOf(entry)};
 }
 
 std::int64_t Journal::BytesOfOldMarks() const {
+  std::vector<EntryKind> kinds;
+  std::ranges::transform(places_, std::back_inserter(kinds), &Place::kind);
+  const std::vector<bool> old = OldMarks(kinds);
   std::int64_t bytes = 0;
-  bool newer = false;
-  for (std::size_t i = places_.size(); i-- > 0;) {
-    if (!places_[i].mark) continue;
-    if (newer) bytes += places_[i].end - (i > 0 ? places_[i - 1].end : 0);
-    newer = true;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (old[i]) bytes += places_[i].end - (i > 0 ? places_[i - 1].end : 0);
   }
   return bytes;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/core/result.h"
 #include "rmlcell/v1/host.pb.h"
+#include "server/host/unstored_entries.h"
 
 namespace rmlcell::server {
 
@@ -51,7 +52,7 @@ class Journal {
     std::int64_t fence = 0;
     std::int64_t sequence = 0;
     std::int64_t end = 0;  // of its record in the file
-    bool mark = false;
+    EntryKind kind = EntryKind::kOther;
   };
   Status Rewrite(std::string_view records);
   static Place PlaceOf(const v1::JournalEntry& entry, std::int64_t end);

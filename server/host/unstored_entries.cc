@@ -5,20 +5,59 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "server/host/journal.h"
 
 namespace rmlcell::server {
+namespace {
+
+constexpr std::size_t kPartBytes = std::size_t{1} << 20;
+
+}  // namespace
+
+EntryKind KindOf(const v1::JournalEntry& entry) {
+  if (entry.has_mark()) return EntryKind::kMark;
+  return entry.has_run_over() ? EntryKind::kRunOver : EntryKind::kOther;
+}
+
+std::vector<bool> OldMarks(const std::vector<EntryKind>& kinds) {
+  std::vector<bool> old(kinds.size());
+  std::optional<std::size_t> newest;
+  bool behind_run = false;  // no mark stands behind the newest end
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (kinds[i] == EntryKind::kRunOver) behind_run = true;
+    if (kinds[i] != EntryKind::kMark) continue;
+    if (newest) old[*newest] = true;
+    newest = behind_run ? std::nullopt : std::optional(i);
+    behind_run = false;
+  }
+  return old;
+}
 
 std::vector<v1::JournalEntry> WithoutOldMarks(std::vector<v1::JournalEntry> entries) {
-  const auto newest = std::find_if(entries.rbegin(), entries.rend(),
-                                   [](const auto& one) { return one.has_mark(); });
-  if (newest == entries.rend()) return entries;
-  const auto end = std::remove_if(entries.begin(), std::prev(newest.base()),
-                                  [](const auto& one) { return one.has_mark(); });
-  entries.erase(end, std::prev(newest.base()));
+  std::vector<EntryKind> kinds;
+  std::ranges::transform(entries, std::back_inserter(kinds), KindOf);
+  const std::vector<bool> old = OldMarks(kinds);
+  std::size_t i = 0;
+  std::erase_if(entries, [&](const v1::JournalEntry& /*entry*/) { return old[i++]; });
   return entries;
+}
+
+std::vector<v1::HostRequest> EntriesInParts(const std::vector<v1::JournalEntry>& entries,
+                                            std::int64_t fence) {
+  std::vector<v1::HostRequest> parts;
+  std::size_t bytes = kPartBytes;
+  for (const v1::JournalEntry& entry : entries) {
+    if (bytes >= kPartBytes) {
+      bytes = 0;
+      parts.emplace_back().mutable_entries()->set_fence(fence);
+    }
+    bytes += entry.ByteSizeLong();
+    *parts.back().mutable_entries()->add_entries() = entry;
+  }
+  return parts;
 }
 
 void UnstoredEntries::Add(const std::vector<v1::JournalEntry>& entries) {
@@ -37,7 +76,7 @@ void UnstoredEntries::Stored(std::int64_t sequence) {
 Result<std::string> UnstoredEntries::KeepAsOrphan(const std::string& journal) const {
   if (entries_.empty()) return std::string();
   std::string path = journal + ".orphan";
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  std::ofstream file(path, std::ios::binary | std::ios::app);
   file << RecordsOf(all()) << std::flush;
   if (!file) return Error{ErrorCode::kCellJournal, path + ": " + std::strerror(errno), {}};
   return path;

@@ -24,7 +24,8 @@ class UnstoredEntries {
   bool empty() const { return entries_.empty(); }
 
   // The machine is another host's now: nobody takes them any more, and they are kept beside the
-  // journal. Returns where, empty: there are none. Error: CellJournal. LIVE-3.05
+  // journal, behind what was kept so before. Returns where, empty: there are none. Error:
+  // CellJournal. LIVE-3.05
   Result<std::string> KeepAsOrphan(const std::string& journal) const;
 
  private:
@@ -32,7 +33,16 @@ class UnstoredEntries {
   std::size_t looked_at_ = kMarksKept;  // so many more, and it is worth while to look for marks
 };
 
-// All but the marks that have a newer one behind them.
+// Messages that a server takes, however much there is. LIVE-3.25
+std::vector<v1::HostRequest> EntriesInParts(const std::vector<v1::JournalEntry>& entries,
+                                            std::int64_t fence);
+
+enum class EntryKind : std::uint8_t { kOther, kMark, kRunOver };
+EntryKind KindOf(const v1::JournalEntry& entry);
+// Which of them are marks that have a newer one behind them; that behind the end of a run is none,
+// since both are stored at once.
+std::vector<bool> OldMarks(const std::vector<EntryKind>& kinds);
+// All but those.
 std::vector<v1::JournalEntry> WithoutOldMarks(std::vector<v1::JournalEntry> entries);
 
 }  // namespace rmlcell::server

@@ -1,15 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <deque>
-#include <iterator>
-#include <utility>
 #include <vector>
 
 #include "rmlcell/v1/host.pb.h"
-#include "server/host/order_class.h"
 
 namespace rmlcell::server {
 
@@ -17,35 +12,24 @@ namespace rmlcell::server {
 // LIVE-3.10
 class WaitingMessages {
  public:
-  // Orders; those that halt are counted apart, so that none of them finds it full.
+  // Orders; those that halt, let go or slow down are counted apart.
   static constexpr std::size_t kOrdersMax = 256;
 
   struct Taken {
     std::deque<v1::HostResponse> messages{};
-    std::vector<std::int64_t> stops{};    // beyond the bound one STOP stands for all that halt
-    std::vector<std::int64_t> refused{};  // there was no room for the others
+    // Beyond the bound a STOP stands for all that would halt or let go; who asks for more than one
+    // (EMERGENCY STOP, ABORT) gets it.
+    std::vector<v1::HostOrder> stops{};
+    // There was no room for these; of keys with their numbers.
+    std::vector<v1::HostOrder> refused{};
 
-    void Append(Taken more) {
-      std::ranges::move(more.messages, std::back_inserter(messages));
-      stops.insert(stops.end(), more.stops.begin(), more.stops.end());
-      refused.insert(refused.end(), more.refused.begin(), more.refused.end());
-    }
+    void Append(Taken more);
+    // What came before the stops and would begin a motion behind them. LIVE-2.05
+    std::vector<v1::HostOrder> TakeMotions();
   };
 
-  void Add(v1::HostResponse message) {
-    if (message.has_order()) {
-      const bool halts = Halts(message);
-      if ((halts ? halts_ : orders_)++ >= kOrdersMax) {
-        (halts ? taken_.stops : taken_.refused).push_back(message.order().number());
-        return;
-      }
-    }
-    taken_.messages.push_back(std::move(message));
-  }
-  Taken Take() {
-    orders_ = halts_ = 0;
-    return std::exchange(taken_, {});
-  }
+  void Add(v1::HostResponse message);
+  Taken Take();
   bool empty() const { return taken_.messages.empty(); }
 
  private:

@@ -38,8 +38,9 @@ struct Hosts::Host {
   std::vector<v1::JournalEntry> waiting;  // to be stored
   std::int64_t stored = 0;                // sequence of the last one that is
   bool storing = false;
-  bool settled = false;  // guarded by mutex: all that was before it is stored
-  bool fresh = false;    // it followed another one; of who stores alone
+  bool overflows = false;  // more came than may wait: nothing behind it is taken on this line
+  bool settled = false;    // guarded by mutex: all that was before it is stored
+  bool fresh = false;      // it followed another one; of who stores alone
 };
 
 }  // namespace rmlcell::server

@@ -214,7 +214,9 @@ void Hosts::TakeEntries(const HostPointer& host, const v1::HostEntries& entries)
     const std::lock_guard lock(host->mutex);
     // A host that comes back sends again what it does not know to be stored.
     for (const v1::JournalEntry& entry : entries.entries()) {
-      if (host->waiting.size() >= kWaitingEntriesMax) break;
+      // Nothing behind it may be stored without it: the host sends all of it again, later.
+      host->overflows = host->overflows || host->waiting.size() >= kWaitingEntriesMax;
+      if (host->overflows) break;
       const std::int64_t last =
           host->waiting.empty() ? host->stored : host->waiting.back().sequence();
       if (entry.sequence() > last) host->waiting.push_back(entry);
@@ -251,6 +253,7 @@ void Hosts::StoreEntries(const HostPointer& host) {
     }
     StoredEntries done = server::StoreEntries(needs_.store, host->lease, entries);
     const Status& stored = done.how;
+    bool sends_again = false;
     if (done.how && host->fresh)
       done.how = GiveBackUnbegun(needs_.store, host->id, host->lease.host);
     if (done.how) host->fresh = false;
@@ -262,8 +265,10 @@ void Hosts::StoreEntries(const HostPointer& host) {
       const auto count = static_cast<std::ptrdiff_t>(done.count);
       host->waiting.erase(host->waiting.begin(), host->waiting.begin() + count);
       if (count > 0) host->stored = entries[done.count - 1].sequence();
+      sends_again = host->overflows && host->waiting.empty();
     }
     if (done.count > 0) TellStored(*host);
+    if (sends_again) host->link->Close(NotLive("more was told than could wait: tell it again"));
     const auto ends = [](const v1::JournalEntry& entry) {
       return entry.has_run_over() && !entry.run_over().job().empty();
     };

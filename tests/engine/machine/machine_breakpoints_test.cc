@@ -171,7 +171,8 @@ TEST_F(MachineTest, AMarkIsSmall) {
     all += "VR" + index + "-1.234567\nVI" + index + "-12345\nVL" + index + "ON\n";
     if (i >= 10 && i <= 64) all += "OL" + index + "ON\nOA" + index + "-1.234567\n";
   }
-  const std::string condition = "VR[97] > -1.234567 AND VR[96] > -1.234567 AND VI[97] > -12345";
+  std::string condition = "VR[97] > -1.234567 AND VR[96] > -1.234567 AND VI[97] > -12345";
+  condition.resize(kBreakpointConditionMax, ' ');
   Load({all});
   Start();
   GoOn(At(100.0));

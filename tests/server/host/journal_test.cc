@@ -189,6 +189,31 @@ TEST_F(JournalTest, WhatIsNotStoredIsKept) {
   EXPECT_TRUE(unstored.empty());
 }
 
+// LIVE-3.22: the end of a run is stored with the mark behind it, which is never too old.
+TEST_F(JournalTest, TheMarkBehindTheEndOfARunStays) {
+  v1::JournalEntry over = Event(3, 3);
+  over.mutable_run_over()->set_job("jobs/1");
+  const std::vector<v1::JournalEntry> kept = WithoutOldMarks(
+      {Entry(3, 1), Entry(3, 2), over, Entry(3, 4), Entry(3, 5), Event(3, 6), Entry(3, 7)});
+  EXPECT_THAT(Numbers(kept), testing::ElementsAre(3, 4, 6, 7));
+}
+
+// LIVE-3.25: in messages that a server takes.
+TEST_F(JournalTest, WhatIsToldIsToldInParts) {
+  std::vector<v1::JournalEntry> entries;
+  for (int i = 1; i <= 50; ++i) entries.push_back(Event(3, i, 100'000));
+  const std::vector<v1::HostRequest> parts = EntriesInParts(entries, 3);
+  EXPECT_EQ(parts.size(), 5U);
+  std::vector<std::int64_t> told;
+  for (const v1::HostRequest& part : parts) {
+    EXPECT_EQ(part.entries().fence(), 3);
+    EXPECT_LT(part.ByteSizeLong(), 2U << 20);
+    for (const v1::JournalEntry& entry : part.entries().entries()) told.push_back(entry.sequence());
+  }
+  EXPECT_EQ(told, Numbers(entries));
+  EXPECT_TRUE(EntriesInParts({}, 3).empty());
+}
+
 // LIVE-3.05: what another host's machine does not take is kept beside the journal.
 TEST_F(JournalTest, WhatNobodyTakesIsAnOrphan) {
   UnstoredEntries unstored;

@@ -1,6 +1,7 @@
 // Orders of every kind with any fields, at any time, with crashes between (live.md 10.01, 10.06).
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "proto/recording/replay.h"
 #include "server/host/order_class.h"
@@ -95,7 +96,7 @@ class RandomOrders : public HostMachineTest {
     ASSERT_FALSE(played->difference)
         << played->difference->field << ": " << played->difference->recorded << " is "
         << played->difference->played;
-    inputs_replayed_ += played->inputs;
+    if (played->inputs > 1) replayed_.insert(recording->entries.front().SerializeAsString());
   }
   void Play(const std::string& family, std::uint32_t seed, int orders) {
     AnyMessages any(seed);
@@ -135,19 +136,19 @@ class RandomOrders : public HostMachineTest {
   std::int64_t last_time_ = 0;
   std::int64_t sequence_told_ = 0;
   std::int64_t input_at_ = 0;
-  std::int64_t inputs_replayed_ = 0;
+  std::set<std::string> replayed_;  // where those of several inputs begin
 };
 
 // LIVE-10.01, LIVE-10.06, LIVE-2.04
 TEST_F(RandomOrders, AMillTakesWhateverComes) {
   for (std::uint32_t seed = 1; seed <= 3 && !HasFatalFailure(); ++seed) Play("rml1", seed, 1'500);
-  EXPECT_GT(inputs_replayed_, 100);
+  EXPECT_GT(replayed_.size(), 10U);
 }
 
 // LIVE-10.01, LIVE-10.06, LIVE-2.04
 TEST_F(RandomOrders, AnOptimoTakesWhateverComes) {
   for (std::uint32_t seed = 1; seed <= 3 && !HasFatalFailure(); ++seed) Play("optimo", seed, 1'500);
-  EXPECT_GT(inputs_replayed_, 100);
+  EXPECT_GT(replayed_.size(), 10U);
 }
 
 // LIVE-10.06: whatever bytes a journal has, what can be read of it is read.

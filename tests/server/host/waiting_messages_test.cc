@@ -34,12 +34,43 @@ TEST(WaitingMessages, HaveABound) {
   const WaitingMessages::Taken taken = waiting.Take();
   EXPECT_EQ(taken.messages.size(), 512U);
   EXPECT_EQ(taken.refused.size(), 44U);
-  EXPECT_EQ(taken.refused.front(), 257);
-  EXPECT_THAT(taken.stops, testing::ElementsAre(557, 558));
+  EXPECT_EQ(taken.refused.front().number(), 257);
+  ASSERT_EQ(taken.stops.size(), 2U);
+  EXPECT_EQ(taken.stops.front().number(), 557);
+  EXPECT_TRUE(taken.stops.back().has_stop());
   // Room again.
   EXPECT_TRUE(waiting.empty());
   waiting.Add(Start(559));
   EXPECT_EQ(waiting.Take().messages.size(), 1U);
+}
+
+// LIVE-3.10, LIVE-3.20: what lets go finds it full no more than what halts, and more than a STOP is
+// not made less of; a key keeps its number, which is used up.
+TEST(WaitingMessages, BeyondTheBoundNothingIsMadeLessOf) {
+  WaitingMessages waiting;
+  for (int i = 1; i <= 256; ++i) waiting.Add(Start(i));
+  for (int i = 301; i <= 556; ++i) waiting.Add(Stop(i));
+  v1::HostResponse message;
+  message.mutable_order()->mutable_emergency_stop();
+  waiting.Add(message);
+  message.mutable_order()->mutable_inputs()->add_inputs()->set_door_open(true);
+  waiting.Add(message);
+  message.mutable_order()->mutable_panel_key()->set_sequence(9);
+  waiting.Add(message);
+  message.mutable_order()->mutable_override()->set_override_percent(50);
+  waiting.Add(message);
+  message.mutable_order()->mutable_panel_heartbeat();
+  waiting.Add(message);
+  WaitingMessages::Taken taken = waiting.Take();
+  ASSERT_EQ(taken.stops.size(), 2U);
+  EXPECT_TRUE(taken.stops[0].has_emergency_stop());
+  EXPECT_TRUE(taken.stops[1].has_stop());
+  ASSERT_EQ(taken.refused.size(), 1U);
+  EXPECT_EQ(taken.refused[0].panel_key().sequence(), 9);
+  EXPECT_EQ(taken.messages.size(), 514U);
+  // LIVE-2.05: none of what they stop begins behind them.
+  EXPECT_EQ(taken.TakeMotions().size(), 256U);
+  EXPECT_EQ(taken.messages.size(), 258U);
 }
 
 // What is no order has no bound of its own: it answers what this host has sent.

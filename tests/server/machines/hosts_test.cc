@@ -52,6 +52,28 @@ TEST_F(HostsTest, AnotherHostWaitsUntilTheFirstIsGone) {
   EXPECT_TRUE(hosts.IsHosted("mill-1"));
 }
 
+// LIVE-3.25: nothing is left out between what is stored: what finds no room to wait is told again,
+// over another line.
+TEST_F(HostsTest, WhatFindsNoRoomIsToldAgain) {
+  const auto link = Joined();
+  v1::HostRequest request;
+  request.mutable_entries()->set_fence(Fence(*link));
+  for (int i = 1; i <= 100'001; ++i) {
+    v1::JournalEntry& entry = *request.mutable_entries()->add_entries();
+    entry.set_sequence(i);
+    entry.set_fence(Fence(*link));
+    entry.mutable_mark()->set_clean(true);
+  }
+  hosts.Receive(*link, std::move(request));
+  v1::HostRequest behind = Entries(Fence(*link), 100'002, true);
+  hosts.Receive(*link, std::move(behind));
+  EXPECT_TRUE(Eventually([&] { return link->closed(); }));
+  std::int64_t stored = 0;
+  for (const v1::HostResponse& message : link->All())
+    stored = std::max(stored, message.entries_stored().sequence());
+  EXPECT_EQ(stored, 100'000);
+}
+
 // LIVE-3.02: a process of this computer's present boot that is gone holds nothing; one of another
 // boot may be of another computer of that name, and is waited for.
 TEST_F(HostsTest, AProcessThatIsGoneIsNotWaitedFor) {
