@@ -29,6 +29,7 @@ constexpr std::chrono::seconds kSilence{5};
 constexpr std::chrono::milliseconds kLostHere{1'000};
 constexpr std::chrono::milliseconds kLostElsewhere{3'000};
 constexpr std::chrono::milliseconds kLostAtRest{2'500};
+constexpr std::chrono::seconds kBetweenLooks{5};  // at who holds a machine that is off
 constexpr std::size_t kWaitingEntriesMax = 100'000;
 constexpr std::size_t kKeptMax = 16;  // of what halts a machine whose line is gone
 constexpr const char* kHaltsUnseen = "its host is silent: whether it halts is not known";
@@ -339,12 +340,11 @@ void Hosts::NoteOff(const std::string& machine, const std::string& why) {
   Forget(machine);
   {
     const std::lock_guard lock(mutex_);
-    off_[machine] = why;
+    off_[machine] = {.why = why, .held = true, .looks = needs_.clock()};
   }
   needs_.executor.Post([this, machine] {
     // The host of another server may have it by now, and run a job of it.
-    const Status ended = IsAbandoned(machine) ? EndWithoutHost(needs_.store, machine) : Status();
-    if (!ended) spdlog::warn("jobs of {}: {}", machine, bridge::ErrorText(ended.error()));
+    EndAbandoned(machine);
     Changed();
   });
 }
@@ -357,7 +357,7 @@ void Hosts::ClearOff(const std::string& machine) {
 std::optional<Error> Hosts::WhyOff(const std::string& machine) const {
   const std::lock_guard lock(mutex_);
   const auto found = off_.find(machine);
-  return found != off_.end() ? std::optional(NotLive(found->second)) : std::nullopt;
+  return found != off_.end() ? std::optional(NotLive(found->second.why)) : std::nullopt;
 }
 
 void Hosts::Look() {
@@ -365,6 +365,14 @@ void Hosts::Look() {
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [id, host] : hosts_) all.push_back(host);
+    const Instant now = needs_.clock();
+    for (auto& [id, off] : off_) {
+      if (!off.held || now < off.looks) continue;
+      off.looks = now + kBetweenLooks;
+      needs_.executor.Post([this, machine = id] {
+        if (EndAbandoned(machine)) Changed();
+      });
+    }
   }
   for (const HostPointer& host : all) {
     DropLate(host);

@@ -117,8 +117,9 @@ class Hosts {
 
   HostPointer Find(const HostLink& link) const;
   HostPointer Find(const std::string& machine) const;
-  // Nobody has it, or a process of this computer that is no more.
-  bool IsAbandoned(const std::string& machine) const;
+  // Of a machine that is off: its jobs end when nobody has it, or who has it is gone. False:
+  // somebody has it.
+  bool EndAbandoned(const std::string& machine);
   struct Taken {
     storage::MachineLease lease{};
     std::optional<storage::MachineLease> from{};  // whose host is gone
@@ -167,7 +168,6 @@ class Hosts {
   mutable std::mutex mutex_;
   bool closed_ = false;                       // guarded by mutex_
   std::map<std::string, HostPointer> hosts_;  // by id of the machine; guarded by mutex_
-  std::map<std::string, std::string> off_;    // likewise
   // Leases of others, and since when they stand unchanged. Of Join alone, guarded by joining_.
   std::mutex joining_;
   struct Seen {
@@ -175,6 +175,13 @@ class Hosts {
     std::chrono::steady_clock::time_point since{};
   };
   std::map<std::string, Seen> seen_;
+  struct Off {
+    std::string why{};
+    bool held = false;  // by somebody, and perhaps there are jobs of it
+    Seen seen{};
+    std::chrono::steady_clock::time_point looks{};
+  };
+  std::map<std::string, Off> off_;      // guarded by mutex_
   std::map<std::string, Given> given_;  // by machine; guarded by joining_
   std::int64_t looked_until_ = 0;       // of the log; guarded by looking_
   std::mutex looking_;

@@ -67,11 +67,25 @@ std::optional<v1::MachineMark> NewerOf(const std::optional<storage::MachineMark>
 
 }  // namespace
 
-bool Hosts::IsAbandoned(const std::string& machine) const {
-  const auto held = needs_.store.MachineLeases();
-  return held && std::ranges::none_of(*held, [&](const storage::MachineLease& lease) {
-           return lease.machine == machine && !IsGone(lease.host);
-         });
+bool Hosts::EndAbandoned(const std::string& machine) {
+  const auto leases = needs_.store.MachineLeases();
+  if (!leases) return false;  // it is asked again
+  const auto lease = std::ranges::find(*leases, machine, &storage::MachineLease::machine);
+  bool held = lease != leases->end() && !IsGone(lease->host);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto off = off_.find(machine);
+    if (off == off_.end()) return true;
+    const Instant now = needs_.clock();
+    if (held && off->second.seen.lease != *lease)
+      off->second.seen = {.lease = *lease, .since = now};
+    held = held && (lease->pinned || now - off->second.seen.since < lease->duration + kObserved);
+    off->second.held = held;
+  }
+  if (held) return false;
+  if (const Status ended = EndWithoutHost(needs_.store, machine); !ended)
+    spdlog::warn("jobs of {}: {}", machine, bridge::ErrorText(ended.error()));
+  return true;
 }
 
 Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& hello) {

@@ -508,6 +508,33 @@ TEST_F(HostsTest, AMachineThatIsOffHasNoJobThatRuns) {
   hosts.OnChange({});
 }
 
+// LIVE-3.02, LIVE-5.08: who has a machine that is off, of a boot or of a computer that this one
+// cannot look into, is gone when its lease stands unchanged.
+TEST_F(HostsTest, WhoHoldsAMachineThatIsOffIsWaitedFor) {
+  Must(bed.store().TakeMachine(
+      {.machine = "mill-1", .host = "elsewhere/9", .server = "s", .duration = Hosts::kLease}));
+  const auto submitted = Must(bed.store().SubmitAndWait(
+      {.machine = "mill-1", .kind = "RUN", .specification = "", .attempts_max = 1}));
+  Must(bed.store().AcquireJobs(
+      {.worker = "elsewhere/9", .kinds = {"RUN"}, .duration = std::chrono::hours(1)}));
+  std::atomic<int> looks = 0;
+  hosts.OnChange([&looks] { ++looks; });
+  const auto state = [&] { return Must(bed.store().GetJob(submitted.job.id)).state; };
+  hosts.NoteOff("mill-1", "its host ended 5 times");
+  EXPECT_TRUE(Eventually([&] { return looks == 1; }));
+  clock.Advance(Hosts::kLease + std::chrono::seconds(4));
+  hosts.Look();
+  clock.Advance(std::chrono::seconds(1));
+  EXPECT_EQ(state(), storage::JobState::kRunning);
+  EXPECT_TRUE(Eventually([&] {
+    hosts.Look();
+    clock.Advance(std::chrono::seconds(1));
+    return state() == storage::JobState::kInterrupted;
+  }));
+  EXPECT_TRUE(Eventually([&] { return looks == 2; }));
+  hosts.OnChange({});
+}
+
 // LIVE-5.09: it gives the machine back; the next one takes it at once.
 TEST_F(HostsTest, AMachineThatIsGivenBackIsFree) {
   const auto link = Joined();
