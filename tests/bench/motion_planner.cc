@@ -146,6 +146,13 @@ std::vector<double> EachSegment(const std::vector<MoveCommand>& chain,
   return sum > 0.0 ? least : std::vector<double>{};
 }
 
+// The machine stands behind each 31st move: what waits for more to come is all done with that one.
+std::vector<MoveCommand> WithStops(std::vector<MoveCommand> chain) {
+  constexpr std::size_t kEach = 31;
+  for (std::size_t k = kEach - 1; k < chain.size(); k += kEach) chain[k].fly = false;
+  return chain;
+}
+
 void Tail() {
   constexpr int kSegments = 20'000;
   MachineLimits trapezoid = WalkMachine();
@@ -175,6 +182,9 @@ void Tail() {
   print("zigzag", zigzag, StandardMachine());
   print("five axes", Contour(kSegments, true), StandardMachine());
   print("five axes walk", Walk(kSegments, true), WalkMachine());
+  print("walk, stops", WithStops(Walk(kSegments, false)), WalkMachine());
+  print("ramps, stops", WithStops(Contour(kSegments, false, 0.3)), StandardMachine());
+  print("five axes walk, stops", WithStops(Walk(kSegments, true)), WalkMachine());
 }
 
 }  // namespace

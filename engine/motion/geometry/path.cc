@@ -198,4 +198,15 @@ PathDerivatives PathPiece::Second(double s) const {
           0.0};
 }
 
+PathPiece::OnArc PathPiece::ArcAt(double s) const {
+  const double angle = s / radius_mm();
+  const double sine = std::sin(angle), cosine = std::cos(angle);
+  const MachineVector& inward = arc().inward;
+  const PathPose pose = OnLine(s);
+  return {.a_rad = pose.a_rad,
+          .b_rad = pose.b_rad,
+          .first = {tangent_ * cosine + inward * sine, a_rate(), b_rate()},
+          .second = {(inward * cosine - tangent_ * sine) * (1.0 / radius_mm()), 0.0, 0.0}};
+}
+
 }  // namespace rmlcell::motion

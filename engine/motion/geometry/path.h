@@ -151,6 +151,12 @@ class PathPiece {
     return kind_ == Kind::kLine ? PathDerivatives{tangent_, a_rate(), b_rate()} : FirstOffLine(s);
   }
   PathDerivatives Second(double s) const;
+  // Arcs only: both, and the angles of At, with the sines worked out once.
+  struct OnArc {
+    double a_rad, b_rad;
+    PathDerivatives first, second;
+  };
+  OnArc ArcAt(double s) const;
   [[gnu::always_inline]] MachineVector Tangent(double s) const {
     return kind_ == Kind::kLine ? tangent_ : FirstOffLine(s).point;
   }

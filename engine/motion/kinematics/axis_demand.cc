@@ -16,6 +16,7 @@ constexpr double kSampleAngle_rad = 0.05;  // motion.md 5.1: at most this much t
 constexpr int kIntervalsMin = 16;
 constexpr double kTurningMax_rad =
     60.0;  // more than any travel: bounds will do, a search would last
+constexpr std::size_t kPlacesMax = 1202;  // of a search: 60 rad in parts of 0.05, and a rounding
 
 using OfAxes = std::array<double, kAxisCount>;
 
@@ -26,14 +27,33 @@ double Least(const std::array<double, kCount>& limits) {
   return least;
 }
 
+// What an axis allows: the speed by its own, and by its acceleration in the bend; the acceleration
+// that is left at a speed; the jerk.
+double SpeedAllowed(std::size_t axis, const AxisDerivatives& q, const AxisLimits& axes,
+                    const AxisShares& shares) {
+  return shares.speed * axes.speed[axis] / std::abs(q.first[axis]);
+}
+double BendSpeedAllowed(std::size_t axis, const AxisDerivatives& q, const AxisLimits& axes,
+                        const AxisShares& shares) {
+  return std::sqrt(0.5 * shares.acceleration * axes.acceleration[axis] / std::abs(q.second[axis]));
+}
+double AccelerationAllowed(std::size_t axis, const AxisDerivatives& q, const AxisLimits& axes,
+                           const AxisShares& shares, double speed) {
+  const double taken = std::abs(q.second[axis]) * speed * speed;
+  return (shares.acceleration * axes.acceleration[axis] - taken) / std::abs(q.first[axis]);
+}
+double JerkAllowed(std::size_t axis, const AxisDerivatives& q, const AxisLimits& axes,
+                   const AxisShares& shares) {
+  return shares.acceleration * axes.jerk[axis] / std::abs(q.first[axis]);
+}
+
 // What each axis allows. By its speed, and by its acceleration in the bend.
 SpeedsOfAxes SpeedsAllowed(const AxisDerivatives& q, const AxisLimits& axes,
                            const AxisShares& shares) {
   SpeedsOfAxes speeds;
   for (const std::size_t i : kAxes) {
-    speeds[i] = shares.speed * axes.speed[i] / std::abs(q.first[i]);
-    speeds[kAxisCount + i] =
-        std::sqrt(0.5 * shares.acceleration * axes.acceleration[i] / std::abs(q.second[i]));
+    speeds[i] = SpeedAllowed(i, q, axes, shares);
+    speeds[kAxisCount + i] = BendSpeedAllowed(i, q, axes, shares);
   }
   return speeds;
 }
@@ -42,17 +62,14 @@ OfAxes AccelerationsAllowed(const AxisDerivatives& q, const AxisLimits& axes,
                             const AxisShares& shares, double speed) {
   OfAxes accelerations;
   for (const std::size_t i : kAxes) {
-    const double taken = std::abs(q.second[i]) * speed * speed;
-    accelerations[i] = (shares.acceleration * axes.acceleration[i] - taken) / std::abs(q.first[i]);
+    accelerations[i] = AccelerationAllowed(i, q, axes, shares, speed);
   }
   return accelerations;
 }
 
 OfAxes JerksAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& shares) {
   OfAxes jerks;
-  for (const std::size_t i : kAxes) {
-    jerks[i] = shares.acceleration * axes.jerk[i] / std::abs(q.first[i]);
-  }
+  for (const std::size_t i : kAxes) jerks[i] = JerkAllowed(i, q, axes, shares);
   return jerks;
 }
 
@@ -149,7 +166,9 @@ std::optional<PathLimits> LimitsOnShortTurn(const PathPiece& path, const Head& h
 
 // The extremes along a piece at which the head turns, searched for at the same places for all
 // limits. On a line the ends alone tell them wherever it is proven that what an axis is asked for
-// rises or falls all the way, or stays below what counts: the search would find the same.
+// rises or falls all the way, or stays below what counts: the search would find the same. Nor is an
+// axis searched that is proven, from what is asked of it at those places and how much that can
+// change between them, to allow more than others do.
 class AxisSearch {
  public:
   AxisSearch(const PathPiece& path, const Head& head, const AxisLimits& axes,
@@ -168,6 +187,8 @@ class AxisSearch {
     const double angles = 1.0 + std::max(std::abs(path.from().a_rad), std::abs(path.to().a_rad)) +
                           std::max(std::abs(path.from().b_rad), std::abs(path.to().b_rad));
     const double whirl = arm * rate * rate;
+    const double bend = line_ ? 0.0 : 1.0 / path.radius_mm();
+    change_ = {.first = bend + whirl, .second = bend * bend + whirl * rate};
     first_ = {.bend = whirl * rate * square,
               .margin = kMargin * angles * (path.First(0.0).point.norm() + arm * rate)};
     second_ = {.bend = whirl * rate * rate * square, .margin = kMargin * angles * whirl};
@@ -185,7 +206,13 @@ class AxisSearch {
                        shares_.speed * axes_.speed[i] / least) &&
               EndsTell(start_.second[i], end_.second[i], second_, bend / (least * least));
     }
-    return known ? least : std::min(most, Search(allowed));
+    if (known) return least;
+    const double by_speed = LeastOf(least, [&](std::size_t i, const AxisDerivatives& q) {
+      return SpeedAllowed(i, q, axes_, shares_);
+    });
+    return LeastOf(by_speed, [&](std::size_t i, const AxisDerivatives& q) {
+      return BendSpeedAllowed(i, q, axes_, shares_);
+    });
   }
   double Acceleration(double most, double speed) {
     const auto allowed = [&](const AxisDerivatives& q) {
@@ -194,7 +221,10 @@ class AxisSearch {
     const double least = std::min({most, Least(allowed(start_)), Least(allowed(end_))});
     bool known = line_;
     for (const std::size_t i : kLinearAxes) known = known && EndsTellRoom(i, speed, least);
-    return known ? least : std::min(most, Search(allowed));
+    if (known) return least;
+    return LeastOf(least, [&](std::size_t i, const AxisDerivatives& q) {
+      return AccelerationAllowed(i, q, axes_, shares_, speed);
+    });
   }
   double Jerk(double most) {
     const auto allowed = [&](const AxisDerivatives& q) { return JerksAllowed(q, axes_, shares_); };
@@ -204,7 +234,10 @@ class AxisSearch {
       known = known && EndsTell(start_.first[i], end_.first[i], first_,
                                 shares_.acceleration * axes_.jerk[i] / least);
     }
-    return known ? least : std::min(most, Search(allowed));
+    if (known) return least;
+    return LeastOf(least, [&](std::size_t i, const AxisDerivatives& q) {
+      return JerkAllowed(i, q, axes_, shares_);
+    });
   }
 
  private:
@@ -249,20 +282,41 @@ class AxisSearch {
            std::min(across[0], across[1]) > second_.bend && above - bend > margin;
   }
 
+  // The lower of `low` and what any axis allows: `allowed(axis, q)`, the less the more is asked.
   template <class Allowed>
-  double Search(Allowed allowed) {
-    const int known = std::min(intervals_ + 1, static_cast<int>(kept_.size()));
-    for (; sampled_ < known; ++sampled_) {
-      kept_[static_cast<std::size_t>(sampled_)] =
-          ToKeep(DerivativesAt(path_, head_, Place(sampled_)));
+  double LeastOf(double low, Allowed allowed) {
+    Sample();
+    for (const std::size_t i : kAxes) {
+      if (allowed(i, bound_) >= low) continue;
+      const auto at = [&](int k) {
+        return std::array{allowed(i, AsKept(kept_[static_cast<std::size_t>(k)]))};
+      };
+      const auto one = [&](std::size_t, double s) {
+        return allowed(i, DerivativesAt(path_, head_, s));
+      };
+      low = std::min(low,
+                     LeastOfSampled<Closing::kParabolas>(at, one, path_.length(), intervals_, low));
     }
-    return LeastOfSampled<Closing::kParabolas>(
-        [&](int k) {
-          return allowed(k < known ? AsKept(kept_[static_cast<std::size_t>(k)])
-                                   : DerivativesAt(path_, head_, Place(k)));
-        },
-        [&](std::size_t which, double s) { return allowed(DerivativesAt(path_, head_, s))[which]; },
-        path_.length(), intervals_);
+    return low;
+  }
+
+  // The derivatives at all places, and what they are nowhere above.
+  void Sample() {
+    if (sampled_) return;
+    sampled_ = true;
+    for (int k = 0; k <= intervals_; ++k) {
+      const AxisDerivatives q = DerivativesAt(path_, head_, Place(k));
+      kept_[static_cast<std::size_t>(k)] = ToKeep(q);
+      for (const std::size_t i : kAxes) {
+        bound_.first[i] = std::max(bound_.first[i], std::abs(q.first[i]));
+        bound_.second[i] = std::max(bound_.second[i], std::abs(q.second[i]));
+      }
+    }
+    const double half = 0.5 * path_.length() / intervals_;
+    for (const std::size_t i : kLinearAxes) {
+      bound_.first[i] = (bound_.first[i] + half * change_.first) * kSurely;
+      bound_.second[i] = (bound_.second[i] + half * change_.second) * kSurely;
+    }
   }
 
   const PathPiece& path_;
@@ -275,8 +329,13 @@ class AxisSearch {
   AxisDerivatives end_;
   Drift first_;
   Drift second_;
-  // Bare numbers, which cost nothing before they are there; enough for a head that turns all the
-  // way round on a circle.
+  // How fast the derivatives of the column change along the piece, at most.
+  struct Change {
+    double first;
+    double second;
+  };
+  Change change_;
+  // Bare numbers, which cost nothing before they are there.
   using Kept = std::array<double, 2 * kAxisCount>;
   static Kept ToKeep(const AxisDerivatives& q) {
     Kept kept;
@@ -294,8 +353,9 @@ class AxisSearch {
     }
     return q;
   }
-  int sampled_ = 0;  // of kept_
-  std::array<Kept, 257> kept_;
+  bool sampled_ = false;
+  AxisDerivatives bound_;
+  std::array<Kept, kPlacesMax> kept_;
 };
 
 }  // namespace
@@ -311,6 +371,12 @@ SpeedsOfAxes SpeedsWithinAxes(const AxisDerivatives& q, const AxisLimits& axes) 
 }
 
 AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s) {
+  if (path.kind() == PathPiece::Kind::kArc) {
+    const PathPiece::OnArc at = path.ArcAt(s);
+    if (at.first.a != 0.0 || at.first.b != 0.0) {
+      return ThroughHead(head, {{}, at.a_rad, at.b_rad}, at.first, at.second);
+    }
+  }
   const PathDerivatives first = path.First(s);
   const PathDerivatives second = path.Second(s);
   if (path.in_axes()) {

@@ -61,6 +61,7 @@ bool LegStage::Join(bool goes_on) {
         AxesCorner(before.path, move.path,
                    std::min({before.acceleration_share, move.acceleration_share, 1.0}), machine_);
     passage = leg.axes_corner.passage();
+    SettleAt(kBatchOfCurves);
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
   } else if (joins) {
@@ -78,6 +79,9 @@ bool LegStage::Join(bool goes_on) {
       bends = passage == Passage::kBlend;
       if (bends && leg.corner.straight() && std::isinf(machine_.tip_jerk_mm_s3)) {
         passage = Passage::kThrough;  // without a limit on jerk a jump of curvature needs no curve
+      }
+      if (passage == Passage::kBlend && !leg.corner.plain()) {
+        SettleAt(leg.corner.lines() ? kBatchOfTurns : kBatchOfCurves);
       }
     }
   }

@@ -25,6 +25,10 @@ class LegStage {
   using Number = std::uint64_t;  // of a move, a leg, a span: counted from the first of the chain
 
   static constexpr std::size_t kBatchMin = 32;  // knots before a backward pass is worth its while
+  // Behind a corner that takes longer than a pass: what is known is worked out early, and does not
+  // wait for the last move of a chain.
+  static constexpr std::size_t kBatchOfTurns = 16;  // two lines, the head turns
+  static constexpr std::size_t kBatchOfCurves = 1;  // beside an arc, or of the axes
 
   struct Move {
     PathPiece path;
@@ -70,7 +74,8 @@ class LegStage {
   void Settle() {
     if (!running_.ends_at_rest() && running_.open_count() < running_next_) return;
     running_.Settle();
-    running_next_ = std::max(kBatchMin, 2 * running_.open_count());
+    left_open_ = running_.open_count();
+    running_next_ = std::max(kBatchMin, 2 * left_open_);
   }
   void AcceptHalf();
 
@@ -126,6 +131,9 @@ class LegStage {
   static double MeasureByTime(Move& move);
   bool Join(bool goes_on);
   void CloseLeg(Passage passage, bool ends_run, double cap);
+  void SettleAt(std::size_t batch) {
+    running_next_ = std::min(running_next_, std::max(batch, 2 * left_open_));
+  }
 
   MachineLimits machine_;
   std::size_t window_;
@@ -143,6 +151,7 @@ class LegStage {
   bool end_known_ = false;
   double entry_speed_ = 0.0;
   std::size_t running_next_ = 0;  // settle again at this many open knots
+  std::size_t left_open_ = 0;     // by the last time
 };
 
 // Here, because it is the hot path of MotionChain::Append.

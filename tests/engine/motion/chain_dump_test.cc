@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "engine/core/units.h"
 #include "engine/motion/planner/motion_chain.h"
 
 namespace rmlcell::motion {
@@ -194,6 +195,29 @@ TEST(ChainDump, ALineSplitInTwoIsOneLeg) {
   EXPECT_EQ(chain.Dump(), "mark 9\n");
   EXPECT_EQ(std::get<PlannedMark>(*chain.Next()).tag, 9U);
   EXPECT_EQ(chain.Dump(), "");
+}
+
+// The curve beside an arc takes long: each is worked out when what is behind it is known, and not
+// all of them with the last move of the chain.
+TEST(ChainDump, CurvesBesideArcsAreWorkedOutOnTheWay) {
+  MachineLimits machine = PlainMachine();
+  machine.tip_jerk_mm_s3 = 1e5;
+  MotionChain chain(machine, Planner::kWindow);
+  for (int k = 0; k < 12; ++k) {  // half circles side by side, each corner a turn of 90 degrees
+    const TipPose from{{100.0 * k, 0, 0}};
+    MoveCommand move;
+    move.path = k % 2 == 0
+                    ? PathPiece::Circle(from, {100.0 * k + 50.0, 0, 0}, {0, 0, 1}, kPi, 0.0, 0.0)
+                    : PathPiece::Line(from, {{100.0 * (k + 1), 0, 0}});
+    move.fly = true;
+    chain.Append(move, chain.LimitsFor(move), true);
+    const std::string text = chain.Dump();
+    std::size_t waiting = 0;
+    for (std::size_t at = text.find("leg "); at != std::string::npos;
+         at = text.find("leg ", at + 1))
+      ++waiting;
+    EXPECT_LE(waiting, 2U) << text;
+  }
 }
 
 // A corner ends its leg. What is behind it must be known before its curve is: the last leg is open.

@@ -88,6 +88,53 @@ TEST(LimitsOf, ExtremesAlongTheMoveAreExact) {
   }
 }
 
+// The same on arcs on which the head turns, some of them for several rounds: 16 to 800 places are
+// looked at, and most axes not searched.
+TEST(LimitsOf, ExtremesAlongArcsAreExact) {
+  const MachineLimits machine = StandardMachine();
+  MachineLimits tip_alone = machine;
+  tip_alone.axes.speed.fill(1e12);
+  tip_alone.axes.acceleration.fill(1e12);
+  tip_alone.axes.jerk.fill(1e12);
+  const TipPose from{{1000.0, 900.0, -200.0}, -0.4, 0.3};
+  const MachineVector normal = MachineVector{0.3, -0.5, 0.8} * (1.0 / std::sqrt(0.98));
+  const MachineVector out = MachineVector{0.8, 0.0, -0.3} * (1.0 / std::sqrt(0.73));
+  for (const double radius : {2.0, 60.0, 400.0}) {
+    for (const double sweep : {0.2, 2.0, 6.0, 36.0}) {
+      for (const double turn : {0.05, 1.2, 3.0}) {
+        MoveCommand move;
+        move.path = PathPiece::Circle(from, from.tip + out * radius, normal, sweep,
+                                      from.a_rad + turn, from.b_rad - 0.4 * turn);
+        const PathLimits limits = LimitsOf(move, machine);
+        const PathLimits most = LimitsOf(move, tip_alone);
+        double asked = 1.0 / most.speed;
+        double jerk = most.jerk;
+        double acceleration = most.acceleration;
+        constexpr int kPlaces = 20000;
+        for (int k = 0; k <= kPlaces; ++k) {
+          const AxisDerivatives q =
+              DerivativesAt(move.path, move.head, move.path.length() * k / kPlaces);
+          for (std::size_t i = 0; i < kAxisCount; ++i) {
+            const double q1 = std::abs(q.first[i]), q2 = std::abs(q.second[i]);
+            asked = std::max({asked, q1 / machine.axes.speed[i],
+                              std::sqrt(q2 / (0.5 * machine.axes.acceleration[i]))});
+            jerk = std::min(jerk, machine.axes.jerk[i] / q1);
+            const double taken = q2 * limits.speed * limits.speed;
+            acceleration = std::min(acceleration, (machine.axes.acceleration[i] - taken) / q1);
+          }
+        }
+        constexpr double kBetweenPlaces = 2e-6;  // what a peak is above the places beside it
+        EXPECT_NEAR(limits.speed * asked, 1.0, kBetweenPlaces);
+        EXPECT_NEAR(limits.jerk / jerk, 1.0, kBetweenPlaces);
+        EXPECT_NEAR(limits.acceleration / acceleration, 1.0, kBetweenPlaces);
+        EXPECT_LE(limits.speed * asked, 1.0 + 1e-9);
+        EXPECT_LE(limits.jerk / jerk, 1.0 + 1e-9);
+        EXPECT_LE(limits.acceleration / acceleration, 1.0 + 1e-9);
+      }
+    }
+  }
+}
+
 // OPT-2.14: positioning in ABSOL asks only the axes: on a diagonal the tip is faster than SPEED of
 // VMAX.
 TEST(LimitsOf, PositioningByTheAxesAlone) {
