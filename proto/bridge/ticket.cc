@@ -1,5 +1,8 @@
 #include "proto/bridge/ticket.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "engine/core/hex.h"
 #include "engine/simulation/run/version.h"
 #include "proto/bridge/encoding.h"
@@ -80,6 +83,26 @@ std::vector<std::string> ChangedSince(const v1::RunTicket& ticket, const RunDepe
   if (ticket.engine_version() != simulation::kEngineVersion)
     changed.push_back("engine " + std::string(simulation::kEngineVersion));
   return changed;
+}
+
+Status CheckRun(const RunDependencies& run, const v1::RunTicket* ticket, bool ticket_needed) {
+  constexpr std::size_t kChangesTold = 8;
+  if (const Status there =
+          run.family.CheckNeeds(run.programs, run.schedules, run.parameters, run.main_program);
+      !there)
+    return there.error();
+  if (ticket == nullptr) {
+    if (!ticket_needed) return {};
+    return Error{ErrorCode::kCellTicket, "jobs need one here", {}};
+  }
+  const std::vector<std::string> changed = ChangedSince(*ticket, run);
+  if (changed.empty()) return {};
+  std::string text = "other than in " + ticket->job() + ": ";
+  for (std::size_t i = 0; i < std::min(changed.size(), kChangesTold); ++i)
+    text += (i == 0 ? "" : ", ") + changed[i];
+  if (changed.size() > kChangesTold)
+    text += " and " + std::to_string(changed.size() - kChangesTold) + " more";
+  return Error{ErrorCode::kCellTicket, Detail(std::move(text)), {}};
 }
 
 }  // namespace rmlcell::bridge

@@ -32,4 +32,9 @@ std::map<std::string, std::string> DigestsOf(const RunDependencies& run);
 // 0.1.0". Empty: nothing is.
 std::vector<std::string> ChangedSince(const v1::RunTicket& ticket, const RunDependencies& run);
 
+// What ends a run before anything moves: something that it needs is not there, or it is not what
+// was simulated. `ticket`: null, it has none. Errors: those of MachineFamily::CheckNeeds;
+// CellTicket. LIVE-5.02 (b)
+Status CheckRun(const RunDependencies& run, const v1::RunTicket* ticket, bool ticket_needed);
+
 }  // namespace rmlcell::bridge

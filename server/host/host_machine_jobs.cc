@@ -12,7 +12,6 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr std::size_t kChangesTold = 8;
 constexpr std::size_t kJobsKnown = 16;  // the newest: whoever asks knows of the last one or two
 
 }  // namespace
@@ -102,28 +101,13 @@ Status HostMachine::CheckPrograms(const v1::WorkerAssignment& assignment,
   const machine::MachineMemory& memory = machine().memory();
   std::map<int, machine::StoredProgram> programs = memory.programs;
   if (brought) programs[assignment.main_program()] = *brought;
-  const int main = assignment.main_program();
-  if (const Status there =
-          setup_.family->CheckNeeds(programs, memory.schedules, *parameters_, main);
-      !there)
-    return there.error();
-  if (!assignment.has_ticket()) {
-    if (!setup_.options.ticket_needed()) return {};
-    return Error{ErrorCode::kCellTicket, "jobs need one here", {}};
-  }
-  const std::vector<std::string> changed =
-      bridge::ChangedSince(assignment.ticket(), {.family = *setup_.family,
-                                                 .parameters = *parameters_,
-                                                 .programs = programs,
-                                                 .schedules = memory.schedules,
-                                                 .main_program = assignment.main_program()});
-  if (changed.empty()) return {};
-  std::string text = "other than in " + assignment.ticket().job() + ": ";
-  for (std::size_t i = 0; i < std::min(changed.size(), kChangesTold); ++i)
-    text += (i == 0 ? "" : ", ") + changed[i];
-  if (changed.size() > kChangesTold)
-    text += " and " + std::to_string(changed.size() - kChangesTold) + " more";
-  return Error{ErrorCode::kCellTicket, Detail(std::move(text)), {}};
+  return bridge::CheckRun({.family = *setup_.family,
+                           .parameters = *parameters_,
+                           .programs = programs,
+                           .schedules = memory.schedules,
+                           .main_program = assignment.main_program()},
+                          assignment.has_ticket() ? &assignment.ticket() : nullptr,
+                          setup_.options.ticket_needed());
 }
 
 // Who starts jobs here. LIVE-5.04

@@ -14,6 +14,7 @@
 #include "server/machines/host_entries.h"
 #include "server/records/job_messages.h"
 #include "server/records/machine_options.h"
+#include "server/runs/run_advice.h"
 #include "server/runs/run_ticket.h"
 #include "storage/jobs/job_rules.h"
 #include "storage/trouble.h"
@@ -516,6 +517,11 @@ void RunQueue::TellWhyItWaits(v1::Job& job) const {
   };
   const auto machine = ParseMachineName(job.machine());
   const auto status = machine ? needs_.hosts.StatusOf(*machine) : std::nullopt;
+  const Result<std::int64_t> id = ParseJobName(job.name());
+  if (id && job.continues().empty()) {
+    if (const auto why = WhyItWouldFail(needs_.store, needs_.config, *id))
+      add({why->code, "the job would end with this: " + why->detail, {}});
+  }
   const bool heard_of = status && status->state() != v1::MACHINE_STATE_LOST &&
                         status->state() != v1::MACHINE_STATE_STARTING;
   if (!heard_of) return add({ErrorCode::kCellNotLive, "no host tells of it", {}});

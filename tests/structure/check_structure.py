@@ -79,7 +79,7 @@ MAY_INCLUDE = {
     # The host of a machine that lives: a process of its own, without the store.
     "server/host": ["engine/core", "engine/machine", "engine/families", MATERIAL, "proto", "proto/bridge", "proto/recording", "server/base"],
     # RUN jobs, between the queue and the host of their machine.
-    "server/runs": ["engine/core", "proto", "proto/bridge", "proto/recording", "server/base", "server/jobs", "server/machines", "server/records", "storage", "storage/jobs"],
+    "server/runs": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "proto/recording", "server/base", "server/jobs", "server/machines", "server/records", "storage", "storage/jobs"],
     "server/programs": ["engine/core", "engine/machine", "engine/families", RUN, "proto", "proto/bridge", "server/base", "server/records", "storage"],
     "server/projects": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base", "server/records", "server/programs", "storage"],
     # What is asked of jobs that have ended.

@@ -1,0 +1,67 @@
+// What would end a RUN before anything moves, told as it is handed in (live.md 5.02 b).
+#include "server/runs/run_advice.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/base/config.h"
+#include "server/base/names.h"
+#include "server/jobs/job_book.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+class RunAdviceTest : public testing::Test {
+ protected:
+  std::int64_t Submit(const std::string& machine, const std::string& file, const std::string& text,
+                      const std::string& ticket = "") {
+    v1::SubmitJobRequest request;
+    v1::Job& job = *request.mutable_job();
+    job.set_kind(v1::JOB_KIND_RUN);
+    job.set_machine("machines/" + machine);
+    job.mutable_inline_program()->set_file_name(file);
+    job.mutable_inline_program()->set_content(text);
+    job.set_inline_slot(7);
+    job.mutable_run()->set_ticket(ticket);
+    std::int64_t id = 0;
+    std::string refused;
+    book_.Submit(request, "anna", [&](const Result<v1::Job>& made) {
+      if (made) id = *ParseJobName(made->name());
+      if (!made) refused = made.error().detail;
+    });
+    EXPECT_TRUE(Eventually([&] { return id != 0 || !refused.empty(); }));
+    EXPECT_EQ(refused, "");
+    return id;
+  }
+  std::string Advice(std::int64_t job) {
+    const auto why = WhyItWouldFail(bed_.store(), config_, job);
+    return why ? CodeText(why->code) : "";
+  }
+
+  ServerBed bed_;
+  Config config_;
+  JobBook book_{bed_.store(), config_};
+};
+
+// LIVE-5.02: by the memory that the machine has now.
+TEST_F(RunAdviceTest, ProgramsThatAreCalledAreLookedFor) {
+  const std::int64_t job = Submit("optimo-1", "a.S", "CALL 44\nDELAY 1\n");
+  EXPECT_EQ(Advice(job), "OPT-E7102");
+  EXPECT_EQ(Advice(Submit("optimo-1", "a.S", "DELAY 1\n")), "");
+}
+
+// LIVE-5.02: a schedule beyond those that there are.
+TEST_F(RunAdviceTest, SchedulesAreLookedFor) {
+  EXPECT_EQ(Advice(Submit("optimo-1", "a.S", "WORKDEF 2,1 (64)\n")), "OPT-E7404");
+  EXPECT_EQ(Advice(Submit("optimo-1", "a.S", "WORKDEF 2,1 (63)\n")), "");
+}
+
+// LIVE-5.02: a ticket that proves nothing.
+TEST_F(RunAdviceTest, ATicketIsLookedAt) {
+  EXPECT_EQ(Advice(Submit("mill-1", "a.rml", "PA;PU100,0;", "jobs/99")), "CELL-E9407");
+  EXPECT_EQ(Advice(Submit("mill-1", "a.rml", "PA;PU100,0;")), "");
+}
+
+}  // namespace
+}  // namespace rmlcell::server
