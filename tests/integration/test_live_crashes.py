@@ -10,6 +10,7 @@ import time
 import unittest
 
 from cell import cell_pb2, eventually, grpc, program_pb2
+from google.protobuf.timestamp_pb2 import Timestamp
 from live import Live, LiveTestCase, hosts_of, new_id
 from rmlcell.v1 import handbox_pb2  # noqa: E402
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
@@ -30,6 +31,28 @@ def name_of(status):
 
 def axes_of(status):
     return [round(one.value, 6) for one in status.axes]
+
+
+class Panel:
+    """Keys of a mill's panel, as Handbox has those of a laser."""
+
+    def __init__(self, live):
+        self.live, self.sequence, self.beats = live, 0, 0
+
+    def press(self, key, action="KEY_ACTION_TAP"):
+        self.sequence += 1
+        return self.live.ask("PressPanelKey", key=key, action=action, sequence=self.sequence)
+
+    def hold(self, key, seconds):
+        self.press(key, "KEY_ACTION_PRESS")
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            self.beats += 1
+            sent = Timestamp()
+            sent.GetCurrentTime()
+            self.live.ask("HeartbeatPanel", number=self.beats, keys_down=[key], sent=sent)
+            time.sleep(0.04)
+        self.press(key, "KEY_ACTION_RELEASE")
 
 
 class LiveCrashesTest(LiveTestCase):
@@ -75,11 +98,22 @@ class LiveCrashesTest(LiveTestCase):
     # In the middle of a key that moves an axis: the machine stands behind, where the key had brought it to or before.
     def test_rounds_of_a_jog(self):
         live = self.optimo()
+
+        def handbox():
+            box = Handbox(live)
+            box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT")
+            return box
+        self.rounds_of_a_key(live, handbox, "HANDBOX ", 300)
+
+    def test_rounds_of_a_panel_key(self):
+        self.live.enable()
+        self.rounds_of_a_key(self.live, lambda: Panel(self.live), "", 5)
+
+    def rounds_of_a_key(self, live, keys_of, told_as, runs_on_mm):
         answered = []
         for round_ in range(ROUNDS):
             live.acquire(take_over=True, reason="a test", ttl={"seconds": 60})
-            box = Handbox(live)
-            box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT")
+            box = keys_of()
             begun = live.status()
             key = self.choose.choice(("X+", "X-", "Y+", "Y-"))
             pressed = threading.Event()
@@ -89,7 +123,7 @@ class LiveCrashesTest(LiveTestCase):
             def press(name, action="KEY_ACTION_TAP"):
                 answer = whole(name, action)
                 if action == "KEY_ACTION_PRESS":
-                    answered.append(f"HANDBOX {name}")
+                    answered.append(told_as + name)
                     pressed.set()
                 return answer
             box.press = press
@@ -113,7 +147,7 @@ class LiveCrashesTest(LiveTestCase):
             for axis, (first, seen, now) in enumerate(zip(axes_of(begun), axes_of(before), axes_of(after))):
                 # Not behind where it began, and not farther than it runs on from where it was seen.
                 low, high = sorted((first, seen))
-                self.assertTrue(low - 300 <= now <= high + 300 if axis < 2 else abs(now - first) < 1e-3, f"{place}: {axis} {first} {seen} {now}")
+                self.assertTrue(low - runs_on_mm <= now <= high + runs_on_mm if axis < 2 else abs(now - first) < 1e-3, f"{place}: {axis} {first} {seen} {now}")
             self.settle(after)
         keys = [one.input_applied.input.key for one in self.told() if one.HasField("input_applied") and one.input_applied.input.HasField("key")]
         self.assertEqual([one.key for one in keys if one.action == KeyAction.Value("KEY_ACTION_PRESS")], answered)
