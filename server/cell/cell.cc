@@ -260,7 +260,8 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
   book->OnRunWaits([this](const std::string& machine) { runs->Wake(machine); });
-  book->OnToldToWait([this](v1::Job& job) { runs->TellWhyItWaits(job); });
+  book->OnToldToWait([this](v1::Job& job) { runs->TellWhyItWaits(job); },
+                     [this](std::function<void()> work) { executor->Post(std::move(work)); });
   programs = std::make_unique<ProgramBook>(*store, config);
   tools = std::make_unique<MemoryTools>(*store, *programs);
   results = std::make_unique<JobResults>(*store, *book, *tools);

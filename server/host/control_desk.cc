@@ -2,7 +2,6 @@
 
 #include <google/protobuf/util/time_util.h>
 
-#include <cstdlib>
 #include <utility>
 
 #include "proto/bridge/sha256.h"
@@ -30,7 +29,8 @@ Result<v1::AcquireControlResponse> ControlDesk::Acquire(const v1::AcquireControl
   std::chrono::nanoseconds ttl = kTtl;
   if (request.has_ttl()) {
     // The nanoseconds of what is far beyond it are no number.
-    const bool known = std::abs(request.ttl().seconds()) <= kTtlMax / std::chrono::seconds(1);
+    const bool known = request.ttl().seconds() >= 0 &&
+                       request.ttl().seconds() <= kTtlMax / std::chrono::seconds(1);
     if (known) ttl = std::chrono::nanoseconds(TimeUtil::DurationToNanoseconds(request.ttl()));
     if (!known || ttl < kTtlMin || ttl > kTtlMax) return Wrong("ttl: allowed are 1 s to 60 s");
   }

@@ -2,7 +2,6 @@
 // beyond control.
 #include <google/protobuf/util/time_util.h>
 
-#include <cstdlib>
 #include <utility>
 
 #include "proto/bridge/findings.h"
@@ -131,11 +130,11 @@ Status HostMachine::PressKey(const v1::HostOrder& order, const HostTime& now) {
 template <class Beat>
 Status HostMachine::CheckBeat(const Beat& beat) {
   if (beat.number() < 1) return InvalidArgument("number counts from 1");
-  constexpr std::int64_t kSecondsMax = 9'000'000'000;  // of as many 64 bits hold the nanoseconds
+  constexpr std::int64_t kSecondsMax = 4'000'000'000;  // their differences fit into 64 bits as ns
   const std::int64_t took_s = beat.round_trip().seconds();
   if (took_s < 0 || took_s > kSecondsMax || beat.round_trip().nanos() < 0)
     return InvalidArgument("round_trip: no time that a line takes");
-  if (!beat.has_sent() || std::abs(beat.sent().seconds()) > kSecondsMax)
+  if (!beat.has_sent() || beat.sent().seconds() < 0 || beat.sent().seconds() > kSecondsMax)
     return InvalidArgument("sent: when it was sent, by the clock of the client");
   return {};
 }

@@ -103,7 +103,7 @@ class HostProcess {
 
   // They cannot be answered any more. Nothing of them begins; what halts acts all the same.
   void ForgetOrders() {
-    const std::deque<v1::HostResponse> messages = inbox_.TakeMessages().messages;
+    const WaitingMessages::Taken taken = inbox_.TakeMessages();
     // Those of the other servers have numbers of the host's own, below 0.
     parked_.ForgetLine();
     answers_due_.ForgetLine();
@@ -112,9 +112,11 @@ class HostProcess {
     if (machine_ == nullptr) return;
     machine_->RefuseEdit(ErrorCode::kCellStoreUnavailable,
                          Now());  // perhaps it is stored: asked anew
-    for (const v1::HostResponse& message : messages) {
+    for (const v1::HostResponse& message : taken.messages) {
+      if (message.has_entries_stored()) NoteStored(message.entries_stored().sequence());
       if (Halts(message)) static_cast<void>(machine_->Do(message.order(), Now()));
     }
+    for (const v1::HostOrder& order : taken.stops) static_cast<void>(machine_->Do(order, Now()));
   }
 
   void Connect() {
@@ -186,9 +188,9 @@ class HostProcess {
       for (const v1::HostOrder& order : taken.TakeMotions()) Refuse(order, StoppedBefore());
     }
     for (const v1::HostOrder& order : taken.stops) TakeOrder(order);
+    for (v1::HostResponse& message : taken.messages) Take(message);
     for (const v1::HostOrder& order : taken.refused)
       Refuse(order, {ErrorCode::kCellUnavailable, "too many orders wait for it", {}});
-    for (v1::HostResponse& message : taken.messages) Take(message);
   }
 
   void Take(v1::HostResponse& message) {
@@ -200,9 +202,7 @@ class HostProcess {
         TakeOrder(message.order());
         break;
       case v1::HostResponse::kEntriesStored:
-        unstored_.Stored(message.entries_stored().sequence());
-        if (writer_ != nullptr) writer_->Stored(fence_, message.entries_stored().sequence());
-        if (machine_ != nullptr) machine_->NoteStored(message.entries_stored().sequence());
+        NoteStored(message.entries_stored().sequence());
         break;
       case v1::HostResponse::kRenewed:
         lease_.Renewed();
@@ -219,6 +219,12 @@ class HostProcess {
       default:
         break;
     }
+  }
+
+  void NoteStored(std::int64_t sequence) {
+    unstored_.Stored(sequence);
+    if (writer_ != nullptr) writer_->Stored(fence_, sequence);
+    if (machine_ != nullptr) machine_->NoteStored(sequence);
   }
 
   void TakeMemory(const v1::HostMemory& memory) {
@@ -419,7 +425,7 @@ class HostProcess {
   }
 
   void DoLater() {
-    for (const auto& one : inbox_.TakeWork()) one();
+    std::ranges::for_each(inbox_.TakeWork(), [](const auto& one) { one(); });
   }
 
   // A disk that does not answer: nothing begins, and what moves is held. LIVE-3.21

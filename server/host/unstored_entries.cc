@@ -14,6 +14,7 @@ namespace rmlcell::server {
 namespace {
 
 constexpr std::size_t kPartBytes = std::size_t{1} << 20;
+constexpr std::size_t kBetweenMarks = 200;  // other entries, of which some hundred make a part
 
 }  // namespace
 
@@ -25,12 +26,18 @@ EntryKind KindOf(const v1::JournalEntry& entry) {
 std::vector<bool> OldMarks(const std::vector<EntryKind>& kinds) {
   std::vector<bool> old(kinds.size());
   std::optional<std::size_t> newest;
+  std::size_t others = 0;   // behind the newest mark that stays
   bool behind_run = false;  // no mark stands behind the newest end
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     if (kinds[i] == EntryKind::kRunOver) behind_run = true;
-    if (kinds[i] != EntryKind::kMark) continue;
+    if (kinds[i] != EntryKind::kMark) {
+      ++others;
+      continue;
+    }
     if (newest) old[*newest] = true;
-    newest = behind_run ? std::nullopt : std::optional(i);
+    const bool stays = behind_run || others >= kBetweenMarks;
+    if (stays) others = 0;
+    newest = stays ? std::nullopt : std::optional(i);
     behind_run = false;
   }
   return old;
@@ -48,14 +55,17 @@ std::vector<v1::JournalEntry> WithoutOldMarks(std::vector<v1::JournalEntry> entr
 std::vector<v1::HostRequest> EntriesInParts(const std::vector<v1::JournalEntry>& entries,
                                             std::int64_t fence) {
   std::vector<v1::HostRequest> parts;
-  std::size_t bytes = kPartBytes;
+  std::size_t bytes = 0;
+  bool over = true;
   for (const v1::JournalEntry& entry : entries) {
-    if (bytes >= kPartBytes) {
+    if (std::exchange(over, false)) {
       bytes = 0;
       parts.emplace_back().mutable_entries()->set_fence(fence);
     }
     bytes += entry.ByteSizeLong();
     *parts.back().mutable_entries()->add_entries() = entry;
+    // What is stored ends with a mark.
+    over = bytes >= kPartBytes && entry.has_mark();
   }
   return parts;
 }

@@ -33,14 +33,15 @@ class UnstoredEntries {
   std::size_t looked_at_ = kMarksKept;  // so many more, and it is worth while to look for marks
 };
 
-// Messages that a server takes, however much there is. LIVE-3.25
+// Messages that a server takes, however much there is, each but the last with a mark at its end.
+// LIVE-3.25
 std::vector<v1::HostRequest> EntriesInParts(const std::vector<v1::JournalEntry>& entries,
                                             std::int64_t fence);
 
 enum class EntryKind : std::uint8_t { kOther, kMark, kRunOver };
 EntryKind KindOf(const v1::JournalEntry& entry);
 // Which of them are marks that have a newer one behind them; that behind the end of a run is none,
-// since both are stored at once.
+// since both are stored at once, and now and then one stays for a part to end with.
 std::vector<bool> OldMarks(const std::vector<EntryKind>& kinds);
 // All but those.
 std::vector<v1::JournalEntry> WithoutOldMarks(std::vector<v1::JournalEntry> entries);

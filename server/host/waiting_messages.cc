@@ -17,7 +17,8 @@ bool IsCounted(const v1::HostOrder& order) {
 }
 
 v1::HostOrder StopFor(const v1::HostOrder& order) {
-  if (order.has_emergency_stop() || order.has_abort() || order.has_disarm()) return order;
+  const bool key = order.has_key() || order.has_panel_key();
+  if (key || order.has_emergency_stop() || order.has_abort() || order.has_disarm()) return order;
   v1::HostOrder stop;
   stop.set_number(order.number());
   stop.set_caller(order.caller());

@@ -18,7 +18,7 @@ class WaitingMessages {
   struct Taken {
     std::deque<v1::HostResponse> messages{};
     // Beyond the bound a STOP stands for all that would halt or let go; who asks for more than one
-    // (EMERGENCY STOP, ABORT) gets it.
+    // (EMERGENCY STOP, ABORT) gets it, and keys are what they are, by their numbers.
     std::vector<v1::HostOrder> stops{};
     // There was no room for these; of keys with their numbers.
     std::vector<v1::HostOrder> refused{};

@@ -221,14 +221,19 @@ void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& cal
     job.clear_name();
     return done(std::move(job));
   }
-  store_.Submit(std::move(*made),
-                [this, done = std::move(done)](const Result<storage::SubmittedJob>& submitted) {
-                  if (!submitted) return done(submitted.error());
-                  TellRun(submitted->job);
-                  v1::Job job = ToProto(submitted->job);
-                  AddWhyItWaits(job);
-                  done(std::move(job));
-                });
+  store_.Submit(std::move(*made), [this, more_come, done = std::move(done)](
+                                      const Result<storage::SubmittedJob>& submitted) {
+    if (!submitted) return done(submitted.error());
+    TellRun(submitted->job);
+    v1::Job job = ToProto(submitted->job);
+    // Of many at once nobody reads why each waits.
+    if (more_come || job.kind() != v1::JOB_KIND_RUN) return done(std::move(job));
+    const auto tell = [this, job = std::move(job), done]() mutable {
+      AddWhyItWaits(job);
+      done(std::move(job));
+    };
+    later_ ? later_(tell) : tell();
+  });
 }
 
 // Once on a machine, whatever happens. LIVE-5.01

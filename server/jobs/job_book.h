@@ -45,7 +45,12 @@ class JobBook {
 
   // Called with a RUN that waits, as GetJob and SubmitJob are about to tell it: with what keeps its
   // machine from beginning it. From any thread, and not for long. Set as above.
-  void OnToldToWait(std::function<void(v1::Job&)> told) { told_to_wait_ = std::move(told); }
+  // `later` does on another thread what would keep the store from others who write.
+  void OnToldToWait(std::function<void(v1::Job&)> told,
+                    std::function<void(std::function<void()>)> later = {}) {
+    told_to_wait_ = std::move(told);
+    later_ = std::move(later);
+  }
 
   // A new job of the same program, as that was: of a RUN that was interrupted. `continues`: it is
   // to go on where that was cut off, and is held until it is told where (RunQueue::Continue).
@@ -125,6 +130,7 @@ class JobBook {
   ToldJobs told_;
   std::function<void(const std::string&)> run_waits_;
   std::function<void(v1::Job&)> told_to_wait_;
+  std::function<void(std::function<void()>)> later_;
 };
 
 // The names under which the programs of a job are kept with it: "program" for the one that is

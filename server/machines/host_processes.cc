@@ -15,7 +15,8 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr int kNotMine = 3;                            // exit code of a host
+constexpr int kNotMine = 3;  // exit code of a host
+constexpr std::chrono::seconds kLookWithoutHosts{5};
 constexpr std::chrono::milliseconds kLookAtHosts{50};  // how soon a dead host is noticed
 
 }  // namespace
@@ -126,7 +127,8 @@ void HostProcesses::NoteEnd(const std::string& machine, Place& place, int how) {
 void HostProcesses::Watch(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   for (;;) {
-    wanted_.wait(lock, stop, [this] { return !places_.empty(); });
+    if (places_.empty())
+      wanted_.wait_for(lock, stop, kLookWithoutHosts, [this] { return !places_.empty(); });
     if (stop.stop_requested()) return;
     starts_left_ = kStartsAtOnce;
     for (auto& [machine, place] : places_) LookAt(machine, place);

@@ -222,6 +222,9 @@ void Hosts::TakeEntries(const HostPointer& host, const v1::HostEntries& entries)
           host->waiting.empty() ? host->stored : host->waiting.back().sequence();
       if (entry.sequence() > last) host->waiting.push_back(entry);
     }
+    // What is stored ends with a mark, whatever finds room.
+    while (host->overflows && !host->waiting.empty() && !host->waiting.back().has_mark())
+      host->waiting.pop_back();
     all_stored = host->waiting.empty() && host->stored > 0;
   }
   if (all_stored) TellStored(*host);

@@ -68,23 +68,35 @@ std::optional<v1::MachineMark> NewerOf(const std::optional<storage::MachineMark>
 }  // namespace
 
 bool Hosts::EndAbandoned(const std::string& machine) {
+  const std::lock_guard joining(joining_);  // nobody comes for it meanwhile
   const auto leases = needs_.store.MachineLeases();
   if (!leases) return false;  // it is asked again
   const auto lease = std::ranges::find(*leases, machine, &storage::MachineLease::machine);
-  bool held = lease != leases->end() && !IsGone(lease->host);
-  {
+  const bool is_held = lease != leases->end();
+  const bool is_gone = is_held && IsGone(lease->host);
+  if (is_held && !is_gone) {
     const std::lock_guard lock(mutex_);
     const auto off = off_.find(machine);
     if (off == off_.end()) return true;
     const Instant now = needs_.clock();
-    if (held && off->second.seen.lease != *lease)
-      off->second.seen = {.lease = *lease, .since = now};
-    held = held && (lease->pinned || now - off->second.seen.since < lease->duration + kObserved);
-    off->second.held = held;
+    if (off->second.seen.lease != *lease) off->second.seen = {.lease = *lease, .since = now};
+    if (lease->pinned || now - off->second.seen.since < lease->duration + kObserved) return false;
   }
-  if (held) return false;
-  if (const Status ended = EndWithoutHost(needs_.store, machine); !ended)
-    spdlog::warn("jobs of {}: {}", machine, bridge::ErrorText(ended.error()));
+  // Who had it is told so when it is heard of again, and begins nothing.
+  Result<storage::MachineLease> taken =
+      needs_.store.TakeMachine({.machine = machine,
+                                .host = needs_.server + "/nobody",
+                                .server = needs_.server,
+                                .duration = kLease,
+                                .seen = is_held ? std::optional(*lease) : std::nullopt,
+                                .by_hand = is_gone});
+  if (!taken) return false;
+  const Status ended = EndWithoutHost(needs_.store, machine);
+  if (!ended) spdlog::warn("jobs of {}: {}", machine, bridge::ErrorText(ended.error()));
+  static_cast<void>(needs_.store.ReleaseMachine(*taken));
+  if (!ended) return false;
+  const std::lock_guard lock(mutex_);
+  if (const auto off = off_.find(machine); off != off_.end()) off->second.held = false;
   return true;
 }
 
@@ -101,7 +113,8 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   const std::lock_guard joining(joining_);
   const Result<Taken> taken = Take(hello, *machine);
   if (!taken) return taken.error();
-  if (const HostPointer before = Find(*machine)) Retire(before);
+  const HostPointer line_before = Find(*machine);
+  if (line_before != nullptr) Retire(line_before);
   auto host = std::make_shared<Host>();
   host->id = *machine;
   host->link = link;
@@ -109,6 +122,9 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   host->heard = needs_.clock();
   host->here = IsOf(hello.host(), NameOfComputer());
   if (const Status welcome = Welcome(host, hello, *taken); !welcome) return welcome.error();
+  // It may be more than up to the newest mark.
+  if (line_before != nullptr && line_before->lease.fence == host->lease.fence)
+    host->stored = std::max(host->stored, line_before->stored);
   HostPointer before;
   {
     const std::lock_guard lock(mutex_);

@@ -201,12 +201,16 @@ TEST_F(JournalTest, TheMarkBehindTheEndOfARunStays) {
 // LIVE-3.25: in messages that a server takes.
 TEST_F(JournalTest, WhatIsToldIsToldInParts) {
   std::vector<v1::JournalEntry> entries;
-  for (int i = 1; i <= 50; ++i) entries.push_back(Event(3, i, 100'000));
+  for (int i = 1; i <= 50; i += 2) {
+    entries.push_back(Event(3, i, 100'000));
+    entries.push_back(Entry(3, i + 1, 100'000));
+  }
   const std::vector<v1::HostRequest> parts = EntriesInParts(entries, 3);
   EXPECT_EQ(parts.size(), 5U);
   std::vector<std::int64_t> told;
   for (const v1::HostRequest& part : parts) {
     EXPECT_EQ(part.entries().fence(), 3);
+    EXPECT_TRUE(part.entries().entries().rbegin()->has_mark());
     EXPECT_LT(part.ByteSizeLong(), 2U << 20);
     for (const v1::JournalEntry& entry : part.entries().entries()) told.push_back(entry.sequence());
   }
