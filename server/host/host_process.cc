@@ -481,8 +481,7 @@ class HostProcess {
                             ErrorCode::kCellMachineTaken, holder + " has the machine now", {}}));
     if (machine_ == nullptr) return Quit(3);
     parked_.ForgetAll();
-    machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, Now());
-    lost_until_ = Now().steady + kRestPatience;
+    lost_until_ = Now().steady + kRestPatience;  // it is held from the next turn on
   }
 
   // What the store does not take from it is kept for people to look at.

@@ -228,7 +228,7 @@ void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& cal
     v1::Job job = ToProto(submitted->job);
     // Of many at once nobody reads why each waits.
     if (more_come || job.kind() != v1::JOB_KIND_RUN) return done(std::move(job));
-    const auto tell = [this, job = std::move(job), done]() mutable {
+    auto tell = [this, job = std::move(job), done]() mutable {
       AddWhyItWaits(job);
       done(std::move(job));
     };
