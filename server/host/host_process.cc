@@ -1,6 +1,7 @@
 #include "server/host/host_process.h"
 
 #include <google/protobuf/util/time_util.h>
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -175,10 +176,6 @@ class HostProcess {
     ShowAnew();
   }
 
-  static Error StoppedBefore() {
-    return {ErrorCode::kCellMachineState, "it was stopped before it began", {}};
-  }
-
   void TakeMessages() {
     WaitingMessages::Taken taken = further_.TakeMessages();
     // A line may be heard before it is known to have joined: what it says waits for that.
@@ -237,6 +234,7 @@ class HostProcess {
     writer_ = std::make_unique<JournalWriter>(std::move(opened->journal));
     durable_at_ = now.steady;
     machine_->Begin(memory, now);
+    ::malloc_trim(0);  // what was read of the journal were many small pieces
     spdlog::info("{} lives, fence {}", options_.machine, fence_);
   }
 

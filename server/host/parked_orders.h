@@ -5,9 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/result.h"
 #include "rmlcell/v1/host.pb.h"
 
 namespace rmlcell::server {
+
+// Of an order that somebody stopped first.
+inline Error StoppedBefore() {
+  return {ErrorCode::kCellMachineState, "it was stopped before it began", {}};
+}
 
 // Orders that have not begun: that they are about to is on its way to the disk. LIVE-3.21
 class ParkedOrders {
