@@ -18,7 +18,8 @@ class StatusRhythm {
   // Told now; the next ones so far apart.
   void Told(std::chrono::nanoseconds now, std::chrono::nanoseconds apart) {
     const bool in_turn = now >= due_ && now - due_ < apart;
-    shown_ = std::max(now, shown_ + kBetweenShown);
+    // One that waits there gives way to a newer one.
+    if (shown_ <= now) shown_ = std::max(now, shown_ + kBetweenShown);
     due_ = in_turn ? std::max(due_ + apart, shown_ + kBetweenShown) : shown_ + apart;
   }
 

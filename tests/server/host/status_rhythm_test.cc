@@ -29,6 +29,8 @@ TEST(StatusRhythm, WhatIsToldOutOfItsTurnMakesNoneLate) {
   rhythm.Told(1'000ms, 51ms);
   rhythm.Told(1'008ms, 51ms);  // something changed; it is shown at 1,050
   EXPECT_EQ(rhythm.due(), 1'101ms);
+  for (int i = 9; i < 50; ++i) rhythm.Told(1'000ms + std::chrono::milliseconds(i), 51ms);
+  EXPECT_EQ(rhythm.due(), 1'101ms);  // the newest of them alone is shown
   rhythm.Told(1'101ms, 51ms);
   EXPECT_EQ(rhythm.due(), 1'152ms);
 }
