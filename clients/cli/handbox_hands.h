@@ -87,8 +87,8 @@ class HandboxHands {
   std::int64_t beats_ = 0;
   std::deque<KeyStroke> waiting_{};
 
-  std::atomic<std::int64_t> round_trip_ns_ =
-      0;                        // of the newest beat that was answered; 0: none was
+  // Of the newest beat that is over; 0: none is.
+  std::atomic<std::int64_t> round_trip_ns_ = 0;
   mutable std::mutex mutex_{};  // of what threads of gRPC write
   std::condition_variable ended_{};
   int under_way_ = 0;

@@ -24,11 +24,6 @@ std::string PlaceText(const v1::StepPlace& place) {
   return std::to_string(place.program()) + "/" + std::to_string(place.step());
 }
 
-std::string LengthText(const v1::AxisValue& axis) {
-  const bool turns = axis.unit() == v1::UNIT_RADIAN;
-  return Fixed(axis.value(), turns ? 4 : 3) + (turns ? " rad" : " mm");
-}
-
 // What is different there, how the machine goes there, and why it may not. `in_program_units`: the
 // values of this machine are those of its language.
 void PrintPreview(const v1::PreviewStartResponse& preview, bool in_program_units) {
@@ -41,7 +36,7 @@ void PrintPreview(const v1::PreviewStartResponse& preview, bool in_program_units
   if (rows.size() > 1 && in_program_units) Print("          places in units of the program");
   for (const v1::ApproachMotion& motion : preview.approach()) {
     std::string to;
-    for (const v1::AxisValue& axis : motion.to()) to += "  " + axis.axis() + " " + LengthText(axis);
+    for (const v1::AxisValue& axis : motion.to()) to += "  " + AxisText(axis);
     Print("approach  " + motion.path() + to);
   }
   for (const v1::ApproachMotion& motion : preview.approach()) {

@@ -48,6 +48,11 @@ std::string StateName(v1::Job::State state) {
   return LowerCase(name);
 }
 
+std::string AxisText(const v1::AxisValue& axis) {
+  const bool turns = axis.unit() == v1::UNIT_RADIAN;
+  return axis.axis() + " " + Fixed(axis.value(), turns ? 4 : 3) + (turns ? " rad" : " mm");
+}
+
 std::string When(const google::protobuf::Timestamp& time) {
   const std::time_t seconds = time.seconds();
   std::tm parts{};

@@ -17,6 +17,8 @@ namespace rmlcell::cli {
 
 // By the clock of this place, to the second: "2026-11-27 15:25:43".
 std::string When(const google::protobuf::Timestamp& time);
+// "X 12.345 mm", "A 0.1000 rad".
+std::string AxisText(const v1::AxisValue& axis);
 
 // One line; zero values are shown, since people look for them.
 std::string Json(const google::protobuf::Message& message);

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "clients/cli/findings_text.h"
+#include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/terminal.h"
 #include "clients/cli/version.h"
-#include "engine/core/number_text.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/machine_inputs.h"
@@ -81,9 +81,7 @@ void TellStand(const machine::Machine& machine) {
     text +=
         " at " + std::to_string(now.run.place.program) + "/" + std::to_string(now.run.place.step);
   for (const v1::AxisValue& axis : bridge::AxesOf(machine.family().info().axes, now.run.axes)) {
-    const bool turns = axis.unit() == v1::UNIT_RADIAN;
-    text += "  " + axis.axis() + " " + FixedText(axis.value(), turns ? 4 : 3) +
-            (turns ? " rad" : " mm");
+    text += "  " + AxisText(axis);
   }
   Print(text);
 }

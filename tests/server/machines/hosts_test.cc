@@ -486,22 +486,33 @@ TEST_F(HostsTest, WhatIsStoredMeanwhileGoesToTheHost) {
   }));
 }
 
+// A host that this server knows nothing of has the machine, and runs a job of it.
+class HeldElsewhere : public HostsTest {
+ protected:
+  void SetUp() override {
+    other_ = Must(bed.store().TakeMachine(
+        {.machine = "mill-1", .host = "elsewhere/9", .server = "s", .duration = Hosts::kLease}));
+    job_ = Must(bed.store().SubmitAndWait(
+                    {.machine = "mill-1", .kind = "RUN", .specification = "", .attempts_max = 1}))
+               .job.id;
+    Must(bed.store().AcquireJobs(
+        {.worker = "elsewhere/9", .kinds = {"RUN"}, .duration = std::chrono::hours(1)}));
+  }
+  storage::JobState state() { return Must(bed.store().GetJob(job_)).state; }
+
+  storage::MachineLease other_{};
+  std::int64_t job_ = 0;
+};
+
 // LIVE-3.01, LIVE-5.08: a job whose machine nobody comes for is cut off; not one that the host of
 // another server runs there.
-TEST_F(HostsTest, AMachineThatIsOffHasNoJobThatRuns) {
-  const storage::MachineLease other = Must(bed.store().TakeMachine(
-      {.machine = "mill-1", .host = "elsewhere/9", .server = "s", .duration = Hosts::kLease}));
-  const auto submitted = Must(bed.store().SubmitAndWait(
-      {.machine = "mill-1", .kind = "RUN", .specification = "", .attempts_max = 1}));
-  Must(bed.store().AcquireJobs(
-      {.worker = "elsewhere/9", .kinds = {"RUN"}, .duration = std::chrono::hours(1)}));
+TEST_F(HeldElsewhere, AMachineThatIsOffHasNoJobThatRuns) {
   std::atomic<int> looks = 0;
   hosts.OnChange([&looks] { ++looks; });
-  const auto state = [&] { return Must(bed.store().GetJob(submitted.job.id)).state; };
   hosts.NoteOff("mill-1", "its host ended 5 times");
   EXPECT_TRUE(Eventually([&] { return looks == 1; }));
   EXPECT_EQ(state(), storage::JobState::kRunning);
-  ASSERT_TRUE(bed.store().ReleaseMachine(other));
+  ASSERT_TRUE(bed.store().ReleaseMachine(other_));
   hosts.NoteOff("mill-1", "its host ended 5 times");
   EXPECT_TRUE(Eventually([&] { return looks == 2; }));
   EXPECT_EQ(state(), storage::JobState::kInterrupted);
@@ -510,16 +521,9 @@ TEST_F(HostsTest, AMachineThatIsOffHasNoJobThatRuns) {
 
 // LIVE-3.02, LIVE-5.08: who has a machine that is off, of a boot or of a computer that this one
 // cannot look into, is gone when its lease stands unchanged.
-TEST_F(HostsTest, WhoHoldsAMachineThatIsOffIsWaitedFor) {
-  Must(bed.store().TakeMachine(
-      {.machine = "mill-1", .host = "elsewhere/9", .server = "s", .duration = Hosts::kLease}));
-  const auto submitted = Must(bed.store().SubmitAndWait(
-      {.machine = "mill-1", .kind = "RUN", .specification = "", .attempts_max = 1}));
-  Must(bed.store().AcquireJobs(
-      {.worker = "elsewhere/9", .kinds = {"RUN"}, .duration = std::chrono::hours(1)}));
+TEST_F(HeldElsewhere, WhoHoldsAMachineThatIsOffIsWaitedFor) {
   std::atomic<int> looks = 0;
   hosts.OnChange([&looks] { ++looks; });
-  const auto state = [&] { return Must(bed.store().GetJob(submitted.job.id)).state; };
   hosts.NoteOff("mill-1", "its host ended 5 times");
   EXPECT_TRUE(Eventually([&] { return looks == 1; }));
   clock.Advance(Hosts::kLease + std::chrono::seconds(4));
