@@ -241,8 +241,11 @@ class HostMachine : private machine::RunObserver {
   SimTime told_until_{0};  // of the newest entry
   std::optional<v1::LastRun> last_run_{};
   std::int64_t begin_stored_by_ = 0;  // the entry that the run of a job waits for; 0: none
+  std::uint64_t halts_before_begin_ = 0;
+  bool continues_ = false;  // it goes on where another was cut off
   bool inspect_due_ = false;
-  bool ended_ = false;  // by EndRun(): of the run that is open nothing more is told
+  bool ended_ = false;       // by EndRun(): of the run that is open nothing more is told
+  bool given_back_ = false;  // likewise: nothing of it has moved
   bool mark_due_ = true;
   bool begins_ = false;                 // a run began since the last mark
   std::string job_{};                   // "jobs/17": whose run is open, or begins; empty: nobody's

@@ -147,6 +147,8 @@ void HostMachine::BeginsJob(const v1::WorkerAssignment& assignment, const HostTi
   begun_jobs_.push_back(job_);
   if (begun_jobs_.size() > kJobsKnown) begun_jobs_.pop_front();
   begin_stored_by_ = sequence_;
+  halts_before_begin_ = halts_;
+  continues_ = !assignment.job().continues().empty();
   if (desk_.lease()) return;
   const v1::ControlLease::OnLoss asked = assignment.job().run().on_loss();
   desk_.GiveToQueue(job_, asked != v1::ControlLease::ON_LOSS_UNSPECIFIED ? asked : armed_on_loss,
@@ -327,7 +329,13 @@ void HostMachine::EndRun(const HostTime& now) {
   where.set_job(job_);
   where.mutable_base()->set_program(status.open->program);
   cut_off_base_ = BaseNow();
+  // It waits for the store, and nobody has halted it: its job begins anew. One that goes on where
+  // another was cut off is a person's to begin. LIVE-5.20
+  given_back_ = begin_stored_by_ > 0 && halts_ == halts_before_begin_ && !continues_;
+  const auto last_run = last_run_;
   TellCutOff(where, ErrorCode::kCellHostStopped);
+  entries_.back().set_given_back(given_back_);
+  if (given_back_) last_run_ = last_run;
   ended_ = true;
 }
 

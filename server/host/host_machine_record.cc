@@ -38,11 +38,13 @@ v1::MachineMark HostMachine::MarkNow() const {
   mark.set_control_lease(desk_.number());
   if (driver_->factor() != 1.0) mark.set_factor(driver_->factor());
   if (last_run_) *mark.mutable_last_run() = *last_run_;
-  if (inspect_due_ || ended_) {
+  const bool cut_off = inspect_due_ || (ended_ && !given_back_);
+  if (cut_off) {
     mark.set_job(inspect_job_);
     if (cut_off_base_) *mark.mutable_base() = *cut_off_base_;
   }
-  if (status.open && !ended_) {
+  const bool open = status.open && !ended_;
+  if (open) {
     mark.set_run_time_ns(status.run.time.count());
     mark.set_job(job_);
     *mark.mutable_place() = bridge::ToProto(status.run.place);
@@ -53,7 +55,7 @@ v1::MachineMark HostMachine::MarkNow() const {
   // What is moved by hand is no run that could be cut off (LIVE-5.20); a FUNCTION may cut.
   const bool moved =
       status.open && status.open->by_hand && status.open->hand != machine::HandRun::kFunction;
-  mark.set_clean((!status.open || moved) && !inspect_due_ && !ended_);
+  mark.set_clean((!open || moved) && !cut_off);
   return mark;
 }
 

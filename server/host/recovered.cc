@@ -3,7 +3,9 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <utility>
 
 #include "engine/families/families.h"
@@ -17,33 +19,62 @@ namespace {
 
 constexpr std::int64_t kRecordingFileMax = 2 * MachineRecorder::kBytesMax;  // with a last entry
 
+using Number = std::pair<std::int64_t, std::int64_t>;  // fence, sequence
+
+Number NumberOf(const v1::JournalEntry& entry) { return {entry.fence(), entry.sequence()}; }
+
+// That of a job; what it leads to is told behind it.
+bool IsOfStart(const v1::JournalEntry& entry) {
+  if (entry.has_answered())
+    return entry.answered().kind() == v1::HostOrder::kRunJob ||
+           entry.answered().kind() == v1::HostOrder::kContinueJob;
+  return entry.applied().input().has_start();
+}
+
+// How many of them came to pass, from the first: those up to the newest mark. Where that is of a
+// job that the store has not begun, up to the mark before: nothing of it has moved, so it waits
+// again, as long as nothing else acted since. LIVE-5.04, 5.20
+std::size_t CountOfThoseThatHold(std::span<const v1::JournalEntry> journal, const Number& stored,
+                                 bool has_stored) {
+  std::size_t count = journal.size();
+  while (count > 0 && !journal[count - 1].has_mark()) --count;
+  if (count == 0) return 0;
+  const auto told = [&](std::size_t place) {
+    return NumberOf(journal[place]) > stored &&
+           journal[place].fence() == journal[count - 1].fence();
+  };
+  std::size_t begin = count;
+  do {
+    if (begin == 0 || !told(begin - 1) || journal[begin - 1].has_run_over()) return count;
+    --begin;
+  } while (journal[begin].run_begun().job().empty());
+  while (begin > 0 && told(begin - 1) && !journal[begin - 1].has_mark()) --begin;
+  const bool acted =
+      std::ranges::any_of(journal.subspan(begin, count - begin), [](const v1::JournalEntry& entry) {
+        return (entry.has_applied() || entry.has_answered()) && !IsOfStart(entry);
+      });
+  return acted || (begin == 0 && !has_stored) ? count : begin;
+}
+
 }  // namespace
 
 Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal) {
-  using Number = std::pair<std::int64_t, std::int64_t>;
   Recovered found{.known = welcome.has_mark(), .mark = welcome.mark()};
   const Number stored{welcome.mark().fence(), welcome.mark().sequence()};
   Number newest = stored;
+  journal.resize(CountOfThoseThatHold(journal, stored, found.known));
   for (const v1::JournalEntry& entry : journal) {
-    const Number number{entry.fence(), entry.sequence()};
-    if (!entry.has_mark() || (found.known && number <= newest)) continue;
+    if (!entry.has_mark() || (found.known && NumberOf(entry) <= newest)) continue;
     found.known = true;
     found.mark = entry.mark();
-    newest = number;
-  }
-  for (const v1::JournalEntry& entry : journal) {
-    const std::string& job = entry.intent().input().start().job();
-    if (Number(entry.fence(), entry.sequence()) <= newest || job.empty()) continue;
-    found.begins = job;
-    found.begins_at_step = entry.intent().input().start().has_step();
-    found.begins_program = entry.intent().input().start().program();
+    newest = NumberOf(entry);
   }
   for (v1::JournalEntry& entry : journal) {
-    const Number number{entry.fence(), entry.sequence()};
-    if (number > newest) continue;
+    if (NumberOf(entry) > newest) continue;
     if (entry.has_answered()) {
       found.answered.push_back(std::move(entry));
-    } else if (number > stored) {
+    } else if (NumberOf(entry) > stored && entry.fence() == newest.first) {
+      // A later host has told again what an earlier one had to tell, before its first mark.
       found.untold.push_back(std::move(entry));
     }
   }
@@ -65,22 +96,6 @@ void AddNewestMark(const std::string& journal, v1::HostHello& hello) {
 }
 
 HostMachine::Setup SetupOf(Recovered found) {
-  // It may have begun, and moved the machine, before anything of it was on the disk. LIVE-5.04
-  const bool began = !found.begins.empty();
-  const bool open = found.mark.has_run_time_ns() || began;
-  if (began) {
-    found.mark.set_job(found.begins);
-    found.mark.set_run_time_ns(0);
-    found.mark.clear_place();
-    // Of a program that had not begun its first step.
-    if (!found.begins_at_step) {
-      found.mark.clear_base();
-      found.mark.mutable_base()->set_program(found.begins_program);
-      found.mark.mutable_base()->set_incomplete(true);
-      found.mark.mutable_base()->mutable_place()->set_program(found.begins_program);
-      *found.mark.mutable_place() = found.mark.base().place();
-    }
-  }
   HostMachine::Setup setup;
   setup.state = found.mark.state();
   setup.control_lease = found.mark.control_lease();
@@ -88,10 +103,10 @@ HostMachine::Setup SetupOf(Recovered found) {
   if (found.mark.has_last_run()) setup.last_run = found.mark.last_run();
   setup.untold = std::move(found.untold);
   setup.answered = std::move(found.answered);
-  setup.cut_off = began || (found.known && !found.mark.clean());
+  setup.cut_off = found.known && !found.mark.clean();
   setup.inspect_job = found.mark.job();
   if (found.mark.has_base()) setup.cut_off_base = found.mark.base();
-  if (open) setup.open_run = std::move(found.mark);
+  if (found.mark.has_run_time_ns()) setup.open_run = std::move(found.mark);
   return setup;
 }
 
@@ -102,8 +117,7 @@ std::optional<MachineRecorder::OfJob> RecoverRecording(const Recovered& found,
   const auto durable = bytes
                            ? recording::DurableIn(*bytes, found.mark.fence(), found.mark.sequence())
                            : Result<recording::Durable>(bytes.error());
-  const bool of_another =
-      durable && !durable->whole && (!found.begins.empty() || durable->job != found.mark.job());
+  const bool of_another = durable && !durable->whole && durable->job != found.mark.job();
   if (!durable || of_another || ::truncate(path.c_str(), static_cast<off_t>(durable->bytes)) != 0) {
     spdlog::warn("{}: {}", path, !durable ? durable.error().detail : "it is of another run");
     ::unlink(path.c_str());  // no later mark is to find it

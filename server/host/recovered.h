@@ -17,12 +17,8 @@ struct Recovered {
   bool known = false;
   v1::MachineMark mark{};
   std::vector<v1::JournalEntry> untold{};
-  // "jobs/17": a job that was about to begin behind the mark; empty: none was.
-  std::string begins{};
   // Requests that were answered before the mark, as far as the journal has them. LIVE-3.27
   std::vector<v1::JournalEntry> answered{};
-  bool begins_at_step = false;  // where another one was cut off, which the mark tells of
-  int begins_program = 0;       // its slot; 0: the stream of the job
 };
 
 Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal);

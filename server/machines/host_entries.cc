@@ -74,6 +74,7 @@ class Entries {
       if (const auto event = JobEventOf(entry)) write_.job_events.push_back(ToRecord(*event));
     }
     if (ends && job_lease_) end_ = entry.run_over().outcome();
+    if (ends) given_back_ = entry.given_back();
     for (const v1::LinkedExecutable& made : entry.executables()) {
       made_.push_back({made.slot(), made.object_revision(), made.content()});
     }
@@ -95,7 +96,17 @@ class Entries {
 
  private:
   Status Put(const std::optional<v1::Outcome>& end, storage::MachineWrite write) {
-    if (end) return Finish(*end, std::move(write));
+    if (end && !given_back_) return Finish(*end, std::move(write));
+    if (const Status written = Append(std::move(write)); !written || !end) return written;
+    const storage::Lease job = *std::exchange(job_lease_, std::nullopt);
+    job_.clear();
+    // What was written must not be written again for it: where it fails, the next host gives it
+    // back (GiveBackUnbegun).
+    static_cast<void>(GiveBack(store_, job, "the host of the machine ended before it moved"));
+    return {};
+  }
+
+  Status Append(storage::MachineWrite write) {
     if (write.events.empty() && write.job_events.empty() && !write.mark) return {};
     if (!write.job_events.empty()) write.job = job_lease_;
     if (const Status written = store_.AppendMachine(lease_, write); !written)
@@ -146,6 +157,7 @@ class Entries {
   std::string job_{};
   std::optional<storage::Lease> job_lease_{};
   std::optional<v1::Outcome> end_{};
+  bool given_back_ = false;                     // it is none: the job waits again
   std::vector<storage::NewExecutable> made_{};  // by runs that are over
   std::size_t added_ = 0;
   std::size_t stored_ = 0;

@@ -369,6 +369,29 @@ TEST_F(HostJobsTest, AnOrderlyEndCutsTheRunOff) {
   EXPECT_EQ(mark.job(), "jobs/17");
 }
 
+// LIVE-5.20: where the store does not have its begin yet nothing has moved: its job waits again,
+// and the machine stands as before. One that somebody stopped meanwhile is cut off.
+TEST_F(HostJobsTest, AnOrderlyEndGivesBackWhatNeverMoved) {
+  for (const bool stopped : {false, true}) {
+    Make();
+    EXPECT_FALSE(host_->Do(Job(), now_).has_refusal());
+    Pass(1s, 50ms);
+    EXPECT_EQ(Status().run().run_time_ns(), 0);
+    if (stopped) host_->Do(Stop(), now_);
+    host_->Hold(v1::HOLD_REASON_STOP, now_);
+    host_->TakeEntries(now_, true);
+    host_->EndRun(now_);
+    const auto entries = host_->TakeEntries(now_, true);
+    ASSERT_TRUE(entries.front().has_run_over());
+    EXPECT_EQ(entries.front().given_back(), !stopped);
+    const v1::MachineMark& mark = entries.back().mark();
+    EXPECT_EQ(mark.clean(), !stopped);
+    EXPECT_FALSE(mark.has_run_time_ns());
+    EXPECT_EQ(mark.job(), stopped ? "jobs/17" : "");
+    EXPECT_EQ(mark.has_last_run(), stopped);
+  }
+}
+
 // LIVE-5.10: a decision is about the run that was cut off last.
 TEST_F(HostJobsTest, ADecisionIsAboutTheRunThatWasCutOff) {
   v1::MachineMark mark;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -42,7 +43,6 @@ TEST(Recovered, TheNewestMarkCounts) {
   EXPECT_EQ(found.mark.sequence(), 4);
   ASSERT_EQ(found.untold.size(), 2U);
   EXPECT_TRUE(found.untold.front().has_run_begun());
-  EXPECT_EQ(found.begins, "");
 }
 
 // LIVE-3.33: the computer is gone with its disk: what the store has is what there is.
@@ -96,23 +96,90 @@ TEST(Recovered, PowerThatFailsTakesWhatWasNotSynced) {
   }
 }
 
-// LIVE-5.04: a job that was about to begin may have moved the machine; behind a mark it has not.
-TEST(Recovered, AJobThatWasAboutToBeginMayHaveMoved) {
-  EXPECT_EQ(RecoveredFrom({}, {Mark(1), Intent(2, "jobs/17")}).begins, "jobs/17");
-  EXPECT_EQ(RecoveredFrom({}, {Mark(1), Intent(2, "jobs/17"), Mark(3)}).begins, "");
-  // LIVE-5.20: it was cut off before its first step.
-  v1::JournalEntry begins = Intent(2, "jobs/17");
-  begins.mutable_intent()->mutable_input()->mutable_start()->set_program(45);
-  const HostMachine::Setup setup = SetupOf(RecoveredFrom({}, {Mark(1), begins}));
-  ASSERT_TRUE(setup.open_run);
-  EXPECT_EQ(setup.open_run->place().program(), 45);
-  EXPECT_EQ(setup.open_run->place().step(), 0);
-  ASSERT_TRUE(setup.cut_off_base);
-  EXPECT_EQ(setup.cut_off_base->program(), 45);
-  v1::HostWelcome welcome;  // the store knows more than the journal
-  welcome.mutable_mark()->set_fence(8);
-  welcome.mutable_mark()->set_sequence(1);
-  EXPECT_EQ(RecoveredFrom(welcome, {Mark(1), Intent(2, "jobs/17")}).begins, "");
+// The first entries of a job that begins: START, the run, and where the machine stands.
+std::vector<v1::JournalEntry> Begin(std::int64_t sequence) {
+  v1::JournalEntry start = Entry(sequence + 1);
+  start.mutable_applied()->mutable_input()->mutable_start()->set_job("jobs/17");
+  v1::JournalEntry begun = Entry(sequence + 2);
+  begun.mutable_run_begun()->set_job("jobs/17");
+  v1::JournalEntry mark = Mark(sequence + 3);
+  mark.mutable_mark()->set_clean(false);
+  mark.mutable_mark()->set_job("jobs/17");
+  mark.mutable_mark()->set_run_time_ns(0);
+  return {Intent(sequence, "jobs/17"), start, begun, mark};
+}
+
+std::vector<v1::JournalEntry> Behind(std::vector<v1::JournalEntry> first,
+                                     const std::vector<v1::JournalEntry>& then) {
+  first.insert(first.end(), then.begin(), then.end());
+  return first;
+}
+
+v1::HostWelcome Stored(std::int64_t sequence) {
+  v1::HostWelcome welcome;
+  welcome.mutable_mark()->set_fence(7);
+  welcome.mutable_mark()->set_sequence(sequence);
+  welcome.mutable_mark()->set_clean(true);
+  return welcome;
+}
+
+// LIVE-5.20, first row: a job whose begin the store does not have has moved nothing (5.04); the
+// machine is as it was marked before, and nothing of the begin is told.
+TEST(Recovered, AJobThatTheStoreHasNotBegunHasNotBegun) {
+  const auto journal = Behind({Mark(1)}, Begin(2));
+  for (std::size_t cut = 1; cut <= journal.size(); ++cut) {
+    const Recovered found = RecoveredFrom(
+        Stored(1), {journal.begin(), journal.begin() + static_cast<std::ptrdiff_t>(cut)});
+    EXPECT_EQ(found.mark.sequence(), 1) << cut;
+    EXPECT_TRUE(found.untold.empty()) << cut;
+    const HostMachine::Setup setup = SetupOf(found);
+    EXPECT_FALSE(setup.cut_off);
+    EXPECT_FALSE(setup.open_run);
+  }
+  // What came before it is told.
+  v1::JournalEntry before = Entry(2);
+  before.mutable_applied()->mutable_input()->mutable_resume();
+  const Recovered told = RecoveredFrom(Stored(1), Behind({Mark(1), before, Mark(3)}, Begin(4)));
+  EXPECT_EQ(told.mark.sequence(), 3);
+  EXPECT_EQ(told.untold.size(), 2U);
+}
+
+// LIVE-5.20, second row: one that the store has begun may have moved; and one behind whose begin
+// somebody did something must not be lost with it.
+TEST(Recovered, AJobThatMayHaveMovedIsCutOff) {
+  v1::HostWelcome begun = Stored(5);
+  begun.mutable_mark()->set_clean(false);
+  EXPECT_TRUE(SetupOf(RecoveredFrom(begun, Behind({Mark(1)}, Begin(2)))).cut_off);
+  v1::JournalEntry stop = Entry(6);
+  stop.mutable_applied()->mutable_input()->mutable_stop();
+  v1::JournalEntry held = Begin(4).back();  // number 7
+  const auto journal = Behind(Behind({Mark(1)}, Begin(2)), {stop, held});
+  const HostMachine::Setup stopped = SetupOf(RecoveredFrom(Stored(1), journal));
+  EXPECT_TRUE(stopped.cut_off);
+  ASSERT_TRUE(stopped.open_run);
+  EXPECT_EQ(stopped.open_run->job(), "jobs/17");
+  v1::JournalEntry over = Entry(6);
+  over.mutable_run_over()->set_job("jobs/17");
+  const Recovered ended =
+      RecoveredFrom(Stored(1), Behind(Behind({Mark(1)}, Begin(2)), {over, Mark(7)}));
+  EXPECT_EQ(ended.mark.sequence(), 7);
+  EXPECT_TRUE(std::ranges::any_of(ended.untold, &v1::JournalEntry::has_run_over));
+}
+
+// What a host was about to tell when it died was told again by the next one, before its first mark;
+// the one behind that tells it once.
+TEST(Recovered, WhatWasToldAgainIsToldOnce) {
+  v1::JournalEntry event = Entry(2);
+  event.mutable_event()->mutable_message()->set_text("once");
+  v1::JournalEntry again = event;
+  again.set_fence(8);
+  again.set_sequence(1);
+  v1::JournalEntry mark = Mark(2);
+  mark.set_fence(8);
+  mark.mutable_mark()->set_fence(8);
+  const Recovered found = RecoveredFrom(Stored(1), {Mark(1), event, Mark(3), again, mark});
+  EXPECT_EQ(found.mark.fence(), 8);
+  EXPECT_EQ(std::ranges::count_if(found.untold, &v1::JournalEntry::has_event), 1);
 }
 
 }  // namespace

@@ -218,6 +218,24 @@ TEST_F(HostEntriesTest, AJobThatNeverBeganWaitsAgain) {
   EXPECT_EQ(EventsOf(job).back().state(), v1::Job::STATE_QUEUED);
 }
 
+// LIVE-5.20, host told to end: a run that never moved is no end of its job.
+TEST_F(HostEntriesTest, AJobThatIsGivenBackWaitsAgain) {
+  const std::int64_t job = SubmitRun();
+  Acquire();
+  Add(job).mutable_run_begun()->set_job(JobName(job));
+  Over(job, v1::Outcome::KIND_INTERRUPTED, "CELL-E9432");
+  entries.back().set_given_back(true);
+  Mark(true);
+  const StoredEntries stored = StoreEntries(bed.store(), lease, entries);
+  ASSERT_TRUE(stored.how);
+  EXPECT_EQ(stored.count, entries.size());
+  const storage::JobRecord back = Must(bed.store().GetJob(job));
+  EXPECT_EQ(back.state, JobState::kQueued);
+  EXPECT_EQ(back.attempts, 0);
+  EXPECT_FALSE(back.held);
+  EXPECT_TRUE(Must(bed.store().GetMachineMark("mill-1"))->clean);
+}
+
 // LIVE-3.01, LIVE-5.08: where no host comes any more the job is cut off where the newest mark has
 // it; a host that comes later all the same tells of its machine, and the job stays as it is.
 TEST_F(HostEntriesTest, AJobWhoseMachineIsOffIsCutOff) {
