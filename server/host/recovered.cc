@@ -10,9 +10,11 @@
 
 #include "engine/families/families.h"
 #include "proto/bridge/files.h"
+#include "proto/bridge/findings.h"
 #include "proto/recording/recording.h"
 #include "server/base/secret.h"
 #include "server/host/recording_file.h"
+#include "server/host/unstored_entries.h"
 
 namespace rmlcell::server {
 namespace {
@@ -81,6 +83,19 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
   return found;
 }
 
+Result<std::string> KeepOfEarlierHost(const v1::HostWelcome& welcome,
+                                      const std::vector<v1::JournalEntry>& entries,
+                                      const std::string& journal) {
+  const auto is_told = [](const v1::JournalEntry& entry) {
+    return !entry.has_mark() && !entry.has_intent() && !entry.has_answered();
+  };
+  const bool another_had_it = !entries.empty() && entries.back().fence() < welcome.mark().fence();
+  if (!another_had_it || std::ranges::none_of(entries, is_told)) return std::string();
+  UnstoredEntries kept;
+  kept.Add(entries);
+  return kept.KeepAsOrphan(journal);
+}
+
 void AddNewestMark(const std::string& journal, v1::HostHello& hello) {
   const Result<Journal::Found> opened = Journal::Open(journal);
   if (!opened) return;  // OpenMachine says why
@@ -136,6 +151,15 @@ Result<OpenedMachine> OpenMachine(const v1::HostWelcome& welcome, const HostOpti
   if (!journal) return journal.error();
   if (journal->torn_bytes > 0)
     spdlog::warn("{}: {} bytes at its end were torn", options.journal, journal->torn_bytes);
+  const auto orphan = KeepOfEarlierHost(welcome, journal->entries, options.journal);
+  if (!orphan) return orphan.error();
+  if (!orphan->empty())
+    spdlog::warn("{}", bridge::ErrorText(
+                           Error{ErrorCode::kCellMachineTaken,
+                                 "another host had the machine since: what one told here before is "
+                                 "kept in " +
+                                     *orphan,
+                                 {}}));
   Recovered found = RecoveredFrom(welcome, std::move(journal->entries));
   auto recording = RecoverRecording(found, RecordingFile::PathBeside(options.journal));
   HostMachine::Setup setup = SetupOf(std::move(found));

@@ -23,6 +23,12 @@ struct Recovered {
 
 Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal);
 
+// What a host told here before another one had the machine, of which nobody can say how much is in
+// the log: it is kept beside the journal. Returns where; empty: there is none. LIVE-3.05
+Result<std::string> KeepOfEarlierHost(const v1::HostWelcome& welcome,
+                                      const std::vector<v1::JournalEntry>& entries,
+                                      const std::string& journal);
+
 // That of this journal, without the state, where it has one.
 void AddNewestMark(const std::string& journal, v1::HostHello& hello);
 

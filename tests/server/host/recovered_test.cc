@@ -2,10 +2,15 @@
 #include "server/host/recovered.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdio>
+
+#include "proto/bridge/files.h"
+#include "server/host/journal.h"
 
 namespace rmlcell::server {
 namespace {
@@ -151,7 +156,7 @@ TEST(Recovered, AJobThatMayHaveMovedIsCutOff) {
   begun.mutable_mark()->set_clean(false);
   EXPECT_TRUE(SetupOf(RecoveredFrom(begun, Behind({Mark(1)}, Begin(2)))).cut_off);
   v1::JournalEntry stop = Entry(6);
-  stop.mutable_applied()->mutable_input()->mutable_stop();
+  stop.mutable_applied()->mutable_input()->set_stop(v1::HOLD_REASON_STOP);
   v1::JournalEntry held = Begin(4).back();  // number 7
   const auto journal = Behind(Behind({Mark(1)}, Begin(2)), {stop, held});
   const HostMachine::Setup stopped = SetupOf(RecoveredFrom(Stored(1), journal));
@@ -180,6 +185,25 @@ TEST(Recovered, WhatWasToldAgainIsToldOnce) {
   const Recovered found = RecoveredFrom(Stored(1), {Mark(1), event, Mark(3), again, mark});
   EXPECT_EQ(found.mark.fence(), 8);
   EXPECT_EQ(std::ranges::count_if(found.untold, &v1::JournalEntry::has_event), 1);
+}
+
+// LIVE-3.05: of a host that was killed while another one took the machine nothing is thrown away.
+TEST(Recovered, WhatWasToldBeforeAnotherHadTheMachineIsKept) {
+  const std::string journal = testing::TempDir() + "/recovered-" + std::to_string(getpid());
+  v1::JournalEntry event = Entry(2);
+  event.mutable_event()->mutable_message()->set_text("of the earlier one");
+  v1::HostWelcome same = Stored(1);
+  EXPECT_EQ(KeepOfEarlierHost(same, {Mark(1), event, Mark(3)}, journal).value(), "");
+  same.mutable_mark()->set_fence(8);
+  EXPECT_EQ(KeepOfEarlierHost(same, {Mark(1)}, journal).value(), "") << "nothing was told";
+  const auto kept = KeepOfEarlierHost(same, {Mark(1), event, Mark(3)}, journal);
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(*kept, journal + ".orphan");
+  const auto bytes = bridge::ReadFile(*kept, 1 << 20);
+  ASSERT_TRUE(bytes);
+  const ReadRecords read = ReadJournal(*bytes);
+  EXPECT_TRUE(std::ranges::any_of(read.entries, &v1::JournalEntry::has_event));
+  std::remove(kept->c_str());
 }
 
 }  // namespace
