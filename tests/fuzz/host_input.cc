@@ -60,6 +60,20 @@ bool Moves(v1::MachineState state) {
          state == v1::MACHINE_STATE_STOPPING;
 }
 
+// Whether what lies behind one mark and up to another is more than a job that has not moved.
+bool LosesMoreThanABegin(const std::vector<v1::JournalEntry>& entries, const Number& from,
+                         const Number& until) {
+  bool begins = false;
+  for (const v1::JournalEntry& entry : entries) {
+    if (NumberOf(entry) <= from || NumberOf(entry) > until) continue;
+    const bool starts = entry.applied().input().has_start();
+    if (entry.has_run_over() || entry.has_answered() || (entry.has_applied() && !starts))
+      return true;
+    begins = begins || !entry.run_begun().job().empty();
+  }
+  return !begins;
+}
+
 // The newest mark, and what was told before it, as these entries and the store have it.
 std::string TryRecovery(const std::vector<v1::JournalEntry>& entries, bool mill) {
   v1::HostWelcome welcome;
@@ -68,19 +82,26 @@ std::string TryRecovery(const std::vector<v1::JournalEntry>& entries, bool mill)
     welcome.mutable_mark()->set_fence(entries.front().fence());
     welcome.mutable_mark()->set_sequence(entries.front().sequence());
   }
-  std::optional<Number> newest;
-  if (has_stored) newest = Number(welcome.mark().fence(), welcome.mark().sequence());
+  const Number stored(welcome.mark().fence(), welcome.mark().sequence());
+  std::vector<Number> marks;
+  if (has_stored) marks.push_back(stored);
   for (const v1::JournalEntry& entry : entries) {
-    if (entry.has_mark() && (!newest || NumberOf(entry) > *newest)) newest = NumberOf(entry);
+    if (entry.has_mark() && NumberOf(entry) > stored) marks.push_back(NumberOf(entry));
   }
   const Recovered found = RecoveredFrom(welcome, entries);
-  if (found.known != newest.has_value()) return "a mark that is not there, or one that is unseen";
-  const Number stored(welcome.mark().fence(), welcome.mark().sequence());
-  const Number until = newest.value_or(stored);
-  std::size_t untold = 0;
-  for (const v1::JournalEntry& entry : entries)
-    untold += NumberOf(entry) <= until && NumberOf(entry) > stored && !entry.has_answered() ? 1 : 0;
-  if (found.untold.size() != untold) return "what was told before the mark is not all there";
+  if (found.known == marks.empty()) return "a mark that is not there, or one that is unseen";
+  if (marks.empty()) return found.untold.empty() ? "" : "it is told of what no mark covers";
+  const Number taken(found.mark.fence(), found.mark.sequence());
+  const Number newest = *std::ranges::max_element(marks);
+  if (std::ranges::find(marks, taken) == marks.end()) return "a mark that is not there";
+  if (taken != newest && LosesMoreThanABegin(entries, taken, newest))
+    return "an older mark, though more than the begin of a job came behind it";
+  const auto untold = std::ranges::count_if(entries, [&](const v1::JournalEntry& entry) {
+    return entry.fence() == taken.first && NumberOf(entry) > stored && NumberOf(entry) <= taken &&
+           !entry.has_answered();
+  });
+  if (std::cmp_not_equal(found.untold.size(), untold))
+    return "what was told before the mark is not all there";
   const auto made = MakeHost(mill, SetupOf(found));
   if (!made) return made.error().detail.empty() ? "refused without a reason" : "";
   HostMachine& host = **made;
@@ -125,6 +146,7 @@ std::vector<v1::JournalEntry> EntriesOf(std::string_view bytes) {
         break;
       case 1:
         entry.mutable_run_begun()->set_run(byte(3));
+        if (byte(3) % 2 == 0) entry.mutable_run_begun()->set_job("jobs/17");
         break;
       case 2:
         entry.mutable_run_over()->set_run(byte(3));
@@ -138,7 +160,11 @@ std::vector<v1::JournalEntry> EntriesOf(std::string_view bytes) {
         entry.mutable_answered()->set_request_id(std::string(1U + byte(3) % 8U, 'r'));
         break;
       default:
-        entry.mutable_applied()->mutable_input()->set_factor(byte(3));
+        if (byte(3) % 2 == 0) {
+          entry.mutable_applied()->mutable_input()->mutable_start()->set_job("jobs/17");
+        } else {
+          entry.mutable_applied()->mutable_input()->set_factor(byte(3));
+        }
     }
     bytes.remove_prefix(4);
   }
