@@ -55,7 +55,9 @@ std::size_t CountOfThoseThatHold(std::span<const v1::JournalEntry> journal, cons
       std::ranges::any_of(journal.subspan(begin, count - begin), [](const v1::JournalEntry& entry) {
         return (entry.has_applied() || entry.has_answered()) && !IsOfStart(entry);
       });
-  return acted || (begin == 0 && !has_stored) ? count : begin;
+  const bool stood = begin > 0 && journal[begin - 1].has_mark();
+  const bool stood_as_stored = has_stored && (begin == 0 || NumberOf(journal[begin - 1]) <= stored);
+  return !acted && (stood || stood_as_stored) ? begin : count;
 }
 
 }  // namespace
