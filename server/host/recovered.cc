@@ -53,7 +53,8 @@ std::size_t CountOfThoseThatHold(std::span<const v1::JournalEntry> journal, cons
   while (begin > 0 && told(begin - 1) && !journal[begin - 1].has_mark()) --begin;
   const bool acted =
       std::ranges::any_of(journal.subspan(begin, count - begin), [](const v1::JournalEntry& entry) {
-        return (entry.has_applied() || entry.has_answered()) && !IsOfStart(entry);
+        return entry.has_run_over() ||
+               ((entry.has_applied() || entry.has_answered()) && !IsOfStart(entry));
       });
   const bool stood = begin > 0 && journal[begin - 1].has_mark();
   const bool stood_as_stored = has_stored && (begin == 0 || NumberOf(journal[begin - 1]) <= stored);
