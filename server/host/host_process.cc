@@ -43,8 +43,9 @@ using namespace std::chrono_literals;
 using google::protobuf::util::TimeUtil;
 using std::chrono::nanoseconds;
 
-constexpr nanoseconds kStatusMoving = 51ms, kStatusStanding = 1s;  // LIVE-3.16
-constexpr nanoseconds kTick = 10ms, kTickHeld = 50ms;  // of what moves; of a run that stands
+constexpr nanoseconds kStatusMoving = 51ms, kStatusStanding = 1s;   // LIVE-3.16
+constexpr nanoseconds kTick = kStatusMoving / 2, kTickHeld = 50ms;  // of a run; of one that stands
+constexpr nanoseconds kTickJogging = 10ms;                          // whose heartbeats are watched
 constexpr nanoseconds kIntentPatience = 500ms, kDurablePatience = 1s;  // LIVE-3.21
 constexpr nanoseconds kEndsWithoutServer = 60s, kRejoin = 200ms, kRestPatience = 10s;
 constexpr double kPreviewTime_s = 60.0;  // LIVE-6.01
@@ -542,7 +543,8 @@ class HostProcess {
       if (IsHeard()) longest = std::min(longest, rhythm_.due() - now);
       if (line_ != nullptr) longest = std::min(longest, lease_.next_renewal() - SinceBoot());
       if (machine_->run_open()) longest = std::min(longest, kTickHeld);
-      if (machine_->moves()) longest = std::min(longest, kTick);
+      const bool jogs = machine_->State() == v1::MACHINE_STATE_JOGGING;
+      if (machine_->moves()) longest = std::min(longest, jogs ? kTickJogging : kTick);
       if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
       for (const Waiting& key : keys_waiting_) longest = std::min(longest, key.until - now);
       if (handbox_due_) longest = std::min(longest, handbox_shown_at_ + kStatusMoving - now);
