@@ -15,9 +15,9 @@ constexpr std::chrono::seconds kConnectPatience{5};
 constexpr std::chrono::seconds kLastWords{2};
 constexpr int kAgain_ms = 100;
 // An empty message from time to time, which the server answers: each side knows that the other one
-// is there. Of a machine that stands and has no run open it is one behind each status: nothing is
-// to be held there when a server is lost, and waking four times a second is most of what its host
-// costs. LIVE-3.06, LIVE-3.12
+// is there. Of a machine that stands and has no run open it is the status, which is told every
+// second: nothing is to be held there when a server is lost, and waking four times a second is most
+// of what its host costs. LIVE-3.06, LIVE-3.12
 constexpr std::chrono::milliseconds kHeartbeat{250};
 constexpr std::chrono::milliseconds kHeartbeatAtRest{1200};
 
@@ -195,7 +195,8 @@ void HostLine::Write() {
     } else if (status_) {
       *message.mutable_status() = *std::exchange(status_, std::nullopt);
       const bool rested = std::exchange(rests, bridge::IsAtRest(message.status().state()));
-      if (rests || rested) next_heartbeat = Clock::now();
+      if (rests) next_heartbeat = Clock::now() + kHeartbeatAtRest;
+      if (rested && !rests) next_heartbeat = Clock::now();
     } else {
       continue;
     }

@@ -129,9 +129,12 @@ void Hosts::Receive(const HostLink& link, v1::HostRequest message) {
     host->heard = needs_.clock();
   }
   switch (message.message_case()) {
-    case v1::HostRequest::kStatus:
+    case v1::HostRequest::kStatus: {
+      const bool is_heartbeat = bridge::IsAtRest(message.status().state());
       TakeStatus(host, std::move(*message.mutable_status()));
+      if (is_heartbeat) AnswerHeartbeat(host, 0);
       break;
+    }
     case v1::HostRequest::kAnswer:
       TakeAnswer(host, std::move(*message.mutable_answer()));
       break;
@@ -150,17 +153,20 @@ void Hosts::Receive(const HostLink& link, v1::HostRequest message) {
     case v1::HostRequest::kHandBack:
       HandBack(host);
       break;
-    case v1::HostRequest::kHeartbeat: {
-      v1::HostResponse answer;
-      answer.mutable_heartbeat()->set_number(message.heartbeat().number());
-      host->link->Send(std::move(answer));
-      DropLate(host);
-      StoreEntries(host);  // what the store did not take a moment ago
+    case v1::HostRequest::kHeartbeat:
+      AnswerHeartbeat(host, message.heartbeat().number());
       break;
-    }
     default:
       break;
   }
+}
+
+void Hosts::AnswerHeartbeat(const HostPointer& host, std::int64_t number) {
+  v1::HostResponse answer;
+  answer.mutable_heartbeat()->set_number(number);
+  host->link->Send(std::move(answer));
+  DropLate(host);
+  StoreEntries(host);  // what the store did not take a moment ago
 }
 
 void Hosts::TakeStatus(const HostPointer& host, v1::MachineStatus status) {

@@ -138,6 +138,7 @@ class Hosts {
   void SendMemory(const HostPointer& host);
   void StoreEdit(const HostPointer& host, v1::HostEdit edit);
   void TakePanel(const HostPointer& host, v1::HandboxPanel panel);
+  void AnswerHeartbeat(const HostPointer& host, std::int64_t number);
   void TakeStatus(const HostPointer& host, v1::MachineStatus status);
   void TakeAnswer(const HostPointer& host, v1::HostOrderAnswer answer);
   void TakeEntries(const HostPointer& host, const v1::HostEntries& entries);

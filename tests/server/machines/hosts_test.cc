@@ -462,6 +462,16 @@ TEST_F(HostsTest, AHeartbeatIsAnswered) {
   EXPECT_EQ(link->Newest(v1::HostResponse::kHeartbeat)->heartbeat().number(), 7);
 }
 
+// LIVE-3.06, LIVE-3.12: the status of a machine that stands is its heartbeat; of one that moves,
+// which has others, it is none.
+TEST_F(HostsTest, AStatusAtRestIsAnswered) {
+  const auto link = Joined();
+  Tell(*link, v1::MACHINE_STATE_RUNNING);
+  EXPECT_FALSE(link->Newest(v1::HostResponse::kHeartbeat));
+  Tell(*link, v1::MACHINE_STATE_IDLE);
+  EXPECT_TRUE(link->Newest(v1::HostResponse::kHeartbeat));
+}
+
 // LIVE-3.05: a host whose lease was given away is told so, and nothing of it is stored.
 TEST_F(HostsTest, WhoHasLostItsLeaseStoresNothing) {
   const auto link = Joined();
