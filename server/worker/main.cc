@@ -1,3 +1,4 @@
+#include <absl/synchronization/mutex.h>
 #include <signal.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
@@ -141,6 +142,8 @@ int main(int argc, char** argv) {
       !log)
     return 69;
   ::signal(SIGPIPE, SIG_IGN);
+  // As in the server: the packaged absl would keep the order of all locks that are held.
+  absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
   // Only noted: the job is handed back by the thread that works on it.
   struct sigaction action {};
   action.sa_handler = [](int) { stopping = true; };
@@ -156,8 +159,8 @@ int main(int argc, char** argv) {
     if (!made) spdlog::error("{}", bridge::ErrorText(made.error()));
     code = made ? 0 : 1;
   } else if (hosts) {
-    // gRPC looks every few seconds after lines that nobody reads; each line here has its reader, and
-    // the timer is a third of what a machine that stands costs. LIVE-10.20
+    // gRPC looks every few seconds after lines that nobody reads; each line here has its reader,
+    // and the timer is a third of what a machine that stands costs. LIVE-10.20
     ::setenv("GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS", "0", 0);
     code = RunHost({.server = options.servers.front(),
                     .join_token = token,
