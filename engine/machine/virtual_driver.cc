@@ -49,7 +49,7 @@ Progress VirtualDriver::Pump(SimTime clock) {
     Anchor(clock);
     return Progress::kReached;
   }
-  if (slept > kMadeUp && Moves()) {
+  if (slept > kTurn + kMadeUp && Moves()) {
     GiveUp(LateAt(clock), clock);
     return Progress::kReached;
   }

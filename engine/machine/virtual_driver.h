@@ -15,6 +15,8 @@ class VirtualDriver final : public MachineDriver {
   static constexpr double kFactorMin = 0.1;
   static constexpr double kFactorMax = 100.0;
   static constexpr SimTime kMadeUp = std::chrono::milliseconds(100);
+  // Whoever drives what moves may sleep so long between two calls: that is not late.
+  static constexpr SimTime kTurn = std::chrono::microseconds(25'500);
 
   // The time of the machine goes on from here.
   VirtualDriver(std::unique_ptr<Machine> machine, SimTime clock);

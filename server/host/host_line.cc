@@ -166,7 +166,10 @@ void HostLine::SendStatus(v1::MachineStatus status) {
 
 void HostLine::Read() {
   v1::HostResponse message;
-  while (stream_->line->Read(&message)) heard_(std::move(message));
+  while (stream_->line->Read(&message)) {
+    answers_ = true;
+    heard_(std::move(message));
+  }
   gone_();
   const std::lock_guard lock(mutex_);
   read_all_ = true;
@@ -195,8 +198,10 @@ void HostLine::Write() {
     } else if (status_) {
       *message.mutable_status() = *std::exchange(status_, std::nullopt);
       const bool rested = std::exchange(rests, bridge::IsAtRest(message.status().state()));
-      if (rests) next_heartbeat = Clock::now() + kHeartbeatAtRest;
-      if (rested && !rests) next_heartbeat = Clock::now();
+      // A server that does not know a status for a heartbeat gets one.
+      if (rests || rested)
+        next_heartbeat = Clock::now() + (rests && answers_.exchange(false) ? kHeartbeatAtRest
+                                                                           : Clock::duration(0));
     } else {
       continue;
     }

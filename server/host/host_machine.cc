@@ -391,7 +391,8 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   const bool left = mode == machine::Mode::kRemote && machine().status().mode != mode;
   if (key != nullptr && left && !job_.empty()) held_for_ = v1::HOLD_REASON_MODE;
   mark_due_ = true;
-  // A crash from here on finds a run that was cut off, however soon it comes.
+  // A crash from here on finds a run that was cut off, however soon it comes; one of a job where
+  // the store knows of it.
   begins_ = begins_ || starts;
   return {};
 }
@@ -406,9 +407,16 @@ v1::HostOrderAnswer HostMachine::Refuse(const Error& error) const {
   return answer;
 }
 
-void HostMachine::GoOnTo(const HostTime& now) {
+// What halts it is not put off by the store; it has not moved then. LIVE-5.04
+machine::Progress HostMachine::Pump(const HostTime& now) {
   now_ = now;
-  driver_->Pump(now.steady);
+  driver_->Wait(waits_for_store() && machine().state() == machine::MachineState::kRunning,
+                now.steady);
+  return driver_->Pump(now.steady);
+}
+
+void HostMachine::GoOnTo(const HostTime& now) {
+  static_cast<void>(Pump(now));
   LetKeysGo(now);
   if (const auto on_loss = desk_.Expire(now)) LoseControl(*on_loss, now);
   arms_.Expire(desk_.lease() ? desk_.lease()->number() : 0, memory_changes(), now);
@@ -417,11 +425,7 @@ void HostMachine::GoOnTo(const HostTime& now) {
 }
 
 bool HostMachine::GoOn(const HostTime& now) {
-  now_ = now;
-  // What halts it is not put off; it has not moved then.
-  driver_->Wait(begin_stored_by_ > 0 && machine().state() == machine::MachineState::kRunning,
-                now.steady);
-  const machine::Progress progress = driver_->Pump(now.steady);
+  const machine::Progress progress = Pump(now);
   GoOnTo(now);
   return progress == machine::Progress::kReached;
 }
@@ -528,17 +532,6 @@ void HostMachine::Notice() {
     slipped.set_virtual_time_ns(status.time.count());
     slipped.set_lost_ns(lost.count());
   }
-}
-
-void HostMachine::TellControl() {
-  const std::optional<v1::ControlChanged> change = desk_.TakeChange();
-  if (!change) return;
-  v1::InputApplied& applied = *Add(machine().time()).mutable_applied();
-  applied.set_fence(setup_.fence);
-  applied.set_virtual_time_ns(machine().time().count());
-  *applied.mutable_input()->mutable_control() = *change;
-  applied.set_caller(change->to().empty() ? change->from() : change->to());
-  applied.set_control_lease(change->lease());
 }
 
 v1::MachineState HostMachine::State() const {

@@ -90,6 +90,8 @@ class HostMachine : private machine::RunObserver {
   void NoteStored(std::int64_t sequence) {
     if (sequence >= begin_stored_by_) begin_stored_by_ = 0;
   }
+  // Of a job that has begun here, and perhaps not in the store.
+  bool waits_for_store() const { return begin_stored_by_ > 0; }
   // Comes to rest, and holds a run with this reason.
   void Hold(v1::HoldReason reason, const HostTime& now);
   // The host ends in order: a run that is open ends with it. LIVE-5.09
@@ -177,6 +179,7 @@ class HostMachine : private machine::RunObserver {
   v1::HostOrderAnswer Refuse(const Error& error) const;
   void Remember(const std::string& request_id, const v1::HostOrderAnswer& answer);
   void GoOnTo(const HostTime& now);
+  machine::Progress Pump(const HostTime& now);
   void Notice();
   void TellOver(const machine::RunOver& run);
   void TellControl();
@@ -241,11 +244,8 @@ class HostMachine : private machine::RunObserver {
   SimTime told_until_{0};  // of the newest entry
   std::optional<v1::LastRun> last_run_{};
   std::int64_t begin_stored_by_ = 0;  // the entry that the run of a job waits for; 0: none
-  std::uint64_t halts_before_begin_ = 0;
-  bool continues_ = false;  // it goes on where another was cut off
   bool inspect_due_ = false;
-  bool ended_ = false;       // by EndRun(): of the run that is open nothing more is told
-  bool given_back_ = false;  // likewise: nothing of it has moved
+  bool ended_ = false;  // by EndRun(): of the run that is open nothing more is told
   bool mark_due_ = true;
   bool begins_ = false;                 // a run began since the last mark
   std::string job_{};                   // "jobs/17": whose run is open, or begins; empty: nobody's

@@ -61,7 +61,7 @@ Result<std::optional<machine::StoredProgram>> HostMachine::ProgramOfJob(
 
 // The queue has control for it, where nobody has. LIVE-4.05
 Status HostMachine::RunJob(const v1::HostOrder& order, const HostTime& now) {
-  // Behind the intent, also where nothing begins: a crash later on finds no open one.
+  // Behind the intent, also where nothing begins: a crash later on finds no job that was to begin.
   mark_due_ = true;
   if (auto why = WhyNoJob(order.caller()); !why.empty()) return std::move(why.front());
   if (const Status may = MayStartJob(order, order.run_job()); !may) return may.error();
@@ -147,8 +147,6 @@ void HostMachine::BeginsJob(const v1::WorkerAssignment& assignment, const HostTi
   begun_jobs_.push_back(job_);
   if (begun_jobs_.size() > kJobsKnown) begun_jobs_.pop_front();
   begin_stored_by_ = sequence_;
-  halts_before_begin_ = halts_;
-  continues_ = !assignment.job().continues().empty();
   if (desk_.lease()) return;
   const v1::ControlLease::OnLoss asked = assignment.job().run().on_loss();
   desk_.GiveToQueue(job_, asked != v1::ControlLease::ON_LOSS_UNSPECIFIED ? asked : armed_on_loss,
@@ -185,7 +183,7 @@ Status HostMachine::BeginJobAtStep(const v1::HostOrder& order, const HostTime& n
     const auto& stored = machine().memory().programs;
     const auto found = stored.find(assignment.main_program());
     if (one) return *one->object;
-    return found != stored.end() ? *found->second.object : std::string();
+    return found != stored.end() ? *found->second.object : std::string_view();
   };
   const bool same = object(*brought) == object(start->brought);
   if (start->program != assignment.main_program() || !same ||
@@ -322,6 +320,8 @@ void HostMachine::EndRun(const HostTime& now) {
   now_ = now;
   const machine::MachineStatus status = machine().status();
   if (!status.open || status.open->by_hand || ended_) return;
+  // Whether it has begun the store knows, and by it the next host. LIVE-5.20
+  if (waits_for_store()) return;
   v1::MachineMark where;
   where.set_virtual_time_ns(status.time.count());
   where.set_run_time_ns(status.run.time.count());
@@ -329,13 +329,7 @@ void HostMachine::EndRun(const HostTime& now) {
   where.set_job(job_);
   where.mutable_base()->set_program(status.open->program);
   cut_off_base_ = BaseNow();
-  // It waits for the store, and nobody has halted it: its job begins anew. One that goes on where
-  // another was cut off is a person's to begin. LIVE-5.20
-  given_back_ = begin_stored_by_ > 0 && halts_ == halts_before_begin_ && !continues_;
-  const auto last_run = last_run_;
   TellCutOff(where, ErrorCode::kCellHostStopped);
-  entries_.back().set_given_back(given_back_);
-  if (given_back_) last_run_ = last_run;
   ended_ = true;
 }
 

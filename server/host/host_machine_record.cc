@@ -38,13 +38,11 @@ v1::MachineMark HostMachine::MarkNow() const {
   mark.set_control_lease(desk_.number());
   if (driver_->factor() != 1.0) mark.set_factor(driver_->factor());
   if (last_run_) *mark.mutable_last_run() = *last_run_;
-  const bool cut_off = inspect_due_ || (ended_ && !given_back_);
-  if (cut_off) {
+  if (inspect_due_ || ended_) {
     mark.set_job(inspect_job_);
     if (cut_off_base_) *mark.mutable_base() = *cut_off_base_;
   }
-  const bool open = status.open && !ended_;
-  if (open) {
+  if (status.open && !ended_) {
     mark.set_run_time_ns(status.run.time.count());
     mark.set_job(job_);
     *mark.mutable_place() = bridge::ToProto(status.run.place);
@@ -55,7 +53,7 @@ v1::MachineMark HostMachine::MarkNow() const {
   // What is moved by hand is no run that could be cut off (LIVE-5.20); a FUNCTION may cut.
   const bool moved =
       status.open && status.open->by_hand && status.open->hand != machine::HandRun::kFunction;
-  mark.set_clean((!open || moved) && !cut_off);
+  mark.set_clean((!status.open || moved) && !inspect_due_ && !ended_);
   return mark;
 }
 
@@ -143,17 +141,28 @@ void HostMachine::TellOver(const machine::RunOver& run) {
 // The store keeps them with the end of the run; what is too much for one entry is made again by the
 // next run. LIVE-5.07
 void HostMachine::AddMadeExecutables(v1::JournalEntry& entry) {
-  constexpr std::size_t kBytesMax = std::size_t{1} << 20;
+  constexpr std::size_t kExecutablesMax = std::size_t{1} << 20;
   std::size_t bytes = 0;
   for (machine::MadeExecutable& made : machine().TakeMadeExecutables()) {
     const auto revision = revisions_.find(made.slot);
     bytes += made.bytes.size();
-    if (revision == revisions_.end() || bytes > kBytesMax) continue;
+    if (revision == revisions_.end() || bytes > kExecutablesMax) continue;
     v1::LinkedExecutable& executable = *entry.add_executables();
     executable.set_slot(made.slot);
     executable.set_object_revision(revision->second);
     executable.set_content(std::move(made.bytes));
   }
+}
+
+void HostMachine::TellControl() {
+  const std::optional<v1::ControlChanged> change = desk_.TakeChange();
+  if (!change) return;
+  v1::InputApplied& applied = *Add(machine().time()).mutable_applied();
+  applied.set_fence(setup_.fence);
+  applied.set_virtual_time_ns(machine().time().count());
+  *applied.mutable_input()->mutable_control() = *change;
+  applied.set_caller(change->to().empty() ? change->from() : change->to());
+  applied.set_control_lease(change->lease());
 }
 
 void HostMachine::OnHalt(const machine::Halt& halt) {

@@ -43,9 +43,8 @@ using namespace std::chrono_literals;
 using google::protobuf::util::TimeUtil;
 using std::chrono::nanoseconds;
 
-constexpr nanoseconds kStatusMoving = 51ms, kStatusStanding = 1s;   // LIVE-3.16
-constexpr nanoseconds kTick = kStatusMoving / 2, kTickHeld = 50ms;  // of a run; of one that stands
-constexpr nanoseconds kTickJogging = 10ms;                          // whose heartbeats are watched
+constexpr nanoseconds kStatusMoving = 51ms, kStatusStanding = 1s;  // LIVE-3.16
+constexpr nanoseconds kTickHeld = 50ms, kTickJogging = 10ms;       // of a run that stands, of a jog
 constexpr nanoseconds kIntentPatience = 500ms, kDurablePatience = 1s;  // LIVE-3.21
 constexpr nanoseconds kEndsWithoutServer = 60s, kRejoin = 200ms, kRestPatience = 10s;
 constexpr double kPreviewTime_s = 60.0;  // LIVE-6.01
@@ -230,7 +229,10 @@ class HostProcess {
     if (machine_ != nullptr) return machine_->Change(memory, now);
     if (!memory.whole() || !welcome_) return;
     auto opened = OpenMachine(*welcome_, options_, name_, now);
-    if (!opened) return Fail(opened.error());
+    if (!opened) {
+      spdlog::error("{}: {}", options_.machine, bridge::ErrorText(opened.error()));
+      return Quit(69);
+    }
     machine_ = std::move(opened->machine);
     writer_ = std::make_unique<JournalWriter>(std::move(opened->journal));
     durable_at_ = now.steady;
@@ -470,7 +472,8 @@ class HostProcess {
     if (ending_at_) machine_->Hold(v1::HOLD_REASON_STOP, now);  // whatever began meanwhile
     if (lost_until_) machine_->Hold(v1::HOLD_REASON_MACHINE_LEASE, now);
     if (lost_until_ && (!machine_->moves() || now.steady >= *lost_until_)) return GiveUp(now);
-    if (ending_at_ && (!machine_->moves() || now.steady >= *ending_at_)) HandBack(now);
+    const bool rests = !machine_->moves() && !machine_->waits_for_store();
+    if (ending_at_ && (rests || now.steady >= *ending_at_)) HandBack(now);
   }
 
   // Another host has the machine: this one brakes, and touches nothing any more. LIVE-3.05
@@ -528,11 +531,6 @@ class HostProcess {
     Quit(0);
   }
 
-  void Fail(const Error& error) {
-    spdlog::error("{}: {}", options_.machine, bridge::ErrorText(error));
-    Quit(69);
-  }
-
   void Quit(int code) { ended_ = true, exit_code_ = code; }
 
   void Rest() {
@@ -544,7 +542,8 @@ class HostProcess {
       if (line_ != nullptr) longest = std::min(longest, lease_.next_renewal() - SinceBoot());
       if (machine_->run_open()) longest = std::min(longest, kTickHeld);
       const bool jogs = machine_->State() == v1::MACHINE_STATE_JOGGING;
-      if (machine_->moves()) longest = std::min(longest, jogs ? kTickJogging : kTick);
+      if (machine_->moves())
+        longest = std::min(longest, jogs ? kTickJogging : machine::VirtualDriver::kTurn);
       if (const auto look = machine_->next_look()) longest = std::min(longest, *look - now);
       for (const Waiting& key : keys_waiting_) longest = std::min(longest, key.until - now);
       if (handbox_due_) longest = std::min(longest, handbox_shown_at_ + kStatusMoving - now);

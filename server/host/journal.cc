@@ -187,6 +187,13 @@ void Journal::Stored(std::int64_t fence, std::int64_t sequence) {
   bytes_ -= moved;
 }
 
+Status Journal::Clear() {
+  if (const Status done = Rewrite({}); !done) return done.error();
+  places_.clear();
+  bytes_ = 0;
+  return {};
+}
+
 // Beside the old one, which stays until the new one is on the disk.
 Status Journal::Rewrite(std::string_view records) {
   const std::string made = path_ + ".new";

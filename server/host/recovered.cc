@@ -25,40 +25,46 @@ using Number = std::pair<std::int64_t, std::int64_t>;  // fence, sequence
 
 Number NumberOf(const v1::JournalEntry& entry) { return {entry.fence(), entry.sequence()}; }
 
-// That of a job; what it leads to is told behind it.
-bool IsOfStart(const v1::JournalEntry& entry) {
+// What a job begins with, or what nobody did: the queue has control, a host comes to rest.
+bool IsOfBegin(const v1::JournalEntry& entry) {
+  if (entry.has_run_over()) return false;
   if (entry.has_answered())
     return entry.answered().kind() == v1::HostOrder::kRunJob ||
            entry.answered().kind() == v1::HostOrder::kContinueJob;
-  return entry.applied().input().has_start();
+  const v1::AppliedInput& input = entry.applied().input();
+  return !entry.has_applied() || input.has_start() || input.has_control() ||
+         entry.applied().caller().empty();
 }
 
-// How many of them came to pass, from the first: those up to the newest mark. Where that is of a
-// job that the store has not begun, up to the mark before: nothing of it has moved, so it waits
-// again, as long as nothing else acted since. LIVE-5.04, 5.20
-std::size_t CountOfThoseThatHold(std::span<const v1::JournalEntry> journal, const Number& stored,
-                                 bool has_stored) {
+struct Begin {
+  std::string job;
+  std::size_t first = 0;  // its first entry, behind a mark
+  bool begun = false;     // and not only about to
+};
+
+// The job that a host was about to begin when it ended, or had begun: as long as the store does not
+// have that, nothing of it has moved (LIVE-5.04). Nothing: there is none, or somebody has done
+// something since, which is not to be lost with it. LIVE-5.20
+std::optional<Begin> BeginIn(std::span<const v1::JournalEntry> journal) {
   std::size_t count = journal.size();
   while (count > 0 && !journal[count - 1].has_mark()) --count;
-  if (count == 0) return 0;
-  const auto told = [&](std::size_t place) {
-    return NumberOf(journal[place]) > stored &&
-           journal[place].fence() == journal[count - 1].fence();
-  };
-  std::size_t begin = count;
-  do {
-    if (begin == 0 || !told(begin - 1) || journal[begin - 1].has_run_over()) return count;
-    --begin;
-  } while (journal[begin].run_begun().job().empty());
-  while (begin > 0 && told(begin - 1) && !journal[begin - 1].has_mark()) --begin;
-  const bool acted =
-      std::ranges::any_of(journal.subspan(begin, count - begin), [](const v1::JournalEntry& entry) {
-        return entry.has_run_over() ||
-               ((entry.has_applied() || entry.has_answered()) && !IsOfStart(entry));
-      });
-  const bool stood = begin > 0 && journal[begin - 1].has_mark();
-  const bool stood_as_stored = has_stored && (begin == 0 || NumberOf(journal[begin - 1]) <= stored);
-  return !acted && (stood || stood_as_stored) ? begin : count;
+  for (const v1::JournalEntry& entry : journal.subspan(count)) {
+    const std::string& job = entry.intent().input().start().job();
+    if (!job.empty()) return Begin{.job = job, .first = count};
+  }
+  std::size_t begun = count;
+  while (begun > 0 && journal[begun - 1].fence() == journal[count - 1].fence() &&
+         journal[begun - 1].run_begun().job().empty())
+    --begun;
+  if (begun == 0 || journal[begun - 1].run_begun().job().empty()) return std::nullopt;
+  std::size_t first = begun - 1;
+  while (first > 0 && !journal[first - 1].has_mark() &&
+         journal[first - 1].fence() == journal[begun - 1].fence())
+    --first;
+  const bool stood = first == 0 || journal[first - 1].has_mark();
+  if (!stood || !std::ranges::all_of(journal.subspan(first, count - first), IsOfBegin))
+    return std::nullopt;
+  return Begin{.job = journal[begun - 1].run_begun().job(), .first = first, .begun = true};
 }
 
 }  // namespace
@@ -67,7 +73,9 @@ Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalE
   Recovered found{.known = welcome.has_mark(), .mark = welcome.mark()};
   const Number stored{welcome.mark().fence(), welcome.mark().sequence()};
   Number newest = stored;
-  journal.resize(CountOfThoseThatHold(journal, stored, found.known));
+  const auto begin = BeginIn(journal);
+  const bool stood = begin && begin->begun && (begin->first > 0 || found.known);
+  if (stood && NumberOf(journal[begin->first]) > stored) journal.resize(begin->first);
   for (const v1::JournalEntry& entry : journal) {
     if (!entry.has_mark() || (found.known && NumberOf(entry) <= newest)) continue;
     found.known = true;
@@ -102,15 +110,27 @@ Result<std::string> KeepOfEarlierHost(const v1::HostWelcome& welcome,
 void AddNewestMark(const std::string& journal, v1::HostHello& hello) {
   const Result<Journal::Found> opened = Journal::Open(journal);
   if (!opened) return;  // OpenMachine says why
-  const auto newest = std::ranges::find_if(opened->entries.rbegin(), opened->entries.rend(),
-                                           [](const auto& entry) { return entry.has_mark(); });
-  if (newest == opened->entries.rend()) return;
-  v1::MachineMark& mark = *hello.mutable_journal_mark();
-  mark = newest->mark();
-  mark.set_fence(newest->fence());
-  mark.set_sequence(newest->sequence());
-  mark.clear_state();
-  mark.clear_base();
+  const auto newest_of = [](std::span<const v1::JournalEntry> entries, v1::MachineMark& mark) {
+    const auto newest = std::ranges::find_if(entries.rbegin(), entries.rend(),
+                                             [](const auto& entry) { return entry.has_mark(); });
+    if (newest == entries.rend()) return false;
+    mark = newest->mark();
+    mark.set_fence(newest->fence());
+    mark.set_sequence(newest->sequence());
+    mark.clear_state();
+    mark.clear_base();
+    return true;
+  };
+  const std::span<const v1::JournalEntry> entries = opened->entries;
+  if (v1::MachineMark mark; newest_of(entries, mark))
+    *hello.mutable_journal_mark() = std::move(mark);
+  const auto begin = BeginIn(entries);
+  if (!begin) return;
+  hello.mutable_begin()->set_job(begin->job);
+  hello.mutable_begin()->set_fence(entries[begin->first].fence());
+  hello.mutable_begin()->set_sequence(entries[begin->first].sequence());
+  if (v1::MachineMark mark; newest_of(entries.first(begin->first), mark))
+    *hello.mutable_begin()->mutable_mark() = std::move(mark);
 }
 
 HostMachine::Setup SetupOf(Recovered found) {
@@ -155,14 +175,17 @@ Result<OpenedMachine> OpenMachine(const v1::HostWelcome& welcome, const HostOpti
   if (journal->torn_bytes > 0)
     spdlog::warn("{}: {} bytes at its end were torn", options.journal, journal->torn_bytes);
   const auto orphan = KeepOfEarlierHost(welcome, journal->entries, options.journal);
-  if (!orphan) return orphan.error();
-  if (!orphan->empty())
-    spdlog::warn("{}", bridge::ErrorText(
-                           Error{ErrorCode::kCellMachineTaken,
-                                 "another host had the machine since: what one told here before is "
-                                 "kept in " +
-                                     *orphan,
-                                 {}}));
+  if (!orphan) spdlog::error("{}", bridge::ErrorText(orphan.error()));
+  if (orphan && !orphan->empty()) {
+    spdlog::warn("{}", bridge::ErrorText(Error{
+                           ErrorCode::kCellMachineTaken,
+                           "another host had the machine since: what one told here before, and "
+                           "the log may have, is kept in " +
+                               *orphan,
+                           {}}));
+    // Once is enough.
+    if (const Status cleared = journal->journal->Clear(); !cleared) return cleared.error();
+  }
   Recovered found = RecoveredFrom(welcome, std::move(journal->entries));
   auto recording = RecoverRecording(found, RecordingFile::PathBeside(options.journal));
   HostMachine::Setup setup = SetupOf(std::move(found));

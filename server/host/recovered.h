@@ -29,7 +29,7 @@ Result<std::string> KeepOfEarlierHost(const v1::HostWelcome& welcome,
                                       const std::vector<v1::JournalEntry>& entries,
                                       const std::string& journal);
 
-// That of this journal, without the state, where it has one.
+// That of this journal, without the state, where it has one, and the job that was about to begin.
 void AddNewestMark(const std::string& journal, v1::HostHello& hello);
 
 // All that a host takes over of it.

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "rmlcell/v1/cell.pb.h"
 #include "server/base/names.h"
 #include "server/machines/host_words.h"
 #include "server/records/job_messages.h"
@@ -74,7 +75,6 @@ class Entries {
       if (const auto event = JobEventOf(entry)) write_.job_events.push_back(ToRecord(*event));
     }
     if (ends && job_lease_) end_ = entry.run_over().outcome();
-    if (ends) given_back_ = entry.given_back();
     for (const v1::LinkedExecutable& made : entry.executables()) {
       made_.push_back({made.slot(), made.object_revision(), made.content()});
     }
@@ -96,17 +96,7 @@ class Entries {
 
  private:
   Status Put(const std::optional<v1::Outcome>& end, storage::MachineWrite write) {
-    if (end && !given_back_) return Finish(*end, std::move(write));
-    if (const Status written = Append(std::move(write)); !written || !end) return written;
-    const storage::Lease job = *std::exchange(job_lease_, std::nullopt);
-    job_.clear();
-    // What was written must not be written again for it: where it fails, the next host gives it
-    // back (GiveBackUnbegun).
-    static_cast<void>(GiveBack(store_, job, "the host of the machine ended before it moved"));
-    return {};
-  }
-
-  Status Append(storage::MachineWrite write) {
+    if (end) return Finish(*end, std::move(write));
     if (write.events.empty() && write.job_events.empty() && !write.mark) return {};
     if (!write.job_events.empty()) write.job = job_lease_;
     if (const Status written = store_.AppendMachine(lease_, write); !written)
@@ -157,7 +147,6 @@ class Entries {
   std::string job_{};
   std::optional<storage::Lease> job_lease_{};
   std::optional<v1::Outcome> end_{};
-  bool given_back_ = false;                     // it is none: the job waits again
   std::vector<storage::NewExecutable> made_{};  // by runs that are over
   std::size_t added_ = 0;
   std::size_t stored_ = 0;
@@ -175,6 +164,22 @@ StoredEntries StoreEntries(storage::Store& store, const storage::MachineLease& l
   const Status written = all.Write();
   return {.count = all.stored(), .how = written};
 }
+
+namespace {
+
+// One that goes on where another was cut off is over: a person decides that again.
+Status GiveBackUnbegun(storage::Store& store, const storage::Lease& lease, bool held) {
+  const auto job = store.GetJob(lease.job);
+  if (!job) return job.error();
+  v1::Job asked;
+  if (!asked.ParseFromString(job->specification) || asked.continues().empty())
+    return GiveBack(store, lease, "the host of the machine ended before it began", held);
+  const auto ended =
+      store.Finish(lease, {.outcome = storage::CancelledOutcome(), .events = {CancelledEvent()}});
+  return ended ? Status() : Status(ended.error());
+}
+
+}  // namespace
 
 Status GiveBack(storage::Store& store, const storage::Lease& lease, const std::string& why,
                 bool held) {
@@ -212,7 +217,8 @@ Status EndWithoutHost(storage::Store& store, const std::string& machine) {
   return {};
 }
 
-Status GiveBackUnbegun(storage::Store& store, const std::string& machine, const std::string& host) {
+Status GiveBackUnbegun(storage::Store& store, const std::string& machine, const std::string& host,
+                       const std::string& begun) {
   const auto running = store.ListJobs({.machine = machine,
                                        .state = storage::JobState::kRunning,
                                        .kind = std::string(storage::kRunKind)});
@@ -221,7 +227,7 @@ Status GiveBackUnbegun(storage::Store& store, const std::string& machine, const 
     const auto lease = LeaseOf(store, JobName(job.id));
     if (!lease) return lease.error();
     if (!*lease || (*lease)->worker == host) continue;
-    const Status back = GiveBack(store, **lease, "the host of the machine died before it began");
+    const Status back = GiveBackUnbegun(store, **lease, JobName(job.id) == begun);
     if (!back && back.error().code != ErrorCode::kCellLeaseLost) return back.error();
   }
   return {};

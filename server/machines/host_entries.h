@@ -21,8 +21,11 @@ StoredEntries StoreEntries(storage::Store& store, const storage::MachineLease& l
                            std::span<const v1::JournalEntry> entries);
 
 // Of jobs that an earlier host of the machine was given: one that it had begun has been told by now
-// to be over; any other has moved nothing, and waits again. LIVE-5.20
-Status GiveBackUnbegun(storage::Store& store, const std::string& machine, const std::string& host);
+// to be over; any other has moved nothing, and waits again. `begun`: "jobs/17", which it had taken
+// and perhaps been told to stop; that one is held, and a person lets it go (LIVE-3.35). One that
+// goes on where another was cut off is over: that is decided again. LIVE-5.20
+Status GiveBackUnbegun(storage::Store& store, const std::string& machine, const std::string& host,
+                       const std::string& begun);
 
 // Of a machine that no host comes for any more: a job that ran there, or was given to its host, is
 // cut off where the newest mark has it, and nobody waits for it. A host that comes later may know

@@ -265,7 +265,7 @@ void Hosts::StoreEntries(const HostPointer& host) {
     const Status& stored = done.how;
     bool sends_again = false;
     if (done.how && host->fresh)
-      done.how = GiveBackUnbegun(needs_.store, host->id, host->lease.host);
+      done.how = GiveBackUnbegun(needs_.store, host->id, host->lease.host, host->begin.job());
     if (done.how) host->fresh = false;
     {
       const std::lock_guard lock(host->mutex);

@@ -54,15 +54,16 @@ v1::MachineMark MarkOf(const storage::MachineMark& stored) {
   return mark;
 }
 
-// Where the machine stands: by the store, or by what its host found beside it.
+// Where the machine stands: by the store, or by what its host found beside it; where the store does
+// not have what began there, as it was before.
 std::optional<v1::MachineMark> NewerOf(const std::optional<storage::MachineMark>& stored,
                                        const v1::HostHello& hello) {
   const auto mark = stored ? std::optional(MarkOf(*stored)) : std::nullopt;
-  if (!hello.has_journal_mark()) return mark;
-  const auto number = [](const v1::MachineMark& one) {
-    return std::pair(one.fence(), one.sequence());
-  };
-  return !mark || number(*mark) < number(hello.journal_mark()) ? hello.journal_mark() : mark;
+  const auto number = [](const auto& one) { return std::pair(one.fence(), one.sequence()); };
+  const bool unbegun = hello.has_begin() && (!mark || number(*mark) < number(hello.begin()));
+  const bool found = unbegun ? hello.begin().has_mark() : hello.has_journal_mark();
+  const v1::MachineMark& beside = unbegun ? hello.begin().mark() : hello.journal_mark();
+  return found && (!mark || number(*mark) < number(beside)) ? beside : mark;
 }
 
 }  // namespace
@@ -122,6 +123,9 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   host->heard = needs_.clock();
   host->here = IsOf(hello.host(), NameOfComputer());
   if (const Status welcome = Welcome(host, hello, *taken); !welcome) return welcome.error();
+  host->begin = hello.begin();
+  if (line_before != nullptr && line_before->lease.fence == host->lease.fence && !hello.has_begin())
+    host->begin = line_before->begin;
   // It may be more than up to the newest mark.
   if (line_before != nullptr && line_before->lease.fence == host->lease.fence)
     host->stored = std::max(host->stored, line_before->stored);
@@ -244,7 +248,6 @@ Status Hosts::Welcome(const HostPointer& host, const v1::HostHello& hello, const
   if (hello.fence() != host->lease.fence) {
     if (const Status told = TellRecovery(*host, taken, NewerOf(*mark, hello)); !told)
       return told.error();
-    host->fresh = true;
   } else {
     // One that stands says nothing more by itself; what it has to say comes before its first
     // status.

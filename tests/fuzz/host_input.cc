@@ -66,9 +66,9 @@ bool LosesMoreThanABegin(const std::vector<v1::JournalEntry>& entries, const Num
   bool begins = false;
   for (const v1::JournalEntry& entry : entries) {
     if (NumberOf(entry) <= from || NumberOf(entry) > until) continue;
-    const bool starts = entry.applied().input().has_start();
-    if (entry.has_run_over() || entry.has_answered() || (entry.has_applied() && !starts))
-      return true;
+    const v1::InputApplied& applied = entry.applied();
+    const bool counts = !applied.input().has_start() && !applied.caller().empty();
+    if (entry.has_run_over() || entry.has_answered() || counts) return true;
     begins = begins || !entry.run_begun().job().empty();
   }
   return !begins;
@@ -164,6 +164,7 @@ std::vector<v1::JournalEntry> EntriesOf(std::string_view bytes) {
           entry.mutable_applied()->mutable_input()->mutable_start()->set_job("jobs/17");
         } else {
           entry.mutable_applied()->mutable_input()->set_factor(byte(3));
+          if (byte(3) % 3 != 0) entry.mutable_applied()->set_caller("anna");
         }
     }
     bytes.remove_prefix(4);

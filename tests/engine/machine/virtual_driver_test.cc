@@ -98,6 +98,19 @@ TEST_F(VirtualDriverTest, NeverJumpsInARun) {
   EXPECT_EQ(Time(), 20.1);
 }
 
+// LIVE-3.14: 100 ms behind the time for which whoever drives it may sleep are made up for; more are
+// not.
+TEST_F(VirtualDriverTest, ItIsLateByWhatComesBehindASleep) {
+  Load("DELAY 10\n");
+  EXPECT_TRUE(driver->Start(Clock(20.0), {.program = 1}));
+  const SimTime begun = driver->machine().time();
+  driver->Pump(Clock(20.1255));
+  EXPECT_EQ(driver->machine().time(), begun + FromSeconds(0.1255));
+  driver->Pump(Clock(20.251) + SimTime(1));
+  EXPECT_EQ(driver->machine().time(), begun + FromSeconds(0.1255));
+  EXPECT_EQ(driver->TakeLost(), FromSeconds(0.1255) + SimTime(1));
+}
+
 // LIVE-5.04: as long as it waits its time stands, none of that is lost, and none is made up for.
 TEST_F(VirtualDriverTest, TimeThatItWaitsIsNoneOfIts) {
   Load("DELAY 10\n");

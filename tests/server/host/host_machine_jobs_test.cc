@@ -2,6 +2,7 @@
 // who has control meanwhile, and what is told of them.
 #include <utility>
 
+#include "server/host/recovered.h"
 #include "tests/server/host/host_machine_bed.h"
 
 namespace rmlcell::server {
@@ -369,26 +370,66 @@ TEST_F(HostJobsTest, AnOrderlyEndCutsTheRunOff) {
   EXPECT_EQ(mark.job(), "jobs/17");
 }
 
-// LIVE-5.20: where the store does not have its begin yet nothing has moved: its job waits again,
-// and the machine stands as before. One that somebody stopped meanwhile is cut off.
-TEST_F(HostJobsTest, AnOrderlyEndGivesBackWhatNeverMoved) {
-  for (const bool stopped : {false, true}) {
-    Make();
-    EXPECT_FALSE(host_->Do(Job(), now_).has_refusal());
-    Pass(1s, 50ms);
-    EXPECT_EQ(Status().run().run_time_ns(), 0);
-    if (stopped) host_->Do(Stop(), now_);
-    host_->Hold(v1::HOLD_REASON_STOP, now_);
-    host_->TakeEntries(now_, true);
-    host_->EndRun(now_);
-    const auto entries = host_->TakeEntries(now_, true);
-    ASSERT_TRUE(entries.front().has_run_over());
-    EXPECT_EQ(entries.front().given_back(), !stopped);
-    const v1::MachineMark& mark = entries.back().mark();
-    EXPECT_EQ(mark.clean(), !stopped);
-    EXPECT_FALSE(mark.has_run_time_ns());
-    EXPECT_EQ(mark.job(), stopped ? "jobs/17" : "");
-    EXPECT_EQ(mark.has_last_run(), stopped);
+// LIVE-5.04: nothing moves until the store has the begin, whatever else is asked meanwhile.
+TEST_F(HostJobsTest, NothingMovesBeforeTheStoreHasIt) {
+  Make();
+  EXPECT_FALSE(host_->Do(Job(), now_).has_refusal());
+  const std::int64_t begun = Status().virtual_time_ns();
+  for (int i = 0; i < 5; ++i) {
+    now_.steady += 50ms;
+    v1::HostOrder look;
+    look.mutable_run_state();
+    host_->Do(look, now_);
+  }
+  EXPECT_EQ(Status().virtual_time_ns(), begun);
+  EXPECT_TRUE(host_->waits_for_store());
+  host_->NoteStored(host_->TakeEntries(now_, true).back().sequence());
+  EXPECT_FALSE(host_->waits_for_store());
+  Pass(1s, 50ms);
+  EXPECT_GT(Status().virtual_time_ns(), begun);
+}
+
+// LIVE-5.20, first row: what a host that was killed then, or told to end, leaves in its journal is
+// taken back to the mark before, as long as the store does not have it and nobody has done
+// anything.
+TEST_F(HostJobsTest, WhatTheStoreHasNotBegunIsTakenBack) {
+  enum class End { kKilled, kToldTo, kStopped };
+  for (const bool controlled : {false, true}) {
+    for (const End end : {End::kKilled, End::kToldTo, End::kStopped}) {
+      Make();
+      if (controlled) Control();
+      std::vector<v1::JournalEntry> journal = host_->TakeEntries(now_, true);
+      ASSERT_TRUE(journal.back().has_mark());
+      const v1::MachineMark before = journal.back().mark();
+      v1::HostOrder order = Job();
+      if (controlled) order.set_caller("anna");
+      ASSERT_FALSE(host_->Do(order, now_).has_refusal());
+      const auto add = [&] {
+        for (v1::JournalEntry& entry : host_->TakeEntries(now_, true))
+          journal.push_back(std::move(entry));
+      };
+      add();
+      if (end == End::kStopped) {
+        v1::HostOrder stop = Stop();
+        stop.set_caller("berta");
+        host_->Do(stop, now_);
+      }
+      if (end == End::kToldTo) {
+        host_->Hold(v1::HOLD_REASON_STOP, now_);
+        host_->EndRun(now_);
+      }
+      add();
+      v1::HostWelcome welcome;
+      *welcome.mutable_mark() = before;
+      const Recovered found = RecoveredFrom(welcome, journal);
+      const bool stopped = end == End::kStopped;
+      EXPECT_EQ(found.mark.sequence() == before.sequence(), !stopped);
+      EXPECT_EQ(SetupOf(found).cut_off, stopped);
+      EXPECT_EQ(found.untold.empty(), !stopped);
+      // The store has it: it is cut off.
+      *welcome.mutable_mark() = journal.back().mark();
+      EXPECT_TRUE(SetupOf(RecoveredFrom(welcome, journal)).cut_off);
+    }
   }
 }
 

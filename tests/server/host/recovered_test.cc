@@ -157,6 +157,7 @@ TEST(Recovered, AJobThatMayHaveMovedIsCutOff) {
   EXPECT_TRUE(SetupOf(RecoveredFrom(begun, Behind({Mark(1)}, Begin(2)))).cut_off);
   v1::JournalEntry stop = Entry(6);
   stop.mutable_applied()->mutable_input()->set_stop(v1::HOLD_REASON_STOP);
+  stop.mutable_applied()->set_caller("anna");
   v1::JournalEntry held = Begin(4).back();  // number 7
   const auto journal = Behind(Behind({Mark(1)}, Begin(2)), {stop, held});
   const HostMachine::Setup stopped = SetupOf(RecoveredFrom(Stored(1), journal));
@@ -169,6 +170,37 @@ TEST(Recovered, AJobThatMayHaveMovedIsCutOff) {
       RecoveredFrom(Stored(1), Behind(Behind({Mark(1)}, Begin(2)), {over, Mark(7)}));
   EXPECT_EQ(ended.mark.sequence(), 7);
   EXPECT_TRUE(std::ranges::any_of(ended.untold, &v1::JournalEntry::has_run_over));
+}
+
+// LIVE-3.27: behind a journal that was trimmed there are answers and no mark; they count on.
+TEST(Recovered, AnswersOutliveATrimmedJournal) {
+  v1::JournalEntry answer = Entry(3);
+  answer.mutable_answered()->set_request_id("once");
+  EXPECT_EQ(RecoveredFrom(Stored(5), {answer}).answered.size(), 1U);
+  EXPECT_EQ(RecoveredFrom(Stored(5), {answer, Intent(6, "jobs/17")}).answered.size(), 1U);
+}
+
+// LIVE-3.30, LIVE-5.20: the server is told of the job that was about to begin, and of the mark
+// before, to which the machine is taken back where the store does not have the begin.
+TEST(Recovered, TheServerHearsOfWhatWasAboutToBegin) {
+  const std::string path = testing::TempDir() + "/begins-" + std::to_string(getpid());
+  const auto hello_of = [&](const std::vector<v1::JournalEntry>& entries) {
+    std::remove(path.c_str());
+    EXPECT_TRUE(Journal::Open(path)->journal->Write(entries));
+    v1::HostHello hello;
+    AddNewestMark(path, hello);
+    return hello;
+  };
+  const v1::HostHello begun = hello_of(Behind({Mark(1)}, Begin(2)));
+  EXPECT_EQ(begun.journal_mark().sequence(), 5);
+  EXPECT_EQ(begun.begin().job(), "jobs/17");
+  EXPECT_EQ(begun.begin().sequence(), 2);
+  EXPECT_EQ(begun.begin().mark().sequence(), 1);
+  const v1::HostHello meant = hello_of({Mark(1), Intent(2, "jobs/17")});
+  EXPECT_EQ(meant.begin().job(), "jobs/17");
+  EXPECT_EQ(meant.begin().mark().sequence(), 1);
+  EXPECT_FALSE(hello_of({Mark(1), Intent(2, "jobs/17"), Mark(3)}).has_begin());
+  std::remove(path.c_str());
 }
 
 // What a host was about to tell when it died was told again by the next one, before its first mark;

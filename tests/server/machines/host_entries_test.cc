@@ -19,9 +19,10 @@ using testing::ElementsAre;
 
 class HostEntriesTest : public testing::Test {
  protected:
-  std::int64_t SubmitRun() {
+  std::int64_t SubmitRun(const std::string& continues = {}) {
     v1::Job job;
     job.set_kind(v1::JOB_KIND_RUN);
+    job.set_continues(continues);
     storage::NewJob made{.machine = "mill-1",
                          .kind = "RUN",
                          .specification = job.SerializeAsString(),
@@ -207,33 +208,37 @@ TEST_F(HostEntriesTest, WhatWasNotStoredIsToldApart) {
 TEST_F(HostEntriesTest, AJobThatNeverBeganWaitsAgain) {
   const std::int64_t job = SubmitRun();
   Acquire("hall/1");
-  ASSERT_TRUE(GiveBackUnbegun(bed.store(), "mill-1", "hall/1"));
+  ASSERT_TRUE(GiveBackUnbegun(bed.store(), "mill-1", "hall/1", {}));
   EXPECT_EQ(Must(bed.store().GetJob(job)).state, JobState::kRunning);
-  ASSERT_TRUE(GiveBackUnbegun(bed.store(), "optimo-1", "hall/2"));
+  ASSERT_TRUE(GiveBackUnbegun(bed.store(), "optimo-1", "hall/2", {}));
   EXPECT_EQ(Must(bed.store().GetJob(job)).state, JobState::kRunning);
-  ASSERT_TRUE(GiveBackUnbegun(bed.store(), "mill-1", "hall/2"));
+  ASSERT_TRUE(GiveBackUnbegun(bed.store(), "mill-1", "hall/2", {}));
   const storage::JobRecord back = Must(bed.store().GetJob(job));
   EXPECT_EQ(back.state, JobState::kQueued);
   EXPECT_EQ(back.attempts, 0);
   EXPECT_EQ(EventsOf(job).back().state(), v1::Job::STATE_QUEUED);
 }
 
-// LIVE-5.20, host told to end: a run that never moved is no end of its job.
-TEST_F(HostEntriesTest, AJobThatIsGivenBackWaitsAgain) {
-  const std::int64_t job = SubmitRun();
-  Acquire();
-  Add(job).mutable_run_begun()->set_job(JobName(job));
-  Over(job, v1::Outcome::KIND_INTERRUPTED, "CELL-E9432");
-  entries.back().set_given_back(true);
-  Mark(true);
-  const StoredEntries stored = StoreEntries(bed.store(), lease, entries);
-  ASSERT_TRUE(stored.how);
-  EXPECT_EQ(stored.count, entries.size());
-  const storage::JobRecord back = Must(bed.store().GetJob(job));
-  EXPECT_EQ(back.state, JobState::kQueued);
-  EXPECT_EQ(back.attempts, 0);
-  EXPECT_FALSE(back.held);
-  EXPECT_TRUE(Must(bed.store().GetMachineMark("mill-1"))->clean);
+// LIVE-5.20, LIVE-3.35: what the host before had on its disk it may have been told to stop: nobody
+// but a person begins it.
+TEST_F(HostEntriesTest, AJobThatAHostHadWaitsHeld) {
+  for (const bool had : {false, true}) {
+    const std::int64_t job = SubmitRun();
+    Acquire("hall/1");
+    ASSERT_TRUE(GiveBackUnbegun(bed.store(), "mill-1", "hall/2", had ? JobName(job) : "jobs/99"));
+    const storage::JobRecord back = Must(bed.store().GetJob(job));
+    EXPECT_EQ(back.state, JobState::kQueued);
+    EXPECT_EQ(back.held, had);
+    Must(bed.store().RequestCancel(job, {}));
+  }
+}
+
+// LIVE-5.10: one that was to go on where another was cut off is decided about again.
+TEST_F(HostEntriesTest, AJobThatGoesOnElsewhereIsCancelled) {
+  const std::int64_t job = SubmitRun("jobs/7");
+  Acquire("hall/1");
+  ASSERT_TRUE(GiveBackUnbegun(bed.store(), "mill-1", "hall/2", JobName(job)));
+  EXPECT_EQ(Must(bed.store().GetJob(job)).state, JobState::kCancelled);
 }
 
 // LIVE-3.01, LIVE-5.08: where no host comes any more the job is cut off where the newest mark has

@@ -361,6 +361,39 @@ TEST_F(HostsTest, TheMarkOfTheJournalMayBeNewer) {
   EXPECT_EQ(Told().back().recovered().seen_until_ns(), 99);
 }
 
+// LIVE-3.30, LIVE-5.20: a mark behind a begin that the store does not have is none; behind one that
+// it has it counts.
+TEST_F(HostsTest, TheMarkBehindABeginCountsWhereTheStoreHasIt) {
+  const auto link = Joined();
+  const std::int64_t fence = Fence(*link);
+  hosts.Receive(*link, Entries(fence, 1, false));  // up to number 2, at 77 ns
+  EXPECT_TRUE(Eventually([&] { return !Told().empty(); }));
+  hosts.Leave(*link);
+  v1::HostHello hello = Hello("other/2");
+  EXPECT_EQ(Refused(hello), ErrorCode::kCellMachineTaken);
+  v1::MachineMark& mark = *hello.mutable_journal_mark();
+  mark.set_fence(fence);
+  mark.set_sequence(6);
+  mark.set_virtual_time_ns(91);
+  v1::HostBegin& begin = *hello.mutable_begin();
+  begin.set_job("jobs/17");
+  begin.set_fence(fence);
+  begin.set_sequence(5);
+  begin.mutable_mark()->set_fence(fence);
+  begin.mutable_mark()->set_sequence(4);
+  begin.mutable_mark()->set_virtual_time_ns(80);
+  clock.Advance(Hosts::kLease + std::chrono::seconds(5));
+  const auto next = Joined(hello);
+  EXPECT_EQ(Told().back().recovered().mark_virtual_time_ns(), 80);
+  hosts.Leave(*next);
+  hello.set_host("third/3");
+  EXPECT_EQ(Refused(hello), ErrorCode::kCellMachineTaken);
+  clock.Advance(Hosts::kLease + std::chrono::seconds(5));
+  hello.mutable_begin()->set_sequence(2);  // which the store has
+  Joined(hello);
+  EXPECT_EQ(Told().back().recovered().mark_virtual_time_ns(), 91);
+}
+
 // LIVE-3.30, LIVE-5.20: of one that was moved by hand, too, whose marks are clean, it is told how
 // far what was shown is void; where the host gave it back in order nothing is.
 TEST_F(HostsTest, WhatWasShownOfOneMovedByHandIsVoid) {
