@@ -87,7 +87,7 @@ std::vector<v1::HostOrder> StopFirst(std::deque<v1::HostResponse>& messages) {
     if (begins(*message)) taken.push_back(message->order());
   }
   messages.erase(std::remove_if(messages.begin(), last, begins), last);
-  std::ranges::stable_partition(messages, Halts);
+  std::stable_partition(messages.begin(), messages.end(), Halts);
   return taken;
 }
 
