@@ -167,7 +167,7 @@ void HostLine::SendStatus(v1::MachineStatus status) {
 void HostLine::Read() {
   v1::HostResponse message;
   while (stream_->line->Read(&message)) {
-    answers_ = true;
+    answers_ = answers_ || (message.has_heartbeat() && message.heartbeat().number() == 0);
     heard_(std::move(message));
   }
   gone_();

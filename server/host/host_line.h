@@ -57,7 +57,7 @@ class HostLine {
   bool ending_ = false;                      // guarded by mutex_
   bool written_all_ = false;                 // guarded by mutex_; nothing more is sent
   bool cut_ = false;                         // guarded by mutex_
-  std::atomic<bool> answers_ = false;        // something was heard since the newest status at rest
+  std::atomic<bool> answers_ = false;        // the newest status at rest was answered
   std::thread reader_;
   std::thread writer_;
 };

@@ -10,7 +10,8 @@
 
 namespace rmlcell::server {
 
-v1::HostHello HelloOf(const HostOptions& options, const std::string& name, std::int64_t fence) {
+v1::HostHello HelloOf(const HostOptions& options, const std::string& name, std::int64_t fence,
+                      std::string& had_job) {
   v1::HostHello hello;
   hello.set_join_token(options.join_token);
   hello.set_machine(options.machine);
@@ -20,7 +21,12 @@ v1::HostHello HelloOf(const HostOptions& options, const std::string& name, std::
   hello.set_boot_id(NameOfBoot());
   hello.set_computer(NameOfComputer());
   hello.set_fence(fence);
-  if (fence == 0) AddNewestMark(options.journal, hello);
+  if (fence == 0) {
+    AddNewestMark(options.journal, hello);
+    had_job = hello.begin().job();
+  } else if (!had_job.empty()) {
+    hello.mutable_begin()->set_job(had_job);
+  }
   return hello;
 }
 

@@ -77,7 +77,7 @@ class HostProcess {
   }
 
  private:
-  v1::HostHello Hello() const { return HelloOf(options_, name_, fence_); }
+  v1::HostHello Hello() { return HelloOf(options_, name_, fence_, had_job_); }
 
   // A line is looked for beside the machine, which goes on meanwhile.
   void KeepLine() {
@@ -219,6 +219,7 @@ class HostProcess {
   }
 
   void NoteStored(std::int64_t sequence) {
+    had_job_.clear();
     unstored_.Stored(sequence);
     if (writer_ != nullptr) writer_->Stored(fence_, sequence);
     if (machine_ != nullptr) machine_->NoteStored(sequence);
@@ -580,8 +581,8 @@ class HostProcess {
   StatusRhythm rhythm_;
   std::optional<nanoseconds> ending_at_;
   std::optional<nanoseconds> lost_until_;  // another host has the machine; so long this one brakes
-  std::string handbox_shown_;
-  bool handbox_due_ = false;  // it has changed since
+  std::string handbox_shown_, had_job_;    // `had_job_`: by the host before, until the server knows
+  bool handbox_due_ = false;               // it has changed since
   v1::MachineState state_told_ = v1::MACHINE_STATE_UNSPECIFIED;
   std::unique_ptr<JournalWriter> writer_;
   Background background_;  // behind what its work uses

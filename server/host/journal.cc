@@ -148,7 +148,11 @@ std::int64_t Journal::BytesOfOldMarks() const {
 Status Journal::DropOldMarks() {
   const Result<std::string> all = ReadAll(path_, file_);
   if (!all) return all.error();
-  const std::string records = RecordsOf(WithoutOldMarks(ReadJournal(*all).entries));
+  return Replace(WithoutOldMarks(ReadJournal(*all).entries));
+}
+
+Status Journal::Replace(const std::vector<v1::JournalEntry>& entries) {
+  const std::string records = RecordsOf(entries);
   if (const Status done = Rewrite(records); !done) return done.error();
   const ReadRecords read = ReadJournal(records);
   places_.clear();
@@ -185,13 +189,6 @@ void Journal::Stored(std::int64_t fence, std::int64_t sequence) {
   }
   places_.insert(places_.begin(), kept.begin(), kept.end());
   bytes_ -= moved;
-}
-
-Status Journal::Clear() {
-  if (const Status done = Rewrite({}); !done) return done.error();
-  places_.clear();
-  bytes_ = 0;
-  return {};
 }
 
 // Beside the old one, which stays until the new one is on the disk.

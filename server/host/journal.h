@@ -42,8 +42,8 @@ class Journal {
   // of it: it is dropped when it is worth while.
   void Stored(std::int64_t fence, std::int64_t sequence);
 
-  // Nothing of it is needed any more. Errors: CellJournal.
-  Status Clear();
+  // These are all of it. Errors: CellJournal.
+  Status Replace(const std::vector<v1::JournalEntry>& entries);
 
   std::int64_t bytes() const { return bytes_; }
   const std::string& path() const { return path_; }

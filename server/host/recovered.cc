@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -67,15 +68,42 @@ std::optional<Begin> BeginIn(std::span<const v1::JournalEntry> journal) {
   return Begin{.job = journal[begun - 1].run_begun().job(), .first = first, .begun = true};
 }
 
+// The newest job of which a host had on its disk that it was about to begin, and nothing more.
+std::string HadIn(std::span<const v1::JournalEntry> journal) {
+  std::string had;
+  std::int64_t fence = 0;
+  for (const v1::JournalEntry& entry : journal) {
+    const std::string& job = entry.intent().input().start().job();
+    if (entry.has_mark() && entry.fence() == fence) had.clear();
+    if (job.empty()) continue;
+    had = job;
+    fence = entry.fence();
+  }
+  return had;
+}
+
 }  // namespace
+
+bool TakeBack(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry>& journal) {
+  const auto begin = BeginIn(journal);
+  const Number stored{welcome.mark().fence(), welcome.mark().sequence()};
+  const bool stood = begin && begin->begun && (begin->first > 0 || welcome.has_mark());
+  if (!stood || NumberOf(journal[begin->first]) <= stored) return false;
+  const auto first = journal.begin() + static_cast<std::ptrdiff_t>(begin->first);
+  const auto intent = std::find_if(first, journal.end(), [&](const v1::JournalEntry& entry) {
+    return entry.intent().input().start().job() == begin->job;
+  });
+  // That it had the job is told by whatever host comes next.
+  if (intent != journal.end()) std::iter_swap(first, intent);
+  journal.resize(begin->first + (intent != journal.end() ? 1 : 0));
+  return true;
+}
 
 Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal) {
   Recovered found{.known = welcome.has_mark(), .mark = welcome.mark()};
   const Number stored{welcome.mark().fence(), welcome.mark().sequence()};
   Number newest = stored;
-  const auto begin = BeginIn(journal);
-  const bool stood = begin && begin->begun && (begin->first > 0 || found.known);
-  if (stood && NumberOf(journal[begin->first]) > stored) journal.resize(begin->first);
+  TakeBack(welcome, journal);
   for (const v1::JournalEntry& entry : journal) {
     if (!entry.has_mark() || (found.known && NumberOf(entry) <= newest)) continue;
     found.known = true;
@@ -124,6 +152,8 @@ void AddNewestMark(const std::string& journal, v1::HostHello& hello) {
   const std::span<const v1::JournalEntry> entries = opened->entries;
   if (v1::MachineMark mark; newest_of(entries, mark))
     *hello.mutable_journal_mark() = std::move(mark);
+  if (std::string had = HadIn(entries); !had.empty())
+    hello.mutable_begin()->set_job(std::move(had));
   const auto begin = BeginIn(entries);
   if (!begin) return;
   hello.mutable_begin()->set_job(begin->job);
@@ -183,8 +213,14 @@ Result<OpenedMachine> OpenMachine(const v1::HostWelcome& welcome, const HostOpti
                            "the log may have, is kept in " +
                                *orphan,
                            {}}));
-    // Once is enough.
-    if (const Status cleared = journal->journal->Clear(); !cleared) return cleared.error();
+    // Once is enough; answers may still be asked for.
+    std::vector<v1::JournalEntry> answers = journal->entries;
+    std::erase_if(answers, [](const v1::JournalEntry& entry) { return !entry.has_answered(); });
+    if (const Status left = journal->journal->Replace(answers); !left) return left.error();
+  }
+  // For good: what was taken back is not to come alive for the host after this one.
+  if (TakeBack(welcome, journal->entries)) {
+    if (const Status left = journal->journal->Replace(journal->entries); !left) return left.error();
   }
   Recovered found = RecoveredFrom(welcome, std::move(journal->entries));
   auto recording = RecoverRecording(found, RecordingFile::PathBeside(options.journal));

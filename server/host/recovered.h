@@ -21,6 +21,11 @@ struct Recovered {
   std::vector<v1::JournalEntry> answered{};
 };
 
+// Where the journal ends with the begin of a job that the store does not have: up to the mark
+// before, and that it was about to begin. False: it does not, or somebody did something since.
+// LIVE-5.20
+bool TakeBack(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry>& journal);
+
 Recovered RecoveredFrom(const v1::HostWelcome& welcome, std::vector<v1::JournalEntry> journal);
 
 // What a host told here before another one had the machine, of which nobody can say how much is in

@@ -40,7 +40,7 @@ struct Hosts::Host {
   bool storing = false;
   bool overflows = false;  // more came than may wait: nothing behind it is taken on this line
   bool settled = false;    // guarded by mutex: all that was before it is stored
-  bool fresh = true;       // jobs of the one before may stand there; of who stores alone
+  bool fresh = true;       // jobs of the one before may stand there
   v1::HostBegin begin{};   // what its host found of the one before
 };
 

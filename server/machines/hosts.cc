@@ -252,7 +252,11 @@ void Hosts::StoreEntries(const HostPointer& host) {
   {
     const std::lock_guard lock(host->mutex);
     // A line that is gone stores no more, but for what came before the machine was given back.
-    if (host->storing || (host->gone && !host->handed_back) || host->waiting.empty()) return;
+    // Nor is there more to tell of one that came back, whose first words are stored.
+    const bool gives_back = host->fresh && host->stored > 0;
+    if (host->storing || (host->gone && !host->handed_back) ||
+        (host->waiting.empty() && !gives_back))
+      return;
     host->storing = true;
   }
   needs_.executor.Post([this, host] {
@@ -266,9 +270,9 @@ void Hosts::StoreEntries(const HostPointer& host) {
     bool sends_again = false;
     if (done.how && host->fresh)
       done.how = GiveBackUnbegun(needs_.store, host->id, host->lease.host, host->begin.job());
-    if (done.how) host->fresh = false;
     {
       const std::lock_guard lock(host->mutex);
+      if (done.how) host->fresh = false;
       host->settled = host->settled || done.how;
       host->storing = false;
       host->rests.notify_all();

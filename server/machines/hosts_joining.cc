@@ -60,7 +60,8 @@ std::optional<v1::MachineMark> NewerOf(const std::optional<storage::MachineMark>
                                        const v1::HostHello& hello) {
   const auto mark = stored ? std::optional(MarkOf(*stored)) : std::nullopt;
   const auto number = [](const auto& one) { return std::pair(one.fence(), one.sequence()); };
-  const bool unbegun = hello.has_begin() && (!mark || number(*mark) < number(hello.begin()));
+  const bool unbegun =
+      hello.begin().fence() > 0 && (!mark || number(*mark) < number(hello.begin()));
   const bool found = unbegun ? hello.begin().has_mark() : hello.has_journal_mark();
   const v1::MachineMark& beside = unbegun ? hello.begin().mark() : hello.journal_mark();
   return found && (!mark || number(*mark) < number(beside)) ? beside : mark;

@@ -203,6 +203,52 @@ TEST(Recovered, TheServerHearsOfWhatWasAboutToBegin) {
   std::remove(path.c_str());
 }
 
+// LIVE-3.27, LIVE-3.35, LIVE-5.20: what was taken back is gone for the host after the next one,
+// too: a repeated request acts. That a host had the job is told by each, until it has begun after
+// all.
+TEST(Recovered, WhatWasTakenBackStaysSo) {
+  std::vector<v1::JournalEntry> journal = Behind({Mark(1)}, Begin(2));
+  v1::JournalEntry answer = Entry(6);
+  answer.mutable_answered()->set_kind(v1::HostOrder::kRunJob);
+  journal.insert(journal.end() - 1, answer);
+  v1::HostWelcome welcome = Stored(5);
+  std::vector<v1::JournalEntry> kept = journal;
+  EXPECT_FALSE(TakeBack(welcome, kept));
+  welcome = Stored(1);
+  EXPECT_TRUE(TakeBack(welcome, journal));
+  ASSERT_EQ(journal.size(), 2U);
+  EXPECT_TRUE(journal.back().has_intent());
+  v1::JournalEntry later = Mark(1);
+  later.set_fence(8);
+  later.mutable_mark()->set_fence(8);
+  journal.push_back(later);
+  EXPECT_TRUE(RecoveredFrom(welcome, journal).answered.empty());
+  const std::string path = testing::TempDir() + "/taken-back-" + std::to_string(getpid());
+  const auto hello_of = [&](const std::vector<v1::JournalEntry>& entries) {
+    std::remove(path.c_str());
+    EXPECT_TRUE(Journal::Open(path)->journal->Replace(entries));
+    v1::HostHello hello;
+    AddNewestMark(path, hello);
+    return hello;
+  };
+  EXPECT_EQ(hello_of(journal).begin().job(), "jobs/17");
+  EXPECT_EQ(hello_of(journal).begin().fence(), 0);
+  for (v1::JournalEntry& entry : journal = Behind(journal, Begin(2))) {
+    if (entry.sequence() >= 2 && !entry.has_intent()) entry.set_fence(8);
+  }
+  journal[3].set_fence(8);  // its intent
+  v1::JournalEntry moved = Entry(6);
+  moved.set_fence(8);
+  moved.mutable_applied()->mutable_input()->set_override_percent(50.0);
+  moved.mutable_applied()->set_caller("anna");
+  journal.push_back(moved);
+  v1::JournalEntry mark = Mark(7);
+  mark.set_fence(8);
+  journal.push_back(mark);
+  EXPECT_FALSE(hello_of(journal).has_begin());
+  std::remove(path.c_str());
+}
+
 // What a host was about to tell when it died was told again by the next one, before its first mark;
 // the one behind that tells it once.
 TEST(Recovered, WhatWasToldAgainIsToldOnce) {

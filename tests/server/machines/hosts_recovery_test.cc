@@ -1,4 +1,5 @@
 // What the next host of a machine is told by the server, and what the log says of the one before.
+#include "server/base/names.h"
 #include "tests/server/machines/hosts_bed.h"
 
 namespace rmlcell::server {
@@ -100,6 +101,34 @@ TEST_F(HostsTest, WhatWasShownOfOneMovedByHandIsVoid) {
   EXPECT_TRUE(Eventually([&] { return Must(bed.store().MachineLeases()).empty(); }));
   Joined(Hello("third/3"));
   EXPECT_EQ(Told().size(), told);
+}
+
+// LIVE-5.20: a host that comes back to another server, where all that it had to tell is stored,
+// says nothing more: a job of the one before it is given back all the same.
+TEST_F(HostsTest, AHostThatComesBackFreesTheJobOfTheOneBefore) {
+  const auto link = Joined();
+  const std::int64_t fence = Fence(*link);
+  hosts.Receive(*link, Entries(fence, 1, true));
+  EXPECT_TRUE(Eventually([&] { return link->Newest(v1::HostResponse::kEntriesStored); }));
+  hosts.Leave(*link);
+  v1::Job run;
+  run.set_kind(v1::JOB_KIND_RUN);
+  const std::int64_t job = Must(bed.store().SubmitAndWait({.machine = "mill-1",
+                                                           .kind = "RUN",
+                                                           .specification = run.SerializeAsString(),
+                                                           .attempts_max = 1}))
+                               .job.id;
+  Must(bed.store().AcquireJobs(
+      {.worker = "before/1", .kinds = {"RUN"}, .duration = std::chrono::hours(1)}));
+  v1::HostHello hello = Hello("elsewhere/1", fence);
+  hello.mutable_begin()->set_job(JobName(job));
+  const auto again = Joined(hello);
+  v1::HostRequest beat;
+  beat.mutable_heartbeat()->set_number(1);
+  hosts.Receive(*again, beat);
+  EXPECT_TRUE(Eventually(
+      [&] { return Must(bed.store().GetJob(job)).state == storage::JobState::kQueued; }));
+  EXPECT_TRUE(Must(bed.store().GetJob(job)).held);
 }
 
 }  // namespace
