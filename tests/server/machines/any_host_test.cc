@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <memory>
 
 #include "server/base/executor.h"
 #include "tests/server/any_messages.h"
@@ -24,6 +25,8 @@ class AnyHostTest : public testing::Test {
     EXPECT_TRUE(joined) << (joined ? "" : joined.error().detail);
     return link;
   }
+
+  void TearDown() override { executor_.reset(); }  // what was posted is done
 
   // What a host tells, or another one that talks as it does.
   v1::HostRequest Any(AnyMessages& any, std::int64_t fence) {
@@ -56,10 +59,10 @@ class AnyHostTest : public testing::Test {
   int asked_ = 0;
   std::int64_t sequence_ = 0;
   std::int64_t told_max_ = 0;
-  Executor executor_{2};
+  std::unique_ptr<Executor> executor_ = std::make_unique<Executor>(2);
   Hosts hosts_{{.store = bed_.store(),
                 .feed = feed_,
-                .executor = executor_,
+                .executor = *executor_,
                 .server = "this server",
                 .join_token = "secret",
                 .clock = clock_.clock()}};

@@ -22,14 +22,18 @@ struct OneServer {
       : feed(store),
         hosts({.store = store,
                .feed = feed,
-               .executor = executor,
+               .executor = *executor,
                .server = name,
                .join_token = "secret",
                .clock = clock.clock()}) {}
 
+  ~OneServer() { executor.reset(); }  // what was posted is done
+  OneServer(const OneServer&) = delete;
+  OneServer& operator=(const OneServer&) = delete;
+
   EventFeed feed;
   TestSteadyClock clock;
-  Executor executor{2};
+  std::unique_ptr<Executor> executor = std::make_unique<Executor>(2);
   Hosts hosts;
 };
 

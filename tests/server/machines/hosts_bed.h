@@ -69,6 +69,8 @@ class HostsTest : public testing::Test {
     mark.mutable_mark()->set_virtual_time_ns(77);
     return request;
   }
+  void TearDown() override { executor.reset(); }  // what was posted is done
+
   // The events of the machine in the log of the cell.
   std::vector<v1::MachineEvent> Told() {
     std::vector<v1::MachineEvent> told;
@@ -83,10 +85,10 @@ class HostsTest : public testing::Test {
   ServerBed bed;
   EventFeed feed{bed.store()};
   TestSteadyClock clock;
-  Executor executor{2};
+  std::unique_ptr<Executor> executor = std::make_unique<Executor>(2);
   Hosts hosts{{.store = bed.store(),
                .feed = feed,
-               .executor = executor,
+               .executor = *executor,
                .server = "this server",
                .join_token = "secret",
                .clock = clock.clock()}};
