@@ -26,7 +26,10 @@ class AnyHostTest : public testing::Test {
     return link;
   }
 
-  void TearDown() override { executor_.reset(); }  // what was posted is done
+  void TearDown() override {
+    hosts_.CloseAll();
+    executor_.reset();  // what was posted is done
+  }
 
   // What a host tells, or another one that talks as it does.
   v1::HostRequest Any(AnyMessages& any, std::int64_t fence) {

@@ -27,7 +27,10 @@ struct OneServer {
                .join_token = "secret",
                .clock = clock.clock()}) {}
 
-  ~OneServer() { executor.reset(); }  // what was posted is done
+  ~OneServer() {
+    hosts.CloseAll();
+    executor.reset();  // what was posted is done
+  }
   OneServer(const OneServer&) = delete;
   OneServer& operator=(const OneServer&) = delete;
 

@@ -69,7 +69,10 @@ class HostsTest : public testing::Test {
     mark.mutable_mark()->set_virtual_time_ns(77);
     return request;
   }
-  void TearDown() override { executor.reset(); }  // what was posted is done
+  void TearDown() override {
+    hosts.CloseAll();
+    executor.reset();  // what was posted is done
+  }
 
   // The events of the machine in the log of the cell.
   std::vector<v1::MachineEvent> Told() {
