@@ -71,6 +71,12 @@ std::optional<v1::MachineMark> NewerOf(const std::optional<storage::MachineMark>
 
 bool Hosts::EndAbandoned(const std::string& machine) {
   const std::lock_guard joining(joining_);  // nobody comes for it meanwhile
+  {
+    // It may have been done by an earlier look, or be on again.
+    const std::lock_guard lock(mutex_);
+    const auto off = off_.find(machine);
+    if (off == off_.end() || !off->second.held) return false;
+  }
   const auto leases = needs_.store.MachineLeases();
   if (!leases) return false;  // it is asked again
   const auto lease = std::ranges::find(*leases, machine, &storage::MachineLease::machine);
