@@ -41,7 +41,7 @@ struct Hosts::Host {
   bool overflows = false;  // more came than may wait: nothing behind it is taken on this line
   bool settled = false;    // guarded by mutex: all that was before it is stored
   bool fresh = true;       // jobs of the one before may stand there
-  v1::HostBegin begin{};   // what its host found of the one before
+  v1::HostBegin begin{};   // of the one before; its host tells it until this is stored
 };
 
 }  // namespace rmlcell::server

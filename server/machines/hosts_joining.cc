@@ -131,8 +131,6 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   host->here = IsOf(hello.host(), NameOfComputer());
   if (const Status welcome = Welcome(host, hello, *taken); !welcome) return welcome.error();
   host->begin = hello.begin();
-  if (line_before != nullptr && line_before->lease.fence == host->lease.fence && !hello.has_begin())
-    host->begin = line_before->begin;
   // It may be more than up to the newest mark.
   if (line_before != nullptr && line_before->lease.fence == host->lease.fence)
     host->stored = std::max(host->stored, line_before->stored);
