@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "clients/cli/machine_call.h"
 #include "clients/cli/messages.h"
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"

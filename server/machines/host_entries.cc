@@ -9,6 +9,7 @@
 #include "server/base/names.h"
 #include "server/machines/host_words.h"
 #include "server/records/job_messages.h"
+#include "storage/jobs/job_rules.h"
 
 namespace rmlcell::server {
 namespace {

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "rmlcell/v1/cell.grpc.pb.h"
 #include "server/events/event_feed.h"
 #include "server/records/job_messages.h"
 #include "server/services/open_stream.h"

@@ -2,6 +2,7 @@
 
 #include "rmlcell/v1/handbox.grpc.pb.h"
 #include "server/machines/teach_book.h"
+#include "server/services/call.h"
 #include "server/services/handbox_watch.h"
 
 namespace rmlcell::server {

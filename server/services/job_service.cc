@@ -5,6 +5,7 @@
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
 #include "server/results/job_results.h"
+#include "server/runs/run_queue.h"
 #include "server/services/job_streams.h"
 #include "server/services/open_stream.h"
 

@@ -75,7 +75,7 @@ MAY_INCLUDE = {
     "server/jobs": ["engine/core", "engine/machine", "engine/families", MATERIAL, "proto", "proto/bridge", "server/base",
                     "server/events", "server/records", "storage", "storage/jobs"],
     # How machines stand.
-    "server/machines": ["engine/core", "engine/families", "engine/machine", "proto", "proto/bridge", "server/base", "server/events", "server/records", "storage"],
+    "server/machines": ["engine/core", "engine/families", "engine/machine", "proto", "proto/bridge", "server/base", "server/events", "server/records", "storage", "storage/jobs"],
     # The host of a machine that lives: a process of its own, without the store.
     "server/host": ["engine/core", "engine/machine", "engine/families", MATERIAL, "proto", "proto/bridge", "proto/recording", "server/base"],
     # RUN jobs, between the queue and the host of their machine.
