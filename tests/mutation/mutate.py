@@ -58,7 +58,9 @@ def change_of(place):
 
 
 def sources_of(area):
-    return [str(path.relative_to(ROOT)) for folder in AREAS[area].folders for path in sorted((ROOT / folder).glob("*.cc"))]
+    """Without the programs that only the build runs: what they make stands, whatever is changed in them."""
+    return [str(path.relative_to(ROOT)) for folder in AREAS[area].folders for path in sorted((ROOT / folder).glob("*.cc"))
+            if not path.name.endswith("_maker.cc")]
 
 
 def sequence(area, seed, codes, files, kinds):

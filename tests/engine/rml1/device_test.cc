@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "tests/engine/rml1/run_support.h"
 
@@ -47,6 +48,22 @@ class TestDevice final : public DeviceListener {
   std::int64_t offset_ = 0;
   std::vector<Finding> findings_;
 };
+
+// RML1-3C.15: the machine has both ends of its range, 4500 to 15000 rpm, and nothing beside them.
+TEST(Device, HasBothEndsOfTheSpindleRange) {
+  TestDevice device(ParametersOf("t1"));
+  const auto limit = [&](const char* command) {
+    device.Feed(command);
+    const SpeedLimit& found = device->registers().rpm_limit;
+    return std::pair(found.asked, found.used);
+  };
+  EXPECT_EQ(limit("!RC4499;"), std::pair(4499.0, 4500.0));
+  EXPECT_EQ(limit("!RC4500;"), std::pair(0.0, 0.0));
+  EXPECT_EQ(limit("!RC15001;"), std::pair(15001.0, 15000.0));
+  EXPECT_EQ(limit("!RC15000;"), std::pair(0.0, 0.0));
+  EXPECT_EQ(limit("!RC99;").first, 0.0);  // a stage
+  EXPECT_EQ(limit("!RC100;"), std::pair(100.0, 4500.0));
+}
 
 // RML1-3C.29, RML1-3C.35: both ends of the Z travel, -60 to 0 mm, may be named; what lies beyond
 // changes nothing.
