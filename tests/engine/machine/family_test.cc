@@ -33,6 +33,16 @@ Diagnostic OnlyFault(const ProjectBundle& project) {
   return errors.empty() ? Diagnostic{} : errors.front();
 }
 
+// A mill has no variables that a person could write: nobody is told of a handbox or of breakpoints
+// then, but of what was wrong with the order.
+TEST(MillFamily, SaysWhyItRefuses) {
+  const machine::Parameters t1 = *MakeParameters(Mills(), "t1", {});
+  const Status written = Mills().CheckWrite(t1, "VR[1]", 1.0);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(written.error().detail, "no variable is called 'VR[1]'");
+}
+
 // Of each program its stream, from the first slot to the last.
 TEST(PlanTransfer, StoresStreamsAsTheyAre) {
   const TransferPlan plan = PlanOf({.programs = {Stream(1, "PU;"), Stream(99, "PU1,1;")}});

@@ -158,7 +158,7 @@ TEST_F(MachineTest, BreakpointsHaveLimits) {
   Good(SetBreakpoints{many});
   const std::string saved = machine->Save();
   many.push_back({.at = {1, 2}});
-  EXPECT_THAT(Refused(SetBreakpoints{many}), HasSubstr("at most"));
+  EXPECT_THAT(Refused(SetBreakpoints{many}), HasSubstr("at most 100 breakpoints are set"));
   Load({kLoop}, saved);
   EXPECT_EQ(machine->breakpoints().size(), kBreakpointsMax);
 }

@@ -1,22 +1,22 @@
 // Bytes and characters of a line: Unicode 15, table 3-7 (well-formed UTF-8). A byte that begins no
 // character counts as one, in every encoding.
-#include "clients/lsp/text_position.h"
+#include "engine/core/characters.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-namespace rmlcell::lsp {
+namespace rmlcell {
 namespace {
 
-struct Row {
+struct Line {
   const char* what;
   std::string text;
   std::uint32_t utf8, utf16, utf32;
 };
 
-TEST(TextPosition, CountsInEveryEncoding) {
-  const Row rows[] = {
+TEST(Characters, CountsInEveryEncoding) {
+  const Line rows[] = {
       {"nothing", "", 0, 0, 0},
       {"ASCII and a byte alone", "a\x80", 2, 2, 2},
       {"the last byte that begins nothing", "\xC1\x80", 2, 2, 2},
@@ -33,7 +33,7 @@ TEST(TextPosition, CountsInEveryEncoding) {
       {"three with another byte in them", "\xE2\x82z", 3, 3, 3},
       {"four with another byte in them", "\xF0z\x84\x9E", 4, 4, 4},
   };
-  for (const Row& row : rows) {
+  for (const Line& row : rows) {
     EXPECT_EQ(CharactersIn(row.text, Encoding::kUtf8), row.utf8) << row.what;
     EXPECT_EQ(CharactersIn(row.text, Encoding::kUtf16), row.utf16) << row.what;
     EXPECT_EQ(CharactersIn(row.text, Encoding::kUtf32), row.utf32) << row.what;
@@ -47,7 +47,7 @@ TEST(TextPosition, CountsInEveryEncoding) {
   }
 }
 
-TEST(TextPosition, APlaceInsideACharacterIsBeforeIt) {
+TEST(Characters, APlaceInsideACharacterIsBeforeIt) {
   const std::string clef = "a\xF0\x9D\x84\x9Ez";
   EXPECT_EQ(BytesOfCharacters(clef, 2, Encoding::kUtf16), 1U);  // between the surrogates
   EXPECT_EQ(BytesOfCharacters(clef, 3, Encoding::kUtf16), 5U);
@@ -57,4 +57,4 @@ TEST(TextPosition, APlaceInsideACharacterIsBeforeIt) {
 }
 
 }  // namespace
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell
