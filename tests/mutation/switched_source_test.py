@@ -10,6 +10,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from places import Finder  # noqa: E402
 from switched_source import SwitchedSource  # noqa: E402
+from switched_tree import NUMBERS_MAX, ROOM, SwitchedTree  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -103,6 +104,15 @@ class SwitchedSourceTest(unittest.TestCase):
         for place, number in numbers.items():
             if "sum += Take" in place.text:
                 self.assertIn(number, came_by, place)
+
+
+class NumbersTest(unittest.TestCase):
+    def test_there_are_enough_for_all_sources(self):
+        header = (ROOT / "tests/mutation/changes.h").read_text(encoding="utf-8")
+        self.assertIn(f"kMost = 1U << {NUMBERS_MAX.bit_length() - 1};", header)
+        with tempfile.TemporaryDirectory() as folder:
+            tree = SwitchedTree(ROOT, folder, [])
+        self.assertLess((len(tree.sources) + 1) * ROOM, NUMBERS_MAX)
 
 
 if __name__ == "__main__":

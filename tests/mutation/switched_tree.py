@@ -27,7 +27,8 @@ from refusals import Refusals  # noqa: E402
 from switched_source import SwitchedSource  # noqa: E402
 from workshop import fresh, judge, limit, tests_of, with_cases  # noqa: E402
 
-ROOM = 2048  # for the numbers of one source
+ROOM = 1024  # for the numbers of one source
+NUMBERS_MAX = 1 << 20  # kMost of changes.h
 TRIALS_MAX = 400  # programs of tests/behaviour for one change
 TRIALS_SECONDS = 15  # that they take as things are: sessions with a server take seconds each
 FOLDERS = ("cmake", "clients", "deploy", "engine", "proto", "server", "storage")
@@ -58,6 +59,7 @@ class SwitchedTree:
         self.error_codes = error_codes
         self.sources = sorted(str(path.relative_to(self.root)) for folder in FOLDERS
                               for path in (self.root / folder).rglob("*.cc"))
+        assert (len(self.sources) + 1) * ROOM <= NUMBERS_MAX, "more sources than changes.h has numbers for"
         self.refusals = Refusals(pathlib.Path(__file__).with_name("refused.txt"))
         self.numbers = {}  # (file, begin, kind, after): number of a change with a switch
         self.tests = {}
