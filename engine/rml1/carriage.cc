@@ -339,7 +339,6 @@ void Carriage::NoteLost(const Point& from, const Point& to, double surface_z) {
 void Carriage::NoteLostDepth(const Context& context, double from_z) {
   const Registers& registers = context.registers;
   const double depth = registers.z0 + registers.z1;
-  if (depth >= from_z && depth >= range_.bottom()) return;
   const double reached = range_.HasXY(logical_) ? range_.bottom() : from_z;
   if (!(depth < reached)) return;
   Point from = logical_;
