@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/core/catalogue.h"
+#include "engine/core/detail.h"
 
 namespace rmlcell::machine {
 

@@ -3,7 +3,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/core/detail.h"
 #include "engine/core/units.h"
 #include "engine/machine/outcome.h"
 #include "engine/machine/step_entry.h"

@@ -33,9 +33,8 @@ Diagnostic OnlyFault(const ProjectBundle& project) {
   return errors.empty() ? Diagnostic{} : errors.front();
 }
 
-// A mill has no variables that a person could write: nobody is told of a handbox or of breakpoints
-// then, but of what was wrong with the order.
-TEST(MillFamily, SaysWhyItRefuses) {
+// A mill has no variables that a person could write, and says so.
+TEST(MillFamily, HasNoVariablesToWrite) {
   const machine::Parameters t1 = *MakeParameters(Mills(), "t1", {});
   const Status written = Mills().CheckWrite(t1, "VR[1]", 1.0);
   ASSERT_FALSE(written);
