@@ -66,6 +66,11 @@ TEST(StopAlong, BendsOfTheAxesDoNotDelayTheRest) {
     for (const PlannedMotion& motion : stop.motions) time += motion.duration_s();
     EXPECT_LE(time, passing - t + braking + 1e-9) << k;
   }
+  // At the end of the move before it nothing of that move is left.
+  const StopOnPath stop = StopAlong(plan, plan[0].speed.duration_s(), StandardMachine().axes);
+  double time = 0.0;
+  for (const PlannedMotion& motion : stop.motions) time += motion.duration_s();
+  EXPECT_LE(time, passing + braking + 1e-9);
 }
 
 // ACCEL 100 before a right angle passed steadily, 20 behind it: each half of the bend brakes as its

@@ -62,6 +62,21 @@ TEST(Head, RatesAreDerivatives) {
   EXPECT_EQ(w[4], 0.6);
 }
 
+// motion.md 2.4 with one axis that turns at 1 rad by the unit, the other standing.
+TEST(Head, RatesOfOneAxisAlone) {
+  const Head head = GantryHead{.length_mm = 287.0, .tool = {1.5, -2.5, 4.0}};
+  const double a = 0.4, b = -0.8, h = 1e-4;
+  for (const bool turns_a : {true, false}) {
+    const auto at = [&](double t) {
+      return head.ColumnOf({{3.0 * t, 0, 0}, turns_a ? a + t : a, turns_a ? b : b + t}).column;
+    };
+    const AxisValues v = head.Rates(a, b, {{3.0, 0, 0}, turns_a ? 1.0 : 0.0, turns_a ? 0.0 : 1.0});
+    ExpectNear({v[0], v[1], v[2]}, (at(h) - at(-h)) * (0.5 / h), 1e-5);
+    EXPECT_EQ(v[3], turns_a ? 1.0 : 0.0);
+    EXPECT_EQ(v[4], turns_a ? 0.0 : 1.0);
+  }
+}
+
 // motion.md 7: a mill's axes are where the tip is, whatever its rotary axis does.
 TEST(Head, MillStandsAtTheTip) {
   const Head head = MillHead{};
