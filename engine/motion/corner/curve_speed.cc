@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/indices.h"
 #include "engine/motion/corner/corner.h"
 #include "engine/motion/geometry/least.h"
 #include "engine/motion/kinematics/axes.h"
@@ -48,14 +49,14 @@ class CurveDemand {
     const double per_mm = std::sqrt(per_square);
     const double along = dot(by_u, by_u_twice) * per_square;  // d(|p'|)/du over |p'|
     CurveRates::Values first, second;
-    for (std::size_t i = 0; i < first.size(); ++i) {
+    for (const std::size_t i : IndicesOf(first)) {
       first[i] = by_u[i] * per_mm;
       second[i] = (by_u_twice[i] - by_u[i] * along) * per_square;
     }
     const Swing swing =
         head_.SwingAt(SinesAt(u), {{}, first[3], first[4]}, {{}, second[3], second[4]});
     Demands demands;
-    for (std::size_t i = 0; i < first.size(); ++i) {
+    for (const std::size_t i : IndicesOf(first)) {
       const bool column = i < 3;
       const auto axis = static_cast<int>(i);
       demands[kAxisSpeed + i] = std::abs(first[i] + (column ? swing.first[axis] : 0.0));
@@ -125,12 +126,12 @@ class LeastOnPart {
     CurveDemand::Demands most{};
     for (int k = 0; k <= intervals_; ++k) {
       const CurveDemand::Demands& sample = samples_[static_cast<std::size_t>(k)];
-      for (std::size_t i = 0; i < most.size(); ++i) most[i] = std::max(most[i], sample[i]);
+      for (const std::size_t i : IndicesOf(most)) most[i] = std::max(most[i], sample[i]);
     }
-    for (std::size_t i = 0; i < most.size(); ++i) {
+    for (const std::size_t i : IndicesOf(most)) {
       if (most[i] > 0.0) best_ = std::min(best_, demand_.Speed(i, most[i]));
     }
-    for (std::size_t i = 0; i < most.size(); ++i) {
+    for (const std::size_t i : IndicesOf(most)) {
       // What is drawn on over a sample is at most twice what is asked there: as a share of the
       // speed.
       enough_demand_[i] = demand_.DemandFor(i, std::min(best_, enough_)) /
@@ -138,7 +139,7 @@ class LeastOnPart {
       if (most[i] > enough_demand_[i]) asked[count++] = i;
     }
     for (int k = 1; k < intervals_; ++k) {
-      for (std::size_t i = 0; i < count; ++i) LookAbout(asked[i], k);
+      for (const std::size_t i : Indices(count)) LookAbout(asked[i], k);
     }
     return best_;
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "engine/core/indices.h"
+
 namespace rmlcell::motion {
 namespace {
 
@@ -194,15 +196,15 @@ CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
 }
 
 CurveRates::CurveRates(const CornerCurve& curve) {
-  for (std::size_t k = 0; k < first_.size(); ++k) {
+  for (const std::size_t k : IndicesOf(first_)) {
     const MachineVector& tip = curve.tip_[k + 1];
     const double order = static_cast<double>(k + 1);
     const Values c{tip.x(), tip.y(), tip.z(), curve.a_[k + 1], curve.b_[k + 1], 0.0};
-    for (std::size_t i = 0; i < c.size(); ++i) first_[k][i] = order * c[i];
-    if (k == 0) continue;
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      second_[k - 1][i] = static_cast<double>(k) * first_[k][i];
-    }
+    for (const std::size_t i : IndicesOf(c)) first_[k][i] = order * c[i];
+  }
+  for (const std::size_t k : IndicesOf(second_)) {
+    const double order = static_cast<double>(k + 1);
+    for (const std::size_t i : IndicesOf(second_[k])) second_[k][i] = order * first_[k + 1][i];
   }
 }
 
@@ -215,24 +217,24 @@ double CornerCurve::Integral(double from, double to) const {
   const double middle = 0.5 * (from + to);
   const double half = 0.5 * (to - from);
   std::array<double, kPlaces> u;
-  for (std::size_t k = 0; k < kNode.size(); ++k) {
+  for (const std::size_t k : IndicesOf(kNode)) {
     u[2 * k] = middle - half * kNode[k];
     u[2 * k + 1] = middle + half * kNode[k];
   }
   std::array<std::array<double, kPlaces>, 3> rate;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (const std::size_t axis : IndicesOf(rate)) {
     const auto i = static_cast<Eigen::Index>(axis);
     const std::array<double, 5> c{tip_[1][i], tip_[2][i] * 2.0, tip_[3][i] * 3.0, tip_[4][i] * 4.0,
                                   tip_[5][i]};
-    for (std::size_t k = 0; k < kPlaces; ++k)
+    for (const std::size_t k : IndicesOf(u))
       rate[axis][k] = c[0] + (c[1] + (c[2] + (c[3] + c[4] * (5.0 * u[k])) * u[k]) * u[k]) * u[k];
   }
   std::array<double, kPlaces> speed;
-  for (std::size_t k = 0; k < kPlaces; ++k)  // added as norm() adds them
+  for (const std::size_t k : IndicesOf(speed))  // added as norm() adds them
     speed[k] =
         std::sqrt(rate[0][k] * rate[0][k] + rate[1][k] * rate[1][k] + rate[2][k] * rate[2][k]);
   double sum = 0.0;
-  for (std::size_t k = 0; k < kNode.size(); ++k)
+  for (const std::size_t k : IndicesOf(kNode))
     sum += kWeight[k] * (speed[2 * k] + speed[2 * k + 1]);
   return half * sum;
 }
@@ -301,7 +303,7 @@ CornerLength::CornerLength(const CornerCurve& curve) {
     return;
   }
   ChoosePanels(curve);
-  for (std::size_t k = 0; k < panels_; ++k) {
+  for (const std::size_t k : Indices(panels_)) {
     const bool wide = edge_[k + 1] > edge_[k];
     reached_[k + 1] = reached_[k] + (wide ? curve.Integral(edge_[k], edge_[k + 1]) : 0.0);
   }

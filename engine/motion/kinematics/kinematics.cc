@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/units.h"
+#include "engine/motion/kinematics/axes.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -151,10 +152,8 @@ AxisPose Jogged(const AxisPose& from, const Head& head, const Jog& jog) {
 TravelExcess WorstExcess(const AxisPose& pose, const AxisLimits& limits) {
   const AxisValues values = Together(pose.column, pose.a_rad, pose.b_rad);
   TravelExcess worst;
-  for (int axis = 0; axis < kAxisCount; ++axis) {
-    const auto i = static_cast<std::size_t>(axis);
-    const double excess = ExcessOf(i, values[i], limits);
-    KeepWorse(worst, {excess > 0.0 ? axis : -1, excess});
+  for (const std::size_t i : kAxes) {
+    KeepWorse(worst, {static_cast<int>(i), ExcessOf(i, values[i], limits)});
   }
   return worst;
 }
@@ -177,7 +176,7 @@ std::array<PlacedExcess, kAxisCount> ExcessOfEach(const PathPiece& path, const H
   ForEachRangePoint(path, [&](double s) {
     const AxisPose pose = AxesAt(path, head, s);
     const AxisValues values = Together(pose.column, pose.a_rad, pose.b_rad);
-    for (std::size_t i = 0; i < worst.size(); ++i) {
+    for (const std::size_t i : kAxes) {
       const double excess = ExcessOf(i, values[i], limits);
       if (excess > worst[i].excess) worst[i] = {excess, s};
     }

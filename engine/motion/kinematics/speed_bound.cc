@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/motion/kinematics/axes.h"
 #include "engine/motion/kinematics/axis_demand.h"
 
 namespace rmlcell::motion {
@@ -52,8 +53,8 @@ SpeedBound TightestBound(const PathPiece& path, const Head& head, const MachineL
       }
     }
     const AxisDerivatives q = DerivativesAt(path, head, s);
-    for (int axis = 0; axis < kAxisCount; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
+    for (const std::size_t i : kAxes) {
+      const auto axis = static_cast<int>(i);
       if (q.first[i] != 0.0) {
         keep(SpeedBound::Cause::kAxis, axis, machine.axes.speed[i] / std::abs(q.first[i]));
       }

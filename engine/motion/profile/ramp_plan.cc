@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/check.h"
+#include "engine/core/indices.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -167,7 +168,7 @@ void RampPlan::NextPart() {
 
 void RampPlan::End() {
   std::size_t cell = 0;
-  for (std::size_t ramp = 0; ramp < ramps_.size(); ++ramp) {
+  for (const std::size_t ramp : IndicesOf(ramps_)) {
     double at = 0.0;
     for (; cell <= last_cell_[ramp]; ++cell) {
       const double end = cell == last_cell_[ramp] ? ramps_[ramp].end().s : at + cells_[cell].length;
@@ -189,10 +190,11 @@ bool RampPlan::Pass() {
   const double end_speed = cells_.back().end_speed;
   speeds_.resize(count);
   double speed = start_speed_;
-  for (std::size_t k = 0; k < count; ++k) {
-    speed = speeds_[k] = Reachable(speed, cells_[k], k + 1 < count ? CapAfter(k) : end_speed);
+  for (const std::size_t k : Indices(count - 1)) {
+    speed = speeds_[k] = Reachable(speed, cells_[k], CapAfter(k));
   }
-  if (speed < end_speed) return false;
+  speeds_.back() = Reachable(speed, cells_.back(), end_speed);
+  if (speeds_.back() < end_speed) return false;
   for (std::size_t k = count - 1; k > 0; --k) {
     speeds_[k - 1] = Reachable(speeds_[k], cells_[k], speeds_[k - 1]);
   }
@@ -209,7 +211,7 @@ void RampPlan::LevelOne() {
   ramps_.clear();
   last_cell_.clear();
   double speed = start_speed_;
-  for (std::size_t k = 0; k < cells_.size(); ++k) {
+  for (const std::size_t k : IndicesOf(cells_)) {
     const RampCell& cell = cells_[k];
     Append(SpeedProfile::Span(cell.length, speed, cell.end_speed, cell.limits), k);
     speed = cell.end_speed;
@@ -352,7 +354,7 @@ void RampPlan::LookAlong(const SpeedProfile& ramp, std::size_t cell, double from
   const std::span<const double> most = cells_[cell].most;
   const double step = (to - from) / static_cast<double>(most.size() - 1);
   SpeedProfile::Place place;
-  for (std::size_t k = 0; k < most.size(); ++k) {
+  for (const std::size_t k : IndicesOf(most)) {
     const double s = std::min(from + step * static_cast<double>(k), to);
     ramp.Advance(place, s);
     // Within a phase of a ramp the speed does not turn: where both its ends are slow enough, so is

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace rmlcell::motion {
 namespace {
@@ -385,8 +386,7 @@ SpeedProfile SpeedProfile::Scaled(double factor) const {
     state = {state.s * factor, state.speed * factor, state.acceleration * factor};
   };
   SpeedProfile scaled = *this;
-  for (int k = 0; k < count_; ++k) {
-    Phase& phase = scaled.phases_[static_cast<std::size_t>(k)];
+  for (Phase& phase : std::span(scaled.phases_).first(static_cast<std::size_t>(count_))) {
     phase.jerk *= factor;
     scale(phase.start);
   }
