@@ -173,8 +173,8 @@ TEST(PathArc, OneTenthOfAMicrometreIsNoDistance) {
   EXPECT_EQ(through({kNear, 0, 0}, {0, kNear, 0})->kind, Case::kNoTipMotion);
   EXPECT_EQ(through({kFar, 0, 0}, {0, kNear, 0}).error(),
             (Error{ErrorCode::kCellArcUndefined, "the arc ends where it begins", {}}));
-  EXPECT_EQ(through({0, 5, 0}, {0, kNear, 0}).error().code, ErrorCode::kCellArcUndefined);
-  EXPECT_EQ(through({0, 5, 0}, {0, kFar, 0})->kind, Case::kArc);
+  EXPECT_EQ(through({5, 0, 0}, {0, kNear, 0}).error().code, ErrorCode::kCellArcUndefined);
+  EXPECT_EQ(through({5, 0, 0}, {0, kFar, 0})->kind, Case::kArc);
   EXPECT_EQ(through({0, kNear, 0}, {10, 0, 0})->kind, Case::kLineWarned);
   EXPECT_EQ(through({0, kFar, 0}, {10, 0, 0})->kind, Case::kArc);
   EXPECT_EQ(through({10, kNear, 0}, {10, 0, 0})->kind, Case::kLineWarned);
