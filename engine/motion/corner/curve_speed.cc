@@ -91,7 +91,7 @@ class CurveDemand {
 
  private:
   // Where the curve stands still it asks for no number: nothing then.
-  static double Known(double demand) { return demand > 0.0 ? demand : 0.0; }
+  static double Known(double demand) { return std::max(0.0, demand); }
 
   HeadSines SinesAt(double u) const {
     const CornerCurve::HeadPlace at = curve_.HeadAt(u);
@@ -118,19 +118,17 @@ class LeastOnPart {
 
   double Find(double enough) {
     enough_ = enough;
-    for (int k = 0; k <= intervals_; ++k) {
-      samples_[static_cast<std::size_t>(k)] = demand_.At(from_ + Place(k));
-    }
-    std::array<std::size_t, CurveDemand::kLimits> asked{};  // limits that may have a valley
-    std::size_t count = 0;
     CurveDemand::Demands most{};
     for (int k = 0; k <= intervals_; ++k) {
-      const CurveDemand::Demands& sample = samples_[static_cast<std::size_t>(k)];
+      CurveDemand::Demands& sample = samples_[static_cast<std::size_t>(k)];
+      sample = demand_.At(from_ + Place(k));
       for (const std::size_t i : IndicesOf(most)) most[i] = std::max(most[i], sample[i]);
     }
     for (const std::size_t i : IndicesOf(most)) {
-      if (most[i] > 0.0) best_ = std::min(best_, demand_.Speed(i, most[i]));
+      best_ = std::min(best_, demand_.Speed(i, most[i]));  // infinite where nothing is asked
     }
+    std::array<std::size_t, CurveDemand::kLimits> asked{};  // limits that may have a valley
+    std::size_t count = 0;
     for (const std::size_t i : IndicesOf(most)) {
       // What is drawn on over a sample is at most twice what is asked there: as a share of the
       // speed.
@@ -230,9 +228,9 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
   const double sharpest = curve.SlowestPlace();
   const double width = curve.Speed(sharpest) / curve.Derivative(sharpest, 2).point.norm();
   const double wanted = std::ceil(kPerWidth / width);
-  const int intervals = of_lines && wanted <= kCurveIntervalsMax
-                            ? std::max(static_cast<int>(wanted), kCurveIntervalsMin)
-                            : kCurveIntervalsMax;
+  const int few =
+      std::max(static_cast<int>(std::min(double{kCurveIntervalsMax}, wanted)), kCurveIntervalsMin);
+  const int intervals = of_lines ? few : kCurveIntervalsMax;
   const double least = LeastOnPart(demand, 0.0, 1.0, intervals).Find(enough);
   if (!(width * kCurveIntervalsMax < kPerWidth)) return least;
   // Near a cusp all happens between two samples.

@@ -288,7 +288,7 @@ void CornerLength::ChoosePanels(const CornerCurve& curve) {
   constexpr std::size_t kSide = kPanelsMax / 2;
   constexpr double kShrink = 0.3;
   double share = 1.0;
-  for (std::size_t k = 0; k < kSide; ++k) {
+  for (const std::size_t k : Indices(kSide)) {
     edge_[k] = where * (1.0 - share);
     edge_[kPanelsMax - k] = where + (1.0 - where) * share;
     share *= kShrink;
@@ -304,8 +304,7 @@ CornerLength::CornerLength(const CornerCurve& curve) {
   }
   ChoosePanels(curve);
   for (const std::size_t k : Indices(panels_)) {
-    const bool wide = edge_[k + 1] > edge_[k];
-    reached_[k + 1] = reached_[k] + (wide ? curve.Integral(edge_[k], edge_[k + 1]) : 0.0);
+    reached_[k + 1] = reached_[k] + curve.Integral(edge_[k], edge_[k + 1]);
   }
 }
 

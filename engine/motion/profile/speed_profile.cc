@@ -88,17 +88,16 @@ class RampLengthByRoot {
     const double time = up / a_ + edge_;
     return {mean * time, (0.5 * time + mean / a_) * 2.0 * y};
   }
-  // Down by `drop` + y^2 to `low`.
+  // Down by `drop` + y^2 to `low`; y above 0.
   ValueAndSlope Down(double low, double drop, double y) const {
     const double down = drop + y * y;
     const double mean = low + 0.5 * down;
-    const bool moves = down > 0.0 && y > 0.0;
     if (down <= short_) {
       const double root = std::sqrt(down / j_);
-      return {2.0 * mean * root, moves ? (root + mean / (root * j_)) * 2.0 * y : 0.0};
+      return {2.0 * mean * root, (root + mean / (root * j_)) * 2.0 * y};
     }
     const double time = down / a_ + edge_;
-    return {mean * time, moves ? (0.5 * time + mean / a_) * 2.0 * y : 0.0};
+    return {mean * time, (0.5 * time + mean / a_) * 2.0 * y};
   }
 
  private:
@@ -126,9 +125,8 @@ double PeakRise(double length, double top, double drop, const PathLimits& limits
     const auto both = [&](double root) {
       const double up = root * root;
       const double down = drop + up;
-      const double low_slope = down > 0.0 && root > 0.0 ? (low + down) / a * 2.0 * root : 0.0;
       return ValueAndSlope{(top + 0.5 * up) * up / a + (low + 0.5 * down) * down / a,
-                           (top + up) / a * 2.0 * root + low_slope};
+                           (top + up) / a * 2.0 * root + (low + down) / a * 2.0 * root};
     };
     y = Root(both, length, high);
   } else {
@@ -158,7 +156,7 @@ double Reach(double v0, double length, const PathLimits& limits) {
   // y^3 + 2 v0 y = length sqrt(j): Newton from above, where the cubic is convex. Leaving out either
   // term gives an upper bound, and the lower of the two is within a factor 1.5 of the root.
   const double want = length * std::sqrt(j);
-  double y = v0 > 0.0 ? want / (2.0 * v0) : HUGE_VAL;
+  double y = want / (2.0 * v0);  // infinite from rest
   if (!(y * y <= 2.0 * v0)) y = std::cbrt(want);
   if (v0 > 0.0) {
     constexpr int kStepsMax = 8;  // 5 do, with the guess above
@@ -203,7 +201,7 @@ SpeedProfile SpeedProfile::OneRamp(double v0, double v1, const PathLimits& limit
   profile.peak_speed_ = std::max(v0, v1);
   profile.end_ = {RampLength(v0, v1, limits), v1, 0.0};
   PathState state{0.0, v0, 0.0};
-  profile.AddRamp(state, std::abs(v1 - v0), v1 < v0 ? -1.0 : 1.0, v1, limits);
+  profile.AddRamp(state, std::abs(v1 - v0), std::copysign(1.0, v1 - v0), v1, limits);
   return profile;
 }
 
@@ -214,7 +212,7 @@ SpeedProfile SpeedProfile::From(const PathState& state, double end_s, double v1,
   profile.peak_speed_ = state.speed;
   PathState now = state;
   if (now.acceleration != 0.0 && std::isfinite(limits.jerk)) {
-    const double sign = now.acceleration > 0.0 ? 1.0 : -1.0;
+    const double sign = std::copysign(1.0, now.acceleration);
     profile.AddPhase(now, sign * now.acceleration / limits.jerk, now.acceleration,
                      -sign * limits.jerk);
   }
@@ -257,12 +255,11 @@ void SpeedProfile::AddSpan(PathState& state, double end_s, double v1, const Path
       state.speed = v1;
       return;
     }
-    const double sign = v1 > v0 ? 1.0 : -1.0;
-    const double edge = ramp.edge_s * squeeze;
-    const double a = sign * ramp.acceleration / squeeze;
-    if (edge > 0.0) AddPhase(state, edge, 0.0, a / edge);
+    const double edge = ramp.edge_s * squeeze;  // 0 without a limit on jerk: then that is no phase
+    const double a = std::copysign(ramp.acceleration, v1 - v0) / squeeze;
+    AddPhase(state, edge, 0.0, a / edge);
     AddPhase(state, time - 2.0 * edge, a, 0.0);
-    if (edge > 0.0) AddPhase(state, edge, a, -a / edge);
+    AddPhase(state, edge, a, -a / edge);
     return;
   }
 
@@ -279,9 +276,9 @@ void SpeedProfile::AddSpan(PathState& state, double end_s, double v1, const Path
   peak_speed_ = std::max(peak_speed_, peak);
   if (!(peak > 0.0)) return;  // a length that underflows
 
-  AddRamp(state, v0 < v1 ? drop + rise : rise, 1.0, peak, limits);
+  AddRamp(state, rise + std::max(v1 - v0, 0.0), 1.0, peak, limits);
   if (cruise > kRoundingRoom * length) AddPhase(state, cruise / peak, 0.0, 0.0);
-  AddRamp(state, v0 < v1 ? rise : drop + rise, -1.0, v1, limits);
+  AddRamp(state, rise + std::max(v0 - v1, 0.0), -1.0, v1, limits);
 }
 
 void SpeedProfile::AddPhase(PathState& state, double duration_s, double acceleration, double jerk) {
