@@ -44,14 +44,13 @@ void ForEachRangePoint(const PathPiece& path, Look look) {
   if (!arc) return;
 
   // Where the circle is farthest along X, Y and Z: tangent(x) = t cos x + c sin x has no such
-  // component.
+  // component. The first such place may lie before the arc: that is its start, once more.
   const MachineVector t = path.Tangent(0.0);
   const MachineVector c = path.Curvature(0.0) * path.radius_mm();
   for (const auto& [along, inward] :
        {std::pair{t.x(), c.x()}, std::pair{t.y(), c.y()}, std::pair{t.z(), c.z()}}) {
-    double angle = std::atan2(-along, inward);
-    if (angle < 0.0) angle += kPi;
-    for (; angle < path.sweep_rad(); angle += kPi) look(angle * path.radius_mm());
+    for (double angle = std::atan2(-along, inward); angle < path.sweep_rad(); angle += kPi)
+      look(angle * path.radius_mm());
   }
 }
 

@@ -112,9 +112,8 @@ double PeakRise(double length, double top, double drop, const PathLimits& limits
   const double a = limits.acceleration;
   const double j = limits.jerk;
   if (top == 0.0) {  // rest to rest: closed
-    if (std::isinf(j)) return std::sqrt(a * length);
     if (length < 2.0 * a * a * a / (j * j)) return std::cbrt(0.25 * j * length * length);
-    const double b = a * a / j;
+    const double b = a * a / j;  // 0 without a limit on jerk
     return 0.5 * (std::sqrt(b * b + 4.0 * a * length) - b);
   }
   // By y = sqrt(rise) both ramp lengths are smooth, increasing and convex.
@@ -147,8 +146,7 @@ double Reach(double v0, double length, const PathLimits& limits) {
   const double a = limits.acceleration;
   const double j = limits.jerk;
   if (!(length > 0.0)) return v0;
-  if (std::isinf(j)) return std::sqrt(v0 * v0 + 2.0 * a * length);
-  const double b = a * a / j;
+  const double b = a * a / j;  // 0 without a limit on jerk: then v^2 = v0^2 + 2 a length
   if ((v0 + 0.5 * b) * (2.0 * a / j) <= length) {
     const double c = v0 * b - v0 * v0 - 2.0 * a * length;
     return 0.5 * (std::sqrt(b * b - 4.0 * c) - b);
@@ -174,7 +172,6 @@ double Reach(double v0, double length, const PathLimits& limits) {
 double ReachMinimum(double v0_low, double v0_high, double length, const PathLimits& limits) {
   const double a = limits.acceleration;
   const double j = limits.jerk;
-  if (std::isinf(j)) return Reach(v0_low, length, limits);
   const double b = a * a / j;
   // Where the derivative of Reach by v0 is 0: y^2 = 2 v0 in the short regime, v0 = b / 2 in the
   // other.
