@@ -147,6 +147,29 @@ TEST(Corner, RatesThatMeet) {
   }
 }
 
+// A corner that is assigned anew is as if it were new: nothing is left of a bend beside an arc.
+TEST(Corner, IsReusedForOthers) {
+  const PathPiece in = PathPiece::Line({{0, 0, 0}, 0.0, 0.5}, {{50, 0, 0}, 0.4, 0.9});
+  const PathPiece arc =
+      PathPiece::Circle({{50, 0, 0}, 0.4, 0.9}, {50, 20, 0}, {0, 0, 1}, 1.5, 0, 0);
+  const MachineLimits machine = StandardMachine();
+  Corner corner = Corner::Between(in, arc);
+  ASSERT_EQ(corner.cut_max_mm(), 10.0);
+  ASSERT_FALSE(corner.plain());
+  for (const double degrees : {90.0, 0.0}) {
+    const Bend bend = Of(degrees);
+    corner.Assign(bend.in, bend.out);
+    EXPECT_EQ(corner.passage(), degrees > 0.0 ? Passage::kBlend : Passage::kThrough);
+    EXPECT_EQ(corner.straight(), degrees == 0.0);
+    EXPECT_TRUE(corner.plain());
+    EXPECT_TRUE(corner.lines());
+    EXPECT_EQ(corner.cut_max_mm(), HUGE_VAL);
+    if (degrees > 0.0) {
+      EXPECT_EQ(corner.CutFor(60.0, machine), bend.corner.CutFor(60.0, machine));
+    }
+  }
+}
+
 // Line into an arc of radius 20, straight on, at 60 mm/s: d = 1.2 / 20 * 60^3 / 32000 = 0.405.
 // OPT-B.26
 TEST(Corner, CurvatureJumpDecidesTheCut) {

@@ -195,6 +195,23 @@ TEST(Span, PhasesOfATrapezoidBeginWhereOthersEnd) {
   EXPECT_NEAR(p.TimeAt(108.75), 1.15, 1e-12);
 }
 
+// Rounding carries no place beyond the end, and no speed below rest.
+TEST(Span, NoPlaceIsBeyondItsEnd) {
+  Dice dice(12);
+  for (int round = 0; round < 20'000; ++round) {
+    const PathLimits limits{dice.Magnitude(1.0, 500.0), dice.Magnitude(50.0, 5000.0),
+                            dice.Chance(0.3) ? kNoJerkLimit : dice.Magnitude(100.0, 1e6)};
+    const double length = dice.Magnitude(1e-3, 1000.0);
+    const SpeedProfile p = SpeedProfile::Span(length, 0.0, 0.0, limits);
+    double t = p.duration_s();
+    for (int step = 0; step < 4; ++step, t = std::nextafter(t, 0.0)) {
+      ASSERT_LE(p.At(t).s, length) << round;
+      ASSERT_GE(p.At(t).speed, 0.0) << round;
+      ASSERT_LE(p.PlaceAt(t), length) << round;
+    }
+  }
+}
+
 // Without the time of a place being sought, its speed is bounded: never from below, and by no more
 // than the ends of its phase have.
 TEST(SpeedAtMost, IsNeverBelowTheSpeedThere) {
