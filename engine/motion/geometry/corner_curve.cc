@@ -11,10 +11,11 @@ namespace {
 
 // Gauss-Legendre with eight points on [-1, 1]; the speed along a sharp corner is far from a
 // polynomial.
-constexpr std::array<double, 4> kNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                      0.9602898564975363};
-constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                        0.1012285362903763};
+constexpr std::array kNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                           0.9602898564975363};
+constexpr std::array kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                             0.1012285362903763};
+static_assert(kNode.size() == kWeight.size());
 
 // The quintic from p0 to p0 + h with these first and second derivatives at u = 0 and 1;
 // motion.md 4.2.

@@ -49,8 +49,8 @@ struct RampPlan::Try {
 // The speed between two cells on one span: a bound, until somebody has to know.
 struct RampPlan::SpeedBetween {
   SpeedProfile::Place place{};
-  double speed = 0.0;
-  bool exact = false;
+  double speed;
+  bool exact;
 
   double Exact(const SpeedProfile& profile) {
     if (!exact) speed = profile.SpeedAt(place);
@@ -79,15 +79,16 @@ struct RampPlan::Excess {
 
 // One ramp over several cells, whose limits are looked at from cell to cell.
 struct RampPlan::Look {
-  std::size_t first = 0;
-  std::size_t last = 0;
+  std::size_t first;
+  std::size_t last;
   Try whole{};
-  PathLimits limits{};  // of the ramp
+  // Of the ramp, from BeginLook on.
+  PathLimits limits{};
   double length = 0.0;
-  double start_speed = 0.0;
-  double end_speed = 0.0;
-  double peak_place = 0.0;
-  std::size_t at = 0;  // the next cell, which begins at `from`
+  double start_speed{};
+  double end_speed{};
+  double peak_place{};
+  std::size_t at{};  // the next cell, which begins at `from`
   double from = 0.0;
   SpeedProfile::Place place{};
   SpeedBetween before{};
@@ -99,16 +100,16 @@ struct RampPlan::Look {
 };
 
 struct RampPlan::Task {
-  std::size_t first = 0;
-  std::size_t last = 0;
+  std::size_t first;
+  std::size_t last;
   bool begun = false;     // of many cells: whether one ramp over all is looked at
   bool looks = false;     // and is not done
   std::size_t apart = 0;  // the next of them that is timed by itself, and the time of those before
   double time_apart = 0.0;
   Try together{};
   struct Range {
-    std::size_t first = 0;
-    std::size_t last = 0;
+    std::size_t first;
+    std::size_t last;
   };
   std::array<Range, 3> parts{};  // what it falls into otherwise
   std::size_t count = 0;

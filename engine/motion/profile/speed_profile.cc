@@ -119,7 +119,6 @@ double PeakRise(double length, double top, double drop, const PathLimits& limits
   // By y = sqrt(rise) both ramp lengths are smooth, increasing and convex.
   const double low = top - drop;
   const double high = std::sqrt(std::max(limits.speed - top, 0.0));
-  double y = 0.0;
   if (std::isinf(j)) {
     const auto both = [&](double root) {
       const double up = root * root;
@@ -127,16 +126,16 @@ double PeakRise(double length, double top, double drop, const PathLimits& limits
       return ValueAndSlope{(top + 0.5 * up) * up / a + (low + 0.5 * down) * down / a,
                            (top + up) / a * 2.0 * root + (low + down) / a * 2.0 * root};
     };
-    y = Root(both, length, high);
-  } else {
-    const RampLengthByRoot ramp(limits);
-    const auto both = [&](double root) {
-      const ValueAndSlope up = ramp.Up(top, root);
-      const ValueAndSlope down = ramp.Down(low, drop, root);
-      return ValueAndSlope{up.value + down.value, up.slope + down.slope};
-    };
-    y = Root(both, length, high);
+    const double y = Root(both, length, high);
+    return y * y;
   }
+  const RampLengthByRoot ramp(limits);
+  const auto both = [&](double root) {
+    const ValueAndSlope up = ramp.Up(top, root);
+    const ValueAndSlope down = ramp.Down(low, drop, root);
+    return ValueAndSlope{up.value + down.value, up.slope + down.slope};
+  };
+  const double y = Root(both, length, high);
   return y * y;
 }
 
@@ -252,7 +251,7 @@ void SpeedProfile::AddSpan(PathState& state, double end_s, double v1, const Path
       state.speed = v1;
       return;
     }
-    const double edge = ramp.edge_s * squeeze;  // 0 without a limit on jerk: then that is no phase
+    const double edge = ramp.edge_s * squeeze;
     const double a = std::copysign(ramp.acceleration, v1 - v0) / squeeze;
     AddPhase(state, edge, 0.0, a / edge);
     AddPhase(state, time - 2.0 * edge, a, 0.0);
@@ -278,6 +277,7 @@ void SpeedProfile::AddSpan(PathState& state, double end_s, double v1, const Path
   AddRamp(state, rise + std::max(v0 - v1, 0.0), -1.0, v1, limits);
 }
 
+// Nothing where it takes no time.
 void SpeedProfile::AddPhase(PathState& state, double duration_s, double acceleration, double jerk) {
   if (!(duration_s > 0.0)) return;
   state.acceleration = acceleration;
@@ -293,13 +293,9 @@ void SpeedProfile::AddRamp(PathState& state, double change, double sign, double 
                            const PathLimits& limits) {
   const Ramp ramp = RampOf(change, limits);
   const double a = sign * ramp.acceleration;
-  if (ramp.edge_s == 0.0) {
-    AddPhase(state, ramp.duration_s, a, 0.0);
-  } else {
-    AddPhase(state, ramp.edge_s, 0.0, sign * limits.jerk);
-    AddPhase(state, ramp.duration_s - 2.0 * ramp.edge_s, a, 0.0);
-    AddPhase(state, ramp.edge_s, a, -sign * limits.jerk);
-  }
+  AddPhase(state, ramp.edge_s, 0.0, sign * limits.jerk);
+  AddPhase(state, ramp.duration_s - 2.0 * ramp.edge_s, a, 0.0);
+  AddPhase(state, ramp.edge_s, a, -sign * limits.jerk);
   state.speed = to_speed;  // exactly, whatever the phases added up to
 }
 

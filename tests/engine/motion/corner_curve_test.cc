@@ -455,6 +455,9 @@ TEST(CornerLength, NearACusp) {
 TEST(CornerCurve, DistanceFromAPoint) {
   const CornerCurve curve(PlainAt(90.0, 2.0));
   EXPECT_NEAR(curve.DistanceFrom({-95, -2, 3}), 100.0, 1e-9);
+  EXPECT_NEAR(curve.DistanceFrom({7, -2, 105}), 100.0, 1e-9);
+  EXPECT_NEAR(curve.DistanceFrom(curve.At(0.0).point), 0.0, 1e-15);
+  EXPECT_NEAR(curve.DistanceFrom(curve.At(1.0).point), 0.0, 1e-15);
   const PathPose at = curve.At(0.3);
   const MachineVector tangent = curve.FirstByLength(0.3).point;
   const MachineVector across{-tangent.z(), 0, tangent.x()};
