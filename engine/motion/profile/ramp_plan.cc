@@ -200,12 +200,9 @@ bool RampPlan::Pass() {
     speeds_[k - 1] = Reachable(speeds_[k], cells_[k], speeds_[k - 1]);
   }
   const RampCell& first = cells_[0];
-  if (start_speed_ <= speeds_[0] ||
-      RampLength(start_speed_, speeds_[0], first.limits) <= first.length * (1.0 + kRoom)) {
-    return true;
-  }
   // Of a short ramp the length hangs on the last digits of both speeds.
-  return Reach(speeds_[0], first.length, first.limits) >= start_speed_ * (1.0 - kRoom);
+  return RampLength(start_speed_, speeds_[0], first.limits) <= first.length * (1.0 + kRoom) ||
+         Reach(speeds_[0], first.length, first.limits) >= start_speed_ * (1.0 - kRoom);
 }
 
 void RampPlan::LevelOne() {

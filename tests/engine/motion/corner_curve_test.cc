@@ -350,13 +350,13 @@ TEST(BlendCurve, HalvesMeetInTheMiddle) {
   }
 }
 
-// On a straight way that is gone evenly every place is the slowest.
+// On a straight way that is gone evenly every place is the slowest: the first of them.
 TEST(CornerCurve, SlowestPlaceOfAStraightWay) {
   const CornerCurve straight({.pose = {{0, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {}},
                              {.pose = {{2, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {}},
                              1.0);
   EXPECT_EQ(straight.Speed(0.3), 2.0);
-  EXPECT_EQ(straight.Speed(straight.SlowestPlace()), 2.0);
+  EXPECT_EQ(straight.SlowestPlace(), 0.0);
   EXPECT_EQ(straight.JerkPerCube(0.3), 0.0);
 }
 
