@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-
 #include "engine/core/units.h"
 #include "tests/engine/motion/expect_near.h"
 
@@ -74,51 +71,6 @@ TEST(Hole, StartOnTheCircle) {
   EXPECT_EQ(path->lead.length(), 0.0);
   EXPECT_EQ(path->circle.from().b_rad, 0.0);
   EXPECT_EQ(path->circle.to().b_rad, 0.5);
-}
-
-// motion.md 3.3: what is 1e-6 mm from the axis stands on it, and what is so far from the circle
-// begins there; X is the direction up to a cosine of 0.9.
-TEST(Hole, WhatCountsAsOnTheAxisAndOnTheCircle) {
-  HoleCommand hole{
-      .from = {{0, 1e-6, 7}}, .centre = {{0, 0, 0}}, .normal_point = {0, 0, 1}, .radius_mm = 5.0};
-  EXPECT_TRUE(HoleThrough(hole)->starts_on_axis);
-  ExpectNear(HoleThrough(hole)->circle.from().point, {5, 0, 0});
-  hole.program_x = {std::sqrt(0.19), 0, 0.9};
-  ExpectNear(HoleThrough(hole)->circle.from().point, {5, 0, 0});
-  hole.program_x = {std::sqrt(1.0 - 0.901 * 0.901), 0, 0.901};
-  ExpectNear(HoleThrough(hole)->circle.from().point, {0, 5, 0});
-  hole.program_x = {std::sqrt(1.0 - 0.901 * 0.901), 0, -0.901};
-  ExpectNear(HoleThrough(hole)->circle.from().point, {0, 5, 0});
-  hole.from.tip = {0, 1.001e-6, 7};
-  EXPECT_FALSE(HoleThrough(hole)->starts_on_axis);
-  ExpectNear(HoleThrough(hole)->circle.from().point, {0, 5, 0});
-
-  hole = {.from = {{1e-6, 0, 0}, 0.1, 0.2},
-          .centre = {{-5, 0, 0}, 0.3, 0.4},
-          .normal_point = {-5, 0, 1},
-          .radius_mm = 5.0};
-  EXPECT_EQ(HoleThrough(hole)->lead.length(), 0.0);
-  EXPECT_EQ(HoleThrough(hole)->circle.from().a_rad, 0.1);
-  EXPECT_EQ(HoleThrough(hole)->circle.from().b_rad, 0.2);
-  hole.from.tip = {1.001e-6, 0, 0};
-  EXPECT_NEAR(HoleThrough(hole)->lead.length(), 1.001e-6, 1e-15);
-  EXPECT_EQ(HoleThrough(hole)->circle.from().a_rad, 0.3);
-  EXPECT_EQ(HoleThrough(hole)->circle.from().b_rad, 0.4);
-}
-
-// A normal point 1e-6 mm away is the centre, one farther away is none.
-TEST(Hole, TheNearestNormalPoint) {
-  HoleCommand hole{
-      .from = {{9, 0, 0}}, .centre = {{0, 0, 0}}, .normal_point = {0, 0, 1e-6}, .radius_mm = 5.0};
-  EXPECT_EQ(HoleThrough(hole).error(),
-            (Error{ErrorCode::kCellHoleNormal, "the normal point is the centre", {}}));
-  hole.normal_point.z() = 1.001e-6;
-  ASSERT_TRUE(HoleThrough(hole));
-  ExpectNear(HoleThrough(hole)->circle.At(2.5 * kPi).point, {0, 5, 0});
-  hole.radius_mm = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kCellHoleRadius);
-  hole.radius_mm = -0.5;
-  EXPECT_EQ(HoleThrough(hole).error(), (Error{ErrorCode::kCellHoleRadius, "radius is -0.5", {}}));
 }
 
 // OPT-B.13, OPT-B.15, OPT-2.27: radius first, then the normal point.

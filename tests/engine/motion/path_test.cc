@@ -77,41 +77,6 @@ TEST(PathLine, BecomesRotaryWhenTheTipStands) {
   EXPECT_EQ(nothing.length(), 0.0);
 }
 
-// motion.md 1: a way of 1e-6 mm is none.
-TEST(PathLine, TheShortestWay) {
-  const auto to = [](double x, double b) {
-    return PathPiece::Line({{0, 0, 0}}, {{x, 0, 0}, 0, b});
-  };
-  EXPECT_EQ(to(1e-6, 0.0).kind(), PathPiece::Kind::kLine);
-  EXPECT_EQ(to(1e-6, 0.0).length(), 0.0);
-  EXPECT_EQ(to(1e-6, 0.5).kind(), PathPiece::Kind::kRotary);
-  EXPECT_EQ(to(1e-6, 0.5).length(), 1.0);
-  EXPECT_EQ(to(1.001e-6, 0.5).kind(), PathPiece::Kind::kLine);
-  EXPECT_EQ(to(1.001e-6, 0.5).length(), 1.001e-6);
-  // A place that is no number is not taken for one that is reached.
-  EXPECT_TRUE(std::isnan(to(std::numeric_limits<double>::quiet_NaN(), 0.0).length()));
-}
-
-// path.h: outside 0 .. length() the nearer end, and both ends to the last bit, of every kind.
-TEST(PathPiece, BothEndsAreMetToTheLastBit) {
-  const TipPose from{{0.1, 0.2, 0.3}, 0.4, 0.5}, to{{7.7, 8.8, 9.9}, 1.1, 1.3};
-  PathPiece blend;  // its ends are told beside the curve
-  blend.AssignCorner(PlainCorner{.at = {{5, 5, 5}, 0.1, 0.2},
-                                 .tangent_in = {1, 0, 0},
-                                 .tangent_out = {0, 1, 0},
-                                 .cut_mm = 1.0},
-                     0.0, 0.8, from, to);
-  const PathPiece pieces[] = {PathPiece::Line(from, to),
-                              PathPiece::Line(from, {from.tip, 1.1, 1.3}),
-                              PathPiece::Joint({from.tip, 0.4, 0.5}, {to.tip, 1.1, 1.3}),
-                              PathPiece::ArcThrough(from, {3.0, 1.0, 2.0}, to)->path, blend};
-  for (const PathPiece& piece : pieces) {
-    for (const double s : {-1.0, 0.0}) EXPECT_EQ(piece.At(s), piece.from());
-    for (const double s : {piece.length(), 2.0 * piece.length()})
-      EXPECT_EQ(piece.At(s), piece.to());
-  }
-}
-
 // Where nothing moves nothing changes along the way.
 TEST(PathPiece, OfNoLengthHasNoRates) {
   const PathPiece stands = PathPiece::Joint({{1, 2, 3}, 4, 5}, {{1, 2, 3}, 4, 5});
@@ -161,34 +126,6 @@ TEST(PathArc, DegenerateCases) {
   const double bad = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(through({bad, 5, 0}, {9, 0, 0}).error().code, ErrorCode::kCellArcUndefined);
   EXPECT_EQ(through({1, 5, 0}, {bad, 0, 0}).error().code, ErrorCode::kCellArcUndefined);
-}
-
-// motion.md 1 and 3.2: what is 1e-4 mm apart coincides, and what is so far off the line lies on it.
-TEST(PathArc, OneTenthOfAMicrometreIsNoDistance) {
-  using Case = PathPiece::ArcCase;
-  const auto through = [](const MachinePoint& via, const MachinePoint& to) {
-    return PathPiece::ArcThrough({{0, 0, 0}}, via, {to});
-  };
-  constexpr double kNear = 1e-4, kFar = 1.001e-4;
-  EXPECT_EQ(through({kNear, 0, 0}, {0, kNear, 0})->kind, Case::kNoTipMotion);
-  EXPECT_EQ(through({kFar, 0, 0}, {0, kNear, 0}).error(),
-            (Error{ErrorCode::kCellArcUndefined, "the arc ends where it begins", {}}));
-  EXPECT_EQ(through({5, 0, 0}, {0, kNear, 0}).error().code, ErrorCode::kCellArcUndefined);
-  EXPECT_EQ(through({5, 0, 0}, {0, kFar, 0})->kind, Case::kArc);
-  EXPECT_EQ(through({0, kNear, 0}, {10, 0, 0})->kind, Case::kLineWarned);
-  EXPECT_EQ(through({0, kFar, 0}, {10, 0, 0})->kind, Case::kArc);
-  EXPECT_EQ(through({10, kNear, 0}, {10, 0, 0})->kind, Case::kLineWarned);
-  EXPECT_EQ(through({10, kFar, 0}, {10, 0, 0})->kind, Case::kArc);
-  EXPECT_EQ(through({5, kNear, 0}, {10, 0, 0})->kind, Case::kLineWarned);
-  EXPECT_EQ(through({5, kFar, 0}, {10, 0, 0})->kind, Case::kArc);
-  EXPECT_EQ(through({15, kNear, 0}, {10, 0, 0}).error(),
-            (Error{ErrorCode::kCellArcUndefined,
-                   "the via point is on the line through start and target, outside them",
-                   {}}));
-  EXPECT_EQ(through({15, kFar, 0}, {10, 0, 0})->kind, Case::kArc);
-  const double infinite = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(through({infinite, 5, 0}, {10, 0, 0}).error(),
-            (Error{ErrorCode::kCellArcUndefined, "a coordinate is not a number", {}}));
 }
 
 // Sagitta h over a chord of 1000: R = (c^2 / 4 + h^2) / (2 h). At R = 6e8 mm the arc still starts,
