@@ -10,7 +10,8 @@
 namespace rmlcell {
 namespace {
 
-// A plain array: how many a std::array has clang++ finds out for no more than 256.
+// In the order of ErrorCode, which is made of the same rows: Lookup reads the row by its code. A
+// plain array: how many a std::array has clang++ finds out for no more than 256.
 constexpr CatalogueEntry kRows[] = {
 #define RMLCELL_ERROR(family, number, symbol, severity, when, advice, ...) \
   CatalogueEntry{ErrorCode::k##symbol,                                     \
@@ -24,14 +25,6 @@ constexpr CatalogueEntry kRows[] = {
 #undef RMLCELL_ERROR
 };
 constexpr std::span<const CatalogueEntry> kCatalogue(kRows);
-
-constexpr bool IsIndexedByCode() {
-  for (std::size_t i = 0; i < kCatalogue.size(); ++i) {
-    if (static_cast<std::size_t>(kCatalogue[i].code) != i) return false;
-  }
-  return true;
-}
-static_assert(IsIndexedByCode(), "Lookup reads the row by its code");
 
 template <class Use>
 void ForEachRow(Use use) {
@@ -149,13 +142,14 @@ std::string CodeText(ErrorCode code) {
 
 std::string ConstantName(ErrorCode code) {
   std::string name;
-  char before = 0;
-  for (const char c : Lookup(code).symbol) {
-    const bool starts_word = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9' && before >= 'a');
+  bool after_small = false;
+  for (const char c : Lookup(code).symbol) {  // letters and digits
+    const bool small = UpperCase(c) != c;
+    const bool starts_word = !small && (LowerCase(c) != c || after_small);
     const bool inside_family = name == "RML";  // RML1 is one word
     if (starts_word && !name.empty() && !inside_family) name += '_';
     name += UpperCase(c);
-    before = c;
+    after_small = small;
   }
   return name;
 }

@@ -1,5 +1,8 @@
 #include "engine/core/detail.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace rmlcell {
 
 Detail::Detail() = default;
@@ -16,8 +19,7 @@ Detail::~Detail() = default;
 Detail& Detail::operator+=(const Detail& more) {
   append(more);
   arguments_.reserve(arguments_.size() + more.arguments_.size());  // `more` may be this one
-  const std::size_t count = more.arguments_.size();
-  for (std::size_t i = 0; i < count; ++i) arguments_.push_back(more.arguments_[i]);
+  std::copy_n(more.arguments_.begin(), more.arguments_.size(), std::back_inserter(arguments_));
   return *this;
 }
 

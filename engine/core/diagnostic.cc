@@ -26,13 +26,15 @@ std::string_view LineAt(std::string_view source, int line) {
 std::string CaretLines(std::string_view line, const SourceSpan& where) {
   const auto column = static_cast<std::size_t>(std::max(where.column, 1) - 1);
   const std::size_t from = std::max(column, kShownBytes / 2) - kShownBytes / 2;
-  if (from > line.size()) return {};
-  std::string shown(line.substr(from, kShownBytes));
-  std::string caret;
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(shown[i]);
-    if (byte != '\t' && (byte < 0x20 || byte == 0x7F)) shown[i] = '?';
-    if (from + i < column) caret += shown[i] == '\t' ? '\t' : ' ';
+  std::string shown(line.substr(std::min(from, line.size()), kShownBytes));
+  if (shown.empty()) return {};
+  for (char& c : shown) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte != '\t' && (byte < 0x20 || byte == 0x7F)) c = '?';
+  }
+  std::string caret = shown.substr(0, column - from);
+  for (char& c : caret) {
+    if (c != '\t') c = ' ';
   }
   caret += '^';
   const std::size_t end = column + static_cast<std::size_t>(std::max(where.length, 0));

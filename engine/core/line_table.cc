@@ -1,6 +1,7 @@
 #include "engine/core/line_table.h"
 
 #include <algorithm>
+#include <span>
 
 namespace rmlcell {
 namespace {
@@ -26,17 +27,16 @@ void LineTable::Rebuild(std::string_view text) {
 // the end of the one behind it, whose end did not change.
 void LineTable::Replace(std::string_view text, std::size_t begin, std::size_t end,
                         std::size_t inserted) {
-  const std::size_t first = LineOf(begin > 0 ? begin - 1 : 0);
+  const std::size_t first = LineOf(std::max<std::size_t>(begin, 1) - 1);
   const std::size_t last = LineOf(end);
   const bool at_end = last + 1 == begins_.size();
-  const std::size_t old_stop = at_end ? 0 : begins_[last + 1];
-  const std::size_t stop = at_end ? text.size() : old_stop - (end - begin) + inserted;
+  const std::size_t stop = at_end ? text.size() : begins_[last + 1] - (end - begin) + inserted;
   std::vector<std::uint32_t> fresh;
   AppendBegins(text, begins_[first], stop, fresh);
   // The begin at `stop` itself is among the fresh ones: its line end lies before it.
-  const auto kept = std::min(last + (at_end ? 1U : 2U), begins_.size());
-  for (std::size_t line = kept; line < begins_.size(); ++line) {
-    begins_[line] = static_cast<std::uint32_t>(begins_[line] - (end - begin) + inserted);
+  const std::size_t kept = last + (at_end ? 1U : 2U);
+  for (std::uint32_t& line : std::span(begins_).subspan(kept)) {
+    line = static_cast<std::uint32_t>(line - (end - begin) + inserted);
   }
   const auto from = begins_.begin() + static_cast<std::ptrdiff_t>(first) + 1;
   const auto to = begins_.begin() + static_cast<std::ptrdiff_t>(kept);
@@ -51,11 +51,10 @@ void LineTable::Replace(std::string_view text, std::size_t begin, std::size_t en
 }
 
 std::size_t LineTable::End(std::string_view text, std::size_t line) const {
-  std::size_t end = line + 1 < begins_.size() ? begins_[line + 1] : text.size();
-  if (line + 1 == begins_.size()) return end;
-  --end;
-  if (text[end] == '\n' && end > begins_[line] && text[end - 1] == '\r') --end;
-  return end;
+  if (line + 1 == begins_.size()) return text.size();
+  const std::size_t next = begins_[line + 1];
+  const std::string_view with_end = text.substr(begins_[line], next - begins_[line]);
+  return next - (with_end.ends_with("\r\n") ? 2U : 1U);
 }
 
 std::size_t LineTable::LineOf(std::size_t offset) const {

@@ -33,10 +33,8 @@ bool AppendSmall(std::string& text, double value, int decimals) {
   const std::uint64_t power = kPowers[static_cast<std::size_t>(decimals)];
   const double scaled = std::abs(value) * static_cast<double>(power);
   if (!(scaled < kScaledMax)) return false;  // nor is NaN
-  const auto below = static_cast<std::uint64_t>(scaled);
-  const double rest = scaled - static_cast<double>(below);
-  if (std::abs(rest - 0.5) < kUnsure) return false;
-  const std::uint64_t rounded = below + (rest > 0.5 ? 1 : 0);
+  const auto rounded = static_cast<std::uint64_t>(scaled + 0.5);
+  if (std::abs(scaled - static_cast<double>(rounded)) > 0.5 - kUnsure) return false;
   std::array<char, 24> room;
   char* at = room.data() + room.size();
   std::uint64_t part = rounded % power;

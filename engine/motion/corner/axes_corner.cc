@@ -48,9 +48,9 @@ double AxesCorner::CutFor(double w) const {
   return 0.5 * w * std::max(1.5 * w * by_acceleration_s_, std::sqrt(6.0 * w * by_jerk_s2_));
 }
 
+// The jerk allows any speed where it has no limit.
 double AxesCorner::SpeedFor(double cut) const {
   const double by_acceleration = std::sqrt(2.0 * cut / (1.5 * by_acceleration_s_));
-  if (!(by_jerk_s2_ > 0.0)) return by_acceleration;
   return std::min(by_acceleration, std::cbrt(4.0 * cut * cut / (6.0 * by_jerk_s2_)));
 }
 

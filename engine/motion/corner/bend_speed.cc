@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "engine/core/indices.h"
+
 namespace rmlcell::motion {
 namespace {
 
@@ -152,7 +154,7 @@ std::array<double, BendStretches::kAbrupt> AbruptSpeeds(const BendSpeeds& speeds
   constexpr std::size_t kEach = BendSpeeds::kSteps / kHalf;
   static_assert(kEach * kHalf == BendSpeeds::kSteps && 2 * kHalf == BendStretches::kAbrupt);
   std::array<double, BendStretches::kAbrupt> most;
-  for (std::size_t k = 0; k < kHalf; ++k) {
+  for (const std::size_t k : Indices(kHalf)) {
     const auto first = speeds.most.begin() + static_cast<std::ptrdiff_t>(k * kEach);
     most[k] = *std::min_element(first, first + kEach + 1);
     most[most.size() - 1 - k] = most[k];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/indices.h"
 #include "engine/motion/geometry/corner_table.h"
 #include "engine/motion/kinematics/axes.h"
 
@@ -102,7 +103,7 @@ BendSpeeds Corner::PlainSpeeds(double cut, double top, const MachineLimits& mach
   const double by_jerk = std::cbrt(machine.normal_jerk() * cut * cut / curvature_);
   const double least = PlainSpeed(cut, machine);  // holds everywhere
   BendSpeeds speeds;
-  for (std::size_t k = 0; k < speeds.most.size(); ++k) {
+  for (const std::size_t k : IndicesOf(speeds.most)) {
     const double here =
         kBetween * std::min(by_curvature * half.by_curvature[k], by_jerk * half.by_jerk[k]);
     speeds.most[k] = std::min(std::max(here, least), top);

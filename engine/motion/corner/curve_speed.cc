@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/indices.h"
 #include "engine/motion/corner/corner.h"
 #include "engine/motion/geometry/least.h"
 #include "engine/motion/kinematics/axes.h"
@@ -48,14 +49,14 @@ class CurveDemand {
     const double per_mm = std::sqrt(per_square);
     const double along = dot(by_u, by_u_twice) * per_square;  // d(|p'|)/du over |p'|
     CurveRates::Values first, second;
-    for (std::size_t i = 0; i < first.size(); ++i) {
+    for (const std::size_t i : IndicesOf(first)) {
       first[i] = by_u[i] * per_mm;
       second[i] = (by_u_twice[i] - by_u[i] * along) * per_square;
     }
     const Swing swing =
         head_.SwingAt(SinesAt(u), {{}, first[3], first[4]}, {{}, second[3], second[4]});
     Demands demands;
-    for (std::size_t i = 0; i < first.size(); ++i) {
+    for (const std::size_t i : IndicesOf(first)) {
       const bool column = i < 3;
       const auto axis = static_cast<int>(i);
       demands[kAxisSpeed + i] = std::abs(first[i] + (column ? swing.first[axis] : 0.0));
@@ -90,7 +91,7 @@ class CurveDemand {
 
  private:
   // Where the curve stands still it asks for no number: nothing then.
-  static double Known(double demand) { return demand > 0.0 ? demand : 0.0; }
+  static double Known(double demand) { return std::max(0.0, demand); }
 
   HeadSines SinesAt(double u) const {
     const CornerCurve::HeadPlace at = curve_.HeadAt(u);
@@ -117,20 +118,18 @@ class LeastOnPart {
 
   double Find(double enough) {
     enough_ = enough;
+    CurveDemand::Demands most{};
     for (int k = 0; k <= intervals_; ++k) {
-      samples_[static_cast<std::size_t>(k)] = demand_.At(from_ + Place(k));
+      CurveDemand::Demands& sample = samples_[static_cast<std::size_t>(k)];
+      sample = demand_.At(from_ + Place(k));
+      for (const std::size_t i : IndicesOf(most)) most[i] = std::max(most[i], sample[i]);
+    }
+    for (const std::size_t i : IndicesOf(most)) {
+      best_ = std::min(best_, demand_.Speed(i, most[i]));  // infinite where nothing is asked
     }
     std::array<std::size_t, CurveDemand::kLimits> asked{};  // limits that may have a valley
     std::size_t count = 0;
-    CurveDemand::Demands most{};
-    for (int k = 0; k <= intervals_; ++k) {
-      const CurveDemand::Demands& sample = samples_[static_cast<std::size_t>(k)];
-      for (std::size_t i = 0; i < most.size(); ++i) most[i] = std::max(most[i], sample[i]);
-    }
-    for (std::size_t i = 0; i < most.size(); ++i) {
-      if (most[i] > 0.0) best_ = std::min(best_, demand_.Speed(i, most[i]));
-    }
-    for (std::size_t i = 0; i < most.size(); ++i) {
+    for (const std::size_t i : IndicesOf(most)) {
       // What is drawn on over a sample is at most twice what is asked there: as a share of the
       // speed.
       enough_demand_[i] = demand_.DemandFor(i, std::min(best_, enough_)) /
@@ -138,7 +137,7 @@ class LeastOnPart {
       if (most[i] > enough_demand_[i]) asked[count++] = i;
     }
     for (int k = 1; k < intervals_; ++k) {
-      for (std::size_t i = 0; i < count; ++i) LookAbout(asked[i], k);
+      for (const std::size_t i : Indices(count)) LookAbout(asked[i], k);
     }
     return best_;
   }
@@ -229,9 +228,9 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
   const double sharpest = curve.SlowestPlace();
   const double width = curve.Speed(sharpest) / curve.Derivative(sharpest, 2).point.norm();
   const double wanted = std::ceil(kPerWidth / width);
-  const int intervals = of_lines && wanted <= kCurveIntervalsMax
-                            ? std::max(static_cast<int>(wanted), kCurveIntervalsMin)
-                            : kCurveIntervalsMax;
+  const int few =
+      std::max(static_cast<int>(std::min(double{kCurveIntervalsMax}, wanted)), kCurveIntervalsMin);
+  const int intervals = of_lines ? few : kCurveIntervalsMax;
   const double least = LeastOnPart(demand, 0.0, 1.0, intervals).Find(enough);
   if (!(width * kCurveIntervalsMax < kPerWidth)) return least;
   // Near a cusp all happens between two samples.

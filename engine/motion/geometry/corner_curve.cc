@@ -4,15 +4,18 @@
 #include <cmath>
 #include <type_traits>
 
+#include "engine/core/indices.h"
+
 namespace rmlcell::motion {
 namespace {
 
 // Gauss-Legendre with eight points on [-1, 1]; the speed along a sharp corner is far from a
 // polynomial.
-constexpr std::array<double, 4> kNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                      0.9602898564975363};
-constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                        0.1012285362903763};
+constexpr std::array kNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                           0.9602898564975363};
+constexpr std::array kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                             0.1012285362903763};
+static_assert(kNode.size() == kWeight.size());
 
 // The quintic from p0 to p0 + h with these first and second derivatives at u = 0 and 1;
 // motion.md 4.2.
@@ -194,15 +197,15 @@ CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
 }
 
 CurveRates::CurveRates(const CornerCurve& curve) {
-  for (std::size_t k = 0; k < first_.size(); ++k) {
+  for (const std::size_t k : IndicesOf(first_)) {
     const MachineVector& tip = curve.tip_[k + 1];
     const double order = static_cast<double>(k + 1);
     const Values c{tip.x(), tip.y(), tip.z(), curve.a_[k + 1], curve.b_[k + 1], 0.0};
-    for (std::size_t i = 0; i < c.size(); ++i) first_[k][i] = order * c[i];
-    if (k == 0) continue;
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      second_[k - 1][i] = static_cast<double>(k) * first_[k][i];
-    }
+    for (const std::size_t i : IndicesOf(c)) first_[k][i] = order * c[i];
+  }
+  for (const std::size_t k : IndicesOf(second_)) {
+    const double order = static_cast<double>(k + 1);
+    for (const std::size_t i : IndicesOf(second_[k])) second_[k][i] = order * first_[k + 1][i];
   }
 }
 
@@ -215,24 +218,24 @@ double CornerCurve::Integral(double from, double to) const {
   const double middle = 0.5 * (from + to);
   const double half = 0.5 * (to - from);
   std::array<double, kPlaces> u;
-  for (std::size_t k = 0; k < kNode.size(); ++k) {
+  for (const std::size_t k : IndicesOf(kNode)) {
     u[2 * k] = middle - half * kNode[k];
     u[2 * k + 1] = middle + half * kNode[k];
   }
   std::array<std::array<double, kPlaces>, 3> rate;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (const std::size_t axis : IndicesOf(rate)) {
     const auto i = static_cast<Eigen::Index>(axis);
     const std::array<double, 5> c{tip_[1][i], tip_[2][i] * 2.0, tip_[3][i] * 3.0, tip_[4][i] * 4.0,
                                   tip_[5][i]};
-    for (std::size_t k = 0; k < kPlaces; ++k)
+    for (const std::size_t k : IndicesOf(u))
       rate[axis][k] = c[0] + (c[1] + (c[2] + (c[3] + c[4] * (5.0 * u[k])) * u[k]) * u[k]) * u[k];
   }
   std::array<double, kPlaces> speed;
-  for (std::size_t k = 0; k < kPlaces; ++k)  // added as norm() adds them
+  for (const std::size_t k : IndicesOf(speed))  // added as norm() adds them
     speed[k] =
         std::sqrt(rate[0][k] * rate[0][k] + rate[1][k] * rate[1][k] + rate[2][k] * rate[2][k]);
   double sum = 0.0;
-  for (std::size_t k = 0; k < kNode.size(); ++k)
+  for (const std::size_t k : IndicesOf(kNode))
     sum += kWeight[k] * (speed[2 * k] + speed[2 * k + 1]);
   return half * sum;
 }
@@ -286,7 +289,7 @@ void CornerLength::ChoosePanels(const CornerCurve& curve) {
   constexpr std::size_t kSide = kPanelsMax / 2;
   constexpr double kShrink = 0.3;
   double share = 1.0;
-  for (std::size_t k = 0; k < kSide; ++k) {
+  for (const std::size_t k : Indices(kSide)) {
     edge_[k] = where * (1.0 - share);
     edge_[kPanelsMax - k] = where + (1.0 - where) * share;
     share *= kShrink;
@@ -301,9 +304,8 @@ CornerLength::CornerLength(const CornerCurve& curve) {
     return;
   }
   ChoosePanels(curve);
-  for (std::size_t k = 0; k < panels_; ++k) {
-    const bool wide = edge_[k + 1] > edge_[k];
-    reached_[k + 1] = reached_[k] + (wide ? curve.Integral(edge_[k], edge_[k + 1]) : 0.0);
+  for (const std::size_t k : Indices(panels_)) {
+    reached_[k + 1] = reached_[k] + curve.Integral(edge_[k], edge_[k + 1]);
   }
 }
 

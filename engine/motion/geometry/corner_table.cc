@@ -1,5 +1,6 @@
 #include "engine/motion/geometry/corner_table.h"
 
+#include "engine/core/indices.h"
 #include "engine/motion/geometry/corner_nodes.h"
 
 namespace rmlcell::motion {
@@ -35,7 +36,7 @@ MeasureNodes::Terms MeasureTerms(double half_sine_square) {
   const CubicWeights w(x - k);
   const MeasureNodes::Terms* at = &kMeasureNodes.terms[static_cast<std::size_t>(k)];
   MeasureNodes::Terms terms;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
+  for (const std::size_t i : IndicesOf(terms)) {
     terms[i] = at[-1][i] * w.before + at[0][i] * w.here + at[1][i] * w.after + at[2][i] * w.beyond;
   }
   return terms;
@@ -57,7 +58,7 @@ HalfCorner CornerHalf(double half_sine, double half_cosine) {
   const auto t = static_cast<float>(between.t);
   const HalfNodes::Node* at = &kHalfNodes.nodes[between.k];
   HalfCorner half;
-  for (std::size_t i = 0; i < half.by_curvature.size(); ++i) {
+  for (const std::size_t i : IndicesOf(half.by_curvature)) {
     half.by_curvature[i] =
         kRoom * (at[0].by_curvature[i] + (at[1].by_curvature[i] - at[0].by_curvature[i]) * t);
     half.by_jerk[i] = kRoom * (at[0].by_jerk[i] + (at[1].by_jerk[i] - at[0].by_jerk[i]) * t);

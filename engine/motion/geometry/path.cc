@@ -17,21 +17,18 @@ bool IsFinite(const MachinePoint& p) {
 }  // namespace
 
 PathPiece PathPiece::Line(const TipPose& from, const TipPose& to) {
-  PathPiece piece;
+  PathPiece piece;  // a line of no length
   piece.from_ = from;
   piece.to_ = to;
   const double distance = (from.tip - to.tip).norm();
   if (distance > kTipLengthZero_mm) {
-    piece.kind_ = Kind::kLine;
     piece.length_ = distance;
     piece.tangent_ = (to.tip - from.tip) * (1.0 / distance);
   } else if (from.a_rad != to.a_rad || from.b_rad != to.b_rad) {
     piece.kind_ = Kind::kRotary;
     piece.length_ = 1.0;
-  } else {
-    piece.length_ = 0.0;
-    if (!(distance <= kTipLengthZero_mm))
-      piece.length_ = distance;  // not a number: keep it visible
+  } else if (std::isnan(distance)) {
+    piece.length_ = distance;  // keep it visible
   }
   return piece;
 }
@@ -135,7 +132,6 @@ void PathPiece::AssignPartOffLine(const PathPiece& whole, double s_from, double 
   length_ = s_to - s_from;
   from_ = whole.At(s_from);
   to_ = whole.At(s_to);
-  tangent_ = whole.tangent_;
   if (kind_ == Kind::kArc) {
     shape_ = whole.shape_;
     ArcShape& part = *std::get_if<ArcShape>(&shape_);

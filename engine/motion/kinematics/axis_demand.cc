@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/core/indices.h"
 #include "engine/core/units.h"
 #include "engine/motion/geometry/least.h"
 #include "engine/motion/kinematics/axes.h"
@@ -132,7 +133,7 @@ std::optional<PathLimits> LimitsOnShortTurn(const PathPiece& path, const Head& h
   std::array<AxisDerivatives, kPartsMax> around;
   PathLimits sure = limits;  // kept all along
   PathLimits most = limits;  // more than the places looked at allow there is not
-  for (std::size_t k = 0; k < parts; ++k) {
+  for (const std::size_t k : Indices(parts)) {
     const double s = path.length() * (static_cast<double>(k) + 0.5) * share;
     at[k] = around[k] = ThroughHead(head, path.At(s), first, {});
     AxisDerivatives& q = around[k];
@@ -147,7 +148,7 @@ std::optional<PathLimits> LimitsOnShortTurn(const PathPiece& path, const Head& h
     sure.jerk = std::min(sure.jerk, Least(JerksAllowed(q, axes, shares)));
     most.jerk = std::min(most.jerk, Least(JerksAllowed(at[k], axes, shares)));
   }
-  for (std::size_t k = 0; k < parts; ++k) {
+  for (const std::size_t k : Indices(parts)) {
     if (Allows(around[k], axes, shares, sure)) continue;
     const auto allowed = [&](const AxisDerivatives& q) {
       return Least(AccelerationsAllowed(q, axes, shares, sure.speed));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/units.h"
+#include "engine/motion/kinematics/axes.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -43,14 +44,13 @@ void ForEachRangePoint(const PathPiece& path, Look look) {
   if (!arc) return;
 
   // Where the circle is farthest along X, Y and Z: tangent(x) = t cos x + c sin x has no such
-  // component.
+  // component. The first such place may lie before the arc: that is its start, once more.
   const MachineVector t = path.Tangent(0.0);
   const MachineVector c = path.Curvature(0.0) * path.radius_mm();
   for (const auto& [along, inward] :
        {std::pair{t.x(), c.x()}, std::pair{t.y(), c.y()}, std::pair{t.z(), c.z()}}) {
-    double angle = std::atan2(-along, inward);
-    if (angle < 0.0) angle += kPi;
-    for (; angle < path.sweep_rad(); angle += kPi) look(angle * path.radius_mm());
+    for (double angle = std::atan2(-along, inward); angle < path.sweep_rad(); angle += kPi)
+      look(angle * path.radius_mm());
   }
 }
 
@@ -151,10 +151,8 @@ AxisPose Jogged(const AxisPose& from, const Head& head, const Jog& jog) {
 TravelExcess WorstExcess(const AxisPose& pose, const AxisLimits& limits) {
   const AxisValues values = Together(pose.column, pose.a_rad, pose.b_rad);
   TravelExcess worst;
-  for (int axis = 0; axis < kAxisCount; ++axis) {
-    const auto i = static_cast<std::size_t>(axis);
-    const double excess = ExcessOf(i, values[i], limits);
-    KeepWorse(worst, {excess > 0.0 ? axis : -1, excess});
+  for (const std::size_t i : kAxes) {
+    KeepWorse(worst, {static_cast<int>(i), ExcessOf(i, values[i], limits)});
   }
   return worst;
 }
@@ -177,7 +175,7 @@ std::array<PlacedExcess, kAxisCount> ExcessOfEach(const PathPiece& path, const H
   ForEachRangePoint(path, [&](double s) {
     const AxisPose pose = AxesAt(path, head, s);
     const AxisValues values = Together(pose.column, pose.a_rad, pose.b_rad);
-    for (std::size_t i = 0; i < worst.size(); ++i) {
+    for (const std::size_t i : kAxes) {
       const double excess = ExcessOf(i, values[i], limits);
       if (excess > worst[i].excess) worst[i] = {excess, s};
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/motion/kinematics/axes.h"
 #include "engine/motion/kinematics/axis_demand.h"
 
 namespace rmlcell::motion {
@@ -21,6 +22,7 @@ constexpr double kBendShare = 0.5;
 SpeedBound TightestBound(const PathPiece& path, const Head& head, const MachineLimits& machine,
                          double enough) {
   SpeedBound tightest{.speed = enough};
+  // What is not asked for anything allows any speed.
   const auto keep = [&tightest](SpeedBound::Cause cause, int axis, double speed) {
     if (speed < tightest.speed) tightest = {cause, axis, speed};
   };
@@ -45,22 +47,17 @@ SpeedBound TightestBound(const PathPiece& path, const Head& head, const MachineL
     if (arc) {  // what the bend takes of the axes by itself; with a steady head all that is taken
       const MachineVector bend = path.Second(s).point;
       for (const auto& [axis, value] : {std::pair{0, bend.x()}, {1, bend.y()}, {2, bend.z()}}) {
-        if (value == 0.0) continue;
         const double acceleration = machine.axes.acceleration[static_cast<std::size_t>(axis)];
         keep(SpeedBound::Cause::kRadius, -1,
              std::sqrt(kBendShare * acceleration / std::abs(value)));
       }
     }
     const AxisDerivatives q = DerivativesAt(path, head, s);
-    for (int axis = 0; axis < kAxisCount; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
-      if (q.first[i] != 0.0) {
-        keep(SpeedBound::Cause::kAxis, axis, machine.axes.speed[i] / std::abs(q.first[i]));
-      }
-      if (q.second[i] != 0.0) {
-        keep(SpeedBound::Cause::kAxis, axis,
-             std::sqrt(kBendShare * machine.axes.acceleration[i] / std::abs(q.second[i])));
-      }
+    for (const std::size_t i : kAxes) {
+      const auto axis = static_cast<int>(i);
+      keep(SpeedBound::Cause::kAxis, axis, machine.axes.speed[i] / std::abs(q.first[i]));
+      keep(SpeedBound::Cause::kAxis, axis,
+           std::sqrt(kBendShare * machine.axes.acceleration[i] / std::abs(q.second[i])));
     }
   }
   return tightest;

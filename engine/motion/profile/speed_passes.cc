@@ -1,6 +1,7 @@
 #include "engine/motion/profile/speed_passes.h"
 
 #include <algorithm>
+#include <span>
 
 #include "engine/core/check.h"
 
@@ -61,10 +62,9 @@ void SpeedPasses::Accept(std::size_t count) {
   // The knots after it were planned forward from a faster one.
   Knot& last = knots_[first_ + count - 1];
   last_forward_ = last.speed;
-  for (std::size_t k = first_ + count; k < knots_.size(); ++k) {
-    knots_[k].forward =
-        Reachable(last_forward_, knots_[k].length, knots_[k].limits, knots_[k].forward);
-    last_forward_ = knots_[k].forward;
+  for (Knot& knot : std::span(knots_).subspan(first_ + count)) {
+    knot.forward = Reachable(last_forward_, knot.length, knot.limits, knot.forward);
+    last_forward_ = knot.forward;
   }
   last.forward = last.speed;
   final_ = count;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace rmlcell::motion {
 namespace {
@@ -87,17 +88,16 @@ class RampLengthByRoot {
     const double time = up / a_ + edge_;
     return {mean * time, (0.5 * time + mean / a_) * 2.0 * y};
   }
-  // Down by `drop` + y^2 to `low`.
+  // Down by `drop` + y^2 to `low`; y above 0.
   ValueAndSlope Down(double low, double drop, double y) const {
     const double down = drop + y * y;
     const double mean = low + 0.5 * down;
-    const bool moves = down > 0.0 && y > 0.0;
     if (down <= short_) {
       const double root = std::sqrt(down / j_);
-      return {2.0 * mean * root, moves ? (root + mean / (root * j_)) * 2.0 * y : 0.0};
+      return {2.0 * mean * root, (root + mean / (root * j_)) * 2.0 * y};
     }
     const double time = down / a_ + edge_;
-    return {mean * time, moves ? (0.5 * time + mean / a_) * 2.0 * y : 0.0};
+    return {mean * time, (0.5 * time + mean / a_) * 2.0 * y};
   }
 
  private:
@@ -112,33 +112,30 @@ double PeakRise(double length, double top, double drop, const PathLimits& limits
   const double a = limits.acceleration;
   const double j = limits.jerk;
   if (top == 0.0) {  // rest to rest: closed
-    if (std::isinf(j)) return std::sqrt(a * length);
     if (length < 2.0 * a * a * a / (j * j)) return std::cbrt(0.25 * j * length * length);
-    const double b = a * a / j;
+    const double b = a * a / j;  // 0 without a limit on jerk
     return 0.5 * (std::sqrt(b * b + 4.0 * a * length) - b);
   }
   // By y = sqrt(rise) both ramp lengths are smooth, increasing and convex.
   const double low = top - drop;
   const double high = std::sqrt(std::max(limits.speed - top, 0.0));
-  double y = 0.0;
   if (std::isinf(j)) {
     const auto both = [&](double root) {
       const double up = root * root;
       const double down = drop + up;
-      const double low_slope = down > 0.0 && root > 0.0 ? (low + down) / a * 2.0 * root : 0.0;
       return ValueAndSlope{(top + 0.5 * up) * up / a + (low + 0.5 * down) * down / a,
-                           (top + up) / a * 2.0 * root + low_slope};
+                           (top + up) / a * 2.0 * root + (low + down) / a * 2.0 * root};
     };
-    y = Root(both, length, high);
-  } else {
-    const RampLengthByRoot ramp(limits);
-    const auto both = [&](double root) {
-      const ValueAndSlope up = ramp.Up(top, root);
-      const ValueAndSlope down = ramp.Down(low, drop, root);
-      return ValueAndSlope{up.value + down.value, up.slope + down.slope};
-    };
-    y = Root(both, length, high);
+    const double y = Root(both, length, high);
+    return y * y;
   }
+  const RampLengthByRoot ramp(limits);
+  const auto both = [&](double root) {
+    const ValueAndSlope up = ramp.Up(top, root);
+    const ValueAndSlope down = ramp.Down(low, drop, root);
+    return ValueAndSlope{up.value + down.value, up.slope + down.slope};
+  };
+  const double y = Root(both, length, high);
   return y * y;
 }
 
@@ -148,8 +145,7 @@ double Reach(double v0, double length, const PathLimits& limits) {
   const double a = limits.acceleration;
   const double j = limits.jerk;
   if (!(length > 0.0)) return v0;
-  if (std::isinf(j)) return std::sqrt(v0 * v0 + 2.0 * a * length);
-  const double b = a * a / j;
+  const double b = a * a / j;  // 0 without a limit on jerk: then v^2 = v0^2 + 2 a length
   if ((v0 + 0.5 * b) * (2.0 * a / j) <= length) {
     const double c = v0 * b - v0 * v0 - 2.0 * a * length;
     return 0.5 * (std::sqrt(b * b - 4.0 * c) - b);
@@ -157,7 +153,7 @@ double Reach(double v0, double length, const PathLimits& limits) {
   // y^3 + 2 v0 y = length sqrt(j): Newton from above, where the cubic is convex. Leaving out either
   // term gives an upper bound, and the lower of the two is within a factor 1.5 of the root.
   const double want = length * std::sqrt(j);
-  double y = v0 > 0.0 ? want / (2.0 * v0) : HUGE_VAL;
+  double y = want / (2.0 * v0);  // infinite from rest
   if (!(y * y <= 2.0 * v0)) y = std::cbrt(want);
   if (v0 > 0.0) {
     constexpr int kStepsMax = 8;  // 5 do, with the guess above
@@ -175,7 +171,6 @@ double Reach(double v0, double length, const PathLimits& limits) {
 double ReachMinimum(double v0_low, double v0_high, double length, const PathLimits& limits) {
   const double a = limits.acceleration;
   const double j = limits.jerk;
-  if (std::isinf(j)) return Reach(v0_low, length, limits);
   const double b = a * a / j;
   // Where the derivative of Reach by v0 is 0: y^2 = 2 v0 in the short regime, v0 = b / 2 in the
   // other.
@@ -202,7 +197,7 @@ SpeedProfile SpeedProfile::OneRamp(double v0, double v1, const PathLimits& limit
   profile.peak_speed_ = std::max(v0, v1);
   profile.end_ = {RampLength(v0, v1, limits), v1, 0.0};
   PathState state{0.0, v0, 0.0};
-  profile.AddRamp(state, std::abs(v1 - v0), v1 < v0 ? -1.0 : 1.0, v1, limits);
+  profile.AddRamp(state, std::abs(v1 - v0), std::copysign(1.0, v1 - v0), v1, limits);
   return profile;
 }
 
@@ -213,7 +208,7 @@ SpeedProfile SpeedProfile::From(const PathState& state, double end_s, double v1,
   profile.peak_speed_ = state.speed;
   PathState now = state;
   if (now.acceleration != 0.0 && std::isfinite(limits.jerk)) {
-    const double sign = now.acceleration > 0.0 ? 1.0 : -1.0;
+    const double sign = std::copysign(1.0, now.acceleration);
     profile.AddPhase(now, sign * now.acceleration / limits.jerk, now.acceleration,
                      -sign * limits.jerk);
   }
@@ -256,12 +251,11 @@ void SpeedProfile::AddSpan(PathState& state, double end_s, double v1, const Path
       state.speed = v1;
       return;
     }
-    const double sign = v1 > v0 ? 1.0 : -1.0;
     const double edge = ramp.edge_s * squeeze;
-    const double a = sign * ramp.acceleration / squeeze;
-    if (edge > 0.0) AddPhase(state, edge, 0.0, a / edge);
+    const double a = std::copysign(ramp.acceleration, v1 - v0) / squeeze;
+    AddPhase(state, edge, 0.0, a / edge);
     AddPhase(state, time - 2.0 * edge, a, 0.0);
-    if (edge > 0.0) AddPhase(state, edge, a, -a / edge);
+    AddPhase(state, edge, a, -a / edge);
     return;
   }
 
@@ -278,11 +272,12 @@ void SpeedProfile::AddSpan(PathState& state, double end_s, double v1, const Path
   peak_speed_ = std::max(peak_speed_, peak);
   if (!(peak > 0.0)) return;  // a length that underflows
 
-  AddRamp(state, v0 < v1 ? drop + rise : rise, 1.0, peak, limits);
+  AddRamp(state, rise + std::max(v1 - v0, 0.0), 1.0, peak, limits);
   if (cruise > kRoundingRoom * length) AddPhase(state, cruise / peak, 0.0, 0.0);
-  AddRamp(state, v0 < v1 ? rise : drop + rise, -1.0, v1, limits);
+  AddRamp(state, rise + std::max(v0 - v1, 0.0), -1.0, v1, limits);
 }
 
+// Nothing where it takes no time.
 void SpeedProfile::AddPhase(PathState& state, double duration_s, double acceleration, double jerk) {
   if (!(duration_s > 0.0)) return;
   state.acceleration = acceleration;
@@ -298,13 +293,9 @@ void SpeedProfile::AddRamp(PathState& state, double change, double sign, double 
                            const PathLimits& limits) {
   const Ramp ramp = RampOf(change, limits);
   const double a = sign * ramp.acceleration;
-  if (ramp.edge_s == 0.0) {
-    AddPhase(state, ramp.duration_s, a, 0.0);
-  } else {
-    AddPhase(state, ramp.edge_s, 0.0, sign * limits.jerk);
-    AddPhase(state, ramp.duration_s - 2.0 * ramp.edge_s, a, 0.0);
-    AddPhase(state, ramp.edge_s, a, -sign * limits.jerk);
-  }
+  AddPhase(state, ramp.edge_s, 0.0, sign * limits.jerk);
+  AddPhase(state, ramp.duration_s - 2.0 * ramp.edge_s, a, 0.0);
+  AddPhase(state, ramp.edge_s, a, -sign * limits.jerk);
   state.speed = to_speed;  // exactly, whatever the phases added up to
 }
 
@@ -385,8 +376,7 @@ SpeedProfile SpeedProfile::Scaled(double factor) const {
     state = {state.s * factor, state.speed * factor, state.acceleration * factor};
   };
   SpeedProfile scaled = *this;
-  for (int k = 0; k < count_; ++k) {
-    Phase& phase = scaled.phases_[static_cast<std::size_t>(k)];
+  for (Phase& phase : std::span(scaled.phases_).first(static_cast<std::size_t>(count_))) {
     phase.jerk *= factor;
     scale(phase.start);
   }

@@ -51,6 +51,15 @@ TEST(Alignment, EmptyAndEqualSequences) {
   EXPECT_EQ(Align(Keys{1, 2}, Keys{1, 2}), (std::vector<AlignedPair>{{0, 0}, {1, 1}}));
 }
 
+// Equal keys at both ends belong together once, and what is new between them to nothing.
+TEST(Alignment, BothEndsAreEqual) {
+  using Pairs = std::vector<AlignedPair>;
+  EXPECT_EQ(Align(Keys{1, 2, 3}, Keys{1, 9, 3}), (Pairs{{0, 0}, {2, 2}}));
+  EXPECT_EQ(Align(Keys{1, 3}, Keys{1, 3, 1, 3}), (Pairs{{0, 0}, {1, 1}}));
+  EXPECT_EQ(Align(Keys{1, 7, 2, 8, 3}, Keys{1, 2, 3}), (Pairs{{0, 0}, {2, 1}, {4, 2}}));
+  EXPECT_EQ(Align(Keys{7, 2, 8}, Keys{9, 2}), (Pairs{{1, 1}}));
+}
+
 // Beyond the limit it stays right: what is paired is equal and in order, ends are found.
 TEST(Alignment, ManyDifferencesAreBounded) {
   Keys a(20'000), b(20'000);

@@ -316,6 +316,13 @@ TEST(Catalogue, CodesAreWrittenWithTheirFamily) {
   EXPECT_EQ(ConstantName(ErrorCode::kHoleRadiusZero), "HOLE_RADIUS_ZERO");
   EXPECT_EQ(ConstantName(ErrorCode::kGas3NotFitted), "GAS_3_NOT_FITTED");
   EXPECT_EQ(ConstantName(ErrorCode::kRml1UnknownCommand), "RML1_UNKNOWN_COMMAND");
+  EXPECT_EQ(ConstantName(ErrorCode::kRml1Z0Moved), "RML1_Z0_MOVED");
+}
+
+TEST(CatalogueDeathTest, WhatIsNoCodeStops) {
+  const auto past_the_last = static_cast<ErrorCode>(Catalogue().size());
+  EXPECT_DEATH((void)Lookup(past_the_last), "check failed");
+  EXPECT_DEATH((void)Lookup(OwnError(OwnErrorTable("PLT"), 0)), "check failed");
 }
 
 std::vector<std::string> Found(std::string_view text) {

@@ -180,6 +180,13 @@ TEST(Diagnostic, UnderlinesNoMoreThanThereIs) {
   EXPECT_THAT(FormatDiagnostic(At(2, 5), "A\r\nSTOP\r\n"), EndsWith("\n  STOP\n      ^"));
 }
 
+// Fifty bytes before a place that lies beyond its line, as far as there are any.
+TEST(Diagnostic, BeyondALineItsLastBytesAreShown) {
+  const std::string line(50, 'x');
+  EXPECT_THAT(FormatDiagnostic(At(1, 100), line), testing::EndsWith("\n  x\n   ^"));
+  EXPECT_THAT(FormatDiagnostic(At(1, 101), line), Not(HasSubstr("\n")));
+}
+
 // Bytes below 0x20 but the tabulator, and 0x7F; 0x20, 0x7E and those of other alphabets are shown.
 TEST(Diagnostic, ShowsWhatATerminalDoesNotActOn) {
   EXPECT_THAT(FormatDiagnostic(At(1, 1), "\x1F \x1E\t~\x7F\xC3\xA4"),

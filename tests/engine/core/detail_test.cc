@@ -80,6 +80,10 @@ TEST(Detail, GrowsByEveryKindOfText) {
   EXPECT_EQ(ArgumentsText(detail), "limit=5 s step=3");
   detail += Detail(detail);
   EXPECT_EQ(detail.arguments().size(), 4U);
+  Detail twice = Told("step", 3);
+  twice += twice;
+  EXPECT_EQ(twice, "33");
+  EXPECT_EQ(ArgumentsText(twice), "step=3 step=3");
 }
 
 TEST(Detail, WhatIsMovedOrHandedOnKeepsItsArguments) {

@@ -22,10 +22,10 @@ TEST(Hex, NumbersHaveNoLeadingZeros) {
 }
 
 TEST(Hex, DigitsOfEitherCase) {
-  EXPECT_EQ(HexValue('0'), 0U);
-  EXPECT_EQ(HexValue('9'), 9U);
-  EXPECT_EQ(HexValue('a'), 10U);
-  EXPECT_EQ(HexValue('F'), 15U);
+  for (unsigned value = 0; value < 16; ++value) {
+    EXPECT_EQ(HexValue("0123456789abcdef"[value]), value);
+    EXPECT_EQ(HexValue("0123456789ABCDEF"[value]), value);
+  }
   for (const char none : {'/', ':', '@', 'G', '`', 'g', '\0'}) EXPECT_FALSE(HexValue(none));
 }
 

@@ -22,6 +22,12 @@ TEST(TextFixes, AreAppliedFromTheFrontWhateverTheirOrder) {
   EXPECT_EQ(Fixed({{{10, 0, "end"}}, {{0, 0, "begin"}}}), "begin0123456789end");
 }
 
+// Where two fixes of one finding overlap the one that begins first counts.
+TEST(TextFixes, OfOneFindingMayOverlap) {
+  EXPECT_EQ(Fixed({{{3, 2, "c"}, {2, 3, "ab"}}}), "01ab56789");
+  EXPECT_EQ(Fixed({{{2, 1, "a"}, {3, 1, "b"}}}), "01ab456789");
+}
+
 // What does not fit into the text, or touches the repair of an earlier finding, is left alone; a
 // finding is repaired whole or not at all.
 TEST(TextFixes, OfFindingsThatMeetTheEarlierIsRepaired) {

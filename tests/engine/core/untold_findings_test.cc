@@ -35,6 +35,49 @@ TEST(UntoldFindings, EachKindHasItsNumberAndItsExtent) {
   EXPECT_EQ(untold.kinds().at(ErrorCode::kRml1LogCut).count, 1U);
 }
 
+// What is kept of a place: code, severity, file, program, step and span.
+TEST(UntoldFindings, APlaceIsKeptWithoutItsTexts) {
+  Diagnostic finding = At(ErrorCode::kRml1Clipped, 7, 12);
+  finding.file = "part.rml";
+  finding.rule = "RML1-4.20";
+  finding.step = 3;
+  finding.judged = Judged::kDoubtful;
+  finding.at = SimTime(5);
+  UntoldFindings untold;
+  untold.Add(finding, SimTime(5));
+  Diagnostic place = finding;
+  place.detail = {};
+  place.rule = {};
+  place.judged = Judged::kNo;
+  place.at = {};
+  EXPECT_EQ(untold.kinds().at(ErrorCode::kRml1Clipped),
+            (GatheredFindings{.code = ErrorCode::kRml1Clipped,
+                              .severity = Severity::kAdvice,
+                              .judged = Judged::kDoubtful,
+                              .count = 1,
+                              .first = place,
+                              .last = place,
+                              .last_at = SimTime(5)}));
+}
+
+// Of several at one place the first is the first one and the last the last one.
+TEST(UntoldFindings, OfOnePlaceInTheOrderInWhichTheyCome) {
+  UntoldFindings untold;
+  for (const int length : {1, 2, 3}) {
+    Diagnostic finding = At(ErrorCode::kRml1Clipped, 7);
+    finding.where.length = length;
+    untold.Add(finding);
+  }
+  EXPECT_EQ(untold.kinds().at(ErrorCode::kRml1Clipped).first.where.length, 1);
+  EXPECT_EQ(untold.kinds().at(ErrorCode::kRml1Clipped).last.where.length, 3);
+}
+
+TEST(UntoldFindings, NoFindingsAddNoKind) {
+  UntoldFindings untold;
+  untold.Add(GatheredFindings{.code = ErrorCode::kRml1Clipped});
+  EXPECT_EQ(untold, UntoldFindings());
+}
+
 // A program with a lower slot comes first, then the line, then the byte: a stream may be one line.
 TEST(UntoldFindings, PlacesAreInOrderOfProgramLineAndByte) {
   UntoldFindings untold;
@@ -47,6 +90,22 @@ TEST(UntoldFindings, PlacesAreInOrderOfProgramLineAndByte) {
   EXPECT_EQ(kind.first.program, 7);
   EXPECT_EQ(kind.last.program, 8);
   EXPECT_EQ(kind.last.where.byte_offset, 500);
+}
+
+// On one byte by column, then by step: a line may be passed many times.
+TEST(UntoldFindings, PlacesOfOneByteAreInOrderOfColumnAndStep) {
+  UntoldFindings untold;
+  for (const auto& [column, step] : {std::pair{3, 5}, {3, 2}, {4, 1}, {4, 9}, {4, 3}}) {
+    Diagnostic finding = At(ErrorCode::kRml1Clipped, 1);
+    finding.where.column = column;
+    finding.step = step;
+    untold.Add(finding);
+  }
+  const GatheredFindings& kind = untold.kinds().at(ErrorCode::kRml1Clipped);
+  EXPECT_EQ(kind.first.where.column, 3);
+  EXPECT_EQ(kind.first.step, 2);
+  EXPECT_EQ(kind.last.where.column, 4);
+  EXPECT_EQ(kind.last.step, 9);
 }
 
 // Two lists together are as if one list had had no room for all of them.

@@ -152,6 +152,60 @@ TEST(AxesCorner, StraightOnAndBack) {
   EXPECT_EQ(FirstCorner(mixed).passage, Passage::kStopNeighbour);
 }
 
+// motion.md 1 and 4.5: a change of up to 1e-6 of the speed of an axis is none, of any of them.
+TEST(AxesCorner, TheLeastChangeOfSpeed) {
+  MachineLimits machine = StandardMachine();
+  machine.axes.speed.fill(1e6);
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const auto passage = [&](double speed) {  // 3 of every axis, then 3 of all but this one
+      const AxisPose to{{3, 3, 3}, 3, 3};
+      AxisPose beyond{{6, 6, 6}, 6, 6};
+      (axis == 0   ? beyond.column.x()
+       : axis == 1 ? beyond.column.y()
+       : axis == 2 ? beyond.column.z()
+       : axis == 3 ? beyond.a_rad
+                   : beyond.b_rad) = 3 + speed;
+      return AxesCorner(PathPiece::Joint({}, to), PathPiece::Joint(to, beyond), 1.0, machine)
+          .passage();
+    };
+    EXPECT_EQ(passage(4.0), Passage::kThrough) << axis;
+    EXPECT_EQ(passage(2.0), Passage::kThrough) << axis;
+    EXPECT_EQ(passage(4.0625), Passage::kBlend) << axis;
+    EXPECT_EQ(passage(1.9375), Passage::kBlend) << axis;
+  }
+  const auto along_x = [&](double speed) {
+    return AxesCorner(PathPiece::Joint({}, {{2, 0, 0}}),
+                      PathPiece::Joint({{2, 0, 0}}, {{2 + speed, 0, 0}}), 1.0, machine)
+        .passage();
+  };
+  EXPECT_EQ(along_x(-1.0), Passage::kStopReversal);
+}
+
+// motion.md 4.5: T_b = max(1.5 w dq/(alpha A), sqrt(6 w dq/(alpha J))), a cut of w T_b / 2, and
+// back.
+TEST(AxesCorner, CutAndShareBelongTogether) {
+  MachineLimits machine = StandardMachine();
+  machine.axes.acceleration.fill(2000.0);
+  machine.axes.jerk.fill(40000.0);
+  const PathPiece before = PathPiece::Joint({}, {{250, 0, 0}});
+  const PathPiece after = PathPiece::Joint({{250, 0, 0}}, {{250, 250, 0}});
+  for (const double alpha : {1.0, 0.1}) {
+    const AxesCorner corner(before, after, alpha, machine);
+    EXPECT_EQ(corner.passage(), Passage::kBlend);
+    for (const double w : {0.01, 0.5, 1.0}) {
+      const double bend_s = std::max(1.5 * w * 250.0 / (alpha * 2000.0),
+                                     std::sqrt(6.0 * w * 250.0 / (alpha * 40000.0)));
+      EXPECT_NEAR(corner.CutFor(w), 0.5 * w * bend_s, 1e-15);
+      EXPECT_NEAR(corner.SpeedFor(corner.CutFor(w)), w, 1e-12);
+    }
+  }
+  machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  const AxesCorner abrupt(before, after, 1.0, machine);
+  EXPECT_NEAR(abrupt.CutFor(0.5), 0.25 * 1.5 * 0.5 * 250.0 / 2000.0, 1e-15);
+  EXPECT_NEAR(abrupt.SpeedFor(abrupt.CutFor(0.5)), 0.5, 1e-12);
+  EXPECT_EQ(abrupt.SpeedFor(0.0), 0.0);
+}
+
 std::vector<MoveCommand> RandomAxesChain(Dice& dice) {
   std::vector<MoveCommand> chain;
   const int count = static_cast<int>(dice.Uniform(1.0, 12.0));

@@ -253,6 +253,49 @@ TEST(RampsFitByBounds, OnlyWhereEveryRampDoes) {
   EXPECT_GT(near, 500);
 }
 
+// Figures for which all bounds are exact: with x the step, the speed is at most f + x^2 growth, and
+// from rest the cube root of 4.5 j x^2.
+TEST(RampsFitByBounds, UpToTheBoundsThemselves) {
+  const auto fit = [](std::vector<double> most, double jerk, double fastest, double to) {
+    return RampsFitByBounds(most, 1.0, jerk, fastest, to);
+  };
+  // From rest 6 after one step: the limit begins flat, and behind it none is faster than 6.
+  EXPECT_TRUE(fit({6, 6, 6}, 48.0, 4.0, 6.0));
+  EXPECT_FALSE(fit({5.99, 6, 6}, 48.0, 4.0, 6.0));
+  EXPECT_FALSE(fit({6, 5.99, 6}, 48.0, 4.0, 5.0));
+  EXPECT_FALSE(fit({6, 6, 5.99}, 48.0, 4.0, 6.0));
+  // From 2 mm/s at most 8 after one step.
+  EXPECT_TRUE(fit({6, 8, 8}, 48.0, 2.0, 8.0));
+  EXPECT_FALSE(fit({6, 7.99, 8}, 48.0, 2.0, 7.0));
+  // At most 2 + 4 after two.
+  EXPECT_TRUE(fit({10, 10, 6}, 8.0, 2.0, 7.0));
+  EXPECT_FALSE(fit({10, 10, 5.99}, 8.0, 2.0, 7.0));
+  // From rest 6 after two.
+  EXPECT_TRUE(fit({10, 10, 6}, 12.0, 4.0, 7.0));
+  EXPECT_FALSE(fit({10, 10, 5.99}, 12.0, 4.0, 7.0));
+}
+
+// motion.md 5.4: what gains one part in a hundred is passed at changing speed, at the start as in
+// the middle.
+TEST(BendStretches, OnePartInAHundredIsWorthwhile) {
+  constexpr PathLimits kGentle{.acceleration = 100.0, .jerk = 1000.0};
+  const auto rising = [](double top) {
+    return Speeds([top](std::size_t k) {
+      return 100.0 + (top - 100.0) * static_cast<double>(k) / BendSpeeds::kSteps;
+    });
+  };
+  EXPECT_EQ(StretchesOf(rising(101.0), 1.0, kGentle).open, 101.0);
+  EXPECT_EQ(StretchesOf(rising(100.99), 1.0, kGentle).open, 100.0);
+  const auto falling_to = [](double middle) {
+    return Speeds([middle](std::size_t k) {
+      return k <= 12 ? 50.0 + 51.0 / 12.0 * static_cast<double>(k)
+                     : 101.0 - (101.0 - middle) / 12.0 * static_cast<double>(k - 12);
+    });
+  };
+  EXPECT_EQ(StretchesOf(falling_to(100.0), 1.0, kGentle).count, 2U);
+  EXPECT_EQ(StretchesOf(falling_to(100.01), 1.0, kGentle).count, 1U);
+}
+
 // Open between the start and the middle: two stretches, each up and down again, both as far as the
 // side that is the shorter way allows.
 TEST(BendStretches, OpenBetween) {

@@ -350,6 +350,37 @@ TEST(BlendCurve, HalvesMeetInTheMiddle) {
   }
 }
 
+// On a straight way that is gone evenly every place is the slowest: the first of them.
+TEST(CornerCurve, SlowestPlaceOfAStraightWay) {
+  const CornerCurve straight({.pose = {{0, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {}},
+                             {.pose = {{2, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {}},
+                             1.0);
+  EXPECT_EQ(straight.Speed(0.3), 2.0);
+  EXPECT_EQ(straight.SlowestPlace(), 0.0);
+  EXPECT_EQ(straight.JerkPerCube(0.3), 0.0);
+}
+
+// A bend of 1e-10 by u is what rounding leaves of none: there it begins to bend as it changes.
+TEST(CornerCurve, JerkWhereItHardlyBends) {
+  const MachineVector along{1, 0, 0}, change{0, 0, 1};
+  EXPECT_EQ(CornerCurve::JerkPerCube(along, {0, 1e-10, 0}, change), 1.0);
+  EXPECT_NEAR(CornerCurve::JerkPerCube(along, {0, 1.001e-10, 0}, change), 0.0, 1e-15);
+  EXPECT_EQ(CornerCurve::JerkPerCube(along, {0, 0, 0}, change * 3.0), 3.0);
+}
+
+// Between ends far apart the curve is slowest at its ends: its length begins at the very first.
+TEST(CornerLength, WhereItsBeginningIsTheSlowest) {
+  const CornerCurve curve({.pose = {{0, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {}},
+                          {.pose = {{10, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {}}, 0.1);
+  const CornerLength length(curve);
+  EXPECT_NEAR(length.total(), 10.0, 1e-12);
+  EXPECT_EQ(length.ParameterAt(curve, 0.0), 0.0);
+  EXPECT_EQ(length.ParameterAt(curve, length.total()), 1.0);
+  for (const double s : {1e-3, 0.1, 5.0}) {
+    EXPECT_NEAR(curve.At(length.ParameterAt(curve, s)).point.x(), s, 1e-12);
+  }
+}
+
 // Two arcs of R 4 that meet back to back, joined between points 2 mm away: the more their tangents
 // there turn back, the sharper the curve.
 CornerCurve NearCusp(double degrees) {
@@ -424,6 +455,9 @@ TEST(CornerLength, NearACusp) {
 TEST(CornerCurve, DistanceFromAPoint) {
   const CornerCurve curve(PlainAt(90.0, 2.0));
   EXPECT_NEAR(curve.DistanceFrom({-95, -2, 3}), 100.0, 1e-9);
+  EXPECT_NEAR(curve.DistanceFrom({7, -2, 105}), 100.0, 1e-9);
+  EXPECT_NEAR(curve.DistanceFrom(curve.At(0.0).point), 0.0, 1e-15);
+  EXPECT_NEAR(curve.DistanceFrom(curve.At(1.0).point), 0.0, 1e-15);
   const PathPose at = curve.At(0.3);
   const MachineVector tangent = curve.FirstByLength(0.3).point;
   const MachineVector across{-tangent.z(), 0, tangent.x()};

@@ -127,6 +127,49 @@ TEST(CornerCurve, MeetsBothPieces) {
   }
 }
 
+// motion.md 4.4: rates of the head that differ by rounding alone, 1e-12 rad/mm or 1e-9 of them,
+// meet.
+TEST(Corner, RatesThatMeet) {
+  const auto passage = [](double before, double after, bool a) {
+    const auto line = [a](double from_x, double from, double to) {
+      return PathPiece::Line({{from_x, 0, 0}, a ? from : 0.0, a ? 0.0 : from},
+                             {{from_x + 1.0, 0, 0}, a ? to : 0.0, a ? 0.0 : to});
+    };
+    return Corner::Between(line(-1.0, -before, 0.0), line(0.0, 0.0, after)).passage();
+  };
+  for (const bool a : {true, false}) {
+    EXPECT_EQ(passage(0.0, 1e-12, a), Passage::kThrough);
+    EXPECT_EQ(passage(0.0, 1.001e-12, a), Passage::kBlend);
+    EXPECT_EQ(passage(-1e-12, 0.0, a), Passage::kThrough);
+    EXPECT_EQ(passage(0.5, 0.5 * (1 + 0.9e-9), a), Passage::kThrough);
+    EXPECT_EQ(passage(0.5, 0.5 * (1 + 1.1e-9), a), Passage::kBlend);
+    EXPECT_EQ(passage(0.5, -0.5, a), Passage::kBlend);
+  }
+}
+
+// A corner that is assigned anew is as if it were new: nothing is left of a bend beside an arc.
+TEST(Corner, IsReusedForOthers) {
+  const PathPiece in = PathPiece::Line({{0, 0, 0}, 0.0, 0.5}, {{50, 0, 0}, 0.4, 0.9});
+  const PathPiece arc =
+      PathPiece::Circle({{50, 0, 0}, 0.4, 0.9}, {50, 20, 0}, {0, 0, 1}, 1.5, 0, 0);
+  const MachineLimits machine = StandardMachine();
+  Corner corner = Corner::Between(in, arc);
+  ASSERT_EQ(corner.cut_max_mm(), 10.0);
+  ASSERT_FALSE(corner.plain());
+  for (const double degrees : {90.0, 0.0}) {
+    const Bend bend = Of(degrees);
+    corner.Assign(bend.in, bend.out);
+    EXPECT_EQ(corner.passage(), degrees > 0.0 ? Passage::kBlend : Passage::kThrough);
+    EXPECT_EQ(corner.straight(), degrees == 0.0);
+    EXPECT_TRUE(corner.plain());
+    EXPECT_TRUE(corner.lines());
+    EXPECT_EQ(corner.cut_max_mm(), HUGE_VAL);
+    if (degrees > 0.0) {
+      EXPECT_EQ(corner.CutFor(60.0, machine), bend.corner.CutFor(60.0, machine));
+    }
+  }
+}
+
 // Line into an arc of radius 20, straight on, at 60 mm/s: d = 1.2 / 20 * 60^3 / 32000 = 0.405.
 // OPT-B.26
 TEST(Corner, CurvatureJumpDecidesTheCut) {

@@ -138,6 +138,7 @@ TEST(CornerCurve, SlowestPlaceIsTheSlowest) {
                       .curvature = MachineVector{-out.y(), out.x(), 0} * bend_out};
     const CornerCurve curve(from, to, cut);
     const double place = curve.SlowestPlace();
+    ASSERT_TRUE(place >= 0.0 && place <= 1.0) << round << " at " << place;
     double slowest = HUGE_VAL;
     for (int k = 0; k <= 800; ++k) slowest = std::min(slowest, curve.Speed(k / 800.0));
     ASSERT_LE(curve.Speed(place), slowest * (1 + 1e-6)) << round << " at " << place;

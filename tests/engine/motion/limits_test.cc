@@ -163,6 +163,13 @@ TEST(LimitsOf, WithoutJerkLimit) {
   EXPECT_TRUE(std::isinf(LimitsOf(Contour({}, {{9, 0, 0}}, 1.0), machine).jerk));
   EXPECT_TRUE(std::isinf(LimitsOf(Contour({}, {{9, 0, 0}, 1, 1}, 1.0), machine).jerk));
   EXPECT_TRUE(std::isinf(LimitsOf(Contour({}, {{0, 0, 0}, 1, 1}, 1.0), machine).jerk));
+  // A short turn, and slow axes: limits from a few places.
+  const MoveCommand turn = Contour({}, {{9, 0, 0}, 0.001, 0.001}, 1.0);
+  machine.axes.speed.fill(1.0);
+  EXPECT_LT(LimitsOf(turn, machine).speed, 1.0);
+  EXPECT_TRUE(std::isinf(LimitsOf(turn, machine).jerk));
+  // A whole search.
+  EXPECT_TRUE(std::isinf(LimitsOf(Contour({}, {{9, 0, 0}, 1, 1}, 1.0), machine).jerk));
 }
 
 }  // namespace

@@ -77,6 +77,14 @@ TEST(PathLine, BecomesRotaryWhenTheTipStands) {
   EXPECT_EQ(nothing.length(), 0.0);
 }
 
+// Where nothing moves nothing changes along the way.
+TEST(PathPiece, OfNoLengthHasNoRates) {
+  const PathPiece stands = PathPiece::Joint({{1, 2, 3}, 4, 5}, {{1, 2, 3}, 4, 5});
+  EXPECT_EQ(stands.First(0.0).point, MachineVector(0, 0, 0));
+  EXPECT_EQ(stands.First(0.0).a, 0.0);
+  EXPECT_EQ(stands.First(0.0).b, 0.0);
+}
+
 // OPT-2.18: radius 10, centre (10,0,0), length 31.416.
 TEST(PathArc, GoesThroughTheViaPoint) {
   const PathPiece arc = ArcOf({0, 0, 0}, {10, 10, 0}, {20, 0, 0});

@@ -115,6 +115,10 @@ TEST(StopFrom, SlowingDownGoesOn) {
   const SpeedProfile hard = S02().StopFrom(0.2, {350.0, 4000.0, 40000.0});
   const double grow = (std::sqrt(200.0 * 40000.0) - 2000.0) / 40000.0;
   EXPECT_NEAR(hard.duration_s(), grow + std::sqrt(200.0 / 40000.0), 1e-9);
+  // With less than it slows down by it goes on as it does: 0.05 s at -2000, 0.05 s to 0.
+  const SpeedProfile weak = S02().StopFrom(0.2, {350.0, 1000.0, 40000.0});
+  EXPECT_NEAR(weak.duration_s(), 0.1, 1e-9);
+  EXPECT_NEAR(weak.end().s, 30.0, 1e-9);
   // Trapezoid: 150 mm/s at 2000 mm/s2.
   const SpeedProfile abrupt = S02().StopFrom(0.2, {350.0, 2000.0, kNoLimit});
   EXPECT_NEAR(abrupt.duration_s(), 0.075, 1e-9);

@@ -323,6 +323,37 @@ TEST(RampPlan, LongWaysAreNeverSlowerThanOneRamp) {
   EXPECT_GT(compared, 100);
 }
 
+// What was begun and not done leaves nothing behind: the next ways are planned as by a new plan.
+TEST(RampPlan, IsReusedAfterAWayThatWasNotDone) {
+  Dice dice(23);
+  const auto way = [&dice](double from, double to) {
+    std::vector<RampCell> cells(static_cast<std::size_t>(dice.Uniform(from, to)));
+    for (RampCell& cell : cells) {
+      cell.length = dice.Magnitude(0.05, 3.0);
+      cell.limits = {100.0 * dice.Uniform(0.5, 1.5), 2000.0, 40000.0};
+    }
+    TimeByLevelOne(cells, 0.0, 0.0);
+    return cells;
+  };
+  RampPlan used;
+  for (int round = 0; round < 300; ++round) {
+    const std::vector<RampCell> left = way(2.0, 40.0), cells = way(1.0, 40.0);
+    used.Begin(left, 0.0);
+    for (int step = round % 12; step > 0 && !used.done(); --step) used.GoOn();
+    used.Plan(cells, 0.0);
+    RampPlan fresh;
+    fresh.Plan(cells, 0.0);
+    ASSERT_EQ(used.ramps().size(), fresh.ramps().size()) << round;
+    ASSERT_EQ(used.timing().size(), cells.size()) << round;
+    ASSERT_EQ(TimeOf(used), TimeOf(fresh)) << round;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      ASSERT_EQ(used.timing()[k].ramp, fresh.timing()[k].ramp) << round;
+      ASSERT_EQ(used.timing()[k].from, fresh.timing()[k].from) << round;
+      ASSERT_EQ(used.timing()[k].to, fresh.timing()[k].to) << round;
+    }
+  }
+}
+
 // Longer ways are split at what one ramp breaks most: a stretch by itself, with one ramp on each
 // side of it, or the end of a stretch, with one ramp up to it and one from it.
 TEST(RampPlan, LongWaysAreSplitWhereTheyAreSlow) {

@@ -18,6 +18,10 @@ TEST(SpeedBound, NamesTheAxisThatIsAskedForMost) {
   EXPECT_EQ(bound.axis, 0);
   EXPECT_NEAR(bound.speed, 125.0, 1e-6);
   EXPECT_EQ(TightestBound(line, Head{}, StandardMachine(), 100.0).cause, SpeedBound::Cause::kNone);
+  const SpeedBound same = TightestBound(line, Head{}, StandardMachine(), bound.speed);
+  EXPECT_EQ(same.cause, SpeedBound::Cause::kNone);
+  EXPECT_EQ(same.axis, -1);
+  EXPECT_EQ(same.speed, bound.speed);
 }
 
 // motion.md 5.1: half of the 2000 mm/s2 of an axis for the bend: sqrt(0.5 * 2000 * 2) = 44.721,
@@ -32,10 +36,11 @@ TEST(SpeedBound, KnowsTheRadius) {
   EXPECT_NEAR(bound.speed, std::sqrt(0.5 * 2000.0 * 2.0), 1e-9);
 }
 
-// The same where the head stands upright at one third of the way, in a turn of 0.88 rad, and half
-// way, in one of 0.6: those places are looked at. x' = 1 + 3 (turn / 1 rad) cos A.
+// The same where the head stands upright at one third of the way, in a turn of 0.88 rad, half way,
+// in one of 0.6, or at an end: those places are looked at. x' = 1 + 3 (turn / 1 rad) cos A.
 TEST(SpeedBound, LooksAtEqualSteps) {
-  for (const auto& [turn, share] : {std::pair{0.88, 1.0 / 3.0}, {0.6, 0.5}, {0.01, 0.5}}) {
+  for (const auto& [turn, share] :
+       {std::pair{0.88, 1.0 / 3.0}, {0.6, 0.5}, {0.01, 0.5}, {0.88, 0.0}, {0.88, 1.0}}) {
     const PathPiece line = PathPiece::Line({{0, 0, 0}, -turn * share, kPi / 2},
                                            {{100, 0, 0}, turn * (1.0 - share), kPi / 2});
     const SpeedBound bound = TightestBound(line, Head{}, StandardMachine(), 1000.0);
@@ -52,8 +57,13 @@ TEST(Travel, ExcessOfEachAxisAndWhere) {
   EXPECT_NEAR(worst[0].excess, 100.0, 1e-9);
   EXPECT_EQ(worst[0].s, line.length());
   EXPECT_EQ(worst[1].excess, 0.0);
+  EXPECT_EQ(worst[1].s, 0.0);
   EXPECT_NEAR(worst[3].excess, 0.4, 1e-9);
   EXPECT_NEAR(ExcessOfAxis(3, {{}, 12.7, 0.0}, limits), 0.1, 1e-12);
+  // As far outside all along: the first such place.
+  const PathPiece beside = PathPiece::Joint({{3700, 0, 0}, 0, 0}, {{3700, 50, 0}, 0.0, 0.0});
+  EXPECT_NEAR(ExcessOfEach(beside, Head{}, limits)[0].excess, 100.0, 1e-9);
+  EXPECT_EQ(ExcessOfEach(beside, Head{}, limits)[0].s, 0.0);
 }
 
 }  // namespace

@@ -139,6 +139,40 @@ TEST(SpeedPasses, AcceptedSpeedsAreLegal) {
   }
 }
 
+// What is dropped leaves the chain as it was before it: at the speed at which it begins, or at that
+// of the last knot that is final, whether that was taken or not.
+TEST(SpeedPasses, DroppedKnotsLeaveTheSpeedBeforeThem) {
+  const PathLimits limits{300.0, 2000.0, 40000.0};
+  const auto push_stop = [&](SpeedPasses& passes, double cap) {
+    passes.Push(1e-3, limits, cap);   // next to no way: the speed before it
+    passes.Push(500.0, limits, 0.0);  // and room to come to rest
+    return passes.Settle();
+  };
+  SpeedPasses passes;
+  passes.BeginAt(30.0);
+  passes.Push(1.0, limits, 12.0);
+  passes.DropOpen();
+  EXPECT_EQ(passes.size(), 0U);
+  ASSERT_EQ(push_stop(passes, 30.0), 2U);
+  EXPECT_EQ(passes.speed(0), 30.0);
+  EXPECT_EQ(passes.speed(1), 0.0);
+
+  for (const bool taken : {false, true}) {
+    SpeedPasses chain;
+    chain.Push(500.0, limits, 40.0);
+    chain.Push(500.0, limits, 200.0);
+    chain.Settle();
+    ASSERT_EQ(chain.final_count(), 1U);
+    EXPECT_EQ(chain.speed(), 40.0);
+    if (taken) chain.Pop();
+    chain.DropOpen();
+    EXPECT_EQ(chain.size(), taken ? 0U : 1U);
+    EXPECT_FALSE(chain.ends_at_rest());
+    push_stop(chain, 40.0);
+    EXPECT_EQ(chain.speed(taken ? 0 : 1), 40.0);
+  }
+}
+
 // With a limit on jerk the least speed that can be reached is not reached from rest.
 TEST(ReachMinimum, IsBelowEveryReach) {
   const PathLimits limits{500.0, 2000.0, 40000.0};

@@ -161,6 +161,57 @@ TEST(Span, PlaceAtAnyTime) {
   EXPECT_EQ(SpeedProfile::Span(0.0, 0, 0, kPathLimits).duration_s(), 0.0);
 }
 
+// No way takes no time, also at full speed, where others are one steady phase.
+TEST(Span, OfNoLengthHasNoPhase) {
+  for (const double speed : {0.0, 50.0, 350.0}) {
+    const SpeedProfile p = SpeedProfile::Span(0.0, speed, speed, kPathLimits);
+    EXPECT_EQ(p.phase_count(), 0) << speed;
+    EXPECT_EQ(p.duration_s(), 0.0) << speed;
+    EXPECT_EQ(p.end().s, 0.0) << speed;
+    EXPECT_EQ(p.end().speed, speed) << speed;
+  }
+  const SpeedProfile steady = SpeedProfile::Span(7.0, 350.0, 350.0, kPathLimits);
+  EXPECT_EQ(steady.phase_count(), 1);
+  EXPECT_EQ(steady.duration_s(), 7.0 / 350.0);
+}
+
+// A trapezoid of 100 mm/s and 1000 mm/s2 over 110 mm: 0.1 s up, 1 s steady, 0.1 s down. Where one
+// phase ends the next has begun; both ends are passed at their times.
+TEST(Span, PhasesOfATrapezoidBeginWhereOthersEnd) {
+  const SpeedProfile p = SpeedProfile::Span(110.0, 0.0, 0.0, {100.0, 1000.0, kNoJerkLimit});
+  ASSERT_EQ(p.phase_count(), 3);
+  const double up = p.phase(0).duration_s, cruise = p.phase(1).duration_s;
+  EXPECT_NEAR(up, 0.1, 1e-15);
+  EXPECT_NEAR(cruise, 1.0, 1e-14);
+  EXPECT_EQ(p.At(0.5 * up).acceleration, 1000.0);
+  EXPECT_EQ(p.At(up).acceleration, 0.0);
+  EXPECT_EQ(p.At(up + 0.5 * cruise).acceleration, 0.0);
+  EXPECT_EQ(p.At(up + cruise + 0.05).acceleration, -1000.0);
+  EXPECT_EQ(p.At(p.duration_s()).acceleration, 0.0);
+  EXPECT_EQ(p.TimeAt(0.0), 0.0);
+  EXPECT_EQ(p.TimeAt(110.0), p.duration_s());
+  EXPECT_NEAR(p.TimeAt(5.0), 0.1, 1e-12);
+  EXPECT_NEAR(p.TimeAt(1.25), 0.05, 1e-12);
+  EXPECT_NEAR(p.TimeAt(108.75), 1.15, 1e-12);
+}
+
+// Rounding carries no place beyond the end, and no speed below rest.
+TEST(Span, NoPlaceIsBeyondItsEnd) {
+  Dice dice(12);
+  for (int round = 0; round < 20'000; ++round) {
+    const PathLimits limits{dice.Magnitude(1.0, 500.0), dice.Magnitude(50.0, 5000.0),
+                            dice.Chance(0.3) ? kNoJerkLimit : dice.Magnitude(100.0, 1e6)};
+    const double length = dice.Magnitude(1e-3, 1000.0);
+    const SpeedProfile p = SpeedProfile::Span(length, 0.0, 0.0, limits);
+    double t = p.duration_s();
+    for (int step = 0; step < 4; ++step, t = std::nextafter(t, 0.0)) {
+      ASSERT_LE(p.At(t).s, length) << round;
+      ASSERT_GE(p.At(t).speed, 0.0) << round;
+      ASSERT_LE(p.PlaceAt(t), length) << round;
+    }
+  }
+}
+
 // Without the time of a place being sought, its speed is bounded: never from below, and by no more
 // than the ends of its phase have.
 TEST(SpeedAtMost, IsNeverBelowTheSpeedThere) {
@@ -186,6 +237,19 @@ TEST(SpeedAtMost, IsNeverBelowTheSpeedThere) {
     }
   }
   EXPECT_GT(near, places / 2);  // and it tells something
+}
+
+// At the very end it is the speed there, and in a steady phase what all of it has.
+TEST(SpeedAtMost, AtTheEndIsTheSpeedThere) {
+  for (const double v1 : {0.0, 30.0, 350.0}) {
+    const SpeedProfile p = SpeedProfile::Span(200.0, 0.0, v1, kPathLimits);
+    SpeedProfile::Place place;
+    p.Advance(place, 60.0);
+    EXPECT_NEAR(p.SpeedAtMost(place), 350.0, 1e-6);
+    p.Advance(place, 200.0);
+    EXPECT_EQ(p.SpeedAtMost(place), v1);
+    EXPECT_EQ(p.SpeedAt(place), v1);
+  }
 }
 
 // OPT-B.31, case O03: from 100 mm/s to rest takes 0.1 s and 5 mm.
