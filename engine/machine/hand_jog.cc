@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/motion/kinematics/axes.h"
+
 namespace rmlcell::machine {
 
 bool HandJog::asks() const {
@@ -13,10 +15,9 @@ bool HandJog::asks() const {
 // Keys add; along a tool that points the other way Z and, to stay right-handed, Y count backwards.
 motion::AxisValues HandJog::Speeds(const HandMotion& how) const {
   motion::AxisValues speeds;
-  for (int axis = 0; axis < motion::kAxisCount; ++axis) {
-    const auto first = 2 * static_cast<std::size_t>(axis);
-    if (key_[first] == Key::kDown) speeds[axis] += how.plus[axis];
-    if (key_[first + 1] == Key::kDown) speeds[axis] -= how.minus[axis];
+  for (const std::size_t axis : motion::kAxes) {
+    if (key_[2 * axis] == Key::kDown) speeds[axis] += how.plus[axis];
+    if (key_[2 * axis + 1] == Key::kDown) speeds[axis] -= how.minus[axis];
   }
   if (drive_->mode() == motion::JogMode::kTool && how.tool_z_down) {
     speeds[1] = -speeds[1];
@@ -86,7 +87,8 @@ void HandJog::Settle() {
 
 RunOn RunOnOf(const HandMotion& how, JogReference reference, const motion::AxisPose& at) {
   RunOn on;
-  for (int axis = 0; axis < motion::kAxisCount; ++axis) {
+  for (const std::size_t k : motion::kAxes) {
+    const int axis = static_cast<int>(k);
     motion::JogDrive drive(how.machine, reference, at);
     motion::AxisValues speeds;
     speeds[axis] = std::max(how.plus[axis], how.minus[axis]);

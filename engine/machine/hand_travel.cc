@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/motion/kinematics/axes.h"
+
 namespace rmlcell::machine {
 namespace {
 
@@ -16,9 +18,8 @@ motion::PathLimits LimitsAlong(const motion::MachineVector& way, const HandMotio
   constexpr double kNoEnd = std::numeric_limits<double>::infinity();
   motion::PathLimits limits{.speed = kNoEnd, .acceleration = kNoEnd};
   const double length = way.norm();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double share = std::abs(way[axis]) / length;
-    if (!(share > 0.0)) continue;
+  for (const std::size_t axis : motion::kLinearAxes) {
+    const double share = std::abs(way[axis]) / length;  // 0: the axis stands, and is no bound
     limits.speed = std::min(limits.speed, how.plus[axis] / share);
     limits.acceleration =
         std::min(limits.acceleration, how.machine.axes.acceleration[axis] / share);

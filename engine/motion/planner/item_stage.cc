@@ -37,7 +37,6 @@ const PlannedItem* ItemStage::Next() {
   while (items_.empty()) {
     if (!MayGoOn()) return nullptr;
     if (section_left_ == 0) {
-      if (speeds().final_count() <= section_knots_) return nullptr;  // nothing new
       section_left_ = SectionSize();
       if (section_left_ == 0) return nullptr;
       BeginSection();
@@ -58,7 +57,7 @@ const PlannedItem* ItemStage::Next() {
 // How many spans are timed together next; 0 when that is not known yet.
 std::size_t ItemStage::SectionSize() {
   const std::size_t known = speeds().final_count();
-  while (spans().first() + section_seen_ < spans().end()) {
+  while (section_knots_ != known) {
     const Span& span = spans()[spans().first() + section_seen_];
     if (section_knots_ + span.knots() > known) break;
     ++section_seen_;
@@ -207,7 +206,7 @@ void ItemStage::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to
       ++section_cell_;
       ++cells.at;
     }
-    more = whole && cells.at < cells.count && to > end &&
+    more = whole && to > end &&
            section_.plan.timing()[section_cell_].ramp == place_ramp_;
     if (!more) to = std::min(to, end);
   }

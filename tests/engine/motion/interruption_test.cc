@@ -58,12 +58,16 @@ TEST(StopAlong, BendsOfTheAxesDoNotDelayTheRest) {
   const StopOnPath behind = StopAlong(std::span(plan).subspan(3), 0.0, StandardMachine().axes);
   double braking = 0.0;
   for (const PlannedMotion& motion : behind.motions) braking += motion.duration_s();
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k <= 20; ++k) {
     const double t = plan[1].duration_s() * k / 20.0;
     const StopOnPath stop = StopAlong(bend, t, StandardMachine().axes);
     ASSERT_TRUE(stop.complete);
     double time = 0.0;
-    for (const PlannedMotion& motion : stop.motions) time += motion.duration_s();
+    for (const PlannedMotion& motion : stop.motions) {
+      EXPECT_GT(motion.path.length(), 0.0) << k;
+      EXPECT_EQ(motion.settling_s, 0.0) << k;
+      time += motion.duration_s();
+    }
     EXPECT_LE(time, passing - t + braking + 1e-9) << k;
   }
 }
@@ -374,6 +378,37 @@ TEST(StopAlong, SaysWhenMoreIsToBePlanned) {
   EXPECT_NEAR(behind.s, kRamp_mm, 1e-9);
   const double far = plan[0].speed.TimeAt(100.0 - kRamp_mm - 0.1);
   EXPECT_TRUE(StopAlong(std::span(plan).first(1), far, StandardMachine().axes).complete);
+}
+
+// From 125 mm/s with 1000 mm/s2 it is 7.8125 mm to rest, and so long is the move: the one behind it,
+// which would brake more gently, is not touched.
+TEST(StopAlong, RestsAtTheVeryEndOfAMove) {
+  MachineLimits machine = StandardMachine();
+  machine.tip_jerk_mm_s3 = kNoLimit;
+  machine.axes.jerk.setConstant(kNoLimit);
+  std::vector<MoveCommand> chain(3);
+  const double ends[4] = {0.0, 100.0, 107.8125, 300.0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    chain[k].path = PathPiece::Line({{ends[k], 0, 0}}, {{ends[k + 1], 0, 0}});
+    chain[k].speed_fraction = 0.25;
+    chain[k].acceleration_fraction = k < 2 ? 0.5 : 0.25;
+    chain[k].fly = k < 2;
+    chain[k].tag = k;
+  }
+  const std::vector<PlannedMotion> plan = Plan(chain, machine);
+  ASSERT_EQ(plan.size(), 3u);
+  for (const std::size_t known : {1u, 2u}) {  // as far as it is planned
+    const StopOnPath stop = StopAlong(std::span(plan).subspan(1, known), 0.0, machine.axes);
+    EXPECT_TRUE(stop.complete);
+    EXPECT_EQ(stop.index, 0u);
+    EXPECT_EQ(stop.s, 7.8125);
+    ASSERT_EQ(stop.motions.size(), 1u);
+    EXPECT_EQ(stop.motions[0].tag, 1u);
+    EXPECT_EQ(stop.motions[0].path.length(), 7.8125);
+    EXPECT_TRUE(stop.motions[0].ends_move);
+    EXPECT_EQ(stop.motions[0].speed.end().speed, 0.0);
+    EXPECT_NEAR(stop.motions[0].duration_s(), 0.125, 1e-12);
+  }
 }
 
 }  // namespace

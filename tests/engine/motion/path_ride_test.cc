@@ -144,6 +144,77 @@ TEST(PathRide, DoesNotStopWhereNotEnoughIsPlanned) {
   EXPECT_TRUE(ride.protocol().goes());
 }
 
+// STOP in the last ramp of a move: it comes to rest at its end, where it only has to settle then;
+// its move is over once.
+TEST(PathRide, StopInTheLastRampLeavesTheSettling) {
+  const PlannedMotion last = StraightOn().back();
+  PathRide ride(HoldRamp::kStays);
+  ride.Plan(last);
+  ride.Plan(PlannedMark{13});
+  const SimTime now = ride.Begin(kBegin).arrival - std::chrono::milliseconds(10);
+  const AxisLimits axes = StandardMachine().axes;
+  const auto plan = ride.PlanStop(now, axes);
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_EQ(plan->rests_on, 3u);
+  ride.Stop(*plan, axes);
+  ASSERT_EQ(TagsToCome(ride), "3");
+  EXPECT_TRUE(std::get<PlannedMotion>(ride.to_come()[0]).ends_move);
+  ASSERT_EQ(ride.interrupted().size(), 2u);
+  const auto& settling = std::get<PlannedMotion>(ride.interrupted()[0]);
+  EXPECT_FALSE(settling.ends_move);
+  EXPECT_EQ(settling.path.length(), 0.0);
+  EXPECT_EQ(settling.settling_s, 0.048);
+  EXPECT_EQ(std::get<PlannedMark>(ride.interrupted()[1]).tag, 13u);
+}
+
+// Moved while it stood: its commands from one on are others, and held back with those that were.
+TEST(PathRide, WhatItWasMovedAwayFromIsHeldBack) {
+  const std::vector<PlannedMotion> motions = StraightOn();
+  PathRide ride = RideOver(motions);
+  for (const std::uint64_t tag : {1u, 2u, 3u}) ride.Append({.tag = tag, .move = MoveCommand{}});
+  const SimTime now = ride.Begin(kBegin).start + FromSeconds(motions[0].speed.TimeAt(50.0));
+  const AxisLimits axes = StandardMachine().axes;
+  ride.Stop(*ride.PlanStop(now, axes), axes);
+  ASSERT_FALSE(ride.interrupted().empty());
+  ride.HoldBack(2, {{.tag = 8, .move = MoveCommand{}}, {.tag = 9, .move = std::nullopt}});
+  EXPECT_TRUE(ride.interrupted().empty());
+  ASSERT_EQ(ride.appended().size(), 1u);
+  EXPECT_EQ(ride.appended()[0].tag, 1u);
+  ASSERT_EQ(ride.held().size(), 2u);
+  EXPECT_EQ(ride.held()[0].tag, 8u);
+  EXPECT_EQ(ride.held()[1].tag, 9u);
+}
+
+// Once it has arrived it is at the end exactly, although the time is rounded to nanoseconds.
+TEST(MotionUnderWay, ArrivesAtTheEnd) {
+  for (int k = 1; k <= 40; ++k) {
+    MoveCommand move;
+    move.path = PathPiece::Line({}, {{10.0 + k / 7.0, 0, 0}});
+    move.speed_fraction = 0.1;
+    MotionUnderWay active;
+    active.motion = Plan({move})[0];
+    active.Begin(kBegin);
+    const double length_mm = active.motion.path.length();
+    EXPECT_EQ(active.PlaceAt(active.arrival), length_mm);
+    EXPECT_EQ(active.PlaceAt(active.end), length_mm);
+    EXPECT_LT(active.PlaceAt(active.arrival - std::chrono::microseconds(1000)), length_mm);
+    EXPECT_EQ(active.told, kBegin);
+  }
+}
+
+// A motion that turns the head about its tip does not move the tip, which stays where it is.
+TEST(MotionUnderWay, TheTipOfATurnStands) {
+  MoveCommand turn;
+  turn.path = PathPiece::Line({{1, 2, 3}, 0.0, 0.0}, {{1, 2, 3}, 0.0, 1.0});
+  MotionUnderWay active;
+  active.motion = Plan({turn})[0];
+  active.Begin(kBegin);
+  const SimTime middle = kBegin + (active.arrival - kBegin) / 2;
+  EXPECT_EQ(active.TipSpeedAt(middle), 0.0);
+  EXPECT_EQ(active.TipAt(middle).tip, (MachineVector{1, 2, 3}));
+  EXPECT_NEAR(active.AxesAt(middle).b_rad, 0.5, 1e-6);
+}
+
 TEST(PathRide, HoldKeepsTheCommandsBehindItsTarget) {
   PathRide ride(HoldRamp::kStays);
   for (const std::uint64_t tag : {1u, 2u, 4u}) {
@@ -188,6 +259,27 @@ TEST(PathRide, CommandsFromOneOnAreReplaced) {
   for (const AppendedCommand& command : ride.appended()) tags.push_back(command.tag);
   EXPECT_EQ(tags, (std::vector<std::uint64_t>{1, 7, 8}));
   EXPECT_DEATH(ride.ReplaceAppended(2, others), "appended_.size");
+}
+
+// Half the measure: a place at half the length, half the speed there and half of every limit; no
+// limit stays none.
+TEST(PlannedMotion, MeasuredByHalfAllIsHalf) {
+  PlannedMotion motion;
+  motion.path = PathPiece::Joint({{0, 0, 0}}, {{10, 0, 0}});
+  motion.limits = {.speed = 4.0, .acceleration = 8.0, .jerk = 16.0};
+  motion.speed = SpeedProfile::Span(1.0, 0.0, 0.0, motion.limits);
+  const double duration_s = motion.speed.duration_s();
+  PlannedMotion bend = motion;
+  bend.restart_speed = 3.0;
+  for (PlannedMotion* one : {&motion, &bend}) one->MeasureBy(0.5);
+  EXPECT_EQ(motion.path.length(), 0.5);
+  EXPECT_EQ(motion.speed.end().s, 0.5);
+  EXPECT_NEAR(motion.speed.duration_s(), duration_s, 1e-12);
+  EXPECT_EQ(motion.limits.speed, 2.0);
+  EXPECT_EQ(motion.limits.acceleration, 4.0);
+  EXPECT_EQ(motion.limits.jerk, 8.0);
+  EXPECT_EQ(motion.restart_speed, kLargest);
+  EXPECT_EQ(bend.restart_speed, 1.5);
 }
 
 // A mark is passed where it is first to come; a motion is not.
