@@ -206,8 +206,7 @@ void ItemStage::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to
       ++section_cell_;
       ++cells.at;
     }
-    more = whole && to > end &&
-           section_.plan.timing()[section_cell_].ramp == place_ramp_;
+    more = whole && to > end && section_.plan.timing()[section_cell_].ramp == place_ramp_;
     if (!more) to = std::min(to, end);
   }
   TakeRamp(speed, ramp, on_ramp_to);

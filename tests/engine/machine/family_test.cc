@@ -139,8 +139,7 @@ TEST(PlanTransfer, TellsAThousandFindings) {
   const std::size_t each = PlanOf({.programs = {Stream(3, bad)}}).diagnostics.size();
   ASSERT_GT(each, kDiagnosticsMax / 2);
   ASSERT_LT(each, kDiagnosticsMax);
-  const TransferPlan plan =
-      PlanOf({.programs = {Stream(3, bad), Stream(4, bad), Stream(5, bad)}});
+  const TransferPlan plan = PlanOf({.programs = {Stream(3, bad), Stream(4, bad), Stream(5, bad)}});
   ASSERT_EQ(plan.diagnostics.size(), kDiagnosticsMax);
   EXPECT_EQ(plan.diagnostics.front().program, 3);
   EXPECT_EQ(plan.diagnostics.back().program, 4);

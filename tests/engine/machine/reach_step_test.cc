@@ -210,9 +210,10 @@ TEST_F(ReachTest, WhatIsNotReached) {
   EXPECT_EQ(why(loop, {.at = {1, 5}, .occurrence = 4}),
             "step 1/5 is not reached for the 4. time: the program ends; the last step reached is "
             "1/15");
-  EXPECT_EQ(why(loop, {.at = {1, 5}, .occurrence = 1'000'000}),
-            "step 1/5 is not reached for the 1000000. time: the program ends; the last step reached "
-            "is 1/15");
+  EXPECT_EQ(
+      why(loop, {.at = {1, 5}, .occurrence = 1'000'000}),
+      "step 1/5 is not reached for the 1000000. time: the program ends; the last step reached "
+      "is 1/15");
   EXPECT_EQ(why(loop, {.at = {1, 99}}),
             "step 1/99 is not reached: the program ends; the last step reached is 1/15");
   EXPECT_EQ(why(loop, {.at = {1, 0}}), "step 0 is none: they count from 1");
@@ -241,8 +242,8 @@ TEST(StepCounts, CountEachStepByItself) {
     for (std::uint64_t time = 1; time <= 3; ++time) EXPECT_EQ(counts.Count(at), time) << at.step;
   }
   EXPECT_EQ(counts.Count({1, 2}), 4U);
-  for (const ProgramStep at : {ProgramStep{1, 65'536}, ProgramStep{100, 1}, ProgramStep{-1, 1},
-                               ProgramStep{1, -1}}) {
+  for (const ProgramStep at :
+       {ProgramStep{1, 65'536}, ProgramStep{100, 1}, ProgramStep{-1, 1}, ProgramStep{1, -1}}) {
     for (int time = 0; time < 3; ++time) EXPECT_EQ(counts.Count(at), 1U) << at.step;
   }
 }

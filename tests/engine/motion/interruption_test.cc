@@ -380,8 +380,8 @@ TEST(StopAlong, SaysWhenMoreIsToBePlanned) {
   EXPECT_TRUE(StopAlong(std::span(plan).first(1), far, StandardMachine().axes).complete);
 }
 
-// From 125 mm/s with 1000 mm/s2 it is 7.8125 mm to rest, and so long is the move: the one behind it,
-// which would brake more gently, is not touched.
+// From 125 mm/s with 1000 mm/s2 it is 7.8125 mm to rest, and so long is the move: the one behind
+// it, which would brake more gently, is not touched.
 TEST(StopAlong, RestsAtTheVeryEndOfAMove) {
   MachineLimits machine = StandardMachine();
   machine.tip_jerk_mm_s3 = kNoLimit;

@@ -72,8 +72,9 @@ TEST(JogDrive, ReachesItsSpeedAndLeavesIt) {
   EXPECT_EQ(drive.tip_speed_mm_s(), 0.0);
 }
 
-// Each channel brakes with what its axis has; along the tool X, Y and Z with what the weakest of them
-// has, and the tip allows; A and B with the tip held with half of that, at the length of the head.
+// Each channel brakes with what its axis has; along the tool X, Y and Z with what the weakest of
+// them has, and the tip allows; A and B with the tip held with half of that, at the length of the
+// head.
 TEST(JogDrive, RunsOnWithTheLimitsOfItsMode) {
   JogMachine machine = Gantry();
   machine.axes.acceleration = {3000.0, 2500.0, 2000.0, 30.0, 24.0};
@@ -107,8 +108,9 @@ TEST(JogDrive, RunsOnWithTheLimitsOfItsMode) {
   EXPECT_NEAR(drive.RunsOn(3), StopWay(0.1, 30.0, 600.0), 1e-12);
 }
 
-// What is asked for is lowered as a whole, so that no axis goes faster than it can, nor is asked for
-// more than half of its acceleration by what turns meanwhile. How fast it is then its stop tells.
+// What is asked for is lowered as a whole, so that no axis goes faster than it can, nor is asked
+// for more than half of its acceleration by what turns meanwhile. How fast it is then its stop
+// tells.
 TEST(JogDrive, LowersWhatNoAxisCan) {
   const auto share_of = [](const JogMachine& machine, JogMode mode, const AxisPose& at,
                            const AxisValues& speeds, int axis) {

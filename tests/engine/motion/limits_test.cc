@@ -178,7 +178,8 @@ TEST(LinesFollowTip, WhereEachAxisCanAsMuch) {
     EXPECT_EQ(LinesFollowTip(slow), axis >= 3) << axis;
     EXPECT_EQ(LinesFollowTip(weak), axis >= 3) << axis;
     EXPECT_EQ(LinesFollowTip(soft), axis >= 3) << axis;
-    soft.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();  // that of the axes counts nowhere
+    soft.tip_jerk_mm_s3 =
+        std::numeric_limits<double>::infinity();  // that of the axes counts nowhere
     EXPECT_TRUE(LinesFollowTip(soft)) << axis;
   }
 }

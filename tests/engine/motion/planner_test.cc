@@ -159,8 +159,9 @@ TEST(Planner, WithoutSpeedAccelerationOrJerkNothingArrives) {
     EXPECT_TRUE(planner.Append(east)) << limit;
     MoveCommand given = east;
     given.limits = PathLimits{.speed = 1.0, .acceleration = 1.0, .jerk = 1.0};
-    (limit == 0 ? given.limits->speed : limit == 1 ? given.limits->acceleration
-                                                   : given.limits->jerk) = 0.0;
+    (limit == 0   ? given.limits->speed
+     : limit == 1 ? given.limits->acceleration
+                  : given.limits->jerk) = 0.0;
     EXPECT_DEATH((void)planner.Append(given), "IsAboveZero") << limit;
   }
   Planner planner(StandardMachine());

@@ -168,6 +168,10 @@ TEST(FromFits, WithoutALimitOnJerk) {
   PathLimits limits = kLimits;
   limits.jerk = std::numeric_limits<double>::infinity();
   const double need = 50.0 * 50.0 / (2.0 * limits.acceleration);
+  // However short the way is: the room for rounding is a share of it.
+  const double speed = std::sqrt(2.0 * limits.acceleration * 1e-3);
+  EXPECT_TRUE(FromFits({0.0, speed, 0.0}, 1e-3 * (1.0 + 1e-8), 0.0, limits));
+  EXPECT_FALSE(FromFits({0.0, speed, 0.0}, 1e-3 * (1.0 - 1e-8), 0.0, limits));
   for (const double acceleration : {1200.0, 0.0, -1200.0}) {
     EXPECT_TRUE(FromFits({0.0, 50.0, acceleration}, need * 1.0001, 0.0, limits));
     EXPECT_FALSE(FromFits({0.0, 50.0, acceleration}, need * 0.9999, 0.0, limits));
