@@ -283,12 +283,10 @@ void ItemStage::EmitCurve(const Span& span) {
   const double half = 0.5 * span.curve_length;
   CurveCells cells;  // none: steady
   if (span.in_stretches || section_left_ > 1) {
-    cells.count = span.in_stretches ? span.curve_knots() : 1;
-    for (std::size_t k = 0; k < cells.count; ++k) {
-      cells.end[k] = span.in_stretches ? span.curve_end(k) : span.curve_length;
-    }
+    cells.count = span.stretches.count;  // one where it is passed steadily
+    for (std::size_t k = 0; k < cells.count; ++k) cells.end[k] = span.curve_end(k);
     // The speed in the middle, which is an end of a stretch when there are some.
-    const std::size_t cell = section_cell_ + (cells.count > 1 ? cells.count / 2 - 1 : 0);
+    const std::size_t cell = section_cell_ + (cells.count - 1) / 2;
     const RampPlan::Timing& timing = section_.plan.timing()[cell];
     const SpeedProfile& ramp = section_.plan.ramps()[timing.ramp];
     const double middle = cells.count > 1 ? timing.to : 0.5 * (timing.from + timing.to);

@@ -95,6 +95,23 @@ TEST(LegStageDump, ALineWithoutEndIsCut) {
   }
 }
 
+// Limits that differ by less than 1e-9 of them are the same, and the moves one leg.
+TEST(LegStageDump, LimitsThatAgreeMakeOneLeg) {
+  for (const auto& [factor, one] : {std::pair{1.0 + 0.9e-9, true}, {1.0 + 1.1e-9, false}}) {
+    for (const bool speed : {true, false}) {
+      LegStage legs(PlainMachine(), 64);
+      for (int k = 0; k < 2; ++k) {
+        MoveCommand move;
+        move.path = PathPiece::Line({{10.0 * k, 0, 0}}, {{10.0 * k + 10.0, 0, 0}});
+        (speed ? move.speed_fraction : move.acceleration_fraction) = k == 0 ? 0.5 : 0.5 * factor;
+        move.fly = true;
+        legs.Add(move, legs.LimitsFor(move), true);
+      }
+      EXPECT_EQ(legs.legs().size(), one ? 1U : 2U) << factor << speed;
+    }
+  }
+}
+
 // What is passed straight on is one run, and becomes spans as one: so does the corner of a mill.
 // Before the passes over spans no knot is final. 5 mm/s take 5 * 5 / 2000 mm, so neither line is
 // too short for them.

@@ -165,25 +165,6 @@ TEST(LimitsOf, WithoutJerkLimit) {
   EXPECT_TRUE(std::isinf(LimitsOf(Contour({}, {{0, 0, 0}, 1, 1}, 1.0), machine).jerk));
 }
 
-// On lines with a steady head the tip's limits are all there are where each of X, Y and Z can what
-// the tip may, just or more than that; A and B do nothing there.
-TEST(LinesFollowTip, WhereEachAxisCanAsMuch) {
-  const MachineLimits machine = StandardMachine();
-  EXPECT_TRUE(LinesFollowTip(machine));
-  for (int axis = 0; axis < kAxisCount; ++axis) {
-    MachineLimits slow = machine, weak = machine, soft = machine;
-    slow.axes.speed[axis] = std::nextafter(slow.axes.speed[axis], 0.0);
-    weak.axes.acceleration[axis] = std::nextafter(weak.axes.acceleration[axis], 0.0);
-    soft.axes.jerk[axis] = std::nextafter(soft.axes.jerk[axis], 0.0);
-    EXPECT_EQ(LinesFollowTip(slow), axis >= 3) << axis;
-    EXPECT_EQ(LinesFollowTip(weak), axis >= 3) << axis;
-    EXPECT_EQ(LinesFollowTip(soft), axis >= 3) << axis;
-    soft.tip_jerk_mm_s3 =
-        std::numeric_limits<double>::infinity();  // that of the axes counts nowhere
-    EXPECT_TRUE(LinesFollowTip(soft)) << axis;
-  }
-}
-
 // The fractions are those of the tip, and no more than all of it.
 TEST(TipLimits, AreSharesOfTheMachine) {
   MoveCommand move;

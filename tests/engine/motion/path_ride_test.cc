@@ -261,27 +261,6 @@ TEST(PathRide, CommandsFromOneOnAreReplaced) {
   EXPECT_DEATH(ride.ReplaceAppended(2, others), "appended_.size");
 }
 
-// Half the measure: a place at half the length, half the speed there and half of every limit; no
-// limit stays none.
-TEST(PlannedMotion, MeasuredByHalfAllIsHalf) {
-  PlannedMotion motion;
-  motion.path = PathPiece::Joint({{0, 0, 0}}, {{10, 0, 0}});
-  motion.limits = {.speed = 4.0, .acceleration = 8.0, .jerk = 16.0};
-  motion.speed = SpeedProfile::Span(1.0, 0.0, 0.0, motion.limits);
-  const double duration_s = motion.speed.duration_s();
-  PlannedMotion bend = motion;
-  bend.restart_speed = 3.0;
-  for (PlannedMotion* one : {&motion, &bend}) one->MeasureBy(0.5);
-  EXPECT_EQ(motion.path.length(), 0.5);
-  EXPECT_EQ(motion.speed.end().s, 0.5);
-  EXPECT_NEAR(motion.speed.duration_s(), duration_s, 1e-12);
-  EXPECT_EQ(motion.limits.speed, 2.0);
-  EXPECT_EQ(motion.limits.acceleration, 4.0);
-  EXPECT_EQ(motion.limits.jerk, 8.0);
-  EXPECT_EQ(motion.restart_speed, kLargest);
-  EXPECT_EQ(bend.restart_speed, 1.5);
-}
-
 // A mark is passed where it is first to come; a motion is not.
 TEST(PathRide, MarksArePassedOneByOne) {
   PathRide ride(HoldRamp::kStays);
