@@ -140,6 +140,13 @@ TEST(Polyline, CoarseArcs) {
   }
 }
 
+// Without any tolerance an arc has as many chords as one may have, and no more.
+TEST(Polyline, AnArcHasNoMoreThanAMillionChords) {
+  std::vector<MachinePoint> points;
+  AppendPolyline(PathPiece::Circle({{100, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0, 0), 0.0, points);
+  EXPECT_EQ(points.size(), 1u + 1'048'576u);
+}
+
 // A blend is halved twice however coarse the tolerance, and twelve times at most.
 TEST(Polyline, HalvesABlend) {
   MoveCommand first, second;
