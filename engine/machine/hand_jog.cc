@@ -1,9 +1,8 @@
 #include "engine/machine/hand_jog.h"
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
-
-#include "engine/motion/kinematics/axes.h"
 
 namespace rmlcell::machine {
 
@@ -15,9 +14,10 @@ bool HandJog::asks() const {
 // Keys add; along a tool that points the other way Z and, to stay right-handed, Y count backwards.
 motion::AxisValues HandJog::Speeds(const HandMotion& how) const {
   motion::AxisValues speeds;
-  for (const std::size_t axis : motion::kAxes) {
-    if (key_[2 * axis] == Key::kDown) speeds[axis] += how.plus[axis];
-    if (key_[2 * axis + 1] == Key::kDown) speeds[axis] -= how.minus[axis];
+  for (const int axis : std::views::iota(0, motion::kAxisCount)) {
+    const auto first = 2 * static_cast<std::size_t>(axis);
+    if (key_[first] == Key::kDown) speeds[axis] += how.plus[axis];
+    if (key_[first + 1] == Key::kDown) speeds[axis] -= how.minus[axis];
   }
   if (drive_->mode() == motion::JogMode::kTool && how.tool_z_down) {
     speeds[1] = -speeds[1];
@@ -87,8 +87,7 @@ void HandJog::Settle() {
 
 RunOn RunOnOf(const HandMotion& how, JogReference reference, const motion::AxisPose& at) {
   RunOn on;
-  for (const std::size_t k : motion::kAxes) {
-    const int axis = static_cast<int>(k);
+  for (const int axis : std::views::iota(0, motion::kAxisCount)) {
     motion::JogDrive drive(how.machine, reference, at);
     motion::AxisValues speeds;
     speeds[axis] = std::max(how.plus[axis], how.minus[axis]);

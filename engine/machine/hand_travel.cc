@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "engine/motion/kinematics/axes.h"
+#include <ranges>
 
 namespace rmlcell::machine {
 namespace {
@@ -18,7 +17,7 @@ motion::PathLimits LimitsAlong(const motion::MachineVector& way, const HandMotio
   constexpr double kNoEnd = std::numeric_limits<double>::infinity();
   motion::PathLimits limits{.speed = kNoEnd, .acceleration = kNoEnd};
   const double length = way.norm();
-  for (const std::size_t axis : motion::kLinearAxes) {
+  for (const auto axis : std::views::iota(Eigen::Index{0}, way.size())) {
     const double share = std::abs(way[axis]) / length;  // 0: the axis stands, and is no bound
     limits.speed = std::min(limits.speed, how.plus[axis] / share);
     limits.acceleration =
