@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "engine/motion/kinematics/axis_demand.h"
 #include "engine/motion/ride/trajectory.h"
 #include "tests/engine/motion/plan_check.h"
 #include "tests/engine/motion/random_chain.h"
@@ -163,6 +164,40 @@ TEST(RestartAlong, GentlerRampsAreGentlerInTheirJerk) {
     }
   }
   EXPECT_GT(gentler, 0);
+}
+
+// Where the head turns in a bend, too, no axis is asked there for more than it can, be it by a STOP
+// or by the START behind it: for 0.1 % more, which is no harm. OPT-2.16, OPT-B.31
+TEST(StopAlong, KeepsTheAxesInBends) {
+  const AxisLimits axes = StandardMachine().axes;
+  double worst = 0.0;
+  const auto look = [&](const std::vector<PlannedMotion>& motions) {
+    for (const PlannedMotion& motion : motions) {
+      if (motion.path.kind() != PathPiece::Kind::kBlend) continue;
+      for (int k = 0; k <= 32; ++k) {
+        const PathState state = motion.speed.At(motion.speed.duration_s() * k / 32);
+        const AxisDerivatives q = DerivativesAt(motion.path, motion.head, state.s);
+        for (std::size_t i = 0; i < kAxisCount; ++i) {
+          const double asked =
+              q.first[i] * state.acceleration + q.second[i] * state.speed * state.speed;
+          worst = std::max(worst, std::abs(asked) / axes.acceleration[i]);
+        }
+      }
+    }
+  };
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const std::vector<PlannedMotion> plan =
+        Plan(RandomChain(seed, 6, {.all_fly = true, .shortest_mm = 0.5, .longest_mm = 5.0}));
+    for (std::size_t k = 0; k < plan.size(); ++k) {
+      const std::span<const PlannedMotion> ahead = std::span(plan).subspan(k);
+      const StopOnPath stop = StopAlong(ahead, 0.5 * plan[k].speed.duration_s(), axes);
+      ASSERT_TRUE(stop.complete);
+      look(stop.motions);
+      look(RestartAlong(ahead.subspan(stop.index), stop.s, axes));
+    }
+  }
+  EXPECT_LE(worst, 1.001 + 1e-9);
+  EXPECT_GT(worst, 0.9);
 }
 
 // Stopped anywhere and started again: the same path, every limit kept, the end at rest at the

@@ -355,6 +355,20 @@ TEST(JogDrive, AnAxisStandsOnItsEnd) {
   }
 }
 
+// An axis goes on to its very end, but not for a way that is none.
+TEST(JogDrive, GoesTheLastOfItsTravel) {
+  for (const double left : {1e-7, 1e-10}) {
+    AxisPose at = kMiddle;
+    at.column.x() = 3600.0 - left;
+    JogDrive drive(Gantry(), JogMode::kRobot, at);
+    drive.Demand(Only(0, 100.0));
+    EXPECT_EQ(drive.rests(), left < 1e-9);
+    drive.Advance(1.0);
+    EXPECT_TRUE(drive.rests());
+    EXPECT_NEAR(drive.axes().column.x(), left < 1e-9 ? at.column.x() : 3600.0, 1e-12);
+  }
+}
+
 // LIVE-8.02: what moves several axes stops as one: a tool that goes aslant keeps to its line, and
 // comes to rest where the first axis comes to its end.
 TEST(JogDrive, AslantItStopsAsOne) {
