@@ -135,7 +135,7 @@ TEST(PlanTransfer, EveryProgramOrNone) {
 // A thousand findings of all programs together are told, and the places of the others are known.
 TEST(PlanTransfer, TellsAThousandFindings) {
   std::string bad;
-  for (int n = 0; n < 600; ++n) bad += "XX" + std::to_string(n) + ";";
+  for (int n = 0; n < 600; ++n) bad += "PU100,100;PU200,200;PU300,300;PU400,400;QQ;";
   const std::size_t each = PlanOf({.programs = {Stream(3, bad)}}).diagnostics.size();
   ASSERT_GT(each, kDiagnosticsMax / 2);
   ASSERT_LT(each, kDiagnosticsMax);
