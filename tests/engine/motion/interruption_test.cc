@@ -190,10 +190,13 @@ TEST(StopAlong, KeepsTheAxesInBends) {
         Plan(RandomChain(seed, 6, {.all_fly = true, .shortest_mm = 0.5, .longest_mm = 5.0}));
     for (std::size_t k = 0; k < plan.size(); ++k) {
       const std::span<const PlannedMotion> ahead = std::span(plan).subspan(k);
-      const StopOnPath stop = StopAlong(ahead, 0.5 * plan[k].speed.duration_s(), axes);
-      ASSERT_TRUE(stop.complete);
-      look(stop.motions);
-      look(RestartAlong(ahead.subspan(stop.index), stop.s, axes));
+      for (const double share : {0.0, 0.5, 1.0}) {
+        const StopOnPath stop = StopAlong(ahead, share * plan[k].speed.duration_s(), axes);
+        ASSERT_TRUE(stop.complete);
+        for (const PlannedMotion& motion : stop.motions) EXPECT_GT(motion.path.length(), 0.0);
+        look(stop.motions);
+        look(RestartAlong(ahead.subspan(stop.index), stop.s, axes));
+      }
     }
   }
   EXPECT_LE(worst, 1.001 + 1e-9);

@@ -185,14 +185,20 @@ TEST(PathRide, WhatItWasMovedAwayFromIsHeldBack) {
   EXPECT_EQ(ride.held()[1].tag, 9u);
 }
 
-// Once it has arrived it is at the end exactly, although the time is rounded to nanoseconds.
+// Once it has arrived it is at the end exactly, at 50 mm/s, although the time is rounded to
+// nanoseconds.
 TEST(MotionUnderWay, ArrivesAtTheEnd) {
   for (int k = 1; k <= 40; ++k) {
-    MoveCommand move;
-    move.path = PathPiece::Line({}, {{10.0 + k / 7.0, 0, 0}});
-    move.speed_fraction = 0.1;
+    const TipPose end{{10.0 + k / 7.0, 0, 0}};
+    MoveCommand move, next;
+    move.path = PathPiece::Line({}, end);
+    next.path = PathPiece::Line(end, {{100, 0, 0}});
+    move.speed_fraction = next.speed_fraction = 0.1;
+    next.acceleration_fraction = 0.5;
+    move.fly = true;
     MotionUnderWay active;
-    active.motion = Plan({move})[0];
+    active.motion = Plan({move, next})[0];
+    ASSERT_EQ(active.motion.path.to().point, end.tip);
     active.Begin(kBegin);
     const double length_mm = active.motion.path.length();
     EXPECT_EQ(active.PlaceAt(active.arrival), length_mm);
