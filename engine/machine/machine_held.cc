@@ -1,6 +1,5 @@
 // A run that is held: keys, HOME and ZERO move the machine while it stays open, and it goes on.
 // LIVE-5.06
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -22,20 +21,24 @@ constexpr double kBack_rad = 0.0001;
 
 // "X by 12.500 mm, B by -0.1000 rad"; empty: it stands where it was.
 Detail DisplacementOf(const motion::AxisPose& from, const motion::AxisPose& to) {
-  const motion::MachineVector moved = to.column - from.column;
-  const std::array<double, motion::kAxisCount> by = {moved.x(), moved.y(), moved.z(),
-                                                     to.a_rad - from.a_rad, to.b_rad - from.b_rad};
   Detail text;
-  for (std::size_t axis = 0; axis < by.size(); ++axis) {
-    const bool turns = axis >= 3;
-    if (std::abs(by[axis]) <= (turns ? kBack_rad : kBack_mm)) continue;
-    const std::string name(1, "XYZAB"[axis]);
-    const std::string_view unit = turns ? "rad" : "mm";
+  const auto tell = [&text](const std::string& axis, double by, const std::string& unit,
+                            int decimals) {
     if (!text.empty()) text += ", ";
-    text +=
-        name + " by " +
-        Told(name, by[axis], unit, FixedText(by[axis], turns ? 4 : 3) + " " + std::string(unit));
-  }
+    text += axis + " by " + Told(axis, by, unit, FixedText(by, decimals) + " " + unit);
+  };
+  const auto moved = [&tell](const std::string& axis, double by) {
+    if (std::abs(by) > kBack_mm) tell(axis, by, "mm", 3);
+  };
+  const auto turned = [&tell](const std::string& axis, double by) {
+    if (std::abs(by) > kBack_rad) tell(axis, by, "rad", 4);
+  };
+  const motion::MachineVector way = to.column - from.column;
+  moved("X", way.x());
+  moved("Y", way.y());
+  moved("Z", way.z());
+  turned("A", to.a_rad - from.a_rad);
+  turned("B", to.b_rad - from.b_rad);
   return text;
 }
 

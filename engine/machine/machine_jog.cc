@@ -56,7 +56,7 @@ Status Machine::Act(const PressJog& input) {
   }
   const std::optional<HandMotion> how = ByHand(press.fast);
   const auto axis = static_cast<int>(press.key.axis);
-  if (!how || (axis < motion::kAxisCount && how->plus[axis] == 0.0))
+  if (!how || (press.key.axis != JogAxis::kC && how->plus[axis] == 0.0))
     return Error{ErrorCode::kCellInvalidArgument,
                  "the machine has no axis " + Told("axis", AxisOf(press.key)),
                  {}};

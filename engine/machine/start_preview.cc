@@ -57,10 +57,11 @@ Error RefuseTravel(const OutOfTravel& one, const Detail& motion) {
 
 std::vector<Error> RefusalsOf(const std::vector<ApproachMotion>& approach) {
   std::vector<Error> refusals;
-  for (std::size_t n = 0; n < approach.size(); ++n) {
-    const Detail motion = "motion " + Told("motion", n + 1) + " of the approach";
-    for (const OutOfTravel& one : approach[n].beyond) refusals.push_back(RefuseTravel(one, motion));
-    const double depth = approach[n].into_part_mm;
+  std::size_t number = 0;
+  for (const ApproachMotion& of_approach : approach) {
+    const Detail motion = "motion " + Told("motion", ++number) + " of the approach";
+    for (const OutOfTravel& one : of_approach.beyond) refusals.push_back(RefuseTravel(one, motion));
+    const double depth = of_approach.into_part_mm;
     if (depth <= 0.0) continue;
     refusals.push_back(Refuse(ErrorCode::kCellApproach,
                               motion + " goes " +

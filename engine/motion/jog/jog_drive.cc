@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "engine/core/check.h"
@@ -56,7 +57,7 @@ bool JogDrive::Channel::Fits(const PathState& now, double end, const PathLimits&
 // already about to stand goes on with that.
 void JogDrive::Channel::Aim(double t_s, double end_place) {
   if (wanted == 0.0) return;
-  const double towards = wanted > 0.0 ? 1.0 : -1.0;
+  const double towards = std::copysign(1.0, wanted);
   PathState now = StateAt(t_s);
   const bool stands = !(now.speed > 0.0);
   if (stands) {
@@ -137,14 +138,13 @@ double JogDrive::ShareOfTool(const AxisValues& speeds) const {
   const Rotation along = ToolRotation(anchor_.axes.a_rad, anchor_.axes.b_rad);
   const double turning = std::abs(speeds[kA]) + std::abs(speeds[kB]);
   const double all = LinearOf(speeds).lpNorm<1>();
-  double share = 1.0;
-  for (int axis = 0; axis < 3; ++axis) {
+  double share = 1.0;  // what is not asked for, 0, is no bound
+  for (const std::size_t axis : kLinearAxes) {
     double speed = 0.0;
-    for (int k = 0; k < 3; ++k)
+    for (const std::size_t k : kLinearAxes)
       speed += (turns ? 1.0 : std::abs(along(axis, k))) * std::abs(speeds[k]);
-    if (speed > 0.0) share = std::min(share, most_[axis] / speed);
-    if (turning > 0.0 && all > 0.0)
-      share = std::min(share, 0.5 * machine_.axes.acceleration[axis] / (all * turning));
+    share = std::min(share, most_[axis] / speed);
+    share = std::min(share, 0.5 * machine_.axes.acceleration[axis] / (all * turning));
   }
   return share;
 }
@@ -157,12 +157,11 @@ double JogDrive::ShareOfHeldTip(const AxisValues& speeds) const {
   const double b = std::max(std::abs(speeds[kB]), std::abs(channels_[kB].RateAt(now_s_)));
   const double radius = b > 0.0 ? reach : RadiusAboutA();
   const double inward = a * a * radius + (2.0 * a + b) * b * reach;
-  double share = 1.0;
-  for (int axis = 0; axis < 3; ++axis) {
+  double share = 1.0;  // what is not asked for, 0, is no bound
+  for (const std::size_t axis : kLinearAxes) {
     const double speed = std::abs(speeds[axis]) + (axis < 2 ? a * radius : 0.0) + b * reach;
-    if (speed > 0.0) share = std::min(share, machine_.axes.speed[axis] / speed);
-    if (inward > 0.0)
-      share = std::min(share, std::sqrt(0.5 * machine_.axes.acceleration[axis] / inward));
+    share = std::min(share, machine_.axes.speed[axis] / speed);
+    share = std::min(share, std::sqrt(0.5 * machine_.axes.acceleration[axis] / inward));
   }
   return keeps_stop_ ? share * ShareOfStop(share * speeds, radius) : share;
 }
@@ -211,9 +210,10 @@ double JogDrive::ShareOfStop(const AxisValues& speeds, double radius) const {
 
 // The speeds that no axis is too slow for.
 AxisValues JogDrive::Within(AxisValues speeds) const {
-  const int alone_from = mode_ == JogMode::kTool ? 3 : 0;
-  for (int k = alone_from; k < kAxisCount; ++k)
+  for (const std::size_t k : kAxes) {
+    if (mode_ == JogMode::kTool && k < kA) continue;
     speeds[k] = std::clamp(speeds[k], -most_[k], most_[k]);
+  }
   if (mode_ == JogMode::kTool) speeds.head<3>() *= ShareOfTool(speeds);
   if (mode_ == JogMode::kAbsolute && Turns(speeds)) speeds *= ShareOfHeldTip(speeds);
   return speeds;
@@ -230,13 +230,13 @@ bool JogDrive::Coupled() const {
 // Where a channel that moves one axis alone comes to its end.
 double JogDrive::EndOf(std::size_t channel) const {
   const int k = static_cast<int>(channel);
-  const double end = channels_[channel].wanted > 0.0 ? high_[k] : low_[k];
+  const double end = std::signbit(channels_[channel].wanted) ? low_[k] : high_[k];
   return anchor_.places[k] + (end - ValuesOf(anchor_.axes)[k]);
 }
 
 void JogDrive::AimOne(std::size_t channel) {
   Channel& one = channels_[channel];
-  const double far = one.wanted > 0.0 ? kRunOn : -kRunOn;
+  const double far = std::copysign(kRunOn, one.wanted);
   one.Aim(now_s_, AsOne(channel) ? one.from + far : EndOf(channel));
 }
 
@@ -301,7 +301,7 @@ double JogDrive::SureFor() const {
   }
   const AxisValues at = ValuesOf(anchor_.axes);
   double sure_s = kNever;
-  for (int axis = 0; axis < kAxisCount; ++axis) {
+  for (const std::size_t axis : kAxes) {
     if (!(speed[axis] > 0.0)) continue;
     const double room = std::min(at[axis] - low_[axis], high_[axis] - at[axis]);
     sure_s = std::min(sure_s, room / speed[axis] - stop_s);
@@ -351,13 +351,16 @@ double JogDrive::ExcessOfStopAt(double t_s) const {
   Anchor at = After(channels_, anchor_, t_s);
   std::array<AxisValues, kLooks + 1> seen;
   seen[0] = ValuesOf(at.axes);
-  for (std::size_t n = 1; n < seen.size(); ++n) {
-    at = After(stopped, at, t_s + step_s * static_cast<double>(n));
-    seen[n] = ValuesOf(at.axes);
+  int look = 0;
+  for (AxisValues& here : std::span(seen).subspan<1>()) {
+    at = After(stopped, at, t_s + step_s * ++look);
+    here = ValuesOf(at.axes);
   }
-  const int axes = mode_ == JogMode::kTool ? 3 : kAxisCount;  // others stop by themselves
+  // In kTool A and B stop by themselves.
+  const auto axes = mode_ == JogMode::kTool ? std::span<const std::size_t>(kLinearAxes)
+                                            : std::span<const std::size_t>(kAxes);
   double worst = -kNever;
-  for (int axis = 0; axis < axes; ++axis) {
+  for (const std::size_t axis : axes) {
     const auto keep = [&](double value, double room) {
       worst = std::max({worst, value + room - high_[axis], low_[axis] - value + room});
     };

@@ -72,7 +72,7 @@ bool LegStage::Join(bool goes_on) {
                       JunctionSpeed(before.path.Tangent(before.path.length()),
                                     move.path.Tangent(0.0), machine_.junction_jump_mm_s)});
       const double turn = std::abs(move.path.a_rate() - before.path.a_rate());
-      if (turn > 0.0) cap = std::min(cap, machine_.junction_jump_a_rad_s / turn);
+      cap = std::min(cap, machine_.junction_jump_a_rad_s / turn);  // no turn, no bound
     } else {
       leg.corner.Assign(before.path, move.path);
       passage = leg.corner.passage();

@@ -210,12 +210,12 @@ StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s, const Axi
     PlannedMotion part = ahead[first];
     const double s = part.speed.At(t_s).s;
     const double length = part.path.length();
-    if (s > 0.0 && s < length) {
-      part.path = PartOf(part.path, s, length);
-      part.speed = part.speed.Part(s, length);
-    }
     part.settling_s = 0.0;
     if (s < length) {
+      if (s > 0.0) {
+        part.path = PartOf(part.path, s, length);
+        part.speed = part.speed.Part(s, length);
+      }
       planned.push_back(part);
       planned_s += part.speed.duration_s();
     }

@@ -85,10 +85,10 @@ void PathRide::Stop(const StopPlan& plan, const AxisLimits& axes) {
   };
   rides_ = false;
   to_come_.clear();
-  const std::size_t first = ramp.index + 1 - std::min(ramp.motions.size(), ramp.index + 1);
-  for (std::size_t n = 0; n < ramp.motions.size(); ++n) {
-    to_come_.emplace_back(ramp.motions[n]);
-    if (first + n < ramp.index) add_marks(first + n, to_come_);
+  std::size_t passed = ramp.index + 1 - std::min(ramp.motions.size(), ramp.index + 1);
+  for (const PlannedMotion& motion : ramp.motions) {
+    to_come_.emplace_back(motion);
+    if (passed != ramp.index) add_marks(passed++, to_come_);
   }
   const std::span<const PlannedMotion> left = std::span(plan.ahead).subspan(ramp.index);
   std::vector<PlannedMotion> restart = RestartAlong(left, ramp.s, axes);

@@ -107,7 +107,7 @@ void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<Mach
   if (points.empty() || points.back() != path.from().point) points.push_back(path.from().point);
   if (path.kind() == PathPiece::Kind::kArc) {
     const double radius = path.radius_mm();
-    const double step = tolerance_mm < radius ? 2.0 * std::acos(1.0 - tolerance_mm / radius) : kPi;
+    const double step = 2.0 * std::acos(1.0 - std::min(tolerance_mm / radius, 1.0));
     const double wanted = std::ceil(path.sweep_rad() / std::min(step, 0.5 * kPi));
     const int chords = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(kChordsMax)));
     for (int k = 1; k < chords; ++k) points.push_back(path.At(path.length() * k / chords).point);

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "engine/families/families.h"
+#include "engine/machine/handbox.h"
 
 namespace rmlcell::machine {
 namespace {
@@ -40,6 +42,50 @@ TEST(MillFamily, HasNoVariablesToWrite) {
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(written.error().detail, "no variable is called 'VR[1]'");
+}
+
+// What a mill does not have: a handbox, whose state it then is, and whose edits it undoes.
+TEST(MillFamily, HasNoHandbox) {
+  const machine::Parameters t1 = *MakeParameters(Mills(), "t1", {});
+  const Result<std::unique_ptr<Handbox>> none = Mills().NewHandbox(t1, "");
+  ASSERT_TRUE(none);
+  EXPECT_EQ(*none, nullptr);
+  const Result<std::unique_ptr<Handbox>> some = Mills().NewHandbox(t1, "1");
+  ASSERT_FALSE(some);
+  EXPECT_EQ(some.error().code, ErrorCode::kCellBadText);
+  EXPECT_EQ(some.error().detail, "a machine without handbox has a state of one");
+  const Result<std::string> undone = Mills().UndoEdit({}, "PU;");
+  ASSERT_FALSE(undone);
+  EXPECT_EQ(undone.error().code, ErrorCode::kCellNotLive);
+  EXPECT_EQ(undone.error().detail, std::string(Mills().info().title) + " has no handbox");
+}
+
+// A breakpoint stands behind a command of a slot, and a stream comes there once.
+TEST(MillFamily, BreakpointsStandBehindCommands) {
+  const auto said = [](const Breakpoint& breakpoint) {
+    const Status good = Mills().CheckBreakpoint(breakpoint);
+    if (good) return std::string("good");
+    EXPECT_EQ(good.error().code, ErrorCode::kCellInvalidArgument);
+    return std::string(good.error().detail);
+  };
+  for (const ProgramStep at : {ProgramStep{1, 1}, ProgramStep{99, 2'000'000'000}})
+    EXPECT_EQ(said({.at = at}), "good");
+  for (const ProgramStep at : {ProgramStep{0, 1}, ProgramStep{100, 1}, ProgramStep{1, 0}}) {
+    EXPECT_EQ(said({.at = at}), "the breakpoint behind step " + std::to_string(at.step) +
+                                    " stands in no program: give a slot of 1 to 99 and a step "
+                                    "from 1 on");
+  }
+  const std::string of_7 = "the breakpoint behind step 7 ";
+  for (const std::uint64_t pass : {std::uint64_t{0}, std::uint64_t{1'000'000'000'001}}) {
+    EXPECT_EQ(said({.at = {1, 7}, .from_pass = pass}),
+              of_7 + "counts passes from 1 to a million millions");
+  }
+  for (const std::uint64_t pass : {std::uint64_t{2}, std::uint64_t{1'000'000'000'000}}) {
+    EXPECT_EQ(said({.at = {1, 7}, .from_pass = pass}),
+              of_7 + "waits for a later pass, but a stream comes to each command once");
+  }
+  EXPECT_EQ(said({.at = {1, 7}, .condition = "X"}),
+            of_7 + "has a condition, but the programs of this machine have no expressions");
 }
 
 // Of each program its stream, from the first slot to the last.
@@ -84,6 +130,24 @@ TEST(PlanTransfer, EveryProgramOrNone) {
   EXPECT_TRUE(plan.programs.empty());
   ASSERT_FALSE(plan.diagnostics.empty());
   for (const Diagnostic& finding : plan.diagnostics) EXPECT_EQ(finding.program, 4);
+}
+
+// A thousand findings of all programs together are told, and the places of the others are known.
+TEST(PlanTransfer, TellsAThousandFindings) {
+  std::string bad;
+  for (int n = 0; n < 600; ++n) bad += "PU100,100;PU200,200;PU300,300;PU400,400;QQ;";
+  const std::size_t each = PlanOf({.programs = {Stream(3, bad)}}).diagnostics.size();
+  ASSERT_GT(each, kDiagnosticsMax / 2);
+  ASSERT_LT(each, kDiagnosticsMax);
+  const TransferPlan plan = PlanOf({.programs = {Stream(3, bad), Stream(4, bad), Stream(5, bad)}});
+  ASSERT_EQ(plan.diagnostics.size(), kDiagnosticsMax);
+  EXPECT_EQ(plan.diagnostics.front().program, 3);
+  EXPECT_EQ(plan.diagnostics.back().program, 4);
+  EXPECT_EQ(plan.diagnostics_dropped.count(), 3 * each - kDiagnosticsMax);
+  for (const auto& [code, kind] : plan.diagnostics_dropped.kinds()) {
+    EXPECT_EQ(kind.first.program, 4);
+    EXPECT_EQ(kind.last.program, 5);
+  }
 }
 
 TEST(MakeParameters, RefusesProfilesAndValuesThatThereAreNot) {

@@ -186,6 +186,22 @@ TEST_F(MachineTest, AMarkIsSmall) {
   EXPECT_THAT(Refused(SetBreakpoints{many}), HasSubstr("at most 80 bytes"));
 }
 
+// A dry run ends at a step of a slot; without one there is none.
+TEST_F(MachineTest, ADryRunEndsAtAStep) {
+  Load({kLoop});
+  for (const ProgramStep until : {ProgramStep{1, 1}, ProgramStep{99, 1}}) {
+    Good(SetSimulation{until});
+    EXPECT_EQ(machine->simulation_until(), until);
+  }
+  for (const ProgramStep until : {ProgramStep{0, 1}, ProgramStep{100, 1}, ProgramStep{1, 0}}) {
+    EXPECT_EQ(Refused(SetSimulation{until}),
+              "CELL-E9003 a dry run ends at a step from 1 on of a program of 1 to 99");
+    EXPECT_EQ(machine->simulation_until(), (ProgramStep{99, 1}));
+  }
+  Good(SetSimulation{});
+  EXPECT_EQ(machine->simulation_until(), std::nullopt);
+}
+
 // LIVE-3.16, OPT-6.24, OPT-6.28: halted in a dry run it is seen to be dry, and what the program
 // switches is an image, not at the terminals.
 TEST_F(MachineTest, ADryRunIsSeenToBeDry) {

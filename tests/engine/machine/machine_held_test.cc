@@ -90,6 +90,17 @@ TEST_F(HeldTest, HowFarIsAsked) {
   EXPECT_THAT(Refused(ResumeRun{}), HasSubstr("CELL-E9425 it was moved in X by 0.015 mm"));
 }
 
+// LIVE-5.06: each axis that was moved is named, in its unit; 200 mm/s, 40 % of a turn in a second.
+TEST_F(HeldTest, EveryAxisThatWasMovedIsNamed) {
+  LoadHeld(kCorner, 5.0);
+  for (const JogAxis axis : {JogAxis::kX, JogAxis::kY, JogAxis::kZ, JogAxis::kA, JogAxis::kB})
+    Jog({axis, true}, 0.5);
+  BackInRemote();
+  EXPECT_EQ(Refused(ResumeRun{}),
+            "CELL-E9425 it was moved in X by 100.000 mm, Y by 100.000 mm, Z by 100.000 mm, A by "
+            "1.2566 rad, B by 1.2566 rad");
+}
+
 // LIVE-5.06: the START key at the machine asks nothing.
 TEST_F(HeldTest, TheStartKeyAsksNothing) {
   Load({kCorner});

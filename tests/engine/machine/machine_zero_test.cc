@@ -53,6 +53,21 @@ TEST_F(MachineZeroTest, FromTheConsoleTheMachineGoesHome) {
   EXPECT_EQ(machine->TakeMadeExecutables().size(), 1U);
 }
 
+// It selects nothing, and is nothing that could be entered again: it is nobody's program.
+TEST_F(MachineZeroTest, WhatWasSelectedStays) {
+  Load({"STOP\n", "STOP\n"});
+  Start(2);
+  GoOn(At(5.0));
+  Good(ChangeMode{Mode::kManual});
+  Good(ZeroAxes{});
+  GoOn(At(5.1));
+  EXPECT_EQ(state(), MachineState::kJogging);
+  EXPECT_FALSE(machine->base());
+  EXPECT_EQ(machine->selected_program(), 2);
+  GoOn(At(300.0));
+  EXPECT_EQ(machine->selected_program(), 2);
+}
+
 // OPT-4.50: without program 4 it says so, and stands at its zero.
 TEST_F(MachineZeroTest, WithoutAHomeProgramItStandsAtItsZero) {
   LoadWithoutReference();

@@ -210,8 +210,15 @@ TEST_F(ReachTest, WhatIsNotReached) {
   EXPECT_EQ(why(loop, {.at = {1, 5}, .occurrence = 4}),
             "step 1/5 is not reached for the 4. time: the program ends; the last step reached is "
             "1/15");
-  EXPECT_THAT(why(loop, {.at = {1, 99}}), HasSubstr("step 1/99 is not reached: the program ends"));
-  EXPECT_THAT(why(loop, {.at = {1, 0}}), HasSubstr("step 0 is none"));
+  EXPECT_EQ(
+      why(loop, {.at = {1, 5}, .occurrence = 1'000'000}),
+      "step 1/5 is not reached for the 1000000. time: the program ends; the last step reached "
+      "is 1/15");
+  EXPECT_EQ(why(loop, {.at = {1, 99}}),
+            "step 1/99 is not reached: the program ends; the last step reached is 1/15");
+  EXPECT_EQ(why(loop, {.at = {1, 0}}), "step 0 is none: they count from 1");
+  EXPECT_EQ(why(loop, {.at = {1, -1}}), "step -1 is none: they count from 1");
+  EXPECT_THAT(why(loop, {.at = {1, 0}, .byte_offset = 0}), HasSubstr("has no bytes"));
   EXPECT_THAT(why(loop, {.at = {1, 5}, .byte_offset = 7}), HasSubstr("has no bytes"));
   const RunSetup waits = Setup({"VI[2]=1\nWAIT IL[5]\nVI[2]=2\n"});
   EXPECT_THAT(why(waits, {.at = {1, 3}}),
@@ -225,6 +232,20 @@ TEST_F(ReachTest, WhatIsNotReached) {
   EXPECT_THAT(why(endless, {.at = {1, 3}}, {.go_on = [&] { return ++asked < 10; }}),
               HasSubstr("it takes longer than is looked for"));
   EXPECT_EQ(asked, 10);
+}
+
+// Of each step by itself, of the slots 1 to 99 and the first 65,536 steps; others come once.
+TEST(StepCounts, CountEachStepByItself) {
+  StepCounts counts;
+  for (const ProgramStep at : {ProgramStep{1, 2}, ProgramStep{1, 1}, ProgramStep{1, 0},
+                               ProgramStep{0, 2}, ProgramStep{99, 65'535}, ProgramStep{1, 3}}) {
+    for (std::uint64_t time = 1; time <= 3; ++time) EXPECT_EQ(counts.Count(at), time) << at.step;
+  }
+  EXPECT_EQ(counts.Count({1, 2}), 4U);
+  for (const ProgramStep at :
+       {ProgramStep{1, 65'536}, ProgramStep{100, 1}, ProgramStep{-1, 1}, ProgramStep{1, -1}}) {
+    for (int time = 0; time < 3; ++time) EXPECT_EQ(counts.Count(at), 1U) << at.step;
+  }
 }
 
 // LIVE-6.01: recorded inputs, and START at halts that no recorded key ends.

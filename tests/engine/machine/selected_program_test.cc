@@ -32,7 +32,9 @@ TEST_F(SelectedProgram, WhatAJobBringsIsNotSelected) {
   Over();
   EXPECT_EQ(machine->selected_program(), 3);
   EXPECT_EQ(machine->status().shown.program, 3);
+  const ShownStep shown = machine->status().shown;
   Good(StartRun{.program = 2, .source = StartSource::kQueue});  // as it is stored
+  EXPECT_EQ(machine->status().shown, shown);                    // no step of it was begun yet
   GoOn(At(40.0));
   Over();
   EXPECT_EQ(machine->selected_program(), 3);

@@ -397,6 +397,18 @@ TEST_F(StartAt, StartsDirectly) {
   EXPECT_THAT(why(6), HasSubstr("CELL-E9427 the first motion is HOLE"));
   EXPECT_THAT(why(8), HasSubstr("CELL-E9427 Z of the target of the first motion leaves its travel "
                                 "by "));
+  const auto turned = [&](const std::string& angles) {
+    const std::string program =
+        "COORD ABSOL\nPATH LIN\nMOVE (500.,2200.,-350.,0.,0.)\n"
+        "MOVE (560.,2200.,-350.," +
+        angles + ")\n";
+    return FirstRefusal(PreviewOf(Setup({program}), {.at = {1, 4}}, false, ApproachWay::kDirect));
+  };
+  EXPECT_THAT(turned("13.,0."),
+              HasSubstr("A of the target of the first motion leaves its travel by "
+                        "0.400 rad"));
+  EXPECT_THAT(turned("0.,3."), HasSubstr("B of the target of the first motion leaves its travel by "
+                                         "0.600 rad"));
 }
 
 // LIVE-6.01: of a run that was cut off: the values that it had, and the inputs of now.

@@ -232,6 +232,66 @@ TEST_F(StartBaseTest, TheWayToAnEntryTakesNoTime) {
   EXPECT_LT(machine->base_time() - preview->run_time, At(0.02));
 }
 
+// Each with its time in the run, its place and its value; what changed nothing is none.
+TEST_F(StartBaseTest, KeepsInputsAsTheyCame) {
+  Load({"DELAY 100\n"});
+  GoOn(At(10.0));
+  Start();
+  GoOn(At(11.0));
+  Good(ChangeOverride{50.0});
+  GoOn(At(12.0));
+  Good(Logical(3, true));
+  Good(MoveDoor{.open = false});  // it is
+  GoOn(At(13.0));
+  Good(WriteVariable{.name = "VI[1]", .value = 7.0});
+  GoOn(At(14.0));
+  Good(StopRun{});
+  GoOn(At(16.0));
+  Good(ResumeRun{});
+  const InputScript inputs = {
+      {.at = At(1.0), .kind = InputKind::kOverride, .value = 50.0},
+      {.at = At(2.0), .kind = InputKind::kLogical, .index = 3, .value = 1.0},
+      {.at = At(3.0), .kind = InputKind::kVariable, .value = 7.0, .name = "VI[1]"},
+      {.at = At(4.0), .kind = InputKind::kStop},
+      {.at = At(6.0), .kind = InputKind::kStart}};
+  EXPECT_EQ(machine->base()->inputs, inputs);
+}
+
+// What a run stood at its breakpoints is no time of the next one.
+TEST_F(StartBaseTest, EachRunCountsAnew) {
+  Load({"DELAY 2\nVI[1]=1\nDELAY 30\n"});
+  Good(SetBreakpoints{.breakpoints = {{.at = {1, 1}}}});
+  Start();
+  GoOn(At(10.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  Good(ResumeRun{});
+  GoOn(At(12.0));
+  EXPECT_LT(machine->base_time(), At(5.0));
+  Good(AbortRun{});
+  GoOn(At(13.0));
+  Good(SetBreakpoints{});
+  Start();
+  GoOn(At(18.0));
+  EXPECT_EQ(machine->base_time(), At(5.0));
+}
+
+// LIVE-6.01: an input that came when the step began came before it, and is part of what it began
+// with, when it is cut off again.
+TEST_F(StartBaseTest, WhatCameAtTheEntryStays) {
+  Load({"DELAY 2\nVI[1]=1\nDELAY 30\n"});
+  Start();
+  GoOn(At(10.0));
+  StartAtStep start = Again(3);
+  machine = Found();
+  const SimTime begins = machine->Preview(start)->run_time;
+  start.base->inputs = {{.at = begins - SimTime(1), .index = 3, .value = 1.0},
+                        {.at = begins, .index = 4, .value = 1.0},
+                        {.at = begins + SimTime(1), .index = 5, .value = 1.0}};
+  Good(start);
+  ASSERT_EQ(machine->base()->inputs.size(), 2U);
+  EXPECT_EQ(machine->base()->inputs[1].index, 4);
+}
+
 // A run of nobody's program has none, and one to which more comes than is kept has none any more.
 TEST_F(StartBaseTest, KeepsAThousandInputs) {
   Load({"DELAY 100\n"});
@@ -258,8 +318,16 @@ TEST_F(GatesTest, EachStartsItsProgram) {
   Load({"VI[1]=1\n", "VI[2]=2\n", "DELAY 5\n"});
   EXPECT_THAT(Refused(PressGate{.gate = 1}), HasSubstr("CELL-E9423"));
   Good(SetGates{.programs = {2, 3}});
-  EXPECT_THAT(Refused(PressGate{.gate = 3}), HasSubstr("CELL-E9003"));
-  EXPECT_THAT(Refused(SetGates{.programs = {100, 0}}), HasSubstr("CELL-E9003"));
+  for (const int gate : {0, 3}) {
+    EXPECT_EQ(Refused(PressGate{.gate = gate}),
+              "CELL-E9003 gate " + std::to_string(gate) + ": there are gate 1 and gate 2");
+  }
+  for (const int program : {-1, 100}) {
+    EXPECT_EQ(
+        Refused(SetGates{.programs = {2, program}}),
+        "CELL-E9003 gate program " + std::to_string(program) + ": a slot is 1 to 99, 0 is none");
+  }
+  EXPECT_EQ(machine->gates(), (std::array<int, kGates>{2, 3}));
   Good(PressGate{.gate = 1});
   GoOn(At(1.0));
   const RunOver first = Over();
@@ -279,6 +347,7 @@ TEST_F(GatesTest, EachStartsItsProgram) {
 // LIVE-2.11: what they start outlives a host; a program that is not there is the control's error.
 TEST_F(GatesTest, AreKept) {
   Load({"VI[1]=1\n"});
+  Good(SetGates{.programs = {99, 0}});
   Good(SetGates{.programs = {0, 44}});
   Load({"VI[1]=1\n"}, machine->Save());
   EXPECT_EQ(machine->gates(), (std::array<int, kGates>{0, 44}));

@@ -55,7 +55,11 @@ TEST_F(VirtualDriverTest, ItsTimeFollowsTheClock) {
   EXPECT_EQ(driver->status().state, MachineState::kHeld);
   for (const double factor : {0.05, 101.0, -1.0})
     EXPECT_FALSE(driver->SetFactor(Clock(24.0), factor)) << factor;
+  EXPECT_EQ(driver->SetFactor(Clock(24.0), 100.5).error().detail,
+            "a factor of 100.5: it is 0.1 to 100");
   EXPECT_EQ(driver->factor(), 0.1);
+  EXPECT_TRUE(driver->SetFactor(Clock(24.0), 100.0));
+  EXPECT_EQ(driver->factor(), 100.0);
   EXPECT_TRUE(driver->capabilities().inputs);
 }
 
@@ -123,6 +127,21 @@ TEST_F(VirtualDriverTest, TimeThatItWaitsIsNoneOfIts) {
   driver->Wait(false, Clock(9.0));
   driver->Pump(Clock(9.05));
   EXPECT_EQ(driver->machine().time(), begun + FromSeconds(0.05));
+  EXPECT_EQ(driver->TakeLost(), SimTime(0));
+}
+
+// The same when nobody called meanwhile; and not to wait when it does not is nothing.
+TEST_F(VirtualDriverTest, WaitsWithoutATurn) {
+  Load("DELAY 10\n");
+  EXPECT_TRUE(driver->Start(Clock(1.0), {.program = 1}));
+  const SimTime begun = driver->machine().time();
+  driver->Wait(true, Clock(1.0));
+  driver->Wait(false, Clock(9.0));
+  driver->Pump(Clock(9.05));
+  EXPECT_EQ(driver->machine().time(), begun + FromSeconds(0.05));
+  driver->Wait(false, Clock(9.08));
+  driver->Pump(Clock(9.1));
+  EXPECT_EQ(driver->machine().time(), begun + FromSeconds(0.1));
   EXPECT_EQ(driver->TakeLost(), SimTime(0));
 }
 

@@ -80,6 +80,38 @@ TEST(LegStageDump, LegsAreClosedByCorners) {
             "leg 1: moves 2 to 2, length 30.000, STOP at 0.000, ends the run, speed 0.000\n");
 }
 
+// Points of a straight line that change nothing are one leg, of 17 moves where corners are passed
+// through and none has to wait, else of half a window and one: then too little is known of it.
+TEST(LegStageDump, ALineWithoutEndIsCut) {
+  for (const bool through : {true, false}) {
+    LegStage legs(through ? PlainMill() : PlainMachine(), 64);
+    for (int k = 0; k < 40; ++k) Add(legs, {{1.0 * k, 0, 0}}, {{k + 1.0, 0, 0}}, true, 0);
+    const std::string first = through ? "leg 0: moves 0 to 16, length 17.000, THROUGH at 100.000, "
+                                        "ends the run\nleg 1: moves 17 to 33, "
+                                      : "leg 0: moves 0 to 32, length 33.000, THROUGH at 100.000, "
+                                        "ends the run\nleg 1: moves 33 to 39, ";
+    EXPECT_TRUE(legs.Dump().starts_with(first)) << legs.Dump();
+    EXPECT_EQ(legs.starved(), through ? 0U : 1U);
+  }
+}
+
+// Limits that differ by less than 1e-9 of them are the same, and the moves one leg.
+TEST(LegStageDump, LimitsThatAgreeMakeOneLeg) {
+  for (const auto& [factor, one] : {std::pair{1.0 + 0.9e-9, true}, {1.0 + 1.1e-9, false}}) {
+    for (const bool speed : {true, false}) {
+      LegStage legs(PlainMachine(), 64);
+      for (int k = 0; k < 2; ++k) {
+        MoveCommand move;
+        move.path = PathPiece::Line({{10.0 * k, 0, 0}}, {{10.0 * k + 10.0, 0, 0}});
+        (speed ? move.speed_fraction : move.acceleration_fraction) = k == 0 ? 0.5 : 0.5 * factor;
+        move.fly = true;
+        legs.Add(move, legs.LimitsFor(move), true);
+      }
+      EXPECT_EQ(legs.legs().size(), one ? 1U : 2U) << factor << speed;
+    }
+  }
+}
+
 // What is passed straight on is one run, and becomes spans as one: so does the corner of a mill.
 // Before the passes over spans no knot is final. 5 mm/s take 5 * 5 / 2000 mm, so neither line is
 // too short for them.
@@ -166,6 +198,54 @@ TEST(ItemStageDump, SectionsHaveAsManySpansAsThereIsRoomFor) {
   items.AllowAll();
   ASSERT_NE(items.Next(), nullptr);
   EXPECT_TRUE(items.Dump().starts_with("section: 852 spans, ")) << items.Dump().substr(0, 60);
+}
+
+// Nor more moves than half a window and one, whatever room there is: 33 of them, of which one is
+// taken.
+TEST(ItemStageDump, SectionsHaveNoMoreThanHalfAWindowOfMoves) {
+  MachineLimits machine = PlainMachine();
+  machine.tip_acceleration_mm_s2 = 10.0;
+  machine.tip_jerk_mm_s3 = 1000.0;
+  machine.axes.jerk.fill(1e9);
+  ItemStage items(machine, 64);
+  SpanStage& spans = items.span_stage();
+  LegStage& legs = spans.leg_stage();
+  for (int k = 0; k < 60; ++k) {
+    MoveCommand move;
+    move.path = PathPiece::Line({{0.1 * k, 0, 0}}, {{0.1 * (k + 1), 0, 0}});
+    move.speed_fraction = k % 2 == 0 ? 0.9 : 1.0;  // else they would be one leg
+    move.fly = true;
+    legs.Add(move, legs.LimitsFor(move), true);
+  }
+  legs.End();
+  legs.Settle();
+  while (spans.Resolve(false)) {
+  }
+  spans.Settle();
+  items.AllowAll();
+  ASSERT_NE(items.Next(), nullptr);
+  EXPECT_TRUE(items.Dump().starts_with("section: 32 spans, ")) << items.Dump().substr(0, 60);
+}
+
+// Where the machine stands a section ends, with a limit on jerk, too: no ramp runs across.
+TEST(ItemStageDump, SectionsEndWhereTheMachineStands) {
+  MachineLimits machine = PlainMachine();
+  machine.tip_jerk_mm_s3 = 1e5;
+  machine.axes.jerk.fill(1e9);
+  ItemStage items(machine, Planner::kWindow);
+  SpanStage& spans = items.span_stage();
+  LegStage& legs = spans.leg_stage();
+  for (int k = 0; k < 3; ++k) Add(legs, {{10.0 * k, 0, 0}}, {{10.0 * k + 10.0, 0, 0}}, false, 0);
+  legs.Settle();
+  while (spans.Resolve(false)) {
+  }
+  spans.Settle();
+  items.AllowAll();
+  for (int k = 0; k < 3; ++k) {
+    ASSERT_NE(items.Next(), nullptr);
+    EXPECT_EQ(items.Dump(), "");  // one span of one move, which is out
+  }
+  EXPECT_EQ(items.Next(), nullptr);
 }
 
 // Two lines in a row are one leg, and open until the chain is at an end; then a span that takes

@@ -74,5 +74,17 @@ TEST(FeedSteps, OtherMills) {
   }
 }
 
+// Coarse steps count from exactly there on, be that a step or not.
+TEST(FeedSteps, CoarseFromThereOn) {
+  const FeedSteps steps{.maximum_mm_s = 51.0,
+                        .fine_step_mm_s = 0.25,
+                        .coarse_step_mm_s = 2.5,
+                        .coarse_from_mm_s = 10.3};
+  EXPECT_EQ(steps.Nearest(std::nextafter(10.3, 0.0)), 10.25);
+  EXPECT_EQ(steps.Nearest(10.3), 10.0);
+  EXPECT_EQ(steps.Nearest(-std::numeric_limits<double>::infinity()), 0.5);
+  EXPECT_EQ(steps.Nearest(std::numeric_limits<double>::infinity()), 51.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

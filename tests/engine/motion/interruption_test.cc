@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "engine/motion/kinematics/axis_demand.h"
 #include "engine/motion/ride/trajectory.h"
 #include "tests/engine/motion/plan_check.h"
 #include "tests/engine/motion/random_chain.h"
@@ -58,12 +59,16 @@ TEST(StopAlong, BendsOfTheAxesDoNotDelayTheRest) {
   const StopOnPath behind = StopAlong(std::span(plan).subspan(3), 0.0, StandardMachine().axes);
   double braking = 0.0;
   for (const PlannedMotion& motion : behind.motions) braking += motion.duration_s();
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k <= 20; ++k) {
     const double t = plan[1].duration_s() * k / 20.0;
     const StopOnPath stop = StopAlong(bend, t, StandardMachine().axes);
     ASSERT_TRUE(stop.complete);
     double time = 0.0;
-    for (const PlannedMotion& motion : stop.motions) time += motion.duration_s();
+    for (const PlannedMotion& motion : stop.motions) {
+      EXPECT_GT(motion.path.length(), 0.0) << k;
+      EXPECT_EQ(motion.settling_s, 0.0) << k;
+      time += motion.duration_s();
+    }
     EXPECT_LE(time, passing - t + braking + 1e-9) << k;
   }
   // At the end of the move before it nothing of that move is left.
@@ -164,6 +169,43 @@ TEST(RestartAlong, GentlerRampsAreGentlerInTheirJerk) {
     }
   }
   EXPECT_GT(gentler, 0);
+}
+
+// Where the head turns in a bend, too, no axis is asked there for more than it can, be it by a STOP
+// or by the START behind it: for 0.1 % more, which is no harm. OPT-2.16, OPT-B.31
+TEST(StopAlong, KeepsTheAxesInBends) {
+  const AxisLimits axes = StandardMachine().axes;
+  double worst = 0.0;
+  const auto look = [&](const std::vector<PlannedMotion>& motions) {
+    for (const PlannedMotion& motion : motions) {
+      if (motion.path.kind() != PathPiece::Kind::kBlend) continue;
+      for (int k = 0; k <= 32; ++k) {
+        const PathState state = motion.speed.At(motion.speed.duration_s() * k / 32);
+        const AxisDerivatives q = DerivativesAt(motion.path, motion.head, state.s);
+        for (std::size_t i = 0; i < kAxisCount; ++i) {
+          const double asked =
+              q.first[i] * state.acceleration + q.second[i] * state.speed * state.speed;
+          worst = std::max(worst, std::abs(asked) / axes.acceleration[i]);
+        }
+      }
+    }
+  };
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const std::vector<PlannedMotion> plan =
+        Plan(RandomChain(seed, 6, {.all_fly = true, .shortest_mm = 0.5, .longest_mm = 5.0}));
+    for (std::size_t k = 0; k < plan.size(); ++k) {
+      const std::span<const PlannedMotion> ahead = std::span(plan).subspan(k);
+      for (const double share : {0.0, 0.5, 1.0}) {
+        const StopOnPath stop = StopAlong(ahead, share * plan[k].speed.duration_s(), axes);
+        ASSERT_TRUE(stop.complete);
+        for (const PlannedMotion& motion : stop.motions) EXPECT_GT(motion.path.length(), 0.0);
+        look(stop.motions);
+        look(RestartAlong(ahead.subspan(stop.index), stop.s, axes));
+      }
+    }
+  }
+  EXPECT_LE(worst, 1.001 + 1e-9);
+  EXPECT_GT(worst, 0.9);
 }
 
 // Stopped anywhere and started again: the same path, every limit kept, the end at rest at the
@@ -379,6 +421,37 @@ TEST(StopAlong, SaysWhenMoreIsToBePlanned) {
   EXPECT_NEAR(behind.s, kRamp_mm, 1e-9);
   const double far = plan[0].speed.TimeAt(100.0 - kRamp_mm - 0.1);
   EXPECT_TRUE(StopAlong(std::span(plan).first(1), far, StandardMachine().axes).complete);
+}
+
+// From 125 mm/s with 1000 mm/s2 it is 7.8125 mm to rest, and so long is the move: the one behind
+// it, which would brake more gently, is not touched.
+TEST(StopAlong, RestsAtTheVeryEndOfAMove) {
+  MachineLimits machine = StandardMachine();
+  machine.tip_jerk_mm_s3 = kNoLimit;
+  machine.axes.jerk.setConstant(kNoLimit);
+  std::vector<MoveCommand> chain(3);
+  const double ends[4] = {0.0, 100.0, 107.8125, 300.0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    chain[k].path = PathPiece::Line({{ends[k], 0, 0}}, {{ends[k + 1], 0, 0}});
+    chain[k].speed_fraction = 0.25;
+    chain[k].acceleration_fraction = k < 2 ? 0.5 : 0.25;
+    chain[k].fly = k < 2;
+    chain[k].tag = k;
+  }
+  const std::vector<PlannedMotion> plan = Plan(chain, machine);
+  ASSERT_EQ(plan.size(), 3u);
+  for (const std::size_t known : {1u, 2u}) {  // as far as it is planned
+    const StopOnPath stop = StopAlong(std::span(plan).subspan(1, known), 0.0, machine.axes);
+    EXPECT_TRUE(stop.complete);
+    EXPECT_EQ(stop.index, 0u);
+    EXPECT_EQ(stop.s, 7.8125);
+    ASSERT_EQ(stop.motions.size(), 1u);
+    EXPECT_EQ(stop.motions[0].tag, 1u);
+    EXPECT_EQ(stop.motions[0].path.length(), 7.8125);
+    EXPECT_TRUE(stop.motions[0].ends_move);
+    EXPECT_EQ(stop.motions[0].speed.end().speed, 0.0);
+    EXPECT_NEAR(stop.motions[0].duration_s(), 0.125, 1e-12);
+  }
 }
 
 }  // namespace

@@ -72,6 +72,104 @@ TEST(JogDrive, ReachesItsSpeedAndLeavesIt) {
   EXPECT_EQ(drive.tip_speed_mm_s(), 0.0);
 }
 
+// Each channel brakes with what its axis has; along the tool X, Y and Z with what the weakest of
+// them has, and the tip allows; A and B with the tip held with half of that, at the length of the
+// head.
+TEST(JogDrive, RunsOnWithTheLimitsOfItsMode) {
+  JogMachine machine = Gantry();
+  machine.axes.acceleration = {3000.0, 2500.0, 2000.0, 30.0, 24.0};
+  machine.axes.jerk = {60000.0, 50000.0, 40000.0, 600.0, 480.0};
+  machine.tip_acceleration_mm_s2 = 1500.0;
+  machine.tip_jerk_mm_s3 = 30000.0;
+  const auto runs_on = [&](JogMode mode, int axis, double acceleration, double jerk) {
+    JogDrive drive(machine, mode, kMiddle);
+    const double v = axis < 3 ? 20.0 : 0.1;
+    drive.Demand(Only(axis, v));
+    const double way = StopWay(v, acceleration, jerk);
+    EXPECT_NEAR(drive.RunsOn(axis), way, 1e-12) << axis;
+    const double radius = axis == 3 ? 300.0 * std::sin(0.9) : 300.0;
+    const double linear = mode == JogMode::kAbsolute ? way * radius : 0.0;
+    EXPECT_NEAR(drive.LinearRunsOn(axis), axis < 3 ? way : linear, 1e-9) << axis;
+  };
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const double acceleration = machine.axes.acceleration[axis], jerk = machine.axes.jerk[axis];
+    runs_on(JogMode::kRobot, axis, acceleration, jerk);
+    const bool turns = axis >= 3;
+    runs_on(JogMode::kTool, axis, turns ? acceleration : 1500.0, turns ? jerk : 30000.0);
+    runs_on(JogMode::kAbsolute, axis, turns ? 1000.0 / 300.0 : acceleration,
+            turns ? 40000.0 / 300.0 : jerk);
+  }
+  machine.tip_acceleration_mm_s2 = 9000.0;
+  machine.tip_jerk_mm_s3 = 90000.0;
+  for (int axis = 0; axis < 3; ++axis) runs_on(JogMode::kTool, axis, 2000.0, 40000.0);
+  machine.head = GantryHead{.length_mm = 20.0};  // shorter than what the axes A and B need
+  JogDrive drive(machine, JogMode::kAbsolute, kMiddle);
+  drive.Demand(Only(3, 0.1));
+  EXPECT_NEAR(drive.RunsOn(3), StopWay(0.1, 30.0, 600.0), 1e-12);
+}
+
+// What is asked for is lowered as a whole, so that no axis goes faster than it can, nor is asked
+// for more than half of its acceleration by what turns meanwhile. How fast it is then its stop
+// tells.
+TEST(JogDrive, LowersWhatNoAxisCan) {
+  const auto share_of = [](const JogMachine& machine, JogMode mode, const AxisPose& at,
+                           const AxisValues& speeds, int axis) {
+    JogDrive drive(machine, mode, at);
+    drive.Demand(speeds);
+    const bool held = mode == JogMode::kAbsolute && axis >= 3;
+    const double a = held ? 1000.0 / 300.0 : axis < 3 ? 2000.0 : 20.0;
+    const double j = held ? 40000.0 / 300.0 : axis < 3 ? 40000.0 : 400.0;
+    double low = 0.0, high = 1.0;
+    for (int n = 0; n < 50; ++n) {
+      const double middle = 0.5 * (low + high);
+      (StopWay(middle * std::abs(speeds[axis]), a, j) < drive.RunsOn(axis) ? low : high) = middle;
+    }
+    return low;
+  };
+  const JogMachine machine = Gantry();
+  const AxisPose upright{{1000.0, 900.0, -300.0}, 0.0, 0.0};
+  AxisValues all;
+  all.head<3>().setConstant(200.0);
+  EXPECT_NEAR(share_of(machine, JogMode::kTool, upright, all, 1), 1.0, 1e-9);
+  all[3] = 0.1;  // now any axis may come to lie along all three
+  EXPECT_NEAR(share_of(machine, JogMode::kTool, upright, all, 1), 500.0 / 600.0, 1e-9);
+  AxisValues fast = Only(2, 400.0);
+  fast[3] = 2.0;
+  fast[4] = 1.0;
+  EXPECT_NEAR(share_of(machine, JogMode::kTool, kMiddle, fast, 2), 1000.0 / 1200.0, 1e-9);
+  EXPECT_NEAR(share_of(machine, JogMode::kTool, kMiddle, fast, 3), 1.0, 1e-9);
+  EXPECT_NEAR(share_of(machine, JogMode::kTool, kMiddle, Only(3, 10.0), 3), kTurn / 10.0, 1e-9);
+  EXPECT_NEAR(share_of(machine, JogMode::kRobot, kMiddle, Only(0, -600.0), 0), 500.0 / 600.0, 1e-9);
+
+  // With the tip held: about A alone the column of an upright head does not move at all.
+  EXPECT_NEAR(share_of(machine, JogMode::kAbsolute, upright, Only(3, 3.0), 3), 1.0, 1e-9);
+  const double aside = 300.0 * std::sin(0.9);  // 2.4 rad/s: 564 mm/s, and inward 1354 mm/s2
+  EXPECT_NEAR(share_of(machine, JogMode::kAbsolute, kMiddle, Only(3, 2.4), 3),
+              std::sqrt(1000.0 / (2.4 * 2.4 * aside)), 1e-9);
+  AxisValues both = Only(3, 1.0);
+  both[4] = 1.0;  // 300 mm/s for each of them
+  EXPECT_NEAR(share_of(machine, JogMode::kAbsolute, kMiddle, both, 4), 500.0 / 600.0, 1e-9);
+}
+
+// About A alone, with the tip held, Z does not move: it has all of its speed for its own key, and
+// keeps exactly to it. LIVE-8.01
+TEST(JogDrive, TurningAboutATakesNothingFromZ) {
+  JogMachine machine = Gantry();
+  machine.axes.speed[2] = 200.0;
+  JogDrive alone(machine, JogMode::kAbsolute, kMiddle);
+  JogDrive turning(machine, JogMode::kAbsolute, kMiddle);
+  AxisValues speeds = Only(2, 200.0);
+  alone.Demand(speeds);
+  speeds[3] = 0.1;
+  turning.KeepTo({200.0, 200.0, 200.0, 2.5, 2.5});
+  turning.Demand(speeds);
+  EXPECT_EQ(turning.RunsOn(2), alone.RunsOn(2));
+  alone.Advance(1.0);
+  turning.Advance(1.0);
+  const MachinePoint tip = machine.head.TipOf(turning.axes()).tip;
+  EXPECT_NEAR(tip.z(), machine.head.TipOf(alone.axes()).tip.z(), 1e-9);
+}
+
 // OPT-4.52: with ROB a key moves its own axis only.
 TEST(JogDrive, RobotMovesOneAxis) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
@@ -254,6 +352,20 @@ TEST(JogDrive, AnAxisStandsOnItsEnd) {
       drive.Advance(22.0);
       EXPECT_GT(std::abs(Values(drive.axes())[axis] - end), 0.05);
     }
+  }
+}
+
+// An axis goes on to its very end, but not for a way that is none.
+TEST(JogDrive, GoesTheLastOfItsTravel) {
+  for (const double left : {1e-7, 1e-10}) {
+    AxisPose at = kMiddle;
+    at.column.x() = 3600.0 - left;
+    JogDrive drive(Gantry(), JogMode::kRobot, at);
+    drive.Demand(Only(0, 100.0));
+    EXPECT_EQ(drive.rests(), left < 1e-9);
+    drive.Advance(1.0);
+    EXPECT_TRUE(drive.rests());
+    EXPECT_NEAR(drive.axes().column.x(), left < 1e-9 ? at.column.x() : 3600.0, 1e-12);
   }
 }
 

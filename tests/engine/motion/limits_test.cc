@@ -172,5 +172,21 @@ TEST(LimitsOf, WithoutJerkLimit) {
   EXPECT_TRUE(std::isinf(LimitsOf(Contour({}, {{9, 0, 0}, 1, 1}, 1.0), machine).jerk));
 }
 
+// The fractions are those of the tip, and no more than all of it.
+TEST(TipLimits, AreSharesOfTheMachine) {
+  MoveCommand move;
+  move.speed_fraction = 0.25;
+  move.acceleration_fraction = 0.5;
+  const PathLimits some = TipLimits(move, StandardMachine());
+  EXPECT_EQ(some.speed, 125.0);
+  EXPECT_EQ(some.acceleration, 1000.0);
+  EXPECT_EQ(some.jerk, 20000.0);
+  move.speed_fraction = move.acceleration_fraction = 1.5;
+  const PathLimits all = TipLimits(move, StandardMachine());
+  EXPECT_EQ(all.speed, 500.0);
+  EXPECT_EQ(all.acceleration, 2000.0);
+  EXPECT_EQ(all.jerk, 40000.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

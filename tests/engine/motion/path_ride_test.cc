@@ -144,6 +144,83 @@ TEST(PathRide, DoesNotStopWhereNotEnoughIsPlanned) {
   EXPECT_TRUE(ride.protocol().goes());
 }
 
+// STOP in the last ramp of a move: it comes to rest at its end, where it only has to settle then;
+// its move is over once.
+TEST(PathRide, StopInTheLastRampLeavesTheSettling) {
+  const PlannedMotion last = StraightOn().back();
+  PathRide ride(HoldRamp::kStays);
+  ride.Plan(last);
+  ride.Plan(PlannedMark{13});
+  const SimTime now = ride.Begin(kBegin).arrival - std::chrono::milliseconds(10);
+  const AxisLimits axes = StandardMachine().axes;
+  const auto plan = ride.PlanStop(now, axes);
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_EQ(plan->rests_on, 3u);
+  ride.Stop(*plan, axes);
+  ASSERT_EQ(TagsToCome(ride), "3");
+  EXPECT_TRUE(std::get<PlannedMotion>(ride.to_come()[0]).ends_move);
+  ASSERT_EQ(ride.interrupted().size(), 2u);
+  const auto& settling = std::get<PlannedMotion>(ride.interrupted()[0]);
+  EXPECT_FALSE(settling.ends_move);
+  EXPECT_EQ(settling.path.length(), 0.0);
+  EXPECT_EQ(settling.settling_s, 0.048);
+  EXPECT_EQ(std::get<PlannedMark>(ride.interrupted()[1]).tag, 13u);
+}
+
+// Moved while it stood: its commands from one on are others, and held back with those that were.
+TEST(PathRide, WhatItWasMovedAwayFromIsHeldBack) {
+  const std::vector<PlannedMotion> motions = StraightOn();
+  PathRide ride = RideOver(motions);
+  for (const std::uint64_t tag : {1u, 2u, 3u}) ride.Append({.tag = tag, .move = MoveCommand{}});
+  const SimTime now = ride.Begin(kBegin).start + FromSeconds(motions[0].speed.TimeAt(50.0));
+  const AxisLimits axes = StandardMachine().axes;
+  ride.Stop(*ride.PlanStop(now, axes), axes);
+  ASSERT_FALSE(ride.interrupted().empty());
+  ride.HoldBack(2, {{.tag = 8, .move = MoveCommand{}}, {.tag = 9, .move = std::nullopt}});
+  EXPECT_TRUE(ride.interrupted().empty());
+  ASSERT_EQ(ride.appended().size(), 1u);
+  EXPECT_EQ(ride.appended()[0].tag, 1u);
+  ASSERT_EQ(ride.held().size(), 2u);
+  EXPECT_EQ(ride.held()[0].tag, 8u);
+  EXPECT_EQ(ride.held()[1].tag, 9u);
+}
+
+// Once it has arrived it is at the end exactly, at 50 mm/s, although the time is rounded to
+// nanoseconds.
+TEST(MotionUnderWay, ArrivesAtTheEnd) {
+  for (int k = 1; k <= 40; ++k) {
+    const TipPose end{{10.0 + k / 7.0, 0, 0}};
+    MoveCommand move, next;
+    move.path = PathPiece::Line({}, end);
+    next.path = PathPiece::Line(end, {{100, 0, 0}});
+    move.speed_fraction = next.speed_fraction = 0.1;
+    next.acceleration_fraction = 0.5;
+    move.fly = true;
+    MotionUnderWay active;
+    active.motion = Plan({move, next})[0];
+    ASSERT_EQ(active.motion.path.to().point, end.tip);
+    active.Begin(kBegin);
+    const double length_mm = active.motion.path.length();
+    EXPECT_EQ(active.PlaceAt(active.arrival), length_mm);
+    EXPECT_EQ(active.PlaceAt(active.end), length_mm);
+    EXPECT_LT(active.PlaceAt(active.arrival - std::chrono::microseconds(1000)), length_mm);
+    EXPECT_EQ(active.told, kBegin);
+  }
+}
+
+// A motion that turns the head about its tip does not move the tip, which stays where it is.
+TEST(MotionUnderWay, TheTipOfATurnStands) {
+  MoveCommand turn;
+  turn.path = PathPiece::Line({{1, 2, 3}, 0.0, 0.0}, {{1, 2, 3}, 0.0, 1.0});
+  MotionUnderWay active;
+  active.motion = Plan({turn})[0];
+  active.Begin(kBegin);
+  const SimTime middle = kBegin + (active.arrival - kBegin) / 2;
+  EXPECT_EQ(active.TipSpeedAt(middle), 0.0);
+  EXPECT_EQ(active.TipAt(middle).tip, (MachineVector{1, 2, 3}));
+  EXPECT_NEAR(active.AxesAt(middle).b_rad, 0.5, 1e-6);
+}
+
 TEST(PathRide, HoldKeepsTheCommandsBehindItsTarget) {
   PathRide ride(HoldRamp::kStays);
   for (const std::uint64_t tag : {1u, 2u, 4u}) {

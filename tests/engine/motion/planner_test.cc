@@ -115,6 +115,61 @@ TEST(Planner, RefusesWhatIsNotANumber) {
   EXPECT_FALSE(planner.Next());
 }
 
+// Coordinates to 1e12, lengths too: those are so far away that the move never arrives, and beyond
+// them nothing is usable. motion.md 5.1
+TEST(Planner, TheFarthestThatIsUsable) {
+  const auto code = [](const PathPiece& path) {
+    Planner planner(StandardMachine());
+    const Status done = planner.Append({.path = path});
+    return done ? "good" : CodeText(done.error().code);
+  };
+  const std::string never = CodeText(ErrorCode::kCellNoMotion);
+  const std::string unusable = CodeText(ErrorCode::kCellTargetUnusable);
+  const double beyond = std::nextafter(1e12, 2e12);
+  EXPECT_EQ(code(PathPiece::Line({}, {{1e12, 0, 0}})), never);
+  EXPECT_EQ(code(PathPiece::Line({}, {{-1e12, 0, 0}})), never);
+  EXPECT_EQ(code(PathPiece::Line({}, {{beyond, 0, 0}})), unusable);
+  EXPECT_EQ(code(PathPiece::Line({}, {{6e11, 6e11, 0}})), unusable);  // together
+  EXPECT_EQ(code(PathPiece::Line({{1e12, 0, 0}}, {})), never);
+  EXPECT_EQ(code(PathPiece::Line({{0, 0, beyond}}, {})), unusable);
+  const auto rounds = [](double sweep_rad) {
+    return PathPiece::Circle({{1, 0, 0}}, {0, 0, 0}, {0, 0, 1}, sweep_rad, 0, 0);
+  };
+  EXPECT_EQ(code(rounds(1e12)), never);
+  EXPECT_EQ(code(rounds(beyond)), unusable);
+  // At 500 mm/s for 1e9 s, and farther.
+  EXPECT_EQ(code(PathPiece::Line({}, {{5e11, 0, 0}})), "good");
+  EXPECT_EQ(code(PathPiece::Line({}, {{std::nextafter(5e11, 6e11), 0, 0}})), never);
+}
+
+// An axis that cannot move at all lets nothing arrive that it would have to move for. Limits that
+// the caller gives are above zero. OPT-B.22
+TEST(Planner, WithoutSpeedAccelerationOrJerkNothingArrives) {
+  const MoveCommand up = LineTo({}, {0, 0, 10}, 1), east = LineTo({}, {10, 0, 0}, 1);
+  for (int limit = 0; limit < 3; ++limit) {
+    MachineLimits machine = StandardMachine();
+    (limit == 0   ? machine.axes.speed
+     : limit == 1 ? machine.axes.acceleration
+                  : machine.axes.jerk)[2] = 0.0;
+    Planner planner(machine);
+    const Status done = planner.Append(up);
+    ASSERT_FALSE(done) << limit;
+    EXPECT_EQ(done.error().code, ErrorCode::kCellNoMotion);
+    EXPECT_EQ(done.error().detail, "the speed is too low to ever arrive");
+    EXPECT_TRUE(planner.Append(east)) << limit;
+    MoveCommand given = east;
+    given.limits = PathLimits{.speed = 1.0, .acceleration = 1.0, .jerk = 1.0};
+    (limit == 0   ? given.limits->speed
+     : limit == 1 ? given.limits->acceleration
+                  : given.limits->jerk) = 0.0;
+    EXPECT_DEATH((void)planner.Append(given), "IsAboveZero") << limit;
+  }
+  Planner planner(StandardMachine());
+  MoveCommand weak = east;
+  weak.acceleration_fraction = 0.0005;
+  EXPECT_EQ(planner.Append(weak).error().detail, "the acceleration is 0.05 %");
+}
+
 // A mark between two /FLY moves comes out between the halves of the blend. OPT-B.28, OPT-2.49
 TEST(Planner, MarksActHalfWayThroughTheBlend) {
   Planner planner(StandardMachine());

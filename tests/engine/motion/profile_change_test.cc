@@ -158,6 +158,30 @@ TEST(From, EndsTheAccelerationFirst) {
 
 // Whether that can be done: 25 mm/s on average for 0.0707 s, 1.7678 mm, from 50 mm/s to rest; with
 // an acceleration to be ended first a little more.
+// Between speeds that differ by rounding no way is needed; and none is left behind the end.
+TEST(FromFits, WhatDiffersByRounding) {
+  EXPECT_TRUE(FromFits({10.0, 50.0, 0.0}, 10.0, 50.0, kLimits));
+  EXPECT_TRUE(FromFits({10.0, 50.0, 0.0}, 10.0, 50.0 * (1.0 + 0.9e-9), kLimits));
+  EXPECT_FALSE(FromFits({10.0, 50.0, 0.0}, 10.0, 50.0 * (1.0 + 1.1e-9), kLimits));
+  EXPECT_FALSE(FromFits({10.0, 50.0, 0.0}, 10.0 - 1e-6, 50.0, kLimits));
+  EXPECT_TRUE(FromFits({10.0, 0.0, 0.0}, 10.0, 0.0, kLimits));
+}
+
+// Without a limit on jerk the acceleration is gone at once: v * v / 2a.
+TEST(FromFits, WithoutALimitOnJerk) {
+  PathLimits limits = kLimits;
+  limits.jerk = std::numeric_limits<double>::infinity();
+  const double need = 50.0 * 50.0 / (2.0 * limits.acceleration);
+  // However short the way is: the room for rounding is a share of it.
+  const double speed = std::sqrt(2.0 * limits.acceleration * 1e-3);
+  EXPECT_TRUE(FromFits({0.0, speed, 0.0}, 1e-3 * (1.0 + 1e-8), 0.0, limits));
+  EXPECT_FALSE(FromFits({0.0, speed, 0.0}, 1e-3 * (1.0 - 1e-8), 0.0, limits));
+  for (const double acceleration : {1200.0, 0.0, -1200.0}) {
+    EXPECT_TRUE(FromFits({0.0, 50.0, acceleration}, need * 1.0001, 0.0, limits));
+    EXPECT_FALSE(FromFits({0.0, 50.0, acceleration}, need * 0.9999, 0.0, limits));
+  }
+}
+
 TEST(FromFits, JustAndJustNot) {
   const double need = 25.0 * 2.0 * std::sqrt(50.0 / 40000.0);
   EXPECT_TRUE(FromFits({10.0, 50.0, 0.0}, 10.0 + need * 1.0001, 0.0, kLimits));

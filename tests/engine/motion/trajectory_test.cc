@@ -48,6 +48,21 @@ TEST(MotionView, StandsWhileItSettles) {
   EXPECT_EQ(view.At(view.duration_s() - 0.02).tip, motions[0].path.to());
 }
 
+// At its very end a motion that passes on has its speed still.
+TEST(MotionView, PassesOnAtItsSpeed) {
+  MoveCommand first, second;
+  first.path = PathPiece::Line({}, {{100, 0, 0}});
+  first.speed_fraction = second.speed_fraction = 0.1;
+  second.acceleration_fraction = 0.5;
+  first.fly = true;
+  second.path = PathPiece::Line({{100, 0, 0}}, {{200, 0, 0}});
+  const std::vector<PlannedMotion> plan = Plan({first, second});
+  ASSERT_EQ(plan.size(), 2u);
+  const MotionView view(plan[0]);
+  EXPECT_NEAR(view.At(view.duration_s()).tip_speed(), 50.0, 1e-9);
+  EXPECT_EQ(view.At(view.duration_s()).tip.tip, (MachineVector{100, 0, 0}));
+}
+
 // Adding 0.1 ten million times loses 1.6e-4 in plain arithmetic.
 TEST(LongSum, LosesNothing) {
   LongSum sum;
@@ -122,6 +137,29 @@ TEST(Polyline, CoarseArcs) {
                      points);
       EXPECT_EQ(points.size(), 1 + chords) << sweep << " " << tolerance;
     }
+  }
+}
+
+// Without any tolerance an arc has as many chords as one may have, and no more.
+TEST(Polyline, AnArcHasNoMoreThanAMillionChords) {
+  std::vector<MachinePoint> points;
+  AppendPolyline(PathPiece::Circle({{100, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0, 0), 0.0, points);
+  EXPECT_EQ(points.size(), 1u + 1'048'576u);
+}
+
+// A blend is halved twice however coarse the tolerance, and twelve times at most.
+TEST(Polyline, HalvesABlend) {
+  MoveCommand first, second;
+  first.path = PathPiece::Line({}, {{100, 0, 0}});
+  first.fly = true;
+  second.path = PathPiece::Line({{100, 0, 0}}, {{100, 100, 0}});
+  const std::vector<PlannedMotion> plan = Plan({first, second});
+  ASSERT_EQ(plan[1].path.kind(), PathPiece::Kind::kBlend);
+  for (const auto& [tolerance, chords] : {std::pair{1e6, 4u}, {-1.0, 4096u}}) {
+    std::vector<MachinePoint> points;
+    AppendPolyline(plan[1].path, tolerance, points);
+    EXPECT_EQ(points.size(), 1 + chords);
+    EXPECT_EQ(points.back(), plan[1].path.to().point);
   }
 }
 
