@@ -1,6 +1,5 @@
 #include "storage/sqlite/request_ids.h"
 
-#include <array>
 #include <random>
 
 #include "engine/core/hex.h"
@@ -32,16 +31,12 @@ std::string RequestIds::Make(WallTime now) {
   // mixed number, all of it, and ten bits of the seed.
   const std::uint64_t high = milliseconds << 16 | 0x7000U | (mixed >> 52);
   const std::uint64_t low = std::uint64_t{1} << 63 | (mixed << 12 >> 2) | (seed_ & 0x3FFU);
-  constexpr std::array<int, 4> kDashes = {8, 13, 18, 23};
-  std::string text(36, '-');
+  std::string text = "________-____-____-____-____________";
   int digit = 0;
-  for (int place = 0; place < 36; ++place) {
-    if (place == kDashes[0] || place == kDashes[1] || place == kDashes[2] || place == kDashes[3]) {
-      continue;
-    }
+  for (char& c : text) {
+    if (c == '-') continue;
     const std::uint64_t half = digit < 16 ? high : low;
-    text[static_cast<std::size_t>(place)] =
-        HexDigit(static_cast<unsigned>(half >> (60 - 4 * (digit % 16))));
+    c = HexDigit(static_cast<unsigned>(half >> (60 - 4 * (digit % 16))));
     ++digit;
   }
   return text;

@@ -187,6 +187,30 @@ TEST(SqliteWriter, TooManyWaitingBytesAreRefused) {
   EXPECT_EQ(answers.good, 2);
 }
 
+// sqlite_store.h group_window: those that were answered together are waited for, here for an hour,
+// and written as soon as the last of them is there.
+TEST(SqliteWriter, CallersThatWereAnsweredTogetherAreWrittenTogether) {
+  faulty_disk::Register();
+  faulty_disk::Heal();
+  SqliteOptions options;
+  options.vfs = faulty_disk::kName;
+  options.group_window = std::chrono::hours(1);
+  SqliteBed bed(options);
+  Answers answers;
+  {
+    WriterHold hold(bed.store());
+    for (int i = 0; i < 3; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+    hold.Release();
+  }
+  answers.WaitFor(3);
+  faulty_disk::Fail({});  // counts from here
+  for (int i = 0; i < 2; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+  EXPECT_EQ(answers.all, 3);
+  bed.store().Submit({.kind = "CHECK"}, answers.Next());
+  answers.WaitFor(6);
+  EXPECT_EQ(faulty_disk::Syncs(), 1);
+}
+
 // An answer that writes runs what was queued before it first, and the answers of those come after
 // it.
 TEST(SqliteWriter, AnswerThatWritesKeepsTheOrder) {
@@ -340,6 +364,30 @@ TEST(SqliteWriter, ReadersAreAsManyAsAskedFor) {
     Must(ReadInside(pool, there, used));  // waits for ever for one that is missing
     EXPECT_EQ(used.size(), static_cast<std::size_t>(there)) << asked;
   }
+}
+
+// However many read at a time.
+TEST(SqliteWriter, ReadersAreNotMoreThanAskedFor) {
+  SqliteBed bed;
+  sqlite::ReaderPool pool(bed.path(), {}, 2);
+  std::mutex mutex;
+  std::set<sqlite::Tables*> used;
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 8; ++i) {
+      threads.emplace_back([&] {
+        for (int turn = 0; turn < 50; ++turn) {
+          Must(pool.Read([&](sqlite::Tables& tables) -> Result<int> {
+            const std::lock_guard lock(mutex);
+            used.insert(&tables);
+            std::this_thread::yield();
+            return 0;
+          }));
+        }
+      });
+    }
+  }
+  EXPECT_LE(used.size(), 2U);
 }
 
 // A connection that could not be opened is tried again by the next read, and nobody waits for it.
