@@ -202,6 +202,14 @@ TEST_F(SqliteAlone, QuestionWithoutAnAnswer) {
   EXPECT_EQ(CodeOf(database.Text("SELECT kind FROM job")), kCorruptFile);
 }
 
+// database.h: not even we change the schema by its text.
+TEST_F(SqliteAlone, SchemaThatIsNotWritten) {
+  const Status refused =
+      Open().Execute("PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = sql");
+  ASSERT_EQ(CodeOf(refused), kFailedFile);
+  EXPECT_THAT(refused.error().detail, HasSubstr("may not be modified"));
+}
+
 TEST_F(SqliteAlone, CopyThatCannotBeMade) {
   const Database database = Open();
   const Status refused = database.CopyTo(directory_.File("none/copy"));
