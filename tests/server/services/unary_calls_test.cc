@@ -10,6 +10,7 @@
 #include <string>
 
 #include "proto/bridge/sha256.h"
+#include "proto/recording/recording.h"
 #include "server/base/config.h"
 #include "server/base/names.h"
 #include "server/jobs/job_book.h"
@@ -177,7 +178,7 @@ class UnaryCalls : public testing::Test {
   LanguageTools language_{store_, program_book_};
   JobBook book_{store_, config_};
   JobResults results_{store_, book_, tools_};
-  JobService jobs_{needs_, executor_, book_, results_, bed_.dispatcher(),
+  JobService jobs_{needs_, executor_, book_, results_,  bed_.dispatcher(),
                    runs_,  feed_,     open_, "instance"};
   MachineService machines_{needs_, {executor_, open_, store_, feed_, "instance"}, {}};
   ProgramService programs_{needs_, store_, program_book_, tools_, language_, open_};
@@ -219,9 +220,9 @@ TEST_F(UnaryCalls, OfProgramsHandOnWhatTheStoreSays) {
             "a.S");
   EXPECT_EQ(InSpiteOfAll(programs, &Stub::GetProgram, name).etag(), "1");
   EXPECT_EQ(InSpiteOfAll(programs, &Stub::GetProgramContent, name).content(), "SPEED 20\n");
-  EXPECT_EQ(InSpiteOfAll(programs, &Stub::ListPrograms, "parent: 'machines/optimo-1'")
-                .programs_size(),
-            1);
+  EXPECT_EQ(
+      InSpiteOfAll(programs, &Stub::ListPrograms, "parent: 'machines/optimo-1'").programs_size(),
+      1);
   EXPECT_TRUE(InSpiteOfAll(programs, &Stub::CheckProgram,
                            "machine: 'machines/optimo-1' program { file_name: 'b.S' content: "
                            "'CALL 45\\n' }")
@@ -376,6 +377,63 @@ TEST_F(UnaryCalls, AContentSaysItsSize) {
   upload("size: 1 " + sha256, "x");
   EXPECT_TRUE(status.ok()) << status.error_message();
   EXPECT_EQ(Must(store_.ReadBlob(bridge::Sha256Hex("x"))), "x");
+}
+
+v1::JournalEntry Mark(std::int64_t sequence, std::int64_t time_ns) {
+  v1::JournalEntry entry;
+  entry.set_fence(7);
+  entry.set_sequence(sequence);
+  entry.set_virtual_time_ns(time_ns);
+  entry.mutable_mark()->set_state("state");
+  return entry;
+}
+
+// machine.proto ExportJournal: of a job what was kept with it, from a time on, of a fence; else
+// what the host of the machine has.
+TEST_F(UnaryCalls, AJournalGoesOut) {
+  const recording::Recording all{.head = Of<v1::MachineRecording>("fence: 7"),
+                                 .entries = {Mark(1, 0), Mark(2, 10)}};
+  const std::string file = recording::FileOf(all);
+  const std::int64_t job = EndedJob({{.name = "recording", .bytes = file}});
+  const std::int64_t bare = EndedJob({});
+  const auto exported = [&](const std::string& request) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    const auto reader = machines->ExportJournal(&context, Of<v1::ExportJournalRequest>(request));
+    std::string bytes;
+    for (v1::ExportJournalResponse part; reader->Read(&part);) {
+      EXPECT_FALSE(part.chunk().empty());
+      bytes += part.chunk();
+    }
+    status = reader->Finish();
+    return bytes;
+  };
+  const std::string of_job = "machine: 'machines/optimo-1' job: '" + JobName(job) + "' ";
+  EXPECT_EQ(exported(of_job), file);
+  EXPECT_TRUE(status.ok());
+  EXPECT_EQ(exported(of_job + "fence: 7"), file);
+  EXPECT_EQ(exported(of_job + "from_virtual_time_ns: 9"), file);
+  EXPECT_EQ(exported(of_job + "fence: 7 from_virtual_time_ns: 10"),
+            recording::FileOf({.head = all.head, .entries = {Mark(2, 10)}}));
+  exported(of_job + "fence: 8");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "what is recorded is of fence 7");
+  exported("machine: 'machines/mill-1' job: '" + JobName(job) + "'");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, JobName(job) + " is of another machine");
+  exported("machine: 'machines/optimo-1' job: 'jobs/99'");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "job 99");
+  exported("machine: 'machines/optimo-1' job: 'x'");
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "CELL-E9003");
+  exported("machine: 'machines/none'");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "CELL-E9009");
+  exported("machine: 'x'");
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "CELL-E9003");
+  for (const std::string& unkept : {std::string(), " job: '" + JobName(bare) + "'"}) {
+    exported("machine: 'machines/optimo-1'" + unkept);
+    ExpectRefused(grpc::StatusCode::UNAVAILABLE, "the machine has no host: enable it");
+  }
+  const std::int64_t damaged = EndedJob({{.name = "recording", .bytes = "no recording"}});
+  exported("machine: 'machines/optimo-1' fence: 7 job: '" + JobName(damaged) + "'");
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "it does not begin as one");
 }
 
 // An archive of so many bytes is looked at, a byte more is not taken.
