@@ -454,5 +454,71 @@ TEST_F(LiveJobs, OrdersForAJobGoToTheHostThatRunsIt) {
   EXPECT_EQ(same.name(), run);
 }
 
+// LIVE-5.10: the host has the last word; then the job is abandoned, begins anew, or goes on at a
+// step as another one.
+TEST_F(LiveJobs, WhatWasCutOffIsDecided) {
+  const std::int64_t run = Submit(v1::JOB_KIND_RUN);
+  const auto leased = Must(store().AcquireJobs({.worker = "hall/1",
+                                                .server = "this server",
+                                                .kinds = {"RUN"},
+                                                .job = run,
+                                                .duration = std::chrono::minutes(1)}));
+  ASSERT_EQ(leased.size(), 1U);
+  Must(store().Finish(leased[0].lease, {.outcome = {.state = storage::JobState::kInterrupted}}));
+  v1::DecideInterruptedRequest request;
+  request.set_name(JobName(run));
+  request.set_reason("it burnt");
+  request.set_control_token("t");
+  request.set_request_id("r");
+  const auto decide = [&](v1::DecideInterruptedRequest::Decision decision) {
+    request.set_decision(decision);
+    return Call(jobs, &v1::JobService::Stub::DecideInterrupted, request);
+  };
+  using Request = v1::DecideInterruptedRequest;
+  decide(Request::DECISION_RESUME_AT_STEP);
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "preview_token: of PreviewStart");
+  EXPECT_THAT(host->TakeOrders(), IsEmpty());
+  v1::HostOrderAnswer refusal;
+  refusal.mutable_refusal()->set_message("not now");
+  host->Answer(refusal);
+  decide(Request::DECISION_RESTART);
+  EXPECT_THAT(status.error_message(), HasSubstr("not now"));
+  host->TakeOrders();
+  host->Answer({});
+  EXPECT_EQ(decide(Request::DECISION_ABANDON).job(), "");
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  const auto confirmed = host->TakeOrders();
+  ASSERT_EQ(confirmed.size(), 1U);
+  EXPECT_EQ(confirmed[0].caller(), "local");
+  EXPECT_EQ(confirmed[0].reason(), "it burnt");
+  EXPECT_EQ(confirmed[0].for_job(), JobName(run));
+  EXPECT_EQ(confirmed[0].confirm().control_token(), "t");
+  EXPECT_EQ(confirmed[0].confirm().request_id(), "r");
+  EXPECT_THAT(confirmed[0].confirm().confirmations(),
+              testing::ElementsAre(v1::CONFIRMATION_INSPECTED));
+  request.set_request_id("s");
+  EXPECT_EQ(decide(Request::DECISION_RESTART).job(), JobName(run + 1));
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(Must(store().GetJob(run + 1)).state, storage::JobState::kQueued);
+  EXPECT_EQ(host->TakeOrders().size(), 1U);
+  request.set_request_id("q");
+  request.set_preview_token("p");
+  request.add_confirmations(v1::CONFIRMATION_INSPECTED);
+  request.set_halt_at_entry(true);
+  EXPECT_EQ(decide(Request::DECISION_RESUME_AT_STEP).job(), JobName(run + 2));
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  const auto continued = host->TakeOrders();
+  ASSERT_EQ(continued.size(), 1U);
+  EXPECT_EQ(continued[0].caller(), "local");
+  EXPECT_EQ(continued[0].reason(), "it burnt");
+  const v1::StartAtStepRequest& start = continued[0].continue_job().start();
+  EXPECT_EQ(start.machine(), kLaser);
+  EXPECT_EQ(start.control_token(), "t");
+  EXPECT_EQ(start.request_id(), "q");
+  EXPECT_EQ(start.preview_token(), "p");
+  EXPECT_TRUE(start.halt_at_entry());
+  EXPECT_EQ(start.confirmations_size(), 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::server
