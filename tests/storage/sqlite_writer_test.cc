@@ -461,6 +461,28 @@ TEST(RequestIds, AreUuidsOfVersion7) {
   EXPECT_FALSE(made.contains(sqlite::RequestIds().Make(time)));
 }
 
+// Each of the other bits is another one in some of 200 objects.
+TEST(RequestIds, OfManyObjectsDifferInEachBit) {
+  const auto bits_of = [](std::string id) {
+    std::erase(id, '-');
+    const std::string first = id.substr(13, 3);
+    return std::pair(std::stoull(first, nullptr, 16), std::stoull(id.substr(16), nullptr, 16));
+  };
+  auto [some_high, some_low] = bits_of(sqlite::RequestIds().Make({}));
+  auto [all_high, all_low] = std::pair(some_high, some_low);
+  for (int i = 0; i < 200; ++i) {
+    const auto [high, low] = bits_of(sqlite::RequestIds().Make({}));
+    some_high |= high;
+    some_low |= low;
+    all_high &= high;
+    all_low &= low;
+  }
+  EXPECT_EQ(some_high, 0xFFFU);
+  EXPECT_EQ(all_high, 0U);
+  EXPECT_EQ(some_low, 0xBFFF'FFFF'FFFF'FFFFU);
+  EXPECT_EQ(all_low, 0x8000'0000'0000'0000U);
+}
+
 // A statement tells what went wrong at its first step, and can be used again.
 TEST(SqliteStatement, TellsErrorsAndGoesOn) {
   const TestDirectory directory;
