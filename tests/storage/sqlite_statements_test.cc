@@ -1,6 +1,7 @@
 // Each statement of a read or write fails once: what was asked for fails with its reason, and of a
 // write nothing is there.
 #include <gmock/gmock.h>
+#include <sqlite3.h>
 
 #include <set>
 
@@ -18,6 +19,32 @@ using failing_statements::Of;
 using std::chrono::hours;
 using testing::HasSubstr;
 
+// All rows but those of contents: what was staged for a write that failed is swept later.
+std::string RowsIn(const std::string& path) {
+  sqlite3* handle = nullptr;
+  EXPECT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
+  const auto select = [handle](const std::string& sql) {
+    std::vector<std::string> rows;
+    const auto take = [](void* to, int count, char** values, char**) {
+      std::string row;
+      for (int i = 0; i < count; ++i) row += std::string(values[i] ? values[i] : "-") + "|";
+      static_cast<std::vector<std::string>*>(to)->push_back(row);
+      return 0;
+    };
+    EXPECT_EQ(sqlite3_exec(handle, sql.c_str(), take, &rows, nullptr), SQLITE_OK) << sql;
+    return rows;
+  };
+  std::string all;
+  for (const std::string& table :
+       select("SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'blob%'")) {
+    const std::string name = table.substr(0, table.size() - 1);
+    all += "\n" + name + ":";
+    for (const std::string& row : select("SELECT * FROM " + name)) all += "\n" + row;
+  }
+  sqlite3_close(handle);
+  return all;
+}
+
 std::optional<ProgramMemoryLimit> Roomy(const MachineRecord&) {
   return ProgramMemoryLimit{.bytes = 1'000'000, .full = ErrorCode::kCmosFull};
 }
@@ -32,14 +59,13 @@ class SqliteStatements : public testing::Test {
   void Settle() {
     for (int i = 0; i < 3; ++i) Must(store().ActOn({}, QueueAct::kHold, {}));
   }
-  // Grows with each commit of the store.
-  std::int64_t Version() { return Must(beside_.Number("PRAGMA data_version")); }
-
-  // What `step` gives once nothing fails.
+  // What `step` gives once nothing fails. `repeats`: it changes nothing any more, and a statement
+  // that it asks for one row alone has given that before it fails.
   template <class Step>
-  auto InSpiteOfAll(const std::string& what, Of of, Step step) -> decltype(step()) {
+  auto InSpiteOfAll(const std::string& what, Of of, Step step, bool repeats = false)
+      -> decltype(step()) {
     for (int number = 0;; ++number) {
-      const std::int64_t before = Version();
+      const std::string before = of == Of::kWriter ? RowsIn(bed_.path()) : "";
       failing_statements::Fail(of, number);
       auto done = step();
       const std::string failed = failing_statements::Heal();
@@ -48,19 +74,22 @@ class SqliteStatements : public testing::Test {
         Settle();
         return done;
       }
+      if (done && repeats) continue;
       EXPECT_EQ(CodeOf(done), ErrorCode::kCellStoreFailed) << what << ": " << failed;
       if (done) return done;
       EXPECT_THAT(done.error().detail, HasSubstr("interrupted")) << what << ": " << failed;
-      EXPECT_EQ(Version(), before) << what << ": " << failed;
+      if (of == Of::kWriter) {
+        EXPECT_EQ(RowsIn(bed_.path()), before) << what << ": " << failed;
+      }
     }
   }
   template <class Step>
-  auto Writes(const std::string& what, Step step) {
-    return Must(InSpiteOfAll(what, Of::kWriter, step));
+  auto Writes(const std::string& what, Step step, bool repeats = false) {
+    return Must(InSpiteOfAll(what, Of::kWriter, step, repeats));
   }
   template <class Step>
-  auto Reads(const std::string& what, Step step) {
-    return Must(InSpiteOfAll(what, Of::kReaders, step));
+  auto Reads(const std::string& what, Step step, bool repeats = false) {
+    return Must(InSpiteOfAll(what, Of::kReaders, step, repeats));
   }
   std::int64_t Submit(const NewJob& job) { return Must(store().SubmitAndWait(job)).job.id; }
   Lease LeaseOf(std::int64_t job) {
@@ -73,8 +102,6 @@ class SqliteStatements : public testing::Test {
     failing_statements::Register();
     return SqliteOptions{.program_memory = Roomy};
   }()};
-  sqlite::Database beside_ =
-      Must(sqlite::Database::Open(bed_.path(), sqlite::Database::Access::kReadWrite, {}));
 };
 
 TEST_F(SqliteStatements, OfMachinesAndProjects) {
@@ -153,11 +180,13 @@ TEST_F(SqliteStatements, OfSubmissions) {
              .attachments = attachments,
              .events = {{.kind = "one"}, {.kind = "two"}}};
   Writes("a job", [&] { return store().SubmitAndWait(job); });
-  EXPECT_TRUE(Writes("it again", [&] { return store().SubmitAndWait(job); }).already_there);
+  EXPECT_TRUE(Writes(
+                  "it again", [&] { return store().SubmitAndWait(job); }, true)
+                  .already_there);
   job.queued_max = 1;
-  EXPECT_TRUE(Writes("it, where no more may wait", [&] {
-                return store().SubmitAndWait(job);
-              }).already_there);
+  EXPECT_TRUE(Writes(
+                  "it, where no more may wait", [&] { return store().SubmitAndWait(job); }, true)
+                  .already_there);
   Writes("a plain job", [&] {
     return store().SubmitAndWait({.kind = "CHECK", .attachments = {{.name = "a", .bytes = "a"}}});
   });
@@ -290,7 +319,7 @@ TEST_F(SqliteStatements, OfWhatTheClockDoes) {
   EXPECT_EQ(Writes("a lease that ran out", expire).size(), 1U);
   LeaseOf(1);
   bed_.clock().Advance(hours(1));
-  Reads("what has run out", expire);
+  Reads("what has run out", expire, true);
 }
 
 TEST_F(SqliteStatements, OfAnUpload) {
@@ -320,7 +349,7 @@ TEST_F(SqliteStatements, OfTheOpening) {
     EXPECT_THAT(opened.error().detail, HasSubstr("interrupted")) << failed;
     EXPECT_THAT(opened.error().detail, HasSubstr(bed_.path() + ": ")) << failed;
   }
-  EXPECT_GE(failures.size(), 12U);
+  EXPECT_GE(failures.size(), 11U);
   bed_.Reopen();
   EXPECT_EQ(Must(store().GetJob(1)).state, JobState::kRunning);
 }
