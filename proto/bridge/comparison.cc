@@ -1,6 +1,7 @@
 #include "proto/bridge/comparison.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "engine/families/families.h"
@@ -17,6 +18,8 @@ namespace {
 std::string BaseName(const std::string& file_name) {
   return file_name.substr(file_name.find_last_of("/\\") + 1);
 }
+
+constexpr std::array<std::size_t, 2> kBoth = {0, 1};  // before and after
 
 struct Side {
   std::string object;
@@ -153,9 +156,11 @@ std::string Picture(const machine::MachineFamily& family,
   std::vector<simulation::ComparedFigure> figures;
   const auto& before = sides[0].run->figures;
   const auto& after = sides[1].run->figures;
-  for (std::size_t i = 0; i < before.size() && i < after.size(); ++i) {
-    figures.push_back({before[i].name, before[i].unit, before[i].value, after[i].value});
-  }
+  std::ranges::transform(
+      before, after, std::back_inserter(figures),
+      [](const machine::Figure& one, const machine::Figure& other) {
+        return simulation::ComparedFigure{one.name, one.unit, one.value, other.value};
+      });
   const auto path = [&](std::size_t side) {
     return simulation::ComparedPath{.path = sides[side].run->path->sketch(),
                                     .title = BaseName(programs[side].file_name),
@@ -187,14 +192,14 @@ Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
   if (!parameters) return parameters.error();
   parameters->SetChangedBy(options.parameters_of);
   parameters->SetOwn(options.own);
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (const std::size_t i : kBoth) {
     auto object =
         ObjectOf(family, programs[i], *parameters, outcome.diagnostics[i], outcome.dropped[i]);
     outcome.ok = outcome.ok && object;
     if (object) sides[i].object = *std::move(object);
   }
   if (!outcome.ok) return outcome;
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (const std::size_t i : kBoth) {
     auto run = Run(family, programs[i], options);
     if (!run) return run.error();
     sides[i].run = *std::move(run);
@@ -211,7 +216,7 @@ Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
   outcome.response.set_compared_runs(both_ran);
   outcome.response.set_family(std::string(family.info().id));
   SetMachine(parameters->Used(), outcome.response);
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (const std::size_t i : kBoth) {
     const std::string note = sides[i].run ? LeftOut(*sides[i].run, family.info()) : std::string();
     if (!note.empty()) {
       outcome.response.add_notes(Utf8(BaseName(programs[i].file_name) + ": " + note));

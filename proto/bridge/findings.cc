@@ -199,7 +199,7 @@ std::string Utf8(const std::string& text) {
     for (std::size_t k = 1; good && k < size; ++k) {
       good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
     }
-    if (good && size > 2) {  // overlong forms, surrogates, beyond U+10FFFF
+    if (good) {  // overlong forms, surrogates, beyond U+10FFFF
       const auto second = static_cast<unsigned char>(text[i + 1]);
       good = !(lead == 0xE0 && second < 0xA0) && !(lead == 0xED && second > 0x9F) &&
              !(lead == 0xF0 && second < 0x90) && !(lead == 0xF4 && second > 0x8F);
@@ -259,9 +259,7 @@ void SetUntold(const UntoldFindings& untold, v1::RunReport& message) { AddUntold
 
 void SetUntold(const UntoldFindings& untold, v1::ErrorDetail& message) {
   AddUntold(untold, message);
-  if (message.gathered_size() > kGatheredInErrorMax)
-    message.mutable_gathered()->DeleteSubrange(kGatheredInErrorMax,
-                                               message.gathered_size() - kGatheredInErrorMax);
+  while (message.gathered_size() > kGatheredInErrorMax) message.mutable_gathered()->RemoveLast();
   for (v1::GatheredFindings& kind : *message.mutable_gathered()) {
     kind.clear_message();
     kind.clear_advice();

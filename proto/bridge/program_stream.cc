@@ -52,7 +52,7 @@ ProgramStream::~ProgramStream() {
 Result<ProgramStream::Opened> ProgramStream::Open(const std::string& path, std::int64_t limit,
                                                   std::function<void()> before_wait) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return Unreadable(path);
+  if (file == -1) return Unreadable(path);
   const std::shared_ptr<ProgramStream> stream(
       new ProgramStream(file, path, limit, std::move(before_wait)));
   SpooledBytes whole;

@@ -36,10 +36,10 @@ v1::SeriesTable SeriesOf(const machine::FamilyInfo& family, const simulation::Ti
   AddColumn(values, PlotSeries::kSpeed, "speed", "mm/s", table);
   AddColumn(values, PlotSeries::kFeed, "feed", "mm/s", table);
   if (family.schedules > 0) AddColumn(values, PlotSeries::kPower, "power", "%", table);
-  for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-    if (family.axes.find(kAxes[axis]) == std::string_view::npos) continue;
-    const bool turns = kAxes[axis] == 'A' || kAxes[axis] == 'B';
-    AddColumn(values, PlotSeries::kFirstAxis + axis, std::string("axis.") + kAxes[axis],
+  for (const char axis : kAxes) {
+    if (family.axes.find(axis) == std::string_view::npos) continue;
+    const bool turns = axis == 'A' || axis == 'B';
+    AddColumn(values, PlotSeries::kFirstAxis + kAxes.find(axis), std::string("axis.") + axis,
               turns ? "rad" : "mm", table);
   }
   return table;

@@ -2,6 +2,8 @@
 
 #include <grpc/grpc_security_constants.h>
 
+#include <algorithm>
+
 #include "google/api/field_behavior.pb.h"
 #include "google/rpc/status.pb.h"
 #include "proto/bridge/findings.h"
@@ -21,14 +23,12 @@ Status CheckRequestId(const google::protobuf::Message& request) {
   const auto* field = request.GetDescriptor()->FindFieldByName("request_id");
   if (field == nullptr || !request.GetReflection()->GetString(request, field).empty()) return {};
   const auto& behaviour = field->options();
-  for (int i = 0; i < behaviour.ExtensionSize(google::api::field_behavior); ++i) {
-    if (behaviour.GetExtension(google::api::field_behavior, i) == google::api::REQUIRED)
-      return Error{ErrorCode::kCellInvalidArgument,
-                   "request_id: a UUID of your making, new for each request; the same again for "
-                   "one that is repeated",
-                   {}};
-  }
-  return {};
+  const auto& said = behaviour.GetRepeatedExtension(google::api::field_behavior);
+  if (std::ranges::find(said, google::api::REQUIRED) == said.end()) return {};
+  return Error{ErrorCode::kCellInvalidArgument,
+               "request_id: a UUID of your making, new for each request; the same again for one "
+               "that is repeated",
+               {}};
 }
 
 }  // namespace

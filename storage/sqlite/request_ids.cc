@@ -1,6 +1,5 @@
 #include "storage/sqlite/request_ids.h"
 
-#include <array>
 #include <random>
 
 #include "engine/core/hex.h"
@@ -13,13 +12,6 @@ std::uint64_t RandomSeed() {
   return std::uint64_t{device()} << 32 | device();
 }
 
-// The finalizer of splitmix64: one to one, so distinct numbers stay distinct.
-std::uint64_t Mix(std::uint64_t value) {
-  value = (value ^ (value >> 30)) * 0xBF58476D1CE4E5B9U;
-  value = (value ^ (value >> 27)) * 0x94D049BB133111EBU;
-  return value ^ (value >> 31);
-}
-
 }  // namespace
 
 RequestIds::RequestIds() : seed_(RandomSeed()) {}
@@ -27,21 +19,17 @@ RequestIds::RequestIds() : seed_(RandomSeed()) {}
 std::string RequestIds::Make(WallTime now) {
   const auto milliseconds = static_cast<std::uint64_t>(
       std::chrono::floor<std::chrono::milliseconds>(now).time_since_epoch().count());
-  const std::uint64_t mixed = Mix(seed_ + count_++ * 0x9E3779B97F4A7C15U);
+  const std::uint64_t number = seed_ + count_++;
   // RFC 9562: 48 bits of time, the version, 12 bits, the variant, 62 bits. Those of our own are the
-  // mixed number, all of it, and ten bits of the seed.
-  const std::uint64_t high = milliseconds << 16 | 0x7000U | (mixed >> 52);
-  const std::uint64_t low = std::uint64_t{1} << 63 | (mixed << 12 >> 2) | (seed_ & 0x3FFU);
-  constexpr std::array<int, 4> kDashes = {8, 13, 18, 23};
-  std::string text(36, '-');
+  // number, all of it, and ten bits of the seed.
+  const std::uint64_t high = milliseconds << 16 | 0x7000U | (number >> 52);
+  const std::uint64_t low = std::uint64_t{1} << 63 | (number << 12 >> 2) | (seed_ & 0x3FFU);
+  std::string text = "________-____-____-____-____________";
   int digit = 0;
-  for (int place = 0; place < 36; ++place) {
-    if (place == kDashes[0] || place == kDashes[1] || place == kDashes[2] || place == kDashes[3]) {
-      continue;
-    }
+  for (char& c : text) {
+    if (c == '-') continue;
     const std::uint64_t half = digit < 16 ? high : low;
-    text[static_cast<std::size_t>(place)] =
-        HexDigit(static_cast<unsigned>(half >> (60 - 4 * (digit % 16))));
+    c = HexDigit(static_cast<unsigned>(half >> (60 - 4 * (digit % 16))));
     ++digit;
   }
   return text;

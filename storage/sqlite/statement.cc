@@ -62,7 +62,7 @@ std::string_view Query::View(int column) const {
   // First the bytes, then their number: the order that makes no conversion between the two calls.
   const void* bytes = sqlite3_column_blob(statement, column);
   const int size = sqlite3_column_bytes(statement, column);
-  if (bytes == nullptr || size <= 0) return {};
+  if (bytes == nullptr) return {};
   return {static_cast<const char*>(bytes), static_cast<std::size_t>(size)};
 }
 

@@ -31,9 +31,9 @@ class File {
   File(const File&) = delete;
   File& operator=(const File&) = delete;
   ~File() {
-    if (number_ >= 0) close(number_);
+    if (is_open()) close(number_);
   }
-  bool is_open() const { return number_ >= 0; }
+  bool is_open() const { return number_ != -1; }
   int number() const { return number_; }
   int Release() { return std::exchange(number_, -1); }
 
@@ -67,7 +67,7 @@ Status MakeDirectory(const std::filesystem::path& directory) {
 std::string HolderOf(int file) {
   std::array<char, 24> text{};
   const ssize_t size = pread(file, text.data(), text.size() - 1, 0);
-  std::string holder(text.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
+  std::string holder(text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
   holder.erase(std::min(holder.find('\n'), holder.size()));
   return holder;
 }
@@ -87,15 +87,15 @@ Result<StoreLock> StoreLock::Take(const std::string& path) {
   // For the message above only: the lock is what counts, so a disk too full for it is no reason to
   // stop.
   const std::string self = std::to_string(getpid()) + "\n";
-  [[maybe_unused]] const bool told =
-      ftruncate(file.number(), 0) == 0 && pwrite(file.number(), self.data(), self.size(), 0) > 0;
+  [[maybe_unused]] const int cut = ftruncate(file.number(), 0);
+  [[maybe_unused]] const ssize_t told = pwrite(file.number(), self.data(), self.size(), 0);
   return StoreLock(file.Release());
 }
 
 StoreLock::StoreLock(StoreLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
 
 StoreLock::~StoreLock() {
-  if (file_ >= 0) close(file_);
+  if (file_ != -1) close(file_);
 }
 
 Status MakeDirectoryOf(const std::string& path) {

@@ -203,7 +203,7 @@ bool Writer::WaitForWork() {
   chores_ = false;
   // Callers that were answered together come back one by one, and the first of them would get a
   // commit, and a sync of the disk, of its own.
-  if (last_batch_ > 1 && queue_.size() < last_batch_ && options_.group_window.count() > 0) {
+  if (last_batch_ > 1) {
     wanted_ = last_batch_;
     work_.wait_for(lock, options_.group_window,
                    [this] { return queue_.size() >= wanted_ || stopping_; });

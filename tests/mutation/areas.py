@@ -43,7 +43,7 @@ AREAS = {
                   "integration_test_cell", "integration_test_tools", "integration_test_programs")),
     "web": Area(("server/web",), ("server_web_test", "integration_test_http", "integration_test_web")),
     "services": Area(("server/auth", "server/services", "proto/bridge", "proto/recording"),
-                     ("proto_bridge_test", "server_auth_test", "server_services_test", "server_programs_test", "server_jobs_test", "integration_test_machines",
+                     ("proto_bridge_test", "proto_recording_test", "server_auth_test", "server_services_test", "server_programs_test", "server_jobs_test", "integration_test_machines",
                       "integration_test_transfers", "integration_test_tools", "integration_test_cell", "integration_test_toolpath",
                       "integration_test_programs", "integration_test_http", "integration_test_command",
                       "integration_test_web")),

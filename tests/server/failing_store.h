@@ -12,7 +12,7 @@
 namespace rmlcell::server {
 
 // A store of which one call fails, the n-th from when it is told so; none with 0. For one thread.
-class FailingStore final : public ForwardingStore {
+class FailingStore : public ForwardingStore {
  public:
   using ForwardingStore::ForwardingStore;
 
@@ -108,14 +108,16 @@ class FailingStore final : public ForwardingStore {
     return Or([&] { return store_.ReadArtifact(job, name); });
   }
 
- private:
-  static Error FullDisk() { return {ErrorCode::kCellStoreFailed, "the disk is full", {}}; }
-  bool FailsNow() { return ++calls_ == fails_at_; }
+ protected:
   template <class Call>
   auto Or(Call call) -> decltype(call()) {
     if (FailsNow()) return FullDisk();
     return call();
   }
+
+ private:
+  static Error FullDisk() { return {ErrorCode::kCellStoreFailed, "the disk is full", {}}; }
+  bool FailsNow() { return ++calls_ == fails_at_; }
 
   int fails_at_ = 0;
   int calls_ = 0;

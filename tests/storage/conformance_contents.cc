@@ -115,6 +115,7 @@ TEST_P(StoreConformance, AnUploadThatIsNotWhatItSaysIsRefused) {
   for (const std::string& name : {std::string("ab"), std::string(64, 'g'), std::string(66, 'a')})
     EXPECT_EQ(CodeOf(store().WriteBlob(name, 1)), ErrorCode::kCellInvalidArgument) << name;
   EXPECT_EQ(CodeOf(store().WriteBlob(kAbc, kProgramBytesMax + 1)), ErrorCode::kCellTooLarge);
+  EXPECT_TRUE(store().WriteBlob(kAbc, kProgramBytesMax));
   EXPECT_EQ(CodeOf(store().OpenBlob(kAbc)), ErrorCode::kCellNotFound);
   EXPECT_EQ(CodeOf(store().OpenBlob("xyz")), ErrorCode::kCellNotFound);
 }

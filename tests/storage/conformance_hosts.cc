@@ -122,6 +122,9 @@ TEST_P(StoreConformance, AMarkChangesNoRevision) {
   EXPECT_EQ(CodeOf(store().AppendMachine(next, MarkOf(2, std::string(kMachineMarkBytesMax, 'x')))),
             ErrorCode::kCellTooLarge);
   EXPECT_EQ(Must(store().GetMachineMark("m"))->sequence, 1);
+  // State and note together; the note has one byte.
+  Must(store().AppendMachine(next, MarkOf(3, std::string(kMachineMarkBytesMax - 1, 'x'))));
+  EXPECT_EQ(Must(store().GetMachineMark("m"))->sequence, 3);
 }
 
 // Events and mark are written together or not at all, and the events stand in the log of the cell.
@@ -238,6 +241,10 @@ TEST_P(StoreConformance, WhatWasTaughtIsKept) {
       entries.push_back(std::to_string(one.number) + one.entry);
     return entries;
   };
+  const TeachRecord newest = Must(store().ListTeachRecords("m", 0, 3, 1)).at(0);
+  EXPECT_EQ(newest.machine, "m");
+  EXPECT_EQ(newest.number, 2);
+  EXPECT_EQ(newest.program, 13);
   EXPECT_THAT(listed(0, 0, 10), ElementsAre("3e", std::string("2b\0c", 4), "1a"));
   EXPECT_THAT(listed(12, 0, 10), ElementsAre("3e", "1a"));
   EXPECT_THAT(listed(12, 3, 10), ElementsAre("1a"));

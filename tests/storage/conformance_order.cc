@@ -400,6 +400,8 @@ TEST_P(StoreConformance, AnOrderIsForTheServerThatHasTheJob) {
   EXPECT_EQ(taken[0].lease.job, one);
   EXPECT_EQ(taken[0].lease.fence, of_a.fence);
   EXPECT_EQ(taken[0].lease.attempt, of_a.attempt);
+  EXPECT_EQ(taken[0].lease.worker, "w");
+  EXPECT_EQ(taken[0].lease.server, "a");
   EXPECT_EQ(taken[1].payload, "second");
   EXPECT_THAT(Must(store().TakeOrders("a")), IsEmpty());  // once
   EXPECT_EQ(Must(store().TakeOrders("b")).size(), 1U);

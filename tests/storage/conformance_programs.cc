@@ -57,11 +57,20 @@ TEST_P(StoreConformance, SummaryTellsSizesAndHash) {
   Must(store().PutExecutable("m", 1, 1, "0123456789"));
   const auto listed = Must(store().ListPrograms("m", 0, 10));
   ASSERT_EQ(listed.size(), 1U);
+  EXPECT_EQ(listed[0].slot, 1);
+  EXPECT_EQ(listed[0].revision, 1);
   EXPECT_EQ(listed[0].object_sha256, kSha256OfAbc);
   EXPECT_EQ(listed[0].object_bytes, 3);
   EXPECT_EQ(listed[0].source_bytes, -1);
   EXPECT_EQ(listed[0].executable_bytes, 10);
   EXPECT_EQ(Must(store().ReadBlob(kSha256OfAbc)), "abc");
+  Must(store().PutPrograms(
+      "m", {{.slot = 2, .name = "n", .object = "o", .source = "text", .source_name = "2.S"}}, {}));
+  const ProgramSummary named = Must(store().GetProgramSummary("m", 2));
+  EXPECT_EQ(named.name, "n");
+  EXPECT_EQ(named.source_name, "2.S");
+  EXPECT_EQ(named.source_bytes, 4);
+  EXPECT_EQ(named.executable_bytes, -1);
 }
 
 TEST_P(StoreConformance, ASlotIsLookedUpByItself) {
@@ -327,8 +336,12 @@ TEST_P(StoreConformance, LargestProgramIsTaken) {
             ErrorCode::kCellTooLarge);
   EXPECT_EQ(CodeOf(store().PutPrograms("m", {{.slot = 1, .source = program}}, {})),
             ErrorCode::kCellTooLarge);
+  const auto executable = store().PutExecutable("m", 1, 1, program);
+  ASSERT_EQ(CodeOf(executable), ErrorCode::kCellTooLarge);
+  EXPECT_EQ(executable.error().detail, "the executable has 268435457 bytes");
   program.pop_back();
   PutProgram("m", 1, program);
+  EXPECT_TRUE(Must(store().PutExecutable("m", 1, 1, program)));
   Reopen();
   EXPECT_TRUE(Must(store().GetProgram("m", 1)).object == program);
 }

@@ -55,6 +55,103 @@ TEST(QueueRules, TheEndsOfALineHaveRoom) {
   EXPECT_THAT(Places(Spread({}, 0, 5, 9)), ElementsAre(9.5));
 }
 
+// records.h kPriorityMin, kPriorityMax.
+TEST(JobRules, WhatANewJobHas) {
+  EXPECT_TRUE(CheckNewJob({.attempts_max = 1, .priority = -100}));
+  EXPECT_TRUE(CheckNewJob({.priority = 100}));
+  EXPECT_EQ(CheckNewJob({.attempts_max = 0}).error().detail, "a job needs at least one attempt");
+  for (const int priority : {-101, 101}) {
+    const Status refused = CheckNewJob({.priority = priority});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kCellInvalidArgument);
+    EXPECT_EQ(refused.error().detail,
+              "priority is " + std::to_string(priority) + ", allowed are -100 to 100");
+  }
+}
+
+TEST(JobRules, EventsHaveASize) {
+  const std::string largest(kEventPayloadBytesMax, 'x');
+  EXPECT_TRUE(CheckEventSizes({{.payload = largest}, {.payload = ""}}));
+  const Status refused = CheckEventSizes({{.payload = ""}, {.payload = largest + "x"}});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kCellTooLarge);
+  EXPECT_EQ(refused.error().detail,
+            "an event of " + std::to_string(kEventPayloadBytesMax + 1) + " bytes");
+}
+
+TEST(JobRules, ALeaseLastsAYearAndADayAtMost) {
+  const WallTime now{std::chrono::seconds(100)};
+  using std::chrono::milliseconds;
+  constexpr milliseconds kLongest = std::chrono::days(366);
+  EXPECT_EQ(LeaseEnd(now, milliseconds(-1)), now);
+  EXPECT_EQ(LeaseEnd(now, milliseconds(1)), now + milliseconds(1));
+  EXPECT_EQ(LeaseEnd(now, kLongest), now + kLongest);
+  EXPECT_EQ(LeaseEnd(now, kLongest + milliseconds(1)), now + kLongest);
+}
+
+TEST(JobRules, OnlyWhatHasEndedIsRemoved) {
+  JobRecord job{.id = 7};
+  for (const JobState state : {JobState::kQueued, JobState::kRunning}) {
+    job.state = state;
+    const Status refused = CheckRemoval(job);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kCellPrecondition);
+    EXPECT_EQ(refused.error().detail, "job 7 has not ended; cancel it first");
+  }
+  for (const JobState state :
+       {JobState::kSucceeded, JobState::kFailed, JobState::kCancelled, JobState::kInterrupted}) {
+    job.state = state;
+    EXPECT_TRUE(CheckRemoval(job));
+  }
+}
+
+TEST(QueueRules, WhatKeepsAJobFromItsTurn) {
+  const WallTime now{std::chrono::seconds(100)};
+  const WallTime later = now + std::chrono::microseconds(1);
+  EXPECT_EQ(BlockedAtFirst({}, false, now), 0);
+  EXPECT_EQ(BlockedAtFirst({.held = true}, false, now), kBlockedByHold);
+  EXPECT_EQ(BlockedAtFirst({.not_before = now}, false, now), 0);
+  EXPECT_EQ(BlockedAtFirst({.not_before = later}, false, now), kBlockedByTime);
+  EXPECT_EQ(BlockedAtFirst({}, true, now), kBlockedByJobs);
+  const int all = kBlockedByHold | kBlockedByTime | kBlockedByJobs;
+  EXPECT_EQ(BlockedAtFirst({.held = true, .not_before = later}, true, now), all);
+  EXPECT_EQ(BlockedWhenLetGo(all, true), kBlockedByTime | kBlockedByJobs);
+  EXPECT_EQ(BlockedWhenLetGo(all, false), kBlockedByTime);
+  EXPECT_EQ(BlockedWhenLetGo(kBlockedByHold, false), 0);
+}
+
+TEST(QueueRules, WhereAJobMayGo) {
+  const JobRecord job{.id = 4, .kind = "CHECK", .pool = "p"};
+  const JobRecord before{.id = 5, .kind = "CHECK", .pool = "p", .priority = 3};
+  for (const int priority : {-100, 100}) EXPECT_TRUE(CheckMove(job, nullptr, priority));
+  EXPECT_TRUE(CheckMove(job, nullptr, {}));
+  EXPECT_TRUE(CheckMove(job, &before, {}));
+  EXPECT_TRUE(CheckMove(job, &before, 3));
+  const auto refused = [](const JobRecord& moved, const JobRecord* other,
+                          std::optional<int> priority) {
+    const Status may = CheckMove(moved, other, priority);
+    return may ? "" : CodeText(may.error().code) + ": " + std::string(may.error().detail);
+  };
+  const std::string invalid = CodeText(ErrorCode::kCellInvalidArgument) + ": ";
+  const std::string precondition = CodeText(ErrorCode::kCellPrecondition) + ": ";
+  for (const int priority : {-101, 101}) {
+    EXPECT_EQ(refused(job, nullptr, priority),
+              invalid + "priority is " + std::to_string(priority) + ", allowed are -100 to 100");
+  }
+  EXPECT_EQ(refused(job, &job, {}), invalid + "a job cannot stand in front of itself");
+  EXPECT_EQ(refused(job, &before, 4), invalid + "in front of a job another one has its priority");
+  JobRecord other = before;
+  other.pool = "q";
+  EXPECT_EQ(refused(job, &other, {}), precondition + "job 5 waits for another kind of worker");
+  other = before;
+  other.kind = "SIMULATE";
+  EXPECT_EQ(refused(job, &other, {}), precondition + "job 5 waits for another kind of worker");
+  other = before;
+  other.state = JobState::kRunning;
+  EXPECT_EQ(refused(job, &other, {}), precondition + "job 5 does not wait in the queue");
+  EXPECT_EQ(refused(other, nullptr, {}), precondition + "job 5 does not wait in the queue");
+}
+
 TEST(QueueRules, WhatAJobWaitsForFirst) {
   const WallTime now{std::chrono::seconds(100)};
   JobRecord job{

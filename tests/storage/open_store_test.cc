@@ -32,6 +32,8 @@ TEST(OpenStore, NoOther) {
     EXPECT_THAT(opened.error().detail, testing::Not(HasSubstr("secretsecretsecretsecret")));
     EXPECT_THAT(opened.error().detail, testing::Not(HasSubstr(":secret")));
   }
+  EXPECT_THAT(OpenStore({.url = "secretsecretsecretsecret"}).error().detail,
+              HasSubstr("there is no store 'secretsecretsecretse'; there is sqlite:"));
   EXPECT_THAT(OpenStore({.url = "sqlite:cell.db"}).error().detail, HasSubstr("begins with /"));
 }
 

@@ -155,6 +155,29 @@ TEST_F(SqliteContents, SmallContentsLieInTheirRow) {
   EXPECT_EQ(Count("blob_chunk"), 1);
 }
 
+// One chunk that comes piece by piece is no more than any other content.
+TEST_F(SqliteContents, AnUploadOfAChunkThatShrinksLiesInItsRow) {
+  const auto upload = [&](const std::string& content) {
+    const auto writer = Must(store().WriteBlob(HexOf(Sha256(content)), content.size()));
+    Must(writer->Append(content));
+    Must(writer->Finish(std::chrono::hours(1)));
+  };
+  upload(std::string(kChunkBytes, 'x'));
+  EXPECT_EQ(Count("blob"), 1);
+  EXPECT_EQ(Count("blob_chunk"), 0);
+  upload(std::string(kChunkBytes + 1, 'x'));
+  EXPECT_EQ(Count("blob_chunk"), 2);
+}
+
+// content.h kContentInRecordMax: on both sides.
+TEST_F(SqliteContents, SmallBodiesLieInTheirRecord) {
+  Must(store().PutProject({.id = "p", .body = Noise(kContentInRecordMax, 1)}, 0));
+  EXPECT_EQ(Count("blob"), 0);
+  Must(store().PutProject({.id = "q", .body = Noise(kContentInRecordMax + 1, 1)}, 0));
+  EXPECT_EQ(Count("blob"), 1);
+  EXPECT_TRUE(Must(store().GetProject("p")).body == Noise(kContentInRecordMax, 1));
+}
+
 // A content goes with the last record that names it, and not before.
 TEST_F(SqliteContents, ContentGoesWithItsLastName) {
   Must(store().PutMachine({.id = "m"}, 0));

@@ -149,6 +149,28 @@ TEST_F(SqliteKeep, OpeningTakesItsCountersFromMarks) {
   EXPECT_EQ(Acquire().fence, 70'004);
 }
 
+// A thousand fences are reserved with the first that is given, and with the first behind them; a
+// write that gives none reserves none.
+TEST_F(SqliteKeep, FencesAreReservedManyAtATime) {
+  Open(0, 0);
+  const auto mark = [&] {
+    return NumberIn(bed_->path(), "SELECT ifnull(max(value), 0) FROM mark WHERE name = 'fence'");
+  };
+  Submit();
+  EXPECT_EQ(mark(), 0);
+  Lease lease = Acquire();
+  EXPECT_EQ(lease.fence, 1);
+  EXPECT_EQ(mark(), 1'001);
+  Must(store().HandBack(lease, PolicyOfTests()));
+  EXPECT_EQ(Acquire().fence, 2);
+  EXPECT_EQ(mark(), 1'001);
+  bed_->Reopen();
+  Submit();
+  EXPECT_EQ(mark(), 1'001);
+  EXPECT_EQ(Acquire().fence, 1'002);
+  EXPECT_EQ(mark(), 2'002);
+}
+
 // LIVE-5.10: of a run that was cut off a person decides by what is known of it: it stays, whatever
 // else ends meanwhile, until its machine stands as if no run was open.
 TEST_F(SqliteKeep, WhatWaitsForADecisionStays) {

@@ -109,6 +109,26 @@ TEST(SqliteRefusals, IndexInAnotherOrder) {
   EXPECT_EQ(CodeOf(bed.store().ListJobs({.kind = "a", .limit = 10})), kCorruptFile);
 }
 
+// One that tells the same lane or machine again and again, as it stands between two that it knows.
+TEST(SqliteRefusals, IndexThatGoesInCircles) {
+  SqliteBed bed;
+  bed.LeaveUnchecked();
+  Must(bed.store().SubmitAndWait({.machine = "m", .kind = "RUN"}));
+  bed.Close();
+  ExecuteIn(bed.path(), "UPDATE job SET special = 0.5");  // read as 0
+  bed.Reopen();
+  const auto jobs = bed.store().ListJobs({.limit = 10});
+  ASSERT_EQ(CodeOf(jobs), kCorruptFile);
+  EXPECT_EQ(jobs.error().detail, "the index of unfinished jobs is out of order");
+  bed.Close();
+  ExecuteIn(bed.path(), "UPDATE job SET special = 0, machine = x'6d'");  // bytes are behind text
+  bed.Reopen();
+  const auto leased =
+      bed.store().AcquireJobs({.worker = "w", .kinds = {"RUN"}, .duration = kLease});
+  ASSERT_EQ(CodeOf(leased), kCorruptFile);
+  EXPECT_EQ(leased.error().detail, "the index of runs is out of order");
+}
+
 TEST(SqliteRefusals, PathThatIsNoRegularFile) {
   const TestDirectory directory;
   const std::string path = directory.File("pipe");
@@ -182,6 +202,14 @@ TEST_F(SqliteAlone, QuestionWithoutAnAnswer) {
   EXPECT_EQ(CodeOf(database.Text("SELECT kind FROM job")), kCorruptFile);
 }
 
+// database.h: not even we change the schema by its text.
+TEST_F(SqliteAlone, SchemaThatIsNotWritten) {
+  const Status refused =
+      Open().Execute("PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = sql");
+  ASSERT_EQ(CodeOf(refused), kFailedFile);
+  EXPECT_THAT(refused.error().detail, HasSubstr("may not be modified"));
+}
+
 TEST_F(SqliteAlone, CopyThatCannotBeMade) {
   const Database database = Open();
   const Status refused = database.CopyTo(directory_.File("none/copy"));
@@ -244,6 +272,50 @@ TEST_F(SqliteOwnWriter, LargeContentGoesAheadInWritesOf4MiB) {
   const StagedContent staged =
       Must(StagedContent::Make(writer, content, StagedContent::Place::kBlob));
   EXPECT_EQ(commits_, 4);
+  // It is held as long as it is on its way.
+  EXPECT_EQ(Must(writer.Do([&](WriteContext&) {
+              return connection_.database.Number("SELECT holds FROM blob");
+            })),
+            1);
+}
+
+// An operation that holds so many bytes: it is good, or it was refused.
+class NoWrite final : public WriteOperation {
+ public:
+  explicit NoWrite(std::vector<std::optional<ErrorCode>>& answers) : answers_(answers) {}
+  Status Run(WriteContext&) override { return {}; }
+  void Answer(const Status& status) override { answers_.push_back(CodeOf(status)); }
+
+ private:
+  std::vector<std::optional<ErrorCode>>& answers_;
+};
+
+// sqlite_store.h waiting_bytes_max: what waits may have all of it, and what holds nothing waits
+// beside it. Inside a write nothing is done of what is posted.
+TEST_F(SqliteOwnWriter, AsManyBytesWaitAsMay) {
+  Writer::Options options = kRoomy;
+  options.waiting_bytes_max = 1'000;
+  std::vector<std::optional<ErrorCode>> answers;
+  {
+    Writer writer(connection_, {}, {}, options, SystemTime, [] {});
+    const auto post = [&](std::size_t bytes) {
+      writer.Post(std::make_unique<NoWrite>(answers), bytes);
+    };
+    Must(writer.Do([&](WriteContext&) -> Status {
+      post(600);
+      post(401);
+      EXPECT_EQ(answers.size(), 1U);
+      post(400);
+      post(0);
+      EXPECT_EQ(answers.size(), 1U);
+      post(1);
+      EXPECT_EQ(answers.size(), 2U);
+      return {};
+    }));
+  }
+  const std::optional<ErrorCode> refused = ErrorCode::kCellResourceExhausted;
+  EXPECT_THAT(answers,
+              testing::ElementsAre(refused, refused, std::nullopt, std::nullopt, std::nullopt));
 }
 
 }  // namespace

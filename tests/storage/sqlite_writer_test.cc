@@ -187,6 +187,30 @@ TEST(SqliteWriter, TooManyWaitingBytesAreRefused) {
   EXPECT_EQ(answers.good, 2);
 }
 
+// sqlite_store.h group_window: those that were answered together are waited for, here for an hour,
+// and written as soon as the last of them is there.
+TEST(SqliteWriter, CallersThatWereAnsweredTogetherAreWrittenTogether) {
+  faulty_disk::Register();
+  faulty_disk::Heal();
+  SqliteOptions options;
+  options.vfs = faulty_disk::kName;
+  options.group_window = std::chrono::hours(1);
+  SqliteBed bed(options);
+  Answers answers;
+  {
+    WriterHold hold(bed.store());
+    for (int i = 0; i < 3; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+    hold.Release();
+  }
+  answers.WaitFor(3);
+  faulty_disk::Fail({});  // counts from here
+  for (int i = 0; i < 2; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+  EXPECT_EQ(answers.all, 3);
+  bed.store().Submit({.kind = "CHECK"}, answers.Next());
+  answers.WaitFor(6);
+  EXPECT_EQ(faulty_disk::Syncs(), 1);
+}
+
 // An answer that writes runs what was queued before it first, and the answers of those come after
 // it.
 TEST(SqliteWriter, AnswerThatWritesKeepsTheOrder) {
@@ -342,6 +366,30 @@ TEST(SqliteWriter, ReadersAreAsManyAsAskedFor) {
   }
 }
 
+// However many read at a time.
+TEST(SqliteWriter, ReadersAreNotMoreThanAskedFor) {
+  SqliteBed bed;
+  sqlite::ReaderPool pool(bed.path(), {}, 2);
+  std::mutex mutex;
+  std::set<sqlite::Tables*> used;
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 8; ++i) {
+      threads.emplace_back([&] {
+        for (int turn = 0; turn < 50; ++turn) {
+          Must(pool.Read([&](sqlite::Tables& tables) -> Result<int> {
+            const std::lock_guard lock(mutex);
+            used.insert(&tables);
+            std::this_thread::yield();
+            return 0;
+          }));
+        }
+      });
+    }
+  }
+  EXPECT_LE(used.size(), 2U);
+}
+
 // A connection that could not be opened is tried again by the next read, and nobody waits for it.
 TEST(SqliteWriter, ReaderThatCannotBeOpenedIsTriedAgain) {
   SqliteBed bed;
@@ -352,7 +400,8 @@ TEST(SqliteWriter, ReaderThatCannotBeOpenedIsTriedAgain) {
     const auto refused = ReadInside(pool, 1, used);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::kCellStoreFailed);
-    EXPECT_THAT(refused.error().detail, testing::HasSubstr(path));
+    EXPECT_EQ(refused.error().detail,
+              path + ": unable to open database file (SQLite 14): No such file or directory");
   }
   ExecuteIn(path, "CREATE TABLE something (it)");
   Must(ReadInside(pool, 1, used));
@@ -410,6 +459,28 @@ TEST(RequestIds, AreUuidsOfVersion7) {
   }
   EXPECT_EQ(made.size(), 10'000U);
   EXPECT_FALSE(made.contains(sqlite::RequestIds().Make(time)));
+}
+
+// Each of the other bits is another one in some of 200 objects.
+TEST(RequestIds, OfManyObjectsDifferInEachBit) {
+  const auto bits_of = [](std::string id) {
+    std::erase(id, '-');
+    const std::string first = id.substr(13, 3);
+    return std::pair(std::stoull(first, nullptr, 16), std::stoull(id.substr(16), nullptr, 16));
+  };
+  auto [some_high, some_low] = bits_of(sqlite::RequestIds().Make({}));
+  auto [all_high, all_low] = std::pair(some_high, some_low);
+  for (int i = 0; i < 200; ++i) {
+    const auto [high, low] = bits_of(sqlite::RequestIds().Make({}));
+    some_high |= high;
+    some_low |= low;
+    all_high &= high;
+    all_low &= low;
+  }
+  EXPECT_EQ(some_high, 0xFFFU);
+  EXPECT_EQ(all_high, 0U);
+  EXPECT_EQ(some_low, 0xBFFF'FFFF'FFFF'FFFFU);
+  EXPECT_EQ(all_low, 0x8000'0000'0000'0000U);
 }
 
 // A statement tells what went wrong at its first step, and can be used again.

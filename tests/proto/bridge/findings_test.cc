@@ -11,6 +11,7 @@
 #include "engine/simulation/run/rehearsal.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "proto/bridge/start_blocker.h"
 #include "rmlcell/v1/common.pb.h"
 #include "rmlcell/v1/program.pb.h"
 #include "rmlcell/v1/report.pb.h"
@@ -152,6 +153,29 @@ TEST(DiagnosticMessage, WhatIsMissing) {
   EXPECT_EQ(FromProto(newer).detail, "OPT-E9: of tomorrow");
   newer.set_severity(v1::SEVERITY_UNSPECIFIED);
   EXPECT_EQ(FromProto(newer).severity, Severity::kRequest);
+}
+
+TEST(DiagnosticMessage, WhatItMakesOfTheVerdict) {
+  for (const auto& [judged, verdict] : {std::pair(Judged::kNo, v1::VERDICT_UNSPECIFIED),
+                                        std::pair(Judged::kDoubtful, v1::VERDICT_DOUBTFUL),
+                                        std::pair(Judged::kBad, v1::VERDICT_BAD)}) {
+    Diagnostic one = Whole();
+    one.judged = judged;
+    EXPECT_EQ(ToProto(one).verdict(), verdict);
+    EXPECT_EQ(FromProto(ToProto(one)).judged, judged);
+  }
+}
+
+// A reason has a place where it has a step or a line.
+TEST(OutcomeMessage, WhereAReasonIs) {
+  const auto has_place = [](const machine::Place& first) {
+    machine::Judgement judgement{.verdict = machine::Verdict::kBad};
+    judgement.reasons.push_back({.verdict = machine::Verdict::kBad, .first = first});
+    return ToProto(machine::Outcome{}, judgement).reasons(0).has_first();
+  };
+  EXPECT_FALSE(has_place({.program = 1}));
+  EXPECT_TRUE(has_place({.step = 1}));
+  EXPECT_TRUE(has_place({.line = 1}));
 }
 
 TEST(OutcomeMessage, EveryKind) {
@@ -320,6 +344,35 @@ TEST(RpcCodes, WhatTheStateRefusesIsNoWrongArgument) {
     EXPECT_EQ(RpcCode(entry.code), alarm ? 9 : 3) << entry.symbol;
   }
   EXPECT_EQ(ToRpcStatus({ErrorCode::kNotZeroed, "START", {}}).code(), 9);
+}
+
+// An error travels in a header: 24 kinds of what was not told, without their texts and files.
+TEST(RpcStatus, HasTheKindsOfWhatWasNotTold) {
+  for (const std::size_t count : {std::size_t{24}, std::size_t{25}, std::size_t{30}}) {
+    UntoldFindings untold;
+    for (const CatalogueEntry& entry : Catalogue().first(count)) {
+      untold.Add(
+          {.code = entry.code, .severity = entry.severity, .file = "part.S", .where = {.line = 7}});
+    }
+    v1::ErrorDetail detail;
+    SetUntold(untold, detail);
+    EXPECT_EQ(detail.diagnostics_dropped(), static_cast<std::int64_t>(count));
+    ASSERT_EQ(detail.gathered_size(), 24);
+    for (const v1::GatheredFindings& kind : detail.gathered()) {
+      EXPECT_EQ(kind.count(), 1);
+      EXPECT_EQ(kind.message() + kind.advice() + kind.first().file() + kind.last().file(), "");
+      EXPECT_EQ(kind.first().line(), 7);
+    }
+  }
+}
+
+TEST(StartBlocker, SaysWhatItsErrorSays) {
+  const CatalogueEntry& entry = Lookup(ErrorCode::kCellDoorOpen);
+  const v1::StartBlocker blocker = ToStartBlocker({entry.code, "door 1", {}});
+  EXPECT_EQ(blocker.code(), CodeText(entry.code));
+  EXPECT_EQ(blocker.symbol(), ConstantName(entry.code));
+  EXPECT_EQ(blocker.message(), "door 1");
+  EXPECT_EQ(blocker.advice(), entry.advice);
 }
 
 TEST(RpcStatus, CarriesCodeTextPlaceAndFindings) {

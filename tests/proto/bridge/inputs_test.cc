@@ -66,12 +66,39 @@ TEST(ScriptedInputs, OthersAreRefused) {
     EXPECT_THAT(Taken(live), HasSubstr("a simulation takes start, resume")) << live;
   for (const char* name : {"IL[100]", "IL[-1]", "IL[x]", "OL[1]", "IL", "", "IA[1"})
     EXPECT_THAT(Taken(Outside(name, "logical: true")), HasSubstr("is no input")) << name;
+  const std::string inputs = " is no input: use IL[0] to IL[99] or IA[0] to IA[99]";
+  EXPECT_EQ(Taken(Outside(std::string(40, 'x'), "")), "'" + std::string(40, 'x') + "'" + inputs);
+  EXPECT_EQ(Taken(Outside(std::string(41, 'x'), "")), "a long name" + inputs);
   EXPECT_EQ(Taken(Outside("IL[1]", "real: 1")), "IL[1] needs a logical value");
   EXPECT_EQ(Taken(Outside("IA[1]", "logical: true")), "IA[1] needs a number");
   EXPECT_EQ(Taken(Outside("IA[1]", "real: inf")), "IA[1] needs a number");
   EXPECT_EQ(Taken("override_percent: 146"), "the value is 146; allowed are above 0 to 145 %");
   EXPECT_EQ(Taken("override_percent: 0"), "the value is 0; allowed are above 0 to 145 %");
   EXPECT_THAT(Taken("override_percent: nan"), HasSubstr("allowed are above 0"));
+}
+
+TEST(ScriptedInputs, EachAsAMessage) {
+  const auto told = [](const machine::InputChange& change) {
+    return ToProto(change).ShortDebugString();
+  };
+  const std::string outside = "from_outside { input { name: ";
+  EXPECT_EQ(told({.kind = InputKind::kLogical, .index = 7, .value = 1.0}),
+            outside + "\"IL[7]\" value { logical: true } } }");
+  EXPECT_EQ(told({.kind = InputKind::kLogical, .index = 7, .value = 0.0}),
+            outside + "\"IL[7]\" value { logical: false } } }");
+  EXPECT_EQ(told({.kind = InputKind::kAnalogue, .index = 8, .value = -2.5}),
+            outside + "\"IA[8]\" value { real: -2.5 } } }");
+  EXPECT_EQ(told({.kind = InputKind::kDoor, .value = 1.0}), "from_outside { door_open: true }");
+  EXPECT_EQ(told({.kind = InputKind::kDoor}), "from_outside { door_open: false }");
+  EXPECT_EQ(told({.kind = InputKind::kStart}), "resume { }");
+  EXPECT_EQ(told({.kind = InputKind::kStart, .value = 1.0}), "resume { restore_process: true }");
+  EXPECT_EQ(told({.kind = InputKind::kHold}), "hold: HOLD_REASON_HOLD");
+  EXPECT_EQ(told({.kind = InputKind::kStop}), "stop: HOLD_REASON_STOP");
+  EXPECT_EQ(told({.kind = InputKind::kEmergencyStop}), "emergency_stop: true");
+  EXPECT_EQ(told({.kind = InputKind::kOverride, .value = 55.0}), "override_percent: 55");
+  EXPECT_EQ(told({.kind = InputKind::kVariable, .value = 2.5, .name = "VR[1]"}),
+            "variable { name: \"VR[1]\" value { real: 2.5 } }");
+  EXPECT_EQ(Taken("resume { restore_process: true }"), Does(InputKind::kStart, 0, 1.0));
 }
 
 TEST(ScriptedInputs, InOrderOfTimeThoseOfOneInstantAsGiven) {

@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -109,6 +111,7 @@ TEST_F(ProgramStreamTest, WhatCannotBeReadIsTold) {
   EXPECT_EQ(refused(folder_ + "/none", kLimit), "CELL-E9022 " + folder_ + "/none");
   EXPECT_EQ(refused(folder_, kLimit), "CELL-E9022 " + folder_ + " is a directory");
   EXPECT_EQ(refused(File("12345"), 4), "CELL-E9007 " + folder_ + "/a is larger than 4 bytes");
+  EXPECT_EQ(refused(File("12345"), 5), "");
   // Of a long one it is seen where it is.
   auto opened = ProgramStream::Open(File(Numbered(200'000)), 100'000, nullptr);
   ASSERT_TRUE(opened);
@@ -116,6 +119,36 @@ TEST_F(ProgramStreamTest, WhatCannotBeReadIsTold) {
   EXPECT_TRUE(opened->bytes.whole());
   ASSERT_FALSE(opened->stream->status());
   EXPECT_EQ(opened->stream->status().error().code, ErrorCode::kCellTooLarge);
+  EXPECT_EQ(opened->stream->status().error().detail, folder_ + "/a is larger than 100000 bytes");
+  const std::string text = Numbered(100'000);
+  opened = ProgramStream::Open(File(text), 100'000, nullptr);
+  ASSERT_TRUE(opened);
+  opened->bytes.ReadAll();
+  EXPECT_TRUE(opened->stream->status());
+  EXPECT_TRUE(*opened->bytes == text);
+}
+
+// What errno says of an earlier call is nothing of a file that ends.
+TEST_F(ProgramStreamTest, ItsEndIsItsEnd) {
+  const std::string path = File("12345");
+  errno = EINTR;
+  EXPECT_EQ(*Open(path).bytes, "12345");
+}
+
+// Without room for a file it is read as any other program.
+TEST_F(ProgramStreamTest, WithoutATemporaryFolderItIsWhole) {
+  const std::string text = Numbered(100'000);
+  const std::string path = File(text);
+  ::setenv("TMPDIR", "/nowhere/at/all", 1);
+  const auto opened = ProgramStream::Open(path, 100'000, nullptr);
+  const auto refused = ProgramStream::Open(path, 99'999, nullptr);
+  ::unsetenv("TMPDIR");
+  ASSERT_TRUE(opened);
+  EXPECT_EQ(opened->stream, nullptr);
+  EXPECT_TRUE(opened->bytes.whole());
+  EXPECT_TRUE(*opened->bytes == text);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kCellTooLarge);
 }
 
 }  // namespace

@@ -368,6 +368,9 @@ TEST(ReportMessage, WhatDidNotHappenIsNotThere) {
   report.tip_figures = {.name = "tip", .peak_speed = 5.0, .peak_acceleration = 6.0};
   const v1::RunReport message = ToProto(kGantry, report, {});
   EXPECT_FALSE(message.milling().has_gouge_place());
+  EXPECT_FALSE(message.milling().has_below_place());
+  EXPECT_FALSE(message.milling().has_pass_place());
+  EXPECT_FALSE(message.milling().has_shank_place());
   EXPECT_FALSE(message.corners().has_deviation_place());
   EXPECT_FALSE(message.has_beam());
   EXPECT_FALSE(message.has_shortfall());
@@ -377,6 +380,21 @@ TEST(ReportMessage, WhatDidNotHappenIsNotThere) {
   EXPECT_EQ(message.axes(0).peak_acceleration_share(), 0.0);
   report.programs[1] = {};
   EXPECT_FALSE(ToProto(kGantry, report, {}).programs(0).has_beam());
+  report.cut_figures.contours = 1;
+  ExpectMessage(ToProto(kGantry, report, {}).cut(), "contours: 1");
+}
+
+TEST(ReportMessage, EachCauseOfASlowMoveHasItsWord) {
+  using simulation::SlowCause;
+  for (const auto& [cause, word] :
+       {std::pair(SlowCause::kAxis, v1::SlowMove::CAUSE_AXIS),
+        std::pair(SlowCause::kRadius, v1::SlowMove::CAUSE_RADIUS),
+        std::pair(SlowCause::kShort, v1::SlowMove::CAUSE_SHORT),
+        std::pair(SlowCause::kAcceleration, v1::SlowMove::CAUSE_ACCELERATION)}) {
+    RunReport report;
+    report.slow_moves = {{.cause = cause}};
+    EXPECT_EQ(ToProto(kGantry, report, {}).slow_moves(0).cause(), word);
+  }
 }
 
 simulation::TraceRecord Record(simulation::TraceKind kind) {

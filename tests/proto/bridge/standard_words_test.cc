@@ -75,6 +75,15 @@ TEST(StandardWords, OfRuns) {
   EXPECT_EQ(StandardWordsOf(status).device_state(), "ARMED");
 }
 
+// LIVE-2.14: nothing moves, and nothing is held.
+TEST(StandardWords, WhoIsAtRest) {
+  const std::set<int> at_rest = {v1::MACHINE_STATE_OFF, v1::MACHINE_STATE_NOT_ZEROED,
+                                 v1::MACHINE_STATE_IDLE, v1::MACHINE_STATE_ALARM,
+                                 v1::MACHINE_STATE_INSPECT};
+  for (const Row& row : kRows)
+    EXPECT_EQ(IsAtRest(row.state), at_rest.contains(row.state)) << row.state;
+}
+
 // LIVE-2.14: the operating modes.
 TEST(StandardWords, OfModes) {
   v1::MachineStatus status;

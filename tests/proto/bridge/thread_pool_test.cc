@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <latch>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace rmlcell::bridge {
@@ -18,7 +21,7 @@ TEST(ThreadPool, DoesEachPieceOnce) {
     EXPECT_EQ(pool.width(), width);
     for (const std::size_t count : {0u, 1u, 2u, 3u, 100u}) {
       std::vector<int> done(count);  // each piece has its own
-      pool.Run(count, [&](std::size_t k) { ++done[k]; });
+      pool.Run(count, [&](std::size_t k) { ++done.at(k); });
       EXPECT_EQ(done, std::vector<int>(count, 1)) << width << " threads";
     }
   }
@@ -38,6 +41,23 @@ TEST(ThreadPool, OfOneWorksInTheThreadThatCalls) {
   std::set<std::thread::id> threads;
   pool.Run(10, [&](std::size_t) { threads.insert(std::this_thread::get_id()); });
   EXPECT_EQ(threads, std::set<std::thread::id>{std::this_thread::get_id()});
+}
+
+// No more than it has, and no more than there are pieces.
+TEST(ThreadPool, HasNoMoreThreadsThanItsWidth) {
+  for (const auto& [width, count] : {std::pair(2U, 300U), {5U, 3U}}) {
+    ThreadPool pool(width);
+    std::mutex mutex;
+    std::set<std::thread::id> threads;
+    for (int round = 0; round < 50; ++round) {
+      pool.Run(count, [&](std::size_t) {
+        const std::lock_guard lock(mutex);
+        threads.insert(std::this_thread::get_id());
+        std::this_thread::yield();
+      });
+    }
+    EXPECT_LE(threads.size(), std::min(width, count));
+  }
 }
 
 // After all others have ended, and the pool goes on.

@@ -88,6 +88,12 @@ TEST(Ticket, BindsTheWholeMemoryWhereProgramsCallEachOther) {
   memory.schedules.front().power_percent = 81.0;
   EXPECT_THAT(ChangedSince(ticket, memory.Run()), ElementsAre("schedules/3"));
   memory.schedules.front().power_percent = 80.0;
+  memory.schedules.front().mode = "PULSE";
+  EXPECT_THAT(ChangedSince(ticket, memory.Run()), ElementsAre("schedules/3"));
+  memory.schedules.front().mode = "CW";
+  memory.schedules.front().number = 4;
+  EXPECT_THAT(ChangedSince(ticket, memory.Run()), ElementsAre("schedules/3", "schedules/4"));
+  memory.schedules.front().number = 3;
   memory.main_program = 44;
   EXPECT_THAT(ChangedSince(ticket, memory.Run()), ElementsAre("program 44 instead of 10"));
 }
@@ -106,6 +112,34 @@ TEST(Ticket, OfAMillItIsTheProgramAloneWhateverItsSlot) {
   EXPECT_THAT(ChangedSince(ticket, memory.Run()), IsEmpty());
   memory.main_program = 11;
   EXPECT_THAT(ChangedSince(ticket, memory.Run()), ElementsAre("program"));
+}
+
+// LIVE-5.02: what is other than in the simulation is told, eight of it by name.
+TEST(Ticket, ARunWithoutTheRightOneIsRefused) {
+  Memory memory("optimo");
+  memory.Put(10, "main");
+  const auto said = [&](const v1::RunTicket* ticket, bool needed) {
+    const Status may = CheckRun(memory.Run(), ticket, needed);
+    return may ? std::string() : CodeText(may.error().code) + " " + std::string(may.error().detail);
+  };
+  const std::string code = CodeText(ErrorCode::kCellTicket) + " ";
+  EXPECT_EQ(said(nullptr, false), "");
+  EXPECT_EQ(said(nullptr, true), code + "jobs need one here");
+  const v1::RunTicket ticket = memory.Ticket();
+  EXPECT_EQ(said(&ticket, true), "");
+  std::string changed = code + "other than in jobs/17: ";
+  for (int slot = 11; slot <= 18; ++slot) {
+    memory.Put(slot, "new");
+    changed += (slot == 11 ? "programs/" : ", programs/") + std::to_string(slot);
+    EXPECT_EQ(said(&ticket, false), changed);
+  }
+  memory.Put(19, "new");
+  EXPECT_EQ(said(&ticket, false), changed + " and 1 more");
+  memory.Put(20, "new");
+  EXPECT_EQ(said(&ticket, false), changed + " and 2 more");
+  memory.main_program = 50;
+  EXPECT_THAT(said(&ticket, false),
+              testing::Not(testing::HasSubstr("jobs/17")));  // it is not there
 }
 
 // LIVE-5.02

@@ -102,7 +102,8 @@ TEST_F(CellWatchTest, BeginsWithASnapshotOfEachSubscription) {
   const v1::WatchCellResponse jobs = watch.Next();
   EXPECT_THAT(jobs.subscriptions(), ElementsAre("jobs"));
   EXPECT_EQ(jobs.sequence(), last);  // to go on after, should the line break before the first event
-  EXPECT_NE(jobs.watch_id(), "");
+  EXPECT_EQ(jobs.watch_id().size(), 32U);
+  EXPECT_EQ(jobs.watch_id().find_first_not_of("0123456789abcdef"), std::string::npos);
   ASSERT_EQ(jobs.snapshot().jobs_size(), 2);  // the newest first
   EXPECT_EQ(jobs.snapshot().jobs(0).name(), JobName(two));
   EXPECT_EQ(jobs.snapshot().jobs(1).name(), JobName(one));
@@ -252,6 +253,13 @@ TEST(CellWatchOfAShortLog, EventsThatAreGoneAreAGapAndASnapshotFollows) {
   auto watch = room.WatchCell(request);
   EXPECT_EQ(NextOf(watch), "REASON_GONE");
   EXPECT_EQ(NextOf(watch), "snapshot of jobs");
+  // Ten are kept, and an eighth more; behind the last that is gone there is no gap.
+  const std::int64_t last = Must(store.LastPosition());
+  ASSERT_TRUE(Eventually([&] { return Must(store.EventsGoneUntil()) >= last - 11; }));
+  request.set_after_sequence(Must(store.EventsGoneUntil()));
+  auto behind = room.WatchCell(request);
+  EXPECT_EQ(NextOf(behind), "bookmark");
+  EXPECT_EQ(NextOf(behind), "jobs/1 x");
   // From the first that is kept, without a gap.
   request.set_after_sequence(0);
   auto whole = room.WatchCell(request);

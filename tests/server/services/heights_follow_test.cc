@@ -225,6 +225,28 @@ TEST_F(HeightsFollow, RefusesWhatIsNotThere) {
   room.Heights(request).ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "area");
 }
 
+TEST_F(HeightsFollow, TheEndsOfLevelsAndAreas) {
+  v1::StreamJobHeightsRequest whole;
+  whole.set_name(JobName(room.Ended("height.grid", StoredGrid(), Mills())));
+  for (const int level : {0, 16}) {
+    whole.set_level(level);
+    EXPECT_EQ(room.Heights(whole).Next().grid().level(), level);
+  }
+  whole.clear_level();
+  whole.mutable_area()->set_columns(1);
+  whole.mutable_area()->set_rows(1);
+  EXPECT_TRUE(room.Heights(whole).Next().has_grid());
+  for (const char* field : {"column", "row", "columns", "rows"}) {
+    v1::StreamJobHeightsRequest request = whole;
+    v1::HeightArea& area = *request.mutable_area();
+    const auto* one_less = area.GetDescriptor()->FindFieldByName(field);
+    area.GetReflection()->SetInt32(&area, one_less,
+                                   area.GetReflection()->GetInt32(area, one_less) - 1);
+    room.Heights(request).ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT,
+                                        "area: it begins at 0 or later");
+  }
+}
+
 // A block of one row and millions of columns: such a row is not held in memory.
 TEST_F(HeightsFollow, TooManyColumnsAreRefused) {
   std::string bytes = StoredGrid();
@@ -235,6 +257,9 @@ TEST_F(HeightsFollow, TooManyColumnsAreRefused) {
   v1::StreamJobHeightsRequest request;
   request.set_name(JobName(room.Ended("height.grid", bytes, Mills())));
   room.Heights(request).ExpectRefused(grpc::StatusCode::RESOURCE_EXHAUSTED, "1048577 columns");
+  bytes[12] = static_cast<char>(bytes[12] - 1);
+  request.set_name(JobName(room.Ended("height.grid", bytes, Mills())));
+  EXPECT_TRUE(room.Heights(request).Next().has_grid());
 }
 
 TEST_F(HeightsFollow, ABadProductIsAnErrorAndNoPicture) {

@@ -188,8 +188,9 @@ TEST_F(ProductStreamsTest, ATraceComesInOrderByManyRecordsAMessage) {
   auto stream = room.Trace(JobName(room.Ended("trace", frames)));
   const std::vector<v1::StreamJobTraceResponse> messages = stream.Rest();
   stream.ExpectGoodEnd();
-  EXPECT_GT(messages.size(), 1U);  // a trace may be larger than a message
-  EXPECT_LT(messages.size(), 100U);
+  ASSERT_EQ(messages.size(), 3U);  // a trace may be larger than a message
+  EXPECT_EQ(messages[0].records_size(), 500);
+  EXPECT_EQ(messages[1].records_size(), 500);
   int last = 0;
   for (const v1::StreamJobTraceResponse& message : messages) {
     for (const v1::TraceRecord& record : message.records()) EXPECT_EQ(record.number(), ++last);

@@ -161,6 +161,17 @@ TEST_F(SubscriptionTest, WhatIsRefused) {
   EXPECT_EQ(CodeOf(MakeSubscriptions(twice)), ErrorCode::kCellInvalidArgument);
 }
 
+TEST_F(SubscriptionTest, AWatchHasAHundred) {
+  google::protobuf::RepeatedPtrField<v1::Subscription> wanted;
+  for (int i = 0; i < 100; ++i) {
+    *wanted.Add() = Jobs("");
+    wanted.rbegin()->set_id("s" + std::to_string(i));
+  }
+  EXPECT_EQ(Must(MakeSubscriptions(wanted)).size(), 100U);
+  *wanted.Add() = Jobs("");
+  EXPECT_EQ(CodeOf(MakeSubscriptions(wanted)), ErrorCode::kCellInvalidArgument);
+}
+
 // Facts of jobs are asked once.
 TEST_F(SubscriptionTest, FactsOfAJobThatIsGoneAreNone) {
   EXPECT_EQ(facts.Of(1), nullptr);

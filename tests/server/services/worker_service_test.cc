@@ -88,5 +88,50 @@ TEST_F(WorkerLineTest, ProgramsComeInPiecesOfWhichNoneIsEmpty) {
     EXPECT_EQ(programs[slot], std::string(size, static_cast<char>('a' + slot))) << slot;
 }
 
+TEST_F(WorkerLineTest, AWorkerSaysHelloFirst) {
+  const auto refused = [&](const v1::WorkRequest& first) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    const auto stream = stub_->Work(&context);
+    stream->Write(first);
+    v1::WorkResponse nothing;
+    EXPECT_FALSE(stream->Read(&nothing));
+    return stream->Finish();
+  };
+  v1::WorkRequest request;
+  request.mutable_heartbeat();
+  const grpc::Status dumb = refused(request);
+  EXPECT_EQ(dumb.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_NE(dumb.error_message().find("the first message must be hello"), std::string::npos);
+  *request.mutable_hello() = Hello("w");
+  request.mutable_hello()->set_join_token("guessed");
+  const grpc::Status guessed = refused(request);
+  EXPECT_FALSE(guessed.ok());
+  EXPECT_NE(guessed.error_message().find("CELL-E"), std::string::npos) << guessed.error_message();
+}
+
+// A worker whose line ends has left: its job goes to the next one.
+TEST_F(WorkerLineTest, AJobOfALineThatEndsGoesToTheNext) {
+  bed_.server.SubmitCheck();
+  v1::WorkRequest hello;
+  *hello.mutable_hello() = Hello("w");
+  const auto assigned = [&](grpc::ClientReaderWriter<v1::WorkRequest, v1::WorkResponse>& stream) {
+    EXPECT_TRUE(stream.Write(hello));
+    v1::WorkResponse message;
+    while (stream.Read(&message)) {
+      if (message.has_assignment()) return message.assignment().lease().job();
+    }
+    return std::int64_t{0};
+  };
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + kPatience);
+  const auto first = stub_->Work(&context);
+  EXPECT_EQ(assigned(*first), 1);
+  first->WritesDone();
+  for (v1::WorkResponse rest; first->Read(&rest);) continue;
+  EXPECT_TRUE(first->Finish().ok());
+  EXPECT_EQ(assigned(*stub_->Work(&context_)), 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -1,0 +1,154 @@
+// What is kept of the messages of the log, and for how long (shared_log.h).
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/jobs/job_book.h"
+#include "tests/server/services/stream_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+class KeptMessages : public testing::Test {
+ protected:
+  storage::EventRecord Deleted(std::int64_t position, std::size_t name_bytes) {
+    storage::EventRecord event;
+    event.position = position;
+    event.kind = storage::kDeleted;
+    event.resource = "jobs/" + std::string(name_bytes, '7');
+    return event;
+  }
+  std::shared_ptr<SharedLog> LogOfJobs() {
+    v1::Subscription wanted;
+    wanted.set_id("jobs");
+    wanted.mutable_jobs()->set_events_only(true);
+    return std::make_shared<SharedLog>(
+        SharedLogNeeds{records, room.feed, facts, "instance"},
+        std::make_shared<ToldEvents>(records),
+        std::vector<CellSubscription>{Must(CellSubscription::Make(wanted))});
+  }
+  std::int64_t Last() { return Must(room.bed.store().LastPosition()); }
+  // As long a text as makes a message of one event that is kept with so many bytes.
+  std::string TextOf(std::size_t bytes) {
+    const std::int64_t before = Last();
+    const std::string text(bytes - 1000, 'x');
+    room.Say(lease, {text});
+    const auto piece = Must(LogOfJobs()->After(before, false));
+    return std::string(text.size() + bytes - sizeof(LogPiece) - piece->message->size(), 'x');
+  }
+  // As long a text as makes an event of so many bytes.
+  std::string EventOfBytes(std::size_t bytes) {
+    const std::int64_t before = Last();
+    const std::string text(bytes - 1000, 'x');
+    room.Say(lease, {text});
+    const auto event = Must(room.bed.store().AllEvents(before, 1)).at(0);
+    return std::string(text.size() + bytes - ToldEvents(records).Of(event).bytes->size(), 'x');
+  }
+  static v1::WatchCellResponse Read(const std::optional<LogPiece>& piece) {
+    v1::WatchCellResponse message;
+    EXPECT_TRUE(
+        piece && piece->message &&
+        message.ParseFromArray(piece->message->begin(), static_cast<int>(piece->message->size())));
+    return message;
+  }
+
+  StreamBed room;
+  JobBook book{room.bed.store(), room.config};
+  JobFactsBook facts{room.bed.store()};
+  CellRecords records{room.bed.store(), book, room.programs, room.projects};
+  std::int64_t job = room.Submit();
+  storage::Lease lease = room.bed.Lease();
+};
+
+// So many bytes of events are kept, the newest ones; one alone however large it is.
+TEST_F(KeptMessages, EventsAreSerialisedOnce) {
+  constexpr std::size_t kHalf = ToldEvents::kKeptBytes / 2;
+  const std::size_t rest =
+      ToldEvents(records).Of(Deleted(9, kHalf - 100)).bytes->size() + 100 - kHalf;
+  ToldEvents told(records);
+  const auto one = told.Of(Deleted(1, kHalf - rest));
+  ASSERT_EQ(one.bytes->size(), kHalf);
+  EXPECT_TRUE(one.whole);
+  const auto two = told.Of(Deleted(2, kHalf - rest));
+  EXPECT_EQ(told.Of(Deleted(1, 1)).bytes, one.bytes);
+  EXPECT_EQ(told.Of(Deleted(2, 1)).bytes, two.bytes);
+  const auto three = told.Of(Deleted(3, 1));
+  EXPECT_NE(told.Of(Deleted(1, kHalf - rest)).bytes, one.bytes);
+  EXPECT_EQ(told.Of(Deleted(2, 1)).bytes, two.bytes);
+  EXPECT_EQ(told.Of(Deleted(3, 2)).bytes, three.bytes);
+  ToldEvents large(records);
+  const auto alone = large.Of(Deleted(1, 3 * kHalf));
+  EXPECT_EQ(large.Of(Deleted(1, 1)).bytes, alone.bytes);
+}
+
+// For one watch alone so many bytes of messages, the newest ones; for two that share them more.
+TEST_F(KeptMessages, MessagesAreMadeOnceForThoseThatShareThem) {
+  const std::string text = TextOf(SharedLog::kBytesOfOne / 2);
+  const std::int64_t before = Last();
+  room.Say(lease, {text, text, text});
+  const auto made = [](const std::shared_ptr<SharedLog>& log, std::int64_t position) {
+    return *Must(log->After(position, false))->message;
+  };
+  const auto log = LogOfJobs();
+  const grpc::Slice first = made(log, before);
+  ASSERT_EQ(first.size() + sizeof(LogPiece), SharedLog::kBytesOfOne / 2);
+  const grpc::Slice second = made(log, before + 1);
+  const grpc::Slice third = made(log, before + 2);
+  EXPECT_EQ(made(log, before + 1).begin(), second.begin());
+  EXPECT_EQ(made(log, before + 2).begin(), third.begin());
+  EXPECT_NE(made(log, before).begin(), first.begin());
+  const auto shared = LogOfJobs();
+  const auto other = shared;
+  const grpc::Slice kept = made(shared, before);
+  made(shared, before + 2);
+  EXPECT_EQ(made(other, before).begin(), kept.begin());
+}
+
+// A message of several events ends where it has its bytes, and where what is read at once ends.
+TEST_F(KeptMessages, AMessageOfSeveralEventsIsNotTooLarge) {
+  constexpr std::size_t kHalf = SharedLog::kMessageBytes / 2;
+  const std::string text = EventOfBytes(kHalf);
+  std::int64_t before = Last();
+  room.Say(lease, {text, text, "more"});
+  EXPECT_EQ(Read(Must(LogOfJobs()->After(before, true))).events().events_size(), 2);
+  before = Last();
+  room.Say(lease, {text, text.substr(1), "more"});
+  EXPECT_EQ(Read(Must(LogOfJobs()->After(before, true))).events().events_size(), 3);
+}
+
+// Where the log goes on without an event that is wanted, its end is told without a message.
+TEST_F(KeptMessages, WhatIsNotWantedHasNoMessage) {
+  const std::int64_t before = Last();
+  Must(
+      room.bed.store().PutMachine({.id = "mill-2", .family = "rml1", .profile = "mdx-20"}, 0, "c"));
+  const auto log = LogOfJobs();
+  const auto piece = Must(log->After(before, false));
+  ASSERT_TRUE(piece);
+  EXPECT_FALSE(piece->message);
+  EXPECT_EQ(piece->end, before + 1);
+  EXPECT_FALSE(Must(log->After(before + 1, false)));
+}
+
+// What was made of a job goes with it.
+TEST_F(KeptMessages, WhatWasMadeOfAJobGoesWithIt) {
+  const auto log = LogOfJobs();
+  const auto other = log;
+  const std::int64_t before = Last();
+  room.Say(lease, {"one"});
+  const auto first = Must(log->After(before, false));
+  EXPECT_EQ(Must(other->After(before, false))->message->begin(), first->message->begin());
+  room.Finish(lease);
+  Must(room.bed.store().DeleteJob(job, "c"));
+  for (std::int64_t at = before + 1;;) {
+    const auto next = Must(log->After(at, false));
+    if (!next) break;
+    at = next->end;
+  }
+  const auto again = log->AtOnce(before, false);
+  EXPECT_TRUE(!again || again->message->begin() != first->message->begin());
+}
+
+}  // namespace
+}  // namespace rmlcell::server

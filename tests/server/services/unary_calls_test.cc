@@ -1,0 +1,462 @@
+// Calls with one answer, over a channel of this process: what the store refuses is what they end
+// with, and the limits of what they take.
+#include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "proto/bridge/sha256.h"
+#include "proto/recording/recording.h"
+#include "server/base/config.h"
+#include "server/base/names.h"
+#include "server/jobs/job_book.h"
+#include "server/machines/hosts.h"
+#include "server/programs/language_tools.h"
+#include "server/programs/memory_tools.h"
+#include "server/programs/program_book.h"
+#include "server/projects/project_archive.h"
+#include "server/projects/project_book.h"
+#include "server/projects/project_transfer.h"
+#include "server/results/job_results.h"
+#include "server/runs/run_queue.h"
+#include "server/services/job_service.h"
+#include "server/services/machine_service.h"
+#include "server/services/program_service.h"
+#include "server/services/project_service.h"
+#include "tests/server/failing_store.h"
+#include "tests/server/jobs/dispatcher_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::HasSubstr;
+
+// Of machines, schedules and orders as well.
+class FailingCellStore final : public FailingStore {
+ public:
+  using FailingStore::FailingStore;
+  Result<storage::MachineRecord> PutMachine(const storage::MachineRecord& machine,
+                                            storage::Revision expected,
+                                            std::string_view caller) override {
+    return Or([&] { return store_.PutMachine(machine, expected, caller); });
+  }
+  Status DeleteMachine(std::string_view id, storage::Revision expected,
+                       std::string_view caller) override {
+    return Or([&] { return store_.DeleteMachine(id, expected, caller); });
+  }
+  Result<storage::ScheduleRecord> PutSchedule(const storage::ScheduleRecord& schedule,
+                                              storage::Revision expected,
+                                              std::string_view caller) override {
+    return Or([&] { return store_.PutSchedule(schedule, expected, caller); });
+  }
+  Status DeleteSchedule(std::string_view machine, int number, std::string_view caller) override {
+    return Or([&] { return store_.DeleteSchedule(machine, number, caller); });
+  }
+  Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override {
+    return Or([&] { return store_.UnfinishedJobs(); });
+  }
+  Status DeleteJob(std::int64_t job, std::string_view caller) override {
+    return Or([&] { return store_.DeleteJob(job, caller); });
+  }
+  Result<storage::JobRecord> Move(std::int64_t job, std::int64_t before,
+                                  std::optional<int> priority,
+                                  const std::vector<storage::NewEvent>& events) override {
+    return Or([&] { return store_.Move(job, before, priority, events); });
+  }
+  Result<std::vector<storage::JobRecord>> ActOn(std::span<const std::int64_t> jobs,
+                                                storage::QueueAct act,
+                                                const EventOf& event) override {
+    return Or([&] { return store_.ActOn(jobs, act, event); });
+  }
+};
+
+template <class Request>
+Request Of(const std::string& text) {
+  Request request;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &request)) << text;
+  return request;
+}
+
+class UnaryCalls : public testing::Test {
+ protected:
+  UnaryCalls() {
+    grpc::ServerBuilder builder;
+    for (grpc::Service* service :
+         std::initializer_list<grpc::Service*>{&jobs_, &machines_, &programs_, &projects_})
+      builder.RegisterService(service);
+    builder.SetMaxReceiveMessageSize(80 << 20);
+    server_ = builder.BuildAndStart();
+    const auto channel = server_->InProcessChannel({});
+    jobs = v1::JobService::NewStub(channel);
+    machines = v1::MachineService::NewStub(channel);
+    programs = v1::ProgramService::NewStub(channel);
+    projects = v1::ProjectService::NewStub(channel);
+  }
+  ~UnaryCalls() override {
+    server_->Shutdown(std::chrono::system_clock::now());
+    server_->Wait();
+    bed_.End();
+  }
+
+  // The answer of a call, and in `status` how it ended.
+  template <class Stub, class Request, class Response>
+  Response Call(const std::unique_ptr<Stub>& stub,
+                grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
+                const std::string& request) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    Response response;
+    status = (stub.get()->*method)(&context, Of<Request>(request), &response);
+    return response;
+  }
+  // The same while one call of the store fails, then another, until it comes through.
+  template <class Stub, class Request, class Response>
+  Response InSpiteOfAll(const std::unique_ptr<Stub>& stub,
+                        grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
+                                                     Response*),
+                        const std::string& request) {
+    for (int call = 1;; ++call) {
+      store_.FailAt(call);
+      Response response = Call(stub, method, request);
+      if (!store_.failed()) {
+        EXPECT_GT(call, 1) << Request::descriptor()->name();
+        EXPECT_TRUE(status.ok()) << Request::descriptor()->name() << status.error_message();
+        store_.FailAt(0);
+        return response;
+      }
+      EXPECT_EQ(status.error_code(), grpc::StatusCode::INTERNAL)
+          << Request::descriptor()->name() << ", call " << call;
+      EXPECT_THAT(status.error_message(), HasSubstr("the disk is full"));
+      if (status.ok()) return response;
+    }
+  }
+  void ExpectRefused(grpc::StatusCode code, const std::string& text) {
+    EXPECT_EQ(status.error_code(), code) << status.error_message();
+    EXPECT_THAT(status.error_message(), HasSubstr(text));
+  }
+
+  // Of optimo-1, with an object of so many bytes.
+  void PutObject(int slot, std::size_t bytes) {
+    Must(store_.PutPrograms("optimo-1", {{.slot = slot, .object = std::string(bytes, 'o')}}, {},
+                            {}));
+  }
+  std::int64_t EndedJob(const std::vector<storage::NewArtifact>& artifacts) {
+    const std::int64_t job = bed_.server.SubmitCheck();
+    Must(bed_.server.store().Finish(bed_.server.Lease(), {.artifacts = artifacts}));
+    return job;
+  }
+
+  grpc::Status status;  // of the newest call
+  std::unique_ptr<v1::JobService::Stub> jobs;
+  std::unique_ptr<v1::MachineService::Stub> machines;
+  std::unique_ptr<v1::ProgramService::Stub> programs;
+  std::unique_ptr<v1::ProjectService::Stub> projects;
+
+ private:
+  DispatcherBed bed_;
+
+ protected:
+  FailingCellStore store_{bed_.server.store()};
+
+ private:
+  Config config_;
+  EventFeed feed_{bed_.server.store()};
+  Gate gate_{"secret"};
+  OpenStreams open_;
+  Executor executor_{1};
+  CallNeeds needs_{gate_, executor_, executor_, 8 << 20};
+  Hosts hosts_{{.store = bed_.server.store(), .feed = feed_, .executor = executor_}};
+  RunQueue runs_{{.store = store_, .hosts = hosts_, .config = config_, .executor = executor_}};
+  ProgramBook program_book_{store_, config_};
+  ProjectBook project_book_{store_};
+  ProjectTransfer transfer_{store_, project_book_, program_book_};
+  MemoryTools tools_{store_, program_book_};
+  LanguageTools language_{store_, program_book_};
+  JobBook book_{store_, config_};
+  JobResults results_{store_, book_, tools_};
+  JobService jobs_{needs_, executor_, book_, results_,  bed_.dispatcher(),
+                   runs_,  feed_,     open_, "instance"};
+  MachineService machines_{needs_, {executor_, open_, store_, feed_, "instance"}, {}};
+  ProgramService programs_{needs_, store_, program_book_, tools_, language_, open_};
+  ProjectService projects_{needs_, project_book_, transfer_, open_};
+  std::unique_ptr<grpc::Server> server_;
+};
+
+TEST_F(UnaryCalls, OfMachinesHandOnWhatTheStoreSays) {
+  using Stub = v1::MachineService::Stub;
+  const std::string schedule = "name: 'machines/laser/laserSchedules/5'";
+  EXPECT_EQ(InSpiteOfAll(machines, &Stub::CreateMachine,
+                         "machine_id: 'laser' machine { family: 'optimo' title: 'Laser' }")
+                .title(),
+            "Laser");
+  EXPECT_EQ(InSpiteOfAll(machines, &Stub::GetMachine, "name: 'machines/laser'").status().state(),
+            v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(InSpiteOfAll(machines, &Stub::ListMachines, "").machines_size(), 3);
+  EXPECT_EQ(InSpiteOfAll(machines, &Stub::UpdateMachine,
+                         "machine { name: 'machines/laser' title: 'Other' } update_mask { paths: "
+                         "'title' }")
+                .title(),
+            "Other");
+  InSpiteOfAll(machines, &Stub::PutLaserSchedule,
+               "laser_schedule { " + schedule + " mode: LASER_MODE_CW power_percent: 40 }");
+  EXPECT_EQ(InSpiteOfAll(machines, &Stub::GetLaserSchedule, schedule).power_percent(), 40.0);
+  EXPECT_EQ(InSpiteOfAll(machines, &Stub::ListLaserSchedules, "parent: 'machines/laser'")
+                .laser_schedules_size(),
+            1);
+  InSpiteOfAll(machines, &Stub::DeleteLaserSchedule, schedule);
+  InSpiteOfAll(machines, &Stub::DeleteMachine, "name: 'machines/laser'");
+}
+
+TEST_F(UnaryCalls, OfProgramsHandOnWhatTheStoreSays) {
+  using Stub = v1::ProgramService::Stub;
+  const std::string name = "name: 'machines/optimo-1/programs/45' ";
+  EXPECT_EQ(InSpiteOfAll(programs, &Stub::PutProgram,
+                         name + "program { file_name: 'a.S' content: 'SPEED 20\\n' }")
+                .file_name(),
+            "a.S");
+  EXPECT_EQ(InSpiteOfAll(programs, &Stub::GetProgram, name).etag(), "1");
+  EXPECT_EQ(InSpiteOfAll(programs, &Stub::GetProgramContent, name).content(), "SPEED 20\n");
+  EXPECT_EQ(
+      InSpiteOfAll(programs, &Stub::ListPrograms, "parent: 'machines/optimo-1'").programs_size(),
+      1);
+  EXPECT_TRUE(InSpiteOfAll(programs, &Stub::CheckProgram,
+                           "machine: 'machines/optimo-1' program { file_name: 'b.S' content: "
+                           "'CALL 45\\n' }")
+                  .findings()
+                  .ok());
+  InSpiteOfAll(programs, &Stub::ListStaleExecutables, "parent: 'machines/optimo-1'");
+  InSpiteOfAll(programs, &Stub::DeleteProgram, name);
+}
+
+TEST_F(UnaryCalls, OfProjectsHandOnWhatTheStoreSays) {
+  using Stub = v1::ProjectService::Stub;
+  InSpiteOfAll(projects, &Stub::CreateProject,
+               "project_id: 'lid' project { title: 'Lid' family: 'optimo' }");
+  EXPECT_EQ(InSpiteOfAll(projects, &Stub::GetProject, "name: 'projects/lid'").title(), "Lid");
+  EXPECT_EQ(InSpiteOfAll(projects, &Stub::ListProjects, "").projects_size(), 1);
+  EXPECT_EQ(InSpiteOfAll(projects, &Stub::UpdateProject,
+                         "project { name: 'projects/lid' title: 'Box' } update_mask { paths: "
+                         "'title' }")
+                .title(),
+            "Box");
+  InSpiteOfAll(projects, &Stub::DeleteProject, "name: 'projects/lid'");
+}
+
+TEST_F(UnaryCalls, OfJobsHandOnWhatTheStoreSays) {
+  using Stub = v1::JobService::Stub;
+  v1::RunReport report;
+  report.set_family("optimo");
+  const std::int64_t ended = EndedJob({{.name = "report", .bytes = report.SerializeAsString()},
+                                       {.name = "picture.svg", .bytes = "<svg/>"}});
+  const std::string name = "name: '" + JobName(ended) + "' ";
+  EXPECT_EQ(InSpiteOfAll(jobs, &Stub::ListJobs, "").jobs_size(), 1);
+  EXPECT_EQ(InSpiteOfAll(jobs, &Stub::GetJobReport, name).family(), "optimo");
+  InSpiteOfAll(jobs, &Stub::ListJobFindings, name);
+  EXPECT_EQ(InSpiteOfAll(jobs, &Stub::GetJobPicture, name).content(), "<svg/>");
+  EXPECT_EQ(InSpiteOfAll(jobs, &Stub::GetJobArtifact, name + "artifact: 'picture.svg'").content(),
+            "<svg/>");
+  InSpiteOfAll(jobs, &Stub::DeleteJob, name);
+}
+
+// 0 to 100 percent, both of them.
+TEST_F(UnaryCalls, ThePowerOfAScheduleIsAShare) {
+  const auto put = [&](const std::string& percent) {
+    Call(machines, &v1::MachineService::Stub::PutLaserSchedule,
+         "laser_schedule { name: 'machines/optimo-1/laserSchedules/5' mode: LASER_MODE_CW "
+         "power_percent: " +
+             percent + " }");
+  };
+  for (const char* good : {"0", "100"}) {
+    put(good);
+    EXPECT_TRUE(status.ok()) << good;
+  }
+  for (const char* bad : {"-0.001", "100.001", "nan"}) {
+    put(bad);
+    ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "power_percent: allowed are 0 to 100");
+  }
+}
+
+TEST_F(UnaryCalls, MachinesComeInPages) {
+  std::string names;
+  std::string token;
+  do {
+    const auto page = Call(machines, &v1::MachineService::Stub::ListMachines,
+                           "page_size: 1 page_token: '" + token + "'");
+    ASSERT_EQ(page.machines_size(), 1);
+    names += page.machines(0).name() + " ";
+    token = page.next_page_token();
+  } while (!token.empty());
+  EXPECT_EQ(names, "machines/mill-1 machines/optimo-1 ");
+}
+
+// One answer has 3 MiB; a byte more goes by a stream.
+TEST_F(UnaryCalls, AnAnswerHasSoManyBytes) {
+  constexpr std::size_t kMost = std::size_t{3} << 20;
+  PutObject(1, kMost);
+  PutObject(2, kMost + 1);
+  const auto content = [&](int slot) {
+    return Call(programs, &v1::ProgramService::Stub::GetProgramContent,
+                "name: 'machines/optimo-1/programs/" + std::to_string(slot) +
+                    "' form: PROGRAM_FORM_OBJECT")
+        .content()
+        .size();
+  };
+  EXPECT_EQ(content(1), kMost);
+  content(2);
+  ExpectRefused(grpc::StatusCode::RESOURCE_EXHAUSTED, "3145729 bytes: use DownloadProgram");
+  const std::int64_t job = EndedJob({{.name = "most", .bytes = std::string(kMost, 'x')},
+                                     {.name = "more", .bytes = std::string(kMost + 1, 'x')}});
+  const auto artifact = [&](const std::string& name) {
+    return Call(jobs, &v1::JobService::Stub::GetJobArtifact,
+                "name: '" + JobName(job) + "' artifact: '" + name + "'")
+        .content()
+        .size();
+  };
+  EXPECT_EQ(artifact("most"), kMost);
+  artifact("more");
+  ExpectRefused(grpc::StatusCode::RESOURCE_EXHAUSTED, "more has 3145729 bytes");
+}
+
+TEST_F(UnaryCalls, ErrorsAreExplained) {
+  using Stub = v1::ProgramService::Stub;
+  EXPECT_EQ(Call(programs, &Stub::ExplainError, "").errors_size(),
+            static_cast<int>(Catalogue().size()));
+  const auto one = Call(programs, &Stub::ExplainError, "code: 'OPT-E348'");
+  ASSERT_EQ(one.errors_size(), 1);
+  EXPECT_EQ(one.errors(0).code(), "OPT-E348");
+  EXPECT_EQ(one.language(), "en");
+  Call(programs, &Stub::ExplainError, "code: '" + std::string(81, 'x') + "'");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "no error '" + std::string(80, 'x') + "'");
+}
+
+// LIVE-3.03: who gives a machine away says why, and to whom. Here no machine lives.
+TEST_F(UnaryCalls, WhoTakesAMachineSaysWhy) {
+  const auto take = [&](std::size_t reason, const std::string& computer) {
+    Call(machines, &v1::MachineService::Stub::TakeMachine,
+         "machine: 'machines/mill-1' request_id: 'r' reason: '" + std::string(reason, 'x') +
+             "' computer: '" + computer + "'");
+  };
+  for (const std::size_t reason : {0U, 201U}) {
+    take(reason, "pc");
+    ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "reason: why, in 1 to 200 characters");
+  }
+  for (const std::string& computer : {std::string(), std::string(254, 'p'), std::string("a/b")}) {
+    take(1, computer);
+    ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "computer: its name");
+  }
+  for (const std::size_t reason : {1U, 200U}) {
+    take(reason, std::string(253, 'p'));
+    ExpectRefused(grpc::StatusCode::UNAVAILABLE, "no machine lives here");
+  }
+}
+
+// docs/api.md: a content says how large it is, and has a byte at least.
+TEST_F(UnaryCalls, AContentSaysItsSize) {
+  const auto upload = [&](const std::string& header, const std::string& bytes) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    v1::UploadContentResponse response;
+    const auto writer = programs->UploadContent(&context, &response);
+    writer->Write(Of<v1::UploadContentRequest>("header { " + header + " }"));
+    v1::UploadContentRequest chunk;
+    chunk.set_chunk(bytes);
+    writer->Write(chunk);
+    writer->WritesDone();
+    status = writer->Finish();
+    return response;
+  };
+  const std::string sha256 = "sha256: '" + bridge::Sha256Hex("x") + "' ";
+  upload("size: 0 " + sha256, "");
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "header.size is missing");
+  upload("size: 1", "x");
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "header.sha256 is missing");
+  upload("size: 1 " + sha256, "x");
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(Must(store_.ReadBlob(bridge::Sha256Hex("x"))), "x");
+}
+
+v1::JournalEntry Mark(std::int64_t sequence, std::int64_t time_ns) {
+  v1::JournalEntry entry;
+  entry.set_fence(7);
+  entry.set_sequence(sequence);
+  entry.set_virtual_time_ns(time_ns);
+  entry.mutable_mark()->set_state("state");
+  return entry;
+}
+
+// machine.proto ExportJournal: of a job what was kept with it, from a time on, of a fence; else
+// what the host of the machine has.
+TEST_F(UnaryCalls, AJournalGoesOut) {
+  const recording::Recording all{.head = Of<v1::MachineRecording>("fence: 7"),
+                                 .entries = {Mark(1, 0), Mark(2, 10)}};
+  const std::string file = recording::FileOf(all);
+  const std::int64_t job = EndedJob({{.name = "recording", .bytes = file}});
+  const std::int64_t bare = EndedJob({});
+  const auto exported = [&](const std::string& request) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    const auto reader = machines->ExportJournal(&context, Of<v1::ExportJournalRequest>(request));
+    std::string bytes;
+    for (v1::ExportJournalResponse part; reader->Read(&part);) {
+      EXPECT_FALSE(part.chunk().empty());
+      bytes += part.chunk();
+    }
+    status = reader->Finish();
+    return bytes;
+  };
+  const std::string of_job = "machine: 'machines/optimo-1' job: '" + JobName(job) + "' ";
+  EXPECT_EQ(exported(of_job), file);
+  EXPECT_TRUE(status.ok());
+  EXPECT_EQ(exported(of_job + "fence: 7"), file);
+  EXPECT_EQ(exported(of_job + "from_virtual_time_ns: 9"), file);
+  EXPECT_EQ(exported(of_job + "fence: 7 from_virtual_time_ns: 10"),
+            recording::FileOf({.head = all.head, .entries = {Mark(2, 10)}}));
+  exported(of_job + "fence: 8");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "what is recorded is of fence 7");
+  exported("machine: 'machines/mill-1' job: '" + JobName(job) + "'");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, JobName(job) + " is of another machine");
+  exported("machine: 'machines/optimo-1' job: 'jobs/99'");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "job 99");
+  exported("machine: 'machines/optimo-1' job: 'x'");
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "CELL-E9003");
+  exported("machine: 'machines/none'");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "CELL-E9009");
+  exported("machine: 'x'");
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "CELL-E9003");
+  for (const std::string& unkept : {std::string(), " job: '" + JobName(bare) + "'"}) {
+    exported("machine: 'machines/optimo-1'" + unkept);
+    ExpectRefused(grpc::StatusCode::UNAVAILABLE, "the machine has no host: enable it");
+  }
+  const std::int64_t damaged = EndedJob({{.name = "recording", .bytes = "no recording"}});
+  exported("machine: 'machines/optimo-1' fence: 7 job: '" + JobName(damaged) + "'");
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "it does not begin as one");
+}
+
+// An archive of so many bytes is looked at, a byte more is not taken.
+TEST_F(UnaryCalls, AnArchiveHasSoManyBytes) {
+  const auto import = [&](std::size_t last_bytes) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    v1::Project response;
+    const auto writer = projects->ImportProject(&context, &response);
+    writer->Write(Of<v1::ImportProjectRequest>("project_id: 'lid'"));
+    v1::ImportProjectRequest chunk;
+    chunk.set_chunk(std::string(kProjectBytesMax / 2, 'x'));
+    writer->Write(chunk);
+    chunk.set_chunk(std::string(last_bytes, 'x'));
+    writer->Write(chunk);
+    writer->WritesDone();
+    status = writer->Finish();
+  };
+  import(kProjectBytesMax / 2 + 1);
+  ExpectRefused(grpc::StatusCode::RESOURCE_EXHAUSTED, "an archive has at most 67108864 bytes");
+  import(kProjectBytesMax / 2);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,205 @@
+// When the embedded store tidies up, and how much of it at a time.
+#include <gmock/gmock.h>
+
+#include "engine/core/hex.h"
+#include "storage/content.h"
+#include "storage/sqlite/housekeeping.h"
+#include "storage/sqlite/writer.h"
+#include "tests/storage/sqlite_bed.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+// housekeeping.h KeepLimits: 0 keeps all. Of events an eighth more may be there for a while, a
+// thousand at most.
+TEST(SqliteHousekeeping, IsDueBeyondItsLimits) {
+  struct Case {
+    KeepLimits limits;
+    Counters most;
+    Counters more;
+  };
+  const Case cases[] = {
+      {{.finished_jobs = 3}, {.finished_jobs = 3}, {.finished_jobs = 4}},
+      {{.record_events = 16}, {.record_events = 18}, {.record_events = 19}},
+      {{.record_events = 7}, {.record_events = 7}, {.record_events = 8}},
+      {{.record_events = 80'000}, {.record_events = 81'000}, {.record_events = 81'001}},
+      {{.events = 16}, {.position = 18}, {.position = 19}},
+      {{.events = 16},
+       {.position = 118, .events_trimmed_until = 100},
+       {.position = 119, .events_trimmed_until = 100}},
+  };
+  for (const Case& one : cases) {
+    EXPECT_FALSE(Housekeeping(one.limits).IsDue(one.most));
+    EXPECT_TRUE(Housekeeping(one.limits).IsDue(one.more));
+    EXPECT_FALSE(Housekeeping({}).IsDue(one.more));
+  }
+}
+
+// A file of its own, written by hand.
+class SqliteSlices : public testing::Test {
+ protected:
+  void AddFinishedJob(int id) {
+    const std::string number = std::to_string(id);
+    Must(connection_.database.Execute(
+        "INSERT INTO job (id, request_id, request_hash, machine, kind, title, caller, state,"
+        " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
+        " events_gone_until, created_at, finished_at) VALUES (" +
+        number + ", 'r" + number + "', '', 'm', 'CHECK', '', '', 2, 0, 1, 1, 1, 0, 0, 0, " +
+        number + ")"));
+  }
+  // At the next positions.
+  void AddEvents(int job, int count) {
+    Must(connection_.database.Execute(
+        "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < " +
+        std::to_string(count) +
+        ") INSERT INTO event (position, job, sequence, attempt, at, kind, payload, resource)"
+        " SELECT i + (SELECT ifnull(max(position), 0) FROM event), " +
+        std::to_string(job) + ", i, 0, 0, 'e', x'', " + (job == 0 ? "'r'" : "''") + " FROM n"));
+  }
+  std::int64_t Count(const std::string& from) {
+    return Must(connection_.database.Number("SELECT count(*) FROM " + from));
+  }
+  Result<bool> Slice(const KeepLimits& limits) {
+    WriteContext context{.tables = connection_.tables,
+                         .counters = counters_,
+                         .program_memory = no_limit_,
+                         .machines = no_machines_,
+                         .now = now_};
+    Result<bool> more = Housekeeping(limits).RunSlice(context);
+    told_ = context.changed;
+    return more;
+  }
+
+  const TestDirectory directory_;
+  const std::string path_ = directory_.File("cell.db");
+  std::optional<Connection> opened_;
+  Connection& connection_ = [this]() -> Connection& {
+    Must(OpenSqliteStore({.path = path_})).reset();
+    return opened_.emplace(Must(Database::Open(path_, Database::Access::kReadWrite, {})));
+  }();
+  const ProgramMemoryOf no_limit_;
+  const MachineTally no_machines_{{}};
+  Counters counters_;
+  WallTime now_{std::chrono::seconds(1'000)};
+  bool told_ = false;  // of the newest slice: whether watchers want to know
+};
+
+TEST_F(SqliteSlices, TakeSixtyFourJobs) {
+  for (int job = 1; job <= 70; ++job) AddFinishedJob(job);
+  counters_ = {.job = 70, .finished_jobs = 70};
+  EXPECT_TRUE(Must(Slice({.finished_jobs = 2})));
+  EXPECT_TRUE(told_);
+  EXPECT_EQ(Count("job"), 6);
+  EXPECT_EQ(counters_.finished_jobs, 6);
+  EXPECT_FALSE(Must(Slice({.finished_jobs = 2})));
+  EXPECT_EQ(Count("job WHERE id >= 69"), 2);
+  EXPECT_EQ(Count("job"), 2);
+  EXPECT_FALSE(Must(Slice({.finished_jobs = 2})));
+  EXPECT_FALSE(told_);
+}
+
+// A job whose events fill a slice goes with the next one, though none of them is left.
+TEST_F(SqliteSlices, TakeAThousandEventsOfJobs) {
+  AddFinishedJob(1);
+  AddFinishedJob(2);
+  AddFinishedJob(3);
+  AddEvents(1, 999);
+  AddEvents(2, 1);
+  AddEvents(3, 5);
+  counters_ = {.job = 3, .position = 1'005, .finished_jobs = 3};
+  EXPECT_TRUE(Must(Slice({.finished_jobs = 1})));
+  EXPECT_EQ(Count("job"), 2);
+  EXPECT_EQ(Count("event"), 5);
+  EXPECT_FALSE(Must(Slice({.finished_jobs = 1})));
+  EXPECT_EQ(Count("job"), 1);
+  EXPECT_EQ(Count("event WHERE job = 3"), 5);
+  EXPECT_EQ(Must(connection_.tables.marks.Get(MarkTable::kEventsGoneUntil)), 1'000);
+  EXPECT_EQ(Must(connection_.tables.marks.Get(MarkTable::kPosition)), 1'005);
+  EXPECT_EQ(Must(connection_.tables.marks.Get(MarkTable::kJob)), 3);
+}
+
+TEST_F(SqliteSlices, TakeAThousandOldEvents) {
+  AddFinishedJob(1);
+  AddEvents(1, 2'500);
+  counters_ = {.job = 1, .position = 2'500, .finished_jobs = 1};
+  const KeepLimits limits{.events = 80};
+  for (const std::int64_t trimmed : {1'000, 2'000}) {
+    EXPECT_TRUE(Must(Slice(limits)));
+    EXPECT_EQ(counters_.events_trimmed_until, trimmed);
+    EXPECT_EQ(Count("event"), 2'500 - trimmed);
+  }
+  EXPECT_FALSE(Must(Slice(limits)));
+  EXPECT_EQ(counters_.events_trimmed_until, 2'420);
+  EXPECT_EQ(Count("event"), 80);
+  EXPECT_EQ(Must(connection_.tables.jobs.Get(1))->job.events_gone_until, 2'420);
+}
+
+// Down to the limit: those beyond it, a thousand at a time.
+TEST_F(SqliteSlices, TakeAThousandEventsOfRecords) {
+  AddEvents(0, 1'200);
+  counters_ = {.position = 1'200, .record_events = 1'200};
+  const KeepLimits limits{.record_events = 16};
+  EXPECT_TRUE(Must(Slice(limits)));
+  EXPECT_TRUE(told_);
+  EXPECT_EQ(counters_.record_events, 200);
+  EXPECT_EQ(Count("event"), 200);
+  EXPECT_FALSE(Must(Slice(limits)));
+  EXPECT_EQ(counters_.record_events, 16);
+  EXPECT_EQ(Count("event"), 16);
+}
+
+// 9104: what counts as removed is there again, or nothing is there of what was counted.
+TEST_F(SqliteSlices, EventsThatDoNotAddUp) {
+  AddFinishedJob(1);
+  AddEvents(1, 1'000);
+  counters_ = {.job = 1, .position = 3'000, .events_trimmed_until = 1'000};
+  const auto again = Slice({.events = 80});
+  ASSERT_EQ(CodeOf(again), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(again.error().detail, "old events cannot be removed");
+  counters_ = {.position = 3'000, .record_events = 20};
+  const auto none = Slice({.record_events = 16});
+  ASSERT_EQ(CodeOf(none), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(none.error().detail, "old events cannot be removed");
+}
+
+TEST_F(SqliteSlices, TakeAsManyUploadsAsContents) {
+  constexpr int kUploads = 300;
+  for (int id = 1; id <= kUploads; ++id) {
+    const std::string number = std::to_string(id);
+    Must(connection_.database.Execute(
+        "INSERT INTO blob (id, sha256, size, refs, holds, content) VALUES (" + number + ", x'" +
+        HexOf(Sha256(number)) + "', 1, 1, 0, x'00'); INSERT INTO upload VALUES (" + number + ", " +
+        std::to_string(now_.time_since_epoch().count() + (id <= 280 ? 0 : 1)) + ")"));
+  }
+  EXPECT_TRUE(Must(Slice({})));
+  EXPECT_EQ(Count("upload"), kUploads - 256);
+  EXPECT_EQ(Count("blob"), kUploads - 256);
+  EXPECT_FALSE(Must(Slice({})));
+  EXPECT_EQ(Count("upload"), 20);  // those whose time has not come
+  EXPECT_EQ(Count("blob"), 20);
+}
+
+// RemoveJobWhole: of any number of events, and only its own.
+TEST_F(SqliteSlices, AJobGoesWhole) {
+  AddFinishedJob(1);
+  AddFinishedJob(2);
+  AddEvents(1, 2'100);
+  AddEvents(2, 3);
+  counters_ = {.job = 2, .position = 2'103, .finished_jobs = 2};
+  WriteContext context{.tables = connection_.tables,
+                       .counters = counters_,
+                       .program_memory = no_limit_,
+                       .machines = no_machines_,
+                       .now = now_};
+  Must(RemoveJobWhole(context, 1));
+  EXPECT_EQ(Count("event"), 3);
+  EXPECT_EQ(Count("job"), 1);
+  EXPECT_TRUE(context.changed);
+  EXPECT_TRUE(context.garbage);
+  EXPECT_EQ(counters_.finished_jobs, 1);
+  EXPECT_EQ(Must(connection_.tables.marks.Get(MarkTable::kPosition)), 2'103);
+  EXPECT_EQ(Must(connection_.tables.marks.Get(MarkTable::kEventsGoneUntil)), 0);
+}
+
+}  // namespace
+}  // namespace rmlcell::storage::sqlite

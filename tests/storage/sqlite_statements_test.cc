@@ -1,0 +1,358 @@
+// Each statement of a read or write fails once: what was asked for fails with its reason, and of a
+// write nothing is there.
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+
+#include <set>
+
+#include "engine/core/hex.h"
+#include "storage/content.h"
+#include "storage/sqlite/database.h"
+#include "storage/sqlite/statement.h"
+#include "tests/storage/failing_statements.h"
+#include "tests/storage/sqlite_bed.h"
+
+namespace rmlcell::storage {
+namespace {
+
+using failing_statements::Of;
+using std::chrono::hours;
+using testing::HasSubstr;
+
+// All rows but those of contents: what was staged for a write that failed is swept later.
+std::string RowsIn(const std::string& path) {
+  sqlite3* handle = nullptr;
+  EXPECT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
+  const auto select = [handle](const std::string& sql) {
+    std::vector<std::string> rows;
+    const auto take = [](void* to, int count, char** values, char**) {
+      std::string row;
+      for (int i = 0; i < count; ++i) row += std::string(values[i] ? values[i] : "-") + "|";
+      static_cast<std::vector<std::string>*>(to)->push_back(row);
+      return 0;
+    };
+    EXPECT_EQ(sqlite3_exec(handle, sql.c_str(), take, &rows, nullptr), SQLITE_OK) << sql;
+    return rows;
+  };
+  std::string all;
+  for (const std::string& table :
+       select("SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'blob%'")) {
+    const std::string name = table.substr(0, table.size() - 1);
+    all += "\n" + name + ":";
+    for (const std::string& row : select("SELECT * FROM " + name)) all += "\n" + row;
+  }
+  sqlite3_close(handle);
+  return all;
+}
+
+std::optional<ProgramMemoryLimit> Roomy(const MachineRecord&) {
+  return ProgramMemoryLimit{.bytes = 1'000'000, .full = ErrorCode::kCmosFull};
+}
+
+class SqliteStatements : public testing::Test {
+ protected:
+  SqliteStatements() { Settle(); }
+  ~SqliteStatements() override { failing_statements::Heal(); }
+  Store& store() { return bed_.store(); }
+
+  // Until what was dropped before is swept: the sweeping has statements of its own.
+  void Settle() {
+    for (int i = 0; i < 3; ++i) Must(store().ActOn({}, QueueAct::kHold, {}));
+  }
+  // What `step` gives once nothing fails. `repeats`: it changes nothing any more, and a statement
+  // that it asks for one row alone has given that before it fails.
+  template <class Step>
+  auto InSpiteOfAll(const std::string& what, Of of, Step step, bool repeats = false)
+      -> decltype(step()) {
+    for (int number = 0;; ++number) {
+      const std::string before = of == Of::kWriter ? RowsIn(bed_.path()) : "";
+      failing_statements::Fail(of, number);
+      auto done = step();
+      const std::string failed = failing_statements::Heal();
+      if (failed.empty()) {
+        EXPECT_GT(number, 0) << what << " has no statement";
+        Settle();
+        return done;
+      }
+      if (done && repeats) continue;
+      EXPECT_EQ(CodeOf(done), ErrorCode::kCellStoreFailed) << what << ": " << failed;
+      if (done) return done;
+      EXPECT_THAT(done.error().detail, HasSubstr("interrupted")) << what << ": " << failed;
+      if (of == Of::kWriter) {
+        EXPECT_EQ(RowsIn(bed_.path()), before) << what << ": " << failed;
+      }
+    }
+  }
+  template <class Step>
+  auto Writes(const std::string& what, Step step, bool repeats = false) {
+    return Must(InSpiteOfAll(what, Of::kWriter, step, repeats));
+  }
+  template <class Step>
+  auto Reads(const std::string& what, Step step, bool repeats = false) {
+    return Must(InSpiteOfAll(what, Of::kReaders, step, repeats));
+  }
+  std::int64_t Submit(const NewJob& job) { return Must(store().SubmitAndWait(job)).job.id; }
+  Lease LeaseOf(std::int64_t job) {
+    return Must(store().AcquireJobs({.worker = "w", .server = "s", .job = job, .duration = kLease}))
+        .at(0)
+        .lease;
+  }
+
+  SqliteBed bed_{[] {
+    failing_statements::Register();
+    return SqliteOptions{.program_memory = Roomy};
+  }()};
+};
+
+TEST_F(SqliteStatements, OfMachinesAndProjects) {
+  MachineRecord machine{.id = "m", .parameters = {{"a", "1"}}};
+  Writes("a new machine", [&] { return store().PutMachine(machine, 0); });
+  Writes("a machine again", [&] { return store().PutMachine(machine, 1); });
+  Writes("a record of teaching", [&] { return store().AddTeachRecord({.machine = "m"}); });
+  const std::string large(kContentInRecordMax + 1, 'x');
+  Writes("a small project", [&] { return store().PutProject({.id = "p", .body = "b"}, 0); });
+  Writes("a large project", [&] { return store().PutProject({.id = "p", .body = large}, 1); });
+  Writes("another project", [&] { return store().PutProject({.id = "q", .body = large}, 0); });
+  Reads("machines", [&] { return store().ListMachines(); });
+  Reads("a machine", [&] { return store().GetMachine("m"); });
+  Reads("records of teaching", [&] { return store().ListTeachRecords("m", 0, 0, 9); });
+  Reads("projects", [&] { return store().ListProjects("", 9); });
+  Reads("a project", [&] { return store().GetProject("q"); });
+  Writes("no project", [&] { return store().DeleteProject("p", 2); });
+  Must(store().PutPrograms("m", {{.slot = 1, .object = "o", .source = "s"}}, {{.number = 3}}));
+  Writes("no machine", [&] { return store().DeleteMachine("m", kAnyRevision); });
+}
+
+TEST_F(SqliteStatements, OfPrograms) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  const std::vector<ProgramWrite> programs = {{.slot = 1, .object = "o", .source = "s"},
+                                              {.slot = 2, .object = Noise(3'000, 1)}};
+  Writes("programs", [&] { return store().PutPrograms("m", programs, {{.number = 3}}); });
+  for (const char* bytes : {"first", "second"})
+    Writes("an executable", [&] { return store().PutExecutable("m", 1, 1, bytes); });
+  Writes("no executable", [&] { return store().DeleteExecutable("m", 1); });
+  Must(store().PutExecutable("m", 1, 1, "third"));
+  Writes("a schedule", [&] { return store().PutSchedule({.machine = "m", .number = 4}, 0); });
+  Reads("programs", [&] { return store().ListPrograms("m", 0, 9); });
+  Reads("a program", [&] { return store().GetProgram("m", 1); });
+  Reads("a program of chunks", [&] { return store().GetProgram("m", 2); });
+  Reads("a summary", [&] { return store().GetProgramSummary("m", 1); });
+  Reads("schedules", [&] { return store().ListSchedules("m"); });
+  Reads("the memory",
+        [&] { return store().GetMachineMemory("m", [](const MachineRecord&) { return true; }); });
+  Writes("programs again", [&] { return store().PutPrograms("m", programs, {{.number = 3}}); });
+  Writes("no schedule", [&] { return store().DeleteSchedule("m", 3); });
+  Writes("no program", [&] { return store().DeleteProgram("m", 1, kAnyRevision); });
+}
+
+TEST_F(SqliteStatements, OfHosts) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  const MachineLease lease = Writes("a host", [&] {
+    return store().TakeMachine({.machine = "m", .host = "a", .server = "s", .duration = kLease});
+  });
+  Writes("a renewal", [&] { return store().RenewMachine(lease, "t"); });
+  const std::int64_t job = Submit({.machine = "m", .kind = "RUN"});
+  MachineWrite write{.events = {{.kind = "one"}, {.kind = "two"}},
+                     .mark = MachineMark{.sequence = 1, .state = "state"}};
+  write.job = LeaseOf(job);
+  write.job_events = {{.kind = "three"}};
+  Writes("what it tells", [&] { return store().AppendMachine(lease, write); });
+  Reads("leases of machines", [&] { return store().MachineLeases(); });
+  Reads("a mark", [&] { return store().GetMachineMark("m"); });
+  write.mark->sequence = 2;
+  JobEnd end{.machine_lease = lease, .machine = write};
+  end.machine.job.reset();
+  Writes("the end of its run", [&] { return store().Finish(*write.job, end); });
+  Writes("no host", [&] { return store().ReleaseMachine(lease); });
+}
+
+TEST_F(SqliteStatements, OfSubmissions) {
+  const std::int64_t first = Submit({.kind = "CHECK"});
+  const std::string large(kContentInRecordMax + 1, 'x');
+  const std::vector<NewArtifact> attachments = {{.name = "a", .bytes = Noise(3'000, 1)},
+                                                {.name = "b", .bytes = "b"},
+                                                {.name = "c", .bytes = Noise(4'000, 2)}};
+  NewJob job{.request_id = "r",
+             .kind = "CHECK",
+             .specification = large,
+             .held = true,
+             .after = {first},
+             .attachments = attachments,
+             .events = {{.kind = "one"}, {.kind = "two"}}};
+  Writes("a job", [&] { return store().SubmitAndWait(job); });
+  EXPECT_TRUE(Writes(
+                  "it again", [&] { return store().SubmitAndWait(job); }, true)
+                  .already_there);
+  job.queued_max = 1;
+  EXPECT_TRUE(Writes(
+                  "it, where no more may wait", [&] { return store().SubmitAndWait(job); }, true)
+                  .already_there);
+  Writes("a plain job", [&] {
+    return store().SubmitAndWait({.kind = "CHECK", .attachments = {{.name = "a", .bytes = "a"}}});
+  });
+  Reads("what was submitted", [&] { return store().FindSubmitted("r", ""); });
+  Reads("a job", [&] { return store().GetJob(2); });
+  Reads("jobs", [&] { return store().ListJobs({}); });
+  Reads("jobs of the queue", [&] { return store().ListJobs({.order = JobOrder::kQueue}); });
+  Reads("counts", [&] { return store().CountByState({}); });
+  Reads("events", [&] { return store().JobEvents(2, 0, 9); });
+  Reads("all events", [&] { return store().AllEvents(0, 9); });
+  Reads("the last position", [&] { return store().LastPosition(); });
+  Reads("what is gone", [&] { return store().EventsGoneUntil(); });
+  Reads("a position", [&] { return store().HasPosition(store().LogId(), 1); });
+  Reads("artifacts", [&] { return store().ListArtifacts(2); });
+  Reads("an artifact", [&] { return store().GetArtifact(2, "b"); });
+  Reads("its bytes", [&] { return store().ReadArtifact(2, "a"); });
+  Reads("its pieces", [&] { return store().OpenArtifact(2, "a"); });
+  Reads("attempts", [&] { return store().ListAttempts(2); });
+  Reads("how many are before it", [&] { return store().CountBefore(1); });
+  const std::string sha256 = HexOf(Sha256(attachments[0].bytes));
+  Reads("a content", [&] { return store().ReadBlob(sha256); });
+  Reads("a content in pieces", [&] {
+    const auto reader = store().OpenBlob(sha256);
+    return reader ? (*reader)->Next() : Result<std::string>(reader.error());
+  });
+}
+
+TEST_F(SqliteStatements, OfTheQueue) {
+  const std::int64_t first = Submit({.kind = "CHECK"});
+  const std::int64_t second = Submit({.kind = "CHECK"});
+  const std::int64_t third = Submit({.kind = "CHECK", .after = {first, second}});
+  const std::vector<NewEvent> events = {{.kind = "queue"}};
+  Writes("held back", [&] { return store().HoldBack(second, events); });
+  Writes("let go", [&] { return store().LetGo(second, events); });
+  Writes("moved behind all", [&] { return store().Move(first, 0, 1, events); });
+  Writes("moved in front", [&] { return store().Move(second, first, {}, events); });
+  for (int i = 0; i < 60; ++i) Must(store().Move(i % 2 == 0 ? first : second, third, {}, {}));
+  const auto act = [&](QueueAct what) {
+    const std::vector<std::int64_t> jobs = {third, second};
+    Writes("many", [&] {
+      return store().ActOn(jobs, what, [](const JobRecord&) { return NewEvent{.kind = "queue"}; });
+    });
+  };
+  act(QueueAct::kHold);
+  act(QueueAct::kRelease);
+  const Lease lease = LeaseOf(second);
+  Writes("an order", [&] { return store().PutOrder(second, "t", "stop"); });
+  Writes("orders", [&] { return store().TakeOrders("s"); });
+  Must(store().Finish(lease, {.outcome = {.state = JobState::kFailed}}));
+  Writes("let go behind one that failed", [&] { return store().LetGo(third, events); });
+  act(QueueAct::kCancel);
+  Writes("cancelled", [&] { return store().RequestCancel(first, events); });
+  Writes("deleted", [&] { return store().DeleteJob(first, "anna"); });
+}
+
+// In front of one that stands next to another, where all of the line are moved.
+TEST_F(SqliteStatements, OfAMoveWithoutRoom) {
+  const std::int64_t back = Submit({.kind = "CHECK"});
+  for (int i = 0; i < 50; ++i) Must(store().Move(Submit({.kind = "CHECK"}), back, {}, {}));
+  for (int i = 0; i < 10; ++i) {
+    const std::int64_t job = Submit({.kind = "CHECK"});
+    Writes("moved", [&] { return store().Move(job, back, {}, {}); });
+  }
+}
+
+TEST_F(SqliteStatements, OfLeases) {
+  for (const char* pool : {"", "paced"}) Submit({.machine = "m", .kind = "CHECK", .pool = pool});
+  Submit({.kind = "CHECK", .priority = 3});
+  for (int i = 0; i < 2; ++i) Submit({.machine = "m", .kind = "RUN"});
+  const JobRequest request{.worker = "w",
+                           .server = "s",
+                           .kinds = {"RUN", "CHECK"},
+                           .pools = {"", "paced"},
+                           .count = 9,
+                           .duration = kLease,
+                           .events = {{.kind = "begun"}}};
+  const auto leased = Writes("jobs", [&] { return store().AcquireJobs(request); });
+  ASSERT_EQ(leased.size(), 4U);
+  const std::vector<NewEvent> events = {{.kind = "e"}};
+  const auto lease = [&](std::size_t i) { return leased[i].lease; };
+  Writes("renewed", [&] { return store().Renew(lease(0), hours(1)); });
+  Writes("told", [&] { return store().AppendAndWait(lease(0), events); });
+  Writes("handed back", [&] { return store().HandBack(lease(0), PolicyOfTests()); });
+  Writes("abandoned", [&] { return store().Abandon(lease(1), PolicyOfTests()); });
+  Writes("cancelled", [&] { return store().RequestCancel(lease(2).job, {}); });
+  Writes("lost, and cancelled", [&] { return store().Abandon(lease(2), PolicyOfTests()); });
+  Writes("a run is lost", [&] { return store().Abandon(lease(3), PolicyOfTests()); });
+  const std::int64_t last = Must(store().UnfinishedJobs()).empty() ? 0 : 5;
+  const Lease one =
+      Writes("one by its number",
+             [&] { return store().AcquireJobs({.worker = "w", .job = last, .duration = kLease}); })
+          .at(0)
+          .lease;
+  LossPolicy held = PolicyOfTests();
+  held.not_begun = true;
+  held.held = true;
+  Writes("a run waits again", [&] { return store().HandBack(one, held); });
+  Writes("a run again",
+         [&] { return store().AcquireJobs({.worker = "w", .job = last, .duration = kLease}); });
+}
+
+TEST_F(SqliteStatements, OfAnEnd) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  Must(store().PutPrograms("m", {{.slot = 1, .object = "o"}}, {}));
+  Must(store().PutExecutable("m", 1, 1, "before"));
+  const std::int64_t job = Submit({.machine = "m", .kind = "SIMULATE"});
+  const std::int64_t follower = Submit({.kind = "SIMULATE", .after = {job}});
+  const Lease lease = LeaseOf(job);
+  Writes("an end", [&] {
+    return store().Finish(
+        lease, {.artifacts = {{.name = "a", .bytes = "a"}, {.name = "b", .bytes = Noise(9'000, 1)}},
+                .executables = {{1, 1, "made"}},
+                .events = {{.kind = "ended"}}});
+  });
+  EXPECT_EQ(Must(store().GetProgram("m", 1)).executable, "made");
+  EXPECT_EQ(Must(store().GetJob(follower)).wait, WaitReason::kNone);
+  Writes("products", [&] {
+    return store().AddProducts(job, {.artifacts = {{.name = "c", .bytes = "c"}}, .verdict = "BAD"});
+  });
+  Writes("no job", [&] { return store().DeleteJob(job, "anna"); });
+}
+
+TEST_F(SqliteStatements, OfWhatTheClockDoes) {
+  const auto expire = [&] { return store().Expire(PolicyOfTests()); };
+  Submit({.kind = "CHECK", .not_before = bed_.clock().Now() + hours(1)});
+  bed_.clock().Advance(hours(1));
+  Writes("a job whose time has come", expire);
+  LeaseOf(1);
+  bed_.clock().Advance(hours(1));
+  EXPECT_EQ(Writes("a lease that ran out", expire).size(), 1U);
+  LeaseOf(1);
+  bed_.clock().Advance(hours(1));
+  Reads("what has run out", expire, true);
+}
+
+TEST_F(SqliteStatements, OfAnUpload) {
+  const std::string content = "content";
+  const auto upload = [&]() -> Result<WallTime> {
+    const auto writer = Must(store().WriteBlob(HexOf(Sha256(content)), content.size()));
+    Must(writer->Append(content));
+    return writer->Finish(hours(1));
+  };
+  Writes("an upload", upload);
+  Writes("it again", upload);
+}
+
+TEST_F(SqliteStatements, OfTheOpening) {
+  Submit({.kind = "CHECK"});
+  LeaseOf(1);
+  bed_.Close();
+  std::set<std::string> failures;
+  for (int number = 0;; ++number) {
+    failing_statements::Fail(Of::kWriter, number);
+    const auto opened = bed_.Open();
+    const std::string failed = failing_statements::Heal();
+    if (failed.empty()) break;
+    failures.insert(failed);
+    EXPECT_EQ(CodeOf(opened), ErrorCode::kCellStoreFailed) << failed;
+    if (opened) break;
+    EXPECT_THAT(opened.error().detail, HasSubstr("interrupted")) << failed;
+    EXPECT_THAT(opened.error().detail, HasSubstr(bed_.path() + ": ")) << failed;
+  }
+  EXPECT_GE(failures.size(), 11U);
+  bed_.Reopen();
+  EXPECT_EQ(Must(store().GetJob(1)).state, JobState::kRunning);
+}
+
+}  // namespace
+}  // namespace rmlcell::storage
