@@ -174,6 +174,7 @@ TEST_F(Messages, AReportOfALaserHasItsFigures) {
   EXPECT_THAT(text, HasSubstr("motion        checked up to step 9\n"));
   EXPECT_THAT(text, HasSubstr("and 2 more findings\n"));
   EXPECT_THAT(text, Not(HasSubstr("plunges")));
+  EXPECT_THAT(text, Not(HasSubstr("J/mm")));
   EXPECT_THAT(text, Not(HasSubstr("travel        ")));  // no violation
 }
 
@@ -389,6 +390,7 @@ TEST_F(Messages, ContoursOfALaser) {
   longest.set_energy_j(1500.4);
   longest.set_pierce_energy_j(450.0);
   add(3, 2.0);
+  EXPECT_THAT(ReportText(report), Not(HasSubstr("J/mm")));
   EXPECT_THAT(ReportText(report),
               HasSubstr("contours      3\n"
                         "              step 2: 6.000 s, 100.000 mm, 1500 J, 450 of them while it "
@@ -396,7 +398,9 @@ TEST_F(Messages, ContoursOfALaser) {
                         "              step 1: 2.000 s, 10.500 mm, 0 J\n"
                         "              step 3: 2.000 s, 0.000 mm, 0 J\n"
                         "steps"));
-  for (int step = 4; step <= 6; ++step) add(step, 3.0);
+  for (int step = 4; step <= 5; ++step) add(step, 3.0);
+  EXPECT_THAT(ReportText(report), HasSubstr("contours      5\n"));  // all of them are listed
+  add(6, 3.0);
   report.set_contours_dropped(2);
   const std::string text = ReportText(report);
   EXPECT_THAT(text, HasSubstr("contours      8, the longest:\n              step 2: "));
@@ -442,6 +446,52 @@ TEST_F(Messages, AWholeReportOfAMill) {
       "              3 motions at travel speed through material, up to 0.250 mm deep at step 4, at 5.500 s\n"
       "steps         0\n"
       "final tip     0.000, 0.000, 0.000\n");
+}
+
+// From the origin of the work, unless those of the machine are wanted.
+TEST_F(Messages, PositionsAreThoseOfTheWorkOrOfTheMachine) {
+  v1::RunReport report;
+  report.set_family("rml1");
+  report.mutable_total();
+  const auto set = [](double x, double y, double z, v1::Point& point) {
+    point.set_x(x);
+    point.set_y(y);
+    point.set_z(z);
+  };
+  set(11.0, 22.0, 33.0, *report.mutable_final_position()->mutable_tip());
+  set(10.0, 20.0, 30.0, *report.mutable_tip_box()->mutable_low());
+  set(12.0, 24.0, 36.0, *report.mutable_tip_box()->mutable_high());
+  set(10.0, 20.0, 30.0, *report.mutable_work_origin());
+  EXPECT_THAT(ReportText(report, Zero::kWork),
+              HasSubstr("final tip     1.000, 2.000, 3.000\n"
+                        "tip box       0.000, 0.000, 0.000  to  2.000, 4.000, 6.000\n"
+                        "work origin   10.000, 20.000, 30.000 on the machine; positions are from "
+                        "the work origin\n"));
+  EXPECT_THAT(ReportText(report, Zero::kMachine),
+              HasSubstr("final tip     11.000, 22.000, 33.000\n"
+                        "tip box       10.000, 20.000, 30.000  to  12.000, 24.000, 36.000\n"
+                        "work origin   10.000, 20.000, 30.000 on the machine; positions are from "
+                        "the zero of the machine\n"));
+}
+
+TEST_F(Messages, AnAxisHasItsUnit) {
+  v1::AxisValue axis;
+  axis.set_axis("A");
+  axis.set_value(0.123456);
+  axis.set_unit(v1::UNIT_RADIAN);
+  EXPECT_EQ(AxisText(axis), "A 0.1235 rad");
+  axis.set_unit(v1::UNIT_MILLIMETRE);
+  EXPECT_EQ(AxisText(axis), "A 0.123 mm");
+}
+
+TEST_F(Messages, AnEndHasItsVerdict) {
+  v1::JobEvent event = Event(9);
+  event.mutable_ended()->set_kind(v1::Outcome::KIND_COMPLETED);
+  event.mutable_ended()->set_verdict(v1::VERDICT_BAD);
+  event.mutable_ended()->add_reasons()->set_message("too deep");
+  EXPECT_EQ(EventLine(event), "#9  ended: completed; verdict BAD, too deep");
+  event.mutable_products_made()->set_verdict(v1::VERDICT_GOOD);
+  EXPECT_EQ(EventLine(event), "#9  report and pictures are made; verdict GOOD");
 }
 
 // A name that is longer than its column keeps a blank behind it.
