@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "engine/simulation/toolpath/toolpath_level.h"
 #include "server/records/file_family.h"
 #include "server/records/machine_options.h"
 #include "server/records/toolpath_levels.h"
@@ -26,9 +27,8 @@ TEST(RecordLimits, OfToolpathLevels) {
     const Status checked = CheckToolpathLevel(level);
     ASSERT_FALSE(checked) << level;
     EXPECT_EQ(checked.error().code, ErrorCode::kCellInvalidArgument);
-    EXPECT_EQ(checked.error().detail,
-              "level is " + std::to_string(level) + ", allowed are 0 to " +
-                  std::to_string(simulation::kToolpathLevelMax));
+    EXPECT_EQ(checked.error().detail, "level is " + std::to_string(level) + ", allowed are 0 to " +
+                                          std::to_string(simulation::kToolpathLevelMax));
   }
 }
 
