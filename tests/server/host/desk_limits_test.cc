@@ -36,7 +36,7 @@ v1::ArmMachineRequest ToArm(const std::string& job = {}) {
   return request;
 }
 
-// LIVE-9.13: 1 to 600 s, 120 s where nothing is said.
+// DEV-1.41: 120 s where nothing is said; 1 to 600 s.
 TEST(DeskLimits, OfAnArming) {
   for (const auto& [ms, good] :
        {std::pair{999, false}, {1'000, true}, {600'000, true}, {600'001, false}, {-1'000, false}}) {
