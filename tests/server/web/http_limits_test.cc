@@ -221,6 +221,7 @@ TEST(HttpPatience, SlowRequestsAreEnded) {
 TEST(HttpPatience, SilentConnectionsAreClosed) {
   WebOptions options = AnyPort();
   options.read_timeout = milliseconds(100);
+  options.idle_timeout = std::chrono::hours(1);
   FakeCell cell(options);
   RawClient silent(cell.port());
   EXPECT_TRUE(silent.AtEnd());  // waits for the end
@@ -229,6 +230,7 @@ TEST(HttpPatience, SilentConnectionsAreClosed) {
 TEST(HttpPatience, IdleConnectionsAreClosed) {
   WebOptions options = AnyPort();
   options.idle_timeout = milliseconds(100);
+  options.read_timeout = std::chrono::hours(1);
   FakeCell cell(options);
   RawClient kept(cell.port());
   kept.Send(Get("/healthz"));
