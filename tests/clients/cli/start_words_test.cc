@@ -8,20 +8,20 @@ namespace rmlcell::cli {
 namespace {
 
 // "45/10"; "-": it is none.
-std::string Read(const std::string& text) {
+std::string Understood(const std::string& text) {
   const auto place = StepOf(text);
   return place ? std::to_string(place->program()) + "/" + std::to_string(place->step()) : "-";
 }
 
 TEST(StartWords, AStepOfAProgramOrOfTheMainOne) {
-  EXPECT_EQ(Read("45/10"), "45/10");
-  EXPECT_EQ(Read("10"), "0/10");
-  EXPECT_EQ(Read("1/1"), "1/1");
-  EXPECT_EQ(Read("99/2147483647"), "99/2147483647");
-  EXPECT_EQ(Read("0/1"), "0/1");
+  EXPECT_EQ(Understood("45/10"), "45/10");
+  EXPECT_EQ(Understood("10"), "0/10");
+  EXPECT_EQ(Understood("1/1"), "1/1");
+  EXPECT_EQ(Understood("99/2147483647"), "99/2147483647");
+  EXPECT_EQ(Understood("0/1"), "0/1");
   for (const char* text : {"", "/", "0", "45/0", "45/", "/1", "-1", "-1/1", "100/1",
                            "45/2147483648", "x/1", "1/x", "1/2/3"})
-    EXPECT_EQ(Read(text), "-") << text;
+    EXPECT_EQ(Understood(text), "-") << text;
 }
 
 TEST(StartWords, WhatAPersonHasSeen) {

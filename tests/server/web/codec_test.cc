@@ -192,8 +192,8 @@ TEST(RpcJson, AnEventOfTheCellIsNamedWithItsLog) {
       *JsonToBytes(*v1::WatchCellRequest::descriptor(), R"({"logId":"other"})", id)));
   EXPECT_EQ(request.after_sequence(), 42);
   EXPECT_EQ(request.log_id(), "0198c5b2-aa");
-  for (const char* bad : {"", ".a", "1.", "1.A", "1.a b", "1.a/", "1.a:", "1.a`", "1.a{", "-1", "1 ", "1/",
-                          "1:", "01x", "1.a.b"})
+  for (const char* bad : {"", ".a", "1.", "1.A", "1.a b", "1.a/", "1.a:", "1.a`", "1.a{", "-1",
+                          "1 ", "1/", "1:", "01x", "1.a.b"})
     EXPECT_FALSE(EventId::Parse(bad)) << bad;
   EXPECT_FALSE(EventId::Parse("1." + std::string(65, 'a')));
   EXPECT_TRUE(EventId::Parse("1." + std::string(64, 'a')));
@@ -267,9 +267,9 @@ TEST(RpcJson, ADetailOfAnotherServer) {
   rich.add_details()->set_type_url("types.example/shop.Other");
   const RpcStatus status{.code = 5, .message = "none", .details = rich.SerializeAsString()};
   const std::string head = R"({"code":"not_found","message":"none","details":[)";
-  EXPECT_EQ(PlainErrorJson(status),
-            head + R"({"@type":"types.example/shop.Detail","value":"Zg=="},)"
-                   R"({"@type":"types.example/shop.Other","value":""}]})");
+  EXPECT_EQ(PlainErrorJson(status), head +
+                                        R"({"@type":"types.example/shop.Detail","value":"Zg=="},)"
+                                        R"({"@type":"types.example/shop.Other","value":""}]})");
   EXPECT_EQ(ConnectErrorJson(status), head + R"({"type":"shop.Detail","value":"Zg"},)"
                                              R"({"type":"shop.Other","value":""}]})");
 }

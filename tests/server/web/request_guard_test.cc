@@ -37,11 +37,27 @@ TEST(Host, LoopbackConfiguredAndFurtherNames) {
         "[::1]:09"}) {
     EXPECT_TRUE(IsOwnHost(rules, own)) << own;
   }
-  for (const std::string_view foreign :
-       {"", "evil.example", "localhost.evil.example", "127.0.0.1.evil.example", "192.168.7.6",
-        "10.0.0.1", "localhost:x", "[::1", "[::1]x", "user@localhost", "127.0.0.256", "127.0.0",
-        "[::2]", ":80", "127.0.0.0001", "127.0.0.1.1", "127.0.0.", "localhost:/", "localhost::",
-        "[::1]:/", "[::1]::"}) {
+  for (const std::string_view foreign : {"",
+                                         "evil.example",
+                                         "localhost.evil.example",
+                                         "127.0.0.1.evil.example",
+                                         "192.168.7.6",
+                                         "10.0.0.1",
+                                         "localhost:x",
+                                         "[::1",
+                                         "[::1]x",
+                                         "user@localhost",
+                                         "127.0.0.256",
+                                         "127.0.0",
+                                         "[::2]",
+                                         ":80",
+                                         "127.0.0.0001",
+                                         "127.0.0.1.1",
+                                         "127.0.0.",
+                                         "localhost:/",
+                                         "localhost::",
+                                         "[::1]:/",
+                                         "[::1]::"}) {
     EXPECT_FALSE(IsOwnHost(rules, foreign)) << foreign;
   }
 }
@@ -222,7 +238,8 @@ TEST(Metadata, WhatGrpcCanSend) {
   EXPECT_TRUE(IsMetadata("x-raw-bin", "\x01\xFF"));
   EXPECT_TRUE(IsMetadata("az09-_.", "! ~"));
   EXPECT_TRUE(IsMetadata("x", ""));
-  for (const std::string_view name : {"", "X-A", "a b", "a:b", "a/b", "a`b", "a{b", "grpc-timeout", "\xC3\xBC"}) {
+  for (const std::string_view name :
+       {"", "X-A", "a b", "a:b", "a/b", "a`b", "a{b", "grpc-timeout", "\xC3\xBC"}) {
     EXPECT_FALSE(IsMetadata(name, "v")) << name;
   }
   for (const std::string_view value : {"\x01", "\x7F", "\xFF", "a\n", " a", "a "}) {
