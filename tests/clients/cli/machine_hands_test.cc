@@ -259,9 +259,9 @@ TEST_F(TaughtTest, WhatWasTaughtIsShown) {
   EXPECT_EQ(Calls(), listed_);
   Say("taught m --slot 99");
   EXPECT_THAT(Calls(), HasSubstr(" program: 99 page_size: 1000\n"));
-  const std::string json = Say("taught m", true).output;
-  EXPECT_EQ(std::ranges::count(json, '\n'), 5);
-  EXPECT_THAT(json, StartsWith("{"));
+  const std::string lines = Say("taught m", true).output;
+  EXPECT_EQ(std::ranges::count(lines, '\n'), 5);
+  EXPECT_THAT(lines, StartsWith("{"));
 }
 
 TEST_F(TaughtTest, WhatWasTaughtIsTakenBack) {
