@@ -264,14 +264,16 @@ TEST(RpcJson, ADetailOfAnotherServer) {
   google::protobuf::Any& detail = *rich.add_details();
   detail.set_type_url("types.example/shop.Detail");
   detail.set_value("f");
-  rich.add_details()->set_type_url("types.example/shop.Other");
+  google::protobuf::Any& other = *rich.add_details();
+  other.set_type_url("types.example/shop.Other");
+  other.set_value("\xFF");
   const RpcStatus status{.code = 5, .message = "none", .details = rich.SerializeAsString()};
   const std::string head = R"({"code":"not_found","message":"none","details":[)";
   EXPECT_EQ(PlainErrorJson(status), head +
                                         R"({"@type":"types.example/shop.Detail","value":"Zg=="},)"
-                                        R"({"@type":"types.example/shop.Other","value":""}]})");
+                                        R"({"@type":"types.example/shop.Other","value":"/w=="}]})");
   EXPECT_EQ(ConnectErrorJson(status), head + R"({"type":"shop.Detail","value":"Zg"},)"
-                                             R"({"type":"shop.Other","value":""}]})");
+                                             R"({"type":"shop.Other","value":"/w"}]})");
 }
 
 // A header may never end early, whatever text is put into it.
