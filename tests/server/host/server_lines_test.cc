@@ -47,6 +47,11 @@ class FakeHostServer final : public v1::HostService::Service {
       v1::HostResponse welcome;
       welcome.mutable_welcome()->set_fence(7);
       stream->Write(welcome);
+      if (orders_at_once) {
+        welcome.mutable_order()->set_number(1);
+        welcome.mutable_order()->mutable_start();
+        stream->Write(welcome);
+      }
       stream_ = stream;
       context_ = context;
     }
@@ -97,6 +102,7 @@ class FakeHostServer final : public v1::HostService::Service {
   const std::string& address() const { return address_; }
 
   grpc::Status refusal{};
+  bool orders_at_once = false;  // with its welcome
 
  private:
   template <class Condition>
@@ -359,6 +365,16 @@ TEST_F(FurtherLinesTest, AServerThatIsGoneAsksForNothing) {
   for (const v1::HostResponse& message : taken.messages) EXPECT_TRUE(message.order().has_stop());
   a.Order(4);
   EXPECT_LT(NextOrder(), number);
+}
+
+// However soon it comes.
+TEST_F(FurtherLinesTest, AnOrderWithTheWelcomeIsHanded) {
+  for (int server = 0; server < 20; ++server) {
+    FakeHostServer& quick = Server(std::to_string(server));
+    quick.orders_at_once = true;
+    lines_.Keep({quick.address()}, HelloOfHost());
+    EXPECT_EQ(NextOrder(), -1 - server);
+  }
 }
 
 // Eight at most; one that is not named any more is left.
