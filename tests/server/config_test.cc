@@ -338,15 +338,16 @@ TEST(Config, DefaultsAreValidAndPrintBack) {
 
 // Until there is TLS nobody from another host may call.
 TEST(Config, ListensOnLoopbackAndUnixSocketsOnly) {
-  for (const std::string good :
-       {"127.0.0.1:1", "127.8.9.10:65535", "localhost:0", "[::1]:50051", "unix:/run/a.sock", "unix:a"}) {
+  for (const std::string good : {"127.0.0.1:1", "127.8.9.10:65535", "localhost:0", "[::1]:50051",
+                                 "unix:/run/a.sock", "unix:a"}) {
     Config config;
     config.listen_grpc = {good};
     EXPECT_TRUE(ValidateConfig(config)) << good;
   }
   for (const std::string other :
        {"0.0.0.0:1", "10.0.0.1:1", "[::]:1", "example.com:1", "127.0.0.1.example.com:1",
-        "127.evil:1", "126.255.255.255:1", "128.0.0.0:1", "localhost.example.com:1", "[::ffff:10.0.0.1]:1", ":1", "::1:1"}) {
+        "127.evil:1", "126.255.255.255:1", "128.0.0.0:1", "localhost.example.com:1",
+        "[::ffff:10.0.0.1]:1", ":1", "::1:1"}) {
     Config config;
     config.listen_grpc = {"127.0.0.1:1", other};
     const Status grpc = ValidateConfig(config);

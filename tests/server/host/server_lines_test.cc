@@ -1,6 +1,5 @@
 // The lines of a host to the servers of its cell, as a server sees them (live.md 3.06).
 #include <gmock/gmock.h>
-#include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,114 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "rmlcell/v1/host.grpc.pb.h"
-#include "server/base/credentials.h"
 #include "server/host/further_lines.h"
 #include "server/host/host_line.h"
+#include "tests/server/host/fake_host_server.h"
 
 namespace rmlcell::server {
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-// Welcomes one host after the other, and notes what it is told.
-class FakeHostServer final : public v1::HostService::Service {
- public:
-  explicit FakeHostServer(const std::string& address) : address_(address) {
-    grpc::ServerBuilder builder;
-    builder.AddListeningPort(address, CredentialsOfServer());
-    builder.RegisterService(this);
-    server_ = builder.BuildAndStart();
-  }
-  ~FakeHostServer() override {
-    EndLine();
-    server_->Shutdown();
-  }
-  grpc::Status Host(grpc::ServerContext* context,
-                    grpc::ServerReaderWriter<v1::HostResponse, v1::HostRequest>* stream) override {
-    v1::HostRequest request;
-    stream->Read(&request);
-    {
-      const std::lock_guard lock(mutex_);
-      told_.push_back(request);
-      changed_.notify_all();
-      if (!refusal.ok()) return refusal;
-      v1::HostResponse welcome;
-      welcome.mutable_welcome()->set_fence(7);
-      stream->Write(welcome);
-      if (orders_at_once) {
-        welcome.mutable_order()->set_number(1);
-        welcome.mutable_order()->mutable_start();
-        stream->Write(welcome);
-      }
-      stream_ = stream;
-      context_ = context;
-    }
-    while (stream->Read(&request)) {
-      const std::lock_guard lock(mutex_);
-      told_.push_back(request);
-      changed_.notify_all();
-    }
-    const std::lock_guard lock(mutex_);
-    stream_ = nullptr;
-    context_ = nullptr;
-    ++ended_;
-    changed_.notify_all();
-    return grpc::Status::OK;
-  }
-  void Tell(const v1::HostResponse& response) {
-    std::unique_lock lock(mutex_);
-    Await(lock, [this] { return stream_ != nullptr; });
-    stream_->Write(response);
-  }
-  void Order(std::int64_t number) {
-    v1::HostResponse response;
-    response.mutable_order()->set_number(number);
-    response.mutable_order()->mutable_start();
-    Tell(response);
-  }
-  // Those of a kind, as soon as there are so many.
-  std::vector<v1::HostRequest> Told(v1::HostRequest::MessageCase kind, std::size_t count) {
-    std::unique_lock lock(mutex_);
-    std::vector<v1::HostRequest> found;
-    Await(lock, [&] {
-      found.clear();
-      std::ranges::copy_if(told_, std::back_inserter(found), [&](const v1::HostRequest& request) {
-        return request.message_case() == kind;
-      });
-      return found.size() >= count;
-    });
-    return found;
-  }
-  void EndLine() {
-    const std::lock_guard lock(mutex_);
-    if (context_ != nullptr) context_->TryCancel();
-  }
-  void AwaitEnds(int count) {
-    std::unique_lock lock(mutex_);
-    Await(lock, [&] { return ended_ >= count; });
-  }
-  const std::string& address() const { return address_; }
-
-  grpc::Status refusal{};
-  bool orders_at_once = false;  // with its welcome
-
- private:
-  template <class Condition>
-  void Await(std::unique_lock<std::mutex>& lock, Condition condition) {
-    EXPECT_TRUE(changed_.wait_for(lock, std::chrono::seconds(30), condition));
-  }
-
-  const std::string address_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<v1::HostRequest> told_;
-  grpc::ServerReaderWriter<v1::HostResponse, v1::HostRequest>* stream_ = nullptr;
-  grpc::ServerContext* context_ = nullptr;
-  int ended_ = 0;
-  std::unique_ptr<grpc::Server> server_;
-};
 
 v1::HostHello HelloOfHost() {
   v1::HostHello hello;
