@@ -58,8 +58,8 @@ bool KindsShown::Show(const std::string& code, int line) {
 
 void KindsShown::LeaveOut(Kind& kind, std::uint64_t count, int first_line, int last_line) {
   kind.left_out += count;
-  if (first_line > 0 && (kind.first_line == 0 || first_line < kind.first_line))
-    kind.first_line = first_line;
+  if (first_line > 0)
+    kind.first_line = kind.first_line == 0 ? first_line : std::min(first_line, kind.first_line);
   kind.last_line = std::max(kind.last_line, last_line);
 }
 

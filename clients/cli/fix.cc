@@ -40,8 +40,6 @@ Hunk HunkAt(std::span<const std::string_view> a, std::span<const std::string_vie
   for (std::size_t both = 1; both < 2 * kSearchLines; ++both) {
     for (std::size_t removed = 0; removed <= both; ++removed) {
       const std::size_t added = both - removed;
-      if (removed > a.size() || added > b.size()) continue;
-      if (removed == a.size() && added == b.size()) return {removed, added};
       if (removed < a.size() && added < b.size() && a[removed] == b[added]) return {removed, added};
     }
   }

@@ -25,9 +25,7 @@ class Line {
   explicit Line(bool marks) : marks_(marks) {}
 
   // Nothing where it is beyond the column: what came before was too long.
-  Line& To(std::size_t column) {
-    return Add(std::string(column > width_ ? column - width_ : 0, ' '));
-  }
+  Line& To(std::size_t column) { return Add(std::string(column - std::min(column, width_), ' ')); }
   // Foreign text may stand in it. What is too long is cut off.
   Line& Add(std::string_view text, Look look = Look::kPlain) {
     std::string shown = Visible(text);
@@ -55,7 +53,7 @@ class Line {
 };
 
 std::string Padded(std::string text, std::size_t width) {
-  if (text.size() < width) text.append(width - text.size(), ' ');
+  text.resize(std::max(text.size(), width), ' ');
   return text;
 }
 
@@ -127,7 +125,7 @@ std::string PositionLine(const HandboxView& view) {
     if ((axis.unit() == v1::UNIT_RADIAN) != turns) line.Add("mm   ");
     turns = axis.unit() == v1::UNIT_RADIAN;
     std::string value = Fixed(turns ? axis.value() * 180.0 / std::numbers::pi : axis.value(), 3);
-    if (value.size() < 9) value.insert(0, 9 - value.size(), ' ');
+    value.insert(0, 9 - std::min<std::size_t>(9, value.size()), ' ');
     line.Add(axis.axis(), Look::kBold).Add(" " + value + "  ");
   }
   if (!view.status.axes().empty()) line.Add(turns ? "deg" : "mm");

@@ -11,6 +11,7 @@
 #include "clients/cli/messages.h"
 #include "clients/cli/remote_machines.h"
 #include "clients/cli/terminal.h"
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 
 namespace rmlcell::cli {
@@ -23,10 +24,7 @@ using google::protobuf::util::TimeUtil;
 // "server-lost" of server_lost.
 std::string WordOf(std::string name) {
   std::ranges::replace(name, '_', '-');
-  std::ranges::transform(name, name.begin(), [](char letter) {
-    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-  });
-  return name;
+  return LowerCase(name);
 }
 
 // "go-on" of SERVER_LOST_GO_ON.

@@ -214,7 +214,7 @@ void AddContours(const v1::RunReport& report, Rows& rows) {
   std::ranges::stable_sort(longest, std::ranges::greater(), &v1::Contour::time_s);
   const std::int64_t all = report.contours_size() + report.contours_dropped();
   rows.emplace_back("contours", std::to_string(all) + (all > kListedMax ? ", the longest:" : ""));
-  if (longest.size() > kListedMax) longest.resize(kListedMax);
+  longest.resize(std::min<std::size_t>(longest.size(), kListedMax));
   for (const v1::Contour* contour : longest) {
     std::string text = PlaceText(contour->place()) + ": " + Fixed(contour->time_s(), 3) + " s, " +
                        Fixed(contour->length_mm(), 3) + " mm, " + Fixed(contour->energy_j(), 0) +

@@ -60,7 +60,7 @@ std::string StatusText(const v1::MachineStatus& status) {
   text += status.zeroed() ? "" : ", axes without reference";
   text += status.door_open() ? ", door open" : "";
   const auto row = [&text](const std::string& head, const std::string& what) {
-    text += "\n" + head + std::string(head.size() < 10 ? 10 - head.size() : 1, ' ') + what;
+    text += "\n" + head + std::string(10 - std::min<std::size_t>(9, head.size()), ' ') + what;
   };
   row("position", PositionOf(status));
   if (status.has_run()) {
@@ -374,11 +374,8 @@ int ResumeMachine(const Remote& remote, const MachineAct& act) {
 
 int SetMode(const Remote& remote, const MachineAct& act) {
   auto request = For<v1::SetModeRequest>(act);
-  std::string name = "OPERATING_MODE_";
-  for (const char letter : act.word)
-    name += letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
   v1::OperatingMode mode = v1::OPERATING_MODE_UNSPECIFIED;
-  v1::OperatingMode_Parse(name, &mode);
+  v1::OperatingMode_Parse("OPERATING_MODE_" + UpperCase(act.word), &mode);
   request.set_mode(mode);
   return ShowWithControl(remote, act, &Service::Stub::SetMode, std::move(request));
 }

@@ -154,8 +154,7 @@ void Found(std::vector<Diagnostic>& findings, const UntoldFindings& dropped,
 }
 
 std::string Padded(std::string text, std::size_t width, bool left) {
-  if (text.size() >= width) return text;
-  const std::string blanks(width - text.size(), ' ');
+  const std::string blanks(width - std::min(width, text.size()), ' ');
   return left ? blanks + text : text + blanks;
 }
 

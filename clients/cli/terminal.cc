@@ -113,7 +113,8 @@ void Narrow(const std::vector<std::string>& heading, std::size_t line,
   std::size_t all = 2 * (columns.size() - 1);
   for (const std::size_t column : columns) all += column;
   std::size_t& free = columns[static_cast<std::size_t>(title - heading.begin())];
-  if (all > line) free = std::max(std::min(free, kLeast), free - std::min(free, all - line));
+  const std::size_t beyond = all - std::min(all, line);
+  free = std::max(std::min(free, kLeast), free - std::min(free, beyond));
 }
 
 }  // namespace

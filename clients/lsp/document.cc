@@ -60,7 +60,7 @@ Position PositionFinder::At(std::size_t offset) {
     return position;
   }
   std::size_t from = begin;
-  if (position_.line == line && offset_ >= begin && offset_ <= offset) {
+  if (position_.line == line && offset_ <= offset) {
     from = offset_;
     position.character = position_.character;
   }

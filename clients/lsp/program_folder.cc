@@ -29,13 +29,6 @@ bool ComesBefore(const Found& a, const Found& b) {
   return std::tie(a.number, a.rank, a.path) < std::tie(b.number, b.rank, b.path);
 }
 
-int HexDigit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
 std::optional<std::string> Unescaped(std::string_view text) {
   std::string out;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -44,10 +37,10 @@ std::optional<std::string> Unescaped(std::string_view text) {
       continue;
     }
     if (at + 2 >= text.size()) return std::nullopt;
-    const int high = HexDigit(text[at + 1]);
-    const int low = HexDigit(text[at + 2]);
-    if (high < 0 || low < 0 || (high == 0 && low == 0)) return std::nullopt;
-    out += static_cast<char>(high * 16 + low);
+    const std::optional<unsigned> high = HexValue(text[at + 1]);
+    const std::optional<unsigned> low = HexValue(text[at + 2]);
+    if (!high || !low || (*high == 0 && *low == 0)) return std::nullopt;
+    out += static_cast<char>(*high * 16 + *low);
     at += 2;
   }
   return out;

@@ -35,8 +35,7 @@ bool Wanted(const Json* only, std::string_view kind) {
   return std::ranges::any_of(*only, [&](const Json& one) {
     if (!one.is_string()) return false;
     const std::string_view asked = one.get_ref<const std::string&>();
-    return kind == asked || asked.empty() ||
-           (kind.starts_with(asked) && kind.size() > asked.size() && kind[asked.size()] == '.');
+    return asked.empty() || (std::string(kind) + '.').starts_with(std::string(asked) + '.');
   });
 }
 

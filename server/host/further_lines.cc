@@ -81,6 +81,7 @@ class FurtherLines::Line {
     {
       const std::lock_guard lock(mutex_);
       gone_ = false;
+      stood_ = false;
       ++count_;
     }
     auto joined = HostLine::Join(
@@ -96,8 +97,10 @@ class FurtherLines::Line {
     {
       const std::lock_guard lock(mutex_);
       line_ = std::move(joined->line);
+      stood_ = true;
       heard_at_ = Now().steady.count();
     }
+    changed_.notify_all();
     lines_.NoteCome();
     {
       std::unique_lock lock(mutex_);
@@ -112,7 +115,13 @@ class FurtherLines::Line {
 
   void Hear(v1::HostResponse message) {
     heard_at_ = Now().steady.count();
-    if (message.has_order() || message.has_stop()) lines_.Hear(*this, std::move(message));
+    if (!message.has_order() && !message.has_stop()) return;
+    {
+      // One that comes with the welcome is not taken for one of a line that is gone.
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return stood_; });
+    }
+    lines_.Hear(*this, std::move(message));
   }
 
   FurtherLines& lines_;
@@ -123,6 +132,7 @@ class FurtherLines::Line {
   std::atomic<std::int64_t> count_{0};     // of the lines to this server
   std::atomic<std::int64_t> heard_at_{0};  // ns
   bool gone_ = false;                      // guarded by mutex_
+  bool stood_ = false;                     // guarded by mutex_; of the newest line
   bool ending_ = false;                    // guarded by mutex_
   std::atomic<bool> over_ = false;
   std::thread thread_;  // the last member: it begins with the others made

@@ -1,5 +1,7 @@
 #include "server/jobs/assignment.h"
 
+#include <algorithm>
+
 #include "engine/core/units.h"
 #include "engine/families/families.h"
 #include "server/base/config.h"
@@ -19,7 +21,7 @@ constexpr std::size_t kInlineTotal = 1 << 20;
 
 template <class T>
 T Least(T wanted, T allowed) {
-  return wanted > T{0} && wanted < allowed ? wanted : allowed;
+  return wanted > T{0} ? std::min(wanted, allowed) : allowed;
 }
 
 v1::Budget BudgetOf(const v1::Budget& wanted, const Config& config) {

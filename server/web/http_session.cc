@@ -372,7 +372,7 @@ class HttpSession : public Connection,
     plan_ = {};
     body_total_ = 0;
     continued_ = false;
-    if (piece_.capacity() > 0) piece_ = {};
+    piece_ = {};
     if (closing_ || setting_.draining) return Linger();
     AwaitRequest();
   }

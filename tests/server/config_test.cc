@@ -256,9 +256,12 @@ TEST(Config, ReadsFilesAndRefusesWhatIsNone) {
   std::filesystem::create_directories(folder);
   const std::string good = (folder / "good.toml").string();
   std::ofstream(good) << "[jobs]\nattempts = 7\n";
+  const std::string full = (folder / "full.toml").string();
+  std::ofstream(full) << std::string(1 << 20, '\n');
   const std::string large = (folder / "large.toml").string();
-  std::ofstream(large) << std::string(2 << 20, '\n');
+  std::ofstream(large) << std::string((1 << 20) + 1, '\n');
   Config config;
+  EXPECT_TRUE(ReadConfigFile(full, config));
   EXPECT_TRUE(ReadConfigFile(good, config));
   EXPECT_EQ(config.jobs_attempts, 7);
   for (const std::string& path : {folder.string(), (folder / "none.toml").string(), large}) {
@@ -335,15 +338,16 @@ TEST(Config, DefaultsAreValidAndPrintBack) {
 
 // Until there is TLS nobody from another host may call.
 TEST(Config, ListensOnLoopbackAndUnixSocketsOnly) {
-  for (const std::string good :
-       {"127.0.0.1:1", "127.8.9.10:65535", "localhost:0", "[::1]:50051", "unix:/run/a.sock"}) {
+  for (const std::string good : {"127.0.0.1:1", "127.8.9.10:65535", "localhost:0", "[::1]:50051",
+                                 "unix:/run/a.sock", "unix:a"}) {
     Config config;
     config.listen_grpc = {good};
     EXPECT_TRUE(ValidateConfig(config)) << good;
   }
   for (const std::string other :
        {"0.0.0.0:1", "10.0.0.1:1", "[::]:1", "example.com:1", "127.0.0.1.example.com:1",
-        "127.evil:1", "localhost.example.com:1", "[::ffff:10.0.0.1]:1", ":1", "::1:1"}) {
+        "127.evil:1", "126.255.255.255:1", "128.0.0.0:1", "localhost.example.com:1",
+        "[::ffff:10.0.0.1]:1", ":1", "::1:1"}) {
     Config config;
     config.listen_grpc = {"127.0.0.1:1", other};
     const Status grpc = ValidateConfig(config);

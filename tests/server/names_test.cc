@@ -17,7 +17,9 @@ TEST(Names, IdsHaveOneToSixtyThreeLettersDigitsAndDashes) {
   EXPECT_TRUE(CheckResourceId("a", "id"));
   EXPECT_TRUE(CheckResourceId("optimo-1", "id"));
   EXPECT_TRUE(CheckResourceId("a" + std::string(62, '9'), "id"));
-  for (const std::string id : {"", "A", "1", "-a", "a_b", "a.b", "a/b", "a b", "\xC3\xA4", "a\n"}) {
+  EXPECT_TRUE(CheckResourceId("zaz09-", "id"));
+  for (const std::string id : {"", "A", "1", "-a", "`", "{", "a_b", "a.b", "a/b", "a:b", "a`b",
+                               "a{b", "a b", "\xC3\xA4", "a\n"}) {
     const Status checked = CheckResourceId(id, "project_id");
     ASSERT_FALSE(checked) << id;
     EXPECT_EQ(checked.error().code, kInvalid);

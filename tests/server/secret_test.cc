@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -21,6 +22,31 @@ TEST(Secret, IsKnownToWhoGivesTheWholeOfIt) {
 TEST(Secret, AnEmptyOneIsKnownToNobody) {
   EXPECT_FALSE(KnowsSecret("", ""));
   EXPECT_FALSE(KnowsSecret("x", ""));
+}
+
+// 32 hexadecimal digits, each time others.
+TEST(Secret, IsKeptInAFile) {
+  const std::string path = testing::TempDir() + "/rmlcell-kept-secret";
+  std::filesystem::remove(path);
+  const Result<std::string> made = KeptSecret(path);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->size(), 32U);
+  EXPECT_EQ(made->find_first_not_of("0123456789abcdef"), std::string::npos) << *made;
+  EXPECT_NE(*made, RandomText());
+  EXPECT_EQ(*KeptSecret(path), *made);
+  using std::filesystem::perms;
+  EXPECT_EQ(std::filesystem::status(path).permissions(), perms::owner_read | perms::owner_write);
+  EXPECT_FALSE(std::filesystem::exists(path + ".new"));
+  // One that could be guessed is replaced.
+  std::ofstream(path) << std::string(31, 'x');
+  EXPECT_NE(*KeptSecret(path), std::string(31, 'x'));
+  std::ofstream(path) << std::string(32, 'x');
+  EXPECT_EQ(*KeptSecret(path), std::string(32, 'x'));
+  std::filesystem::remove(path);
+  const Result<std::string> nowhere = KeptSecret("/proc/no/such/file");
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(nowhere.error().code, ErrorCode::kCellConfiguration);
+  EXPECT_EQ(nowhere.error().detail, "/proc/no/such/file: No such file or directory");
 }
 
 // An operator == ends at the first character that is wrong, and its time tells how many were right.

@@ -24,11 +24,7 @@ bool IsWordPart(char c) {
 }
 
 bool StartsIgnoringCase(std::string_view text, std::string_view beginning) {
-  if (text.size() < beginning.size()) return false;
-  return std::equal(beginning.begin(), beginning.end(), text.begin(), [](char a, char b) {
-    const auto upper = [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; };
-    return upper(a) == upper(b);
-  });
+  return EqualIgnoringCase(text.substr(0, beginning.size()), beginning);
 }
 
 class Completer {

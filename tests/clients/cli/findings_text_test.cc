@@ -129,6 +129,19 @@ TEST(FindingsText, MessagesAreGatheredAlike) {
   ends_with(FindingsText(report), "and 2 more OPT-E7011, lines 6 to 7\nand 1 more finding\n");
 }
 
+// One that was left out without its line keeps those of the others.
+TEST(FindingsText, WhereTheLeftOutStand) {
+  EXPECT_EQ(ExtentText(0, 0), "");
+  EXPECT_EQ(ExtentText(1, 1), ", line 1");
+  EXPECT_EQ(ExtentText(1, 2), ", lines 1 to 2");
+  KindsShown kinds;
+  for (const int line : {1, 2, 3, 4, 5, 9, 8, 0}) kinds.Show("OPT-E1", line);
+  EXPECT_EQ(kinds.Rest(), "and 3 more OPT-E1, lines 8 to 9\n");
+  KindsShown unplaced;
+  for (int count = 0; count < 6; ++count) unplaced.Show("OPT-E1", 0);
+  EXPECT_EQ(unplaced.Rest(), "and 1 more OPT-E1\n");
+}
+
 TEST(FindingsText, ComplaintsGoToStandardError) {
   const std::vector<Diagnostic> findings = {Advice({.line = 2, .column = 2, .length = 5})};
   const Told told = Hear([&] {

@@ -252,5 +252,17 @@ TEST(PatchText, MakesTheOneTextOfTheOther) {
   EXPECT_EQ(Patched(ones, PatchText("f", ones, twos)), twos);
 }
 
+// Where both agree again within 399 lines that one of them has more, the rest is no difference.
+TEST(PatchText, LooksForWhereBothAgreeAgain) {
+  const auto differs = [](int lines) {
+    std::string more;
+    for (int i = 0; i < lines; ++i) more += "x\n";
+    const std::string patch = Hunks("a\nb\n", more + "a\nb\n");
+    return patch.substr(0, patch.find('\n'));
+  };
+  EXPECT_EQ(differs(399), "@@ -0,0 +1,399 @@");
+  EXPECT_EQ(differs(400), "@@ -1,2 +1,402 @@");
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

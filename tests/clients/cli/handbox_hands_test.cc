@@ -187,6 +187,26 @@ TEST_F(HandboxHandsTest, AKeyGoesDownBehindTheBeatsOfAnother) {
   EXPECT_EQ(Told(handbox_.Pressed(1)), "1:Y+");
 }
 
+// The machine has stopped long since when so many have no answer.
+TEST_F(HandboxHandsTest, TwentyBeatsMayBeWithoutAnAnswer) {
+  handbox_.Set(true, false);
+  for (int i = 0; i < 21; ++i) hands_.Beat({"X+"});
+  EXPECT_FALSE(hands_.at_rest());
+  handbox_.Set(true, true);
+  Settle();
+  EXPECT_EQ(handbox_.Beats(20).size(), 20U);
+  EXPECT_TRUE(answers_.empty());  // nobody is told of beats that were heard
+  hands_.Beat({"X+"});
+  Settle();
+  std::vector<v1::HeartbeatHandboxRequest> beats = handbox_.Beats(21);
+  ASSERT_EQ(beats.size(), 21U);
+  // The time that an answer took is said with the next beat.
+  std::ranges::sort(beats, {}, [](const auto& beat) { return beat.number(); });
+  EXPECT_FALSE(beats.front().has_round_trip());
+  EXPECT_TRUE(beats.back().has_round_trip());
+  EXPECT_EQ(beats.back().number(), 21);
+}
+
 TEST_F(HandboxHandsTest, MoreThanAnybodyTypesIsForgotten) {
   handbox_.Set(false);
   for (std::size_t i = 0; i < HandboxHands::kWaitingMax + 10; ++i)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
 #include <string>
 
 #include "clients/cli/handbox_keys.h"
@@ -106,6 +107,44 @@ TEST(HandboxScreen, ShowsWhatFlashesAndWhatIsWrong) {
   EXPECT_EQ(Text(view), still);
 }
 
+// Lines of the screen, from 0.
+std::string LineOf(const HandboxView& view, std::size_t row) {
+  std::istringstream text(Text(view).substr(1));
+  std::string line;
+  for (std::size_t at = 0; at <= row; ++at) std::getline(text, line);
+  return line;
+}
+
+TEST(HandboxScreen, SaysWhatRunsOnAndWhoPresses) {
+  HandboxView view = Standing();
+  const auto runs_on = [&](double mm, double rad) {
+    view.panel.set_run_on_mm(mm);
+    view.panel.set_run_on_rad(rad);
+    return LineOf(view, 4).substr(30);
+  };
+  EXPECT_EQ(runs_on(0.0, 0.0), "runs on  -");
+  EXPECT_EQ(runs_on(1.0, 0.0), "runs on  1.0 mm, 0.0 deg when let go");
+  EXPECT_EQ(runs_on(0.0, 0.5), "runs on  0.0 mm, 28.6 deg when let go");
+  view.status.mutable_control()->clear_client();
+  EXPECT_EQ(LineOf(view, 3).substr(30), "pressed  by anna");
+  view.panel.clear_holder();
+  EXPECT_EQ(LineOf(view, 3).substr(30), "pressed  by nobody");
+}
+
+// The program that was started, where the place names none; none: somebody's hand.
+TEST(HandboxScreen, SaysWhatRuns) {
+  HandboxView view = Standing();
+  EXPECT_EQ(LineOf(view, 7), "");
+  view.status.set_door_open(true);
+  view.status.mutable_run()->set_run(5);
+  EXPECT_EQ(LineOf(view, 7), "  door open; run 5, by hand");
+  view.status.mutable_run()->set_program(1);
+  EXPECT_EQ(LineOf(view, 7), "  door open; run 5, program 1, step 0");
+  view.status.mutable_run()->mutable_place()->set_program(45);
+  view.status.mutable_run()->mutable_place()->set_step(7);
+  EXPECT_EQ(LineOf(view, 7), "  door open; run 5, program 45, step 7");
+}
+
 TEST(HandboxScreen, HasAButtonWhereItsKeyIs) {
   HandboxView view = Standing();
   const std::vector<std::string> lines = HandboxLines(view);
@@ -147,6 +186,9 @@ TEST(HandboxScreen, SaysThatATerminalIsTooSmall) {
   view.rows = 0;
   view.columns = 0;
   EXPECT_TRUE(HandboxLines(view).empty());
+  view.rows = 24;
+  view.columns = 80;
+  EXPECT_TRUE(HasRoom(view));
   view.rows = 60;
   view.columns = 200;
   EXPECT_TRUE(HasRoom(view));
@@ -157,6 +199,8 @@ TEST(HandboxScreen, DrawsWhatHasChanged) {
   EXPECT_EQ(Redrawn({"a", "b", "c"}, {"a", "B", "c"}), "\x1b[2;1H\x1b[KB");
   EXPECT_EQ(Redrawn({"a", "b"}, {"a"}), "\x1b[2;1H\x1b[K");
   EXPECT_EQ(Redrawn({"a"}, {"a"}), "");
+  EXPECT_EQ(Redrawn({}, {"", "b"}), "\x1b[2;1H\x1b[Kb");
+  EXPECT_EQ(Redrawn({"a"}, {""}), "\x1b[1;1H\x1b[K");
 }
 
 }  // namespace

@@ -69,6 +69,21 @@ TEST_F(HeldKeysTest, TapsMoveNothing) {
   EXPECT_EQ(Typed("x"), "X+ tap");
 }
 
+// As late as that it is a repeat, and a moment later a tap.
+TEST_F(HeldKeysTest, ARepeatComesWithin150Milliseconds) {
+  Typed("x");
+  Pass(150);
+  EXPECT_EQ(Typed("x"), "X+ press");
+  EXPECT_EQ(Typed("y"), "X+ release, Y+ tap");
+  Pass(151);
+  EXPECT_EQ(Typed("y"), "Y+ tap");
+  EXPECT_EQ(Typed("r"), "REC tap");
+  Pass(750);
+  EXPECT_EQ(Typed("r"), "");
+  Pass(751);
+  EXPECT_EQ(Typed("r"), "REC tap");
+}
+
 // A key that was let go begins anew, also when it is typed at once.
 TEST_F(HeldKeysTest, AKeyThatWasLetGoBeginsAnew) {
   Typed("x");

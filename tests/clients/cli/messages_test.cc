@@ -6,6 +6,8 @@
 
 #include <cstdlib>
 
+#include "clients/cli/findings_text.h"
+
 namespace rmlcell::cli {
 namespace {
 
@@ -174,6 +176,7 @@ TEST_F(Messages, AReportOfALaserHasItsFigures) {
   EXPECT_THAT(text, HasSubstr("motion        checked up to step 9\n"));
   EXPECT_THAT(text, HasSubstr("and 2 more findings\n"));
   EXPECT_THAT(text, Not(HasSubstr("plunges")));
+  EXPECT_THAT(text, Not(HasSubstr("J/mm")));
   EXPECT_THAT(text, Not(HasSubstr("travel        ")));  // no violation
 }
 
@@ -372,38 +375,6 @@ TEST_F(Messages, AWholeReportOfALaser) {
       "motion        checked only up to step 2\n");
 }
 
-// The five that take longest, in the order of time where they take the same.
-TEST_F(Messages, ContoursOfALaser) {
-  v1::RunReport report;
-  report.mutable_total();
-  const auto add = [&](int step, double time_s) -> v1::Contour& {
-    v1::Contour& contour = *report.add_contours();
-    contour.mutable_place()->set_step(step);
-    contour.set_time_s(time_s);
-    return contour;
-  };
-  add(1, 2.0).set_length_mm(10.5);
-  v1::Contour& longest = add(2, 6.0);
-  longest.set_length_mm(100.0);
-  longest.set_slow_length_mm(3.25);
-  longest.set_energy_j(1500.4);
-  longest.set_pierce_energy_j(450.0);
-  add(3, 2.0);
-  EXPECT_THAT(ReportText(report),
-              HasSubstr("contours      3\n"
-                        "              step 2: 6.000 s, 100.000 mm, 1500 J, 450 of them while it "
-                        "stands, 3.250 mm slow\n"
-                        "              step 1: 2.000 s, 10.500 mm, 0 J\n"
-                        "              step 3: 2.000 s, 0.000 mm, 0 J\n"
-                        "steps"));
-  for (int step = 4; step <= 6; ++step) add(step, 3.0);
-  report.set_contours_dropped(2);
-  const std::string text = ReportText(report);
-  EXPECT_THAT(text, HasSubstr("contours      8, the longest:\n              step 2: "));
-  EXPECT_THAT(text, HasSubstr("step 6: 3.000 s, 0.000 mm, 0 J\n              step 1: "));
-  EXPECT_THAT(text, Not(HasSubstr("step 3:")));
-}
-
 // What did not happen is not spoken of, and a mill has no head.
 TEST_F(Messages, AWholeReportOfAMill) {
   v1::RunReport report;
@@ -442,6 +413,26 @@ TEST_F(Messages, AWholeReportOfAMill) {
       "              3 motions at travel speed through material, up to 0.250 mm deep at step 4, at 5.500 s\n"
       "steps         0\n"
       "final tip     0.000, 0.000, 0.000\n");
+}
+
+TEST_F(Messages, AnAxisHasItsUnit) {
+  v1::AxisValue axis;
+  axis.set_axis("A");
+  axis.set_value(0.123456);
+  axis.set_unit(v1::UNIT_RADIAN);
+  EXPECT_EQ(AxisText(axis), "A 0.1235 rad");
+  axis.set_unit(v1::UNIT_MILLIMETRE);
+  EXPECT_EQ(AxisText(axis), "A 0.123 mm");
+}
+
+TEST_F(Messages, AnEndHasItsVerdict) {
+  v1::JobEvent event = Event(9);
+  event.mutable_ended()->set_kind(v1::Outcome::KIND_COMPLETED);
+  event.mutable_ended()->set_verdict(v1::VERDICT_BAD);
+  event.mutable_ended()->add_reasons()->set_message("too deep");
+  EXPECT_EQ(EventLine(event), "#9  ended: completed; verdict BAD, too deep");
+  event.mutable_products_made()->set_verdict(v1::VERDICT_GOOD);
+  EXPECT_EQ(EventLine(event), "#9  report and pictures are made; verdict GOOD");
 }
 
 // A name that is longer than its column keeps a blank behind it.
@@ -533,40 +524,6 @@ TEST_F(Messages, TheLeastThatIsTold) {
   EXPECT_THAT(ReportText(mill), HasSubstr("clipped       1.000 mm beyond the cutting range\n"));
   EXPECT_THAT(ReportText(mill), HasSubstr("speeds        1 limited to those of the machine\n"));
   EXPECT_THAT(ReportText(mill), HasSubstr("1 motions at travel speed through material"));
-}
-
-// What is left of a block, and how the cut went, in lines of their own; none for what is not there.
-TEST_F(Messages, AMillTellsOfItsBlock) {
-  v1::RunReport report;
-  report.set_family("rml1");
-  report.mutable_total()->set_plunges(1);
-  v1::MillingFigures& milling = *report.mutable_milling();
-  milling.set_removed_mm3(1.5);
-  EXPECT_THAT(ReportText(report), Not(HasSubstr("target")));
-  milling.set_remaining_mm3(98.5);
-  milling.set_deepest_cut_mm(2.5);
-  milling.set_deepest_pass_mm(1.25);
-  milling.mutable_pass_place()->set_step(4);
-  milling.set_shank_depth_mm(0.5);
-  milling.mutable_shank_place()->set_step(5);
-  v1::TargetFigures& target = *milling.mutable_target();
-  target.set_good_percent(97.5);
-  target.set_compared_mm2(60.0);
-  target.set_tolerance_mm(0.1);
-  target.set_deep_mm(0.75);
-  target.set_deep_x_mm(1.0);
-  target.set_deep_y_mm(2.0);
-  target.set_deep_mm3(0.25);
-  EXPECT_THAT(
-      ReportText(report),
-      HasSubstr(
-          "material      1.500 mm3 removed\n"
-          "              98.500 mm3 left, the deepest cut 2.500 mm below the top\n"
-          "              deepest pass 1.250 mm at step 4\n"
-          "              shank or holder 0.500 mm in material at step 5\n"
-          "target        97.50 % of 60.0 mm2 within 0.100 mm\n"
-          "              too deep by up to 0.750 mm at X 1.000, Y 2.000; 0.250 mm3 in all\n"));
-  EXPECT_THAT(ReportText(report), Not(HasSubstr("too much left")));
 }
 
 // Of many findings of one kind five are shown, and the others told in one line.

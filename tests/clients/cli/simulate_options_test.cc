@@ -29,6 +29,8 @@ TEST(SimulateOptions, ABudgetIsStepsAndSecondsInAnyOrder) {
   ASSERT_TRUE(none);
   EXPECT_EQ(none->steps(), 0);  // no limit of its own
   EXPECT_EQ(none->virtual_time_ns(), 0);
+  EXPECT_EQ(ParseBudget("steps=1")->steps(), 1);
+  EXPECT_EQ(ParseBudget("time=1e-9")->virtual_time_ns(), 1);
 }
 
 TEST(SimulateOptions, ABudgetOfNothingOfPartsOfStepsOrOfWordsIsRefused) {
@@ -69,6 +71,11 @@ TEST(SimulateOptions, APlaceIsAStepOfTheMainProgramOrOfOneThatIsNamed) {
   EXPECT_EQ(message->breakpoints(0).step().program(), 0);  // whichever is started
   EXPECT_EQ(message->breakpoints(0).step().step(), 12);
 
+  options.simul = "1/1";
+  const auto first = OptionsMessage(options, ALaser());
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->simul().program(), 1);
+  EXPECT_EQ(first->simul().step(), 1);
   options.simul = "off";
   options.breakpoint.clear();
   const auto off = OptionsMessage(options, ALaser());

@@ -96,6 +96,22 @@ TEST(TerminalBytes, KnowOneButtonOfTheMouse) {
             "");
 }
 
+TEST(TerminalBytes, KnowAMouseAsFarAsTerminalsAreWide) {
+  EXPECT_EQ(Of("\x1b[<0;10000;10000m"), "/up");
+  EXPECT_EQ(Of("\x1b[<0;10001;1m\x1b[<0;1;10001m\x1b[<10001;1;1m"), "");
+  EXPECT_EQ(Of("\x1b[<0;1;1m\x1b[<0;0;0m"), "/up /up");
+  // 32 characters are read of it; a longer one is none of those known.
+  const HandboxKey& start = *HandboxKeyTyped("s");
+  const std::string column = ";" + std::to_string(start.cell * kHandboxCell + 1) + ";";
+  const std::string row = std::to_string(start.row + 1);
+  const auto click = [&](std::size_t length) {
+    const std::size_t zeros = length - 2 - column.size() - row.size();
+    return Of("\x1b[<0" + column + std::string(zeros, '0') + row + "M");
+  };
+  EXPECT_EQ(click(32), "/down:START");
+  EXPECT_EQ(click(33), "");
+}
+
 TEST(TerminalBytes, TellAnswersFocusAndQuitting) {
   EXPECT_EQ(Of("\x1b[0n"), "/answers");
   EXPECT_EQ(Of("\x1b[I\x1b[O"), "/left");
@@ -113,6 +129,9 @@ TEST(TerminalBytes, PassOverWhatTheyDoNotKnow) {
     EXPECT_EQ(Of(std::string(bytes) + "x"), "X+") << bytes.substr(1);
   EXPECT_EQ(Of("\x1b[1\x1b[Hx"), "HOME X+");  // one was cut off by the next
   EXPECT_EQ(Of("\x1b[1\nx"), "X+");
+  EXPECT_EQ(Of("\x1b[ Ax"), "X+");     // the first byte that may stand in one
+  EXPECT_EQ(Of("\x1b[1\x1fx"), "X+");  // the last one that may not
+  EXPECT_EQ(Of("\x1b[@x"), "X+");      // the first one that ends one
 }
 
 // A text that somebody pastes by mistake must not start a machine.

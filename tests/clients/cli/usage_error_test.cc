@@ -86,6 +86,25 @@ TEST(UsageText, WhatIsMissingIsSaidWithWhereToRead) {
             "--samples wants more: RATE FILE: write samples (rmlcell simulate --help)");
 }
 
+// More of them than 12 are read in the help.
+TEST(UsageText, FewVerbsAreListed) {
+  const auto said = [](int verbs) {
+    CLI::App app("", "rmlcell");
+    app.require_subcommand(1);
+    for (int verb = 0; verb < verbs; ++verb) app.add_subcommand("v" + std::to_string(verb));
+    try {
+      app.parse(std::vector<std::string>{});
+    } catch (const CLI::ParseError& error) {
+      return UsageText(app, error);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(said(12),
+            "rmlcell needs a verb: v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11 "
+            "(rmlcell --help)");
+  EXPECT_EQ(said(13), "rmlcell needs a verb (rmlcell --help)");
+}
+
 TEST(UsageText, AValueThatIsNoneIsShown) {
   EXPECT_EQ(SaidTo({"simulate", "a.rml", "--slot", "x"}),
             "--slot: 'x' is no number (rmlcell simulate --help)");

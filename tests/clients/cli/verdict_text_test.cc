@@ -48,6 +48,7 @@ TEST(VerdictLines, TellTheFirstReasonAndCountTheOthers) {
   reason.set_message("cut \x1b deep");
   EXPECT_EQ(VerdictLine(v1::VERDICT_BAD, outcome.reasons()), "BAD, cut \\x1B deep");
   outcome.add_reasons();
+  EXPECT_EQ(VerdictLine(v1::VERDICT_BAD, outcome.reasons()), "BAD, cut \\x1B deep (and 1 more)");
   outcome.add_reasons();
   EXPECT_EQ(VerdictLine(v1::VERDICT_BAD, outcome.reasons()), "BAD, cut \\x1B deep (and 2 more)");
 }
@@ -57,9 +58,42 @@ TEST(Places, NameWhatIsKnown) {
   EXPECT_EQ(PlaceText(place), "");
   place.set_line(7);
   EXPECT_EQ(PlaceText(place), "line 7");
+  place.set_program(1);
+  EXPECT_EQ(PlaceText(place), "program 1 line 7");
   place.set_program(45);
   place.set_step(3);
   EXPECT_EQ(PlaceText(place), "program 45 step 3 line 7");
+  place.clear_program();
+  place.set_step(1);
+  place.set_line(1);
+  EXPECT_EQ(PlaceText(place), "step 1 line 1");
+}
+
+TEST(VerdictLines, CountWhatWasFound) {
+  v1::Findings found;
+  EXPECT_EQ(CountText(found), "");
+  found.add_diagnostics();
+  EXPECT_EQ(CountText(found), ", 1 finding");
+  found.set_diagnostics_dropped(1);
+  EXPECT_EQ(CountText(found), ", 2 findings");
+  // What is not ok fails, whatever its verdict says.
+  found.set_verdict(v1::VERDICT_GOOD);
+  EXPECT_EQ(ExitOf(found, false), kProgramErrors);
+  found.set_ok(true);
+  EXPECT_EQ(ExitOf(found, false), kGood);
+  found.set_verdict(v1::VERDICT_DOUBTFUL);
+  EXPECT_EQ(ExitOf(found, false), kGood);
+  EXPECT_EQ(ExitOf(found, true), kProgramErrors);
+}
+
+TEST(VerdictLines, AReasonSaysWhereAndWhatToDo) {
+  v1::VerdictReason reason;
+  reason.set_message("cut \x1b deep");
+  reason.set_code("CELL-E1");
+  EXPECT_EQ(ReasonLine(reason), "cut \\x1B deep (CELL-E1)");
+  reason.mutable_first()->set_step(3);
+  reason.set_advice("lift it");
+  EXPECT_EQ(ReasonLine(reason), "cut \\x1B deep (CELL-E1, step 3); lift it");
 }
 
 }  // namespace

@@ -53,6 +53,7 @@ TEST(Document, PlacesBehindTheEndAreTheEnd) {
   EXPECT_EQ(document.OffsetOf({0, 99}), 2U);
   EXPECT_EQ(document.OffsetOf({1, 99}), 6U);
   EXPECT_EQ(document.OffsetOf({2, 5}), 7U);
+  EXPECT_EQ(document.OffsetOf({3, 0}), 7U);
   EXPECT_EQ(document.OffsetOf({99, 0}), 7U);
   EXPECT_EQ(document.PositionOf(7), (Position{2, 0}));
 }

@@ -42,6 +42,8 @@ TEST(ProgramFolder, AProgramNumberIsTheWholeNameFrom1To99) {
   EXPECT_EQ(ProgramNumberOf("file:///work/44.S", kExtensions), 44);
   EXPECT_EQ(ProgramNumberOf("/work/007.si", kExtensions), 7);
   EXPECT_EQ(ProgramNumberOf("44.CMP", kExtensions), 44);
+  EXPECT_EQ(ProgramNumberOf("1.S", kExtensions), 1);
+  EXPECT_EQ(ProgramNumberOf("99.S", kExtensions), 99);
   for (const char* name :
        {"0.S", "100.S", "44.O", "44.rml", "44", "a44.S", "4 4.S", "-4.S", ".S", ""})
     EXPECT_EQ(ProgramNumberOf(name, kExtensions), std::nullopt) << name;

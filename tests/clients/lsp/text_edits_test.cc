@@ -245,6 +245,47 @@ TEST(CodeActions, AllowingStandsAtTheEndOfTheLine) {
   EXPECT_EQ(allowed("VR[98] = 1.; mine 7033\n", 0, 0), "nothing");
 }
 
+// What a finding with these fixes, at the end of "STOP\nabc", is repaired by; nothing: by none.
+Json FixedBy(const std::vector<Fix>& fixes) {
+  const Document document(std::string(kUri), "optimo-rml", 1, "STOP\nabc", Encoding::kUtf16);
+  const Diagnostic finding{.code = ErrorCode::kNameUndeclared,
+                           .severity = Severity::kCompile,
+                           .where = {.line = 2, .column = 1, .length = 3, .byte_offset = 5},
+                           .fixes = fixes};
+  const Json only = Json::array({"quickfix"});
+  const Json actions = CodeActions(document, {{finding}, {}}, {{1, 0}, {1, 0}}, &only);
+  return actions.empty() ? Json() : actions[0];
+}
+
+// Within the text, and each behind the one before it.
+TEST(CodeActions, FixesThatFitAreMade) {
+  const auto edits = [](const std::vector<Fix>& fixes) {
+    const Json action = FixedBy(fixes);
+    return action.is_null() ? Json::array() : action["edit"]["changes"][kUri];
+  };
+  const Json first = TextEdit({{1, 0}, {1, 1}}, "x");
+  EXPECT_EQ(edits({{5, 3, "x"}}), Json::array({TextEdit({{1, 0}, {1, 3}}, "x")}));
+  EXPECT_EQ(edits({{5, 4, "x"}}), Json::array());
+  EXPECT_EQ(edits({{8, 0, "x"}}), Json::array({TextEdit({{1, 3}, {1, 3}}, "x")}));
+  EXPECT_EQ(edits({{9, 0, "x"}}), Json::array());
+  EXPECT_EQ(edits({{0, 0, "x"}}), Json::array({TextEdit({{0, 0}, {0, 0}}, "x")}));
+  EXPECT_EQ(edits({{-1, 0, "x"}}), Json::array());
+  EXPECT_EQ(edits({{5, -1, "x"}}), Json::array());
+  EXPECT_EQ(edits({{6, 1, "y"}, {5, 1, "x"}}),
+            Json::array({first, TextEdit({{1, 1}, {1, 2}}, "y")}));
+  EXPECT_EQ(edits({{5, 1, "x"}, {5, 2, "y"}}), Json::array({first}));
+}
+
+// Of a long one the first 30 characters are shown.
+TEST(CodeActions, TheTitleSaysWhatIsDone) {
+  const auto title = [](const Fix& fix) { return FixedBy({fix})["title"].get<std::string>(); };
+  EXPECT_EQ(title({5, 3, "x"}), "Replace 'abc' by 'x'");
+  EXPECT_EQ(title({4, 4, ""}), "Remove ' abc'");
+  EXPECT_EQ(title({5, 0, "x"}), "Insert 'x'");
+  EXPECT_EQ(title({5, 0, std::string(30, 'x')}), "Insert '" + std::string(30, 'x') + "'");
+  EXPECT_EQ(title({5, 0, std::string(31, 'x')}), "Insert '" + std::string(30, 'x') + "...'");
+}
+
 // Each stretch of lines that change is an edit of its own; the last line may have no end.
 TEST(Formatting, StretchesOfLines) {
   EXPECT_EQ(FormatOf("speed 5\n     SPEED 6\nspeed 7\nspeed 8"),

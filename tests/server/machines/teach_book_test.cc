@@ -88,6 +88,51 @@ TEST_F(TeachBookTest, WhatWasTaughtIsTakenBack) {
   EXPECT_EQ(CodeOf(book.TakeBack(DownTo(99), "anna")), ErrorCode::kCellNotFound);
 }
 
+// A slot, or all of them; a page as it was asked for, behind the number that its token names.
+TEST_F(TeachBookTest, PagesOfWhatWasTaught) {
+  Stored("DELAY 9.0\n");
+  Teach(v1::TeachEntry::ACT_INSERT, "DELAY 1.0\nDELAY 9.0\n", 1, "", "DELAY 1.0");
+  Teach(v1::TeachEntry::ACT_INSERT, "DELAY 1.0\nDELAY 2.0\nDELAY 9.0\n", 2, "", "DELAY 2.0");
+  EXPECT_THAT(Numbers(2), ElementsAre(2, 1));
+  EXPECT_EQ(token_, "");  // they are all on it
+  EXPECT_THAT(Numbers(1), ElementsAre(2));
+  EXPECT_EQ(token_, "2");
+  EXPECT_THAT(Numbers(1, "1"), ElementsAre());
+  v1::ListTeachEntriesRequest request;
+  request.set_machine("machines/optimo-1");
+  const auto code = [&] { return CodeOf(book.List(request)); };
+  for (const int program : {-1, 100}) {
+    request.set_program(program);
+    EXPECT_EQ(code(), ErrorCode::kCellInvalidArgument) << program;
+  }
+  for (const auto& [program, entries] : {std::pair{0, 2}, {12, 2}, {1, 0}, {99, 0}}) {
+    request.set_program(program);
+    EXPECT_EQ(Must(book.List(request)).entries_size(), entries) << program;
+  }
+  for (const char* token : {"0", "-1", "x", "1 "}) {
+    request.set_page_token(token);
+    EXPECT_EQ(code(), ErrorCode::kCellInvalidArgument) << token;
+  }
+}
+
+// LIVE-7.09: an undo is taught again, and not taken back; each entry says what it was made from.
+TEST_F(TeachBookTest, AnUndoIsNotTakenBack) {
+  Stored("DELAY 9.0\n");
+  const storage::Revision first = Revision();
+  Teach(v1::TeachEntry::ACT_INSERT, "DELAY 1.0\nDELAY 9.0\n", 1, "", "DELAY 1.0");
+  const storage::Revision taught = Revision();
+  const v1::TeachEntry undone = Must(book.TakeBack(DownTo(1), "anna"));
+  EXPECT_EQ(undone.number(), 2);
+  EXPECT_EQ(undone.step().program(), 12);
+  EXPECT_EQ(undone.etag_before(), std::to_string(taught));
+  EXPECT_EQ(undone.etag_after(), std::to_string(Revision()));
+  EXPECT_GT(undone.time().seconds(), 0);
+  EXPECT_EQ(CodeOf(book.TakeBack(DownTo(2), "anna")), ErrorCode::kCellInvalidArgument);
+  v1::ListTeachEntriesRequest request;
+  request.set_machine("machines/optimo-1");
+  EXPECT_EQ(Must(book.List(request)).entries(1).etag_before(), std::to_string(first));
+}
+
 // LIVE-7.09: of a program that was made and removed there is nothing to change, and it is an entry.
 TEST_F(TeachBookTest, WhatWasMadeAndRemovedIsTakenBack) {
   v1::TeachEntry entry;

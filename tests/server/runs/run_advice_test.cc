@@ -51,6 +51,17 @@ TEST_F(RunAdviceTest, ProgramsThatAreCalledAreLookedFor) {
   EXPECT_EQ(Advice(Submit("optimo-1", "a.S", "DELAY 1\n")), "");
 }
 
+// LIVE-5.02: of a program of up to 1 MiB: more takes too long.
+TEST_F(RunAdviceTest, LargeProgramsAreNotLookedAt) {
+  const auto advice = [&](std::size_t bytes) {
+    std::string text = "CALL 44\nDELAY 1\n;";
+    text.resize(bytes - 1, 'x');
+    return Advice(Submit("optimo-1", "a.S", text + "\n"));
+  };
+  EXPECT_EQ(advice(1 << 20), "OPT-E7102");
+  EXPECT_EQ(advice((1 << 20) + 1), "");
+}
+
 // LIVE-5.02: a schedule that no machine has.
 TEST_F(RunAdviceTest, SchedulesAreLookedFor) {
   EXPECT_EQ(Advice(Submit("optimo-1", "a.S", "WORKDEF 2,1 (64)\n")), "OPT-E7403");

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "google/rpc/status.pb.h"
 #include "rmlcell/v1/cell.pb.h"
 #include "rmlcell/v1/job.pb.h"
 #include "server/web/base64.h"
@@ -12,6 +13,7 @@
 #include "server/web/event_texts.h"
 #include "server/web/rpc_codec.h"
 #include "server/web/rpc_json.h"
+#include "server/web/rpc_status.h"
 
 namespace rmlcell::web {
 namespace {
@@ -190,10 +192,12 @@ TEST(RpcJson, AnEventOfTheCellIsNamedWithItsLog) {
       *JsonToBytes(*v1::WatchCellRequest::descriptor(), R"({"logId":"other"})", id)));
   EXPECT_EQ(request.after_sequence(), 42);
   EXPECT_EQ(request.log_id(), "0198c5b2-aa");
-  for (const char* bad : {"", ".a", "1.", "1.A", "1.a b", "-1", "1 ", "01x", "1.a.b"})
+  for (const char* bad : {"", ".a", "1.", "1.A", "1.a b", "1.a/", "1.a:", "1.a`", "1.a{", "-1",
+                          "1 ", "1/", "1:", "01x", "1.a.b"})
     EXPECT_FALSE(EventId::Parse(bad)) << bad;
   EXPECT_FALSE(EventId::Parse("1." + std::string(65, 'a')));
   EXPECT_TRUE(EventId::Parse("1." + std::string(64, 'a')));
+  EXPECT_EQ(EventId::Parse("90.az09-")->Text(), "90.az09-");
 }
 
 TEST(RpcJson, SequencesGoInAndComeOut) {
@@ -243,6 +247,33 @@ TEST(ConnectStream, TrailersAreGrouped) {
   const std::string end = codec->End({}, {{"a", "1"}, {"b", "2"}, {"a", "3"}});
   EXPECT_EQ(end[0], 2);
   EXPECT_EQ(Json::parse(end.substr(5)), Json::parse(R"({"metadata":{"a":["1","3"],"b":["2"]}})"));
+}
+
+// A status that has no details says nothing of any.
+TEST(RpcJson, AnErrorWithoutDetails) {
+  google::rpc::Status rich;
+  rich.set_code(5);
+  const RpcStatus status{.code = 5, .message = "none", .details = rich.SerializeAsString()};
+  EXPECT_EQ(PlainErrorJson(status), R"({"code":"not_found","message":"none"})");
+  EXPECT_EQ(ConnectErrorJson(status), PlainErrorJson(status));
+}
+
+// What a server tells that this one does not know is told as it came.
+TEST(RpcJson, ADetailOfAnotherServer) {
+  google::rpc::Status rich;
+  google::protobuf::Any& detail = *rich.add_details();
+  detail.set_type_url("types.example/shop.Detail");
+  detail.set_value("f");
+  google::protobuf::Any& other = *rich.add_details();
+  other.set_type_url("types.example/shop.Other");
+  other.set_value("\xFF");
+  const RpcStatus status{.code = 5, .message = "none", .details = rich.SerializeAsString()};
+  const std::string head = R"({"code":"not_found","message":"none","details":[)";
+  EXPECT_EQ(PlainErrorJson(status), head +
+                                        R"({"@type":"types.example/shop.Detail","value":"Zg=="},)"
+                                        R"({"@type":"types.example/shop.Other","value":"/w=="}]})");
+  EXPECT_EQ(ConnectErrorJson(status), head + R"({"type":"shop.Detail","value":"Zg"},)"
+                                             R"({"type":"shop.Other","value":"/w"}]})");
 }
 
 // A header may never end early, whatever text is put into it.

@@ -95,6 +95,40 @@ TEST(EventTexts, TheOldestAreForgotten) {
   EXPECT_EQ(texts.made(), 63U);
 }
 
+// Takes so many bytes with its text.
+v1::WatchCellResponse OfSize(std::int64_t sequence, std::size_t bytes) {
+  v1::WatchCellResponse message = Told(sequence);
+  std::string& text = *message.mutable_event()->mutable_job()->mutable_message()->mutable_text();
+  text.assign(bytes / 2 - 1'000, 'x');
+  const auto size = [&] {
+    EventTexts texts;
+    return message.SerializeAsString().size() + TextOf(texts, message).size();
+  };
+  // Each character of the log stands in three places, each of the text in two.
+  if ((bytes - size()) % 2 != 0) message.set_log_id("l0gs");
+  text.append((bytes - size()) / 2, 'x');
+  EXPECT_EQ(size(), bytes);
+  return message;
+}
+
+// As large as a text may be that is kept, and as many of them as there is room for.
+TEST(EventTexts, TheRoomIsUsedUp) {
+  EventTexts texts;
+  const v1::WatchCellResponse larger = OfSize(9, EventTexts::kKeptMax + 1);
+  for (int i = 0; i < 2; ++i) TextOf(texts, larger);
+  EXPECT_EQ(texts.made(), 2U);
+  constexpr int kRoom = EventTexts::kBytesMax / EventTexts::kKeptMax;
+  for (int round = 0; round < 2; ++round) {
+    for (int i = 0; i < kRoom; ++i) TextOf(texts, OfSize(10 + i, EventTexts::kKeptMax));
+    EXPECT_EQ(texts.made(), 2U + kRoom);
+  }
+  TextOf(texts, OfSize(10 + kRoom, EventTexts::kKeptMax));
+  TextOf(texts, OfSize(11, EventTexts::kKeptMax));
+  EXPECT_EQ(texts.made(), 3U + kRoom);  // the oldest alone is forgotten
+  TextOf(texts, OfSize(10, EventTexts::kKeptMax));
+  EXPECT_EQ(texts.made(), 4U + kRoom);
+}
+
 TEST(EventTexts, WhatIsNoMessageIsAnError) {
   EventTexts texts;
   const auto text = texts.Of(*v1::WatchJobResponse::descriptor(), "\xFF\xFF");

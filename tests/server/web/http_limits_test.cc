@@ -159,6 +159,9 @@ TEST_F(HttpLimits, BodyOfACall) {
   std::string chunked = "POST " + std::string(kGetJob) +
                         " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
                         "Transfer-Encoding: chunked\r\n\r\n";
+  const std::string head = chunked;
+  EXPECT_EQ(Exchange(cell_.port(), head + "3e8\r\n" + body(1000) + "\r\n0\r\n\r\n").status, 200);
+  EXPECT_EQ(Exchange(cell_.port(), head + "3e9\r\n" + body(1001) + "\r\n0\r\n\r\n").status, 413);
   for (int i = 0; i < 100; ++i) chunked += "10\r\n                \r\n";
   EXPECT_EQ(ErrorOf(Exchange(cell_.port(), chunked + "0\r\n\r\n")), "413 CELL-E9007");
   EXPECT_EQ(Exchange(cell_.port(),
@@ -218,6 +221,7 @@ TEST(HttpPatience, SlowRequestsAreEnded) {
 TEST(HttpPatience, SilentConnectionsAreClosed) {
   WebOptions options = AnyPort();
   options.read_timeout = milliseconds(100);
+  options.idle_timeout = std::chrono::hours(1);
   FakeCell cell(options);
   RawClient silent(cell.port());
   EXPECT_TRUE(silent.AtEnd());  // waits for the end
@@ -226,6 +230,7 @@ TEST(HttpPatience, SilentConnectionsAreClosed) {
 TEST(HttpPatience, IdleConnectionsAreClosed) {
   WebOptions options = AnyPort();
   options.idle_timeout = milliseconds(100);
+  options.read_timeout = std::chrono::hours(1);
   FakeCell cell(options);
   RawClient kept(cell.port());
   kept.Send(Get("/healthz"));
@@ -295,6 +300,9 @@ TEST_F(HttpLimits, UsedPortIsRefused) {
   ASSERT_FALSE(named);
   EXPECT_EQ(named.error().code, ErrorCode::kCellConfiguration);
   options.address = "localhost";
+  options.port = 65535;  // the last one that there is, whether it is free or not
+  const auto last = WebServer::Start(options, nullptr, resources);
+  EXPECT_TRUE(last || last.error().code == ErrorCode::kCellPortUsed);
   for (const int port : {-1, 65536}) {
     options.port = port;
     const auto none = WebServer::Start(options, nullptr, resources);

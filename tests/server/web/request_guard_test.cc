@@ -33,13 +33,31 @@ TEST(Host, LoopbackConfiguredAndFurtherNames) {
   const GuardRules rules = Rules();
   for (const std::string_view own :
        {"localhost", "LocalHost:1", "cell.localhost", "127.0.0.1", "127.9.9.9:80", "[::1]",
-        "[::1]:50080", "192.168.7.5:50080", "cell.shop"}) {
+        "[::1]:50080", "192.168.7.5:50080", "cell.shop", "127.0.0.255", "127.0.0.0", "localhost:09",
+        "[::1]:09"}) {
     EXPECT_TRUE(IsOwnHost(rules, own)) << own;
   }
-  for (const std::string_view foreign :
-       {"", "evil.example", "localhost.evil.example", "127.0.0.1.evil.example", "192.168.7.6",
-        "10.0.0.1", "localhost:x", "[::1", "[::1]x", "user@localhost", "127.0.0.256", "127.0.0",
-        "[::2]", ":80"}) {
+  for (const std::string_view foreign : {"",
+                                         "evil.example",
+                                         "localhost.evil.example",
+                                         "127.0.0.1.evil.example",
+                                         "192.168.7.6",
+                                         "10.0.0.1",
+                                         "localhost:x",
+                                         "[::1",
+                                         "[::1]x",
+                                         "user@localhost",
+                                         "127.0.0.256",
+                                         "127.0.0",
+                                         "[::2]",
+                                         ":80",
+                                         "127.0.0.0001",
+                                         "127.0.0.1.1",
+                                         "127.0.0.",
+                                         "localhost:/",
+                                         "localhost::",
+                                         "[::1]:/",
+                                         "[::1]::"}) {
     EXPECT_FALSE(IsOwnHost(rules, foreign)) << foreign;
   }
 }
@@ -49,6 +67,11 @@ TEST(Host, LiteralsWhenAllAddressesAreListenedOn) {
   rules.address = "0.0.0.0";
   EXPECT_TRUE(IsOwnHost(rules, "10.1.2.3:50080"));
   EXPECT_TRUE(IsOwnHost(rules, "[fe80::1]:50080"));
+  EXPECT_TRUE(IsOwnHost(rules, "[::ffff:10.1.2.3]"));
+  for (const std::string_view digit : {"0", "9", "a", "f", "A", "F"})
+    EXPECT_TRUE(IsOwnHost(rules, "[::" + std::string(digit) + "]")) << digit;
+  for (const std::string_view other : {"/", ";", "`", "g"})
+    EXPECT_FALSE(IsOwnHost(rules, "[::" + std::string(other) + "]")) << other;
   EXPECT_FALSE(IsOwnHost(rules, "evil.example"));
   EXPECT_FALSE(IsOwnHost(rules, "10.1.2.3.evil.example"));
 }
@@ -74,7 +97,8 @@ TEST(Guard, OriginsAndSites) {
 TEST(Guard, HeadersThatMayStandOnce) {
   const GuardRules rules = Rules();
   for (const std::string name :
-       {"host", "content-type", "authorization", "content-length", "last-event-id"}) {
+       {"host", "content-type", "content-length", "origin", "authorization", "last-event-id",
+        "grpc-timeout", "connect-protocol-version", "connect-timeout-ms"}) {
     const auto refusal = RefuseRequest(rules, Request({{name, "1"}, {name, "1"}}));
     ASSERT_TRUE(refusal) << name;
     EXPECT_EQ(refusal->status, 400);
@@ -212,7 +236,10 @@ TEST(Guard, CallerMetadata) {
 TEST(Metadata, WhatGrpcCanSend) {
   EXPECT_TRUE(IsMetadata("x-request-id", "a b"));
   EXPECT_TRUE(IsMetadata("x-raw-bin", "\x01\xFF"));
-  for (const std::string_view name : {"", "X-A", "a b", "a:b", "grpc-timeout", "\xC3\xBC"}) {
+  EXPECT_TRUE(IsMetadata("az09-_.", "! ~"));
+  EXPECT_TRUE(IsMetadata("x", ""));
+  for (const std::string_view name :
+       {"", "X-A", "a b", "a:b", "a/b", "a`b", "a{b", "grpc-timeout", "\xC3\xBC"}) {
     EXPECT_FALSE(IsMetadata(name, "v")) << name;
   }
   for (const std::string_view value : {"\x01", "\x7F", "\xFF", "a\n", " a", "a "}) {

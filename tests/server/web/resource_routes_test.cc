@@ -68,7 +68,10 @@ TEST(ResourceRoutes, PicturesOfPrograms) {
   };
   EXPECT_EQ(width(""), 0);
   EXPECT_EQ(width("width=240"), 240);
-  for (const char* wrong : {"width=-1", "width=x", "width=1.5", "width=99999999999"})
+  EXPECT_EQ(width("width=0"), 0);
+  EXPECT_EQ(width("width=100000"), 100'000);
+  for (const char* wrong :
+       {"width=-1", "width=x", "width=1.5", "width=100001", "width=99999999999"})
     EXPECT_EQ(width(wrong), -1) << wrong;
 }
 

@@ -252,5 +252,46 @@ TEST_F(Resources, LogHasEveryRequestOnce) {
   EXPECT_GT(entry.bytes_sent, 20U);
 }
 
+// Each request by itself, on a connection that is used again; and once.
+TEST_F(Resources, EachRequestIsLogged) {
+  RawClient client(cell_.port());
+  std::vector<std::size_t> sizes;
+  for (int i = 0; i < 2; ++i) {
+    client.Send(Get("/healthz?x=" + std::to_string(i)));
+    const std::size_t head = client.ReadUntil("\r\n\r\n").size();
+    sizes.push_back(head + client.ReadUntil("}\n").size());
+  }
+  client.Send(Get("/none"));
+  EXPECT_EQ(client.Read().status, 404);
+  client.Close();
+  ASSERT_TRUE(FakeCell::Eventually(
+      [&] { return cell_.log().size() == 3 && cell_.web().connections() == 0; }));
+  const std::vector<WebLogEntry> log = cell_.log();
+  ASSERT_EQ(log.size(), 3U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(log[i].method, "GET");
+    EXPECT_EQ(log[i].path, "/healthz");
+    EXPECT_EQ(log[i].request_id, "");
+    EXPECT_EQ(log[i].http_status, 200);
+    EXPECT_EQ(log[i].bytes_sent, sizes[i]);
+    EXPECT_TRUE(log[i].finished);
+    EXPECT_TRUE(log[i].peer.starts_with("127.0.0.1:")) << log[i].peer;
+  }
+  EXPECT_EQ(log[2].http_status, 404);
+}
+
+// A client that leaves before there is an answer.
+TEST_F(Resources, WhoLeavesIsLoggedAsUnfinished) {
+  RawClient client(cell_.port());
+  client.Send(Post(kGetJob, "application/json", R"({"name":"jobs/slow"})"));
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell_.counters().open == 1; }));
+  client.Reset();
+  ASSERT_TRUE(FakeCell::Eventually([&] { return !cell_.log().empty(); }));
+  const WebLogEntry entry = cell_.log()[0];
+  EXPECT_FALSE(entry.finished);
+  EXPECT_EQ(entry.http_status, 0);
+  EXPECT_EQ(entry.bytes_sent, 0U);
+}
+
 }  // namespace
 }  // namespace rmlcell::web::testing

@@ -43,7 +43,7 @@ TEST(MethodPaths, AServiceWithADotAndAMethod) {
 // What changes nothing begins with a word that says so, or is a stream from the server.
 TEST(MethodPaths, GetCallsOnlyWhatChangesNothing) {
   for (const std::string service :
-       {"JobService", "MachineService", "ProgramService", "ProjectService"}) {
+       {"JobService", "MachineService", "ProgramService", "ProjectService", "AccountService"}) {
     const auto* descriptor = google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(
         "rmlcell.v1." + service);
     if (descriptor == nullptr) continue;
