@@ -1,6 +1,7 @@
 #include "server/base/secret.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -26,7 +27,8 @@ TEST(Secret, AnEmptyOneIsKnownToNobody) {
 
 // 32 hexadecimal digits, each time others.
 TEST(Secret, IsKeptInAFile) {
-  const std::string path = testing::TempDir() + "/rmlcell-kept-secret";
+  const std::string path =
+      testing::TempDir() + "/rmlcell-kept-secret-" + std::to_string(::getpid());
   std::filesystem::remove(path);
   const Result<std::string> made = KeptSecret(path);
   ASSERT_TRUE(made);

@@ -2,6 +2,7 @@
 #include "server/host/host_process.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <filesystem>
@@ -17,7 +18,7 @@ namespace {
 
 class HostProcessTest : public testing::Test {
  protected:
-  HostProcessTest() : folder_(testing::TempDir() + "/host-process") {
+  HostProcessTest() : folder_(testing::TempDir() + "/host-process-" + std::to_string(::getpid())) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     server_ = std::make_unique<FakeHostServer>("unix:" + folder_ + "/a");

@@ -1,6 +1,7 @@
 // The lines of a host to the servers of its cell, as a server sees them (live.md 3.06).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <condition_variable>
@@ -29,7 +30,7 @@ v1::HostHello HelloOfHost() {
 
 class ServerLinesTest : public testing::Test {
  protected:
-  ServerLinesTest() : folder_(testing::TempDir() + "/server-lines") {
+  ServerLinesTest() : folder_(testing::TempDir() + "/server-lines-" + std::to_string(::getpid())) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }
