@@ -6,6 +6,7 @@
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
+#include "engine/motion/kinematics/axes.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -91,7 +92,7 @@ constexpr std::array<std::string_view, motion::kAxisCount> kAxisNames = {"X", "Y
 motion::AxisValues PerAxis(const machine::Parameters& parameters, const std::string& before,
                            const std::string& after) {
   motion::AxisValues values{};
-  for (std::size_t i = 0; i < motion::kAxisCount; ++i) {
+  for (const std::size_t i : motion::kAxes) {
     values[i] = parameters.Number(before + std::string(kAxisNames[i]) + after);
   }
   return values;
