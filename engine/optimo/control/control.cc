@@ -81,7 +81,6 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
 RunPhase Control::Advance(SimTime until) {
   int carried_out = 0;
   for (;;) {
-    if (now().phase == RunPhase::kFinished) return now().phase;
     // A key that was pressed behind the step is not for who comes to it. LIVE-6.01
     if (now().phase == RunPhase::kHalted && s_.entry.halted) return now().phase;
     if (ScriptedIsDue()) ApplyScripted();

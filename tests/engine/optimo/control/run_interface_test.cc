@@ -97,15 +97,55 @@ TEST(RunInterface, TipSpeedOfTurningAxes) {
 }
 
 // A run that does not let time pass comes back after so many instructions, and goes on when it is
-// called again.
+// called again. With a breakpoint, of whatever program, each of them is looked at.
 TEST(RunInterface, OneCallDoesSoMuch) {
   machine::RunObserver nobody;
-  const std::unique_ptr<machine::Run> run = RunOf(SetupOf("10 GOTO 10\n"), nobody);
-  for (std::uint64_t call = 1; call <= 3; ++call) {
-    EXPECT_EQ(run->Advance(At(1.0)), RunPhase::kRunning);
-    EXPECT_EQ(run->steps_executed(), call * 20'000U);
-    EXPECT_EQ(run->state().time, SimTime(0));
+  const machine::ProgramStep elsewhere{.program = 99, .step = 1};
+  for (const auto& breakpoint : {std::optional<machine::ProgramStep>(), std::optional(elsewhere)}) {
+    const std::unique_ptr<machine::Run> run =
+        RunOf(SetupOf("10 GOTO 10\n", {.breakpoint = breakpoint}), nobody);
+    for (std::uint64_t call = 1; call <= 3; ++call) {
+      EXPECT_EQ(run->Advance(At(1.0)), RunPhase::kRunning);
+      EXPECT_EQ(run->steps_executed(), call * 20'000U);
+      EXPECT_EQ(run->state().time, SimTime(0));
+    }
   }
+}
+
+// OPT-E.7902: the budget of time is over at its instant, when the run is driven to that instant.
+TEST(RunInterface, TheBudgetEndsAtItsInstant) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run =
+      RunOf(SetupOf("DELAY 100\n", {.budget = {.virtual_time = At(5.0)}}), nobody);
+  EXPECT_EQ(run->Advance(At(5.0) - SimTime(1)), RunPhase::kRunning);
+  EXPECT_EQ(run->Advance(At(5.0)), RunPhase::kFinished);
+  EXPECT_EQ(run->outcome().code, ErrorCode::kTimeBudget);
+  EXPECT_EQ(run->state().time, At(5.0));
+}
+
+// What is at the terminals: the outputs that are on, table and shutter, and what the beam has.
+TEST(RunInterface, TheOutputsOfTheMoment) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run =
+      RunOf(SetupOf("OL[0]=ON\nOL[99]=ON\nOA[1]=-2.5\nOA[99]=1.5\nFUNCTION 99 (90.)\n"
+                    "WORKDEF 2,0 (15)\nWORK 2,0/ON\nDELAY 1\nWORK 0,0/ON\nDELAY 9\n",
+                    {.parameters = {{"ROTARY_TABLE", "ON"}},
+                     .schedules = {{.number = 15, .power_percent = 60.0}}}),
+            nobody);
+  const auto shown = [&] {
+    std::string text;
+    for (const machine::OutputNow& one : run->outputs().on)
+      text += one.name + " " + std::to_string(one.value).substr(0, 4) + "; ";
+    return text;
+  };
+  run->Advance(At(0.5));
+  const std::string dark = "OL[0] 1.00; OL[99] 1.00; OA[1] -2.5; OA[99] 1.50; rotary_table 90.0; ";
+  EXPECT_EQ(shown(), dark);
+  EXPECT_EQ(run->outputs().laser_schedule, 15);
+  EXPECT_EQ(run->outputs().power_percent, 0.0);
+  run->Advance(At(2.0));
+  EXPECT_EQ(shown(), dark + "shutter 1.00; ");
+  EXPECT_EQ(run->outputs().power_percent, 60.0);
 }
 
 // Time stands while a run is halted, until a scripted key comes; where none is to come it stays at
@@ -116,6 +156,7 @@ TEST(RunInterface, TimeOfAHaltedRun) {
       SetupOf("DELAY 1\nSTOP\nDELAY 1\n", {.inputs = {{At(5.0), InputKind::kStart}}}), nobody);
   EXPECT_EQ(waiting->Advance(At(3.0)), RunPhase::kHalted);
   EXPECT_EQ(waiting->state().time, At(3.0));
+  EXPECT_EQ(waiting->Advance(At(5.0)), RunPhase::kRunning);  // the key of that instant, too
   EXPECT_EQ(waiting->Advance(At(5.5)), RunPhase::kRunning);
   EXPECT_EQ(waiting->Advance(At(9.0)), RunPhase::kFinished);
   EXPECT_EQ(waiting->state().time, At(6.0));
@@ -134,6 +175,8 @@ TEST(RunInterface, NothingComesAfterTheEnd) {
   EXPECT_EQ(run->Advance(At(3.0)), RunPhase::kFinished);
   run->Apply({At(3.0), InputKind::kEmergencyStop});
   run->End(machine::OutcomeKind::kCancelled, ErrorCode::kCancelled);
+  run->WriteVariable("VI[5]", 7.0);
+  EXPECT_EQ(run->ReadVariable("VI[5]")->text, "0");
   EXPECT_EQ(run->outcome().kind, machine::OutcomeKind::kCompleted);
   EXPECT_FALSE(run->outcome().code.has_value());
   EXPECT_EQ(run->ReadVariable("VI[99]")->text, "0");
@@ -162,6 +205,11 @@ TEST(RunInterface, LinesOfSteps) {
       RunOf(WithSource("VI[2]=1\nVI[3]=1\nVR[0]=1/0\n", {.step_lines = {7, 9}}), findings);
   run->Advance(At(1.0));
   EXPECT_EQ(findings.lines, (std::vector{7, 9, 0}));
+  Findings waits;
+  const std::unique_ptr<machine::Run> waiting =
+      RunOf(WithSource("DELAY 0\nDELAY 0\nDELAY 0\n", {.step_lines = {7, 9}}), waits);
+  waiting->Advance(At(1.0));
+  EXPECT_EQ(waits.lines, (std::vector{7, 9, 0}));
   Findings errors;
   const std::unique_ptr<machine::Run> failing =
       RunOf(WithSource("VI[2]=1\nVR[0]=1/0\n", {.step_lines = {7, 9}}), errors);

@@ -164,6 +164,32 @@ TEST(Travel, AHaltDoesNotHideThem) {
       RunText("COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\nSTOP\n",
               {.inputs = {{std::chrono::hours(1), machine::InputKind::kStart}}, .forecast = true});
   EXPECT_EQ(CodeOf(ran), 7301);
+  EXPECT_EQ(ran.outcome.detail, "X of the target leaves its travel by 5400.000 mm");
+}
+
+// OPT-B.08: a machine that stands outside to begin with was brought there by no motion of the run:
+// the way back is told like any other.
+TEST(Travel, AMachineThatStandsOutside) {
+  const std::string back = "COORD ROBOT\nMOVE (3000.,2201.2,-50.,0.,0.)\n";
+  RunOptions options{.parameters = {{"HOME_X", "4000"}}};
+  const Ran ran = RunText(back, options);
+  EXPECT_EQ(CodeOf(ran), 7301);
+  EXPECT_EQ(ran.outcome.detail, "X on the way leaves its travel by 400.000 mm");
+  options.forecast = true;
+  EXPECT_EQ(RunText(back, options).violations.size(), 1U);
+}
+
+// OPT-7.28: SYSDEF moves the tip, so X, Y and Z of a target in COORD ABSOL, and no angle.
+TEST(Travel, WhatHangsOnTheWorkOffset) {
+  const auto by_offset = [](const std::string& coord, const std::string& target) {
+    std::string text;
+    for (const machine::TravelViolation& one :
+         RunText("COORD " + coord + "\nMOVE (" + target + ")\n", {.forecast = true}).violations)
+      text += std::to_string(one.axis) + (one.by_work_offset ? "+ " : "- ");
+    return text;
+  };
+  EXPECT_EQ(by_offset("ABSOL", "9000.,9000.,9000.,13.,0."), "0+ 1+ 2+ 3- ");
+  EXPECT_EQ(by_offset("ROBOT", "9000.,9000.,9000.,13.,2.5"), "0- 1- 2- 3- 4- ");
 }
 
 // OPT-2.49: a chain without an end never begins to move before the steps run out; what it would do
