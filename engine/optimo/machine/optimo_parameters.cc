@@ -6,7 +6,6 @@
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
-#include "engine/motion/kinematics/axes.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -92,9 +91,9 @@ constexpr std::array<std::string_view, motion::kAxisCount> kAxisNames = {"X", "Y
 motion::AxisValues PerAxis(const machine::Parameters& parameters, const std::string& before,
                            const std::string& after) {
   motion::AxisValues values{};
-  for (const std::size_t i : motion::kAxes) {
-    values[i] = parameters.Number(before + std::string(kAxisNames[i]) + after);
-  }
+  std::transform(kAxisNames.begin(), kAxisNames.end(), values.begin(), [&](std::string_view axis) {
+    return parameters.Number(before + std::string(axis) + after);
+  });
   return values;
 }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <ranges>
 
 #include "engine/core/number_text.h"
-#include "engine/motion/kinematics/axes.h"
 #include "engine/motion/kinematics/speed_bound.h"
 
 namespace rmlcell::optimo {
@@ -89,8 +89,8 @@ std::vector<BeyondTravel> Travel::BeyondTravelOf(const motion::PathPiece& path) 
   if (StaysInside(path, head, limits)) return {};
   const auto worst = motion::ExcessOfEach(path, head, limits);
   std::vector<BeyondTravel> beyond;
-  for (const std::size_t i : motion::kAxes) {
-    const auto axis = static_cast<int>(i);
+  for (const int axis : std::views::iota(0, motion::kAxisCount)) {
+    const auto i = static_cast<std::size_t>(axis);
     const double slack = std::max(SlackOf(limits.travel_min[i]), SlackOf(limits.travel_max[i]));
     if (worst[i].excess <= slack) continue;
     const double at_target = motion::ExcessOfAxis(axis, axes_at(path.to()), limits);
