@@ -229,6 +229,27 @@ TEST(LimitRules, TheLeastMotion) {
   Expect({kThere + "SPEED ?\nMOVE (1000.,1000.,-400.,0.,0.)\n", {"0."}, {}});
 }
 
+// OPT-2.27, OPT-E.348: any radius above 0 is one, also of a hole that has no /VIA.
+TEST(LimitRules, TheRadiusOfAHole) {
+  for (const std::string via : {"", "/VIA (1000.,1000.,-300.,0.,0.)"}) {
+    Expect({"COORD ABSOL\nVR[0]=?\nPATH HOLE (VR[0])\nMOVE (1000.,1000.,-400.,0.,0.)" + via + "\n",
+            {"0.001", "50."},
+            {"0.", "-1."},
+            348});
+  }
+}
+
+// OPT-2.48: behind a /FLY move the shortest way is passed into; a MOVE to the same place is none.
+TEST(LimitRules, TheShortestWayBehindAPassage) {
+  const auto cancelled = [](const std::string& y) {
+    return RunText(kThere + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.," + y +
+                   ",-400.,0.,0.)\n")
+        .Count("E7304");
+  };
+  EXPECT_EQ(cancelled("1000.5"), 0);
+  EXPECT_EQ(cancelled("1000."), 1);
+}
+
 // OPT-4.38, OPT-E.7320: 100 % is not limited, more is, and once a run; the machine never goes
 // faster.
 TEST(LimitRules, TheSpeedOfTheMachine) {

@@ -103,6 +103,8 @@ TEST(WorkRules, OnlyADwellCancelsAPassage) {
                    "MOVE (1100.,1100.,-400.,0.,0.)\nWORK 1,0/OFF\n")
         .Count("E7304");
   };
+  EXPECT_TRUE(RunText("WORKDEF 1,0 (10.,60.,.001,95.)\nWORK 1,0/ON\nWORK 1,0/OFF\n")
+                  .Told("wait pierce 0.001"));
   EXPECT_EQ(cancelled("0."), 0);
   EXPECT_EQ(cancelled("0.001"), 1);
 }
