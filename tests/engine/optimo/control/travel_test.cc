@@ -220,6 +220,18 @@ TEST(Travel, AnAxisThatHoldsAContourBackIsToldOnce) {
   EXPECT_EQ(std::ranges::count(StepsOf(ran, 7321), ran.Finding(7321).step), 1);
 }
 
+// OPT-2.16: a little is told, too; rounding is not: 100 mm/s along X.
+TEST(Travel, AnAxisThatHoldsALittleBackIsTold) {
+  const auto told = [](const std::string& speed_of_x) {
+    return RunText(kAbsol + "SPEED 20\nMOVE (521.02,2201.2,-350.,0.,0.)\n",
+                   {.parameters = {{"AXIS_SPEED_X", speed_of_x}}})
+        .Count("E7321");
+  };
+  EXPECT_EQ(told("99.99"), 1);
+  EXPECT_EQ(told("99.99999"), 0);
+  EXPECT_EQ(told("100"), 0);
+}
+
 // motion.md 5.1: neither a small radius nor a short way is an axis.
 TEST(Travel, ARadiusIsNoAxis) {
   const Ran ran =
