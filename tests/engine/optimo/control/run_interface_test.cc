@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "engine/machine/step_entry.h"
 #include "engine/optimo/control/optimo_family.h"
 #include "tests/engine/optimo/control/run_text.h"
 
@@ -166,6 +168,38 @@ TEST(RunInterface, TimeOfAHaltedRun) {
   alone->Apply({At(3.0), InputKind::kStart});
   EXPECT_EQ(alone->Advance(At(9.0)), RunPhase::kFinished);
   EXPECT_EQ(alone->state().time, At(2.0));
+}
+
+// LIVE-6.02: what the program and its FUNCTIONs have set, each level by itself.
+TEST(RunInterface, TheStateOfItsPrograms) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run = RunOf(
+      SetupOf("ERR 800\nTIMER (5.,900)/AUTO\nWORKDEF 1,0 (8.,75.,.2,50.,12)\nWORKDEF 2,9 (15)\n"
+              "WORK 0,0/ON\nWORK 2,9/ON\nFUNCTION 44 (1.5,0.,-2.)\nENDTASK\n"
+              "800 VI[2]=1\n900 RETURN\n",
+              {.programs = {{44, "ERR 700\nFUNCTION 45 (3.)\nENDTASK\n700 RETURN\n"},
+                            {45, "DELAY 9\n"}}}),
+      nobody);
+  run->Advance(At(1.0));
+  const std::vector<machine::StateItem> items = run->enterable()->items();
+  const auto value = [&](std::string_view name) {
+    const auto found = std::ranges::find(items, name, &machine::StateItem::name);
+    return found == items.end() ? "none" : found->value;
+  };
+  EXPECT_EQ(value("stack"), "1/7 44/2 45/1");
+  EXPECT_EQ(value("ERR"), "800, 700, OFF");
+  EXPECT_EQ(value("PAR[0]"), "none");
+  EXPECT_EQ(value("PAR[0] of FUNCTION level 1"), "1.5");
+  EXPECT_EQ(value("PAR[1] of FUNCTION level 1"), "none");
+  EXPECT_EQ(value("PAR[2] of FUNCTION level 1"), "-2");
+  EXPECT_EQ(value("PAR[0] of FUNCTION level 2"), "3");
+  EXPECT_EQ(value("TIMER"), "900 in 4.04 s, each 5 s");  // of 105 cycles
+  EXPECT_EQ(value("WORKDEF 1,0"), "8, 75, 0.2, 50, 12");
+  EXPECT_EQ(value("WORKDEF 0,0"), "none");
+  EXPECT_EQ(value("WORKDEF 2,9"), "0, 0, 0, 0, 15");
+  EXPECT_EQ(value("WORK"), "0,0 2,9");
+  EXPECT_EQ(value("clamps"), "below SAFE_Z");
+  EXPECT_EQ(value("caller 1 ERR"), "none");
 }
 
 // A finished run takes no more keys, and ends only once.
