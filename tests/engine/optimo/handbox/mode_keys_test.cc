@@ -209,7 +209,9 @@ TEST_F(ModeKeys, KeptModesHaveTheirRanges) {
     other.replace(at, line.size(), text);
     machine::RunObserver nobody;
     const auto made = machine::Machine::Make(family_, parameters(), {}, other, nobody);
-    if (made) EXPECT_EQ((*made)->Save(), other);
+    if (made) {
+      EXPECT_EQ((*made)->Save(), other);
+    }
     return bool(made);
   };
   const std::vector<std::string> least(8, "0");
@@ -223,7 +225,9 @@ TEST_F(ModeKeys, KeptModesHaveTheirRanges) {
     EXPECT_FALSE(taken(numbers)) << n;
     numbers = most;
     numbers[n] = beyond[n];
-    if (!beyond[n].empty()) EXPECT_FALSE(taken(numbers)) << n;
+    if (!beyond[n].empty()) {
+      EXPECT_FALSE(taken(numbers)) << n;
+    }
     if (n < 5) {
       numbers[n] = "0.5";
       EXPECT_FALSE(taken(numbers)) << n;
