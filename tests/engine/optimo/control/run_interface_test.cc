@@ -5,6 +5,8 @@
 
 #include "engine/machine/step_entry.h"
 #include "engine/optimo/control/optimo_family.h"
+#include "engine/optimo/machine/machine_state.h"
+#include "engine/optimo/machine/optimo_parameters.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 // What a run shows to those who drive it and watch it: state, lines of the source, what a comment
@@ -200,6 +202,37 @@ TEST(RunInterface, TheStateOfItsPrograms) {
   EXPECT_EQ(value("WORK"), "0,0 2,9");
   EXPECT_EQ(value("clamps"), "below SAFE_Z");
   EXPECT_EQ(value("caller 1 ERR"), "none");
+}
+
+// LIVE-6.05: up to SAFE_Z, across, down; each leg begins where the one before ends, so that a
+// machine that stands 400 mm outside of its travel is inside on the last one.
+TEST(RunInterface, TheWayToAStep) {
+  machine::RunObserver nobody;
+  machine::RunSetup setup = SetupOf(kAbsol + "MOVE (1000.,1000.,-400.,0.,0.)\nVI[2]=1\n");
+  MachineState stands = NewMachine(Resolve(setup.parameters));
+  stands.axes.column = {4000.0, 1000.0, -200.0};
+  const std::unique_ptr<machine::Run> run = RunOf(std::move(setup), nobody);
+  machine::EnterableRun& entered = *run->enterable();
+  ASSERT_TRUE(entered.HaltBefore({.at = {1, 4}}).ok());
+  EXPECT_EQ(run->Advance(At(1000.0)), RunPhase::kHalted);
+  const auto legs = entered.PlanApproach(EncodeMachineState(stands), machine::ApproachWay::kSafe);
+  ASSERT_EQ(legs.size(), 3U);
+  std::string text;
+  for (const machine::ApproachMotion& leg : legs) {
+    text += std::string(leg.path) + " to " + std::to_string(std::lround(leg.to.column.x())) + "," +
+            std::to_string(std::lround(leg.to.column.z())) + " at " +
+            std::to_string(std::lround(leg.feed_mm_s)) + ":";
+    for (const auto& one : leg.beyond) {
+      text += " axis " + std::to_string(one.axis) + " by " +
+              std::to_string(std::lround(one.excess)) + (one.at_target ? " there" : "");
+    }
+    text += "; ";
+  }
+  EXPECT_EQ(text,
+            "PTP to 4000,-50 at 0: axis 0 by 400 there; PTP to 1000,-50 at 0: axis 0 by 400; "
+            "LIN to 1000,-100 at 50:; ");
+  EXPECT_TRUE(
+      entered.PlanApproach(EncodeMachineState(stands), machine::ApproachWay::kDirect).empty());
 }
 
 // A finished run takes no more keys, and ends only once.
