@@ -271,7 +271,7 @@ TEST(ToolRules, MovedByHandDuringTheZeroProcedure) {
   machine::RunObserver nobody;
   Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(
       SetupOf("ZERO\nVI[2]=1\n",
-              {.parameters = {{"MECH_ZERO_X", "4000"}}, .override_percent = 55.0}),
+              {.parameters = {{"MECH_ZERO_Z", "1200"}}, .override_percent = 55.0}),
       nobody);
   ASSERT_TRUE(bool(run));
   (*run)->Advance(At(0.5));
@@ -286,7 +286,7 @@ TEST(ToolRules, MovedByHandDuringTheZeroProcedure) {
   EXPECT_EQ((*run)->outcome().kind, machine::OutcomeKind::kCompleted);
   EXPECT_TRUE((*run)->state().zeroed);
   const motion::AxisPose end = (*run)->state().axes;
-  EXPECT_LT((end.column - motion::MachineVector{4000.0, 0.0, 0.0}).norm(), 1e-9);
+  EXPECT_LT((end.column - motion::MachineVector{0.0, 0.0, 1200.0}).norm(), 1e-9);
 }
 
 // OPT-4.18, OPT-4.49: STOP halts the zero procedure, START finishes it.
