@@ -1,6 +1,7 @@
 #include "engine/optimo/control/actuators.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace rmlcell::optimo {
@@ -11,8 +12,12 @@ constexpr double kFullPower = 100.0;
 // What ZERO moves at a time, as its moves are told. OPT-4.49
 constexpr std::string_view kZeroGroups[] = {"ZERO_Z", "ZERO_AB", "ZERO_XY"};
 
-// Of which only one is on at a time. -1: the output is no gas.
-int OtherGas(int index) { return index == kGas2 ? kGas3 : index == kGas3 ? kGas2 : -1; }
+// Of which only one is on at a time. Nothing: the output is no gas.
+std::optional<std::size_t> OtherGas(int index) {
+  if (index == kGas2) return kGas3;
+  if (index == kGas3) return kGas2;
+  return std::nullopt;
+}
 
 constexpr int kLastZeroGroup = 2;  // X and Y: Moves::ZeroAxes
 
@@ -57,8 +62,8 @@ void Actuators::SetOutput(int index, double value) {
   const bool on = value != 0.0;
   if (s_.gas_refused == index) s_.gas_refused = 0;
   if (outputs[n] == on) return;
-  const int other = OtherGas(index);
-  if (on && other >= 0 && outputs[static_cast<std::size_t>(other)]) {
+  const std::optional<std::size_t> other = OtherGas(index);
+  if (on && other && outputs[*other]) {
     s_.gas_refused = index;
     return telling_.Warn(ErrorCode::kGasConflict,
                          "OL[" + Told("output", index) + "] while another assist gas is on",
@@ -66,7 +71,7 @@ void Actuators::SetOutput(int index, double value) {
   }
   outputs[n] = on;
   telling_.Signal(machine::Signal::kOutput, index, value);
-  if (other >= 0) {
+  if (other) {
     telling_.Signal(machine::Signal::kGas, 0, !on ? 1 : index == kGas2 ? 2 : 3);  // OPT-5.42
   }
   if (index == kSensor) telling_.Signal(machine::Signal::kSensor, 0, value);

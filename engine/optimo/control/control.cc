@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "engine/core/number_text.h"
@@ -80,7 +81,6 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
 RunPhase Control::Advance(SimTime until) {
   int carried_out = 0;
   for (;;) {
-    if (now().phase == RunPhase::kFinished) return now().phase;
     // A key that was pressed behind the step is not for who comes to it. LIVE-6.01
     if (now().phase == RunPhase::kHalted && s_.entry.halted) return now().phase;
     if (ScriptedIsDue()) ApplyScripted();
@@ -232,9 +232,10 @@ void Control::ApplyScripted() {
   while (ScriptedIsDue() && now().phase != RunPhase::kFinished) {
     const machine::InputChange input = setup_.inputs[s_.next_input++];
     // Of several overrides of one instant the last one counts (motion.md 10, property 12).
-    if (input.kind == machine::InputKind::kOverride && s_.next_input < setup_.inputs.size()) {
-      const machine::InputChange& next = setup_.inputs[s_.next_input];
-      if (next.kind == input.kind && next.at == input.at) continue;
+    const auto later = std::span(setup_.inputs).subspan(s_.next_input);
+    if (input.kind == machine::InputKind::kOverride && !later.empty() &&
+        later.front().kind == input.kind && later.front().at == input.at) {
+      continue;
     }
     Apply(input);
   }
@@ -329,9 +330,8 @@ std::vector<machine::Place> Control::Stack() const {
       const LinkedModule& linked =
           program.program->executable.modules[static_cast<std::size_t>(frame.module)];
       const auto add = [&](std::uint32_t next) {
-        const std::vector<Instruction>& all = linked.module.instructions;
-        const std::size_t at = next > 0 ? next - 1 : 0;
-        stack.push_back(telling_.PlaceOf(linked.slot, at < all.size() ? all[at].step : 0));
+        const std::uint32_t step = next == 0 ? 0 : linked.module.instructions[next - 1].step;
+        stack.push_back(telling_.PlaceOf(linked.slot, step));
       };
       for (const std::uint32_t after : frame.returns) add(after);
       add(frame.next);

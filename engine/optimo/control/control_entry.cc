@@ -1,5 +1,7 @@
 // A run that begins at a step. LIVE-6
 #include <algorithm>
+#include <ranges>
+#include <tuple>
 #include <utility>
 
 #include "engine/machine/step_entry.h"
@@ -23,16 +25,12 @@ motion::PathPiece PathOf(const ApproachLeg& leg, const motion::Head& head,
 std::vector<ApproachLeg> LegsBetween(const motion::AxisPose& from, const motion::AxisPose& to,
                                      double safe_z_mm) {
   const double across_z = std::max(safe_z_mm, to.column.z());
-  std::vector<ApproachLeg> legs;
-  if (from.column.z() < across_z) {
-    ApproachLeg& up = legs.emplace_back();
-    up = {.to = from, .speed_percent = kAcrossSpeed_percent};
-    up.to.column.z() = across_z;
-  }
-  ApproachLeg& across = legs.emplace_back();
-  across = {.to = to, .speed_percent = kAcrossSpeed_percent};
+  ApproachLeg up{.to = from, .speed_percent = kAcrossSpeed_percent};
+  up.to.column.z() = std::max(from.column.z(), across_z);
+  ApproachLeg across{.to = to, .speed_percent = kAcrossSpeed_percent};
   across.to.column.z() = across_z;
-  legs.push_back({.path = PathType::kLin, .to = to, .speed_percent = kDownSpeed_percent});
+  const ApproachLeg down{.path = PathType::kLin, .to = to, .speed_percent = kDownSpeed_percent};
+  std::vector<ApproachLeg> legs{up, across, down};
   motion::AxisPose at = from;
   std::erase_if(legs, [&](const ApproachLeg& leg) {
     return !(motion::PathPiece::Joint(std::exchange(at, leg.to), leg.to).length() > 0.0);
@@ -41,9 +39,8 @@ std::vector<ApproachLeg> LegsBetween(const motion::AxisPose& from, const motion:
 }
 
 bool IsOpen(const EntryState::TimedGosub& gosub, const ProgramCounter& counter) {
-  if (counter.call_level() != gosub.calls) return counter.call_level() > gosub.calls;
-  if (counter.level() != gosub.level) return counter.level() > gosub.level;
-  return counter.frame().returns.size() >= gosub.depth;
+  return std::tuple(counter.call_level(), counter.level(), counter.frame().returns.size()) >=
+         std::tuple(gosub.calls, gosub.level, gosub.depth);
 }
 
 }  // namespace
@@ -226,12 +223,13 @@ void Control::ArriveAtEntry() {
     actuators_.Carry(
         {.kind = kind, .place = now().place, .index = static_cast<int>(index), .value = value});
   };
+  const auto numbers = std::views::iota(std::size_t{0}, arrival.outputs.logical.size());
   for (const bool on : {false, true}) {  // one assist gas is off before the other is on
-    for (std::size_t n = 0; n < arrival.outputs.logical.size(); ++n) {
+    for (const std::size_t n : numbers) {
       if (arrival.outputs.logical[n] == on) carry(PassageEffect::Kind::kOutput, n, on ? 1.0 : 0.0);
     }
   }
-  for (std::size_t n = 0; n < arrival.outputs.analogue.size(); ++n)
+  for (const std::size_t n : numbers)
     carry(PassageEffect::Kind::kAnalogue, n, static_cast<double>(arrival.outputs.analogue[n]));
   carry(PassageEffect::Kind::kSchedule, static_cast<std::size_t>(arrival.outputs.schedule), 0.0);
   s_.actuators.gas_refused = arrival.gas_refused;

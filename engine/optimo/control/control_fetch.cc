@@ -42,7 +42,7 @@ bool Control::OnlyProgram() const {
 // Plain steps, as many as come one behind the other and are allowed: how many that were. What comes
 // next is left to Fetch.
 int Control::FetchPlain(int most) {
-  if (!plain_.come() || !OnlyProgram() || s_.steps >= setup_.budget.steps) return 0;
+  if (!plain_.come() || !OnlyProgram()) return 0;
   NoteInstant();
   const bool ahead = ride_.passing();
   if (ahead) most = std::min(most, ride_.may_run_ahead());

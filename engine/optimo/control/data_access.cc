@@ -1,11 +1,15 @@
 #include "engine/optimo/control/data_access.h"
 
+#include <ranges>
+
 namespace rmlcell::optimo {
 namespace {
 
 constexpr int kFirstWorkFlag = 87;  // IL[87 + p], OPT-3.37
-constexpr int kLastWorkFlag = 94;
-constexpr int kMotionFlag = 95;  // OPT-7.68
+constexpr int kMotionFlag = 95;     // behind the last of them, OPT-7.68
+
+// IL that the control itself sets.
+bool IsOwnFlag(int index) { return index >= kFirstWorkFlag && index <= kMotionFlag; }
 
 // PAR of an activation that need not be the innermost any more.
 class WithParameters final : public VariableAccess {
@@ -32,10 +36,10 @@ bool DataAccess::Connected(std::uint8_t group) const {
 // The outside as it is now.
 double DataAccess::InputNow(VariableGroup group, int index) const {
   if (group == VariableGroup::kIl) {
-    if (index >= kFirstWorkFlag && index <= kLastWorkFlag) {
+    if (index == kMotionFlag) return ride_.moves() || ride_.more_to_come() ? 1.0 : 0.0;
+    if (IsOwnFlag(index)) {
       return counter_.program().processes.flag(index - kFirstWorkFlag) ? 1.0 : 0.0;
     }
-    if (index == kMotionFlag) return ride_.moves() || ride_.more_to_come() ? 1.0 : 0.0;
     return s_.area.il_physical[static_cast<std::size_t>(index)] ? 1.0 : 0.0;
   }
   if (index <= 2) {
@@ -53,14 +57,11 @@ bool DataAccess::IsOfTheRun(Variable variable) const {
   const int n = variable.index;
   switch (variable.group) {
     case VariableGroup::kIl:
-      return n >= kFirstWorkFlag && n <= kMotionFlag;
+      return IsOwnFlag(n);
     case VariableGroup::kIa:
       return false;
     case VariableGroup::kOa:
       if (n == 0) return true;
-      break;
-    case VariableGroup::kPar:
-      if (counter_.level() > 1) return true;
       break;
     default:
       break;
@@ -108,7 +109,7 @@ float DataAccess::Peek(Variable variable) const {
       return data.vl[n] ? 1.0F : 0.0F;
     case VariableGroup::kIl:
       // Work and motion flags are the control's own: they hold in simulation too (OPT-6.20).
-      if (Connected(kGroupIl) || (n >= kFirstWorkFlag && n <= kMotionFlag))
+      if (Connected(kGroupIl) || IsOwnFlag(variable.index))
         return InputNow(variable.group, variable.index) != 0.0 ? 1.0F : 0.0F;
       return data.il[n] ? 1.0F : 0.0F;
     case VariableGroup::kOl:
@@ -317,8 +318,7 @@ Status DataAccess::Assign(const Instruction& i) {
   const Result<int> number = TruncateToInteger(static_cast<float>(*value));
   if (!number) return number.error();
   const int width = i.numbers[0];
-  if (*number < 0 || (width < 16 && *number >= (1 << width)) ||
-      target.index + width > kVariableCount) {
+  if (*number < 0 || *number >= (1 << width) || target.index + width > kVariableCount) {
     return Error{ErrorCode::kAssignGroup,
                  Told("value", *number) + " into " + Told("places", width) + " places from " +
                      ToldVariable(target.variable()),
@@ -355,7 +355,7 @@ Status DataAccess::ConnectOutputs(std::uint8_t groups) {
   if (logical && !data.ol[kGas3]) {
     if (const Status off = SetOutput(kGas3, false); !off) return off.error();
   }
-  for (int n = 0; n < kVariableCount; ++n) {
+  for (const int n : std::views::iota(0, kVariableCount)) {
     const auto at = static_cast<std::size_t>(n);
     if (logical) {
       if (const Status set = SetOutput(n, data.ol[at]); !set) return set.error();

@@ -1,6 +1,8 @@
 #include "engine/optimo/control/optimo_family.h"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "engine/core/units.h"
@@ -240,10 +242,11 @@ class Family final : public machine::MachineFamily {
       if (!condition) return condition.error();
     }
     // That of streams, but for what they do not have.
-    const bool counts =
-        breakpoint.from_pass >= 1 && breakpoint.from_pass <= machine::kBreakpointPassMax;
+    const std::uint64_t pass = breakpoint.from_pass;
     return machine::MachineFamily::CheckBreakpoint(
-        {.at = breakpoint.at, .from_pass = counts ? 1 : breakpoint.from_pass});
+        {.at = breakpoint.at,
+         .from_pass =
+             pass > machine::kBreakpointPassMax ? pass : std::min<std::uint64_t>(pass, 1)});
   }
 
   Status CheckWrite(const machine::Parameters& parameters, std::string_view name,

@@ -79,8 +79,8 @@ class Tools final : public machine::Tools {
                       .rotary_table = resolved.rotary_table});
     if (!linked) return linked.error();
     machine::LinkedProgram made{EncodeExecutable(*linked), {}};
-    for (std::size_t i = 1; i < linked->modules.size(); ++i)
-      made.functions.push_back(linked->modules[i].slot);
+    for (const LinkedModule& function : std::span(linked->modules).subspan(1))
+      made.functions.push_back(function.slot);
     return made;
   }
 

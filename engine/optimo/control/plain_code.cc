@@ -69,8 +69,8 @@ class PlainWriter {
     const auto count = static_cast<std::uint32_t>(module_.instructions.size());
     std::vector<std::uint32_t>& starts = code_.starts_;
     starts.reserve(count + 1U);
-    for (std::uint32_t n = 0; n < count; ++n) {
-      const Instruction& i = module_.instructions[n];
+    for (const Instruction& i : module_.instructions) {
+      const auto n = static_cast<std::uint32_t>(starts.size());  // each has a start
       if (i.op == Op::kDeclare) {
         starts.push_back(kNoIndex);
       } else if (i.reads_machine || !WriteStep(i, n)) {

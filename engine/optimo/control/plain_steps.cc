@@ -1,5 +1,6 @@
 #include "engine/optimo/control/plain_steps.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -261,7 +262,7 @@ const PlainOperation* PlainActivation::Return() {
 
 const PlainOperation* PlainActivation::Call(const PlainOperation& end) {
   if (counter_.level() > ProgramCounter::kFunctionLevels) return nullptr;
-  for (std::size_t n = end.result; n < arguments_.size(); ++n) arguments_[n] = 0.0F;
+  std::fill(arguments_.begin() + end.result, arguments_.end(), 0.0F);
   frame_->next = end.next;
   counter_.EnterFunction(counter_.program().program->executable.modules[end.target], arguments_);
   return Enter();

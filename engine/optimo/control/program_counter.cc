@@ -34,8 +34,8 @@ Loaded Load(Executable executable) {
   for (const LinkedModule& linked : loaded->executable.modules)
     loaded->index.emplace_back(linked.module);
   loaded->plain.reserve(loaded->index.size());
-  for (std::size_t n = 0; n < loaded->index.size(); ++n)
-    loaded->plain.emplace_back(loaded->executable, n, loaded->index[n]);
+  for (const ModuleIndex& index : loaded->index)
+    loaded->plain.emplace_back(loaded->executable, loaded->plain.size(), index);
   return loaded;
 }
 

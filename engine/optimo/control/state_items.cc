@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,6 +28,11 @@ std::string PoseText(const motion::AxisPose& axes) {
 std::string ValueText(float value) { return ShortestText(static_cast<double>(value)); }
 std::string ValueText(bool value) { return value ? "1" : "0"; }
 
+template <class Values>
+auto PlacesIn(const Values& values) {
+  return std::views::iota(std::size_t{0}, values.size());
+}
+
 class Items {
  public:
   void Add(std::string name, std::string value, StartAction action = StartAction::kSet) {
@@ -34,7 +40,7 @@ class Items {
   }
   template <class Values>
   void AddAll(std::string_view group, const Values& values, StartAction action) {
-    for (std::size_t n = 0; n < values.size(); ++n)
+    for (const std::size_t n : PlacesIn(values))
       Add(std::string(group) + "[" + std::to_string(n) + "]", ValueText(values[n]), action);
   }
   void Add(std::vector<machine::ModalValue> values) {
@@ -70,12 +76,12 @@ void AddProgram(const ProgramContext& program, const std::string& prefix, SimTim
   for (machine::ModalValue& value : ModalValuesOf(program.modal))
     items.Add(prefix + value.name, std::move(value.value));
   std::string handlers;
-  for (std::size_t n = 0; n < program.frames.size(); ++n) {
+  for (const std::size_t n : PlacesIn(program.frames)) {
     const Frame& frame = program.frames[n];
-    handlers += (n > 0 ? ", " : "") +
+    handlers += (handlers.empty() ? "" : ", ") +
                 (frame.error_label ? std::to_string(*frame.error_label) : std::string("OFF"));
-    const std::string level = n > 0 ? " of FUNCTION level " + std::to_string(n) : "";
-    for (std::size_t i = 0; i < frame.parameters.size(); ++i) {
+    const std::string level = n == 0 ? "" : " of FUNCTION level " + std::to_string(n);
+    for (const std::size_t i : PlacesIn(frame.parameters)) {
       if (frame.parameters[i] == 0.0F) continue;  // as all are that nobody passed
       items.Add(prefix + "PAR[" + std::to_string(i) + "]" + level, ValueText(frame.parameters[i]));
     }
@@ -90,8 +96,8 @@ void AddProgram(const ProgramContext& program, const std::string& prefix, SimTim
   }
   items.Add(prefix + "TIMER", timer);
   std::string on;
-  for (std::size_t kind = 0; kind < program.processes.on.size(); ++kind) {
-    for (std::size_t p = 0; p < program.processes.on[kind].size(); ++p) {
+  for (const std::size_t kind : PlacesIn(program.processes.on)) {
+    for (const std::size_t p : PlacesIn(program.processes.on[kind])) {
       const std::string name = std::to_string(kind) + "," + std::to_string(p);
       const auto& definition = program.processes.definitions[kind][p];
       if (definition) items.Add(prefix + "WORKDEF " + name, WorkText(*definition));
@@ -129,7 +135,7 @@ std::vector<StateItem> ItemsOf(std::span<const ProgramContext> programs,
   Items items;
   items.Add("stack", StackText(stack));
   AddProgram(programs.back(), "", now, items);
-  for (std::size_t n = 0; n + 1 < programs.size(); ++n)
+  for (const std::size_t n : PlacesIn(programs.first(programs.size() - 1)))
     AddProgram(programs[n], "caller " + std::to_string(n + 1) + " ", now, items);
   return items.Take();
 }

@@ -1,5 +1,6 @@
 #include "engine/optimo/handbox/display.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace rmlcell::optimo {
@@ -10,7 +11,7 @@ constexpr std::size_t kNameWidth = 8;      // OPT-4.02
 
 std::string Digits(int number, std::size_t width) {
   const std::string digits = std::to_string(number);
-  return digits.size() < width ? std::string(width - digits.size(), '0') + digits : digits;
+  return std::string(width - std::min(width, digits.size()), '0') + digits;
 }
 
 }  // namespace

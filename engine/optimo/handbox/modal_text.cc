@@ -16,10 +16,11 @@ std::vector<double> ModalNumbers(const machine::MachineView& view, std::string_v
   const std::string text = ModalText(view, name);
   std::vector<double> numbers;
   if (!text.starts_with('(')) return numbers;
-  for (std::size_t at = 1; at < text.size();) {
-    const std::size_t end = std::min(text.find_first_of(",)", at), text.size());
-    numbers.push_back(ParseDouble(text.substr(at, end - at)).value_or(0.0));
-    at = end + 2;  // the blank behind a comma
+  std::string_view rest = std::string_view(text).substr(1);
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find_first_of(",)"), rest.size());
+    numbers.push_back(ParseDouble(rest.substr(0, end)).value_or(0.0));
+    rest.remove_prefix(std::min(end + 2, rest.size()));  // the blank behind a comma
   }
   return numbers;
 }
@@ -32,9 +33,11 @@ std::string WithReal(std::string name, double value) {
 
 std::string WithList(std::string name, const std::vector<double>& values) {
   name += " (";
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) name += ", ";
-    PrintReal(static_cast<float>(values[i]), name);
+  std::string_view between;
+  for (const double value : values) {
+    name += between;
+    PrintReal(static_cast<float>(value), name);
+    between = ", ";
   }
   return name + ")";
 }

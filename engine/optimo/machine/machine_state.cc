@@ -1,5 +1,6 @@
 #include "engine/optimo/machine/machine_state.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -137,13 +138,12 @@ std::string EncodeMachineState(const MachineState& state) {
 }
 
 Result<MachineState> DecodeMachineState(std::string_view bytes) {
-  const auto version =
-      static_cast<std::uint8_t>(bytes.size() > kMagic.size() ? bytes[kMagic.size()] : 0);
+  Reader reader(bytes.substr(std::min(bytes.size(), kMagic.size())));
+  const std::uint8_t version = reader.Byte();
   if (!bytes.starts_with(kMagic) || version < 1 || version > kVersion) {
     return Error{
         ErrorCode::kCellBadText, "these bytes are no state of an Optimo of this version", {}};
   }
-  Reader reader(bytes.substr(kMagic.size() + 1));
   MachineState state;
   Visit(reader, state);
   const std::uint8_t flags = reader.Byte();
@@ -192,14 +192,15 @@ machine::MachineOutputs OutputsOf(const Outputs& outputs) {
   const auto add = [&made](std::string name, double value) {
     if (value != 0.0) made.on.push_back({.name = std::move(name), .value = value});
   };
-  const auto numbered = [](const char* bank, std::size_t n) {
-    return bank + ("[" + std::to_string(n) + "]");
+  const auto add_all = [&add](const std::string& bank, const auto& values) {
+    int n = 0;
+    for (const auto value : values) {
+      if (value != 0) add(bank + "[" + std::to_string(n) + "]", static_cast<double>(value));
+      ++n;
+    }
   };
-  for (std::size_t n = 0; n < outputs.logical.size(); ++n) {
-    if (outputs.logical[n]) add(numbered("OL", n), 1.0);
-  }
-  for (std::size_t n = 0; n < outputs.analogue.size(); ++n)
-    add(numbered("OA", n), static_cast<double>(outputs.analogue[n]));
+  add_all("OL", outputs.logical);
+  add_all("OA", outputs.analogue);
   add("rotary_table", outputs.table_deg);
   return made;
 }

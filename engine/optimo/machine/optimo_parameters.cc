@@ -91,9 +91,9 @@ constexpr std::array<std::string_view, motion::kAxisCount> kAxisNames = {"X", "Y
 motion::AxisValues PerAxis(const machine::Parameters& parameters, const std::string& before,
                            const std::string& after) {
   motion::AxisValues values{};
-  for (std::size_t i = 0; i < motion::kAxisCount; ++i) {
-    values[i] = parameters.Number(before + std::string(kAxisNames[i]) + after);
-  }
+  std::transform(kAxisNames.begin(), kAxisNames.end(), values.begin(), [&](std::string_view axis) {
+    return parameters.Number(before + std::string(axis) + after);
+  });
   return values;
 }
 

@@ -1,6 +1,7 @@
 #include "engine/optimo/ride/ride.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/optimo/machine/motion_errors.h"
 
@@ -106,9 +107,7 @@ void Ride::Start() {
     while (!s_.notes.empty() && s_.notes.front().first < tag) s_.notes.pop_front();
     if (s_.program == GoesOn::kComes && tag >= s_.beside_from) s_.program = GoesOn::kBeside;
     if (MoveNote* note = NoteOf(tag)) {
-      const std::vector<BeyondTravel> beyond = std::move(note->beyond);
-      note->beyond.clear();
-      travel_.TellViolations(note->place, beyond);
+      travel_.TellViolations(note->place, std::exchange(note->beyond, {}));
       s_.note = *note;
     }
     travel_.TellSpeedHeld(motion, s_.note.place, s_.note.feed_mm_s);

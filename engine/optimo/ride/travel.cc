@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <ranges>
 
 #include "engine/core/number_text.h"
 #include "engine/motion/kinematics/speed_bound.h"
@@ -88,7 +89,7 @@ std::vector<BeyondTravel> Travel::BeyondTravelOf(const motion::PathPiece& path) 
   if (StaysInside(path, head, limits)) return {};
   const auto worst = motion::ExcessOfEach(path, head, limits);
   std::vector<BeyondTravel> beyond;
-  for (int axis = 0; axis < motion::kAxisCount; ++axis) {
+  for (const int axis : std::views::iota(0, motion::kAxisCount)) {
     const auto i = static_cast<std::size_t>(axis);
     const double slack = std::max(SlackOf(limits.travel_min[i]), SlackOf(limits.travel_max[i]));
     if (worst[i].excess <= slack) continue;
@@ -161,7 +162,7 @@ void Travel::TellSpeedHeld(const motion::PlannedMotion& motion, const machine::P
   const auto kind = motion.path.kind();
   const bool contour =
       kind == motion::PathPiece::Kind::kLine || kind == motion::PathPiece::Kind::kArc;
-  if (!contour || feed_mm_s <= 0.0 || motion.limits.speed >= feed_mm_s * kFullSpeed) {
+  if (!contour || motion.limits.speed >= feed_mm_s * kFullSpeed) {
     return;
   }
   if (s_.held_by_axis.contains({place.program, place.step})) return;

@@ -1,4 +1,5 @@
 // What a machine that lives has selected, and which programs its run is in (live.md 2, 5).
+#include "engine/machine/tools.h"
 #include "tests/engine/machine/machine_bed.h"
 
 namespace rmlcell::machine {
@@ -118,7 +119,16 @@ TEST_F(SelectedProgram, RoomForExecutablesIsLookedFor) {
   memory[3].object = Bytes::Of(std::string(2000, 'x'));
   double least = 2000.0;
   while (check(least) != "all") ++least;
-  EXPECT_LT(least, 2400.0);
+  // Both objects, and the executables that are made of them.
+  const ObjectLookup objects = [&](int slot) -> std::optional<std::string_view> {
+    return std::string_view(*memory.at(slot).object);
+  };
+  std::size_t bytes = 2000;
+  for (const int slot : {1, 2}) {
+    bytes += memory.at(slot).object->size() +
+             family_.tools()->Link(slot, objects, parameters())->executable.size();
+  }
+  EXPECT_EQ(least, static_cast<double>(bytes));
   EXPECT_THAT(check(least - 1.0), HasSubstr("OPT-E7109 no room for executable 102"));
   EXPECT_THAT(check(2000.0), HasSubstr("OPT-E7109 no room for executable 101"));
   // One that was made before takes its place already, and the run makes it no more.

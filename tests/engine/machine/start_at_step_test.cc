@@ -110,6 +110,23 @@ TEST_F(StartAt, AfterTheEntryNothingIsDifferent) {
   }
 }
 
+// LIVE-6.05: across at SPEED 40, down at SPEED 10, both by the override: of 500 mm/s.
+TEST_F(StartAt, ApproachesByTheOverride) {
+  for (const double percent : {50.0, 145.0}) {
+    Observe({kSquare});
+    Good(ChangeOverride{percent});
+    Good(At1(14));
+    GoOn(At(0.7));
+    const double x = machine->status().run.axes.column.x();
+    GoOn(At(0.8));
+    EXPECT_NEAR(machine->status().run.axes.column.x() - x, 0.1 * 2.0 * percent, 1e-6) << percent;
+    GoOn(At(100.0));
+    EXPECT_NEAR(outside.feeds.front(), 0.0, 1e-9);
+    EXPECT_NEAR(outside.feeds.back(), 0.5 * percent, 1e-9);
+    Over();
+  }
+}
+
 // LIVE-6.05: up, across, down; LIVE-6.09: marked, never cut, never counted.
 TEST_F(StartAt, ApproachesSafely) {
   Observe({kSquare});

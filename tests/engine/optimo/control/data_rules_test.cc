@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/machine/machine_state.h"
+#include "engine/optimo/machine/optimo_parameters.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 // Variables, images and work offsets while a program runs.
@@ -188,6 +190,103 @@ TEST(DataRules, ToolOffsetsStay) {
   const Ran second = RunText("COORD ABSOL\nMOVE (100.,97.,-400.,0.,1.570796)\n",
                              {.machine_state = first.machine_state});
   EXPECT_NEAR(second.end.axes.column.y(), 97.0 - 297.0, 1e-2);
+}
+
+// What the run has not given its value is told as assumed, each with how it could be set; flags,
+// VI[98] and VI[99], and OA[0] are the control's own.
+TEST(DataRules, WhatIsAssumedIsTold) {
+  class Assumptions final : public machine::RunObserver {
+   public:
+    void OnAssumed(const machine::Assumed& one) override {
+      std::string text = std::string(one.group) + "[" + std::to_string(one.index) + "]";
+      if (one.on_off) text += " on/off";
+      if (one.input == InputKind::kLogical) text += " logical";
+      if (one.input == InputKind::kAnalogue) text += " analogue";
+      told.push_back(text + (one.value == 0.0 ? "" : " set"));
+    }
+    std::vector<std::string> told;
+  } assumptions;
+  std::string text;
+  for (const char* read : {"IL[86]", "IL[87]", "IL[94]", "IL[95]", "IL[96]", "VL[1]", "OL[2]"})
+    text += "VL[0]=" + std::string(read) + "\n";
+  for (const char* read :
+       {"IA[5]", "OA[0]", "OA[1]", "VR[3]", "VI[4]", "VI[98]", "VI[99]", "PAR[5]", "VR[0]"})
+    text += "VR[0]=" + std::string(read) + "\n";
+  Result<std::unique_ptr<machine::Run>> run =
+      OptimoFamily().NewRun(SetupOf(text, {.inputs = {{SimTime(0), InputKind::kLogical, 96, 1.0},
+                                                      {SimTime(0), InputKind::kAnalogue, 5, 2.5}}}),
+                            assumptions);
+  ASSERT_TRUE(bool(run));
+  EXPECT_EQ((*run)->Advance(At(1.0)), machine::RunPhase::kFinished);
+  EXPECT_THAT(assumptions.told, ElementsAre("IL[86] on/off logical", "IL[96] on/off logical set",
+                                            "VL[1] on/off", "OL[2] on/off", "IA[5] analogue set",
+                                            "OA[1]", "VR[3]", "VI[4]", "PAR[5]"));
+}
+
+// OPT-3.37, OPT-7.68: the flags are no inputs from outside: they are read whatever UPDATE says.
+TEST(DataRules, FlagsAreReadWhateverIsUpdated) {
+  const Ran ran = RunText(
+      "UPDATE IL/OFF\nWORKDEF 0,7\nWORK 0,0/ON\nWORK 0,7/ON\nVL[1]=IL[87]\nVL[2]=IL[94]\n"
+      "WORK 0,0/OFF\nWORK 0,7/OFF\nMOVE (121.02,2201.2,-50.,0.,0.)/NEXT\nVL[3]=IL[95]\n"
+      "VL[4]=IL[86]\nVL[5]=IL[96]\n",
+      {.inputs = {{SimTime(0), InputKind::kLogical, 86, 1.0},
+                  {SimTime(0), InputKind::kLogical, 96, 1.0}},
+       .variables = {"VL[1]", "VL[2]", "VL[3]", "VL[4]", "VL[5]"}});
+  std::string values;
+  for (const auto& [name, value] : ran.variables) values += value;
+  EXPECT_EQ(values, "11100");
+}
+
+// OPT-7.61, OPT-7.70: the executions that VI[98] counts end with the greatest INTEGER.
+TEST(DataRules, ExecutionsAreCountedToTheGreatestInteger) {
+  Result<MachineState> state = DecodeMachineState(RunText("VI[2]=1\n").machine_state);
+  ASSERT_TRUE(bool(state));
+  state->data.vi[98] = 32766.0F;
+  const Ran last =
+      RunText("VI[2]=1\n", {.variables = {"VI[98]"}, .machine_state = EncodeMachineState(*state)});
+  EXPECT_EQ(last.variables.at("VI[98]"), "32767");
+  EXPECT_EQ(Value("VI[2]=1\n", "VI[98]", {.machine_state = last.machine_state}), "32767");
+}
+
+// OPT-7.59 to 7.62: what a person may write, at both ends of what each group holds.
+TEST(DataRules, WhatMayBeWritten) {
+  machine::Parameters parameters(OptimoParameterTable());
+  const auto written = [&](std::string_view name, double value) {
+    const Result<float> made = Writable(*VariableNamed(name), value, Resolve(parameters));
+    return made ? std::to_string(*made)
+                : std::to_string(Lookup(made.error().code).number) + " " +
+                      std::string(made.error().detail);
+  };
+  const std::string whole = "9003 VI[1] holds whole numbers from -32768 to 32767";
+  EXPECT_EQ(written("VI[1]", 32767.0), "32767.000000");
+  EXPECT_EQ(written("VI[1]", 32768.0), whole);
+  EXPECT_EQ(written("VI[1]", -32768.0), "-32768.000000");
+  EXPECT_EQ(written("VI[1]", -32769.0), whole);
+  EXPECT_EQ(written("VI[1]", 0.5), whole);
+  EXPECT_EQ(written("VI[97]", 1.0), "1.000000");
+  for (const std::string name : {"VI[98]", "VI[99]", "OA[0]"})
+    EXPECT_EQ(written(name, 1.0), "9003 " + name + " is written by the machine alone");
+  for (const std::string name : {"IL[0]", "IA[99]"})
+    EXPECT_EQ(written(name, 1.0), "9003 " + name + " is an input: set the input, not its image");
+  for (const std::string name : {"VL[0]", "OL[99]"}) {
+    EXPECT_EQ(written(name, 0.0), "0.000000");
+    EXPECT_EQ(written(name, 1.0), "1.000000");
+    EXPECT_EQ(written(name, 2.0), "9003 " + name + " is 0 or 1");
+    EXPECT_EQ(written(name, 0.5), "9003 " + name + " is 0 or 1");
+  }
+  EXPECT_EQ(written("OL[9]", 0.0), "0.000000");
+  EXPECT_EQ(written("OL[9]", 1.0), "931 ");
+  EXPECT_EQ(written("VL[9]", 1.0), "1.000000");
+  EXPECT_TRUE(parameters.Set("GAS_CHANNELS", 3.0).ok());
+  EXPECT_EQ(written("OL[9]", 1.0), "1.000000");
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(*Writable(*VariableNamed("VR[1]"), sign * 0x1p63, Resolve(parameters)),
+              sign * 0x1p63F);
+    EXPECT_EQ(written("OA[1]", sign * 0x1.000002p63), "9003 OA[1] holds numbers up to 2^63");
+    EXPECT_EQ(*Writable(*VariableNamed("VR[1]"), sign * 0x1p-64, Resolve(parameters)),
+              sign * 0x1p-64F);
+    EXPECT_EQ(written("VR[1]", sign * 0x1.fffffep-65), "0.000000");
+  }
 }
 
 // The state of a machine is read back as it was written; one of the version before is read too.

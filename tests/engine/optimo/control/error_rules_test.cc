@@ -5,6 +5,8 @@
 
 #include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/machine/machine_state.h"
+#include "engine/optimo/machine/motion_errors.h"
+#include "engine/optimo/machine/telling.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 // Each code that the control raises while a program runs: by a small program, told with its place.
@@ -376,6 +378,29 @@ TEST(ErrorRules, ADamagedProgramIsFatal) {
   EXPECT_EQ((*run)->outcome().code, ErrorCode::kObjectCorrupt);
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_EQ(findings[0].severity, Severity::kFatal);
+}
+
+// The numbers of the Optimo for what a motion cannot do; any other error is as it was.
+TEST(ErrorRules, ErrorsOfMotionHaveTheirNumbers) {
+  for (const auto& [of_motion, wanted] :
+       {std::pair{ErrorCode::kCellHoleRadius, 348}, std::pair{ErrorCode::kCellTargetUnusable, 7301},
+        std::pair{ErrorCode::kCellArcUndefined, 7305}, std::pair{ErrorCode::kCellNoMotion, 7307},
+        std::pair{ErrorCode::kCellHoleNormal, 7309}, std::pair{ErrorCode::kDivisionByZero, 7201}}) {
+    const Error made = OnOptimo({of_motion, "why", {}});
+    EXPECT_EQ(Lookup(made.code).number, wanted);
+    EXPECT_EQ(made.detail, "why");
+  }
+}
+
+// optimo.md section C: a computed schedule is an error of the program; what is found when a program
+// is linked or loaded is fatal. OPT-B.36, OPT-B.56
+TEST(ErrorRules, SomeCodesHaveAnotherSeverityInARun) {
+  EXPECT_EQ(SeverityInRun(ErrorCode::kScheduleRange), Severity::kProgram);
+  EXPECT_EQ(SeverityInRun(ErrorCode::kCmosFull), Severity::kFatal);
+  EXPECT_EQ(SeverityInRun(ErrorCode::kObjectCorrupt), Severity::kFatal);
+  EXPECT_EQ(SeverityInRun(ErrorCode::kDivisionByZero), Severity::kProgram);
+  EXPECT_EQ(SeverityInRun(ErrorCode::kFlyCancelled), Lookup(ErrorCode::kFlyCancelled).severity);
+  EXPECT_EQ(SeverityInRun(ErrorCode::kTargetOutOfTravel), Severity::kAlarm);
 }
 
 // OPT-E.7310, OPT-6.22: a simulated MOVE needs no zero; ZERO makes the machine ready.

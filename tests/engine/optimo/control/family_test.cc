@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -5,12 +6,15 @@
 
 #include "engine/machine/observer.h"
 #include "engine/machine/run.h"
+#include "engine/machine/tools.h"
 #include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
 
 namespace rmlcell::optimo {
 namespace {
+
+using ::testing::ElementsAre;
 
 machine::Parameters Standard() { return machine::Parameters(OptimoFamily().parameters()); }
 
@@ -53,6 +57,86 @@ TEST(OptimoFamily, RefusesTravelsThatEndBeforeTheyBegin) {
     EXPECT_FALSE(OptimoFamily().NewRun(machine::RunSetup(parameters), nobody));
   }
   EXPECT_TRUE(OptimoFamily().CheckParameters(Standard()));
+}
+
+// What others ask the family for, by the codes of the Optimo.
+TEST(OptimoFamily, HasItsCodes) {
+  const machine::FamilyInfo& info = OptimoFamily().info();
+  EXPECT_EQ(info.no_slot, ErrorCode::kProgramNumber);
+  EXPECT_EQ(info.empty_slot, ErrorCode::kProgramMissing);
+  EXPECT_EQ(info.in_use, ErrorCode::kProgramInUse);
+  EXPECT_EQ(info.no_schedule, ErrorCode::kScheduleRange);
+  EXPECT_EQ(info.travel_left, ErrorCode::kTargetOutOfTravel);
+  EXPECT_EQ(info.not_zeroed, ErrorCode::kNotZeroed);
+  EXPECT_EQ(info.emergency_stop, ErrorCode::kEmergencyStop);
+  EXPECT_EQ(info.given_twice, ErrorCode::kProjectDuplicate);
+  EXPECT_EQ(info.no_source, ErrorCode::kProjectSource);
+  EXPECT_FALSE(info.torn);
+  EXPECT_THAT(info.check.of_motion,
+              ElementsAre(ErrorCode::kTargetOutOfTravel, ErrorCode::kSpeedHeldByAxis,
+                          ErrorCode::kFlyReversal, ErrorCode::kNoMotion));
+  EXPECT_THAT(info.check.by_speed, ElementsAre(ErrorCode::kNoMotion));
+  EXPECT_THAT(info.check.not_given,
+              ElementsAre(ErrorCode::kProgramMissing, ErrorCode::kFunctionMissing,
+                          ErrorCode::kCallNotExecutable));
+  EXPECT_EQ(info.check.work_offset, "SYSDEF");
+  const machine::ToolCodes& tools = OptimoFamily().tools()->codes();
+  EXPECT_EQ(tools.source_is_inch, ErrorCode::kSourceIsInch);
+  EXPECT_EQ(tools.convert_input, ErrorCode::kConvertInput);
+  EXPECT_EQ(tools.convert_output, ErrorCode::kConvertOutput);
+  const auto memory = OptimoFamily().ProgramMemory(Standard());
+  ASSERT_TRUE(memory);
+  EXPECT_EQ(memory->bytes, 1'048'576);
+  EXPECT_EQ(memory->full, ErrorCode::kCmosFull);
+}
+
+// What its machines can do.
+TEST(OptimoFamily, SaysWhatItsMachinesCanDo) {
+  const machine::FamilyInfo& info = OptimoFamily().info();
+  EXPECT_TRUE(info.has_executables);
+  EXPECT_EQ(info.schedules, 63);  // OPT-3.44
+  EXPECT_TRUE(info.checked_by_running);
+  EXPECT_FALSE(info.hold_in_remote);           // OPT-4.17
+  EXPECT_EQ(info.override_min_percent, 10.0);  // OPT-4.34
+  EXPECT_EQ(info.override_max_percent, 145.0);
+  EXPECT_EQ(info.override_step_percent, 15.0);
+  EXPECT_TRUE(info.has_repeat);
+  EXPECT_EQ(info.jog_axes, "X Y Z A B C");  // OPT-4.20
+  EXPECT_TRUE(info.jogs_in_manual);
+  EXPECT_EQ(info.zero_program, "ZERO\n");
+  EXPECT_EQ(info.home_program, 4);  // OPT-4.50
+  EXPECT_THAT(info.waiting, ElementsAre("WAIT", "DELAY"));
+  EXPECT_TRUE(info.steps_come_again);
+  EXPECT_TRUE(info.has_dry_run);
+  EXPECT_TRUE(info.has_breakpoints);
+}
+
+// What a process that is ON did not get: by which figure a run is bad or doubtful, and from when.
+TEST(OptimoFamily, JudgesRunsByTheirProcess) {
+  std::vector<std::string> rules;
+  for (const machine::VerdictRule& rule : OptimoFamily().verdict_rules()) {
+    rules.push_back(std::to_string(Lookup(rule.code).number) + " " + std::string(rule.figure) +
+                    " " + std::to_string(rule.limit).substr(0, 4) +
+                    (rule.verdict == machine::Verdict::kBad ? " bad" : " doubtful"));
+  }
+  const auto number = [](ErrorCode code) { return std::to_string(Lookup(code).number); };
+  EXPECT_THAT(
+      rules, ElementsAre(number(ErrorCode::kCutWithoutShutter) + " shutter_closed_length 0.01 bad",
+                         number(ErrorCode::kCutWithoutBeam) + " beam_off_length 0.01 bad",
+                         number(ErrorCode::kGasConflict) + " other_gas_length 0.01 bad",
+                         number(ErrorCode::kCutWithoutPower) + " no_power_length 0.01 doubtful",
+                         number(ErrorCode::kWorkActiveAtEnd) + " ends_with_process 0.00 doubtful"));
+}
+
+// A breakpoint counts from the first pass on, and not for ever.
+TEST(OptimoFamily, BreakpointsCountPasses) {
+  const auto taken = [](std::uint64_t pass) {
+    return OptimoFamily().CheckBreakpoint({.at = {1, 1}, .from_pass = pass}).ok();
+  };
+  EXPECT_FALSE(taken(0));
+  EXPECT_TRUE(taken(1));
+  EXPECT_TRUE(taken(machine::kBreakpointPassMax));
+  EXPECT_FALSE(taken(machine::kBreakpointPassMax + 1));
 }
 
 machine::Bytes Object(const std::string& text) {

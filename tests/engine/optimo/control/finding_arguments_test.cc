@@ -39,6 +39,8 @@ TEST(RunArguments, NumbersOfInstructionsHaveTheirUnits) {
       {"VR[1] = 64\nWORKDEF 2,1,(VR[1])\n", 7403, "laser schedule is 64", "schedule=64"},
       {kAbsol + "PATH HOLE (0)\nMOVE (1000.,1000.,-400.,0.,0.)\n", 348, "radius is 0",
        "radius=0 mm"},
+      {kThere + "SPEED 0\nMOVE (1000.5,1000.,-400.,0.,0.)\n", 7307, "SPEED is 0", ""},
+      {kThere + "ACCEL 0\nMOVE (1000.5,1000.,-400.,0.,0.)\n", 7307, "ACCEL is below 0.1", ""},
   });
 }
 

@@ -48,6 +48,14 @@ const std::string kCorners =
     "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.,1100.,-400.,0.,0.)/FLY\n"
     "MOVE (1200.,1100.,-400.,0.,0.)/FLY\nMOVE (1200.,1200.,-400.,0.,0.)\n";
 
+// OPT-4.18: START at the instant of a halt: nobody was waited for.
+TEST(HoldStates, AHaltOfNoTimeIsNoWait) {
+  const Ran ran = RunText("DELAY 1\nDELAY 1\n",
+                          {.inputs = {Key(0.5, InputKind::kStop), Key(0.5, InputKind::kStart)}});
+  EXPECT_EQ(ran.told, (std::vector<std::string>{"compiling 1", "wait dwell 0.5", "halt STOP",
+                                                "wait dwell 0.5", "wait dwell 1.0"}));
+}
+
 // OPT-4.17: what moves is told without a gap, on one move as over many.
 TEST(HoldStates, TheWayIsToldWithoutAGap) {
   for (const std::string& text : {kCorners, ShortMoves(100)}) {

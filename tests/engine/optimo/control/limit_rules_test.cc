@@ -143,6 +143,16 @@ TEST(LimitRules, AssignGroups) {
             "1001");
 }
 
+// OPT-7.102: n places, and none beside them.
+TEST(LimitRules, AGroupHasItsPlaces) {
+  const Ran ran =
+      RunText("VL[11]=ON\nVL[16]=ON\nVI[2]=6\nASSIGN VL[12]=VI[2] /4\n",
+              {.variables = {"VL[11]", "VL[12]", "VL[13]", "VL[14]", "VL[15]", "VL[16]"}});
+  std::string values;
+  for (const auto& [name, value] : ran.variables) values += value;
+  EXPECT_EQ(values, "101101");
+}
+
 // OPT-7.103: of a group that does not fit nothing is written.
 TEST(LimitRules, ARefusedGroupIsNotWritten) {
   const Ran ran =
@@ -163,6 +173,9 @@ TEST(LimitRules, ProgramNumbers) {
   }
 }
 
+// A breakpoint of whatever program has the control look at each instruction by itself.
+const machine::ProgramStep kElsewhere{.program = 99, .step = 1};
+
 // OPT-7.17, OPT-7.18: the k-th label from 1 to the number of labels; 0, less or more go on.
 TEST(LimitRules, TheComputedGoto) {
   const std::string text =
@@ -175,6 +188,7 @@ TEST(LimitRules, TheComputedGoto) {
     std::string whole = text;
     whole.replace(whole.find('?'), 1, value);
     EXPECT_EQ(Value(whole, "VI[3]"), wanted) << value;
+    EXPECT_EQ(Value(whole, "VI[3]", {.breakpoint = kElsewhere}), wanted) << value;
   }
 }
 
@@ -183,6 +197,7 @@ TEST(LimitRules, GosubDepth) {
   const std::string text =
       "VI[3]=?\n10 VI[2]=VI[2]+1\nIF VI[2] > VI[3] THEN 20\nGOSUB 10\n20 ENDTASK\n";
   Expect({text, {"16"}, {"17"}, 7503});
+  Expect({text, {"16"}, {"17"}, 7503, {.breakpoint = kElsewhere}});
   Expect({text, {"3"}, {"4"}, 7503, {.parameters = {{"GOSUB_DEPTH", "3"}}}});
   const Ran inside = RunText("GOSUB 10\nENDTASK\n10 FUNCTION 44\nRETURN\n",
                              {.programs = {{44, "GOSUB 10\nENDTASK\n10 VI[2]=7\nRETURN\n"}},
@@ -190,6 +205,17 @@ TEST(LimitRules, GosubDepth) {
                               .variables = {"VI[2]"}});
   EXPECT_EQ(CodeOf(inside), 0);
   EXPECT_EQ(inside.variables.at("VI[2]"), "7");
+}
+
+// OPT-7.61, OPT-7.78, OPT-E.7203: what is truncated into 16 bits fits.
+TEST(LimitRules, TruncatedIntegers) {
+  for (const RunOptions& options : {RunOptions{}, RunOptions{.breakpoint = kElsewhere}}) {
+    Expect({"VR[1]=?\nVI[1]=VR[1]\n",
+            {"32767.", "32767.9", "-32768.", "-32768.9"},
+            {"32768.", "-32769."},
+            7203,
+            options});
+  }
 }
 
 // OPT-B.22, OPT-E.7307: at SPEED above 0 and ACCEL of 0.1 and more something moves, or a MOVE to
@@ -201,6 +227,27 @@ TEST(LimitRules, TheLeastMotion) {
           7307});
   Expect({kThere + "SPEED ?\nMOVE (1000.1,1000.,-400.,0.,0.)\n", {"0.1", "0.01"}, {"0."}, 7307});
   Expect({kThere + "SPEED ?\nMOVE (1000.,1000.,-400.,0.,0.)\n", {"0."}, {}});
+}
+
+// OPT-2.27, OPT-E.348: any radius above 0 is one, also of a hole that has no /VIA.
+TEST(LimitRules, TheRadiusOfAHole) {
+  for (const std::string via : {"", "/VIA (1000.,1000.,-300.,0.,0.)"}) {
+    Expect({"COORD ABSOL\nVR[0]=?\nPATH HOLE (VR[0])\nMOVE (1000.,1000.,-400.,0.,0.)" + via + "\n",
+            {"0.001", "50."},
+            {"0.", "-1."},
+            348});
+  }
+}
+
+// OPT-2.48: behind a /FLY move the shortest way is passed into; a MOVE to the same place is none.
+TEST(LimitRules, TheShortestWayBehindAPassage) {
+  const auto cancelled = [](const std::string& y) {
+    return RunText(kThere + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.," + y +
+                   ",-400.,0.,0.)\n")
+        .Count("E7304");
+  };
+  EXPECT_EQ(cancelled("1000.5"), 0);
+  EXPECT_EQ(cancelled("1000."), 1);
 }
 
 // OPT-4.38, OPT-E.7320: 100 % is not limited, more is, and once a run; the machine never goes

@@ -65,7 +65,8 @@ TEST(MachineRules, StandardParameters) {
                                                     {"CMOS_SIZE", 1'048'576},
                                                     {"GOSUB_DEPTH", 16},
                                                     {"CALL_TIME", 0},
-                                                    {"SCHEDULES", 63}};
+                                                    {"SCHEDULES", 63},
+                                                    {"LASER_POWER", 1500}};
   for (const auto& [name, value] : figures) EXPECT_EQ(p.Number(name), value) << name;
   EXPECT_NEAR(p.Number("AXIS_SPEED_A"), 6.283185, 1e-6);
   EXPECT_NEAR(p.Number("AXIS_SPEED_B"), 6.283185, 1e-6);
@@ -263,6 +264,7 @@ TEST(MachineRules, TheFormOfTheBytesStays) {
   MachineState state;
   state.data.vr[0] = 1.0F;  // 3F800000
   EXPECT_EQ(EncodeMachineState(state).substr(9, 4), std::string("\0\0\x80\x3F", 4));
+  EXPECT_EQ(off[8], 2);  // the version
 }
 
 // Bytes of another kind or version, too few or too many of them, and "not a number" are refused.

@@ -86,6 +86,24 @@ TEST(MotionWords, PathsOfAMove) {
               15.0 + 4.0 * kPi * 5.0, kReal_mm);
 }
 
+// OPT-2.23, OPT-2.28: one that begins on its circle has no way to it; from half a millimetre off it
+// goes there first.
+TEST(MotionWords, AHoleFromItsCircle) {
+  const auto from = [](const std::string& x) {
+    return RunText(kAbsol + "MOVE (" + x +
+                   ",1000.,-400.,0.,0.)\nPATH HOLE (5.)\n"
+                   "MOVE (1000.,1000.,-400.,0.,0.)/VIA (1000.,1000.,-300.,0.,0.)\n");
+  };
+  const Ran on = from("1005.");
+  ASSERT_EQ(on.moves.size(), 2U);
+  ASSERT_EQ(on.parts.size(), 2U);
+  EXPECT_NEAR(on.parts[1].done.travelled, 2.0 * kPi * 5.0, 1e-9);
+  const Ran off = from("1005.5");
+  ASSERT_EQ(off.parts.size(), 3U);
+  EXPECT_NEAR(off.parts[1].done.travelled, 0.5, 1e-9);
+  EXPECT_NEAR(off.parts[2].done.travelled, 2.0 * kPi * 5.0, 1e-9);
+}
+
 // OPT-W.58, OPT-2.12: case P03, 500 mm on a slope of 3 to 4 at SPEED 30: PTP goes at 187.5 mm/s,
 // LIN at 150.
 TEST(MotionWords, PtpIsNotBoundToTheSpeedOfTheTip) {

@@ -106,6 +106,29 @@ TEST(OverrideRules, ThereAndBackAtOnceChangesNothing) {
   }
 }
 
+// A contour has a feed rate, which goes with the override; axes by themselves have none.
+TEST(OverrideRules, TheFeedRateThatIsTold) {
+  const auto feeds = [](const std::string& start, const std::string& z) {
+    const std::string end = "," + z + ",0.,0.)";
+    std::vector<double> told;
+    for (const machine::MoveDone& move :
+         ChangedAt(1.0, 50.0,
+                   start + "SPEED 10\nMOVE (321.02,2201.2" + end + "/FLY\nMOVE (321.02,1901.2" +
+                       end + "/FLY\nMOVE (621.02,1901.2" + end + "\n")
+             .moves)
+      told.push_back(move.feed_mm_s);
+    return told;
+  };
+  EXPECT_EQ(feeds("COORD ABSOL\nPATH LIN\n", "-350."), (std::vector{25.0, 25.0, 25.0}));
+  EXPECT_EQ(feeds("COORD ROBOT\n", "-50."), (std::vector{0.0, 0.0, 0.0}));
+}
+
+// An override of nothing is none: the machine would stand for ever.
+TEST(OverrideRules, NoOverrideIsZero) {
+  EXPECT_EQ(ChangedAt(3.0, 0.0).time_s, RunText(kChain).time_s);
+  EXPECT_EQ(ChangedAt(3.0, 0.0).end.override_percent, 100.0);
+}
+
 // motion.md 6: set while the machine stands on its way after a STOP, it counts for the rest of the
 // move under way and for all that was planned behind it. 1000 mm at 50 mm/s, stopped after a good
 // 4 s; 10 % of that for the rest, in a chain and by itself, on contours and in COORD ROBOT.

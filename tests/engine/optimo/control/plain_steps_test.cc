@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/optimo/control/optimo_family.h"
+#include "engine/optimo/control/program_context.h"
+#include "engine/optimo/language/compiler.h"
 #include "tests/engine/optimo/control/run_text.h"
 #include "tests/engine/optimo/language/random_expression.h"
 
@@ -218,6 +220,54 @@ TEST(PlainSteps, OperationsGiveTheirVariable) {
                 {two + "VR[3]=VR[1]-VR[2]\n", "VR[3]", "5.0"},
                 {two + "VR[3]=VR[1]*VR[2]\n", "VR[3]", "14.0"},
                 {two + "VR[3]=VR[1]/VR[2]\n", "VR[3]", "3.5"}});
+}
+
+Loaded LoadedText(const std::string& text) {
+  Executable executable;
+  Compilation compiled = Compile(text, "test.S", {.object_limit = 0, .advice = false});
+  EXPECT_TRUE(compiled.ok) << text.substr(0, 200);
+  executable.modules.push_back({.slot = 1, .module = std::move(compiled.module)});
+  return Load(std::move(executable));
+}
+
+// A result that goes to its variable, and a comparison that decides, are no operations of their
+// own.
+TEST(PlainSteps, TheEndOfAStepDoesWhatComesBeforeIt) {
+  for (const auto& [value, op] :
+       {std::pair{"VR[1]+VR[2]", PlainOp::kVrAdd}, std::pair{"VR[1]-VR[2]", PlainOp::kVrSubtract},
+        std::pair{"VR[1]*VR[2]", PlainOp::kVrMultiply},
+        std::pair{"VR[1]/VR[2]", PlainOp::kVrDivide}, std::pair{"VR[1]", PlainOp::kSetVr}}) {
+    const Loaded loaded = LoadedText("VR[3]=" + std::string(value) + "\n");
+    const PlainOperation* at = loaded->plain[0].At(0);
+    EXPECT_EQ(at[0].op, PlainOp::kBegin);
+    EXPECT_EQ(at[1].op, op) << value;
+    EXPECT_EQ(at[1].result, 3);
+  }
+  for (const auto& [compared, op] :
+       {std::pair{"<", PlainOp::kIfLess}, std::pair{"<=", PlainOp::kIfLessEqual},
+        std::pair{"=", PlainOp::kIfEqual}, std::pair{">=", PlainOp::kIfGreaterEqual},
+        std::pair{">", PlainOp::kIfGreater}, std::pair{"<>", PlainOp::kIfNotEqual}}) {
+    const Loaded loaded =
+        LoadedText("IF VR[1]" + std::string(compared) + "VR[2] THEN 10\n10 VI[1]=1\n");
+    const PlainOperation* at = loaded->plain[0].At(0);
+    EXPECT_EQ(at[1].op, op) << compared;
+    EXPECT_EQ(at[2].op, PlainOp::kGoOn);
+  }
+}
+
+// The constants of a module have numbers of 16 bits: a step that needs one more is not plain.
+TEST(PlainSteps, AModuleHasSoManyConstants) {
+  std::string line = "VR[1]=VR[2]";
+  for (int n = 0; n < 32; ++n) line += "+1.";
+  std::string text;
+  constexpr std::uint32_t kLines = 0x10000 / 32;
+  for (std::uint32_t n = 0; n < kLines; ++n) text += line + "\n";
+  const Loaded loaded = LoadedText(text + "VR[3]=VR[4]\nVI[3]=7\n");
+  const PlainCode& code = loaded->plain[0];
+  EXPECT_EQ(code.constants().size(), 0x10000U);
+  EXPECT_EQ(code.At(kLines - 1)->op, PlainOp::kBegin);
+  EXPECT_EQ(code.At(kLines)->op, PlainOp::kBegin);  // it needs none
+  EXPECT_EQ(code.At(kLines + 1)->op, PlainOp::kLeave);
 }
 
 // A budget ends a run at the very step, and one call does so much.

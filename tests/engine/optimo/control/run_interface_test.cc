@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "engine/machine/step_entry.h"
 #include "engine/optimo/control/optimo_family.h"
+#include "engine/optimo/machine/machine_state.h"
+#include "engine/optimo/machine/optimo_parameters.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 // What a run shows to those who drive it and watch it: state, lines of the source, what a comment
@@ -97,15 +101,55 @@ TEST(RunInterface, TipSpeedOfTurningAxes) {
 }
 
 // A run that does not let time pass comes back after so many instructions, and goes on when it is
-// called again.
+// called again. With a breakpoint, of whatever program, each of them is looked at.
 TEST(RunInterface, OneCallDoesSoMuch) {
   machine::RunObserver nobody;
-  const std::unique_ptr<machine::Run> run = RunOf(SetupOf("10 GOTO 10\n"), nobody);
-  for (std::uint64_t call = 1; call <= 3; ++call) {
-    EXPECT_EQ(run->Advance(At(1.0)), RunPhase::kRunning);
-    EXPECT_EQ(run->steps_executed(), call * 20'000U);
-    EXPECT_EQ(run->state().time, SimTime(0));
+  const machine::ProgramStep elsewhere{.program = 99, .step = 1};
+  for (const auto& breakpoint : {std::optional<machine::ProgramStep>(), std::optional(elsewhere)}) {
+    const std::unique_ptr<machine::Run> run =
+        RunOf(SetupOf("10 GOTO 10\n", {.breakpoint = breakpoint}), nobody);
+    for (std::uint64_t call = 1; call <= 3; ++call) {
+      EXPECT_EQ(run->Advance(At(1.0)), RunPhase::kRunning);
+      EXPECT_EQ(run->steps_executed(), call * 20'000U);
+      EXPECT_EQ(run->state().time, SimTime(0));
+    }
   }
+}
+
+// OPT-E.7902: the budget of time is over at its instant, when the run is driven to that instant.
+TEST(RunInterface, TheBudgetEndsAtItsInstant) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run =
+      RunOf(SetupOf("DELAY 100\n", {.budget = {.virtual_time = At(5.0)}}), nobody);
+  EXPECT_EQ(run->Advance(At(5.0) - SimTime(1)), RunPhase::kRunning);
+  EXPECT_EQ(run->Advance(At(5.0)), RunPhase::kFinished);
+  EXPECT_EQ(run->outcome().code, ErrorCode::kTimeBudget);
+  EXPECT_EQ(run->state().time, At(5.0));
+}
+
+// What is at the terminals: the outputs that are on, table and shutter, and what the beam has.
+TEST(RunInterface, TheOutputsOfTheMoment) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run =
+      RunOf(SetupOf("OL[0]=ON\nOL[99]=ON\nOA[1]=-2.5\nOA[99]=1.5\nFUNCTION 99 (90.)\n"
+                    "WORKDEF 2,0 (15)\nWORK 2,0/ON\nDELAY 1\nWORK 0,0/ON\nDELAY 9\n",
+                    {.parameters = {{"ROTARY_TABLE", "ON"}},
+                     .schedules = {{.number = 15, .power_percent = 60.0}}}),
+            nobody);
+  const auto shown = [&] {
+    std::string text;
+    for (const machine::OutputNow& one : run->outputs().on)
+      text += one.name + " " + std::to_string(one.value).substr(0, 4) + "; ";
+    return text;
+  };
+  run->Advance(At(0.5));
+  const std::string dark = "OL[0] 1.00; OL[99] 1.00; OA[1] -2.5; OA[99] 1.50; rotary_table 90.0; ";
+  EXPECT_EQ(shown(), dark);
+  EXPECT_EQ(run->outputs().laser_schedule, 15);
+  EXPECT_EQ(run->outputs().power_percent, 0.0);
+  run->Advance(At(2.0));
+  EXPECT_EQ(shown(), dark + "shutter 1.00; ");
+  EXPECT_EQ(run->outputs().power_percent, 60.0);
 }
 
 // Time stands while a run is halted, until a scripted key comes; where none is to come it stays at
@@ -116,6 +160,7 @@ TEST(RunInterface, TimeOfAHaltedRun) {
       SetupOf("DELAY 1\nSTOP\nDELAY 1\n", {.inputs = {{At(5.0), InputKind::kStart}}}), nobody);
   EXPECT_EQ(waiting->Advance(At(3.0)), RunPhase::kHalted);
   EXPECT_EQ(waiting->state().time, At(3.0));
+  EXPECT_EQ(waiting->Advance(At(5.0)), RunPhase::kRunning);  // the key of that instant, too
   EXPECT_EQ(waiting->Advance(At(5.5)), RunPhase::kRunning);
   EXPECT_EQ(waiting->Advance(At(9.0)), RunPhase::kFinished);
   EXPECT_EQ(waiting->state().time, At(6.0));
@@ -127,6 +172,69 @@ TEST(RunInterface, TimeOfAHaltedRun) {
   EXPECT_EQ(alone->state().time, At(2.0));
 }
 
+// LIVE-6.02: what the program and its FUNCTIONs have set, each level by itself.
+TEST(RunInterface, TheStateOfItsPrograms) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run = RunOf(
+      SetupOf("ERR 800\nTIMER (5.,900)/AUTO\nWORKDEF 1,0 (8.,75.,.2,50.,12)\nWORKDEF 2,9 (15)\n"
+              "WORK 0,0/ON\nWORK 2,9/ON\nFUNCTION 44 (1.5,0.,-2.)\nENDTASK\n"
+              "800 VI[2]=1\n900 RETURN\n",
+              {.programs = {{44, "ERR 700\nFUNCTION 45 (3.)\nENDTASK\n700 RETURN\n"},
+                            {45, "DELAY 9\n"}}}),
+      nobody);
+  run->Advance(At(1.0));
+  const std::vector<machine::StateItem> items = run->enterable()->items();
+  const auto value = [&](std::string_view name) {
+    const auto found = std::ranges::find(items, name, &machine::StateItem::name);
+    return found == items.end() ? "none" : found->value;
+  };
+  EXPECT_EQ(value("stack"), "1/7 44/2 45/1");
+  EXPECT_EQ(value("ERR"), "800, 700, OFF");
+  EXPECT_EQ(value("PAR[0]"), "none");
+  EXPECT_EQ(value("PAR[0] of FUNCTION level 1"), "1.5");
+  EXPECT_EQ(value("PAR[1] of FUNCTION level 1"), "none");
+  EXPECT_EQ(value("PAR[2] of FUNCTION level 1"), "-2");
+  EXPECT_EQ(value("PAR[0] of FUNCTION level 2"), "3");
+  EXPECT_EQ(value("TIMER"), "900 in 4.04 s, each 5 s");  // of 105 cycles
+  EXPECT_EQ(value("WORKDEF 1,0"), "8, 75, 0.2, 50, 12");
+  EXPECT_EQ(value("WORKDEF 0,0"), "none");
+  EXPECT_EQ(value("WORKDEF 2,9"), "0, 0, 0, 0, 15");
+  EXPECT_EQ(value("WORK"), "0,0 2,9");
+  EXPECT_EQ(value("clamps"), "below SAFE_Z");
+  EXPECT_EQ(value("caller 1 ERR"), "none");
+}
+
+// LIVE-6.05: up to SAFE_Z, across, down; each leg begins where the one before ends, so that a
+// machine that stands 400 mm outside of its travel is inside on the last one.
+TEST(RunInterface, TheWayToAStep) {
+  machine::RunObserver nobody;
+  machine::RunSetup setup = SetupOf(kAbsol + "MOVE (1000.,1000.,-400.,0.,0.)\nVI[2]=1\n");
+  MachineState stands = NewMachine(Resolve(setup.parameters));
+  stands.axes.column = {4000.0, 1000.0, -200.0};
+  const std::unique_ptr<machine::Run> run = RunOf(std::move(setup), nobody);
+  machine::EnterableRun& entered = *run->enterable();
+  ASSERT_TRUE(entered.HaltBefore({.at = {1, 4}}).ok());
+  EXPECT_EQ(run->Advance(At(1000.0)), RunPhase::kHalted);
+  const auto legs = entered.PlanApproach(EncodeMachineState(stands), machine::ApproachWay::kSafe);
+  ASSERT_EQ(legs.size(), 3U);
+  std::string text;
+  for (const machine::ApproachMotion& leg : legs) {
+    text += std::string(leg.path) + " to " + std::to_string(std::lround(leg.to.column.x())) + "," +
+            std::to_string(std::lround(leg.to.column.z())) + " at " +
+            std::to_string(std::lround(leg.feed_mm_s)) + ":";
+    for (const auto& one : leg.beyond) {
+      text += " axis " + std::to_string(one.axis) + " by " +
+              std::to_string(std::lround(one.excess)) + (one.at_target ? " there" : "");
+    }
+    text += "; ";
+  }
+  EXPECT_EQ(text,
+            "PTP to 4000,-50 at 0: axis 0 by 400 there; PTP to 1000,-50 at 0: axis 0 by 400; "
+            "LIN to 1000,-100 at 50:; ");
+  EXPECT_TRUE(
+      entered.PlanApproach(EncodeMachineState(stands), machine::ApproachWay::kDirect).empty());
+}
+
 // A finished run takes no more keys, and ends only once.
 TEST(RunInterface, NothingComesAfterTheEnd) {
   machine::RunObserver nobody;
@@ -134,6 +242,8 @@ TEST(RunInterface, NothingComesAfterTheEnd) {
   EXPECT_EQ(run->Advance(At(3.0)), RunPhase::kFinished);
   run->Apply({At(3.0), InputKind::kEmergencyStop});
   run->End(machine::OutcomeKind::kCancelled, ErrorCode::kCancelled);
+  run->WriteVariable("VI[5]", 7.0);
+  EXPECT_EQ(run->ReadVariable("VI[5]")->text, "0");
   EXPECT_EQ(run->outcome().kind, machine::OutcomeKind::kCompleted);
   EXPECT_FALSE(run->outcome().code.has_value());
   EXPECT_EQ(run->ReadVariable("VI[99]")->text, "0");
@@ -162,6 +272,11 @@ TEST(RunInterface, LinesOfSteps) {
       RunOf(WithSource("VI[2]=1\nVI[3]=1\nVR[0]=1/0\n", {.step_lines = {7, 9}}), findings);
   run->Advance(At(1.0));
   EXPECT_EQ(findings.lines, (std::vector{7, 9, 0}));
+  Findings waits;
+  const std::unique_ptr<machine::Run> waiting =
+      RunOf(WithSource("DELAY 0\nDELAY 0\nDELAY 0\n", {.step_lines = {7, 9}}), waits);
+  waiting->Advance(At(1.0));
+  EXPECT_EQ(waits.lines, (std::vector{7, 9, 0}));
   Findings errors;
   const std::unique_ptr<machine::Run> failing =
       RunOf(WithSource("VI[2]=1\nVR[0]=1/0\n", {.step_lines = {7, 9}}), errors);

@@ -29,6 +29,14 @@ class Listener final : public machine::RunObserver {
     const auto Tell = [&](std::string what) {
       this->Tell(std::move(what), change.at, change.place);
     };
+    // What there is but one of has no number, and is on or off where it is no quantity.
+    if (change.signal != Signal::kOutput && change.signal != Signal::kAnalogue) {
+      EXPECT_EQ(change.index, 0) << static_cast<int>(change.signal);
+    }
+    if (change.signal == Signal::kBeam || change.signal == Signal::kShutter ||
+        change.signal == Signal::kOutput || change.signal == Signal::kSensor) {
+      EXPECT_TRUE(change.value == 0.0 || change.value == 1.0) << change.value;
+    }
     switch (change.signal) {
       case Signal::kBeam:
         Tell(change.value != 0.0 ? "beam on " + TrimmedText(change.detail, 3) : "beam off");

@@ -33,6 +33,15 @@ TEST(TimerRules, MissedPeriodsAreSkipped) {
   EXPECT_EQ(ValuesOf(ran), "11223");
 }
 
+// OPT-B.59: due at the very end of an instruction it is made once behind it: 6 s are 125 cycles.
+TEST(TimerRules, DueAtTheEndOfAnInstruction) {
+  const Ran ran = RunText(
+      "TIMER (6.,900)/AUTO\nDELAY 6\nVI[10]=VI[2]\nDELAY 5.5\nVI[11]=VI[2]\nDELAY .5\n"
+      "VI[12]=VI[2]\nENDTASK\n900 VI[2]=VI[2]+1\nRETURN\n",
+      {.variables = {"VI[10]", "VI[11]", "VI[12]"}, .budget = {.steps = 1000}});
+  EXPECT_EQ(ValuesOf(ran), "112");
+}
+
 // OPT-B.59: a GOSUB inside the handler does not end it.
 TEST(TimerRules, AHandlerIsOneWholeWithItsSubroutines) {
   const Ran ran = RunText(

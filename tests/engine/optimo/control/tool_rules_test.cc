@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/machine/machine_state.h"
 #include "engine/optimo/machine/optimo_parameters.h"
 #include "tests/engine/optimo/control/run_text.h"
@@ -262,6 +263,30 @@ TEST(ToolRules, ZeroFromTheConsoleGoesOnWithProgramFour) {
   EXPECT_EQ(CodeOf(without), 7102);
   EXPECT_THAT(Groups(without), ElementsAre("ZERO_Z", "ZERO_AB", "ZERO_XY"));
   EXPECT_NEAR(without.end.axes.column.y(), 0.0, 1e-9);
+}
+
+// OPT-4.51, OPT-6.42: moved by hand in the midst of it, the zero procedure goes on from there, by
+// no override and to whatever zero its axes have.
+TEST(ToolRules, MovedByHandDuringTheZeroProcedure) {
+  machine::RunObserver nobody;
+  Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(
+      SetupOf("ZERO\nVI[2]=1\n",
+              {.parameters = {{"MECH_ZERO_Z", "1200"}}, .override_percent = 55.0}),
+      nobody);
+  ASSERT_TRUE(bool(run));
+  (*run)->Advance(At(0.5));
+  (*run)->Apply({At(0.5), InputKind::kStop});
+  EXPECT_EQ((*run)->Advance(At(2.0)), machine::RunPhase::kHalted);
+  motion::AxisPose moved = (*run)->state().axes;
+  moved.column.z() -= 5.0;
+  ASSERT_TRUE((*run)->may_be_moved());
+  (*run)->MoveTo(moved);
+  (*run)->Apply({(*run)->state().time, InputKind::kStart});
+  EXPECT_EQ((*run)->Advance(At(1000.0)), machine::RunPhase::kFinished);
+  EXPECT_EQ((*run)->outcome().kind, machine::OutcomeKind::kCompleted);
+  EXPECT_TRUE((*run)->state().zeroed);
+  const motion::AxisPose end = (*run)->state().axes;
+  EXPECT_LT((end.column - motion::MachineVector{0.0, 0.0, 1200.0}).norm(), 1e-9);
 }
 
 // OPT-4.18, OPT-4.49: STOP halts the zero procedure, START finishes it.

@@ -164,6 +164,32 @@ TEST(Travel, AHaltDoesNotHideThem) {
       RunText("COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\nSTOP\n",
               {.inputs = {{std::chrono::hours(1), machine::InputKind::kStart}}, .forecast = true});
   EXPECT_EQ(CodeOf(ran), 7301);
+  EXPECT_EQ(ran.outcome.detail, "X of the target leaves its travel by 5400.000 mm");
+}
+
+// OPT-B.08: a machine that stands outside to begin with was brought there by no motion of the run:
+// the way back is told like any other.
+TEST(Travel, AMachineThatStandsOutside) {
+  const std::string back = "COORD ROBOT\nMOVE (3000.,2201.2,-50.,0.,0.)\n";
+  RunOptions options{.parameters = {{"HOME_X", "4000"}}};
+  const Ran ran = RunText(back, options);
+  EXPECT_EQ(CodeOf(ran), 7301);
+  EXPECT_EQ(ran.outcome.detail, "X on the way leaves its travel by 400.000 mm");
+  options.forecast = true;
+  EXPECT_EQ(RunText(back, options).violations.size(), 1U);
+}
+
+// OPT-7.28: SYSDEF moves the tip, so X, Y and Z of a target in COORD ABSOL, and no angle.
+TEST(Travel, WhatHangsOnTheWorkOffset) {
+  const auto by_offset = [](const std::string& coord, const std::string& target) {
+    std::string text;
+    for (const machine::TravelViolation& one :
+         RunText("COORD " + coord + "\nMOVE (" + target + ")\n", {.forecast = true}).violations)
+      text += std::to_string(one.axis) + (one.by_work_offset ? "+ " : "- ");
+    return text;
+  };
+  EXPECT_EQ(by_offset("ABSOL", "9000.,9000.,9000.,13.,0."), "0+ 1+ 2+ 3- ");
+  EXPECT_EQ(by_offset("ROBOT", "9000.,9000.,9000.,13.,2.5"), "0- 1- 2- 3- 4- ");
 }
 
 // OPT-2.49: a chain without an end never begins to move before the steps run out; what it would do
@@ -192,6 +218,18 @@ TEST(Travel, AnAxisThatHoldsAContourBackIsToldOnce) {
             "axis X allows 125.000 mm/s of 150.000; reached 125.000 mm/s");
   EXPECT_EQ(ran.Finding(7321).severity, Severity::kAdvice);
   EXPECT_EQ(std::ranges::count(StepsOf(ran, 7321), ran.Finding(7321).step), 1);
+}
+
+// OPT-2.16: a little is told, too; rounding is not: 100 mm/s along X.
+TEST(Travel, AnAxisThatHoldsALittleBackIsTold) {
+  const auto told = [](const std::string& speed_of_x) {
+    return RunText(kAbsol + "SPEED 20\nMOVE (521.02,2201.2,-350.,0.,0.)\n",
+                   {.parameters = {{"AXIS_SPEED_X", speed_of_x}}})
+        .Count("E7321");
+  };
+  EXPECT_EQ(told("99.99"), 1);
+  EXPECT_EQ(told("99.99999"), 0);
+  EXPECT_EQ(told("100"), 0);
 }
 
 // motion.md 5.1: neither a small radius nor a short way is an axis.

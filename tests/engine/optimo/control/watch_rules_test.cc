@@ -196,6 +196,17 @@ TEST(WatchRules, TakingOverAtATick) {
   EXPECT_NEAR(ran.end.tip.tip.y(), 2101.2, 1e-4);
 }
 
+// OPT-2.58, OPT-B.20: an /END that is true when the target is reached has nothing left to end: 100
+// mm at 100 mm/s take 1.1 s, eleven cycles here, and the machine settles as without it.
+TEST(WatchRules, AnEndAtTheTarget) {
+  const auto lasts = [](const std::string& end) {
+    return RunText(kThere + "SPEED 20\nVR[0]=1099.99\nMOVE (1100.,1000.,-400.,0.,0.)" + end + "\n",
+                   {.parameters = {{"CYCLE", "0.1"}}})
+        .time_s;
+  };
+  EXPECT_EQ(lasts("/END (IA[0] > VR[0])"), lasts(""));
+}
+
 // OPT-2.54, OPT-2.58: /TIME and /END are of their own MOVE, also where the next one follows without
 // a stop: 75 mm at 50 mm/s are over after 1.5 s, and 200 mm go on.
 TEST(WatchRules, NothingIsWatchedBehindItsMove) {

@@ -89,6 +89,26 @@ TEST(WorkRules, ThePowerOfTheSchedule) {
           .Told("beam on 40.0"));
 }
 
+// OPT-3.26: a schedule that is selected already is not selected again.
+TEST(WorkRules, AScheduleIsSelectedOnce) {
+  const std::string work = "WORK 2,0/ON\nWORK 2,0/OFF\n";
+  EXPECT_EQ(RunText("WORKDEF 2,0 (12)\n" + work + work).Count("schedule 12"), 1);
+}
+
+// OPT-2.48, OPT-3.21: between /FLY moves WORK 1 comes on at the passage, unless it has to dwell.
+TEST(WorkRules, OnlyADwellCancelsAPassage) {
+  const auto cancelled = [](const std::string& delay) {
+    return RunText("WORKDEF 1,0 (10.,60.," + delay + ",95.)\n" + kThere +
+                   "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nWORK 1,0/ON\n"
+                   "MOVE (1100.,1100.,-400.,0.,0.)\nWORK 1,0/OFF\n")
+        .Count("E7304");
+  };
+  EXPECT_TRUE(RunText("WORKDEF 1,0 (10.,60.,.001,95.)\nWORK 1,0/ON\nWORK 1,0/OFF\n")
+                  .Told("wait pierce 0.001"));
+  EXPECT_EQ(cancelled("0."), 0);
+  EXPECT_EQ(cancelled("0.001"), 1);
+}
+
 // OPT-3.24, OPT-E.7411: the warning is for a beam that a WORK 0 or 1 wants, and that is on.
 TEST(WorkRules, WhenScheduleOffIsWarnedOf) {
   const std::string definitions = "WORKDEF 2,5 (15)\nWORKDEF 1,1 (8.,75.,0.,50.)\n";

@@ -27,6 +27,17 @@ TEST_F(EditingKeys, RecAtTheEndMarker) {
   EXPECT_THAT(Program(12), ElementsAre("DELAY 1", "DELAY 2", "SPEED 70.0"));
 }
 
+// OPT-6.40: with no step shown it is put behind all, before an ENDTASK there.
+TEST_F(EditingKeys, RecWithNoStepShown) {
+  Have({{12, "DELAY 1\nDELAY 2\n"}, {13, "DELAY 1\nENDTASK\n"}});
+  Keys("JOB 1 2 ENT MOV ENT REC");
+  EXPECT_EQ(Shows(), "P=12S=0004I=ENDPRG");
+  EXPECT_THAT(Program(12), ElementsAre("DELAY 1", "DELAY 2", "SPEED 70.0"));
+  Keys("JOB 1 3 ENT MOV ENT REC");
+  EXPECT_EQ(Shows(), "P=13S=0003I=ENDTASK");
+  EXPECT_THAT(Program(13), ElementsAre("DELAY 1", "SPEED 70.0", "ENDTASK"));
+}
+
 // OPT-6.38 OPT-4.25: asked first.
 TEST_F(EditingKeys, DelDeletesTheStep) {
   Have({{12, "DELAY 1\nDELAY 2\nDELAY 3\nDELAY 4\nSPEED 5\n"}});
@@ -147,6 +158,47 @@ TEST_F(EditingKeys, CmosIsFull) {
   EXPECT_THAT(edits, IsEmpty());
   Keys("SHIFT DEL 1");  // which makes some
   EXPECT_EQ(edits.size(), 1U);
+}
+
+// OPT-1.08 OPT-B.73: an object may be as long as the limit, and objects and executables may fill
+// the memory to its last byte.
+TEST_F(EditingKeys, WhatJustFitsIsStored) {
+  Have({{12, "DELAY 1\n"}});
+  const std::string state = machine->Save();
+  machine::MachineMemory memory = machine->memory();
+  std::string text;
+  for (int i = 0; i < 45; ++i) text += "MOVE (1.5, 2.5, 3.5, 0.5, 0.5)\n";
+  memory.programs[12] = Translated(text);
+  memory.programs[13] = Translated("DELAY 1\n");
+  const auto said = [&](const std::string& name, std::size_t value) {
+    Result<std::unique_ptr<machine::Machine>> made = machine::Machine::Make(
+        family_, *MakeParameters(family_, "standard", {{name, std::to_string(value)}}), memory,
+        state, heard);
+    EXPECT_TRUE(made);
+    machine = *std::move(made);
+    Keys("JOB 1 2 NEXT 1 ENT MOV ENT REC");
+    return Said();
+  };
+  const std::size_t longer = Translated("SPEED 70.\n" + text).object->size();
+  EXPECT_EQ(said("OBJECT_LIMIT", longer), 0);
+  EXPECT_EQ(said("OBJECT_LIMIT", longer - 1), 7031);
+  const std::size_t all = longer + memory.programs[13].object->size();
+  ASSERT_GT(all, 1000U);  // the least CMOS_SIZE
+  EXPECT_EQ(said("CMOS_SIZE", all), 0);
+  EXPECT_EQ(said("CMOS_SIZE", all - 1), 7109);
+}
+
+// LIVE-7.08: of an edit that was not stored nothing comes behind the next one.
+TEST_F(EditingKeys, ARefusedHoleIsForgotten) {
+  Have({{12, "DELAY 1\n"}});
+  stores = false;
+  Keys("JOB 1 2 NEXT 1 ENT PATH PREV ENT DEL 5 ENT REC");
+  Good(machine::RefuseEdit{ErrorCode::kCellStoreUnavailable});
+  stores = true;
+  Keys("MOV ENT REC");
+  EXPECT_EQ(Shows(), "P=12S=0002I=DELAY");
+  Keys("PATH ENT ENT REC");
+  EXPECT_EQ(Shows(), "*ENTER CENTER NORMAL");
 }
 
 // OPT-6.06 OPT-6.09: one breakpoint.

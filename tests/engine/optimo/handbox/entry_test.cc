@@ -337,7 +337,8 @@ TEST_F(Entry, SysdefIsSetAndCancelled) {
   Keys("SHIFT F3 NEXT");
   EXPECT_EQ(Shows(), "SYSDEF = YES");
   Keys("ENT");
-  for (const char* text : {"X = 0.0", "Y = 0.0", "Z = 0.0", "RZ = 0.0", "RY = 0.0", "RX = 0.0"}) {
+  for (const char* text :
+       {"X = 0.0", "Y = 0.0", "Z = 0.0", "RZ = 0.0", "RY = 0.0", "RX = 0.0", "RX = 0.0"}) {
     EXPECT_EQ(Shows(), text);
     Keys("NEXT");
   }
@@ -349,6 +350,29 @@ TEST_F(Entry, SysdefIsSetAndCancelled) {
   Keys("REC");
   EXPECT_EQ(Program(12).at(6), "SYSDEF (10.0, 0.0, 0.0, 0.0, 0.0, 0.0)");
   EXPECT_EQ(Program(12).at(7), "SYSDEF");
+}
+
+// OPT-5.04: what a key drops that has something else to do: a form, a question, what flashes.
+TEST_F(Entry, WhatDropsWhatWasEntered) {
+  const std::string at_step = "P=12S=0007I=ENDTASK";
+  for (const auto& [keys, shows] : std::vector<std::pair<std::string, std::string>>{
+           {"MOV HOME", at_step},
+           {"MOV ZERO 0", at_step},
+           {"MOV SHIFT DEL 0", at_step},
+           {"MOV MODE_RIGHT", at_step},
+           {"MOV MODE_LEFT", "SPEED 70.0"},  // it is MANUAL already
+           {"ZERO JOB", "P=12 S=0000 T=0 M=0"},
+           {"MOV ENT JOB ERR", at_step},
+           {"JOB SHIFT NEXT", at_step},
+           {"MOV EMERGENCY_STOP", "ERROR 7610"}}) {
+    AtStep7();
+    Keys(keys);
+    EXPECT_EQ(Shows(), shows) << keys;
+  }
+  Have({{12, "DELAY 1\n"}}, Mode::kCycle);
+  Keys("JOB 1 2 ENT JOB START");
+  GoOn(At(0.5));
+  EXPECT_EQ(Shows(), "P=12S=0001I=DELAY");
 }
 
 // OPT-4.44: they are looked at, and no key changes them.

@@ -139,6 +139,41 @@ TEST_F(FunctionKeys, WhatFailsIsShownAndNotReadyToRecord) {
   EXPECT_EQ(Program(12).at(3), "FUNCTION 44");
 }
 
+// OPT-4.06: its error is shown, whatever a key was told meanwhile.
+TEST_F(FunctionKeys, AnErrorTakesThePlaceOfWhatAKeyWasTold) {
+  AtStep4("DELAY 1\nCOORD ROBOT\nPATH LIN\nMOVE (100.,2201.2,-350.,0.,0.)\nRETURN\n");
+  Keys("F3 4 4 ENT ENT 1");
+  GoOn(At(0.5));
+  Keys("REC");
+  EXPECT_EQ(Shows(), "ERROR 7601");
+  GoOn(At(2.0));
+  EXPECT_EQ(Shows(), "ERROR 7302");
+}
+
+// OPT-9.36: it begins with the modes of the handbox.
+TEST_F(FunctionKeys, ItBeginsWithTheModesOfTheHandbox) {
+  AtStep4("DELAY 4\nRETURN\n");
+  const auto modes = [this] {
+    std::string text;
+    Keys("F3 4 4 ENT ENT 1");
+    GoOn(machine->time() + At(1.0));
+    for (const machine::ModalValue& one : machine->modal_values()) {
+      if (one.name == "COORD" || one.name == "PATH" || one.name == "SPEED" || one.name == "OVERSH")
+        text += one.name + " " + one.value + "; ";
+    }
+    Keys("SHIFT STOP");
+    GoOn(machine->time() + At(1.0));
+    return text;
+  };
+  EXPECT_EQ(modes(), "COORD ROBOT; PATH PTP; SPEED 70.0; OVERSH 100.0; ");
+  Keys("DYN NEXT ENT PATH NEXT ENT MOV DEL 3 5 ENT F2 DEL 5 0 ENT");
+  EXPECT_EQ(modes(), "COORD ABSOL; PATH LIN; SPEED 35.0; OVERSH 50.0; ");
+  Keys("PATH NEXT ENT");
+  EXPECT_EQ(modes(), "COORD ABSOL; PATH CIR; SPEED 35.0; OVERSH 50.0; ");
+  Keys("PATH NEXT ENT DEL 1 2 POINT 5 ENT");
+  EXPECT_EQ(modes(), "COORD ABSOL; PATH HOLE (12.5); SPEED 35.0; OVERSH 50.0; ");
+}
+
 // OPT-9.19: without a rotary table 99 is an ordinary function, missing where it is not stored, and
 // carried out where it is, in whatever slots there are programs. OPT-9.06: it is nobody's main
 // program.

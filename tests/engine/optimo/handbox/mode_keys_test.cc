@@ -194,6 +194,62 @@ TEST_F(ModeKeys, DamagedModesAreRefused) {
   }
 }
 
+// LIVE-7.01: each of the eight has its range, both ends of it included.
+TEST_F(ModeKeys, KeptModesHaveTheirRanges) {
+  Have({});
+  Keys("JOG_ABS");
+  const std::string kept = machine->Save();
+  const std::size_t at = kept.find("handbox ") + 8;
+  const std::string line = kept.substr(at, kept.find('\n', at) - at);
+  EXPECT_EQ(line, "0 1 1 0 0 0 70 100");
+  const auto taken = [&](const std::vector<std::string>& numbers) {
+    std::string text;
+    for (const std::string& number : numbers) text += (text.empty() ? "" : " ") + number;
+    std::string other = kept;
+    other.replace(at, line.size(), text);
+    machine::RunObserver nobody;
+    const auto made = machine::Machine::Make(family_, parameters(), {}, other, nobody);
+    if (made) {
+      EXPECT_EQ((*made)->Save(), other);
+    }
+    return bool(made);
+  };
+  const std::vector<std::string> least(8, "0");
+  const std::vector<std::string> most = {"1", "2", "1", "3", "1", "99999.5", "100", "100"};
+  EXPECT_TRUE(taken(least));
+  EXPECT_TRUE(taken(most));
+  const std::vector<std::string> beyond = {"2", "3", "2", "4", "2", "", "100.5", "100.5"};
+  for (std::size_t n = 0; n < 8; ++n) {
+    std::vector<std::string> numbers = least;
+    numbers[n] = "-1";
+    EXPECT_FALSE(taken(numbers)) << n;
+    numbers = most;
+    numbers[n] = beyond[n];
+    if (!beyond[n].empty()) {
+      EXPECT_FALSE(taken(numbers)) << n;
+    }
+    if (n < 5) {
+      numbers[n] = "0.5";
+      EXPECT_FALSE(taken(numbers)) << n;
+    }
+  }
+}
+
+// LIVE-7.01: nothing that was pressed before is left at a power-up.
+TEST_F(ModeKeys, APowerUpForgetsKeys) {
+  Have({{12, "DELAY 1\n"}});
+  stores = false;
+  Keys("JOB 1 2 NEXT 1 ENT MOV ENT REC SHIFT 5");
+  EXPECT_EQ(Said(), 7601);
+  Good(machine::SwitchPower{false});
+  Good(machine::SwitchPower{true});
+  EXPECT_THAT(Lamps(), ElementsAre("MANUAL", "ROB"));
+  EXPECT_NE(machine->panel().message, ErrorCode::kKeyNotEnabled);
+  Keys("MOV");
+  EXPECT_EQ(Said(), 0);
+  EXPECT_EQ(Shows(), "SPEED 70.0");
+}
+
 const std::vector<std::string> kEveryKey = {"START",
                                             "STOP",
                                             "HOLD",

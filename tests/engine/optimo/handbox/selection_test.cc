@@ -113,6 +113,8 @@ TEST_F(Selection, NextAndPrevGoThroughSteps) {
     Keys("PREV");
     EXPECT_EQ(Shows(), "P=01S=" + std::string(step));
   }
+  Keys("JOB 0 1 ENT PREV");
+  EXPECT_EQ(Shows(), "P=01S=0000I=********");
   Keys("JOB 0 9 ENT NEXT");
   EXPECT_EQ(Said(), 7102);
 }

@@ -210,6 +210,60 @@ TEST_F(Teaching, AttributesAreGathered) {
   EXPECT_EQ(Program(12)[0].find('/'), std::string::npos);
 }
 
+// OPT-5.26: all of them, shown again as they were entered, and taken back one by one.
+TEST_F(Teaching, AttributesAreShownAgain) {
+  Begin();
+  Keys("MOV NEXT NEXT 1 NEXT 1 NEXT 1 NEXT 1 ENT 1 6 ENT DEL 2 POINT 5 ENT 1 0 0 ENT 1 7 ENT MOV");
+  for (const char* text : {"FLY = 0", "START = 1", "TIME = 1", "END = 1", "NEXT = 1"}) {
+    Keys("NEXT");
+    EXPECT_EQ(Shows(), text);
+  }
+  for (const char* text : {"INPUT = 16", "TIME 2.5", "GOSUB 0100", "INPUT = 17", "*SPEED"}) {
+    Keys("ENT");
+    EXPECT_EQ(Shows(), text);
+  }
+  Keys("MOV NEXT NEXT 0 ENT ENT ENT ENT MOV NEXT NEXT NEXT 0 ENT ENT");
+  EXPECT_EQ(Shows(), "*SPEED");
+  Hold("X+", 0.3);
+  Keys("REC");
+  EXPECT_TRUE(Program(12)[0].ends_with(") /END (IL[17]) /NEXT")) << Program(12)[0];
+  Keys("MOV NEXT NEXT NEXT NEXT 1 ENT 1 7 ENT MOV NEXT NEXT NEXT NEXT 0 ENT");
+  Hold("X+", 0.3);
+  Keys("REC");
+  EXPECT_TRUE(Program(12)[1].ends_with(")")) << Program(12)[1];
+  EXPECT_EQ(Program(12)[1].find('/'), std::string::npos);
+}
+
+// OPT-5.18: the first of two points is forgotten with what it was meant for: the program, COORD,
+// PATH.
+TEST_F(Teaching, AFirstPointIsForgotten) {
+  for (const char* between : {"JOB 1 2 NEXT 1 ENT", "DYN NEXT ENT", "PATH ENT"}) {
+    Begin();
+    Keys("PATH NEXT NEXT ENT");
+    Hold("X+", 0.3);
+    Keys("REC " + std::string(between));
+    Hold("Y+", 0.3);
+    Keys("REC");
+    EXPECT_THAT(edits, IsEmpty()) << between;
+    Hold("X+", 0.3);
+    Keys("REC");
+    ASSERT_EQ(edits.size(), 1U) << between;
+    EXPECT_NE(Program(12)[0].find("/VIA"), std::string::npos);
+  }
+}
+
+// OPT-5.26: attributes are for the next MOVE of the program that is taught.
+TEST_F(Teaching, AttributesAreForgottenWithTheProgram) {
+  Begin();
+  Keys("MOV NEXT NEXT 1 ENT 1 6 ENT JOB 1 2 ENT MOV NEXT NEXT");
+  EXPECT_EQ(Shows(), "START = 0");
+  Keys("ERR MOV NEXT NEXT 1 ENT 1 6 ENT");
+  Good(machine::SwitchPower{false});
+  Good(machine::SwitchPower{true});
+  Keys("MOV NEXT NEXT");
+  EXPECT_EQ(Shows(), "START = 0");
+}
+
 // OPT-4.74 OPT-E.7310: nothing is recorded without reference.
 TEST_F(Teaching, RecNeedsZeroedAxes) {
   Begin();
