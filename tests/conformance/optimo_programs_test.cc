@@ -70,6 +70,17 @@ std::string Describe(const std::vector<Diagnostic>& diagnostics, const std::stri
   return out;
 }
 
+// The rule is an ID and the text is none; the numbers and words in the text have names of letters.
+void ExpectWellTold(const Diagnostic& d) {
+  EXPECT_TRUE(d.rule.empty() || d.rule.starts_with("OPT-")) << d.rule;
+  EXPECT_FALSE(d.detail.starts_with("OPT-")) << d.detail;
+  for (const Argument& argument : d.detail.arguments()) {
+    EXPECT_TRUE(std::ranges::all_of(argument.name, [](char c) {
+      return (c >= 'a' && c <= 'z') || c == '_';
+    })) << argument.name;
+  }
+}
+
 void ExpectFindings(const PartProgram& program) {
   const Compilation compiled = Compile(program.text, "", {.advice = program.advice});
   const int lines = static_cast<int>(std::count(program.text.begin(), program.text.end(), '\n'));
@@ -82,6 +93,7 @@ void ExpectFindings(const PartProgram& program) {
     EXPECT_GE(d.where.line, 1);
     EXPECT_LE(d.where.line, lines + 1);
     EXPECT_GE(d.where.column, 1);
+    ExpectWellTold(d);
   }
   std::map<int, std::vector<int>> expected = program.expected;
   for (auto* map : {&expected, &found}) {

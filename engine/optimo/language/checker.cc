@@ -1,6 +1,7 @@
 #include "engine/optimo/language/checker.h"
 
 #include <bitset>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -16,7 +17,7 @@ struct Range {
   std::string_view rule;
   bool above_min = false;  // the minimum itself is outside
 };
-constexpr double kNoMax = 1e30;
+constexpr double kNoMax = std::numeric_limits<double>::infinity();
 constexpr Range kPercent{0.0, 100.0, "0 to 100", "OPT-2.35"};
 constexpr Range kSpeedAbove0{0.0, 100.0, "above 0 to 100", "OPT-3.08", true};
 constexpr Range kSeconds{0.0, kNoMax, "0 or more seconds", "OPT-3.45"};
@@ -36,9 +37,8 @@ class Checker {
   void Run() {
     std::uint32_t step = 0;
     for (Instruction& instruction : module_.instructions) {
-      if (instruction.op != Op::kDeclare && !IsBrokenDeclare(instruction)) ++step;
-      instruction.step = instruction.op == Op::kDeclare || IsBrokenDeclare(instruction) ? 0 : step;
-      if (instruction.op == Op::kInvalid) continue;
+      const bool counts = instruction.op != Op::kDeclare && !IsBrokenDeclare(instruction);
+      instruction.step = counts ? ++step : 0;
       typing_.BeginStep(instruction);
       const std::uint64_t errors = findings_.error_count();
       CheckInstruction(instruction);
@@ -81,14 +81,15 @@ class Checker {
       LiteralInRange(i.first_expression + static_cast<std::uint32_t>(position), range, code);
   }
   // A literal, or the name of one; computed values are the control's business (OPT-B.36).
-  void LiteralInRange(std::uint32_t expression, const Range& range, ErrorCode code) {
+  bool LiteralInRange(std::uint32_t expression, const Range& range, ErrorCode code) {
     const Expression nodes = module_.expression(expression);
-    if (nodes.size() != 1 || nodes[0].op == Node::kVariable) return;
+    if (nodes.size() != 1 || nodes[0].op == Node::kVariable) return true;
     const auto value = static_cast<double>(nodes[0].number);
     const bool above = range.above_min ? value > range.min : value >= range.min;
-    if (above && value <= range.max) return;
+    if (above && value <= range.max) return true;
     findings_.Add(code, typing_.PlaceOfNode(module_.FirstNode(expression)),
                   "the value must be " + Told("allowed", range.text), range.rule);
+    return false;
   }
   void Warn(ErrorCode code, Detail detail, std::string_view rule) {
     findings_.Add(code, typing_.PlaceOfStatement(), std::move(detail), rule);
@@ -196,8 +197,8 @@ void Checker::CheckFunction(Instruction& i) {
                   "FUNCTION takes a number or a declared constant", "OPT-9.01");
     return;
   }
-  LiteralInRange(i.first_expression, {1.0, 99.0, "1 to 99", "OPT-9.01"}, ErrorCode::kLiteralRange);
-  if (number[0].number >= 1.0F && number[0].number <= 99.0F) {
+  if (LiteralInRange(i.first_expression, {1.0, 99.0, "1 to 99", "OPT-9.01"},
+                     ErrorCode::kLiteralRange)) {
     i.numbers[0] = static_cast<std::uint16_t>(number[0].number);
   }
 }
@@ -215,15 +216,14 @@ void Checker::CheckLet(const Instruction& i) {
 // OPT-7.102, OPT-7.103
 void Checker::CheckAssign(const Instruction& i) {
   const bool known = typing_.ResolveTarget(i.first_expression);
-  const bool typed = Numeric(i, 1);
+  Numeric(i, 1);
   const int width = i.numbers[0];
   if (width < 1 || width > kAssignWidthMax) {
     return Warn(ErrorCode::kLiteralRange, "ASSIGN writes 1 to 16 places", "OPT-7.102");
   }
   const std::size_t value_at = module_.FirstNode(i.first_expression + 1);
-  const ExprNode& value = module_.nodes[value_at];
-  if (typed && value.op != Node::kVariable &&
-      (value.number < 0.0F || value.number >= static_cast<float>(1 << width))) {
+  const float value = module_.nodes[value_at].number;  // of a variable 0
+  if (value < 0.0F || value >= static_cast<float>(1 << width)) {
     findings_.AddAs(Severity::kCompile, ErrorCode::kAssignGroup, typing_.PlaceOfNode(value_at),
                     "the value does not fit into " + Told("places", width) + " places",
                     "OPT-7.103");
@@ -240,7 +240,6 @@ void Checker::CheckAssign(const Instruction& i) {
 }
 
 void Checker::CheckAttributes(const Instruction& i) {
-  if (i.attributes == 0) return;
   std::uint32_t at = i.first_expression + i.value_count;
   if (i.Has(kVia)) {
     for (int v = 0; v < 5; ++v) typing_.Type(at++, Wanted::kNumeric);

@@ -37,9 +37,8 @@ void Findings::AddAs(Severity severity, ErrorCode code, Place place, Detail deta
 }
 
 std::vector<Diagnostic> Findings::Take(std::string_view text, std::string_view file) {
-  std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return a.where.byte_offset < b.where.byte_offset;
-  });
+  std::ranges::stable_sort(found_, {},
+                           [](const Diagnostic& found) { return found.where.byte_offset; });
   int line = 1;
   std::size_t line_begin = 0;
   for (Diagnostic& diagnostic : found_) {

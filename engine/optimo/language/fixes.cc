@@ -11,13 +11,13 @@ std::optional<Fix> AttributeRemoval(const ParsedProgram& program, const Instruct
   std::vector<Comment> comments;
   const std::string_view text = program.text.substr(begin, static_cast<std::size_t>(place.length));
   Lexer lexer(text, comments);
-  if (!lexer.NextStatement()) return std::nullopt;
-  for (std::size_t t = 1; lexer.At(t).kind != TokenKind::kEnd; ++t) {
+  lexer.NextStatement();
+  // The first attribute can stand behind the word of the instruction and its '/'.
+  for (std::size_t t = 2; lexer.At(t).kind != TokenKind::kEnd; ++t) {
     if (lexer.At(t).kind != TokenKind::kWord || lexer.At(t).word != word) continue;
     const Token slash = lexer.At(t - 1);
     if (slash.kind != TokenKind::kSlash) continue;
-    std::size_t from = slash.offset;
-    while (from > 0 && (text[from - 1] == ' ' || text[from - 1] == '\t')) --from;
+    const std::size_t from = text.substr(0, slash.offset).find_last_not_of(" \t") + 1;
     const std::size_t end = lexer.At(t).offset + lexer.At(t).length;
     // A statement goes on behind a '/' at the end of a line: comments in between stay.
     const std::size_t behind = slash.offset + slash.length;

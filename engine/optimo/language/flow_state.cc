@@ -37,7 +37,6 @@ constexpr std::array<Choice<TinyMoves>::Values, 8> kOneMoreTiny = {
 
 void Add(ProcessSet bits, Facts<ProcessSet>& to, Facts<ProcessSet>& from) {
   to.made |= bits;
-  to.kept &= ~bits;
   from.made &= ~bits;
   from.kept &= ~bits;
 }
@@ -130,7 +129,7 @@ void StepCall(FlowState& state) {
   state.sensor = Sensors::Of(Sensor::kUnknown);
   state.turned = Choice<Turned>::Of(Turned::kUnknown);
   state.on = {};
-  state.off = {kAllProcesses, 0};
+  state.off = {.made = kAllProcesses};
   state.unset = {};
   ForgetPath(state);
 }
@@ -229,7 +228,7 @@ FlowState FlowState::InErrorHandler() {
   FlowState state = Unknown();
   state.beam = Beams::Of(BeamThere::kOff);
   state.on = {};
-  state.off = {kAllProcesses, 0};
+  state.off = {.made = kAllProcesses};
   return state;
 }
 
@@ -299,7 +298,6 @@ void FlowState::ForgetDifferences(const FlowState& other) {
   }
   timer.Join(other.timer);  // what was armed may have come, or not yet
   unset.made &= other.unset.made;
-  unset.kept &= other.unset.kept;
 }
 
 bool FlowState::Join(const FlowState& other) {
@@ -315,6 +313,7 @@ bool FlowState::Join(const FlowState& other) {
   gas_3.Join(other.gas_3);
   sensor.Join(other.sensor);
   turned.Join(other.turned);
+  timer.Join(other.timer);
   tiny_moves.Join(other.tiny_moves);
   on.Join(other.on);
   off.Join(other.off);

@@ -17,7 +17,7 @@ FlowWalk::FlowWalk(const Module& module, const FlowGraph& graph, const Dwells& d
   std::uint32_t count = 0;
   for (std::uint32_t at = 0; at <= graph.size(); ++at) {
     leaders_[at] = at == graph.size() || graph.IsLeader(at) ||
-                   (any_error && module.instructions[at].label_count > 0);
+                   (any_error && !module.Labels(module.instructions[at]).empty());
     if (leaders_[at]) slots_[at] = count++;
   }
   states_.resize(count);
@@ -93,7 +93,7 @@ void FlowWalk::Follow(bool any_error) {
   };
   enter(graph_.entry(), FlowState::AtStart());
   for (std::uint32_t at = 0; any_error && at < graph_.size(); ++at) {
-    if (module_.instructions[at].label_count > 0) enter(at, FlowState::Unknown());
+    if (!module_.Labels(module_.instructions[at]).empty()) enter(at, FlowState::Unknown());
   }
   std::vector<Successor> room;
   while (!open.empty()) {

@@ -41,7 +41,7 @@ class Writer {
     for (std::size_t l = 0; l < p_.end_label_places.size(); ++l) {
       WriteLone(p_.end_label_places[l], module.end_labels[l]);
     }
-    CommentsBefore(static_cast<std::uint32_t>(p_.text.size()) + 1);
+    CommentsBefore(static_cast<std::uint32_t>(p_.text.size()));
     return std::move(out_);
   }
 
@@ -52,7 +52,7 @@ class Writer {
 
   // As many blank lines as stand between what was written last and what begins at `offset`.
   void BlankLinesBefore(std::size_t offset) {
-    const std::string_view gap = p_.text.substr(done_, offset > done_ ? offset - done_ : 0);
+    const std::string_view gap = p_.text.substr(done_, offset - std::min(offset, done_));
     const auto line_ends = std::count(gap.begin(), gap.end(), '\n');
     for (auto n = done_ == 0 ? line_ends : line_ends - 1; n > 0; --n) out_ += line_end_;
   }
@@ -103,8 +103,7 @@ class Writer {
   }
 
   static std::string_view TrimRight(std::string_view text) {
-    const std::size_t last = text.find_last_not_of(" \t\r");
-    return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
+    return text.substr(0, text.find_last_not_of(" \t\r") + 1);  // npos + 1 is 0
   }
 
   const ParsedProgram& p_;

@@ -106,40 +106,45 @@ Exponent TakeExponent(std::string_view text, std::size_t begin) {
 }
 
 // The powers of ten that a double holds exactly.
-constexpr std::array<double, 23> kTens = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                          1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                          1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+constexpr std::array kTens = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                              1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                              1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 constexpr std::uint64_t kExactMantissa = std::uint64_t{1} << 53;
 
 // mantissa * 10^exponent, rounded once to 24 bits. The quotient of two exact doubles is rounded
 // right; rounding it again is wrong only when it lies half way between two floats: then from_chars
 // decides.
 std::optional<float> FastFloat(std::uint64_t mantissa, int exponent) {
-  if (mantissa > kExactMantissa || exponent < -22 || exponent > 22) return std::nullopt;
+  const auto power = static_cast<std::size_t>(std::abs(exponent));
+  if (mantissa > kExactMantissa || power >= kTens.size()) return std::nullopt;
   auto value = static_cast<double>(mantissa);
   if (exponent < 0) {
-    value /= kTens[static_cast<std::size_t>(-exponent)];
+    value /= kTens[power];
   } else {
-    value *= kTens[static_cast<std::size_t>(exponent)];
+    value *= kTens[power];
   }
   constexpr std::uint64_t kBelowFloat = (1ULL << 29) - 1;
   if ((std::bit_cast<std::uint64_t>(value) & kBelowFloat) == 1ULL << 28) return std::nullopt;
   return static_cast<float>(value);
 }
 
+// The mantissa has no zeros ahead; so of 0 itself nothing is left, or a point.
 float SlowFloat(std::string_view mantissa, int exponent) {
   constexpr std::size_t kRoom = 400;  // longer mantissas: the digits behind cannot change 24 bits
   std::array<char, kRoom + 8> room;
   std::size_t length = std::min(mantissa.size(), kRoom);
   std::memcpy(room.data(), mantissa.data(), length);
-  if (mantissa.size() > kRoom && mantissa.find('.') >= kRoom) return HUGE_VALF;
   room[length++] = 'e';
   length = static_cast<std::size_t>(
       std::to_chars(room.data() + length, room.data() + room.size(), exponent).ptr - room.data());
   float value = 0.0F;
   const auto result = std::from_chars(room.data(), room.data() + length, value);
-  if (result.ec == std::errc::result_out_of_range) return exponent > 0 ? HUGE_VALF : 0.0F;
-  return value;
+  if (result.ec != std::errc::result_out_of_range) return value;
+  // Far too large or far too small, as the power of ten of its first digit is.
+  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+  const std::size_t digit = mantissa.find_first_not_of("0.");
+  const int power = exponent + static_cast<int>(point) - static_cast<int>(digit);
+  return std::pow(10.0F, static_cast<float>(power));
 }
 
 }  // namespace
@@ -152,7 +157,6 @@ bool Lexer::SkipToContent() {
   while (at_ < text_.size()) {
     const char c = text_[at_];
     if (c == '\n') {
-      line_start_ = true;
       ++line_;
       ++at_;
     } else if (IsBlank(c)) {
@@ -167,7 +171,7 @@ bool Lexer::SkipToContent() {
               ? text_.size()
               : static_cast<std::size_t>(static_cast<const char*>(found) - text_.data());
       const std::size_t next = end;
-      while (end > at_ && text_[end - 1] == '\r') --end;
+      while (text_[end - 1] == '\r') --end;  // the ';' is none
       comments_->push_back({static_cast<std::uint32_t>(at_), static_cast<std::uint32_t>(end)});
       at_ = next;
     } else {
@@ -207,7 +211,6 @@ void Lexer::GoBackTo(std::size_t offset) {
 
 void Lexer::ResumeAt(const Token& token) {
   GoBackTo(token.offset);
-  line_start_ = true;
   done_ = true;
 }
 
@@ -315,7 +318,7 @@ bool Lexer::BeginsAssignment(std::size_t offset) const {
   constexpr std::size_t kFar = 40;  // "VARIABLE [ INDEXNAM ] =" with a few blanks
   std::size_t at = offset;
   const std::size_t end = std::min(text_.size(), offset + kFar);
-  if (at >= end || ClassOf(text_[at]) != Class::kLetter) return false;
+  if (ClassOf(text_[at]) != Class::kLetter) return false;
   while (at < end && IsNamePart(text_[at])) ++at;
   while (at < end && IsBlank(text_[at])) ++at;
   if (at < end && text_[at] == '[') {
@@ -406,7 +409,7 @@ void Lexer::ReadNumber() {
     bad = true;
   const Exponent exponent = TakeExponent(text_, mantissa_end);
   bad = bad || std::abs(exponent.value) > kExponentMax;
-  const std::string_view mantissa = text_.substr(at_, mantissa_end - at_);
+  const std::string_view mantissa = text_.substr(first, mantissa_end - first);
   const bool whole = !point && exponent.end == mantissa_end;
   Push(bad ? TokenKind::kBadNumber : TokenKind::kNumber, exponent.end - at_);
   if (bad) return;

@@ -29,9 +29,8 @@ Parser::Parser(std::string_view text, ParsedProgram& program, Findings& findings
 // comment.
 void Parser::Reserve() {
   constexpr std::size_t kElementsMax = std::size_t{1} << 23;
-  std::size_t lines = 0;
-  for (std::size_t at = 0; (at = text_.find('\n', at)) != std::string_view::npos; ++at) ++lines;
-  const std::size_t instructions = std::min(lines + 1, kElementsMax);
+  const auto line_ends = static_cast<std::size_t>(std::ranges::count(text_, '\n'));
+  const std::size_t instructions = std::min(line_ends + 1, kElementsMax);
   const std::size_t values = std::min(text_.size() / 7, kElementsMax);
   module_.instructions.reserve(instructions);
   program_.statements.reserve(instructions);
@@ -121,7 +120,8 @@ void Parser::ParseStatement() {
 }
 
 void Parser::FinishStatement(bool good) {
-  if (good && attribute_parts_.size() > 1) OrderAttributeParts();
+  if (good && !std::ranges::is_sorted(attribute_parts_, {}, &AttributePart::attribute))
+    OrderAttributeParts();
   instruction_.first_label = static_cast<std::uint32_t>(module_.labels.size());
   instruction_.label_count = static_cast<std::uint16_t>(pending_labels_.size());
   if (!pending_labels_.empty()) {
@@ -140,7 +140,6 @@ void Parser::FinishStatement(bool good) {
 
 // Attributes stand in any order in the text and in one order in the module. OPT-2.43
 void Parser::OrderAttributeParts() {
-  if (std::ranges::is_sorted(attribute_parts_, {}, &AttributePart::attribute)) return;
   std::ranges::stable_sort(attribute_parts_, {}, &AttributePart::attribute);
   const std::uint32_t base = instruction_.first_expression + instruction_.value_count;
   const std::uint32_t begin = module_.FirstNode(base);

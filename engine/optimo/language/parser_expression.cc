@@ -142,14 +142,10 @@ bool Parser::ParseList(int& count, int keep_max, int slash_after) {
     if (!ParseExpression()) return false;
     if (++count > keep_max)
       DropExpressions(static_cast<std::uint32_t>(module_.expression_ends.size()) - 1);
-    if (Is(TokenKind::kSlash)) {             // elsewhere it divides
-      if (count != slash_after) count = -1;  // "/" elsewhere: the wrong number of values, OPT-B.85
-      Take();
-      if (count < 0) {
-        slash_separates_ = outer;
-        return true;  // the caller reports the count
-      }
-      continue;
+    if (slash_separates_ && TryTake(TokenKind::kSlash)) {
+      if (count == slash_after) continue;
+      count = -1;   // the wrong number of values, OPT-B.85
+      return true;  // the caller reports it
     }
     if (!TryTake(TokenKind::kComma)) break;
   } while (true);
@@ -347,7 +343,6 @@ bool Parser::ParseVariable() {
   if (!Expect(TokenKind::kOpenIndex, "'[' and an index")) return false;
   const int max = node.group == VariableGroup::kPar ? kParameterCount - 1 : kVariableIndexMax;
   const Token index = Take();
-  std::uint32_t end = index.offset + index.length;
   if (index.kind == TokenKind::kWord && index.word == Word::kNone && Is(TokenKind::kCloseIndex)) {
     node.index_name = InternName(index);
   } else if (index.kind == TokenKind::kNumber && index.whole && Is(TokenKind::kCloseIndex)) {
@@ -368,9 +363,8 @@ bool Parser::ParseVariable() {
     return FailAt(index, ErrorCode::kIndexRange,
                   "an index is a number or the name of an INTEGER constant", "OPT-7.60");
   }
-  end = Peek().offset + Peek().length;
-  if (!Expect(TokenKind::kCloseIndex, "']'")) return false;
-  Emit(Node::kVariable, group.offset, end - group.offset) = node;
+  const Token close = Take();
+  Emit(Node::kVariable, group.offset, close.offset + close.length - group.offset) = node;
   return true;
 }
 

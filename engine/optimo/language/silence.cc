@@ -38,8 +38,8 @@ Directive ReadDirective(std::string_view comment) {
     return directive;
   const std::string text = LowerCase(comment);
   at = std::min(text.find_first_not_of(" \t", at + kMark.size()), text.size());
-  std::size_t end = at;
-  while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) ++end;
+  const std::size_t end =
+      std::min(text.find_first_not_of("abcdefghijklmnopqrstuvwxyz", at), text.size());
   if (const std::string word = text.substr(at, end - at); word != kAllow) {
     directive.complaint =
         word.empty() ? Detail("no word stands behind rmlcell:")
@@ -106,7 +106,7 @@ class Silencer {
 std::size_t Silencer::StatementAt(std::int64_t offset) const {
   const auto behind = std::ranges::upper_bound(
       program_.statements, offset, {}, [](const Statement& s) -> std::int64_t { return s.begin; });
-  if (offset < 0 || behind == program_.statements.begin()) return kNoStatement;
+  if (behind == program_.statements.begin()) return kNoStatement;
   return static_cast<std::size_t>(behind - program_.statements.begin()) - 1;
 }
 
@@ -115,8 +115,7 @@ std::size_t Silencer::StatementAt(std::int64_t offset) const {
 std::size_t Silencer::StatementOf(const Comment& comment) const {
   const std::size_t before = StatementAt(comment.begin);
   if (before != kNoStatement) {
-    const std::uint32_t end = program_.statements[before].end;
-    if (comment.begin < end) return before;
+    const std::uint32_t end = std::min(program_.statements[before].end, comment.begin);
     const std::string_view between = program_.text.substr(end, comment.begin - end);
     if (between.find('\n') == std::string_view::npos) return before;
   }
@@ -128,7 +127,6 @@ void Silencer::ReadComments() {
   for (std::size_t c = 0; c < program_.comments.size(); ++c) {
     const Comment& comment = program_.comments[c];
     const std::string_view text = program_.text.substr(comment.begin, comment.end - comment.begin);
-    if (text.find(':') == std::string_view::npos) continue;
     Directive directive = ReadDirective(text);
     if (!directive.complaint.empty())
       complaints_.push_back({c, std::move(directive.complaint), std::move(directive.fixes)});
@@ -149,7 +147,6 @@ void Silencer::ReadComments() {
 }
 
 void Silencer::Drop(std::vector<Diagnostic>& diagnostics) {
-  if (allowances_.empty()) return;
   std::erase_if(diagnostics, [&](const Diagnostic& d) {
     if (IsError(d.severity)) return false;
     const int number = Lookup(d.code).number;
@@ -174,7 +171,6 @@ std::vector<AllowedFinding> Silencer::Allowed() const {
       continue;
     }
     const std::size_t begin = program_.statements[allowance.statement].begin;
-    if (begin < at) continue;
     line += static_cast<int>(std::ranges::count(program_.text.substr(at, begin - at), '\n'));
     at = begin;
     allowed.push_back({.line = line, .number = allowance.number});
@@ -196,9 +192,8 @@ void Silencer::Add(const Complaint& complaint, std::string_view file,
   told.where.length = static_cast<int>(at.end - at.begin);
   const std::string_view before = program_.text.substr(0, at.begin);
   told.where.line = static_cast<int>(std::ranges::count(before, '\n')) + 1;
-  const std::size_t line_end = before.rfind('\n');
-  told.where.column =
-      static_cast<int>(line_end == std::string_view::npos ? at.begin : at.begin - line_end - 1) + 1;
+  const std::size_t line = before.rfind('\n') + 1;  // npos + 1 is 0
+  told.where.column = static_cast<int>(at.begin - line) + 1;
 }
 
 void Silencer::Tell(const SilenceOptions& options, std::vector<Diagnostic>& diagnostics) {
@@ -212,10 +207,9 @@ void Silencer::Tell(const SilenceOptions& options, std::vector<Diagnostic>& diag
     complaints_.push_back({allowance.comment,
                            "allow " + Told("number", allowance.number) + " silences nothing here"});
   }
-  if (complaints_.empty()) return;
   std::ranges::stable_sort(complaints_, {}, &Complaint::comment);
   constexpr std::size_t kComplaintsMax = 100;  // each looks for its line
-  if (complaints_.size() > kComplaintsMax) complaints_.resize(kComplaintsMax);
+  complaints_.resize(std::min(complaints_.size(), kComplaintsMax));
   for (const Complaint& complaint : complaints_) Add(complaint, options.file, diagnostics);
   std::ranges::stable_sort(diagnostics, {},
                            [](const Diagnostic& d) { return d.where.byte_offset; });

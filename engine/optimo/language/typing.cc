@@ -19,7 +19,7 @@ bool IsLogicalOperator(Node op) { return op >= Node::kAnd; }
 }  // namespace
 
 Place Typing::PlaceOfStatement() const {
-  if (places_ == nullptr) return {-1, 0, static_cast<int>(instruction_->step)};
+  if (places_ == nullptr) return {.step = static_cast<int>(instruction_->step)};
   return places_->At(*instruction_);
 }
 
@@ -31,8 +31,8 @@ NodePlace Typing::NodePlaceOf(std::size_t node) {
 }
 
 Place Typing::PlaceOfNode(std::size_t node) {
-  if (places_ == nullptr) return PlaceOfStatement();
-  if (findings_.full()) return {};  // it is only counted
+  // Of what is only counted the line is enough: nothing is read again for it.
+  if (places_ == nullptr || findings_.full()) return PlaceOfStatement();
   const NodePlace place = NodePlaceOf(node);
   return {place.offset, static_cast<int>(place.length), static_cast<int>(instruction_->step)};
 }

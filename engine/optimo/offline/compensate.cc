@@ -28,15 +28,16 @@ class Compensator {
 
   // Directives and statements in the order of the text.
   std::vector<Fix> Run() {
-    std::size_t comment = 0;
+    auto comment = p_.comments.begin();
+    const auto obey_up_to = [&](auto end) {
+      for (; comment != end; ++comment) Obey(*comment);
+    };
     for (std::size_t s = 0; s < module_.instructions.size(); ++s) {
-      for (; comment < p_.comments.size() && p_.comments[comment].begin < p_.statements[s].begin;
-           ++comment) {
-        Obey(p_.comments[comment]);
-      }
+      obey_up_to(std::ranges::lower_bound(comment, p_.comments.end(), p_.statements[s].begin, {},
+                                          &Comment::begin));
       Pass(module_.instructions[s]);
     }
-    for (; comment < p_.comments.size(); ++comment) Obey(p_.comments[comment]);
+    obey_up_to(p_.comments.end());
     FinishChain();
     std::ranges::stable_sort(edits_, {}, &Fix::byte_offset);
     return std::move(edits_);

@@ -9,10 +9,8 @@ namespace {
 // Place of the point of the extension; npos when the name has none.
 std::size_t ExtensionAt(std::string_view name) {
   const std::size_t point = name.rfind('.');
-  const std::size_t folder = name.find_last_of("/\\");
-  if (point == std::string_view::npos) return point;
-  if (folder != std::string_view::npos && folder > point) return std::string_view::npos;
-  return point;
+  const bool of_folder = name.find_first_of("/\\", point) != std::string_view::npos;
+  return of_folder ? std::string_view::npos : point;
 }
 std::string_view ExtensionOf(std::string_view name) {
   const std::size_t at = ExtensionAt(name);

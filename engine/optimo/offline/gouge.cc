@@ -106,9 +106,9 @@ std::optional<Closing> FindClosing(const std::vector<PathSegment>& contour, std:
   const PathSegment& last = contour.back();
   const double length = (last.from - last.to).norm();
   if (length < kTouching_mm) return std::nullopt;
-  const PathSegment tab{last.to, last.to + (last.to - last.from) * (kTabMax_mm / length), 0};
+  const PathSegment tab{last.to, last.to + (last.to - last.from) * (kTabMax_mm / length)};
   for (std::size_t i = 0; i < lead.size() && lead[i].leg + 2 <= last.leg; ++i) {
-    const PathSegment corner{lead[i].to, lead[i].to, 0};
+    const PathSegment corner{lead[i].to, lead[i].to};
     const bool ends_move = i + 1 == lead.size() || lead[i + 1].leg != lead[i].leg;
     if (ends_move && NearestPointsOf(corner, tab).distance <= kTouching_mm)
       return Closing{i, contour.size() - 1, 1.0, 1.0};
@@ -160,7 +160,7 @@ GougeSearch FindGouges(const std::vector<Leg>& legs, const std::vector<OffsetLeg
                        double offset) {
   GougeSearch search;
   const double radius = std::fabs(offset);
-  if (legs.empty() || radius <= kGougeTolerance_mm) return search;
+  if (legs.empty()) return search;
   const Drawing drawing(legs);
   const double allowed =
       radius - kGougeTolerance_mm - (drawing.flat() ? 0.0 : kTurningShare * radius);
@@ -194,12 +194,13 @@ GougeSearch FindGouges(const std::vector<Leg>& legs, const std::vector<OffsetLeg
   const auto look = [&](const PathSegment& piece) {
     const bool all = grid.ForEachNear(piece, lookups, [&](std::uint32_t index) {
       const PathSegment& edge = edges.segments[index];
-      const std::size_t apart = edge.leg > piece.leg ? edge.leg - piece.leg : piece.leg - edge.leg;
+      const auto [before, behind] = std::minmax(edge.leg, piece.leg);
+      const std::size_t apart = behind - before;
       if (apart == 0) return;  // at the radius by construction
       // Two lines with a corner come too near only where one runs back, or at the pierce point.
       if (apart == 1 && !legs[piece.leg].is_arc && !legs[edge.leg].is_arc) {
         if (piece.leg > 0 || edges.start) return;
-        nearest[0] = std::min(nearest[0], NearestPointsOf({start, start, 0}, edge).distance);
+        nearest[0] = std::min(nearest[0], NearestPointsOf({start, start}, edge).distance);
         return;
       }
       nearest[piece.leg] = std::min(nearest[piece.leg], NearestPointsOf(piece, edge).distance);

@@ -1,5 +1,7 @@
 #include "engine/optimo/offline/listing.h"
 
+#include <algorithm>
+
 #include "engine/optimo/language/printer.h"
 
 namespace rmlcell::optimo {
@@ -9,7 +11,7 @@ constexpr std::size_t kColumns = 5;
 
 void PrintRight(std::size_t number, std::string& out) {
   const std::string text = std::to_string(number);
-  if (text.size() < kColumns) out.append(kColumns - text.size(), ' ');
+  out.append(kColumns - std::min(kColumns, text.size()), ' ');
   out += text;
 }
 

@@ -55,7 +55,7 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
     length += (s.from - s.to).norm();
   }
   const ProgramVector spread = high_ - low_;
-  std::array<int, 3> axes = {0, 1, 2};
+  std::array axes = {0, 1, 2};
   std::ranges::stable_sort(axes, std::ranges::greater{}, [&](int axis) { return spread[axis]; });
   axis_u_ = axes[0];
   axis_v_ = axes[1];

@@ -19,19 +19,17 @@ void Append(std::uint32_t value, std::string& to) {
 // are 1 and ON where a logical value stands. A negative zero is zero.
 void AppendMeaning(Expression value, std::string& to) {
   for (const ExprNode& node : value) {
-    if (node.op == Node::kVariable) {
-      to += 'v';
-      to += static_cast<char>(node.group);
-      to += static_cast<char>(node.index);
-    } else if (Arity(node.op) == 0) {
+    if (Arity(node.op) == 0 && node.op != Node::kVariable) {
       to += node.type == ValueType::kLogical ? 'l' : 'n';
       Append(std::bit_cast<std::uint32_t>(node.number == 0.0F ? 0.0F : node.number), to);
-    } else {
-      to += 'o';
-      to += static_cast<char>(node.op);
+      continue;
+    }
+    to += static_cast<char>(node.op);
+    if (node.op == Node::kVariable) {
+      to += static_cast<char>(node.group);
+      to += static_cast<char>(node.index);
     }
   }
-  to += ';';
 }
 
 // With names replaced by what they stand for: the same name may be declared differently.
@@ -48,7 +46,7 @@ std::string ValueText(const Module& module, Expression value) {
   if (!IsPlain(value) || value[0].op == Node::kLogical || value[0].type == ValueType::kLogical)
     return Text(module, value);
   std::string out;
-  PrintReal(value[0].number == 0.0F ? 0.0F : value[0].number, out);
+  PrintReal(value[0].number, out);
   return out;
 }
 
@@ -145,7 +143,7 @@ unsigned AspectsOfAttribute(std::uint16_t bit, unsigned otherwise) {
   return otherwise;
 }
 
-constexpr std::array<const char*, 5> kAxes = {"X", "Y", "Z", "A", "B"};
+constexpr const char* kAxes[] = {"X", "Y", "Z", "A", "B"};
 
 void CompareMove(const Module& a, const Instruction& i, const Module& b, const Instruction& j,
                  StepDifference& to) {

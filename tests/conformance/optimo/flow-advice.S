@@ -191,6 +191,30 @@ MOVE (20.015,2.,3.,0.,0.)/FLY        ; expect 7314
 MOVE (30.,2.,3.,0.,0.)/FLY
 MOVE (40.,2.,3.,0.,0.)
 
+;=== a wait, a pause and a stop are no way (advice)
+; OPT-2.51 OPT-E.7314
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (10.,2.,3.,0.,0.)
+WAIT IL[1]
+MOVE (10.5,2.,3.,0.,0.)/FLY          ; expect 7314
+MOVE (20.,2.,3.,0.,0.)
+PAUSE
+MOVE (20.5,2.,3.,0.,0.)/FLY          ; expect 7314
+MOVE (30.,2.,3.,0.,0.)
+STOP
+MOVE (30.5,2.,3.,0.,0.)/FLY          ; expect 7314
+MOVE (40.,2.,3.,0.,0.)
+
+;=== a WORKDEF leaves its process as it is (advice)
+; OPT-3.33 OPT-E.7407
+; rmlcell: allow 7033 in file
+WORKDEF 1,0 (8., 75., 1., 50.)
+WORK 1,0/ON
+WORKDEF 1,0 (8., 75., 1., 50.)
+CALL 2                               ; expect 7407
+
 ;=== a contour in the COORD of the machine (advice)
 ; OPT-2.09 OPT-2.08 OPT-E.7302
 PATH LIN
@@ -422,6 +446,14 @@ ENDTASK
 100 SPEED 5
 RETURN
 
+;=== behind a subroutine that never comes back nothing is known (advice)
+; rmlcell: allow 7033 in file
+GOSUB 10
+WORK 1,3/ON
+WORK 1,3/OFF
+ENDTASK
+10 GOTO 10
+
 ;=== a RETURN that no GOSUB leads to (advice)
 ; OPT-7.22 OPT-E.7504
 SPEED 5
@@ -549,3 +581,147 @@ RETURN
 RETURN
 17 SPEED 5
 RETURN
+
+;=== what an assignment by a name without a value changes is not known (advice)
+; OPT-1.33 OPT-1.17 OPT-5.40
+DECLARE GAS = OL[8] + 1  ; expect 7014
+DECLARE N = VR[1] + 1    ; expect 7014
+OL[8] = ON
+GAS = OFF
+OL[9] = ON
+VR[N] = 5.
+SPEED VR[2]
+
+;=== where a jump is wrong, any sequence number may be come to (advice)
+; OPT-1.33 OPT-5.46
+COORD ABSOL
+PATH LIN
+SPEED 80
+10 MOVE (1.,2.,3.,0.,0.)
+SPEED 80
+MOVE (2.,2.,3.,0.,0.)    ; expect 7033
+GOTO                     ; expect 7003
+
+;=== a GOSUB to the end of the text (advice)
+; OPT-1.27 OPT-7.20
+GOSUB 99
+ENDTASK
+99
+
+;=== a DEFINE is nothing that has to be reached (advice)
+; OPT-3.47 OPT-9.22
+GOTO 20
+DEFINE PAR[0] = INT
+20 SPEED 5
+
+;=== a process that a GOSUB, not the program, takes to the end (advice)
+; OPT-3.34 OPT-7.20
+OL[11] = ON
+WORK 0,0/ON
+DELAY 1
+GOSUB 99
+WORK 0,0/OFF
+ENDTASK
+99
+
+;=== behind a FUNCTION nothing is known (advice)
+; OPT-9.16 OPT-3.09 OPT-5.47 OPT-5.48
+FUNCTION 44
+WORK 1,3/ON
+WORK 1,3/OFF
+COORD ABSOL
+PATH HOLE (5.)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)
+
+;=== nor where there was one on a path (advice)
+; OPT-9.16 OPT-5.47 OPT-5.48
+IF IL[20] THEN 10
+FUNCTION 44
+10 WORK 0,0/ON
+WORK 0,0/OFF
+COORD ABSOL
+PATH HOLE (5.)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)
+
+;=== behind a CALL the beam is off, no process is ON, and an offset may turn (advice)
+; OPT-7.12 OPT-3.33 OPT-5.46 OPT-5.48
+COORD ABSOL
+PATH LIN
+OL[11] = ON
+WORK 0,0/ON
+DELAY 1
+CALL 2                   ; expect 7407
+SPEED 30
+MOVE (10.,0.,0.,0.,0.)
+PATH HOLE (5.)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)
+CALL 2
+ENDTASK
+
+;=== a speed that is computed is not known (advice)
+; OPT-2.34 OPT-5.46
+COORD ABSOL
+PATH LIN
+SPEED 80
+SPEED VR[64]
+MOVE (1.,0.,0.,0.,0.)
+
+;=== moves from where the way ends nobody knows, or along an arc, are not short (advice)
+; OPT-2.51 OPT-2.54 OPT-2.18
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (10.,0.,0.,0.,0.)/TIME (1.,900)
+MOVE (10.5,0.,0.,0.,0.)/FLY
+MOVE (20.,0.,0.,0.,0.)
+PATH CIR
+MOVE (20.5,0.,0.,0.,0.)/VIA (25.,5.,0.,0.,0.)/FLY
+MOVE (30.,0.,0.,0.,0.)/VIA (25.,5.,0.,0.,0.)
+PATH PTP
+MOVE (30.5,0.,0.,0.,0.)/FLY          ; expect 7314
+MOVE (40.,0.,0.,0.,0.)
+PATH HOLE (5.)
+MOVE (40.,0.,0.,0.,0.)/VIA (40.,0.,6.,0.,0.)
+PATH PTP
+MOVE (40.5,0.,0.,0.,0.)/FLY
+MOVE (50.,0.,0.,0.,0.)
+ENDTASK
+900 RETURN
+
+;=== a program goes on from where its subroutine went (advice)
+; OPT-7.20 OPT-2.51 OPT-B.22
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (0.,0.,0.,0.,0.)
+MOVE (.9,0.,0.,0.,0.)/FLY            ; expect 7314
+GOSUB 100
+MOVE (20.,0.,0.,0.,0.)
+GOSUB 200
+SPEED 0
+MOVE (10.,0.,0.,0.,0.)
+MOVE (11.,0.,0.,0.,0.)   ; expect 7307
+ENDTASK
+100 MOVE (10.,0.,0.,0.,0.)
+RETURN
+200 MOVE (10.,0.,0.,0.,0.)
+RETURN
+
+;=== moves of 0.01 mm, to the last bit, are not shorter than that (advice)
+; OPT-2.52
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (0.,0.,0.,0.,0.)/FLY
+MOVE (.009999999,4.8059123E-6,2.2585351E-9,0.,0.)/FLY
+MOVE (0.,0.,0.,0.,0.)/FLY
+MOVE (.009999999,4.8059123E-6,2.2585351E-9,0.,0.)/FLY
+MOVE (.005,0.,0.,0.,0.)/FLY
+MOVE (0.,0.,0.,0.,0.)/FLY
+MOVE (.009999999,4.8059123E-6,2.2585351E-9,0.,0.)/FLY
+MOVE (10.,0.,0.,0.,0.)/FLY
+MOVE (20.,0.,0.,0.,0.)
+
+;=== a group that runs past the last variable (advice)
+; OPT-7.103 OPT-7.105 OPT-E.7206
+ASSIGN VL[95] = 0 /8     ; expect 7206 7413

@@ -286,3 +286,74 @@ MOVE (9.,2.,3.,0.,0.)    ; expect 7307
 ENDTASK
 10 OL[16] = ON
 RETURN
+
+;=== a TIMER that is set on one path may come (advice)
+; OPT-5.40 OPT-B.59
+IF IL[20] THEN 5
+TIMER (5.,10)
+5 OL[8]=ON
+OL[9]=ON
+ENDTASK
+10 OL[8]=OFF
+RETURN
+
+;=== also where the path is one of a subroutine (advice)
+; OPT-5.40 OPT-B.59 OPT-7.20
+GOSUB 20
+OL[8]=ON
+OL[9]=ON
+ENDTASK
+10 OL[8]=OFF
+RETURN
+20 IF IL[20] THEN 21
+TIMER (5.,10)
+21 RETURN
+
+;=== one that was cancelled on one path, too (advice)
+; OPT-5.40 OPT-B.59
+TIMER (5.,10)
+IF IL[20] THEN 5
+TIMER /DIS
+5 OL[8]=ON
+OL[9]=ON
+ENDTASK
+10 OL[8]=OFF
+RETURN
+
+;=== and in an error handler (advice)
+; OPT-3.53 OPT-5.40 OPT-B.59
+TIMER (5.,10)
+ERR 900
+DELAY 1
+ENDTASK
+10 OL[8]=OFF
+RETURN
+900 OL[8]=ON
+OL[9]=ON
+ENDTASK
+
+;=== a short move from which its GOSUB may have gone on (advice)
+; OPT-2.51 OPT-B.59
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (0.,0.,0.,0.,0.)
+MOVE (.9,0.,0.,0.,0.)/FLY            ; expect 7032
+TIMER (9.,10)
+MOVE (20.,0.,0.,0.,0.)
+ENDTASK
+10 MOVE (5.,0.,0.,0.,0.)
+RETURN
+
+;=== a short move that it leaves (advice)
+; OPT-2.51 OPT-B.59
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (0.,0.,0.,0.,0.)
+MOVE (.9,0.,0.,0.,0.)/FLY            ; expect 7032 7314
+TIMER (9.,10)
+MOVE (20.,0.,0.,0.,0.)
+ENDTASK
+10 OL[16] = ON
+RETURN

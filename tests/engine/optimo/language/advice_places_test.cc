@@ -64,6 +64,11 @@ TEST(AdvicePlaces, OfProcesses) {
       {"{WORK 0,0/ON}\n", 7408, "OPT-3.34", "a process is ON at the end of the program"},
       {"IF VL[1] THEN 10\nWORK 0,0/ON\n10 {SPEED 5}\n", 7408, "OPT-3.34",
        "on one path a process is ON at the end of the program"},
+      // Behind a CALL, and where an error leads, all processes are off.
+      {"WORK 0,0/ON\nCALL 2\nIF VL[1] THEN 10\nWORK 0,0/ON\n10 {ENDTASK}\n", 7408, "OPT-3.34",
+       "on one path a process is ON at the end"},
+      {"ERR 900\nENDTASK\n900 IF VL[1] THEN 10\nWORK 0,0/ON\n10 {ENDTASK}\n", 7408, "OPT-3.34",
+       "on one path a process is ON at the end"},
   };
   for (const AdviceRow& row : rows) ExpectAdvice(row);
   // OPT-3.23, OPT-3.26: a schedule alone is no warning.
@@ -93,6 +98,11 @@ TEST(AdvicePlaces, OfOutputs) {
       {"{WORK 0,0/ON}\nWORK 0,0/OFF\n", 7033, "OPT-5.47", "the sensor OL[11] is off"},
       {"OL[11]=ON\nWORK 0,0/ON\nDELAY 1\nOL[11]=OFF\n{MOVE (1.,2.,3.,0.,0.)}\n", 7033, "OPT-5.47",
        "the sensor OL[11] is off"},
+      {"OL[11]=ON\nWORK 0,0/ON\nDELAY 1\nOL[11]=OFF\nWORK 2,5/ON\n{MOVE (1.,2.,3.,0.,0.)}\n", 7033,
+       "OPT-5.47", "the sensor OL[11] is off"},
+      // What a FUNCTION did with the gas nobody knows.
+      {"IF VL[1] THEN 10\nOL[8]=ON\nGOTO 20\n10 FUNCTION 44\n20 {OL[9]=ON}\n", 7409, "OPT-5.40",
+       "on one path the other assist gas is on"},
   };
   for (const AdviceRow& row : rows) ExpectAdvice(row);
 }
@@ -132,6 +142,8 @@ TEST(AdvicePlaces, OfTheFlow) {
        "the program can run into this RETURN"},
       {"SPEED 5\n{RETURN}\n", 7504, "OPT-7.22", "no GOSUB leads to this RETURN"},
       {"GOSUB 100\nENDTASK\n100 {SPEED 5}\nENDTASK\n", 7033, "OPT-7.20",
+       "this subroutine never comes to a RETURN"},
+      {"GOSUB 100\nENDTASK\n100 {GOSUB 200}\nENDTASK\n200 RETURN\n", 7033, "OPT-7.20",
        "this subroutine never comes to a RETURN"},
       {too_deep, 7503, "OPT-7.21", "this GOSUB can be the 17th inside another"},
       {"GOSUB 100\nENDTASK\n100 IF IL[20] THEN 110\n{GOSUB 100}\n110 RETURN\n", 7503, "OPT-7.21",
@@ -176,6 +188,11 @@ TEST(AdvicePlaces, OfSpeeds) {
                     pierce = kAbsolLin + "WORK 0,0/ON\n" + move,
                     ramp = kAbsolLin + "WORKDEF 1,0 (8.,75.,0.,50.)\nWORK 1,0/ON\n" + move,
                     still = kAbsolLin + "SPEED 0\n" + move,
+                    waits = kAbsolLin + "WAIT IL[20]\nSPEED 0\n" + move,
+                    calls = kAbsolLin + "GOSUB 100\nSPEED 0\n" + move +
+                            "ENDTASK\n100 OL[16]=ON\nRETURN\n",
+                    defined = cut + "WORKDEF 1,5 (8.,75.,1.,50.)\nSPEED 30\n" + move,
+                    function = "FUNCTION 44\n" + cut + "SPEED 30\n" + move,
                     // atan(3/4) = 36.87 degrees
       hole = "COORD ABSOL\nPATH HOLE (5.)\n{MOVE (20.,2.,3.,0.,0.)/VIA (23.,2.,7.,0.,0.)}\n";
   const std::vector<AdviceRow> rows = {
@@ -187,6 +204,10 @@ TEST(AdvicePlaces, OfSpeeds) {
       {pierce, 7033, "OPT-3.20", "the beam was switched on without a dwell to pierce"},
       {ramp, 7033, "OPT-3.21", "WORKDEF 1 has a delay of 0: the beam was switched on without"},
       {still, 7307, "OPT-B.22", "SPEED is 0: this MOVE will fail"},
+      {waits, 7307, "OPT-B.22", "SPEED is 0: this MOVE will fail"},
+      {calls, 7307, "OPT-B.22", "SPEED is 0: this MOVE will fail"},
+      {defined, 7033, "OPT-5.46", "SPEED 30 with the beam on; cutting takes 5 to 15 %"},
+      {function, 7033, "OPT-5.46", "SPEED 30 with the beam on; cutting takes 5 to 15 %"},
       {hole, 7033, "OPT-5.48", "the axis of the hole is 36.87 degrees off the tool axis"},
   };
   for (const AdviceRow& row : rows) ExpectAdvice(row);
@@ -213,6 +234,19 @@ TEST(AdvicePlaces, OfPassages) {
                            "MOVE (.005,0.,0.,0.,0.)/FLY\nMOVE (.010,0.,0.,0.,0.)/FLY\n"
                            "{MOVE (.015,0.,0.,0.,0.)/FLY}\nMOVE (9.,0.,0.,0.,0.)/FLY\n" +
                            move;
+  // A GOSUB that moves nothing leaves a row of moves going on; one that does begins it.
+  const std::string sub = "ENDTASK\n100 OL[16]=ON\nRETURN\n",
+                    small_sub =
+                        kAbsolLin + "{MOVE (0.9,0.,0.,0.,0.)/FLY}\nGOSUB 100\n" + move + sub,
+                    tiny_sub =
+                        kAbsolLin +
+                        "MOVE (.005,0.,0.,0.,0.)/FLY\nGOSUB 100\nMOVE (.010,0.,0.,0.,0.)/FLY\n"
+                        "{MOVE (.015,0.,0.,0.,0.)/FLY}\n" +
+                        move + sub,
+                    begun =
+                        "GOSUB 100\nMOVE (.005,0.,0.,0.,0.)/FLY\nMOVE (.010,0.,0.,0.,0.)/FLY\n"
+                        "{MOVE (.015,0.,0.,0.,0.)/FLY}\n" +
+                        move + "ENDTASK\n100 " + kAbsolLin + "RETURN\n";
   // What the GOSUB of a TIMER moves begins a new row of moves; what does not move leaves it going
   // on.
   const std::string ahead = "MOVE (.005,0.,0.,0.,0.)/FLY\n", back = "MOVE (0.,0.,0.,0.,0.)/FLY\n",
@@ -234,6 +268,9 @@ TEST(AdvicePlaces, OfPassages) {
       {to_hole, 7032, "OPT-2.53", "/FLY on the move to a hole"},
       {small, 7314, "OPT-2.51", "/FLY on a move shorter than 1 mm, and the next move stops"},
       {tiny, 7314, "OPT-2.52", "/FLY on several moves in a row shorter than 0.01 mm"},
+      {small_sub, 7314, "OPT-2.51", "/FLY on a move shorter than 1 mm, and the next move stops"},
+      {tiny_sub, 7314, "OPT-2.52", "/FLY on several moves in a row shorter than 0.01 mm"},
+      {begun, 7314, "OPT-2.52", "/FLY on several moves in a row shorter than 0.01 mm"},
       {timed, 7314, "OPT-2.52", "/FLY on several moves in a row shorter than 0.01 mm"},
       {quiet, 7314, "OPT-2.52", "/FLY on several moves in a row shorter than 0.01 mm"},
   };
@@ -250,11 +287,13 @@ TEST(AdvicePlaces, OfSingleInstructions) {
       {"{OL[2] = ON}\n", 7412, "OPT-7.106", "OL[2] is used by the system, except on an EFA-51"},
       {"{ASSIGN OL[16] = 0 /2}\n", 7412, "OPT-7.106", "OL[17] is used by the system"},
       {"{ASSIGN OL[8] = 0 /3}\n", 7412, "OPT-7.106", "OL[10] is used by the system"},
+      {"{ASSIGN OL[0] = 0 /4}\n", 7412, "OPT-7.106", "OL[0] is used by the system"},
       {"{SYSDEF (0,0,0,0,0,0)}\n", 7311, "OPT-7.37", "SYSDEF with six zeros"},
       {"{TCP (0,1,3/0,0,2)}\n", 7313, "OPT-4.70", "X and Y of TCP are zero"},
       {"{TCP (0,0,3/0,0,3)}\n", 7312, "OPT-4.71", "both points of TCP are equal"},
       {"{TCP (0,0,3/0,0,4)}\n", 7315, "OPT-4.55", "Z0 is below Z1"},
       {"{FUNCTION 99 (5., VR[3])}\n", 7033, "OPT-8.78", "FUNCTION 99 takes degrees"},
+      {"{FUNCTION 99 (VR[3], VR[4])}\n", 7033, "OPT-8.78", "FUNCTION 99 takes degrees"},
       {"TASK 1\nSPEED 5\n{TASK 1}\n", 7033, "OPT-9.12", "TASK 1 stands above already"},
   };
   for (const AdviceRow& row : rows) ExpectAdvice(row);
@@ -267,18 +306,22 @@ TEST(AdvicePlaces, OfConstantsOutsideTheirRange) {
                     seconds = fails + "0 or more seconds", schedule = fails + "1 to 63",
                     error = fails + "1 to 9999";
   const std::vector<AdviceRow> rows = {
-      {"{SPEED 50*3}\n", 7205, "OPT-2.35", percent},
-      {"{ACCEL 1-2}\n", 7205, "OPT-2.35", percent},
+      {"SPEED 1-1\nSPEED .25+.25\n{SPEED 50*3}\n", 7205, "OPT-2.35", percent},
+      {"ACCEL 1-1\nACCEL 50+50\n{ACCEL 1-2}\n", 7205, "OPT-2.35", percent},
       {"SPEED 50+50\n{OVERSH 50+50.5}\n", 7205, "OPT-2.35", percent},
-      {"{DELAY 1-2}\n", 7205, "OPT-3.45", seconds},
+      {"DELAY 1-1\nDELAY .25+.25\n{DELAY 1-2}\n", 7205, "OPT-3.45", seconds},
       {"SETERR 1+0\n{SETERR 1-1}\n", 7505, "OPT-3.61", error},
       {"SETERR 9998+1\n{SETERR 9999+1}\n", 7505, "OPT-3.61", error},
-      {"{WORKDEF 1,0 (1-1, 80., 1., 90.)}\n", 7205, "OPT-3.08", above},
+      {"WORKDEF 1,0 (.25+.25, 1-1, 1-1, 1-1)\n{WORKDEF 1,0 (1-1, 80., 1., 90.)}\n", 7205,
+       "OPT-3.08", above},
+      {"WORKDEF 1,0 (50+50, 50+50, .25+.25, 50+50)\n{WORKDEF 1,0 (50+51, 80., 1., 90.)}\n", 7205,
+       "OPT-3.08", above},
       {"{WORKDEF 1,0 (8., 100+1, 1., 90.)}\n", 7205, "OPT-3.08", percent},
       {"{WORKDEF 1,0 (8., 80., 1-2, 90.)}\n", 7205, "OPT-3.08", seconds},
       {"{WORKDEF 1,0 (8., 80., 1., 0-1)}\n", 7205, "OPT-3.08", percent},
-      {"{WORKDEF 1,0 (8., 80., 1., 90., 63+1)}\n", 7403, "OPT-3.06", schedule},
-      {"WORKDEF 2,0 (62+1)\n{WORKDEF 2,0 (1-1)}\n", 7403, "OPT-3.06", schedule},
+      {"WORKDEF 1,0 (8., 80., 1., 90., 1+0)\n{WORKDEF 1,0 (8., 80., 1., 90., 63+1)}\n", 7403,
+       "OPT-3.06", schedule},
+      {"WORKDEF 2,0 (1+0)\nWORKDEF 2,0 (62+1)\n{WORKDEF 2,0 (1-1)}\n", 7403, "OPT-3.06", schedule},
   };
   for (const AdviceRow& row : rows) ExpectAdvice(row);
 }
@@ -296,7 +339,9 @@ TEST(AdvicePlaces, OfConstantsThatFail) {
       {"{WAIT 1 > 2}\n", 7033, "OPT-7.27", "this waits for ever"},
       {"{WAIT OFF}\n", 7033, "OPT-7.27", "this waits for ever"},
       {"{SPEED 1/0}\n", 7201, "OPT-7.79", fails},
+      {"{SPEED SQRT(-1)}\n", 7204, "OPT-7.83", fails},
       {"{CALL 6 (1, 1/0, SQRT(-1))}\n", 7201, "OPT-7.79", fails},
+      {"{CALL 6 (1/0, 2/0)}\n", 7201, "OPT-7.79", fails},  // once a statement
   };
   for (const AdviceRow& row : rows) ExpectAdvice(row);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "tests/engine/optimo/language/compile_text.h"
@@ -183,6 +184,8 @@ TEST(Evaluate, EachOperatorHasItsValue) {
   EXPECT_EQ(Number("(-2)^-1"), -0.5F);
   EXPECT_EQ(Number("0^2"), 0.0F);
   EXPECT_EQ(Number("-(0)"), 0.0F);
+  EXPECT_EQ(Number("-(3-2)"), -1.0F);
+  EXPECT_FALSE(std::signbit(Number("-(2-2)")));
   EXPECT_EQ(ErrorOf("0^-.5"), 7201);
   struct Row {
     const char* op;

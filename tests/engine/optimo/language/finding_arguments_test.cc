@@ -37,6 +37,7 @@ TEST(FindingArguments, CountsOfValues) {
       {"SYSDEF (1)\n", 7019, "SYSDEF has 1 value, needs 6 or none",
        "instruction='SYSDEF' values=1 needed='6 or none'"},
       {"TCP (1,2,3)\n", 7019, "TCP has 3 values, needs 6", "instruction='TCP' values=3 needed=6"},
+      {"TCP\n", 7019, "TCP has 0 values, needs 6", "instruction='TCP' values=0 needed=6"},
       {"WORKDEF 2,1,(1,2)\n", 7019, "WORKDEF 2 has 2 values, needs 1: the laser schedule",
        "instruction='WORKDEF' kind=2 values=2 needed='1: the laser schedule'"},
       {"MOVE (1,2,3,4,5)/VIA (1)\n", 7019, "/VIA has 1 value, needs 5",
@@ -56,6 +57,8 @@ TEST(FindingArguments, WordsOfTheText) {
       {"GOTO 60\n", 7008, "no sequence number 60", "label=60"},
       {"DECLARE SPEED = 1\n", 7009, "'SPEED' is reserved", "name='SPEED'"},
       {"IL[3] = 1\n", 7016, "IL[3] can only be read", "variable='IL[3]'"},
+      {"CONT 3\n", 7023, "CONT has no effect", "word='CONT'"},
+      {"VR[0] = 1 E 100\n", 7005, "'1 E 100' is no number", "word='1 E 100'"},
       {"DECLARE TEN = 10\nDELAY TENN\n", 7011, "TENN is not declared; did you mean TEN?",
        "name='TENN' near='TEN'"},
   });
@@ -97,6 +100,19 @@ TEST(FindingArguments, WhatIsQuotedIsToldAsItIsShown) {
   const Detail& detail = compiled.diagnostics[0].detail;
   EXPECT_EQ(detail, "'\\x01' cannot stand here");
   EXPECT_EQ(ArgumentsText(detail), "word='\\x01'");
+  EXPECT_EQ(Compile("DELAY \x7F\n", "", {.advice = false}).diagnostics.at(0).detail,
+            "'\\x7F' cannot stand here");
+}
+
+// Of long words the first forty characters are told.
+TEST(FindingArguments, WhatIsQuotedIsShort) {
+  const auto told = [](std::size_t length) {
+    const std::string text = "SPEED 5 " + std::string(length, 'A') + "\n";
+    return std::string(Compile(text, "", {.advice = false}).diagnostics.at(0).detail);
+  };
+  const std::string most(40, 'A');
+  EXPECT_TRUE(told(40).ends_with("found '" + most + "'")) << told(40);
+  EXPECT_TRUE(told(41).ends_with("found '" + most + "...'")) << told(41);
 }
 
 }  // namespace

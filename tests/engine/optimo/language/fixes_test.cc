@@ -1,3 +1,5 @@
+#include "engine/optimo/language/fixes.h"
+
 #include <gtest/gtest.h>
 
 #include "engine/core/text_fixes.h"
@@ -51,6 +53,37 @@ TEST(Fixes, WhatIsNotSureIsOnlyProposed) {
        {"SYSDEF86\n", "STOP1\n", "REAL1\n", "GOT 10\n", "WORKD 1,0 (8,75,0,50)\n", "SPEDE 20 20\n",
         "CON 5\n", "DECLARE XHOME = VR[1]\nXHOEM 5.\n"}) {
     EXPECT_EQ(Fixed(text), text);
+  }
+}
+
+// A statement is repaired as long as it stays below 2000 bytes.
+TEST(Fixes, LongStatementsAreLeftToTheProgrammer) {
+  std::string ones;
+  for (int n = 0; n < 996; ++n) ones += "+1";
+  EXPECT_EQ(Fixed("SPEDE 1" + ones + "\n"), "SPEED 1" + ones + "\n");  // 7 + 2 * 996 = 1999
+  EXPECT_EQ(Fixed("SPEDE  1" + ones + "\n"), "SPEDE  1" + ones + "\n");
+}
+
+// What takes an attribute out: with its '/' and the blanks before it, and no value of its name.
+TEST(Fixes, AttributesAreFoundBehindTheirSlash) {
+  struct Row {
+    std::string text;
+    Word word;
+    std::string without;
+  };
+  for (const Row& row : {Row{"TIMER /DIS\n", Word::kDis, "TIMER\n"},
+                         Row{"SPEED 5\nTIMER\t /DIS ; x\n", Word::kDis, "SPEED 5\nTIMER ; x\n"},
+                         Row{"WORK 0,0/START (ON)/ON\n", Word::kOn, "WORK 0,0/START (ON)\n"},
+                         Row{"10 UPDATE IL / ON\n", Word::kOn, "10 UPDATE IL\n"}}) {
+    Findings none;
+    const ParsedProgram program = Parse(row.text, none);
+    const auto fix = AttributeRemoval(program, program.module.instructions.back(), row.word);
+    ASSERT_TRUE(fix) << row.text;
+    std::string text = row.text;
+    text.replace(static_cast<std::size_t>(fix->byte_offset), static_cast<std::size_t>(fix->length),
+                 fix->text);
+    EXPECT_EQ(text, row.without);
+    EXPECT_FALSE(AttributeRemoval(program, program.module.instructions.back(), Word::kFly));
   }
 }
 

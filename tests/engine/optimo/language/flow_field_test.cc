@@ -104,5 +104,24 @@ TEST(FlowField, ModesAreThoseOfTheSamePath) {
   EXPECT_FALSE(start.IsContour());
 }
 
+// OPT-2.12
+TEST(FlowField, ModesKnowTheirContours) {
+  for (const PathType path : {PathType::kPtp, PathType::kLin, PathType::kCir, PathType::kHole}) {
+    Modes modes = Modes::AtStart();
+    modes.SetPath(path);
+    EXPECT_EQ(modes.path(), path);
+    EXPECT_TRUE(modes.MayBe(path));
+    EXPECT_EQ(modes.IsContour(), path != PathType::kPtp) << static_cast<int>(path);
+    EXPECT_TRUE(modes.IsDefaultCoord());
+    EXPECT_FALSE(modes.IsDefaultPath());
+  }
+  const Modes nowhere;  // no path comes here
+  EXPECT_FALSE(nowhere.coord());
+  EXPECT_FALSE(nowhere.path());
+  EXPECT_FALSE(nowhere.IsContour());
+  EXPECT_FALSE(nowhere.IsDefaultCoord());
+  EXPECT_FALSE(nowhere.IsDefaultPath());
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

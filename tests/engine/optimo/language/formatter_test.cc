@@ -27,6 +27,15 @@ TEST(Formatter, JoinsContinuedStatements) {
 
 TEST(Formatter, KeepsDosLineEnds) {
   EXPECT_EQ(Format("speed 5\r\n; x\r\n").text, "     SPEED 5\r\n; x\r\n");
+  EXPECT_EQ(Format("\r\nspeed 5\r\n").text, "\r\n     SPEED 5\r\n");
+  EXPECT_EQ(Format("\nspeed 5\r\n").text, "\n     SPEED 5\n");  // the first line decides
+}
+
+// OPT-1.18: a comment stays with its statement, however near it stands; blanks behind it go.
+TEST(Formatter, CommentsStayWithTheirStatements) {
+  EXPECT_EQ(Format("speed 5;slow\n;  next \t\npath lin;straight  \n").text,
+            "     SPEED 5  ;slow\n;  next\n     PATH LIN  ;straight\n");
+  EXPECT_EQ(Format("cont a;once\ncont;twice\n").text, "     CONT A  ;once\n     CONT  ;twice\n");
 }
 
 // OPT-1.03: what stands behind the end of the text is not looked at, and not lost.

@@ -58,6 +58,11 @@ TEST(GosubDepth, RingsAreFound) {
   EXPECT_TRUE(FindNesting(3, 0, two).recursive.empty());
 }
 
+TEST(GosubDepth, WhereThereIsNothingNothingIsFound) {
+  EXPECT_TRUE(FindNesting(0, 0, {}).recursive.empty());
+  EXPECT_TRUE(FindNesting(0, 0, {}).too_deep.empty());
+}
+
 // A chain of a hundred thousand does not need a deep call stack.
 TEST(GosubDepth, LongChainsAreNoDeepStack) {
   constexpr std::uint32_t kCount = 100'000;

@@ -34,6 +34,18 @@ TEST(Lexer, StatementsReachOverLines) {
 // An instruction word ends whatever was left open.
 TEST(Lexer, InstructionWordsBeginAStatement) {
   EXPECT_EQ(Kinds("MOVE (1.,\n20 SPEED 5\n"), "MOVE|(|1.|,|\n20|SPEED|5|\n");
+  EXPECT_EQ(Kinds("MOVE (1.,\nFUNCTION 44\n"), "MOVE|(|1.|,|\nFUNCTION|44|\n");
+  EXPECT_EQ(Kinds("VR[1] = 2. +\nFUNCTIONX\n"), "VR|[|1|]|=|2.|+|FUNCTIONX|\n");  // a name
+  // A parenthesis that closes nothing opens none.
+  EXPECT_EQ(Kinds(")(1\n+2"), ")|(|1|+|2|\n");
+}
+
+// OPT-7.45, OPT-1.02
+TEST(Lexer, NamesHaveAllLettersAndDigits) {
+  const std::string all = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+  EXPECT_EQ(Kinds("VR[0]=" + all + "+1"), "VR|[|0|]|=|" + all + "|+|1|\n");
+  EXPECT_EQ(MustCompile("Declare az09ZA = vr[1]\nZERO\nzero\npAtH PTP\nVR[0] = AZ09za\n").object,
+            MustCompile("DECLARE AZ09ZA = VR[1]\nZERO\nZERO\nPATH PTP\nVR[0] = AZ09ZA\n").object);
 }
 
 // OPT-7.55, OPT-B.41
@@ -57,6 +69,55 @@ TEST(Lexer, LiteralsAreRoundedOnce) {
   EXPECT_EQ(literal("123456789012345678."), 123456789012345678.0F);
   EXPECT_EQ(literal("0." + std::string(60, '0') + "5"), 0.0F);
   EXPECT_EQ(literal("1E-50"), 0.0F);
+  EXPECT_EQ(literal("0E23"), 0.0F);
+  EXPECT_EQ(literal("1E-23"), 0.0F);
+  EXPECT_EQ(literal("1E18"), 1E18F);
+  EXPECT_EQ(literal("9.9999999999999999999"), 10.0F);  // twenty digits
+  // Half way in double precision, and a little beside it in truth, on either side.
+  EXPECT_EQ(literal("49.03273963928223"), 49.03273963928223F);
+  EXPECT_EQ(literal("74.60992050170898"), 74.60992050170898F);
+  EXPECT_EQ(literal("80.81708145141602"), 80.81708145141602F);
+  EXPECT_EQ(literal("80.39683151245117"), 80.39683151245117F);
+}
+
+// OPT-7.55: with each exponent that a REAL can have.
+TEST(Lexer, LiteralsHaveTheirPowerOfTen) {
+  const auto literal = [](const std::string& text) {
+    const Compilation compiled = MustCompile("VR[0] = " + text + "\n");
+    return compiled.module.Value(compiled.module.instructions[0], 1)[0].number;
+  };
+  for (int power = 0; power <= 18; ++power) {
+    const std::string digits = std::to_string(power);
+    for (const std::string& text :
+         {"1E" + digits, "7.25E-" + digits, "125000E-" + digits, "3.5E" + digits})
+      EXPECT_EQ(literal(text), std::stof(text)) << text;
+  }
+  for (int power = 19; power <= 24; ++power) {
+    const std::string text = "1234567E-" + std::to_string(power);
+    EXPECT_EQ(literal(text), std::stof(text)) << text;
+  }
+  EXPECT_EQ(literal("0E99"), 0.0F);
+}
+
+// OPT-7.55, OPT-7.62: of many digits as of few.
+TEST(Lexer, LongLiteralsCountByTheirSize) {
+  const auto literal = [](const std::string& text) {
+    const Compilation compiled = MustCompile("VR[0] = " + text + "\n");
+    return compiled.module.Value(compiled.module.instructions[0], 1)[0].number;
+  };
+  const std::string zeros(60, '0'), many(450, '0');
+  EXPECT_EQ(literal("1" + zeros + "E-60"), 1.0F);
+  EXPECT_EQ(literal("1" + zeros + "E-99"), 0.0F);
+  EXPECT_EQ(literal("." + zeros + "1E61"), 1.0F);
+  EXPECT_EQ(literal("." + zeros + "1E5"), 0.0F);
+  EXPECT_EQ(literal("0." + many + "1E5"), 0.0F);
+  EXPECT_EQ(literal(many + "1.5"), 1.5F);
+  EXPECT_EQ(literal("1.5" + many + "7"), 1.5F);
+  EXPECT_EQ(literal(zeros + "." + zeros + "E99"), 0.0F);
+  for (const std::string& text :
+       {"1" + zeros, "1" + zeros + ".", "1" + many + "E-99", "." + zeros + "1E99"}) {
+    EXPECT_EQ(FindingsOf("VR[0] = " + text + "\n"), std::vector<int>{7004}) << text;
+  }
 }
 
 // OPT-7.62: 2^-64 is 5.42101086E-20; what is written smaller is 0.

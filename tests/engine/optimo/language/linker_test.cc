@@ -168,6 +168,7 @@ TEST_F(Linker, ExecutablesAreBytes) {
   Store(32, "FUNCTION 44 (7.)\n");
   Store(44, "DEFINE PAR[0] = INT\nVI[2] = PAR[0]\nENDTASK\n");
   const std::string bytes = EncodeExecutable(*Link(32, Lookup(), {}));
+  EXPECT_TRUE(bytes.starts_with("LMX\x01"));  // version 1
   const Result<Executable> again = DecodeExecutable(bytes);
   ASSERT_TRUE(again);
   EXPECT_EQ(EncodeExecutable(*again), bytes);
@@ -176,7 +177,35 @@ TEST_F(Linker, ExecutablesAreBytes) {
     std::string damaged = bytes;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x20);
     EXPECT_FALSE(DecodeExecutable(damaged)) << at;
+    EXPECT_FALSE(DecodeExecutable(bytes.substr(0, at))) << at;
   }
+  EXPECT_FALSE(DecodeExecutable(bytes + '\0'));
+}
+
+// OPT-9.05, OPT-B.71, OPT-7.06: one program and at most 32 functions, each of a number of its own
+// from 1 to 99.
+TEST_F(Linker, ExecutablesHaveProgramsOfTheMemory) {
+  Store(32, "SPEED 5\n");
+  const Executable one = *Link(32, Lookup(), {});
+  const auto decodes = [&](const std::vector<int>& slots) {
+    Executable executable;
+    for (const int slot : slots) {
+      executable.modules.push_back(one.modules[0]);
+      executable.modules.back().slot = slot;
+    }
+    return static_cast<bool>(DecodeExecutable(EncodeExecutable(executable)));
+  };
+  EXPECT_TRUE(decodes({1}));
+  EXPECT_TRUE(decodes({99, 1}));
+  EXPECT_FALSE(decodes({}));
+  EXPECT_FALSE(decodes({0}));
+  EXPECT_FALSE(decodes({100}));
+  EXPECT_FALSE(decodes({5, 5}));
+  std::vector<int> slots;
+  for (int slot = 1; slot <= 33; ++slot) slots.push_back(slot);
+  EXPECT_TRUE(decodes(slots));
+  slots.push_back(34);
+  EXPECT_FALSE(decodes(slots));
 }
 
 }  // namespace

@@ -43,6 +43,25 @@ TEST(ModuleIndex, StartsAtTaskOneOrTheFirstInstruction) {
   EXPECT_EQ(ModuleIndex(plain.module).FindStep(2), std::nullopt);
 }
 
+// OPT-9.12: of several TASKs the first TASK 1, whatever else has a 1 before it.
+TEST(ModuleIndex, TheFirstTaskOneCounts) {
+  const Compilation compiled = MustCompile("WORKDEF 1,0 (8.,75.,1.,50.)\nTASK 2\nTASK 1\nTASK 1\n");
+  EXPECT_EQ(ModuleIndex(compiled.module).entry(), 2U);
+}
+
+// OPT-1.23, OPT-6.01
+TEST(ModuleIndex, KnowsNumbersAndStepsAtBothEnds) {
+  const Compilation compiled = MustCompile("0 SPEED 5\nDECLARE X = VR[1]\n9999 X = 1.\n");
+  const ModuleIndex index(compiled.module);
+  EXPECT_EQ(index.FindLabel(0), 0U);
+  EXPECT_EQ(index.FindLabel(9999), 2U);
+  for (const int label : {-1, 1, 9998, 10000}) EXPECT_FALSE(index.FindLabel(label)) << label;
+  EXPECT_EQ(index.FindStep(1), 0U);
+  EXPECT_EQ(index.FindStep(2), 2U);
+  EXPECT_FALSE(index.FindStep(0));
+  EXPECT_FALSE(index.FindStep(3));
+}
+
 // OPT-7.17, OPT-7.23
 TEST(Module, KeepsTheTargetsOfJumps) {
   const Compilation compiled =

@@ -70,6 +70,10 @@ TEST(ObjectLimits, SequenceNumbersOfATable) {
   ASSERT_TRUE(standard.ok);
   EXPECT_TRUE(DecodeObject(standard.object));
   ExpectFits(table(49'990));
+  // A statement has at most 100,000 parts: six before its first number here, then two for each.
+  const std::string head = "10 STOP\nGOTO VR[2] (10", full = head + Repeated(",10", 49'996);
+  ExpectFits(full + ")\n");
+  EXPECT_FALSE(CompileLong("11 " + full.substr(8) + ")\n").ok);
   const Compilation more = CompileLong(table(50'001));
   ASSERT_EQ(more.diagnostics.size(), 1U);
   EXPECT_EQ(Lookup(more.diagnostics[0].code).number, 7003);

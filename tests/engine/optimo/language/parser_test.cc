@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
+#include "engine/optimo/language/evaluate.h"
 #include "engine/optimo/language/program.h"
 #include "tests/engine/optimo/language/compile_text.h"
 
@@ -14,6 +16,17 @@ TEST(Parser, NestingHasALimit) {
   };
   EXPECT_TRUE(FindingsOf(nested(kNestingMax)).empty());
   EXPECT_EQ(FindingsOf(nested(kNestingMax + 1)), (std::vector<int>{7003}));
+  const auto functions = [](int depth) {
+    std::string text = "VR[0] = ";
+    for (int n = 0; n < depth; ++n) text += "ABS(";
+    return text + "1." + std::string(static_cast<std::size_t>(depth), ')') + "\n";
+  };
+  EXPECT_TRUE(FindingsOf(functions(kNestingMax)).empty());
+  EXPECT_EQ(FindingsOf(functions(kNestingMax + 1)), (std::vector<int>{7003}));
+  // Side by side they are not inside each other.
+  std::string row = "VR[0] = 1.";
+  for (int n = 0; n <= kNestingMax; ++n) row += "+(1.)+ABS(1.)";
+  EXPECT_TRUE(FindingsOf(row + "\n").empty());
 }
 
 // A chain of any length is no nesting.
@@ -25,12 +38,29 @@ TEST(Parser, LongChainsAreFine) {
 
 // Operands that wait for their operator are bounded, too: 1+(1+(1+ ...
 TEST(Parser, PendingOperandsAreBounded) {
-  std::string open, close;
-  for (int i = 0; i < 150; ++i) {
-    open += "1.-(";
-    close += ")";
+  const auto pending = [](std::size_t operands) {
+    std::string text = "VR[0] = ";
+    for (std::size_t n = 1; n < operands; ++n) text += "1.-(";
+    return text + "1." + std::string(operands - 1, ')') + "\n";
+  };
+  EXPECT_TRUE(FindingsOf(pending(kOperandStackMax)).empty());
+  EXPECT_EQ(FindingsOf(pending(kOperandStackMax + 1)), (std::vector<int>{7003}));
+}
+
+// Wherever a text ends, in good statements and in bad ones, it is answered.
+TEST(Parser, TextsMayEndAnywhere) {
+  for (const std::string_view text :
+       {"VR[1] = (2. + 3.\nABCDE [ 12 ] = 4.5 E - 10\n", "MOVE (1.,2.\n 10  FUNCTION 4 /FLY\n",
+        "VL[0] = VR[1] <> 00.50 < = 7 >\n", "CONT a b  ;c\nCONT  \t\nCONT;\r\r\n",
+        "10 ; one\r\n 0020 VR[1] = 2. *\n\n; two\n\xC3\xC3 # \r5\n", "SPEED 5 THEN 0x5 1..2 .\n"}) {
+    for (std::size_t length = 0; length <= text.size(); ++length) {
+      const std::string cut(text.substr(0, length));
+      const Compilation compiled = Compile(cut, "", {});
+      EXPECT_LE(compiled.diagnostics.size(), 6U) << cut;
+      for (const Diagnostic& d : compiled.diagnostics)
+        EXPECT_LE(d.where.byte_offset + d.where.length, static_cast<std::int64_t>(length)) << cut;
+    }
   }
-  EXPECT_EQ(FindingsOf("VR[0] = " + open + "1." + close + "\n"), (std::vector<int>{7003}));
 }
 
 // Comments and statements keep their places.
@@ -47,6 +77,22 @@ TEST(Parser, KeepsPlaces) {
                         program.statements[0].end - program.statements[0].begin),
             "SPEED 20");
   EXPECT_EQ(program.label_places.at(0).offset, 6U);
+}
+
+// A statement reaches as far as it was read.
+TEST(Parser, AWrongStatementEndsWhereItStopped) {
+  Findings findings;
+  const std::string text = ") 5 6 ; x\n10 SPEED 5 PATH LIN\n";
+  const ParsedProgram program = Parse(text, findings);
+  ASSERT_EQ(program.statements.size(), 2U);
+  const auto span = [&](std::size_t n) {
+    return text.substr(program.statements[n].begin,
+                       program.statements[n].end - program.statements[n].begin);
+  };
+  EXPECT_EQ(span(0), ")");
+  EXPECT_EQ(program.statements[0].tokens, 0U);
+  EXPECT_EQ(span(1), "SPEED 5");
+  EXPECT_EQ(program.statements[1].tokens, 2U);
 }
 
 // OPT-1.25: the message shows the first place.
@@ -94,6 +140,21 @@ TEST(Parser, ABadCharacterInANameIsWhatIsReported) {
     EXPECT_EQ(found.where.column, row.column) << row.text;
     EXPECT_EQ(found.where.length, 1) << row.text;
   }
+}
+
+// A mapping that nobody writes takes no memory.
+TEST(Parser, ATextHasAGibibyteAtMost) {
+  constexpr std::size_t kBytes = (std::size_t{1} << 30) + 1;
+  void* room = mmap(nullptr, kBytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  ASSERT_NE(room, MAP_FAILED);
+  Findings findings(1);
+  const ParsedProgram program =
+      Parse({static_cast<const char*>(room), kBytes}, findings, Places::kStatements);
+  EXPECT_TRUE(program.statements.empty());
+  const std::vector<Diagnostic> told = findings.Take("", "");
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].code, ErrorCode::kCellTooLarge);
+  munmap(room, kBytes);
 }
 
 }  // namespace

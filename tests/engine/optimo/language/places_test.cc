@@ -63,6 +63,8 @@ TEST(Places, OfTokensThatCannotStandThere) {
       {"ASSIGN OL[32]={1.5} /4\n", 7003},
       {"BREAK {1.}\n", 7003},
       {"TIMER /{AUTO}\n", 7003},
+      {"MOVE (1,2{/}FLY)\n", 7003},
+      {"CALL 6 (1{/}ON)\n", 7003},
   };
   for (const Row& row : rows) ExpectAtItsPlace(row);
 }
@@ -120,6 +122,10 @@ TEST(Places, OfNames) {
       {"SPEED 5\nVR[0] = 1. + {QQ}\n", 7011, "OPT-7.50", 2},
       {"{QQ} = 5.\n", 7011, "OPT-7.50"},
       {"MOVE (1,2,3,4,5)/VIA (1,2,{QQ},4,5)\n", 7011, "OPT-7.50"},
+      {"CALL 6 ({QQ}, 1)\n", 7011, "OPT-7.50"},
+      {"FUNCTION {QQ}\n", 7011, "OPT-7.50"},
+      {"ASSIGN {QQ}=1 /4\n", 7011, "OPT-7.50"},
+      {"FUNCTION 6 (1, 2, {QQ})\n", 7011, "OPT-7.50"},
       {"DECLARE {POSITION1} = VR[1]\n", 7012, "OPT-7.46", 0},
       {"DECLARE A1 = VR[1]{+}1\n", 7014, "OPT-7.42", 0},
       {"DECLARE A1 = {SIN}(1.)\n", 7014, "OPT-7.42", 0},
@@ -166,6 +172,8 @@ TEST(Places, OfStatementsAndAttributes) {
       {"MOVE (1,2,3,4,5)/{VIA} (1,2,3)\n", 7019, "OPT-2.31"},
       {"{SYSDEF} (1,2,3)\n", 7019, "OPT-7.38"},
       {"{TCP} (0,0,3)\n", 7019, "OPT-4.72"},
+      {"{TCP}\n", 7019, "OPT-4.72"},
+      {"{MOVE} = 5\n", 7019, "OPT-2.01"},
       {"{TCP} (0,0,VR[1]/2/0,0,-5)\n", 7019, "OPT-B.85"},
       {"{WORKDEF} 0,0 (5)\n", 7019, "OPT-3.03"},
       {"{WORKDEF} 1,0 (5)\n", 7019, "OPT-3.04"},
@@ -174,6 +182,7 @@ TEST(Places, OfStatementsAndAttributes) {
       {"MOVE (1,2,3,4,5)/FLY /{FLY}\n", 7021, "OPT-2.43"},
       {"WORK 0,0/ON/{OFF}\n", 7021, "OPT-2.43"},
       {"GO 46 /C/{S}\n", 7021, "OPT-2.43"},
+      {"TIMER /DIS/{DIS}\n", 7021, "OPT-2.43"},
       {"{GET}\n", 7022, "OPT-W.17"},
       {"PATH {FRE}\n", 7022, "OPT-W.59"},
       {"VR[1] = {CLOCK}\n", 7022, "OPT-W.64"},

@@ -29,6 +29,7 @@ TEST(Printer, RealsAreShortest) {
   EXPECT_EQ(RealText(9e-5F), "9.0E-5");
   EXPECT_EQ(RealText(1e7F), "10000000.0");
   EXPECT_EQ(RealText(1.5e8F), "1.5E8");
+  EXPECT_EQ(RealText(1.5e7F), "1.5E7");
   EXPECT_EQ(RealText(-5e9F), "-5.0E9");
 }
 
@@ -55,6 +56,7 @@ TEST(Printer, StatementsHaveTheCanonicalForm) {
   EXPECT_EQ(Canonical("BREAK 07 ,45"), "     BREAK 7, 45");
   EXPECT_EQ(Canonical("VL[0]=TRUE"), "     LET VL[0] = ON");
   EXPECT_EQ(Canonical("cont  a   b"), "     CONT A B");
+  EXPECT_EQ(Canonical("cont AaZz\t{`}~"), "     CONT AAZZ {`}~");
 }
 
 // OPT-B.40, OPT-7.73: parentheses only where the priority needs them.
@@ -76,6 +78,8 @@ TEST(Printer, ParenthesesOnlyWhereNeeded) {
   EXPECT_EQ(expression("(VL[1] OR VL[2]) AND VL[3]", "VL[0]"), "(VL[1] OR VL[2]) AND VL[3]");
   EXPECT_EQ(expression("VL[1] OR (VL[2] AND VL[3])", "VL[0]"), "VL[1] OR VL[2] AND VL[3]");
   EXPECT_EQ(expression("NOT (VL[1] AND VL[2])", "VL[0]"), "NOT (VL[1] AND VL[2])");
+  EXPECT_EQ(expression("NOT (NOT VL[1])", "VL[0]"), "NOT NOT VL[1]");
+  EXPECT_EQ(expression("VL[1] AND (NOT VL[2])", "VL[0]"), "VL[1] AND NOT VL[2]");
   EXPECT_EQ(expression("(1 < 2) = (2 >< 3)", "VL[0]"), "(1 < 2) = (2 <> 3)");
 }
 

@@ -1,11 +1,13 @@
 // Properties over random valid programs; a failure names the seed that replays it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "engine/optimo/language/formatter.h"
+#include "engine/optimo/language/printer.h"
 #include "tests/engine/optimo/language/compile_text.h"
 #include "tests/engine/optimo/language/random_program.h"
 
@@ -100,6 +102,36 @@ TEST(Properties, PlacesOfNodesAreFoundAgain) {
     }
     ASSERT_EQ(node, kept.node_places.size());
   }
+}
+
+// How deep parentheses stand inside each other in a text, and whether it divides outside of them.
+std::pair<int, bool> NestingOf(const std::string& text) {
+  int depth = 0, deepest = 0;
+  bool divides = false;
+  for (const char c : text) {
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    deepest = std::max(deepest, depth);
+    divides = divides || (c == '/' && depth == 0);
+  }
+  return {deepest, divides};
+}
+
+// OPT-B.40, OPT-B.85: the nesting of an expression is that of its text; TCP puts a division into
+// parentheses.
+TEST(Properties, PrintedNestingIsThatOfTheText) {
+  int deepest = 0;
+  for (std::uint32_t seed = 1; seed <= kProgramSeeds; ++seed) {
+    const Module module = ParseGood(RandomProgram(seed).Make(20));
+    for (std::uint32_t e = 0; e < module.expression_ends.size(); ++e) {
+      std::string text;
+      PrintExpression(module, module.expression(e), text);
+      const auto [nesting, divides] = NestingOf(text);
+      ASSERT_EQ(PrintedNesting(module.expression(e), false), nesting) << text;
+      ASSERT_EQ(PrintedNesting(module.expression(e), true), nesting + (divides ? 1 : 0)) << text;
+      deepest = std::max(deepest, nesting);
+    }
+  }
+  EXPECT_GE(deepest, 3);
 }
 
 // OPT-B.40

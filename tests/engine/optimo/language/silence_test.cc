@@ -66,6 +66,9 @@ TEST(Silence, WhatSilencesNothingIsTold) {
   EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 7413\n", {.advice = false}), Texts{});
   EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 7413\nSPEED 101\n"),
             (Texts{"the value must be 0 to 100"}));
+  // What the statement allows itself the file need not.
+  EXPECT_EQ(Details("; rmlcell: allow 7412 in file\nOL[20] = ON ; rmlcell: allow 7412\n"),
+            (Texts{"allow 7412 silences nothing here"}));
   // The advice on contours comes from elsewhere.
   EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 7317\n"), Texts{});
   EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 7317\n",

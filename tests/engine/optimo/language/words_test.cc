@@ -17,6 +17,8 @@ TEST(Words, AreFoundWithoutCaseByEightCharacters) {
   EXPECT_EQ(FindWord(PackName("FUNCTION1")), Word::kFunction);
   EXPECT_EQ(FindWord(PackName("SPEEDY")), Word::kNone);
   EXPECT_EQ(FindWord(PackName("")), Word::kNone);
+  EXPECT_EQ(FindWord(PackName("task")), Word::kTask);
+  EXPECT_EQ(FindWord(PackName("zero")), Word::kZero);
 }
 
 TEST(Words, EachIsFoundAndUnique) {
@@ -59,6 +61,13 @@ TEST(NearestWords, TellsASlipFromAnotherWord) {
   EXPECT_TRUE(NearestWords("SPED", words).IsSingle(Slip::kOneLetter));
   EXPECT_TRUE(NearestWords("SPEEED", words).IsSingle(Slip::kOneLetter));
   EXPECT_TRUE(NearestWords("ZONE3", words).IsSingle(Slip::kOther));
+  for (const char digit : std::string("0123456789")) {
+    const std::string zone = std::string("ZONE") + digit;
+    EXPECT_TRUE(NearestWords(zone, std::array<std::string_view, 1>{"ZONEX"}).IsSingle(Slip::kOther))
+        << zone;
+    EXPECT_TRUE(NearestWords("ZONEX", std::array<std::string_view, 1>{zone}).IsSingle(Slip::kOther))
+        << zone;
+  }
   EXPECT_TRUE(NearestWords("SPEED20", words).IsSingle(Slip::kOther));
   EXPECT_TRUE(NearestWords("SPPE", words).words.empty() ||
               NearestWords("SPPE", words).IsSingle(Slip::kOther));

@@ -104,6 +104,13 @@ TEST(Compensate, TheHeadTurnsEvenlyAlongAnArc) {
             "(0.00000,10.00000,1.00000,0.00000,0.00000)\nWORK 0,0/OFF\n");
 }
 
+// OPT-2.15: in PATH LIN a via point leads nowhere, and stays as it is.
+TEST(Compensate, AViaPointOfALineStays) {
+  EXPECT_EQ(Contour(";$rad=1\n;$left\n", "MOVE (10,0,0,0,0)/VIA (5,5,0,0,0)\n"),
+            "MOVE (10.00000,1.00000,0.00000,0.00000,0.00000)/VIA "
+            "(5.00000,5.00000,0.00000,0.00000,0.00000)\n");
+}
+
 // OPT-8.16: WORK ON while the beam is on already does not end the contour.
 TEST(Compensate, ASecondBeamOnLeavesTheCornerACorner) {
   EXPECT_EQ(Contour(";$rad=1\n;$left\n", "MOVE (10,0,0,0,0)\nWORK 0,0/ON\nMOVE (10,10,0,0,0)\n"),
@@ -156,6 +163,10 @@ TEST(Compensate, HolesChangeTheirRadius) {
   EXPECT_EQ(FindingsOf(right), (std::vector<int>{7033}));
   EXPECT_NE(hole(";$dia=0.508\n;$left\n", "12.7").text.find("(12.95400)"), std::string::npos);
   EXPECT_EQ(FindingsOf(hole(";$rad=0.254\n;$right\n", "0.2")), (std::vector<int>{7807}));
+  // Several holes of one PATH HOLE have its radius, which changes once.
+  const std::string holes = "MOVE (0,0,0,0,0)/VIA(0,0,9,0,0)\nMOVE (50,0,0,0,0)/VIA(50,0,9,0,0)\n";
+  EXPECT_EQ(Compensate(";$rad=2\n;$right\nWORK 0,0/ON\nPATH HOLE (9)\n" + holes).text,
+            ";$rad=2\n;$right\nWORK 0,0/ON\nPATH HOLE (7.00000)\n" + holes);
 }
 
 // OPT-8.05, OPT-8.09, OPT-E.7802, OPT-E.7803

@@ -78,6 +78,10 @@ TEST(ContourAdvice, HarmlessCornersAreNotTold) {
   EXPECT_TRUE(FindingsWith(CornerOf(90, "SPEED VR[64]\n"), ErrorCode::kFlySharp).empty());
   EXPECT_TRUE(FindingsWith(CornerOf(90, "10\n") + "GOTO 10\n", ErrorCode::kFlySharp).empty());
   EXPECT_EQ(FindingsWith(CornerOf(90, "OL[16]=ON\n"), ErrorCode::kFlySharp).size(), 1U);
+  // A schedule is no beam (OPT-3.23).
+  EXPECT_TRUE(
+      FindingsWith("WORKDEF 2,0 (5)\nWORK 2,0/ON\n" + CornerOf(90, "", false), ErrorCode::kFlySharp)
+          .empty());
 }
 
 // OPT-2.62: a program with an error has no path yet, so nothing is said of one.

@@ -79,6 +79,10 @@ TEST(Convert, NamesHaveTheUnitOfTheirVariable) {
             "DECLARE YNEAR = VR[15]\nYNEAR = 5842.0\n");
   EXPECT_EQ(Metric("DECLARE N = 3\nLET VR[N] = 1.5\n"), "DECLARE N = 3\nLET VR[N] = 0.02618\n");
   EXPECT_EQ(Metric("DECLARE EPSILON = 0.001\n"), "DECLARE EPSILON = 0.001\n");
+  EXPECT_EQ(Metric("DECLARE N = 0\nVR[N] = 1\n"), "DECLARE N = 0\nVR[N] = 25.4\n");
+  for (const std::string none : {"DECLARE N = 99\nVR[N] = 1\n", "DECLARE N = 100\nVR[N] = 1\n",
+                                 "DECLARE N = -1\nVR[N] = 1\n", "DECLARE N = 3.\nVR[N] = 1\n"})
+    EXPECT_EQ(Metric(none), none);
 }
 
 // OPT-8.35, OPT-E.7710
@@ -119,6 +123,14 @@ TEST(Convert, ParametersHaveTheirUnits) {
   EXPECT_EQ(Metric("TCP (8.68, 0, 0.72/0, 1.77, 0)"),
             "TCP (220.472, 0.0, 18.288/0.0, 44.958, 0.0)");
   EXPECT_EQ(Metric("VR[26] = SIN(90) "), "VR[26] = SIN(1.570796) ");
+  EXPECT_EQ(Metric("VR[26] = COS(90)"), "VR[26] = COS(1.570796)");
+  EXPECT_EQ(Metric("VR[26] = TAN(90)"), "VR[26] = TAN(1.570796)");
+  // Other functions have no unit, and what is inside is none of their outside.
+  for (const std::string function :
+       {"ASIN", "ACOS", "ATAN", "SQRT", "EXP", "LN", "LOG", "ABS", "INT"}) {
+    const std::string text = "VR[0] = VR[1] + " + function + "(1)";
+    EXPECT_EQ(Metric(text), text);
+  }
 }
 
 // OPT-8.39, OPT-8.01
@@ -152,7 +164,9 @@ TEST(Convert, ANumberTakesTheUnitOfTheOtherOperand) {
 // OPT-8.44, OPT-8.47
 TEST(Convert, RelationsConvertLabelsDoNot) {
   EXPECT_EQ(Metric("IF VR[5] > 100 THEN 50 ELSE 60"), "IF VR[5] > 2540.0 THEN 50 ELSE 60");
-  EXPECT_EQ(Metric("WAIT VR[5] = 1"), "WAIT VR[5] = 25.4");
+  for (const std::string relation : {"<", "<=", "=", ">=", ">", "<>", "><"}) {
+    EXPECT_EQ(Metric("WAIT VR[5] " + relation + " 1"), "WAIT VR[5] " + relation + " 25.4");
+  }
   EXPECT_EQ(Inch("MOVE (0.0, 0.0, 0.0, 0.0, 0.0)/END (VR[3] > 6.182)"),
             "MOVE (0.0, 0.0, 0.0, 0.0, 0.0)/END (VR[3] > 354.202509)");
   EXPECT_EQ(Metric("IF VL[1] = 1 THEN 5"), "IF VL[1] = 1 THEN 5");
@@ -214,7 +228,7 @@ TEST(Convert, LinesThatAreNoRmlAreCopied) {
   }
 }
 
-// OPT-8.65, OPT-E.7708: VR [ 26 ] = 1 + ... : 5 tokens and two for each further term.
+// OPT-8.65, OPT-E.7708: VR [ 26 ] = VR [ 0 ] + ... : 9 tokens and two for each further term.
 TEST(Convert, StatementsOfMoreThanTwoHundredTokensAreCopied) {
   const auto sum = [](int terms) {
     std::string text = "VR[26] = VR[0]";
@@ -225,6 +239,10 @@ TEST(Convert, StatementsOfMoreThanTwoHundredTokensAreCopied) {
   EXPECT_EQ(FindingsOf(sum(95) + "\n"), (std::vector<int>{7709}));         // 9 + 190 = 199
   EXPECT_EQ(FindingsOf(sum(96) + "\n" + call), (std::vector<int>{7708}));  // 201
   EXPECT_EQ(Metric(sum(96) + "\n" + call), sum(96) + "\nMOVE (25.4,0.0,0.0,0.0,0.0)\n");
+  std::string even = "VI[2] = 1";  // 6 tokens
+  for (int t = 0; t < 97; ++t) even += "+1";
+  EXPECT_TRUE(FindingsOf(even + "\n").empty());                    // 200
+  EXPECT_EQ(FindingsOf(even + "+1\n"), (std::vector<int>{7708}));  // 202
 }
 
 // What 1Ah and behind it is stays.

@@ -83,6 +83,24 @@ TEST(FixProgram, RepairsMoreThanOneListOfFindings) {
   EXPECT_EQ(fixing.fixed.size(), 2500U);
 }
 
+// Where each repair brings another finding there is an end all the same.
+TEST(FixProgram, EndsWhereRepairsDoNot) {
+  const auto always = [](const machine::SourceFile&) {
+    machine::Translation checked;
+    checked.diagnostics.push_back({.code = ErrorCode::kPracticeAdvice,
+                                   .severity = Severity::kAdvice,
+                                   .detail = {},
+                                   .rule = {},
+                                   .file = {},
+                                   .where = {1, 1, 0, 0},
+                                   .fixes = {{0, 0, ";"}}});
+    return checked;
+  };
+  const RepairedText fixing = FixProgram({.name = "part.S", .bytes = "SPEED 5\n"}, always);
+  EXPECT_EQ(fixing.text, std::string(64, ';') + "SPEED 5\n");
+  EXPECT_EQ(fixing.fixed.size(), 64U);
+}
+
 // OPT-B.69: an object is no text, under whatever name.
 TEST(FixProgram, ObjectsAndBinariesAreNoText) {
   const std::string object = Compile("SPEED 20\n", "", {}).object;

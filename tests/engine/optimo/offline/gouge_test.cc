@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/number_text.h"
@@ -143,6 +144,70 @@ TEST(Gouge, ContoursThatFitAreLeftAlone) {
   }
 }
 
+// gouge.h: the way in and the way out are looked for in the first and the last four moves. A longer
+// one is an edge like others, and the cut that leads past it is too near.
+TEST(Gouge, LeadsHaveFourMovesAtMost) {
+  const auto square = [](int in, int out) {
+    std::vector<std::string> moves;
+    for (int n = 0; n < in; ++n) moves.push_back(Pose(10, 12.0 * (in - n) / in));
+    for (const auto& [x, y] : {std::pair{10, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 0}, {10, 0}})
+      moves.push_back(Pose(x, y));
+    for (int n = 1; n <= out; ++n) moves.push_back(Pose(10 + 3.0 * n / out, 8.0 * n / out));
+    return GougedSteps(Cut(kLeft, moves));
+  };
+  EXPECT_EQ(square(1, 1), kNone);
+  EXPECT_EQ(square(4, 1), kNone);
+  EXPECT_NE(square(5, 1), kNone);
+  EXPECT_EQ(square(1, 4), kNone);
+  EXPECT_NE(square(1, 5), kNone);
+}
+
+// gouge.h: "or would within a tab's width": half a circle and the line back, from the middle, left
+// hanging 1.5 mm before its corner.
+TEST(Gouge, ATabOfTwoMovesIsLeftAlone) {
+  const std::vector<std::string> moves = {
+      Pose(0, 4), Pose(10, 0), "PATH CIR\nMOVE (-10,0,0,0,0)/VIA (0,10,0,0,0)\nPATH LIN\n",
+      Pose(8.5, 0)};
+  EXPECT_EQ(GougedSteps(Cut(kLeft, moves)), kNone);
+}
+
+// What is shorter than what counts as touching leads nowhere: the way in stays an edge, and the cut
+// ends 0.9 beside it.
+TEST(Gouge, ATabNeedsAPieceWithADirection) {
+  const auto last = [](double length) {
+    return GougedSteps(Cut(kRight, {Pose(0.9, -5), Pose(0.9, 0), Pose(20, 0), Pose(20, 20),
+                                    Pose(0, 20), Pose(0, 0), Pose(length, 0)}));
+  };
+  EXPECT_EQ(last(0.005), kNone);
+  EXPECT_NE(last(0.004), kNone);
+}
+
+// An arc is looked at to its very end: it comes down to (6.5, 1.5), from where the cut turns to the
+// right. The corner of the offset moves lies at y = 0.5, over the first edge at y = 0.
+TEST(Gouge, ArcsAreLookedAtToTheirEnd) {
+  const Compensation made = Compensate(
+      Cut(kLeft, {Pose(0, 0), Pose(20, 0), Pose(20, 10), Pose(15, 10),
+                  "PATH CIR\nMOVE (6.5,1.5,0,0,0)/VIA (8.98959236,7.51040764,0,0,0)\nPATH LIN\n",
+                  Pose(6, 1.5)}));
+  ASSERT_TRUE(made.ok);
+  std::vector<std::string> of_arc;
+  for (const Diagnostic& d : made.diagnostics) {
+    if (d.step == 9) of_arc.push_back(d.detail);
+  }
+  ASSERT_EQ(of_arc.size(), 1U);
+  EXPECT_TRUE(of_arc[0].starts_with("the compensated path comes within 0.500 mm")) << of_arc[0];
+}
+
+// The beam starts at the pierce point: 0.8 from the first edge, to which its way in leads.
+TEST(Gouge, APierceTooNearToItsOwnEdgeIsFound) {
+  const auto pierced = [](double y) {
+    return GougedSteps(Cut(kLeft, {Pose(13, y), Pose(10, 0), Pose(20, 0), Pose(20, 20), Pose(0, 20),
+                                   Pose(0, 0), Pose(10, 0)}));
+  };
+  EXPECT_EQ(pierced(0.8), (std::vector<int>{5}));
+  EXPECT_EQ(pierced(1.2), kNone);
+}
+
 // Pierced 0.4 from the edge, in the scrap: the beam of radius 1 reaches across it.
 TEST(Gouge, APierceTooNearToAnotherEdgeIsFound) {
   const std::vector<int> steps =
@@ -188,6 +253,16 @@ TEST(Gouge, MovesThatRunBackAreFound) {
   EXPECT_EQ(GougedSteps(Cut(kLeft, {Pose(0, 0), Pose(10, 0), Pose(10, 0.5)})),
             (std::vector<int>{6}));
   EXPECT_EQ(GougedSteps(Cut(kLeft, {Pose(0, 0), Pose(10, 0), Pose(10, 1.5)})), kNone);
+  // The first one begins where it was programmed, and only its end moves.
+  EXPECT_EQ(GougedSteps(Cut(kLeft, {Pose(0, 0), Pose(0.5, 0), Pose(0.5, 10)})), kNone);
+}
+
+// gouge.h: a beam of the radius of the tolerance, 0.003 mm, cuts into nothing. At a turn of 150
+// degrees its corner lies tan 75 times that back, 0.011 mm; the last move is 0.001 mm long.
+TEST(Gouge, ABeamOfTheToleranceCutsNothing) {
+  const std::vector<std::string> moves = {Pose(0, 0), Pose(10, 0), Pose(9.999134, 0.0005)};
+  EXPECT_EQ(GougedSteps(Cut(";$rad=0.003\n;$left\n", moves)), kNone);
+  EXPECT_EQ(GougedSteps(Cut(";$rad=0.004\n;$left\n", moves)), (std::vector<int>{6}));
 }
 
 // A spiral of many short moves: nothing is left out, and nothing is found.

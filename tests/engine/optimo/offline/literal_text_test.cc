@@ -48,6 +48,8 @@ TEST(LiteralText, NumbersStandWhereTheyAreReplaced) {
       {"DELAY -(", "4.", ")\n", true, -4.0},
       {"DELAY -(-(", "4.", "))\n", false, 4.0},
       {"DELAY (", "4.25", " )\n", false, 4.25},
+      {"DELAY -(", "0.5", ")\n", true, -0.5},
+      {"DELAY -(", "9.5", ")\n", true, -9.5},
       {"DELAY ((", ".5", "))\n", false, 0.5},
       {"SYSDEF (", "1.5", ", 2, 3, 4, 5, 6)\n", false, 1.5},
       {"SYSDEF (-( ; (-1)\n", "1.5", " ; 7)\n), 2, 3, 4, 5, 6)\n", true, -1.5},

@@ -89,6 +89,15 @@ TEST_F(Project, TheFirstAndTheLastScheduleMayBeMissing) {
   }
 }
 
+// OPT-3.06: a program with a schedule that is none is the compiler's alone.
+TEST_F(Project, SchedulesThatAreNoneAreNotMissing) {
+  for (const char* text : {"WORKDEF 2,0 (0)\n", "WORKDEF 2,0 (64)\n"}) {
+    bundle_ = {};
+    Add(45, text);
+    EXPECT_EQ(Findings(), (std::vector<int>{7403})) << text;
+  }
+}
+
 // OPT-3.01, OPT-3.02, OPT-3.06, OPT-3.08
 TEST_F(Project, DefinitionsAreChecked) {
   const auto errors = [](int kind, int process, std::vector<double> values) {
@@ -262,6 +271,20 @@ TEST_F(Project, InsertedDefinitionsStandBehindTask1) {
   EXPECT_EQ(
       plan.programs[0].source,
       "VI[2]=1\nTASK 1\n     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\nWORK 1,0/ON\nWORK 1,0/OFF\n");
+}
+
+// OPT-9.12: a TASK 1 with nothing behind it is no beginning, and neither is a last declaration.
+TEST_F(Project, InsertedDefinitionsStandBeforeSomething) {
+  Define(1, 0, {8, 75, 1, 50});
+  const std::string work = "WORK 1,0/ON\nWORK 1,0/OFF\n",
+                    inserted = "     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\n",
+                    task = work + "TASK 1\n", declares = task + "DECLARE X = 5.\n";
+  Add(61, task);
+  Add(62, declares);
+  const machine::TransferPlan plan = Plan(true);
+  ASSERT_TRUE(plan.ok);
+  EXPECT_EQ(plan.programs[0].source, inserted + task);
+  EXPECT_EQ(plan.programs[1].source, task + inserted + "DECLARE X = 5.\n");
 }
 
 // OPT-3.12: a FUNCTION shares the WORKDEFs of its callers.

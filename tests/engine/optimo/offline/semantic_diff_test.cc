@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/engine/optimo/language/compile_text.h"
 
 namespace rmlcell::optimo {
@@ -34,6 +36,8 @@ TEST(SemanticDiff, WritingDoesNotCount) {
 // OPT-3.46: ENDTASK at the end is assumed there; before the end it ends the program.
 TEST(SemanticDiff, EndtaskAtTheEndDoesNotCount) {
   EXPECT_TRUE(DiffOf("SPEED 5\n", "SPEED 5\nENDTASK\n").equal());
+  EXPECT_TRUE(DiffOf("", "").equal());
+  EXPECT_TRUE(DiffOf("DECLARE X = 5.\nENDTASK\n", "").equal());
   EXPECT_TRUE(DiffOf("VI[1]=1\nENDTASK ; over\n", "VI[1]=1\n").equal());
   // A jump to it is a jump to the end.
   EXPECT_TRUE(
@@ -96,13 +100,49 @@ TEST(SemanticDiff, StepsThatComeAndGo) {
       DiffOf("OL[11]=ON\nVR[1]=2.\nDELAY 1\n", "VR[1]=2.\nWORKDEF 2,0 (11)\nDELAY 2\n");
   ASSERT_EQ(diff.steps.size(), 3U);
   EXPECT_EQ(diff.steps[0].kind, Kind::kRemoved);
+  EXPECT_EQ(diff.steps[0].step_a, 1);
   EXPECT_EQ(diff.steps[0].before, "LET OL[11] = ON");
   EXPECT_EQ(diff.steps[0].aspects, unsigned{kAspectOutputs});
   EXPECT_EQ(diff.steps[1].kind, Kind::kAdded);
+  EXPECT_EQ(diff.steps[1].step_b, 2);
   EXPECT_EQ(diff.steps[1].after, "WORKDEF 2,0 (11)");
   EXPECT_EQ(diff.steps[1].aspects, unsigned{kAspectPower});
   EXPECT_EQ(diff.steps[2].what, (Texts{"DELAY 1 -> DELAY 2"}));
   EXPECT_EQ(AspectText(diff.aspects), "time, power, outputs");
+}
+
+// Only of a step with the same instruction, variable, process and switch another may be made.
+TEST(SemanticDiff, StepsOfOneKindAreChanged) {
+  const struct {
+    const char *a, *b;
+    bool changed;
+  } kRows[] = {
+      {"VR[1] = 2.", "VR[1] = 3.", true},
+      {"VR[1] = 0.", "VR[1] = 1.", true},
+      {"VR[1] = 2.", "VR[2] = 2.", false},
+      {"VI[1] = 2", "VR[1] = 2.", false},
+      {"ASSIGN OL[1] = 5 /4", "ASSIGN OL[1] = 6 /4", true},
+      {"ASSIGN OL[1] = 5 /4", "ASSIGN OL[2] = 5 /4", false},
+      {"WORK 0,0/ON", "WORK 0,0/ON/END (IL[1])", true},
+      {"WORK 0,0/ON", "WORK 0,0/OFF", false},
+      {"WORK 0,0/ON", "WORK 0,1/ON", false},
+      {"WORK 0,0/ON", "WORK 1,0/ON", false},
+      {"WORKDEF 2,0 (11)", "WORKDEF 2,0 (12)", true},
+      {"WORKDEF 2,0 (11)", "WORKDEF 2,1 (11)", false},
+      {"DELAY 1", "DELAY 2", true},
+      {"DELAY 1", "WAIT IL[1]", false},
+  };
+  for (const auto& row : kRows) {
+    std::vector<Kind> kinds;
+    for (const StepChange& step :
+         DiffOf(std::string(row.a) + "\n", std::string(row.b) + "\n").steps)
+      kinds.push_back(step.kind);
+    std::ranges::sort(kinds);
+    std::vector<Kind> expected = {Kind::kChanged};
+    if (!row.changed) expected = {Kind::kAdded, Kind::kRemoved};
+    std::ranges::sort(expected);
+    EXPECT_EQ(kinds, expected) << row.a << " | " << row.b;
+  }
 }
 
 // OPT-1.25, OPT-7.15: jumps are compared by where they come to.

@@ -271,6 +271,9 @@ TEST(Shift, AddsToTheSystemVariables) {
   EXPECT_EQ(Shift("DECLARE OX = VR[86]\nLET OX = -5.\n", {30, 0, 0, 0, 0, 0}).text,
             "DECLARE OX = VR[86]\nLET OX = 25.0\n");
   EXPECT_EQ(Shift("VR[91] = 0.5\n", {0, 0, 0, 0, 0, 0.25}).text, "VR[91] = 0.75\n");
+  // What is not shifted stays as it is written.
+  EXPECT_EQ(Shift("VR[86] = 1\nVR[88] = 1\n", {30, 0.5, 0, 0, 0, 0}).text,
+            "VR[86] = 31.0\nVR[88] = 1\n");
 }
 
 // OPT-8.75, OPT-B.81, OPT-E.7852
