@@ -113,6 +113,9 @@ TEST(PeakBounds, OfAPlainCornerIsItsCurvature) {
       2500.0 * 0.75 * rho * root / (root * whole * root * whole) / 4.050462937;
   known.tip_acceleration = acceleration * 1.001;
   EXPECT_FALSE(MayExceed(known, half, shape, true, 0.0, to_s).any());
+  // Z stands: there 0 is enough.
+  known.axis_speed[2] = known.axis_acceleration[2] = known.axis_jerk[2] = 0.0;
+  EXPECT_FALSE(MayExceed(known, half, shape, true, 0.0, to_s).any());
   known.tip_acceleration = acceleration * 0.999;
   EXPECT_TRUE(MayExceed(known, half, shape, true, 0.0, to_s).any());
 }
