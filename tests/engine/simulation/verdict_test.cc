@@ -424,21 +424,6 @@ TEST(Verdict, OfWhatIsLeftBesideItsTarget) {
   EXPECT_EQ(judged(0.0, 0.11), "BAD; CELL-E9613 the part is cut 0.110 mm below its target");
 }
 
-// As fast down as across is the feed of the tool; a little faster, it dives.
-TEST(Verdict, OfAPlungeAsFastAsTheCut) {
-  RunReport report;
-  report.milling = MillingFigures{.removed_mm3 = 1.0,
-                                  .fast_plunge_mm = 2.0,
-                                  .fast_plunge_mm_s = 10.0,
-                                  .fast_plunge_place = {.step = 5},
-                                  .pass_mm_s = 10.0};
-  EXPECT_EQ(TextOf(Judge(report)), "GOOD");
-  report.milling->pass_mm_s = 9.999;
-  EXPECT_EQ(TextOf(Judge(report)),
-            "DOUBTFUL; CELL-E9620 the tool goes 2.000 mm down into material nearly as fast as Z "
-            "travels, faster than it cuts @5");
-}
-
 TEST(Verdict, OfHowARunEnds) {
   RunReport report;
   EXPECT_EQ(TextOf(Judge(report)), "GOOD");
