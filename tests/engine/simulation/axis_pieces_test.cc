@@ -23,7 +23,8 @@ std::vector<PathPiece> TurningBends() {
   std::vector<PathPiece> bends;
   for (const auto& corner :
        {PlannedCorner({{0, 0, 0}, 0.0, 0.1}, {{100, 0, 0}, 0.2, 0.1}, {{100, 100, 0}, 0.2, 0.4}),
-        PlannedCorner({{0, 0, 0}, 0.1, 0.5}, {{100, 0, 20}, 0.4, 0.2}, {{150, 90, 40}, 0.1, 0.7})}) {
+        PlannedCorner({{0, 0, 0}, 0.1, 0.5}, {{100, 0, 20}, 0.4, 0.2},
+                      {{150, 90, 40}, 0.1, 0.7})}) {
     EXPECT_EQ(corner.size(), 4u);
     bends.push_back(corner[1].path);
     bends.push_back(corner[2].path);

@@ -33,8 +33,8 @@ TEST(CurveCutter, ChordsHaveALeastLength) {
 }
 
 // A swing of up to half a radian is one chord if the tolerance allows; of a longer one the first
-// chord tried has half a radian. A chord of an angle bows by 300 (1 - cos(angle / 2)), and a quarter
-// of that is added.
+// chord tried has half a radian. A chord of an angle bows by 300 (1 - cos(angle / 2)), and a
+// quarter of that is added.
 TEST(CurveCutter, ChordsAreAsLongAsTheToleranceAllows) {
   const auto first_chord = [](double swing, double tolerance_mm) {
     const motion::PathPiece path = SwingOf(swing);

@@ -106,9 +106,8 @@ TEST(FactsValues, Verdict) {
   report.judgement.Add({.code = ErrorCode::kCellContourSlow,
                         .verdict = machine::Verdict::kDoubtful,
                         .said = "slow"});
-  report.judgement.Add({.code = ErrorCode::kCellBeamStands,
-                        .verdict = machine::Verdict::kBad,
-                        .said = "it stands"});
+  report.judgement.Add(
+      {.code = ErrorCode::kCellBeamStands, .verdict = machine::Verdict::kBad, .said = "it stands"});
   ExpectFacts(report, {{"verdict", "BAD"},
                        {"verdict_reasons", "2"},
                        {"verdict_codes", "CELL-E9621 CELL-E9622"},
@@ -309,9 +308,9 @@ TEST(FactsValues, Positions) {
                        {"final_point_y", "8.0"},
                        {"final_point_z", "9.0"}});
   report.work_origin = motion::MachinePoint{11, 12, 13};
-  ExpectFacts(report, {{"work_origin_x_mm", "11.0"},
-                       {"work_origin_y_mm", "12.0"},
-                       {"work_origin_z_mm", "13.0"}});
+  ExpectFacts(
+      report,
+      {{"work_origin_x_mm", "11.0"}, {"work_origin_y_mm", "12.0"}, {"work_origin_z_mm", "13.0"}});
 }
 
 TEST(FactsValues, Boxes) {
@@ -327,9 +326,10 @@ TEST(FactsValues, Boxes) {
   report.tip = box(20);
   report.cut = box(30);
   report.column = box(40);
-  for (const auto& [name, first, unit] :
-       {std::tuple{"programmed", 10.0, ""}, {"tip", 20.0, "_mm"}, {"cut", 30.0, "_mm"},
-        {"column", 40.0, "_mm"}}) {
+  for (const auto& [name, first, unit] : {std::tuple{"programmed", 10.0, ""},
+                                          {"tip", 20.0, "_mm"},
+                                          {"cut", 30.0, "_mm"},
+                                          {"column", 40.0, "_mm"}}) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::string key = std::string(name) + '_' + "xyz"[i];
       const double low = first + static_cast<double>(i);

@@ -42,9 +42,8 @@ class MilledLimits : public testing::Test {
 };
 
 TEST_F(MilledLimits, NothingIsToldOfNothing) {
-  MillingFigures nothing{.remaining_mm3 = 20.0 * 12.0 * 5.0,
-                         .tool_diameter_mm = 3.0,
-                         .cell_mm = 0.25};
+  MillingFigures nothing{
+      .remaining_mm3 = 20.0 * 12.0 * 5.0, .tool_diameter_mm = 3.0, .cell_mm = 0.25};
   EXPECT_EQ(Figures(), nothing);
   Go({0, 0, 9}, {20, 12, 9}, 0.0, MotionUse::kTravel);
   Go({0, 0, 5}, {20, 12, 5}, 8.0);
@@ -197,10 +196,8 @@ TEST(MillingSpindle, ChipsGoByItsSpeed) {
     signals(recorder);
     motion::PlannedMotion planned;
     planned.path = LineFrom({5, 6, 4}, {15, 6, 4});
-    recorder.OnMotion({.use = MotionUse::kCut,
-                       .motion = &planned,
-                       .travelled = 10.0,
-                       .programmed_mm_s = 10.0});
+    recorder.OnMotion(
+        {.use = MotionUse::kCut, .motion = &planned, .travelled = 10.0, .programmed_mm_s = 10.0});
     return recorder.Figures().chips->thick_percent;
   };
   using machine::Signal;
@@ -246,8 +243,8 @@ TEST(MillingLimits, WhatIsChecked) {
   EXPECT_EQ(refused(), "what an edge takes off needs the edges of the tool: flutes=2");
   milling.tool.flutes = 1;
   EXPECT_EQ(refused(), "");
-  milling.target = Target{
-      .heights = std::make_shared<const std::vector<float>>(80 * 48, 0.0f), .tolerance_mm = 0.0};
+  milling.target = Target{.heights = std::make_shared<const std::vector<float>>(80 * 48, 0.0f),
+                          .tolerance_mm = 0.0};
   EXPECT_EQ(refused(), "");
   milling.target->tolerance_mm = HUGE_VAL;
   EXPECT_EQ(refused(), "the tolerance of a target is not below 0 mm");
@@ -284,9 +281,8 @@ TEST(MillTool, LimitsOfTheShank) {
     const Status status = CheckTool(tool);
     return status ? std::string() : std::string(status.error().detail);
   };
-  for (double MillTool::*const measure :
-       {&MillTool::flute_mm, &MillTool::shank_radius_mm, &MillTool::holder_radius_mm,
-        &MillTool::holder_from_mm}) {
+  for (double MillTool::*const measure : {&MillTool::flute_mm, &MillTool::shank_radius_mm,
+                                          &MillTool::holder_radius_mm, &MillTool::holder_from_mm}) {
     for (const double wrong : {-0.001, HUGE_VAL}) {
       MillTool tool{.radius_mm = 1.5, .flute_mm = 5.0, .holder_from_mm = 9.0};
       tool.*measure = wrong;
@@ -295,17 +291,19 @@ TEST(MillTool, LimitsOfTheShank) {
   }
   const MillTool ball{.shape = MillTool::Shape::kBall, .radius_mm = 1.5, .flute_mm = 1.5};
   EXPECT_EQ(refused(ball), "");
-  const MillTool short_ball{.shape = MillTool::Shape::kBall, .radius_mm = 1.5, .flute_mm = 1.4999999};
+  const MillTool short_ball{
+      .shape = MillTool::Shape::kBall, .radius_mm = 1.5, .flute_mm = 1.4999999};
   EXPECT_EQ(refused(short_ball),
             "the tool cuts for 1.4999999 mm, and its end alone is 1.5 mm high: make flute longer");
   EXPECT_EQ(refused({.radius_mm = 1.5, .shank_radius_mm = 3.0}),
             "a shank begins where the tool ceases to cut: say flute=LENGTH, too");
-  EXPECT_EQ(refused({.radius_mm = 1.5, .flute_mm = 5.0, .holder_radius_mm = 9.0,
-                     .holder_from_mm = 5.0}),
-            "");
-  EXPECT_EQ(refused({.radius_mm = 1.5, .flute_mm = 5.0, .holder_radius_mm = 9.0,
-                     .holder_from_mm = 4.999}),
-            "the holder begins below the end of what cuts");
+  EXPECT_EQ(
+      refused({.radius_mm = 1.5, .flute_mm = 5.0, .holder_radius_mm = 9.0, .holder_from_mm = 5.0}),
+      "");
+  EXPECT_EQ(
+      refused(
+          {.radius_mm = 1.5, .flute_mm = 5.0, .holder_radius_mm = 9.0, .holder_from_mm = 4.999}),
+      "the holder begins below the end of what cuts");
   EXPECT_EQ(refused({.radius_mm = 1.5, .flute_mm = 5.0}), "");  // no holder, wherever it begins
 }
 

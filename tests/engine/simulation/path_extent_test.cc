@@ -221,8 +221,8 @@ TEST(PathExtent, SwingsTurnRoundAnywhere) {
 
 // The head of the widest rotary axis: 4 turns of A swing the column in X and Y eight times each.
 TEST(PathExtent, ColumnSwingsAsOftenAsAGoesRound) {
-  const PathPiece turn = PathPiece::Line({{0, 0, 0}, 0.1, 0.5 * kPi},
-                                         {{0, 0, 0}, 0.1 + 4.0 * kTurn, 0.5 * kPi});
+  const PathPiece turn =
+      PathPiece::Line({{0, 0, 0}, 0.1, 0.5 * kPi}, {{0, 0, 0}, 0.1 + 4.0 * kTurn, 0.5 * kPi});
   const PointSweep column =
       ColumnSweepOf({turn, GantryHead{.length_mm = 300.0}, 0.0, turn.length()});
   for (const std::size_t i : {0u, 1u}) {
@@ -255,8 +255,8 @@ TEST(PathExtent, RotaryAxesOfACorner) {
   EXPECT_EQ(rotary[0].first_sign, 1);
   EXPECT_EQ(rotary[0].last_sign, -1);
   EXPECT_NEAR(rotary[0].maximum, a_most, 1e-7);
-  EXPECT_NEAR(rotary[0].travel,
-              2.0 * rotary[0].maximum - whole.from().a_rad - whole.to().a_rad, 1e-12);
+  EXPECT_NEAR(rotary[0].travel, 2.0 * rotary[0].maximum - whole.from().a_rad - whole.to().a_rad,
+              1e-12);
   EXPECT_EQ(rotary[1].turns, 0);
   EXPECT_EQ(rotary[1].first_sign, 1);
   EXPECT_NEAR(rotary[1].minimum, b_least, 1e-12);
@@ -264,8 +264,8 @@ TEST(PathExtent, RotaryAxesOfACorner) {
 }
 
 TEST(PathExtent, BoxHasAllCorners) {
-  const machine::Box box = BoxOf({{{.minimum = 1, .maximum = 2}, {.minimum = 3, .maximum = 4},
-                                   {.minimum = 5, .maximum = 6}}});
+  const machine::Box box = BoxOf(
+      {{{.minimum = 1, .maximum = 2}, {.minimum = 3, .maximum = 4}, {.minimum = 5, .maximum = 6}}});
   EXPECT_EQ(box.min, (MachineVector{1, 3, 5}));
   EXPECT_EQ(box.max, (MachineVector{2, 4, 6}));
 }

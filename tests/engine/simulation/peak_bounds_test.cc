@@ -98,7 +98,8 @@ TEST(PeakBounds, AreNeverBelowThePeak) {
 }
 
 // Round the plain corner of 90 degrees at 50 mm/s (CurveOfACorner of motion_peaks_test.cc) the tip
-// is accelerated by what its curvature asks for; who knows of a hundred-thousandth more need not look.
+// is accelerated by what its curvature asks for; who knows of a hundred-thousandth more need not
+// look.
 TEST(PeakBounds, OfAPlainCornerIsItsCurvature) {
   const auto motions = PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}});
   const motion::PlannedMotion& half = motions.at(1);

@@ -68,7 +68,8 @@ TEST_F(TimeLedgerTest, GapsOfOneKindAreOne) {
   ledger.Close();
   std::vector<SimTime> lengths;
   for (const TimeLedger::Gap& gap : counted) lengths.push_back(gap.length());
-  EXPECT_EQ(lengths, (std::vector<SimTime>{SimTime(2), SimTime(2), SimTime(3), SimTime(4), SimTime(5)}));
+  EXPECT_EQ(lengths,
+            (std::vector<SimTime>{SimTime(2), SimTime(2), SimTime(3), SimTime(4), SimTime(5)}));
   EXPECT_FALSE(counted[0].beam_on);
   EXPECT_TRUE(counted[1].beam_on);
   EXPECT_FALSE(counted[1].halted);

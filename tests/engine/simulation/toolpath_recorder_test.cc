@@ -383,8 +383,8 @@ TEST(ToolpathRecorder, WithoutAHighestSpeedAllAreOfTheLastClass) {
 
 // Times are rounded to microseconds, half of one up.
 TEST(ToolpathRecorder, TimesAreWholeMicroseconds) {
-  for (const auto& [pause, us] : {std::pair{SimTime(499), 0}, {SimTime(500), 1},
-                                  {SimTime(1499), 1}, {SimTime(1500), 2}}) {
+  for (const auto& [pause, us] :
+       {std::pair{SimTime(499), 0}, {SimTime(500), 1}, {SimTime(1499), 1}, {SimTime(1500), 2}}) {
     const Recorded recorded =
         Record(Script().Step(1, 1).Nothing(ToSeconds(pause)).Line({}, {1, 0, 0}));
     EXPECT_EQ(recorded.blocks.at(0).runs.at(0).start_us, us) << pause.count();

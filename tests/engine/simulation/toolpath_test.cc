@@ -160,8 +160,9 @@ TEST(ToolpathBlock, TimesOfARunThatBeginsElsewhere) {
   ToolpathBlock block;
   block.points = {{0, 0, 0}, {1000, 0, 0}, {5000, 0, 0}, {6000, 0, 0}, {6000, 3000, 0}};
   block.reached_us = {0, 10'000, 30'000, 65'000, 70'000};
-  block.runs = {{.step = 1, .start_us = 0, .end_us = 10'000, .first_point = 0, .point_count = 2},
-                {.step = 2, .start_us = 30'000, .end_us = 70'000, .first_point = 2, .point_count = 3}};
+  block.runs = {
+      {.step = 1, .start_us = 0, .end_us = 10'000, .first_point = 0, .point_count = 2},
+      {.step = 2, .start_us = 30'000, .end_us = 70'000, .first_point = 2, .point_count = 3}};
   const Result<ToolpathBlock> back = DecodeToolpathBlock(EncodeToolpathBlock(block));
   ASSERT_TRUE(back);
   ExpectEqual(*back, block);
@@ -172,7 +173,7 @@ struct ByHand {
   std::string counts{"\x01\x02", 2};
   std::string start{"\0", 1};
   std::string first{"\0\0\0\0\0", 5};
-  std::string flags{"\x6C\0", 2};  // beam, joined, no pause, one point
+  std::string flags{"\x6C\0", 2};   // beam, joined, no pause, one point
   std::string step{"\x02\x02", 2};  // program 1, step 1
   std::string classes{"\x01\x01\x01", 3};
   std::string duration{"\x0A", 1};
@@ -238,8 +239,7 @@ TEST(ToolpathBlock, LimitsOfABlock) {
 TEST(ToolpathBlock, PointsOfARun) {
   const std::string two("\x02\0\0\x04\0\0", 6);
   EXPECT_EQ(WhyNot({.flags = {"\x24\0", 2}, .duration = {"\x0A\x02", 2}, .points = two}), "");
-  EXPECT_EQ(WhyNot({.flags = {"\x24\0", 2}, .duration = {"\x0A\x01", 2}}),
-            "run 1 cannot be read");
+  EXPECT_EQ(WhyNot({.flags = {"\x24\0", 2}, .duration = {"\x0A\x01", 2}}), "run 1 cannot be read");
   EXPECT_EQ(WhyNot({.flags = {"\x64\0", 2}}), "run 1 cannot be read");
   EXPECT_EQ(WhyNot({.flags = {"\x2C\0", 2}, .duration = {"\x0A\x01", 2}}), "");
   EXPECT_EQ(WhyNot({.flags = {"\x2C\0", 2}, .duration = {"\x0A\0", 2}}), "run 1 cannot be read");
