@@ -264,6 +264,17 @@ TEST(HeightTiles, WhatIsNoGridIsRefused) {
   EXPECT_TRUE(refused(16, std::string_view("\0\0\0\0", 4)));  // no rows
   EXPECT_TRUE(refused(16, "\xFF\xFF\xFF\xFF"));               // too many
   EXPECT_TRUE(refused(47, "\xC0"));                           // a cell below 0
+  EXPECT_TRUE(refused(40, std::string(8, '\0')));             // a cell of 0
+  // 1 << 26 cells are as many as there may be, one row more is too many.
+  const auto of_size = [&](std::string_view columns, std::string_view rows) {
+    std::string grid = good;
+    grid.replace(12, 4, columns).replace(16, 4, rows);
+    return bool(ReadHeightGridHead(grid));
+  };
+  EXPECT_TRUE(of_size({"\0\x20\0\0", 4}, {"\0\x20\0\0", 4}));
+  EXPECT_FALSE(of_size({"\0\x20\0\0", 4}, {"\x01\x20\0\0", 4}));
+  EXPECT_TRUE(of_size({"\0\0\0\x04", 4}, {"\x01\0\0\0", 4}));
+  EXPECT_FALSE(of_size({"\x01\0\0\x04", 4}, {"\x01\0\0\0", 4}));
 }
 
 }  // namespace
