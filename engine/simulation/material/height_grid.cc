@@ -64,8 +64,7 @@ Result<HeightGridHead> ReadHeightGridHead(std::string_view bytes) {
       .bottom = real(48),
       .top = real(56)};
   const auto& [columns, rows] = head.size;
-  if (columns == 0 || rows == 0 || columns > HeightField::kCellsMax ||
-      rows > HeightField::kCellsMax / columns || !(head.cell > 0.0))
+  if (columns == 0 || rows == 0 || rows > HeightField::kCellsMax / columns || !(head.cell > 0.0))
     return bad;
   return head;
 }

@@ -19,12 +19,11 @@ struct Range {
   std::size_t end = 0;
 };
 Range CellsBetween(double low, double high, double from, double cell, std::size_t cells) {
-  const auto index = [&](double at) {
-    return static_cast<std::size_t>(
-        std::clamp(std::floor((at - from) / cell), 0.0, static_cast<double>(cells)));
+  const auto cells_before = [&](double index) {
+    return static_cast<std::size_t>(std::clamp(index, 0.0, static_cast<double>(cells)));
   };
-  if (high < from) return {};
-  return {index(low), std::min(index(high) + 1, cells)};
+  return {cells_before(std::floor((low - from) / cell)),
+          cells_before(std::floor((high - from) / cell) + 1.0)};
 }
 
 }  // namespace

@@ -197,7 +197,6 @@ void MillingRecorder::NoteBelow(const motion::MachinePoint& from, const motion::
 void MillingRecorder::NoteReach(const motion::MachinePoint& from, const motion::MachinePoint& to,
                                 const machine::Place& place) {
   const Stock& block = material_.stock();
-  if (block.top - std::min(from.z(), to.z()) <= std::max(figures_.reach_mm, kGougeLeast_mm)) return;
   const motion::MachineVector way = to - from;
   PartOfMove over;
   over.KeepOver(block, 0.0, from, way);
@@ -214,6 +213,7 @@ void MillingRecorder::NoteReach(const motion::MachinePoint& from, const motion::
 void MillingRecorder::NoteBeside(const motion::MachinePoint& from, const motion::MachinePoint& to,
                                  const machine::Place& place) {
   const Stock& block = material_.stock();
+  if (std::min(from.z(), to.z()) >= block.top) return;
   const double run_on = 2.0 * tool_.radius_mm;
   const motion::MachineVector way = to - from;
   PartOfMove deep;

@@ -45,8 +45,7 @@ bool AreAlike(std::string_view a, std::string_view b) {
   const std::string_view rest_b = b.substr(differ);
   if (a.size() < b.size()) return rest_a == rest_b.substr(1);
   if (rest_a.substr(1) == rest_b.substr(1)) return true;
-  return rest_a.size() > 1 && rest_a[0] == rest_b[1] && rest_a[1] == rest_b[0] &&
-         rest_a.substr(2) == rest_b.substr(2);
+  return rest_a[0] == rest_b[1] && rest_a[1] == rest_b[0] && rest_a.substr(2) == rest_b.substr(2);
 }
 
 // "; did you mean flat?"

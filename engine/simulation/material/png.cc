@@ -78,9 +78,9 @@ struct Reading {
   png_infop info = nullptr;
 };
 
-// 0 when no whole number of the format can say it.
+// 0 when no whole number of the format can say it: of an edge of 0 there are infinitely many.
 png_uint_32 PixelsPerMetre(double pixel_mm) {
-  const double pixels = pixel_mm > 0.0 ? std::round(1000.0 / pixel_mm) : 0.0;
+  const double pixels = std::round(1000.0 / pixel_mm);
   return pixels >= 1.0 && pixels <= PNG_UINT_31_MAX ? static_cast<png_uint_32>(pixels) : 0;
 }
 

@@ -42,10 +42,10 @@ class TargetComparison {
     const std::size_t column_end = std::min(column + 2, field_.columns());
     for (std::size_t r = row > 0 ? row - 1 : 0; r < row_end; ++r) {
       for (std::size_t c = column > 0 ? column - 1 : 0; c < column_end; ++c) {
-        // Nothing can be left below the bottom; a comparison with no number is false.
+        // Nothing can be left below the bottom; what is no number leaves both as they are.
         const float height = heights_[r * field_.columns() + c];
-        if (height < low) low = height;
-        if (height > high) high = height;
+        low = std::min(low, height);
+        high = std::max(high, height);
       }
     }
     const double here = std::max(field_.height(column, row), bottom_);

@@ -68,8 +68,7 @@ MotionPeaks Straight(const motion::PlannedMotion& motion, bool five_axis, double
     Raise(acceleration, part.start.acceleration);
     Raise(acceleration, part.AccelerationAt(end));
     Raise(jerk, part.jerk);
-    const double level = part.jerk != 0.0 ? -part.start.acceleration / part.jerk : 0.0;
-    if (level > 0.0 && level < end) Raise(speed, part.SpeedAt(level));
+    Raise(speed, part.SpeedAt(part.LevelAt()));
   });
   const motion::PathDerivatives first = motion.path.First(0.0);
   const bool stands = motion.path.kind() == PathPiece::Kind::kRotary;

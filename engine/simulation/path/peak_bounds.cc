@@ -35,15 +35,12 @@ struct PhaseBounds {
 
 PhaseBounds BoundsOf(const PhasePart& part) {
   const double end = part.duration_s;
-  PhaseBounds bounds{.speed = std::max(std::abs(part.start.speed), std::abs(part.SpeedAt(end))),
-                     .acceleration = std::max(std::abs(part.start.acceleration),
-                                              std::abs(part.AccelerationAt(end))),
-                     .jerk = std::abs(part.jerk),
-                     .rounding_per_s = kAccelerationShare * kSamplesOfPhase / end};
-  const double level = part.jerk != 0.0 ? -part.start.acceleration / part.jerk : 0.0;
-  if (level > 0.0 && level < end)
-    bounds.speed = std::max(bounds.speed, std::abs(part.SpeedAt(level)));
-  return bounds;
+  return {.speed = std::max({std::abs(part.start.speed), std::abs(part.SpeedAt(end)),
+                             std::abs(part.SpeedAt(part.LevelAt()))}),
+          .acceleration =
+              std::max(std::abs(part.start.acceleration), std::abs(part.AccelerationAt(end))),
+          .jerk = std::abs(part.jerk),
+          .rounding_per_s = kAccelerationShare * kSamplesOfPhase / end};
 }
 
 bool Within(double bound, double known) { return bound * (1.0 + kRoundingShare) <= known; }

@@ -24,6 +24,10 @@ struct PhasePart {
   double PlaceAt(double t) const {
     return start.s + t * (start.speed + t * (0.5 * start.acceleration + t * jerk / 6.0));
   }
+  // Where the speed turns round on the way; an end of the stretch where it does not.
+  double LevelAt() const {
+    return jerk != 0.0 ? std::clamp(-start.acceleration / jerk, 0.0, duration_s) : 0.0;
+  }
 };
 
 // Calls `take` with every stretch of the speed profile between two of its times, in order.

@@ -156,11 +156,11 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
     for (double& side : columns) side = std::max(side, kThinnest * largest);
     const auto [first, second] = Share(area.width - kGap_px, columns[0], columns[1]);
     const double scale = std::min(first / columns[0], second / columns[1]);
-    const auto height = [&](double row) {
+    const auto height_of = [&](double row) {
       return std::clamp(std::max(row, kThinnest * largest) * scale, kPanelMin_px,
                         0.72 * kPanelHeightMax_px);
     };
-    const double heights[2] = {height(rows[0]), height(rows[1])};
+    const double heights[2] = {height_of(rows[0]), height_of(rows[1])};
     const bool two_rows = frames.size() > 2;
     for (std::size_t k = 0; k < frames.size(); ++k) {
       const bool right = k % 2 == 1;

@@ -101,8 +101,7 @@ void PlotRecorder::OnMotion(const machine::MotionDone& done) {
                [&](const PhasePart& part) {
                  const double end = t + part.duration_s;
                  // Where the acceleration is zero the speed has its peak.
-                 const double level = part.jerk != 0.0 ? -part.start.acceleration / part.jerk : 0.0;
-                 const double peak = t + std::clamp(level, 0.0, part.duration_s);
+                 const double peak = t + part.LevelAt();
                  state_->LookThrough(done, view, t, peak);
                  state_->LookThrough(done, view, peak, end);
                  t = end;

@@ -19,10 +19,7 @@ class Crossings {
   explicit Crossings(const PhasePart& part) : part_(part) {
     low_ = high_ = part.start.speed;
     Extend(part.SpeedAt(part.duration_s));
-    if (part.jerk != 0.0) {
-      const double level = -part.start.acceleration / part.jerk;
-      if (level > 0.0 && level < part.duration_s) Extend(part.SpeedAt(level));
-    }
+    Extend(part.SpeedAt(part.LevelAt()));
   }
 
   void Add(double speed) {

@@ -94,7 +94,7 @@ ToolpathRecorder::ToolpathRecorder(const machine::MachineShape& shape, ToolpathO
 
 int ToolpathRecorder::SpeedClassOf(double mm_s) const {
   if (mm_s <= 0.0) return 0;
-  if (speed_max_mm_s_ <= 0.0) return kSpeedClasses;
+  // Infinite, of a machine whose highest speed is not known: that is the last class.
   const double share = std::ceil(mm_s / speed_max_mm_s_ * kSpeedClasses - 1e-9);
   return static_cast<int>(std::clamp(share, 1.0, double{kSpeedClasses}));
 }

@@ -95,6 +95,50 @@ TEST(BeamWork, TimeByPower) {
   EXPECT_EQ(histogram.by_power[13], SimTime::zero());
 }
 
+// Up to the last class: with 2 % by mm/s 100 % are reached at 50 mm/s. On each ramp every class has
+// 0.025 s, and the last one what is above it, too: 0.1 s of each ramp and the second between.
+TEST(BeamWork, TimeByPowerUpToTheLimit) {
+  BeamWork beam(kWatts, kSpeedMax);
+  const auto profile =
+      motion::SpeedProfile::Span(96.0, 0.0, 0.0, {.speed = 60.0, .acceleration = 100.0});
+  EXPECT_NEAR(beam.Moving(profile, 0.0, profile.duration_s(), 1.0, {.percent_per_mm_s = 2.0}),
+              kWatts * (2.0 * (0.5 * 0.5 + 0.1) + 1.0), 1e-9);
+  const BeamHistogram histogram = beam.Histogram(FromSeconds(2.2));
+  for (std::size_t bin = 0; bin < 19; ++bin) {
+    EXPECT_NEAR(ToSeconds(histogram.by_power[bin]), 0.05, 1e-8) << bin;
+  }
+  EXPECT_NEAR(ToSeconds(histogram.by_power[19]), 0.05 + 1.2, 1e-8);
+}
+
+// The highest class of speed begins at 95 % of 500 mm/s: a ramp from 470 to 480 mm/s is as long
+// below it as above, and faster ones are all above.
+TEST(BeamWork, TheHighestClassOfSpeed) {
+  BeamWork beam(kWatts, kSpeedMax);
+  const auto profile =
+      motion::SpeedProfile::Span(47.5, 470.0, 480.0, {.speed = 480.0, .acceleration = 100.0});
+  ASSERT_NEAR(profile.duration_s(), 0.1, 1e-9);
+  beam.Moving(profile, 0.0, profile.duration_s(), 1.0, {.constant_percent = 100.0});
+  const BeamHistogram histogram = beam.Histogram(FromSeconds(profile.duration_s()));
+  EXPECT_NEAR(ToSeconds(histogram.by_speed[19]), 0.05, 1e-8);
+  EXPECT_NEAR(ToSeconds(histogram.by_speed[20]), 0.05, 1e-8);
+}
+
+// The speed of the tip is that along the path times what the tip goes by it: with a quarter the
+// ramp to 60 mm/s is one to 15 mm/s, all in the first class.
+TEST(BeamWork, TheTipMayBeSlowerThanThePath) {
+  BeamWork beam(kWatts, kSpeedMax);
+  const auto profile =
+      motion::SpeedProfile::Span(96.0, 0.0, 0.0, {.speed = 60.0, .acceleration = 100.0});
+  // 4 % by mm/s: up to 60 %, 30 % on the ramps.
+  EXPECT_NEAR(beam.Moving(profile, 0.0, profile.duration_s(), 0.25, {.percent_per_mm_s = 4.0}),
+              kWatts * (1.2 * 0.3 + 1.0 * 0.6), 1e-9);
+  const BeamHistogram histogram = beam.Histogram(FromSeconds(2.2));
+  EXPECT_EQ(histogram.by_speed[1], FromSeconds(2.2));
+  for (std::size_t bin = 0; bin < 12; ++bin) {
+    EXPECT_NEAR(ToSeconds(histogram.by_power[bin]), 0.1, 1e-8) << bin;
+  }
+}
+
 // Bounds of classes: the power of a class begins at its lower bound, 100 % belongs to the last one,
 // what lies outside to the ends; a speed of 0 and a machine without a known highest speed to class
 // 0.
@@ -144,6 +188,46 @@ TEST(BeamWork, APowerThatFallsWithTheSpeed) {
     EXPECT_NEAR(ToSeconds(histogram.by_power[bin]), 0.1, 1e-8) << bin;
   }
   EXPECT_EQ(histogram.by_power[16], SimTime::zero());
+}
+
+// From 110 % at rest by 10 % a mm/s: full power up to 1 mm/s, none from 11 on. On ramps of 1.2 s to
+// 12 mm/s and back each class has 0.05 s, and those at the ends 0.15 s.
+TEST(BeamWork, APowerThatFallsFromBeyondTheLimit) {
+  BeamWork beam(kWatts, kSpeedMax);
+  const auto profile =
+      motion::SpeedProfile::Span(14.4, 0.0, 0.0, {.speed = 12.0, .acceleration = 10.0});
+  EXPECT_NEAR(
+      beam.Moving(profile, 0.0, 2.4, 1.0, {.constant_percent = 110.0, .percent_per_mm_s = -10.0}),
+      kWatts * 2.0 * (0.1 + 0.5), 1e-9);
+  const BeamHistogram histogram = beam.Histogram(FromSeconds(2.4));
+  for (std::size_t bin = 0; bin < kPowerBins; ++bin) {
+    EXPECT_NEAR(ToSeconds(histogram.by_power[bin]), bin == 0 || bin == 19 ? 0.3 : 0.1, 1e-8) << bin;
+  }
+}
+
+// The beam of the job counts for one program besides, as long as that is told.
+TEST(BeamWork, CountsIntoAnotherAsWell) {
+  BeamWork beam(kWatts, kSpeedMax);
+  BeamTimes program;
+  beam.Standing(0.5, 40.0);
+  beam.AlsoInto(&program);
+  beam.Standing(1.0, 40.0);
+  beam.AlsoInto(nullptr);
+  beam.Standing(2.0, 40.0);
+  EXPECT_EQ(beam.Histogram(FromSeconds(3.5)).by_power[8], FromSeconds(3.5));
+  const BeamHistogram of_program = program.Histogram(FromSeconds(1.0));
+  EXPECT_EQ(of_program.by_power[8], FromSeconds(1.0));
+  EXPECT_EQ(of_program.by_speed[0], FromSeconds(1.0));
+}
+
+// Times are whole nanoseconds and add up: what rounding leaves goes to the longest.
+TEST(BeamWork, WhatRoundingLeavesGoesToTheLongest) {
+  BeamWork beam(kWatts, kSpeedMax);
+  beam.Standing(0.25, 2.0);
+  beam.Standing(0.75, 12.0);
+  const BeamHistogram histogram = beam.Histogram(FromSeconds(1.0) + SimTime(3));
+  EXPECT_EQ(histogram.by_power[0], FromSeconds(0.25));
+  EXPECT_EQ(histogram.by_power[2], FromSeconds(0.75) + SimTime(3));
 }
 
 // A tip that stands while A and B turn gets the power of speed 0.

@@ -52,11 +52,13 @@ TEST(ChipLoad, TellsWhatIsWrongWithATable) {
   const std::string share = "chip_loads.toml:1: tin has no plunge_share above 0 and up to 1";
   EXPECT_EQ(fault(kTin, "plunge_share = 0.4", ""), share);
   EXPECT_EQ(fault(kTin, "0.4", "0"), share);
-  EXPECT_EQ(fault(kTin, "0.4", "1.1"), share);
+  EXPECT_EQ(fault(kTin, "0.4", "1.01"), share);
+  EXPECT_EQ(fault(kTin, "= 100", "= 0"), "chip_loads.toml:1: tin has no speed_most_m_min above 0");
   const std::string lists =
       "chip_loads.toml:1: tin: diameter_mm, least_mm and most_mm are lists of one length, of "
       "numbers that rise";
   EXPECT_EQ(fault(kTin, "[1, 3]", "[3, 1]"), lists);
+  EXPECT_EQ(fault(kTin, "[1, 3]", "[1, 1]"), lists);
   EXPECT_EQ(fault(kTin, "[1, 3]", "[1, 3, 6]"), lists);
   EXPECT_EQ(fault(kTin, "[1, 3]", "[0, 3]"), lists);
   EXPECT_EQ(fault(kTin, "[1, 3]", "3"), lists);
@@ -64,6 +66,18 @@ TEST(ChipLoad, TellsWhatIsWrongWithATable) {
             "chip_loads.toml:1: tin has a least above its most");
   EXPECT_EQ(fault(kTin, "[tin]\n", ""), "chip_loads.toml:2: no key diameter_mm");
   EXPECT_EQ(fault(kTin, "[tin]", "[tin").substr(0, 17), "chip_loads.toml:1");
+}
+
+// What just is no fault: all of the most for a plunge, one figure that is usual, one row.
+TEST(ChipLoad, LimitsOfATable) {
+  const auto tables = ReadChipTables(
+      "[tin]\nsource = 'measured'\ndiameter_mm = [2]\nleast_mm = [0.25]\nmost_mm = [0.25]\n"
+      "speed_most_m_min = 100\nplunge_share = 1\n");
+  ASSERT_TRUE(tables);
+  const ChipRange range = tables->front().For(4.0);
+  EXPECT_EQ(range.least_mm, 0.5);
+  EXPECT_EQ(range.most_mm, 0.5);
+  EXPECT_EQ(range.plunge_most_mm, 0.5);
 }
 
 // Every material of the table has a source and a range for the tools of small mills.

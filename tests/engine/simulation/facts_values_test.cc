@@ -2,7 +2,9 @@
 
 #include <map>
 #include <string>
+#include <tuple>
 
+#include "engine/core/number_text.h"
 #include "engine/simulation/report/facts.h"
 #include "tests/engine/core/untold.h"
 
@@ -68,6 +70,50 @@ TEST(FactsValues, Run) {
     report.outcome.kind = kind;
     ExpectFacts(report, {{"outcome", text}});
   }
+}
+
+// What is not known or not there is none: no line, no code, no verdict of a run that is under way.
+TEST(FactsValues, RunWithoutWords) {
+  ExpectFacts(RunReport{}, {{"profile", "none"},
+                            {"profile_named", "no"},
+                            {"profile_changes", "none"},
+                            {"machine_name", "none"},
+                            {"profile_changed_by", "none"},
+                            {"title", "none"},
+                            {"outcome", "running"},
+                            {"outcome_code", "none"},
+                            {"outcome_detail", "none"},
+                            {"outcome_program", "0"},
+                            {"outcome_step", "0"},
+                            {"outcome_line", "none"},
+                            {"verdict", "running"},
+                            {"verdict_reasons", "0"},
+                            {"verdict_codes", "none"},
+                            {"verdict_because", "none"},
+                            {"corners_deviation_at", "none"},
+                            {"work_origin_x_mm", "none"},
+                            {"work_origin_z_mm", "none"},
+                            {"tip_x_min_mm", "none"},
+                            {"programmed_z_max", "none"}});
+}
+
+TEST(FactsValues, Verdict) {
+  RunReport report;
+  report.finished = true;
+  report.machine.own_name = "The old one";
+  report.changed_parameters = {{"CYCLE", "0.1"}, {"VMAX", "300"}};
+  ExpectFacts(report, {{"verdict", "GOOD"}, {"verdict_codes", "none"}});
+  report.judgement.Add({.code = ErrorCode::kCellContourSlow,
+                        .verdict = machine::Verdict::kDoubtful,
+                        .said = "slow"});
+  report.judgement.Add(
+      {.code = ErrorCode::kCellBeamStands, .verdict = machine::Verdict::kBad, .said = "it stands"});
+  ExpectFacts(report, {{"verdict", "BAD"},
+                       {"verdict_reasons", "2"},
+                       {"verdict_codes", "CELL-E9621 CELL-E9622"},
+                       {"verdict_because", "it stands"},
+                       {"machine_name", "The old one"},
+                       {"changed_parameters", "CYCLE=0.1 VMAX=300"}});
 }
 
 // motion.md 8.2: times in seconds, to 1e-6.
@@ -163,6 +209,36 @@ TEST(FactsValues, BeamTimes) {
   }
 }
 
+// docs/verdict.md: what a beam is judged by, at the worst place.
+TEST(FactsValues, Contours) {
+  RunReport report;
+  const auto most = [](double value) { return Extreme{.value = value, .place = {.step = 9}}; };
+  report.cut_figures = {.contours = 3,
+                        .longest = FromSeconds(4.5),
+                        .energy_max_j = 5.5,
+                        .slow_percent = most(6.5),
+                        .hot_mm = most(7.5),
+                        .weak_mm = most(8.5),
+                        .uncontrolled_mm = most(9.5),
+                        .standing_s = most(10.5),
+                        .singular_rad = most(0.5 * kPi),
+                        .near_end = {most(1.5), most(2.5), most(3.5), most(0.5), most(0.25)}};
+  ExpectFacts(report, {{"contours", "3"},
+                       {"contour_time_max_s", "4.5"},
+                       {"contour_energy_max_j", "5.5"},
+                       {"slow_contour_max_percent", "6.5"},
+                       {"hot_stretch_max_mm", "7.5"},
+                       {"weak_stretch_max_mm", "8.5"},
+                       {"ptp_cut_length_mm", "9.5"},
+                       {"standing_beam_max_s", "10.5"},
+                       {"singular_swing_max_deg", "90.0"},
+                       {"near_end_x_mm", "1.5"},
+                       {"near_end_y_mm", "2.5"},
+                       {"near_end_z_mm", "3.5"},
+                       {"near_end_a_rad", "0.5"},
+                       {"near_end_b_rad", "0.25"}});
+}
+
 // motion.md 8.2: knots by how they were passed; no deviation has no place.
 TEST(FactsValues, Corners) {
   RunReport report;
@@ -190,13 +266,17 @@ TEST(FactsValues, Corners) {
   report.milling = MillingFigures{.removed_mm3 = 1.5,
                                   .gouges = 2,
                                   .gouge_depth_mm = 0.25,
+                                  .below_mm = 0.125,
                                   .remaining_mm3 = 7.5,
                                   .deepest_cut_mm = 3.5,
                                   .deepest_pass_mm = 1.25,
-                                  .shank_depth_mm = 0.75};
+                                  .shank_depth_mm = 0.75,
+                                  .beside_mm = 8.25};
   ExpectFacts(report, {{"removed_volume_mm3", "1.5"},
                        {"gouges", "2"},
                        {"gouge_depth_mm", "0.25"},
+                       {"below_block_mm", "0.125"},
+                       {"beside_block_mm", "8.25"},
                        {"remaining_volume_mm3", "7.5"},
                        {"deepest_cut_mm", "3.5"},
                        {"deepest_pass_mm", "1.25"},
@@ -227,6 +307,10 @@ TEST(FactsValues, Positions) {
                        {"final_point_x", "7.0"},
                        {"final_point_y", "8.0"},
                        {"final_point_z", "9.0"}});
+  report.work_origin = motion::MachinePoint{11, 12, 13};
+  ExpectFacts(
+      report,
+      {{"work_origin_x_mm", "11.0"}, {"work_origin_y_mm", "12.0"}, {"work_origin_z_mm", "13.0"}});
 }
 
 TEST(FactsValues, Boxes) {
@@ -242,20 +326,17 @@ TEST(FactsValues, Boxes) {
   report.tip = box(20);
   report.cut = box(30);
   report.column = box(40);
-  ExpectFacts(report, {{"programmed_x_min", "10.0"},
-                       {"programmed_x_max", "13.0"},
-                       {"programmed_y_min", "11.0"},
-                       {"programmed_z_max", "15.0"},
-                       {"tip_x_min_mm", "20.0"},
-                       {"tip_y_max_mm", "24.0"},
-                       {"tip_z_min_mm", "22.0"},
-                       {"cut_x_max_mm", "33.0"},
-                       {"cut_y_min_mm", "31.0"},
-                       {"cut_z_max_mm", "35.0"},
-                       {"column_x_min_mm", "40.0"},
-                       {"column_y_max_mm", "44.0"},
-                       {"column_z_min_mm", "42.0"},
-                       {"column_z_max_mm", "45.0"}});
+  for (const auto& [name, first, unit] : {std::tuple{"programmed", 10.0, ""},
+                                          {"tip", 20.0, "_mm"},
+                                          {"cut", 30.0, "_mm"},
+                                          {"column", 40.0, "_mm"}}) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::string key = std::string(name) + '_' + "xyz"[i];
+      const double low = first + static_cast<double>(i);
+      ExpectFacts(report, {{key + "_min" + unit, ShortestText(low) + ".0"},
+                           {key + "_max" + unit, ShortestText(low + 3.0) + ".0"}});
+    }
+  }
 }
 
 // motion.md 8.2: peaks in units, and by their limits; an axis without a limit has no share.

@@ -282,6 +282,7 @@ TEST(HeightField, TellsHowDeepAShankWouldGo) {
   EXPECT_NEAR(field.ShankDepthOf(with_shank(2.0), {2, 6, -3}, {18, 6, -3}), 1.0, 1e-6);
   // Nothing told, nothing found; a holder of 20 mm at 2.5 mm is half a millimetre deep at 3.
   EXPECT_EQ(field.ShankDepthOf(kFlat, {10, 3, -3}, {12, 3, -3}), 0.0);
+  EXPECT_EQ(field.ShankDepthOf(kFlat, {10, 3.125, -3}, {12, 3.125, -3}), 0.0);  // over centres
   const MillTool held{.radius_mm = 1.5, .holder_radius_mm = 10.0, .holder_from_mm = 2.5};
   EXPECT_NEAR(field.ShankDepthOf(held, {10, 6, 2}, {10, 6, -3}), 0.5, 1e-6);
   EXPECT_EQ(field.ShankDepthOf(held, {10, 6, 2}, {10, 6, -2.5}), 0.0);

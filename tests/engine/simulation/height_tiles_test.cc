@@ -123,7 +123,9 @@ TEST(HeightTiles, TheyAreTakenByTurns) {
   std::map<std::pair<std::size_t, std::size_t>, int> seen;
   for (int i = 0; i < 3; ++i) {
     changes.Note(10.0, 11.0, -20.0, -19.0);  // the first tile, again and again
-    for (const HeightTile& tile : changes.Take(field, 3)) ++seen[{tile.column, tile.row}];
+    const std::vector<HeightTile> taken = changes.Take(field, 3);
+    EXPECT_EQ(taken.size(), 3U);
+    for (const HeightTile& tile : taken) ++seen[{tile.column, tile.row}];
   }
   EXPECT_EQ(seen.size(), 9U);
 }
@@ -137,6 +139,20 @@ TEST(HeightTiles, ALookAtALargeBlockIsBounded) {
   int looks = 0;
   for (; changes.any_left(); ++looks) EXPECT_TRUE(changes.Take(field, 1000).empty());
   EXPECT_EQ(looks, 4);
+}
+
+// Of tiles with 65,536 cells each a look has 64: of this block the first four rows of tiles.
+TEST(HeightTiles, ALookHasSoManyTiles) {
+  const Stock large{.x_max = 4096.0, .y_max = 4096.0, .bottom = -1.0, .cell = 1.0};
+  HeightField field = HeightField::Of(large).value();
+  for (const auto& [x, y] : {std::pair{4090.5, 1020.5}, {2.5, 1030.5}})
+    field.Cut(kPinTool, {x, y, -0.5}, {x, y, -0.5});
+  HeightChanges changes(field);
+  for (const std::size_t row : {192U, 256U}) {
+    const std::vector<HeightTile> tiles = changes.Take(field, 1000);
+    ASSERT_EQ(tiles.size(), 1U);
+    EXPECT_EQ(tiles[0].row, row);
+  }
 }
 
 // As one looks on, and afterwards: the same tiles, at each level, in parts of any size.
@@ -204,6 +220,31 @@ TEST(HeightTiles, OnlyThoseOfAnArea) {
   EXPECT_EQ(places({.column = 149, .row = 127, .columns = 9, .rows = 2}),
             (Places{{128, 64}, {128, 128}}));
   EXPECT_EQ(places({.column = 192, .row = 0, .columns = 1, .rows = 1}), Places{});
+  EXPECT_EQ(places({.column = 0, .row = 0, .columns = 64, .rows = 64}), (Places{{0, 0}}));
+  EXPECT_EQ(places({.column = 64, .row = 64, .columns = 64, .rows = 64}), (Places{{64, 64}}));
+}
+
+// All that is wanted has come with the last row of tiles that has some of it; behind the last row
+// of the grid nothing is read.
+TEST(HeightTiles, WhatIsWantedHasComeWhenItsRowsHave) {
+  const HeightField field = HeightField::Of(kTiledBlock).value();
+  const std::string bytes = GridOf(field).substr(kHeightGridHeadBytes);
+  const HeightGridHead head = HeadOf(field);
+  const auto rows_until_done = [&](std::optional<HeightGridTiles::Area> area) {
+    HeightGridTiles grid(head, 0, area);
+    for (std::size_t row = 0; row < 130; ++row) {
+      if (grid.done()) return row;
+      grid.Add(std::string_view(bytes).substr(row * 300, 300));
+    }
+    return grid.done() ? std::size_t{130} : std::size_t{999};
+  };
+  EXPECT_EQ(rows_until_done(std::nullopt), 130U);
+  EXPECT_EQ(rows_until_done({{.column = 0, .row = 0, .columns = 9, .rows = 64}}), 64U);
+  EXPECT_EQ(rows_until_done({{.column = 0, .row = 0, .columns = 9, .rows = 65}}), 128U);
+  EXPECT_EQ(rows_until_done({{.column = 0, .row = 60, .columns = 9, .rows = 900}}), 130U);
+  HeightGridTiles grid(head, 0, std::nullopt);
+  EXPECT_EQ(grid.Add(bytes + std::string(300 * 64, '\0')).size(), 9U);
+  EXPECT_TRUE(grid.Add(std::string(300 * 64, '\0')).empty());
 }
 
 TEST(HeightTiles, WhatIsNoGridIsRefused) {
@@ -223,6 +264,17 @@ TEST(HeightTiles, WhatIsNoGridIsRefused) {
   EXPECT_TRUE(refused(16, std::string_view("\0\0\0\0", 4)));  // no rows
   EXPECT_TRUE(refused(16, "\xFF\xFF\xFF\xFF"));               // too many
   EXPECT_TRUE(refused(47, "\xC0"));                           // a cell below 0
+  EXPECT_TRUE(refused(40, std::string(8, '\0')));             // a cell of 0
+  // 1 << 26 cells are as many as there may be, one row more is too many.
+  const auto of_size = [&](std::string_view columns, std::string_view rows) {
+    std::string grid = good;
+    grid.replace(12, 4, columns).replace(16, 4, rows);
+    return bool(ReadHeightGridHead(grid));
+  };
+  EXPECT_TRUE(of_size({"\0\x20\0\0", 4}, {"\0\x20\0\0", 4}));
+  EXPECT_FALSE(of_size({"\0\x20\0\0", 4}, {"\x01\x20\0\0", 4}));
+  EXPECT_TRUE(of_size({"\0\0\0\x04", 4}, {"\x01\0\0\0", 4}));
+  EXPECT_FALSE(of_size({"\x01\0\0\x04", 4}, {"\x01\0\0\0", 4}));
 }
 
 }  // namespace

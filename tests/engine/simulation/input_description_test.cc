@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstdint>
 #include <functional>
 #include <set>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "engine/simulation/run/version.h"
 #include "tests/engine/simulation/fake_family.h"
 
 namespace rmlcell::simulation {
@@ -109,6 +114,73 @@ TEST(DescribeInputs, EveryFieldChangesTheHash) {
     EXPECT_TRUE(hashes.insert(hash).second) << hashes.size();
     EXPECT_EQ(DescribeInputs(FakeFamily(), setup).hash, hash);
   }
+}
+
+// What a fingerprint is taken of, by hand: numbers in eight bytes, the least significant first;
+// texts behind their length; what may be missing behind a 1, or a 0.
+struct HashedBytes {
+  std::string all{};
+
+  HashedBytes& Number(std::uint64_t value) {
+    for (int k = 0; k < 8; ++k) all += static_cast<char>(value >> (8 * k) & 0xFF);
+    return *this;
+  }
+  HashedBytes& Real(double value) { return Number(std::bit_cast<std::uint64_t>(value)); }
+  HashedBytes& Text(std::string_view text) {
+    Number(text.size());
+    all += text;
+    return *this;
+  }
+};
+
+// The least of all setups, and one that has something of everything.
+TEST(FingerprintOf, IsTheHashOfAllFieldsInTheirOrder) {
+  machine::RunSetup empty = FakeFamily::Setup();
+  empty.programs.clear();
+  empty.main_program = 3;
+  empty.override_percent = 100.0;
+  HashedBytes least;
+  least.Text("fake").Text(kEngineVersion).Number(0).Number(0).Number(0).Number(3).Number(0);
+  least.Text(empty.machine_state).Number(static_cast<std::uint64_t>(empty.mode)).Real(100.0);
+  least.Number(0).Number(0).Number(0).Number(0);
+  least.Number(empty.budget.steps);
+  least.Number(static_cast<std::uint64_t>(empty.budget.virtual_time.count()));
+  EXPECT_EQ(FingerprintOf(FakeFamily(), empty), Fnv1a128(least.all));
+
+  machine::RunSetup full = FakeFamily::Setup();
+  ASSERT_TRUE(full.parameters.Set("VMAX", 423.0));
+  const std::string large(machine::kReleaseEvery + 5, 'x');
+  full.programs.clear();
+  full.programs[7] = {.name = "seven", .object = machine::Bytes::Of(std::string(large))};
+  full.programs[9] = {.name = "", .executable = machine::Bytes::Of("abc")};
+  full.deleted_programs = {4, 5};
+  full.main_program = 7;
+  full.schedules = {{.number = 11, .name = "n", .mode = "CW", .power_percent = 55.5}};
+  full.machine_state = "state";
+  full.mode = machine::Mode::kSingle;
+  full.override_percent = 70.0;
+  full.breakpoint = {1, 2};
+  full.simul = {3, 4};
+  full.breakpoints = {{.at = {5, 6}, .condition = "VR[1] > 2", .from_pass = 8}};
+  full.inputs = {{SimTime(5), machine::InputKind::kLogical, 3, 1.5}};
+  full.forecast = true;
+  full.budget = {.steps = 12, .virtual_time = SimTime(13)};
+  HashedBytes most;
+  most.Text("fake").Text(kEngineVersion);
+  const auto changed = full.parameters.Changed();
+  most.Number(1).Text("VMAX").Text(changed.at("VMAX"));
+  most.Number(2);
+  most.Number(7).Text("seven").Number(1).Text(large).Number(0);
+  most.Number(9).Text("").Number(0).Number(1).Text("abc");
+  most.Number(2).Number(4).Number(5).Number(7);
+  most.Number(1).Number(1).Number(11).Text("n").Text("CW").Real(55.5);
+  most.Text("state").Number(static_cast<std::uint64_t>(machine::Mode::kSingle)).Real(70.0);
+  most.Number(1).Number(1).Number(2).Number(1).Number(3).Number(4);
+  most.Number(1).Number(5).Number(6).Text("VR[1] > 2").Number(8);
+  most.Number(1).Number(5).Number(static_cast<std::uint64_t>(machine::InputKind::kLogical));
+  most.Number(3).Real(1.5);
+  most.Number(1).Number(12).Number(13);
+  EXPECT_EQ(FingerprintOf(FakeFamily(), full), Fnv1a128(most.all));
 }
 
 }  // namespace

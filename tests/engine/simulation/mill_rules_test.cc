@@ -297,6 +297,21 @@ TEST(MillRules, PlungesAtTheSpeedOfTheCut) {
   EXPECT_EQ(TextOfCheck("VS15;" + hole + "PU0,0;!MC0;", "mdx-15"), said);
 }
 
+// As fast down as across is the feed of the tool; a little faster, it dives.
+TEST(MillRules, OfABlockPlungesAsFastAsTheCut) {
+  RunReport report;
+  report.milling = MillingFigures{.removed_mm3 = 1.0,
+                                  .fast_plunge_mm = 2.0,
+                                  .fast_plunge_mm_s = 10.0,
+                                  .fast_plunge_place = {.step = 5},
+                                  .pass_mm_s = 10.0};
+  EXPECT_EQ(TextOf(Judge(report)), "GOOD");
+  report.milling->pass_mm_s = 9.999;
+  EXPECT_EQ(TextOf(Judge(report)),
+            "DOUBTFUL; CELL-E9620 the tool goes 2.000 mm down into material nearly as fast as Z "
+            "travels, faster than it cuts @5");
+}
+
 // RML1-3C.08: a run waits at !NR, and so a check says, which looks behind it all the same.
 TEST(MillRules, WaitsForTheResumeKey) {
   EXPECT_EQ(TextOfCheck("VS10;!VZ10;!PZ-100,200;!MC1;PU0,0;PD400,0;PU0,0;!NR;!NR;!MC0;"),

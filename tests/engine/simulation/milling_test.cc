@@ -191,6 +191,8 @@ TEST(MillingText, ReadsShanksAndHolders) {
   EXPECT_EQ(ParseTool("flat:3")->flute_mm, 0.0);
   EXPECT_TRUE(ParseTool("ball:3:flute=1.5"));  // as high as its end
   EXPECT_TRUE(ParseTool("flat:3:flute=5:holder=9@5"));
+  EXPECT_EQ(ParseTool("flat:3:flutes=100")->flutes, 100);
+  EXPECT_EQ(ParseTool("flat:3:flutes=1")->flutes, 1);
   const std::pair<const char*, const char*> refused[] = {
       {"flat:3:flute=2:flute=3", ": at 16, 'flute=3' gives flute again: write flat:3"},
       {"flat:3:flutes=2:holder=20@9:flutes=2", ": at 29, 'flutes=2' gives flutes again"},
@@ -198,6 +200,10 @@ TEST(MillingText, ReadsShanksAndHolders) {
       {"bal:3", "'bal' is no shape; did you mean ball?"},
       {"vea:6:60", "'vea' is no shape; did you mean vee?"},
       {"falt:3:flute=9", "'falt' is no shape; did you mean flat?"},
+      {"ve:6:60", "'ve' is no shape; did you mean vee?"},
+      {"fl:3", "'fl:3' is no tool: write"},
+      {"flta:3", "'flta' is no shape; did you mean flat?"},
+      {"falx:3", "'falx:3' is no tool: write"},
       {"drill:3", "'drill:3' is no tool: write"},
       {"x:3", "'x:3' is no tool: write"},
       {"flat:3:flute=9:shnk=6", ": at 16, 'shnk=6' is no part of a tool; did you mean shank?"},

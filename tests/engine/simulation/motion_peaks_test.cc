@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
+#include "engine/simulation/path/profile_phases.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/shape_of.h"
 
@@ -50,6 +51,48 @@ TEST(MotionPeaks, JerkOfTheRamps) {
     EXPECT_NEAR(turning.axis_jerk[1], jerk, 0.002 * jerk);
     EXPECT_NEAR(turning.axis_jerk[2], 0.0, 1e-9);
   }
+}
+
+// Round a circle of R while the speed grows by a jerk j from rest the jerk grows, too: as the mean
+// between two samples it is highest in the last of four, and on the way to rest in the first one.
+TEST(MotionPeaks, JerkIsHighestAtAnEndOfThePhase) {
+  const double radius = 1.0;
+  const double jerk = 40'000.0;
+  const double part_s = 0.02;  // within the first phase, and short enough for four samples
+  const auto circle =
+      Planned(PathPiece::Circle({{radius, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0.0, 0.0));
+  const auto acceleration = [&](double t) {
+    const double s = jerk * t * t * t / 6.0, v = 0.5 * jerk * t * t, a = jerk * t;
+    const double angle = s / radius, inward = v * v / radius;
+    return motion::MachineVector{-a * std::sin(angle) - inward * std::cos(angle),
+                                 a * std::cos(angle) - inward * std::sin(angle), 0.0};
+  };
+  const auto mean_jerk = [&](int k) {
+    const double t = part_s / 4.0;
+    return (acceleration(t * k) - acceleration(t * (k - 1))).norm() / t;
+  };
+  ASSERT_GT(mean_jerk(4), 1.01 * mean_jerk(3));
+  ASSERT_GT(mean_jerk(3), mean_jerk(1));
+  const double end_s = circle.speed.duration_s();
+  for (const bool five_axis : {false, true}) {
+    EXPECT_NEAR(PeaksBetween(circle, five_axis, 0.0, part_s).tip_jerk, mean_jerk(4),
+                1e-6 * mean_jerk(4));
+    EXPECT_NEAR(PeaksBetween(circle, five_axis, end_s - part_s, end_s).tip_jerk, mean_jerk(4),
+                1e-6 * mean_jerk(4));
+  }
+}
+
+// A stretch in which the acceleration changes its sign has its highest or lowest speed there, from
+// 200 mm/s2 with a jerk of -1000 mm/s3 after 0.2 s; any other at an end.
+TEST(PhasePart, LevelsOutWhereTheAccelerationIsZero) {
+  const auto level = [](double acceleration, double jerk) {
+    return PhasePart{.duration_s = 0.5, .jerk = jerk, .start = {1.0, 10.0, acceleration}}.LevelAt();
+  };
+  EXPECT_DOUBLE_EQ(level(200.0, -1000.0), 0.2);
+  EXPECT_DOUBLE_EQ(level(-200.0, 1000.0), 0.2);
+  EXPECT_EQ(level(200.0, -100.0), 0.5);
+  EXPECT_EQ(level(200.0, 1000.0), 0.0);
+  EXPECT_EQ(level(200.0, 0.0), 0.0);
 }
 
 // S02: 30 mm never reach 350 mm/s; the peak is 200 mm/s, half way.

@@ -137,5 +137,25 @@ TEST(MoveBatch, IsFullWithAMillionCells) {
   EXPECT_EQ(batch.Cut(field, serial).size(), 0u);
 }
 
+// Moves beside the block, or not below its top, are over in no time: thousands of them are as many
+// as are kept.
+TEST(MoveBatch, IsFullWithThousandsOfMoves) {
+  HeightField field = HeightField::Of(kBatchBlock).value();
+  MoveBatch batch(field, {.radius_mm = 6.0});
+  for (int k = 0; k < 4095; ++k) {
+    const double y = k % 3 == 0 ? -9.0 : k % 3 == 1 ? 69.0 : 30.0;
+    const double z = k % 3 == 2 ? 0.0 : -1.0;
+    batch.Add({0, y, z}, {60, y, z});
+  }
+  EXPECT_FALSE(batch.full());
+  batch.Add({0, -9, -1}, {60, -9, -1});
+  EXPECT_TRUE(batch.full());
+  ThreadFor threads(2);
+  const auto taken = batch.Cut(field, threads);
+  EXPECT_EQ(taken.size(), 4096u);
+  for (const MoveBatch::Taken& of_move : taken) ASSERT_EQ(of_move.most_mm, 0.0);
+  EXPECT_EQ(field.removed_mm3(), 0.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

@@ -61,6 +61,11 @@ TEST(MoveSpeeds, AMillionthIsNoShortfall) {
   EXPECT_FALSE(Judged(steady, 0.0));
 }
 
+// A move that goes nowhere has no way to reach a speed on.
+TEST(MoveSpeeds, AMoveToWhereItStandsIsNotSlow) {
+  EXPECT_FALSE(Judged(MoveAt(LineOf(0.0), kAll, 10.0), 10.0));
+}
+
 // motion.md 5.2, 8.2: from rest up to v without reaching the acceleration and down again takes
 // 2 v sqrt(v/j): 0.316 mm for 10 mm/s. On 0.3 mm it is (0.15 sqrt(j))^(2/3).
 TEST(MoveSpeeds, TooShortOrTooLittleAcceleration) {

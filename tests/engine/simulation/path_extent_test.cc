@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -159,6 +160,114 @@ TEST(PathExtent, CurveTurnsRound) {
   }
   EXPECT_EQ(turns, 1);
   EXPECT_LT(farthest, 100.0);
+}
+
+void ExpectSweep(const CoordinateSweep& sweep, const CoordinateSweep& expected, const char* what) {
+  EXPECT_NEAR(sweep.minimum, expected.minimum, 1e-9) << what;
+  EXPECT_NEAR(sweep.maximum, expected.maximum, 1e-9) << what;
+  EXPECT_NEAR(sweep.travel, expected.travel, 1e-9) << what;
+  EXPECT_EQ(sweep.turns, expected.turns) << what;
+  EXPECT_EQ(sweep.first_sign, expected.first_sign) << what;
+  EXPECT_EQ(sweep.last_sign, expected.last_sign) << what;
+}
+
+// All of a sweep: where it goes up, down, or stands.
+TEST(PathExtent, SweepsOfALine) {
+  const PathPiece line = PathPiece::Line({{1, 2, 3}, 0.5, 0.1}, {{4, -2, 3}, 0.25, 0.2});
+  const PathPart part{line, Head{}, 0.0, line.length()};
+  const PointSweep sweep = TipSweepOf(part);
+  ExpectSweep(sweep[0], {1, 4, 3, 0, 1, 1}, "x");
+  ExpectSweep(sweep[1], {-2, 2, 4, 0, -1, -1}, "y");
+  ExpectSweep(sweep[2], {3, 3, 0, 0, 0, 0}, "z");
+  PartShape shape(part);
+  const auto rotary = RotarySweep(shape);
+  ExpectSweep(rotary[0], {0.25, 0.5, 0.25, 0, -1, -1}, "a");
+  ExpectSweep(rotary[1], {0.1, 0.2, 0.1, 0, 1, 1}, "b");
+}
+
+// A coordinate across the plane of an arc stands; one that comes back to where it was has both
+// directions.
+TEST(PathExtent, SweepsOfACircle) {
+  const PathPiece circle = CircleXY(kTurn);
+  const PointSweep sweep = TipSweepOf({circle, Head{}, 0.0, circle.length()});
+  ExpectSweep(sweep[0], {-10, 10, 40, 1, -1, 1}, "x");
+  ExpectSweep(sweep[1], {-10, 10, 40, 2, 1, 1}, "y");
+  ExpectSweep(sweep[2], {0, 0, 0, 0, 0, 0}, "z");
+}
+
+// A swing turns round wherever on its way that is: near its begin, near its end, or at both. The
+// tip hangs 300 mm below the column; it passes the lowest place at B = 0, and the ends of Y at a
+// quarter turn.
+TEST(PathExtent, SwingsTurnRoundAnywhere) {
+  const auto swing = [](double from, double to) {
+    const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 0.0, from}, {{0, 0, 0}, 0.0, to});
+    return TipSweepOf({joint, GantryHead{.length_mm = 300.0}, 0.0, 1.0});
+  };
+  const auto z = [](double b) { return -300.0 * std::cos(b); };
+  for (const double angle : {0.01, 0.1, 0.3}) {
+    for (const double far : {0.7, 1.5}) {
+      const double travel = 600.0 + z(angle) + z(far);
+      ExpectSweep(swing(-angle, far)[2], {-300, z(far), travel, 1, -1, 1}, "z late");
+      ExpectSweep(swing(-far, angle)[2], {-300, z(far), travel, 1, -1, 1}, "z early");
+    }
+  }
+  const PointSweep wide = swing(-2.0, 1.8);
+  ExpectSweep(wide[2], {-300, z(2.0), 600.0 + z(2.0) + z(1.8), 1, -1, 1}, "z");
+  EXPECT_EQ(wide[1].turns, 2);
+  EXPECT_NEAR(wide[1].travel, 600.0 + 600.0 - 300.0 * (std::sin(2.0) + std::sin(1.8)), 1e-9);
+  EXPECT_NEAR(wide[1].maximum - wide[1].minimum, 600.0, 1e-9);
+  ExpectSweep(wide[0], {0, 0, 0, 0, 0, 0}, "x");
+}
+
+// The head of the widest rotary axis: 4 turns of A swing the column in X and Y eight times each.
+TEST(PathExtent, ColumnSwingsAsOftenAsAGoesRound) {
+  const PathPiece turn =
+      PathPiece::Line({{0, 0, 0}, 0.1, 0.5 * kPi}, {{0, 0, 0}, 0.1 + 4.0 * kTurn, 0.5 * kPi});
+  const PointSweep column =
+      ColumnSweepOf({turn, GantryHead{.length_mm = 300.0}, 0.0, turn.length()});
+  for (const std::size_t i : {0u, 1u}) {
+    EXPECT_NEAR(column[i].minimum, -300.0, 1e-9);
+    EXPECT_NEAR(column[i].maximum, 300.0, 1e-9);
+    EXPECT_NEAR(column[i].travel, 4.0 * 1200.0, 1e-8);
+    EXPECT_EQ(column[i].turns, 8);
+  }
+}
+
+// A and B on a corner where A turns back and B goes on: against ten thousand places of it.
+TEST(PathExtent, RotaryAxesOfACorner) {
+  const auto motions =
+      PlannedCorner({{0, 0, 0}, 0.0, 0.1}, {{100, 0, 0}, 0.4, 0.3}, {{100, 100, 0}, 0.0, 0.7});
+  ASSERT_EQ(motions.size(), 4u);
+  PathPiece whole = motions[1].path;
+  whole.AssignCorner(motions[1].path.curve(), 0.0,
+                     motions[1].path.length() + motions[2].path.length(), motions[1].path.from(),
+                     motions[2].path.to());
+  PartShape shape({whole, GantryHead{.length_mm = 300.0}, 0.0, whole.length()});
+  const auto rotary = RotarySweep(shape);
+  double a_most = -1e9, b_least = 1e9, b_most = -1e9;
+  for (int k = 0; k <= 10000; ++k) {
+    const motion::PathPose pose = whole.At(whole.length() * k / 10000.0);
+    a_most = std::max(a_most, pose.a_rad);
+    b_least = std::min(b_least, pose.b_rad);
+    b_most = std::max(b_most, pose.b_rad);
+  }
+  EXPECT_EQ(rotary[0].turns, 1);
+  EXPECT_EQ(rotary[0].first_sign, 1);
+  EXPECT_EQ(rotary[0].last_sign, -1);
+  EXPECT_NEAR(rotary[0].maximum, a_most, 1e-7);
+  EXPECT_NEAR(rotary[0].travel, 2.0 * rotary[0].maximum - whole.from().a_rad - whole.to().a_rad,
+              1e-12);
+  EXPECT_EQ(rotary[1].turns, 0);
+  EXPECT_EQ(rotary[1].first_sign, 1);
+  EXPECT_NEAR(rotary[1].minimum, b_least, 1e-12);
+  EXPECT_NEAR(rotary[1].maximum, b_most, 1e-12);
+}
+
+TEST(PathExtent, BoxHasAllCorners) {
+  const machine::Box box = BoxOf(
+      {{{.minimum = 1, .maximum = 2}, {.minimum = 3, .maximum = 4}, {.minimum = 5, .maximum = 6}}});
+  EXPECT_EQ(box.min, (MachineVector{1, 3, 5}));
+  EXPECT_EQ(box.max, (MachineVector{2, 4, 6}));
 }
 
 // A straight move in COORD ROBOT without a turn: the tip goes as the column does.

@@ -251,6 +251,35 @@ TEST(MergeStraight, MergesWithinTheTolerance) {
   EXPECT_EQ(elements[0].to, (MachineVector{100, 0, 0}));
 }
 
+// Both sides of the tolerance, a quarter of a millimetre: in the gap, beside the way, and in the
+// length that gives a direction. An arc is never part of a line.
+TEST(MergeStraight, LimitsOfTheTolerance) {
+  const auto merged = [](const motion::MachinePoint& end, const motion::MachinePoint& from,
+                         const motion::MachinePoint& to) {
+    std::vector<SketchElement> elements = {{.from = {0, 0, 0}, .to = end},
+                                           {.from = from, .to = to}};
+    MergeStraight(elements, 0.25);
+    return elements.size() == 1;
+  };
+  EXPECT_TRUE(merged({10, 0, 0}, {10.25, 0, 0}, {12, 0, 0}));
+  EXPECT_FALSE(merged({10, 0, 0}, {10.375, 0, 0}, {12, 0, 0}));
+  EXPECT_TRUE(merged({10, 0, 0}, {10, 0, 0}, {12, 0.25, 0}));
+  EXPECT_FALSE(merged({10, 0, 0}, {10, 0, 0}, {12, 0.375, 0}));
+  EXPECT_TRUE(merged({10, 0, 0}, {10, 0, 0}, {10, 0.125, 0}));  // no further, and no less far
+  EXPECT_FALSE(merged({10, 0, 0}, {10, 0, 0}, {9.875, 0, 0}));
+  EXPECT_TRUE(merged({0.125, 0, 0}, {0.125, 0, 0}, {0.25, 0, 0}));  // too short for a direction
+  EXPECT_FALSE(merged({0.25, 0, 0}, {0.25, 0, 0}, {0.5, 0, 0}));
+  EXPECT_TRUE(merged({0.5, 0, 0}, {0.5, 0, 0}, {0.75, 0, 0}));
+  for (const std::size_t arc : {0u, 1u}) {
+    std::vector<SketchElement> elements = {{.from = {0, 0, 0}, .to = {10, 0, 0}},
+                                           {.from = {10, 0, 0}, .to = {20, 0, 0}}};
+    elements[arc].middle = elements[arc].from + MachineVector{5, 5, 0};
+    elements[arc].arc = 0;
+    MergeStraight(elements, 0.25);
+    EXPECT_EQ(elements.size(), 2u) << arc;
+  }
+}
+
 TEST(DropAlike, DropsCopiesFromEitherEnd) {
   std::vector<SketchElement> elements = {
       {.from = {0, 0, 0}, .to = {10, 0, 0}},

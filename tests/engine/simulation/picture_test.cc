@@ -448,6 +448,22 @@ TEST(Picture, NothingMoved) {
   EXPECT_EQ(CountOf(SvgOf(SomeMilling(), {}), ">Place on the machine<"), 0u);
 }
 
+// The map has the part where it lies on the machine, however small that is; without an extent in X
+// or Y there is none.
+TEST(Picture, TheMapNeedsAnExtent) {
+  const auto maps = [](double x, double y) {
+    machine::MachineShape shape;
+    shape.travel.Add(MachineVector{0, 0, 0});
+    shape.travel.Add(MachineVector{x, y, 1});
+    const std::string svg = SvgOf(Script().Line({0, 0, 0}, {0.5 * x, 0.5 * y, 1}), shape);
+    return CountOf(svg, "fill-opacity=\"0.25\"");
+  };
+  EXPECT_EQ(maps(200, 150), 1u);
+  EXPECT_EQ(maps(0.5, 0.5), 1u);
+  EXPECT_EQ(maps(0.0, 100), 0u);
+  EXPECT_EQ(maps(100, 0.0), 0u);
+}
+
 // More than 300 dots are drawn small: both sides. Those at the same place are one.
 TEST(Picture, ManyDotsAreSmall) {
   const auto drawn = [](int count, double apart) {

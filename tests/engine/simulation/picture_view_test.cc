@@ -125,6 +125,8 @@ TEST(PictureView, WhatIsShown) {
   const machine::Box cut = BoxBetween({0, 0, 0}, {100, 0, 0});
   expect(BoxToShow(BoxBetween({0, 0, 0}, {179, 0, 0}), cut, {}), {-10.74, -10.74, -10.74},
          {189.74, 10.74, 10.74});
+  expect(BoxToShow(BoxBetween({0, 0, 0}, {180, 0, 0}), cut, {}), {-10.8, -10.8, -10.8},
+         {190.8, 10.8, 10.8});
   expect(BoxToShow(BoxBetween({0, 0, 0}, {181, 0, 0}), cut, {}), {-6, -6, -6}, {106, 6, 6});
   expect(BoxToShow(BoxBetween({0, 0, 0}, {900, 50, 10}), {}, cut), {-54, -54, -54}, {954, 104, 64});
   expect(BoxToShow({}, {}, BoxBetween({0, 0, -20}, {100, 50, 0})), {-6, -6, -26}, {106, 56, 6});

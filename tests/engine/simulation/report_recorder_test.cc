@@ -167,6 +167,15 @@ TEST(ReportRecorder, WhatCountsAsAPierce) {
   EXPECT_NEAR(report.total.pierce_energy_j, 750.0 + 750.0 + 750.0, 1e-9);
 }
 
+// A delay of no time pierces nothing; the one behind it does.
+TEST(ReportRecorder, NoTimeIsNoPierce) {
+  Script script;
+  script.Signal(Signal::kBeam, 1, 100).Wait(WaitKind::kPierce, 0.0, true, 100.0);
+  EXPECT_EQ(ReportOf(script, Laser()).total.pierces, 0u);
+  script.Wait(WaitKind::kDwell, 0.5, true, 100.0);
+  EXPECT_EQ(ReportOf(script, Laser()).total.pierces, 1u);
+}
+
 // While halted time is the operator's; OPT-3.52: with the beam off.
 TEST(ReportRecorder, HaltsAreTheOperatorsTime) {
   Script script;

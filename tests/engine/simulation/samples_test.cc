@@ -268,6 +268,11 @@ TEST(Samples, StandStillAtTheColumn) {
       EXPECT_EQ(Number(rows[n], column + 1), expected[column]) << column;
     }
   }
+  // To a nanometre and a nanoradian, the power to a ten thousandth of a percent.
+  EXPECT_EQ(rows[1],
+            (Row{"0.000000000", "4.000000", "5.000000", "6.000000", "0.250000000", "0.500000000",
+                 "1.000000", "2.000000", "3.000000", "0.000000", "0.0000", "0", "0", ""}));
+  EXPECT_EQ(rows[2][0], "0.500000000");
 }
 
 // motion.md 9: an event between two motions that pass into each other has the speed there.

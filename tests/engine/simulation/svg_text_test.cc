@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "tests/engine/simulation/xml_check.h"
 
@@ -58,6 +60,26 @@ TEST(Shortened, CutsBetweenCharacters) {
   EXPECT_EQ(Shortened("a€€", 3), "a…");
   EXPECT_EQ(Shortened("\x80\x80\x80", 2), "…");
   EXPECT_EQ(Shortened("ab", 0), "…");
+}
+
+// Lines of as many words as fit, up to the last byte; three at most.
+TEST(Wrapped, CutsAtBlanks) {
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(Wrapped("", 7), Lines{});
+  EXPECT_EQ(Wrapped("one two", 7), Lines{"one two"});
+  EXPECT_EQ(Wrapped("one two", 6), (Lines{"one", "two"}));
+  EXPECT_EQ(Wrapped("one two", 3), (Lines{"one", "two"}));
+  EXPECT_EQ(Wrapped("a bc def", 4), (Lines{"a bc", "def"}));
+  EXPECT_EQ(Wrapped("a b c", 1), (Lines{"a", "b", "c"}));
+  EXPECT_EQ(Wrapped("a b c d", 1), (Lines{"a", "b", "c…"}));
+  EXPECT_EQ(Wrapped("a b cd", 1), (Lines{"a", "b", "c…"}));
+}
+
+TEST(Wrapped, ShortensAWordThatIsTooLong) {
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(Wrapped("lengthy", 4), Lines{"leng…"});
+  EXPECT_EQ(Wrapped("lengthy ab", 4), (Lines{"leng…", "ab"}));
+  EXPECT_EQ(Wrapped("ab lengthy cd", 4), (Lines{"ab", "leng…", "cd"}));
 }
 
 TEST(XmlText, AnyBytesGiveWellFormedText) {

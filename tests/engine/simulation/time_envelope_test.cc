@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 
 namespace rmlcell::simulation {
 namespace {
@@ -23,6 +24,22 @@ TEST(TimeEnvelope, KeepsFirstLeastGreatestAndLastOfABucket) {
   EXPECT_EQ(range.high, 7.0);
   EXPECT_EQ(range.last, 4.0);
   EXPECT_FALSE(range.low_first);
+}
+
+// Which extreme came first, by its first time; both at once have the order of what they came in.
+TEST(TimeEnvelope, KnowsWhichExtremeCameFirst) {
+  const auto low_first = [](std::initializer_list<double> values) {
+    TimeEnvelope envelope;
+    for (const double value : values) envelope.Add(SimTime(10), Of(value));
+    return envelope.buckets()[0].ranges[0].low_first;
+  };
+  EXPECT_TRUE(low_first({3.0, 7.0}));
+  EXPECT_TRUE(low_first({3.0, 7.0, 3.0}));
+  EXPECT_TRUE(low_first({3.0, 7.0, 5.0, 7.0}));
+  EXPECT_FALSE(low_first({7.0, 3.0}));
+  EXPECT_FALSE(low_first({7.0, 3.0, 7.0}));
+  EXPECT_FALSE(low_first({5.0, 7.0, 3.0, 6.0}));
+  EXPECT_TRUE(low_first({5.0, 3.0, 7.0}));
 }
 
 TEST(TimeEnvelope, WhatASeriesWasCanBeToldLater) {

@@ -50,6 +50,35 @@ TEST_F(TimeLedgerTest, TimeThatNobodyClaimsIsCountedAtTheEnd) {
   EXPECT_EQ(counted[1].length(), SimTime(5));  // [4, 9]
 }
 
+// What follows without a change is one gap; a beam, a halt or another place makes a new one.
+TEST_F(TimeLedgerTest, GapsOfOneKindAreOne) {
+  TimeLedger::Gap now = At(1);
+  ledger.Leave(SimTime(1), now);
+  ledger.Leave(SimTime(2), now);
+  now.beam_on = true;
+  ledger.Leave(SimTime(4), now);
+  now.halted = true;
+  ledger.Leave(SimTime(7), now);
+  now.place.step = 2;
+  ledger.Leave(SimTime(11), now);
+  EXPECT_EQ(ledger.Claim(SimTime(11), SimTime(12), now), SimTime(1));
+  ledger.Leave(SimTime(17), now);
+  ledger.Leave(SimTime(13), now);  // that was already
+  EXPECT_EQ(ledger.reached(), SimTime(17));
+  ledger.Close();
+  std::vector<SimTime> lengths;
+  for (const TimeLedger::Gap& gap : counted) lengths.push_back(gap.length());
+  EXPECT_EQ(lengths,
+            (std::vector<SimTime>{SimTime(2), SimTime(2), SimTime(3), SimTime(4), SimTime(5)}));
+  EXPECT_FALSE(counted[0].beam_on);
+  EXPECT_TRUE(counted[1].beam_on);
+  EXPECT_FALSE(counted[1].halted);
+  EXPECT_TRUE(counted[2].halted);
+  EXPECT_EQ(counted[2].place.step, 1);
+  EXPECT_EQ(counted[3].place.step, 2);
+  EXPECT_EQ(counted[4].start, SimTime(12));
+}
+
 // motion.md 6, /NEXT: a DELAY [2, 5] is told before the motion [0, 9] behind it.
 TEST_F(TimeLedgerTest, OverlapsAreCountedOnce) {
   EXPECT_EQ(ledger.Claim(SimTime(2), SimTime(5), At(1)), SimTime(3));

@@ -43,6 +43,30 @@ TEST(Timetable, AFasterRunIsWhereItsStepsAre) {
   EXPECT_EQ(table.ShareAt(20, std::chrono::milliseconds(100)), 0.5);
 }
 
+// A step counts from when it is reached first, however long the run stays with it.
+TEST(Timetable, AStepCountsFromItsBegin) {
+  Timetable table;
+  table.Note(10, std::chrono::seconds(1));
+  table.Note(10, std::chrono::seconds(2));
+  table.Note(20, std::chrono::seconds(3));
+  table.End(std::chrono::seconds(4));
+  EXPECT_EQ(table.ShareAt(10, std::chrono::seconds(1)), 0.25);
+  EXPECT_EQ(table.ShareAt(10, std::chrono::seconds(2)), 0.5);
+}
+
+// Two steps that come at once are both known: who has only the first waits there.
+TEST(Timetable, StepsMayTakeNoTime) {
+  Timetable table;
+  table.Note(1, std::chrono::seconds(1));
+  table.Note(2, std::chrono::seconds(1));
+  table.Note(3, std::chrono::seconds(2));
+  table.End(std::chrono::seconds(4));
+  EXPECT_EQ(table.ShareAt(1, std::chrono::seconds(1)), 0.25);
+  EXPECT_EQ(table.ShareAt(1, std::chrono::milliseconds(1500)), 0.25);
+  EXPECT_EQ(table.ShareAt(2, std::chrono::milliseconds(1500)), 0.25);
+  EXPECT_EQ(table.ShareAt(2, std::chrono::milliseconds(1800)), 0.325);
+}
+
 // An hour of 100,000 steps of 36 ms: however many there are, the share is right to a 500th.
 TEST(Timetable, BecomesCoarserAndStaysTrue) {
   Timetable table;

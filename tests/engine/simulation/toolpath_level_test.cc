@@ -135,6 +135,23 @@ TEST(ToolpathLevel, TheConeIsAsWideAsTheTolerance) {
   }
 }
 
+// A line that is as long as the farthest point left out does not end short of it.
+TEST(ToolpathLevel, ALineAsLongAsTheFarthestPointIsLongEnough) {
+  const ToolpathBlock same = OneRun({{0, 0, 0}, {1000, 30, 0}, {1000, -30, 0}});
+  EXPECT_EQ(AllPoints(Coarser({same}, 0.08)),
+            (std::vector<ToolpathPoint>{{0, 0, 0}, {1000, -30, 0}}));
+  const ToolpathBlock shorter = OneRun({{0, 0, 0}, {1000, 30, 0}, {999, -30, 0}});
+  EXPECT_EQ(AllPoints(Coarser({shorter}, 0.08)), shorter.points);
+}
+
+// A way that ends where its last point that was kept is ends with that.
+TEST(ToolpathLevel, TheEndIsNotToldTwice) {
+  const ToolpathBlock back = OneRun({{0, 0, 0}, {10000, 0, 0}, {9990, 0, 0}, {10000, 0, 0}});
+  const std::vector<ToolpathBlock> coarse = Coarser({back}, 0.08);
+  EXPECT_EQ(AllPoints(coarse), (std::vector<ToolpathPoint>{{0, 0, 0}, {10000, 0, 0}}));
+  EXPECT_EQ(coarse.at(0).runs.at(0).end_us, 1000);
+}
+
 // Two cones share what both allow: 0.0801 rad about 0 and asin(80 / 2000) = 0.0400 about 0.06 leave
 // 0.02 to 0.0801; of a cone that lies in another one all is left, of the outer one nothing more.
 TEST(ToolpathLevel, ConesShareWhatBothAllow) {

@@ -355,6 +355,57 @@ TEST(ToolpathRecorder, ClassesOfSpeed) {
   EXPECT_EQ(class_of(500.0 / kSpeedClasses + 0.1), 2);
   EXPECT_EQ(class_of(500.0), kSpeedClasses);
   EXPECT_EQ(class_of(900.0), kSpeedClasses);
+  // Rounding begins no class: a share is told to 1e-9 of one.
+  EXPECT_EQ(class_of(500.0 / kSpeedClasses * (1.0 + 1e-10)), 1);
+  EXPECT_EQ(class_of(500.0 / kSpeedClasses * (1.0 + 1e-8)), 2);
+}
+
+// Of a machine whose highest speed is not known every speed is of the last class.
+TEST(ToolpathRecorder, WithoutAHighestSpeedAllAreOfTheLastClass) {
+  std::vector<ToolpathBlock> blocks;
+  ToolpathRecorder recorder({}, {}, [&](std::string_view bytes) {
+    blocks.push_back(DecodeToolpathBlock(bytes).value());
+    return true;
+  });
+  FakeRun run(Script()
+                  .Step(1, 1)
+                  .Line({}, {1, 0, 0}, {.programmed_mm_s = 0.5})
+                  .Step(1, 2)
+                  .Line({1, 0, 0}, {2, 0, 0}),
+              recorder);
+  run.Advance(kForever);
+  recorder.Finish();
+  ASSERT_EQ(blocks.at(0).runs.size(), 2u);
+  EXPECT_EQ(blocks[0].runs[0].speed_class, kSpeedClasses);
+  EXPECT_EQ(blocks[0].runs[0].reached_class, kSpeedClasses);
+  EXPECT_EQ(blocks[0].runs[1].speed_class, 0);
+}
+
+// Times are rounded to microseconds, half of one up.
+TEST(ToolpathRecorder, TimesAreWholeMicroseconds) {
+  for (const auto& [pause, us] :
+       {std::pair{SimTime(499), 0}, {SimTime(500), 1}, {SimTime(1499), 1}, {SimTime(1500), 2}}) {
+    const Recorded recorded =
+        Record(Script().Step(1, 1).Nothing(ToSeconds(pause)).Line({}, {1, 0, 0}));
+    EXPECT_EQ(recorded.blocks.at(0).runs.at(0).start_us, us) << pause.count();
+  }
+}
+
+// A run lasts to the end of its motion, its settling included, also where that fills a block.
+TEST(ToolpathRecorder, ARunThatFillsABlockHasAllOfItsTime) {
+  Script script;
+  script.Step(1, 1);
+  motion::MachinePoint at;
+  for (int k = 1; k < static_cast<int>(kToolpathBlockPoints); ++k) {
+    const motion::MachinePoint next{1.0 * k, k % 2 * 1.0, 0};
+    script.Motion(Planned(LineFrom(at, next), kSlowLimits, 0.5));
+    at = next;
+  }
+  script.Step(1, 2).Line(at, {});
+  const Recorded recorded = Record(script);
+  ASSERT_EQ(recorded.blocks.size(), 2u);
+  EXPECT_EQ(recorded.blocks[0].points.size(), kToolpathBlockPoints);
+  EXPECT_EQ(recorded.blocks[0].runs.back().end_us, recorded.blocks[1].runs.front().start_us);
 }
 
 // One arc with more points than a block: the run goes on in the next block, and times grow with the

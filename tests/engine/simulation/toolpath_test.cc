@@ -155,6 +155,103 @@ TEST(ToolpathBlock, UnknownFlagsAndTimesBeyondTheEndAreRefused) {
   EXPECT_FALSE(DecodeToolpathBlock(bytes));
 }
 
+// Times that are told belong to the points behind the first, also of a run that begins elsewhere.
+TEST(ToolpathBlock, TimesOfARunThatBeginsElsewhere) {
+  ToolpathBlock block;
+  block.points = {{0, 0, 0}, {1000, 0, 0}, {5000, 0, 0}, {6000, 0, 0}, {6000, 3000, 0}};
+  block.reached_us = {0, 10'000, 30'000, 65'000, 70'000};
+  block.runs = {
+      {.step = 1, .start_us = 0, .end_us = 10'000, .first_point = 0, .point_count = 2},
+      {.step = 2, .start_us = 30'000, .end_us = 70'000, .first_point = 2, .point_count = 3}};
+  const Result<ToolpathBlock> back = DecodeToolpathBlock(EncodeToolpathBlock(block));
+  ASSERT_TRUE(back);
+  ExpectEqual(*back, block);
+}
+
+// A block by hand: one run, with what a case changes. Each part in the order of docs/toolpath.md.
+struct ByHand {
+  std::string counts{"\x01\x02", 2};
+  std::string start{"\0", 1};
+  std::string first{"\0\0\0\0\0", 5};
+  std::string flags{"\x6C\0", 2};   // beam, joined, no pause, one point
+  std::string step{"\x02\x02", 2};  // program 1, step 1
+  std::string classes{"\x01\x01\x01", 3};
+  std::string duration{"\x0A", 1};
+  std::string points{"\x02\0\0", 3};  // (+1, 0, 0)
+
+  std::string bytes() const {
+    return std::string("T\x02", 2) + counts + start + first + flags + step + classes + duration +
+           points;
+  }
+};
+
+std::string WhyNot(const ByHand& hand) {
+  const Result<ToolpathBlock> read = DecodeToolpathBlock(hand.bytes());
+  return read ? std::string() : std::string(read.error().detail);
+}
+
+std::string VarintOf(std::uint64_t value) {
+  std::string bytes;
+  for (; value >= 0x80; value >>= 7) bytes += static_cast<char>(value | 0x80);
+  return bytes + static_cast<char>(value);
+}
+std::string SignedOf(std::int64_t value) {
+  return VarintOf(value < 0 ? ~(static_cast<std::uint64_t>(value) << 1)
+                            : static_cast<std::uint64_t>(value) << 1);
+}
+
+// Both sides of each limit, and what is said beyond it.
+TEST(ToolpathBlock, LimitsOfABlock) {
+  EXPECT_EQ(WhyNot({}), "");
+  EXPECT_EQ(WhyNot({.counts = {"\x02\x01", 2}}), "more points than a block has");
+  EXPECT_EQ(WhyNot({.counts = {"\x01\x01", 2}}), "run 1 cannot be read");
+  EXPECT_EQ(WhyNot({.counts = {"\x01\x03", 2}}), "points missing");
+  EXPECT_EQ(WhyNot({.counts = {"\x01\x80\x20", 3}}), "points missing");  // 4096
+  EXPECT_EQ(WhyNot({.counts = {"\x01\x81\x20", 3}}), "more points than a block has");
+  // Classes up to 20.
+  for (const std::size_t which : {0u, 1u, 2u}) {
+    ByHand hand;
+    hand.classes[which] = 20;
+    EXPECT_EQ(WhyNot(hand), "");
+    hand.classes[which] = 21;
+    EXPECT_EQ(WhyNot(hand), "run 1 cannot be read");
+  }
+  // Places of 32 bits.
+  const std::int64_t low = std::numeric_limits<std::int32_t>::min();
+  const std::int64_t high = std::numeric_limits<std::int32_t>::max();
+  const std::string rest(4, '\0');
+  EXPECT_EQ(WhyNot({.first = SignedOf(low) + rest}), "");
+  EXPECT_EQ(WhyNot({.first = SignedOf(low - 1) + rest}), "no first point");
+  EXPECT_EQ(WhyNot({.first = SignedOf(high - 1) + rest}), "");  // and a micrometre more
+  EXPECT_EQ(WhyNot({.first = SignedOf(high) + rest}), "run 1 cannot be read");
+  EXPECT_EQ(WhyNot({.first = SignedOf(high + 1) + rest}), "no first point");
+  // Times up to what nanoseconds of 64 bits hold, rounded up to microseconds.
+  const std::uint64_t latest = std::numeric_limits<std::int64_t>::max() / 1000 + 1;
+  EXPECT_EQ(WhyNot({.start = VarintOf(latest), .duration = {"\0", 1}}), "");
+  EXPECT_EQ(WhyNot({.start = VarintOf(latest + 1), .duration = {"\0", 1}}), "no first point");
+  EXPECT_EQ(WhyNot({.duration = VarintOf(latest)}), "");
+  EXPECT_EQ(WhyNot({.duration = VarintOf(latest + 1)}), "run 1 cannot be read");
+  EXPECT_EQ(WhyNot({.start = VarintOf(latest - 10)}), "");
+  EXPECT_EQ(WhyNot({.start = VarintOf(latest - 9)}), "run 1 cannot be read");
+}
+
+// A run that is not joined has two points of its own at least, a joined one has one.
+TEST(ToolpathBlock, PointsOfARun) {
+  const std::string two("\x02\0\0\x04\0\0", 6);
+  EXPECT_EQ(WhyNot({.flags = {"\x24\0", 2}, .duration = {"\x0A\x02", 2}, .points = two}), "");
+  EXPECT_EQ(WhyNot({.flags = {"\x24\0", 2}, .duration = {"\x0A\x01", 2}}), "run 1 cannot be read");
+  EXPECT_EQ(WhyNot({.flags = {"\x64\0", 2}}), "run 1 cannot be read");
+  EXPECT_EQ(WhyNot({.flags = {"\x2C\0", 2}, .duration = {"\x0A\x01", 2}}), "");
+  EXPECT_EQ(WhyNot({.flags = {"\x2C\0", 2}, .duration = {"\x0A\0", 2}}), "run 1 cannot be read");
+  EXPECT_EQ(WhyNot({.flags = {"\x2C\0", 2}, .duration = {"\x0A\x02", 2}, .points = two}),
+            "run 1 cannot be read");
+  const Result<ToolpathBlock> apart = DecodeToolpathBlock(
+      ByHand{.flags = {"\x24\0", 2}, .duration = {"\x0A\x02", 2}, .points = two}.bytes());
+  ASSERT_TRUE(apart);
+  EXPECT_EQ(apart->points, (std::vector<ToolpathPoint>{{1, 0, 0}, {3, 0, 0}}));
+  EXPECT_EQ(apart->reached_us, (std::vector<std::int64_t>{0, 10}));
+}
+
 // Hostile bytes: every cut of a good block is refused with CELL-E9027.
 TEST(ToolpathBlock, TruncatedBytesAreRefused) {
   const std::string bytes = EncodeToolpathBlock(SmallBlock());

@@ -25,6 +25,33 @@ TEST(ViolationList, KeepsTheWorstOfAStepAndTheFirstTime) {
   EXPECT_TRUE(list.violations()[1].rotary);
 }
 
+// All that was told of the worst pass; of two as bad the first.
+TEST(ViolationList, TellsTheWorstPassWhole) {
+  ViolationList list;
+  machine::TravelViolation told = Violation(3, 1, 5.0, SimTime(10));
+  told.at_target = true;
+  told.axes = {{1, 2, 3}, 0.5, 0.25};
+  told.tip = {{4, 5, 6}, 0.5, 0.25};
+  list.Add(told);
+  const AxisViolation first{.place = told.place,
+                            .axis = "Y",
+                            .excess = 5.0,
+                            .at_target = true,
+                            .axes = told.axes,
+                            .tip = {4, 5, 6},
+                            .first_at = SimTime(10)};
+  EXPECT_EQ(list.violations()[0], first);
+  machine::TravelViolation again = Violation(3, 1, 5.0, SimTime(20));
+  list.Add(again);
+  EXPECT_EQ(list.violations()[0].axes, told.axes);
+  EXPECT_EQ(list.violations()[0].count, 2U);
+  again.excess = 5.5;
+  list.Add(again);
+  EXPECT_EQ(list.violations()[0].axes, again.axes);
+  EXPECT_FALSE(list.violations()[0].at_target);
+  EXPECT_EQ(list.violations()[0].count, 3U);
+}
+
 TEST(ViolationList, IsBounded) {
   ViolationList list;
   for (int step = 0; step < static_cast<int>(kReportedViolationsMax) + 5; ++step) {
