@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/core/letters.h"
 #include "engine/optimo/editing/variable_facts.h"
 #include "engine/optimo/editing/word_facts.h"
 #include "engine/optimo/language/instruction_set.h"
