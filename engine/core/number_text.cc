@@ -58,8 +58,7 @@ void AppendFixed(std::string& text, double value, int decimals) {
   const auto end = std::to_chars(room.data(), room.data() + room.size(), value,
                                  std::chars_format::fixed, std::clamp(decimals, 0, kDecimalsMax));
   text.append(room.data(), end.ptr);
-  if (text.size() > begin && text[begin] == '-' &&
-      text.find_first_not_of("-0.", begin) == std::string::npos) {
+  if (text[begin] == '-' && text.find_first_not_of("-0.", begin) == std::string::npos) {
     text.erase(begin, 1);
   }
 }

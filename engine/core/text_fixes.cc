@@ -4,6 +4,8 @@
 #include <iterator>
 #include <map>
 
+#include "engine/core/indices.h"
+
 namespace rmlcell {
 
 std::vector<std::size_t> RepairableFindings(std::string_view text,
@@ -18,7 +20,7 @@ std::vector<std::size_t> RepairableFindings(std::string_view text,
     return next == taken.begin() || std::prev(next)->second <= fix.byte_offset;
   };
   std::vector<std::size_t> chosen;
-  for (std::size_t d = 0; d < diagnostics.size(); ++d) {
+  for (const std::size_t d : IndicesOf(diagnostics)) {
     const std::vector<Fix>& fixes = diagnostics[d].fixes;
     if (fixes.empty() || !std::ranges::all_of(fixes, is_free)) continue;
     for (const Fix& fix : fixes) taken[fix.byte_offset] = fix.byte_offset + fix.length;

@@ -130,6 +130,7 @@ TEST(Diagnostic, PlacesOutsideTheTextShowNoLine) {
     const std::string text = FormatDiagnostic(At(line, column), "SPEED 5\nSTOP\n");
     EXPECT_EQ(text.find('\n'), std::string::npos) << line;
   }
+  EXPECT_THAT(FormatDiagnostic(At(0, 1), "SPEED 5\n"), Not(HasSubstr("\n")));
   EXPECT_THAT(FormatDiagnostic(At(1, 8, 1000), "SPEED 5\n"),
               testing::EndsWith("\n  SPEED 5\n         ^"));
 }
