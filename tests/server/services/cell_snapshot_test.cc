@@ -177,8 +177,8 @@ TEST_F(CellSnapshotTest, WithoutTheStoreThereIsNone) {
   const auto snapshot = [&](const std::string& part, const std::vector<std::string>& names) {
     return [this, part, names] { return CodeOf(Snapshot(part, names)); };
   };
-  ExpectFailuresHandedOn(store, "jobs", 1, snapshot("jobs", {}));
-  ExpectFailuresHandedOn(store, "a job", 1, snapshot("jobs", {job}));
+  ExpectFailuresHandedOn(store, "jobs", 2, snapshot("jobs", {}));
+  ExpectFailuresHandedOn(store, "a job", 2, snapshot("jobs", {job}));
   ExpectFailuresHandedOn(store, "machines", 1, snapshot("machines", {}));
   ExpectFailuresHandedOn(store, "projects", 1, snapshot("projects", {}));
 }
