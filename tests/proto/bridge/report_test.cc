@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "proto/bridge/findings.h"
 #include "rmlcell/v1/job.pb.h"
 #include "rmlcell/v1/report.pb.h"
 #include "tests/engine/core/untold.h"
@@ -382,6 +383,20 @@ TEST(ReportMessage, WhatDidNotHappenIsNotThere) {
   EXPECT_FALSE(ToProto(kGantry, report, {}).programs(0).has_beam());
   report.cut_figures.contours = 1;
   ExpectMessage(ToProto(kGantry, report, {}).cut(), "contours: 1");
+}
+
+TEST(ReportMessage, ExtremesAreToldHoweverSmallTheyAre) {
+  RunReport report;
+  report.cut_figures.contours = 1;
+  report.cut_figures.slow_percent.value = 0.5;
+  report.cut_figures.near_end[3].value = 0.25;
+  const v1::CutFigures cut = ToProto(kGantry, report, {}).cut();
+  EXPECT_EQ(cut.slow_percent().value(), 0.5);
+  EXPECT_FALSE(cut.has_hot_stretch_mm());
+  ASSERT_EQ(cut.near_ends_size(), 1);
+  EXPECT_EQ(cut.near_ends(0).axis(), "A");
+  EXPECT_TRUE(cut.near_ends(0).rotary());
+  EXPECT_EQ(cut.near_ends(0).depth(), 0.25);
 }
 
 TEST(ReportMessage, EachCauseOfASlowMoveHasItsWord) {

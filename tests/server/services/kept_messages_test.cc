@@ -30,11 +30,19 @@ class KeptMessages : public testing::Test {
         std::vector<CellSubscription>{Must(CellSubscription::Make(wanted))});
   }
   std::int64_t Last() { return Must(room.bed.store().LastPosition()); }
+  // Until who looks into the log sees it.
+  void Say(const std::vector<std::string>& texts) {
+    room.Say(lease, texts);
+    AwaitTold();
+  }
+  void AwaitTold() {
+    EXPECT_TRUE(Eventually([&] { return room.feed.position() == Last(); }));
+  }
   // As long a text as makes a message of one event that is kept with so many bytes.
   std::string TextOf(std::size_t bytes) {
     const std::int64_t before = Last();
     const std::string text(bytes - 1000, 'x');
-    room.Say(lease, {text});
+    Say({text});
     const auto piece = Must(LogOfJobs()->After(before, false));
     return std::string(text.size() + bytes - sizeof(LogPiece) - piece->message->size(), 'x');
   }
@@ -42,7 +50,7 @@ class KeptMessages : public testing::Test {
   std::string EventOfBytes(std::size_t bytes) {
     const std::int64_t before = Last();
     const std::string text(bytes - 1000, 'x');
-    room.Say(lease, {text});
+    Say({text});
     const auto event = Must(room.bed.store().AllEvents(before, 1)).at(0);
     return std::string(text.size() + bytes - ToldEvents(records).Of(event).bytes->size(), 'x');
   }
@@ -87,7 +95,7 @@ TEST_F(KeptMessages, EventsAreSerialisedOnce) {
 TEST_F(KeptMessages, MessagesAreMadeOnceForThoseThatShareThem) {
   const std::string text = TextOf(SharedLog::kBytesOfOne / 2);
   const std::int64_t before = Last();
-  room.Say(lease, {text, text, text});
+  Say({text, text, text});
   const auto made = [](const std::shared_ptr<SharedLog>& log, std::int64_t position) {
     return *Must(log->After(position, false))->message;
   };
@@ -111,10 +119,10 @@ TEST_F(KeptMessages, AMessageOfSeveralEventsIsNotTooLarge) {
   constexpr std::size_t kHalf = SharedLog::kMessageBytes / 2;
   const std::string text = EventOfBytes(kHalf);
   std::int64_t before = Last();
-  room.Say(lease, {text, text, "more"});
+  Say({text, text, "more"});
   EXPECT_EQ(Read(Must(LogOfJobs()->After(before, true))).events().events_size(), 2);
   before = Last();
-  room.Say(lease, {text, text.substr(1), "more"});
+  Say({text, text.substr(1), "more"});
   EXPECT_EQ(Read(Must(LogOfJobs()->After(before, true))).events().events_size(), 3);
 }
 
@@ -123,6 +131,7 @@ TEST_F(KeptMessages, WhatIsNotWantedHasNoMessage) {
   const std::int64_t before = Last();
   Must(
       room.bed.store().PutMachine({.id = "mill-2", .family = "rml1", .profile = "mdx-20"}, 0, "c"));
+  AwaitTold();
   const auto log = LogOfJobs();
   const auto piece = Must(log->After(before, false));
   ASSERT_TRUE(piece);
@@ -136,11 +145,12 @@ TEST_F(KeptMessages, WhatWasMadeOfAJobGoesWithIt) {
   const auto log = LogOfJobs();
   const auto other = log;
   const std::int64_t before = Last();
-  room.Say(lease, {"one"});
+  Say({"one"});
   const auto first = Must(log->After(before, false));
   EXPECT_EQ(Must(other->After(before, false))->message->begin(), first->message->begin());
   room.Finish(lease);
   Must(room.bed.store().DeleteJob(job, "c"));
+  AwaitTold();
   for (std::int64_t at = before + 1;;) {
     const auto next = Must(log->After(at, false));
     if (!next) break;

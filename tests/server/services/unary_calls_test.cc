@@ -139,10 +139,9 @@ class UnaryCalls : public testing::Test {
     EXPECT_THAT(status.error_message(), HasSubstr(text));
   }
 
-  // Of optimo-1, with an object of so many bytes.
+  // Of mill-1, whose memory has no limit, with an object of so many bytes.
   void PutObject(int slot, std::size_t bytes) {
-    Must(store_.PutPrograms("optimo-1", {{.slot = slot, .object = std::string(bytes, 'o')}}, {},
-                            {}));
+    Must(store_.PutPrograms("mill-1", {{.slot = slot, .object = std::string(bytes, 'o')}}, {}, {}));
   }
   std::int64_t EndedJob(const std::vector<storage::NewArtifact>& artifacts) {
     const std::int64_t job = bed_.server.SubmitCheck();
@@ -234,8 +233,7 @@ TEST_F(UnaryCalls, OfProgramsHandOnWhatTheStoreSays) {
 
 TEST_F(UnaryCalls, OfProjectsHandOnWhatTheStoreSays) {
   using Stub = v1::ProjectService::Stub;
-  InSpiteOfAll(projects, &Stub::CreateProject,
-               "project_id: 'lid' project { title: 'Lid' family: 'optimo' }");
+  InSpiteOfAll(projects, &Stub::CreateProject, "project_id: 'lid' project { title: 'Lid' }");
   EXPECT_EQ(InSpiteOfAll(projects, &Stub::GetProject, "name: 'projects/lid'").title(), "Lid");
   EXPECT_EQ(InSpiteOfAll(projects, &Stub::ListProjects, "").projects_size(), 1);
   EXPECT_EQ(InSpiteOfAll(projects, &Stub::UpdateProject,
@@ -300,7 +298,7 @@ TEST_F(UnaryCalls, AnAnswerHasSoManyBytes) {
   PutObject(2, kMost + 1);
   const auto content = [&](int slot) {
     return Call(programs, &v1::ProgramService::Stub::GetProgramContent,
-                "name: 'machines/optimo-1/programs/" + std::to_string(slot) +
+                "name: 'machines/mill-1/programs/" + std::to_string(slot) +
                     "' form: PROGRAM_FORM_OBJECT")
         .content()
         .size();
