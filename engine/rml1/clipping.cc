@@ -77,7 +77,7 @@ Pieces Pieces::Cut(const CuttingRange& range, const Point& from, const Point& to
   }
   const Point enter = OnLine(range, from, to, inside.low);
   const Point leave = OnLine(range, from, to, inside.high);
-  if (inside.low > 0.0) pieces.Add(Region::kOutside, from, enter, zero);
+  pieces.Add(Region::kOutside, from, enter, zero);
 
   // Within X and Y, Z falls or rises steadily through at most three regions.
   Share level = inside;
@@ -96,11 +96,11 @@ Pieces Pieces::Cut(const CuttingRange& range, const Point& from, const Point& to
     const Point to_level = OnLine(range, from, to, level.high);
     const Region before = rises ? Region::kBelow : Region::kAbove;
     const Region after = rises ? Region::kAbove : Region::kBelow;
-    if (level.low > inside.low) pieces.Add(before, enter, from_level, zero);
+    pieces.Add(before, enter, from_level, zero);
     pieces.Add(Region::kInside, from_level, to_level, zero);
-    if (level.high < inside.high) pieces.Add(after, to_level, leave, zero);
+    pieces.Add(after, to_level, leave, zero);
   }
-  if (inside.high < 1.0) pieces.Add(Region::kOutside, leave, to, zero);
+  pieces.Add(Region::kOutside, leave, to, zero);
   return pieces;
 }
 

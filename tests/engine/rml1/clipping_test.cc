@@ -126,6 +126,10 @@ TEST(Pieces, PutWhatCountsAsOnAFaceOnTheFace) {
   ASSERT_EQ(x.all().size(), 1U);
   EXPECT_EQ(x.all()[0].from.x, 0.0);
   EXPECT_EQ(x.all()[0].to.x, 0.0);
+  const Pieces y = Pieces::Cut(kRange, {500, -kBeyond, -100, 0}, {700, -kBeyond, -100, 0}, kZero);
+  ASSERT_EQ(y.all().size(), 1U);
+  EXPECT_EQ(y.all()[0].from.y, 0.0);
+  EXPECT_EQ(y.all()[0].to.y, 0.0);
   const Pieces z = Pieces::Cut(kRange, {500, 1000, kBeyond, 0}, {500, 2000, kBeyond, 0}, kZero);
   ASSERT_EQ(z.all().size(), 1U);
   EXPECT_EQ(z.all()[0].from.z, 0.0);
