@@ -104,6 +104,8 @@ TEST(Explain, ErrorsStandAtTheirPhraseAsInACheck) {
   const auto phrases = ExplainAll("XX 12;PU100;Z0,0,-9000;");
   ASSERT_EQ(phrases.size(), 3U);
   EXPECT_EQ(phrases[0].words, "5 bytes that are no command");
+  EXPECT_EQ(phrases[0].name, "");
+  EXPECT_EQ(phrases[0].command, 0U);
   ASSERT_EQ(phrases[0].findings.size(), 3U);
   EXPECT_EQ(phrases[0].findings[0].code, ErrorCode::kRml1UnknownCommand);
   EXPECT_EQ(phrases[0].findings[1].code, ErrorCode::kRml1WrongParameters);
@@ -124,6 +126,7 @@ TEST(Explain, EndsAndEdges) {
                                       "cleared"}));
   const auto cut = ExplainAll("PU1");
   ASSERT_EQ(cut.size(), 1U);
+  EXPECT_EQ(cut[0].name, "");
   ASSERT_EQ(cut[0].findings.size(), 1U);
   EXPECT_EQ(cut[0].findings[0].code, ErrorCode::kRml1IncompleteCommand);
   EXPECT_FALSE(Explain("", ParametersOf("t1"), [](const ExplainedPhrase&) { return true; }));

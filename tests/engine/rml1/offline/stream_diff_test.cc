@@ -66,10 +66,14 @@ TEST(CompareStreams, FiguresOfRunsButNotOfTheText) {
 // A figure of one run alone counts from 0 or to 0; equal ones, and the number of commands, are no
 // change, but a difference of a ten millionth is.
 TEST(CompareStreams, WhichFiguresChange) {
-  const std::vector<machine::Figure> a = {
-      {"commands", "", 7.0}, {"cut_length", "mm", 1.0}, {"time", "s", 5.0}, {"travel", "mm", 4.0}};
+  const std::vector<machine::Figure> a = {{"commands", "", 7.0},
+                                          {"cut_length", "mm", 1.0},
+                                          {"errors", "", 0.0},
+                                          {"time", "s", 5.0},
+                                          {"travel", "mm", 4.0}};
   const std::vector<machine::Figure> b = {{"commands", "", 9.0},
                                           {"cut_length", "mm", 1.0 + 1e-7},
+                                          {"errors", "", 0.0},
                                           {"plunges", "", 3.0},
                                           {"time", "s", 5.0 + 1e-12}};
   const auto diff = CompareStreams({.object = "PU;", .figures = a}, {.object = "PU;", .figures = b},

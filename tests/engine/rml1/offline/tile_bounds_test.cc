@@ -57,6 +57,12 @@ TEST(TileBounds, OnlyWhatHasChangedComesAgain) {
   EXPECT_EQ(between("!RC15;", "t1s"), "!RC3;\n");
 }
 
+// A tool that is up at the surface still touches the work: to the copy the way leads at the top.
+TEST(TileBounds, TheToolUpAtTheSurfaceIsLifted) {
+  EXPECT_EQ(Tiled("!PZ-10,0;PU100,100;PD300,100;PU;PU0,0;", kTwo),
+            "!PZ-10,0;PU100,100;PD300,100;PU;\n!ZM0;\nPU400,100;PD600,100;PU;\n!ZM0;\n;PU0,0;");
+}
+
 // The last stage and the first come again, too.
 TEST(TileBounds, StagesOfTheSpindle) {
   const auto made = [](const std::string& stage) {
@@ -115,6 +121,13 @@ TEST(TileBounds, BeyondTheTravel) {
   EXPECT_EQ(high->columns, 1);
   EXPECT_EQ(high->rows, 75);
   EXPECT_TRUE(high->travel_is_less);
+  // A field of just that many has them all.
+  const auto as_many =
+      TileStream(kBox, ParametersOf("t1"), {.within_mm = {{197.0, 149.0}}, .gap_mm = 1.0});
+  ASSERT_TRUE(as_many);
+  EXPECT_EQ(as_many->columns, 66);
+  EXPECT_EQ(as_many->rows, 75);
+  EXPECT_FALSE(as_many->travel_is_less);
 }
 
 // A hole has no width: without a gap any number of copies stands in its place, as many as there may
@@ -124,6 +137,8 @@ TEST(TileBounds, NumbersOfCopies) {
   const auto made = TileStream(hole, ParametersOf("t1"), {.columns = 1000, .gap_mm = 0.0});
   ASSERT_TRUE(made) << made.error().detail;
   EXPECT_EQ(made->columns, 1000);
+  const std::string at_the_edge = "!PZ-50,200;\nPU20000,100;PD;PU;PU0,0;";
+  EXPECT_TRUE(TileStream(at_the_edge, ParametersOf("t1"), {.columns = 1000, .gap_mm = 0.0}));
   EXPECT_TRUE(Tiled(hole, {.columns = 1001}).starts_with("refused: 1001 copies; from 1 to 1000"));
   EXPECT_TRUE(Tiled(hole, {.rows = 0}).starts_with("refused: 0 copies; from 1 to 1000"));
   EXPECT_TRUE(Tiled(hole, {.gap_mm = INFINITY}).starts_with("refused: the gap is "));
