@@ -77,7 +77,7 @@ Pieces Pieces::Cut(const CuttingRange& range, const Point& from, const Point& to
   }
   const Point enter = OnLine(range, from, to, inside.low);
   const Point leave = OnLine(range, from, to, inside.high);
-  pieces.Add(Region::kOutside, from, enter, zero);
+  if (inside.low > 0.0) pieces.Add(Region::kOutside, from, enter, zero);
 
   // Within X and Y, Z falls or rises steadily through at most three regions.
   Share level = inside;
@@ -100,7 +100,7 @@ Pieces Pieces::Cut(const CuttingRange& range, const Point& from, const Point& to
     pieces.Add(Region::kInside, from_level, to_level, zero);
     pieces.Add(after, to_level, leave, zero);
   }
-  pieces.Add(Region::kOutside, leave, to, zero);
+  if (inside.high < 1.0) pieces.Add(Region::kOutside, leave, to, zero);
   return pieces;
 }
 

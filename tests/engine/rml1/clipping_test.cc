@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
+
+#include "engine/motion/geometry/path.h"
 
 namespace rmlcell::rml1 {
 namespace {
@@ -108,6 +111,18 @@ TEST(Pieces, EndTheToleranceOfAFaceWhereItEnds) {
     const Pieces beside = Pieces::Cut(kRange, f.at, along, kZero);
     ASSERT_EQ(beside.all().size(), 1U);
     EXPECT_EQ(beside.all()[0].region, Region::kInside);
+  }
+}
+
+// As far beyond two faces at once, where so little is a way: with one unit in a millimetre.
+TEST(Pieces, KeepBothEndsThatCountAsOnFaces) {
+  constexpr double kBeyond = CuttingRange::kFaceTolerance;
+  const Point edge{-kBeyond, -kBeyond, -100, 0};
+  const Point middle{7000, 7000, -100, 0};
+  for (const auto& [from, to] : {std::pair(edge, middle), {middle, edge}}) {
+    const Pieces pieces = Pieces::Cut(kRange, from, to, motion::kTipLengthZero_mm);
+    ASSERT_EQ(pieces.all().size(), 1U);
+    EXPECT_EQ(pieces.all()[0].region, Region::kInside);
   }
 }
 
