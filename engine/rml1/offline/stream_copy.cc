@@ -15,7 +15,6 @@ bool IsPlainNumber(std::string_view text) {
 }  // namespace
 
 void StreamCopy::Replace(const Phrase::Value& number, double value) {
-  if (failed()) return;
   const std::string_view old = stream_->substr(static_cast<std::size_t>(number.begin),
                                                static_cast<std::size_t>(number.end - number.begin));
   if (!IsPlainNumber(old)) return Refuse("a number with other bytes in it", number.begin);
@@ -36,7 +35,7 @@ void StreamCopy::Replace(const Phrase::Value& number, double value) {
 }
 
 void StreamCopy::Insert(std::int64_t at, std::string_view text) {
-  if (!failed() && CopyUpTo(at)) text_.Add(text);
+  if (CopyUpTo(at)) text_.Add(text);
 }
 
 void StreamCopy::Refuse(Detail detail, std::int64_t at) {

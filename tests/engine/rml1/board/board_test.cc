@@ -369,6 +369,10 @@ TEST(StreamOfBoard, Refuses) {
     return made ? ErrorCode::kCellUsage : made.error().code;
   };
   const Bitmap pad = Picture({"...", ".#.", "..."});
+  machine::Parameters wrong = ParametersOf("srm-20");
+  ASSERT_TRUE(wrong.Set("X_MIN", 300.0));
+  EXPECT_EQ(StreamOfBoard(pad, wrong, {.pixel_mm = 0.1}).error().code,
+            ErrorCode::kCellParameterRange);
   EXPECT_EQ(code(Picture({"..", ".."}), {.pixel_mm = 0.1}), ErrorCode::kRml1NothingToMill);
   EXPECT_EQ(code(pad, {}), ErrorCode::kCellInvalidArgument);  // no size of a pixel
   EXPECT_EQ(code(pad, {.pixel_mm = 0.1, .tool_mm = 0}), ErrorCode::kCellInvalidArgument);

@@ -153,6 +153,27 @@ TEST(GcodeBounds, WordsThatAreNoted) {
   EXPECT_EQ(RefusedWith("O1 G0 X1\n"), ErrorCode::kRml1GcodeWord);
 }
 
+// A line with a word that is refused does nothing else, so that nothing else is wrong with it; and
+// of a program with an error nobody asks how it cuts.
+TEST(GcodeBounds, RefusedLinesAreNotObeyed) {
+  for (const char* line : {"G99 G1 X1", "P1 G1 X1", "H1 G1 X1", "U1 G1 X1", "G1 G0 X1", "G1 X1 X2"})
+    EXPECT_EQ(Made(std::string(line) + "\n").findings.size(), 1U) << line;
+  EXPECT_EQ(Made("G1 Z-1 F60\nG0 X5\nG0 Z-2\nG99\nG4 P1\n").findings.size(), 1U);
+}
+
+TEST(GcodeBounds, WhyThereIsNoArc) {
+  EXPECT_EQ(DetailOf("G2 X1 F60\n"), "neither R nor a centre");
+  EXPECT_EQ(DetailOf("G2 X1 I1 R1 F60\n"), "both R and a centre");
+  EXPECT_EQ(DetailOf("G2 X0 R1 F60\n"), "R with an end that is the start: give I and J");
+  EXPECT_EQ(DetailOf("G2 X1 I0 F60\n"), "the centre is the start");
+  EXPECT_EQ(DetailOf("G2 X9 I3 F60\n"), "the start is 3 mm from the centre, the end 6 mm");
+  EXPECT_EQ(DetailOf("G2 X9 R4 F60\n"), "R is 4 mm, the ends are 9 mm apart");
+}
+
+TEST(GcodeBounds, Pauses) {
+  EXPECT_TRUE(Made("G0 Z1\nM0\nM1\n").stream.ends_with("Z0,0,100;\n!NR;\n!NR;\n"));
+}
+
 // G and M words are whole numbers or the tenths of the table.
 TEST(GcodeBounds, NumbersOfWords) {
   for (const char* word : {"G-0.1", "G0.01", "G100000", "G1e3", "M-3", "M3.1"})

@@ -316,6 +316,8 @@ TEST(FromGcode, SpeedsAreRoundedAndSaidOnce) {
   EXPECT_TRUE(made.ok);
   ASSERT_EQ(made.findings.size(), 2U);
   EXPECT_EQ(made.findings[0].detail, "1.667 mm/s becomes 1 mm/s, a speed of the machine");
+  EXPECT_EQ(made.findings[0].where.line, 1);
+  EXPECT_EQ(made.findings[0].where.column, 7);  // of the F
   EXPECT_EQ(made.findings[1].detail, "S700 becomes 4500 rpm");
   // Only stages, evenly spaced from 4500 to 15000: 8000 is the fifth (RML1-9.31).
   EXPECT_NE(From("S8100\n", "t1s").stream.find("!RC5;"), std::string::npos);

@@ -117,6 +117,16 @@ TEST(MoveStream, HeightsAreThoseThatTheProgramGave) {
   }
 }
 
+// The way there would have to stand before the command, and its first group has been changed.
+TEST(MoveStream, RefusesAWayInTheMiddleOfACommand) {
+  EXPECT_EQ(Moved("!MC0;!ZE Y500:Z-1;", 1, 1),
+            "refused: a command whose first numbers are changed already");
+  EXPECT_EQ(Moved("!MC0;!ZE X5Y500:Z-1;", 1, 1), "!MC0;!ZE X105Y600:Z-1;");
+  // What is wrong first is told.
+  EXPECT_EQ(Moved("PU1,.;", 1, 1, 1),
+            "refused: the tool goes to a height that the program does not give: write !PZ before");
+}
+
 TEST(MoveStream, RefusesWhatItCannotFollow) {
   const auto refused = MoveStream("PU1,1;\nPU1;", ParametersOf("t1"), {1, 0, 0});
   ASSERT_FALSE(refused);

@@ -63,6 +63,35 @@ TEST(TileBounds, TheToolUpAtTheSurfaceIsLifted) {
             "!PZ-10,0;PU100,100;PD300,100;PU;\n!ZM0;\nPU400,100;PD600,100;PU;\n!ZM0;\n;PU0,0;");
 }
 
+// The lift behind the last cut belongs to the copy, and what comes behind a way across does not.
+TEST(TileBounds, WhereACopyEnds) {
+  EXPECT_EQ(Tiled("!PZ-10,200;PU100,100;PD300,100;PU;PU0,0;!ZM0;", kTwo),
+            "!PZ-10,200;PU100,100;PD300,100;PU;\nPU400,100;PD600,100;PU;\n;PU0,0;!ZM0;");
+  EXPECT_EQ(Tiled("!PZ-10,200;PU100,100;PD300,100;PU0,0;!ZM0;", kTwo),
+            "!PZ-10,200;PU100,100;PD300,100;\nPU;\nPU400,100;PD600,100;\nPU;\n;PU0,0;!ZM0;");
+}
+
+// RML1-3A.21: with the names of mode 1 alone the lift makes coordinates absolute.
+TEST(TileBounds, NamesOfModeOne) {
+  machine::Parameters old = ParametersOf("t1");
+  ASSERT_TRUE(old.Set("COMMAND", std::string_view("MODE1")));
+  const auto made = TileStream("@-10,200;M100,100;I200,0;M0,0;", old, kTwo);
+  ASSERT_TRUE(made) << made.error().detail;
+  EXPECT_EQ(made->stream, "@-10,200;M100,100;I200,0;\nM;\nM400,100;I200,0;\nM;\n^PR;\n;M0,0;");
+}
+
+TEST(TileBounds, PartsThatCannotComeAgain) {
+  EXPECT_EQ(Tiled("!MC0;!ZM-2000;PD;PD100,0;PU;", kTwo),
+            "refused: the tool is down where the first copy begins: lift it there");
+  EXPECT_EQ(Tiled("!PZ-10,200;PU100,100;PD300,100;PD300,.;PU;", {.rows = 2}),
+            "refused: a lone period as a number: write 0");
+  machine::Parameters between = ParametersOf("t1");
+  ASSERT_TRUE(between.Set("Z0", -20.005));
+  const auto made = TileStream("!PZ-50,100;PU100,100;!ZO-2500;PD300,100;PU;", between, kTwo);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().detail, "Z0 of the beginning is no whole unit");
+}
+
 // The last stage and the first come again, too.
 TEST(TileBounds, StagesOfTheSpindle) {
   const auto made = [](const std::string& stage) {

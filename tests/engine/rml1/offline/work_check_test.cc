@@ -102,6 +102,10 @@ TEST(CheckWork, PartsThatTheMachineRefuses) {
   EXPECT_EQ(refused->where->line, 2);
   EXPECT_EQ(refused->detail,
             "coordinates or tool heights that are refused: 2; the tool-up height may be from 0 mm");
+  EXPECT_EQ(Checked("PU1,1;PD9,99999999;")->detail,
+            "coordinates or tool heights that are refused: 1; a coordinate may be from -83886.08 "
+            "to 83886.07 mm");
+  EXPECT_EQ(Checked("PU1,1;PD9;")->detail, "coordinates or tool heights that are refused: 1");
 }
 
 }  // namespace
