@@ -107,7 +107,7 @@ TEST(MoveStream, HeightsFollowZ) {
 TEST(MoveStream, HeightsAreThoseThatTheProgramGave) {
   const std::string refused =
       "refused: the tool goes to a height that the program does not give: write !PZ before";
-  EXPECT_EQ(Moved("!PZ-100;PD1,1;", 0, 0, -0.5), "!PZ-150;PD1,1;");
+  EXPECT_EQ(Moved("!PZ-100;Z1,1,5;PD1,1;", 0, 0, -0.5), "!PZ-150;Z1,1,-45;PD1,1;");
   EXPECT_EQ(Moved("!PZ-100;PU1,1;", 0, 0, -0.5), refused);
   EXPECT_EQ(Moved("!PZ-100,200;!PZ-50;PU1,1;", 0, 0, -0.5), "!PZ-150,150;!PZ-100;PU1,1;");
   for (const char* back : {"!PZ;", "@;", "DF;", "IN;"}) {
