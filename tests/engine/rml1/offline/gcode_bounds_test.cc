@@ -208,7 +208,7 @@ TEST(GcodeBounds, ChordsOfAnArc) {
   };
   EXPECT_TRUE(made(99'999.5).ok);
   const StreamOfGcode refused = made(100'000.5);
-  EXPECT_FALSE(refused.ok);
+  ASSERT_FALSE(refused.ok);
   EXPECT_EQ(refused.findings.front().code, ErrorCode::kRml1ProductTooLarge);
   EXPECT_EQ(refused.findings.front().detail, "an arc of 100001 chords");
 }

@@ -127,6 +127,7 @@ TEST(TileBounds, AFieldThatIsALittleSmall) {
     return made ? made->columns : 0;
   };
   EXPECT_EQ(columns(2.0), 1);
+  EXPECT_EQ(columns(1.99999999), 1);
   EXPECT_EQ(columns(1.999995), 0);
   EXPECT_EQ(columns(5.0), 2);
   EXPECT_EQ(columns(4.9999), 1);
