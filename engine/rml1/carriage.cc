@@ -34,8 +34,6 @@ double LimitedSpeed(const Profile& profile, const Point& from, const Point& to,
                     double wanted_mm_s) {
   const double xy_highest = FastestXY(profile);
   const double z_highest = profile.z_speeds.maximum_mm_s;
-  // No axis goes further than the tool.
-  if (wanted_mm_s <= std::min(xy_highest, z_highest) && from.a == to.a) return wanted_mm_s;
   const double length = DistanceXYZ(from, to);
   if (!(length > 0.0)) return wanted_mm_s;
   double speed = wanted_mm_s;
@@ -120,13 +118,10 @@ void Carriage::FollowXY(const Context& context, const Point& to) {
   if (registers.tool_down) {
     const double all_of_it = HUGE_VAL;  // whatever its height: a tool that is down cuts
     const double low = follows ? share.low : 1.0;
-    if (low > 0.0) NoteLost(from, Between(from, to, low), all_of_it);
-    if (follows && share.high < 1.0) NoteLost(Between(from, to, share.high), to, all_of_it);
+    NoteLost(from, Between(from, to, low), all_of_it);
+    if (follows) NoteLost(Between(from, to, share.high), to, all_of_it);
   }
-  if (range_.HasXY(to)) {
-    if (share.low > 0.0) NoteClipped(share.low * length);
-    return;
-  }
+  if (range_.HasXY(to)) return NoteClipped(share.low * length);
   NoteClipped(follows ? length * (1.0 - share.high + share.low) : length);
   if (follows || range_.HasXY(from)) LeaveXY(context);
 }
@@ -177,7 +172,7 @@ void Carriage::FollowXYZ(const Context& context, const Point& to) {
     if (piece.region == Region::kBelow) Follow(context, piece, dwell);
   }
   TurnRotary(context, to.a, dwell);
-  if (beyond > 0.0) NoteClipped(beyond);
+  NoteClipped(beyond);
 }
 
 // A piece that the tool follows: inside, or sliding along the bottom.
@@ -201,15 +196,14 @@ bool Carriage::GoThreeAxis(const Context& context, const Point& to, bool dwells)
 
 // While the tool stands outside, A has fallen behind the line; it turns alone (RML1-9.30).
 void Carriage::TurnRotary(const Context& context, double a, bool& dwell) {
-  if (std::abs(physical_.a - a) <= kSameAngle_deg) return;
   Point to = physical_;
   to.a = a;
   const Registers& registers = context.registers;
-  Go(context, to,
-     {.speed_mm_s = registers.z_speed,
-      .use = to.z < registers.surface_z ? MotionUse::kCut : MotionUse::kTravel,
-      .dwells = dwell});
-  dwell = false;
+  const bool moved = Go(context, to,
+                        {.speed_mm_s = registers.z_speed,
+                         .use = to.z < registers.surface_z ? MotionUse::kCut : MotionUse::kTravel,
+                         .dwells = dwell});
+  dwell = dwell && !moved;
 }
 
 // Recovery of section 5A: Z alone where X and Y are right, else up to the pass height, across, and
@@ -340,7 +334,6 @@ void Carriage::NoteLostDepth(const Context& context, double from_z) {
   const Registers& registers = context.registers;
   const double depth = registers.z0 + registers.z1;
   const double reached = range_.HasXY(logical_) ? range_.bottom() : from_z;
-  if (!(depth < reached)) return;
   Point from = logical_;
   Point to = logical_;
   from.z = reached;

@@ -96,9 +96,9 @@ Pieces Pieces::Cut(const CuttingRange& range, const Point& from, const Point& to
     const Point to_level = OnLine(range, from, to, level.high);
     const Region before = rises ? Region::kBelow : Region::kAbove;
     const Region after = rises ? Region::kAbove : Region::kBelow;
-    if (level.low > inside.low) pieces.Add(before, enter, from_level, zero);
+    pieces.Add(before, enter, from_level, zero);
     pieces.Add(Region::kInside, from_level, to_level, zero);
-    if (level.high < inside.high) pieces.Add(after, to_level, leave, zero);
+    pieces.Add(after, to_level, leave, zero);
   }
   if (inside.high < 1.0) pieces.Add(Region::kOutside, leave, to, zero);
   return pieces;

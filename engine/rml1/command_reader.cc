@@ -8,7 +8,7 @@ namespace {
 // The letter in upper case, or 0. Bytes of 0x80 or more are no letters (RML1-1.09, RML1-1.10).
 char LetterOf(unsigned char byte) {
   const auto upper = static_cast<char>(byte >= 'a' && byte <= 'z' ? byte - 'a' + 'A' : byte);
-  return byte < 0x80 && upper >= 'A' && upper <= 'Z' ? upper : char{0};
+  return upper >= 'A' && upper <= 'Z' ? upper : char{0};
 }
 
 // Blanks between the letters count; a stream of nothing else must not overflow the figure.
@@ -83,7 +83,7 @@ bool CommandReader::ReadParameter(ByteSpan& bytes) {
   const char* const at = SkipSeparators(bytes.at(), bytes.end(), comma);
   if (at != bytes.at()) {
     state_ = State::kBetween;
-    comma_ = comma && count_ > 0;
+    comma_ = comma;
     bytes.SkipTo(at);
   }
   const bool begins = state_ == State::kBetween && at != bytes.end() &&

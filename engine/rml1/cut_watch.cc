@@ -26,8 +26,7 @@ double ShareNotAbove(const Point& from, const Point& to, double height) {
   const double low = std::min(from.z, to.z) - kSameHeight;
   const double high = std::max(from.z, to.z) - kSameHeight;
   if (high <= height) return 1.0;
-  if (low > height) return 0.0;
-  return (height - low) / (high - low);
+  return std::max(0.0, (height - low) / (high - low));
 }
 
 // By V, which lifts have, too; F (VS) is of cuts alone.
@@ -67,7 +66,7 @@ double BelowSurface_mm(const CutWatch::Ride& ride, const Registers& registers) {
 
 void CutWatch::OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command) {
   const bool down = DropsSteeply(ride);
-  if (!down && (fast_so_far_.mm > 0.0 || slow_mm_ > 0.0)) EndWayDown(ride);
+  if (!down) EndWayDown(ride);
   OnVisit(ride, registers, command, down);
   OnPlace(ride, registers, command);
   if (ride.in_work) {

@@ -127,8 +127,7 @@ bool Device::StepOn(DeviceListener& listener) {
 
 bool Device::IsFarFromLimits() const {
   constexpr double kNear = 7'000'000;
-  return std::abs(Present(0)) <= kNear && std::abs(Present(1)) <= kNear &&
-         std::abs(Present(2)) <= kNear;
+  return std::max({std::abs(Present(0)), std::abs(Present(1)), std::abs(Present(2))}) <= kNear;
 }
 
 // By itself: what it needs in registers the reading around it does not.

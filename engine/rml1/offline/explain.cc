@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "engine/rml1/offline/phrase_words.h"
 
@@ -22,10 +23,7 @@ class Explainer final : public PhraseListener {
         return true;
       }
       if (!Flush()) return false;
-      discarded_ = phrase;
-      discarded_->values = {};
-      discarded_->actions = {};
-      discarded_->findings = {};
+      discarded_ = Phrase{.begin = phrase.begin, .end = phrase.end};
       KeepFindings(phrase);
       return true;
     }
@@ -37,7 +35,7 @@ class Explainer final : public PhraseListener {
     if (!discarded_) return true;
     const Phrase phrase = *discarded_;
     discarded_.reset();
-    return Tell(phrase, std::move(kept_));
+    return Tell(phrase, std::exchange(kept_, {}));
   }
 
  private:
@@ -78,14 +76,12 @@ class Explainer final : public PhraseListener {
     const std::size_t skipped = first == std::string::npos ? 0 : first;
     text.erase(0, skipped);
     text.erase(text.find_last_not_of(" \t\r\n") + 1);
-    std::vector<Diagnostic> told = std::move(findings);
-    kept_.clear();
     return consumer_({.offset = phrase.begin + static_cast<std::int64_t>(skipped),
                       .command = phrase.command,
                       .name = is_command ? std::string(RowOf(phrase.op).name) : std::string(),
                       .text = std::move(text),
                       .words = WordsOf(phrase, profile_),
-                      .findings = std::move(told)});
+                      .findings = std::move(findings)});
   }
 
   static_assert(kShownBytes < 1000, "a line for people");

@@ -389,10 +389,10 @@ std::optional<Units> Interpreter::UnitsOf(double x, double y, double z, const So
 
 void Interpreter::CutTo(double x, double y, double z, const SourceSpan& where) {
   if (!std::exchange(cut_, true)) cutting_tool_ = tool_;
-  const std::optional<Units> to = UnitsOf(x, y, z, where);
-  if (!to) return;
-  NoteStanding(*to, where);
-  NoteFeed(writer_.Cut(*to, *feed_mm_s_), feed_where_);
+  if (const std::optional<Units> to = UnitsOf(x, y, z, where)) {
+    NoteStanding(*to, where);
+    NoteFeed(writer_.Cut(*to, *feed_mm_s_), feed_where_);
+  }
 }
 
 void Interpreter::NoteFeed(double used_mm_s, const SourceSpan& where) {

@@ -15,7 +15,6 @@ bool IsPlainNumber(std::string_view text) {
 }  // namespace
 
 void StreamCopy::Replace(const Phrase::Value& number, double value) {
-  if (failed()) return;
   const std::string_view old = stream_->substr(static_cast<std::size_t>(number.begin),
                                                static_cast<std::size_t>(number.end - number.begin));
   if (!IsPlainNumber(old)) return Refuse("a number with other bytes in it", number.begin);
@@ -31,12 +30,12 @@ void StreamCopy::Replace(const Phrase::Value& number, double value) {
   const auto next = static_cast<std::size_t>(number.end);
   if (next < stream_->size() && (*stream_)[next] == '.' && text.find('.') == std::string::npos)
     text += ".0";
-  Write(text);
+  text_.Add(text);
   next_ = number.end;
 }
 
 void StreamCopy::Insert(std::int64_t at, std::string_view text) {
-  if (!failed() && CopyUpTo(at)) Write(text);
+  if (CopyUpTo(at)) text_.Add(text);
 }
 
 void StreamCopy::Refuse(Detail detail, std::int64_t at) {
@@ -48,19 +47,8 @@ void StreamCopy::Refuse(Detail detail, std::int64_t at) {
 Status StreamCopy::Finish(std::int64_t end) {
   CopyUpTo(end);
   if (error_) return *error_;
-  HandOver();
+  text_.HandOver();
   return {};
-}
-
-void StreamCopy::Write(std::string_view text) {
-  constexpr std::size_t kPart = std::size_t{64} << 10;
-  text_ += text;
-  if (text_.size() >= kPart) HandOver();
-}
-
-void StreamCopy::HandOver() {
-  sink_(text_);
-  text_.clear();
 }
 
 bool StreamCopy::CopyUpTo(std::int64_t end) {
@@ -72,7 +60,7 @@ bool StreamCopy::CopyUpTo(std::int64_t end) {
   while (next_ < end) {
     const std::int64_t part =
         std::min<std::int64_t>(end - next_, std::int64_t{machine::kReleaseEvery});
-    Write(stream_->substr(static_cast<std::size_t>(next_), static_cast<std::size_t>(part)));
+    text_.Add(stream_->substr(static_cast<std::size_t>(next_), static_cast<std::size_t>(part)));
     next_ += part;
     if (part == std::int64_t{machine::kReleaseEvery}) stream_.Release();
   }

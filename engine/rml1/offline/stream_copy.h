@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "engine/core/result.h"
-#include "engine/rml1/offline/byte_sink.h"
 #include "engine/rml1/offline/stream_walk.h"
+#include "engine/rml1/offline/text_parts.h"
 
 namespace rmlcell::rml1 {
 
@@ -17,7 +17,7 @@ namespace rmlcell::rml1 {
 class StreamCopy {
  public:
   StreamCopy(const machine::Bytes& stream, std::int64_t begin, const ByteSink& sink)
-      : stream_(stream), sink_(sink), next_(begin) {}
+      : stream_(stream), text_(sink), next_(begin) {}
 
   // A number that the device read; it keeps its meaning with what stands around it. `whole`: the
   // text has no fraction. Errors: Rml1NotRewritten for a lone period, for a number with bytes in it
@@ -33,12 +33,9 @@ class StreamCopy {
 
  private:
   bool CopyUpTo(std::int64_t end);
-  void Write(std::string_view text);
-  void HandOver();
 
   const machine::Bytes& stream_;
-  const ByteSink& sink_;
-  std::string text_;   // not handed over yet
+  TextParts text_;
   std::int64_t next_;  // the first byte that is not copied yet
   std::optional<Error> error_;
 };

@@ -16,7 +16,7 @@ std::int64_t NearestUnit(double mm, const Profile& profile) {
 
 StreamWriter::StreamWriter(const Profile& profile, ByteSink sink)
     : profile_(profile),
-      sink_(std::move(sink)),
+      text_(std::move(sink)),
       at_{.z = static_cast<std::int64_t>(std::llround(profile.z.high - profile.z0))} {
   Line(NamesFor(profile.commands.setting).defaults);
   Line("!MC0");
@@ -91,20 +91,10 @@ int StreamWriter::SpindleSpeed(double rpm) {
 
 void StreamWriter::Finish() {
   SpindleOff();
-  HandOver();
+  text_.HandOver();
 }
 
-void StreamWriter::Line(const std::string& command) {
-  constexpr std::size_t kPart = std::size_t{64} << 10;
-  text_ += command + ";\n";
-  if (text_.size() >= kPart) HandOver();
-}
-
-void StreamWriter::HandOver() {
-  sink_(text_);
-  handed_ += text_.size();
-  text_.clear();
-}
+void StreamWriter::Line(const std::string& command) { text_.Add(command + ";\n"); }
 
 void StreamWriter::SetZSpeed(double wanted_mm_s) {
   const double speed = profile_.z_speeds.Nearest(wanted_mm_s);

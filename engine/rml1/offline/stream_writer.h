@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/rml1/offline/byte_sink.h"
+#include "engine/rml1/offline/text_parts.h"
 #include "engine/rml1/profile.h"
 
 namespace rmlcell::rml1 {
@@ -45,13 +45,12 @@ class StreamWriter {
   void Pause() { Line("!NR"); }
 
   Units at() const { return at_; }
-  std::size_t size() const { return handed_ + text_.size(); }
+  std::size_t size() const { return text_.size(); }
   // With the spindle off.
   void Finish();
 
  private:
   void Line(const std::string& command);
-  void HandOver();
   void SetZSpeed(double wanted_mm_s);
   void SetXYSpeed(double wanted_mm_s);
   void SetHeights(std::int64_t z1, std::int64_t z2);
@@ -60,9 +59,7 @@ class StreamWriter {
   void EndDwell();
 
   const Profile& profile_;
-  ByteSink sink_;
-  std::string text_;  // not handed over yet
-  std::size_t handed_ = 0;
+  TextParts text_;
   Units at_;
   double z_speed_ = 0.0;  // 0: not set yet
   double xy_speed_ = 0.0;

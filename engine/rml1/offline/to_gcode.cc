@@ -7,6 +7,7 @@
 #include "engine/machine/program_file.h"
 #include "engine/rml1/offline/phrase_words.h"
 #include "engine/rml1/offline/stream_walk.h"
+#include "engine/rml1/offline/text_parts.h"
 
 namespace rmlcell::rml1 {
 namespace {
@@ -14,10 +15,10 @@ namespace {
 class GcodeWriter final : public PhraseListener {
  public:
   GcodeWriter(const machine::Bytes& stream, const Profile& profile, const ByteSink& sink)
-      : stream_(stream), profile_(profile), sink_(sink) {
-    text_ =
+      : stream_(stream), profile_(profile), text_(sink) {
+    text_.Add(
         "(made of an RML-1 stream; X0 Y0 is its work origin, Z0 its Z0)\n"
-        "G21 G90 G17 G94\n";
+        "G21 G90 G17 G94\n");
   }
 
   bool OnPhrase(const Phrase& phrase) override {
@@ -42,8 +43,6 @@ class GcodeWriter final : public PhraseListener {
       AddMotion(action, at);
       at = action.to;
     }
-    constexpr std::size_t kPart = std::size_t{64} << 10;
-    if (text_.size() >= kPart) HandOver();
     return true;
   }
 
@@ -53,17 +52,12 @@ class GcodeWriter final : public PhraseListener {
       NoteAt(static_cast<std::int64_t>(stream_->size()), ErrorCode::kRml1SpindleLeftOn,
              "the spindle goes on turning at the end, where M30 stops it");
     }
-    text_ += "M30\n";
-    HandOver();
+    text_.Add("M30\n");
+    text_.HandOver();
     return std::move(notes_);
   }
 
  private:
-  void HandOver() {
-    sink_(text_);
-    text_.clear();
-  }
-
   // For who makes the G-code, and in it for who reads it.
   void Note(Diagnostic finding) {
     if (notes_.findings.size() == machine::kDiagnosticsMax) {
@@ -76,7 +70,7 @@ class GcodeWriter final : public PhraseListener {
       if (c == '(') c = '[';
       if (c == ')') c = ']';
     }
-    text_ += "(" + comment + ")\n";
+    text_.Add("(" + comment + ")\n");
     notes_.findings.push_back(std::move(finding));
   }
   void NoteAt(std::int64_t offset, ErrorCode code, Detail detail) {
@@ -103,19 +97,19 @@ class GcodeWriter final : public PhraseListener {
                      (spindle_turns_ && action.kind != Action::Kind::kSpindleStop);
     switch (action.kind) {
       case Action::Kind::kSpindleStart:
-        text_ += "S" + std::to_string(action.rpm) + " M3\n";
+        text_.Add("S" + std::to_string(action.rpm) + " M3\n");
         break;
       case Action::Kind::kSpindleSpeed:
-        text_ += "S" + std::to_string(action.rpm) + "\n";
+        text_.Add("S" + std::to_string(action.rpm) + "\n");
         break;
       case Action::Kind::kSpindleStop:
-        text_ += "M5\n";
+        text_.Add("M5\n");
         break;
       case Action::Kind::kDwell:
-        text_ += "G4 P" + ShortNumber(action.dwell_ms / 1000.0) + "\n";
+        text_.Add("G4 P" + ShortNumber(action.dwell_ms / 1000.0) + "\n");
         break;
       case Action::Kind::kPause:
-        text_ += "M0\n";
+        text_.Add("M0\n");
         break;
       case Action::Kind::kMotion:
         break;
@@ -140,13 +134,12 @@ class GcodeWriter final : public PhraseListener {
       constexpr double kPerMinute = 60.0;
       line += " F" + ShortNumber(feed_mm_s_ * kPerMinute);
     }
-    text_ += line + "\n";
+    text_.Add(line + "\n");
   }
 
   const machine::Bytes& stream_;
   const Profile& profile_;
-  const ByteSink& sink_;
-  std::string text_;  // not handed over yet
+  TextParts text_;
   ToGcodeNotes notes_;
   std::optional<Error> error_;
   LineCounter lines_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "engine/motion/geometry/path.h"
 #include "engine/rml1/timing.h"
 #include "tests/engine/rml1/run_support.h"
 
@@ -122,6 +123,9 @@ TEST(Carriage, LimitsTheSpeedOfEachAxis) {
   EXPECT_DOUBLE_EQ(LimitedSpeed(pnc, {}, {300, 0, 400}, 60.0), 37.5);
   EXPECT_DOUBLE_EQ(LimitedSpeed(t1, {}, {1000, 0, 0, -30}, 60.0), 20.0);  // 10 mm in 0.5 s
   EXPECT_DOUBLE_EQ(LimitedSpeed(t1, {}, {0, 0, 0, 30}, 60.0), 60.0);      // a turn has no mm/s
+  // What an axis has is not touched, to the last bit.
+  for (int tenths = 1; tenths < 100; ++tenths)
+    EXPECT_EQ(LimitedSpeed(t1, {}, {0.1 * tenths, 0, 0}, 60.0), 60.0) << tenths;
   machine::Parameters fast = ParametersOf("t1");
   ASSERT_TRUE(fast.Set("TRAVEL_SPEED", 80.0).ok());
   EXPECT_DOUBLE_EQ(LimitedSpeed(MakeProfile(fast).value(), {}, {300, 0, 0}, 100.0), 80.0);
@@ -175,6 +179,97 @@ TEST(Carriage, MeasuresWhatItCannotFollow) {
   EXPECT_EQ(ClippedOf("Z0,0,-4100,-200,0,-4100,-200,0,0;"), (Clipped{1 + 2 + 41, 3}));
   EXPECT_EQ(ClippedOf("PU800,0,820,0;", "mdx-15"), (Clipped{0, 0}));
   EXPECT_EQ(ClippedOf("PU6136,0;", "mdx-15"), (Clipped{1, 1}));  // 40 units of 1/40 mm
+}
+
+// The carriage by itself, with Z 0 at the top of the travel.
+class LoneCarriage : public testing::Test {
+ protected:
+  explicit LoneCarriage(std::string_view id = "t1")
+      : profile(MakeProfile(ParametersOf(id)).value()) {
+    registers.rotation = false;
+    registers.surface_z = registers.z0 = 0.0;
+  }
+  void MoveXY(double x) { carriage.MoveXY({profile, registers, queue}, x, 0.0); }
+  void MoveXYZ(const Point& to) { carriage.MoveXYZ({profile, registers, queue}, to); }
+  void MoveZ(double z) { carriage.MoveZ({profile, registers, queue}, z); }
+  const Action& last() const { return queue.all().back(); }
+
+  const Profile profile;
+  Registers registers{profile};
+  ActionQueue queue;
+  Carriage carriage{profile};
+  // What is no longer than that is no way: RML1-9.49.
+  const double nothing = motion::kTipLengthZero_mm * profile.units_per_mm;
+};
+
+TEST_F(LoneCarriage, StaysWhereItIsForNothing) {
+  MoveXY(nothing);
+  MoveXYZ({nothing, 0.0, 0.0});
+  MoveZ(-nothing);
+  EXPECT_TRUE(queue.empty());
+  EXPECT_EQ(carriage.logical(), Point{});
+  MoveZ(-2.0 * nothing);
+  EXPECT_EQ(queue.all().size(), 1U);
+  EXPECT_EQ(carriage.logical().z, -2.0 * nothing);
+}
+
+// RML1-3A.64: straight down is what leads nothing aside.
+TEST_F(LoneCarriage, PlungesNothingAside) {
+  MoveXYZ({nothing, 0.0, -100.0});
+  EXPECT_EQ(last().use, MotionUse::kPlunge);
+  MoveXYZ({3.0 * nothing, 0.0, -200.0});
+  EXPECT_EQ(last().use, MotionUse::kCut);
+}
+
+TEST_F(LoneCarriage, CountsNoClippingOfNothing) {
+  MoveXY(1000.0);
+  MoveXY(3.0 * nothing);
+  MoveXY(-nothing);
+  EXPECT_EQ(carriage.clipped_sets(), 0U);
+  MoveXY(-3.0 * nothing);
+  EXPECT_EQ(carriage.clipped_sets(), 1U);
+  EXPECT_DOUBLE_EQ(carriage.clipped_length(), 2.0 * nothing);
+}
+
+TEST_F(LoneCarriage, DoesNotFollowAPartOfNothing) {
+  MoveXY(1000.0);
+  MoveXY(nothing);
+  queue = {};
+  MoveXY(-nothing);
+  EXPECT_TRUE(queue.empty());
+  EXPECT_DOUBLE_EQ(carriage.clipped_length(), 2.0 * nothing);
+}
+
+// Beyond the travel: along the surface, down to it and below it by nothing no work is lost.
+TEST_F(LoneCarriage, LosesNoWorkOfNothing) {
+  MoveXYZ({-100.0, 0.0, 0.0});
+  MoveXYZ({-100.0, 0.0, 100.0});
+  MoveXYZ({-100.0, 0.0, nothing});
+  MoveXYZ({-100.0, 0.0, -nothing});
+  EXPECT_EQ(carriage.lost().length, 0.0);
+  EXPECT_TRUE(carriage.lost_lines().empty());
+  MoveXYZ({-100.0, 0.0, -4.0 * nothing});
+  EXPECT_DOUBLE_EQ(carriage.lost().length, 3.0 * nothing);
+  EXPECT_EQ(carriage.lost_lines().size(), 1U);
+}
+
+class LoneRotaryCarriage : public LoneCarriage {
+ protected:
+  LoneRotaryCarriage() : LoneCarriage("t1a") {}
+};
+
+// RML1-3A.69, RML1-9.57: one wait for each set, before its first motion: A turns alone to where the
+// line comes in, and the rest follows at once.
+TEST_F(LoneRotaryCarriage, WaitsOnceBeforeATurnThatCatchesUp) {
+  registers.dwell_ms = 10;
+  MoveXYZ({21000.0, 0.0, 0.0});
+  queue = {};
+  MoveXYZ({19000.0, 500.0, 0.0, 90.0});
+  ASSERT_EQ(queue.all().size(), 4U);
+  EXPECT_EQ(queue.all()[0].kind, Action::Kind::kDwell);
+  EXPECT_EQ(queue.all()[1].to, (Point{20000.0, 0.0, 0.0, 45.0}));
+  EXPECT_EQ(queue.all()[2].to, (Point{20000.0, 250.0, 0.0, 45.0}));
+  EXPECT_EQ(queue.all()[3].to, (Point{19000.0, 500.0, 0.0, 90.0}));
 }
 
 }  // namespace

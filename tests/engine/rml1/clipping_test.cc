@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
+
+#include "engine/motion/geometry/path.h"
 
 namespace rmlcell::rml1 {
 namespace {
@@ -111,6 +114,18 @@ TEST(Pieces, EndTheToleranceOfAFaceWhereItEnds) {
   }
 }
 
+// As far beyond two faces at once, where so little is a way: with one unit in a millimetre.
+TEST(Pieces, KeepBothEndsThatCountAsOnFaces) {
+  constexpr double kBeyond = CuttingRange::kFaceTolerance;
+  const Point edge{-kBeyond, -kBeyond, -100, 0};
+  const Point middle{7000, 7000, -100, 0};
+  for (const auto& [from, to] : {std::pair(edge, middle), {middle, edge}}) {
+    const Pieces pieces = Pieces::Cut(kRange, from, to, motion::kTipLengthZero_mm);
+    ASSERT_EQ(pieces.all().size(), 1U);
+    EXPECT_EQ(pieces.all()[0].region, Region::kInside);
+  }
+}
+
 // RML1-5A.34: angles are shared out along the line.
 TEST(Pieces, ShareTheRotaryAxisAlongTheLine) {
   const Pieces pieces = Pieces::Cut(kRange, {0, 0, 0, 0}, {25000, 0, 0, 100}, kZero);
@@ -126,6 +141,10 @@ TEST(Pieces, PutWhatCountsAsOnAFaceOnTheFace) {
   ASSERT_EQ(x.all().size(), 1U);
   EXPECT_EQ(x.all()[0].from.x, 0.0);
   EXPECT_EQ(x.all()[0].to.x, 0.0);
+  const Pieces y = Pieces::Cut(kRange, {500, -kBeyond, -100, 0}, {700, -kBeyond, -100, 0}, kZero);
+  ASSERT_EQ(y.all().size(), 1U);
+  EXPECT_EQ(y.all()[0].from.y, 0.0);
+  EXPECT_EQ(y.all()[0].to.y, 0.0);
   const Pieces z = Pieces::Cut(kRange, {500, 1000, kBeyond, 0}, {500, 2000, kBeyond, 0}, kZero);
   ASSERT_EQ(z.all().size(), 1U);
   EXPECT_EQ(z.all()[0].from.z, 0.0);

@@ -14,7 +14,8 @@ namespace {
 constexpr double kFast = 8.0;  // of what Z travels four fifths: no less counts as fast
 constexpr double kNotFast = 7.99;
 constexpr double kHalf = 0.5 * kFast;  // a cut that is no faster is a slow one
-constexpr double kNear = 1e-4;         // heights within 2e-6 are the same
+constexpr double kNear = 1e-4;
+constexpr double kSame = 0.5 * Registers::kSameHeight;  // above a height and still at it
 
 class WatchedWay : public testing::Test {
  protected:
@@ -62,8 +63,11 @@ class WatchedWay : public testing::Test {
 
 TEST_F(WatchedWay, DownFastToASlowerCutIsAFastPlunge) {
   Plunge(5, -2, kFast);
+  EXPECT_EQ(watch.fast_plunge().mm, 0.0);  // so far
   Cut(-2, kFast - 0.01);
   EXPECT_NEAR(watch.fast_plunge().mm, 2.0, kNear);  // of 7 mm what lies below the surface
+  EXPECT_EQ(watch.fast_plunge().first.number, 1U);
+  Plunge(-2, -3, 1.0);
   EXPECT_EQ(watch.fast_plunge().first.number, 1U);
   EXPECT_EQ(watch.taken_for_cleared().mm, 0.0);
 }
@@ -133,6 +137,18 @@ TEST_F(WatchedWay, AShorterApproachIsTooShort) {
   EXPECT_NEAR(watch.fast_plunge().mm, 1.0, kNear);
 }
 
+// Lengths are added up: a millionth of a mm less is rounding.
+TEST_F(WatchedWay, AnApproachMayLackWhatRoundingTakes) {
+  registers.surface_z = 1.0;
+  Plunge(5, 0, kFast);
+  Plunge(0, -(0.2 - 1e-6), 1.0);
+  EXPECT_NEAR(watch.taken_for_cleared().mm, 1.0, kNear);
+  watch = {};
+  Plunge(5, 0, kFast);
+  Plunge(0, -(0.2 - 2e-6), 1.0);
+  EXPECT_EQ(watch.taken_for_cleared().mm, 0.0);
+}
+
 TEST_F(WatchedWay, AcrossFastAmongCutsOfHalfTheSpeed) {
   Plunge(5, -1, 1.0);
   Cut(-1, kFast, false);
@@ -198,10 +214,44 @@ TEST_F(WatchedWay, ObliqueWaysAcross) {
   EXPECT_EQ(watch.fast_across().mm, 0.0);
 }
 
+// As much up as across is across; a slow way is level where it leads down by less than what tells
+// heights apart.
+TEST_F(WatchedWay, ObliqueWaysAtTheirLimits) {
+  Plunge(5, -2, 1.0);
+  Ride({.from = {.z = -2},
+        .to = {.x = 1, .z = -1},
+        .in_work = true,
+        .spindle_turns = true,
+        .speed_mm_s = kFast});
+  Cut(-1, kHalf);
+  EXPECT_NEAR(watch.fast_across().mm, std::sqrt(2.0), kNear);
+
+  registers.surface_z = 1.0;
+  const auto fast_across = [this](double down) {
+    watch = {};
+    Plunge(5, 0, 1.0);
+    Cut(0, kFast, false);
+    Ride({.to = {.x = 10, .z = -down},
+          .in_work = true,
+          .by_xy_speed = true,
+          .spindle_turns = true,
+          .speed_mm_s = kHalf});
+    return watch.fast_across().mm;
+  };
+  EXPECT_NEAR(fast_across(0.9 * kSame), 10.0, kNear);
+  EXPECT_EQ(fast_across(kSame), 0.0);
+}
+
 TEST_F(WatchedWay, TravelNotAboveTheSurfaceHasNoClearance) {
   Travel(0, 0);
   EXPECT_NEAR(watch.no_clearance().mm, 10.0, kNear);
   EXPECT_EQ(watch.no_clearance().first.number, 1U);
+  Travel(kSame, kSame);
+  EXPECT_NEAR(watch.no_clearance().mm, 20.0, kNear);
+  watch = {};
+  Ride({.to = {.x = kSame}, .rapid = true});  // not across
+  EXPECT_EQ(watch.no_clearance().mm, 0.0);
+  Travel(0, 0);
   Travel(0.001, 0.001);
   EXPECT_NEAR(watch.no_clearance().mm, 10.0, kNear);
   Travel(1, -3);  // three quarters of it
@@ -226,6 +276,14 @@ TEST_F(WatchedWay, AlongTheSurfaceAsFastAsLifts) {
   EXPECT_NEAR(no_clearance(kHalf, 0.0), 10.0, kNear);
   EXPECT_NEAR(no_clearance(0.0, kHalf), 10.0, kNear);
   EXPECT_EQ(no_clearance(0.0, 0.0), 0.0);  // nothing tells it from a cut
+
+  // How fast it goes above the surface does not count.
+  watch = {};
+  Cut(-1, 5.0);
+  Ride({.to = {.x = 10}, .spindle_turns = true, .speed_mm_s = 10.0});
+  Ride({.from = {.z = 1}, .to = {.x = 10, .z = 1}, .spindle_turns = true, .speed_mm_s = kFast});
+  Cut(-1, 5.0);
+  EXPECT_NEAR(watch.no_clearance().mm, 10.0, kNear);
 }
 
 TEST_F(WatchedWay, BelowTheClampsToTheWorkAndFromIt) {
@@ -269,6 +327,12 @@ TEST_F(WatchedWay, FeedRatesThatTheMachineDoesNotHave) {
   Cut(-1, 1.0, false);  // by V, which is not limited
   EXPECT_NEAR(watch.feed_limited().mm, 30.0, kNear);
   EXPECT_EQ(watch.rpm_limited().mm, 0.0);
+
+  // Where nothing is cut no speed is missing.
+  watch = {};
+  Cut(0, 90.0);
+  EXPECT_EQ(watch.feed_limited().mm, 0.0);
+  EXPECT_EQ(watch.feed_limited().worst.asked, 0.0);
 }
 
 // A plunge that is slower harms nothing, one that is faster does.
@@ -323,6 +387,7 @@ TEST_F(WatchedWay, AlongTheSurfaceNothingIsCut) {
   Ride({.to = {.x = 10}, .in_work = true, .by_xy_speed = true});
   EXPECT_NEAR(watch.skims().mm, 10.0, kNear);
   EXPECT_EQ(watch.spindle_stands().mm, 0.0);
+  EXPECT_EQ(watch.spindle_stands().first.number, 0U);
 }
 
 // The act that gives X and Y says where its own way ends, and not where it begins.

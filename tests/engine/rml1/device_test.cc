@@ -84,6 +84,20 @@ TEST(Device, TakesBothEndsOfTheZTravel) {
   EXPECT_EQ(device.CountOf(FindingKind::kTravelRange), 4);
 }
 
+// How far !ZO takes Z0 up and down, by what goes by it, and which one began it: from -2000.
+TEST(Device, TellsHowFarZ0IsMoved) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("!ZO-1000;!ZO-500;!ZO-1200;PU1,1;!ZO-2000;PU2,2;");
+  EXPECT_EQ(device->raised().by, 800.0);
+  EXPECT_EQ(device->raised().at.number, 3U);
+  EXPECT_EQ(device->lowered().by, 0.0);
+  EXPECT_EQ(device->lowered().at.number, 0U);
+  device.Feed("!ZO-2100;PU3,3;!ZO-2300;PU4,4;");
+  EXPECT_EQ(device->lowered().by, 300.0);
+  EXPECT_EQ(device->lowered().at.number, 7U);
+  EXPECT_EQ(device->raised().by, 800.0);
+}
+
 // RML1-6.10: 100,000 entries with their place, the rest counted, the cut told once, the register
 // kept.
 TEST(Device, BoundsItsErrorLog) {

@@ -93,6 +93,38 @@ TEST(Figures, OfTheOriginThatTheWorkNeeds) {
   }
 }
 
+// Work that fits from no place of the origin on the table has to move itself: X 150 to 210 mm on
+// 200. Where it lies within the travel all the same, because the origin is beside the table,
+// nothing is said.
+TEST(Figures, OfWorkThatHasToMove) {
+  const auto figures = [](double origin) {
+    machine::Parameters parameters = ParametersOf("t1");
+    EXPECT_TRUE(parameters.Set("ORIGIN_X", origin).ok());
+    TestRun run(parameters, "VS10;!VZ10;@-100,200;PU15000,100;PD21000,100;PU;!MC0;");
+    run.AdvanceToEnd();
+    return run.figures();
+  };
+  const Figures lost = figures(0.0);
+  EXPECT_NEAR(lost.at("move_x_less"), 10.0, 1e-9);
+  EXPECT_FALSE(lost.contains("move_x_more"));
+  EXPECT_FALSE(lost.contains("move_y_more"));
+  EXPECT_FALSE(lost.contains("clipped_x_high"));
+  EXPECT_FALSE(lost.contains("origin.xmin"));
+  EXPECT_FALSE(figures(-100.0).contains("move_x_less"));
+}
+
+// Waits count as up with the tool at the surface, and as down below it, by however little. T1: 20
+// mm down to Z0.
+TEST(Figures, OfWaitsAtTheSurface) {
+  const auto down = [](const std::string& z) {
+    TestRun run(WithSpindle(2.0, 1.0), "!RC0;V10;Z0,0," + z + ";W100;Z100,0," + z + ";!MC0;");
+    run.AdvanceToEnd();
+    return run.figures().at("tool_down_time");
+  };
+  EXPECT_EQ(down("0"), 0.0);
+  EXPECT_NEAR(down("-0.5"), TimeFor(20.005, 10) + 0.1 + TimeFor(1, 10) + 1.0, 1e-7);
+}
+
 // RML1-6.04, RML1-4.21, RML1-3A.46: registers and counts of errors and advice.
 TEST(Figures, OfErrors) {
   TestRun run(ParametersOf("t1"), "F99;V0;XX;5;6;W-1;W-1;W-1;\x1b.k\x1b.j;");

@@ -103,5 +103,31 @@ TEST(MachineState, KeepsEveryValueWithinItsRange) {
             "machine state: it does not begin with 'rml1 machine state 1'");
 }
 
+// The XY origin that the panel has set stands behind all that.
+TEST(MachineState, KeepsTheOriginOfThePanel) {
+  MachineState state = SomeState();
+  state.origin = Point{.x = 1e9, .y = -1e9};
+  const Result<MachineState> read = ReadMachineState(WriteMachineState(state), T1());
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->origin, state.origin);
+  Profile profile = T1();
+  EXPECT_FALSE(OriginOf(profile));
+  UseOrigin(std::nullopt, profile);
+  EXPECT_FALSE(OriginOf(profile));
+  UseOrigin(Point{.x = 100, .y = 250}, profile);
+  EXPECT_EQ(OriginOf(profile), (Point{.x = 100, .y = 250}));
+
+  const auto with = [](const std::string& line) {
+    const auto found = ReadMachineState(WriteMachineState(SomeState()) + line, T1());
+    return found ? found->origin.value_or(Point{-1, -1}) : Point{-2, -2};
+  };
+  EXPECT_EQ(with("origin 100 250\n"), (Point{.x = 100, .y = 250}));
+  EXPECT_EQ(with("origin -1000000000 1000000000\n"), (Point{.x = -1e9, .y = 1e9}));
+  for (const char* wrong : {"origin 1000000001 0\n", "origin 0 -1000000001\n", "origin 5\n",
+                            "origin 5 \n", "origin  5\n", "origin \n", "origin nan 0\n",
+                            "origin 1 2", "origin 1 2\n\n", "origin1 2\n"})
+    EXPECT_EQ(with(wrong), (Point{-2, -2})) << wrong;
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

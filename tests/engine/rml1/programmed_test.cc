@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+
 #include "tests/engine/rml1/run_support.h"
 
 // The conventions are those of shared/corpus/rml1/SOURCES.md; corpus_test.cc compares whole
@@ -23,6 +26,23 @@ TEST(Programmed, GoesToTheToolHeightFirst) {
   EXPECT_DOUBLE_EQ(figures.at("programmed.cut_length"), 4);
   EXPECT_EQ(figures.at("programmed.zmin"), 0);
   EXPECT_EQ(figures.at("programmed.zmax"), 3);
+}
+
+// RML1-3A.02, RML1-3A.04: 0 is a height of both; of what lies on the wrong side of it, and of a
+// second number that is not there, nothing changes. DF sets both to 0.
+TEST(Programmed, TakesTheHeightsThatTheMachineTakes) {
+  const auto lowest_and_highest = [](const std::string& heights) {
+    const Figures figures = FiguresOf(heights + "PD1,0;PU2,0;");
+    const auto value = [&](const char* name) {
+      return figures.contains(name) ? figures.at(name) : 0.0;
+    };
+    return std::pair(value("programmed.zmin"), value("programmed.zmax"));
+  };
+  EXPECT_EQ(lowest_and_highest("@-5,3;@0,0;"), std::pair(0.0, 0.0));
+  EXPECT_EQ(lowest_and_highest("@-5,3;@1,-1;"), std::pair(-5.0, 3.0));
+  EXPECT_EQ(lowest_and_highest("@-5,3;@-4;"), std::pair(-4.0, 3.0));
+  EXPECT_EQ(lowest_and_highest("@-5,3;DF;@-4;"), std::pair(-4.0, 0.0));
+  EXPECT_EQ(lowest_and_highest("@-5,3;@;"), std::pair(0.0, 0.0));
 }
 
 // A segment with an end below Z 0 is cut length, the whole of it.

@@ -22,6 +22,12 @@ TEST(Rml1Family, TellsWhatItIs) {
   const machine::MachineFamily& family = Rml1Family();
   EXPECT_EQ(family.info().id, "rml1");
   EXPECT_FALSE(family.info().has_executables);
+  EXPECT_TRUE(family.info().hold_in_remote);
+  EXPECT_TRUE(family.info().turns_in_degrees);
+  EXPECT_TRUE(family.info().cover_stops_jog);
+  EXPECT_TRUE(family.info().start_takes_back);
+  EXPECT_TRUE(family.info().has_breakpoints);
+  EXPECT_EQ(family.info().waiting.size(), 1U);
   EXPECT_EQ(family.info().schedules, 0);
   EXPECT_FALSE(family.parameters().empty());
   EXPECT_FALSE(family.profiles().empty());

@@ -179,5 +179,80 @@ TEST(MillTables, NumbersOfFindings) {
     EXPECT_EQ(CodeText(RowOf(row.kind).code), row.code) << static_cast<int>(row.kind);
 }
 
+struct Said {
+  const char* figure;
+  const char* row;
+  const char* said;
+  bool when_zero;
+  machine::FigureInfo::Where where;
+};
+// What people read of a run or a check; of nothing only what a part always has.
+constexpr auto kReport = machine::FigureInfo::Where::kReport;
+constexpr auto kCheck = machine::FigureInfo::Where::kCheck;
+constexpr auto kBoth = machine::FigureInfo::Where::kBoth;
+constexpr auto kCheckMachine = machine::FigureInfo::Where::kCheckMachine;
+constexpr std::array kSaid = {
+    Said{"commands", "commands", "#", true, kCheck},
+    Said{"motions", "motions", "#", true, kCheck},
+    Said{"cut_length", "path", "cut # mm", true, kCheck},
+    Said{"travel_length", "path", "travel # mm", true, kCheck},
+    Said{"plunges", "plunges", "#", true, kCheck},
+    Said{"tool_up_time", "tool", "up # s", true, kReport},
+    Said{"tool_down_time", "tool", "down # s", true, kReport},
+    Said{"box_mm.xmin", "X", "from # mm", true, kCheck},
+    Said{"box_mm.xmax", "X", "to # mm", true, kCheck},
+    Said{"box_mm.ymin", "Y", "from # mm", true, kCheck},
+    Said{"box_mm.ymax", "Y", "to # mm", true, kCheck},
+    Said{"box_mm.zmin", "Z", "from # mm", true, kCheck},
+    Said{"box_mm.zmax", "Z", "to # mm", true, kCheck},
+    Said{"machine_mm.xmin", "machine X", "from # mm", true, kCheckMachine},
+    Said{"machine_mm.xmax", "machine X", "to # mm", true, kCheckMachine},
+    Said{"machine_mm.ymin", "machine Y", "from # mm", true, kCheckMachine},
+    Said{"machine_mm.ymax", "machine Y", "to # mm", true, kCheckMachine},
+    Said{"machine_mm.zmin", "machine Z", "from # mm", true, kCheckMachine},
+    Said{"machine_mm.zmax", "machine Z", "to # mm", true, kCheckMachine},
+    Said{"origin.xmin", "origin X", "may be from # mm", true, kBoth},
+    Said{"origin.xmax", "origin X", "to # mm", true, kBoth},
+    Said{"origin.ymin", "origin Y", "may be from # mm", true, kBoth},
+    Said{"origin.ymax", "origin Y", "to # mm", true, kBoth},
+    Said{"origin.zmin", "origin Z", "may be from # mm", true, kBoth},
+    Said{"origin.zmax", "origin Z", "to # mm", true, kBoth},
+    Said{"move_x_less", "origin X", "none fits; the program has to move # mm to less X", false,
+         kBoth},
+    Said{"move_x_more", "origin X", "none fits; the program has to move # mm to greater X", false,
+         kBoth},
+    Said{"move_y_less", "origin Y", "none fits; the program has to move # mm to less Y", false,
+         kBoth},
+    Said{"move_y_more", "origin Y", "none fits; the program has to move # mm to greater Y", false,
+         kBoth},
+    Said{"clipped_length", "clipped", "# mm beyond the cutting range", false, kBoth},
+    Said{"assumed_absolute", "assumed", "coordinates are absolute (command #)", false, kBoth},
+    Said{"assumed_heights", "assumed", "Z1 and Z2 of the machine (command #)", false, kBoth},
+    Said{"assumed_rotation", "assumed", "the spindle may turn (command #)", false, kBoth},
+    Said{"assumed_cleared", "assumed", "an earlier cut has cleared the way down (command #)", false,
+         kBoth},
+    Said{"z0_raised", "Z0", "raised by # mm by !ZO", false, kBoth},
+    Said{"z0_lowered", "Z0", "lowered by # mm by !ZO", false, kBoth},
+    Said{"speed_clamps", "speeds", "# limited to those of the machine", false, kBoth},
+};
+
+TEST(MillTables, FiguresThatPeopleRead) {
+  std::size_t next = 0;
+  for (const machine::FigureInfo& info : FigureTable()) {
+    if (info.row.empty()) {
+      EXPECT_TRUE(info.said.empty() && !info.when_zero && info.where == kReport) << info.name;
+      continue;
+    }
+    ASSERT_LT(next, kSaid.size()) << info.name;
+    const Said& wanted = kSaid[next++];
+    EXPECT_EQ(info.name, wanted.figure);
+    EXPECT_EQ(info.row, wanted.row) << info.name;
+    EXPECT_EQ(info.said, wanted.said) << info.name;
+    EXPECT_EQ(info.when_zero, wanted.when_zero) << info.name;
+    EXPECT_EQ(info.where, wanted.where) << info.name;
+  }
+  EXPECT_EQ(next, kSaid.size());
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -143,5 +143,52 @@ TEST(StepGuess, RoundingBeyondTheTravelIsNoReason) {
   }
 }
 
+// With 100 units in a millimetre the work would be two fifths as long, and must fit the travel of
+// 200 by 150 by 60 mm then, its ends included.
+TEST(StepGuess, TheWorkFitsWithTheOtherStep) {
+  const CuttingRange travel{{0.0, 8000.0}, {0.0, 6000.0}, {-2400.0, 0.0}};
+  WorkFit fit;
+  fit.x = {.known = true, .over = 300.0, .length = 500.0};
+  fit.y.length = 375.0;
+  fit.z.length = 150.0;
+  const StepGuess guess = GuessStep(fit, travel, {}, 40.0);
+  EXPECT_EQ(guess.fits_at, 100.0);
+  EXPECT_EQ(guess.work.x.length, 200.0);
+  EXPECT_EQ(guess.work.y.length, 150.0);
+  EXPECT_EQ(guess.work.z.length, 60.0);
+  for (WorkFit::Axis WorkFit::*axis : {&WorkFit::x, &WorkFit::y, &WorkFit::z}) {
+    WorkFit larger = fit;
+    (larger.*axis).length += 0.1;
+    EXPECT_EQ(GuessStep(larger, travel, {}, 40.0).fits_at, 0.0);
+  }
+  EXPECT_EQ(GuessStep(fit, travel, {}, 100.0).fits_at, 0.0);
+}
+
+// A lift of 0.2 to 0.4 mm, or of less than 1 mm with heights that are whole twentieths of a
+// millimetre for 40 units (2 of them) and not for 100 (5).
+TEST(StepGuess, LiftsThatAreLow) {
+  const CuttingRange travel{{0.0, 20000.0}, {0.0, 15000.0}, {-6000.0, 0.0}};
+  WorkFit fit;
+  fit.x.known = true;
+  const auto lift = [&](double high, std::uint32_t grain) {
+    const ProgrammedHeights heights{{.low = -100.0, .high = high, .known = true}, grain};
+    const StepGuess guess = GuessStep(fit, travel, heights, 100.0);
+    EXPECT_DOUBLE_EQ(guess.lift_there_mm, guess.lift_mm * 2.5);
+    return guess.lift_mm;
+  };
+  EXPECT_EQ(lift(19.0, 1), 0.0);
+  EXPECT_EQ(lift(20.0, 1), 0.2);
+  EXPECT_EQ(lift(40.0, 5), 0.4);
+  EXPECT_EQ(lift(41.0, 1), 0.0);
+  EXPECT_EQ(lift(50.0, 10), 0.0);  // both
+  EXPECT_EQ(lift(88.0, 2), 0.88);
+  EXPECT_EQ(lift(99.0, 2), 0.99);
+  EXPECT_EQ(lift(100.0, 2), 0.0);
+  EXPECT_EQ(lift(88.0, 3), 0.0);
+  const ProgrammedHeights low{{.low = -100.0, .high = 20.0, .known = true}, 1};
+  EXPECT_EQ(GuessStep(fit, travel, low, 40.0).lift_mm, 0.0);
+  EXPECT_EQ(GuessStep({}, travel, low, 100.0).lift_mm, 0.0);  // nothing was cut
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

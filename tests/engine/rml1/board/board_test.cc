@@ -252,8 +252,29 @@ TEST(StreamOfBoard, PassesLieSideBySide) {
     if (std::abs(way.to.y - way.from.y) > 1.0 && way.to.x < 0 && way.to.x == way.from.x)
       lefts.insert(static_cast<int>(std::lround(way.to.x * 100)));
   }
-  ASSERT_EQ(lefts.size(), 3U);
-  EXPECT_NEAR(*std::next(lefts.begin()) - *lefts.begin(), 75, 2);  // 1 mm * (1 - 0.25)
+  // From the edge of the pad, which is at X 0: the radius, the tolerance, half a unit of the
+  // machine across its corner, and of a pixel 0.2 and what its corner is from its middle more than
+  // its edge.
+  const double first = 0.5 + 0.005 + 0.01 * M_SQRT1_2 + 0.1 * (0.2 + M_SQRT1_2 - 0.5);
+  std::set<int> wanted;
+  for (const int pass : {0, 1, 2})  // 1 mm * (1 - 0.25) apart
+    wanted.insert(static_cast<int>(std::lround(-100 * (first + pass * 0.75))));
+  EXPECT_EQ(lefts, wanted);
+}
+
+// A line is two pixels from the middle of the copper at least, however thin the tool: between them
+// distances bend too much.
+TEST(StreamOfBoard, AThinToolKeepsTwoPixelsAway) {
+  const Bitmap pad = Picture(std::vector<std::string>(20, std::string(20, '#') + '.'));
+  const auto parameters = Centred("srm-20");
+  const Profile profile = MakeProfile(parameters).value();
+  const auto made = StreamOfBoard(pad, parameters, {.pixel_mm = 0.1, .tool_mm = 0.01});
+  ASSERT_TRUE(made) << made.error().detail;
+  Milled milled(profile);
+  StreamWalk(profile, milled).Run(made->stream);
+  double least = 0.0;
+  for (const Way& way : milled.ways) least = std::min(least, way.to.x);
+  EXPECT_NEAR(least, -0.15, 1e-9);
 }
 
 // Holes are cut before the board comes loose, and in steps of the depth.
@@ -306,6 +327,7 @@ TEST(StreamOfBoard, CountsTracesAndNotGroups) {
   EXPECT_EQ(detail({"##..##" + far + "##..##", "##..##" + far + "##..##"}),
             "of 4 traces 4 stay joined with a neighbour");
   EXPECT_EQ(detail({"##" + far + "##"}), "");
+  EXPECT_EQ(detail({"##..", "##..", "..##", "..##"}), "of 2 traces 2 stay joined with a neighbour");
   // A ring around a dot: 0.2 mm on all sides are too narrow, though the ring itself is one line.
   EXPECT_EQ(detail({"#######", "#.....#", "#.....#", "#..#..#", "#.....#", "#.....#", "#######"}),
             "of 2 traces 2 stay joined with a neighbour");
@@ -314,13 +336,18 @@ TEST(StreamOfBoard, CountsTracesAndNotGroups) {
 // As lines go around them: pixels that have a corner in common are two traces, or one where the
 // middle between them is below the level. Values around it 0, 2 and 2, 0: the middle is 1.
 TEST(JoinedTraces, AtACorner) {
-  const DistanceField field{4, 4, {9, 9, 9, 9, 9, 0, 2, 9, 9, 2, 0, 9, 9, 9, 9, 9}};
-  const JoinedTraces apart = CountJoined(field, 0.5, 0.9);
-  EXPECT_EQ(apart.traces, 2U);
-  EXPECT_EQ(apart.joined, 0U);
-  EXPECT_EQ(CountJoined(field, 0.5, 1.1).joined, 2U);
-  EXPECT_EQ(ContoursAt(field, 0.9).size(), 2U);
-  EXPECT_EQ(ContoursAt(field, 1.1).size(), 1U);
+  const DistanceField rising{4, 4, {9, 9, 9, 9, 9, 0, 2, 9, 9, 2, 0, 9, 9, 9, 9, 9}};
+  const DistanceField falling{4, 4, {9, 9, 9, 9, 9, 2, 0, 9, 9, 0, 2, 9, 9, 9, 9, 9}};
+  for (const DistanceField& field : {rising, falling}) {
+    for (const double level : {0.9, 1.0}) {
+      const JoinedTraces apart = CountJoined(field, 0.5, level);
+      EXPECT_EQ(apart.traces, 2U);
+      EXPECT_EQ(apart.joined, 0U);
+      EXPECT_EQ(ContoursAt(field, level).size(), 2U);
+    }
+    EXPECT_EQ(CountJoined(field, 0.5, 1.1).joined, 2U);
+    EXPECT_EQ(ContoursAt(field, 1.1).size(), 1U);
+  }
 }
 
 TEST(StreamOfBoard, SpeedsAndTheEnds) {
@@ -342,6 +369,10 @@ TEST(StreamOfBoard, Refuses) {
     return made ? ErrorCode::kCellUsage : made.error().code;
   };
   const Bitmap pad = Picture({"...", ".#.", "..."});
+  machine::Parameters wrong = ParametersOf("srm-20");
+  ASSERT_TRUE(wrong.Set("X_MIN", 300.0));
+  EXPECT_EQ(StreamOfBoard(pad, wrong, {.pixel_mm = 0.1}).error().code,
+            ErrorCode::kCellParameterRange);
   EXPECT_EQ(code(Picture({"..", ".."}), {.pixel_mm = 0.1}), ErrorCode::kRml1NothingToMill);
   EXPECT_EQ(code(pad, {}), ErrorCode::kCellInvalidArgument);  // no size of a pixel
   EXPECT_EQ(code(pad, {.pixel_mm = 0.1, .tool_mm = 0}), ErrorCode::kCellInvalidArgument);
@@ -353,7 +384,12 @@ TEST(StreamOfBoard, Refuses) {
   const Bitmap white = Picture({"##", "##"});
   EXPECT_EQ(code(white, {.pixel_mm = 0.1}), ErrorCode::kRml1NothingToMill);
   EXPECT_EQ(code(white, {.pixel_mm = 0.1, .outline = true}), ErrorCode::kCellUsage);
-  EXPECT_EQ(code(pad, {.pixel_mm = 1e-4, .tool_mm = 50}), ErrorCode::kRml1PictureTooLarge);
+  // Around it the line, 25.0121 mm + 0.907 pixels away, and two pixels more: 250,124 on each side.
+  EXPECT_EQ(
+      StreamOfBoard(pad, ParametersOf("srm-20"), {.pixel_mm = 1e-4, .tool_mm = 50}).error().detail,
+      "250251063001 pixels with room for the tool around it");
+  // 120 million: twice as many as a picture may have are taken, no more.
+  EXPECT_EQ(code(pad, {.pixel_mm = 0.00457, .tool_mm = 50}), ErrorCode::kRml1PictureTooLarge);
 }
 
 std::string PngOf(std::uint32_t width, std::uint32_t height,

@@ -104,6 +104,8 @@ TEST(Explain, ErrorsStandAtTheirPhraseAsInACheck) {
   const auto phrases = ExplainAll("XX 12;PU100;Z0,0,-9000;");
   ASSERT_EQ(phrases.size(), 3U);
   EXPECT_EQ(phrases[0].words, "5 bytes that are no command");
+  EXPECT_EQ(phrases[0].name, "");
+  EXPECT_EQ(phrases[0].command, 0U);
   ASSERT_EQ(phrases[0].findings.size(), 3U);
   EXPECT_EQ(phrases[0].findings[0].code, ErrorCode::kRml1UnknownCommand);
   EXPECT_EQ(phrases[0].findings[1].code, ErrorCode::kRml1WrongParameters);
@@ -117,6 +119,49 @@ TEST(Explain, ErrorsStandAtTheirPhraseAsInACheck) {
             std::string::npos);
 }
 
+// Every setting that has words of its own, with the defaults of T1.
+TEST(Explain, SettingsInWords) {
+  EXPECT_EQ(Words("DF;!MC1;!DW0;F;V;@;!RC5;"),
+            (std::vector<std::string>{
+                "defaults: absolute coordinates, 2 mm/s in X and Y, 2 mm/s in Z, no dwell, the "
+                "spindle may turn, tool down Z 0 mm, up Z 5 mm",
+                "the spindle may turn: it starts with the next motion", "no dwell before motions",
+                "cutting speed in X and Y 2 mm/s", "speed of Z and of three axes 2 mm/s",
+                "tool down is Z 0 mm, tool up is Z 5 mm", "spindle speed 8000 rpm"}));
+  EXPECT_EQ(Words("!RC5;", "t1f")[0],
+            "no effect: the spindle speed of this machine is set by hand");
+}
+
+TEST(Explain, WhatTheMachineDoesInWords) {
+  EXPECT_EQ(Words("PD;!RC15;!NR;PU;!MC0;"),
+            (std::vector<std::string>{
+                "tool down; spindle starts, 4500 rpm; down into the work to Z 0 at 2 mm/s",
+                "spindle speed 15000 rpm; spindle changes to 15000 rpm", "pause until resumed",
+                "tool up; up to Z 5 at 2 mm/s", "the spindle may not turn; spindle stops"}));
+  EXPECT_EQ(Words("!ZE A30;", "t1a")[0], "spindle starts, 4500 rpm; go to A 30 degrees at 2 mm/s");
+  EXPECT_EQ(Words("!ZE X8388608;")[0], "a coordinate may be from -83886.08 to 83886.07 mm");
+  machine::Parameters pauses = ParametersOf("t1");
+  ASSERT_TRUE(pauses.Set("OVER_AREA", std::string_view("PAUSE")));
+  std::string last;
+  ASSERT_TRUE(Explain("!MC0;PU21000,0;PU19000,0;", pauses, [&](const ExplainedPhrase& phrase) {
+    last = phrase.words;
+    return true;
+  }));
+  EXPECT_EQ(last, "pause on the way back into the travel; go to X 190 at 60 mm/s");
+}
+
+TEST(Explain, WhatIsNoCommandInWords) {
+  EXPECT_EQ(Words("$;J1;", "mdx-540"),
+            (std::vector<std::string>{"1 byte that is no command",
+                                      "vendor command, skipped with its parameters"}));
+  EXPECT_EQ(Words("\x1b.KPU1\x1b.K\x1b.B;"),
+            (std::vector<std::string>{"ESC.K: what was received and not carried out is forgotten",
+                                      "ESC.K: what was received and not carried out is forgotten",
+                                      "a device control sequence that the machine refuses",
+                                      "1 byte that is no command"}));
+  EXPECT_EQ(Words("PU1")[0], "the data ends inside a command, which is not carried out");
+}
+
 TEST(Explain, EndsAndEdges) {
   EXPECT_EQ(Words("Z0,0,2000;H;"),
             (std::vector<std::string>{"the tool does not move",
@@ -124,6 +169,7 @@ TEST(Explain, EndsAndEdges) {
                                       "cleared"}));
   const auto cut = ExplainAll("PU1");
   ASSERT_EQ(cut.size(), 1U);
+  EXPECT_EQ(cut[0].name, "");
   ASSERT_EQ(cut[0].findings.size(), 1U);
   EXPECT_EQ(cut[0].findings[0].code, ErrorCode::kRml1IncompleteCommand);
   EXPECT_FALSE(Explain("", ParametersOf("t1"), [](const ExplainedPhrase&) { return true; }));

@@ -82,6 +82,7 @@ TEST(GcodeArcBounds, ARadiusThatIsALittleShort) {
   EXPECT_NEAR(half.centre.x(), 5.0, 1e-9);
   EXPECT_NEAR(half.centre.y(), 0.0, 1e-9);
   EXPECT_NEAR(half.radius_mm, 5.0, 1e-9);
+  EXPECT_TRUE(ArcOf({.from = {0, 0}, .to = {10, 0}, .r = 4.98}));
   EXPECT_FALSE(ArcOf({.from = {0, 0}, .to = {10, 0}, .r = 4.979}));
 }
 
@@ -94,8 +95,10 @@ TEST(GcodeArcBounds, EndsThatAreNotAsFarFromTheCentre) {
   EXPECT_TRUE(made(1.0, 1.019));
   EXPECT_FALSE(made(1.0, 1.021));
   EXPECT_FALSE(made(1.0, 0.979));
+  EXPECT_TRUE(made(0.02, 0.04));
   EXPECT_TRUE(made(100.0, 100.099));
   EXPECT_FALSE(made(100.0, 100.101));
+  EXPECT_TRUE(made(1000.0, 1001.0));
 }
 
 // A chord of the angle a is radius (1 - cos(a / 2)) off: radius 1 and a tolerance of 1 - cos(45
@@ -104,6 +107,7 @@ TEST(GcodeArcBounds, ChordsOfATolerance) {
   const Arc turn = ArcOf({.from = {1, 0}, .to = {1, 0}, .i = -1}).value();
   EXPECT_EQ(turn.Chords(1.0 - std::sqrt(0.5)), 4.0);
   EXPECT_EQ(turn.Chords(0.999 * (1.0 - std::sqrt(0.5))), 5.0);
+  EXPECT_EQ(turn.Chords(1.0 - std::cos(M_PI / 4.0000001)), 5.0);
   EXPECT_EQ(turn.Chords(1.0), 2.0);
   EXPECT_EQ(turn.Chords(50.0), 2.0);
   const Arc quarter = ArcOf({.from = {1, 0}, .to = {0, 1}, .i = -1}).value();
@@ -115,6 +119,7 @@ TEST(GcodeBounds, Waits) {
   EXPECT_NE(Made("G4 P32.767\nG0 Z1\n").stream.find("!DW32767;"), std::string::npos);
   EXPECT_NE(Made("G4 P30\nG4 P2.767\nG0 Z1\n").stream.find("!DW32767;"), std::string::npos);
   EXPECT_EQ(RefusedWith("G4 P30\nG4 P2.768\nG0 Z1\n"), ErrorCode::kRml1GcodeRange);
+  EXPECT_TRUE(Made("G4 P0\nG0 Z1\n").ok);
   EXPECT_EQ(Made("G4 P0\nG0 Z1\n").stream.find("!DW"), std::string::npos);
   EXPECT_EQ(RefusedWith("G4 P-.001\n"), ErrorCode::kRml1GcodeForm);
   EXPECT_EQ(DetailOf("G4 P40\n"), "P40: a wait is at most 32.767 s");
@@ -148,6 +153,27 @@ TEST(GcodeBounds, WordsThatAreNoted) {
   EXPECT_EQ(RefusedWith("O1 G0 X1\n"), ErrorCode::kRml1GcodeWord);
 }
 
+// A line with a word that is refused does nothing else, so that nothing else is wrong with it; and
+// of a program with an error nobody asks how it cuts.
+TEST(GcodeBounds, RefusedLinesAreNotObeyed) {
+  for (const char* line : {"G99 G1 X1", "P1 G1 X1", "H1 G1 X1", "U1 G1 X1", "G1 G0 X1", "G1 X1 X2"})
+    EXPECT_EQ(Made(std::string(line) + "\n").findings.size(), 1U) << line;
+  EXPECT_EQ(Made("G1 Z-1 F60\nG0 X5\nG0 Z-2\nG99\nG4 P1\n").findings.size(), 1U);
+}
+
+TEST(GcodeBounds, WhyThereIsNoArc) {
+  EXPECT_EQ(DetailOf("G2 X1 F60\n"), "neither R nor a centre");
+  EXPECT_EQ(DetailOf("G2 X1 I1 R1 F60\n"), "both R and a centre");
+  EXPECT_EQ(DetailOf("G2 X0 R1 F60\n"), "R with an end that is the start: give I and J");
+  EXPECT_EQ(DetailOf("G2 X1 I0 F60\n"), "the centre is the start");
+  EXPECT_EQ(DetailOf("G2 X9 I3 F60\n"), "the start is 3 mm from the centre, the end 6 mm");
+  EXPECT_EQ(DetailOf("G2 X9 R4 F60\n"), "R is 4 mm, the ends are 9 mm apart");
+}
+
+TEST(GcodeBounds, Pauses) {
+  EXPECT_TRUE(Made("G0 Z1\nM0\nM1\n").stream.ends_with("Z0,0,100;\n!NR;\n!NR;\n"));
+}
+
 // G and M words are whole numbers or the tenths of the table.
 TEST(GcodeBounds, NumbersOfWords) {
   for (const char* word : {"G-0.1", "G0.01", "G100000", "G1e3", "M-3", "M3.1"})
@@ -169,6 +195,29 @@ TEST(GcodeBounds, TheTravelIsFromTheWorkOrigin) {
   for (const char* within : {"X-50", "X150", "Y-20", "Y130", "Z-40"}) EXPECT_EQ(beyond(within), 0);
   for (const char* place : {"X-50.01", "X150.01", "Y-20.01", "Y130.01", "Z-40.01"})
     EXPECT_EQ(beyond(place), 2) << place;
+  // Along the surface and above it nothing is cut.
+  EXPECT_EQ(beyond("Z0\nX151\nZ1\nX152"), 0);
+}
+
+// A circle about (1000, 0) has n chords where the tolerance is 1 m (1 - cos(pi / n)) or a little
+// less: at most 100,000.
+TEST(GcodeBounds, ChordsOfAnArc) {
+  const auto made = [](double chords) {
+    return Made("G1 X0 F600\nG2 I1000\n",
+                {.tolerance_mm = 1000.0 * (1.0 - std::cos(M_PI / chords))});
+  };
+  EXPECT_TRUE(made(99'999.5).ok);
+  const StreamOfGcode refused = made(100'000.5);
+  ASSERT_FALSE(refused.ok);
+  EXPECT_EQ(refused.findings.front().code, ErrorCode::kRml1ProductTooLarge);
+  EXPECT_EQ(refused.findings.front().detail, "an arc of 100001 chords");
+}
+
+// An arc leads to where its words say, even if that lies 0.019 mm beside the circle, and to no
+// other point near it: here a quarter in one chord.
+TEST(GcodeBounds, AnArcEndsWhereItsWordsSay) {
+  const StreamOfGcode made = Made("G1 X10 Z0 F600\nG3 X0 Y10.019 I-10\n", {.tolerance_mm = 3.0});
+  EXPECT_TRUE(made.stream.ends_with("\nZ1000,0,0;\nZ0,1002,0;\n")) << made.stream;
 }
 
 // What the stream says counts from the work origin, wherever that is on the table.
@@ -281,6 +330,13 @@ TEST(GcodeBounds, Places) {
   EXPECT_EQ(last.words[0].where.length, 3);
   EXPECT_EQ(last.words[0].where.byte_offset, 11);
   EXPECT_FALSE(reader.Next());
+  // Nothing behind the text counts, and behind the end of its last line nothing comes.
+  GcodeReader half(std::string_view("G12\r\n").substr(0, 4));
+  EXPECT_EQ(half.Next()->value().words[0].value, 12.0);
+  EXPECT_EQ(half.offset(), 4U);
+  EXPECT_FALSE(half.Next());
+  GcodeReader cut(std::string_view("G12").substr(0, 2));
+  EXPECT_EQ(cut.Next()->value().words[0].value, 1.0);
   const std::string far = std::string(1'000'005, ' ') + "X" + std::string(1'200, ' ') + "1";
   GcodeReader wide(far);
   const SourceSpan where = wide.Next()->value().words[0].where;

@@ -127,6 +127,8 @@ TEST(ToGcode, WhatItCannotSayIsAComment) {
             std::string::npos);
   // A bracket inside would end the comment.
   EXPECT_NE(made->text.find("(RML1-E1 in the stream: '[' begins no command)\n"), std::string::npos);
+  EXPECT_NE(ToText("PU;~").find("(RML1-E1 in the stream: '~' begins no command)\n"),
+            std::string::npos);
   EXPECT_NE(
       ToText("!MC1;!VZ2;VS4;PD1,1;PU;")
           .find(
@@ -159,6 +161,30 @@ TEST(FromGcode, LinesRapidsAndSpindle) {
 TEST(FromGcode, CutsThatZIsTooSlowForAreTwoAxisMotions) {
   EXPECT_EQ(Body("G1 Z-1 F600\nG1 X5 F2400\nY5 Z0\n", "mdx-40a"),
             "!VZ10;\nZ0,0,-100;\nVS40;\n!PZ-100,0;\nPD500,0;\n!VZ30;\nZ500,500,0;\n");
+  // From Z0 to the bottom, 105 mm below the top and 85 below Z0 (RML1-3A.07).
+  EXPECT_EQ(Body("G1 Z0 F600\nX5 F2400\n", "mdx-40a"),
+            "!VZ10;\nZ0,0,0;\nVS40;\n!PZ0,0;\nPD500,0;\n");
+  EXPECT_EQ(Body("G1 Z-85 F600\nX5 F2400\n", "mdx-40a"),
+            "!VZ10;\nZ0,0,-8500;\nVS40;\n!PZ-8500,0;\nPD500,0;\n");
+  EXPECT_EQ(Body("G1 Z0.01 F600\nX5 F2400\n", "mdx-40a"), "!VZ10;\nZ0,0,1;\n!VZ30;\nZ500,0,1;\n");
+  // Where X and Y are no faster, three axes do as well: T1 has 60 mm/s in all of them.
+  EXPECT_EQ(Body("G1 Z0 F600\nX1 F6000\n"), "!VZ10;\nZ0,0,0;\n!VZ60;\nZ100,0,0;\n");
+}
+
+// At Z 0 the tool is up; a hair below it is not.
+TEST(FromGcode, RapidsAtZ0) {
+  EXPECT_EQ(Body("G0 Z0\nG0 X1\n"), "!VZ60;\nZ0,0,0;\n!PZ0,0;\nPU100,0;\n");
+  EXPECT_EQ(Body("G0 Z-.01\nG0 X1\n"), "!VZ60;\nZ0,0,-1;\nZ100,0,-1;\n");
+}
+
+// Half a unit is rounded away from zero although half of 0.025 mm times 40 may be a bit less;
+// anything below it is not.
+TEST(StreamWriter, RoundsToTheNearestUnit) {
+  const Profile modela = MakeProfile(ParametersOf("mdx-20")).value();
+  EXPECT_EQ(NearestUnit(0.0125, modela), 1);
+  EXPECT_EQ(NearestUnit(-0.0125, modela), -1);
+  EXPECT_EQ(NearestUnit(0.0125 - 1e-8, modela), 0);
+  EXPECT_EQ(NearestUnit(-0.0125 + 1e-8, modela), 0);
 }
 
 TEST(FromGcode, InchesAndOldMachines) {
@@ -290,9 +316,14 @@ TEST(FromGcode, SpeedsAreRoundedAndSaidOnce) {
   EXPECT_TRUE(made.ok);
   ASSERT_EQ(made.findings.size(), 2U);
   EXPECT_EQ(made.findings[0].detail, "1.667 mm/s becomes 1 mm/s, a speed of the machine");
+  EXPECT_EQ(made.findings[0].where.line, 1);
+  EXPECT_EQ(made.findings[0].where.column, 7);  // of the F
   EXPECT_EQ(made.findings[1].detail, "S700 becomes 4500 rpm");
   // Only stages, evenly spaced from 4500 to 15000: 8000 is the fifth (RML1-9.31).
   EXPECT_NE(From("S8100\n", "t1s").stream.find("!RC5;"), std::string::npos);
+  machine::Parameters one_speed = ParametersOf("t1s");
+  ASSERT_TRUE(one_speed.Set("SPINDLE_MIN", 15000.0));
+  EXPECT_NE(FromGcode("S15000\n", one_speed)->stream.find("!RC0;"), std::string::npos);
   EXPECT_EQ(From("S8100\n", "t1f").stream.find("!RC"), std::string::npos);
 }
 

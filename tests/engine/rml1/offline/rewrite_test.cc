@@ -97,6 +97,34 @@ TEST(MoveStream, HeightsFollowZ) {
   EXPECT_TRUE(Moved("PU1,1;", 0, 0, 1).starts_with("refused: the tool goes to a height"));
   EXPECT_TRUE(Moved("!ZO-5;Z1,1,1;", 0, 0, 1).starts_with("refused: the program sets Z0"));
   EXPECT_EQ(Moved("!ZO-5;Z1,1,1;", 1, 0), "!ZO-5;Z101,1,1;");
+  // Either may come to Z0 itself.
+  EXPECT_EQ(Moved("!PZ-100,200;PU1,1;", 0, 0, 1), "!PZ0,300;PU1,1;");
+  EXPECT_EQ(Moved("!PZ0,20;PU1,1;", 0, 0, -0.2), "!PZ-20,0;PU1,1;");
+}
+
+// RML1-3A.03, RML1-3C.12: one number gives Z1 alone, none gives back those of the machine, and so
+// do DF and IN: what the program does not give cannot be moved.
+TEST(MoveStream, HeightsAreThoseThatTheProgramGave) {
+  const std::string refused =
+      "refused: the tool goes to a height that the program does not give: write !PZ before";
+  EXPECT_EQ(Moved("!PZ-100;Z1,1,5;PD1,1;", 0, 0, -0.5), "!PZ-150;Z1,1,-45;PD1,1;");
+  EXPECT_EQ(Moved("!PZ-100;PU1,1;", 0, 0, -0.5), refused);
+  EXPECT_EQ(Moved("!PZ-100,200;!PZ-50;PU1,1;", 0, 0, -0.5), "!PZ-150,150;!PZ-100;PU1,1;");
+  for (const char* back : {"!PZ;", "@;", "DF;", "IN;"}) {
+    const std::string head = std::string("!PZ-100,200;") + back;
+    EXPECT_EQ(Moved(head + "PU1,1;", 0, 0, -0.5), refused) << back;
+    EXPECT_EQ(Moved(head + "PD1,1;", 0, 0, -0.5), refused) << back;
+  }
+}
+
+// The way there would have to stand before the command, and its first group has been changed.
+TEST(MoveStream, RefusesAWayInTheMiddleOfACommand) {
+  EXPECT_EQ(Moved("!MC0;!ZE Y500:Z-1;", 1, 1),
+            "refused: a command whose first numbers are changed already");
+  EXPECT_EQ(Moved("!MC0;!ZE X5Y500:Z-1;", 1, 1), "!MC0;!ZE X105Y600:Z-1;");
+  // What is wrong first is told.
+  EXPECT_EQ(Moved("PU1,.;", 1, 1, 1),
+            "refused: the tool goes to a height that the program does not give: write !PZ before");
 }
 
 TEST(MoveStream, RefusesWhatItCannotFollow) {
@@ -107,7 +135,9 @@ TEST(MoveStream, RefusesWhatItCannotFollow) {
   EXPECT_TRUE(Moved("PU1,.;", 1, 0).starts_with("refused: numbers") ||
               Moved("PU1,.;", 1, 1).starts_with("refused: a lone period"));
   EXPECT_TRUE(Moved("PU1\x1b.5,2;", 1, 0).starts_with("refused: a number with other bytes"));
-  EXPECT_TRUE(Moved("PU8388600,2;", 1, 0).starts_with("refused: a number becomes"));
+  EXPECT_EQ(Moved("PU8388507,-8388508;", 1, -1), "PU8388607,-8388608;");  // RML1-2.32
+  EXPECT_EQ(Moved("PU8388508,2;", 1, 0), "refused: a number becomes 8388608, beyond its range");
+  EXPECT_EQ(Moved("PU2,-8388509;", 0, -1), "refused: a number becomes -8388609, beyond its range");
   EXPECT_FALSE(MoveStream("PU;", ParametersOf("t1"), {NAN, 0, 0}));
   EXPECT_FALSE(MoveStream("", ParametersOf("t1"), {1, 0, 0}));
   EXPECT_FALSE(MoveStream(std::string(300, '$'), ParametersOf("t1"), {1, 0, 0}));
@@ -206,6 +236,35 @@ TEST(ScaleStream, LengthsAloneAreScaled) {
   ASSERT_TRUE(turned);
   EXPECT_EQ(turned->stream, "!ZE X10A30;");
   EXPECT_EQ(Scaled("..R;\x01 PU4,4 ;;", 40, 100), "..R;\x01 PU10,10 ;;");
+}
+
+// Of heights too what rounding took is made good by what is relative behind them: 3 units are 7.5,
+// Z1 of -7.5 becomes -8 and Z2 of 7.5 becomes 8.
+TEST(ScaleStream, RelativeHeightsMakeGoodTheRounding) {
+  const auto down = [](const std::string& heights, const std::string& to_height) {
+    return Scaled(heights + to_height + "^PR;Z0,0,-3;", 40, 100);
+  };
+  EXPECT_EQ(down("!PZ-3,3;", "PD;"), "!PZ-8,8;PD;^PR;Z0,0,-7;");
+  EXPECT_EQ(down("!PZ-3,3;", "PU;"), "!PZ-8,8;PU;^PR;Z0,0,-8;");
+  EXPECT_EQ(down("!PZ-3,3;", "PD4,4;"), "!PZ-8,8;PD10,10;^PR;Z0,0,-7;");
+  EXPECT_EQ(down("!PZ-3;", "PD;"), "!PZ-8;PD;^PR;Z0,0,-7;");
+  // Those of the machine are not rounded.
+  EXPECT_EQ(down("!PZ-3,3;!PZ;", "PD;"), "!PZ-8,8;!PZ;PD;^PR;Z0,0,-8;");
+  EXPECT_EQ(down("!PZ-3,3;!PZ;", "PU;"), "!PZ-8,8;!PZ;PU;^PR;Z0,0,-8;");
+  EXPECT_EQ(down("!PZ-3,3;DF;", "PD;"), "!PZ-8,8;DF;PD;^PR;Z0,0,-8;");
+  // Home is at the top, and where Z0 lies is rounded too: -3 becomes -8.
+  EXPECT_EQ(down("!PZ-3,3;PD;", "H;"), "!PZ-8,8;PD;H;^PR;Z0,0,-8;");
+  EXPECT_EQ(down("!ZO-3;", "PD;"), "!ZO-8;PD;^PR;Z0,0,-7;");
+  EXPECT_EQ(down("!ZO-3;!ZO;", "PD;"), "!ZO-8;!ZO;PD;^PR;Z0,0,-8;");
+  EXPECT_EQ(down("!ZM-3;", ""), "!ZM-8;^PR;Z0,0,-7;");
+}
+
+// From 1 to 10000 units in a mm.
+TEST(ScaleStream, StepsOfAllMachines) {
+  EXPECT_EQ(Scaled("PU2,1;", 1, 10'000), "PU20000,10000;");
+  EXPECT_EQ(Scaled("PU20000,10000;", 10'000, 1), "PU2,1;");
+  EXPECT_TRUE(Scaled("PU2,1;", 0.999, 100).starts_with("refused: "));
+  EXPECT_TRUE(Scaled("PU2,1;", 100, 10'001).starts_with("refused: "));
 }
 
 TEST(ScaleStream, Refuses) {

@@ -52,6 +52,14 @@ TEST(CompareStreams, AddedRemovedSpindleWaitsAndPauses) {
   EXPECT_EQ(diff.steps[4].after, "down into the work to Z 0 at 2 mm/s");
 }
 
+// Each motion leads on from where the one before it ended.
+TEST(CompareStreams, MotionsOfOneCommand) {
+  const auto diff = Diff("!MC0;", "!MC0;PU100,200;");
+  ASSERT_EQ(diff.steps.size(), 2U);
+  EXPECT_EQ(diff.steps[0].after, "go to Z 5 at 2 mm/s");
+  EXPECT_EQ(diff.steps[1].after, "go to X 1 Y 2 at 60 mm/s");
+}
+
 TEST(CompareStreams, FiguresOfRunsButNotOfTheText) {
   const std::vector<machine::Figure> a = {{"cut_length", "mm", 1.0}, {"programmed.xmax", "", 1.0}};
   const std::vector<machine::Figure> b = {{"cut_length", "mm", 2.0}, {"programmed.xmax", "", 9.0}};
@@ -66,11 +74,15 @@ TEST(CompareStreams, FiguresOfRunsButNotOfTheText) {
 // A figure of one run alone counts from 0 or to 0; equal ones, and the number of commands, are no
 // change, but a difference of a ten millionth is.
 TEST(CompareStreams, WhichFiguresChange) {
-  const std::vector<machine::Figure> a = {
-      {"commands", "", 7.0}, {"cut_length", "mm", 1.0}, {"time", "s", 5.0}, {"travel", "mm", 4.0}};
+  const std::vector<machine::Figure> a = {{"commands", "", 7.0},
+                                          {"cut_length", "mm", 1.0},
+                                          {"errors", "", 0.0},
+                                          {"time", "s", 5.0},
+                                          {"travel", "mm", 4.0}};
   const std::vector<machine::Figure> b = {{"commands", "", 9.0},
                                           {"cut_length", "mm", 1.0 + 1e-7},
-                                          {"plunges", "", 3.0},
+                                          {"errors", "", 0.0},
+                                          {"plunges", "times", 3.0},
                                           {"time", "s", 5.0 + 1e-12}};
   const auto diff = CompareStreams({.object = "PU;", .figures = a}, {.object = "PU;", .figures = b},
                                    ParametersOf("t1"));
@@ -79,6 +91,7 @@ TEST(CompareStreams, WhichFiguresChange) {
   EXPECT_EQ(diff->figures[0].name, "cut_length");
   EXPECT_EQ(diff->figures[0].before, 1.0);
   EXPECT_EQ(diff->figures[1].name, "plunges");
+  EXPECT_EQ(diff->figures[1].unit, "times");
   EXPECT_EQ(diff->figures[1].before, 0.0);
   EXPECT_EQ(diff->figures[1].after, 3.0);
   EXPECT_EQ(diff->figures[2].name, "travel");
@@ -131,6 +144,8 @@ TEST(CompareStreams, LongStreams) {
   EXPECT_EQ(diff.steps.size(), 30'000U);
   EXPECT_FALSE(diff.steps[kToldChangesMax - 1].before.empty());
   EXPECT_TRUE(diff.steps[kToldChangesMax].before.empty());
+  EXPECT_FALSE(diff.steps[kToldChangesMax - 1].what.empty());
+  EXPECT_TRUE(diff.steps[kToldChangesMax].what.empty());
 }
 
 TEST(CompareStreams, Refuses) {

@@ -110,6 +110,13 @@ TEST(StreamWalk, CallsAndControlSequences) {
             (std::vector<Seen>{{Kind::kSet, "^ PU1,2", {1, 2}, 2, 0, true}}));
   EXPECT_EQ(Walk("PD1\x1b.KPU;").seen, (std::vector<Seen>{{Kind::kAbort, "\x1b.K", {}, 0, 0, true},
                                                           {Kind::kBare, "PU", {}, 1, 0, true}}));
+  // Behind ESC.K nothing is open any more, neither a list nor a call.
+  EXPECT_EQ(Walk("PU1\x1b.K$PU;").seen, (std::vector<Seen>{{Kind::kAbort, "\x1b.K", {}, 0, 0, true},
+                                                           {Kind::kDiscarded, "$", {}, 0, 1, true},
+                                                           {Kind::kBare, "PU", {}, 1, 0, true}}));
+  EXPECT_EQ(Walk("^\x1b.KPU1,2;").seen,
+            (std::vector<Seen>{{Kind::kAbort, "\x1b.K", {}, 0, 0, true},
+                               {Kind::kSet, "PU1,2", {1, 2}, 2, 0, true}}));
   const Recorder refused = Walk("PU1,2\x1b.;");
   ASSERT_EQ(refused.seen.size(), 2U);
   EXPECT_EQ(refused.seen[0].kind, Kind::kLinkError);

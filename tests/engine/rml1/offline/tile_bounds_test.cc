@@ -57,6 +57,41 @@ TEST(TileBounds, OnlyWhatHasChangedComesAgain) {
   EXPECT_EQ(between("!RC15;", "t1s"), "!RC3;\n");
 }
 
+// A tool that is up at the surface still touches the work: to the copy the way leads at the top.
+TEST(TileBounds, TheToolUpAtTheSurfaceIsLifted) {
+  EXPECT_EQ(Tiled("!PZ-10,0;PU100,100;PD300,100;PU;PU0,0;", kTwo),
+            "!PZ-10,0;PU100,100;PD300,100;PU;\n!ZM0;\nPU400,100;PD600,100;PU;\n!ZM0;\n;PU0,0;");
+}
+
+// The lift behind the last cut belongs to the copy, and what comes behind a way across does not.
+TEST(TileBounds, WhereACopyEnds) {
+  EXPECT_EQ(Tiled("!PZ-10,200;PU100,100;PD300,100;PU;PU0,0;!ZM0;", kTwo),
+            "!PZ-10,200;PU100,100;PD300,100;PU;\nPU400,100;PD600,100;PU;\n;PU0,0;!ZM0;");
+  EXPECT_EQ(Tiled("!PZ-10,200;PU100,100;PD300,100;PU0,0;!ZM0;", kTwo),
+            "!PZ-10,200;PU100,100;PD300,100;\nPU;\nPU400,100;PD600,100;\nPU;\n;PU0,0;!ZM0;");
+}
+
+// RML1-3A.21: with the names of mode 1 alone the lift makes coordinates absolute.
+TEST(TileBounds, NamesOfModeOne) {
+  machine::Parameters old = ParametersOf("t1");
+  ASSERT_TRUE(old.Set("COMMAND", std::string_view("MODE1")));
+  const auto made = TileStream("@-10,200;M100,100;I200,0;M0,0;", old, kTwo);
+  ASSERT_TRUE(made) << made.error().detail;
+  EXPECT_EQ(made->stream, "@-10,200;M100,100;I200,0;\nM;\nM400,100;I200,0;\nM;\n^PR;\n;M0,0;");
+}
+
+TEST(TileBounds, PartsThatCannotComeAgain) {
+  EXPECT_EQ(Tiled("!MC0;!ZM-2000;PD;PD100,0;PU;", kTwo),
+            "refused: the tool is down where the first copy begins: lift it there");
+  EXPECT_EQ(Tiled("!PZ-10,200;PU100,100;PD300,100;PD300,.;PU;", {.rows = 2}),
+            "refused: a lone period as a number: write 0");
+  machine::Parameters between = ParametersOf("t1");
+  ASSERT_TRUE(between.Set("Z0", -20.005));
+  const auto made = TileStream("!PZ-50,100;PU100,100;!ZO-2500;PD300,100;PU;", between, kTwo);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().detail, "Z0 of the beginning is no whole unit");
+}
+
 // The last stage and the first come again, too.
 TEST(TileBounds, StagesOfTheSpindle) {
   const auto made = [](const std::string& stage) {
@@ -92,6 +127,7 @@ TEST(TileBounds, AFieldThatIsALittleSmall) {
     return made ? made->columns : 0;
   };
   EXPECT_EQ(columns(2.0), 1);
+  EXPECT_EQ(columns(1.99999999), 1);
   EXPECT_EQ(columns(1.999995), 0);
   EXPECT_EQ(columns(5.0), 2);
   EXPECT_EQ(columns(4.9999), 1);
@@ -115,6 +151,13 @@ TEST(TileBounds, BeyondTheTravel) {
   EXPECT_EQ(high->columns, 1);
   EXPECT_EQ(high->rows, 75);
   EXPECT_TRUE(high->travel_is_less);
+  // A field of just that many has them all.
+  const auto as_many =
+      TileStream(kBox, ParametersOf("t1"), {.within_mm = {{197.0, 149.0}}, .gap_mm = 1.0});
+  ASSERT_TRUE(as_many);
+  EXPECT_EQ(as_many->columns, 66);
+  EXPECT_EQ(as_many->rows, 75);
+  EXPECT_FALSE(as_many->travel_is_less);
 }
 
 // A hole has no width: without a gap any number of copies stands in its place, as many as there may
@@ -124,6 +167,8 @@ TEST(TileBounds, NumbersOfCopies) {
   const auto made = TileStream(hole, ParametersOf("t1"), {.columns = 1000, .gap_mm = 0.0});
   ASSERT_TRUE(made) << made.error().detail;
   EXPECT_EQ(made->columns, 1000);
+  const std::string at_the_edge = "!PZ-50,200;\nPU20000,100;PD;PU;PU0,0;";
+  EXPECT_TRUE(TileStream(at_the_edge, ParametersOf("t1"), {.columns = 1000, .gap_mm = 0.0}));
   EXPECT_TRUE(Tiled(hole, {.columns = 1001}).starts_with("refused: 1001 copies; from 1 to 1000"));
   EXPECT_TRUE(Tiled(hole, {.rows = 0}).starts_with("refused: 0 copies; from 1 to 1000"));
   EXPECT_TRUE(Tiled(hole, {.gap_mm = INFINITY}).starts_with("refused: the gap is "));

@@ -34,6 +34,22 @@ TEST(CheckWork, WorkBeyondTheTravelIsToldWithItsRemedy) {
             "moved by 10 to 20 mm");
 }
 
+// A face that the work comes up to, and one that it leads beyond by 0.01 mm alone, need no word.
+TEST(CheckWork, SaysNothingOfFacesThatAreKept) {
+  EXPECT_EQ(Checked("PU1000,0;PD20100,0;PU;")->detail,
+            "1 mm of the work would not be cut: 1 mm beyond the greatest X (200 mm); in X it fits "
+            "moved by -10 to -1 mm");
+  EXPECT_EQ(Checked("PU1000,15000;PD20100,15000;PU;")->detail,
+            "1 mm of the work would not be cut: 1 mm beyond the greatest X (200 mm); in X it fits "
+            "moved by -10 to -1 mm");
+  EXPECT_EQ(Checked("PU20001,100;PD20001,500;PU;")->detail,
+            "4 mm of the work would not be cut; in X it fits moved by -200.01 to -0.01 mm");
+  // As long as the travel: there is one place for it.
+  EXPECT_EQ(Checked("PU-1000,100;PD19000,100;PU;")->detail,
+            "10 mm of the work would not be cut: 10 mm beyond the least X (0 mm); in X it fits "
+            "moved by 10 to 10 mm");
+}
+
 // Y -1 to 151 mm on a travel of 150, and from X -60 to 0 of an origin that stands 50 mm in: 10 mm
 // to the right at least, and then up to the 200 of the travel.
 TEST(CheckWork, FacesAreThoseOfTheWorkOrigin) {
@@ -86,6 +102,10 @@ TEST(CheckWork, PartsThatTheMachineRefuses) {
   EXPECT_EQ(refused->where->line, 2);
   EXPECT_EQ(refused->detail,
             "coordinates or tool heights that are refused: 2; the tool-up height may be from 0 mm");
+  EXPECT_EQ(Checked("PU1,1;PD9,99999999;")->detail,
+            "coordinates or tool heights that are refused: 1; a coordinate may be from -83886.08 "
+            "to 83886.07 mm");
+  EXPECT_EQ(Checked("PU1,1;PD9;")->detail, "coordinates or tool heights that are refused: 1");
 }
 
 }  // namespace
