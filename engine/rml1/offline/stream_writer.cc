@@ -79,7 +79,7 @@ int StreamWriter::SpindleSpeed(double rpm) {
     parameter = std::to_string(set);
   } else {
     constexpr int kLastStage = 15;  // RML1-9.31
-    const double share = high > low ? (wanted - low) / (high - low) : 0.0;
+    const double share = (wanted - low) / std::max(high - low, 1);
     const int stage = static_cast<int>(std::lround(share * kLastStage));
     set = low + static_cast<int>(std::int64_t{high - low} * stage / kLastStage);
     parameter = std::to_string(stage);

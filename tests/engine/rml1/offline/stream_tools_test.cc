@@ -43,6 +43,12 @@ TEST(StreamTools, WhatIsNoStream) {
   EXPECT_EQ(code(ScaleStream(prose, t1, 40, 100)), ErrorCode::kRml1NoProgram);
   EXPECT_EQ(code(TileStream(prose, t1, {})), ErrorCode::kRml1NoProgram);
   EXPECT_EQ(code(ToGcode(prose, t1)), ErrorCode::kRml1NoProgram);
+  // A tenth of the bytes may be foreign: 30 of 300.
+  std::string stream;
+  for (int i = 0; i < 90; ++i) stream += "PU;";
+  EXPECT_EQ(code(ScaleStream(stream + std::string(30, '$'), t1, 40, 100)), ErrorCode::kCellUsage);
+  EXPECT_EQ(code(ScaleStream(stream + std::string(31, '$'), t1, 40, 100)),
+            ErrorCode::kRml1NoProgram);
   EXPECT_EQ(code(MoveStream("", t1, {1, 0, 0})), ErrorCode::kCellEmptyProgram);
   EXPECT_EQ(code(ScaleStream("", t1, 40, 100)), ErrorCode::kCellEmptyProgram);
   EXPECT_EQ(code(ToGcode("", t1)), ErrorCode::kCellEmptyProgram);

@@ -117,6 +117,9 @@ TEST(StreamWalk, CallsAndControlSequences) {
   EXPECT_EQ(Walk("^\x1b.KPU1,2;").seen,
             (std::vector<Seen>{{Kind::kAbort, "\x1b.K", {}, 0, 0, true},
                                {Kind::kSet, "PU1,2", {1, 2}, 2, 0, true}}));
+  // RML1-3A.31: what is called and is no command goes with its call.
+  EXPECT_EQ(Walk("^QX;").seen, (std::vector<Seen>{{Kind::kDiscarded, "^QX", {}, 0, 1, true}}));
+  EXPECT_EQ(Walk("^P").seen, (std::vector<Seen>{{Kind::kIncomplete, "^P", {}, 0, 0, true}}));
   const Recorder refused = Walk("PU1,2\x1b.;");
   ASSERT_EQ(refused.seen.size(), 2U);
   EXPECT_EQ(refused.seen[0].kind, Kind::kLinkError);

@@ -69,6 +69,11 @@ TEST(TileBounds, WhereACopyEnds) {
             "!PZ-10,200;PU100,100;PD300,100;PU;\nPU400,100;PD600,100;PU;\n;PU0,0;!ZM0;");
   EXPECT_EQ(Tiled("!PZ-10,200;PU100,100;PD300,100;PU0,0;!ZM0;", kTwo),
             "!PZ-10,200;PU100,100;PD300,100;\nPU;\nPU400,100;PD600,100;\nPU;\n;PU0,0;!ZM0;");
+  // Nothing need stand between two commands, and a turn is no lift.
+  EXPECT_EQ(Tiled("!PZ-10,200;PU100,100;PD300,100PU0,0;", kTwo),
+            "!PZ-10,200;PU100,100;PD300,100;\nPU;\nPU400,100;PD600,100;\nPU;\nPU0,0;");
+  EXPECT_EQ(Tiled("!PZ-10,200;PU100,100;PD300,100;PU;!ZE A90;PU0,0;", kTwo, "t1a"),
+            "!PZ-10,200;PU100,100;PD300,100;PU;\nPU400,100;PD600,100;PU;\n;!ZE A90;PU0,0;");
 }
 
 // RML1-3A.21: with the names of mode 1 alone the lift makes coordinates absolute.
