@@ -318,7 +318,7 @@ bool Lexer::BeginsAssignment(std::size_t offset) const {
   constexpr std::size_t kFar = 40;  // "VARIABLE [ INDEXNAM ] =" with a few blanks
   std::size_t at = offset;
   const std::size_t end = std::min(text_.size(), offset + kFar);
-  if (ClassOf(text_[at]) != Class::kLetter) return false;
+  if (at == end || ClassOf(text_[at]) != Class::kLetter) return false;
   while (at < end && IsNamePart(text_[at])) ++at;
   while (at < end && IsBlank(text_[at])) ++at;
   if (at < end && text_[at] == '[') {
