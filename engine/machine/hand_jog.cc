@@ -1,7 +1,6 @@
 #include "engine/machine/hand_jog.h"
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 namespace rmlcell::machine {
@@ -14,7 +13,7 @@ bool HandJog::asks() const {
 // Keys add; along a tool that points the other way Z and, to stay right-handed, Y count backwards.
 motion::AxisValues HandJog::Speeds(const HandMotion& how) const {
   motion::AxisValues speeds;
-  for (const int axis : std::views::iota(0, motion::kAxisCount)) {
+  for (int axis = 0; axis < motion::kAxisCount; ++axis) {
     const auto first = 2 * static_cast<std::size_t>(axis);
     if (key_[first] == Key::kDown) speeds[axis] += how.plus[axis];
     if (key_[first + 1] == Key::kDown) speeds[axis] -= how.minus[axis];
@@ -87,7 +86,7 @@ void HandJog::Settle() {
 
 RunOn RunOnOf(const HandMotion& how, JogReference reference, const motion::AxisPose& at) {
   RunOn on;
-  for (const int axis : std::views::iota(0, motion::kAxisCount)) {
+  for (int axis = 0; axis < motion::kAxisCount; ++axis) {
     motion::JogDrive drive(how.machine, reference, at);
     motion::AxisValues speeds;
     speeds[axis] = std::max(how.plus[axis], how.minus[axis]);

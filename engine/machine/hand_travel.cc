@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 namespace rmlcell::machine {
 namespace {
@@ -17,7 +16,7 @@ motion::PathLimits LimitsAlong(const motion::MachineVector& way, const HandMotio
   constexpr double kNoEnd = std::numeric_limits<double>::infinity();
   motion::PathLimits limits{.speed = kNoEnd, .acceleration = kNoEnd};
   const double length = way.norm();
-  for (const auto axis : std::views::iota(Eigen::Index{0}, way.size())) {
+  for (int axis = 0; axis < 3; ++axis) {
     const double share = std::abs(way[axis]) / length;  // 0: the axis stands, and is no bound
     limits.speed = std::min(limits.speed, how.plus[axis] / share);
     limits.acceleration =

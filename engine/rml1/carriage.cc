@@ -34,6 +34,8 @@ double LimitedSpeed(const Profile& profile, const Point& from, const Point& to,
                     double wanted_mm_s) {
   const double xy_highest = FastestXY(profile);
   const double z_highest = profile.z_speeds.maximum_mm_s;
+  // No axis goes further than the tool.
+  if (wanted_mm_s <= std::min(xy_highest, z_highest) && from.a == to.a) return wanted_mm_s;
   const double length = DistanceXYZ(from, to);
   if (!(length > 0.0)) return wanted_mm_s;
   double speed = wanted_mm_s;

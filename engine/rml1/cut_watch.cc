@@ -66,7 +66,7 @@ double BelowSurface_mm(const CutWatch::Ride& ride, const Registers& registers) {
 
 void CutWatch::OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command) {
   const bool down = DropsSteeply(ride);
-  if (!down) EndWayDown(ride);
+  if (!down && (fast_so_far_.mm > 0.0 || slow_mm_ > 0.0)) EndWayDown(ride);
   OnVisit(ride, registers, command, down);
   OnPlace(ride, registers, command);
   if (ride.in_work) {

@@ -357,7 +357,7 @@ class HttpSession : public Connection,
   void OnWritten(error_code error) {
     Disarm();
     head_.clear();
-    body_ = {};  // a long message is not kept while nothing is sent
+    std::string().swap(body_);  // a long message is not kept while nothing is sent
     if (closed_) return;
     if (error) return Gone();
     if (ended_) return AfterAnswer();
@@ -372,7 +372,7 @@ class HttpSession : public Connection,
     plan_ = {};
     body_total_ = 0;
     continued_ = false;
-    piece_ = {};
+    std::string().swap(piece_);
     if (closing_ || setting_.draining) return Linger();
     AwaitRequest();
   }

@@ -1,7 +1,6 @@
 #include "storage/jobs/queue_rules.h"
 
 #include <algorithm>
-#include <ranges>
 
 namespace rmlcell::storage {
 
@@ -69,12 +68,10 @@ std::optional<double> PlaceBetween(std::optional<double> in_front, std::optional
 
 std::vector<PlacedJob> Spread(std::span<const PlacedJob> line, std::size_t at, std::int64_t job,
                               std::int64_t newest) {
-  const auto moved_on = [](const auto& jobs) {  // how many from its beginning on were moved
-    return static_cast<std::size_t>(
-        std::ranges::distance(jobs | std::views::take_while(&PlacedJob::moved)));
-  };
-  const std::size_t first = at - moved_on(line.first(at) | std::views::reverse);
-  const std::size_t last = at + moved_on(line.subspan(at));
+  std::size_t first = at;
+  while (first > 0 && line[first - 1].moved) --first;
+  std::size_t last = at;
+  while (last < line.size() && line[last].moved) ++last;
   const double count = static_cast<double>(last - first) + 1.0;  // with the new one
   const double above = last < line.size() ? line[last].place : static_cast<double>(newest) + 1.0;
   double below = above - count;

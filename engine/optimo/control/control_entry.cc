@@ -1,9 +1,9 @@
 // A run that begins at a step. LIVE-6
 #include <algorithm>
-#include <ranges>
 #include <tuple>
 #include <utility>
 
+#include "engine/core/indices.h"
 #include "engine/machine/step_entry.h"
 #include "engine/optimo/control/control.h"
 #include "engine/optimo/control/state_items.h"
@@ -223,7 +223,7 @@ void Control::ArriveAtEntry() {
     actuators_.Carry(
         {.kind = kind, .place = now().place, .index = static_cast<int>(index), .value = value});
   };
-  const auto numbers = std::views::iota(std::size_t{0}, arrival.outputs.logical.size());
+  const Indices numbers = IndicesOf(arrival.outputs.logical);
   for (const bool on : {false, true}) {  // one assist gas is off before the other is on
     for (const std::size_t n : numbers) {
       if (arrival.outputs.logical[n] == on) carry(PassageEffect::Kind::kOutput, n, on ? 1.0 : 0.0);

@@ -1,7 +1,5 @@
 #include "engine/optimo/control/data_access.h"
 
-#include <ranges>
-
 namespace rmlcell::optimo {
 namespace {
 
@@ -355,7 +353,7 @@ Status DataAccess::ConnectOutputs(std::uint8_t groups) {
   if (logical && !data.ol[kGas3]) {
     if (const Status off = SetOutput(kGas3, false); !off) return off.error();
   }
-  for (const int n : std::views::iota(0, kVariableCount)) {
+  for (int n = 0; n < kVariableCount; ++n) {
     const auto at = static_cast<std::size_t>(n);
     if (logical) {
       if (const Status set = SetOutput(n, data.ol[at]); !set) return set.error();

@@ -3,11 +3,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <ranges>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "engine/core/indices.h"
 #include "engine/core/number_text.h"
 #include "engine/optimo/control/modal_values.h"
 
@@ -28,11 +28,6 @@ std::string PoseText(const motion::AxisPose& axes) {
 std::string ValueText(float value) { return ShortestText(static_cast<double>(value)); }
 std::string ValueText(bool value) { return value ? "1" : "0"; }
 
-template <class Values>
-auto PlacesIn(const Values& values) {
-  return std::views::iota(std::size_t{0}, values.size());
-}
-
 class Items {
  public:
   void Add(std::string name, std::string value, StartAction action = StartAction::kSet) {
@@ -40,7 +35,7 @@ class Items {
   }
   template <class Values>
   void AddAll(std::string_view group, const Values& values, StartAction action) {
-    for (const std::size_t n : PlacesIn(values))
+    for (const std::size_t n : IndicesOf(values))
       Add(std::string(group) + "[" + std::to_string(n) + "]", ValueText(values[n]), action);
   }
   void Add(std::vector<machine::ModalValue> values) {
@@ -76,12 +71,12 @@ void AddProgram(const ProgramContext& program, const std::string& prefix, SimTim
   for (machine::ModalValue& value : ModalValuesOf(program.modal))
     items.Add(prefix + value.name, std::move(value.value));
   std::string handlers;
-  for (const std::size_t n : PlacesIn(program.frames)) {
+  for (const std::size_t n : IndicesOf(program.frames)) {
     const Frame& frame = program.frames[n];
     handlers += (handlers.empty() ? "" : ", ") +
                 (frame.error_label ? std::to_string(*frame.error_label) : std::string("OFF"));
     const std::string level = n == 0 ? "" : " of FUNCTION level " + std::to_string(n);
-    for (const std::size_t i : PlacesIn(frame.parameters)) {
+    for (const std::size_t i : IndicesOf(frame.parameters)) {
       if (frame.parameters[i] == 0.0F) continue;  // as all are that nobody passed
       items.Add(prefix + "PAR[" + std::to_string(i) + "]" + level, ValueText(frame.parameters[i]));
     }
@@ -96,8 +91,8 @@ void AddProgram(const ProgramContext& program, const std::string& prefix, SimTim
   }
   items.Add(prefix + "TIMER", timer);
   std::string on;
-  for (const std::size_t kind : PlacesIn(program.processes.on)) {
-    for (const std::size_t p : PlacesIn(program.processes.on[kind])) {
+  for (const std::size_t kind : IndicesOf(program.processes.on)) {
+    for (const std::size_t p : IndicesOf(program.processes.on[kind])) {
       const std::string name = std::to_string(kind) + "," + std::to_string(p);
       const auto& definition = program.processes.definitions[kind][p];
       if (definition) items.Add(prefix + "WORKDEF " + name, WorkText(*definition));
@@ -135,7 +130,7 @@ std::vector<StateItem> ItemsOf(std::span<const ProgramContext> programs,
   Items items;
   items.Add("stack", StackText(stack));
   AddProgram(programs.back(), "", now, items);
-  for (const std::size_t n : PlacesIn(programs.first(programs.size() - 1)))
+  for (const std::size_t n : IndicesOf(programs.first(programs.size() - 1)))
     AddProgram(programs[n], "caller " + std::to_string(n + 1) + " ", now, items);
   return items.Take();
 }

@@ -216,14 +216,14 @@ void Checker::CheckLet(const Instruction& i) {
 // OPT-7.102, OPT-7.103
 void Checker::CheckAssign(const Instruction& i) {
   const bool known = typing_.ResolveTarget(i.first_expression);
-  Numeric(i, 1);
+  const bool typed = Numeric(i, 1);
   const int width = i.numbers[0];
   if (width < 1 || width > kAssignWidthMax) {
     return Warn(ErrorCode::kLiteralRange, "ASSIGN writes 1 to 16 places", "OPT-7.102");
   }
   const std::size_t value_at = module_.FirstNode(i.first_expression + 1);
   const float value = module_.nodes[value_at].number;  // of a variable 0
-  if (value < 0.0F || value >= static_cast<float>(1 << width)) {
+  if (typed && (value < 0.0F || value >= static_cast<float>(1 << width))) {
     findings_.AddAs(Severity::kCompile, ErrorCode::kAssignGroup, typing_.PlaceOfNode(value_at),
                     "the value does not fit into " + Told("places", width) + " places",
                     "OPT-7.103");

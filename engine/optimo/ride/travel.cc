@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <ranges>
 
 #include "engine/core/number_text.h"
 #include "engine/motion/kinematics/speed_bound.h"
@@ -89,7 +88,7 @@ std::vector<BeyondTravel> Travel::BeyondTravelOf(const motion::PathPiece& path) 
   if (StaysInside(path, head, limits)) return {};
   const auto worst = motion::ExcessOfEach(path, head, limits);
   std::vector<BeyondTravel> beyond;
-  for (const int axis : std::views::iota(0, motion::kAxisCount)) {
+  for (int axis = 0; axis < motion::kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
     const double slack = std::max(SlackOf(limits.travel_min[i]), SlackOf(limits.travel_max[i]));
     if (worst[i].excess <= slack) continue;

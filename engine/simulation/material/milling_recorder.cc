@@ -197,6 +197,7 @@ void MillingRecorder::NoteBelow(const motion::MachinePoint& from, const motion::
 void MillingRecorder::NoteReach(const motion::MachinePoint& from, const motion::MachinePoint& to,
                                 const machine::Place& place) {
   const Stock& block = material_.stock();
+  if (block.top - std::min(from.z(), to.z()) <= std::max(figures_.reach_mm, kGougeLeast_mm)) return;
   const motion::MachineVector way = to - from;
   PartOfMove over;
   over.KeepOver(block, 0.0, from, way);

@@ -68,7 +68,8 @@ MotionPeaks Straight(const motion::PlannedMotion& motion, bool five_axis, double
     Raise(acceleration, part.start.acceleration);
     Raise(acceleration, part.AccelerationAt(end));
     Raise(jerk, part.jerk);
-    Raise(speed, part.SpeedAt(part.LevelAt()));
+    const double level = part.LevelAt();
+    if (level > 0.0 && level < end) Raise(speed, part.SpeedAt(level));
   });
   const motion::PathDerivatives first = motion.path.First(0.0);
   const bool stands = motion.path.kind() == PathPiece::Kind::kRotary;

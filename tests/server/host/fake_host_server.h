@@ -52,6 +52,11 @@ class FakeHostServer final : public v1::HostService::Service {
     }
     while (stream->Read(&request)) {
       const std::lock_guard lock(mutex_);
+      if (request.has_heartbeat()) {  // else it would be silent
+        v1::HostResponse beat;
+        beat.mutable_heartbeat()->set_number(request.heartbeat().number());
+        stream->Write(beat);
+      }
       told_.push_back(request);
       changed_.notify_all();
     }
