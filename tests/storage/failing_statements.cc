@@ -28,10 +28,11 @@ bool MayFail(std::string_view text) {
   constexpr std::array<std::string_view, 5> kBeginnings = {"SELECT ", "INSERT ", "UPDATE ",
                                                            "DELETE ", "PRAGMA user_version"};
   // What is swept beside an operation does not make it fail.
-  if (text.starts_with("SELECT blob FROM upload") ||
-      text.starts_with("SELECT id FROM blob WHERE refs"))
-    return false;
-  return std::ranges::any_of(kBeginnings, [&](auto begin) { return text.starts_with(begin); });
+  constexpr std::array<std::string_view, 4> kSweeping = {
+      "SELECT blob FROM upload", "SELECT id FROM blob WHERE refs = 0",
+      "UPDATE blob SET sha256 = NULL", "DELETE FROM blob"};
+  const auto begins = [&](std::string_view beginning) { return text.starts_with(beginning); };
+  return std::ranges::any_of(kBeginnings, begins) && std::ranges::none_of(kSweeping, begins);
 }
 
 int StatementBegins(unsigned, void* connection, void* statement, void*) {
