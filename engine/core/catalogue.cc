@@ -10,8 +10,7 @@
 namespace rmlcell {
 namespace {
 
-// In the order of ErrorCode, which is made of the same rows: Lookup reads the row by its code. A
-// plain array: how many a std::array has clang++ finds out for no more than 256.
+// A plain array: how many a std::array has clang++ finds out for no more than 256.
 constexpr CatalogueEntry kRows[] = {
 #define RMLCELL_ERROR(family, number, symbol, severity, when, advice, ...) \
   CatalogueEntry{ErrorCode::k##symbol,                                     \
@@ -25,6 +24,14 @@ constexpr CatalogueEntry kRows[] = {
 #undef RMLCELL_ERROR
 };
 constexpr std::span<const CatalogueEntry> kCatalogue(kRows);
+
+constexpr bool IsIndexedByCode() {
+  for (std::size_t i = 0; i < kCatalogue.size(); ++i) {
+    if (static_cast<std::size_t>(kCatalogue[i].code) != i) return false;
+  }
+  return true;
+}
+static_assert(IsIndexedByCode(), "Lookup reads the row by its code");
 
 template <class Use>
 void ForEachRow(Use use) {

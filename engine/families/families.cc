@@ -97,7 +97,7 @@ Result<const machine::MachineFamily*> FamilyOfObject(std::string_view object) {
 
 const machine::MachineFamily* FamilyWithSchedules() {
   const auto found = std::ranges::find_if(
-      Families(), [](const machine::MachineFamily* one) { return one->info().schedules != 0; });
+      Families(), [](const machine::MachineFamily* one) { return one->info().schedules > 0; });
   return found == Families().end() ? nullptr : *found;
 }
 

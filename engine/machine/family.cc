@@ -177,8 +177,8 @@ Error NoProfile(std::span<const MachineProfile> profiles, const std::string& wan
   for (const MachineProfile& one : profiles) {
     const std::string id = Plain(one.id);
     known += " " + Told("known", one.id);
-    if (plain.size() > 1 &&
-        (id.find(plain) != std::string::npos || plain.find(id) != std::string::npos))
+    if (plain.size() > 1 && (id.find(plain) != std::string::npos ||
+                             (id.size() > 1 && plain.find(id) != std::string::npos)))
       near.emplace_back(one.id);
   }
   if (near.empty()) {

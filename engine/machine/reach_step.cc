@@ -90,7 +90,7 @@ class LogBehind final : public StepWatcher, public RunObserver {
   bool beam_over_ = false;
 };
 
-SimTime Later(SimTime time, SimTime by) { return std::min(time, kForever - by) + by; }
+SimTime Later(SimTime time, SimTime by) { return time > kForever - by ? kForever : time + by; }
 
 // Why the step was not reached.
 Error NotReached(WayEnd end, const Run& run, const StepTarget& target, const Place& last) {
@@ -121,11 +121,11 @@ Error NotReached(WayEnd end, const Run& run, const StepTarget& target, const Pla
 }  // namespace
 
 std::uint64_t StepCounts::Count(const ProgramStep& at) {
-  const auto slot = static_cast<std::size_t>(at.program);  // beyond all of them when below 0
+  const auto slot = static_cast<std::size_t>(at.program);
   const auto step = static_cast<std::size_t>(at.step);
-  if (slot >= counts_.size() || step >= kCountedMax) return 1;
+  if (at.program < 0 || at.step < 0 || slot >= counts_.size() || step >= kCountedMax) return 1;
   std::vector<std::uint32_t>& of_slot = counts_[slot];
-  of_slot.resize(std::max(of_slot.size(), step + 1));
+  if (step >= of_slot.size()) of_slot.resize(step + 1);
   return ++of_slot[step];
 }
 

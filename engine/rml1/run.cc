@@ -106,7 +106,8 @@ MillRun::MillRun(machine::RunSetup setup, std::shared_ptr<const Profile> profile
     state_.override_percent = std::clamp(setup_.override_percent, kOverrideMin, kOverrideMax);
   }
   state_.halts.after_each = setup_.mode == machine::Mode::kSingle;
-  if (setup_.breakpoint && setup_.breakpoint->program == setup_.main_program) {
+  if (setup_.breakpoint && setup_.breakpoint->program == setup_.main_program &&
+      setup_.breakpoint->step > 0) {
     state_.halts.breakpoints = {setup_.breakpoint->step};
   }
   PutTool();

@@ -75,10 +75,10 @@ std::vector<PlacedJob> Spread(std::span<const PlacedJob> line, std::size_t at, s
   const double count = static_cast<double>(last - first) + 1.0;  // with the new one
   const double above = last < line.size() ? line[last].place : static_cast<double>(newest) + 1.0;
   double below = above - count;
-  if (first != 0) {
+  if (first > 0) {
     below = line[first - 1].place;
-  } else if (!line.empty()) {
-    below = std::min(line.front().place, above) - count;
+  } else if (first < last) {
+    below = std::min(line[first].place, above) - count;
   }
   const double step = (above - below) / (count + 1.0);
   std::vector<PlacedJob> spread;

@@ -96,7 +96,7 @@ Result<std::string> Database::Text(const std::string& sql) {
 Status Database::CopyTo(const std::string& path) const {
   // Made first, so that nobody else can ever read it.
   const int file = open(path.c_str(), O_CREAT | O_WRONLY | O_TRUNC | O_CLOEXEC, 0600);
-  if (file == -1) {
+  if (file < 0) {
     return Error{
         ErrorCode::kCellStoreFailed,
         "cannot make " + path + ": " + std::strerror(errno),  // NOLINT(concurrency-mt-unsafe)

@@ -132,7 +132,7 @@ bool RunsBefore(const JobRecord& a, const JobRecord& b) {
 }
 
 void Shorten(std::vector<JobRecord>& jobs, int limit) {
-  jobs.resize(std::min(jobs.size(), static_cast<std::size_t>(limit)));
+  if (jobs.size() > static_cast<std::size_t>(limit)) jobs.erase(jobs.begin() + limit, jobs.end());
 }
 
 std::string Number(JobState state) { return std::to_string(static_cast<int>(state)); }
@@ -326,7 +326,7 @@ Result<std::vector<JobRecord>> JobTable::ListQueue(const JobQuery& query) {
     if (running) std::ranges::sort(*running, std::less(), &JobRecord::id);
     if (const Status added = add(std::move(running)); !added) return added.error();
   }
-  const auto full = [&] { return jobs.size() == static_cast<std::size_t>(query.limit); };
+  const auto full = [&] { return jobs.size() >= static_cast<std::size_t>(query.limit); };
   if (Wants(query, JobState::kQueued) && !full() && !(behind && IsFinal(behind->state))) {
     part.behind.reset();
     part.limit = std::numeric_limits<int>::max();

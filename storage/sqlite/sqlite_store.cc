@@ -48,7 +48,7 @@ Status Prepare(Database& database, const SqliteOptions& options, WallTime now) {
 // undone the log forgets them and keeps its length. What goes wrong, such as a full disk, costs the
 // speed only.
 void PrepareLog(Database& database, std::int64_t bytes) {
-  if (bytes == 0) return;
+  if (bytes <= 0) return;
   static_cast<void>(
       database.Execute("PRAGMA cache_size = -256; BEGIN IMMEDIATE;"
                        "CREATE TABLE scratch (page); INSERT INTO scratch VALUES (zeroblob(" +

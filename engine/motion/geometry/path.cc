@@ -132,6 +132,7 @@ void PathPiece::AssignPartOffLine(const PathPiece& whole, double s_from, double 
   length_ = s_to - s_from;
   from_ = whole.At(s_from);
   to_ = whole.At(s_to);
+  tangent_ = whole.tangent_;
   if (kind_ == Kind::kArc) {
     shape_ = whole.shape_;
     ArcShape& part = *std::get_if<ArcShape>(&shape_);

@@ -1,13 +1,12 @@
 #include "engine/motion/planner/feed_steps.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace rmlcell::motion {
 
 double FeedSteps::Nearest(double wanted_mm_s) const {
+  if (!(wanted_mm_s > minimum_mm_s)) return minimum_mm_s;
   if (wanted_mm_s >= maximum_mm_s) return maximum_mm_s;
-  wanted_mm_s = std::fmax(wanted_mm_s, minimum_mm_s);  // what is no number, too
   const double step = wanted_mm_s < coarse_from_mm_s ? fine_step_mm_s : coarse_step_mm_s;
   const double steps_per_mm_s = std::round(1.0 / step);
   const auto speed_of = [&](double steps) {
@@ -17,7 +16,7 @@ double FeedSteps::Nearest(double wanted_mm_s) const {
   // little less, and 0.9999999999 is nine.
   const double steps = std::round(wanted_mm_s / step);
   const double nearest = speed_of(steps) > wanted_mm_s ? speed_of(steps - 1.0) : speed_of(steps);
-  return std::max(nearest, minimum_mm_s);
+  return nearest < minimum_mm_s ? minimum_mm_s : nearest;
 }
 
 }  // namespace rmlcell::motion

@@ -37,6 +37,7 @@ const PlannedItem* ItemStage::Next() {
   while (items_.empty()) {
     if (!MayGoOn()) return nullptr;
     if (section_left_ == 0) {
+      if (speeds().final_count() <= section_knots_) return nullptr;  // nothing new
       section_left_ = SectionSize();
       if (section_left_ == 0) return nullptr;
       BeginSection();
@@ -57,7 +58,7 @@ const PlannedItem* ItemStage::Next() {
 // How many spans are timed together next; 0 when that is not known yet.
 std::size_t ItemStage::SectionSize() {
   const std::size_t known = speeds().final_count();
-  while (section_knots_ != known) {
+  while (spans().first() + section_seen_ < spans().end()) {
     const Span& span = spans()[spans().first() + section_seen_];
     if (section_knots_ + span.knots() > known) break;
     ++section_seen_;
@@ -206,7 +207,8 @@ void ItemStage::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to
       ++section_cell_;
       ++cells.at;
     }
-    more = whole && to > end && section_.plan.timing()[section_cell_].ramp == place_ramp_;
+    more = whole && cells.at < cells.count && to > end &&
+           section_.plan.timing()[section_cell_].ramp == place_ramp_;
     if (!more) to = std::min(to, end);
   }
   TakeRamp(speed, ramp, on_ramp_to);
@@ -283,10 +285,12 @@ void ItemStage::EmitCurve(const Span& span) {
   const double half = 0.5 * span.curve_length;
   CurveCells cells;  // none: steady
   if (span.in_stretches || section_left_ > 1) {
-    cells.count = span.stretches.count;  // one where it is passed steadily
-    for (std::size_t k = 0; k < cells.count; ++k) cells.end[k] = span.curve_end(k);
+    cells.count = span.in_stretches ? span.curve_knots() : 1;
+    for (std::size_t k = 0; k < cells.count; ++k) {
+      cells.end[k] = span.in_stretches ? span.curve_end(k) : span.curve_length;
+    }
     // The speed in the middle, which is an end of a stretch when there are some.
-    const std::size_t cell = section_cell_ + (cells.count - 1) / 2;
+    const std::size_t cell = section_cell_ + (cells.count > 1 ? cells.count / 2 - 1 : 0);
     const RampPlan::Timing& timing = section_.plan.timing()[cell];
     const SpeedProfile& ramp = section_.plan.ramps()[timing.ramp];
     const double middle = cells.count > 1 ? timing.to : 0.5 * (timing.from + timing.to);

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "engine/core/check.h"
-#include "engine/core/indices.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -49,8 +48,8 @@ struct RampPlan::Try {
 // The speed between two cells on one span: a bound, until somebody has to know.
 struct RampPlan::SpeedBetween {
   SpeedProfile::Place place{};
-  double speed;
-  bool exact;
+  double speed = 0.0;
+  bool exact = false;
 
   double Exact(const SpeedProfile& profile) {
     if (!exact) speed = profile.SpeedAt(place);
@@ -79,16 +78,15 @@ struct RampPlan::Excess {
 
 // One ramp over several cells, whose limits are looked at from cell to cell.
 struct RampPlan::Look {
-  std::size_t first;
-  std::size_t last;
+  std::size_t first = 0;
+  std::size_t last = 0;
   Try whole{};
-  // Of the ramp, from BeginLook on.
-  PathLimits limits{};
+  PathLimits limits{};  // of the ramp
   double length = 0.0;
-  double start_speed{};
-  double end_speed{};
-  double peak_place{};
-  std::size_t at{};  // the next cell, which begins at `from`
+  double start_speed = 0.0;
+  double end_speed = 0.0;
+  double peak_place = 0.0;
+  std::size_t at = 0;  // the next cell, which begins at `from`
   double from = 0.0;
   SpeedProfile::Place place{};
   SpeedBetween before{};
@@ -100,16 +98,16 @@ struct RampPlan::Look {
 };
 
 struct RampPlan::Task {
-  std::size_t first;
-  std::size_t last;
+  std::size_t first = 0;
+  std::size_t last = 0;
   bool begun = false;     // of many cells: whether one ramp over all is looked at
   bool looks = false;     // and is not done
   std::size_t apart = 0;  // the next of them that is timed by itself, and the time of those before
   double time_apart = 0.0;
   Try together{};
   struct Range {
-    std::size_t first;
-    std::size_t last;
+    std::size_t first = 0;
+    std::size_t last = 0;
   };
   std::array<Range, 3> parts{};  // what it falls into otherwise
   std::size_t count = 0;
@@ -169,7 +167,7 @@ void RampPlan::NextPart() {
 
 void RampPlan::End() {
   std::size_t cell = 0;
-  for (const std::size_t ramp : IndicesOf(ramps_)) {
+  for (std::size_t ramp = 0; ramp < ramps_.size(); ++ramp) {
     double at = 0.0;
     for (; cell <= last_cell_[ramp]; ++cell) {
       const double end = cell == last_cell_[ramp] ? ramps_[ramp].end().s : at + cells_[cell].length;
@@ -191,25 +189,27 @@ bool RampPlan::Pass() {
   const double end_speed = cells_.back().end_speed;
   speeds_.resize(count);
   double speed = start_speed_;
-  for (const std::size_t k : Indices(count - 1)) {
-    speed = speeds_[k] = Reachable(speed, cells_[k], CapAfter(k));
+  for (std::size_t k = 0; k < count; ++k) {
+    speed = speeds_[k] = Reachable(speed, cells_[k], k + 1 < count ? CapAfter(k) : end_speed);
   }
-  speeds_.back() = Reachable(speed, cells_.back(), end_speed);
-  if (speeds_.back() < end_speed) return false;
+  if (speed < end_speed) return false;
   for (std::size_t k = count - 1; k > 0; --k) {
     speeds_[k - 1] = Reachable(speeds_[k], cells_[k], speeds_[k - 1]);
   }
   const RampCell& first = cells_[0];
+  if (start_speed_ <= speeds_[0] ||
+      RampLength(start_speed_, speeds_[0], first.limits) <= first.length * (1.0 + kRoom)) {
+    return true;
+  }
   // Of a short ramp the length hangs on the last digits of both speeds.
-  return RampLength(start_speed_, speeds_[0], first.limits) <= first.length * (1.0 + kRoom) ||
-         Reach(speeds_[0], first.length, first.limits) >= start_speed_ * (1.0 - kRoom);
+  return Reach(speeds_[0], first.length, first.limits) >= start_speed_ * (1.0 - kRoom);
 }
 
 void RampPlan::LevelOne() {
   ramps_.clear();
   last_cell_.clear();
   double speed = start_speed_;
-  for (const std::size_t k : IndicesOf(cells_)) {
+  for (std::size_t k = 0; k < cells_.size(); ++k) {
     const RampCell& cell = cells_[k];
     Append(SpeedProfile::Span(cell.length, speed, cell.end_speed, cell.limits), k);
     speed = cell.end_speed;
@@ -352,7 +352,7 @@ void RampPlan::LookAlong(const SpeedProfile& ramp, std::size_t cell, double from
   const std::span<const double> most = cells_[cell].most;
   const double step = (to - from) / static_cast<double>(most.size() - 1);
   SpeedProfile::Place place;
-  for (const std::size_t k : IndicesOf(most)) {
+  for (std::size_t k = 0; k < most.size(); ++k) {
     const double s = std::min(from + step * static_cast<double>(k), to);
     ramp.Advance(place, s);
     // Within a phase of a ramp the speed does not turn: where both its ends are slow enough, so is

@@ -330,8 +330,9 @@ std::vector<machine::Place> Control::Stack() const {
       const LinkedModule& linked =
           program.program->executable.modules[static_cast<std::size_t>(frame.module)];
       const auto add = [&](std::uint32_t next) {
-        const std::uint32_t step = next == 0 ? 0 : linked.module.instructions[next - 1].step;
-        stack.push_back(telling_.PlaceOf(linked.slot, step));
+        const std::vector<Instruction>& all = linked.module.instructions;
+        const std::size_t at = next > 0 ? next - 1 : 0;
+        stack.push_back(telling_.PlaceOf(linked.slot, at < all.size() ? all[at].step : 0));
       };
       for (const std::uint32_t after : frame.returns) add(after);
       add(frame.next);

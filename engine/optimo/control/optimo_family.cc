@@ -1,8 +1,6 @@
 #include "engine/optimo/control/optimo_family.h"
 
-#include <algorithm>
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "engine/core/units.h"
@@ -242,11 +240,10 @@ class Family final : public machine::MachineFamily {
       if (!condition) return condition.error();
     }
     // That of streams, but for what they do not have.
-    const std::uint64_t pass = breakpoint.from_pass;
+    const bool counts =
+        breakpoint.from_pass >= 1 && breakpoint.from_pass <= machine::kBreakpointPassMax;
     return machine::MachineFamily::CheckBreakpoint(
-        {.at = breakpoint.at,
-         .from_pass =
-             pass > machine::kBreakpointPassMax ? pass : std::min<std::uint64_t>(pass, 1)});
+        {.at = breakpoint.at, .from_pass = counts ? 1 : breakpoint.from_pass});
   }
 
   Status CheckWrite(const machine::Parameters& parameters, std::string_view name,

@@ -15,7 +15,8 @@ constexpr std::size_t kTypedMax = 9;  // what a display of 20 characters has roo
 std::string WholeText(int value, int digits) {
   std::string text = std::to_string(value);
   const auto width = static_cast<std::size_t>(digits);
-  return text.insert(0, width - std::min(width, text.size()), '0');
+  if (text.size() < width) text.insert(0, width - text.size(), '0');
+  return text;
 }
 
 }  // namespace
@@ -108,9 +109,8 @@ Form Form::OfNumbers(FormKind kind, std::span<const std::string_view> names,
                      const std::vector<double>& values) {
   constexpr double kMost = 999'999.0;
   std::vector<Field> fields;
-  auto value = values.begin();
-  for (const std::string_view name : names) {
-    fields.push_back(Field::Real(std::string(name) + " = ", value != values.end() ? *value++ : 0.0,
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    fields.push_back(Field::Real(std::string(names[i]) + " = ", i < values.size() ? values[i] : 0.0,
                                  -kMost, kMost, Decimals::kUpToThree));
   }
   return OfLines(kind, std::move(fields));
@@ -132,12 +132,13 @@ void Form::Move(bool next) {
 }
 
 bool Form::Check() {
-  for (const Line& line : lines_) {
-    const auto wrong = std::ranges::find_if_not(line, &Field::InRange);
-    if (wrong == line.end()) continue;
-    line_ = static_cast<std::size_t>(&line - lines_.data());
-    field_ = static_cast<std::size_t>(wrong - line.begin());
-    return false;
+  for (std::size_t l = 0; l < lines_.size(); ++l) {
+    for (std::size_t f = 0; f < lines_[l].size(); ++f) {
+      if (lines_[l][f].InRange()) continue;
+      line_ = l;
+      field_ = f;
+      return false;
+    }
   }
   return true;
 }

@@ -60,6 +60,7 @@ void OptimoHandbox::Drop() {
   form_.reset();
   question_.reset();
   ready_.reset();
+  asks_.clear();
 }
 
 Result<machine::HandboxAnswer> OptimoHandbox::Press(std::string_view key, machine::KeyAction action,
@@ -73,6 +74,7 @@ Result<machine::HandboxAnswer> OptimoHandbox::Press(std::string_view key, machin
   if (action != machine::KeyAction::kRelease) {
     if (view.status.state == MachineState::kOff && known->key != Key::kEmergencyStop)
       return Error{ErrorCode::kCellNotLive, "the machine is OFF", {}};
+    told_.reset();
     if (modes_.beeps) turn.answer.beeps = 1;  // OPT-4.10
     if (!ActsAlways(turn)) {
       if (view.status.mode == Mode::kRemote) {
@@ -134,6 +136,7 @@ void OptimoHandbox::ClearError(Turn& turn) {
   if (form_ || question_) {
     form_.reset();
     question_.reset();
+    asks_.clear();
     return;
   }
   if (turn.view.status.message) turn.Ask(machine::ClearMessage{});

@@ -243,6 +243,7 @@ std::optional<ShownStep> OptimoHandbox::EditStored() {
 
 void OptimoHandbox::EditRefused(ErrorCode code) {
   edit_.reset();
+  ready_behind_.reset();
   told_ = code;
 }
 

@@ -90,7 +90,7 @@ Result<ProgramEdit> InsertStep(const Steps& steps, int program, int step,
   const auto place = static_cast<std::uint32_t>(edit.place);
   Result<std::string> object = InsertInstruction(steps.module(), place, statement);
   if (!object) return object.error();
-  if (object->size() > object_limit)
+  if (object_limit > 0 && object->size() > object_limit)
     return Error{ErrorCode::kObjectTooLong, "no step has room any more", {}};
   const Result<Module> made = DecodeObject(*object);
   if (!made) return made.error();

@@ -1,5 +1,6 @@
 #include "engine/optimo/language/advice.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -76,7 +77,8 @@ class Adviser {
   void AdviseTarget(const Instruction& i, int width) {
     const ExprNode& target = module_.Value(i, 0)[0];
     if (target.op != Node::kVariable || IsReadOnly(target.variable())) return;
-    for (int index = target.index; index < target.index + width; ++index) {
+    for (int index = target.index; index < std::min(target.index + width, kVariableIndexMax + 1);
+         ++index) {
       if (!IsReserved({target.group, static_cast<std::uint8_t>(index)})) continue;
       Warn(i, ErrorCode::kReservedVariable,
            ToldVariable({target.group, static_cast<std::uint8_t>(index)}) +

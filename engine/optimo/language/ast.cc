@@ -20,7 +20,8 @@ std::string_view TypeName(ValueType type) {
 }
 
 std::string_view GroupName(VariableGroup group) {
-  constexpr std::string_view kNames[] = {"VR", "VI", "VL", "IL", "OL", "IA", "OA", "PAR"};
+  constexpr std::array<std::string_view, 8> kNames = {"VR", "VI", "VL", "IL",
+                                                      "OL", "IA", "OA", "PAR"};
   return kNames[static_cast<std::size_t>(group)];
 }
 
@@ -106,9 +107,9 @@ ModuleIndex::ModuleIndex(const Module& module) : module_(&module) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const Instruction& instruction = module.instructions[i];
     if (instruction.step > 0) by_step_.push_back(i);
-    if (const auto labels = module.Labels(instruction); !labels.empty()) {
+    if (instruction.label_count > 0) {
       const std::uint32_t target = SkipDeclares(i);
-      for (const std::uint16_t label : labels) set_label(label, target);
+      for (const std::uint16_t label : module.Labels(instruction)) set_label(label, target);
     }
     if (instruction.op == Op::kTask && instruction.numbers[0] == 1 && !task_found) {
       task_found = true;

@@ -39,6 +39,7 @@ class Checker {
     for (Instruction& instruction : module_.instructions) {
       const bool counts = instruction.op != Op::kDeclare && !IsBrokenDeclare(instruction);
       instruction.step = counts ? ++step : 0;
+      if (instruction.op == Op::kInvalid) continue;
       typing_.BeginStep(instruction);
       const std::uint64_t errors = findings_.error_count();
       CheckInstruction(instruction);
@@ -240,6 +241,7 @@ void Checker::CheckAssign(const Instruction& i) {
 }
 
 void Checker::CheckAttributes(const Instruction& i) {
+  if (i.attributes == 0) return;
   std::uint32_t at = i.first_expression + i.value_count;
   if (i.Has(kVia)) {
     for (int v = 0; v < 5; ++v) typing_.Type(at++, Wanted::kNumeric);

@@ -1,6 +1,5 @@
 #include "engine/optimo/language/constant_advice.h"
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,7 +10,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = 1e30;
 
 // What an operand must be, and the control's error when it is not.
 struct OperandRange {
@@ -61,7 +60,7 @@ class NoVariables final : public VariableAccess {
  public:
   float Read(Variable) override {
     RMLCELL_CHECK(false);
-    return {};
+    return 0.0F;
   }
 };
 
@@ -99,8 +98,8 @@ class ConstantAdviser {
                       "this waits for ever: the condition is never true", "OPT-7.27");
       return false;
     }
-    const OperandRange* range = RangeOf(i, e);
-    if (range == nullptr) return true;
+    const OperandRange* range = e < i.value_count ? RangeOf(i, e) : nullptr;
+    if (range == nullptr || expression.size() == 1) return true;  // literals: the checker's
     const auto number = static_cast<double>(value->number);
     const bool above = range->above_min ? number > range->min : number >= range->min;
     if (above && number <= range->max) return true;

@@ -6,7 +6,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-Outcome Fail(ErrorCode code) { return {.good = false, .code = code}; }
+Outcome Fail(ErrorCode code) { return {0.0F, false, code}; }
 
 Outcome OfFloat(float result) {
   if (BecomesReal(result)) return {result};
@@ -138,9 +138,7 @@ Result<Value> Evaluate(Expression expression, VariableAccess& variables) {
     }
     RMLCELL_CHECK(top >= static_cast<std::size_t>(arity));
     top -= static_cast<std::size_t>(arity);
-    // With one operand the last is the first, too.
-    const Outcome outcome =
-        Operate(node.op, stack[top], stack[top + static_cast<std::size_t>(arity) - 1]);
+    const Outcome outcome = Operate(node.op, stack[top], arity == 2 ? stack[top + 1] : 0.0F);
     if (!outcome.good) return Error{outcome.code, DetailOf(outcome.code), {}};
     stack[top++] = outcome.number;
   }

@@ -284,6 +284,7 @@ void FlowAdviser::AdviseReturns() {
 
 // OPT-7.21. The depth of a ring depends on its conditions, so that is only said.
 void FlowAdviser::AdviseNesting() {
+  if (graph_.subroutines().empty()) return;
   std::vector<LevelEdge> edges;
   for (std::uint32_t at = 0; at < graph_.size(); ++at) {
     for (const Successor& s : graph_.From(at, room_)) {
@@ -308,7 +309,7 @@ void FlowAdviser::AdviseNesting() {
 
 void AdviseOnFlow(const ParsedProgram& program, const StartModes& start, Findings& findings) {
   const std::size_t count = program.module.instructions.size();
-  if (count > kFlowInstructionsMax) return;
+  if (count == 0 || count > kFlowInstructionsMax) return;
   FlowAdviser(program, start, findings).Run();
 }
 

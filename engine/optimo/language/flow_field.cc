@@ -21,6 +21,7 @@ void Modes::SetPath(PathType path) {
 }
 
 void Modes::Then(const Modes& next) {
+  if (next == Kept()) return;
   std::uint64_t pairs = 0;
   for (std::uint64_t n = next.pairs_; n != 0; n &= n - 1) {
     const auto last = static_cast<unsigned>(std::countr_zero(n));

@@ -243,7 +243,7 @@ void MoveAdviser::AdviseRobotMoves(const FlowGraph& graph, const std::vector<boo
   for (const Placed& move : placed_) {
     const std::uint32_t of = part[move.at];
     if (move.coord != CoordType::kRobot || first[of] == kNoIndex) continue;
-    if (std::clamp(move.at, first[of], last[of]) != move.at) continue;
+    if (move.at < first[of] || move.at > last[of]) continue;
     Warn(module_.instructions[move.at], ErrorCode::kPracticeAdvice,
          "a ROBOT move between ABSOL moves is not shifted by SYSDEF", "OPT-7.109");
   }

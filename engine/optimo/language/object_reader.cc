@@ -142,7 +142,7 @@ void Reader::ReadIgnored(Instruction& i) {
   const std::string_view text = in_.Text(kSourceBytesMax);
   const std::size_t blank = std::min(text.find(' '), text.size());
   const std::string_view word_text = text.substr(0, blank);
-  const Word word = FindWord(PackName(word_text));
+  const Word word = word_text.size() <= kNameLength ? FindWord(PackName(word_text)) : Word::kNone;
   Require(word != Word::kNone && Describe(word).group == WordGroup::kIgnored &&
           module_->texts.size() < kNoName);
   if (in_.bad()) return;

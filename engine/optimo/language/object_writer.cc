@@ -105,8 +105,7 @@ std::uint32_t Checksum(std::string_view bytes) {
   const auto byte = [&](std::size_t n) {
     return std::uint32_t{static_cast<unsigned char>(bytes[at + n])};
   };
-  const std::size_t sliced = bytes.size() - bytes.size() % kSlices;
-  for (; at < sliced; at += kSlices) {
+  for (; at + kSlices <= bytes.size(); at += kSlices) {
     sum ^= byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24;
     sum = kCrc[3][sum & 0xFF] ^ kCrc[2][sum >> 8 & 0xFF] ^ kCrc[1][sum >> 16 & 0xFF] ^
           kCrc[0][sum >> 24];

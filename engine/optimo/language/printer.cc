@@ -228,9 +228,9 @@ void PrintTargets(const Module& module, const Instruction& i, std::string& out) 
 }
 
 void PrintGroups(std::uint8_t groups, std::string& out) {
-  constexpr std::string_view kNames[] = {"IL", "OL", "IA", "OA"};
+  constexpr std::array<std::string_view, 4> kNames = {"IL", "OL", "IA", "OA"};
   bool first = true;
-  for (std::size_t g = 0; g < std::size(kNames); ++g) {
+  for (std::size_t g = 0; g < kNames.size(); ++g) {
     if ((groups >> g & 1) == 0) continue;
     if (!first) out += ", ";
     first = false;
@@ -352,8 +352,8 @@ class OperandPrinter {
 }  // namespace
 
 std::string_view FunctionName(Node node) {
-  constexpr std::string_view kNames[] = {"SIN",  "COS", "TAN", "ASIN", "ACOS", "ATAN",
-                                         "SQRT", "EXP", "LN",  "LOG",  "ABS",  "INT"};
+  constexpr std::array<std::string_view, 12> kNames = {"SIN",  "COS", "TAN", "ASIN", "ACOS", "ATAN",
+                                                       "SQRT", "EXP", "LN",  "LOG",  "ABS",  "INT"};
   return kNames[static_cast<std::size_t>(node) - static_cast<std::size_t>(Node::kSin)];
 }
 

@@ -127,6 +127,7 @@ void Silencer::ReadComments() {
   for (std::size_t c = 0; c < program_.comments.size(); ++c) {
     const Comment& comment = program_.comments[c];
     const std::string_view text = program_.text.substr(comment.begin, comment.end - comment.begin);
+    if (text.find(':') == std::string_view::npos) continue;
     Directive directive = ReadDirective(text);
     if (!directive.complaint.empty())
       complaints_.push_back({c, std::move(directive.complaint), std::move(directive.fixes)});
@@ -147,6 +148,7 @@ void Silencer::ReadComments() {
 }
 
 void Silencer::Drop(std::vector<Diagnostic>& diagnostics) {
+  if (allowances_.empty()) return;
   std::erase_if(diagnostics, [&](const Diagnostic& d) {
     if (IsError(d.severity)) return false;
     const int number = Lookup(d.code).number;
@@ -207,9 +209,10 @@ void Silencer::Tell(const SilenceOptions& options, std::vector<Diagnostic>& diag
     complaints_.push_back({allowance.comment,
                            "allow " + Told("number", allowance.number) + " silences nothing here"});
   }
+  if (complaints_.empty()) return;
   std::ranges::stable_sort(complaints_, {}, &Complaint::comment);
   constexpr std::size_t kComplaintsMax = 100;  // each looks for its line
-  complaints_.resize(std::min(complaints_.size(), kComplaintsMax));
+  if (complaints_.size() > kComplaintsMax) complaints_.resize(kComplaintsMax);
   for (const Complaint& complaint : complaints_) Add(complaint, options.file, diagnostics);
   std::ranges::stable_sort(diagnostics, {},
                            [](const Diagnostic& d) { return d.where.byte_offset; });

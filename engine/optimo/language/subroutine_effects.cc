@@ -9,7 +9,7 @@ SubroutineEffects::SubroutineEffects(const Module& module, const FlowGraph& grap
                                      const Dwells& dwells, const std::vector<bool>& faulty)
     : module_(module), graph_(graph), dwells_(dwells), faulty_(faulty) {
   FindRegion();
-  Solve();
+  if (effects_.size() > 1) Solve();
 }
 
 const FlowState* SubroutineEffects::Of(std::uint32_t target) const {

@@ -28,16 +28,15 @@ class Compensator {
 
   // Directives and statements in the order of the text.
   std::vector<Fix> Run() {
-    auto comment = p_.comments.begin();
-    const auto obey_up_to = [&](auto end) {
-      for (; comment != end; ++comment) Obey(*comment);
-    };
+    std::size_t comment = 0;
     for (std::size_t s = 0; s < module_.instructions.size(); ++s) {
-      obey_up_to(std::ranges::lower_bound(comment, p_.comments.end(), p_.statements[s].begin, {},
-                                          &Comment::begin));
+      for (; comment < p_.comments.size() && p_.comments[comment].begin < p_.statements[s].begin;
+           ++comment) {
+        Obey(p_.comments[comment]);
+      }
       Pass(module_.instructions[s]);
     }
-    obey_up_to(p_.comments.end());
+    for (; comment < p_.comments.size(); ++comment) Obey(p_.comments[comment]);
     FinishChain();
     std::ranges::stable_sort(edits_, {}, &Fix::byte_offset);
     return std::move(edits_);

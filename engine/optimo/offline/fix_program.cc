@@ -22,8 +22,10 @@ std::size_t ErrorCount(const machine::Translation& translation) {
 // Advice on an inch source would take its numbers for millimetres.
 machine::Translation CheckForm(const machine::SourceFile& file) {
   Compilation compiled = Compile(file.bytes, file.name, {.object_limit = 0, .advice = false});
-  machine::Translation form;  // of which only the findings are looked at
+  machine::Translation form;
+  form.ok = compiled.ok;
   form.diagnostics = std::move(compiled.diagnostics);
+  form.diagnostics_dropped = compiled.diagnostics_dropped;
   return form;
 }
 
@@ -36,12 +38,13 @@ RepairedText FixProgram(const machine::SourceFile& file, const ProgramCheck& che
   fixing.left = look({file.name, fixing.text});
   for (int round = 0; round < kRoundsMax; ++round) {
     const std::vector<Diagnostic>& found = fixing.left.diagnostics;
+    const std::vector<std::size_t> chosen = RepairableFindings(fixing.text, found);
+    if (chosen.empty()) break;
     std::string text = ApplyFixes(fixing.text, found);
     if (text == fixing.text) break;
     machine::Translation after = look({file.name, text});
     if (ErrorCount(after) > ErrorCount(fixing.left)) break;
-    for (const std::size_t d : RepairableFindings(fixing.text, found))
-      fixing.fixed.push_back(found[d]);
+    for (const std::size_t d : chosen) fixing.fixed.push_back(found[d]);
     fixing.text = std::move(text);
     fixing.left = std::move(after);
   }

@@ -54,7 +54,7 @@ std::optional<PlaneVector> NearestMeeting(const PlaneCurve& a, const PlaneCurve&
     middle = a.at + towards * along;
     to_either = PlaneVector(-towards.y(), towards.x()) * std::sqrt(half2);
   }
-  const PlaneVector points[] = {middle + to_either, middle - to_either};
+  const std::array<PlaneVector, 2> points = {middle + to_either, middle - to_either};
   return *std::ranges::min_element(points, {}, motion::LengthOf);
 }
 

@@ -198,9 +198,13 @@ std::vector<FigureChange> CompareFigures(const std::vector<machine::Figure>& a,
 }  // namespace
 
 std::string AspectText(unsigned aspects) {
-  constexpr std::pair<Aspect, std::string_view> kNames[] = {
-      {kAspectPath, "path"},       {kAspectTime, "time"}, {kAspectPower, "power"},
-      {kAspectOutputs, "outputs"}, {kAspectData, "data"}, {kAspectFlow, "flow"}};
+  constexpr std::array<std::pair<Aspect, std::string_view>, 6> kNames = {
+      {{kAspectPath, "path"},
+       {kAspectTime, "time"},
+       {kAspectPower, "power"},
+       {kAspectOutputs, "outputs"},
+       {kAspectData, "data"},
+       {kAspectFlow, "flow"}}};
   std::string text;
   for (const auto& [aspect, name] : kNames) {
     if ((aspects & aspect) == 0) continue;

@@ -19,17 +19,19 @@ void Append(std::uint32_t value, std::string& to) {
 // are 1 and ON where a logical value stands. A negative zero is zero.
 void AppendMeaning(Expression value, std::string& to) {
   for (const ExprNode& node : value) {
-    if (Arity(node.op) == 0 && node.op != Node::kVariable) {
-      to += node.type == ValueType::kLogical ? 'l' : 'n';
-      Append(std::bit_cast<std::uint32_t>(node.number == 0.0F ? 0.0F : node.number), to);
-      continue;
-    }
-    to += static_cast<char>(node.op);
     if (node.op == Node::kVariable) {
+      to += 'v';
       to += static_cast<char>(node.group);
       to += static_cast<char>(node.index);
+    } else if (Arity(node.op) == 0) {
+      to += node.type == ValueType::kLogical ? 'l' : 'n';
+      Append(std::bit_cast<std::uint32_t>(node.number == 0.0F ? 0.0F : node.number), to);
+    } else {
+      to += 'o';
+      to += static_cast<char>(node.op);
     }
   }
+  to += ';';
 }
 
 // With names replaced by what they stand for: the same name may be declared differently.
@@ -46,7 +48,7 @@ std::string ValueText(const Module& module, Expression value) {
   if (!IsPlain(value) || value[0].op == Node::kLogical || value[0].type == ValueType::kLogical)
     return Text(module, value);
   std::string out;
-  PrintReal(value[0].number, out);
+  PrintReal(value[0].number == 0.0F ? 0.0F : value[0].number, out);
   return out;
 }
 
@@ -143,7 +145,7 @@ unsigned AspectsOfAttribute(std::uint16_t bit, unsigned otherwise) {
   return otherwise;
 }
 
-constexpr const char* kAxes[] = {"X", "Y", "Z", "A", "B"};
+constexpr std::array<const char*, 5> kAxes = {"X", "Y", "Z", "A", "B"};
 
 void CompareMove(const Module& a, const Instruction& i, const Module& b, const Instruction& j,
                  StepDifference& to) {

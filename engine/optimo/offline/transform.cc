@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
@@ -43,10 +44,10 @@ struct NumberEdits {
   }
 };
 
-// The edits are in the order of the text.
-Rewriting Finish(std::string_view text, const std::vector<Fix>& edits, Findings& findings) {
+Rewriting Finish(std::string_view text, std::vector<Fix> edits, Findings& findings) {
   Rewriting result;
   result.ok = findings.error_count() == 0;
+  std::ranges::stable_sort(edits, {}, &Fix::byte_offset);
   if (result.ok) result.text = ApplyEdits(text, edits);
   result.diagnostics = findings.Take(text, {});
   return result;
@@ -102,13 +103,14 @@ Rewriting Transform(std::string_view text, const motion::RigidMotion& motion) {
       const motion::HeadAngles head = TurnHead({*v[3], *v[4]}, in_machine, swing);
       if (std::fabs(std::sin(*v[4])) > kNearlyDown && std::fabs(std::sin(head.b_rad)) > kNearlyDown)
         swing = head.a_rad - *v[3];
-      const std::array values = {point.x(), point.y(), point.z(), head.a_rad, head.b_rad};
+      const std::array<double, 5> values = {point.x(), point.y(), point.z(), head.a_rad,
+                                            head.b_rad};
       for (std::uint32_t n = 0; n < 5; ++n) {
         edits.Put(i, i.first_expression + first + n, values[n]);
       }
     }
   }
-  return Finish(text, edits.edits, findings);
+  return Finish(text, std::move(edits.edits), findings);
 }
 
 Rewriting Shift(std::string_view text, const std::array<double, 6>& offset) {
@@ -134,7 +136,7 @@ Rewriting Shift(std::string_view text, const std::array<double, 6>& offset) {
     findings.Add(ErrorCode::kShiftNothing, {}, "no plain number is assigned to VR[86] to VR[91]",
                  "OPT-8.75");
   }
-  return Finish(text, edits.edits, findings);
+  return Finish(text, std::move(edits.edits), findings);
 }
 
 }  // namespace rmlcell::optimo

@@ -72,7 +72,7 @@ FileForm FormOfFile(std::string_view name, std::string_view bytes) {
 std::vector<Diagnostic> CheckProgramNumber(int slot, std::string_view text) {
   if (slot < 1 || slot > kAmadaProgramMax || IsHouseProgram(slot, text)) return {};
   Diagnostic reserved{.code = ErrorCode::kReservedVariable,
-                      .severity = Severity::kWarning,
+                      .severity = Lookup(ErrorCode::kReservedVariable).severity,
                       .detail = "programs 1 to 7 are reserved for Amada",
                       .rule = "OPT-10.17"};
   reserved.program = slot;

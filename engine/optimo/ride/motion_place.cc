@@ -25,8 +25,10 @@ motion::AxisValues Values(const motion::AxisPose& pose) {
 // By the axis that goes farthest.
 PlaceOnMove PlaceInAxes(const motion::PathPiece& motion, const motion::PathPiece& move) {
   const motion::AxisValues from = Values(move.axes_from()), to = Values(move.axes_to());
-  Eigen::Index widest = 0;
-  (to - from).cwiseAbs().maxCoeff(&widest);
+  std::size_t widest = 0;
+  for (std::size_t i = 1; i < motion::kAxisCount; ++i) {
+    if (std::abs(to[i] - from[i]) > std::abs(to[widest] - from[widest])) widest = i;
+  }
   const double begin = Values(motion.axes_from())[widest];
   const double rate = (to[widest] - from[widest]) / move.length();
   const double rate_of_motion = (Values(motion.axes_to())[widest] - begin) / motion.length();

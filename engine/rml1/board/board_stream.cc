@@ -85,7 +85,7 @@ class BoardMiller {
     writer_.SpindleOn();
     clear_ = std::max<std::int64_t>(1, NearestUnit(options_.clearance_mm, profile_));
     const Units at = writer_.at();
-    writer_.Rapid({at.x, at.y, std::min(at.z, clear_)});
+    if (at.z > clear_) writer_.Rapid({at.x, at.y, clear_});
   }
 
   // Around it once for each step of the depth, without a lift between.

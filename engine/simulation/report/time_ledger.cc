@@ -24,11 +24,12 @@ void TimeLedger::Open(const Gap& gap) {
 }
 
 void TimeLedger::Leave(SimTime until, const Gap& now) {
+  if (until <= reached_) return;
   Gap gap = now;
   gap.start = reached_;
   gap.end = until;
-  Open(gap);  // none, if it ends before it begins
-  reached_ = std::max(reached_, until);
+  Open(gap);
+  reached_ = until;
 }
 
 SimTime TimeLedger::Claim(SimTime start, SimTime end, const Gap& now) {

@@ -5,7 +5,7 @@
 namespace rmlcell::simulation {
 namespace {
 
-SimTime Later(SimTime time, SimTime by) { return time + std::min(by, kForever - time); }
+SimTime Later(SimTime time, SimTime by) { return time > kForever - by ? kForever : time + by; }
 
 }  // namespace
 

@@ -102,12 +102,21 @@ TEST_F(HandboxWatchTest, SeesPanelAndMachine) {
 
 // A server that ends its streams well goes without a reason.
 TEST_F(HandboxWatchTest, TheFirstReasonIsTheOne) {
-  const auto watch = Watch(std::chrono::seconds(60));
+  machine_.refused["WatchMachine"] = {grpc::StatusCode::PERMISSION_DENIED, "not you"};
+  const auto watch = Watch(std::chrono::seconds(1));
   handbox_.ends = true;
-  HandboxSeen seen = Await(*watch, IsLost);
+  const HandboxSeen seen = Await(*watch, IsLost);
   EXPECT_EQ(seen.lost->error_code(), grpc::StatusCode::UNAVAILABLE);
   EXPECT_EQ(seen.lost->error_message(), "the server has ended");
   machine_.ends = true;
+  // Two renewals later the end of the other stream has come, too.
+  calls_.Take();
+  for (int renewed = 0; renewed < 2;) {
+    const std::string calls = calls_.Take();
+    for (std::size_t at = 0; (at = calls.find("RenewControl", at)) != std::string::npos; ++at)
+      ++renewed;
+    std::this_thread::yield();
+  }
   EXPECT_EQ(watch->seen().lost->error_message(), "the server has ended");
 }
 

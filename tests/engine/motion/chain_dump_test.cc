@@ -1,4 +1,5 @@
 // What the stages of the planner hold is a text: how a chain of moves gets from one to the next.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -173,17 +174,17 @@ TEST(ItemStageDump, SectionsAreGivenOutMoveByMove) {
   EXPECT_TRUE(legs.moves().empty());
 }
 
-// As many spans are timed together as have room among 2560 cells with three to each: 853, of which
-// one is taken here. No knot of this chain is passed as fast as it may be.
-TEST(ItemStageDump, SectionsHaveAsManySpansAsThereIsRoomFor) {
+// What is timed together of so many moves in a row, with ramps over 405 mm to 90 mm/s: no knot is
+// passed as fast as it may be.
+std::string SectionOf(std::size_t window, int moves) {
   MachineLimits machine = PlainMachine();
-  machine.tip_acceleration_mm_s2 = 10.0;  // 405 mm to 90 mm/s
+  machine.tip_acceleration_mm_s2 = 10.0;
   machine.tip_jerk_mm_s3 = 1000.0;
   machine.axes.jerk.fill(1e9);
-  ItemStage items(machine, Planner::kWindow);
+  ItemStage items(machine, window);
   SpanStage& spans = items.span_stage();
   LegStage& legs = spans.leg_stage();
-  for (int k = 0; k < 2000; ++k) {
+  for (int k = 0; k < moves; ++k) {
     MoveCommand move;
     move.path = PathPiece::Line({{0.1 * k, 0, 0}}, {{0.1 * (k + 1), 0, 0}});
     move.speed_fraction = k % 2 == 0 ? 0.9 : 1.0;  // else they would be one leg
@@ -196,35 +197,20 @@ TEST(ItemStageDump, SectionsHaveAsManySpansAsThereIsRoomFor) {
   }
   spans.Settle();
   items.AllowAll();
-  ASSERT_NE(items.Next(), nullptr);
-  EXPECT_TRUE(items.Dump().starts_with("section: 852 spans, ")) << items.Dump().substr(0, 60);
+  EXPECT_NE(items.Next(), nullptr);
+  return items.Dump();
+}
+
+// As many spans are timed together as have room among 2560 cells with three to each: 853, of which
+// one is taken here.
+TEST(ItemStageDump, SectionsHaveAsManySpansAsThereIsRoomFor) {
+  EXPECT_THAT(SectionOf(Planner::kWindow, 2000), testing::StartsWith("section: 852 spans, "));
 }
 
 // Nor more moves than half a window and one, whatever room there is: 33 of them, of which one is
 // taken.
 TEST(ItemStageDump, SectionsHaveNoMoreThanHalfAWindowOfMoves) {
-  MachineLimits machine = PlainMachine();
-  machine.tip_acceleration_mm_s2 = 10.0;
-  machine.tip_jerk_mm_s3 = 1000.0;
-  machine.axes.jerk.fill(1e9);
-  ItemStage items(machine, 64);
-  SpanStage& spans = items.span_stage();
-  LegStage& legs = spans.leg_stage();
-  for (int k = 0; k < 60; ++k) {
-    MoveCommand move;
-    move.path = PathPiece::Line({{0.1 * k, 0, 0}}, {{0.1 * (k + 1), 0, 0}});
-    move.speed_fraction = k % 2 == 0 ? 0.9 : 1.0;  // else they would be one leg
-    move.fly = true;
-    legs.Add(move, legs.LimitsFor(move), true);
-  }
-  legs.End();
-  legs.Settle();
-  while (spans.Resolve(false)) {
-  }
-  spans.Settle();
-  items.AllowAll();
-  ASSERT_NE(items.Next(), nullptr);
-  EXPECT_TRUE(items.Dump().starts_with("section: 32 spans, ")) << items.Dump().substr(0, 60);
+  EXPECT_THAT(SectionOf(64, 60), testing::StartsWith("section: 32 spans, "));
 }
 
 // Where the machine stands a section ends, with a limit on jerk, too: no ramp runs across.
