@@ -76,7 +76,7 @@ class Adviser {
 
   void AdviseTarget(const Instruction& i, int width) {
     const ExprNode& target = module_.Value(i, 0)[0];
-    if (target.op != Node::kVariable || IsReadOnly(target.variable())) return;
+    if (target.op != Node::kVariable || IsReadOnly(target.variable()) || !HasIndex(target)) return;
     for (int index = target.index; index < std::min(target.index + width, kVariableIndexMax + 1);
          ++index) {
       if (!IsReserved({target.group, static_cast<std::uint8_t>(index)})) continue;
@@ -95,6 +95,13 @@ class Adviser {
            "OPT-7.106");
       return;
     }
+  }
+
+  // A name that is no index has an error of its own, and no variable is known.
+  bool HasIndex(const ExprNode& variable) const {
+    if (variable.index_name == kNoName) return true;
+    const DeclaredName& name = module_.names[variable.index_name];
+    return name.declared && name.value.op == Node::kInteger && name.value.number == variable.index;
   }
 
   // The value of a literal or constant; nothing when it is computed.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/optimo/language/evaluate.h"
+#include "engine/optimo/language/lexer.h"
 #include "engine/optimo/language/nearest_word.h"
 
 namespace rmlcell::optimo {
@@ -37,6 +38,17 @@ Place Typing::PlaceOfNode(std::size_t node) {
   return {place.offset, static_cast<int>(place.length), static_cast<int>(instruction_->step)};
 }
 
+// Where its name stands: of a variable with an index by name only that.
+NodePlace Typing::NamePlaceOf(std::size_t node) {
+  NodePlace place = NodePlaceOf(node);
+  if (module_.nodes[node].index_name == kNoName) return place;
+  std::vector<Comment> comments;
+  Lexer lexer(places_->text.substr(place.offset, place.length), comments);
+  lexer.NextStatement();
+  const Token& name = lexer.At(2);  // behind the group and '['
+  return {place.offset + name.offset, name.length};
+}
+
 void Typing::Report(ErrorCode code, std::size_t node, Detail detail, std::string_view rule) {
   findings_.Add(code, PlaceOfNode(node), std::move(detail), rule);
 }
@@ -50,11 +62,14 @@ void Typing::ReportUndeclared(std::uint16_t name, std::size_t node) {
   const std::string text = NameText(module_, name);
   const NearWords near = NearestWords(text, candidates);
   std::vector<Fix> fixes;
-  if (places_ != nullptr && IsSurelyName(text, near)) {
-    const NodePlace place = NodePlaceOf(node);
-    fixes.push_back({place.offset, static_cast<int>(place.length), near.words.front()});
+  Place at = PlaceOfStatement();
+  if (places_ != nullptr) {
+    const NodePlace place = NamePlaceOf(node);
+    at.offset = place.offset;
+    at.length = static_cast<int>(place.length);
+    if (IsSurelyName(text, near)) fixes.push_back({at.offset, at.length, near.words.front()});
   }
-  findings_.Add(ErrorCode::kNameUndeclared, PlaceOfNode(node),
+  findings_.Add(ErrorCode::kNameUndeclared, at,
                 Told("name", text) + " is not declared" + QuestionFor(near), "OPT-7.50",
                 std::move(fixes));
 }

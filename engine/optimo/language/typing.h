@@ -53,6 +53,7 @@ class Typing {
     bool unknown = false;  // has an error already
   };
   NodePlace NodePlaceOf(std::size_t node);
+  NodePlace NamePlaceOf(std::size_t node);
   Operand TypeLeaf(std::size_t node);
   bool ResolveNode(std::size_t node);
   bool ResolveIndex(std::size_t node);

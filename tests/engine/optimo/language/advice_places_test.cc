@@ -299,6 +299,15 @@ TEST(AdvicePlaces, OfSingleInstructions) {
   for (const AdviceRow& row : rows) ExpectAdvice(row);
 }
 
+// OPT-7.106, OPT-7.60: of an output nothing is said where its index has an error.
+TEST(AdvicePlaces, OfAnOutputByName) {
+  ExpectAdvice({"DECLARE NINE = 20\n{OL[NINE] = ON}\n", 7412, "OPT-7.106", "OL[20] is used"});
+  ExpectAdvice({"DECLARE NONE = 0\n{OL[NONE] = ON}\n", 7412, "OPT-7.106", "OL[0] is used"});
+  EXPECT_EQ(FindingsOf("OL[NINE] = ON\n"), (std::vector<int>{7011}));
+  EXPECT_EQ(FindingsOf("DECLARE NINE = 200\nOL[NINE] = ON\n"), (std::vector<int>{7017}));
+  EXPECT_EQ(FindingsOf("DECLARE NINE = 0.\nOL[NINE] = ON\n"), (std::vector<int>{7017}));
+}
+
 // OPT-2.35, OPT-3.06, OPT-3.08, OPT-3.45, OPT-3.61: constants that are computed.
 TEST(AdvicePlaces, OfConstantsOutsideTheirRange) {
   const std::string fails = "this fails whenever it is executed: a value that is not ";

@@ -18,6 +18,16 @@ TEST(Fixes, MistypedWordsAreCorrected) {
   EXPECT_EQ(Fixed("DECLARE XHOME = VR[1]\nXHOEM = 5.\n"), "DECLARE XHOME = VR[1]\nXHOME = 5.\n");
 }
 
+// OPT-7.91, OPT-7.60: of a variable with an index by name only the name is put right.
+TEST(Fixes, MistypedIndexesAreCorrected) {
+  EXPECT_EQ(Fixed("DECLARE VALVE = 16\nOL[VAVLE] = ON\nVR [ vavle ] = 5.*VR[VAVLE]\n"),
+            "DECLARE VALVE = 16\nOL[VALVE] = ON\nVR [ VALVE ] = 5.*VR[VALVE]\n");
+  const std::vector<Diagnostic> found =
+      Compile("DECLARE VALVE=16\nOL[VAVLE] = ON\n", "", {}).diagnostics;
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].where, (SourceSpan{.line = 2, .column = 4, .length = 5, .byte_offset = 20}));
+}
+
 // OPT-7.50: a program that would stay valid with another variable is left to the programmer.
 TEST(Fixes, NoNameIsMadeAnotherThatMayNotBeMeant) {
   const std::string text =
