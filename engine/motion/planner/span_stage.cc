@@ -65,14 +65,14 @@ std::optional<double> SpanStage::LengthAfter(Number leg, double enough,
   return std::nullopt;
 }
 
-// Points passed straight on that the curve of `cut` at the end of `leg` swallows keep their speed:
-// the least of them; nothing when they are not known yet.
+// Points passed straight on that the curve of `cut` at the end of `leg` swallows or ends at keep
+// their speed: the least of them; nothing when they are not known yet.
 std::optional<double> SpanStage::SpeedWithin(Number leg, double cut,
                                              bool accept_what_is_there) const {
   const Ring<Leg>& legs = leg_stage_.legs();
   double least = HUGE_VAL;
   double beyond = 0.0;
-  for (Number k = leg + 1; k < legs.end() && beyond + legs[k].length < cut; ++k) {
+  for (Number k = leg + 1; k < legs.end() && beyond + legs[k].length <= cut; ++k) {
     beyond += legs[k].length;
     const bool known = leg_stage_.knows_speed_of(k);
     if (!known && !accept_what_is_there) return std::nullopt;
@@ -100,7 +100,7 @@ std::optional<double> SpanStage::TakeCurve(Span& closing, const Leg& leg, double
     return 0.0;
   }
   double swallowed = HUGE_VAL;  // the speed of what the curve takes whole
-  if (leg_stage_.legs()[number + 1].length < cut) {
+  if (leg_stage_.legs()[number + 1].length <= cut) {
     const auto within = SpeedWithin(number, cut, accept_what_is_there);
     if (!within) return std::nullopt;
     swallowed = *within;

@@ -85,7 +85,10 @@ void PathRide::Stop(const StopPlan& plan, const AxisLimits& axes) {
   };
   rides_ = false;
   to_come_.clear();
-  std::size_t passed = ramp.index + 1 - std::min(ramp.motions.size(), ramp.index + 1);
+  std::size_t passed = 0;
+  // At the very end of the motion under way the ramp begins behind it.
+  for (std::size_t left = ramp.index + 1; left > ramp.motions.size() && passed < ramp.index; --left)
+    add_marks(passed++, to_come_);
   for (const PlannedMotion& motion : ramp.motions) {
     to_come_.emplace_back(motion);
     if (passed != ramp.index) add_marks(passed++, to_come_);

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+
 #include "tests/engine/motion/plan_check.h"
 #include "tests/engine/motion/random_chain.h"
 
@@ -117,6 +120,41 @@ TEST(PathRide, StopLeavesTheRestForStart) {
   EXPECT_EQ(TagsToCome(ride), "2 m12 3 m13");
   EXPECT_NEAR(ramp_mm + LengthToCome(ride), 201.0, 1e-6);
   EXPECT_FALSE(ride.TakeUpInterrupted());
+}
+
+// STOP at the very middle of a bend that is too tight to brake in, at the time of the mark there:
+// it is still passed, whichever way that time is rounded.
+TEST(PathRide, StopAtTheTimeOfAMarkKeepsIt) {
+  const MachineLimits machine = StandardMachine();
+  std::set<std::string> marked;
+  for (int length_mm = 50; length_mm < 80; ++length_mm) {
+    MoveCommand first;
+    MoveCommand second;
+    const double at_mm = length_mm;
+    first.path = PathPiece::Line({{0, 0, 0}}, {{at_mm, 0, 0}});
+    second.path = PathPiece::Line({{at_mm, 0, 0}}, {{at_mm, at_mm, 0}});
+    first.tag = 1;
+    first.fly = true;
+    second.tag = 2;
+    Planner planner(machine);
+    ASSERT_TRUE(planner.Append(first));
+    planner.Mark(11);
+    ASSERT_TRUE(planner.Append(second));
+    planner.Stop();
+    PathRide ride(HoldRamp::kStays);
+    while (const std::optional<PlannedItem> item = planner.Next()) ride.Plan(*item);
+    SimTime now = kBegin;
+    while (!std::holds_alternative<PlannedMark>(ride.to_come()[1])) {
+      now = ride.Begin(now).arrival;
+      ride.Leave();
+    }
+    now = ride.Begin(now).arrival;
+    const std::optional<PathRide::StopPlan> plan = ride.PlanStop(now, machine.axes);
+    ASSERT_TRUE(plan);
+    ride.Stop(*plan, machine.axes);
+    marked.insert(TagsToCome(ride));
+  }
+  EXPECT_EQ(marked, (std::set<std::string>{"1 m11 2", "m11 2"}));
 }
 
 // A move that is ended on its way takes all with it that would follow, of what a STOP interrupted,

@@ -374,6 +374,32 @@ TEST(Planner, WindowFullOfPointsThatABendSwallows) {
   }
 }
 
+// A bend that ends exactly at a point passed straight on keeps the speed of that point: with a line
+// of a length like that before, half of the run is just that line. motion.md 4.3, OPT-2.35
+TEST(Planner, PointAtTheVeryEndOfABend) {
+  for (const std::size_t lines : {1, 2, 5}) {
+    for (const double more : {-1e-3, 0.0, 1e-3}) {
+      std::vector<MoveCommand> chain = {LineTo({1000, 0, 0}, {1300, 0, 0}, 1, true)};
+      chain.back().speed_fraction = 1.0;
+      const auto go = [&](double length, double speed, bool fly) {
+        const MachinePoint from = chain.back().path.to().point;
+        chain.push_back(LineTo(from, from + MachineVector{0, length, 0}, 1, fly));
+        chain.back().speed_fraction = speed;
+      };
+      for (std::size_t k = 0; k < lines; ++k)
+        go(10.0 / static_cast<double>(lines), k % 2 == 0 ? 1.0 : 0.9, true);
+      go(10.0 + more, 0.02, false);
+      double slow_s = 0.0;
+      for (const PlannedMotion& motion : Plan(chain)) {
+        if (motion.path.from().point.y() < 10.0 - 1e-6) continue;
+        EXPECT_LE(motion.speed.peak_speed(), 10.0) << lines << ' ' << more;
+        slow_s += motion.speed.duration_s();
+      }
+      EXPECT_GE(slow_s, (10.0 + more) / 10.0) << lines << ' ' << more;
+    }
+  }
+}
+
 // A copy goes on by itself.
 TEST(Planner, CopyIsASnapshot) {
   Planner planner(StandardMachine());
