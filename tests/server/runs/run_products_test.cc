@@ -100,7 +100,7 @@ class RunProductsTest : public testing::Test {
     EXPECT_TRUE(Eventually([&] { return HasReport(next); }));
     EXPECT_FALSE(HasReport(job));
     EXPECT_EQ(Played(), recording + "good");
-    EXPECT_TRUE(std::filesystem::is_empty(folder_.File("runs")));
+    EXPECT_TRUE(Eventually([&] { return std::filesystem::is_empty(folder_.File("runs")); }));
   }
 
   ServerBed bed_;
