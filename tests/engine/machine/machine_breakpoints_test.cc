@@ -158,7 +158,7 @@ TEST_F(MachineTest, BreakpointsHaveLimits) {
   Good(SetBreakpoints{many});
   const std::string saved = machine->Save();
   many.push_back({.at = {1, 2}});
-  EXPECT_THAT(Refused(SetBreakpoints{many}), HasSubstr("at most 100 breakpoints are set"));
+  EXPECT_EQ(Refused(SetBreakpoints{many}), "CELL-E9003 at most 100 breakpoints are set");
   Load({kLoop}, saved);
   EXPECT_EQ(machine->breakpoints().size(), kBreakpointsMax);
 }
@@ -183,7 +183,7 @@ TEST_F(MachineTest, AMarkIsSmall) {
   Good(SetBreakpoints{many});
   EXPECT_LE(machine->Save().size(), 16U * 1024U);
   many[0].condition = std::string(kBreakpointConditionMax + 1, ' ');
-  EXPECT_THAT(Refused(SetBreakpoints{many}), HasSubstr("at most 80 bytes"));
+  EXPECT_EQ(Refused(SetBreakpoints{many}), "CELL-E9003 a condition has at most 80 bytes");
 }
 
 // A dry run ends at a step of a slot; without one there is none.

@@ -4,7 +4,9 @@
 namespace rmlcell::machine {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 class MillMachine : public MachineTest {
  protected:
@@ -132,8 +134,10 @@ TEST_F(MillMachine, ItsSpindleTurnsInRunsOnly) {
 
 TEST_F(MillMachine, RefusesWhatAMillDoesNotHave) {
   Load({kStrokes});
-  EXPECT_THAT(Refused(ChangeMode{Mode::kRepeat}), HasSubstr("no mode REPEAT"));
-  EXPECT_THAT(Refused(SetSimulation{ProgramStep{1, 2}}), HasSubstr("no dry run"));
+  EXPECT_THAT(Refused(ChangeMode{Mode::kRepeat}),
+              AllOf(StartsWith("CELL-E9423"), HasSubstr("no mode REPEAT")));
+  EXPECT_THAT(Refused(SetSimulation{ProgramStep{1, 2}}),
+              AllOf(StartsWith("CELL-E9424"), HasSubstr("no dry run")));
   EXPECT_THAT(Refused(SetBreakpoints{{{.at = {1, 2}, .condition = "X > 3"}}}),
               HasSubstr("no expressions"));
   EXPECT_THAT(Refused(SetBreakpoints{{{.at = {1, 2}, .from_pass = 2}}}),
@@ -141,8 +145,12 @@ TEST_F(MillMachine, RefusesWhatAMillDoesNotHave) {
   EXPECT_THAT(Refused(WriteVariable{"VS", 5.0}), HasSubstr("by the machine alone"));
   EXPECT_THAT(Refused(WriteVariable{"VI[1]", 5.0}), HasSubstr("no variable"));
   EXPECT_THAT(Refused(ChangeInput{.kind = InputKind::kLogical, .index = 1, .value = 1.0}),
-              HasSubstr("no input"));
-  EXPECT_THAT(Refused(ChangeOverride{0.0}), HasSubstr("it is 10 to 145 %"));
+              AllOf(StartsWith("CELL-E9003"), HasSubstr("no input")));
+  EXPECT_THAT(Refused(ChangeOverride{0.0}),
+              AllOf(StartsWith("CELL-E9003"), HasSubstr("it is 10 to 145 %")));
+  const Result<KeyAnswer> pressed = machine->PressKey("ENT", KeyAction::kPress);
+  ASSERT_FALSE(pressed);
+  EXPECT_EQ(pressed.error().code, ErrorCode::kCellNotLive);
 }
 
 // RML1-7.08: speeds and the place stay from stream to stream; behind a power cycle it is a new one,

@@ -226,7 +226,9 @@ TEST_F(StartAtCommand, IsRefused) {
   EXPECT_THAT(why({.at = {1, 99}}),
               HasSubstr("CELL-E9426 step 1/99 is not reached: the program ends; the last step "
                         "reached is 1/5; clean before: 1/"));
-  EXPECT_THAT(why({.at = {1, 2}, .occurrence = 2}), HasSubstr("comes to each of them once"));
+  EXPECT_THAT(
+      why({.at = {1, 2}, .occurrence = 2}),
+      HasSubstr("CELL-E9426 a stream has commands from 1 on, and comes to each of them once"));
   // Behind a command that ESC.K cut off no run can halt.
   const RunSetup cut = Setup({"PU100,1\x1b.KPU200,200;PU300,300;"});
   EXPECT_THAT(FirstRefusal(PreviewOf(cut, {.at = {1, 2}})),
