@@ -73,6 +73,7 @@ TEST(MaterialArguments, OfTools) {
 TEST(MaterialArguments, OfStlText) {
   const auto read = ReadStl("solid a\nfacet normal 0 0 1\nouter loop\nvertx 0 0 0\n");
   ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::kCellBadText);
   EXPECT_EQ(read.error().detail, "no STL: line 4: 'vertx'");
   EXPECT_EQ(ArgumentsText(read.error().detail), "line=4 word='vertx'");
 }

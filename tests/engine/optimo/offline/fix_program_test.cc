@@ -107,7 +107,9 @@ TEST(FixProgram, ObjectsAndBinariesAreNoText) {
   EXPECT_FALSE(CheckIsText("12.O", object));
   EXPECT_FALSE(CheckIsText("12.S", object));
   EXPECT_FALSE(CheckIsText("12.S", std::string_view("SPEED 20\n\0", 10)));
-  EXPECT_EQ(CheckIsText("12.S", object).error().code, ErrorCode::kCellBadText);
+  const Status of_object = CheckIsText("12.O", "SPEED 20\n");
+  EXPECT_EQ(of_object.error().code, ErrorCode::kCellBadText);
+  EXPECT_EQ(of_object.error().detail, "12.O is an object, not a source");
   EXPECT_EQ(CheckIsText("12.S", std::string_view("SPEED 20\n\0", 10)).error().code,
             ErrorCode::kCellBadText);
   EXPECT_TRUE(CheckIsText("12.S", "SPEED 20 ; \xE9t\xE9 \x1B\n\x1A"));

@@ -172,7 +172,9 @@ TEST(Explain, EndsAndEdges) {
   EXPECT_EQ(cut[0].name, "");
   ASSERT_EQ(cut[0].findings.size(), 1U);
   EXPECT_EQ(cut[0].findings[0].code, ErrorCode::kRml1IncompleteCommand);
-  EXPECT_FALSE(Explain("", ParametersOf("t1"), [](const ExplainedPhrase&) { return true; }));
+  const Status empty = Explain("", ParametersOf("t1"), [](const ExplainedPhrase&) { return true; });
+  ASSERT_FALSE(empty);
+  EXPECT_EQ(empty.error().code, ErrorCode::kCellEmptyProgram);
   EXPECT_EQ(ExplainAll("PU" + std::string(500, ' ') + "1,2;")[0].text, "PU");
 }
 
