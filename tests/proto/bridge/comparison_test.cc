@@ -57,6 +57,18 @@ TEST(Comparison, EachChangeHasItsFields) {
   EXPECT_EQ(outcome.dropped[0].count() + outcome.dropped[1].count(), 0U);
 }
 
+// Whose machine the programs were compared on, and who changed what of it.
+TEST(Comparison, NamesTheMachine) {
+  const v1::DiffProgramsResponse diff =
+      Compared("DELAY 1\n", "DELAY 1\n",
+               {.parameters = {{"GAS_CHANNELS", "3"}}, .parameters_of = "mine.toml"})
+          .response;
+  EXPECT_EQ(diff.profile_changed_by(), "mine.toml");
+  ASSERT_EQ(diff.profile_changes_size(), 1);
+  EXPECT_EQ(diff.profile_changes(0).name(), "GAS_CHANNELS");
+  EXPECT_EQ(diff.profile_changes(0).value(), "3");
+}
+
 TEST(Comparison, OfPathDataAndFlow) {
   const auto aspects = [](const std::string& before, const std::string& after) {
     const ComparisonOutcome outcome = Compared(before, after);

@@ -434,6 +434,27 @@ TEST_F(UnaryCalls, AJournalGoesOut) {
   ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "it does not begin as one");
 }
 
+// What the book refuses is what the import ends with.
+TEST_F(UnaryCalls, AnArchiveIsImportedOnce) {
+  const std::string archive = *WriteProjectArchive(Of<v1::Project>("title: 'Lid'"));
+  v1::Project response;
+  for (int time = 0; time < 2; ++time) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    const auto writer = projects->ImportProject(&context, &response);
+    writer->Write(Of<v1::ImportProjectRequest>("project_id: 'lid'"));
+    v1::ImportProjectRequest chunk;
+    chunk.set_chunk(archive);
+    writer->Write(chunk);
+    writer->WritesDone();
+    status = writer->Finish();
+    EXPECT_EQ(status.ok(), time == 0) << status.error_message();
+  }
+  EXPECT_EQ(response.name(), "projects/lid");
+  EXPECT_EQ(response.title(), "Lid");
+  ExpectRefused(grpc::StatusCode::ALREADY_EXISTS, "lid");
+}
+
 // An archive of so many bytes is looked at, a byte more is not taken.
 TEST_F(UnaryCalls, AnArchiveHasSoManyBytes) {
   const auto import = [&](std::size_t last_bytes) {
