@@ -42,11 +42,14 @@ Place Typing::PlaceOfNode(std::size_t node) {
 NodePlace Typing::NamePlaceOf(std::size_t node) {
   NodePlace place = NodePlaceOf(node);
   if (module_.nodes[node].index_name == kNoName) return place;
+  // Inside a parenthesis a variable may stand on several lines. OPT-1.30
+  std::string inside = "(";
+  inside += places_->text.substr(place.offset, place.length);
   std::vector<Comment> comments;
-  Lexer lexer(places_->text.substr(place.offset, place.length), comments);
+  Lexer lexer(inside, comments);
   lexer.NextStatement();
-  const Token& name = lexer.At(2);  // behind the group and '['
-  return {place.offset + name.offset, name.length};
+  const Token& name = lexer.At(3);  // behind '(', the group and '['
+  return {place.offset + name.offset - 1, name.length};
 }
 
 void Typing::Report(ErrorCode code, std::size_t node, Detail detail, std::string_view rule) {

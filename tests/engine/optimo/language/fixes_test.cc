@@ -22,6 +22,8 @@ TEST(Fixes, MistypedWordsAreCorrected) {
 TEST(Fixes, MistypedIndexesAreCorrected) {
   EXPECT_EQ(Fixed("DECLARE VALVE = 16\nOL[VAVLE] = ON\nVR [ vavle ] = 5.*VR[VAVLE]\n"),
             "DECLARE VALVE = 16\nOL[VALVE] = ON\nVR [ VALVE ] = 5.*VR[VALVE]\n");
+  EXPECT_EQ(Fixed("DECLARE FIVE = 5\nVR[30] = SQRT(VR ; c\n [\n FIEV ])\n"),
+            "DECLARE FIVE = 5\nVR[30] = SQRT(VR ; c\n [\n FIVE ])\n");
   const std::vector<Diagnostic> found =
       Compile("DECLARE VALVE=16\nOL[VAVLE] = ON\n", "", {}).diagnostics;
   ASSERT_EQ(found.size(), 1U);
