@@ -85,9 +85,7 @@ void CutWatch::OnRide(const Ride& ride, const Registers& registers, const Comman
 void CutWatch::OnCut(const Ride& ride, const Registers& registers, const CommandPlace& command) {
   has_cut_ = true;
   from_work_ = {};
-  if (ride.spindle_turns && !ride.plunge &&
-      !registers.IsBelowSurface(std::min(ride.from.z, ride.to.z)))
-    Add(skims_, ride.length_mm, command);
+  if (ride.spindle_turns && ride.along_surface) Add(skims_, ride.length_mm, command);
   const bool given = ride.by_xy_speed ? registers.xy_speed_given : registers.z_speed_given;
   const SpeedLimit& limit = ride.by_xy_speed ? registers.xy_limit : registers.z_limit;
   const bool limited = limit.off() > kAsAsked || registers.rpm_limit.off() > kAsAsked;

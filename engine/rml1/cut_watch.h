@@ -25,9 +25,10 @@ class CutWatch {
     Point from;
     Point to;
     double length_mm = 0.0;
-    bool in_work = false;      // a cut or a plunge
-    bool rapid = false;        // at the travel speed
-    bool by_xy_speed = false;  // else by the speed of Z
+    bool in_work = false;        // a cut or a plunge
+    bool along_surface = false;  // a cut that takes nothing off
+    bool rapid = false;          // at the travel speed
+    bool by_xy_speed = false;    // else by the speed of Z
     bool spindle_turns = false;
     bool plunge = false;          // straight down into the work
     double speed_mm_s = 0.0;      // of a cut or a plunge

@@ -17,7 +17,7 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
   if (first_ever) add_point(ride.from);
   add_point(ride.to);
   if (ride.first) ++totals_.motions;
-  const bool in_work = IsInWork(ride.use, ride.from, ride.to, registers);
+  const bool in_work = ride.in_work;
   const bool plunges = ride.use == MotionUse::kPlunge;
   if (plunges && in_work && !plunging_) ++totals_.plunges;
   plunging_ = plunges && in_work;
@@ -38,6 +38,7 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
        .to = ride.to,
        .length_mm = ride.length_mm,
        .in_work = tool_in,
+       .along_surface = tool_in && !plunges && !in_work,
        .rapid = ride.rapid,
        .by_xy_speed = by_xy_speed,
        .spindle_turns = ride.spindle_turns,

@@ -22,7 +22,8 @@ class Physical {
     machine::MotionUse use = machine::MotionUse::kTravel;
     double length_mm = 0.0;
     double time_s = 0.0;
-    bool first = true;  // of its motion; false: the rest of one that was cut
+    bool first = true;     // of its motion; false: the rest of one that was cut
+    bool in_work = false;  // the motion: IsInWork
     bool rapid = false;
     Chain chain = Chain::kAlone;
     bool spindle_turns = false;

@@ -161,14 +161,16 @@ class StreamReading {
     device_.actions().Pop();
     least_time_s_ += LeastTime_s(action);
     if (action.kind == Action::Kind::kMotion) {
-      physical_.OnRide({.from = tool_,
-                        .to = action.to,
-                        .use = action.use,
-                        .length_mm = DistanceXYZ(tool_, action.to) / profile_.units_per_mm,
-                        .rapid = action.rapid,
-                        .chain = action.chain,
-                        .spindle_turns = device_.spindle_turns()},
-                       device_.registers(), device_.command());
+      physical_.OnRide(
+          {.from = tool_,
+           .to = action.to,
+           .use = action.use,
+           .length_mm = DistanceXYZ(tool_, action.to) / profile_.units_per_mm,
+           .in_work = Physical::IsInWork(action.use, tool_, action.to, device_.registers()),
+           .rapid = action.rapid,
+           .chain = action.chain,
+           .spindle_turns = device_.spindle_turns()},
+          device_.registers(), device_.command());
       tool_ = action.to;
     } else if (action.kind == Action::Kind::kPause) {
       const CommandPlace& place = device_.command();

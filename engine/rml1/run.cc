@@ -169,7 +169,7 @@ RunPhase MillRun::Advance(SimTime until) {
       return s.phase = RunPhase::kRunning;
     }
     s.now = next;
-    if (scripted && input_at <= s.now) {
+    if (scripted && input_at <= s.now && !MayYetHalt()) {
       Handle(setup_.inputs[s.next_input++]);
     } else if (s.busy == Busy::kMotion && s.ride.under_way() == nullptr) {
       if (!PlanLeg(ahead_max)) return s.phase = RunPhase::kRunning;
@@ -182,6 +182,14 @@ RunPhase MillRun::Advance(SimTime until) {
     }
   }
   return s.phase;
+}
+
+// START is for a machine that halts: this one may be about to, at the very instant of the key.
+bool MillRun::MayYetHalt() const {
+  const State& s = state_;
+  if (setup_.inputs[s.next_input].kind != InputKind::kStart || s.halt != HaltCause::kNone)
+    return false;
+  return s.busy == Busy::kNothing || s.busy_until <= s.now;
 }
 
 // The next thing that takes no time, or the start of one that does.

@@ -168,6 +168,7 @@ class MillRun final : public machine::Run, public machine::EnterableRun {
   SimTime NextInputTime() const;
   void Proceed(std::size_t sent_max);
   bool TimeStands() const;
+  bool MayYetHalt() const;
   void Interpret(std::size_t sent_max);
   void Finish();
   void Handle(const machine::InputChange& input);

@@ -174,6 +174,8 @@ void MillRun::ReportLeg(double travelled) {
   const Point from = m.first_leg ? m.from : ToolAt(path.tip_from());
   const bool to_end = leg.ends_move && travelled >= path.length();
   const Point to = to_end ? m.action.to : ToolAt(path.TipAt(travelled));
+  // A key cuts the motion in parts: whether it goes into the work does not hang on that.
+  const bool in_work = Physical::IsInWork(m.action.use, m.from, m.action.to, s.device.registers());
   if (!m.approach) {
     s.physical.OnRide({.from = from,
                        .to = to,
@@ -181,21 +183,21 @@ void MillRun::ReportLeg(double travelled) {
                        .length_mm = (path.At(travelled).point - path.from().point).norm(),
                        .time_s = ToSeconds(s.now - s.busy_from),
                        .first = m.first_leg,
+                       .in_work = in_work,
                        .rapid = m.action.rapid,
                        .chain = m.action.chain,
                        .spindle_turns = s.device.spindle_turns() && !s.spindle_stopped},
                       s.device.registers(), s.device.command());
   }
-  observer_.OnMotion(
-      {.start = s.busy_from,
-       .end = s.now,
-       .place = s.place,
-       .use = m.action.use,
-       .motion = &leg,
-       .travelled = travelled,
-       .programmed_mm_s = m.action.rapid ? 0.0 : m.leg.feed_mm_s,
-       .in_work = !m.approach && Physical::IsInWork(m.action.use, from, to, s.device.registers()),
-       .approach = m.approach});
+  observer_.OnMotion({.start = s.busy_from,
+                      .end = s.now,
+                      .place = s.place,
+                      .use = m.action.use,
+                      .motion = &leg,
+                      .travelled = travelled,
+                      .programmed_mm_s = m.action.rapid ? 0.0 : m.leg.feed_mm_s,
+                      .in_work = !m.approach && in_work,
+                      .approach = m.approach});
   s.motion.first_leg = false;
 }
 

@@ -12,6 +12,10 @@ namespace {
 // Spans timed together: each gives at most three cells, itself and two stretches of a bend.
 constexpr std::size_t kSectionMax = RampPlan::kCellsMax / 3;
 
+// A bend that takes half of what follows ends at a point in the middle of that: the way to it and
+// the bend's are sums of the same lengths in another order.
+constexpr double kSamePlace_mm = 1e-10;
+
 // To make cells of a span, and to give it out.
 constexpr int kMaking = 2;
 constexpr int kEmitting = 3;
@@ -256,7 +260,7 @@ void ItemStage::EmitMove() {
       const bool last = emit_move_ == span.last_move;
       const double from = emit_move_ == span.first_move ? span.x_from : 0.0;
       const double to = last ? span.x_to : path.length();
-      if (!(to > from)) continue;
+      if (!(to > from) || emit_move_ < ended_before_) continue;
       PlannedMotion& motion = NewMotion(span, move);
       if (from == 0.0 && to == path.length()) {
         motion.path = path;
@@ -324,20 +328,23 @@ void ItemStage::EmitHalves(const Span& span, const Shape& shape, const Half& fir
       x += moves()[k].path.length() - (k == span.last_move ? span.x_to : 0.0);
       to = std::min(half * std::max(x, 0.0) / cut, half);
     }
-    if (!(to > s)) continue;
+    if (!(to > s) || k < ended_before_) continue;
     EmitCurvePart(span, k, shape, first, {s, to, true}, cells);
     s = to;
   }
-  // Second half: to the place where the next span begins.
+  // Second half: to the place where the next span begins. A move that ends there ends on the curve:
+  // nothing is left of it.
   x = 0.0;
   s = 0.0;
   for (Number k = span.corner_move + 1;; ++k) {
     x += moves()[k].path.length();
-    const bool last = x >= cut || k + 1 == moves().end();
+    const bool last = x + kSamePlace_mm >= cut || k + 1 == moves().end();
+    const bool ends = x <= cut + kSamePlace_mm;
     double to = last ? half : std::min(half * x / cut, half);
     if (half + to >= half + half)
       to = half;  // what is left is less than the last digit of the curve
-    if (to > s) EmitCurvePart(span, k, shape, second, {s, to, !last}, cells);
+    if (to > s) EmitCurvePart(span, k, shape, second, {s, to, ends}, cells);
+    if (ends) ended_before_ = k + 1;
     s = std::max(s, to);
     if (last) break;
   }

@@ -136,6 +136,7 @@ class ItemStage {
   bool emitting_ = false;         // some moves of the oldest span are out already
   Number emit_move_ = 0;          // its next
   double emit_done_ = 0.0;        // length of those that are out
+  Number ended_before_ = 0;       // moves that end on the last curve, and those before them
 
   // Spans are timed and given out a few with each move: the rest of a batch waits for those that
   // follow.

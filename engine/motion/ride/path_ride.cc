@@ -36,7 +36,7 @@ void PathRide::ReplaceAppended(std::size_t n, std::span<const AppendedCommand> c
 MotionUnderWay& PathRide::Begin(SimTime now) {
   RMLCELL_CHECK(waits_to_begin());
   under_way_.motion = std::get<PlannedMotion>(std::move(to_come_.front()));
-  under_way_.ended = false;
+  under_way_.ended = ends_;
   to_come_.pop_front();
   under_way_.Begin(now);
   rides_ = true;
@@ -76,27 +76,35 @@ std::optional<PathRide::StopPlan> PathRide::PlanStop(SimTime now, const AxisLimi
   return plan;
 }
 
-void PathRide::Stop(const StopPlan& plan, const AxisLimits& axes) {
+void PathRide::StopPlan::AddMarks(std::size_t behind, std::deque<PlannedItem>& items) const {
+  for (const auto& [place, mark] : marks) {
+    if (place == behind) items.emplace_back(mark);
+  }
+}
+
+// The ramp and the marks on it are what is to come.
+void PathRide::BeginRamp(const StopPlan& plan) {
   const StopOnPath& ramp = plan.ramp;
-  const auto add_marks = [&](std::size_t behind, std::deque<PlannedItem>& items) {
-    for (const auto& [place, mark] : plan.marks) {
-      if (place == behind) items.emplace_back(mark);
-    }
-  };
   rides_ = false;
   to_come_.clear();
   std::size_t passed = 0;
   // At the very end of the motion under way the ramp begins behind it.
   for (std::size_t left = ramp.index + 1; left > ramp.motions.size() && passed < ramp.index; --left)
-    add_marks(passed++, to_come_);
+    plan.AddMarks(passed++, to_come_);
   for (const PlannedMotion& motion : ramp.motions) {
     to_come_.emplace_back(motion);
-    if (passed != ramp.index) add_marks(passed++, to_come_);
+    if (passed != ramp.index) plan.AddMarks(passed++, to_come_);
   }
+}
+
+void PathRide::Stop(const StopPlan& plan, const AxisLimits& axes) {
+  const StopOnPath& ramp = plan.ramp;
+  BeginRamp(plan);
   const std::span<const PlannedMotion> left = std::span(plan.ahead).subspan(ramp.index);
   std::vector<PlannedMotion> restart = RestartAlong(left, ramp.s, axes);
-  if (!ramp.motions.empty() && ramp.motions.back().ends_move && !restart.empty()) {
-    PlannedMotion& settling = restart.front();  // all that is left of that move
+  // The move is over where its settling is all that is left.
+  if ((ramp.motions.empty() || ramp.motions.back().ends_move) && !restart.empty()) {
+    PlannedMotion& settling = restart.front();
     if (!(settling.path.length() > 0.0)) settling.ends_move = false;
   }
   interrupted_.clear();
@@ -104,9 +112,26 @@ void PathRide::Stop(const StopPlan& plan, const AxisLimits& axes) {
   const std::size_t dropped = left.size() - restart.size();
   for (std::size_t k = 0; k < left.size(); ++k) {
     if (k >= dropped) interrupted_.emplace_back(restart[k - dropped]);
-    add_marks(ramp.index + k, interrupted_);
+    plan.AddMarks(ramp.index + k, interrupted_);
   }
   protocol_.Stop();
+}
+
+void PathRide::EndBy(const StopPlan& plan) {
+  BeginRamp(plan);
+  if (plan.ramp.motions.empty()) {  // it stands already
+    PlannedMotion standing = plan.ahead[plan.ramp.index];
+    standing.path = standing.path.Standing(plan.ramp.s);
+    standing.speed = SpeedProfile();
+    standing.settling_s = 0.0;
+    to_come_.emplace_back(standing);
+  }
+  PlannedMotion& last = std::get<PlannedMotion>(to_come_.back());
+  last.ends_move = true;
+  last.corner = {};
+  interrupted_.clear();
+  held_.clear();
+  ends_ = true;
 }
 
 void PathRide::HoldBehind(std::uint64_t tag) {
@@ -134,8 +159,7 @@ bool PathRide::TakeUpInterrupted() {
 void PathRide::Finish() {
   protocol_.Finish();
   rides_ = false;
-  to_come_.clear();
-  interrupted_.clear();
+  DropRest();
   held_.clear();
 }
 

@@ -26,6 +26,7 @@ struct AppendedCommand {
 //
 //                  under way + to come          interrupted           held
 //   Stop(plan)     the ramp to rest             the rest, from there  -
+//   EndBy(plan)    the same ramp                empty                 empty
 //   HoldBehind     the family's: up to a target -                     the commands behind it
 //   Resume         interrupted comes first      empty                 the family plans it
 //   DropRest       as it is, then nothing       empty                 as they are
@@ -56,6 +57,7 @@ class PathRide {
   void DropRest() {
     to_come_.clear();
     interrupted_.clear();
+    ends_ = false;
   }
   // The tag of the mark that is the first to come, and is passed now; nothing: a motion is, or
   // nothing is to come.
@@ -92,10 +94,14 @@ class PathRide {
     std::vector<PlannedMotion> ahead;                        // from the one under way on
     std::vector<std::pair<std::size_t, PlannedMark>> marks;  // each behind a motion of `ahead`
     std::uint64_t rests_on = 0;                              // tag
+
+    void AddMarks(std::size_t behind, std::deque<PlannedItem>& items) const;
   };
   std::optional<StopPlan> PlanStop(SimTime now, const AxisLimits& axes) const;
   // Nothing is under way then; the ramp is to come.
   void Stop(const StopPlan& plan, const AxisLimits& axes);
+  // The same for good: the moves of the ramp have `ended` when the last of it is over.
+  void EndBy(const StopPlan& plan);
 
   // HOLD at the end of the move with this tag: the commands behind it are held back. What leads to
   // that end is the caller's to plan.
@@ -119,8 +125,11 @@ class PathRide {
   void Finish();
 
  private:
+  void BeginRamp(const StopPlan& plan);
+
   RideProtocol protocol_;
   bool rides_ = false;
+  bool ends_ = false;  // EndBy: what is to come is its ramp
   MotionUnderWay under_way_{};
   std::deque<PlannedItem> to_come_{};
   std::deque<PlannedItem> interrupted_{};

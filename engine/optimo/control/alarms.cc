@@ -4,9 +4,11 @@
 
 namespace rmlcell::optimo {
 
-Status Alarms::Raise(const Error& error) {
+Status Alarms::Raise(const Error& error, Where where) {
   if (s_.deferred) return {};
-  if (!ride_.EndForError()) return Handle(error);
+  const bool at_once = where == Where::kBesideTheMotion || ride_.beside();
+  if (at_once) actuators_.BeamOff();
+  if (!ride_.EndForError(at_once)) return Handle(error);
   s_.deferred = {.error = error, .place = situation_.place};
   waits_.BeginStandstill();
   return {};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "engine/core/result.h"
@@ -26,7 +27,8 @@ struct AlarmState {
 // goes off, and the program goes on at its ERR label or is over. OPT-3.55 to 3.59
 //
 //   none       Raise           handled, where the machine stands; else deferred, and the control
-//                              waits for standstill
+//                              waits for standstill: at once, but for motions that the program
+//                              has run ahead of
 //   deferred   Raise           stays: the first error counts
 //   deferred   HandleDeferred  handled
 class Alarms {
@@ -47,8 +49,12 @@ class Alarms {
 
   bool deferred() const { return s_.deferred.has_value(); }
 
+  // Of the instruction in execution, which may have run ahead of /FLY motions, or of what goes on
+  // while the machine moves.
+  enum class Where : std::uint8_t { kInstruction, kBesideTheMotion };
+
   // At the place of the situation. Error: the one that ends the run; good when it goes on.
-  Status Raise(const Error& error);
+  Status Raise(const Error& error, Where where);
   Status HandleDeferred();
 
  private:

@@ -61,7 +61,7 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
       process_watch_(s_.process_watch, s_.actuators),
       works_(s_.works, now(), parameters_, cycle_, telling_, counter_, ride_, actuators_, effects_,
              data_, waits_),
-      halts_(s_.halts, now(), telling_, ride_, actuators_, data_, waits_, works_),
+      halts_(s_.halts, now(), telling_, ride_, actuators_, counter_, data_, waits_, watch_, works_),
       moves_(s_.moves, now(), parameters_, telling_, counter_, data_, travel_, ride_, effects_,
              waits_, watch_, halts_),
       flow_(now(), parameters_, cycle_, telling_, counter_, data_, effects_, waits_),
@@ -123,10 +123,16 @@ bool Control::WaitsForEver() const {
 }
 
 SimTime Control::NextEvent(SimTime until) const {
+  const SimTime own = NextOwnEvent(until);
+  if (s_.next_input >= setup_.inputs.size()) return own;
+  return std::min(own, std::max(now().now, setup_.inputs[s_.next_input].at));
+}
+
+// That of no key or input.
+SimTime Control::NextOwnEvent(SimTime until) const {
   const SimTime time = now().now;
   const bool last_input = s_.next_input >= setup_.inputs.size();
   SimTime next = ride_.NextEvent();
-  if (!last_input) next = std::min(next, std::max(time, setup_.inputs[s_.next_input].at));
   if (!watch_.idle() && !alarms_.deferred()) next = std::min(next, watch_.NextEvent(last_input));
   const Pending& pending = waits_.pending();
   switch (pending.kind) {
@@ -154,27 +160,27 @@ SimTime Control::NextEvent(SimTime until) const {
   return std::max(budget, time + SimTime(1)) <= until ? std::min(next, budget) : next;
 }
 
+void Control::ArriveIfOver() {
+  if (ride_.under_way() == nullptr || now().now < ride_.under_way()->end) return;
+  ride_.Arrive();
+  waits_.ToldByMotion();
+  works_.MarkStale();
+}
+
 // Whatever is due now, in a fixed order: motion first, then what waits for it.
 void Control::ActOnTime() {
-  if (ride_.under_way() != nullptr && now().now >= ride_.under_way()->end) {
-    if (const std::optional<std::uint64_t> tag = ride_.Arrive()) watch_.OnMoveOver(*tag);
-    waits_.ToldByMotion();
-    works_.MarkStale();
-  }
+  ArriveIfOver();
   ride_.Start();
   if (ride_.protocol().comes_to_rest() && !ride_.busy()) return halts_.HaltOnPath();
   if (halts_.StopNow()) return;
   if (!watch_.idle() && !alarms_.deferred()) {
-    const bool rides = watch_.watches();
-    if (const Status looked = watch_.Look(); !looked) {
-      Raise(looked.error());
-      if (rides) ride_.EndHere();
-    }
+    if (const Status looked = watch_.Look(); !looked)
+      Raise(looked.error(), Alarms::Where::kBesideTheMotion);
   }
   if (!works_.idle() && now().running() && !alarms_.deferred()) {
     if (const std::optional<Works::Failure> failure = works_.Run()) {
       const machine::Place in_execution = std::exchange(now().place, failure->place);
-      Raise(failure->error);
+      Raise(failure->error, Alarms::Where::kBesideTheMotion);
       if (now().running()) now().place = in_execution;
     }
   }
@@ -228,6 +234,15 @@ void Control::ActOnPending() {
   }
 }
 
+bool Control::ScriptedIsDue() const {
+  if (s_.next_input >= setup_.inputs.size()) return false;
+  const machine::InputChange& input = setup_.inputs[s_.next_input];
+  if (input.at > now().now) return false;
+  if (input.kind != machine::InputKind::kStart || !now().running()) return true;
+  // START is for a machine that halts: it may be about to, at this very instant.
+  return !MayFetch() && NextOwnEvent(kForever) > now().now;
+}
+
 void Control::ApplyScripted() {
   while (ScriptedIsDue() && now().phase != RunPhase::kFinished) {
     const machine::InputChange input = setup_.inputs[s_.next_input++];
@@ -250,13 +265,18 @@ void Control::ChangeOutside() {
 
 void Control::Apply(const machine::InputChange& input) {
   if (now().phase == RunPhase::kFinished) return;
-  ChangeOutside();
+  // What is over at this instant was so before the key.
+  ArriveIfOver();
+  if (now().running() && ride_.protocol().comes_to_rest() && !ride_.busy()) halts_.HaltOnPath();
+  works_.MarkStale();
   const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
   switch (input.kind) {
     case machine::InputKind::kLogical:
+      ChangeOutside();
       data_.SetLogicalInput(index, input.value != 0.0);
       break;
     case machine::InputKind::kAnalogue:
+      ChangeOutside();
       data_.SetAnalogueInput(index, static_cast<float>(input.value));
       break;
     case machine::InputKind::kOverride:
@@ -356,8 +376,8 @@ void Control::PressStart() {
   Finish(machine::OutcomeKind::kFailed, kCode, detail);
 }
 
-void Control::Raise(const Error& error) {
-  if (const Status handled = alarms_.Raise(error); !handled) {
+void Control::Raise(const Error& error, Alarms::Where where) {
+  if (const Status handled = alarms_.Raise(error, where); !handled) {
     Finish(machine::OutcomeKind::kFailed, handled.error().code, handled.error().detail);
   }
 }

@@ -73,18 +73,19 @@ class Control final : private RideListener {
   // --- control.cc: the course of time ---
   bool MayFetch() const;
   SimTime NextEvent(SimTime until) const;
+  SimTime NextOwnEvent(SimTime until) const;
+  void ArriveIfOver();
   void ActOnTime();
   void ActOnPending();
-  bool ScriptedIsDue() const {
-    return s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= now().now;
-  }
+  bool ScriptedIsDue() const;
   void ApplyScripted();
   void PressStart();
   void ChangeOutside();
-  void Raise(const Error& error);
+  void Raise(const Error& error, Alarms::Where where = Alarms::Where::kInstruction);
   void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, Detail detail);
   void OnMark(std::uint64_t tag) override { effects_.OnMark(tag); }
   void OnMotionBegins(std::uint64_t tag) override { watch_.OnMotionBegins(tag); }
+  void OnMoveOver(std::uint64_t tag) override { watch_.OnMoveOver(tag); }
   void OnMotionTold(const machine::MotionDone& done) override {
     if (!done.approach) process_watch_.OnMotion(done);
   }

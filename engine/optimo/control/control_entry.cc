@@ -238,9 +238,7 @@ void Control::ArriveAtEntry() {
   s_.entry.approached = lasted;
   s_.works.tasks = arrival.works;
   works_.Shift(lasted);
-  for (ProgramContext& context : s_.counter.programs) {
-    if (context.timer) context.timer->due += lasted;
-  }
+  counter_.Shift(lasted);
   if (arrival.halts) halts_.Halt(machine::HaltReason::kBreakpoint, "ENTRY");
 }
 

@@ -169,9 +169,11 @@ void Halts::Tell() const {
 
 Status Halts::Resume() {
   Tell();
-  // A wait that was under way lasts as long as before: time stood still for it.
+  // Whatever was under way lasts as long as before: time stood still for it.
   const SimTime stood = situation_.now - s_.halted_at;
+  counter_.Shift(stood);
   waits_.Shift(stood);
+  watch_.Shift(stood);
   works_.Shift(stood);
   situation_.phase = machine::RunPhase::kRunning;
   telling_.observer().OnResume(situation_.now, situation_.place);

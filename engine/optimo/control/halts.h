@@ -7,6 +7,8 @@
 
 #include "engine/optimo/control/actuators.h"
 #include "engine/optimo/control/data_access.h"
+#include "engine/optimo/control/move_watch.h"
+#include "engine/optimo/control/program_counter.h"
 #include "engine/optimo/control/waits.h"
 #include "engine/optimo/control/works.h"
 #include "engine/optimo/ride/ride.h"
@@ -66,14 +68,17 @@ struct HaltState {
 class Halts {
  public:
   Halts(HaltState& state, Situation& situation, const Telling& telling, Ride& ride,
-        Actuators& actuators, const DataAccess& data, Waits& waits, Works& works)
+        Actuators& actuators, ProgramCounter& counter, const DataAccess& data, Waits& waits,
+        MoveWatch& watch, Works& works)
       : s_(state),
         situation_(situation),
         telling_(telling),
         ride_(ride),
         actuators_(actuators),
+        counter_(counter),
         data_(data),
         waits_(waits),
+        watch_(watch),
         works_(works) {}
 
   // The run is to halt before the next instruction; one whose condition is met is finished before a
@@ -131,8 +136,10 @@ class Halts {
   const Telling& telling_;
   Ride& ride_;
   Actuators& actuators_;
+  ProgramCounter& counter_;
   const DataAccess& data_;
   Waits& waits_;
+  MoveWatch& watch_;
   Works& works_;
 };
 

@@ -92,6 +92,11 @@ void MoveWatch::EndStanding() {
   Clear();
 }
 
+void MoveWatch::Shift(SimTime stood) {
+  s_.since += stood;
+  if (s_.time) s_.time->due += stood;
+}
+
 void MoveWatch::OnMotionBegins(std::uint64_t tag) {
   if (s_.stage != WatchStage::kComes || tag < s_.first || tag > s_.last) return;
   s_.stage = WatchStage::kWatches;

@@ -89,6 +89,9 @@ class MoveWatch {
   // A MOVE takes over from one that stands, or its time or condition ends it.
   void EndStanding();
 
+  // The machine stood halted so long.
+  void Shift(SimTime stood);
+
   // --- the ride tells ---
   void OnMotionBegins(std::uint64_t tag);
   void OnMoveOver(std::uint64_t tag);

@@ -208,6 +208,12 @@ void ProgramCounter::SetTimer(int label, SimTime due, SimTime period, bool repea
       .due = due, .period = period, .label = label, .repeats = repeats, .level = level()};
 }
 
+void ProgramCounter::Shift(SimTime stood) {
+  for (ProgramContext& context : s_.programs) {
+    if (context.timer) context.timer->due += stood;
+  }
+}
+
 std::optional<int> ProgramCounter::TakeDueGosub() {
   ProgramContext& context = program();
   const std::size_t here = level();

@@ -105,6 +105,8 @@ class ProgramCounter {
   // The sequence number of a GOSUB that is due between two instructions, of TIMER or of the /TIME
   // of a /NEXT motion: made in the activation that asked for it, and dropped when that is over.
   std::optional<int> TakeDueGosub();
+  // The machine stood halted so long.
+  void Shift(SimTime stood);
   void MakeDue(const DueGosub& gosub) { program().due_gosub = gosub; }
 
  private:

@@ -212,6 +212,11 @@ void Works::SwitchOff(int kind, int process, When when) {
                 when);
 }
 
+// Nothing begins between STOP and START. OPT-4.18
+bool Works::IsHeld(const WorkTask& task) const {
+  return task.stage == WorkStage::kStart && ride_.protocol().intent() == motion::RideIntent::kStop;
+}
+
 SimTime Works::NextEvent() const {
   SimTime next = kForever;
   for (const WorkTask& task : s_.tasks) {
@@ -219,6 +224,7 @@ SimTime Works::NextEvent() const {
     if (task.stage == WorkStage::kDwell) {
       next = std::min(next, std::max(situation_.now, task.until));
     } else {
+      if (IsHeld(task)) continue;
       if (task.stage == WorkStage::kStart && s_.input_changed) return situation_.now;
       if (task.stale || ride_.busy()) {
         next = std::min(next, cycle_.NextTick(situation_.now, task.since));
@@ -284,7 +290,7 @@ Result<bool> Works::TestTask(std::size_t n) {
   if (task.stage == WorkStage::kDwell) return EndDwell(n);
   const bool waits = task.stage == WorkStage::kStart;
   const bool tick = situation_.now > task.since && cycle_.IsTick(situation_.now, task.since);
-  if (!tick && !(waits && s_.input_changed)) return false;
+  if (IsHeld(task) || (!tick && !(waits && s_.input_changed))) return false;
   situation_.place = task.place;
   task.stale = false;
   const Condition condition = waits ? *task.start : *task.end;

@@ -117,6 +117,7 @@ class Works {
   void Pierce(const WorkTask& task, const WorkDefinition& definition, bool in_background);
   void Drop(int kind, int process);
   WorkTask Take(std::size_t n);
+  bool IsHeld(const WorkTask& task) const;
   bool EndDwell(std::size_t n);
   Result<bool> TestTask(std::size_t n);
 

@@ -45,7 +45,7 @@ class Adviser {
           AdviseTarget(i, 1);
           break;
         case Op::kAssign:
-          AdviseTarget(i, i.numbers[0]);
+          if (i.numbers[0] <= kAssignWidthMax) AdviseTarget(i, i.numbers[0]);  // else an error
           break;
         case Op::kSysdef:
           AdviseSysdef(i);

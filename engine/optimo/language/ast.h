@@ -24,6 +24,7 @@ inline constexpr std::size_t kVariableGroups = static_cast<std::size_t>(Variable
 std::string_view GroupName(VariableGroup group);  // "VR"
 
 inline constexpr int kVariableIndexMax = 99;  // OPT-7.59
+inline constexpr int kAssignWidthMax = 16;    // OPT-7.102
 inline constexpr int kParameterCount = 8;     // PAR[0] to PAR[7], OPT-9.20
 
 struct Variable {

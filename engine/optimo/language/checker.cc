@@ -2,6 +2,7 @@
 
 #include <bitset>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -23,7 +24,6 @@ constexpr Range kSpeedAbove0{0.0, 100.0, "above 0 to 100", "OPT-3.08", true};
 constexpr Range kSeconds{0.0, kNoMax, "0 or more seconds", "OPT-3.45"};
 constexpr Range kProgram{1.0, 99.0, "1 to 99", "OPT-7.06"};
 constexpr Range kErrorNumber{1.0, 9999.0, "1 to 9999", "OPT-3.61"};
-constexpr int kAssignWidthMax = 16;  // OPT-7.102
 
 class Checker {
  public:
@@ -232,7 +232,9 @@ void Checker::CheckAssign(const Instruction& i) {
   if (!known) return;
   const ExprNode& target = module_.Value(i, 0)[0];
   if (target.type != ValueType::kLogical) {
-    Warn(ErrorCode::kTypeMismatch, "ASSIGN writes logical outputs or variables", "OPT-7.102");
+    findings_.Add(ErrorCode::kTypeMismatch,
+                  typing_.PlaceOfNode(module_.FirstNode(i.first_expression)),
+                  "ASSIGN writes logical outputs or variables", "OPT-7.102");
   } else if (target.index + width - 1 >
              (target.group == VariableGroup::kPar ? kParameterCount - 1 : kVariableIndexMax)) {
     findings_.AddAs(Severity::kCompile, ErrorCode::kAssignGroup, typing_.PlaceOfStatement(),
@@ -268,13 +270,18 @@ void Checker::CheckLabels() {
   std::bitset<10000> known;
   for (const std::uint16_t label : module_.labels) known.set(label);
   for (const std::uint16_t label : module_.end_labels) known.set(label);
+  std::vector<std::uint16_t> missing;
   for (const Instruction& i : module_.instructions) {
-    for (std::uint16_t t = 0; t < i.target_count; ++t) {
-      const std::uint16_t label = module_.targets[i.first_target + t];
+    const auto targets = std::span(module_.targets).subspan(i.first_target, i.target_count);
+    for (const std::uint16_t label : targets) {
       if (known.test(label)) continue;
+      known.set(label);  // once for an instruction
+      missing.push_back(label);
       typing_.BeginStep(i);
       Warn(ErrorCode::kLabelMissing, "no sequence number " + Told("label", label), "OPT-7.16");
     }
+    for (const std::uint16_t label : missing) known.reset(label);
+    missing.clear();
   }
 }
 

@@ -105,14 +105,22 @@ void Parser::ParseStatement() {
     broken_if_ = broken_if_ || instruction_.op == Op::kIf;
     DropExpressions(instruction_.first_expression);
     module_.targets.resize(instruction_.first_target);
+    // What uses it is spared a second error.
     const bool named = instruction_.op == Op::kDeclare && instruction_.name != kNoName &&
                        !declared_[instruction_.name];
-    if (named) program_.broken_names[instruction_.name] = true;  // spares its uses a second error
+    if (named) program_.broken_names[instruction_.name] = true;
+    if (instruction_.op == Op::kDefine)
+      program_.broken_parameters.set(
+          std::min<std::size_t>(instruction_.numbers[0], kParameterCount - 1));
     const std::uint32_t step = instruction_.step;
     instruction_ = Instruction{};
     instruction_.step = step;
     instruction_.first_expression = static_cast<std::uint32_t>(module_.expression_ends.size());
     instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
+  }
+  if (good && instruction_.op == Op::kDeclare) {
+    declared_[instruction_.name] = true;
+    declared_names_.push_back(instruction_.name);
   }
   if (good && findings_.error_count() != errors)
     program_.faulty.push_back(static_cast<std::uint32_t>(module_.instructions.size()));
@@ -279,6 +287,8 @@ bool Parser::FailUnknown(const Token& name) {
     names.AppendTo(candidates);
     const NearWords near = NearestWords(lexer_.TextOf(name), candidates);
     detail += QuestionFor(near);
+    if (std::ranges::find(near.words, Describe(Word::kDeclare).text) != near.words.end())
+      MarkBroken();
     // Not for a word without effect, nor for a name, behind which no '=' stands.
     const bool sure = (near.IsSingle(Slip::kOneLetter) || near.IsSingle(Slip::kSwap)) &&
                       OpOf(FindWord(PackName(near.words.front()))) != Op::kInvalid;
@@ -288,6 +298,13 @@ bool Parser::FailUnknown(const Token& name) {
   findings_.Add(ErrorCode::kNameUndeclared, PlaceOf(name), std::move(detail), "OPT-7.91",
                 std::move(fixes));
   return false;
+}
+
+// The name behind a mistyped DECLARE.
+void Parser::MarkBroken() {
+  const Token name = Peek(1);
+  if (name.kind != TokenKind::kWord || name.word != Word::kNone) return;
+  if (Peek(2).kind == TokenKind::kEqual) program_.broken_names[InternName(name)] = true;
 }
 
 std::uint16_t Parser::InternName(const Token& token) {
@@ -322,6 +339,15 @@ std::uint16_t Parser::InternName(const Token& token) {
 
 bool Parser::Fail(std::string_view expected) {
   const Token token = Peek();
+  // What is missing is missing before the line that it stands on.
+  if (BeginsStatement(token)) {
+    const Token& last = lexer_.At(at_ - 1);
+    findings_.Add(ErrorCode::kSyntax,
+                  {last.offset + last.length, 0, static_cast<int>(instruction_.step)},
+                  "expected " + Told("expected", expected));
+    lexer_.ResumeAt(token);
+    return false;
+  }
   switch (token.kind) {
     case TokenKind::kEnd:
       if (lexer_.unfinished()) {
@@ -357,12 +383,14 @@ bool Parser::Fail(std::string_view expected) {
 
 bool Parser::FailAt(const Token& token, ErrorCode code, Detail detail, std::string_view rule) {
   Report(token, code, std::move(detail), rule);
-  // The line may be a statement of its own behind one that forgot a parenthesis.
-  if (token.first_on_line && token.offset > first_.offset &&
-      lexer_.BeginsAssignment(token.offset)) {
-    lexer_.ResumeAt(token);
-  }
+  if (BeginsStatement(token)) lexer_.ResumeAt(token);
   return false;
+}
+
+// The line may be a statement of its own behind one that forgot a parenthesis.
+bool Parser::BeginsStatement(const Token& token) const {
+  return token.first_on_line && token.offset > first_.offset &&
+         lexer_.BeginsAssignment(token.offset);
 }
 
 void Parser::Report(const Token& token, ErrorCode code, Detail detail, std::string_view rule) {

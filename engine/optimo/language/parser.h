@@ -116,6 +116,8 @@ class Parser {
   Place PlaceOf(const Token& token) const;
   Detail Quoted(const Token& token, std::string_view name = "word") const;
   std::uint16_t InternName(const Token& token);
+  void MarkBroken();
+  bool BeginsStatement(const Token& token) const;
 
   std::string_view text_;
   ParsedProgram& program_;

@@ -343,7 +343,9 @@ bool Parser::ParseVariable() {
   if (!Expect(TokenKind::kOpenIndex, "'[' and an index")) return false;
   const int max = node.group == VariableGroup::kPar ? kParameterCount - 1 : kVariableIndexMax;
   const Token index = Take();
-  if (index.kind == TokenKind::kWord && index.word == Word::kNone && Is(TokenKind::kCloseIndex)) {
+  const bool name =
+      index.kind == TokenKind::kWord && (index.word == Word::kNone || IsRefused(index));
+  if (name && Is(TokenKind::kCloseIndex)) {
     node.index_name = InternName(index);
   } else if (index.kind == TokenKind::kNumber && index.whole && Is(TokenKind::kCloseIndex)) {
     if (index.digits > static_cast<std::uint32_t>(max)) {

@@ -333,8 +333,6 @@ bool Parser::ParseDeclare() {
     return FailAt(name, ErrorCode::kNameDuplicate,
                   Told("name", UnpackName(name.key, room)) + " is declared already", "OPT-7.49");
   }
-  declared_[instruction_.name] = true;
-  declared_names_.push_back(instruction_.name);
   return true;
 }
 
@@ -345,16 +343,14 @@ bool Parser::ParseDefine() {
     if (what.kind != TokenKind::kWord) return Fail(operands::kDefine[0].missing);
     return FailAt(what, ErrorCode::kDefineInvalid, "DEFINE gives the type of a PAR", "OPT-9.23");
   }
-  if (TryTake(TokenKind::kOpenIndex)) {
+  const bool indexed = TryTake(TokenKind::kOpenIndex);
+  if (indexed) {
     const Token index = Peek();
     if (!ParseWhole(operands::kDefine[1].missing, instruction_.numbers[0])) return false;
     if (!Expect(TokenKind::kCloseIndex, "']'")) return false;
     if (instruction_.numbers[0] >= kParameterCount) {
       return FailAt(index, ErrorCode::kIndexRange, "PAR has the indices 0..7", "OPT-9.21");
     }
-  } else {
-    findings_.Add(ErrorCode::kDefineWithoutIndex, PlaceOf(what), "DEFINE PAR means PAR[0]",
-                  "OPT-9.24", {{what.offset, static_cast<int>(what.length), "PAR[0]"}});
   }
   if (!Expect(TokenKind::kEqual, operands::kEquals.missing)) return false;
   const Token type = Peek();
@@ -364,7 +360,11 @@ bool Parser::ParseDefine() {
   if (type.kind == TokenKind::kWord && !known) {
     return FailAt(type, ErrorCode::kDefineInvalid, "a type is FLOAT, INT or LOGIC", "OPT-9.23");
   }
-  return ParseChoice(types);
+  if (!ParseChoice(types)) return false;
+  if (indexed) return true;
+  findings_.Add(ErrorCode::kDefineWithoutIndex, PlaceOf(what), "DEFINE PAR means PAR[0]",
+                "OPT-9.24", {{what.offset, static_cast<int>(what.length), "PAR[0]"}});
+  return true;
 }
 
 // "ASSIGN" target "=" ( integer | target ) "/" integer                          OPT-7.102

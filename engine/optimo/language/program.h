@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -46,6 +47,7 @@ struct ParsedProgram {
   std::vector<NodePlace> end_label_places;  // parallel to Module::end_labels
   std::vector<Comment> comments;
   std::vector<bool> broken_names;  // parallel to Module::names: its DECLARE has an error
+  std::bitset<kParameterCount> broken_parameters;  // the same of DEFINE
   // Instructions with an error that are no Op::kInvalid, in any order, some of them twice.
   std::vector<std::uint32_t> faulty;
   std::uint64_t tokens_read = 0;  // those read twice counted twice: what the reading cost

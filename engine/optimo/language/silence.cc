@@ -53,9 +53,10 @@ Directive ReadDirective(std::string_view comment) {
     return directive;
   }
   const std::string rest = text.substr(end);
-  directive.whole_file = rest.find(kWholeFile) != std::string::npos;
   int number = 0;
+  std::size_t read = 0;
   for (const char c : rest + ' ') {  // up to the first word
+    ++read;
     if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
       number = std::min(number * 10 + (c - '0'), 100'000);
       continue;
@@ -64,6 +65,8 @@ Directive ReadDirective(std::string_view comment) {
     number = 0;
     if (c != ' ' && c != '\t' && c != ',') break;
   }
+  directive.whole_file =
+      std::string_view(rest).substr(std::min(read, rest.size() + 1) - 1).starts_with(kWholeFile);
   if (directive.numbers.empty()) directive.complaint = "allow needs the numbers of findings";
   return directive;
 }

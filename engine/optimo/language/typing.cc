@@ -38,6 +38,15 @@ Place Typing::PlaceOfNode(std::size_t node) {
   return {place.offset, static_cast<int>(place.length), static_cast<int>(instruction_->step)};
 }
 
+Place Typing::PlaceOfName(std::size_t node) {
+  Place at = PlaceOfStatement();
+  if (places_ == nullptr) return at;
+  const NodePlace place = NamePlaceOf(node);
+  at.offset = place.offset;
+  at.length = static_cast<int>(place.length);
+  return at;
+}
+
 // Where its name stands: of a variable with an index by name only that.
 NodePlace Typing::NamePlaceOf(std::size_t node) {
   NodePlace place = NodePlaceOf(node);
@@ -56,22 +65,46 @@ void Typing::Report(ErrorCode code, std::size_t node, Detail detail, std::string
   findings_.Add(code, PlaceOfNode(node), std::move(detail), rule);
 }
 
-void Typing::ReportUndeclared(std::uint16_t name, std::size_t node) {
-  if (places_ != nullptr && places_->broken_names[name]) return;
+bool Typing::IsDeclaredBelow(std::uint16_t name) {
+  if (declared_anywhere_.empty()) {
+    declared_anywhere_.resize(module_.names.size());
+    for (const Instruction& i : module_.instructions) {
+      if (i.op == Op::kDeclare) declared_anywhere_[i.name] = true;
+    }
+  }
+  return declared_anywhere_[name];
+}
+
+// Those that would not be another error there.
+std::vector<std::uint16_t> Typing::NamesFor(Use use) const {
+  std::vector<std::uint16_t> names;
+  for (const std::uint16_t name : declared_names_) {
+    const Node op = module_.names[name].value.op;
+    const bool fits = use == Use::kValue || (use == Use::kTarget && op == Node::kVariable) ||
+                      (use == Use::kIndex && op == Node::kInteger);
+    if (fits) names.push_back(name);
+  }
+  return names;
+}
+
+void Typing::ReportUndeclared(std::uint16_t name, std::size_t node, Use use) {
+  if (places_ != nullptr && broken_names_[name]) return;
   if (findings_.full()) return Report(ErrorCode::kNameUndeclared, node, {}, {});
+  if (IsDeclaredBelow(name)) {
+    findings_.Add(ErrorCode::kNameUndeclared, PlaceOfName(node),
+                  Told("name", NameText(module_, name)) + " is not declared before it is used",
+                  "OPT-7.50");
+    return;
+  }
   std::vector<std::string_view> candidates;
-  const NameCandidates names(module_, declared_names_);
+  const NameCandidates names(module_, NamesFor(use));
   names.AppendTo(candidates);
   const std::string text = NameText(module_, name);
   const NearWords near = NearestWords(text, candidates);
   std::vector<Fix> fixes;
-  Place at = PlaceOfStatement();
-  if (places_ != nullptr) {
-    const NodePlace place = NamePlaceOf(node);
-    at.offset = place.offset;
-    at.length = static_cast<int>(place.length);
-    if (IsSurelyName(text, near)) fixes.push_back({at.offset, at.length, near.words.front()});
-  }
+  const Place at = PlaceOfName(node);
+  if (places_ != nullptr && IsSurelyName(text, near))
+    fixes.push_back({at.offset, at.length, near.words.front()});
   findings_.Add(ErrorCode::kNameUndeclared, at,
                 Told("name", text) + " is not declared" + QuestionFor(near), "OPT-7.50",
                 std::move(fixes));
@@ -91,7 +124,7 @@ bool Typing::ResolveIndex(std::size_t at) {
   if (node.index_name == kNoName) return true;
   const DeclaredName& name = module_.names[node.index_name];
   if (!name.declared) {
-    ReportUndeclared(node.index_name, at);
+    ReportUndeclared(node.index_name, at, Use::kIndex);
     return false;
   }
   const int max = node.group == VariableGroup::kPar ? kParameterCount - 1 : kVariableIndexMax;
@@ -107,7 +140,7 @@ bool Typing::ResolveIndex(std::size_t at) {
   return true;
 }
 
-bool Typing::ResolveNode(std::size_t at) {
+bool Typing::ResolveNode(std::size_t at, Use use) {
   ExprNode& node = module_.nodes[at];
   if (node.op == Node::kVariable && node.name == kNoName) {
     if (!ResolveIndex(at)) return false;
@@ -117,7 +150,7 @@ bool Typing::ResolveNode(std::size_t at) {
   if (node.op != Node::kName) return true;
   const DeclaredName& name = module_.names[node.name];
   if (!name.declared) {
-    ReportUndeclared(node.name, at);
+    ReportUndeclared(node.name, at, use);
     return false;
   }
   const std::uint16_t keep = node.name;
@@ -189,7 +222,10 @@ Typing::Operand Typing::TypeLeaf(std::size_t at) {
   const bool known = ResolveNode(at);
   ExprNode& node = module_.nodes[at];
   node.type = TypeOfLeaf(node);
-  return {at, node.type, !known};
+  const bool of_broken = places_ != nullptr && node.op == Node::kVariable &&
+                         node.group == VariableGroup::kPar &&
+                         places_->broken_parameters[node.index];
+  return {at, node.type, !known || of_broken};
 }
 
 bool Typing::HasType(Operand& root, Wanted wanted) {
@@ -240,7 +276,7 @@ bool Typing::Type(std::uint32_t expression, Wanted wanted) {
 bool Typing::ResolveTarget(std::uint32_t expression) {
   const std::size_t at = module_.FirstNode(expression);
   const bool reads = reads_machine_;
-  if (!ResolveNode(at)) return false;
+  if (!ResolveNode(at, Use::kTarget)) return false;
   reads_machine_ = reads;  // writing is not reading
   ExprNode& node = module_.nodes[at];
   if (node.op != Node::kVariable) {
@@ -261,7 +297,8 @@ void Typing::Declare(const Instruction& instruction) {
   DeclaredName& name = module_.names[instruction.name];
   const std::size_t at = module_.FirstNode(instruction.first_expression);
   if (!ResolveNode(at)) {
-    if (places_ == nullptr) Report(ErrorCode::kNameUndeclared, at, {}, {});
+    if (places_ == nullptr) return Report(ErrorCode::kNameUndeclared, at, {}, {});
+    broken_names_[instruction.name] = true;
     return;
   }
   ExprNode& node = module_.nodes[at];

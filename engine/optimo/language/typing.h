@@ -22,7 +22,9 @@ class Typing {
  public:
   // `places` may be null: then findings have no place.
   Typing(Module& module, const ParsedProgram* places, Findings& findings)
-      : module_(module), places_(places), findings_(findings) {}
+      : module_(module), places_(places), findings_(findings) {
+    if (places != nullptr) broken_names_ = places->broken_names;
+  }
 
   // Resolves the names of the expression and sets its types. False when something is wrong or
   // unknown; it is reported then.
@@ -54,8 +56,11 @@ class Typing {
   };
   NodePlace NodePlaceOf(std::size_t node);
   NodePlace NamePlaceOf(std::size_t node);
+  Place PlaceOfName(std::size_t node);
   Operand TypeLeaf(std::size_t node);
-  bool ResolveNode(std::size_t node);
+  // What an undeclared name could have been.
+  enum class Use : std::uint8_t { kValue, kTarget, kIndex };
+  bool ResolveNode(std::size_t node, Use use = Use::kValue);
   bool ResolveIndex(std::size_t node);
   void UseVariable(const ExprNode& node);
   ValueType TypeOfLeaf(const ExprNode& node) const;
@@ -64,13 +69,17 @@ class Typing {
   bool NeedNumeric(const Operand& operand);
   bool NeedLogical(Operand& operand);
   bool TypeBinary(std::size_t node, Operand& a, Operand& b);
-  void ReportUndeclared(std::uint16_t name, std::size_t node);
+  void ReportUndeclared(std::uint16_t name, std::size_t node, Use use);
+  bool IsDeclaredBelow(std::uint16_t name);
+  std::vector<std::uint16_t> NamesFor(Use use) const;
   void Report(ErrorCode code, std::size_t node, Detail detail, std::string_view rule);
 
   Module& module_;
   const ParsedProgram* places_;
   Findings& findings_;
   std::vector<std::uint16_t> declared_names_;  // in order
+  std::vector<bool> broken_names_;       // their DECLARE has an error: uses are no further ones
+  std::vector<bool> declared_anywhere_;  // once it is asked for
   const Instruction* instruction_ = nullptr;
   bool reads_machine_ = false;
   std::array<bool, kParameterCount> parameter_used_{};

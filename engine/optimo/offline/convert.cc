@@ -1,10 +1,12 @@
 #include "engine/optimo/offline/convert.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
+#include "engine/optimo/language/evaluate.h"
 #include "engine/optimo/language/program.h"
 #include "engine/optimo/language/units_of_variables.h"
 #include "engine/optimo/offline/cutter_directive.h"
@@ -286,8 +288,15 @@ void Converter::ConvertNumber(const Part& part, Unit unit) {
   const NumberPlace place = PlaceOfNumber(p_, part.node);
   const std::optional<double> value = LiteralValue(p_.text.substr(place.offset, place.length));
   if (!value) return;
-  edits_.push_back({place.offset, static_cast<int>(place.length),
-                    TrimmedText(Converted(*value, unit), kConvertDecimals)});
+  const double converted = Converted(*value, unit);
+  if (!(std::abs(converted) <= kRealMax)) {
+    findings_.Add(ErrorCode::kLiteralRange, p_.At(*instruction_),
+                  "a number would become larger than the control can hold; it is left alone",
+                  "OPT-7.62");
+    return;
+  }
+  edits_.push_back(
+      {place.offset, static_cast<int>(place.length), TrimmedText(converted, kConvertDecimals)});
 }
 
 // ";$DIA=0.020": the amount is a length. OPT-8.39

@@ -19,6 +19,25 @@ std::size_t ErrorCount(const machine::Translation& translation) {
       translation.diagnostics, [](const Diagnostic& found) { return IsError(found.severity); }));
 }
 
+// A name that nobody declared may follow from another error: it is put right when no other is left.
+bool IsUnknownName(const Diagnostic& found) {
+  return found.code == ErrorCode::kNameUndeclared && found.rule == "OPT-7.50";
+}
+
+bool OnlyNamesAreWrong(const machine::Translation& translation) {
+  if (!translation.diagnostics_dropped.empty()) return false;
+  return std::ranges::all_of(translation.diagnostics, [](const Diagnostic& found) {
+    return !IsError(found.severity) || IsUnknownName(found);
+  });
+}
+
+std::vector<Diagnostic> WithoutNames(std::vector<Diagnostic> found) {
+  for (Diagnostic& one : found) {
+    if (IsUnknownName(one)) one.fixes.clear();
+  }
+  return found;
+}
+
 // Advice on an inch source would take its numbers for millimetres.
 machine::Translation CheckForm(const machine::SourceFile& file) {
   Compilation compiled = Compile(file.bytes, file.name, {.object_limit = 0, .advice = false});
@@ -37,13 +56,19 @@ RepairedText FixProgram(const machine::SourceFile& file, const ProgramCheck& che
   RepairedText fixing{.text = std::string(file.bytes), .fixed = {}, .left = {}};
   fixing.left = look({file.name, fixing.text});
   for (int round = 0; round < kRoundsMax; ++round) {
-    const std::vector<Diagnostic>& found = fixing.left.diagnostics;
-    const std::vector<std::size_t> chosen = RepairableFindings(fixing.text, found);
+    std::vector<Diagnostic> found = WithoutNames(fixing.left.diagnostics);
+    std::vector<std::size_t> chosen = RepairableFindings(fixing.text, found);
+    const bool names = chosen.empty() && OnlyNamesAreWrong(fixing.left);
+    if (names) {
+      found = fixing.left.diagnostics;
+      chosen = RepairableFindings(fixing.text, found);
+    }
     if (chosen.empty()) break;
     std::string text = ApplyFixes(fixing.text, found);
     if (text == fixing.text) break;
     machine::Translation after = look({file.name, text});
     if (ErrorCount(after) > ErrorCount(fixing.left)) break;
+    if (names && !OnlyNamesAreWrong(after)) break;  // they were other names
     for (const std::size_t d : chosen) fixing.fixed.push_back(found[d]);
     fixing.text = std::move(text);
     fixing.left = std::move(after);

@@ -31,7 +31,8 @@ std::optional<double> LiteralValue(std::string_view text) {
 NumberPlace PlaceOfNumber(const ParsedProgram& program, std::uint32_t node) {
   const NodePlace& place = program.node_places[node];
   const std::string_view text = program.text.substr(place.offset, place.length);
-  if (text.find('(') == std::string_view::npos) return {place.offset, place.length};
+  // A sign apart from its digits, by a parenthesis, a comment or a line, stays where it is.
+  if (text.find_first_of("(;\r\n") == std::string_view::npos) return {place.offset, place.length};
   bool negated = false;
   std::size_t begin = 0;
   for (; !IsDigitOrPoint(text[begin]); ++begin) {

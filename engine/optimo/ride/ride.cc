@@ -149,18 +149,23 @@ void Ride::TellMotion(SimTime until) {
   active.told = until;
 }
 
-std::optional<std::uint64_t> Ride::Arrive() {
+void Ride::Arrive() {
   TellMotion(under_way()->end);
   s_.path.Leave();
   const motion::MotionUnderWay& done = s_.path.place();
   s_.axes = done.AxesAt(done.arrival);
-  if (done.ended) {
+  const bool ends_here = done.ended && !more_to_come();
+  if (ends_here) {
     s_.path.DropRest();
     s_.planned_axes = s_.axes;
   }
   if (!busy() && !protocol().comes_to_rest()) EndBeside();
-  if (!done.ended && !done.motion.ends_move) return std::nullopt;
-  const motion::CornerReport& corner = done.motion.corner;
+  if (ends_here || done.motion.ends_move) TellEnd(done.motion, ends_here);
+}
+
+// `here`: wherever that is.
+void Ride::TellEnd(const motion::PlannedMotion& motion, bool here) {
+  const motion::CornerReport& corner = motion.corner;
   if (corner.passage == motion::Passage::kStopReversal) {
     telling_.WarnAt(s_.note.place, ErrorCode::kFlyReversal,
                     "the path turns back: the machine stops at the target", "OPT-B.25");
@@ -171,7 +176,7 @@ std::optional<std::uint64_t> Ride::Arrive() {
         "/FLY beside a motion that cannot be passed into: the machine stops at the target",
         "OPT-2.48");
   }
-  if (!s_.note.last && !done.ended) return std::nullopt;
+  if (!s_.note.last && !here) return;
   telling_.observer().OnMove({.at = situation_.now,
                               .place = s_.note.place,
                               .tip = head().TipOf(s_.axes),
@@ -182,27 +187,24 @@ std::optional<std::uint64_t> Ride::Arrive() {
                               .path = NameOfPath(s_.note.path),
                               .programmed = !s_.note.approach,
                               .approach = s_.note.approach});
-  return done.motion.tag;
+  listener_.OnMoveOver(motion.tag);
 }
 
-void Ride::EndHere() {
-  motion::MotionUnderWay& active = *s_.path.under_way();
-  if (situation_.now >= active.arrival) return;  // it stands already
-  const motion::SpeedProfile ramp =
-      active.motion.speed.StopFrom(ToSeconds(situation_.now - active.start), active.motion.limits);
-  const double here = active.At(situation_.now).s;
-  const double rest = std::min(ramp.end().s, active.motion.path.length());
+bool Ride::EndHere() {
+  if (settles()) return false;
+  const auto plan = s_.path.PlanStop(situation_.now, parameters_.limits.axes);
+  if (!plan) return false;
   TellMotion(situation_.now);
-  active.ended = true;
-  active.motion.settling_s = 0.0;
-  if (rest > here) {
-    active.motion.path = active.motion.path.Part(here, rest);
-    active.motion.speed = ramp.Part(here, rest);
-  } else {
-    active.motion.path = active.motion.path.Standing(here);
-    active.motion.speed = motion::SpeedProfile();
-  }
-  active.Begin(situation_.now);
+  s_.axes = axes();
+  s_.path.EndBy(*plan);
+  Start();
+  return true;
+}
+
+bool Ride::settles() const {
+  const motion::MotionUnderWay& active = *under_way();
+  return active.motion.speed.end().speed == 0.0 &&
+         active.PlaceAt(situation_.now) >= active.motion.path.length();
 }
 
 // What the program goes on beside is over; a passage stays open.
@@ -213,16 +215,15 @@ void Ride::EndBeside() {
 bool Ride::TakeOver() {
   EndBeside();  // from here on it is a motion like any other that is waited for
   if (!busy()) return false;
-  if (under_way() != nullptr) EndHere();
-  s_.path.DropRest();
+  if (under_way() == nullptr || !EndHere()) s_.path.DropRest();
   return true;
 }
 
-bool Ride::EndForError() {
+bool Ride::EndForError(bool at_once) {
   if (!passing() && !busy()) return false;
-  if (beside() && under_way() != nullptr) EndHere();
   EndChain();
-  return true;
+  if (at_once && (under_way() == nullptr || !EndHere())) s_.path.DropRest();
+  return busy();
 }
 
 void Ride::Freeze() {

@@ -67,6 +67,7 @@ class RideListener {
   virtual void OnMark(std::uint64_t tag) = 0;                      // the mark was passed
   virtual void OnMotionBegins(std::uint64_t tag) = 0;              // and is under way from now on
   virtual void OnMotionTold(const machine::MotionDone& done) = 0;  // or a part of one
+  virtual void OnMoveOver(std::uint64_t tag) = 0;                  // and told
 };
 
 // What is appended becomes motions that begin as soon as the one before is over. The program runs
@@ -139,20 +140,19 @@ class Ride {
   void Start();
   // When the motion under way is over, or one is to begin; kForever when none is.
   SimTime NextEvent() const;
-  // The motion under way is over. The tag of its move when that is over, too, and told.
-  std::optional<std::uint64_t> Arrive();
+  // The motion under way is over, and its move perhaps, too.
+  void Arrive();
   // Reports what of the motion under way was not yet reported: something about it changes now.
   void TellUpToNow();
 
   // The motion under way comes to rest on its path, at once, and its move is over where it stands:
   // /END, /TIME, a MOVE that takes over. Such moves end in a stop, so the ramp never leaves their
-  // path.
-  void EndHere();
+  // path. False: it stands already, and settles.
+  bool EndHere();
   // A MOVE takes over from that of /NEXT. False: it came to its end before.
   bool TakeOver();
-  // An error: what goes on beside the program ends here, the rest where it would. False: the
-  // machine stands.
-  bool EndForError();
+  // An error: the motions end here, or where they would. False: the machine stands.
+  bool EndForError(bool at_once);
   // The run is over: the machine stays where it is, and nothing follows.
   void Freeze();
   // Tells what the motions not begun would leave their travel by.
@@ -209,6 +209,8 @@ class Ride {
   void Drain();
   void EndBeside();
   void TellMotion(SimTime until);
+  void TellEnd(const motion::PlannedMotion& motion, bool here);
+  bool settles() const;  // at the end of the motion under way
   const MoveNote* NoteOf(std::uint64_t tag) const;
   MoveNote* NoteOf(std::uint64_t tag);
 

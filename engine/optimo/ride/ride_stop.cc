@@ -4,10 +4,12 @@
 namespace rmlcell::optimo {
 
 bool Ride::Stop() {
+  const motion::MotionUnderWay& active = *under_way();
   const motion::AxisLimits& axis_limits = parameters_.limits.axes;
   const auto plan = s_.path.PlanStop(situation_.now, axis_limits);
   if (!plan) return false;
   TellMotion(situation_.now);
+  if (settles() && active.motion.ends_move) TellEnd(active.motion, false);
   s_.axes = axes();
   s_.path.Stop(*plan, axis_limits);
   s_.halted_behind = situation_.place;  // beside a motion of /NEXT

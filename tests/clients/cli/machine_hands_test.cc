@@ -174,6 +174,7 @@ class HandboxVerbTest : public MachineWords {
     server_ =
         std::make_unique<FakeServer>(folder_, std::vector<grpc::Service*>{&machine_, &handbox_});
   }
+  ~HandboxVerbTest() override { server_.reset(); }  // before handbox_
   static std::string Key(int sequence, const std::string& key, const std::string& action) {
     return "PressKey session: \"s\" control_token: \"t\" key: \"" + key + "\" action: KEY_ACTION_" +
            action + " sequence: " + std::to_string(sequence);

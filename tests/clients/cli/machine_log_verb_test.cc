@@ -39,6 +39,8 @@ class MachineLogVerbTest : public MachineWords {
     Happens(2).mutable_run_begun()->set_run(4);
     Happens(3).mutable_run_begun()->set_run(5);
   }
+  // A call may still be answered: the server goes before the log.
+  ~MachineLogVerbTest() override { server_.reset(); }
   v1::MachineEvent& Happens(int sequence) {
     v1::WatchCellResponse& made = log_.told.emplace_back();
     made.set_sequence(sequence);

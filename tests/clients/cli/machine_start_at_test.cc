@@ -35,6 +35,7 @@ class StartAtTest : public MachineWords {
     machine_.statuses[0].set_state(v1::MACHINE_STATE_IDLE);
     machine_.preview.set_preview_token("p");
   }
+  ~StartAtTest() override { server_.reset(); }  // before decision_
   void CutOff(const std::string& job) {
     machine_.statuses[0].set_state(v1::MACHINE_STATE_INSPECT);
     machine_.statuses[0].set_cut_off_job(job);

@@ -30,6 +30,8 @@ class WatchedWay : public testing::Test {
     const Point& to = ride.to;
     ride.length_mm = std::hypot(to.x - ride.from.x, to.y - ride.from.y, to.z - ride.from.z);
     ride.fastest_z_mm_s = 10.0;
+    ride.along_surface =
+        ride.in_work && !ride.plunge && !registers.IsBelowSurface(std::min(to.z, ride.from.z));
     watch.OnRide(ride, registers, {.number = ++number, .offset = 0, .op = Op::kCall});
   }
   // Straight down from one height to another.

@@ -491,5 +491,53 @@ TEST(MillRunControl, LeavesWhatHappensAtTheEndOfACallToTheNext) {
   EXPECT_TRUE(second.seen().motions().empty());
 }
 
+// motion.md 8.2: keys cut a motion in parts, and what it does to the work does not hang on that: a
+// line of 30 mm down through the surface cuts, and a plunge is one.
+TEST(RunControl, KeysDoNotChangeWhatIsCut) {
+  const std::string stream =
+      "!MC1;VS10;V10;!PZ-100,200;PU1000,1000;PD1000,1100;Z2000,1000,100,4000,1000,-100;PU;!MC0;";
+  TestRun whole(ParametersOf("t1"), stream);
+  ASSERT_EQ(whole.AdvanceToEnd(), RunPhase::kFinished);
+  const Figures wanted = whole.figures();
+  ASSERT_EQ(wanted.at("skimmed_length"), 0.0);
+  double oblique_s = 0.0;
+  double plunge_s = 0.0;
+  for (const RunRecord::Motion& motion : whole.seen().motions()) {
+    if (motion.use == machine::MotionUse::kPlunge) plunge_s = 0.5 * (motion.start_s + motion.end_s);
+    const auto from = motion.planned.path.tip_from().tip;
+    const auto to = motion.planned.path.TipAt(motion.travelled).tip;
+    if (to.z() < from.z() && to.x() != from.x())
+      oblique_s = motion.start_s + 0.1 * (motion.end_s - motion.start_s);
+  }
+  ASSERT_GT(oblique_s, 0.0);
+  ASSERT_GT(plunge_s, 0.0);
+  for (const double at : {oblique_s, plunge_s}) {
+    for (const InputScript& keys :
+         {InputScript{{.at = FromSeconds(at), .kind = InputKind::kStop},
+                      {.at = FromSeconds(at + 60.0), .kind = InputKind::kStart}},
+          InputScript{{.at = FromSeconds(at), .kind = InputKind::kHold},
+                      {.at = FromSeconds(at + 60.0), .kind = InputKind::kStart}},
+          InputScript{
+              {.at = FromSeconds(at), .kind = InputKind::kOverride, .index = 0, .value = 50.0}}}) {
+      TestRun run(ParametersOf("t1"), stream, keys);
+      ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+      const Figures figures = run.figures();
+      for (const char* name : {"cut_length", "skimmed_length", "travel_length", "plunges"})
+        EXPECT_NEAR(figures.at(name), wanted.at(name), 1e-6) << name << " with a key at " << at;
+    }
+  }
+}
+
+// RML1-5A.36: START at the very instant of a halt is for that halt.
+TEST(RunControl, StartAtTheInstantOfAHalt) {
+  const std::string stream = "!MC0;VS10;PU1000,0;!NR;PU2000,0;";
+  TestRun halted(ParametersOf("t1"), stream);
+  ASSERT_EQ(halted.AdvanceToEnd(), RunPhase::kHalted);
+  TestRun run(ParametersOf("t1"), stream,
+              {{.at = halted->state().time, .kind = InputKind::kStart}});
+  EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(run.seen().moves().size(), halted.seen().moves().size() + 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

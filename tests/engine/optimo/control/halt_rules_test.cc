@@ -238,5 +238,25 @@ TEST(HaltRules, TheMotionFlagIsOffAtStandstill) {
   EXPECT_NEAR(ran.First("OL[16] 1").at_s, 44 * kTick_s, 1e-9);
 }
 
+// OPT-4.18, OPT-2.54, OPT-B.59: the clocks of /TIME and TIMER stand while the machine is halted:
+// the one does not run out behind a STOP of 20 s, and the other calls as long after START as it
+// would have without.
+TEST(HaltRules, ClocksStandWhileItIsHalted) {
+  const std::string text = kFromZero + "SPEED 10\nTIMER (4.,8)\n" +
+                           "MOVE (100.,1000.,-400.,0.,0.)/TIME (5.,9)\n" + MoveX(200, "") +
+                           "ENDTASK\n8 VI[1] = VI[1] + 1\nRETURN\n9 VI[2] = 1\nRETURN\n";
+  RunOptions options{.variables = {"VI[1]", "VI[2]"}};
+  const Ran whole = RunText(text, options);
+  ASSERT_EQ(whole.variables.at("VI[1]"), "1");
+  ASSERT_EQ(whole.variables.at("VI[2]"), "0");
+  const SimTime begin = whole.moves.front().at;
+  options.inputs = {Key(ToSeconds(begin) + 1.0, InputKind::kStop),
+                    Key(ToSeconds(begin) + 21.0, InputKind::kStart)};
+  const Ran halted = RunText(text, options);
+  EXPECT_EQ(halted.variables.at("VI[1]"), "1");
+  EXPECT_EQ(halted.variables.at("VI[2]"), "0");
+  EXPECT_NEAR(halted.moves.back().tip.tip.x(), 200, 1e-4);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::halt_rules

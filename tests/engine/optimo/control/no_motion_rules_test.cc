@@ -119,16 +119,16 @@ TEST(NoMotionRules, BehindAFlyMove) {
   EXPECT_NEAR(ran.time_s, ToSeconds(ran.parts[0].done.end) + 1.008, 1e-9);
 }
 
-// OPT-4.18, OPT-2.54: STOP halts it at once; its time goes on all the same.
+// OPT-4.18, OPT-2.54: STOP halts it at once; START goes on with the time that was left.
 TEST(NoMotionRules, StopHaltsIt) {
   RunOptions options = kReadBoth;
   options.inputs = {{At(1.0), InputKind::kStop}, {At(2.0), InputKind::kStart}};
   const Ran ran = RunText(Standing("/TIME (5.,900)"), options);
   ExpectNoMotion(ran);
   EXPECT_NEAR(ran.First("halt STOP").at_s, 1.0, 1e-9);
-  EXPECT_NEAR(ran.time_s, 5.04, 1e-9);  // 105 cycles
+  EXPECT_NEAR(ran.time_s, 6.04, 1e-9);  // 105 cycles, and 1 s of the halt
   EXPECT_THAT(ran.told, ::testing::ElementsAre("compiling 1", "wait condition 1.0", "halt STOP",
-                                               "wait operator 1.0", "wait condition 3.04"));
+                                               "wait operator 1.0", "wait condition 4.04"));
 }
 
 // OPT-3.53: an error of its /END is caught like any other; nothing is left of the MOVE.

@@ -153,7 +153,7 @@ TEST(Places, OfTypesAndTargets) {
       {"GOTO {VL[2]} (5)\n5\n", 7018, "OPT-7.89"},
       {"CALL {VL[1]}\n", 7018, "OPT-7.89"},
       {"ASSIGN OL[32]={VL[1]} /4\n", 7018, "OPT-7.89"},
-      {"{ASSIGN VR[12]=1 /4}\n", 7018, "OPT-7.102"},
+      {"ASSIGN {VR[12]}=1 /4\n", 7018, "OPT-7.102"},
       {"MOVE (1,2,3,4,{ON})\n", 7018, "OPT-7.89"},
       {"MOVE (1,2,3,4,5) /FLY /VIA ({ON},2,3,4,5)\n", 7018, "OPT-7.89"},
       {"PATH HOLE ({ON})\n", 7018, "OPT-7.89"},
@@ -280,6 +280,26 @@ TEST(Places, OfAttributesThatAnInstructionDoesNotHave) {
       EXPECT_EQ(refused, allowed ? 0 : 1) << text;
     }
   }
+}
+
+// OPT-7.41, OPT-7.48, OPT-7.60, OPT-9.22, OPT-1.22: one error is told once, not again wherever what
+// it was about is used.
+TEST(Places, OfOneErrorAndNoneThatFollows) {
+  for (const Row& row : {
+           Row{"{DECLAER} DIST = VR[2]\nDIST = 5.\nVR[3] = DIST\n", 7011, "OPT-7.91"},
+           Row{"DECLARE DIST = VR[2]{]}\nDIST = 5.\n", 7003, "", 0},
+           Row{"DECLARE DIST = VR[1] {5}\nDIST = 5.\n", 7003, "", 0},
+           Row{"DECLARE DIST = VR[{NOPE}]\nDIST = 5.\nVR[3] = DIST\n", 7011, "OPT-7.50", 0},
+           Row{"DECLARE HALF = 5.5\nDECLARE DIST = {VR[HALF]}\nDIST = 5.\n", 7017, "OPT-7.60", 0},
+           Row{"DEFINE PAR[0] = {LOGC}\nVL[0] = PAR[0]\nVR[0] = PAR[0]\n", 7025, "OPT-9.23"},
+           Row{"DECLARE {C} = 5\nVR[C] = 1.\n", 7009, "OPT-7.48", 0},
+           Row{"VR[0] = (1. + 2.{}\nVR[5] = 3.\n", 7003},
+           Row{"ASSIGN {VR[1]} = 1 /4\n", 7018, "OPT-7.102"},
+           Row{"{GOTO VI[2] (60,60)}\n", 7008, "OPT-7.16"},
+       }) {
+    ExpectAtItsPlace(row);
+  }
+  EXPECT_EQ(FindingsOf("ASSIGN VL[22] = 0 /100\n", true), std::vector<int>{7004});
 }
 
 }  // namespace

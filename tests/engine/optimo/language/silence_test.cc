@@ -32,6 +32,15 @@ TEST(Silence, CountsForAllLinesOfAStatement) {
   }
 }
 
+// "in file" stands right behind the numbers: further on it is a remark.
+TEST(Silence, TheWholeTextIsAskedForBehindTheNumbers) {
+  const std::string text = "OL[20] = ON\nOL[21] = ON\n";
+  EXPECT_EQ(Details("; rmlcell: allow 7412 in file\n" + text), Texts{});
+  EXPECT_EQ(Details("; rmlcell: allow 7412, in file 12\n" + text), Texts{});
+  EXPECT_EQ(Details("; rmlcell: allow 7412 as in file 12\n" + text),
+            Texts{"OL[21] is used by the system"});
+}
+
 // OPT-1.18: the statement before and the one behind keep their findings.
 TEST(Silence, CountsForOneStatementOnly) {
   const std::string text =

@@ -51,6 +51,27 @@ TEST(Convert, NumbersInParenthesesKeepThem) {
   EXPECT_EQ(Metric("MOVE (-(1),2,(3),0,-(90))"), "MOVE (-(25.4),50.8,(76.2),0.0,-(1.570796))");
 }
 
+// OPT-8.36, OPT-8.52: a sign may stand apart from its digits, before a comment or on another line.
+TEST(Convert, SignsApartFromTheirDigits) {
+  EXPECT_EQ(Metric("MOVE (- ; neg\n 5., 2., 3., 0., 0.)"),
+            "MOVE (- ; neg\n 127.0, 50.8, 76.2, 0.0, 0.0)");
+  EXPECT_EQ(Metric("VR[0]=(\n-\n7 ; 8\n)"), "VR[0]=(\n-\n177.8 ; 8\n)");
+  EXPECT_EQ(Metric("VR[0]=\n-\n5\nVR[1] = 1"), "VR[0]=\n-\n127.0\nVR[1] = 25.4");
+}
+
+// OPT-7.62: what the control could not hold is told, and stays.
+TEST(Convert, NumbersBeyondReal) {
+  EXPECT_EQ(Metric("VR[0] = 500000000000000000.0"), "VR[0] = 500000000000000000.0");
+  EXPECT_EQ(FindingsOf("VR[0] = 500000000000000000.0"), std::vector<int>{7004});
+  EXPECT_EQ(Metric("VR[0] = 300000000000000000.0").substr(0, 12), "VR[0] = 7620");
+}
+
+// OPT-8.53: a line behind one that forgot a parenthesis is no part of it.
+TEST(Convert, LinesBehindAForgottenParenthesis) {
+  EXPECT_EQ(Metric("VR[0] = (1 + 2\nVR[5] = 3\nVR[1] = 1"),
+            "VR[0] = (1 + 2\nVR[5] = 76.2\nVR[1] = 25.4");
+}
+
 // OPT-8.29
 TEST(Convert, RepeatedConversionMayMoveANumber) {
   EXPECT_EQ(Inch("VR[0] = 420.5"), "VR[0] = 16.555118");

@@ -71,6 +71,38 @@ TEST(FixProgram, RepairsTheFormOfInchSources) {
   EXPECT_EQ(fixing.left.diagnostics[0].code, ErrorCode::kSourceIsInch);
 }
 
+// OPT-7.50, OPT-7.41: a name is put right where nothing else is wrong: it may be unknown because
+// its DECLARE is.
+TEST(FixProgram, NamesFollowFromOtherErrors) {
+  const auto fixed = [](const std::string& text) { return FixText(text).text; };
+  EXPECT_EQ(fixed("DECLARE PASSLR = VR[1]\nPASSRL = 5.\n"),
+            "DECLARE PASSLR = VR[1]\nPASSLR = 5.\n");
+  // The DECLARE is put right, and then its name is known.
+  EXPECT_EQ(fixed("DECLARE PASSLR = VR[1]\nDECALRE PASSRL = VR[2]\nPASSLR = 1.\nPASSRL = 5.\n"),
+            "DECLARE PASSLR = VR[1]\nDECLARE PASSRL = VR[2]\nPASSLR = 1.\nPASSRL = 5.\n");
+  for (const std::string& text :
+       {// A DECLARE that nobody can put right.
+        std::string("DECLARE PASSLR = VR[1]\nDECLARE PASSRL = VR[2]]\nPASSRL = 5.\n"),
+        std::string("DECLARE PASSLR = VR[1]\nDECLARE PASSRL = VR[NOPE]\nPASSRL = 5.\n"),
+        // Another error, whatever it is.
+        std::string("DECLARE PASSLR = VR[1]\nPASSRL = 5.\nSPEED 101\n"),
+        // It is declared, only too late.
+        std::string("DECLARE PONT = VR[1]\nPNOT = 5.\nDECLARE PNOT = VR[2]\nPNOT = 6.\n"),
+        // What no assignment, no index and no place for a number takes.
+        std::string("DECLARE OUTLET = 5\nOUTLTE = 3\n"),
+        std::string("DECLARE OUTLET = 5.5\nOL[OUTLTE] = ON\n"),
+        std::string("DECLARE OUTLET = OL[16]\nVR[30] = OUTLTE + 1\n")}) {
+    EXPECT_EQ(fixed(text), text);
+  }
+}
+
+// OPT-9.24: an index is put behind PAR where the statement can be read.
+TEST(FixProgram, PutsAnIndexOnlyInStatementsThatCanBeRead) {
+  EXPECT_EQ(FixText("DEFINE PAR = INT\n").text, "DEFINE PAR[0] = INT\n");
+  EXPECT_EQ(FixText("DEFINE PAR(0] = INT\n").text, "DEFINE PAR(0] = INT\n");
+  EXPECT_EQ(FixText("DEFINE PAR(0] = INT\n").left.diagnostics.size(), 1U);
+}
+
 // Many repairs in one go, and each finding whole or not at all.
 TEST(FixProgram, RepairsMoreThanOneListOfFindings) {
   std::string text, wanted;
