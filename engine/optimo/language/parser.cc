@@ -101,23 +101,7 @@ void Parser::ParseStatement() {
     good = ParseAttributes();
     if (good && !Is(TokenKind::kEnd)) good = Fail("the end of the statement");
   }
-  if (!good) {
-    broken_if_ = broken_if_ || instruction_.op == Op::kIf;
-    DropExpressions(instruction_.first_expression);
-    module_.targets.resize(instruction_.first_target);
-    // What uses it is spared a second error.
-    const bool named = instruction_.op == Op::kDeclare && instruction_.name != kNoName &&
-                       !declared_[instruction_.name];
-    if (named) program_.broken_names[instruction_.name] = true;
-    if (instruction_.op == Op::kDefine)
-      program_.broken_parameters.set(
-          std::min<std::size_t>(instruction_.numbers[0], kParameterCount - 1));
-    const std::uint32_t step = instruction_.step;
-    instruction_ = Instruction{};
-    instruction_.step = step;
-    instruction_.first_expression = static_cast<std::uint32_t>(module_.expression_ends.size());
-    instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
-  }
+  if (!good) DropStatement();
   if (good && instruction_.op == Op::kDeclare) {
     declared_[instruction_.name] = true;
     declared_names_.push_back(instruction_.name);
@@ -125,6 +109,24 @@ void Parser::ParseStatement() {
   if (good && findings_.error_count() != errors)
     program_.faulty.push_back(static_cast<std::uint32_t>(module_.instructions.size()));
   FinishStatement(good);
+}
+
+// Nothing of it stays but its step; what uses a name that it was to declare is spared a second
+// error.
+void Parser::DropStatement() {
+  broken_if_ = broken_if_ || instruction_.op == Op::kIf;
+  DropExpressions(instruction_.first_expression);
+  module_.targets.resize(instruction_.first_target);
+  const bool named = instruction_.op == Op::kDeclare && instruction_.name != kNoName &&
+                     !declared_[instruction_.name];
+  if (named) program_.broken_names[instruction_.name] = true;
+  if (instruction_.op == Op::kDefine && instruction_.numbers[0] < kParameterCount)
+    program_.broken_parameters.set(instruction_.numbers[0]);
+  const std::uint32_t step = instruction_.step;
+  instruction_ = Instruction{};
+  instruction_.step = step;
+  instruction_.first_expression = static_cast<std::uint32_t>(module_.expression_ends.size());
+  instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
 }
 
 void Parser::FinishStatement(bool good) {

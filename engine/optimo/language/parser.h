@@ -34,6 +34,7 @@ class Parser {
   bool ParseAssignment(bool after_let);
   void ParseIgnored(Word word);
   void AddLabel(const Token& token);
+  void DropStatement();
   void FinishStatement(bool good);
   void OrderAttributeParts();
 
