@@ -9,8 +9,8 @@ bool Ride::Stop() {
   const auto plan = s_.path.PlanStop(situation_.now, axis_limits);
   if (!plan) return false;
   TellMotion(situation_.now);
-  if (settles() && active.motion.ends_move) TellEnd(active.motion, false);
   s_.axes = axes();
+  if (settles() && active.motion.ends_move) TellEnd(active.motion, false);
   s_.path.Stop(*plan, axis_limits);
   s_.halted_behind = situation_.place;  // beside a motion of /NEXT
   if (const MoveNote* note = NoteOf(plan->rests_on); note != nullptr && !beside()) {

@@ -43,8 +43,8 @@ SPEED 20
 
 ;=== an assignment behind an open parenthesis starts afresh
 ; OPT-1.33
-VR[1] = (2. + 3.
-VR[2] = 4.               ; expect 7003
+VR[1] = (2. + 3.         ; expect 7003
+VR[2] = 4.
 VR[3] = ON               ; expect 7018
 
 ;=== an attribute word in the place of an instruction

@@ -116,7 +116,8 @@ TEST(Arrival, StopWhileItSettles) {
       {.inputs = {Key(over - At(0.03), InputKind::kStop), Key(over + At(1.0), InputKind::kStart),
                   Key(over + At(1.01), InputKind::kStop), Key(over + At(2.0), InputKind::kStart)}});
   EXPECT_EQ(ran.Count("halt STOP"), 2);
-  EXPECT_EQ(ran.moves.size(), 2U);
+  ASSERT_EQ(ran.moves.size(), 2U);
+  EXPECT_NEAR(ran.moves.back().tip.tip.x(), 130, 1e-9);
   EXPECT_EQ(std::ranges::count_if(ran.parts,
                                   [](const Ran::Part& part) {
                                     return part.motion.ends_move &&
