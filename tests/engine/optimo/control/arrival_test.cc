@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
+#include <utility>
 
 #include "tests/engine/optimo/control/measured.h"
 #include "tests/engine/optimo/control/run_text.h"
@@ -178,6 +181,68 @@ TEST(Arrival, NothingBeginsBetweenStopAndStart) {
       ran.events, [](const Ran::Event& event) { return event.what.starts_with("beam on"); });
   ASSERT_NE(on, ran.events.end());
   EXPECT_GE(on->at_s, ToSeconds(stop) + 5.0);
+}
+
+// Lines of a few lengths with corners, most of them passed, and outputs and the beam between.
+std::string RandomProgram(unsigned seed) {
+  std::mt19937 dice(seed);
+  const auto one_of = [&dice](const auto& choices) {
+    return choices[std::uniform_int_distribution<std::size_t>(0, choices.size() - 1)(dice)];
+  };
+  std::string text = "WORKDEF 1,1 (20.,50.,0.,80.)\nOVERSH " +
+                     std::to_string(one_of(std::array{0, 30, 100})) + "\n" +
+                     From100(one_of(std::array{4, 20, 100}));
+  double x = 100.0;
+  double y = 1000.0;
+  int output = 20;
+  for (int k = 0; k < 8; ++k) {
+    switch (one_of(std::array{0, 0, 0, 1, 2, 3})) {
+      case 1:
+        text += "OL[" + std::to_string(++output) + "]=ON\n";
+        break;
+      case 2:
+        text += one_of(std::array{"WORK 1,1/ON\n", "WORK 1,1/OFF\n"});
+        break;
+      case 3:
+        text += "SPEED " + std::to_string(one_of(std::array{2, 10, 50})) + "\n";
+        break;
+      default: {
+        const double length = one_of(std::array{1.0, 5.0, 10.0, 10.0, 30.0});
+        const auto way =
+            one_of(std::array<std::pair<int, int>, 5>{{{1, 0}, {0, 1}, {-1, 0}, {1, 1}, {0, -1}}});
+        x += length * way.first;
+        y += length * way.second;
+        text += Move(x, y, one_of(std::array{"", "/FLY", "/FLY", "/FLY"}));
+      }
+    }
+  }
+  return text + "WORK 1,1/OFF\n";
+}
+
+// OPT-4.18, OPT-2.49: STOP at the instant of whatever arrival, or a little before it, and START
+// change nothing but the time: each move is told once and each output comes once.
+TEST(Arrival, StopAtAnyArrivalLosesNothing) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const std::string text = RandomProgram(seed);
+    const Ran whole = RunText(text);
+    for (const machine::MoveDone& move : whole.moves) {
+      for (const int before_ns : {0, 1, 150, 20'000'000}) {
+        const SimTime stop = move.at - SimTime(before_ns);
+        const Ran ran = RunText(text, {.inputs = {Key(stop, InputKind::kStop),
+                                                  Key(stop + At(10.0), InputKind::kStart)}});
+        ASSERT_EQ(ran.moves.size(), whole.moves.size()) << text << ToSeconds(stop);
+        for (std::size_t k = 0; k < ran.moves.size(); ++k) {
+          EXPECT_LT((ran.moves[k].tip.tip - whole.moves[k].tip.tip).norm(), 1e-6)
+              << text << ToSeconds(stop) << " move " << k;
+        }
+        for (int output = 21; output <= 28; ++output) {
+          const std::string on = "OL[" + std::to_string(output) + "] 1";
+          EXPECT_EQ(ran.Count(on), whole.Count(on)) << text << ToSeconds(stop) << on;
+        }
+        EXPECT_EQ(ran.findings.size(), whole.findings.size()) << text << ToSeconds(stop);
+      }
+    }
+  }
 }
 
 }  // namespace
