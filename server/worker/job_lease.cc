@@ -79,6 +79,10 @@ void JobLease::SendEvents(const v1::WorkerEvents& events) {
 }
 
 void JobLease::SendProgress(const v1::JobProgress& progress) {
+  // One that stands is where it was: who follows it is told nothing.
+  std::string position = progress.SerializeAsString();
+  if (position == position_) return;
+  position_ = std::move(position);
   v1::WorkRequest message;
   *message.mutable_heartbeat()->mutable_lease() = assignment_.lease();
   *message.mutable_heartbeat()->mutable_progress() = progress;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -70,7 +71,8 @@ class JobLease {
   const v1::WorkerAssignment& assignment_;
   const std::atomic<bool>& stopping_;
   ProcessorTime processor_time_;
-  double started_s_;  // of the processor
+  double started_s_;      // of the processor
+  std::string position_;  // that was sent last
   std::int64_t events_sent_ = 0;
   std::int64_t events_stored_ = 0;
   std::vector<v1::WorkerControl> orders_;  // not carried out yet

@@ -52,7 +52,8 @@ class Live:
             program={"file_name": file_name, "content": text.encode()}))
 
     def status(self):
-        return self.stub.GetMachine(machine_pb2.GetMachineRequest(name=self.machine)).status
+        # A channel that found no server at first does not try again at once.
+        return self.stub.GetMachine(machine_pb2.GetMachineRequest(name=self.machine), wait_for_ready=True, timeout=60).status
 
     def wait(self, state, patience=30):
         return eventually(lambda: (lambda now: now if MachineState.Name(now.state) == "MACHINE_STATE_" + state

@@ -163,5 +163,33 @@ TEST(MakeParameters, RefusesProfilesAndValuesThatThereAreNot) {
   EXPECT_EQ(code("t1", {{"X_MIN", "8"}, {"X_MAX", "9"}, {"ORIGIN_X", "8"}}), ErrorCode::kCellUsage);
 }
 
+// Before a stream runs it is there, and can be read: else the first of its errors is told.
+TEST(MillFamily, NeedsAStreamThatCanBeRead) {
+  const machine::Parameters t1 = *MakeParameters(Mills(), "t1", {});
+  std::map<int, StoredProgram> memory;
+  const Status none = Mills().CheckNeeds(memory, {}, t1, 3);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, Mills().info().empty_slot);
+  EXPECT_EQ(none.error().detail, "program 3");
+  memory[3].name = "3.rml";
+  EXPECT_EQ(Mills().CheckNeeds(memory, {}, t1, 3).error().code, Mills().info().empty_slot);
+  memory[3].object = Bytes::Of("PU;PA0,0;");
+  EXPECT_TRUE(Mills().CheckNeeds(memory, {}, t1, 3));
+  EXPECT_FALSE(Mills().CheckNeeds(memory, {}, t1, 4));
+  const std::string text(300, '$');
+  memory[3].object = Bytes::Of(text);
+  const Status bad = Mills().CheckNeeds(memory, {}, t1, 3);
+  ASSERT_FALSE(bad);
+  const Translation read =
+      Mills().Translate({.name = "3.rml", .bytes = text}, t1, {.advice = false});
+  ASSERT_FALSE(read.ok);
+  for (const Diagnostic& finding : read.diagnostics) {
+    if (!IsError(finding.severity)) continue;
+    EXPECT_EQ(bad.error().code, finding.code);
+    EXPECT_EQ(bad.error().detail, finding.detail);
+    break;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

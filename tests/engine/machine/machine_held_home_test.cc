@@ -424,5 +424,34 @@ TEST_F(HeldHomeTest, AMarkOnTheWay) {
   EXPECT_NEAR(Axes().column.norm(), 0.0, 1e-9);
 }
 
+// LIVE-7.05: HOME of a machine on which no run is open stops, too, when whoever holds the key is
+// not heard any more.
+TEST_F(HeldHomeTest, ReleasedKeysStopHomeWithoutARun) {
+  LoadHeld(kCorner, 5.0);
+  Good(AbortRun{});
+  Over();
+  ASSERT_EQ(state(), MachineState::kIdle);
+  EXPECT_EQ(PressHome(), 0);
+  GoOnFor(0.5);
+  EXPECT_EQ(state(), MachineState::kJogging);
+  Good(ReleaseJogs{});
+  EXPECT_EQ(state(), MachineState::kStopping);
+  GoOnFor(2.0);
+  EXPECT_EQ(state(), MachineState::kIdle);
+  EXPECT_EQ(Over().outcome.kind, OutcomeKind::kCancelled);
+  EXPECT_GT(Axes().column.x(), 50.0);
+}
+
+// LIVE-5.03: in a FUNCTION of the handbox its program is in use, and nothing else is.
+TEST_F(HeldHomeTest, TheProgramOfAFunctionIsInUse) {
+  Load({kCorner, "COORD ROBOT\nSPEED 10\nMOVE (500.,2201.2,-50.,0.,0.)\nRETURN\n"});
+  Good(ChangeMode{Mode::kManual});
+  for (const char* key : {"JOB", "1", "ENT", "F3", "0", "2", "ENT", "ENT", "1"})
+    EXPECT_EQ(Key(key), 0) << key;
+  GoOnFor(1.0);
+  ASSERT_EQ(machine->status().by_hand, HandRun::kFunction);
+  EXPECT_THAT(machine->loaded_programs(), testing::ElementsAre(2));
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

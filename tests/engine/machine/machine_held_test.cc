@@ -431,5 +431,50 @@ TEST_F(HeldMillTest, AMillIsNotMoved) {
   EXPECT_EQ(Over().outcome.kind, OutcomeKind::kCompleted);
 }
 
+// LIVE-5.06: so is a turn by more than 0.0001 rad: at 10 % the head turns by 0.05 % of a turn in a
+// second.
+TEST_F(HeldTest, HowFarATurnIsAsked) {
+  LoadHeld(kCorner, 5.0);
+  Good(ChangeOverride{10.0});
+  Jog(kHeldBPlus, 0.02);
+  BackInRemote();
+  Good(ResumeRun{});
+  LoadHeld(kCorner, 5.0);
+  Good(ChangeOverride{10.0});
+  Jog(kHeldBPlus, 0.5);
+  BackInRemote();
+  EXPECT_EQ(Refused(ResumeRun{}), "CELL-E9425 it was moved in B by 0.0016 rad");
+}
+
+// LIVE-5.06: it is asked once: not of the next hold, nor of the next run. LIVE-6.01: who simulates
+// the run knows nothing of it, so that it has no base any more.
+TEST_F(HeldTest, ADisplacementIsAskedOnce) {
+  LoadHeld(kCorner, 5.0);
+  EXPECT_TRUE(machine->base());
+  Jog(kHeldYPlus, 1.0);
+  BackInRemote();
+  Good(ResumeRun{.accept_displaced = true});
+  EXPECT_FALSE(machine->base());
+  GoOnFor(2.0);
+  Good(StopRun{});
+  GoOnFor(5.0);
+  ASSERT_EQ(state(), MachineState::kHeld);
+  Good(ResumeRun{});
+  EXPECT_EQ(state(), MachineState::kRunning);
+
+  LoadHeld(kCorner, 5.0);
+  Jog(kHeldYPlus, 1.0);
+  Good(AbortRun{});
+  Over();
+  BackInRemote();
+  Start();
+  GoOnFor(3.0);
+  Good(StopRun{});
+  GoOnFor(5.0);
+  ASSERT_EQ(state(), MachineState::kHeld);
+  Good(ResumeRun{});
+  EXPECT_EQ(state(), MachineState::kRunning);
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -578,5 +578,30 @@ TEST_F(MachineJogTest, RandomKeysStayInside) {
   }
 }
 
+// LIVE-7.02: what a key asked for is not over until the axis stands.
+TEST_F(MachineJogTest, ItSettlesWhenTheKeyIsUp) {
+  LoadInManual();
+  EXPECT_FALSE(machine->settles());
+  Good(PressJog{.key = kXPlus});
+  GoOnFor(1.0);
+  EXPECT_FALSE(machine->settles());
+  Good(ReleaseJog{kXPlus});
+  EXPECT_TRUE(machine->settles());
+  GoOnFor(0.2);
+  EXPECT_FALSE(machine->settles());
+}
+
+// LIVE-8.01: the panel tells how far axes run on, where its keys move some.
+TEST_F(MachineJogTest, ThePanelTellsHowFarAxesRunOn) {
+  LoadInManual();
+  ASSERT_TRUE(machine->panel().run_on);
+  EXPECT_NEAR(machine->panel().run_on->mm, 15.0, 1e-9);
+  Good(ChangeMode{Mode::kRemote});
+  EXPECT_FALSE(machine->panel().run_on);
+  Good(ChangeMode{Mode::kManual});
+  Good(SwitchPower{false});
+  EXPECT_FALSE(machine->panel().run_on);
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -141,5 +141,15 @@ TEST(MachineNoteTest, HasOneHead) {
   EXPECT_EQ(*least, MachineNote{});
 }
 
+// Whoever keeps it is told that it is none.
+TEST(MachineNoteTest, WhatIsNoneIsSaidToBeNone) {
+  for (const char* text : {"", "family\n", "rmlcell machine 1\nfast 1\nfamily\n"}) {
+    const Result<MachineNote> none = ReadMachineNote(text);
+    ASSERT_FALSE(none) << text;
+    EXPECT_EQ(none.error().code, ErrorCode::kCellBadText);
+    EXPECT_EQ(none.error().detail, "this is no state of a machine of this version");
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -509,5 +509,54 @@ TEST_F(MachineTest, RefusalsKnowWhatTheyAreAbout) {
   EXPECT_EQ(told(WriteVariable{"IL[3]", 1.0}), "variable='IL[3]'");
 }
 
+// OPT-4.03, LIVE-2.10: without power there is no alarm, no message and no dry run left; an
+// emergency stop that is pressed is one alarm, and one again behind it.
+TEST_F(MachineTest, WhatEndsWithThePower) {
+  Load({"VI[1] = 2\nGOTO VI[1] (20,999)\n20 ENDTASK\n"});
+  Start();
+  GoOn(At(1.0));
+  ASSERT_TRUE(machine->status().message);
+  Good(SetSimulation{ProgramStep{1, 2}});
+  Good(EmergencyStop{});
+  Good(EmergencyStop{.pressed = false});
+  ASSERT_EQ(state(), MachineState::kAlarm);
+  Good(SwitchPower{false});
+  Good(SwitchPower{true});
+  EXPECT_EQ(state(), MachineState::kNotZeroed);
+  EXPECT_THAT(machine->status().alarms, IsEmpty());
+  EXPECT_EQ(machine->status().message, std::nullopt);
+  EXPECT_EQ(machine->simulation_until(), std::nullopt);
+  Good(EmergencyStop{});
+  Good(EmergencyStop{});
+  EXPECT_EQ(machine->status().alarms.size(), 1U);
+  Good(SwitchPower{false});
+  EXPECT_THAT(machine->status().alarms, IsEmpty());
+  Good(SwitchPower{true});
+  EXPECT_EQ(state(), MachineState::kAlarm);
+  ASSERT_EQ(machine->status().alarms.size(), 1U);
+  EXPECT_EQ(CodeText(machine->status().alarms[0].code), "OPT-E7610");
+  // Pressed while it is off it is none before it is on.
+  Load({"DELAY 1\n"});
+  Good(SwitchPower{false});
+  Good(EmergencyStop{});
+  EXPECT_THAT(machine->status().alarms, IsEmpty());
+  Good(SwitchPower{true});
+  EXPECT_EQ(state(), MachineState::kAlarm);
+}
+
+// OPT-1.10, OPT-1.13: slots are 1 to 99; what is stored again is not deleted any more.
+TEST_F(MachineTest, StoresIntoTheSlotsThatThereAre) {
+  Load({"DELAY 1\n", "DELAY 1\n"});
+  for (const int slot : {0, 100}) {
+    EXPECT_EQ(Refused(StoreProgram{.slot = slot, .program = Translated("DELAY 2\n")}),
+              "OPT-E7101 program " + std::to_string(slot) + ", allowed are 1 to 99");
+  }
+  EXPECT_EQ(machine->memory().programs.size(), 2U);
+  Good(DeleteProgram{2});
+  EXPECT_THAT(machine->memory().deleted, ElementsAre(2));
+  Good(StoreProgram{.slot = 2, .program = Translated("DELAY 2\n")});
+  EXPECT_THAT(machine->memory().deleted, IsEmpty());
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

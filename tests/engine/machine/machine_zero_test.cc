@@ -174,5 +174,16 @@ TEST_F(MillZeroTest, AMillHasNothingToFind) {
   EXPECT_THAT(Refused(ZeroAxes{}), HasSubstr("CELL-E9424"));
 }
 
+// LIVE-3.16: nor has what ends it a place in a program.
+TEST_F(MachineZeroTest, WhatEndsTheProcedureHasNoPlace) {
+  LoadWithoutReference();
+  Good(ZeroAxes{});
+  GoOn(At(1.0));
+  Good(EmergencyStop{});
+  EXPECT_EQ(Over().outcome.place, Place());
+  ASSERT_EQ(machine->status().alarms.size(), 1U);
+  EXPECT_EQ(machine->status().alarms[0].place, Place());
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

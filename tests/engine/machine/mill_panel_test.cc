@@ -444,5 +444,87 @@ TEST_F(MillPanelTest, TheStepOfATapIsOfTheProfile) {
   EXPECT_NEAR(machine->status().run.axes.column.x(), x + 0.25, 1e-9);
 }
 
+// LIVE-2.13: VIEW goes back only where it came from: moved by a key or HOME meanwhile, the tool is
+// taken away anew, and comes back to there.
+TEST_F(MillPanelTest, ViewBeginsAnewWhereItWasMovedMeanwhile) {
+  const motion::MachinePoint view(0.0, 152.4, 0.0);
+  LoadDescribed();
+  PutAway();
+  Good(kPressView);
+  ToRest();
+  ExpectAt(view);
+  Good(PressJog{.key = {JogAxis::kX, true}});
+  GoOnFor(5.0);
+  Good(ReleaseJogs{});
+  GoOnFor(0.1);
+  const motion::MachinePoint jogged = machine->status().run.axes.column;
+  EXPECT_GT(jogged.x(), 4.0);
+  Good(kPressView);
+  ToRest();
+  ExpectAt(view);
+  Good(kPressView);
+  ToRest();
+  ExpectAt(jogged);
+  Good(kPressView);
+  ToRest();
+  Good(kPressHome);
+  ToRest();
+  const motion::MachinePoint home = machine->status().run.axes.column;
+  EXPECT_GT((home - view).norm(), 100.0);
+  Good(kPressView);
+  ToRest();
+  ExpectAt(view);
+  Good(kPressView);
+  ToRest();
+  ExpectAt(home);
+}
+
+// LIVE-2.13: nor is a place from before a run, or from a run that is over, one to go back to.
+TEST_F(MillPanelTest, ViewBeginsAnewWithARunAndBehindIt) {
+  const motion::MachinePoint view(0.0, 152.4, 0.0);
+  const auto begin = [&](const MachineInput& start) {
+    LoadDescribed();
+    PutAway();
+    Good(kPressView);
+    ToRest();
+    Good(start);
+    GoOnFor(100.0);
+    ASSERT_EQ(state(), MachineState::kHeld);
+    EXPECT_NEAR(machine->status().run.axes.column.x(), 10.0, 1e-9);
+    Good(kPressView);
+    ToRest();
+    ExpectAt(view);
+  };
+  begin(StartRun{.program = 1});
+  Good(AbortRun{});
+  Good(kPressView);
+  ToRest();
+  ExpectAt(view);
+  begin(StartAtStep{.program = 1,
+                    .target = {.at = {1, 3}},
+                    .acknowledged = {"clamps", "table", "tool", "Z0", "origin"}});
+}
+
+// LIVE-6.01: a simulation knows nothing of a spindle that a person stopped, or that is started anew
+// behind a hold: the run has no base any more.
+TEST_F(MillPanelTest, ASpindleByHandLeavesNoBase) {
+  const auto hold = [&] {
+    LoadDescribed(kCutWithAPause);
+    Start();
+    GoOnFor(60.0);
+    ASSERT_EQ(state(), MachineState::kHeld);
+    EXPECT_TRUE(machine->base());
+  };
+  hold();
+  Good(kPressSpindle);
+  EXPECT_FALSE(machine->base());
+  hold();
+  Good(ResumeRun{.restore_process = true});
+  EXPECT_FALSE(machine->base());
+  hold();
+  Good(ResumeRun{});
+  EXPECT_TRUE(machine->base());
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -162,5 +162,18 @@ TEST_F(MillPanel, LightsWhatIsSo) {
   EXPECT_TRUE(machine->panel().lamps.empty());
 }
 
+// OPT-4.03: behind a power cycle the handbox is as it was delivered.
+TEST_F(HandboxDisplay, ForgetsTheReferenceWithThePower) {
+  using testing::Contains;
+  Load({});
+  Good(ChangeMode{Mode::kManual});
+  ASSERT_TRUE(machine->PressKey("JOG_ABS"));
+  EXPECT_THAT(machine->panel().lamps, Contains("ABS"));
+  Good(SwitchPower{false});
+  Good(SwitchPower{true});
+  EXPECT_THAT(machine->panel().lamps, Contains("ROB"));
+  EXPECT_THAT(machine->panel().lamps, testing::Not(Contains("ABS")));
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -272,5 +272,15 @@ TEST_F(ReachTest, TheOccurrenceOfARunThatWasCutOff) {
   EXPECT_EQ(*OccurrenceAt(family_, setup, {1, 4}, At(2.5), {}), 0U);
 }
 
+// LIVE-6.01: whoever asks may give up.
+TEST_F(ReachTest, TheOccurrenceIsGivenUp) {
+  const RunSetup setup = Setup({"100 DELAY 1\nVI[2]=VI[2]+1\nIF VI[2] < 5 THEN 100\n"});
+  const Result<std::uint64_t> none =
+      OccurrenceAt(family_, setup, {1, 1}, At(2.5), {.go_on = [] { return false; }});
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::kCellStepUnreachable);
+  EXPECT_EQ(none.error().detail, "where it was cut off takes longer than is looked for");
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -168,5 +168,73 @@ TEST_F(SelectedProgram, ResumeFromAfarLosesNoPart) {
   EXPECT_EQ(state(), MachineState::kRunning);
 }
 
+// OPT-4.61, OPT-4.42: what is selected while a run is suspended is shown until the run goes on, and
+// stays selected when it is ended.
+TEST_F(SelectedProgram, WhatIsSelectedInAHold) {
+  Load({"DELAY 5\nDELAY 5\n", "DELAY 5\n"});
+  Good(ChangeMode{Mode::kSingle});
+  const auto hold_and_select = [&] {
+    Good(StartRun{.program = 1, .source = StartSource::kPanel});
+    GoOn(machine->time() + At(9.0));
+    ASSERT_EQ(state(), MachineState::kHeld);
+    for (const char* key : {"JOB", "0", "2", "ENT"}) ASSERT_TRUE(machine->PressKey(key)) << key;
+    EXPECT_EQ(machine->selected_program(), 2);
+  };
+  hold_and_select();
+  ASSERT_TRUE(machine->PressKey("START"));
+  GoOn(machine->time() + At(1.0));
+  EXPECT_EQ(machine->status().shown.program, 1);
+  EXPECT_EQ(machine->status().shown.step, 2);
+  Good(AbortRun{});
+  Over();
+  EXPECT_EQ(machine->selected_program(), 1);
+  hold_and_select();
+  Good(AbortRun{});
+  Over();
+  EXPECT_EQ(machine->selected_program(), 2);
+}
+
+// LIVE-5.04, OPT-1.11: what a job brings is not in the memory: the executable that is made of it is
+// not that of the slot, whose own program runs next.
+TEST_F(SelectedProgram, TheExecutableOfWhatAJobBringsIsNotKept) {
+  Load({"DELAY 1\n"});
+  Good(StartRun{.program = 1, .source = StartSource::kQueue, .brought = Translated("VI[5]=7\n")});
+  GoOn(At(5.0));
+  Over();
+  EXPECT_EQ(Value("VI[5]"), "7");
+  EXPECT_THAT(machine->TakeMadeExecutables(), IsEmpty());
+  Start(1);
+  GoOn(At(10.0));
+  EXPECT_EQ(Over().lasted, At(1.0));
+}
+
+// LIVE-2.11: a job of the queue goes on in REMOTE alone; what the console started goes on in CYCLE.
+TEST_F(SelectedProgram, AJobIsHeldWhenItsMachineLeavesRemote) {
+  for (const StartSource source : {StartSource::kQueue, StartSource::kConsole}) {
+    Load({"DELAY 5\n"});
+    Good(StartRun{.program = 1, .source = source});
+    GoOn(At(1.0));
+    Good(ChangeMode{Mode::kCycle});
+    GoOn(At(2.0));
+    const bool job = source == StartSource::kQueue;
+    EXPECT_EQ(state(), job ? MachineState::kHeld : MachineState::kRunning);
+  }
+}
+
+// OPT-1.13: a FUNCTION that was deleted since it was linked is told of, and what was linked runs.
+TEST_F(SelectedProgram, ADeletedFunctionIsStale) {
+  Load({"FUNCTION 2\nDELAY 1\n", "VI[1]=VI[1]+1\nRETURN\n"});
+  Start(1);
+  GoOn(At(5.0));
+  Over();
+  Good(DeleteProgram{2});
+  heard.told.clear();
+  Start(1);
+  GoOn(At(10.0));
+  EXPECT_EQ(Over().outcome.kind, OutcomeKind::kCompleted);
+  EXPECT_EQ(Value("VI[1]"), "2");
+  EXPECT_THAT(heard.told, testing::Contains(testing::EndsWith("finding OPT-E7110")));
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -494,5 +494,121 @@ TEST_F(StartAt, IsTheSameHoweverItIsDriven) {
   EXPECT_THAT(told, Not(IsEmpty()));
 }
 
+// LIVE-6.09: breakpoints that are set hold for a run that begins at a step, too.
+TEST_F(StartAt, HasTheBreakpointsThatAreSet) {
+  Load({"DELAY 1\nVI[1]=1\nVI[2]=1\nDELAY 5\n"});
+  Good(SetBreakpoints{.breakpoints = {{.at = {1, 3}}}});
+  Good(At1(2));
+  GoOn(At(60.0));
+  EXPECT_EQ(state(), MachineState::kHeld);
+  EXPECT_EQ(Now().halted_by, HaltReason::kBreakpoint);
+}
+
+// LIVE-6.09: on its way the run is at the step where it begins.
+TEST_F(StartAt, IsAtItsStepOnTheWay) {
+  Load({kSquare});
+  Good(At1(14));
+  GoOn(At(0.2));
+  ASSERT_TRUE(Now().approaching);
+  EXPECT_EQ(Now().place.program, 1);
+  EXPECT_EQ(Now().place.step, 14);
+}
+
+// LIVE-5.04, OPT-1.11: a program that a job brings is nobody's choice and in no slot, wherever it
+// begins: it is not in use, and its executable is not that of the slot.
+TEST_F(StartAt, WhatAJobBringsIsNotOfTheMemory) {
+  Load({"DELAY 1\nDELAY 60\n", "DELAY 1\nDELAY 5\n"});
+  Start(2);
+  GoOn(At(10.0));
+  Over();
+  ASSERT_EQ(machine->TakeMadeExecutables().size(), 1U);
+  StartAtStep input = At1(2);
+  input.source = StartSource::kQueue;
+  input.brought = Translated("VI[5]=7\nDELAY 20\nDELAY 1\n");
+  Good(input);
+  GoOn(At(15.0));
+  ASSERT_EQ(state(), MachineState::kRunning);
+  EXPECT_THAT(machine->loaded_programs(), IsEmpty());
+  EXPECT_EQ(machine->selected_program(), 2);
+  GoOn(At(100.0));
+  EXPECT_EQ(Over().outcome.kind, OutcomeKind::kCompleted);
+  EXPECT_EQ(machine->selected_program(), 2);
+  EXPECT_THAT(machine->TakeMadeExecutables(), IsEmpty());
+  EXPECT_TRUE(machine->memory().programs.at(1).executable == nullptr);
+}
+
+// What was stored before it began is what its executable is made of.
+TEST_F(StartAt, TheExecutableOfANewProgramIsKept) {
+  Load({"DELAY 1\n"});
+  Good(StoreProgram{.slot = 2, .program = Translated("DELAY 1\nDELAY 2\n")});
+  StartAtStep input = At1(2);
+  input.program = 2;
+  input.target.at = {2, 2};
+  Good(input);
+  EXPECT_EQ(machine->selected_program(), 2);
+  GoOn(At(60.0));
+  EXPECT_EQ(Over().outcome.kind, OutcomeKind::kCompleted);
+  EXPECT_EQ(machine->TakeMadeExecutables().size(), 1U);
+}
+
+// LIVE-6.01: with the schedules that are stored.
+TEST_F(StartAt, HasTheSchedulesThatAreStored) {
+  Load({"WORKDEF 2,1 (7)\nWORK 2,1/ON\nWORKDEF 0,0\nWORK 0,0/ON\nDELAY 5\nWORK 0,0/OFF\n"});
+  LaserSchedule schedule;
+  schedule.number = 7;
+  schedule.power_percent = 60.0;
+  Good(SetSchedules{.schedules = std::vector{schedule}});
+  Good(At1(2));
+  double most = 0.0;
+  for (int n = 0; n < 100; ++n) {
+    GoOn(machine->time() + At(0.25));
+    most = std::max(most, machine->outputs().power_percent);
+  }
+  EXPECT_EQ(most, 60.0);
+}
+
+// LIVE-6.03: another override than the run had, and a corner that the whole run passes, are told;
+// nothing is done about them.
+TEST_F(StartAt, TellsOverrideAndPassage) {
+  Load({kSquare});
+  Good(ChangeOverride{50.0});
+  StartAtStep input = At1(13);
+  input.base = StartBase{.machine_state = StandingState(), .override_percent = 80.0};
+  const Result<StartPreview> preview = machine->Preview(input);
+  ASSERT_TRUE(preview);
+  const StartDifference* changed = Row(preview->differences, "override");
+  ASSERT_NE(changed, nullptr);
+  EXPECT_EQ(*changed, (StartDifference{"override", "80", "50", StartAction::kNone}));
+  EXPECT_EQ(Row(preview->differences, "passage"), nullptr);
+  const StartPreview passed = PreviewOf(Setup({kSquare}), {.at = {1, 11}});
+  const StartDifference* passage = Row(passed.differences, "passage");
+  ASSERT_NE(passage, nullptr);
+  EXPECT_EQ(*passage, (StartDifference{"passage", "passed", "stop", StartAction::kNone}));
+}
+
+// LIVE-6.03: what is on one side alone is a difference, too; what is the same is none.
+TEST(StartDifferences, OfBothSides) {
+  const std::vector<StateItem> there = {{"same", "1", StartAction::kSet},
+                                        {"gone", "2", StartAction::kMove},
+                                        {"other", "3", StartAction::kAsk}};
+  const std::vector<StateItem> now = {{"new", "5", StartAction::kSwitch},
+                                      {"other", "4", StartAction::kSet},
+                                      {"same", "1", StartAction::kSet}};
+  EXPECT_THAT(DifferencesOf(there, now),
+              ElementsAre(StartDifference{"gone", "2", "", StartAction::kMove},
+                          StartDifference{"other", "3", "4", StartAction::kAsk},
+                          StartDifference{"new", "", "5", StartAction::kSwitch}));
+}
+
+// LIVE-6.06: what cannot begin where the machine stands is refused before anything moves. From home
+// the via point lies on the line to the target, behind it; from (500, 2100) all is well.
+TEST_F(StartAt, ADirectStartThatCannotBegin) {
+  const RunSetup setup =
+      Setup({"COORD ABSOL\nPATH LIN\nMOVE (500.,2100.,-350.,0.,0.)\nPATH CIR\n"
+             "MOVE (560.,2201.2,-350.,0.,0.)/VIA (600.,2201.2,-350.,0.,0.)\nVI[1]=1\n"});
+  EXPECT_THAT(FirstRefusal(PreviewOf(setup, {.at = {1, 5}}, false, ApproachWay::kDirect)),
+              HasSubstr("CELL-E9427 the first motion cannot begin where the machine stands: "));
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -368,5 +368,39 @@ TEST_F(NoGatesTest, OfAMill) {
   EXPECT_THAT(Refused(PressGate{.gate = 1}), HasSubstr("CELL-E9424"));
 }
 
+// LIVE-6.01: each halt at a breakpoint counts from its own time, also in the next run, and what a
+// run stood before is no time of one that begins at a step. The steps take 2 s, 30 s and 30 s.
+TEST_F(StartBaseTest, EachHaltCountsFromItsOwnTime) {
+  Load({"DELAY 2\nDELAY 30\nDELAY 30\n"});
+  Good(SetBreakpoints{.breakpoints = {{.at = {1, 1}}, {.at = {1, 2}}}});
+  Start();
+  GoOn(At(50.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  EXPECT_LT(machine->base_time(), At(3.0));
+  Good(ResumeRun{});
+  GoOn(At(100.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  EXPECT_GT(machine->base_time(), At(31.0));
+  EXPECT_LT(machine->base_time(), At(34.0));
+  Good(AbortRun{});
+  GoOn(At(101.0));
+  Start();
+  GoOn(At(150.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  EXPECT_LT(machine->base_time(), At(3.0));
+  Good(ResumeRun{});
+  GoOn(At(151.0));
+  Good(AbortRun{});
+  GoOn(At(152.0));
+  Good(SetBreakpoints{});
+  const Result<StartPreview> preview = machine->Preview(At1(3));
+  ASSERT_TRUE(preview && preview->may_begin());
+  Good(At1(3));
+  while (machine->status().run.approaching) GoOn(machine->time() + At(0.01));
+  GoOn(machine->time() + At(1.0));
+  EXPECT_GT(machine->base_time(), preview->run_time + At(0.9));
+  EXPECT_LT(machine->base_time(), preview->run_time + At(1.1));
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -188,5 +188,42 @@ TEST(TipLimits, AreSharesOfTheMachine) {
   EXPECT_EQ(all.jerk, 40000.0);
 }
 
+// The same on lines, short and long, on which either angle or both turn, through the upright head:
+// what the ends alone tell is what there is. motion.md 5.1
+TEST(LimitsOf, ExtremesAlongLinesAreExact) {
+  const MachineLimits machine = StandardMachine();
+  constexpr int kPlaces = 4000;
+  constexpr double kBetweenPlaces = 2e-6;  // what a peak is above the places beside it
+  for (const double length : {3.0, 40.0, 700.0}) {
+    for (const double a_turn : {-2.5, 0.0, 0.7, 3.0}) {
+      for (const double b_turn : {-1.1, 0.4, 1.6}) {
+        SCOPED_TRACE(testing::Message() << length << " mm, " << a_turn << ", " << b_turn);
+        const MachinePoint to{1000.0 + 0.48 * length, 900.0 - 0.6 * length, -200.0 + 0.64 * length};
+        const MoveCommand move =
+            Contour({{1000.0, 900.0, -200.0}, 0.2, -0.6}, {to, 0.2 + a_turn, -0.6 + b_turn}, 1.0);
+        const PathLimits limits = LimitsOf(move, machine);
+        double speed = 500.0;
+        double acceleration = 2000.0;
+        double jerk = 40000.0;
+        for (int k = 0; k <= kPlaces; ++k) {
+          const AxisDerivatives q =
+              DerivativesAt(move.path, move.head, move.path.length() * k / kPlaces);
+          for (std::size_t i = 0; i < kAxisCount; ++i) {
+            const double q1 = std::abs(q.first[i]), q2 = std::abs(q.second[i]);
+            speed = std::min({speed, machine.axes.speed[i] / q1,
+                              std::sqrt(0.5 * machine.axes.acceleration[i] / q2)});
+            jerk = std::min(jerk, machine.axes.jerk[i] / q1);
+            const double taken = q2 * limits.speed * limits.speed;
+            acceleration = std::min(acceleration, (machine.axes.acceleration[i] - taken) / q1);
+          }
+        }
+        EXPECT_NEAR(limits.speed / speed, 1.0, kBetweenPlaces);
+        EXPECT_NEAR(limits.acceleration / acceleration, 1.0, kBetweenPlaces);
+        EXPECT_NEAR(limits.jerk / jerk, 1.0, kBetweenPlaces);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

@@ -363,5 +363,58 @@ TEST(PathRide, BeginsInPlaceUntilTheTimeOfTheMachine) {
   EXPECT_EQ(ride.place().motion.tag, 1u);
 }
 
+// path_ride.h: ended for good, 1 mm before the end of the first line: the ramp ends the move at no
+// corner, and nothing is interrupted or held. What begins then is known to be ended, and what comes
+// behind it is not.
+TEST(PathRide, EndByLeavesTheRampAlone) {
+  const std::vector<PlannedMotion> motions = StraightOn();
+  const AxisLimits axes = StandardMachine().axes;
+  PathRide ride = RideOver(motions);
+  const SimTime now = ride.Begin(kBegin).start + FromSeconds(motions[0].speed.TimeAt(99.0));
+  EXPECT_FALSE(ride.under_way()->ended);
+  ride.HoldBack(2, {{.tag = 8, .move = MoveCommand{}}});
+  ASSERT_EQ(ride.held().size(), 1u);
+  const auto plan = ride.PlanStop(now, axes);
+  ASSERT_TRUE(plan.has_value());
+  ride.EndBy(*plan);
+  EXPECT_EQ(ride.under_way(), nullptr);
+  EXPECT_EQ(TagsToCome(ride), "1 m11 2");
+  EXPECT_TRUE(ride.held().empty());
+  const auto& last = std::get<PlannedMotion>(ride.to_come().back());
+  EXPECT_TRUE(last.ends_move);
+  EXPECT_EQ(last.corner.passage, Passage::kStop);
+  EXPECT_EQ(last.corner.speed, 0.0);
+  EXPECT_TRUE(ride.Begin(now).ended);
+  ride.Leave();
+  ride.DropRest();
+  ride.Plan(motions[0]);
+  EXPECT_FALSE(ride.Begin(now).ended);
+
+  PathRide stopped = RideOver(motions);
+  stopped.Begin(kBegin);
+  stopped.Stop(*plan, axes);
+  ASSERT_FALSE(stopped.interrupted().empty());
+  stopped.EndBy(*plan);
+  EXPECT_TRUE(stopped.interrupted().empty());
+}
+
+// While it settles it stands already: its move is over at once.
+TEST(PathRide, EndByWhileItSettles) {
+  PlannedMotion last = StraightOn().back();
+  last.settling_s = 0.25;
+  PathRide ride(HoldRamp::kStays);
+  ride.Plan(last);
+  const SimTime now = ride.Begin(kBegin).arrival + std::chrono::milliseconds(100);
+  const auto plan = ride.PlanStop(now, StandardMachine().axes);
+  ASSERT_TRUE(plan.has_value());
+  ride.EndBy(*plan);
+  ASSERT_EQ(TagsToCome(ride), "3");
+  const auto& standing = std::get<PlannedMotion>(ride.to_come()[0]);
+  EXPECT_TRUE(standing.ends_move);
+  EXPECT_EQ(standing.duration_s(), 0.0);
+  EXPECT_EQ(standing.path.length(), 0.0);
+  EXPECT_EQ(standing.path.to().point, last.path.to().point);
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

@@ -335,5 +335,27 @@ TEST(SpeedProfile, RampToWhatReachGivesKeepsItsLimits) {
   EXPECT_GT(tight, 10'000);
 }
 
+// With 1 mm/s2 and without a limit on jerk: s = t^2 / 2 up to 50 mm, after 10 s at 10 mm/s.
+TEST(SpeedProfile, TimesWithAnAccelerationOfOne) {
+  const SpeedProfile p = SpeedProfile::Span(100.0, 0, 0, {100.0, 1.0, kNoJerkLimit});
+  EXPECT_NEAR(p.TimeAt(0.5), 1.0, 1e-12);
+  EXPECT_NEAR(p.TimeAt(8.0), 4.0, 1e-12);
+  EXPECT_NEAR(p.TimeAt(50.0), 10.0, 1e-9);
+  EXPECT_NEAR(p.TimeAt(100.0 - 0.5), 19.0, 1e-9);
+}
+
+// motion.md 5.2: 200 mm/s in 200/2000 + 0.05 s, at 110 mm/s on average; it is fastest at its upper
+// end.
+TEST(OneRamp, IsAsLongAsItTakes) {
+  for (const auto& [v0, v1] : {std::pair{10.0, 210.0}, {210.0, 10.0}}) {
+    const SpeedProfile ramp = SpeedProfile::OneRamp(v0, v1, kPathLimits);
+    EXPECT_NEAR(ramp.duration_s(), 0.15, 1e-12);
+    EXPECT_NEAR(ramp.end().s, 16.5, 1e-12);
+    EXPECT_EQ(ramp.end().speed, v1);
+    EXPECT_EQ(ramp.peak_speed(), 210.0);
+    ExpectSound(ramp, ramp.end().s, v0, v1, kPathLimits);
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

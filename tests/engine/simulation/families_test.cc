@@ -7,6 +7,8 @@
 #include <set>
 #include <string>
 
+#include "engine/machine/machine.h"
+#include "engine/machine/reach_step.h"
 #include "engine/simulation/run/version.h"
 #include "tests/engine/simulation/fake_family.h"
 
@@ -124,6 +126,28 @@ TEST(Families, TheOverrideHasTheRangeOfTheFamily) {
     EXPECT_EQ(family->info().override_max_percent, 145.0) << family->info().id;
   EXPECT_EQ(families::OverrideMax(), 145.0);
   EXPECT_EQ(machine::FamilyInfo{}.override_max_percent, 100.0);
+}
+
+// What a family does not have is not live on its machines.
+TEST(Families, OneWithoutBreakpointsKeysAndSteps) {
+  const FakeFamily family;
+  const Status breakpoint = family.CheckBreakpoint({.at = {1, 2}});
+  ASSERT_FALSE(breakpoint);
+  EXPECT_EQ(breakpoint.error().code, ErrorCode::kCellNotLive);
+  EXPECT_EQ(breakpoint.error().detail, "Fake machine has no breakpoints");
+  machine::RunObserver nobody;
+  const Result<std::unique_ptr<machine::Machine>> made =
+      machine::Machine::Make(family, machine::Parameters(FakeFamily::Table()), {}, {}, nobody);
+  ASSERT_TRUE(made);
+  const Status key = (*made)->Apply(machine::PressJog{});
+  ASSERT_FALSE(key);
+  EXPECT_EQ(key.error().code, ErrorCode::kCellNotLive);
+  EXPECT_EQ(key.error().detail, "Fake machine has no keys that move its axes");
+  const Result<machine::StepReach> reach =
+      machine::ReachStep(family, FakeFamily::Setup(), {.at = {1, 1}}, {});
+  ASSERT_FALSE(reach);
+  EXPECT_EQ(reach.error().code, ErrorCode::kCellNotLive);
+  EXPECT_EQ(reach.error().detail, "the machine has no start at a step");
 }
 
 }  // namespace

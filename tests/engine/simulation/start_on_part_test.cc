@@ -140,5 +140,21 @@ TEST_F(EnteredReport, AnApproachAloneIsNothing) {
   EXPECT_EQ(report.total, WorkFigures());
 }
 
+// LIVE-6.07: where it takes too long to see what is left of the part, nothing is said about it.
+TEST_F(StartOnPart, WhatCutsThePartIsGivenUp) {
+  Milling milling{.stock = ParseStock("60x60x5").value(), .tool = ParseTool("flat:3").value()};
+  std::vector<std::string> said;
+  for (int most = 0; most < 10; ++most) {
+    MilledPart part(milling);
+    int asked = 0;
+    const auto preview = machine::PreviewStart(
+        family_, Setup({kTwoSides}),
+        {.target = {.at = {1, 8}}, .machine_state = StandingState(), .part = &part},
+        {.go_on = [&] { return asked++ < most; }});
+    if (!preview) said.push_back(CodeText(preview.error().code) + " " + preview.error().detail);
+  }
+  EXPECT_THAT(said, testing::Contains("CELL-E9426 what cuts the part takes too long to be seen"));
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

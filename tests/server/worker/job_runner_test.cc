@@ -220,6 +220,25 @@ TEST_F(JobRunnerTest, AToolpathThatNobodyFollowsIsSentAtItsEnd) {
   EXPECT_TRUE(std::ranges::none_of(heard_, [](const auto& m) { return m.has_toolpath(); }));
 }
 
+// A job that is held is where it was: that is told once, whatever passes.
+TEST_F(JobRunnerTest, AJobThatStandsTellsItsPlaceOnce) {
+  server.lease_ms = 150;
+  std::set<std::string> places;
+  int positions = 0;
+  int beats = 0;
+  server.heard = [&](const v1::WorkRequest& message) {
+    if (IsPosition(message)) {
+      places.insert(message.heartbeat().progress().SerializeAsString());
+      if (++positions == 1) server.Send(Order(v1::WorkerControl::KIND_HOLD));
+    } else if (message.has_heartbeat() && positions > 0 && ++beats == 12) {
+      server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+    }
+  };
+  Work(Assignment(v1::JOB_KIND_SIMULATE, kEndless));
+  EXPECT_GE(positions, 1);
+  EXPECT_EQ(places.size(), static_cast<std::size_t>(positions));
+}
+
 // HOLD halts it and RESUME lets it go on; what is ordered is told at once.
 TEST_F(JobRunnerTest, IsHeldAndGoesOn) {
   for (const auto kind : {v1::WorkerControl::KIND_HOLD, v1::WorkerControl::KIND_STOP}) {

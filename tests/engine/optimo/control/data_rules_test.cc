@@ -309,5 +309,23 @@ TEST(DataRules, MachineStateOfTheVersionBeforeIsRead) {
   }
 }
 
+// What the run itself has written is not assumed, by whatever instruction: only the input is.
+TEST(DataRules, WhatTheRunHasWrittenIsNotAssumed) {
+  class Assumptions final : public machine::RunObserver {
+   public:
+    void OnAssumed(const machine::Assumed& one) override {
+      told.push_back(std::string(one.group) + "[" + std::to_string(one.index) + "]");
+    }
+    std::vector<std::string> told;
+  } assumptions;
+  const std::string text =
+      "OL[16]=ON\nVL[1]=OL[16]\nASSIGN VL[20]=5 /3\nVL[2]=VL[20] AND VL[21]\nOA[5]=2.5\n"
+      "VR[1]=OA[5]\nVR[2]=IA[40]\nVR[3]=VR[2]\n";
+  Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(SetupOf(text), assumptions);
+  ASSERT_TRUE(bool(run));
+  EXPECT_EQ((*run)->Advance(At(1.0)), machine::RunPhase::kFinished);
+  EXPECT_THAT(assumptions.told, ElementsAre("IA[40]"));
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

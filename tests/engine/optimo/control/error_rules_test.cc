@@ -476,5 +476,53 @@ TEST(ErrorRules, EndlessTimesAreLong) {
       0);
 }
 
+// OPT-7.79, OPT-B.55: whichever value of an instruction cannot be had, it is the error of that
+// step, and nothing behind it is carried out.
+TEST(ErrorRules, EachValueOfAnInstructionMayFail) {
+  const RunOptions options{.programs = {{44, "VI[3]=1\n"}, {45, "VI[3]=1\n"}},
+                           .variables = {"VI[3]"}};
+  for (const std::string statement :
+       {"CALL 45 (1/VR[0])", "FUNCTION 44 (1/VR[0])", "TIMER (1/VR[0],900)", "DELAY 1/VR[0]",
+        "SETERR 1/VR[0]", "WORKDEF 1,0 (8.,75.,1/VR[0],50.)", "WORK 0,0/ON/START (1/VR[0])",
+        "PATH HOLE (1/VR[0])", "SPEED 1/VR[0]", "MOVE (100.,2201.2,-50.,0.,1/VR[0])",
+        "MOVE (100.,2201.2,-50.,0.,0.)/TIME (1/VR[0],900)",
+        "MOVE (100.,2201.2,-50.,0.,0.)/START (1/VR[0])",
+        "MOVE (100.,2201.2,-50.,0.,0.)/END (1/VR[0])"}) {
+    const Ran ran = RunText("VI[2]=1\n" + statement + "\nVI[3]=1\nENDTASK\n900 RETURN\n", options);
+    EXPECT_EQ(CodeOf(ran), 7201) << statement;
+    EXPECT_EQ(ran.outcome.place.program, 1) << statement;
+    EXPECT_EQ(ran.outcome.place.step, 2) << statement;
+    EXPECT_EQ(ran.variables.at("VI[3]"), "0") << statement;
+    EXPECT_TRUE(ran.parts.empty()) << statement;
+  }
+  for (const std::string path : {"CIR", "HOLE (5.)"}) {
+    const Ran ran = RunText("COORD ABSOL\nPATH " + path +
+                            "\nMOVE (100.,2201.2,-350.,0.,0.)/VIA (1/VR[0],0.,0.,0.,0.)\n");
+    EXPECT_EQ(CodeOf(ran), 7201) << path;
+    EXPECT_EQ(ran.outcome.place.step, 3) << path;
+  }
+}
+
+// OPT-7.102, OPT-E.7203, OPT-E.931: so it is with the value of ASSIGN, and with an output of its
+// group that is not fitted: OL[9], of two gas channels.
+TEST(ErrorRules, AnAssignMayFail) {
+  EXPECT_EQ(CodeOf(RunText("VR[1]=40000.\nASSIGN VL[20]=VR[1] /16\n")), 7203);
+  const Ran gas =
+      RunText("VR[1]=2.\nASSIGN OL[8]=VR[1] /2\nVI[3]=1\n", {.variables = {"OL[9]", "VI[3]"}});
+  EXPECT_EQ(CodeOf(gas), 931);
+  EXPECT_EQ(gas.outcome.place.step, 2);
+  EXPECT_EQ(gas.variables.at("OL[9]") + gas.variables.at("VI[3]"), "10");
+}
+
+// OPT-4.49, OPT-B.60: half a millimetre off its zero an axis moves, too.
+TEST(ErrorRules, ZeroMovesTheShortestWay) {
+  MachineState state = NewMachine(Resolve(machine::Parameters(OptimoParameterTable())));
+  state.axes = {.column = {0.5, 0.0, 0.0}, .a_rad = 0.0, .b_rad = 0.0};
+  const Ran ran = RunText("ZERO\n", {.machine_state = EncodeMachineState(state)});
+  ASSERT_EQ(ran.parts.size(), 1U);
+  EXPECT_GT(ran.parts[0].duration_s(), 0.0);
+  EXPECT_NEAR(ran.end.axes.column.x(), 0.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

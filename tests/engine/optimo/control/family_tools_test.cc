@@ -198,5 +198,12 @@ TEST(FamilyTools, ExecutablesOfAnAlteredOrLostProgram) {
   EXPECT_EQ(altered[0].parts[0].reason, machine::StaleReason::kObjectChanged);
 }
 
+// OPT-7.59: a name is whole: with both brackets, and of one of the groups.
+TEST(FamilyTools, ANameOfAVariableIsWhole) {
+  EXPECT_TRUE(OptimoFamily().HasVariable(Standard(), "vr[12]"));
+  for (const char* name : {"VI[12", "VI[1", "VI12]", "[1]", "VRX[1]", "VI[]", "VI[1]]", "VI[-1]"})
+    EXPECT_FALSE(OptimoFamily().HasVariable(Standard(), name)) << name;
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::family_tools

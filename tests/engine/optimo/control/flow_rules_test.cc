@@ -423,5 +423,28 @@ TEST(FlowRules, CmosMayBeFull) {
   EXPECT_EQ(CodeOf(RunText(long_text)), 0);
 }
 
+// OPT-9.19, OPT-E.7103: FUNCTION 99 needs no object where a rotary table is fitted; an executable
+// that was made there finds none on a machine without.
+TEST(FlowRules, AnExecutableOfAMachineWithATable) {
+  const std::string text = "VI[2]=1\nFUNCTION 99 (90.)\n";
+  RunOptions options{.parameters = {{"ROTARY_TABLE", "ON"}}};
+  options.executables[1] = RunText(text, options).executables.at(1);
+  EXPECT_TRUE(RunText(text, options).Told("table 90.0"));
+  options.parameters.clear();
+  const Ran ran = RunText(text, options);
+  EXPECT_EQ(CodeOf(ran), 7103);
+  EXPECT_EQ(ran.outcome.place.step, 2);
+}
+
+// OPT-1.15: the executable that was brought is the program: that its own object is another one is
+// no reason for a warning.
+TEST(FlowRules, AnExecutableStandsForItsProgram) {
+  RunOptions options{.variables = {"VI[2]"}};
+  options.executables[1] = RunText("VI[2]=1\n").executables.at(1);
+  const Ran ran = RunText("VI[2]=2\n", options);
+  EXPECT_EQ(ran.variables.at("VI[2]"), "1");
+  EXPECT_TRUE(ran.findings.empty());
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

@@ -136,5 +136,15 @@ TEST(FlowStates, AnEndlessDelayOverAHalt) {
   }
 }
 
+// OPT-3.51: a START at the very instant of the halt: nobody was waited for.
+TEST(FlowStates, AHaltOfNoTimeIsNoWait) {
+  const Ran ran =
+      RunText("STOP\nVI[2]=1\n", {.inputs = {Key(0.0, InputKind::kStart)}, .variables = {"VI[2]"}});
+  EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
+  EXPECT_EQ(ran.variables.at("VI[2]"), "1");
+  EXPECT_THAT(Halts(ran), ElementsAre("STOP 1.1"));
+  EXPECT_TRUE(ran.waits.empty());
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::flow_states

@@ -462,5 +462,16 @@ TEST(MotionRules, WaitsWithoutBeamHaveNoPower) {
   }
 }
 
+// OPT-B.11: a lead of half a millimetre is one, too: then a whole turn of radius 10.
+TEST(MotionRules, AHoleWithAShortLead) {
+  const Ran ran = RunText(kThere +
+                          "PATH HOLE (10.)\nMOVE (1010.5,1000.,-400.,0.,0.)"
+                          "/VIA (1010.5,1000.,-300.,0.,0.)\n");
+  ASSERT_EQ(ran.parts.size(), 3U);
+  EXPECT_NEAR(ran.parts[1].done.travelled, 0.5, kReal_mm);
+  EXPECT_NEAR(ran.parts[2].done.travelled, 20.0 * M_PI, kReal_mm);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1000.5, kReal_mm);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

@@ -143,5 +143,16 @@ TEST(NoMotionRules, AnErrorOfItsEndCondition) {
   EXPECT_EQ(ran.variables.at("VI[3]"), "0");
 }
 
+// OPT-B.22, OPT-2.54: a SPEED above 0 that never arrives is none, either: /TIME runs out where it
+// stands, and without a time it is an error.
+TEST(NoMotionRules, ASpeedThatNeverArrives) {
+  const std::string move = "COORD ABSOL\nPATH LIN\nSPEED 1E-12\nMOVE (500.,2201.2,-350.,0.,0.)";
+  const Ran ran = RunText(move + "/TIME (1.,900)\nENDTASK\n900 VI[3]=1\nRETURN\n", kReadBoth);
+  ExpectNoMotion(ran);
+  EXPECT_NEAR(ran.time_s, 1.008, 1e-9);  // 21 cycles
+  EXPECT_EQ(ran.variables.at("VI[3]"), "1");
+  EXPECT_EQ(CodeOf(RunText(move + "\n")), 7307);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

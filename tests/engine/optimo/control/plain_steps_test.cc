@@ -282,5 +282,46 @@ TEST(PlainSteps, AreCounted) {
   EXPECT_EQ((*run)->state().place.step, 2);
 }
 
+// An instruction may need 64 numbers between its operations; one that needs more is carried out by
+// itself, and does the same.
+TEST(PlainSteps, AnInstructionHasSoManyNumbers) {
+  const auto sum = [](std::size_t operations) {
+    std::string text = "VR[1]";
+    for (std::size_t n = 0; n < operations; ++n) text += "+VR[2]";
+    return text;
+  };
+  const auto begins = [](const std::string& text) {
+    const Loaded loaded = LoadedText(text);
+    return loaded->plain[0].At(0)->op == PlainOp::kBegin;
+  };
+  constexpr std::size_t kMost = 64;
+  EXPECT_TRUE(begins("VR[3]=" + sum(kMost) + "\n"));
+  EXPECT_FALSE(begins("VR[3]=" + sum(kMost + 1) + "\n"));
+  // The comparison is one more of them.
+  EXPECT_TRUE(begins("IF " + sum(kMost - 1) + "=64. THEN 10\n10 VI[1]=1\n"));
+  EXPECT_FALSE(begins("IF " + sum(kMost) + "=65. THEN 10\n10 VI[1]=1\n"));
+  const std::string more = sum(kMost + 1);
+  const Ran ran = RunText("VR[1]=1.\nVR[2]=1.\nVR[3]=" + more + "\nVI[3]=0\nIF " + more +
+                              "=66. THEN 10\nVI[3]=9\nVI[4]=9\nENDTASK\n10 FUNCTION 44 (" + more +
+                              ")\nVI[5]=5\n",
+                          {.programs = {{44, "VR[5]=PAR[0]\nRETURN\n"}},
+                           .variables = {"VR[3]", "VR[5]", "VI[3]", "VI[4]", "VI[5]"}});
+  EXPECT_EQ(CodeOf(ran), 0);
+  EXPECT_EQ(
+      ran.variables,
+      (std::map<std::string, std::string>{
+          {"VR[3]", "66.0"}, {"VR[5]", "66.0"}, {"VI[3]", "0"}, {"VI[4]", "0"}, {"VI[5]", "5"}}));
+}
+
+// OPT-9.28: parameters that were not passed are 0, also where an earlier call passed some.
+TEST(PlainSteps, ParametersAreThoseOfTheirOwnCall) {
+  const Ran ran = RunText("VR[0]=0.\nFUNCTION 44 (7.,8.)\nFUNCTION 44 (9.)\n",
+                          {.programs = {{44, "VR[1]=PAR[0]\nVR[2]=PAR[1]\nVR[3]=PAR[7]\nRETURN\n"}},
+                           .variables = {"VR[1]", "VR[2]", "VR[3]"}});
+  EXPECT_EQ(ran.variables.at("VR[1]"), "9.0");
+  EXPECT_EQ(ran.variables.at("VR[2]"), "0.0");
+  EXPECT_EQ(ran.variables.at("VR[3]"), "0.0");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::plain_steps

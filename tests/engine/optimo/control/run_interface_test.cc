@@ -325,5 +325,63 @@ TEST(RunInterface, TheRotaryTable) {
   EXPECT_EQ(CodeOf(RunText("FUNCTION 99 (1./VR[0])\n", fitted)), 7201);
 }
 
+// Steps behind the last line that is known have none, also those that go through without an error.
+TEST(RunInterface, StepsBehindTheLastKnownLine) {
+  Findings steps;
+  const std::unique_ptr<machine::Run> run =
+      RunOf(WithSource("VI[2]=1\nVI[3]=1\nVI[4]=1\nVI[5]=1\n", {.step_lines = {7, 9}}), steps);
+  EXPECT_EQ(run->Advance(At(1.0)), RunPhase::kFinished);
+  EXPECT_EQ(steps.lines, (std::vector{7, 9, 0, 0}));
+}
+
+// LIVE-6.05: up and across at SPEED 40, down at SPEED 10, and the override applies.
+TEST(RunInterface, TheSpeedsOfTheWayToAStep) {
+  for (const double percent : {100.0, 50.0}) {
+    machine::RunObserver nobody;
+    machine::RunSetup setup = SetupOf(kAbsol + "MOVE (1000.,1000.,-400.,0.,0.)\nVI[2]=1\n");
+    MachineState stands = NewMachine(Resolve(setup.parameters));
+    stands.axes.column = {3000.0, 1000.0, -200.0};
+    const std::unique_ptr<machine::Run> run = RunOf(std::move(setup), nobody);
+    machine::EnterableRun& entered = *run->enterable();
+    ASSERT_TRUE(entered.HaltBefore({.at = {1, 4}}).ok());
+    ASSERT_EQ(run->Advance(At(1000.0)), RunPhase::kHalted);
+    entered.Enter({.machine_state = EncodeMachineState(stands), .override_percent = percent});
+    double across = 0.0;
+    double down = 0.0;
+    SimTime now = run->state().time;
+    for (int n = 0; n < 10'000 && run->state().approaching; ++n) {
+      now += At(0.01);
+      run->Advance(now);
+      const machine::RunState state = run->state();
+      double& highest = state.axes.column.x() > 1000.001 ? across : down;
+      highest = std::max(highest, state.tip_speed_mm_s);
+    }
+    EXPECT_NEAR(across, 0.4 * 500.0 * percent / 100.0, 1e-3) << percent;
+    EXPECT_NEAR(down, 0.1 * 500.0 * percent / 100.0, 1e-3) << percent;
+  }
+}
+
+// docs/verdict.md: "no power" is none at all at the programmed speed, however slow and short the
+// way: half a percent is little power, half a millimetre at 0.5 mm/s is a way.
+TEST(RunInterface, NoPowerIsNoneAtAll) {
+  const auto length = [](const std::string& power, const std::string& speed,
+                         const std::string& to_x) {
+    machine::RunObserver nobody;
+    const std::unique_ptr<machine::Run> run =
+        RunOf(SetupOf(kThere + "WORKDEF 1,0 (10.," + power + ",0.,50.)\nSPEED " + speed +
+                      "\nWORK 1,0/ON\nMOVE (" + to_x + ",1000.,-400.,0.,0.)\nWORK 1,0/OFF\n"),
+              nobody);
+    run->Advance(At(1000.0));
+    double found = -1.0;
+    for (const machine::Figure& one : run->figures()) {
+      if (one.name == "no_power_length") found = one.value;
+    }
+    return found;
+  };
+  EXPECT_NEAR(length(".5", "10", "1100."), 0.0, 1e-9);
+  EXPECT_NEAR(length("0.", "10", "1100."), 100.0, 1e-3);
+  EXPECT_NEAR(length("0.", ".1", "1000.5"), 0.5, 1e-3);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::run_interface

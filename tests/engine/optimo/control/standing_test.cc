@@ -248,5 +248,17 @@ TEST_F(OptimoStands, ItsItems) {
   EXPECT_EQ(standing->items()[4].value, "2");
 }
 
+// OPT-4.35: each of the ten steps, in percent of 500 mm/s.
+TEST_F(OptimoStands, EachStepOfTheOverrideHasItsSpeed) {
+  for (const auto& [percent, share] :
+       {std::pair{10.0, 0.05}, std::pair{25.0, 0.3}, std::pair{40.0, 1.0}, std::pair{55.0, 3.0},
+        std::pair{70.0, 9.0}, std::pair{85.0, 15.0}, std::pair{100.0, 21.0}, std::pair{115.0, 27.0},
+        std::pair{130.0, 33.0}, std::pair{145.0, 40.0}}) {
+    const std::optional<machine::HandMotion> how = standing->ByHand(percent, false);
+    ASSERT_TRUE(how.has_value());
+    EXPECT_NEAR(how->plus[0], 5.0 * share, 1e-9) << percent;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -241,5 +241,26 @@ TEST(Travel, ARadiusIsNoAxis) {
   EXPECT_FALSE(ran.Told("E7321"));
 }
 
+// OPT-2.49: a chain that never began to move tells at the end of the steps what it would have done;
+// when the time runs out, what would have come later is not told.
+TEST(Travel, OnlyTheEndOfTheStepsTellsWhatWouldCome) {
+  const Ran steps = RunText(kAbsol +
+                                "10 MOVE (1000.,1000.,-400.,0.,0.)/FLY\n"
+                                "MOVE (3700.,1000.,-400.,0.,0.)/FLY\nGOTO 10\n",
+                            {.budget = {.steps = 5}, .forecast = true});
+  EXPECT_EQ(CodeOf(steps), 7901);
+  EXPECT_TRUE(steps.parts.empty());
+  ASSERT_EQ(steps.violations.size(), 1U);
+  EXPECT_EQ(steps.violations[0].place.step, 4);
+  EXPECT_NEAR(steps.violations[0].excess, 100.0, 1e-3);
+  const Ran time = RunText(kAbsol +
+                               "SPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)/FLY\n"
+                               "MOVE (3700.,2201.2,-350.,0.,0.)\n",
+                           {.budget = {.virtual_time = At(1.0)}, .forecast = true});
+  EXPECT_EQ(CodeOf(time), 7902);
+  EXPECT_EQ(time.parts.size(), 1U);
+  EXPECT_TRUE(time.violations.empty());
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

@@ -296,5 +296,55 @@ TEST(WorkRules, StartWithTheDoorOpen) {
   }
 }
 
+// OPT-3.38, OPT-B.30: what a step changes is seen at the next CYCLE, also where the program waits
+// behind it: 1 s is over at 21 cycles. A plain step and one that switches an output.
+TEST(WorkRules, AConditionInTheBackgroundSeesTheStepBeforeAWait) {
+  for (const std::string variable : {"VL[3]", "OL[16]"}) {
+    const Ran ran = RunText("WORK 0,0/ON/START (" + variable + ")/NEXT\nDELAY 1\n" + variable +
+                                "=ON\nWAIT IL[21]\nWORK 0,0/OFF\n",
+                            {.inputs = {Input(3.0, 21, 1.0)}});
+    EXPECT_NEAR(ran.First("beam on 100.0").at_s, 21 * 0.048, 1e-9) << variable;
+  }
+}
+
+// OPT-3.38, OPT-7.68: the end of a motion is seen, too: 100 mm at 50 mm/s are over after 2.0707 s,
+// the tick behind that is 2.112 s. What the DELAY waits is told from the end of the motion on.
+TEST(WorkRules, AConditionInTheBackgroundSeesTheEndOfAMotion) {
+  const Ran ran = RunText(
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (121.02,2201.2,-350.,0.,0.)/NEXT\n"
+      "WORK 0,0/ON/END (NOT IL[95])\nDELAY 9\n",
+      {.parameters = {{"SETTLE", "0"}}});
+  EXPECT_NEAR(ran.First("beam off").at_s, 44 * 0.048, 1e-9);
+  EXPECT_EQ(ran.Count("E7408"), 0);
+  ASSERT_FALSE(ran.waits.empty());
+  EXPECT_NEAR(ToSeconds(ran.waits.front().start), 2.0707107, 1e-5);
+}
+
+// OPT-3.22, OPT-3.26: schedule 1 is one like any other; a WORK whose WORKDEF names none leaves the
+// one that is selected.
+TEST(WorkRules, AScheduleIsSelectedWhereOneIsNamed) {
+  const Ran named = RunText(
+      "WORKDEF 2,0 (1)\nWORKDEF 1,0 (8.,75.,0.,50.)\nWORK 2,0/ON\nWORK 1,0/ON\nWORK 1,0/OFF\n"
+      "WORK 0,0/ON\nWORK 0,0/OFF\nWORK 2,0/OFF\n");
+  EXPECT_EQ(named.Count("schedule 1"), 1);
+  EXPECT_EQ(named.Count("schedule 0"), 0);
+  EXPECT_TRUE(
+      RunText("WORKDEF 1,0 (8.,75.,0.,50.,1)\nWORK 1,0/ON\nWORK 1,0/OFF\n").Told("schedule 1"));
+  // OPT-3.43: on an EFA-51 it is refused like the others.
+  EXPECT_EQ(CodeOf(RunText("WORKDEF 1,0 (8.,75.,0.,50.,1)\nWORK 1,0/ON\n", {.profile = "efa-51"})),
+            7405);
+}
+
+// OPT-6.26: the end of a dry run selects the schedule that was asked for, and only then one.
+TEST(WorkRules, AScheduleOfADryRun) {
+  const auto until = [](int step) { return machine::ProgramStep{.program = 1, .step = step}; };
+  const std::string select = "WORKDEF 2,0 (1)\nWORK 2,0/ON\n";
+  EXPECT_TRUE(RunText(select + "VI[2]=1\n", {.simul = until(3)}).Told("schedule 1"));
+  const Ran first = RunText("WORKDEF 2,0 (12)\nWORK 2,0/ON\nWORK 2,0/OFF\n");
+  const Ran none =
+      RunText("VI[2]=1\nVI[2]=2\n", {.simul = until(2), .machine_state = first.machine_state});
+  EXPECT_EQ(none.Count("schedule 0"), 0);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::work_rules

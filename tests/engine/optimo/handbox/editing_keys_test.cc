@@ -262,5 +262,38 @@ TEST_F(EditingKeys, AnObjectMayBeTooLong) {
   EXPECT_EQ(Shows(), "*SPEED");
 }
 
+// OPT-6.15 OPT-E.7602: with no program selected there is no present one.
+TEST_F(EditingKeys, F6NeedsAProgram) {
+  Have({});
+  Keys("F6 NEXT 5 ENT");
+  EXPECT_EQ(Said(), 7602);
+  EXPECT_EQ(Shows(), "SIM PRG 00 STEP 0005");
+  EXPECT_EQ(machine->simulation_until(), std::nullopt);
+  Keys("PREV 4 5 ENT");
+  EXPECT_EQ(Said(), 0);
+  EXPECT_EQ(machine->simulation_until(), (machine::ProgramStep{.program = 45, .step = 5}));
+}
+
+// OPT-B.73: executables take room as well, to the last byte.
+TEST_F(EditingKeys, ExecutablesTakeRoomToo) {
+  Have({{12, "DELAY 1\n"}});
+  const std::string state = machine->Save();
+  machine::MachineMemory memory = machine->memory();
+  memory.programs[13] = Translated("DELAY 1\n");
+  memory.programs[13].executable = machine::Bytes::Of(std::string(2000, 'x'));
+  const std::size_t all = Translated("SPEED 70.\nDELAY 1\n").object->size() +
+                          memory.programs[13].object->size() +
+                          memory.programs[13].executable->size();
+  for (const auto& [room, said] : {std::pair{all, 0}, std::pair{all - 1, 7109}}) {
+    Result<std::unique_ptr<machine::Machine>> made = machine::Machine::Make(
+        family_, *MakeParameters(family_, "standard", {{"CMOS_SIZE", std::to_string(room)}}),
+        memory, state, heard);
+    ASSERT_TRUE(made);
+    machine = *std::move(made);
+    Keys("JOB 1 2 NEXT 1 ENT MOV ENT REC");
+    EXPECT_EQ(Said(), said) << room;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

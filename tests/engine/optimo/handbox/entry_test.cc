@@ -399,5 +399,21 @@ TEST_F(Entry, TheToolOfARunIsItsOwn) {
   EXPECT_EQ(Said(), 7601);
 }
 
+// OPT-5.04: a jog key drops a form and a question, too.
+TEST_F(Entry, AJogKeyDropsWhatIsOpen) {
+  for (const char* keys : {"MOV X+", "ZERO X+", "MOV ENT X+"}) {
+    AtStep7();
+    Keys(keys);
+    EXPECT_EQ(Shows(), "*MOVE") << keys;
+  }
+}
+
+// OPT-5.31: schedule 1 is recorded like any other.
+TEST_F(Entry, WorkdefWithTheFirstSchedule) {
+  AtStep7();
+  Keys("WORK 1 ENT ENT NEXT DEL 8 NEXT NEXT NEXT 1 ENT REC");
+  EXPECT_EQ(Step7(), "WORKDEF 1,0 (8.0, 0.0, 0.0, 0.0, 1)");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -385,5 +385,33 @@ TEST_F(ModeKeys, AnyKeysInAnyOrder) {
   }
 }
 
+// LIVE-7.03: nor is what looks like a jog key or a digit.
+TEST_F(ModeKeys, NearlyKeysAreRefused) {
+  Have({});
+  for (const char* key : {"X", "X9", "X++", "+X", "a", "/", ":", "F"}) {
+    const auto answer = machine->PressKey(key);
+    ASSERT_FALSE(answer) << key;
+    EXPECT_EQ(answer.error().code, ErrorCode::kCellInvalidArgument) << key;
+  }
+  EXPECT_EQ(state(), MachineState::kIdle);
+}
+
+// LIVE-7.01: neither a form nor a question nor what flashes is left at a power-up.
+TEST_F(ModeKeys, APowerUpForgetsWhatWasEntered) {
+  for (const char* keys : {"MOV", "ZERO", "JOB"}) {
+    Have({});
+    Keys(keys);
+    Good(machine::SwitchPower{false});
+    Good(machine::SwitchPower{true});
+    EXPECT_EQ(Shows(), "P=00S=0000I=********") << keys;
+  }
+  Have({{12, "DELAY 1\n"}});
+  Keys("JOB 1 2 ENT MOV ENT");
+  EXPECT_TRUE(machine->panel().flashing);
+  Good(machine::SwitchPower{false});
+  Good(machine::SwitchPower{true});
+  EXPECT_FALSE(machine->panel().flashing);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

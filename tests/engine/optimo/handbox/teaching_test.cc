@@ -338,5 +338,45 @@ TEST_F(Teaching, EditsTellHowItWas) {
   EXPECT_EQ(edit.note.tip, machine->status().run.tip);
 }
 
+// OPT-5.16: points are recorded to 0.0001 mm and 0.000001 rad.
+TEST_F(Teaching, PointsAreRounded) {
+  Have({{12, "ENDTASK\n"}});
+  const machine::MachineMemory memory = machine->memory();
+  Result<std::unique_ptr<machine::Machine>> made =
+      machine::Machine::Make(family_,
+                             *MakeParameters(family_, "standard",
+                                             {{"HOME_X", "10.00007"},
+                                              {"HOME_Y", "20.00017"},
+                                              {"HOME_Z", "-30.00027"},
+                                              {"HOME_A", "0.1000007"},
+                                              {"HOME_B", "0.2000017"}}),
+                             memory, {}, heard);
+  ASSERT_TRUE(made);
+  machine = *std::move(made);
+  Good(machine::ChangeMode{Mode::kManual});
+  Keys("JOB 1 2 NEXT 1 ENT X+");  // a TAP leaves no motion
+  GoOn(machine->time() + At(2.0));
+  Keys("REC");
+  EXPECT_EQ(Said(), 0);
+  EXPECT_EQ(Program(12).at(0), "MOVE (10.0001, 20.0002, -30.0003, 0.100001, 0.200002)");
+}
+
+// OPT-5.19: the centre of a hole is forgotten with its radius.
+TEST_F(Teaching, ACentreIsForgottenWithTheRadius) {
+  Begin();
+  Keys("PATH PREV ENT DEL 5 ENT");
+  Hold("X+", 0.3);
+  EXPECT_EQ(Shows(), "*ENTER CENTER NORMAL");
+  Keys("REC PATH ENT ENT");
+  Hold("Y+", 0.3);
+  EXPECT_EQ(Shows(), "*ENTER CENTER NORMAL");
+  Keys("REC");
+  EXPECT_THAT(edits, IsEmpty());
+  Hold("Z+", 0.2);
+  Keys("REC");
+  ASSERT_EQ(edits.size(), 1U);
+  EXPECT_NE(Program(12)[0].find("/VIA"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo
