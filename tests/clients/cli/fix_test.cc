@@ -10,6 +10,7 @@
 #include <random>
 #include <sstream>
 
+#include "clients/cli/local.h"
 #include "engine/families/families.h"
 #include "proto/bridge/findings.h"
 #include "tests/clients/cli/cli_folder.h"
@@ -262,6 +263,18 @@ TEST(PatchText, LooksForWhereBothAgreeAgain) {
   };
   EXPECT_EQ(differs(399), "@@ -0,0 +1,399 @@");
   EXPECT_EQ(differs(400), "@@ -1,2 +1,402 @@");
+}
+
+// OPT-2.35, OPT-7.91: errors that stay in one file keep nobody from repairing the next one.
+TEST_F(FixFileTest, TheNextFileIsRepairedAllTheSame) {
+  CheckOptions options;
+  options.files = {folder.Put("bad.S", "SPEED 101\n"), folder.Put("good.S", "SPEDE 20\n")};
+  options.fix = true;
+  const Told told = Hear([&] { return cli::Check(options); });
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_EQ(folder.Read("bad.S"), "SPEED 101\n");
+  EXPECT_EQ(folder.Read("good.S"), "SPEED 20\n");
+  EXPECT_THAT(told.output, HasSubstr("good.S: 1 fixed, GOOD\n"));
 }
 
 }  // namespace

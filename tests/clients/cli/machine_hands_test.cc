@@ -286,5 +286,20 @@ TEST_F(TaughtTest, WhatWasTaughtIsTakenBack) {
   EXPECT_EQ(told.errors, "rmlcell: no\n");
 }
 
+// Whoever never stands is waited for 3 s: a hundred looks, 30 ms apart; then the next key comes.
+TEST_F(PanelVerbTest, TheNextKeyDoesNotWaitForEver) {
+  v1::MachineStatus moves = machine_.statuses[0];
+  moves.set_state(v1::MACHINE_STATE_JOGGING);
+  // The answer to the first key, and a hundred looks.
+  machine_.statuses.insert(machine_.statuses.begin(), 101, moves);
+  Say("key m X+ PAUSE");
+  const std::string calls = Calls();
+  std::size_t looks = 0;
+  for (std::size_t at = calls.find("GetMachine"); at != std::string::npos;
+       at = calls.find("GetMachine", at + 1))
+    ++looks;
+  EXPECT_EQ(looks, 101U);  // the last one is behind the last key
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

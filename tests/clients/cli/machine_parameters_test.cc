@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "clients/cli/local.h"
+#include "engine/core/catalogue.h"
 #include "engine/families/families.h"
 #include "proto/bridge/files.h"
 #include "tests/clients/cli/cli_folder.h"
@@ -118,6 +119,64 @@ TEST(ListParameters, WhatThereIsNotIsRefused) {
   EXPECT_EQ(told.exit_code, 2);
   EXPECT_EQ(told.output, "");
   EXPECT_THAT(told.errors, HasSubstr("CELL-E9003"));
+}
+
+// A file that is not there keeps nobody from hearing of the others; alone it is wrong use.
+TEST(CheckFiles, EachIsHeardOf) {
+  const CliFolder folder;
+  CheckOptions options;
+  options.files = {folder.File("none.S"), folder.Put("a.S", "SPEED 20\n")};
+  Told told = Hear([&] { return Check(options); });
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_THAT(told.errors, HasSubstr("CELL-E9022"));
+  EXPECT_THAT(told.output, HasSubstr(folder.File("a.S") + ": GOOD\n"));
+  options.json = true;
+  told = Hear([&] { return Check(options); });
+  EXPECT_EQ(told.exit_code, 1);
+  const std::size_t end = told.output.find('\n');
+  ASSERT_NE(end, std::string::npos);
+  const json none = json::parse(told.output.substr(0, end), nullptr, false);
+  EXPECT_EQ(none["ok"], false);
+  EXPECT_EQ(none["file"], folder.File("none.S"));
+  EXPECT_EQ(none["family"], "optimo");
+  EXPECT_EQ(none["diagnostics"][0]["code"], "CELL-E9022");
+  EXPECT_EQ(none["diagnostics"][0]["severity"], "SEVERITY_REQUEST");
+  EXPECT_EQ(none["diagnostics"][0]["place"]["file"], folder.File("none.S"));
+  EXPECT_EQ(json::parse(told.output.substr(end + 1), nullptr, false)["ok"], true);
+  options.files.pop_back();
+  told = Hear([&] { return Check(options); });
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_EQ(told.output, "");
+}
+
+// What an error is called, what happened, what the machine does then and what to do about it.
+TEST(ExplainCodes, ACodeIsToldInFourLines) {
+  const CatalogueEntry& entry = Lookup(ErrorCode::kHoleRadiusZero);
+  Told told = Hear([] { return Explain({"348"}, false); });
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_EQ(told.errors, "");
+  EXPECT_EQ(told.output, "OPT-E348  HOLE_RADIUS_ZERO  (" +
+                             std::string(SeverityName(entry.severity)) +
+                             ")\n  what happened:  " + std::string(entry.when) +
+                             "\n  the machine:    " + std::string(SeverityEffect(entry.severity)) +
+                             "\n  what to do:     " + std::string(entry.advice) + "\n");
+  // One that is none is wrong use, and the others are told all the same.
+  told = Hear([] { return Explain({"HOLE_RADIUS_ZER", "348"}, false); });
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_EQ(told.errors,
+            "rmlcell: no error 'HOLE_RADIUS_ZER'; did you mean HOLE_RADIUS_ZERO?; rmlcell explain "
+            "without a code lists them all\n");
+  EXPECT_THAT(told.output, HasSubstr("OPT-E348  HOLE_RADIUS_ZERO  ("));
+  told = Hear([] { return Explain({"348"}, true); });
+  EXPECT_EQ(json::parse(told.output, nullptr, false)["code"], "OPT-E348");
+  // Without a code all of them, a line each.
+  told = Hear([] { return Explain({}, false); });
+  EXPECT_EQ(told.exit_code, 0);
+  std::size_t lines = 0;
+  for (const char c : told.output) lines += c == '\n' ? 1U : 0U;
+  EXPECT_EQ(lines, Catalogue().size());
+  EXPECT_THAT(told.output,
+              HasSubstr("\nOPT-E348  HOLE_RADIUS_ZERO: " + std::string(entry.when) + "\n"));
 }
 
 }  // namespace

@@ -3,6 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
 #include "engine/families/families.h"
 #include "engine/simulation/material/parallel_for.h"
 #include "tests/clients/cli/cli_folder.h"
@@ -88,6 +94,55 @@ TEST(WriteMaterial, AFileThatCannotBeWrittenIsAnError) {
   const std::size_t triangles = byte(80) | byte(81) << 8 | byte(82) << 16 | byte(83) << 24;
   EXPECT_EQ(bytes.size(), 84 + 50 * triangles);
   EXPECT_EQ(triangles, 12U);  // untouched, it is a box
+}
+
+template <typename Options>
+bool Takes(void (*add)(CLI::App&, Options&), const std::string& line) {
+  CLI::App app;
+  std::string file;
+  app.add_option("FILE", file);
+  Options options;
+  add(app, options);
+  std::istringstream text(line);
+  std::vector<std::string> words;
+  for (std::string word; text >> word;) words.insert(words.begin(), word);
+  try {
+    app.parse(words);
+  } catch (const CLI::ParseError&) {
+    return false;
+  }
+  return true;
+}
+
+TEST(MillingOptions, NumbersReachTheEndsOfTheirRanges) {
+  const std::string block = "--stock 1x1x1 --tool flat:3 ";
+  for (const char* good : {"--rpm 1", "--rpm 1000000", "--target t --target-tolerance 0",
+                           "--target t --target-tolerance 1000", "--stl s --stl-tolerance 0",
+                           "--stl s --stl-tolerance 1000"})
+    EXPECT_TRUE(Takes(AddMillingOptions, block + good)) << good;
+  for (const char* wrong : {"--rpm 0.5", "--rpm 1000001", "--target t --target-tolerance -0.5",
+                            "--target t --target-tolerance 1000.5", "--stl s --stl-tolerance -0.5",
+                            "--stl s --stl-tolerance 1000.5"})
+    EXPECT_FALSE(Takes(AddMillingOptions, block + wrong)) << wrong;
+  for (const char* good : {"--target-slot 1", "--target-slot 99",
+                           "--stl-tolerance 0.5 --products relief,stl FILE", "--rpm 1"})
+    EXPECT_TRUE(Takes(AddJobMillingOptions, block + good)) << good;
+  for (const char* wrong : {"--target-slot 0", "--target-slot 100", "--products picture"})
+    EXPECT_FALSE(Takes(AddJobMillingOptions, block + wrong)) << wrong;
+}
+
+// An option that means nothing by itself is refused rather than passed over.
+TEST(MillingOptions, EachNeedsWhatItIsOf) {
+  for (const char* wrong :
+       {"--stock 1x1x1", "--tool flat:3", "--cell 0.5", "--material wax", "--rpm 5", "--target t",
+        "--stl s", "--relief r", "--height-map h", "--stock 1x1x1 --tool flat:3 --stl-tolerance 1",
+        "--stock 1x1x1 --tool flat:3 --target-tolerance 1",
+        "--stock 1x1x1 --tool flat:3 --target-png p"})
+    EXPECT_FALSE(Takes(AddMillingOptions, wrong)) << wrong;
+  for (const char* wrong : {"--target-slot 1", "--target-tolerance 1", "--products stl",
+                            "--stock 1x1x1 --tool flat:3 --stl-tolerance 1",
+                            "--stock 1x1x1 --tool flat:3 --target t --target-slot 1"})
+    EXPECT_FALSE(Takes(AddJobMillingOptions, wrong)) << wrong;
 }
 
 }  // namespace

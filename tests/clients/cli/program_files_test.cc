@@ -263,5 +263,14 @@ TEST_F(LoadFilesTest, WhatCannotBeLoadedIsRefused) {
   ExpectRefused({.files = {notes}, .family = "lathe"}, ErrorCode::kCellUnknownFamily, "lathe");
 }
 
+// A folder is none of the files that a family could be told from: that is wrong use.
+TEST(ProgramFiles, AFolderHasNoFamily) {
+  const CliFolder folder;
+  const auto none = FamilyFor({}, folder.path());
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::kCellUsage);
+  EXPECT_EQ(none.error().detail, "'" + folder.path() + "' is a directory: give its files");
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

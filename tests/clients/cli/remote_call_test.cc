@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "clients/cli/request_id.h"
 #include "google/rpc/status.pb.h"
 #include "proto/bridge/findings.h"
 #include "tests/clients/cli/cli_folder.h"
@@ -115,6 +116,14 @@ TEST(Refused, TheDetailsArePrintedAsJsonWhereThatIsAskedFor) {
   EXPECT_EQ(status["details"][1]["code"], "CELL-E9004");
   EXPECT_EQ(status["details"][1]["message"], "jobs/7");
   EXPECT_EQ(status["details"][2]["locale"], "en");
+}
+
+// 128 bits in hexadecimal digits: nobody else makes the same one.
+TEST(RequestId, Has32DigitsAndIsNeverTheSame) {
+  const std::string one = NewRequestId();
+  EXPECT_EQ(one.size(), 32U);
+  EXPECT_EQ(one.find_first_not_of("0123456789abcdef"), std::string::npos) << one;
+  EXPECT_NE(NewRequestId(), one);
 }
 
 }  // namespace

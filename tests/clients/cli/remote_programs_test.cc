@@ -2,8 +2,13 @@
 // show of the answer.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pty.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -479,6 +484,140 @@ TEST_F(RemoteVerbs, ARefusalIsToldByEach) {
   const Told none = Hear([&] { return PutProgram(remote, "m", 12, folder.File("no.S"), {}); });
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.errors, HasSubstr("CELL-E9022"));
+}
+
+TEST_F(RemoteVerbs, ATerminalGetsTextsOnly) {
+  const auto on_terminal = [&](const std::string& form, const std::string& output) {
+    termios raw{};
+    ::cfmakeraw(&raw);
+    int outside = -1;
+    int inside = -1;
+    EXPECT_EQ(::openpty(&outside, &inside, nullptr, &raw, nullptr), 0);
+    std::fflush(stdout);
+    const int kept = ::dup(STDOUT_FILENO);
+    ::dup2(inside, STDOUT_FILENO);
+    testing::internal::CaptureStderr();
+    Told told;
+    told.exit_code = GetProgram(server.remote(), "m", 12, form, output);
+    std::fflush(stdout);
+    told.errors = testing::internal::GetCapturedStderr();
+    ::dup2(kept, STDOUT_FILENO);
+    ::close(kept);
+    ::close(inside);
+    char room[4096];
+    for (ssize_t size = 0; (size = ::read(outside, room, sizeof room)) > 0;)
+      told.output.append(room, static_cast<std::size_t>(size));
+    ::close(outside);
+    return told;
+  };
+  for (const char* form : {"object", "executable"}) {
+    const Told refused = on_terminal(form, "");
+    EXPECT_EQ(refused.exit_code, 2) << form;
+    EXPECT_EQ(refused.output, "") << form;
+    EXPECT_THAT(refused.errors, AllOf(HasSubstr("CELL-E9026"), HasSubstr("give -o FILE")));
+    EXPECT_EQ(on_terminal(form, "-").output, "SPEED 5\nSTOP\n") << form;
+  }
+  for (const char* form : {"", "source", "listing"}) {
+    const Told shown = on_terminal(form, "");
+    EXPECT_EQ(shown.exit_code, 0) << form;
+    EXPECT_EQ(shown.output, "SPEED 5\nSTOP\n") << form;
+  }
+}
+
+// Without a title the slot names it; what it was judged stands before.
+TEST_F(RemoteVerbs, AProgramThatWasStoredIsToldWithItsVerdict) {
+  programs.stored.set_name("machines/m/programs/12");
+  programs.stored.set_object_bytes(33);
+  EXPECT_EQ(Put("SPEED 5\n").output, "machines/m/programs/12 stored: slot 12, object 33 B\n");
+  v1::Findings& findings = *programs.stored.mutable_findings();
+  findings.set_verdict(v1::VERDICT_BAD);
+  v1::VerdictReason& reason = *findings.add_reasons();
+  reason.set_message("too deep");
+  reason.set_code("RML1-E8002");
+  EXPECT_EQ(Put("SPEED 5\n").output,
+            "verdict: BAD\n  too deep (RML1-E8002)\n"
+            "machines/m/programs/12 stored: slot 12, object 33 B\n");
+}
+
+struct FakeImport final : v1::ProjectService::Service {
+  grpc::Status ImportProject(grpc::ServerContext*,
+                             grpc::ServerReader<v1::ImportProjectRequest>* reader,
+                             v1::Project* response) override {
+    v1::ImportProjectRequest part;
+    while (reader->Read(&part)) {
+      if (part.has_chunk()) sizes.push_back(part.chunk().size());
+    }
+    response->set_name("projects/door");
+    return {};
+  }
+  std::vector<std::size_t> sizes{};
+};
+
+// 512 KiB at a time, whatever is left in the last one.
+TEST(RemoteProjects, AnArchiveIsSentInParts) {
+  constexpr std::size_t kPart = std::size_t{512} << 10;
+  const CliFolder folder;
+  FakeImport project;
+  const FakeServer server(folder, {&project});
+  const std::string file = folder.Put("door.zip", std::string(2 * kPart + 1, 'x'));
+  const Told told = Hear([&] { return ImportProject(server.remote(), "door", file); });
+  EXPECT_EQ(told.exit_code, 0) << told.errors;
+  EXPECT_THAT(project.sizes, ElementsAre(kPart, kPart, std::size_t{1}));
+}
+
+// Without a name it is the project's, where the command was given.
+TEST_F(RemoteVerbs, AnArchiveHasTheNameOfItsProject) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const Told told = Hear([&] { return ExportProject(server.remote(), "projects/door", ""); });
+  const Told as_json = Hear([&] { return ExportProject(server.remote(true), "window", ""); });
+  std::filesystem::current_path(before);
+  EXPECT_EQ(told.output, "projects/door is in door.zip\n");
+  EXPECT_EQ(folder.Read("door.zip"), "PKbytes");
+  EXPECT_EQ(as_json.exit_code, 0);
+  EXPECT_EQ(as_json.output, "");
+  EXPECT_EQ(folder.Read("window.zip"), "PKbytes");
+}
+
+struct FakeTransfer final : v1::ProjectService::Service {
+  grpc::Status TransferProject(grpc::ServerContext*, const v1::TransferProjectRequest*,
+                               v1::TransferProjectResponse* response) override {
+    *response = transferred;
+    return {};
+  }
+  v1::TransferProjectResponse transferred{};
+};
+
+// What was there is told where something else takes its place, and only there.
+TEST(RemoteProjects, EachChangeOfATransferIsTold) {
+  const CliFolder folder;
+  FakeTransfer transfer;
+  const auto add = [&](const std::string& name, v1::TransferChange change) -> v1::TransferItem& {
+    v1::TransferItem& item = *transfer.transferred.add_items();
+    item.set_name(name);
+    item.set_change(change);
+    return item;
+  };
+  add("p/12", v1::TRANSFER_CHANGE_ADD).mutable_program_after()->set_object_bytes(33);
+  v1::TransferItem& same = add("p/13", v1::TRANSFER_CHANGE_SAME);
+  same.mutable_program_before()->set_object_bytes(34);
+  same.mutable_program_after()->set_object_bytes(34);
+  same.mutable_program_after()->set_title("a\tb");
+  add("p/14", v1::TRANSFER_CHANGE_UNSPECIFIED).mutable_program_after()->set_object_bytes(35);
+  v1::TransferItem& schedule = add("s/3", v1::TRANSFER_CHANGE_REPLACE);
+  schedule.mutable_laser_schedule_before()->set_mode(v1::LASER_MODE_CW);
+  schedule.mutable_laser_schedule_before()->set_power_percent(10.0);
+  schedule.mutable_laser_schedule_after()->set_mode(v1::LASER_MODE_PULSE);
+  schedule.mutable_laser_schedule_after()->set_power_percent(12.5);
+  schedule.mutable_laser_schedule_after()->set_title("fine");
+  const FakeServer server(folder, {&transfer});
+  const Told told = Hear([&] { return TransferProject(server.remote(), "p", "m", false, false); });
+  EXPECT_EQ(told.output,
+            "p/12 new: object 33 B\n"
+            "p/13 the same as before: a\\x09b, object 34 B\n"
+            "p/14 stored: object 35 B\n"
+            "s/3 replaced: fine, PULSE 12.5 %, was CW 10 %\n"
+            "all of it is stored\n");
 }
 
 }  // namespace

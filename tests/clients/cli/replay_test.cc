@@ -173,5 +173,14 @@ TEST_F(ReplayTest, WhatThereIsNotIsRefused) {
   EXPECT_EQ(told.errors, "rmlcell: no job\n");
 }
 
+// A file that is not there is another error than a recording that comes out otherwise.
+TEST_F(ReplayTest, EachRefusalHasItsCode) {
+  EXPECT_THAT(Play("none.rmlj").errors, StartsWith("rmlcell: CELL-E9022: "));
+  recording::Recording other = StandingMill();
+  other.entries[1].mutable_mark()->set_state_sha256(std::string(32, '\0'));
+  EXPECT_THAT(Play(folder_.Put("a.rmlj", FileOf(other))).errors,
+              StartsWith("rmlcell: CELL-E9436: "));
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

@@ -5,11 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "clients/cli/verbs.h"
 #include "tests/clients/cli/cli_folder.h"
 
 namespace rmlcell::cli {
@@ -334,6 +338,43 @@ TEST_F(MillToolsTest, APictureThatDoesNotFitIsRefusedInItsOwnTerms) {
   png.machine.profile = "no-such-mill";
   EXPECT_EQ(Hear([&] { return StreamFromPng(png); }).exit_code, 2);
   EXPECT_THAT(folder.Names(), UnorderedElementsAre("a.png", "b.png"));
+}
+
+// place.
+TEST_F(MillToolsTest, PlacesHaveAsManyNumbersAsAxes) {
+  const std::string stream = folder.Put("a.rml", kCut);
+  const std::string picture = folder.Put("a.png", PictureBytes());
+  const auto reads = [](std::vector<std::string> words) {
+    int exit_code = 0;
+    CLI::App app;
+    AddRml1Verbs(app, exit_code);
+    words.insert(words.begin(), "rml1");
+    std::ranges::reverse(words);
+    bool read = true;
+    Hear([&] {
+      try {
+        app.parse(words);
+      } catch (const CLI::ParseError&) {
+        read = false;
+      }
+      return 0;
+    });
+    return read;
+  };
+  for (const char* good : {"1,2", "1,2,0"}) {
+    EXPECT_TRUE(reads({"move", stream, "--by", good})) << good;
+    EXPECT_TRUE(reads({"explain", stream, "--origin", good})) << good;
+  }
+  for (const char* wrong : {"1", "1,2,0,0"}) {
+    EXPECT_FALSE(reads({"move", stream, "--by", wrong})) << wrong;
+    EXPECT_FALSE(reads({"explain", stream, "--origin", wrong})) << wrong;
+  }
+  const auto placed = [&](const char* at) {
+    return reads({"from-png", picture, "--tool", "0.4", "--depth", "0.1", "-o", "-", "--at", at});
+  };
+  EXPECT_TRUE(placed("1,2"));
+  EXPECT_FALSE(placed("1"));
+  EXPECT_FALSE(placed("1,2,0"));
 }
 
 }  // namespace

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "clients/cli/local.h"
+#include "clients/cli/text_tools.h"
 #include "engine/families/families.h"
 #include "tests/clients/cli/cli_folder.h"
 
@@ -149,6 +153,98 @@ TEST(SimulateOptions, AnExecutableThatIsBroughtMustBeOne) {
   EXPECT_EQ(AddExecutables({"45=" + folder.File("none")}, ALaser(), programs).error().code,
             ErrorCode::kCellFileUnreadable);
   EXPECT_TRUE(programs.front().executable->empty());
+}
+
+TEST(SimulateOptions, AnExecutableGoesToItsProgram) {
+  const CliFolder folder;
+  LinkOptions link;
+  link.files = {folder.Put("12.S", "FUNCTION 44\n"), folder.Put("44.S", "VR[0] = 1.\n")};
+  link.main_slot = 12;
+  link.output = folder.File("112.X");
+  ASSERT_EQ(Hear([&] { return Link(link); }).exit_code, 0);
+  std::vector<simulation::MemoryProgram> programs = {{.slot = 45}};
+  ExpectUsage(AddExecutables({"12=" + link.output}, ALaser(), programs).error(),
+              "there is no program 12");
+  programs.push_back({.slot = 12});
+  const auto to_make = AddExecutables({"12=" + link.output}, ALaser(), programs);
+  ASSERT_TRUE(to_make);
+  EXPECT_TRUE(to_make->empty());  // it is there
+  EXPECT_EQ(std::string(*programs.back().executable), folder.Read("112.X"));
+  EXPECT_TRUE(programs.front().executable->empty());
+}
+
+// A second stream would be loaded and never run.
+TEST(Simulating, OneStreamAtATime) {
+  const CliFolder folder;
+  SimulateOptions options;
+  options.files = {folder.Put("a.rml", "PU;"), folder.Put("b.rml", "PU;")};
+  const Told told = Hear([&] { return Simulate(options); });
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_EQ(told.output, "");
+  EXPECT_THAT(told.errors, testing::StartsWith("rmlcell: CELL-E9026: 2 programs for a machine"));
+}
+
+// OPT-2.35: nothing runs, and there is a verdict all the same, in each form.
+TEST(Simulating, AProgramThatCannotRunHasAVerdict) {
+  const CliFolder folder;
+  SimulateOptions options;
+  options.files = {folder.Put("a.S", "SPEED 101\n")};
+  options.machine.profile = "pw-1993";
+  Told told = Hear([&] { return Simulate(options); });
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_THAT(told.output, HasSubstr("a.S:1:7: error OPT-E7004: "));
+  EXPECT_THAT(told.output, testing::EndsWith("\n  SPEED 101\n        ^~~\nverdict       BAD\n"));
+  options.facts = true;
+  told = Hear([&] { return Simulate(options); });
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_THAT(told.output, testing::StartsWith("family: optimo\nprofile: pw-1993\n"));
+  for (const char* fact : {"\noutcome: failed\n", "\noutcome_code: OPT-E7004\n", "\nverdict: BAD\n",
+                           "\nverdict_codes: OPT-E7004\n"})
+    EXPECT_THAT(told.output, HasSubstr(fact));
+  options.facts = false;
+  options.json = true;
+  told = Hear([&] { return Simulate(options); });
+  EXPECT_EQ(told.exit_code, 1);
+  const auto found = nlohmann::json::parse(told.output, nullptr, false);
+  EXPECT_EQ(found["ok"], false);
+  EXPECT_EQ(found["family"], "optimo");
+  EXPECT_EQ(found["profile"], "pw-1993");
+  EXPECT_EQ(found["verdict"], "VERDICT_BAD");
+  EXPECT_EQ(found["reasons"][0]["code"], "OPT-E7004");
+}
+
+// Those that the machine has are shown all the same.
+TEST(Simulating, AVariableThatIsNoneIsNamed) {
+  const CliFolder folder;
+  SimulateOptions options;
+  options.files = {folder.Put("a.S", "VI[2] = 7\n")};
+  options.variables = "ZZ[1],VI[2]";
+  const Told told = Hear([&] { return Simulate(options); });
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_EQ(told.errors, "rmlcell: the machine has no variable ZZ[1]\n");
+  EXPECT_THAT(told.output, HasSubstr("\nVI[2]         7\n"));
+}
+
+// RML1-2.09: what is no command is found in the text and again when it runs, and told once: five of
+// them, and how many more, though a thousand are kept and the others counted.
+TEST(Simulating, WhatWasFoundBeforeIsNotToldAgain) {
+  const CliFolder folder;
+  std::string stream = "PU0,0;\n";
+  for (int line = 0; line < 1010; ++line) stream += "PU1,1;PU2,2;PU3,3;QQ;\n";
+  SimulateOptions options;
+  options.files = {folder.Put("a.rml", stream)};
+  options.machine.profile = "srm-20";
+  const Told told = Hear([&] { return Simulate(options); });
+  const auto count = [&](const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = told.output.find(part); at != std::string::npos;
+         at = told.output.find(part, at + 1))
+      ++found;
+    return found;
+  };
+  EXPECT_EQ(count(" RML1-E1: "), 5U);
+  EXPECT_EQ(count("and 1005 more RML1-E1, lines 7 to 1011\n"), 1U);
+  EXPECT_EQ(count("\nand "), 1U) << told.output;
 }
 
 }  // namespace

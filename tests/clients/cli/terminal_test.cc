@@ -1,5 +1,6 @@
 #include "clients/cli/terminal.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <pty.h>
 #include <termios.h>
@@ -11,6 +12,8 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+
+#include "clients/cli/full_screen.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -199,6 +202,28 @@ TEST(Colours, OnATerminalUnlessTheyAreNotWanted) {
 
 TEST(Terminal, BlueIsSixOfThePalette) {
   EXPECT_EQ(Paint("a", Colour::kBlue, true), "\x1B[36ma\x1B[0m");
+}
+
+// A whole screen needs a terminal to read from and one to write to.
+TEST(FullScreenCheck, BothEndsAreATerminal) {
+  const int kept = ::dup(STDIN_FILENO);
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  ASSERT_GE(nothing, 0);
+  Status both = Error{ErrorCode::kCellUsage, "not looked at", {}};
+  Status output_alone;
+  OnTerminal(STDOUT_FILENO, stdout, [&] {
+    ::dup2(STDOUT_FILENO, STDIN_FILENO);
+    both = FullScreen::Check();
+    ::dup2(nothing, STDIN_FILENO);
+    output_alone = FullScreen::Check();
+  });
+  ::dup2(kept, STDIN_FILENO);
+  ::close(kept);
+  ::close(nothing);
+  EXPECT_TRUE(both.ok());
+  ASSERT_FALSE(output_alone.ok());
+  EXPECT_EQ(output_alone.error().code, ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(output_alone.error().detail, "standard input and output are no terminal");
 }
 
 }  // namespace

@@ -5,10 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "clients/cli/verbs.h"
 #include "tests/clients/cli/cli_folder.h"
 
 namespace rmlcell::cli {
@@ -366,6 +369,48 @@ TEST_F(TextToolsTest, AListHasNoAdvice) {
   EXPECT_EQ(Hear([&] { return List({.file = file}); }).errors, "");
   EXPECT_THAT(Hear([&] { return Compile({.file = file}, false); }).errors,
               HasSubstr("warning OPT-E7"));
+}
+
+// The exit code of a line of the command; nothing: it cannot be read.
+std::optional<int> ExitOfLine(std::vector<std::string> words) {
+  int exit_code = 0;
+  CLI::App app;
+  AddTextToolVerbs(app, exit_code);
+  std::ranges::reverse(words);
+  std::optional<int> code;
+  Hear([&] {
+    try {
+      app.parse(words);
+      code = exit_code;
+    } catch (const CLI::ParseError&) {
+    }
+    return 0;
+  });
+  return code;
+}
+
+// OPT-8.74, OPT-8.76: as many numbers as there are axes, no more.
+TEST_F(TextToolsTest, PlacesHaveAllTheirNumbersAndNoMore) {
+  const std::string file = folder.Put("part.S", "VR[86] = 1.\nMOVE (1.,2.,3.,0.,0.)\n");
+  for (const auto& [option, wanted] :
+       {std::pair{"--move", 3}, std::pair{"--turn", 3}, std::pair{"--shift", 6}}) {
+    std::string numbers = "0";
+    for (int count = 1; count <= 7; ++count) {
+      const std::optional<int> code = ExitOfLine({"transform", file, option, numbers});
+      EXPECT_EQ(code.has_value(), count == wanted) << option << " " << numbers;
+      numbers += ",0";
+    }
+  }
+}
+
+// OPT-1.10: programs have the numbers 1 to 99. What --slot names is one word, the program follows.
+TEST_F(TextToolsTest, LinkTakesTheSlotsThatThereAre) {
+  const std::string part = folder.Put("part.S", "FUNCTION 44\n");
+  const std::string function = "44=" + folder.Put("f.S", "VR[0] = 1.\n");
+  for (const char* slot : {"1", "99"})
+    EXPECT_EQ(ExitOfLine({"link", "--slot", function, part, "--main", slot}), 0) << slot;
+  for (const char* slot : {"0", "100", "x"})
+    EXPECT_EQ(ExitOfLine({"link", "--slot", function, part, "--main", slot}), std::nullopt) << slot;
 }
 
 }  // namespace

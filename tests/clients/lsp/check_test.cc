@@ -139,5 +139,24 @@ TEST(Check, AFindingMarksWhatIsInTheText) {
   EXPECT_EQ(marked(9, 1), Pair(8, 8));
 }
 
+// A language that nobody here speaks is taken for that which people write.
+TEST(Check, AnUnknownLanguageIsThatOfPrograms) {
+  for (const char* language : {"plaintext", ""}) {
+    const Document document("untitled:Untitled-1", language, 0, {}, Encoding::kUtf16);
+    EXPECT_EQ(FamilyOf(document).info().id, "optimo") << language;
+  }
+}
+
+// How many were left out is a warning at the end of the text.
+TEST(Check, WhatWasLeftOutStandsAtTheEnd) {
+  std::string text;
+  for (int i = 0; i < 1001; ++i) text += "SPEED 101\n";
+  const Json last = DiagnosticsOf(text).back();
+  EXPECT_EQ(last["message"], "and 1 more findings");
+  EXPECT_EQ(last["severity"], 2);
+  EXPECT_EQ(last["source"], "rmlcell");
+  EXPECT_EQ(last["range"], ToJson(Range{{1001, 0}, {1001, 0}}));
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

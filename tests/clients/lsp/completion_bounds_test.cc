@@ -154,5 +154,16 @@ TEST(CompletionBounds, AWordIsLettersAndDigits) {
   EXPECT_THAT(OfferedAt("DECLARE AZaz09 = 1\nVR[0] = azAZ|\n"), ElementsAre("AZaz09"));
 }
 
+// Of a statement that is being typed 2000 tokens are looked at: "VR[0] = 1" has six, each "+1" two.
+TEST(CompletionBounds, TwoThousandTokensOfAStatement) {
+  const auto offered = [](int sums) {
+    std::string text = "VR[0] = 1";
+    for (int sum = 0; sum < sums; ++sum) text += "+1";
+    return OfferedAt(text + "+|\n");
+  };
+  EXPECT_THAT(offered(996), AllOf(Contains("SIN"), Not(Contains("MOD"))));
+  EXPECT_THAT(offered(997), AllOf(Contains("MOD"), Not(Contains("SIN"))));
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

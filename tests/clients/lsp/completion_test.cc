@@ -150,5 +150,22 @@ TEST(Completion, WhatIsOfferedSaysWhatItIs) {
   EXPECT_THAT(details(kNames, 6), Contains("HOME: = VR[3]"));  // variable
 }
 
+// The kinds that LSP has: 3 function, 6 variable, 14 keyword, 21 constant.
+TEST(Completion, EachHasTheKindOfItsWord) {
+  Editor editor;
+  const auto kind = [&](std::string_view marked, const std::string& label) {
+    const Json items = editor.At("textDocument/completion", marked)["result"]["items"];
+    for (const Json& item : items) {
+      if (item["label"] == label) return item["kind"].get<int>();
+    }
+    return 0;
+  };
+  EXPECT_EQ(kind("VR[0] = SI|\n", "SIN"), 3);
+  EXPECT_EQ(kind("VR[0] = V|\n", "VR"), 6);
+  EXPECT_EQ(kind("MO|\n", "MOVE"), 14);
+  EXPECT_EQ(kind("VR[0] = 1 M|\n", "MOD"), 14);
+  EXPECT_EQ(kind("VR[0] = P|\n", "PI"), 21);
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

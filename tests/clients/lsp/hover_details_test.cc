@@ -216,5 +216,29 @@ TEST(HoverDetails, ThreeFindingsOfOnePlace) {
   EXPECT_EQ(told(4, 4, 4), 3U);
 }
 
+// OPT-6.01: DECLARE is no step, whatever stands before it.
+TEST(HoverDetails, WhatIsNoStepHasNoNumber) {
+  EXPECT_THAT(HoverIn("SPEED 5\nDECL|ARE X = 1\n"),
+              AllOf(HasSubstr("**DECLARE**"), Not(HasSubstr("\n\nStep "))));
+  EXPECT_THAT(HoverIn("DECLARE X = 1\nSP|EED 5\n"), EndsWith("\n\nStep 1"));
+}
+
+// OPT-3.05, OPT-3.26: JSON names a mode with its prefix and leaves out what is 0 or empty; a
+// schedule without a mode is CW.
+TEST(HoverDetails, WhatAProjectLeavesOutIsItsDefault) {
+  Editor editor;
+  editor.folder.files["file:///work/project.json"] =
+      R"({"laserSchedules": [{"number": 11, "mode": "LASER_MODE_PULSE", "powerPercent": 50},
+                             {"number": 12, "title": "fine"},
+                             {"number": 13, "mode": "LASER_MODE_CW", "title": ""}],
+          "processes": [{"values": [5], "note": ""}, {"kind": 1, "note": "steel"}]})";
+  EXPECT_THAT(HoverIn(editor, "WO|RKDEF 2,1 (11)\n"), EndsWith("`11` (PULSE, 50 %)"));
+  EXPECT_THAT(HoverIn(editor, "WO|RKDEF 2,1 (12)\n"), EndsWith("`12` (CW, fine)"));
+  EXPECT_THAT(HoverIn(editor, "WO|RKDEF 2,1 (13)\n"), EndsWith("`13` (CW)"));
+  EXPECT_THAT(HoverIn(editor, "WO|RK 0,0/ON\n"), EndsWith("\n\nIn project.json: 5"));
+  EXPECT_THAT(HoverIn(editor, "WO|RKDEF 1,0 (1,2,3,4)\n"),
+              EndsWith("\n\nIn project.json: (steel)"));
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

@@ -103,5 +103,13 @@ TEST(Folding, ContoursAndSubroutines) {
   EXPECT_EQ(FoldsOf("WORK 0,0/ON\nSPEED 5\n"), Strings{});
 }
 
+// OPT-3.13, OPT-7.20: one fold for each: a second RETURN, or a second OFF, ends nothing.
+TEST(Folding, ContoursAndSubroutinesEndOnce) {
+  EXPECT_EQ(FoldsOf("GOSUB 100\nENDTASK\n100\nSPEED 5\nRETURN\nSPEED 6\nRETURN\n"),
+            Strings{"region 2-4"});
+  EXPECT_EQ(FoldsOf("WORK 0,0/ON\nSPEED 5\nWORK 0,0/OFF\nSPEED 6\nWORK 0,0/OFF\n"),
+            Strings{"region 0-2"});
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

@@ -96,5 +96,17 @@ TEST_F(OnDisk, FilesAreReadUpToALimitAndNothingElseIs) {
             ErrorCode::kCellFileUnreadable);  // and no waiting
 }
 
+// A folder may be large: 20,000 names are looked at, whatever they are.
+TEST_F(OnDisk, TwentyThousandNamesAreLookedAt) {
+  std::string zeros;
+  std::size_t made = 0;
+  while (made <= kFolderEntriesMax) {  // "1.S" to "99.S", "01.S" to "099.S" ...
+    for (int number = 1; number <= 99 && made <= kFolderEntriesMax; ++number, ++made)
+      Write(zeros + std::to_string(number) + ".S", "");
+    zeros += '0';
+  }
+  EXPECT_EQ(disk_.Programs(Uri("12.S"), kExtensions).size(), kFolderEntriesMax);
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

@@ -249,5 +249,56 @@ TEST(Server, TheSamePathInOtherEscapesIsTheSameDocument) {
                    .is_null());
 }
 
+// An error goes to the request that it is of; to nobody where the id is none.
+TEST(Server, AnErrorHasTheIdOfItsRequest) {
+  struct Row {
+    const char* body;
+    Json id;
+  };
+  for (const Row& row : {Row{R"({"id":1,"method":5})", 1}, Row{R"({"id":"a"})", "a"},
+                         Row{R"({"id":{},"method":"shutdown"})", nullptr},
+                         Row{R"({"method":5})", nullptr}, Row{"[]", nullptr}}) {
+    Editor editor;
+    editor.SendBytes(Framed(row.body));
+    const auto answers = editor.Handle();
+    ASSERT_EQ(answers.size(), 1U) << row.body;
+    EXPECT_EQ(answers[0]["id"], row.id) << row.body;
+  }
+}
+
+// Notices count from initialize to shutdown.
+TEST(Server, NoticesBeforeAndBehindTheSessionArePassedOver) {
+  const Json opened = {
+      {"jsonrpc", "2.0"},
+      {"method", "textDocument/didOpen"},
+      {"params",
+       {{"textDocument",
+         {{"uri", kUri}, {"languageId", "optimo-rml"}, {"version", 1}, {"text", "SPEED 101\n"}}}}}};
+  const FakeFolder folder;
+  Server server(folder);
+  server.Receive(Framed(opened.dump()));
+  server.HandleNext();
+  EXPECT_FALSE(server.unchecked());
+  EXPECT_EQ(server.TakeOutput(), "");
+  Editor editor;
+  EXPECT_TRUE(editor.Result("shutdown", nullptr).is_null());
+  editor.Open("SPEED 101\n");
+  EXPECT_FALSE(editor.server.unchecked());
+}
+
+// What waits is counted in bytes of bodies, so that a client is not read for ever.
+TEST(Server, BytesThatWaitAreCounted) {
+  const FakeFolder folder;
+  Server server(folder);
+  const std::string first = Request(1, "initialize").dump();
+  const std::string second = Request(2, "shutdown").dump();
+  server.Receive(Framed(first) + Framed(second));
+  EXPECT_EQ(server.waiting_bytes(), first.size() + second.size());
+  server.HandleNext();
+  EXPECT_EQ(server.waiting_bytes(), second.size());
+  server.HandleNext();
+  EXPECT_EQ(server.waiting_bytes(), 0U);
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

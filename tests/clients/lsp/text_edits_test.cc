@@ -293,5 +293,12 @@ TEST(Formatting, StretchesOfLines) {
                   TextEdit({{2, 0}, {3, 7}}, "     SPEED 7\n     SPEED 8\n")}));
 }
 
+// What takes something away is never what an editor does without being asked; a title is one line.
+TEST(CodeActions, ARemovalIsNotPreferred) {
+  EXPECT_EQ(FixedBy({{5, 3, "x"}})["isPreferred"], true);
+  EXPECT_EQ(FixedBy({{5, 3, ""}})["isPreferred"], false);
+  EXPECT_EQ(FixedBy({{5, 0, "a\nb\rc"}})["title"], "Insert 'a b c'");
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

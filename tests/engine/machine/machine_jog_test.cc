@@ -591,17 +591,5 @@ TEST_F(MachineJogTest, ItSettlesWhenTheKeyIsUp) {
   EXPECT_FALSE(machine->settles());
 }
 
-// LIVE-8.01: the panel tells how far axes run on, where its keys move some.
-TEST_F(MachineJogTest, ThePanelTellsHowFarAxesRunOn) {
-  LoadInManual();
-  ASSERT_TRUE(machine->panel().run_on);
-  EXPECT_NEAR(machine->panel().run_on->mm, 15.0, 1e-9);
-  Good(ChangeMode{Mode::kRemote});
-  EXPECT_FALSE(machine->panel().run_on);
-  Good(ChangeMode{Mode::kManual});
-  Good(SwitchPower{false});
-  EXPECT_FALSE(machine->panel().run_on);
-}
-
 }  // namespace
 }  // namespace rmlcell::machine

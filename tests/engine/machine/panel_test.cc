@@ -175,5 +175,19 @@ TEST_F(HandboxDisplay, ForgetsTheReferenceWithThePower) {
   EXPECT_THAT(machine->panel().lamps, testing::Not(Contains("ABS")));
 }
 
+// LIVE-8.01: the panel tells how far axes run on, where its keys move some.
+TEST_F(HandboxDisplay, TellsHowFarAxesRunOn) {
+  Load({"STOP\n"});
+  Good(ChangeMode{Mode::kManual});
+  Good(ChangeOverride{145.0});
+  ASSERT_TRUE(machine->panel().run_on);
+  EXPECT_NEAR(machine->panel().run_on->mm, 15.0, 1e-9);
+  Good(ChangeMode{Mode::kRemote});
+  EXPECT_FALSE(machine->panel().run_on);
+  Good(ChangeMode{Mode::kManual});
+  Good(SwitchPower{false});
+  EXPECT_FALSE(machine->panel().run_on);
+}
+
 }  // namespace
 }  // namespace rmlcell::machine

@@ -272,5 +272,15 @@ TEST_F(LoneRotaryCarriage, WaitsOnceBeforeATurnThatCatchesUp) {
   EXPECT_EQ(queue.all()[3].to, (Point{19000.0, 500.0, 0.0, 90.0}));
 }
 
+// Nor is it where another axis is slower and the speed is just what this one has: 60 mm/s in X, 30
+// in Z.
+TEST(Carriage, ASpeedThatAnAxisHasIsNotTouched) {
+  const Profile pnc = MakeProfile(ParametersOf("pnc-3200")).value();
+  for (int tenths = 1; tenths < 100; ++tenths) {
+    EXPECT_EQ(LimitedSpeed(pnc, {}, {0.1 * tenths, 0, 0}, 60.0), 60.0) << tenths;
+    EXPECT_EQ(LimitedSpeed(pnc, {}, {0, -0.1 * tenths, 0}, 60.0), 60.0) << tenths;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

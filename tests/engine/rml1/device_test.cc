@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "tests/engine/rml1/run_support.h"
 
@@ -338,6 +339,161 @@ TEST(Device, DropsTheGroupsBehindAxesThatCannotMoveTogether) {
   device.Feed("!ZE X700;");
   EXPECT_EQ(device.findings().size(), 1U);
   EXPECT_EQ(device->carriage().logical().x, 700.0);
+}
+
+// What a device tells on its way, of a stream that is read byte by byte.
+class Heard final : public DeviceListener {
+ public:
+  explicit Heard(const machine::Parameters& parameters)
+      : profile_(MakeProfile(parameters).value()), device_(profile_) {}
+  void Feed(std::string_view bytes) {
+    for (const char c : bytes) {
+      device_.Receive(static_cast<unsigned char>(c), offset_++, *this);
+      while (device_.Step(*this)) {
+        while (!device_.actions().empty()) device_.actions().Pop();
+      }
+    }
+  }
+  void OnLost(const Carriage::LostLine& line) override { lost.push_back(line); }
+  void OnAbort(std::int64_t offset) override { aborts.push_back(offset); }
+  void OnReading(const Reading& reading, const CommandReader& reader,
+                 std::int64_t /*offset*/) override {
+    const bool number =
+        reading.kind == Reading::Kind::kParameter || reading.kind == Reading::Kind::kAxisValue;
+    if (number) numbers.push_back(reader.number_offset());
+  }
+
+  std::vector<Carriage::LostLine> lost;
+  std::vector<std::int64_t> aborts;
+  std::vector<std::int64_t> numbers;
+
+ private:
+  Profile profile_;
+  Device device_;
+  std::int64_t offset_ = 0;
+};
+
+// RML1-2.25, RML1-3D.16: every number has the byte where it begins, and ESC.K, RML1-4.08, that of
+// its K.
+TEST(Device, TellsWhereNumbersAndSequencesAre) {
+  Heard heard(ParametersOf("t1"));
+  heard.Feed("PU10, 20;!ZE X12 Y-3;PU1\x1b.KPD;");
+  EXPECT_EQ(heard.numbers, (std::vector<std::int64_t>{2, 6, 14, 18}));
+  EXPECT_EQ(heard.aborts, (std::vector<std::int64_t>{26}));
+}
+
+// RML1-5A.01: each line that is lost is told once, by the command that lost it. T1 has 200 mm in X.
+TEST(Device, TellsEveryLostLineOnce) {
+  Heard heard(ParametersOf("t1"));
+  heard.Feed("PD25000,0;PD25000,100;");
+  ASSERT_EQ(heard.lost.size(), 2U);
+  EXPECT_EQ(heard.lost[0].from.x, 20000.0);
+  EXPECT_EQ(heard.lost[0].to.x, 25000.0);
+  EXPECT_EQ(heard.lost[1].from.y, 0.0);
+  EXPECT_EQ(heard.lost[1].to.y, 100.0);
+}
+
+// How far work leads beyond each face of 200 by 150 mm, and where it lies.
+TEST(Device, TellsHowFarWorkLeadsBeyondEachFace) {
+  const auto lost_of = [](std::string_view stream) {
+    TestDevice device(ParametersOf("t1"));
+    device.Feed(stream);
+    return device->carriage().lost();
+  };
+  const LostCut left = lost_of("PU100,100;PD-300,100;");
+  EXPECT_EQ(left.x_low, 300.0);
+  EXPECT_EQ(left.x_high + left.y_low + left.y_high + left.z_low, 0.0);
+  EXPECT_EQ(left.x.low, -300.0);
+  EXPECT_NEAR(left.x.high, 0.0, 1e-9);
+  const LostCut front = lost_of("PU100,100;PD100,-400;");
+  EXPECT_EQ(front.y_low, 400.0);
+  EXPECT_EQ(front.x_low + front.x_high + front.y_high + front.z_low, 0.0);
+  EXPECT_EQ(front.y.low, -400.0);
+  EXPECT_NEAR(front.y.high, 0.0, 1e-9);
+  const LostCut back = lost_of("PU100,14000;PD100,15500;");
+  EXPECT_EQ(back.y_high, 500.0);
+  EXPECT_EQ(back.x_low + back.x_high + back.y_low + back.z_low, 0.0);
+}
+
+// RML1-3B.01: DF gives the mode, the heights and whether the spindle may turn, as the program's own
+// words; the speeds that it sets are those of the machine. So are those of F, VS and V without a
+// number (RML1-3A.44, RML1-3A.49).
+TEST(Device, KnowsWhatTheProgramGave) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("F99;V99;");
+  EXPECT_TRUE(device->registers().xy_speed_given && device->registers().z_speed_given);
+  EXPECT_EQ(device->registers().xy_limit.asked, 99.0);
+  EXPECT_EQ(device->registers().z_limit.asked, 99.0);
+  EXPECT_FALSE(device->registers().mode_given || device->registers().heights_given ||
+               device->registers().rotation_given);
+  device.Feed("DF;");
+  const Registers after = device->registers();
+  EXPECT_TRUE(after.mode_given && after.heights_given && after.rotation_given);
+  EXPECT_FALSE(after.xy_speed_given || after.z_speed_given);
+  EXPECT_EQ(after.xy_limit.asked, 0.0);
+  EXPECT_EQ(after.z_limit.asked, 0.0);
+  device.Feed("VS99;!VZ99;VS;!VZ;");
+  EXPECT_FALSE(device->registers().xy_speed_given || device->registers().z_speed_given);
+  EXPECT_EQ(device->registers().xy_limit.asked, 0.0);
+  EXPECT_EQ(device->registers().z_limit.asked, 0.0);
+}
+
+// RML1-3A.37, RML1-3D.08: a place is given by H, and by absolute groups that name X and Y, one
+// after the other or, where there is no Y, X alone; not by relative ones.
+TEST(Device, KnowsWhoGaveThePlace) {
+  const auto given = [](std::string_view stream, std::string_view profile = "t1") {
+    TestDevice device(ParametersOf(profile));
+    device.Feed(stream);
+    return device->registers().place_given_by != 0;
+  };
+  EXPECT_TRUE(given("H;"));
+  EXPECT_FALSE(given("IN;"));
+  EXPECT_FALSE(given("!ZE X5;"));
+  EXPECT_FALSE(given("!ZE Y5;"));
+  EXPECT_TRUE(given("!ZE X5:Y5;"));
+  EXPECT_TRUE(given("!ZE X5;", "t1n"));
+  EXPECT_FALSE(given("PR;!ZE X5Y5;"));
+}
+
+// RML1-3A.03, RML1-3A.52, RML1-3A.55, RML1-3C.15: the last value that each setting takes, and the
+// first that it does not.
+TEST(Device, SettingsHaveTheirEnds) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("W32767;V32767;V-32768;!RC8388607;!PZ-4000,8388607;");
+  EXPECT_EQ(device->command_errors().total(), 0U);
+  EXPECT_EQ(device->registers().dwell_ms, 32767);
+  EXPECT_EQ(device->registers().z1, -4000.0);
+  EXPECT_EQ(device->registers().z2, 8388607.0);
+  device.Feed("W32768;V32768;V-32769;!RC8388608;");
+  EXPECT_EQ(device.CountOf(FindingKind::kSettingRange), 4);
+  device.Feed("!PZ-4001,8388608;");
+  EXPECT_EQ(device.CountOf(FindingKind::kHeightRange), 2);
+}
+
+// RML1-3C.20: a speed that is set by hand is as far as the spindle goes, 4500 to 15000 rpm; below
+// 100 it is a stage.
+TEST(Device, SpeedsByHandHaveTheEndsOfTheSpindle) {
+  TestDevice device(ParametersOf("t1f"));
+  const auto limit = [&](const char* command) {
+    device.Feed(command);
+    const SpeedLimit& found = device->registers().rpm_limit;
+    return std::pair(found.asked, found.used);
+  };
+  EXPECT_EQ(limit("!RC100;"), std::pair(100.0, 4500.0));
+  EXPECT_EQ(limit("!RC99;"), std::pair(0.0, 0.0));
+  EXPECT_EQ(limit("!RC15001;"), std::pair(15001.0, 15000.0));
+  EXPECT_EQ(limit("!RC15000;"), std::pair(0.0, 0.0));
+}
+
+// RML1-9.11: a machine state that is kept has its surface where its Z0 is.
+TEST(Device, TheSurfaceOfAKeptStateIsItsZ0) {
+  const Profile profile = MakeProfile(ParametersOf("t1")).value();
+  Device device(profile);
+  Registers kept(profile);
+  kept.z0 = -3000.0;
+  device.Restore(kept, {});
+  EXPECT_EQ(device.registers().z0, -3000.0);
+  EXPECT_EQ(device.registers().surface_z, -3000.0);
 }
 
 }  // namespace

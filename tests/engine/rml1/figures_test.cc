@@ -235,5 +235,37 @@ TEST(Figures, OfTwoLimitedSpeedsAsFarAwayTellTheFirst) {
   EXPECT_EQ(slow.figures().at("feed_limited_used"), 0.5);
 }
 
+// What a check says of time: 2 s of run-up, 15 mm down at 20 mm/s, a dwell of 0.5 s before each of
+// 5 mm down at 20 and 10 mm across at 10 mm/s, and 1 s until the spindle stands. IN leads 5 mm up
+// at the default of 2 mm/s, and nobody waits for the spindle (RML1-3B.03).
+TEST(Figures, OfTheLeastTime) {
+  const auto time = [](const std::string& end, const char* name) {
+    const auto made = Rml1Family().Translate(
+        {.name = "a", .bytes = "V20;VS10;PU;W500;PD1000,0;" + end}, WithSpindle(2.0, 1.0), {});
+    return ByName(made.figures).at(name);
+  };
+  const double cut = 2.0 + 15.0 / 20.0 + 0.5 + 5.0 / 20.0 + 0.5 + 10.0 / 10.0;
+  EXPECT_NEAR(time("!MC0;", "least_time"), cut + 1.0, 1e-9);
+  EXPECT_NEAR(time("IN;", "least_time"), cut + 5.0 / 2.0, 1e-9);
+  EXPECT_NEAR(time("!MC0;", "least_days"), (cut + 1.0) / 86'400.0, 1e-12);
+}
+
+// RML1-3C.08: how often a run waits for its key, and where it does first.
+TEST(Figures, OfWaitsForTheKey) {
+  const auto made =
+      Rml1Family().Translate({.name = "a", .bytes = "PU;\n!NR;PD;\n!NR;"}, ParametersOf("t1"), {});
+  int found = 0;
+  for (const machine::Figure& figure : made.figures) {
+    if (figure.name != "waits_for_key") continue;
+    ++found;
+    EXPECT_EQ(figure.value, 2.0);
+    EXPECT_EQ(figure.first.step, 2);
+    EXPECT_EQ(figure.first.byte_offset, 4);
+    EXPECT_EQ(figure.first.line, 2);
+    EXPECT_EQ(figure.first.program, 0);
+  }
+  EXPECT_EQ(found, 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

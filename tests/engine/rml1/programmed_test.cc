@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <initializer_list>
 #include <string>
 #include <utility>
 
@@ -93,6 +94,39 @@ TEST(Programmed, KeepsCommandsWithSurplus) {
 TEST(Programmed, CountsWhatRan) {
   EXPECT_EQ(FiguresOf("PU1,1;PU2,2").at("programmed.commands"), 1);
   EXPECT_EQ(FiguresOf("PU1,1;PU2,2,").at("programmed.commands"), 2);
+}
+
+// Heights are multiples of what they have in common where they are whole numbers; one that is not,
+// or that no machine is as high as, leaves 1.
+TEST(Programmed, HeightsHaveAGrain) {
+  const auto grain = [](std::initializer_list<double> heights) {
+    Programmed programmed;
+    for (const double z : heights) programmed.OnSetXYZ(0.0, 0.0, z);
+    return programmed.z_grain();
+  };
+  EXPECT_EQ(grain({}), 0U);
+  EXPECT_EQ(grain({10.0}), 10U);
+  EXPECT_EQ(grain({10.0, -4.0}), 2U);
+  EXPECT_EQ(grain({10.0, 2.5}), 1U);
+  EXPECT_EQ(grain({10.0, 1e9}), 1U);
+}
+
+// A spoilt statement takes back nothing of the statements before it: heights, what DF set, and the
+// places of groups.
+TEST(Programmed, SpoiltStatementsLeaveWhatStoodBefore) {
+  const auto value = [](const Figures& figures, const char* name) {
+    return figures.contains(name) ? figures.at(name) : 0.0;
+  };
+  const Figures heights = FiguresOf("@-5,3;\nQQ;\nPD1,0;PU2,0;");
+  EXPECT_EQ(value(heights, "programmed.zmin"), -5.0);
+  EXPECT_EQ(value(heights, "programmed.zmax"), 3.0);
+  const Figures defaults = FiguresOf("@-5,3;\nDF;\nQQ;\nPD1,0;PU2,0;");
+  EXPECT_EQ(value(defaults, "programmed.zmin"), 0.0);
+  EXPECT_EQ(value(defaults, "programmed.zmax"), 0.0);
+  const Figures groups = FiguresOf("!ZE X9000;\nQQ;\n!ZE Y700;\nQQ;\n");
+  EXPECT_EQ(value(groups, "programmed.xmax"), 9000.0);
+  EXPECT_EQ(value(groups, "programmed.ymax"), 700.0);
+  EXPECT_EQ(groups.at("programmed.other"), 2.0);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "engine/machine/step_entry.h"
 #include "engine/rml1/rml1_family.h"
 #include "tests/engine/rml1/run_support.h"
 
@@ -537,6 +538,29 @@ TEST(RunControl, StartAtTheInstantOfAHalt) {
               {{.at = halted->state().time, .kind = InputKind::kStart}});
   EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
   EXPECT_EQ(run.seen().moves().size(), halted.seen().moves().size() + 1);
+}
+
+// A dry run up to no step is none, and so a mill can carry it out; a run begins at a command from 1
+// on, that of its own stream, and for the first time.
+TEST(MillRunControl, StepsThatAreNone) {
+  machine::RunObserver observer;
+  machine::RunSetup dry = SetupOf(ParametersOf("t1"), "PU;");
+  dry.simul = machine::ProgramStep{.program = 1, .step = 0};
+  EXPECT_TRUE(Rml1Family().NewRun(dry, observer));
+  TestRun run(ParametersOf("t1"), "PU1,1;PU2,2;");
+  machine::EnterableRun* const entry = run->enterable();
+  ASSERT_NE(entry, nullptr);
+  const auto refused = [&](int program, int step, std::uint64_t occurrence) {
+    const Status halts =
+        entry->HaltBefore({.at = {.program = program, .step = step}, .occurrence = occurrence});
+    if (halts) return false;
+    EXPECT_EQ(halts.error().code, ErrorCode::kCellStepUnreachable);
+    return true;
+  };
+  EXPECT_TRUE(refused(1, 0, 1));
+  EXPECT_TRUE(refused(2, 1, 1));
+  EXPECT_TRUE(refused(1, 1, 2));
+  EXPECT_FALSE(refused(1, 1, 1));
 }
 
 }  // namespace

@@ -190,5 +190,11 @@ TEST(StepGuess, LiftsThatAreLow) {
   EXPECT_EQ(GuessStep({}, travel, low, 100.0).lift_mm, 0.0);  // nothing was cut
 }
 
+// Work that goes no deeper than the surface has no depth.
+TEST(WorkFit, WithoutDepthItIsNone) {
+  const WorkExtent flat{From(0, 100), From(0, 100), From(0, 0)};
+  EXPECT_EQ(FitOf(flat, {}, {}, kTravel, 0.0, kUnits).z.length, 0.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/core/catalogue.h"
+#include "engine/optimo/editing/allowance.h"
 #include "engine/optimo/editing/rule_facts.h"
 #include "engine/optimo/editing/variable_facts.h"
 #include "engine/optimo/editing/word_facts.h"
@@ -192,6 +193,30 @@ TEST(Facts, VariablesSayWhatTheyAreKeptFor) {
   EXPECT_NE(VariableFacts({kVr, 5}).find("lengths"), std::string::npos);
   EXPECT_NE(VariableFacts({kVr, 3}).find("angles"), std::string::npos);
   EXPECT_EQ(VariableFacts({kVr, 26}).find("CONVERT"), std::string::npos);
+}
+
+// OPT-7.60: the last of a group is 99; nothing is kept in what is beyond.
+TEST(Facts, NothingIsKeptBeyondTheLastVariable) {
+  using enum VariableGroup;
+  for (const VariableGroup group : {kVr, kVi, kVl, kIl, kOl, kIa, kOa})
+    EXPECT_EQ(VariableNote({group, 100}), "") << static_cast<int>(group);
+}
+
+// A directive silences warnings and advice of the Optimo, of a place in the text, and no directive.
+TEST(Allowance, IsForWarningsOfAPlace) {
+  constexpr std::string_view kText = "VR[98] = 1. \n; x\n";
+  const auto allowed = [&](ErrorCode code, Severity severity, std::int64_t at) {
+    Diagnostic finding{.code = code, .severity = severity};
+    finding.where.byte_offset = at;
+    return Allowance(kText, finding);
+  };
+  const Fix directive{11, 0, "  ; rmlcell: allow 7413"};
+  EXPECT_EQ(allowed(ErrorCode::kReservedVariable, Severity::kWarning, 0), directive);
+  EXPECT_EQ(allowed(ErrorCode::kReservedVariable, Severity::kAdvice, 5), directive);
+  EXPECT_EQ(allowed(ErrorCode::kReservedVariable, Severity::kCompile, 0), std::nullopt);
+  EXPECT_EQ(allowed(ErrorCode::kCellTooLarge, Severity::kWarning, 0), std::nullopt);
+  EXPECT_EQ(allowed(ErrorCode::kReservedVariable, Severity::kWarning, -1), std::nullopt);
+  EXPECT_EQ(allowed(ErrorCode::kReservedVariable, Severity::kWarning, 13), std::nullopt);
 }
 
 }  // namespace

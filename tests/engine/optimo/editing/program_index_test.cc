@@ -199,5 +199,12 @@ TEST(ProgramIndex, NothingBehindTheEndOfTextCounts) {
   EXPECT_EQ(Dump("GOTO 10\n\x1AGOTO 20\n"), "jump 10; ");
 }
 
+// A parenthesis too many, as while something is written, opens and closes nothing: behind it the
+// list is that of the jump.
+TEST(ProgramIndex, AParenthesisTooManyLosesNothingBehindIt) {
+  EXPECT_EQ(Dump("GOTO VI[2]) (20, 30)"), "variable VI[2]; jump 20; jump 30; ");
+  EXPECT_EQ(Dump("MOVE (1,2,3,0,0))/TIME (2., 900)"), "jump 900; ");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::editing

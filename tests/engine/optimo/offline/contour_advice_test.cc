@@ -373,5 +373,28 @@ TEST(StartModes, WhatTheMachineStartsWithNeedsNoAdvice) {
   EXPECT_EQ(said(contour, absol), 0);
 }
 
+// OPT-2.19, OPT-2.21, OPT-2.62: an arc leaves the corner in its own direction: half a circle over
+// (150,50) begins along Y, so that its corner turns by 90 degrees, where a line to the same point
+// goes straight on. Of an arc through a point that is no number nothing is known.
+TEST(ContourAdvice, ArcsTurnAsTheyBegin) {
+  const auto told = [](const std::string& second) {
+    return FindingsWith(
+        "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\n"
+        "MOVE (100,0,0,0,0)/FLY\n" +
+            second + "\nWORK 0,0/OFF\n",
+        ErrorCode::kFlySharp);
+  };
+  const auto over = told("PATH CIR\nMOVE (200,0,0,0,0)/VIA (150,50,0,0,0)");
+  ASSERT_EQ(over.size(), 1U);
+  EXPECT_EQ(over[0].line, 6);
+  EXPECT_TRUE(over[0].detail.starts_with("the contour turns by 90.0 degrees; ")) << over[0].detail;
+  // In PATH LIN the via point leads nowhere, and without one CIR is a line.
+  EXPECT_TRUE(told("MOVE (200,0,0,0,0)/VIA (150,50,0,0,0)").empty());
+  EXPECT_TRUE(told("PATH CIR\nMOVE (200,0,0,0,0)").empty());
+  for (const std::string via : {"VR[1],50,0", "150,VR[1],0", "150,50,VR[1]"}) {
+    EXPECT_TRUE(told("PATH CIR\nMOVE (200,0,0,0,0)/VIA (" + via + ",0,0)").empty()) << via;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

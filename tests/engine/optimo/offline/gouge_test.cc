@@ -297,5 +297,62 @@ TEST(Gouge, WhatIsNotLookedAtIsSaid) {
   EXPECT_LT(said.step, 30'005);
 }
 
+// gouge.h: what lies within two radii of a pierce point on an edge is left out, and no more: in a
+// slot of 3.5 by 1.5 mm the beam of radius 1 is further than 2 mm from (0,0) at its end, where both
+// long moves come within 0.5 mm of the other side.
+TEST(Gouge, TwoRadiiAroundAPierceOnAnEdgeAreLeftOut) {
+  const std::vector<int> steps =
+      GougedSteps(Cut(kLeft, {Pose(0, 0), Pose(3.5, 0), Pose(3.5, 1.5), Pose(0, 1.5)}));
+  EXPECT_NE(std::find(steps.begin(), steps.end(), 5), steps.end());
+  EXPECT_NE(std::find(steps.begin(), steps.end(), 7), steps.end());
+}
+
+// gouge.h: a tab is 2 mm wide at most. What ends 1.99 mm before the point where it began has come
+// back, and the way in lies in the scrap; at 2.01 mm the way in is an edge, and a beam of
+// radius 3.5 comes as near to it.
+TEST(Gouge, ATabIsTwoMillimetresAtMost) {
+  const auto with_tab = [](double mm) {
+    return GougedSteps(
+        Cut(";$rad=3.5\n;$left\n", {Pose(10, 12), Pose(10, 0), Pose(20, 0), Pose(20, 20),
+                                    Pose(0, 20), Pose(0, 0), Pose(10.0 - mm, 0)}));
+  };
+  EXPECT_EQ(with_tab(1.99), kNone);
+  EXPECT_NE(with_tab(2.01), kNone);
+}
+
+// OPT-7.30, OPT-8.15, OPT-8.23: a system that is turned about X has the head along its Y. The slot
+// lies in X and Z, and the head stands: 0.003 mm are left to rounding, and not 2 % of the radius.
+TEST(Gouge, AHeadThatStandsInATurnedSystem) {
+  const auto way_back = [](const std::string& width) {
+    const std::vector<int> steps = GougedSteps(
+        ";$rad=1\n;$right\nCOORD ABSOL\nPATH LIN\nMOVE (0,0,0,0,0)\n"
+        "SYSDEF (0,0,0,0,0,1.5707963268)\nWORK 0,0/ON\nMOVE (10,0,0,0,0)\nMOVE (10,0," +
+        width + ",0,0)\nMOVE (0,0," + width + ",0,0)\nWORK 0,0/OFF\n");
+    return std::find(steps.begin(), steps.end(), 8) != steps.end();
+  };
+  EXPECT_TRUE(way_back("1.985"));
+  EXPECT_FALSE(way_back("1.998"));
+}
+
+// A million pieces are looked at, of the contour and of the path together, so 500,001 lines of
+// each; the next one is told.
+TEST(Gouge, AMillionPiecesAreLookedAt) {
+  constexpr std::size_t kLooked = 500'001;
+  std::vector<Leg> legs(kLooked + 1);
+  for (std::size_t k = 0; k < legs.size(); ++k) {
+    const double x = static_cast<double>(k);
+    legs[k].from = {x, 0, 0};
+    legs[k].to = {x + 1.0, 0, 0};
+    legs[k].tool_from = legs[k].tool_to = legs[k].tool_via = {0, 0, 1};
+    Prepare(legs[k]);
+  }
+  std::size_t failed = 0;
+  const auto moved = OffsetChain(legs, 0.1, failed);
+  ASSERT_TRUE(moved);
+  const GougeSearch search = FindGouges(legs, *moved, 0.1);
+  EXPECT_TRUE(search.found.empty());
+  EXPECT_EQ(search.unchecked_from, kLooked);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

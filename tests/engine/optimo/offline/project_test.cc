@@ -483,5 +483,45 @@ TEST_F(Project, WhatCouldNotBeConvertedIsTold) {
       told, [](const std::string& text) { return text.starts_with("46 46.SI:1 "); }));
 }
 
+// OPT-3.10: WORK 0,0 alone needs no WORKDEF, 0,1 does.
+TEST_F(Project, OfTheFirstKindOneProcessNeedsNoDefinition) {
+  Add(45, "WORK 0,1/ON\nWORK 0,1/OFF\n");
+  const machine::TransferPlan plan = Plan();
+  EXPECT_FALSE(plan.ok);
+  const auto said = [](const Diagnostic& d) {
+    return d.detail == "WORK 0,1 has neither a WORKDEF nor a process definition of the project";
+  };
+  EXPECT_EQ(std::ranges::count_if(plan.diagnostics, said), 1);
+}
+
+// OPT-B.71, OPT-8.71: an object that is damaged stops the transfer, and is told of its program.
+TEST_F(Project, DamagedObjectsAreNone) {
+  const std::string object = MustCompile("SPEED 6\n").object;
+  const std::string damaged = object.substr(0, object.size() - 1);
+  Add(45, "SPEED 5\n");
+  bundle_.programs.push_back({48, {"48.O", damaged}, false});
+  const machine::TransferPlan plan = Plan();
+  EXPECT_FALSE(plan.ok);
+  EXPECT_TRUE(plan.programs.empty());
+  ASSERT_EQ(plan.diagnostics.size(), 1U);
+  EXPECT_EQ(plan.diagnostics[0].code, ErrorCode::kObjectCorrupt);
+  EXPECT_EQ(plan.diagnostics[0].rule, "OPT-B.71");
+  EXPECT_EQ(plan.diagnostics[0].program, 48);
+}
+
+// Of a program that has more errors than are told, the rest are counted, as those of that program.
+TEST_F(Project, ErrorsThatHaveNoRoomAreCounted) {
+  std::string text;
+  for (int n = 0; n < 1100; ++n) text += "SPEED 101\n";
+  Add(45, text);
+  const machine::TransferPlan plan = Plan();
+  EXPECT_FALSE(plan.ok);
+  EXPECT_EQ(plan.diagnostics.size() + plan.diagnostics_dropped.count(), 1100U);
+  const auto& kinds = plan.diagnostics_dropped.kinds();
+  ASSERT_TRUE(kinds.contains(ErrorCode::kLiteralRange));
+  EXPECT_EQ(kinds.at(ErrorCode::kLiteralRange).first.program, 45);
+  EXPECT_EQ(kinds.at(ErrorCode::kLiteralRange).last.program, 45);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/optimo/offline/house_programs.h"
 #include "tests/engine/optimo/language/compile_text.h"
 
 namespace rmlcell::optimo {
@@ -136,6 +137,24 @@ TEST(Translate, NumbersUpToSevenAreReserved) {
   EXPECT_TRUE(CheckProgramNumber(0, "").empty());
   EXPECT_TRUE(CheckProgramNumber(8, "").empty());
   EXPECT_TRUE(CheckProgramNumber(99, "").empty());
+}
+
+// OPT-10.12, OPT-B.82 to OPT-B.84, OPT-10.17: the product's own programs stand in 1, 2, 4 and 90,
+// and are no intrusion there, to the byte; nor is each in the place of another one.
+TEST(Translate, TheOwnProgramsMayHaveReservedNumbers) {
+  std::vector<int> slots;
+  for (const machine::SpecialProgram& program : HousePrograms()) {
+    slots.push_back(program.slot);
+    const std::string source(program.source);
+    EXPECT_EQ(program.file_name, std::to_string(program.slot) + ".S");
+    EXPECT_TRUE(IsHouseProgram(program.slot, source)) << program.slot;
+    EXPECT_TRUE(CheckProgramNumber(program.slot, source).empty()) << program.slot;
+    EXPECT_FALSE(IsHouseProgram(program.slot, source + " ")) << program.slot;
+    EXPECT_EQ(CheckProgramNumber(program.slot, source + " ").empty(), program.slot == 90);
+    EXPECT_EQ(CheckProgramNumber(5, source).size(), 1U) << program.slot;
+    EXPECT_TRUE(TranslateOptimo({std::string(program.file_name), source}, {}).ok) << program.slot;
+  }
+  EXPECT_EQ(slots, (std::vector<int>{1, 2, 4, 90}));
 }
 
 }  // namespace

@@ -188,5 +188,35 @@ TEST(PngBounds, TheResolutionThatIsGiven) {
   EXPECT_EQ(none.error().code, ErrorCode::kRml1PictureSize);
 }
 
+// The size of a picture has two decimals; what is not about the travel is told as it was found.
+TEST(BoardBounds, InTermsOfThePicture) {
+  BoardLines board;
+  board.width_mm = 12.3456;
+  board.height_mm = 6.7891;
+  const Error told =
+      InTermsOfPicture({ErrorCode::kRml1WorkBeyondTravel, "2 mm would not be cut", {}}, board);
+  EXPECT_EQ(told.code, ErrorCode::kRml1PictureBeyondTravel);
+  EXPECT_EQ(told.detail, "the picture is 12.35 by 6.79 mm: 2 mm would not be cut");
+  const Error other = InTermsOfPicture({ErrorCode::kRml1PartRefused, "1 is refused", {}}, board);
+  EXPECT_EQ(other.code, ErrorCode::kRml1PartRefused);
+  EXPECT_EQ(other.detail, "1 is refused");
+}
+
+// A chunk of another type says no size, even if it is as long; nor does one behind the image.
+TEST(PngBounds, ChunksThatSayNoSize) {
+  const std::string png = GrayPng(2, {0, 255});
+  const std::string tenth = WithChunk(png, "pHYs", Resolution(kTenToAMm, kTenToAMm, '\1'));
+  const auto text = ReadPng(WithChunk(tenth, "tEXt", std::string("a\0bcdefgh", 9)), false);
+  ASSERT_TRUE(text) << text.error().detail;
+  EXPECT_EQ(text->pixel_mm, 0.1);
+  constexpr std::size_t kChunk = 12 + 9;  // of pHYs, whole
+  constexpr std::size_t kEnd = 12;        // IEND, whole
+  std::string late = png;
+  late.insert(late.size() - kEnd, tenth.substr(33, kChunk));
+  const auto behind = ReadPng(late, false);
+  ASSERT_TRUE(behind) << behind.error().detail;
+  EXPECT_FALSE(behind->pixel_mm);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -443,5 +443,24 @@ TEST(ReadPng, Refuses) {
   EXPECT_TRUE(ReadPng(png, false, 16));
 }
 
+// Two boards of 3.6 mm, 4 mm apart, the right one with a hole: behind the hole the edge of its own
+// board is nearer than that of the left one, which stands at the origin and comes last.
+TEST(StreamOfBoard, EdgesBeginNearTheLastHole) {
+  const std::string left = std::string(18, '#') + std::string(20, '.');
+  std::vector<std::string> rows(20, left + std::string(18, '#'));
+  for (std::size_t y = 5; y < 15; ++y)
+    rows[y] = left + std::string(4, '#') + std::string(10, '.') + std::string(4, '#');
+  const auto parameters = Centred("srm-20");
+  const Profile profile = MakeProfile(parameters).value();
+  const auto made =
+      StreamOfBoard(Picture(rows), parameters, {.pixel_mm = 0.2, .tool_mm = 0.4, .outline = true});
+  ASSERT_TRUE(made) << made.error().detail;
+  EXPECT_EQ(made->loops, 3U);
+  Milled milled(profile);
+  StreamWalk(profile, milled).Run(made->stream);
+  EXPECT_GT(milled.ways.front().to.x, 7.6);
+  EXPECT_LT(milled.ways.back().to.x, 5.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

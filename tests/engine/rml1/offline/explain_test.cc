@@ -185,5 +185,43 @@ TEST(Explain, AJunkFileIsOnePhraseWithAFewFindings) {
   EXPECT_LE(phrases[0].findings.size(), 4U);
 }
 
+// Who is told may end it: at a command, and at bytes that are none, which are told when something
+// else follows them.
+TEST(Explain, TheConsumerMayEndIt) {
+  for (const std::string stream : {"PU;PD;PU;", "$;$;PU;PD;", "$;PU;PD;", "$"}) {
+    int told = 0;
+    EXPECT_TRUE(Explain(stream, ParametersOf("t1"), [&](const ExplainedPhrase&) {
+      ++told;
+      return false;
+    }));
+    EXPECT_EQ(told, 1) << stream;
+  }
+}
+
+// RML1-4.08, RML1-9.42: ESC.K and a torn name are no part of the command before them; the finding
+// is of the byte where the torn one begins.
+TEST(Explain, SequencesAndTornNamesBelongToNoCommand) {
+  const auto aborted = ExplainAll("PU1,2,3\x1b.K");
+  ASSERT_EQ(aborted.size(), 2U);
+  EXPECT_EQ(aborted[1].command, 0U);
+  EXPECT_EQ(aborted[1].name, "");
+  const auto torn = ExplainAll("PU;\nP");
+  ASSERT_EQ(torn.size(), 2U);
+  EXPECT_EQ(torn[1].command, 0U);
+  ASSERT_EQ(torn[1].findings.size(), 1U);
+  EXPECT_EQ(torn[1].findings[0].where,
+            (SourceSpan{.line = 2, .column = 1, .length = 1, .byte_offset = 4}));
+}
+
+// !ZM and groups of axes are motions, too, where they lead nowhere else; a tool that stays behind
+// by a half of a unit stays behind. 90 degrees at 60 deg/s in 10 mm are 6.667 mm/s (RML1-3D.29).
+TEST(Explain, MotionsThatAreNoneAndPartsOfUnits) {
+  EXPECT_EQ(Words("!ZM0;!ZE X0;"),
+            (std::vector<std::string>{"the tool does not move", "the tool does not move"}));
+  EXPECT_TRUE(Words("!MC0;Z20000.5,0,0;")[1].ends_with(
+      "beyond the travel: the commands lead to X 200.005 Y 0 Z 0, the tool does not follow"));
+  EXPECT_EQ(Words("!MC0;V60;!ZE X1000A90;", "t1a")[2], "go to X 10 A 90 degrees at 6.667 mm/s");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

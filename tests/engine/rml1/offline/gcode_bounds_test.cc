@@ -345,5 +345,15 @@ TEST(GcodeBounds, Places) {
   EXPECT_EQ(where.byte_offset, 1'000'005);
 }
 
+// P belongs to G4 and G64, H to G43, and to no other G word of the line. A number is told with six
+// decimals.
+TEST(GcodeBounds, WordsThatBelongToOthers) {
+  EXPECT_EQ(RefusedWith("G1 X1 P1 F60\n"), ErrorCode::kRml1GcodeWord);
+  EXPECT_EQ(RefusedWith("G1 X1 H1 F60\n"), ErrorCode::kRml1GcodeWord);
+  EXPECT_EQ(DetailOf("G1 X1 P1 F60\n"), "P1 without G4");
+  EXPECT_EQ(DetailOf("G1 X1 H1 F60\n"), "H1 without G43");
+  EXPECT_EQ(DetailOf("G1 X1 I0.1234567 F60\n"), "I0.123457 without G2 or G3");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -558,5 +558,63 @@ TEST(GcodeRoundTrip, TheToolGoesTheSameWayOverTheCorpus) {
   EXPECT_EQ(programs, 25);
 }
 
+// The MDX-40A: 50 mm/s in X and Y, 30 with Z. Behind a two-axis cut the tool stands at its end,
+// from where it comes back; speed and heights that hold already are not said again, and what comes
+// back to the place where the tool stands is no motion. RML1-3A.07: below the travel there is no
+// tool-down height, so the three-axis command leads there.
+TEST(FromGcode, TwoAxisMotionsBehindEachOther) {
+  EXPECT_EQ(Body("G1 Z-1 F600\nG1 X5 F2400\nG1 X0\n", "mdx-40a"),
+            "!VZ10;\nZ0,0,-100;\nVS40;\n!PZ-100,0;\nPD500,0;\nPD0,0;\n");
+  EXPECT_EQ(Body("G0 Z1\nG0 X1\nG0 X0\n"), "!VZ60;\nZ0,0,100;\n!PZ0,100;\nPU100,0;\nPU0,0;\n");
+  EXPECT_EQ(Body("G1 Z-85.01 F600\nX5 F2400\n", "mdx-40a"),
+            "!VZ10;\nZ0,0,-8501;\n!VZ30;\nZ500,0,-8501;\n");
+  EXPECT_EQ(Body("G1 Z0 F600\nG1 X0\nG1 X1\n"), "!VZ10;\nZ0,0,0;\nZ100,0,0;\n");
+}
+
+// RML1-3A.57: a wait stands before the two-axis cut, too, and before no other one.
+TEST(FromGcode, WaitsBeforeTwoAxisCuts) {
+  EXPECT_EQ(Body("G1 Z-1 F600\nG4 P0.5\nG1 X5 F2400\nG1 X6\n", "mdx-40a"),
+            "!VZ10;\nZ0,0,-100;\nVS40;\n!PZ-100,0;\n!DW500;\nPD500,0;\n!DW0;\nPD600,0;\n");
+}
+
+// What kind of finding a speed is that the machine has not, or that is set by hand; a speed that is
+// set already is not said again. RML1-9.31: 5 of 15 stages from 4500 to 15000 rpm are 8000.
+TEST(FromGcode, SpeedsOfTheSpindleAndTheirFindings) {
+  const StreamOfGcode rounded = From("G1 Z0 F100\nS700\n");
+  ASSERT_EQ(rounded.findings.size(), 2U);
+  for (const Diagnostic& finding : rounded.findings)
+    EXPECT_EQ(finding.code, ErrorCode::kRml1SpeedRounded) << finding.detail;
+  const StreamOfGcode by_hand = From("S8100\n", "t1f");
+  ASSERT_EQ(by_hand.findings.size(), 1U);
+  EXPECT_EQ(by_hand.findings[0].code, ErrorCode::kRml1GcodeIgnored);
+  EXPECT_EQ(by_hand.findings[0].detail, "S, the spindle speed of this machine is set by hand");
+  const StreamOfGcode staged = From("S8100\n", "t1s");
+  ASSERT_EQ(staged.findings.size(), 1U);
+  EXPECT_EQ(staged.findings[0].detail, "S8100 becomes 8000 rpm");
+  EXPECT_EQ(Body("S6600\nS6600 M3\nS6600\n"), "!RC6600;\n!MC1;\n!MC0;\n");
+}
+
+// A spindle that turns gets another speed and goes on turning.
+TEST(ToGcode, TheSpindleChangesItsSpeed) {
+  EXPECT_NE(ToText("!MC1;Z0,0,0;!RC15;Z1,0,0;!MC0;")
+                .find("S4500 M3\nG1 Z0 F120\nS15000\nG1 X0.01 Y0\nM5\nM30\n"),
+            std::string::npos)
+      << ToText("!MC1;Z0,0,0;!RC15;Z1,0,0;!MC0;");
+}
+
+// Whatever is cut at the speed of the machine, it is told once.
+TEST(ToGcode, AFeedThatNobodyGaveIsToldOnce) {
+  const Result<GcodeText> made =
+      ToGcode("!MC0;!PZ-50,200;PU0,0;PD500,0;PD900,0;PU0,0;", ParametersOf("t1"));
+  ASSERT_TRUE(made);
+  ASSERT_EQ(made->findings.size(), 1U);
+  EXPECT_EQ(made->findings[0].code, ErrorCode::kRml1FeedNotGiven);
+}
+
+// Places have five decimals at most: 100.0064 units are 1.000064 mm.
+TEST(ToGcode, PlacesHaveFiveDecimals) {
+  EXPECT_NE(ToText("!MC0;Z100.0064,0,0;").find("\nG1 X1.00006 Y0 Z0 "), std::string::npos);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

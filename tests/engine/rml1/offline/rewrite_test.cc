@@ -457,5 +457,32 @@ TEST(TileStream, Refuses) {
   EXPECT_EQ(code(kPart, {.columns = 9, .bytes_max = 400}), ErrorCode::kRml1ProductTooLarge);
 }
 
+// RML1-3C.25, RML1-3C.37: a relative !ZM leads from where the tool is, which has been moved
+// already, and one without a number leads nowhere: neither owes a way. IN leads to a height of the
+// machine, so that what counts from there has the way in Z before it. T1: the surface is 20 mm
+// below the top, IN leads to 5 mm above it.
+TEST(MoveStream, WhatOwesAWayInZ) {
+  EXPECT_EQ(Moved("PR;Z0,0,-2010;!ZM-5;Z0,0,-5;", 0, 0, -0.5),
+            "PR;!ZZ0,0,-50;Z0,0,-2010;!ZM-5;Z0,0,-5;");
+  EXPECT_EQ(Moved("Z1,1,5;!ZM;PR;Z0,0,-10;", 0, 0, -0.5), "Z1,1,-45;!ZM;PR;Z0,0,-10;");
+  EXPECT_EQ(Moved("Z1,1,5;!ZM-1500;PR;Z0,0,-510;", 0, 0, -0.5),
+            "Z1,1,-45;!ZM-1500;PR;!ZZ0,0,-50;Z0,0,-510;");
+  EXPECT_EQ(Moved("Z1,1,5;IN;PR;Z0,0,-510;", 0, 0, -0.5), "Z1,1,-45;IN;PR;!ZZ0,0,-50;Z0,0,-510;");
+}
+
+// Six decimals are written: less is no part of a 4-byte value there.
+TEST(MoveStream, NumbersHaveSixDecimals) {
+  EXPECT_EQ(Moved("Z0.1234567,0,0;", 1, 0), "Z100.123457,0,0;");
+}
+
+// 3 units are 7.5: what rounding took is made good by a relative !ZM and !ZO as by a set, over DF,
+// which moves nothing. IN leads to a height of the machine, which is not rounded.
+TEST(ScaleStream, RelativeHeightsOfTheMachineMakeGoodTheRounding) {
+  EXPECT_EQ(Scaled("PR;Z0,0,-3;!ZM-3;", 40, 100), "PR;Z0,0,-8;!ZM-7;");
+  EXPECT_EQ(Scaled("PR;Z0,0,-3;!ZO-3;", 40, 100), "PR;Z0,0,-8;!ZO-7;");
+  EXPECT_EQ(Scaled("PR;Z3,0,0;DF;^PR;Z3,0,0;", 40, 100), "PR;Z8,0,0;DF;^PR;Z7,0,0;");
+  EXPECT_EQ(Scaled("!PZ-3,3;PD;IN;^PR;Z0,0,-3;", 40, 100), "!PZ-8,8;PD;IN;^PR;Z0,0,-8;");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -160,5 +160,15 @@ TEST(CompareStreams, Refuses) {
   EXPECT_EQ(none.error().code, ErrorCode::kRml1NoProgram);
 }
 
+// Values have five decimals at most: 100.0064 units are 1.000064 mm.
+TEST(CompareStreams, ValuesHaveFiveDecimals) {
+  const auto diff = Diff("!MC0;Z100,0,0;", "!MC0;Z100.0064,0,0;");
+  ASSERT_EQ(diff.steps.size(), 1U);
+  EXPECT_EQ(diff.steps[0].what, (std::vector<std::string>{"X 1 -> 1.00006"}));
+  const auto back = Diff("!MC0;Z100.0064,0,0;", "!MC0;Z100,0,0;");
+  ASSERT_EQ(back.steps.size(), 1U);
+  EXPECT_EQ(back.steps[0].what, (std::vector<std::string>{"X 1.00006 -> 1"}));
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

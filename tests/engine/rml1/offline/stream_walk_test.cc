@@ -146,5 +146,32 @@ TEST(StreamWalk, AListenerMayEndIt) {
   EXPECT_EQ(listener.told, 2);
 }
 
+// RML1-3A.31, RML1-3A.34: what was called and is no command closes the call, and so does the
+// command that is called: what comes behind begins at its own name.
+TEST(StreamWalk, ACallIsOverWithWhatItCalls) {
+  EXPECT_EQ(Walk("^QX;PU;").seen, (std::vector<Seen>{{Kind::kDiscarded, "^QX", {}, 0, 1, true},
+                                                     {Kind::kBare, "PU", {}, 1, 0, true}}));
+  EXPECT_EQ(Walk("^QX;$").seen, (std::vector<Seen>{{Kind::kDiscarded, "^QX", {}, 0, 1, true},
+                                                   {Kind::kDiscarded, "$", {}, 0, 1, true}}));
+  EXPECT_EQ(Walk("^PU;PD;").seen, (std::vector<Seen>{{Kind::kBare, "^PU", {}, 1, 0, true},
+                                                     {Kind::kBare, "PD", {}, 1, 0, true}}));
+}
+
+// The listener may end it wherever it is told something: at a sequence that is refused, and at
+// ESC.K.
+TEST(StreamWalk, AListenerMayEndItAtASequence) {
+  class One final : public PhraseListener {
+   public:
+    bool OnPhrase(const Phrase&) override { return ++told < 2; }
+    int told = 0;
+  };
+  const Profile profile = MakeProfile(ParametersOf("t1")).value();
+  for (const std::string stream : {"PU;\x1b.B;PD;PU;", "PU;\x1b.KPD;PU;", "PU;$PD;PU;"}) {
+    One listener;
+    EXPECT_FALSE(StreamWalk(profile, listener).Run(stream)) << stream;
+    EXPECT_EQ(listener.told, 2) << stream;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -193,5 +193,19 @@ TEST(TileBounds, BytesOfTheCopies) {
   EXPECT_TRUE(Tiled(kBox, options).starts_with("refused: more than "));
 }
 
+// A copy that is larger than the field does not fit; of a program that the travel cuts off nobody
+// knows how large it is. 12.3457 units are 0.123 mm.
+TEST(TileBounds, WhatDoesNotFitAtAll) {
+  const auto large = TileStream(kBox, ParametersOf("t1"), {.within_mm = {{1.99, 5.0}}});
+  ASSERT_FALSE(large);
+  EXPECT_EQ(large.error().code, ErrorCode::kRml1DoesNotFit);
+  const auto beyond =
+      TileStream("PU1000,100;PD20012.3456,100;PU;", ParametersOf("t1"), {.columns = 2});
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().code, ErrorCode::kRml1WorkBeyondTravel);
+  EXPECT_EQ(beyond.error().detail,
+            "of the program alone 0.123 mm would not be cut: how large a copy is cannot be told");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

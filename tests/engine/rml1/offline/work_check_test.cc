@@ -108,5 +108,12 @@ TEST(CheckWork, PartsThatTheMachineRefuses) {
   EXPECT_EQ(Checked("PU1,1;PD9;")->detail, "coordinates or tool heights that are refused: 1");
 }
 
+// Lengths are told to a thousandth of a millimetre: 12.3457 units are 0.123 mm.
+TEST(CheckWork, LengthsHaveThreeDecimals) {
+  EXPECT_EQ(Checked("PU1000,100;PD20012.3456,100;PU;")->detail,
+            "0.123 mm of the work would not be cut: 0.123 mm beyond the greatest X (200 mm); in X "
+            "it fits moved by -10 to -0.123 mm");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1
