@@ -396,6 +396,40 @@ class Refusals(unittest.TestCase):
             self.refused([(f"transform @a.S --{name} {values}", f"--{name}", f"'{values}' is no list of numbers")
                           for values in ("inf,0,0", "0,0,nan")])
 
+    # Up to both ends of each range; where no server answers the exit code is 3.
+    def test_ranges(self):
+        for line, good, wrong in (("submit m --slot {}", (1, 99), (0, 100)),
+                                  ("submit m --slot 1 --priority {}", (-100, 100), (-101, 101)),
+                                  ("submit m --slot 1 --pace {}", (0, 1000), (-0.5, 1000.5)),
+                                  ("move 17 --priority {}", (-100, 100), (-101, 101)),
+                                  ("jobs --limit {}", (1, 1000), (0, 1001)),
+                                  ("simulate @a.S --main {}", (), (0, 100))):
+            for number in good:
+                with self.subTest(line, number=number):
+                    done = self.run_here(line.format(number) + " --server 127.0.0.1:1")
+                    self.assertEqual(done.returncode, 3, done.stderr)
+            for number in wrong:
+                with self.subTest(line, number=number):
+                    done = self.run_here(line.format(number))
+                    self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+                    self.assertIn(f"Value {number} not in range", done.stderr)
+
+    def test_options_that_need_or_exclude_others(self):
+        for line, text in (("submit m", "give a FILE or --slot"), ("submit m --slot 1 --strict", "--strict requires --watch"),
+                           ("submit m --slot 1 --occurrence 2", "--occurrence requires --step"),
+                           ("submit m --slot 1 --off-until-work-on", "--off-until-work-on requires --step"),
+                           ("submit m --slot 1 --kind test", "'test' is none of simulate, check, run"),
+                           ("jobs --order sideways", "'sideways' is none of newest, oldest, queue"),
+                           ("get m 1 --form text", "'text' is none of source, object, executable, listing"),
+                           ("simulate @a.S --facts --json", "excludes"), ("check @a.S --dry-run", "--dry-run requires --fix")):
+            with self.subTest(line):
+                done = self.run_here(line)
+                self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+                self.assertIn(text, done.stderr)
+        # Each takes one word: what follows is the file.
+        self.accepted("simulate --slot 44=@b.S @a.S", "simulate --executable 1 @a.S", "simulate --samples 10 @s.csv @a.S",
+                      "simulate --plot speed @t.svg @a.S")
+
 
 class Sockets(unittest.TestCase):
     def test_a_socket_in_use_is_refused_and_one_left_behind_is_taken(self):
@@ -522,6 +556,66 @@ class Remote(unittest.TestCase):
                 gone = ask("projects", *words, server=at)
                 self.assertEqual(gone.returncode, 3)
                 self.assertIn("CELL-E9004", gone.stderr)
+
+    def test_a_job_that_is_held_is_shown_moved_and_cancelled(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "part.rml"
+            program.write_text(SQUARE)
+            at = self.cell.address
+
+            def submitted():
+                done = ask("submit", "--label", "order-1", "mill-1", program, "--hold", "--priority", 5, "--title", "mine",
+                           "--request-id", "held-and-moved", server=at)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                return done.stdout.strip()
+
+            def seen():
+                return json.loads(ask("job", job, "--json", server=at).stdout)
+
+            job = submitted()
+            self.assertEqual(submitted(), job)  # the same request gives the same job
+            self.assertEqual([seen()[name] for name in ("title", "labels", "priority", "held")], ["mine", ["order-1"], 5, True])
+            self.assertIn("waits     held\n", ask("job", job, server=at).stdout)
+            listed = ask("jobs", "--order", "queue", "--filter", "label = order-1", server=at).stdout.splitlines()
+            self.assertEqual([line.split()[0] for line in listed], ["JOB", job.split("/")[1]])
+            self.assertEqual(ask("move", job, "--priority", -7, server=at).stdout, f"{job} queued\n")
+            self.assertEqual(seen()["priority"], -7)
+            self.assertEqual(ask("cancel", job, server=at).returncode, 0)
+            self.assertEqual(seen()["state"], "STATE_CANCELLED")
+
+    def test_programs_are_listed_got_and_deleted(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder, at = pathlib.Path(name), self.cell.address
+            program = folder / "square.rml"
+            program.write_text(SQUARE)
+            self.assertIn("mill-1", ask("machines", server=at).stdout)
+            self.assertIn(" would be stored: ", ask("put", "mill-1", 41, program, "--check-only", server=at).stdout)
+            self.assertEqual(ask("get", "mill-1", 41, server=at).returncode, 3)
+            self.assertEqual(ask("put", "mill-1", 41, program, "--etag", "none", server=at).returncode, 0)
+            self.assertNotEqual(ask("put", "mill-1", 41, program, "--etag", "none", server=at).returncode, 0)
+            self.assertIn("\n41 ", ask("programs", "mill-1", server=at).stdout)
+            self.assertEqual(ask("get", "mill-1", 41, server=at).stdout, SQUARE)
+            self.assertEqual(ask("get", "mill-1", 41, "-o", folder / "got", server=at).stdout, "")
+            self.assertEqual((folder / "got").read_text(), SQUARE)
+            self.assertEqual(ask("stale", "optimo-1", server=at).stdout, "every executable is what a new link would give\n")
+            self.assertEqual(ask("delete", "mill-1", 41, server=at).returncode, 0)
+            self.assertEqual(ask("get", "mill-1", 41, server=at).returncode, 3)
+
+    def test_products_of_a_job_and_what_came_after_an_event(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder, at = pathlib.Path(name), self.cell.address
+            program = folder / "square.rml"
+            program.write_text(SQUARE)
+            job = ask("submit", "mill-1", program, "--watch", server=at).stdout.splitlines()[0]
+            products = [line.split()[1] for line in ask("job", job, server=at).stdout.splitlines() if line.startswith("product ")]
+            self.assertGreater(len(products), 0)
+            for product in products:
+                self.assertEqual(ask("artifact", job, product, "-o", folder / "got", server=at).returncode, 0)
+                self.assertGreater((folder / "got").stat().st_size, 0)
+            told = [json.loads(line) for line in ask("watch", job, "--json", server=at).stdout.splitlines()]
+            last = max(int(message["sequence"]) for message in told if "event" in message)
+            done = ask("watch", job, "--after", last, server=at)
+            self.assertEqual((done.returncode, done.stdout), (0, ""))
 
 
 if __name__ == "__main__":
