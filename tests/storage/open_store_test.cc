@@ -37,5 +37,13 @@ TEST(OpenStore, NoOther) {
   EXPECT_THAT(OpenStore({.url = "sqlite:cell.db"}).error().detail, HasSubstr("begins with /"));
 }
 
+// The path of the embedded store begins with /: any other is a wrong configuration.
+TEST(OpenStore, APathThatIsNotWhole) {
+  for (const std::string url : {"sqlite:", "sqlite:cell.db", "sqlite:./cell.db"})
+    EXPECT_EQ(CodeOf(CheckStoreUrl(url)), ErrorCode::kCellConfiguration) << url;
+  EXPECT_FALSE(CodeOf(CheckStoreUrl("sqlite:/cell.db")));
+  EXPECT_FALSE(CodeOf(CheckStoreUrl("")));
+}
+
 }  // namespace
 }  // namespace rmlcell::storage

@@ -5,6 +5,7 @@
 #include "storage/content.h"
 #include "storage/sqlite/housekeeping.h"
 #include "storage/sqlite/writer.h"
+#include "tests/storage/failing_statements.h"
 #include "tests/storage/sqlite_bed.h"
 
 namespace rmlcell::storage::sqlite {
@@ -199,6 +200,49 @@ TEST_F(SqliteSlices, AJobGoesWhole) {
   EXPECT_EQ(counters_.finished_jobs, 1);
   EXPECT_EQ(Must(connection_.tables.marks.Get(MarkTable::kPosition)), 2'103);
   EXPECT_EQ(Must(connection_.tables.marks.Get(MarkTable::kEventsGoneUntil)), 0);
+}
+
+// 9104: what is to be removed is not there.
+TEST_F(SqliteSlices, AJobThatIsNotThere) {
+  const auto removed = connection_.tables.jobs.Remove(7);
+  ASSERT_EQ(CodeOf(removed), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(removed.error().detail, "job 7 is not there");
+}
+
+class SqliteFailingSlices : public SqliteSlices {
+ protected:
+  // Before the file is opened: connections of before know nothing of it.
+  static void SetUpTestSuite() { failing_statements::Register(); }
+  ~SqliteFailingSlices() override { failing_statements::Heal(); }
+};
+
+// What a slice cannot read or remove ends it with the reason: it is tried again later.
+TEST_F(SqliteFailingSlices, EndWithTheFirstFailure) {
+  for (int job = 1; job <= 3; ++job) AddFinishedJob(job);
+  AddEvents(1, 20);
+  AddEvents(2, 20);
+  AddEvents(0, 30);
+  Must(connection_.database.Execute(
+      "INSERT INTO blob (id, sha256, size, refs, holds, content) VALUES (1, x'" +
+      HexOf(Sha256("1")) + "', 1, 1, 0, x'00'); INSERT INTO upload VALUES (1, 0)"));
+  const Counters before{.job = 3, .position = 70, .finished_jobs = 3, .record_events = 30};
+  const KeepLimits limits{.finished_jobs = 1, .events = 20, .record_events = 16};
+  for (int number = 0;; ++number) {
+    Must(connection_.database.Execute("BEGIN"));
+    counters_ = before;
+    failing_statements::Fail(failing_statements::Of::kWriter, number);
+    const auto slice = Slice(limits);
+    const std::string failed = failing_statements::Heal();
+    // SQLite may have ended the transaction itself.
+    static_cast<void>(connection_.database.Execute("ROLLBACK"));
+    if (failed.empty()) {
+      EXPECT_FALSE(CodeOf(slice));
+      EXPECT_GE(number, 8);
+      break;
+    }
+    EXPECT_EQ(CodeOf(slice), ErrorCode::kCellStoreFailed) << failed;
+    if (slice) break;
+  }
 }
 
 }  // namespace

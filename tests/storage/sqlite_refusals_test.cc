@@ -318,5 +318,25 @@ TEST_F(SqliteOwnWriter, AsManyBytesWaitAsMay) {
               testing::ElementsAre(refused, refused, std::nullopt, std::nullopt, std::nullopt));
 }
 
+// 9104: all bytes of a content are there, and it is another one than its name says.
+TEST(SqliteRefusals, AContentWithAnotherDigest) {
+  SqliteBed bed;
+  bed.LeaveUnchecked();
+  const std::string content = Noise(kChunkBytes + 1, 1);
+  Must(bed.store().SubmitAndWait(
+      {.kind = "CHECK", .attachments = {{.name = "large", .bytes = content}}}));
+  bed.Close();
+  const std::string other(64, 'a');
+  ExecuteIn(bed.path(), "UPDATE blob SET sha256 = x'" + other + "'");
+  bed.Reopen();
+  const auto reader = Must(bed.store().OpenBlob(other));
+  std::string read;
+  Result<std::string> part = reader->Next();
+  for (; part && !part->empty(); part = reader->Next()) read += *part;
+  EXPECT_TRUE(read == content);
+  ASSERT_EQ(CodeOf(part), kCorruptFile);
+  EXPECT_EQ(part.error().detail, "content " + other + " does not have its SHA-256");
+}
+
 }  // namespace
 }  // namespace rmlcell::storage::sqlite

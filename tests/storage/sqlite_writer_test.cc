@@ -504,5 +504,25 @@ TEST(SqliteStatement, TellsErrorsAndGoesOn) {
   EXPECT_EQ(CodeOf(insert.With(3, large).Run()), ErrorCode::kCellTooLarge);
 }
 
+// sqlite_store.h group_window: two that were answered together are enough, and the second of them
+// wakes the writer, which waits for an hour otherwise.
+TEST(SqliteWriter, TwoCallersThatWereAnsweredTogetherAreWaitedFor) {
+  SqliteOptions options;
+  options.group_window = std::chrono::hours(1);
+  SqliteBed bed(options);
+  Answers answers;
+  {
+    WriterHold hold(bed.store());
+    for (int i = 0; i < 2; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+    hold.Release();
+  }
+  answers.WaitFor(2);
+  bed.store().Submit({.kind = "CHECK"}, answers.Next());
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // the writer waits by then
+  EXPECT_EQ(answers.all, 2);
+  bed.store().Submit({.kind = "CHECK"}, answers.Next());
+  answers.WaitFor(4);
+}
+
 }  // namespace
 }  // namespace rmlcell::storage

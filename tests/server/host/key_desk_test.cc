@@ -225,5 +225,15 @@ TEST_F(LineSpeedTest, IsForgotten) {
   EXPECT_FALSE(IsSlow());
 }
 
+// LIVE-7.04: each of 64 that came behind a gap is known; of more nothing is noted, so that a client
+// that leaves gaps for ever costs no memory.
+TEST(KeyDeskTest, BehindAGapSoManyAreKnown) {
+  KeyDesk desk;
+  for (std::int64_t number = 66; number >= 3; --number) desk.Take(number, Answer(number));
+  for (const std::int64_t known : {3, 40, 66}) EXPECT_EQ(desk.Look(known, true), Turn::kAnswered);
+  desk.Take(2, Answer(2));
+  EXPECT_EQ(desk.Look(2, true), Turn::kActs);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -386,5 +386,100 @@ TEST_F(RecordedSessionTest, ZeroInAHold) {
             1);  // before it began
 }
 
+// LIVE-3.40: family and parameters are those of the head; an input is one that there is.
+TEST_F(RecordingTest, WhatIsNoRecordingOfAMachineIsRefused) {
+  RunWithAStop();
+  const Recording what = Recorded();
+  const auto refused = [](const Recording& wrong) {
+    const auto played = recording::Replay(wrong, {});
+    return played ? std::string("played")
+                  : CodeText(played.error().code) + " " + std::string(played.error().detail);
+  };
+  Recording wrong = what;
+  wrong.head.set_family("lathe");
+  EXPECT_EQ(refused(wrong), "CELL-E9008 lathe");
+  EXPECT_EQ(recording::MachineOf(wrong.head).error().code, ErrorCode::kCellUnknownFamily);
+  wrong = what;
+  wrong.head.set_profile("none");
+  EXPECT_THAT(refused(wrong), HasSubstr("no profile 'none'"));
+  wrong = what;
+  const auto is_start = [](const v1::JournalEntry& entry) {
+    return entry.applied().input().has_start();
+  };
+  v1::JournalEntry& start = *std::ranges::find_if(wrong.entries, is_start);
+  start.mutable_applied()->mutable_input()->mutable_start()->clear_source();
+  EXPECT_EQ(refused(wrong),
+            "CELL-E9024 entry " + std::to_string(start.sequence()) + ": a start without a source");
+}
+
+// LIVE-3.40: what acted then and is refused now, and what one side alone has.
+TEST_F(RecordingTest, WhatOneSideAloneHasIsFound) {
+  RunWithAStop();
+  const Recording what = Recorded();
+  const auto is_over = [](const v1::JournalEntry& entry) { return entry.has_run_over(); };
+  const auto is_event = [](const v1::JournalEntry& entry) { return entry.has_event(); };
+  Recording changed = what;
+  for (v1::JournalEntry& entry : changed.entries) {
+    if (entry.applied().input().has_override_percent())
+      entry.mutable_applied()->mutable_input()->set_override_percent(10'000.0);
+  }
+  Replayed played = Play(changed);
+  ASSERT_TRUE(played.difference);
+  EXPECT_EQ(played.difference->field, "applied");
+  EXPECT_THAT(played.difference->recorded, HasSubstr("overridePercent"));
+  EXPECT_THAT(played.difference->played, HasSubstr("CELL-E"));
+
+  // The end of its run was not recorded, or twice.
+  changed = what;
+  std::erase_if(changed.entries, is_over);
+  EXPECT_THAT(DifferenceIn(Play(changed)), HasSubstr("run_over: no end of a run is {"));
+  changed = what;
+  changed.entries.push_back(*std::ranges::find_if(what.entries, is_over));
+  played = Play(changed);
+  EXPECT_THAT(DifferenceIn(played), HasSubstr("} is no end of a run"));
+  EXPECT_EQ(played.difference->sequence, changed.entries.back().sequence());
+
+  // The same of what it told.
+  changed = what;
+  std::erase_if(changed.entries, is_event);
+  EXPECT_THAT(DifferenceIn(Play(changed)), HasSubstr("event: no event is {"));
+  changed = what;
+  changed.entries.push_back(*std::ranges::find_if(what.entries, is_event));
+  EXPECT_THAT(DifferenceIn(Play(changed)), HasSubstr("} is no event"));
+}
+
+// replay.h ReplayOptions: who is told what, and when; who has what he wanted is told no more.
+TEST_F(RecordingTest, WhoPlaysItIsToldWhereItStands) {
+  RunWithAStop();
+  const Recording what = Recorded();
+  std::vector<std::string> told;
+  SimTime stands{0};
+  recording::ReplayOptions options{
+      .begun = [&](const machine::Run&) { told.emplace_back("begun"); },
+      .over = [&](const machine::RunOver&) { told.emplace_back("over"); },
+      .stands =
+          [&](const machine::Machine& machine) {
+            told.emplace_back("stands");
+            stands = machine.time();
+          }};
+  ASSERT_TRUE(recording::Replay(what, options));
+  EXPECT_THAT(told, testing::ElementsAre("begun", "over", "stands"));
+  EXPECT_EQ(stands, SimTime(what.entries.back().virtual_time_ns()));
+  told.clear();
+  options.to = SimTime(3s);
+  ASSERT_TRUE(recording::Replay(what, options));
+  EXPECT_THAT(told, testing::ElementsAre("begun", "stands"));
+  EXPECT_EQ(stands, SimTime(3s));
+  told.clear();
+  options.to = SimTime::max();
+  options.goes_on = [](SimTime time) { return time < SimTime(3s); };
+  const auto part = recording::Replay(what, options);
+  ASSERT_TRUE(part);
+  EXPECT_THAT(told, testing::ElementsAre("begun"));
+  EXPECT_FALSE(part->difference);
+  EXPECT_EQ(part->inputs, 1);
+  EXPECT_LT(part->until, SimTime(what.entries.back().virtual_time_ns()));
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <future>
 
 #include "engine/core/number_text.h"
 #include "engine/families/families.h"
@@ -433,6 +434,122 @@ TEST_F(JobBookTest, AProductThatIsNotThereSaysWhy) {
   EXPECT_EQ(CodeOf(book.ReadArtifact(job + 1, "report")), ErrorCode::kCellNotFound);
   EXPECT_EQ(CodeOf(book.Get(JobName(job + 1))), ErrorCode::kCellNotFound);
   EXPECT_EQ(CodeOf(book.Get("jobs/x")), ErrorCode::kCellInvalidArgument);
+}
+
+// LIVE-5.10: what is decided of a job that was cut off, and why.
+TEST_F(JobBookTest, ADecisionSaysWhatAndWhy) {
+  using Request = v1::DecideInterruptedRequest;
+  v1::SubmitJobRequest submitted = Simulate();
+  submitted.mutable_job()->set_kind(v1::JOB_KIND_RUN);
+  const v1::Job job = Must(Submit(submitted));
+  Request request;
+  request.set_name(job.name());
+  request.set_reason("it burnt");
+  const auto refused = [&] { return CodeOf(book.MachineToDecide(request)); };
+  EXPECT_EQ(refused(), ErrorCode::kCellInvalidArgument);  // nothing is decided
+  request.set_decision(Request::DECISION_RESTART);
+  EXPECT_EQ(refused(), ErrorCode::kCellPrecondition);  // it was not cut off
+  Must(bed.store().Finish(bed.Lease("RUN"), {.outcome = {.state = JobState::kInterrupted}}));
+  EXPECT_EQ(Must(book.MachineToDecide(request)), "optimo-1");
+  request.set_decision(Request::DECISION_ABANDON);
+  EXPECT_EQ(Must(book.MachineToDecide(request)), "optimo-1");
+  request.set_decision(Request::DECISION_RESUME_AT_STEP);
+  EXPECT_EQ(refused(), ErrorCode::kCellInvalidArgument);  // no preview says where
+  request.set_preview_token("a token");
+  request.set_reason(std::string(200, 'x'));
+  EXPECT_EQ(Must(book.MachineToDecide(request)), "optimo-1");
+  for (const std::size_t size : {0U, 201U}) {
+    request.set_reason(std::string(size, 'x'));
+    EXPECT_EQ(refused(), ErrorCode::kCellInvalidArgument) << size;
+  }
+  request.set_reason("it burnt");
+  request.set_name("7");
+  EXPECT_EQ(refused(), ErrorCode::kCellInvalidArgument);
+  request.set_name("jobs/99");
+  EXPECT_EQ(refused(), ErrorCode::kCellNotFound);
+}
+
+// LIVE-5.10: the same job once more, under another number; where it goes on a preview has said.
+TEST_F(JobBookTest, AJobIsHandedInAgain) {
+  v1::SubmitJobRequest request = Simulate("DELAY 1\nDELAY 2\n");
+  v1::Job& asked = *request.mutable_job();
+  asked.set_kind(v1::JOB_KIND_RUN);
+  asked.set_title("lid");
+  asked.add_labels("order-1");
+  asked.set_priority(3);
+  asked.set_inline_slot(7);
+  asked.mutable_run()->mutable_step()->set_step(2);
+  asked.mutable_run()->set_occurrence(1);
+  asked.mutable_run()->add_confirmations(v1::CONFIRMATION_TOOL);
+  asked.mutable_run()->set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);
+  const v1::Job first = Must(Submit(request));
+  const auto again = [&](const std::string& name, const std::string& id, bool continues) {
+    std::promise<Result<v1::Job>> answer;
+    book.Again(name, "bert", id, continues,
+               [&](Result<v1::Job> job) { answer.set_value(std::move(job)); });
+    return answer.get_future().get();
+  };
+  const v1::Job anew = Must(again(first.name(), "r", false));
+  EXPECT_NE(anew.name(), first.name());
+  EXPECT_EQ(anew.caller(), "bert");
+  EXPECT_EQ(anew.kind(), v1::JOB_KIND_RUN);
+  EXPECT_EQ(anew.machine(), "machines/optimo-1");
+  EXPECT_EQ(anew.title(), "lid");
+  EXPECT_THAT(anew.labels(), testing::ElementsAre("order-1"));
+  EXPECT_EQ(anew.priority(), 3);
+  EXPECT_EQ(anew.inline_slot(), 7);
+  EXPECT_EQ(anew.inline_program().file_name(), "part.S");
+  EXPECT_EQ(anew.continues(), "");
+  EXPECT_EQ(anew.run().SerializeAsString(), asked.run().SerializeAsString());
+  EXPECT_EQ(Must(bed.store().ReadArtifact(Number(anew), kMainAttachment)), "DELAY 1\nDELAY 2\n");
+  EXPECT_EQ(Must(again(first.name(), "r", false)).name(), anew.name());
+  const v1::Job continued = Must(again(first.name(), "s", true));
+  EXPECT_EQ(continued.continues(), first.name());
+  EXPECT_FALSE(continued.run().has_step());
+  EXPECT_EQ(continued.run().confirmations_size(), 0);
+  EXPECT_EQ(continued.run().occurrence(), 0);
+  EXPECT_EQ(continued.run().on_loss(), v1::ControlLease::ON_LOSS_GO_ON);
+  EXPECT_EQ(CodeOf(again("7", "t", false)), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(again("jobs/99", "t", false)), ErrorCode::kCellNotFound);
+}
+
+TEST_F(JobBookTest, JobsAreCountedByTheirState) {
+  for (int i = 0; i < 3; ++i) Must(Submit(Simulate()));
+  const auto leased = Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
+  Must(bed.store().Finish(leased->lease, {.outcome = {.state = JobState::kFailed}}));
+  const auto counted = [&](const storage::JobQuery& query) {
+    std::vector<std::string> told;
+    for (const v1::JobCount& count : Must(book.Count(query)))
+      told.push_back(v1::Job::State_Name(count.state()) + " " + std::to_string(count.jobs()));
+    return told;
+  };
+  using testing::UnorderedElementsAre;
+  EXPECT_THAT(counted({}), UnorderedElementsAre("STATE_QUEUED 2", "STATE_FAILED 1"));
+  EXPECT_THAT(counted({.state = JobState::kQueued}), UnorderedElementsAre("STATE_QUEUED 2"));
+  EXPECT_THAT(counted({.state = JobState::kFailed}), UnorderedElementsAre("STATE_FAILED 1"));
+  EXPECT_THAT(counted({.finished = true}), UnorderedElementsAre("STATE_FAILED 1"));
+  EXPECT_THAT(counted({.finished = false}), UnorderedElementsAre("STATE_QUEUED 2"));
+}
+
+// job_book.h CheckLog: a number of another log says nothing here; who has seen none begins anew.
+TEST_F(JobBookTest, ANumberIsOfItsLog) {
+  const std::int64_t job = Number(Must(Submit(Simulate())));
+  const std::string log = bed.store().LogId();
+  EXPECT_FALSE(CodeOf(book.CheckLog(job, 1, log)));
+  EXPECT_FALSE(CodeOf(book.CheckLog(job, 1, "")));
+  EXPECT_FALSE(CodeOf(book.CheckLog(job, 0, "another log")));
+  EXPECT_EQ(CodeOf(book.CheckLog(job, 1, "another log")), ErrorCode::kCellInvalidArgument);
+}
+
+TEST_F(JobBookTest, AProductThatIsOpenedIsThere) {
+  const std::int64_t job = Number(Must(Submit(Simulate())));
+  EXPECT_EQ(CodeOf(book.OpenArtifact(job, "report")), ErrorCode::kCellPrecondition);
+  const auto leased = Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
+  Must(bed.store().Finish(leased->lease, {.outcome = {.state = JobState::kSucceeded},
+                                          .artifacts = {{.name = "report", .bytes = "r"}}}));
+  EXPECT_EQ(Must(Must(book.OpenArtifact(job, "report"))->Next()), "r");
+  EXPECT_EQ(CodeOf(book.OpenArtifact(job, "trace")), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(book.OpenArtifact(job + 1, "report")), ErrorCode::kCellNotFound);
 }
 
 }  // namespace

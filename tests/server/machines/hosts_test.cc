@@ -510,5 +510,87 @@ TEST_F(HostsTest, AServerThatStopsTakesNoHost) {
   EXPECT_EQ(Refused(Hello("elsewhere/1", Fence(*link))), ErrorCode::kCellUnavailable);
 }
 
+// LIVE-7.08: what was taught at the machine is stored, and its host hears whether.
+TEST_F(HostsTest, WhatIsTaughtAtAMachineIsStored) {
+  const auto link = Joined();
+  const auto edit = [&](std::int64_t number, const std::string& object, std::int64_t revision) {
+    v1::HostRequest request;
+    v1::HostEdit& told = *request.mutable_edit();
+    told.set_fence(Fence(*link));
+    told.set_number(number);
+    told.set_slot(5);
+    told.set_object(object);
+    told.set_object_revision(revision);
+    told.set_caller("anna");
+    told.mutable_taught()->mutable_step()->set_program(5);
+    hosts.Receive(*link, std::move(request));
+    v1::HostEditAnswer answer;
+    EXPECT_TRUE(Eventually([&] {
+      for (const v1::HostResponse& message : link->All()) {
+        if (message.has_edit_answer()) answer = message.edit_answer();
+      }
+      return answer.number() == number;
+    }));
+    return answer;
+  };
+  EXPECT_FALSE(edit(1, "PA;", 0).has_refusal());
+  const storage::ProgramRecord stored = Must(bed.store().GetProgram("mill-1", 5));
+  EXPECT_EQ(stored.object, "PA;");
+  const auto taught = Must(bed.store().ListTeachRecords("mill-1", 0, 0, 9));
+  ASSERT_EQ(taught.size(), 1U);
+  EXPECT_EQ(taught[0].program, 5);
+  v1::TeachEntry entry;
+  ASSERT_TRUE(entry.ParseFromString(taught[0].entry));
+  EXPECT_EQ(entry.etag_after(), "1");
+  // Somebody else was first: nothing is stored, and nothing taught.
+  EXPECT_TRUE(edit(2, "PU;", 0).has_refusal());
+  EXPECT_EQ(Must(bed.store().GetProgram("mill-1", 5)).object, "PA;");
+  EXPECT_FALSE(edit(3, "", 1).has_refusal());
+  EXPECT_FALSE(bed.store().GetProgram("mill-1", 5));
+  EXPECT_EQ(Must(bed.store().ListTeachRecords("mill-1", 0, 0, 9)).size(), 2U);
+}
+
+// LIVE-7.02: the newest that is to be seen at its handbox.
+TEST_F(HostsTest, TheHandboxIsThatOfTheHost) {
+  EXPECT_FALSE(hosts.HandboxPanelOf("mill-1"));
+  const auto link = Joined();
+  EXPECT_FALSE(hosts.HandboxPanelOf("mill-1"));
+  for (const char* display : {"READY", "TEACH"}) {
+    v1::HostRequest request;
+    request.mutable_panel()->set_display(display);
+    hosts.Receive(*link, std::move(request));
+    ASSERT_TRUE(hosts.HandboxPanelOf("mill-1"));
+    EXPECT_EQ(hosts.HandboxPanelOf("mill-1")->display(), display);
+  }
+}
+
+// A machine that is disabled has no host; what kept it off is forgotten when it is enabled again.
+TEST_F(HostsTest, AMachineThatIsForgottenHasNoHost) {
+  EXPECT_FALSE(hosts.IsHeard("mill-1"));
+  EXPECT_FALSE(hosts.IsSettled("mill-1"));
+  const auto link = Joined();
+  EXPECT_TRUE(hosts.IsHeard("mill-1"));
+  const storage::MachineRecord mill = Must(bed.store().GetMachine("mill-1"));
+  Tell(*link, v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(StatusOf(&hosts, mill, {}).state(), v1::MACHINE_STATE_RUNNING);
+  hosts.Forget("mill-1");
+  EXPECT_FALSE(hosts.IsHosted("mill-1"));
+  EXPECT_TRUE(link->closed());
+  hosts.Forget("mill-1");  // there is nothing to forget any more
+  hosts.NoteOff("mill-1", "its host ended 5 times");
+  ASSERT_TRUE(hosts.WhyOff("mill-1"));
+  EXPECT_EQ(hosts.WhyOff("mill-1")->code, ErrorCode::kCellNotLive);
+  EXPECT_EQ(StatusOf(&hosts, mill, {}).state(), v1::MACHINE_STATE_OFF);
+  hosts.ClearOff("mill-1");
+  EXPECT_FALSE(hosts.WhyOff("mill-1"));
+  storage::MachineRecord disabled = mill;
+  v1::MachineOptions options;
+  options.set_disabled(true);
+  disabled.options = BytesOf(options);
+  EXPECT_EQ(StatusOf(&hosts, disabled, {}).state(), v1::MACHINE_STATE_OFF);
+  hosts.CloseAll();
+  EXPECT_TRUE(hosts.IsHeard("mill-1"));  // nothing is to be started any more
+}
+
 }  // namespace
 }  // namespace rmlcell::server

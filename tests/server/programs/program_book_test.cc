@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "proto/bridge/framing.h"
+#include "proto/bridge/sha256.h"
 #include "server/base/config.h"
+#include "server/programs/content_upload.h"
+#include "server/programs/program_views.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/server_bed.h"
 
@@ -341,6 +345,102 @@ TEST_F(ProgramBookTest, ChecksWithoutAMachineToo) {
   EXPECT_EQ(CodeOf(programs.Translate("", "", text, true)), ErrorCode::kCellFamilyUnknownFromName);
   text.clear_content();
   EXPECT_EQ(CodeOf(programs.Translate("optimo", "", text, true)), ErrorCode::kCellEmptyProgram);
+}
+
+constexpr const char* kTwoMoves =
+    "COORD ABSOL\nPATH LIN\nMOVE (100.,100.,-100.,0.,0.)\nMOVE (200.,100.,-100.,0.,0.)\n";
+constexpr const char* kGoesOn = "10 VI[2] = VI[3]\nGOTO 10\n";
+
+// GetProgramPictureRequest.width_px: 64 to 8192; one of less than 400 has room for one view.
+TEST_F(ProgramBookTest, AStoredProgramHasAPicture) {
+  ASSERT_TRUE(Store(45, kTwoMoves));
+  ASSERT_TRUE(Store(46, kGoesOn));
+  ProgramViews views(programs);
+  const auto picture = [&](int width_px, int number = 45) {
+    v1::GetProgramPictureRequest request;
+    request.set_name(Name(number));
+    request.set_width_px(width_px);
+    return views.Picture(request);
+  };
+  for (const int width_px : {-1, 63, 8193})
+    EXPECT_EQ(CodeOf(picture(width_px)), ErrorCode::kCellInvalidArgument) << width_px;
+  std::set<std::string> etags;
+  for (const int width_px : {64, 399, 400, 8192}) {
+    const v1::GetProgramPictureResponse made = Must(picture(width_px));
+    EXPECT_THAT(made.content(), testing::HasSubstr("<svg"));
+    EXPECT_EQ(made.media_type(), "image/svg+xml");
+    EXPECT_TRUE(made.complete());
+    etags.insert(made.etag());
+  }
+  EXPECT_EQ(etags.size(), 4U);
+  EXPECT_TRUE(picture(0));  // as wide as pictures are
+  EXPECT_LT(Must(picture(399)).content().size(), Must(picture(400)).content().size());
+  EXPECT_FALSE(Must(picture(0, 46)).complete());  // it is followed as far as a check follows it
+  EXPECT_FALSE(picture(0, 47));                   // there is none
+}
+
+// Its path, and a coarser one: ToolpathHeader says which it is.
+TEST_F(ProgramBookTest, AStoredProgramHasAPath) {
+  ASSERT_TRUE(Store(45, kTwoMoves));
+  ASSERT_TRUE(Store(46, kGoesOn));
+  ProgramViews views(programs);
+  const auto path = [&](int level, int number = 45) {
+    v1::StreamProgramToolpathRequest request;
+    request.set_name(Name(number));
+    request.set_level(level);
+    return views.Path(request);
+  };
+  for (const int level : {-1, 1'000})
+    EXPECT_EQ(CodeOf(path(level)), ErrorCode::kCellInvalidArgument) << level;
+  double tolerance_mm = 0.0;
+  for (const int level : {0, 1}) {
+    const ProgramViews::Toolpath made = Must(path(level));
+    EXPECT_EQ(made.header.level(), level);
+    EXPECT_GT(made.header.tolerance_mm(), tolerance_mm);
+    tolerance_mm = made.header.tolerance_mm();
+    EXPECT_EQ(made.header.bytes(), static_cast<std::int64_t>(made.frames.size()));
+    EXPECT_GT(made.header.points(), 0);
+    EXPECT_GT(made.header.duration_ns(), 0);
+    EXPECT_TRUE(made.header.complete());
+    EXPECT_TRUE(made.header.has_tip_box());
+    std::string_view rest = made.frames;
+    EXPECT_TRUE(bridge::TakeFrame(rest)) << level;
+  }
+  EXPECT_FALSE(Must(path(0, 46)).header.complete());
+}
+
+// program.proto UploadContent: with size and digest told before, or without both.
+TEST_F(ProgramBookTest, AContentComesInParts) {
+  const std::string digest = bridge::Sha256Hex("content");
+  ContentUpload unsized(bed.store(), programs);
+  EXPECT_EQ(CodeOf(unsized.Add("c")), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(unsized.End()), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(unsized.Begin(0, {})), ErrorCode::kCellEmptyProgram);
+  EXPECT_EQ(CodeOf(unsized.Begin(-1, "no digest")), ErrorCode::kCellInvalidArgument);
+  Must(unsized.Begin(-1, {}));
+  EXPECT_EQ(CodeOf(unsized.Begin(-1, {})), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(unsized.End()), ErrorCode::kCellEmptyProgram);
+  Must(unsized.Add("con"));
+  Must(unsized.Add("tent"));
+  const v1::UploadContentResponse made = Must(unsized.End());
+  EXPECT_EQ(made.sha256(), digest);
+  EXPECT_EQ(made.size(), 7);
+  EXPECT_EQ(made.expire_time().seconds(),
+            std::chrono::floor<std::chrono::seconds>(bed.clock().Now() + std::chrono::hours(1))
+                .time_since_epoch()
+                .count());
+  EXPECT_EQ(Must(bed.store().ReadBlob(digest)), "content");
+  ContentUpload too_short(bed.store(), programs);
+  Must(too_short.Begin(7, digest));
+  Must(too_short.Add("con"));
+  EXPECT_EQ(CodeOf(too_short.End()), ErrorCode::kCellChecksum);
+  ContentUpload too_long(bed.store(), programs);
+  Must(too_long.Begin(7, digest));
+  EXPECT_EQ(CodeOf(too_long.Add("contents")), ErrorCode::kCellChecksum);
+  ContentUpload sized(bed.store(), programs);
+  Must(sized.Begin(7, digest));
+  Must(sized.Add("content"));
+  EXPECT_EQ(Must(sized.End()).sha256(), digest);
 }
 
 }  // namespace

@@ -98,5 +98,23 @@ TEST(MachineCapabilities, OfBothFamilies) {
     EXPECT_THAT(full.panel_keys(), Contains(key));
 }
 
+// What no version knows is refused as a wrong argument, as all that is out of range.
+TEST(MachineOptions, WhatIsNoneThatThereIs) {
+  const auto refused = [](const v1::MachineOptions& wrong) {
+    const Status checked = CheckOptions(wrong);
+    EXPECT_TRUE(checked || checked.error().code == ErrorCode::kCellInvalidArgument);
+    return checked ? std::string("taken") : std::string(checked.error().detail);
+  };
+  v1::MachineOptions wrong;
+  wrong.set_start(static_cast<v1::MachineOptions::Start>(99));
+  EXPECT_EQ(refused(wrong), "machine.options.start is none that there is");
+  wrong.Clear();
+  wrong.set_server_lost(static_cast<v1::MachineOptions::ServerLost>(99));
+  EXPECT_EQ(refused(wrong), "machine.options.server_lost is none that there is");
+  wrong.Clear();
+  wrong.mutable_late_hold()->set_seconds(3'601);
+  EXPECT_EQ(refused(wrong), "machine.options.late_hold: 0.1 s to 1 h");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -366,5 +366,64 @@ TEST_F(JobResultsTest, WhatCannotBeComparedIsSaid) {
   EXPECT_EQ(Compare(good, "jobs/99").error().code, ErrorCode::kCellNotFound);
 }
 
+// 9104: products that are no messages any more.
+TEST_F(JobResultsTest, DamagedProductsAreToldAsSuch) {
+  const std::string job =
+      Ended(Job("STOP\n"), {}, {{"steps", "m", "\xFF", {}}, {"series", "m", "\xFF", {}}});
+  EXPECT_EQ(CodeOf(Map(job)), ErrorCode::kCellStoreCorrupt);
+  v1::GetJobSeriesRequest series;
+  series.set_name(job);
+  series.add_signals("x");
+  series.set_buckets(1);
+  EXPECT_EQ(CodeOf(results.Series(series)), ErrorCode::kCellStoreCorrupt);
+  bed.SubmitCheck();
+  const storage::Lease lease = bed.Lease();
+  Must(bed.store().Finish(lease, {.outcome = {},
+                                  .artifacts = {{"report", "m", "\xFF", {}}},
+                                  .executables = {},
+                                  .events = {}}));
+  EXPECT_EQ(CodeOf(Findings(JobName(lease.job))), ErrorCode::kCellStoreCorrupt);
+}
+
+// A figure that one of them alone has is 0 in the other.
+TEST_F(JobResultsTest, FiguresOfOneJobAloneAreCompared) {
+  const auto report = [](const std::string& name, const std::string& unit, double value) {
+    v1::RunReport made;
+    made.set_family("optimo");
+    v1::Figure& figure = *made.add_figures();
+    figure.set_name(name);
+    figure.set_unit(unit);
+    figure.set_value(value);
+    return made;
+  };
+  const auto compared = Must(Compare(Ended(Job("STOP\n"), report("depth", "mm", 2.0)),
+                                     Ended(Job("STOP\n"), report("speed", "mm/s", 3.0))));
+  ASSERT_EQ(compared.figures_size(), 2);
+  EXPECT_EQ(compared.figures(0).name(), "depth");
+  EXPECT_EQ(compared.figures(0).unit(), "mm");
+  EXPECT_EQ(compared.figures(0).before(), 2.0);
+  EXPECT_EQ(compared.figures(0).after(), 0.0);
+  EXPECT_EQ(compared.figures(1).name(), "speed");
+  EXPECT_EQ(compared.figures(1).unit(), "mm/s");
+  EXPECT_EQ(compared.figures(1).before(), 0.0);
+  EXPECT_EQ(compared.figures(1).after(), 3.0);
+}
+
+// Lines are added where the machine still has the program; without them the map stands as it is.
+TEST_F(JobResultsTest, AStepMapWithoutItsMachineIsThatOfTheJob) {
+  v1::GetStepMapResponse map;
+  map.add_programs()->set_program(45);
+  const auto bytes = map.SerializeAsString();
+  const std::string mill = Ended(Job("PA;", "mill-1"), {}, {StepsArtifact(map)});
+  EXPECT_EQ(Must(Map(mill)).SerializeAsString(), bytes);
+  const std::string job = Ended(Job("STOP\n"), {}, {StepsArtifact(map)});
+  storage::MachineRecord machine = Must(bed.store().GetMachine("optimo-1"));
+  machine.profile = "none";
+  Must(bed.store().PutMachine(machine, storage::kAnyRevision));
+  EXPECT_EQ(Must(Map(job)).SerializeAsString(), bytes);
+  Must(bed.store().DeleteMachine("optimo-1", storage::kAnyRevision));
+  EXPECT_EQ(Must(Map(job)).SerializeAsString(), bytes);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

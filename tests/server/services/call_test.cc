@@ -10,6 +10,7 @@
 #include "rmlcell/v1/job.pb.h"
 #include "rmlcell/v1/machine.pb.h"
 #include "rmlcell/v1/machine_control.pb.h"
+#include "server/services/account_service.h"
 #include "server/services/host_refusal.h"
 #include "tests/engine/core/untold.h"
 
@@ -183,6 +184,40 @@ TEST(CallRequestId, IsAskedForWhereTheContractRequiresIt) {
   EXPECT_TRUE(check(v1::StopMachineRequest()));
   EXPECT_TRUE(check(v1::SubmitJobRequest()));
   EXPECT_TRUE(check(v1::GetMachineRequest()));
+}
+
+// A lane that is full is a bound that is reached: it may go better later.
+TEST(CallStatus, AFullLaneIsExhausted) {
+  EXPECT_EQ(LaneFull().code, ErrorCode::kCellResourceExhausted);
+  EXPECT_EQ(ToGrpcStatus(LaneFull()).error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+}
+
+// account.proto GetCaller: who calls, and what he may; what is for a later version says so.
+TEST(CallAccount, SaysWhoCallsAndWhatHeMay) {
+  const Gate gate("secret");
+  Executor executor(1);
+  AccountService service(
+      {.gate = gate, .executor = executor, .compute = executor, .message_bytes_max = 1000});
+  grpc::ServerBuilder builder;
+  builder.RegisterService(&service);
+  const auto server = builder.BuildAndStart();
+  const auto stub = v1::AccountService::NewStub(server->InProcessChannel({}));
+  grpc::ClientContext context;
+  v1::GetCallerResponse caller;
+  ASSERT_TRUE(stub->GetCaller(&context, {}, &caller).ok());
+  EXPECT_EQ(caller.name(), "local");
+  ASSERT_EQ(caller.grants_size(), 1);
+  const auto& may = caller.grants(0).permissions();
+  EXPECT_EQ(std::vector<int>(may.begin(), may.end()),
+            (std::vector<int>{v1::PERMISSION_VIEW, v1::PERMISSION_STOP, v1::PERMISSION_PROGRAM,
+                              v1::PERMISSION_OPERATE, v1::PERMISSION_ADMINISTER}));
+  grpc::ClientContext later;
+  v1::ListUsersResponse users;
+  const grpc::Status status = stub->ListUsers(&later, {}, &users);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNIMPLEMENTED);
+  EXPECT_EQ(DetailOf(status).code(), "CELL-E9014");
+  server->Shutdown(std::chrono::system_clock::now());
+  server->Wait();
 }
 
 }  // namespace

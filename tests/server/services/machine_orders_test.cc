@@ -520,5 +520,91 @@ TEST_F(LiveJobs, WhatWasCutOffIsDecided) {
   EXPECT_EQ(start.confirmations_size(), 1);
 }
 
+// LIVE-5.10: what was cut off is decided first.
+TEST_F(LiveJobs, WhatWaitsForADecisionIsNotDeleted) {
+  const std::int64_t run = Submit(v1::JOB_KIND_RUN);
+  v1::HostRequest told;
+  told.mutable_status()->set_machine(kLaser);
+  told.mutable_status()->set_state(v1::MACHINE_STATE_IDLE);
+  told.mutable_status()->set_host("hall/1");
+  told.mutable_status()->set_cut_off_job(JobName(run));
+  hosts.Receive(*host, std::move(told));
+  v1::DeleteJobRequest request;
+  request.set_name(JobName(run));
+  Call(jobs, &v1::JobService::Stub::DeleteJob, request);
+  ExpectRefused(grpc::StatusCode::FAILED_PRECONDITION, "waits for a decision about it");
+  EXPECT_THAT(status.error_message(), HasSubstr("CELL-E9409"));
+}
+
+// LIVE-5.05: a RUN is cancelled by its host, which says when it is over; where none is heard of it
+// is kept for it, and said.
+TEST_F(LiveJobs, ACancelGoesToTheHost) {
+  const std::int64_t run = Submit(v1::JOB_KIND_RUN);
+  ASSERT_EQ(Must(store().AcquireJobs({.worker = "hall/1",
+                                      .server = "this server",
+                                      .kinds = {"RUN"},
+                                      .job = run,
+                                      .duration = std::chrono::minutes(1)}))
+                .size(),
+            1U);
+  v1::CancelJobRequest request;
+  request.set_name(JobName(run));
+  request.set_request_id("c");
+  Call(jobs, &v1::JobService::Stub::CancelJob, request);
+  ExpectRefused(grpc::StatusCode::UNAVAILABLE, "the host of its machine is not heard of");
+  EXPECT_THAT(status.error_message(), HasSubstr("CELL-E9424"));
+  EXPECT_TRUE(Must(store().GetJob(run)).cancel_requested);
+  EXPECT_THAT(host->TakeOrders(), IsEmpty());
+  Tell(*host, v1::MACHINE_STATE_RUNNING, JobName(run));
+  request.set_request_id("d");
+  const v1::Job job = Call(jobs, &v1::JobService::Stub::CancelJob, request);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(job.name(), JobName(run));
+  const auto orders = host->TakeOrders();
+  ASSERT_EQ(orders.size(), 1U);
+  EXPECT_EQ(orders[0].caller(), "local");
+  EXPECT_EQ(orders[0].for_job(), JobName(run));
+  EXPECT_EQ(orders[0].abort().request_id(), "d");
+}
+
+// Many at once: those that run on a machine are aborted there.
+TEST_F(LiveJobs, ACancelOfManyGoesToTheHost) {
+  const std::int64_t run = Submit(v1::JOB_KIND_RUN);
+  const std::int64_t waits = Submit(v1::JOB_KIND_CHECK);
+  ASSERT_EQ(Must(store().AcquireJobs({.worker = "hall/1",
+                                      .server = "this server",
+                                      .kinds = {"RUN"},
+                                      .job = run,
+                                      .duration = std::chrono::minutes(1)}))
+                .size(),
+            1U);
+  Tell(*host, v1::MACHINE_STATE_RUNNING, JobName(run));
+  v1::CancelJobsRequest request;
+  request.mutable_jobs()->set_all(true);
+  EXPECT_EQ(Call(jobs, &v1::JobService::Stub::CancelJobs, request).jobs(), 2);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  const auto orders = host->TakeOrders();
+  ASSERT_EQ(orders.size(), 1U);
+  EXPECT_TRUE(orders[0].has_abort());
+  EXPECT_EQ(orders[0].for_job(), JobName(run));
+  EXPECT_EQ(orders[0].caller(), "local");
+  EXPECT_EQ(Must(store().GetJob(waits)).state, storage::JobState::kCancelled);
+}
+
+// Only what there is is enabled or disabled.
+TEST_F(LiveMachines, AMachineThatIsNotThereIsNeitherEnabledNorDisabled) {
+  v1::EnableMachineRequest enable;
+  enable.set_machine("machines/none");
+  enable.set_request_id("a");
+  Call(machines, &v1::MachineService::Stub::EnableMachine, enable);
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "CELL-E9009");
+  EXPECT_FALSE(processes.IsEnabled("none"));
+  v1::DisableMachineRequest disable;
+  disable.set_machine("machines/none");
+  disable.set_request_id("b");
+  Call(machines, &v1::MachineService::Stub::DisableMachine, disable);
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "CELL-E9009");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -180,5 +180,18 @@ TEST_F(SubscriptionTest, FactsOfAJobThatIsGoneAreNone) {
   EXPECT_EQ(facts.Of(job), facts.Of(job));
 }
 
+// A subscription of a family hears of its jobs alone.
+TEST_F(SubscriptionTest, AFilterKnowsTheFamily) {
+  const auto submit = [&](const std::string& family) {
+    return Must(bed.store().SubmitAndWait({.machine = "m", .family = family, .kind = "CHECK"}))
+        .job.id;
+  };
+  const std::int64_t laser = submit("optimo");
+  const std::int64_t mill = submit("rml1");
+  const CellSubscription made = Must(CellSubscription::Make(Jobs("family = optimo")));
+  EXPECT_TRUE(made.WantsEvent({.job = laser, .kind = "state"}, facts));
+  EXPECT_FALSE(made.WantsEvent({.job = mill, .kind = "state"}, facts));
+}
+
 }  // namespace
 }  // namespace rmlcell::server

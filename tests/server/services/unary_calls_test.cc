@@ -477,5 +477,125 @@ TEST_F(UnaryCalls, AnArchiveHasSoManyBytes) {
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
 }
 
+// Of a server that starts no hosts.
+TEST_F(UnaryCalls, WhereNoMachineLives) {
+  using Stub = v1::MachineService::Stub;
+  Call(machines, &Stub::EnableMachine, "machine: 'machines/mill-1' request_id: 'a'");
+  ExpectRefused(grpc::StatusCode::UNAVAILABLE, "this server starts no hosts");
+  Call(machines, &Stub::StartMachine, "machine: 'machines/mill-1' request_id: 'b' job: 'jobs/1'");
+  ExpectRefused(grpc::StatusCode::UNAVAILABLE, "no machine lives here");
+  // It is as if it were disabled.
+  EXPECT_EQ(
+      Call(machines, &Stub::DisableMachine, "machine: 'machines/mill-1' request_id: 'c'").state(),
+      v1::MACHINE_STATE_IDLE);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  Call(machines, &Stub::DisableMachine, "machine: 'machines/none' request_id: 'd'");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "CELL-E9009");
+  Call(machines, &Stub::DisableMachine, "machine: 'none' request_id: 'e'");
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "CELL-E9003");
+  Call(machines, &Stub::TakeMachine,
+       "machine: 'machines/none' request_id: 'f' reason: 'why' computer: 'pc'");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "CELL-E9009");
+}
+
+// machine.proto connection: devices are for a later version, by their kind or by their name.
+TEST_F(UnaryCalls, ADeviceIsForLater) {
+  using Stub = v1::MachineService::Stub;
+  const std::string text = "machine.connection: a device";
+  for (const char* device : {"kind: KIND_DEVICE", "device: 'tcp:a:1'"}) {
+    const std::string connection = std::string(" connection { ") + device + " } }";
+    Call(machines, &Stub::CreateMachine, "machine_id: 'm' machine { family: 'optimo'" + connection);
+    ExpectRefused(grpc::StatusCode::UNIMPLEMENTED, text);
+    Call(machines, &Stub::UpdateMachine,
+         "update_mask { paths: 'title' } machine { name: 'machines/mill-1'" + connection);
+    ExpectRefused(grpc::StatusCode::UNIMPLEMENTED, text);
+  }
+  Call(machines, &Stub::CreateMachine,
+       "machine_id: 'm' machine { family: 'optimo' connection { kind: KIND_VIRTUAL } }");
+  EXPECT_TRUE(status.ok()) << status.error_message();
+}
+
+// Schedules are of a family that is known.
+TEST_F(UnaryCalls, SchedulesOfAnUnknownFamily) {
+  using Stub = v1::MachineService::Stub;
+  Must(store_.PutMachine({.id = "lathe-1", .family = "lathe"}, 0, {}));
+  const std::string name = "name: 'machines/lathe-1/laserSchedules/5'";
+  Call(machines, &Stub::PutLaserSchedule, "laser_schedule { " + name + " mode: LASER_MODE_CW }");
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "CELL-E9008");
+  Call(machines, &Stub::DeleteLaserSchedule, name);
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "CELL-E9008");
+}
+
+// Who does not say how many gets a hundred.
+TEST_F(UnaryCalls, APageHasAHundredMachines) {
+  for (int i = 0; i < 99; ++i)
+    Must(store_.PutMachine({.id = "n" + std::to_string(100 + i), .family = "rml1"}, 0, {}));
+  const auto page = Call(machines, &v1::MachineService::Stub::ListMachines, "");
+  EXPECT_EQ(page.machines_size(), 100);
+  const auto rest = Call(machines, &v1::MachineService::Stub::ListMachines,
+                         "page_token: '" + page.next_page_token() + "'");
+  EXPECT_EQ(rest.machines_size(), 1);
+  EXPECT_EQ(rest.next_page_token(), "");
+}
+
+// project.proto ExportProject: the archive in parts of a megabyte.
+TEST_F(UnaryCalls, AnArchiveGoesOut) {
+  v1::CreateProjectRequest request;
+  request.set_project_id("lid");
+  v1::ProjectProgram& program = *request.mutable_project()->add_programs();
+  program.set_slot(5);
+  program.mutable_source()->set_file_name("a.rml");
+  program.mutable_source()->set_content(storage::Noise(1'500'000, 1));  // it packs badly
+  {
+    grpc::ClientContext context;
+    v1::Project made;
+    status = projects->CreateProject(&context, request, &made);
+    ASSERT_TRUE(status.ok()) << status.error_message();
+  }
+  std::vector<std::size_t> sizes;
+  const auto exported = [&](const std::string& name) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    const auto reader =
+        projects->ExportProject(&context, Of<v1::ExportProjectRequest>("name: '" + name + "'"));
+    std::string bytes;
+    for (v1::ExportProjectResponse part; reader->Read(&part);) {
+      sizes.push_back(part.chunk().size());
+      bytes += part.chunk();
+    }
+    status = reader->Finish();
+    return bytes;
+  };
+  const std::string archive = exported("projects/lid");
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  ASSERT_EQ(sizes.size(), 2U);
+  EXPECT_EQ(sizes[0], std::size_t{1} << 20);
+  const v1::Project back = Must(ReadProjectArchive(archive));
+  ASSERT_EQ(back.programs_size(), 1);
+  EXPECT_TRUE(back.programs(0).source().content() == program.source().content());
+  EXPECT_EQ(exported("projects/none"), "");
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND) << status.error_message();
+}
+
+// project.proto ImportProject: its name first, once, then its bytes.
+TEST_F(UnaryCalls, AnArchiveSaysWhatItBecomes) {
+  const auto refused = [&](const std::vector<std::string>& messages, const std::string& text) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    v1::Project response;
+    const auto writer = projects->ImportProject(&context, &response);
+    for (const std::string& message : messages)
+      writer->Write(Of<v1::ImportProjectRequest>(message));
+    writer->WritesDone();
+    status = writer->Finish();
+    ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, text);
+  };
+  refused({}, "project_id is missing");
+  refused({"project_id: ''"}, "project_id is missing");
+  refused({"chunk: 'x'"}, "the first message must be the project_id");
+  refused({"project_id: 'lid'", "project_id: 'box'"}, "a second project_id");
+  refused({"project_id: 'lid'", "chunk: 'no archive'"}, "CELL-E9003");
+}
+
 }  // namespace
 }  // namespace rmlcell::server
