@@ -2,18 +2,13 @@
 // it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <pty.h>
-#include <termios.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "clients/cli/remote.h"
-#include "rmlcell/v1/job.grpc.pb.h"
-#include "tests/clients/cli/fake_services.h"
+#include "tests/clients/cli/fake_jobs.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -25,136 +20,6 @@ using testing::MatchesRegex;
 using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
-
-// One connection of a watch: what it tells, and how it ends.
-struct Watched {
-  std::vector<v1::WatchJobResponse> messages;
-  grpc::Status end;
-};
-
-struct FakeJobs final : v1::JobService::Service {
-  grpc::Status SubmitJob(grpc::ServerContext*, const v1::SubmitJobRequest* request,
-                         v1::Job* response) override {
-    submitted.push_back(*request);
-    *response = job;
-    if (submitted.size() <= refusals) return refusal;
-    return {};
-  }
-  grpc::Status WatchJob(grpc::ServerContext*, const v1::WatchJobRequest* request,
-                        grpc::ServerWriter<v1::WatchJobResponse>* writer) override {
-    watches.push_back(*request);
-    if (watches.size() > connections.size()) return {grpc::StatusCode::NOT_FOUND, "no more"};
-    const Watched& connection = connections[watches.size() - 1];
-    for (const v1::WatchJobResponse& message : connection.messages) writer->Write(message);
-    return connection.end;
-  }
-  grpc::Status ListJobs(grpc::ServerContext*, const v1::ListJobsRequest* request,
-                        v1::ListJobsResponse* response) override {
-    listed = *request;
-    *response->add_jobs() = job;
-    return refusal;
-  }
-  grpc::Status GetJob(grpc::ServerContext*, const v1::GetJobRequest* request,
-                      v1::Job* response) override {
-    asked = request->name();
-    *response = job;
-    return refusal;
-  }
-  grpc::Status CancelJob(grpc::ServerContext*, const v1::CancelJobRequest* request,
-                         v1::Job* response) override {
-    asked = request->name();
-    *response = job;
-    return refusal;
-  }
-  grpc::Status HoldJob(grpc::ServerContext*, const v1::HoldJobRequest* request,
-                       v1::HaltJobResponse* response) override {
-    asked = "hold " + request->name();
-    *response->mutable_job() = job;
-    return refusal;
-  }
-  grpc::Status ResumeJob(grpc::ServerContext*, const v1::ResumeJobRequest* request,
-                         v1::Job* response) override {
-    asked = "resume " + request->name();
-    *response = job;
-    return refusal;
-  }
-  grpc::Status MoveJob(grpc::ServerContext*, const v1::MoveJobRequest* request,
-                       v1::Job* response) override {
-    moved = *request;
-    *response = job;
-    return refusal;
-  }
-  grpc::Status GetJobPicture(grpc::ServerContext*, const v1::GetJobPictureRequest* request,
-                             v1::GetJobPictureResponse* response) override {
-    asked = request->name();
-    response->set_content("<svg/>");
-    return refusal;
-  }
-  grpc::Status StreamJobArtifact(
-      grpc::ServerContext*, const v1::StreamJobArtifactRequest* request,
-      grpc::ServerWriter<v1::StreamJobArtifactResponse>* writer) override {
-    asked = request->name() + " " + request->artifact();
-    v1::StreamJobArtifactResponse part;
-    for (const char* chunk : {"one ", "two"}) {
-      part.set_chunk(chunk);
-      writer->Write(part);
-    }
-    return refusal;
-  }
-
-  v1::Job job;
-  std::vector<v1::SubmitJobRequest> submitted;
-  std::size_t refusals = 0;  // how many submissions are refused
-  grpc::Status refusal;
-  std::vector<v1::WatchJobRequest> watches;
-  std::vector<Watched> connections;
-  v1::ListJobsRequest listed;
-  v1::MoveJobRequest moved;
-  std::string asked;
-};
-
-v1::WatchJobResponse Event(std::int64_t sequence, const std::string& text) {
-  v1::WatchJobResponse message;
-  message.set_sequence(sequence);
-  message.mutable_event()->mutable_message()->set_text(text);
-  return message;
-}
-v1::WatchJobResponse End(std::int64_t sequence, v1::Outcome::Kind kind,
-                         v1::Verdict verdict = v1::VERDICT_GOOD) {
-  v1::WatchJobResponse message;
-  message.set_sequence(sequence);
-  message.mutable_event()->mutable_ended()->set_kind(kind);
-  message.mutable_event()->mutable_ended()->set_verdict(verdict);
-  return message;
-}
-
-class RemoteJobs : public testing::Test {
- protected:
-  Told Watch(bool strict = false, std::int64_t after = 0, bool as_json = false) {
-    jobs.watches.clear();
-    return Hear([&] { return WatchJob(server.remote(as_json), "17", after, strict); });
-  }
-  // The one request that a submission makes.
-  v1::SubmitJobRequest Submitted(const SubmitRequest& wanted) {
-    jobs.submitted.clear();
-    const Told told = Hear([&] { return SubmitJob(server.remote(), wanted); });
-    EXPECT_EQ(told.exit_code, 0) << told.errors;
-    EXPECT_THAT(jobs.submitted, SizeIs(1));
-    return jobs.submitted.empty() ? v1::SubmitJobRequest() : jobs.submitted[0];
-  }
-  // What is told before any server is asked.
-  std::string Refusal(const SubmitRequest& wanted) {
-    jobs.submitted.clear();
-    const Told told = Hear([&] { return SubmitJob(server.remote(), wanted); });
-    EXPECT_EQ(told.exit_code, 2);
-    EXPECT_TRUE(jobs.submitted.empty());
-    return told.errors;
-  }
-
-  CliFolder folder;
-  FakeJobs jobs;
-  FakeServer server{folder, {&jobs}};
-};
 
 TEST_F(RemoteJobs, AJobOfAStoredProgramNamesItsSlot) {
   SubmitRequest wanted{.machine = "m", .file = {}, .slot = 44};
@@ -297,7 +162,7 @@ TEST_F(RemoteJobs, ASubmissionMayBeWatched) {
 }
 
 TEST_F(RemoteJobs, AWatchEndsWithTheJob) {
-  jobs.connections = {{{Event(4, "hello"), End(5, v1::Outcome::KIND_COMPLETED)}, {}}};
+  jobs.connections = {{{EventOf(4, "hello"), End(5, v1::Outcome::KIND_COMPLETED)}, {}}};
   Told told = Watch(false, 3);
   EXPECT_EQ(told.exit_code, 0);
   EXPECT_THAT(told.output, HasSubstr("hello\n"));
@@ -334,7 +199,7 @@ TEST_F(RemoteJobs, AWatchOfAJobThatIsOverEndsWithItsSnapshot) {
 TEST_F(RemoteJobs, AWatchGoesOnWhereItWas) {
   for (const auto code :
        {grpc::StatusCode::UNAVAILABLE, grpc::StatusCode::CANCELLED, grpc::StatusCode::OK}) {
-    jobs.connections = {{{Event(7, "before")}, {code, "away"}},
+    jobs.connections = {{{EventOf(7, "before")}, {code, "away"}},
                         {{End(8, v1::Outcome::KIND_COMPLETED)}, {}}};
     const Told told = Watch();
     EXPECT_EQ(told.exit_code, 0);
@@ -342,7 +207,7 @@ TEST_F(RemoteJobs, AWatchGoesOnWhereItWas) {
     EXPECT_EQ(jobs.watches[1].after_sequence(), 7);
     EXPECT_THAT(told.errors, HasSubstr("the server is away; watching again when it is back"));
   }
-  jobs.connections = {{{Event(7, "before")}, {grpc::StatusCode::NOT_FOUND, "no job 17"}}};
+  jobs.connections = {{{EventOf(7, "before")}, {grpc::StatusCode::NOT_FOUND, "no job 17"}}};
   const Told told = Watch();
   EXPECT_EQ(told.exit_code, 3);
   EXPECT_EQ(jobs.watches.size(), 1U);
@@ -491,172 +356,6 @@ TEST_F(RemoteJobs, ARefusalIsToldByEach) {
     EXPECT_THAT(told.errors, HasSubstr("there is none"));
   }
   EXPECT_EQ(folder.Read("out"), "");
-}
-
-// What `act` draws on standard error while that is a terminal. It must be less than a terminal
-// keeps, 4 KiB.
-std::string DrawnOnErrors(const std::function<void()>& act) {
-  termios raw{};
-  ::cfmakeraw(&raw);
-  int outside = -1;
-  int inside = -1;
-  EXPECT_EQ(::openpty(&outside, &inside, nullptr, &raw, nullptr), 0);
-  std::fflush(stderr);
-  const int kept = ::dup(STDERR_FILENO);
-  ::dup2(inside, STDERR_FILENO);
-  act();
-  std::fflush(stderr);
-  ::dup2(kept, STDERR_FILENO);
-  ::close(kept);
-  ::close(inside);
-  std::string drawn;
-  char room[4096];
-  for (ssize_t size = 0; (size = ::read(outside, room, sizeof room)) > 0;)
-    drawn.append(room, static_cast<std::size_t>(size));
-  ::close(outside);
-  return drawn;
-}
-
-// The share where it is known, how long it takes where that is planned, the instruction and the
-// tip; a job that ended well leaves a full bar.
-TEST_F(RemoteJobs, ATerminalShowsHowFarAJobIs) {
-  v1::WatchJobResponse planned;
-  v1::JobProgress& at = *planned.mutable_progress();
-  at.set_virtual_time_ns(234'000'000'000);
-  at.set_planned_time_ns(868'000'000'000);
-  at.set_progress(0.5);
-  at.set_instruction("MOVE");
-  at.mutable_position()->mutable_tip()->set_x(1.0);
-  at.mutable_position()->mutable_tip()->set_y(-2.5);
-  at.mutable_position()->mutable_tip()->set_z(3.25);
-  v1::WatchJobResponse unplanned = planned;
-  unplanned.mutable_progress()->clear_planned_time_ns();
-  unplanned.mutable_progress()->clear_progress();
-  const auto drawn = [&](const v1::WatchJobResponse& end) {
-    jobs.connections = {{{planned, unplanned, end}, {}}};
-    jobs.watches.clear();
-    testing::internal::CaptureStdout();
-    const std::string text = DrawnOnErrors([&] { WatchJob(server.remote(), "17", 0, false); });
-    testing::internal::GetCapturedStdout();
-    return text;
-  };
-  const auto cells = [](const char* cell, int count) {
-    std::string text;
-    for (int i = 0; i < count; ++i) text += cell;
-    return text;
-  };
-  const std::string good = drawn(End(1, v1::Outcome::KIND_COMPLETED));
-  EXPECT_THAT(good, HasSubstr(cells("█", 14) + cells("░", 14) +
-                              " 50 %  234.0 of 868.0 s  MOVE  X 1.00 Y -2.50 Z 3.25"));
-  EXPECT_THAT(good, HasSubstr("█" + cells("░", 27) + "  234.0 s  MOVE  X 1.00 Y -2.50 Z 3.25"));
-  EXPECT_THAT(good, testing::EndsWith(cells("█", 28) + " 100 %  jobs/17\n"));
-  const std::string bad = drawn(End(1, v1::Outcome::KIND_FAILED, v1::VERDICT_BAD));
-  EXPECT_THAT(bad, Not(HasSubstr("100 %")));
-  // As messages, for scripts.
-  jobs.connections = {{{planned, End(1, v1::Outcome::KIND_COMPLETED)}, {}}};
-  EXPECT_THAT(Watch(false, 0, true).output, HasSubstr("\"234000000000\""));
-}
-
-// That the server is away is told when it goes, not at each try; and again when it came back in
-// between.
-TEST_F(RemoteJobs, ThatTheServerIsAwayIsToldOnce) {
-  const grpc::Status away{grpc::StatusCode::UNAVAILABLE, "away"};
-  jobs.connections = {{{Event(7, "before")}, away},
-                      {{}, away},
-                      {{Event(8, "between")}, away},
-                      {{End(9, v1::Outcome::KIND_COMPLETED)}, {}}};
-  const Told told = Watch();
-  EXPECT_EQ(told.exit_code, 0);
-  EXPECT_EQ(jobs.watches.size(), 4U);
-  const std::string line = "rmlcell: the server is away; watching again when it is back\n";
-  EXPECT_EQ(told.errors, line + line);
-}
-
-// Where a run begins, and what stands for it; nothing of a simulation where nothing was asked.
-TEST_F(RemoteJobs, ARunIsSubmittedWithItsBeginning) {
-  SubmitRequest wanted{.machine = "m", .file = {}, .slot = 7};
-  wanted.kind = "run";
-  wanted.unzeroed = true;
-  wanted.ticket = "17";
-  wanted.step = "45/10";
-  wanted.occurrence = 2;
-  wanted.off_until_work_on = true;
-  wanted.seen = {"clamps", "origin-valid"};
-  wanted.labels = {"order-1", "urgent"};
-  const v1::Job job = Submitted(wanted).job();
-  EXPECT_EQ(job.kind(), v1::JOB_KIND_RUN);
-  EXPECT_TRUE(job.run().unzeroed());
-  EXPECT_EQ(job.run().ticket(), "jobs/17");
-  EXPECT_EQ(job.run().step().program(), 45);
-  EXPECT_EQ(job.run().step().step(), 10);
-  EXPECT_EQ(job.run().occurrence(), 2);
-  EXPECT_TRUE(job.run().off_until_work_on());
-  ASSERT_EQ(job.run().confirmations_size(), 2);
-  EXPECT_EQ(job.run().confirmations(0), v1::CONFIRMATION_CLAMPS);
-  EXPECT_EQ(job.run().confirmations(1), v1::CONFIRMATION_ORIGIN_VALID);
-  EXPECT_THAT(job.labels(), ElementsAre("order-1", "urgent"));
-  EXPECT_FALSE(job.has_simulation());
-  wanted.override_percent = 50.0;
-  EXPECT_TRUE(Submitted(wanted).job().has_simulation());
-  // One that begins at its beginning says nothing of all that.
-  const v1::Job plain = Submitted({.machine = "m", .file = {}, .slot = 7}).job();
-  EXPECT_FALSE(plain.has_run());
-  EXPECT_EQ(plain.labels_size(), 0);
-  wanted.seen = {"clamp"};
-  EXPECT_THAT(Refusal(wanted), AllOf(HasSubstr("CELL-E9003"),
-                                     HasSubstr("'clamp' is nothing to look at: clamps, tool")));
-  wanted.step = "45/";
-  EXPECT_THAT(Refusal(wanted), AllOf(HasSubstr("CELL-E9003"), HasSubstr("'45/' is no step")));
-}
-
-// A time that is none is a wrong use of the command.
-TEST_F(RemoteJobs, ATimeThatIsNoneIsWrongUse) {
-  SubmitRequest wanted{.machine = "m", .file = {}, .slot = 7};
-  wanted.not_before = "tomorrow";
-  EXPECT_THAT(Refusal(wanted), AllOf(HasSubstr("CELL-E9026"), HasSubstr("--not-before tomorrow")));
-}
-
-TEST_F(RemoteJobs, TheBlockGoesAlongAsItWasGiven) {
-  SubmitRequest wanted{.machine = "m", .file = {}, .slot = 1};
-  wanted.milling.block.stock = "100x80x10";
-  wanted.milling.block.tool = "flat:2:flutes=2";
-  wanted.milling.block.cell_mm = 0.25;
-  wanted.milling.block.material = "wax";
-  wanted.milling.block.rpm = 8000.0;
-  wanted.milling.stl_tolerance_mm = 0.5;
-  wanted.milling.products = {"height-grid"};
-  const v1::SubmitJobRequest request = Submitted(wanted);
-  const v1::Milling& milling = request.job().simulation().milling();
-  EXPECT_EQ(milling.cell_mm(), 0.25);
-  EXPECT_EQ(milling.material(), "wax");
-  EXPECT_EQ(milling.rpm(), 8000.0);
-  EXPECT_EQ(milling.stl_tolerance_mm(), 0.5);
-  EXPECT_TRUE(milling.height_grid());
-  EXPECT_FALSE(milling.relief() || milling.height_map() || milling.stl());
-  // No server takes a target of more than 64 MiB, however it is set up.
-  wanted.milling.block.target = folder.Put("large.stl", "solid");
-  std::filesystem::resize_file(wanted.milling.block.target, (std::uintmax_t{64} << 20) + 1);
-  EXPECT_THAT(Refusal(wanted),
-              AllOf(HasSubstr("CELL-E9007"), HasSubstr("larger than 67108864 bytes")));
-}
-
-TEST_F(RemoteJobs, AJobThatIsShownSaysForWhatItWaitsAndWhyItIsNotGood) {
-  jobs.job.set_name("jobs/17");
-  jobs.job.set_state(v1::Job::STATE_QUEUED);
-  jobs.job.set_waits_for("anna\tat the page");
-  const auto show = [&] { return Hear([&] { return ShowJob(server.remote(), "17"); }).output; };
-  EXPECT_THAT(show(), Not(HasSubstr("waits")));  // nothing but its turn
-  jobs.job.set_wait_reason(v1::WAIT_REASON_CONTROL);
-  EXPECT_THAT(show(), HasSubstr("\nwaits     anna\\x09at the page\n"));
-  jobs.job.set_wait_reason(v1::WAIT_REASON_MACHINE_NOT_READY);
-  EXPECT_THAT(show(), HasSubstr("\nwaits     its machine cannot start: rmlcell machine status\n"));
-  v1::Outcome& outcome = *jobs.job.mutable_outcome();
-  outcome.set_kind(v1::Outcome::KIND_COMPLETED);
-  outcome.set_verdict(v1::VERDICT_BAD);
-  v1::VerdictReason& reason = *outcome.add_reasons();
-  reason.set_message("too deep");
-  reason.set_code("RML1-E8002");
-  EXPECT_THAT(show(), HasSubstr("\nverdict   BAD\n          too deep (RML1-E8002)\n"));
 }
 
 }  // namespace

@@ -27,6 +27,8 @@
 
 namespace rmlcell::server {
 
+inline constexpr const char* kLaser = "machines/optimo-1";
+
 // A host that answers each order at once, and goes when it is told to.
 class AnsweringHost final : public HostLink {
  public:

@@ -584,8 +584,7 @@ TEST_F(UnaryCalls, AnArchiveSaysWhatItBecomes) {
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
     v1::Project response;
     const auto writer = projects->ImportProject(&context, &response);
-    for (const std::string& message : messages)
-      writer->Write(Of<v1::ImportProjectRequest>(message));
+    for (const std::string& one : messages) writer->Write(Of<v1::ImportProjectRequest>(one));
     writer->WritesDone();
     status = writer->Finish();
     ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, text);

@@ -25,6 +25,10 @@ ErrorCode RefusedWith(const std::string& text) {
   return ErrorCode::kCellUsage;
 }
 
+std::string GcodeOf(const std::string& stream) {
+  return ToGcode(stream, ParametersOf("t1")).value().text;
+}
+
 std::string DetailOf(const std::string& text) {
   const StreamOfGcode made = Made(text);
   return made.findings.empty() ? "" : made.findings.front().detail;
@@ -353,6 +357,28 @@ TEST(GcodeBounds, WordsThatBelongToOthers) {
   EXPECT_EQ(DetailOf("G1 X1 P1 F60\n"), "P1 without G4");
   EXPECT_EQ(DetailOf("G1 X1 H1 F60\n"), "H1 without G43");
   EXPECT_EQ(DetailOf("G1 X1 I0.1234567 F60\n"), "I0.123457 without G2 or G3");
+}
+
+// A spindle that turns gets another speed and goes on turning.
+TEST(ToGcodeBounds, TheSpindleChangesItsSpeed) {
+  EXPECT_NE(GcodeOf("!MC1;Z0,0,0;!RC15;Z1,0,0;!MC0;")
+                .find("S4500 M3\nG1 Z0 F120\nS15000\nG1 X0.01 Y0\nM5\nM30\n"),
+            std::string::npos)
+      << GcodeOf("!MC1;Z0,0,0;!RC15;Z1,0,0;!MC0;");
+}
+
+// Whatever is cut at the speed of the machine, it is told once.
+TEST(ToGcodeBounds, AFeedThatNobodyGaveIsToldOnce) {
+  const Result<GcodeText> made =
+      ToGcode("!MC0;!PZ-50,200;PU0,0;PD500,0;PD900,0;PU0,0;", ParametersOf("t1"));
+  ASSERT_TRUE(made);
+  ASSERT_EQ(made->findings.size(), 1U);
+  EXPECT_EQ(made->findings[0].code, ErrorCode::kRml1FeedNotGiven);
+}
+
+// Places have five decimals at most: 100.0064 units are 1.000064 mm.
+TEST(ToGcodeBounds, PlacesHaveFiveDecimals) {
+  EXPECT_NE(GcodeOf("!MC0;Z100.0064,0,0;").find("\nG1 X1.00006 Y0 Z0 "), std::string::npos);
 }
 
 }  // namespace

@@ -594,27 +594,5 @@ TEST(FromGcode, SpeedsOfTheSpindleAndTheirFindings) {
   EXPECT_EQ(Body("S6600\nS6600 M3\nS6600\n"), "!RC6600;\n!MC1;\n!MC0;\n");
 }
 
-// A spindle that turns gets another speed and goes on turning.
-TEST(ToGcode, TheSpindleChangesItsSpeed) {
-  EXPECT_NE(ToText("!MC1;Z0,0,0;!RC15;Z1,0,0;!MC0;")
-                .find("S4500 M3\nG1 Z0 F120\nS15000\nG1 X0.01 Y0\nM5\nM30\n"),
-            std::string::npos)
-      << ToText("!MC1;Z0,0,0;!RC15;Z1,0,0;!MC0;");
-}
-
-// Whatever is cut at the speed of the machine, it is told once.
-TEST(ToGcode, AFeedThatNobodyGaveIsToldOnce) {
-  const Result<GcodeText> made =
-      ToGcode("!MC0;!PZ-50,200;PU0,0;PD500,0;PD900,0;PU0,0;", ParametersOf("t1"));
-  ASSERT_TRUE(made);
-  ASSERT_EQ(made->findings.size(), 1U);
-  EXPECT_EQ(made->findings[0].code, ErrorCode::kRml1FeedNotGiven);
-}
-
-// Places have five decimals at most: 100.0064 units are 1.000064 mm.
-TEST(ToGcode, PlacesHaveFiveDecimals) {
-  EXPECT_NE(ToText("!MC0;Z100.0064,0,0;").find("\nG1 X1.00006 Y0 Z0 "), std::string::npos);
-}
-
 }  // namespace
 }  // namespace rmlcell::rml1
