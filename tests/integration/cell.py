@@ -159,6 +159,13 @@ def inline_job(machine, file_name, content, kind=job_pb2.JOB_KIND_SIMULATE, **mo
     return job
 
 
+def endless_job(machine="optimo-1"):
+    """Runs until somebody ends it: it waits in real time."""
+    job = inline_job(machine, "endless.S", "10 DELAY 1\nGOTO 10\n")
+    job.simulation.pace = 1.0
+    return job
+
+
 def submit(stub, job, request_id=""):
     return stub.SubmitJob(job_pb2.SubmitJobRequest(job=job, request_id=request_id), timeout=60)
 

@@ -9,8 +9,8 @@ import urllib.error
 import urllib.request
 import uuid
 
-from cell import (COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, cell_pb2, common_pb2, detail_of, eventually, grpc, inline_job,
-                  job_pb2, machine_status_pb2, machine_pb2, program_pb2, submit, wait_for_end, wait_until_it_runs)
+from cell import (COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, cell_pb2, common_pb2, detail_of, endless_job, eventually, grpc,
+                  inline_job, job_pb2, machine_status_pb2, machine_pb2, program_pb2, submit, wait_for_end, wait_until_it_runs)
 from command import run
 
 
@@ -254,7 +254,7 @@ class Jobs(WithCell):
 
     def test_a_job_is_cancelled_while_it_runs(self):
         stub = self.cell.jobs()
-        job = submit(stub, inline_job("optimo-1", "endless.S", ENDLESS))
+        job = submit(stub, endless_job())
         wait_until_it_runs(stub, job.name)
         stub.CancelJob(job_pb2.CancelJobRequest(name=job.name))
         self.assertEqual(wait_for_end(stub, job.name)[-1].ended.code, "CELL-E9307")
@@ -399,7 +399,7 @@ class Kills(unittest.TestCase):
 
     def test_a_job_survives_the_death_of_its_worker(self):
         stub = self.cell.jobs()
-        job = submit(stub, inline_job("optimo-1", "endless.S", ENDLESS))
+        job = submit(stub, endless_job())
         wait_until_it_runs(stub, job.name)
         for process in self.cell.worker_processes():
             os.kill(process, 9)
@@ -498,7 +498,7 @@ class Stops(unittest.TestCase):
 
     def test_the_server_stops_in_order(self):
         stub = self.cell.jobs()
-        job = submit(stub, inline_job("optimo-1", "endless.S", ENDLESS))
+        job = submit(stub, endless_job())
         wait_until_it_runs(stub, job.name)
         last = []
         cell = []

@@ -6,7 +6,7 @@ import subprocess
 import tempfile
 import unittest
 
-from cell import BIN, ENDLESS, SQUARE, Cell, eventually, inline_job, job_pb2, submit
+from cell import BIN, SQUARE, Cell, endless_job, eventually, inline_job, job_pb2, submit
 from command import InFolder, ask, run
 
 
@@ -498,7 +498,7 @@ class Remote(unittest.TestCase):
 
     def test_what_reads_from_a_pipe_sees_each_event_when_it_happens(self):
         stub = self.cell.jobs()
-        job = submit(stub, inline_job("optimo-1", "endless.S", ENDLESS))
+        job = submit(stub, endless_job())
         watch = subprocess.Popen([BIN / "rmlcell", "watch", job.name], stdout=subprocess.PIPE, text=True,
                                  stderr=subprocess.DEVNULL, env={**os.environ, "RMLCELL_SERVER": self.cell.address})
         try:

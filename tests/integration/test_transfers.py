@@ -6,8 +6,8 @@ import unittest
 import urllib.error
 import urllib.request
 
-from cell import (WithCell, cell_pb2, common_pb2, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2, submit, wait_for_end,
-                  wait_until_it_runs)
+from cell import (WithCell, cell_pb2, common_pb2, detail_of, endless_job, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2, submit,
+                  wait_for_end, wait_until_it_runs)
 
 BAD = grpc.StatusCode.INVALID_ARGUMENT
 UNKNOWN = grpc.StatusCode.NOT_FOUND
@@ -155,9 +155,7 @@ class Products(WithCell):
 
     def test_each_progress_is_told_once(self):
         stub = self.cell.jobs()
-        endless = inline_job("optimo-1", "endless.S", "10 DELAY 1\nGOTO 10\n")
-        endless.simulation.pace = 1.0  # else the end of its virtual time may come first
-        job = submit(stub, endless)
+        job = submit(stub, endless_job())
         wait_until_it_runs(stub, job.name)
         for watch in (stub.WatchJob(job_pb2.WatchJobRequest(name=job.name)),
                       self.cell.cell_service().WatchCell(cell_pb2.WatchCellRequest())):
