@@ -213,6 +213,7 @@ SpeedProfile SpeedProfile::From(const PathState& state, double end_s, double v1,
                      -sign * limits.jerk);
   }
   now.speed = std::max(now.speed, 0.0);  // rounding
+  profile.peak_speed_ = std::max(profile.peak_speed_, now.speed);
   PathLimits span = limits;
   const double left = end_s - now.s;
   const double slow = limits.speed;

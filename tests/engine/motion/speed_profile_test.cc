@@ -357,5 +357,16 @@ TEST(OneRamp, IsAsLongAsItTakes) {
   }
 }
 
+// motion.md 6: an acceleration that a lower override finds is brought to zero first, and the speed
+// rises meanwhile: 1000 mm/s2 at 40,000 mm/s3 by 12.5 mm/s.
+TEST(SpeedProfile, RisesWhileTheAccelerationEnds) {
+  const PathLimits limits{.speed = 50.0, .acceleration = 2000.0, .jerk = 40'000.0};
+  const SpeedProfile profile =
+      SpeedProfile::From({.s = 0.0, .speed = 40.0, .acceleration = 1000.0}, 100.0, 0.0, limits);
+  EXPECT_NEAR(profile.peak_speed(), 52.5, 1e-9);
+  EXPECT_NEAR(profile.At(0.025).speed, 52.5, 1e-9);
+  EXPECT_LE(profile.At(0.3).speed, 50.0 + 1e-9);
+}
+
 }  // namespace
 }  // namespace rmlcell::motion
