@@ -106,7 +106,7 @@ inline v1::WatchJobResponse EventOf(std::int64_t sequence, const std::string& te
   return message;
 }
 inline v1::WatchJobResponse End(std::int64_t sequence, v1::Outcome::Kind kind,
-                         v1::Verdict verdict = v1::VERDICT_GOOD) {
+                                v1::Verdict verdict = v1::VERDICT_GOOD) {
   v1::WatchJobResponse message;
   message.set_sequence(sequence);
   message.mutable_event()->mutable_ended()->set_kind(kind);
