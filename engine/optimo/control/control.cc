@@ -265,8 +265,9 @@ void Control::ChangeOutside() {
 
 void Control::Apply(const machine::InputChange& input) {
   if (now().phase == RunPhase::kFinished) return;
-  // What is over at this instant was so before the key.
+  // What is over at this instant was so before the key, and what follows has begun.
   ArriveIfOver();
+  if (now().running()) ride_.Start();
   if (now().running() && ride_.protocol().comes_to_rest() && !ride_.busy()) halts_.HaltOnPath();
   works_.MarkStale();
   const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));

@@ -19,7 +19,8 @@ constexpr double kReaches = 1.0 + 1e-9;  // rounding, where braking takes just t
 }  // namespace
 
 void Ride::Hold() {
-  if (under_way() == nullptr || !protocol().may_hold()) return;
+  // Behind a move that ends where it is nothing follows.
+  if (under_way() == nullptr || under_way()->ended || !protocol().may_hold()) return;
   motion::MotionUnderWay& active = *s_.path.under_way();
   std::vector<motion::PlannedItem> kept;  // between the motion under way and the exact one
   motion::PlannedMotion exact = active.motion;

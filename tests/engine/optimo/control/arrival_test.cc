@@ -245,5 +245,35 @@ TEST(Arrival, StopAtAnyArrivalLosesNothing) {
   }
 }
 
+// OPT-4.17, OPT-4.38: HOLD and another override at the instant at which one motion goes over into
+// the next act as they do 1 ns later.
+TEST(Arrival, KeysAtTheBoundaryOfMotions) {
+  const std::string text =
+      From100(40) + Move(200, 1000, "/FLY") + Move(400, 1000, "/FLY") + Move(700, 1000);
+  const SimTime boundary = RunText(text).moves[1].at;
+  const auto end_of = [&](SimTime at, InputKind kind) {
+    return RunText(text, {.inputs = {{at, kind, 0, 50.0}, Key(at + At(30.0), InputKind::kStart)}});
+  };
+  for (const InputKind kind : {InputKind::kHold, InputKind::kOverride}) {
+    const Ran there = end_of(boundary, kind);
+    const Ran behind = end_of(boundary + SimTime(1), kind);
+    EXPECT_NEAR(there.time_s, behind.time_s, 1e-6);
+    EXPECT_EQ(there.Count("halt HOLD"), kind == InputKind::kHold ? 1 : 0);
+  }
+}
+
+// OPT-3.58, OPT-B.55: HOLD while an error beside the motion brings it to rest: nothing of the
+// passages that were to come is ridden any more.
+TEST(Arrival, HoldWhileAnErrorEndsTheMotion) {
+  const std::string text = From100(40) + "WORK 1,5/ON/START (IL[20])/NEXT\n" +
+                           Move(300, 1000, "/FLY") + Move(500, 1000, "/FLY") + Move(700, 1000);
+  const SimTime at = RunText(text).moves.front().at + At(0.3);
+  const Ran ran = RunText(text, {.inputs = {{at, InputKind::kLogical, 20, 1.0},
+                                            Key(at + At(0.05), InputKind::kHold),
+                                            Key(at + At(5.0), InputKind::kStart)}});
+  EXPECT_EQ(CodeOf(ran), 7401);
+  EXPECT_LT(ran.end.tip.tip.x(), 300.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::arrival
