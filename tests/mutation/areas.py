@@ -45,10 +45,10 @@ AREAS = {
     "services": Area(("server/auth", "server/services", "proto/bridge", "proto/recording"),
                      ("proto_bridge_test", "proto_recording_test", "server_auth_test", "server_services_test", "server_programs_test", "server_jobs_test", "server_host_test", "integration_test_machines",
                       "integration_test_transfers", "integration_test_tools", "integration_test_cell", "integration_test_toolpath",
-                      "integration_test_programs", "integration_test_http", "integration_test_command",
+                      "integration_test_programs", "integration_test_http", "integration_test_command", "integration_test_command_remote",
                       "integration_test_web")),
     "command": Area(("clients/cli", "clients/lsp", "engine/optimo/editing"),
-                    ("lsp_test", "optimo_editing_test", "cli_test", "integration_test_command", "integration_test_lsp",
+                    ("lsp_test", "optimo_editing_test", "cli_test", "integration_test_command", "integration_test_command_remote", "integration_test_lsp",
                      "integration_test_tools", "integration_test_rml1_tools", "integration_test_programs",
                      "integration_test_handbox_terminal", "integration_test_by_hand")),
 }

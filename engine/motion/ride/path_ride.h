@@ -102,6 +102,7 @@ class PathRide {
   void Stop(const StopPlan& plan, const AxisLimits& axes);
   // The same for good: the moves of the ramp have `ended` when the last of it is over.
   void EndBy(const StopPlan& plan);
+  bool ends() const { return ends_; }  // by it, until the rest is dropped
 
   // HOLD at the end of the move with this tag: the commands behind it are held back. What leads to
   // that end is the caller's to plan.

@@ -154,31 +154,36 @@ SimTime Control::NextOwnEvent(SimTime until) const {
       break;
   }
   if (WaitsForEver()) next = kForever;  // ticks would show nothing new
-  if (!works_.idle() && !alarms_.deferred()) next = std::min(next, works_.NextEvent());
+  if (!works_.idle() && !alarms_.deferred())
+    next = std::min(next, works_.NextEvent(halts_.stops()));
   if (waits_.input_changed() && pending.kind == Pending::Kind::kCondition) next = time;
   const SimTime budget = setup_.budget.virtual_time;
   return std::max(budget, time + SimTime(1)) <= until ? std::min(next, budget) : next;
 }
 
-void Control::ArriveIfOver() {
-  if (ride_.under_way() == nullptr || now().now < ride_.under_way()->end) return;
-  ride_.Arrive();
-  waits_.ToldByMotion();
-  works_.MarkStale();
+// Motions go on to this instant: what is over is told, and what follows begins. False: the machine
+// has come to rest for a key.
+bool Control::MoveOn() {
+  if (ride_.under_way() != nullptr && now().now >= ride_.under_way()->end) {
+    ride_.Arrive();
+    waits_.ToldByMotion();
+    works_.MarkStale();
+  }
+  ride_.Start();
+  if (ride_.busy() || !ride_.protocol().comes_to_rest()) return true;
+  halts_.HaltOnPath();
+  return false;
 }
 
 // Whatever is due now, in a fixed order: motion first, then what waits for it.
 void Control::ActOnTime() {
-  ArriveIfOver();
-  ride_.Start();
-  if (ride_.protocol().comes_to_rest() && !ride_.busy()) return halts_.HaltOnPath();
-  if (halts_.StopNow()) return;
+  if (!MoveOn() || halts_.StopNow()) return;
   if (!watch_.idle() && !alarms_.deferred()) {
     if (const Status looked = watch_.Look(); !looked)
       Raise(looked.error(), Alarms::Where::kBesideTheMotion);
   }
   if (!works_.idle() && now().running() && !alarms_.deferred()) {
-    if (const std::optional<Works::Failure> failure = works_.Run()) {
+    if (const std::optional<Works::Failure> failure = works_.Run(halts_.stops())) {
       const machine::Place in_execution = std::exchange(now().place, failure->place);
       Raise(failure->error, Alarms::Where::kBesideTheMotion);
       if (now().running()) now().place = in_execution;
@@ -265,10 +270,7 @@ void Control::ChangeOutside() {
 
 void Control::Apply(const machine::InputChange& input) {
   if (now().phase == RunPhase::kFinished) return;
-  // What is over at this instant was so before the key, and what follows has begun.
-  ArriveIfOver();
-  if (now().running()) ride_.Start();
-  if (now().running() && ride_.protocol().comes_to_rest() && !ride_.busy()) halts_.HaltOnPath();
+  if (now().running()) MoveOn();  // before the key
   works_.MarkStale();
   const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
   switch (input.kind) {

@@ -74,7 +74,7 @@ class Control final : private RideListener {
   bool MayFetch() const;
   SimTime NextEvent(SimTime until) const;
   SimTime NextOwnEvent(SimTime until) const;
-  void ArriveIfOver();
+  bool MoveOn();
   void ActOnTime();
   void ActOnPending();
   bool ScriptedIsDue() const;

@@ -88,6 +88,8 @@ class Halts {
   bool idle() const;
   // A STOP waits until more of the motions is planned, or until the one under way is over.
   bool stop_waits() const { return s_.stop; }
+  // STOP was pressed, and not START since.
+  bool stops() const { return s_.stop || ride_.protocol().intent() == motion::RideIntent::kStop; }
   // The run halts behind the step at this place: nothing may pass its target without a stop.
   bool will_halt_behind(const machine::Place& place) const;
 

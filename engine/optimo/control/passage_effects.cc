@@ -17,6 +17,8 @@ void PassageEffects::OnMark(std::uint64_t tag) {
   if (effects.empty() || effects.front().first != tag) return;
   const PassageEffect effect = effects.front().second;
   effects.pop_front();
+  // An error has switched the beam off: it stays so while the machine comes to rest. OPT-3.58
+  if (ride_.ends_here() && effect.kind == PassageEffect::Kind::kBeamOn) return;
   actuators_.Carry(effect);
 }
 

@@ -212,19 +212,14 @@ void Works::SwitchOff(int kind, int process, When when) {
                 when);
 }
 
-// Nothing begins between STOP and START. OPT-4.18
-bool Works::IsHeld(const WorkTask& task) const {
-  return task.stage == WorkStage::kStart && ride_.protocol().intent() == motion::RideIntent::kStop;
-}
-
-SimTime Works::NextEvent() const {
+SimTime Works::NextEvent(bool stops) const {
   SimTime next = kForever;
   for (const WorkTask& task : s_.tasks) {
     if (!IsOfProgram(task)) continue;
     if (task.stage == WorkStage::kDwell) {
       next = std::min(next, std::max(situation_.now, task.until));
     } else {
-      if (IsHeld(task)) continue;
+      if (stops && task.stage == WorkStage::kStart) continue;
       if (task.stage == WorkStage::kStart && s_.input_changed) return situation_.now;
       if (task.stale || ride_.busy()) {
         next = std::min(next, cycle_.NextTick(situation_.now, task.since));
@@ -253,7 +248,7 @@ void Works::EndProgram() {
   counter_.program().processes.AllOff();
 }
 
-std::optional<Works::Failure> Works::Run() {
+std::optional<Works::Failure> Works::Run(bool stops) {
   for (std::size_t n = 0; n < s_.tasks.size();) {
     if (!IsOfProgram(s_.tasks[n])) {
       ++n;
@@ -261,7 +256,7 @@ std::optional<Works::Failure> Works::Run() {
     }
     const machine::Place place = s_.tasks[n].place;
     const machine::Place in_execution = situation_.place;
-    const Result<bool> taken = TestTask(n);
+    const Result<bool> taken = TestTask(n, stops);
     situation_.place = in_execution;
     if (!taken) return Failure{taken.error(), place};
     if (!*taken) ++n;
@@ -285,12 +280,13 @@ bool Works::EndDwell(std::size_t n) {
 }
 
 // True: the task was taken from the list. The place is left to be that of the task.
-Result<bool> Works::TestTask(std::size_t n) {
+Result<bool> Works::TestTask(std::size_t n, bool stops) {
   WorkTask& task = s_.tasks[n];
   if (task.stage == WorkStage::kDwell) return EndDwell(n);
   const bool waits = task.stage == WorkStage::kStart;
   const bool tick = situation_.now > task.since && cycle_.IsTick(situation_.now, task.since);
-  if (IsHeld(task) || (!tick && !(waits && s_.input_changed))) return false;
+  if (waits && stops) return false;
+  if (!tick && !(waits && s_.input_changed)) return false;
   situation_.place = task.place;
   task.stale = false;
   const Condition condition = waits ? *task.start : *task.end;

@@ -83,14 +83,15 @@ class Works {
   bool idle() const { return s_.tasks.empty(); }  // nothing is in the background
   // Those in the background: when they are to be looked at next. A condition that nothing can have
   // changed since it was tested last is not tested again.
-  SimTime NextEvent() const;
+  // `stops`: STOP was pressed, and nothing begins before START. OPT-4.18
+  SimTime NextEvent(bool stops) const;
   // The first error, and where: errors and signals are told at the step of the WORK, not of the
   // instruction in execution.
   struct Failure {
     Error error;
     machine::Place place;
   };
-  std::optional<Failure> Run();
+  std::optional<Failure> Run(bool stops);
   // Something happened that conditions may depend on.
   void MarkStale();
   void InputChanged() { s_.input_changed = true; }
@@ -117,9 +118,8 @@ class Works {
   void Pierce(const WorkTask& task, const WorkDefinition& definition, bool in_background);
   void Drop(int kind, int process);
   WorkTask Take(std::size_t n);
-  bool IsHeld(const WorkTask& task) const;
   bool EndDwell(std::size_t n);
-  Result<bool> TestTask(std::size_t n);
+  Result<bool> TestTask(std::size_t n, bool stops);
 
   WorkState& s_;
   Situation& situation_;

@@ -53,20 +53,17 @@ Directive ReadDirective(std::string_view comment) {
     return directive;
   }
   const std::string rest = text.substr(end);
+  const std::size_t word = std::min(rest.find_first_not_of("0123456789 \t,"), rest.size());
+  directive.whole_file = std::string_view(rest).substr(word).starts_with(kWholeFile);
   int number = 0;
-  std::size_t read = 0;
-  for (const char c : rest + ' ') {  // up to the first word
-    ++read;
+  for (const char c : rest.substr(0, word) + ' ') {
     if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
       number = std::min(number * 10 + (c - '0'), 100'000);
       continue;
     }
     if (number > 0) directive.numbers.push_back(number);
     number = 0;
-    if (c != ' ' && c != '\t' && c != ',') break;
   }
-  directive.whole_file =
-      std::string_view(rest).substr(std::min(read, rest.size() + 1) - 1).starts_with(kWholeFile);
   if (directive.numbers.empty()) directive.complaint = "allow needs the numbers of findings";
   return directive;
 }

@@ -97,6 +97,8 @@ class Ride {
   const motion::MotionUnderWay* under_way() const { return s_.path.under_way(); }
   bool moves() const { return under_way() != nullptr && situation_.now < under_way()->arrival; }
   bool waits_to_start() const { return s_.path.waits_to_begin(); }
+  // Whatever moves comes to rest, and nothing follows: EndHere.
+  bool ends_here() const { return s_.path.ends(); }
   bool more_to_come() const { return !s_.path.to_come().empty(); }
 
   double override_percent() const { return s_.override_percent; }

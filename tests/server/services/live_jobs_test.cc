@@ -14,6 +14,15 @@ using testing::IsEmpty;
 
 class LiveJobs : public LiveMachines {
  protected:
+  void GiveToHost(std::int64_t run) {
+    ASSERT_EQ(Must(store().AcquireJobs({.worker = "hall/1",
+                                        .server = "this server",
+                                        .kinds = {"RUN"},
+                                        .job = run,
+                                        .duration = std::chrono::minutes(1)}))
+                  .size(),
+              1U);
+  }
   std::int64_t Submit(v1::JobKind kind) {
     v1::SubmitJobRequest request;
     v1::Job& job = *request.mutable_job();
@@ -215,13 +224,7 @@ TEST_F(LiveJobs, WhatWaitsForADecisionIsNotDeleted) {
 // is kept for it, and said.
 TEST_F(LiveJobs, ACancelGoesToTheHost) {
   const std::int64_t run = Submit(v1::JOB_KIND_RUN);
-  ASSERT_EQ(Must(store().AcquireJobs({.worker = "hall/1",
-                                      .server = "this server",
-                                      .kinds = {"RUN"},
-                                      .job = run,
-                                      .duration = std::chrono::minutes(1)}))
-                .size(),
-            1U);
+  GiveToHost(run);
   v1::CancelJobRequest request;
   request.set_name(JobName(run));
   request.set_request_id("c");
@@ -246,13 +249,7 @@ TEST_F(LiveJobs, ACancelGoesToTheHost) {
 TEST_F(LiveJobs, ACancelOfManyGoesToTheHost) {
   const std::int64_t run = Submit(v1::JOB_KIND_RUN);
   const std::int64_t waits = Submit(v1::JOB_KIND_CHECK);
-  ASSERT_EQ(Must(store().AcquireJobs({.worker = "hall/1",
-                                      .server = "this server",
-                                      .kinds = {"RUN"},
-                                      .job = run,
-                                      .duration = std::chrono::minutes(1)}))
-                .size(),
-            1U);
+  GiveToHost(run);
   Tell(*host, v1::MACHINE_STATE_RUNNING, JobName(run));
   v1::CancelJobsRequest request;
   request.mutable_jobs()->set_all(true);

@@ -275,5 +275,39 @@ TEST(Arrival, HoldWhileAnErrorEndsTheMotion) {
   EXPECT_LT(ran.end.tip.tip.x(), 300.0);
 }
 
+// OPT-3.58: what the program has switched on ahead of the machine stays off while an error brings
+// it to rest: the ramp leads over the place where the beam was to come on.
+TEST(Arrival, TheBeamStaysOffOnTheWayToRest) {
+  const std::string text = From100(40) + "WORKDEF 1,1 (50.,50.,0.,50.)\n" +
+                           "WORK 1,5/ON/START (IL[20])/NEXT\n" + Move(215, 1000, "/FLY") +
+                           "WORK 1,1/ON\n" + Move(400, 1000, "/FLY") + Move(600, 1000);
+  const Ran whole = RunText(text, {.inputs = {}});
+  const auto is_on = [](const Ran::Event& event) { return event.what.starts_with("beam on"); };
+  const auto on = std::ranges::find_if(whole.events, is_on);
+  ASSERT_NE(on, whole.events.end());
+  const Ran ran = RunText(text, {.inputs = {{At(on->at_s - 0.03), InputKind::kLogical, 20, 1.0}}});
+  EXPECT_EQ(CodeOf(ran), 7401);
+  EXPECT_GT(ran.end.tip.tip.x(), 215.0);
+  EXPECT_TRUE(std::ranges::none_of(ran.events, is_on));
+}
+
+// OPT-4.18: nor does anything begin behind a STOP that waits until the ramp of /END is over.
+TEST(Arrival, NothingBeginsBehindAStopThatWaits) {
+  const std::string text = From100(40) + "WORKDEF 1,1 (50.,50.,0.,50.)\n" +
+                           "WORK 1,1/ON/START (IL[20])/NEXT\n" +
+                           "MOVE (500.,1000.,-400.,0.,0.)/END (IL[21])\n" + Move(700, 1000);
+  const SimTime at = RunText(text).moves.front().at + At(0.5);
+  const SimTime start = at + At(5.0);
+  const Ran ran = RunText(text, {.inputs = {{at, InputKind::kLogical, 21, 1.0},
+                                            Key(at + At(0.06), InputKind::kStop),
+                                            {at + At(0.07), InputKind::kLogical, 20, 1.0},
+                                            Key(start, InputKind::kStart)}});
+  EXPECT_EQ(ran.Count("halt STOP"), 1);
+  const auto on = std::ranges::find_if(
+      ran.events, [](const Ran::Event& event) { return event.what.starts_with("beam on"); });
+  ASSERT_NE(on, ran.events.end());
+  EXPECT_GE(on->at_s, ToSeconds(start));
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::arrival
