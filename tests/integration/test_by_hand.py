@@ -51,6 +51,12 @@ class Handbox:
         self.live.wait("IDLE")
         return answer
 
+    def jog(self, key, seconds):
+        """Held until the axis has moved: where the beats come too late, the control lets go by itself."""
+        axis = "XYZ".index(key[0])
+        begin = self.live.status().axes[axis].value
+        return eventually(lambda: (lambda answer: abs(self.live.status().axes[axis].value - begin) > 0.1 and answer)(self.hold(key, seconds)))
+
 
 class ByHandTest(LiveTestCase):
     def optimo(self):
@@ -82,17 +88,17 @@ class ByHandTest(LiveTestCase):
         self.addCleanup(viewer.join)
         self.addCleanup(self.cell.stop)
         box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC")
-        eventually(lambda: "P=12" in box.keys("OVERRIDE_MINUS").panel.display, 10)
+        self.assertTrue(eventually(lambda: "P=12" in box.keys("OVERRIDE_MINUS").panel.display))
         for key in ("X+", "Y+"):
-            answer = box.hold(key, 0.3)
+            answer = box.jog(key, 0.3)
             self.assertFalse(answer.HasField("message"), answer.message)
             steps = len(self.lists(12))
             box.keys("REC")
-            eventually(lambda: len(self.lists(12)) > steps, 10)
+            self.assertTrue(eventually(lambda: len(self.lists(12)) > steps))
         self.assertEqual(sum("MOVE" in line for line in self.lists(12)), 2, self.lists(12))
         box.keys("MODE_RIGHT MODE_RIGHT")  # CYCLE
         box.keys("START")
-        self.assertTrue(eventually(lambda: live.status().run.run, 10))
+        self.assertTrue(eventually(lambda: live.status().run.run))
         self.assertIsNotNone(live.wait("IDLE"))
         self.assertTrue(any("P=12" in display for display in shown))
         project = project_pb2_grpc.ProjectServiceStub(self.cell.channel())
@@ -110,27 +116,31 @@ class ByHandTest(LiveTestCase):
         def shows():
             return box.press("JOG_ROB").panel.display
 
+        def flashing():
+            panel = box.press("JOG_ROB").panel
+            return panel.flashing and "ENTER" not in panel.display  # it asks for the next point
+
         def taught(keys, steps):
             """What is recorded is in the store when the name flashes no more."""
             box.keys(keys)
-            eventually(lambda: len(self.lists(12)) == steps and not box.press("JOG_ROB").panel.flashing, 10)
+            self.assertTrue(eventually(lambda: len(self.lists(12)) == steps and not flashing()), shows())
 
         box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC")
-        eventually(lambda: "P=12" in shows(), 10)
+        self.assertTrue(eventually(lambda: "P=12" in shows()), shows())
         end = len(self.lists(12))
         taught("DYN NEXT ENT REC", end + 1)  # COORD ABSOL
         taught("PATH NEXT ENT REC", end + 2)  # LIN
-        box.hold("X+", 0.4)
+        box.jog("X+", 0.4)
         taught("REC", end + 3)
         taught("PATH NEXT ENT REC", end + 4)  # CIR
-        box.hold("X+", 0.4)
+        box.jog("X+", 0.4)
         box.keys("REC")  # the via point
-        box.hold("Y+", 0.4)
+        box.jog("Y+", 0.4)
         taught("REC", end + 5)
         taught("PATH NEXT ENT DEL 5 ENT REC", end + 6)  # HOLE
-        box.hold("Y+", 0.4)
+        box.jog("Y+", 0.4)
         box.keys("REC")  # the centre
-        box.hold("Z-", 0.2)
+        box.jog("Z-", 0.2)
         taught("REC", end + 7)
         taught("DLY DEL 3 ENT REC", end + 8)
         listing = self.lists(12)
@@ -159,7 +169,7 @@ class ByHandTest(LiveTestCase):
         ended()
         # Simulated up to its fourth step, which then moves.
         box.keys("MODE_LEFT MODE_LEFT DEB ENT F6 4 ENT MODE_RIGHT MODE_RIGHT START")
-        self.assertTrue(eventually(lambda: live.status().run.run, 10))
+        self.assertTrue(eventually(lambda: live.status().run.run))
         ended()
         # In SINGLE each START is a step.
         box.keys("MODE_RIGHT START")
@@ -176,16 +186,16 @@ class ByHandTest(LiveTestCase):
         live = self.optimo()
         box = Handbox(live)
         box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC")
-        eventually(lambda: "P=12" in box.keys("OVERRIDE_MINUS").panel.display, 10)
+        self.assertTrue(eventually(lambda: "P=12" in box.keys("OVERRIDE_MINUS").panel.display))
         made = self.lists(12)
-        box.hold("X+", 0.2)
+        box.jog("X+", 0.2)
         box.keys("REC")
-        eventually(lambda: len(self.lists(12)) > len(made), 10)
+        self.assertTrue(eventually(lambda: len(self.lists(12)) > len(made)))
 
         def entries():
             return box.stub.ListTeachEntries(handbox_pb2.ListTeachEntriesRequest(machine=OPTIMO)).entries
         # It is told a moment behind what was stored.
-        taught = eventually(lambda: entries() if len(entries()) == 2 else None, 10) or entries()
+        taught = eventually(lambda: entries() if len(entries()) == 2 else None) or entries()
         acts = [handbox_pb2.TeachEntry.Act.Name(one.act) for one in taught]
         self.assertEqual(acts, ["ACT_INSERT", "ACT_CREATE"])
         self.assertIn("MOVE", taught[0].after)
@@ -203,9 +213,9 @@ class ByHandTest(LiveTestCase):
         self.assertEqual(self.lists(12), made)
         self.assertEqual(len(entries()), 3)
         # The command lists it, oldest first, and takes it back.
-        box.hold("X+", 0.2)
+        box.jog("X+", 0.2)
         box.keys("REC")
-        eventually(lambda: len(entries()) == 4, 10)
+        self.assertTrue(eventually(lambda: len(entries()) == 4))
         live.ask("ReleaseControl")
         listed = self.command("taught", "optimo-1", "--slot", "12")
         lines = listed.stdout.splitlines()
@@ -267,10 +277,10 @@ class ByHandTest(LiveTestCase):
             name=f"{OPTIMO}/programs/44", program={"file_name": "a.S", "content": b"VR[1] = 7.5\nDELAY 0.1\nRETURN\n"}))
         box = Handbox(live)
         box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC")
-        self.assertTrue(eventually(lambda: "P=12" in box.keys("OVERRIDE_MINUS").panel.display, 10))
+        self.assertTrue(eventually(lambda: "P=12" in box.keys("OVERRIDE_MINUS").panel.display))
         box.keys("F3 4 4 ENT ENT 1")
         self.assertTrue(eventually(
-            lambda: live.ask("ReadVariables", variables=["VR[1]"]).variables[0].value.real == 7.5, 10))
+            lambda: live.ask("ReadVariables", variables=["VR[1]"]).variables[0].value.real == 7.5))
         live.wait("IDLE")
         played = subprocess.run([os.path.join(BIN, "rmlcell"), "replay", OPTIMO, "--server", self.cell.address],
                                 capture_output=True, text=True, timeout=60)
@@ -320,7 +330,7 @@ class ByHandTest(LiveTestCase):
         with self.assertRaises(grpc.RpcError) as caught:
             live.ask("SetGates", gate_programs=[45])
         self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
-        eventually(lambda: live.ask("SetInputs", inputs=[{"gate": 1}]), 10)
+        self.assertTrue(eventually(lambda: live.ask("SetInputs", inputs=[{"gate": 1}])))
         live.wait("IDLE")
         value = live.ask("ReadVariables", variables=["VI[3]"]).variables[0].value
         self.assertEqual(value.integer, 7)
