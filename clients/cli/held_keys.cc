@@ -60,10 +60,7 @@ std::vector<KeyStroke> HeldKeys::LetGo() {
 
 std::vector<KeyStroke> HeldKeys::Expire(Time now) {
   std::vector<KeyStroke> strokes;
-  if (!keyboard_.empty() && now - typed_at_ > kRepeatsWithin) {
-    typed_.clear();  // typed again it is a key that begins anew
-    Release(keyboard_, strokes);
-  }
+  if (!keyboard_.empty() && now - typed_at_ > kRepeatsWithin) Release(keyboard_, strokes);
   if (!mouse_.empty() && now - answered_ > kAnswersWithin) {
     unanswered_ = true;
     Release(mouse_, strokes);

@@ -48,7 +48,6 @@ std::size_t Document::OffsetOf(Position position) const {
 Position Document::PositionOf(std::size_t offset) const { return PositionFinder(*this).At(offset); }
 
 Position PositionFinder::At(std::size_t offset) {
-  offset = std::min(offset, document_.text().size());
   const LineTable& lines = document_.lines();
   const std::size_t line = lines.LineOf(offset);
   const std::size_t begin = lines.Begin(line);

@@ -37,6 +37,13 @@ class Handbox:
             answer = self.press(name)
         return answer
 
+    def shows(self):
+        return self.press("JOG_ROB").panel.display
+
+    def records(self):
+        panel = self.press("JOG_ROB").panel
+        return panel.flashing and "ENTER" not in panel.display  # it asks for the next point
+
     def hold(self, key, seconds):
         answer = self.press(key, "KEY_ACTION_PRESS")
         until = time.monotonic() + seconds
@@ -113,20 +120,13 @@ class ByHandTest(LiveTestCase):
         live = self.optimo()
         box = Handbox(live)
 
-        def shows():
-            return box.press("JOG_ROB").panel.display
-
-        def flashing():
-            panel = box.press("JOG_ROB").panel
-            return panel.flashing and "ENTER" not in panel.display  # it asks for the next point
-
         def taught(keys, steps):
             """What is recorded is in the store when the name flashes no more."""
             box.keys(keys)
-            self.assertTrue(eventually(lambda: len(self.lists(12)) == steps and not flashing()), shows())
+            self.assertTrue(eventually(lambda: len(self.lists(12)) == steps and not box.records()), box.shows())
 
         box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC")
-        self.assertTrue(eventually(lambda: "P=12" in shows()), shows())
+        self.assertTrue(eventually(lambda: "P=12" in box.shows()), box.shows())
         end = len(self.lists(12))
         taught("DYN NEXT ENT REC", end + 1)  # COORD ABSOL
         taught("PATH NEXT ENT REC", end + 2)  # LIN
@@ -160,7 +160,7 @@ class ByHandTest(LiveTestCase):
 
         def ended():
             self.assertIsNotNone(live.wait("IDLE", 60))
-            self.assertNotIn("ERROR", shows())
+            self.assertNotIn("ERROR", box.shows())
 
         # CYCLE, with a breakpoint behind the third step.
         box.keys("DEB NEXT ENT 3 ENT MODE_RIGHT MODE_RIGHT START")

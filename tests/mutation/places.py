@@ -27,7 +27,8 @@ COMPARISONS = {"==": "!=", "!=": "==", "<": ">", ">": "<", "<=": ">=", ">=": "<=
 BOUNDS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 SIGNS = {"+": "-", "-": "+", "+=": "-=", "-=": "+=", "++": "--", "--": "++"}
 # The order of their arguments is no matter.
-SYMMETRIC = {"min", "max", "hypot", "swap", "tie", "Near", "Dot", "Distance", "RampLength", "RampTime", "SlipOf"}
+SYMMETRIC = {"min", "max", "hypot", "swap", "tie", "Near", "Dot", "Distance", "DistanceXYZ", "Same", "SameXY", "Equal",
+             "EqualIgnoringCase", "RampLength", "RampTime", "SlipOf"}
 KEYWORDS = {"if", "for", "while", "switch", "return", "case", "do", "else", "throw", "using", "goto", "delete", "new",
             "const", "constexpr", "static", "auto", "struct", "class", "enum", "namespace", "template", "typedef",
             "public", "private", "protected", "default", "friend", "extern", "explicit", "inline", "operator", "try"}

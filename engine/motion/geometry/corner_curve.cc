@@ -281,7 +281,7 @@ void CornerLength::ChoosePanels(const CornerCurve& curve) {
   }
   if (slowest * (kSamples + 1) > kNearCusp * sum) {
     panels_ = kPanels;
-    for (std::size_t k = 0; k <= kPanels; ++k) edge_[k] = static_cast<double>(k) / kPanels;
+    for (std::size_t k = 1; k <= kPanels; ++k) edge_[k] = static_cast<double>(k) / kPanels;
     return;
   }
   const double where = curve.SlowestPlace();

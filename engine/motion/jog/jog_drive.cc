@@ -93,7 +93,6 @@ void JogDrive::Channel::Stop(double t_s, double least) {
   }
   profile = stop;
   begun_s = t_s;
-  due = true;
 }
 
 JogDrive::JogDrive(const JogMachine& machine, JogMode mode, const AxisPose& at)
@@ -172,7 +171,8 @@ double JogDrive::RadiusAboutA() const {
 }
 
 // Whether X, Y or Z goes no faster, with the tip held, than by its own key, and comes to rest as
-// near and as soon. Speeds and ways are those along the circles: those of the axis are never more.
+// soon; as near, too, then: the way of a ramp to rest is half its speed by its time. Speeds are
+// those along the circles: those of the axis are never more.
 bool JogDrive::StopsAsItsKey(const AxisValues& speeds, double radius, int axis) const {
   const auto k = static_cast<std::size_t>(axis);
   const PathLimits& own = channels_[k].limits;
@@ -182,11 +182,7 @@ bool JogDrive::StopsAsItsKey(const AxisValues& speeds, double radius, int axis) 
   const double speed = std::abs(speeds[axis]) + (axis < 2 ? a * radius : 0.0) + b * reach;
   const double time =
       std::max(RampTime(a, 0.0, channels_[kA].limits), RampTime(b, 0.0, channels_[kB].limits));
-  const double way = RampLength(std::abs(speeds[axis]), 0.0, own) +
-                     (axis < 2 ? radius * RampLength(a, 0.0, channels_[kA].limits) : 0.0) +
-                     reach * RampLength(b, 0.0, channels_[kB].limits);
-  return speed <= most_[axis] && time <= RampTime(most_[axis], 0.0, own) &&
-         way <= RampLength(most_[axis], 0.0, own);
+  return speed <= most_[axis] && time <= RampTime(most_[axis], 0.0, own);
 }
 
 // A turn brakes more gently than an axis (the rest of the acceleration keeps the column on its
@@ -348,13 +344,16 @@ double JogDrive::ExcessOfStopAt(double t_s) const {
   }
   constexpr int kLooks = 16;
   const double step_s = (end_s - t_s) / kLooks;
+  // One look is just behind the begin and one just before the end: they show the sense of the way
+  // there.
+  constexpr double kAtOnce = 1.0 / 64.0;
+  std::array<AxisValues, kLooks + 3> seen;
   Anchor at = After(channels_, anchor_, t_s);
-  std::array<AxisValues, kLooks + 1> seen;
-  seen[0] = ValuesOf(at.axes);
-  int look = 0;
-  for (AxisValues& here : std::span(seen).subspan<1>()) {
-    at = After(stopped, at, t_s + step_s * ++look);
-    here = ValuesOf(at.axes);
+  seen.front() = ValuesOf(at.axes);
+  for (std::size_t n = 1; n < seen.size(); ++n) {
+    const double looks = std::clamp(static_cast<double>(n) - 1.0, kAtOnce, kLooks - kAtOnce);
+    at = After(stopped, at, n + 1 < seen.size() ? t_s + step_s * looks : end_s);
+    seen[n] = ValuesOf(at.axes);
   }
   // In kTool A and B stop by themselves.
   const auto axes = mode_ == JogMode::kTool ? std::span<const std::size_t>(kLinearAxes)

@@ -266,13 +266,13 @@ class AxisSearch {
   bool EndsTellRoom(std::size_t axis, double speed, double least) const {
     const double square = speed * speed;
     const double most = shares_.acceleration * axes_.acceleration[axis];
-    const double along[2] = {std::abs(start_.first[axis]), std::abs(end_.first[axis])};
-    const double across[2] = {std::abs(start_.second[axis]), std::abs(end_.second[axis])};
+    const double along[] = {std::abs(start_.first[axis]), std::abs(end_.first[axis])};
+    const double across[] = {std::abs(start_.second[axis]), std::abs(end_.second[axis])};
     const double taken = (std::max(across[0], across[1]) + 0.125 * second_.bend) * square;
     if ((std::max(along[0], along[1]) + 0.125 * first_.bend) * least * kSurely <= most - taken) {
       return true;
     }
-    const double left[2] = {most - across[0] * square, most - across[1] * square};
+    const double left[] = {most - across[0] * square, most - across[1] * square};
     const int low = left[0] * along[1] < left[1] * along[0] ? 0 : 1;
     const double above = left[1 - low] * along[low] - left[low] * along[1 - low];
     const double bend = square * second_.bend * along[low] + left[low] * first_.bend;

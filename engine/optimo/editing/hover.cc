@@ -144,7 +144,7 @@ class HoverText {
     const std::size_t most = kind == 1 ? kLaser.size() : kSchedule.size();
     for (std::size_t at = begin; at <= close && value < most; ++at) {
       if (text[at] == '(') ++depth;
-      if (text[at] == ')' && at < close) --depth;
+      if (text[at] == ')') --depth;
       if (at < close && (text[at] != ',' || depth > 0)) continue;
       const std::string_view written = text.substr(begin, at - begin);
       list +=

@@ -135,7 +135,6 @@ void Compensator::Pass(const Instruction& i) {
   switch (i.op) {
     case Op::kPath:
       path_ = static_cast<PathType>(i.choice);
-      hole_ = {};
       if (path_ == PathType::kHole) hole_ = {&i, PlainNumber(p_, i.first_expression)};
       if (path_ == PathType::kPtp || path_ == PathType::kHole) FinishChain();
       break;

@@ -42,7 +42,6 @@ std::vector<Diagnostic> WithoutNames(std::vector<Diagnostic> found) {
 machine::Translation CheckForm(const machine::SourceFile& file) {
   Compilation compiled = Compile(file.bytes, file.name, {.object_limit = 0, .advice = false});
   machine::Translation form;
-  form.ok = compiled.ok;
   form.diagnostics = std::move(compiled.diagnostics);
   form.diagnostics_dropped = compiled.diagnostics_dropped;
   return form;
@@ -63,7 +62,6 @@ RepairedText FixProgram(const machine::SourceFile& file, const ProgramCheck& che
       found = fixing.left.diagnostics;
       chosen = RepairableFindings(fixing.text, found);
     }
-    if (chosen.empty()) break;
     std::string text = ApplyFixes(fixing.text, found);
     if (text == fixing.text) break;
     machine::Translation after = look({file.name, text});

@@ -28,17 +28,15 @@ class Squares {
   std::size_t TakeNearest(const PlanePoint& from) {
     const std::ptrdiff_t cx = Index(from.x, low_.x);
     const std::ptrdiff_t cy = Index(from.y, low_.y);
-    // How far `from` is outside of the squares: rings of squares begin there.
-    const double outside = std::hypot(from.x - std::clamp(from.x, low_.x, high_.x),
-                                      from.y - std::clamp(from.y, low_.y, high_.y));
     std::optional<std::size_t> best;
     double least = HUGE_VAL;
     for (std::ptrdiff_t ring = 0; ring < 2 * side_; ++ring) {
-      if (best && static_cast<double>(ring - 1) * edge_ > least + outside) break;
+      // What lies outside of the squares is still farther from a ring than their nearest square.
+      if (best && static_cast<double>(ring - 1) * edge_ > least) break;
       for (std::ptrdiff_t y = cy - ring; y <= cy + ring; ++y) {
         if (y < 0 || y >= side_) continue;
         const bool whole_row = y == cy - ring || y == cy + ring;
-        const std::ptrdiff_t step = whole_row || ring == 0 ? 1 : 2 * ring;
+        const std::ptrdiff_t step = whole_row ? 1 : 2 * ring;
         for (std::ptrdiff_t x = cx - ring; x <= cx + ring; x += step) {
           if (x < 0 || x >= side_) continue;
           for (const std::size_t i : At(x, y)) {

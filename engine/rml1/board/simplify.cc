@@ -22,7 +22,7 @@ double DistanceToLine(const PlanePoint& p, const PlanePoint& a, const PlanePoint
 Loop Simplified(const Loop& loop, double tolerance) {
   if (loop.size() < 4) return loop;
   const auto at = [&](std::size_t i) -> const PlanePoint& { return loop[i % loop.size()]; };
-  std::vector<bool> kept(loop.size() + 1);
+  std::vector<bool> kept(loop.size());
   // A closed line is two open ones, between its first point and the one furthest from it.
   std::size_t furthest = 0;
   double most = -1.0;

@@ -1,0 +1,181 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/optimo/offline/convert.h"
+#include "engine/optimo/offline/fix_program.h"
+#include "engine/optimo/offline/translate.h"
+#include "tests/engine/optimo/language/compile_text.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+std::string ToMetric(const std::string& text) { return Convert(text, Direction::kToMetric).text; }
+std::string ToInch(const std::string& text) { return Convert(text, Direction::kToInch).text; }
+
+// OPT-8.43, OPT-8.46: what a function gives has no unit: the place counts for the number beside it.
+TEST(ConvertSides, ANumberBesideAFunctionTakesTheUnitOfThePlace) {
+  EXPECT_EQ(ToMetric("VR[0] = INT(VR[30]) + 2"), "VR[0] = INT(VR[30]) + 50.8");
+  EXPECT_EQ(ToMetric("VR[3] = 180 - ABS(VR[30])"), "VR[3] = 3.141593 - ABS(VR[30])");
+  EXPECT_EQ(ToMetric("MOVE (SQRT(VR[30]) + 1,0,0,0,0)"),
+            "MOVE (SQRT(VR[30]) + 25.4,0.0,0.0,0.0,0.0)");
+}
+
+// OPT-8.46: what a function gives is no number of the text: there is nothing to convert beside it,
+// and nothing to report.
+TEST(ConvertSides, WhatAFunctionGivesIsNoNumber) {
+  for (const std::string text :
+       {"VR[0] = VR[1] + INT(VR[30]) + VR[2]", "VR[0] = INT(VR[30]) + VR[1]", "VR[0] = INT(VR[30])",
+        "VR[3] = VR[4] - ABS(VR[30])"}) {
+    EXPECT_EQ(ToMetric(text), text);
+    EXPECT_TRUE(Convert(text, Direction::kToMetric).diagnostics.empty()) << text;
+  }
+}
+
+// OPT-8.45: a product stays one beside a logical operator, on either side of it.
+TEST(ConvertSides, ProductsInConditionsAreNotConverted) {
+  for (const std::string text : {"IF IL[3] AND VR[5] * 2 THEN 50", "IF VR[5] * 2 AND IL[3] THEN 50",
+                                 "IF 1 OR VR[5] / 3 THEN 50"}) {
+    EXPECT_EQ(ToMetric(text), text);
+    EXPECT_TRUE(Convert(text, Direction::kToMetric).diagnostics.empty()) << text;
+  }
+}
+
+// OPT-7.59, OPT-8.30, OPT-8.32: an index that no variable has gives no unit, also where its last
+// byte would.
+TEST(ConvertSides, IndicesThatNoVariableHasHaveNoUnit) {
+  for (const std::string index : {"256", "259", "336", "-256", "-253"}) {
+    const std::string text = "DECLARE N = " + index + "\nVR[N] = 1\n";
+    EXPECT_EQ(ToMetric(text), text);
+  }
+}
+
+// OPT-8.34, OPT-8.35: a name of a variable is no constant, nor is one that nobody declared.
+TEST(ConvertSides, OnlyDeclaredNumbersAreConstants) {
+  for (const std::string text : {"DECLARE XP = VR[0]\nMOVE (XP,0,0,0,0)\n",
+                                 "DECLARE XP = VR[30]\nMOVE (XP,0,0,0,0)\n", "VR[0] = XPOS\n"}) {
+    EXPECT_TRUE(Convert(text, Direction::kToMetric).diagnostics.empty()) << text;
+  }
+}
+
+// OPT-8.27: computed in double precision, to the last of fifteen digits: divided, not multiplied by
+// a rounded part of an inch.
+TEST(ConvertSides, InchesAreDivided) {
+  EXPECT_EQ(ToInch("VR[0] = 4511693040.4"), "VR[0] = 177625710.251969");
+}
+
+// OPT-8.02, OPT-8.39: a directive stands alone on its line, from its first letter.
+TEST(ConvertSides, WhatStandsBeforeADirectiveMakesItAComment) {
+  EXPECT_EQ(ToMetric("X;$dia=1\n"), "X;$dia=1\n");
+  EXPECT_EQ(ToMetric("SPEED 5\nX;$dia=1\n"), "SPEED 5\nX;$dia=1\n");
+  EXPECT_EQ(ToMetric("5;$dia=1\n"), "5;$dia=25.4\n");
+  EXPECT_EQ(ToMetric(" ;$dia=1\n"), " ;$dia=25.4\n");
+}
+
+// OPT-8.57, OPT-8.59: a second slash makes it a path and no switch.
+TEST(ConvertSides, APathOfTwoSlashesIsNoSwitch) {
+  const auto request = ReadConvertArguments(std::vector<std::string>{"//x", "/m"});
+  ASSERT_TRUE(request);
+  ASSERT_TRUE(*request);
+  EXPECT_EQ((*request)->input, "//x");
+  EXPECT_EQ((*request)->output, "//x.s");
+}
+
+// OPT-8.58: what contradicts what is said by name.
+TEST(ConvertSides, ContradictionsNameTheirFiles) {
+  const auto said = [](const std::vector<std::string>& arguments) -> std::string {
+    const auto request = ReadConvertArguments(arguments);
+    return request ? "nothing" : std::string(request.error().detail);
+  };
+  EXPECT_EQ(said({"in.s", "out.s"}), "in.s and out.s");
+  EXPECT_EQ(said({"in.si", "out.si"}), "in.si and out.si");
+  EXPECT_EQ(said({"in.s", "out.cmp"}), "out.cmp would not be metric");
+  EXPECT_EQ(said({"in.cmp", "/m"}), "in.cmp is metric");
+  EXPECT_EQ(said({"in.s", "/m"}), "in.s and its switch");
+  EXPECT_EQ(said({"in.old"}), "in.old is neither .S nor .SI");
+  EXPECT_EQ(said({"in.s", "/x"}), "/x");
+  EXPECT_EQ(said({"in.s", "/i", "/m"}), "/i and /m");
+}
+
+// OPT-7.50: of more findings than a list holds, those that are not seen may be other errors: no
+// name is put right then. So in an inch source, too.
+TEST(ConvertSides, NamesStayWhereNotAllFindingsAreSeen) {
+  std::string text = "DECLARE PASSLR = VR[1]\n";
+  for (int n = 0; n < 2500; ++n) text += "PASSRL = 5.\n";
+  text += "SPEED 101\n";
+  const ProgramCheck check = [](const machine::SourceFile& file) {
+    return TranslateOptimo(file, {});
+  };
+  for (const std::string name : {"part.SI", "part.S"}) {
+    const RepairedText fixing = FixProgram({.name = name, .bytes = text}, check);
+    EXPECT_EQ(fixing.text, text) << name;
+    EXPECT_TRUE(fixing.fixed.empty()) << name;
+  }
+}
+
+// OPT-B.71, OPT-1.08: what is refused says why, and of which file; the smallest limit is one.
+TEST(ConvertSides, RefusalsNameTheirFile) {
+  const machine::Translation empty = TranslateOptimo({"a.S", ""}, {});
+  ASSERT_EQ(empty.diagnostics.size(), 1U);
+  EXPECT_EQ(empty.diagnostics[0].detail, "the file is empty");
+  EXPECT_EQ(empty.diagnostics[0].file, "a.S");
+  const std::string object = MustCompile("SPEED 5\n").object;
+  const machine::Translation limited = TranslateOptimo({"44.O", object}, {}, 1);
+  ASSERT_EQ(limited.diagnostics.size(), 1U);
+  EXPECT_EQ(limited.diagnostics[0].code, ErrorCode::kObjectTooLong);
+  EXPECT_EQ(limited.diagnostics[0].detail,
+            "the object has " + std::to_string(object.size()) + " bytes");
+}
+
+// OPT-8.46: the argument of a function is an expression of its own: its operators do not count
+// outside; and a line is reported once, each.
+TEST(ConvertSides, OperatorsAreCountedByExpressionAndReportedByLine) {
+  EXPECT_EQ(ToMetric("VR[0] = INT(VR[30] + 1) + 2"), "VR[0] = INT(VR[30] + 1) + 50.8");
+  EXPECT_EQ(ToMetric("VR[0] = INT(VR[30] * 3) + 2"), "VR[0] = INT(VR[30] * 3) + 50.8");
+  const std::string line = "MOVE (VR[0]+1+2,VR[1]+1+2,0,0,0)\n";
+  EXPECT_EQ(Convert(line, Direction::kToMetric).diagnostics.size(), 1U);
+  EXPECT_EQ(Convert(line + line, Direction::kToMetric).diagnostics.size(), 2U);
+}
+
+// OPT-8.46, OPT-8.47: a number alone is a truth value on either side.
+TEST(ConvertSides, TruthValuesStayOnEitherSide) {
+  EXPECT_EQ(ToMetric("IF VR[5] > 100 AND 1 THEN 50"), "IF VR[5] > 2540.0 AND 1 THEN 50");
+  EXPECT_EQ(ToMetric("IF 1 AND VR[5] > 100 THEN 50"), "IF 1 AND VR[5] > 2540.0 THEN 50");
+}
+
+// OPT-2.04: the form of an inch source is put right, its names too, and no more: that /FLY is
+// nothing before the end is advice.
+TEST(ConvertSides, OfInchSourcesErrorsAreRepaired) {
+  const ProgramCheck check = [](const machine::SourceFile& file) {
+    return TranslateOptimo(file, {});
+  };
+  const std::string move = "MOVE (1.,2.,3.,0.,0.)/FLY\n";
+  EXPECT_EQ(FixProgram({.name = "a.SI", .bytes = "SPEDE 20\n" + move}, check).text,
+            "SPEED 20\n" + move);
+  EXPECT_EQ(
+      FixProgram({.name = "a.SI", .bytes = "DECLARE PASSLR = VR[1]\nPASSRL = 5.\n"}, check).text,
+      "DECLARE PASSLR = VR[1]\nPASSLR = 5.\n");
+}
+
+// program_file.h: what does not fit into the list is counted, of inch sources as well; the source
+// is told when it was asked for.
+TEST(ConvertSides, TranslationsTellWhatDidNotFit) {
+  std::string text;
+  for (int n = 0; n < 1500; ++n) text += "SPEED 101\n";
+  for (const std::string name : {"a.SI", "a.S"}) {
+    const machine::Translation looked =
+        TranslateOptimo({name, text}, {.advice = false, .unconverted = true});
+    EXPECT_EQ(looked.diagnostics.size(), machine::kDiagnosticsMax) << name;
+    EXPECT_FALSE(looked.diagnostics_dropped.empty()) << name;
+  }
+  const auto lines =
+      TranslateOptimo({"a.S", "SPEED 5\n\nSPEED 6\n"}, {.source = true}).source.step_lines;
+  ASSERT_GE(lines.size(), 2U);
+  EXPECT_EQ(lines[0], 1);
+  EXPECT_EQ(lines[1], 3);
+  EXPECT_TRUE(TranslateOptimo({"a.S", "SPEED 5\n"}, {}).source.step_lines.empty());
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

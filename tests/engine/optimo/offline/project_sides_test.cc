@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/optimo/offline/project.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+class ProjectSides : public testing::Test {
+ protected:
+  void Put(int slot, std::string_view text) {
+    bundle_.programs.push_back({slot, {std::to_string(slot) + ".S", text}, false});
+  }
+  void Define(int kind, int process, std::vector<double> values) {
+    bundle_.processes.push_back({kind, process, std::move(values), ""});
+  }
+  machine::TransferPlan Plan(bool insert = false) {
+    return PlanTransfer(bundle_, {.insert_missing_definitions = insert});
+  }
+  std::size_t CountOf(ErrorCode code) {
+    std::size_t count = 0;
+    for (const Diagnostic& d : Plan().diagnostics) {
+      // What the compiler says of a program alone is a warning.
+      if (code == ErrorCode::kWorkdefMissing && !IsError(d.severity)) continue;
+      if (code == ErrorCode::kPracticeAdvice && d.rule != "OPT-7.39") continue;
+      if (d.code == code) ++count;
+    }
+    return count;
+  }
+  machine::ProjectBundle bundle_;
+};
+
+constexpr const char* kDefinesIt = "WORKDEF 1,0 (6.5, 80., 1.5, 95)\n";
+constexpr const char* kUsesIt = "WORK 1,0/ON\nWORK 1,0/OFF\n";
+
+// OPT-3.12, OPT-9.16: the FUNCTION of a FUNCTION shares the definitions, in whatever order the
+// programs stand, and whether the definition is with the callers or the called.
+TEST_F(ProjectSides, FarRelativesShareDefinitions) {
+  for (const bool reversed : {false, true}) {
+    bundle_ = {};
+    std::vector<std::pair<int, std::string>> programs = {
+        {32, std::string("FUNCTION 33\n") + kUsesIt},
+        {33, "FUNCTION 34\n"},
+        {34, "FUNCTION 35\n"},
+        {35, kDefinesIt}};
+    if (reversed) std::swap(programs[0], programs[3]);
+    if (reversed) std::swap(programs[1], programs[2]);
+    for (const auto& [slot, text] : programs) Put(slot, text);
+    EXPECT_EQ(CountOf(ErrorCode::kWorkdefMissing), 0U) << reversed;
+  }
+  for (const bool reversed : {false, true}) {
+    bundle_ = {};
+    std::vector<std::pair<int, std::string>> programs = {
+        {32, std::string("FUNCTION 33\n") + kDefinesIt},
+        {33, "FUNCTION 34\n"},
+        {34, "FUNCTION 35\n"},
+        {35, kUsesIt}};
+    if (reversed) std::swap(programs[0], programs[3]);
+    if (reversed) std::swap(programs[1], programs[2]);
+    for (const auto& [slot, text] : programs) Put(slot, text);
+    EXPECT_EQ(CountOf(ErrorCode::kWorkdefMissing), 0U) << reversed;
+  }
+}
+
+// OPT-3.09, OPT-9.16: a FUNCTION is no definition, whatever its number.
+TEST_F(ProjectSides, AFunctionDefinesNoProcess) {
+  Put(45, "FUNCTION 1\nWORK 1,0/ON\nWORK 1,0/OFF\n");
+  EXPECT_EQ(CountOf(ErrorCode::kWorkdefMissing), 1U);
+  bundle_ = {};
+  Put(45, "FUNCTION 2\nWORK 2,0/ON\nWORK 2,0/OFF\n");
+  EXPECT_EQ(CountOf(ErrorCode::kWorkdefMissing), 1U);
+}
+
+// OPT-3.11: each value counts, the first and the last.
+TEST_F(ProjectSides, EachValueOfADefinitionCounts) {
+  for (std::size_t other = 0; other <= 4; ++other) {
+    bundle_ = {};
+    std::vector<double> values = {6.5, 80, 1.5, 95};
+    if (other < values.size()) values[other] += 1.0;
+    Define(1, 0, values);
+    Put(45, kDefinesIt);
+    EXPECT_EQ(CountOf(ErrorCode::kProjectProcess), other < 4 ? 1U : 0U) << other;
+  }
+}
+
+// OPT-3.09: inserted in the order in which they are used, behind the declarations, also where only
+// one statement follows those.
+TEST_F(ProjectSides, InsertedDefinitionsStandInTheOrderOfTheirUse) {
+  Define(1, 0, {8, 75, 1, 50});
+  Define(2, 0, {11});
+  bundle_.schedules.push_back({.number = 11, .name = {}});
+  Put(45, "DECLARE V = 5\nWORK 2,0/ON\nWORK 1,0/ON\n");
+  Put(46, "DECLARE V = 5\nWORK 1,0/ON\n");
+  const machine::TransferPlan plan = Plan(true);
+  ASSERT_TRUE(plan.ok);
+  ASSERT_EQ(plan.programs.size(), 2U);
+  EXPECT_EQ(plan.programs[0].source,
+            "DECLARE V = 5\n     WORKDEF 2,0 (11)\n     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\n"
+            "WORK 2,0/ON\nWORK 1,0/ON\n");
+  EXPECT_EQ(plan.programs[1].source,
+            "DECLARE V = 5\n     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\nWORK 1,0/ON\n");
+}
+
+// OPT-7.39: it takes a MOVE, in ABSOL, and another program with a SYSDEF.
+TEST_F(ProjectSides, WhatNeedsASysdef) {
+  const std::string sysdef = "SYSDEF (1,2,3,0,0,0)\n", move = "MOVE (1,2,3,0,0)\n";
+  const auto said = [&](const std::string& one, const std::string& other) {
+    bundle_ = {};
+    Put(45, one);
+    Put(46, other);
+    return CountOf(ErrorCode::kPracticeAdvice);
+  };
+  EXPECT_EQ(said("COORD ABSOL\n" + move, sysdef), 1U);
+  EXPECT_EQ(said("COORD ABSOL\n", sysdef), 0U);
+  EXPECT_EQ(said("COORD ROBOT\n" + move, sysdef), 0U);
+  EXPECT_EQ(said("COORD ABSOL\n" + move, "COORD ABSOL\n" + move), 0U);
+}
+
+// OPT-3.02, OPT-3.03, OPT-3.04, OPT-3.06, OPT-3.08: what is wrong with a definition, by which rule.
+TEST_F(ProjectSides, DefinitionsAreRefusedByTheirRule) {
+  const auto said = [](int kind, int process, std::vector<double> values) {
+    std::vector<std::string> lines;
+    for (const Diagnostic& d : CheckProcess({kind, process, std::move(values), ""}))
+      lines.push_back(d.rule + " " + std::string(d.detail));
+    return lines;
+  };
+  using Refusals = std::vector<std::string>;
+  EXPECT_EQ(said(0, 4, {5}), (Refusals{"OPT-3.03 process definition 0,4: 1 values do not fit this "
+                                       "kind"}));
+  EXPECT_EQ(said(1, 5, {5, 6}),
+            (Refusals{"OPT-3.04 process definition 1,5: 2 values do not fit this "
+                      "kind"}));
+  EXPECT_EQ(said(2, 6, {}), (Refusals{"OPT-3.06 process definition 2,6: 0 values do not fit this "
+                                      "kind"}));
+  EXPECT_EQ(said(3, 7, {}), (Refusals{"OPT-3.02 process definition 3,7: the kind is 0, 1 or 2, the "
+                                      "process number 0 to 9"}));
+  EXPECT_EQ(said(1, 2, {0, 101, -1, 95}),
+            (Refusals{"OPT-3.08 process definition 1,2: the speed must be above 0",
+                      "OPT-3.08 process definition 1,2: the power is out of range",
+                      "OPT-3.08 process definition 1,2: the delay is out of range"}));
+  EXPECT_EQ(said(1, 2, {101, 5, 1, 101}),
+            (Refusals{"OPT-3.08 process definition 1,2: the speed is out of range",
+                      "OPT-3.08 process definition 1,2: the peak is out of range"}));
+  EXPECT_EQ(said(2, 8, {64}),
+            (Refusals{"OPT-3.06 process definition 2,8: laser schedules go from 1 to 63"}));
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

@@ -1,0 +1,122 @@
+// What moves and what is let go in the queue, uploads by their size, and executables of an end.
+#include <gmock/gmock.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/core/hex.h"
+#include "storage/content.h"
+#include "tests/storage/sqlite_bed.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+class SqliteMoves : public testing::Test {
+ protected:
+  Store& store() { return bed_.store(); }
+  std::int64_t Put(NewJob job) {
+    job.kind = "CHECK";
+    return Must(store().SubmitAndWait(std::move(job))).job.id;
+  }
+  std::vector<std::int64_t> InOrder() {
+    std::vector<std::int64_t> ids;
+    for (const JobRecord& job : Must(store().ListJobs({.order = JobOrder::kQueue, .limit = 99})))
+      ids.push_back(job.id);
+    return ids;
+  }
+
+  SqliteBed bed_;
+};
+
+// Each move halves the room in front of the next job that comes: when none is left, those that were
+// moved are spread anew, behind all others.
+TEST_F(SqliteMoves, WhatIsMovedToTheEndStandsThereHoweverOften) {
+  const std::int64_t first = Put({});
+  const std::int64_t second = Put({});
+  const std::int64_t third = Put({});
+  Must(store().Move(second, 0, {}, {}));
+  for (int i = 0; i < 70; ++i) {
+    Must(store().Move(first, 0, {}, {}));
+    ASSERT_THAT(InOrder(), ElementsAre(third, second, first)) << i;
+    Must(store().Move(second, 0, {}, {}));
+    ASSERT_THAT(InOrder(), ElementsAre(third, first, second)) << i;
+  }
+}
+
+// Ready ones come before those that are held back, whatever their priority is.
+TEST_F(SqliteMoves, ReadyOnesAreListedBeforeTheOthers) {
+  const std::int64_t held = Put({.held = true});
+  const std::int64_t low = Put({.priority = -3});
+  const std::int64_t high = Put({.priority = 2});
+  const std::int64_t held_high = Put({.priority = 7, .held = true});
+  EXPECT_THAT(InOrder(), ElementsAre(high, low, held_high, held));
+}
+
+// What did not succeed is waited for no more by the one that a person let go.
+TEST_F(SqliteMoves, WhatIsLetGoWaitsForNothingThatIsOver) {
+  const std::int64_t other = Put({.held = true});
+  const std::int64_t awaited = Put({});
+  const std::int64_t waits = Put({.after = {awaited}});
+  const std::int64_t waits_twice = Put({.after = {other, awaited}});
+  Must(store().RequestCancel(awaited, {}));
+  EXPECT_THAT(Must(store().GetJob(waits)).after, ElementsAre(awaited));
+  EXPECT_THAT(Must(store().LetGo(waits, {})).after, IsEmpty());
+  EXPECT_THAT(Must(store().GetJob(waits)).after, IsEmpty());
+  Must(store().LetGo(waits_twice, {}));
+  EXPECT_THAT(Must(store().GetJob(waits_twice)).after, ElementsAre(other));
+}
+
+// Told with the piece that is too much, not at the end alone.
+TEST_F(SqliteMoves, AnUploadTakesNoMoreThanItsSize) {
+  const std::string all = "0123456789";
+  const auto writer = [&] { return Must(store().WriteBlob(HexOf(Sha256(all)), all.size())); };
+  const auto one = writer();
+  ASSERT_TRUE(one->Append("012345"));
+  const Status more = one->Append("67890");
+  ASSERT_FALSE(more);
+  EXPECT_EQ(more.error().code, ErrorCode::kCellTooLarge);
+  const auto other = writer();
+  ASSERT_TRUE(other->Append("012345"));
+  ASSERT_TRUE(other->Append("6789"));
+  EXPECT_TRUE(other->Finish(std::chrono::hours(1)));
+  EXPECT_EQ(Must(store().ReadBlob(HexOf(Sha256(all)))), all);
+}
+
+// A run may compile more than one program.
+TEST_F(SqliteMoves, AllExecutablesOfAnEndAreKept) {
+  Must(store().PutMachine({.id = "m", .family = "optimo"}, 0));
+  std::vector<NewExecutable> made;
+  for (const int slot : {3, 4, 5}) {
+    const auto put = Must(store().PutPrograms("m", {{.slot = slot, .object = "o"}}, {}));
+    made.push_back({.slot = slot,
+                    .object_revision = put.front().revision,
+                    .bytes = "executable " + std::to_string(slot)});
+  }
+  const std::int64_t job = Put({.machine = "m"});
+  const auto leased = Must(store().Acquire("w", {"CHECK"}, std::chrono::hours(1), {}));
+  ASSERT_TRUE(leased);
+  ASSERT_EQ(leased->job.id, job);
+  Must(store().Finish(leased->lease,
+                      {.outcome = {.state = JobState::kSucceeded}, .executables = made}));
+  for (const NewExecutable& one : made)
+    EXPECT_EQ(Must(store().GetProgram("m", one.slot)).executable, one.bytes) << one.slot;
+}
+
+// A second program of the same large content leaves nothing behind at others.
+TEST_F(SqliteMoves, AContentThatComesTwiceHoldsNoOther) {
+  Must(store().PutMachine({.id = "m", .family = "optimo"}, 0));
+  const std::string large = Noise((std::size_t{1} << 20) + 5, 1);
+  Must(store().PutPrograms("m", {{.slot = 1, .object = Noise(2'000, 2)}}, {}));
+  Must(store().PutPrograms("m", {{.slot = 2, .object = large}}, {}));
+  Must(store().PutPrograms("m", {{.slot = 3, .object = large}}, {}));
+  EXPECT_TRUE(
+      Eventually([&] { return NumberIn(bed_.path(), "SELECT sum(holds) FROM blob") == 0; }));
+  Must(store().DeleteProgram("m", 1, kAnyRevision));
+  EXPECT_TRUE(Eventually([&] { return NumberIn(bed_.path(), "SELECT count(*) FROM blob") == 1; }));
+}
+
+}  // namespace
+}  // namespace rmlcell::storage::sqlite
