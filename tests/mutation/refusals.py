@@ -7,7 +7,7 @@ import hashlib
 import pathlib
 
 HERE = pathlib.Path(__file__).parent
-MAKERS = ("changes.h", "operands.py", "places.py", "switched_source.py")
+MAKERS = ("changes.h", "operands.py", "switched_source.py")
 KEY_LETTERS = 24
 
 
@@ -24,7 +24,7 @@ class Refusals:
 
     def key(self, source, places):
         """`places` are those of the source in their order: a number below is one's place among them."""
-        text = repr([(place.begin, place.kind, place.after) for place in places])
+        text = repr([(place.begin, place.end, place.kind, place.after) for place in places])
         return hashlib.sha256(self.made_by + source.encode() + text.encode()).hexdigest()[:KEY_LETTERS]
 
     def get(self, key):

@@ -5,8 +5,8 @@ import unittest
 
 from refusals import Refusals, numbers_of, text_of
 
-Place = collections.namedtuple("Place", "begin kind after")
-PLACES = [Place(3, "sign", "-"), Place(9, "bound", "<")]
+Place = collections.namedtuple("Place", "begin end kind after")
+PLACES = [Place(3, 4, "sign", "-"), Place(9, 10, "bound", "<")]
 
 
 class Kept(unittest.TestCase):
@@ -30,8 +30,8 @@ class Kept(unittest.TestCase):
     def test_another_source_or_place_is_another_question(self):
         asked = Refusals(self.path)
         keys = {asked.key("source", PLACES), asked.key("Source", PLACES), asked.key("source", PLACES[:1]),
-                asked.key("source", [PLACES[0], Place(9, "bound", ">")])}
-        self.assertEqual(len(keys), 4)
+                asked.key("source", [PLACES[0], Place(9, 10, "bound", ">")]), asked.key("source", [PLACES[0], Place(9, 11, "bound", "<")])}
+        self.assertEqual(len(keys), 5)
 
     def test_what_nobody_asks_for_any_more_goes(self):
         first = Refusals(self.path)
