@@ -225,6 +225,7 @@ TEST_F(HostLinesTest, AnotherHostIsRefusedByEitherServer) {
   ASSERT_TRUE(b_->Becomes(v1::MACHINE_STATE_IDLE));
   Control(*a_);
   Start(*a_);
+  ASSERT_TRUE(a_->Becomes(v1::MACHINE_STATE_RUNNING));
   const std::int64_t fence = Must(store_.MachineLeases()).front().fence;
   v1::HostHello hello;
   hello.set_join_token("secret");
