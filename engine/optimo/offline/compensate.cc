@@ -43,7 +43,7 @@ class Compensator {
   }
 
  private:
-  struct HolePath {                            // the PATH HOLE in force
+  struct HolePath {                            // the last PATH HOLE
     const Instruction* instruction = nullptr;  // until its first MOVE
     std::optional<double> radius{};            // mm, as it is cut
   };

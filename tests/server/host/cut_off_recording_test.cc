@@ -51,16 +51,6 @@ class CutOffRecordingTest : public HostMachineTest {
     Make();
     host_->Begin(memory_, now_);
   }
-  void LiveAsOptimo() {
-    auto made = HostMachine::Make({.name = "machines/optimo-1",
-                                   .host = "workshop/1",
-                                   .fence = 7,
-                                   .family = families::FindFamily("optimo")},
-                                  now_, [this] { return "token " + std::to_string(++tokens_); });
-    ASSERT_TRUE(made) << made.error().detail;
-    host_ = *std::move(made);
-    host_->Begin({}, now_);
-  }
   std::optional<MachineRecorder::OfJob> Found(const v1::MachineMark& mark) const {
     return RecoverRecording({.known = true, .mark = mark}, path_);
   }
@@ -158,7 +148,7 @@ TEST_F(CutOffRecordingTest, WhereverItIsCut) {
   CutAnywhere(3s);
   fs::remove(path_);
   file_.emplace(path_);
-  LiveAsOptimo();
+  MakeOptimo();
   BeginJob(
       "COORD ABSOL\nPATH PTP\nMOVE (0.,2000.,-400.,0.,0.)\nPATH LIN\nSPEED 10\nWORK 0,0/ON\n"
       "MOVE (100.,2000.,-400.,0.,0.)/FLY\nMOVE (100.,2100.,-400.,0.,0.)\nWORK 0,0/OFF\n"

@@ -15,14 +15,7 @@ using testing::SizeIs;
 class HandboxOverTheLine : public HostMachineTest {
  protected:
   void MakeAndTake() {
-    auto made = HostMachine::Make({.name = "machines/optimo-1",
-                                   .host = "workshop/1",
-                                   .fence = 7,
-                                   .family = families::FindFamily("optimo")},
-                                  now_, [this] { return "token " + std::to_string(++tokens_); });
-    ASSERT_TRUE(made) << made.error().detail;
-    host_ = *std::move(made);
-    host_->Begin({}, now_);
+    MakeOptimo();
     Control(v1::ControlLease::ON_LOSS_GO_ON);
   }
   void Open() {

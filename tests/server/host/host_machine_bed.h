@@ -46,6 +46,17 @@ class HostMachineTest : public testing::Test {
     ASSERT_TRUE(made) << made.error().detail;
     host_ = *std::move(made);
   }
+  // An Optimo that lives, with nothing in it.
+  void MakeOptimo() {
+    auto made = HostMachine::Make({.name = "machines/optimo-1",
+                                   .host = "workshop/1",
+                                   .fence = 7,
+                                   .family = families::FindFamily("optimo")},
+                                  now_, [this] { return "token " + std::to_string(++tokens_); });
+    ASSERT_TRUE(made) << made.error().detail;
+    host_ = *std::move(made);
+    host_->Begin({}, now_);
+  }
   // Time goes by, in steps as a host takes them.
   void Pass(std::chrono::milliseconds time, std::chrono::milliseconds step = 10ms) {
     for (std::chrono::milliseconds gone{0}; gone < time; gone += step) {

@@ -14,16 +14,6 @@ using testing::Not;
 
 class ToldReasons : public HostMachineTest {
  protected:
-  void MakeOptimo() {
-    auto made = HostMachine::Make({.name = "machines/optimo-1",
-                                   .host = "workshop/1",
-                                   .fence = 7,
-                                   .family = families::FindFamily("optimo")},
-                                  now_, [this] { return "token " + std::to_string(++tokens_); });
-    ASSERT_TRUE(made) << made.error().detail;
-    host_ = *std::move(made);
-    host_->Begin({}, now_);
-  }
   std::vector<std::string> Messages() {
     std::vector<std::string> texts;
     for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true)) {
