@@ -86,7 +86,7 @@ void HostProcesses::LookAt(const std::string& machine, Place& place) {
     place.process = -1;
     // In order, or because the machine is another host's: it is asked for again.
     const bool fine = WIFEXITED(how) && (WEXITSTATUS(how) == 0 || WEXITSTATUS(how) == kNotMine);
-    if (place.wanted && !fine) NoteEnd(machine, place, how);
+    if (place.wanted && !fine) NoteEnd(machine, place, how, now);
   }
   if (place.process > 0 || !place.wanted || now < place.next_start) return;
   if (options_.is_heard && options_.is_heard(machine)) return;
@@ -110,11 +110,11 @@ void HostProcesses::Start(const std::string& machine, Place& place) {
   place.process = *process;
 }
 
-void HostProcesses::NoteEnd(const std::string& machine, Place& place, int how) {
+void HostProcesses::NoteEnd(const std::string& machine, Place& place, int how,
+                            std::chrono::steady_clock::time_point now) {
   const std::string with = WIFSIGNALED(how) ? "signal " + std::to_string(WTERMSIG(how))
                                             : "code " + std::to_string(WEXITSTATUS(how));
   spdlog::warn("the host of {} ended with {}", machine, with);
-  const auto now = options_.clock();
   place.ends.push_back(now);
   while (now - place.ends.front() > kEndsWithin) place.ends.pop_front();
   if (place.ends.size() < kEndsMax) return;

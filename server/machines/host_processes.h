@@ -70,7 +70,8 @@ class HostProcesses {
   // Preconditions: mutex_ is held.
   void LookAt(const std::string& machine, Place& place);
   void Start(const std::string& machine, Place& place);
-  void NoteEnd(const std::string& machine, Place& place, int how);
+  void NoteEnd(const std::string& machine, Place& place, int how,
+               std::chrono::steady_clock::time_point now);
 
   const Options options_;
   mutable std::mutex mutex_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <barrier>
 #include <future>
 #include <memory>
 
@@ -74,6 +75,14 @@ class HostsTest : public testing::Test {
     executor.reset();  // what was posted is done
   }
 
+  // Waits until what was posted before is done: each thread of the executor has come here.
+  void Settle() {
+    const auto together = std::make_shared<std::barrier<>>(kThreads + 1);
+    for (int thread = 0; thread < kThreads; ++thread)
+      executor->Post([together] { together->arrive_and_wait(); });
+    together->arrive_and_wait();
+  }
+
   // The events of the machine in the log of the cell.
   std::vector<v1::MachineEvent> Told() {
     std::vector<v1::MachineEvent> told;
@@ -85,10 +94,12 @@ class HostsTest : public testing::Test {
     return told;
   }
 
+  static constexpr int kThreads = 2;
+
   ServerBed bed;
   EventFeed feed{bed.store()};
   TestSteadyClock clock;
-  std::unique_ptr<Executor> executor = std::make_unique<Executor>(2);
+  std::unique_ptr<Executor> executor = std::make_unique<Executor>(kThreads);
   Hosts hosts{{.store = bed.store(),
                .feed = feed,
                .executor = *executor,

@@ -296,7 +296,8 @@ TEST_F(HostsTest, AnOrderThatWasGivenUpIsNotSent) {
   const auto link = Joined();
   std::promise<void> goes_on;
   const std::shared_future<void> wait = goes_on.get_future().share();
-  for (int thread = 0; thread < 2; ++thread) executor->Post([wait] { wait.wait(); });
+  for (int thread = 0; thread < kThreads; ++thread)
+    executor->Post([wait] { wait.wait(); });
   std::promise<ErrorCode> told;
   v1::HostOrder order;
   order.mutable_start()->set_program(5);
@@ -477,8 +478,9 @@ TEST_F(HeldElsewhere, WhoHoldsAMachineThatIsOffIsWaitedFor) {
   EXPECT_TRUE(Eventually([&] { return looks == 1; }));
   clock.Advance(Hosts::kLease + std::chrono::seconds(4));
   hosts.Look();
-  clock.Advance(std::chrono::seconds(1));
+  Settle();
   EXPECT_EQ(state(), storage::JobState::kRunning);
+  clock.Advance(std::chrono::seconds(1));
   EXPECT_TRUE(Eventually([&] {
     hosts.Look();
     clock.Advance(std::chrono::seconds(1));
