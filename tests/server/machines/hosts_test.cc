@@ -296,8 +296,7 @@ TEST_F(HostsTest, AnOrderThatWasGivenUpIsNotSent) {
   const auto link = Joined();
   std::promise<void> goes_on;
   const std::shared_future<void> wait = goes_on.get_future().share();
-  for (int thread = 0; thread < kThreads; ++thread)
-    executor->Post([wait] { wait.wait(); });
+  for (int thread = 0; thread < kThreads; ++thread) executor->Post([wait] { wait.wait(); });
   std::promise<ErrorCode> told;
   v1::HostOrder order;
   order.mutable_start()->set_program(5);
