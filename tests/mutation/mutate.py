@@ -39,13 +39,24 @@ BEHAVIOUR = "behaviour: "  # the hashes of tests/behaviour noticed it, and no te
 COUNTED = ("noticed", "survived")
 
 
-def read_equivalent():
-    """The changes that change nothing, with the reason, as the tables of equivalent/ list them."""
-    known = {}
-    for table in sorted((pathlib.Path(__file__).parent / "equivalent").glob("*.csv")):
-        with open(table, encoding="utf-8", newline="") as file:
-            known |= {(row["file"], row["line"], row["change"]): row["why"] for row in csv.DictReader(file)}
-    return known
+class Arguments:
+    """The changes that change nothing, with the reason, as the tables of equivalent/ list them. Where other lines of
+    the source read the same, the line before it says which one is meant."""
+
+    def __init__(self):
+        self.rows = {}
+        self.lines = {}
+        for table in sorted((pathlib.Path(__file__).parent / "equivalent").glob("*.csv")):
+            with open(table, encoding="utf-8", newline="") as file:
+                for row in csv.DictReader(file):
+                    self.rows[row["file"], row["line"], row["change"], row["behind"] or ""] = row["why"]
+
+    def of(self, file, text, change, line):
+        """Why this change at this line changes nothing; None where nobody says so."""
+        if file not in self.lines:
+            self.lines[file] = (ROOT / file).read_text(encoding="utf-8").split("\n")
+        behind = self.lines[file][line - 2].strip() if line > 1 else ""
+        return self.rows.get((file, text, change, ""), self.rows.get((file, text, change, behind)))
 
 
 def error_codes():
@@ -113,7 +124,7 @@ class Measurement:
         results = BUILD / "results"
         results.mkdir(parents=True, exist_ok=True)
         self.ledger = Ledger(results / f"{options.seed}.jsonl")
-        self.equivalent = read_equivalent()
+        self.arguments = Arguments()
         self.codes = error_codes()
         self.workshop = None
         self.switches = None
@@ -222,7 +233,8 @@ class Measurement:
             noticed = sum(row["outcome"] == "noticed" for row in rows)
             by_hash = sum(row["by"].startswith(BEHAVIOUR) for row in rows)
             survived = [row for row in rows if row["outcome"] == "survived"]
-            argued = [row for row in survived if (row["file"], row["text"], row["change"]) in self.equivalent]
+            argued = [row for row in survived
+                      if self.arguments.of(row["file"], row["text"], row["change"], row["line"])]
             identical = sum(row["outcome"] == "identical" for row in rows)
             meant = noticed + len(survived) - len(argued)
             share = noticed / meant if meant else 0.0  # nothing tried shows nothing

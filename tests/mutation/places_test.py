@@ -100,11 +100,20 @@ class Sequence(unittest.TestCase):
         self.assertGreater(len({place.kind for place in first("1")}), 5)
 
     def test_what_is_listed_as_equivalent_still_stands_there(self):
-        for (file, line, change), why in mutate.read_equivalent().items():
-            places = mutate.places_of(mutate.ROOT, file, mutate.error_codes())
-            self.assertTrue(any(place.text == line and mutate.change_of(place) == change for place in places),
-                            f"{file}: {line}")
+        arguments = mutate.Arguments()
+        places = {file: mutate.places_of(mutate.ROOT, file, mutate.error_codes()) for file, *_ in arguments.rows}
+        for (file, line, change, behind), why in arguments.rows.items():
+            self.assertTrue(any(place.text == line and mutate.change_of(place) == change
+                                and arguments.of(file, line, change, place.line) == why for place in places[file]),
+                            f"{file}: {line} behind {behind}")
             self.assertGreater(len(why.split()), 5, f"{file}: {line} has no argument")
+
+    def test_an_argument_may_say_which_of_lines_that_read_the_same_it_means(self):
+        arguments = mutate.Arguments()
+        arguments.lines["a.cc"] = ["case 1:", "  break;", "case 2:", "  break;"]
+        arguments.rows = {("a.cc", "break;", "break; => ;", "case 2:"): "the last one"}
+        self.assertIsNone(arguments.of("a.cc", "break;", "break; => ;", 2))
+        self.assertEqual(arguments.of("a.cc", "break;", "break; => ;", 4), "the last one")
 
 
 if __name__ == "__main__":
