@@ -525,7 +525,7 @@ void HostMachine::Notice() {
   for (const machine::Alarm& alarm : status.alarms) alarms_since_.try_emplace(alarm.id, now_.wall);
   if (status.alarms.empty()) alarms_since_.clear();
   const SimTime lost = driver_->TakeLost();
-  late_ = late_ || lost >= LateHold(setup_.options);
+  late_ = late_ || lost > LateHold(setup_.options);
   if (lost > SimTime(0) && (status.open || moves())) {
     v1::ClockSlipped& slipped = *Add(status.time).mutable_clock_slipped();
     slipped.set_fence(setup_.fence);

@@ -92,8 +92,12 @@ class ContentSink final : public web::UploadSink {
 class Sink final : public web::UploadSink {
  public:
   Sink(ProgramBook& programs, const web::UploadHeader& header, std::string name,
-       v1::ProgramForm form)
-      : programs_(programs), header_(header), name_(std::move(name)), form_(form) {}
+       v1::ProgramForm form, std::string caller)
+      : programs_(programs),
+        header_(header),
+        name_(std::move(name)),
+        form_(form),
+        caller_(std::move(caller)) {}
 
   Status Append(std::string_view chunk) override {
     if (const Status fits =
@@ -117,7 +121,8 @@ class Sink final : public web::UploadSink {
                          .etag = header_.etag,
                          .bytes = std::move(bytes_),
                          .validate_only = header_.validate_only,
-                         .force = header_.force});
+                         .force = header_.force,
+                         .caller = caller_});
     if (!stored) {
       return Refused(
           bridge::ToRpcStatus(stored.error.error, stored.error.diagnostics, stored.error.dropped));
@@ -132,6 +137,7 @@ class Sink final : public web::UploadSink {
   web::UploadHeader header_;
   std::string name_;
   v1::ProgramForm form_;
+  std::string caller_;
   bridge::Sha256 digest_;
   std::string bytes_;
 };
@@ -198,7 +204,8 @@ Result<std::unique_ptr<web::UploadSink>> WebResources::BeginUpload(
   if (const Status fits = programs_.CheckSize(header.size); !fits) return fits.error();
   const Result<v1::ProgramForm> form = FormOf(path->form);
   if (!form) return form.error();
-  return std::unique_ptr<web::UploadSink>(std::make_unique<Sink>(programs_, header, name, *form));
+  return std::unique_ptr<web::UploadSink>(
+      std::make_unique<Sink>(programs_, header, name, *form, caller->identity));
 }
 
 }  // namespace rmlcell::server

@@ -1,10 +1,9 @@
 #include <algorithm>
-#include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "engine/motion/ride/interruption.h"
-#include "engine/optimo/ride/lead.h"
 #include "engine/optimo/ride/motion_place.h"
 #include "engine/optimo/ride/ride.h"
 
@@ -12,12 +11,6 @@
 // by then; what it appended behind that move waits, and is planned anew at START. motion.md 6,
 // OPT-4.17
 namespace rmlcell::optimo {
-namespace {
-
-constexpr double kReaches = 1.0 + 1e-9;  // rounding, where braking takes just the way that is left
-
-}  // namespace
-
 void Ride::Hold() {
   // Behind a move that ends where it is nothing follows.
   if (under_way() == nullptr || under_way()->ended || !protocol().may_hold()) return;
@@ -49,8 +42,7 @@ void Ride::Hold() {
     }
     if (const std::optional<PlaceOnMove> place = PlaceOf(exact.path, command->path)) {
       const double way = (command->path.length() - place->begin) / place->scale - state.s;
-      if (way > 0.0 && LeadFrom(state, exact.limits, 0.0).length <= way * kReaches &&
-          motion::FromFits(state, state.s + way, 0.0, exact.limits)) {
+      if (way > 0.0 && motion::FromFits(state, state.s + way, 0.0, exact.limits)) {
         exact.path = RestOfMove(command->path, *place, state.s);
         const double length = exact.path.length();
         exact.speed = motion::SpeedProfile::From(
@@ -102,35 +94,31 @@ void Ride::HoldOverManyMoves() {
     place = {.motion = std::get<motion::PlannedMotion>(*next), .state = {}, .under_way = false};
     place.state = place.motion.speed.At(0.0);
   }
-  // With the chain cut off behind the nth item; the more of them, the easier.
+  // With the chain cut off behind the nth move; the more of them, the easier.
   const auto& appended = s_.path.appended();
   const std::vector<motion::AppendedCommand> later(
       appended.begin() + static_cast<std::ptrdiff_t>(onward->own) + 1, appended.end());
-  const auto planned = [&](std::size_t count) {
-    std::vector<motion::AppendedCommand> items(later.begin(),
-                                               later.begin() + static_cast<std::ptrdiff_t>(count));
-    if (!items.back().move) return std::optional<motion::Planner>();
-    items.back().move->fly = false;
-    return PlanOnward(*onward, items);
+  std::vector<std::size_t> ends;  // behind each move
+  for (std::size_t n = 0; n < later.size(); ++n) {
+    if (later[n].move) ends.push_back(n + 1);
+  }
+  const auto planned = [&](std::size_t moves) {
+    return PlanOnward(*onward, std::span(later).first(ends[moves - 1]));
   };
   std::size_t too_few = 0;
   std::size_t enough = 1;
-  while (enough < later.size() && !planned(enough)) {
+  while (enough < ends.size() && !planned(enough)) {
     too_few = enough;
-    enough *= 2;
+    enough = std::min(2 * enough, ends.size());
   }
-  if (enough >= later.size()) return;  // it ends by itself as soon
-  while (enough - too_few > 1) {
+  while (enough > too_few + 1) {
     const std::size_t middle = too_few + (enough - too_few) / 2;
-    if (!later[middle - 1].move || !planned(middle)) {
-      too_few = middle;
-    } else {
-      enough = middle;
-    }
+    (planned(middle) ? enough : too_few) = middle;
   }
+  if (enough >= ends.size()) return;  // it ends by itself as soon
   std::optional<motion::Planner> planner = planned(enough);
   if (!planner) return;
-  const std::uint64_t target = later[enough - 1].tag;
+  const std::uint64_t target = later[ends[enough - 1] - 1].tag;
   s_.halted_behind = NoteOf(target)->place;
   GoOnward(place, *onward, std::move(kept));
   planner->Stop();

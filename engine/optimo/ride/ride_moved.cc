@@ -110,7 +110,7 @@ Status Ride::BeginHere(std::vector<motion::AppendedCommand>& rest, std::size_t f
 // Straight to where the circle was left. What was before it is over, and with it the tag.
 void Ride::LeadBack(std::vector<motion::AppendedCommand>& rest, std::size_t circle) {
   motion::AppendedCommand lead = rest[circle];
-  --lead.tag;
+  lead.move->tag = --lead.tag;
   lead.move->path = motion::PathPiece::Line(
       lead.move->head.TipOf(s_.axes),
       motion::TipOn(lead.move->path, lead.move->head, lead.move->path.from()));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -125,7 +126,7 @@ class RemoteJobs : public testing::Test {
     jobs.submitted.clear();
     const Told told = Hear([&] { return SubmitJob(server.remote(), wanted); });
     EXPECT_EQ(told.exit_code, 0) << told.errors;
-    EXPECT_THAT(jobs.submitted, SizeIs(1));
+    EXPECT_THAT(jobs.submitted, testing::SizeIs(1));
     return jobs.submitted.empty() ? v1::SubmitJobRequest() : jobs.submitted[0];
   }
   // What is told before any server is asked.

@@ -150,9 +150,10 @@ TEST_F(ArmTest, ALateHostHoldsItsRun) {
   MakeWith(v1::MachineOptions::START_QUEUE);
   Do(Start("begin"));
   Pass(5s, 50ms);
-  Pass(700ms, 700ms);
+  Pass(1000ms, 1000ms);
+  Pass(500ms, 50ms);
   EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
-  Pass(20s, 20s);
+  Pass(1001ms, 1001ms);
   Pass(5s, 50ms);
   EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
   EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_LATE);

@@ -83,6 +83,14 @@ TEST_F(WebResourcesTest, AProgramGoesUpAndComesDownInEachForm) {
   EXPECT_EQ(Upload(header, {std::string(kText)}), "");
 }
 
+// cell.proto, CellEvent.caller: who stored it stands in the log of the cell.
+TEST_F(WebResourcesTest, TheLogNamesWhoStored) {
+  EXPECT_EQ(Upload(Header(), {std::string(kText)}), "");
+  const auto events = Must(bed.store().AllEvents(0, 100));
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events.back().caller, "local");
+}
+
 // All or nothing: what is refused leaves nothing behind.
 TEST_F(WebResourcesTest, UploadsThatAreRefused) {
   web::UploadHeader header = Header();

@@ -1,0 +1,136 @@
+// Which stretches one ramp takes, and where longer ways are split. motion.md 5.4
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "engine/motion/profile/ramp_plan.h"
+
+namespace rmlcell::motion {
+namespace {
+
+constexpr PathLimits kStretch{.speed = 100.0, .acceleration = 2000.0, .jerk = 40000.0};
+
+// The speeds of level 1 from `start` to `end`; the time that it takes.
+double LevelOneOf(std::vector<RampCell>& cells, double start, double end) {
+  const auto reach = [](double from, const RampCell& cell, double cap) {
+    if (cap <= from || RampLength(from, cap, cell.limits) <= cell.length) return cap;
+    return std::min(cap, Reach(from, cell.length, cell.limits));
+  };
+  double speed = start;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    double cap = std::min(cells[k].limits.speed, cells[k].end_cap);
+    cap = std::min(cap, k + 1 < cells.size() ? cells[k + 1].limits.speed : end);
+    speed = cells[k].end_speed = reach(speed, cells[k], cap);
+  }
+  for (std::size_t k = cells.size() - 1; k-- > 0;) {
+    cells[k].end_speed = reach(cells[k + 1].end_speed, cells[k + 1], cells[k].end_speed);
+  }
+  double time = 0.0;
+  for (const RampCell& cell : cells) {
+    time += SpeedProfile::Span(cell.length, start, cell.end_speed, cell.limits).duration_s();
+    start = cell.end_speed;
+  }
+  return time;
+}
+
+double TimeOfAll(const RampPlan& plan) {
+  double time = 0.0;
+  for (const SpeedProfile& ramp : plan.ramps()) time += ramp.duration_s();
+  return time;
+}
+
+std::vector<double> LengthsOf(const RampPlan& plan) {
+  std::vector<double> lengths;
+  for (const SpeedProfile& ramp : plan.ramps())
+    lengths.push_back(std::round(ramp.end().s * 1e9) / 1e9);
+  return lengths;
+}
+
+// Sixty steps of 0.3 mm and 100 mm behind them. Level 1 creeps over the steps, so that no limit is
+// met at their ends, where one ramp has some 100 mm/s after nine of them and 177 after 41.
+std::vector<RampCell> StepsAndALongWay() {
+  std::vector<RampCell> cells(61, {.length = 0.3, .limits = kStretch});
+  for (RampCell& cell : cells) cell.limits.speed = 200.0;
+  cells.back().length = 100.0;
+  return cells;
+}
+
+std::vector<double> SplitsOf(std::vector<RampCell> cells) {
+  LevelOneOf(cells, 0.0, 0.0);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  return LengthsOf(plan);
+}
+
+// What is broken by half as much again as it allows: a stretch is one by itself, with a ramp on
+// each side of it; a point is the end of one and the start of the other.
+TEST(RampSplits, AreWhereOneRampBreaksALimit) {
+  std::vector<RampCell> cells = StepsAndALongWay();
+  cells[8].limits.speed = 65.0;
+  EXPECT_EQ(SplitsOf(cells), (std::vector{2.4, 0.3, 115.3}));
+  cells = StepsAndALongWay();
+  cells[7].end_cap = 62.0;
+  EXPECT_EQ(SplitsOf(cells), (std::vector{2.4, 115.6}));
+}
+
+// Of two, the one that is broken most, be it the first or the last: what is broken less may no
+// longer be broken then.
+TEST(RampSplits, AreWhereOneRampBreaksMost) {
+  std::vector<RampCell> cells = StepsAndALongWay();
+  cells[8].limits.speed = 65.0;
+  // A ramp from the end of the first is slower at the second than one over all.
+  LevelOneOf(cells, 0.0, 0.0);
+  const PathLimits fast = cells[9].limits;
+  const SpeedProfile all = SpeedProfile::Span(118.0, 0.0, 0.0, fast);
+  const SpeedProfile rest = SpeedProfile::Span(115.3, cells[8].end_speed, 0.0, fast);
+  const double at_all = all.At(all.TimeAt(12.3)).speed, at_rest = rest.At(rest.TimeAt(9.6)).speed;
+  ASSERT_GT(at_all, at_rest + 1.0);
+  cells[40].limits.speed = 0.5 * (at_all + at_rest);
+  EXPECT_EQ(SplitsOf(cells), (std::vector{2.4, 0.3, 115.3}));
+  cells[8].limits.speed = 90.0;
+  cells[40].limits.speed = 60.0;
+  const std::vector<double> splits = SplitsOf(cells);
+  ASSERT_GE(splits.size(), 3U);
+  EXPECT_EQ(splits.back(), 105.7);
+  EXPECT_EQ(splits[splits.size() - 2], 0.3);
+}
+
+// Where one that is a little slower all along is faster than those of a split there is one.
+TEST(RampSplits, AreNoneWhereOneSlowerRampIsFaster) {
+  std::vector<RampCell> cells = StepsAndALongWay();
+  cells.pop_back();
+  cells[8].limits.speed = 90.0;
+  LevelOneOf(cells, 0.0, 0.0);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  ASSERT_EQ(LengthsOf(plan), (std::vector{18.0}));
+  EXPECT_NEAR(plan.ramps()[0].peak_speed(), 90.0, 1e-9);
+  EXPECT_EQ(plan.timing()[59].ramp, 0U);
+  EXPECT_NEAR(plan.timing()[59].from, 17.7, 1e-9);
+}
+
+// One ramp over all would be as weak as its weakest stretch. That of 1e-3 mm holds up nobody: a way
+// that no ramp breaks is halved where its stretches are faster by themselves. So it is behind a
+// stretch that is passed as fast as it may be.
+TEST(RampSplits, AWeakStretchDoesNotHoldUpTheRest) {
+  std::vector<RampCell> cells(12, {.length = 1.0, .limits = kStretch});
+  cells[0].length = 1e-3;
+  cells[0].limits.acceleration = 40.0;
+  cells[0].limits.jerk = 800.0;
+  const double level_one = LevelOneOf(cells, 0.0, 0.0);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  EXPECT_LT(TimeOfAll(plan), 0.9 * level_one);
+  EXPECT_EQ(LengthsOf(plan), (std::vector{0.001, 5.0, 6.0}));
+  cells.insert(cells.begin(), RampCell{.length = 20.0, .limits = kStretch});
+  cells[0].limits.speed = 5.0;
+  LevelOneOf(cells, 0.0, 0.0);
+  plan.Plan(cells, 0.0);
+  EXPECT_EQ(LengthsOf(plan), (std::vector{20.0, 0.001, 5.0, 6.0}));
+}
+
+}  // namespace
+}  // namespace rmlcell::motion

@@ -1,0 +1,332 @@
+// Ways of the ride that are worked out beforehand: to a lower speed, to the ends of the travel, to
+// the first target of a HOLD, and from where the machine was moved to by hand.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/optimo/control/optimo_family.h"
+#include "engine/optimo/ride/lead.h"
+#include "tests/engine/optimo/control/measured.h"
+#include "tests/engine/optimo/control/run_text.h"
+
+namespace rmlcell::optimo::testing::ride_ways {
+namespace {
+
+using machine::InputKind;
+using machine::RunPhase;
+
+double Ramp_s(double change_mm_s) { return 2.0 * std::sqrt(change_mm_s / 40000.0); }
+// From rest to rest at 50 mm/s.
+double Time_s(double way_mm) { return way_mm / 50.0 + Ramp_s(50.0); }
+
+// motion.md 6: first the acceleration is brought to zero, at 10,000 mm/s3; then the speed goes down
+// where it is higher, here by 100 mm/s in 2 sqrt(100/10000) s.
+TEST(RideWays, TheLeadToALowerSpeed) {
+  const motion::PathLimits limits{.speed = 500.0, .acceleration = 2000.0, .jerk = 10'000.0};
+  const auto lead = [&](double speed, double acceleration, double to) {
+    return LeadFrom({.s = 7.0, .speed = speed, .acceleration = acceleration}, limits, to);
+  };
+  const Lead faster = lead(100.0, 1000.0, 200.0);  // 150 mm/s after 0.1 s
+  EXPECT_NEAR(faster.length, 10.0 + 0.1 * 100.0 / 3.0, 1e-9);
+  EXPECT_NEAR(faster.speed, 150.0, 1e-9);
+  const Lead down = lead(100.0, 1000.0, 50.0);
+  EXPECT_NEAR(down.length, 10.0 + 0.1 * 100.0 / 3.0 + 100.0 * 0.2, 1e-9);
+  EXPECT_NEAR(down.speed, 50.0, 1e-9);
+  const Lead braking = lead(100.0, -1000.0, 80.0);  // 50 mm/s after 0.1 s
+  EXPECT_NEAR(braking.length, 10.0 - 0.1 * 100.0 / 3.0, 1e-9);
+  EXPECT_NEAR(braking.speed, 50.0, 1e-9);
+  const Lead to_rest = lead(50.0, -1000.0, 80.0);
+  EXPECT_NEAR(to_rest.length, 5.0 - 0.1 * 100.0 / 3.0, 1e-9);
+  EXPECT_NEAR(to_rest.speed, 0.0, 1e-9);
+  EXPECT_EQ(lead(30.0, -1000.0, 80.0).speed, 0.0);
+  const Lead steady = lead(150.0, 0.0, 50.0);
+  EXPECT_NEAR(steady.length, 100.0 * 0.2, 1e-9);
+}
+
+struct End {
+  int axis;
+  motion::MachinePoint tip;  // 10 mm before it the column is beyond the end
+  motion::MachineVector back;
+  std::string angles;
+};
+
+// OPT-B.08: with a head that is held steady the column goes 300 mm beside the tip: each end of X, Y
+// and Z binds it, and 10 mm before that it does not.
+TEST(RideWays, EachEndOfTheTravelBindsTheColumn) {
+  const double down = 300.0 * std::cos(2.3);
+  for (const End& end : {End{0, {3310.0, 1000.0, -400.0}, {-1, 0, 0}, "1.570796,1.570796"},
+                         End{0, {-310.0, 1000.0, -400.0}, {1, 0, 0}, "-1.570796,1.570796"},
+                         End{1, {1000.0, 2810.0, -400.0}, {0, -1, 0}, "3.141593,1.570796"},
+                         End{1, {1000.0, -310.0, -400.0}, {0, 1, 0}, "0.,1.570796"},
+                         End{2, {1000.0, 1000.0, 810.0}, {0, 0, -1}, "0.,0."},
+                         End{2, {1000.0, 1000.0, -1310.0 - down}, {0, 0, 1}, "0.,2.3"}}) {
+    for (const bool inside : {false, true}) {
+      const motion::MachinePoint to = inside ? end.tip + 20.0 * end.back : end.tip;
+      const Ran ran = RunText(kAbsol + "MOVE (1000.,1000.,-400.," + end.angles + ")\nMOVE (" +
+                              std::to_string(to.x()) + "," + std::to_string(to.y()) + "," +
+                              std::to_string(to.z()) + "," + end.angles + ")\n");
+      EXPECT_EQ(CodeOf(ran), inside ? 0 : 7301) << end.axis << " " << end.angles;
+      ASSERT_EQ(ran.violations.size(), inside ? 0U : 1U) << end.axis << " " << end.angles;
+      if (inside) continue;
+      EXPECT_EQ(ran.violations[0].axis, end.axis);
+      EXPECT_NEAR(ran.violations[0].excess, 10.0, 1e-3);
+      EXPECT_TRUE(ran.violations[0].at_target);
+    }
+  }
+}
+
+// OPT-4.17: 12 mm before the end of a move at 200 mm/s, from which it comes to rest in 15 mm, with
+// 5 mm of the next move behind it and one more move to come: it halts on the target of the next.
+TEST(RideWays, HoldNeedsTheNextMoveAndNoMore) {
+  const std::string text =
+      "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 40\n"
+      "MOVE (1200.,1000.,-400.,0.,0.)/FLY\nMOVE (1205.,1000.,-400.,0.,0.)/FLY\n"
+      "MOVE (1255.,1000.,-400.,0.,0.)\n";
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  const double hold = begin + 188.0 / 200.0 + 0.075;
+  const Ran ran = RunText(
+      text, {.inputs = {{At(hold), InputKind::kHold}, {At(begin + 20.0), InputKind::kStart}}});
+  EXPECT_EQ(ran.First("halt HOLD").step, 6);
+  ASSERT_EQ(ran.moves.size(), 4U);
+  EXPECT_NEAR(ran.moves[2].tip.tip.x(), 1205.0, 1e-9);
+  EXPECT_LE(ToSeconds(ran.moves[2].at), ran.First("halt HOLD").at_s + 1e-9);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1255.0, 1e-9);
+}
+
+// OPT-4.17, motion.md 6: near the end of a move behind a bend, where what is left of it is too
+// short to brake on, no limit is broken.
+TEST(RideWays, HoldNearTheEndOfALegBehindABend) {
+  std::string text = "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 40\n";
+  double x = 1000.0;
+  double y = 1000.0;
+  for (int k = 0; k < 4; ++k) {
+    x += 100.0 * std::cos(0.35 * k);
+    y += 100.0 * std::sin(0.35 * k);
+    text += "MOVE (" + std::to_string(x) + "," + std::to_string(y) + ",-400.,0.,0.)";
+    text += k < 3 ? "/FLY\n" : "\n";
+  }
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  for (int n = 0; n < 16; ++n) {
+    const double hold = begin + 0.94 + 0.01 * n;
+    const Ran ran = RunText(
+        text, {.inputs = {{At(hold), InputKind::kHold}, {At(begin + 9.0), InputKind::kStart}}});
+    ASSERT_EQ(ran.Count("halt HOLD"), 1) << n;
+    ExpectWithinLimits(ran, true, "HOLD " + std::to_string(n));
+    EXPECT_NEAR((ran.end.tip.tip - motion::MachinePoint(x, y, -400.0)).norm(), 0.0, 1e-4) << n;
+  }
+}
+
+// OPT-4.17, OPT-2.49: outputs between moves that are too short to brake on come once, in order and
+// each at its target, wherever HOLD is pressed on the way.
+TEST(RideWays, OutputsBetweenShortMovesOverAHold) {
+  std::string text = "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 40\n";
+  std::vector<std::string> wanted;
+  for (int k = 1; k <= 90; ++k) {
+    text += "MOVE (" + std::to_string(1000 + k) + ".,1000.,-400.,0.,0.)";
+    text += k < 90 ? "/FLY\nOL[16]=" + std::string(k % 2 == 1 ? "ON" : "OFF") + "\n" : "\n";
+    if (k < 90) wanted.push_back(k % 2 == 1 ? "OL[16] 1" : "OL[16] 0");
+  }
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  for (int n = 1; n < 40; ++n) {
+    const double hold = begin + 0.0131 * n;
+    const Ran ran = RunText(
+        text, {.inputs = {{At(hold), InputKind::kHold}, {At(begin + 20.0), InputKind::kStart}}});
+    std::vector<std::string> outputs = ran.told;
+    std::erase_if(outputs, [](const std::string& what) { return !what.starts_with("OL"); });
+    EXPECT_EQ(outputs, wanted) << n;
+    EXPECT_EQ(ran.moves.size(), 91U) << n;
+    EXPECT_NEAR(ran.end.tip.tip.x(), 1090.0, 1e-6) << n;
+  }
+}
+
+// A run that a key has halted at this time, moved by hand by so much.
+class Moved {
+ public:
+  Moved(const std::string& text, double stop_s, const motion::MachineVector& by,
+        InputKind key = InputKind::kStop) {
+    machine::RunSetup setup = SetupOf(text);
+    run = *OptimoFamily().NewRun(std::move(setup), told);
+    run->Advance(At(stop_s));
+    run->Apply({.at = run->state().time, .kind = key});
+    EXPECT_EQ(run->Advance(At(stop_s + 5.0)), RunPhase::kHalted);
+    left = run->state().tip.tip;
+    motion::AxisPose to = run->state().axes;
+    to.column += by;
+    EXPECT_TRUE(run->may_be_moved());
+    run->MoveTo(to);
+    told.feeds.clear();
+    told.moves = 0;
+  }
+  void Press(InputKind kind, double value = 1.0) {
+    run->Apply({.at = run->state().time, .kind = kind, .value = value});
+  }
+  // From START to the end.
+  double GoOn_s() {
+    const SimTime from = run->state().time;
+    Press(InputKind::kStart);
+    while (run->Advance(run->state().time + At(1000.0)) == RunPhase::kRunning) {
+    }
+    return ToSeconds(run->state().time - from);
+  }
+
+  class Told final : public machine::RunObserver {
+   public:
+    void OnMotion(const machine::MotionDone& done) override {
+      feeds.push_back(done.programmed_mm_s);
+    }
+    void OnMove(const machine::MoveDone&) override { ++moves; }
+    std::vector<double> feeds;
+    int moves = 0;
+  } told;
+  std::unique_ptr<machine::Run> run;
+  motion::MachinePoint left{};
+};
+
+// OPT-4.17: the first target that can be reached at rest is the same one, however many instructions
+// stand between the moves.
+TEST(RideWays, HoldHaltsOnTheFirstTargetWhateverStandsBetween) {
+  std::vector<std::ptrdiff_t> reached;
+  for (int outputs = 0; outputs <= 4; ++outputs) {
+    std::string text = "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 40\n";
+    for (int k = 1; k <= 200; ++k) {
+      text += "MOVE (" + std::to_string(1000 + k) + ".,1000.,-400.,0.,0.)";
+      text += k < 200 ? "/FLY\n" : "\n";
+      for (int n = 0; n < outputs && k < 200; ++n)
+        text += "OL[" + std::to_string(22 + n) + "]=" + (k % 2 == 1 ? "ON\n" : "OFF\n");
+    }
+    const double begin = ToSeconds(RunText(text).moves.front().at);
+    const Ran ran = RunText(text, {.inputs = {{At(begin + 0.5025), InputKind::kHold},
+                                              {At(begin + 20.0), InputKind::kStart}}});
+    const double halt_s = ran.First("halt HOLD").at_s;
+    reached.push_back(std::ranges::count_if(ran.moves, [&](const machine::MoveDone& move) {
+      return ToSeconds(move.at) <= halt_s + 1e-9;
+    }));
+  }
+  EXPECT_THAT(reached, ::testing::Each(reached.front()));
+  EXPECT_LT(reached.front(), 200);
+}
+
+// OPT-6.42: back to where the circle was left, without settling there, and round the rest of it;
+// the MOVE is over once, at its end.
+TEST(RideWays, AHoleThatWasLeft) {
+  const std::string text = kThere +
+                           "PATH HOLE (10.)\n"
+                           "MOVE (1100.,1000.,-400.,0.,0.)/VIA (1100.,1000.,-300.,0.,0.)\n";
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  Moved moved(text, begin + Time_s(90.0) + 0.5, {0.0, 0.0, 20.0});
+  ASSERT_NEAR(std::hypot(moved.left.x() - 1100.0, moved.left.y() - 1000.0), 10.0, 1e-6);
+  double turned = std::atan2(moved.left.y() - 1000.0, moved.left.x() - 1100.0) - M_PI;
+  if (turned < 0.0) turned += 2.0 * M_PI;
+  ASSERT_GT(turned, 1.0);
+  ASSERT_LT(turned, 4.0);
+  const double rest = 10.0 * (2.0 * M_PI - turned);
+  EXPECT_NEAR(moved.GoOn_s(), Time_s(20.0) + Time_s(rest) + kSettle_s, 2e-3);
+  EXPECT_EQ(moved.told.moves, 1);
+  EXPECT_EQ(moved.run->outcome().kind, machine::OutcomeKind::kCompleted);
+  EXPECT_NEAR(moved.run->state().tip.tip.x(), 1090.0, 1e-6);
+}
+
+// OPT-6.42: a hole that a HOLD kept back, from its own circle: what stands before it comes first,
+// then the way back to where it begins, and the turn.
+TEST(RideWays, AHoleThatWasKeptBack) {
+  const std::string text = kThere +
+                           "MOVE (1090.,1000.,-400.,0.,0.)/FLY\nOL[16]=ON\nPATH HOLE (10.)\n"
+                           "MOVE (1100.,1000.,-400.,0.,0.)/VIA (1100.,1000.,-300.,0.,0.)\n";
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  Moved moved(text, begin + 0.5, {0.0, 0.0, 20.0}, InputKind::kHold);
+  EXPECT_NEAR(moved.left.x(), 1090.0, 1e-6);
+  EXPECT_EQ(moved.run->outputs().on.size(), 0U);
+  const double taken = moved.GoOn_s();
+  EXPECT_EQ(moved.run->outcome().kind, machine::OutcomeKind::kCompleted);
+  EXPECT_EQ(moved.run->outputs().on.size(), 1U);
+  EXPECT_NEAR(taken, Time_s(20.0) + Time_s(20.0 * M_PI) + kSettle_s, 3e-3);
+  EXPECT_NEAR(moved.run->state().tip.tip.x(), 1090.0, 1e-6);
+}
+
+// OPT-6.42, OPT-E.7305: an arc through its via point: from a place on the line of via and target,
+// with the via point outside, there is none.
+TEST(RideWays, AnArcThatIsNoneFromThere) {
+  const std::string text = kThere +
+                           "PATH CIR\n"
+                           "MOVE (1100.,1000.,-400.,0.,0.)/VIA (1050.,1050.,-400.,0.,0.)\n";
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  const Ran free = RunText(text, {.inputs = {{At(begin + 1.0), InputKind::kStop}}});
+  const motion::MachineVector to(1075.0, 1025.0, -400.0);
+  Moved moved(text, begin + 1.0, to - free.end.tip.tip);
+  moved.GoOn_s();
+  EXPECT_EQ(moved.run->outcome().code, ErrorCode::kArcUndefined);
+  EXPECT_EQ(moved.run->outcome().place.step, 6);
+  EXPECT_NEAR((moved.run->state().tip.tip - to).norm(), 0.0, 1e-6);
+}
+
+// OPT-6.42, OPT-4.37, OPT-B.08: at SPEED 1, too, the way from there goes by the override, and is
+// looked at before it begins.
+TEST(RideWays, SlowMovesThatWereMoved) {
+  const std::string text = kThere + "SPEED 1\nMOVE (1100.,1000.,-400.,0.,0.)\n";
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  Moved moved(text, begin + 10.0, {-20.0, 0.0, 0.0});
+  moved.Press(InputKind::kOverride, 50.0);
+  const double way = 1100.0 - moved.left.x() + 20.0;
+  EXPECT_NEAR(moved.GoOn_s(), way / 2.5 + Ramp_s(2.5) + kSettle_s, 1e-4);
+  EXPECT_NEAR(moved.told.feeds.back(), 2.5, 1e-9);
+  Moved outside(text, begin + 10.0, {0.0, 0.0, 2000.0});
+  outside.GoOn_s();
+  EXPECT_EQ(outside.run->outcome().code, ErrorCode::kTargetOutOfTravel);
+}
+
+// OPT-4.37: at SPEED 1 another override acts on the move under way: 2.5 mm/s from 40 mm on.
+TEST(RideWays, TheOverrideActsOnASlowMove) {
+  const std::string text = kThere + "SPEED 1\nMOVE (1050.,1000.,-400.,0.,0.)\n";
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  const double change = begin + 8.0 + 0.5 * Ramp_s(5.0);  // 40 mm
+  const Ran ran = RunText(text, {.inputs = {{At(change), InputKind::kOverride, 0, 50.0}}});
+  // The ramp down takes a little more than it would at the lower speed.
+  EXPECT_NEAR(ran.time_s, change + 10.0 / 2.5 + 0.5 * Ramp_s(2.5) + kSettle_s, 0.02);
+  EXPECT_GT(ran.time_s, change + 3.9);
+}
+
+// OPT-4.37: a higher override at full speed acts without a way before it: no part of no length is
+// told.
+TEST(RideWays, AHigherOverrideTellsNoPartOfNothing) {
+  const std::string text =
+      kThere +
+      "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1200.,1000.,-400.,0.,0.)/FLY\n"
+      "MOVE (1300.,1000.,-400.,0.,0.)\n";
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  const Ran ran = RunText(text, {.inputs = {{At(begin + 1.0), InputKind::kOverride, 0, 130.0}}});
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1300.0, 1e-9);
+  double way = 0.0;
+  for (const Ran::Part& part : ran.parts) {
+    EXPECT_GT(part.done.end, part.done.start);
+    EXPECT_GT(part.done.travelled, part.done.from);
+    if (part.done.start >= ran.moves.front().at) way += part.done.travelled - part.done.from;
+  }
+  EXPECT_NEAR(way, 300.0, 1e-6);
+}
+
+// OPT-4.38: in a chain, too, the feed rate that is told is never over 500 mm/s; and one of 0.5 mm/s
+// goes down to a half.
+TEST(RideWays, FeedRatesOfAChain) {
+  const auto last_feed = [](const std::string& speed, double step_mm, double percent) {
+    std::string text = kAbsol + "MOVE (1000.,1000.,-400.,0.,0.)\nSPEED " + speed + "\n";
+    for (int k = 1; k <= 4; ++k) {
+      text += "MOVE (" + std::to_string(1000.0 + step_mm * k) + ",1000.,-400.,0.,0.)";
+      text += k < 4 ? "/FLY\n" : "\n";
+    }
+    const double begin = ToSeconds(RunText(text).moves.front().at);
+    const Ran ran =
+        RunText(text, {.inputs = {{At(begin + 0.5), InputKind::kOverride, 0, percent}}});
+    return ran.parts.back().done.programmed_mm_s;
+  };
+  EXPECT_NEAR(last_feed("100", 400.0, 145.0), 500.0, 1e-9);
+  EXPECT_NEAR(last_feed("80", 400.0, 145.0), 500.0, 1e-9);
+  EXPECT_NEAR(last_feed("80", 400.0, 115.0), 460.0, 1e-9);
+  EXPECT_NEAR(last_feed(".1", 1.0, 55.0), 0.275, 1e-6);
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo::testing::ride_ways

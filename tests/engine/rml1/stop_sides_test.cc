@@ -1,0 +1,79 @@
+// Spindles that a key stopped, streams that are refused or empty, and what a whole set counts for.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "engine/rml1/device.h"
+#include "engine/rml1/rml1_family.h"
+#include "tests/engine/rml1/run_support.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+using machine::InputKind;
+using machine::RunPhase;
+
+// run.h: a key turns the spindle on again until the program stops it: then the program has not
+// started it.
+TEST(StopSides, ASpindleThatTheProgramStoppedStaysOff) {
+  TestRun run(ParametersOf("t1"), "!MC1;PU100,0;!NR;!MC0;PU200,0;!NR;PU300,0;");
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  ASSERT_TRUE(run->state().spindle_on);
+  ASSERT_TRUE(run->SwitchSpindle());
+  EXPECT_FALSE(run->state().spindle_on);
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  const Status switched = run->SwitchSpindle();
+  ASSERT_FALSE(switched);
+  EXPECT_EQ(switched.error().code, ErrorCode::kCellMachineState);
+  EXPECT_FALSE(run->state().spindle_on);
+}
+
+// What refuses a whole stream names its file, and no program: it has none.
+TEST(StopSides, RefusalsNameTheirFile) {
+  for (const std::size_t size : {0U, 300U}) {
+    const std::string bytes(size, '$');
+    const machine::Translation made =
+        Rml1Family().Translate({.name = "part.rml", .bytes = bytes}, ParametersOf("t1"), {});
+    EXPECT_FALSE(made.ok);
+    ASSERT_FALSE(made.diagnostics.empty());
+    EXPECT_EQ(made.diagnostics.front().file, "part.rml");
+    EXPECT_EQ(made.diagnostics.front().program, 0);
+  }
+}
+
+// Each set is one act, read in one go as byte by byte.
+TEST(StopSides, ActsOfWholeSets) {
+  class Deaf final : public DeviceListener {
+   public:
+    void OnFinding(const Finding&) override {}
+  } deaf;
+  const Profile profile = MakeProfile(ParametersOf("t1")).value();
+  const auto acts = [&](std::string_view stream) {
+    Device device(profile);
+    for (std::size_t at = 0; at < stream.size();) {
+      at +=
+          device.Read(stream.substr(at), static_cast<std::int64_t>(at), Device::kAnyCommands, deaf)
+              .bytes;
+      do {
+        while (!device.actions().empty()) device.actions().Pop();
+      } while (device.Step(deaf));
+    }
+    return device.registers().act;
+  };
+  const std::string behind(40, ';');
+  const std::uint64_t none = acts(behind);
+  EXPECT_EQ(acts("PU1,1;" + behind) - none, 1U);
+  EXPECT_EQ(acts("PU1,1,2,2;PD3,3;" + behind) - none, 3U);
+  EXPECT_EQ(acts("Z1,1,1,2,2,2;PD;" + behind) - none, 3U);
+}
+
+// Of nothing all has been read.
+TEST(StopSides, ProgressOfAStreamOfSeparators) {
+  TestRun run(ParametersOf("t1"), ";;");
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(run->state().progress, 1.0);
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1

@@ -1,0 +1,133 @@
+// Processes that a server starts, and work that waits for a thread.
+#include "server/base/child_process.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <semaphore>
+#include <string>
+
+#include "server/base/executor.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class ChildProcessTest : public testing::Test {
+ protected:
+  ChildProcessTest()
+      : folder_(testing::TempDir() + "/child-process-" + std::to_string(::getpid())) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~ChildProcessTest() override { std::filesystem::remove_all(folder_); }
+  std::string File(const std::string& name) const { return folder_ + "/" + name; }
+  std::string Script(const std::string& what) const {
+    std::ofstream(File("script")) << "#!/bin/sh\n" << what << "\n";
+    ::chmod(File("script").c_str(), 0700);
+    return File("script");
+  }
+  std::string Told(const std::string& name) const {
+    std::ifstream file(File(name));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  // Its exit code.
+  static int Run(const std::vector<std::string>& words, const std::vector<std::string>& secrets,
+                 const std::string& log = {}) {
+    const Result<pid_t> process = StartChild(words, secrets, log);
+    EXPECT_TRUE(process);
+    int how = 0;
+    if (!process || ::waitpid(*process, &how, 0) != *process) return -1;
+    return WIFEXITED(how) ? WEXITSTATUS(how) : -1;
+  }
+  const std::string folder_;
+};
+
+// It has what it was told, and its secrets, and no file of the server but the first three.
+TEST_F(ChildProcessTest, HasWhatItIsGiven) {
+  ::setenv("RMLCELL_SECRET", "of the server", 1);
+  ::setenv("RMLCEL", "is no secret", 1);
+  const int open = ::open(File("kept").c_str(), O_RDWR | O_CREAT, 0600);  // without O_CLOEXEC
+  ASSERT_GE(open, 3);
+  const std::string script =
+      Script("env > $1.env\nls /proc/self/fd > $1.files\necho out\necho err >&2\nexit 7");
+  EXPECT_EQ(Run({script, File("it")}, {"RMLCELL_JOIN_TOKEN=secret"}, File("log")), 7);
+  EXPECT_THAT(Told("it.env"), HasSubstr("RMLCELL_JOIN_TOKEN=secret\n"));
+  EXPECT_THAT(Told("it.env"), HasSubstr("RMLCEL=is no secret\n"));
+  EXPECT_THAT(Told("it.env"), Not(HasSubstr("RMLCELL_SECRET")));
+  EXPECT_THAT(Told("it.files"), HasSubstr("0\n1\n2\n"));
+  EXPECT_THAT(Told("it.files"),
+              Not(HasSubstr(std::to_string(open) + "\n" + std::to_string(open + 1))));
+  EXPECT_EQ(Told("log"), "err\n");
+  EXPECT_EQ(Run({script, File("it")}, {}, File("log")), 7);
+  EXPECT_EQ(Told("log"), "err\nerr\n");  // behind what was there
+  struct stat log {};
+  ASSERT_EQ(::stat(File("log").c_str(), &log), 0);
+  EXPECT_EQ(log.st_mode & 0777, 0600U);
+  ::close(open);
+  ::unsetenv("RMLCELL_SECRET");
+  ::unsetenv("RMLCEL");
+}
+
+// With a log it reads nothing, and what it says beside goes nowhere.
+TEST_F(ChildProcessTest, HasNoInputBesideItsLog) {
+  const std::string script = Script("cat > $1.input\necho out && touch $1.said\nexit 0");
+  EXPECT_EQ(Run({script, File("it")}, {}, File("log")), 0);
+  EXPECT_TRUE(std::filesystem::exists(File("it.input")));
+  EXPECT_EQ(Told("it.input"), "");
+  EXPECT_TRUE(std::filesystem::exists(File("it.said")));
+  EXPECT_EQ(Told("log"), "");
+}
+
+TEST_F(ChildProcessTest, OfNoProgramThereIsNone) {
+  EXPECT_TRUE(CheckProgram(Script("exit 0")));
+  const auto why = [](const std::string& program) {
+    const Status checked = CheckProgram(program);
+    EXPECT_FALSE(checked);
+    EXPECT_TRUE(checked || checked.error().code == ErrorCode::kCellConfiguration);
+    return checked ? "" : std::string(checked.error().detail);
+  };
+  EXPECT_EQ(why(File("none")), "workers.program " + File("none") + ": No such file or directory");
+  EXPECT_EQ(why(folder_), "workers.program " + folder_ + ": Permission denied");
+  const Result<pid_t> process = StartChild({File("none")}, {});
+  ASSERT_FALSE(process);
+  EXPECT_EQ(process.error().code, ErrorCode::kCellInternal);
+}
+
+// As many may wait as it was told; what was refused does not wait, and what began does not either.
+TEST(ExecutorWaits, ForSoManyAndNotMore) {
+  std::counting_semaphore<> goes_on(0);
+  std::counting_semaphore<> began(0);
+  Executor executor(1, 2);
+  const auto blocks = [&] {
+    began.release();
+    goes_on.acquire();
+  };
+  for (int round = 0; round < 3; ++round) {
+    executor.Post(blocks);
+    began.acquire();
+    EXPECT_TRUE(executor.TryPost(blocks));
+    EXPECT_TRUE(executor.TryPost(blocks));
+    EXPECT_FALSE(executor.TryPost(blocks));
+    EXPECT_FALSE(executor.TryPost(blocks));
+    goes_on.release(3);
+    began.acquire();
+    began.acquire();
+    std::binary_semaphore done(0);
+    executor.Post([&] { done.release(); });  // all of before is over
+    done.acquire();
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::server

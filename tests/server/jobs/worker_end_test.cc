@@ -1,0 +1,41 @@
+// A worker process that does not end when it is asked to.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <fstream>
+#include <string>
+
+#include "server/jobs/worker_processes.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+// It is killed, and nothing is left of it: not even what a parent has to take away.
+TEST(WorkerEnd, LeavesNothingBehind) {
+  storage::TestDirectory folder;
+  const std::string program = folder.File("worker");
+  std::ofstream(program) << "#!/bin/sh\ntrap '' TERM\necho $$ > " << folder.File("lives.new")
+                         << "\nmv " << folder.File("lives.new") << " " << folder.File("lives")
+                         << "\nexec sleep 60\n";
+  ::chmod(program.c_str(), 0700);
+  TestSteadyClock steady;
+  auto processes = Must(WorkerProcesses::Start({.program = program,
+                                                .server = "127.0.0.1:1",
+                                                .join_token = "secret",
+                                                .log_level = "info",
+                                                .log_format = "json",
+                                                .count = 1,
+                                                .clock = steady.clock()}));
+  pid_t process = 0;
+  ASSERT_TRUE(Eventually([&] {
+    std::ifstream lives(folder.File("lives"));
+    return static_cast<bool>(lives >> process);
+  }));
+  processes->Stop(std::chrono::milliseconds(0));
+  EXPECT_NE(::kill(process, 0), 0);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

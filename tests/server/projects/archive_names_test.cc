@@ -1,0 +1,114 @@
+// Which names of a project become files of its archive, and which project.json
+// it is read from.
+#include <archive.h>
+#include <archive_entry.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/projects/project_archive.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::Contains;
+using testing::Not;
+
+std::vector<std::string> FilesIn(const std::string& bytes) {
+  const std::unique_ptr<archive, int (*)(archive*)> read(archive_read_new(), archive_read_free);
+  archive_read_support_format_zip(read.get());
+  archive_read_open_memory(read.get(), bytes.data(), bytes.size());
+  std::vector<std::string> names;
+  archive_entry* entry = nullptr;
+  while (archive_read_next_header(read.get(), &entry) == ARCHIVE_OK)
+    names.emplace_back(archive_entry_pathname(entry));
+  return names;
+}
+
+// As any tool for archives packs it.
+std::string PackedTogether(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string bytes(1 << 20, '\0');
+  std::size_t used = 0;
+  const std::unique_ptr<archive, int (*)(archive*)> made(archive_write_new(), archive_write_free);
+  archive_write_set_format_zip(made.get());
+  archive_write_open_memory(made.get(), bytes.data(), bytes.size(), &used);
+  for (const auto& [name, content] : files) {
+    archive_entry* entry = archive_entry_new();
+    archive_entry_set_pathname(entry, name.c_str());
+    archive_entry_set_size(entry, static_cast<la_int64_t>(content.size()));
+    archive_entry_set_filetype(entry, AE_IFREG);
+    archive_write_header(made.get(), entry);
+    archive_write_data(made.get(), content.data(), content.size());
+    archive_entry_free(entry);
+  }
+  archive_write_close(made.get());
+  bytes.resize(used);
+  return bytes;
+}
+
+// What no folder can have stays in project.json, and comes back from there.
+TEST(ArchiveNames, AreThoseOfFiles) {
+  const auto is_file = [](const std::string& name) {
+    v1::Project project;
+    v1::ProjectProgram& program = *project.add_programs();
+    program.set_slot(7);
+    program.mutable_source()->set_file_name(name);
+    program.mutable_source()->set_content("STOP\n");
+    const auto written = WriteProjectArchive(project);
+    EXPECT_TRUE(written);
+    const auto read = ReadProjectArchive(*written);
+    EXPECT_TRUE(read && read->programs(0).source().content() == "STOP\n" &&
+                read->programs(0).source().file_name() == name)
+        << name;
+    const std::vector<std::string> files = FilesIn(*written);
+    EXPECT_THAT(files, Contains("project.json"));
+    return std::ranges::find(files, "programs/7/" + name) != files.end();
+  };
+  EXPECT_TRUE(is_file("part one.S"));
+  EXPECT_TRUE(is_file("!.S"));
+  EXPECT_FALSE(is_file("part\x1F.S"));
+  EXPECT_TRUE(is_file(std::string(255, 'n')));
+  EXPECT_FALSE(is_file(std::string(256, 'n')));
+  EXPECT_TRUE(is_file("Fr\xC3\xA4se.S"));
+  EXPECT_FALSE(is_file(".."));
+  EXPECT_FALSE(is_file("a:b"));
+}
+
+// The one that lies least deep; of two the first by name.
+TEST(ArchiveNames, TheFirstProjectIsRead) {
+  const std::string a = R"({"title": "a"})";
+  const std::string b = R"({"title": "b"})";
+  const auto title = [](const std::vector<std::pair<std::string, std::string>>& files) {
+    const auto read = ReadProjectArchive(PackedTogether(files));
+    return read ? read->title() : read.error().detail;
+  };
+  EXPECT_EQ(title({{"x/project.json", a}, {"y/project.json", b}}), "a");
+  EXPECT_EQ(title({{"y/project.json", b}, {"x/project.json", a}}), "a");
+  EXPECT_EQ(title({{"x/deep/project.json", a}, {"y/project.json", b}}), "b");
+  EXPECT_EQ(title({{"x/project.json", a}, {"project.json", b}}), "b");
+}
+
+// 1,000 files, and 64 MiB as they come.
+TEST(ArchiveNames, AreOfSoManyFiles) {
+  const auto why_not = [](int more) {
+    std::vector<std::pair<std::string, std::string>> files{{"project.json", "{}"}};
+    for (int file = 0; file < more; ++file) files.emplace_back("f" + std::to_string(file), "x");
+    const auto read = ReadProjectArchive(PackedTogether(files));
+    return read ? "" : read.error().detail;
+  };
+  EXPECT_EQ(why_not(999), "");
+  EXPECT_EQ(why_not(1'000), "the archive has more than 1,000 files");
+  const auto code = [](std::size_t bytes) {
+    return ReadProjectArchive(std::string(bytes, 'x')).error().code;
+  };
+  EXPECT_EQ(code(kProjectBytesMax), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(code(kProjectBytesMax + 1), ErrorCode::kCellTooLarge);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,223 @@
+// How connections end: by a client that goes, by time, by a server that stops
+// or has too many.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "server/web/refused_connection.h"
+#include "tests/server/web/fake_cell.h"
+#include "tests/server/web/raw_client.h"
+
+namespace rmlcell::web::testing {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::milliseconds;
+
+constexpr std::string_view kSlowCall = R"({"name":"jobs/slow"})";
+
+std::string WatchOf(std::string_view job) {
+  return Get("/rmlcell.v1.JobService/WatchJob?message={%22name%22:%22jobs/" + std::string(job) +
+             "%22}");
+}
+
+// A stream of HTTP/1.0 ends with its connection, also where the client would
+// keep it.
+TEST(LastWords, AStreamOfHttp10EndsWithItsConnection) {
+  FakeCell cell;
+  RawClient client(cell.port());
+  client.Send(
+      "GET /rmlcell.v1.JobService/WatchJob?message={%22name%22:%22jobs/1%22} "
+      "HTTP/1.0\r\n"
+      "Connection: keep-alive\r\n\r\n");
+  const RawResponse stream = client.Read();
+  EXPECT_EQ(stream.Header("connection"), "close");
+  EXPECT_TRUE(stream.body.ends_with("event: end\ndata: {}\n\n"));
+  EXPECT_TRUE(client.AtEnd());
+}
+
+// Who ends his sending without a request is told nothing.
+TEST(LastWords, NothingIsSaidToWhoAsksNothing) {
+  FakeCell cell;
+  RawClient client(cell.port());
+  client.HalfClose();
+  EXPECT_TRUE(client.AtEnd());
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell.web().connections() == 0; }));
+  EXPECT_TRUE(cell.log().empty());
+}
+
+// No further request on a connection that has said nothing yet, at once.
+TEST(LastWords, ASilentConnectionIsClosedByAStop) {
+  WebOptions options = AnyPort();
+  options.read_timeout = hours(1);
+  FakeCell cell(options);
+  RawClient silent(cell.port());
+  ASSERT_TRUE(FakeCell::Eventually([&] { return cell.web().connections() == 1; }));
+  cell.web().StopAccepting();
+  EXPECT_TRUE(silent.AtEnd());
+}
+
+// The end of the connection is seen behind a request that waits, also where
+// nothing is ever told.
+TEST(LastWords, ATabThatLeftIsSeenBehindItsNextRequest) {
+  WebOptions options = AnyPort();
+  options.quiet_interval = hours(1);
+  FakeCell cell(options);
+  RawClient client(cell.port());
+  client.Send(WatchOf("idle"));
+  client.ReadHead();
+  client.ReadUntil("\n\n\r\n");  // all that comes: what is left unread would break the line
+  client.Send(Get("/healthz"));
+  client.Close();
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell.counters().open == 0; }));
+  EXPECT_EQ(cell.counters().cancelled, 1);
+}
+
+// The time to read a request is no limit of its answer. On a slow machine the
+// request itself may come too late: then once more.
+TEST(LastWords, AnAnswerMayTakeLongerThanARequest) {
+  WebOptions options = AnyPort();
+  options.read_timeout = milliseconds(300);
+  FakeCell cell(options);
+  const auto answered = [&](const std::string& request) {
+    return FakeCell::Eventually([&] { return Exchange(cell.port(), request).status == 504; });
+  };
+  const std::string timeout = "Connect-Timeout-Ms: 900\r\n";
+  EXPECT_TRUE(answered(Post(kGetJob, "application/json", kSlowCall, timeout)));
+  EXPECT_TRUE(
+      answered(Get("/rmlcell.v1.JobService/GetJob?message={%22name%22:%22jobs/slow%22}", timeout)));
+}
+
+// The port is free as soon as its server is gone, though the system still waits
+// for stray packets of connections that the server ended first.
+TEST(LastWords, APortIsFreeAgainAtOnce) {
+  int port = 0;
+  {
+    FakeCell cell;
+    port = cell.port();
+    RawClient client(port);
+    client.Send("GET /healthz HTTP/1.0\r\n\r\n");  // the server ends it
+    EXPECT_EQ(client.Read().status, 200);
+    EXPECT_TRUE(client.AtEnd());
+    client.Close();
+    EXPECT_TRUE(FakeCell::Eventually([&] { return cell.web().connections() == 0; }));
+  }
+  WebOptions options;
+  options.port = port;
+  FakeResources resources;
+  const auto next = WebServer::Start(options, nullptr, resources);
+  EXPECT_TRUE(next) << next.error().detail;
+}
+
+// Below the limit nobody is refused, however near it is.
+TEST(LastWords, AHundredAndTwentyConnectionsAreAHundredAndTwenty) {
+  WebOptions options = AnyPort();
+  options.connections_max = 120;
+  FakeCell cell(options);
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (int i = 0; i < 120; ++i) {
+    clients.push_back(std::make_unique<RawClient>(cell.port()));
+    clients.back()->Send(Get("/healthz"));
+    ASSERT_EQ(clients.back()->Read().status, 200) << i;
+  }
+}
+
+// What is told at once is the answer that others get, and ends the connection.
+TEST(LastWords, WhoIsOneTooManyIsToldThatItEnds) {
+  const HttpResponse answer = TooManyConnections();
+  EXPECT_EQ(answer.status, 503);
+  const std::string text = TooManyConnectionsText();
+  EXPECT_TRUE(text.starts_with("HTTP/1.1 503 Service Unavailable\r\n"));
+  EXPECT_NE(text.find("\r\nContent-Length: " + std::to_string(answer.body.size()) + "\r\n"),
+            std::string::npos);
+  EXPECT_NE(text.find("\r\nConnection: close\r\n\r\n" + answer.body), std::string::npos);
+}
+
+// Headers may have the room that is configured, more than is read at a time.
+TEST(LastWords, HeadersHaveTheRoomThatIsConfigured) {
+  WebOptions options = AnyPort();
+  options.header_bytes_max = 100'000;
+  FakeCell cell(options);
+  const auto status = [&](std::size_t bytes) {
+    const std::string half(bytes / 2, 'x');
+    return Exchange(cell.port(), Get("/healthz", "A: " + half + "\r\nB: " + half + "\r\n")).status;
+  };
+  EXPECT_EQ(status(99'000), 200);
+  EXPECT_EQ(status(100'000), 431);
+}
+
+// An upload has the limit of uploads, far above what a library takes of itself.
+TEST(LastWords, AnUploadOfMegabytesIsTaken) {
+  FakeCell cell;
+  const std::string program(9'000'000, ';');
+  EXPECT_EQ(Exchange(cell.port(), Post("/v1/machines/optimo-1/programs/45/content",
+                                       "application/octet-stream", program))
+                .status,
+            200);
+  EXPECT_EQ(cell.resources().uploads["optimo-1/45"].size(), 9'000'000U);
+}
+
+int OptionOf(int descriptor, int level, int name) {
+  int value = 0;
+  socklen_t size = sizeof(value);
+  return getsockopt(descriptor, level, name, &value, &size) == 0 ? value : -1;
+}
+
+// The descriptors of this process that are connected from this port.
+std::vector<int> AcceptedAt(int port) {
+  std::vector<int> found;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    const int descriptor = std::stoi(entry.path().filename());
+    sockaddr_in own{};
+    sockaddr_in peer{};
+    socklen_t size = sizeof(own);
+    socklen_t peer_size = sizeof(peer);
+    if (getsockname(descriptor, reinterpret_cast<sockaddr*>(&own), &size) == 0 &&
+        getpeername(descriptor, reinterpret_cast<sockaddr*>(&peer), &peer_size) == 0 &&
+        own.sin_family == AF_INET && ntohs(own.sin_port) == port)
+      found.push_back(descriptor);
+  }
+  return found;
+}
+
+// A short event goes out at once, a dead line is found out, and what a reader
+// leaves lying is bounded; the system gives twice of what it is asked for
+// (socket(7)).
+TEST(LastWords, ConnectionsAreMadeForStreams) {
+  FakeCell cell;
+  RawClient client(cell.port());
+  client.Send(Get("/healthz"));
+  EXPECT_EQ(client.Read().status, 200);
+  const std::vector<int> accepted = AcceptedAt(cell.port());
+  ASSERT_EQ(accepted.size(), 1U);
+  EXPECT_NE(OptionOf(accepted[0], IPPROTO_TCP, TCP_NODELAY), 0);
+  EXPECT_NE(OptionOf(accepted[0], SOL_SOCKET, SO_KEEPALIVE), 0);
+  EXPECT_LE(OptionOf(accepted[0], SOL_SOCKET, SO_SNDBUF), 2 * (256 << 10));
+}
+
+std::ptrdiff_t Threads() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/task"), {});
+}
+
+// One that makes pictures, and of the others so many as are asked for, from 1
+// to 64 of each kind.
+TEST(LastWords, ThreadsAreFromOneToSixtyFour) {
+  FakeResources resources;
+  for (const auto& [asked, made] : {std::pair{0, 1}, {1, 1}, {3, 3}, {64, 64}, {1000, 64}}) {
+    WebOptions options = AnyPort();
+    options.io_threads = asked;
+    options.blocking_threads = asked;
+    const std::ptrdiff_t before = Threads();
+    const auto server = WebServer::Start(options, nullptr, resources);
+    ASSERT_TRUE(server);
+    EXPECT_EQ(Threads() - before, 2 * made + 1) << asked;
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::web::testing

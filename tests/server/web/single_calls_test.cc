@@ -1,0 +1,150 @@
+// Calls of the gateway to its server, one by one: a server that does what no good one does, and
+// clients that go at any moment.
+#include <grpcpp/generic/async_generic_service.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <future>
+#include <nlohmann/json.hpp>
+
+#include "rmlcell/v1/job.pb.h"
+#include "server/web/base64.h"
+#include "server/web/rpc_call.h"
+#include "tests/server/web/fake_cell.h"
+#include "tests/server/web/raw_client.h"
+
+namespace rmlcell::web::testing {
+namespace {
+
+// Answers every call with so many jobs, "jobs/1" and on, and with metadata; below 0: it goes on
+// until the client leaves.
+class CountedAnswers final : public grpc::ServerGenericBidiReactor {
+ public:
+  CountedAnswers(grpc::GenericCallbackServerContext* context, int answers) : left_(answers) {
+    for (const char* name : {"x-one", "x-raw-bin", "rmlcell-inner", "date", "te"})
+      context->AddTrailingMetadata(
+          name, std::string("v\xFF").substr(0, std::string(name).ends_with("-bin") ? 2 : 1));
+    StartRead(&asked_);
+  }
+  void OnReadDone(bool /*ok*/) override { Next(); }
+  void OnWriteDone(bool ok) override {
+    if (ok) return Next();
+    Finish(grpc::Status::CANCELLED);
+  }
+  void OnCancel() override {}
+  void OnDone() override { delete this; }
+
+ private:
+  void Next() {
+    if (left_ == 0) return Finish(grpc::Status::OK);
+    --left_;
+    v1::Job job;
+    job.set_name("jobs/" + std::to_string(++number_));
+    const grpc::Slice slice(job.SerializeAsString());
+    answer_ = grpc::ByteBuffer(&slice, 1);
+    StartWrite(&answer_);
+  }
+
+  int left_;
+  int number_ = 0;
+  grpc::ByteBuffer asked_;
+  grpc::ByteBuffer answer_;
+};
+
+class CountingService final : public grpc::CallbackGenericService {
+ public:
+  grpc::ServerGenericBidiReactor* CreateReactor(
+      grpc::GenericCallbackServerContext* context) override {
+    return new CountedAnswers(context, answers);
+  }
+  std::atomic<int> answers = 1;
+};
+
+class SingleCalls : public ::testing::Test {
+ protected:
+  SingleCalls() {
+    grpc::ServerBuilder builder;
+    builder.RegisterCallbackGenericService(&service_);
+    server_ = builder.BuildAndStart();
+    channel_ = server_->InProcessChannel({});
+    web_ = *WebServer::Start(AnyPort(), channel_, resources_);
+  }
+  ~SingleCalls() override {
+    web_->Stop(std::chrono::milliseconds(0));
+    server_->Shutdown(std::chrono::system_clock::now());
+    server_->Wait();
+  }
+
+  // How a call ends that is left after so many messages, while another one is waited for or not.
+  RpcStatus Left(int messages, bool waiting) {
+    std::promise<void> seen;
+    std::promise<RpcStatus> ended;
+    std::atomic<int> count = 0;
+    std::shared_ptr<RpcCall> call;
+    std::promise<void> started;
+    const auto is_started = started.get_future().share();
+    call =
+        RpcCall::Start(channel_, {.method = "/a.B/C", .message = {}, .metadata = {}, .timeout = {}},
+                       {.on_message =
+                            [&, is_started](const std::string&) {
+                              is_started.wait();
+                              if (++count == messages) return seen.set_value();
+                              call->ReadNext();
+                            },
+                        .on_end = [&](RpcCallEnd end) { ended.set_value(end.status); }});
+    started.set_value();
+    call->ReadNext();
+    seen.get_future().wait();
+    if (waiting) call->ReadNext();
+    call->Cancel();
+    call->Cancel();
+    auto end = ended.get_future();
+    if (end.wait_for(std::chrono::minutes(1)) != std::future_status::ready) std::abort();
+    return end.get();
+  }
+
+  CountingService service_;
+  FakeResources resources_;
+  std::unique_ptr<grpc::Server> server_;
+  std::shared_ptr<grpc::Channel> channel_;
+  std::unique_ptr<WebServer> web_;
+};
+
+// A call with one answer has one: neither none nor two are given on as if they were.
+TEST_F(SingleCalls, HaveOneAnswer) {
+  const auto asked = [&](int answers) {
+    service_.answers = answers;
+    return Exchange(web_->port(), Post(kGetJob, "application/json", "{}"));
+  };
+  const RawResponse good = asked(1);
+  EXPECT_EQ(good.status, 200);
+  EXPECT_EQ(nlohmann::json::parse(good.body)["name"], "jobs/1");
+  for (const int answers : {0, 2, 3}) {
+    const RawResponse bad = asked(answers);
+    EXPECT_EQ(bad.status, 500) << answers;
+    EXPECT_EQ(nlohmann::json::parse(bad.body)["details"][1]["code"], "CELL-E9001") << answers;
+  }
+}
+
+// What gRPC and the server say to each other is not for browsers; bytes come as base64.
+TEST_F(SingleCalls, MetadataOfOursStaysInside) {
+  const RawResponse response = Exchange(web_->port(), Post(kGetJob, "application/json", "{}"));
+  EXPECT_EQ(response.Header("trailer-x-one"), "v");
+  EXPECT_EQ(response.Header("trailer-x-raw-bin"), Base64("v\xFF", false));
+  for (const char* inner :
+       {"trailer-rmlcell-inner", "trailer-date", "trailer-te", "trailer-content-type",
+        "content-type2", "user-agent", "trailer-grpc-status"})
+    EXPECT_EQ(response.headers.count(inner), 0U) << inner;
+}
+
+// A call that is left ends, and says that it was cancelled, whether something is waited for or not.
+TEST_F(SingleCalls, WhoLeavesEndsThem) {
+  service_.answers = -1;
+  for (const int messages : {1, 3}) {
+    EXPECT_EQ(Left(messages, false).code, 1) << messages;
+    EXPECT_EQ(Left(messages, true).code, 1) << messages;
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::web::testing

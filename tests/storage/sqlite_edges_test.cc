@@ -1,0 +1,197 @@
+// What the embedded store does at the edges of its housekeeping, its files and its hints.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <future>
+#include <string>
+
+#include "engine/core/hex.h"
+#include "storage/content.h"
+#include "storage/sqlite/housekeeping.h"
+#include "storage/sqlite/watchers.h"
+#include "storage/sqlite/writer.h"
+#include "tests/storage/sqlite_bed.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+using std::chrono::hours;
+
+std::int64_t FenceMarkIn(const std::string& path) {
+  return NumberIn(path, "SELECT ifnull(sum(value), 0) FROM mark WHERE name = 'fence'");
+}
+
+// Fences are reserved by the first lease, a thousand at once, and by no other write.
+TEST(SqliteEdges, FencesAreReservedWhenOneIsGiven) {
+  SqliteBed bed;
+  Must(bed.store().PutMachine({.id = "m"}, 0));
+  Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+  Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+  EXPECT_EQ(FenceMarkIn(bed.path()), 0);
+  ASSERT_TRUE(Must(bed.store().Acquire("w", {"CHECK"}, hours(1), {})));
+  const std::int64_t mark = FenceMarkIn(bed.path());
+  EXPECT_GE(mark, 1'000);
+  ASSERT_TRUE(Must(bed.store().Acquire("w", {"CHECK"}, hours(1), {})));
+  Must(bed.store().PutMachine({.id = "other"}, 0));
+  EXPECT_EQ(FenceMarkIn(bed.path()), mark);
+}
+
+// One slice takes 256 uploads whose time is over, and says that there may be more; each has one
+// reference less, here of two.
+TEST(SqliteEdges, UploadsAreForgottenASliceAtATime) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  Connection connection(Must(Database::Open(path, Database::Access::kReadWrite, {})));
+  Must(connection.database.Execute(
+      "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 258)"
+      " INSERT INTO blob (id, sha256, size, refs, holds, content)"
+      " SELECT i, CAST(i AS BLOB), 1, 2, 0, x'00' FROM n"));
+  Must(connection.database.Execute("INSERT INTO upload (blob, until) SELECT id, id FROM blob"));
+  const auto left = [&] { return Must(connection.database.Number("SELECT count(*) FROM upload")); };
+  Counters counters;
+  const ProgramMemoryOf no_limit;
+  const MachineTally no_machines{{}};
+  const auto slice = [&](std::int64_t now_us) {
+    WriteContext context{.tables = connection.tables,
+                         .counters = counters,
+                         .program_memory = no_limit,
+                         .machines = no_machines,
+                         .now = WallTime(std::chrono::microseconds(now_us))};
+    return Must(Housekeeping({}).RunSlice(context));
+  };
+  EXPECT_FALSE(slice(0));
+  EXPECT_EQ(left(), 258);
+  EXPECT_TRUE(slice(1'000));
+  EXPECT_EQ(left(), 2);
+  EXPECT_EQ(Must(connection.database.Number("SELECT count(*) FROM blob WHERE refs = 2")), 2);
+  EXPECT_FALSE(slice(1'000));
+  EXPECT_EQ(left(), 0);
+  EXPECT_EQ(Must(connection.database.Number("SELECT count(*) FROM blob WHERE refs = 1")), 258);
+}
+
+// A service has no standard input: the first file that it opens then has the number 0.
+TEST(SqliteEdges, ACopyIsMadeWithoutAStandardInput) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  const Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  const int kept = dup(STDIN_FILENO);
+  close(STDIN_FILENO);
+  const Status copied = database.CopyTo(directory.File("copy.db"));
+  if (kept >= 0) {
+    dup2(kept, STDIN_FILENO);
+    close(kept);
+  }
+  EXPECT_TRUE(copied);
+  EXPECT_EQ(NumberIn(directory.File("copy.db"), "SELECT count(*) FROM log_part"), 1);
+}
+
+// Whatever others may do with the file, even to execute it only, is taken from them.
+TEST(SqliteEdges, NobodyElseMayDoAnythingWithTheFile) {
+  for (const mode_t mode : {mode_t{0601}, mode_t{0610}, mode_t{0640}, mode_t{0604}}) {
+    SqliteBed bed;
+    bed.Close();
+    ASSERT_EQ(chmod(bed.path().c_str(), mode), 0);
+    bed.Reopen();
+    struct stat facts {};
+    ASSERT_EQ(stat(bed.path().c_str(), &facts), 0);
+    EXPECT_EQ(facts.st_mode & 0777, mode_t{0600}) << mode;
+  }
+}
+
+// An order is a hint, too: the server that has the job looks at its orders.
+TEST(SqliteEdges, AnOrderIsTold) {
+  SqliteBed bed;
+  const std::int64_t job = Must(bed.store().SubmitAndWait({.kind = "CHECK"})).job.id;
+  Must(bed.store().AcquireJobs(
+      {.worker = "w", .server = "a", .kinds = {"CHECK"}, .duration = hours(1)}));
+  bed.Reopen();  // hints of what was before are told by now
+  std::atomic<int> told{0};
+  const auto watch = bed.store().Watch([&] { ++told; });
+  ASSERT_FALSE(bed.store().PutOrder(job, "a", "refused"));
+  EXPECT_EQ(told, 0);
+  ASSERT_TRUE(bed.store().PutOrder(job, "b", "stop"));
+  EXPECT_TRUE(Eventually([&] { return told > 0; }));
+}
+
+// A job whose time has come is told of.
+TEST(SqliteEdges, AJobThatIsDueIsTold) {
+  SqliteBed bed;
+  Must(bed.store().SubmitAndWait({.kind = "CHECK", .not_before = bed.clock().Now() + hours(1)}));
+  bed.clock().Advance(hours(2));
+  bed.Reopen();
+  std::atomic<int> told{0};
+  const auto watch = bed.store().Watch([&] { ++told; });
+  Must(bed.store().Expire(PolicyOfTests()));
+  EXPECT_TRUE(Eventually([&] { return told > 0; }));
+}
+
+// Who ends his subscription while another one is told hears nothing more.
+TEST(SqliteEdges, AWatcherThatLeftMeanwhileIsNotCalled) {
+  Watchers watchers;
+  std::promise<void> entered;
+  std::promise<void> left;
+  std::atomic<int> calls{0};
+  std::atomic<int> rounds{0};
+  const auto first = watchers.Add([&] {
+    if (rounds++ > 0) return;
+    entered.set_value();
+    left.get_future().wait();
+  });
+  auto second = watchers.Add([&] { ++calls; });
+  watchers.Notify();
+  entered.get_future().wait();
+  second.reset();
+  left.set_value();
+  watchers.Notify();
+  EXPECT_TRUE(Eventually([&] { return rounds > 1; }));
+  EXPECT_EQ(calls, 0);
+}
+
+// A page of nothing has nothing.
+TEST(SqliteEdges, ALimitOfNothingIsNothing) {
+  SqliteBed bed;
+  Store& store = bed.store();
+  Must(store.PutMachine({.id = "m"}, 0));
+  Must(store.PutPrograms("m", {{.slot = 1, .object = "o"}}, {}));
+  Must(store.PutProject({.id = "p"}, 0));
+  Must(store.AddTeachRecord({.machine = "m", .program = 1, .entry = "e"}));
+  const std::int64_t job =
+      Must(store.SubmitAndWait({.kind = "CHECK", .events = {{.kind = "state"}}})).job.id;
+  for (const int limit : {0, -1, -99}) {
+    EXPECT_TRUE(Must(store.AllEvents(0, limit)).empty()) << limit;
+    EXPECT_TRUE(Must(store.JobEvents(job, 0, limit)).empty()) << limit;
+    EXPECT_TRUE(Must(store.ListPrograms("m", 0, limit)).empty()) << limit;
+    EXPECT_TRUE(Must(store.ListProjects("", limit)).empty()) << limit;
+    EXPECT_TRUE(Must(store.ListTeachRecords("m", 1, 99, limit)).empty()) << limit;
+    EXPECT_TRUE(Must(store.ListJobs({.limit = limit})).empty()) << limit;
+  }
+  EXPECT_EQ(Must(store.AllEvents(0, 1)).size(), 1u);
+  EXPECT_EQ(Must(store.JobEvents(job, 0, 1)).size(), 1u);
+  EXPECT_EQ(Must(store.ListPrograms("m", 0, 1)).size(), 1u);
+  EXPECT_EQ(Must(store.ListProjects("", 1)).size(), 1u);
+  EXPECT_EQ(Must(store.ListTeachRecords("m", 1, 99, 1)).size(), 1u);
+  EXPECT_EQ(Must(store.ListJobs({.limit = 1})).size(), 1u);
+}
+
+// A statement is executed once at a time: another query of it would take the row from the first.
+TEST(SqliteEdges, AStatementHasOneQuery) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  Statement statement(database, "SELECT 1");
+  {
+    Query query = statement.With();
+    EXPECT_TRUE(Must(query.Step()));
+    EXPECT_DEATH((void)statement.With(), "check failed");
+  }
+  Query again = statement.With();
+  EXPECT_TRUE(Must(again.Step()));
+}
+
+}  // namespace
+}  // namespace rmlcell::storage::sqlite
