@@ -11,6 +11,7 @@
 // by then; what it appended behind that move waits, and is planned anew at START. motion.md 6,
 // OPT-4.17
 namespace rmlcell::optimo {
+
 void Ride::Hold() {
   // Behind a move that ends where it is nothing follows.
   if (under_way() == nullptr || under_way()->ended || !protocol().may_hold()) return;

@@ -11,35 +11,12 @@
 #include <vector>
 
 #include "tests/clients/cli/fake_jobs.h"
+#include "tests/clients/cli/on_terminal.h"
 
 namespace rmlcell::cli {
 namespace {
 
 using testing::HasSubstr;
-
-// What `act` draws on standard error while that is a terminal. It must be less than a terminal
-// keeps, 4 KiB.
-std::string DrawnOnErrors(const std::function<void()>& act) {
-  termios raw{};
-  ::cfmakeraw(&raw);
-  int outside = -1;
-  int inside = -1;
-  EXPECT_EQ(::openpty(&outside, &inside, nullptr, &raw, nullptr), 0);
-  std::fflush(stderr);
-  const int kept = ::dup(STDERR_FILENO);
-  ::dup2(inside, STDERR_FILENO);
-  act();
-  std::fflush(stderr);
-  ::dup2(kept, STDERR_FILENO);
-  ::close(kept);
-  ::close(inside);
-  std::string drawn;
-  char room[4096];
-  for (ssize_t size = 0; (size = ::read(outside, room, sizeof room)) > 0;)
-    drawn.append(room, static_cast<std::size_t>(size));
-  ::close(outside);
-  return drawn;
-}
 
 // The share where it is known, how long it takes where that is planned, the instruction and the
 // tip; a job that ended well leaves a full bar.
@@ -60,7 +37,7 @@ TEST_F(RemoteJobs, ATerminalShowsHowFarAJobIs) {
     jobs.connections = {{{planned, unplanned, end}, {}}};
     jobs.watches.clear();
     testing::internal::CaptureStdout();
-    const std::string text = DrawnOnErrors([&] { WatchJob(server.remote(), "17", 0, false); });
+    const std::string text = OnErrors([&] { WatchJob(server.remote(), "17", 0, false); });
     testing::internal::GetCapturedStdout();
     return text;
   };

@@ -13,34 +13,13 @@
 #include "clients/cli/remote_machines.h"
 #include "tests/clients/cli/fake_jobs.h"
 #include "tests/clients/cli/fake_machine.h"
+#include "tests/clients/cli/on_terminal.h"
 
 namespace rmlcell::cli {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-// What is shown below the events while a job runs, on a terminal.
-std::string ErrorsOnATerminal(const std::function<void()>& act) {
-  termios raw{};
-  ::cfmakeraw(&raw);
-  int outside = -1;
-  int inside = -1;
-  EXPECT_EQ(::openpty(&outside, &inside, nullptr, &raw, nullptr), 0);
-  const int kept = ::dup(STDERR_FILENO);
-  ::dup2(inside, STDERR_FILENO);
-  act();
-  std::fflush(stderr);
-  ::dup2(kept, STDERR_FILENO);
-  ::close(kept);
-  ::close(inside);
-  std::string text;
-  char room[4096];
-  for (ssize_t size = 0; (size = ::read(outside, room, sizeof room)) > 0;)
-    text.append(room, static_cast<std::size_t>(size));
-  ::close(outside);
-  return text;
-}
 
 using WatchedJobs = RemoteJobs;
 
@@ -55,7 +34,7 @@ TEST_F(WatchedJobs, ProgressSaysTimeInstructionAndPlace) {
   progress.mutable_position()->mutable_tip()->set_y(-2.506);
   progress.mutable_position()->mutable_tip()->set_z(3.758);
   jobs.connections = {{{at, End(2, v1::Outcome::KIND_COMPLETED)}, {}}};
-  std::string shown = ErrorsOnATerminal([&] {
+  std::string shown = OnErrors([&] {
     testing::internal::CaptureStdout();
     EXPECT_EQ(WatchJob(server.remote(), "17", 0, false), 0);
     testing::internal::GetCapturedStdout();
@@ -67,7 +46,7 @@ TEST_F(WatchedJobs, ProgressSaysTimeInstructionAndPlace) {
   progress.clear_planned_time_ns();
   jobs.watches.clear();
   jobs.connections = {{{at, End(2, v1::Outcome::KIND_FAILED, v1::VERDICT_BAD)}, {}}};
-  shown = ErrorsOnATerminal([&] {
+  shown = OnErrors([&] {
     testing::internal::CaptureStdout();
     EXPECT_EQ(WatchJob(server.remote(), "17", 0, false), 1);
     testing::internal::GetCapturedStdout();
@@ -133,7 +112,7 @@ TEST_F(WordsOfTheMachine, ShowsWhereItIs) {
   v1::AxisValue& axis = *one.mutable_status()->add_axes();
   axis.set_axis("X");
   axis.set_value(12.5);
-  const std::string shown = ErrorsOnATerminal([&] {
+  const std::string shown = OnErrors([&] {
     testing::internal::CaptureStdout();
     const MachineAct act{.machine = "m"};
     WatchMachine(server_->remote(), act);

@@ -3,18 +3,10 @@
 #include <vector>
 
 #include "engine/optimo/offline/offset_path.h"
+#include "tests/engine/optimo/offline/flat_leg.h"
 
 namespace rmlcell::optimo {
 namespace {
-
-Leg FlatLeg(ProgramVector from, ProgramVector to) {
-  Leg leg;
-  leg.from = from;
-  leg.to = to;
-  leg.tool_from = leg.tool_to = leg.tool_via = {0, 0, 1};
-  Prepare(leg);
-  return leg;
-}
 
 Leg FlatArc(ProgramVector from, ProgramVector via, ProgramVector to) {
   Leg leg = FlatLeg(from, to);

@@ -14,19 +14,11 @@
 #include "engine/optimo/offline/transform.h"
 #include "engine/optimo/offline/translate.h"
 #include "tests/engine/optimo/language/compile_text.h"
+#include "tests/engine/optimo/offline/flat_leg.h"
 
 // Ways that are just far enough, and texts that end where they end.
 namespace rmlcell::optimo {
 namespace {
-
-Leg PlainLeg(ProgramVector from, ProgramVector to) {
-  Leg leg;
-  leg.from = from;
-  leg.to = to;
-  leg.tool_from = leg.tool_to = leg.tool_via = {0, 0, 1};
-  Prepare(leg);
-  return leg;
-}
 
 bool IsGouged(const std::vector<Leg>& legs, const std::vector<OffsetLeg>& moved, std::size_t leg) {
   const GougeSearch search = FindGouges(legs, moved, 1.0);
@@ -40,10 +32,10 @@ bool IsGouged(const std::vector<Leg>& legs, const std::vector<OffsetLeg>& moved,
 // passes by counts as a whole.
 TEST(WaySides, PiecesAtTheBallOfAPierceOnAnEdge) {
   const auto found = [](ProgramVector from, ProgramVector to) {
-    const std::vector<Leg> legs = {
-        PlainLeg({0, 0, 0}, {30, 0, 0}), PlainLeg({30, 0, 0}, {30, 40, 0}),
-        PlainLeg({30, 40, 0}, {10, 40, 0}), PlainLeg({10, 40, 0}, {10, 20, 0}),
-        PlainLeg({10, 20, 0}, {15, 20, 0})};
+    const std::vector<Leg> legs = {FlatLeg({0, 0, 0}, {30, 0, 0}), FlatLeg({30, 0, 0}, {30, 40, 0}),
+                                   FlatLeg({30, 40, 0}, {10, 40, 0}),
+                                   FlatLeg({10, 40, 0}, {10, 20, 0}),
+                                   FlatLeg({10, 20, 0}, {15, 20, 0})};
     return IsGouged(
         legs, {{{29, 5, 0}, {}}, {{29, 39, 0}, {}}, {{11, 39, 0}, {}}, {from, {}}, {to, {}}}, 4);
   };
@@ -58,8 +50,8 @@ TEST(WaySides, PiecesAtTheBallOfAPierceOnAnEdge) {
 // at along it, at any height; where it does not, distances are those in space.
 TEST(WaySides, AHeadThatTurnsAtAViaPointDoesNotKeepItsDirection) {
   for (const bool turns : {false, true}) {
-    std::vector<Leg> legs = {PlainLeg({0, 0, 0}, {10, 0, 0}), PlainLeg({10, 0, 0}, {10, 1.5, 10}),
-                             PlainLeg({10, 1.5, 10}, {0, 1.5, 10})};
+    std::vector<Leg> legs = {FlatLeg({0, 0, 0}, {10, 0, 0}), FlatLeg({10, 0, 0}, {10, 1.5, 10}),
+                             FlatLeg({10, 1.5, 10}, {0, 1.5, 10})};
     legs[1].via = ProgramVector(14, 0.75, 5);
     if (turns) legs[1].tool_via = {std::sin(0.3), 0.0, std::cos(0.3)};
     Prepare(legs[1]);
