@@ -7,45 +7,13 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/engine/motion/level_one.h"
 #include "tests/engine/motion/random_chain.h"
 
 namespace rmlcell::motion {
 namespace {
 
 constexpr PathLimits kCellLimits{.speed = 100.0, .acceleration = 2000.0, .jerk = 40000.0};
-
-// Fills in the speeds of level 1: forward and backward by Reach, from `start` to `end`.
-void TimeByLevelOne(std::vector<RampCell>& cells, double start, double end) {
-  const auto reachable = [](double from, const RampCell& cell, double cap) {
-    if (cap <= from || RampLength(from, cap, cell.limits) <= cell.length) return cap;
-    return std::min(cap, Reach(from, cell.length, cell.limits));
-  };
-  double speed = start;
-  for (std::size_t k = 0; k < cells.size(); ++k) {
-    double cap = std::min(cells[k].limits.speed, cells[k].end_cap);
-    if (k + 1 < cells.size()) cap = std::min(cap, cells[k + 1].limits.speed);
-    if (k + 1 == cells.size()) cap = std::min(cap, end);
-    speed = cells[k].end_speed = reachable(speed, cells[k], cap);
-  }
-  for (std::size_t k = cells.size() - 1; k-- > 0;) {
-    cells[k].end_speed = reachable(cells[k + 1].end_speed, cells[k + 1], cells[k].end_speed);
-  }
-}
-
-double LevelOneTime(const std::vector<RampCell>& cells, double start) {
-  double time = 0.0;
-  for (const RampCell& cell : cells) {
-    time += SpeedProfile::Span(cell.length, start, cell.end_speed, cell.limits).duration_s();
-    start = cell.end_speed;
-  }
-  return time;
-}
-
-double TimeOf(const RampPlan& plan) {
-  double time = 0.0;
-  for (const SpeedProfile& ramp : plan.ramps()) time += ramp.duration_s();
-  return time;
-}
 
 // From rest to 100 mm/s takes 5 mm (50 mm/s for 2 sqrt(100/40000) = 0.1 s): over ten stretches of 1
 // mm with one limit that is one ramp and 5 mm at full speed. Level 1 stops speeding up at each end.

@@ -7,40 +7,12 @@
 #include <vector>
 
 #include "engine/motion/profile/ramp_plan.h"
+#include "tests/engine/motion/level_one.h"
 
 namespace rmlcell::motion {
 namespace {
 
 constexpr PathLimits kStretch{.speed = 100.0, .acceleration = 2000.0, .jerk = 40000.0};
-
-// The speeds of level 1 from `start` to `end`; the time that it takes.
-double LevelOneOf(std::vector<RampCell>& cells, double start, double end) {
-  const auto reach = [](double from, const RampCell& cell, double cap) {
-    if (cap <= from || RampLength(from, cap, cell.limits) <= cell.length) return cap;
-    return std::min(cap, Reach(from, cell.length, cell.limits));
-  };
-  double speed = start;
-  for (std::size_t k = 0; k < cells.size(); ++k) {
-    double cap = std::min(cells[k].limits.speed, cells[k].end_cap);
-    cap = std::min(cap, k + 1 < cells.size() ? cells[k + 1].limits.speed : end);
-    speed = cells[k].end_speed = reach(speed, cells[k], cap);
-  }
-  for (std::size_t k = cells.size() - 1; k-- > 0;) {
-    cells[k].end_speed = reach(cells[k + 1].end_speed, cells[k + 1], cells[k].end_speed);
-  }
-  double time = 0.0;
-  for (const RampCell& cell : cells) {
-    time += SpeedProfile::Span(cell.length, start, cell.end_speed, cell.limits).duration_s();
-    start = cell.end_speed;
-  }
-  return time;
-}
-
-double TimeOfAll(const RampPlan& plan) {
-  double time = 0.0;
-  for (const SpeedProfile& ramp : plan.ramps()) time += ramp.duration_s();
-  return time;
-}
 
 std::vector<double> LengthsOf(const RampPlan& plan) {
   std::vector<double> lengths;
@@ -59,7 +31,7 @@ std::vector<RampCell> StepsAndALongWay() {
 }
 
 std::vector<double> SplitsOf(std::vector<RampCell> cells) {
-  LevelOneOf(cells, 0.0, 0.0);
+  TimeByLevelOne(cells, 0.0, 0.0);
   RampPlan plan;
   plan.Plan(cells, 0.0);
   return LengthsOf(plan);
@@ -82,7 +54,7 @@ TEST(RampSplits, AreWhereOneRampBreaksMost) {
   std::vector<RampCell> cells = StepsAndALongWay();
   cells[8].limits.speed = 65.0;
   // A ramp from the end of the first is slower at the second than one over all.
-  LevelOneOf(cells, 0.0, 0.0);
+  TimeByLevelOne(cells, 0.0, 0.0);
   const PathLimits fast = cells[9].limits;
   const SpeedProfile all = SpeedProfile::Span(118.0, 0.0, 0.0, fast);
   const SpeedProfile rest = SpeedProfile::Span(115.3, cells[8].end_speed, 0.0, fast);
@@ -103,7 +75,7 @@ TEST(RampSplits, AreNoneWhereOneSlowerRampIsFaster) {
   std::vector<RampCell> cells = StepsAndALongWay();
   cells.pop_back();
   cells[8].limits.speed = 90.0;
-  LevelOneOf(cells, 0.0, 0.0);
+  TimeByLevelOne(cells, 0.0, 0.0);
   RampPlan plan;
   plan.Plan(cells, 0.0);
   ASSERT_EQ(LengthsOf(plan), (std::vector{18.0}));
@@ -120,14 +92,15 @@ TEST(RampSplits, AWeakStretchDoesNotHoldUpTheRest) {
   cells[0].length = 1e-3;
   cells[0].limits.acceleration = 40.0;
   cells[0].limits.jerk = 800.0;
-  const double level_one = LevelOneOf(cells, 0.0, 0.0);
+  TimeByLevelOne(cells, 0.0, 0.0);
+  const double level_one = LevelOneTime(cells, 0.0);
   RampPlan plan;
   plan.Plan(cells, 0.0);
-  EXPECT_LT(TimeOfAll(plan), 0.9 * level_one);
+  EXPECT_LT(TimeOf(plan), 0.9 * level_one);
   EXPECT_EQ(LengthsOf(plan), (std::vector{0.001, 5.0, 6.0}));
   cells.insert(cells.begin(), RampCell{.length = 20.0, .limits = kStretch});
   cells[0].limits.speed = 5.0;
-  LevelOneOf(cells, 0.0, 0.0);
+  TimeByLevelOne(cells, 0.0, 0.0);
   plan.Plan(cells, 0.0);
   EXPECT_EQ(LengthsOf(plan), (std::vector{20.0, 0.001, 5.0, 6.0}));
 }
