@@ -48,7 +48,7 @@ AREAS = {
                       "integration_test_programs", "integration_test_http", "integration_test_command", "integration_test_command_remote",
                       "integration_test_web")),
     "command": Area(("clients/cli", "clients/lsp", "engine/optimo/editing"),
-                    ("lsp_test", "optimo_editing_test", "cli_test", "integration_test_command", "integration_test_command_remote", "integration_test_command_words", "integration_test_lsp",
+                    ("lsp_test", "optimo_editing_test", "cli_test", "integration_test_command", "integration_test_command_remote", "integration_test_command_words", "integration_test_command_options", "integration_test_command_requests", "integration_test_lsp",
                      "integration_test_tools", "integration_test_rml1_tools", "integration_test_programs",
                      "integration_test_handbox_terminal", "integration_test_by_hand")),
 }

@@ -74,7 +74,7 @@ class SwitchedTree:
         self.copy(set(files))
         shared = self.root.parent / "shared"
         subprocess.run(["cmake", "-S", str(self.tree), "-B", str(self.build), "-G", "Ninja", "-DBUILD_TESTING=ON",
-                        "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -w",
+                        "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -w -D_GLIBCXX_ASSERTIONS",
                         "-DRMLCELL_TESTS_AS_RELEASED=ON", f"-DRMLCELL_SHARED_DIR={shared}"],
                        check=True, stdout=subprocess.DEVNULL)
         # The compiler is asked below what it takes, and reads the generated headers then.
@@ -148,8 +148,8 @@ class SwitchedTree:
 
     @staticmethod
     def head(text):
-        # Lines keep their numbers: messages and assertions name them.
-        return f'#include "tests/mutation/changes.h"\n#line 1\n{text}'
+        # Lines keep their numbers: messages and assertions name them. The name is for what stands outside rmlcell.
+        return f'#include "tests/mutation/changes.h"\nnamespace changes = rmlcell::changes;\n#line 1\n{text}'
 
     def accepted(self, file, source, every, first, anew):
         """The source with those switches that the compiler takes."""
@@ -158,6 +158,7 @@ class SwitchedTree:
         known = None if anew else self.refusals.get(key_of_source)
         if known is not None:
             return SwitchedSource(source, {p: n for p, n in every.items() if n - first not in known})
+        kinds = {number: place.kind for place, number in every.items()}
         refused = set()
         for attempt in range(REFUSALS_MAX):
             errors = self.errors(file, switched.text)
@@ -166,6 +167,8 @@ class SwitchedTree:
                     self.refusals.put(key_of_source, {n - first for n in refused})
                 return switched
             found = blamed(switched, errors, 0 if attempt < REFUSALS_MAX / 2 else 1) - refused
+            # Two arguments of two types cannot be exchanged, and their error blames what stands within them, too.
+            found = {number for number in found if kinds[number] == "exchanged argument"} or found
             refused |= found or set(every.values())
             switched = SwitchedSource(source, {p: n for p, n in every.items() if n not in refused})
         return SwitchedSource(source, {})

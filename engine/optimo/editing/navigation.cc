@@ -75,7 +75,8 @@ machine::Places Definition(const ProgramIndex& index, std::size_t offset,
   }
   const StatementPlace& statement = index.statements()[use->statement];
   const ProcessUse* process = ProcessOf(index, statement);
-  if (use->kind == UseKind::kWord && use->word == Word::kWork && process != nullptr) {
+  if (use->kind == UseKind::kWord && use->word == Word::kWork && process != nullptr &&
+      !process->defines) {
     if (const StatementPlace* place = DefinitionOfProcess(index, *process))
       found.here.push_back({place->body, place->end});
   }

@@ -188,7 +188,7 @@ class Ride {
 
   bool may_be_moved() const;
   // It stands here now. At START the move that was interrupted goes to its end from here, a circle
-  // through its via point; a hole goes back to where it was left.
+  // through its via point; a hole goes back to where it was left, one of a passage to its begin.
   void MoveTo(const motion::AxisPose& axes);
 
  private:

@@ -68,6 +68,8 @@ TEST(Navigation, AWorkLeadsToItsWorkdef) {
             Strings{"12.S 3:0"});
   EXPECT_EQ(DefinitionOf("WORKDEF 1,0 (1,2,3,4)\nWORK 1,0/O|N\n"), Strings{});
   EXPECT_EQ(DefinitionOf("WORK|DEF 1,0 (1,2,3,4)\n"), Strings{});
+  // WORK where a value is still to be written uses nothing.
+  EXPECT_EQ(DefinitionOf("WORKDEF 1,0 (1,2,3,4)\nWORKDEF 1,0 (5,6, WO|RK\n"), Strings{});
 }
 
 TEST(Navigation, ReferencesAreTheSequenceNumberAndItsJumps) {

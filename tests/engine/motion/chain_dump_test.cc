@@ -6,23 +6,10 @@
 
 #include "engine/core/units.h"
 #include "engine/motion/planner/motion_chain.h"
+#include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {
 namespace {
-
-// Without a limit on jerk, and with axes that are no bound: all figures follow from two numbers,
-// 100 mm/s and 1000 mm/s2.
-MachineLimits PlainMachine() {
-  MachineLimits machine;
-  machine.tip_speed_mm_s = 100.0;
-  machine.tip_acceleration_mm_s2 = 1000.0;
-  machine.tip_jerk_mm_s3 = HUGE_VAL;
-  machine.settling_s = 0.0;
-  machine.axes.speed.fill(1e6);
-  machine.axes.acceleration.fill(1e6);
-  machine.axes.jerk.fill(HUGE_VAL);
-  return machine;
-}
 
 void Append(MotionChain& chain, const TipPose& from, const TipPose& to, bool fly,
             std::uint64_t tag) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/motion/ride/path_ride.h"
+#include "tests/engine/motion/items_text.h"
 #include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion::path_ride_marks {
@@ -28,16 +29,6 @@ PathRide RideWithMarks() {
   PathRide ride(HoldRamp::kStays);
   while (const std::optional<PlannedItem> item = planner.Next()) ride.Plan(*item);
   return ride;
-}
-
-std::string ItemsOf(const std::deque<PlannedItem>& items) {
-  std::string text;
-  for (const PlannedItem& item : items) {
-    const auto* mark = std::get_if<PlannedMark>(&item);
-    text += mark != nullptr ? " m" + std::to_string(mark->tag)
-                            : " " + std::to_string(std::get<PlannedMotion>(item).tag);
-  }
-  return text;
 }
 
 // STOP at the very end of the first line: its mark is passed first, and each of the others where

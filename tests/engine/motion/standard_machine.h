@@ -20,4 +20,18 @@ inline MachineLimits StandardMachine() {
   return machine;
 }
 
+// Without a limit on jerk, and with axes that are no bound: all figures follow from two numbers,
+// 100 mm/s and 1000 mm/s2.
+inline MachineLimits PlainMachine() {
+  MachineLimits machine;
+  machine.tip_speed_mm_s = 100.0;
+  machine.tip_acceleration_mm_s2 = 1000.0;
+  machine.tip_jerk_mm_s3 = kNoLimit;
+  machine.settling_s = 0.0;
+  machine.axes.speed.fill(1e6);
+  machine.axes.acceleration.fill(1e6);
+  machine.axes.jerk.fill(kNoLimit);
+  return machine;
+}
+
 }  // namespace rmlcell::motion

@@ -13,6 +13,7 @@
 #include "server/host/parked_orders.h"
 #include "server/host/start_desk.h"
 #include "server/host/unstored_entries.h"
+#include "tests/server/host/parked_order.h"
 
 namespace rmlcell::server {
 namespace {
@@ -219,20 +220,6 @@ TEST(DeskLimits, OfWhatAStartAtAStepTakesAlong) {
   EXPECT_THAT(taken->acknowledged, testing::UnorderedElementsAre("origin", "Z0", "table"));
 }
 
-v1::HostOrder ParkedStart(std::int64_t number) {
-  v1::HostOrder order;
-  order.set_number(number);
-  order.mutable_start();
-  return order;
-}
-
-v1::HostOrder ParkedJob(const std::string& job) {
-  v1::HostOrder order;
-  order.set_number(5);
-  order.mutable_run_job()->mutable_job()->set_name(job);
-  return order;
-}
-
 // LIVE-3.21
 TEST(DeskLimits, OfOrdersThatAreParked) {
   ParkedOrders parked;
@@ -254,8 +241,8 @@ TEST(DeskLimits, OfOrdersThatAreParked) {
   parked.Add(key, 40s);
   EXPECT_TRUE(parked.HasKey());
   EXPECT_FALSE(parked.HasJob("jobs/1"));
-  const auto one = parked.Add(ParkedJob("jobs/1"), 40s);
-  const auto other = parked.Add(ParkedJob("jobs/2"), 40s);
+  const auto one = parked.Add(ParkedRun(5, "jobs/1"), 40s);
+  const auto other = parked.Add(ParkedRun(5, "jobs/2"), 40s);
   EXPECT_TRUE(parked.HasJob("jobs/1"));
   ASSERT_EQ(parked.TakeMotions("jobs/1").size(), 1U);
   EXPECT_TRUE(one->over);

@@ -21,13 +21,6 @@ using machine::RunPhase;
 
 constexpr double kCycle_s = 0.048;
 
-std::unique_ptr<machine::Run> RunOfText(const std::string& text, const RunOptions& options = {}) {
-  static machine::RunObserver nobody;
-  Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(SetupOf(text, options), nobody);
-  EXPECT_TRUE(bool(run));
-  return *std::move(run);
-}
-
 double FigureOf(const machine::Run& run, const std::string& name) {
   for (const machine::Figure& figure : run.figures()) {
     if (figure.name == name) return figure.value;

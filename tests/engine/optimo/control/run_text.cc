@@ -216,6 +216,13 @@ machine::RunSetup SetupOf(const std::string& main, const RunOptions& options) {
   return setup;
 }
 
+std::unique_ptr<machine::Run> RunOfText(const std::string& main, const RunOptions& options) {
+  static machine::RunObserver nobody;
+  Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(SetupOf(main, options), nobody);
+  EXPECT_TRUE(bool(run));
+  return *std::move(run);
+}
+
 Ran RunText(const std::string& main, const RunOptions& options) {
   Ran ran;
   Listener listener(ran);

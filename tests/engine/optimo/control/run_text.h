@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,9 @@ struct RunOptions {
 
 // A setup of `main` as program 1, to be run by hand.
 machine::RunSetup SetupOf(const std::string& main, const RunOptions& options = {});
+
+// A run of it, to be advanced; nobody is told anything.
+std::unique_ptr<machine::Run> RunOfText(const std::string& main, const RunOptions& options = {});
 
 // Compiles `main` as program 1 and runs it to its end, or until nothing more happens.
 Ran RunText(const std::string& main, const RunOptions& options = {});

@@ -1,0 +1,144 @@
+// Ramps over stretches where a limit is just kept, where the first or the last
+// stretch is the slow one, and where the passes over stretches do not meet the
+// ends. motion.md 5.4
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/motion/profile/ramp_plan.h"
+#include "tests/engine/motion/level_one.h"
+
+namespace rmlcell::motion::ramp_ties {
+namespace {
+
+constexpr PathLimits kFast{.speed = 200.0, .acceleration = 2000.0, .jerk = 40000.0};
+
+std::vector<double> SplitsOf(const RampPlan& plan) {
+  std::vector<double> lengths;
+  for (const SpeedProfile& ramp : plan.ramps())
+    lengths.push_back(std::round(ramp.end().s * 1e9) / 1e9);
+  return lengths;
+}
+
+// From 20 mm/s to rest over 0.6 and 0.25 mm, the first at 20 mm/s at most: one
+// ramp that is nowhere faster than it begins takes the place of both. It
+// cruises and brakes for 0.447 mm.
+TEST(RampTies, AsSlowAsItBeginsIsAllowed) {
+  std::vector<RampCell> cells{{.length = 0.6, .limits = kFast}, {.length = 0.25, .limits = kFast}};
+  cells[0].limits.speed = 20.0;
+  TimeByLevelOne(cells, 20.0, 0.0);
+  RampPlan plan;
+  plan.Plan(cells, 20.0);
+  const double ramp_s = 2.0 * std::sqrt(20.0 / 40000.0);
+  const double time = (0.85 - 10.0 * ramp_s) / 20.0 + ramp_s;
+  EXPECT_NEAR(TimeOf(plan), time, 1e-9);
+  EXPECT_LT(time, LevelOneTime(cells, 20.0) - 5e-3);
+}
+
+// The last or the first of many allows 16 mm/s, where one ramp has 25: it is by
+// itself, and one ramp takes all others.
+TEST(RampTies, ASlowFirstOrLastStretchIsByItself) {
+  std::vector<RampCell> cells(60, {.length = 0.3, .limits = kFast});
+  cells.back().limits.speed = 16.0;
+  TimeByLevelOne(cells, 0.0, 0.0);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  EXPECT_EQ(SplitsOf(plan), (std::vector{17.7, 0.3}));
+  std::ranges::reverse(cells);
+  TimeByLevelOne(cells, 0.0, 0.0);
+  plan.Plan(cells, 0.0);
+  EXPECT_EQ(SplitsOf(plan), (std::vector{0.3, 17.7}));
+}
+
+// A bend among many that is slow at one of its places is by itself as a slow
+// stretch would be.
+TEST(RampTies, ABendThatOneRampBreaksIsByItself) {
+  std::vector<RampCell> cells(61, {.length = 0.3, .limits = kFast});
+  cells.back().length = 100.0;
+  TimeByLevelOne(cells, 0.0, 0.0);
+  const std::vector<double> bend{150.0, 120.0, 65.0, 120.0, 150.0};
+  cells[8].most = bend;
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  EXPECT_EQ(SplitsOf(plan), (std::vector{2.4, 0.3, 115.3}));
+}
+
+// 1 mm is the way from (200)^(2/3) mm/s to rest, where level 1 stands; to what
+// 0.2 mm to the end would allow it is too short, since a ramp to rest has more
+// time. Level 1 it is then, and no ramp that is steeper than its limits.
+TEST(RampTies, WhatThePassesCannotMeetIsLevelOne) {
+  const double start = std::pow(200.0, 2.0 / 3.0);
+  std::vector<RampCell> cells{{.length = 1.0 + 1e-9, .limits = kFast},
+                              {.length = 0.2, .limits = kFast}};
+  cells[1].limits.speed = 12.0;
+  cells[0].end_speed = cells[1].end_speed = 0.0;
+  const double meets = Reach(0.0, 0.2, kFast);
+  ASSERT_LT(meets, 12.0);
+  ASSERT_GT(RampLength(start, meets, kFast), 1.05);
+  RampPlan plan;
+  plan.Plan(cells, start);
+  EXPECT_DOUBLE_EQ(TimeOf(plan), LevelOneTime(cells, start));
+  for (const SpeedProfile& ramp : plan.ramps()) {
+    for (int k = 0; k < ramp.phase_count(); ++k)
+      EXPECT_LE(std::abs(ramp.phase(k).jerk), 40000.0 * (1.0 + 1e-6));
+  }
+}
+
+// A weak stretch makes one ramp over it and a strong one as weak: from 60 mm/s
+// to rest such a ramp is longer than both, so that it is none.
+TEST(RampTies, ARampThatIsTooLongIsNone) {
+  std::vector<RampCell> cells{{.length = 2.6, .limits = kFast}, {.length = 0.5, .limits = kFast}};
+  cells[1].limits.acceleration = 400.0;
+  cells[1].limits.jerk = 8000.0;
+  TimeByLevelOne(cells, 60.0, 0.0);
+  ASSERT_GT(RampLength(60.0, 0.0, cells[1].limits), 3.2);
+  RampPlan plan;
+  plan.Plan(cells, 60.0);
+  ASSERT_EQ(plan.ramps().size(), 2U);
+  EXPECT_NEAR(TimeOf(plan), LevelOneTime(cells, 60.0), 1e-12);
+}
+
+// A ramp over a strong stretch and a weak one has the acceleration of the weak one, also where
+// their jerk is the same.
+TEST(RampTies, OneRampKeepsTheWeakestAcceleration) {
+  for (const bool weak_first : {true, false}) {
+    std::vector<RampCell> cells(2, {.length = 4.0, .limits = kFast});
+    cells[weak_first ? 0 : 1].limits.acceleration = 400.0;
+    TimeByLevelOne(cells, 0.0, 0.0);
+    RampPlan plan;
+    plan.Plan(cells, 0.0);
+    EXPECT_LE(TimeOf(plan), LevelOneTime(cells, 0.0) + 1e-12);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const RampPlan::Timing& timing = plan.timing()[k];
+      const SpeedProfile part = plan.ramps()[timing.ramp].Part(timing.from, timing.to);
+      for (int n = 0; n < part.phase_count(); ++n) {
+        const SpeedProfile::Phase& phase = part.phase(n);
+        const double before = std::abs(phase.start.acceleration);
+        const double behind = std::abs(phase.start.acceleration + phase.duration_s * phase.jerk);
+        EXPECT_LE(std::max(before, behind), cells[k].limits.acceleration * (1.0 + 1e-6));
+      }
+    }
+  }
+}
+
+// Braking from 60 mm/s through a bend that is at 50 soon: one ramp brakes too late for it, although
+// it is slower than that where the bend ends.
+TEST(RampTies, ABendIsLookedAtFromItsBegin) {
+  std::vector<RampCell> cells{{.length = 2.6, .limits = kFast}, {.length = 0.8, .limits = kFast}};
+  cells[0].limits.speed = 60.0;
+  TimeByLevelOne(cells, 60.0, 0.0);
+  RampPlan plan;
+  plan.Plan(cells, 60.0);
+  ASSERT_EQ(plan.ramps().size(), 1U);
+  const std::vector<double> bend{60.0, 58.0, 50.0, 50.0, 50.0};
+  ASSERT_LT(plan.ramps()[0].At(plan.ramps()[0].TimeAt(2.6)).speed, 49.0);
+  ASSERT_GT(plan.ramps()[0].At(plan.ramps()[0].TimeAt(1.3)).speed, 51.0);
+  cells[0].most = bend;
+  plan.Plan(cells, 60.0);
+  EXPECT_EQ(plan.ramps().size(), 2U);
+}
+
+}  // namespace
+}  // namespace rmlcell::motion::ramp_ties

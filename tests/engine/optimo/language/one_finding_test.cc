@@ -1,0 +1,198 @@
+// One fault has one finding, with the words for what is missing; what follows from it is not told.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/optimo/language/evaluate.h"
+#include "engine/optimo/language/gosub_depth.h"
+#include "engine/optimo/language/linker.h"
+#include "tests/engine/optimo/language/compile_text.h"
+
+namespace rmlcell::optimo::one_finding {
+namespace {
+
+// "7003 expected ..." of the only finding; else how many there are.
+std::string OnlyOne(std::string_view text, bool advice = false) {
+  const Compilation compiled = Compile(text, "", {.advice = advice});
+  if (compiled.diagnostics.size() != 1)
+    return std::to_string(compiled.diagnostics.size()) + " findings";
+  const Diagnostic& d = compiled.diagnostics[0];
+  return std::to_string(Lookup(d.code).number) + " " + std::string(d.detail);
+}
+
+// OPT-3.01, OPT-3.13
+TEST(OneFinding, OfTheNumbersOfAProcess) {
+  EXPECT_EQ(OnlyOne("WORK X,0/ON\n"), "7003 expected the kind 0, 1 or 2, found 'X'");
+  EXPECT_EQ(OnlyOne("WORK 1 0/ON\n"), "7003 expected ',' and the process number, found '0'");
+  EXPECT_EQ(OnlyOne("WORK 1,X/ON\n"), "7003 expected a process number, found 'X'");
+  EXPECT_EQ(OnlyOne("WORKDEF 1,X (8.,75.,1.,50.)\n"), "7003 expected a process number, found 'X'");
+}
+
+// OPT-7.59, OPT-1.32, OPT-7.53
+TEST(OneFinding, OfAnIndexAndADigit) {
+  EXPECT_EQ(OnlyOne("VR[] = 5\n"), "7003 expected an index, found ']'");
+  EXPECT_EQ(OnlyOne("VR[@] = 5\n"), "7001 '@' cannot stand here");
+  EXPECT_EQ(OnlyOne("VR[5..] = 5\n"), "7005 '5..' is no number");
+  EXPECT_EQ(OnlyOne("VR[0] = 5:\n"), "7001 ':' cannot stand here");
+  EXPECT_EQ(OnlyOne("VR[0] = 1.5:\n"), "7001 ':' cannot stand here");
+}
+
+// OPT-6.01: a DECLARE that is wrong is no step either, and another instruction is one.
+TEST(OneFinding, OfAStepHasItsNumber) {
+  for (const auto& [first, step] : {std::pair("DECLARE 5\n", 1), std::pair("SPEED #\n", 2)}) {
+    const Compilation compiled = Compile(first + std::string("SPEED 101\n"), "", {.advice = false});
+    ASSERT_EQ(compiled.diagnostics.size(), 2U) << first;
+    EXPECT_EQ(compiled.diagnostics[1].step, step) << first;
+  }
+}
+
+// OPT-7.43: what is given to a constant is not looked at.
+TEST(OneFinding, OfAConstantThatIsAssigned) {
+  for (const char* value : {"ON", "2", "VL[80]"}) {
+    const Compilation compiled =
+        Compile("DECLARE X = 1\nX = " + std::string(value) + "\n", "", {.advice = false});
+    ASSERT_EQ(compiled.diagnostics.size(), 1U) << value;
+    EXPECT_EQ(compiled.diagnostics[0].code, ErrorCode::kConstantAssigned) << value;
+  }
+}
+
+// OPT-2.31
+TEST(OneFinding, OfAViaWithoutItsValues) {
+  EXPECT_EQ(OnlyOne("MOVE (1,2,3,0,0)/VIA\nSTOP\n"), "7019 /VIA has 0 values, needs 5");
+  EXPECT_EQ(OnlyOne("MOVE (1,2,3,0,0)/VIA (1)\nSTOP\n"), "7019 /VIA has 1 value, needs 5");
+}
+
+// OPT-B.59
+TEST(OneFinding, OfATimer) {
+  EXPECT_EQ(OnlyOne("TIMER 5.\n"), "7003 expected '(' and a time, found '5.'");
+  EXPECT_EQ(OnlyOne("10 TIMER (5. 10)\n"), "7003 expected ',' and a sequence number, found '10'");
+  EXPECT_EQ(OnlyOne("10 TIMER (5., 10 STOP\n"), "7003 expected ')', found 'STOP'");
+}
+
+// OPT-9.22, OPT-9.23, OPT-7.41
+TEST(OneFinding, OfADefineAndADeclare) {
+  EXPECT_EQ(OnlyOne("DEFINE 5 = INT\n"), "7003 expected PAR, found '5'");
+  EXPECT_EQ(OnlyOne("DEFINE PAR[X] = INT\n"), "7003 expected an index, found 'X'");
+  EXPECT_EQ(OnlyOne("DEFINE PAR[0 = INT\n"), "7003 expected ']', found '='");
+  EXPECT_EQ(OnlyOne("DEFINE PAR[0 = LOGIC\nVR[1] = PAR[0]\n"), "7003 expected ']', found '='");
+  EXPECT_EQ(OnlyOne("DEFINE PAR[0] = 5\n"), "7003 expected FLOAT, INT or LOGIC, found '5'");
+  EXPECT_EQ(OnlyOne("DECLARE X =\nSPEED 5\n"), "7003 expected a number, a constant or a variable");
+  EXPECT_EQ(OnlyOne("DECLARE X ="),
+            "7002 expected a number, a constant or a variable before the end of the text");
+}
+
+// OPT-B.87: a mark of two characters is one at the very end of the text, too.
+TEST(OneFinding, OfAComparisonAtTheEnd) {
+  for (const char* mark : {"<", ">", "=", "<=", ">=", "<>"})
+    EXPECT_EQ(OnlyOne("VL[1] = VR[1] " + std::string(mark)),
+              "7002 expected a number, a variable, a name or '(' before the end of the text")
+        << mark;
+}
+
+// OPT-7.91: names are proposed as well as instructions.
+TEST(OneFinding, OfAMistypedNameProposesIt) {
+  EXPECT_EQ(OnlyOne("DECLARE XHOME = VR[1]\nXHOEM 5.\n"),
+            "7011 'XHOEM' is no instruction and no declared name; did you mean XHOME?");
+}
+
+// OPT-7.89, OPT-7.60: what has no type has no wrong one.
+TEST(OneFinding, OfANameThatIsNotKnown) {
+  EXPECT_EQ(OnlyOne("VL[0] = XX + 1\n"), "7011 XX is not declared");
+  EXPECT_EQ(OnlyOne("VL[0] = NOT XX + 1\n"), "7011 XX is not declared");
+  EXPECT_EQ(OnlyOne("VR[0] = (XX AND ON) + 1\n"), "7011 XX is not declared");
+  EXPECT_EQ(OnlyOne("VR[0] = VL[XX] + 1\n"), "7011 XX is not declared");
+  EXPECT_EQ(OnlyOne("VR[0] = (ON AND XX) + 1\n"), "7011 XX is not declared");
+  EXPECT_EQ(OnlyOne("DECLARE N = 200\nVR[0] = VL[N] + 1\n"),
+            "7017 N is no INTEGER constant from 0 to 99");
+  EXPECT_EQ(OnlyOne("VR[0] = (5 AND ON) + 1\n"), "7018 a number where a logical value is needed");
+  EXPECT_EQ(OnlyOne("VR[0] = (VL[80] = ON) + 1\n"),
+            "7018 a logical value where a number is needed");
+  // OPT-7.62
+  EXPECT_EQ(FindingsOf("WORK 1,3/ON/START (VR[80] > 1E30)\n", true), std::vector<int>{7004});
+  // One that is good has a type.
+  EXPECT_EQ(OnlyOne("DECLARE N = 5\nVR[0] = VL[N] + 1\n"),
+            "7018 a logical value where a number is needed");
+  // An instruction of which something is not known is given no advice, even the first one.
+  for (const char* attributes : {"/START (XX)", "/START (VL[80])/END (XX)"})
+    EXPECT_EQ(FindingsOf("WORK 1,3/ON" + std::string(attributes) + "\nDECLARE XX = #\n", true),
+              std::vector<int>{7001})
+        << attributes;
+}
+
+// OPT-B.42, OPT-7.01, OPT-7.07
+TEST(OneFinding, OfLettersInTheNumberOfAProgram) {
+  for (const char* word : {"CALL ", "GO ", "FUNCTION "}) {
+    const Compilation compiled = Compile(word + std::string("46X\n"), "", {.advice = false});
+    ASSERT_EQ(compiled.diagnostics.size(), 1U) << word;
+    EXPECT_EQ(compiled.diagnostics[0].detail, "letters in a number") << word;
+  }
+}
+
+// OPT-1.03, OPT-1.30: a carriage return at the end of the text is none of it.
+TEST(OneFinding, OfACarriageReturnIsNone) {
+  EXPECT_EQ(FindingsOf("SPEED 5\n\r"), std::vector<int>{});
+  EXPECT_EQ(FindingsOf("SPEED 5\r"), std::vector<int>{});
+  EXPECT_EQ(FindingsOf("SPEED 5\n \r\r"), std::vector<int>{});
+  EXPECT_EQ(FindingsOf("SPEED 5\n\rX\n"), std::vector<int>{7001});
+}
+
+// OPT-7.91, OPT-E.7023: behind a fault an assignment is a statement of its own, and what stands
+// behind a line without effect as well, whatever that left open.
+TEST(OneFinding, OfAStatementLeavesTheNextOnesAlone) {
+  const auto statements = [](std::string_view text) {
+    Findings findings;
+    return Parse(text, findings, Places::kStatements).statements.size();
+  };
+  for (const char* next : {"X1= 5", "X1 = 5", "X1 \t = 5", "VR[1]= 5", "VR [ 1 ]  = 5"}) {
+    EXPECT_EQ(statements("VR[2] = (1 #\n+ 2\n" + std::string(next) + "\n"), 2U) << next;
+    EXPECT_EQ(statements("MOVE (1, 2\n" + std::string(next) + "\n"), 2U) << next;
+  }
+  EXPECT_EQ(statements("VR[2] = (1\nX1 = (5\n+ 2)\nSTOP\n"), 3U);
+  EXPECT_EQ(statements("CONT (\nX1\nSTOP\n"), 3U);
+  EXPECT_EQ(FindingsOf("CONT (\nX1\n"), (std::vector<int>{7023, 7011}));
+}
+
+// OPT-B.40, OPT-2.35: a number in parentheses with its sign is one number, from the sign to the
+// parenthesis.
+TEST(OneFinding, OfANumberWithItsSignIsOfAllOfIt) {
+  const auto place = [](std::string_view text) {
+    const Compilation compiled = Compile(text, "", {.advice = false});
+    EXPECT_EQ(compiled.diagnostics.size(), 1U) << text;
+    return compiled.diagnostics.empty() ? SourceSpan{} : compiled.diagnostics[0].where;
+  };
+  EXPECT_EQ(place("SPEED -( 5 ) ; x\n"), (SourceSpan{1, 7, 6, 6}));
+  EXPECT_EQ(place("SPEED - (5)\nSTOP\n"), (SourceSpan{1, 7, 5, 6}));
+  EXPECT_EQ(place("SPEED -5\nSTOP\n"), (SourceSpan{1, 7, 2, 6}));
+  EXPECT_EQ(place("WORKDEF 1,0 (-(5),75.,1.,50.)\n"), (SourceSpan{1, 14, 4, 13}));
+  // OPT-2.43: in whatever order attributes are written.
+  EXPECT_EQ(place("MOVE (1,2,3,0,0)/END (IL[20])/VIA (1,2,XX,0,0)\n"), (SourceSpan{1, 40, 2, 39}));
+  EXPECT_EQ(place("MOVE (1,2,3,0,0)/END (XX)/VIA (1,2,3,0,0)\n"), (SourceSpan{1, 23, 2, 22}));
+}
+
+// OPT-7.48: with a name that is refused, and with the variables of that word.
+TEST(OneFinding, OfARefusedNameOfVariables) {
+  EXPECT_EQ(FindingsOf("DECLARE VR = 1\nVR[0] = 2\nLET VR[1] = 3\nLET VR = 4\nVL[VR] = ON\n"),
+            std::vector<int>{7009});
+}
+
+// OPT-7.87: NOT of nothing is 1 and no other number.
+TEST(OneFinding, NotGivesOneOrNothing) {
+  EXPECT_EQ(Operate(Node::kNot, 0.0F, 0.0F).number, 1.0F);
+  EXPECT_EQ(Operate(Node::kNot, 1.0F, 0.0F).number, 0.0F);
+  EXPECT_EQ(Operate(Node::kNot, -3.0F, 0.0F).number, 0.0F);
+}
+
+// OPT-7.21: the GOSUB that leads back is told, wherever it stands in the text.
+TEST(OneFinding, OfARingIsItsGosubThatLeadsBack) {
+  const std::vector<LevelEdge> edges = {{0, 1, true}, {1, 2, true}, {2, 0, true}};
+  using Places = std::vector<std::uint32_t>;
+  EXPECT_EQ(FindNesting(3, 2, edges).recursive, Places{1});
+  EXPECT_EQ(FindNesting(3, 0, edges).recursive, Places{2});
+  EXPECT_EQ(FindNesting(3, 1, edges).recursive, Places{0});
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo::one_finding

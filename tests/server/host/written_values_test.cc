@@ -1,0 +1,101 @@
+// What is written at a machine, and what is told of what was taught there (live.md 7.08, 7.09).
+#include <sstream>
+#include <utility>
+
+#include "tests/server/host/host_machine_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+class WrittenValues : public HostMachineTest {
+ protected:
+  void MakeAndTakeOptimo() {
+    MakeOptimo();
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
+  }
+  v1::HostOrderAnswer WriteReals(const std::vector<std::pair<std::string, double>>& values) {
+    v1::HostOrder order;
+    order.mutable_write_variables()->set_control_token(token_);
+    for (const auto& [name, value] : values) {
+      v1::Variable& variable = *order.mutable_write_variables()->add_variables();
+      variable.set_name(name);
+      variable.mutable_value()->set_real(value);
+    }
+    return Do(order);
+  }
+  double Real(const std::string& name) {
+    v1::HostOrder order;
+    order.mutable_read_variables()->add_variables(name);
+    return Do(order).variables().variables(0).value().real();
+  }
+  v1::TeachEntry Taught(const std::string& keys) {
+    v1::HostOrder open;
+    open.mutable_create_session()->set_control_token(token_);
+    const std::string session = Do(open).session().name();
+    std::istringstream all(keys);
+    std::int64_t sequence = 0;
+    for (std::string name; all >> name;) {
+      v1::HostOrder order;
+      v1::PressKeyRequest& pressed = *order.mutable_key();
+      pressed.set_session(session);
+      pressed.set_control_token(token_);
+      pressed.set_key(name);
+      pressed.set_action(v1::KEY_ACTION_TAP);
+      pressed.set_sequence(++sequence);
+      EXPECT_TRUE(Do(order).has_key()) << name;
+    }
+    const std::vector<v1::HostEdit> edits = host_->TakeEdits();
+    EXPECT_EQ(edits.size(), 1U);
+    return edits.empty() ? v1::TeachEntry() : edits.back().taught();
+  }
+};
+
+// All of them or none.
+TEST_F(WrittenValues, AreAllOfThemOrNone) {
+  MakeAndTakeOptimo();
+  const v1::HostOrderAnswer good = WriteReals({{"VR[3]", 2.5}, {"VR[4]", -7.25}});
+  ASSERT_FALSE(good.has_refusal()) << good.refusal().message();
+  ASSERT_EQ(good.written().variables_size(), 2);
+  EXPECT_FALSE(good.written().variables(0).has_error());
+  EXPECT_FALSE(good.written().variables(1).has_error());
+  EXPECT_EQ(Real("VR[3]"), 2.5);
+  EXPECT_EQ(Real("VR[4]"), -7.25);
+  const v1::HostOrderAnswer wrong = WriteReals({{"VR[3]", 3.5}, {"NONE", 1.0}, {"VR[4]", 8.0}});
+  ASSERT_EQ(wrong.written().variables_size(), 3);
+  EXPECT_FALSE(wrong.written().variables(0).has_error());
+  EXPECT_TRUE(wrong.written().variables(1).has_error());
+  EXPECT_FALSE(wrong.written().variables(2).has_error());
+  EXPECT_EQ(Real("VR[3]"), 2.5);
+  EXPECT_EQ(Real("VR[4]"), -7.25);
+}
+
+// LIVE-7.09: what recorded points are, and what was in force, is told with each entry, by its name.
+TEST_F(WrittenValues, OfWhatIsTaughtHaveTheirNames) {
+  MakeAndTakeOptimo();
+  const v1::TeachEntry taught = Taught("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC");
+  std::vector<std::string> names;
+  for (const v1::ModalValue& one : taught.values()) names.push_back(one.name());
+  EXPECT_THAT(names, testing::ElementsAre("COORD", "TCP", "SYSDEF", "MODES"));
+  for (const v1::ModalValue& one : taught.values()) {
+    if (one.name() == "SYSDEF") {
+      EXPECT_EQ(one.value(), "OFF");
+    }
+  }
+  EXPECT_EQ(taught.act(), v1::TeachEntry::ACT_CREATE);
+  EXPECT_EQ(taught.step().program(), 12);
+  EXPECT_EQ(taught.caller(), "anna");
+}
+
+// LIVE-7.08: the store did not take the first that was taught: the control says so.
+TEST_F(WrittenValues, TheFirstThatIsNotStoredIsTold) {
+  MakeAndTakeOptimo();
+  Taught("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC");
+  v1::HostEditAnswer refused;
+  refused.set_number(1);
+  refused.mutable_refusal()->set_code("CELL-E9108");
+  host_->EditAnswered(refused, now_);
+  EXPECT_EQ(host_->Handbox()->message_code(), "CELL-E9108");
+}
+
+}  // namespace
+}  // namespace rmlcell::server

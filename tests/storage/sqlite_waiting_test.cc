@@ -1,0 +1,131 @@
+// What waits for the writer is counted with all that it brings, and contents of no bytes are
+// contents.
+#include <gtest/gtest.h>
+
+#include <future>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "engine/core/hex.h"
+#include "storage/content.h"
+#include "tests/storage/sqlite_bed.h"
+
+namespace rmlcell::storage {
+namespace {
+
+constexpr std::size_t kPart = 100'000;
+
+// The writer stands within an answer until the end of this.
+class StandingWriter {
+ public:
+  explicit StandingWriter(Store& store)
+      : holder_([this, &store] {
+          store.Submit({.kind = "CHECK"}, [this](const Result<SubmittedJob>&) {
+            stands_.set_value();
+            go_on_.get_future().wait();
+          });
+        }) {
+    stands_.get_future().wait();
+  }
+  ~StandingWriter() { go_on_.set_value(); }
+  StandingWriter(const StandingWriter&) = delete;
+  StandingWriter& operator=(const StandingWriter&) = delete;
+
+ private:
+  std::promise<void> stands_;
+  std::promise<void> go_on_;
+  std::jthread holder_;
+};
+
+class SqliteWaiting : public testing::Test {
+ protected:
+  static SqliteOptions AMillion() {
+    SqliteOptions options;
+    options.waiting_bytes_max = 10 * kPart;
+    return options;
+  }
+  // Of so many writes one after the other, while nothing is written: the number that is taken.
+  template <class Send>
+  int TakenOf(int count, Send send) {
+    std::atomic<int> refused = 0;
+    std::atomic<int> answered = 0;
+    int refused_at_once = 0;
+    {
+      const StandingWriter stands(bed_.store());
+      for (int i = 0; i < count; ++i) {
+        send([&](const auto& result) {
+          if (!result) {
+            EXPECT_EQ(result.error().code, ErrorCode::kCellResourceExhausted);
+            ++refused;
+          }
+          ++answered;
+        });
+      }
+      refused_at_once = refused;
+    }
+    EXPECT_TRUE(Eventually([&] { return answered == count; }));
+    EXPECT_EQ(refused, refused_at_once);
+    return count - refused_at_once;
+  }
+  int TakenOf(int count, const NewJob& job) {
+    return TakenOf(count, [&](auto done) { bed_.store().Submit(job, done); });
+  }
+
+  SqliteBed bed_{AMillion()};
+};
+
+// sqlite_store.h waiting_bytes_max: nine parts and what they are told with have less than ten, ten
+// have more; what was written counts no more.
+TEST_F(SqliteWaiting, AllThatAJobBringsCounts) {
+  const std::string part(kPart, 'x');
+  const NewJob with_events{.kind = "CHECK",
+                           .events = {{.kind = "e", .payload = part.substr(0, kPart / 2)},
+                                      {.kind = "e", .payload = part.substr(0, kPart / 2)}}};
+  const NewJob with_specification{.kind = "CHECK", .specification = part};
+  const NewJob with_attachments{.kind = "CHECK",
+                                .attachments = {{.name = "a", .bytes = part.substr(0, kPart / 2)},
+                                                {.name = "b", .bytes = part.substr(0, kPart / 2)}}};
+  for (int round = 0; round < 2; ++round) {
+    EXPECT_EQ(TakenOf(12, with_events), 9) << round;
+    EXPECT_EQ(TakenOf(12, with_specification), 9) << round;
+    EXPECT_EQ(TakenOf(12, with_attachments), 9) << round;
+  }
+}
+
+TEST_F(SqliteWaiting, AppendedEventsCount) {
+  Must(bed_.store().SubmitAndWait({.kind = "SIMULATE"}));
+  const Lease lease = Must(bed_.store().Acquire("w", {"SIMULATE"}, kLease, {}))->lease;
+  const std::vector<NewEvent> events(2, {.kind = "e", .payload = std::string(kPart / 2, 'x')});
+  for (int round = 0; round < 2; ++round) {
+    EXPECT_EQ(TakenOf(12, [&](auto done) { bed_.store().Append(lease, events, done); }), 9)
+        << round;
+  }
+  EXPECT_EQ(Must(bed_.store().GetJob(lease.job)).last_sequence, 2 * 9 * 2);
+}
+
+// The first stands in the row of its artifact, those that come then are a content of their own.
+TEST(SqliteNoBytes, AProductOfNoBytesComesAgain) {
+  SqliteBed bed;
+  std::vector<std::int64_t> jobs;
+  for (int i = 0; i < 3; ++i) {
+    Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+    const Lease lease = Must(bed.store().Acquire("w", {"CHECK"}, kLease, {}))->lease;
+    Must(bed.store().Finish(lease, {.artifacts = {{.name = "nothing"}}}));
+    jobs.push_back(lease.job);
+  }
+  EXPECT_EQ(NumberIn(bed.path(), "SELECT count(*) FROM blob"), 1);
+  for (int round = 0; round < 2; ++round) {
+    for (const std::int64_t job : jobs) {
+      EXPECT_EQ(Must(bed.store().ReadArtifact(job, "nothing")), "");
+      const ArtifactRecord told = Must(bed.store().GetArtifact(job, "nothing"));
+      EXPECT_EQ(told.size, 0);
+      EXPECT_EQ(told.sha256, HexOf(Sha256("")));
+      EXPECT_EQ(Must(Must(bed.store().OpenArtifact(job, "nothing"))->Next()), "");
+    }
+    bed.Reopen();
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::storage
