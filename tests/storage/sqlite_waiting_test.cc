@@ -2,7 +2,9 @@
 // contents.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <future>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -16,25 +18,29 @@ namespace {
 
 constexpr std::size_t kPart = 100'000;
 
-// The writer stands within an answer until the end of this.
+// The writer stands within an answer until the end of this; what the answer looks at outlives it.
 class StandingWriter {
  public:
   explicit StandingWriter(Store& store)
-      : holder_([this, &store] {
-          store.Submit({.kind = "CHECK"}, [this](const Result<SubmittedJob>&) {
-            stands_.set_value();
-            go_on_.get_future().wait();
+      : holder_([meeting = meeting_, &store] {
+          store.Submit({.kind = "CHECK"}, [meeting](const Result<SubmittedJob>&) {
+            meeting->stands.set_value();
+            meeting->goes_on.wait();
           });
         }) {
-    stands_.get_future().wait();
+    meeting_->stands.get_future().wait();
   }
-  ~StandingWriter() { go_on_.set_value(); }
+  ~StandingWriter() { meeting_->go_on.set_value(); }
   StandingWriter(const StandingWriter&) = delete;
   StandingWriter& operator=(const StandingWriter&) = delete;
 
  private:
-  std::promise<void> stands_;
-  std::promise<void> go_on_;
+  struct Meeting {
+    std::promise<void> stands;
+    std::promise<void> go_on;
+    std::future<void> goes_on = go_on.get_future();
+  };
+  const std::shared_ptr<Meeting> meeting_ = std::make_shared<Meeting>();
   std::jthread holder_;
 };
 
