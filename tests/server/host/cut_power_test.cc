@@ -1,32 +1,10 @@
 // A job whose power went, and what is told of a step that is taught (live.md 5.10, 7.09).
-#include <sstream>
-
 #include "tests/server/host/host_machine_bed.h"
 
 namespace rmlcell::server {
 namespace {
 
-class CutPower : public HostMachineTest {
- protected:
-  v1::HostEdit Taught(const std::string& session, const std::string& keys) {
-    std::istringstream all(keys);
-    for (std::string name; all >> name;) {
-      v1::HostOrder order;
-      v1::PressKeyRequest& pressed = *order.mutable_key();
-      pressed.set_session(session);
-      pressed.set_control_token(token_);
-      pressed.set_key(name);
-      pressed.set_action(v1::KEY_ACTION_TAP);
-      pressed.set_sequence(++keys_pressed_);
-      EXPECT_TRUE(Do(order).has_key()) << name;
-    }
-    const std::vector<v1::HostEdit> edits = host_->TakeEdits();
-    EXPECT_EQ(edits.size(), 1U);
-    return edits.empty() ? v1::HostEdit() : edits.back();
-  }
-
-  std::int64_t keys_pressed_ = 0;
-};
+class CutPower : public HostMachineTest {};
 
 // LIVE-5.10: which job it was is known to whoever looks at the machine.
 TEST_F(CutPower, ItsJobIsKnown) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -112,6 +113,23 @@ class HostMachineTest : public testing::Test {
     order.mutable_stop();
     return order;
   }
+  // The edit that these keys of a handbox make, one tapped after the other.
+  v1::HostEdit Taught(const std::string& session, const std::string& keys) {
+    std::istringstream all(keys);
+    for (std::string name; all >> name;) {
+      v1::HostOrder order;
+      v1::PressKeyRequest& pressed = *order.mutable_key();
+      pressed.set_session(session);
+      pressed.set_control_token(token_);
+      pressed.set_key(name);
+      pressed.set_action(v1::KEY_ACTION_TAP);
+      pressed.set_sequence(++keys_pressed_);
+      EXPECT_TRUE(Do(order).has_key()) << name;
+    }
+    const std::vector<v1::HostEdit> edits = host_->TakeEdits();
+    EXPECT_EQ(edits.size(), 1U);
+    return edits.empty() ? v1::HostEdit() : edits.back();
+  }
   v1::MachineState State() { return host_->StatusAt(now_).state(); }
   // What was told since the last look, a word each.
   std::vector<std::string> Told() {
@@ -155,6 +173,7 @@ class HostMachineTest : public testing::Test {
   int tokens_ = 0;
   std::int64_t number_ = 0;
   std::int64_t sequence_ = 0;
+  std::int64_t keys_pressed_ = 0;
   bool stores_ = true;  // what happens is in the store at once
 
   // Of the next host that is made.

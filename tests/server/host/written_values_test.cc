@@ -1,5 +1,4 @@
 // What is written at a machine, and what is told of what was taught there (live.md 7.08, 7.09).
-#include <sstream>
 #include <utility>
 
 #include "tests/server/host/host_machine_bed.h"
@@ -28,25 +27,10 @@ class WrittenValues : public HostMachineTest {
     order.mutable_read_variables()->add_variables(name);
     return Do(order).variables().variables(0).value().real();
   }
-  v1::TeachEntry Taught(const std::string& keys) {
+  std::string OpenedHandbox() {
     v1::HostOrder open;
     open.mutable_create_session()->set_control_token(token_);
-    const std::string session = Do(open).session().name();
-    std::istringstream all(keys);
-    std::int64_t sequence = 0;
-    for (std::string name; all >> name;) {
-      v1::HostOrder order;
-      v1::PressKeyRequest& pressed = *order.mutable_key();
-      pressed.set_session(session);
-      pressed.set_control_token(token_);
-      pressed.set_key(name);
-      pressed.set_action(v1::KEY_ACTION_TAP);
-      pressed.set_sequence(++sequence);
-      EXPECT_TRUE(Do(order).has_key()) << name;
-    }
-    const std::vector<v1::HostEdit> edits = host_->TakeEdits();
-    EXPECT_EQ(edits.size(), 1U);
-    return edits.empty() ? v1::TeachEntry() : edits.back().taught();
+    return Do(open).session().name();
   }
 };
 
@@ -72,7 +56,8 @@ TEST_F(WrittenValues, AreAllOfThemOrNone) {
 // LIVE-7.09: what recorded points are, and what was in force, is told with each entry, by its name.
 TEST_F(WrittenValues, OfWhatIsTaughtHaveTheirNames) {
   MakeAndTakeOptimo();
-  const v1::TeachEntry taught = Taught("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC");
+  const v1::TeachEntry taught =
+      Taught(OpenedHandbox(), "MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC").taught();
   std::vector<std::string> names;
   for (const v1::ModalValue& one : taught.values()) names.push_back(one.name());
   EXPECT_THAT(names, testing::ElementsAre("COORD", "TCP", "SYSDEF", "MODES"));
@@ -89,7 +74,7 @@ TEST_F(WrittenValues, OfWhatIsTaughtHaveTheirNames) {
 // LIVE-7.08: the store did not take the first that was taught: the control says so.
 TEST_F(WrittenValues, TheFirstThatIsNotStoredIsTold) {
   MakeAndTakeOptimo();
-  Taught("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC");
+  Taught(OpenedHandbox(), "MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC");
   v1::HostEditAnswer refused;
   refused.set_number(1);
   refused.mutable_refusal()->set_code("CELL-E9108");
