@@ -108,6 +108,8 @@ Every key of the configuration is a flag too, and a variable of the environment:
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
+  // Who starts the server may ignore it, and then nobody would hear how a process of ours ended.
+  ::signal(SIGCHLD, SIG_DFL);
 
   Result<std::unique_ptr<Cell>> cell = Cell::Start(config);
   if (!cell) return Refuse(cell.error());

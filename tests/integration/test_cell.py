@@ -1,6 +1,7 @@
 """The cell as its clients meet it: jobs and kills."""
 import os
 import pathlib
+import signal
 import tempfile
 import threading
 import time
@@ -413,6 +414,20 @@ class Kills(unittest.TestCase):
                 os.kill(process, 9)
         ended = wait_for_end(stub, job.name)[-1].ended
         self.assertEqual(ended.code, "CELL-E9301")  # two attempts, as the policy says
+
+    def test_workers_are_replaced_whatever_the_server_was_started_by(self):
+        self.cell.close()
+        before = signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # the server inherits that
+        try:
+            self.cell = Cell().start()
+        finally:
+            signal.signal(signal.SIGCHLD, before)
+        self.addCleanup(self.cell.close)
+        self.assertTrue(eventually(lambda: len(self.cell.worker_processes()) >= 2))
+        old = set(self.cell.worker_processes())
+        for process in old:
+            os.kill(process, signal.SIGKILL)
+        self.assertTrue(eventually(lambda: len(set(self.cell.worker_processes()) - old) >= len(old)))
 
     def test_nothing_acknowledged_is_lost_when_the_server_is_killed(self):
         stop = threading.Event()
