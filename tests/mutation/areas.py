@@ -50,5 +50,6 @@ AREAS = {
     "command": Area(("clients/cli", "clients/lsp", "engine/optimo/editing"),
                     ("lsp_test", "optimo_editing_test", "cli_test", "integration_test_command", "integration_test_command_remote", "integration_test_command_words", "integration_test_command_options", "integration_test_command_requests", "integration_test_lsp",
                      "integration_test_tools", "integration_test_rml1_tools", "integration_test_programs",
-                     "integration_test_handbox_terminal", "integration_test_by_hand")),
+                     "integration_test_handbox_screen", "integration_test_told_at_once", "integration_test_handbox_terminal",
+                     "integration_test_by_hand")),
 }

@@ -30,8 +30,6 @@ double SpeedAtEnd(const PlannedMotion& motion) { return motion.speed.end().speed
 // them falls with the square of the speed.
 constexpr std::array<double, 5> kEases{1.0, 0.5, 0.25, 0.125, 0.0625};
 
-// Whether the axes can do what a motion on a bend asks of them. All others keep the limits of
-// motion.md 5.1, which leave room for ramps anywhere.
 bool AxesCan(const PlannedMotion& motion, const AxisLimits& axes) {
   if (motion.path.kind() != PathPiece::Kind::kBlend) return true;
   constexpr double kAsksMost = 1.0 + 1e-3;  // plans use up the limits; 0.1 % is no harm
@@ -46,9 +44,6 @@ bool AxesCan(const PlannedMotion& motion, const AxisLimits& axes) {
     }
   }
   return true;
-}
-bool AxesCan(std::span<const PlannedMotion> motions, const AxisLimits& axes) {
-  return std::ranges::all_of(motions, [&](const PlannedMotion& m) { return AxesCan(m, axes); });
 }
 
 // The first motion at whose end the plan stands by itself; their number: none.
@@ -157,6 +152,10 @@ Restart RestartWith(std::span<const PlannedMotion> ahead, double s, double ease)
 }
 
 }  // namespace
+
+bool AxesCan(std::span<const PlannedMotion> motions, const AxisLimits& axes) {
+  return std::ranges::all_of(motions, [&](const PlannedMotion& m) { return AxesCan(m, axes); });
+}
 
 bool FromFits(const PathState& state, double end_s, double v1, const PathLimits& limits) {
   constexpr double kRoomOfFits = 1e-9;  // lengths that other formulas gave

@@ -12,6 +12,10 @@ namespace rmlcell::motion {
 // above all while braking for `end_s`: what is left is then too short for anything but to go on.
 bool FromFits(const PathState& state, double end_s, double v1, const PathLimits& limits);
 
+// Whether the axes can do what the motions on bends among these ask of them. All others keep the
+// limits of motion.md 5.1, which leave room for ramps anywhere.
+bool AxesCan(std::span<const PlannedMotion> motions, const AxisLimits& axes);
+
 // What becomes of planned motions when the machine is stopped on its way. motion.md section 6.
 struct StopOnPath {
   std::vector<PlannedMotion> motions;  // from the instant of the STOP to rest; no settling

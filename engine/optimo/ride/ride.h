@@ -11,6 +11,7 @@
 #include "engine/motion/planner/planner.h"
 #include "engine/motion/ride/path_ride.h"
 #include "engine/optimo/machine/beam.h"
+#include "engine/optimo/ride/lead_along.h"
 #include "engine/optimo/ride/move_note.h"
 #include "engine/optimo/ride/travel.h"
 
@@ -181,6 +182,7 @@ class Ride {
   Status Resume();
   // Motions not begun are planned with the new value. The one under way goes over to it from where
   // it is; a bend that has begun, or is too near to slow down before it, keeps its shape and speed.
+  // Where moves are too short to slow down on one of them, it slows down along the planned path.
   // A machine that brakes for a stop too near for anything else goes on braking. OPT-4.38
   void ChangeOverride(double percent);
 
@@ -208,6 +210,13 @@ class Ride {
     motion::MoveCommand first;   // what is left of the command then
   };
 
+  // That way over several motions.
+  struct LongLead {
+    LeadAlong way;
+    bool under_way = false;  // its first motion is
+    std::size_t first = 0;   // else the place of that among the items before it
+  };
+
   void Drain();
   void EndBeside();
   void TellMotion(SimTime until);
@@ -230,13 +239,21 @@ class Ride {
   void AdaptToOverride(motion::AppendedCommand& item);
   void AdaptMotions();
   bool ReplanChain();
+  std::optional<motion::AppendedCommand> UnderOverride(std::uint64_t tag);
+  std::size_t PlaceOfAppended(std::uint64_t tag) const;
   bool ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept);
+  bool ReplanAlong(std::optional<LongLead>& lead, const motion::PlannedMotion& last,
+                   const std::vector<motion::PlannedItem>& kept);
+  template <class Go>
+  bool TakeOnward(const Onward& onward, const motion::AppendedCommand& rest, Go go);
   std::optional<Onward> OnwardFrom(const ChainPlace& place, const motion::MoveCommand& command,
                                    double speed) const;
   std::optional<motion::Planner> PlanOnward(const Onward& onward,
                                             std::span<const motion::AppendedCommand> later) const;
   void GoOnward(const ChainPlace& place, const Onward& onward,
                 std::vector<motion::PlannedItem> kept);
+  void GoAlong(const LongLead& lead, std::vector<motion::PlannedMotion> motions,
+               const std::vector<motion::PlannedItem>& kept);
 
   RideState& s_;
   const Situation& situation_;

@@ -13,6 +13,12 @@
 // The override changed while the machine moves. motion.md 6, OPT-4.38
 namespace rmlcell::optimo {
 
+namespace {
+
+constexpr double kLeft = 1e-3;  // mm; of sigma: less of a move is not worth a plan
+
+}  // namespace
+
 void Ride::ChangeOverride(double percent) {
   if (!(percent > 0.0) || percent == s_.override_percent) return;
   s_.override_percent = percent;
@@ -65,9 +71,20 @@ bool Ride::ReplanChain() {
   std::vector<motion::PlannedItem> kept;  // between the motion under way and that place
   motion::PlannedMotion here = under_way()->motion;
   motion::PathState state = under_way()->At(situation_.now);
+  std::optional<LongLead> lead;  // from a motion before that place
   auto next = s_.path.to_come().begin();
   for (bool under_way = true;; under_way = false) {
     if (ReplanFrom({.motion = here, .state = state, .under_way = under_way}, kept)) return true;
+    if (here.path.in_axes()) {
+      lead.reset();
+    } else {
+      if (lead) {
+        lead->way.Add(here);
+        if (ReplanAlong(lead, here, kept)) return true;
+      }
+      if (!lead && state.s < here.path.length())
+        lead = {.way = {here, state}, .under_way = under_way, .first = kept.size()};
+    }
     if (!under_way) kept.emplace_back(here);
     state = here.speed.end();
     state.s = 0.0;
@@ -80,27 +97,69 @@ bool Ride::ReplanChain() {
   }
 }
 
+// The command of a motion under the override of now; nothing: it is over.
+std::optional<motion::AppendedCommand> Ride::UnderOverride(std::uint64_t tag) {
+  const motion::MoveCommand* command = s_.path.Appended(tag);
+  if (command == nullptr) return std::nullopt;
+  motion::AppendedCommand adapted{.tag = tag, .move = *command};
+  AdaptToOverride(adapted);
+  return adapted;
+}
+
+std::size_t Ride::PlaceOfAppended(std::uint64_t tag) const {
+  const auto& appended = s_.path.appended();
+  const auto own = std::ranges::find(appended, tag, &motion::AppendedCommand::tag);
+  return static_cast<std::size_t>(own - appended.begin());
+}
+
 // False: not from this motion. Nothing has changed then.
 bool Ride::ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept) {
-  const motion::MoveCommand* command = s_.path.Appended(place.motion.tag);
-  if (command == nullptr) return false;
-  motion::AppendedCommand rest{.tag = place.motion.tag, .move = *command};
-  AdaptToOverride(rest);
-  const double speed = motion::LimitsOf(*rest.move, parameters_.limits).speed;
-  const std::optional<Onward> onward = OnwardFrom(place, *rest.move, speed);
-  if (!onward) return false;
+  const std::optional<motion::AppendedCommand> rest = UnderOverride(place.motion.tag);
+  if (!rest) return false;
+  const double speed = motion::LimitsOf(*rest->move, parameters_.limits).speed;
+  const std::optional<Onward> onward = OnwardFrom(place, *rest->move, speed);
+  return onward && TakeOnward(*onward, *rest, [&] { GoOnward(place, *onward, kept); });
+}
+
+// False: the long lead does not end on this motion, its last one; or cannot be taken, then there is
+// none any more. Nothing else has changed then.
+bool Ride::ReplanAlong(std::optional<LongLead>& lead, const motion::PlannedMotion& last,
+                       const std::vector<motion::PlannedItem>& kept) {
+  const std::optional<motion::AppendedCommand> rest = UnderOverride(last.tag);
+  if (!rest) return false;
+  const std::optional<PlaceOnMove> on_move = PlaceOf(last.path, rest->move->path);
+  if (!on_move) return false;
+  const auto end = lead->way.EndOnLast(motion::LimitsOf(*rest->move, parameters_.limits).speed);
+  if (!end) return false;
+  const double begin = on_move->begin + end->s;
+  if (begin > rest->move->path.length() - kLeft) return false;
+  std::vector<motion::PlannedMotion> motions = lead->way.MotionsTo(*end, parameters_.limits.axes);
+  Onward onward{.own = PlaceOfAppended(last.tag),
+                .speed = end->speed,
+                .speed_on_move = end->speed,
+                .first = *rest->move};
+  onward.first.path = rest->move->path.Part(begin, rest->move->path.length());
+  if (!motions.empty() &&
+      TakeOnward(onward, *rest, [&] { GoAlong(*lead, std::move(motions), kept); }))
+    return true;
+  lead.reset();
+  return false;
+}
+
+// What is left of its own command, and those behind it, are planned anew, and `go` leads there.
+template <class Go>  // void()
+bool Ride::TakeOnward(const Onward& onward, const motion::AppendedCommand& rest, Go go) {
   const auto& appended = s_.path.appended();
-  // What is left of its own command, and those behind it.
   std::vector<motion::AppendedCommand> onwards(
-      appended.begin() + static_cast<std::ptrdiff_t>(onward->own), appended.end());
+      appended.begin() + static_cast<std::ptrdiff_t>(onward.own), appended.end());
   onwards.front() = rest;
   const std::span later = std::span(onwards).subspan(1);
   for (motion::AppendedCommand& item : later) AdaptToOverride(item);
-  std::optional<motion::Planner> planner = PlanOnward(*onward, later);
+  std::optional<motion::Planner> planner = PlanOnward(onward, later);
   if (!planner) return false;
   if (!passing()) planner->Stop();
-  s_.path.ReplaceAppended(onward->own, onwards);
-  GoOnward(place, *onward, kept);
+  s_.path.ReplaceAppended(onward.own, onwards);
+  go();
   s_.planner = *std::move(planner);
   Drain();
   Start();
@@ -113,8 +172,6 @@ std::optional<Ride::Onward> Ride::OnwardFrom(const ChainPlace& place,
                                              const motion::MoveCommand& command,
                                              double speed) const {
   const motion::PlannedMotion& here = place.motion;
-  const auto& appended = s_.path.appended();
-  const auto own = std::ranges::find(appended, here.tag, &motion::AppendedCommand::tag);
   const std::optional<PlaceOnMove> on_move = PlaceOf(here.path, command.path);
   if (!on_move) return std::nullopt;
   const Lead lead = LeadFrom(place.state, here.limits, speed / on_move->scale);
@@ -123,9 +180,8 @@ std::optional<Ride::Onward> Ride::OnwardFrom(const ChainPlace& place,
   const double end = place.state.s + lead.length;
   if (!motion::FromFits(place.state, end, lead.speed, limits)) return std::nullopt;
   const double begin = on_move->begin + end * on_move->scale;
-  constexpr double kLeft = 1e-3;  // mm; of sigma: less of a move is not worth a plan
   if (end > here.path.length() || begin > command.path.length() - kLeft) return std::nullopt;
-  Onward onward{.own = static_cast<std::size_t>(own - appended.begin()),
+  Onward onward{.own = PlaceOfAppended(here.tag),
                 .lead_length = lead.length,
                 .speed = lead.speed,
                 .speed_on_move = lead.speed * on_move->scale,
@@ -185,6 +241,28 @@ void Ride::GoOnward(const ChainPlace& place, const Onward& onward,
   }
   // One measure for the whole chain: a STOP runs from one motion into the next.
   s_.path.MeasureInAxesBy(onward.measure);
+}
+
+// The same over several motions.
+void Ride::GoAlong(const LongLead& lead, std::vector<motion::PlannedMotion> motions,
+                   const std::vector<motion::PlannedItem>& kept) {
+  const auto first = kept.begin() + static_cast<std::ptrdiff_t>(lead.first);
+  std::vector<motion::PlannedItem> items(kept.begin(), first);
+  auto motion = motions.begin();
+  if (lead.under_way) {
+    TellMotion(situation_.now);
+    s_.path.under_way()->motion = *motion++;
+    s_.path.under_way()->Begin(situation_.now);
+  }
+  for (const motion::PlannedItem& item : std::span(first, kept.end())) {
+    if (std::holds_alternative<motion::PlannedMark>(item)) {
+      items.push_back(item);
+    } else {
+      items.emplace_back(*motion++);
+    }
+  }
+  items.insert(items.end(), motion, motions.end());
+  s_.path.ReplaceToCome(std::move(items));
 }
 
 }  // namespace rmlcell::optimo

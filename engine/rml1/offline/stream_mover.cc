@@ -47,8 +47,8 @@ StreamMover::StreamMover(const machine::Bytes& stream, const Profile& profile, c
     : profile_(profile), by_(by), owed_(owed), part_(part), copy_(stream, part.begin, sink) {}
 
 bool StreamMover::OnPhrase(const Phrase& phrase) {
-  if (phrase.begin >= part_.end) return false;
-  if (phrase.begin < part_.begin) return true;
+  // Behind the part a phrase in it may follow: a fault is told before the phrase that it stands in.
+  if (phrase.begin < part_.begin || phrase.begin >= part_.end) return true;
   if (const auto why = WhyNotFollowed(phrase)) {
     copy_.Refuse(*why, phrase.begin);
     return false;

@@ -176,5 +176,117 @@ TEST(OverrideRules, AnyChangeAtAnyTimeIsSmooth) {
   }
 }
 
+// From (1000,1000,-400) on along a circle of 50 mm to the right, or straight on.
+std::string ShortMoves(int count, double length_mm, bool straight) {
+  std::string text = kThere;
+  for (int k = 1; k <= count; ++k) {
+    const double way = length_mm * k;
+    const double x = straight ? way : 50.0 * std::sin(way / 50.0);
+    const double y = straight ? 0.0 : 50.0 - 50.0 * std::cos(way / 50.0);
+    text += "MOVE (" + std::to_string(1000.0 + x) + "," + std::to_string(1000.0 + y) +
+            ",-400.,0.,0.)" + (k < count ? "/FLY\n" : "\n");
+  }
+  return text;
+}
+double BeginOfSecondMove(const std::string& text) {
+  return ToSeconds(RunText(text).moves.front().at);
+}
+// When it moves slower than that for good, s after `from`.
+double SlowFrom(const Ran& ran, double speed, double from) {
+  double at = from;
+  for (const Ran::Part& part : ran.parts) {
+    for (int k = 0; k <= 20; ++k) {
+      const double t = part.duration_s() * k / 20;
+      if (part.SpeedAt(t) > speed * (1.0 + 1e-6)) at = ToSeconds(part.done.start) + t;
+    }
+  }
+  return at - from;
+}
+
+// motion.md 6, OPT-4.38: the ramp of 1.875 mm is longer than any of the moves, and runs over them.
+TEST(OverrideRules, LowerOverrideActsInAChainOfShortMoves) {
+  const std::string text = ShortMoves(120, 0.55, true);
+  const double begin = BeginOfSecondMove(text);
+  const Ran ran = ChangedAt(begin + 0.3, 50.0, text);
+  const double left = 120 * 0.55 - Travelled(0.3) - RampLength(50.0, 25.0) - RampLength(25.0, 0.0);
+  EXPECT_NEAR(ran.time_s,
+              begin + 0.3 + RampTime(50.0, 25.0) + left / 25.0 + RampTime(25.0, 0.0) + kSettle_s,
+              1e-4);
+  ExpectSmooth(ran);
+  EXPECT_EQ(ran.moves.size(), 121U);
+}
+
+// The same where a circle is made of them: no jump, and the lower speed as soon as the ramp is over
+// but for the rest of a move, with the path as near as it was.
+TEST(OverrideRules, LowerOverrideActsWhereShortMovesTurn) {
+  for (const double length : {0.3, 0.55, 1.2}) {
+    const std::string text = ShortMoves(static_cast<int>(60.0 / length), length, false);
+    const double change = BeginOfSecondMove(text) + 0.4;
+    const Ran ran = ChangedAt(change, 50.0, text);
+    SCOPED_TRACE(length);
+    EXPECT_EQ(ran.moves.size(), 1U + static_cast<std::size_t>(60.0 / length));
+    EXPECT_LE(SlowFrom(ran, 25.0, change), RampTime(50.0, 25.0) + 2.0 * length / 25.0);
+    ExpectSmooth(ran);
+    for (const Ran::Part& part : ran.parts) {
+      if (part.done.start < ran.moves.front().at) continue;
+      const motion::MachinePoint tip = part.motion.path.At(part.done.travelled).point;
+      EXPECT_NEAR(std::hypot(tip.x() - 1000.0, tip.y() - 1050.0), 50.0, 0.01);
+    }
+  }
+}
+
+// The program is still being read then, and the ramp runs over 60 moves; down and up
+// again and down.
+TEST(OverrideRules, OverridesActInLongChainsOfShortMoves) {
+  std::string text = ShortMoves(900, 0.24, true);
+  text.insert(text.find("SPEED 10"), "SPEED 40\n");
+  text.erase(text.find("SPEED 10"), std::string("SPEED 10\n").size());
+  const double begin = BeginOfSecondMove(text);
+  const Ran ran = RunText(text, {.inputs = {{At(begin + 0.25), InputKind::kOverride, 0, 50.0},
+                                            {At(begin + 0.5), InputKind::kOverride, 0, 100.0},
+                                            {At(begin + 0.75), InputKind::kOverride, 0, 25.0}}});
+  ExpectSmooth(ran);
+  EXPECT_EQ(ran.moves.size(), 901U);
+  EXPECT_LE(SlowFrom(ran, 50.0, begin + 0.75), 0.2);
+  const auto speed_at = [&](double time_s) {
+    for (const Ran::Part& part : ran.parts)
+      if (At(time_s) >= part.done.start && At(time_s) < part.done.end)
+        return part.SpeedAt(time_s - ToSeconds(part.done.start));
+    return 0.0;
+  };
+  EXPECT_NEAR(speed_at(begin + 0.24), 200.0, 1e-6);
+  EXPECT_NEAR(speed_at(begin + 0.49), 100.0, 1e-6);
+  EXPECT_NEAR(speed_at(begin + 0.74), 200.0, 1e-6);
+}
+
+// What stands between the moves comes in order and at its place, also where the ramp runs over it;
+// a STOP on the ramp halts on the path, and START rides the rest of it.
+TEST(OverrideRules, ALowerOverrideKeepsWhatStandsBetweenShortMoves) {
+  std::string text = kThere;
+  for (int k = 1; k <= 60; ++k)
+    text += "MOVE (" + std::to_string(1000.0 + 0.5 * k) + ",1000.,-400.,0.,0.)" +
+            (k < 60 ? "/FLY\nOL[11]=" + std::string(k % 2 == 1 ? "ON" : "OFF") + "\n" : "\n");
+  const Ran plain = RunText(text);
+  const double change = ToSeconds(plain.moves.front().at) + 0.2;
+  for (const double stop : {0.0, 0.01, 0.03, 0.06}) {
+    machine::InputScript inputs{{At(change), InputKind::kOverride, 0, 50.0}};
+    if (stop > 0.0) {
+      inputs.push_back({At(change + stop), InputKind::kStop});
+      inputs.push_back({At(change + 5.0), InputKind::kStart});
+    }
+    const Ran ran = RunText(text, {.inputs = inputs});
+    SCOPED_TRACE(stop);
+    EXPECT_EQ(ran.Count("OL[11] 1"), plain.Count("OL[11] 1"));
+    EXPECT_EQ(ran.Count("OL[11] 0"), plain.Count("OL[11] 0"));
+    EXPECT_EQ(ran.moves.size(), plain.moves.size());
+    ExpectSmooth(ran);
+    double way = 0.0;
+    for (const Ran::Part& part : ran.parts) way += part.done.travelled - part.done.from;
+    double plain_way = 0.0;
+    for (const Ran::Part& part : plain.parts) plain_way += part.done.travelled - part.done.from;
+    EXPECT_NEAR(way, plain_way, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

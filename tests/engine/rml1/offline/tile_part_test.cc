@@ -50,6 +50,19 @@ TEST(TilePart, ACommandBeginsWithItsFirstSet) {
             "!MC0;PR;" + part + ";\nPU;\n!ZZ0,0,1500;!ZZ0,-100,0;" + part + ";\nPU;\n;PA;PU0,0;");
 }
 
+// A fault in the phrase that ends the part is told before it, and lies behind it. Every hole stands
+// at its pitch, of a gap of 1 mm: to the right, back and on, to the right.
+TEST(TilePart, AFaultBehindThePartKeepsTheCopiesApart) {
+  const auto made = TiledPart("PD\x1b.!PZ-3,7;!DW;", {.columns = 2, .rows = 2, .gap_mm = 1.0});
+  ASSERT_TRUE(made);
+  std::size_t at = 0;
+  for (const std::string way : {"100,0,0;PA;PD", "-100,100,0;PA;PD", "100,0,0;PA;PD"}) {
+    at = made->stream.find("," + way, at);
+    ASSERT_NE(at, std::string::npos) << way << " in " << made->stream;
+    ++at;
+  }
+}
+
 // As many copies as there may be, on a field that has room for more; and no more than that of a
 // hole.
 TEST(TilePart, NoMoreThanThousandCopies) {

@@ -1,0 +1,101 @@
+// What a host says to its servers of itself, and when (live.md 3.04 to 3.07, 3.16).
+#include <string>
+#include <vector>
+
+#include "tests/server/host/live_host_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+class LiveHostLines : public LiveHost {
+ protected:
+  void TellRenewed() {
+    v1::HostResponse renewed;
+    renewed.mutable_renewed();
+    server_->Tell(renewed);
+  }
+};
+
+// LIVE-3.04, LIVE-3.16: each third of a second though its status is told once a second.
+TEST_F(LiveHostLines, ARenewalWaitsForNoStatus) {
+  v1::HostWelcome welcome = WelcomeTo("rml1");
+  welcome.mutable_lease()->set_seconds(0);
+  welcome.mutable_lease()->set_nanos(150'000'000);
+  Live(welcome);
+  const std::size_t before = Count(v1::HostRequest::kRenew);
+  server_->Told(v1::HostRequest::kStatus, Count(v1::HostRequest::kStatus) + 3);
+  EXPECT_GE(Count(v1::HostRequest::kRenew), before + 12);
+}
+
+// What a server says to a renewal changes nothing of the machine.
+TEST_F(LiveHostLines, ARenewalMayBeAnswered) {
+  Live();
+  TellRenewed();
+  StoreAll();
+  TakeControl();
+  ASSERT_FALSE(Ask(StartOf()).has_refusal());
+  TellRenewed();
+  StoreAll();
+  EXPECT_EQ(AskWhereItIs().run_state().fence(), 7);
+  EXPECT_EQ(Ask(StopOrder()).halt().status().fence(), 7);
+}
+
+// LIVE-3.16: what an order led to is told behind it, and not with the next turn.
+TEST_F(LiveHostLines, WhatAnOrderLedToIsToldAtOnce) {
+  Live();
+  TakeControl();
+  AwaitStatus([](const v1::MachineStatus& one) { return one.has_control(); });
+  for (const double percent : {90.0, 80.0, 70.0, 60.0, 50.0}) {
+    const std::size_t before = Count(v1::HostRequest::kStatus);
+    ASSERT_FALSE(Ask(OverrideOf(percent)).has_refusal());
+    for (int more = 0; more < 3; ++more) AskWhereItIs();
+    const auto told = server_->Told(v1::HostRequest::kStatus, before);
+    EXPECT_EQ(told.back().status().override_percent(), percent);
+  }
+}
+
+// LIVE-3.07: only when each of its servers is of another version; one that is away is none of them.
+TEST_F(LiveHostLines, ItEndsWhenAllItsServersAreOfAnotherVersion) {
+  v1::HostWelcome welcome = WelcomeTo("rml1");
+  welcome.add_servers("unix:" + folder_ + "/nobody");
+  Live(welcome);
+  server_->refusal = {grpc::StatusCode::FAILED_PRECONDITION, "of another version"};
+  server_->EndLine();
+  EXPECT_EQ(host_.get(), 0);
+  EXPECT_EQ(Count(v1::HostRequest::kHello), 3U);  // the first, and one refusal for each server
+}
+
+// LIVE-3.06: a server that it comes back to is told where it stands, and what it has not stored.
+TEST_F(LiveHostLines, ALineThatIsTakenUpAgainBeginsWithWhatIsNotStored) {
+  Live();
+  TakeControl();
+  const std::vector<v1::JournalEntry> before = Entries();
+  ASSERT_FALSE(before.empty());
+  server_->EndLine();
+  server_->Told(v1::HostRequest::kHello, 2);
+  const std::size_t statuses = Count(v1::HostRequest::kStatus);
+  AwaitStatus([](const v1::MachineStatus& one) { return one.has_control(); }, statuses);
+  std::vector<std::int64_t> again;
+  for (const v1::JournalEntry& entry : Entries()) again.push_back(entry.sequence());
+  EXPECT_EQ(std::ranges::count(again, before.front().sequence()), 2);
+  EXPECT_EQ(std::ranges::count(again, before.back().sequence()), 2);
+}
+
+// What is in the store is not told again.
+TEST_F(LiveHostLines, WhatIsStoredIsToldOnce) {
+  Live();
+  TakeControl();
+  StoreAll();
+  const std::int64_t stored = Entries().back().sequence();
+  AskWhereItIs();
+  server_->EndLine();
+  server_->Told(v1::HostRequest::kHello, 2);
+  Ask(ReleaseOfControl());
+  std::vector<std::int64_t> told;
+  for (const v1::JournalEntry& entry : Entries()) told.push_back(entry.sequence());
+  EXPECT_EQ(std::ranges::count(told, stored), 1);
+  EXPECT_GT(told.back(), stored);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,251 @@
+// Orders over the line of a host that is alive: keys, jobs, previews, programs that are taught.
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/host/journal.h"
+#include "tests/server/host/live_host_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::HasSubstr;
+
+class LiveHostOrders : public LiveHost {
+ protected:
+  v1::HostOrder PanelKey(const std::string& key, std::int64_t sequence) {
+    v1::HostOrder order;
+    v1::PressPanelKeyRequest& pressed = *order.mutable_panel_key();
+    pressed.set_key(key);
+    pressed.set_action(v1::KEY_ACTION_TAP);
+    pressed.set_control_token(token_);
+    pressed.set_sequence(sequence);
+    return order;
+  }
+  static v1::HostOrder JobOrder(const std::string& job, const std::string& text = kSlowSquare) {
+    v1::HostOrder order;
+    v1::WorkerAssignment& assignment = *order.mutable_run_job();
+    assignment.mutable_job()->set_name(job);
+    assignment.set_main_program(5);
+    v1::AssignedProgram& program = *assignment.add_programs();
+    program.set_slot(5);
+    program.set_file_name("square.rml");
+    program.set_is_source(true);
+    program.set_content(text);
+    return order;
+  }
+  v1::HostOrder PreviewOf(int program, int step) {
+    v1::HostOrder order;
+    order.mutable_preview_start()->set_program(program);
+    order.mutable_preview_start()->mutable_step()->set_step(step);
+    return order;
+  }
+  std::vector<v1::JournalEntry> Orphan() const {
+    std::ifstream file(JournalPath() + ".orphan", std::ios::binary);
+    return ReadJournal(std::string(std::istreambuf_iterator<char>(file), {})).entries;
+  }
+};
+
+// LIVE-7.04: a key that comes before the one ahead of it waits for that.
+TEST_F(LiveHostOrders, AKeyWaitsForTheOneBeforeIt) {
+  Live();
+  TakeControl();
+  bool both = false;
+  // Of one pair at least the first comes within the patience of the second.
+  for (std::int64_t first = 1; !both && first < 40; first += 2) {
+    const std::int64_t second = Send(PanelKey("COVER", first + 1));
+    const v1::HostOrderAnswer one = Ask(PanelKey("COVER", first));
+    ASSERT_FALSE(one.has_refusal()) << one.refusal().message();
+    both = !AnswerTo(second).has_refusal();
+    if (!both) {
+      ASSERT_FALSE(Ask(PanelKey("COVER", first + 1)).has_refusal());
+    }
+  }
+  EXPECT_TRUE(both);
+}
+
+// LIVE-7.04: for a while, and no longer.
+TEST_F(LiveHostOrders, AKeyWaitsNoLongerThanItsPatience) {
+  Live();
+  TakeControl();
+  const v1::HostOrderAnswer missing = Ask(PanelKey("COVER", 2));
+  EXPECT_EQ(missing.refusal().code(), CodeText(ErrorCode::kCellKeySequence));
+  EXPECT_EQ(missing.refusal().message(), "keys before it are missing");
+  EXPECT_FALSE(Ask(PanelKey("COVER", 1)).has_refusal());
+  EXPECT_FALSE(Ask(PanelKey("COVER", 2)).has_refusal());
+}
+
+// LIVE-2.05: whoever stops the machine stops the keys that wait, too.
+TEST_F(LiveHostOrders, AStopStopsTheKeysThatWait) {
+  Live();
+  TakeControl();
+  bool stopped = false;
+  for (int tries = 0; !stopped && tries < 20; ++tries) {
+    const std::int64_t key = Send(PanelKey("COVER", 2));
+    EXPECT_TRUE(Ask(StopOrder()).has_halt());
+    stopped = AnswerTo(key).refusal().message() == "it was stopped before it began";
+  }
+  EXPECT_TRUE(stopped);
+}
+
+// LIVE-5.04: the run of a job moves when its begin is in the store.
+TEST_F(LiveHostOrders, AJobMovesWhenItsBeginIsStored) {
+  Live();
+  StoreAll();
+  const v1::HostOrderAnswer begun = Ask(JobOrder("jobs/17"));
+  ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
+  EXPECT_EQ(begun.status().run().job(), "jobs/17");
+  const std::size_t before = Count(v1::HostRequest::kStatus);
+  EXPECT_EQ(AwaitStatus([](const v1::MachineStatus& one) { return one.has_run(); }, before + 2)
+                .run()
+                .run_time_ns(),
+            0);
+  AwaitEntry([](const v1::JournalEntry& one) { return one.has_run_begun(); });
+  StoreAll();
+  AwaitStatus([](const v1::MachineStatus& one) { return one.run().run_time_ns() > 0; });
+  v1::HostOrder abort;
+  abort.mutable_abort();
+  abort.set_for_job("jobs/17");
+  Ask(abort);
+  const v1::JournalEntry over =
+      AwaitEntry([](const v1::JournalEntry& one) { return one.has_run_over(); });
+  EXPECT_EQ(over.run_over().job(), "jobs/17");
+}
+
+// LIVE-6.01: worked out beside the machine, one after the other.
+TEST_F(LiveHostOrders, AStartIsLookedAt) {
+  Live();
+  TakeControl();
+  const v1::HostOrderAnswer none = Ask(PreviewOf(5, 0));
+  EXPECT_EQ(none.refusal().code(), CodeText(ErrorCode::kCellInvalidArgument));
+  for (const int step : {8, 9}) {
+    const v1::HostOrderAnswer preview = Ask(PreviewOf(5, step));
+    ASSERT_TRUE(preview.has_preview()) << preview.refusal().message();
+    EXPECT_NE(preview.preview().preview_token(), "");
+    EXPECT_EQ(preview.preview().there().fence(), 7);
+  }
+}
+
+// LIVE-3.05: another host has the machine: it brakes, and what the store did not take is kept.
+TEST_F(LiveHostOrders, WhatAMachineThatIsLostDidLastIsKept) {
+  Live();
+  TakeControl();
+  ASSERT_FALSE(Ask(StartOf()).has_refusal());
+  AwaitState(v1::MACHINE_STATE_RUNNING);
+  v1::HostResponse lost;
+  lost.mutable_lease_lost()->set_holder("workshop/2");
+  server_->Tell(lost);
+  EXPECT_EQ(host_.get(), 3);
+  const std::vector<v1::JournalEntry> kept = Orphan();
+  ASSERT_FALSE(kept.empty());
+  EXPECT_TRUE(std::ranges::any_of(kept, [](const auto& one) { return one.event().has_halted(); }));
+  EXPECT_TRUE(kept.back().has_mark());
+  EXPECT_EQ(kept.front().sequence(), 1);
+  EXPECT_TRUE(std::ranges::is_sorted(kept, std::less<>(), &v1::JournalEntry::sequence));
+}
+
+// LIVE-5.09: an end in order: the run ends with it, and the log has that.
+TEST_F(LiveHostOrders, ARunEndsWithItsHost) {
+  Live();
+  TakeControl();
+  ASSERT_FALSE(Ask(StartOf()).has_refusal());
+  AwaitState(v1::MACHINE_STATE_RUNNING);
+  v1::HostResponse stop;
+  stop.mutable_stop()->set_reason("a test");
+  server_->Tell(stop);
+  EXPECT_EQ(host_.get(), 0);
+  EXPECT_EQ(server_->Told(v1::HostRequest::kHandBack, 1)[0].hand_back().fence(), 7);
+  const v1::JournalEntry over =
+      AwaitEntry([](const v1::JournalEntry& one) { return one.has_run_over(); });
+  EXPECT_EQ(over.run_over().outcome().kind(), v1::Outcome::KIND_INTERRUPTED);
+  EXPECT_EQ(over.run_over().outcome().code(), CodeText(ErrorCode::kCellHostStopped));
+  EXPECT_TRUE(Entries().back().has_mark());
+}
+
+// LIVE-3.22: what is not stored stays in the journal, by the fence under which it was told.
+TEST_F(LiveHostOrders, WhatIsNotStoredStaysInTheJournal) {
+  v1::JournalEntry large;
+  large.set_fence(3);
+  large.set_sequence(1);
+  large.mutable_event()->mutable_message()->set_text(std::string(Journal::kBytesKept, 't'));
+  ASSERT_TRUE(Journal::Open(JournalPath())->journal->Write({large}));
+  Live();
+  TakeControl();
+  for (const double percent : {90.0, 80.0, 70.0, 60.0, 50.0})
+    ASSERT_FALSE(Ask(OverrideOf(percent)).has_refusal());
+  const v1::JournalEntry newest = AwaitEntry(
+      [](const v1::JournalEntry& one) { return one.applied().input().override_percent() == 50.0; });
+  ASSERT_GT(newest.sequence(), 9);
+  v1::HostResponse stored;
+  stored.mutable_entries_stored()->set_sequence(newest.sequence() - 1);
+  server_->Tell(stored);
+  const auto left = [this] {
+    std::ifstream file(JournalPath(), std::ios::binary);
+    return ReadJournal(std::string(std::istreambuf_iterator<char>(file), {})).entries;
+  };
+  std::vector<v1::JournalEntry> entries = left();
+  for (int look = 0; look < 1'000 && !entries.empty() && entries.front().fence() == 3; ++look) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    entries = left();
+  }
+  ASSERT_FALSE(entries.empty());
+  EXPECT_EQ(entries.front().fence(), 7);
+  EXPECT_EQ(entries.front().sequence(), newest.sequence());
+}
+
+// LIVE-7.08: what is taught goes to the store, whose answer lets the keys go on.
+TEST_F(LiveHostOrders, WhatIsTaughtGoesToTheStore) {
+  Live(WelcomeTo("optimo"));
+  TakeControl();
+  v1::HostOrder open;
+  open.mutable_create_session()->set_control_token(token_);
+  const std::string session = Ask(open).session().name();
+  std::int64_t keys = 0;
+  const auto key = [&](const std::string& name) {
+    v1::HostOrder order;
+    v1::PressKeyRequest& pressed = *order.mutable_key();
+    pressed.set_session(session);
+    pressed.set_control_token(token_);
+    pressed.set_key(name);
+    pressed.set_action(v1::KEY_ACTION_TAP);
+    pressed.set_sequence(++keys);
+    return order;
+  };
+  for (const char* name :
+       {"MODE_LEFT", "MODE_LEFT", "MODE_LEFT", "MODE_LEFT", "JOB", "1", "2", "ENT", "REC"})
+    ASSERT_TRUE(Ask(key(name)).has_key()) << name;
+  const auto refuse = [&](std::size_t number) {
+    const v1::HostEdit edit = server_->Told(v1::HostRequest::kEdit, number).back().edit();
+    EXPECT_EQ(edit.slot(), 12);
+    EXPECT_EQ(edit.fence(), 7);
+    v1::HostResponse refused;
+    refused.mutable_edit_answer()->set_number(edit.number());
+    refused.mutable_edit_answer()->mutable_refusal()->set_code("CELL-E9108");
+    server_->Tell(refused);
+  };
+  refuse(1);
+  const auto says_so = [](const v1::HostRequest& one) {
+    return one.panel().message_code() == "CELL-E9108";
+  };
+  EXPECT_EQ(Await(v1::HostRequest::kPanel, says_so).panel().holder(), "anna");
+  ASSERT_TRUE(Ask(key("REC")).has_key());
+  const std::int64_t waits = Send(key("PREV"));
+  refuse(2);
+  EXPECT_TRUE(AnswerTo(waits).has_key());
+  // A server that is gone answers no more: perhaps it has stored it, and perhaps not.
+  const std::size_t shown = Count(v1::HostRequest::kPanel);
+  ASSERT_TRUE(Ask(key("REC")).has_key());
+  server_->Told(v1::HostRequest::kEdit, 3);
+  server_->EndLine();
+  Await(
+      v1::HostRequest::kPanel,
+      [](const v1::HostRequest& one) {
+        return one.panel().message_code() == CodeText(ErrorCode::kCellStoreUnavailable);
+      },
+      shown);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,161 @@
+// A host with several servers, as each of them sees it (live.md 3.06, 3.31).
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/server/host/live_host_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+// Welcomes a host, and says nothing more.
+class SilentServer final : public v1::HostService::Service {
+ public:
+  explicit SilentServer(const std::string& address) {
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort(address, CredentialsOfServer());
+    builder.RegisterService(this);
+    server_ = builder.BuildAndStart();
+  }
+  ~SilentServer() override { server_->Shutdown(std::chrono::system_clock::now()); }
+  grpc::Status Host(grpc::ServerContext*,
+                    grpc::ServerReaderWriter<v1::HostResponse, v1::HostRequest>* stream) override {
+    v1::HostRequest request;
+    stream->Read(&request);
+    v1::HostResponse response;
+    response.mutable_welcome()->set_fence(7);
+    response.mutable_welcome()->set_family("rml1");
+    response.mutable_welcome()->set_profile("srm-20");
+    response.mutable_welcome()->mutable_lease()->set_seconds(600);
+    const std::lock_guard lock(mutex_);
+    stream->Write(response);
+    ++hellos_;
+    come_.notify_all();
+    while (stream->Read(&request)) continue;
+    return grpc::Status::OK;
+  }
+  bool AwaitHellos(int count) {
+    std::unique_lock lock(looking_);
+    return come_.wait_for(lock, std::chrono::seconds(15), [&] { return hellos_ >= count; });
+  }
+
+ private:
+  std::mutex mutex_;  // one line at a time
+  std::mutex looking_;
+  std::condition_variable_any come_;
+  std::atomic<int> hellos_ = 0;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+class LiveHostServers : public LiveHost {
+ protected:
+  LiveHostServers() {
+    other_ = std::make_unique<FakeHostServer>("unix:" + folder_ + "/b");
+    other_->Welcome(WelcomeTo("rml1"));
+  }
+  ~LiveHostServers() override {
+    stopping_ = true;
+    if (host_.valid()) host_.wait();
+    other_.reset();
+  }
+  void LiveWithBoth() {
+    v1::HostWelcome welcome = WelcomeTo("rml1");
+    welcome.add_servers(server_->address());
+    welcome.add_servers(other_->address());
+    Live(welcome);
+    other_->Told(v1::HostRequest::kStatus, 1);
+  }
+  v1::HostOrderAnswer AskOther(v1::HostOrder order) {
+    v1::HostResponse message;
+    order.set_number(++asked_);
+    order.set_caller("bert");
+    *message.mutable_order() = std::move(order);
+    other_->Tell(message);
+    return other_->Told(v1::HostRequest::kAnswer, static_cast<std::size_t>(asked_)).back().answer();
+  }
+  std::unique_ptr<FakeHostServer> other_;
+  std::int64_t asked_ = 0;
+};
+
+// LIVE-3.06: whichever server asks is answered, by the number that it gave; each sees all of it.
+TEST_F(LiveHostServers, EachServerMayAsk) {
+  LiveWithBoth();
+  TakeControl();
+  v1::HostOrder where;
+  where.mutable_run_state();
+  const v1::HostOrderAnswer answer = AskOther(where);
+  EXPECT_EQ(answer.number(), 1);
+  EXPECT_EQ(answer.run_state().fence(), 7);
+  const v1::HostOrderAnswer started = AskOther(StartOf());
+  EXPECT_EQ(started.number(), 2);
+  EXPECT_FALSE(started.has_refusal()) << started.refusal().message();
+  AwaitState(v1::MACHINE_STATE_RUNNING);
+  EXPECT_TRUE(AskOther(StopOrder()).has_halt());
+  const v1::MachineStatus held = AwaitState(v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(held.hold_reason(), v1::HOLD_REASON_STOP);
+  EXPECT_EQ(server_->Told(v1::HostRequest::kAnswer, 1).size(), 1U);  // its own alone
+  EXPECT_EQ(other_->Told(v1::HostRequest::kEntries, 0).size(), 0U);
+}
+
+// LIVE-3.31: as long as another server hears it, a run goes on though the one that stores is lost.
+TEST_F(LiveHostServers, ARunGoesOnWithTheOtherServer) {
+  LiveWithBoth();
+  TakeControl();
+  ASSERT_FALSE(Ask(StartOf()).has_refusal());
+  AwaitState(v1::MACHINE_STATE_RUNNING);
+  server_->refusal = {grpc::StatusCode::UNAVAILABLE, "away"};
+  server_->EndLine();
+  // More than a second of statuses, while nothing but the other line stands.
+  const std::size_t before = other_->Told(v1::HostRequest::kStatus, 0).size();
+  for (const v1::HostRequest& told : other_->Told(v1::HostRequest::kStatus, before + 40))
+    EXPECT_NE(told.status().state(), v1::MACHINE_STATE_HELD);
+}
+
+// LIVE-3.31: a run that nobody sees is held after a second, and the log says why.
+TEST_F(LiveHostServers, ARunThatNobodySeesIsHeld) {
+  Live();
+  TakeControl();
+  ASSERT_FALSE(Ask(StartOf()).has_refusal());
+  AwaitState(v1::MACHINE_STATE_RUNNING);
+  server_->refusal = {grpc::StatusCode::UNAVAILABLE, "away"};
+  server_->EndLine();
+  server_->Told(v1::HostRequest::kHello, 8);  // 200 ms apart at least
+  server_->refusal = grpc::Status::OK;
+  const v1::MachineStatus held = AwaitState(v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(held.hold_reason(), v1::HOLD_REASON_SERVER_LOST);
+  const v1::JournalEntry why =
+      AwaitEntry([](const v1::JournalEntry& one) { return one.event().has_message(); });
+  EXPECT_THAT(why.event().message().text(),
+              testing::HasSubstr(CodeText(ErrorCode::kCellServerLost)));
+}
+
+// LIVE-3.04: a lease that nobody renews ends: the machine rests before.
+TEST_F(LiveHostServers, ARunIsHeldBeforeItsLeaseEnds) {
+  v1::HostWelcome welcome = WelcomeTo("rml1");
+  welcome.mutable_lease()->set_seconds(8);
+  Live(welcome);
+  TakeControl();
+  ASSERT_FALSE(Ask(StartOf()).has_refusal());
+  EXPECT_EQ(AwaitState(v1::MACHINE_STATE_HELD).hold_reason(), v1::HOLD_REASON_MACHINE_LEASE);
+}
+
+// LIVE-3.06: a server that says nothing is left, and looked for again.
+TEST_F(LiveHostServers, AServerThatIsSilentIsLeft) {
+  server_.reset();
+  SilentServer silent("unix:" + folder_ + "/silent");
+  host_ = std::async(std::launch::async, [this] {
+    return RunHost({.server = "unix:" + folder_ + "/silent",
+                    .join_token = "let me in",
+                    .machine = "machines/m",
+                    .journal = JournalPath()},
+                   stopping_);
+  });
+  EXPECT_TRUE(silent.AwaitHellos(2));
+  stopping_ = true;
+  EXPECT_EQ(host_.get(), 0);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,81 @@
+// When a journal is on the disk, and when it is made shorter (live.md 3.21, 3.22).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/host/journal.h"
+#include "server/host/journal_writer.h"
+
+namespace {
+
+std::atomic<int> data_synced = 0;
+
+}  // namespace
+
+// In place of that of the library, for all of this program: what was synced is counted.
+extern "C" int fdatasync(int file) {
+  ++data_synced;
+  return static_cast<int>(::syscall(SYS_fdatasync, file));
+}
+
+namespace rmlcell::server {
+namespace {
+
+class SyncedJournal : public testing::Test {
+ protected:
+  SyncedJournal() { std::filesystem::remove(path_); }
+  ~SyncedJournal() override { std::filesystem::remove(path_); }
+  static v1::JournalEntry Said(std::int64_t sequence, std::size_t bytes) {
+    v1::JournalEntry entry;
+    entry.set_fence(3);
+    entry.set_sequence(sequence);
+    entry.mutable_event()->mutable_message()->set_text(std::string(bytes, 't'));
+    return entry;
+  }
+  std::unique_ptr<Journal> Open() { return std::move(Journal::Open(path_)->journal); }
+
+  const std::string path_ = testing::TempDir() + "/synced-journal-" + std::to_string(::getpid());
+};
+
+// LIVE-3.21: what is written is synced each time, and so is what takes the place of a file.
+TEST_F(SyncedJournal, WhatIsWrittenIsOnTheDisk) {
+  const auto journal = Open();
+  int before = data_synced;
+  ASSERT_TRUE(journal->Write({Said(1, 10), Said(2, 10)}));
+  EXPECT_EQ(data_synced, before + 1);
+  before = data_synced;
+  ASSERT_TRUE(journal->Replace({Said(2, 10)}));
+  EXPECT_EQ(data_synced, before + 1);
+  before = data_synced;
+  ASSERT_TRUE(journal->Write({}));
+  EXPECT_EQ(data_synced, before);
+}
+
+// What the store has is dropped when it has it, and not with what is written next.
+TEST_F(SyncedJournal, IsShortenedWhenTheStoreHasIt) {
+  auto journal = Open();
+  ASSERT_TRUE(journal->Write({Said(1, Journal::kBytesKept), Said(2, 10)}));
+  JournalWriter writer(std::move(journal));
+  std::promise<void> written;
+  writer.Write({Said(3, 10)}, {}, [&written] { written.set_value(); });
+  written.get_future().wait();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // it waits for more
+  writer.Stored(3, 1);
+  for (int look = 0; look < 1'000 && std::filesystem::file_size(path_) > 1'000U; ++look)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_LT(std::filesystem::file_size(path_), 1'000U);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,170 @@
+// What a worker that leaves takes back, and what it leaves to others.
+#include <gtest/gtest.h>
+
+#include <future>
+#include <memory>
+#include <vector>
+
+#include "tests/server/jobs/dispatcher_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using std::chrono::milliseconds;
+using storage::JobState;
+
+// A store that tells which requests are withdrawn, and does something while it is asked.
+class WithdrawingStore final : public ForwardingStore {
+ public:
+  using ForwardingStore::ForwardingStore;
+  std::function<void()> while_asked;
+  std::atomic<std::int64_t> newest = 0;
+  std::atomic<std::int64_t> withdrawn = 0;
+  std::atomic<int> withdrawals = 0;
+
+  std::int64_t AwaitJobs(storage::JobRequest request,
+                         storage::Done<std::vector<storage::LeasedJob>> done) override {
+    newest = store_.AwaitJobs(std::move(request), std::move(done));
+    if (while_asked) while_asked();
+    return newest;
+  }
+  // Events do not fit for now, and an end not at all.
+  std::atomic<bool> refuses = false;
+  std::atomic<bool> throws = false;
+
+  void Append(const storage::Lease& lease, std::vector<storage::NewEvent> events,
+              storage::Done<std::int64_t> done) override {
+    if (refuses) return done(Error{ErrorCode::kCellStoreFailed, "the disk is full", {}});
+    store_.Append(lease, std::move(events), std::move(done));
+  }
+  void SendFinish(const storage::Lease& lease, std::shared_ptr<const storage::JobEnd> end,
+                  std::optional<storage::JobRequest> next,
+                  storage::Done<storage::FinishedJob> done) override {
+    if (throws) throw std::bad_alloc();
+    if (refuses) return done(Error{ErrorCode::kCellTooLarge, "an event of 5 GiB", {}});
+    store_.SendFinish(lease, std::move(end), std::move(next), std::move(done));
+  }
+  void Withdraw(std::int64_t request) override {
+    withdrawn = request;
+    ++withdrawals;
+    store_.Withdraw(request);
+  }
+};
+
+class WorkersThatLeave : public testing::Test {
+ protected:
+  Dispatcher& dispatcher() {
+    if (dispatcher_ == nullptr)
+      dispatcher_ = std::make_unique<Dispatcher>(store, feed, config, executor, std::string(kToken),
+                                                 steady.clock());
+    return *dispatcher_;
+  }
+
+  ServerBed server;
+  WithdrawingStore store{server.store()};
+  EventFeed feed{server.store()};
+  Config config;
+  TestSteadyClock steady;
+  Executor executor{2};
+  std::unique_ptr<Dispatcher> dispatcher_;
+};
+
+// It goes while the store is asked for its first job: what it asked for is taken back, or a job
+// would be given to nobody.
+TEST_F(WorkersThatLeave, WhatItAsksForAsItGoesIsWithdrawn) {
+  std::promise<void> asked;
+  std::promise<void> goes_on;
+  store.while_asked = [&asked, wait = goes_on.get_future().share()] {
+    asked.set_value();
+    wait.wait();
+  };
+  const Dispatcher::WorkerId worker =
+      Must(dispatcher().Join(std::make_shared<FakeLine>(), Hello("w")));
+  asked.get_future().wait();
+  dispatcher().Leave(worker);
+  EXPECT_EQ(store.withdrawals, 0);  // its number is not known yet
+  goes_on.set_value();
+  EXPECT_TRUE(Eventually([&] { return store.withdrawals == 1; }));
+  EXPECT_EQ(store.withdrawn, store.newest);
+}
+
+// One that works asks for nothing: what others ask for stays.
+TEST_F(WorkersThatLeave, OneThatWorksWithdrawsNothing) {
+  server.SubmitCheck();
+  FakeWorker busy(dispatcher(), "busy");
+  ASSERT_TRUE(busy.Take());
+  FakeWorker idle(dispatcher(), "idle");
+  dispatcher().Settle();
+  busy.Leave();
+  EXPECT_EQ(store.withdrawals, 0);
+}
+
+// What cannot be stored at all may be what it told: the attempt is lost without that.
+TEST_F(WorkersThatLeave, WhatCannotBeStoredIsLeftOut) {
+  const std::int64_t job = server.SubmitCheck();
+  FakeWorker worker(dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  store.refuses = true;
+  worker.Events(1, "too large");
+  worker.Finish();
+  EXPECT_EQ(worker.Released(), false);
+  store.refuses = false;
+  std::vector<std::string> told;
+  for (const storage::EventRecord& record : Must(server.store().JobEvents(job, 0, 100))) {
+    const v1::JobEvent event = rmlcell::server::ToProto(record);
+    if (event.has_message()) told.push_back(event.message().text());
+  }
+  EXPECT_EQ(told, std::vector<std::string>{"the worker of attempt 1 died"});
+  worker.Leave();
+}
+
+// A line that keeps why it was closed.
+class ClosedLine final : public WorkerLine {
+ public:
+  void Send(v1::WorkResponse message) override {
+    if (message.has_assignment()) taken.set_value(message.assignment().lease());
+  }
+  void SendProgram(int, std::shared_ptr<const std::string>) override {}
+  void Close(const Error& why) override { closed.set_value(why.code); }
+  std::promise<v1::WorkerLease> taken;
+  std::promise<ErrorCode> closed;
+};
+
+// A worker whose work throws is sent away with a mistake of ours, and none of its own.
+TEST_F(WorkersThatLeave, WhatThrowsIsAMistakeOfOurs) {
+  server.SubmitCheck();
+  const auto line = std::make_shared<ClosedLine>();
+  const Dispatcher::WorkerId worker = Must(dispatcher().Join(line, Hello("w")));
+  v1::WorkRequest message;
+  *message.mutable_finish()->mutable_lease() = line->taken.get_future().get();
+  store.throws = true;
+  dispatcher().Receive(worker, std::move(message));
+  EXPECT_EQ(line->closed.get_future().get(), ErrorCode::kCellInternal);
+  store.throws = false;
+  dispatcher().Leave(worker);
+}
+
+// What nobody can work on has been begun as far as anybody could: an end that the store does not
+// take in the time of a lease uses its only attempt up.
+TEST(JobsNobodyCanDo, AnEndThatIsLostCountsAsAnAttempt) {
+  DispatcherBed bed;
+  const std::int64_t broken =
+      Must(bed.server.store().SubmitAndWait({.machine = "optimo-1",
+                                             .kind = "CHECK",
+                                             .specification = "\xFF\xFF no message",
+                                             .attempts_max = 1}))
+          .job.id;
+  bed.hooks.finishes_that_fail = 1'000'000;
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(bed.Becomes(broken, JobState::kRunning));
+  ASSERT_TRUE(Eventually([&] { return bed.hooks.finishes_that_fail < 1'000'000; }));
+  // The look at leases of the beginning is over, and the next one is far.
+  ASSERT_TRUE(Eventually([&] { return bed.hooks.sweeps > 0; }));
+  bed.Advance(milliseconds(bed.config.workers_lease_ms));
+  EXPECT_TRUE(bed.Becomes(broken, JobState::kFailed));
+  EXPECT_EQ(bed.Job(broken).outcome->code, ErrorCode::kCellWorkerDied);
+  EXPECT_EQ(bed.Job(broken).attempts, 1);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,236 @@
+// Runs of which nothing can be made yet, and what is told when something was (live.md 3.41).
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "server/base/config.h"
+#include "server/base/names.h"
+#include "server/machines/hosts.h"
+#include "server/machines/recordings.h"
+#include "server/records/job_messages.h"
+#include "server/runs/run_products.h"
+#include "tests/server/fake_link.h"
+#include "tests/server/forwarding_store.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using storage::JobState;
+
+// Notes whose jobs are asked for: one machine is looked at behind the other. Fails where it is told
+// so.
+class NotingStore final : public ForwardingStore {
+ public:
+  using ForwardingStore::ForwardingStore;
+  std::atomic<bool> fails = false;
+  std::atomic<int> looks_at_optimo = 0;
+
+  Result<std::vector<storage::JobRecord>> ListJobs(const storage::JobQuery& query) override {
+    if (query.machine == "optimo-1") ++looks_at_optimo;
+    return store_.ListJobs(query);
+  }
+  Result<storage::JobRecord> AddProducts(std::int64_t job,
+                                         const storage::LateProducts& products) override {
+    if (fails) return Error{ErrorCode::kCellStoreFailed, "the disk is full", {}};
+    return store_.AddProducts(job, products);
+  }
+};
+
+class ProductsOfLater : public testing::Test {
+ protected:
+  ProductsOfLater() {
+    v1::RunReport report;
+    report.mutable_outcome()->set_kind(v1::Outcome::KIND_COMPLETED);
+    report.mutable_outcome()->set_verdict(v1::VERDICT_DOUBTFUL);
+    std::ofstream(folder_.File("report"), std::ios::binary) << report.SerializeAsString();
+    std::ofstream(program_) << "#!/bin/sh\necho \"$@\" > " << folder_.File("said") << "\ncp "
+                            << folder_.File("report") << " $4/report\necho s > $4/steps\n";
+    ::chmod(program_.c_str(), 0700);
+  }
+  ~ProductsOfLater() override {
+    products_.reset();
+    hosts_.CloseAll();
+  }
+  // A run that is over; of one that never began there is no recording.
+  std::int64_t Over(bool began = true, JobState how = JobState::kSucceeded) {
+    v1::Job asked;
+    asked.set_kind(v1::JOB_KIND_RUN);
+    const std::int64_t job =
+        Must(bed_.store().SubmitAndWait({.machine = "mill-1",
+                                         .kind = "RUN",
+                                         .specification = asked.SerializeAsString(),
+                                         .attempts_max = 1}))
+            .job.id;
+    if (began) {
+      Must(bed_.store().Finish(bed_.Lease("RUN"), {.outcome = {.state = how}}));
+    } else {
+      Must(bed_.store().RequestCancel(job, {}));
+    }
+    return job;
+  }
+  void Record(std::int64_t job) {
+    Must(bed_.store().AddProducts(job, {.artifacts = {{.name = std::string(kRecording),
+                                                       .media_type = "application/octet-stream",
+                                                       .bytes = "recorded"}}}));
+  }
+  RunProducts& products() {
+    if (products_ == nullptr)
+      products_ = std::make_unique<RunProducts>(RunProducts::Needs{.store = store_,
+                                                                   .hosts = hosts_,
+                                                                   .program = program_,
+                                                                   .folder = runs_,
+                                                                   .log_level = "warning",
+                                                                   .log_format = "json"});
+    return *products_;
+  }
+  // Until the thread is done with it.
+  void LookAtMill() {
+    products().Look("mill-1");
+    const int before = store_.looks_at_optimo;
+    products().Look("optimo-1");
+    ASSERT_TRUE(Eventually([&] { return store_.looks_at_optimo > before; }));
+  }
+  bool HasReport(std::int64_t job) {
+    return static_cast<bool>(bed_.store().GetArtifact(job, "report"));
+  }
+
+  ServerBed bed_;
+  NotingStore store_{bed_.store()};
+  EventFeed feed_{bed_.store()};
+  Executor executor_{2};
+  Hosts hosts_{{.store = bed_.store(),
+                .feed = feed_,
+                .executor = executor_,
+                .server = "this server",
+                .join_token = "secret"}};
+  storage::TestDirectory folder_;
+  const std::string program_ = folder_.File("worker");
+  const std::string runs_ = folder_.File("runs");
+  std::unique_ptr<RunProducts> products_;
+};
+
+// While its host is not heard of nothing is given up: it may have the recording.
+TEST_F(ProductsOfLater, ARunWhoseHostIsNotHeardOfIsLookedAtAgain) {
+  const std::int64_t job = Over();
+  LookAtMill();
+  EXPECT_FALSE(HasReport(job));
+  Record(job);
+  LookAtMill();
+  EXPECT_TRUE(HasReport(job));
+}
+
+// Nor where there is no room to play it, or to keep what was made.
+TEST_F(ProductsOfLater, TroubleOfADiskIsNotTheFaultOfARecording) {
+  const std::int64_t job = Over();
+  Record(job);
+  products();
+  std::ofstream(runs_) << "no folder";
+  LookAtMill();
+  EXPECT_FALSE(HasReport(job));
+  std::filesystem::remove(runs_);
+  store_.fails = true;
+  LookAtMill();
+  EXPECT_FALSE(HasReport(job));
+  store_.fails = false;
+  LookAtMill();
+  EXPECT_TRUE(HasReport(job));
+}
+
+// What was cancelled before it began has nothing that could be played, and holds nothing up.
+TEST_F(ProductsOfLater, WhatNeverBeganIsPassedOver) {
+  const std::int64_t job = Over();
+  Record(job);
+  Over(false);
+  LookAtMill();
+  EXPECT_TRUE(HasReport(job));
+}
+
+// Of its host it is asked for by the name of the job; what that has not is given up.
+TEST_F(ProductsOfLater, TheRecordingIsThatOfTheJob) {
+  const auto link = std::make_shared<FakeLink>();
+  v1::HostHello hello;
+  hello.set_join_token("secret");
+  hello.set_machine("machines/mill-1");
+  hello.set_host("hall/1");
+  hello.set_protocol(1);
+  ASSERT_TRUE(hosts_.Join(link, hello));
+  const std::int64_t job = Over();
+  products().Look("mill-1");
+  const auto order = link->Newest(v1::HostResponse::kOrder);
+  ASSERT_TRUE(order);
+  EXPECT_EQ(order->order().recording().job(), JobName(job));
+  v1::HostRequest answer;
+  answer.mutable_answer()->set_number(order->order().number());
+  answer.mutable_answer()->mutable_refusal()->set_code(CodeText(ErrorCode::kCellNotFound));
+  hosts_.Receive(*link, std::move(answer));
+  LookAtMill();
+  const std::vector<v1::HostResponse> all = link->All();
+  EXPECT_EQ(std::ranges::count_if(all, &v1::HostResponse::has_order), 1);
+  EXPECT_FALSE(HasReport(job));
+}
+
+// What cannot be played, leaves no report or ends otherwise than its job is played once.
+TEST_F(ProductsOfLater, WhatIsNoGoodIsPlayedOnce) {
+  v1::RunReport stopped;
+  stopped.mutable_outcome()->set_kind(v1::Outcome::KIND_STOPPED);
+  std::ofstream(folder_.File("stopped"), std::ios::binary) << stopped.SerializeAsString();
+  const std::vector<std::string> worthless = {
+      "exit 1", "exit 0", "cp " + folder_.File("stopped") + " $4/report\necho s > $4/steps",
+      "echo no report > $4/report"};
+  for (const std::string& what : worthless) {
+    std::ofstream(program_) << "#!/bin/sh\necho played >> " << folder_.File("plays") << "\n"
+                            << what << "\n";
+    std::filesystem::remove(folder_.File("plays"));
+    const std::int64_t job = Over();
+    Record(job);
+    LookAtMill();
+    LookAtMill();
+    EXPECT_FALSE(HasReport(job)) << what;
+    std::ifstream plays(folder_.File("plays"));
+    EXPECT_EQ(std::count(std::istreambuf_iterator<char>(plays), {}, '\n'), 1) << what;
+  }
+}
+
+// Nor is anything told of a run that failed and left no report.
+TEST_F(ProductsOfLater, WithoutAReportNothingIsTold) {
+  std::ofstream(program_) << "#!/bin/sh\necho path > $4/toolpath\n";
+  const std::int64_t job = Over(true, JobState::kFailed);
+  Record(job);
+  LookAtMill();
+  EXPECT_FALSE(bed_.store().GetArtifact(job, "toolpath"));
+  for (const storage::EventRecord& event : Must(bed_.store().JobEvents(job, 0, 100)))
+    EXPECT_FALSE(ToProto(event).has_products_made());
+}
+
+// The log of the job tells that it has more now, and how the part is; the worker is told where to
+// put it and how to log.
+TEST_F(ProductsOfLater, WhatWasMadeIsTold) {
+  const std::int64_t job = Over();
+  Record(job);
+  LookAtMill();
+  ASSERT_TRUE(HasReport(job));
+  const v1::JobEvent told = ToProto(Must(bed_.store().JobEvents(job, 0, 100)).back());
+  ASSERT_TRUE(told.has_products_made());
+  EXPECT_EQ(told.products_made().verdict(), v1::VERDICT_DOUBTFUL);
+  EXPECT_EQ(Must(bed_.store().GetJob(job)).outcome->verdict, "DOUBTFUL");
+  EXPECT_EQ(Must(bed_.store().GetArtifact(job, "steps")).media_type, "application/x-protobuf");
+  std::ifstream file(folder_.File("said"));
+  std::string said;
+  std::getline(file, said);
+  const std::string into = runs_ + "/" + std::to_string(job);
+  EXPECT_EQ(said, "--products " + into + "/" + std::string(kRecording) + " --into " + into +
+                      " --log-level warning --log-format json");
+  EXPECT_FALSE(std::filesystem::exists(into));
+}
+
+}  // namespace
+}  // namespace rmlcell::server

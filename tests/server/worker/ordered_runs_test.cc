@@ -1,0 +1,186 @@
+// What people order of a job while it runs, and what a worker tells of it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <future>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/worker/job_lease.h"
+#include "tests/server/worker/runner_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::ElementsAre;
+
+class OrderedRuns : public JobRunnerTest {
+ protected:
+  static v1::WorkResponse OrderOf(v1::WorkerControl::Kind kind, const std::string& request,
+                                  double value = 0.0) {
+    v1::WorkResponse order = Order(kind, 5, value);
+    order.mutable_control()->set_caller("anna");
+    order.mutable_control()->set_request_id(request);
+    return order;
+  }
+  static v1::WorkerAssignment Paced(const std::string& source, double pace,
+                                    const std::string& family = "optimo") {
+    v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, source, family);
+    assignment.mutable_job()->mutable_simulation()->set_pace(pace);
+    return assignment;
+  }
+  // The program comes behind what is ordered, which is there before the run begins.
+  double CycleTime_s(std::vector<v1::WorkResponse> before) {
+    const std::string source = "PA;PA;VS8;!MC1;PU1000,1000;PU3000,3000;PU0,0;";
+    v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, "", "rml1");
+    assignment.mutable_programs(0)->set_size(static_cast<std::int64_t>(source.size()));
+    v1::WorkResponse& program = before.emplace_back();
+    program.mutable_blob()->set_slot(45);
+    program.mutable_blob()->set_chunk(source);
+    Work(assignment, before);
+    EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+    return Report().total().times().cycle_s();
+  }
+  std::vector<int> LinkedSlots(std::int64_t revision) {
+    v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, "DELAY 1\n");
+    assignment.mutable_programs(0)->set_object_revision(revision);
+    Work(assignment);
+    std::vector<int> slots;
+    const std::optional<v1::WorkerFinish> finish = Finished();
+    for (const v1::LinkedExecutable& one : finish->executables()) slots.push_back(one.slot());
+    return slots;
+  }
+};
+
+// Who asked for what, and when by the time of the run.
+TEST_F(OrderedRuns, EachOrderStandsInTheLogAsItWas) {
+  using Input = v1::AppliedInput;
+  server.heard = [&](const v1::WorkRequest& message) {
+    for (const v1::JobEvent& event : message.events().events()) {
+      if (event.has_halted()) server.Send(OrderOf(v1::WorkerControl::KIND_RESUME, "go on", 20.0));
+      if (!event.has_resumed()) continue;
+      server.Send(OrderOf(v1::WorkerControl::KIND_OVERRIDE, "slower", 55.0));
+      server.Send(OrderOf(v1::WorkerControl::KIND_CANCEL, "end"));
+    }
+  };
+  for (const auto& [kind, input] : {std::pair{v1::WorkerControl::KIND_HOLD, Input::kHold},
+                                    std::pair{v1::WorkerControl::KIND_STOP, Input::kStop}}) {
+    Work(Paced("10 DELAY 1\nGOTO 10\n", 10.0), {OrderOf(kind, "hold it")});
+    EXPECT_EQ(heard_.back().finish().outcome().kind(), v1::Outcome::KIND_CANCELLED);
+    std::vector<Input::InputCase> inputs;
+    std::vector<std::string> requests;
+    for (const v1::JobEvent& event : Events()) {
+      if (!event.has_input_applied()) continue;
+      const v1::InputApplied& applied = event.input_applied();
+      inputs.push_back(applied.input().input_case());
+      requests.push_back(applied.request_id());
+      EXPECT_EQ(applied.caller(), "anna");
+      EXPECT_EQ(applied.fence(), 5);
+      EXPECT_EQ(applied.source(), v1::START_SOURCE_CONSOLE);
+      EXPECT_EQ(applied.virtual_time_ns(), event.virtual_time_ns());
+      if (applied.input().has_override_percent()) {
+        EXPECT_EQ(applied.input().override_percent(), 55.0);
+      }
+      if (applied.input().has_resume()) {
+        EXPECT_EQ(applied.input().resume().source(), v1::START_SOURCE_CONSOLE);
+      }
+    }
+    EXPECT_THAT(inputs, ElementsAre(input, Input::kResume, Input::kOverridePercent, Input::kAbort));
+    EXPECT_THAT(requests, ElementsAre("hold it", "go on", "slower", "end"));
+  }
+}
+
+// An order does what it says and nothing of what another one does.
+TEST_F(OrderedRuns, HoldAndResumeChangeNoOverride) {
+  const double plain_s = CycleTime_s({});
+  EXPECT_NEAR(CycleTime_s({OrderOf(v1::WorkerControl::KIND_HOLD, "", 10.0),
+                           OrderOf(v1::WorkerControl::KIND_RESUME, "", 10.0)}),
+              plain_s, 1e-6);
+  EXPECT_GT(CycleTime_s({OrderOf(v1::WorkerControl::KIND_OVERRIDE, "", 10.0)}), 1.5 * plain_s);
+}
+
+// Whoever let it go on does not hold it any more: where it halts by itself nobody is waited for.
+TEST_F(OrderedRuns, AHaltBehindAResumeEndsTheRun) {
+  server.heard = [&](const v1::WorkRequest& message) {
+    for (const v1::JobEvent& event : message.events().events()) {
+      if (event.has_halted() && event.virtual_time_ns() < 4'000'000'000)
+        server.Send(Order(v1::WorkerControl::KIND_RESUME));
+    }
+  };
+  v1::WorkerAssignment assignment = Paced("DELAY 1\nDELAY 5\nDELAY 1\n", 20.0);
+  assignment.mutable_job()->mutable_simulation()->add_breakpoints()->mutable_step()->set_step(2);
+  Work(assignment, {Order(v1::WorkerControl::KIND_HOLD)});
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_STOPPED);
+  EXPECT_EQ(Outcome().code(), "CELL-E9308");
+}
+
+// Who follows the heights is told what is new, and nothing where nothing is.
+TEST_F(OrderedRuns, NoHeightsWithoutNews) {
+  int messages = 0;
+  int empty = 0;
+  server.heard = [&](const v1::WorkRequest& message) {
+    if (!message.has_heights()) return;
+    ++messages;
+    if (!message.heights().has_grid() && message.heights().tiles().empty()) ++empty;
+  };
+  v1::WorkerAssignment assignment = Mill(
+      "PA;VS50;!VZ50;!PZ-100,200;!MC1;PU2010,1510;PD4010,1510;PU0,0;PU4010,0;PU0,0;PU4010,0;PU0,0;");
+  assignment.mutable_job()->mutable_simulation()->set_pace(5.0);
+  Work(assignment, {Order(v1::WorkerControl::KIND_FOLLOW_HEIGHTS)});
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_GT(messages, 1);
+  EXPECT_EQ(empty, 0);
+}
+
+// A window of events may be under way: the one beyond it waits.
+TEST_F(OrderedRuns, AWindowOfEventsIsUsedToItsEnd) {
+  server.window = 5;
+  server.stores = false;
+  line_ = *ServerLine::Join({.server = server.address(), .join_token = "secret", .name = "w"});
+  const v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, "STOP\n");
+  JobLease lease(*line_, assignment, stopping, processor_time);
+  const auto send = [&lease](int count) {
+    v1::WorkerEvents events;
+    for (int i = 0; i < count; ++i) events.add_events();
+    lease.SendEvents(events);
+  };
+  const auto sent_at_once = [&](int count) {
+    auto sending = std::async(std::launch::async, send, count);
+    const bool done = sending.wait_for(std::chrono::seconds(1)) == std::future_status::ready;
+    if (!done) server.Send(Order(v1::WorkerControl::KIND_HOLD));  // then it is looked at
+    sending.wait();
+    lease.TakeOrders();
+    return done;
+  };
+  EXPECT_TRUE(sent_at_once(3));
+  EXPECT_TRUE(sent_at_once(2));
+  EXPECT_FALSE(sent_at_once(1));
+}
+
+// worker.proto, LinkedExecutable: of what is stored, from its first revision on.
+TEST_F(OrderedRuns, ExecutablesAreOfWhatIsStored) {
+  EXPECT_THAT(LinkedSlots(1), ElementsAre(45));
+  EXPECT_THAT(LinkedSlots(0), ElementsAre());
+}
+
+// A finding of the text has no time of its own.
+TEST_F(OrderedRuns, AFindingOfTheTextIsToldAtTheBegin) {
+  Work(Assignment(v1::JOB_KIND_SIMULATE, "STOP\nSPEED 101\n"));
+  ASSERT_EQ(Events().size(), 1U);
+  EXPECT_EQ(Events()[0].virtual_time_ns(), 0);
+}
+
+// Whoever has lost a job says nothing of it, whatever else is wrong with that.
+TEST_F(OrderedRuns, AJobThatIsLostIsNotEvenRefused) {
+  v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, "");
+  assignment.mutable_programs(0)->set_size(10);
+  for (int i = 0; i < 1'001; ++i)  // one more than a job may ask for
+    assignment.mutable_job()->mutable_simulation()->add_variables("VI[" + std::to_string(i) + "]");
+  EXPECT_TRUE(Work(assignment, {Release()}));
+  EXPECT_FALSE(Finished());
+}
+
+}  // namespace
+}  // namespace rmlcell::server
