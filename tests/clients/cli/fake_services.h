@@ -20,6 +20,8 @@ class FakeServer {
       : address_("unix:" + folder.File("s")) {
     grpc::ServerBuilder builder;
     builder.SetMaxReceiveMessageSize(-1);
+    // A poller of gRPC that misses its call looks by itself after ten seconds else.
+    builder.SetSyncServerOption(grpc::ServerBuilder::SyncServerOption::CQ_TIMEOUT_MSEC, 100);
     builder.AddListeningPort(address_, grpc::InsecureServerCredentials());
     for (grpc::Service* service : services) builder.RegisterService(service);
     server_ = builder.BuildAndStart();

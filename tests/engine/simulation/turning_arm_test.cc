@@ -164,8 +164,8 @@ TEST(TurningArm, WithinAPieceDerivativesChangeByTheNextOne) {
 
 std::string OneWayOf(const PathPiece& path) {
   CurveMeasure measure;
-  const PartCurve curve({path, motion::GantryHead{.length_mm = 300.0}, 0.0, path.length()},
-                        measure);
+  const motion::Head head = motion::GantryHead{.length_mm = 300.0};
+  const PartCurve curve({path, head, 0.0, path.length()}, measure);
   const AxisPieces pieces(curve, AxisPieces::kFew);
   std::string axes;
   for (int axis = 0; axis < motion::kAxisCount; ++axis)
@@ -187,6 +187,7 @@ TEST(TurningArm, ATurnNearTheEndIsNotOneWay) {
 // Round a corner that leads nearly back the tip comes near to standing: of that nothing is known.
 TEST(TurningArm, WhereTheTipNearlyStandsNothingIsKnown) {
   int unknown = 0;
+  const std::vector<motion::Head> heads = HeadsWithTools();
   for (const double aside : {1.0, 10.0, 30.0, 200.0}) {
     const auto corner =
         PlannedCorner({{0, 0, 0}, 0.0, 0.1}, {{100, 0, 0}, 0.4, 0.1}, {{0, aside, 0}, 0.4, 0.6});
@@ -194,7 +195,7 @@ TEST(TurningArm, WhereTheTipNearlyStandsNothingIsKnown) {
       const PathPiece& path = planned.path;
       if (path.kind() != PathPiece::Kind::kBlend) continue;
       CurveMeasure measure;
-      const PartCurve curve({path, HeadsWithTools()[0], 0.0, path.length()}, measure);
+      const PartCurve curve({path, heads[0], 0.0, path.length()}, measure);
       double slowest = HUGE_VAL, fastest = 0.0;
       for (int k = 0; k <= 1000; ++k) {
         const double p = curve.begin() + (curve.end() - curve.begin()) * k / 1000;
