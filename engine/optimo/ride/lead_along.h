@@ -16,16 +16,19 @@ class LeadAlong {
   LeadAlong(const motion::PlannedMotion& first, const motion::PathState& state);
   void Add(const motion::PlannedMotion& next);
 
+  // False: it has nothing to slow down from, or takes so long to end its acceleration that it comes
+  // to rest, or is faster than it may be, before. More motions do not change that.
+  bool SlowsTo(double speed) const;
+
   struct End {
     double s = 0.0;  // of the last motion that was added
     double speed = 0.0;
   };
-  // Where `speed` is reached and held; nothing: behind the last motion. A lower speed that the
-  // machine has by then is held instead.
+  // Where `speed` is reached and held; nothing: behind the last motion.
   std::optional<End> EndOnLast(double speed) const;
 
   // The motions to that place, the last of them left out where it is its begin. None: they would be
-  // passed faster than planned, or the axes cannot brake so on a bend.
+  // passed faster than they may, or the axes cannot brake so on a bend.
   std::vector<motion::PlannedMotion> MotionsTo(const End& end,
                                                const motion::AxisLimits& axes) const;
 

@@ -114,6 +114,7 @@ void Ride::Start() {
     std::erase_if(s_.alone, [tag](const auto& command) { return command.tag < tag; });
     s_.path.ForgetBefore(tag);
     listener_.OnMotionBegins(tag);
+    if (s_.override_owed && protocol().Override()) AdaptMotions();
   }
 }
 

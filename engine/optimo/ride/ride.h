@@ -52,6 +52,7 @@ struct RideState {
   std::vector<motion::AppendedCommand> alone{};
   std::optional<motion::AxisPose> moved_from{};  // halted there, and moved by hand since
   double override_percent = 100.0;
+  bool override_owed = false;  // too little was planned to take it over
 
   // Commands are kept in it while /FLY passages are open.
   motion::PathRide path{motion::HoldRamp::kStays};
@@ -212,9 +213,11 @@ class Ride {
 
   // That way over several motions.
   struct LongLead {
-    LeadAlong way;
+    std::optional<LeadAlong> way{};
     bool under_way = false;  // its first motion is
     std::size_t first = 0;   // else the place of that among the items before it
+    double share = 1.0;      // of the new speed: the corners behind may ask for less
+    int plans_left = 8;      // each costs as much as what is planned is long
   };
 
   void Drain();
@@ -242,7 +245,7 @@ class Ride {
   std::optional<motion::AppendedCommand> UnderOverride(std::uint64_t tag);
   std::size_t PlaceOfAppended(std::uint64_t tag) const;
   bool ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept);
-  bool ReplanAlong(std::optional<LongLead>& lead, const motion::PlannedMotion& last,
+  bool ReplanAlong(LongLead& lead, const motion::PlannedMotion& last,
                    const std::vector<motion::PlannedItem>& kept);
   template <class Go>
   bool TakeOnward(const Onward& onward, const motion::AppendedCommand& rest, Go go);

@@ -28,10 +28,15 @@ void Ride::ChangeOverride(double percent) {
 
 // The motions planned with another override, from the one under way on.
 void Ride::AdaptMotions() {
+  s_.override_owed = false;
   if (!moves() || under_way()->ended) return;
   if (ReplanChain()) return;
   motion::MotionUnderWay& active = *s_.path.under_way();
-  if (active.motion.speed.end().speed > 0.0 || s_.note.speed_percent <= 0.0) return;
+  if (active.motion.speed.end().speed > 0.0) {
+    s_.override_owed = true;  // more may be planned when the next motion begins
+    return;
+  }
+  if (s_.note.speed_percent <= 0.0) return;
   motion::MoveCommand command;
   command.kind = s_.note.kind;
   command.path = active.motion.path;
@@ -71,19 +76,23 @@ bool Ride::ReplanChain() {
   std::vector<motion::PlannedItem> kept;  // between the motion under way and that place
   motion::PlannedMotion here = under_way()->motion;
   motion::PathState state = under_way()->At(situation_.now);
-  std::optional<LongLead> lead;  // from a motion before that place
+  LongLead lead;  // from a motion before that place
   auto next = s_.path.to_come().begin();
   for (bool under_way = true;; under_way = false) {
     if (ReplanFrom({.motion = here, .state = state, .under_way = under_way}, kept)) return true;
     if (here.path.in_axes()) {
-      lead.reset();
+      lead.way.reset();
     } else {
-      if (lead) {
-        lead->way.Add(here);
+      if (lead.way) {
+        lead.way->Add(here);
         if (ReplanAlong(lead, here, kept)) return true;
       }
-      if (!lead && state.s < here.path.length())
-        lead = {.way = {here, state}, .under_way = under_way, .first = kept.size()};
+      if (!lead.way && state.s < here.path.length()) {
+        lead.way.emplace(here, state);
+        lead.under_way = under_way;
+        lead.first = kept.size();
+        lead.share = 1.0;
+      }
     }
     if (!under_way) kept.emplace_back(here);
     state = here.speed.end();
@@ -123,26 +132,36 @@ bool Ride::ReplanFrom(const ChainPlace& place, const std::vector<motion::Planned
 
 // False: the long lead does not end on this motion, its last one; or cannot be taken, then there is
 // none any more. Nothing else has changed then.
-bool Ride::ReplanAlong(std::optional<LongLead>& lead, const motion::PlannedMotion& last,
+bool Ride::ReplanAlong(LongLead& lead, const motion::PlannedMotion& last,
                        const std::vector<motion::PlannedItem>& kept) {
   const std::optional<motion::AppendedCommand> rest = UnderOverride(last.tag);
   if (!rest) return false;
+  const double speed = motion::LimitsOf(*rest->move, parameters_.limits).speed;
+  const bool lower = rest->move->speed_fraction < s_.path.Appended(last.tag)->speed_fraction;
+  constexpr double kShareLeast = 0.1;
+  while (lead.share > kShareLeast && !lead.way->SlowsTo(lead.share * speed)) lead.share *= 0.5;
+  if (!lower || lead.share <= kShareLeast || lead.plans_left == 0) {
+    lead.way.reset();
+    return false;
+  }
   const std::optional<PlaceOnMove> on_move = PlaceOf(last.path, rest->move->path);
-  if (!on_move) return false;
-  const auto end = lead->way.EndOnLast(motion::LimitsOf(*rest->move, parameters_.limits).speed);
-  if (!end) return false;
+  const auto end = lead.way->EndOnLast(lead.share * speed);
+  if (!on_move || !end) return false;
   const double begin = on_move->begin + end->s;
   if (begin > rest->move->path.length() - kLeft) return false;
-  std::vector<motion::PlannedMotion> motions = lead->way.MotionsTo(*end, parameters_.limits.axes);
+  std::vector<motion::PlannedMotion> motions = lead.way->MotionsTo(*end, parameters_.limits.axes);
+  if (motions.empty()) {
+    lead.way.reset();
+    return false;
+  }
   Onward onward{.own = PlaceOfAppended(last.tag),
                 .speed = end->speed,
                 .speed_on_move = end->speed,
                 .first = *rest->move};
   onward.first.path = rest->move->path.Part(begin, rest->move->path.length());
-  if (!motions.empty() &&
-      TakeOnward(onward, *rest, [&] { GoAlong(*lead, std::move(motions), kept); }))
-    return true;
-  lead.reset();
+  if (TakeOnward(onward, *rest, [&] { GoAlong(lead, std::move(motions), kept); })) return true;
+  lead.share *= 0.5;
+  --lead.plans_left;
   return false;
 }
 

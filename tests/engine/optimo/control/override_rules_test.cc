@@ -259,6 +259,38 @@ TEST(OverrideRules, OverridesActInLongChainsOfShortMoves) {
   EXPECT_NEAR(speed_at(begin + 0.74), 200.0, 1e-6);
 }
 
+// The corners to come ask for less than the new speed, with half of the overshoot.
+TEST(OverrideRules, LowerOverrideActsWhereCornersAskForLess) {
+  for (const double aside : {0.2, 0.5}) {
+    std::string text = kThere + "OVERSH 50\n";
+    for (int k = 1; k <= 80; ++k)
+      text += "MOVE (" + std::to_string(1000.0 + 1.2 * k) + "," +
+              std::to_string(1000.0 + (k % 2 == 1 ? aside : 0.0)) + ",-400.,0.,0.)" +
+              (k < 80 ? "/FLY\n" : "\n");
+    const double change = BeginOfSecondMove(text) + 0.5;
+    const Ran ran = ChangedAt(change, 50.0, text);
+    SCOPED_TRACE(aside);
+    EXPECT_EQ(ran.moves.size(), 81U);
+    EXPECT_LE(SlowFrom(ran, 25.0, change), 0.3);
+    ExpectSmooth(ran);
+  }
+}
+
+// OPT-4.18, OPT-4.38: lowered while a STOP halts a contour of short moves; START is heard with it.
+TEST(OverrideRules, ALowerOverrideWhileAContourIsHalted) {
+  const std::string text = ShortMoves(110, 0.55, false);
+  const double begin = BeginOfSecondMove(text);
+  for (const double stop : {0.2, 0.305, 0.41, 0.6}) {
+    const Ran ran = RunText(text, {.inputs = {{At(begin + stop), InputKind::kStop},
+                                              {At(begin + 2.0), InputKind::kOverride, 0, 50.0},
+                                              {At(begin + 3.0), InputKind::kStart}}});
+    SCOPED_TRACE(stop);
+    EXPECT_EQ(ran.moves.size(), 111U);
+    EXPECT_LE(SlowFrom(ran, 25.0, begin + 3.0), 0.3);
+    ExpectSmooth(ran);
+  }
+}
+
 // What stands between the moves comes in order and at its place, also where the ramp runs over it;
 // a STOP on the ramp halts on the path, and START rides the rest of it.
 TEST(OverrideRules, ALowerOverrideKeepsWhatStandsBetweenShortMoves) {
