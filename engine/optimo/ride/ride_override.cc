@@ -33,7 +33,9 @@ void Ride::AdaptMotions() {
   if (ReplanChain()) return;
   motion::MotionUnderWay& active = *s_.path.under_way();
   if (active.motion.speed.end().speed > 0.0) {
-    s_.override_owed = true;  // more may be planned when the next motion begins
+    // More may be planned when the next motion begins; in a long chain that would change nothing.
+    constexpr std::size_t kFew = 256;
+    s_.override_owed = s_.path.to_come().size() <= kFew;
     return;
   }
   if (s_.note.speed_percent <= 0.0) return;
