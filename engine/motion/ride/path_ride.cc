@@ -49,10 +49,8 @@ void PathRide::BeginInPlace(SimTime now, SimTime until) {
 }
 
 const MoveCommand* PathRide::Appended(std::uint64_t tag) const {
-  for (const AppendedCommand& command : appended_) {
-    if (command.tag == tag && command.move) return &*command.move;
-  }
-  return nullptr;
+  const auto found = std::ranges::lower_bound(appended_, tag, {}, &AppendedCommand::tag);
+  return found != appended_.end() && found->tag == tag && found->move ? &*found->move : nullptr;
 }
 
 void PathRide::ForgetBefore(std::uint64_t tag) {

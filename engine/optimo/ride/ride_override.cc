@@ -119,7 +119,7 @@ std::optional<motion::AppendedCommand> Ride::UnderOverride(std::uint64_t tag) {
 
 std::size_t Ride::PlaceOfAppended(std::uint64_t tag) const {
   const auto& appended = s_.path.appended();
-  const auto own = std::ranges::find(appended, tag, &motion::AppendedCommand::tag);
+  const auto own = std::ranges::lower_bound(appended, tag, {}, &motion::AppendedCommand::tag);
   return static_cast<std::size_t>(own - appended.begin());
 }
 

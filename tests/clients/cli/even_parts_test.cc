@@ -7,7 +7,7 @@
 
 #include "clients/cli/remote.h"
 #include "rmlcell/v1/program.grpc.pb.h"
-#include "rmlcell/v1/project.grpc.pb.h"
+#include "tests/clients/cli/fake_import.h"
 #include "tests/clients/cli/fake_services.h"
 
 namespace rmlcell::cli {
@@ -37,20 +37,6 @@ struct PartsOfPrograms final : v1::ProgramService::Service {
   std::vector<std::size_t> sizes{};
 };
 
-struct PartsOfProjects final : v1::ProjectService::Service {
-  grpc::Status ImportProject(grpc::ServerContext* /*context*/,
-                             grpc::ServerReader<v1::ImportProjectRequest>* reader,
-                             v1::Project* response) override {
-    v1::ImportProjectRequest part;
-    while (reader->Read(&part)) {
-      if (part.has_chunk()) sizes.push_back(part.chunk().size());
-    }
-    response->set_name("projects/door");
-    return {};
-  }
-  std::vector<std::size_t> sizes{};
-};
-
 // Up to 3 MiB go in one message.
 TEST(EvenParts, OfAProgram) {
   const CliFolder folder;
@@ -68,7 +54,7 @@ TEST(EvenParts, OfAProgram) {
 
 TEST(EvenParts, OfAnArchive) {
   const CliFolder folder;
-  PartsOfProjects projects;
+  FakeImport projects;
   const FakeServer server(folder, {&projects});
   const std::string file = folder.Put("door.zip", std::string(2 * kEvenPart, 'x'));
   EXPECT_EQ(Hear([&] { return ImportProject(server.remote(), "door", file); }).exit_code, 0);

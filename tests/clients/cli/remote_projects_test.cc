@@ -21,6 +21,7 @@
 #include "rmlcell/v1/machine.grpc.pb.h"
 #include "rmlcell/v1/program.grpc.pb.h"
 #include "rmlcell/v1/project.grpc.pb.h"
+#include "tests/clients/cli/fake_import.h"
 #include "tests/clients/cli/fake_services.h"
 
 namespace rmlcell::cli {
@@ -29,20 +30,6 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-struct FakeImport final : v1::ProjectService::Service {
-  grpc::Status ImportProject(grpc::ServerContext*,
-                             grpc::ServerReader<v1::ImportProjectRequest>* reader,
-                             v1::Project* response) override {
-    v1::ImportProjectRequest part;
-    while (reader->Read(&part)) {
-      if (part.has_chunk()) sizes.push_back(part.chunk().size());
-    }
-    response->set_name("projects/door");
-    return {};
-  }
-  std::vector<std::size_t> sizes{};
-};
 
 // 512 KiB at a time, whatever is left in the last one.
 TEST(RemoteProjects, AnArchiveIsSentInParts) {
