@@ -104,8 +104,8 @@ bool Allows(const v1::StartBlocker& blocker, const v1::MachineStatus& status,
   const ErrorCode code = found.front()->code;
   if (code == ErrorCode::kCellLeaseHeld) return status.control().holder() == caller;
   // Else it is that the axes have no reference.
-  return unzeroed && !status.zeroed() && code != ErrorCode::kCellMachineState &&
-         found.front()->family != ErrorFamily::kCell && status.alarms().empty();
+  return unzeroed && !status.zeroed() && found.front()->family != ErrorFamily::kCell &&
+         status.alarms().empty();
 }
 
 // The program of the job alone: the host has the rest. Where it goes on with a run, a person has

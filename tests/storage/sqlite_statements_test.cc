@@ -323,14 +323,21 @@ TEST_F(SqliteStatements, OfWhatTheClockDoes) {
 }
 
 TEST_F(SqliteStatements, OfAnUpload) {
-  const std::string content = "content";
-  const auto upload = [&]() -> Result<WallTime> {
-    const auto writer = Must(store().WriteBlob(HexOf(Sha256(content)), content.size()));
-    Must(writer->Append(content));
-    return writer->Finish(hours(1));
+  const auto upload = [&](const std::string& content) {
+    return [&]() -> Result<WallTime> {
+      const std::string name = HexOf(Sha256(content));
+      const auto writer = Must(store().WriteBlob(name, content.size()));
+      if (const Status added = writer->Append(content); !added) return added.error();
+      const Result<WallTime> kept = writer->Finish(hours(1));
+      EXPECT_TRUE(!kept || Must(store().ReadBlob(name)) == content);
+      return kept;
+    };
   };
-  Writes("an upload", upload);
-  Writes("it again", upload);
+  const std::string small = "content", large(2 * kChunkBytes + 1, 'a');
+  Writes("an upload", upload(small));
+  Writes("it again", upload(small));
+  // Who cannot let go of the parts in the end has them all the same, until they are swept.
+  Writes("an upload of three parts", upload(large), true);
 }
 
 TEST_F(SqliteStatements, OfTheOpening) {

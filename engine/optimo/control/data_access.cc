@@ -309,6 +309,7 @@ Status DataAccess::Let(const Instruction& i) {
 }
 
 // ASSIGN v = value / n: the value in binary, least significant bit first. OPT-7.102, 7.103
+// A group that ends beyond the last index is refused with the text, or with the object.
 Status DataAccess::Assign(const Instruction& i) {
   const ExprNode& target = counter_.module().Value(i, 0).back();
   const Result<double> value = Real(counter_.module().Value(i, 1));
@@ -316,7 +317,7 @@ Status DataAccess::Assign(const Instruction& i) {
   const Result<int> number = TruncateToInteger(static_cast<float>(*value));
   if (!number) return number.error();
   const int width = i.numbers[0];
-  if (*number < 0 || *number >= (1 << width) || target.index + width > kVariableCount) {
+  if (*number < 0 || *number >= (1 << width)) {
     return Error{ErrorCode::kAssignGroup,
                  Told("value", *number) + " into " + Told("places", width) + " places from " +
                      ToldVariable(target.variable()),

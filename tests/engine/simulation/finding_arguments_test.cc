@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <string>
 
@@ -76,6 +77,21 @@ TEST(MaterialArguments, OfStlText) {
   EXPECT_EQ(read.error().code, ErrorCode::kCellBadText);
   EXPECT_EQ(read.error().detail, "no STL: line 4: 'vertx'");
   EXPECT_EQ(ArgumentsText(read.error().detail), "line=4 word='vertx'");
+}
+
+// stl_reader.h: one triangle more than are taken. The bytes are pages that nobody has written.
+TEST(MaterialArguments, OfAnStlThatIsTooLarge) {
+  const std::size_t count = kStlTrianglesMax + 1, size = 84 + 50 * count;
+  void* const pages = mmap(nullptr, size, PROT_READ | PROT_WRITE,
+                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  ASSERT_NE(pages, MAP_FAILED);
+  char* const bytes = static_cast<char*>(pages);
+  for (int k = 0; k < 4; ++k) bytes[80 + k] = static_cast<char>(count >> 8 * k & 0xFF);
+  const auto read = ReadStl({bytes, size});
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::kCellTooLarge);
+  EXPECT_EQ(ArgumentsText(read.error().detail), "most=16777216");
+  munmap(pages, size);
 }
 
 }  // namespace

@@ -265,6 +265,9 @@ TEST(MotionCheck, AHaltThatStartDoesNotEnd) {
   const CutShort& why = check->cut_short.at(1);
   EXPECT_EQ(why.text.find("only up to step 4, line 5: CELL-E9308 "), 0U) << why.text;
   EXPECT_EQ(why.cause, ErrorCode::kCellWaitsForever);
+  EXPECT_EQ(
+      std::ranges::count(check->reasons, ErrorCode::kCellWaitsForever, &machine::Reason::code),
+      0);  // what cut it short says it
 }
 
 // Whatever a program does, its check ends, and ends the same every time.

@@ -37,7 +37,8 @@ class StartBasesTest : public HostMachineTest {
     order.mutable_preview_start()->set_occurrence(occurrence);
     *order.mutable_brought() = JobOf("DELAY 1.\nDELAY 2.\nSTOP\n").run_job().programs(0);
     const auto task = host_->PreparePreview(order, now_);
-    return task ? std::string() : std::string(task.error().detail);
+    return task ? std::string()
+                : CodeText(task.error().code) + " " + std::string(task.error().detail);
   }
 };
 
@@ -45,7 +46,7 @@ class StartBasesTest : public HostMachineTest {
 TEST_F(StartBasesTest, ThePassOfAStepIsAskedFor) {
   for (const int step : {1, 2}) {
     CutOffAtStep(step);
-    EXPECT_THAT(WhyNoPreview(0), HasSubstr("name the occurrence")) << step;
+    EXPECT_THAT(WhyNoPreview(0), HasSubstr("CELL-E9426 name the occurrence")) << step;
     EXPECT_THAT(WhyNoPreview(1), Not(HasSubstr("name the occurrence"))) << step;
   }
   CutOffAtStep(0);

@@ -50,5 +50,13 @@ TEST_F(ErrorsWithoutALine, ANameThatIsANumberIsItsSlot) {
   EXPECT_EQ(slot_of("part.S"), 3);
 }
 
+// OPT-E.7102: what is looked at in a slot without a program is refused as its start is.
+TEST_F(ErrorsWithoutALine, AnEmptySlotSaysSo) {
+  const auto opened = programs.Open("machines/optimo-1/programs/45");
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().code, ErrorCode::kProgramMissing);
+  EXPECT_NE(opened.error().detail.find("programs/45"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

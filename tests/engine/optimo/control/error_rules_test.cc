@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "engine/optimo/control/optimo_family.h"
+#include "engine/optimo/language/compiler.h"
 #include "engine/optimo/machine/machine_state.h"
 #include "engine/optimo/machine/motion_errors.h"
 #include "engine/optimo/machine/telling.h"
@@ -378,6 +379,26 @@ TEST(ErrorRules, ADamagedProgramIsFatal) {
   EXPECT_EQ((*run)->outcome().code, ErrorCode::kObjectCorrupt);
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_EQ(findings[0].severity, Severity::kFatal);
+}
+
+// OPT-7.103, OPT-B.71: a group that ends beyond 99 is refused in an object that comes from
+// elsewhere as well, before anything runs.
+TEST(ErrorRules, AGroupBeyondTheLastIndexInAForeignObject) {
+  for (const auto& [index, code] : {std::pair{96, 0}, {97, 7034}}) {
+    machine::RunSetup setup = SetupOf("VI[1]=0\nASSIGN VL[90]=VI[1] /4\n");
+    Result<Module> module = DecodeObject(*setup.programs[1].object);
+    ASSERT_TRUE(module);
+    for (ExprNode& node : module->nodes) {
+      if (node.index == 90) node.index = static_cast<std::uint8_t>(index);
+    }
+    setup.programs[1].object = machine::Bytes::Of(EncodeObject(*module));
+    machine::RunObserver nobody;
+    const auto run = OptimoFamily().NewRun(std::move(setup), nobody);
+    ASSERT_TRUE(bool(run));
+    EXPECT_EQ((*run)->Advance(FromSeconds(1.0)), machine::RunPhase::kFinished);
+    const std::optional<ErrorCode> found = (*run)->outcome().code;
+    EXPECT_EQ(found ? Lookup(*found).number : 0, code) << index;
+  }
 }
 
 // The numbers of the Optimo for what a motion cannot do; any other error is as it was.

@@ -94,6 +94,7 @@ TEST(Evaluate, DivisionByZeroIsAnError) {
   EXPECT_EQ(ErrorOf("5 MOD 0"), 7201);
   EXPECT_EQ(ErrorOf("0^-1"), 7201);
   EXPECT_EQ(Number("0^0"), 1.0F);
+  EXPECT_EQ(ValueOf("1/0").error().detail, "division by zero");
 }
 
 // OPT-7.81, OPT-7.83, OPT-E.7204

@@ -79,5 +79,13 @@ TEST(ObjectLimits, SequenceNumbersOfATable) {
   EXPECT_EQ(Lookup(more.diagnostics[0].code).number, 7003);
 }
 
+// OPT-1.23: every sequence number there is, all of them before one instruction.
+TEST(ObjectLimits, SequenceNumbersOfOneInstruction) {
+  std::string text;
+  for (int number = 0; number <= 9999; ++number) text += std::to_string(number) + "\n";
+  ExpectFits(text + "STOP\n");
+  ExpectFits("STOP\n" + text);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::object_limits

@@ -61,6 +61,7 @@ TEST(Places, OfTokensThatCannotStandThere) {
       {"VR[0] = 1. + {0}x5\n", 7005, "OPT-B.42"},
       {"UPDATE {VR} /ON\n", 7003},
       {"ASSIGN OL[32]={1.5} /4\n", 7003},
+      {"ASSIGN OL[32]={-}VI[1] /4\n", 7003},
       {"BREAK {1.}\n", 7003},
       {"TIMER /{AUTO}\n", 7003},
       {"MOVE (1,2{/}FLY)\n", 7003},
