@@ -16,24 +16,28 @@ void Findings::Add(ErrorCode code, Place place, Detail detail, std::string_view 
 
 void Findings::AddAs(Severity severity, ErrorCode code, Place place, Detail detail,
                      std::string_view rule, std::vector<Fix> fixes) {
+  const bool first_error = IsError(severity) && errors_ == 0;
   if (IsError(severity)) ++errors_;
-  if (full()) {
-    Diagnostic counted{.code = code, .severity = severity};
-    counted.where.byte_offset = place.offset;
-    counted.where.length = place.length;
-    counted.step = place.step;
-    dropped_.Add(counted);
-    return;
-  }
-  Diagnostic& diagnostic = found_.emplace_back();
-  diagnostic.code = code;
-  diagnostic.severity = severity;
-  diagnostic.detail = std::move(detail);
-  diagnostic.rule = rule;
+  Diagnostic diagnostic{.code = code, .severity = severity};
   diagnostic.where.byte_offset = place.offset;
   diagnostic.where.length = place.length;
   diagnostic.step = place.step;
+  if (found_.size() >= limit_) {
+    if (!first_error || found_.empty()) return Count(diagnostic);
+    Count(found_.back());
+    found_.pop_back();
+  }
+  diagnostic.detail = std::move(detail);
+  diagnostic.rule = rule;
   diagnostic.fixes = std::move(fixes);
+  found_.push_back(std::move(diagnostic));
+}
+
+void Findings::Count(const Diagnostic& untold) {
+  Diagnostic counted{.code = untold.code, .severity = untold.severity};
+  counted.where = untold.where;
+  counted.step = untold.step;
+  dropped_.Add(counted);
 }
 
 std::vector<Diagnostic> Findings::Take(std::string_view text, std::string_view file) {

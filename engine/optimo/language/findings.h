@@ -20,7 +20,8 @@ struct Place {
 Detail ToldSize(std::string_view name, std::uint64_t bytes);
 
 // Collects what there is to say about one text; keeps the first `limit` findings and counts the
-// rest by kind.
+// rest by kind. The first error is among those kept, whatever was found before: it says why there
+// is no object.
 class Findings {
  public:
   explicit Findings(std::size_t limit = 1000) : limit_(limit) {}
@@ -30,7 +31,8 @@ class Findings {
   void AddAs(Severity severity, ErrorCode code, Place place, Detail detail,
              std::string_view rule = {}, std::vector<Fix> fixes = {});
 
-  bool full() const { return found_.size() >= limit_; }
+  // Nothing more is kept, not even an error.
+  bool full() const { return found_.size() >= limit_ && errors_ > 0; }
   // Errors so far, those that were not kept included.
   std::uint64_t error_count() const { return errors_; }
   // Those that were not kept; behind Take with lines and columns.
@@ -40,6 +42,8 @@ class Findings {
   std::vector<Diagnostic> Take(std::string_view text, std::string_view file);
 
  private:
+  void Count(const Diagnostic& untold);
+
   std::size_t limit_;
   std::vector<Diagnostic> found_;
   std::uint64_t errors_ = 0;

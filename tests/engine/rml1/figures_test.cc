@@ -267,5 +267,19 @@ TEST(Figures, OfWaitsForTheKey) {
   EXPECT_EQ(found, 1);
 }
 
+// What never happened has no place. The tool draws along the surface and never goes below it: the
+// length that it skims counts where it cuts elsewhere.
+TEST(Figures, OfNothingHaveNoPlace) {
+  TestRun run(ParametersOf("t1"), "PA;PU0,0;!MC1;Z0,0,0;Z100,0,0;");
+  run.AdvanceToEnd();
+  int found = 0;
+  for (const machine::Figure& figure : run->figures()) {
+    if (figure.value != 0.0) continue;
+    found += figure.name == "skimmed_length" ? 1 : 0;
+    EXPECT_EQ(figure.first, machine::Place{}) << figure.name;
+  }
+  EXPECT_EQ(found, 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

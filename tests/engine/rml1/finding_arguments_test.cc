@@ -46,6 +46,7 @@ TEST(MillArguments, OfARun) {
   TestRun missing(std::move(empty));
   EXPECT_EQ(missing->outcome().detail, "no program in slot 7");
   EXPECT_EQ(ArgumentsText(missing->outcome().detail), "program=7");
+  EXPECT_EQ(missing->state().progress, 1.0);  // of nothing, all
 }
 
 TEST(MillArguments, OfParameters) {

@@ -50,6 +50,51 @@ TEST(Findings, ComeInTheOrderOfTheText) {
   EXPECT_TRUE(findings.Take(kThreeLines, "part.S").empty());
 }
 
+// OPT-1.33: the first error is told, however many warnings stand before it; the next are counted.
+TEST(Findings, TheFirstErrorIsKept) {
+  Findings findings(2);
+  findings.Add(ErrorCode::kWordIgnored, {0, 2, 1}, "first");
+  findings.Add(ErrorCode::kWordIgnored, {3, 4, 2}, "second");
+  findings.Add(ErrorCode::kWordIgnored, {3, 4, 2}, "third");
+  EXPECT_FALSE(findings.full());
+  findings.Add(ErrorCode::kNameUndeclared, {8, 1, 3}, "error");
+  EXPECT_TRUE(findings.full());
+  findings.Add(ErrorCode::kSyntax, {8, 1, 3}, "another");
+  const std::vector<Diagnostic> found = findings.Take(kThreeLines, "part.S");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].detail, "first");
+  EXPECT_EQ(found[1].detail, "error");
+  EXPECT_EQ(findings.error_count(), 2U);
+  const auto& untold = findings.dropped().kinds();
+  ASSERT_EQ(untold.size(), 2U);
+  EXPECT_EQ(untold.at(ErrorCode::kSyntax).count, 1U);
+  EXPECT_EQ(untold.at(ErrorCode::kWordIgnored).count, 2U);
+  EXPECT_EQ(untold.at(ErrorCode::kWordIgnored).first.step, 2);
+}
+
+// The same of a program: 1000 words without effect, and a name that nobody declared.
+TEST(Findings, AnErrorBehindAThousandWarnings) {
+  std::string text;
+  for (int line = 0; line < 1000; ++line) text += "CONT X\n";
+  const Compilation made = Compile(text + "VR[1] = NOBODY\n", "", {.advice = false});
+  EXPECT_FALSE(made.ok);
+  ASSERT_EQ(made.diagnostics.size(), 1000U);
+  EXPECT_EQ(made.diagnostics.back().code, ErrorCode::kNameUndeclared);
+  EXPECT_EQ(made.diagnostics.back().where.line, 1001);
+  EXPECT_NE(made.diagnostics.back().detail.find("NOBODY"), std::string::npos);
+}
+
+// OPT-7.91: a name that is none is counted as such when nothing more is told.
+TEST(Findings, AnUnknownWordBehindAThousand) {
+  std::string text;
+  for (int line = 0; line < 1001; ++line) text += "NOBODY\n";
+  const Compilation made = Compile(text, "", {.advice = false});
+  EXPECT_EQ(made.diagnostics.size(), 1000U);
+  const auto& untold = made.diagnostics_dropped.kinds();
+  ASSERT_EQ(untold.size(), 1U);
+  EXPECT_EQ(untold.at(ErrorCode::kNameUndeclared).count, 1U);
+}
+
 // What the list has no room for is counted, with its first and last place.
 TEST(Findings, TheRestKeepsItsExtent) {
   Findings findings(1);
