@@ -23,21 +23,14 @@ void Findings::AddAs(Severity severity, ErrorCode code, Place place, Detail deta
   diagnostic.where.length = place.length;
   diagnostic.step = place.step;
   if (found_.size() >= limit_) {
-    if (!first_error || found_.empty()) return Count(diagnostic);
-    Count(found_.back());
+    if (!first_error || found_.empty()) return dropped_.Add(diagnostic);
+    dropped_.Add(found_.back());
     found_.pop_back();
   }
   diagnostic.detail = std::move(detail);
   diagnostic.rule = rule;
   diagnostic.fixes = std::move(fixes);
   found_.push_back(std::move(diagnostic));
-}
-
-void Findings::Count(const Diagnostic& untold) {
-  Diagnostic counted{.code = untold.code, .severity = untold.severity};
-  counted.where = untold.where;
-  counted.step = untold.step;
-  dropped_.Add(counted);
 }
 
 std::vector<Diagnostic> Findings::Take(std::string_view text, std::string_view file) {

@@ -42,8 +42,6 @@ class Findings {
   std::vector<Diagnostic> Take(std::string_view text, std::string_view file);
 
  private:
-  void Count(const Diagnostic& untold);
-
   std::size_t limit_;
   std::vector<Diagnostic> found_;
   std::uint64_t errors_ = 0;

@@ -58,19 +58,6 @@ TEST(BoardTies, TheFirstOfTwoThatAreAsNear) {
   }
 }
 
-// distance_field.h: so many pixels without copper are put around the picture,
-// on all four sides.
-TEST(BoardTies, TheMarginIsOnAllSides) {
-  const DistanceField field = DistanceToCopper({.width = 2, .height = 1, .copper = {1, 1}}, 3);
-  EXPECT_EQ(field.width, 8U);
-  EXPECT_EQ(field.height, 7U);
-  EXPECT_EQ(field.values.size(), 56U);
-  EXPECT_EQ(field.at(0, 3), 3.0F);
-  EXPECT_EQ(field.at(7, 3), 3.0F);
-  EXPECT_EQ(field.at(3, 0), 3.0F);
-  EXPECT_EQ(field.at(3, 6), 3.0F);
-}
-
 // simplify.h: lines of less than a pixel are simplified as any other one; a
 // point behind the end of one is as far off as that end.
 TEST(BoardTies, ShortLinesAndWhatLiesBehindTheirEnds) {

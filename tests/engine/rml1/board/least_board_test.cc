@@ -36,6 +36,7 @@ TEST(LeastBoard, TheMarginIsOnEachSide) {
   EXPECT_EQ(field.at(4, 3), 1.0F);
   EXPECT_EQ(field.at(0, 3), 3.0F);
   EXPECT_EQ(field.at(7, 3), 4.0F);
+  EXPECT_EQ(field.at(3, 0), 3.0F);
   EXPECT_EQ(field.at(3, 6), 3.0F);
 }
 
