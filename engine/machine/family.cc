@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/core/keep_finding.h"
 #include "engine/core/letters.h"
 #include "engine/core/near_words.h"
 #include "engine/core/units.h"
@@ -133,11 +134,8 @@ TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Par
     Translation translation = Translate(program.file, parameters, {});
     for (Diagnostic& diagnostic : translation.diagnostics) {
       diagnostic.program = slot;
-      if (plan.diagnostics.size() < kDiagnosticsMax) {
-        plan.diagnostics.push_back(std::move(diagnostic));
-      } else {
-        plan.diagnostics_dropped.Add(diagnostic);
-      }
+      KeepFinding(std::move(diagnostic), kDiagnosticsMax, plan.diagnostics,
+                  plan.diagnostics_dropped);
     }
     translation.diagnostics_dropped.ForEachPlace(
         [slot](Diagnostic& place) { place.program = slot; });

@@ -102,7 +102,7 @@ MAY_INCLUDE = {
 }
 # Of these rooms others may include no other header.
 PUBLIC = {
-    "engine/core": ["alignment.h", "catalogue.h", "characters.h", "check.h", "detail.h", "diagnostic.h", "hex.h", "indices.h", "letters.h", "line_table.h", "untold_findings.h",
+    "engine/core": ["alignment.h", "catalogue.h", "characters.h", "check.h", "detail.h", "diagnostic.h", "hex.h", "indices.h", "keep_finding.h", "letters.h", "line_table.h", "untold_findings.h",
                     "near_words.h", "number_text.h", "result.h", "ring.h", "text_fixes.h", "units.h"],
     GEOMETRY: ["frames.h", "pose.h", "path.h", "hole.h", "corner_curve.h", "corner_table.h", "blend_curve.h", "least.h"],
     PROFILE: ["speed_profile.h", "speed_passes.h", "ramp_plan.h"],

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/core/keep_finding.h"
+
 namespace rmlcell::optimo {
 
 Detail ToldSize(std::string_view name, std::uint64_t bytes) {
@@ -16,21 +18,15 @@ void Findings::Add(ErrorCode code, Place place, Detail detail, std::string_view 
 
 void Findings::AddAs(Severity severity, ErrorCode code, Place place, Detail detail,
                      std::string_view rule, std::vector<Fix> fixes) {
-  const bool first_error = IsError(severity) && errors_ == 0;
   if (IsError(severity)) ++errors_;
   Diagnostic diagnostic{.code = code, .severity = severity};
   diagnostic.where.byte_offset = place.offset;
   diagnostic.where.length = place.length;
   diagnostic.step = place.step;
-  if (found_.size() >= limit_) {
-    if (!first_error || found_.empty()) return dropped_.Add(diagnostic);
-    dropped_.Add(found_.back());
-    found_.pop_back();
-  }
   diagnostic.detail = std::move(detail);
   diagnostic.rule = rule;
   diagnostic.fixes = std::move(fixes);
-  found_.push_back(std::move(diagnostic));
+  KeepFinding(std::move(diagnostic), limit_, found_, dropped_);
 }
 
 std::vector<Diagnostic> Findings::Take(std::string_view text, std::string_view file) {

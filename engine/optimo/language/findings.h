@@ -19,9 +19,8 @@ struct Place {
 // So many bytes, as digits: "the object has " + ToldSize("bytes", 34001) + " bytes".
 Detail ToldSize(std::string_view name, std::uint64_t bytes);
 
-// Collects what there is to say about one text; keeps the first `limit` findings and counts the
-// rest by kind. The first error is among those kept, whatever was found before: it says why there
-// is no object.
+// Collects what there is to say about one text; keeps the first `limit` findings, the first error
+// among them (KeepFinding), and counts the rest by kind.
 class Findings {
  public:
   explicit Findings(std::size_t limit = 1000) : limit_(limit) {}

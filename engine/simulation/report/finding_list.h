@@ -10,7 +10,8 @@
 namespace rmlcell::simulation {
 
 // The findings of a run, in order of first occurrence. A loop that warns a million times gives one
-// finding with a count; of findings past machine::kDiagnosticsMax each kind is counted.
+// finding with a count; of findings past machine::kDiagnosticsMax each kind is counted. The first
+// error is among them whatever a run told before it, in place of the last one.
 class FindingList {
  public:
   void Add(SimTime at, const Diagnostic& diagnostic);
@@ -25,8 +26,12 @@ class FindingList {
   // may name other values each time.
   using Key = std::tuple<ErrorCode, int, int, int, int>;
 
+  static Key KeyOf(const Diagnostic& diagnostic);
+  void CountLast();
+
   std::vector<Finding> findings_;
   std::map<Key, std::size_t> index_;
+  bool has_error_ = false;
   UntoldFindings dropped_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/core/keep_finding.h"
 #include "engine/families/families.h"
 #include "engine/machine/observer.h"
 #include "engine/machine/run.h"
@@ -33,11 +34,8 @@ bool AddProgram(const machine::MachineFamily& family, const MemoryProgram& progr
         TranslateProgram(family, setup.parameters, program, {.advice = main, .source = true});
     for (Diagnostic& diagnostic : translation.diagnostics) {
       diagnostic.program = program.slot;
-      if (prepared.diagnostics.size() >= machine::kDiagnosticsMax) {
-        prepared.diagnostics_dropped.Add(diagnostic);
-        continue;
-      }
-      prepared.diagnostics.push_back(std::move(diagnostic));
+      KeepFinding(std::move(diagnostic), machine::kDiagnosticsMax, prepared.diagnostics,
+                  prepared.diagnostics_dropped);
     }
     translation.diagnostics_dropped.ForEachPlace(
         [&](Diagnostic& place) { place.program = program.slot; });

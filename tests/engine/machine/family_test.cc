@@ -148,6 +148,13 @@ TEST(PlanTransfer, TellsAThousandFindings) {
     EXPECT_EQ(kind.first.program, 4);
     EXPECT_EQ(kind.last.program, 5);
   }
+  // The one that is no stream holds back all of them, which is told whatever was told before it.
+  const TransferPlan held =
+      PlanOf({.programs = {Stream(3, bad), Stream(4, bad), Stream(5, std::string(300, '$'))}});
+  EXPECT_FALSE(held.ok);
+  ASSERT_EQ(held.diagnostics.size(), kDiagnosticsMax);
+  EXPECT_EQ(held.diagnostics.back().code, ErrorCode::kRml1NoProgram);
+  EXPECT_EQ(held.diagnostics.back().program, 5);
 }
 
 TEST(MakeParameters, RefusesProfilesAndValuesThatThereAreNot) {

@@ -119,5 +119,24 @@ TEST(BoundaryTimes, AThousandFindingsOfAllPrograms) {
             2 * (alone->diagnostics.size() + alone->diagnostics_dropped.count()));
 }
 
+// The error that holds the run back is told, though a program before it fills the list.
+TEST(BoundaryTimes, TheFirstErrorOfAllPrograms) {
+  std::string idle;
+  for (int k = 0; k < 1000; ++k) idle += "CONT X\n";
+  ProgramMemory memory{.family = families::FindFamily("optimo")};
+  memory.programs.push_back(
+      {.slot = 1, .file_name = "a.S", .bytes = machine::Bytes::Of(idle), .is_source = true});
+  memory.programs.push_back({.slot = 2,
+                             .file_name = "b.S",
+                             .bytes = machine::Bytes::Of("VR[1] = NOBODY\n"),
+                             .is_source = true});
+  const auto prepared = PrepareRun(memory, {.main_program = 1});
+  ASSERT_TRUE(prepared);
+  EXPECT_FALSE(prepared->setup);
+  ASSERT_EQ(prepared->diagnostics.size(), machine::kDiagnosticsMax);
+  EXPECT_EQ(prepared->diagnostics.back().code, ErrorCode::kNameUndeclared);
+  EXPECT_EQ(prepared->diagnostics.back().program, 2);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

@@ -53,5 +53,34 @@ TEST(FindingList, FindingsPastTheLimitAreCounted) {
   EXPECT_EQ(rest.last.step, limit + 9);
 }
 
+// The alarm that ends a run is told behind a thousand warnings, in place of the last of them, which
+// is counted as often as it came.
+TEST(FindingList, TheFirstErrorIsTold) {
+  FindingList list;
+  const int limit = static_cast<int>(machine::kDiagnosticsMax);
+  for (int step = 1; step <= limit; ++step) list.Add(SimTime(step), Warning(step));
+  list.Add(SimTime(limit), Warning(limit));
+  Diagnostic error = Warning(5, "why it ended");
+  error.code = ErrorCode::kSyntax;
+  error.severity = Severity::kCompile;
+  list.Add(SimTime(3000), error);
+  ASSERT_EQ(list.findings().size(), machine::kDiagnosticsMax);
+  EXPECT_EQ(list.findings().back().diagnostic.detail, "why it ended");
+  EXPECT_EQ(list.findings()[machine::kDiagnosticsMax - 2].diagnostic.step, limit - 1);
+  const GatheredFindings& rest = list.dropped().kinds().at(ErrorCode::kSpeedLimited);
+  EXPECT_EQ(rest.count, 2u);
+  EXPECT_EQ(rest.first.step, limit);
+  EXPECT_EQ(rest.last_at, SimTime(limit));
+  // It is counted from now on, as is the next error; what is told goes on counting where it is.
+  list.Add(SimTime(4000), Warning(limit));
+  error.step = 6;
+  list.Add(SimTime(5000), error);
+  error.step = 5;
+  list.Add(SimTime(6000), error);
+  EXPECT_EQ(list.dropped().kinds().at(ErrorCode::kSpeedLimited).count, 3u);
+  EXPECT_EQ(list.dropped().kinds().at(ErrorCode::kSyntax).count, 1u);
+  EXPECT_EQ(list.findings().back().count, 2u);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation
