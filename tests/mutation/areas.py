@@ -38,7 +38,7 @@ AREAS = {
                   ("storage_jobs_test", "storage_sqlite_conformance_test", "storage_sqlite_test", "storage_sqlite_crash_test",
                    "server_jobs_test", "server_projects_test")),
     "jobs": Area(("server/base", "server/cell", "server/records", "server/jobs", "server/events", "server/host", "server/machines", "server/runs", "server/worker", "server/programs", "server/projects", "server/results"),
-                 ("server_test", "server_host_test", "server_machines_test", "server_runs_test", "server_command_line_test", "server_worker_test", "server_worker_runner_test", "server_projects_test",
+                 ("server_test", "server_cell_test", "server_host_test", "server_machines_test", "server_runs_test", "server_command_line_test", "server_worker_test", "server_worker_runner_test", "server_projects_test",
                   "server_programs_test", "server_jobs_test", "server_results_test", "server_events_test",
                   "integration_test_cell", "integration_test_tools", "integration_test_programs")),
     "web": Area(("server/web",), ("server_web_test", "integration_test_http", "integration_test_web")),

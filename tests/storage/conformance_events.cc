@@ -386,5 +386,21 @@ TEST_P(StoreConformance, ManyWritersShareContents) {
   EXPECT_EQ(wrong, 0);
 }
 
+// What a function holds goes with its watch, another watch of the same store among it.
+TEST_P(StoreConformance, AWatchMayHoldAnotherOne) {
+  Bell told;
+  {
+    std::shared_ptr<Store::Subscription> inner = store().Watch([&] { told.Ring(); });
+    const auto outer = store().Watch([inner] {});
+    inner.reset();
+    Submit();
+    ASSERT_TRUE(told.WaitFor(1));
+  }
+  Bell again;
+  const auto watch = store().Watch([&] { again.Ring(); });
+  Submit();
+  EXPECT_TRUE(again.WaitFor(1));
+}
+
 }  // namespace
 }  // namespace rmlcell::storage

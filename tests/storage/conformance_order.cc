@@ -108,6 +108,8 @@ TEST_P(StoreConformance, TheAnswerOfASubmissionSaysWhatTheJobWaitsFor) {
     EXPECT_EQ(submitted.job.waits_for, first);
     EXPECT_THAT(submitted.job.after, ElementsAre(first));
   }
+  EXPECT_TRUE(Must(store().SubmitAndWait({.kind = "SIMULATE", .held = true})).job.blocked);
+  EXPECT_FALSE(Must(store().SubmitAndWait({.kind = "SIMULATE"})).job.blocked);
   EXPECT_EQ(Must(store().SubmitAndWait({.kind = "SIMULATE", .held = true})).job.wait,
             WaitReason::kHeld);
 }

@@ -177,6 +177,21 @@ TEST(SqliteEdges, ALimitOfNothingIsNothing) {
   EXPECT_EQ(Must(store.ListJobs({.limit = 1})).size(), 1u);
 }
 
+// The log grows until it is written back, which is ours to do: SQLite says how long it is, and does
+// it not by itself, which it would from 1000 pages on.
+TEST(SqliteEdges, TheLengthOfTheLogIsKnown) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  ASSERT_TRUE(database.Execute("CREATE TABLE filling (bytes BLOB)"));
+  for (int k = 0; k < 3; ++k) {
+    const int before = database.log_pages();
+    ASSERT_TRUE(database.Execute("INSERT INTO filling VALUES (zeroblob(4096 * 1000))"));
+    EXPECT_GE(database.log_pages(), before + 1000);
+  }
+}
+
 // A statement is executed once at a time: another query of it would take the row from the first.
 TEST(SqliteEdges, AStatementHasOneQuery) {
   const TestDirectory directory;

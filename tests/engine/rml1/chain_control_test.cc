@@ -293,6 +293,28 @@ TEST(MillChainControl, KeepsThePathWhateverKeysArePressed) {
   }
 }
 
+// motion.md section 6: a turn by itself goes on from where it is as fast as it is. T1A turns by
+// 60 deg/s; from 90 to 30 degrees it is at full speed in between.
+TEST(MillChainControl, ATurnKeepsItsSpeedWhenTheOverrideChanges) {
+  TestRun run(ParametersOf("t1a"), "!MC0;Z0,0,0;!ZE A90:A30;");
+  const auto a_deg = [&] { return run->state().tip.a_rad / kRadPerDegree; };
+  while (a_deg() < 90.0 - 1e-6) run->Advance(run->state().time + 10ms);
+  while (a_deg() > 65.0) run->Advance(run->state().time + 10ms);
+  run.Press(InputKind::kOverride, 50.0);
+  run.AdvanceToEnd();
+  EXPECT_NEAR(a_deg(), 30.0, 1e-6);
+  const auto& motions = run.seen().motions();
+  const auto pressed = std::ranges::find_if(motions, [](const RunRecord::Motion& m) {
+    return m.planned.path.by_sigma() && VelocityAt(m, 0.0).a_deg_s < -1.0;
+  });
+  ASSERT_NE(pressed, motions.end());
+  ASSERT_NE(pressed, motions.begin());
+  const RunRecord::Motion& before = *std::prev(pressed);
+  EXPECT_EQ(pressed->start_s, before.end_s);
+  EXPECT_NEAR(VelocityAt(before, before.end_s - before.start_s).a_deg_s, -60.0, 1e-3);
+  EXPECT_NEAR(VelocityAt(*pressed, 0.0).a_deg_s, -60.0, 1e-3);
+}
+
 // A window of 65,536 vertices does not show the 90 mm that braking takes from 60 mm/s by 20 mm/s2,
 // in steps of 1 um. What has been counted stays counted when an override plans anew.
 TEST(MillChainControl, AnOverrideForgetsNoStarvedLookAhead) {

@@ -27,6 +27,7 @@ TEST(Rml1Family, TellsWhatItIs) {
   EXPECT_TRUE(family.info().cover_stops_jog);
   EXPECT_TRUE(family.info().start_takes_back);
   EXPECT_TRUE(family.info().has_breakpoints);
+  EXPECT_EQ(family.info().torn, ErrorCode::kRml1IncompleteCommand);
   EXPECT_EQ(family.info().waiting.size(), 1U);
   EXPECT_EQ(family.info().schedules, 0);
   EXPECT_FALSE(family.parameters().empty());

@@ -66,6 +66,7 @@ void RunRecord::OnSignal(const machine::SignalChange& change) {
   } else if (change.signal == machine::Signal::kSpindle && change.value != 0.0) {
     out << "spin " << change.detail;
   } else {
+    EXPECT_EQ(change.detail, 0.0);  // a spindle that stands has no speed
     out << "stop";
   }
   Add(change.at, out.str());

@@ -122,6 +122,35 @@ TEST(MoveBatch, TellsTheMostOfAllRows) {
   EXPECT_EQ(field.height(300, 500), -3.0f);
 }
 
+// Threads have about as much work each, wherever the moves are: three cuts in rows behind those of
+// the first, which the first half of the work ends in the second of.
+TEST(MoveBatch, ThreadsHaveAboutAsMuchEach) {
+  class Halves final : public ParallelFor {
+   public:
+    explicit Halves(const HeightField& field) : field_(field) {}
+    std::size_t width() const override { return 2; }
+    void Run(std::size_t count, const std::function<void(std::size_t)>& piece) override {
+      for (std::size_t k = 0; k < count; ++k) {
+        piece(k);
+        const auto& heights = field_.heights();
+        cut.push_back(std::ranges::count_if(heights, [](float height) { return height < 0.0F; }));
+      }
+    }
+    std::vector<std::ptrdiff_t> cut;  // cells, after each piece
+
+   private:
+    const HeightField& field_;
+  };
+  HeightField field = HeightField::Of(kBatchBlock).value();
+  MoveBatch batch(field, {.radius_mm = 3.5});
+  for (const double y : {5.0, 30.0, 40.0, 50.0}) batch.Add({5, y, -1}, {55, y, -1});
+  Halves halves(field);
+  batch.Cut(field, halves);
+  ASSERT_EQ(halves.cut.size(), 2U);
+  const double share = static_cast<double>(halves.cut[0]) / static_cast<double>(halves.cut[1]);
+  EXPECT_NEAR(share, 0.5, 0.05);
+}
+
 // A batch is handed over when there is work of some milliseconds: a million cells, or thousands of
 // moves. Each of these comes over 60 x 120 cells and a disc of 11,310.
 TEST(MoveBatch, IsFullWithAMillionCells) {

@@ -83,5 +83,19 @@ TEST(PartCurve, RatesAreDerivatives) {
   }
 }
 
+// What was measured is kept for the next look at the same curve, not for one with the same ends.
+TEST(CurveMeasure, CurvesWithTheSameEnds) {
+  const motion::CurveEnd from{.pose = {{0, 0, 0}}, .tangent = {1, 0, 0}, .curvature = {0, 0, 0}};
+  const auto curve = [&](const motion::MachineVector& tangent) {
+    return motion::CornerCurve(
+        from, {.pose = {{10, 10, 0}}, .tangent = tangent, .curvature = {0, 0, 0}}, 10.0);
+  };
+  const motion::CornerCurve along = curve({0, 1, 0}), against = curve({0, -1, 0});
+  CurveMeasure measure;
+  for (const motion::CornerCurve& one : {along, against, along})
+    EXPECT_EQ(measure.Of(one).total(), motion::CornerLength(one).total());
+  EXPECT_NE(measure.Of(along).total(), measure.Of(against).total());
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

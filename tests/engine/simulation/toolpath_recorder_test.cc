@@ -96,6 +96,36 @@ TEST(ToolpathRecorder, TheOpenBlockHasWhatIsNotHandedOut) {
   EXPECT_EQ(recorder.OpenBlock(), "");
 }
 
+// A sink that wants no more is not asked again, and no more points are counted than it was offered.
+TEST(ToolpathRecorder, ASinkThatWantsNoMoreGetsNoMore) {
+  machine::MachineShape shape;
+  shape.limits = motion::StandardMachine();
+  int offered = 0;
+  ToolpathRecorder recorder(shape, {}, [&](std::string_view) {
+    ++offered;
+    return false;
+  });
+  const motion::PathLimits limits{.speed = 10.0, .acceleration = 10.0};
+  Script script;
+  script.Step(45, 7);
+  double x = 0.0;
+  const auto zigzag = [&](int legs) {
+    for (int leg = 0; leg < legs; ++leg, x += 1.0) {
+      const double y = leg % 2;
+      script.Motion(Planned(LineFrom({x, y, 0}, {x + 1.0, 1.0 - y, 0}), limits), {});
+    }
+  };
+  zigzag(3 * 4096);
+  FakeRun run(script, recorder);
+  run.Advance(kForever);
+  EXPECT_EQ(offered, 1);
+  EXPECT_FALSE(recorder.complete());
+  EXPECT_EQ(recorder.points(), 4096U);
+  EXPECT_EQ(recorder.OpenBlock(), "");
+  recorder.Finish();
+  EXPECT_EQ(offered, 1);
+}
+
 // motion.md 9: a line is two points; step, use, beam, speed class and times of a run. SPEED 10 of
 // 500 mm/s is class 2. 10 mm with 10 mm/s2 to 10 mm/s take 2 s.
 TEST(ToolpathRecorder, LineIsTwoPoints) {

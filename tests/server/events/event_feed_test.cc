@@ -407,6 +407,13 @@ TEST(EventFeed, TellsAtMostTwentyPositionsASecond) {
   publish(1);
   ASSERT_TRUE(Eventually([&] { return tellings == 3; }));
   EXPECT_THAT(told, testing::ElementsAre("1", "201", "202"));
+  // Once: a position that stands is not told again beside that of another.
+  const auto stands = feed.LatestAfter(JobName(1), 0);
+  ASSERT_TRUE(stands);
+  steady.Advance(milliseconds(50));
+  feed.Publish(JobName(2), "another");
+  ASSERT_TRUE(Eventually([&] { return feed.LatestAfter(JobName(2), 0).has_value(); }));
+  EXPECT_FALSE(feed.LatestAfter(JobName(1), stands->version));
 }
 
 // Nothing else wakes it: it looks at the log by itself next year.
@@ -447,6 +454,27 @@ TEST(EventFeed, NobodyIsCalledAfterItsHandleIsGone) {
   ASSERT_TRUE(Eventually([&] { return others == 1; }));
   log.Write(1, 1);
   ASSERT_TRUE(Eventually([&] { return others == 2; }));
+  EXPECT_EQ(calls, 1);
+}
+
+// Whichever of the two is called first takes the other away before its turn comes.
+TEST(EventFeed, NobodyIsCalledWhoLeftInTheSameRound) {
+  FakeLog log;
+  EventFeed feed(log);
+  std::atomic<int> calls = 0;
+  std::unique_ptr<EventFeed::Subscription> one, two;
+  one = feed.Subscribe(JobName(1), [&] {
+    two.reset();
+    ++calls;
+  });
+  two = feed.Subscribe(JobName(1), [&] {
+    one.reset();
+    ++calls;
+  });
+  std::atomic<bool> over = false;  // those of everything are called last
+  const auto all = feed.Subscribe(std::string(EventFeed::kEverything), [&] { over = true; });
+  log.Write(1, 1);
+  ASSERT_TRUE(Eventually([&] { return over.load(); }));
   EXPECT_EQ(calls, 1);
 }
 

@@ -404,6 +404,9 @@ TEST_F(RecordingFileTest, IsDroppedWhereItDoesNotFit) {
   }
   file.Add(More("behind it"));
   EXPECT_FALSE(IsThere());
+  std::ofstream(path_) << "of somebody else";
+  file.Add(More("behind it"));
+  EXPECT_EQ(Bytes(), "of somebody else");
   file.Add(Begins("another "));
   file.Add(More("one"));
   EXPECT_EQ(Bytes(), "another one");

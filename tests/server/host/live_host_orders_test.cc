@@ -77,6 +77,17 @@ TEST_F(LiveHostOrders, AKeyWaitsNoLongerThanItsPatience) {
   EXPECT_FALSE(Ask(PanelKey("COVER", 2)).has_refusal());
 }
 
+// LIVE-2.13: a key that the panel does not have is refused by its name, be it empty.
+TEST_F(LiveHostOrders, AKeyThatThePanelDoesNotHave) {
+  Live();
+  TakeControl();
+  std::int64_t sequence = 0;
+  for (const std::string key : {"COFFEE", ""}) {
+    const v1::HostOrderAnswer answer = Ask(PanelKey(key, ++sequence));
+    EXPECT_EQ(answer.refusal().message(), "the panel has no key " + key);
+  }
+}
+
 // LIVE-2.05: whoever stops the machine stops the keys that wait, too.
 TEST_F(LiveHostOrders, AStopStopsTheKeysThatWait) {
   Live();

@@ -61,6 +61,29 @@ TEST(CallStatus, ARefusedStartTellsAllThatIsInTheWay) {
     EXPECT_FALSE(one.Is<google::rpc::PreconditionFailure>());
 }
 
+// What the machine says of itself is asked for rightly, and stands in the way; another error is
+// that of the call.
+TEST(CallStatus, ARefusalOfTheMachineIsNoWrongCall) {
+  struct Row {
+    ErrorCode code;
+    Severity severity;
+    grpc::StatusCode status;
+  };
+  constexpr auto kInTheWay = grpc::StatusCode::FAILED_PRECONDITION;
+  for (const Row& row :
+       {Row{ErrorCode::kTargetOutOfTravel, Severity::kAlarm, kInTheWay},
+        Row{ErrorCode::kFunctionMissing, Severity::kFatal, kInTheWay},
+        Row{ErrorCode::kCmosFull, Severity::kMessage, kInTheWay},
+        Row{ErrorCode::kBadCharacter, Severity::kCompile, grpc::StatusCode::INVALID_ARGUMENT},
+        Row{ErrorCode::kCellNotFound, Lookup(ErrorCode::kCellNotFound).severity,
+            grpc::StatusCode::NOT_FOUND}}) {
+    ASSERT_EQ(Lookup(row.code).severity, row.severity);
+    v1::HostOrderAnswer answer;
+    answer.mutable_refusal()->set_code(CodeText(row.code));
+    EXPECT_EQ(RefusalOf(answer).error_code(), row.status) << CodeText(row.code);
+  }
+}
+
 TEST(CallStatus, HasCodeTextAndFindings) {
   const grpc::Status status =
       ToGrpcStatus(Error{ErrorCode::kCellNotFound, "jobs/7", {}}, Findings(2), Untold(3));

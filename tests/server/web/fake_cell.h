@@ -56,6 +56,7 @@ class FakeResources : public ResourceSource {
   WebCallerMetadata last_caller;
   std::atomic<int> open_sinks{0};
   std::atomic<int> appended{0};
+  std::atomic<std::size_t> largest_piece{0};  // bytes that were asked for at once
 };
 
 // Tests of a time limit set that one; the others do not come into their way on a slow machine.

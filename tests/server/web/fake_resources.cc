@@ -1,5 +1,6 @@
 #include <google/protobuf/util/json_util.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "google/rpc/status.pb.h"
@@ -24,8 +25,10 @@ char PatternByte(std::int64_t i) { return static_cast<char>('a' + (i / 7 + i) % 
 
 class PatternReader : public ResourceReader {
  public:
-  PatternReader(std::int64_t size, std::int64_t broken_at) : size_(size), broken_at_(broken_at) {}
+  PatternReader(FakeResources& owner, std::int64_t size, std::int64_t broken_at)
+      : owner_(owner), size_(size), broken_at_(broken_at) {}
   Result<std::string> Read(std::size_t bytes_max) override {
+    owner_.largest_piece = std::max(owner_.largest_piece.load(), bytes_max);
     std::string out;
     while (at_ < size_ && out.size() < bytes_max) {
       if (at_ == broken_at_) return Error{ErrorCode::kCellStoreCorrupt, "", {}};
@@ -35,6 +38,7 @@ class PatternReader : public ResourceReader {
   }
 
  private:
+  FakeResources& owner_;
   std::int64_t size_;
   std::int64_t broken_at_;
   std::int64_t at_ = 0;
@@ -109,14 +113,14 @@ Result<Resource> FakeResources::Find(const ResourcePath& path, const WebCallerMe
       resource.media_type = "application/octet-stream";
       resource.size = 3'000'001;
       resource.reader = std::make_unique<PatternReader>(
-          resource.size, artifact->artifact == "broken" ? 200'000 : -1);
+          *this, resource.size, artifact->artifact == "broken" ? 200'000 : -1);
       resource.etag = "toolpath-1";
       return resource;
     }
     if (artifact->artifact == "longer") {  // than it says
       resource.media_type = "application/octet-stream";
       resource.size = 200'000;
-      resource.reader = std::make_unique<PatternReader>(300'000, -1);
+      resource.reader = std::make_unique<PatternReader>(*this, 300'000, -1);
       return resource;
     }
     if (artifact->artifact == "throw") throw std::runtime_error("a bug");

@@ -270,6 +270,22 @@ TEST(HttpRefusals, WhoeverIsOneTooManyIsTold) {
   }
 }
 
+// A client that is refused before it has sent all may send the rest; then both ends close.
+TEST(HttpRefusals, TheRestOfARefusedRequestIsTaken) {
+  WebOptions options = AnyPort();
+  options.linger_timeout = std::chrono::hours(1);
+  FakeCell cell(options);
+  RawClient client(cell.port());
+  client.Send("POST " + std::string(kGetJob) +
+              " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+              "Content-Length: 50000000\r\n\r\n");
+  EXPECT_EQ(client.Read().status, 413);
+  EXPECT_TRUE(client.Send(std::string(50'000'000, ' ')));
+  EXPECT_TRUE(client.AtEnd());
+  client.Close();
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell.web().connections() == 0; }));
+}
+
 TEST_F(HttpLimits, Expectations) {
   RawClient client(cell_.port());
   const std::string head = "POST " + std::string(kGetJob) +

@@ -69,6 +69,7 @@ TEST_F(Resources, LongDownloadsComePieceByPiece) {
   for (const std::size_t i : {0U, 65535U, 65536U, 2'999'999U, 3'000'000U}) {
     EXPECT_EQ(response.body[i], static_cast<char>('a' + (i / 7 + i) % 26)) << i;
   }
+  EXPECT_EQ(cell_.resources().largest_piece, 65'536U);  // in memory at once
 }
 
 // A download that breaks is visibly too short, never completed with nothing.

@@ -50,6 +50,15 @@ TEST_F(Streams, QuietStreamsAreKeptAlive) {
     EXPECT_NE(client.ReadUntil(": quiet\n\n").find(": quiet"), std::string::npos);
 }
 
+// A stream that is quiet stands, whatever its client has sent behind it.
+TEST_F(Streams, ARequestThatWaitsEndsNoStream) {
+  RawClient client(cell_.port());
+  client.Send(Watch("idle") + Get("/healthz"));
+  EXPECT_EQ(client.ReadHead().status, 200);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NE(client.ReadUntil(": quiet\n\n").find(": quiet"), std::string::npos);
+}
+
 // A closed tab is noticed while nothing is sent, long before a comment line would fail.
 TEST_F(Streams, ClosedTabCancelsTheCall) {
   for (const bool reset : {false, true}) {

@@ -101,6 +101,12 @@ TEST(Properties, PlacesOfNodesAreFoundAgain) {
       }
     }
     ASSERT_EQ(node, kept.node_places.size());
+    node = 0;
+    for (const Instruction& instruction : kept.module.instructions) {
+      for (const NodePlace& place : kept.NodePlacesOf(instruction))
+        ASSERT_EQ(place.offset, kept.node_places[node++].offset);
+    }
+    ASSERT_EQ(node, kept.node_places.size());
   }
 }
 

@@ -394,6 +394,8 @@ TEST(ContourAdvice, ArcsTurnAsTheyBegin) {
   for (const std::string via : {"VR[1],50,0", "150,VR[1],0", "150,50,VR[1]"}) {
     EXPECT_TRUE(told("PATH CIR\nMOVE (200,0,0,0,0)/VIA (" + via + ",0,0)").empty()) << via;
   }
+  // Nor of one through its own begin, which is no arc.
+  EXPECT_TRUE(told("PATH CIR\nMOVE (200,0,0,0,0)/VIA (100,0,0,0,0)").empty());
 }
 
 }  // namespace

@@ -350,6 +350,13 @@ TEST(JoinedTraces, AtACorner) {
   }
 }
 
+// A trace may end with the last pixel of all.
+TEST(JoinedTraces, InTheLastCorner) {
+  const JoinedTraces counted = CountJoined({2, 2, {9, 9, 9, 0}}, 0.5, 1.0);
+  EXPECT_EQ(counted.traces, 1U);
+  EXPECT_EQ(counted.joined, 0U);
+}
+
 TEST(StreamOfBoard, SpeedsAndTheEnds) {
   const auto made = StreamOfBoard(Picture({"##.", "##."}), Centred("srm-20"),
                                   {.pixel_mm = 0.5, .tool_mm = 1.0, .feed_mm_s = 99, .rpm = 9000});
