@@ -300,6 +300,7 @@ TEST(MillChainControl, ATurnKeepsItsSpeedWhenTheOverrideChanges) {
   const auto a_deg = [&] { return run->state().tip.a_rad / kRadPerDegree; };
   while (a_deg() < 90.0 - 1e-6) run->Advance(run->state().time + 10ms);
   while (a_deg() > 65.0) run->Advance(run->state().time + 10ms);
+  const double left_deg = a_deg() - 30.0;
   run.Press(InputKind::kOverride, 50.0);
   run.AdvanceToEnd();
   EXPECT_NEAR(a_deg(), 30.0, 1e-6);
@@ -313,6 +314,9 @@ TEST(MillChainControl, ATurnKeepsItsSpeedWhenTheOverrideChanges) {
   EXPECT_EQ(pressed->start_s, before.end_s);
   EXPECT_NEAR(VelocityAt(before, before.end_s - before.start_s).a_deg_s, -60.0, 1e-3);
   EXPECT_NEAR(VelocityAt(*pressed, 0.0).a_deg_s, -60.0, 1e-3);
+  // The last 9 degrees are the ramp to rest, by 200 deg/s2 in 0.3 s; the turn has no mm/s that an
+  // override could change.
+  EXPECT_NEAR(motions.back().end_s - pressed->start_s, (left_deg - 9.0) / 60.0 + 0.3, 1e-9);
 }
 
 // A window of 65,536 vertices does not show the 90 mm that braking takes from 60 mm/s by 20 mm/s2,

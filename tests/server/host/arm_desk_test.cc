@@ -129,13 +129,17 @@ TEST_F(ArmTest, ItEndsByItself) {
   EXPECT_FALSE(IsArmed());
 
   Control();
-  Do(Arm());
   v1::HostMemory memory;
   memory.add_programs()->set_slot(6);
   memory.mutable_programs(0)->set_content("PU0,0;");
-  host_->Change(memory, now_);
-  Pass(1s);
-  EXPECT_FALSE(IsArmed());
+  for (const bool with_schedules : {false, true}) {  // neither hides the other
+    Do(Arm());
+    if (with_schedules) memory.add_schedules()->set_number(1);
+    memory.set_schedules_changed(with_schedules);
+    host_->Change(memory, now_);
+    Pass(1s);
+    EXPECT_FALSE(IsArmed()) << with_schedules;
+  }
 
   Do(Arm());
   v1::HostOrder disarm;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -176,6 +177,18 @@ TEST(AdvicePlaces, OfPaths) {
       {no_path, 7033, "OPT-5.45", "a contour with the beam on, and no PATH was set"},
   };
   for (const AdviceRow& row : rows) ExpectAdvice(row);
+}
+
+// OPT-B.22: what is known behind a loop, which comes by in ROBOT first and in ABSOL then, is not
+// forgotten at a label that nobody jumps to.
+TEST(AdvicePlaces, BehindALabelOfNobody) {
+  const Compilation made = Compile(
+      "COORD ROBOT\nPATH PTP\nSPEED 0\n10 MOVE (0.,0.,0.,0.,0.)\n20 MOVE (1.,0.,0.,0.,0.)\n"
+      "COORD ABSOL\nIF VI[1] > 2 THEN 10\nENDTASK\n",
+      "", {});
+  EXPECT_TRUE(std::ranges::any_of(made.diagnostics, [](const Diagnostic& found) {
+    return found.code == ErrorCode::kNoMotion && found.where.line == 5;
+  }));
 }
 
 // OPT-3.20, OPT-3.21, OPT-5.46, OPT-5.48, OPT-B.22: speeds, piercing, holes.
