@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "server/base/names.h"
 #include "server/events/event_feed.h"
@@ -29,6 +30,10 @@ class HandboxWatch final : public PullStream<v1::WatchHandboxResponse> {
     if (!latest) return Next::kNothing;
     seen_ = latest->version;
     if (!message.mutable_panel()->ParseFromString(*latest->bytes)) return Next::kNothing;
+    // The feed may tell a moment later of what the stream began with.
+    if (const std::string panel = message.panel().SerializeAsString();
+        std::exchange(shown_, panel) == panel)
+      return Next::kNothing;
     message.set_sequence(++sequence_);
     return Next::kMessage;
   }
@@ -45,6 +50,7 @@ class HandboxWatch final : public PullStream<v1::WatchHandboxResponse> {
     if (!panel)
       return Error{ErrorCode::kCellNotLive, "it has no handbox, or does not live: enable it", {}};
     *message.mutable_panel() = *panel;
+    shown_ = panel->SerializeAsString();
     return {};
   }
 
@@ -55,6 +61,7 @@ class HandboxWatch final : public PullStream<v1::WatchHandboxResponse> {
   std::string id_;
   std::int64_t sequence_ = 0;
   std::uint64_t seen_ = 0;
+  std::string shown_;  // the panel that was told last
   std::unique_ptr<EventFeed::Subscription> subscription_;
 };
 

@@ -121,13 +121,9 @@ TEST_F(LiveMachines, TheHandboxIsWatched) {
   EXPECT_EQ(seen.panel().display(), "READY");
   EXPECT_EQ(seen.sequence(), 1);
   show("TEACH");
-  // What it opened with may come once more, where the feed tells of it a little later.
-  std::int64_t last = 1;
-  do {
-    ASSERT_TRUE(reader->Read(&seen));
-    ASSERT_EQ(seen.sequence(), ++last);
-  } while (seen.panel().display() == "READY" && last < 3);
+  ASSERT_TRUE(reader->Read(&seen));
   EXPECT_EQ(seen.panel().display(), "TEACH");
+  EXPECT_EQ(seen.sequence(), 2);
   context->TryCancel();
   EXPECT_FALSE(reader->Read(&seen));
   reader->Finish();
