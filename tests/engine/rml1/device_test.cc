@@ -496,5 +496,39 @@ TEST(Device, TheSurfaceOfAKeptStateIsItsZ0) {
   EXPECT_EQ(device.registers().surface_z, -3000.0);
 }
 
+// RML1-3B.13, RML1-9.11: a command without numbers goes by Z0 as a set does, and what it loses of
+// the work is told of it.
+TEST(Device, CommandsWithoutNumbersGoByZ0) {
+  TestDevice moved(ParametersOf("t1"));
+  moved.Feed("!ZO-2500;PD;!ZO-2000;");
+  EXPECT_EQ(moved->lowered().by, 500.0);
+  EXPECT_EQ(moved->lowered().at.number, 1U);
+  TestDevice beyond(ParametersOf("t1"));
+  beyond.Feed("!PZ-300,200;PU21000,100;");
+  EXPECT_EQ(beyond.CountOf(FindingKind::kClipped), 0);
+  beyond.Feed("PD;");
+  EXPECT_EQ(beyond.CountOf(FindingKind::kClipped), 1);
+  EXPECT_EQ(beyond->first_lost().number, 3U);
+}
+
+// RML1-4.02, RML1-4.04: an ESC that begins no sequence is a byte as any other one, with the place
+// where it stands, and so is the byte behind it.
+TEST(Device, EscapesThatAreDataHaveTheirPlace) {
+  for (const char* stream : {"!ZE \x1bX5;", "!ZE \x1b\x1bX5;"}) {
+    TestDevice device(ParametersOf("t1"));
+    device.Feed(stream);
+    ASSERT_EQ(device.findings().size(), 1U);
+    EXPECT_EQ(device.findings()[0].kind, FindingKind::kAxisLetter);
+    EXPECT_EQ(device.findings()[0].offset, 4);
+    EXPECT_EQ(device.findings()[0].byte, 0x1B);
+  }
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("PU;\x1b$");
+  ASSERT_EQ(device.findings().size(), 1U);
+  EXPECT_EQ(device.findings()[0].kind, FindingKind::kForeignCharacter);
+  EXPECT_EQ(device.findings()[0].offset, 4);
+  EXPECT_EQ(device.findings()[0].byte, '$');
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/rml1/board/contours.h"
 #include "engine/rml1/board/distance_field.h"
 #include "engine/rml1/board/png_bitmap.h"
 #include "engine/rml1/board/simplify.h"
@@ -38,6 +39,19 @@ TEST(LeastBoard, TheMarginIsOnEachSide) {
   EXPECT_EQ(field.at(7, 3), 4.0F);
   EXPECT_EQ(field.at(3, 0), 3.0F);
   EXPECT_EQ(field.at(3, 6), 3.0F);
+}
+
+// A picture of no pixels has no distances and no lines.
+TEST(LeastBoard, APictureOfNothing) {
+  for (const Bitmap& nothing : {Bitmap{.width = 0, .height = 0, .copper = {}},
+                                Bitmap{.width = 3, .height = 0, .copper = {}},
+                                Bitmap{.width = 0, .height = 3, .copper = {}}}) {
+    const DistanceField field = DistanceToCopper(nothing, 0);
+    EXPECT_EQ(field.width, nothing.width);
+    EXPECT_EQ(field.height, nothing.height);
+    EXPECT_TRUE(field.values.empty());
+    EXPECT_TRUE(ContoursAt(field, 1.0).empty());
+  }
 }
 
 }  // namespace
