@@ -3,6 +3,7 @@
 #include <archive.h>
 #include <archive_entry.h>
 #include <google/protobuf/util/json_util.h>
+#include <locale.h>
 
 #include <algorithm>
 #include <functional>
@@ -27,6 +28,24 @@ struct EndReading {
 };
 struct EndEntry {
   void operator()(archive_entry* entry) const { archive_entry_free(entry); }
+};
+
+// Names are in UTF-8, and libarchive reads and writes those that are marked so in the locale of its
+// thread alone: in that of C it knows no letter beyond ASCII.
+class NamesInUtf8 {
+ public:
+  NamesInUtf8()
+      : own_(::newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr)), before_(::uselocale(own_)) {}
+  ~NamesInUtf8() {
+    ::uselocale(before_);
+    if (own_ != nullptr) ::freelocale(own_);
+  }
+  NamesInUtf8(const NamesInUtf8&) = delete;
+  NamesInUtf8& operator=(const NamesInUtf8&) = delete;
+
+ private:
+  locale_t own_;
+  locale_t before_;
 };
 
 Error TooLarge() {
@@ -126,6 +145,7 @@ Result<std::string> ReadEntry(archive* read, std::size_t room) {
 
 // By name.
 Result<std::map<std::string, std::string>> ReadFiles(std::string_view bytes) {
+  const NamesInUtf8 locale;
   const std::unique_ptr<archive, EndReading> read(archive_read_new());
   archive_read_support_format_zip(read.get());
   if (archive_read_open_memory(read.get(), bytes.data(), bytes.size()) != ARCHIVE_OK)
@@ -162,6 +182,7 @@ const std::string* FindProjectFile(const std::map<std::string, std::string>& fil
 
 Result<std::string> WriteProjectArchive(const v1::Project& project) {
   if (project.ByteSizeLong() > kProjectBytesMax) return TooLarge();
+  const NamesInUtf8 locale;
   v1::Project kept = project;
   kept.clear_name();
   kept.clear_etag();

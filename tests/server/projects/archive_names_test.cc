@@ -4,10 +4,12 @@
 #include <archive_entry.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <locale.h>
 
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -20,7 +22,11 @@ namespace {
 using testing::Contains;
 using testing::Not;
 
+// As a tool reads it in which names are in UTF-8.
 std::vector<std::string> FilesIn(const std::string& bytes) {
+  const std::unique_ptr<std::remove_pointer_t<locale_t>, void (*)(locale_t)> utf8(
+      ::newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr), ::freelocale);
+  const locale_t before = ::uselocale(utf8.get());
   const std::unique_ptr<archive, int (*)(archive*)> read(archive_read_new(), archive_read_free);
   archive_read_support_format_zip(read.get());
   archive_read_open_memory(read.get(), bytes.data(), bytes.size());
@@ -28,6 +34,7 @@ std::vector<std::string> FilesIn(const std::string& bytes) {
   archive_entry* entry = nullptr;
   while (archive_read_next_header(read.get(), &entry) == ARCHIVE_OK)
     names.emplace_back(archive_entry_pathname(entry));
+  ::uselocale(before);
   return names;
 }
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <utility>
@@ -143,6 +144,35 @@ TEST(ProjectArchive, ReadsAFolderThatAPersonPacked) {
   }
 }
 
+// Where the flags of each name stand, of the file itself and of the directory.
+std::vector<std::size_t> FlagsOfNames(const std::string& bytes) {
+  std::vector<std::size_t> found;
+  for (const auto& [header, behind] :
+       {std::pair<std::string, std::size_t>("PK\3\4", 7), {"PK\1\2", 9}}) {
+    for (std::size_t at = bytes.find(header); at != std::string::npos;
+         at = bytes.find(header, at + 1))
+      found.push_back(at + behind);
+  }
+  return found;
+}
+
+// Names with letters of other alphabets, marked as UTF-8 as every newer tool for archives does it.
+TEST(ProjectArchive, ReadsNamesOfAllAlphabets) {
+  std::string bytes =
+      Packed({{"project.json", R"({"programs":[{"slot":7,"source":{"fileName":"Tür.S"}}]})"},
+              {"Tür.S", "STOP\n"}});
+  for (const std::size_t at : FlagsOfNames(bytes)) bytes[at] = '\x08';
+  const auto project = ReadProjectArchive(bytes);
+  ASSERT_TRUE(project) << project.error().detail;
+  EXPECT_EQ(project->programs(0).source().content(), "STOP\n");
+  EXPECT_EQ(project->programs(0).source().file_name(), "Tür.S");
+  const std::string written = *WriteProjectArchive(*project);
+  EXPECT_THAT(FlagsOfNames(written), testing::SizeIs(4));
+  EXPECT_EQ(std::ranges::count_if(FlagsOfNames(written),
+                                  [&](std::size_t at) { return written[at] == '\x08'; }),
+            2);
+}
+
 TEST(ProjectArchive, SaysWhatIsWrong) {
   const auto said = [](const std::string& bytes) {
     const auto project = ReadProjectArchive(bytes);
@@ -213,6 +243,21 @@ TEST(ProjectArchive, DamageIsReadOrRefused) {
     }
   }
   EXPECT_GT(refused, 2000);
+}
+
+// A target that is a program is a file beside the others as well.
+TEST(ProjectArchive, HasTheProgramOfATarget) {
+  v1::Project project;
+  v1::ProjectProgram& program = AddProgram(project, 44, "door.rml", "PU;");
+  v1::ProgramText& target = *program.mutable_milling()->mutable_target()->mutable_inline_program();
+  target.set_file_name("old.rml");
+  target.set_content("PD;");
+  const auto archive = WriteProjectArchive(project);
+  ASSERT_TRUE(archive);
+  EXPECT_EQ(Unpacked(*archive)["targets/44/old.rml"], "PD;");
+  const auto back = ReadProjectArchive(*archive);
+  ASSERT_TRUE(back) << back.error().detail;
+  EXPECT_EQ(back->DebugString(), project.DebugString());
 }
 
 }  // namespace
