@@ -159,7 +159,8 @@ void HostLine::Send(v1::HostRequest message) {
 void HostLine::SendStatus(v1::MachineStatus status) {
   {
     const std::lock_guard lock(mutex_);
-    status_ = std::move(status);
+    if (queue_.empty() || !queue_.back().has_status()) queue_.emplace_back();
+    *queue_.back().mutable_status() = std::move(status);
   }
   to_send_.notify_one();
 }
@@ -183,8 +184,7 @@ void HostLine::Write() {
   Clock::time_point next_heartbeat = Clock::now() + kHeartbeat;
   std::unique_lock lock(mutex_);
   for (;;) {
-    to_send_.wait_until(lock, next_heartbeat,
-                        [this] { return ending_ || !queue_.empty() || status_.has_value(); });
+    to_send_.wait_until(lock, next_heartbeat, [this] { return ending_ || !queue_.empty(); });
     // What was queued goes out also at the end.
     if (ending_ && queue_.empty()) break;
     v1::HostRequest message;
@@ -195,15 +195,15 @@ void HostLine::Write() {
     } else if (!queue_.empty()) {
       message = std::move(queue_.front());
       queue_.pop_front();
-    } else if (status_) {
-      *message.mutable_status() = *std::exchange(status_, std::nullopt);
+    } else {
+      continue;
+    }
+    if (message.has_status()) {
       const bool rested = std::exchange(rests, bridge::IsAtRest(message.status().state()));
       // A server that does not know a status for a heartbeat gets one.
       if (rests || rested)
         next_heartbeat = Clock::now() + (rests && answers_.exchange(false) ? kHeartbeatAtRest
                                                                            : Clock::duration(0));
-    } else {
-      continue;
     }
     lock.unlock();
     const bool sent = stream_->line->Write(message);

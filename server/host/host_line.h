@@ -7,7 +7,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
 
@@ -16,8 +15,8 @@
 
 namespace rmlcell::server {
 
-// The line of a host to its server. What is sent waits here until the line takes it: entries in
-// order, of the status the newest alone. Thread-safe.
+// The line of a host to its server. What is sent waits here until the line takes it, in order; of
+// statuses that follow each other the newest alone. Thread-safe.
 class HostLine {
  public:
   struct Welcome {
@@ -51,13 +50,12 @@ class HostLine {
   std::function<void()> gone_;
   std::mutex mutex_;
   std::condition_variable to_send_;
-  std::deque<v1::HostRequest> queue_;        // guarded by mutex_
-  std::optional<v1::MachineStatus> status_;  // guarded by mutex_
-  bool read_all_ = false;                    // guarded by mutex_
-  bool ending_ = false;                      // guarded by mutex_
-  bool written_all_ = false;                 // guarded by mutex_; nothing more is sent
-  bool cut_ = false;                         // guarded by mutex_
-  std::atomic<bool> answers_ = false;        // the newest status at rest was answered
+  std::deque<v1::HostRequest> queue_;  // guarded by mutex_
+  bool read_all_ = false;              // guarded by mutex_
+  bool ending_ = false;                // guarded by mutex_
+  bool written_all_ = false;           // guarded by mutex_; nothing more is sent
+  bool cut_ = false;                   // guarded by mutex_
+  std::atomic<bool> answers_ = false;  // the newest status at rest was answered
   std::thread reader_;
   std::thread writer_;
 };

@@ -155,7 +155,8 @@ void HostLine::Send(v1::HostRequest message) {
 void HostLine::SendStatus(v1::MachineStatus status) {
   {
     const std::lock_guard lock(mutex_);
-    status_ = std::move(status);
+    if (queue_.empty() || !queue_.back().has_status()) queue_.emplace_back();
+    *queue_.back().mutable_status() = std::move(status);
   }
   to_send_.notify_one();
 }
@@ -170,17 +171,14 @@ void HostLine::Write() {
   std::int64_t heartbeats = 0;
   std::unique_lock lock(mutex_);
   for (;;) {
-    const bool some = to_send_.wait_for(
-        lock, kHeartbeat, [this] { return ending_ || !queue_.empty() || status_.has_value(); });
+    to_send_.wait_for(lock, kHeartbeat, [this] { return ending_ || !queue_.empty(); });
     if (ending_ && (queue_.empty() || cut_)) return;
     v1::HostRequest message;
-    if (!some) {
+    if (queue_.empty()) {
       message.mutable_heartbeat()->set_number(++heartbeats);
-    } else if (!queue_.empty()) {
+    } else {
       message = std::move(queue_.front());
       queue_.pop_front();
-    } else {
-      *message.mutable_status() = *std::exchange(status_, std::nullopt);
     }
     lock.unlock();
     const bool told = stream_->Tell(std::move(message));
