@@ -135,9 +135,11 @@ class DifferencePage {
                Fitted(before_.title, room_beside(after_.title), large) + arrow +
                    Fitted(after_.title, room_beside(before_.title), large),
                large);
+    const bool whole = before_.note.empty() && after_.note.empty();
+    const char* same =
+        whole ? "both run along the same path" : "the same path, as far as both of them ran";
     AppendText(body_, {kPageMargin, 70.0},
-               same_path() ? "both run along the same path"
-                           : "removed: the first alone runs there; added: the second alone",
+               same_path() ? same : "removed: the first alone runs there; added: the second alone",
                {.size = 14.0, .colour = kFaint});
     const TextStyle small{.size = 12.0, .colour = kFaint};
     if (!machine_.empty()) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/units.h"
@@ -429,6 +430,19 @@ TEST(PictureOfDifference, SmallDifferencesAreShownCloser) {
   EXPECT_EQ(CountOf(picture(after), "<g class=\"added"), 6u);
   EXPECT_EQ(CountOf(picture(before), "closer"), 0u);
   EXPECT_EQ(CountOf(picture(before), "both run along the same path"), 1u);
+}
+
+// Of a run that did not come to its end the picture does not say that its path is the same.
+TEST(PictureOfDifference, APathThatIsCutShortIsNotTheSame) {
+  Path path;
+  path.Line({0, 0, 0}, {10, 0, 0});
+  const ComparedPath whole{.path = path.sketch(), .title = "a"};
+  const ComparedPath stopped{.path = path.sketch(), .title = "b", .note = "stopped at 1/7"};
+  for (const auto& [before, after] : {std::pair(whole, stopped), {stopped, whole}}) {
+    const std::string svg = PictureOfDifference(before, after, Laser(), {}, {});
+    EXPECT_EQ(CountOf(svg, "both run along the same path"), 0u);
+    EXPECT_EQ(CountOf(svg, "the same path, as far as both of them ran"), 1u);
+  }
 }
 
 // Nothing to draw is no trouble, and bounds hold.
