@@ -84,10 +84,8 @@ std::string OutputOr(const MillToolOptions& options, const char* extension) {
   return std::filesystem::path(options.file).replace_extension(extension).string();
 }
 
-// An error in the file; one about what was asked for is a wrong use.
+// An error in the file: what was asked for has been checked before.
 int FailedAt(const Error& error, const std::string& file, ToolAnswer& answer) {
-  if (error.code == ErrorCode::kCellInvalidArgument || error.code == ErrorCode::kCellParameterRange)
-    return Refuse(error);
   Diagnostic finding{.code = error.code,
                      .severity = Lookup(error.code).severity,
                      .detail = error.detail,
