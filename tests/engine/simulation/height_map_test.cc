@@ -51,6 +51,18 @@ std::string Png(const PngHeading& heading) {
 const std::vector<std::pair<std::string, std::string>> kTexts = {
     {"Left mm", "0"}, {"Front mm", "0"}, {"Cell mm", "1"}, {"Bottom mm", "-1"}, {"Top mm", "0"}};
 
+// A picture whose heading was changed: its checksum is that of type and data.
+std::string SealedHeading(std::string png) {
+  std::uint32_t sum = 0xFFFFFFFF;
+  for (std::size_t at = 12; at < 29; ++at) {
+    sum ^= static_cast<unsigned char>(png[at]);
+    for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ (0xEDB88320 & (0 - (sum & 1)));
+  }
+  for (std::size_t k = 0; k < 4; ++k)
+    png[29 + k] = static_cast<char>(static_cast<unsigned char>(~sum >> (24 - 8 * k)));
+  return png;
+}
+
 void ExpectRefused(std::string_view bytes, const std::string& detail) {
   const Result<HeightMap> map = ReadHeightMap(bytes);
   ASSERT_FALSE(map) << detail;
@@ -162,18 +174,42 @@ TEST(HeightMap, GivesNoMemoryForAHeadingAlone) {
       for (std::size_t k = 0; k < 4; ++k)
         changed[at + k] = static_cast<char>(static_cast<unsigned char>(size >> (24 - 8 * k)));
     }
-    std::uint32_t sum = 0xFFFFFFFF;  // the checksum of IHDR, type and data
-    for (std::size_t at = 12; at < 29; ++at) {
-      sum ^= static_cast<unsigned char>(changed[at]);
-      for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ (0xEDB88320 & (0 - (sum & 1)));
-    }
-    for (std::size_t k = 0; k < 4; ++k)
-      changed[29 + k] = static_cast<char>(static_cast<unsigned char>(~sum >> (24 - 8 * k)));
-    return changed;
+    return SealedHeading(changed);
   };
   EXPECT_EQ(with_size(3).substr(0, 20), bytes.substr(0, 20));
   ExpectRefused(with_size(30000), "it has too many pixels");
   ExpectRefused(with_size(8000), "it ends too early");
+  // 1 << 26 cells are as many as a block may have.
+  ExpectRefused(with_size(8192), "it ends too early");
+  ExpectRefused(with_size(8193), "it has too many pixels");
+}
+
+// PNG 11.2.2: the bits of a pixel, its colours, and the order of the rows.
+TEST(HeightMap, IsGreyOfSixteenBitsInOrder) {
+  const std::string bytes = Png({.width = 3, .height = 2, .texts = kTexts});
+  const auto with = [&](std::size_t at, char value) {
+    std::string changed = bytes;
+    changed[at] = value;
+    return SealedHeading(changed);
+  };
+  EXPECT_EQ(with(24, 16), bytes);
+  ExpectRefused(with(24, 8), "it is not grey of 16 bits");
+  ExpectRefused(with(25, 2), "it is not grey of 16 bits");
+  ExpectRefused(with(28, 1), "it is interlaced");
+}
+
+// A map has eight short texts: dozens of them are taken, and long ones, but not without end.
+TEST(HeightMap, HasTextsOfSomeNumberAndLength) {
+  const auto with = [](std::size_t count, std::size_t length) {
+    PngHeading heading{.width = 3, .height = 2, .texts = kTexts};
+    for (std::size_t k = 0; k < count; ++k)
+      heading.texts.emplace_back("More", std::string(length, 'x'));
+    return Png(heading);
+  };
+  EXPECT_TRUE(ReadHeightMap(with(40, 1)));
+  ExpectRefused(with(100, 1), "no height map");
+  EXPECT_TRUE(ReadHeightMap(with(1, 60'000)));
+  ExpectRefused(with(1, 70'000), "no height map");
 }
 
 // A picture of one grey packs into nothing, however long it is in the making: asked before each

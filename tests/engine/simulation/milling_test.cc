@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/core/units.h"
 #include "engine/simulation/material/milling_recorder.h"
@@ -293,6 +295,37 @@ TEST(MillingRecorder, TellsTheFirstOfTheDeepestFastPlunges) {
   EXPECT_NEAR(figures.fast_plunge_mm, 2.0, 1e-6);
   EXPECT_EQ(figures.fast_plunge_mm_s, 9.0);
   EXPECT_EQ(figures.fast_plunge_place.step, 3);
+}
+
+// For who looks on: the tiles in which something was taken off since, a radius beyond each end of
+// the way, also of what waits to be cut; a way above the block is none.
+TEST(MillingRecorder, TellsWhichTilesHaveChanged) {
+  const Milling wide{
+      .stock = {.x_max = 192.0, .y_max = 192.0, .bottom = -5.0, .top = 0.0, .cell = 1.0},
+      .tool = {.shape = MillTool::Shape::kFlat, .radius_mm = 2.0}};
+  using Tiles = std::vector<std::pair<std::size_t, std::size_t>>;  // column and row
+  ThreadFor threads(2);
+  for (ParallelFor* parallel :
+       {static_cast<ParallelFor*>(nullptr), static_cast<ParallelFor*>(&threads)}) {
+    const auto changed = [&](const motion::MachinePoint& from, const motion::MachinePoint& to) {
+      MillingRecorder recorder(MillShape(), wide, parallel);
+      EXPECT_TRUE(recorder.TakeChanges(100).empty());
+      EXPECT_FALSE(recorder.any_change_left());
+      Tell(recorder, from, to, 8.0, 1);
+      Tiles tiles;
+      for (const HeightTile& tile : recorder.TakeChanges(100))
+        tiles.emplace_back(tile.column, tile.row);
+      EXPECT_TRUE(recorder.TakeChanges(100).empty());
+      return tiles;
+    };
+    // Tiles are 64 mm wide; 63 and 2 mm of radius are beyond the first one.
+    EXPECT_EQ(changed({10, 10, -1}, {61, 10, -1}), (Tiles{{0, 0}}));
+    EXPECT_EQ(changed({10, 10, -1}, {63, 10, -1}), (Tiles{{0, 0}, {64, 0}}));
+    EXPECT_EQ(changed({110, 10, -1}, {65, 10, -1}), (Tiles{{0, 0}, {64, 0}}));
+    EXPECT_EQ(changed({10, 10, -1}, {10, 63, -1}), (Tiles{{0, 0}, {0, 64}}));
+    EXPECT_EQ(changed({10, 110, -1}, {10, 65, -1}), (Tiles{{0, 0}, {0, 64}}));
+    EXPECT_EQ(changed({10, 10, 1}, {63, 63, 1}), Tiles{});
+  }
 }
 
 }  // namespace

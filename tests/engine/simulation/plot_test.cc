@@ -321,6 +321,34 @@ TEST(Plot, MarksHaltsAndErrorsButNoAdvice) {
   EXPECT_NE(svg.find("STOP &lt;now&gt;"), std::string::npos);
 }
 
+// Of a finding's weight tells its colour: warnings are no errors, advice and messages no marks.
+TEST(Plot, MarksAreOfTheColourOfTheirWeight) {
+  const std::string dashes = " stroke-width=\"1\" stroke-dasharray=\"2 3\"";
+  struct Case {
+    Severity severity;
+    std::size_t warnings;
+    std::size_t errors;
+  };
+  for (const Case& c : {Case{Severity::kAdvice, 0, 0}, Case{Severity::kMessage, 0, 0},
+                        Case{Severity::kWarning, 1, 0}, Case{Severity::kProgram, 0, 1},
+                        Case{Severity::kFatal, 0, 1}, Case{Severity::kAlarm, 0, 1}}) {
+    Script script;
+    script.Step(1, 1).Line({0, 0, 0}, {10, 0, 0});
+    PlotRecorder recorder({});
+    FakeRun run(script, recorder);
+    run.Advance(kForever);
+    recorder.OnDiagnostic(FromSeconds(0.005),
+                          {.code = ErrorCode::kSpeedLimited, .severity = c.severity});
+    RunReport report;
+    report.cycle_time = run.state().time;
+    const std::string svg = recorder.Svg(report, {.curves = {PlotCurve::kSpeed}});
+    EXPECT_EQ(CountOf(svg, "stroke=\"#b4540a\"" + dashes), c.warnings)
+        << static_cast<int>(c.severity);
+    EXPECT_EQ(CountOf(svg, "stroke=\"#c92a2a\"" + dashes), c.errors)
+        << static_cast<int>(c.severity);
+  }
+}
+
 // Forty marks at most, of halts and findings together; advice is none.
 TEST(Plot, MarksAreLimited) {
   for (const bool halts : {true, false}) {

@@ -158,6 +158,20 @@ TEST(ReportShares, TheEndIsThatOfTheRun) {
   EXPECT_EQ(report.final_position.axes.column, (motion::MachinePoint{1, 2, 3}));
 }
 
+// motion.md 8.2: the last point as the program wrote it, its rotary axis in the program's own unit.
+TEST(ReportShares, TheLastPointIsAsWritten) {
+  ReportRecorder recorder({});
+  recorder.OnMove({.place = {.program = 1, .step = 1},
+                   .tip = {{1, 2, 3}, 0.25, 0.5},
+                   .program_point = {7, 8, 9},
+                   .rotary_a = 0.75});
+  FakeRun run(Script().Step(1, 1), recorder);
+  const FinalPosition last = recorder.Report(run).final_position;
+  EXPECT_EQ(last.program_point, (motion::ProgramPoint{7, 8, 9}));
+  EXPECT_EQ(last.program_a, 0.75);
+  EXPECT_EQ(last.program_b, 0.5);
+}
+
 // What has no room in a report is counted.
 TEST(ReportShares, WhatHasNoRoomIsCounted) {
   ReportRecorder recorder(Laser());

@@ -2,7 +2,10 @@
 // about is counted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/simulation/report/time_ledger.h"
@@ -161,6 +164,64 @@ TEST(RunProducts, GapsAreCountedInTheOrderOfTime) {
   EXPECT_EQ(ledger.counted(), SimTime(4000));
   ledger.Close();  // nothing is left
   EXPECT_EQ(counted.size(), 40U);
+}
+
+// Each product is told of the motions as if it watched alone.
+TEST(RunProducts, EachIsAsIfItWatchedAlone) {
+  std::string together, alone;
+  const auto into = [](std::string& text) {
+    return [&text](std::string_view lines) {
+      text += lines;
+      return true;
+    };
+  };
+  Products products;
+  products.plot = true;
+  products.samples = into(together);
+  products.samples_hz = 10.0;
+  Recorder recorder(Laser(), {}, std::move(products));
+  FakeRun run(LinesOfThreeSteps(), recorder);
+  recorder.Begin(run);
+  SampleRecorder samples(Laser(), 10.0, into(alone));
+  FakeRun sampled(LinesOfThreeSteps(), samples);
+  samples.StandsAt(sampled.state().tip, sampled.state().axes);
+  PlotRecorder plot(Laser());
+  FakeRun plotted(LinesOfThreeSteps(), plot);
+  for (FakeRun* each : {&run, &sampled, &plotted}) each->Advance(kForever);
+  recorder.Finish(run);
+  samples.Finish(sampled.state().time);
+  EXPECT_GT(samples.lines(), 3U);
+  EXPECT_EQ(together, alone);
+  const RunReport report = recorder.Report(run);
+  EXPECT_EQ(recorder.PlotSvg(report, {}), plot.Svg(report, {}));
+}
+
+// A run that goes on is not judged yet; at its end it is, and what is not told singly is marked as
+// other findings are.
+TEST(RunProducts, OnTheWayNothingIsJudged) {
+  constexpr ErrorCode kFault = ErrorCode::kHoleRadiusZero;
+  Script script;
+  script.Step(1, 1).Nothing(2.0).Ends(machine::OutcomeKind::kFailed, kFault, "radius is 0");
+  Recorder recorder({}, {}, {});
+  FakeRun run(script, recorder);
+  recorder.Begin(run);
+  run.Advance(FromSeconds(1.0));
+  recorder.OnViolation({.place = {.program = 1, .step = 1}, .axis = 0, .excess = 2.0});
+  recorder.OnCounted(SimTime(0), {.code = kFault, .severity = Lookup(kFault).severity});
+  const auto marked = [&](const RunReport& report) {
+    return report.findings_dropped.kinds().at(kFault).judged;
+  };
+  const RunReport before = recorder.Report(run);
+  EXPECT_EQ(before.judgement, machine::Judgement{});
+  EXPECT_EQ(marked(before), Judged::kNo);
+  run.Advance(kForever);
+  recorder.Finish(run);
+  const RunReport after = recorder.Report(run);
+  EXPECT_EQ(after.judgement.verdict, machine::Verdict::kBad);
+  EXPECT_EQ(std::ranges::count(after.judgement.reasons, ErrorCode::kCellTravelLeft,
+                               &machine::Reason::code),
+            1);
+  EXPECT_EQ(marked(after), Judged::kBad);
 }
 
 // A run that somebody ended, with a word alone, is one that waits: of no part is known more.

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/simulation/report/facts.h"
@@ -56,6 +60,32 @@ TEST(Simulate, SetupThatMakesNoSenseIsRefused) {
   const Result<SimulationResult> result = Simulate(FakeFamily(), std::move(setup), {});
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, ErrorCode::kCellInvalidArgument);
+}
+
+// Bytes of which only the first ones are known when a run begins.
+class ComingBytes final : public machine::BytesKeeper {
+ public:
+  explicit ComingBytes(std::string all) : all_(std::move(all)) {}
+  std::string_view First(std::size_t size) const { return std::string_view(all_).substr(0, size); }
+  std::string_view ReadOn(std::string_view known, std::size_t size) const override {
+    return First(std::max(known.size(), size));
+  }
+  bool IsWhole(std::string_view known) const override { return known.size() == all_.size(); }
+
+ private:
+  std::string all_;
+};
+
+// Design section 4: the same inputs have the same hash, whether they are there or still come.
+TEST(Simulate, AStreamThatComesIsKnownByAllOfIt) {
+  const auto keeper = std::make_shared<const ComingBytes>("move");
+  machine::RunSetup setup = FakeFamily::Setup();
+  setup.programs[1].object = machine::Bytes(keeper, keeper->First(2));
+  ASSERT_FALSE(IsWhole(setup));
+  EXPECT_EQ(DescribeInputs(FakeFamily(), setup).hash, "");
+  const Result<SimulationResult> result = Simulate(FakeFamily(), std::move(setup), {});
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->report.inputs_hash, DescribeInputs(FakeFamily(), FakeFamily::Setup()).hash);
 }
 
 // Design section 4: how time is cut into slices changes no byte of any product.
@@ -167,6 +197,28 @@ TEST(Simulation, StartWithoutEffectEndsTheRun) {
   options.at_halt = AtHalt::kStart;
   const RunReport report = RunToEnd(simulation, options);
   EXPECT_EQ(report.outcome.code, ErrorCode::kCellWaitsForever);
+}
+
+// An input that is no START leaves a halt as it is; what comes behind it would not be waited for.
+TEST(Simulation, AnInputThatIsNoStartLeavesAHalt) {
+  machine::RunSetup setup = FakeFamily::Setup();
+  setup.inputs = {{FromSeconds(5.0), machine::InputKind::kLogical, 3, 1.0}};
+  const Result<SimulationResult> result = Simulate(FakeFamily(WithHalt()), std::move(setup), {});
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->report.outcome.kind, machine::OutcomeKind::kStopped);
+  EXPECT_EQ(result->report.outcome.code, ErrorCode::kCellWaitsForever);
+}
+
+// Who cancels a run that is over comes too late.
+TEST(Simulation, WhatIsOverIsNotEndedAgain) {
+  Recorder recorder({}, {}, {});
+  FakeRun run(Square(), recorder);
+  Simulation simulation(run, recorder);
+  ASSERT_EQ(simulation.Step(FromSeconds(3600.0)), RunPhase::kFinished);
+  simulation.Cancel();
+  const RunReport report = simulation.Finish();
+  EXPECT_EQ(report.outcome.kind, machine::OutcomeKind::kCompleted);
+  EXPECT_FALSE(report.outcome.code.has_value());
 }
 
 // CELL-E9306, when the caller wants it; else the product is cut off and the run goes on.

@@ -155,8 +155,11 @@ TEST(TargetFiles, ABodyThatLiesOverItselfTooOftenIsRefused) {
   const auto heights = TargetOfBody(body, stock);
   ASSERT_FALSE(heights);
   EXPECT_EQ(heights.error().code, ErrorCode::kCellTooLarge);
-  const std::vector<StlTriangle> some(body.begin(), body.begin() + 100);
-  EXPECT_TRUE(TargetOfBody(some, stock));
+  // A layer of 400 rows with 401 looks each: 2^24 looks and 256 for each cell do for 359.9.
+  const std::vector<StlTriangle> just(body.begin(), body.begin() + 359);
+  EXPECT_TRUE(TargetOfBody(just, stock));
+  const std::vector<StlTriangle> more(body.begin(), body.begin() + 360);
+  EXPECT_FALSE(TargetOfBody(more, stock));
 }
 
 // Each layer is 160,000 looks; asked at the first, and then after 4.2 million: every 27th.

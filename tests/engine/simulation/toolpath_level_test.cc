@@ -317,5 +317,24 @@ TEST(ToolpathLevel, PointsThatAreLeftKeepTimeAndAngles) {
   EXPECT_EQ(coarse[0].reached_us, way.reached_us);
 }
 
+// Who wants no more is asked no more, wherever in a run that is said.
+TEST(ToolpathLevel, WhoWantsNoMoreIsNotAskedAgain) {
+  int offered = 0;
+  ToolpathLevel level(0.08, [&](std::string_view) {
+    ++offered;
+    return false;
+  });
+  for (int b = 0; b < 4; ++b) {
+    std::vector<ToolpathPoint> zigzag;
+    for (int k = 0; k < 3000; ++k) {
+      const int n = b * 2999 + k;
+      zigzag.push_back({n * 1000, n % 2 * 1000, 0});
+    }
+    level.Take(OneRun(zigzag, b + 1, b * 3000, b * 3000 + 3000));
+  }
+  level.Finish();
+  EXPECT_EQ(offered, 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

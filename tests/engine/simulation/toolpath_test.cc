@@ -235,6 +235,41 @@ TEST(ToolpathBlock, LimitsOfABlock) {
   EXPECT_EQ(WhyNot({.start = VarintOf(latest - 9)}), "run 1 cannot be read");
 }
 
+// Why bytes are no block: they are other ones, of another version, or go on behind its end.
+TEST(ToolpathBlock, WhatIsNoBlockIsSaid) {
+  const auto why_not = [](const std::string& bytes) {
+    const Result<ToolpathBlock> read = DecodeToolpathBlock(bytes);
+    return read ? std::string() : std::string(read.error().detail);
+  };
+  const std::string good = ByHand{}.bytes();
+  EXPECT_EQ(why_not(good), "");
+  EXPECT_EQ(why_not(""), "not a block");
+  EXPECT_EQ(why_not("U" + good.substr(1)), "not a block");
+  EXPECT_EQ(why_not("T"), "another version");
+  for (const char version : {'\x01', '\x03'}) {
+    std::string other = good;
+    other[1] = version;
+    EXPECT_EQ(why_not(other), "another version");
+  }
+  EXPECT_EQ(why_not(good + "x"), "bytes after the last run");
+}
+
+// A head that stands otherwise at the beginning of a run alone has turned, too.
+TEST(ToolpathBlock, AHeadMayHaveTurnedBeforeARun) {
+  for (const bool of_b : {false, true}) {
+    ToolpathBlock block;
+    block.points = {{0, 0, 0}, {1000, 0, 0}, {5000, 0, 0}, {6000, 0, 0}};
+    (of_b ? block.points[2].b_urad : block.points[2].a_urad) = 50;
+    block.reached_us = {0, 10'000, 20'000, 30'000};
+    block.runs = {
+        {.step = 1, .start_us = 0, .end_us = 10'000, .first_point = 0, .point_count = 2},
+        {.step = 2, .start_us = 20'000, .end_us = 30'000, .first_point = 2, .point_count = 2}};
+    const Result<ToolpathBlock> back = DecodeToolpathBlock(EncodeToolpathBlock(block));
+    ASSERT_TRUE(back);
+    ExpectEqual(*back, block);
+  }
+}
+
 // A run that is not joined has two points of its own at least, a joined one has one.
 TEST(ToolpathBlock, PointsOfARun) {
   const std::string two("\x02\0\0\x04\0\0", 6);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
+
 namespace rmlcell::simulation {
 namespace {
 
@@ -88,6 +90,45 @@ TEST(WorkTable, EveryFigureAddsUp) {
   EXPECT_EQ(report.programs.at(1).total, twice);
   ASSERT_EQ(report.steps.size(), 1u);
   EXPECT_EQ(report.steps[0].figures, twice);
+}
+
+// One figure alone is kept, whichever it is, and though it is no more than 1.
+TEST(WorkTable, EachFigureIsKeptByItself) {
+  using Change = void (*)(WorkFigures&);
+  const Change changes[] = {
+      [](WorkFigures& work) { work.steps = 1; },
+      [](WorkFigures& work) { work.time.motion = SimTime(1); },
+      [](WorkFigures& work) { work.time.settling = SimTime(1); },
+      [](WorkFigures& work) { work.time.dwell = SimTime(1); },
+      [](WorkFigures& work) { work.time.pierce = SimTime(1); },
+      [](WorkFigures& work) { work.time.condition = SimTime(1); },
+      [](WorkFigures& work) { work.time.operator_wait = SimTime(1); },
+      [](WorkFigures& work) { work.time.spin_up = SimTime(1); },
+      [](WorkFigures& work) { work.time.load = SimTime(1); },
+      [](WorkFigures& work) { work.time.standstill = SimTime(1); },
+      [](WorkFigures& work) { work.tip_path_mm = 1.0; },
+      [](WorkFigures& work) { work.cut_mm = 1.0; },
+      [](WorkFigures& work) { work.travel_mm = 1.0; },
+      [](WorkFigures& work) { work.plunge_mm = 1.0; },
+      [](WorkFigures& work) { work.beam_on = SimTime(1); },
+      [](WorkFigures& work) { work.beam_switches = 1; },
+      [](WorkFigures& work) { work.pierces = 1; },
+      [](WorkFigures& work) { work.plunges = 1; },
+      [](WorkFigures& work) { work.shutter_open = SimTime(1); },
+      [](WorkFigures& work) { work.cut_energy_j = 1.0; },
+      [](WorkFigures& work) { work.pierce_energy_j = 1.0; },
+  };
+  for (std::size_t k = 0; k < std::size(changes); ++k) {
+    WorkFigures work;
+    changes[k](work);
+    WorkTable table;
+    table.Add({.program = 1, .step = 1}, work);
+    RunReport report;
+    table.WriteTo(report);
+    EXPECT_EQ(report.total, work) << k;
+    EXPECT_EQ(report.programs.at(1).total, work) << k;
+    EXPECT_EQ(report.steps.at(0).figures, work) << k;
+  }
 }
 
 WorkFigures Cut(double length_mm, double energy_j) {

@@ -131,6 +131,24 @@ TEST(Compiler, SequenceNumbersNameTheirOwnStep) {
                                                            {ErrorCode::kLabelDuplicate, 5}}));
 }
 
+// What others have to say is asked of good programs, and by those who want advice.
+TEST(Compiler, OthersAreAskedAboutGoodProgramsOnly) {
+  const auto asked = [](std::string_view text, bool advice) {
+    int times = 0;
+    const Compilation compiled =
+        Compile(text, "",
+                {.advice = advice, .further_advice = [&](const ParsedProgram& program, Findings&) {
+                   EXPECT_EQ(program.text, text);
+                   ++times;
+                 }});
+    EXPECT_EQ(compiled.diagnostics.size(), compiled.ok ? 0U : 1U);
+    return times;
+  };
+  EXPECT_EQ(asked("SPEED 5\n", true), 1);
+  EXPECT_EQ(asked("SPEED 5\n", false), 0);
+  EXPECT_EQ(asked("SPEED 101\n", true), 0);
+}
+
 // Findings are bounded; the rest is counted.
 TEST(Compiler, TenThousandErrorsAreCountedNotListed) {
   std::string text;

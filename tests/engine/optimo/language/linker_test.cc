@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "engine/core/units.h"
 #include "tests/engine/optimo/language/compile_text.h"
 
 namespace rmlcell::optimo {
@@ -55,6 +56,37 @@ TEST_F(Linker, AFunctionIsNotTheMainProgram) {
   Store(32, "FUNCTION 44\n");
   Store(44, "FUNCTION 32\n");
   EXPECT_EQ(ErrorOfLinking(32), 7104);
+}
+
+// OPT-9.03, OPT-9.04, OPT-9.06, OPT-9.11, OPT-E.7034: which FUNCTION, where it stands, and what is
+// wrong with its bytes.
+TEST_F(Linker, WhatIsWrongIsSaidWithItsPlace) {
+  const auto said = [this](int slot) {
+    const Result<Executable> executable = Link(slot, Lookup(), {});
+    return executable ? std::string() : std::string(executable.error().detail);
+  };
+  EXPECT_EQ(said(33), "program 33 is not stored");
+  Store(32, "SPEED 5\nFUNCTION 44\n");
+  EXPECT_EQ(said(32), "no object for FUNCTION 44 in program 32, step 2");
+  objects_[44] = "no object at all";
+  EXPECT_EQ(ErrorOfLinking(44), 7034);
+  EXPECT_EQ(said(44), "this is no object");
+  EXPECT_EQ(ErrorOfLinking(32), 7034);
+  EXPECT_EQ(said(32), "FUNCTION 44: this is no object");
+  Store(44, "FUNCTION 32\n");
+  EXPECT_EQ(said(32), "FUNCTION 32 in program 44, step 1 is the main program");
+  Store(44, "TASK 2\n");
+  EXPECT_EQ(said(32), "FUNCTION 44 has TASK, but no TASK 1");
+  // One that was given by hand stands in no program.
+  Store(kNoProgram, "FUNCTION 45\n");
+  EXPECT_EQ(said(kNoProgram), "no object for FUNCTION 45");
+}
+
+// The published values of FNV-1a with 64 bits.
+TEST(HashOfAnObject, IsThePublishedOne) {
+  EXPECT_EQ(HashObject(""), 0xCBF29CE484222325U);
+  EXPECT_EQ(HashObject("a"), 0xAF63DC4C8601EC8CU);
+  EXPECT_EQ(HashObject("foobar"), 0x85944171F73967E8U);
 }
 
 // OPT-9.07

@@ -87,6 +87,21 @@ TEST(Silence, WhatSilencesNothingIsTold) {
   EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 7321\n"), Texts{});
 }
 
+// Where not all findings are told nobody knows what an allowance would have silenced.
+TEST(Silence, OfUntoldFindingsNothingIsIdle) {
+  const std::string text = "OL[20] = ON\nOL[21] = ON\nSPEED 5 ; rmlcell: allow 7413\n";
+  const std::string idle = "allow 7413 silences nothing here";
+  EXPECT_EQ(Details(text, {.diagnostics_max = 1}), Texts{"OL[20] is used by the system"});
+  EXPECT_EQ(Details(text, {.diagnostics_max = 2}),
+            (Texts{"OL[20] is used by the system", "OL[21] is used by the system", idle}));
+}
+
+// A number of many digits is that of no finding: this one is 7412 and ten times 2^32.
+TEST(Silence, ALongNumberIsOfNoFinding) {
+  EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 42949680372\n"),
+            Texts{"100000 is the number of no finding"});
+}
+
 // What only a run can find is no idle allowance: all others are told.
 TEST(Silence, WhatRunsFindIsNotIdle) {
   const std::set<int> of_runs = {7110, 7304, 7306, 7316, 7320, 7321, 7408, 7409, 7411};
