@@ -165,6 +165,32 @@ TEST_P(StoreConformance, AwaitedOneThatDoesNotFitIsLeft) {
   EXPECT_EQ(Must(store().GetJob(job)).state, JobState::kQueued);
 }
 
+// Who asks for the runs of one machine, or for one job, does not ask for those of another.
+TEST_P(StoreConformance, AwaitedEachIsGivenWhatItAsksFor) {
+  const Asking asking(store());
+  JobRequest of_first = RequestOf("a", "RUN");
+  of_first.run_machines = {"m1"};
+  JobRequest of_second = RequestOf("b", "RUN");
+  of_second.run_machines = {"m2"};
+  const auto first = asking.Await(of_first);
+  const auto second = asking.Await(of_second);
+  const std::int64_t run = Submit("RUN", "m2").id;
+  EXPECT_THAT(JobsOf(*second), ElementsAre(run));
+  EXPECT_EQ(AnswersOf(*first), 0);
+  const std::int64_t runs = (Submit(), Acquire().job.id);
+  const std::int64_t held = Must(store().SubmitAndWait({.kind = "SIMULATE", .held = true})).job.id;
+  JobRequest for_one = RequestOf("c");
+  for_one.job = runs;
+  JobRequest for_another = RequestOf("d");
+  for_another.job = held;
+  const auto one = asking.Await(for_one);
+  const auto another = asking.Await(for_another);
+  EXPECT_EQ(AnswersOf(*another), 0);
+  Must(store().LetGo(held, {}));
+  EXPECT_THAT(JobsOf(*another), ElementsAre(held));
+  EXPECT_EQ(AnswersOf(*one), 0);
+}
+
 // The one that has waited longest first, and one job each, also of those that come together.
 TEST_P(StoreConformance, AwaitedWhoWaitsLongestIsFirst) {
   const Asking asking(store());

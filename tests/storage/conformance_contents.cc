@@ -201,6 +201,31 @@ TEST_P(StoreConformance, EndsAndCancelsThatDoNotWait) {
   EXPECT_EQ(Must(store().ReadArtifact(job, "report")), "the report");
 }
 
+// records.h NewArtifact: what names a content that there is none of is stored by no call.
+TEST_P(StoreConformance, WhatNamesNoContentIsNotStored) {
+  const std::vector<NewArtifact> nameless = {{.name = "a", .existing_sha256 = "no hash"}};
+  const auto submitted = Answered<SubmittedJob>(
+      [&](auto done) { store().Submit({.kind = "CHECK", .attachments = nameless}, done); });
+  EXPECT_EQ(CodeOf(submitted), ErrorCode::kCellNotFound);
+  EXPECT_EQ(Must(store().CountJobs()).queued, 0);
+  const std::int64_t job = SubmitOne(store());
+  const Lease lease = AcquireAll(store()).at(0).lease;
+  const auto send = [&](const std::vector<NewArtifact>& artifacts) {
+    const auto end = std::make_shared<const JobEnd>(JobEnd{.artifacts = artifacts});
+    return CodeOf(
+        Answered<FinishedJob>([&](auto done) { store().SendFinish(lease, end, {}, done); }));
+  };
+  EXPECT_EQ(CodeOf(store().Finish(lease, {.artifacts = nameless})), ErrorCode::kCellNotFound);
+  EXPECT_EQ(send(nameless), ErrorCode::kCellNotFound);
+  // One that goes ahead in parts changes nothing of that.
+  EXPECT_EQ(send({{.name = "large", .bytes = Pattern(kChunkBytes + 1)}, nameless[0]}),
+            ErrorCode::kCellNotFound);
+  EXPECT_EQ(Must(store().GetJob(job)).state, JobState::kRunning);
+  Must(store().Finish(lease, {}));
+  EXPECT_EQ(CodeOf(store().AddProducts(job, {.artifacts = nameless})), ErrorCode::kCellNotFound);
+  EXPECT_TRUE(Must(store().ListArtifacts(job)).empty());
+}
+
 // A worker that is done is given the next job with the same commit: what follows the end of one,
 // and nothing with an end that is not stored.
 TEST_P(StoreConformance, AnEndBringsTheNextJob) {

@@ -152,6 +152,22 @@ TEST_P(StoreConformance, WhatAHostWritesIsOneWrite) {
   EXPECT_EQ(Must(store().AllEvents(before, 10)).size(), 2U);
 }
 
+// store.h MachineWrite: who has no mark to write leaves that which is there.
+TEST_P(StoreConformance, AMachineThatOnlyTellsKeepsItsMark) {
+  PutMachine("m");
+  const MachineLease lease = Must(store().TakeMachine(Claim("a")));
+  ASSERT_TRUE(store().AppendMachine(lease, MarkOf(1, "one")));
+  const std::int64_t before = Must(store().LastPosition());
+  MachineWrite told;
+  told.events = {{.kind = "input", .payload = "p"}};
+  ASSERT_TRUE(store().AppendMachine(lease, told));
+  const std::vector<EventRecord> events = Must(store().AllEvents(before, 10));
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].payload, "p");
+  EXPECT_EQ(Must(store().GetMachineMark("m"))->sequence, 1);
+  EXPECT_EQ(Must(store().GetMachineMark("m"))->state, "one");
+}
+
 // LIVE-5.07: the end of a RUN and where it left the machine are one transaction.
 TEST_P(StoreConformance, TheEndOfARunLeavesTheMachineWhereItIs) {
   PutMachine("m");

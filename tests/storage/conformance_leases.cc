@@ -336,6 +336,55 @@ TEST_P(StoreConformance, RunThatNeverBeganWaitsAgain) {
   EXPECT_EQ(Acquire("w", "RUN").lease.attempt, 2);
 }
 
+// LIVE-5.01: where a person is wanted it waits for one.
+TEST_P(StoreConformance, RunThatIsHandedBackToAPersonIsHeld) {
+  const LeasedJob leased = (Submit("RUN"), Acquire("w", "RUN"));
+  LossPolicy policy = PolicyOfTests();
+  policy.not_begun = true;
+  policy.held = true;
+  const JobRecord back = Must(store().HandBack(leased.lease, policy));
+  EXPECT_EQ(back.state, JobState::kQueued);
+  EXPECT_TRUE(back.held);
+  EXPECT_EQ(Must(store().GetJob(leased.job.id)).wait, WaitReason::kHeld);
+  EXPECT_FALSE(Must(store().Acquire("w", {"RUN"}, kLease, {})));
+  Must(store().LetGo(leased.job.id, {}));
+  EXPECT_EQ(Acquire("w", "RUN").lease.attempt, 2);
+}
+
+// LIVE-5.01: nobody but its machine would end one whose cancel came meanwhile: it ends as it is
+// given back. One of another kind is ended by whoever takes it next.
+TEST_P(StoreConformance, RunThatNeverBeganAndIsCancelledEnds) {
+  LossPolicy policy = PolicyOfTests();
+  policy.not_begun = true;
+  const LeasedJob run = (Submit("RUN"), Acquire("w", "RUN"));
+  Must(store().RequestCancel(run.job.id, {}));
+  const JobRecord ended = Must(store().HandBack(run.lease, policy));
+  EXPECT_EQ(ended.state, JobState::kCancelled);
+  ASSERT_TRUE(ended.outcome);
+  EXPECT_EQ(ended.outcome->code, ErrorCode::kCellCancelled);
+  EXPECT_EQ(ended.attempts, 0);
+  EXPECT_THAT(KindsOf(EventsOf(run.job.id)), ElementsAre("cancelled"));
+  EXPECT_EQ(EventsOf(run.job.id)[0].attempt, run.lease.attempt);
+  EXPECT_THAT(EndsOf(Must(store().ListAttempts(run.job.id))), ElementsAre("handed back"));
+  EXPECT_EQ(Must(store().GetJob(run.job.id)).state, JobState::kCancelled);
+  const LeasedJob other = (Submit(), Acquire());
+  Must(store().RequestCancel(other.job.id, {}));
+  EXPECT_EQ(Must(store().HandBack(other.lease, policy)).state, JobState::kQueued);
+  EXPECT_THAT(KindsOf(EventsOf(other.job.id)), ElementsAre("requeued"));
+  EXPECT_TRUE(Acquire().job.cancel_requested);
+}
+
+// store.h LossPolicy: its outcome is one that ends a job.
+TEST_P(StoreConformance, WhatIsGivenBackHasAnOutcomeThatEndsIt) {
+  const LeasedJob leased = (Submit(), Acquire());
+  LossPolicy policy = PolicyOfTests();
+  policy.outcome.state = JobState::kRunning;
+  EXPECT_EQ(CodeOf(store().HandBack(leased.lease, policy)), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(store().Abandon(leased.lease, policy)), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(store().Expire(policy)), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(Must(store().GetJob(leased.job.id)).state, JobState::kRunning);
+}
+
 // scale-out.md section 16 and OPT-1.15: what a run compiled comes with its end, for the object that
 // it had.
 TEST_P(StoreConformance, FinishKeepsExecutablesOfUnchangedObjects) {

@@ -24,15 +24,15 @@ Plan& ThePlan() {
   return plan;
 }
 
-bool MayFail(std::string_view text) {
+bool MayFail(Of of, std::string_view text) {
   constexpr std::array<std::string_view, 5> kBeginnings = {"SELECT ", "INSERT ", "UPDATE ",
                                                            "DELETE ", "PRAGMA user_version"};
-  // What is swept beside an operation does not make it fail.
   constexpr std::array<std::string_view, 4> kSweeping = {
       "SELECT blob FROM upload", "SELECT id FROM blob WHERE refs = 0",
       "UPDATE blob SET sha256 = NULL", "DELETE FROM blob"};
   const auto begins = [&](std::string_view beginning) { return text.starts_with(beginning); };
-  return std::ranges::any_of(kBeginnings, begins) && std::ranges::none_of(kSweeping, begins);
+  return std::ranges::any_of(kBeginnings, begins) &&
+         std::ranges::any_of(kSweeping, begins) == (of == Of::kSweeping);
 }
 
 int StatementBegins(unsigned, void* connection, void* statement, void*) {
@@ -40,8 +40,8 @@ int StatementBegins(unsigned, void* connection, void* statement, void*) {
   const std::string_view text = sqlite3_sql(static_cast<sqlite3_stmt*>(statement));
   Plan& plan = ThePlan();
   const std::lock_guard lock(plan.mutex);
-  const Of of = sqlite3_db_readonly(handle, "main") == 1 ? Of::kReaders : Of::kWriter;
-  if (!plan.armed || of != plan.of || !MayFail(text)) return 0;
+  const bool reads = sqlite3_db_readonly(handle, "main") == 1;
+  if (!plan.armed || reads != (plan.of == Of::kReaders) || !MayFail(plan.of, text)) return 0;
   if (plan.text.empty() && plan.left-- == 0) plan.text = text;
   if (plan.text == text) sqlite3_interrupt(handle);
   return 0;

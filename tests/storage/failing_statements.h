@@ -9,7 +9,8 @@ namespace rmlcell::storage::failing_statements {
 // Only connections that are opened from now on.
 void Register();
 
-enum class Of { kWriter, kReaders };
+// What is swept beside an operation does not make it fail, and is asked for by itself.
+enum class Of { kWriter, kReaders, kSweeping };
 // The statement of this number from now on, counted from 0, and each with the same text: an
 // operation that is run again meets it again. Those that begin or end a transaction never fail.
 void Fail(Of of, int number);

@@ -245,5 +245,24 @@ TEST_F(SqliteFailingSlices, EndWithTheFirstFailure) {
   }
 }
 
+// What is due of the uploads; then of each content that it is there, that it is found no more, its
+// chunks and itself, and that there is no other.
+TEST_F(SqliteFailingSlices, EndWithTheFirstFailureOfASweep) {
+  Must(connection_.database.Execute(
+      "INSERT INTO blob (id, sha256, size, refs, holds) VALUES (1, x'01', 1, 0, 0);"
+      "INSERT INTO blob_chunk (blob, number, content) VALUES (1, 0, x'00')"));
+  for (int number = 0; number <= 6; ++number) {
+    Must(connection_.database.Execute("BEGIN"));
+    failing_statements::Fail(failing_statements::Of::kSweeping, number);
+    const auto slice = Slice({});
+    const std::string failed = failing_statements::Heal();
+    EXPECT_EQ(failed.empty(), number == 6) << number << " " << failed;
+    EXPECT_EQ(!slice, number < 6) << failed;
+    static_cast<void>(connection_.database.Execute(slice ? "COMMIT" : "ROLLBACK"));
+    EXPECT_EQ(Count("blob"), number < 6 ? 1 : 0) << failed;
+    EXPECT_EQ(Count("blob_chunk"), number < 6 ? 1 : 0) << failed;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::storage::sqlite

@@ -195,6 +195,24 @@ TEST_F(SqliteKeep, WhatWaitsForADecisionStays) {
   EXPECT_EQ(Jobs(), std::vector<std::int64_t>{5});
 }
 
+// LIVE-5.10: where all that are left wait for a decision, none goes, though they are more than are
+// kept; what ends behind them does.
+TEST_F(SqliteKeep, NoneGoesWhereAllWaitForADecision) {
+  Open(0, 0);
+  for (int i = 0; i < 2; ++i) RunJob();
+  bed_->Close();
+  ExecuteIn(bed_->path(),
+            "UPDATE job SET state = 5, machine = 'mill-1';"
+            "INSERT INTO machine_mark VALUES ('mill-1', 1, 1, x'', x'', 0, 0)");
+  bed_->options().keep_finished_jobs = 1;
+  bed_->Reopen();
+  for (const std::int64_t job : {3, 4}) {
+    EXPECT_EQ(RunJob(), job);
+    WaitForCount("job", 2);
+    EXPECT_THAT(Jobs(), ElementsAre(2, 1));
+  }
+}
+
 // A write that is undone changes no mark.
 TEST_F(SqliteKeep, MarksFollowWhatIsCommitted) {
   Open(0, 0);

@@ -48,8 +48,29 @@ TEST(SqliteRefusals, RecordsWithoutTheirBytes) {
   ASSERT_EQ(CodeOf(artifact), kCorruptFile);
   EXPECT_THAT(artifact.error().detail, HasSubstr("artifact lost of job 1"));
   EXPECT_EQ(CodeOf(bed.store().ListArtifacts(1)), kCorruptFile);
+  EXPECT_EQ(CodeOf(bed.store().ReadArtifact(1, "lost")), kCorruptFile);
+  EXPECT_EQ(CodeOf(bed.store().OpenArtifact(1, "lost")), kCorruptFile);
   EXPECT_EQ(Must(bed.store().GetArtifact(1, "main")).size, 10);
   EXPECT_EQ(Must(bed.store().ReadArtifact(1, "main")), "main bytes");
+}
+
+// 9104: a job in a state that there is none of is told as damaged, by lists and by the job that
+// waits for it, too.
+TEST(SqliteRefusals, AJobInNoState) {
+  SqliteBed bed;
+  bed.LeaveUnchecked();
+  for (int i = 0; i < 2; ++i) Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+  Must(bed.store().SubmitAndWait({.kind = "CHECK", .after = {1}}));
+  bed.Close();
+  ExecuteIn(bed.path(), "UPDATE job SET state = 6 WHERE id = 1");
+  bed.Reopen();
+  for (const std::int64_t job : {1, 3}) {
+    const auto damaged = bed.store().GetJob(job);
+    ASSERT_EQ(CodeOf(damaged), kCorruptFile) << job;
+    EXPECT_EQ(damaged.error().detail, "job 1 has state 6");
+  }
+  EXPECT_EQ(CodeOf(bed.store().ListJobs({})), kCorruptFile);
+  EXPECT_EQ(Must(bed.store().GetJob(2)).state, JobState::kQueued);
 }
 
 // A job of the queue that cannot be leased does not keep the end of another one from the disk.

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
+#include <future>
+#include <memory>
 #include <set>
 
 #include "engine/core/hex.h"
@@ -96,6 +98,30 @@ class SqliteStatements : public testing::Test {
     return Must(store().AcquireJobs({.worker = "w", .server = "s", .job = job, .duration = kLease}))
         .at(0)
         .lease;
+  }
+
+  // A statement with this beginning, the first that comes, makes `step` fail.
+  template <class Step>
+  void FailsAt(const std::string& beginning, Step step) {
+    for (int number = 0;; ++number) {
+      Settle();  // what the one before let go of
+      failing_statements::Fail(Of::kWriter, number);
+      const auto done = step();
+      const std::string failed = failing_statements::Heal();
+      ASSERT_FALSE(failed.empty()) << "no statement begins with " << beginning;
+      if (!failed.starts_with(beginning)) continue;
+      EXPECT_EQ(CodeOf(done), ErrorCode::kCellStoreFailed) << failed;
+      return;
+    }
+  }
+  // What a worker that waits for jobs of this kind is given.
+  using Given = std::future<Result<std::vector<LeasedJob>>>;
+  Given Await(const std::string& kind) {
+    const auto answer = std::make_shared<std::promise<Result<std::vector<LeasedJob>>>>();
+    store().AwaitJobs(
+        {.worker = "w", .server = "s", .kinds = {kind}, .duration = kLease},
+        [answer](Result<std::vector<LeasedJob>> jobs) { answer->set_value(std::move(jobs)); });
+    return answer->get_future();
   }
 
   SqliteBed bed_{[] {
@@ -240,6 +266,93 @@ TEST_F(SqliteStatements, OfTheQueue) {
   act(QueueAct::kCancel);
   Writes("cancelled", [&] { return store().RequestCancel(first, events); });
   Writes("deleted", [&] { return store().DeleteJob(first, "anna"); });
+}
+
+TEST_F(SqliteStatements, OfWhatWaits) {
+  const std::int64_t first = Submit({.kind = "CHECK"});
+  const std::int64_t behind = Writes("a job behind another", [&] {
+                                return store().SubmitAndWait({.kind = "CHECK", .after = {first}});
+                              }).job.id;
+  Reads("a job behind another", [&] { return store().GetJob(behind); });
+  const std::vector<std::int64_t> jobs = {behind};
+  const auto changed = Writes("let go what waits for another", [&] {
+    return store().ActOn(jobs, QueueAct::kRelease,
+                         [](const JobRecord&) { return NewEvent{.kind = "queue"}; });
+  });
+  EXPECT_TRUE(changed.empty());
+  Reads("whether there are orders", [&] { return store().TakeOrders("s"); });
+  const Lease run = LeaseOf(Submit({.machine = "m", .kind = "RUN"}));
+  const auto waits = Writes("a run of a machine that is busy",
+                            [&] { return store().SubmitAndWait({.machine = "m", .kind = "RUN"}); });
+  EXPECT_EQ(waits.job.wait, WaitReason::kMachineBusy);
+  EXPECT_EQ(waits.job.waits_for, run.job);
+  Must(store().RequestCancel(run.job, {}));
+  LossPolicy policy = PolicyOfTests();
+  policy.not_begun = true;
+  const JobRecord ended =
+      Writes("a cancelled run is given back", [&] { return store().HandBack(run, policy); });
+  EXPECT_EQ(ended.state, JobState::kCancelled);
+}
+
+// Parts that go ahead of the record that names them: without one of them there is no record.
+TEST_F(SqliteStatements, OfPartsThatGoAhead) {
+  const std::string body = Noise(2 * kChunkBytes + 1, 3);
+  const auto put = [&](const std::string& id) {
+    return [&, id] { return store().PutProject({.id = id, .body = body}, 0); };
+  };
+  FailsAt("INSERT INTO blob (", put("p"));
+  FailsAt("INSERT INTO blob_chunk ", put("p"));
+  EXPECT_EQ(CodeOf(store().GetProject("p")), ErrorCode::kCellNotFound);
+  Must(put("p")());
+  FailsAt("UPDATE blob SET holds", put("q"));  // it is there already
+  EXPECT_EQ(CodeOf(store().GetProject("q")), ErrorCode::kCellNotFound);
+  Must(put("q")());
+  for (const char* id : {"p", "q"}) EXPECT_TRUE(Must(store().GetProject(id)).body == body) << id;
+}
+
+// A worker that waits, and cannot be given the job that comes, is told so; the job is there all the
+// same, and counted once.
+TEST_F(SqliteStatements, OfAJobForSomebodyWhoWaits) {
+  std::int64_t made = 0;
+  for (int number = 0;; ++number) {
+    const std::string kind = Numbered("CHECK", number);
+    Given given = Await(kind);
+    Settle();
+    failing_statements::Fail(Of::kWriter, number);
+    const auto submitted = store().SubmitAndWait({.kind = kind});
+    const std::string failed = failing_statements::Heal();
+    ASSERT_FALSE(failed.empty()) << "nobody was given a job";
+    if (submitted) ++made;
+    if (!failed.starts_with("INSERT INTO lease")) continue;
+    ASSERT_TRUE(submitted) << submitted.error().detail;
+    EXPECT_EQ(CodeOf(given.get()), ErrorCode::kCellStoreFailed);
+    EXPECT_EQ(Must(store().GetJob(submitted->job.id)).state, JobState::kQueued);
+    EXPECT_TRUE(Must(store().ListAttempts(submitted->job.id)).empty());
+    EXPECT_EQ(Must(store().CountJobs()).queued, made);
+    EXPECT_EQ(Must(store().CountJobs()).running, 0);
+    return;
+  }
+}
+
+// The same of one that comes when the job is there.
+TEST_F(SqliteStatements, OfARequestThatFindsItsJob) {
+  for (int number = 0;; ++number) {
+    const std::string kind = Numbered("CHECK", number);
+    const std::int64_t job = Submit({.kind = kind});
+    failing_statements::Fail(Of::kWriter, number);
+    const auto leased = Await(kind).get();
+    const std::string failed = failing_statements::Heal();
+    const JobState state = Must(store().GetJob(job)).state;
+    if (leased) {
+      ASSERT_EQ(leased->size(), 1U) << failed;
+      EXPECT_EQ(state, JobState::kRunning) << failed;
+      if (failed.empty()) return;
+      EXPECT_TRUE(failed.starts_with("SELECT specification")) << failed;  // it is begun without
+    } else {
+      EXPECT_EQ(CodeOf(leased), ErrorCode::kCellStoreFailed) << failed;
+      EXPECT_EQ(state, JobState::kQueued) << failed;
+    }
+  }
 }
 
 // In front of one that stands next to another, where all of the line are moved.

@@ -209,12 +209,45 @@ TEST(Comparison, ThePicture) {
   ASSERT_TRUE(outcome);
   const std::string& picture = outcome->response.picture_svg();
   EXPECT_THAT(picture, HasSubstr("<svg"));
-  EXPECT_THAT(picture, HasSubstr("one.S"));
-  EXPECT_THAT(picture, HasSubstr("two.S"));
+  EXPECT_THAT(picture, HasSubstr("<title>one.S → two.S</title>"));
   EXPECT_THAT(picture, Not(HasSubstr("here/one.S")));
   EXPECT_THAT(picture, Not(HasSubstr("new\\two.S")));
   EXPECT_THAT(picture, HasSubstr("two.S: stopped at 1/4, OPT-E7507"));
   EXPECT_THAT(picture, Not(HasSubstr("one.S: ")));  // it ran to its end
+}
+
+// On which machine both ran, and what was changed of it.
+TEST(Comparison, ThePictureNamesItsMachine) {
+  const std::string line = "COORD ABSOL\nPATH LIN\nMOVE (100.,100.,-100.,0.,0.)\n";
+  const v1::DiffProgramsResponse changed =
+      Compared(
+          line, line,
+          {.picture = true, .parameters = {{"GAS_CHANNELS", "3"}}, .parameters_of = "mine.toml"})
+          .response;
+  EXPECT_EQ(changed.family(), "optimo");
+  EXPECT_THAT(changed.picture_svg(),
+              HasSubstr("changed: GAS_CHANNELS 3 (profile: 2); by mine.toml"));
+  const v1::DiffProgramsResponse own =
+      Compared(line, line, {.picture = true, .own = {.name = "The old one"}}).response;
+  EXPECT_EQ(own.machine_name(), "The old one");
+  EXPECT_THAT(own.picture_svg(), HasSubstr("The old one, based on "));
+  EXPECT_THAT(own.picture_svg(), Not(HasSubstr("changed: ")));
+}
+
+// What runs in another slot stops there.
+TEST(Comparison, EachRunsInItsSlot) {
+  ComparedProgram halts = TextOf("DELAY 1\nSTOP\n", "b.S");
+  halts.slot = 7;
+  const auto outcome = ComparePrograms(TextOf("DELAY 1\n"), halts, {});
+  ASSERT_TRUE(outcome) << outcome.error().detail;
+  EXPECT_THAT(outcome->response.notes(), ElementsAre("b.S: stopped at 7/2, OPT-E7507"));
+}
+
+// A comparison gives no advice: a process is ON at the end of both.
+TEST(Comparison, GivesNoAdvice) {
+  const ComparisonOutcome outcome = Compared("WORK 0,0/ON\nDELAY 1\n", "WORK 0,0/ON\nDELAY 2\n");
+  EXPECT_TRUE(outcome.diagnostics[0].empty());
+  EXPECT_TRUE(outcome.diagnostics[1].empty());
 }
 
 TEST(Comparison, TheNoteSaysBudgetExceededInWords) {

@@ -9,7 +9,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <thread>
+
+#include "tests/proto/bridge/small_files.h"
 
 namespace rmlcell::bridge {
 namespace {
@@ -128,6 +131,32 @@ TEST_F(ProgramStreamTest, WhatCannotBeReadIsTold) {
   EXPECT_TRUE(*opened->bytes == text);
 }
 
+// What was told so far is to be seen before somebody waits for more.
+TEST_F(ProgramStreamTest, BeforeItWaitsItSaysSo) {
+  const std::string path = folder_ + "/pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const std::string text = Numbered(50'000);
+  const int pipe = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(pipe, 0);
+  const auto put = [&](std::size_t begin, std::size_t end) {
+    EXPECT_EQ(::write(pipe, text.data() + begin, end - begin), static_cast<ssize_t>(end - begin));
+  };
+  put(0, 40'000);
+  int waits = 0;
+  auto opened = ProgramStream::Open(path, kLimit, [&] {
+    if (++waits > 1) return;
+    put(40'000, 50'000);
+    ::close(pipe);
+  });
+  ASSERT_TRUE(opened);
+  opened->bytes.ReadOn(40'000);
+  EXPECT_EQ(opened->bytes->size(), 40'000U);
+  EXPECT_EQ(waits, 0);
+  opened->bytes.ReadAll();
+  EXPECT_TRUE(*opened->bytes == text);
+  EXPECT_EQ(waits, 1);
+}
+
 // What errno says of an earlier call is nothing of a file that ends.
 TEST_F(ProgramStreamTest, ItsEndIsItsEnd) {
   const std::string path = File("12345");
@@ -149,6 +178,40 @@ TEST_F(ProgramStreamTest, WithoutATemporaryFolderItIsWhole) {
   EXPECT_TRUE(*opened->bytes == text);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kCellTooLarge);
+}
+
+// No room for the beginning, or for all that may come: as without a folder.
+TEST_F(ProgramStreamTest, WithoutRoomForAllThatMayComeItIsWhole) {
+  const std::string text = Numbered(100'000);
+  const std::string path = File(text);
+  const auto on_a_full_disk = [&] {
+    const SmallFiles small(10'000);
+    return ProgramStream::Open(path, kLimit, nullptr);
+  };
+  const auto without_limit = [&] {
+    return ProgramStream::Open(path, std::numeric_limits<std::int64_t>::max(), nullptr);
+  };
+  for (const auto& opened : {on_a_full_disk(), without_limit()}) {
+    ASSERT_TRUE(opened) << opened.error().detail;
+    EXPECT_EQ(opened->stream, nullptr);
+    EXPECT_TRUE(opened->bytes.whole());
+    EXPECT_TRUE(*opened->bytes == text);
+  }
+}
+
+// Later it ends there, and says why.
+TEST_F(ProgramStreamTest, AFullDiskEndsIt) {
+  ProgramStream::Opened opened = Open(File(Numbered(100'000)));
+  ASSERT_NE(opened.stream, nullptr);
+  {
+    const SmallFiles small(40'000);
+    opened.bytes.ReadAll();
+  }
+  EXPECT_TRUE(opened.bytes.whole());
+  EXPECT_EQ(opened.bytes->size(), ProgramStream::kBeginning);
+  ASSERT_FALSE(opened.stream->status());
+  EXPECT_EQ(opened.stream->status().error().code, ErrorCode::kCellFileUnwritable);
+  EXPECT_EQ(std::string(opened.stream->status().error().detail), "the temporary folder is full");
 }
 
 }  // namespace

@@ -461,6 +461,12 @@ TEST(TraceMessage, EachKindHasItsFields) {
   simulation::TraceRecord end = Record(TraceKind::kEnd);
   end.code.reset();
   EXPECT_EQ(ToProto(kGantry, end).code(), "");
+  // What says neither what it is nor why is a mistake of ours.
+  simulation::TraceRecord finding = Record(TraceKind::kFinding);
+  finding.code.reset();
+  finding.text = {};
+  EXPECT_EQ(ToProto(kGantry, finding).code(), "");
+  EXPECT_EQ(ToProto(kGantry, finding).text(), "an internal error");
 }
 
 // A mill has one axis that turns, and its stream counts it in degrees; a machine may have none.

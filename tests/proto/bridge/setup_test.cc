@@ -162,6 +162,15 @@ TEST(PrepareRun, ModesAndWhatIsNotAskedFor) {
   EXPECT_EQ(made->setup->budget.virtual_time, plain.budget.virtual_time);
 }
 
+TEST(PrepareRun, InputsThatCannotBeAreRefused) {
+  v1::SimulationOptions options;
+  options.add_inputs()->set_virtual_time_ns(-1);
+  const auto made = RunOptionsOf(options, {}, 12, machine::Mode::kCycle);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(made.error().detail, "virtual_time_ns must be 0 or later");
+}
+
 // Every program is translated, also behind one with errors; advice is for the main one alone.
 TEST(PrepareRun, FindingsOfEveryProgram) {
   const auto made =

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -72,6 +73,24 @@ TEST(ThreadPool, TellsWhatAPieceThrew) {
   EXPECT_EQ(done, 7);
   pool.Run(8, [&](std::size_t) { ++done; });
   EXPECT_EQ(done, 15);
+}
+
+// The third piece begins when the first has thrown: the second waits for it.
+TEST(ThreadPool, TellsTheFirstOfTwoThatThrew) {
+  ThreadPool pool(2);
+  std::latch third_has_begun(1);
+  std::string told;
+  try {
+    pool.Run(3, [&](std::size_t k) {
+      if (k == 0) throw std::runtime_error("the first");
+      if (k == 1) return third_has_begun.wait();
+      third_has_begun.count_down();
+      throw std::runtime_error("the third");
+    });
+  } catch (const std::runtime_error& error) {
+    told = error.what();
+  }
+  EXPECT_EQ(told, "the first");
 }
 
 TEST(ThreadPool, OfMaterialHasTwoThreadsAtMost) {

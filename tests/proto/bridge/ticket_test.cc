@@ -131,6 +131,20 @@ TEST(Ticket, ARunWithoutTheRightOneIsRefused) {
   EXPECT_EQ(said(&ticket, false), code + "other than in jobs/17: program");
 }
 
+// What the run needs is missing, whatever its ticket says.
+TEST(Ticket, ARunWithoutItsProgramIsRefused) {
+  Memory memory("rml1");
+  memory.Put(10, "PA;PU0,0;");
+  const v1::RunTicket ticket = memory.Ticket();
+  const v1::RunTicket* const none = nullptr;
+  memory.main_program = 11;
+  for (const v1::RunTicket* const one : {none, &ticket}) {
+    const Status may = CheckRun(memory.Run(), one, one == nullptr);
+    ASSERT_FALSE(may);
+    EXPECT_EQ(may.error().code, memory.family.info().empty_slot);
+  }
+}
+
 // LIVE-5.02
 TEST(Ticket, BindsParametersFamilyAndEngine) {
   Memory memory("rml1");

@@ -88,6 +88,15 @@ class HeardAgain : public testing::Test {
     return asked;
   }
 
+  // Up to where it is played when so many of these questions are answered with yes.
+  SimTime PlayedUntil(int answers) const {
+    int asked = 0;
+    const auto played =
+        Replay(recorded_, {.to = kEnd, .goes_on = [&](SimTime) { return ++asked <= answers; }});
+    EXPECT_TRUE(played) << played.error().detail;
+    return played ? played->until : kEnd;
+  }
+
   static constexpr SimTime kEnd = std::chrono::hours(10);
   SeldomHeard heard_;
   std::unique_ptr<machine::Machine> machine_;
@@ -134,6 +143,19 @@ TEST_F(HeardAgain, NobodyIsAskedWhereNothingIsLeftToPlay) {
   Begin(machine::StartRun{.program = 1});
   EXPECT_EQ(Asked(SimTime(0)), Asked(SimTime::max()));
   EXPECT_GT(Asked(SimTime(1)), Asked(SimTime(0)));
+}
+
+// LIVE-3.40: a stream of more commands than are read at a time: it is asked between two parts, too,
+// and the rest of them is not read for somebody who left. The first three times it is asked before
+// an entry, and before the end.
+TEST_F(HeardAgain, WhoLeavesDoesNotWaitForTheRestOfAStream) {
+  std::string stream = ";;^IN;!MC0;";
+  for (int i = 0; i < 100'000; ++i) stream += "V15;";
+  Make("rml1", "srm-20", stream);
+  Begin(machine::StartRun{.program = 1});
+  ASSERT_GT(Asked(kEnd), 4);
+  EXPECT_EQ(PlayedUntil(Asked(kEnd)), kEnd);
+  EXPECT_LT(PlayedUntil(3), kEnd);
 }
 
 }  // namespace

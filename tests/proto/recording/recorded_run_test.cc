@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -37,10 +39,12 @@ class AllHeard final : public machine::RunObserver {
   void OnWait(const machine::Wait& wait) override { Add(wait.end, wait.place, "wait"); }
   void OnHalt(const machine::Halt& halt) override {
     Add(halt.at, halt.place, "halt");
+    *EventAt(halt.at).mutable_halted() = HaltedOf(halt);
     halted.push_back({halt.at, HaltedOf(halt)});
   }
   void OnResume(SimTime at, const machine::Place& place) override {
     Add(at, place, "resume");
+    *EventAt(at).mutable_resumed() = ResumedOf(place);
     resumed.push_back({at, ResumedOf(place)});
   }
   void OnProgram(SimTime at, const machine::Place& place, std::string_view what,
@@ -49,6 +53,7 @@ class AllHeard final : public machine::RunObserver {
   }
   void OnMessage(SimTime at, const machine::Place& place, std::string_view text) override {
     Add(at, place, "message " + std::string(text));
+    *EventAt(at).mutable_message() = MessageOf(place, text);
     messages.push_back({at, MessageOf(place, text)});
   }
   void OnEntered(SimTime at) override { Add(at, {}, "entered"); }
@@ -58,7 +63,7 @@ class AllHeard final : public machine::RunObserver {
   void OnLost(const machine::LostWay& way) override { Add(way.at, way.place, "lost"); }
   void OnDiagnostic(SimTime at, const Diagnostic& finding) override {
     Add(at, {}, "finding " + CodeText(finding.code));
-    findings.emplace_back(at, bridge::ToProto(finding));
+    *EventAt(at).mutable_diagnostic() = bridge::ToProto(finding);
   }
   void OnCounted(SimTime at, const Diagnostic& finding) override {
     Add(at, {}, "counted " + CodeText(finding.code));
@@ -73,12 +78,13 @@ class AllHeard final : public machine::RunObserver {
   }
 
   std::vector<std::string> told;
-  std::vector<std::pair<SimTime, v1::Diagnostic>> findings;
-  std::vector<std::pair<SimTime, v1::Halted>> halted;    // time of the run
+  std::vector<std::pair<SimTime, v1::RunEvent>> events;  // time of the run
+  std::vector<std::pair<SimTime, v1::Halted>> halted;    // likewise
   std::vector<std::pair<SimTime, v1::Resumed>> resumed;  // likewise
   std::vector<std::pair<SimTime, v1::RunMessage>> messages;
 
  private:
+  v1::RunEvent& EventAt(SimTime at) { return events.emplace_back(at, v1::RunEvent()).second; }
   void Add(SimTime at, const machine::Place& place, const std::string& what) {
     told.push_back(std::to_string(at.count()) + " " + std::to_string(place.program) + "/" +
                    std::to_string(place.step) + " " + what);
@@ -187,6 +193,59 @@ TEST_F(RecordedTrouble, IsHeardAgain) {
   for (const char* what :
        {"begun", "step", "motion", "move", "program", "message", "assumed", "violation", "finding"})
     EXPECT_TRUE(heard_.Heard(what)) << what;
+}
+
+// LIVE-3.40: what a run found is in its entries with what it said, and is compared as well.
+TEST_F(RecordedTrouble, WhatItFoundIsCompared) {
+  Act(SecondsOf(5), machine::StartRun{.program = 4});
+  GoOn(SecondsOf(60));
+  for (const auto& [at, event] : heard_.events) *Entry(SecondsOf(5) + at).mutable_event() = event;
+  std::int64_t told = std::ssize(heard_.events);
+  for (const machine::RunOver& over : machine_->TakeRunsOver()) {
+    *Entry(SecondsOf(5) + over.lasted).mutable_run_over() = OverOf(over);
+    ++told;
+  }
+  const auto same = Replay(what_, {.to = SecondsOf(60)});
+  ASSERT_TRUE(same);
+  EXPECT_FALSE(same->difference) << same->difference->field << same->difference->played;
+  EXPECT_EQ(same->events, told);
+  const auto found = std::ranges::find_if(
+      what_.entries, [](const v1::JournalEntry& entry) { return entry.event().has_diagnostic(); });
+  ASSERT_NE(found, what_.entries.end());
+  found->mutable_event()->mutable_diagnostic()->set_message("another");
+  const auto other = Replay(what_, {.to = SecondsOf(60)});
+  ASSERT_TRUE(other && other->difference);
+  EXPECT_EQ(other->difference->field, "event");
+  EXPECT_EQ(other->difference->sequence, found->sequence());
+}
+
+// It begins a run at 5 s, and loses its power at 6 s.
+class RecordedPower : public RecordedLaser {
+ protected:
+  RecordedPower()
+      : RecordedLaser("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02, 2201.2, -350., 0., 0.)\n") {
+    Act(SecondsOf(5), machine::StartRun{.program = 4});
+    Act(SecondsOf(6), machine::SwitchPower{.on = false});
+  }
+};
+
+// LIVE-2.10, LIVE-3.40: power that goes ends a run where it is, and that its machine did, not its
+// host: an end that no entry tells is a difference.
+TEST_F(RecordedPower, TheEndByItIsCompared) {
+  const auto over = machine_->TakeRunsOver();
+  ASSERT_EQ(over.size(), 1U);
+  int ended = 0;
+  const auto untold = Replay(what_, {.over = [&](const machine::RunOver&) { ++ended; }});
+  ASSERT_TRUE(untold && untold->difference);
+  EXPECT_EQ(untold->difference->field, "run_over");
+  EXPECT_EQ(untold->difference->recorded, "no end of a run");
+  EXPECT_EQ(untold->difference->sequence, 3);
+  EXPECT_EQ(ended, 1);
+  *Entry(SecondsOf(6)).mutable_run_over() = OverOf(over[0]);
+  const auto told = Replay(what_, {});
+  ASSERT_TRUE(told);
+  EXPECT_FALSE(told->difference) << told->difference->field << told->difference->played;
+  EXPECT_EQ(told->events, 1);
 }
 
 // LIVE-3.40: what the machine told is in its entries at its time, that of the machine.
@@ -347,6 +406,44 @@ TEST_F(ToldRun, WhatItsHostCutOffEndsWhereItIs) {
   EXPECT_FALSE(played.difference);
 }
 
+// Somebody looked at the machine: it did nothing, and its run goes on.
+TEST_F(ToldRun, WhatItsHostSaysIsNotPlayed) {
+  what_.entries.resize(3);
+  Entry(SecondsOf(6)).mutable_event()->mutable_message()->set_text("somebody looked");
+  int ended = 0;
+  bool open = false;
+  const Replayed played = Played(
+      {.to = SecondsOf(6),
+       .cut_off = [&](const machine::RunOver&, const v1::Outcome&) { ++ended; },
+       .stands = [&](const machine::Machine& one) { open = one.status().open.has_value(); }});
+  EXPECT_FALSE(played.difference);
+  EXPECT_EQ(played.events, 1);  // the begin of the run
+  EXPECT_EQ(ended, 0);
+  EXPECT_TRUE(open);
+}
+
+// LIVE-3.40: it ends with the entry where they part; how the machine stands there is not told.
+TEST_F(ToldRun, ADifferenceEndsItAtItsEntry) {
+  int told = 0;
+  const ReplayOptions until_a_minute = {.to = SecondsOf(60),
+                                        .stands = [&](const machine::Machine&) { ++told; }};
+  Of(8).set_virtual_time_ns(SecondsOf(59).count());
+  Of(8).mutable_run_over()->set_program(9);
+  EXPECT_EQ(Played().until, SecondsOf(59));
+  Played(until_a_minute);
+  EXPECT_EQ(told, 0);
+  Of(8).mutable_run_over()->set_program(4);
+  Played(until_a_minute);
+  EXPECT_EQ(told, 1);
+  ReplayOptions nobody_waits = until_a_minute;
+  nobody_waits.goes_on = [](SimTime) { return false; };
+  Played(nobody_waits);
+  EXPECT_EQ(told, 1);
+  Of(5).set_virtual_time_ns(SecondsOf(8).count());
+  Of(5).mutable_event()->mutable_halted()->set_message("another");
+  EXPECT_EQ(Played().until, SecondsOf(8));
+}
+
 TEST_F(ToldRun, WhatCannotBePlayedIsAnError) {
   const auto code = [](const Recording& what) -> std::optional<ErrorCode> {
     const auto played = Replay(what, {});
@@ -394,6 +491,24 @@ TEST_F(ToldRun, WhatWasBroughtIsForOneRun) {
   EXPECT_EQ(begun, (std::vector<int>{0, 1}));
   EXPECT_EQ(again.messages.size(), 1U);
   EXPECT_TRUE(again.Heard("motion"));
+}
+
+// LIVE-6.01: it is there for a start at a step, too.
+TEST_F(RecordedRun, WhatWasBroughtIsForAStartAtAStep) {
+  v1::AssignedProgram& brought = *what_.head.mutable_brought();
+  brought.set_file_name("b.S");
+  brought.set_is_source(true);
+  brought.set_content(
+      "COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (521.02, 2201.2, -380., 0., 0.)\n"
+      "DELAY 1\nMOVE (561.02, 2201.2, -380., 0., 0.)\nSETERR 9\n");
+  what_.entries.resize(1);
+  *Entry(SecondsOf(5)).mutable_applied()->mutable_input() =
+      bridge::AppliedOf(machine::StartAtStep{.program = 4, .target = {.at = {4, 6}}});
+  AllHeard again;
+  const auto played = Replay(what_, {.to = std::chrono::hours(10), .observer = &again});
+  ASSERT_TRUE(played) << played.error().detail;
+  EXPECT_EQ(played->inputs, 1);
+  EXPECT_TRUE(again.Heard("message ERROR 9"));
 }
 
 // The entry that is missed is told, also where others came behind it.

@@ -108,6 +108,17 @@ TEST_F(ReplayEnds, TheFirstDifferenceEndsIt) {
   EXPECT_EQ(played.until, SimTime(kOff_ns + 3));
 }
 
+// LIVE-3.40: nor is it looked for what is missing before it.
+TEST_F(ReplayEnds, BehindADifferenceNoEndIsLookedFor) {
+  At(kOff_ns).mutable_run_over()->set_run(3);
+  At(kOff_ns).mutable_mark()->set_state_sha256("other");
+  const Replayed played = Played();
+  ASSERT_TRUE(played.difference);
+  EXPECT_EQ(played.difference->field, "mark.state_sha256");
+  EXPECT_EQ(played.difference->sequence, 4);
+  EXPECT_EQ(played.until, SimTime(kOff_ns));
+}
+
 // Who has what he wanted is asked before each step, and nothing is missing behind it.
 TEST_F(ReplayEnds, ItEndsWhereNobodyWantsMore) {
   At(kOff_ns).mutable_event()->mutable_resumed();
