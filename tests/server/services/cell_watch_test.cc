@@ -389,6 +389,27 @@ TEST_F(CellWatchTest, OnlyItsCallerChangesAWatch) {
   }));
 }
 
+// What was added before counts, too; what was refused does not.
+TEST_F(CellWatchTest, EarlierChangesCountTowardsTheHundred) {
+  auto watch = room.WatchCell(Of({"jobs"}));
+  v1::UpdateWatchRequest change;
+  change.set_watch_id(watch.Next().watch_id());
+  const auto add = [&](int first, int count) {
+    change.clear_add();
+    for (int i = first; i < first + count; ++i) {
+      v1::Subscription& added = *change.add_add();
+      added.set_id("of " + std::to_string(i));
+      added.mutable_projects();
+    }
+    return CodeOf(room.registry.Change(change, StreamBed::kCaller));
+  };
+  EXPECT_EQ(add(0, 60), std::nullopt);
+  EXPECT_EQ(add(60, 40), ErrorCode::kCellInvalidArgument);  // with "jobs" one too many
+  EXPECT_EQ(add(60, 39), std::nullopt);
+  EXPECT_EQ(add(99, 1), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(add(5, 10), std::nullopt);  // in place of those of the same ids
+}
+
 // A proxy or a browser sees that the stream lives, and where it is.
 TEST(CellWatchBookmarks, ComeWhenNothingElseDoes) {
   StreamBed room({}, std::chrono::milliseconds(20));

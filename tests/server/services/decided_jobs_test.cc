@@ -66,6 +66,45 @@ TEST_F(DecidedJobs, OneBeginsAnewAndOneGoesOn) {
   EXPECT_EQ(ContinuedBy(goes_on), JobName(run));
 }
 
+// What the host refuses goes on nowhere, and its reason is told.
+TEST_F(DecidedJobs, AStartThatTheHostRefusesIsNoDecision) {
+  v1::DecideInterruptedRequest request;
+  request.set_name(JobName(CutOff()));
+  request.set_decision(v1::DecideInterruptedRequest::DECISION_RESUME_AT_STEP);
+  request.set_reason("the power was gone");
+  request.set_control_token("t");
+  request.set_preview_token("p");
+  const auto decide = [&] { Call(jobs, &v1::JobService::Stub::DecideInterrupted, request); };
+  decide();
+  ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "request_id: a UUID");
+  EXPECT_TRUE(host->TakeOrders().empty());
+  v1::HostOrderAnswer refusal;
+  refusal.mutable_refusal()->set_code("CELL-E9409");
+  refusal.mutable_refusal()->set_message("not now");
+  host->Answer(refusal);
+  request.set_request_id("r");
+  decide();
+  EXPECT_FALSE(status.ok());
+  EXPECT_THAT(status.error_message(), testing::HasSubstr("not now"));
+}
+
+// A request id that made another job makes none of these.
+TEST_F(DecidedJobs, ARequestIdIsOfOneJob) {
+  using Request = v1::DecideInterruptedRequest;
+  Must(store().SubmitAndWait({.request_id = "taken", .machine = "optimo-1", .kind = "CHECK"}));
+  Request request;
+  request.set_name(JobName(CutOff()));
+  request.set_reason("the power was gone");
+  request.set_control_token("t");
+  request.set_preview_token("p");
+  request.set_request_id("taken");
+  for (const auto decision : {Request::DECISION_RESTART, Request::DECISION_RESUME_AT_STEP}) {
+    request.set_decision(decision);
+    Call(jobs, &v1::JobService::Stub::DecideInterrupted, request);
+    ExpectRefused(grpc::StatusCode::ALREADY_EXISTS, "CELL-E9019");
+  }
+}
+
 // From a time on: from the newest state that is not behind it, and a nanosecond is a time.
 TEST_F(DecidedJobs, AJournalGoesOutFromItsFirstInstant) {
   const auto mark = [](std::int64_t sequence, std::int64_t time_ns) {

@@ -88,7 +88,9 @@ TEST_F(JobWatchTest, GoesOnAfterTheSequenceThatTheClientHas) {
   room.Say(lease, {"a", "b"});
   {
     auto watch = room.Watch(job, 2);
-    EXPECT_EQ(NextOf(watch), "snapshot");
+    const v1::WatchJobResponse first = watch.Next();
+    EXPECT_EQ(WordOf(first), "snapshot");
+    EXPECT_EQ(first.sequence(), 2);  // to go on after, should the line break before the next event
     EXPECT_EQ(NextOf(watch), "3 b");
   }
   auto watch = room.Watch(job, 3);  // the last one: what comes next is waited for
@@ -215,6 +217,7 @@ TEST_F(JobWatchTest, AServerThatStopsSaysWhereToGoOn) {
   const v1::WatchJobResponse goodbye = watch.Next();
   EXPECT_EQ(WordOf(goodbye), "come back");
   EXPECT_EQ(goodbye.sequence(), 3);
+  EXPECT_EQ(goodbye.log_id(), room.bed.store().LogId());
   EXPECT_EQ(goodbye.reconnect().after().nanos(), 250'000'000);
   watch.ExpectRefused(grpc::StatusCode::UNAVAILABLE, "CELL-E9002");
   // A watch that begins now gets no further than it was.

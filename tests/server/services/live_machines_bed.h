@@ -130,6 +130,7 @@ class LiveMachines : public testing::Test {
   }
 
   storage::Store& store() { return bed_.server.store(); }
+  DispatcherBed& bed() { return bed_; }
   static std::unique_ptr<grpc::ClientContext> Context() {
     auto context = std::make_unique<grpc::ClientContext>();
     context->set_deadline(std::chrono::system_clock::now() + kPatience);

@@ -282,6 +282,7 @@ TEST_F(LiveMachines, AMachineThatIsChangedLivesAnew) {
   EXPECT_TRUE(update().options().enabled());
   EXPECT_TRUE(status.ok()) << status.error_message();
   EXPECT_EQ(host->stopped(), "the machine was changed");
+  EXPECT_TRUE(hosts.IsHosted("optimo-1"));  // the call is answered when it lives again
   EXPECT_TRUE(processes.IsEnabled("optimo-1"));
   next.wait();
 }

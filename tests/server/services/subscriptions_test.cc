@@ -161,6 +161,23 @@ TEST_F(SubscriptionTest, WhatIsRefused) {
   EXPECT_EQ(CodeOf(MakeSubscriptions(twice)), ErrorCode::kCellInvalidArgument);
 }
 
+// What a job is to become is no filter of a watch, and neither is what is no comparison.
+TEST_F(SubscriptionTest, AFilterTakesWhatAJobKeepsAlone) {
+  for (const char* filter : {"state = FAILED", "finished = true", "verdict = BAD", "text = lid",
+                             "since = \"2026-11-25T10:00:00Z\"", "until = \"2026-11-25T10:00:00Z\"",
+                             "colour = red", "kind"})
+    EXPECT_EQ(Refused(Jobs(filter)), ErrorCode::kCellBadFilter) << filter;
+}
+
+TEST_F(SubscriptionTest, MachinesAreNamedInFull) {
+  v1::Subscription wanted;
+  wanted.set_id("a");
+  wanted.mutable_machines()->add_names("machines/mill-1");
+  EXPECT_EQ(Refused(wanted), ErrorCode{});
+  wanted.mutable_machines()->add_names("mill-1");
+  EXPECT_EQ(Refused(wanted), ErrorCode::kCellInvalidArgument);
+}
+
 TEST_F(SubscriptionTest, AWatchHasAHundred) {
   google::protobuf::RepeatedPtrField<v1::Subscription> wanted;
   for (int i = 0; i < 100; ++i) {

@@ -195,6 +195,20 @@ TEST_F(WatchClocks, WithoutARateNothingWaits) {
   }
 }
 
+// What a subscription does not want takes nothing of its rate.
+TEST_F(WatchClocks, WhatIsNotWantedPutsNothingOff) {
+  const std::int64_t job = room.Submit();
+  room.bed.Lease();
+  auto watch = WatchJobs(2.0);
+  EXPECT_EQ(WordOf(watch.Next()), "snapshot");
+  for (int i = 1; i <= 10; ++i) {
+    TellState(i % 2 == 0 ? v1::MACHINE_STATE_HELD : v1::MACHINE_STATE_RUNNING);
+    room.TellSteps(job, i);
+    ASSERT_EQ(WordOf(watch.Next()), "at " + std::to_string(i));
+    clock.Advance(std::chrono::milliseconds(500));
+  }
+}
+
 // WEB, needs 1: a bookmark at least so often, before what else there is to tell then.
 TEST_F(WatchClocks, ABookmarkComesWhenItsTimeHasCome) {
   room.Submit();

@@ -134,6 +134,55 @@ TEST_F(WebResourcesTest, ProductsOfAJob) {
             ErrorCode::kCellStoreCorrupt);
 }
 
+// docs/api.md: bytes for a job take no slot; all of them come, or none is kept.
+TEST_F(WebResourcesTest, AContentGoesUpForAJob) {
+  web::UploadHeader header;
+  header.path = web::UploadsPath();
+  header.size = static_cast<std::int64_t>(kText.size());
+  header.sha256 = bridge::Sha256Hex(kText);
+  {
+    auto broken_off = Must(resources.BeginUpload(header, {}));
+    EXPECT_TRUE(broken_off->Append("SPEED"));
+    const web::UploadEnd end = broken_off->Finish();
+    google::rpc::Status status;
+    EXPECT_TRUE(status.ParseFromString(end.status));
+    EXPECT_THAT(status.message(), HasSubstr("CELL-E9016"));
+    EXPECT_EQ(end.message, "");
+  }
+  {
+    auto longer = Must(resources.BeginUpload(header, {}));
+    EXPECT_TRUE(longer->Append(kText));
+    EXPECT_EQ(CodeOf(longer->Append("x")), ErrorCode::kCellChecksum);
+  }
+  auto whole = Must(resources.BeginUpload(header, {}));
+  EXPECT_TRUE(whole->Append(kText));
+  const web::UploadEnd end = whole->Finish();
+  EXPECT_EQ(end.status, "");
+  EXPECT_EQ(end.message_type, "rmlcell.v1.UploadContentResponse");
+  v1::UploadContentResponse made;
+  ASSERT_TRUE(made.ParseFromString(end.message));
+  EXPECT_EQ(made.sha256(), header.sha256);
+  EXPECT_EQ(made.size(), header.size);
+  EXPECT_EQ(Must(bed.store().ReadBlob(header.sha256)), kText);
+  header.size = 101;
+  EXPECT_EQ(CodeOf(resources.BeginUpload(header, {})), ErrorCode::kCellTooLarge);
+  EXPECT_EQ(CodeOf(resources.Find(web::UploadsPath(), {})), ErrorCode::kCellInvalidArgument);
+}
+
+// server/auth: by the rights of the method that does the same.
+TEST_F(WebResourcesTest, WhoMayNotCallGetsNothingHere) {
+  gate.SetLocal({});
+  for (const web::ResourcePath& path :
+       {web::ResourcePath(web::ArtifactPath{"1", "report"}),
+        web::ResourcePath(web::ProgramPicturePath{.machine = "optimo-1", .slot = 45}),
+        web::ResourcePath(web::ProgramContentPath{.machine = "optimo-1", .slot = 45, .form = {}})})
+    EXPECT_EQ(CodeOf(resources.Find(path, {})), ErrorCode::kCellPermission) << path.index();
+  EXPECT_EQ(CodeOf(resources.BeginUpload(Header(), {})), ErrorCode::kCellPermission);
+  web::UploadHeader content;
+  content.path = web::UploadsPath();
+  EXPECT_EQ(CodeOf(resources.BeginUpload(content, {})), ErrorCode::kCellPermission);
+}
+
 // limits.program_bytes, by what is announced and by what comes: the last byte that fits, and one
 // more.
 TEST_F(WebResourcesTest, ALimitOfBytes) {

@@ -241,6 +241,56 @@ TEST(Events, LastEvents) {
       "event: error\ndata: {\"code\":\"failed_precondition\",\"message\":\"two\\u000Alines\"}\n\n");
 }
 
+// A browser that watches the cell is told of several events by one message, whatever it asked for;
+// what else it asked for stays.
+TEST(Events, TheCellIsAskedForSeveralEventsAtOnce) {
+  EventTexts texts;
+  RpcRoute route = WatchRoute(Wire::kEvents);
+  v1::WatchJobRequest of_job;
+  of_job.set_name("jobs/1");
+  EXPECT_EQ(MakeCodec(route, texts)->Asked(of_job.SerializeAsString()), of_job.SerializeAsString());
+  route.method = v1::WatchCellRequest::descriptor()
+                     ->file()
+                     ->FindServiceByName("CellService")
+                     ->FindMethodByName("WatchCell");
+  v1::WatchCellRequest asked;
+  asked.set_after_sequence(7);
+  v1::WatchCellRequest sent;
+  ASSERT_TRUE(sent.ParseFromString(MakeCodec(route, texts)->Asked(asked.SerializeAsString())));
+  EXPECT_TRUE(sent.batched());
+  EXPECT_EQ(sent.after_sequence(), 7);
+}
+
+// The Connect protocol: an error and metadata stand beside each other in the last envelope.
+TEST(ConnectStream, AnErrorAndTrailersStandTogether) {
+  EventTexts texts;
+  const auto codec = MakeCodec(WatchRoute(Wire::kConnectStreamJson), texts);
+  const std::string end =
+      codec->End({.code = 9, .message = "no", .details = {}}, {{"a", "1"}, {"b", "2"}});
+  EXPECT_EQ(end[0], 2);
+  EXPECT_EQ(Json::parse(end.substr(5)),
+            Json::parse(R"({"error":{"code":"failed_precondition","message":"no"},)"
+                        R"("metadata":{"a":["1"],"b":["2"]}})"));
+}
+
+// The Connect protocol: a stream that is refused before it begins is 200, and its only envelope the
+// last one.
+TEST(ConnectStream, ARefusalIsALastEnvelope) {
+  EventTexts texts;
+  for (const auto& [wire, type] :
+       {std::pair(Wire::kConnectStreamJson, "application/connect+json"),
+        std::pair(Wire::kConnectStreamProto, "application/connect+proto")}) {
+    const HttpResponse refusal =
+        MakeCodec(WatchRoute(wire), texts)
+            ->Refusal({.status = {.code = 3, .message = "bad", .details = {}}, .headers = {}});
+    EXPECT_EQ(refusal.status, 200);
+    EXPECT_EQ(refusal.body[0], 2);
+    EXPECT_EQ(Json::parse(refusal.body.substr(5)),
+              Json::parse(R"({"error":{"code":"invalid_argument","message":"bad"}})"));
+    EXPECT_EQ(refusal.headers.back(), HeaderList::value_type("Content-Type", type));
+  }
+}
+
 TEST(ConnectStream, TrailersAreGrouped) {
   EventTexts texts;
   const auto codec = MakeCodec(WatchRoute(Wire::kConnectStreamJson), texts);

@@ -1,5 +1,6 @@
 #include "server/web/event_texts.h"
 
+#include <google/protobuf/descriptor.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -131,9 +132,13 @@ TEST(EventTexts, TheRoomIsUsedUp) {
 
 TEST(EventTexts, WhatIsNoMessageIsAnError) {
   EventTexts texts;
-  const auto text = texts.Of(*v1::WatchJobResponse::descriptor(), "\xFF\xFF");
-  ASSERT_FALSE(text);
-  EXPECT_EQ(text.error().code, ErrorCode::kCellInternal);
+  for (const auto* type :
+       {v1::WatchJobResponse::descriptor(), v1::WatchCellResponse::descriptor()}) {
+    const auto text = texts.Of(*type, "\xFF\xFF");
+    ASSERT_FALSE(text) << type->name();
+    EXPECT_EQ(text.error().code, ErrorCode::kCellInternal) << type->name();
+  }
+  EXPECT_EQ(texts.made(), 0U);
 }
 
 }  // namespace

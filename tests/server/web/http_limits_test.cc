@@ -205,6 +205,11 @@ TEST(HttpPatience, SlowRequestsAreEnded) {
       "POST " + std::string(kGetJob) +
       " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: "
       "20\r\n\r\n{"));
+  // Nor may a body not begin at all.
+  EXPECT_TRUE(ends_with_408(
+      "POST " + std::string(kGetJob) +
+      " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: "
+      "20\r\n\r\n"));
   // One byte now and then does not help; were each given time anew, so many would be too long a
   // header.
   const auto drip = [&] {

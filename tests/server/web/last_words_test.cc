@@ -78,6 +78,78 @@ TEST(LastWords, ATabThatLeftIsSeenBehindItsNextRequest) {
   EXPECT_EQ(cell.counters().cancelled, 1);
 }
 
+// A client that is gone is gone, whatever patience there is for one that has only ended its
+// sending.
+TEST(LastWords, AClosedTabIsSeenAtOnce) {
+  WebOptions options = AnyPort();
+  options.quiet_interval = hours(1);
+  options.linger_timeout = hours(1);
+  FakeCell cell(options);
+  RawClient client(cell.port());
+  client.Send(WatchOf("idle"));
+  client.ReadHead();
+  client.ReadUntil("\n\n\r\n");  // all that comes: what is left unread would break the line
+  client.Close();
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell.counters().open == 0; }));
+  EXPECT_EQ(cell.counters().cancelled, 1);
+}
+
+// RFC 9112 9.6: who has ended his sending gets his answer, and the connection ends with it.
+TEST(LastWords, WhoEndsHisSendingGetsHisAnswer) {
+  FakeCell cell;
+  RawClient client(cell.port());
+  client.Send(Post(kGetJob, "application/json", kSlowCall, "Connect-Timeout-Ms: 900\r\n"));
+  client.HalfClose();
+  const RawResponse answer = client.Read();
+  EXPECT_EQ(answer.status, 504);
+  EXPECT_EQ(answer.Header("connection"), "close");
+  EXPECT_TRUE(client.AtEnd());
+}
+
+// A request that its client breaks off is none, in its headers as in its body.
+TEST(LastWords, WhoBreaksOffIsToldNothing) {
+  FakeCell cell;
+  const std::string call = Post(kGetJob, "application/json", kSlowCall);
+  for (const std::string& part :
+       {std::string("GET /healthz HT"), call.substr(0, call.size() - 5)}) {
+    RawClient client(cell.port());
+    client.Send(part);
+    client.HalfClose();
+    EXPECT_EQ(client.Read().status, 0) << part;
+    EXPECT_TRUE(client.AtEnd()) << part;
+  }
+  EXPECT_EQ(cell.counters().calls, 0);
+}
+
+// Who is told that the connection ends, and leaves it open, does not keep it.
+TEST(LastWords, WhoDoesNotCloseIsClosed) {
+  WebOptions options = AnyPort();
+  options.linger_timeout = milliseconds(100);
+  FakeCell cell(options);
+  RawClient client(cell.port());
+  client.Send("GET /healthz HTTP/1.0\r\n\r\n");
+  EXPECT_EQ(client.Read().status, 200);
+  EXPECT_TRUE(client.AtEnd());
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell.web().connections() == 0; }));
+}
+
+// The time that a write may take is none between two of them. On a slow machine the write itself
+// may take too long: then once more.
+TEST(LastWords, AStreamMayBeQuietForLongerThanAWriteTakes) {
+  WebOptions options = AnyPort();
+  options.write_timeout = milliseconds(300);
+  options.quiet_interval = hours(1);
+  FakeCell cell(options);
+  const std::string request = Post("/rmlcell.v1.JobService/WatchJob", "application/json",
+                                   R"({"name":"jobs/idle"})", "Connect-Timeout-Ms: 900\r\n");
+  bool whole = false;
+  for (int i = 0; i < 20 && !whole; ++i) {
+    const RawResponse stream = Exchange(cell.port(), request);
+    whole = stream.complete && stream.body.find("\"deadline_exceeded\"") != std::string::npos;
+  }
+  EXPECT_TRUE(whole);
+}
+
 // The time to read a request is no limit of its answer. On a slow machine the
 // request itself may come too late: then once more.
 TEST(LastWords, AnAnswerMayTakeLongerThanARequest) {

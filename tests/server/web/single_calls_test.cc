@@ -9,6 +9,7 @@
 
 #include "rmlcell/v1/job.pb.h"
 #include "server/web/base64.h"
+#include "server/web/envelope.h"
 #include "server/web/rpc_call.h"
 #include "tests/server/web/fake_cell.h"
 #include "tests/server/web/raw_client.h"
@@ -20,8 +21,10 @@ namespace {
 // until the client leaves.
 class CountedAnswers final : public grpc::ServerGenericBidiReactor {
  public:
-  CountedAnswers(grpc::GenericCallbackServerContext* context, int answers) : left_(answers) {
-    for (const char* name : {"x-one", "x-raw-bin", "rmlcell-inner", "date", "te"})
+  CountedAnswers(grpc::GenericCallbackServerContext* context, int answers, bool garbled)
+      : left_(answers), garbled_(garbled) {
+    for (const char* name : {"x-one", "x-raw-bin", "rmlcell-inner", "date", "te", "user-agent",
+                             "connection", "transfer-encoding"})
       context->AddTrailingMetadata(
           name, std::string("v\xFF").substr(0, std::string(name).ends_with("-bin") ? 2 : 1));
     StartRead(&asked_);
@@ -40,12 +43,13 @@ class CountedAnswers final : public grpc::ServerGenericBidiReactor {
     --left_;
     v1::Job job;
     job.set_name("jobs/" + std::to_string(++number_));
-    const grpc::Slice slice(job.SerializeAsString());
+    const grpc::Slice slice(garbled_ ? std::string("\xFF\xFF") : job.SerializeAsString());
     answer_ = grpc::ByteBuffer(&slice, 1);
     StartWrite(&answer_);
   }
 
   int left_;
+  const bool garbled_;
   int number_ = 0;
   grpc::ByteBuffer asked_;
   grpc::ByteBuffer answer_;
@@ -55,9 +59,10 @@ class CountingService final : public grpc::CallbackGenericService {
  public:
   grpc::ServerGenericBidiReactor* CreateReactor(
       grpc::GenericCallbackServerContext* context) override {
-    return new CountedAnswers(context, answers);
+    return new CountedAnswers(context, answers, garbled);
   }
   std::atomic<int> answers = 1;
+  std::atomic<bool> garbled = false;  // what it answers is no message of any type
 };
 
 class SingleCalls : public ::testing::Test {
@@ -133,8 +138,27 @@ TEST_F(SingleCalls, MetadataOfOursStaysInside) {
   EXPECT_EQ(response.Header("trailer-x-raw-bin"), Base64("v\xFF", false));
   for (const char* inner :
        {"trailer-rmlcell-inner", "trailer-date", "trailer-te", "trailer-content-type",
-        "content-type2", "user-agent", "trailer-grpc-status"})
+        "content-type2", "user-agent", "trailer-grpc-status", "trailer-user-agent",
+        "trailer-connection", "trailer-transfer-encoding"})
     EXPECT_EQ(response.headers.count(inner), 0U) << inner;
+}
+
+// What is no message of its method is the server's own mistake: of a stream it is the end, whatever
+// the server would still send.
+TEST_F(SingleCalls, AnAnswerThatIsNoneIsTheServersMistake) {
+  service_.garbled = true;
+  const RawResponse one = Exchange(web_->port(), Post(kGetJob, "application/json", "{}"));
+  EXPECT_EQ(one.status, 500);
+  EXPECT_EQ(nlohmann::json::parse(one.body)["details"][1]["code"], "CELL-E9001");
+  service_.answers = -1;
+  const RawResponse events = Exchange(web_->port(), Post(kWatchJob, "application/json", "{}"));
+  EXPECT_TRUE(events.complete);
+  EXPECT_TRUE(events.body.starts_with("event: error\ndata: {\"code\":\"internal\"")) << events.body;
+  EXPECT_NE(events.body.find("CELL-E9001"), std::string::npos) << events.body;
+  const RawResponse connect =
+      Exchange(web_->port(), Post(kWatchJob, "application/connect+json", MakeEnvelope(0, "{}")));
+  EXPECT_TRUE(connect.complete);
+  EXPECT_EQ(connect.body.find("{\"error\":{\"code\":\"internal\""), 5U) << connect.body;
 }
 
 // A call that is left ends, and says that it was cancelled, whether something is waited for or not.

@@ -50,6 +50,21 @@ TEST_F(Streams, QuietStreamsAreKeptAlive) {
     EXPECT_NE(client.ReadUntil(": quiet\n\n").find(": quiet"), std::string::npos);
 }
 
+// Only events have a line that says nothing: a quiet stream of another form stands as it is.
+TEST_F(Streams, AQuietStreamOfAnotherFormIsLeftAlone) {
+  RawClient connect(cell_.port());
+  connect.Send(
+      Post(kWatchJob, "application/connect+json", MakeEnvelope(0, R"({"name":"jobs/stop"})")));
+  connect.ReadUntil("\"snapshot\"");
+  RawClient events(cell_.port());
+  events.Send(Watch("idle"));
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NE(events.ReadUntil(": quiet\n\n").find(": quiet"), std::string::npos);
+  cell_.StopStreams();
+  EXPECT_NE(connect.ReadUntil("\r\n0\r\n\r\n").find("{\"error\":{\"code\":\"unavailable\""),
+            std::string::npos);
+}
+
 // A stream that is quiet stands, whatever its client has sent behind it.
 TEST_F(Streams, ARequestThatWaitsEndsNoStream) {
   RawClient client(cell_.port());
