@@ -407,5 +407,19 @@ TEST(Config, StateDirectoryFollowsTheEnvironment) {
   EXPECT_EQ(DefaultStateDirectory({}), "/var/lib/rmlcell");
 }
 
+// A file that says what is not allowed is refused whole, with the line that says it.
+TEST(Config, AFileTellsTheLineOfAValueOutOfRange) {
+  for (const auto& [line, said] : std::vector<std::pair<std::string, std::string>>{
+           {"attempts = 11", "jobs.attempts is 11, allowed are 1 to 10"},
+           {"attempts = 0", "jobs.attempts is 0, allowed are 1 to 10"}}) {
+    Config config;
+    const Status read = ReadConfigText("[jobs]\nqueued_max = 7\n" + line + "\n", "g.toml", config);
+    ASSERT_FALSE(read) << line;
+    EXPECT_EQ(read.error().code, ErrorCode::kCellConfiguration);
+    EXPECT_EQ(read.error().detail, "g.toml:3: " + said);
+    EXPECT_EQ(config.jobs_queued_max, Config().jobs_queued_max);
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -64,5 +64,18 @@ TEST(Secret, NoSourceComparesOneByItself) {
   }
 }
 
+// What cannot be put in its place is no secret that is kept.
+TEST(Secret, IsNoneWhereAFolderStands) {
+  const std::string path =
+      testing::TempDir() + "/rmlcell-folder-of-a-secret-" + std::to_string(::getpid());
+  std::filesystem::create_directories(path);
+  const Result<std::string> made = KeptSecret(path);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kCellConfiguration);
+  EXPECT_EQ(made.error().detail, path + ": Is a directory");
+  std::filesystem::remove_all(path);
+  std::filesystem::remove(path + ".new");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

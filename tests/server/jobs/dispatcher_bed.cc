@@ -101,6 +101,13 @@ void FakeWorker::Toolpath(const std::string& frames, const std::string& open_blo
   Send(std::move(message));
 }
 
+void FakeWorker::Heights(const v1::WorkerHeights& heights) {
+  v1::WorkRequest message;
+  *message.mutable_heights() = heights;
+  *message.mutable_heights()->mutable_lease() = assignment_.lease();
+  Send(std::move(message));
+}
+
 void FakeWorker::Finish(v1::Outcome::Kind kind, const std::map<int, std::string>& executables,
                         const std::vector<std::string>& last_told) {
   v1::WorkRequest message;

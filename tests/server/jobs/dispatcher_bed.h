@@ -66,6 +66,7 @@ class FakeWorker {
   // One that comes with the end.
   void SmallArtifact(const std::string& name, const std::string& bytes);
   void Toolpath(const std::string& frames, const std::string& open_block);
+  void Heights(const v1::WorkerHeights& heights);
   void Finish(v1::Outcome::Kind kind = v1::Outcome::KIND_COMPLETED,
               const std::map<int, std::string>& executables = {},
               const std::vector<std::string>& last_told = {});

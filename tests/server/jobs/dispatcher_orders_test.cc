@@ -6,6 +6,7 @@
 
 #include "server/base/names.h"
 #include "server/jobs/dispatcher.h"
+#include "server/jobs/running_heights.h"
 #include "server/jobs/running_toolpath.h"
 #include "tests/server/jobs/dispatcher_bed.h"
 
@@ -109,6 +110,45 @@ TEST(DispatcherToolpath, EndsWithItsAttempt) {
   FakeWorker next(bed.dispatcher(), "next");
   ASSERT_TRUE(next.Take());
   EXPECT_NE(bed.dispatcher().FollowToolpath(job), toolpath);
+}
+
+// What is left of the block likewise.
+TEST(DispatcherHeights, AreFollowedWhileTheJobRuns) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  EXPECT_EQ(bed.dispatcher().FollowHeights(job), nullptr);  // it waits
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  const auto heights = bed.dispatcher().FollowHeights(job);
+  ASSERT_NE(heights, nullptr);
+  EXPECT_EQ(bed.dispatcher().FollowHeights(job), heights);
+  EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_FOLLOW_HEIGHTS);
+  v1::WorkerHeights told;
+  told.mutable_grid()->set_columns(1);
+  told.mutable_grid()->set_rows(1);
+  v1::HeightTile& tile = *told.add_tiles();
+  tile.set_columns(1);
+  tile.set_rows(1);
+  tile.set_heights("ab");
+  worker.Heights(told);
+  ASSERT_TRUE(Eventually([&] { return heights->Look(0).tiles.size() == 1; }));
+  EXPECT_EQ(heights->Look(0).tiles[0].heights(), "ab");
+  EXPECT_FALSE(heights->Look(0).ended);
+  worker.Finish();
+  EXPECT_EQ(worker.Released(), true);
+  EXPECT_TRUE(heights->Look(0).ended);
+  EXPECT_TRUE(heights->Look(0).stored);
+  EXPECT_EQ(bed.dispatcher().FollowHeights(job), nullptr);
+}
+
+// A RUN is at its machine, and at no worker: without a host nobody takes the order.
+TEST(DispatcherControl, ARunIsOrderedAtItsMachine) {
+  DispatcherBed bed;
+  const std::int64_t job =
+      Must(bed.server.store().SubmitAndWait({.machine = "optimo-1", .kind = "RUN"})).job.id;
+  bed.server.Lease("RUN");
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, {.kind = v1::WorkerControl::KIND_HOLD})),
+            ErrorCode::kCellNotLive);
 }
 
 TEST(DispatcherControl, OrdersReachTheWorkerThatHasTheJob) {

@@ -69,5 +69,23 @@ TEST(DispatcherFailures, AWorkerIsGivenOneJobWhenAFailingStoreWorksAgain) {
   }
 }
 
+// What a worker says behind its last word, or without a job, is not heard, and nobody is hurt.
+TEST(DispatcherStrays, AreNotHeard) {
+  DispatcherBed bed;
+  FakeWorker idle(bed.dispatcher(), "idle");
+  idle.Heartbeat();
+  bed.Settle();
+  const std::int64_t job = bed.server.SubmitCheck();
+  ASSERT_TRUE(idle.Take());
+  EXPECT_EQ(idle.job(), job);
+  idle.Leave();
+  idle.Finish();
+  FakeWorker next(bed.dispatcher(), "next");
+  ASSERT_TRUE(next.Take());
+  EXPECT_EQ(next.job(), job);
+  next.Finish();
+  EXPECT_EQ(next.Released(), true);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

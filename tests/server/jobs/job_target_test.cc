@@ -11,6 +11,7 @@
 #include "server/jobs/assignment.h"
 #include "server/jobs/job_book.h"
 #include "server/jobs/job_milling.h"
+#include "tests/server/failing_store.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -182,6 +183,26 @@ TEST_F(JobTarget, OfAProjectGoesIntoTheJob) {
   EXPECT_EQ(job.simulation().milling().target().file().content(), "");
   Must(bed.store().DeleteProject("coaster", storage::kAnyRevision));
   EXPECT_EQ(Assigned().first.assignment().target().content(), kStl);
+}
+
+// As it is handed in, and as a worker is given it with the program of its job.
+TEST_F(JobTarget, WhatTheStoreSaysOfItIsHandedOn) {
+  FailingStore store(bed.store());
+  JobBook failing(store, config);
+  Must(bed.store().PutPrograms("mill-1", {{.slot = 7, .name = "p", .object = "PU;"}}, {}));
+  Target().set_slot(7);
+  ExpectFailuresHandedOn(store, "handing it in", 3, [&] {
+    std::promise<std::optional<ErrorCode>> answer;
+    failing.Submit(request, "tester",
+                   [&](const Result<v1::Job>& job) { answer.set_value(CodeOf(job)); });
+    return answer.get_future().get();
+  });
+  const auto leased = Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
+  ASSERT_TRUE(leased);
+  ExpectFailuresHandedOn(store, "giving it out", 3,
+                         [&] { return CodeOf(MakeAssignment(store, config, *leased)); });
+  ExpectFailuresHandedOn(store, "reading the program", 2,
+                         [&] { return CodeOf(ProgramOfJob(store, leased->job.id)); });
 }
 
 }  // namespace

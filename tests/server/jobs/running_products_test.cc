@@ -145,5 +145,30 @@ TEST(Followed, WakesItsFollowers) {
   EXPECT_EQ(other, 3);
 }
 
+// Without a grid nobody knows where a tile stands.
+TEST(RunningHeights, ATileBeforeItsGridIsDropped) {
+  RunningHeights running;
+  running.Add(TileAt(0, 0, 1, 1, 'a'));
+  EXPECT_TRUE(running.Look(0).tiles.empty());
+  running.Add(GridOf(1, 1));
+  EXPECT_TRUE(running.Look(0).tiles.empty());
+  running.Add(TileAt(0, 0, 1, 1, 'b'));
+  const RunningHeights::Part part = running.Look(0);
+  ASSERT_EQ(part.tiles.size(), 1U);
+  EXPECT_EQ(part.tiles[0].heights(), "bb");
+}
+
+// What lies in a file, since it is more than a mebibyte, and cannot be read is followed no more.
+TEST(RunningToolpath, APartThatCannotBeReadEndsIt) {
+  RunningToolpath running;
+  running.Add(std::string((1 << 20) + 1, 'a'), "open");
+  EXPECT_FALSE(running.Look(0, 5).ended);
+  const RunningToolpath::Part part = running.Look(-1, 5);
+  EXPECT_TRUE(part.ended);
+  EXPECT_FALSE(part.stored);
+  EXPECT_EQ(part.frames, "");
+  EXPECT_EQ(part.open_seen, 5U);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

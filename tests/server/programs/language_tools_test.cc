@@ -10,6 +10,7 @@
 
 #include "server/base/config.h"
 #include "server/programs/edited_text.h"
+#include "tests/server/failing_store.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -190,6 +191,61 @@ TEST_F(LanguageToolsTest, WhatIsRefused) {
   nameless.set_family("lathe");
   EXPECT_EQ(CodeOf(tools.Hover(At<v1::HoverRequest>(1, 1, nameless))),
             ErrorCode::kCellUnknownFamily);
+}
+
+// Each of them refuses a place that is not in the text, and a machine that is not there.
+TEST_F(LanguageToolsTest, WhatEachOfThemRefuses) {
+  const auto codes = [this](int line, const v1::EditedText& text) {
+    auto rename = At<v1::RenameRequest>(line, 9, text);
+    rename.set_name("OTHER");
+    v1::OutlineRequest outline;
+    *outline.mutable_text() = text;
+    std::vector<std::optional<ErrorCode>> told = {
+        CodeOf(tools.Complete(At<v1::CompleteRequest>(line, 9, text))),
+        CodeOf(tools.FindDefinition(At<v1::FindDefinitionRequest>(line, 9, text))),
+        CodeOf(tools.FindReferences(At<v1::FindReferencesRequest>(line, 9, text))),
+        CodeOf(tools.Rename(rename))};
+    if (line > 0) told.push_back(CodeOf(tools.Outline(outline)));
+    return told;
+  };
+  EXPECT_THAT(codes(1, Text()), testing::Each(std::optional<ErrorCode>()));
+  EXPECT_THAT(codes(0, Text()), testing::Each(std::optional(ErrorCode::kCellInvalidArgument)));
+  EXPECT_THAT(codes(1, Text(kText, "machines/none")),
+              testing::Each(std::optional(ErrorCode::kCellUnknownMachine)));
+}
+
+// Of an empty line nothing is told; a schedule that the machine has not is as none.
+TEST_F(LanguageToolsTest, HoverOfNothing) {
+  const auto empty = Must(tools.Hover(At<v1::HoverRequest>(1, 1, Text("\nSTOP\n"))));
+  EXPECT_EQ(empty.text(), "");
+  EXPECT_FALSE(empty.has_range());
+  const auto of_schedule = [this](const std::string& number, const std::string& machine) {
+    const v1::EditedText text = Text("WORKDEF 2,0 (" + number + ")\n", machine);
+    return Must(tools.Hover(At<v1::HoverRequest>(1, 3, text))).text();
+  };
+  EXPECT_EQ(of_schedule("8", "machines/optimo-1"), of_schedule("8", ""));
+  EXPECT_NE(of_schedule("7", "machines/optimo-1"), of_schedule("7", ""));
+}
+
+// Without a store nothing lies around the text, and what is in it is told all the same.
+TEST_F(LanguageToolsTest, WhatCannotBeReadDoesNotLieAround) {
+  FailingStore store(bed.store());
+  ProgramBook read(store, config);
+  LanguageTools failing(store, read);
+  const auto hover = At<v1::HoverRequest>(3, 7);
+  for (int call = 1; call <= 2; ++call) {  // whether there is such a machine, and of which family
+    store.FailAt(call);
+    EXPECT_EQ(CodeOf(failing.Hover(hover)), ErrorCode::kCellStoreFailed) << call;
+  }
+  const auto work = At<v1::HoverRequest>(1, 3, Text("WORKDEF 2,0 (7)\n"));
+  for (int call = 3; call <= 5; ++call) {
+    store.FailAt(call);
+    EXPECT_TRUE(failing.Hover(hover)) << call;
+    store.FailAt(call);
+    EXPECT_TRUE(failing.Hover(work)) << call;
+  }
+  Must(bed.store().PutPrograms("optimo-1", {{.slot = 46, .object = "no object"}}, {}));
+  EXPECT_TRUE(tools.Hover(At<v1::HoverRequest>(1, 6, Text("CALL 46\n"))));
 }
 
 // Columns count bytes from 1, or UTF-16 units from 0, as browsers do.

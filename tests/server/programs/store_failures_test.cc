@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "server/base/config.h"
+#include "server/programs/content_upload.h"
 #include "server/programs/memory_tools.h"
+#include "server/programs/program_views.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/failing_store.h"
 #include "tests/server/forwarding_store.h"
@@ -143,6 +145,64 @@ TEST_F(ProgramStoreFailures, AnExecutableOfAnObjectThatIsGone) {
   EXPECT_EQ(stored.error.error.code, ErrorCode::kCellEtagMismatch);
   EXPECT_EQ(stored.error.error.detail, "the object was stored again meanwhile");
   EXPECT_EQ(Must(bed.store().GetProgram("optimo-1", 45)).executable, std::nullopt);
+}
+
+// A mill's memory is not read for one of its streams.
+TEST_F(ProgramStoreFailures, OfAProgramThatIsLookedAt) {
+  Put(45);
+  Expect("opening", 2, [&] { return CodeOf(programs.Open(Name(45))); });
+  Must(bed.store().PutPrograms("mill-1", {{.slot = 7, .object = "IN;"}}, {}));
+  const auto open_stream = [&] { return programs.Open("machines/mill-1/programs/7"); };
+  Expect("opening a stream", 3, [&] { return CodeOf(open_stream()); });
+  const ProgramBook::Opened opened = Must(open_stream());
+  EXPECT_EQ(opened.slot, 7);
+  EXPECT_EQ(opened.etag, "1");
+  ASSERT_EQ(opened.memory.programs.size(), 1U);
+  EXPECT_EQ(opened.memory.programs[0].slot, 7);
+  ProgramViews views(programs);
+  v1::GetProgramPictureRequest picture;
+  picture.set_name(Name(45));
+  v1::StreamProgramToolpathRequest path;
+  path.set_name(Name(45));
+  for (int call = 1; call <= 2; ++call) {
+    store.FailAt(call);
+    EXPECT_EQ(CodeOf(views.Picture(picture)), ErrorCode::kCellStoreFailed) << call;
+    store.FailAt(call);
+    EXPECT_EQ(CodeOf(views.Path(path)), ErrorCode::kCellStoreFailed) << call;
+  }
+}
+
+// Where the store has no room for bytes that come.
+class FullStore final : public ForwardingStore {
+ public:
+  explicit FullStore(storage::Store& store) : ForwardingStore(store) {}
+  Result<std::unique_ptr<storage::BlobWriter>> WriteBlob(std::string_view, std::size_t) override {
+    return Error{ErrorCode::kCellStoreFailed, "the disk is full", {}};
+  }
+};
+
+TEST_F(ProgramStoreFailures, OfAnUpload) {
+  FullStore full(bed.store());
+  ContentUpload told(full, programs);
+  EXPECT_EQ(CodeOf(told.Begin(4, std::string(64, 'a'))), ErrorCode::kCellStoreFailed);
+  ContentUpload untold(full, programs);
+  Must(untold.Begin(-1, {}));
+  Must(untold.Add("text"));
+  EXPECT_EQ(CodeOf(untold.End()), ErrorCode::kCellStoreFailed);
+}
+
+// limits.program_bytes: of what is told before, and of what comes.
+TEST_F(ProgramStoreFailures, AnUploadHasTheBytesOfAProgram) {
+  config.limit_program_bytes = 4;
+  ContentUpload told(bed.store(), programs);
+  EXPECT_EQ(CodeOf(told.Begin(5, {})), ErrorCode::kCellTooLarge);
+  Must(told.Begin(4, {}));
+  Must(told.Add("text"));
+  EXPECT_EQ(Must(told.End()).size(), 4);
+  ContentUpload untold(bed.store(), programs);
+  Must(untold.Begin(-1, {}));
+  Must(untold.Add("text"));
+  EXPECT_EQ(CodeOf(untold.Add("s")), ErrorCode::kCellTooLarge);
 }
 
 }  // namespace

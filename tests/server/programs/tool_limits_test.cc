@@ -234,5 +234,31 @@ TEST(TextLimits, WhatIsNoText) {
   EXPECT_EQ(inch[5], std::nullopt);
 }
 
+// A shift has the bounds of any other move; what is no object has no listing, a stream no tools,
+// and a name without an ending no direction.
+TEST(TextLimits, WhatTheToolsRefuse) {
+  v1::ProgramText text;
+  text.set_file_name("a.S");
+  text.set_content("STOP\n");
+  v1::ShiftProgramRequest shift;
+  *shift.mutable_program() = text;
+  EXPECT_EQ(CodeOf(ShiftText(shift)), std::nullopt);
+  shift.add_rotation(0.1);
+  EXPECT_EQ(CodeOf(ShiftText(shift)), ErrorCode::kCellInvalidArgument);
+  v1::FormatProgramRequest format;
+  *format.mutable_program() = text;
+  EXPECT_EQ(CodeOf(FormatText(format)), std::nullopt);
+  format.mutable_program()->set_file_name("a.rml");
+  EXPECT_EQ(CodeOf(FormatText(format)), ErrorCode::kCellInvalidArgument);
+  v1::ConvertProgramRequest convert;
+  *convert.mutable_program() = text;
+  convert.mutable_program()->set_file_name("part");
+  EXPECT_EQ(CodeOf(ConvertText(convert, "today")), ErrorCode::kConvertDirection);
+  v1::MakeListingRequest listing;
+  *listing.mutable_program() = text;
+  listing.mutable_program()->set_form(v1::PROGRAM_FORM_OBJECT);
+  EXPECT_EQ(CodeOf(ListText(listing)), ErrorCode::kObjectCorrupt);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

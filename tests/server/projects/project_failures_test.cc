@@ -83,5 +83,53 @@ TEST_F(ProjectFailures, AMachineThatThisServerDoesNotKnow) {
   EXPECT_EQ(Code(transfer.ToMachine(Transfer("none"), "anna")), ErrorCode::kCellInvalidArgument);
 }
 
+// With its schedules, and the other way: the machine is read twice and must be the same.
+TEST_F(ProjectFailures, OfSchedulesAndOfTheWayBack) {
+  v1::CreateProjectRequest create = Creation("lid");
+  v1::ProjectLaserSchedule& schedule = *create.mutable_project()->add_laser_schedules();
+  schedule.set_number(7);
+  schedule.set_mode(v1::LASER_MODE_CW);
+  schedule.set_power_percent(40.0);
+  ASSERT_TRUE(book.Create(create, "anna"));
+  Expect("transferring schedules", 6,
+         [&] { return Code(transfer.ToMachine(Transfer("machines/optimo-1"), "anna")); });
+  v1::TransferProjectFromMachineRequest back;
+  back.set_machine("machines/optimo-1");
+  back.set_project_id("back");
+  back.set_validate_only(true);
+  const auto taken = [&] {
+    return Code(transfer.FromMachine(back, "Thu Mar 04 08:52:34 1993", "anna"));
+  };
+  Expect("taking it back", 7, taken);
+  back.set_machine("optimo-1");
+  EXPECT_EQ(taken(), ErrorCode::kCellInvalidArgument);
+}
+
+// Lists have the names of files, of targets as well, and not their bytes.
+TEST_F(ProjectFailures, BytesOfTargetsAreLeftOutOfLists) {
+  v1::Project project;
+  for (int slot = 1; slot <= 2; ++slot) {
+    v1::ProjectProgram& program = *project.add_programs();
+    program.set_slot(slot);
+    program.mutable_source()->set_content("PU;");
+    v1::MillTarget& target = *program.mutable_milling()->mutable_target();
+    if (slot == 1) {
+      target.mutable_file()->set_file_name("a.stl");
+      target.mutable_file()->set_content("solid");
+    } else {
+      target.mutable_inline_program()->set_file_name("a.rml");
+      target.mutable_inline_program()->set_content("PD;");
+    }
+  }
+  const v1::Project bare = WithoutContent(project);
+  for (const v1::ProjectProgram& program : bare.programs()) {
+    EXPECT_EQ(program.source().content(), "");
+    const v1::MillTarget& target = program.milling().target();
+    EXPECT_EQ(target.file().content() + target.inline_program().content(), "");
+  }
+  EXPECT_EQ(bare.programs(0).milling().target().file().file_name(), "a.stl");
+  EXPECT_EQ(bare.programs(1).milling().target().inline_program().file_name(), "a.rml");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -75,5 +75,15 @@ TEST(LevelsOfPaths, AllBlocksAreThere) {
   EXPECT_EQ(PointsOf(ToolpathAtLevel(frames, 0.01, 1)), points);
 }
 
+// A path ends where it is damaged: what stands before is told at each level.
+TEST(LevelsOfPaths, EndsWhereItIsDamaged) {
+  const std::vector<ToolpathPoint> points = {{0, 0, 0}, {10'000'000, 0, 0}};
+  const std::string whole = FramesThrough(points);
+  std::string damaged = whole;
+  bridge::AddFrame("no block", damaged);
+  EXPECT_EQ(ToolpathAtLevel(damaged + whole, 0.01, 1), ToolpathAtLevel(whole, 0.01, 1));
+  EXPECT_EQ(PointsOf(ToolpathAtLevel(damaged, 0.01, 1)), points);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -7,6 +7,7 @@
 
 #include "server/records/machine_capabilities.h"
 #include "server/records/machine_messages.h"
+#include "server/records/program_memory.h"
 #include "server/records/program_place.h"
 
 namespace rmlcell::server {
@@ -59,6 +60,18 @@ TEST(RecordValues, OfAProgramWithoutBytes) {
   program = ToProto("optimo-1", summary);
   EXPECT_FALSE(program.has_source_bytes());
   EXPECT_TRUE(program.has_executable_bytes());
+}
+
+// Nobody knows what fits into a machine of a later version, or one with parameters that are none.
+TEST(RecordValues, OfMemoriesWithoutALimit) {
+  EXPECT_FALSE(LimitOfMemory({.id = "odd", .family = "lathe"}));
+  EXPECT_FALSE(LimitOfMemory({.id = "o", .family = "optimo", .parameters = {{"NONE", "1"}}}));
+  EXPECT_FALSE(LimitOfMemory({.id = "m", .family = "rml1", .profile = "srm-20"}));
+  const auto limit =
+      LimitOfMemory({.id = "o", .family = "optimo", .parameters = {{"CMOS_SIZE", "1000"}}});
+  ASSERT_TRUE(limit);
+  EXPECT_EQ(limit->bytes, 1000);
+  EXPECT_EQ(limit->full, ErrorCode::kCmosFull);
 }
 
 }  // namespace

@@ -5,13 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "engine/core/hex.h"
 #include "engine/families/families.h"
 #include "proto/bridge/framing.h"
-#include "proto/bridge/machine_inputs.h"
-#include "proto/bridge/sha256.h"
-#include "proto/recording/recording.h"
-#include "server/worker/replayed_products.h"
 #include "tests/server/worker/runner_bed.h"
 
 namespace rmlcell::server {
@@ -250,136 +245,6 @@ TEST_F(JobProducts, ASimulationHaltsAtABreakpointWithItsCondition) {
   ASSERT_EQ(Report().variables_size(), 1);
   EXPECT_EQ(Report().variables(0).value().integer(), 5);
   EXPECT_EQ(Report().variables(0).text(), "5");
-}
-
-// What a machine that lived recorded of a run, made into the products of that run. LIVE-3.41
-class ReplayedProducts : public testing::Test {
- protected:
-  ReplayedProducts() {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~ReplayedProducts() override { std::filesystem::remove_all(folder_); }
-
-  // A mill that is to run this stream from its beginning, up to a time at which nothing happens.
-  static recording::Recording RecordingOf(const std::string& stream, std::chrono::seconds until) {
-    const machine::MachineFamily& family = *families::FindFamily("rml1");
-    machine::RunObserver nobody;
-    machine::MachineMemory memory;
-    memory.programs[5] = {.name = "part", .object = machine::Bytes::Of(stream)};
-    recording::Recording made;
-    made.head.set_machine("machines/mill-1");
-    made.head.set_family("rml1");
-    made.head.set_profile("srm-20");
-    recording::SetMemory(memory, made.head);
-    const auto machine = machine::Machine::Make(
-        family, *machine::MakeParameters(family, "srm-20", {}), memory, "", nobody);
-    EXPECT_TRUE(machine);
-    v1::JournalEntry& mark = made.entries.emplace_back();
-    mark.set_sequence(1);
-    mark.mutable_mark()->set_state((*machine)->Save());
-    mark.mutable_mark()->set_state_sha256(*BytesOfHex(bridge::Sha256Hex(mark.mark().state())));
-    v1::JournalEntry& start = made.entries.emplace_back();
-    start.set_sequence(2);
-    *start.mutable_applied()->mutable_input() = bridge::AppliedOf(machine::StartRun{.program = 5});
-    // Two entries that tell nothing: time goes on up to the first, and behind it.
-    for (const int further : {0, 1}) {
-      v1::JournalEntry& entry = made.entries.emplace_back();
-      entry.set_sequence(3 + further);
-      entry.set_virtual_time_ns(
-          std::chrono::nanoseconds(until + std::chrono::seconds(further)).count());
-    }
-    return made;
-  }
-  Status Make(const recording::Recording& recording) const {
-    std::ofstream(folder_ + "/recording", std::ios::binary) << recording::FileOf(recording);
-    return MakeProducts(folder_ + "/recording", folder_);
-  }
-  std::string Product(const std::string& name) const {
-    std::ifstream file(folder_ + "/" + name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  v1::RunReport Report() const {
-    v1::RunReport report;
-    EXPECT_TRUE(report.ParseFromString(Product("report")));
-    return report;
-  }
-  // Why nothing is made of it.
-  std::string Refused(const recording::Recording& recording) const {
-    const Status made = Make(recording);
-    return made ? "" : CodeText(made.error().code) + " " + std::string(made.error().detail);
-  }
-
-  const std::string folder_ = testing::TempDir() + "/replayed_products";
-};
-
-constexpr const char* kThereAndBack = "PA;PA;VS10;PU200,0;PU0,0;";
-
-TEST_F(ReplayedProducts, AreThoseOfTheRun) {
-  const Status made = Make(RecordingOf(kThereAndBack, std::chrono::hours(1)));
-  ASSERT_TRUE(made) << made.error().detail;
-  const v1::RunReport report = Report();
-  EXPECT_EQ(report.family(), "rml1");
-  EXPECT_EQ(report.profile(), "srm-20");
-  EXPECT_EQ(report.outcome().kind(), v1::Outcome::KIND_COMPLETED);
-  EXPECT_GT(report.total().times().cycle_s(), 0.0);
-  EXPECT_TRUE(report.inputs().contains("program"));
-  EXPECT_THAT(Product("picture.svg"), HasSubstr("<svg"));
-  const std::string toolpath = Product("toolpath");
-  std::string_view rest = toolpath;
-  EXPECT_TRUE(bridge::TakeFrame(rest));
-  while (bridge::TakeFrame(rest)) continue;
-  EXPECT_TRUE(rest.empty());
-}
-
-// The program that was brought is the one that ran, whatever the slot had.
-TEST_F(ReplayedProducts, HaveTheProgramThatWasBrought) {
-  ASSERT_TRUE(Make(RecordingOf(kThereAndBack, std::chrono::hours(1))));
-  const v1::RunReport stored = Report();
-  recording::Recording brought = RecordingOf(kThereAndBack, std::chrono::hours(1));
-  brought.head.mutable_brought()->set_file_name("other.rml");
-  brought.head.mutable_brought()->set_content("PA;PA;VS10;PU2000,0;PU0,0;");
-  ASSERT_TRUE(Make(brought));
-  EXPECT_GT(Report().total().times().cycle_s(), stored.total().times().cycle_s());
-  EXPECT_NE(Report().inputs().at("program"), stored.inputs().at("program"));
-}
-
-// Cut off by the end of its host: its outcome is that of the job, and no part is good.
-TEST_F(ReplayedProducts, OfARunThatWasCutOff) {
-  for (const char* code : {"CELL-E9432", "CELL-E9411"}) {
-    recording::Recording recording = RecordingOf(kThereAndBack, std::chrono::seconds(3));
-    v1::Outcome& outcome = *recording.entries[2].mutable_run_over()->mutable_outcome();
-    outcome.set_kind(v1::Outcome::KIND_INTERRUPTED);
-    outcome.set_code(code);
-    outcome.set_message("as the host said");
-    const Status made = Make(recording);
-    ASSERT_TRUE(made) << made.error().detail;
-    const v1::RunReport report = Report();
-    EXPECT_EQ(report.outcome().kind(), v1::Outcome::KIND_INTERRUPTED);
-    EXPECT_EQ(report.outcome().code(), code);
-    EXPECT_EQ(report.outcome().message(), "as the host said");
-    EXPECT_EQ(report.outcome().verdict(), v1::VERDICT_BAD);
-    std::vector<std::string> reasons;
-    for (const v1::VerdictReason& reason : report.outcome().reasons())
-      reasons.push_back(reason.code());
-    EXPECT_THAT(reasons, testing::Contains(code));
-    EXPECT_THAT(Product("picture.svg"), HasSubstr("<svg"));
-  }
-}
-
-TEST_F(ReplayedProducts, NothingIsMadeOfWhatIsNoWholeRun) {
-  EXPECT_THAT(Refused(RecordingOf(kThereAndBack, std::chrono::seconds(1))),
-              HasSubstr("CELL-E9015 the recording ends before the run does"));
-  recording::Recording other = RecordingOf(kThereAndBack, std::chrono::hours(1));
-  other.entries[0].mutable_mark()->set_state_sha256("another");
-  EXPECT_THAT(Refused(other), HasSubstr("CELL-E9436 entry 1, mark.state_sha256: recorded "));
-  other = RecordingOf(kThereAndBack, std::chrono::hours(1));
-  other.head.set_family("lathe");
-  EXPECT_EQ(Refused(other), "CELL-E9008 lathe");
-  EXPECT_EQ(MakeProducts(folder_ + "/none", folder_).error().code, ErrorCode::kCellFileUnreadable);
-  ASSERT_TRUE(Make(RecordingOf(kThereAndBack, std::chrono::hours(1))));
-  EXPECT_EQ(MakeProducts(folder_ + "/recording", folder_ + "/no/folder").error().code,
-            ErrorCode::kCellFileUnwritable);
 }
 
 }  // namespace
