@@ -74,6 +74,7 @@ Result<v1::AcquireControlResponse> ControlDesk::Acquire(const v1::AcquireControl
 void ControlDesk::Give(const std::string& holder, v1::ControlLease::OnLoss on_loss,
                        const HostTime& now) {
   of_queue_ = false;
+  behind_run_.reset();
   lease_.emplace();
   lease_->set_number(++number_);
   lease_->set_holder(holder);
@@ -93,8 +94,15 @@ void ControlDesk::GiveToQueue(const std::string& job, v1::ControlLease::OnLoss o
   change_->set_lease(number_);
 }
 
-void ControlDesk::TakeFromQueue() {
-  if (of_queue_) End(v1::ControlChanged::KIND_RELEASED);
+void ControlDesk::RunBegins(v1::ControlLease::OnLoss wanted) {
+  if (!lease_ || of_queue_ || wanted == v1::ControlLease::ON_LOSS_UNSPECIFIED) return;
+  behind_run_ = lease_->on_loss();
+  lease_->set_on_loss(wanted);
+}
+
+void ControlDesk::RunIsOver() {
+  if (of_queue_) return End(v1::ControlChanged::KIND_RELEASED);
+  if (behind_run_) lease_->set_on_loss(*std::exchange(behind_run_, std::nullopt));
 }
 
 void ControlDesk::Prolong(const HostTime& now) {
@@ -141,6 +149,7 @@ void ControlDesk::End(v1::ControlChanged::Kind kind) {
   change_->set_kind(kind);
   change_->set_from(lease_->holder());
   lease_.reset();
+  behind_run_.reset();
   token_sha256_.clear();
   of_queue_ = false;
 }

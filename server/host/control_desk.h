@@ -39,7 +39,10 @@ class ControlDesk {
   // For the run of a job when nobody has it: nobody has the token, and it does not run out.
   // LIVE-4.05
   void GiveToQueue(const std::string& job, v1::ControlLease::OnLoss on_loss, const HostTime& now);
-  void TakeFromQueue();
+  // What is wanted of a run that begins counts before what the lease of a person says, and stands
+  // in it until the run is over; unspecified: nothing else is wanted. LIVE-4.02
+  void RunBegins(v1::ControlLease::OnLoss wanted);
+  void RunIsOver();  // with it ends the lease of the queue
   bool IsOfQueue() const { return of_queue_; }
 
   // A lease that has run out by now: it is over, and this says how a run is to be kept.
@@ -65,6 +68,7 @@ class ControlDesk {
   std::optional<v1::ControlLease> lease_;
   std::string token_sha256_;  // whoever reads the memory of this has no token
   bool of_queue_ = false;
+  std::optional<v1::ControlLease::OnLoss> behind_run_;  // as the person wanted who took it
   std::chrono::nanoseconds ttl_{0};
   std::chrono::nanoseconds runs_out_{0};
   std::optional<v1::ControlChanged> change_;

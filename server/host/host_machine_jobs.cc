@@ -147,10 +147,11 @@ void HostMachine::BeginsJob(const v1::WorkerAssignment& assignment, const HostTi
   begun_jobs_.push_back(job_);
   if (begun_jobs_.size() > kJobsKnown) begun_jobs_.pop_front();
   begin_stored_by_ = sequence_;
-  if (desk_.lease()) return;
   const v1::ControlLease::OnLoss asked = assignment.job().run().on_loss();
-  desk_.GiveToQueue(job_, asked != v1::ControlLease::ON_LOSS_UNSPECIFIED ? asked : armed_on_loss,
-                    now);
+  const v1::ControlLease::OnLoss wanted =
+      asked != v1::ControlLease::ON_LOSS_UNSPECIFIED ? asked : armed_on_loss;
+  if (desk_.lease()) return desk_.RunBegins(wanted);
+  desk_.GiveToQueue(job_, wanted, now);
   TellControl();
 }
 

@@ -132,7 +132,7 @@ void HostMachine::TellOver(const machine::RunOver& run) {
     inspect_due_ = true;
     inspect_job_ = told.job();
   }
-  desk_.TakeFromQueue();
+  desk_.RunIsOver();
   TellControl();
   held_for_.reset();
   mark_due_ = true;

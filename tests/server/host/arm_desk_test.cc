@@ -100,6 +100,46 @@ TEST_F(ArmTest, APersonStartsWithTheTokenOfTheArming) {
   EXPECT_EQ(Do(ByPerson(token)).status().run().job(), "jobs/17");
 }
 
+// LIVE-4.02, LIVE-9.13: for the case that control is lost it counts what the job says, then with
+// what the machine was armed, then what the lease says; and behind the run the lease is as it was
+// taken.
+TEST_F(ArmTest, WhatItIsArmedWithCountsForItsRun) {
+  using OnLoss = v1::ControlLease::OnLoss;
+  constexpr OnLoss kNothing = v1::ControlLease::ON_LOSS_UNSPECIFIED;
+  constexpr OnLoss kHold = v1::ControlLease::ON_LOSS_HOLD;
+  constexpr OnLoss kGoOn = v1::ControlLease::ON_LOSS_GO_ON;
+  struct Case {
+    OnLoss job, armed, counts;
+  };
+  const auto begin = [this](const Case& one) {
+    MakeWith(v1::MachineOptions::START_ARMED);  // the lease says: go on
+    v1::HostOrder arm = Arm();
+    arm.mutable_arm()->set_on_loss(one.armed);
+    Do(arm);
+    v1::HostOrder job = Job();
+    job.mutable_run_job()->mutable_job()->mutable_run()->set_on_loss(one.job);
+    EXPECT_FALSE(Do(job).has_refusal());
+    EXPECT_EQ(host_->StatusAt(now_).control().holder(), "anna");
+    EXPECT_EQ(host_->StatusAt(now_).control().on_loss(), one.counts);
+  };
+  for (const Case& one : {Case{kNothing, kNothing, kGoOn}, Case{kNothing, kHold, kHold},
+                          Case{kGoOn, kHold, kGoOn}, Case{kHold, kGoOn, kHold}}) {
+    begin(one);
+    v1::HostOrder release;
+    release.mutable_release_control()->set_control_token(token_);
+    Do(release);
+    Pass(2s, 50ms);
+    EXPECT_EQ(State(), one.counts == kHold ? v1::MACHINE_STATE_HELD : v1::MACHINE_STATE_RUNNING);
+    begin(one);
+    v1::HostOrder abort;
+    abort.mutable_abort();
+    Do(abort);
+    Pass(2s, 50ms);
+    ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+    EXPECT_EQ(host_->StatusAt(now_).control().on_loss(), kGoOn);
+  }
+}
+
 // DEV-1.41: it ends by time, with control, with another program, and when somebody says so.
 TEST_F(ArmTest, ItEndsByItself) {
   MakeWith(v1::MachineOptions::START_ARMED);
