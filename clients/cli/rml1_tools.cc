@@ -84,8 +84,9 @@ std::string OutputOr(const MillToolOptions& options, const char* extension) {
   return std::filesystem::path(options.file).replace_extension(extension).string();
 }
 
-// An error in the file: what was asked for has been checked before.
+// An error in the file; one about what was asked for is a wrong use.
 int FailedAt(const Error& error, const std::string& file, ToolAnswer& answer) {
+  if (error.code == ErrorCode::kCellInvalidArgument) return Refuse(error);
   Diagnostic finding{.code = error.code,
                      .severity = Lookup(error.code).severity,
                      .detail = error.detail,
