@@ -5,6 +5,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "engine/machine/parameters.h"
 #include "engine/rml1/figures.h"
@@ -139,6 +140,14 @@ TEST(MillTables, Parameters) {
     EXPECT_EQ(table[i].minimum, row.low) << row.name;
     EXPECT_EQ(table[i].maximum, row.high) << row.name;
     EXPECT_EQ(table[i].choices, row.choices) << row.name;
+  }
+}
+
+// A sentence for people, and the rule that it is from.
+TEST(MillTables, ParametersNameTheirRules) {
+  for (const machine::ParameterInfo& info : ParameterTable()) {
+    EXPECT_NE(info.text.find(' '), std::string_view::npos) << info.name;
+    EXPECT_TRUE(info.rule.starts_with("RML1-") || info.rule.starts_with("DEV-")) << info.name;
   }
 }
 

@@ -150,5 +150,17 @@ TEST(Families, OneWithoutBreakpointsKeysAndSteps) {
   EXPECT_EQ(reach.error().detail, "the machine has no start at a step");
 }
 
+// Each comparison of streams is that of a family that is there, and each family has one at most.
+TEST(Families, ComparisonsOfStreamsAreWhole) {
+  std::set<std::string> compared;
+  for (const families::StreamComparison& each : families::StreamComparisons()) {
+    ASSERT_NE(each.family, nullptr);
+    EXPECT_TRUE(each.diff != nullptr) << each.family->info().id;
+    EXPECT_EQ(families::FindFamily(each.family->info().id), each.family);
+    EXPECT_TRUE(compared.insert(std::string(each.family->info().id)).second);
+  }
+  EXPECT_EQ(compared, std::set<std::string>{"rml1"});
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

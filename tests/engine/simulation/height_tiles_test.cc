@@ -277,5 +277,23 @@ TEST(HeightTiles, WhatIsNoGridIsRefused) {
   EXPECT_FALSE(of_size({"\x01\0\0\x04", 4}, {"\x01\0\0\0", 4}));
 }
 
+// Of 3 rows of cells at level 1 the second row has the last one alone: (2, 2) is 1 mm deep, and its
+// neighbour is at the top.
+TEST(HeightTiles, TheLastRowMayBeOfFewerCells) {
+  const Stock odd{.x_max = 1025.0, .y_max = 3.0, .bottom = -65.535, .cell = 1.0};
+  HeightField field = HeightField::Of(odd).value();
+  field.Cut(kPinTool, {2.5, 2.5, -1.0}, {2.5, 2.5, -1.0});
+  HeightChanges changes(field);
+  ASSERT_EQ(changes.level(), 1);
+  EXPECT_EQ(changes.size(), (Size{513, 2}));
+  const std::vector<HeightTile> tiles = changes.Take(field, 100);
+  ASSERT_EQ(tiles.size(), 1U);
+  EXPECT_EQ(tiles[0].rows, 2U);
+  ASSERT_EQ(tiles[0].heights.size(), 2U * 64 * 2);
+  EXPECT_EQ(At(tiles[0], 1, 1), 65'035);
+  EXPECT_EQ(At(tiles[0], 1, 0), 65'535);
+  EXPECT_EQ(At(tiles[0], 2, 1), 65'535);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

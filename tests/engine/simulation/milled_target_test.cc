@@ -59,5 +59,20 @@ TEST(MilledTarget, OfAProgramThatDoesNotEndIsNone) {
   EXPECT_EQ(asked, 3);
 }
 
+// A request that names no parameter of the machine, a program with errors, a run that no mill has.
+TEST(MilledTarget, OfAProgramThatDoesNotBeginIsNone) {
+  const std::string plunge = "!PZ-100,200;PU550,550;PD550,550;PU0,0;";
+  const auto unknown = Milled(plunge, {.parameters = {{"NO_SUCH", "1"}}});
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().code, ErrorCode::kCellUnknownParameter);
+  const auto empty = Milled("", {});
+  ASSERT_FALSE(empty);
+  EXPECT_EQ(empty.error().code, ErrorCode::kCellBadText);
+  EXPECT_EQ(empty.error().detail, "the program has errors: rmlcell check lists them");
+  const auto dry = Milled(plunge, {.simul = machine::ProgramStep{3, 2}});
+  ASSERT_FALSE(dry);
+  EXPECT_EQ(dry.error().code, ErrorCode::kCellUnimplemented);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/core/units.h"
+#include "engine/simulation/material/milled_part.h"
 #include "engine/simulation/material/milling_recorder.h"
 #include "engine/simulation/material/milling_text.h"
 #include "tests/engine/simulation/fake_run.h"
@@ -326,6 +328,62 @@ TEST(MillingRecorder, TellsWhichTilesHaveChanged) {
     EXPECT_EQ(changed({10, 110, -1}, {10, 65, -1}), (Tiles{{0, 0}, {0, 64}}));
     EXPECT_EQ(changed({10, 10, 1}, {63, 63, 1}), Tiles{});
   }
+}
+
+// A turn of the rotary axis alone takes nothing off, wherever the tool stands.
+TEST(MillingRecorder, ATurnOfTheRotaryAxisTakesNothingOff) {
+  const motion::MachinePoint origin = MillShape().work_origin;
+  const motion::MachinePoint inside = MachineVector{5, 6, -2} + origin;
+  motion::PlannedMotion turn;
+  turn.path = PathPiece::Line({inside, 0.0, 0.0}, {inside, 1.0, 0.0});
+  ASSERT_EQ(turn.path.kind(), PathPiece::Kind::kRotary);
+  motion::PlannedMotion plunge;
+  plunge.path = PathPiece::Line({MachineVector{5, 6, 5} + origin}, {inside});
+  MillingRecorder recorder(MillShape(), kSlot);
+  MilledPart part(kSlot);
+  part.BeginAt(origin, MachineVector{5, 6, 5} + origin);
+  const auto tell = [&](const motion::PlannedMotion& planned) {
+    const machine::MotionDone done{
+        .motion = &planned, .travelled = planned.path.length(), .programmed_mm_s = 8.0};
+    recorder.OnMotion(done);
+    part.OnMotion(done);
+  };
+  tell(turn);
+  EXPECT_EQ(recorder.Figures().removed_mm3, 0.0);
+  EXPECT_NEAR(part.DepthOf(inside, inside), 2.0, 1e-6);
+  tell(plunge);
+  EXPECT_GT(recorder.Figures().removed_mm3, 13.0);  // 2 mm of a circle of 3 mm are 14.1 mm3
+  EXPECT_EQ(part.DepthOf(inside, inside), 0.0);
+}
+
+// motion.md 9: what should be left is compared with what is left at any time.
+TEST(MillingRecorder, ComparesWithItsTarget) {
+  const HeightField::Size size = HeightField::SizeOf(kSlot.stock);
+  const std::vector<float> untouched(size.columns * size.rows, 0.0f);
+  Milling milling = kSlot;
+  milling.target = Target{.heights = std::make_shared<const std::vector<float>>(untouched)};
+  ASSERT_TRUE(CheckMilling(milling));
+  MillingRecorder recorder(MillShape(), milling);
+  ASSERT_TRUE(recorder.Figures().target);
+  EXPECT_EQ(recorder.Figures().target->good_percent, 100.0);
+  Tell(recorder, {5, 6, -2}, {15, 6, -2}, 8.0, 1);
+  EXPECT_NEAR(recorder.Figures().target->deep_mm, 2.0, 1e-6);
+  MillingRecorder without(MillShape(), kSlot);
+  EXPECT_FALSE(without.Figures().target);
+}
+
+// Neither a tool nor a block that cannot be is milled with.
+TEST(MillingRecorder, RefusesToolsAndBlocksThatCannotBe) {
+  Milling milling = kSlot;
+  milling.tool.radius_mm = 0.0;
+  const Status tool = CheckMilling(milling);
+  ASSERT_FALSE(tool);
+  EXPECT_EQ(tool.error().code, ErrorCode::kCellInvalidArgument);
+  milling = kSlot;
+  milling.stock.bottom = 1.0;
+  const Status block = CheckMilling(milling);
+  ASSERT_FALSE(block);
+  EXPECT_EQ(block.error().code, ErrorCode::kCellInvalidArgument);
 }
 
 }  // namespace

@@ -233,6 +233,19 @@ TEST(PlotEdges, AWaitWithoutTheBeamHasNoPower) {
   }
 }
 
+// Neither of one that is not told nor of one that ends before it begins.
+TEST(PlotEdges, OfNoMotionNothingIsKnown) {
+  using std::chrono::seconds;
+  PlotRecorder recorder(Laser());
+  motion::PlannedMotion planned;
+  planned.path = LineFrom({}, {100, 0, 0});
+  planned.speed = motion::SpeedProfile::Steady(100.0, 50.0);
+  recorder.OnMotion({.start = SimTime(0), .end = seconds(1)});
+  recorder.OnMotion(
+      {.start = seconds(2), .end = seconds(1), .motion = &planned, .travelled = 100.0});
+  EXPECT_TRUE(recorder.Values(seconds(3)).buckets().empty());
+}
+
 // With a tolerance of 1 mm straight ways are joined within 0.025 mm.
 std::vector<ToolpathPoint> ToolpathOf(const std::vector<MachinePoint>& places) {
   std::vector<ToolpathPoint> points;

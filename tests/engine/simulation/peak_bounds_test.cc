@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "engine/core/units.h"
 #include "tests/engine/motion/random_chain.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/shape_of.h"
@@ -134,6 +135,28 @@ TEST(PeakBounds, WhatLiesBeyondIsWhatIsMissing) {
   const auto expected = FiguresOf(all);
   const auto figures = FiguresOf(beyond);
   for (std::size_t k = 0; k < figures.size(); ++k) EXPECT_EQ(figures[k].get(), expected[k].get());
+}
+
+// A corner that turns by less than two millionths, or turns back but for as much, has no plane that
+// is known well enough: whatever is known already, it is looked at.
+TEST(PeakBounds, OfHardlyACornerAreUnknown) {
+  MotionPeaks known;
+  for (double& figure : FiguresOf(known)) figure = kAnything;
+  const auto may_exceed = [&](double turn_rad) {
+    motion::PlainCorner corner;
+    corner.tangent_in = {1, 0, 0};
+    corner.tangent_out = {std::cos(turn_rad), std::sin(turn_rad), 0};
+    corner.cut_mm = 1.0;
+    motion::PlannedMotion planned;
+    planned.path.AssignCorner(corner, 0.0, 1.0, corner.Start(), corner.at);
+    planned.speed = motion::SpeedProfile::Steady(1.0, 10.0);
+    PartShape shape({planned.path, planned.head, 0.0, 1.0});
+    return MayExceed(known, planned, shape, true, 0.0, planned.speed.duration_s()).any();
+  };
+  EXPECT_FALSE(may_exceed(3e-6));
+  EXPECT_TRUE(may_exceed(1e-6));
+  EXPECT_FALSE(may_exceed(kPi - 3e-6));
+  EXPECT_TRUE(may_exceed(kPi - 1e-6));
 }
 
 }  // namespace

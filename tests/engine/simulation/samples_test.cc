@@ -330,5 +330,37 @@ TEST(Samples, EndsWhenTheSinkTakesNoMore) {
   EXPECT_FALSE(recorder.complete());
 }
 
+// motion.md 9: lines begin when the first position is known, whatever is told before it.
+TEST(Samples, BeginWhereThePlaceIsKnown) {
+  std::string text;
+  SampleRecorder recorder({}, 10.0, [&](std::string_view lines) {
+    text += lines;
+    return true;
+  });
+  recorder.OnWait({.end = FromSeconds(1.0)});
+  recorder.OnSignal({.at = FromSeconds(1.0), .signal = machine::Signal::kShutter, .value = 1.0});
+  recorder.OnMotion({.start = FromSeconds(1.0), .end = FromSeconds(2.0)});  // of nothing
+  EXPECT_EQ(recorder.lines(), 0u);
+  recorder.Finish(FromSeconds(2.0));
+  EXPECT_EQ(Cut(text).size(), 1u);  // the headings
+}
+
+// Whole lines are handed out together, as soon as they are 64 KiB.
+TEST(Samples, LinesAreHandedOutInBlocks) {
+  std::vector<std::string> blocks;
+  SampleRecorder recorder({}, 1000.0, [&](std::string_view lines) {
+    blocks.emplace_back(lines);
+    return true;
+  });
+  recorder.StandsAt({{1, 2, 3}, 0.25, 0.0}, {});
+  recorder.Finish(FromSeconds(3.0));
+  ASSERT_GE(blocks.size(), 3u);  // 3001 lines of some 100 bytes
+  for (std::size_t k = 0; k + 1 < blocks.size(); ++k) {
+    EXPECT_TRUE(blocks[k].ends_with('\n'));
+    EXPECT_GE(blocks[k].size(), 65'536u);
+    EXPECT_LT(blocks[k].size(), 65'536u + 200u);
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

@@ -337,5 +337,31 @@ TEST(Stl, WhoeverWaitsIsAskedWhileNothingIsReady) {
   EXPECT_EQ(bytes, 0U);
 }
 
+// What a table knows of a slope does not tell that it is plane: each vertex is looked at once more,
+// and whoever waits is asked a second time.
+TEST(Stl, WhoeverWaitsIsAskedAgainOfASlope) {
+  HeightField field =
+      HeightField::Of({.x_max = 240.0, .y_max = 200.0, .bottom = -2.0, .top = 0.0, .cell = 0.1})
+          .value();
+  field.Cut({.radius_mm = 20'000.0}, {-20'000, 100, 0}, {20'240, 100, -1});
+  std::size_t bytes = 0;
+  int asked = 0;
+  const auto wanted = [&](int most) {
+    bytes = 0;
+    asked = 0;
+    return WriteStl(field, 0.01, [&, most](std::string_view part) {
+      bytes += part.size();
+      if (part.empty()) ++asked;
+      return asked <= most;
+    });
+  };
+  EXPECT_TRUE(wanted(2));
+  EXPECT_EQ(asked, 2);
+  EXPECT_EQ(bytes, 84U + 50U * 12U);  // the slope is plane
+  EXPECT_FALSE(wanted(1));
+  EXPECT_EQ(asked, 2);
+  EXPECT_EQ(bytes, 0U);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

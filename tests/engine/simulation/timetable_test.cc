@@ -4,6 +4,7 @@
 
 #include "engine/families/families.h"
 #include "engine/simulation/run/simulate.h"
+#include "tests/engine/simulation/fake_family.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -121,6 +122,25 @@ TEST(TimetableRun, TakesAsLongAsTheRun) {
   ASSERT_TRUE(bool(cut));
   ASSERT_GT(cut->report.total.time.total(), std::chrono::seconds(5));
   EXPECT_EQ(PlannedTime(laser, program), cut->report.total.time.total());
+}
+
+// 2 s, a halt up to the START that the inputs give after 10 s, and 3 s more.
+TEST(TimetableRun, AHaltLastsUpToTheStartOfItsInputs) {
+  Script script;
+  script.Step(1, 1).Nothing(2.0).Halt("STOP").Nothing(3.0);
+  machine::RunSetup setup = FakeFamily::Setup();
+  EXPECT_EQ(PlannedTime(FakeFamily(script), setup), std::chrono::seconds(5));
+  setup.inputs = {{.at = std::chrono::seconds(10), .kind = machine::InputKind::kStart}};
+  EXPECT_EQ(PlannedTime(FakeFamily(script), setup), std::chrono::seconds(13));
+}
+
+TEST(TimetableRun, OfARunThatDoesNotBeginIsNone) {
+  machine::RunSetup setup = FakeFamily::Setup();
+  setup.main_program = 99;
+  const auto refused = TimetableRun::Of(FakeFamily(), setup);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(refused.error().detail, "no");
 }
 
 }  // namespace

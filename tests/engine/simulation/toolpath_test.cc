@@ -225,6 +225,13 @@ TEST(ToolpathBlock, LimitsOfABlock) {
   EXPECT_EQ(WhyNot({.first = SignedOf(high - 1) + rest}), "");  // and a micrometre more
   EXPECT_EQ(WhyNot({.first = SignedOf(high) + rest}), "run 1 cannot be read");
   EXPECT_EQ(WhyNot({.first = SignedOf(high + 1) + rest}), "no first point");
+  // From 1 by as much as 64 bits hold, and from -1 by as much below 0.
+  const std::int64_t farthest = std::numeric_limits<std::int64_t>::max();
+  const std::string level(2, '\0');
+  EXPECT_EQ(WhyNot({.first = SignedOf(1) + rest, .points = SignedOf(farthest) + level}),
+            "run 1 cannot be read");
+  EXPECT_EQ(WhyNot({.first = SignedOf(-1) + rest, .points = SignedOf(-farthest - 1) + level}),
+            "run 1 cannot be read");
   // Times up to what nanoseconds of 64 bits hold, rounded up to microseconds.
   const std::uint64_t latest = std::numeric_limits<std::int64_t>::max() / 1000 + 1;
   EXPECT_EQ(WhyNot({.start = VarintOf(latest), .duration = {"\0", 1}}), "");

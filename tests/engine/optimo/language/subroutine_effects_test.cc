@@ -60,6 +60,19 @@ TEST(SubroutineEffects, GoThroughOtherSubroutines) {
   EXPECT_FALSE(program.Behind(20).speed.known());  // 70, or 5 by way of 10
 }
 
+// OPT-2.54: the time of a /TIME in a subroutine may run out or not; what it calls and never comes
+// back changes nothing behind it.
+TEST(SubroutineEffects, TheTimeOfAMoveMayRunOut) {
+  const auto speed_behind = [](const std::string& called) {
+    const Followed program("GOSUB 10\nENDTASK\n10 MOVE (1.,2.,3.,0.,0.)/TIME (2.,20)\nRETURN\n20 " +
+                           called);
+    return program.Behind(10).speed.known();
+  };
+  EXPECT_FALSE(speed_behind("SPEED 5\nRETURN\n"));  // 70, or 5
+  EXPECT_EQ(speed_behind("SPEED 70\nRETURN\n"), 70.0F);
+  EXPECT_EQ(speed_behind("SPEED 5\n30 GOTO 30\n"), 70.0F);
+}
+
 // The findings of a program, each with the statement that it is about. What is told of a variable
 // once is told at the first of several statements in the text: only that it is told. How far moves
 // go is left out: it is known better or worse from one to the next.
