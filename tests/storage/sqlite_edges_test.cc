@@ -10,6 +10,7 @@
 #include "engine/core/hex.h"
 #include "storage/content.h"
 #include "storage/sqlite/housekeeping.h"
+#include "storage/sqlite/transaction.h"
 #include "storage/sqlite/watchers.h"
 #include "storage/sqlite/writer.h"
 #include "tests/storage/sqlite_bed.h"
@@ -190,6 +191,39 @@ TEST(SqliteEdges, TheLengthOfTheLogIsKnown) {
     ASSERT_TRUE(database.Execute("INSERT INTO filling VALUES (zeroblob(4096 * 1000))"));
     EXPECT_GE(database.log_pages(), before + 1000);
   }
+}
+
+// A write that nobody commits has never been, and leaves room for the next one; of a part of one
+// the same holds within it.
+TEST(SqliteEdges, WhatIsNotCommittedIsUndone) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  Must(database.Execute("CREATE TABLE filling (name TEXT)"));
+  TransactionStatements statements(database);
+  const auto add = [&] { Must(database.Execute("INSERT INTO filling VALUES ('one')")); };
+  const auto rows = [&] { return Must(database.Number("SELECT count(*) FROM filling")); };
+  for (int time = 0; time < 2; ++time) {
+    const Transaction lost = Must(Transaction::Begin(statements, Transaction::Kind::kWrite));
+    add();
+    EXPECT_EQ(rows(), 1);
+    EXPECT_TRUE(lost.alive());
+  }
+  EXPECT_FALSE(database.in_transaction());
+  EXPECT_EQ(rows(), 0);
+  Transaction kept = Must(Transaction::Begin(statements, Transaction::Kind::kWrite));
+  {
+    const Savepoint lost = Must(Savepoint::Begin(statements));
+    add();
+  }
+  EXPECT_EQ(rows(), 0);
+  Savepoint part = Must(Savepoint::Begin(statements));
+  add();
+  Must(part.Keep());
+  Must(kept.Commit());
+  EXPECT_FALSE(database.in_transaction());
+  EXPECT_EQ(rows(), 1);
 }
 
 // A statement is executed once at a time: another query of it would take the row from the first.

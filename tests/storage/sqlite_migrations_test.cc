@@ -73,6 +73,18 @@ TEST_F(SqliteMigrations, OldStoreIsCopiedBefore) {
   EXPECT_EQ(facts.st_mode & 0777U, 0600U);
 }
 
+TEST_F(SqliteMigrations, WithoutItsCopyAnOldStoreStaysOld) {
+  Must(MigrateTo(1));
+  const std::string copy = path_ + ".version-1";
+  std::filesystem::create_directory(copy);
+  const Status migrated = MigrateTo(3);
+  ASSERT_EQ(CodeOf(migrated), ErrorCode::kCellStoreFailed);
+  EXPECT_THAT(migrated.error().detail, HasSubstr("cannot make " + copy));
+  EXPECT_EQ(NumberIn(path_, "PRAGMA user_version"), 1);
+  std::filesystem::remove(copy);
+  Must(MigrateTo(3));
+}
+
 TEST_F(SqliteMigrations, NewerStoreIsRefused) {
   Must(MigrateTo(3));
   const Status refused = MigrateTo(2);

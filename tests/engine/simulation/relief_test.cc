@@ -96,12 +96,12 @@ TEST(Relief, TheSameBytesEachTimeAndNoneTooMany) {
 
 // One cell is level, and so is each of a block that is one cell wide: it is its own neighbour.
 TEST(Relief, ACellWithoutNeighboursIsLevel) {
-  const PngPicture one(ReliefOf(
-      HeightField::Of({.x_max = 1.0, .y_max = 1.0, .bottom = -2.0, .cell = 1.0}).value()));
+  const PngPicture one(
+      ReliefOf(HeightField::Of({.x_max = 1.0, .y_max = 1.0, .bottom = -2.0, .cell = 1.0}).value()));
   ASSERT_EQ(one.width * one.height, 1u);
   EXPECT_EQ(one.At(0, 0), kWood);
-  const PngPicture row(ReliefOf(
-      HeightField::Of({.x_max = 3.0, .y_max = 1.0, .bottom = -2.0, .cell = 1.0}).value()));
+  const PngPicture row(
+      ReliefOf(HeightField::Of({.x_max = 3.0, .y_max = 1.0, .bottom = -2.0, .cell = 1.0}).value()));
   ASSERT_EQ(row.width, 3u);
   for (std::size_t column = 0; column < 3; ++column) EXPECT_EQ(row.At(column, 0), kWood);
 }

@@ -1,6 +1,7 @@
 #include "proto/bridge/files.h"
 
 #include <google/protobuf/util/json_util.h>
+#include <google/rpc/status.pb.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -151,6 +153,21 @@ TEST(StableJson, ALongListIsPrintedTheSame) {
       ASSERT_TRUE(google::protobuf::util::MessageToJsonString(report, &whole, options).ok());
       EXPECT_EQ(StableJson(report, whitespace), whole) << count;
     }
+  }
+}
+
+// A detail of a type that nobody here knows has no text, and neither has what it stands in, as an
+// entry of a long list, too.
+TEST(StableJson, AnUnknownTypeHasNone) {
+  for (const int known : {0, 1, 200}) {
+    google::rpc::Status rich;
+    for (int n = 0; n < known; ++n) rich.add_details()->PackFrom(v1::Outcome());
+    EXPECT_TRUE(StableJson(rich, false)) << known;
+    google::protobuf::Any& unknown = *rich.add_details();
+    unknown.set_type_url("types.example/shop.Detail");
+    unknown.set_value("f");
+    for (const bool whitespace : {false, true})
+      EXPECT_EQ(StableJson(rich, whitespace), std::nullopt) << known;
   }
 }
 

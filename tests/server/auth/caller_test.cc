@@ -36,6 +36,7 @@ TEST(Gate, KnowsTheUserOfASocket) {
   EXPECT_EQ(user("fd:7", Transport::kTcp), std::nullopt);
   EXPECT_EQ(user("fd:", Transport::kUnixSocket), std::nullopt);
   EXPECT_EQ(user("fd:x", Transport::kUnixSocket), std::nullopt);
+  EXPECT_EQ(user("at:7", Transport::kUnixSocket), std::nullopt);
   // That of the gateway is not the browser's.
   const auto browser = gate.Admit({.method = "/rmlcell.v1.JobService/GetJob",
                                    .peer = "fd:7",

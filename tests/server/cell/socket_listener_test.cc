@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -40,6 +42,10 @@ TEST_F(SocketListenerTest, APathHas107Characters) {
   EXPECT_EQ(Refusal(longest), "");
   EXPECT_EQ(Refusal(longest + "s"), wrong);
   EXPECT_EQ(Refusal(""), wrong);
+}
+
+TEST_F(SocketListenerTest, SaysWhyItCannotBeThere) {
+  EXPECT_EQ(Refusal(folder_ + "/none/cell.sock"), std::strerror(ENOENT));
 }
 
 // Only the socket that a dead server left is taken away: not that of a living one, and no file.

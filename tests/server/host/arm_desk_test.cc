@@ -100,6 +100,16 @@ TEST_F(ArmTest, APersonStartsWithTheTokenOfTheArming) {
   EXPECT_EQ(Do(ByPerson(token)).status().run().job(), "jobs/17");
 }
 
+// LIVE-5.04: nothing is armed that could not take the job now.
+TEST_F(ArmTest, AMachineWithAnOpenRunIsNotArmed) {
+  MakeWith(v1::MachineOptions::START_ARMED);
+  ASSERT_FALSE(Do(Start("begin")).has_refusal());
+  const v1::HostOrderAnswer answer = Do(Arm());
+  EXPECT_EQ(answer.refusal().code(), "CELL-E9421");
+  EXPECT_THAT(answer.refusal().message(), HasSubstr("a run is open"));
+  EXPECT_FALSE(IsArmed());
+}
+
 // LIVE-4.02, LIVE-9.13: for the case that control is lost it counts what the job says, then with
 // what the machine was armed, then what the lease says; and behind the run the lease is as it was
 // taken.

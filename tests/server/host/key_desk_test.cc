@@ -122,6 +122,18 @@ TEST_F(DeadManTest, SilenceLetsGo) {
   EXPECT_THAT(dead_man_.LetGo(now_), IsEmpty());
 }
 
+// LIVE-7.06: a release that names no key is one of all of them, those that were stopped, too.
+TEST_F(DeadManTest, AReleaseWithoutANameIsOfEveryKey) {
+  dead_man_.Press("X+", now_);
+  dead_man_.Press("Y+", now_);
+  dead_man_.Lose();
+  EXPECT_TRUE(dead_man_.IsStopped("X+"));
+  dead_man_.Release("");
+  EXPECT_FALSE(dead_man_.holds());
+  EXPECT_FALSE(dead_man_.IsStopped("X+"));
+  EXPECT_FALSE(dead_man_.IsStopped("Y+"));
+}
+
 TEST_F(DeadManTest, WhoIsHeardHoldsOn) {
   dead_man_.Press("X+", now_);
   dead_man_.Press("Y-", now_);

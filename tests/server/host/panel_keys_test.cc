@@ -91,6 +91,25 @@ TEST_F(PanelKeysTest, WhoIsSilentMovesNothing) {
   EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).status().state(), v1::MACHINE_STATE_JOGGING);
 }
 
+// LIVE-7.04: a key that was refused before it came to the machine has used up its number, and is
+// answered the same when it comes again. Nobody without control uses up any.
+TEST_F(PanelKeysTest, AKeyThatWasRefusedOnItsWayIsPassed) {
+  MakeAndTake();
+  ASSERT_FALSE(Do(Key("COVER")).has_refusal());
+  v1::HostOrderAnswer refused;
+  refused.mutable_refusal()->set_code("CELL-E9002");
+  v1::HostOrder second = Key("COVER");
+  second.set_caller("anna");
+  host_->PassKey(second, refused, now_);
+  EXPECT_EQ(Do(second).refusal().code(), "CELL-E9002");
+  EXPECT_FALSE(Do(Key("COVER")).has_refusal());
+  v1::HostOrder strange = Key("COVER", v1::KEY_ACTION_TAP, 4);
+  strange.set_caller("bert");
+  strange.mutable_panel_key()->set_control_token("none");
+  host_->PassKey(strange, refused, now_);
+  EXPECT_FALSE(Do(Key("COVER")).has_refusal());
+}
+
 // LIVE-7.05: a line that is steady and slow would run on for too long: the key is let go by the
 // third beat, and refused until the line is fast or forgotten.
 TEST_F(PanelKeysTest, ASlowLineMovesNothing) {

@@ -17,6 +17,9 @@ class StartBasesTest : public HostMachineTest {
     base.set_incomplete(true);
     base.mutable_place()->set_program(5);
     base.mutable_place()->set_step(step);
+    CutOffWith(base);
+  }
+  void CutOffWith(const v1::RunBase& base) {
     auto made = HostMachine::Make({.name = "machines/optimo-1",
                                    .host = "workshop/1",
                                    .fence = 7,
@@ -31,9 +34,10 @@ class StartBasesTest : public HostMachineTest {
     ASSERT_EQ(State(), v1::MACHINE_STATE_INSPECT);
   }
   // Why its start is not looked at; "" where it is.
-  std::string WhyNoPreview(std::int64_t occurrence) {
+  std::string WhyNoPreview(std::int64_t occurrence, int program = 0) {
     v1::HostOrder order;
     order.set_number(++number_);
+    order.mutable_preview_start()->set_program(program);
     order.mutable_preview_start()->set_occurrence(occurrence);
     *order.mutable_brought() = JobOf("DELAY 1.\nDELAY 2.\nSTOP\n").run_job().programs(0);
     const auto task = host_->PreparePreview(order, now_);
@@ -51,6 +55,56 @@ TEST_F(StartBasesTest, ThePassOfAStepIsAskedFor) {
   }
   CutOffAtStep(0);
   EXPECT_THAT(WhyNoPreview(0), Not(HasSubstr("name the occurrence")));
+}
+
+// LIVE-6.01: it goes on with the program that was cut off, named or not, and with no other.
+TEST_F(StartBasesTest, TheProgramThatWasCutOffMayBeNamed) {
+  CutOffAtStep(2);
+  EXPECT_THAT(WhyNoPreview(0, 5), HasSubstr("name the occurrence"));
+  EXPECT_THAT(WhyNoPreview(0, 6), Not(HasSubstr("name the occurrence")));
+}
+
+// What it began with cannot be read: it cannot go on with that.
+TEST_F(StartBasesTest, ABaseThatSaysNothingIsRefused) {
+  v1::RunBase base;
+  base.set_program(5);
+  base.set_mode(static_cast<v1::OperatingMode>(99));
+  base.mutable_place()->set_program(5);
+  base.mutable_place()->set_step(2);
+  CutOffWith(base);
+  EXPECT_EQ(WhyNoPreview(1),
+            CodeText(ErrorCode::kCellInvalidArgument) + " mode is none that there is");
+}
+
+TEST_F(StartBasesTest, AProgramThatIsBroughtMustBeOne) {
+  MakeOptimo();
+  v1::HostOrder order;
+  order.set_number(++number_);
+  order.mutable_preview_start()->set_program(5);
+  order.mutable_preview_start()->mutable_step()->set_step(1);
+  *order.mutable_brought() = JobOf("SPEED 101\n").run_job().programs(0);
+  const auto task = host_->PreparePreview(order, now_);
+  ASSERT_FALSE(task);
+  EXPECT_EQ(CodeText(task.error().code), "OPT-E7004");
+}
+
+// LIVE-6.01: what could not be worked out is no start that may begin.
+TEST_F(StartBasesTest, APreviewThatFailedSaysWhy) {
+  Make();
+  host_->Begin({}, now_);
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  v1::HostOrder order;
+  order.set_number(++number_);
+  order.mutable_preview_start()->set_program(5);
+  order.mutable_preview_start()->mutable_step()->set_step(8);
+  auto task = host_->PreparePreview(order, now_);
+  ASSERT_TRUE(task) << task.error().detail;
+  const v1::HostOrderAnswer answer =
+      host_->Previewed(order, *std::move(task),
+                       Error{ErrorCode::kCellStepUnreachable, "it took too long", {}}, now_);
+  EXPECT_EQ(answer.number(), number_);
+  EXPECT_EQ(answer.refusal().code(), CodeText(ErrorCode::kCellStepUnreachable));
+  EXPECT_FALSE(answer.has_preview());
 }
 
 // LIVE-6.07: each motion of the way says how deep it goes into the part: 0.5 mm, the depth of the

@@ -139,6 +139,18 @@ TEST_F(TwoServers, OrdersReachTheServerThatHasTheJob) {
             ErrorCode::kCellPrecondition);
 }
 
+// One that a newer server has written in its own way is passed over, and those behind it are not.
+TEST_F(TwoServers, AnOrderThatCannotBeReadIsPassedOver) {
+  config.workers_lease_ms = 60'000;
+  Open(1, kNeverFails);
+  const std::int64_t job = bed.SubmitCheck();
+  FakeWorker worker(first->dispatcher, "w");
+  ASSERT_TRUE(worker.Take());
+  ASSERT_TRUE(bed.store().PutOrder(job, "a server", "\xFF"));
+  ASSERT_TRUE(second->dispatcher.Control(job, {.kind = v1::WorkerControl::KIND_HOLD}));
+  EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_HOLD);
+}
+
 // An order is for the attempt that ran when it was given.
 TEST_F(TwoServers, AnOrderIsNotForTheNextAttempt) {
   config.workers_lease_ms = 60'000;

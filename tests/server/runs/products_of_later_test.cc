@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/recording/recording.h"
 #include "server/base/config.h"
 #include "server/base/names.h"
 #include "server/machines/hosts.h"
@@ -32,10 +33,13 @@ class NotingStore final : public ForwardingStore {
  public:
   using ForwardingStore::ForwardingStore;
   std::atomic<bool> fails = false;
+  std::atomic<bool> lists_fail = false;  // of jobs of the mill
   std::atomic<int> looks_at_optimo = 0;
 
   Result<std::vector<storage::JobRecord>> ListJobs(const storage::JobQuery& query) override {
     if (query.machine == "optimo-1") ++looks_at_optimo;
+    if (lists_fail && query.machine == "mill-1")
+      return Error{ErrorCode::kCellStoreFailed, "the line broke", {}};
     return store_.ListJobs(query);
   }
   Result<storage::JobRecord> AddProducts(std::int64_t job,
@@ -92,9 +96,40 @@ class ProductsOfLater : public testing::Test {
                                                                    .log_format = "json"});
     return *products_;
   }
+  // The host of the mill.
+  std::shared_ptr<FakeLink> Joined() {
+    auto link = std::make_shared<FakeLink>();
+    v1::HostHello hello;
+    hello.set_join_token("secret");
+    hello.set_machine("machines/mill-1");
+    hello.set_host("hall/1");
+    hello.set_protocol(1);
+    EXPECT_TRUE(hosts_.Join(link, hello));
+    return link;
+  }
+  // Answers the newest of so many questions for a recording with this.
+  void Send(const FakeLink& link, std::size_t count, const std::string& bytes) {
+    std::vector<v1::HostOrder> orders;
+    ASSERT_TRUE(Eventually([&] {
+      orders.clear();
+      for (const v1::HostResponse& message : link.All()) {
+        if (message.has_order()) orders.push_back(message.order());
+      }
+      return orders.size() >= count;
+    }));
+    v1::HostRequest answer;
+    answer.mutable_answer()->set_number(orders.back().number());
+    v1::HostRecordingPart& part = *answer.mutable_answer()->mutable_recording();
+    part.set_chunk(bytes);
+    part.set_total(static_cast<std::int64_t>(bytes.size()));
+    hosts_.Receive(link, std::move(answer));
+  }
   // Until the thread is done with it.
   void LookAtMill() {
     products().Look("mill-1");
+    AwaitMill();
+  }
+  void AwaitMill() {
     const int before = store_.looks_at_optimo;
     products().Look("optimo-1");
     ASSERT_TRUE(Eventually([&] { return store_.looks_at_optimo > before; }));
@@ -143,6 +178,62 @@ TEST_F(ProductsOfLater, TroubleOfADiskIsNotTheFaultOfARecording) {
   store_.fails = false;
   LookAtMill();
   EXPECT_TRUE(HasReport(job));
+}
+
+// Nor where the store does not say which runs there are.
+TEST_F(ProductsOfLater, RunsThatCannotBeListedAreLookedAtAgain) {
+  const std::int64_t job = Over();
+  Record(job);
+  store_.lists_fail = true;
+  LookAtMill();
+  EXPECT_FALSE(HasReport(job));
+  store_.lists_fail = false;
+  LookAtMill();
+  EXPECT_TRUE(HasReport(job));
+}
+
+// What its host sends and is no recording is not kept, and not asked for again.
+TEST_F(ProductsOfLater, WhatIsNoRecordingIsNotKept) {
+  const auto link = Joined();
+  const std::int64_t job = Over();
+  products().Look("mill-1");
+  Send(*link, 1, "a letter");
+  LookAtMill();
+  EXPECT_FALSE(HasReport(job));
+  EXPECT_FALSE(bed_.store().GetArtifact(job, kRecording));
+  const std::vector<v1::HostResponse> all = link->All();
+  EXPECT_EQ(std::ranges::count_if(all, &v1::HostResponse::has_order), 1);
+}
+
+// What cannot be kept is not played, and asked for again.
+TEST_F(ProductsOfLater, ARecordingIsKeptBeforeItIsPlayed) {
+  recording::Recording recorded;
+  recorded.head.set_machine("machines/mill-1");
+  recorded.entries.emplace_back().mutable_mark()->set_state("where it stood");
+  const std::string bytes = recording::FileOf(recorded);
+  const auto link = Joined();
+  const std::int64_t job = Over();
+  store_.fails = true;
+  products().Look("mill-1");
+  Send(*link, 1, bytes);
+  AwaitMill();
+  EXPECT_FALSE(HasReport(job));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("said")));
+  store_.fails = false;
+  products().Look("mill-1");
+  Send(*link, 2, bytes);
+  EXPECT_TRUE(Eventually([&] { return HasReport(job); }));
+  EXPECT_EQ(Must(bed_.store().ReadArtifact(job, kRecording)), bytes);
+}
+
+// Without the program that plays it there is no report, and nothing is left of the trial.
+TEST_F(ProductsOfLater, WithoutAPlayerThereIsNoReport) {
+  const std::int64_t job = Over();
+  Record(job);
+  std::filesystem::remove(program_);
+  LookAtMill();
+  EXPECT_FALSE(HasReport(job));
+  EXPECT_FALSE(std::filesystem::exists(runs_ + "/" + std::to_string(job)));
 }
 
 // What was cancelled before it began has nothing that could be played, and holds nothing up.

@@ -98,6 +98,21 @@ TEST_F(HeightsFollow, TellsWhatThereIsAndWhatChanges) {
   late.ExpectGoodEnd();
 }
 
+// A job is told to run before its worker tells of a block: it is looked for again, whatever else is
+// told of the job.
+TEST_F(HeightsFollow, ABlockThatComesLaterIsFound) {
+  const std::int64_t job = room.Submit(Mills());
+  const storage::Lease lease = room.bed.Lease();
+  auto stream = Follow(job);
+  ASSERT_TRUE(Eventually([&] { return room.heights_looked_for > 0; }));  // and not found
+  const auto running = room.RunMill(job);
+  running->Add(Grid());
+  EXPECT_EQ(stream.Next().grid().columns(), 1024);
+  room.Finish(lease);
+  running->End(true);
+  stream.ExpectGoodEnd();
+}
+
 // A block that is milled faster than it is looked at: a message has a few, and none is missing.
 TEST_F(HeightsFollow, ManyTilesComeInTurn) {
   const std::int64_t job = room.Submit(Mills());
@@ -176,6 +191,35 @@ TEST_F(HeightsFollow, OneThatIsOverIsToldAsItIsStored) {
     for (const Message& message : followed->Rest()) tiles += message.tiles().tiles_size();
     EXPECT_EQ(tiles, 8);  // four by two
   }
+}
+
+// 1200 x 600 cells are more bytes than one part of a content: 19 by 10 tiles, some a message.
+TEST_F(HeightsFollow, ALargeBlockComesWhole) {
+  const simulation::Stock stock{.x_max = 1200.0, .y_max = 600.0, .bottom = -65.535, .cell = 1.0};
+  simulation::HeightField field = simulation::HeightField::Of(stock).value();
+  field.Cut({.radius_mm = 0.1}, {0.5, 599.5, -1.0}, {1199.5, 599.5, -1.0});
+  std::string bytes;
+  simulation::WriteHeightGrid(field, [&](std::string_view part) {
+    bytes += part;
+    return true;
+  });
+  v1::StreamJobHeightsRequest request;
+  request.set_name(JobName(room.Ended("height.grid", bytes, Mills())));
+  request.set_level(0);
+  auto stream = room.Heights(request);
+  EXPECT_EQ(stream.Next().grid().columns(), 1200);
+  std::vector<v1::HeightTile> tiles;
+  for (const Message& message : stream.Rest()) {
+    EXPECT_LE(message.tiles().tiles_size(), 16);
+    for (const v1::HeightTile& tile : message.tiles().tiles()) tiles.push_back(tile);
+  }
+  ASSERT_EQ(tiles.size(), 190U);
+  const v1::HeightTile& last = tiles.back();
+  EXPECT_EQ(last.columns(), 48);
+  EXPECT_EQ(last.rows(), 24);
+  // The last row alone is cut, a millimetre deep.
+  EXPECT_EQ(simulation::HeightAt(last.heights(), 22 * 48), 65'535);
+  EXPECT_EQ(simulation::HeightAt(last.heights(), 23 * 48), 64'535);
 }
 
 TEST_F(HeightsFollow, LevelAndAreaOfWhatIsStored) {

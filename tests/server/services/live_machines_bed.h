@@ -115,6 +115,7 @@ class LiveMachines : public testing::Test {
     for (grpc::Service* service :
          std::initializer_list<grpc::Service*>{&job_service_, &machine_service_, &handbox_service_})
       builder.RegisterService(service);
+    builder.SetMaxReceiveMessageSize(80 << 20);
     server_ = builder.BuildAndStart();
     const auto channel = server_->InProcessChannel({});
     jobs = v1::JobService::NewStub(channel);
@@ -251,11 +252,11 @@ class LiveMachines : public testing::Test {
                            .is_heard = [](const std::string&) { return true; }}};
   JobBook book{bed_.server.store(), config_};
   std::shared_ptr<AnsweringHost> host = Joined();
+  Gate gate{"secret"};
 
  private:
-  Gate gate_{"secret"};
   OpenStreams open_;
-  CallNeeds needs_{gate_, *executor_, *executor_, 8 << 20};
+  CallNeeds needs_{gate, *executor_, *executor_, 8 << 20};
   RunQueue runs_{{.store = bed_.server.store(),
                   .hosts = hosts,
                   .config = config_,

@@ -95,7 +95,11 @@ class StreamBed {
                         ++toolpaths_looked_for;
                         return Running(running_, job);
                       },
-                  .running_heights = [this](std::int64_t job) { return Running(mills_, job); },
+                  .running_heights =
+                      [this](std::int64_t job) {
+                        ++heights_looked_for;
+                        return Running(mills_, job);
+                      },
                   .instance_id = kInstance}),
         cell_({.executor = executor_,
                .open = open,
@@ -150,6 +154,7 @@ class StreamBed {
   std::shared_ptr<RunningToolpath> Run(std::int64_t job);
   std::shared_ptr<RunningHeights> RunMill(std::int64_t job);
   std::atomic<int> toolpaths_looked_for = 0;
+  std::atomic<int> heights_looked_for = 0;
   // Of those who watch the cell.
   Gate gate{"secret"};
   OpenedStream<v1::StreamJobTraceResponse> Trace(const std::string& name);

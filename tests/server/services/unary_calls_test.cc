@@ -1,189 +1,14 @@
 // Calls with one answer, over a channel of this process: what the store refuses is what they end
 // with, and the limits of what they take.
-#include <gmock/gmock.h>
-#include <google/protobuf/text_format.h>
-#include <grpcpp/grpcpp.h>
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <memory>
-#include <string>
-
 #include "proto/bridge/sha256.h"
 #include "proto/recording/recording.h"
-#include "server/base/config.h"
 #include "server/base/names.h"
-#include "server/jobs/job_book.h"
-#include "server/machines/hosts.h"
-#include "server/programs/language_tools.h"
-#include "server/programs/memory_tools.h"
-#include "server/programs/program_book.h"
-#include "server/projects/project_archive.h"
-#include "server/projects/project_book.h"
-#include "server/projects/project_transfer.h"
-#include "server/results/job_results.h"
-#include "server/runs/run_queue.h"
-#include "server/services/job_service.h"
-#include "server/services/machine_service.h"
-#include "server/services/program_service.h"
-#include "server/services/project_service.h"
-#include "tests/server/failing_store.h"
-#include "tests/server/jobs/dispatcher_bed.h"
+#include "tests/server/services/unary_calls_bed.h"
 
 namespace rmlcell::server {
 namespace {
 
 using testing::HasSubstr;
-
-// Of machines, schedules and orders as well.
-class FailingCellStore final : public FailingStore {
- public:
-  using FailingStore::FailingStore;
-  Result<storage::MachineRecord> PutMachine(const storage::MachineRecord& machine,
-                                            storage::Revision expected,
-                                            std::string_view caller) override {
-    return Or([&] { return store_.PutMachine(machine, expected, caller); });
-  }
-  Status DeleteMachine(std::string_view id, storage::Revision expected,
-                       std::string_view caller) override {
-    return Or([&] { return store_.DeleteMachine(id, expected, caller); });
-  }
-  Result<storage::ScheduleRecord> PutSchedule(const storage::ScheduleRecord& schedule,
-                                              storage::Revision expected,
-                                              std::string_view caller) override {
-    return Or([&] { return store_.PutSchedule(schedule, expected, caller); });
-  }
-  Status DeleteSchedule(std::string_view machine, int number, std::string_view caller) override {
-    return Or([&] { return store_.DeleteSchedule(machine, number, caller); });
-  }
-  Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override {
-    return Or([&] { return store_.UnfinishedJobs(); });
-  }
-  Status DeleteJob(std::int64_t job, std::string_view caller) override {
-    return Or([&] { return store_.DeleteJob(job, caller); });
-  }
-  Result<storage::JobRecord> Move(std::int64_t job, std::int64_t before,
-                                  std::optional<int> priority,
-                                  const std::vector<storage::NewEvent>& events) override {
-    return Or([&] { return store_.Move(job, before, priority, events); });
-  }
-  Result<std::vector<storage::JobRecord>> ActOn(std::span<const std::int64_t> jobs,
-                                                storage::QueueAct act,
-                                                const EventOf& event) override {
-    return Or([&] { return store_.ActOn(jobs, act, event); });
-  }
-};
-
-template <class Request>
-Request Of(const std::string& text) {
-  Request request;
-  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &request)) << text;
-  return request;
-}
-
-class UnaryCalls : public testing::Test {
- protected:
-  UnaryCalls() {
-    grpc::ServerBuilder builder;
-    for (grpc::Service* service :
-         std::initializer_list<grpc::Service*>{&jobs_, &machines_, &programs_, &projects_})
-      builder.RegisterService(service);
-    builder.SetMaxReceiveMessageSize(80 << 20);
-    server_ = builder.BuildAndStart();
-    const auto channel = server_->InProcessChannel({});
-    jobs = v1::JobService::NewStub(channel);
-    machines = v1::MachineService::NewStub(channel);
-    programs = v1::ProgramService::NewStub(channel);
-    projects = v1::ProjectService::NewStub(channel);
-  }
-  ~UnaryCalls() override {
-    server_->Shutdown(std::chrono::system_clock::now());
-    server_->Wait();
-    bed_.End();
-  }
-
-  // The answer of a call, and in `status` how it ended.
-  template <class Stub, class Request, class Response>
-  Response Call(const std::unique_ptr<Stub>& stub,
-                grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
-                const std::string& request) {
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + kPatience);
-    Response response;
-    status = (stub.get()->*method)(&context, Of<Request>(request), &response);
-    return response;
-  }
-  // The same while one call of the store fails, then another, until it comes through.
-  template <class Stub, class Request, class Response>
-  Response InSpiteOfAll(const std::unique_ptr<Stub>& stub,
-                        grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
-                                                     Response*),
-                        const std::string& request) {
-    for (int call = 1;; ++call) {
-      store_.FailAt(call);
-      Response response = Call(stub, method, request);
-      if (!store_.failed()) {
-        EXPECT_GT(call, 1) << Request::descriptor()->name();
-        EXPECT_TRUE(status.ok()) << Request::descriptor()->name() << status.error_message();
-        store_.FailAt(0);
-        return response;
-      }
-      EXPECT_EQ(status.error_code(), grpc::StatusCode::INTERNAL)
-          << Request::descriptor()->name() << ", call " << call;
-      EXPECT_THAT(status.error_message(), HasSubstr("the disk is full"));
-      if (status.ok()) return response;
-    }
-  }
-  void ExpectRefused(grpc::StatusCode code, const std::string& text) {
-    EXPECT_EQ(status.error_code(), code) << status.error_message();
-    EXPECT_THAT(status.error_message(), HasSubstr(text));
-  }
-
-  // Of mill-1, whose memory has no limit, with an object of so many bytes.
-  void PutObject(int slot, std::size_t bytes) {
-    Must(store_.PutPrograms("mill-1", {{.slot = slot, .object = std::string(bytes, 'o')}}, {}, {}));
-  }
-  std::int64_t EndedJob(const std::vector<storage::NewArtifact>& artifacts) {
-    const std::int64_t job = bed_.server.SubmitCheck();
-    Must(bed_.server.store().Finish(bed_.server.Lease(), {.artifacts = artifacts}));
-    return job;
-  }
-
-  grpc::Status status;  // of the newest call
-  std::unique_ptr<v1::JobService::Stub> jobs;
-  std::unique_ptr<v1::MachineService::Stub> machines;
-  std::unique_ptr<v1::ProgramService::Stub> programs;
-  std::unique_ptr<v1::ProjectService::Stub> projects;
-
- private:
-  DispatcherBed bed_;
-
- protected:
-  FailingCellStore store_{bed_.server.store()};
-
- private:
-  Config config_;
-  EventFeed feed_{bed_.server.store()};
-  Gate gate_{"secret"};
-  OpenStreams open_;
-  Executor executor_{1};
-  CallNeeds needs_{gate_, executor_, executor_, 8 << 20};
-  Hosts hosts_{{.store = bed_.server.store(), .feed = feed_, .executor = executor_}};
-  RunQueue runs_{{.store = store_, .hosts = hosts_, .config = config_, .executor = executor_}};
-  ProgramBook program_book_{store_, config_};
-  ProjectBook project_book_{store_};
-  ProjectTransfer transfer_{store_, project_book_, program_book_};
-  MemoryTools tools_{store_, program_book_};
-  LanguageTools language_{store_, program_book_};
-  JobBook book_{store_, config_};
-  JobResults results_{store_, book_, tools_};
-  JobService jobs_{needs_, executor_, book_, results_,  bed_.dispatcher(),
-                   runs_,  feed_,     open_, "instance"};
-  MachineService machines_{needs_, {executor_, open_, store_, feed_, "instance"}, {}};
-  ProgramService programs_{needs_, store_, program_book_, tools_, language_, open_};
-  ProjectService projects_{needs_, project_book_, transfer_, open_};
-  std::unique_ptr<grpc::Server> server_;
-};
 
 TEST_F(UnaryCalls, OfMachinesHandOnWhatTheStoreSays) {
   using Stub = v1::MachineService::Stub;
@@ -359,7 +184,7 @@ TEST_F(UnaryCalls, AContentSaysItsSize) {
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
     v1::UploadContentResponse response;
     const auto writer = programs->UploadContent(&context, &response);
-    writer->Write(Of<v1::UploadContentRequest>("header { " + header + " }"));
+    writer->Write(FromText<v1::UploadContentRequest>("header { " + header + " }"));
     v1::UploadContentRequest chunk;
     chunk.set_chunk(bytes);
     writer->Write(chunk);
@@ -389,7 +214,7 @@ v1::JournalEntry Mark(std::int64_t sequence, std::int64_t time_ns) {
 // machine.proto ExportJournal: of a job what was kept with it, from a time on, of a fence; else
 // what the host of the machine has.
 TEST_F(UnaryCalls, AJournalGoesOut) {
-  const recording::Recording all{.head = Of<v1::MachineRecording>("fence: 7"),
+  const recording::Recording all{.head = FromText<v1::MachineRecording>("fence: 7"),
                                  .entries = {Mark(1, 0), Mark(2, 10)}};
   const std::string file = recording::FileOf(all);
   const std::int64_t job = EndedJob({{.name = "recording", .bytes = file}});
@@ -397,7 +222,8 @@ TEST_F(UnaryCalls, AJournalGoesOut) {
   const auto exported = [&](const std::string& request) {
     grpc::ClientContext context;
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
-    const auto reader = machines->ExportJournal(&context, Of<v1::ExportJournalRequest>(request));
+    const auto reader =
+        machines->ExportJournal(&context, FromText<v1::ExportJournalRequest>(request));
     std::string bytes;
     for (v1::ExportJournalResponse part; reader->Read(&part);) {
       EXPECT_FALSE(part.chunk().empty());
@@ -436,13 +262,13 @@ TEST_F(UnaryCalls, AJournalGoesOut) {
 
 // What the book refuses is what the import ends with.
 TEST_F(UnaryCalls, AnArchiveIsImportedOnce) {
-  const std::string archive = *WriteProjectArchive(Of<v1::Project>("title: 'Lid'"));
+  const std::string archive = *WriteProjectArchive(FromText<v1::Project>("title: 'Lid'"));
   v1::Project response;
   for (int time = 0; time < 2; ++time) {
     grpc::ClientContext context;
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
     const auto writer = projects->ImportProject(&context, &response);
-    writer->Write(Of<v1::ImportProjectRequest>("project_id: 'lid'"));
+    writer->Write(FromText<v1::ImportProjectRequest>("project_id: 'lid'"));
     v1::ImportProjectRequest chunk;
     chunk.set_chunk(archive);
     writer->Write(chunk);
@@ -462,7 +288,7 @@ TEST_F(UnaryCalls, AnArchiveHasSoManyBytes) {
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
     v1::Project response;
     const auto writer = projects->ImportProject(&context, &response);
-    writer->Write(Of<v1::ImportProjectRequest>("project_id: 'lid'"));
+    writer->Write(FromText<v1::ImportProjectRequest>("project_id: 'lid'"));
     v1::ImportProjectRequest chunk;
     chunk.set_chunk(std::string(kProjectBytesMax / 2, 'x'));
     writer->Write(chunk);
@@ -556,8 +382,8 @@ TEST_F(UnaryCalls, AnArchiveGoesOut) {
   const auto exported = [&](const std::string& name) {
     grpc::ClientContext context;
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
-    const auto reader =
-        projects->ExportProject(&context, Of<v1::ExportProjectRequest>("name: '" + name + "'"));
+    const auto reader = projects->ExportProject(
+        &context, FromText<v1::ExportProjectRequest>("name: '" + name + "'"));
     std::string bytes;
     for (v1::ExportProjectResponse part; reader->Read(&part);) {
       sizes.push_back(part.chunk().size());
@@ -584,7 +410,7 @@ TEST_F(UnaryCalls, AnArchiveSaysWhatItBecomes) {
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
     v1::Project response;
     const auto writer = projects->ImportProject(&context, &response);
-    for (const std::string& one : messages) writer->Write(Of<v1::ImportProjectRequest>(one));
+    for (const std::string& one : messages) writer->Write(FromText<v1::ImportProjectRequest>(one));
     writer->WritesDone();
     status = writer->Finish();
     ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, text);

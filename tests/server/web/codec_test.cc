@@ -167,6 +167,17 @@ TEST(RpcJson, WhoseMistakeItIs) {
   EXPECT_FALSE(BytesToJson(type, "")->id);  // has no such field
 }
 
+// A message that can be read and not be written has no JSON.
+TEST(RpcJson, WhatHasNoJsonIsTheServersMistake) {
+  google::rpc::Status rich;
+  rich.add_details()->set_type_url("types.example/shop.Detail");
+  rich.mutable_details(0)->set_value("f");
+  const auto answer = BytesToJson(*google::rpc::Status::descriptor(), rich.SerializeAsString());
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, ErrorCode::kCellInternal);
+  EXPECT_EQ(answer.error().detail, "an answer cannot be written as JSON");
+}
+
 // Nesting is limited by the reader, not by the stack.
 TEST(RpcJson, DeepNestingIsRefused) {
   const auto& type = *v1::SubmitJobRequest::descriptor();
@@ -193,7 +204,7 @@ TEST(RpcJson, AnEventOfTheCellIsNamedWithItsLog) {
   EXPECT_EQ(request.after_sequence(), 42);
   EXPECT_EQ(request.log_id(), "0198c5b2-aa");
   for (const char* bad : {"", ".a", "1.", "1.A", "1.a b", "1.a/", "1.a:", "1.a`", "1.a{", "-1",
-                          "1 ", "1/", "1:", "01x", "1.a.b"})
+                          "1 ", "1/", "1:", "01x", "1.a.b", "00000000000000000017"})
     EXPECT_FALSE(EventId::Parse(bad)) << bad;
   EXPECT_FALSE(EventId::Parse("1." + std::string(65, 'a')));
   EXPECT_TRUE(EventId::Parse("1." + std::string(64, 'a')));

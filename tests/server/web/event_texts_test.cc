@@ -141,5 +141,19 @@ TEST(EventTexts, WhatIsNoMessageIsAnError) {
   EXPECT_EQ(texts.made(), 0U);
 }
 
+// One that cannot be written as JSON is an error, also among others that can.
+TEST(EventTexts, WhatHasNoTextIsAnError) {
+  EventTexts texts;
+  v1::WatchCellResponse several = Told(43);
+  several.mutable_events()->add_events()->set_sequence(41);
+  v1::CellEvent& wrong = *several.mutable_events()->add_events();
+  wrong.set_sequence(43);
+  wrong.mutable_time()->set_seconds(1'000'000'000'000);  // behind the year 9999
+  const auto text = texts.Of(*v1::WatchCellResponse::descriptor(), several.SerializeAsString());
+  ASSERT_FALSE(text);
+  EXPECT_EQ(text.error().code, ErrorCode::kCellInternal);
+  EXPECT_EQ(texts.made(), 0U);
+}
+
 }  // namespace
 }  // namespace rmlcell::web

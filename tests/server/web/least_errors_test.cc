@@ -20,5 +20,20 @@ TEST(LeastErrors, WithoutDetailsThereAreNone) {
   EXPECT_EQ(PlainErrorJson(status), plain);
 }
 
+// Where a caller's request is to blame whatever the error is by itself.
+TEST(LeastErrors, ACodeThatIsGivenStandsInTheDetails) {
+  const Error error{ErrorCode::kCellNotFound, "jobs/7", {}};
+  const RpcStatus own = FromError(error);
+  const RpcStatus given = FromError(error, 3);
+  google::rpc::Status rich;
+  ASSERT_TRUE(rich.ParseFromString(own.details));
+  EXPECT_EQ(rich.code(), 5);
+  ASSERT_TRUE(rich.ParseFromString(given.details));
+  EXPECT_EQ(rich.code(), 3);
+  EXPECT_EQ(given.code, 3);
+  EXPECT_EQ(given.message, own.message);
+  EXPECT_EQ(rich.message(), own.message);
+}
+
 }  // namespace
 }  // namespace rmlcell::web

@@ -75,6 +75,24 @@ TEST(ResourceRoutes, PicturesOfPrograms) {
     EXPECT_EQ(width(wrong), -1) << wrong;
 }
 
+// What is wrong is said, the machine first.
+TEST(ResourceRoutes, AProblemIsSaid) {
+  const auto problem = [](const std::string& place, const std::string& query) {
+    const ResourceRoute route = RouteResource(At("/v1/machines/" + place, query));
+    EXPECT_TRUE(route.is_resource) << place;
+    EXPECT_FALSE(route.path) << place;
+    return std::string(route.problem);
+  };
+  EXPECT_EQ(problem("%2e%2e/programs/0/content", "form=%zz"), "the path names no machine");
+  EXPECT_EQ(problem("optimo-1/programs/0/content", "form=%zz"),
+            "the path names no slot from 1 to 199");
+  EXPECT_EQ(problem("optimo-1/programs/45/content", "form=%zz"),
+            "the query has a malformed percent escape");
+  EXPECT_EQ(problem("optimo-1/programs/45/picture.svg", "width=%zz"),
+            "the query has a malformed percent escape");
+  EXPECT_EQ(problem("optimo-1/programs/45/picture.svg", "width=x"), "width is no number of pixels");
+}
+
 TEST(ResourceRoutes, Uploads) {
   const ResourceRoute route = RouteResource(At("/v1/uploads"));
   ASSERT_TRUE(route.path);

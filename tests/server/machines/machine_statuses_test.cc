@@ -1,0 +1,79 @@
+// How machines stand of which no host tells: what the feed knows of them as hosts come and go, and
+// while the store does not say (live.md 2.10).
+#include "server/machines/machine_statuses.h"
+
+#include <atomic>
+#include <optional>
+
+#include "tests/server/forwarding_store.h"
+#include "tests/server/machines/hosts_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+// Which does not say what jobs there are, as long as it is told so.
+class UncountedStore final : public ForwardingStore {
+ public:
+  using ForwardingStore::ForwardingStore;
+  std::atomic<bool> fails = false;
+
+  Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override {
+    if (fails) return Error{ErrorCode::kCellStoreFailed, "the line broke", {}};
+    return store_.UnfinishedJobs();
+  }
+};
+
+class StatusesOfMachines : public HostsTest {
+ protected:
+  // As it is told; nothing: nobody tells of it.
+  std::optional<v1::MachineState> StateOf(const std::string& machine) {
+    const auto latest = feed.LatestAfter("machines/" + machine, 0);
+    v1::MachineStatus status;
+    if (!latest || !status.ParseFromString(*latest->bytes)) return std::nullopt;
+    return status.state();
+  }
+  bool Becomes(const std::string& machine, std::optional<v1::MachineState> state) {
+    return Eventually([&] { return StateOf(machine) == state; });
+  }
+};
+
+// What a host told last stays until the machine has none: then it is told what its jobs say.
+TEST_F(StatusesOfMachines, AHostTellsOfItsMachineUntilItHasNone) {
+  const MachineStatuses statuses(bed.store(), feed, *executor, &hosts);
+  ASSERT_TRUE(Becomes("mill-1", v1::MACHINE_STATE_IDLE));
+  const auto link = Joined();
+  Settle();
+  EXPECT_EQ(StateOf("mill-1"), v1::MACHINE_STATE_IDLE) << "until its host says otherwise";
+  Tell(*link, v1::MACHINE_STATE_RUNNING);
+  ASSERT_TRUE(Becomes("mill-1", v1::MACHINE_STATE_RUNNING));
+  hosts.Forget("mill-1");
+  EXPECT_TRUE(Becomes("mill-1", v1::MACHINE_STATE_IDLE));
+}
+
+TEST_F(StatusesOfMachines, NothingIsToldOfAMachineThatWasRemoved) {
+  const MachineStatuses statuses(bed.store(), feed, *executor, &hosts);
+  ASSERT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_IDLE));
+  ASSERT_TRUE(Becomes("mill-1", v1::MACHINE_STATE_IDLE));
+  Must(bed.store().DeleteMachine("optimo-1", storage::kAnyRevision));
+  EXPECT_TRUE(Becomes("optimo-1", std::nullopt));
+  EXPECT_EQ(StateOf("mill-1"), v1::MACHINE_STATE_IDLE);
+}
+
+// Whatever comes next brings a whole look, be it a step of a job, which changes no machine.
+TEST_F(StatusesOfMachines, WhatTheStoreDidNotSayIsAskedAgain) {
+  bed.SubmitCheck();
+  const storage::Lease lease = bed.Lease();
+  ASSERT_TRUE(Eventually([&] { return feed.position() == Must(bed.store().LastPosition()); }));
+  UncountedStore store(bed.store());
+  store.fails = true;
+  const MachineStatuses statuses(store, feed, *executor);
+  Settle();
+  EXPECT_EQ(StateOf("optimo-1"), std::nullopt);
+  store.fails = false;
+  bed.Append(lease, 1);
+  EXPECT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_RUNNING));
+  EXPECT_TRUE(Becomes("mill-1", v1::MACHINE_STATE_IDLE));
+}
+
+}  // namespace
+}  // namespace rmlcell::server
