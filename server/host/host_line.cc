@@ -189,14 +189,12 @@ void HostLine::Write() {
     if (ending_ && queue_.empty()) break;
     v1::HostRequest message;
     // Beside all that is told: the server answers it, and so shows that it is there.
-    if (Clock::now() >= next_heartbeat) {
+    if (queue_.empty() || Clock::now() >= next_heartbeat) {
       next_heartbeat = Clock::now() + (rests ? kHeartbeatAtRest : kHeartbeat);
       message.mutable_heartbeat()->set_number(++heartbeats);
-    } else if (!queue_.empty()) {
+    } else {
       message = std::move(queue_.front());
       queue_.pop_front();
-    } else {
-      continue;
     }
     if (message.has_status()) {
       const bool rested = std::exchange(rests, bridge::IsAtRest(message.status().state()));

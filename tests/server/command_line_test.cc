@@ -103,6 +103,7 @@ TEST(CommandLine, AMistakeIsNamedAndEndsTheProgram) {
       {"", "--listen.grpc 0.0.0.0:1", 78, "0.0.0.0:1"},
       {"", "--listen.web 127.0.0.1.example.com:1", 78, "127.0.0.1.example.com:1"},
       {"", "--listen.grpc \"\"", 78, "listen.grpc is empty"},
+      {"", "--web.connections_max 3", 78, "CELL-E9201"},
       {"", "--jobs.attempt 1", 64, "--jobs.attempt"},
       {"", "something", 64, "something"},
   };

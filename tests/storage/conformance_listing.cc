@@ -121,8 +121,9 @@ TEST_P(StoreConformance, JobsAreListedInTheOrderOfTheQueue) {
   Must(store().HoldBack(ids[4], {}));
   Must(store().Move(ids[9], 0, 5, {}));
   Must(store().Move(ids[8], ids[6], std::nullopt, {}));
-  const std::vector<std::int64_t> order = {ids[2], ids[3],  ids[9],  ids[5], ids[8], ids[6],
-                                           ids[7], ids[10], ids[11], ids[4], ids[1], ids[0]};
+  Must(store().RequestCancel(ids[11], {}));  // behind one that waits comes one of a higher number
+  const std::vector<std::int64_t> order = {ids[2], ids[3],  ids[9], ids[5],  ids[8], ids[6],
+                                           ids[7], ids[10], ids[4], ids[11], ids[1], ids[0]};
   for (const JobOrder wanted : {JobOrder::kQueue, JobOrder::kOldestFirst, JobOrder::kNewestFirst}) {
     std::vector<std::int64_t> expected = order;
     if (wanted == JobOrder::kOldestFirst) expected = ids;

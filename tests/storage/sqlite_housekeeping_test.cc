@@ -20,7 +20,9 @@ TEST(SqliteHousekeeping, IsDueBeyondItsLimits) {
     Counters more;
   };
   const Case cases[] = {
+      {{.finished_jobs = 1}, {.finished_jobs = 1}, {.finished_jobs = 2}},
       {{.finished_jobs = 3}, {.finished_jobs = 3}, {.finished_jobs = 4}},
+      {{.record_events = 1}, {.record_events = 1}, {.record_events = 2}},
       {{.record_events = 16}, {.record_events = 18}, {.record_events = 19}},
       {{.record_events = 7}, {.record_events = 7}, {.record_events = 8}},
       {{.record_events = 80'000}, {.record_events = 81'000}, {.record_events = 81'001}},

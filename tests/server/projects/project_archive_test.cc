@@ -160,7 +160,8 @@ std::vector<std::size_t> FlagsOfNames(const std::string& bytes) {
 TEST(ProjectArchive, ReadsNamesOfAllAlphabets) {
   std::string bytes =
       Packed({{"project.json", R"({"programs":[{"slot":7,"source":{"fileName":"Tür.S"}}]})"},
-              {"Tür.S", "STOP\n"}});
+              {"Tür.S", "STOP\n"},
+              {"T\xFCr.txt", "of an older tool, whatever its mark says"}});
   for (const std::size_t at : FlagsOfNames(bytes)) bytes[at] = '\x08';
   const auto project = ReadProjectArchive(bytes);
   ASSERT_TRUE(project) << project.error().detail;

@@ -101,6 +101,22 @@ TEST_F(OrderedRuns, HoldAndResumeChangeNoOverride) {
   EXPECT_GT(CycleTime_s({OrderOf(v1::WorkerControl::KIND_OVERRIDE, "", 10.0)}), 1.5 * plain_s);
 }
 
+// STOP halts in the middle of a wait, and what is halted so waits.
+TEST_F(OrderedRuns, AStopHaltsUntilSomebodyLetsItGoOn) {
+  int halts = 0;
+  server.heard = [&](const v1::WorkRequest& message) {
+    for (const v1::JobEvent& event : message.events().events()) {
+      if (!event.has_halted()) continue;
+      ++halts;
+      EXPECT_LT(event.virtual_time_ns(), 1'000'000'000);
+      server.Send(Order(v1::WorkerControl::KIND_RESUME));
+    }
+  };
+  Work(Paced("DELAY 1\n", 20.0), {Order(v1::WorkerControl::KIND_STOP)});
+  EXPECT_EQ(halts, 1);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+}
+
 // Whoever let it go on does not hold it any more: where it halts by itself nobody is waited for.
 TEST_F(OrderedRuns, AHaltBehindAResumeEndsTheRun) {
   server.heard = [&](const v1::WorkRequest& message) {
