@@ -166,14 +166,14 @@ TEST_F(AppliedInputs, SayHowControlChangesHands) {
 TEST_F(AppliedInputs, WhatAJobLeadsToHasTheTimeOfItsRun) {
   Make();
   host_->Begin({}, now_);
-  Pass(5s, 50ms);
+  Pass(100s, 50ms);
   ASSERT_FALSE(Do(JobOf("PA;PA;VS10;PU200,0;", "there.rml")).has_refusal());
-  Pass(5s, 50ms);
+  Pass(60s, 50ms);
   const std::vector<v1::JournalEntry> over = Of(v1::JournalEntry::kRunOver);
   ASSERT_EQ(over.size(), 1U);
   EXPECT_EQ(over[0].job(), "jobs/17");
   EXPECT_GT(over[0].run_time_ns(), 0);
-  EXPECT_LT(over[0].run_time_ns(), 5'000'000'000);
+  EXPECT_LT(over[0].run_time_ns(), 60'000'000'000);
 }
 
 // LIVE-4.05: the queue has it for a job, and nobody behind that.
