@@ -33,6 +33,9 @@ Result<v1::ArmMachineResponse> ArmDesk::Arm(const v1::ArmMachineRequest& request
     if (lasts < std::chrono::seconds(1) || lasts > kLongest)
       return Error{ErrorCode::kCellInvalidArgument, "armed_for: 1 s to 600 s", {}};
   }
+  // What nobody knows would be taken for a run that goes on.
+  if (!v1::ControlLease::OnLoss_IsValid(request.on_loss()))
+    return Error{ErrorCode::kCellInvalidArgument, "on_loss is none that there is", {}};
   for (const auto& [confirmation, name] : kSeenTo) {
     const auto& given = request.confirmations();
     if (std::ranges::find(given, confirmation) == given.end())

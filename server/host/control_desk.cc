@@ -35,9 +35,7 @@ Result<v1::AcquireControlResponse> ControlDesk::Acquire(const v1::AcquireControl
     if (!known || ttl < kTtlMin || ttl > kTtlMax) return Wrong("ttl: allowed are 1 s to 60 s");
   }
   if (LengthOf(request.client()) > kClientMax) return Wrong("client: at most 100 characters");
-  if (request.on_loss() != v1::ControlLease::ON_LOSS_UNSPECIFIED &&
-      request.on_loss() != v1::ControlLease::ON_LOSS_HOLD &&
-      request.on_loss() != v1::ControlLease::ON_LOSS_GO_ON)
+  if (!v1::ControlLease::OnLoss_IsValid(request.on_loss()))
     return Wrong("on_loss is none that there is");
   std::string from;
   if (lease_) {

@@ -313,54 +313,54 @@ TEST(Stl, EndsWhenNobodyWantsMore) {
   EXPECT_FALSE(WriteStl(Plate(1.0), 0.0, [](std::string_view) { return false; }));
 }
 
-// Before the first triangle there is much to look at: 2400 x 2000 cells are 4.8 million, and
-// whoever waits is asked after each 4.2 million.
-TEST(Stl, WhoeverWaitsIsAskedWhileNothingIsReady) {
-  HeightField field =
-      HeightField::Of({.x_max = 240.0, .y_max = 200.0, .bottom = -2.0, .top = 0.0, .cell = 0.1})
-          .value();
-  std::size_t bytes = 0;
+// 2400 x 2000 cells are 4.8 million, and whoever waits is asked after each 4.2 million.
+HeightField WideField() {
+  return HeightField::Of({.x_max = 240.0, .y_max = 200.0, .bottom = -2.0, .top = 0.0, .cell = 0.1})
+      .value();
+}
+
+struct AskedStl {
+  bool whole = false;
   int asked = 0;
-  const auto wanted = [&](int most) {
-    bytes = 0;
-    asked = 0;
-    return WriteStl(field, 0.01, [&, most](std::string_view part) {
-      bytes += part.size();
-      if (part.empty()) ++asked;
-      return asked <= most;
-    });
-  };
-  EXPECT_TRUE(wanted(1));
-  EXPECT_EQ(asked, 1);
-  EXPECT_EQ(bytes, 84U + 50U * 12U);  // a plate is a box
-  EXPECT_FALSE(wanted(0));
-  EXPECT_EQ(bytes, 0U);
+  std::size_t bytes = 0;
+};
+
+// Of one who waits so many times.
+AskedStl StlOfOneWhoWaits(const HeightField& field, int most) {
+  AskedStl made;
+  made.whole = WriteStl(field, 0.01, [&](std::string_view part) {
+    made.bytes += part.size();
+    if (part.empty()) ++made.asked;
+    return made.asked <= most;
+  });
+  return made;
+}
+
+// Before the first triangle there is much to look at.
+TEST(Stl, WhoeverWaitsIsAskedWhileNothingIsReady) {
+  const HeightField field = WideField();
+  const AskedStl whole = StlOfOneWhoWaits(field, 1);
+  EXPECT_TRUE(whole.whole);
+  EXPECT_EQ(whole.asked, 1);
+  EXPECT_EQ(whole.bytes, 84U + 50U * 12U);  // a plate is a box
+  const AskedStl none = StlOfOneWhoWaits(field, 0);
+  EXPECT_FALSE(none.whole);
+  EXPECT_EQ(none.bytes, 0U);
 }
 
 // What a table knows of a slope does not tell that it is plane: each vertex is looked at once more,
 // and whoever waits is asked a second time.
 TEST(Stl, WhoeverWaitsIsAskedAgainOfASlope) {
-  HeightField field =
-      HeightField::Of({.x_max = 240.0, .y_max = 200.0, .bottom = -2.0, .top = 0.0, .cell = 0.1})
-          .value();
+  HeightField field = WideField();
   field.Cut({.radius_mm = 20'000.0}, {-20'000, 100, 0}, {20'240, 100, -1});
-  std::size_t bytes = 0;
-  int asked = 0;
-  const auto wanted = [&](int most) {
-    bytes = 0;
-    asked = 0;
-    return WriteStl(field, 0.01, [&, most](std::string_view part) {
-      bytes += part.size();
-      if (part.empty()) ++asked;
-      return asked <= most;
-    });
-  };
-  EXPECT_TRUE(wanted(2));
-  EXPECT_EQ(asked, 2);
-  EXPECT_EQ(bytes, 84U + 50U * 12U);  // the slope is plane
-  EXPECT_FALSE(wanted(1));
-  EXPECT_EQ(asked, 2);
-  EXPECT_EQ(bytes, 0U);
+  const AskedStl whole = StlOfOneWhoWaits(field, 2);
+  EXPECT_TRUE(whole.whole);
+  EXPECT_EQ(whole.asked, 2);
+  EXPECT_EQ(whole.bytes, 84U + 50U * 12U);  // the slope is plane
+  const AskedStl less = StlOfOneWhoWaits(field, 1);
+  EXPECT_FALSE(less.whole);
+  EXPECT_EQ(less.asked, 2);
+  EXPECT_EQ(less.bytes, 0U);
 }
 
 }  // namespace

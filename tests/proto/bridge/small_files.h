@@ -4,7 +4,7 @@
 
 #include <csignal>
 
-namespace rmlcell::bridge {
+namespace rmlcell {
 
 // A disk that is full: no file grows beyond so many bytes while it lives.
 class SmallFiles {
@@ -27,4 +27,4 @@ class SmallFiles {
   void (*const handler_)(int);
 };
 
-}  // namespace rmlcell::bridge
+}  // namespace rmlcell

@@ -17,11 +17,6 @@ using testing::IsEmpty;
 
 class AppliedInputs : public HostMachineTest {
  protected:
-  void MakeAndTake(v1::ControlLease::OnLoss on_loss = v1::ControlLease::ON_LOSS_GO_ON) {
-    Make();
-    host_->Begin({}, now_);
-    Control(on_loss);
-  }
   std::vector<v1::JournalEntry> Of(v1::JournalEntry::WhatCase what) {
     std::vector<v1::JournalEntry> found;
     for (v1::JournalEntry& entry : host_->TakeEntries(now_, true)) {

@@ -110,6 +110,15 @@ TEST_F(ArmTest, AMachineWithAnOpenRunIsNotArmed) {
   EXPECT_FALSE(IsArmed());
 }
 
+// What becomes of the run is never guessed.
+TEST_F(ArmTest, WhatIsWantedOnLossIsOneThatThereIs) {
+  MakeWith(v1::MachineOptions::START_ARMED);
+  v1::HostOrder arm = Arm();
+  arm.mutable_arm()->set_on_loss(static_cast<v1::ControlLease::OnLoss>(3));
+  EXPECT_EQ(Do(arm).refusal().code(), "CELL-E9003");
+  EXPECT_FALSE(IsArmed());
+}
+
 // LIVE-4.02, LIVE-9.13: for the case that control is lost it counts what the job says, then with
 // what the machine was armed, then what the lease says; and behind the run the lease is as it was
 // taken.

@@ -16,21 +16,13 @@ using testing::IsEmpty;
 class HandWords : public HostMachineTest {
  protected:
   void OpenHandbox() {
-    MakeOptimo();
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
+    MakeAndTakeOptimo();
     v1::HostOrder open;
     open.mutable_create_session()->set_control_token(token_);
     session_ = Do(open).session().name();
   }
   v1::PressKeyResponse Tap(const std::string& key) {
-    v1::HostOrder order;
-    v1::PressKeyRequest& pressed = *order.mutable_key();
-    pressed.set_session(session_);
-    pressed.set_control_token(token_);
-    pressed.set_key(key);
-    pressed.set_action(v1::KEY_ACTION_TAP);
-    pressed.set_sequence(++keys_pressed_);
-    const v1::HostOrderAnswer answer = Do(order);
+    const v1::HostOrderAnswer answer = Do(KeyOf(session_, key));
     EXPECT_TRUE(answer.has_key()) << key << ": " << answer.refusal().message();
     return answer.key();
   }
@@ -104,12 +96,8 @@ TEST_F(HandWords, ABeatMustMakeSense) {
 // LIVE-7.04: a number that is not the next one is named.
 TEST_F(HandWords, ANumberThatIsNotTheNextIsNamed) {
   OpenHandbox();
-  v1::HostOrder order;
+  v1::HostOrder order = KeyOf(session_, "REC");
   v1::PressKeyRequest& pressed = *order.mutable_key();
-  pressed.set_session(session_);
-  pressed.set_control_token(token_);
-  pressed.set_key("REC");
-  pressed.set_action(v1::KEY_ACTION_TAP);
   pressed.set_sequence(11);
   EXPECT_EQ(Do(order).refusal().message(), "sequence 11 is not the next one");
   pressed.set_sequence(0);

@@ -14,27 +14,16 @@ using testing::SizeIs;
 
 class HandboxOverTheLine : public HostMachineTest {
  protected:
-  void MakeAndTake() {
-    MakeOptimo();
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
   void Open() {
     v1::HostOrder order;
     order.mutable_create_session()->set_control_token(token_);
     const v1::HostOrderAnswer answer = Do(order);
     ASSERT_TRUE(answer.has_session()) << answer.refusal().message();
     session_ = answer.session().name();
-    keys_ = 0;
+    keys_pressed_ = 0;
   }
   v1::HostOrder Key(const std::string& key, v1::KeyAction action = v1::KEY_ACTION_TAP) {
-    v1::HostOrder order;
-    v1::PressKeyRequest& pressed = *order.mutable_key();
-    pressed.set_session(session_);
-    pressed.set_control_token(token_);
-    pressed.set_key(key);
-    pressed.set_action(action);
-    pressed.set_sequence(++keys_);
-    return order;
+    return KeyOf(session_, key, action);
   }
   v1::PressKeyResponse Press(const std::string& names) {
     v1::PressKeyResponse last;
@@ -70,13 +59,12 @@ class HandboxOverTheLine : public HostMachineTest {
   }
 
   std::string session_;
-  std::int64_t keys_ = 0;
   std::int64_t beats_ = 0;
 };
 
 // LIVE-7.02: a session is of whoever has control, and ends with that.
 TEST_F(HandboxOverTheLine, ASessionIsOfWhoHasControl) {
-  MakeAndTake();
+  MakeAndTakeOptimo();
   v1::HostOrder order;
   order.mutable_create_session()->set_control_token("no token");
   EXPECT_EQ(Do(order).refusal().code(), "CELL-E9420");
@@ -96,7 +84,7 @@ TEST_F(HandboxOverTheLine, ASessionIsOfWhoHasControl) {
 // LIVE-4.03: a mask that was open when control is taken over is nobody's; one stays open while
 // nobody takes anything from anybody.
 TEST_F(HandboxOverTheLine, AMaskEndsWhereControlIsTakenOver) {
-  MakeAndTake();
+  MakeAndTakeOptimo();
   Open();
   Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT MOV");
   const std::string mask = Press("DEL 3").panel().display();
@@ -119,7 +107,7 @@ TEST_F(HandboxOverTheLine, AMaskEndsWhereControlIsTakenOver) {
 
 // LIVE-7.07, OPT-4.19: START in CYCLE begins the program that is selected, without a job.
 TEST_F(HandboxOverTheLine, StartBeginsTheSelectedProgram) {
-  MakeAndTake();
+  MakeAndTakeOptimo();
   Open();
   const machine::MachineFamily& family = *families::FindFamily("optimo");
   auto made =
@@ -141,7 +129,7 @@ TEST_F(HandboxOverTheLine, StartBeginsTheSelectedProgram) {
 
 // LIVE-9.06, OPT-4.34: the override has ten steps, from afar as well; a mill is set to any.
 TEST_F(HandboxOverTheLine, TheOverrideHasTenSteps) {
-  MakeAndTake();
+  MakeAndTakeOptimo();
   const auto set = [this](double percent) {
     v1::HostOrder order;
     order.mutable_override()->set_control_token(token_);
@@ -165,7 +153,7 @@ TEST_F(HandboxOverTheLine, TheOverrideHasTenSteps) {
 
 // LIVE-7.10: what the control says is an answer, what nobody can press is none.
 TEST_F(HandboxOverTheLine, TheControlAnswers) {
-  MakeAndTake();
+  MakeAndTakeOptimo();
   Open();
   const v1::PressKeyResponse dead = Press("REC");  // in REMOTE
   EXPECT_EQ(dead.message().code(), "OPT-E7601");
@@ -182,7 +170,7 @@ TEST_F(HandboxOverTheLine, TheControlAnswers) {
 
 // LIVE-7.05, LIVE-3.40: a jog key is held by who is heard; keys are played again.
 TEST_F(HandboxOverTheLine, AJogKeyIsHeld) {
-  MakeAndTake();
+  MakeAndTakeOptimo();
   Open();
   Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT");
   const auto x = [this] { return host_->StatusAt(now_).axes(0).value(); };
@@ -209,7 +197,7 @@ TEST_F(HandboxOverTheLine, AJogKeyIsHeld) {
 
 // LIVE-7.08: a program that is taught goes to the store, and counts when it is there.
 TEST_F(HandboxOverTheLine, WhatIsTaughtIsStored) {
-  MakeAndTake();
+  MakeAndTakeOptimo();
   Open();
   Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC");
   std::vector<v1::HostEdit> edits = host_->TakeEdits();
@@ -236,7 +224,7 @@ TEST_F(HandboxOverTheLine, WhatIsTaughtIsStored) {
 
 // LIVE-7.04, LIVE-7.08: keys wait while what was taught is being stored; one that moves does not.
 TEST_F(HandboxOverTheLine, KeysWaitForWhatIsBeingStored) {
-  MakeAndTake();
+  MakeAndTakeOptimo();
   Open();
   Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC");
   const std::vector<v1::HostEdit> edits = host_->TakeEdits();
@@ -247,7 +235,7 @@ TEST_F(HandboxOverTheLine, KeysWaitForWhatIsBeingStored) {
   v1::HostOrder slower = next;  // it overtakes no key that was pressed before
   slower.mutable_key()->set_key("OVERRIDE_MINUS");
   EXPECT_TRUE(host_->WaitsForKeys(slower, now_));
-  slower.mutable_key()->set_sequence(keys_ + 2);
+  slower.mutable_key()->set_sequence(keys_pressed_ + 2);
   EXPECT_TRUE(host_->WaitsForKeys(slower, now_));
   v1::HostOrder jog = next;
   jog.mutable_key()->set_key("X+");
@@ -256,7 +244,7 @@ TEST_F(HandboxOverTheLine, KeysWaitForWhatIsBeingStored) {
   // Whoever has lost control is told so, and not that keys are missing.
   v1::HostOrder stranger = next;
   stranger.mutable_key()->set_control_token("another token");
-  stranger.mutable_key()->set_sequence(keys_ + 5);
+  stranger.mutable_key()->set_sequence(keys_pressed_ + 5);
   EXPECT_FALSE(host_->WaitsForKeys(stranger, now_));
   EXPECT_EQ(Do(stranger).refusal().code(), "CELL-E9420");
   Store(edits[0]);
@@ -266,7 +254,7 @@ TEST_F(HandboxOverTheLine, KeysWaitForWhatIsBeingStored) {
 
 // LIVE-4.03: how old a heartbeat is must be known.
 TEST_F(HandboxOverTheLine, AHeartbeatSaysWhenItWasSent) {
-  MakeAndTake();
+  MakeAndTakeOptimo();
   Open();
   v1::HostOrder beat = Beat("X+");
   beat.mutable_handbox_heartbeat()->clear_sent();

@@ -13,11 +13,6 @@ using testing::HasSubstr;
 
 class HeldMachines : public HostMachineTest {
  protected:
-  void MakeAndTake() {
-    Make();
-    host_->Begin({}, now_);
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
   static std::string Code(ErrorCode code) { return CodeText(code); }
   std::string CodeOf(const v1::HostOrder& order) { return Do(order).refusal().code(); }
   v1::HoldReason Reason() { return host_->StatusAt(now_).hold_reason(); }
@@ -48,14 +43,7 @@ class HeldMachines : public HostMachineTest {
     return order;
   }
   v1::HostOrder HandboxKey(const std::string& key, v1::KeyAction action = v1::KEY_ACTION_TAP) {
-    v1::HostOrder order;
-    v1::PressKeyRequest& pressed = *order.mutable_key();
-    pressed.set_session(session_);
-    pressed.set_key(key);
-    pressed.set_action(action);
-    pressed.set_control_token(token_);
-    pressed.set_sequence(++keys_pressed_);
-    return order;
+    return KeyOf(session_, key, action);
   }
   void OpenHandbox() {
     v1::HostOrder open;

@@ -83,6 +83,16 @@ class HostMachineTest : public testing::Test {
     acquire.set_client("a test");
     return token_ = Do(order).control().control_token();
   }
+  // The mill with its square, in the hands of whoever tests it; its run goes on without him.
+  void MakeAndTake(v1::ControlLease::OnLoss on_loss = v1::ControlLease::ON_LOSS_GO_ON) {
+    Make();
+    host_->Begin({}, now_);
+    Control(on_loss);
+  }
+  void MakeAndTakeOptimo() {
+    MakeOptimo();
+    Control(v1::ControlLease::ON_LOSS_GO_ON);
+  }
   v1::HostOrder Start(const std::string& id = "", int program = 5) {
     v1::HostOrder order;
     order.mutable_start()->set_program(program);
@@ -113,19 +123,22 @@ class HostMachineTest : public testing::Test {
     order.mutable_stop();
     return order;
   }
+  // The next key of a handbox.
+  v1::HostOrder KeyOf(const std::string& session, const std::string& key,
+                      v1::KeyAction action = v1::KEY_ACTION_TAP) {
+    v1::HostOrder order;
+    v1::PressKeyRequest& pressed = *order.mutable_key();
+    pressed.set_session(session);
+    pressed.set_control_token(token_);
+    pressed.set_key(key);
+    pressed.set_action(action);
+    pressed.set_sequence(++keys_pressed_);
+    return order;
+  }
   // The edit that these keys of a handbox make, one tapped after the other.
   v1::HostEdit Taught(const std::string& session, const std::string& keys) {
     std::istringstream all(keys);
-    for (std::string name; all >> name;) {
-      v1::HostOrder order;
-      v1::PressKeyRequest& pressed = *order.mutable_key();
-      pressed.set_session(session);
-      pressed.set_control_token(token_);
-      pressed.set_key(name);
-      pressed.set_action(v1::KEY_ACTION_TAP);
-      pressed.set_sequence(++keys_pressed_);
-      EXPECT_TRUE(Do(order).has_key()) << name;
-    }
+    for (std::string name; all >> name;) EXPECT_TRUE(Do(KeyOf(session, name)).has_key()) << name;
     const std::vector<v1::HostEdit> edits = host_->TakeEdits();
     EXPECT_EQ(edits.size(), 1U);
     return edits.empty() ? v1::HostEdit() : edits.back();

@@ -21,11 +21,6 @@ using testing::HasSubstr;
 
 class HostMachineBounds : public HostMachineTest {
  protected:
-  void MakeAndTake() {
-    Make();
-    host_->Begin({}, now_);
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
   std::int64_t BytesRecorded() {
     static_cast<void>(host_->TakeEntries(now_, true));
     v1::HostOrder order;

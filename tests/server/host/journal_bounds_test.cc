@@ -3,12 +3,10 @@
 #include <gmock/gmock.h>
 #include <google/protobuf/util/time_util.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -22,6 +20,7 @@
 #include "server/host/journal_writer.h"
 #include "server/host/recording_file.h"
 #include "server/host/unstored_entries.h"
+#include "tests/proto/bridge/small_files.h"
 
 namespace rmlcell::server {
 namespace {
@@ -33,27 +32,6 @@ using testing::HasSubstr;
 constexpr std::int64_t kKept = Journal::kBytesKept;
 constexpr std::int64_t kMost = Journal::kBytesMax;
 constexpr std::int64_t kMebibyte = std::int64_t{1} << 20;
-
-// A disk that takes no more than so many bytes in a file.
-class SmallDisk {
- public:
-  explicit SmallDisk(std::int64_t bytes) : before_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &limit_);
-    rlimit small = limit_;
-    small.rlim_cur = static_cast<rlim_t>(bytes);
-    ::setrlimit(RLIMIT_FSIZE, &small);
-  }
-  ~SmallDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &limit_);
-    std::signal(SIGXFSZ, before_);
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-
- private:
-  rlimit limit_{};
-  void (*before_)(int);
-};
 
 // A process without an input: the next file that it opens is its file 0.
 class NoInput {
@@ -250,7 +228,7 @@ TEST_F(JournalBoundsTest, AFullDiskLeavesNoHalfRecord) {
   const auto journal = Open();
   ASSERT_TRUE(journal->Write({EventOf(3, 1, 100)}));
   {
-    const SmallDisk disk(150);
+    const SmallFiles disk(150);
     const Status written = journal->Write({EventOf(3, 2, 60), EventOf(3, 3, 60)});
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ErrorCode::kCellJournal);
@@ -267,7 +245,7 @@ TEST_F(JournalBoundsTest, AFullDiskLeavesTheOldFile) {
   const auto journal = Open();
   ASSERT_TRUE(journal->Write({EventOf(3, 1, 100), EventOf(3, 2, kKept), EventOf(3, 3, 100)}));
   {
-    const SmallDisk disk(150);
+    const SmallFiles disk(150);
     journal->Stored(3, 1);
     const Status replaced = journal->Replace({EventOf(3, 8, 200)});
     ASSERT_FALSE(replaced);
@@ -311,7 +289,7 @@ TEST_F(JournalBoundsTest, TheWriterTriesAgain) {
   {
     JournalWriter writer(Open());
     {
-      const SmallDisk disk(50);
+      const SmallFiles disk(50);
       writer.Write({EventOf(3, 1, 100)}, {}, [&] { told.release(); });
       while (!writer.trouble()) std::this_thread::yield();
       EXPECT_EQ(writer.trouble()->code, ErrorCode::kCellJournal);
@@ -398,7 +376,7 @@ TEST_F(RecordingFileTest, IsDroppedWhereItDoesNotFit) {
   RecordingFile file(path_);
   file.Add(Begins("one "));
   {
-    const SmallDisk disk(10);
+    const SmallFiles disk(10);
     file.Add(More("does not fit"));
     EXPECT_FALSE(IsThere());
   }

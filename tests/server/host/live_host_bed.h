@@ -3,13 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <future>
@@ -23,27 +21,6 @@
 #include "tests/server/host/fake_host_server.h"
 
 namespace rmlcell::server {
-
-// No file takes anything more while it is there.
-class StuckDisk {
- public:
-  StuckDisk() : before_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &limit_);
-    rlimit none = limit_;
-    none.rlim_cur = 0;
-    ::setrlimit(RLIMIT_FSIZE, &none);
-  }
-  ~StuckDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &limit_);
-    std::signal(SIGXFSZ, before_);
-  }
-  StuckDisk(const StuckDisk&) = delete;
-  StuckDisk& operator=(const StuckDisk&) = delete;
-
- private:
-  rlimit limit_{};
-  void (*before_)(int);
-};
 
 class LiveHost : public testing::Test {
  protected:

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/proto/bridge/small_files.h"
 #include "tests/server/host/live_host_bed.h"
 
 namespace rmlcell::server {
@@ -39,7 +40,7 @@ TEST_F(LiveHostDisk, ADiskIsLateByWhatIsWrittenNow) {
   AwaitStatus([](const v1::MachineStatus& one) { return one.has_control(); });
   StandForAWhile();
   const std::size_t before = Count(v1::HostRequest::kStatus);
-  auto disk = std::make_optional<StuckDisk>();
+  auto disk = std::make_optional<SmallFiles>(0);
   const v1::HostOrderAnswer answer = Ask(ReleaseOfControl());
   AwaitStatus(IsLate);
   disk.reset();
@@ -57,7 +58,7 @@ TEST_F(LiveHostDisk, ADiskIsLateByWhatIsWrittenNow) {
 TEST_F(LiveHostDisk, NothingBeginsWhileTheDiskIsStuck) {
   Live();
   TakeControl();
-  auto disk = std::make_optional<StuckDisk>();
+  auto disk = std::make_optional<SmallFiles>(0);
   const v1::HostOrderAnswer late = Ask(StartOf());
   const v1::HostOrderAnswer troubled = Ask(StartOf());
   const v1::MachineStatus status = AwaitStatus(IsLate);
@@ -77,7 +78,7 @@ TEST_F(LiveHostDisk, ARunIsHeldWhileTheDiskIsStuck) {
   TakeControl();
   ASSERT_FALSE(Ask(StartOf()).has_refusal());
   AwaitState(v1::MACHINE_STATE_RUNNING);
-  auto disk = std::make_optional<StuckDisk>();
+  auto disk = std::make_optional<SmallFiles>(0);
   const v1::MachineStatus held = AwaitState(v1::MACHINE_STATE_HELD);
   disk.reset();
   EXPECT_EQ(held.hold_reason(), v1::HOLD_REASON_LATE);
@@ -91,7 +92,7 @@ TEST_F(LiveHostDisk, ARunIsHeldWhileTheDiskIsStuck) {
 TEST_F(LiveHostDisk, AStopStopsWhatWaitsForTheDisk) {
   Live();
   TakeControl();
-  auto disk = std::make_optional<StuckDisk>();
+  auto disk = std::make_optional<SmallFiles>(0);
   const std::int64_t started = Send(StartOf());
   const v1::HostOrderAnswer stopped = Ask(StopOrder());
   const v1::HostOrderAnswer answer = AnswerTo(started);
@@ -109,7 +110,7 @@ TEST_F(LiveHostDisk, AnAnswerIsForTheLineThatAsked) {
   TakeControl();
   AwaitStatus([](const v1::MachineStatus& one) { return one.has_control(); });
   const std::size_t before = Count(v1::HostRequest::kStatus);
-  auto disk = std::make_optional<StuckDisk>();
+  auto disk = std::make_optional<SmallFiles>(0);
   const std::int64_t released = Send(ReleaseOfControl());
   AwaitStatus([](const v1::MachineStatus& one) { return !one.has_control(); }, before);
   server_->EndLine();

@@ -22,10 +22,6 @@ class MachineTraces : public HostMachineTest {
     EXPECT_TRUE(made.ok);
     return made.object;
   }
-  void MakeAndTakeOptimo() {
-    MakeOptimo();
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
   std::vector<v1::JournalEntry> Of(v1::JournalEntry::WhatCase what) {
     std::vector<v1::JournalEntry> found;
     for (v1::JournalEntry& entry : host_->TakeEntries(now_, true)) {

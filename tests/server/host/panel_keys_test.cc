@@ -11,9 +11,7 @@ using testing::HasSubstr;
 class PanelKeysTest : public HostMachineTest {
  protected:
   void MakeAndTake(v1::ControlLease::OnLoss on_loss = v1::ControlLease::ON_LOSS_HOLD) {
-    Make();
-    host_->Begin({}, now_);
-    Control(on_loss);
+    HostMachineTest::MakeAndTake(on_loss);
     sequence_of_keys_ = 0;
   }
   v1::HostOrder Key(const std::string& key, v1::KeyAction action = v1::KEY_ACTION_TAP,

@@ -14,15 +14,6 @@ namespace {
 
 class RefusedCodes : public HostMachineTest {
  protected:
-  void MakeAndTake() {
-    Make();
-    host_->Begin({}, now_);
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
-  void MakeAndTakeOptimo() {
-    MakeOptimo();
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
   std::string CodeOf(const v1::HostOrder& order) { return Do(order).refusal().code(); }
   static std::string Code(ErrorCode code) { return CodeText(code); }
   std::string CodeOfPreview(const v1::PreviewStartRequest& request) {

@@ -12,11 +12,6 @@ using testing::IsEmpty;
 
 class StartAtTest : public HostMachineTest {
  protected:
-  void MakeAndTake() {
-    Make();
-    host_->Begin({}, now_);
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
   // As the process of a host does it, but on this thread.
   v1::HostOrderAnswer Preview(int step, int program = 5) {
     v1::HostOrder order;

@@ -14,11 +14,6 @@ using testing::IsEmpty;
 
 class StartWords : public HostMachineTest {
  protected:
-  void MakeAndTake() {
-    Make();
-    host_->Begin({}, now_);
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
   v1::HostOrder Question(int step) {
     v1::HostOrder order;
     order.set_number(++number_);

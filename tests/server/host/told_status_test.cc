@@ -14,15 +14,6 @@ using testing::IsEmpty;
 
 class ToldStatus : public HostMachineTest {
  protected:
-  void MakeAndTake() {
-    Make();
-    host_->Begin({}, now_);
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
-  void MakeAndTakeOptimo() {
-    MakeOptimo();
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
   v1::MachineStatus Status() { return host_->StatusAt(now_); }
   void SetMode(v1::OperatingMode mode) {
     v1::HostOrder order;

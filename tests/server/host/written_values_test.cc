@@ -8,10 +8,6 @@ namespace {
 
 class WrittenValues : public HostMachineTest {
  protected:
-  void MakeAndTakeOptimo() {
-    MakeOptimo();
-    Control(v1::ControlLease::ON_LOSS_GO_ON);
-  }
   v1::HostOrderAnswer WriteReals(const std::vector<std::pair<std::string, double>>& values) {
     v1::HostOrder order;
     order.mutable_write_variables()->set_control_token(token_);

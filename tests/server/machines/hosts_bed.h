@@ -53,6 +53,25 @@ class HostsTest : public testing::Test {
     request.mutable_status()->set_virtual_time_ns(time_ns);
     hosts.Receive(link, std::move(request));
   }
+  void Beat(const FakeLink& link) {
+    v1::HostRequest beat;
+    beat.mutable_heartbeat()->set_number(1);
+    hosts.Receive(link, std::move(beat));
+  }
+  // A RUN of mill-1 that this host was given; its number.
+  std::int64_t RunGivenTo(const std::string& host) {
+    v1::Job run;
+    run.set_kind(v1::JOB_KIND_RUN);
+    const std::int64_t job =
+        Must(bed.store().SubmitAndWait({.machine = "mill-1",
+                                        .kind = "RUN",
+                                        .specification = run.SerializeAsString(),
+                                        .attempts_max = 1}))
+            .job.id;
+    Must(bed.store().AcquireJobs(
+        {.worker = host, .kinds = {"RUN"}, .duration = std::chrono::hours(1)}));
+    return job;
+  }
   // An entry that is told, and a mark.
   static v1::HostRequest Entries(std::int64_t fence, std::int64_t first, bool clean) {
     v1::HostRequest request;

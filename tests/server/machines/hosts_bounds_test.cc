@@ -36,25 +36,6 @@ class HostsBounds : public HostsTest {
     const auto all = link.All();
     return std::ranges::count(all, kind, &v1::HostResponse::message_case);
   }
-  void Beat(const FakeLink& link) {
-    v1::HostRequest beat;
-    beat.mutable_heartbeat()->set_number(1);
-    hosts.Receive(link, std::move(beat));
-  }
-  // A job that an earlier host of the machine had.
-  std::int64_t JobOfTheOneBefore() {
-    v1::Job run;
-    run.set_kind(v1::JOB_KIND_RUN);
-    const std::int64_t job =
-        Must(bed.store().SubmitAndWait({.machine = "mill-1",
-                                        .kind = "RUN",
-                                        .specification = run.SerializeAsString(),
-                                        .attempts_max = 1}))
-            .job.id;
-    Must(bed.store().AcquireJobs(
-        {.worker = "before/1", .kinds = {"RUN"}, .duration = std::chrono::hours(1)}));
-    return job;
-  }
   storage::JobState StateOf(std::int64_t job) { return Must(bed.store().GetJob(job)).state; }
 };
 
@@ -120,7 +101,7 @@ TEST_F(HostsBounds, WhatWasGivenLastsTenMinutes) {
 // LIVE-3.25: a host of which nothing is stored is not told that something is, and what was the
 // host's before it waits for its first words.
 TEST_F(HostsBounds, NothingIsStoredOfAHostThatSaidNothing) {
-  const std::int64_t job = JobOfTheOneBefore();
+  const std::int64_t job = RunGivenTo("before/1");
   const auto link = Joined();
   v1::HostRequest nothing;
   nothing.mutable_entries()->set_fence(Fence(*link));
@@ -162,7 +143,7 @@ TEST_F(HostsBounds, TheMarkOfAJournalIsTheFirst) {
 TEST_F(HostsBounds, WhoHoldsAMachineThatIsOffIsGoneInTheEnd) {
   Must(bed.store().TakeMachine(
       {.machine = "mill-1", .host = "before/1", .server = "s", .duration = Hosts::kLease}));
-  const std::int64_t job = JobOfTheOneBefore();
+  const std::int64_t job = RunGivenTo("before/1");
   const auto look = [&] {
     hosts.Look();
     Settle();

@@ -111,21 +111,11 @@ TEST_F(HostsTest, AHostThatComesBackFreesTheJobOfTheOneBefore) {
   hosts.Receive(*link, Entries(fence, 1, true));
   EXPECT_TRUE(Eventually([&] { return link->Newest(v1::HostResponse::kEntriesStored); }));
   hosts.Leave(*link);
-  v1::Job run;
-  run.set_kind(v1::JOB_KIND_RUN);
-  const std::int64_t job = Must(bed.store().SubmitAndWait({.machine = "mill-1",
-                                                           .kind = "RUN",
-                                                           .specification = run.SerializeAsString(),
-                                                           .attempts_max = 1}))
-                               .job.id;
-  Must(bed.store().AcquireJobs(
-      {.worker = "before/1", .kinds = {"RUN"}, .duration = std::chrono::hours(1)}));
+  const std::int64_t job = RunGivenTo("before/1");
   v1::HostHello hello = Hello("elsewhere/1", fence);
   hello.mutable_begin()->set_job(JobName(job));
   const auto again = Joined(hello);
-  v1::HostRequest beat;
-  beat.mutable_heartbeat()->set_number(1);
-  hosts.Receive(*again, beat);
+  Beat(*again);
   EXPECT_TRUE(Eventually(
       [&] { return Must(bed.store().GetJob(job)).state == storage::JobState::kQueued; }));
   EXPECT_TRUE(Must(bed.store().GetJob(job)).held);

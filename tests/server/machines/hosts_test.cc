@@ -304,9 +304,7 @@ TEST_F(HostsTest, AnOrderThatWasGivenUpIsNotSent) {
     told.set_value(answer ? ErrorCode::kCellInternal : answer.error().code);
   });
   clock.Advance(Hosts::kAnswerPatience + std::chrono::seconds(1));
-  v1::HostRequest beat;
-  beat.mutable_heartbeat()->set_number(1);
-  hosts.Receive(*link, std::move(beat));
+  Beat(*link);
   EXPECT_EQ(told.get_future().get(), ErrorCode::kCellNotLive);
   goes_on.set_value();
   // One that is wanted comes, and is the only one.

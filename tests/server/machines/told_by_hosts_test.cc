@@ -32,25 +32,6 @@ class ToldByHosts : public HostsTest {
     hosts.Look();
     return hosts.StatusOf("mill-1")->state();
   }
-  void Heard(const FakeLink& link) {
-    v1::HostRequest beat;
-    beat.mutable_heartbeat()->set_number(1);
-    hosts.Receive(link, std::move(beat));
-  }
-  // A RUN of mill-1 that this host was given.
-  std::int64_t Given(const std::string& host) {
-    v1::Job run;
-    run.set_kind(v1::JOB_KIND_RUN);
-    const std::int64_t job =
-        Must(bed.store().SubmitAndWait({.machine = "mill-1",
-                                        .kind = "RUN",
-                                        .specification = run.SerializeAsString(),
-                                        .attempts_max = 1}))
-            .job.id;
-    Must(bed.store().AcquireJobs(
-        {.worker = host, .kinds = {"RUN"}, .duration = std::chrono::hours(1)}));
-    return job;
-  }
 
   std::vector<std::string> news;
   std::atomic<int> changes = 0;
@@ -180,7 +161,7 @@ TEST_F(ToldByHosts, TheEndOfAJobIsToldOf) {
   hosts.OnRunOver([this](const std::string& machine) { over += machine == "mill-1" ? 1 : 0; });
   const auto link = Joined();
   EXPECT_EQ(over, 1);
-  const std::int64_t job = Given("elsewhere/1");
+  const std::int64_t job = RunGivenTo("elsewhere/1");
   v1::HostRequest told = Entries(Fence(*link), 1, true);
   told.mutable_entries()->mutable_entries(0)->mutable_run_over()->set_run(1);
   hosts.Receive(*link, told);
@@ -220,11 +201,11 @@ TEST_F(ToldByHosts, APreviewIsWaitedForLonger) {
   });
   for (int part = 0; part < 15; ++part) {
     clock.Advance(part == 14 ? milliseconds(4'999) : milliseconds(5'000));
-    Heard(*link);
+    Beat(*link);
   }
   EXPECT_THAT(told, IsEmpty());
   clock.Advance(milliseconds(1));
-  Heard(*link);
+  Beat(*link);
   EXPECT_THAT(told, ElementsAre("its host does not answer"));
 }
 
@@ -233,7 +214,7 @@ TEST_F(ToldByHosts, APreviewIsWaitedForLonger) {
 TEST_F(ToldByHosts, EachKindStandsInTheLogOfItsJob) {
   const storage::MachineLease lease = Must(bed.store().TakeMachine(
       {.machine = "mill-1", .host = "hall/1", .server = "s", .duration = std::chrono::hours(1)}));
-  const std::int64_t job = Given("hall/1");
+  const std::int64_t job = RunGivenTo("hall/1");
   std::vector<v1::RunEvent> events(7);
   events[0].mutable_resumed()->mutable_place()->set_step(4);
   events[1].mutable_signal()->set_name("beam");

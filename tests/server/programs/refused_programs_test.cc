@@ -6,33 +6,20 @@
 #include <utility>
 #include <vector>
 
-#include "server/base/config.h"
 #include "server/programs/memory_tools.h"
-#include "server/programs/program_book.h"
-#include "server/programs/program_views.h"
 #include "tests/server/engine_bytes.h"
-#include "tests/server/server_bed.h"
+#include "tests/server/programs/program_views_bed.h"
 
 namespace rmlcell::server {
 namespace {
 
-class RefusedPrograms : public testing::Test {
+class RefusedPrograms : public ProgramViewsBed {
  protected:
   static std::string Name(int number, const std::string& machine = "optimo-1") {
     return "machines/" + machine + "/programs/" + std::to_string(number);
   }
   void Put(int slot, const std::string& object, const std::string& machine = "optimo-1") {
     Must(bed.store().PutPrograms(machine, {{.slot = slot, .object = object}}, {}));
-  }
-  std::optional<ErrorCode> Picture(const std::string& name) {
-    v1::GetProgramPictureRequest request;
-    request.set_name(name);
-    return CodeOf(views.Picture(request));
-  }
-  std::optional<ErrorCode> Path(const std::string& name) {
-    v1::StreamProgramToolpathRequest request;
-    request.set_name(name);
-    return CodeOf(views.Path(request));
   }
   std::optional<ErrorCode> Store(ProgramBook::Put put) {
     const auto stored = programs.Store(std::move(put));
@@ -51,10 +38,6 @@ class RefusedPrograms : public testing::Test {
     return CodeOf(programs.Translate({}, machine, text, true));
   }
 
-  ServerBed bed;
-  Config config;
-  ProgramBook programs{bed.store(), config};
-  ProgramViews views{programs};
   MemoryTools tools{bed.store(), programs};
 };
 

@@ -6,17 +6,15 @@
 #include <string>
 
 #include "engine/machine/machine_note.h"
-#include "server/base/config.h"
 #include "server/programs/content_upload.h"
-#include "server/programs/program_views.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/forwarding_store.h"
-#include "tests/server/server_bed.h"
+#include "tests/server/programs/program_views_bed.h"
 
 namespace rmlcell::server {
 namespace {
 
-class UnreadablePrograms : public testing::Test {
+class UnreadablePrograms : public ProgramViewsBed {
  protected:
   // As its host left the machine.
   void Stands(const std::string& machine, const std::string& state) {
@@ -28,27 +26,12 @@ class UnreadablePrograms : public testing::Test {
   void Put(const std::string& machine, int slot, const std::string& object) {
     Must(bed.store().PutPrograms(machine, {{.slot = slot, .object = object}}, {}));
   }
-  std::optional<ErrorCode> Picture(const std::string& name) {
-    v1::GetProgramPictureRequest request;
-    request.set_name(name);
-    return CodeOf(views.Picture(request));
-  }
-  std::optional<ErrorCode> Path(const std::string& name) {
-    v1::StreamProgramToolpathRequest request;
-    request.set_name(name);
-    return CodeOf(views.Path(request));
-  }
   Result<simulation::CheckedProgram> Check(const std::string& source, bool advice) {
     v1::ProgramText text;
     text.set_file_name("44.S");
     text.set_content(source);
     return programs.Check("", "machines/optimo-1", text, advice);
   }
-
-  ServerBed bed;
-  Config config;
-  ProgramBook programs{bed.store(), config};
-  ProgramViews views{programs};
 };
 
 TEST_F(UnreadablePrograms, AStateThatCannotBeReadIsADamageOfTheStore) {

@@ -9,18 +9,6 @@ using testing::HasSubstr;
 class BegunByPersonTest : public RunQueueTest {
  protected:
   using Answer = Result<v1::HostOrderAnswer>;
-  static v1::HostOrder RunJob() {
-    v1::HostOrder order;
-    order.set_caller("bert");
-    order.mutable_run_job();
-    return order;
-  }
-  static v1::HostOrder ContinueJob() {
-    v1::HostOrder order;
-    order.set_caller("bert");
-    order.mutable_continue_job()->mutable_start()->set_preview_token("a token");
-    return order;
-  }
   std::future<Answer> Begin(std::int64_t job, v1::HostOrder order = RunJob()) {
     const auto answered = std::make_shared<std::promise<Answer>>();
     runs.BeginByPerson(job, std::move(order),
@@ -34,12 +22,6 @@ class BegunByPersonTest : public RunQueueTest {
     const Answer answer = answered.get();
     if (!answer) return CodeText(answer.error().code) + " " + std::string(answer.error().detail);
     return answer->has_refusal() ? answer->refusal().code() : "";
-  }
-  // The queue begins nothing.
-  void TellBlocked() {
-    v1::MachineStatus status = Idle();
-    Block(status, "CELL-E9423");
-    Tell(status);
   }
   std::int64_t SubmitAtOptimo() {
     return Submit([](v1::Job& job) {

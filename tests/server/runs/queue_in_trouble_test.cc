@@ -55,24 +55,6 @@ class QueueInTrouble : public RunQueueTest {
     hosts.OnNews({});
     book.OnRunWaits({});
   }
-  // The queue begins nothing by itself.
-  void TellBlocked() {
-    v1::MachineStatus status = Idle();
-    Block(status, "CELL-E9423");
-    Tell(status);
-  }
-  static v1::HostOrder RunJob() {
-    v1::HostOrder order;
-    order.set_caller("bert");
-    order.mutable_run_job();
-    return order;
-  }
-  static v1::HostOrder ContinueJob() {
-    v1::HostOrder order;
-    order.set_caller("bert");
-    order.mutable_continue_job()->mutable_start()->set_preview_token("a token");
-    return order;
-  }
   std::future<Begun> Begin(std::int64_t job, v1::HostOrder order = RunJob()) {
     const auto answered = std::make_shared<std::promise<Begun>>();
     others.BeginByPerson(job, std::move(order),

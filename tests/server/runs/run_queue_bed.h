@@ -53,6 +53,25 @@ class RunQueueTest : public testing::Test {
     *request.mutable_status() = status;
     hosts.Receive(*link, std::move(request));
   }
+  // The queue begins nothing by itself.
+  void TellBlocked() {
+    v1::MachineStatus status = Idle();
+    Block(status, "CELL-E9423");
+    Tell(status);
+  }
+  // What a person asks for who begins a job, or goes on with one that was cut off.
+  static v1::HostOrder RunJob() {
+    v1::HostOrder order;
+    order.set_caller("bert");
+    order.mutable_run_job();
+    return order;
+  }
+  static v1::HostOrder ContinueJob() {
+    v1::HostOrder order;
+    order.set_caller("bert");
+    order.mutable_continue_job()->mutable_start()->set_preview_token("a token");
+    return order;
+  }
   std::int64_t Submit(const std::function<void(v1::Job&)>& change = [](v1::Job&) {}) {
     v1::SubmitJobRequest request;
     v1::Job& job = *request.mutable_job();
