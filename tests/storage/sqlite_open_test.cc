@@ -243,6 +243,24 @@ TEST(SqliteOpen, DamagedRecordsAreToldAndTheRestIsServed) {
   EXPECT_EQ(CodeOf(bed.store().SubmitAndWait({.kind = "CHECK"})), std::nullopt);
 }
 
+// A page of the queue reads no more of those that are over than it shows, so that an old one that
+// cannot be read does not spoil it.
+TEST(SqliteOpen, DamageBehindAPageOfTheQueueDoesNotSpoilIt) {
+  SqliteBed bed;
+  bed.LeaveUnchecked();
+  for (int i = 0; i < 4; ++i) {
+    Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+    Must(bed.store().RequestCancel(i + 1, {}));
+  }
+  bed.Close();
+  ExecuteIn(bed.path(), "UPDATE job SET state = 77 WHERE id = 1");
+  bed.Reopen();
+  const auto page = Must(bed.store().ListJobs({.order = JobOrder::kQueue, .limit = 2}));
+  ASSERT_EQ(page.size(), 2U);
+  EXPECT_EQ(page[0].id, 4);
+  EXPECT_EQ(page[1].id, 3);
+}
+
 // A job that cannot be read does not keep the leases of others from running out.
 TEST(SqliteOpen, DamagedJobDoesNotStopTheExpiryOfOthers) {
   SqliteBed bed;
