@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/characters.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "server/base/readable.h"
@@ -9,7 +10,7 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr int kTitleMax = 200;
+constexpr std::uint32_t kTitleMax = 200;
 
 Error Malformed(std::string_view name, std::string_view expected) {
   return {ErrorCode::kCellInvalidArgument,
@@ -101,11 +102,15 @@ Result<storage::Revision> ParseEtag(std::string_view etag) {
 }
 
 Status CheckTitle(std::string_view title, std::string_view field) {
-  const auto characters = std::ranges::count_if(
-      title, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; });
-  if (characters <= kTitleMax) return {};
+  if (CharactersIn(title, Encoding::kUtf32) <= kTitleMax) return {};
   return InvalidArgument(std::string(field) + " is longer than " + std::to_string(kTitleMax) +
                          " characters");
+}
+
+Status CheckReason(std::string_view reason) {
+  constexpr std::uint32_t kReasonMax = 200;
+  if (!reason.empty() && CharactersIn(reason, Encoding::kUtf32) <= kReasonMax) return {};
+  return InvalidArgument("reason: why, in 1 to 200 characters");
 }
 
 Result<int> PageSize(int asked, PageSizes sizes) {

@@ -42,6 +42,8 @@ Result<storage::Revision> ParseEtag(std::string_view etag);
 
 // Titles are for people: at most 200 characters. Error: CellInvalidArgument, naming the field.
 Status CheckTitle(std::string_view title, std::string_view field);
+// Why a person decided so, for all to read: 1 to 200 characters. Error: CellInvalidArgument.
+Status CheckReason(std::string_view reason);
 
 // How many entries a page of a list has: `fallback` where none is asked for, never above `max`.
 // Error: CellInvalidArgument below 0.

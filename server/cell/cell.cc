@@ -343,7 +343,7 @@ Status Cell::Parts::Serve() {
       grpc_addresses.push_back(address);
       continue;
     }
-    if (server == nullptr || ports[i] == 0) return PortUsed(address);
+    if (ports[i] == 0) return PortUsed(address);  // those before it have theirs
     grpc_addresses.push_back(address.substr(0, address.rfind(':') + 1) + std::to_string(ports[i]));
   }
   if (server == nullptr) return Error{ErrorCode::kCellPortUsed, "gRPC does not start", {}};

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "engine/core/characters.h"
 #include "proto/bridge/sha256.h"
 #include "server/base/secret.h"
 
@@ -14,12 +15,7 @@ using google::protobuf::util::TimeUtil;
 
 Error Wrong(std::string detail) { return {ErrorCode::kCellInvalidArgument, std::move(detail), {}}; }
 
-// Characters, not bytes: bytes of a character that follow the first are no start of one.
-std::size_t LengthOf(std::string_view text) {
-  std::size_t length = 0;
-  for (const char c : text) length += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U ? 1 : 0;
-  return length;
-}
+std::size_t LengthOf(std::string_view text) { return CharactersIn(text, Encoding::kUtf32); }
 
 }  // namespace
 

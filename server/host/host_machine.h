@@ -140,6 +140,7 @@ class HostMachine : private machine::RunObserver {
   Result<v1::HeartbeatResponse> HearBeat(const Beat& beat, const HostTime& now);
   void LetGo(const std::string& key);
   void LetKeysGo(const HostTime& now);
+  void BeginPanelKeys(const v1::HostOrder& order);
   void EndKeys();
   void DropMask();
   Result<v1::HostOrderAnswer> CarryOutKeys(const v1::HostOrder& order, const HostTime& now);

@@ -88,15 +88,22 @@ std::optional<v1::HostOrderAnswer> HostMachine::AnsweredKey(const v1::HostOrder&
 void HostMachine::PassKey(const v1::HostOrder& order, const v1::HostOrderAnswer& refused,
                           const HostTime& now) {
   const auto pressed = PressedBy(order);
-  if (!pressed || !CheckControl(order, now) || desk_.lease()->number() != keys_of_) return;
+  if (!pressed || !CheckControl(order, now)) return;
+  BeginPanelKeys(order);
+  if (desk_.lease()->number() != keys_of_) return;
   if (keys_.Look(pressed->number, LetsGo(order)) == KeyDesk::Turn::kActs)
     keys_.Take(pressed->number, refused);
+}
+
+// Keys of a panel count anew with each lease, from the first of them on.
+void HostMachine::BeginPanelKeys(const v1::HostOrder& order) {
+  if (order.has_panel_key() && desk_.lease()->number() != keys_of_) EndKeys();
 }
 
 // Precondition: whoever presses has control.
 Status HostMachine::PressKey(const v1::HostOrder& order, const HostTime& now) {
   const Pressed pressed = *PressedBy(order);
-  if (order.has_panel_key() && desk_.lease()->number() != keys_of_) EndKeys();
+  BeginPanelKeys(order);
   if (pressed.number < 1)
     return Error{ErrorCode::kCellInvalidArgument, "sequence counts from 1", {}};
   if (keys_.Look(pressed.number, LetsGo(order)) != KeyDesk::Turn::kActs)

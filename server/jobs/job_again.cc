@@ -9,15 +9,13 @@ namespace rmlcell::server {
 
 Result<std::string> JobBook::MachineToDecide(const v1::DecideInterruptedRequest& request) {
   using Request = v1::DecideInterruptedRequest;
-  constexpr std::size_t kReasonMax = 200;
   const bool resumes = request.decision() == Request::DECISION_RESUME_AT_STEP;
   if (!resumes && request.decision() != Request::DECISION_RESTART &&
       request.decision() != Request::DECISION_ABANDON)
     return InvalidArgument("decision: RESUME_AT_STEP, RESTART or ABANDON");
   if (resumes && request.preview_token().empty())
     return InvalidArgument("preview_token: of PreviewStart, on the machine that waits");
-  if (request.reason().empty() || request.reason().size() > kReasonMax)
-    return InvalidArgument("reason: why, in 1 to 200 characters");
+  if (const Status good = CheckReason(request.reason()); !good) return good.error();
   const Result<std::int64_t> id = ParseJobName(request.name());
   if (!id) return id.error();
   const Result<storage::JobRecord> job = store_.GetJob(*id);

@@ -287,7 +287,8 @@ Result<v1::ListJobFindingsResponse> JobResults::Findings(
     ++found;
   }
   response.set_total_size(found);
-  if (begin + *size < found) response.set_next_page_token(std::to_string(begin + *size));
+  // A token may be as large as any number is.
+  if (*size < found - begin) response.set_next_page_token(std::to_string(begin + *size));
   for (const v1::GatheredFindings& kind : report->gathered()) {
     if (query->FindsKind(kind)) *response.add_gathered() = kind;
   }

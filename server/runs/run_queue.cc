@@ -216,7 +216,7 @@ bool RunQueue::IsBusy(const std::string& machine, const v1::MachineStatus& statu
       const std::lock_guard lock(mutex_);
       abort = aborted_.insert(job.id).second;
     }
-    if (abort) Abort(name, job.caller, {});
+    if (abort) AbortCancelled(job);
     return true;
   }
   const auto attempts = needs_.store.ListAttempts(job.id);
@@ -567,11 +567,20 @@ void RunQueue::Ask(const std::string& job, v1::HostOrder order, Hosts::Answered 
 }
 
 void RunQueue::Abort(const std::string& job, const std::string& caller,
-                     const std::string& request_id) {
+                     const std::string& request_id, Hosts::Answered done) {
   v1::HostOrder order;
   order.set_caller(caller);
   order.mutable_abort()->set_request_id(request_id);
-  Ask(job, std::move(order), [](const Result<v1::HostOrderAnswer>&) {});
+  Ask(job, std::move(order), std::move(done));
+}
+
+void RunQueue::AbortCancelled(const storage::JobRecord& job) {
+  const auto answered = [this, id = job.id](const Result<v1::HostOrderAnswer>& answer) {
+    if (answer || answer.error().code != ErrorCode::kCellNotLive) return;
+    const std::lock_guard lock(mutex_);
+    aborted_.erase(id);  // nobody has heard it: again, when its host is there
+  };
+  Abort(JobName(job.id), job.caller, {}, answered);
 }
 
 }  // namespace rmlcell::server

@@ -65,9 +65,12 @@ class RunQueue {
   // where it waits for nothing but its machine, and somebody else is there. LIVE-4.05, LIVE-5.02
   void TellWhyItWaits(v1::Job& job) const;
   // The run is over as soon as it stands.
-  void Abort(const std::string& job, const std::string& caller, const std::string& request_id);
+  void Abort(
+      const std::string& job, const std::string& caller, const std::string& request_id,
+      Hosts::Answered done = [](const Result<v1::HostOrderAnswer>&) {});
 
  private:
+  void AbortCancelled(const storage::JobRecord& job);
   void Look(const std::string& machine);
   void LookOnce(const std::string& machine);
   void AskWhetherBegun(const std::string& machine, const storage::LeasedJob& job);

@@ -21,7 +21,6 @@ namespace {
 
 constexpr std::chrono::seconds kBegins{10};  // an enabled machine is heard of by then
 constexpr std::chrono::milliseconds kBetweenLooks{10};
-constexpr std::size_t kReasonMax = 200;
 constexpr std::size_t kComputerMax = 253;  // of the name of a host, RFC 1035
 
 }  // namespace
@@ -485,8 +484,7 @@ grpc::Status MachineService::GiveTo(const v1::TakeMachineRequest& request,
                                     const std::string& caller, v1::MachineStatus& status) {
   const auto machine = ParseMachineName(request.machine());
   if (!machine) return ToGrpcStatus(machine.error());
-  if (request.reason().empty() || request.reason().size() > kReasonMax)
-    return ToGrpcStatus(InvalidArgument("reason: why, in 1 to 200 characters"));
+  if (const Status good = CheckReason(request.reason()); !good) return ToGrpcStatus(good.error());
   if (request.computer().empty() || request.computer().size() > kComputerMax ||
       request.computer().find('/') != std::string::npos)
     return ToGrpcStatus(InvalidArgument("computer: its name, as `hostname` says it there"));

@@ -479,7 +479,8 @@ class HttpSession : public Connection,
     });
   }
 
-  void Disarm() { deadline_.cancel(); }
+  // Also for a handler that is about to run: it finds that nothing has passed.
+  void Disarm() { deadline_.expires_at(Clock::time_point::max()); }
 
   void OnDeadline() {
     if (closed_ || deadline_.expiry() > Clock::now()) return;  // it was set anew in the meantime

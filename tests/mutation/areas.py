@@ -12,7 +12,7 @@ class Area:
 AREAS = {
     "motion": Area(("engine/core", "engine/machine", "engine/motion/geometry", "engine/motion/profile",
                     "engine/motion/kinematics", "engine/motion/corner", "engine/motion/planner", "engine/motion/ride", "engine/motion/jog"),
-                   ("core_test", "machine_test", "motion_test", "motion_reference_test", "rml1_test",
+                   ("core_test", "core_tables_test", "machine_test", "motion_test", "motion_reference_test", "rml1_test",
                     "simulation_test", "optimo_control_test", "optimo_language_test",
                     "motion_property_test")),
     "mill": Area(("engine/rml1",),

@@ -64,6 +64,7 @@ Config Printed(const std::string& variables, const std::string& words) {
 TEST(CommandLine, PrintsTheDefaultsWithTheStateDirectoryOfTheUser) {
   EXPECT_EQ(Printed("", "").state_directory, "/home/nobody/.local/state/rmlcell");
   EXPECT_EQ(Printed("XDG_STATE_HOME=/x", "").state_directory, "/x/rmlcell");
+  EXPECT_EQ(Printed("XDG_STATE_HOME=/x", "--state.directory \"\"").state_directory, "/x/rmlcell");
 }
 
 // conventions.md, command line: a flag goes over the environment, that over the file, that over the
@@ -140,6 +141,21 @@ TEST(CommandLine, BothProgramsTellVersionAndUse) {
     EXPECT_THAT(Ask("", "--help", program).text, HasSubstr(program));
     EXPECT_EQ(Ask("", "--no-such-flag", program).status, 64);
   }
+  EXPECT_THAT(Ask("", "--help").text, HasSubstr("RMLCELL_WORKERS_COUNT"));
+  EXPECT_THAT(Ask("", "--help", "rmlcell-worker").text, HasSubstr("RMLCELL_JOIN_TOKEN"));
+}
+
+// A recording that cannot be played ends with 1 and says why; nowhere to put its products is wrong
+// use.
+TEST(CommandLine, ARecordingThatThereIsNotCannotBePlayed) {
+  const storage::TestDirectory folder;
+  const std::string into = std::filesystem::path(folder.File("cell.db")).parent_path().string();
+  const Answer played =
+      Ask("", "--products " + folder.File("none") + " --into " + into, "rmlcell-worker");
+  EXPECT_EQ(played.status, 1) << played.text;
+  EXPECT_THAT(played.text, HasSubstr("error [products of " + folder.File("none") + " "));
+  EXPECT_THAT(played.text, HasSubstr(CodeText(ErrorCode::kCellFileUnreadable)));
+  EXPECT_EQ(Ask("", "--products " + folder.File("none"), "rmlcell-worker").status, 64);
 }
 
 // A worker of a pool that is none would wait for ever.
@@ -163,21 +179,26 @@ TEST(CommandLine, TheServerTellsItsLifeAndEndsOnASignal) {
   const std::string state = std::filesystem::path(folder.File("cell.db")).parent_path().string();
   std::string told;
   Answer refused;
-  const Answer life = Ask("RMLCELL_JOBS_ATEMPTS=3",
-                          "--listen.grpc 127.0.0.1:0 --listen.web 127.0.0.1:0 --workers.count 0 "
-                          "--log.format text --state.directory " +
-                              state,
-                          "rmlcelld", [&](const std::string& line) {
-                            told += line;
-                            if (line.find(" is ready, store in " + state) == std::string::npos) {
-                              return;
-                            }
-                            refused =
-                                Ask("RMLCELL_JOIN_TOKEN=other",
-                                    "--name odd --server " + AddressIn(told), "rmlcell-worker");
-                            const std::size_t process = line.find("[rmlcelld ") + 10;
-                            ::kill(std::stoi(line.substr(process)), SIGTERM);
-                          });
+  Answer refused_twice;
+  const Answer life =
+      Ask("RMLCELL_JOBS_ATEMPTS=3",
+          "--listen.grpc 127.0.0.1:0 --listen.web 127.0.0.1:0 --workers.count 0 "
+          "--log.format text --state.directory " +
+              state,
+          "rmlcelld", [&](const std::string& line) {
+            told += line;
+            if (line.find(" is ready, store in " + state) == std::string::npos) {
+              return;
+            }
+            refused = Ask("RMLCELL_JOIN_TOKEN=other", "--name odd --server " + AddressIn(told),
+                          "rmlcell-worker");
+            refused_twice =
+                Ask("RMLCELL_JOIN_TOKEN=other",
+                    "--name odd --server " + AddressIn(told) + " --server " + AddressIn(told),
+                    "rmlcell-worker");
+            const std::size_t process = line.find("[rmlcelld ") + 10;
+            ::kill(std::stoi(line.substr(process)), SIGTERM);
+          });
   EXPECT_EQ(life.status, 0) << life.text;
   EXPECT_THAT(life.text, HasSubstr("RMLCELL_JOBS_ATEMPTS"));
   EXPECT_THAT(life.text, HasSubstr("gRPC on 127.0.0.1:"));
@@ -187,6 +208,11 @@ TEST(CommandLine, TheServerTellsItsLifeAndEndsOnASignal) {
   EXPECT_THAT(life.text, HasSubstr("] stopped\n"));
   EXPECT_EQ(refused.status, 69);
   EXPECT_THAT(refused.text, HasSubstr("CELL-E9310"));
+  // Of several servers each that does not take it is told; of one it is told once.
+  EXPECT_THAT(refused.text, testing::Not(HasSubstr("warning [odd ")));
+  EXPECT_EQ(refused_twice.status, 69);
+  EXPECT_THAT(refused_twice.text, HasSubstr("warning [odd "));
+  EXPECT_THAT(refused_twice.text, HasSubstr("error [odd "));
 }
 
 TEST(CommandLine, WhatCannotBeOpenedStopsTheStart) {
@@ -198,6 +224,11 @@ TEST(CommandLine, WhatCannotBeOpenedStopsTheStart) {
                              state);
   EXPECT_EQ(log.status, 69);
   EXPECT_THAT(log.text, HasSubstr("/proc/no/file"));
+  const Answer address =
+      Ask("", "--listen.grpc unix:/proc/no/cell.sock --listen.web \"\" --state.directory " + state);
+  EXPECT_EQ(address.status, 69);
+  EXPECT_THAT(address.text, HasSubstr("rmlcelld: CELL-E9202"));
+  EXPECT_THAT(address.text, HasSubstr("cannot listen on unix:/proc/no/cell.sock"));
   const Answer nobody =
       Ask("", "--server unix:" + state + "/nobody --name lonely", "rmlcell-worker");
   EXPECT_EQ(nobody.status, 69);

@@ -264,6 +264,12 @@ TEST(Config, ReadsFilesAndRefusesWhatIsNone) {
   EXPECT_TRUE(ReadConfigFile(full, config));
   EXPECT_TRUE(ReadConfigFile(good, config));
   EXPECT_EQ(config.jobs_attempts, 7);
+  // One byte more than is read at a time, and it counts.
+  const std::string last = (folder / "last.toml").string();
+  const std::string before_last = "[jobs]\nattempts = 1";
+  std::ofstream(last) << std::string(4096 - before_last.size(), '\n') << before_last << "0";
+  EXPECT_TRUE(ReadConfigFile(last, config));
+  EXPECT_EQ(config.jobs_attempts, 10);
   for (const std::string& path : {folder.string(), (folder / "none.toml").string(), large}) {
     const Status read = ReadConfigFile(path, config);
     ASSERT_FALSE(read) << path;
@@ -317,6 +323,8 @@ TEST(Config, PrintedConfigurationReadsBackToTheSame) {
   ASSERT_EQ(read.machines.size(), 2U);
   EXPECT_EQ(read.machines[0].title, config.machines[0].title);
   EXPECT_EQ(read.machines[1].title, config.machines[1].title);
+  // People read it: only what is no letter is written as an escape.
+  EXPECT_THAT(PrintConfig(Config()), HasSubstr("title = \"Virtual Optimo\"\n"));
   config.machines.clear();
   ASSERT_TRUE(ReadConfigText(PrintConfig(config), "printed", read));
   EXPECT_THAT(read.machines, IsEmpty());

@@ -59,6 +59,22 @@ TEST(Log, TextForPeople) {
   EXPECT_EQ(lines[0].substr(lines[0].rfind("] ") + 2), "a tool is missing");
 }
 
+// Whoever reads the file of a server that runs finds what it said last.
+TEST(Log, ALineIsThereAtOnce) {
+  const std::string file = ::testing::TempDir() + "/rmlcell-log-at-once";
+  std::filesystem::remove(file);
+  const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
+  ASSERT_TRUE(StartLog("cell-at-once", "info", "text", file));
+  spdlog::info("the last word");
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  spdlog::drop("cell-at-once");
+  spdlog::set_default_logger(before);
+  std::filesystem::remove(file);
+  EXPECT_NE(line.find("] the last word"), std::string::npos) << line;
+}
+
 TEST(Log, AFileThatCannotBeWrittenIsAnError) {
   const Status started = StartLog("cell-nowhere", "info", "text", "/proc/no/such/file");
   ASSERT_FALSE(started);

@@ -121,6 +121,21 @@ TEST(Names, TitlesAreCountedInCharacters) {
   EXPECT_TRUE(CheckTitle("", "title"));
 }
 
+// So has a reason, and it has one at least.
+TEST(Names, ReasonsAreCountedInCharacters) {
+  for (const std::string character : {"A", "\xC3\xA4"}) {
+    std::string reason;
+    for (int n = 0; n < 200; ++n) reason += character;
+    EXPECT_TRUE(CheckReason(character));
+    EXPECT_TRUE(CheckReason(reason));
+    const Status longer = CheckReason(reason + character);
+    ASSERT_FALSE(longer) << character;
+    EXPECT_EQ(longer.error().code, kInvalid);
+    EXPECT_EQ(longer.error().detail, "reason: why, in 1 to 200 characters");
+  }
+  EXPECT_FALSE(CheckReason(""));
+}
+
 TEST(Names, EtagsAreRevisionsOfOurs) {
   EXPECT_EQ(*ParseEtag(""), storage::kAnyRevision);
   EXPECT_EQ(*ParseEtag("none"), 0);

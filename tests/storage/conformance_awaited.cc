@@ -191,6 +191,23 @@ TEST_P(StoreConformance, AwaitedEachIsGivenWhatItAsksFor) {
   EXPECT_EQ(AnswersOf(*one), 0);
 }
 
+// Who finds nothing speaks for none that asks for another kind or in another pool.
+TEST_P(StoreConformance, AwaitedOthersAreAskedBehindWhoFindsNothing) {
+  const Asking asking(store());
+  const auto checks = asking.Await(RequestOf("a", "CHECK"));
+  const auto simulates = asking.Await(RequestOf("b", "SIMULATE"));
+  JobRequest in_pool = RequestOf("c", "SIMULATE");
+  in_pool.pools = {"paced"};
+  const auto paced = asking.Await(std::move(in_pool));
+  const std::int64_t slow =
+      Must(store().SubmitAndWait({.kind = "SIMULATE", .pool = "paced"})).job.id;
+  EXPECT_THAT(JobsOf(*paced), ElementsAre(slow));
+  EXPECT_EQ(AnswersOf(*simulates), 0);
+  const std::int64_t job = Submit("SIMULATE").id;
+  EXPECT_THAT(JobsOf(*simulates), ElementsAre(job));
+  EXPECT_EQ(AnswersOf(*checks), 0);
+}
+
 // The one that has waited longest first, and one job each, also of those that come together.
 TEST_P(StoreConformance, AwaitedWhoWaitsLongestIsFirst) {
   const Asking asking(store());

@@ -49,6 +49,20 @@ TEST_P(StoreConformance, EachChangeOfAJobIsCounted) {
   EXPECT_EQ(store().JobChanges(other), of_other);
 }
 
+// One write may change several jobs: the end of a job lets those go that wait for it.
+TEST_P(StoreConformance, AChangeOfThoseThatFollowIsCounted) {
+  const std::int64_t first = Submit().id;
+  const std::int64_t follower =
+      Must(store().SubmitAndWait({.kind = "SIMULATE", .after = {first}})).job.id;
+  const LeasedJob leased = Acquire();
+  ASSERT_EQ(leased.job.id, first);
+  const std::uint64_t of_first = store().JobChanges(first);
+  const std::uint64_t of_follower = store().JobChanges(follower);
+  Finish(leased.lease);
+  EXPECT_GT(store().JobChanges(first), of_first);
+  EXPECT_GT(store().JobChanges(follower), of_follower);
+}
+
 // A lease that ran out is a change as well, and so is a job that a time lets go.
 TEST_P(StoreConformance, AChangeByTheClockIsCounted) {
   const std::int64_t job = Submit().id;

@@ -47,6 +47,8 @@ TEST_P(StoreConformance, AMachineHasOneHost) {
   MachineClaim at_once = Claim("a");
   at_once.duration = seconds(0);
   EXPECT_EQ(CodeOf(store().TakeMachine(at_once)), ErrorCode::kCellInvalidArgument);
+  at_once.duration = std::chrono::milliseconds(1);
+  EXPECT_EQ(Must(store().TakeMachine(at_once)).duration, std::chrono::milliseconds(1));
 }
 
 // PG-5.09: who takes it over has seen fence and renewals unchanged; a renewal meanwhile keeps it.

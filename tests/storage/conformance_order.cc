@@ -191,6 +191,34 @@ TEST_P(StoreConformance, AfterAJobThatDidNotSucceedAPersonDecides) {
   EXPECT_EQ(CodeOf(store().SubmitAndWait({.kind = "CHECK", .after = {second}})), kPrecondition);
 }
 
+// Whichever of them it is: the others may well succeed, and it would help nothing.
+TEST_P(StoreConformance, OneThatDidNotSucceedIsToldBeforeThoseThatMay) {
+  const auto first = Put(store(), {});
+  const auto second = Put(store(), {});
+  const auto third = Put(store(), {});
+  const auto one = Put(store(), {.after = {first, second}});
+  const auto other = Put(store(), {.after = {second, third}});
+  const auto last = Put(store(), {.after = {third, first}});
+  EXPECT_THAT(Started(store()), ElementsAre(first, second, third));
+  End(store(), first, JobState::kFailed);
+  EXPECT_EQ(WaitOf(store(), one), "failed job " + std::to_string(first));
+  EXPECT_EQ(WaitOf(store(), last), "failed job " + std::to_string(first));
+  EXPECT_EQ(WaitOf(store(), other), "job " + std::to_string(second));
+  End(store(), third, JobState::kCancelled);
+  EXPECT_EQ(WaitOf(store(), other), "failed job " + std::to_string(third));
+}
+
+// However they were named: as who asks later finds them.
+TEST_P(StoreConformance, AwaitedJobsStandInOrderInTheAnswer) {
+  const auto first = Put(store(), {});
+  const auto second = Put(store(), {});
+  const JobRecord made =
+      Must(store().SubmitAndWait({.kind = "SIMULATE", .after = {second, first}})).job;
+  EXPECT_THAT(made.after, ElementsAre(first, second));
+  EXPECT_EQ(made.wait, WaitReason::kAfterJob);
+  EXPECT_EQ(made.waits_for, first);
+}
+
 // A submission that is repeated when what it waits for has failed gives the first job.
 TEST_P(StoreConformance, ARepeatedRequestGivesItsJobWhateverBecameOfOthers) {
   const auto first = Put(store(), {});
@@ -303,6 +331,50 @@ TEST_P(StoreConformance, ManyAreChangedAtOnce) {
   EXPECT_THAT(act(QueueAct::kCancel), ElementsAre(plain, follower, held));
   EXPECT_THAT(act(QueueAct::kCancel), IsEmpty());
   EXPECT_EQ(Must(store().JobEvents(plain, 0, 10)).size(), 3U);
+}
+
+// One that is over is no more to be cancelled, and one that runs once.
+TEST_P(StoreConformance, ManyAreCancelledOnce) {
+  const auto over = Put(store(), {});
+  const auto runs = Put(store(), {});
+  EXPECT_THAT(Started(store()), ElementsAre(over, runs));
+  End(store(), over, JobState::kSucceeded);
+  const std::vector<std::int64_t> both = {over, runs};
+  const auto event = [](const JobRecord&) { return NewEvent{.kind = "queue"}; };
+  EXPECT_THAT(IdsOf(Must(store().ActOn(both, QueueAct::kCancel, event))), ElementsAre(runs));
+  EXPECT_TRUE(Must(store().GetJob(runs)).cancel_requested);
+  EXPECT_THAT(IdsOf(Must(store().ActOn(both, QueueAct::kCancel, event))), IsEmpty());
+}
+
+// Also where nothing is left of what it waited for.
+TEST_P(StoreConformance, ManyAreLetGoFromADeletedJob) {
+  const auto first = Put(store(), {});
+  const auto second = Put(store(), {.after = {first}});
+  Started(store());
+  End(store(), first, JobState::kFailed);
+  Must(store().DeleteJob(first));
+  const std::vector<std::int64_t> one = {second};
+  const auto event = [](const JobRecord&) { return NewEvent{.kind = "queue"}; };
+  EXPECT_THAT(IdsOf(Must(store().ActOn(one, QueueAct::kRelease, event))), ElementsAre(second));
+  EXPECT_THAT(IdsOf(Must(store().ActOn(one, QueueAct::kRelease, event))), IsEmpty());
+  EXPECT_THAT(Started(store()), ElementsAre(second));
+}
+
+// Of all kinds together, before those that wait.
+TEST_P(StoreConformance, ThoseThatRunAreListedByTheirNumber) {
+  const auto simulate = Put(store(), {});
+  const auto check = Put(store(), {.kind = "CHECK"});
+  const auto paced = Put(store(), {.kind = "CHECK", .pool = "paced"});
+  Started(store(), {"CHECK", "SIMULATE"});
+  EXPECT_THAT(IdsOf(Must(store().ListJobs({.order = JobOrder::kQueue, .limit = 9}))),
+              ElementsAre(simulate, check, paced));
+}
+
+// Least of all for the machine that it keeps busy itself.
+TEST_P(StoreConformance, WhatRunsWaitsForNothing) {
+  const auto run = Put(store(), {.machine = "a", .kind = "RUN"});
+  EXPECT_THAT(Started(store(), {"RUN"}), ElementsAre(run));
+  EXPECT_EQ(WaitOf(store(), run), "nothing");
 }
 
 TEST_P(StoreConformance, AMachineRunsOneRunAtATime) {

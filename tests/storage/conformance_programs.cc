@@ -339,6 +339,11 @@ TEST_P(StoreConformance, LargestProgramIsTaken) {
   const auto executable = store().PutExecutable("m", 1, 1, program);
   ASSERT_EQ(CodeOf(executable), ErrorCode::kCellTooLarge);
   EXPECT_EQ(executable.error().detail, "the executable has 268435457 bytes");
+  const LeasedJob leased = (Submit("SIMULATE", "m"), Acquire());
+  JobEnd end;
+  end.executables.push_back({.slot = 1, .object_revision = 1, .bytes = program});
+  EXPECT_EQ(CodeOf(store().Finish(leased.lease, end)), ErrorCode::kCellTooLarge);
+  end = {};
   program.pop_back();
   PutProgram("m", 1, program);
   EXPECT_TRUE(Must(store().PutExecutable("m", 1, 1, program)));

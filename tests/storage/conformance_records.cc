@@ -79,6 +79,7 @@ TEST_P(StoreConformance, DeletedMachineTakesItsMemoryAlong) {
   PutMachine("other");
   PutProgram("m", 7, "first");
   PutProgram("m", 7, "second");
+  PutProgram("m", 1, "of the first slot");
   PutProgram("other", 7, "second");
   Must(store().PutSchedule({.machine = "m", .number = 11, .name = "thin"}, 0));
   const LeasedJob leased = (Submit("SIMULATE", "m"), Acquire());

@@ -133,6 +133,20 @@ TEST(Content, DamagedChunkIsToldAndChangesNothing) {
   EXPECT_EQ(CodeOf(Decode(encoded.substr(1), chunk.size(), content)), ErrorCode::kCellStoreCorrupt);
   EXPECT_EQ(CodeOf(Decode("", chunk.size(), content)), ErrorCode::kCellStoreCorrupt);
   EXPECT_EQ(content, "before");
+  // With the words of zstd, where it has any.
+  const Status too_short = Decode(encoded, chunk.size() + 1, content);
+  ASSERT_FALSE(too_short);
+  EXPECT_EQ(too_short.error().detail, "too short");
+  const Status too_long = Decode(encoded, chunk.size() - 1, content);
+  ASSERT_FALSE(too_long);
+  EXPECT_NE(too_long.error().detail, "too short");
+}
+
+// It is moved into the file again and again, however much is written.
+TEST_F(SqliteContents, TheLogDoesNotGrowWithoutEnd) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  for (std::uint64_t seed = 0; seed < 7; ++seed) PutProgram(1, Noise(20 * kMiB, seed));
+  EXPECT_LT(std::filesystem::file_size(bed_.path() + "-wal"), 100 * kMiB);
 }
 
 // Brief: the same content is kept once, rows are at most about 1 MB.

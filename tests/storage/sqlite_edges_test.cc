@@ -4,8 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <future>
+#include <iterator>
 #include <string>
+#include <thread>
 
 #include "engine/core/hex.h"
 #include "storage/content.h"
@@ -90,6 +93,37 @@ TEST(SqliteEdges, ACopyIsMadeWithoutAStandardInput) {
   EXPECT_EQ(NumberIn(directory.File("copy.db"), "SELECT count(*) FROM log_part"), 1);
 }
 
+std::ptrdiff_t OpenFiles() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+}
+
+// Neither of stores that come and go nor of their copies.
+TEST(SqliteEdges, NoFileStaysOpen) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  const auto use = [&] {
+    Must(OpenSqliteStore({.path = path})).reset();
+    const Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+    Must(database.CopyTo(directory.File("copy.db")));
+  };
+  use();  // what is opened once for all
+  const std::ptrdiff_t before = OpenFiles();
+  for (int i = 0; i < 3; ++i) use();
+  EXPECT_EQ(OpenFiles(), before);
+}
+
+// The system takes longer names than SQLite does: an empty file that it made is no copy.
+TEST(SqliteEdges, ACopyThatCannotBeOpenedIsAnError) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  const Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  const std::string part(200, 'd');
+  const std::string folder = directory.File(part + "/" + part + "/" + part + "/" + part);
+  std::filesystem::create_directories(folder);
+  EXPECT_EQ(CodeOf(database.CopyTo(folder + "/copy.db")), ErrorCode::kCellStoreFailed);
+}
+
 // Whatever others may do with the file, even to execute it only, is taken from them.
 TEST(SqliteEdges, NobodyElseMayDoAnythingWithTheFile) {
   for (const mode_t mode : {mode_t{0601}, mode_t{0610}, mode_t{0640}, mode_t{0604}}) {
@@ -130,6 +164,41 @@ TEST(SqliteEdges, AJobThatIsDueIsTold) {
   EXPECT_TRUE(Eventually([&] { return told > 0; }));
 }
 
+// What goes because there is too much of it goes behind the write that made it too much.
+TEST(SqliteEdges, WhatTidyingRemovesIsTold) {
+  SqliteOptions options;
+  options.keep_finished_jobs = 1;
+  SqliteBed bed(options);
+  const auto end_one = [&] {
+    const std::int64_t job = Must(bed.store().SubmitAndWait({.kind = "CHECK"})).job.id;
+    bed.clock().Advance(std::chrono::seconds(1));
+    Must(bed.store().RequestCancel(job, {}));
+    return job;
+  };
+  const std::int64_t old = end_one();
+  std::atomic<bool> told_that_it_is_gone{false};
+  const auto watch = bed.store().Watch([&] {
+    if (CodeOf(bed.store().GetJob(old)) == ErrorCode::kCellNotFound) told_that_it_is_gone = true;
+  });
+  end_one();
+  EXPECT_TRUE(Eventually([&] { return told_that_it_is_gone.load(); }));
+}
+
+// sqlite_store.h busy_timeout: a lock that is held for a moment is waited for.
+TEST(SqliteEdges, WhoHoldsTheFileForAMomentIsWaitedFor) {
+  SqliteOptions options;
+  options.busy_timeout = std::chrono::minutes(1);
+  SqliteBed bed(options);
+  Database other = Must(Database::Open(bed.path(), Database::Access::kReadWrite, {}));
+  Must(other.Execute("BEGIN IMMEDIATE"));
+  std::promise<void> nobody;
+  const std::jthread holder([&] {
+    static_cast<void>(nobody.get_future().wait_for(std::chrono::milliseconds(100)));
+    EXPECT_EQ(CodeOf(other.Execute("ROLLBACK")), std::nullopt);
+  });
+  EXPECT_EQ(CodeOf(bed.store().PutMachine({.id = "m"}, 0)), std::nullopt);
+}
+
 // Who ends his subscription while another one is told hears nothing more.
 TEST(SqliteEdges, AWatcherThatLeftMeanwhileIsNotCalled) {
   Watchers watchers;
@@ -150,6 +219,25 @@ TEST(SqliteEdges, AWatcherThatLeftMeanwhileIsNotCalled) {
   watchers.Notify();
   EXPECT_TRUE(Eventually([&] { return rounds > 1; }));
   EXPECT_EQ(calls, 0);
+}
+
+// Who ends his subscription while it is called comes back when that call has ended, and not before.
+TEST(SqliteEdges, WhoLeavesWaitsForTheCallThatIsUnderWay) {
+  std::promise<void> entered;
+  std::promise<void> left;
+  std::promise<bool> overtaken;
+  const std::future<void> has_left = left.get_future();
+  Watchers watchers;
+  auto watch = watchers.Add([&] {
+    entered.set_value();
+    overtaken.set_value(has_left.wait_for(std::chrono::milliseconds(200)) ==
+                        std::future_status::ready);
+  });
+  watchers.Notify();
+  entered.get_future().wait();
+  watch.reset();
+  left.set_value();
+  EXPECT_FALSE(overtaken.get_future().get());
 }
 
 // A page of nothing has nothing.
@@ -224,6 +312,39 @@ TEST(SqliteEdges, WhatIsNotCommittedIsUndone) {
   Must(kept.Commit());
   EXPECT_FALSE(database.in_transaction());
   EXPECT_EQ(rows(), 1);
+}
+
+// SQLite leaves a transaction open that cannot be committed: the next write would find it.
+TEST(SqliteEdges, ACommitThatIsRefusedIsUndone) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  Must(database.Execute(
+      "PRAGMA foreign_keys = ON; CREATE TABLE parent (id INTEGER PRIMARY KEY);"
+      "CREATE TABLE child (id INTEGER REFERENCES parent (id) DEFERRABLE INITIALLY DEFERRED)"));
+  TransactionStatements statements(database);
+  Transaction refused = Must(Transaction::Begin(statements, Transaction::Kind::kWrite));
+  Must(database.Execute("INSERT INTO child VALUES (7)"));
+  EXPECT_EQ(CodeOf(refused.Commit()), ErrorCode::kCellStoreFailed);
+  EXPECT_FALSE(database.in_transaction());
+  EXPECT_EQ(Must(database.Number("SELECT count(*) FROM child")), 0);
+}
+
+// What the system said of one failure is no reason of the next one.
+TEST(SqliteEdges, TheSystemIsNamedForItsOwnFailuresOnly) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  const Status unopened = database.Execute("ATTACH '/proc/no/such/file' AS other");
+  ASSERT_FALSE(unopened);
+  EXPECT_NE(unopened.error().detail.find("(SQLite 14): "), std::string::npos)
+      << unopened.error().detail;
+  const Status refused = database.Execute(
+      "CREATE TABLE filling (id INTEGER PRIMARY KEY); INSERT INTO filling VALUES (1), (1)");
+  ASSERT_FALSE(refused);
+  EXPECT_TRUE(refused.error().detail.ends_with(")")) << refused.error().detail;
 }
 
 // A statement is executed once at a time: another query of it would take the row from the first.

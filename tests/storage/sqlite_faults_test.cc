@@ -7,6 +7,7 @@
 #include <future>
 #include <thread>
 
+#include "storage/sqlite/database.h"
 #include "tests/storage/faulty_disk.h"
 #include "tests/storage/sqlite_bed.h"
 
@@ -263,6 +264,46 @@ TEST_F(SqliteFaults, OpeningOnAFullDiskIsAnError) {
   }
   bed_.Reopen();  // what a failed start left behind is no obstacle
   Must(Submit("r"));
+}
+
+// While it lives, whoever names no disk has the faulty one.
+class FaultyForAll {
+ public:
+  FaultyForAll() : system_(sqlite3_vfs_find(nullptr)) {
+    faulty_disk::Register();
+    faulty_disk::Heal();
+    sqlite3_vfs_register(sqlite3_vfs_find(faulty_disk::kName), 1);
+  }
+  ~FaultyForAll() {
+    faulty_disk::Heal();
+    sqlite3_vfs_register(system_, 1);
+  }
+  FaultyForAll(const FaultyForAll&) = delete;
+  FaultyForAll& operator=(const FaultyForAll&) = delete;
+
+ private:
+  sqlite3_vfs* system_;
+};
+
+// An old store is changed when its copy is there: one that does not fit on the disk is none.
+TEST(SqliteFullDisk, ACopyThatDoesNotFitIsAnError) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  const std::string copy = directory.File("copy.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  const sqlite::Database database =
+      Must(sqlite::Database::Open(path, sqlite::Database::Access::kReadWrite, {}));
+  {
+    const FaultyForAll faulty;
+    faulty_disk::OnlyFilesEndingWith("copy.db");
+    faulty_disk::Fail({.on_write = SQLITE_FULL});
+    const Status copied = database.CopyTo(copy);
+    ASSERT_EQ(CodeOf(copied), kFailed);
+    EXPECT_TRUE(copied.error().detail.ends_with("(SQLite 13)")) << copied.error().detail;
+  }
+  Must(database.CopyTo(copy));
+  EXPECT_EQ(NumberIn(copy, "SELECT count(*) FROM migration"),
+            NumberIn(path, "SELECT count(*) FROM migration"));
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ TEST(SqliteHousekeeping, IsDueBeyondItsLimits) {
       {{.record_events = 16}, {.record_events = 18}, {.record_events = 19}},
       {{.record_events = 7}, {.record_events = 7}, {.record_events = 8}},
       {{.record_events = 80'000}, {.record_events = 81'000}, {.record_events = 81'001}},
+      {{.events = 1}, {.position = 1}, {.position = 2}},
       {{.events = 16}, {.position = 18}, {.position = 19}},
       {{.events = 16},
        {.position = 118, .events_trimmed_until = 100},
@@ -99,6 +100,16 @@ TEST_F(SqliteSlices, TakeSixtyFourJobs) {
   EXPECT_EQ(Count("job"), 2);
   EXPECT_FALSE(Must(Slice({.finished_jobs = 2})));
   EXPECT_FALSE(told_);
+}
+
+// What counts as finished and is not to be had, as one that waits for a decision, is not looked for
+// without an end.
+TEST_F(SqliteSlices, EndWhereNothingIsLeftToTake) {
+  counters_ = {.finished_jobs = 5};
+  EXPECT_FALSE(Must(Slice({.finished_jobs = 1})));
+  AddFinishedJob(1);
+  EXPECT_FALSE(Must(Slice({.finished_jobs = 1})));
+  EXPECT_EQ(Count("job"), 0);
 }
 
 // A job whose events fill a slice goes with the next one, though none of them is left.

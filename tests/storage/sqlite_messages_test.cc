@@ -167,6 +167,18 @@ TEST_F(SqliteMessages, OfAContentThatIsNamedMoreOftenThanItCounts) {
   Must(store().DeleteProgram("m", 2, kAnyRevision));
 }
 
+TEST_F(SqliteMessages, OfABodyThatIsNamedMoreOftenThanItCounts) {
+  bed_.LeaveUnchecked();
+  Must(store().PutProject({.id = "p", .body = Noise(20'000, 1)}, 0));
+  bed_.Close();
+  const std::string body = TextIn(bed_.path(), "SELECT body_blob FROM project");
+  ExecuteIn(bed_.path(), "UPDATE blob SET refs = 0, holds = 1 WHERE id = " + body);
+  bed_.Reopen();
+  const auto refused = store().PutProject({.id = "p", .body = "short"}, kAnyRevision);
+  EXPECT_EQ(CodeOf(refused), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(DetailOf(refused), "blob " + body + ": has no reference to drop");
+}
+
 // 9104: a content is looked at when it is read, and each way in which it is wrong has its words.
 TEST_F(SqliteMessages, OfDamagedContents) {
   bed_.LeaveUnchecked();

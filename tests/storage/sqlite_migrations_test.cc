@@ -56,7 +56,8 @@ TEST_F(SqliteMigrations, OldStoreGetsThoseThatItLacks) {
   Must(MigrateTo(3));
   EXPECT_EQ(NumberIn(path_, "PRAGMA user_version"), 3);
   EXPECT_EQ(TextIn(path_, "SELECT weight_g FROM part WHERE name = 'bracket'"), "1.5");
-  Must(MigrateTo(3));  // and then none
+  Must(MigrateTo(3));  // and then none, and there is nothing to copy
+  EXPECT_FALSE(std::filesystem::exists(path_ + ".version-3"));
   EXPECT_EQ(NumberIn(path_, "SELECT count(*) FROM migration"), 3);
 }
 

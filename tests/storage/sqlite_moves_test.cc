@@ -118,5 +118,39 @@ TEST_F(SqliteMoves, AContentThatComesTwiceHoldsNoOther) {
   EXPECT_TRUE(Eventually([&] { return NumberIn(bed_.path(), "SELECT count(*) FROM blob") == 1; }));
 }
 
+// Of a submission that fails behind its first rows nothing is counted: its machine may go.
+TEST_F(SqliteMoves, ASubmissionThatFailsCountsForNoMachine) {
+  Must(store().PutMachine({.id = "m", .family = "optimo"}, 0));
+  const auto twice = store().SubmitAndWait({.machine = "m",
+                                            .kind = "CHECK",
+                                            .attachments = {{.name = "main", .bytes = "1"},
+                                                            {.name = "more", .bytes = "2"},
+                                                            {.name = "more", .bytes = "3"}}});
+  EXPECT_EQ(CodeOf(twice), ErrorCode::kCellInvalidArgument);
+  EXPECT_TRUE(Must(store().UnfinishedJobs()).empty());
+  Must(store().DeleteMachine("m", kAnyRevision));
+}
+
+// What is cancelled is ready or not no more: those that are held back are counted without it.
+TEST_F(SqliteMoves, ACancelledOneIsHeldBackNoMore) {
+  const auto blocked = [&] {
+    return NumberIn(bed_.path(), "SELECT value FROM mark WHERE name = 'blocked jobs'");
+  };
+  const std::int64_t held = Put({.held = true});
+  const std::int64_t gone = Put({.held = true});
+  EXPECT_EQ(blocked(), 2);
+  EXPECT_TRUE(Must(store().GetJob(gone)).blocked);
+  Must(store().RequestCancel(gone, {}));
+  EXPECT_FALSE(Must(store().GetJob(gone)).blocked);
+  EXPECT_EQ(blocked(), 1);
+  const std::int64_t ready = Put({});
+  const auto leased = Must(store().Acquire("w", {"CHECK"}, std::chrono::hours(1), {}));
+  ASSERT_TRUE(leased);
+  EXPECT_EQ(leased->job.id, ready);
+  EXPECT_EQ(blocked(), 1);
+  Must(store().LetGo(held, {}));
+  EXPECT_EQ(blocked(), 0);
+}
+
 }  // namespace
 }  // namespace rmlcell::storage::sqlite

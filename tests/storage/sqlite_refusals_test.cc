@@ -359,5 +359,25 @@ TEST(SqliteRefusals, AContentWithAnotherDigest) {
   EXPECT_EQ(part.error().detail, "content " + other + " does not have its SHA-256");
 }
 
+// 9104: a part that is damaged ends the reading with an error, not as if it were the end.
+TEST(SqliteRefusals, AContentWithADamagedPart) {
+  SqliteBed bed;
+  bed.LeaveUnchecked();
+  const std::string content = Noise(kChunkBytes + 1'000, 1);
+  Must(bed.store().SubmitAndWait(
+      {.kind = "CHECK", .attachments = {{.name = "large", .bytes = content}}}));
+  bed.Close();
+  const std::string name =
+      TextIn(bed.path(), "SELECT lower(hex(sha256)) FROM blob WHERE size > 1000000");
+  ExecuteIn(bed.path(), "UPDATE blob_chunk SET content = zeroblob(100) WHERE number = 1");
+  bed.Reopen();
+  for (const bool by_name : {false, true}) {
+    const auto reader =
+        Must(by_name ? bed.store().OpenBlob(name) : bed.store().OpenArtifact(1, "large"));
+    EXPECT_TRUE(Must(reader->Next()) == content.substr(0, kChunkBytes)) << by_name;
+    EXPECT_EQ(CodeOf(reader->Next()), kCorruptFile) << by_name;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::storage::sqlite

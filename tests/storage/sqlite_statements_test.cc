@@ -310,6 +310,28 @@ TEST_F(SqliteStatements, OfPartsThatGoAhead) {
   for (const char* id : {"p", "q"}) EXPECT_TRUE(Must(store().GetProject(id)).body == body) << id;
 }
 
+// The same of every record that may have a large content: nothing comes of it.
+TEST_F(SqliteStatements, OfContentsThatGoAhead) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  const std::int64_t job = Submit({.kind = "CHECK"});
+  const Lease lease = LeaseOf(job);
+  const std::string large = Noise(kChunkBytes + 1, 5);
+  const std::string ahead = "INSERT INTO blob (";
+  FailsAt(ahead, [&] { return store().SubmitAndWait({.kind = "CHECK", .specification = large}); });
+  FailsAt(ahead, [&] {
+    return store().SubmitAndWait({.kind = "CHECK", .attachments = {{.name = "a", .bytes = large}}});
+  });
+  FailsAt(ahead, [&] { return store().PutPrograms("m", {{.slot = 1, .object = large}}, {}); });
+  FailsAt(ahead, [&] {
+    return store().PutPrograms("m", {{.slot = 1, .object = "o", .source = large}}, {});
+  });
+  FailsAt(ahead,
+          [&] { return store().Finish(lease, {.artifacts = {{.name = "a", .bytes = large}}}); });
+  EXPECT_EQ(Must(store().ListJobs({})).size(), 1U);
+  EXPECT_EQ(Must(store().GetJob(job)).state, JobState::kRunning);
+  EXPECT_TRUE(Must(store().ListPrograms("m", 0, 9)).empty());
+}
+
 // A worker that waits, and cannot be given the job that comes, is told so; the job is there all the
 // same, and counted once.
 TEST_F(SqliteStatements, OfAJobForSomebodyWhoWaits) {

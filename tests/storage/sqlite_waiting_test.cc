@@ -110,6 +110,29 @@ TEST_F(SqliteWaiting, AppendedEventsCount) {
   EXPECT_EQ(Must(bed_.store().GetJob(lease.job)).last_sequence, 2 * 9 * 2);
 }
 
+// Behind callers that came together one write is enough again, also one that nobody stays for.
+TEST(SqliteLoneWrites, AWithdrawalIsDoneThoughNothingElseComes) {
+  std::promise<std::size_t> answered;
+  std::atomic<int> together = 0;
+  SqliteBed bed;
+  const std::int64_t request =
+      bed.store().AwaitJobs({.worker = "w", .kinds = {"SIMULATE"}, .duration = kLease},
+                            [&](const Result<std::vector<LeasedJob>>& leased) {
+                              answered.set_value(leased ? leased->size() : 99U);
+                            });
+  {
+    const StandingWriter stands(bed.store());
+    for (int i = 0; i < 3; ++i)
+      bed.store().Submit({.kind = "CHECK"}, [&](const Result<SubmittedJob>&) { ++together; });
+  }
+  EXPECT_TRUE(Eventually([&] { return together == 3; }));
+  Must(bed.store().PutMachine({.id = "m"}, 0));  // from now on nobody is waited for
+  bed.store().Withdraw(request);
+  auto nothing = answered.get_future();
+  ASSERT_EQ(nothing.wait_for(kPatience), std::future_status::ready);
+  EXPECT_EQ(nothing.get(), 0U);
+}
+
 // The first stands in the row of its artifact, those that come then are a content of their own.
 TEST(SqliteNoBytes, AProductOfNoBytesComesAgain) {
   SqliteBed bed;

@@ -187,6 +187,60 @@ TEST(SqliteWriter, TooManyWaitingBytesAreRefused) {
   EXPECT_EQ(answers.good, 2);
 }
 
+// What brings no bytes is never refused, however much waits: neither who waits for a job nor who
+// does so no more.
+TEST(SqliteWriter, WhoWaitsForAJobIsNeverRefused) {
+  SqliteOptions options;
+  options.waiting_operations_max = 2;
+  std::promise<std::size_t> withdrawn;
+  std::promise<std::int64_t> given;
+  Answers answers;
+  SqliteBed bed(options);  // goes first: it answers who still stands
+  const auto await = [&](const std::function<void(Result<std::vector<LeasedJob>>)>& done) {
+    return bed.store().AwaitJobs(
+        {.worker = "w", .kinds = {"SIMULATE"}, .duration = std::chrono::hours(1)}, done);
+  };
+  const std::int64_t first = await([&](const Result<std::vector<LeasedJob>>& leased) {
+    withdrawn.set_value(leased ? leased->size() : 99U);
+  });
+  Must(bed.store().ActOn({}, QueueAct::kHold, {}));  // it stands
+  {
+    WriterHold hold(bed.store());
+    for (int i = 0; i < 3; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+    EXPECT_EQ(answers.refused, 1);
+    bed.store().Withdraw(first);
+    await([&](const Result<std::vector<LeasedJob>>& leased) {
+      given.set_value(leased && !leased->empty() ? leased->front().lease.job : 0);
+    });
+    hold.Release();
+  }
+  auto nothing = withdrawn.get_future();
+  ASSERT_EQ(nothing.wait_for(kPatience), std::future_status::ready);
+  EXPECT_EQ(nothing.get(), 0U);
+  const std::int64_t job = Must(bed.store().SubmitAndWait({.kind = "SIMULATE"})).job.id;
+  auto one = given.get_future();
+  ASSERT_EQ(one.wait_for(kPatience), std::future_status::ready);
+  EXPECT_EQ(one.get(), job);
+}
+
+// An answer that writes would wait for room that its own end alone can make.
+TEST(SqliteWriter, AnAnswerMayWriteHoweverMuchWaits) {
+  SqliteOptions options;
+  options.waiting_operations_max = 2;
+  std::promise<std::optional<ErrorCode>> written;
+  Answers answers;
+  SqliteBed bed(options);
+  const std::jthread first([&] {
+    bed.store().Submit({.kind = "CHECK"}, [&](const Result<SubmittedJob>&) {
+      for (int i = 0; i < 3; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+      written.set_value(CodeOf(bed.store().PutMachine({.id = "m"}, 0)));
+    });
+  });
+  EXPECT_EQ(written.get_future().get(), std::nullopt);
+  answers.WaitFor(3);
+  EXPECT_EQ(answers.refused, 1);
+}
+
 // sqlite_store.h group_window: those that were answered together are waited for, here for an hour,
 // and written as soon as the last of them is there.
 TEST(SqliteWriter, CallersThatWereAnsweredTogetherAreWrittenTogether) {

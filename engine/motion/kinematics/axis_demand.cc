@@ -49,6 +49,7 @@ double JerkAllowed(std::size_t axis, const AxisDerivatives& q, const AxisLimits&
 }
 
 // What each axis allows. By its speed, and by its acceleration in the bend.
+using SpeedsOfAxes = std::array<double, 2 * kAxisCount>;
 SpeedsOfAxes SpeedsAllowed(const AxisDerivatives& q, const AxisLimits& axes,
                            const AxisShares& shares) {
   SpeedsOfAxes speeds;
@@ -360,16 +361,6 @@ class AxisSearch {
 };
 
 }  // namespace
-
-SpeedsOfAxes SpeedsWithinAxes(const AxisDerivatives& q, const AxisLimits& axes) {
-  SpeedsOfAxes speeds;
-  for (const std::size_t i : kAxes) {
-    speeds[i] = axes.speed[i] / std::abs(q.first[i]);
-    speeds[kAxisCount + i] =
-        q.second[i] == 0.0 ? HUGE_VAL : std::sqrt(axes.acceleration[i] / std::abs(q.second[i]));
-  }
-  return speeds;
-}
 
 AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s) {
   if (path.kind() == PathPiece::Kind::kArc) {

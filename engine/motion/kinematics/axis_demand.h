@@ -19,11 +19,6 @@ AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s)
 AxisDerivatives ThroughHead(const Head& head, const PathPose& pose, const PathDerivatives& first,
                             const PathDerivatives& second);
 
-// The highest constant speeds along a path that the axes allow where its derivatives are `q`: each
-// by its own speed, then each by its acceleration, all of which may go into the bend.
-using SpeedsOfAxes = std::array<double, 2 * kAxisCount>;
-SpeedsOfAxes SpeedsWithinAxes(const AxisDerivatives& q, const AxisLimits& axes);
-
 // `limits` lowered until no axis is asked for more than it can, anywhere on the piece: the last two
 // lines of motion.md 5.1. Speeds of the axes count times `speed_share`, accelerations and jerks
 // times `acceleration_share` (PTP; 1 on contours). Extremes along the piece are found to 1e-9.

@@ -130,10 +130,13 @@ std::optional<float> FastFloat(std::uint64_t mantissa, int exponent) {
 
 // The mantissa has no zeros ahead; so of 0 itself nothing is left, or a point.
 float SlowFloat(std::string_view mantissa, int exponent) {
-  constexpr std::size_t kRoom = 400;  // longer mantissas: the digits behind cannot change 24 bits
+  constexpr std::size_t kRoom = 400;
   std::array<char, kRoom + 8> room;
   std::size_t length = std::min(mantissa.size(), kRoom);
   std::memcpy(room.data(), mantissa.data(), length);
+  // Of the digits behind those it only counts whether there are any: they decide what lies half way
+  // between two floats.
+  if (mantissa.find_first_not_of("0.", length) != std::string_view::npos) room[length++] = '1';
   room[length++] = 'e';
   length = static_cast<std::size_t>(
       std::to_chars(room.data() + length, room.data() + room.size(), exponent).ptr - room.data());

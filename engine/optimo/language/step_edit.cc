@@ -106,7 +106,7 @@ Result<std::string> InsertInstruction(const Module& module, std::uint32_t place,
   Findings findings(1);
   const ParsedProgram parsed = Parse(text, findings, Places::kStatements);
   const Module& added = parsed.module;
-  if (findings.error_count() > 0 || added.instructions.size() != 1)
+  if (findings.error_count() > 0 || added.instructions.size() != 1 || !added.end_labels.empty())
     return NoPlace("the text is not one instruction");
   const Labels its = LabelsAt(added, 0);
   const Labels there = LabelsAt(module, place);

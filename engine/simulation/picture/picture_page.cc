@@ -387,13 +387,14 @@ class PageWriter {
 
 std::string DurationText(SimTime time) {
   const double seconds = ToSeconds(time);
-  if (seconds < 60.0) return FixedText(seconds, 3) + " s";
+  // Rounded first: nothing takes "60.000 s".
+  if (std::llround(seconds * 1000.0) < 60'000) return FixedText(seconds, 3) + " s";
   const auto two_digits = [](std::string text, std::size_t length) {
     if (text.size() < length) text.insert(0, 1, '0');
     return text;
   };
-  if (seconds < 3600.0) {
-    const auto tenths = static_cast<std::int64_t>(std::llround(seconds * 10.0));
+  const std::int64_t tenths = std::llround(seconds * 10.0);
+  if (tenths < 36'000) {
     const std::string rest = FixedText(static_cast<double>(tenths % 600) / 10.0, 1);
     return std::to_string(tenths / 600) + " min " + two_digits(rest, 4) + " s";
   }

@@ -55,7 +55,7 @@ std::vector<std::string> Wrapped(std::string_view text, std::size_t bytes) {
     }
     std::size_t end = text.rfind(' ', bytes);
     const bool word_too_long = end == std::string_view::npos || end == 0;
-    if (word_too_long) end = std::min(text.find(' '), text.size());
+    if (word_too_long) end = std::min(text.find(' ', 1), text.size());
     lines.push_back(Shortened(text.substr(0, end), bytes));
     text.remove_prefix(std::min(end + 1, text.size()));
   }

@@ -41,19 +41,24 @@ Seating Seat(std::span<JointProgram> programs) {
   return seating;
 }
 
-// Each finding goes to the program that it is in.
+// Each finding goes to the program that it is in; those past the thousandth, which are counted by
+// their kind, to the one that the first of their kind is in.
 void Deal(const MotionCheck& check, const Owners& owners) {
+  const auto of = [&owners](int slot) {
+    const auto owner = owners.find(slot);
+    return owner != owners.end() ? &owner->second->motion : nullptr;
+  };
   for (const Diagnostic& finding : check.findings) {
-    const auto owner = owners.find(finding.program);
-    if (owner != owners.end()) owner->second->motion.findings.push_back(finding);
+    if (MotionCheck* own = of(finding.program)) own->findings.push_back(finding);
+  }
+  for (const auto& [code, kind] : check.findings_dropped.kinds()) {
+    if (MotionCheck* own = of(kind.first.program)) own->findings_dropped.Add(kind);
   }
   for (const machine::Reason& reason : check.reasons) {
-    const auto owner = owners.find(reason.first.program);
-    if (owner != owners.end()) owner->second->motion.reasons.push_back(reason);
+    if (MotionCheck* own = of(reason.first.program)) own->reasons.push_back(reason);
   }
   for (const auto& [slot, why] : check.cut_short) {
-    const auto owner = owners.find(slot);
-    if (owner != owners.end()) owner->second->motion.cut_short[slot] = why;
+    if (MotionCheck* own = of(slot)) own->cut_short[slot] = why;
   }
 }
 

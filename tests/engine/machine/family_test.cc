@@ -5,10 +5,13 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/families/families.h"
 #include "engine/machine/handbox.h"
+#include "engine/machine/machine_status.h"
+#include "engine/machine/panel.h"
 
 namespace rmlcell::machine {
 namespace {
@@ -58,6 +61,16 @@ TEST(MillFamily, HasNoHandbox) {
   ASSERT_FALSE(undone);
   EXPECT_EQ(undone.error().code, ErrorCode::kCellNotLive);
   EXPECT_EQ(undone.error().detail, std::string(Mills().info().title) + " has no handbox");
+}
+
+// What a family without a panel of its own shows of its machine: that it has power.
+TEST(LaserFamily, ShowsItsPower) {
+  const MachineFamily& lasers = *families::FindFamily("optimo");
+  MachineStatus status;
+  status.state = MachineState::kIdle;
+  EXPECT_EQ(lasers.ShowPanel(status).lamps, std::vector<std::string_view>{"POWER"});
+  status.state = MachineState::kOff;
+  EXPECT_TRUE(lasers.ShowPanel(status).lamps.empty());
 }
 
 // A breakpoint stands behind a command of a slot, and a stream comes there once.

@@ -30,6 +30,22 @@ TEST_F(MachineAnswers, AnEditThatIsRefusedIsOver) {
   EXPECT_TRUE(edits());
 }
 
+// Where no edit is open there is nothing that could be refused; a mill has no handbox for one.
+TEST_F(MachineAnswers, ARefusalOfNoEditIsNotShown) {
+  Load({"DELAY 1\n"});
+  Good(RefuseEdit{.code = ErrorCode::kCellStoreUnavailable});
+  EXPECT_EQ(machine->panel().message, std::nullopt);
+}
+class MillAnswers : public MachineTest {
+ protected:
+  MillAnswers() : MachineTest("rml1") {}
+};
+TEST_F(MillAnswers, AnEditThatIsRefusedIsNoneOfIts) {
+  Load({"PA;PU1000,1000;"});
+  Good(RefuseEdit{.code = ErrorCode::kCellStoreUnavailable});
+  EXPECT_EQ(state(), MachineState::kIdle);
+}
+
 // OPT-4.50: ZERO from the console whose way home cannot begin has failed, and says why and where.
 TEST_F(MachineAnswers, AWayHomeThatIsNotThereIsTold) {
   Load({"DELAY 1\n"});

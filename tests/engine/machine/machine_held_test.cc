@@ -248,6 +248,23 @@ TEST_F(HeldTest, WhatIsPossibleMeanwhile) {
   EXPECT_NEAR(Axes().column.y(), y + 15.0, 1e-9);
 }
 
+// LIVE-2.10: a key that was let go brakes: meanwhile nothing goes on, in REMOTE neither.
+TEST_F(HeldTest, NothingGoesOnWhileAKeyStillBrakes) {
+  LoadHeld(kCorner, 5.0);
+  Good(PressJog{.key = kHeldYPlus});
+  GoOnFor(1.0);
+  Good(ReleaseJog{kHeldYPlus});
+  BackInRemote();
+  ASSERT_EQ(state(), MachineState::kStopping);
+  EXPECT_EQ(Refused(ResumeRun{.accept_displaced = true}),
+            "CELL-E9421 the machine is STOPPING: it moves by hand; release the keys first");
+  EXPECT_EQ(state(), MachineState::kStopping);
+  GoOnFor(1.0);
+  ASSERT_EQ(state(), MachineState::kHeld);
+  Good(ResumeRun{.accept_displaced = true});
+  EXPECT_EQ(state(), MachineState::kRunning);
+}
+
 // LIVE-2.10: an emergency stop freezes it where it is and ends the run.
 TEST_F(HeldTest, AnEmergencyStopEndsBoth) {
   LoadHeld(kCorner, 5.0);
@@ -283,6 +300,10 @@ TEST_F(HeldTest, OnTheWayToAStepNothingIsMoved) {
   Good(ChangeMode{Mode::kManual});
   ASSERT_EQ(state(), MachineState::kHeld);
   EXPECT_THAT(Refused(PressJog{.key = kHeldYPlus}), HasSubstr("CELL-E9421"));
+  // LIVE-7.03: a key that is pressed and let go at once is refused as well.
+  const Result<KeyAnswer> tap = machine->PressKey("Y+");
+  ASSERT_TRUE(tap);
+  EXPECT_EQ(tap->message, ErrorCode::kKeyNotEnabled);
 }
 
 // LIVE-5.06, LIVE-3.11, OPT-4.49: whatever is stopped and moved where, by keys, HOME or ZERO, the
@@ -444,6 +465,11 @@ TEST_F(HeldTest, HowFarATurnIsAsked) {
   Jog(kHeldBPlus, 0.5);
   BackInRemote();
   EXPECT_EQ(Refused(ResumeRun{}), "CELL-E9425 it was moved in B by 0.0016 rad");
+  LoadHeld(kCorner, 5.0);
+  Good(ChangeOverride{10.0});
+  Jog(kHeldBPlus, 0.05);  // 0.00016 rad
+  BackInRemote();
+  EXPECT_EQ(Refused(ResumeRun{}), "CELL-E9425 it was moved in B by 0.0002 rad");
 }
 
 // LIVE-5.06: it is asked once: not of the next hold, nor of the next run. LIVE-6.01: who simulates

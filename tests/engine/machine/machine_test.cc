@@ -362,6 +362,31 @@ TEST_F(MachineTest, PowerCycle) {
   EXPECT_EQ(state(), MachineState::kRunning);
 }
 
+// LIVE-2.10: without power a machine takes nothing itself; what is done to it from outside acts.
+TEST_F(MachineTest, WithoutPowerItTakesNothing) {
+  Load({"DELAY 1\n"});
+  Good(SwitchPower{false});
+  for (const MachineInput& input :
+       {MachineInput(StartRun{.program = 1}), MachineInput(ZeroAxes{}), MachineInput(ResumeRun{}),
+        MachineInput(Acknowledge{1}), MachineInput(ChangeMode{Mode::kCycle}),
+        MachineInput(ChangeOverride{50.0}), MachineInput(WriteVariable{"VR[3]", 1.0}),
+        MachineInput(SetBreakpoints{}), MachineInput(SetSimulation{}),
+        MachineInput(StartAtStep{.program = 1}), MachineInput(ClearMessage{}),
+        MachineInput(PressJog{}), MachineInput(SetGates{}), MachineInput(PressGate{.gate = 1}),
+        MachineInput(PressPanel{PanelKey::kHome})}) {
+    EXPECT_EQ(Refused(input), "CELL-E9424 the machine is OFF") << input.index();
+  }
+  for (const MachineInput& input :
+       {MachineInput(HoldRun{}), MachineInput(StopRun{}), MachineInput(AbortRun{}),
+        MachineInput(MoveDoor{.open = true}), MachineInput(ReleaseJogs{}),
+        MachineInput(EmergencyStop{.pressed = false}),
+        MachineInput(StoreProgram{.slot = 2, .program = Translated("DELAY 2\n")}),
+        MachineInput(DeleteProgram{.slot = 2})}) {
+    Good(input);
+    EXPECT_EQ(state(), MachineState::kOff) << input.index();
+  }
+}
+
 // LIVE-9.07: written while it runs, a condition sees it before the next tick.
 TEST_F(MachineTest, VariablesAreWritten) {
   Load({"WAIT VI[1] = 7\nVI[2] = VI[1]\n"});

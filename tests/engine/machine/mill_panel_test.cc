@@ -416,6 +416,27 @@ TEST_F(MillPanelTest, ASpindleStoppedInTheHoldStaysOff) {
   EXPECT_NEAR(cut_standing, 10.0, 1e-6);
 }
 
+// DEV-3.12, LIVE-2.04: with the cover open its key stops the spindle, and starts none before it is
+// closed, whether the cover stopped it or the key.
+TEST_F(MillPanelTest, WithTheCoverOpenNoSpindleStarts) {
+  for (const bool stops : {true, false}) {
+    LoadWith({{"PANEL", "FULL"}, {"COVER", stops ? "PAUSE" : "NONE"}}, {}, kCutWithAPause);
+    Start();
+    GoOnFor(60.0);
+    ASSERT_EQ(state(), MachineState::kHeld);
+    ASSERT_TRUE(Turns());
+    Good(MoveDoor{true});
+    EXPECT_EQ(Turns(), !stops);
+    if (!stops) Good(kPressSpindle);
+    EXPECT_FALSE(Turns());
+    EXPECT_THAT(Refused(kPressSpindle), HasSubstr("CELL-E9433 the cover is open"));
+    EXPECT_FALSE(Turns());
+    Good(MoveDoor{false});
+    Good(kPressSpindle);
+    EXPECT_TRUE(Turns());
+  }
+}
+
 // LIVE-5.06: asked for at RESUME it turns again before anything moves; and so it does by its key.
 TEST_F(MillPanelTest, ItTurnsAgainWhereThatIsAskedFor) {
   LoadDescribed(kCutWithAPause);

@@ -14,6 +14,18 @@ class HandboxDisplay : public MachineTest {
   void Store(int slot, const std::string& text) {
     Good(StoreProgram{.slot = slot, .program = Translated(text)});
   }
+  void Tap(const std::vector<std::string_view>& keys) {
+    for (const std::string_view key : keys) ASSERT_TRUE(machine->PressKey(key)) << key;
+  }
+  // In MANUAL, at the last step of program 12, with this FUNCTION 44.
+  void AtStep4(const std::string& function) {
+    Load({});
+    Store(12, "SPEED 1\nSPEED 2\nSPEED 3\nENDTASK\n");
+    Store(44, function);
+    Good(ChangeMode{Mode::kManual});
+    Tap({"JOB", "1", "2", "NEXT", "4", "ENT"});
+    ASSERT_EQ(Display(), "P=12S=0004I=ENDTASK ");
+  }
 };
 
 // OPT-4.02 OPT-4.03 OPT-4.04 OPT-3.48 OPT-4.08: nothing is selected after power-up; a run selects
@@ -60,6 +72,66 @@ TEST_F(HandboxDisplay, FollowsTheModule) {
   EXPECT_EQ(Display(), "P=32S=0001I=DELAY   ");
   GoOn(At(2.0));
   EXPECT_EQ(Display(), "P=44S=0001I=DELAY   ");
+}
+
+// OPT-9.36, OPT-9.37: a FUNCTION that runs by hand shows where it is; halted, ended or behind its
+// end it is ready to be recorded in the program that is selected.
+TEST_F(HandboxDisplay, FollowsAFunctionByHand) {
+  AtStep4("DELAY 4\nDELAY 4\nRETURN\n");
+  const auto ready = [this] {
+    EXPECT_EQ(Display(), "P=12 S=0004 FUNC=44 ");
+    EXPECT_TRUE(machine->panel().flashing);
+  };
+  for (const bool ended : {false, true}) {
+    Tap({"F3", "4", "4", "ENT", "ENT", "1"});
+    GoOn(machine->time() + At(1.0));
+    EXPECT_EQ(Display(), "P=44S=0001I=DELAY   ");
+    EXPECT_FALSE(machine->panel().flashing);
+    EXPECT_EQ(machine->selected_program(), 12);
+    EXPECT_EQ(Refused(ChangeMode{Mode::kCycle}),
+              "CELL-E9421 the machine is RUNNING: a FUNCTION of the handbox is open; go on with "
+              "it, or end it");
+    GoOn(machine->time() + At(4.0));
+    EXPECT_EQ(Display(), "P=44S=0002I=DELAY   ");
+    Tap({"STOP"});
+    GoOn(machine->time() + At(5.0));
+    ASSERT_EQ(state(), MachineState::kHeld);
+    ready();
+    if (ended) {
+      Tap({"SHIFT", "STOP"});
+    } else {
+      Tap({"START"});
+    }
+    GoOn(machine->time() + At(9.0));
+    EXPECT_EQ(Over().outcome.kind, ended ? OutcomeKind::kCancelled : OutcomeKind::kCompleted);
+    ready();
+    Tap({"F3", "ERR"});
+  }
+}
+
+// OPT-4.06, OPT-9.37: one that fails is not ready to be recorded: its number is shown, and behind
+// that what is selected.
+TEST_F(HandboxDisplay, AFunctionThatFailsIsNotReady) {
+  AtStep4("RETURN\n");
+  Tap({"F3", "4", "5", "ENT", "ENT", "1"});
+  GoOn(At(1.0));
+  EXPECT_EQ(Over().outcome.code, ErrorCode::kFunctionMissing);
+  EXPECT_EQ(Display(), "ERROR 7103          ");
+  EXPECT_FALSE(machine->panel().flashing);
+  Tap({"ERR"});
+  EXPECT_EQ(Display(), "P=12S=0004I=ENDTASK ");
+}
+
+// OPT-E.7310: none begins without the reference of the axes.
+TEST_F(HandboxDisplay, AFunctionNeedsTheReference) {
+  AtStep4("RETURN\n");
+  Good(SwitchPower{false});
+  Good(SwitchPower{true});
+  Tap({"F3", "4", "4", "ENT", "ENT"});
+  const Result<KeyAnswer> yes = machine->PressKey("1");
+  ASSERT_TRUE(yes);
+  EXPECT_EQ(yes->message, family_.info().not_zeroed);
+  EXPECT_EQ(machine->open_run(), nullptr);
 }
 
 // OPT-4.06: the number stands there until ERR; what it was about is not over with that.

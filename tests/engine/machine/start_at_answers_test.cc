@@ -21,6 +21,31 @@ TEST_F(StartAtAnswers, GoesThereInItsMode) {
   Good(input);
 }
 
+// LIVE-6.09: its work is what it does from there on, and neither what lies before nor the way
+// there: who cuts it off on the way has none of it. That of a whole run is all of it.
+TEST_F(StartAtAnswers, ItsWorkBeginsAtTheStep) {
+  const std::string program =
+      "COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (521.02, 2201.2, -380., 0., 0.)\nDELAY 10\nDELAY 7\n";
+  Load({program});
+  Good(At1(6));
+  GoOn(At(120.0));
+  const RunOver entered = Over();
+  EXPECT_EQ(entered.outcome.kind, OutcomeKind::kCompleted);
+  EXPECT_NEAR(ToSeconds(entered.worked), 7.0, 0.01);
+  EXPECT_GT(entered.lasted, At(18.0));
+  Load({program});
+  Good(At1(6));
+  GoOn(At(0.2));
+  ASSERT_TRUE(machine->status().run.approaching);
+  Good(AbortRun{});
+  GoOn(At(10.0));
+  EXPECT_EQ(Over().worked, SimTime(0));
+  Load({"DELAY 3\n"});
+  Start();
+  GoOn(At(10.0));
+  EXPECT_EQ(Over().worked, At(3.0));
+}
+
 // OPT-1.13: a FUNCTION that was deleted since it was linked is told of here, too.
 TEST_F(StartAtAnswers, ADeletedFunctionIsStale) {
   Load({"FUNCTION 2\nDELAY 1\n", "VI[1]=VI[1]+1\nRETURN\n"});

@@ -117,6 +117,23 @@ TEST_F(StartPart, AnEndlessRunIsNotCutToItsEnd) {
   EXPECT_LE(part.steps, 501U);
 }
 
+// LIVE-6.07: where nobody waits until it is cut, that is said, and not that it may begin.
+TEST_F(StartPart, WhatIsNotCutInTimeIsTold) {
+  const RunSetup setup = Setup({kFarMove});
+  const ReachLimits until_cut{.go_on = [this] { return part.begun.empty(); }};
+  const auto told = [&](const PartSoFar& so_far) {
+    part = SeenPart();
+    const Result<StartPreview> preview = Asked(setup, {.at = {1, 7}}, so_far, until_cut);
+    EXPECT_EQ(part.begun.size(), 1U);
+    if (preview) return std::string("it was looked at");
+    EXPECT_EQ(preview.error().code, ErrorCode::kCellStepUnreachable);
+    return std::string(preview.error().detail);
+  };
+  EXPECT_EQ(told({.cut_until = At(1.5)}), "where it was cut off takes longer than is looked for");
+  EXPECT_EQ(told({}), "what cuts the part takes too long to be seen");
+  EXPECT_EQ(told({.untouched = true}), "it was looked at");
+}
+
 // LIVE-6.04: the nearest clean step has its pass, the second one, too.
 TEST_F(StartPart, ACleanStepOfTheSecondPassIsNamed) {
   const RunSetup setup = Setup(

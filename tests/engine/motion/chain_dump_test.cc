@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/motion/planner/motion_chain.h"
 #include "tests/engine/motion/standard_machine.h"
@@ -271,6 +272,30 @@ TEST(ChainDump, CurvesBesideArcsAreWorkedOutOnTheWay) {
       ++waiting;
     EXPECT_LE(waiting, 2U) << text;
   }
+}
+
+// Behind the way of a move the halves of its curve wait, each for a move of its own, and between
+// them what takes effect there.
+TEST(ChainDump, TheHalvesOfACurveWaitBehindTheWay) {
+  MotionChain chain(PlainMachine(), Planner::kWindow);
+  Append(chain, {{0, 0, 0}}, {{100, 0, 0}}, true, 1);
+  chain.Mark(5);
+  Append(chain, {{100, 0, 0}}, {{100, 100, 0}}, false, 2);
+  chain.Stop();
+  EXPECT_EQ(std::get<PlannedMotion>(*chain.Next()).path.kind(), PathPiece::Kind::kLine);
+  const std::string dump = chain.Dump();
+  const auto next_half = [&chain] {
+    const auto& half = std::get<PlannedMotion>(*chain.Next());
+    EXPECT_EQ(half.path.kind(), PathPiece::Kind::kBlend);
+    return "motion " + std::to_string(half.tag) + ": length " + FixedText(half.path.length(), 3) +
+           " in " + FixedText(half.duration_s(), 6) + " s";
+  };
+  const std::string first = next_half();
+  EXPECT_THAT(first, testing::StartsWith("motion 1: "));
+  EXPECT_EQ(std::get<PlannedMark>(*chain.Next()).tag, 5U);
+  const std::string second = next_half();
+  EXPECT_THAT(second, testing::StartsWith("motion 2: "));
+  EXPECT_THAT(dump, testing::EndsWith(first + ", BLEND\nmark 5\n" + second + "\n"));
 }
 
 // A corner ends its leg. What is behind it must be known before its curve is: the last leg is open.

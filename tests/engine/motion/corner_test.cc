@@ -156,8 +156,10 @@ TEST(Corner, IsReusedForOthers) {
   Corner corner = Corner::Between(in, arc);
   ASSERT_EQ(corner.cut_max_mm(), 10.0);
   ASSERT_FALSE(corner.plain());
-  for (const double degrees : {90.0, 0.0}) {
+  // A turn of a degree is cut by so little that a jump of what was before would decide.
+  for (const double degrees : {90.0, 1.0, 0.0}) {
     const Bend bend = Of(degrees);
+    corner.Assign(in, arc);
     corner.Assign(bend.in, bend.out);
     EXPECT_EQ(corner.passage(), degrees > 0.0 ? Passage::kBlend : Passage::kThrough);
     EXPECT_EQ(corner.straight(), degrees == 0.0);
@@ -166,6 +168,7 @@ TEST(Corner, IsReusedForOthers) {
     EXPECT_EQ(corner.cut_max_mm(), HUGE_VAL);
     if (degrees > 0.0) {
       EXPECT_EQ(corner.CutFor(60.0, machine), bend.corner.CutFor(60.0, machine));
+      EXPECT_EQ(corner.CutFor(300.0, machine), bend.corner.CutFor(300.0, machine));
     }
   }
 }

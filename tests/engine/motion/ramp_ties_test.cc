@@ -86,6 +86,28 @@ TEST(RampTies, WhatThePassesCannotMeetIsLevelOne) {
   }
 }
 
+// From 3.15 mm/s on 0.158 mm end at 9.45, from rest at 10: who is as fast as he may be at the end
+// of the first stretch is slower at that of the second, and with a jerk of 4 mm/s3 behind it these
+// 0.55 mm/s cost more time than they gave. Then it is level 1.
+TEST(RampTies, WhatIsSlowerThanLevelOneIsNotTaken) {
+  constexpr PathLimits kWeak{.speed = 30.0, .acceleration = 2000.0, .jerk = 4.0};
+  std::vector<RampCell> cells{{.length = 0.028, .limits = kFast, .end_speed = 0.0},
+                              {.length = 0.1582, .limits = kFast, .end_speed = 10.0},
+                              {.length = 200.0, .limits = kWeak, .end_speed = 30.0}};
+  const double first = Reach(0.0, cells[0].length, kFast);
+  const double second = Reach(first, cells[1].length, kFast);
+  ASSERT_NEAR(first, 3.15, 0.01);
+  ASSERT_NEAR(second, 9.45, 0.01);
+  const double level_one = LevelOneTime(cells, 0.0);
+  ASSERT_GT(SpeedProfile::Span(0.1862, 0.0, second, kFast).duration_s() +
+                SpeedProfile::Span(200.0, second, 30.0, kWeak).duration_s(),
+            level_one + 0.03);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  EXPECT_EQ(SplitsOf(plan), (std::vector{0.028, 0.1582, 200.0}));
+  EXPECT_DOUBLE_EQ(TimeOf(plan), level_one);
+}
+
 // A weak stretch makes one ramp over it and a strong one as weak: from 60 mm/s
 // to rest such a ramp is longer than both, so that it is none.
 TEST(RampTies, ARampThatIsTooLongIsNone) {

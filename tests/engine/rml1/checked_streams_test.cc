@@ -104,6 +104,22 @@ TEST(CheckedStreams, WhereACommandIsTorn) {
   EXPECT_EQ(made.diagnostics[0].file, "part.rml");
 }
 
+// RML1-9.42, RML1-3A.34: a call is torn where it begins, and a mark ends it.
+TEST(CheckedStreams, WhereACallIsTorn) {
+  const auto places = [](const std::string& stream) {
+    std::vector<std::int64_t> offsets;
+    for (const Diagnostic& finding : CheckedOnT1(stream).diagnostics) {
+      EXPECT_EQ(finding.code, ErrorCode::kRml1IncompleteCommand) << stream;
+      offsets.push_back(finding.where.byte_offset);
+    }
+    return offsets;
+  };
+  EXPECT_EQ(places("PU1,1;\n^"), std::vector<std::int64_t>{7});
+  EXPECT_EQ(places("PU1,1;\n^P"), std::vector<std::int64_t>{7});
+  EXPECT_EQ(places("PU1,1;\n^ !"), std::vector<std::int64_t>{9});
+  EXPECT_EQ(places("PU1,1;\n^!P"), std::vector<std::int64_t>{8});
+}
+
 // RML1-9.11: a Z0 that the machine is left with is one that was moved, in a check and in a run;
 // where it goes up and down nobody is told where to set it.
 TEST(CheckedStreams, Z0ThatIsLeftElsewhere) {

@@ -62,6 +62,9 @@ TEST(ChipLoad, TellsWhatIsWrongWithATable) {
   EXPECT_EQ(fault(kTin, "[1, 3]", "[1, 3, 6]"), lists);
   EXPECT_EQ(fault(kTin, "[1, 3]", "[0, 3]"), lists);
   EXPECT_EQ(fault(kTin, "[1, 3]", "3"), lists);
+  EXPECT_EQ(fault(kTin, "[0.01, 0.02]", "[0.01, 0.02, 0.03]"), lists);
+  EXPECT_EQ(fault(kTin, "[0.1, 0.3]", "[0.1, 0.3, 0.5]"), lists);
+  EXPECT_EQ(fault(kTin, "[0.1, 0.3]", "[0.1, 'much']"), lists);
   EXPECT_EQ(fault(kTin, "[0.1, 0.3]", "[0.001, 0.3]"),
             "chip_loads.toml:1: tin has a least above its most");
   EXPECT_EQ(fault(kTin, "[tin]\n", ""), "chip_loads.toml:2: no key diameter_mm");

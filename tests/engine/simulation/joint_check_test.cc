@@ -40,6 +40,21 @@ TEST(CheckTogether, ProgramsCallEachOtherAndEachGetsItsOwnFindings) {
   EXPECT_TRUE(files[0].motion.cut_short.empty());
 }
 
+// 1203 motions of two files leave the travel: a thousand are told, and the others counted.
+TEST(CheckTogether, FindingsWithoutRoomAreCountedWithTheirFile) {
+  const auto beyond = [](int moves) {
+    std::string text = "COORD ROBOT\n";
+    for (int k = 0; k < moves; ++k)
+      text += k % 2 == 0 ? "MOVE (4000.,0.,0.,0.,0.)\n" : "MOVE (4100.,0.,0.,0.,0.)\n";
+    return text;
+  };
+  const auto files = Checked({File(beyond(601), 1), File(beyond(602), 2)});
+  EXPECT_EQ(files[0].motion.findings.size(), 601u);
+  EXPECT_EQ(files[0].motion.findings_dropped.count(), 0u);
+  EXPECT_EQ(files[1].motion.findings.size(), 399u);
+  EXPECT_EQ(files[1].motion.findings_dropped.count(), 203u);
+}
+
 // Its run leaves the travel in 44, and so it is no good, either; 44 has it with its place.
 TEST(CheckTogether, WhoCallsAProgramThatFailsFailsWithIt) {
   const auto judged = [](const std::string& called) {

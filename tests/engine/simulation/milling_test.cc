@@ -299,6 +299,30 @@ TEST(MillingRecorder, TellsTheFirstOfTheDeepestFastPlunges) {
   EXPECT_EQ(figures.fast_plunge_place.step, 3);
 }
 
+// 80 % of 10 mm/s is fast, a little less is not.
+TEST(MillingRecorder, EightyPercentOfTheSpeedOfZIsFast) {
+  machine::MachineShape shape = MillShape();
+  shape.limits.emplace();
+  shape.limits->axes.speed.z() = 10.0;
+  const auto fast = [&](double mm_s) {
+    MillingRecorder recorder(shape, kSlot);
+    Tell(recorder, {2, 2, 1}, {2, 2, -3}, mm_s, 1);
+    return recorder.Figures().fast_plunge_mm;
+  };
+  EXPECT_NEAR(fast(8.0), 3.0, 1e-6);
+  EXPECT_EQ(fast(7.999), 0.0);
+}
+
+// LIVE-6.07: what goes into a part by less than a micrometre goes along it.
+TEST(MilledPart, LessThanAMicrometreIsNoDepth) {
+  MilledPart part(kSlot);
+  part.BeginAt({0, 0, 0}, {5, 6, 5});
+  const auto depth = [&](double z) { return part.DepthOf({5, 6, z}, {9, 6, z}); };
+  EXPECT_EQ(depth(0.5), 0.0);
+  EXPECT_EQ(depth(-0.0005), 0.0);
+  EXPECT_NEAR(depth(-0.002), 0.002, 1e-6);
+}
+
 // For who looks on: the tiles in which something was taken off since, a radius beyond each end of
 // the way, also of what waits to be cut; a way above the block is none.
 TEST(MillingRecorder, TellsWhichTilesHaveChanged) {

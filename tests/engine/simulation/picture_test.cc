@@ -543,6 +543,10 @@ TEST(DurationText, ForPeople) {
   EXPECT_EQ(DurationText(FromSeconds(69.96)), "1 min 10.0 s");
   EXPECT_EQ(DurationText(FromSeconds(3599.9)), "59 min 59.9 s");
   EXPECT_EQ(DurationText(FromSeconds(3600.0)), "1 h 00 min 00 s");
+  EXPECT_EQ(DurationText(FromSeconds(59.9994)), "59.999 s");
+  EXPECT_EQ(DurationText(FromSeconds(59.9996)), "1 min 00.0 s");
+  EXPECT_EQ(DurationText(FromSeconds(3599.94)), "59 min 59.9 s");
+  EXPECT_EQ(DurationText(FromSeconds(3599.96)), "1 h 00 min 00 s");
   EXPECT_EQ(DurationText(FromSeconds(36610.6)), "10 h 10 min 11 s");
   EXPECT_EQ(DurationText(FromSeconds(12.3456)), "12.346 s");
   EXPECT_EQ(DurationText(FromSeconds(245.17)), "4 min 05.2 s");

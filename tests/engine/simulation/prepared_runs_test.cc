@@ -193,6 +193,71 @@ TEST(CheckedPrograms, AProgramWithErrorsLeavesTheMemoryUnknown) {
   EXPECT_EQ(verdict(LaserMemory({{45, call}, {46, "SPEED 101\n"}})), "DOUBTFUL; CELL-E9606");
 }
 
+// What a verdict rests on is marked wherever it stands: in the text, in the motion, and where there
+// was no room for it; the rest is not.
+TEST(CheckedPrograms, FindingsOfTheVerdictAreMarked) {
+  CheckedProgram check{.family = &LaserFamily(), .slot = 45, .translation = {.ok = true}};
+  const Diagnostic counts{.code = ErrorCode::kWorkActiveAtEnd, .severity = Severity::kWarning};
+  const Diagnostic other{.code = ErrorCode::kSystemOutput, .severity = Severity::kWarning};
+  check.motion.reasons = {{.code = ErrorCode::kWorkActiveAtEnd}};
+  check.translation.diagnostics = check.motion.findings = {counts, other};
+  for (UntoldFindings* dropped :
+       {&check.translation.diagnostics_dropped, &check.motion.findings_dropped}) {
+    dropped->Add(counts);
+    dropped->Add(other);
+  }
+  EXPECT_EQ(JudgeCheck(check).verdict, machine::Verdict::kDoubtful);
+  for (const std::vector<Diagnostic>& told :
+       {check.translation.diagnostics, check.motion.findings}) {
+    EXPECT_EQ(told[0].judged, Judged::kDoubtful);
+    EXPECT_EQ(told[1].judged, Judged::kNo);
+  }
+  for (const UntoldFindings& dropped :
+       {check.translation.diagnostics_dropped, check.motion.findings_dropped}) {
+    EXPECT_EQ(dropped.kinds().at(counts.code).judged, Judged::kDoubtful);
+    EXPECT_EQ(dropped.kinds().at(other.code).judged, Judged::kNo);
+  }
+}
+
+// What is no RML-1 is refused when it comes; of what is stored already that was said before.
+TEST(CheckedPrograms, AStoredStreamIsNotRefusedAgain) {
+  std::string stream;
+  for (int k = 0; k < 90; ++k) stream += "PU100,100;";
+  stream += std::string(101, '$');  // more than a tenth
+  const machine::MachineFamily& mill = *families::FindFamily("rml1");
+  const auto ok = [&](bool is_source) {
+    ProgramMemory memory{.family = &mill, .profile = "t1"};
+    memory.programs = {{.slot = 3,
+                        .file_name = "a.rml",
+                        .bytes = machine::Bytes::Of(stream),
+                        .is_source = is_source}};
+    const auto check = CheckProgram(memory, *machine::MakeParameters(mill, "t1", {}), 3, false, {});
+    EXPECT_TRUE(check);
+    return check->translation.ok;
+  };
+  EXPECT_FALSE(ok(true));
+  EXPECT_TRUE(ok(false));
+}
+
+// Of a program with more errors than are told the others are counted, with its slot.
+TEST(PreparedRuns, FindingsWithoutRoomHaveTheirProgram) {
+  std::string wrong;
+  for (int k = 0; k < 1100; ++k) wrong += "NOSUCHWORD 1\n";
+  const ProgramMemory memory = LaserMemory({{2, wrong}});
+  const machine::Translation alone = TranslateProgram(
+      LaserFamily(), LaserParameters(), memory.programs[0], {.advice = true, .source = true});
+  ASSERT_GT(alone.diagnostics_dropped.count(), 0U);
+  const auto prepared = PrepareRun(memory, {.main_program = 2});
+  ASSERT_TRUE(prepared);
+  EXPECT_FALSE(prepared->setup);
+  EXPECT_EQ(prepared->diagnostics.size(), alone.diagnostics.size());
+  EXPECT_EQ(prepared->diagnostics_dropped.count(), alone.diagnostics_dropped.count());
+  for (const auto& [code, kind] : prepared->diagnostics_dropped.kinds()) {
+    EXPECT_EQ(kind.first.program, 2) << CodeText(code);
+    EXPECT_EQ(kind.last.program, 2) << CodeText(code);
+  }
+}
+
 // A check goes through the program in one go and to its end, however the machine stands.
 TEST(CheckSetups, TheCheckSetsModeAndBudgetItself) {
   machine::RunSetup setup = LaserSetup({{45,

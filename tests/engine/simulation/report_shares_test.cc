@@ -96,6 +96,56 @@ TEST(ReportShares, EachStepHasItsShareOfTheShutter) {
   EXPECT_EQ(report.total.shutter_open, FromSeconds(3.0));
 }
 
+// OPT-3.14: who tells again that it is open opens nothing, also behind time that nobody told about;
+// who tells again that it is closed closes nothing, and an output is no shutter.
+TEST(ReportShares, AShutterThatIsToldAgainIsTheSame) {
+  Script script;
+  script.Step(3, 1).Signal(Signal::kShutter, 1).Nothing(2.0).Signal(Signal::kShutter, 1);
+  script.Wait(WaitKind::kDwell, 1.0).Signal(Signal::kShutter, 0);
+  script.Signal(Signal::kOutput, 1, 0, 16).Wait(WaitKind::kDwell, 4.0);
+  script.Signal(Signal::kShutter, 0).Signal(Signal::kOutput, 0, 0, 16);
+  const RunReport report = ReportOfScript(script, Laser());
+  EXPECT_EQ(report.total.shutter_open, FromSeconds(3.0));
+}
+
+// motion.md 8.1: a beam that is on and gets another power is switched on once, pierces once, and
+// cuts one contour; one that is off and is switched off is nothing at all.
+TEST(ReportShares, ABeamThatIsToldAgainIsTheSame) {
+  Script script;
+  script.Step(1, 1).Signal(Signal::kBeam, 0).Signal(Signal::kBeam, 1, 100);
+  script.Wait(WaitKind::kPierce, 1.0, true, 100.0).Signal(Signal::kBeam, 1, 50);
+  script.Wait(WaitKind::kDwell, 0.5, true, 50.0).Signal(Signal::kBeam, 0).Step(1, 2);
+  const RunReport report = ReportOfScript(script, Laser());
+  EXPECT_EQ(report.total.beam_switches, 1U);
+  EXPECT_EQ(report.total.pierces, 1U);
+  EXPECT_NEAR(report.total.pierce_energy_j, 1500.0 * 1.0 + 750.0 * 0.5, 1e-9);
+  ASSERT_EQ(report.contours.size(), 1U);
+  EXPECT_EQ(report.contours[0].begin, SimTime(0));
+  EXPECT_EQ(report.contours[0].time, FromSeconds(1.5));
+}
+
+// motion.md 8.2: a laser cuts with its beam, whatever a motion is for; a tool that nowhere takes
+// material off neither cuts nor plunges.
+TEST(ReportShares, WhatTakesNothingOffIsTravel) {
+  const machine::MotionUse uses[] = {machine::MotionUse::kCut, machine::MotionUse::kPlunge};
+  const motion::PlannedMotion planned = Planned(LineFrom({}, {10, 0, 0}));
+  for (const machine::MotionUse use : uses) {
+    const RunReport dark =
+        ReportOfScript(Script().Step(1, 1).Line({}, {10, 0, 0}, {.use = use}), Laser());
+    Script above;
+    above.Step(1, 1).Part(planned, {.use = use, .travelled = 10.0, .in_work = false},
+                          FromSeconds(planned.duration_s()));
+    const RunReport skimmed = ReportOfScript(above, {});
+    for (const RunReport* report : {&dark, &skimmed}) {
+      EXPECT_EQ(report->total.cut_mm, 0.0);
+      EXPECT_NEAR(report->total.travel_mm, 10.0, 1e-12);
+      EXPECT_TRUE(report->cut.empty());
+    }
+    EXPECT_EQ(skimmed.total.plunges, 0U);
+    EXPECT_EQ(skimmed.total.plunge_mm, 0.0);
+  }
+}
+
 // A report on the way has the shutter up to what was told.
 TEST(ReportShares, AnOpenShutterCountsUpToNow) {
   Script script;

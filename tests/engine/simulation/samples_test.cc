@@ -145,6 +145,28 @@ TEST(Samples, TimeBeforeAWaitIsNotTheWaits) {
   EXPECT_GE(dark, 10);
 }
 
+// motion.md 8.1, P = clamp(constant + slope * v, 0, 100): a second up to 10 mm/s and another one
+// down, so that each quarter of a second is 2.5 mm/s.
+TEST(Samples, PowerGoesWithTheSpeed) {
+  const auto powers = [](const MotionOptions& options) {
+    Script script;
+    script.Step(1, 1).Motion(
+        Planned(LineFrom({}, {10, 0, 0}), {.speed = 10.0, .acceleration = 10.0}), options);
+    std::vector<double> seen;
+    const std::vector<Row> rows = Sampled(script, 4.0);
+    for (std::size_t n = 1; n < rows.size(); ++n)
+      seen.push_back(std::round(1000.0 * Number(rows[n], 10)) / 1000.0);
+    return seen;
+  };
+  const machine::PowerBySpeed rising{.constant_percent = 40.0, .percent_per_mm_s = 10.0};
+  EXPECT_EQ(powers({.beam_on = true, .power = rising}),
+            (std::vector<double>{40, 65, 90, 100, 100, 100, 90, 65, 0}));
+  const machine::PowerBySpeed falling{.constant_percent = 30.0, .percent_per_mm_s = -10.0};
+  EXPECT_EQ(powers({.beam_on = true, .power = falling}),
+            (std::vector<double>{30, 5, 0, 0, 0, 0, 0, 5, 0}));
+  EXPECT_EQ(powers({.power = rising}), std::vector<double>(9, 0.0));
+}
+
 // And so before a motion: the beam is off until it begins, whatever was before.
 TEST(Samples, TimeBeforeAMotionIsNotTheMotions) {
   for (const bool bright : {false, true}) {

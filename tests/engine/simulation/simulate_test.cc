@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/families/families.h"
+#include "engine/simulation/material/milling_text.h"
 #include "engine/simulation/report/facts.h"
 #include "tests/engine/simulation/fake_family.h"
 
@@ -219,6 +221,74 @@ TEST(Simulation, WhatIsOverIsNotEndedAgain) {
   const RunReport report = simulation.Finish();
   EXPECT_EQ(report.outcome.kind, machine::OutcomeKind::kCompleted);
   EXPECT_FALSE(report.outcome.code.has_value());
+}
+
+machine::RunSetup SetupOfLaserText(const std::string& text) {
+  const machine::MachineFamily& laser = *families::FindFamily("optimo");
+  machine::RunSetup setup{machine::Parameters(laser.parameters())};
+  setup.main_program = 1;
+  machine::Translation made = laser.Translate({.name = "1.S", .bytes = text}, setup.parameters, {});
+  EXPECT_TRUE(made.ok) << text;
+  setup.programs[1].object = machine::Bytes::Of(std::move(made.object));
+  return setup;
+}
+
+// The halted machine is asked again at each input, until one of them is its START.
+TEST(Simulation, AHaltWaitsForTheInputThatEndsIt) {
+  machine::RunSetup setup = SetupOfLaserText("STOP\nDELAY 1.\n");
+  setup.inputs = {{FromSeconds(5.0), machine::InputKind::kLogical, 16, 1.0},
+                  {FromSeconds(10.0), machine::InputKind::kStart, 0, 1.0}};
+  const auto result = Simulate(*families::FindFamily("optimo"), std::move(setup), {});
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->report.outcome.kind, machine::OutcomeKind::kCompleted);
+  EXPECT_EQ(result->report.halts, 1u);
+  EXPECT_EQ(result->report.total.time.operator_wait, FromSeconds(10.0));
+  EXPECT_EQ(result->report.total.time.dwell, FromSeconds(1.0));
+}
+
+// A run halts behind the steps that somebody watches.
+TEST(Simulation, BreakpointsHaltTheRun) {
+  for (const AtHalt at_halt : {AtHalt::kEnd, AtHalt::kStart}) {
+    machine::RunSetup setup = SetupOfLaserText("DELAY 1.\nDELAY 1.\nDELAY 1.\n");
+    setup.breakpoints = {{.at = {1, 2}}};
+    const auto result = Simulate(*families::FindFamily("optimo"), std::move(setup),
+                                 {.options = {.at_halt = at_halt}});
+    ASSERT_TRUE(result);
+    const bool ends = at_halt == AtHalt::kEnd;
+    EXPECT_EQ(result->report.halts, 1u);
+    EXPECT_EQ(result->report.total.time.dwell, FromSeconds(ends ? 2.0 : 3.0));
+    EXPECT_EQ(result->report.outcome.kind,
+              ends ? machine::OutcomeKind::kStopped : machine::OutcomeKind::kCompleted);
+  }
+}
+
+// What is left of a block, what it was compared with, and the plot; of a run without them nothing.
+TEST(Simulate, GivesTheBlockItsTargetAndThePlot) {
+  const machine::MachineFamily& mill = *families::FindFamily("rml1");
+  machine::RunSetup setup(*machine::MakeParameters(mill, "t1", {}));
+  setup.main_program = 1;
+  setup.programs[1].object =
+      machine::Bytes::Of("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;PU0,0;!MC0;");
+  const Stock stock = *ParseStock("20x20x10");
+  const HeightField::Size size = HeightField::SizeOf(stock);
+  const auto wanted = std::make_shared<const std::vector<float>>(size.columns * size.rows, 0.0f);
+  SimulationRequest request;
+  request.products.milling =
+      Milling{.stock = stock, .tool = *ParseTool("flat:3"), .target = Target{.heights = wanted}};
+  request.products.plot = true;
+  const auto made = Simulate(mill, setup, std::move(request));
+  ASSERT_TRUE(made);
+  ASSERT_TRUE(made->material.has_value());
+  EXPECT_NEAR(std::ranges::min(made->material->heights()), -1.0f, 1e-4f);
+  ASSERT_TRUE(made->target.has_value());
+  EXPECT_EQ(made->target->heights, wanted);
+  EXPECT_NE(made->plot.find("<svg"), std::string::npos);
+  EXPECT_EQ(made->svg, "");
+  const auto bare = Simulate(mill, setup, {});
+  ASSERT_TRUE(bare);
+  EXPECT_FALSE(bare->material.has_value());
+  EXPECT_FALSE(bare->target.has_value());
+  EXPECT_EQ(bare->plot, "");
 }
 
 // CELL-E9306, when the caller wants it; else the product is cut off and the run goes on.

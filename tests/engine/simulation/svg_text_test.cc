@@ -70,6 +70,7 @@ TEST(Wrapped, CutsAtBlanks) {
   EXPECT_EQ(Wrapped("one two", 6), (Lines{"one", "two"}));
   EXPECT_EQ(Wrapped("one two", 3), (Lines{"one", "two"}));
   EXPECT_EQ(Wrapped("a bc def", 4), (Lines{"a bc", "def"}));
+  EXPECT_EQ(Wrapped(" abcdef g", 3), (Lines{" ab…", "g"}));
   EXPECT_EQ(Wrapped("a b c", 1), (Lines{"a", "b", "c"}));
   EXPECT_EQ(Wrapped("a b c d", 1), (Lines{"a", "b", "c…"}));
   EXPECT_EQ(Wrapped("a b cd", 1), (Lines{"a", "b", "c…"}));

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/simulation/material/height_map.h"
+#include "engine/simulation/material/stl_reader.h"
 #include "engine/simulation/material/target.h"
 #include "tests/engine/simulation/stl_mesh.h"
 
@@ -137,6 +138,37 @@ TEST(TargetFiles, RefuseWhatIsNoStl) {
   refused("solid x\nfacet normal 0 0 1\nvertex 0 0 1", "ends inside a triangle");
   refused("solid x\nfaced n\n", "line 2: 'faced'");
   refused("solid x\nfacet n\n", "line 2: 'n'");
+}
+
+// Programs write "solid" and a name into the 80 bytes before binary triangles, too.
+TEST(TargetFiles, BinaryTrianglesMayBeginAsText) {
+  std::string bytes = StlOf(Scratched(), 0.1);
+  const auto plain = ReadStl(bytes);
+  bytes.replace(0, 5, "solid");
+  const auto named = ReadStl(bytes);
+  ASSERT_TRUE(plain);
+  ASSERT_TRUE(named);
+  ASSERT_EQ(named->size(), plain->size());
+  for (std::size_t k = 0; k < plain->size(); ++k)
+    EXPECT_EQ((*named)[k].corners, (*plain)[k].corners) << k;
+}
+
+// From the tabulator to the carriage return all is blank; of a long word the first 40 bytes are
+// told.
+TEST(TargetFiles, WordsOfAText) {
+  const auto read = ReadStl(
+      "solid x\r\nfacet\vnormal\f0 0 1\r\nouter\tloop\r\nvertex 0 0 1\r\nvertex 0 1 1\r\n"
+      "vertex 1 0 1\r\nendloop endfacet\r\nendsolid");
+  ASSERT_TRUE(read) << read.error().detail;
+  EXPECT_EQ(read->size(), 1u);
+  for (const char other : {'\x08', '\x0e'}) {
+    const auto refused = ReadStl(std::string("solid x\nfacet") + other + "normal 0 0 1\n");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kCellBadText);
+  }
+  const auto told = ReadStl("solid x\n" + std::string(50, 'a'));
+  ASSERT_FALSE(told);
+  EXPECT_EQ(told.error().detail, "no STL: line 2: '" + std::string(40, 'a') + "'");
 }
 
 TEST(TargetFiles, ABodyBesideTheBlockIsRefused) {

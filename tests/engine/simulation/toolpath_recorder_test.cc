@@ -216,6 +216,27 @@ TEST(ToolpathRecorder, PointsHaveTheAnglesOfTheHead) {
                                         {40'000, 0, 0, 250'000, -250'000}}));
 }
 
+// One axis that turns is enough: both ends of the way on which it does are kept.
+TEST(ToolpathRecorder, OneAxisThatTurnsKeepsItsVertices) {
+  for (const bool of_b : {false, true}) {
+    const auto at = [&](double x, double angle) {
+      return motion::TipPose{{x, 0, 0}, of_b ? 0.0 : angle, of_b ? angle : 0.0};
+    };
+    Script script;
+    script.Step(1, 1);
+    script.Motion(Planned(PathPiece::Line(at(0, 0.0), at(10, 0.0))));
+    script.Motion(Planned(PathPiece::Line(at(10, 0.0), at(20, 0.5))));
+    script.Motion(Planned(PathPiece::Line(at(20, 0.5), at(30, 0.5))));
+    script.Motion(Planned(PathPiece::Line(at(30, 0.5), at(40, 0.5))));
+    const Recorded recorded = Record(script);
+    ASSERT_EQ(recorded.blocks.size(), 1U);
+    const std::int32_t a = of_b ? 0 : 500'000, b = of_b ? 500'000 : 0;
+    EXPECT_EQ(recorded.blocks[0].points,
+              (std::vector<ToolpathPoint>{
+                  {0, 0, 0}, {10'000, 0, 0}, {20'000, 0, 0, a, b}, {40'000, 0, 0, a, b}}));
+  }
+}
+
 // Of 500 mm/s, and of the rated power. 10 mm with 10 mm/s2 reach 10 mm/s: the first class.
 TEST(ToolpathRecorder, RunsSayWhatSpeedAndPowerTheyReach) {
   const motion::PathLimits slow{.speed = 500.0, .acceleration = 10.0};

@@ -178,6 +178,21 @@ TEST(Trace, IsCutOffAtItsBudget) {
   EXPECT_EQ(recorder.records(), 4u);
 }
 
+// The end is the last record.
+TEST(Trace, NothingComesBehindTheEnd) {
+  std::vector<TraceKind> kinds;
+  TraceRecorder recorder([&](const TraceRecord& record) {
+    kinds.push_back(record.kind);
+    return true;
+  });
+  recorder.OnMessage(SimTime(5), {}, "in time");
+  recorder.End(SimTime(6), {});
+  recorder.OnMessage(SimTime(7), {}, "late");
+  recorder.End(SimTime(8), {});
+  EXPECT_EQ(kinds, (std::vector<TraceKind>{TraceKind::kMessage, TraceKind::kEnd}));
+  EXPECT_EQ(recorder.records(), 2u);
+}
+
 // A sink that wants no more gets no more.
 TEST(Trace, SinkCanClose) {
   int taken = 0;

@@ -198,6 +198,16 @@ TEST(Comparison, OfObjectsThatAreTooLong) {
   EXPECT_FALSE(outcome->response.compared_runs());
   ASSERT_EQ(outcome->response.steps_size(), 1);
   EXPECT_EQ(outcome->response.steps(0).step_after(), 8001);
+  // The picture says of the one that cannot run that it did not, whichever of them it is.
+  const ComparedProgram runs = TextOf("VI[1]=1\n");
+  const ComparedProgram long_one = object(lines);
+  for (const bool first : {true, false}) {
+    const auto one_runs =
+        ComparePrograms(first ? runs : long_one, first ? long_one : runs, {.picture = true});
+    ASSERT_TRUE(one_runs);
+    EXPECT_TRUE(one_runs->ok);
+    EXPECT_NE(one_runs->response.picture_svg().find("OPT-E7106"), std::string::npos);
+  }
 }
 
 // The picture names both by the last part of their names, and says where a run ended early.

@@ -74,6 +74,10 @@ TEST(MachineFile, MistakesAreNamedWithTheirPlace) {
            "m.toml:1: unknown key family; there are family, profile, name, [parameters], [sources]"},
           {"parameters = 1\n", 1,
            "m.toml:1: unknown key parameters; there are family, profile, name, [parameters], [sources]"},
+          {"sources = 1\n", 1,
+           "m.toml:1: unknown key sources; there are family, profile, name, [parameters], [sources]"},
+          {"[colours]\nred = 1\n", 1,
+           "m.toml:1: unknown key colours; there are family, profile, name, [parameters], [sources]"},
           {"[parameters]\nVMAX = true\n", 2, "m.toml:2: parameter VMAX takes a number or a text"},
           {"[sources]\nVMAX = 'x'\n", 2,
            "m.toml:2: a source of VMAX, which [parameters] does not have"},
@@ -154,6 +158,42 @@ TEST(StableJson, ALongListIsPrintedTheSame) {
       EXPECT_EQ(StableJson(report, whitespace), whole) << count;
     }
   }
+}
+
+// Whichever list it is, and whatever stands before it.
+TEST(StableJson, EachLongListIsPrintedTheSame) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.always_print_primitive_fields = true;
+  const auto expect_same = [&](const google::protobuf::Message& message, const std::string& name) {
+    std::string whole;
+    EXPECT_TRUE(google::protobuf::util::MessageToJsonString(message, &whole, options).ok());
+    EXPECT_EQ(StableJson(message, false), whole) << name;
+  };
+  const google::protobuf::Descriptor& fields = *v1::RunReport::descriptor();
+  for (int i = 0; i < fields.field_count(); ++i) {
+    const google::protobuf::FieldDescriptor& field = *fields.field(i);
+    if (!field.is_repeated() || field.is_map() ||
+        field.cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE)
+      continue;
+    v1::RunReport report;
+    for (int n = 0; n < 101; ++n) report.GetReflection()->AddMessage(&report, &field);
+    expect_same(report, field.name());
+  }
+  // Numbers are no list of messages, however many they are.
+  v1::SeriesTable::Column column;
+  for (int n = 0; n < 101; ++n) column.add_low(0.5F * static_cast<float>(n));
+  expect_same(column, "low");
+}
+
+// Nor is a map.
+TEST(StableJson, ALargeMapIsPrinted) {
+  v1::RunReport report;
+  for (int n = 0; n < 101; ++n) (*report.mutable_parameters())["P" + std::to_string(n)] = "v";
+  const std::optional<std::string> json = StableJson(report, false);
+  ASSERT_TRUE(json);
+  v1::RunReport back;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(*json, &back).ok());
+  EXPECT_EQ(StableBytes(back), StableBytes(report));
 }
 
 // A detail of a type that nobody here knows has no text, and neither has what it stands in, as an

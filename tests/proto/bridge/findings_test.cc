@@ -273,6 +273,27 @@ TEST(FindingsMessage, OfATranslationAndItsMotion) {
   EXPECT_FALSE(found().ok());
 }
 
+// What is filled a second time has what stands now, once.
+TEST(FindingsMessage, WhatIsSetAgainStandsOnce) {
+  UntoldFindings untold = Untold(3);
+  untold.Mark([](ErrorCode) { return Judged::kDoubtful; });
+  const machine::Judgement judgement{.verdict = machine::Verdict::kDoubtful,
+                                     .reasons = {{.code = ErrorCode::kFlyReversal}}};
+  v1::Findings findings;
+  v1::RunReport report;
+  for (int times = 0; times < 2; ++times) {
+    SetUntold(untold, findings);
+    SetUntold(untold, report);
+    SetJudgement(judgement, findings);
+  }
+  ASSERT_EQ(findings.gathered_size(), 1);
+  EXPECT_EQ(findings.gathered(0).verdict(), v1::VERDICT_DOUBTFUL);
+  ASSERT_EQ(findings.reasons_size(), 1);
+  EXPECT_EQ(findings.reasons(0).code(), CodeText(ErrorCode::kFlyReversal));
+  ASSERT_EQ(report.gathered_size(), 1);
+  EXPECT_EQ(report.gathered(0).count(), 3);
+}
+
 // The codes of gRPC, as docs/api.md tells what to do on each.
 TEST(RpcCodes, OfEveryErrorThatIsNoWrongArgument) {
   const std::map<ErrorCode, int> others = {{ErrorCode::kCellInternal, 13},

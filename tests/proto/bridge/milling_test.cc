@@ -69,6 +69,19 @@ TEST(MillingOfAJob, EachFieldHasItsPlace) {
   EXPECT_EQ(FromProto(given)->stock.cell, 0.25);
 }
 
+TEST(MillingOfAJob, AToolHasTheShapeThatItIsSaidToHave) {
+  for (const auto& [said, made] : {std::pair(v1::MillTool::SHAPE_FLAT, MillTool::Shape::kFlat),
+                                   std::pair(v1::MillTool::SHAPE_BALL, MillTool::Shape::kBall)}) {
+    v1::Milling given = Sound();
+    given.mutable_tool()->set_shape(said);
+    given.mutable_tool()->clear_angle_rad();
+    given.mutable_tool()->clear_tip_diameter_mm();
+    const auto milling = FromProto(given);
+    ASSERT_TRUE(milling) << milling.error().detail;
+    EXPECT_EQ(milling->tool.shape, made);
+  }
+}
+
 // chip_loads.toml: wax at 6 mm.
 TEST(MillingOfAJob, AMaterialHasItsChipsAtTheDiameterOfTheTool) {
   v1::Milling given = Sound();

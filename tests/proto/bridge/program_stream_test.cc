@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -104,6 +105,24 @@ TEST_F(ProgramStreamTest, APipeIsWaitedFor) {
   opened.bytes.ReadAll();
   EXPECT_TRUE(*opened.bytes == text);
   writer.join();
+}
+
+TEST_F(ProgramStreamTest, APipeMayBeginWithASingleByte) {
+  int ends[2] = {};
+  ASSERT_EQ(::pipe(ends), 0);
+  const std::string text = "IN;PU;";
+  ASSERT_EQ(::write(ends[1], text.data(), 1), 1);
+  std::thread writer([&] {
+    for (int there = 1; there > 0; std::this_thread::yield())
+      EXPECT_EQ(::ioctl(ends[0], FIONREAD, &there), 0);
+    EXPECT_EQ(::write(ends[1], text.data() + 1, text.size() - 1),
+              static_cast<ssize_t>(text.size() - 1));
+    ::close(ends[1]);
+  });
+  const ProgramStream::Opened opened = Open("/proc/self/fd/" + std::to_string(ends[0]));
+  EXPECT_TRUE(*opened.bytes == text);
+  writer.join();
+  ::close(ends[0]);
 }
 
 TEST_F(ProgramStreamTest, WhatCannotBeReadIsTold) {

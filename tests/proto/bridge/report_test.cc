@@ -307,6 +307,7 @@ TEST(ReportMessage, AVerdictHasItsReasons) {
                         .verdict = machine::Verdict::kDoubtful,
                         .said = "2.5 mm too much",
                         .amount = 2.5,
+                        .limit = 0.5,
                         .unit = "mm",
                         .first = {.program = 1, .step = 2}});
   report.judgement.Add({.code = ErrorCode::kFlyReversal, .verdict = machine::Verdict::kBad});
@@ -318,7 +319,7 @@ TEST(ReportMessage, AVerdictHasItsReasons) {
       ToProto(kGantry, report, {}).outcome(),
       "kind: KIND_COMPLETED place {} verdict: VERDICT_BAD reasons { verdict: VERDICT_BAD " + code +
           advice + "} reasons { verdict: VERDICT_DOUBTFUL " + code + "message: '2.5 mm too much' " +
-          advice + "amount: 2.5 unit: 'mm' first { program: 1 step: 2 } }");
+          advice + "amount: 2.5 limit: 0.5 unit: 'mm' first { program: 1 step: 2 } }");
 }
 
 TEST(ReportMessage, AToolBelowTheBlockHasItsPlace) {

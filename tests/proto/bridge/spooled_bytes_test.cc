@@ -73,6 +73,11 @@ TEST(SpooledBytes, BeginAnew) {
   spooled.append("second");
   EXPECT_EQ(*spooled.Finish(), "second");
   EXPECT_TRUE(*first == Numbered(2'000'000));
+  // Also with one that needs a file: it is another file.
+  const std::string large = Numbered(3'000'000).substr(500'000);
+  spooled.append(large);
+  EXPECT_TRUE(*spooled.Finish() == large);
+  EXPECT_TRUE(*first == Numbered(2'000'000));
 }
 
 class NoTemporaryFolder : public testing::Test {

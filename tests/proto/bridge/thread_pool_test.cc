@@ -37,6 +37,21 @@ TEST(ThreadPool, HasPiecesUnderWayTogether) {
   }
 }
 
+// Whoever called may take away what the pieces work on.
+TEST(ThreadPool, ReturnsWhenTheLastPieceHasEnded) {
+  ThreadPool pool(2);
+  std::latch both(2);
+  std::atomic<bool> ended = false;
+  const std::thread::id caller = std::this_thread::get_id();
+  pool.Run(2, [&](std::size_t) {
+    both.arrive_and_wait();
+    if (std::this_thread::get_id() == caller) return;
+    for (int i = 0; i < 10'000; ++i) std::this_thread::yield();
+    ended = true;
+  });
+  EXPECT_TRUE(ended);
+}
+
 TEST(ThreadPool, OfOneWorksInTheThreadThatCalls) {
   ThreadPool pool(1);
   std::set<std::thread::id> threads;

@@ -130,6 +130,11 @@ TEST(RecordingFile, WithoutTheMarkNothingCounts) {
   EXPECT_EQ(said(file, 7, 2), at + "it does not reach entry 2 of fence 7");
   EXPECT_EQ(said(file, 6, 9), at + "it does not reach entry 9 of fence 6");
   EXPECT_EQ(said("x", 7, 1), "byte 0 of the recording: it does not begin as one");
+  // That the run was over behind the mark says nothing of what lies before it.
+  std::string over = file;
+  AddEntry(Over(5, "jobs/17"), over);
+  EXPECT_EQ(said(over, 7, 4), "byte " + std::to_string(over.size()) +
+                                  " of the recording: it does not reach entry 4 of fence 7");
   std::string bad = BeginFile(Head(), Mark(1, 0, "state"));
   AddRecord("\xFF", bad);
   AddEntry(Entry(7, 3, 0), bad);

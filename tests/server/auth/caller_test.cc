@@ -25,12 +25,18 @@ TEST(Gate, EveryCallerIsTheLocalAdministrator) {
 // The kernel says who is at the other end of a unix socket; a descriptor is given again.
 TEST(Gate, KnowsTheUserOfASocket) {
   Gate gate("secret");
+  gate.socket_users().Note(0, 1);
   gate.socket_users().Note(7, 1000);
-  const auto user = [&gate](const std::string& peer, Transport transport) {
-    return gate
-        .Admit({.method = "/rmlcell.v1.JobService/GetJob", .peer = peer, .transport = transport})
-        ->user;
+  const auto admitted = [&gate](const std::string& peer, Transport transport) {
+    return *gate.Admit(
+        {.method = "/rmlcell.v1.JobService/GetJob", .peer = peer, .transport = transport});
   };
+  const auto user = [&admitted](const std::string& peer, Transport transport) {
+    return admitted(peer, transport).user;
+  };
+  // The log names the user, and where he is not known the descriptor.
+  EXPECT_EQ(admitted("fd:7", Transport::kUnixSocket).peer, "unix:user 1000");
+  EXPECT_EQ(admitted("fd:8", Transport::kUnixSocket).peer, "fd:8");
   EXPECT_EQ(user("fd:7", Transport::kUnixSocket), 1000U);
   EXPECT_EQ(user("fd:8", Transport::kUnixSocket), std::nullopt);
   EXPECT_EQ(user("fd:7", Transport::kTcp), std::nullopt);

@@ -167,5 +167,67 @@ TEST(AnsweredJournal, AnswersOutliveWhatIsStored) {
   EXPECT_EQ(again->entries.front().sequence(), 2);
 }
 
+// LIVE-3.27: what halts, and what only asks, needs no memory beyond its host; what proves something
+// must not be in it.
+TEST(AnsweredEntries, HaveNothingThatNobodyNeedsOrMaySee) {
+  v1::HostOrder factor;
+  factor.mutable_factor()->set_request_id("one");
+  v1::HostOrder disarm;
+  disarm.mutable_disarm()->set_request_id("one");
+  v1::HostOrder undo;
+  undo.mutable_undo_teaching()->set_request_id("one");
+  v1::HostOrderAnswer status;
+  status.mutable_status()->set_machine("machines/mill-1");
+  EXPECT_TRUE(AnsweredRequests::EntryOf(factor, status));
+  EXPECT_FALSE(AnsweredRequests::EntryOf(disarm, status));
+  EXPECT_FALSE(AnsweredRequests::EntryOf(undo, status));
+  std::vector<v1::HostOrderAnswer> secrets(5);
+  secrets[0].mutable_control();
+  secrets[1].mutable_control_kept();
+  secrets[2].mutable_armed();
+  secrets[3].mutable_session();
+  secrets[4].mutable_key();
+  for (const v1::HostOrderAnswer& secret : secrets)
+    EXPECT_FALSE(AnsweredRequests::EntryOf(factor, secret)) << secret.result_case();
+}
+
+// A status is that of whoever is asked again, and takes no room.
+TEST(AnsweredEntries, HaveNoStatus) {
+  v1::HostOrder factor;
+  factor.set_caller("anna");
+  factor.mutable_factor()->set_request_id("one");
+  v1::HostOrderAnswer answer;
+  answer.mutable_status()->set_machine(std::string(5'000, 'm'));
+  const auto entry = AnsweredRequests::EntryOf(factor, answer);
+  ASSERT_TRUE(entry);
+  EXPECT_TRUE(entry->by_status());
+  EXPECT_FALSE(entry->answer().has_status());
+  EXPECT_EQ(entry->request_id(), "one");
+  EXPECT_EQ(entry->caller(), "anna");
+}
+
+// LIVE-3.27: ten minutes from when it was given, however many hosts there were meanwhile.
+TEST(AnsweredEntries, AreAsOldAsTheirAnswers) {
+  const HostTime given{.steady = 1h, .wall = WallTime(24h)};
+  const auto behind = [&given](std::chrono::microseconds time) {
+    return HostTime{.steady = given.steady + time, .wall = given.wall + time};
+  };
+  v1::HostOrder order;
+  order.set_caller("anna");
+  order.mutable_factor()->set_request_id("one");
+  v1::JournalEntry entry;
+  *entry.mutable_time() = Stamp(given.wall);
+  entry.mutable_answered()->set_request_id("one");
+  entry.mutable_answered()->set_caller("anna");
+  AnsweredRequests answered;
+  answered.Recover({entry}, {}, behind(9min));
+  const std::string key = AnsweredRequests::KeyOf(order);
+  answered.Keep("another", "d", {}, behind(10min));
+  EXPECT_NE(answered.Find(key), nullptr);
+  answered.Keep("a third", "d", {}, behind(10min + 1us));
+  EXPECT_EQ(answered.Find(key), nullptr);
+  EXPECT_NE(answered.Find("another"), nullptr);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

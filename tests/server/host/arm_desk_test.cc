@@ -229,5 +229,41 @@ TEST_F(ArmTest, ALateHostHoldsItsRun) {
   EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
 }
 
+// DEV-1.41: for 1 s to 600 s, the ends among them.
+TEST(ArmDeskBounds, OfTheTime) {
+  using std::chrono::milliseconds;
+  ArmDesk desk{[] { return "t"; }};
+  const HostTime now{.steady = 1h, .wall = WallTime(24h)};
+  v1::ArmMachineRequest request;
+  for (const auto one : {v1::CONFIRMATION_TOOL, v1::CONFIRMATION_ORIGIN_VALID,
+                         v1::CONFIRMATION_CLAMPS, v1::CONFIRMATION_COVER})
+    request.add_confirmations(one);
+  const auto arm_for = [&](milliseconds time) {
+    desk.Disarm();
+    request.mutable_armed_for()->set_seconds(time / 1s);
+    request.mutable_armed_for()->set_nanos(static_cast<int>((time % 1s) / 1ns));
+    return bool(desk.Arm(request, "anna", 1, 2, now));
+  };
+  EXPECT_FALSE(arm_for(999ms));
+  EXPECT_FALSE(arm_for(600'001ms));
+  EXPECT_FALSE(desk.is_armed());
+  EXPECT_TRUE(arm_for(600s));
+  EXPECT_TRUE(arm_for(1s));
+  // Until then, and no longer; by the lease and for the memory that it was armed with.
+  HostTime then = now;
+  then.steady += 999ms;
+  desk.Expire(1, 2, then);
+  EXPECT_TRUE(desk.is_armed());
+  then.steady += 1ms;
+  desk.Expire(1, 2, then);
+  EXPECT_FALSE(desk.is_armed());
+  ASSERT_TRUE(arm_for(1s));
+  desk.Expire(3, 2, now);
+  EXPECT_FALSE(desk.is_armed());
+  ASSERT_TRUE(arm_for(1s));
+  desk.Expire(1, 3, now);
+  EXPECT_FALSE(desk.is_armed());
+}
+
 }  // namespace
 }  // namespace rmlcell::server

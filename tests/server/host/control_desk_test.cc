@@ -117,5 +117,47 @@ TEST_F(ControlDeskTest, IsTakenOverWithAReason) {
   EXPECT_FALSE(desk.TakeChange());
 }
 
+// A reason has 1 to 200 characters.
+TEST_F(ControlDeskTest, AReasonHasBounds) {
+  for (const std::size_t length : {std::size_t{1}, std::size_t{200}}) {
+    Acquire();
+    EXPECT_TRUE(desk.Acquire(TakingOver(std::string(length, 'r')), "bert", At(1ms))) << length;
+    EXPECT_TRUE(desk.Expire(At(5'001ms)));
+  }
+}
+
+// LIVE-4.02: of a lease that is over nobody has control, and of none nobody either.
+TEST_F(ControlDeskTest, NobodyIsNamedWhoHasItNoMore) {
+  EXPECT_EQ(desk.Check("", At(0ms)).error().detail, "no control token");
+  const std::string token = Acquire();
+  EXPECT_EQ(desk.Check("", At(4'999ms)).error().detail, "no control token: anna has control");
+  EXPECT_EQ(desk.Check(token, At(5'000ms)).error().detail, "the control token is over");
+}
+
+// LIVE-4.05: the queue has control for as long as its run is open, however long that is.
+TEST_F(ControlDeskTest, TheLeaseOfTheQueueDoesNotRunOut) {
+  desk.GiveToQueue("jobs/17", v1::ControlLease::ON_LOSS_HOLD, At(0ms));
+  EXPECT_FALSE(desk.runs_out());
+  EXPECT_FALSE(desk.Expire(At(3'600'000ms)));
+  EXPECT_EQ(desk.Check("guessed", At(3'600'000ms)).error().detail,
+            "the control token is over: queue/jobs/17 has control");
+  desk.RunIsOver();
+  EXPECT_FALSE(desk.lease());
+}
+
+// LIVE-4.03: whoever takes it over during a run has it as he took it, behind that run as well.
+TEST_F(ControlDeskTest, BehindARunItIsAsItWasTaken) {
+  v1::AcquireControlRequest first = Asked();
+  first.set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);
+  ASSERT_TRUE(desk.Acquire(first, "anna", At(0ms)));
+  desk.RunBegins(v1::ControlLease::ON_LOSS_HOLD);
+  v1::AcquireControlRequest second = TakingOver("shift change");
+  second.set_on_loss(v1::ControlLease::ON_LOSS_HOLD);
+  ASSERT_TRUE(desk.Acquire(second, "bert", At(1ms)));
+  desk.RunIsOver();
+  EXPECT_EQ(desk.lease()->holder(), "bert");
+  EXPECT_EQ(desk.lease()->on_loss(), v1::ControlLease::ON_LOSS_HOLD);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

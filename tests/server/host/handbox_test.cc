@@ -195,6 +195,31 @@ TEST_F(HandboxOverTheLine, AJogKeyIsHeld) {
   EXPECT_EQ(played->inputs, 6);  // four for the mode, the key, that it was let go
 }
 
+// LIVE-7.02, LIVE-7.06: a key that is down ends with its session; the next one counts its keys and
+// beats from 1.
+TEST_F(HandboxOverTheLine, AKeyEndsWithItsSession) {
+  MakeAndTakeOptimo();
+  Open();
+  Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT");
+  const auto hold = [this] {
+    EXPECT_TRUE(Do(Key("X+", v1::KEY_ACTION_PRESS)).has_key());
+    beats_ = 0;
+    for (int i = 0; i < 10; ++i) {
+      Pass(50ms);
+      EXPECT_TRUE(Do(Beat("X+")).has_heartbeat());
+    }
+    EXPECT_EQ(State(), v1::MACHINE_STATE_JOGGING);
+  };
+  hold();
+  v1::HostOrder close;
+  close.mutable_delete_session()->set_name(session_);
+  ASSERT_FALSE(Do(close).has_refusal());
+  Pass(1s);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  Open();
+  hold();
+}
+
 // LIVE-7.08: a program that is taught goes to the store, and counts when it is there.
 TEST_F(HandboxOverTheLine, WhatIsTaughtIsStored) {
   MakeAndTakeOptimo();

@@ -127,6 +127,59 @@ TEST_F(HostMachineBounds, OfARecordingThatGoesOn) {
   EXPECT_LT(BytesRecorded(), before);
 }
 
+// LIVE-3.40: nor while a run is open, which is recorded as it began.
+TEST_F(HostMachineBounds, OfARecordingWhoseRunIsOpen) {
+  MakeAndTake();
+  ASSERT_FALSE(Do(Start()).has_refusal());
+  v1::HostOrder order;
+  order.mutable_override()->set_control_token(token_);
+  for (int turn = 0; turn < 100; ++turn) {
+    order.mutable_override()->set_override_percent(turn % 2 == 0 ? 90.0 : 80.0);
+    ASSERT_FALSE(Do(order).has_refusal());
+  }
+  const std::int64_t before = BytesRecorded();
+  v1::HostMemory memory;
+  memory.add_programs()->set_slot(6);
+  memory.mutable_programs(0)->set_content("PU0,0;");
+  host_->Change(memory, now_);
+  EXPECT_GT(BytesRecorded(), before);
+}
+
+// LIVE-5.04: a run that was over before the store had its begin holds up no other one.
+TEST_F(HostMachineBounds, OfABeginThatIsNotStored) {
+  Make();
+  host_->Begin({}, now_);
+  stores_ = false;
+  ASSERT_FALSE(Do(JobOf(kSquare, "square.rml")).has_refusal());
+  ASSERT_TRUE(host_->waits_for_store());
+  v1::HostOrder abort;
+  abort.mutable_abort();
+  ASSERT_FALSE(Do(abort).has_refusal());
+  Pass(3s, 50ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_FALSE(host_->waits_for_store());
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  ASSERT_FALSE(Do(Start()).has_refusal());
+  Pass(2s, 50ms);
+  EXPECT_GT(host_->StatusAt(now_).run().run_time_ns(), 0);
+}
+
+// LIVE-3.11: time may go slower than the clock, also behind a crash.
+TEST_F(HostMachineBounds, OfTheFactorOfTime) {
+  auto made = HostMachine::Make({.name = "machines/mill-1",
+                                 .host = "workshop/2",
+                                 .fence = 8,
+                                 .family = families::FindFamily("rml1"),
+                                 .profile = "srm-20",
+                                 .factor = 0.5},
+                                now_, [] { return std::string("token"); });
+  ASSERT_TRUE(made) << made.error().detail;
+  host_ = *std::move(made);
+  EXPECT_EQ(host_->StatusAt(now_).factor(), 0.5);
+  Pass(2s);
+  EXPECT_EQ(host_->StatusAt(now_).virtual_time_ns(), 1'000'000'000);
+}
+
 // LIVE-6.01: steps count from 1, and so do passes.
 TEST_F(HostMachineBounds, OfTheStepOfAPreview) {
   MakeAndTake();

@@ -85,9 +85,14 @@ class LiveHost : public testing::Test {
   template <class Condition>
   v1::HostRequest Await(v1::HostRequest::MessageCase kind, Condition condition,
                         std::size_t behind = 0) {
+    return AwaitAt(*server_, kind, condition, behind);
+  }
+  template <class Condition>
+  static v1::HostRequest AwaitAt(FakeHostServer& server, v1::HostRequest::MessageCase kind,
+                                 Condition condition, std::size_t behind = 0) {
     const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(15);
     for (std::size_t count = behind + 1; std::chrono::steady_clock::now() < patience; ++count) {
-      const std::vector<v1::HostRequest> told = server_->Told(kind, count);
+      const std::vector<v1::HostRequest> told = server.Told(kind, count);
       const auto first = told.begin() + static_cast<std::ptrdiff_t>(std::min(behind, told.size()));
       const auto found = std::find_if(first, told.end(), condition);
       if (found != told.end()) return *found;
@@ -174,6 +179,51 @@ class LiveHost : public testing::Test {
     v1::HostOrder order;
     order.mutable_override()->set_override_percent(percent);
     order.mutable_override()->set_control_token(token_);
+    return order;
+  }
+  v1::HostOrder PanelKey(const std::string& key, std::int64_t sequence) {
+    v1::HostOrder order;
+    v1::PressPanelKeyRequest& pressed = *order.mutable_panel_key();
+    pressed.set_key(key);
+    pressed.set_action(v1::KEY_ACTION_TAP);
+    pressed.set_control_token(token_);
+    pressed.set_sequence(sequence);
+    return order;
+  }
+  static v1::HostOrder JobOrder(const std::string& job, const std::string& text = kSlowSquare) {
+    v1::HostOrder order;
+    v1::WorkerAssignment& assignment = *order.mutable_run_job();
+    assignment.mutable_job()->set_name(job);
+    assignment.set_main_program(5);
+    v1::AssignedProgram& program = *assignment.add_programs();
+    program.set_slot(5);
+    program.set_file_name("square.rml");
+    program.set_is_source(true);
+    program.set_content(text);
+    return order;
+  }
+  static v1::HostOrder PreviewOf(int program, int step) {
+    v1::HostOrder order;
+    order.mutable_preview_start()->set_program(program);
+    order.mutable_preview_start()->mutable_step()->set_step(step);
+    return order;
+  }
+  v1::HostOrder HandboxKey(const std::string& session, const std::string& key,
+                           std::int64_t sequence) {
+    v1::HostOrder order;
+    v1::PressKeyRequest& pressed = *order.mutable_key();
+    pressed.set_session(session);
+    pressed.set_control_token(token_);
+    pressed.set_key(key);
+    pressed.set_action(v1::KEY_ACTION_TAP);
+    pressed.set_sequence(sequence);
+    return order;
+  }
+  // Whether this job has begun, and where it is.
+  static v1::HostOrder WhereIs(const std::string& job) {
+    v1::HostOrder order;
+    order.mutable_run_state();
+    order.set_for_job(job);
     return order;
   }
   static v1::HostOrder StopOrder() {

@@ -21,6 +21,19 @@ class LiveHostDisk : public LiveHost {
   void StandForAWhile() {
     server_->Told(v1::HostRequest::kStatus, Count(v1::HostRequest::kStatus) + 3);
   }
+  // A key that the disk refuses, and the one behind it.
+  void ExpectTheNextToAct(std::int64_t sequence) {
+    ASSERT_FALSE(Ask(OverrideOf(90.0)).has_refusal());
+    ASSERT_FALSE(Ask(OverrideOf(100.0)).has_refusal());  // all of it is on the disk
+    auto disk = std::make_optional<SmallFiles>(0);
+    const std::int64_t first = Send(PanelKey("X+", sequence));
+    const std::int64_t second = Send(PanelKey("COVER", sequence + 1));
+    const v1::HostOrderAnswer refused = AnswerTo(first);
+    const v1::HostOrderAnswer behind = AnswerTo(second);
+    disk.reset();
+    EXPECT_EQ(refused.refusal().code(), CodeText(ErrorCode::kCellJournal));
+    EXPECT_FALSE(behind.has_refusal()) << behind.refusal().message();
+  }
 };
 
 // Nothing is on its way to the disk: however long it stands, the disk is not late.
@@ -122,6 +135,60 @@ TEST_F(LiveHostDisk, AnAnswerIsForTheLineThatAsked) {
   AskWhereItIs();
   for (const v1::HostRequest& told : server_->Told(v1::HostRequest::kAnswer, 0))
     EXPECT_NE(told.answer().number(), released);
+}
+
+// LIVE-5.20: of a job whose begin is on its way to the disk it is not known yet whether it begins;
+// whoever stops that job stops it, and the machine, which stands, has nothing against it.
+TEST_F(LiveHostDisk, AJobThatIsAboutToBeginIsNotUnknown) {
+  Live();
+  TakeControl();
+  auto disk = std::make_optional<SmallFiles>(0);
+  const std::int64_t job = Send(JobOrder("jobs/17"));
+  const v1::HostOrderAnswer about = Ask(WhereIs("jobs/17"));
+  const v1::HostOrderAnswer other = Ask(WhereIs("jobs/18"));
+  v1::HostOrder stop = StopOrder();
+  stop.set_for_job("jobs/17");
+  const v1::HostOrderAnswer stopped = Ask(stop);
+  const v1::HostOrderAnswer answer = AnswerTo(job);
+  disk.reset();
+  EXPECT_EQ(about.refusal().code(), CodeText(ErrorCode::kCellNotLive));
+  EXPECT_EQ(about.refusal().message(), "it is about to begin");
+  EXPECT_EQ(other.refusal().code(), CodeText(ErrorCode::kCellNotFound));
+  EXPECT_TRUE(stopped.has_halt()) << stopped.refusal().message();
+  EXPECT_EQ(answer.refusal().message(), "it was stopped before it began");
+}
+
+// LIVE-7.04: a key that is on its way to the disk is not missing, however long that takes; one that
+// the disk refuses has had its turn.
+TEST_F(LiveHostDisk, AKeyWaitsForTheOneThatTheDiskHas) {
+  Live();
+  TakeControl();
+  ASSERT_FALSE(Ask(PanelKey("COVER", 1)).has_refusal());
+  ExpectTheNextToAct(2);
+}
+TEST_F(LiveHostDisk, TheFirstKeyOfALeaseHasHadItsTurn) {
+  Live();
+  TakeControl();
+  ExpectTheNextToAct(1);
+}
+
+// LIVE-3.31: nobody is left who would see it begin, however soon the disk answers.
+TEST_F(LiveHostDisk, WhatWaitsForTheDiskEndsWithItsLine) {
+  Live();
+  TakeControl();
+  auto disk = std::make_optional<SmallFiles>(0);
+  const std::int64_t started = Send(StartOf());
+  AskWhereItIs();  // it came behind the start
+  server_->EndLine();
+  server_->Told(v1::HostRequest::kHello, 2);
+  disk.reset();
+  ASSERT_FALSE(Ask(OverrideOf(90.0)).has_refusal());
+  // Written behind what waited.
+  AwaitEntry(
+      [](const v1::JournalEntry& one) { return one.applied().input().override_percent() == 90.0; });
+  EXPECT_EQ(Ask(StopOrder()).halt().status().state(), v1::MACHINE_STATE_IDLE);
+  for (const v1::HostRequest& told : server_->Told(v1::HostRequest::kAnswer, 0))
+    EXPECT_NE(told.answer().number(), started);
 }
 
 }  // namespace

@@ -11,37 +11,8 @@
 namespace rmlcell::server {
 namespace {
 
-using testing::HasSubstr;
-
 class LiveHostOrders : public LiveHost {
  protected:
-  v1::HostOrder PanelKey(const std::string& key, std::int64_t sequence) {
-    v1::HostOrder order;
-    v1::PressPanelKeyRequest& pressed = *order.mutable_panel_key();
-    pressed.set_key(key);
-    pressed.set_action(v1::KEY_ACTION_TAP);
-    pressed.set_control_token(token_);
-    pressed.set_sequence(sequence);
-    return order;
-  }
-  static v1::HostOrder JobOrder(const std::string& job, const std::string& text = kSlowSquare) {
-    v1::HostOrder order;
-    v1::WorkerAssignment& assignment = *order.mutable_run_job();
-    assignment.mutable_job()->set_name(job);
-    assignment.set_main_program(5);
-    v1::AssignedProgram& program = *assignment.add_programs();
-    program.set_slot(5);
-    program.set_file_name("square.rml");
-    program.set_is_source(true);
-    program.set_content(text);
-    return order;
-  }
-  v1::HostOrder PreviewOf(int program, int step) {
-    v1::HostOrder order;
-    order.mutable_preview_start()->set_program(program);
-    order.mutable_preview_start()->mutable_step()->set_step(step);
-    return order;
-  }
   std::vector<v1::JournalEntry> Orphan() const {
     std::ifstream file(JournalPath() + ".orphan", std::ios::binary);
     return ReadJournal(std::string(std::istreambuf_iterator<char>(file), {})).entries;
@@ -175,6 +146,66 @@ TEST_F(LiveHostOrders, ARunEndsWithItsHost) {
   EXPECT_TRUE(Entries().back().has_mark());
 }
 
+// LIVE-5.09: a host that ends waits for what the store is still to say. Nothing begins meanwhile;
+// what halts, what lets go and what only asks is answered as ever.
+TEST_F(LiveHostOrders, NothingBeginsWhileAHostEnds) {
+  Live();
+  StoreAll();
+  const v1::HostOrderAnswer begun = Ask(JobOrder("jobs/17"));
+  ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
+  v1::HostResponse end;
+  end.mutable_stop()->set_reason("a test");
+  server_->Tell(end);
+  v1::HostOrder acquire;
+  acquire.mutable_acquire_control()->mutable_ttl()->set_seconds(60);
+  for (const v1::HostOrder& order : {StartOf(), acquire, ReleaseOfControl()}) {
+    const v1::HostOrderAnswer refused = Ask(order);
+    EXPECT_EQ(refused.refusal().code(), CodeText(ErrorCode::kCellNotLive));
+    EXPECT_EQ(refused.refusal().message(), "its host ends");
+  }
+  EXPECT_EQ(AskWhereItIs().run_state().fence(), 7);
+  EXPECT_EQ(Ask(WhereIs("jobs/17")).run_state().fence(), 7);
+  EXPECT_TRUE(Ask(StopOrder()).has_halt());
+  // It came to the machine, where nobody has control.
+  EXPECT_EQ(Ask(PanelKey("COVER", 1)).refusal().code(), CodeText(ErrorCode::kCellControlNeeded));
+  EXPECT_EQ(Count(v1::HostRequest::kHandBack), 0U);
+  AwaitEntry([](const v1::JournalEntry& one) { return one.has_run_begun(); });
+  StoreAll();
+  EXPECT_EQ(host_.get(), 0);
+  EXPECT_EQ(server_->Told(v1::HostRequest::kHandBack, 1).size(), 1U);
+  const v1::JournalEntry over =
+      AwaitEntry([](const v1::JournalEntry& one) { return one.has_run_over(); });
+  EXPECT_EQ(over.run_over().job(), "jobs/17");
+  EXPECT_EQ(over.run_over().outcome().code(), CodeText(ErrorCode::kCellHostStopped));
+}
+
+// LIVE-6.01: one after the other; while one is worked out for a job, that is about to begin.
+TEST_F(LiveHostOrders, OneStartIsLookedAtAtATime) {
+  Live();
+  TakeControl();
+  v1::HostOrder preview = PreviewOf(5, 8);
+  preview.set_for_job("jobs/16");
+  ASSERT_TRUE(Ask(preview).has_preview());
+  EXPECT_EQ(Ask(WhereIs("jobs/16")).refusal().code(), CodeText(ErrorCode::kCellNotFound));
+  v1::HostResponse memory;
+  v1::AssignedProgram& program = *memory.mutable_memory()->add_programs();
+  program.set_slot(6);
+  std::string text = "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PU1000,1000;";
+  for (int square = 0; square < 100'000; ++square) text += "PD3000,1000,3000,3000,1000,1000;";
+  program.set_content(text + "PU0,0;");
+  server_->Tell(memory);
+  preview = PreviewOf(6, 100'000);
+  preview.set_for_job("jobs/17");
+  Send(preview);  // nobody waits for its end
+  const v1::HostOrderAnswer second = Ask(PreviewOf(5, 8));
+  EXPECT_EQ(second.refusal().code(), CodeText(ErrorCode::kCellUnavailable));
+  EXPECT_EQ(second.refusal().message(), "another start is looked at");
+  const v1::HostOrderAnswer about = Ask(WhereIs("jobs/17"));
+  EXPECT_EQ(about.refusal().code(), CodeText(ErrorCode::kCellNotLive));
+  EXPECT_EQ(about.refusal().message(), "it is about to begin");
+  EXPECT_EQ(Ask(WhereIs("jobs/16")).refusal().code(), CodeText(ErrorCode::kCellNotFound));
+}
+
 // LIVE-3.22: what is not stored stays in the journal, by the fence under which it was told.
 TEST_F(LiveHostOrders, WhatIsNotStoredStaysInTheJournal) {
   v1::JournalEntry large;
@@ -214,16 +245,7 @@ TEST_F(LiveHostOrders, WhatIsTaughtGoesToTheStore) {
   open.mutable_create_session()->set_control_token(token_);
   const std::string session = Ask(open).session().name();
   std::int64_t keys = 0;
-  const auto key = [&](const std::string& name) {
-    v1::HostOrder order;
-    v1::PressKeyRequest& pressed = *order.mutable_key();
-    pressed.set_session(session);
-    pressed.set_control_token(token_);
-    pressed.set_key(name);
-    pressed.set_action(v1::KEY_ACTION_TAP);
-    pressed.set_sequence(++keys);
-    return order;
-  };
+  const auto key = [&](const std::string& name) { return HandboxKey(session, name, ++keys); };
   for (const char* name :
        {"MODE_LEFT", "MODE_LEFT", "MODE_LEFT", "MODE_LEFT", "JOB", "1", "2", "ENT", "REC"})
     ASSERT_TRUE(Ask(key(name)).has_key()) << name;

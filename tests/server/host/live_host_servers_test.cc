@@ -60,8 +60,8 @@ class LiveHostServers : public LiveHost {
     if (host_.valid()) host_.wait();
     other_.reset();
   }
-  void LiveWithBoth() {
-    v1::HostWelcome welcome = WelcomeTo("rml1");
+  void LiveWithBoth(const std::string& family = "rml1") {
+    v1::HostWelcome welcome = WelcomeTo(family);
     welcome.add_servers(server_->address());
     welcome.add_servers(other_->address());
     Live(welcome);
@@ -111,6 +111,46 @@ TEST_F(LiveHostServers, ARunGoesOnWithTheOtherServer) {
   const std::size_t before = other_->Told(v1::HostRequest::kStatus, 0).size();
   for (const v1::HostRequest& told : other_->Told(v1::HostRequest::kStatus, before + 40))
     EXPECT_NE(told.status().state(), v1::MACHINE_STATE_HELD);
+}
+
+// LIVE-3.06, LIVE-7.02: keys are pressed over the other server as well, which sees what they led
+// to; what they teach cannot be stored meanwhile, and is refused.
+TEST_F(LiveHostServers, TheHandboxGoesOnWithTheOtherServer) {
+  LiveWithBoth("optimo");
+  v1::HostOrder acquire;
+  acquire.mutable_acquire_control()->mutable_ttl()->set_seconds(60);
+  token_ = AskOther(acquire).control().control_token();
+  v1::HostOrder open;
+  open.mutable_create_session()->set_control_token(token_);
+  const std::string session = AskOther(open).session().name();
+  server_->refusal = {grpc::StatusCode::UNAVAILABLE, "away"};
+  server_->EndLine();
+  server_->Told(v1::HostRequest::kHello, 2);
+  std::int64_t keys = 0;
+  for (const char* name :
+       {"MODE_LEFT", "MODE_LEFT", "MODE_LEFT", "MODE_LEFT", "JOB", "1", "2", "ENT", "REC"}) {
+    const v1::HostOrderAnswer answer = AskOther(HandboxKey(session, name, ++keys));
+    ASSERT_TRUE(answer.has_key()) << name << answer.refusal().message();
+  }
+  const auto says_so = [](const v1::HostRequest& one) {
+    return one.panel().message_code() == CodeText(ErrorCode::kCellStoreUnavailable);
+  };
+  EXPECT_EQ(AwaitAt(*other_, v1::HostRequest::kPanel, says_so).panel().holder(), "bert");
+  EXPECT_TRUE(AskOther(HandboxKey(session, "PREV", ++keys)).has_key());
+  EXPECT_EQ(Count(v1::HostRequest::kEdit), 0U);
+}
+
+// LIVE-7.02: whichever server comes again sees the handbox, though nothing of it has changed.
+TEST_F(LiveHostServers, AServerThatComesAgainSeesTheHandbox) {
+  LiveWithBoth("optimo");
+  for (FakeHostServer* server : {other_.get(), server_.get()}) {
+    server->Told(v1::HostRequest::kPanel, 1);
+    const std::size_t before = server->Told(v1::HostRequest::kPanel, 0).size();
+    server->EndLine();
+    server->Told(v1::HostRequest::kHello, 2);
+    const auto shown = server->Told(v1::HostRequest::kPanel, before + 1);
+    EXPECT_EQ(shown.back().panel().display(), shown.front().panel().display());
+  }
 }
 
 // LIVE-3.31: a run that nobody sees is held after a second, and the log says why.

@@ -252,5 +252,75 @@ TEST_F(PanelKeysTest, APauseOfTheProgramEndsAtThePanel) {
   EXPECT_EQ(host_->StatusAt(now_).last_run().outcome().kind(), v1::Outcome::KIND_COMPLETED);
 }
 
+// LIVE-7.04: whatever came between: the same number is the same press, with the answer of then.
+TEST_F(PanelKeysTest, AnAnswerIsThatOfItsKey) {
+  MakeAndTake();
+  const v1::HostOrder cover = Key("COVER");
+  ASSERT_TRUE(Do(cover).status().door_open());
+  v1::HostOrder slower;
+  slower.mutable_override()->set_override_percent(50.0);
+  slower.mutable_override()->set_control_token(token_);
+  ASSERT_FALSE(Do(slower).has_refusal());
+  const v1::HostOrderAnswer again = Do(cover);
+  EXPECT_TRUE(again.status().door_open());
+  EXPECT_EQ(again.status().override_percent(), 100.0);
+  EXPECT_TRUE(host_->StatusAt(now_).door_open());  // it was pressed once
+}
+
+// LIVE-2.13: keys that act when they are pressed do nothing when they are let go; what becomes of a
+// key is said.
+TEST_F(PanelKeysTest, LettingGoDoesNothingMore) {
+  MakeAndTake();
+  for (const char* key : {"PAUSE", "COVER", "POWER", "VIEW"}) {
+    const v1::HostOrderAnswer answer = Do(Key(key, v1::KEY_ACTION_RELEASE));
+    EXPECT_FALSE(answer.has_refusal()) << key << answer.refusal().message();
+  }
+  EXPECT_FALSE(host_->StatusAt(now_).door_open());
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  const v1::HostOrderAnswer unsaid = Do(Key("COVER", v1::KEY_ACTION_UNSPECIFIED));
+  EXPECT_EQ(unsaid.refusal().code(), "CELL-E9003");
+  EXPECT_EQ(unsaid.refusal().message(), "action: say which");
+  EXPECT_FALSE(host_->StatusAt(now_).door_open());
+}
+
+// LIVE-2.13: a STOP on top of a PAUSE of the panel leaves it to the panel to go on.
+TEST_F(PanelKeysTest, APauseThatIsStoppedIsOneOfThePanel) {
+  MakeAndTake(v1::ControlLease::ON_LOSS_GO_ON);
+  ASSERT_FALSE(Do(Start()).has_refusal());
+  Pass(5s, 50ms);
+  ASSERT_FALSE(Do(Key("PAUSE")).has_refusal());
+  ASSERT_NE(State(), v1::MACHINE_STATE_HELD);  // the stroke ends first
+  ASSERT_TRUE(Do(Stop()).has_halt());
+  Pass(3s, 50ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_PANEL);
+  EXPECT_EQ(Do(Resume()).refusal().code(), "CELL-E9421");
+}
+
+// LIVE-7.04, LIVE-7.06: whoever takes control presses from 1 on, and nothing of who had it before
+// holds him up: no key that was stopped, no line that was slow.
+TEST_F(PanelKeysTest, ANewLeaseKnowsNothingOfTheOneBefore) {
+  MakeAndTake();
+  Do(Key("X+", v1::KEY_ACTION_PRESS));
+  Pass(300ms);  // nobody is heard
+  for (int i = 0; i < 3; ++i) {
+    Pass(50ms);
+    v1::HostOrder beat = Beat({});
+    beat.mutable_panel_heartbeat()->mutable_round_trip()->set_nanos(100'000'000);
+    Do(beat);
+  }
+  EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).refusal().code(), "CELL-E9434");
+  v1::HostOrder release;
+  release.mutable_release_control()->set_control_token(token_);
+  ASSERT_FALSE(Do(release).has_refusal());
+  Control();
+  sequence_of_keys_ = 0;
+  beats_ = 0;
+  const v1::HostOrderAnswer pressed = Do(Key("X+", v1::KEY_ACTION_PRESS));
+  EXPECT_EQ(pressed.status().state(), v1::MACHINE_STATE_JOGGING) << pressed.refusal().message();
+  Hold("X+", 500ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_JOGGING);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

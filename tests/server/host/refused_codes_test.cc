@@ -191,5 +191,36 @@ TEST_F(RefusedCodes, AContinuationThatIsRefusedLeavesNothing) {
   EXPECT_EQ(recording->head.job(), "");
 }
 
+// LIVE-5.02: nor is one of the queue, whose program is not that of the next run.
+TEST_F(RefusedCodes, AJobThatIsRefusedLeavesNothing) {
+  options_.set_ticket_needed(true);
+  MakeAndTake();
+  EXPECT_EQ(CodeOf(JobOf("PA;PA;VS5;PU100,0;", "other.rml")), Code(ErrorCode::kCellTicket));
+  ASSERT_FALSE(Do(Start()).has_refusal());
+  EXPECT_EQ(host_->StatusAt(now_).run().job(), "");
+  static_cast<void>(host_->TakeEntries(now_, true));
+  v1::HostOrder order;
+  order.mutable_recording();
+  const auto recording = recording::ReadFile(Do(order).recording().chunk());
+  ASSERT_TRUE(recording) << recording.error().detail;
+  EXPECT_FALSE(recording->head.has_brought());
+  EXPECT_EQ(recording->head.job(), "");
+}
+
+// What is set from outside is said, and of what starts programs one at a time.
+TEST_F(RefusedCodes, OfInputsFromOutside) {
+  MakeAndTake();
+  v1::HostOrder order;
+  order.mutable_inputs()->set_control_token(token_);
+  const v1::HostOrderAnswer none = Do(order);
+  EXPECT_EQ(none.refusal().code(), Code(ErrorCode::kCellInvalidArgument));
+  EXPECT_EQ(none.refusal().message(), "inputs: none is given");
+  for (const int gate : {1, 2}) order.mutable_inputs()->add_inputs()->set_gate(gate);
+  const v1::HostOrderAnswer both = Do(order);
+  EXPECT_EQ(both.refusal().code(), Code(ErrorCode::kCellInvalidArgument));
+  EXPECT_EQ(both.refusal().message(),
+            "inputs: one gate at a time, for each of them starts a program");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -114,6 +114,20 @@ TEST_F(AssignmentTest, ProgramsOfTheJobGoOverThoseOfTheMachine) {
   EXPECT_EQ(Revisions(made.first.assignment()), 0);
 }
 
+// Nothing follows the assignment of what is not in it any more, however large it was.
+TEST_F(AssignmentTest, WhatIsReplacedDoesNotFollow) {
+  Put(44, "stored 44");
+  Put(45, std::string(70'000, 'l'));
+  v1::SubmitJobRequest request = Stored(44);
+  v1::SlotProgram& further = *request.mutable_job()->mutable_simulation()->add_programs();
+  further.set_slot(45);
+  further.mutable_program()->set_file_name("45.S");
+  further.mutable_program()->set_content("STOP\n");
+  const auto made = Must(MakeAssignment(bed.store(), config, Lease(request)));
+  EXPECT_EQ(Contents(made.first.assignment()), (Programs{{44, "stored 44"}, {45, "STOP\n"}}));
+  EXPECT_TRUE(made.programs.empty());
+}
+
 TEST_F(AssignmentTest, ABudgetIsWhatTheJobWantsButNoMoreThanTheServerAllows) {
   config.limit_steps = 1000;
   config.limit_processor_s = 5.0;
@@ -141,6 +155,7 @@ TEST_F(AssignmentTest, BringsTheLaserSchedulesOfTheMachine) {
   EXPECT_FALSE(assignment.default_schedules());
   ASSERT_EQ(assignment.schedules_size(), 1);
   EXPECT_EQ(assignment.schedules(0).number(), 12);
+  EXPECT_EQ(assignment.schedules(0).title(), "thin");
   EXPECT_EQ(assignment.schedules(0).mode(), "PULSE");
   EXPECT_EQ(assignment.schedules(0).power_percent(), 40.0);
 }

@@ -462,6 +462,10 @@ TEST_F(JobBookTest, ADecisionSaysWhatAndWhy) {
     request.set_reason(std::string(size, 'x'));
     EXPECT_EQ(refused(), ErrorCode::kCellInvalidArgument) << size;
   }
+  std::string umlauts;
+  for (int i = 0; i < 200; ++i) umlauts += "ü";
+  request.set_reason(umlauts);
+  EXPECT_EQ(Must(book.MachineToDecide(request)), "optimo-1");
   request.set_reason("it burnt");
   request.set_name("7");
   EXPECT_EQ(refused(), ErrorCode::kCellInvalidArgument);

@@ -117,6 +117,21 @@ TEST_F(WorkerProcessesTest, StartsOneThatFailsAtOnceMoreAndMoreSlowly) {
   ASSERT_TRUE(Eventually([&] { return Lives().size() == lives; }));
 }
 
+// What is there and cannot be begun is tried once a second.
+TEST_F(WorkerProcessesTest, TriesOneThatCannotBeStartedEachSecond) {
+  const WorkerProcesses::Options options = Options("exec sleep 60");
+  std::ofstream(options.program) << "#!/no/such/interpreter\n";
+  auto processes = Must(WorkerProcesses::Start(options));
+  ASSERT_TRUE(steady_.GoneRound());
+  Options("exec sleep 60");  // by now it could be
+  steady_.Advance(std::chrono::milliseconds(999));
+  ASSERT_TRUE(steady_.GoneRound());
+  EXPECT_TRUE(Lives().empty());
+  steady_.Advance(std::chrono::milliseconds(1));
+  ASSERT_TRUE(Eventually([&] { return Lives().size() == 1; }));
+  processes->Stop(std::chrono::seconds(10));
+}
+
 TEST_F(WorkerProcessesTest, StartsNoMoreWhenItIsToldSo) {
   auto processes = Must(WorkerProcesses::Start(Options("exec sleep 60", 2)));
   ASSERT_TRUE(Eventually([&] { return Lives().size() == 2; }));

@@ -3,6 +3,7 @@
 
 #include <future>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "tests/server/jobs/dispatcher_bed.h"
@@ -21,9 +22,14 @@ class WithdrawingStore final : public ForwardingStore {
   std::atomic<std::int64_t> newest = 0;
   std::atomic<std::int64_t> withdrawn = 0;
   std::atomic<int> withdrawals = 0;
+  std::atomic<int> asks_that_throw = 0;
 
   std::int64_t AwaitJobs(storage::JobRequest request,
                          storage::Done<std::vector<storage::LeasedJob>> done) override {
+    if (asks_that_throw > 0) {
+      --asks_that_throw;
+      throw std::bad_alloc();
+    }
     newest = store_.AwaitJobs(std::move(request), std::move(done));
     if (while_asked) while_asked();
     return newest;
@@ -99,6 +105,28 @@ TEST_F(WorkersThatLeave, OneThatWorksWithdrawsNothing) {
   EXPECT_EQ(store.withdrawals, 0);
 }
 
+// One that waits takes back what it asked for.
+TEST_F(WorkersThatLeave, OneThatWaitsWithdrawsWhatItAskedFor) {
+  FakeWorker idle(dispatcher(), "idle");
+  ASSERT_TRUE(Eventually([&] { return store.newest != 0; }));
+  dispatcher().Settle();
+  idle.Leave();
+  EXPECT_EQ(store.withdrawals, 1);
+  EXPECT_EQ(store.withdrawn, store.newest);
+}
+
+// A store that throws as it is asked for a job is asked again a little later.
+TEST_F(WorkersThatLeave, OneWhoseStoreThrewStays) {
+  store.asks_that_throw = 1;
+  FakeWorker worker(dispatcher(), "w");
+  ASSERT_TRUE(Eventually([&] { return store.asks_that_throw == 0; }));
+  const std::int64_t job = server.SubmitCheck();
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.job(), job);
+  EXPECT_FALSE(worker.line().closed);
+  worker.Leave();
+}
+
 // What cannot be stored at all may be what it told: the attempt is lost without that.
 TEST_F(WorkersThatLeave, WhatCannotBeStoredIsLeftOut) {
   const std::int64_t job = server.SubmitCheck();
@@ -142,6 +170,26 @@ TEST_F(WorkersThatLeave, WhatThrowsIsAMistakeOfOurs) {
   EXPECT_EQ(line->closed.get_future().get(), ErrorCode::kCellInternal);
   store.throws = false;
   dispatcher().Leave(worker);
+}
+
+// A job whose last attempt is lost ends where its worker was last.
+TEST_F(WorkersThatLeave, WhereOneWasIsWhereItsJobEnds) {
+  const std::int64_t job = server.SubmitCheck("STOP\n", 1);
+  const auto line = std::make_shared<ClosedLine>();
+  const Dispatcher::WorkerId worker = Must(dispatcher().Join(line, Hello("w")));
+  v1::WorkRequest message;
+  v1::WorkerHeartbeat& heartbeat = *message.mutable_heartbeat();
+  *heartbeat.mutable_lease() = line->taken.get_future().get();
+  heartbeat.mutable_progress()->mutable_place()->set_program(12);
+  heartbeat.mutable_progress()->mutable_place()->set_step(7);
+  dispatcher().Receive(worker, std::move(message));
+  dispatcher().Leave(worker);
+  ASSERT_TRUE(
+      Eventually([&] { return Must(server.store().GetJob(job)).state == JobState::kFailed; }));
+  const std::optional<storage::JobOutcome> outcome = Must(server.store().GetJob(job)).outcome;
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->program, 12);
+  EXPECT_EQ(outcome->step, 7);
 }
 
 // What nobody can work on has been begun as far as anybody could: an end that the store does not

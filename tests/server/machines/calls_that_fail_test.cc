@@ -1,7 +1,10 @@
 // Calls of the store that fail while hosts join, tell and are given up, and while somebody teaches:
 // each is handed on, and nothing is half done (live.md 3.02, 5.08, 7.09).
 #include <atomic>
+#include <functional>
+#include <future>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "server/machines/host_entries.h"
@@ -15,13 +18,26 @@ namespace {
 
 using std::chrono::seconds;
 
-enum class Call { kNone, kMachine, kMark, kAppend, kTake, kTakeOver, kLeases, kJobs, kJob };
+enum class Call {
+  kNone,
+  kMachine,
+  kMark,
+  kAppend,
+  kTake,
+  kTakeOver,
+  kLeases,
+  kJobs,
+  kJob,
+  kEvents,
+  kRenew
+};
 
 // Of which one kind of call fails, as long as it is told so. Thread-safe.
 class StoreWithoutACall final : public ForwardingStore {
  public:
   using ForwardingStore::ForwardingStore;
   std::atomic<Call> fails = Call::kNone;
+  std::function<void()> before_append;  // once
 
   Result<storage::MachineRecord> GetMachine(std::string_view id) override {
     if (fails == Call::kMachine) return Away();
@@ -33,12 +49,18 @@ class StoreWithoutACall final : public ForwardingStore {
   }
   Status AppendMachine(const storage::MachineLease& lease,
                        const storage::MachineWrite& write) override {
+    if (const auto act = std::exchange(before_append, {})) act();
     if (fails == Call::kAppend) return Away();
     return store_.AppendMachine(lease, write);
   }
   Result<storage::MachineLease> TakeMachine(const storage::MachineClaim& claim) override {
     if (fails == Call::kTake || (fails == Call::kTakeOver && claim.seen)) return Away();
     return store_.TakeMachine(claim);
+  }
+  Result<storage::MachineLease> RenewMachine(const storage::MachineLease& lease,
+                                             std::string_view server) override {
+    if (fails == Call::kRenew) return Away();
+    return store_.RenewMachine(lease, server);
   }
   Result<std::vector<storage::MachineLease>> MachineLeases() override {
     if (fails == Call::kLeases) return Away();
@@ -51,6 +73,10 @@ class StoreWithoutACall final : public ForwardingStore {
   Result<storage::JobRecord> GetJob(std::int64_t id) override {
     if (fails == Call::kJob) return Away();
     return store_.GetJob(id);
+  }
+  Result<std::vector<storage::EventRecord>> AllEvents(std::int64_t after, int limit) override {
+    if (fails == Call::kEvents) return Away();
+    return store_.AllEvents(after, limit);
   }
 
  private:
@@ -191,6 +217,113 @@ TEST_F(CallsThatFail, AnEntryOfWhatIsNoJobIsNotStored) {
   EXPECT_EQ(CodeOf(stored.how), ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(stored.count, 1U);
   EXPECT_EQ(Told().size(), 1U);
+}
+
+// LIVE-5.03: where it is not known what has changed, the host is sent all of its memory before what
+// it is to begin.
+TEST_F(CallsThatFail, WhereEventsAreGoneAllOfTheMemoryIsSent) {
+  const auto link = std::make_shared<FakeLink>();
+  ASSERT_TRUE(troubled.Join(link, Hello()));
+  Must(bed.store().PutPrograms("mill-1", {{.slot = 5, .object = "PA;"}}, {}, "anna"));
+  ASSERT_TRUE(Eventually(
+      [&] { return link->Newest(v1::HostResponse::kMemory)->memory().programs_size() == 1; }));
+  Settle();
+  const auto sent = [&link](v1::HostResponse::MessageCase kind) {
+    const auto all = link->All();
+    return std::ranges::count(all, kind, &v1::HostResponse::message_case);
+  };
+  const auto before = sent(v1::HostResponse::kMemory);
+  store.fails = Call::kEvents;
+  v1::HostOrder order;
+  order.mutable_start()->set_program(5);
+  troubled.Ask("mill-1", order, [](const Result<v1::HostOrderAnswer>&) {});
+  EXPECT_TRUE(link->Newest(v1::HostResponse::kOrder));
+  EXPECT_EQ(sent(v1::HostResponse::kMemory), before + 1);
+  EXPECT_TRUE(link->All().back().has_order());
+}
+
+// LIVE-3.25: what the store did not take is tried again when its host is heard; trouble of the
+// store takes no machine away.
+TEST_F(CallsThatFail, WhatWasNotStoredIsStoredWithTheNextHeartbeat) {
+  const auto link = std::make_shared<FakeLink>();
+  ASSERT_TRUE(troubled.Join(link, Hello()));
+  store.fails = Call::kAppend;
+  troubled.Receive(*link, Entries(Fence(*link), 1, true));
+  Settle();
+  store.fails = Call::kNone;
+  EXPECT_TRUE(Told().empty());
+  for (const v1::HostResponse& message : link->All()) {
+    EXPECT_FALSE(message.has_entries_stored());
+    EXPECT_FALSE(message.has_lease_lost());
+  }
+  v1::HostRequest beat;
+  beat.mutable_heartbeat()->set_number(1);
+  troubled.Receive(*link, beat);
+  const auto stored = link->Newest(v1::HostResponse::kEntriesStored);
+  EXPECT_EQ(stored->entries_stored().sequence(), 2);
+  EXPECT_EQ(stored->entries_stored().fence(), Fence(*link));
+  EXPECT_EQ(Told().size(), 1U);
+}
+
+// LIVE-3.04: nor does it where a lease cannot be renewed now.
+TEST_F(CallsThatFail, ALeaseThatCannotBeRenewedNowIsNotLost) {
+  const auto link = std::make_shared<FakeLink>();
+  ASSERT_TRUE(troubled.Join(link, Hello()));
+  v1::HostRequest renew;
+  renew.mutable_renew()->set_fence(Fence(*link));
+  store.fails = Call::kRenew;
+  troubled.Receive(*link, renew);
+  Settle();
+  for (const v1::HostResponse& message : link->All()) {
+    EXPECT_FALSE(message.has_renewed());
+    EXPECT_FALSE(message.has_lease_lost());
+  }
+  store.fails = Call::kNone;
+  troubled.Receive(*link, renew);
+  EXPECT_EQ(link->Newest(v1::HostResponse::kRenewed)->renewed().fence(), Fence(*link));
+}
+
+// LIVE-5.09: a machine that is given back is free behind what its host told last, and not before.
+TEST_F(CallsThatFail, AMachineIsGivenBackBehindWhatWasTold) {
+  const auto link = std::make_shared<FakeLink>();
+  ASSERT_TRUE(troubled.Join(link, Hello()));
+  std::promise<void> begins;
+  std::promise<void> goes_on;
+  store.before_append = [&] {
+    begins.set_value();
+    goes_on.get_future().wait();
+  };
+  troubled.Receive(*link, Entries(Fence(*link), 1, true));
+  begins.get_future().wait();
+  v1::HostRequest back;
+  back.mutable_hand_back()->set_fence(Fence(*link));
+  troubled.Receive(*link, back);
+  // One thread stores, and the other waits for that: nobody is left to do anything else.
+  std::promise<void> behind;
+  executor->Post([&behind] { behind.set_value(); });
+  EXPECT_EQ(behind.get_future().wait_for(std::chrono::milliseconds(200)),
+            std::future_status::timeout);
+  goes_on.set_value();
+  Settle();
+  EXPECT_EQ(Told().size(), 1U);
+  EXPECT_TRUE(Must(bed.store().MachineLeases()).empty());
+}
+
+// LIVE-3.05: what has nothing for the store is no reason to find that the lease is lost.
+TEST_F(CallsThatFail, WhatHasNothingForTheStoreIsTaken) {
+  const storage::MachineLease lease = TakenBy("hall/1");
+  ASSERT_TRUE(bed.store().ReleaseMachine(lease));
+  std::vector<v1::JournalEntry> entries(1);
+  entries[0].set_sequence(1);
+  entries[0].set_fence(lease.fence);
+  entries[0].mutable_intent()->set_caller("anna");
+  StoredEntries stored = StoreEntries(bed.store(), lease, entries);
+  EXPECT_EQ(CodeOf(stored.how), std::nullopt);
+  EXPECT_EQ(stored.count, 1U);
+  entries[0].mutable_mark()->set_state("where it stands");
+  stored = StoreEntries(bed.store(), lease, entries);
+  EXPECT_EQ(CodeOf(stored.how), ErrorCode::kCellLeaseLost);
+  EXPECT_EQ(stored.count, 0U);
 }
 
 // Of which the n-th call fails, those of teaching among them.

@@ -172,6 +172,121 @@ TEST_F(HostsBounds, WhatWasNotThereHasNoEtag) {
   EXPECT_EQ(removed.etag_after(), "");
 }
 
+// LIVE-5.03: whatever begins a run, or looks at one, goes out behind what was stored before; what
+// halts and what asks waits for no store.
+TEST_F(HostsBounds, WhatBeginsARunWaitsForWhatIsStored) {
+  const auto link = Joined();
+  Settle();
+  std::promise<void> goes_on;
+  const std::shared_future<void> wait = goes_on.get_future().share();
+  for (int thread = 0; thread < kThreads; ++thread) executor->Post([wait] { wait.wait(); });
+  std::vector<v1::HostOrder> begin(6);
+  begin[0].mutable_start();
+  begin[1].mutable_zero();
+  begin[2].mutable_preview_start();
+  begin[3].mutable_start_at_step();
+  begin[4].mutable_run_job();
+  begin[5].mutable_continue_job();
+  for (const v1::HostOrder& order : begin) {
+    hosts.Ask("mill-1", order, [](const Result<v1::HostOrderAnswer>&) {});
+    EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 0) << order.request_case();
+  }
+  Ask(true);
+  EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 1);
+  Ask(false);
+  EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 2);
+  goes_on.set_value();
+  Settle();
+  EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 8);
+}
+
+// What a machine tells, and that it was changed itself, is nothing that its host has in its memory.
+TEST_F(HostsBounds, OnlyWhatIsInItsMemoryIsSent) {
+  const auto link = Joined();
+  hosts.Receive(*link, Entries(Fence(*link), 1, true));
+  link->Newest(v1::HostResponse::kEntriesStored);
+  const storage::MachineRecord mill = Must(bed.store().GetMachine("mill-1"));
+  Must(bed.store().PutMachine(mill, mill.revision, "anna"));
+  v1::HostOrder order;
+  order.mutable_start();
+  hosts.Ask("mill-1", order, [](const Result<v1::HostOrderAnswer>&) {});
+  link->Newest(v1::HostResponse::kOrder);
+  Settle();
+  EXPECT_EQ(Count(*link, v1::HostResponse::kMemory), 1);  // with its welcome
+}
+
+// LIVE-3.02: a line that has another one behind it says nothing any more.
+TEST_F(HostsBounds, ALineThatWasFollowedSaysNothing) {
+  const auto first = Joined();
+  const auto again = Joined(Hello("elsewhere/1", Fence(*first)));
+  EXPECT_TRUE(first->closed());
+  Tell(*first, v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(hosts.StatusOf("mill-1")->state(), v1::MACHINE_STATE_STARTING);
+  Tell(*again, v1::MACHINE_STATE_IDLE);
+  hosts.Leave(*first);
+  EXPECT_EQ(hosts.StatusOf("mill-1")->state(), v1::MACHINE_STATE_IDLE);
+  hosts.End("optimo-1", "nobody is there");  // who has no host hears nothing
+  EXPECT_EQ(Count(*again, v1::HostResponse::kStop), 0);
+  hosts.End("mill-1", "a test");
+  EXPECT_EQ(again->Newest(v1::HostResponse::kStop)->stop().reason(), "a test");
+}
+
+// LIVE-3.03, LIVE-3.30: that somebody gave it away, whose it was and where it stands is told by the
+// fence of who has it now, at the time of its mark.
+TEST_F(HostsBounds, WhatIsToldOfANewHostIsOfItsFence) {
+  const auto first = Joined();
+  hosts.Receive(*first, Entries(Fence(*first), 1, false));
+  first->Newest(v1::HostResponse::kEntriesStored);
+  v1::HostHello hello = Hello("office/2");
+  hello.set_computer("office");
+  hosts.GiveTo("mill-1", "office", "anna", "moved");
+  const auto second = Joined(hello);
+  ASSERT_GT(Fence(*second), Fence(*first));
+  const std::vector<v1::MachineEvent> told = Told();
+  ASSERT_EQ(told.size(), 4U);
+  EXPECT_EQ(told[1].run().message().text(), "taken by anna: moved");
+  EXPECT_EQ(told[2].host_lost().host(), "elsewhere/1");
+  EXPECT_EQ(told[2].host_lost().fence(), Fence(*first));
+  EXPECT_EQ(told[3].recovered().mark_fence(), Fence(*first));
+  for (std::size_t i = 1; i < told.size(); ++i) {
+    EXPECT_EQ(told[i].fence(), Fence(*second)) << i;
+    EXPECT_EQ(told[i].virtual_time_ns(), 77) << i;
+  }
+}
+
+// LIVE-2.03: a machine that has a host is not off, whatever was before; one that is forgotten is
+// free at once.
+TEST_F(HostsBounds, AHostIsAllThatAMachineNeeds) {
+  hosts.NoteOff("mill-1", "its host ended 5 times");
+  Settle();
+  ASSERT_TRUE(hosts.WhyOff("mill-1"));
+  Joined();
+  EXPECT_FALSE(hosts.WhyOff("mill-1"));
+  EXPECT_EQ(Must(bed.store().MachineLeases()).size(), 1U);
+  hosts.Forget("mill-1");
+  EXPECT_TRUE(Must(bed.store().MachineLeases()).empty());
+  const storage::MachineRecord mill = Must(bed.store().GetMachine("mill-1"));
+  EXPECT_EQ(StatusOf(&hosts, mill, {}).state(), v1::MACHINE_STATE_IDLE);
+}
+
+// LIVE-2.10, LIVE-3.17: whoever watches sees how many jobs there are, and that the line is gone.
+TEST_F(HostsBounds, AMachineWhoseLineIsGoneIsShownAsLost) {
+  const auto link = Joined();
+  RunGivenTo("elsewhere/1");
+  const auto shown = [this] {
+    v1::MachineStatus status;
+    const auto latest = feed.LatestAfter("machines/mill-1", 0);
+    static_cast<void>(status.ParseFromString(latest ? *latest->bytes : std::string()));
+    return status;
+  };
+  Tell(*link, v1::MACHINE_STATE_RUNNING);
+  ASSERT_TRUE(Eventually([&] { return shown().state() == v1::MACHINE_STATE_RUNNING; }));
+  EXPECT_EQ(shown().jobs_active(), 1);
+  EXPECT_EQ(hosts.StatusOf("mill-1")->jobs_active(), 1);
+  hosts.Leave(*link);
+  EXPECT_TRUE(Eventually([&] { return shown().state() == v1::MACHINE_STATE_LOST; }));
+}
+
 // Shell scripts in place of hosts.
 class ProcessBounds : public testing::Test {
  protected:

@@ -102,5 +102,34 @@ TEST(ConvertedText, IsInTheUnitsThatAreWanted) {
   EXPECT_NE(metric.find("12903.2"), std::string::npos) << metric;
 }
 
+// Its head has the time that the caller says, or else that of the server.
+TEST(ConvertedText, HasATimeInItsHead) {
+  v1::ConvertProgramRequest request;
+  request.mutable_program()->set_file_name("part.SI");
+  request.mutable_program()->set_content("MOVE (1.,2.,-3.,90.,0.)\n");
+  const auto head = [&request] {
+    const std::string content = Must(ConvertText(request, "Thu Mar 04 08:52:34 1993")).content();
+    return content.substr(0, content.find('\n'));
+  };
+  EXPECT_NE(head().find("Thu Mar 04 08:52:34 1993"), std::string::npos) << head();
+  request.set_date("Fri Mar 05 09:00:00 1993");
+  EXPECT_NE(head().find("Fri Mar 05 09:00:00 1993"), std::string::npos) << head();
+  EXPECT_EQ(head().find("Thu Mar 04"), std::string::npos) << head();
+}
+
+// What is wrong with a text is told with its form; of inches nothing is, as they are converted
+// first.
+TEST(FormattedText, TellsWhatIsWrongWithMillimetres) {
+  const auto findings = [](const std::string& file_name) {
+    v1::FormatProgramRequest request;
+    request.mutable_program()->set_file_name(file_name);
+    request.mutable_program()->set_content("MOVE (\n");
+    return Must(FormatText(request)).findings();
+  };
+  EXPECT_FALSE(findings("a.S").ok());
+  EXPECT_GT(findings("a.S").diagnostics_size(), 0);
+  EXPECT_EQ(findings("a.SI").diagnostics_size(), 0);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

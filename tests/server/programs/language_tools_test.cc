@@ -137,10 +137,18 @@ TEST_F(LanguageToolsTest, CompletionsSayWhatTheyReplace) {
   const auto move = std::ranges::find(found.completions(), "MOVE", &v1::Completion::label);
   ASSERT_NE(move, found.completions().end());
   EXPECT_EQ(move->kind(), v1::Completion::KIND_WORD);
+  EXPECT_THAT(move->detail(), HasSubstr("MOVE"));
+  EXPECT_NE(move->description(), "");
   // Programs of the machine behind CALL.
   const auto called = Must(tools.Complete(At<v1::CompleteRequest>(1, 6, Text("CALL \n"))));
-  EXPECT_NE(std::ranges::find(called.completions(), "44", &v1::Completion::label),
-            called.completions().end());
+  const auto program = std::ranges::find(called.completions(), "44", &v1::Completion::label);
+  ASSERT_NE(program, called.completions().end());
+  EXPECT_EQ(program->kind(), v1::Completion::KIND_PROGRAM);
+  // Sequence numbers of the text behind GOTO.
+  const auto jumps = Must(tools.Complete(At<v1::CompleteRequest>(4, 6)));
+  const auto jump = std::ranges::find(jumps.completions(), "10", &v1::Completion::label);
+  ASSERT_NE(jump, jumps.completions().end());
+  EXPECT_EQ(jump->kind(), v1::Completion::KIND_SEQUENCE_NUMBER);
 }
 
 TEST_F(LanguageToolsTest, RenameGivesWhatToReplaceOrWhyNot) {

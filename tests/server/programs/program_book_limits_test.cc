@@ -179,6 +179,7 @@ TEST_F(ProgramBookLimits, ACheckTakesASlotOfItsOwn) {
     Must(bed.store().PutPrograms("optimo-1", {{.slot = used, .object = ObjectOf("STOP\n")}}, {}));
   }
   EXPECT_EQ(slot("part.S"), 3);
+  EXPECT_EQ(slot("1.S"), 1);
   EXPECT_EQ(slot("2.S"), 2);
 }
 

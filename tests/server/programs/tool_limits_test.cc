@@ -165,6 +165,27 @@ TEST_F(ToolLimits, AComparisonOfWhatHasErrors) {
   EXPECT_TRUE(diff.error.dropped.empty());
 }
 
+// A thousand findings are listed, and the others counted.
+TEST_F(ToolLimits, FindingsThatAreNotListedAreCounted) {
+  std::string many;
+  for (int line = 0; line < 1'005; ++line) many += "SPEED 101\n";
+  v1::DiffProgramsRequest request;
+  request.mutable_before()->mutable_text()->set_file_name("old.S");
+  request.mutable_before()->mutable_text()->set_content("STOP\n");
+  request.mutable_after()->mutable_text()->set_file_name("new.S");
+  request.mutable_after()->mutable_text()->set_content(many);
+  const auto diff = tools.Diff(request);
+  ASSERT_FALSE(diff);
+  EXPECT_EQ(diff.error.diagnostics.size(), 1'000U);
+  EXPECT_EQ(diff.error.dropped.count(), 5U);
+  const auto linked = Must(tools.Link(LinkOf(1, {{1, "FUNCTION 44\n"}, {44, many}})));
+  EXPECT_EQ(linked.executable(), "");
+  EXPECT_FALSE(linked.findings().ok());
+  EXPECT_EQ(linked.findings().diagnostics_size(), 1'000);
+  EXPECT_EQ(linked.findings().diagnostics_dropped(), 5);
+  EXPECT_EQ(linked.findings().diagnostics(0).place().program(), 44);
+}
+
 // Texts that are moved: three turns or none, finite numbers; values from
 // proto/rmlcell/v1/program.proto.
 TEST(TextLimits, OffsetsOfAMove) {

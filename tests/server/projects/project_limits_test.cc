@@ -216,6 +216,8 @@ TEST_F(ProjectLimits, WhatIsKeptOfAProject) {
   EXPECT_EQ(body.title(), "");  // kept once
   EXPECT_EQ(body.etag(), "");
   EXPECT_EQ(body.name(), "");
+  EXPECT_FALSE(body.has_create_time());
+  EXPECT_FALSE(body.has_update_time());
 }
 
 // Every call that names a project says so when the name is none, and does nothing.

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "server/records/machine_capabilities.h"
 #include "server/records/machine_messages.h"
 
@@ -36,6 +38,43 @@ TEST(MachineOptions, WhoSaysWhetherAMachineLives) {
   record.options = BytesOf(enabled);
   EXPECT_TRUE(IsEnabled(record, false));
   EXPECT_EQ(OptionsOf(record)->start(), v1::MachineOptions::START_QUEUE);
+  EXPECT_FALSE(OptionsOf(record)->disabled());  // of two that contradict each other one is kept
+}
+
+// LIVE-3.01: a machine that lives begins anew with what it is, and goes on with another title.
+TEST(MachineOptions, WhatMakesAMachineLiveOtherwise) {
+  const storage::MachineRecord before{
+      .id = "m", .family = "rml1", .title = "a mill", .profile = "srm-20"};
+  storage::MachineRecord now = before;
+  now.title = "another title";
+  EXPECT_FALSE(LivesOtherwise(before, now));
+  now.profile = "t1";
+  EXPECT_TRUE(LivesOtherwise(before, now));
+  now = before;
+  now.parameters = {{"PANEL", "FULL"}};
+  EXPECT_TRUE(LivesOtherwise(before, now));
+  now = before;
+  now.options = BytesOf(v1::MachineOptions());
+  EXPECT_TRUE(LivesOtherwise(before, now));
+}
+
+// LIVE-5.04: each of these by itself is of a machine with a device.
+TEST(MachineOptions, WhatOnlyADeviceHas) {
+  using Options = v1::MachineOptions;
+  const std::vector<void (*)(Options&)> cases = {
+      [](Options& options) { options.set_pace(Options::PACE_MODEL); },
+      [](Options& options) { options.mutable_lead(); },
+      [](Options& options) { options.mutable_lead_max(); },
+      [](Options& options) { options.set_hold(Options::DEVICE_HOLD_CLEAR); },
+      [](Options& options) { options.set_home(true); },
+      [](Options& options) { options.set_unattended(true); }};
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    Options options;
+    cases[i](options);
+    const Status checked = CheckOptions(options);
+    ASSERT_FALSE(checked) << i;
+    EXPECT_THAT(checked.error().detail, HasSubstr("are for machines with a device")) << i;
+  }
 }
 
 // LIVE-5.04, LIVE-3.31: what only machines with a device have is refused, and times out of range.

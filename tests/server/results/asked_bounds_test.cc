@@ -112,6 +112,10 @@ TEST_F(AskedBounds, OfPagesOfFindings) {
   ASSERT_EQ(second.findings_size(), 1);
   EXPECT_EQ(second.findings(0).code(), "OPT-E7301");
   EXPECT_EQ(second.next_page_token(), "");
+  request.set_page_token(std::to_string(INT64_MAX));
+  const v1::ListJobFindingsResponse beyond = Must(results.Findings(request));
+  EXPECT_EQ(beyond.findings_size(), 0);
+  EXPECT_EQ(beyond.next_page_token(), "");
   request.set_page_token("0");
   EXPECT_EQ(CodeOf(results.Findings(request)), ErrorCode::kCellBadPageToken);
 }

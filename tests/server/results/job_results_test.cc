@@ -194,6 +194,21 @@ TEST_F(JobResultsTest, AStepMapFindsTheTextOfTheObject) {
   EXPECT_EQ(Map(Ended(Job("PA;", "mill-1"), {})).error().code, ErrorCode::kCellNotFound);
 }
 
+// Those that the job brought stay, though the slot has another text of the same object.
+TEST_F(JobResultsTest, AStepMapKeepsTheLinesThatItHas) {
+  const std::string text = "; a part\nSPEED 5\nSTOP\n";
+  ASSERT_TRUE(
+      programs.Store({.name = "machines/optimo-1/programs/12", .file_name = "a.S", .bytes = text}));
+  v1::GetStepMapResponse map;
+  auto& program = *map.add_programs();
+  program.set_program(12);
+  program.set_object_sha256(bridge::Sha256Hex(ObjectOf(text)));
+  for (const int line : {7, 8}) program.add_lines(line);
+  const auto read = Must(Map(Ended(Stored(12), {}, {StepsArtifact(map)})));
+  ASSERT_EQ(read.programs_size(), 1);
+  EXPECT_THAT(read.programs(0).lines(), ElementsAre(7, 8));
+}
+
 // Parts 0, 1 and 4 of 10 ns; between them nothing changes.
 v1::SeriesTable SomeSeries() {
   v1::SeriesTable table;
@@ -351,6 +366,26 @@ TEST_F(JobResultsTest, ObjectsAreComparedToo) {
   const auto compared = Must(Compare(Ended(Stored(12), report), Ended(Stored(13), report)));
   EXPECT_FALSE(compared.has_difference_error()) << compared.difference_error().message();
   EXPECT_EQ(compared.difference().steps_size(), 1);
+}
+
+// Stored streams of a mill, whose programs have no other form: all else is told in any case.
+TEST_F(JobResultsTest, StreamsThatAreStoredAreComparedAsFarAsTheyCanBe) {
+  v1::RunReport report;
+  report.set_family("rml1");
+  std::vector<std::string> names;
+  for (const int slot : {7, 8}) {
+    Must(bed.store().PutPrograms(
+        "mill-1", {{.slot = slot, .object = "PA;PU" + std::to_string(slot) + ",0;"}}, {}));
+    v1::Job job;
+    job.set_kind(v1::JOB_KIND_SIMULATE);
+    job.set_machine("machines/mill-1");
+    job.set_program("machines/mill-1/programs/" + std::to_string(slot));
+    names.push_back(Ended(job, report));
+  }
+  const auto compared = Must(Compare(names[0], names[1]));
+  EXPECT_NE(compared.has_difference(), compared.has_difference_error());
+  ASSERT_EQ(compared.inputs_size(), 1);
+  EXPECT_EQ(compared.inputs(0).name(), "program");
 }
 
 TEST_F(JobResultsTest, WhatCannotBeComparedIsSaid) {

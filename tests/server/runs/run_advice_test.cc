@@ -7,6 +7,7 @@
 #include "server/base/config.h"
 #include "server/base/names.h"
 #include "server/jobs/job_book.h"
+#include "tests/server/failing_store.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -77,6 +78,29 @@ TEST_F(RunAdviceTest, ATicketIsLookedAt) {
   const storage::Lease lease = bed_.Lease();
   Must(bed_.store().Finish(lease, {.outcome = {.state = storage::JobState::kSucceeded}}));
   EXPECT_EQ(Advice(run), "CELL-E9407");  // a check proves nothing
+}
+
+// LIVE-5.02: a program that cannot be translated ends its job, too.
+TEST_F(RunAdviceTest, AProgramWithErrorsIsNamed) {
+  EXPECT_THAT(Advice(Submit("optimo-1", "a.S", "STOP\nNONSENSE\n")), testing::StartsWith("OPT-E"));
+}
+
+// What the store does not say speaks against no job.
+TEST_F(RunAdviceTest, TroubleOfTheStoreIsNoReason) {
+  const std::int64_t check = bed_.SubmitCheck();
+  const std::int64_t good = Submit("mill-1", "a.rml", "PA;PU100,0;");
+  const std::int64_t bad = Submit("mill-1", "a.rml", "PA;PU100,0;", JobName(check));
+  Must(bed_.store().Finish(bed_.Lease(), {.outcome = {.state = storage::JobState::kSucceeded}}));
+  FailingStore store(bed_.store());
+  for (const std::int64_t job : {good, bad}) {
+    int call = 0;
+    do {
+      store.FailAt(++call);
+      const auto why = WhyItWouldFail(store, config_, job);
+      EXPECT_TRUE(!why || (job == bad && why->code == ErrorCode::kCellTicket)) << call;
+    } while (store.failed());
+    EXPECT_GT(call, 3);
+  }
 }
 
 }  // namespace

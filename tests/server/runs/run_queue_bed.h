@@ -25,17 +25,20 @@ class RunQueueTest : public testing::Test {
     hosts.OnNews([this](const std::string& machine) { runs.Wake(machine); });
     book.OnRunWaits([this](const std::string& machine) { runs.Wake(machine); });
     book.OnToldToWait([this](v1::Job& job) { runs.TellWhyItWaits(job); });
-    v1::HostHello hello;
-    hello.set_join_token("secret");
-    hello.set_machine("machines/mill-1");
-    hello.set_host("hall/1");
-    hello.set_protocol(1);
-    ASSERT_TRUE(hosts.Join(link, hello));
+    ASSERT_TRUE(hosts.Join(link, Hello()));
     fence = link->Newest(v1::HostResponse::kWelcome)->welcome().fence();
   }
   void TearDown() override {
     hosts.CloseAll();
     executor.reset();  // what was posted is done
+  }
+  static v1::HostHello Hello() {
+    v1::HostHello hello;
+    hello.set_join_token("secret");
+    hello.set_machine("machines/mill-1");
+    hello.set_host("hall/1");
+    hello.set_protocol(1);
+    return hello;
   }
   v1::MachineStatus Idle() {
     v1::MachineStatus status;

@@ -10,6 +10,7 @@
 #include "server/base/names.h"
 #include "server/jobs/job_book.h"
 #include "server/records/job_messages.h"
+#include "tests/server/failing_store.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -123,6 +124,14 @@ TEST_F(RunTicketTest, ADryRunIsNone) {
   });
   End(JobState::kSucceeded, v1::VERDICT_GOOD, Report());
   EXPECT_EQ(WhyNone(job), JobName(job) + " ran dry up to a step");
+}
+
+// Of what cannot be read now it is not known that it proves nothing: the job may wait.
+TEST_F(RunTicketTest, TroubleOfTheStoreIsHandedOn) {
+  const std::int64_t job = Submit();
+  End(JobState::kSucceeded, v1::VERDICT_GOOD, Report());
+  FailingStore store(bed.store());
+  ExpectFailuresHandedOn(store, "ticket", 2, [&] { return CodeOf(TicketOf(store, JobName(job))); });
 }
 
 }  // namespace

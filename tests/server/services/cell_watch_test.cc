@@ -367,6 +367,11 @@ TEST_F(CellWatchTest, OnlyItsCallerChangesAWatch) {
   v1::UpdateWatchRequest change;
   change.set_watch_id(watch.Next().watch_id());
   EXPECT_EQ(room.registry.Change(change, "berta").error().code, ErrorCode::kCellNotFound);
+  v1::UpdateWatchRequest misnamed = change;
+  *misnamed.mutable_add() = Of({"jobs"}).subscriptions();
+  misnamed.mutable_add(0)->mutable_jobs()->add_names("machines/mill-1");
+  EXPECT_EQ(room.registry.Change(misnamed, StreamBed::kCaller).error().code,
+            ErrorCode::kCellInvalidArgument);
   v1::UpdateWatchRequest unknown = change;
   unknown.set_watch_id("0");
   EXPECT_EQ(room.registry.Change(unknown, StreamBed::kCaller).error().code,
@@ -524,6 +529,31 @@ TEST_F(CellWatchTest, EachOneThatIsAddedBeginsWithASnapshot) {
   for (const char* id : {"a", "b", "c"}) EXPECT_EQ(NextOf(watch), std::string("snapshot of ") + id);
   // And where the job is, that was told before.
   EXPECT_EQ(NextOf(watch), JobName(one) + " at 7 steps");
+}
+
+// Also the first that anything told at all.
+TEST_F(CellWatchTest, WhereAJobIsComesBehindTheEventsThatWereMissed) {
+  room.TellSteps(two, 5);
+  auto watch = room.WatchCell(After(last - 1, {"jobs"}, false));
+  for (const char* word : {"bookmark", "jobs/2 state", "jobs/2 at 5 steps"})
+    EXPECT_EQ(NextOf(watch), word);
+}
+
+// The stream says that it lives, also behind events that it had in memory.
+TEST(CellWatchRate, ABookmarkComesBehindEvents) {
+  StreamBed room({}, std::chrono::milliseconds(300));
+  const std::int64_t job = room.Submit();
+  const storage::Lease lease = room.bed.Lease();
+  auto watch = room.WatchCell(Of({"jobs"}));
+  EXPECT_EQ(NextOf(watch), "snapshot of jobs");
+  for (const char* text : {"a", "b"}) {
+    room.Say(lease, {text});
+    std::string word = NextOf(watch);
+    while (word == "bookmark") word = NextOf(watch);
+    EXPECT_EQ(word, JobName(job) + " " + text);
+  }
+  EXPECT_EQ(NextOf(watch), "bookmark");
+  EXPECT_EQ(NextOf(watch), "bookmark");
 }
 
 }  // namespace

@@ -144,5 +144,20 @@ TEST_F(DecidedJobs, AJournalGoesOutFromItsFirstInstant) {
   }
 }
 
+// The host has the last word: without it nothing is decided.
+TEST_F(DecidedJobs, AHostThatGoesDecidesNothing) {
+  v1::DecideInterruptedRequest request;
+  const std::int64_t run = CutOff();
+  request.set_name(JobName(run));
+  request.set_decision(v1::DecideInterruptedRequest::DECISION_RESTART);
+  request.set_reason("the power was gone");
+  request.set_control_token("t");
+  request.set_request_id("r");
+  host->LeaveOnOrder();
+  Call(jobs, &v1::JobService::Stub::DecideInterrupted, request);
+  ExpectRefused(grpc::StatusCode::UNAVAILABLE, "its host is not heard of any more");
+  EXPECT_FALSE(store().GetJob(run + 1));  // no other begins
+}
+
 }  // namespace
 }  // namespace rmlcell::server

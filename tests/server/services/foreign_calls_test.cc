@@ -52,13 +52,15 @@ class ForeignCalls : public testing::Test {
     open_ = false;
   }
 
+ protected:
+  std::shared_ptr<grpc::Channel> channel_;
+
  private:
   std::mutex mutex_;
   bool open_ = true;
   v1::HandboxService::CallbackService beside_;
   std::vector<CallFacts> calls_;
   std::unique_ptr<grpc::Server> server_;
-  std::shared_ptr<grpc::Channel> channel_;
 };
 
 TEST_F(ForeignCalls, PassTheGateWithWhatIsKnownOfThem) {
@@ -75,6 +77,19 @@ TEST_F(ForeignCalls, AreNotAnsweredWhenTheyAreRefused) {
   Close();
   EXPECT_EQ(Check().error_code(), grpc::StatusCode::CANCELLED);
   EXPECT_EQ(calls().size(), 1U);
+}
+
+// Ours pass it in their own services.
+TEST_F(ForeignCalls, AreNotOurs) {
+  grpc::ClientContext context;
+  context.set_wait_for_ready(true);
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(60));
+  google::protobuf::Empty nothing;
+  EXPECT_EQ(v1::HandboxService::NewStub(channel_)
+                ->DeleteHandboxSession(&context, v1::DeleteHandboxSessionRequest(), &nothing)
+                .error_code(),
+            grpc::StatusCode::UNIMPLEMENTED);
+  EXPECT_EQ(calls().size(), 0U);
 }
 
 }  // namespace

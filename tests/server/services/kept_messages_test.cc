@@ -160,5 +160,74 @@ TEST_F(KeptMessages, WhatWasMadeOfAJobGoesWithIt) {
   EXPECT_TRUE(!again || again->message->begin() != first->message->begin());
 }
 
+// What could not be read is told by its name alone, and is looked at again for the next who asks.
+TEST_F(KeptMessages, WhatTheStoreRefusedIsNotKept) {
+  const CellRecords refused{room.store, book, room.programs, room.projects};
+  const std::int64_t before = Last();
+  storage::MachineRecord mill = Must(room.bed.store().GetMachine("mill-1"));
+  mill.title = "By the window";
+  Must(room.bed.store().PutMachine(mill, mill.revision));
+  AwaitTold();
+  const auto title = [](const v1::CellEvent& event) {
+    EXPECT_EQ(event.resource(), "machines/mill-1");
+    return event.machine().changed().machine().title();
+  };
+  const storage::EventRecord event = Must(room.bed.store().AllEvents(before, 1)).at(0);
+  ToldEvents told(refused);
+  const auto of_event = [&](bool whole) {
+    const ToldEvents::Told made = told.Of(event);
+    EXPECT_EQ(made.whole, whole);
+    v1::CellEvent message;
+    EXPECT_TRUE(message.ParseFromString(*made.bytes));
+    return title(message);
+  };
+  v1::Subscription wanted;
+  wanted.set_id("machines");
+  wanted.mutable_machines()->set_events_only(true);
+  const auto log = std::make_shared<SharedLog>(
+      SharedLogNeeds{refused, room.feed, facts, "instance"}, std::make_shared<ToldEvents>(refused),
+      std::vector<CellSubscription>{Must(CellSubscription::Make(wanted))});
+  room.store.Refuse("GetMachine");
+  EXPECT_EQ(of_event(false), "");
+  EXPECT_EQ(title(Read(Must(log->After(before, false))).event()), "");
+  room.store.Heal();
+  EXPECT_EQ(of_event(true), "By the window");
+  EXPECT_EQ(title(Read(Must(log->After(before, false))).event()), "By the window");
+}
+
+// Behind the first events of all, that were there before the feed.
+TEST_F(KeptMessages, WhatIsNotInMemoryIsNotThereAtOnce) {
+  EXPECT_FALSE(LogOfJobs()->AtOnce(1, false));
+}
+
+// What was made of the events before a job was deleted is gone already when room is made.
+TEST_F(KeptMessages, RoomIsMadeBehindAJobThatWasDeleted) {
+  const auto log = LogOfJobs();
+  std::int64_t at = Last();
+  v1::WatchCellResponse last;
+  const auto look = [&] {
+    while (at < Last()) {
+      const auto piece = Must(log->After(at, false));
+      ASSERT_TRUE(piece);
+      if (piece->message) last = Read(piece);
+      at = piece->end;
+    }
+  };
+  Say({"a", "b", "c"});
+  look();
+  const std::int64_t other = room.Submit();
+  room.Finish(room.bed.Lease());
+  EXPECT_TRUE(room.bed.store().DeleteJob(other, "anna"));
+  AwaitTold();
+  look();
+  EXPECT_TRUE(last.event().job_deleted());
+  for (const char letter : {'d', 'e', 'f', 'g', 'h'}) {
+    const std::string text(SharedLog::kBytesOfOne / 3, letter);
+    Say({text});
+    look();
+    EXPECT_EQ(last.event().job().message().text(), text);
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -263,5 +263,40 @@ TEST_F(LiveJobs, ACancelOfManyGoesToTheHost) {
   EXPECT_EQ(Must(store().GetJob(waits)).state, storage::JobState::kCancelled);
 }
 
+// Its line breaks before it has answered: who asked is told so. What it has done is done, and what
+// the job is by now cannot be told where the store refuses it.
+TEST_F(LiveJobs, WhatComesOfAnOrderIsToldAsItIs) {
+  const std::string run = JobName(Submit(v1::JOB_KIND_RUN));
+  Tell(*host, v1::MACHINE_STATE_RUNNING, run);
+  v1::HoldJobRequest request;
+  request.set_name(run);
+  request.set_request_id("r");
+  host->Answer({});
+  refusing.Refuse("GetJob");
+  Call(jobs, &v1::JobService::Stub::HoldJob, request);
+  ExpectRefused(grpc::StatusCode::INTERNAL, "the disk is full");
+  refusing.Heal();
+  request.set_request_id("s");
+  host->LeaveOnOrder();
+  Call(jobs, &v1::JobService::Stub::HoldJob, request);
+  ExpectRefused(grpc::StatusCode::UNAVAILABLE, "its host is not heard of any more");
+}
+
+TEST_F(LiveJobs, WhoMayNotSubmitSubmitsNothing) {
+  v1::SubmitJobRequest request;
+  request.mutable_job()->set_kind(v1::JOB_KIND_CHECK);
+  request.mutable_job()->set_machine(kLaser);
+  request.mutable_job()->mutable_inline_program()->set_file_name("a.S");
+  const auto submit = [&] { Call(jobs, &v1::JobService::Stub::SubmitJob, request); };
+  request.mutable_job()->mutable_inline_program()->set_content(std::string(8 << 20, ' '));
+  submit();  // more than a message may have
+  ExpectRefused(grpc::StatusCode::RESOURCE_EXHAUSTED, "limits.message_bytes");
+  request.mutable_job()->mutable_inline_program()->set_content("STOP\n");
+  gate.SetLocal(ViewerPermissions());
+  submit();
+  ExpectRefused(grpc::StatusCode::PERMISSION_DENIED, "CELL-E9012");
+  EXPECT_TRUE(Must(store().ListJobs({})).empty());
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -24,6 +24,7 @@
 #include "server/services/job_service.h"
 #include "server/services/machine_service.h"
 #include "tests/server/jobs/dispatcher_bed.h"
+#include "tests/server/refusing_store.h"
 
 namespace rmlcell::server {
 
@@ -37,11 +38,14 @@ class AnsweringHost final : public HostLink {
   void Send(v1::HostResponse message) override {
     if (message.has_order()) {
       v1::HostRequest request;
+      bool leaves = false;
       {
         const std::lock_guard lock(mutex_);
         orders_.push_back(message.order());
         *request.mutable_answer() = answer_;
+        leaves = leaves_;
       }
+      if (leaves) return hosts_.Leave(*this);
       request.mutable_answer()->set_number(message.order().number());
       hosts_.Receive(*this, std::move(request));
     } else if (message.has_stop()) {
@@ -53,9 +57,23 @@ class AnsweringHost final : public HostLink {
       request.mutable_hand_back();
       hosts_.Receive(*this, std::move(request));
       hosts_.Leave(*this);
+    } else if (message.has_memory()) {
+      const std::lock_guard lock(mutex_);
+      memory_ = message.memory();
     }
   }
   void Close(const Error&) override {}
+
+  // Its line breaks when an order comes, before it has answered.
+  void LeaveOnOrder() {
+    const std::lock_guard lock(mutex_);
+    leaves_ = true;
+  }
+  // What it was told last of the memory of its machine.
+  v1::HostMemory memory() const {
+    const std::lock_guard lock(mutex_);
+    return memory_;
+  }
 
   void Answer(const v1::HostOrderAnswer& answer) {
     const std::lock_guard lock(mutex_);
@@ -77,6 +95,8 @@ class AnsweringHost final : public HostLink {
   v1::HostOrderAnswer answer_;
   std::vector<v1::HostOrder> orders_;
   std::string stopped_;
+  bool leaves_ = false;
+  v1::HostMemory memory_;
 };
 
 // A value into each field that is one value, and into those of its messages.
@@ -132,6 +152,7 @@ class LiveMachines : public testing::Test {
 
   storage::Store& store() { return bed_.server.store(); }
   DispatcherBed& bed() { return bed_; }
+  EventFeed& feed() { return feed_; }
   static std::unique_ptr<grpc::ClientContext> Context() {
     auto context = std::make_unique<grpc::ClientContext>();
     context->set_deadline(std::chrono::system_clock::now() + kPatience);
@@ -150,16 +171,19 @@ class LiveMachines : public testing::Test {
     EXPECT_THAT(status.error_message(), testing::HasSubstr(text));
   }
 
-  // Of optimo-1; null: not yet.
-  std::shared_ptr<AnsweringHost> TryJoin(const std::string& computer) {
+  static v1::HostHello HelloOf(const std::string& computer) {
     v1::HostHello hello;
     hello.set_join_token("secret");
     hello.set_machine("machines/optimo-1");
     hello.set_host(computer + "/1");
     hello.set_computer(computer);
     hello.set_protocol(1);
+    return hello;
+  }
+  // Of optimo-1; null: not yet.
+  std::shared_ptr<AnsweringHost> TryJoin(const std::string& computer) {
     auto joined = std::make_shared<AnsweringHost>(hosts);
-    if (!hosts.Join(joined, hello)) return nullptr;
+    if (!hosts.Join(joined, HelloOf(computer))) return nullptr;
     Tell(*joined, v1::MACHINE_STATE_IDLE, {}, computer);
     return joined;
   }
@@ -228,7 +252,12 @@ class LiveMachines : public testing::Test {
 
  private:
   DispatcherBed bed_;
-  EventFeed feed_{bed_.server.store()};
+
+ protected:
+  RefusingStore refusing{bed_.server.store()};  // what feed, book and services read
+
+ private:
+  EventFeed feed_{refusing};
   Config config_;
   TestSteadyClock clock_;
   std::unique_ptr<Executor> executor_ = std::make_unique<Executor>(3);
@@ -250,7 +279,7 @@ class LiveMachines : public testing::Test {
                            .server = "127.0.0.1:1",
                            .journals = folder.File("journals"),
                            .is_heard = [](const std::string&) { return true; }}};
-  JobBook book{bed_.server.store(), config_};
+  JobBook book{refusing, config_};
   std::shared_ptr<AnsweringHost> host = Joined();
   Gate gate{"secret"};
 
@@ -269,9 +298,9 @@ class LiveMachines : public testing::Test {
   JobService job_service_{needs_, *executor_, book,  results_,  bed_.dispatcher(),
                           runs_,  feed_,      open_, "instance"};
   MachineService machine_service_{needs_,
-                                  {*executor_, open_, bed_.server.store(), feed_, "instance"},
+                                  {*executor_, open_, refusing, feed_, "instance"},
                                   {&hosts, &processes, &runs_, false}};
-  HandboxService handbox_service_{needs_, {*executor_, open_, bed_.server.store(), feed_, &hosts}};
+  HandboxService handbox_service_{needs_, {*executor_, open_, refusing, feed_, &hosts}};
   std::unique_ptr<grpc::Server> server_;
 };
 

@@ -88,8 +88,9 @@ TEST_F(LiveMachines, KeysStreamToTheHost) {
   key.mutable_key()->set_session("optimo-1");
   EXPECT_EQ(answered(key, pressed).refusal().code(), "CELL-E9003");
   key.mutable_key()->set_session("machines/mill-1/handboxSessions/1");
-  EXPECT_THAT(answered(key, pressed).refusal().message(),
-              HasSubstr("the machine has no host: enable it"));
+  const v1::ErrorDetail hostless = answered(key, pressed).refusal();
+  EXPECT_EQ(hostless.code(), "CELL-E9424");
+  EXPECT_THAT(hostless.message(), HasSubstr("the machine has no host: enable it"));
   EXPECT_THAT(host->TakeOrders(), IsEmpty());
   stream->WritesDone();
   EXPECT_TRUE(stream->Finish().ok());

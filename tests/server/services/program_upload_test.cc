@@ -106,5 +106,15 @@ TEST(ProgramUpload, AnEmptyProgramIsNone) {
                 "header.size is missing: give the number of bytes that follow");
 }
 
+TEST(ProgramUpload, OneByteIsAProgram) {
+  ProgramUpload upload = Small();
+  ASSERT_TRUE(
+      upload.Add(Header(1, "ca978112ca1bbdcafac231b39a23dc4da786eff8147c4e72b9807785afee48bb"))
+          .ok());
+  ASSERT_TRUE(upload.Add(Chunk("a")).ok());
+  EXPECT_TRUE(upload.End().ok());
+  EXPECT_EQ(upload.TakeBytes(), "a");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

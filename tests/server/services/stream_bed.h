@@ -24,6 +24,7 @@
 #include "server/services/job_streams.h"
 #include "server/services/machine_watch.h"
 #include "server/services/open_stream.h"
+#include "tests/server/refusing_store.h"
 #include "tests/server/server_bed.h"
 
 // Streams of jobs over a channel of this process, with the log of a real store behind them.
@@ -103,7 +104,7 @@ class StreamBed {
                   .instance_id = kInstance}),
         cell_({.executor = executor_,
                .open = open,
-               .records = {bed.store(), book_, programs, projects},
+               .records = {store, book_, programs, projects},
                .feed = feed,
                .logs = logs_,
                .facts = facts_,
@@ -111,7 +112,7 @@ class StreamBed {
                .instance_id = kInstance,
                .bookmark_interval = bookmark_interval},
               CallNeeds{gate, executor_, executor_, 1 << 20}),
-        machines_({executor_, open, bed.store(), feed, kInstance}) {
+        machines_({executor_, open, store, feed, kInstance}) {
     gate.OnChange([this] { open.AskAgain(); });
     grpc::ServerBuilder builder;
     builder.RegisterService(&service_);
@@ -162,11 +163,12 @@ class StreamBed {
                                                        const std::string& artifact);
 
   ServerBed bed;
-  EventFeed feed{bed.store()};
+  RefusingStore store{bed.store()};  // what the streams read
+  EventFeed feed{store};
   OpenStreams open;
   Config config;
-  ProgramBook programs{bed.store(), config};
-  ProjectBook projects{bed.store()};
+  ProgramBook programs{store, config};
+  ProjectBook projects{store};
   WatchRegistry registry;
 
  private:
@@ -234,9 +236,9 @@ class StreamBed {
   std::mutex running_mutex_;
   ByJob<RunningToolpath> running_;  // guarded by running_mutex_
   ByJob<RunningHeights> mills_;     // likewise
-  JobBook book_{bed.store(), config};
-  JobFactsBook facts_{bed.store()};
-  SharedLogs logs_{{{bed.store(), book_, programs, projects}, feed, facts_, kInstance}};
+  JobBook book_{store, config};
+  JobFactsBook facts_{store};
+  SharedLogs logs_{{{store, book_, programs, projects}, feed, facts_, kInstance}};
   Executor executor_{2};
   Service service_;
   CellService cell_;

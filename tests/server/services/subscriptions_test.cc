@@ -113,6 +113,10 @@ TEST_F(SubscriptionTest, OfProjects) {
   wanted.mutable_projects();
   EXPECT_TRUE(Must(CellSubscription::Make(wanted))
                   .WantsEvent({.resource = "projects/lid", .kind = "updated"}, facts));
+  // Of what stands for now they have nothing.
+  const std::int64_t job = Submit("optimo-1", "CHECK", "anna");
+  for (const std::string& other : {JobName(job), std::string("machines/optimo-1")})
+    EXPECT_FALSE(Must(CellSubscription::Make(wanted)).WantsLatest(other, facts));
   wanted.mutable_projects()->add_names("projects/box");
   EXPECT_FALSE(Must(CellSubscription::Make(wanted))
                    .WantsEvent({.resource = "projects/lid", .kind = "updated"}, facts));

@@ -186,5 +186,52 @@ TEST_F(ToolpathFollowTest, RefusesLevelsAndJobsThatAreNot) {
   Follow(job + 1).ExpectRefused(grpc::StatusCode::NOT_FOUND, "job " + std::to_string(job + 1));
 }
 
+// What went out already is not told again, however many parts of the stored one it fills.
+TEST_F(ToolpathFollowTest, WhatIsLeftOfALongOneComesFromTheStore) {
+  const std::int64_t job = room.Submit(Simulation());
+  const storage::Lease lease = room.bed.Lease();
+  const auto running = room.Run(job);
+  std::vector<std::string> blocks;
+  for (int i = 0; i < 300; ++i) blocks.push_back(std::to_string(i) + std::string(9'000, 'x'));
+  running->Add(Framed(std::vector<std::string>(blocks.begin(), blocks.begin() + 200)), {});
+  auto stream = Follow(job);
+  EXPECT_EQ(stream.Next().header().bytes(), 0);  // nobody knows yet
+  for (int i = 0; i < 200; ++i)
+    ASSERT_EQ(stream.Next().block(), blocks[static_cast<std::size_t>(i)]);
+  room.Finish(lease, Stored(Framed(blocks)));
+  running->End(true);
+  for (int i = 200; i < 300; ++i)
+    ASSERT_EQ(stream.Next().block(), blocks[static_cast<std::size_t>(i)]);
+  EXPECT_EQ(stream.Next().header().bytes(), static_cast<std::int64_t>(Framed(blocks).size()));
+  stream.ExpectGoodEnd();
+}
+
+// Of a frame a part may have come before the end: the store has all of it.
+TEST_F(ToolpathFollowTest, APartOfAFrameIsTakenFromTheStoreAsAWhole) {
+  const std::int64_t job = room.Submit(Simulation());
+  const storage::Lease lease = room.bed.Lease();
+  const auto running = room.Run(job);
+  running->Add(Framed({"one"}) + Framed({"two and more"}).substr(0, 7), "and more");
+  auto stream = Follow(job);
+  EXPECT_TRUE(stream.Next().has_header());
+  EXPECT_EQ(stream.Next().block(), "one");
+  EXPECT_EQ(stream.Next().open_block(), "and more");  // behind all that has come
+  room.Finish(lease, Stored(Framed({"one", "two and more"})));
+  running->End(true);
+  EXPECT_EQ(stream.Next().block(), "two and more");
+  EXPECT_TRUE(stream.Next().header().complete());
+  stream.ExpectGoodEnd();
+}
+
+// ToolpathHeader.duration_ns: virtual time of the run, as its report has it.
+TEST_F(ToolpathFollowTest, TheHeaderSaysHowLongItTakes) {
+  const std::int64_t job = room.Submit(Simulation());
+  v1::RunReport report;
+  report.mutable_total()->mutable_times()->set_cycle_s(2.5);
+  room.Finish(room.bed.Lease(), {{.name = "toolpath", .bytes = Framed({"one"})},
+                                 {.name = "report", .bytes = report.SerializeAsString()}});
+  EXPECT_EQ(Follow(job).Next().header().duration_ns(), 2'500'000'000);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -85,7 +85,7 @@ class UnaryCalls : public testing::Test {
       builder.RegisterService(service);
     builder.SetMaxReceiveMessageSize(80 << 20);
     server_ = builder.BuildAndStart();
-    const auto channel = server_->InProcessChannel({});
+    channel = server_->InProcessChannel({});
     jobs = v1::JobService::NewStub(channel);
     machines = v1::MachineService::NewStub(channel);
     programs = v1::ProgramService::NewStub(channel);
@@ -145,6 +145,7 @@ class UnaryCalls : public testing::Test {
   }
 
   grpc::Status status;  // of the newest call
+  std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::JobService::Stub> jobs;
   std::unique_ptr<v1::MachineService::Stub> machines;
   std::unique_ptr<v1::ProgramService::Stub> programs;

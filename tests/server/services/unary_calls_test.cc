@@ -239,6 +239,11 @@ TEST_F(UnaryCalls, AJournalGoesOut) {
   EXPECT_EQ(exported(of_job + "from_virtual_time_ns: 9"), file);
   EXPECT_EQ(exported(of_job + "fence: 7 from_virtual_time_ns: 10"),
             recording::FileOf({.head = all.head, .entries = {Mark(2, 10)}}));
+  // From the beginning it is as it was kept, also where it began twice.
+  const std::string twice =
+      recording::FileOf({.head = all.head, .entries = {Mark(1, 0), Mark(2, 0)}});
+  const std::string begun = JobName(EndedJob({{.name = "recording", .bytes = twice}}));
+  EXPECT_EQ(exported("machine: 'machines/optimo-1' fence: 7 job: '" + begun + "'"), twice);
   exported(of_job + "fence: 8");
   ExpectRefused(grpc::StatusCode::NOT_FOUND, "what is recorded is of fence 7");
   exported("machine: 'machines/mill-1' job: '" + JobName(job) + "'");

@@ -83,6 +83,17 @@ TEST_F(WebResourcesTest, AProgramGoesUpAndComesDownInEachForm) {
   EXPECT_EQ(Upload(header, {std::string(kText)}), "");
 }
 
+// docs/api.md: ?width= of a picture is that of GetProgramPicture, 64 to 8192.
+TEST_F(WebResourcesTest, APictureHasTheWidthThatIsAskedFor) {
+  EXPECT_EQ(Upload(Header(), {std::string(kText)}), "");
+  const auto picture = [&](int width_px) {
+    return resources.Find(
+        web::ProgramPicturePath{.machine = "optimo-1", .slot = 45, .width_px = width_px}, {});
+  };
+  EXPECT_EQ(CodeOf(picture(63)), ErrorCode::kCellInvalidArgument);
+  EXPECT_NE(Must(picture(64)).etag, Must(picture(8192)).etag);
+}
+
 // cell.proto, CellEvent.caller: who stored it stands in the log of the cell.
 TEST_F(WebResourcesTest, TheLogNamesWhoStored) {
   EXPECT_EQ(Upload(Header(), {std::string(kText)}), "");
@@ -122,6 +133,7 @@ TEST_F(WebResourcesTest, ProductsOfAJob) {
   const web::Resource shown = Must(resources.Find(web::ArtifactPath{job, "report"}, {}));
   EXPECT_EQ(shown.media_type, "application/json");
   EXPECT_THAT(shown.bytes, HasSubstr("\"optimo\""));
+  EXPECT_THAT(shown.bytes, HasSubstr("\n"));  // for people
   EXPECT_EQ(shown.etag, bridge::Sha256Hex(report.SerializeAsString()));
   const web::Resource picture = Must(resources.Find(web::ArtifactPath{job, "picture.svg"}, {}));
   EXPECT_EQ(picture.media_type, "image/svg+xml");

@@ -117,6 +117,32 @@ TEST_F(Answers, RefusedUploadsHaveTheirCode) {
       200);
 }
 
+// A foreign page that may call reads every answer, an error as well (the Fetch standard).
+TEST(ForeignPages, ReadWhatTheyAskedFor) {
+  WebOptions options = AnyPort();
+  options.origins = {"http://localhost:5173"};
+  FakeCell cell(options);
+  for (const std::string_view job : {kFirst, std::string_view(R"({"name":"jobs/999"})")}) {
+    const RawResponse response = Exchange(
+        cell.port(), Post(kGetJob, "application/json", job, "Origin: http://localhost:5173\r\n"));
+    EXPECT_EQ(response.Header("access-control-allow-origin"), "http://localhost:5173") << job;
+    EXPECT_EQ(response.Header("vary"), "Origin") << job;
+  }
+}
+
+// RFC 9110 5.1: names of headers have no case, also where they are configured.
+TEST(ForwardedHeaders, MayBeConfiguredInAnyCase) {
+  WebOptions options = AnyPort();
+  options.forwarded_headers = {"X-Thing"};
+  FakeCell cell(options);
+  const RawResponse response =
+      Exchange(cell.port(),
+               Post(kGetJob, "application/json", R"({"name":"jobs/meta"})", "x-tHing: seven\r\n"));
+  ASSERT_EQ(response.status, 200);
+  const std::string title = nlohmann::json::parse(response.body)["title"];
+  EXPECT_NE(title.find("x-thing=seven\n"), std::string::npos) << title;
+}
+
 // A length that no number of ours holds is one that is not known before the end.
 TEST(UploadLengths, AreNumbersOrNotKnown) {
   const auto size = [](const std::string& length) {

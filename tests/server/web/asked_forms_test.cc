@@ -6,6 +6,7 @@
 #include "rmlcell/v1/job.pb.h"
 #include "server/web/base64.h"
 #include "server/web/request_guard.h"
+#include "server/web/rpc_codec.h"
 #include "server/web/rpc_request.h"
 
 namespace rmlcell::web {
@@ -39,6 +40,15 @@ TEST(AskedForms, TheMessageOfAQueryIsWhatTheQuerySays) {
             "jobs/7");
   EXPECT_EQ(decoded("encoding=json&message={%22name%22:%22jobs/8%22}"), "jobs/8");
   EXPECT_EQ(decoded("message={%22name%22:%22jobs/9%22}"), "jobs/9");
+}
+
+// The form of gRPC-Web is that of a POST: whatever else it says, a GET is answered as one.
+TEST(AskedForms, AGetIsRefusedAsAGet) {
+  HttpRequest request = WatchBy("GET", {{"content-type", "application/grpc-web+proto"}});
+  request.path = "/rmlcell.v1.JobService/SubmitJob";
+  const RpcRouting routing = RouteRpc(request);
+  ASSERT_TRUE(routing.refusal);
+  EXPECT_EQ(RefusalOf(routing).status, 405);
 }
 
 // RFC 9110 12.5.1: events in a list of what is accepted are asked for, in any case of letters.

@@ -38,6 +38,12 @@ TEST(Base64, VectorsOfTheStandard) {
   }
 }
 
+// Of a view nothing counts that lies behind it in memory.
+TEST(Base64, TheBytesBehindAreNotTaken) {
+  EXPECT_EQ(Base64(std::string_view("fo\xFF").substr(0, 2), true), "Zm8=");
+  EXPECT_EQ(Base64(std::string_view("f\xFF\xFF").substr(0, 1), true), "Zg==");
+}
+
 TEST(Base64, PiecesAndUrlAlphabet) {
   EXPECT_EQ(Base64Decode("Zg==Zm8=Zm9v"), "ffofoo");
   EXPECT_EQ(Base64Decode("-_-_"), Base64Decode("+/+/"));
@@ -48,6 +54,7 @@ TEST(Base64, RefusesWhatIsNone) {
        {"Z", "Zg=", "Zg=a", "=", "Zm9v=", "Zm 9v", "Zh==", "Zm9=", "Zg==="}) {
     EXPECT_EQ(Base64Decode(text), std::nullopt) << text;
   }
+  EXPECT_EQ(Base64Decode(std::string_view("\0AAA", 4)), std::nullopt);
 }
 
 TEST(Base64, AnyBytesComeBack) {
@@ -62,6 +69,8 @@ TEST(Base64, AnyBytesComeBack) {
 TEST(Envelope, LengthHasTheHighestByteFirst) {
   EXPECT_EQ(MakeEnvelope(0x80, "ab"), std::string("\x80\0\0\0\2ab", 7));
   EXPECT_EQ(MakeEnvelope(0, std::string(0x10203, 'x')).substr(0, 5), std::string("\0\0\1\2\3", 5));
+  EXPECT_EQ(MakeEnvelope(0, std::string(0x1020304, 'x')).substr(0, 5),
+            std::string("\0\1\2\3\4", 5));
 }
 
 TEST(Envelope, OneMessageAndNothingElse) {
@@ -71,9 +80,10 @@ TEST(Envelope, OneMessageAndNothingElse) {
   EXPECT_EQ(*empty.message, "");
   const std::string two = MakeEnvelope(0, "a") + MakeEnvelope(0, "b");
   const std::string huge("\0\xFF\xFF\xFF\xFFz", 6);
+  const std::string more("\0\1\0\0\1z", 6);  // by its highest byte alone
   for (const std::string& bad :
        {std::string(), std::string("\0\0\0\0", 4), MakeEnvelope(0, "abc").substr(0, 7), two, huge,
-        MakeEnvelope(2, "{}"), MakeEnvelope(0x80, "")}) {
+        more, MakeEnvelope(2, "{}"), MakeEnvelope(0x80, "")}) {
     EXPECT_FALSE(ReadSingleEnvelope(bad).message);
     EXPECT_FALSE(ReadSingleEnvelope(bad).problem.empty());
   }
@@ -335,6 +345,24 @@ TEST(RpcJson, ADetailOfAnotherServer) {
                                         R"({"@type":"types.example/shop.Other","value":"/w=="}]})");
   EXPECT_EQ(ConnectErrorJson(status), head + R"({"type":"shop.Detail","value":"Zg"},)"
                                              R"({"type":"shop.Other","value":"/w"}]})");
+  rich.mutable_details()->RemoveLast();
+  const RpcStatus one{.code = 5, .message = "none", .details = rich.SerializeAsString()};
+  EXPECT_EQ(ConnectErrorJson(one), head + R"({"type":"shop.Detail","value":"Zg"}]})");
+}
+
+// gRPC-Web: in the text form each piece has its padding, or nobody knows where the next one begins;
+// of gRPC's binary metadata there is none.
+TEST(GrpcWebForm, PaddingIsInTheTextAlone) {
+  RpcRoute route;
+  route.wire = Wire::kGrpcWebText;
+  const Result<std::string> text = MakeGrpcWeb(route)->Message("");
+  ASSERT_TRUE(text);
+  EXPECT_EQ(*text, "AAAAAAA=");
+  route.wire = Wire::kGrpcWeb;
+  EXPECT_EQ(MakeGrpcWeb(route)->End({.code = 5, .message = "m", .details = "d"}, {}),
+            MakeEnvelope(0x80,
+                         "grpc-status: 5\r\ngrpc-message: m\r\n"
+                         "grpc-status-details-bin: ZA\r\n"));
 }
 
 // A header may never end early, whatever text is put into it.

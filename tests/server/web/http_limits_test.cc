@@ -223,6 +223,26 @@ TEST(HttpPatience, SlowRequestsAreEnded) {
   EXPECT_EQ(status, 408);
 }
 
+// What a client that was too slow still sends is taken, or it would not see its answer. On a slow
+// machine the beginning itself may come too late: then once more.
+TEST(HttpPatience, TheRestOfALateRequestIsTaken) {
+  WebOptions options = AnyPort();
+  options.read_timeout = milliseconds(400);
+  options.linger_timeout = std::chrono::hours(1);
+  FakeCell cell(options);
+  const auto is_taken = [&] {
+    RawClient client(cell.port());
+    client.Send("POST " + std::string(kGetJob) +
+                " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+                "Content-Length: 20\r\n\r\n{");
+    return client.Read().status == 408 && client.Send(std::string(50'000'000, ' ')) &&
+           client.AtEnd();
+  };
+  bool taken = false;
+  for (int i = 0; i < 20 && !taken; ++i) taken = is_taken();
+  EXPECT_TRUE(taken);
+}
+
 TEST(HttpPatience, SilentConnectionsAreClosed) {
   WebOptions options = AnyPort();
   options.read_timeout = milliseconds(100);

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <map>
 #include <string>
 #include <string_view>
@@ -65,6 +67,7 @@ TEST(HttpText, TypesAndLists) {
   EXPECT_TRUE(Accepts("text/html, text/event-stream;q=0.9", "text/event-stream"));
   EXPECT_TRUE(Accepts("TEXT/event-stream", "text/event-stream"));
   EXPECT_TRUE(Accepts("a/b,,text/event-stream,c/d", "text/event-stream"));
+  EXPECT_TRUE(Accepts("text/html,text/event-stream", "text/event-stream"));
   for (const std::string_view other : {"", "*/*", "text/*", "text/event-streams", "text/html"}) {
     EXPECT_FALSE(Accepts(other, "text/event-stream")) << other;
   }
@@ -204,6 +207,18 @@ TEST(HttpText, DatesHaveTheirForm) {
   for (const std::size_t digit : {5U, 6U, 12U, 13U, 14U, 15U, 17U, 18U, 20U, 21U, 23U, 24U}) {
     EXPECT_TRUE(date[digit] >= '0' && date[digit] <= '9') << date;
   }
+}
+
+TEST(HttpText, DatesAreOfNow) {
+  using std::chrono::system_clock;
+  const std::time_t before = system_clock::to_time_t(system_clock::now());
+  const std::string date = HttpDate();
+  const std::time_t after = system_clock::to_time_t(system_clock::now());
+  std::tm read{};
+  ASSERT_NE(strptime(date.c_str(), "%a, %d %b %Y %H:%M:%S GMT", &read), nullptr) << date;
+  const std::time_t told = timegm(&read);
+  EXPECT_GE(told, before) << date;
+  EXPECT_LE(told, after) << date;
 }
 
 // google/rpc/code.proto for those that conventions.md does not name; a number beyond the last is

@@ -133,6 +133,31 @@ TEST(LastWords, WhoDoesNotCloseIsClosed) {
   EXPECT_TRUE(FakeCell::Eventually([&] { return cell.web().connections() == 0; }));
 }
 
+// Who is waited for after his answer, and is cut off by a stop, has had it: it is logged once.
+TEST(LastWords, ARequestIsLoggedOnce) {
+  WebOptions options = AnyPort();
+  options.linger_timeout = hours(1);
+  FakeCell cell(options);
+  RawClient client(cell.port());
+  client.Send("GET /healthz HTTP/1.0\r\n\r\n");
+  EXPECT_EQ(client.Read().status, 200);
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell.log().size() == 1; }));
+  cell.web().Stop(milliseconds(0));
+  ASSERT_EQ(cell.log().size(), 1U);
+  EXPECT_TRUE(cell.log()[0].finished);
+}
+
+// web_server.h: a stop may be called again, in whatever order.
+TEST(LastWords, AStopMayBeAskedForAgain) {
+  FakeCell cell;
+  cell.web().StopAccepting();
+  cell.web().StopAccepting();
+  cell.web().Stop(milliseconds(0));
+  cell.web().StopAccepting();
+  cell.web().Stop(milliseconds(0));
+  EXPECT_EQ(cell.web().connections(), 0U);
+}
+
 // The time that a write may take is none between two of them. On a slow machine the write itself
 // may take too long: then once more.
 TEST(LastWords, AStreamMayBeQuietForLongerThanAWriteTakes) {
@@ -288,6 +313,8 @@ TEST(LastWords, ThreadsAreFromOneToSixtyFour) {
     const auto server = WebServer::Start(options, nullptr, resources);
     ASSERT_TRUE(server);
     EXPECT_EQ(Threads() - before, 2 * made + 1) << asked;
+    (*server)->Stop(milliseconds(0));
+    EXPECT_TRUE(FakeCell::Eventually([&] { return Threads() <= before; })) << asked;
   }
 }
 

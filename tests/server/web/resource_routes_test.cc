@@ -36,7 +36,10 @@ TEST(ResourceRoutes, HostileSegments) {
   EXPECT_TRUE(RouteResource(At("/v1/jobs/17/artifacts/" + std::string(200, 'a'))).path);
   for (const std::string path :
        {"/v1/jobs/17", "/v1/jobs/17/artifacts", "/v1/jobs/17/artifacts/a/b",
-        "/v2/jobs/1/artifacts/a", "/v1//jobs/17/artifacts/a", "/v1/"}) {
+        "/v2/jobs/1/artifacts/a", "/v1//jobs/17/artifacts/a", "/v1/", "/v1/other",
+        "/v1/machines/optimo-1/programs/45", "/v1/jobs/17/events/3", "/v1/runs/17/artifacts/a",
+        "/v1/jobs/17/programs/4/content", "/v1/machines/optimo-1/schedules/4/content",
+        "/v1/machines/optimo-1/programs/4/other"}) {
     EXPECT_FALSE(RouteResource(At(path)).is_resource) << path;
   }
 }
@@ -141,6 +144,7 @@ TEST(UploadRoutes, FormsAreRefused) {
 TEST(Etags, ListsWeakTagsAndStar) {
   EXPECT_TRUE(EtagMatches("\"a\"", "a"));
   EXPECT_TRUE(EtagMatches("\"x\", W/\"a\" ,\"y\"", "a"));
+  EXPECT_TRUE(EtagMatches("\"x\",\"a\"", "a"));
   EXPECT_TRUE(EtagMatches("*", "a"));
   for (const std::string_view other : {"", "a", "\"ab\"", "\"a", "\"", "W/", "\"A\"", ",,"}) {
     EXPECT_FALSE(EtagMatches(other, "a")) << other;

@@ -156,6 +156,7 @@ TEST_F(RpcForms, ConnectStreams) {
   EXPECT_EQ(json.Header("content-type"), "application/connect+json");
   std::vector<Frame> frames = Frames(json.body);
   ASSERT_EQ(frames.size(), 4U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(frames[i].flags, 0) << i;
   EXPECT_EQ(Json::parse(frames[1].bytes)["sequence"], "4");
   EXPECT_EQ(frames[3].flags, 2);
   EXPECT_EQ(frames[3].bytes, "{}");
@@ -168,6 +169,7 @@ TEST_F(RpcForms, ConnectStreams) {
   EXPECT_EQ(binary.Header("content-type"), "application/connect+proto");
   frames = Frames(binary.body);
   ASSERT_EQ(frames.size(), 7U);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(frames[i].flags, 0) << i;
   v1::WatchJobResponse last;
   ASSERT_TRUE(last.ParseFromString(frames[5].bytes));
   EXPECT_EQ(last.sequence(), 5);
@@ -183,6 +185,7 @@ TEST_F(RpcForms, GrpcWeb) {
     EXPECT_EQ(response.Header("content-type"), "application/grpc-web+proto");
     const std::vector<Frame> frames = Frames(response.body);
     ASSERT_EQ(frames.size(), 2U);
+    EXPECT_EQ(frames[0].flags, 0);
     v1::Job job;
     ASSERT_TRUE(job.ParseFromString(frames[0].bytes));
     EXPECT_EQ(job.name(), "jobs/1");
@@ -206,6 +209,8 @@ TEST_F(RpcForms, GrpcWebText) {
   ASSERT_TRUE(bytes);
   const std::vector<Frame> frames = Frames(*bytes);
   ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(frames[0].flags, 0);
+  EXPECT_EQ(frames[1].flags, 0);
   EXPECT_EQ(frames[2].flags, 0x80);
   EXPECT_EQ(frames[2].bytes, "grpc-status: 0\r\n");
 }
@@ -259,6 +264,14 @@ TEST_F(RpcForms, LargeAnswers) {
       Exchange(cell_.port(), Post(kGetJob, "application/proto", JobRequest("jobs/huge")));
   EXPECT_EQ(huge.status, 200);
   EXPECT_GT(huge.body.size(), std::size_t{6} << 20U);
+}
+
+// What is asked may be longer than what is read at a time: the end of the message comes last.
+TEST_F(RpcForms, LargeRequests) {
+  const std::string asked = "{\"name\":\"jobs/1\"" + std::string(200'000, ' ') + "}";
+  const RawResponse response = Exchange(cell_.port(), Post(kGetJob, "application/json", asked));
+  EXPECT_EQ(response.status, 200);
+  EXPECT_EQ(Json::parse(response.body)["name"], "jobs/1");
 }
 
 // grpc-timeout and connect-timeout-ms become a deadline; the call behind is cancelled.

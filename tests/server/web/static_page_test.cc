@@ -66,6 +66,13 @@ TEST(StaticPages, AreNotSentTwice) {
   EXPECT_EQ(page.Find(Asking("/page.css", {{"if-none-match", etag}}))->status, 200);
 }
 
+// A page that is open is told by it to load anew; that of no file at all is FNV-1a of nothing.
+TEST(StaticPages, HaveATagTogether) {
+  EXPECT_EQ(PageEtag(), PageEtag());
+  EXPECT_EQ(PageEtag().find_first_not_of("0123456789abcdef"), std::string::npos) << PageEtag();
+  EXPECT_NE(PageEtag(), "cbf29ce484222325");
+}
+
 TEST(StaticPages, OtherNamesAreNone) {
   const StaticPage page;
   for (const std::string path :

@@ -99,6 +99,23 @@ TEST_F(Streams, ClosedTabBehindAPipelinedRequest) {
   EXPECT_EQ(cell_.counters().cancelled, 1);
 }
 
+// Also when it was still there at the first look: that a quiet stream of events has its lines tells
+// how much time has passed.
+TEST_F(Streams, ATabThatIsClosedLaterBehindAPipelinedRequest) {
+  RawClient connect(cell_.port());
+  connect.Send(
+      Post(kWatchJob, "application/connect+json", MakeEnvelope(0, R"({"name":"jobs/idle"})")));
+  connect.ReadUntil("\"snapshot\"");
+  connect.Send(Get("/healthz"));
+  RawClient events(cell_.port());
+  events.Send(Watch("idle"));
+  for (int i = 0; i < 3; ++i) events.ReadUntil(": quiet\n\n");
+  connect.Close();
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell_.counters().cancelled == 1; }));
+  events.Close();
+  EXPECT_TRUE(AllEnded());
+}
+
 TEST_F(Streams, AbandonedUnaryCallIsCancelled) {
   RawClient client(cell_.port());
   client.Send(Post("/rmlcell.v1.JobService/GetJob", "application/json", R"({"name":"jobs/slow"})"));

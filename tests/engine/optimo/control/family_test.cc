@@ -6,6 +6,7 @@
 
 #include "engine/machine/observer.h"
 #include "engine/machine/run.h"
+#include "engine/machine/standing.h"
 #include "engine/machine/tools.h"
 #include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/language/compiler.h"
@@ -55,8 +56,17 @@ TEST(OptimoFamily, RefusesTravelsThatEndBeforeTheyBegin) {
     EXPECT_EQ(fit.error().detail,
               "TRAVEL_" + axis + "_MIN is 1.5, above TRAVEL_" + axis + "_MAX, which is 1");
     EXPECT_FALSE(OptimoFamily().NewRun(machine::RunSetup(parameters), nobody));
+    EXPECT_FALSE(OptimoFamily().NewStanding(parameters, ""));
   }
   EXPECT_TRUE(OptimoFamily().CheckParameters(Standard()));
+}
+
+// machine_state.h: no machine stands as bytes say that are no state of it.
+TEST(OptimoFamily, StandsOnlyInAStateOfItsOwn) {
+  EXPECT_TRUE(OptimoFamily().NewStanding(Standard(), ""));
+  const auto foreign = OptimoFamily().NewStanding(Standard(), "no state");
+  ASSERT_FALSE(foreign);
+  EXPECT_EQ(foreign.error().code, ErrorCode::kCellBadText);
 }
 
 // What others ask the family for, by the codes of the Optimo.

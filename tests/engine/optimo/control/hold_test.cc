@@ -52,6 +52,24 @@ TEST(Hold, HaltsAtTheFirstTarget) {
   EXPECT_NEAR(ran.end.tip.tip.y(), 1200.0, 1e-4);
 }
 
+// OPT-4.17: a target straight on that it halts on is no passage any more.
+TEST(Hold, ATargetThatItHaltsOnIsNoPassage) {
+  const std::string text =
+      kThere + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1200.,1000.,-400.,0.,0.)\n";
+  const auto passage_of_first = [](const Ran& ran) {
+    for (const Ran::Part& part : ran.parts) {
+      if (part.done.end == ran.moves.at(1).at) return part.motion.corner.passage;
+    }
+    ADD_FAILURE() << "nothing ends there";
+    return motion::Passage::kBlend;
+  };
+  EXPECT_EQ(passage_of_first(RunText(text)), motion::Passage::kThrough);
+  const double begin = BeginOf(text);
+  const Ran held = Held(text, begin + 1.0, begin + 20.0);
+  EXPECT_EQ(held.First("halt HOLD").step, 5);
+  EXPECT_EQ(passage_of_first(held), motion::Passage::kStop);
+}
+
 // OPT-4.17: inside the bend the next move is finished too.
 TEST(Hold, FinishesTheBendAndTheNextMove) {
   const Ran free = RunText(kTwoCorners);

@@ -263,6 +263,23 @@ TEST(RideWays, AnArcThatIsNoneFromThere) {
   EXPECT_NEAR((moved.run->state().tip.tip - to).norm(), 0.0, 1e-6);
 }
 
+// OPT-B.55, OPT-6.42: the same where the program has run ahead to an error, which waits for the
+// machine to stand: the first error counts, at its own step.
+TEST(RideWays, TheFirstErrorCounts) {
+  const std::string text = kThere +
+                           "PATH CIR\n"
+                           "MOVE (1100.,1000.,-400.,0.,0.)/VIA (1050.,1050.,-400.,0.,0.)/FLY\n"
+                           "VR[0]=1./VR[9]\nPATH LIN\nMOVE (1200.,1000.,-400.,0.,0.)\n";
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  const Ran free = RunText(text, {.inputs = {{At(begin + 1.0), InputKind::kStop}}});
+  const motion::MachineVector to(1075.0, 1025.0, -400.0);
+  Moved moved(text, begin + 1.0, to - free.end.tip.tip);
+  moved.GoOn_s();
+  EXPECT_EQ(moved.run->outcome().code, ErrorCode::kDivisionByZero);
+  EXPECT_EQ(moved.run->outcome().place.step, 7);
+  EXPECT_NEAR((moved.run->state().tip.tip - to).norm(), 0.0, 1e-6);
+}
+
 // OPT-6.42, OPT-4.37, OPT-B.08: at SPEED 1, too, the way from there goes by the override, and is
 // looked at before it begins.
 TEST(RideWays, SlowMovesThatWereMoved) {

@@ -154,6 +154,17 @@ TEST_F(OptimoStands, KeysMoveAtTheStepOfTheOverride) {
   }
 }
 
+// OPT-4.35: X, Y and Z at a share of the speed of the tip, whatever their axes could do; A and B of
+// that of their own axis.
+TEST_F(OptimoStands, KeysMoveAtAShareOfTheTipOrOfTheHead) {
+  EXPECT_TRUE(parameters.Set("VMAX", 200.0));
+  EXPECT_TRUE(parameters.Set("AXIS_SPEED_A", 3.0));
+  EXPECT_TRUE(parameters.Set("AXIS_SPEED_B", 5.0));
+  Stand(NewMachine(Resolve(parameters)));
+  EXPECT_THAT((*standing->ByHand(100.0, false)).plus,
+              ::testing::Pointwise(::testing::DoubleNear(1e-9), {42.0, 42.0, 42.0, 0.63, 1.05}));
+}
+
 // OPT-4.68, OPT-6.08, OPT-6.30, OPT-7.63: off and on again: no reference, TCP, BREAK and SIMUL,
 // outputs and images are 0; variables, inputs, SYSDEF and what is counted stay.
 TEST_F(OptimoStands, APowerUp) {

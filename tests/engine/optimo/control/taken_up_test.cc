@@ -212,6 +212,25 @@ TEST(TakenUp, ATimerBehindAForgottenStep) {
   EXPECT_EQ(run->ReadVariable("VI[1]")->text, "1");
 }
 
+// LIVE-6.01: where a run halts before the step that it was to come to, a key of its script is not
+// for it; when it goes on behind that like any other, its keys are.
+TEST(TakenUp, KeysOfTheScriptBehindAForgottenStep) {
+  machine::RunObserver nobody;
+  const auto run = *OptimoFamily().NewRun(
+      SetupOf("DELAY 1\nSTOP\nVI[2]=1\n", {.inputs = {{At(5.0), InputKind::kStart}}}), nobody);
+  ASSERT_TRUE(run->enterable()->HaltBefore({.at = {1, 2}}));
+  EXPECT_EQ(run->Advance(At(3.0)), RunPhase::kHalted);
+  EXPECT_EQ(run->Advance(At(60.0)), RunPhase::kHalted);
+  EXPECT_EQ(run->state().time, At(1.0));
+  EXPECT_TRUE(run->enterable()->reached());
+  run->enterable()->ForgetTarget();
+  EXPECT_FALSE(run->enterable()->reached());
+  run->Apply({.kind = InputKind::kStart});
+  EXPECT_EQ(run->Advance(At(60.0)), RunPhase::kFinished);
+  EXPECT_EQ(run->state().time, At(5.0));
+  EXPECT_EQ(run->ReadVariable("VI[2]")->text, "1");
+}
+
 // OPT-6.14: a dry run whose step was not reached yet is kept as one, also while it stands.
 TEST(TakenUp, ADryRunThatStandsIsKept) {
   machine::RunObserver nobody;

@@ -100,6 +100,19 @@ TEST(TimerRules, TheGosubOfANextMoveBelongsToItsModule) {
               1e-6);  // and yet its time was over
 }
 
+// OPT-3.55, OPT-2.55: an error goes on at its label, and not in the GOSUB of a MOVE whose time ran
+// out before, while a FUNCTION did not let it be made.
+TEST(TimerRules, AnErrorComesBeforeAGosubThatIsDue) {
+  const Ran ran = RunText(
+      kAlongX + "ERR 800\n" + kFar +
+          "/TIME (2.,900)/NEXT\nFUNCTION 44\nENDTASK\n"
+          "900 VI[3]=VI[3]+1\nRETURN\n800 VI[5]=1\nDELAY 1\nVI[6]=1\n",
+      {.programs = {{44, "DELAY 3\nVR[0]=1./VR[9]\n"}}, .variables = {"VI[3]", "VI[5]", "VI[6]"}});
+  EXPECT_EQ(ran.Count("E7201"), 1);
+  EXPECT_EQ(ValuesOf(ran), "011");
+  EXPECT_NEAR(ran.time_s, 4.0, 1e-9);
+}
+
 // OPT-7.97: a loop may read an input a thousand times in one instant; from then on each further
 // time takes a CYCLE.
 TEST(TimerRules, ALoopReadsAThousandTimesAtOnce) {

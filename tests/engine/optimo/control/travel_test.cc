@@ -124,6 +124,28 @@ TEST(Travel, RoundingIsNoViolation) {
   EXPECT_EQ(code("3600.0005,2201.2,-50.,0.,0."), 7301);
 }
 
+// OPT-B.08: the target is looked at first, and the way to it only where that is inside: here Y ends
+// at least 148 mm outside, and X, to one of the two sides, is 202 mm outside half way. A forecast
+// tells both.
+TEST(Travel, TheWayCountsWhereTheTargetIsInside) {
+  std::size_t forecast = 0;
+  for (const std::string a : {"3.14159", "-3.14159"}) {
+    const std::string text = kAbsol +
+                             "MOVE (3550.,1000.,-400.,0.,1.)\n"
+                             "MOVE (3550.,3500.,-400.," +
+                             a + ",1.)\n";
+    const Ran ran = RunText(text);
+    EXPECT_EQ(CodeOf(ran), 7301);
+    const std::string detail(ran.outcome.detail);
+    EXPECT_TRUE(detail.starts_with("Y of the target leaves its travel by ")) << detail;
+    EXPECT_EQ(detail.find("on the way"), std::string::npos) << detail;
+    ASSERT_EQ(ran.violations.size(), 1U);
+    EXPECT_EQ(ran.violations[0].axis, 1);
+    forecast += RunText(text, {.forecast = true}).violations.size();
+  }
+  EXPECT_EQ(forecast, 3U);
+}
+
 // OPT-2.49: the program runs ahead of /FLY moves; a finding has the time at which its own begins,
 // half way through the bend of case C01: 2.021 s after the chain.
 TEST(Travel, InAChainEachHasTheTimeOfItsOwnMotion) {

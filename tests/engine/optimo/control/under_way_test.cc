@@ -71,6 +71,40 @@ TEST(UnderWay, AfterAnEmergencyStopNothingMoves) {
   EXPECT_NEAR(run->state().tip.tip.x(), x, 1e-9);
 }
 
+// OPT-4.17, OPT-4.18, OPT-4.37: at the instant of a key the machine is where it was, with the speed
+// that it had: on one move, and in chains that are planned anew, of long moves and of short ones.
+TEST(UnderWay, AKeyActsFromWhereTheMachineIs) {
+  const std::string chain =
+      kThere +
+      "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1200.,1000.,-400.,0.,0.)/FLY\n"
+      "MOVE (1300.,1000.,-400.,0.,0.)\n";
+  std::string short_moves = "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 40\n";
+  for (int k = 1; k <= 200; ++k)
+    short_moves += "MOVE (" + std::to_string(1000 + k) + ".,1000.,-400.,0.,0.)/FLY\n";
+  short_moves += "MOVE (1201.,1000.,-400.,0.,0.)\n";
+  struct Row {
+    std::string text;
+    InputKind key;
+    double value;
+    double speed_mm_s;
+  };
+  for (const Row& row :
+       {Row{kOneMove, InputKind::kStop, 1.0, 50.0}, Row{chain, InputKind::kStop, 1.0, 50.0},
+        Row{chain, InputKind::kHold, 1.0, 50.0}, Row{chain, InputKind::kOverride, 130.0, 50.0},
+        Row{chain, InputKind::kOverride, 55.0, 50.0},
+        Row{short_moves, InputKind::kHold, 1.0, 200.0}}) {
+    SCOPED_TRACE(row.text.substr(0, 99) + std::to_string(row.value));
+    const auto run = RunOfText(row.text);
+    run->Advance(At(BeginOf(row.text) + 0.5025));
+    const motion::MachinePoint before = run->state().tip.tip;
+    run->Apply({.kind = row.key, .value = row.value});
+    const machine::RunState state = run->state();
+    EXPECT_EQ(state.phase, RunPhase::kRunning);
+    EXPECT_NEAR(state.tip_speed_mm_s, row.speed_mm_s, 1e-3);
+    EXPECT_NEAR((state.tip.tip - before).norm(), 0.0, 1e-6);
+  }
+}
+
 // OPT-B.89, motion.md 6: while a MOVE takes over from that of /NEXT the machine is still at the
 // latter, which it brings to rest.
 TEST(UnderWay, TheMotionThatIsTakenOverIsWhereItIs) {

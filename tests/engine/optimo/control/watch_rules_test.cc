@@ -166,6 +166,15 @@ TEST(WatchRules, BehindAPassageTheClockBeginsWithTheMotion) {
   EXPECT_NEAR(end.time_s, begin + 42 * kTick_s + kRamp_s, 1e-4);
 }
 
+// OPT-2.54, OPT-B.30: nor does a time run out that is shorter than the way to its motion: here 1 s,
+// behind 2.0354 s.
+TEST(WatchRules, ATimeShorterThanTheWayToItsMotion) {
+  const Ran ran = RunText(Program(MoveTo(121.02, "/FLY") + MoveTo(521.02, "/TIME (1.,900)")),
+                          {.variables = {"VI[3]"}});
+  EXPECT_EQ(ran.variables.at("VI[3]"), "1");
+  EXPECT_NEAR(ran.time_s, 2.0 + 0.5 * kRamp_s + 21 * kTick_s + kRamp_s, 1e-4);
+}
+
 // OPT-2.48, OPT-2.58: a MOVE that reads an input needs standstill: /FLY before it is cancelled, and
 // its clock begins where the machine stands.
 TEST(WatchRules, AMoveThatReadsAnInputNeedsStandstill) {

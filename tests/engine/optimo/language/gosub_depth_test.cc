@@ -58,6 +58,29 @@ TEST(GosubDepth, RingsAreFound) {
   EXPECT_TRUE(FindNesting(3, 0, two).recursive.empty());
 }
 
+// OPT-7.21: into what another branch of the ring has left nothing leads back.
+TEST(GosubDepth, ARingIsClosedOnTheWayAlone) {
+  const LevelEdges branches = {{0, 1}, {0, 2}, {1, 0, kGosub}, {2, 1, kGosub}};
+  EXPECT_EQ(FindNesting(3, 0, branches).recursive, (Instructions{1}));
+  // In the order of the program, not in that of the walk.
+  const LevelEdges apart = {{0, 2, kGosub}, {0, 1, kGosub}, {1, 1, kGosub}, {2, 2, kGosub}};
+  EXPECT_EQ(FindNesting(3, 0, apart).recursive, (Instructions{1, 2}));
+}
+
+// OPT-7.21: a ring that a jump closes has all that lies on it, and its GOSUB may be the first one.
+TEST(GosubDepth, ARingOfJumpsHasItsGosub) {
+  EXPECT_EQ(FindNesting(2, 0, {{0, 1, kGosub}, {1, 0}}).recursive, (Instructions{0}));
+  const LevelEdges entered = {{0, 1}, {1, 2, kGosub}, {2, 3}, {3, 1}};
+  EXPECT_EQ(FindNesting(4, 0, entered).recursive, (Instructions{1}));
+}
+
+// OPT-7.21: what leads into a ring is a level, what stays in it is none.
+TEST(GosubDepth, TheWayIntoARingCounts) {
+  const LevelEdges edges = {{0, 1, kGosub}, {1, 1, kGosub}};
+  EXPECT_EQ(FindNesting(2, 0, edges, 0).too_deep, (Instructions{0}));
+  EXPECT_TRUE(FindNesting(2, 0, edges, 1).too_deep.empty());
+}
+
 TEST(GosubDepth, WhereThereIsNothingNothingIsFound) {
   EXPECT_TRUE(FindNesting(0, 0, {}).recursive.empty());
   EXPECT_TRUE(FindNesting(0, 0, {}).too_deep.empty());

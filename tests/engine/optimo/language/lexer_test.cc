@@ -80,6 +80,32 @@ TEST(Lexer, LiteralsAreRoundedOnce) {
   EXPECT_EQ(literal("80.39683151245117"), 80.39683151245117F);
 }
 
+// OPT-7.56: 2^53 is 9007199254740992; of more digits a double does not hold all, and what is a
+// little beside the half way between two floats must not come to lie on the other side of it.
+TEST(Lexer, LiteralsOfMoreThanADoubleHoldsAreRoundedOnce) {
+  const auto literal = [](const std::string& text) {
+    const Compilation compiled = MustCompile("VR[0] = " + text + "\n");
+    return compiled.module.Value(compiled.module.instructions[0], 1)[0].number;
+  };
+  EXPECT_EQ(literal("925.9909973144531"), 925.990966796875F);  // next: 925.99102783203125
+  EXPECT_EQ(literal("96.67728042602539"), 96.677276611328125F);
+  EXPECT_EQ(literal("107.40089797973633"), 107.40090179443359375F);  // before: 107.400894165...
+  EXPECT_EQ(literal("12116371188312769E-18"), 0.012116371188312769F);
+  // Half way between two floats the last of however many digits decides.
+  for (const std::size_t zeros : {389U, 390U, 391U, 392U, 1000U})
+    EXPECT_EQ(literal("16777217." + std::string(zeros, '0') + "1"), 16777218.0F) << zeros;
+  EXPECT_EQ(literal("16777217." + std::string(1000, '0')), 16777216.0F);
+}
+
+// OPT-7.59, OPT-7.62: 2^64 + 1 has twenty digits, and is not 1.
+TEST(Lexer, TwentyDigitsAreNotFewer) {
+  const Compilation compiled = MustCompile("VR[0] = 1.8446744073709551617\n");
+  EXPECT_EQ(compiled.module.Value(compiled.module.instructions[0], 1)[0].number,
+            1.8446744073709551617F);
+  EXPECT_EQ(FindingsOf("VR[0] = 18446744073709551617\n"), std::vector<int>{7004});
+  EXPECT_EQ(FindingsOf("VR[18446744073709551617] = 1.\n"), std::vector<int>{7017});
+}
+
 // OPT-7.55: with each exponent that a REAL can have.
 TEST(Lexer, LiteralsHaveTheirPowerOfTen) {
   const auto literal = [](const std::string& text) {

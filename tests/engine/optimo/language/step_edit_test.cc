@@ -86,5 +86,38 @@ TEST(StepEdit, WhatTheCompilerRefusesIsRefused) {
   EXPECT_EQ(Removed("SPEED 5\n", 1), "OPT-E7034");
 }
 
+// OPT-6.43 OPT-6.44: of the sequence numbers that stand there a step may bring the first ones.
+TEST(StepEdit, BringsTheFirstNumbersOfItsPlace) {
+  const std::string text = "10\n20 SPEED 5\n";
+  EXPECT_EQ(Inserted(text, 0, "SPEED 1"), Decompiled("SPEED 1\n10\n20 SPEED 5\n"));
+  EXPECT_EQ(Inserted(text, 0, "10 SPEED 1"), Decompiled("10 SPEED 1\n20 SPEED 5\n"));
+  EXPECT_EQ(Inserted(text, 0, "10\n20 SPEED 1"), Decompiled("10\n20 SPEED 1\nSPEED 5\n"));
+  EXPECT_EQ(Inserted("SPEED 5\n10\n", 1, "10 SPEED 1"), Decompiled("SPEED 5\n10 SPEED 1\n"));
+  for (const char* step : {"20 SPEED 1", "30 SPEED 1", "20\n10 SPEED 1", "10\n20\n30 SPEED 1"}) {
+    EXPECT_EQ(Inserted(text, 0, step), "OPT-E7034") << step;
+  }
+}
+
+// OPT-6.38: why it is refused.
+TEST(StepEdit, TellsWhyItRefuses) {
+  const auto why = [](std::uint32_t place, const std::string& step) -> std::string {
+    const Result<std::string> object =
+        InsertInstruction(Compiled("10 SPEED 5\n").module, place, step);
+    if (object) return "";
+    return object.error().detail;
+  };
+  EXPECT_EQ(why(0, "10 SPEED 1"), "");
+  EXPECT_EQ(why(0, "20 SPEED 1"), "its sequence numbers are not there");
+  EXPECT_EQ(why(0, "SPEED 1\nSPEED 2"), "the text is not one instruction");
+  EXPECT_EQ(why(0, "SPEED 1\n10"), "the text is not one instruction");
+  EXPECT_EQ(why(0, "A = 1."), "it has a name that the program does not know");
+  EXPECT_EQ(why(0, "SPEED 140"), "the value must be 0 to 100");
+  EXPECT_EQ(why(1, "SPEED 1"), "");
+  EXPECT_EQ(why(2, "SPEED 1"), "the program is shorter");
+  const Result<std::string> removed = RemoveInstruction(Compiled("SPEED 5\n").module, 1);
+  ASSERT_FALSE(removed);
+  EXPECT_EQ(removed.error().detail, "the program is shorter");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -96,5 +96,15 @@ TEST(ContourChain, WhatHoldsWhereNothingIsSaid) {
   EXPECT_NE(cut("SPEED 10\n"), cut("SPEED 10\nOVERSH 50\n"));
 }
 
+// OPT-B.22: a MOVE at SPEED 0 never ends: nothing is said of corners that are never reached.
+TEST(ContourChain, NothingIsSaidBehindAMoveThatNeverEnds) {
+  const auto sharp = [](const std::string& speed) {
+    return SharpOnes(kAlong + "/FLY\nSPEED " + speed +
+                     "\nMOVE (100,100,0,0,0)/FLY\nSPEED 10\nMOVE (200,200,0,0,0)\n");
+  };
+  EXPECT_EQ(sharp("10"), 1U);
+  EXPECT_EQ(sharp("0"), 0U);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

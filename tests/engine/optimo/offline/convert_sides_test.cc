@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/optimo/offline/convert.h"
@@ -175,6 +176,19 @@ TEST(ConvertSides, TranslationsTellWhatDidNotFit) {
   EXPECT_EQ(lines[0], 1);
   EXPECT_EQ(lines[1], 3);
   EXPECT_TRUE(TranslateOptimo({"a.S", "SPEED 5\n"}, {}).source.step_lines.empty());
+}
+
+// OPT-8.53, OPT-7.46, OPT-9.24: a line that is only warned of is RML: it is converted like others,
+// and none is told as copied.
+TEST(ConvertSides, WarningsOfReadingAreNoErrors) {
+  for (const auto& [text, wanted] : std::vector<std::pair<std::string, std::string>>{
+           {"DECLARE LONGERNAME = VR[0]\nLONGERNAME = 1\n",
+            "DECLARE LONGERNAME = VR[0]\nLONGERNAME = 25.4\n"},
+           {"DEFINE PAR = INT\nVR[0] = 1\n", "DEFINE PAR = INT\nVR[0] = 25.4\n"}}) {
+    const Conversion converted = Convert(text, Direction::kToMetric);
+    EXPECT_EQ(converted.text, wanted);
+    EXPECT_TRUE(converted.diagnostics.empty()) << text;
+  }
 }
 
 }  // namespace

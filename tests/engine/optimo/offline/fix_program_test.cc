@@ -133,6 +133,31 @@ TEST(FixProgram, EndsWhereRepairsDoNot) {
   EXPECT_EQ(fixing.fixed.size(), 64U);
 }
 
+// fix_program.h: a round that would leave more errors than there were is not made; one that leaves
+// as many is.
+TEST(FixProgram, ARoundThatMakesMoreErrorsIsNotMade) {
+  for (const std::size_t behind : {1U, 2U}) {
+    const auto check = [behind](const machine::SourceFile& file) {
+      const bool repaired = file.bytes.starts_with(';');
+      Diagnostic error{.code = ErrorCode::kSyntax,
+                       .severity = Severity::kCompile,
+                       .detail = {},
+                       .rule = {},
+                       .file = {},
+                       .where = {1, 1, 0, 0},
+                       .fixes = {}};
+      if (!repaired) error.fixes.push_back({0, 0, ";"});
+      machine::Translation checked;
+      checked.diagnostics.assign(repaired ? behind : 1U, error);
+      return checked;
+    };
+    const RepairedText fixing = FixProgram({.name = "part.S", .bytes = "SPEED 5\n"}, check);
+    EXPECT_EQ(fixing.text, behind == 1U ? ";SPEED 5\n" : "SPEED 5\n");
+    EXPECT_EQ(fixing.fixed.size(), behind == 1U ? 1U : 0U);
+    EXPECT_EQ(fixing.left.diagnostics.size(), 1U);
+  }
+}
+
 // OPT-B.69: an object is no text, under whatever name.
 TEST(FixProgram, ObjectsAndBinariesAreNoText) {
   const std::string object = Compile("SPEED 20\n", "", {}).object;

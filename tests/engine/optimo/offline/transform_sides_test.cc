@@ -27,6 +27,16 @@ TEST(TransformSides, OnlyAssignmentsAreShifted) {
             "VR[86] = 31.0\nSYSDEF (VR[86],5.,0.,0.,0.,0.)\n");
 }
 
+// OPT-8.75, OPT-E.7852: VR[86] to VR[91] are the offset, and no neighbour of theirs.
+TEST(TransformSides, NeighboursOfTheOffsetAreNotShifted) {
+  for (const std::string variable : {"VR[85]", "VR[92]", "VI[86]", "VI[91]"}) {
+    const Rewriting shifted = Shift(variable + " = 1\n", {1, 1, 1, 1, 1, 1});
+    EXPECT_FALSE(shifted.ok) << variable;
+    ASSERT_EQ(shifted.diagnostics.size(), 1U) << variable;
+    EXPECT_EQ(shifted.diagnostics[0].code, ErrorCode::kShiftNothing) << variable;
+  }
+}
+
 // The signs of B of two moves at A = 0, turned by 3 rad about Z after 0.01 about X.
 std::string SignsOf(const std::string& first_b, const std::string& second_b) {
   const motion::RigidMotion turn = motion::RigidMotionOf({}, 3.0, 0, 0.01);
