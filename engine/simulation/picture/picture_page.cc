@@ -38,7 +38,10 @@ VerdictPaint PaintOf(machine::Verdict verdict) {
   return {"#fde8e8", "#b42318"};
 }
 
-std::string Length(double mm) { return FixedText(mm, mm == 0.0 ? 0 : mm < 100.0 ? 3 : 1) + " mm"; }
+// 99.9995 mm and more are told as 100.0 mm.
+std::string Length(double mm) {
+  return FixedText(mm, mm == 0.0 ? 0 : mm < 99.9995 ? 3 : 1) + " mm";
+}
 
 class PageWriter {
  public:

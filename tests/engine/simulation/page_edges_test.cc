@@ -54,6 +54,7 @@ TEST(PageEdges, LengthsChangeTheirDecimals) {
     return PicturePage(sketch, {}, report, {});
   };
   EXPECT_TRUE(Has(page(100.0, 99.5), ", cut 100.0 mm, travel 99.500 mm</desc>"));
+  EXPECT_TRUE(Has(page(99.9996, 99.9994), ", cut 100.0 mm, travel 99.999 mm</desc>"));
   EXPECT_TRUE(Has(page(0.0, 1234.0), ", cut 0 mm, travel 1234.0 mm</desc>"));
 }
 
