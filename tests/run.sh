@@ -15,7 +15,6 @@ for option in "$@"; do
 done
 
 bash deploy/setup.sh --tests
-jobs=$(nproc)
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
 export CCACHE_COMPRESS=1
@@ -45,10 +44,11 @@ prepare_node() {
   export RMLCELL_NODE_MODULES="$PWD/build/web-clients/node_modules"
 }
 
+# Half of what the tests do is to wait: two a core.
 run_ctest() {  # build directory, report file, ctest arguments
   local directory=$1 report=$2
   shift 2
-  ctest --test-dir "$directory" --output-on-failure --no-tests=error -j "$jobs" \
+  ctest --test-dir "$directory" --output-on-failure --no-tests=error -j $((2 * $(nproc))) \
     --test-output-truncation head --output-junit "$report" "$@"
 }
 
