@@ -151,11 +151,11 @@ load() {
 # What the tests notice of changes of meaning.
 mutation() {
   if python3 -B tests/mutation/mutate.py --seed "${SEED:-1}" --count "${MUTATIONS:-300}" \
-      --results tests/results/mutation.txt >build/long/mutation.log 2>&1; then
-    note "mutation: at least 95 of 100 changes noticed in every area, see tests/results/mutation.txt"
+      --results "tests/results/mutation-${SEED:-1}.txt" >build/long/mutation.log 2>&1; then
+    note "mutation: at least 95 of 100 changes noticed in every area, see tests/results/mutation-${SEED:-1}.txt"
   else
     tail -n 3 build/long/mutation.log
-    fail "mutation, see build/long/mutation.log and tests/results/mutation.txt"
+    fail "mutation, see build/long/mutation.log and tests/results/mutation-${SEED:-1}.txt"
   fi
 }
 

@@ -79,6 +79,7 @@ struct HandboxAnswer {
   std::optional<RunByHand> run{};
   std::optional<ModalSetting> setting{};
   std::optional<ShownStep> shown{};  // the step that is selected now
+  bool selects_program = false;      // and with it a program, be it the same one again
   // The control cannot do what was asked. A code of the control, or of the cell.
   std::optional<ErrorCode> message{};
   int beeps = 0;

@@ -165,6 +165,7 @@ void Machine::CloseRun() {
       family_.NewStanding(parameters_, run_->SaveMachine());
   RMLCELL_CHECK(standing);
   standing_ = *std::move(standing);
+  if (std::exchange(selected_program_, false)) standing_->SelectProgram();
   standing_->Rest();
   over_.back().ended = std::move(run_);
   stopping_ = resume_behind_ = abort_behind_ = false;
@@ -263,7 +264,7 @@ void Machine::Show(ErrorCode code) {
 
 void Machine::ToRun(InputKind kind, int index, double value) {
   const InputChange change{.kind = kind, .index = index, .value = value};
-  if (kind == InputKind::kStart) selected_ = false;
+  if (kind == InputKind::kStart) selected_ = selected_program_ = false;
   if (run_ != nullptr) {
     KeepForBase(change);
     run_->Apply(change);

@@ -247,6 +247,7 @@ class Machine {
   Status Take(MachineNote note);
   MachineView View() const;
   void Select(ShownStep shown);
+  void SelectProgram();
   Status MayMoveByHand(bool manual) const;
   Status BeginByHand(const RunByHand& asked);
   bool Pauses() const { return note_.by_hand && note_.hand == HandRun::kFunction; }
@@ -271,6 +272,7 @@ class Machine {
   std::int64_t last_alarm_ = 0;
   ShownStep shown_{};                   // what the last run left, or was selected since
   bool selected_ = false;               // while the open run stands
+  bool selected_program_ = false;       // likewise, and a program
   bool comes_along_ = false;            // the program of the open run is not of the memory
   bool of_a_job_ = false;               // the open run is: nobody here has selected its program
   std::optional<ErrorCode> message_;    // not cleared yet

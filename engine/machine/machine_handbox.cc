@@ -56,6 +56,12 @@ void Machine::Select(ShownStep shown) {
   selected_ = run_ != nullptr;
 }
 
+// What an open run counts belongs to its own program.
+void Machine::SelectProgram() {
+  if (run_ == nullptr) return standing_->SelectProgram();
+  selected_program_ = true;
+}
+
 Result<KeyAnswer> Machine::PressKey(std::string_view key, KeyAction action) {
   if (handbox_ == nullptr)
     return Error{
@@ -70,6 +76,7 @@ Result<KeyAnswer> Machine::PressKey(std::string_view key, KeyAction action) {
   if (done && asked->run) done = BeginByHand(*asked->run);
   if (done && asked->setting) standing_->SetModal(asked->setting->name, asked->setting->values);
   if (done && asked->shown) Select(*std::move(asked->shown));
+  if (done && asked->selects_program) SelectProgram();
   const std::optional<ErrorCode> refused = handbox_->Done(done);
   Settle();  // a FUNCTION may have failed before anything moved
   return KeyAnswer{.message = refused ? refused : asked->message,

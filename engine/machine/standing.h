@@ -39,6 +39,9 @@ class Standing {
   // What a run left that did not reach the end of its dry run (OPT-6.14): the next one is dry.
   virtual std::optional<ProgramStep> simulation_until() const { return {}; }
 
+  // A program was selected: what is counted since then begins anew.
+  virtual void SelectProgram() {}
+
   // As if the instruction of this name had set it. Nothing where the machine does not keep it.
   virtual void SetModal(std::string_view /*name*/, std::span<const double> /*values*/) {}
 

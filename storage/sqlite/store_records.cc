@@ -73,7 +73,6 @@ Status RemoveMachine(WriteContext& context, std::string_view id, Revision expect
     return buried.error();
   if (const Status forgotten = ForgetHost(context, id); !forgotten) return forgotten.error();
   if (const Status forgotten = tables.taught.Remove(id); !forgotten) return forgotten.error();
-  context.garbage = true;  // of its programs
   return NoteRecord(context, MachineName(id), kDeleted, caller);
 }
 

@@ -102,10 +102,13 @@ class Sequence(unittest.TestCase):
     def test_what_is_listed_as_equivalent_still_stands_there(self):
         arguments = mutate.Arguments()
         places = {file: mutate.places_of(mutate.ROOT, file, mutate.error_codes()) for file, *_ in arguments.rows}
-        for (file, line, change, behind), why in arguments.rows.items():
-            self.assertTrue(any(place.text == line and mutate.change_of(place) == change
-                                and arguments.of(file, line, change, place.line) == why for place in places[file]),
-                            f"{file}: {line} behind {behind}")
+        for row, why in arguments.rows.items():
+            file, line, change, behind = row
+            meant = {place.line for place in places[file] if place.text == line and mutate.change_of(place) == change
+                     and arguments.row_of(file, line, change, place.line) == row}
+            self.assertTrue(meant, f"{file}: {line} behind {behind}")
+            if behind != arguments.EACH:
+                self.assertEqual(len(meant), 1, f"{file}: {line}: which of {sorted(meant)} is meant?")
             self.assertGreater(len(why.split()), 5, f"{file}: {line} has no argument")
 
     def test_an_argument_may_say_which_of_lines_that_read_the_same_it_means(self):

@@ -161,6 +161,15 @@ TEST_F(SqliteContents, SameContentIsKeptOnce) {
             static_cast<std::int64_t>(kChunkBytes));
 }
 
+// store.h DeleteMachine: what its programs took is free again.
+TEST_F(SqliteContents, WhatADeletedMachineKeptGoes) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  PutProgram(1, Noise(3 * kMiB, 1));
+  PutProgram(2, Noise(3 * kMiB, 2));
+  Must(store().DeleteMachine("m", kAnyRevision));
+  EXPECT_TRUE(Eventually([&] { return Count("blob") == 0 && Count("blob_chunk") == 0; }));
+}
+
 TEST_F(SqliteContents, SmallContentsLieInTheirRow) {
   Must(store().PutMachine({.id = "m"}, 0));
   PutProgram(1, Noise(kContentInRowMax, 1));

@@ -63,6 +63,11 @@ std::vector<machine::StateItem> OptimoStanding::items() const {
   return items;
 }
 
+void OptimoStanding::SelectProgram() {
+  s_.data.vi[98] = 0.0F;
+  s_.selected = 0;
+}
+
 void OptimoStanding::SetModal(std::string_view name, std::span<const double> values) {
   constexpr std::size_t kValues = 6;
   const bool all = values.size() == kValues;

@@ -21,6 +21,7 @@ class OptimoStanding final : public machine::Standing {
   machine::MachineOutputs outputs() const override { return OutputsOf(s_.outputs); }
   std::vector<machine::ModalValue> modal_values() const override;
   std::optional<machine::ProgramStep> simulation_until() const override { return s_.simul; }
+  void SelectProgram() override;  // VI[98] is 0. OPT-B.63
   // TCP, with six values; SYSDEF, with six or none.
   void SetModal(std::string_view name, std::span<const double> values) override;
   void Apply(const machine::InputChange& input) override;

@@ -82,6 +82,7 @@ void OptimoHandbox::Select(Turn& turn, int program, int step) {
   first_point_.reset();
   next_move_ = {};
   turn.answer.shown = ShownStep{.program = program};
+  turn.answer.selects_program = true;
   if (step == 0 || !turn.view.programs.contains(program)) return;
   if (const std::optional<Steps> steps = StepsOf(turn, program))
     turn.answer.shown = steps->Show(program, step);

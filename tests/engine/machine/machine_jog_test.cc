@@ -284,6 +284,8 @@ TEST_F(MachineJogTest, AToolThatPointsTheOtherWay) {
   EXPECT_GT(moved(kReversed, JogAxis::kX), 50.0);
   EXPECT_GT(moved("TCP (0.,0.,3./0.,0.,-6.)\n", JogAxis::kZ), 50.0);
   EXPECT_GT(moved("TCP (0.,0.,0./0.,0.,0.)\n", JogAxis::kZ), 50.0);
+  for (const JogAxis axis : {JogAxis::kX, JogAxis::kY, JogAxis::kZ})  // OPT-B.90
+    EXPECT_GT(moved("TCP (0.,0.,3./0.,1.,3.)\n", axis), 50.0);
 }
 
 // OPT-4.56, LIVE-8.02: it stands on the end of the travel; the key is still down, and it jogs.

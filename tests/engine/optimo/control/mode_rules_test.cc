@@ -280,6 +280,35 @@ TEST(ModeRules, EachRepetitionBeginsAnew) {
   EXPECT_NEAR(ran.parts[2].duration_s(), ran.parts[0].duration_s(), kExact);
 }
 
+// OPT-4.23, OPT-2.47: the end of the program takes the passage of its last move away, also where
+// the program begins again there: in each pass the tip comes to its target, and past those before.
+TEST(ModeRules, NothingIsPassedBetweenRepetitions) {
+  const Ran ran = RunText(kAlongX + MoveTo(121.02, "/FLY") +
+                              "MOVE (121.02,2301.2,-350.,0.,0.)/FLY\n" + MoveTo(21.02, "/FLY"),
+                          {.inputs = {Key(16.0, InputKind::kHold)}, .mode = Mode::kRepeat});
+  EXPECT_EQ(ran.Finding(7304).step, 6);
+  int passes = 0;
+  for (const machine::MoveDone& move : ran.moves) {
+    if (move.place.step != 6) continue;
+    ++passes;
+    EXPECT_NEAR(move.tip.tip.x(), 21.02, kReal_mm);
+    EXPECT_NEAR(move.tip.tip.y(), 2201.2, kReal_mm);
+  }
+  EXPECT_EQ(passes, 2);  // 341 mm at 50 mm/s each, and the third is held at its second target
+  EXPECT_GT(ran.DistanceTo({121.02, 2201.2, -350.0}), 0.1);
+}
+
+// OPT-4.23, OPT-6.10: the run halts behind the step of the breakpoint, in each pass.
+TEST(ModeRules, ABreakpointHaltsInEachRepetition) {
+  const Ran ran = RunText("VI[2]=VI[2]+1\nDELAY 1\n", {.inputs = Starts(2, 10.0),
+                                                       .mode = Mode::kRepeat,
+                                                       .variables = {"VI[2]"},
+                                                       .breakpoint = machine::ProgramStep{1, 1}});
+  EXPECT_THAT(ran.steps_begun, ElementsAre(1, 2, 1, 2, 1));
+  EXPECT_EQ(ran.variables.at("VI[2]"), "3");
+  EXPECT_EQ(ran.end.phase, RunPhase::kHalted);
+}
+
 // OPT-4.23: a program that carries nothing out takes a CYCLE each time, so that time goes on.
 TEST(ModeRules, ARepetitionOfNothingTakesACycle) {
   const Ran ran =

@@ -143,7 +143,7 @@ TEST_F(Selection, AStepThatRunsHasItsName) {
   }
 }
 
-// OPT-4.63 OPT-4.26 OPT-4.41 OPT-E.7606: asked first; 0 is NO, 1 is YES.
+// OPT-4.63 OPT-4.26 OPT-4.41: asked first; 0 is NO, 1 is YES.
 TEST_F(Selection, ShiftDelDeletesTheProgram) {
   Have({{45, "DELAY 1\nDELAY 1\n"}});
   Keys("SHIFT DEL");
@@ -163,7 +163,7 @@ TEST_F(Selection, ShiftDelDeletesTheProgram) {
   EXPECT_EQ(Said(), 7102);
 }
 
-// OPT-4.63 OPT-B.65: one that is suspended stays.
+// OPT-4.63 OPT-B.65 OPT-E.7606: one that is suspended stays.
 TEST_F(Selection, AProgramInUseIsNotDeleted) {
   Have({{45, "DELAY 1\nDELAY 1\n"}, {46, "DELAY 1\n"}}, Mode::kSingle);
   Keys("JOB 4 5 ENT START");
@@ -173,6 +173,56 @@ TEST_F(Selection, AProgramInUseIsNotDeleted) {
   EXPECT_TRUE(machine->memory().programs.contains(45));
   Keys("JOB 4 6 ENT SHIFT DEL 1");
   EXPECT_FALSE(machine->memory().programs.contains(46));
+}
+
+// OPT-B.63 OPT-7.70: it counts the runs since a program was selected, be it the same one again, and
+// is 0 until the first.
+TEST_F(Selection, WhatIsCountedBeginsAnewWithASelection) {
+  Have({{45, "DELAY 1\n"}, {46, "DELAY 1\n"}}, Mode::kCycle);
+  double now_s = 0.0;
+  const auto run = [&] {
+    Keys("START");
+    GoOn(At(now_s += 10.0));
+    return Value("VI[98]");
+  };
+  Keys("JOB 4 5 ENT");
+  EXPECT_EQ(Value("VI[98]"), "0");
+  EXPECT_EQ(run(), "1");
+  EXPECT_EQ(run(), "2");
+  Keys("JOB 4 6 ENT");
+  EXPECT_EQ(Value("VI[98]"), "0");
+  Keys("JOB 4 5 ENT");
+  EXPECT_EQ(Value("VI[98]"), "0");
+  EXPECT_EQ(run(), "1");
+  EXPECT_EQ(run(), "2");
+  Keys("JOB 4 5 ENT");
+  EXPECT_EQ(Value("VI[98]"), "0");
+  EXPECT_EQ(run(), "1");
+}
+
+// OPT-B.63: the open run counts on; what is selected beside it counts from its end, unless START
+// goes on with the run.
+TEST_F(Selection, BesideAnOpenRunItCountsFromItsEnd) {
+  Have({{45, "DELAY 10\n"}, {46, "DELAY 1\n"}}, Mode::kCycle);
+  Keys("JOB 4 5 ENT START");
+  GoOn(At(1.0));
+  Keys("STOP");
+  GoOn(At(2.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  Keys("JOB 4 6 ENT");
+  EXPECT_EQ(Value("VI[98]"), "1");
+  Keys("START");  // goes on
+  GoOn(At(30.0));
+  EXPECT_EQ(Value("VI[98]"), "1");
+  Keys("START");
+  GoOn(At(31.0));
+  Keys("STOP");
+  GoOn(At(32.0));
+  Keys("JOB 4 5 ENT");
+  EXPECT_EQ(Value("VI[98]"), "2");
+  Good(machine::AbortRun{});
+  GoOn(At(40.0));
+  EXPECT_EQ(Value("VI[98]"), "0");
 }
 
 }  // namespace
