@@ -27,7 +27,7 @@ class Browser:
         self.eventually(told.exists)
         port = int(self.eventually(lambda: told.read_text().split("\n")[0]))
         page = self.eventually(lambda: next((one for one in json.load(
-            urllib.request.urlopen(f"http://127.0.0.1:{port}/json", timeout=20)) if one["type"] == "page"), None))
+            urllib.request.urlopen(f"http://127.0.0.1:{port}/json", timeout=60)) if one["type"] == "page"), None))
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=60)
         path = page["webSocketDebuggerUrl"].split("/", 3)[3]
         key = base64.b64encode(os.urandom(16)).decode()
@@ -39,7 +39,7 @@ class Browser:
 
     def close(self):
         self.process.terminate()
-        self.process.wait(timeout=30)
+        self.process.wait(timeout=60)
         shutil.rmtree(self.folder, ignore_errors=True)
 
     @staticmethod

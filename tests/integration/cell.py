@@ -97,7 +97,7 @@ class Cell:
         if self.process is not None and self.process.poll() is None:
             self.process.terminate()
             try:
-                self.process.wait(timeout=30)
+                self.process.wait(timeout=60)
             except subprocess.TimeoutExpired:
                 self.process.kill()
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -187,12 +187,31 @@ def eventually(holds, seconds=60):
     return answer
 
 
+def awaited(holds, seconds=60):
+    """What `holds` says as soon as it is true. Where it never is, the test fails."""
+    answer = eventually(holds, seconds)
+    assert answer, "it never came"
+    return answer
+
+
 def wait_until_it_runs(stub, name):
     def runs():
         job = stub.GetJob(job_pb2.GetJobRequest(name=name))
         assert job.state in (job_pb2.Job.STATE_QUEUED, job_pb2.Job.STATE_RUNNING), job
         return job.state == job_pb2.Job.STATE_RUNNING
     assert eventually(runs), f"{name} does not run"
+
+
+def processor_ticks(process):
+    """Of its threads, those that are over too; a hundred a second."""
+    stat = pathlib.Path(f"/proc/{process}/stat").read_text(encoding="utf-8")
+    return sum(int(ticks) for ticks in stat.rsplit(")", 1)[1].split()[11:13])
+
+
+def times_awake(process):
+    """How often its first thread has gone to sleep."""
+    status = pathlib.Path(f"/proc/{process}/status").read_text(encoding="utf-8")
+    return int(re.search(r"^voluntary_ctxt_switches:\s*(\d+)", status, re.M).group(1))
 
 
 def detail_of(error):

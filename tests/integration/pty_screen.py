@@ -47,9 +47,9 @@ class Terminal:
                 os.kill(process, signal.SIGKILL)
             except ProcessLookupError:
                 pass
-        self.process.wait(timeout=30)
+        self.process.wait(timeout=60)
         os.close(self.slave)
-        self.reader.join(timeout=10)
+        self.reader.join(timeout=60)
         os.close(self.master)
 
     def inner(self):
@@ -79,8 +79,8 @@ class Terminal:
     def text(self):
         return "\n".join(self.lines())
 
-    def shows(self, text, patience=30):
-        return eventually(lambda: text in self.text(), patience)
+    def shows(self, text):
+        return eventually(lambda: text in self.text())
 
     # --- what it is sent ------------------------------------------------------------------------------
     def read(self):

@@ -15,6 +15,10 @@ from cell import (COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, cell
 from command import run
 
 
+# Of what is to be seen on its way: a busy machine may come too late for the first of them.
+LONGER_AND_LONGER_S = (2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
+
+
 def jobs_request(jobs=None, **wanted):
     """A watch of these jobs, of all without."""
     jobs = jobs if jobs is not None else cell_pb2.JobsSubscription()
@@ -94,16 +98,19 @@ class Jobs(WithCell):
         self.refused(stub.DeleteJob, job_pb2.DeleteJobRequest(name="7"), grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
 
     def test_a_job_runs_at_the_pace_of_the_machine(self):
+        def live_on_the_way(delay_s):
+            begin = time.monotonic()
+            seen = self.progress_of_a_paced_job(f"DELAY {delay_s}\n")
+            self.assertGreaterEqual(time.monotonic() - begin, delay_s)  # however slow the machine: less would be too fast
+            return [one for one in seen if 0.0 < one.virtual_time_ns * 1e-9 < delay_s]
+        self.assertTrue(next(filter(None, map(live_on_the_way, LONGER_AND_LONGER_S)), None))
+
+    def progress_of_a_paced_job(self, source):
         stub = self.cell.jobs()
-        job = inline_job("optimo-1", "slow.S", "DELAY 1.5\n")
+        job = inline_job("optimo-1", "paced.S", source)
         job.simulation.pace = 1.0
-        begin = time.monotonic()
-        name = submit(stub, job).name
-        seen = [m.progress.virtual_time_ns * 1e-9 for m in stub.WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name=name), timeout=60)
+        return [m.progress for m in stub.WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name=submit(stub, job).name), timeout=300)
                 if m.HasField("progress")]
-        took = time.monotonic() - begin
-        self.assertGreaterEqual(took, 1.5)  # however slow the machine: less would be too fast
-        self.assertGreater(len({t for t in seen if 0.0 < t < 1.5}), 0)  # live on the way
 
     def test_paced_jobs_keep_no_check_waiting(self):
         stub = self.cell.jobs()
@@ -124,19 +131,16 @@ class Jobs(WithCell):
             wait_for_end(stub, name)
 
     def test_progress_of_a_paced_job_is_by_time(self):
-        stub = self.cell.jobs()
-        # One step of 2 s and many that take none: by steps or bytes it would be nearly over at once.
-        source = "".join(f"VR[{n}] = {n}.\n" for n in range(50)) + "DELAY 2.\n"
-        job = inline_job("optimo-1", "late.S", source)
-        job.simulation.pace = 1.0
-        seen = [m.progress for m in stub.WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name=submit(stub, job).name), timeout=60)
-                if m.HasField("progress")]
-        known = [one for one in seen if one.HasField("planned_time_ns")]
-        self.assertTrue(known)
-        self.assertEqual({one.planned_time_ns for one in known}, {2_000_000_000})
-        for one in known:
-            self.assertAlmostEqual(one.progress, one.virtual_time_ns / 2e9, delta=0.06)
-        self.assertEqual([one.progress for one in known], sorted(one.progress for one in known))
+        def known_on_the_way(delay_s):
+            # One step that takes time and many that take none: by steps or bytes it would be nearly over at once.
+            source = "".join(f"VR[{n}] = {n}.\n" for n in range(50)) + f"DELAY {delay_s}\n"
+            known = [one for one in self.progress_of_a_paced_job(source) if one.HasField("planned_time_ns")]
+            self.assertLessEqual({one.planned_time_ns for one in known}, {int(delay_s * 1e9)})
+            for one in known:
+                self.assertAlmostEqual(one.progress, one.virtual_time_ns / (delay_s * 1e9), delta=0.06)
+            self.assertEqual([one.progress for one in known], sorted(one.progress for one in known))
+            return known
+        self.assertTrue(next(filter(None, map(known_on_the_way, LONGER_AND_LONGER_S)), None))
 
     def test_a_pace_has_its_bounds(self):
         stub = self.cell.jobs()

@@ -9,9 +9,9 @@ import threading
 import time
 import unittest
 
-from cell import cell_pb2, eventually, grpc, program_pb2
+from cell import awaited, grpc, program_pb2
 from google.protobuf.timestamp_pb2 import Timestamp
-from live import Live, LiveTestCase, hosts_of, new_id
+from live import Live, LiveTestCase, hosts_of, new_id, stopped, wall_ns
 from rmlcell.v1 import handbox_pb2  # noqa: E402
 from rmlcell.v1.common_pb2 import MachineState  # noqa: E402
 from rmlcell.v1.machine_control_pb2 import KeyAction  # noqa: E402
@@ -67,7 +67,7 @@ class LiveCrashesTest(LiveTestCase):
 
     def recovered(self, fence):
         """How it stands with its next host."""
-        return eventually(lambda: (lambda now: now if now.fence > fence and name_of(now) not in RECOVERS else None)(self.live.status()))
+        return awaited(lambda: (lambda now: now if now.fence > fence and name_of(now) not in RECOVERS else None)(self.live.status()))
 
     def settle(self, status):
         """A person looks, and knows why its hosts die."""
@@ -79,21 +79,21 @@ class LiveCrashesTest(LiveTestCase):
     def stands_still(self, status, place):
         """LIVE-2.05: nothing moves by itself behind a recovery."""
         self.assertIn(name_of(status), STANDS, place)
-        time.sleep(0.3)
-        later = self.live.status()
+        later = self.live.later(status)
         self.assertEqual(axes_of(later), axes_of(status), place)
         self.assertEqual(name_of(later), name_of(status), place)
 
     def told(self):
-        """What the log tells of machines, in order."""
-        events = []
-        try:
-            for message in self.cell.cell_service().WatchCell(cell_pb2.WatchCellRequest(after_sequence=0), timeout=3):
-                if message.HasField("event") and message.event.HasField("machine"):
-                    events.append(message.event.machine)
-        except grpc.RpcError:
-            pass
-        return events
+        """What the log tells of machines, in order, when their host has told all of it."""
+        self.live.ask("DisableMachine")
+        return self.log_of_machines()
+
+    def stands_at(self, marks, events):
+        """LIVE-3.30: each that was killed was found where its newest mark was, whatever became of the next ones."""
+        found = [(one.fence, one.recovered.mark_fence, one.recovered.mark_virtual_time_ns) for one in events if one.HasField("recovered")]
+        for fence, mark in marks:
+            first = min(one for one in found if one[0] > fence)
+            self.assertEqual(first[1:], (mark.fence, mark.virtual_time_ns), f"seed {SEED}: {found}")
 
     # In the middle of a key that moves an axis: the machine stands behind, where the key had brought it to or before.
     def test_rounds_of_a_jog(self):
@@ -109,8 +109,8 @@ class LiveCrashesTest(LiveTestCase):
         self.live.enable()
         self.rounds_of_a_key(self.live, lambda: Panel(self.live), "", 5)
 
-    def rounds_of_a_key(self, live, keys_of, told_as, runs_on_mm):
-        answered = []
+    def rounds_of_a_key(self, live, keys_of, told_as, mm_s):
+        answered, marks = [], []
         for round_ in range(ROUNDS):
             live.acquire(take_over=True, reason="a test", ttl={"seconds": 60})
             box = keys_of()
@@ -135,22 +135,30 @@ class LiveCrashesTest(LiveTestCase):
                     pressed.set()
             hand = threading.Thread(target=jog, daemon=True)
             hand.start()
-            pressed.wait(10)
+            self.assertTrue(pressed.wait(60))
             time.sleep(self.choose.random() * 0.5)
             before = live.status()
-            os.kill(live.host(), signal.SIGKILL)
+            marks.append((before.fence, live.kill_host()))
+            between_s = abs(marks[-1][1].virtual_time_ns - before.virtual_time_ns) * 1e-9
             place = f"seed {SEED}, round {round_}: {key}, {name_of(before)}"
             after = self.recovered(before.fence)
             hand.join(60)
             self.stands_still(after, place)
-            self.assertLessEqual(after.virtual_time_ns, before.virtual_time_ns + 10**9, place)
-            for axis, (first, seen, now) in enumerate(zip(axes_of(begun), axes_of(before), axes_of(after))):
-                # Not behind where it began, and not farther than it runs on from where it was seen.
-                low, high = sorted((first, seen))
-                self.assertTrue(low - runs_on_mm <= now <= high + runs_on_mm if axis < 2 else abs(now - first) < 1e-3, f"{place}: {axis} {first} {seen} {now}")
+            for axis, (seen, now) in enumerate(zip(axes_of(before), axes_of(after))):
+                # From where it was seen it is as far as it moves in the time up to the mark.
+                far = mm_s * between_s + 0.01 if axis < 2 else 1e-3
+                self.assertLessEqual(abs(now - seen), far, f"{place}: {axis} {seen} {now} {between_s}")
+            for axis, (first, now) in enumerate(zip(axes_of(begun), axes_of(after))):
+                if axis == "XY".index(key[0]):
+                    way = now - first if key[1] == "+" else first - now
+                    self.assertGreaterEqual(way, -1e-3, f"{place}: {axis} {first} {now}")  # not behind where it began
+                else:
+                    self.assertLess(abs(now - first), 1e-3, f"{place}: {axis} {first} {now}")
             self.settle(after)
-        keys = [one.input_applied.input.key for one in self.told() if one.HasField("input_applied") and one.input_applied.input.HasField("key")]
+        events = self.told()
+        keys = [one.input_applied.input.key for one in events if one.HasField("input_applied") and one.input_applied.input.HasField("key")]
         self.assertEqual([one.key for one in keys if one.action == KeyAction.Value("KEY_ACTION_PRESS")], answered)
+        self.stands_at(marks, events)
 
     def test_a_host_whose_machine_is_another_ones(self):
         """LIVE-3.05: it brakes, ends, and what the log does not take from it is kept and told."""
@@ -159,13 +167,13 @@ class LiveCrashesTest(LiveTestCase):
         box = Handbox(live)
         box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT")
         host = live.host()
-        with contextlib.closing(sqlite3.connect(self.cell.folder / "store" / "cell.db", timeout=10)) as store, store:
+        with contextlib.closing(sqlite3.connect(self.cell.folder / "store" / "cell.db", timeout=60)) as store, store:
             changed = store.execute("UPDATE machine_lock SET fence = fence + 1, host = 'another/1'").rowcount
         self.assertEqual(changed, 1)
         with self.assertRaises((grpc.RpcError, AssertionError)):
-            for _ in range(40):
+            for _ in range(200):
                 box.hold("X+", 0.3)
-        eventually(lambda: not os.path.exists(f"/proc/{host}"))
+        awaited(lambda: not os.path.exists(f"/proc/{host}"))
         journals = self.cell.folder / "store" / "hosts"
         orphan = [name for name in os.listdir(journals) if name.endswith(".orphan")]
         self.assertEqual(len(orphan), 1, os.listdir(journals))
@@ -184,15 +192,17 @@ class LiveCrashesTest(LiveTestCase):
             box.keys("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT")
             if round_ == 0:
                 box.keys("REC")
-                eventually(lambda: self.steps(slot))
+                awaited(lambda: self.steps(slot))
             seen = len(self.steps(slot))
             asked = 0
-            until = time.monotonic() + 0.2 + self.choose.random() * 0.8
+            after_s = 0.2 + self.choose.random() * 0.8
             host = live.host()
+            dead = threading.Event()
 
             def kill():
-                time.sleep(max(0.0, until - time.monotonic()))
+                time.sleep(after_s)
                 os.kill(host, signal.SIGKILL)
+                dead.set()
             before = live.status()
             killer = threading.Thread(target=kill)
             killer.start()
@@ -201,10 +211,12 @@ class LiveCrashesTest(LiveTestCase):
                     box.keys("DLY DEL 3 ENT")
                     asked += 1
                     box.keys("REC")
-                    eventually(lambda: len(self.steps(slot)) == seen + 1, 1)
+                    awaited(lambda: dead.is_set() or len(self.steps(slot)) == seen + 1)
+                    if dead.is_set():
+                        break
                     seen += 1
-            except (grpc.RpcError, AssertionError):
-                pass
+            except grpc.RpcError:
+                self.assertTrue(dead.wait(60))  # before that nothing is refused
             killer.join()
             place = f"seed {SEED}, round {round_}: {seen} steps seen, {asked} asked for"
             after = self.recovered(before.fence)
@@ -228,31 +240,31 @@ class LiveCrashesTest(LiveTestCase):
     def test_rounds_of_recovery(self):
         self.live.enable()
         self.live.store()
+        marks = []
         for round_ in range(ROUNDS):
             self.live.acquire(take_over=True, reason="a test", ttl={"seconds": 60})
             self.live.ask("StartMachine", program=5)
             time.sleep(0.1 + self.choose.random() * 0.6)
             before = self.live.status()
-            os.kill(self.live.host(), signal.SIGKILL)
+            marks.append((before.fence, self.live.kill_host()))
             killed = 0
             for _ in range(self.choose.randrange(1, 3)):
-                process = eventually(lambda: hosts_of(self.cell))[0]
+                process = awaited(lambda: hosts_of(self.cell))[0]
                 time.sleep(self.choose.random() * 0.15)
                 try:
                     os.kill(process, signal.SIGKILL)
                     killed += 1
                 except ProcessLookupError:
                     continue
-                eventually(lambda gone=process: gone not in hosts_of(self.cell))
+                awaited(lambda gone=process: gone not in hosts_of(self.cell))
                 self.live.enable()
             place = f"seed {SEED}, round {round_}: {killed} of its next hosts were killed"
             after = self.recovered(before.fence)
             self.assertEqual(name_of(after), "INSPECT", place)
             self.stands_still(after, place)
-            self.assertLessEqual(after.virtual_time_ns, before.virtual_time_ns + 10**9, place)
             self.settle(after)
-        self.live.ask("DisableMachine")
         events = self.told()
+        self.stands_at(marks, events)
         begun = [one.run_begun.run for one in events if one.HasField("run_begun")]
         over = [one.run_over.run for one in events if one.HasField("run_over")]
         self.assertEqual(begun, sorted(set(begun)), f"seed {SEED}")
@@ -270,19 +282,26 @@ class LiveCrashesTest(LiveTestCase):
             self.live.ask("StartMachine", program=5, request_id=request_id)
             time.sleep(0.1 + self.choose.random() * 0.3)
             before = self.live.status()
-            stopped = 0.05 + self.choose.random() * (STOPPED_S - 0.05) if round_ else STOPPED_S
+            stopped_s = 0.05 + self.choose.random() * (STOPPED_S - 0.05) if round_ else STOPPED_S
             process = self.live.host()
             os.kill(process, signal.SIGSTOP)
-            time.sleep(stopped)
+            awaited(lambda: stopped(process))
+            stood_from = time.time_ns()
+            time.sleep(stopped_s)
+            stood_ns = time.time_ns() - stood_from
             os.kill(process, signal.SIGCONT)
-            place = f"seed {SEED}, round {round_}: {stopped:.2f} s"
-            after = eventually(lambda: (lambda now: now if name_of(now) in ("RUNNING", "HELD") and now.age_ns < 10**8 else None)(self.live.status()))
+            place = f"seed {SEED}, round {round_}: {stopped_s:.2f} s"
+            # What it sent behind the stop.
+            after = awaited(lambda: (lambda now: now if name_of(now) in ("RUNNING", "HELD") and wall_ns(now.send_time) > stood_from
+                                     else None)(self.live.status()))
             self.assertEqual(after.fence, before.fence, place)
             self.assertGreaterEqual(after.virtual_time_ns, before.virtual_time_ns, place)
-            if stopped > 1.3:
+            if stopped_s > 1.3:
                 held = self.live.wait("HELD")
                 self.assertIn(HoldReason.Name(held.hold_reason), ("HOLD_REASON_LATE", "HOLD_REASON_SERVER_LOST"), place)
-                self.assertLess(held.virtual_time_ns - before.virtual_time_ns, (stopped + 3.0) * 10**9, place)
+                # LIVE-3.14: it has no time of the stop; what it is late by otherwise it makes up for, up to 100 ms and a turn.
+                went_on_ns = wall_ns(held.send_time) - wall_ns(before.send_time) - stood_ns
+                self.assertLess(held.virtual_time_ns - before.virtual_time_ns, went_on_ns + 2 * 10**8, place)
             self.live.ask("StartMachine", program=5, request_id=request_id)  # answered again, begun no more
             self.live.ask("AbortRun")
             self.live.wait("IDLE")

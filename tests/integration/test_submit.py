@@ -2,10 +2,9 @@
 """SubmitJobs: many jobs in one stream, each answered when it is durable (proto/rmlcell/v1/job.proto)."""
 import itertools
 import threading
-import time
 import unittest
 
-from cell import Cell, WithCell, eventually, grpc, inline_job, job_pb2
+from cell import Cell, WithCell, awaited, eventually, grpc, inline_job, job_pb2
 
 SQUARE = "PA;PU100,100;PD900,100,900,900;PU0,0;"
 
@@ -81,10 +80,11 @@ class Streams(WithCell):
                 yield request
 
         stream = self.cell.jobs().SubmitJobs(requests())
-        seen = -1
-        while len(sent) > seen:  # until no more goes out
+        seen, stub = -1, self.cell.jobs()
+        while len(sent) > seen:  # until no more goes out while hundreds of others are answered
             seen = len(sent)
-            time.sleep(1.0)
+            for _ in range(500):
+                self.assertTrue(stub.SubmitJob(submission(0).submission, timeout=60).name)
         self.assertLess(seen, 20_000)
         self.assertEqual(sum(1 for answer in stream if answer.refusal.code), 20_000)
 
@@ -113,7 +113,7 @@ class Deaths(unittest.TestCase):
         self.assertGreaterEqual(len(answered), 300)
         cell.start()
         stub = cell.jobs()
-        eventually(lambda: stub.GetJob(job_pb2.GetJobRequest(name=answered[1])))
+        awaited(lambda: stub.GetJob(job_pb2.GetJobRequest(name=answered[1])))
         again = {answer.number: answer.job
                  for answer in stub.SubmitJobs(submission(n, f"r-{n}") for n in answered)}
         self.assertEqual(again, answered)

@@ -4,7 +4,7 @@ import os
 import subprocess
 import unittest
 
-from cell import BIN, eventually, job_pb2, machine_pb2, program_pb2
+from cell import BIN, awaited, job_pb2, machine_pb2, program_pb2
 from live import MILL, Live, LiveTestCase, new_id
 
 MAIN = "CALL 44\n"
@@ -29,7 +29,7 @@ class TicketsTest(LiveTestCase):
         def job():
             now = self.cell.jobs().GetJob(job_pb2.GetJobRequest(name=name))
             return now if job_pb2.Job.State.Name(now.state)[len("STATE_"):] in final else None
-        now = eventually(job, 40)
+        now = awaited(job)
         return job_pb2.Job.State.Name(now.state)[len("STATE_"):], now.outcome.code + " " + now.outcome.message
 
     def put(self, slot, text):

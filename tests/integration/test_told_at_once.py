@@ -31,24 +31,24 @@ class ToldAtOnce(unittest.TestCase):
             with self.subTest(words):
                 self.machine.is_now(state="MACHINE_STATE_IDLE")
                 lines = self.lines_of("machine", "watch", "m", *words)
-                self.assertTrue(eventually(lambda: len(lines) == 1, 30), lines)
+                self.assertTrue(eventually(lambda: len(lines) == 1), lines)
                 self.machine.is_now(state="MACHINE_STATE_RUNNING")
-                self.assertTrue(eventually(lambda: len(lines) == 2, 30), lines)
+                self.assertTrue(eventually(lambda: len(lines) == 2), lines)
                 self.assertIn(told, lines[1])
 
     def test_what_happens_to_a_job(self):
         self.machine.say("WatchJob", {"sequence": "1", "event": {"sequence": "1", "message": {"text": "one"}}})
         lines = self.lines_of("watch", "17")
-        self.assertTrue(eventually(lambda: lines == ["#1  one\n"], 30), lines)
+        self.assertTrue(eventually(lambda: lines == ["#1  one\n"]), lines)
         self.machine.say("WatchJob", {"sequence": "2", "event": {"sequence": "2", "message": {"text": "two"}}})
-        self.assertTrue(eventually(lambda: lines[1:] == ["#2  two\n"], 30), lines)
+        self.assertTrue(eventually(lambda: lines[1:] == ["#2  two\n"]), lines)
 
     def test_what_happens_at_a_machine(self):
         self.machine.is_now()
         event = {"caller": "anna", "machine": {"inputApplied": {"input": {"power": True}}}}
         self.machine.say("WatchCell", {"sequence": "1", "event": event})
         lines = self.lines_of("machine", "log", "m", "--follow")
-        self.assertTrue(eventually(lambda: len(lines) == 1, 30), lines)
+        self.assertTrue(eventually(lambda: len(lines) == 1), lines)
         self.assertIn("  anna: power on", lines[0])
 
 
