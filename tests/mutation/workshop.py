@@ -37,7 +37,9 @@ class Workshop:
         self.root = pathlib.Path(root)
         self.build = pathlib.Path(build)
         with open(self.build / "compile_commands.json", encoding="utf-8") as file:
-            self.compiles = {os.path.relpath(entry["file"], self.root): entry for entry in json.load(file)}
+            # Of the objects of one source the one in a library is what most tests link.
+            entries = sorted(json.load(file), key=lambda entry: self.archive_of(entry) is not None)
+        self.compiles = {os.path.relpath(entry["file"], self.root): entry for entry in entries}
         self.links = {}
 
     def tests(self, names):
@@ -57,12 +59,14 @@ class Workshop:
                       if path.name.startswith("rmlcell") and os.access(path, os.X_OK))
 
     def object_of(self, file):
-        command = shlex.split(self.compiles[file]["command"])
-        return command[command.index("-o") + 1]
+        return object_made_by(self.compiles[file])
 
     def library_of(self, file):
         """The archive that holds the object, or None where it is linked by itself."""
-        folder, _, rest = self.object_of(file).partition("/CMakeFiles/")
+        return self.archive_of(self.compiles[file])
+
+    def archive_of(self, entry):
+        folder, _, rest = object_made_by(entry).partition("/CMakeFiles/")
         archive = f"{folder}/lib{rest.split('.dir/')[0]}.a"
         return archive if (self.build / archive).exists() else None
 
@@ -162,6 +166,11 @@ class Workshop:
         if test.drives_programs:
             files += self.programs()
         return [(self.build / file).stat().st_mtime_ns for file in files]
+
+
+def object_made_by(entry):
+    command = shlex.split(entry["command"])
+    return command[command.index("-o") + 1]
 
 
 def tests_of(build, names):
