@@ -60,7 +60,8 @@ class FurtherLines::Line {
   }
   bool IsHeard() const {
     const std::lock_guard lock(mutex_);
-    return line_ != nullptr && Now().steady - std::chrono::nanoseconds(heard_at_) <= kServerSilent;
+    return line_ != nullptr &&
+           Now().steady - std::chrono::nanoseconds(heard_at_) <= lines_.silence_;
   }
 
  private:
@@ -105,8 +106,8 @@ class FurtherLines::Line {
     {
       std::unique_lock lock(mutex_);
       while (!ending_ && !gone_ &&
-             Now().steady - std::chrono::nanoseconds(heard_at_) <= kServerSilent)
-        changed_.wait_for(lock, kServerSilent / 2);
+             Now().steady - std::chrono::nanoseconds(heard_at_) <= lines_.silence_)
+        changed_.wait_for(lock, lines_.silence_ / 2);
       ended = std::move(line_);
     }
     ended->Cut();  // what it did not take is of no use to anybody later
@@ -138,7 +139,8 @@ class FurtherLines::Line {
   std::thread thread_;  // the last member: it begins with the others made
 };
 
-FurtherLines::FurtherLines(std::function<void()> wake) : wake_(std::move(wake)) {}
+FurtherLines::FurtherLines(std::function<void()> wake, std::chrono::nanoseconds silence)
+    : wake_(std::move(wake)), silence_(silence) {}
 
 FurtherLines::~FurtherLines() = default;
 

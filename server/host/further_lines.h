@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "rmlcell/v1/host.pb.h"
+#include "server/host/host_clock.h"
 #include "server/host/waiting_messages.h"
 
 namespace rmlcell::server {
@@ -21,8 +23,10 @@ class FurtherLines {
  public:
   static constexpr std::size_t kServersMax = 8;
 
-  // `wake`: something has come; called on threads of this.
-  explicit FurtherLines(std::function<void()> wake);
+  // `wake`: something has come; called on threads of this. A server that says nothing for longer
+  // than `silence` is left.
+  explicit FurtherLines(std::function<void()> wake,
+                        std::chrono::nanoseconds silence = kServerSilent);
   ~FurtherLines();
   FurtherLines(const FurtherLines&) = delete;
   FurtherLines& operator=(const FurtherLines&) = delete;
@@ -58,6 +62,7 @@ class FurtherLines {
   v1::HostHello hello() const;
 
   std::function<void()> wake_;
+  const std::chrono::nanoseconds silence_;
   mutable std::mutex mutex_;
   v1::HostHello hello_;                  // guarded by mutex_
   WaitingMessages messages_;             // guarded by mutex_

@@ -12,14 +12,7 @@ namespace rmlcell::server {
 namespace {
 
 constexpr std::chrono::seconds kConnectPatience{5};
-constexpr std::chrono::seconds kLastWords{2};
 constexpr int kAgain_ms = 100;
-// An empty message from time to time, which the server answers: each side knows that the other one
-// is there. Of a machine that stands and has no run open it is the status, which is told every
-// second: nothing is to be held there when a server is lost, and waking four times a second is most
-// of what its host costs. LIVE-3.06, LIVE-3.12
-constexpr std::chrono::milliseconds kHeartbeat{250};
-constexpr std::chrono::milliseconds kHeartbeatAtRest{1200};
 
 ErrorCode CodeOf(const grpc::Status& status) {
   switch (status.error_code()) {
@@ -72,12 +65,12 @@ struct HostLine::Stream {
   std::unique_ptr<grpc::ClientReaderWriter<v1::HostRequest, v1::HostResponse>> line;
 };
 
-HostLine::HostLine() : stream_(std::make_unique<Stream>()) {}
+HostLine::HostLine(const LineTimes& times) : times_(times), stream_(std::make_unique<Stream>()) {}
 
 Result<HostLine::Welcome> HostLine::Join(const std::string& server, const v1::HostHello& hello,
                                          std::function<void(v1::HostResponse)> heard,
-                                         std::function<void()> gone) {
-  std::unique_ptr<HostLine> made(new HostLine());
+                                         std::function<void()> gone, const LineTimes& times) {
+  std::unique_ptr<HostLine> made(new HostLine(times));
   made->heard_ = std::move(heard);
   made->gone_ = std::move(gone);
   Stream& stream = *made->stream_;
@@ -125,7 +118,7 @@ HostLine::~HostLine() {
   bool written = false;
   {
     std::unique_lock lock(mutex_);
-    written = to_send_.wait_for(lock, kLastWords, [this] { return written_all_ || cut_; });
+    written = to_send_.wait_for(lock, times_.last_words, [this] { return written_all_ || cut_; });
   }
   if (!written) stream_->context.TryCancel();
   writer_.join();
@@ -133,7 +126,7 @@ HostLine::~HostLine() {
     stream_->line->WritesDone();
     // What was sent last is lost where the line is cut before the server has taken it.
     std::unique_lock lock(mutex_);
-    to_send_.wait_for(lock, kLastWords, [this] { return read_all_; });
+    to_send_.wait_for(lock, times_.last_words, [this] { return read_all_; });
   }
   stream_->context.TryCancel();
   reader_.join();
@@ -181,7 +174,7 @@ void HostLine::Write() {
   using Clock = std::chrono::steady_clock;
   std::int64_t heartbeats = 0;
   bool rests = false;  // as the server was told last
-  Clock::time_point next_heartbeat = Clock::now() + kHeartbeat;
+  Clock::time_point next_heartbeat = Clock::now() + times_.heartbeat;
   std::unique_lock lock(mutex_);
   for (;;) {
     to_send_.wait_until(lock, next_heartbeat, [this] { return ending_ || !queue_.empty(); });
@@ -190,7 +183,7 @@ void HostLine::Write() {
     v1::HostRequest message;
     // Beside all that is told: the server answers it, and so shows that it is there.
     if (queue_.empty() || Clock::now() >= next_heartbeat) {
-      next_heartbeat = Clock::now() + (rests ? kHeartbeatAtRest : kHeartbeat);
+      next_heartbeat = Clock::now() + (rests ? times_.heartbeat_at_rest : times_.heartbeat);
       message.mutable_heartbeat()->set_number(++heartbeats);
     } else {
       message = std::move(queue_.front());
@@ -200,8 +193,9 @@ void HostLine::Write() {
       const bool rested = std::exchange(rests, bridge::IsAtRest(message.status().state()));
       // A server that does not know a status for a heartbeat gets one.
       if (rests || rested)
-        next_heartbeat = Clock::now() + (rests && answers_.exchange(false) ? kHeartbeatAtRest
-                                                                           : Clock::duration(0));
+        next_heartbeat =
+            Clock::now() +
+            (rests && answers_.exchange(false) ? times_.heartbeat_at_rest : Clock::duration(0));
     }
     lock.unlock();
     const bool sent = stream_->line->Write(message);

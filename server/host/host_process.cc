@@ -45,8 +45,7 @@ using std::chrono::nanoseconds;
 
 constexpr nanoseconds kStatusMoving = 51ms, kStatusStanding = 1s;  // LIVE-3.16
 constexpr nanoseconds kTickHeld = 50ms, kTickJogging = 10ms;       // of a run that stands, of a jog
-constexpr nanoseconds kIntentPatience = 500ms, kDurablePatience = 1s;  // LIVE-3.21
-constexpr nanoseconds kEndsWithoutServer = 60s, kRejoin = 200ms, kRestPatience = 10s;
+constexpr nanoseconds kEndsWithoutServer = 60s, kRejoin = 200ms;
 constexpr double kPreviewTime_s = 60.0;  // LIVE-6.01
 
 class HostProcess {
@@ -83,13 +82,13 @@ class HostProcess {
   void KeepLine() {
     std::optional<HostInbox::Joined> joined = inbox_.TakeJoined();
     const nanoseconds now = Now().steady;
-    const bool silent = line_ != nullptr && now - inbox_.heard_at() > kServerSilent;
+    const bool silent = line_ != nullptr && now - inbox_.heard_at() > patience_.silence;
     if (line_ != nullptr && (silent || inbox_.line_gone())) {
       spdlog::warn(silent ? "the server is silent" : "the line to the server is gone");
       if (silent) line_->Cut();
       line_.reset();
       // Of one that is silent it is not known whether it was stopped or is only late.
-      without_server_since_ = silent ? now - kServerSilent : now;
+      without_server_since_ = silent ? now - patience_.silence : now;
       ForgetOrders();
     }
     if (joined) {
@@ -127,7 +126,7 @@ class HostProcess {
       inbox_.HaveJoined(HostLine::Join(
           server, hello,
           [this](v1::HostResponse message) { inbox_.Hear(std::move(message), Now().steady); },
-          [this] { inbox_.LineIsGone(); }));
+          [this] { inbox_.LineIsGone(); }, patience_.line));
     });
   }
 
@@ -243,14 +242,14 @@ class HostProcess {
   }
 
   // `until`: of a key, how long it waits for those before it.
-  void TakeOrder(const v1::HostOrder& order,
-                 nanoseconds until = Now().steady + KeyDesk::kPatience) {
+  void TakeOrder(const v1::HostOrder& order, std::optional<nanoseconds> until = std::nullopt) {
     if (machine_ == nullptr)
       return Refuse(order, {ErrorCode::kCellNotLive, "the machine is starting", {}});
     if (order.has_preview_start()) return Preview(order);
     const OrderClass kind = machine_->SlowsDown(order) ? OrderClass::kLetsGo : ClassOf(order);
     if (machine_->WaitsForKeys(order, Now())) {
-      keys_waiting_.push_back({.order = order, .until = until});
+      keys_waiting_.push_back(
+          {.order = order, .until = until.value_or(Now().steady + patience_.keys)});
       return;
     }
     if ((ending_at_ || lost_until_) && kind != OrderClass::kActsFirst &&
@@ -332,7 +331,7 @@ class HostProcess {
     for (Waiting& key : std::exchange(keys_waiting_, {})) {
       const HostTime now = Now();
       // Their patience begins behind what they wait for.
-      if (parked || machine_->Settles()) key.until = now.steady + KeyDesk::kPatience;
+      if (parked || machine_->Settles()) key.until = now.steady + patience_.keys;
       const bool missing = now.steady >= key.until && machine_->WaitsForKeys(key.order, now);
       if (!missing) TakeOrder(key.order, key.until);
       if (missing)
@@ -381,7 +380,7 @@ class HostProcess {
     if (const auto trouble = writer_->trouble()) return Refuse(order, *trouble);
     const HostTime now = Now();
     Write(now, true);
-    const auto parked = parked_.Add(order, now.steady + kIntentPatience);
+    const auto parked = parked_.Add(order, now.steady + patience_.intent);
     writer_->Write({machine_->IntentOf(order, now)}, {}, [this, parked] {
       inbox_.Later([this, parked] {
         const bool begins = !std::exchange(parked->over, true);
@@ -434,9 +433,9 @@ class HostProcess {
   void LookAtDisk(nanoseconds now) {
     for (const v1::HostOrder& order : parked_.TakeLate(now))
       Refuse(order, {ErrorCode::kCellJournal, "the disk does not answer", {}});
-    const bool late = writes_under_way_ > 0 && now - durable_at_ > kDurablePatience;
+    const bool late = writes_under_way_ > 0 && now - durable_at_ > patience_.durable;
     machine_->NoteDisk(late);
-    for (v1::HostOrderAnswer& answer : answers_due_.TakeLate(now, kDurablePatience))
+    for (v1::HostOrderAnswer& answer : answers_due_.TakeLate(now, patience_.durable))
       SendAnswer(std::move(answer));
     if (machine_->moves() && late) machine_->Hold(v1::HOLD_REASON_LATE, Now());
   }
@@ -484,7 +483,7 @@ class HostProcess {
                             ErrorCode::kCellMachineTaken, holder + " has the machine now", {}}));
     if (machine_ == nullptr) return Quit(3);
     parked_.ForgetAll();
-    lost_until_ = Now().steady + kRestPatience;  // it is held from the next turn on
+    lost_until_ = Now().steady + patience_.rest;  // it is held from the next turn on
   }
 
   // What the store does not take from it is kept for people to look at.
@@ -515,7 +514,7 @@ class HostProcess {
     if (machine_ == nullptr) return Quit(0);
     const HostTime now = Now();
     machine_->Hold(v1::HOLD_REASON_STOP, now);
-    ending_at_ = now.steady + kRestPatience;
+    ending_at_ = now.steady + patience_.rest;
   }
 
   void HandBack(const HostTime& now) {
@@ -553,6 +552,7 @@ class HostProcess {
   }
 
   const HostOptions& options_;
+  const HostPatience& patience_ = options_.patience;
   const std::atomic<bool>& stopping_;
   const std::string name_;
   HostInbox inbox_;
@@ -586,7 +586,7 @@ class HostProcess {
   v1::MachineState state_told_ = v1::MACHINE_STATE_UNSPECIFIED;
   std::unique_ptr<JournalWriter> writer_;
   Background background_;  // behind what its work uses
-  FurtherLines further_{[this] { inbox_.Later([] {}); }};
+  FurtherLines further_{[this] { inbox_.Later([] {}); }, patience_.silence};
   bool behind_ = false, ended_ = false;
   int exit_code_ = 0;
 };

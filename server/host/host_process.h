@@ -3,6 +3,8 @@
 #include <atomic>
 #include <string>
 
+#include "server/host/host_patience.h"
+
 namespace rmlcell::server {
 
 // The host of one machine that lives: a process of its own, which outlives its server.
@@ -11,6 +13,7 @@ struct HostOptions {
   std::string join_token{};  // of the server
   std::string machine{};     // "machines/mill-1"
   std::string journal{};     // path of its journal
+  HostPatience patience{};
 };
 
 // Until it is to stop, or the machine is another host's: the exit code of the process.

@@ -182,6 +182,18 @@ class RunsTest(LiveTestCase):
         self.assertIn("CELL-E9024", damaged.stderr)
         self.assertIn("CELL-E9004", replay("jobs/999").stderr)
 
+    # LIVE-3.40: one that ends at the instant at which it begins, too.
+    def test_a_run_that_takes_no_time_is_played_again(self):
+        live = Live(self, self.cell, "machines/optimo-1")
+        self.enable(live)
+        for text in ("STOP\n", "WORKDEF 2,0 (11)\nWORK 2,0/ON\nWORK 2,0/OFF\n"):
+            name = self.submit(text, live.machine, "A.S")
+            self.becomes(name, "SUCCEEDED", "FAILED")
+            awaited(lambda name=name: "recording" in {one.name for one in self.job(name).artifacts})
+            played = subprocess.run([os.path.join(BIN, "rmlcell"), "replay", name, "--server", self.cell.address],
+                                    capture_output=True, text=True, timeout=60)
+            self.assertEqual(played.returncode, 0, played.stderr)
+
     # LIVE-5.05: the same names on job and machine.
     def test_a_run_is_held_resumed_and_cancelled(self):
         self.live.enable()

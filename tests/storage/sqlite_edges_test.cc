@@ -16,6 +16,7 @@
 #include "storage/sqlite/transaction.h"
 #include "storage/sqlite/watchers.h"
 #include "storage/sqlite/writer.h"
+#include "tests/storage/quiet_process.h"
 #include "tests/storage/sqlite_bed.h"
 
 namespace rmlcell::storage::sqlite {
@@ -191,9 +192,8 @@ TEST(SqliteEdges, WhoHoldsTheFileForAMomentIsWaitedFor) {
   SqliteBed bed(options);
   Database other = Must(Database::Open(bed.path(), Database::Access::kReadWrite, {}));
   Must(other.Execute("BEGIN IMMEDIATE"));
-  std::promise<void> nobody;
   const std::jthread holder([&] {
-    static_cast<void>(nobody.get_future().wait_for(std::chrono::milliseconds(100)));
+    EXPECT_TRUE(ComesToRest());  // the lock was met
     EXPECT_EQ(CodeOf(other.Execute("ROLLBACK")), std::nullopt);
   });
   EXPECT_EQ(CodeOf(bed.store().PutMachine({.id = "m"}, 0)), std::nullopt);
@@ -230,8 +230,8 @@ TEST(SqliteEdges, WhoLeavesWaitsForTheCallThatIsUnderWay) {
   Watchers watchers;
   auto watch = watchers.Add([&] {
     entered.set_value();
-    overtaken.set_value(has_left.wait_for(std::chrono::milliseconds(200)) ==
-                        std::future_status::ready);
+    EXPECT_TRUE(ComesToRest());  // whoever leaves waits, or has left
+    overtaken.set_value(has_left.wait_for(std::chrono::seconds(0)) == std::future_status::ready);
   });
   watchers.Notify();
   entered.get_future().wait();

@@ -13,29 +13,33 @@
 #include "storage/sqlite/request_ids.h"
 #include "storage/sqlite/statement.h"
 #include "tests/storage/faulty_disk.h"
+#include "tests/storage/quiet_process.h"
 #include "tests/storage/sqlite_bed.h"
 
 namespace rmlcell::storage {
 namespace {
 
 // Holds the writer inside an answer until it is let go. On a thread of its own: a lone caller may
-// be answered before his call returns.
+// be answered before his call returns. The answer may outlast what holds it, its promises do too.
 class WriterHold {
  public:
   explicit WriterHold(Store& store)
-      : holder_([this, &store] {
-          store.Submit({.kind = "CHECK"}, [this](const Result<SubmittedJob>&) {
-            held_.set_value();
-            release_.get_future().wait();
+      : holder_([&store, gates = gates_] {
+          store.Submit({.kind = "CHECK"}, [gates](const Result<SubmittedJob>&) {
+            gates->held.set_value();
+            gates->release.get_future().wait();
           });
         }) {
-    held_.get_future().wait();
+    gates_->held.get_future().wait();
   }
-  void Release() { release_.set_value(); }
+  void Release() { gates_->release.set_value(); }
 
  private:
-  std::promise<void> held_;
-  std::promise<void> release_;
+  struct Gates {
+    std::promise<void> held;
+    std::promise<void> release;
+  };
+  std::shared_ptr<Gates> gates_ = std::make_shared<Gates>();
   std::jthread holder_;
 };
 
@@ -572,7 +576,7 @@ TEST(SqliteWriter, TwoCallersThatWereAnsweredTogetherAreWaitedFor) {
   }
   answers.WaitFor(2);
   bed.store().Submit({.kind = "CHECK"}, answers.Next());
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // the writer waits by then
+  EXPECT_TRUE(ComesToRest());  // the writer waits
   EXPECT_EQ(answers.all, 2);
   bed.store().Submit({.kind = "CHECK"}, answers.Next());
   answers.WaitFor(4);

@@ -73,7 +73,7 @@ class FakeHandbox final : public v1::HandboxService::Service {
   }
 
  private:
-  static constexpr std::chrono::seconds kPatience{20};  // only a failing test has it
+  static constexpr std::chrono::seconds kPatience{60};  // only a failing test has it
 
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -88,7 +88,7 @@ class HandboxHandsTest : public testing::Test {
  protected:
   // Goes on until all is answered, as the loop of a terminal does.
   void Settle() {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (!hands_.at_rest() && std::chrono::steady_clock::now() < until) {
       for (KeyAnswer& answer : hands_.TakeAnswers()) answers_.push_back(std::move(answer));
       std::this_thread::yield();

@@ -11,9 +11,15 @@
 #include <thread>
 
 #include "tests/clients/cli/fake_machine.h"
+#include "tests/storage/quiet_process.h"
 
 namespace rmlcell::cli {
 namespace {
+
+// Until the stream is left, or is to end.
+void Stay(const grpc::ServerContext& context, const std::atomic<bool>& ends) {
+  while (!ends && !context.IsCancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
 
 // Tells what it is given; its streams stay until they are left or `ends`.
 class WatchedMachine final : public FakeMachine {
@@ -22,10 +28,19 @@ class WatchedMachine final : public FakeMachine {
   grpc::Status WatchMachine(Context context, const v1::WatchMachineRequest* request,
                             grpc::ServerWriter<v1::WatchMachineResponse>* writer) override {
     const grpc::Status end = FakeMachine::WatchMachine(context, request, writer);
-    while (!ends && !context->IsCancelled()) std::this_thread::yield();
+    Stay(*context, ends);
+    over = true;
     return end;
   }
+  grpc::Status RenewControl(Context context, const v1::RenewControlRequest* request,
+                            v1::RenewControlResponse* response) override {
+    if (renewals++ == 0) renewed_at = std::chrono::steady_clock::now();
+    return FakeMachine::RenewControl(context, request, response);
+  }
   std::atomic<bool> ends = false;
+  std::atomic<bool> over = false;
+  std::atomic<int> renewals = 0;
+  std::chrono::steady_clock::time_point renewed_at{};  // the first time
 };
 
 class WatchedHandbox final : public v1::HandboxService::Service {
@@ -36,7 +51,7 @@ class WatchedHandbox final : public v1::HandboxService::Service {
     v1::WatchHandboxResponse message;
     message.mutable_panel()->set_display("P=45");
     writer->Write(message);
-    while (!ends && !context->IsCancelled()) std::this_thread::yield();
+    Stay(*context, ends);
     return end;
   }
   std::string asked;
@@ -53,12 +68,12 @@ class HandboxWatchTest : public testing::Test {
     control_ = std::make_unique<Control>(remote_, act_);
     calls_.Take();
   }
-  // Once it has seen this; only a failing test waits 20 s.
+  // Once it has seen this; only a failing test waits for a minute.
   template <class Condition>
   HandboxSeen Await(const HandboxWatch& watch, Condition condition) {
     std::unique_lock lock(mutex_);
     EXPECT_TRUE(
-        rung_.wait_for(lock, std::chrono::seconds(20), [&] { return condition(watch.seen()); }));
+        rung_.wait_for(lock, std::chrono::minutes(1), [&] { return condition(watch.seen()); }));
     return watch.seen();
   }
   std::unique_ptr<HandboxWatch> Watch(std::chrono::seconds control_time) {
@@ -103,20 +118,14 @@ TEST_F(HandboxWatchTest, SeesPanelAndMachine) {
 // A server that ends its streams well goes without a reason.
 TEST_F(HandboxWatchTest, TheFirstReasonIsTheOne) {
   machine_.refused["WatchMachine"] = {grpc::StatusCode::PERMISSION_DENIED, "not you"};
-  const auto watch = Watch(std::chrono::seconds(1));
+  const auto watch = Watch(std::chrono::hours(1));
   handbox_.ends = true;
   const HandboxSeen seen = Await(*watch, IsLost);
   EXPECT_EQ(seen.lost->error_code(), grpc::StatusCode::UNAVAILABLE);
   EXPECT_EQ(seen.lost->error_message(), "the server has ended");
   machine_.ends = true;
-  // Two renewals later the end of the other stream has come, too.
-  calls_.Take();
-  for (int renewed = 0; renewed < 2;) {
-    const std::string calls = calls_.Take();
-    for (std::size_t at = 0; (at = calls.find("RenewControl", at)) != std::string::npos; ++at)
-      ++renewed;
-    std::this_thread::yield();
-  }
+  while (!machine_.over) std::this_thread::yield();
+  EXPECT_TRUE(ComesToRest());  // the end of the other stream has come, too
   EXPECT_EQ(watch->seen().lost->error_message(), "the server has ended");
 }
 
@@ -133,7 +142,17 @@ TEST_F(HandboxWatchTest, ControlIsRenewed) {
   const auto begun = std::chrono::steady_clock::now();
   const auto watch = Watch(std::chrono::seconds(1));
   EXPECT_EQ(Await(*watch, IsLost).lost->error_message(), "taken");
-  EXPECT_GE(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(333));
+  EXPECT_GE(machine_.renewed_at - begun, std::chrono::milliseconds(333));
+}
+
+// And not before.
+TEST_F(HandboxWatchTest, ControlThatIsFreshIsNotRenewed) {
+  const auto watch = Watch(std::chrono::hours(1));
+  Await(*watch, [](const HandboxSeen& now) {
+    return !now.panel.display().empty() && !now.status.machine().empty();
+  });
+  EXPECT_TRUE(ComesToRest());
+  EXPECT_EQ(machine_.renewals, 0);
 }
 
 }  // namespace

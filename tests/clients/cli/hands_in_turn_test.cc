@@ -14,6 +14,7 @@
 #include "clients/cli/handbox_hands.h"
 #include "clients/cli/remote_call.h"
 #include "tests/clients/cli/fake_services.h"
+#include "tests/storage/quiet_process.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -70,7 +71,7 @@ class LazyHandbox final : public v1::HandboxService::Service {
   // As soon as it has that length; whatever it is, after a time that only a failing test takes.
   std::string Heard(std::size_t size) {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, std::chrono::seconds(10), [&] { return heard_.size() >= size; });
+    changed_.wait_for(lock, std::chrono::minutes(1), [&] { return heard_.size() >= size; });
     return heard_;
   }
 
@@ -99,7 +100,7 @@ class HandsInTurn : public testing::Test {
 
   // Until so many keys were answered, as the loop of a terminal does.
   void AwaitAnswers(std::size_t count) {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (answered_ < count && std::chrono::steady_clock::now() < until) {
       answered_ += hands_->TakeAnswers().size();
       std::this_thread::yield();
@@ -184,12 +185,10 @@ TEST_F(HandsBehindABeat, AKeyGoesDownBehindIt) {
 TEST_F(HandsInTurn, WhatIsUnderWayIsWaitedFor) {
   hands_->Do({"REC", v1::KEY_ACTION_TAP});
   ASSERT_EQ(handbox_.Heard(4), "REC ");
-  std::atomic<bool> ends = false;
   std::thread opener([&] {
-    while (!ends) std::this_thread::yield();
+    EXPECT_TRUE(ComesToRest());  // whoever ends the hands waits
     handbox_.Open();
   });
-  ends = true;
   hands_.reset();
   EXPECT_EQ(told_, 1);
   opener.join();

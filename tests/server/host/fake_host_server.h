@@ -14,6 +14,7 @@
 
 #include "rmlcell/v1/host.grpc.pb.h"
 #include "server/base/credentials.h"
+#include "tests/server/host/patient_host.h"
 
 namespace rmlcell::server {
 
@@ -95,6 +96,11 @@ class FakeHostServer final : public v1::HostService::Service {
     });
     return found;
   }
+  // All of them, in order.
+  std::vector<v1::HostRequest> Told() {
+    const std::lock_guard lock(mutex_);
+    return told_;
+  }
   void EndLine() {
     const std::lock_guard lock(mutex_);
     if (context_ != nullptr) context_->TryCancel();
@@ -116,7 +122,7 @@ class FakeHostServer final : public v1::HostService::Service {
   }
   template <class Condition>
   void Await(std::unique_lock<std::mutex>& lock, Condition condition) {
-    EXPECT_TRUE(changed_.wait_for(lock, std::chrono::seconds(30), condition));
+    EXPECT_TRUE(changed_.wait_for(lock, kComesWithin, condition));
   }
 
   const std::string address_;

@@ -43,7 +43,8 @@ class HostProcessTest : public testing::Test {
       return RunHost({.server = server_->address(),
                       .join_token = "let me in",
                       .machine = "machines/mill-1",
-                      .journal = folder_ + "/mill-1.journal"},
+                      .journal = folder_ + "/mill-1.journal",
+                      .patience = PatientHost()},
                      stopping_);
     });
   }

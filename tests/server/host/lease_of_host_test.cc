@@ -40,7 +40,8 @@ class LeaseOfHost : public testing::Test {
       return RunHost({.server = server_->address(),
                       .join_token = "let me in",
                       .machine = "machines/mill-1",
-                      .journal = folder_ + "/mill-1.journal"},
+                      .journal = folder_ + "/mill-1.journal",
+                      .patience = PatientHost()},
                      stopping_);
     });
     v1::HostResponse memory;

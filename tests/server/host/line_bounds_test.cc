@@ -29,7 +29,7 @@ class LineBounds : public testing::Test {
   template <class Condition>
   bool Eventually(Condition condition) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::seconds(60), condition);
+    return changed_.wait_for(lock, kComesWithin, condition);
   }
   // So many orders have come, whatever became of them.
   bool HasHeard(std::size_t count) {
@@ -46,9 +46,10 @@ class LineBounds : public testing::Test {
   std::size_t heard_ = 0;
   std::unique_ptr<FakeHostServer> server_;
   FurtherLines lines_{[this] {
-    const std::lock_guard lock(mutex_);
-    changed_.notify_all();
-  }};
+                        const std::lock_guard lock(mutex_);
+                        changed_.notify_all();
+                      },
+                      kComesWithin};
 };
 
 // A server that was lost and is found again sees the handbox again.

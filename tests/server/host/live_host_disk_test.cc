@@ -17,12 +17,24 @@ class LiveHostDisk : public LiveHost {
   static bool IsLate(const v1::MachineStatus& status) {
     return IsBlockedBy(status, ErrorCode::kCellJournal);
   }
-  // Longer than what is written may take.
+  // What is written is late as soon as it is where nobody says otherwise.
+  void LiveWithLittlePatience() {
+    patience_.durable = HostPatience{}.durable;
+    Live();
+  }
+  // Longer than what is written may take then.
   void StandForAWhile() {
     server_->Told(v1::HostRequest::kStatus, Count(v1::HostRequest::kStatus) + 3);
   }
+  // Keys wait for less than the disk is waited for.
+  void LiveUntilKeysAreLate() {
+    patience_.keys = HostPatience{}.keys;
+    patience_.intent = HostPatience{}.intent;
+    Live();
+  }
   // A key that the disk refuses, and the one behind it.
   void ExpectTheNextToAct(std::int64_t sequence) {
+    ASSERT_GT(patience_.intent, patience_.keys);
     ASSERT_FALSE(Ask(OverrideOf(90.0)).has_refusal());
     ASSERT_FALSE(Ask(OverrideOf(100.0)).has_refusal());  // all of it is on the disk
     auto disk = std::make_optional<SmallFiles>(0);
@@ -38,43 +50,61 @@ class LiveHostDisk : public LiveHost {
 
 // Nothing is on its way to the disk: however long it stands, the disk is not late.
 TEST_F(LiveHostDisk, AMachineThatStandsWaitsForNoDisk) {
-  Live();
+  LiveWithLittlePatience();
   TakeControl();
+  // It has answered: what was to be written is.
+  AwaitStatus([](const v1::MachineStatus& one) { return one.has_control() && !IsLate(one); });
+  const std::size_t before = Count(v1::HostRequest::kStatus);
   StandForAWhile();
-  for (const v1::HostRequest& told : server_->Told(v1::HostRequest::kStatus, 0))
-    EXPECT_FALSE(IsLate(told.status()));
+  const std::vector<v1::HostRequest> told = server_->Told(v1::HostRequest::kStatus, before);
+  for (auto one = told.begin() + static_cast<std::ptrdiff_t>(before); one != told.end(); ++one)
+    EXPECT_FALSE(IsLate(one->status()));
 }
 
 // LIVE-3.21: the disk is late when a write takes more than a second, and not since the last one
 // was long ago; whoever waits for it is told so.
 TEST_F(LiveHostDisk, ADiskIsLateByWhatIsWrittenNow) {
-  Live();
-  TakeControl();
-  AwaitStatus([](const v1::MachineStatus& one) { return one.has_control(); });
-  StandForAWhile();
+  LiveWithLittlePatience();
+  bool late_at_once = true;
+  // On a slow computer a second may be over before the first status: then once more.
+  for (int lease = 1; late_at_once && lease <= 20; ++lease) {
+    TakeControl();
+    AwaitStatus([&](const v1::MachineStatus& one) {
+      return one.control().number() == lease && !IsLate(one);
+    });
+    StandForAWhile();
+    const std::size_t before = Count(v1::HostRequest::kStatus);
+    auto disk = std::make_optional<SmallFiles>(0);
+    const v1::HostOrderAnswer answer = Ask(ReleaseOfControl());
+    AwaitStatus(IsLate, before);
+    disk.reset();
+    EXPECT_EQ(answer.refusal().code(), CodeText(ErrorCode::kCellJournal));
+    EXPECT_EQ(answer.refusal().message(), "it acts, but the disk does not answer");
+    late_at_once = IsLate(
+        AwaitStatus([](const v1::MachineStatus& one) { return !one.has_control(); }, before));
+  }
+  EXPECT_FALSE(late_at_once);
   const std::size_t before = Count(v1::HostRequest::kStatus);
-  auto disk = std::make_optional<SmallFiles>(0);
-  const v1::HostOrderAnswer answer = Ask(ReleaseOfControl());
-  AwaitStatus(IsLate);
-  disk.reset();
-  EXPECT_EQ(answer.refusal().code(), CodeText(ErrorCode::kCellJournal));
-  EXPECT_EQ(answer.refusal().message(), "it acts, but the disk does not answer");
-  EXPECT_FALSE(
-      IsLate(AwaitStatus([](const v1::MachineStatus& one) { return !one.has_control(); }, before)));
   TakeControl();
-  EXPECT_FALSE(IsLate(AwaitStatus([](const v1::MachineStatus& one) {
-    return one.has_control() && one.control().number() == 2 && !IsLate(one);
-  })));
+  AwaitStatus([](const v1::MachineStatus& one) { return one.has_control() && !IsLate(one); },
+              before);
 }
 
 // LIVE-3.21: what may move does not begin before that is on the disk.
 TEST_F(LiveHostDisk, NothingBeginsWhileTheDiskIsStuck) {
-  Live();
+  patience_.intent = HostPatience{}.intent;
+  LiveWithLittlePatience();
   TakeControl();
+  AwaitStatus([](const v1::MachineStatus& one) { return one.has_control() && !IsLate(one); });
+  const std::size_t before = Count(v1::HostRequest::kStatus);
   auto disk = std::make_optional<SmallFiles>(0);
   const v1::HostOrderAnswer late = Ask(StartOf());
-  const v1::HostOrderAnswer troubled = Ask(StartOf());
-  const v1::MachineStatus status = AwaitStatus(IsLate);
+  const v1::MachineStatus status = AwaitStatus(IsLate, before);
+  // As long as the disk has not refused it yet it is waited for, as the first time.
+  v1::HostOrderAnswer troubled = Ask(StartOf());
+  for (int tries = 0; troubled.refusal().message() == late.refusal().message() && tries < 100;
+       ++tries)
+    troubled = Ask(StartOf());
   disk.reset();
   EXPECT_EQ(late.refusal().code(), CodeText(ErrorCode::kCellJournal));
   EXPECT_EQ(late.refusal().message(), "the disk does not answer");
@@ -82,20 +112,23 @@ TEST_F(LiveHostDisk, NothingBeginsWhileTheDiskIsStuck) {
   EXPECT_THAT(troubled.refusal().message(), HasSubstr("machine.journal"));
   EXPECT_EQ(status.state(), v1::MACHINE_STATE_IDLE);
   AskUntilItActs(StartOf());
-  EXPECT_FALSE(IsLate(AwaitState(v1::MACHINE_STATE_RUNNING)));
+  AwaitStatus([](const v1::MachineStatus& one) {
+    return one.state() == v1::MACHINE_STATE_RUNNING && !IsLate(one);
+  });
 }
 
 // LIVE-3.21: what moves is held, and the log says why once it can.
 TEST_F(LiveHostDisk, ARunIsHeldWhileTheDiskIsStuck) {
-  Live();
+  LiveWithLittlePatience();
   TakeControl();
-  ASSERT_FALSE(Ask(StartOf()).has_refusal());
+  AskUntilItActs(StartOf());
   AwaitState(v1::MACHINE_STATE_RUNNING);
   auto disk = std::make_optional<SmallFiles>(0);
-  const v1::MachineStatus held = AwaitState(v1::MACHINE_STATE_HELD);
+  const v1::MachineStatus held = AwaitStatus([](const v1::MachineStatus& one) {
+    return one.state() == v1::MACHINE_STATE_HELD && IsLate(one);
+  });
   disk.reset();
   EXPECT_EQ(held.hold_reason(), v1::HOLD_REASON_LATE);
-  EXPECT_TRUE(IsLate(held));
   const v1::JournalEntry why =
       AwaitEntry([](const v1::JournalEntry& one) { return one.event().has_message(); });
   EXPECT_THAT(why.event().message().text(), HasSubstr(CodeText(ErrorCode::kCellJournal)));
@@ -112,8 +145,8 @@ TEST_F(LiveHostDisk, AStopStopsWhatWaitsForTheDisk) {
   disk.reset();
   EXPECT_TRUE(stopped.has_halt());
   EXPECT_EQ(answer.refusal().message(), "it was stopped before it began");
-  AwaitStatus([](const v1::MachineStatus& one) { return !one.start_blockers().empty(); });
-  EXPECT_FALSE(AskWhereItIs().has_refusal());
+  ASSERT_FALSE(Ask(OverrideOf(90.0)).has_refusal());
+  ASSERT_FALSE(Ask(OverrideOf(100.0)).has_refusal());  // written behind what waited
   EXPECT_EQ(Ask(StopOrder()).halt().status().state(), v1::MACHINE_STATE_IDLE);
 }
 
@@ -161,13 +194,13 @@ TEST_F(LiveHostDisk, AJobThatIsAboutToBeginIsNotUnknown) {
 // LIVE-7.04: a key that is on its way to the disk is not missing, however long that takes; one that
 // the disk refuses has had its turn.
 TEST_F(LiveHostDisk, AKeyWaitsForTheOneThatTheDiskHas) {
-  Live();
+  LiveUntilKeysAreLate();
   TakeControl();
   ASSERT_FALSE(Ask(PanelKey("COVER", 1)).has_refusal());
   ExpectTheNextToAct(2);
 }
 TEST_F(LiveHostDisk, TheFirstKeyOfALeaseHasHadItsTurn) {
-  Live();
+  LiveUntilKeysAreLate();
   TakeControl();
   ExpectTheNextToAct(1);
 }

@@ -38,7 +38,7 @@ class SilentServer final : public v1::HostService::Service {
   }
   bool AwaitHellos(int count) {
     std::unique_lock lock(looking_);
-    return come_.wait_for(lock, std::chrono::seconds(15), [&] { return hellos_ >= count; });
+    return come_.wait_for(lock, kComesWithin, [&] { return hellos_ >= count; });
   }
 
  private:
@@ -75,6 +75,12 @@ class LiveHostServers : public LiveHost {
     other_->Tell(message);
     return other_->Told(v1::HostRequest::kAnswer, static_cast<std::size_t>(asked_)).back().answer();
   }
+  // The other one does not take its place: it keeps the line that it has.
+  void LoseTheOneThatStores() {
+    server_->refusal = {grpc::StatusCode::UNAVAILABLE, "away"};
+    other_->refusal = server_->refusal;
+    server_->EndLine();
+  }
   std::unique_ptr<FakeHostServer> other_;
   std::int64_t asked_ = 0;
 };
@@ -105,8 +111,7 @@ TEST_F(LiveHostServers, ARunGoesOnWithTheOtherServer) {
   TakeControl();
   ASSERT_FALSE(Ask(StartOf()).has_refusal());
   AwaitState(v1::MACHINE_STATE_RUNNING);
-  server_->refusal = {grpc::StatusCode::UNAVAILABLE, "away"};
-  server_->EndLine();
+  LoseTheOneThatStores();
   // More than a second of statuses, while nothing but the other line stands.
   const std::size_t before = other_->Told(v1::HostRequest::kStatus, 0).size();
   for (const v1::HostRequest& told : other_->Told(v1::HostRequest::kStatus, before + 40))
@@ -123,8 +128,7 @@ TEST_F(LiveHostServers, TheHandboxGoesOnWithTheOtherServer) {
   v1::HostOrder open;
   open.mutable_create_session()->set_control_token(token_);
   const std::string session = AskOther(open).session().name();
-  server_->refusal = {grpc::StatusCode::UNAVAILABLE, "away"};
-  server_->EndLine();
+  LoseTheOneThatStores();
   server_->Told(v1::HostRequest::kHello, 2);
   std::int64_t keys = 0;
   for (const char* name :

@@ -95,6 +95,21 @@ TEST_F(RecordingTest, WhatHappenedHappensAgain) {
   EXPECT_EQ(played.until, SimTime(what.entries.back().virtual_time_ns()));
 }
 
+// LIVE-3.40: a run that takes no time is over before the mark of the same instant.
+TEST_F(RecordingTest, ARunThatTakesNoTimeHappensAgain) {
+  for (const char* text : {"STOP\n", "WORK 0,0/ON\nWORK 0,0/OFF\n", "VI[2] = 1\n"}) {
+    MakeOptimo();
+    Do(JobOf(text));
+    while (!host_->GoOn(now_)) continue;  // before any time has gone by
+    Pass(3s, 30ms);
+    const Recording what = Recorded("jobs/17");
+    EXPECT_EQ(Of(what, v1::JournalEntry::kRunOver).size(), 1U) << text;
+    const Replayed played = Play(what);
+    EXPECT_EQ(DifferenceIn(played), "") << text;
+    EXPECT_EQ(static_cast<std::size_t>(played.marks), Of(what, v1::JournalEntry::kMark).size());
+  }
+}
+
 // LIVE-3.40: the first difference, with entry, field and both values.
 TEST_F(RecordingTest, WhatDidNotHappenIsFound) {
   RunWithAStop();

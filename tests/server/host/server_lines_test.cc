@@ -51,12 +51,13 @@ class ServerLinesTest : public testing::Test {
           const std::lock_guard lock(mutex_);
           ++gone_;
           changed_.notify_all();
-        });
+        },
+        {.last_words = kComesWithin});
   }
   template <class Condition>
   bool Eventually(Condition condition) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::seconds(30), condition);
+    return changed_.wait_for(lock, kComesWithin, condition);
   }
 
   const std::string folder_;
@@ -175,10 +176,11 @@ class FurtherLinesTest : public ServerLinesTest {
 
   int wakes_ = 0;  // by all that came
   FurtherLines lines_{[this] {
-    const std::lock_guard lock(mutex_);
-    ++wakes_;
-    changed_.notify_all();
-  }};
+                        const std::lock_guard lock(mutex_);
+                        ++wakes_;
+                        changed_.notify_all();
+                      },
+                      kComesWithin};
 };
 
 // By numbers that no other line has; answered where it was asked, once.

@@ -16,6 +16,7 @@
 
 #include "server/host/journal.h"
 #include "server/host/journal_writer.h"
+#include "tests/storage/quiet_process.h"
 
 namespace {
 
@@ -70,9 +71,10 @@ TEST_F(SyncedJournal, IsShortenedWhenTheStoreHasIt) {
   std::promise<void> written;
   writer.Write({Said(3, 10)}, {}, [&written] { written.set_value(); });
   written.get_future().wait();
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // it waits for more
+  EXPECT_TRUE(ComesToRest());  // it waits for more
   writer.Stored(3, 1);
-  for (int look = 0; look < 1'000 && std::filesystem::file_size(path_) > 1'000U; ++look)
+  const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (std::filesystem::file_size(path_) > 1'000U && std::chrono::steady_clock::now() < until)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_LT(std::filesystem::file_size(path_), 1'000U);
 }

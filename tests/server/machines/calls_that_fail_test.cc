@@ -12,6 +12,7 @@
 #include "tests/server/engine_bytes.h"
 #include "tests/server/failing_store.h"
 #include "tests/server/machines/hosts_bed.h"
+#include "tests/storage/quiet_process.h"
 
 namespace rmlcell::server {
 namespace {
@@ -38,6 +39,7 @@ class StoreWithoutACall final : public ForwardingStore {
   using ForwardingStore::ForwardingStore;
   std::atomic<Call> fails = Call::kNone;
   std::function<void()> before_append;  // once
+  std::atomic<int> releases = 0;        // asked for
 
   Result<storage::MachineRecord> GetMachine(std::string_view id) override {
     if (fails == Call::kMachine) return Away();
@@ -61,6 +63,10 @@ class StoreWithoutACall final : public ForwardingStore {
                                              std::string_view server) override {
     if (fails == Call::kRenew) return Away();
     return store_.RenewMachine(lease, server);
+  }
+  Status ReleaseMachine(const storage::MachineLease& lease) override {
+    ++releases;
+    return store_.ReleaseMachine(lease);
   }
   Result<std::vector<storage::MachineLease>> MachineLeases() override {
     if (fails == Call::kLeases) return Away();
@@ -301,8 +307,9 @@ TEST_F(CallsThatFail, AMachineIsGivenBackBehindWhatWasTold) {
   // One thread stores, and the other waits for that: nobody is left to do anything else.
   std::promise<void> behind;
   executor->Post([&behind] { behind.set_value(); });
-  EXPECT_EQ(behind.get_future().wait_for(std::chrono::milliseconds(200)),
-            std::future_status::timeout);
+  EXPECT_TRUE(ComesToRest());
+  EXPECT_EQ(behind.get_future().wait_for(seconds(0)), std::future_status::timeout);
+  EXPECT_EQ(store.releases, 0);
   goes_on.set_value();
   Settle();
   EXPECT_EQ(Told().size(), 1U);

@@ -15,8 +15,10 @@
 #include "server/events/event_feed.h"
 #include "server/host/host_process.h"
 #include "server/machines/hosts.h"
+#include "server/records/machine_options.h"
 #include "tests/server/fake_link.h"
 #include "tests/server/forwarding_store.h"
+#include "tests/server/host/patient_host.h"
 #include "tests/server/server_bed.h"
 #include "tests/server/services/listening.h"
 
@@ -103,6 +105,11 @@ class HostLinesTest : public testing::Test {
     Must(store_.PutPrograms(
         kHosted, {{.slot = 5, .name = "p", .object = "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PD8000,0;"}},
         {}, "anna"));
+    storage::MachineRecord mill = Must(store_.GetMachine(kHosted));
+    v1::MachineOptions options;
+    options.mutable_late_hold()->set_seconds(60);  // its computer may be slow
+    mill.options = BytesOf(options);
+    Must(store_.PutMachine(mill, mill.revision, "test"));
     const std::vector<std::string> servers = {OneServer::AddressOf(folder_, "a"),
                                               OneServer::AddressOf(folder_, "b")};
     a_ = std::make_unique<OneServer>(store_, "a", folder_, servers);
@@ -111,7 +118,8 @@ class HostLinesTest : public testing::Test {
       RunHost({.server = OneServer::AddressOf(folder_, "a"),
                .join_token = "secret",
                .machine = "machines/mill-1",
-               .journal = folder_ + "/journal"},
+               .journal = folder_ + "/journal",
+               .patience = PatientHost()},
               stopping_);
     });
   }

@@ -14,8 +14,6 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr std::chrono::milliseconds kHeartbeat{250};
-
 // The server's end of a line, and what it has said on it.
 class Wire final : public HostLink {
  public:
@@ -96,12 +94,12 @@ struct HostLine::Stream {
   }
 };
 
-HostLine::HostLine() : stream_(std::make_unique<Stream>()) {}
+HostLine::HostLine(const LineTimes& times) : times_(times), stream_(std::make_unique<Stream>()) {}
 
 Result<HostLine::Welcome> HostLine::Join(const std::string& server, const v1::HostHello& hello,
                                          std::function<void(v1::HostResponse)> heard,
-                                         std::function<void()> gone) {
-  std::unique_ptr<HostLine> made(new HostLine());
+                                         std::function<void()> gone, const LineTimes& times) {
+  std::unique_ptr<HostLine> made(new HostLine(times));
   made->heard_ = std::move(heard);
   made->gone_ = std::move(gone);
   Stream& stream = *made->stream_;
@@ -171,7 +169,7 @@ void HostLine::Write() {
   std::int64_t heartbeats = 0;
   std::unique_lock lock(mutex_);
   for (;;) {
-    to_send_.wait_for(lock, kHeartbeat, [this] { return ending_ || !queue_.empty(); });
+    to_send_.wait_for(lock, times_.heartbeat, [this] { return ending_ || !queue_.empty(); });
     if (ending_ && (queue_.empty() || cut_)) return;
     v1::HostRequest message;
     if (queue_.empty()) {

@@ -4,13 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <chrono>
-#include <thread>
 
 #include "engine/simulation/material/stl.h"
 #include "engine/simulation/material/target.h"
 #include "server/worker/material_files.h"
 #include "tests/server/worker/runner_bed.h"
+#include "tests/storage/quiet_process.h"
 
 namespace rmlcell::server {
 namespace {
@@ -23,8 +22,8 @@ using testing::StartsWith;
 // A groove of 20 mm along X at Y 15.1, 1 mm deep, and the same 1.5 mm deep. 100 units a mm.
 constexpr const char* kShallow = "VS10;!VZ10;!PZ-100,200;!MC1;PU2010,1510;PD4010,1510;PU0,0;!MC0;";
 constexpr const char* kDeep = "VS10;!VZ10;!PZ-150,200;!MC1;PU2010,1510;PD4010,1510;PU0,0;!MC0;";
-// Over within a tenth of a second of virtual time, which is one step of the simulation.
-constexpr const char* kMoment = "PA;PU10,10;";
+// Does not move, and is over at the first step of its run.
+constexpr const char* kMoment = "PA;";
 
 class JobTargetRun : public JobRunnerTest {
  protected:
@@ -49,17 +48,20 @@ class JobTargetRun : public JobRunnerTest {
     for (const v1::VerdictReason& reason : outcome.reasons()) codes.push_back(reason.code());
     return codes;
   }
-  // What the server does `after` so long since the worker has told of its run; or of its lease
-  // alone, where the work comes before the run.
-  void On(bool position, std::chrono::milliseconds after, const std::function<void()>& act) {
-    server.lease_ms = 30;
-    server.heard = [=, done = false](const v1::WorkRequest& message) mutable {
-      if (done || (position ? !IsPosition(message) : !message.has_heartbeat())) return;
-      done = true;
-      std::this_thread::sleep_for(after);
-      act();
+  // What is done in the middle of the long work, and has come before that goes on: the clock of the
+  // processor is looked at twice before, when the work begins and when its programs are prepared.
+  // A run that is over at its first step looks at no clock.
+  void OnceItIsLong(const std::function<void()>& act) {
+    looks_ = 0;
+    processor_time = [this, act] {
+      if (++looks_ == 3) {
+        act();
+        EXPECT_TRUE(ComesToRest());
+      }
+      return 0.0;
     };
   }
+  int looks_ = 0;
 };
 
 // 0.5 mm are missing of the groove of 20 x 3 mm with its two half discs, which is 67.07 mm2: left.
@@ -196,18 +198,17 @@ std::string Layers() {
 }
 
 TEST_F(JobTargetRun, ACancelIsObeyedWhileTheTargetIsMade) {
-  using namespace std::chrono_literals;
   std::string endless = "VS10;!VZ10;!PZ-100,200;!MC1;";
   for (int i = 0; i < 200'000; ++i) endless += "PD4010,1510;PD2010,1510;";
   for (const bool is_file : {true, false}) {
     v1::WorkerAssignment assignment = Mill(kShallow, 0.02);
     SetTarget(is_file ? "a.stl" : "a.rml", is_file ? Layers() : endless, is_file, assignment);
-    On(false, 0ms, [&] { server.Send(Order(v1::WorkerControl::KIND_CANCEL)); });
+    OnceItIsLong([&] { server.Send(Order(v1::WorkerControl::KIND_CANCEL)); });
     Work(assignment);
     EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED) << is_file;
     EXPECT_EQ(Outcome().code(), "CELL-E9307") << is_file;
     EXPECT_THAT(Names(), ElementsAre()) << is_file;
-    On(false, 0ms, [&] { stopping = true; });
+    OnceItIsLong([&] { stopping = true; });
     Work(assignment);
     EXPECT_TRUE(HandedBack()) << is_file;
     EXPECT_FALSE(Finished()) << is_file;
@@ -215,31 +216,29 @@ TEST_F(JobTargetRun, ACancelIsObeyedWhileTheTargetIsMade) {
   }
 }
 
-// The run is over in its first step; heights, body and pictures of 18 million cells take longer
-// than the order comes.
+// The run is over in its first step; then heights, body and pictures of 18 million cells are made.
 class LongProducts : public JobTargetRun {
  protected:
-  static v1::WorkerAssignment Long(const char* program = kMoment) {
-    v1::WorkerAssignment assignment = Mill(program, 0.01);
+  static v1::WorkerAssignment Long() {
+    v1::WorkerAssignment assignment = Mill(kMoment, 0.01);
     MillingOf(assignment).set_height_map(true);
     MillingOf(assignment).set_stl(true);
-    // With a pace it tells at once where it is.
-    assignment.mutable_job()->mutable_simulation()->set_pace(1000.0);
     return assignment;
   }
-  static constexpr std::chrono::milliseconds kMeanwhile{60};
 };
 
 TEST_F(LongProducts, ACancelLeavesNoneOfThem) {
-  On(true, kMeanwhile, [&] { server.Send(Order(v1::WorkerControl::KIND_CANCEL)); });
+  OnceItIsLong([&] { server.Send(Order(v1::WorkerControl::KIND_CANCEL)); });
   Work(Long());
+  // The run was over when it came.
+  for (const v1::JobEvent& event : Events()) EXPECT_FALSE(event.has_input_applied());
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
   EXPECT_THAT(Names(), ElementsAre("picture.svg", "report", "toolpath"));
   EXPECT_EQ(Report().outcome().code(), "CELL-E9307");
 }
 
 TEST_F(LongProducts, AWorkerThatStopsGivesTheJobBack) {
-  On(true, kMeanwhile, [&] { stopping = true; });
+  OnceItIsLong([&] { stopping = true; });
   Work(Long());
   EXPECT_TRUE(HandedBack());
   EXPECT_FALSE(Finished());
@@ -247,7 +246,7 @@ TEST_F(LongProducts, AWorkerThatStopsGivesTheJobBack) {
 }
 
 TEST_F(LongProducts, ALeaseThatIsLostEndsTheWork) {
-  On(true, kMeanwhile, [&] { server.Send(Release()); });
+  OnceItIsLong([&] { server.Send(Release()); });
   Work(Long());
   EXPECT_FALSE(HandedBack());
   EXPECT_FALSE(Finished());
@@ -259,10 +258,9 @@ TEST_F(LongProducts, ALeaseThatIsLostEndsTheWork) {
 TEST_F(LongProducts, TheyCountAsProcessorTime) {
   int looks = 0;
   processor_time = [&looks] { return static_cast<double>(looks++); };
-  // How often the clock is looked at while a run goes on is a matter of chance: this one does not
-  // move, and is over at its first step.
-  v1::WorkerAssignment assignment = Long("PA;");
-  assignment.mutable_job()->mutable_simulation()->clear_pace();
+  // How often the clock is looked at while a run goes on is a matter of chance: this one is over at
+  // its first step.
+  v1::WorkerAssignment assignment = Long();
   MillingOf(assignment).set_height_map(false);
   MillingOf(assignment).set_stl(false);
   Work(assignment);
