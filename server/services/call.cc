@@ -1,6 +1,7 @@
 #include "server/services/call.h"
 
 #include <grpc/grpc_security_constants.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -70,6 +71,11 @@ Error LaneFull() {
   return {ErrorCode::kCellResourceExhausted,
           "too many programs wait to be translated or compared; try again when some are done",
           {}};
+}
+
+grpc::Status StatusOfThrown(std::string_view method, const std::exception& thrown) {
+  spdlog::error("{}: an exception left its folder: {}", method, thrown.what());
+  return ToGrpcStatus(Error{ErrorCode::kCellInternal, {}, {}});
 }
 
 CallFacts FactsOf(std::string method, const grpc::ServerContextBase& context,

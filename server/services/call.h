@@ -2,7 +2,6 @@
 
 #include <google/protobuf/message.h>
 #include <grpcpp/grpcpp.h>
-#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <optional>
@@ -77,12 +76,9 @@ grpc::ServerUnaryReactor* AnswerFromMemory(const CallNeeds& needs,
       [reactor, method, caller = *std::move(caller), work = std::move(work)] {
         const auto begin = std::chrono::steady_clock::now();
         grpc::Status status;
-        try {
-          status = work(caller);
-        } catch (const std::exception& error) {
-          spdlog::error("{}: an exception left its folder: {}", method, error.what());
-          status = ToGrpcStatus(Error{ErrorCode::kCellInternal, {}, {}});
-        }
+        EndWhereThrown(
+            method, [&] { status = work(caller); },
+            [&](const grpc::Status& thrown) { status = thrown; });
         LogCall(method, caller, status, std::chrono::steady_clock::now() - begin);
         reactor->Finish(status);
       });

@@ -112,10 +112,10 @@ grpc::ServerUnaryReactor* HandboxService::UndoTeachEntries(
   order.set_caller(caller->identity);
   *order.mutable_undo_teaching() = *request;
   watch_needs_.hosts->Ask(name->machine, std::move(order),
-                          [this, end, carry](const Result<v1::HostOrderAnswer>& answer) {
+                          [this, kMethod, end, carry](const Result<v1::HostOrderAnswer>& answer) {
                             if (!answer) return end(ToGrpcStatus(answer.error()));
                             if (answer->has_refusal()) return end(RefusalOf(*answer));
-                            needs_.executor.Post(carry);
+                            needs_.executor.Post(EndingWhereThrown(kMethod, carry, end));
                           });
   return reactor;
 }

@@ -31,7 +31,10 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
     if (ok) {
       StartRead(&message_);
     } else {
-      needs_.compute.Post([this] { Store(); });
+      needs_.compute.Post([this] {
+        EndWhereThrown(
+            kMethod, [this] { Store(); }, [this](const auto& status) { End(status); });
+      });
     }
   }
 
@@ -53,13 +56,13 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
 
   void End(const grpc::Status& status) {
     finished_ = true;
-    LogCall("ProgramService/UploadProgram", caller_, status,
-            std::chrono::steady_clock::now() - begin_);
+    LogCall(kMethod, caller_, status, std::chrono::steady_clock::now() - begin_);
     Finish(status);
   }
 
   void OnDone() override { delete this; }
 
+  static constexpr std::string_view kMethod = "ProgramService/UploadProgram";
   CallNeeds needs_;
   ProgramBook& programs_;
   Caller caller_;
@@ -83,12 +86,8 @@ class ContentReceiver final : public grpc::ServerReadReactor<v1::UploadContentRe
  private:
   void OnReadDone(bool ok) override {
     needs_.executor.Post([this, ok] {
-      try {
-        Take(ok);
-      } catch (const std::exception& error) {
-        spdlog::error("an upload: {}", error.what());
-        End(ToGrpcStatus(Error{ErrorCode::kCellInternal, {}, {}}));
-      }
+      EndWhereThrown(
+          kMethod, [&] { Take(ok); }, [this](const auto& status) { End(status); });
     });
   }
 
@@ -113,13 +112,13 @@ class ContentReceiver final : public grpc::ServerReadReactor<v1::UploadContentRe
 
   void End(const grpc::Status& status) {
     upload_.reset();  // what it holds in the store is let go here, not on a thread of gRPC
-    LogCall("ProgramService/UploadContent", caller_, status,
-            std::chrono::steady_clock::now() - begin_);
+    LogCall(kMethod, caller_, status, std::chrono::steady_clock::now() - begin_);
     Finish(status);
   }
 
   void OnDone() override { delete this; }
 
+  static constexpr std::string_view kMethod = "ProgramService/UploadContent";
   CallNeeds needs_;
   Caller caller_;
   v1::UploadContentResponse* response_;

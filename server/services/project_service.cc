@@ -54,7 +54,11 @@ class Import final : public grpc::ServerReadReactor<v1::ImportProjectRequest> {
   void OnReadDone(bool ok) override {
     if (finished_) return;
     if (!ok) {
-      if (!needs_.compute.TryPost([this] { Store(); })) End(ToGrpcStatus(LaneFull()));
+      const auto store = [this] {
+        EndWhereThrown(
+            kMethod, [this] { Store(); }, [this](const auto& status) { End(status); });
+      };
+      if (!needs_.compute.TryPost(store)) End(ToGrpcStatus(LaneFull()));
       return;
     }
     if (const Status good = Add(); !good) return End(ToGrpcStatus(good.error()));
@@ -92,13 +96,13 @@ class Import final : public grpc::ServerReadReactor<v1::ImportProjectRequest> {
 
   void End(const grpc::Status& status) {
     finished_ = true;
-    LogCall("ProjectService/ImportProject", caller_, status,
-            std::chrono::steady_clock::now() - begin_);
+    LogCall(kMethod, caller_, status, std::chrono::steady_clock::now() - begin_);
     Finish(status);
   }
 
   void OnDone() override { delete this; }
 
+  static constexpr std::string_view kMethod = "ProjectService/ImportProject";
   CallNeeds needs_;
   ProjectBook& book_;
   Caller caller_;

@@ -129,33 +129,12 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
  private:
   void Pump() {
     for (;;) {
-      bool stopping = false;
-      bool cancelled = false;
-      bool ask = false;
-      {
-        const std::lock_guard lock(mutex_);
-        ask = std::exchange(asked_again_, false);
-        again_ = false;
-        stopping = stopping_;
-        cancelled = cancelled_;
-      }
       message_.Clear();
       grpc::Status status;
       Next next = Next::kEnd;
-      const Status admitted = ask && admission_ ? admission_() : Status();
-      if (cancelled) {
-        status = grpc::Status::CANCELLED;
-      } else if (!admitted) {
-        status = ToGrpcStatus(admitted.error());
-      } else if (stopping && goodbye_said_) {
-        status = ToGrpcStatus(Error{ErrorCode::kCellUnavailable, "the server stops", {}});
-      } else if (stopping) {
-        goodbye_said_ = true;
-        if (!MakeGoodbye(message_)) continue;
-        next = Next::kMessage;
-      } else {
-        next = Make(message_, status);
-      }
+      EndWhereThrown(
+          "a stream", [&] { next = MakeNext(status); },
+          [&](const grpc::Status& thrown) { status = thrown; });
       {
         const std::lock_guard lock(mutex_);
         if (next == Next::kNothing && again_) continue;
@@ -167,6 +146,33 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
       if (next == Next::kEnd) this->Finish(status);
       return;
     }
+  }
+
+  // What comes next, which is not always what Make() makes.
+  Next MakeNext(grpc::Status& status) {
+    bool stopping = false;
+    bool cancelled = false;
+    bool ask = false;
+    {
+      const std::lock_guard lock(mutex_);
+      ask = std::exchange(asked_again_, false);
+      again_ = false;
+      stopping = stopping_;
+      cancelled = cancelled_;
+    }
+    const Status admitted = ask && admission_ ? admission_() : Status();
+    if (cancelled) {
+      status = grpc::Status::CANCELLED;
+    } else if (!admitted) {
+      status = ToGrpcStatus(admitted.error());
+    } else if (!stopping) {
+      return Make(message_, status);
+    } else if (!std::exchange(goodbye_said_, true) && MakeGoodbye(message_)) {
+      return Next::kMessage;
+    } else {
+      status = ToGrpcStatus(Error{ErrorCode::kCellUnavailable, "the server stops", {}});
+    }
+    return Next::kEnd;
   }
 
   void OnWriteDone(bool ok) override {

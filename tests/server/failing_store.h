@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ class FailingStore : public ForwardingStore {
     fails_at_ = call;
     calls_ = 0;
   }
+  bool throws = false;  // instead: a mistake of ours
+
   bool failed() const { return fails_at_ > 0 && calls_ >= fails_at_; }
 
   Result<std::vector<storage::MachineRecord>> ListMachines() override {
@@ -111,7 +114,10 @@ class FailingStore : public ForwardingStore {
  protected:
   template <class Call>
   auto Or(Call call) -> decltype(call()) {
-    if (FailsNow()) return FullDisk();
+    if (FailsNow()) {
+      if (throws) throw std::runtime_error("a bug");
+      return FullDisk();
+    }
     return call();
   }
 

@@ -67,6 +67,10 @@ class FailingCellStore final : public FailingStore {
                                                 const EventOf& event) override {
     return Or([&] { return store_.ActOn(jobs, act, event); });
   }
+  Result<std::unique_ptr<storage::BlobWriter>> WriteBlob(std::string_view sha256,
+                                                         std::size_t size) override {
+    return Or([&] { return store_.WriteBlob(sha256, size); });
+  }
 };
 
 template <class Request>
