@@ -195,7 +195,8 @@ bool Typing::TypeBinary(std::size_t at, Operand& a, Operand& b) {
   node.type = IsArithmetic(node.op) ? ValueType::kReal : ValueType::kLogical;
   const bool equality = node.op == Node::kEqual || node.op == Node::kNotEqual;
   const bool logical = a.type == ValueType::kLogical || b.type == ValueType::kLogical;
-  if (equality && logical && !a.unknown && !b.unknown) {  // OPT-7.85
+  if (equality && logical) {  // OPT-7.85
+    if (a.unknown || b.unknown) return false;
     if (MakeLogical(a) && MakeLogical(b)) return true;
     Report(ErrorCode::kTypeMismatch, at, "a logical value is compared with a number", "OPT-7.85");
     return false;

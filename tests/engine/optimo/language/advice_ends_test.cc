@@ -94,5 +94,51 @@ TEST(AdviceEnds, ATextThatBeginsWithALineEndHasItsOwn) {
   EXPECT_EQ(Format(text).text, "\r\n     STOP\r\n");
 }
 
+// OPT-B.22: where the tip stands is not known behind what puts it, or the coordinates, elsewhere.
+TEST(AdviceEnds, APlaceIsKnownAsLongAsNothingMovesIt) {
+  const auto count = [](const std::string& between, const std::string& attributes = "") {
+    return CountOf("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0.,0.,0.,0.,0.)\n" + between +
+                       "SPEED 0\nMOVE (9.,0.,0.,0.,0.)" + attributes + "\n",
+                   7307, "OPT-B.22");
+  };
+  for (const char* between : {"", "COORD ABSOL\n", "PATH PTP\n", "VR[1]=1.\n", "WAIT IL[20]\n"})
+    EXPECT_EQ(count(between), 1) << between;
+  for (const char* between : {"COORD ROBOT\nCOORD ABSOL\n", "ZERO\n", "FUNCTION 44\n", "CALL 2\n"})
+    EXPECT_EQ(count(between), 0) << between;
+  // OPT-2.54: a MOVE with a time of its own needs no SPEED.
+  EXPECT_EQ(count("", "/TIME (5.,900)"), 0);
+}
+
+// OPT-B.22, OPT-5.46: of a MOVE that fails it is not said as well that it is slow.
+TEST(AdviceEnds, AMoveThatFailsIsNotTooSlow) {
+  const std::string cut =
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0.,0.,0.,0.,0.)\nOL[11]=ON\nWORK 0,0/ON\nDELAY 1\n";
+  const std::string move = "MOVE (9.,0.,0.,0.,0.)\nWORK 0,0/OFF\n";
+  EXPECT_EQ(CountOf(cut + "SPEED 0\n" + move, 7307, "OPT-B.22"), 1);
+  EXPECT_EQ(CountOf(cut + "SPEED 0\n" + move, 7033, "OPT-5.46"), 0);
+  EXPECT_EQ(CountOf(cut + "SPEED 1\n" + move, 7033, "OPT-5.46"), 1);
+}
+
+// OPT-3.20, OPT-3.38: when a WORK with a condition switches the beam is not known.
+TEST(AdviceEnds, ABeamThatWaitsIsNotFresh) {
+  const auto count = [](const std::string& attributes) {
+    return CountOf(
+        "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0.,0.,0.,0.,0.)\nOL[11]=ON\nWORK 0,0/ON" +
+            attributes + "\nMOVE (9.,0.,0.,0.,0.)\nWORK 0,0/OFF\n",
+        7033, "OPT-3.20");
+  };
+  EXPECT_EQ(count(""), 1);
+  EXPECT_EQ(count("/START (IL[20])"), 0);
+  EXPECT_EQ(count("/END (IL[20])"), 0);
+}
+
+// OPT-3.47: each run of instructions that are never reached is told once, and an ENDTASK is none.
+TEST(AdviceEnds, EachRunThatIsNotReachedIsTold) {
+  const auto count = [](std::string_view text) { return CountOf(text, 7033, "OPT-3.47"); };
+  EXPECT_EQ(count("GOTO 20\nSPEED 5\n20 GOTO 30\nSPEED 6\nSPEED 7\n30 ENDTASK\n"), 2);
+  EXPECT_EQ(count("GOTO 20\nENDTASK\n20 SPEED 5\n"), 0);
+  EXPECT_EQ(count("GOTO 20\nENDTASK\nSPEED 6\n20 SPEED 5\n"), 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::advice_ends

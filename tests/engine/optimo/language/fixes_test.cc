@@ -142,5 +142,14 @@ TEST(Fixes, FirstOfOverlappingFixesWins) {
   EXPECT_EQ(ApplyFixes("012345678", std::vector<Diagnostic>{one, two}), "A345678");
 }
 
+// OPT-7.91, OPT-E.7023: what a word without effect lacks is nothing.
+TEST(Fixes, NoBlankIsPutBehindAWordWithoutEffect) {
+  for (const std::string text : {"CONT5\n", "WEAV1\n"}) {
+    EXPECT_EQ(Fixed(text), text);
+    const std::string detail = Compile(text, "", {}).diagnostics.at(0).detail;
+    EXPECT_EQ(detail.find("blank"), detail.npos) << detail;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -81,5 +81,26 @@ TEST(Module, ParametersHaveTheirTypes) {
   EXPECT_EQ(compiled.module.parameter_types[2], ValueType::kInteger);
 }
 
+// OPT-2.43: the values of the attributes of one move are those of no other one.
+TEST(Module, EachMoveHasItsOwnAttributes) {
+  const Compilation compiled = MustCompile(
+      "MOVE (1,2,3,4,5)/START (VL[1])\nMOVE (1,2,3,4,5)/VIA (6,7,8,9,10)/TIME (1.,5)\n5\n");
+  EXPECT_EQ(Decompile(compiled.module),
+            "     MOVE (1, 2, 3, 4, 5) /START (VL[1])\n"
+            "     MOVE (1, 2, 3, 4, 5) /VIA (6, 7, 8, 9, 10) /TIME (1.0, 5)\n5\n");
+}
+
+// OPT-2.48, OPT-7.41, OPT-7.60: by a name as by itself, and each instruction for itself.
+TEST(Module, KnowsWhatReadsTheMachineByName) {
+  const Compilation compiled = MustCompile(
+      "DECLARE X1 = IL[3]\nDECLARE N0 = 0\nDECLARE N5 = 5\nVL[0] = X1\nVR[0] = OA[N0]\n"
+      "VR[0] = OA[N5]\nVL[0] = VL[1]\nWAIT NOT X1\n");
+  std::vector<bool> reads;
+  for (const Instruction& i : compiled.module.instructions) {
+    if (i.op != Op::kDeclare) reads.push_back(i.reads_machine);
+  }
+  EXPECT_EQ(reads, (std::vector<bool>{true, true, false, false, true}));
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -151,6 +151,7 @@ constexpr Row kRefused[] = {
      "030303"},
     {"GO with a REAL", "0100000C0200002041"},
     {"GO with a sum", "0100000C38010500010500"},
+    {"FUNCTION without a program", "0100000E00"},
     {"FUNCTION with a variable", "0100000E011102"},
     {"DECLARE with a name",
      "0202"

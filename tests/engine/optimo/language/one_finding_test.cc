@@ -194,5 +194,100 @@ TEST(OneFinding, OfARingIsItsGosubThatLeadsBack) {
   EXPECT_EQ(FindNesting(3, 1, edges).recursive, Places{0});
 }
 
+// OPT-B.42: behind a number stand the operators that are words and those of IF without a blank, and
+// no other letters.
+TEST(OneFinding, OfLettersBehindANumberIsNoneWhereAWordGoesOn) {
+  for (const char* text :
+       {"VR[0] = 7MOD 3\n", "VL[0] = VR[1] > 5AND VL[2]\n", "VL[0] = VR[1] > 5OR VL[2]\n",
+        "VL[0] = VR[1] > 5XOR VL[2]\n", "10 IF VR[1] > 5THEN 10\n"})
+    EXPECT_EQ(FindingsOf(text), std::vector<int>{}) << text;
+  EXPECT_EQ(OnlyOne("VR[0] = 7SIN(1.)\n"), "7005 letters in a number");
+  EXPECT_EQ(OnlyOne("10 IF VR[1] > 5GOTO 10\n"), "7005 letters in a number");
+}
+
+// OPT-7.59, OPT-7.87: what is missing around an index, and behind NOT.
+TEST(OneFinding, OfAVariableThatIsNotFinished) {
+  EXPECT_EQ(OnlyOne("VR = 5\n"), "7003 expected '[' and an index, found '='");
+  EXPECT_EQ(OnlyOne("VR[0] = VR + 1\n"), "7003 expected '[' and an index, found '+'");
+  EXPECT_EQ(OnlyOne("VR[\nSTOP\n"), "7003 expected an index");
+  EXPECT_EQ(OnlyOne("VR[5 = 3\n"), "7003 expected ']', found '='");
+  const std::string value = "7003 expected a number, a variable, a name or '(', found ";
+  EXPECT_EQ(OnlyOne("VL[0] = NOT )\n"), value + "')'");
+  EXPECT_EQ(OnlyOne("VL[0] = VL[1] AND NOT ,\nSTOP\n"), value + "','");
+}
+
+// OPT-7.91: a declared name without '=' is no mistyped instruction; one that is used, and that
+// nobody declared, may be.
+TEST(OneFinding, OfANameWithoutItsEqualsSign) {
+  EXPECT_EQ(OnlyOne("DECLARE X1 = VR[1]\nX1 5\n"), "7003 expected '=', found '5'");
+  EXPECT_EQ(OnlyOne("LET X1 5\n"), "7003 expected '=', found '5'");
+  EXPECT_EQ(FindingsOf("VR[0] = QQ\nQQ 5\n"), (std::vector<int>{7011, 7011}));
+}
+
+// OPT-7.15, OPT-7.17, OPT-3.01, OPT-7.01, OPT-2.54, OPT-9.22, OPT-7.102: what is missing where a
+// statement stops.
+TEST(OneFinding, OfAStatementIsWhereItStops) {
+  EXPECT_EQ(OnlyOne("10 GOTO 5.\n"), "7003 expected a sequence number, found '5.'");
+  EXPECT_EQ(OnlyOne("10 GOTO VI[2] (10, X1)\n"), "7003 expected a sequence number, found 'X1'");
+  EXPECT_EQ(OnlyOne("WORKDEF 0,0, 5\n"), "7003 expected '(' and the parameters, found '5'");
+  EXPECT_EQ(OnlyOne("WORKDEF 0,0,\nSTOP\n"), "7003 expected '(' and the parameters");
+  EXPECT_EQ(FindingsOf("WORKDEF 2,0, (5)\n"), std::vector<int>{});
+  EXPECT_EQ(OnlyOne("CALL 4.5\n"), "7003 expected a whole program number, found '4.5'");
+  EXPECT_EQ(OnlyOne("MOVE (1,2,3,0,0)/TIME 5\n"), "7003 expected '(' and a time, found '5'");
+  EXPECT_EQ(OnlyOne("DEFINE PAR INT\n"), "7003 expected '=', found 'INT'");
+  EXPECT_EQ(OnlyOne("DECLARE X1 = VI[1]\nASSIGN OL[32]=X1 5 /4\n"),
+            "7003 expected '/' and the number of outputs, found '5'");
+  EXPECT_EQ(OnlyOne("ASSIGN OL[32]=5X /4\n"), "7005 letters in a number");
+}
+
+// OPT-7.41, OPT-7.42, OPT-B.85: what DECLARE takes, and a '/' behind it.
+TEST(OneFinding, OfWhatIsDeclared) {
+  EXPECT_EQ(FindingsOf("DECLARE X1 = +5\n"), std::vector<int>{});
+  EXPECT_EQ(OnlyOne("DECLARE X1 = Y1 5\n"),
+            "7014 DECLARE takes a number, a constant or a variable");
+  EXPECT_EQ(OnlyOne("DECLARE X1 = VR[100]\n"), "7017 index 100 is outside 0..99");
+  EXPECT_EQ(OnlyOne("DECLARE X1 = 4 / 2\n"), "7014 DECLARE takes no expression");
+  EXPECT_EQ(OnlyOne("DECLARE X1 = 4 /CLOCK\n"), "7022 'CLOCK' is not available on the Optimo");
+  EXPECT_EQ(OnlyOne("DECLARE X1 = 4 /INTR\n"), "7022 'INTR' is not available on the Optimo");
+}
+
+// OPT-9.23, OPT-7.89: the PAR whose DEFINE is wrong has no type, and each other one has its own.
+TEST(OneFinding, OfAParameterWithoutAType) {
+  EXPECT_EQ(FindingsOf("DEFINE PAR[3] = LOGC\nVL[0] = PAR[3]\n"), std::vector<int>{7025});
+  EXPECT_EQ(FindingsOf("DEFINE PAR[3] = LOGC\nVL[0] = PAR[0]\n"), (std::vector<int>{7025, 7018}));
+}
+
+// OPT-7.89: of what has a wrong part nothing more is said, whichever part it is.
+TEST(OneFinding, OfASumWithALogicalValue) {
+  for (const char* text : {"VL[0] = (IL[3] + 1) AND VL[1]\n", "VL[0] = (1 + IL[3]) AND VL[1]\n",
+                           "VR[0] = (IL[3] > 1) + 1\n", "VR[0] = (1 > IL[3]) + 1\n"})
+    EXPECT_EQ(OnlyOne(text), "7018 a logical value where a number is needed") << text;
+}
+
+// OPT-7.85: what an unknown name is compared with is not what is wrong.
+TEST(OneFinding, OfAnUnknownNameThatIsCompared) {
+  for (const char* text : {"VL[0] = XX = IL[3]\n", "VL[0] = IL[3] = XX\n", "VL[0] = XX <> IL[3]\n",
+                           "VL[0] = XX = 2.5\n"})
+    EXPECT_EQ(FindingsOf(text), std::vector<int>{7011}) << text;
+}
+
+// OPT-1.33: an assignment behind a line that lacks its value is a statement of its own.
+TEST(OneFinding, OfADeclareWithoutAValueLeavesTheNextLine) {
+  EXPECT_EQ(FindingsOf("DECLARE X1 =\nQQ = 3\n"), (std::vector<int>{7014, 7011}));
+  EXPECT_EQ(OnlyOne("VR[0] = (1. + 2.\nVR[5] = 3.\n"), "7003 expected ')'");
+}
+
+// OPT-B.85, OPT-1.33: what a statement that stopped had open is open in no other one.
+TEST(OneFinding, OfAStatementEndsWithIt) {
+  EXPECT_EQ(FindingsOf("TCP (0,0/6,0,0,1)\nVR[1] = VR[2] / 2\n"), std::vector<int>{7019});
+  for (const char* open : {"VR[0] = (#)\n", "VR[0] = ABS(#)\n"}) {
+    std::string text;
+    for (int n = 0; n < kNestingMax; ++n) text += open;
+    EXPECT_EQ(FindingsOf(text + "VR[0] = (1.)\nVR[0] = ABS(1.)\n"),
+              std::vector<int>(static_cast<std::size_t>(kNestingMax), 7001))
+        << open;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::one_finding

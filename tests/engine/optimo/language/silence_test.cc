@@ -181,5 +181,21 @@ TEST(Silence, AllowancesComeWithTheSource) {
   EXPECT_TRUE(Compile(text, "", {}).allowed.empty());
 }
 
+// The numbers of findings begin at 1, whether there is one of that number or not.
+TEST(Silence, OneIsANumberAndNothingIsNone) {
+  EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 1\n"), Texts{"1 is the number of no finding"});
+  EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 0\n"), Texts{"allow needs the numbers of findings"});
+}
+
+// Of more complaints than are told those of the first comments are, whatever they are about.
+TEST(Silence, TheFirstComplaintsAreTold) {
+  std::string text = "SPEED 5 ; rmlcell: allow 7413\n";
+  for (int n = 0; n < 100; ++n) text += "STOP ; rmlcell: allow\n";
+  const std::vector<Diagnostic> found = Compile(text, "", {}).diagnostics;
+  ASSERT_EQ(found.size(), 100U);
+  EXPECT_EQ(found.front().detail, "allow 7413 silences nothing here");
+  EXPECT_EQ(found.back().where.line, 100);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

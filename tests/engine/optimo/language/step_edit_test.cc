@@ -119,5 +119,18 @@ TEST(StepEdit, TellsWhyItRefuses) {
   EXPECT_EQ(removed.error().detail, "the program is shorter");
 }
 
+// OPT-7.60, OPT-6.38: the name of an index is a name of the program as any other, and must be one.
+TEST(StepEdit, KnowsTheNamesOfIndices) {
+  const std::string text = "DECLARE A = VR[1]\nDECLARE B = 7\nA = VR[B]\n";
+  EXPECT_EQ(Inserted(text, 2, "VR[B] = A"),
+            Decompiled("DECLARE A = VR[1]\nDECLARE B = 7\nVR[B] = A\nA = VR[B]\n"));
+  const auto why = [&](const std::string& step) -> std::string {
+    const Result<std::string> object = InsertInstruction(Compiled(text).module, 2, step);
+    return object ? std::string() : std::string(object.error().detail);
+  };
+  for (const char* step : {"VR[D] = 1.", "VR[1] = VR[D]", "VR[D] = A", "D = VR[B]"})
+    EXPECT_EQ(why(step), "it has a name that the program does not know") << step;
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo
