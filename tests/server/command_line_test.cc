@@ -98,6 +98,7 @@ TEST(CommandLine, AMistakeIsNamedAndEndsTheProgram) {
   const std::vector<std::tuple<std::string, std::string, int, std::string>> cases = {
       {"", "--jobs.attempts 11", 78, "--jobs.attempts is 11, allowed are 1 to 10"},
       {"", "--log.level loud", 78, "--log.level is 'loud'"},
+      {"", "--log.level loud", 78, "CELL-E9201"},
       {"RMLCELL_JOBS_ATTEMPTS=x", "", 78, "RMLCELL_JOBS_ATTEMPTS takes a whole number"},
       {"", "--config /nowhere.toml", 78, "/nowhere.toml"},
       {"", "--config /tmp", 78, "/tmp"},

@@ -300,6 +300,13 @@ TEST_F(StartVerbTest, IsLookedAtUntilItHasBegun) {
   ExpectDone("start m 7", WithControlFor(Started(" program: 7") + looks));
 }
 
+// Whose run was the last one says nothing of a program that nobody's job started.
+TEST_F(StartVerbTest, AProgramThatIsOverAtOnceIsNotLookedFor) {
+  machine_.statuses[0].clear_run();
+  machine_.statuses[0].mutable_last_run()->set_job("jobs/16");
+  ExpectDone("start m 7", WithControlFor(Started(" program: 7")));
+}
+
 TEST_F(StartVerbTest, ARunThatFailedAtOnceIsNoGoodStart) {
   Run().set_run(8);
   Run().set_run_time_ns(0);

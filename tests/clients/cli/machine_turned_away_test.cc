@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -96,6 +97,23 @@ class EndlessStatus final : public FakeMachine {
   std::atomic<bool> left = false;
 };
 
+// What keys ask for, with a star where it may take for ever.
+class TimedPanel final : public FakeMachine {
+ public:
+  using FakeMachine::FakeMachine;
+  grpc::Status PressPanelKey(Context context, const v1::PressPanelKeyRequest* request,
+                             v1::MachineStatus* response) override {
+    asked.insert(request->key() + (EndsByItself(*context) ? "" : "*"));
+    return FakeMachine::PressPanelKey(context, request, response);
+  }
+  grpc::Status HeartbeatPanel(Context context, const v1::HeartbeatPanelRequest* request,
+                              v1::HeartbeatResponse* response) override {
+    asked.insert(EndsByItself(*context) ? "beat" : "beat*");
+    return FakeMachine::HeartbeatPanel(context, request, response);
+  }
+  std::set<std::string> asked{};
+};
+
 class MachineTurnedAway : public MachineWords {
  protected:
   MachineTurnedAway() {
@@ -123,7 +141,8 @@ constexpr const char* kGoesOn = "start-at m 45/10 --seen inspected";
 TEST_F(MachineTurnedAway, WhereSomebodyElseHasControl) {
   CutOff();
   machine_.refused["AcquireControl"] = {grpc::StatusCode::FAILED_PRECONDITION, "anna has it"};
-  for (const std::string line : {"taught m --undo 10", kGoesOn, "start m 7", "mode m cycle"}) {
+  for (const std::string line :
+       {"taught m --undo 10", kGoesOn, "start m 7", "mode m cycle", "key m X+"}) {
     const Told told = Say(line);
     EXPECT_EQ(told.exit_code, kConnection) << line;
     EXPECT_EQ(told.errors, "rmlcell: anna has it\n") << line;
@@ -141,6 +160,17 @@ TEST_F(MachineTurnedAway, EachAnswerHasItsTime) {
   EXPECT_EQ(Say("taught m --undo 10").exit_code, kGood);
   EXPECT_EQ(book_.undone, 1);
   EXPECT_TRUE(book_.ends);
+}
+
+// Also a key that is held, and each time that somebody says so.
+TEST_F(MachineTurnedAway, EachKeyHasItsTime) {
+  server_.reset();
+  TimedPanel panel(calls_);
+  server_ = std::make_unique<FakeServer>(folder_, std::vector<grpc::Service*>{&panel});
+  const Told told = Say("key m PAUSE X+ --for 0.2");
+  server_.reset();  // before the panel
+  EXPECT_EQ(told.exit_code, kGood) << told.errors;
+  EXPECT_THAT(panel.asked, testing::ElementsAre("PAUSE", "X+", "beat"));
 }
 
 TEST_F(MachineTurnedAway, WhereTheServerRefuses) {

@@ -7,12 +7,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "clients/cli/terminal.h"
 #include "clients/cli/version.h"
+#include "engine/core/hex.h"
 #include "engine/families/families.h"
 #include "engine/machine/machine.h"
 #include "proto/bridge/encoding.h"
+#include "proto/bridge/machine_inputs.h"
 #include "proto/bridge/sha256.h"
 #include "proto/recording/recording.h"
 #include "rmlcell/v1/job.grpc.pb.h"
@@ -51,6 +54,40 @@ recording::Recording StandingMill() {
       entry.mutable_mark()->mutable_state_sha256()->push_back(
           static_cast<char>(std::stoi(bridge::Sha256Hex(state).substr(at, 2), nullptr, 16)));
   }
+  return made;
+}
+
+// A laser whose program waits for 99 s in each of two steps. It is started at 1 s.
+recording::Recording WaitingLaser() {
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
+  const machine::Parameters parameters = *machine::MakeParameters(family, "", {});
+  machine::Translation program = family.Translate(
+      {.name = "4.S", .bytes = "DELAY 99.\nDELAY 99.\n"}, parameters, {.advice = false});
+  EXPECT_TRUE(program.ok);
+  machine::MachineMemory memory;
+  memory.programs[4] = {.name = "4.S", .object = machine::Bytes::Of(std::move(program.object))};
+  recording::Recording made;
+  made.head.set_engine_version(std::string(kVersion));
+  made.head.set_machine("machines/l");
+  made.head.set_family("optimo");
+  recording::SetMemory(memory, made.head);
+  machine::RunObserver nobody;
+  const auto laser = machine::Machine::Make(family, parameters, std::move(memory), "", nobody);
+  EXPECT_TRUE(laser);
+  const std::string state = (*laser)->Save();
+  const auto add = [&made](int second) -> v1::JournalEntry& {
+    v1::JournalEntry& entry = made.entries.emplace_back();
+    entry.set_sequence(static_cast<std::int64_t>(made.entries.size()));
+    entry.set_virtual_time_ns(std::int64_t{1'000'000'000} * second);
+    return entry;
+  };
+  v1::MachineMark& mark = *add(0).mutable_mark();
+  mark.set_clean(true);
+  mark.set_state(state);
+  mark.set_state_sha256(*BytesOfHex(bridge::Sha256Hex(state)));
+  *add(1).mutable_applied()->mutable_input() = bridge::AppliedOf(machine::StartRun{.program = 4});
+  // How it stands is known as far as there are entries.
+  *add(190).mutable_applied()->mutable_input() = bridge::AppliedOf(machine::StopRun{});
   return made;
 }
 
@@ -140,6 +177,20 @@ TEST_F(ReplayTest, FromAMarkAndUpToATime) {
   EXPECT_THAT(told.output, HasSubstr(" and 1 marks are the same, until 1.500 s"));
 }
 
+// In which step it is, as long as a run is open.
+TEST_F(ReplayTest, WhereAnOpenRunStandsIsTold) {
+  const std::string file = folder_.Put("a.rmlj", FileOf(WaitingLaser()));
+  const auto told = [&](std::int64_t ns) {
+    const std::string output = Play(file, {}, ns).output;
+    return output.substr(0, output.find('\n'));
+  };
+  EXPECT_THAT(told(500'000'000), StartsWith("at 0.500 s of the machine: "));
+  EXPECT_THAT(told(500'000'000), Not(HasSubstr(" at ")));
+  EXPECT_THAT(told(51'000'000'000), StartsWith("at 51.000 s of the machine: RUNNING at 4/1  "));
+  EXPECT_THAT(told(151'000'000'000),
+              StartsWith("at 2 min 31.000 s of the machine: RUNNING at 4/2  "));
+}
+
 // By its name, or that of a job, as long as there is no file of that name.
 TEST_F(ReplayTest, AServerHasRecordings) {
   for (const char* name : {"m", "machines/m"}) {
@@ -171,6 +222,15 @@ TEST_F(ReplayTest, WhatThereIsNotIsRefused) {
   told = Play("17");
   EXPECT_EQ(told.exit_code, kConnection);
   EXPECT_EQ(told.errors, "rmlcell: no job\n");
+}
+
+// A folder is there, and no recording.
+TEST_F(ReplayTest, AFolderIsRefused) {
+  const Told told = Play(folder_.path());
+  EXPECT_EQ(told.exit_code, kUsage);
+  EXPECT_EQ(told.output, "");
+  EXPECT_THAT(told.errors, StartsWith("rmlcell: CELL-E9022: "));
+  EXPECT_THAT(told.errors, HasSubstr(folder_.path() + " is a directory"));
 }
 
 // A file that is not there is another error than a recording that comes out otherwise.

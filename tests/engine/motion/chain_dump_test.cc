@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <sstream>
 #include <string>
 
 #include "engine/core/number_text.h"
@@ -160,6 +162,36 @@ TEST(ItemStageDump, SectionsAreGivenOutMoveByMove) {
   EXPECT_EQ(items.Dump(), "mark 4\n");
   EXPECT_EQ(spans.Dump(), "");
   EXPECT_TRUE(legs.moves().empty());
+}
+
+// motion.md 5.5: where the window is full, half of what waits is passed as if the machine had to
+// stand behind it. Behind 50 mm to speed up on, 10 mm/s2 over steps of 0.1 mm: v^2 = 2 n where n
+// steps are to come. Of the 40 moves the legs know half, and half a window and one of these are a
+// run of 17 spans.
+TEST(SpanStageDump, HalfOfWhatWaitsIsAccepted) {
+  SpanStage spans(PlainMachine(), 32);
+  LegStage& legs = spans.leg_stage();
+  for (int k = 0; k < 40; ++k) {
+    MoveCommand move;
+    const double from = k == 0 ? -50.0 : 0.1 * (k - 1);
+    move.path = PathPiece::Line({{from, 0, 0}}, {{0.1 * k, 0, 0}});
+    move.speed_fraction = k % 2 == 0 ? 0.9 : 1.0;  // else they would be one leg
+    move.acceleration_fraction = k == 0 ? 1.0 : 0.01;
+    move.fly = true;
+    legs.Add(move, legs.LimitsFor(move), true);
+  }
+  legs.AcceptHalf();
+  while (spans.Resolve(true)) {
+  }
+  spans.AcceptHalf();
+  std::string wanted;
+  for (int k = 0; k < 17; ++k)
+    wanted += k < 8 ? "passed at " + FixedText(std::sqrt(2.0 * (16 - k)), 3) + "\n" : "open\n";
+  std::string told;  // the end of each line
+  std::istringstream lines(spans.Dump());
+  for (std::string line; std::getline(lines, line);)
+    told += line.substr(line.rfind(", ") + 2) + "\n";
+  EXPECT_EQ(told, wanted);
 }
 
 // What is timed together of so many moves in a row, with ramps over 405 mm to 90 mm/s: no knot is

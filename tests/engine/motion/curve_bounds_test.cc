@@ -148,5 +148,18 @@ TEST(CornerCurve, SlowestPlaceIsTheSlowest) {
   EXPECT_LT(inside, 400);
 }
 
+// Slow at both ends, and slower still at one narrow place between them. With w = u - 1/2 and a
+// scale of 1 the curve goes along X at 1/16 + 7.5 w^2 - 15 w^4 and along Y at 128 w (2 w^2 - 1/2):
+// so at 1 at its ends, at 1/16 in its middle, and 0.02 beside that at more than 1 again.
+TEST(CornerCurve, SlowestPlaceBetweenSlowEnds) {
+  const CornerCurve curve(
+      {.pose = {{0, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {0, 128, 0}},
+      {.pose = {{0.5, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {0, 128, 0}}, 0.5);
+  EXPECT_NEAR(curve.Speed(0.0), 1.0, 1e-9);
+  EXPECT_NEAR(curve.Speed(0.5), 0.0625, 1e-9);
+  EXPECT_GT(curve.Speed(0.48), 1.0);
+  EXPECT_NEAR(curve.SlowestPlace(), 0.5, 1e-9);
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

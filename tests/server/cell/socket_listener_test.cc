@@ -1,17 +1,30 @@
 #include "server/cell/socket_listener.h"
 
+#include <grpcpp/generic/async_generic_service.h>
+#include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <spdlog/spdlog.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "server/auth/socket_users.h"
+#include "server/base/log.h"
 
 namespace rmlcell::server {
 namespace {
@@ -19,6 +32,56 @@ namespace {
 constexpr std::string_view kWrongSocketPath =
     "the path of a socket has 1 to 107 characters, none of them ? # or %, and begins with / behind "
     "unix://";
+
+// RFC 9113 3.4: what a client says first, with SETTINGS of nothing; a server says SETTINGS.
+constexpr std::string_view kClientPreface("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n\0\0\0\4\0\0\0\0\0", 33);
+
+// As long as it lives nothing can be opened in this process.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    EXPECT_EQ(::getrlimit(RLIMIT_NOFILE, &before_), 0);
+    rlimit none = before_;
+    none.rlim_cur = 0;
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  }
+  ~NoDescriptors() { EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &before_), 0); }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+// A client that has said its first words.
+int Connected(const std::string& path) {
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  path.copy(name.sun_path, sizeof(name.sun_path) - 1);
+  const int client = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  EXPECT_EQ(::connect(client, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
+  EXPECT_EQ(::send(client, kClientPreface.data(), kClientPreface.size(), MSG_NOSIGNAL), 33);
+  return client;
+}
+
+// True as soon as something stands in the file, which is not opened for that.
+bool IsWritten(const std::string& file) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (std::filesystem::file_size(file) == 0) {
+    if (std::chrono::steady_clock::now() > until) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+// What a log says, without who says it when.
+std::vector<std::string> MessagesIn(const std::string& file) {
+  std::vector<std::string> messages;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);)
+    messages.push_back(line.substr(line.rfind("] ") + 2));
+  return messages;
+}
 
 class SocketListenerTest : public testing::Test {
  protected:
@@ -61,13 +124,11 @@ TEST_F(SocketListenerTest, APathReadsTheSameAsAUri) {
 
 TEST_F(SocketListenerTest, SaysWhyItCannotBeThere) {
   EXPECT_EQ(Refusal(folder_ + "/none/cell.sock"), std::strerror(ENOENT));
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
-  rlimit none = before;
-  none.rlim_cur = 0;
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
-  const std::string refused = Refusal(folder_ + "/cell.sock");
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  std::string refused;
+  {
+    const NoDescriptors none;
+    refused = Refusal(folder_ + "/cell.sock");
+  }
   EXPECT_EQ(refused, std::strerror(EMFILE));
   EXPECT_FALSE(std::filesystem::exists(folder_ + "/cell.sock"));
 }
@@ -98,6 +159,41 @@ TEST_F(SocketListenerTest, TakesNothingThatIsOfUse) {
   std::ofstream(path) << "kept";
   EXPECT_EQ(Refusal(path), "there is a file that is no socket");
   EXPECT_EQ(std::filesystem::file_size(path), 4U);
+}
+
+// Who comes while no descriptor is free waits, which is said once, and is served when there is one.
+TEST_F(SocketListenerTest, AClientWaitsForADescriptor) {
+  const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
+  ASSERT_TRUE(StartLog("cell-waits", "info", "text", folder_ + "/log"));
+  grpc::CallbackGenericService service;
+  grpc::ServerBuilder builder;
+  builder.RegisterCallbackGenericService(&service);
+  const std::unique_ptr<grpc::Server> server = builder.BuildAndStart();
+  const std::string path = folder_ + "/cell.sock";
+  auto made = SocketListener::Make("unix://" + path, users_);
+  EXPECT_TRUE(made);
+  if (server != nullptr && made) {
+    std::unique_ptr<SocketListener> listener = *std::move(made);
+    const int client = Connected(path);
+    {
+      const NoDescriptors none;
+      listener->Serve(*server);
+      EXPECT_TRUE(IsWritten(folder_ + "/log"));
+    }
+    pollfd answer{.fd = client, .events = POLLIN, .revents = 0};
+    EXPECT_EQ(::poll(&answer, 1, 60'000), 1);
+    char first = 0;
+    EXPECT_EQ(::recv(client, &first, 1, MSG_DONTWAIT), 1);
+    listener.reset();
+    ::close(client);
+    server->Shutdown(std::chrono::system_clock::now());
+    server->Wait();
+  }
+  spdlog::drop("cell-waits");
+  spdlog::set_default_logger(before);
+  const std::vector<std::string> told = {"connections to " + path +
+                                         " wait: " + std::strerror(EMFILE)};
+  EXPECT_EQ(MessagesIn(folder_ + "/log"), told);
 }
 
 }  // namespace

@@ -206,6 +206,27 @@ TEST(AnsweredEntries, HaveNoStatus) {
   EXPECT_EQ(entry->caller(), "anna");
 }
 
+// LIVE-3.27: what is another order under the same id is known behind a crash, too.
+TEST(AnsweredEntries, KnowWhatWasAsked) {
+  const HostTime now{.steady = 1h, .wall = WallTime(24h)};
+  v1::HostOrder order;
+  order.set_caller("anna");
+  order.mutable_factor()->set_request_id("one");
+  order.mutable_factor()->set_factor(2.0);
+  const auto kept = AnsweredRequests::EntryOf(order, v1::HostOrderAnswer());
+  ASSERT_TRUE(kept);
+  v1::JournalEntry entry;
+  *entry.mutable_time() = Stamp(now.wall);
+  *entry.mutable_answered() = *kept;
+  AnsweredRequests answered;
+  answered.Recover({entry}, {}, now);
+  const std::string key = AnsweredRequests::KeyOf(order);
+  ASSERT_NE(answered.Find(key), nullptr);
+  EXPECT_FALSE(answered.IsAnother(key, AnsweredRequests::DigestOf(order)));
+  order.mutable_factor()->set_factor(3.0);
+  EXPECT_TRUE(answered.IsAnother(key, AnsweredRequests::DigestOf(order)));
+}
+
 // LIVE-3.27: ten minutes from when it was given, however many hosts there were meanwhile.
 TEST(AnsweredEntries, AreAsOldAsTheirAnswers) {
   const HostTime given{.steady = 1h, .wall = WallTime(24h)};

@@ -198,6 +198,28 @@ TEST_F(HeldMachines, AnOptimoThatWaitsForAnInspectionIsMovedByNoKey) {
   EXPECT_EQ(CodeOf(HandboxKey("")), Code(ErrorCode::kCellInvalidArgument));
 }
 
+// LIVE-3.16: how often the program was carried out whole.
+TEST_F(HeldMachines, CountThePassesOfAProgramThatIsRepeated) {
+  MakeOptimo();
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
+  const auto made = family.Translate({.name = "12.S", .bytes = "DELAY 1\n"},
+                                     *machine::MakeParameters(family, "", {}), {.advice = false});
+  ASSERT_TRUE(made.ok);
+  v1::HostMemory memory;
+  memory.add_programs()->set_slot(12);
+  memory.mutable_programs(0)->set_content(made.object);
+  host_->Change(memory, now_);
+  OpenHandbox();
+  for (const char* key : {"MODE_LEFT", "MODE_LEFT", "MODE_LEFT", "MODE_LEFT", "JOB", "1", "2",
+                          "ENT", "MODE_RIGHT", "START"})
+    ASSERT_TRUE(Do(HandboxKey(key)).has_key()) << key;
+  ASSERT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(host_->StatusAt(now_).run().executions(), 0);
+  Pass(1500ms, 50ms);
+  EXPECT_EQ(host_->StatusAt(now_).run().executions(), 1);
+}
+
 // LIVE-5.10: where a run was cut off stays known, however often its machine is switched off and on
 // before anybody has looked.
 TEST_F(HeldMachines, WhereARunWasCutOffStaysKnown) {

@@ -1,5 +1,6 @@
 // RUN jobs on a machine as its host has it (live.md 5): what keeps them from it, how they begin,
 // who has control meanwhile, and what is told of them.
+#include <algorithm>
 #include <utility>
 
 #include "server/host/recovered.h"
@@ -82,6 +83,35 @@ TEST_F(HostJobsTest, TheQueueHasControlForAJob) {
   EXPECT_EQ(over.front().run_over().outcome().kind(), v1::Outcome::KIND_COMPLETED);
   // What comes behind it is nobody's.
   EXPECT_EQ(Do(Stop()).halt().status().state(), v1::MACHINE_STATE_IDLE);
+}
+
+// The time of a run counts from its begin, however long the machine has stood before.
+TEST_F(HostJobsTest, WhatIsToldOfARunHasItsTime) {
+  Make();
+  Pass(3s, 50ms);
+  Do(Job("PA;PA;VS10;PU200,0;"));
+  Pass(30s, 50ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  const auto entries = host_->TakeEntries(now_, true);
+  const auto begun = std::ranges::find_if(entries, &v1::JournalEntry::has_run_begun);
+  const auto over = std::ranges::find_if(entries, &v1::JournalEntry::has_run_over);
+  ASSERT_NE(begun, entries.end());
+  ASSERT_NE(over, entries.end());
+  EXPECT_GT(begun->virtual_time_ns(), 2'000'000'000);
+  EXPECT_EQ(begun->run_time_ns(), 0);
+  EXPECT_GT(over->run_time_ns(), 0);
+  EXPECT_EQ(over->run_time_ns(), over->virtual_time_ns() - begun->virtual_time_ns());
+}
+
+// LIVE-6.01: a mark says up to where its run could be worked out again.
+TEST_F(HostJobsTest, AMarkSaysHowFarItsRunWas) {
+  Make();
+  Pass(3s, 50ms);
+  Do(Job());
+  Pass(5s, 50ms);
+  const v1::MachineMark mark = host_->TakeEntries(now_, true).back().mark();
+  EXPECT_GT(mark.run_time_ns(), 4'000'000'000);
+  EXPECT_EQ(mark.base().until_ns(), mark.run_time_ns());
 }
 
 // LIVE-5.05: orders for the job need no token while the queue has control, and are for this job.

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <semaphore>
 
+#include "proto/recording/records.h"
 #include "server/host/journal_writer.h"
 #include "server/host/unstored_entries.h"
 
@@ -109,6 +110,19 @@ TEST_F(JournalTest, AChangedBitIsFound) {
     changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ (1 << (bit % 8)));
     ASSERT_EQ(ReadJournal(changed).entries.size(), bit / 8 / record) << bit;
   }
+}
+
+// LIVE-3.24: a record that is whole and yet no entry ends it as well.
+TEST_F(JournalTest, ARecordOfSomethingElseEndsIt) {
+  const std::string first = RecordsOf({Entry(3, 1)});
+  std::string all = first;
+  recording::AddRecord("\x07", all);  // no field has this number
+  all += RecordsOf({Entry(3, 2)});
+  Replace(all);
+  const Journal::Found found = Open();
+  EXPECT_EQ(Numbers(found.entries), std::vector<std::int64_t>{1});
+  EXPECT_EQ(found.torn_bytes, static_cast<std::int64_t>(all.size() - first.size()));
+  EXPECT_EQ(Bytes(), first);
 }
 
 // Zeros, which a file may have at its end after a crash, are no entry.

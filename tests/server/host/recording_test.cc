@@ -100,13 +100,23 @@ TEST_F(RecordingTest, ARunThatTakesNoTimeHappensAgain) {
   for (const char* text : {"STOP\n", "WORK 0,0/ON\nWORK 0,0/OFF\n", "VI[2] = 1\n"}) {
     MakeOptimo();
     Do(JobOf(text));
-    while (!host_->GoOn(now_)) continue;  // before any time has gone by
+    // As a host takes them: before the run moves, and behind its end, before any time has gone by.
+    static_cast<void>(host_->TakeEntries(now_));
+    while (!host_->GoOn(now_)) continue;
+    static_cast<void>(host_->TakeEntries(now_));
     Pass(3s, 30ms);
     const Recording what = Recorded("jobs/17");
-    EXPECT_EQ(Of(what, v1::JournalEntry::kRunOver).size(), 1U) << text;
+    const auto ends = Of(what, v1::JournalEntry::kRunOver);
+    ASSERT_EQ(ends.size(), 1U) << text;
+    const auto marks = Of(what, v1::JournalEntry::kMark);
+    const auto is_behind = [&](const v1::JournalEntry* mark) {
+      return mark->sequence() > ends.front()->sequence() &&
+             mark->virtual_time_ns() == ends.front()->virtual_time_ns();
+    };
+    EXPECT_TRUE(std::ranges::any_of(marks, is_behind)) << text;
     const Replayed played = Play(what);
     EXPECT_EQ(DifferenceIn(played), "") << text;
-    EXPECT_EQ(static_cast<std::size_t>(played.marks), Of(what, v1::JournalEntry::kMark).size());
+    EXPECT_EQ(static_cast<std::size_t>(played.marks), marks.size());
   }
 }
 

@@ -249,6 +249,21 @@ TEST(Recovered, WhatWasTakenBackStaysSo) {
   std::remove(path.c_str());
 }
 
+// LIVE-3.27, LIVE-5.20: the answer to the order that begins a job is of its begin, at a step, too;
+// that to another order is something that somebody did since.
+TEST(Recovered, WhatWasAnsweredIsOfTheBegin) {
+  const auto taken_back = [](int kind) {
+    std::vector<v1::JournalEntry> journal = Behind({Mark(1)}, Begin(2));
+    v1::JournalEntry answer = Entry(6);
+    answer.mutable_answered()->set_kind(kind);
+    journal.insert(journal.end() - 1, answer);
+    return TakeBack(Stored(1), journal);
+  };
+  EXPECT_TRUE(taken_back(v1::HostOrder::kRunJob));
+  EXPECT_TRUE(taken_back(v1::HostOrder::kContinueJob));
+  EXPECT_FALSE(taken_back(v1::HostOrder::kOverride));
+}
+
 // What a host was about to tell when it died was told again by the next one, before its first mark;
 // the one behind that tells it once.
 TEST(Recovered, WhatWasToldAgainIsToldOnce) {

@@ -168,6 +168,40 @@ TEST(RefusedRecordings, OfWhatIsTooLarge) {
   EXPECT_EQ(recorder.Part({}).error().code, ErrorCode::kCellNotFound);
 }
 
+// LIVE-3.40: a recording has what a replay needs: of a run under way no state, and neither what it
+// makes again nor what was answered; where the machine stands behind it, all of that.
+TEST(RecordedEntries, HaveWhatAReplayNeeds) {
+  const auto mark = [](bool clean) {
+    v1::JournalEntry entry;
+    entry.mutable_mark()->set_state("where it stands");
+    entry.mutable_mark()->set_clean(clean);
+    entry.mutable_mark()->mutable_base()->set_program(5);
+    entry.add_executables()->set_slot(5);
+    return entry;
+  };
+  MachineRecorder recorder;
+  recorder.Begin({}, {}, mark(true));
+  v1::JournalEntry answered;
+  answered.mutable_answered()->set_request_id("one");
+  recorder.Add(answered);
+  recorder.Add(mark(false));
+  recorder.Add(mark(true));
+  const auto part = recorder.Part({});
+  ASSERT_TRUE(part);
+  const auto recording = recording::ReadFile(part->chunk());
+  ASSERT_TRUE(recording) << recording.error().detail;
+  ASSERT_EQ(recording->entries.size(), 3U);
+  const v1::JournalEntry& under_way = recording->entries[1];
+  EXPECT_TRUE(under_way.has_mark());
+  EXPECT_EQ(under_way.mark().state(), "");
+  EXPECT_FALSE(under_way.mark().has_base());
+  EXPECT_EQ(under_way.executables_size(), 0);
+  const v1::JournalEntry& behind = recording->entries[2];
+  EXPECT_EQ(behind.mark().state(), "where it stands");
+  EXPECT_EQ(behind.mark().base().program(), 5);
+  EXPECT_EQ(behind.executables_size(), 0);
+}
+
 // A job that was to go on and is refused is nobody's afterwards, and neither is what it brought.
 TEST_F(RefusedCodes, AContinuationThatIsRefusedLeavesNothing) {
   CutOffAJob();
@@ -205,6 +239,71 @@ TEST_F(RefusedCodes, AJobThatIsRefusedLeavesNothing) {
   ASSERT_TRUE(recording) << recording.error().detail;
   EXPECT_FALSE(recording->head.has_brought());
   EXPECT_EQ(recording->head.job(), "");
+}
+
+// LIVE-6.08: nor is one that was to begin at a step.
+TEST_F(RefusedCodes, AJobAtAStepThatIsRefusedLeavesNothing) {
+  options_.set_ticket_needed(true);
+  MakeAndTake();
+  const std::string text = "PA;PA;VS10;PU2000,0;PU2000,2000;PU0,0;";
+  v1::HostOrder question;
+  question.set_number(++number_);
+  question.mutable_preview_start()->set_program(5);
+  question.mutable_preview_start()->mutable_step()->set_step(5);
+  *question.mutable_brought() = JobOf(text, "other.rml").run_job().programs(0);
+  auto task = host_->PreparePreview(question, now_);
+  ASSERT_TRUE(task) << task.error().detail;
+  auto made = task->run(task->start, {});
+  const std::string token =
+      host_->Previewed(question, *std::move(task), std::move(made), now_).preview().preview_token();
+  ASSERT_NE(token, "");
+  v1::HostOrder job = ContinueOf("", token);
+  job.mutable_continue_job()->mutable_assignment()->mutable_programs(0)->set_content(text);
+  EXPECT_EQ(CodeOf(job), Code(ErrorCode::kCellTicket));
+  ASSERT_FALSE(Do(Start()).has_refusal());
+  static_cast<void>(host_->TakeEntries(now_, true));
+  v1::HostOrder order;
+  order.mutable_recording();
+  const auto recording = recording::ReadFile(Do(order).recording().chunk());
+  ASSERT_TRUE(recording) << recording.error().detail;
+  EXPECT_FALSE(recording->head.has_brought());
+  EXPECT_EQ(recording->head.job(), "");
+}
+
+// LIVE-4.01, LIVE-4.02: what became of a run would be guessed; and nobody keeps what he has not.
+TEST_F(RefusedCodes, OfControlThatIsNone) {
+  Make();
+  v1::HostOrder take;
+  take.mutable_acquire_control()->set_on_loss(static_cast<v1::ControlLease::OnLoss>(3));
+  const v1::HostOrderAnswer refused = Do(take);
+  EXPECT_EQ(refused.refusal().code(), Code(ErrorCode::kCellInvalidArgument));
+  EXPECT_EQ(refused.refusal().message(), "on_loss is none that there is");
+  EXPECT_FALSE(host_->StatusAt(now_).has_control());
+  v1::HostOrder renew;
+  renew.mutable_renew_control()->set_control_token("none");
+  EXPECT_EQ(CodeOf(renew), Code(ErrorCode::kCellControlNeeded));
+}
+
+// LIVE-2.11, LIVE-7.08: what says nothing, or what there is not, is refused and changes nothing.
+TEST_F(RefusedCodes, OfValuesThatAreNone) {
+  MakeAndTakeOptimo();
+  v1::HostOrder read;
+  read.mutable_read_variables()->add_variables("VI[3..1]");
+  EXPECT_EQ(CodeOf(read), Code(ErrorCode::kCellInvalidArgument));
+  v1::HostOrder write;
+  write.mutable_write_variables()->set_control_token(token_);
+  write.mutable_write_variables()->add_variables()->set_name("VI[3]");
+  EXPECT_EQ(CodeOf(write), Code(ErrorCode::kCellInvalidArgument));
+  v1::HostOrder mode;
+  mode.mutable_mode()->set_control_token(token_);
+  EXPECT_EQ(CodeOf(mode), Code(ErrorCode::kCellInvalidArgument));
+  EXPECT_EQ(host_->StatusAt(now_).mode(), v1::OPERATING_MODE_REMOTE);
+  v1::HostOrder inputs;
+  inputs.mutable_inputs()->set_control_token(token_);
+  inputs.mutable_inputs()->add_inputs()->set_power(false);
+  inputs.mutable_inputs()->add_inputs();
+  EXPECT_EQ(CodeOf(inputs), Code(ErrorCode::kCellInvalidArgument));
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
 }
 
 // What is set from outside is said, and of what starts programs one at a time.

@@ -143,6 +143,29 @@ TEST_F(StartAtTest, AStalePreviewStartsNothing) {
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
 }
 
+// LIVE-6.08: where it would halt, and how far it would run dry, is of what was looked at.
+TEST_F(StartAtTest, APreviewIsOfWhatWasArmedToo) {
+  MakeAndTake();
+  const auto why = [&](const std::string& token) { return Do(StartAt(token)).refusal().message(); };
+  const std::string first = Preview(8).preview().preview_token();
+  ASSERT_NE(first, "");
+  v1::HostOrder halt;
+  halt.mutable_breakpoints()->set_control_token(token_);
+  auto& at = *halt.mutable_breakpoints()->add_breakpoints()->mutable_step();
+  at.set_program(5);
+  at.set_step(7);
+  ASSERT_FALSE(Do(halt).has_refusal());
+  EXPECT_THAT(why(first), HasSubstr("machine was changed: BREAK 5/7 set (was none)"));
+  halt.mutable_breakpoints()->clear_breakpoints();
+  ASSERT_FALSE(Do(halt).has_refusal());
+  const std::string second = Preview(8).preview().preview_token();
+  ASSERT_NE(second, "");
+  v1::HostOrder dry;
+  dry.mutable_simulation()->set_control_token(token_);  // without a step it ends what was armed
+  ASSERT_FALSE(Do(dry).has_refusal());
+  EXPECT_THAT(why(second), HasSubstr("machine was changed: SIMUL 0/0 (was none)"));
+}
+
 // LIVE-6.03, LIVE-6.08: what a person must see to is asked for by name.
 TEST_F(StartAtTest, WhatNobodyHasSeenToIsAskedFor) {
   MakeAndTake();

@@ -1,6 +1,10 @@
 // What is written at a machine, and what is told of what was taught there (live.md 7.08, 7.09).
+#include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 
+#include "engine/machine/tools.h"
 #include "tests/server/host/host_machine_bed.h"
 
 namespace rmlcell::server {
@@ -65,6 +69,29 @@ TEST_F(WrittenValues, OfWhatIsTaughtHaveTheirNames) {
   EXPECT_EQ(taught.act(), v1::TeachEntry::ACT_CREATE);
   EXPECT_EQ(taught.step().program(), 12);
   EXPECT_EQ(taught.caller(), "anna");
+}
+
+// OPT-1.15: what was made of an object before comes with it, and is what runs.
+TEST_F(WrittenValues, WhatWasMadeOfAProgramComesWithIt) {
+  MakeAndTakeOptimo();
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
+  const machine::Parameters parameters(family.parameters());
+  const auto object_of = [&](std::string_view text) {
+    return family.Translate({.name = "a.S", .bytes = text}, parameters, {}).object;
+  };
+  const std::string before = object_of("DELAY 1\n");
+  const auto made = family.tools()->Link(
+      12, [&](int) { return std::optional<std::string_view>(before); }, parameters);
+  ASSERT_TRUE(made) << made.error().detail;
+  v1::HostMemory memory;
+  v1::AssignedProgram& program = *memory.add_programs();
+  program.set_slot(12);
+  program.set_content(object_of("DELAY 60\n"));
+  program.set_executable(made->executable);
+  host_->Change(memory, now_);
+  ASSERT_FALSE(Do(Start("", 12)).has_refusal());
+  Pass(10s, 50ms);
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
 }
 
 // LIVE-7.08: the store did not take the first that was taught: the control says so.

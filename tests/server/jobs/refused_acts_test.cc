@@ -82,6 +82,18 @@ TEST_F(RefusedActs, OfAJobThatDoesNotWait) {
   }
 }
 
+// Jobs that are over are deleted, and no others.
+TEST_F(RefusedActs, ADeletionNamesAJobThatIsOver) {
+  EXPECT_EQ(CodeOf(book.Delete("7", "anna")), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(book.Delete("jobs/7", "anna")), ErrorCode::kCellNotFound);
+  const std::string job = JobName(bed.SubmitCheck());
+  const storage::Lease lease = bed.Lease();
+  EXPECT_EQ(CodeOf(book.Delete(job, "anna")), ErrorCode::kCellPrecondition);
+  Must(bed.store().Finish(lease, {.outcome = {.state = storage::JobState::kSucceeded}}));
+  EXPECT_EQ(CodeOf(book.Delete(job, "anna")), std::nullopt);
+  EXPECT_EQ(CodeOf(book.Get(job)), ErrorCode::kCellNotFound);
+}
+
 TEST_F(RefusedActs, InFrontOfAJobThatIsNone) {
   v1::MoveJobRequest move;
   move.set_name(JobName(bed.SubmitCheck()));

@@ -316,6 +316,28 @@ TEST_F(CallsThatFail, AMachineIsGivenBackBehindWhatWasTold) {
   EXPECT_TRUE(Must(bed.store().MachineLeases()).empty());
 }
 
+// LIVE-5.09: what it told meanwhile is stored, too, though its line has ended by then.
+TEST_F(CallsThatFail, WhatWasToldBeforeItWasGivenBackIsStored) {
+  const auto link = std::make_shared<FakeLink>();
+  ASSERT_TRUE(troubled.Join(link, Hello()));
+  std::promise<void> begins;
+  std::promise<void> goes_on;
+  store.before_append = [&] {
+    begins.set_value();
+    goes_on.get_future().wait();
+  };
+  troubled.Receive(*link, Entries(Fence(*link), 1, true));
+  begins.get_future().wait();
+  troubled.Receive(*link, Entries(Fence(*link), 3, true));
+  v1::HostRequest back;
+  back.mutable_hand_back()->set_fence(Fence(*link));
+  troubled.Receive(*link, back);
+  troubled.Leave(*link);
+  goes_on.set_value();
+  EXPECT_TRUE(Eventually([&] { return Must(bed.store().MachineLeases()).empty(); }));
+  EXPECT_EQ(Told().size(), 2U);
+}
+
 // LIVE-3.05: what has nothing for the store is no reason to find that the lease is lost.
 TEST_F(CallsThatFail, WhatHasNothingForTheStoreIsTaken) {
   const storage::MachineLease lease = TakenBy("hall/1");

@@ -1,6 +1,7 @@
 // A machine that nobody comes for, and one that is forgotten: who looks at it, how often, and who
 // is told (live.md 3.02, 5.08).
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 
 #include "tests/server/forwarding_store.h"
@@ -101,6 +102,44 @@ TEST_F(MachinesGivenUp, WhoHoldsItIsAskedForEveryFiveSeconds) {
   EXPECT_EQ(asked_after(milliseconds(4'999)), 0);
   EXPECT_EQ(asked_after(milliseconds(1)), 1);
   EXPECT_EQ(asked_after(milliseconds(4'999)), 0);
+  others.CloseAll();
+  Settle();
+}
+
+// Something happens while somebody asks for the leases of machines.
+class AskedMeanwhile final : public ForwardingStore {
+ public:
+  using ForwardingStore::ForwardingStore;
+  Result<std::vector<storage::MachineLease>> MachineLeases() override {
+    if (meanwhile) meanwhile();
+    return ForwardingStore::MachineLeases();
+  }
+  std::function<void()> meanwhile;
+};
+
+// Of a machine that is switched on while it is looked at who has it: it is off no more, which is
+// told, though somebody has it.
+TEST_F(MachinesGivenUp, BeingOnAgainIsAChange) {
+  TakenElsewhere();
+  AskedMeanwhile store(bed.store());
+  std::atomic<int> told = 0;
+  Hosts others({.store = store,
+                .feed = feed,
+                .executor = *executor,
+                .server = "another server",
+                .join_token = "secret",
+                .clock = clock.clock()});
+  others.OnChange([&told] { ++told; });
+  others.NoteOff("mill-1", "its host ended 5 times");
+  Settle();
+  EXPECT_EQ(told, 1);
+  store.meanwhile = [&others] { others.ClearOff("mill-1"); };
+  clock.Advance(seconds(5));
+  others.Look();
+  Settle();
+  EXPECT_FALSE(others.WhyOff("mill-1"));
+  EXPECT_EQ(told, 2);
+  others.OnChange({});
   others.CloseAll();
   Settle();
 }

@@ -186,6 +186,26 @@ TEST_F(ToolLimits, FindingsThatAreNotListedAreCounted) {
   EXPECT_EQ(linked.findings().diagnostics(0).place().program(), 44);
 }
 
+// So they are where the texts of a link have more together.
+TEST_F(ToolLimits, FindingsOfAllTextsOfALinkAreOneList) {
+  std::string many;
+  for (int line = 0; line < 999; ++line) many += "SPEED 101\n";
+  const auto of = [&](const std::string& warned) {
+    return Must(tools.Link(LinkOf(1, {{1, warned + "FUNCTION 44\n"}, {44, many}}))).findings();
+  };
+  const v1::Findings full = of("TASK 2\n");
+  EXPECT_EQ(full.diagnostics_size(), 1'000);
+  EXPECT_EQ(full.diagnostics_dropped(), 0);
+  const v1::Findings more = of("TASK 2\nTASK 2\nTASK 2\n");
+  ASSERT_EQ(more.diagnostics_size(), 1'000);
+  EXPECT_FALSE(more.ok());
+  EXPECT_EQ(more.diagnostics(0).code(), CodeText(ErrorCode::kWordIgnored));
+  EXPECT_EQ(more.diagnostics(999).place().program(), 44);
+  EXPECT_EQ(more.diagnostics_dropped(), 2);
+  ASSERT_EQ(more.gathered_size(), 1);
+  EXPECT_EQ(more.gathered(0).code(), more.diagnostics(999).code());
+}
+
 // Texts that are moved: three turns or none, finite numbers; values from
 // proto/rmlcell/v1/program.proto.
 TEST(TextLimits, OffsetsOfAMove) {

@@ -16,6 +16,7 @@
 #include "engine/machine/family.h"
 #include "engine/machine/run.h"
 #include "server/records/job_messages.h"
+#include "server/records/machine_options.h"
 
 namespace rmlcell::server {
 namespace {
@@ -234,6 +235,22 @@ TEST(UpdatedMachine, AFieldThatTheMaskNamesIsEmptiedWithoutAValue) {
   EXPECT_EQ(updated->title, "Mill");
   EXPECT_EQ(updated->profile, "");
   EXPECT_TRUE(updated->parameters.empty());
+}
+
+// How it lives stays, unless it is stated or named by the mask.
+TEST(UpdatedMachine, ItsOptionsAreThoseThatAreWanted) {
+  v1::Machine wanted;
+  wanted.mutable_options()->set_ticket_needed(true);
+  const auto updated = Updated(kMill, wanted, {});
+  ASSERT_TRUE(updated);
+  const auto options = OptionsOf(*updated);
+  ASSERT_TRUE(options);
+  EXPECT_TRUE(options->ticket_needed());
+  EXPECT_EQ(updated->title, "Mill");
+  v1::Machine titled;
+  titled.set_title("Mill by the door");
+  EXPECT_EQ(Updated(*updated, titled, {})->options, updated->options);
+  EXPECT_EQ(Updated(*updated, titled, Mask({"options"}))->options, "");
 }
 
 TEST(UpdatedMachine, ItsFamilyStays) {

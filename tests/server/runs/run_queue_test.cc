@@ -317,6 +317,31 @@ TEST_F(RunQueueTest, AJobThatItsHostNeverHeardOfWaitsAgain) {
   EXPECT_FALSE(Job(job).held);
 }
 
+// Nor is it asked again before a while has gone by.
+TEST_F(RunQueueTest, AHostIsAskedForAJobNowAndThen) {
+  Tell(Idle());
+  Mark();
+  const std::int64_t job = Submit();
+  NewestOrder(1);
+  clock.Advance(Hosts::kAnswerPatience);
+  v1::HostRequest beat;
+  beat.mutable_heartbeat();
+  hosts.Receive(*link, beat);  // the order is given up
+  const auto asked_after = [&](std::chrono::milliseconds time) {
+    clock.Advance(time);
+    Settle();
+    runs.WakeAll();
+    Settle();
+    return Orders().size() - 1;
+  };
+  EXPECT_EQ(asked_after(std::chrono::milliseconds(0)), 0U);
+  EXPECT_EQ(asked_after(RunQueue::kUnheardOf - std::chrono::milliseconds(1)), 0U);
+  EXPECT_EQ(asked_after(std::chrono::milliseconds(1)), 1U);
+  EXPECT_EQ(asked_after(RunQueue::kUnheardOf - std::chrono::milliseconds(1)), 1U);
+  EXPECT_EQ(asked_after(std::chrono::milliseconds(1)), 2U);
+  EXPECT_EQ(Job(job).state, JobState::kRunning);
+}
+
 // LIVE-5.05: between its lease and the first word of its host, too.
 TEST_F(RunQueueTest, AJobThatIsAboutToBeginIsStopped) {
   Tell(Idle());

@@ -22,6 +22,8 @@ namespace rmlcell::web::testing {
 namespace {
 
 constexpr std::string_view kPlaceContent = "/v1/machines/optimo-1/programs/45/content";
+constexpr std::string_view kPlacePicture = "/v1/machines/optimo-1/programs/45/picture.svg";
+constexpr std::string_view kPlaceReport = "/v1/jobs/17/artifacts/report";
 constexpr std::string_view kPiece = "piece";
 
 enum class WaitingWork { kFind, kMake, kRead, kBegin, kAppend };
@@ -88,11 +90,13 @@ class PlaceSource final : public ResourceSource {
  public:
   explicit PlaceSource(WaitingWork waits) : place(waits) {}
   Result<Resource> Find(const ResourcePath& path, const WebCallerMetadata&) override {
+    ++asked;
     place.Pass(WaitingWork::kFind);
     Resource resource;
     resource.media_type = "text/plain";
     if (std::holds_alternative<ProgramPicturePath>(path)) {
       resource.make = [this]() -> Result<std::string> {
+        ++made;
         place.Pass(WaitingWork::kMake);
         return std::string(kPiece);
       };
@@ -109,6 +113,8 @@ class PlaceSource final : public ResourceSource {
   }
 
   WaitingPlace place;
+  std::atomic<int> asked = 0;  // for resources
+  std::atomic<int> made = 0;   // of those that are made: begun
   std::atomic<int> finished = 0;
 };
 
@@ -134,9 +140,38 @@ void ExpectLeftAt(WaitingWork work, const std::string& request) {
 }
 
 TEST(LeftWork, NobodyIsToldOfADownload) {
-  ExpectLeftAt(WaitingWork::kFind, Get("/v1/jobs/17/artifacts/report"));
-  ExpectLeftAt(WaitingWork::kRead, Get("/v1/jobs/17/artifacts/report"));
-  ExpectLeftAt(WaitingWork::kMake, Get("/v1/machines/optimo-1/programs/45/picture.svg"));
+  ExpectLeftAt(WaitingWork::kFind, Get(kPlaceReport));
+  ExpectLeftAt(WaitingWork::kRead, Get(kPlaceReport));
+  ExpectLeftAt(WaitingWork::kMake, Get(kPlacePicture));
+}
+
+// resource_source.h: making takes seconds of a processor. Pictures are made one after the other:
+// of a client that goes while another's is made, none is made.
+TEST(LeftWork, WhatNobodyWaitsForIsNotMade) {
+  PlaceSource source(WaitingWork::kMake);
+  std::atomic<int> unfinished = 0;
+  WebOptions options = AnyPort();
+  // One thread each: what is found later is taken behind what was found before.
+  options.io_threads = 1;
+  options.blocking_threads = 1;
+  options.linger_timeout = std::chrono::hours(1);
+  options.quiet_interval = std::chrono::hours(1);
+  const std::unique_ptr<WebServer> web =
+      *WebServer::Start(options, nullptr, source,
+                        [&](const WebLogEntry& entry) { unfinished += entry.finished ? 0 : 1; });
+  RawClient first(web->port());
+  first.Send(Get(kPlacePicture));
+  EXPECT_TRUE(FakeCell::Eventually([&] { return source.place.reached(); }));
+  RawClient second(web->port());
+  second.Send(Get(kPlacePicture));
+  EXPECT_TRUE(FakeCell::Eventually([&] { return source.asked == 2; }));
+  EXPECT_EQ(Exchange(web->port(), Get(kPlaceReport)).body, kPiece);  // behind what it has found
+  second.Reset();
+  EXPECT_TRUE(FakeCell::Eventually([&] { return unfinished == 1; }));
+  source.place.Open();
+  EXPECT_EQ(first.Read().body, kPiece);
+  EXPECT_EQ(Exchange(web->port(), Get(kPlacePicture)).body, kPiece);  // behind it in line
+  EXPECT_EQ(source.made, 2);
 }
 
 // resource_source.h: destroyed without Finish, nothing of it remains. Without a body the end of the

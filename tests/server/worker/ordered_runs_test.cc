@@ -116,6 +116,34 @@ TEST_F(OrderedRuns, AStopHaltsUntilSomebodyLetsItGoOn) {
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
 }
 
+// What a STOP has halted does not go on by itself.
+TEST_F(OrderedRuns, AStopLetsNothingGoOn) {
+  server.heard = [&](const v1::WorkRequest& message) {
+    for (const v1::JobEvent& event : message.events().events()) {
+      if (event.has_halted()) server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+    }
+  };
+  Work(Paced("DELAY 1\n", 20.0), {Order(v1::WorkerControl::KIND_STOP)});
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
+  for (const v1::JobEvent& event : Events()) EXPECT_FALSE(event.has_resumed());
+}
+
+// A worker that is to end hands back the run that it has under way, whatever is ordered then.
+TEST_F(OrderedRuns, AWorkerThatIsToEndHandsItsRunBack) {
+  server.heard = [&](const v1::WorkRequest& message) {
+    for (const v1::JobEvent& event : message.events().events()) {
+      if (!event.has_halted()) continue;
+      v1::WorkResponse stop;
+      stop.mutable_stop();
+      server.Send(stop);
+      server.Send(Order(v1::WorkerControl::KIND_RESUME));
+    }
+  };
+  Work(Paced("DELAY 1\n", 20.0), {Order(v1::WorkerControl::KIND_STOP)});
+  EXPECT_TRUE(HandedBack());
+  EXPECT_FALSE(Finished());
+}
+
 // Whoever let it go on does not hold it any more: where it halts by itself nobody is waited for.
 TEST_F(OrderedRuns, AHaltBehindAResumeEndsTheRun) {
   server.heard = [&](const v1::WorkRequest& message) {

@@ -8,7 +8,9 @@
 #include <string>
 #include <string_view>
 
+#include "engine/machine/machine_note.h"
 #include "engine/optimo/language/compiler.h"
+#include "engine/simulation/run/input_description.h"
 #include "proto/bridge/framing.h"
 #include "rmlcell/v1/job.pb.h"
 #include "tests/server/worker/replayed_bed.h"
@@ -142,6 +144,38 @@ TEST_F(ReplayedProducts, OfAnOptimoHaveItsStepsAndItsMode) {
     EXPECT_EQ(map.programs(0).object_sha256().size(), 64U);
   }
   EXPECT_EQ(inputs.size(), 2U);
+}
+
+// By their inputs two runs are told apart: all that this one began with counts, as for a run of a
+// worker that has no budget.
+TEST_F(ReplayedProducts, NameAllThatTheRunBeganWith) {
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
+  machine::MachineMemory memory;
+  memory.programs[5] = {.name = "part",
+                        .object = machine::Bytes::Of(optimo::Compile("DELAY 1\n", {}, {}).object)};
+  memory.deleted = {7};
+  memory.schedules = {{.number = 3, .name = "soft", .mode = "CW", .power_percent = 40.0}};
+  const recording::Recording recording = RecordingOf(
+      {.family = "optimo",
+       .profile = "",
+       .memory = memory,
+       .before = {machine::ChangeMode{machine::Mode::kRemote}, machine::ChangeOverride{85.0}},
+       .input = machine::StartRun{
+           .program = 5, .source = machine::StartSource::kConsole, .unzeroed = true}});
+  const auto note = machine::ReadMachineNote(recording.entries.front().mark().state());
+  ASSERT_TRUE(note);
+  machine::RunSetup setup(*machine::MakeParameters(family, "", {}));
+  setup.programs = memory.programs;
+  setup.deleted_programs = memory.deleted;
+  setup.schedules = memory.schedules;
+  setup.main_program = 5;
+  setup.machine_state = note->family;
+  setup.mode = machine::Mode::kRemote;
+  setup.override_percent = 85.0;
+  setup.budget = {.steps = 0, .virtual_time = SimTime(0)};
+  const Status made = Make(recording);
+  ASSERT_TRUE(made) << made.error().detail;
+  EXPECT_EQ(Report().inputs_hash(), simulation::FingerprintOf(family, setup));
 }
 
 }  // namespace

@@ -259,6 +259,24 @@ TEST(OverrideRules, OverridesActInLongChainsOfShortMoves) {
   EXPECT_NEAR(speed_at(begin + 0.74), 200.0, 1e-6);
 }
 
+// OPT-4.38: SPEED 100 at 120 % and at 110 % are both the full speed. On the 75 mm that it takes to
+// get there, over moves too short to end the acceleration on one of them, nothing slows down.
+TEST(OverrideRules, AnOverrideThatStaysTooHighChangesNothing) {
+  std::string text = ShortMoves(300, 1.0, true);
+  const std::string slow = "SPEED 10\n";
+  text.replace(text.find(slow), slow.size(), "SPEED 100\n");
+  const Ran plain = RunText(text, {.override_percent = 120.0});
+  ASSERT_EQ(plain.moves.size(), 301U);
+  const double begin = ToSeconds(plain.moves.front().at);
+  for (const double change : {0.08, 0.12, 0.16, 0.2}) {
+    const Ran ran = RunText(text, {.inputs = {{At(begin + change), InputKind::kOverride, 0, 110.0}},
+                                   .override_percent = 120.0});
+    EXPECT_EQ(ran.end.override_percent, 110.0);
+    EXPECT_EQ(ran.moves.size(), plain.moves.size()) << change;
+    EXPECT_NEAR(ran.time_s, plain.time_s, 1e-6) << change;
+  }
+}
+
 // The corners to come ask for less than the new speed, with half of the overshoot.
 TEST(OverrideRules, LowerOverrideActsWhereCornersAskForLess) {
   for (const double aside : {0.2, 0.5}) {

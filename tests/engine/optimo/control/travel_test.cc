@@ -284,5 +284,22 @@ TEST(Travel, OnlyTheEndOfTheStepsTellsWhatWouldCome) {
   EXPECT_TRUE(time.violations.empty());
 }
 
+// OPT-2.49, OPT-2.59: a hole round (3580,1000) whose circle leaves the travel and whose lead, up to
+// (3530,1000), does not. A MOVE that takes over on the lead drops the circle: it is none of what
+// would have come when the steps run out.
+TEST(Travel, WhatWasDroppedIsNotToldAtTheEndOfTheSteps) {
+  const std::string hole = kAbsol +
+                           "MOVE (3000.,1000.,-400.,0.,0.)\nPATH HOLE (50.)\n"
+                           "MOVE (3580.,1000.,-400.,0.,0.)/VIA (3580.,1000.,-300.,0.,0.)/NEXT\n";
+  EXPECT_EQ(RunText(hole, {.forecast = true}).violations.size(), 1U);
+  const Ran ran = RunText(hole + "PATH LIN\nMOVE (3000.,1000.,-400.,0.,0.)\n20 GOTO 20\n",
+                          {.budget = {.steps = 100}, .forecast = true});
+  EXPECT_EQ(CodeOf(ran), 7901);
+  ASSERT_EQ(ran.moves.size(), 3U);
+  EXPECT_LT(ran.moves[1].tip.tip.x(), 3530.0);
+  EXPECT_NEAR(ran.end.axes.column.x(), 3000.0, 1e-6);
+  EXPECT_TRUE(ran.violations.empty());
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

@@ -173,6 +173,20 @@ TEST(ProgramIndex, FindsWhatStandsAtAPlaceAndWhatEndsThere) {
   EXPECT_NE(index.CommentAt(14), nullptr);
 }
 
+// OPT-E.7023: an instruction without effect is a word that can be asked for; what stands behind it
+// on its line are its parameters, whatever they are.
+TEST(ProgramIndex, AnInstructionWithoutEffectIsAWordAlone) {
+  const ProgramIndex index("10 CONT XP VR[5]\nSPEED 5\n");
+  ASSERT_EQ(index.uses().size(), 3U);  // with the label, and SPEED
+  const Use* use = index.At(3);
+  ASSERT_NE(use, nullptr);
+  EXPECT_EQ(use->kind, UseKind::kWord);
+  EXPECT_EQ(use->word, Word::kCont);
+  EXPECT_EQ(index.TextOf(*use), "CONT");
+  EXPECT_EQ(index.At(8), nullptr);
+  EXPECT_EQ(index.TextOf(index.statements()[0]), "CONT XP VR[5]");
+}
+
 // OPT-3.01, OPT-3.13
 TEST(ProgramIndex, ProcessesAreWorkdefsAndTheirWorks) {
   const ProgramIndex index(
