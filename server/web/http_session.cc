@@ -65,7 +65,8 @@ class HttpSession : public Connection,
                     public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(const SessionSetting& setting, tcp::socket socket)
-      : setting_(setting),
+      : OpenSession(setting.table),
+        setting_(setting),
         options_(setting.gateway.options),
         socket_(std::move(socket)),
         buffer_(options_.header_bytes_max + kReadBytes),

@@ -2,6 +2,10 @@
 
 namespace rmlcell::web {
 
+OpenSession::OpenSession(SessionTable& table) : table_(table) { table_.Count(); }
+
+OpenSession::~OpenSession() { table_.Uncount(); }
+
 void SessionTable::Add(OpenSession* session) {
   const std::lock_guard lock(mutex_);
   sessions_.insert(session);
@@ -10,12 +14,22 @@ void SessionTable::Add(OpenSession* session) {
 void SessionTable::Remove(OpenSession* session) {
   const std::lock_guard lock(mutex_);
   sessions_.erase(session);
+}
+
+void SessionTable::Count() {
+  const std::lock_guard lock(mutex_);
+  ++counted_;
+}
+
+void SessionTable::Uncount() {
+  const std::lock_guard lock(mutex_);
+  --counted_;
   changed_.notify_all();
 }
 
 std::size_t SessionTable::size() const {
   const std::lock_guard lock(mutex_);
-  return sessions_.size();
+  return counted_;
 }
 
 void SessionTable::EndAll(bool at_once) {
@@ -25,7 +39,7 @@ void SessionTable::EndAll(bool at_once) {
 
 bool SessionTable::WaitUntilEmpty(std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, patience, [this] { return sessions_.empty(); });
+  return changed_.wait_for(lock, patience, [this] { return counted_ == 0; });
 }
 
 }  // namespace rmlcell::web
