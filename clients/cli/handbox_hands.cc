@@ -122,8 +122,10 @@ void HandboxHands::Send(const KeyStroke& stroke, bool in_turn) {
   }
   stub_->async()->PressKey(&call->context, &call->request, &call->response,
                            [this, call, in_turn](grpc::Status status) {
-                             const std::unique_ptr<KeyCall> own(call);
-                             End({own->request.key(), std::move(status), own->response}, in_turn);
+                             std::unique_ptr<KeyCall> own(call);
+                             KeyAnswer answer{own->request.key(), std::move(status), own->response};
+                             own.reset();  // with it the channel, before whoever waits lets it go
+                             End(std::move(answer), in_turn);
                            });
 }
 
@@ -149,9 +151,10 @@ void HandboxHands::Beat(const std::set<std::string>& down) {
     *call->request.mutable_round_trip() = TimeUtil::NanosecondsToDuration(took);
   stub_->async()->HeartbeatHandbox(
       &call->context, &call->request, &call->response, [this, call](grpc::Status status) {
-        const std::unique_ptr<BeatCall> own(call);
+        std::unique_ptr<BeatCall> own(call);
         const std::chrono::nanoseconds took = std::chrono::steady_clock::now() - own->begun;
         round_trip_ns_ = took.count();
+        own.reset();
         End({.status = std::move(status)}, false);
       });
 }

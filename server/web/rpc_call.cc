@@ -49,15 +49,15 @@ HeaderList Visible(const std::multimap<grpc::string_ref, grpc::string_ref>& meta
 class Reactor : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
   Reactor(RpcCallSpec spec, RpcCallEvents events) : events_(std::move(events)) {
-    for (const auto& [name, value] : spec.metadata) context_.AddMetadata(name, value);
-    if (spec.timeout) context_.set_deadline(std::chrono::system_clock::now() + *spec.timeout);
+    for (const auto& [name, value] : spec.metadata) context_->AddMetadata(name, value);
+    if (spec.timeout) context_->set_deadline(std::chrono::system_clock::now() + *spec.timeout);
     grpc::Slice slice(spec.message);
     request_ = grpc::ByteBuffer(&slice, 1);
   }
 
   void Begin(grpc::GenericStub& stub, const std::string& method, std::shared_ptr<Reactor> self) {
     self_ = std::move(self);
-    stub.PrepareBidiStreamingCall(&context_, method, {}, this);
+    stub.PrepareBidiStreamingCall(context_.get(), method, {}, this);
     AddHold();
     StartWriteLast(&request_, {});
     StartCall();
@@ -75,13 +75,15 @@ class Reactor : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffe
 
   void Cancel() {
     bool release = false;
+    std::shared_ptr<grpc::ClientContext> context;
     {
       const std::lock_guard lock(mutex_);
+      context = context_;
       cancelled_ = true;
       // With a read under way its end releases the hold.
       if (!released_ && !reading_) release = released_ = true;
     }
-    context_.TryCancel();
+    if (context) context->TryCancel();
     if (release) RemoveHold();
   }
 
@@ -104,16 +106,25 @@ class Reactor : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffe
     RpcCallEnd end{.status = {.code = static_cast<int>(status.error_code()),
                               .message = status.error_message(),
                               .details = status.error_details()},
-                   .headers = Visible(context_.GetServerInitialMetadata()),
-                   .trailers = Visible(context_.GetServerTrailingMetadata())};
+                   .headers = Visible(context_->GetServerInitialMetadata()),
+                   .trailers = Visible(context_->GetServerTrailingMetadata())};
+    LeaveChannel();
     events_.on_end(std::move(end));
     events_ = {};  // what they hold may hold this call
     self_.reset();
   }
 
  private:
+  // Whoever hears of the end may let the channel go; its last owner must be no thread of gRPC,
+  // which would take away from itself the queue that it works on.
+  void LeaveChannel() {
+    std::shared_ptr<grpc::ClientContext> context;
+    const std::lock_guard lock(mutex_);
+    context.swap(context_);
+  }
+
   RpcCallEvents events_;
-  grpc::ClientContext context_;
+  std::shared_ptr<grpc::ClientContext> context_ = std::make_shared<grpc::ClientContext>();
   grpc::ByteBuffer request_;
   grpc::ByteBuffer answer_;
   std::shared_ptr<Reactor> self_;

@@ -161,6 +161,19 @@ TEST_F(SingleCalls, AnAnswerThatIsNoneIsTheServersMistake) {
   EXPECT_EQ(connect.body.find("{\"error\":{\"code\":\"internal\""), 5U) << connect.body;
 }
 
+// Its last owner must not be the thread of gRPC on which the call ends.
+TEST_F(SingleCalls, HoldNoChannelWhenTheirEndIsTold) {
+  const long owners = channel_.use_count();
+  std::promise<long> at_end;
+  const auto call = RpcCall::Start(
+      channel_, {.method = "/a.B/C", .message = {}, .metadata = {}, .timeout = {}},
+      {.on_message = [](const std::string&) {},
+       .on_end = [&](const RpcCallEnd&) { at_end.set_value(channel_.use_count()); }});
+  EXPECT_EQ(channel_.use_count(), owners + 1);
+  call->Cancel();
+  EXPECT_EQ(at_end.get_future().get(), owners);
+}
+
 // A call that is left ends, and says that it was cancelled, whether something is waited for or not.
 TEST_F(SingleCalls, WhoLeavesEndsThem) {
   service_.answers = -1;
