@@ -132,7 +132,7 @@ grpc::ServerUnaryReactor* JobService::DecideInterrupted(grpc::CallbackServerCont
                   end(grpc::Status::OK);
                 });
   };
-  const auto decide = [this, kMethod, request, response, end, confirmed, who = *caller] {
+  const auto decide = [this, request, response, end, confirmed, who = *caller] {
     const Result<std::string> machine = book_.MachineToDecide(*request);
     if (!machine) return end(ToGrpcStatus(machine.error()));
     if (request->decision() == v1::DecideInterruptedRequest::DECISION_RESUME_AT_STEP)
@@ -146,14 +146,13 @@ grpc::ServerUnaryReactor* JobService::DecideInterrupted(grpc::CallbackServerCont
     confirm.set_request_id(request->request_id());
     confirm.add_confirmations(v1::CONFIRMATION_INSPECTED);
     runs_.AskMachine(*machine, std::move(order),
-                     [this, kMethod, end, confirmed](const Result<v1::HostOrderAnswer>& answer) {
+                     [this, end, confirmed](const Result<v1::HostOrderAnswer>& answer) {
                        if (!answer) return end(ToGrpcStatus(answer.error()));
                        if (answer->has_refusal()) return end(RefusalOf(*answer));
-                       needs_.executor.Post(EndingWhereThrown(kMethod, confirmed, end));
+                       needs_.executor.Post(confirmed);
                      });
   };
-  if (!needs_.executor.TryPost(EndingWhereThrown(kMethod, decide, end)))
-    reactor->Finish(ToGrpcStatus(LaneFull()));
+  if (!needs_.executor.TryPost(decide)) reactor->Finish(ToGrpcStatus(LaneFull()));
   return reactor;
 }
 
@@ -175,7 +174,7 @@ void JobService::ResumeAtStep(const v1::DecideInterruptedRequest& request,
   if (request.has_halt_at_entry()) start.set_halt_at_entry(request.halt_at_entry());
   const auto made = [this, order, &response, end](const Result<v1::Job>& job) {
     if (!job) return end(ToGrpcStatus(job.error()));
-    const auto begin = [this, order, name = job->name(), &response, end] {
+    needs_.executor.Post([this, order, name = job->name(), &response, end] {
       const Result<std::int64_t> id = ParseJobName(name);
       const auto answered = [name, &response, end](const Result<v1::HostOrderAnswer>& answer) {
         if (!answer) return end(ToGrpcStatus(answer.error()));
@@ -184,8 +183,7 @@ void JobService::ResumeAtStep(const v1::DecideInterruptedRequest& request,
         end(grpc::Status::OK);
       };
       runs_.BeginByPerson(id ? *id : 0, order, answered);
-    };
-    needs_.executor.Post(EndingWhereThrown("JobService/DecideInterrupted", begin, end));
+    });
   };
   book_.Again(request.name(), caller, request.request_id(), true, made);
 }

@@ -174,21 +174,20 @@ grpc::ServerUnaryReactor* MachineService::StartJob(grpc::CallbackServerContext* 
     LogCall(kMethod, who, status, std::chrono::steady_clock::now() - begin);
     reactor->Finish(status);
   };
-  const auto begin = [this, &request, id = *id, answered, who = caller->identity] {
-    const auto job = store_.GetJob(id);
-    if (!job) return answered(job.error());
-    if (MachineName(job->machine) != request.machine())
-      return answered(Error{ErrorCode::kCellInvalidArgument,
-                            "job: " + request.job() + " is for " + MachineName(job->machine),
-                            {}});
-    v1::HostOrder order;
-    order.set_caller(who);
-    *order.mutable_by_person() = request;
-    order.mutable_run_job();
-    live_.runs->BeginByPerson(id, std::move(order), answered);
-  };
-  const bool taken = needs_.executor.TryPost(EndingWhereThrown(
-      kMethod, begin, [reactor](const grpc::Status& thrown) { reactor->Finish(thrown); }));
+  const bool taken =
+      needs_.executor.TryPost([this, &request, id = *id, answered, who = caller->identity] {
+        const auto job = store_.GetJob(id);
+        if (!job) return answered(job.error());
+        if (MachineName(job->machine) != request.machine())
+          return answered(Error{ErrorCode::kCellInvalidArgument,
+                                "job: " + request.job() + " is for " + MachineName(job->machine),
+                                {}});
+        v1::HostOrder order;
+        order.set_caller(who);
+        *order.mutable_by_person() = request;
+        order.mutable_run_job();
+        live_.runs->BeginByPerson(id, std::move(order), answered);
+      });
   return taken ? reactor : refuse(LaneFull());
 }
 

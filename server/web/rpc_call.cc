@@ -84,6 +84,7 @@ class Reactor : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffe
       if (!released_ && !reading_) release = released_ = true;
     }
     if (context) context->TryCancel();
+    context.reset();  // before the hold is gone, and the end told
     if (release) RemoveHold();
   }
 

@@ -198,7 +198,7 @@ TEST_F(HeldMachines, AnOptimoThatWaitsForAnInspectionIsMovedByNoKey) {
   EXPECT_EQ(CodeOf(HandboxKey("")), Code(ErrorCode::kCellInvalidArgument));
 }
 
-// LIVE-3.16: how often the program was carried out whole.
+// OPT-7.70: how often the program was carried out whole.
 TEST_F(HeldMachines, CountThePassesOfAProgramThatIsRepeated) {
   MakeOptimo();
   Control(v1::ControlLease::ON_LOSS_GO_ON);
