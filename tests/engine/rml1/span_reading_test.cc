@@ -188,6 +188,19 @@ TEST(SpanReading, LinesToAFaceAndFromItArePlain) {
   EXPECT_EQ(device.carriage().clipped_sets(), 0U);
 }
 
+// Where nothing is read, nothing was looked at that is to be looked at again.
+TEST(SpanReading, OfNothingNoByteHasBeenLookedAt) {
+  const Profile profile = MakeProfile(ParametersOf("t1")).value();
+  Device device(profile);
+  DeviceListener nobody;
+  const Device::Taken empty = device.Read("", 0, Device::kAnyCommands, nobody);
+  EXPECT_EQ(empty.bytes, 0U);
+  EXPECT_FALSE(empty.next);
+  const Device::Taken none_wanted = device.Read("IN;", 0, 0, nobody);
+  EXPECT_EQ(none_wanted.bytes, 0U);
+  EXPECT_FALSE(none_wanted.next);
+}
+
 // Numbers that stand whole are read as byte by byte, or not at all.
 void ExpectReadAsByteByByte(const std::string& text) {
   NumberReader reader;

@@ -161,7 +161,8 @@ TEST_F(SocketListenerTest, TakesNothingThatIsOfUse) {
   EXPECT_EQ(std::filesystem::file_size(path), 4U);
 }
 
-// Who comes while no descriptor is free waits, and the log says so; there is one again, and it is served.
+// Who comes while no descriptor is free waits, and the log says so; there is one again, and it is
+// served.
 TEST_F(SocketListenerTest, AClientWaitsForADescriptor) {
   const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
   ASSERT_TRUE(StartLog("cell-waits", "info", "text", folder_ + "/log"));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/families/families.h"
+#include "proto/recording/recording.h"
 #include "server/host/host_machine.h"
 
 namespace rmlcell::server {
@@ -144,6 +145,14 @@ class HostMachineTest : public testing::Test {
     return edits.empty() ? v1::HostEdit() : edits.back();
   }
   v1::MachineState State() { return host_->StatusAt(now_).state(); }
+  // What the recording of the newest run says of what the machine was and did.
+  v1::MachineRecording RecordingHead() {
+    v1::HostOrder order;
+    order.mutable_recording();
+    const auto recording = recording::ReadFile(Do(order).recording().chunk());
+    EXPECT_TRUE(recording) << recording.error().detail;
+    return recording ? recording->head : v1::MachineRecording();
+  }
   // What was told since the last look, a word each.
   std::vector<std::string> Told() {
     std::vector<std::string> told;

@@ -73,6 +73,30 @@ TEST_F(MachineTraces, AnEndHasTheExecutablesThatWereMade) {
   EXPECT_FALSE(over[0].executables(0).content().empty());
 }
 
+// OPT-4.50: ZERO from the console is over before program 4 behind it begins, and both are told.
+TEST_F(MachineTraces, ZeroIsOverBeforeProgramFourBegins) {
+  MakeAndTakeOptimo();
+  v1::HostMemory memory;
+  v1::AssignedProgram& program = *memory.add_programs();
+  program.set_slot(4);
+  program.set_content(ObjectOf("DELAY 1\n"));
+  host_->Change(memory, now_);
+  host_->TakeEntries(now_, true);
+  v1::HostOrder zero;
+  zero.mutable_zero()->set_control_token(token_);
+  const v1::HostOrderAnswer zeroing = Do(zero);
+  ASSERT_FALSE(zeroing.has_refusal()) << zeroing.refusal().message();
+  Pass(60s, 50ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  std::vector<std::string> told;
+  for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true)) {
+    if (entry.has_run_begun())
+      told.push_back("begun " + std::to_string(entry.run_begun().program()));
+    if (entry.has_run_over()) told.push_back("over " + std::to_string(entry.run_over().program()));
+  }
+  EXPECT_THAT(told, testing::ElementsAre("begun 0", "over 0", "begun 4", "over 4"));
+}
+
 // A job that did not begin is nobody's afterwards, and neither is what it brought.
 TEST_F(MachineTraces, AJobThatIsRefusedLeavesNothing) {
   MakeAndTakeOptimo();
@@ -94,12 +118,9 @@ TEST_F(MachineTraces, AJobThatIsRefusedLeavesNothing) {
   host_->Change(memory, now_);
   for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true))
     EXPECT_EQ(entry.job(), "") << entry.ShortDebugString();
-  v1::HostOrder order;
-  order.mutable_recording();
-  const auto recording = recording::ReadFile(Do(order).recording().chunk());
-  ASSERT_TRUE(recording) << recording.error().detail;
-  EXPECT_FALSE(recording->head.has_brought());
-  EXPECT_EQ(recording->head.job(), "");
+  const v1::MachineRecording recorded = RecordingHead();
+  EXPECT_FALSE(recorded.has_brought());
+  EXPECT_EQ(recorded.job(), "");
 }
 
 // LIVE-3.14: how much time was lost, and of which host.

@@ -217,12 +217,9 @@ TEST_F(RefusedCodes, AContinuationThatIsRefusedLeavesNothing) {
   host_->Change(memory, now_);
   for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true))
     EXPECT_EQ(entry.job(), "") << entry.ShortDebugString();
-  v1::HostOrder order;
-  order.mutable_recording();
-  const auto recording = recording::ReadFile(Do(order).recording().chunk());
-  ASSERT_TRUE(recording) << recording.error().detail;
-  EXPECT_FALSE(recording->head.has_brought());
-  EXPECT_EQ(recording->head.job(), "");
+  const v1::MachineRecording recorded = RecordingHead();
+  EXPECT_FALSE(recorded.has_brought());
+  EXPECT_EQ(recorded.job(), "");
 }
 
 // LIVE-5.02: nor is one of the queue, whose program is not that of the next run.
@@ -233,12 +230,9 @@ TEST_F(RefusedCodes, AJobThatIsRefusedLeavesNothing) {
   ASSERT_FALSE(Do(Start()).has_refusal());
   EXPECT_EQ(host_->StatusAt(now_).run().job(), "");
   static_cast<void>(host_->TakeEntries(now_, true));
-  v1::HostOrder order;
-  order.mutable_recording();
-  const auto recording = recording::ReadFile(Do(order).recording().chunk());
-  ASSERT_TRUE(recording) << recording.error().detail;
-  EXPECT_FALSE(recording->head.has_brought());
-  EXPECT_EQ(recording->head.job(), "");
+  const v1::MachineRecording recorded = RecordingHead();
+  EXPECT_FALSE(recorded.has_brought());
+  EXPECT_EQ(recorded.job(), "");
 }
 
 // LIVE-6.08: nor is one that was to begin at a step.
@@ -262,12 +256,9 @@ TEST_F(RefusedCodes, AJobAtAStepThatIsRefusedLeavesNothing) {
   EXPECT_EQ(CodeOf(job), Code(ErrorCode::kCellTicket));
   ASSERT_FALSE(Do(Start()).has_refusal());
   static_cast<void>(host_->TakeEntries(now_, true));
-  v1::HostOrder order;
-  order.mutable_recording();
-  const auto recording = recording::ReadFile(Do(order).recording().chunk());
-  ASSERT_TRUE(recording) << recording.error().detail;
-  EXPECT_FALSE(recording->head.has_brought());
-  EXPECT_EQ(recording->head.job(), "");
+  const v1::MachineRecording recorded = RecordingHead();
+  EXPECT_FALSE(recorded.has_brought());
+  EXPECT_EQ(recorded.job(), "");
 }
 
 // LIVE-4.01, LIVE-4.02: what became of a run would be guessed; and nobody keeps what he has not.
