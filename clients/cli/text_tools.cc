@@ -248,7 +248,7 @@ int Convert(const ConvertOptions& options) {
   const machine::RewrittenText converted =
       tools.Convert(*text, wanted.direction, Names(wanted.input, wanted.output));
   ToolAnswer answer(wanted.input, options.json);
-  answer.Found(converted.diagnostics, {}, *text);
+  answer.Found(converted.diagnostics, converted.diagnostics_dropped, *text);
   const int exit_code = HasErrors(converted.diagnostics) ? kProgramErrors : kGood;
   const bool to_output = wanted.output == "-";
   if (to_output && !options.json) {
@@ -275,7 +275,7 @@ int Compensate(const ToolOptions& options) {
   const machine::RewrittenText made =
       tools.Compensate(source->text, Names(file, target), source->inch);
   ToolAnswer answer(file, options.json);
-  answer.Found(made.diagnostics, {}, source->text);
+  answer.Found(made.diagnostics, made.diagnostics_dropped, source->text);
   return made.ok ? answer.Deliver(made.text, target, "compensated") : answer.Failed();
 }
 
@@ -291,8 +291,9 @@ int Rewrite(const ToolOptions& options,
   if (source->inch) return Refuse({source->tools().codes().source_is_inch, file, {}});
   machine::RewrittenText made = (source->tools().*rewrite)(source->text, by);
   for (Diagnostic& finding : made.diagnostics) finding.file = file;
+  made.diagnostics_dropped.ForEachPlace([&file](Diagnostic& place) { place.file = file; });
   ToolAnswer answer(file, options.json);
-  answer.Found(made.diagnostics, {}, source->text);
+  answer.Found(made.diagnostics, made.diagnostics_dropped, source->text);
   return made.ok
              ? answer.Deliver(made.text, OrStandardOutput(options.output), "rewritten from " + file)
              : answer.Failed();

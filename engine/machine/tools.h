@@ -86,6 +86,7 @@ struct RewrittenText {
   bool ok = false;  // false: the text is empty, nothing may be written
   std::string text{};
   std::vector<Diagnostic> diagnostics{};
+  UntoldFindings diagnostics_dropped{};
 };
 
 enum class Direction { kToMetric, kToInch };

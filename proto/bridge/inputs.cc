@@ -25,6 +25,11 @@ Error BadLine(const std::string& name, int line, int column, const Detail& what)
           SourceSpan{.line = line, .column = column}};
 }
 
+// Of a part of this line; columns begin with 1.
+int ColumnOf(std::string_view part, std::string_view line) {
+  return static_cast<int>(part.data() - line.data()) + 1;
+}
+
 // "IL[20]", "ia[0]": kind and index.
 std::optional<InputChange> InputNamed(std::string_view name) {
   const std::string word = UpperCase(name);
@@ -225,20 +230,20 @@ Status ParseInputFile(std::string_view text, const std::string& name, double ove
   while (!text.empty()) {
     ++line_number;
     const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
+    const std::string_view whole = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    line = Trimmed(line.substr(0, line.find('#')));
+    const std::string_view line = Trimmed(whole.substr(0, whole.find('#')));
     if (line.empty()) continue;
     const std::size_t blank = line.find_first_of(" \t");
     const auto at = ParseDouble(line.substr(0, blank));
     if (!at || !(*at >= 0.0) || blank == std::string_view::npos) {
-      return BadLine(name, line_number, 1,
+      return BadLine(name, line_number, ColumnOf(line, whole),
                      "a line begins with the time in seconds, from 0: 0.5 IL[20] = 1");
     }
     const std::string_view rest = Trimmed(line.substr(blank));
     const std::size_t equals = rest.find('=');
     const std::string_view what = Trimmed(rest.substr(0, equals));
-    const int column = static_cast<int>(blank) + 2;
+    const int column = ColumnOf(rest, whole);
     std::optional<v1::AppliedInput> input = Named(what);
     if (!input) {
       return BadLine(name, line_number, column,

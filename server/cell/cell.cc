@@ -375,9 +375,13 @@ Status Cell::Parts::ListenWeb() {
        .origins = config.web_origins,
        .secret = gate.web_secret()},
       grpc::CreateCustomChannel(private_socket->address(), CredentialsOfChannel(), arguments),
-      *resources, [](const web::WebLogEntry& entry) {
+      *resources,
+      [](const web::WebLogEntry& entry) {
         spdlog::debug("{} {} {} {} bytes in {} us, {}", entry.method, entry.path, entry.http_status,
                       entry.bytes_sent, entry.duration.count(), entry.peer);
+      },
+      [address = config.listen_web](const std::string& why) {
+        spdlog::warn("connections to {} wait: {}", address, why);
       });
   if (!started) return started.error();
   web = std::move(*started);

@@ -17,8 +17,9 @@ using ApplyComparison = std::function<Status(const std::string& field, const std
 Status ReadFilter(std::string_view filter, const ApplyComparison& apply);
 
 // "state = FAILED AND machine = machines/optimo-1": fields state, machine, kind, caller, finished,
-// family, verdict, text (in the title), since and until (when it was submitted); words are compared
-// without case. An empty filter asks for all. Error: CellBadFilter; `query` is unchanged then.
+// family, verdict, label, text (in the title), since and until (when it was submitted); words are
+// compared without case. An empty filter asks for all. Error: CellBadFilter; `query` is unchanged
+// then.
 Status ApplyFilter(std::string_view filter, storage::JobQuery& query);
 
 // "create_time desc" or nothing, "create_time", "queue". Error: CellInvalidArgument.

@@ -81,6 +81,7 @@ Result<const machine::MachineFamily*> FamilyOf(storage::Store& store, const v1::
     const auto record = store.GetMachine(machine);
     if (!record) return record.error();
     family = families::FindFamily(record->family);
+    if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, record->family, {}};
   } else {
     family = families::FamilyOfFileName(text.program().file_name());
   }

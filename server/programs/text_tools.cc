@@ -72,7 +72,7 @@ template <class Response>
 Response ResponseOf(machine::RewrittenText made) {
   Response response;
   response.set_content(std::move(made.text));
-  *response.mutable_findings() = FindingsOf(made.diagnostics);
+  *response.mutable_findings() = FindingsOf(made.diagnostics, made.diagnostics_dropped);
   return response;
 }
 

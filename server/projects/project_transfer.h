@@ -28,8 +28,8 @@ class ProjectTransfer {
 
   // A project of what a machine holds (OPT-8.70). `now`: for the header lines of converted sources.
   // Errors: FamilyInfo::empty_slot and no_slot, FamilyInfo::no_source for a machine without
-  // programs, CellTooLarge, CellAborted when it was changed meanwhile again and again, those of
-  // ProjectBook::Create and of the decompiler.
+  // programs, CellTooLarge, CellEtagMismatch when it was changed meanwhile again and again, those
+  // of ProjectBook::Create and of the decompiler.
   ProgramResult<v1::Project> FromMachine(const v1::TransferProjectFromMachineRequest& request,
                                          const std::string& now, std::string_view caller);
 

@@ -306,7 +306,7 @@ void RunQueue::Begin(const std::string& machine, const storage::LeasedJob& lease
        });
 }
 
-// With its program. `done` is not called where it does not go out.
+// With its program. Where it does not go out `done` is told why.
 void RunQueue::Send(const std::string& machine, const storage::LeasedJob& leased,
                     v1::HostOrder order, Hosts::Answered done) {
   if (leased.job.cancel_requested) {

@@ -14,6 +14,7 @@
 #include <boost/asio/write.hpp>
 #include <future>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "engine/core/letters.h"
@@ -74,7 +75,7 @@ GuardRules RulesOf(const WebOptions& options) {
 
 struct WebServer::Core {
   Core(WebOptions options, std::shared_ptr<grpc::Channel> channel, ResourceSource& resources,
-       WebLogger web_logger)
+       WebLogger web_logger, WaitTeller wait_teller)
       : gateway{.options = options,
                 .rules = RulesOf(options),
                 .page = StaticPage(options.web_dir),
@@ -83,6 +84,7 @@ struct WebServer::Core {
                 .run_blocking = {},
                 .run_computing = {}},
         logger(std::move(web_logger)),
+        tell_waits(std::move(wait_teller)),
         io(std::clamp(options.io_threads, 1, kThreadsMax)),
         blocking(static_cast<std::size_t>(std::clamp(options.blocking_threads, 1, kThreadsMax))),
         acceptor(asio::make_strand(io)),
@@ -115,12 +117,14 @@ struct WebServer::Core {
     acceptor.async_accept(asio::make_strand(io), [this](error_code error, auto socket) {
       if (draining) return;
       if (error) {
+        if (!std::exchange(waits, true) && tell_waits) tell_waits(error.message());
         accept_pause.expires_after(kAcceptPause);
         accept_pause.async_wait([this](error_code stopped) {
           if (!stopped && !draining) Accept();
         });
         return;
       }
+      waits = false;
       const std::size_t open = table.size();
       const bool refused = open >= gateway.options.connections_max;
       if (open < gateway.options.connections_max + kRefusalsMax) {
@@ -169,6 +173,8 @@ struct WebServer::Core {
 
   Gateway gateway;
   WebLogger logger;
+  WaitTeller tell_waits;
+  bool waits = false;  // connections cannot be taken, which was told; of the strand of `acceptor`
   SessionTable table;
   std::atomic<bool> draining = false;
   int port = 0;
@@ -185,9 +191,10 @@ WebServer::WebServer(std::unique_ptr<Core> core) : core_(std::move(core)) {}
 
 Result<std::unique_ptr<WebServer>> WebServer::Start(WebOptions options,
                                                     std::shared_ptr<grpc::Channel> channel,
-                                                    ResourceSource& resources, WebLogger logger) {
-  auto core =
-      std::make_unique<Core>(std::move(options), std::move(channel), resources, std::move(logger));
+                                                    ResourceSource& resources, WebLogger logger,
+                                                    WaitTeller tell_waits) {
+  auto core = std::make_unique<Core>(std::move(options), std::move(channel), resources,
+                                     std::move(logger), std::move(tell_waits));
   if (const Status status = core->Listen(); !status) return status.error();
   core->Accept();
   core->RunThreads();

@@ -57,6 +57,9 @@ struct WebLogEntry {
   bool finished = true;  // false: broken off by the client or by Stop
 };
 using WebLogger = std::function<void(const WebLogEntry&)>;
+// Why connections cannot be taken, such as for want of descriptors: they wait, and each time of
+// waiting is told once. Runs on a thread of the gateway.
+using WaitTeller = std::function<void(const std::string& why)>;
 
 // The web port: every unary and server-streaming method of every service in the process, in the
 // forms of platform.md section 3, by descriptors alone; resources at stable URLs; /healthz; the
@@ -74,7 +77,8 @@ class WebServer {
   // must be thread-safe; it may be empty. Errors: CellPortUsed, CellConfiguration.
   static Result<std::unique_ptr<WebServer>> Start(WebOptions options,
                                                   std::shared_ptr<grpc::Channel> channel,
-                                                  ResourceSource& resources, WebLogger logger = {});
+                                                  ResourceSource& resources, WebLogger logger = {},
+                                                  WaitTeller tell_waits = {});
 
   // Stops at once, as Stop(0).
   ~WebServer();

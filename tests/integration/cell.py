@@ -202,6 +202,15 @@ def wait_until_it_runs(stub, name):
     assert eventually(runs), f"{name} does not run"
 
 
+def wait_until_an_attempt_counts(stub, name, behind=0):
+    """The first attempt behind this one of which its worker has told; 0: the job has ended. A worker that dies before that has
+    begun nothing, and the job is tried again as if it had not been tried."""
+    for message in stub.WatchJob(job_pb2.WatchJobRequest(name=name), timeout=300):
+        if message.HasField("progress") and message.progress.attempt > behind:
+            return message.progress.attempt
+    return 0
+
+
 def processor_ticks(process):
     """Of its threads, those that are over too; a hundred a second."""
     stat = pathlib.Path(f"/proc/{process}/stat").read_text(encoding="utf-8")

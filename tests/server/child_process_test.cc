@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -77,6 +78,25 @@ TEST_F(ChildProcessTest, HasWhatItIsGiven) {
   ::close(open);
   ::unsetenv("RMLCELL_SECRET");
   ::unsetenv("RMLCEL");
+}
+
+// Ctrl-C at a terminal is for the server alone; what a child is sent it hears, whatever the thread
+// that started it does not.
+TEST_F(ChildProcessTest, IsInAGroupOfItsOwnAndHearsEachSignal) {
+  const std::string script = Script(
+      "echo $$ > $1.own\ncut -d ' ' -f 5 /proc/$$/stat > $1.group\n"
+      "exec grep SigBlk /proc/self/status > $1.blocked");
+  sigset_t blocked;
+  sigset_t before;
+  sigemptyset(&blocked);
+  sigaddset(&blocked, SIGTERM);
+  ASSERT_EQ(pthread_sigmask(SIG_BLOCK, &blocked, &before), 0);
+  const int code = Run({script, File("it")}, {});
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  EXPECT_EQ(code, 0);
+  EXPECT_NE(Told("it.own"), "");
+  EXPECT_EQ(Told("it.group"), Told("it.own"));
+  EXPECT_EQ(Told("it.blocked"), "SigBlk:\t0000000000000000\n");
 }
 
 // With a log it reads nothing, and what it says beside goes nowhere.

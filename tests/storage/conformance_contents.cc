@@ -182,6 +182,18 @@ TEST_P(StoreConformance, CallsOfALeaseThatDoNotWait) {
   EXPECT_EQ(Must(abandoned).state, JobState::kQueued);
 }
 
+// records.h: a job has its specification, also one whose request is known.
+TEST_P(StoreConformance, ASubmissionThatDoesNotWaitGivesTheWholeJob) {
+  for (const bool again : {false, true}) {
+    const SubmittedJob submitted = Must(Answered<SubmittedJob>([&](auto done) {
+      store().Submit({.request_id = "r", .kind = "CHECK", .specification = "what to do"}, done);
+    }));
+    EXPECT_EQ(submitted.already_there, again);
+    EXPECT_EQ(submitted.job.kind, "CHECK");
+    EXPECT_EQ(submitted.job.specification, "what to do");
+  }
+}
+
 TEST_P(StoreConformance, EndsAndCancelsThatDoNotWait) {
   const std::int64_t job = SubmitOne(store());
   const std::vector<LeasedJob> leased = AcquireAll(store());

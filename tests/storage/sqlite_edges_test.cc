@@ -1,18 +1,23 @@
 // What the embedded store does at the edges of its housekeeping, its files and its hints.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <future>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <thread>
 
 #include "engine/core/hex.h"
 #include "storage/content.h"
 #include "storage/sqlite/housekeeping.h"
+#include "storage/sqlite/reader_pool.h"
+#include "storage/sqlite/statement.h"
 #include "storage/sqlite/transaction.h"
 #include "storage/sqlite/watchers.h"
 #include "storage/sqlite/writer.h"
@@ -361,6 +366,110 @@ TEST(SqliteEdges, AStatementHasOneQuery) {
   }
   Query again = statement.With();
   EXPECT_TRUE(Must(again.Step()));
+}
+
+// What one execution could not bind, or could not be prepared for, is no failure of the next one.
+TEST(SqliteEdges, AFailureIsOfItsExecutionAlone) {
+  const TestDirectory directory;
+  const std::string path = directory.File("x.db");
+  ExecuteIn(path, "CREATE TABLE t (a INTEGER PRIMARY KEY, b BLOB NOT NULL)");
+  Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  sqlite3_limit(database.handle(), SQLITE_LIMIT_LENGTH, 1'000);
+  const std::string large(2'000, 'x');
+  Statement insert(database, "INSERT INTO t (a, b) VALUES (?1, ?2)");
+  EXPECT_EQ(CodeOf(insert.With(1, large).Run()), ErrorCode::kCellTooLarge);
+  EXPECT_EQ(CodeOf(insert.With(1, "small").Run()), std::nullopt);
+  EXPECT_EQ(Must(database.Number("SELECT count(*) FROM t")), 1);
+  Statement later(database, "SELECT c FROM u");
+  EXPECT_EQ(CodeOf(later.With().Run()), ErrorCode::kCellStoreFailed);
+  Must(database.Execute("CREATE TABLE u (c)"));
+  EXPECT_EQ(CodeOf(later.With().Run()), std::nullopt);
+}
+
+// database.h Checkpoint: a reader keeps what it sees in the log, and whoever moves the log already
+// does so alone: neither is an error, and all was moved only when nothing is left.
+TEST(SqliteEdges, ACheckpointSaysWhetherAllWasMoved) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  Must(database.Execute("CREATE TABLE filling (bytes BLOB)"));
+  Database reader = Must(Database::Open(path, Database::Access::kReadOnly, {}));
+  Must(reader.Execute("BEGIN; SELECT count(*) FROM filling"));
+  Must(database.Execute("INSERT INTO filling VALUES (zeroblob(40000))"));
+  EXPECT_FALSE(Must(database.Checkpoint()));
+
+  // Another one moves it, waits for the reader, and gives up.
+  struct Meanwhile {
+    Database& database;
+    int calls = 0;
+    std::optional<bool> all_moved{};
+  };
+  Meanwhile meanwhile{.database = database};
+  Database other = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  EXPECT_EQ(Must(other.Number("SELECT count(*) FROM filling")), 1);
+  sqlite3_busy_handler(
+      other.handle(),
+      [](void* state, int) {
+        Meanwhile& now = *static_cast<Meanwhile*>(state);
+        ++now.calls;
+        if (const Result<bool> moved = now.database.Checkpoint(); moved) now.all_moved = *moved;
+        return 0;
+      },
+      &meanwhile);
+  EXPECT_EQ(
+      sqlite3_wal_checkpoint_v2(other.handle(), nullptr, SQLITE_CHECKPOINT_FULL, nullptr, nullptr),
+      SQLITE_BUSY);
+  EXPECT_GT(meanwhile.calls, 0);
+  EXPECT_EQ(meanwhile.all_moved, std::optional(false));
+
+  Must(reader.Execute("ROLLBACK"));
+  EXPECT_TRUE(Must(database.Checkpoint()));
+}
+
+// reader_pool.h: who reads waits while all connections are in use; there is one at least.
+TEST(SqliteEdges, OneReaderIsOneAtATime) {
+  for (const int asked : {0, 1}) {
+    SqliteBed bed;
+    ReaderPool pool(bed.path(), {}, asked);
+    std::atomic<bool> second_reads{false};
+    std::jthread second;
+    const Result<int> first = pool.Read([&](Tables&) -> Result<int> {
+      second = std::jthread([&] {
+        const Result<int> after = pool.Read([&](Tables&) -> Result<int> {
+          second_reads = true;
+          return 0;
+        });
+        EXPECT_TRUE(after);
+      });
+      EXPECT_TRUE(ComesToRest());
+      EXPECT_FALSE(second_reads) << asked;
+      return 0;
+    });
+    EXPECT_TRUE(first);
+    second.join();
+    EXPECT_TRUE(second_reads) << asked;
+  }
+}
+
+// A transaction that is over undoes nothing when it goes, also not the one that has begun since.
+TEST(SqliteEdges, ACommittedTransactionUndoesNothing) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  Must(database.Execute("CREATE TABLE filling (name TEXT)"));
+  TransactionStatements statements(database);
+  const auto add = [&] { Must(database.Execute("INSERT INTO filling VALUES ('one')")); };
+  std::optional<Transaction> first(Must(Transaction::Begin(statements, Transaction::Kind::kWrite)));
+  add();
+  Must(first->Commit());
+  Transaction second = Must(Transaction::Begin(statements, Transaction::Kind::kWrite));
+  add();
+  first.reset();
+  EXPECT_TRUE(database.in_transaction());
+  Must(second.Commit());
+  EXPECT_EQ(Must(database.Number("SELECT count(*) FROM filling")), 2);
 }
 
 }  // namespace

@@ -218,6 +218,43 @@ TEST_F(SqliteFaults, AJobGivenByAFailedCommitIsGivenByTheNext) {
   EXPECT_EQ(Must(store().CountJobs()).running, 1);
 }
 
+// The same of the commit that it brought itself: what it was given there it was not given.
+TEST_F(SqliteFaults, ARequestWhoseOwnCommitFailsStands) {
+  const std::int64_t job = Must(Submit("waits")).job.id;
+  std::vector<Result<std::vector<LeasedJob>>> answers;
+  faulty_disk::Fail({.on_sync = SQLITE_IOERR_FSYNC});
+  store().AwaitJobs({.worker = "w", .kinds = {"SIMULATE"}, .duration = std::chrono::seconds(10)},
+                    [&](auto leased) { answers.push_back(std::move(leased)); });
+  Must(store().ActOn({}, QueueAct::kHold, {}));  // it has been tried, whoever did it
+  faulty_disk::Heal();
+  EXPECT_EQ(answers.size(), 0U);
+  EXPECT_EQ(Must(store().GetJob(job)).state, JobState::kQueued);
+  Must(Submit("another"));
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(Must(answers[0]).at(0).lease.job, job);
+}
+
+// And of one that came with a write that failed. The job that is held back leaves nothing that it
+// could be given there.
+TEST_F(SqliteFaults, ARequestBesideAWriteThatFailsStands) {
+  std::vector<Result<std::vector<LeasedJob>>> answers;
+  std::promise<std::optional<ErrorCode>> put;
+  store().Submit({.kind = "CHECK", .held = true}, [&](const Result<SubmittedJob>&) {
+    faulty_disk::Fail({.on_write = SQLITE_FULL});
+    store().AwaitJobs({.worker = "w", .kinds = {"SIMULATE"}, .duration = std::chrono::seconds(10)},
+                      [&](auto leased) { answers.push_back(std::move(leased)); });
+    // An answer that writes does so in one commit with what was queued before it.
+    put.set_value(CodeOf(store().PutMachine({.id = "m"}, 0)));
+  });
+  EXPECT_EQ(put.get_future().get(), kFailed);
+  faulty_disk::Heal();
+  Must(store().ActOn({}, QueueAct::kHold, {}));
+  EXPECT_EQ(answers.size(), 0U);
+  const std::int64_t job = Must(Submit("r")).job.id;
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(Must(answers[0]).at(0).lease.job, job);
+}
+
 // Withdrawn behind such a commit it has nothing.
 TEST_F(SqliteFaults, ARequestWithdrawnBehindAFailedCommitHasNothing) {
   std::vector<Result<std::vector<LeasedJob>>> answers;

@@ -6,6 +6,7 @@
 #include "storage/sqlite/housekeeping.h"
 #include "storage/sqlite/writer.h"
 #include "tests/storage/failing_statements.h"
+#include "tests/storage/quiet_process.h"
 #include "tests/storage/sqlite_bed.h"
 
 namespace rmlcell::storage::sqlite {
@@ -193,6 +194,22 @@ TEST_F(SqliteSlices, TakeAsManyUploadsAsContents) {
   EXPECT_EQ(Count("blob"), 20);
 }
 
+// Eight chunks of up to 1 MiB each are what one slice removes, and the content with the last one.
+TEST_F(SqliteSlices, TakeEightChunks) {
+  Must(connection_.database.Execute(
+      "INSERT INTO blob (id, sha256, size, refs, holds) VALUES (1, x'01', 1, 0, 0);"
+      "WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n WHERE i < 19)"
+      " INSERT INTO blob_chunk (blob, number, content) SELECT 1, i, x'00' FROM n"));
+  for (const std::int64_t left : {12, 4}) {
+    EXPECT_TRUE(Must(Slice({})));
+    EXPECT_EQ(Count("blob_chunk"), left);
+    EXPECT_EQ(Count("blob"), 1);
+  }
+  EXPECT_FALSE(Must(Slice({})));
+  EXPECT_EQ(Count("blob_chunk"), 0);
+  EXPECT_EQ(Count("blob"), 0);
+}
+
 // RemoveJobWhole: of any number of events, and only its own.
 TEST_F(SqliteSlices, AJobGoesWhole) {
   AddFinishedJob(1);
@@ -275,6 +292,29 @@ TEST_F(SqliteFailingSlices, EndWithTheFirstFailureOfASweep) {
     EXPECT_EQ(Count("blob"), number < 6 ? 1 : 0) << failed;
     EXPECT_EQ(Count("blob_chunk"), number < 6 ? 1 : 0) << failed;
   }
+}
+
+// Tidying that fails is undone with all that it counted: what stayed goes with the next one.
+TEST(SqliteTidying, WhatCouldNotBeRemovedGoesWithTheNext) {
+  failing_statements::Register();
+  SqliteOptions options;
+  options.keep_finished_jobs = 1;
+  SqliteBed bed(options);
+  const auto end_one = [&] {
+    const std::int64_t job = Must(bed.store().SubmitAndWait({.kind = "CHECK"})).job.id;
+    bed.clock().Advance(std::chrono::seconds(1));
+    Must(bed.store().RequestCancel(job, {}));
+    EXPECT_TRUE(ComesToRest());  // what there was to tidy is tidied
+  };
+  const auto jobs = [&] { return NumberIn(bed.path(), "SELECT count(*) FROM job"); };
+  end_one();
+  failing_statements::Fail(failing_statements::Of::kSweeping, 0);
+  end_one();
+  const std::string failed = failing_statements::Heal();
+  EXPECT_TRUE(failed.starts_with("SELECT blob FROM upload")) << failed;
+  EXPECT_EQ(jobs(), 2);
+  end_one();
+  EXPECT_EQ(jobs(), 1);
 }
 
 }  // namespace

@@ -107,6 +107,28 @@ TEST_F(SqliteMessages, OfJobs) {
             "an outcome has to be final");
 }
 
+TEST_F(SqliteMessages, OfMachinesThatAreHosted) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  const auto take = [&](const std::string& host) {
+    return store().TakeMachine({.machine = "m", .host = host, .server = "s", .duration = kLease});
+  };
+  const MachineLease lease = Must(take("a"));
+  const auto mark = [&](const MachineLease& of, std::int64_t sequence, const std::string& state) {
+    const MachineMark one{.sequence = sequence, .state = state, .note = "note"};
+    return DetailOf(store().AppendMachine(of, {.mark = one}));
+  };
+  EXPECT_EQ(mark(lease, 5, "axes"), "none");
+  EXPECT_EQ(mark(lease, 4, "axes"), "the mark 4 is not newer than 5");
+  // State and note together: four bytes more than may be.
+  EXPECT_EQ(mark(lease, 6, std::string(kMachineMarkBytesMax, 'x')), "a mark of 262148 bytes");
+  EXPECT_EQ(DetailOf(take("b")), "machine m is hosted by a");
+  MachineLease other = lease;
+  other.fence += 1;
+  EXPECT_EQ(mark(other, 6, "axes"), "machine m is hosted by a");
+  Must(store().ReleaseMachine(lease));
+  EXPECT_EQ(mark(lease, 6, "axes"), "machine m has no host");
+}
+
 // records.h: `created_at` is of the first put, `updated_at` of the newest; in lists, too.
 TEST_F(SqliteMessages, RecordsKeepTheTimesOfTheirFirstAndLastPut) {
   const WallTime first = bed_.clock().Now();
@@ -215,6 +237,9 @@ TEST(SqliteFiles, WhatCannotBeOpenedIsNamedWithItsReason) {
   Write(directory.File("file"), "x");
   EXPECT_EQ(DetailOf(MakeDirectoryOf(directory.File("file/cell.db"))),
             "cannot make directory " + directory.File("file") + ": Not a directory");
+  const std::string too_long = directory.File(std::string(300, 'd'));
+  EXPECT_EQ(DetailOf(MakeDirectoryOf(too_long + "/cell.db")),
+            "cannot make directory " + too_long + ": File name too long");
   EXPECT_EQ(DetailOf(MakeDirectoryOf("cell.db")), "none");  // here
 }
 

@@ -1,11 +1,14 @@
 // What moves and what is let go in the queue, uploads by their size, and executables of an end.
 #include <gmock/gmock.h>
 
+#include <future>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/core/hex.h"
 #include "storage/content.h"
+#include "storage/sqlite/tables.h"
 #include "tests/storage/sqlite_bed.h"
 
 namespace rmlcell::storage::sqlite {
@@ -150,6 +153,33 @@ TEST_F(SqliteMoves, ACancelledOneIsHeldBackNoMore) {
   EXPECT_EQ(blocked(), 1);
   Must(store().LetGo(held, {}));
   EXPECT_EQ(blocked(), 0);
+}
+
+// An answer that writes does so in one commit with what was queued before it: a job that came with
+// it keeps its machine, and one that ended with it does not.
+TEST_F(SqliteMoves, JobsOfTheSameCommitCountForTheirMachine) {
+  Must(store().PutMachine({.id = "made"}, 0));
+  Must(store().PutMachine({.id = "over"}, 0));
+  const std::int64_t over = Put({.machine = "over"});
+  std::promise<std::vector<std::optional<ErrorCode>>> deleted;
+  store().Submit({.kind = "CHECK"}, [&](const Result<SubmittedJob>&) {
+    store().Submit({.machine = "made", .kind = "CHECK"}, [](const Result<SubmittedJob>&) {});
+    const auto made = CodeOf(store().DeleteMachine("made", kAnyRevision));
+    store().SendRequestCancel(over, {}, [](const Result<JobRecord>&) {});
+    deleted.set_value({made, CodeOf(store().DeleteMachine("over", kAnyRevision))});
+  });
+  EXPECT_THAT(deleted.get_future().get(),
+              ElementsAre(std::optional(ErrorCode::kCellPrecondition), std::nullopt));
+}
+
+// queue_table.h: where nobody stands is nothing, which is not the place 0.
+TEST_F(SqliteMoves, WhereNobodyStandsIsNoPlace) {
+  const std::int64_t job = Put({});
+  bed_.Close();
+  Connection connection(Must(Database::Open(bed_.path(), Database::Access::kReadWrite, {})));
+  QueueTable& queue = connection.tables.queue;
+  EXPECT_EQ(Must(queue.LastPlace("", "ORDER", 0)), std::nullopt);
+  EXPECT_EQ(Must(queue.PlaceBefore("", "ORDER", {.job = job, .place = 99.0})), std::nullopt);
 }
 
 }  // namespace

@@ -339,6 +339,41 @@ TEST_F(SqliteOwnWriter, AsManyBytesWaitAsMay) {
               testing::ElementsAre(refused, refused, std::nullopt, std::nullopt, std::nullopt));
 }
 
+// change_counts.h: the rows of a commit may be seen before it is told, so that what it changes has
+// no count until then.
+TEST_F(SqliteOwnWriter, AJobCountsAsBeingChangedWhileItIsCommitted) {
+  struct CommitWatch {
+    const ChangeCounts* counts = nullptr;
+    bool being_changed = false;
+  };
+  CommitWatch watch;
+  sqlite3* const handle = connection_.database.handle();
+  {
+    Writer writer(connection_, {}, {}, kRoomy, SystemTime, [] {});
+    watch.counts = &writer.changes();
+    const std::uint64_t before = watch.counts->OfJob(7);
+    EXPECT_NE(before, 0U);
+    Must(writer.Do([&](WriteContext&) -> Status {
+      sqlite3_commit_hook(
+          handle,
+          [](void* state) {
+            CommitWatch& now = *static_cast<CommitWatch*>(state);
+            now.being_changed = now.being_changed || now.counts->OfJob(7) == 0;
+            return 0;
+          },
+          &watch);
+      return connection_.database.Execute(
+          "INSERT INTO job (id, request_id, request_hash, machine, kind, title, caller, state,"
+          " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
+          " events_gone_until, created_at, finished_at)"
+          " VALUES (7, 'r7', '', 'm', 'CHECK', '', '', 2, 0, 1, 1, 1, 0, 0, 0, 7)");
+    }));
+    EXPECT_GT(watch.counts->OfJob(7), before);
+  }
+  sqlite3_commit_hook(handle, nullptr, nullptr);
+  EXPECT_TRUE(watch.being_changed);
+}
+
 // 9104: all bytes of a content are there, and it is another one than its name says.
 TEST(SqliteRefusals, AContentWithAnotherDigest) {
   SqliteBed bed;

@@ -5,12 +5,14 @@
 #include <atomic>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "engine/core/hex.h"
 #include "storage/content.h"
+#include "tests/storage/quiet_process.h"
 #include "tests/storage/sqlite_bed.h"
 
 namespace rmlcell::storage {
@@ -154,6 +156,29 @@ TEST(SqliteNoBytes, AProductOfNoBytesComesAgain) {
     }
     bed.Reopen();
   }
+}
+
+// store.h: a lease that ran out stays its holder's until it is taken: one that was seen to be over
+// and is renewed before that is not.
+TEST(SqliteLeases, ALeaseThatIsRenewedMeanwhileIsNotTaken) {
+  SqliteBed bed;
+  Store& store = bed.store();
+  Must(store.SubmitAndWait({.kind = "SIMULATE"}));
+  const Lease lease = Must(store.Acquire("w", {"SIMULATE"}, kLease, {}))->lease;
+  bed.clock().Advance(2 * kLease);
+  std::atomic<bool> renewed{false};
+  std::optional<Result<std::vector<JobRecord>>> taken;
+  std::jthread taker;
+  {
+    const StandingWriter stands(store);
+    store.SendRenew(lease, kLease, [&](const Result<JobRecord>& job) { renewed = !CodeOf(job); });
+    taker = std::jthread([&] { taken.emplace(store.Expire(PolicyOfTests())); });
+    EXPECT_TRUE(ComesToRest());  // it has seen the lease and waits behind the renewal
+  }
+  taker.join();
+  EXPECT_TRUE(renewed);
+  EXPECT_TRUE(Must(*taken).empty());
+  EXPECT_EQ(Must(store.GetJob(lease.job)).state, JobState::kRunning);
 }
 
 }  // namespace

@@ -107,14 +107,19 @@ class Tools final : public machine::Tools {
   machine::RewrittenText Convert(std::string_view text, Direction direction,
                                  const FileNames& names) const override {
     Conversion made = optimo::Convert(text, direction, names);
-    return {.ok = true, .text = std::move(made.text), .diagnostics = std::move(made.diagnostics)};
+    return {.ok = true,
+            .text = std::move(made.text),
+            .diagnostics = std::move(made.diagnostics),
+            .diagnostics_dropped = std::move(made.diagnostics_dropped)};
   }
 
   machine::RewrittenText Compensate(std::string_view text, const FileNames& names,
                                     bool inch) const override {
     Compensation made = optimo::Compensate(text, names, inch);
-    return {
-        .ok = made.ok, .text = std::move(made.text), .diagnostics = std::move(made.diagnostics)};
+    return {.ok = made.ok,
+            .text = std::move(made.text),
+            .diagnostics = std::move(made.diagnostics),
+            .diagnostics_dropped = std::move(made.diagnostics_dropped)};
   }
 
   machine::RewrittenText Transform(std::string_view text,

@@ -61,8 +61,10 @@ void Parser::ParseStatement() {
     const Token label = Take();
     // What is said of the number belongs to the instruction that it leads to (OPT-1.27).
     instruction_.step = Peek().word == Word::kDeclare ? 0 : steps_ + 1;
-    AddLabel(label);
+    const bool added = AddLabel(label);
     if (Is(TokenKind::kEnd)) return;
+    if (!added)
+      program_.mislabelled.push_back(static_cast<std::uint32_t>(module_.instructions.size()));
     first_ = Peek();
   }
   instruction_ = Instruction{};
@@ -177,20 +179,23 @@ void Parser::DropExpressions(std::uint32_t expressions) {
   if (places_ == Places::kNodes) program_.node_places.resize(nodes);
 }
 
-void Parser::AddLabel(const Token& token) {
+bool Parser::AddLabel(const Token& token) {
   if (token.length > 4) {
-    return Report(token, ErrorCode::kLabelRange, "sequence numbers go from 0 to 9999", "OPT-1.23");
+    Report(token, ErrorCode::kLabelRange, "sequence numbers go from 0 to 9999", "OPT-1.23");
+    return false;
   }
   std::uint32_t& line = label_line_[token.digits];
   if (line != 0) {
-    return Report(token, ErrorCode::kLabelDuplicate,
-                  "sequence number " + Told("label", token.digits) + " stands on line " +
-                      Told("line", line) + " already",
-                  "OPT-1.25");
+    Report(token, ErrorCode::kLabelDuplicate,
+           "sequence number " + Told("label", token.digits) + " stands on line " +
+               Told("line", line) + " already",
+           "OPT-1.25");
+    return false;
   }
   line = lexer_.line();
   pending_labels_.push_back(static_cast<std::uint16_t>(token.digits));
   pending_label_places_.push_back({token.offset, token.length});
+  return true;
 }
 
 // [ "LET" ] target "=" expr                                                     OPT-7.91

@@ -33,7 +33,7 @@ class Parser {
   bool ParseInstruction(Word word);
   bool ParseAssignment(bool after_let);
   void ParseIgnored(Word word);
-  void AddLabel(const Token& token);
+  bool AddLabel(const Token& token);
   void DropStatement();
   void FinishStatement(bool good);
   void OrderAttributeParts();

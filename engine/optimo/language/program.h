@@ -50,7 +50,8 @@ struct ParsedProgram {
   std::bitset<kParameterCount> broken_parameters;  // the same of DEFINE
   // Instructions with an error that are no Op::kInvalid, in any order, some of them twice.
   std::vector<std::uint32_t> faulty;
-  std::uint64_t tokens_read = 0;  // those read twice counted twice: what the reading cost
+  std::vector<std::uint32_t> mislabelled;  // ascending: the sequence number on its line is refused
+  std::uint64_t tokens_read = 0;           // those read twice counted twice: what the reading cost
 
   Place At(const Instruction& instruction) const;  // the whole statement
   std::string_view TextOf(const Instruction& instruction) const;

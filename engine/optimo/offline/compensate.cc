@@ -389,6 +389,7 @@ Compensation Compensate(std::string_view text, const std::optional<FileNames>& n
     result.text += ApplyEdits(text, edits);
   }
   result.diagnostics = findings.Take(text, names ? names->input : "");
+  result.diagnostics_dropped = findings.dropped();
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/diagnostic.h"
+#include "engine/core/untold_findings.h"
 #include "engine/optimo/offline/convert.h"
 
 // RMLCOMP: offsets the moves of a metric source sideways by the beam's radius (optimo.md 8.1).
@@ -19,6 +20,7 @@ struct Compensation {
   // stop; 7804, 7809, 7811 and the gouge check 7812 (the path is nearer to an edge than the beam is
   // wide, gouge.h) are warnings; 7812 as advice says which steps were not looked at.
   std::vector<Diagnostic> diagnostics;
+  UntoldFindings diagnostics_dropped{};
 };
 
 // `inch`: the source is in inches, which is refused (7801); a name with .SI says so, too. The file

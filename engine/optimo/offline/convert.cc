@@ -31,18 +31,12 @@ class Converter {
     names_.resize(module_.names.size());
   }
 
-  // `illegal`: places of errors, ascending; the statements that hold one are copied, also where it
-  // is in the sequence number before them.
-  std::vector<Fix> Run(const std::vector<std::int64_t>& illegal) {
-    std::size_t error = 0, end_before = 0;
+  std::vector<Fix> Run() {
+    const std::vector<bool> illegal = IllegalStatements();
     for (std::size_t s = 0; s < module_.instructions.size(); ++s) {
       const Instruction& i = module_.instructions[s];
-      const Statement& statement = p_.statements[s];
-      const std::size_t line = LineOf(statement, std::exchange(end_before, statement.end));
-      while (error < illegal.size() && illegal[error] < static_cast<std::int64_t>(line)) ++error;
-      const bool bad = error < illegal.size() && illegal[error] <= statement.end;
-      if (i.op == Op::kInvalid || bad) continue;
-      if (statement.tokens > kConvertTokensMax) {
+      if (illegal[s]) continue;
+      if (p_.statements[s].tokens > kConvertTokensMax) {
         findings_.Add(ErrorCode::kConvertLine, p_.At(i),
                       "more than 200 symbols; the line is copied", "OPT-8.65");
         continue;
@@ -62,11 +56,16 @@ class Converter {
   }
 
  private:
-  // Where the line of a statement begins, behind the end of the one before.
-  std::size_t LineOf(const Statement& statement, std::size_t end_before) const {
-    const std::size_t from = std::min<std::size_t>(end_before, statement.begin);
-    const std::string_view between = p_.text.substr(from, statement.begin - from);
-    return from + between.rfind('\n') + 1;  // npos + 1: none
+  // Whose line is copied, however many of them were reported; also where the sequence number on it
+  // is what is wrong. OPT-8.53
+  std::vector<bool> IllegalStatements() const {
+    std::vector<bool> illegal(module_.instructions.size());
+    for (const std::uint32_t s : p_.faulty) illegal[s] = true;
+    for (const std::uint32_t s : p_.mislabelled) illegal[s] = true;
+    for (std::size_t s = 0; s < illegal.size(); ++s) {
+      if (module_.instructions[s].op == Op::kInvalid) illegal[s] = true;
+    }
+    return illegal;
   }
 
   // What a name stands for, as far as the text was read.
@@ -310,21 +309,35 @@ void Converter::ConvertDirectives() {
   }
 }
 
+// Errors of the parser that nobody was told singly: as what they are to CONVERT.
+void AddCopiedLines(const UntoldFindings& errors, UntoldFindings& untold) {
+  for (const auto& [code, kind] : errors.kinds()) {
+    if (!IsError(kind.severity)) continue;
+    GatheredFindings lines = kind;
+    lines.code = ErrorCode::kConvertNotRml;
+    lines.severity = Lookup(lines.code).severity;
+    for (Diagnostic* place : {&lines.first, &lines.last}) {
+      place->code = lines.code;
+      place->severity = lines.severity;
+    }
+    untold.Add(lines);
+  }
+}
+
 }  // namespace
 
 Conversion Convert(std::string_view text, Direction direction,
                    const std::optional<FileNames>& names) {
+  const std::string_view file = names ? std::string_view(names->input) : std::string_view();
   Findings syntax(kFindingsMax), findings(kFindingsMax);
   const ParsedProgram program = Parse(text, syntax);
-  std::vector<std::int64_t> illegal;
-  for (const Diagnostic& error : syntax.Take({}, {})) {
+  for (const Diagnostic& error : syntax.Take(text, file)) {
     if (!IsError(error.severity)) continue;
-    illegal.push_back(error.where.byte_offset);
     findings.Add(ErrorCode::kConvertNotRml,
                  {error.where.byte_offset, error.where.length, error.step},
                  "the line is copied: " + error.detail, "OPT-8.53");
   }
-  const std::vector<Fix> edits = Converter(program, direction, findings).Run(illegal);
+  const std::vector<Fix> edits = Converter(program, direction, findings).Run();
   Conversion result;
   if (names) {
     const bool metric = direction == Direction::kToMetric;
@@ -334,7 +347,9 @@ Conversion Convert(std::string_view text, Direction direction,
     result.text += LineEndOf(text);
   }
   result.text += ApplyEdits(text, edits);
-  result.diagnostics = findings.Take(text, names ? names->input : "");
+  result.diagnostics = findings.Take(text, file);
+  result.diagnostics_dropped = findings.dropped();
+  AddCopiedLines(syntax.dropped(), result.diagnostics_dropped);
   return result;
 }
 

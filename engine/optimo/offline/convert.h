@@ -8,6 +8,7 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/result.h"
+#include "engine/core/untold_findings.h"
 #include "engine/machine/tools.h"
 
 // CONVERT: an inch-degree source into the equivalent millimetre-radian source, or back
@@ -24,6 +25,7 @@ struct Conversion {
   // 7708 to 7711. None of them stops the conversion: the line is copied as it is (OPT-8.53,
   // OPT-8.65).
   std::vector<Diagnostic> diagnostics;
+  UntoldFindings diagnostics_dropped{};
 };
 
 // The longest statement that CONVERT takes. OPT-8.65

@@ -164,6 +164,15 @@ void Planner::AddDraft(const machine::ProjectProgram& program) {
       // CONVERT goes on after this, and so does the transfer: what may still be inches is told.
       Add(std::move(found));
     }
+    for (const auto& [code, kind] : converted.diagnostics_dropped.kinds()) {
+      if (code == ErrorCode::kConvertNotRml) continue;
+      GatheredFindings more = kind;
+      for (Diagnostic* place : {&more.first, &more.last}) {
+        place->file = program.file.name;
+        place->program = program.slot;
+      }
+      plan_.diagnostics_dropped.Add(more);
+    }
   } else {
     draft.text = std::string(program.file.bytes);
   }

@@ -50,6 +50,7 @@ Rewriting Finish(std::string_view text, std::vector<Fix> edits, Findings& findin
   std::ranges::stable_sort(edits, {}, &Fix::byte_offset);
   if (result.ok) result.text = ApplyEdits(text, edits);
   result.diagnostics = findings.Take(text, {});
+  result.diagnostics_dropped = findings.dropped();
   return result;
 }
 

@@ -145,6 +145,8 @@ std::string FingerprintOf(const machine::MachineFamily& family, const machine::R
   hash.Real(setup.override_percent);
   Add(hash, setup.breakpoint);
   Add(hash, setup.simul);
+  // Where there are none the count of inputs stands here, which is never as large.
+  if (!setup.breakpoints.empty()) hash.Number(~std::uint64_t{setup.breakpoints.size()});
   for (const machine::Breakpoint& breakpoint : setup.breakpoints) {
     Add(hash, breakpoint.at);
     hash.Text(breakpoint.condition);
@@ -156,10 +158,12 @@ std::string FingerprintOf(const machine::MachineFamily& family, const machine::R
     hash.Number(static_cast<std::uint64_t>(input.kind));
     hash.Integer(input.index);
     hash.Real(input.value);
+    if (input.kind == machine::InputKind::kVariable) hash.Text(input.name);
   }
   hash.Number(setup.forecast ? 1 : 0);
   hash.Number(setup.budget.steps);
   hash.Integer(setup.budget.virtual_time.count());
+  if (setup.budget.steps_at_one_instant != 0) hash.Number(setup.budget.steps_at_one_instant);
   return hash.Digits();
 }
 

@@ -55,6 +55,16 @@ TEST(Check, CodeThatIsNeverReachedIsGreyed) {
   EXPECT_EQ(found[0]["tags"], Json::array({1}));
 }
 
+// OPT-5.46: other practice advice is about code that runs.
+TEST(Check, OtherAdviceIsNotGreyed) {
+  int advice = 0;
+  for (const Json& found : DiagnosticsOf("COORD ABSOL\nPATH LIN\nSPEED 90\nMOVE (1,2,3,0,0)\n")) {
+    if (found["code"] == "OPT-E7033") ++advice;
+    EXPECT_FALSE(found.contains("tags")) << found.dump();
+  }
+  EXPECT_GE(advice, 1);
+}
+
 // OPT-2.04, OPT-8.26: an inch source is written before it is converted.
 TEST(Check, AnInchSourceIsCheckedAsItStands) {
   const Json found = DiagnosticsOf("SPEED 101\n", "file:///work/a.SI");

@@ -165,5 +165,19 @@ TEST(CompletionBounds, TwoThousandTokensOfAStatement) {
   EXPECT_THAT(offered(997), AllOf(Contains("MOD"), Not(Contains("SIN"))));
 }
 
+// OPT-7.07, OPT-9.01: a declared number may say which program is meant.
+TEST(CompletionBounds, ANameMayStandForAProgram) {
+  const std::string named = "DECLARE RECT = 44\n";
+  EXPECT_THAT(OfferedAt(named + "FUNCTION |\n"), ElementsAre("RECT"));
+  for (const char* word : {"CALL |\n", "GO |\n"})
+    EXPECT_THAT(OfferedAt(named + word), AllOf(Contains("RECT"), Contains("VI"))) << word;
+}
+
+// Behind a word that is no name of the program stands a value, not "=".
+TEST(CompletionBounds, BehindAWordStandsAValue) {
+  for (const char* word : {"SPEED |\n", "IF |\n", "VL[0] = VL[1] AND |\n", "VL[0] = NOT |\n"})
+    EXPECT_THAT(OfferedAt(word), AllOf(Contains("VR"), Contains("SIN"))) << word;
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

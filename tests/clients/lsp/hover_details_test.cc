@@ -240,5 +240,27 @@ TEST(HoverDetails, WhatAProjectLeavesOutIsItsDefault) {
               EndsWith("\n\nIn project.json: (steel)"));
 }
 
+// OPT-9.21: what a program reads of its caller is PAR alone, whatever other variables it has.
+TEST(HoverDetails, AProgramReadsItsParAlone) {
+  Editor editor;
+  editor.folder.files["file:///work/44.S"] = "VR[50] = PAR[1]\n";
+  editor.folder.files["file:///work/45.S"] = "VR[50] = VI[7]\n";
+  EXPECT_THAT(HoverIn(editor, "CALL 4|4\n"), EndsWith("Reads PAR[0] to PAR[1]."));
+  EXPECT_THAT(HoverIn(editor, "CALL 4|5\n"),
+              AllOf(HasSubstr("in `45.S`"), Not(HasSubstr("Reads"))));
+}
+
+// OPT-3.03: a WORKDEF of kind 0 has no values that mean anything.
+TEST(HoverDetails, KindZeroHasNoParameters) {
+  EXPECT_THAT(HoverIn("WO|RKDEF 0,0 (5)\n"), AllOf(HasSubstr("Process 0,0, turned ON 0 times."),
+                                                   Not(HasSubstr("\n- laser schedule"))));
+}
+
+// OPT-W.05: a word without effect is told by its own rule; it is no instruction with a step.
+TEST(HoverDetails, AWordWithoutEffectHasItsRule) {
+  EXPECT_THAT(HoverIn("CO|NT 3\n"),
+              AllOf(HasSubstr("\n\nRule OPT-W.05"), Not(HasSubstr("\n\nStep "))));
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

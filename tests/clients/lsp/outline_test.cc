@@ -111,5 +111,18 @@ TEST(Folding, ContoursAndSubroutinesEndOnce) {
             Strings{"region 0-2"});
 }
 
+// What the text ends with folds as what something else follows.
+TEST(Folding, TheLastLinesFold) {
+  EXPECT_EQ(FoldsOf("SPEED 5\nDECLARE X = 1\nDECLARE Y = 2\n"), Strings{" 1-2"});
+  EXPECT_EQ(FoldsOf("SPEED 5\n; a\n; b\n"), Strings{"comment 1-2"});
+}
+
+// OPT-7.20: only a number that a GOSUB has begins a subroutine.
+TEST(Folding, ASubroutineBeginsWithANumberOfAGosub) {
+  EXPECT_EQ(FoldsOf("GOSUB 100\nENDTASK\n100 SPEED 5\n110 SPEED 6\nRETURN\n"),
+            Strings{"region 2-4"});
+  EXPECT_EQ(FoldsOf("GOTO 90\n90 SPEED 5\nRETURN\n"), Strings{});
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

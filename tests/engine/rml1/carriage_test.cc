@@ -282,5 +282,47 @@ TEST(Carriage, ASpeedThatAnAxisHasIsNotTouched) {
   }
 }
 
+// RML1-3A.69: one wait for each set, before its first motion, where the tool goes straight down to
+// the place where the line comes in.
+TEST_F(LoneCarriage, WaitsOnceBeforeAWayStraightDown) {
+  MoveXYZ({19000.0, 0.0, -100.0});
+  MoveXYZ({21000.0, 0.0, -100.0});
+  MoveXYZ({21000.0, 0.0, -200.0});
+  registers.dwell_ms = 10;
+  queue = {};
+  MoveXYZ({19000.0, 0.0, -200.0});
+  ASSERT_EQ(queue.all().size(), 3U);
+  EXPECT_EQ(queue.all()[0].kind, Action::Kind::kDwell);
+  EXPECT_EQ(queue.all()[1].to, (Point{20000.0, 0.0, -200.0, 0.0}));
+  EXPECT_EQ(queue.all()[2].to, (Point{19000.0, 0.0, -200.0, 0.0}));
+}
+
+// And where it follows the line in two pieces: down to the bottom of the travel, and along it.
+TEST_F(LoneCarriage, WaitsOnceBeforeTwoPieces) {
+  registers.dwell_ms = 10;
+  MoveXYZ({1000.0, 0.0, -8000.0});
+  ASSERT_EQ(queue.all().size(), 3U);
+  EXPECT_EQ(queue.all()[0].kind, Action::Kind::kDwell);
+  EXPECT_EQ(queue.all()[1].to, (Point{750.0, 0.0, -6000.0, 0.0}));
+  EXPECT_EQ(queue.all()[2].to, (Point{1000.0, 0.0, -6000.0, 0.0}));
+}
+
+// RML1-3C.37: !ZM moves Z where the tool is, and the logical Z takes the same value: it is enough
+// that one of the two is elsewhere.
+TEST_F(LoneCarriage, MovesZOfTheToolAndOfTheCommands) {
+  MoveXYZ({0.0, 0.0, 1000.0});  // above the travel: the tool stays at its top
+  MoveZ(0.0);
+  EXPECT_TRUE(queue.empty());
+  EXPECT_EQ(carriage.logical().z, 0.0);
+  MoveXYZ({-100.0, 0.0, 0.0});
+  registers.tool_down = true;
+  registers.z1 = -500.0;
+  carriage.ToToolHeight({profile, registers, queue});  // beside the travel: the tool stays up
+  ASSERT_TRUE(queue.empty());
+  MoveZ(-500.0);
+  ASSERT_EQ(queue.all().size(), 1U);
+  EXPECT_EQ(last().to.z, -500.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -151,5 +151,18 @@ TEST(Pieces, PutWhatCountsAsOnAFaceOnTheFace) {
   EXPECT_EQ(z.all()[0].to.z, 0.0);
 }
 
+// RML1-5A.01: a line of one unit that begins beyond a face is cut there as any other one.
+TEST(Pieces, CutALineOfOneUnit) {
+  const Pieces aside = Pieces::Cut(kRange, {-0.5, 5000, -100, 0}, {0.5, 5000, -100, 0}, kZero);
+  ASSERT_EQ(aside.all().size(), 2U);
+  EXPECT_EQ(aside.all()[0].region, Region::kOutside);
+  EXPECT_EQ(aside.all()[1].region, Region::kInside);
+  EXPECT_EQ(aside.all()[1].from.x, 0.0);
+  const Pieces up = Pieces::Cut(kRange, {500, 500, -6000.5, 0}, {500, 500, -5999.5, 0}, kZero);
+  ASSERT_EQ(up.all().size(), 2U);
+  EXPECT_EQ(up.all()[0].region, Region::kBelow);
+  EXPECT_EQ(up.all()[1].region, Region::kInside);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -412,5 +412,61 @@ TEST_F(WatchedWay, APlaceIsKnownBehindTheActThatGivesIt) {
   EXPECT_EQ(watch.place_not_given().mm, 0.0);
 }
 
+// Steps of one way down are one way: as long as all of them, from the first on.
+TEST_F(WatchedWay, DownFastInTwoSteps) {
+  Plunge(5, -1, kFast);
+  Plunge(-1, -2, kFast);
+  Cut(-2, 1.0);
+  EXPECT_NEAR(watch.fast_plunge().mm, 2.0, kNear);
+  EXPECT_EQ(watch.fast_plunge().first.number, 1U);
+  EXPECT_EQ(watch.taken_for_cleared().mm, 0.0);
+}
+
+// A step down on the way of a cut is part of the cut, also of one that began with a ramp.
+TEST_F(WatchedWay, AStepDownBehindARampIsNoPlunge) {
+  Ride({.to = {.x = 10, .z = -1}, .in_work = true, .spindle_turns = true, .speed_mm_s = 1.0});
+  Plunge(-1, -2, kFast);
+  Cut(-2, 1.0);
+  EXPECT_EQ(watch.fast_plunge().mm, 0.0);
+}
+
+// A way down is told once, however many cuts or ways follow it.
+TEST_F(WatchedWay, AFastPlungeIsToldOnce) {
+  Plunge(5, -2, kFast);
+  Cut(-2, 1.0);
+  Cut(-2, 1.0);
+  EXPECT_NEAR(watch.fast_plunge().mm, 2.0, kNear);
+  watch = {};
+  Plunge(5, -3, kFast);
+  Lift(-3);
+  Travel(5, 5);
+  EXPECT_NEAR(watch.fast_plunge().mm, 3.0, kNear);
+}
+
+// An approach that was too short stays so: it is over with the cut, and a slow plunge behind that
+// is another way down.
+TEST_F(WatchedWay, AShortApproachIsOverWithItsCut) {
+  Plunge(5, -1, kFast);
+  Plunge(-1, -1.19, 1.0);
+  Cut(-1.19, 1.0);
+  Lift(-1.19);
+  Plunge(5, -1, 1.0);
+  EXPECT_NEAR(watch.fast_plunge().mm, 1.0, kNear);
+  EXPECT_EQ(watch.taken_for_cleared().mm, 0.0);
+}
+
+// Where Z travels at 1 mm/s, 0.8 mm/s are fast and 0.4 mm/s slow; no cut follows.
+TEST_F(WatchedWay, AlongTheSurfaceOfASlowMachine) {
+  const auto go = [this](CutWatch::Ride ride) {
+    ride.length_mm = 10.0;
+    ride.spindle_turns = true;
+    ride.fastest_z_mm_s = 1.0;
+    watch.OnRide(ride, registers, {.number = ++number, .offset = 0, .op = Op::kCall});
+  };
+  go({.from = {.z = -1}, .to = {.x = 10, .z = -1}, .in_work = true, .speed_mm_s = 0.4});
+  go({.to = {.x = 10}, .speed_mm_s = 0.8});
+  EXPECT_NEAR(watch.no_clearance().mm, 10.0, kNear);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

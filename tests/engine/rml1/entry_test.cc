@@ -82,5 +82,13 @@ TEST(Entry, TellsWhatLiesOutsideOfTheTravel) {
   EXPECT_EQ(outside, wanted);
 }
 
+// Before the first command there is none that a byte could belong to.
+TEST(Entry, AByteBeforeTheFirstCommandIsOfNone) {
+  const Result<int> found = CommandAt(";PU1,2;", 0, Device(Mill()));
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, ErrorCode::kCellStepUnreachable);
+  EXPECT_TRUE(found.error().detail.starts_with("byte 0 lies inside of command 0 or "));
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

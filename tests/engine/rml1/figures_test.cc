@@ -281,5 +281,45 @@ TEST(Figures, OfNothingHaveNoPlace) {
   EXPECT_EQ(found, 1);
 }
 
+// A tool that ends above the surface is not in the work at all.
+TEST(Figures, OfAToolThatEndsAboveTheWork) {
+  TestRun run(ParametersOf("t1"), "!MC0;V10;Z0,0,-100;Z0,0,100;");
+  run.AdvanceToEnd();
+  EXPECT_EQ(run.figures().at("depth_at_end"), 0.0);
+}
+
+// What is drawn with the spindle off is a stroke along the surface: neither travel above it nor a
+// tool that only touches it.
+TEST(Figures, OfAPenThatDrawsNothing) {
+  const auto nothing_cut = [](const std::string& stream) {
+    TestRun run(ParametersOf("t1"), stream);
+    run.AdvanceToEnd();
+    return run.figures().at("nothing_cut");
+  };
+  EXPECT_EQ(nothing_cut("!MC0;PU100,100;"), 1.0);
+  EXPECT_EQ(nothing_cut("!MC0;PU100,100;PD;PU;"), 1.0);
+  EXPECT_EQ(nothing_cut("!MC0;PU100,100;PD200,100;PU;"), 0.0);
+}
+
+// 10 mm along the surface with the spindle on, of a program that cuts half a millimetre elsewhere.
+TEST(Figures, OfALittleCutBesideASkim) {
+  TestRun run(ParametersOf("t1"), "!MC1;V10;VS10;@0,200;Z0,0,0;Z0,0,-50;PU1000,0;PD2000,0;PU;");
+  run.AdvanceToEnd();
+  EXPECT_NEAR(run.figures().at("cut_length"), 0.5, 1e-9);
+  EXPECT_NEAR(run.figures().at("skimmed_length"), 10.0, 1e-9);
+}
+
+// RML1-4.05, RML1-6.10: ESC inside a sequence ends it with error 11 and begins another one; of more
+// than 100,000 errors the log of the link is cut, and not that of the commands.
+TEST(Figures, OfACutLogOfTheLink) {
+  std::string stream;
+  for (int k = 0; k < 100'002; ++k) stream += "\x1b.";
+  const auto made = Rml1Family().Translate({.name = "a", .bytes = stream}, ParametersOf("t1"), {});
+  const Figures figures = ByName(made.figures);
+  EXPECT_EQ(figures.at("communication_errors"), 100'001.0);
+  EXPECT_EQ(figures.at("communication_errors.cut"), 1.0);
+  EXPECT_EQ(figures.at("errors.cut"), 0.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -129,5 +129,19 @@ TEST(Programmed, SpoiltStatementsLeaveWhatStoodBefore) {
   EXPECT_EQ(groups.at("programmed.other"), 2.0);
 }
 
+// programmed.h: a group of axes is no cut in X and Y with the tool down: above Z 0 it is travel.
+TEST(Programmed, GroupsAboveZeroAreTravel) {
+  const Figures figures = FiguresOf("!ZE X300Y400;");
+  EXPECT_DOUBLE_EQ(figures.at("programmed.travel_length"), 500.0);
+  EXPECT_EQ(figures.at("programmed.cut_length"), 0.0);
+}
+
+// RML1-3B.08: PA and PR without numbers move nothing: they go to no height.
+TEST(Programmed, ModesAskForNoHeight) {
+  for (const std::string mode : {"PA;", "PR;"})
+    EXPECT_FALSE(FiguresOf("@-5,3;" + mode).contains("programmed.zmax")) << mode;
+  EXPECT_EQ(FiguresOf("@-5,3;PU;").at("programmed.zmax"), 3.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

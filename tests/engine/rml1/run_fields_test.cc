@@ -319,5 +319,64 @@ TEST(MillRunFields, OfTheState) {
   EXPECT_EQ(seen.run->steps_executed(), 3u);
 }
 
+// STOP at 1 mm/s, 0.001 mm before the end of a line with another one straight on behind it: 0.0025
+// mm of braking, so that it passes there at sqrt(1 - 0.4) mm/s and rests 0.0015 mm further.
+// motion.md 6
+TEST(MillRunFields, OfACrawlingToolThatBrakes) {
+  TestRun run(ParametersOf("t1"), "!MC0;V20;VS1;PD100,0,200,0;");
+  run->Advance(2101500us);  // 1.1 s down, 0.005 s to speed over 0.0025 mm, 0.9965 mm
+  run.Press(InputKind::kStop);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_NEAR(run->state().tip.tip.x(), 1.0015, 1e-6);
+  EXPECT_NEAR(run.time_s(), 2.1065, 1e-6);
+  const auto& motions = run.seen().motions();
+  ASSERT_EQ(motions.size(), 4u);  // down, the way to the STOP, the end of that line, the next one
+  const motion::PlannedMotion& passing = motions[2].planned;
+  EXPECT_TRUE(passing.ends_move);
+  EXPECT_EQ(passing.corner.passage, motion::Passage::kThrough);
+  EXPECT_NEAR(passing.corner.speed, std::sqrt(0.6), 1e-5);
+  for (const std::size_t k : {2u, 3u}) {  // the limits in force are those of the line
+    EXPECT_EQ(motions[k].planned.limits.speed, 1.0) << k;
+    EXPECT_EQ(motions[k].planned.limits.acceleration, 200.0) << k;
+  }
+}
+
+// DEV-3.12: in a halt an open cover stops a spindle that turns, and what it stopped goes on with
+// the run, behind its run-up. One that the program has not started is neither stopped nor started.
+TEST(MillRunFields, OfASpindleThatTheCoverStops) {
+  const auto open_and_close = [](machine::Run& run) {
+    for (const double open : {1.0, 0.0}) {
+      run.Apply({.at = run.state().time, .kind = InputKind::kDoor, .index = 0, .value = open});
+    }
+  };
+  Seen seen(WithSpindleTimes(), "PU100,0;!NR;PU200,0;");
+  ASSERT_EQ(seen.ToEnd(), RunPhase::kHalted);
+  const SimTime halted_at = seen.run->state().time;
+  open_and_close(*seen.run);
+  const auto& signals = seen.told.signals;
+  ASSERT_EQ(signals.size(), 2u);
+  EXPECT_EQ(signals[1].at, halted_at);
+  EXPECT_EQ(signals[1].signal, machine::Signal::kSpindle);
+  EXPECT_EQ(signals[1].value, 0.0);
+  EXPECT_EQ(signals[1].detail, 0.0);
+  seen.run->Apply({.at = halted_at, .kind = InputKind::kStart});
+  ASSERT_EQ(seen.ToEnd(), RunPhase::kFinished);
+  ASSERT_EQ(signals.size(), 3u);
+  EXPECT_EQ(signals[2].at, halted_at);
+  EXPECT_EQ(signals[2].signal, machine::Signal::kSpindle);
+  EXPECT_EQ(signals[2].value, 1.0);
+  EXPECT_EQ(signals[2].detail, 4500.0);
+  ASSERT_EQ(seen.told.waits.size(), 2u);
+  EXPECT_EQ(seen.told.waits[1].kind, machine::WaitKind::kSpinUp);
+  EXPECT_EQ(seen.told.waits[1].end - seen.told.waits[1].start, 500ms);
+
+  Seen off(WithSpindleTimes(), "!MC0;PU100,0;!NR;PU200,0;");
+  ASSERT_EQ(off.ToEnd(), RunPhase::kHalted);
+  open_and_close(*off.run);
+  off.run->Apply({.at = off.run->state().time, .kind = InputKind::kStart});
+  ASSERT_EQ(off.ToEnd(), RunPhase::kFinished);
+  EXPECT_TRUE(off.told.signals.empty());
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -264,5 +264,13 @@ TEST(MillRun, CompletesThroughErrors) {
   EXPECT_EQ(run.figures().at("error_register"), 1);
 }
 
+// RML1-3D.29: a turn of one degree by itself is one by 200 deg/s2, up to half of it and down again.
+TEST(MillRun, TurnsByOneDegree) {
+  TestRun run(ParametersOf("t1a"), "!MC0;!ZE A1;");
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_NEAR(run.time_s(), 2.0 * std::sqrt(1.0 / 200.0), 1e-8);
+  EXPECT_EQ(run.variable("A"), "1");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -86,5 +86,19 @@ TEST(StandingMill, ItsKeysLeadUpAndAcross) {
               0.0, 1e-9);
 }
 
+// LIVE-2.13, RML1-9.11: Z0 and ORIGIN are set where the tool stands, each by its own key.
+TEST(StandingMill, EachKeySetsWhatItSays) {
+  const auto pressed = [](machine::PanelKey key) {
+    const auto mill = Stand(ParametersOf("t1"));
+    mill->MoveTo({.column = {50.0, 60.0, -30.0}, .a_rad = 0.0, .b_rad = 0.0});
+    mill->PressPanel(key);
+    return mill->state().work_origin.value_or(motion::MachinePoint(0.0, 0.0, 0.0));
+  };
+  const motion::MachinePoint height(0.0, 0.0, -30.0);
+  EXPECT_NEAR((pressed(machine::PanelKey::kZ0) - height).norm(), 0.0, 1e-9);
+  const motion::MachinePoint corner(50.0, 60.0, -20.0);
+  EXPECT_NEAR((pressed(machine::PanelKey::kOrigin) - corner).norm(), 0.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

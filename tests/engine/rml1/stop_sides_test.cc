@@ -1,6 +1,7 @@
 // Spindles that a key stopped, streams that are refused or empty, and what a whole set counts for.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "engine/rml1/device.h"
@@ -73,6 +74,30 @@ TEST(StopSides, ProgressOfAStreamOfSeparators) {
   TestRun run(ParametersOf("t1"), ";;");
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
   EXPECT_EQ(run->state().progress, 1.0);
+}
+
+// RML1-3C.02: !MC 0 stops a spindle that turns: one that a key has stopped stands already, so that
+// nothing is told and nobody waits.
+TEST(StopSides, ASpindleThatStandsIsNotStoppedAgain) {
+  machine::Parameters parameters = ParametersOf("t1");
+  ASSERT_TRUE(parameters.Set("SPIN_DOWN", 1.5));
+  TestRun run(parameters, "!MC1;PU100,0;!NR;!MC0;PU200,0;");
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  ASSERT_TRUE(run->SwitchSpindle());
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(std::ranges::count(run.seen().Events(), "stop"), 1);
+  EXPECT_EQ(std::ranges::count(run.seen().Events(), "spindle wait 1.5"), 0);
+}
+
+// Right behind START a run is no halted one any more, whenever it is asked to go on.
+TEST(StopSides, ARunThatWasResumedRuns) {
+  TestRun run(ParametersOf("t1"), "!MC0;!NR;PU100,0;");
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_EQ(run->state().halted_by, machine::HaltReason::kProgram);
+  run.Press(InputKind::kStart);
+  EXPECT_EQ(run->state().phase, RunPhase::kRunning);
+  EXPECT_FALSE(run->state().halted_by);
 }
 
 }  // namespace

@@ -162,9 +162,10 @@ TEST(FingerprintOf, IsTheHashOfAllFieldsInTheirOrder) {
   full.breakpoint = {1, 2};
   full.simul = {3, 4};
   full.breakpoints = {{.at = {5, 6}, .condition = "VR[1] > 2", .from_pass = 8}};
-  full.inputs = {{SimTime(5), machine::InputKind::kLogical, 3, 1.5}};
+  full.inputs = {{SimTime(5), machine::InputKind::kLogical, 3, 1.5},
+                 {SimTime(6), machine::InputKind::kVariable, 0, 2.5, "VR[4]"}};
   full.forecast = true;
-  full.budget = {.steps = 12, .virtual_time = SimTime(13)};
+  full.budget = {.steps = 12, .virtual_time = SimTime(13), .steps_at_one_instant = 14};
   HashedBytes most;
   most.Text("fake").Text(kEngineVersion);
   const auto changed = full.parameters.Changed();
@@ -176,10 +177,12 @@ TEST(FingerprintOf, IsTheHashOfAllFieldsInTheirOrder) {
   most.Number(1).Number(1).Number(11).Text("n").Text("CW").Real(55.5);
   most.Text("state").Number(static_cast<std::uint64_t>(machine::Mode::kSingle)).Real(70.0);
   most.Number(1).Number(1).Number(2).Number(1).Number(3).Number(4);
-  most.Number(1).Number(5).Number(6).Text("VR[1] > 2").Number(8);
-  most.Number(1).Number(5).Number(static_cast<std::uint64_t>(machine::InputKind::kLogical));
+  most.Number(~std::uint64_t{1}).Number(1).Number(5).Number(6).Text("VR[1] > 2").Number(8);
+  most.Number(2).Number(5).Number(static_cast<std::uint64_t>(machine::InputKind::kLogical));
   most.Number(3).Real(1.5);
-  most.Number(1).Number(12).Number(13);
+  most.Number(6).Number(static_cast<std::uint64_t>(machine::InputKind::kVariable));
+  most.Number(0).Real(2.5).Text("VR[4]");
+  most.Number(1).Number(12).Number(13).Number(14);
   EXPECT_EQ(FingerprintOf(FakeFamily(), full), Fnv1a128(most.all));
 }
 

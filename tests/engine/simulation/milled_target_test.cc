@@ -74,5 +74,15 @@ TEST(MilledTarget, OfAProgramThatDoesNotBeginIsNone) {
   EXPECT_EQ(dry.error().code, ErrorCode::kCellUnimplemented);
 }
 
+// An emergency stop of a mill has no number: what it leaves is no target, and not for the text of
+// the program.
+TEST(MilledTarget, OfARunThatEndsWithoutACodeIsNone) {
+  const auto ended = Milled("!PZ-100,200;PU550,550;PD550,550;PU0,0;",
+                            {.inputs = {{SimTime(1), machine::InputKind::kEmergencyStop, 0, 1.0}}});
+  ASSERT_FALSE(ended);
+  EXPECT_EQ(ended.error().code, ErrorCode::kCellWaitsForever);
+  EXPECT_EQ(ended.error().detail, "the program does not run to its end; emergency stop");
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

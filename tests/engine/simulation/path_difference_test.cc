@@ -432,6 +432,21 @@ TEST(PictureOfDifference, SmallDifferencesAreShownCloser) {
   EXPECT_EQ(CountOf(picture(before), "both run along the same path"), 1u);
 }
 
+// Below 0.35 of what is shown, margins included, a difference is small: 40 of 159 mm are, 100 of
+// 227 mm are seen well enough in the whole.
+TEST(PictureOfDifference, AMiddlingDifferenceIsNotShownTwice) {
+  const auto closer = [](double longer_mm) {
+    Path before, after;
+    before.Line({0, 0, 0}, {100, 0, 0});
+    after.Line({0, 0, 0}, {100, 0, 0}).Line({100, 0, 0}, {100 + longer_mm, 0, 0});
+    return CountOf(PictureOfDifference({.path = before.sketch(), .title = "a"},
+                                       {.path = after.sketch(), .title = "b"}, Laser(), {}, {}),
+                   ">Where they differ, closer<");
+  };
+  EXPECT_EQ(closer(40.0), 1u);
+  EXPECT_EQ(closer(100.0), 0u);
+}
+
 // Of a run that did not come to its end the picture does not say that its path is the same.
 TEST(PictureOfDifference, APathThatIsCutShortIsNotTheSame) {
   Path path;

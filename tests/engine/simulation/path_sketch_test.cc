@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/core/units.h"
+#include "engine/simulation/path/part_shape.h"
+#include "engine/simulation/path/polyline.h"
 #include "tests/engine/simulation/fake_run.h"
 
 namespace rmlcell::simulation {
@@ -181,6 +183,27 @@ TEST(PathSketch, NonsensePositionsAreLeftOut) {
   AddLine(sketch, {0, 0, 0}, {HUGE_VAL, 0, 0});
   EXPECT_TRUE(sketch.elements().empty());
   EXPECT_TRUE(sketch.box().empty() || sketch.box().max == MachineVector{});
+}
+
+// What is neither line nor arc is drawn as chords within a hundredth of a millimetre, which no
+// picture shows: with longer ones the curve of a corner would have visible edges.
+TEST(PathSketch, CurvesAreChordsWithinAHundredth) {
+  PathSketch sketch({}, 10'000);
+  std::size_t chords = 0;
+  for (const double up : {10.0, 40.0, 70.0, 100.0, 160.0}) {
+    for (const motion::PlannedMotion& planned :
+         PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{150, up, 0}})) {
+      const double length = planned.path.length();
+      sketch.Add({.use = MotionUse::kCut, .motion = &planned, .travelled = length});
+      PartShape shape({planned.path, planned.head, 0.0, length});
+      motion::MachinePoint at = shape.tip_from();
+      ForEachVertex(shape, 0.01, [&](double /*s*/, const motion::MachinePoint& tip) {
+        if (at != tip) ++chords;
+        at = tip;
+      });
+    }
+  }
+  EXPECT_EQ(sketch.elements().size(), chords);
 }
 
 // The head's direction is kept for some of the cuts, however many there are.

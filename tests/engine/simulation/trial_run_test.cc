@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "engine/families/families.h"
 #include "tests/engine/simulation/fake_family.h"
@@ -11,7 +12,7 @@
 namespace rmlcell::simulation {
 namespace {
 
-Result<TrialRun> RunTrial(const std::string& text) {
+Result<TrialRun> RunTrial(const std::string& text, SimulationOptions options = {}) {
   const machine::MachineFamily& family = *families::FindFamily("optimo");
   machine::RunSetup setup{machine::Parameters(family.parameters())};
   machine::Translation made =
@@ -19,7 +20,7 @@ Result<TrialRun> RunTrial(const std::string& text) {
   EXPECT_TRUE(made.ok);
   setup.programs[1].object = machine::Bytes::Of(std::move(made.object));
   setup.main_program = 1;
-  return RunForComparison(family, std::move(setup), {});
+  return RunForComparison(family, std::move(setup), std::move(options));
 }
 
 // At 50 mm/s, 100 mm without the beam and 50 mm with it, which pierced for a second; ramps take
@@ -59,6 +60,30 @@ TEST(TrialRun, OfAFailureHasThePathOnly) {
   EXPECT_TRUE(run->figures.empty());
   ASSERT_NE(run->path, nullptr);
   EXPECT_EQ(run->path->elements(), 1u);
+}
+
+// What the verdict on it hangs on is told beside the outcome: whoever compares two runs asks why
+// one of them is bad.
+TEST(TrialRun, HasTheReasonsOfItsVerdict) {
+  const Result<TrialRun> failed = RunTrial("VR[0]=1/0\n");
+  ASSERT_TRUE(failed);
+  ASSERT_FALSE(failed->reasons.empty());
+  EXPECT_EQ(failed->reasons.front().code, failed->outcome.code);
+  EXPECT_EQ(failed->reasons.front().verdict, machine::Verdict::kBad);
+}
+
+// It is driven as its caller says: where the program halts it ends, or is started.
+TEST(TrialRun, IsDrivenAsAskedFor) {
+  const std::string halts = "STOP\nDELAY 1.\n";
+  const Result<TrialRun> ended = RunTrial(halts);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->outcome.kind, machine::OutcomeKind::kStopped);
+  EXPECT_EQ(ended->outcome.code, ErrorCode::kCellWaitsForever);
+  SimulationOptions options;
+  options.at_halt = AtHalt::kStart;
+  const Result<TrialRun> started = RunTrial(halts, options);
+  ASSERT_TRUE(started);
+  EXPECT_EQ(started->outcome.kind, machine::OutcomeKind::kCompleted);
 }
 
 TEST(TrialRun, OfASetupThatMakesNoSenseIsRefused) {

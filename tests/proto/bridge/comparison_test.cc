@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "engine/core/number_text.h"
 #include "engine/optimo/language/compiler.h"
 
 namespace rmlcell::bridge {
@@ -159,6 +160,7 @@ TEST(Comparison, OfRunsThatDoNotEndByThemselves) {
   EXPECT_FALSE(runs(ends, halts));
   EXPECT_FALSE(runs(halts, ends));
   EXPECT_FALSE(runs(ends, goes_on, {.steps_max = 100}));
+  EXPECT_FALSE(runs("DELAY 1\nDELAY 2\n", "DELAY 1\nDELAY 2\n", {.steps_max = 1}));
   EXPECT_FALSE(runs(goes_on, ends, {.go_on = [] { return false; }}));
   EXPECT_TRUE(runs(ends, "DELAY 2\n", {.steps_max = 100, .go_on = [] { return true; }}));
 }
@@ -224,6 +226,19 @@ TEST(Comparison, ThePicture) {
   EXPECT_THAT(picture, Not(HasSubstr("new\\two.S")));
   EXPECT_THAT(picture, HasSubstr("two.S: stopped at 1/4, OPT-E7507"));
   EXPECT_THAT(picture, Not(HasSubstr("one.S: ")));  // it ran to its end
+}
+
+// A figure that changed stands there as it was before and as it is after.
+TEST(Comparison, ThePictureHasTheFiguresOfBoth) {
+  const std::string line = "COORD ABSOL\nPATH LIN\nMOVE (100.,100.,-100.,0.,0.)\n";
+  const v1::DiffProgramsResponse diff =
+      Compared(line + "DELAY 1\n", line + "DELAY 2\n", {.picture = true}).response;
+  const auto cycle = std::ranges::find(diff.figures(), "cycle_time",
+                                       &v1::DiffProgramsResponse::FigureChange::name);
+  ASSERT_NE(cycle, diff.figures().end());
+  EXPECT_LT(cycle->before(), cycle->after());
+  EXPECT_THAT(diff.picture_svg(), HasSubstr(TrimmedText(cycle->before(), 3) + " → " +
+                                            TrimmedText(cycle->after(), 3) + " s"));
 }
 
 // On which machine both ran, and what was changed of it.
@@ -295,7 +310,8 @@ TEST(Comparison, WhatIsNoProgramOfTheOptimo) {
     };
     const Error mill = refused(TextOf("PU;", "part.rml"));
     EXPECT_EQ(mill.code, ErrorCode::kCellInvalidArgument);
-    EXPECT_THAT(mill.detail, HasSubstr("are programs for different machines"));
+    EXPECT_EQ(mill.detail, std::string(first ? "part.rml and a.S" : "a.S and part.rml") +
+                               " are programs for different machines");
     EXPECT_EQ(refused(TextOf(std::string("LMR\x01\xFF", 5), "a.O")).code,
               ErrorCode::kObjectCorrupt);
   }

@@ -96,7 +96,9 @@ TEST(NamedNumbers, OfInputs) {
 TEST(NamedNumbers, WhereAnInputIsWrong) {
   const std::tuple<std::string, int, int> rows[] = {{"\n\n\nSTART", 4, 1},
                                                     {"\n12.5 START = 1", 2, 6},
-                                                    {"0 HOLD\n\n\n\n 1 IL[1] = 2", 5, 3},
+                                                    {"0 HOLD\n\n\n\n 1 IL[1] = 2", 5, 4},
+                                                    {"  1 \t DOOR = 2 # no", 1, 7},
+                                                    {"\t START", 1, 3},
                                                     {"\n\n1 IL[1] = maybe", 3, 0}};
   for (const auto& [text, line, column] : rows) {
     v1::SimulationOptions options;

@@ -1,21 +1,32 @@
 // A whole server in this process: what keeps it from starting, and what is left when it has ended.
 #include <gmock/gmock.h>
+#include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "grpc/health/v1/health.grpc.pb.h"
+#include "rmlcell/v1/machine.grpc.pb.h"
+#include "server/base/log.h"
 #include "server/cell/cell.h"
+#include "server/records/machine_options.h"
 #include "storage/opening/open_store.h"
 
 namespace rmlcell::server {
 namespace {
 
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 class CellStartTest : public testing::Test {
@@ -40,12 +51,16 @@ class CellStartTest : public testing::Test {
     const auto cell = Cell::Start(config);
     return cell ? Error{ErrorCode::kCellInternal, "it has started", {}} : cell.error();
   }
-  // Hosts had these machines when the server of before ended.
-  static void PutLeases(const Config& config, bool pinned) {
+  // While no server has it.
+  static Result<std::unique_ptr<storage::Store>> StoreOf(const Config& config) {
     storage::StoreChoice choice;
     choice.directory = config.state_directory;
     choice.keep_record_events = 100;
-    const auto store = storage::OpenStore(choice);
+    return storage::OpenStore(choice);
+  }
+  // Hosts had these machines when the server of before ended.
+  static void PutLeases(const Config& config, bool pinned) {
+    const auto store = StoreOf(config);
     ASSERT_TRUE(store) << store.error().detail;
     for (const MachineConfig& machine : config.machines) {
       ASSERT_TRUE((*store)->PutMachine({.id = machine.id,
@@ -59,6 +74,25 @@ class CellStartTest : public testing::Test {
                                          .duration = std::chrono::minutes(1),
                                          .pinned = pinned}));
     }
+  }
+  static std::shared_ptr<grpc::Channel> ChannelTo(const Cell& cell) {
+    return grpc::CreateChannel(cell.grpc_addresses().front(), grpc::InsecureChannelCredentials());
+  }
+  static void BePatient(grpc::ClientContext& context) {
+    context.set_wait_for_ready(true);
+    context.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(1));
+  }
+  // As whoever asks the server hears it.
+  static v1::MachineState StateOf(const Cell& cell, const std::string& machine) {
+    grpc::ClientContext context;
+    BePatient(context);
+    v1::GetMachineRequest request;
+    request.set_name("machines/" + machine);
+    v1::Machine told;
+    const grpc::Status status =
+        v1::MachineService::NewStub(ChannelTo(cell))->GetMachine(&context, request, &told);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return told.status().state();
   }
 
   std::string folder_ = testing::TempDir() + "cell_XXXXXX";
@@ -165,6 +199,88 @@ TEST_F(CellStartTest, StartsThoughNotAllOfItsMachinesMayLive) {
   PutLeases(config, false);
   const auto cell = Cell::Start(config);
   EXPECT_TRUE(cell) << cell.error().detail;
+}
+
+// machines.hosts: all of them live, or those whose record says so; what the record says counts. Who
+// waits for its host, which never comes here, is starting.
+TEST_F(CellStartTest, AMachineLivesWhereItsRecordOrTheConfigurationSaysSo) {
+  for (const bool all : {true, false}) {
+    Config config = Alone(all ? "all" : "enabled");
+    config.machines_hosts = all ? "all" : "enabled";
+    v1::MachineOptions otherwise;
+    otherwise.set_enabled(!all);
+    otherwise.set_disabled(all);
+    {
+      const auto store = StoreOf(config);
+      ASSERT_TRUE(store) << store.error().detail;
+      ASSERT_TRUE((*store)->PutMachine({.id = "mill-2",
+                                        .family = "rml1",
+                                        .title = "Another",
+                                        .profile = "srm-20",
+                                        .options = BytesOf(otherwise)},
+                                       0));
+    }
+    const auto cell = Cell::Start(config);
+    ASSERT_TRUE(cell) << cell.error().detail;
+    for (const auto& [machine, lives] : {std::pair("mill-1", all), std::pair("mill-2", !all)}) {
+      EXPECT_EQ(StateOf(**cell, machine) == v1::MACHINE_STATE_STARTING, lives) << machine << all;
+    }
+  }
+}
+
+// A store that is none is not begun anew; the way out is told where there is one.
+TEST_F(CellStartTest, ADamagedStoreIsToldWithTheWayOut) {
+  const Config damaged = Alone("damaged");
+  std::filesystem::create_directories(damaged.state_directory);
+  std::ofstream(damaged.state_directory + "/cell.db") << "xy";
+  const Error refused = Refusal(damaged);
+  EXPECT_EQ(refused.code, ErrorCode::kCellStoreCorrupt);
+  EXPECT_THAT(refused.detail, EndsWith("; the server does not start with it. Use another "
+                                       "state.directory for an empty store"));
+  const auto cell = Cell::Start(Alone("used"));
+  ASSERT_TRUE(cell) << cell.error().detail;
+  const Error used = Refusal(Alone("used"));
+  EXPECT_EQ(used.code, ErrorCode::kCellStoreBusy);
+  EXPECT_THAT(used.detail, Not(HasSubstr("state.directory")));
+}
+
+// What was made once stays as it is: whoever changes the configuration alone reads that in the log.
+TEST_F(CellStartTest, TheLogSaysWhereTheStoreCounts) {
+  Config config = Alone("kept");
+  config.machines.push_back({"any", "rml1", "", "Any"});
+  ASSERT_TRUE(Cell::Start(config));
+  config.machines = {{"mill-1", "rml1", "mdx-20", "A mill"},
+                     {"mill-2", "rml1", "srm-20", "Another title"},
+                     {"any", "optimo", "", "Any"}};
+  const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
+  EXPECT_TRUE(StartLog("cell-kept", "warn", "text", folder_ + "/log"));
+  EXPECT_TRUE(Cell::Start(config));
+  spdlog::drop("cell-kept");
+  spdlog::set_default_logger(before);
+  std::vector<std::string> told;
+  std::ifstream log(folder_ + "/log");
+  for (std::string line; std::getline(log, line);) {
+    if (line.ends_with(": the store counts")) told.push_back(line.substr(line.find("machine ")));
+  }
+  const std::vector<std::string> wanted = {
+      "machine mill-1 is in the store as rml1 srm-20, and the configuration says rml1 mdx-20: "
+      "the store counts",
+      "machine any is in the store as rml1 , and the configuration says optimo : the store counts"};
+  EXPECT_EQ(told, wanted);
+}
+
+// grpc.health.v1: whoever watches over servers hears that this one serves.
+TEST_F(CellStartTest, SaysThatItServes) {
+  const auto cell = Cell::Start(Alone("serving"));
+  ASSERT_TRUE(cell) << cell.error().detail;
+  grpc::ClientContext context;
+  BePatient(context);
+  const grpc::health::v1::HealthCheckRequest request;
+  grpc::health::v1::HealthCheckResponse response;
+  const grpc::Status status =
+      grpc::health::v1::Health::NewStub(ChannelTo(**cell))->Check(&context, request, &response);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(response.status(), grpc::health::v1::HealthCheckResponse::SERVING);
 }
 
 TEST_F(CellStartTest, LeavesNothingBehind) {

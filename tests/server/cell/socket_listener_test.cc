@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <spdlog/spdlog.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -25,6 +24,7 @@
 
 #include "server/auth/socket_users.h"
 #include "server/base/log.h"
+#include "tests/server/no_descriptors.h"
 
 namespace rmlcell::server {
 namespace {
@@ -36,32 +36,34 @@ constexpr std::string_view kWrongSocketPath =
 // RFC 9113 3.4: what a client says first, with SETTINGS of nothing; a server says SETTINGS.
 constexpr std::string_view kClientPreface("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n\0\0\0\4\0\0\0\0\0", 33);
 
-// As long as it lives nothing can be opened in this process.
-class NoDescriptors {
- public:
-  NoDescriptors() {
-    EXPECT_EQ(::getrlimit(RLIMIT_NOFILE, &before_), 0);
-    rlimit none = before_;
-    none.rlim_cur = 0;
-    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
-  }
-  ~NoDescriptors() { EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &before_), 0); }
-  NoDescriptors(const NoDescriptors&) = delete;
-  NoDescriptors& operator=(const NoDescriptors&) = delete;
-
- private:
-  rlimit before_{};
-};
-
-// A client that has said its first words.
-int Connected(const std::string& path) {
+sockaddr_un NameOf(const std::string& path) {
   sockaddr_un name{};
   name.sun_family = AF_UNIX;
   path.copy(name.sun_path, sizeof(name.sun_path) - 1);
+  return name;
+}
+
+// A client that has said its first words.
+int Connected(const std::string& path) {
+  const sockaddr_un name = NameOf(path);
   const int client = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   EXPECT_EQ(::connect(client, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
   EXPECT_EQ(::send(client, kClientPreface.data(), kClientPreface.size(), MSG_NOSIGNAL), 33);
   return client;
+}
+
+// As soon as the server has said something, too.
+bool IsAnswered(int client) {
+  pollfd answer{.fd = client, .events = POLLIN, .revents = 0};
+  char first = 0;
+  return ::poll(&answer, 1, 60'000) == 1 && ::recv(client, &first, 1, MSG_DONTWAIT) == 1;
+}
+
+// Speaks the protocol, and has no methods.
+std::unique_ptr<grpc::Server> ServerOf(grpc::CallbackGenericService& service) {
+  grpc::ServerBuilder builder;
+  builder.RegisterCallbackGenericService(&service);
+  return builder.BuildAndStart();
 }
 
 // True as soon as something stands in the file, which is not opened for that.
@@ -161,15 +163,49 @@ TEST_F(SocketListenerTest, TakesNothingThatIsOfUse) {
   EXPECT_EQ(std::filesystem::file_size(path), 4U);
 }
 
+// What a server that was killed has left there is taken away: nobody answers at it.
+TEST_F(SocketListenerTest, ReplacesTheSocketOfADeadServer) {
+  const std::string path = folder_ + "/cell.sock";
+  const sockaddr_un name = NameOf(path);
+  const int dead = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  EXPECT_EQ(::bind(dead, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
+  ::close(dead);
+  ASSERT_TRUE(std::filesystem::is_socket(path));
+  EXPECT_EQ(Refusal(path), "");
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+// socket_users.h: who is at the other end is known before anything of him is heard.
+TEST_F(SocketListenerTest, KnowsWhoComes) {
+  grpc::CallbackGenericService service;
+  const std::unique_ptr<grpc::Server> server = ServerOf(service);
+  ASSERT_NE(server, nullptr);
+  const std::string path = folder_ + "/cell.sock";
+  auto made = SocketListener::Make("unix://" + path, users_);
+  ASSERT_TRUE(made) << made.error().detail;
+  std::unique_ptr<SocketListener> listener = *std::move(made);
+  listener->Serve(*server);
+  const int client = Connected(path);
+  EXPECT_TRUE(IsAnswered(client));
+  std::vector<unsigned> known;
+  for (int descriptor = 0; descriptor < 1'024; ++descriptor) {
+    const auto user = users_.Of(std::string(SocketUsers::kPeer) + std::to_string(descriptor));
+    if (user) known.push_back(*user);
+  }
+  EXPECT_EQ(known, std::vector<unsigned>{::getuid()});
+  listener.reset();
+  ::close(client);
+  server->Shutdown(std::chrono::system_clock::now());
+  server->Wait();
+}
+
 // Who comes while no descriptor is free waits, and the log says so; there is one again, and it is
 // served.
 TEST_F(SocketListenerTest, AClientWaitsForADescriptor) {
   const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
   ASSERT_TRUE(StartLog("cell-waits", "info", "text", folder_ + "/log"));
   grpc::CallbackGenericService service;
-  grpc::ServerBuilder builder;
-  builder.RegisterCallbackGenericService(&service);
-  const std::unique_ptr<grpc::Server> server = builder.BuildAndStart();
+  const std::unique_ptr<grpc::Server> server = ServerOf(service);
   const std::string path = folder_ + "/cell.sock";
   auto made = SocketListener::Make("unix://" + path, users_);
   EXPECT_TRUE(made);
@@ -181,10 +217,7 @@ TEST_F(SocketListenerTest, AClientWaitsForADescriptor) {
       listener->Serve(*server);
       EXPECT_TRUE(IsWritten(folder_ + "/log"));
     }
-    pollfd answer{.fd = client, .events = POLLIN, .revents = 0};
-    EXPECT_EQ(::poll(&answer, 1, 60'000), 1);
-    char first = 0;
-    EXPECT_EQ(::recv(client, &first, 1, MSG_DONTWAIT), 1);
+    EXPECT_TRUE(IsAnswered(client));
     listener.reset();
     ::close(client);
     server->Shutdown(std::chrono::system_clock::now());

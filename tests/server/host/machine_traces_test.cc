@@ -241,5 +241,74 @@ TEST_F(MachineTraces, AnAnswerOfAnEarlierHostIsKeptNoLonger) {
   EXPECT_EQ(Do(Start("once")).refusal().message(), "as before");
 }
 
+// LIVE-2.10: a start that is refused begins nothing: why the run of a job is held stays as it was,
+// and what comes of it is told by the time since it began.
+TEST_F(MachineTraces, AStartThatIsRefusedLeavesTheRunAsItIs) {
+  Make();
+  host_->Begin({}, now_);
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  Pass(3s, 50ms);
+  Of(v1::JournalEntry::kApplied);
+  ASSERT_FALSE(Do(JobOf(kSquare, "square.rml")).has_refusal());
+  const auto started = Of(v1::JournalEntry::kApplied);
+  ASSERT_EQ(started.size(), 1U);
+  EXPECT_EQ(started[0].run_time_ns(), 0);
+  Pass(5s, 50ms);
+  host_->Hold(v1::HOLD_REASON_SERVER_LOST, now_);
+  Pass(2s);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
+  static_cast<void>(host_->TakeEntries(now_, true));
+  ASSERT_TRUE(Do(Start()).has_refusal());
+  EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_SERVER_LOST);
+  ASSERT_FALSE(Do(Resume()).has_refusal());
+  for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true)) {
+    EXPECT_EQ(entry.job(), "jobs/17");
+    EXPECT_EQ(entry.run_time_ns(), entry.virtual_time_ns() - started[0].virtual_time_ns());
+  }
+}
+
+// LIVE-3.14: a run that is held loses time as well, though nothing moves.
+TEST_F(MachineTraces, TimeThatIsLostInAHoldIsTold) {
+  Make();
+  host_->Begin({}, now_);
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  ASSERT_FALSE(Do(Start()).has_refusal());
+  Pass(2s);
+  Do(Stop());
+  Pass(2s);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
+  Of(v1::JournalEntry::kClockSlipped);
+  Pass(700ms, 700ms);
+  const auto slipped = Of(v1::JournalEntry::kClockSlipped);
+  ASSERT_EQ(slipped.size(), 1U);
+  EXPECT_GT(slipped[0].clock_slipped().lost_ns(), 0);
+  EXPECT_LE(slipped[0].clock_slipped().lost_ns(), 700'000'000);
+}
+
+// LIVE-3.40: what an earlier host had to tell is in the recording that it made, and is not added
+// to that once more.
+TEST_F(MachineTraces, WhatAnEarlierHostRecordedStaysAsItWas) {
+  v1::JournalEntry event;
+  event.set_fence(6);
+  event.set_sequence(10);
+  event.mutable_event()->mutable_message()->set_text("hello");
+  auto made = HostMachine::Make(
+      {.name = "machines/mill-1",
+       .host = "workshop/1",
+       .fence = 7,
+       .family = families::FindFamily("rml1"),
+       .profile = "srm-20",
+       .untold = {event},
+       .recording = MachineRecorder::OfJob{.job = "jobs/17", .file = "as it was"}},
+      now_, [] { return std::string("token"); });
+  ASSERT_TRUE(made) << made.error().detail;
+  host_ = *std::move(made);
+  host_->Begin({}, now_);
+  EXPECT_EQ(Of(v1::JournalEntry::kEvent).size(), 1U);
+  v1::HostOrder order;
+  order.mutable_recording()->set_job("jobs/17");
+  EXPECT_EQ(Do(order).recording().chunk(), "as it was");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

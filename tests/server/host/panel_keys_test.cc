@@ -322,5 +322,20 @@ TEST_F(PanelKeysTest, ANewLeaseKnowsNothingOfTheOneBefore) {
   EXPECT_EQ(State(), v1::MACHINE_STATE_JOGGING);
 }
 
+// LIVE-7.06: pressing a key that was stopped once more does not release it; a tap, which is a
+// release as well, does, and moves nothing itself.
+TEST_F(PanelKeysTest, ATapReleasesAKeyThatWasStopped) {
+  MakeAndTake();
+  Do(Key("X+", v1::KEY_ACTION_PRESS));
+  Hold("X+", 300ms);
+  Pass(2s);  // nobody is heard
+  ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  for (int press = 0; press < 2; ++press)
+    EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).refusal().code(), "CELL-E9434") << press;
+  EXPECT_EQ(Do(Key("X+")).refusal().code(), "CELL-E9434");
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(Do(Key("X+", v1::KEY_ACTION_PRESS)).status().state(), v1::MACHINE_STATE_JOGGING);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

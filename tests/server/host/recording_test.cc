@@ -506,5 +506,18 @@ TEST_F(RecordingTest, WhoPlaysItIsToldWhereItStands) {
   EXPECT_LT(part->until, SimTime(what.entries.back().virtual_time_ns()));
 }
 
+// LIVE-3.40: it begins where its machine stood then, and when.
+TEST_F(RecordingTest, ItBeginsWhereItsMachineStood) {
+  MakeAndTake();
+  Pass(3s, 50ms);
+  ASSERT_FALSE(Do(Start()).has_refusal());
+  const Recording what = Recorded();
+  ASSERT_FALSE(what.entries.empty());
+  const v1::JournalEntry& begin = what.entries.front();
+  EXPECT_EQ(begin.fence(), 7);
+  EXPECT_EQ(begin.virtual_time_ns(), 3'000'000'000);
+  EXPECT_EQ(begin.mark().virtual_time_ns(), 3'000'000'000);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -187,5 +187,39 @@ TEST_F(StartAtTest, StepsThatAreNone) {
   EXPECT_EQ(far.preview().refusals(0).code(), "CELL-E9426");
 }
 
+// LIVE-6.08: that it stands elsewhere is said by the name that this has for people.
+TEST_F(StartAtTest, APreviewIsOfWhereTheMachineStands) {
+  MakeAndTake();
+  const std::string token = Preview(8).preview().preview_token();
+  ASSERT_NE(token, "");
+  v1::HostOrder order;
+  v1::PressPanelKeyRequest& key = *order.mutable_panel_key();
+  key.set_key("X+");
+  key.set_action(v1::KEY_ACTION_TAP);
+  key.set_control_token(token_);
+  key.set_sequence(1);
+  ASSERT_FALSE(Do(order).has_refusal());
+  Pass(500ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  EXPECT_THAT(Do(StartAt(token)).refusal().message(), HasSubstr("pose X "));
+}
+
+// LIVE-3.22: by its own time the run began before its start, by the way to that step; what is told
+// of it is told of now.
+TEST_F(StartAtTest, NothingIsToldOfThePast) {
+  MakeAndTake();
+  Pass(20s, 50ms);
+  const v1::PreviewStartResponse preview = Preview(8).preview();
+  ASSERT_GT(preview.run_time_ns(), 0);
+  static_cast<void>(host_->TakeEntries(now_, true));
+  ASSERT_FALSE(Do(StartAt(preview.preview_token())).has_refusal());
+  int begun = 0;
+  for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true)) {
+    EXPECT_GE(entry.virtual_time_ns(), 20'000'000'000);
+    begun += entry.has_run_begun() ? 1 : 0;
+  }
+  EXPECT_EQ(begun, 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -68,5 +68,30 @@ TEST_F(TaughtTexts, WhoHasControlMayUndoThem) {
   EXPECT_EQ(Do(undo).refusal().code(), CodeText(ErrorCode::kCellControlNeeded));
 }
 
+// host.proto, HostEdit.object_revision: 0 where there was no program, though one of that number was
+// there before.
+TEST_F(TaughtTexts, OfAProgramThatIsGoneHaveNoRevision) {
+  OpenHandbox();
+  Store(Taught(session_, "MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC"));
+  v1::HostMemory nothing;
+  nothing.set_whole(true);
+  host_->Change(nothing, now_);
+  const v1::HostEdit again = Taught(session_, "JOB 1 2 ENT REC");
+  EXPECT_EQ(again.taught().act(), v1::TeachEntry::ACT_CREATE);
+  EXPECT_EQ(again.object_revision(), 0);
+}
+
+// LIVE-7.09: where a step stands among all instructions, by which it is taken back. Here each of
+// them is a step.
+TEST_F(TaughtTexts, OfAStepHaveItsPlace) {
+  OpenHandbox();
+  Store(Taught(session_, "MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC"));
+  Store(Taught(session_, "DLY DEL 0 POINT 5 ENT REC"));
+  const v1::TeachEntry second =
+      Taught(session_, "JOB 1 2 NEXT 2 ENT DLY DEL 0 POINT 7 ENT REC").taught();
+  ASSERT_GT(second.step().step(), 1);
+  EXPECT_EQ(second.place(), second.step().step() - 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -89,5 +89,22 @@ TEST_F(ToldReasons, AnOrderThatIsNotKnownIsNotDone) {
   EXPECT_EQ(Do(v1::HostOrder()).refusal().code(), CodeText(ErrorCode::kCellUnimplemented));
 }
 
+// LIVE-5.02: of all that is in the way of a start that which refused it is told first, wherever it
+// stands among the others.
+TEST_F(ToldReasons, WhatRefusedAStartIsToldFirst) {
+  Make({}, true);
+  host_->Begin({}, now_);
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  v1::HostOrder emergency;
+  emergency.mutable_emergency_stop();
+  Do(emergency);
+  const v1::HostOrderAnswer refused = Do(Start());
+  const std::string alarm = CodeText(ErrorCode::kCellEmergencyStop);
+  EXPECT_EQ(refused.refusal().code(), alarm);
+  std::vector<std::string> codes;
+  for (const v1::StartBlocker& one : refused.start_blockers()) codes.push_back(one.code());
+  EXPECT_THAT(codes, ElementsAre(alarm, CodeText(ErrorCode::kCellInspect)));
+}
+
 }  // namespace
 }  // namespace rmlcell::server

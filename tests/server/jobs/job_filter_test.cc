@@ -123,6 +123,10 @@ TEST(JobFilter, AnErrorSaysWhatWasExpected) {
   };
   EXPECT_EQ(detail("state"), "expected is FIELD = VALUE, found 'state'");
   EXPECT_EQ(detail("state = FAILED AND kind ="), "expected is FIELD = VALUE, found 'kind'");
+  // A sign is neither a field nor a value.
+  EXPECT_EQ(detail("caller == a"), "expected is FIELD = VALUE, found 'caller'");
+  EXPECT_EQ(detail("caller = ="), "expected is FIELD = VALUE, found 'caller'");
+  EXPECT_EQ(detail("= = a"), "expected is FIELD = VALUE, found '='");
   EXPECT_EQ(detail("state = FAILED AND"), "comparisons are joined by AND, found 'AND'");
   EXPECT_EQ(detail("state = FAILED OR kind = CHECK"), "comparisons are joined by AND, found 'OR'");
   EXPECT_EQ(detail("state = FAILED AND state = QUEUED"), "'state' stands twice");

@@ -1,6 +1,7 @@
 // What the worker of a job makes while the job runs, as its followers look at it.
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 
 #include "server/jobs/running_heights.h"
@@ -143,6 +144,22 @@ TEST(Followed, WakesItsFollowers) {
   running->End(true);
   EXPECT_EQ(one, 1);
   EXPECT_EQ(other, 3);
+}
+
+// So is whoever looks at the block.
+TEST(Followed, HeightsWakeTheirFollowers) {
+  const auto running = std::make_shared<RunningHeights>();
+  int woken = 0;
+  auto follower = running->Follow([&woken] { ++woken; });
+  running->Add(GridOf(64, 64));
+  EXPECT_EQ(woken, 1);
+  running->Add(TileAt(0, 0, 64, 64));
+  EXPECT_EQ(woken, 2);
+  running->End(true);
+  EXPECT_EQ(woken, 3);
+  follower.reset();
+  running->Add(TileAt(0, 0, 64, 64));
+  EXPECT_EQ(woken, 3);
 }
 
 // Without a grid nobody knows where a tile stands.

@@ -6,6 +6,9 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "server/base/names.h"
 #include "server/base/restart_delay.h"
@@ -285,6 +288,61 @@ TEST_F(HostsBounds, AMachineWhoseLineIsGoneIsShownAsLost) {
   EXPECT_EQ(hosts.StatusOf("mill-1")->jobs_active(), 1);
   hosts.Leave(*link);
   EXPECT_TRUE(Eventually([&] { return shown().state() == v1::MACHINE_STATE_LOST; }));
+}
+
+// An order that nobody answers is given up after 10 s, though its host says nothing at all.
+TEST_F(HostsBounds, AnOrderIsGivenUpByALook) {
+  const auto link = Joined();
+  std::string told;
+  v1::HostOrder order;
+  order.mutable_read_variables();
+  hosts.Ask("mill-1", std::move(order), [&told](const Result<v1::HostOrderAnswer>& answer) {
+    told = answer ? "answered" : answer.error().detail;
+  });
+  clock.Advance(Hosts::kAnswerPatience - milliseconds(1));
+  hosts.Look();
+  EXPECT_EQ(told, "");
+  clock.Advance(milliseconds(1));
+  hosts.Look();
+  EXPECT_EQ(told, "its host does not answer");
+}
+
+// LIVE-5.20: whoever asks what a host knows waits until all is stored that it told, and its line
+// stands.
+TEST_F(HostsBounds, AHostIsSettledWhenWhatItToldIsStored) {
+  const auto link = Joined();
+  const std::int64_t fence = Fence(*link);
+  EXPECT_FALSE(hosts.IsSettled("mill-1"));
+  for (const std::int64_t first : {1, 3}) {
+    std::promise<void> goes_on;
+    const std::shared_future<void> wait = goes_on.get_future().share();
+    for (int thread = 0; thread < kThreads; ++thread) executor->Post([wait] { wait.wait(); });
+    hosts.Receive(*link, Entries(fence, first, true));
+    EXPECT_FALSE(hosts.IsSettled("mill-1")) << first;
+    goes_on.set_value();
+    Settle();
+    EXPECT_TRUE(hosts.IsSettled("mill-1")) << first;
+  }
+  hosts.Leave(*link);
+  EXPECT_FALSE(hosts.IsSettled("mill-1"));
+}
+
+// Knows why it was closed.
+class ClosedLink final : public HostLink {
+ public:
+  void Send(v1::HostResponse /*message*/) override {}
+  void Close(const Error& reason) override { why = reason; }
+  std::optional<Error> why;
+};
+
+// A server that stops may be tried again, or another one.
+TEST_F(HostsBounds, AServerThatStopsSaysSoToItsHosts) {
+  const auto link = std::make_shared<ClosedLink>();
+  ASSERT_TRUE(hosts.Join(link, Hello()));
+  hosts.CloseAll();
+  ASSERT_TRUE(link->why);
+  EXPECT_EQ(link->why->code, ErrorCode::kCellUnavailable);
+  EXPECT_EQ(link->why->detail, "the server stops");
 }
 
 // Shell scripts in place of hosts.

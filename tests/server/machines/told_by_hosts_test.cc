@@ -113,6 +113,23 @@ TEST_F(ToldByHosts, AMachineThatIsOffSaysWhy) {
   EXPECT_NE(status.words().execution(), "");
 }
 
+// LIVE-2.14: a machine whose host is about to come, and one that is switched off, is not available
+// to whoever reads the words of the standards.
+TEST_F(ToldByHosts, WhatHasNoHostYetHasItsWords) {
+  storage::MachineRecord mill = Must(bed.store().GetMachine("mill-1"));
+  hosts.OnAwaited([](const std::string&) { return true; });
+  v1::MachineStatus status = StatusOf(&hosts, mill, {});
+  ASSERT_EQ(status.state(), v1::MACHINE_STATE_STARTING);
+  EXPECT_EQ(status.words().item_state(), "NotAvailable");
+  v1::MachineOptions options;
+  options.set_disabled(true);
+  mill.options = BytesOf(options);
+  status = StatusOf(&hosts, mill, {});
+  ASSERT_EQ(status.state(), v1::MACHINE_STATE_OFF);
+  EXPECT_EQ(status.words().item_state(), "NotAvailable");
+  EXPECT_EQ(status.words().execution(), "STOPPED");
+}
+
 // LIVE-5.04: the queue looks when the state changes, or what keeps jobs away, and not each time
 // that a machine says where it is.
 TEST_F(ToldByHosts, NewsIsWhatMayLetAJobBegin) {

@@ -151,6 +151,21 @@ TEST_F(LanguageToolsTest, CompletionsSayWhatTheyReplace) {
   EXPECT_EQ(jump->kind(), v1::Completion::KIND_SEQUENCE_NUMBER);
 }
 
+// OPT-1.10: those of the first and of the last slot among them.
+TEST_F(LanguageToolsTest, BehindACallAllProgramsAreOffered) {
+  for (const std::string slot : {"1", "99"}) {
+    EXPECT_TRUE(programs.Store({.name = "machines/optimo-1/programs/" + slot,
+                                .file_name = slot + ".S",
+                                .bytes = "DELAY 1\n"}));
+  }
+  std::vector<std::string> offered;
+  const auto found = Must(tools.Complete(At<v1::CompleteRequest>(1, 6, Text("CALL \n"))));
+  for (const v1::Completion& one : found.completions()) {
+    if (one.kind() == v1::Completion::KIND_PROGRAM) offered.push_back(one.label());
+  }
+  EXPECT_THAT(offered, testing::UnorderedElementsAre("1", "44", "99"));
+}
+
 TEST_F(LanguageToolsTest, RenameGivesWhatToReplaceOrWhyNot) {
   auto request = At<v1::RenameRequest>(1, 10);
   request.set_name("DISTANCE");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "proto/bridge/sha256.h"
 #include "server/base/config.h"
@@ -125,6 +126,15 @@ TEST_F(OutlinedTexts, AProgramIsOpenedWithItsMachine) {
   EXPECT_EQ(opened.memory.schedules[0].name, "thin");
   EXPECT_EQ(opened.memory.schedules[0].mode, "PULSE");
   EXPECT_EQ(opened.memory.schedules[0].power_percent, 40.0);
+}
+
+// OPT-1.13: slots that were emptied are known, as executables of others may hold what was there.
+TEST_F(OutlinedTexts, AProgramIsOpenedWithTheSlotsThatWereEmptied) {
+  for (const int slot : {12, 44})
+    Must(bed.store().PutPrograms("optimo-1", {{.slot = slot, .object = ObjectOf("STOP\n")}}, {}));
+  Must(bed.store().DeleteProgram("optimo-1", 44, storage::kAnyRevision));
+  const auto opened = Must(programs.Open("machines/optimo-1/programs/12"));
+  EXPECT_EQ(opened.memory.deleted_programs, std::vector<int>{44});
 }
 
 // What was announced is what has to come, whether its size was known or not.

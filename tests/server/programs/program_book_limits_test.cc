@@ -209,5 +209,22 @@ TEST_F(ProgramBookLimits, TheFirstErrorStandsForAll) {
   EXPECT_THAT(detail("SPEED 101\nSPEED 102\nSPEED 103\n"), testing::EndsWith(" (and 2 more)"));
 }
 
+// OPT-W.44: of TASK 2 nothing comes. A warning is no error, wherever it stands.
+TEST_F(ProgramBookLimits, AWarningIsNotTheFirstError) {
+  const auto wrong = programs.Store(
+      {.name = Name(45), .file_name = "a.S", .bytes = "TASK 2\nSPEED 101\nSPEED 102\n"});
+  ASSERT_FALSE(wrong);
+  ASSERT_FALSE(wrong.error.diagnostics.empty());
+  ASSERT_FALSE(IsError(wrong.error.diagnostics.front().severity));
+  EXPECT_EQ(wrong.error.error.code, ErrorCode::kLiteralRange);
+  EXPECT_THAT(wrong.error.error.detail, testing::StartsWith("line 2: "));
+  EXPECT_THAT(wrong.error.error.detail, testing::EndsWith(" (and 1 more)"));
+  // Nor does it keep a program from being good.
+  const v1::Program stored =
+      Stored({.name = Name(45), .file_name = "a.S", .bytes = "TASK 2\nSPEED 100\n"});
+  EXPECT_GT(stored.findings().diagnostics_size(), 0);
+  EXPECT_TRUE(stored.findings().ok());
+}
+
 }  // namespace
 }  // namespace rmlcell::server

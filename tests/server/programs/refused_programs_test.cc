@@ -67,6 +67,22 @@ TEST_F(RefusedPrograms, OnAMachineWhoseParametersAreNone) {
             std::nullopt);
 }
 
+// A later version may have stored a machine whose family nobody knows here.
+TEST_F(RefusedPrograms, OnAMachineOfNoFamily) {
+  Must(bed.store().PutMachine({.id = "odd", .family = "lathe"}, 0));
+  EXPECT_EQ(Translated("machines/odd"), ErrorCode::kCellUnknownFamily);
+  v1::ProgramText text;
+  text.set_file_name("44.S");
+  text.set_content("STOP\n");
+  EXPECT_EQ(CodeOf(programs.Check({}, "machines/odd", text, true)), ErrorCode::kCellUnknownFamily);
+}
+
+// OPT-1.15: where there is no object there is no executable, whatever etag it is said to have.
+TEST_F(RefusedPrograms, AnExecutableOfAnEmptySlotIsMissing) {
+  EXPECT_EQ(Delete(146, "7"), ErrorCode::kProgramMissing);
+  EXPECT_EQ(Delete(146), ErrorCode::kProgramMissing);
+}
+
 // OPT-1.08: what is in the slot is no object, whichever of its forms is asked for.
 TEST_F(RefusedPrograms, OfAnObjectThatIsNone) {
   Put(45, "no object");

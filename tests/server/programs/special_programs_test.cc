@@ -91,6 +91,25 @@ TEST_F(SpecialProgramsTest, AFilledSlotIsRefusedUnlessItIsToBeReplaced) {
   EXPECT_FALSE(replaced.programs(1).has_executable_bytes());
 }
 
+// OPT-1.08: one that is longer than an object of the machine may be is refused by its file; what
+// was there stays.
+TEST_F(SpecialProgramsTest, OneThatIsTooLongForItsMachineIsRefused) {
+  const v1::Program stored = Must(Store({2})).programs(0);
+  ASSERT_GT(stored.object_bytes(), 100);
+  const auto limit = [&](std::int64_t bytes) {
+    storage::MachineRecord machine = Must(bed.store().GetMachine("optimo-1"));
+    machine.parameters = {{"OBJECT_LIMIT", std::to_string(bytes)}};
+    Must(bed.store().PutMachine(machine, storage::kAnyRevision));
+  };
+  limit(stored.object_bytes() - 1);
+  const auto refused = Store({2}, true);
+  ASSERT_EQ(CodeOf(refused), ErrorCode::kObjectTooLong);
+  EXPECT_THAT(refused.error().detail, testing::StartsWith("2.S: "));
+  EXPECT_EQ(Must(programs.Get(stored.name())).etag(), stored.etag());
+  limit(stored.object_bytes());
+  EXPECT_EQ(CodeOf(Store({2}, true)), std::nullopt);
+}
+
 TEST_F(SpecialProgramsTest, MachinesThatHaveNone) {
   const auto mill = Store({}, false, "mill-1");
   EXPECT_EQ(CodeOf(mill), ErrorCode::kCellPrecondition);

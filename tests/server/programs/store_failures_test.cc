@@ -122,6 +122,21 @@ TEST_F(ProgramStoreFailures, AFixGoesOnWithWhatWasFoundBefore) {
   EXPECT_EQ(fixed.content(), "SPEED 20\n");
 }
 
+// And so it is told as it was asked for: with advice, or without.
+TEST_F(ProgramStoreFailures, WhatWasFoundBeforeHasNoMoreThanWasAskedFor) {
+  v1::FixProgramRequest fix;
+  fix.mutable_program()->set_file_name("44.S");
+  fix.mutable_program()->set_content("GOTO 10\nDELAY 1.\n10 STOP\n");
+  fix.set_machine("machines/optimo-1");
+  for (const bool errors_only : {false, true}) {
+    fix.set_errors_only(errors_only);
+    store.FailAt(2);
+    const auto fixed = Must(tools.Fix(fix));
+    EXPECT_TRUE(store.failed());
+    EXPECT_EQ(fixed.findings().diagnostics_size() == 0, errors_only);
+  }
+}
+
 // Another client stores the object between the look at it and the executable for it.
 class HastyStore final : public ForwardingStore {
  public:

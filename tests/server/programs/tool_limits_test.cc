@@ -165,6 +165,55 @@ TEST_F(ToolLimits, AComparisonOfWhatHasErrors) {
   EXPECT_TRUE(diff.error.dropped.empty());
 }
 
+// Of both sides all is told that is wrong; the first error of the first one stands for all.
+TEST_F(ToolLimits, BothSidesOfAComparisonMayHaveErrors) {
+  v1::DiffProgramsRequest request;
+  request.mutable_before()->mutable_text()->set_file_name("old.S");
+  request.mutable_before()->mutable_text()->set_content("SPEED 101\n");
+  request.mutable_after()->mutable_text()->set_file_name("new.S");
+  request.mutable_after()->mutable_text()->set_content("STOP\nSPEED 102\n");
+  const auto diff = tools.Diff(request);
+  ASSERT_FALSE(diff);
+  EXPECT_EQ(diff.error.error.code, ErrorCode::kLiteralRange);
+  EXPECT_THAT(diff.error.error.detail, testing::StartsWith("old.S line 1: "));
+  ASSERT_EQ(diff.error.diagnostics.size(), 2U);
+  EXPECT_EQ(diff.error.diagnostics[0].file, "old.S");
+  EXPECT_EQ(diff.error.diagnostics[1].file, "new.S");
+}
+
+// DiffProgramsResponse.notes: a program of a slot is called as the file of its object, after its
+// text or after the slot. OPT-2.09: a hole of radius 0 ends its run.
+TEST_F(ToolLimits, NotesNameTheObjectsOfSlots) {
+  const std::string hole = "COORD ABSOL\nPATH HOLE (0.)\nMOVE (1000.,900.,-500.,0.,0.)\n";
+  ASSERT_TRUE(programs.Store({.name = "machines/optimo-1/programs/45",
+                              .file_name = "hole.S",
+                              .bytes = "SPEED 5\n" + hole}));
+  Must(bed.store().PutPrograms("optimo-1", {{.slot = 46, .object = ObjectOf("SPEED 6\n" + hole)}},
+                               {}));
+  v1::DiffProgramsRequest request;
+  request.mutable_before()->set_name("machines/optimo-1/programs/45");
+  request.mutable_after()->set_name("machines/optimo-1/programs/46");
+  const auto diff = tools.Diff(request);
+  ASSERT_TRUE(diff) << diff.error.error.detail;
+  EXPECT_FALSE(diff.value->compared_runs());
+  ASSERT_EQ(diff.value->notes_size(), 2);
+  EXPECT_THAT(diff.value->notes(0), testing::StartsWith("hole.O: "));
+  EXPECT_THAT(diff.value->notes(1), testing::StartsWith("46.O: "));
+}
+
+// FixProgramRequest.errors_only. OPT-3.47: what is never reached is advice.
+TEST_F(ToolLimits, AFixMayTellOfErrorsAlone) {
+  const auto told = [&](bool errors_only) {
+    v1::FixProgramRequest request;
+    request.mutable_program()->set_file_name("a.S");
+    request.mutable_program()->set_content("GOTO 10\nDELAY 1.\n10 STOP\n");
+    request.set_errors_only(errors_only);
+    return Must(tools.Fix(request)).findings().diagnostics_size();
+  };
+  EXPECT_GT(told(false), 0);
+  EXPECT_EQ(told(true), 0);
+}
+
 // A thousand findings are listed, and the others counted.
 TEST_F(ToolLimits, FindingsThatAreNotListedAreCounted) {
   std::string many;

@@ -54,6 +54,15 @@ TEST_F(UnreadablePrograms, WhatItsFamilyCannotReadIsNotFollowed) {
   EXPECT_NE(Path(name), std::nullopt);
 }
 
+// FamilyInfo.checked_by_running: of a stream the text tells all, however its machine stands.
+TEST_F(UnreadablePrograms, AStreamIsCheckedWithoutTheStateOfItsMachine) {
+  Stands("mill-1", "no state");
+  v1::ProgramText text;
+  text.set_file_name("a.rml");
+  text.set_content("PA;PU100,0;");
+  EXPECT_EQ(CodeOf(programs.Check("", "machines/mill-1", text, true)), std::nullopt);
+}
+
 // OPT-E7301: where it goes hangs on a SYSDEF that may be in force. OPT-E7102: no program is there.
 TEST_F(UnreadablePrograms, WithoutAdviceACheckTellsErrorsAlone) {
   const auto findings = [this](const std::string& source, bool advice) {

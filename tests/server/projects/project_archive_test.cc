@@ -189,6 +189,14 @@ TEST(ProjectArchive, SaysWhatIsWrong) {
               HasSubstr("no file gone.S"));
 }
 
+// That it is damaged is said where nothing more is known of it.
+TEST(ProjectArchive, SaysWhyItCannotBeRead) {
+  const auto read = ReadProjectArchive("no archive at all");
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().detail, testing::StartsWith("the archive cannot be read: "));
+  EXPECT_THAT(read.error().detail, Not(HasSubstr("it is damaged")));
+}
+
 // A byte that fell over is found by the sum of its file.
 TEST(ProjectArchive, RefusesADamagedFile) {
   v1::Project project;

@@ -318,6 +318,23 @@ TEST_F(ProjectBookTest, ATransferTakesNoProgramOfAnotherFamily) {
   EXPECT_EQ(Must(transfer.ToMachine(request, "anna")).items_size(), 2);
 }
 
+// A stream is its own object, and has no second text beside it.
+TEST_F(ProjectBookTest, AStreamThatAProjectBringsIsKeptOnce) {
+  v1::Project mill;
+  Add(mill, 10, "PU;", "10.rml");
+  Must(Create("mill", mill));
+  v1::TransferProjectRequest request;
+  request.set_name("projects/mill");
+  request.set_machine("machines/mill-1");
+  const v1::TransferProjectResponse brought = Must(transfer.ToMachine(request, "anna"));
+  ASSERT_EQ(brought.items_size(), 1);
+  EXPECT_FALSE(brought.items(0).program_after().has_source_bytes());
+  const storage::ProgramRecord kept = Must(bed.store().GetProgram("mill-1", 10));
+  EXPECT_EQ(kept.object, "PU;");
+  EXPECT_EQ(kept.source, std::nullopt);
+  EXPECT_EQ(kept.source_name, "10.rml");
+}
+
 // Issue "Projects": compiled, and put into slots together with the schedules.
 TEST_F(ProjectBookTest, ATransferStoresProgramsAndSchedulesTogether) {
   v1::Project project;

@@ -54,6 +54,9 @@ TEST(LevelsOfPaths, EachIsEightTimesAsCoarse) {
   EXPECT_EQ(corners_at(500, 0), 1U);
   EXPECT_EQ(corners_at(500, 1), 1U);
   EXPECT_EQ(corners_at(500, 2), 0U);
+  // What is kept is off by 0.01 mm already: 0.07 mm are left of the 0.08 mm of level 1.
+  EXPECT_EQ(corners_at(75, 1), 1U);
+  EXPECT_EQ(corners_at(65, 1), 0U);
   EXPECT_EQ(corners_at(100'000, 4), 1U);
   EXPECT_EQ(corners_at(100'000, 5), 0U);
 }
@@ -63,6 +66,20 @@ TEST(LevelsOfPaths, TheFinestIsAsItIsKept) {
   const std::string frames = FramesThrough({{0, 0, 0}, {1'000, 0, 0}, {2'000, 0, 0}});
   EXPECT_EQ(ToolpathAtLevel(frames, 0.01, 0), frames);
   EXPECT_EQ(PointsOf(ToolpathAtLevel(frames, 0.01, 1)).size(), 2U);
+}
+
+// Each level is told with the bytes that it has.
+TEST(LevelsOfPaths, EachIsAsLargeAsItIsTold) {
+  const std::string frames = FramesThrough({{0, 0, 0}, {10'000'000, 65, 0}, {20'000'000, 0, 0}});
+  v1::ToolpathHeader header;
+  AddLevels(frames, 0.01, header);
+  ASSERT_GT(header.levels_size(), 1);
+  EXPECT_EQ(header.levels(0).bytes(), static_cast<std::int64_t>(frames.size()));
+  EXPECT_LT(header.levels(1).bytes(), header.levels(0).bytes());
+  for (const v1::ToolpathLevel& one : header.levels()) {
+    const std::size_t bytes = ToolpathAtLevel(frames, 0.01, one.level()).size();
+    EXPECT_EQ(one.bytes(), static_cast<std::int64_t>(bytes)) << one.level();
+  }
 }
 
 // Of a path of several blocks none is left out.

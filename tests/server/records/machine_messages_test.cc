@@ -98,6 +98,12 @@ TEST(FamilyMessage, ProfilesHaveTheValuesThatDiffer) {
               UnorderedElementsAre(Pair("SPEED", "99.5"), Pair("START", "RIGHT")));
 }
 
+// OPT-3.44: a laser has schedules, and a mill has none.
+TEST(FamilyMessage, ALaserHasSchedules) {
+  EXPECT_TRUE(ToProto(*families::FindFamily("optimo")).has_schedules());
+  EXPECT_FALSE(ToProto(*families::FindFamily("rml1")).has_schedules());
+}
+
 // What a client reads there it can write into a machine.
 TEST(FamilyMessage, EveryDefaultAndProfileMakesAMachine) {
   for (const machine::MachineFamily* family : families::Families()) {

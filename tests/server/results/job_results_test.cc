@@ -271,7 +271,9 @@ TEST_F(JobResultsTest, SeriesThatMakeNoSenseAreRefused) {
   good.set_buckets(10'000);
   const auto made = Must(results.Series(good));
   EXPECT_EQ(made.to_ns(), 60);
+  EXPECT_EQ(made.series(0).signal(), "axis.X");
   EXPECT_EQ(made.series(0).unit(), "mm");
+  EXPECT_EQ(made.series(1).signal(), "speed");
   EXPECT_EQ(made.series(1).high_size(), 10'000);
   const auto refused = [&](const std::function<void(v1::GetJobSeriesRequest&)>& change) {
     v1::GetJobSeriesRequest request = good;
@@ -368,6 +370,38 @@ TEST_F(JobResultsTest, ObjectsAreComparedToo) {
   EXPECT_EQ(compared.difference().steps_size(), 1);
 }
 
+// What a job says of its program goes before what the name of it says.
+TEST_F(JobResultsTest, ObjectsThatWereBroughtAreComparedAsObjects) {
+  v1::RunReport report;
+  report.set_family("optimo");
+  std::vector<std::string> names;
+  for (const char* source : {"DELAY 1\nSTOP\n", "DELAY 2\nSTOP\n"}) {
+    v1::Job job = Job(ObjectOf(source));
+    job.mutable_inline_program()->set_form(v1::PROGRAM_FORM_OBJECT);
+    names.push_back(Ended(job, report));
+  }
+  const auto compared = Must(Compare(names[0], names[1]));
+  EXPECT_FALSE(compared.has_difference_error()) << compared.difference_error().message();
+  EXPECT_EQ(compared.difference().steps_size(), 1);
+}
+
+// A program of a slot is called by its number. OPT-2.09: a hole of radius 0 ends its run.
+TEST_F(JobResultsTest, ProgramsOfSlotsAreCalledByTheirNumbers) {
+  v1::RunReport report;
+  report.set_family("optimo");
+  std::vector<std::string> names;
+  for (const int slot : {12, 13}) {
+    const std::string source = "SPEED " + std::to_string(slot) +
+                               "\nCOORD ABSOL\nPATH HOLE (0.)\nMOVE (1000.,900.,-500.,0.,0.)\n";
+    Must(bed.store().PutPrograms("optimo-1", {{.slot = slot, .object = ObjectOf(source)}}, {}));
+    names.push_back(Ended(Stored(slot), report));
+  }
+  const auto compared = Must(Compare(names[0], names[1]));
+  ASSERT_EQ(compared.difference().notes_size(), 2) << compared.difference_error().message();
+  EXPECT_THAT(compared.difference().notes(0), testing::StartsWith("12.O: "));
+  EXPECT_THAT(compared.difference().notes(1), testing::StartsWith("13.O: "));
+}
+
 // Stored streams of a mill, whose programs have no other form: all else is told in any case.
 TEST_F(JobResultsTest, StreamsThatAreStoredAreComparedAsFarAsTheyCanBe) {
   v1::RunReport report;
@@ -395,6 +429,7 @@ TEST_F(JobResultsTest, WhatCannotBeComparedIsSaid) {
   const auto compared = Must(Compare(good, Ended(Job("NONSENSE\n"), report)));
   EXPECT_FALSE(compared.has_difference());
   EXPECT_EQ(compared.difference_error().code(), "OPT-E7011");
+  EXPECT_THAT(compared.difference_error().message(), testing::StartsWith("part.S line 1: "));
   report.set_family("rml1");
   EXPECT_EQ(Compare(good, Ended(Job("PA;", "mill-1"), report)).error().code,
             ErrorCode::kCellPrecondition);

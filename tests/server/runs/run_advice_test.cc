@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rmlcell/v1/report.pb.h"
 #include "server/base/config.h"
 #include "server/base/names.h"
 #include "server/jobs/job_book.h"
+#include "server/records/job_messages.h"
 #include "server/records/machine_options.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/failing_store.h"
@@ -100,6 +102,30 @@ TEST_F(RunAdviceTest, ATicketIsLookedAt) {
   const storage::Lease lease = bed_.Lease();
   Must(bed_.store().Finish(lease, {.outcome = {.state = storage::JobState::kSucceeded}}));
   EXPECT_EQ(Advice(run), "CELL-E9407");  // a check proves nothing
+}
+
+// LIVE-5.02: what was simulated was another program.
+TEST_F(RunAdviceTest, ATicketOfAnotherProgramIsNamed) {
+  v1::Job asked;
+  asked.set_kind(v1::JOB_KIND_SIMULATE);
+  const std::int64_t simulation =
+      Must(bed_.store().SubmitAndWait({.machine = "mill-1",
+                                       .kind = "SIMULATE",
+                                       .specification = asked.SerializeAsString()}))
+          .job.id;
+  v1::Outcome good;
+  good.set_kind(v1::Outcome::KIND_COMPLETED);
+  good.set_verdict(v1::VERDICT_GOOD);
+  v1::RunReport report;
+  report.set_family("rml1");
+  (*report.mutable_inputs())["program"] = std::string(32, 'x');
+  storage::JobEnd end{.outcome = OutcomeOf(good)};
+  end.artifacts.push_back({.name = "report",
+                           .media_type = "application/x-protobuf",
+                           .bytes = report.SerializeAsString()});
+  Must(bed_.store().Finish(bed_.Lease("SIMULATE"), end));
+  const std::int64_t run = Submit("mill-1", "a.rml", "PA;PU100,0;", JobName(simulation));
+  EXPECT_EQ(Advice(run), "CELL-E9407");
 }
 
 // LIVE-5.02: a program that cannot be translated ends its job, too.

@@ -159,5 +159,20 @@ TEST_F(DecidedJobs, AHostThatGoesDecidesNothing) {
   EXPECT_FALSE(store().GetJob(run + 1));  // no other begins
 }
 
+// Whoever lets a job go on is told so, too.
+TEST_F(DecidedJobs, AHostThatGoesGoesOnWithNothing) {
+  v1::DecideInterruptedRequest request;
+  request.set_name(JobName(CutOff()));
+  request.set_decision(v1::DecideInterruptedRequest::DECISION_RESUME_AT_STEP);
+  request.set_reason("the power was gone");
+  request.set_control_token("t");
+  request.set_preview_token("p");
+  request.set_request_id("r");
+  host->LeaveOnOrder();
+  Call(jobs, &v1::JobService::Stub::DecideInterrupted, request);
+  ExpectRefused(grpc::StatusCode::UNAVAILABLE, "its host is not heard of any more");
+  EXPECT_EQ(host->TakeOrders().size(), 1U);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

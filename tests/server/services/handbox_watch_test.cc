@@ -48,5 +48,27 @@ TEST_F(HandboxWatches, NeitherWhatWasBeforeNorWhatIsShownAlready) {
   watch->Finish();
 }
 
+// What cannot be read is nothing to be seen, and no number is spent on it.
+TEST_F(HandboxWatches, WhatIsNoPanelIsNotTold) {
+  Show("READY");
+  ASSERT_TRUE(
+      Eventually([&] { return feed().LatestAfter(Hosts::HandboxOf("optimo-1"), 0).has_value(); }));
+  v1::WatchHandboxRequest request;
+  request.set_machine(kLaser);
+  const auto context = Context();
+  const auto watch = handbox->WatchHandbox(context.get(), request);
+  v1::WatchHandboxResponse seen;
+  ASSERT_TRUE(watch->Read(&seen));
+  EXPECT_EQ(seen.panel().display(), "READY");
+  Publish("\xFF");
+  Show("TEACH");
+  ASSERT_TRUE(watch->Read(&seen));
+  EXPECT_EQ(seen.panel().display(), "TEACH");
+  EXPECT_EQ(seen.sequence(), 2);
+  context->TryCancel();
+  EXPECT_FALSE(watch->Read(&seen));
+  watch->Finish();
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -193,6 +193,22 @@ TEST_F(HeightsFollow, OneThatIsOverIsToldAsItIsStored) {
   }
 }
 
+// Its worker may have had no time to tell anything of it: who follows gets what is stored.
+TEST_F(HeightsFollow, ABlockOfWhichNothingWasToldComesFromTheStore) {
+  const std::int64_t job = room.Submit(Mills());
+  const storage::Lease lease = room.bed.Lease();
+  const auto running = room.RunMill(job);
+  auto stream = Follow(job);
+  ASSERT_TRUE(Eventually([&] { return room.heights_looked_for > 0; }));  // and found
+  room.Finish(lease, {{.name = "height.grid", .bytes = StoredGrid()}});
+  running->End(true);
+  EXPECT_EQ(stream.Next().grid().rows(), 100);
+  int tiles = 0;
+  for (const Message& message : stream.Rest()) tiles += message.tiles().tiles_size();
+  EXPECT_EQ(tiles, 8);  // four by two
+  stream.ExpectGoodEnd();
+}
+
 // 1200 x 600 cells are more bytes than one part of a content: 19 by 10 tiles, some a message.
 TEST_F(HeightsFollow, ALargeBlockComesWhole) {
   const simulation::Stock stock{.x_max = 1200.0, .y_max = 600.0, .bottom = -65.535, .cell = 1.0};

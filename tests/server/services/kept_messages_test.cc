@@ -200,6 +200,61 @@ TEST_F(KeptMessages, WhatIsNotInMemoryIsNotThereAtOnce) {
   EXPECT_FALSE(LogOfJobs()->AtOnce(1, false));
 }
 
+// shared_log.h, AtOnce: what a record is by now the store knows, which is not asked; an event of a
+// job has all in it.
+TEST_F(KeptMessages, EventsOfRecordsAreNotThereAtOnce) {
+  v1::Subscription wanted;
+  wanted.set_id("machines");
+  wanted.mutable_machines()->set_events_only(true);
+  const auto log = std::make_shared<SharedLog>(
+      SharedLogNeeds{records, room.feed, facts, "instance"}, std::make_shared<ToldEvents>(records),
+      std::vector<CellSubscription>{Must(CellSubscription::Make(wanted))});
+  storage::Store& store = room.bed.store();
+  const std::int64_t before = Last();
+  Must(store.PutMachine({.id = "mill-2", .family = "rml1", .profile = "mdx-20"}, 0, "c"));
+  AwaitTold();
+  EXPECT_FALSE(log->AtOnce(before, false));
+  EXPECT_TRUE(Must(log->After(before, false)));
+  EXPECT_TRUE(log->AtOnce(before, false));  // it was made
+  EXPECT_TRUE(store.DeleteMachine("mill-2", storage::kAnyRevision, "c"));
+  AwaitTold();
+  EXPECT_FALSE(log->AtOnce(before + 1, false));
+  const std::int64_t behind = Last();
+  Say({"a"});
+  EXPECT_EQ(Read(LogOfJobs()->AtOnce(behind, false)).event().job().message().text(), "a");
+}
+
+// Watches that are apart in the log end their messages of several events at the same places, so
+// that what is made for one is there for the other.
+TEST_F(KeptMessages, MessagesOfSeveralEventsEndAtTheSamePlaces) {
+  const std::int64_t before = Last();
+  Say(std::vector<std::string>(150, "x"));
+  const auto end_behind = [&](std::int64_t position) {
+    return Must(LogOfJobs()->After(position, true))->end;
+  };
+  const std::int64_t first = end_behind(before);
+  const std::int64_t second = end_behind(first);
+  EXPECT_GT(first, before);
+  EXPECT_LE(second, first + SharedLog::kEventsAtOnce);
+  for (const int apart : {1, 2, 40}) EXPECT_EQ(end_behind(first + apart), second) << apart;
+}
+
+// Equal subscriptions share one log, others have another one.
+TEST_F(KeptMessages, EqualSubscriptionsShareALog) {
+  v1::Subscription wanted;
+  wanted.set_id("a");
+  wanted.mutable_jobs();
+  const CellSubscription jobs = Must(CellSubscription::Make(wanted));
+  const CellSubscription likewise = Must(CellSubscription::Make(wanted));
+  wanted.mutable_machines();
+  const CellSubscription machines = Must(CellSubscription::Make(wanted));
+  SharedLogs logs{SharedLogNeeds{records, room.feed, facts, "instance"}};
+  const auto log = logs.Of({&jobs});
+  EXPECT_EQ(logs.Of({&likewise}), log);
+  EXPECT_NE(logs.Of({&machines}), log);
+  EXPECT_NE(logs.Of({&jobs, &machines}), log);
+}
+
 // What was made of the events before a job was deleted is gone already when room is made.
 TEST_F(KeptMessages, RoomIsMadeBehindAJobThatWasDeleted) {
   const auto log = LogOfJobs();

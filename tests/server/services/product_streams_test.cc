@@ -142,6 +142,21 @@ TEST_F(ProductStreamsTest, TheHeaderTellsHowLargeEachLevelIs) {
   EXPECT_GT(told.levels(0).bytes(), told.levels(5).bytes());
 }
 
+// Also where all of it is asked for, which comes as it is stored.
+TEST_F(ProductStreamsTest, TheFinestLevelComesWithTheSizesOfAll) {
+  const std::vector<std::string> blocks{BlockWithBend(20), BlockWithBend(500'000)};
+  const std::string frames = Frames(blocks);
+  auto stream = room.Toolpath(JobName(room.Ended("toolpath", frames)), 0, true);
+  const v1::ToolpathHeader told = stream.Next().header();
+  EXPECT_EQ(told.level(), 0);
+  EXPECT_EQ(told.bytes(), static_cast<std::int64_t>(frames.size()));
+  ASSERT_EQ(told.levels_size(), 6);
+  EXPECT_EQ(told.levels(0).bytes(), told.bytes());
+  EXPECT_LT(told.levels(5).bytes(), told.bytes());
+  for (const std::string& block : blocks) EXPECT_EQ(stream.Next().block(), block);
+  stream.ExpectGoodEnd();
+}
+
 // The toolpath that is stored has a tolerance of 0.001 to 10 mm, whatever is asked for.
 TEST_F(ProductStreamsTest, LevelsCountFromTheToleranceThatTheStoredOneHas) {
   EXPECT_TRUE(BendIsLeft(100.0, 1, 81'000));

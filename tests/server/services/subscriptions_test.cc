@@ -95,6 +95,29 @@ TEST_F(SubscriptionTest, MachinesBringTheirProgramsAndSchedules) {
   EXPECT_FALSE(Must(CellSubscription::Make(wanted)).WantsLatest("machines/mill-1", facts));
 }
 
+// Without names a part of the cell is wanted whole, and nothing of another part.
+TEST_F(SubscriptionTest, OfAllMachinesOrProjectsNothingElseIsWanted) {
+  v1::Subscription wanted;
+  wanted.set_id("a");
+  wanted.mutable_machines();
+  const CellSubscription machines = Must(CellSubscription::Make(wanted));
+  wanted.mutable_projects();
+  const CellSubscription projects = Must(CellSubscription::Make(wanted));
+  const EventRecord of_job{.job = Submit("mill-1", "CHECK", "anna"), .kind = "state"};
+  const EventRecord of_deleted{.resource = "jobs/7", .kind = "deleted"};
+  const EventRecord of_machine{.resource = "machines/mill-1", .kind = "updated"};
+  const EventRecord of_project{.resource = "projects/lid", .kind = "updated"};
+  EXPECT_TRUE(machines.WantsEvent(of_machine, facts));
+  for (const EventRecord& other : {of_job, of_deleted, of_project})
+    EXPECT_FALSE(machines.WantsEvent(other, facts)) << other.resource;
+  EXPECT_TRUE(projects.WantsEvent(of_project, facts));
+  for (const EventRecord& other : {of_job, of_deleted, of_machine})
+    EXPECT_FALSE(projects.WantsEvent(other, facts)) << other.resource;
+  EXPECT_TRUE(machines.WantsLatest("machines/mill-1", facts));
+  for (const char* other : {"jobs/7", "handboxes/mill-1"})
+    EXPECT_FALSE(machines.WantsLatest(other, facts)) << other;
+}
+
 // A job that was deleted is known by its name alone.
 TEST_F(SubscriptionTest, OfADeletedJobEverySubscriptionThatMayHaveShownItHears) {
   const EventRecord deleted{.resource = "jobs/7", .kind = "deleted"};

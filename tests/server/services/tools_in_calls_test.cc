@@ -1,5 +1,7 @@
 // Calls for a tool, a picture, a comparison: what is made is the answer, and what cannot be made is
 // what the call ends with.
+#include <atomic>
+
 #include "proto/bridge/framing.h"
 #include "server/base/names.h"
 #include "tests/server/services/unary_calls_bed.h"
@@ -123,6 +125,48 @@ TEST_F(ToolsInCalls, ThePathOfAProgramGoesOut) {
   EXPECT_FALSE(status.ok());
   EXPECT_TRUE(streamed("name: '" + Name(45) + "' level: -1").empty());
   ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "CELL-E9003");
+}
+
+// A path of more points than a block has comes in several, none of which is left out.
+TEST_F(ToolsInCalls, EachBlockOfALongPathIsAMessage) {
+  std::string arcs;
+  for (int i = 0; i < 40; ++i) {
+    arcs +=
+        "MOVE (1200.,900.,-500.,0.,0.)/VIA (1100.,1000.,-500.,0.,0.)\n"
+        "MOVE (1000.,900.,-500.,0.,0.)/VIA (1100.,1000.,-500.,0.,0.)\n";
+  }
+  Put(45, "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (1000.,900.,-500.,0.,0.)\nPATH CIR\n" + arcs);
+  v1::StreamProgramToolpathRequest request;
+  request.set_name(Name(45));
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + kPatience);
+  const auto reader = programs->StreamProgramToolpath(&context, request);
+  v1::StreamProgramToolpathResponse part;
+  ASSERT_TRUE(reader->Read(&part));
+  const v1::ToolpathHeader header = part.header();
+  EXPECT_GT(header.points(), 4096);  // of a block, at most
+  std::string frames;
+  int blocks = 0;
+  for (; reader->Read(&part); ++blocks) bridge::AddFrame(part.block(), frames);
+  EXPECT_TRUE(reader->Finish().ok());
+  EXPECT_GE(blocks, 2);
+  EXPECT_EQ(header.bytes(), static_cast<std::int64_t>(frames.size()));
+}
+
+// LIVE-3.20: who stores something in the memory of a machine has it told before the answer.
+TEST_F(ToolsInCalls, SpecialProgramsAreToldWhenTheyAreStored) {
+  std::atomic<int> told = 0;
+  program_book_.OnStored([&told] { ++told; });
+  const auto store = [&](const std::string& machine) {
+    Call(programs, &v1::ProgramService::Stub::StoreSpecialPrograms,
+         "parent: 'machines/" + machine + "' slots: 90");
+  };
+  store("none");
+  EXPECT_FALSE(status.ok());
+  EXPECT_EQ(told, 0);
+  store("optimo-1");
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(told, 1);
 }
 
 // What the project becomes is told without the texts, and by whom.

@@ -155,10 +155,9 @@ class UnaryCalls : public testing::Test {
   std::unique_ptr<v1::ProgramService::Stub> programs;
   std::unique_ptr<v1::ProjectService::Stub> projects;
 
- private:
-  DispatcherBed bed_;
-
  protected:
+  static constexpr std::size_t kWaitingMax = 100;  // calls that wait for the one lane of all
+  DispatcherBed bed_;
   FailingCellStore store_{bed_.server.store()};
 
  private:
@@ -166,11 +165,19 @@ class UnaryCalls : public testing::Test {
   EventFeed feed_{bed_.server.store()};
   Gate gate_{"secret"};
   OpenStreams open_;
-  Executor executor_{1};
+
+ protected:
+  Executor executor_{1, kWaitingMax};
+
+ private:
   CallNeeds needs_{gate_, executor_, executor_, 8 << 20};
   Hosts hosts_{{.store = bed_.server.store(), .feed = feed_, .executor = executor_}};
   RunQueue runs_{{.store = store_, .hosts = hosts_, .config = config_, .executor = executor_}};
+
+ protected:
   ProgramBook program_book_{store_, config_};
+
+ private:
   ProjectBook project_book_{store_};
   ProjectTransfer transfer_{store_, project_book_, program_book_};
   MemoryTools tools_{store_, program_book_};

@@ -152,6 +152,8 @@ TEST_F(UnaryCalls, ErrorsAreExplained) {
   ASSERT_EQ(one.errors_size(), 1);
   EXPECT_EQ(one.errors(0).code(), "OPT-E348");
   EXPECT_EQ(one.language(), "en");
+  Call(programs, &Stub::ExplainError, "code: 'none'");
+  ExpectRefused(grpc::StatusCode::NOT_FOUND, "no error 'none'");
   Call(programs, &Stub::ExplainError, "code: '" + std::string(81, 'x') + "'");
   ExpectRefused(grpc::StatusCode::NOT_FOUND, "no error '" + std::string(80, 'x') + "'");
 }

@@ -110,6 +110,27 @@ TEST_F(WorkerLineTest, AWorkerSaysHelloFirst) {
   EXPECT_NE(guessed.error_message().find("CELL-E"), std::string::npos) << guessed.error_message();
 }
 
+// CELL-E9001: what is thrown for a worker ends its line, and it is told that it was our mistake.
+TEST_F(WorkerLineTest, ALineForWhichSomethingIsThrownEnds) {
+  bed_.server.SubmitCheck();
+  v1::WorkRequest hello;
+  *hello.mutable_hello() = Hello("w");
+  const auto stream = stub_->Work(&context_);
+  ASSERT_TRUE(stream->Write(hello));
+  v1::WorkResponse told;
+  while (stream->Read(&told) && !told.has_assignment()) continue;
+  ASSERT_TRUE(told.has_assignment());
+  bed_.hooks.finishes_that_throw = 1;
+  v1::WorkRequest finish;
+  *finish.mutable_finish()->mutable_lease() = told.assignment().lease();
+  finish.mutable_finish()->mutable_outcome()->set_kind(v1::Outcome::KIND_COMPLETED);
+  ASSERT_TRUE(stream->Write(finish));
+  while (stream->Read(&told)) continue;
+  const grpc::Status end = stream->Finish();
+  EXPECT_EQ(end.error_code(), grpc::StatusCode::INTERNAL) << end.error_message();
+  EXPECT_NE(end.error_message().find("an internal error"), std::string::npos);
+}
+
 // A worker whose line ends has left: its job goes to the next one.
 TEST_F(WorkerLineTest, AJobOfALineThatEndsGoesToTheNext) {
   bed_.server.SubmitCheck();

@@ -159,6 +159,13 @@ TEST(LastWords, AStopMayBeAskedForAgain) {
   EXPECT_EQ(cell.web().connections(), 0U);
 }
 
+// web_server.h: nobody new, and nobody who would wait for an answer that does not come.
+TEST(LastWords, AStopTakesNobodyNew) {
+  FakeCell cell;
+  cell.web().StopAccepting();
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(RawClient(cell.port()).Send(Get("/healthz"))) << i;
+}
+
 // With a time that is too short for a slow machine what is said itself may come too late: then once
 // more, with twice the time.
 void ExpectOfSomeTime(const std::function<bool(milliseconds)>& holds) {

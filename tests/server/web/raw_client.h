@@ -24,10 +24,13 @@ struct RawResponse {
 class RawClient {
  public:
   explicit RawClient(int port, int receive_buffer_bytes = 0);
+  RawClient();  // not connected yet
   ~RawClient();
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
 
+  // Opens nothing more. Closed when there is nobody.
+  void Connect(int port);
   // False when the other side has closed.
   bool Send(std::string_view bytes);
   void HalfClose();

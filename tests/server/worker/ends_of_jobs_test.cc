@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -118,6 +119,41 @@ TEST_F(EndsOfJobs, WhoFollowsAWaySeesItsEnd) {
     way += message.toolpath().open_block();
   }
   EXPECT_THAT(way, testing::Not(IsEmpty()));
+}
+
+// job_runner.h: everything that can go wrong with a job ends as its outcome. Here the clock of the
+// processor throws behind the first look, with which the work begins.
+TEST_F(EndsOfJobs, AnExceptionFailsTheJobAndNotItsWorker) {
+  for (const v1::JobKind kind : {v1::JOB_KIND_CHECK, v1::JOB_KIND_SIMULATE}) {
+    int looks = 0;
+    processor_time = [&looks]() -> double {
+      if (++looks > 1) throw std::runtime_error("the clock broke");
+      return 0.0;
+    };
+    EXPECT_TRUE(Work(Assignment(kind, "DELAY 1\n")));
+    EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_FAILED) << kind;
+    EXPECT_EQ(Outcome().code(), "CELL-E9001") << kind;
+    EXPECT_THAT(Outcome().message(), testing::HasSubstr("the clock broke")) << kind;
+    EXPECT_THAT(Names(), IsEmpty()) << kind;
+  }
+}
+
+// common.proto, Diagnostic.verdict: BAD where the verdict rests on findings of this code, be they
+// listed, gathered or told while the job is under way.
+TEST_F(EndsOfJobs, FindingsOfWhatCannotRunAreJudged) {
+  std::string source;
+  for (int line = 0; line < 1'005; ++line) source += "SPEED 101\n";
+  Work(Assignment(v1::JOB_KIND_SIMULATE, source));
+  EXPECT_EQ(Outcome().verdict(), v1::VERDICT_BAD);
+  const v1::RunReport report = Report();
+  ASSERT_EQ(report.diagnostics_size(), 1'000);
+  EXPECT_EQ(report.diagnostics(0).verdict(), v1::VERDICT_BAD);
+  EXPECT_EQ(report.diagnostics(999).verdict(), v1::VERDICT_BAD);
+  ASSERT_EQ(report.gathered_size(), 1);
+  EXPECT_EQ(report.gathered(0).verdict(), v1::VERDICT_BAD);
+  const std::vector<v1::JobEvent> events = Events();
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events.front().diagnostic().verdict(), v1::VERDICT_BAD);
 }
 
 }  // namespace

@@ -48,6 +48,15 @@ TEST_F(JobRunnerTest, IsToldWhyItMayNotJoin) {
   }
 }
 
+// Where nobody listens: that is no refusal of a server.
+TEST_F(JobRunnerTest, WhereNobodyListensNobodyIsJoined) {
+  const std::string address = "unix:" + testing::TempDir() + "/no-server-listens";
+  const auto joined = ServerLine::Join({.server = address, .join_token = "", .name = "w"});
+  ASSERT_FALSE(joined);
+  EXPECT_EQ(joined.error().code, ErrorCode::kCellUnavailable);
+  EXPECT_EQ(joined.error().detail, "no server answers at " + address);
+}
+
 TEST_F(JobRunnerTest, ACheckLeavesAReport) {
   EXPECT_TRUE(Work(Assignment(v1::JOB_KIND_CHECK, "STOP\n")));
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);

@@ -223,5 +223,30 @@ TEST_F(OrderedRuns, AJobThatIsLostIsNotEvenRefused) {
   EXPECT_FALSE(Finished());
 }
 
+// job_lease.h: what is said of another attempt changes nothing, that its events are stored among
+// it.
+TEST_F(OrderedRuns, StoredEventsOfAnotherAttemptMakeNoRoom) {
+  server.window = 5;
+  server.stores = false;
+  line_ = *ServerLine::Join({.server = server.address(), .join_token = "secret", .name = "w"});
+  const v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, "STOP\n");
+  JobLease lease(*line_, assignment, stopping, processor_time);
+  // Whoever waits for room takes in what comes, up to an order.
+  const auto tell = [&](int count, std::int64_t stored_of_fence) {
+    v1::WorkResponse stored;
+    *stored.mutable_events_stored()->mutable_lease() = Lease(stored_of_fence);
+    stored.mutable_events_stored()->set_count(6);
+    server.Send(stored);
+    server.Send(Order(v1::WorkerControl::KIND_HOLD));
+    v1::WorkerEvents events;
+    for (int i = 0; i < count; ++i) events.add_events();
+    lease.SendEvents(events);
+  };
+  tell(6, 4);
+  EXPECT_EQ(lease.TakeOrders().size(), 1U);
+  tell(5, 5);
+  EXPECT_FALSE(lease.has_orders());  // the first six are stored: there was room
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -150,7 +150,7 @@ TEST_F(RefusedRecordings, OneWithAnInputThatSaysNothingIsRefused) {
 }
 
 TEST_F(RefusedRecordings, AProductThatCannotBeWrittenIsNamed) {
-  for (const char* name : {"report", "picture.svg"}) {
+  for (const char* name : {"toolpath", "report", "picture.svg"}) {
     const std::string file = folder_ + "/" + name;
     std::filesystem::remove_all(file);
     std::filesystem::create_directories(file);

@@ -132,5 +132,16 @@ TEST(StepEdit, KnowsTheNamesOfIndices) {
     EXPECT_EQ(why(step), "it has a name that the program does not know") << step;
 }
 
+// OPT-6.38: the names are those of the program; a DECLARE that comes in makes no new one.
+TEST(StepEdit, RefusesADeclareOfANewName) {
+  const Module module = Compiled("DECLARE A = VR[1]\nA = 1.\n").module;
+  for (const std::uint32_t place : {0U, 1U, 2U}) {
+    const Result<std::string> object = InsertInstruction(module, place, "DECLARE Q = 5");
+    ASSERT_FALSE(object) << place;
+    EXPECT_EQ(CodeText(object.error().code), "OPT-E7034") << place;
+    EXPECT_EQ(object.error().detail, "it has a name that the program does not know") << place;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

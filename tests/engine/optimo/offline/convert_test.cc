@@ -249,6 +249,27 @@ TEST(Convert, LinesThatAreNoRmlAreCopied) {
   }
 }
 
+// OPT-8.53: however many there are; those that are not told singly are counted.
+TEST(Convert, EveryLineThatIsNoRmlIsCopied) {
+  std::string text = "VR[0] = 1.\n";
+  for (int n = 0; n < 1200; ++n) text += "12345 VR[0] = 1.\n";
+  text += "VR[0] = 1.\n";
+  const Conversion made = Convert(text, Direction::kToMetric);
+  std::string expected = text;
+  expected.replace(0, 10, "VR[0] = 25.4");
+  expected.replace(expected.size() - 11, 10, "VR[0] = 25.4");
+  EXPECT_EQ(made.text, expected);
+  EXPECT_EQ(made.diagnostics.size(), 1000U);
+  ASSERT_EQ(made.diagnostics_dropped.kinds().size(), 1U);
+  const GatheredFindings& more = made.diagnostics_dropped.kinds().at(ErrorCode::kConvertNotRml);
+  EXPECT_EQ(more.count, 200U);
+  EXPECT_EQ(more.code, ErrorCode::kConvertNotRml);
+  EXPECT_EQ(more.severity, Severity::kWarning);
+  EXPECT_EQ(more.first.where.line, 1002);
+  EXPECT_EQ(more.last.where.line, 1201);
+  EXPECT_EQ(more.last.code, ErrorCode::kConvertNotRml);
+}
+
 // OPT-8.65, OPT-E.7708: VR [ 26 ] = VR [ 0 ] + ... : 9 tokens and two for each further term.
 TEST(Convert, StatementsOfMoreThanTwoHundredTokensAreCopied) {
   const auto sum = [](int terms) {

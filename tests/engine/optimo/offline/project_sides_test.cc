@@ -103,6 +103,21 @@ TEST_F(ProjectSides, InsertedDefinitionsStandInTheOrderOfTheirUse) {
             "DECLARE V = 5\n     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\nWORK 1,0/ON\n");
 }
 
+// OPT-9.12: the first TASK 1 is the beginning; they stand behind all that only declares, DEFINE and
+// TASK as well as DECLARE.
+TEST_F(ProjectSides, InsertedDefinitionsStandAtTheBeginning) {
+  Define(1, 0, {8, 75, 1, 50});
+  const std::string says = "TASK 1\nDEFINE PAR[0] = INT\nTASK 2\nDECLARE V = 5\n", work = kUsesIt,
+                    inserted = "     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\n", one = says + work,
+                    other = "VI[2]=1\nTASK 1\n" + work + "TASK 1\nVI[3]=1\n";
+  Put(45, one);
+  Put(46, other);
+  const machine::TransferPlan plan = Plan(true);
+  ASSERT_EQ(plan.programs.size(), 2U);
+  EXPECT_EQ(plan.programs[0].source, says + inserted + work);
+  EXPECT_EQ(plan.programs[1].source, "VI[2]=1\nTASK 1\n" + inserted + work + "TASK 1\nVI[3]=1\n");
+}
+
 // OPT-7.39: it takes a MOVE, in ABSOL, and another program with a SYSDEF.
 TEST_F(ProjectSides, WhatNeedsASysdef) {
   const std::string sysdef = "SYSDEF (1,2,3,0,0,0)\n", move = "MOVE (1,2,3,0,0)\n";

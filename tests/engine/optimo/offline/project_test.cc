@@ -523,5 +523,22 @@ TEST_F(Project, ErrorsThatHaveNoRoomAreCounted) {
   EXPECT_EQ(kinds.at(ErrorCode::kLiteralRange).last.program, 45);
 }
 
+// OPT-8.35: nor is anything lost of what CONVERT says of a program in inches.
+TEST_F(Project, FindingsOfTheConversionThatHaveNoRoomAreCounted) {
+  std::string text = "DECLARE X = 10.5\n";
+  for (int n = 0; n < 1100; ++n) text += "VR[0] = X\n";
+  bundle_.programs.push_back({45, {"45.SI", text}, true});
+  const machine::TransferPlan plan = Plan();
+  EXPECT_TRUE(plan.ok);
+  const auto& kinds = plan.diagnostics_dropped.kinds();
+  ASSERT_TRUE(kinds.contains(ErrorCode::kConvertConstant));
+  const GatheredFindings& more = kinds.at(ErrorCode::kConvertConstant);
+  EXPECT_EQ(more.count, 100U);
+  EXPECT_EQ(more.first.program, 45);
+  EXPECT_EQ(more.last.program, 45);
+  EXPECT_EQ(more.last.file, "45.SI");
+  EXPECT_EQ(more.last.where.line, 1101);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -159,6 +159,19 @@ TEST(SemanticDiff, JumpsAreComparedByTheirTarget) {
   EXPECT_EQ(DiffOf(program, "GOTO 20\n10 VI[2]=1\nVI[5]=1\n20 VI[3]=1\n").steps.size(), 1U);
 }
 
+// OPT-7.16: a number that one of the programs lacks leads elsewhere than in the other.
+TEST(SemanticDiff, AMissingNumberIsAnotherTarget) {
+  const std::string there = "GOTO 10\n10 VI[2]=1\n", missing = "GOTO 10\nVI[2]=1\n";
+  const auto what = [](const std::string& a, const std::string& b) {
+    const ProgramDiff diff = DiffOf(a, b);
+    EXPECT_EQ(diff.steps.size(), 1U);
+    return diff.steps.empty() ? Texts() : diff.steps[0].what;
+  };
+  EXPECT_EQ(what(there, missing), (Texts{"goes to step 2 -> missing 10"}));
+  EXPECT_EQ(what(missing, there), (Texts{"goes to missing 10 -> step 2"}));
+  EXPECT_EQ(what(missing, "GOTO 11\nVI[2]=1\n"), (Texts{"goes to missing 10 -> missing 11"}));
+}
+
 TEST(SemanticDiff, FiguresOfRunsAreCompared) {
   const Module module = MustCompile("SPEED 5\n").module;
   const ProgramDiff diff =
