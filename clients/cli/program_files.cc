@@ -148,6 +148,19 @@ Status PlaceWork(const MachineChoice& choice, const machine::MachineFamily& fami
   return {};
 }
 
+namespace {
+
+// Where a link leads, also to a file that is still to be made.
+fs::path TargetOf(fs::path path) {
+  constexpr int kLinksMax = 40;
+  std::error_code ignored;
+  for (int n = 0; n < kLinksMax && fs::is_symlink(path, ignored); ++n)
+    path = path.parent_path() / fs::read_symlink(path, ignored);
+  return path;
+}
+
+}  // namespace
+
 Status WriteWholeFile(const std::string& path, std::string_view bytes,
                       const machine::BytesKeeper* keeper) {
   const auto failed = [&](int error) {
@@ -162,8 +175,8 @@ Status WriteWholeFile(const std::string& path, std::string_view bytes,
     to.flush();
     return to ? Status() : failed(errno);
   }
-  const std::string target =
-      fs::is_symlink(path, ignored) ? fs::canonical(path, ignored).string() : path;
+  const std::string target = TargetOf(path).string();
+  if (fs::is_symlink(target, ignored)) return failed(ELOOP);
   std::string temporary = target + ".XXXXXX";
   const int file = mkstemp(temporary.data());
   if (file < 0) return failed(errno);
@@ -192,10 +205,7 @@ Result<const machine::MachineFamily*> FamilyFor(const std::string& id,
                                                 const std::string& file_name) {
   if (!id.empty()) {
     if (const machine::MachineFamily* family = families::FindFamily(id)) return family;
-    std::string known;
-    for (const machine::MachineFamily* one : families::Families())
-      known += " " + std::string(one->info().id);
-    return Error{ErrorCode::kCellUnknownFamily, "'" + id + "'; there are" + known, {}};
+    return families::UnknownFamily(id);
   }
   if (const machine::MachineFamily* family = families::FamilyOfFileName(file_name)) return family;
   std::error_code ignored;

@@ -146,9 +146,10 @@ std::optional<std::array<double, 2>> FieldOf(const std::string& text) {
   return std::array{*width, *height};
 }
 
-void Found(std::vector<Diagnostic>& findings, const UntoldFindings& dropped,
-           const std::string& file, std::string_view text, ToolAnswer& answer) {
+void Found(std::vector<Diagnostic>& findings, UntoldFindings dropped, const std::string& file,
+           std::string_view text, ToolAnswer& answer) {
   for (Diagnostic& finding : findings) finding.file = file;
+  dropped.ForEachPlace([&file](Diagnostic& place) { place.file = file; });
   answer.Found(findings, dropped, text);
 }
 

@@ -40,6 +40,12 @@ const machine::MachineFamily* FindFamily(std::string_view id) {
   return nullptr;
 }
 
+Error UnknownFamily(std::string_view id) {
+  std::string known;
+  for (const machine::MachineFamily* one : Families()) known += " " + std::string(one->info().id);
+  return {ErrorCode::kCellUnknownFamily, "'" + std::string(id) + "'; there are" + known, {}};
+}
+
 const machine::MachineFamily* FamilyOfFileName(std::string_view name) {
   const std::string_view extension = ExtensionOf(name);
   for (const machine::MachineFamily* family : Families()) {

@@ -14,6 +14,9 @@ std::span<const machine::MachineFamily* const> Families();
 // Null when there is none.
 const machine::MachineFamily* FindFamily(std::string_view id);
 
+// CellUnknownFamily: no family has this id; it tells which there are.
+Error UnknownFamily(std::string_view id);
+
 // By the extension of a file name, compared without case: "part.SI". Null when no family claims it.
 const machine::MachineFamily* FamilyOfFileName(std::string_view name);
 

@@ -257,9 +257,13 @@ Status ParseInputFile(std::string_view text, const std::string& name, double ove
     }
     v1::ScriptedInput scripted;
     if (equals != std::string_view::npos) {
-      const auto value = ValueOf(Trimmed(rest.substr(equals + 1)));
-      if (!value)
-        return BadLine(name, line_number, 0, "the value is no number, ON, OFF, OPEN or CLOSED");
+      const std::string_view behind = rest.substr(equals + 1);
+      const std::string_view given = Trimmed(behind);
+      const auto value = ValueOf(given);
+      if (!value) {
+        return BadLine(name, line_number, ColumnOf(given.empty() ? behind : given, whole),
+                       "the value is no number, ON, OFF, OPEN or CLOSED");
+      }
       if (const Status set = SetValue(*value, *input); !set)
         return BadLine(name, line_number, column, set.error().detail);
     }

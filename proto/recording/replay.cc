@@ -321,7 +321,7 @@ class Player {
 
 Result<RecordedMachine> MachineOf(const v1::MachineRecording& head) {
   const machine::MachineFamily* family = families::FindFamily(head.family());
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, head.family(), {}};
+  if (family == nullptr) return families::UnknownFamily(head.family());
   auto parameters = machine::MakeParameters(*family, head.profile(),
                                             {head.parameters().begin(), head.parameters().end()});
   if (!parameters) return parameters.error();

@@ -199,7 +199,7 @@ std::optional<MachineRecorder::OfJob> RecoverRecording(const Recovered& found,
 Result<OpenedMachine> OpenMachine(const v1::HostWelcome& welcome, const HostOptions& options,
                                   const std::string& host, const HostTime& now) {
   const machine::MachineFamily* family = families::FindFamily(welcome.family());
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, welcome.family(), {}};
+  if (family == nullptr) return families::UnknownFamily(welcome.family());
   Result<Journal::Found> journal = Journal::Open(options.journal);
   if (!journal) return journal.error();
   if (journal->torn_bytes > 0)

@@ -141,7 +141,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   const Result<storage::MachineRecord> machine = machines_.Get(*machine_id);
   if (!machine) return machine.error();
   const machine::MachineFamily* known = families::FindFamily(machine->family);
-  if (known == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  if (known == nullptr) return families::UnknownFamily(machine->family);
   const machine::MachineFamily& family = *known;
   if (const Status valid = CheckSimulation(job.simulation(), family); !valid) return valid.error();
 
@@ -406,7 +406,7 @@ Status JobBook::CheckOverride(std::string_view name, double percent) {
   const auto machine = machines_.Get(record->machine);
   if (!machine) return machine.error();
   const machine::MachineFamily* family = families::FindFamily(machine->family);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  if (family == nullptr) return families::UnknownFamily(machine->family);
   const Status valid = bridge::CheckOverride(percent, family->info().override_max_percent);
   return valid ? valid : InvalidArgument("override_percent: " + valid.error().detail);
 }

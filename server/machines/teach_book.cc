@@ -98,7 +98,7 @@ Result<TeachBook::Undo> TeachBook::Prepare(const v1::UndoTeachEntriesRequest& re
   const auto machine = store_.GetMachine(name->machine);
   if (!machine) return machine.error();
   const machine::MachineFamily* family = families::FindFamily(machine->family);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  if (family == nullptr) return families::UnknownFamily(machine->family);
   Undo undo{.machine = name->machine, .program = name->slot, .down_to = request.down_to()};
   const auto program = store_.GetProgram(name->machine, name->slot);
   if (!program && program.error().code != ErrorCode::kCellNotFound) return program.error();

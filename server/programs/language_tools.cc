@@ -76,12 +76,12 @@ Result<const machine::MachineFamily*> FamilyOf(storage::Store& store, const v1::
   const machine::MachineFamily* family = nullptr;
   if (!text.family().empty()) {
     family = families::FindFamily(text.family());
-    if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, text.family(), {}};
+    if (family == nullptr) return families::UnknownFamily(text.family());
   } else if (!machine.empty()) {
     const auto record = store.GetMachine(machine);
     if (!record) return record.error();
     family = families::FindFamily(record->family);
-    if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, record->family, {}};
+    if (family == nullptr) return families::UnknownFamily(record->family);
   } else {
     family = families::FamilyOfFileName(text.program().file_name());
   }
@@ -178,7 +178,7 @@ void AddLocations(const machine::Places& found, const TextPlaces& here,
 
 Result<v1::GetLanguageResponse> LanguageTools::Words(const v1::GetLanguageRequest& request) {
   const machine::MachineFamily* family = families::FindFamily(request.family());
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, request.family(), {}};
+  if (family == nullptr) return families::UnknownFamily(request.family());
   v1::GetLanguageResponse response;
   for (const machine::LanguageWord& word : family->words()) {
     v1::LanguageWord& made = *response.add_words();

@@ -189,7 +189,8 @@ Result<v1::LinkProgramResponse> MemoryTools::Link(const v1::LinkProgramRequest& 
     if (!stored) return stored.error();
     const storage::MachineRecord* machine = &stored->machine;
     family = families::FindFamily(machine->family);
-    if (family == nullptr || family->tools() == nullptr) {
+    if (family == nullptr) return families::UnknownFamily(machine->family);
+    if (family->tools() == nullptr) {
       return Error{
           ErrorCode::kCellPrecondition, "a " + machine->family + " machine has no executables", {}};
     }

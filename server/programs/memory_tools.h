@@ -21,7 +21,7 @@ class MemoryTools {
   Result<v1::FixProgramResponse> Fix(const v1::FixProgramRequest& request);
 
   // What stops the link is a finding. Errors: ProgramNumber (7101), CellInvalidArgument for a slot
-  // twice.
+  // twice, CellUnknownFamily for a machine of a later version.
   Result<v1::LinkProgramResponse> Link(const v1::LinkProgramRequest& request);
 
   // OPT-1.12 to 1.15. A machine without executables has no stale ones.

@@ -402,12 +402,11 @@ Result<ProgramBook::Subject> ProgramBook::FindSubject(
     auto memory = store_.GetMachineMemory(*id, wants_programs);
     if (!memory) return memory.error();
     subject.family = families::FindFamily(memory->machine.family);
-    if (subject.family == nullptr)
-      return Error{ErrorCode::kCellUnknownFamily, memory->machine.family, {}};
+    if (subject.family == nullptr) return families::UnknownFamily(memory->machine.family);
     subject.memory = *std::move(memory);
   } else if (!family_id.empty()) {
     subject.family = families::FindFamily(family_id);
-    if (subject.family == nullptr) return Error{ErrorCode::kCellUnknownFamily, family_id, {}};
+    if (subject.family == nullptr) return families::UnknownFamily(family_id);
   } else {
     subject.family = families::FamilyOfFileName(program.file_name());
   }

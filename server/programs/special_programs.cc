@@ -93,7 +93,7 @@ Result<v1::StoreSpecialProgramsResponse> StoreSpecialPrograms(
   const auto machine = store.GetMachine(*id);
   if (!machine) return machine.error();
   const machine::MachineFamily* family = families::FindFamily(machine->family);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  if (family == nullptr) return families::UnknownFamily(machine->family);
   const Result<SpecialSet> chosen = Choose(*family, request);
   if (!chosen) return chosen.error();
   if (!request.replace()) {

@@ -11,8 +11,7 @@
 namespace rmlcell::server {
 namespace {
 
-v1::Findings FindingsOf(const std::vector<Diagnostic>& findings,
-                        const UntoldFindings& dropped = {}) {
+v1::Findings FindingsOf(const std::vector<Diagnostic>& findings, const UntoldFindings& dropped) {
   return bridge::FindingsOf(!HasErrors(findings), findings, dropped, {});
 }
 

@@ -266,7 +266,7 @@ ProgramResult<v1::TransferProjectResponse> ProjectTransfer::ToMachine(
   const auto machine = store_.GetMachine(*machine_id);
   if (!machine) return machine.error();
   const machine::MachineFamily* family = families::FindFamily(machine->family);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  if (family == nullptr) return families::UnknownFamily(machine->family);
   const auto parameters = machine::MakeParameters(*family, machine->profile, machine->parameters);
   if (!parameters) return parameters.error();
   if (const Status fits = CheckFamilies(*project, *family); !fits) return fits.error();
@@ -342,7 +342,7 @@ Result<v1::Project> ProjectTransfer::Gather(const storage::MachineRecord& machin
                                             const v1::TransferProjectFromMachineRequest& request,
                                             const std::string& now) {
   const machine::MachineFamily* family = families::FindFamily(machine.family);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine.family, {}};
+  if (family == nullptr) return families::UnknownFamily(machine.family);
   const auto before = store_.ListPrograms(machine.id, 0, kSlotMax);
   if (!before) return before.error();
   std::set<int> slots(request.slots().begin(), request.slots().end());

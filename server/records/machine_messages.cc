@@ -170,12 +170,7 @@ Result<storage::MachineRecord> Updated(storage::MachineRecord machine, const v1:
 
 Status CheckMachine(const storage::MachineRecord& machine) {
   const machine::MachineFamily* family = families::FindFamily(machine.family);
-  if (family == nullptr) {
-    std::string known;
-    for (const machine::MachineFamily* one : families::Families())
-      known += " " + std::string(one->info().id);
-    return Error{ErrorCode::kCellUnknownFamily, "'" + machine.family + "'; there are" + known, {}};
-  }
+  if (family == nullptr) return families::UnknownFamily(machine.family);
   if (const Status good = CheckTitle(machine.title, "title"); !good) return good.error();
   const auto parameters = machine::MakeParameters(*family, machine.profile, machine.parameters);
   if (!parameters) return parameters.error();

@@ -12,7 +12,7 @@ Result<ProgramPlace> FindProgramPlace(storage::Store& store, std::string_view na
   Result<storage::MachineRecord> machine = store.GetMachine(parsed->machine);
   if (!machine) return machine.error();
   const machine::MachineFamily* family = families::FindFamily(machine->family);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  if (family == nullptr) return families::UnknownFamily(machine->family);
   if (const Status there = CheckNumber(*family, *parsed); !there) return there.error();
   return ProgramPlace{*std::move(machine), family, parsed->slot, parsed->executable};
 }

@@ -237,8 +237,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
         const auto machine = store_.GetMachine(name->machine);
         if (!machine) return ToGrpcStatus(machine.error());
         const machine::MachineFamily* family = families::FindFamily(machine->family);
-        if (family == nullptr)
-          return ToGrpcStatus(Error{ErrorCode::kCellUnknownFamily, machine->family, {}});
+        if (family == nullptr) return ToGrpcStatus(families::UnknownFamily(machine->family));
         if (const Status known = CheckSchedule(*family, name->number); !known)
           return ToGrpcStatus(known.error());
         if (const Status good = CheckTitle(wanted.title(), "title"); !good)
@@ -273,7 +272,7 @@ grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(
                   if (!machine) return ToGrpcStatus(machine.error());
                   const machine::MachineFamily* family = families::FindFamily(machine->family);
                   if (family == nullptr)
-                    return ToGrpcStatus(Error{ErrorCode::kCellUnknownFamily, machine->family, {}});
+                    return ToGrpcStatus(families::UnknownFamily(machine->family));
                   if (const Status known = CheckSchedule(*family, name->number); !known)
                     return ToGrpcStatus(known.error());
                   const Status deleted = store_.DeleteSchedule(

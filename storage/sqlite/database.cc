@@ -31,7 +31,8 @@ Error ErrorOf(sqlite3* handle, int sqlite_code) {
   const int system_error = handle != nullptr ? sqlite3_system_errno(handle) : 0;
   const int primary = sqlite_code & 0xFF;
   // Of no other one does SQLite keep the reason: what stands there is that of an earlier failure.
-  const bool from_system = primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN;
+  const bool from_system =
+      (primary == SQLITE_IOERR && sqlite_code != SQLITE_IOERR_NOMEM) || primary == SQLITE_CANTOPEN;
   if (system_error != 0 && from_system) {
     detail += std::string(": ") + std::strerror(system_error);  // NOLINT(concurrency-mt-unsafe)
   }

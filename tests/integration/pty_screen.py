@@ -69,9 +69,12 @@ class Terminal:
         self.type(f"\x1b[<0;{column + 2};{row + 1}{'M' if down else 'm'}")
 
     def place_of(self, button):
-        found = [(row, line.find(button)) for row, line in enumerate(self.lines()) if button in line]
-        assert len(found) == 1, f"{button}: {found}\n{self.text()}"
-        return found[0]
+        def found():
+            places = [(row, line.find(button)) for row, line in enumerate(self.lines()) if button in line]
+            return places if len(places) == 1 else None
+        places = eventually(found)  # the screen may be half drawn still
+        assert places, f"{button}\n{self.text()}"
+        return places[0]
 
     def lines(self):
         return ["".join(row) for row in self.cells]

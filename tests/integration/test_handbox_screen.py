@@ -211,7 +211,7 @@ class HandboxScreenTest(unittest.TestCase):
         terminal.answers = False
         terminal.mouse("z Z+", True)
         self.assertTrue(terminal.shows("let go: the terminal did not answer in time"), terminal.text())
-        self.assertEqual(self.machine.pressed(), "Z+ PRESS, Z+ RELEASE")
+        self.assertTrue(eventually(lambda: self.machine.pressed() == "Z+ PRESS, Z+ RELEASE"), self.machine.pressed())
 
     # A server that is gone, or does not let it: with its reason. What is said of a machine that is OFF is none.
     def test_what_ends_it(self):

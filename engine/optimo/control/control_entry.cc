@@ -172,6 +172,8 @@ void Control::Enter(const MachineState& now, const machine::EntryOrder& order) {
   s_.waits = {};
   s_.watch = {};
   s_.travel = {};
+  s_.process_watch = {};
+  s_.moves.speed_limited_told = false;
   s_.next_input = 0;
   this->now().place = place;
   this->now().phase = machine::RunPhase::kRunning;

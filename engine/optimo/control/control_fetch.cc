@@ -69,8 +69,11 @@ void Control::Fetch() {
   }
   if (!ride_.passing() && !waits_.condition_met() && !s_.entry.reached) {
     if (const std::optional<int> label = counter_.TakeDueGosub()) {
-      if (const Status made = counter_.Gosub(*label); !made) Raise(made.error());
-      NoteTimedGosub();
+      if (const Status made = counter_.Gosub(*label); made) {
+        NoteTimedGosub();
+      } else {
+        Raise(made.error());
+      }
       return;
     }
   }

@@ -1,5 +1,7 @@
 #include "engine/optimo/control/waits.h"
 
+#include <algorithm>
+
 namespace rmlcell::optimo {
 
 void Waits::Begin(const Pending& pending) {
@@ -53,15 +55,23 @@ void Waits::Shift(SimTime stood) {
 }
 
 bool Waits::PollingTakesTime(int slot, std::uint32_t instruction) {
-  constexpr int kReadsAtOnce = 1000;  // loops that count to less are not slowed
+  constexpr int kReadsAtOnce = 1000;     // loops that count to less are not slowed
+  constexpr int kOthersMax = 1'000'000;  // no program has as many instructions
   Polling& polling = s_.polling;
+  const bool same_instant = polling.at == situation_.now;
   if (polling.program != slot || polling.instruction != instruction) {
-    if (polling.at != situation_.now) {
-      polling = {.program = slot, .instruction = instruction, .at = situation_.now, .count = 1};
-    }
+    if (same_instant && ++polling.others < polling.others_max) return false;
+    // Of a loop with more of them than that one is counted in the end.
+    const int others_max = same_instant ? 2 * polling.others_max : kReadsAtOnce;
+    polling = {.program = slot,
+               .instruction = instruction,
+               .at = situation_.now,
+               .count = 1,
+               .others_max = std::min(others_max, kOthersMax)};
     return false;
   }
-  if (polling.at != situation_.now) {
+  polling.others = 0;
+  if (!same_instant) {
     polling.at = situation_.now;
     polling.count = 0;
   }

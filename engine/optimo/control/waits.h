@@ -44,8 +44,10 @@ struct Pending {
 struct Polling {
   int program = 0;
   std::uint32_t instruction = 0;
-  SimTime at{-1};     // when it was read last
-  int count = 0;      // how often at that instant
+  SimTime at{-1};  // when it was read last
+  int count = 0;   // how often at that instant
+  int others = 0;  // how often others were read at that instant, since it was read last
+  int others_max = 0;
   bool slow = false;  // each further time takes a CYCLE
 };
 
@@ -102,7 +104,9 @@ class Waits {
 
   // An instruction that reads an input over and over in one instant waits for something to change
   // outside: from its thousandth time on each further one takes a CYCLE, in which the control
-  // samples its inputs. True: it waits, and is fetched again then.
+  // samples its inputs. True: it waits, and is fetched again then. Of a loop with several of them
+  // the first is counted; where that was read before the loop and is not of it, another one takes
+  // its place behind a thousand others.
   bool PollingTakesTime(int slot, std::uint32_t instruction);
 
  private:

@@ -72,6 +72,7 @@ void Parser::ParseStatement() {
   instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
   attribute_parts_.clear();
   const std::uint64_t errors = findings_.error_count();
+  nameless_ = false;
   const bool rest_of_if = std::exchange(broken_if_, false) &&
                           (first_.word == Word::kThen || first_.word == Word::kElse);
   const bool steps = first_.word != Word::kDeclare && !rest_of_if;
@@ -108,7 +109,7 @@ void Parser::ParseStatement() {
     declared_[instruction_.name] = true;
     declared_names_.push_back(instruction_.name);
   }
-  if (good && findings_.error_count() != errors)
+  if (good && (findings_.error_count() != errors || nameless_))
     program_.faulty.push_back(static_cast<std::uint32_t>(module_.instructions.size()));
   FinishStatement(good);
 }
@@ -323,6 +324,7 @@ std::uint16_t Parser::InternName(const Token& token) {
       if (!std::exchange(too_many_names_, true)) {
         Report(token, ErrorCode::kObjectTooLong, "more names than an object can hold");
       }
+      nameless_ = true;
       return 0;
     }
     module_.names.push_back({.key = token.key, .declared = false, .value = {}});
@@ -346,15 +348,8 @@ std::uint16_t Parser::InternName(const Token& token) {
 
 bool Parser::Fail(std::string_view expected) {
   const Token token = Peek();
-  // What is missing is missing before the line that it stands on.
-  if (BeginsStatement(token)) {
-    const Token& last = lexer_.At(at_ - 1);
-    findings_.Add(ErrorCode::kSyntax,
-                  {last.offset + last.length, 0, static_cast<int>(instruction_.step)},
-                  "expected " + Told("expected", expected));
-    lexer_.ResumeAt(token);
-    return false;
-  }
+  if (BeginsStatement(token))
+    return FailAt(token, ErrorCode::kSyntax, "expected " + Told("expected", expected));
   switch (token.kind) {
     case TokenKind::kEnd:
       if (lexer_.unfinished()) {
@@ -389,8 +384,15 @@ bool Parser::Fail(std::string_view expected) {
 }
 
 bool Parser::FailAt(const Token& token, ErrorCode code, Detail detail, std::string_view rule) {
-  Report(token, code, std::move(detail), rule);
-  if (BeginsStatement(token)) lexer_.ResumeAt(token);
+  if (!BeginsStatement(token)) {
+    Report(token, code, std::move(detail), rule);
+    return false;
+  }
+  // What is missing is missing before the line that it stands on.
+  const Token& last = lexer_.At(at_ - 1);
+  findings_.Add(code, {last.offset + last.length, 0, static_cast<int>(instruction_.step)},
+                std::move(detail), rule);
+  lexer_.ResumeAt(token);
   return false;
 }
 

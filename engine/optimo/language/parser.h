@@ -147,6 +147,7 @@ class Parser {
   int nesting_ = 0;
   bool slash_separates_ = false;  // inside the list of TCP, OPT-B.85
   bool too_many_names_ = false;
+  bool nameless_ = false;   // the statement has a name for which there is no room
   bool broken_if_ = false;  // the statement before is an IF that was given up
 };
 

@@ -20,7 +20,7 @@ struct Compensation {
   // stop; 7804, 7809, 7811 and the gouge check 7812 (the path is nearer to an edge than the beam is
   // wide, gouge.h) are warnings; 7812 as advice says which steps were not looked at.
   std::vector<Diagnostic> diagnostics;
-  UntoldFindings diagnostics_dropped{};
+  UntoldFindings diagnostics_dropped{};  // for which the list has no room
 };
 
 // `inch`: the source is in inches, which is refused (7801); a name with .SI says so, too. The file

@@ -32,10 +32,17 @@ class Converter {
   }
 
   std::vector<Fix> Run() {
-    const std::vector<bool> illegal = IllegalStatements();
+    const std::vector<bool> faulty = FaultyStatements();
+    auto label = p_.mislabelled.begin();
     for (std::size_t s = 0; s < module_.instructions.size(); ++s) {
       const Instruction& i = module_.instructions[s];
-      if (illegal[s]) continue;
+      const bool mislabelled = label != p_.mislabelled.end() && *label == s;
+      if (mislabelled) ++label;
+      if (faulty[s]) continue;
+      if (mislabelled) {
+        if (i.op == Op::kDeclare) Declare(i);  // the name is known all the same
+        continue;
+      }
       if (p_.statements[s].tokens > kConvertTokensMax) {
         findings_.Add(ErrorCode::kConvertLine, p_.At(i),
                       "more than 200 symbols; the line is copied", "OPT-8.65");
@@ -56,16 +63,14 @@ class Converter {
   }
 
  private:
-  // Whose line is copied, however many of them were reported; also where the sequence number on it
-  // is what is wrong. OPT-8.53
-  std::vector<bool> IllegalStatements() const {
-    std::vector<bool> illegal(module_.instructions.size());
-    for (const std::uint32_t s : p_.faulty) illegal[s] = true;
-    for (const std::uint32_t s : p_.mislabelled) illegal[s] = true;
-    for (std::size_t s = 0; s < illegal.size(); ++s) {
-      if (module_.instructions[s].op == Op::kInvalid) illegal[s] = true;
+  // Whose line is copied, however many of them were reported. OPT-8.53
+  std::vector<bool> FaultyStatements() const {
+    std::vector<bool> faulty(module_.instructions.size());
+    for (const std::uint32_t s : p_.faulty) faulty[s] = true;
+    for (std::size_t s = 0; s < faulty.size(); ++s) {
+      if (module_.instructions[s].op == Op::kInvalid) faulty[s] = true;
     }
-    return illegal;
+    return faulty;
   }
 
   // What a name stands for, as far as the text was read.

@@ -22,10 +22,10 @@ using machine::FileNames;
 
 struct Conversion {
   std::string text;
-  // 7708 to 7711. None of them stops the conversion: the line is copied as it is (OPT-8.53,
-  // OPT-8.65).
+  // 7708 to 7711, and 7004 for a number that would become too large. None of them stops the
+  // conversion: the line or the number is copied as it is (OPT-8.53, OPT-8.65).
   std::vector<Diagnostic> diagnostics;
-  UntoldFindings diagnostics_dropped{};
+  UntoldFindings diagnostics_dropped{};  // for which the list has no room
 };
 
 // The longest statement that CONVERT takes. OPT-8.65

@@ -81,9 +81,10 @@ std::optional<Error> GcodeReader::TakeWord(std::string_view line, std::size_t& a
   }
   std::string_view digits = number;
   const SourceSpan where = Place(begin, end - begin);
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  const auto value =
-      digits.size() <= kDigitsMax && !digits.starts_with('+') ? ParseDouble(digits) : std::nullopt;
+  const bool plus = digits.starts_with('+');
+  if (plus) digits.remove_prefix(1);
+  const bool signs = plus && (digits.starts_with('+') || digits.starts_with('-'));
+  const auto value = number.size() <= kDigitsMax && !signs ? ParseDouble(digits) : std::nullopt;
   if (!value) {
     return Error{
         ErrorCode::kRml1GcodeForm,

@@ -23,7 +23,9 @@ InputDescription DescribeInputs(const machine::MachineFamily& family,
                                 const machine::RunSetup& setup);
 
 // FNV-1a with 128 bits over family, engine version and every field of the setup, each with its
-// length: 32 hexadecimal digits. A fingerprint to tell runs apart, not a protection against
+// length: 32 hexadecimal digits. Not what is known of the text of a program beside its object
+// (SourceNotes): by that lines are named. Of a RUN the setup is what it began with; what acted on
+// it meanwhile is in its recording. A fingerprint to tell runs apart, not a protection against
 // forgery: the engine has no cryptography, and who needs proof of the bytes has the SHA-256 of the
 // store.
 std::string FingerprintOf(const machine::MachineFamily& family, const machine::RunSetup& setup);

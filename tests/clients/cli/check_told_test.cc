@@ -157,5 +157,20 @@ TEST_F(CheckTold, InputsAreThoseOfAnyMachine) {
   EXPECT_THAT(Checked({waits}, options).errors, HasSubstr("allowed are above 0 to 145 %"));
 }
 
+// What a repair leaves is told as a check tells it, the advice of the motion with it.
+TEST_F(CheckTold, ARepairTellsAdviceOfTheMotionUnlessErrorsAreWanted) {
+  const std::string file = folder_.Put("1.S", kHeldBack);
+  CheckOptions options;
+  options.fix = true;
+  const Told all = Checked({file}, options);
+  EXPECT_EQ(all.exit_code, 0);
+  EXPECT_THAT(all.output, HasSubstr("1.S:7: advice OPT-E7321: "));
+  options.errors_only = true;
+  const Told errors = Checked({file}, options);
+  EXPECT_EQ(errors.exit_code, 0);
+  EXPECT_THAT(errors.output, StartsWith(file + ": 0 fixed, DOUBTFUL\n"));
+  EXPECT_THAT(errors.output, Not(HasSubstr("OPT-E7321")));
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

@@ -147,5 +147,17 @@ TEST_F(ReadProjectTest, TargetsLieBesideItLikewise) {
                 ErrorCode::kCellFileUnreadable, "none.stl");
 }
 
+// How a program is milled gets no target by being read.
+TEST_F(ReadProjectTest, AProgramWithoutATargetStaysSo) {
+  folder.Put("p/a.rml", "PA;");
+  const v1::Project project = Read(folder.Put("p/any.json", R"({"programs": [
+    {"slot": 1, "source": {"fileName": "a.rml"}},
+    {"slot": 2, "source": {"fileName": "a.rml"}, "milling": {"stlToleranceMm": 0.5}}]})"));
+  ASSERT_EQ(project.programs_size(), 2);
+  EXPECT_FALSE(project.programs(0).has_milling());
+  EXPECT_TRUE(project.programs(1).has_milling());
+  EXPECT_FALSE(project.programs(1).milling().has_target());
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

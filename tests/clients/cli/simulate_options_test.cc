@@ -247,5 +247,27 @@ TEST(Simulating, WhatWasFoundBeforeIsNotToldAgain) {
   EXPECT_EQ(count("\nand "), 1U) << told.output;
 }
 
+// RML1-2.09: a run that is cut short counts fewer than the text does; those are told by the text.
+TEST(Simulating, WhatARunThatIsCutShortCountsIsNotToldAgain) {
+  const CliFolder folder;
+  std::string stream = "PU0,0;\n";
+  for (int line = 0; line < 2000; ++line) stream += "PU1,1;PU2,2;PU3,3;QQ;\n";
+  SimulateOptions options;
+  options.files = {folder.Put("a.rml", stream)};
+  options.machine.profile = "srm-20";
+  options.budget = "steps=4100";  // behind a thousand of them, and before the last one
+  const Told told = Hear([&] { return Simulate(options); });
+  const auto count = [&](const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = told.output.find(part); at != std::string::npos;
+         at = told.output.find(part, at + 1))
+      ++found;
+    return found;
+  };
+  EXPECT_EQ(count(" RML1-E1: "), 5U);
+  EXPECT_EQ(count("and 1995 more RML1-E1, lines 7 to 2001\n"), 1U) << told.output;
+  EXPECT_EQ(count(" more RML1-E1"), 1U) << told.output;
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

@@ -413,5 +413,32 @@ TEST_F(TextToolsTest, LinkTakesTheSlotsThatThereAre) {
     EXPECT_EQ(ExitOfLine({"link", "--slot", function, part, "--main", slot}), std::nullopt) << slot;
 }
 
+// Of errors that are too many to be told one by one, the places are of the file, too.
+TEST_F(TextToolsTest, ErrorsOnlyCountedAreOfTheFileThatIsRewritten) {
+  std::string text;
+  for (int line = 0; line < 1100; ++line) text += "SPEED @@@\n";
+  const std::string file = folder.Put("part.S", text);
+  const TransformOptions options{{.file = file, .output = {}, .json = true}, {1, 0, 0}, {}, {}};
+  const Told told = Hear([&] { return Transform(options); });
+  EXPECT_EQ(told.exit_code, 1);
+  const json found = json::parse(told.output, nullptr, false)["findings"];
+  ASSERT_TRUE(found.contains("gathered")) << told.output.substr(0, 1000);
+  ASSERT_GE(found["gathered"].size(), 1U);
+  for (const json& kind : found["gathered"]) {
+    EXPECT_EQ(kind["first"].value("file", ""), file);
+    EXPECT_EQ(kind["last"].value("file", ""), file);
+  }
+}
+
+// OPT-8.53: what cannot be converted is copied, and it is said of which line.
+TEST_F(TextToolsTest, ALineThatIsCopiedIsTold) {
+  const std::string file = folder.Put("part.S", "SPEED 20\nSPEED @@@\n");
+  const Told told = Hear([&] { return Convert({.arguments = {file}}); });
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_THAT(told.errors, HasSubstr("part.S:2:7: warning OPT-E7711: the line is copied: "));
+  EXPECT_EQ(told.output, folder.File("part.SI") + ": inches and degrees\n");
+  EXPECT_THAT(folder.Read("part.SI"), HasSubstr("SPEED @@@\n"));
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

@@ -89,6 +89,17 @@ TEST_F(WriteWholeFileTest, ALinkStaysALink) {
   EXPECT_EQ(folder.Read("below/a.S"), "new");
 }
 
+TEST_F(WriteWholeFileTest, ALinkMayLeadToAFileThatIsStillToBeMade) {
+  const std::string link = folder.File("link.S");
+  fs::create_symlink("a.S", link);
+  EXPECT_TRUE(WriteWholeFile(link, "new"));
+  EXPECT_EQ(fs::read_symlink(link), "a.S");
+  EXPECT_EQ(folder.Read("a.S"), "new");
+  const std::string round = folder.File("round.S");
+  fs::create_symlink("round.S", round);
+  ExpectUnwritable(WriteWholeFile(round, "new"), round);
+}
+
 // Nobody may make a file beside it: the name leaves no room for one, whoever runs the test.
 TEST_F(WriteWholeFileTest, WhereNoFileCanBeMadeTheOldOneStays) {
   const std::string name(250, 'n');

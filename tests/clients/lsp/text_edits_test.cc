@@ -300,5 +300,18 @@ TEST(CodeActions, ARemovalIsNotPreferred) {
   EXPECT_EQ(FixedBy({{5, 0, "a\nb\rc"}})["title"], "Insert 'a b c'");
 }
 
+// Silencing advice is never what an editor does without being asked, while its repair is.
+TEST(CodeActions, AnAllowanceIsNotPreferred) {
+  Editor editor;
+  editor.Open("SYSDEF (0.,0.,0.,0.,0.,0.)\nMOVE (1,2,3,0,0) /INF\nSPED 5\n");
+  const Json actions = ActionsOf(editor, {{0, 3}, {0, 3}});
+  const Json* fix = Titled(actions, "by 'SYSDEF'");
+  ASSERT_NE(fix, nullptr) << actions.dump();
+  EXPECT_EQ((*fix)["isPreferred"], true);
+  const Json* allow = Titled(actions, "Allow 7311 on this line");
+  ASSERT_NE(allow, nullptr) << actions.dump();
+  EXPECT_EQ((*allow)["isPreferred"], false);
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

@@ -101,6 +101,27 @@ TEST(BendReport, WantedSpeeds) {
   EXPECT_EQ(through.deviation_mm, 0.0);
 }
 
+// In the middle of a bend between two slants X alone goes on: at 30 mm/s where that is all it can.
+// Speeds that differ by more than 1e-9 of them are not the same, and the bend is told as capped,
+// though it has its full size. motion.md 1, 4.3
+TEST(BendReport, ABendThatMissesItsSpeedByLittleIsCapped) {
+  MachineLimits machine = StandardMachine();
+  machine.axes.speed[0] = 30.0;
+  const auto told = [&machine](double speed_mm_s) {
+    std::vector<MoveCommand> chain(2);
+    chain[0].path = PathPiece::Line({}, {{50, 50, 0}});
+    chain[1].path = PathPiece::Line({{50, 50, 0}}, {{100, 0, 0}});
+    chain[0].speed_fraction = chain[1].speed_fraction = speed_mm_s / 500.0;
+    chain[0].fly = true;
+    return FirstReport(Plan(chain, machine));
+  };
+  const CornerReport slower = told(30.0 * (1.0 + 1e-7));
+  EXPECT_EQ(slower.passage, Passage::kBlendCapped);
+  EXPECT_NEAR(slower.wanted_speed, 30.0 * (1.0 + 1e-7), 1e-9);
+  EXPECT_NEAR(slower.speed, 30.0, 1e-7);
+  EXPECT_EQ(told(29.9).passage, Passage::kBlend);
+}
+
 // A STOP and START in a bend with changing speed goes on at what the whole of it allows: 19.79 mm/s
 // (case C16, to the 3 thousandths that places between the steps are rounded down). One passed
 // steadily, and all that is no bend, has no such limit.

@@ -145,6 +145,28 @@ TEST(SpanPlaces, ARunHoldsHalfAWindowOfLegs) {
   }
 }
 
+// On a curve acceleration and jerk are the least of all moves that it touches, on either side, and
+// those of a move that it does not reach are none of its. motion.md 5.4
+TEST(SpanPlaces, ACurveKeepsTheLimitsOfAllThatItTouches) {
+  for (const std::size_t weak : {std::size_t{0}, std::size_t{3}}) {
+    LegStage legs(PlainMachine(), Planner::kWindow);
+    const std::vector<MoveCommand> chain =
+        ChainOf({{kEast * 2.0, 1.0}, {kEast, 1.0}, {kNorth, 1.0}, {kNorth * 2.0, 1.0}});
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+      const bool weaker = k == weak;
+      legs.Add(
+          chain[k],
+          {.speed = 50.0, .acceleration = weaker ? 100.0 : 400.0, .jerk = weaker ? 3000.0 : 5000.0},
+          true);
+    }
+    const PathLimits near = LimitsOnCurve(legs, 1, 0.9), far = LimitsOnCurve(legs, 1, 1.1);
+    EXPECT_EQ(near.acceleration, 400.0) << weak;
+    EXPECT_EQ(near.jerk, 5000.0) << weak;
+    EXPECT_EQ(far.acceleration, 100.0) << weak;
+    EXPECT_EQ(far.jerk, 3000.0) << weak;
+  }
+}
+
 // A point that lies 5e-11 mm behind the end of a curve is its end: nothing is left of its move.
 TEST(SpanPlaces, APointJustBehindACurveIsItsEnd) {
   for (const double beside_mm : {-5e-11, 0.0, 5e-11}) {

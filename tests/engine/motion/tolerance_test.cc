@@ -243,6 +243,19 @@ TEST(BeginMoving, GoesOnAtTheSpeed) {
   }
 }
 
+// Exactly the way that 30 mm/s take to rest, 30 sqrt(30 / 40000) mm, is enough; a part in 1e8 less
+// is not. motion.md 5.2
+TEST(BeginMoving, ExactlyTheWayToRestIsEnough) {
+  for (const double share : {1.0, 1.0 - 1e-8}) {
+    Planner braking(StandardMachine());
+    braking.BeginMoving(30.0);
+    const double length = 30.0 * std::sqrt(30.0 / 40000.0) * share;
+    ASSERT_TRUE(braking.Append(LineOf({}, {{length, 0, 0}})));
+    ASSERT_EQ(Drained(braking).size(), 1u);
+    EXPECT_EQ(braking.starts_too_fast(), share < 1.0) << share;
+  }
+}
+
 // In COORD ROBOT the speed is that of sigma: 0.1 of 1000 mm a second is 100 mm/s, 0.4 of full
 // speed.
 TEST(BeginMoving, InAxesBySigma) {

@@ -74,6 +74,7 @@ TEST(BoundaryTimes, APartWithoutAWayHasItsEnergy) {
   const RunReport report = recorder.Report(run);
   EXPECT_NEAR(report.total.cut_energy_j, 0.5 * 1500.0 * 0.004, 1e-9);
   EXPECT_EQ(report.total.beam_on, FromSeconds(0.004));
+  EXPECT_EQ(report.beam.by_speed[0], FromSeconds(0.004));  // the tip went nowhere: it stood
   EXPECT_EQ(report.total.tip_path_mm, 0.0);
 }
 

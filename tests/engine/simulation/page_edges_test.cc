@@ -234,6 +234,26 @@ TEST(PlotEdges, AWaitWithoutTheBeamHasNoPower) {
   }
 }
 
+// A tip that came there at its speed stands as soon as it waits, and nothing is asked of it.
+TEST(PlotEdges, AWaitBehindAMotionStands) {
+  using std::chrono::seconds;
+  PlotRecorder recorder(Laser());
+  motion::PlannedMotion planned;
+  planned.path = LineFrom({}, {50, 0, 0});
+  planned.speed = motion::SpeedProfile::Steady(50.0, 50.0);
+  recorder.OnMotion({.start = SimTime(0),
+                     .end = seconds(1),
+                     .motion = &planned,
+                     .travelled = 50.0,
+                     .programmed_mm_s = 60.0});
+  recorder.OnWait({.start = seconds(1), .end = seconds(2)});
+  const TimeEnvelope& values = recorder.Values(seconds(2));
+  for (const std::size_t series : {PlotSeries::kSpeed, PlotSeries::kFeed}) {
+    EXPECT_GT(values.buckets().front().ranges[series].low, 0.0);
+    EXPECT_EQ(values.buckets().back().ranges[series].high, 0.0);
+  }
+}
+
 // Neither of one that is not told nor of one that ends before it begins.
 TEST(PlotEdges, OfNoMotionNothingIsKnown) {
   using std::chrono::seconds;

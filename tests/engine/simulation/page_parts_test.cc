@@ -9,6 +9,7 @@
 #include "engine/simulation/picture/picture_difference.h"
 #include "engine/simulation/picture/picture_page.h"
 #include "engine/simulation/picture/picture_panel.h"
+#include "engine/simulation/picture/picture_path.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"
@@ -80,6 +81,30 @@ TEST(PageParts, TheLegendHasStrokesAlongTheSurfaceBesideCuts) {
   EXPECT_EQ(CountOf(line, " x1=\"1282\" "), 1u) << line;
   EXPECT_EQ(CountOf(line, " x2=\"1326\" "), 1u) << line;
   EXPECT_EQ(CountOf(line, " class=\"skim\" "), 1u) << line;
+}
+
+// Beside cuts those strokes are drawn by themselves and have no part in the depths, here of 1 and 3
+// mm; those of a pen are what it cuts.
+TEST(PageParts, StrokesAlongTheSurfaceAreDrawnBesideTheCuts) {
+  const machine::MotionDone cut{.use = machine::MotionUse::kCut};
+  const machine::MotionDone stroke{.use = machine::MotionUse::kCut, .in_work = false};
+  PathSketch sketch({}, 100);
+  SketchWay(sketch, {0, 0, 0}, {100, 0, 0}, stroke);
+  const std::string pen = PicturePage(sketch, {}, {}, {});
+  EXPECT_EQ(CountOf(pen, "<path"), 1u);
+  EXPECT_EQ(CountOf(pen, "<g class=\"skim\""), 0u);
+  SketchWay(sketch, {0, 20, -1}, {100, 20, -1}, cut);
+  SketchWay(sketch, {0, 40, -3}, {100, 40, -3}, cut);
+  const std::string page = PicturePage(sketch, {}, {}, {});
+  const std::size_t begin = page.find("<g class=\"skim\"");
+  ASSERT_NE(begin, std::string::npos);
+  EXPECT_EQ(CountOf(page.substr(begin, page.find("</g>", begin) - begin), "<path"), 1u);
+  EXPECT_EQ(CountOf(page, "<path"), 3u);
+  EXPECT_EQ(CountOf(page, ">cut, Z -1.00 to -3.00<"), 1u);
+  for (const int shade : {0, kShades - 1}) {
+    EXPECT_EQ(CountOf(page, std::string("<path stroke=\"") + kShadeColours[shade] + '"'), 1u)
+        << shade;
+  }
 }
 
 std::string DifferenceOn(const std::string& machine_name) {

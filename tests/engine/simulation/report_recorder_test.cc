@@ -371,6 +371,8 @@ TEST(ReportRecorder, TheBeamCountsInItsProgram) {
   EXPECT_EQ(second.by_speed[1], FromSeconds(2.0));
   EXPECT_EQ(second.by_speed[0], FromSeconds(0.75));
   EXPECT_EQ(report.beam.by_power[10], FromSeconds(1.5));
+  // A second and a half at 50 % of 1500 W; a quarter of one of which nobody tells a power has none.
+  EXPECT_NEAR(report.total.pierce_energy_j, 1125.0, 1e-9);
 }
 
 // motion.md 8.2: peaks are those of the program that reaches them, also behind higher ones of

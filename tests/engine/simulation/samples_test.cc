@@ -324,6 +324,23 @@ TEST(Samples, EventsOnTheWayHaveTheirSpeed) {
   EXPECT_EQ(events, 1);
 }
 
+// motion.md 9: until the first motion begins the machine stands where that does, though it begins
+// at its speed.
+TEST(Samples, BeforeTheFirstMotionItStands) {
+  motion::PlannedMotion steady;
+  steady.path = motion::PathPiece::Line({{3, 4, 5}}, {{103, 4, 5}});
+  steady.speed = motion::SpeedProfile::Steady(100.0, 50.0);
+  Script script;
+  script.Step(1, 1).Nothing(0.5).Motion(steady);
+  const std::vector<Row> rows = Sampled(script, 10.0);
+  ASSERT_GT(rows.size(), 7u);
+  for (std::size_t n = 1; n <= 5; ++n) {  // 0.0 to 0.4
+    EXPECT_EQ(Number(rows[n], 1), 3.0) << n;
+    EXPECT_EQ(Number(rows[n], 9), 0.0) << n;
+  }
+  EXPECT_NEAR(Number(rows[7], 9), 50.0, 1e-6);
+}
+
 // The head of the gantry: axes and tip are different points; K03 has L = 300 along u.
 TEST(Samples, AxesOfTheGantryAreThoseOfTheColumn) {
   machine::MachineShape gantry;

@@ -173,7 +173,7 @@ TEST(InputFile, MistakesAreNamedWithTheirPlace) {
            {"1 IA[1]", 1, 3, "IA[1] needs '= VALUE'"},
            {"1 OVERRIDE", 1, 3, "OVERRIDE needs '= VALUE'"},
            {"1 START = 1", 1, 3, "START takes no value"},
-           {"1 IL[1] = maybe", 1, 0, "the value is no number, ON, OFF, OPEN or CLOSED"},
+           {"1 IL[1] = maybe", 1, 11, "the value is no number, ON, OFF, OPEN or CLOSED"},
            {"1 IL[1] = 2", 1, 3, "the value is 2; allowed are 0 and 1"},
            {"1 DOOR = 0.5", 1, 3, "the value is 0.5; allowed are 0 and 1"},
            {"1 OVERRIDE = 146", 1, 3, "the value is 146; allowed are above 0 to 145 %"},

@@ -99,7 +99,8 @@ TEST(NamedNumbers, WhereAnInputIsWrong) {
                                                     {"0 HOLD\n\n\n\n 1 IL[1] = 2", 5, 4},
                                                     {"  1 \t DOOR = 2 # no", 1, 7},
                                                     {"\t START", 1, 3},
-                                                    {"\n\n1 IL[1] = maybe", 3, 0}};
+                                                    {"1 IL[1] =", 1, 10},
+                                                    {"\n\n1 IL[1] = maybe", 3, 11}};
   for (const auto& [text, line, column] : rows) {
     v1::SimulationOptions options;
     const Status read = ParseInputFile(text, "in.txt", 145.0, options);

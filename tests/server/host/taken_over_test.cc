@@ -213,7 +213,7 @@ TEST_F(TakenOver, AFamilyThatIsNotKnownHasNoMachine) {
       OpenMachine(welcome, {.machine = "machines/m", .journal = path_}, "workshop/1", {});
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, ErrorCode::kCellUnknownFamily);
-  EXPECT_EQ(opened.error().detail, "rml9");
+  EXPECT_EQ(opened.error().detail, "'rml9'; there are optimo rml1");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ TEST_F(PagesOfTeaching, AMachineOfAnotherVersionTakesNothingBack) {
   const auto undone = book.TakeBack(undo, "anna");
   ASSERT_FALSE(undone);
   EXPECT_EQ(undone.error().code, ErrorCode::kCellUnknownFamily);
-  EXPECT_EQ(undone.error().detail, "lathe");
+  EXPECT_EQ(undone.error().detail, "'lathe'; there are optimo rml1");
 }
 
 // What cannot be read is told, whatever is asked of it.

@@ -101,6 +101,18 @@ TEST_F(OutlinedTexts, AFamilyThatNobodyKnowsHasNoExecutables) {
   EXPECT_EQ(Must(memory_tools.ListStale(request)).executables_size(), 0);
 }
 
+// But none can be linked for it.
+TEST_F(OutlinedTexts, NothingIsLinkedForAFamilyThatNobodyKnows) {
+  Must(bed.store().PutMachine({.id = "odd", .family = "lathe"}, 0));
+  v1::LinkProgramRequest request;
+  request.set_machine("machines/odd");
+  request.set_slot(44);
+  const auto linked = memory_tools.Link(request);
+  ASSERT_FALSE(linked);
+  EXPECT_EQ(linked.error().code, ErrorCode::kCellUnknownFamily);
+  EXPECT_EQ(linked.error().detail, "'lathe'; there are optimo rml1");
+}
+
 // What a program is looked at with is all that its machine has, executables among it.
 TEST_F(OutlinedTexts, AProgramIsOpenedWithItsMachine) {
   Must(bed.store().PutPrograms("optimo-1",

@@ -16,7 +16,7 @@ TEST(SpecialProgramsNowhere, AFamilyThatNobodyKnowsHasNone) {
   const auto stored = StoreSpecialPrograms(bed.store(), request, "anna");
   ASSERT_FALSE(stored);
   EXPECT_EQ(stored.error().code, ErrorCode::kCellUnknownFamily);
-  EXPECT_EQ(stored.error().detail, "lathe");
+  EXPECT_EQ(stored.error().detail, "'lathe'; there are optimo rml1");
 }
 
 // Parameters that its family does not know keep its programs from being translated.

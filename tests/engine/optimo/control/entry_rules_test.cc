@@ -38,10 +38,12 @@ class Told final : public machine::RunObserver {
   void OnEntered(SimTime at) override { entered.push_back(at); }
   void OnDiagnostic(SimTime, const Diagnostic& finding) override {
     if (finding.code == ErrorCode::kSpeedHeldByAxis) held_at.push_back(finding.step);
+    if (finding.code == ErrorCode::kSpeedLimited) limited_at.push_back(finding.step);
   }
   std::vector<std::string> lines;
   std::vector<SimTime> entered;
   std::vector<int> held_at;  // steps of contours that an axis holds back
+  std::vector<int> limited_at;
 };
 
 struct Entry {
@@ -262,6 +264,33 @@ TEST(EntryRules, WhatNobodyWasToldIsToldThere) {
   Entered one(entry, NewState(entry));
   one.ToEnd();
   EXPECT_EQ(std::ranges::count(one.told.held_at, 6), 1);
+}
+
+// OPT-4.38: nor that SPEED x override was too much there.
+TEST(EntryRules, TooMuchSpeedIsToldBehindTheEntry) {
+  const Entry entry{.main = kAbsol +
+                            "SPEED 100\nMOVE (1000.,1000.,-400.,0.,0.)\nVI[2]=1\n"
+                            "MOVE (1100.,1000.,-400.,0.,0.)\nMOVE (1000.,1000.,-400.,0.,0.)\n",
+                    .step = 5,
+                    .options = {.override_percent = 115.0}};
+  Entered one(entry, NewState(entry), {.override_percent = 115.0});
+  one.ToEnd();
+  EXPECT_THAT(one.told.limited_at, ElementsAre(6));
+}
+
+// docs/verdict.md: what was cut wrongly before the step is nothing that this run did.
+TEST(EntryRules, WhatWasDoneBeforeTheStepIsNotCounted) {
+  const std::string cut = "SPEED 10\nWORK 0,0/ON\nMOVE (1100.,1000.,-400.,0.,0.)\nWORK 0,0/OFF\n";
+  const Entry entry{.main = ThereAnd("OL[8]=ON\nOL[9]=ON\n" + cut + "VI[2]=1\n"),
+                    .step = 10,
+                    .options = {.parameters = {{"GAS_CHANNELS", "3"}}}};
+  Entered one(entry, NewState(entry));
+  one.ToEnd();
+  for (const machine::Figure& figure : one.run->figures()) {
+    if (figure.name == "other_gas_length") {
+      EXPECT_EQ(figure.value, 0.0);
+    }
+  }
 }
 
 // LIVE-6.09: HOLD on the last motion of the approach: it halts behind that,

@@ -352,6 +352,24 @@ TEST(FlowRules, APollingLoopSeesItsInput) {
             0.0);
 }
 
+// OPT-7.97: also where another input was read at the instant at which the loop begins, and where
+// the loop reads more of them than that.
+TEST(FlowRules, APollingLoopBehindAnotherReadSeesItsInput) {
+  std::string reads;
+  for (int n = 0; n < 1200; ++n) reads += "VL[3]=IL[20]\n";
+  for (const std::string& text :
+       {std::string("IF IL[1] THEN 50\n10 IF NOT IL[16] THEN 10\n50 VI[2]=1\n"),
+        "VL[3]=IL[20]\n10 " + reads + "IF NOT IL[16] THEN 10\nVI[2]=1\n"}) {
+    const Ran ran = RunText(text, {.inputs = {{At(3.0), InputKind::kLogical, 16, 1.0}},
+                                   .variables = {"VI[2]"},
+                                   .budget = {.steps = 5'000'000}});
+    EXPECT_EQ(CodeOf(ran), 0);
+    EXPECT_EQ(ran.variables.at("VI[2]"), "1");
+    EXPECT_GE(ran.time_s, 3.0);
+    EXPECT_LE(ran.time_s, 3.0 + 0.048);
+  }
+}
+
 // OPT-2.60: the end of a /NEXT move can be asked for in a loop too.
 TEST(FlowRules, APollingLoopSeesTheEndOfAMove) {
   const Ran ran =

@@ -302,6 +302,15 @@ TEST(RunEdges, InsideTheGosubOfATimer) {
   EXPECT_FALSE(inside(nested, {}, {1, 2}));
 }
 
+// LIVE-6.04, OPT-7.16: nor is control there where the GOSUB could not be made and ERR took over.
+TEST(RunEdges, AGosubOfATimerThatIsNotMade) {
+  const auto run =
+      RunOfProgram("ERR 600\nTIMER (1.,900)\nDELAY 2\nVI[2]=1\nENDTASK\n600 VI[3]=1\n");
+  EXPECT_TRUE(run->enterable()->HaltBefore({.at = {1, 6}}).ok());
+  EXPECT_EQ(run->Advance(At(100.0)), RunPhase::kHalted);
+  EXPECT_FALSE(run->enterable()->reached()->in_timed_gosub);
+}
+
 // OPT-B.67: a budget is told to the nanosecond, and one of a nanosecond is one.
 TEST(RunEdges, BudgetsOfNanoseconds) {
   const auto detail = [](SimTime budget) {

@@ -415,5 +415,25 @@ TEST_F(Entry, WorkdefWithTheFirstSchedule) {
   EXPECT_EQ(Step7(), "WORKDEF 1,0 (8.0, 0.0, 0.0, 0.0, 1)");
 }
 
+// OPT-4.27 OPT-4.45: keys without function leave a form, a question and what flashes as it is.
+TEST_F(Entry, KeysWithoutFunctionLeaveWhatIsOpen) {
+  for (const auto& [open, shows] : {std::pair{"MOV", "SPEED 70.0"}, std::pair{"ZERO", "ZERO AXIS?"},
+                                    std::pair{"MOV ENT", "*SPEED"}}) {
+    AtStep7();
+    Keys(open);
+    for (const char* key : {"MOD", "STEP", "PAR", "DISP", "F1", "F4", "F5", "F7"}) {
+      Keys(key);
+      EXPECT_EQ(Said(), 7601) << open << " " << key;
+      EXPECT_EQ(Shows(), shows) << key;
+    }
+  }
+  // OPT-4.12: nor does a key of MANUAL anything in a form that is open in another mode.
+  Have({{12, "DELAY 1\n"}}, Mode::kCycle);
+  Keys("JOB 1 2 ENT JOB MOV");
+  EXPECT_EQ(Said(), 7601);
+  EXPECT_EQ(Shows(), "P=12 S=0000 T=0 M=0");
+  EXPECT_THAT(edits, IsEmpty());
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -140,5 +140,34 @@ TEST(AdviceEnds, EachRunThatIsNotReachedIsTold) {
   EXPECT_EQ(count("GOTO 20\nENDTASK\nSPEED 6\n20 SPEED 5\n"), 1);
 }
 
+// OPT-7.20: it is told of the subroutine, not of each GOSUB that leads to it.
+TEST(AdviceEnds, ASubroutineWithoutReturnIsToldOnce) {
+  const std::string subs = "ENDTASK\n100 SPEED 5\nENDTASK\n200 SPEED 6\nRETURN\n";
+  EXPECT_EQ(CountOf("GOSUB 100\nGOSUB 100\n" + subs, 7033, "OPT-7.20"), 1);
+  EXPECT_EQ(CountOf("GOSUB 100\nGOSUB 200\nGOSUB 100\n" + subs, 7033, "OPT-7.20"), 1);
+  EXPECT_EQ(CountOf("GOSUB 200\nGOSUB 200\n" + subs, 7033, "OPT-7.20"), 0);
+}
+
+// OPT-7.109: the last retract of one subroutine and the first approach of the next one are not
+// between ABSOL moves; in one subroutine both are.
+TEST(AdviceEnds, ASubroutineEndsWithItsReturn) {
+  const std::string begin = "SYSDEF (10.,0.,0.,0.,0.,0.)\nPATH PTP\nGOSUB 100\n";
+  const std::string retract =
+      "ENDTASK\n100 COORD ABSOL\nMOVE (1.,0.,0.,0.,0.)\nCOORD ROBOT\nMOVE (2.,0.,0.,0.,0.)\n";
+  const std::string approach =
+      "COORD ROBOT\nMOVE (3.,0.,0.,0.,0.)\nCOORD ABSOL\nMOVE (4.,0.,0.,0.,0.)\nRETURN\n";
+  EXPECT_EQ(CountOf(begin + "GOSUB 200\n" + retract + "RETURN\n200 " + approach, 7033, "OPT-7.109"),
+            0);
+  EXPECT_EQ(CountOf(begin + retract + approach, 7033, "OPT-7.109"), 2);
+}
+
+// OPT-9.12: a FUNCTION of that number is no TASK 1, before it or behind it.
+TEST(AdviceEnds, FunctionOneIsNoTask) {
+  EXPECT_EQ(CountOf("TASK 1\nTASK 1\n", 7033, "OPT-9.12"), 1);
+  for (const char* text :
+       {"FUNCTION 1\nTASK 1\n", "TASK 1\nFUNCTION 1\n", "FUNCTION 1\nFUNCTION 1\n"})
+    EXPECT_EQ(CountOf(text, 7033, "OPT-9.12"), 0) << text;
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::advice_ends

@@ -183,5 +183,13 @@ TEST(Compiler, AnEmptyProgramHasASource) {
   EXPECT_EQ(MustCompile(*source).object, object);
 }
 
+// compiler.h: 0 is no limit, and 1 is one.
+TEST(Compiler, TheLeastLimitOfAnObject) {
+  EXPECT_TRUE(Compile("SPEED 5\n", "", {.object_limit = 0}).ok);
+  const Compilation refused = Compile("SPEED 5\n", "", {.object_limit = 1});
+  ASSERT_EQ(refused.diagnostics.size(), 1U);
+  EXPECT_EQ(refused.diagnostics[0].code, ErrorCode::kObjectTooLong);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

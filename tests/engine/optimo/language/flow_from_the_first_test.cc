@@ -180,5 +180,30 @@ TEST_F(CallsOfPrograms, AFunctionByNameComesBack) {
   }
 }
 
+// OPT-7.20, OPT-B.22: also where it is the first instruction of all, before the TASK.
+TEST(FlowFromTheFirst, ASubroutineMayBeTheFirstInstruction) {
+  const auto told = [](const std::string& speed) {
+    return TimesSaid("10 RETURN\nTASK 1\n" + kLines + speed + "GOSUB 10\nMOVE (9.,0.,0.,0.,0.)\n",
+                     7307, "OPT-B.22");
+  };
+  EXPECT_EQ(told("SPEED 0\n"), 1);
+  EXPECT_EQ(told("SPEED 5\n"), 0);
+}
+
+// OPT-7.109: a subroutine that begins with the first instruction is no part of the program.
+TEST(FlowFromTheFirst, MovesOfTheFirstSubroutineAreItsOwn) {
+  EXPECT_EQ(TimesSaid("900 MOVE (3.,0.,0.,0.,0.)\nRETURN\nTASK 1\n"
+                      "SYSDEF (1.,0.,0.,0.,0.,0.)\nPATH PTP\nCOORD ROBOT\nMOVE (1.,0.,0.,0.,0.)\n"
+                      "COORD ABSOL\nMOVE (2.,0.,0.,0.,0.)\nGOSUB 900\nENDTASK\n",
+                      7033, "OPT-7.109"),
+            0);
+}
+
+// OPT-9.12, OPT-3.47: what stands before TASK 1 is never reached, be it the first instruction only.
+TEST(FlowFromTheFirst, WhatStandsBeforeTheTaskIsNotReached) {
+  EXPECT_EQ(TimesSaid("SPEED 5\nTASK 1\nSPEED 6\n", 7033, "OPT-3.47"), 1);
+  EXPECT_EQ(TimesSaid("TASK 1\nSPEED 6\n", 7033, "OPT-3.47"), 0);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::flow_from_the_first

@@ -240,5 +240,15 @@ TEST_F(Linker, ExecutablesHaveProgramsOfTheMemory) {
   EXPECT_FALSE(decodes(slots));
 }
 
+// OPT-6.15, OPT-B.72: program 1 is a number like any other, 0 is none.
+TEST_F(Linker, ABreakpointInProgramOneHasItsSize) {
+  for (const auto& [text, size] :
+       {std::pair{"BREAK 7, 1\n", 4U + 3U + 3U}, std::pair{"SIMUL 7, 1\n", 4U + 3U + 3U},
+        std::pair{"BREAK 7, 0\n", 4U + 3U}}) {
+    Store(32, text);
+    EXPECT_EQ(ExecutableSize(*Link(32, Lookup(), {})), 20U + size) << text;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

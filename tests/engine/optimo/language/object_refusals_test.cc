@@ -267,5 +267,41 @@ TEST(ObjectRefusals, SourceMapsAreWhatWasWritten) {
     EXPECT_FALSE(DecodeSourceMap(Sealed(cut)));
 }
 
+// OPT-2.43: an instruction has the attributes that it may have, or none.
+TEST(ObjectRefusals, AttributesAreThoseOfTheirInstruction) {
+  const std::string move = "010100010200010300010400010500";
+  EXPECT_EQ(DetailOf(Object("0100008102" + move)), "good");  // MOVE /FLY
+  for (const Row& row : {
+           Row{"SPEED /FLY", "0100008402010500"},
+           Row{"WORK /ON/C", "0100008B80050000"},
+           Row{"STOP with none though some are announced", "0100009700"},
+       }) {
+    EXPECT_EQ(DetailOf(Object(row.records)), "a record is damaged") << row.what;
+  }
+  // MOVE with a bit that means no attribute.
+  EXPECT_EQ(DetailOf(Object("01000081808001" + move)), "a record is damaged");
+}
+
+// OPT-B.85: a division has parentheses of its own in TCP, and nowhere else.
+TEST(ObjectRefusals, OnlyTcpPutsADivisionIntoParentheses) {
+  const auto nested = [](int functions) {
+    std::string text;
+    for (int n = 0; n < functions; ++n) text += "ABS(";
+    return text + "VR[1]" + std::string(static_cast<std::size_t>(functions), ')');
+  };
+  const auto tcp = [](const std::string& value) {
+    return MustCompile("TCP (0., 0., " + value + " / 0., 0., 1.)\n");
+  };
+  EXPECT_EQ(DetailOf(MustCompile("VR[0] = VR[2] / " + nested(kNestingMax) + "\n").object), "good");
+  EXPECT_EQ(DetailOf(tcp(nested(kNestingMax)).object), "good");
+  Module module = tcp("(VR[2] / " + nested(kNestingMax - 1) + ")").module;
+  EXPECT_EQ(DetailOf(EncodeObject(module)), "good");
+  // One function more around VR[1], the second part of the third value.
+  const ExprNode function{.op = Node::kAbs, .type = ValueType::kReal};
+  module.nodes.insert(module.nodes.begin() + module.FirstNode(2) + 2, function);
+  for (std::uint32_t value = 2; value < 6; ++value) ++module.expression_ends[value];
+  EXPECT_EQ(DetailOf(EncodeObject(module)), "a record is damaged");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::object_refusals

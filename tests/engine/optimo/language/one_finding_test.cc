@@ -289,5 +289,32 @@ TEST(OneFinding, OfAStatementEndsWithIt) {
   }
 }
 
+// OPT-7.89, OPT-3.61, OPT-B.59: the value of an instruction is looked at once.
+TEST(OneFinding, OfTheValueOfAnInstruction) {
+  for (const char* word : {"SPEED ", "ACCEL ", "OVERSH ", "DELAY ", "SETERR ", "GO ", "CALL "})
+    EXPECT_EQ(OnlyOne(word + std::string("VL[1]\n")),
+              "7018 a logical value where a number is needed")
+        << word;
+  EXPECT_EQ(OnlyOne("SETERR -1\n"), "7004 the value must be 1 to 9999");
+  for (const char* text : {"TIMER (QQ,5)\n5\n", "IF QQ THEN 5\n5\n", "WAIT QQ\n", "SETERR QQ\n"})
+    EXPECT_EQ(OnlyOne(text), "7011 QQ is not declared") << text;
+}
+
+// OPT-7.43, OPT-7.60: a name is only proposed where it would not be the next error: no constant to
+// be assigned, and nothing but an INTEGER constant as an index.
+TEST(OneFinding, OfANameProposesWhatFits) {
+  EXPECT_EQ(OnlyOne("DECLARE XHOME = 5\nXHOEM = 3\n"), "7011 XHOEM is not declared");
+  EXPECT_EQ(OnlyOne("DECLARE XHOME = VR[1]\nXHOEM = 3\n"),
+            "7011 XHOEM is not declared; did you mean XHOME?");
+  for (const char* value : {"VR[1]", "7.5"})
+    EXPECT_EQ(OnlyOne("DECLARE VALVE = " + std::string(value) + "\nVR[VAVLE] = 1\n"),
+              "7011 VAVLE is not declared")
+        << value;
+  EXPECT_EQ(OnlyOne("DECLARE VALVE = 7\nVR[VAVLE] = 1\n"),
+            "7011 VAVLE is not declared; did you mean VALVE?");
+  EXPECT_EQ(OnlyOne("DECLARE VALVE = 7.5\nVR[1] = VAVLE\n"),
+            "7011 VAVLE is not declared; did you mean VALVE?");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::one_finding

@@ -140,5 +140,12 @@ TEST(Printer, NamesStayAndAreCut) {
       "     DECLARE POSITION = VR[1]\n     DECLARE N = 3\n     LET POSITION = VR[N]\n");
 }
 
+// OPT-6.15: program 1 is written, and 0, which is the present one, is not.
+TEST(Printer, TheProgramOfABreakpoint) {
+  EXPECT_EQ(Canonical("BREAK 7, 1"), "     BREAK 7, 1");
+  EXPECT_EQ(Canonical("SIMUL 7, 1"), "     SIMUL 7, 1");
+  EXPECT_EQ(Canonical("BREAK 7, 0"), "     BREAK 7");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

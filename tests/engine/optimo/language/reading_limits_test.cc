@@ -88,5 +88,16 @@ TEST(ReadingLimits, WhatIsReadAgainCountsOnce) {
   EXPECT_EQ(comments("MOVE (1, 2 ;a\nVR[5] = 1. ;b\nSTOP ;c\n"), 3U);
 }
 
+// lexer.h: the first word too many is told, and nothing behind it.
+TEST(ReadingLimits, TheFirstWordTooManyIsTold) {
+  std::string text = "VR[1]=1";  // six words, and two for each sum
+  for (int n = 0; n < 49'997; ++n) text += "+1";
+  const auto end = static_cast<int>(text.size());
+  const Diagnostic told = OnlyFinding(text + "+1+1\n");
+  EXPECT_EQ(told.code, ErrorCode::kSyntax);
+  EXPECT_EQ(told.detail, "the statement is too long");
+  EXPECT_EQ(told.where, (SourceSpan{1, end + 1, 1, end}));
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::reading_limits

@@ -65,5 +65,19 @@ TEST(SourceMap, KnowsTheLinesOfTheSteps) {
   EXPECT_EQ(LinesOfSteps(""), (std::vector<int>{1}));
 }
 
+// OPT-2.04: what the decompiler writes is metric, with no map or with that of another object.
+TEST(SourceMap, WhatIsDecompiledIsMetric) {
+  const std::string object = MustCompile("VR[0] = 25.4\n").object;
+  const std::string other =
+      EncodeSourceMap(MapSource("VR[0] = 2.0\n", true, MustCompile("VR[0] = 50.8\n").object));
+  const Result<RecoveredSource> bare = RecoverSource(object, std::nullopt);
+  ASSERT_TRUE(bare);
+  EXPECT_FALSE(bare->inch);
+  const Result<RecoveredSource> beside = RecoverSource(object, other);
+  ASSERT_TRUE(beside);
+  EXPECT_FALSE(beside->inch);
+  EXPECT_EQ(beside->text, "     LET VR[0] = 25.4\n");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -143,5 +143,16 @@ TEST(StepEdit, RefusesADeclareOfANewName) {
   }
 }
 
+// OPT-6.38: a step with a mistake of its own is no instruction, whatever comes of the program.
+TEST(StepEdit, AMistypedStepIsNoInstruction) {
+  const Module module = Compiled("10 SPEED 5\n").module;
+  for (const char* step : {"SPEE 1", "SPEED", "SPEED 1 1", "10000 SPEED 1"}) {
+    const Result<std::string> object = InsertInstruction(module, 0, step);
+    ASSERT_FALSE(object) << step;
+    EXPECT_EQ(object.error().code, ErrorCode::kObjectCorrupt) << step;
+    EXPECT_EQ(object.error().detail, "the text is not one instruction") << step;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -270,6 +270,33 @@ TEST(Convert, EveryLineThatIsNoRmlIsCopied) {
   EXPECT_EQ(more.last.code, ErrorCode::kConvertNotRml);
 }
 
+// OPT-8.53: those whose name has no room in a program, too.
+TEST(Convert, LinesWithANameTooManyAreCopied) {
+  std::string text = "DECLARE A0 = VR[0]\n";
+  for (int n = 1; n < 65'535; ++n) text += "DECLARE A" + std::to_string(n) + " = 5\n";
+  const std::string nameless = "DECLARE Z1 = 5\nDECLARE Z2 = 5\nZ2 = 5.\nZ3 = 5.\n";
+  EXPECT_EQ(Metric(text + nameless + "A0 = 5.\n"), text + nameless + "A0 = 127.0\n");
+}
+
+// OPT-8.53: whatever its sequence number is, what a DECLARE says is known.
+TEST(Convert, ADeclareWithAWrongSequenceNumberIsKnown) {
+  EXPECT_EQ(Metric("10 VR[0] = 1.\n10 DECLARE LEN = VR[0]\nLEN = 2.0\n"),
+            "10 VR[0] = 25.4\n10 DECLARE LEN = VR[0]\nLEN = 50.8\n");
+}
+
+// OPT-8.53: what is missing at the end of a line is missing there, and not on the next one.
+TEST(Convert, TheLineBehindAnUnfinishedOneIsNotIt) {
+  for (const std::string unfinished : {"DECLARE X =", "DEFINE PAR[1] ="}) {
+    const std::string text = "DECLARE LEN = VR[0]\n" + unfinished + "\n";
+    const Conversion made = Convert(text + "LEN = 2.0\n", Direction::kToMetric);
+    EXPECT_EQ(made.text, text + "LEN = 50.8\n");
+    ASSERT_EQ(made.diagnostics.size(), 1U);
+    EXPECT_EQ(made.diagnostics[0].code, ErrorCode::kConvertNotRml);
+    EXPECT_EQ(made.diagnostics[0].where.line, 2);
+    EXPECT_EQ(made.diagnostics[0].where.column, static_cast<int>(unfinished.size()) + 1);
+  }
+}
+
 // OPT-8.65, OPT-E.7708: VR [ 26 ] = VR [ 0 ] + ... : 9 tokens and two for each further term.
 TEST(Convert, StatementsOfMoreThanTwoHundredTokensAreCopied) {
   const auto sum = [](int terms) {

@@ -136,5 +136,20 @@ TEST(BoardLevels, AreasHaveASide) {
   EXPECT_NEAR(SignedArea({loop.rbegin(), loop.rend()}), -85.0, 1e-12);
 }
 
+// contours.h: what lies at the value is not below it: two pixels of copper with one between them
+// have a line each, a square around their four neighbours, which meet in the middle.
+TEST(BoardLevels, LinesAtTheLevelOfAPixel) {
+  const DistanceField field = DistanceToCopper({.width = 3, .height = 1, .copper = {1, 0, 1}}, 3);
+  const std::vector<Loop> loops = ContoursAt(field, 1.0);
+  ASSERT_EQ(loops.size(), 2U);
+  for (const Loop& loop : loops) {
+    EXPECT_NEAR(SignedArea(loop), 2.0, 1e-9);
+    for (const PlanePoint& p : loop) {
+      const double nearest = std::min(std::hypot(p.x - 3, p.y - 3), std::hypot(p.x - 5, p.y - 3));
+      EXPECT_NEAR(nearest, 1.0, 1e-9);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -223,5 +223,17 @@ TEST(Explain, MotionsThatAreNoneAndPartsOfUnits) {
   EXPECT_EQ(Words("!MC0;V60;!ZE X1000A90;", "t1a")[2], "go to X 10 A 90 degrees at 6.667 mm/s");
 }
 
+// Where the tool stays behind is told of each motion that leads there, of a group of axes, too, and
+// of nothing else. T1: X to 200 mm, Z0 20 mm below the top.
+TEST(Explain, MotionsAloneLeadBeyondTheTravel) {
+  const std::vector<std::string> words = Words("!MC0;!ZE X21000;VS4;PR;");
+  ASSERT_EQ(words.size(), 4U);
+  EXPECT_TRUE(words[1].ends_with(
+      "beyond the travel: the commands lead to X 210 Y 0 Z 20, the tool does not follow"))
+      << words[1];
+  EXPECT_EQ(words[2], "cutting speed in X and Y 4 mm/s");
+  EXPECT_EQ(words[3], "relative coordinates");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -304,6 +304,9 @@ TEST(GcodeBounds, WordsAndDigits) {
   EXPECT_EQ(digits(41), ErrorCode::kRml1GcodeForm);
   EXPECT_EQ(RefusedWith("G0 X+1\n"), ErrorCode::kCellUsage);
   EXPECT_EQ(RefusedWith("G0 X++1\n"), ErrorCode::kRml1GcodeForm);
+  EXPECT_EQ(RefusedWith("G0 X+-1\n"), ErrorCode::kRml1GcodeForm);
+  // Not a zero that is left of it.
+  EXPECT_EQ(RefusedWith("G0 X+" + std::string(40, '0') + "100\n"), ErrorCode::kRml1GcodeForm);
   EXPECT_EQ(DetailOf("G0 X\n"), "X has no number");
   EXPECT_EQ(DetailOf("G0 X.\n"), "X has no such number");
 }
@@ -379,6 +382,36 @@ TEST(ToGcodeBounds, AFeedThatNobodyGaveIsToldOnce) {
 // Places have five decimals at most: 100.0064 units are 1.000064 mm.
 TEST(ToGcodeBounds, PlacesHaveFiveDecimals) {
   EXPECT_NE(GcodeOf("!MC0;Z100.0064,0,0;").find("\nG1 X1.00006 Y0 Z0 "), std::string::npos);
+}
+
+// A wait that no motion follows is told, however short it is; one before a motion is not.
+TEST(GcodeBounds, AWaitBehindTheLastMotionIsTold) {
+  const StreamOfGcode made = Made("G0 Z1\nG4 P.001\n");
+  EXPECT_TRUE(made.ok);
+  ASSERT_EQ(made.findings.size(), 1U);
+  EXPECT_EQ(made.findings[0].code, ErrorCode::kRml1GcodeIgnored);
+  EXPECT_EQ(made.findings[0].detail, "the wait behind the last motion");
+  EXPECT_TRUE(Made("G4 P.001\nG0 Z1\n").findings.empty());
+}
+
+// docs/gcode.md, a spindle that stands: the first line is one like any other.
+TEST(GcodeBounds, ACutOfAStandingSpindleInTheFirstLine) {
+  const StreamOfGcode made = Made("G1 Z-1 F600\n");
+  EXPECT_TRUE(made.ok);
+  ASSERT_EQ(made.findings.size(), 1U);
+  EXPECT_EQ(made.findings[0].code, ErrorCode::kRml1GcodeSpindleStands);
+  EXPECT_EQ(made.findings[0].where.line, 1);
+  EXPECT_EQ(made.findings[0].detail, "a cut below Z 0 before M3 turns the spindle on");
+}
+
+// docs/gcode.md: Z of an arc changes in equal steps, also from below Z 0 on. Half a turn of radius
+// 10 with a tolerance of 0.5 mm are pi / (2 acos(0.95)) = 4.95, so five chords of 36 degrees.
+TEST(GcodeBounds, AHelixGoesOnFromWhereItBegins) {
+  const StreamOfGcode made = Made("G1 X0 Z-1 F600\nG2 X20 Z-3 I10\n", {.tolerance_mm = 0.5});
+  EXPECT_TRUE(
+      made.stream.ends_with("\nZ0,0,-100;\nZ191,588,-140;\nZ691,951,-180;\n"
+                            "Z1309,951,-220;\nZ1809,588,-260;\nZ2000,0,-300;\n"))
+      << made.stream;
 }
 
 }  // namespace

@@ -207,5 +207,22 @@ TEST(TileBounds, WhatDoesNotFitAtAll) {
             "of the program alone 0.123 mm would not be cut: how large a copy is cannot be told");
 }
 
+// 120 by 80 mm on a travel of 200 by 150 mm: there is room for the first copy alone, which is told,
+// and a field of any size has no more.
+TEST(TileBounds, RoomForTheFirstCopyAlone) {
+  const std::string large = "!PZ0,200;\nPU1000,1000;PD13000,1000,13000,9000;PU0,0;";
+  const std::string most =
+      "refused: at most 1 columns and 1 rows fit, 121 mm and 81 mm from copy to copy";
+  EXPECT_EQ(Tiled(large, {.columns = 2, .gap_mm = 1.0}), most);
+  EXPECT_EQ(Tiled(large, {.rows = 2, .gap_mm = 1.0}), most);
+  const auto field =
+      TileStream(large, ParametersOf("t1"), {.within_mm = {{400.0, 300.0}}, .gap_mm = 1.0});
+  ASSERT_TRUE(field) << field.error().detail;
+  EXPECT_EQ(field->columns, 1);
+  EXPECT_EQ(field->rows, 1);
+  EXPECT_TRUE(field->travel_is_less);
+  EXPECT_EQ(field->stream, large);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

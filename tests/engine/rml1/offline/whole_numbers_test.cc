@@ -63,5 +63,14 @@ TEST(WholeNumbers, HeightsBetweenCopiesAreAbsolute) {
   EXPECT_EQ(between("300"), "PA;\n!ZO-2000;\n");
 }
 
+// rewrite.h: every byte that is not a number that changes is as it was: along X alone those of Y
+// and Z are not written anew, and by a single unit those of X are.
+TEST(WholeNumbers, NumbersOfOtherAxesStayAsTheyAreWritten) {
+  EXPECT_EQ(ShiftedBy("PU007,+8;PD1.50,-.5;Z03,+4,+09;", 1, 0, 0),
+            "PU107,+8;PD101.5,-.5;Z103,+4,+09;");
+  EXPECT_EQ(ShiftedBy("PU007,+8;PD1.50,-.5;Z03,+4,+09;", 0.01, 0, 0),
+            "PU8,+8;PD2.5,-.5;Z4,+4,+09;");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1
