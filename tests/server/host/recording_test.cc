@@ -422,7 +422,7 @@ TEST_F(RecordingTest, WhatIsNoRecordingOfAMachineIsRefused) {
   };
   Recording wrong = what;
   wrong.head.set_family("lathe");
-  EXPECT_EQ(refused(wrong), "CELL-E9008 lathe");
+  EXPECT_EQ(refused(wrong), "CELL-E9008 'lathe'; there are optimo rml1");
   EXPECT_EQ(recording::MachineOf(wrong.head).error().code, ErrorCode::kCellUnknownFamily);
   wrong = what;
   wrong.head.set_profile("none");

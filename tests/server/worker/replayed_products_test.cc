@@ -92,7 +92,7 @@ TEST_F(ReplayedProducts, NothingIsMadeOfWhatIsNoWholeRun) {
   EXPECT_THAT(Refused(other), HasSubstr("CELL-E9436 entry 1, mark.state_sha256: recorded "));
   other = Run(kThereAndBack);
   other.head.set_family("lathe");
-  EXPECT_EQ(Refused(other), "CELL-E9008 lathe");
+  EXPECT_EQ(Refused(other), "CELL-E9008 'lathe'; there are optimo rml1");
   EXPECT_EQ(MakeProducts(folder_ + "/none", folder_).error().code, ErrorCode::kCellFileUnreadable);
   ASSERT_TRUE(Make(Run(kThereAndBack)));
   EXPECT_EQ(MakeProducts(folder_ + "/recording", folder_ + "/no/folder").error().code,
