@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Guards the walls of the house: which room may include which, what a header may bring in, what the
-engine may touch, how long a file may be, what nothing may be called.
+engine may touch, how long a file may be, what nothing may be called, and that each test is built.
 
     check_structure.py [ROOT]     prints one line for each breach and ends with 1 when there is any
 
@@ -366,10 +366,24 @@ def files_under(root):
                 yield os.path.relpath(os.path.join(folder, name), root).replace(os.sep, "/")
 
 
+def check_listed(root, paths, breaches):
+    """A test that no build description names is built by nobody, and missed by nobody."""
+    named = set()
+    for path in paths:
+        if path.startswith("tests/") and path.endswith(("/CMakeLists.txt", ".cmake")):
+            with open(os.path.join(root, path), encoding="utf-8") as file:
+                named.update(re.findall(r"\w+", file.read()))
+    for path in paths:
+        if path.startswith("tests/") and path.endswith("_test.cc") and os.path.basename(path)[:-3] not in named:
+            breaches.append(f"{path}: no CMakeLists.txt names it")
+
+
 def check(root):
     breaches = []
     codes = machine_codes(root)
-    for path in files_under(root):
+    paths = list(files_under(root))
+    check_listed(root, paths, breaches)
+    for path in paths:
         if not path.endswith((".h", ".cc", ".py", ".cmake", ".sh", ".js")):
             check_names(path, "", breaches)
             continue

@@ -100,6 +100,7 @@ class AMadeUpHouse(unittest.TestCase):
                                      "#include <thread>\n",
         "server/services/call.h": "#pragma once\n#include <grpcpp/grpcpp.h>\n",
         "server/cell/cell.cc": '#include "storage/opening/open_store.h"\n',
+        "tests/CMakeLists.txt": "add_executable(motion_test motion_test.cc)\n",
         "tests/motion_test.cc": "#include <thread>\n",
     }
 
@@ -286,6 +287,9 @@ class AMadeUpHouse(unittest.TestCase):
         self.assertEqual(self.breaches("engine/core/a.cc", "\n" * 600), [])
         self.assert_breach("engine/core/a.cc", "\n" * 601, "601 lines, at most 600")
         self.assert_breach("tests/a.cc", "\n" * 601, "601 lines")
+
+    def test_tests_that_nobody_builds(self):
+        self.assert_breach("tests/clients/cli/lonely_test.cc", "\n", "no CMakeLists.txt names it")
 
     def test_names_that_say_nothing(self):
         for path in ("engine/core/utils.h", "engine/core/string_util.cc", "server/jobs/job_manager.h",
