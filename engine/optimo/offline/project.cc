@@ -164,14 +164,12 @@ void Planner::AddDraft(const machine::ProjectProgram& program) {
       // CONVERT goes on after this, and so does the transfer: what may still be inches is told.
       Add(std::move(found));
     }
+    converted.diagnostics_dropped.ForEachPlace([&program](Diagnostic& place) {
+      place.file = program.file.name;
+      place.program = program.slot;
+    });
     for (const auto& [code, kind] : converted.diagnostics_dropped.kinds()) {
-      if (code == ErrorCode::kConvertNotRml) continue;
-      GatheredFindings more = kind;
-      for (Diagnostic* place : {&more.first, &more.last}) {
-        place->file = program.file.name;
-        place->program = program.slot;
-      }
-      plan_.diagnostics_dropped.Add(more);
+      if (code != ErrorCode::kConvertNotRml) plan_.diagnostics_dropped.Add(kind);
     }
   } else {
     draft.text = std::string(program.file.bytes);
