@@ -351,6 +351,7 @@ int StreamFromPng(const PngToolOptions& options) {
   const Result<double> pixel_mm = rml1::PixelSizeOf(*picture, options.dpi);
   if (!pixel_mm) return FailedAt(pixel_mm.error(), options.file, answer);
   board.pixel_mm = *pixel_mm;
+  board.bytes_max = kFileBytesMax;
   if (!options.at_mm.empty()) {
     board.at_x_mm = options.at_mm[0];
     board.at_y_mm = options.at_mm[1];

@@ -458,7 +458,11 @@ void MillRun::EndHalt(bool spindle) {
   const bool by_cover = std::exchange(s.stopped_by_cover, false);
   if (!(spindle || by_cover) || !s.spindle_stopped) return;
   TurnSpindle();
-  if (s.wait_left <= SimTime::zero()) BeginWait(machine::WaitKind::kSpinUp, profile().spin_up_s);
+  // What is left of a wait that STOP interrupted goes on meanwhile.
+  const double spin_up_s = profile().spin_up_s;
+  if (s.wait_left > FromSeconds(spin_up_s)) return;
+  s.wait_left = SimTime::zero();
+  BeginWait(machine::WaitKind::kSpinUp, spin_up_s);
 }
 
 // Whoever closes it starts nothing; what it has stopped goes on with the run. DEV-3.12
@@ -472,24 +476,6 @@ void MillRun::StopBehindCover() {
   if (!SpindleTurns()) return;
   EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
   state_.spindle_stopped = state_.stopped_by_cover = true;
-}
-
-void MillRun::TurnSpindle() {
-  state_.spindle_stopped = false;
-  EmitSignal(machine::Signal::kSpindle, 1.0, state_.device.registers().rpm);
-}
-
-Status MillRun::SwitchSpindle() {
-  State& s = state_;
-  if (SpindleTurns()) {
-    EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
-    s.spindle_stopped = true;
-  } else if (s.spindle_stopped) {
-    TurnSpindle();
-  } else {
-    return Error{ErrorCode::kCellMachineState, "the program has not started the spindle", {}};
-  }
-  return {};
 }
 
 // VIEW moves it out of the way and back: it goes on where it was halted.

@@ -87,6 +87,24 @@ void MillRun::StartLeg() {
   s.ride.BeginInPlace(s.busy_from, s.busy_until);
 }
 
+void MillRun::TurnSpindle() {
+  state_.spindle_stopped = false;
+  EmitSignal(machine::Signal::kSpindle, 1.0, state_.device.registers().rpm);
+}
+
+Status MillRun::SwitchSpindle() {
+  State& s = state_;
+  if (SpindleTurns()) {
+    EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
+    s.spindle_stopped = true;
+  } else if (s.spindle_stopped) {
+    TurnSpindle();
+  } else {
+    return Error{ErrorCode::kCellMachineState, "the program has not started the spindle", {}};
+  }
+  return {};
+}
+
 void MillRun::BeginWait(WaitKind kind, double seconds) {
   if (!(seconds > 0.0)) return;
   State& s = state_;

@@ -55,6 +55,15 @@ Status CheckOptions(const BoardOptions& options) {
   return {};
 }
 
+// Steps of less than a unit would go around again at the same depth.
+Status CheckStep(const BoardOptions& options, const Profile& profile) {
+  const double unit_mm = 1.0 / profile.units_per_mm;
+  if (options.step_mm == 0.0 || options.step_mm >= unit_mm) return {};
+  return InvalidArgument("the depth of a step is " + ToldShort("value", options.step_mm, "mm") +
+                         " mm; a unit of this machine is " + ToldShort("least", unit_mm, "mm") +
+                         " mm");
+}
+
 // How far from the centres of copper the lines of each pass lie, in pixels.
 std::vector<double> LevelsOf(const BoardOptions& options, const Profile& profile) {
   const double radius = options.tool_mm / 2.0;
@@ -88,8 +97,8 @@ class BoardMiller {
     if (at.z > clear_) writer_.Rapid({at.x, at.y, clear_});
   }
 
-  // Around it once for each step of the depth, without a lift between.
-  void Mill(const Loop& loop) {
+  // Around it once for each step of the depth, without a lift between. False: there is no room.
+  bool Mill(const Loop& loop) {
     const Units start = At(loop.front(), clear_);
     writer_.Rapid({start.x, start.y, writer_.at().z});
     double depth = 0.0;
@@ -101,8 +110,10 @@ class BoardMiller {
       Cut({start.x, start.y, z}, options_.plunge_mm_s);
       for (std::size_t i = 1; i < loop.size(); ++i) Cut(At(loop[i], z), options_.feed_mm_s);
       Cut({start.x, start.y, z}, options_.feed_mm_s);
+      if (writer_.size() > options_.bytes_max) return false;
     }
     writer_.Rapid({start.x, start.y, clear_});
+    return true;
   }
 
   void Finish(BoardLines& made) {
@@ -182,6 +193,7 @@ Result<BoardLines> StreamOfBoard(const Bitmap& bitmap, const machine::Parameters
   if (const Status good = CheckOptions(options); !good) return good.error();
   const Result<Profile> profile = MakeProfile(parameters);
   if (!profile) return profile.error();
+  if (const Status good = CheckStep(options, *profile); !good) return good.error();
   if (std::ranges::find(bitmap.copper, 1) == bitmap.copper.end())
     return NothingToMill("the picture has no copper");
   if (!options.outline && std::ranges::find(bitmap.copper, 0) == bitmap.copper.end())
@@ -207,7 +219,11 @@ Result<BoardLines> StreamOfBoard(const Bitmap& bitmap, const machine::Parameters
     std::vector<PlanePoint> starts;
     for (const Loop& loop : group) starts.push_back(loop.front());
     for (const std::size_t next : NearestOrder(starts, at)) {
-      miller.Mill(group[next]);
+      if (!miller.Mill(group[next])) {
+        return Error{ErrorCode::kRml1ProductTooLarge,
+                     "more than " + Told("most", options.bytes_max) + " bytes",
+                     {}};
+      }
       at = starts[next];
     }
     made.loops += group.size();

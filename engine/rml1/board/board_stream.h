@@ -15,7 +15,7 @@ struct BoardOptions {
   double pixel_mm = 0.0;
   double tool_mm = 0.4;   // diameter where it cuts: of a vee at its depth
   double depth_mm = 0.1;  // below Z 0
-  double step_mm = 0.0;   // of the depth at a time; 0: all at once
+  double step_mm = 0.0;   // of the depth at a time, a unit of the machine at least; 0: all at once
   int passes = 1;         // lines around the copper, side by side
   double overlap = 0.5;   // of neighbouring passes, share of the diameter
   // Cuts the board out along the edge of the light area, once around, holes first; else traces are
@@ -28,6 +28,7 @@ struct BoardOptions {
   double tolerance_mm = 0.005;  // of points that are left out
   double at_x_mm = 0.0;         // of the lower left corner of the picture
   double at_y_mm = 0.0;
+  std::size_t bytes_max = 256 << 20;  // of the stream
 };
 inline constexpr int kPassesMax = 100;
 
@@ -46,7 +47,7 @@ struct BoardLines {
 // pixels of copper. Traces that the tool cannot part are counted and said. Whether the lines are on
 // the travel tells CheckWork (work_check.h). Errors: as MakeProfile; CellInvalidArgument for an
 // option out of range; Rml1NothingToMill (8124) for a picture without copper, or of copper alone
-// unless it is an outline; Rml1PictureTooLarge (8122) with its margin.
+// unless it is an outline; Rml1PictureTooLarge (8122) with its margin; Rml1ProductTooLarge (8108).
 Result<BoardLines> StreamOfBoard(const Bitmap& bitmap, const machine::Parameters& parameters,
                                  const BoardOptions& options, const ByteSink& sink);
 

@@ -86,7 +86,7 @@ class GcodeWriter final : public PhraseListener {
         action.use == machine::MotionUse::kCut || action.use == machine::MotionUse::kPlunge;
     const bool given = action.chain == Chain::kToolDown ? phrase.after->xy_speed_given
                                                         : phrase.after->z_speed_given;
-    if (!cuts || given || feed_noted_ || !(action.to.z < phrase.after->z0)) return;
+    if (!cuts || given || feed_noted_ || !phrase.after->IsBelowSurface(action.to.z)) return;
     feed_noted_ = true;
     NoteAt(phrase.begin, ErrorCode::kRml1FeedNotGiven,
            "a cut without a feed rate: F is the default of this machine");

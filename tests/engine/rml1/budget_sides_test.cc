@@ -65,5 +65,19 @@ TEST(BudgetSides, SizesOfAxisGroups) {
   EXPECT_EQ(programmed.z_grain(), 100U);
 }
 
+// LIVE-3.12: one turn carries out twenty thousand commands at most, whatever time they take: so
+// many are between the ends of two turns.
+TEST(BudgetSides, CommandsOfOneTurn) {
+  std::string stream;
+  for (int n = 0; n < 60'000; ++n) stream += "VS5;";
+  TestRun run(ParametersOf("t1"), stream);
+  run.seen().keep_events = false;
+  ASSERT_EQ(run->Advance(kForever), machine::RunPhase::kRunning);
+  const std::uint64_t first = run->steps_executed();
+  ASSERT_EQ(run->Advance(kForever), machine::RunPhase::kRunning);
+  EXPECT_EQ(run->steps_executed() - first, 20'000U);
+  EXPECT_EQ(run->state().time, SimTime::zero());
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -324,5 +324,42 @@ TEST_F(LoneCarriage, MovesZOfTheToolAndOfTheCommands) {
   EXPECT_EQ(last().to.z, -500.0);
 }
 
+// Ways and waits of a stream in their order, without the spindle.
+std::vector<std::string> WaysAndWaits(const std::string& stream) {
+  TestRun run(ParametersOf("t1"), "!MC0;" + stream);
+  run.AdvanceToEnd();
+  std::vector<std::string> events = run.seen().Events();
+  std::erase_if(events, [](const std::string& event) {
+    return !event.starts_with("move ") && !event.starts_with("dwell ");
+  });
+  return events;
+}
+
+// RML1-9.34, RML1-9.53: a wait stands right before the way of Z that ends at Z1 or Z2. Above the
+// top of the travel the tool has not followed X: that way has none.
+TEST(Carriage, WaitsBeforeTheToolHeightBehindAWayAcross) {
+  EXPECT_THAT(WaysAndWaits("Z5000,5000,1000,5000,5000,3000,6000,5000,3000;W5;PU;"),
+              ElementsAre("move 5000.0,5000.0,1000.0", "move 5000.0,5000.0,2000.0",
+                          "move 6000.0,5000.0,2000.0", "dwell 0.005", "move 6000.0,5000.0,500.0"));
+}
+
+// RML1-5A.30, RML1-9.34: so does the way up to Z2 where the tool leaves the travel, and the one
+// where it is drawn back to Z2 at the edge before it comes in.
+TEST(Carriage, WaitsBeforeTheToolHeightAtTheEdge) {
+  EXPECT_THAT(WaysAndWaits("PD19000,0;W5;PD21000,0;"),
+              ElementsAre("move 0.0,0.0,0.0", "move 19000.0,0.0,0.0", "dwell 0.005",
+                          "move 20000.0,0.0,0.0", "dwell 0.005", "move 20000.0,0.0,500.0"));
+  EXPECT_THAT(WaysAndWaits("Z19000,0,-1000,21000,0,-1000;W5;PU19000,0;"),
+              ElementsAre("move 19000.0,0.0,-1000.0", "move 20000.0,0.0,-1000.0", "dwell 0.005",
+                          "move 20000.0,0.0,500.0", "move 19000.0,0.0,500.0"));
+}
+
+// RML1-3A.59: each set of three axes waits, straight down in the middle of the travel, too.
+TEST(Carriage, WaitsBeforeEachSetStraightDown) {
+  EXPECT_THAT(WaysAndWaits("PU100,100;W5;Z100,100,-10,100,100,-20;"),
+              ElementsAre("move 0.0,0.0,500.0", "move 100.0,100.0,500.0", "dwell 0.005",
+                          "move 100.0,100.0,-10.0", "dwell 0.005", "move 100.0,100.0,-20.0"));
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -275,5 +275,17 @@ TEST(MillChain, TellsCommandsInTheirTime) {
             "13.05375 step 7 !RC\n");
 }
 
+// motion.md section 7: the tool stands before and behind every chain: one at 0.5 mm/s begins from
+// rest, in one motion, whatever came before it.
+TEST(MillChain, ASlowChainBehindAnotherIsOneMotion) {
+  TestRun run(ParametersOf("t1"), "!MC0;VS10;PD1000,0;PU;VS0.5;PD1010,0;");
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  ASSERT_EQ(run.seen().motions().size(), 5U);  // down and across, up, down and across
+  const RunRecord::Motion& slow = run.seen().motions().back();
+  EXPECT_NEAR(slow.planned.speed.peak_speed(), 0.5, 1e-9);
+  EXPECT_EQ(slow.planned.speed.At(0.0).speed, 0.0);
+  EXPECT_NEAR(slow.end_s - slow.start_s, 0.1 / 0.5 + 0.5 / 200.0, 2e-9);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

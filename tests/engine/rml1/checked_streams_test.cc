@@ -194,5 +194,25 @@ TEST(CheckedStreams, ARunReleasesWhatItHasRead) {
   EXPECT_EQ(keeper->count, released);
 }
 
+// figures.h: nor what is read once more to tell the lines of places: a way through the work without
+// the spindle, in the second line, behind two such parts of the stream.
+TEST(CheckedStreams, PlacesFarBehindAreTold) {
+  const CountedReleases keeper;
+  std::string stream(2 * machine::kReleaseEvery, ';');
+  const auto begins = static_cast<std::int64_t>(stream.size() + std::string("\n!MC0;V10;").size());
+  stream += "\n!MC0;V10;Z100,0,-100;Z200,0,-100;";
+  const machine::Translation made = CheckedOnT1(stream, &keeper);
+  ASSERT_TRUE(made.ok);
+  EXPECT_EQ(keeper.count, 3 + 2);
+  int found = 0;
+  for (const machine::Figure& figure : made.figures) {
+    if (figure.name != "spindle_stands_length") continue;
+    ++found;
+    EXPECT_EQ(figure.first, (machine::Place{.step = 3, .line = 2, .byte_offset = begins}));
+  }
+  EXPECT_EQ(found, 1);
+  EXPECT_EQ(ByName(CheckedOnT1(stream).figures), ByName(made.figures));
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -54,6 +54,9 @@ TEST(CommandMarks, EverySetIsAnAct) {
   EXPECT_EQ(MarkedDevice("t1a", "!ZE X5;!ZE Y6;!ZE X7;").registers().place_given_by, 2U);
   EXPECT_EQ(MarkedDevice("t1a", "!ZE Y5;!ZE X6;!ZE Y7;").registers().place_given_by, 2U);
   EXPECT_EQ(MarkedDevice("t1a", "!ZE X5;!ZE X6;").registers().place_given_by, 0U);
+  EXPECT_EQ(MarkedDevice("t1", "VS5;PU1,1;PU2,2;").registers().place_given_by, 2U);
+  EXPECT_EQ(MarkedDevice("t1", "VS5;Z1,1,1;").registers().place_given_by, 2U);
+  EXPECT_EQ(MarkedDevice("t1", "PR;PU1,1;Z1,1,1;").registers().place_given_by, 0U);
 }
 
 // device.h: the first command that relies on a height or a mode that the
@@ -63,6 +66,16 @@ TEST(CommandMarks, WhatRestsOnTheMachine) {
   EXPECT_EQ(MarkedDevice("t1", "!PZ0,5;PU;PD1,1;").device.assumed().heights.number, 0U);
   EXPECT_EQ(MarkedDevice("t1a", "VS5;!ZE X5;").device.assumed().mode.number, 2U);
   EXPECT_EQ(MarkedDevice("t1a", "PA;!ZE X5;").device.assumed().mode.number, 0U);
+  for (const std::string set : {"PU1,1;", "Z1,1,1;"}) {
+    const MarkedDevice relies("t1", "VS5;" + set);
+    EXPECT_EQ(relies.device.assumed().mode.number, 2U) << set;
+    EXPECT_EQ(relies.device.assumed().heights.number, set == "PU1,1;" ? 2U : 0U);
+    const MarkedDevice told("t1", "PA;!PZ0,5;" + set);
+    EXPECT_EQ(told.device.assumed().mode.number, 0U) << set;
+    EXPECT_EQ(told.device.assumed().heights.number, 0U) << set;
+  }
+  EXPECT_TRUE(MarkedDevice("t1", "!MC1;").registers().rotation_given);
+  EXPECT_FALSE(MarkedDevice("t1", "VS5;PU1,1;").registers().rotation_given);
   const MarkedDevice refused("t1", "PU1,99999999;PU2,2;PD99999999,1;");
   EXPECT_EQ(refused.device.positions_refused(), 2U);
   EXPECT_EQ(refused.device.first_refused().number, 1U);

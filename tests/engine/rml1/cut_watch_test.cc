@@ -468,5 +468,91 @@ TEST_F(WatchedWay, AlongTheSurfaceOfASlowMachine) {
   EXPECT_NEAR(watch.no_clearance().mm, 10.0, kNear);
 }
 
+// What lies above a height by no more than rounding makes is at it: that share of an oblique way
+// counts, to the last of it.
+TEST_F(WatchedWay, TheShareOfAnObliqueWay) {
+  Travel(1, -3);
+  EXPECT_NEAR(watch.no_clearance().mm, std::sqrt(116.0) * (3.0 + kSame) / 4.0, 1e-9);
+}
+
+// registers.h: a way a little lower than what tells heights apart is below the surface.
+TEST_F(WatchedWay, JustBelowTheSurfaceIsBelowIt) {
+  const double z = -1.25 * Registers::kSameHeight;
+  ASSERT_TRUE(registers.IsBelowSurface(z));
+  Ride({.from = {.z = z}, .to = {.x = 10, .z = z}, .in_work = true, .by_xy_speed = true});
+  EXPECT_NEAR(watch.spindle_stands().mm, 10.0, kNear);
+}
+
+// However short: half a millimetre across, fast among slow cuts; lower than the clamps, before the
+// cuts and behind them; and of ways down that are taken for cleared. The first is named.
+TEST_F(WatchedWay, ShortWaysCountAsLongOnes) {
+  Plunge(5, -1, 1.0);
+  Ride({.from = {.z = -1},
+        .to = {.x = 0.5, .z = -1},
+        .in_work = true,
+        .spindle_turns = true,
+        .speed_mm_s = kFast});
+  Cut(-1, kHalf);
+  EXPECT_NEAR(watch.fast_across().mm, 0.5, kNear);
+
+  watch = {};
+  number = 0;
+  const auto below_clamps = [this](double x) {
+    Ride({.from = {.z = 1}, .to = {.x = x, .z = 1}, .rapid = true, .clamps_height = 3.0});
+  };
+  below_clamps(0.5);
+  Cut(-1, 1.0);
+  below_clamps(10.0);
+  EXPECT_NEAR(watch.below_clamps().mm, 10.5, kNear);
+  EXPECT_EQ(watch.below_clamps().first.number, 1U);
+
+  watch = {};
+  number = 0;
+  Plunge(5, -0.5, kFast);
+  Plunge(-0.5, -0.8, 1.0);
+  Cut(-0.8, 1.0);
+  Lift(-0.8);
+  Plunge(5, -1.5, kFast);
+  Plunge(-1.5, -2, 1.0);
+  EXPECT_NEAR(watch.taken_for_cleared().mm, 0.5 + 0.7, kNear);
+  EXPECT_EQ(watch.taken_for_cleared().first.number, 1U);
+}
+
+// cut_watch.h: along the surface as fast as lifts, where the cuts before and behind take half of
+// that or less: a slow plunge is such a cut, a fast way across is none. Of several ways the first
+// is named, whichever is known for one first.
+TEST_F(WatchedWay, BesideWhatTheSurfaceIsCrossed) {
+  const auto along = [this] {
+    Ride({.to = {.x = 10}, .spindle_turns = true, .speed_mm_s = kFast});
+  };
+  Plunge(5, -1, 1.0);
+  Lift(-1);
+  along();
+  EXPECT_NEAR(watch.no_clearance().mm, 10.0, kNear);
+
+  watch = {};
+  Cut(-1, 1.0);
+  along();
+  Cut(-1, kFast, false);
+  Cut(-1, 1.0);
+  EXPECT_EQ(watch.no_clearance().mm, 0.0);
+
+  watch = {};
+  number = 0;
+  along();
+  Travel(0, 0);
+  Cut(-1, 1.0);
+  EXPECT_NEAR(watch.no_clearance().mm, 20.0, kNear);
+  EXPECT_EQ(watch.no_clearance().first.number, 1U);
+}
+
+// In the work: a lift out of it is not.
+TEST_F(WatchedWay, ALiftAsksForNoPlace) {
+  registers.place_given_by = 0;
+  Plunge(1, -1, 1.0);
+  Lift(-1);
+  EXPECT_NEAR(watch.place_not_given().mm, 1.0, kNear);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

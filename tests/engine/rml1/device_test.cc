@@ -432,6 +432,8 @@ TEST(Device, KnowsWhatTheProgramGave) {
   EXPECT_FALSE(after.xy_speed_given || after.z_speed_given);
   EXPECT_EQ(after.xy_limit.asked, 0.0);
   EXPECT_EQ(after.z_limit.asked, 0.0);
+  device.Feed("V99;V5;");  // a speed that the machine has takes the place of one that it has not
+  EXPECT_EQ(device->registers().z_limit.asked, 0.0);
   device.Feed("VS99;!VZ99;VS;!VZ;");
   EXPECT_FALSE(device->registers().xy_speed_given || device->registers().z_speed_given);
   EXPECT_EQ(device->registers().xy_limit.asked, 0.0);
@@ -528,6 +530,27 @@ TEST(Device, EscapesThatAreDataHaveTheirPlace) {
   EXPECT_EQ(device.findings()[0].kind, FindingKind::kForeignCharacter);
   EXPECT_EQ(device.findings()[0].offset, 4);
   EXPECT_EQ(device.findings()[0].byte, '$');
+}
+
+// RML1-9.23: a Z1 below the bottom of the travel, because Z0 was lowered, is 10 mm of work that the
+// tool cannot do.
+TEST(Device, TellsTheDepthThatIsLostBelowTheTravel) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("!PZ-3000,200;!ZO-4000;PD100,100;");
+  EXPECT_EQ(device->carriage().physical().z, -6000.0);
+  EXPECT_NEAR(device->carriage().lost().length, 1000.0, 1e-9);
+  EXPECT_NEAR(device->carriage().lost().z_low, 1000.0, 1e-9);
+  EXPECT_EQ(device.CountOf(FindingKind::kClipped), 1);
+  EXPECT_EQ(device->first_lost().number, 3U);
+}
+
+// RML1-5A.01: a line that comes in is lost from where it begins to where it is in.
+TEST(Device, TellsTheLostLineOfAWayIn) {
+  Heard heard(ParametersOf("t1"));
+  heard.Feed("PU21000,0;PD19000,0;");
+  ASSERT_EQ(heard.lost.size(), 1U);
+  EXPECT_EQ(heard.lost[0].from.x, 21000.0);
+  EXPECT_NEAR(heard.lost[0].to.x, 20000.0, 1e-9);
 }
 
 }  // namespace

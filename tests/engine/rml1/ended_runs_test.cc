@@ -270,5 +270,44 @@ TEST(EndedRuns, WhatARunLosesHasItsPlace) {
   EXPECT_NEAR((told.lost[0].to - motion::MachinePoint(210.0, 1.0, -20.0)).norm(), 0.0, 1e-6);
 }
 
+// LIVE-2.13: exactly a millionth of a mm is no way yet, and twice as much is one.
+TEST(EndedRuns, AMillionthOfAMillimetreIsNoWay) {
+  TestRun run(ParametersOf("t1"), "!MC0;!NR;PU100,0;");
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  run->MoveTo({.column = {1e-6, 0.0, 0.0}, .a_rad = 0.0, .b_rad = 0.0});
+  EXPECT_EQ(run.variable("X"), "0");
+  run->MoveTo({.column = {2e-6, 0.0, 0.0}, .a_rad = 0.0, .b_rad = 0.0});
+  EXPECT_NE(run.variable("X"), "0");
+}
+
+// motion.md 6: STOP 0.01 s before the end of a motion ends where that one ends; START takes it back
+// before, so that nothing halts, and the next motion begins at once: 15 mm down, 60 mm across and 5
+// mm down.
+TEST(EndedRuns, AStopInTheLastRampThatIsTakenBack) {
+  TestRun run(ParametersOf("t1"), "!MC0;PU6000,0;!RC15;PD;");
+  const double across = 15.0 / 2.0 + 2.0 / 200.0 + 60.0 / 60.0 + 60.0 / 200.0;
+  run->Advance(FromSeconds(across - 0.01));
+  run.Press(InputKind::kStop);
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(HaltsOf(run), 0);
+  EXPECT_EQ(run.seen().moves().size(), 3U);
+  EXPECT_NEAR(run.time_s(), across + 5.0 / 2.0 + 2.0 / 200.0, 1e-6);
+}
+
+// A budget that ends at the very instant at which a motion would begin: of that one nothing is
+// told.
+TEST(EndedRuns, AMotionThatHasNotBegunIsNotTold) {
+  machine::RunSetup setup = SetupOf(ParametersOf("t1"), "!MC0;W250;PD;");
+  setup.budget.virtual_time = 250ms;
+  TestRun run(std::move(setup));
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(run->outcome().kind, OutcomeKind::kBudgetExceeded);
+  EXPECT_EQ(run->state().time, SimTime(250ms));
+  EXPECT_TRUE(run.seen().motions().empty());
+  EXPECT_EQ(run.figures().at("motions"), 0.0);
+  EXPECT_NEAR(run.figures().at("dwell_time"), 0.25, 1e-9);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

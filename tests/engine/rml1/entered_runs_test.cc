@@ -45,7 +45,13 @@ class EntryTold final : public machine::RunObserver {
  public:
   void OnEntered(SimTime at) override { entered.push_back(at); }
   void OnHalt(const machine::Halt& halt) override { halts.emplace_back(halt.why); }
+  void OnMotion(const machine::MotionDone& motion) override {
+    if (motion.approach) ++approaches;
+    if (motion.in_work) ++in_work;
+  }
 
+  int approaches = 0;
+  int in_work = 0;
   std::vector<SimTime> entered;
   std::vector<std::string> halts;
 };
@@ -135,9 +141,13 @@ TEST(EnteredRuns, TheWayThereIsNoWork) {
   for (const char* name : {"motions", "travel_length", "cut_length", "motion_time", "spindle_time",
                            "tool_up_time", "tool_down_time", "halted_time", "plunges"})
     EXPECT_EQ(FigureNamed(*run, name), 0.0) << name;
+  EXPECT_EQ(told.approaches, 2);  // across and down
+  EXPECT_EQ(told.in_work, 0);
   run->Apply({.at = run->state().time, .kind = InputKind::kStart});
   ASSERT_EQ(AdvanceOn(*run), RunPhase::kFinished);
   EXPECT_EQ(FigureNamed(*run, "motions"), 3.0);  // the cut, up 3 mm, and across
+  EXPECT_EQ(told.approaches, 2);
+  EXPECT_EQ(told.in_work, 1);
   EXPECT_NEAR(FigureNamed(*run, "cut_length"), 10.0, 1e-9);
   EXPECT_NEAR(FigureNamed(*run, "travel_length"), 3.0 + std::hypot(30.0, 5.0), 1e-9);
   EXPECT_EQ(FigureNamed(*run, "spindle_time"), 0.0);
@@ -283,6 +293,64 @@ TEST(MillItems, ModalValues) {
   EXPECT_EQ(texts(run->modal_values()), told);
   const auto mill = Rml1Family().NewStanding(ParametersOf("t1"), run->SaveMachine()).value();
   EXPECT_EQ(texts(mill->modal_values()), told);
+}
+
+// LIVE-6.05: the way there begins where the machine stands: up to the top first, and across.
+TEST(EnteredRuns, TheWayThereFromElsewhere) {
+  const auto mill = Rml1Family().NewStanding(WithRunUp(), {}).value();
+  mill->MoveTo({.column = {50.0, 60.0, -30.0}, .a_rad = 0.0, .b_rad = 0.0});
+  LedToTheCut there;
+  const std::vector<machine::ApproachMotion> way =
+      there->enterable()->PlanApproach(mill->Save(), machine::ApproachWay::kSafe);
+  ASSERT_EQ(way.size(), 3U);
+  EXPECT_NEAR((way[0].to.column - motion::MachinePoint(50.0, 60.0, 0.0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((way[1].to.column - motion::MachinePoint(20.0, 5.0, 0.0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((way[2].to.column - motion::MachinePoint(20.0, 5.0, -21.0)).norm(), 0.0, 1e-9);
+}
+
+// LIVE-6.09: in SINGLE it halts behind each motion of the way there, once: not behind the start of
+// the spindle, and not before anything moved.
+TEST(EnteredRuns, SingleStepsOfTheWayThere) {
+  EntryTold told;
+  const auto run = EnteredAtTheCut({.machine_state = StandingNow(), .halt_at_entry = true}, told);
+  run->SetMode(machine::Mode::kSingle);
+  for (const std::size_t halts : {1U, 2U, 3U}) {
+    ASSERT_EQ(AdvanceOn(*run), RunPhase::kHalted);
+    ASSERT_EQ(told.halts.size(), halts);
+    run->Apply({.at = run->state().time, .kind = InputKind::kStart});
+  }
+  EXPECT_EQ(told.halts, (std::vector<std::string>{"SINGLE", "SINGLE", "ENTRY"}));
+  EXPECT_FALSE(run->state().approaching);
+}
+
+// RML1-3C.08: a pause behind the entry that no key of a script ends is told as one of any other
+// run.
+TEST(EnteredRuns, APauseBehindTheEntry) {
+  const std::string stream = kTwoCuts + "!NR;PU100,0;";
+  TestRun there(WithRunUp(), stream);
+  ASSERT_TRUE(there->enterable()->HaltBefore({.at = {1, kSecondCut}}));
+  ASSERT_EQ(there.AdvanceToEnd(), RunPhase::kHalted);
+  TestRun run(WithRunUp(), stream);
+  run->Restore(*there->Save());
+  run->enterable()->Enter({.machine_state = StandingNow()});
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_EQ(run.variable("X"), "0");
+  EXPECT_EQ(run.seen().CountOf(ErrorCode::kRml1PausedAtEnd), 1);
+}
+
+// step_entry.h: what is fitted to it, and where its zero is, a person sees to; it goes to its
+// place, switches its spindle, and is set to all the rest.
+TEST(MillItems, WhatIsDoneWithThem) {
+  LedToTheCut there;
+  for (const machine::StateItem& item : there->enterable()->items()) {
+    const bool asked =
+        item.name == "origin" || item.name == "tool" || item.name == "clamps" || item.name == "Z0";
+    const machine::StartAction wanted = item.name == "pose"      ? machine::StartAction::kMove
+                                        : item.name == "spindle" ? machine::StartAction::kSwitch
+                                        : asked                  ? machine::StartAction::kAsk
+                                                                 : machine::StartAction::kSet;
+    EXPECT_EQ(item.action, wanted) << item.name;
+  }
 }
 
 }  // namespace

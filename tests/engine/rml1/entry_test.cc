@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/motion/geometry/path.h"
@@ -88,6 +89,20 @@ TEST(Entry, AByteBeforeTheFirstCommandIsOfNone) {
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, ErrorCode::kCellStepUnreachable);
   EXPECT_TRUE(found.error().detail.starts_with("byte 0 lies inside of command 0 or "));
+}
+
+// RML1-2.14, RML1-9.42: a letter that may begin a name of two is no command while nothing is behind
+// it, whatever lies behind the stream in memory.
+TEST(Entry, ALetterAtTheEndIsNoCommandYet) {
+  const std::string longer = "PU1,2;DH;";
+  const std::string_view stream = std::string_view(longer).substr(0, 7);
+  const Result<int> found = CommandAt(stream, 6, Device(Mill()));
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, ErrorCode::kCellStepUnreachable);
+  EXPECT_TRUE(found.error().detail.starts_with("byte 6 lies inside of command 1 or "));
+  const Result<int> there = CommandAt(longer, 6, Device(Mill()));
+  ASSERT_TRUE(there);
+  EXPECT_EQ(*there, 2);
 }
 
 }  // namespace

@@ -321,5 +321,127 @@ TEST(Figures, OfACutLogOfTheLink) {
   EXPECT_EQ(figures.at("errors.cut"), 0.0);
 }
 
+// The box from the machine's zero: the origin is at 10 and 20 mm, Z0 20 mm below the top, where the
+// tool begins.
+TEST(Figures, OfTheMachinesCoordinates) {
+  TestRun run(WithSpindle(0.0, 0.0), "!MC0;V10;PU1000,500;Z2000,1500,-100;");
+  run.AdvanceToEnd();
+  const Figures f = run.figures();
+  const std::pair<const char*, double> ends[] = {{"xmin", 10.0}, {"xmax", 30.0},  {"ymin", 20.0},
+                                                 {"ymax", 35.0}, {"zmin", -21.0}, {"zmax", 0.0}};
+  for (const auto& [name, mm] : ends)
+    EXPECT_NEAR(f.at("machine_mm." + std::string(name)), mm, 1e-9) << name;
+}
+
+// Work that fits the 200 by 150 mm from no origin on the table moves to less or to greater X and Y,
+// each by its own way: from 2 to 201 and from 4 to 152.5 mm; from -200.5 to -1 and from -152 to -3
+// mm. However little is lost, it is said.
+TEST(Figures, OfWorkThatHasToMoveEachWay) {
+  const auto figures = [](const std::string& corners) {
+    TestRun run(ParametersOf("t1"), "!MC0;VS10;!VZ10;@-100,200;" + corners);
+    run.AdvanceToEnd();
+    return run.figures();
+  };
+  const Figures less = figures("PU200,400;PD20100,15250;");
+  EXPECT_NEAR(less.at("move_x_less"), 1.0, 1e-9);
+  EXPECT_NEAR(less.at("move_y_less"), 2.5, 1e-9);
+  EXPECT_FALSE(less.contains("move_x_more") || less.contains("move_y_more"));
+  const Figures more = figures("PU-100,-300;PD-20050,-15200;");
+  EXPECT_NEAR(more.at("move_x_more"), 0.5, 1e-9);
+  EXPECT_NEAR(more.at("move_y_more"), 2.0, 1e-9);
+  EXPECT_FALSE(more.contains("move_x_less") || more.contains("move_y_less"));
+  EXPECT_NEAR(figures("PU15000,100;PD20000.5,100;").at("move_x_less"), 0.005, 1e-9);
+}
+
+// RML1-3A.46: of half a millimetre, too, the speed is told that the machine has not.
+TEST(Figures, OfALimitedSpeedOnAShortWay) {
+  TestRun run(ParametersOf("t1"), "@-100,200;V5;VS120;PD50,0;");
+  run.AdvanceToEnd();
+  EXPECT_NEAR(run.figures().at("feed_limited_length"), 0.5, 1e-9);
+  EXPECT_EQ(run.figures().at("feed_limited_asked"), 120.0);
+  EXPECT_EQ(run.figures().at("feed_limited_used"), 60.0);
+}
+
+// RML1-4.20, RML1-6.04: errors are counted by their numbers, also those that the transport reports
+// and those of a sender that heeds no flow control.
+TEST(Figures, OfEachErrorByItsNumber) {
+  machine::Parameters parameters = ParametersOf("t1");
+  ASSERT_TRUE(parameters.Set("SEQUENCES", "ALL").ok());
+  ASSERT_TRUE(parameters.Set("BUFFER", 256.0).ok());
+  const Profile profile = MakeProfile(parameters).value();
+  Device device(profile);
+  DeviceListener nobody;
+  std::int64_t offset = 0;
+  const auto receive = [&](int times, const std::string& bytes) {
+    for (int n = 0; n < times; ++n) {
+      for (const char c : bytes) device.Receive(static_cast<unsigned char>(c), offset++, nobody);
+    }
+  };
+  const auto feed = [&](int times, const std::string& bytes) {
+    receive(times, bytes);
+    while (device.Step(nobody)) {
+    }
+  };
+  feed(3, "QQ;");
+  feed(1, "5;");
+  feed(2, "W-1;");
+  feed(1, "\x1b.\x1b.K");
+  feed(2, "\x1b.T1\x1b.K");
+  feed(3, "\x1b.T70000:");
+  feed(4, "\x1b.T1;2;3;4;5;:");
+  for (int n = 0; n < 5; ++n) device.ReportLineError(offset, nobody);
+  feed(262, ";");  // the buffer takes 256
+  const Figures f = ByName(FiguresOf(device, Physical(profile), true));
+  EXPECT_EQ(f.at("errors"), 6.0);
+  EXPECT_EQ(f.at("communication_errors"), 21.0);
+  const std::pair<const char*, double> counts[] = {{"errors.1", 3},
+                                                   {"errors.2", 1},
+                                                   {"errors.3", 2},
+                                                   {"communication_errors.11", 1},
+                                                   {"communication_errors.12", 2},
+                                                   {"communication_errors.13", 3},
+                                                   {"communication_errors.14", 4},
+                                                   {"communication_errors.15", 5},
+                                                   {"communication_errors.16", 6}};
+  for (const auto& [name, count] : counts) EXPECT_EQ(f.at(name), count) << name;
+}
+
+// What happened once has a place as what happened often.
+TEST(Figures, OfOneRefusedPlaceTellWhere) {
+  TestRun run(ParametersOf("t1"), "PU1,1;\nPU1,99999999;");
+  run.AdvanceToEnd();
+  int found = 0;
+  for (const machine::Figure& figure : run->figures()) {
+    if (figure.name != "positions_refused") continue;
+    ++found;
+    EXPECT_EQ(figure.value, 1.0);
+    EXPECT_EQ(figure.first, (machine::Place{.program = 1, .step = 2, .line = 2, .byte_offset = 7}));
+  }
+  EXPECT_EQ(found, 1);
+}
+
+// Steps of one way down are one plunge; a step down behind a cut is another one.
+TEST(Figures, OfPlungesBehindACut) {
+  const auto plunges = [](const std::string& sets) {
+    TestRun run(ParametersOf("t1"), "!MC0;V10;Z" + sets + ";");
+    run.AdvanceToEnd();
+    return run.figures().at("plunges");
+  };
+  EXPECT_EQ(plunges("0,0,-100,0,0,-200"), 1.0);
+  EXPECT_EQ(plunges("0,0,-100,1000,0,-100,1000,0,-200"), 2.0);
+}
+
+// RML1-9.22: what lacks more than rounding for half a step is rounded down: 0.12499999 mm are less
+// than two and a half steps of 0.05 mm.
+TEST(Registers, LessThanHalfAStepIsNone) {
+  machine::Parameters parameters = ParametersOf("t1");
+  ASSERT_TRUE(parameters.Set("STEP", 0.05).ok());
+  for (const auto& [x, steps] : {std::pair("12.499999", "2"), std::pair("12.5", "3")}) {
+    TestRun run(parameters, "!MC0;PU" + std::string(x) + ",0;");
+    run.AdvanceToEnd();
+    EXPECT_EQ(run.variable("XSTEPS"), steps) << x;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -112,5 +112,42 @@ TEST(KeysSides, AnOriginThatIsTooFarIsNamed) {
   EXPECT_EQ(told(100, -1e30), "machine state: origin is out of range");
 }
 
+// motion.md 6: START is for a run that halts or is about to: of one that goes it changes nothing,
+// neither in a wait nor on the way, and takes a HOLD of the same instant back without a trace. The
+// dwell lasts a second, 20 mm down some 10.
+TEST(KeysSides, StartOfARunThatGoes) {
+  const std::string stream = "!MC0;W1000;PD2000,0;W0;PU;";
+  TestRun untouched(ParametersOf("t1"), stream);
+  ASSERT_EQ(untouched.AdvanceToEnd(), RunPhase::kFinished);
+  for (const SimTime at : {SimTime(400ms), SimTime(5s)}) {
+    TestRun run(ParametersOf("t1"), stream);
+    run->Advance(at);
+    run.Press(InputKind::kStart);
+    ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+    EXPECT_EQ(run.seen().text(), untouched.seen().text());
+    EXPECT_EQ(run.seen().motions().size(), untouched.seen().motions().size());
+  }
+  TestRun held(ParametersOf("t1"), stream);
+  held->Advance(400ms);
+  held.Press(InputKind::kHold);
+  held.Press(InputKind::kStart);
+  ASSERT_EQ(held.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(held.seen().text(), untouched.seen().text());
+}
+
+// The override acts on no travel: one that is pressed on such a way parts no motion.
+TEST(KeysSides, AnOverrideInTravelPartsNoMotion) {
+  const std::string stream = "!MC0;PU6000,0;";
+  TestRun untouched(ParametersOf("t1"), stream);
+  ASSERT_EQ(untouched.AdvanceToEnd(), RunPhase::kFinished);
+  TestRun run(ParametersOf("t1"), stream);
+  run->Advance(8s);  // 15 mm down take 7.51 s
+  ASSERT_EQ(run.seen().moves().size(), 1U);
+  run.Press(InputKind::kOverride, 50.0);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(run.seen().motions().size(), untouched.seen().motions().size());
+  EXPECT_EQ(run.seen().text(), untouched.seen().text());
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

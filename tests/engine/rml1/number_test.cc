@@ -147,6 +147,7 @@ TEST(NumberReader, RoundsWhatADoubleCannotTellFromTheMiddle) {
 TEST(NumberReader, ReadsAMillionDigits) {
   EXPECT_EQ(ValueOf(std::string(1'000'000, '0') + "100").single, 100.0);
   EXPECT_EQ(ValueOf("." + std::string(1'500'000, '0') + "1").single, 0.0);
+  EXPECT_EQ(ValueOf("." + std::string(1'500'000, '0') + "1").decimal, 0.0);
   EXPECT_TRUE(ValueOf("." + std::string(1'500'000, '0') + "1").fraction);
   const Number huge = ValueOf(std::string(1'000'000, '9'));
   EXPECT_EQ(huge.magnitude, Number::kMagnitudeMax);

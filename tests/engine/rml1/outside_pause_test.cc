@@ -149,5 +149,13 @@ TEST(OutsidePause, WorksLikeNr) {
                                  "move 19000.0,0.0,500.0", "move 5.0,5.0,500.0"));
 }
 
+// RML1-5A.30, RML1-5A.36: who leaves from the edge itself leaves: the tool goes up there, and the
+// way back is an entry.
+TEST(OutsidePause, ComesBehindAnExitFromTheEdge) {
+  EXPECT_THAT(PathOf("PD20000,0,21000,0,19000,0;"),
+              ElementsAre("move 0.0,0.0,0.0", "move 20000.0,0.0,0.0", "move 20000.0,0.0,500.0",
+                          "move 20000.0,0.0,0.0", "halt OVER_AREA", "move 19000.0,0.0,0.0"));
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -76,6 +76,8 @@ TEST(ReceivePath, ReadsParameters) {
 TEST(ReceivePath, IgnoresSurplusParameters) {
   EXPECT_EQ(PassThrough("\x1b.T1;2;3;4;5;6;7;8:X", false, true), "<14>X");
   EXPECT_EQ(PassThrough("\x1b.T1;2;3;4;70000;:X", false, true), "<13><14>X");
+  EXPECT_EQ(PassThrough("\x1b.T1;2;3;4;5;70000;70000:X", false, true), "<14>X");
+  EXPECT_EQ(PassThrough("\x1b.T1;2;3;4;5;70000:X", false, true), "<14>X");
   EXPECT_EQ(PassThrough("\x1b.T1;2;3;4;5:X", false, true), "X");
   EXPECT_EQ(PassThrough("\x1b.M1;2;3;4;5;6;:X", false, true), "<14>X");
 }

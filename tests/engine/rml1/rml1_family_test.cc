@@ -195,11 +195,13 @@ TEST(Rml1Family, CountsEachKindToItsLastPlace) {
   const GatheredFindings& clipped = kinds.at(ErrorCode::kRml1Clipped);
   EXPECT_EQ(clipped.count + kept(ErrorCode::kRml1Clipped), 1500U);
   EXPECT_EQ(clipped.last.where.line, 1501);
+  EXPECT_EQ(clipped.last.file, "part.rml");
   const GatheredFindings& foreign = kinds.at(ErrorCode::kRml1UnknownCommand);
   EXPECT_EQ(foreign.count + kept(ErrorCode::kRml1UnknownCommand), 120'001U);
   EXPECT_EQ(foreign.first.where.line, 1502);
   EXPECT_EQ(foreign.last.where.line, 1503);
   EXPECT_EQ(foreign.last.where.column, 7);
+  EXPECT_EQ(foreign.last.file, "part.rml");
   EXPECT_EQ(kinds.at(ErrorCode::kRml1LogCut).count, 1U);
 }
 

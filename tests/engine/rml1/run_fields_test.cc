@@ -149,6 +149,21 @@ TEST(MillRunFields, OfACut) {
   }
 }
 
+// Down to Z2, across, down to Z1 and a cut there: only what goes below the surface is in the work,
+// and no way of a program leads to where it begins.
+TEST(MillRunFields, OfWhatGoesIntoTheWork) {
+  Seen seen(ParametersOf("t1"), "@-100,200;PU100,0;PD1000,0;");
+  ASSERT_EQ(seen.ToEnd(), RunPhase::kFinished);
+  ASSERT_EQ(seen.told.motions.size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(seen.told.motions[k].in_work, k >= 2) << k;
+    EXPECT_FALSE(seen.told.motions[k].approach) << k;
+  }
+  Seen on_surface(ParametersOf("t1"), "@0,200;PD1000,0;");
+  ASSERT_EQ(on_surface.ToEnd(), RunPhase::kFinished);
+  for (const machine::MotionDone& motion : on_surface.told.motions) EXPECT_FALSE(motion.in_work);
+}
+
 // A group with the rotary axis, from another origin: what is told of A, and points from the origin
 // and Z0. RML1-3D.29
 TEST(MillRunFields, OfATurn) {
@@ -266,6 +281,8 @@ TEST(MillRunFields, OfTheEndsThatABrakingToolPasses) {
     EXPECT_EQ(ride.corner.passage, motion::Passage::kThrough) << k;
     EXPECT_NEAR(ride.corner.speed, std::sqrt(squares[k]), 1e-5) << k;
   }
+  EXPECT_EQ(motions[5].planned.corner.passage, motion::Passage::kStop);  // it rests on its way
+  EXPECT_EQ(motions[5].planned.corner.speed, 0.0);
   TestRun last(ParametersOf("t1"), "!MC0;V20;VS10;PD1000,0;");
   last->Advance(2145ms);  // 5 ms before its end
   last.Press(InputKind::kStop);
@@ -376,6 +393,21 @@ TEST(MillRunFields, OfASpindleThatTheCoverStops) {
   off.run->Apply({.at = off.run->state().time, .kind = InputKind::kStart});
   ASSERT_EQ(off.ToEnd(), RunPhase::kFinished);
   EXPECT_TRUE(off.told.signals.empty());
+}
+
+// RML1-7.05: a command is told before what comes of it, also of a group of axes, and of one that is
+// wrong.
+TEST(MillRunFields, ACommandComesBeforeWhatItDoes) {
+  const auto events = [](const std::string& stream) {
+    TestRun run(ParametersOf("t1"), stream);
+    EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+    return run.seen().Events();
+  };
+  using Events = std::vector<std::string>;
+  EXPECT_EQ(events("!MC0;!ZE X100;"),
+            (Events{"step 1 !MC", "step 2 !ZE", "move 100.0,0.0,2000.0"}));
+  EXPECT_EQ(events("!ZE X;"), (Events{"step 1 !ZE", "diagnostic RML1-E3"}));
+  EXPECT_EQ(events("PU99999999,1;"), (Events{"step 1 PU", "diagnostic RML1-E3"}));
 }
 
 }  // namespace

@@ -40,5 +40,23 @@ TEST_F(ScoutTest, StopsReadingAtAMotion) {
   EXPECT_EQ(scout_.sent(), stream.size());
 }
 
+// RML1-3C.08, RML1-9.35: at a pause the tool must stand, and what the sender hands over meanwhile
+// is read motion by motion as well.
+TEST_F(ScoutTest, StopsAtEachMotionBehindAPause) {
+  const std::string stream = "!NR;PU100,0;PU200,0;";
+  EXPECT_TRUE(Read(stream, 100));
+  EXPECT_TRUE(Read(stream, 100));
+  EXPECT_TRUE(Read(stream, 100));
+}
+
+// Where the run halts behind each command the tool must stand behind each: no further is read.
+TEST_F(ScoutTest, StopsReadingWhereTheRunHalts) {
+  const std::string stream = "VS1;VS2;PU100,0;";
+  EXPECT_TRUE(Read(stream, 100, {.after_each = true}));
+  EXPECT_EQ(scout_.sent(), std::string("VS1;").size());
+  EXPECT_TRUE(Read(stream, 100, {.after_each = true}));
+  EXPECT_EQ(scout_.sent(), std::string("VS1;VS2;").size());
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -100,5 +100,88 @@ TEST(StopSides, ARunThatWasResumedRuns) {
   EXPECT_FALSE(run->state().halted_by);
 }
 
+// RML1-3A.42, RML1-9.33: H stops the spindle, and nobody waits until it stands.
+TEST(StopSides, HomeDoesNotWaitForTheSpindle) {
+  machine::Parameters parameters = ParametersOf("t1");
+  ASSERT_TRUE(parameters.Set("SPIN_DOWN", 1.5));
+  TestRun run(parameters, "PD;H;");
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(std::ranges::count(run.seen().Events(), "stop"), 1);
+  EXPECT_EQ(std::ranges::count(run.seen().Events(), "spindle wait 1.5"), 0);
+}
+
+// DEV-3.12: what the cover has stopped goes on with the run; what a key has stopped does not, also
+// where the run was resumed before.
+TEST(StopSides, WhatAKeyStoppedNoResumeStarts) {
+  TestRun run(ParametersOf("t1"), "!MC1;PU100,0;!NR;PU200,0;!NR;PU300,0;");
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  ASSERT_TRUE(run->state().spindle_on);
+  ASSERT_TRUE(run->SwitchSpindle());
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_FALSE(run->state().spindle_on);
+  EXPECT_EQ(std::ranges::count(run.seen().Events(), "spin 4500"), 1);
+  EXPECT_EQ(std::ranges::count(run.seen().Events(), "stop"), 1);
+}
+
+// DEV-3.12: a cover that is open stops the spindle where the run comes to rest, and not before; one
+// that does nothing to a run does not stop it there either.
+TEST(StopSides, ACoverThatIsOpenStopsTheSpindleInAHalt) {
+  for (const std::string_view cover : {"PAUSE", "NONE"}) {
+    machine::Parameters parameters = ParametersOf("t1");
+    ASSERT_TRUE(parameters.Set("COVER", cover));
+    TestRun run(parameters, "!MC1;PU6000,0;!NR;PU100,0;");
+    run->Advance(std::chrono::seconds(8));  // across
+    ASSERT_TRUE(run->state().spindle_on);
+    run.Press(InputKind::kDoor, 1.0);
+    EXPECT_TRUE(run->state().spindle_on);
+    ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+    EXPECT_EQ(run->state().spindle_on, cover == "NONE");
+    EXPECT_EQ(std::ranges::count(run.seen().Events(), "stop"), cover == "NONE" ? 0 : 1);
+  }
+}
+
+// RML1-5B.01, DEV-3.12: a spindle that the cover stopped starts again with the run, and has its
+// whole run-up before the next motion: in the run-up that STOP interrupted as in a dwell that has
+// less of it left. One that has more goes on meanwhile.
+TEST(StopSides, ASpindleThatStartsAgainRunsUpWhole) {
+  machine::Parameters parameters = ParametersOf("t1");
+  ASSERT_TRUE(parameters.Set("SPIN_UP", 2.0));
+  ASSERT_TRUE(parameters.Set("COVER", "PAUSE"));
+  const auto begins_s = [&](const std::string& stream, std::size_t motion, double stop_s) {
+    TestRun run(parameters, stream,
+                {{.at = FromSeconds(stop_s), .kind = InputKind::kStop, .index = 0, .value = 0.0}});
+    EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+    run.Press(InputKind::kDoor, 1.0);
+    run.Press(InputKind::kDoor, 0.0);
+    EXPECT_FALSE(run->state().spindle_on);
+    run.Press(InputKind::kStart);
+    EXPECT_TRUE(run->state().spindle_on);
+    EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+    EXPECT_GT(run.seen().motions().size(), motion);
+    return run.seen().motions()[motion].start_s;
+  };
+  EXPECT_NEAR(begins_s("!MC1;PU100,0;", 0, 1.5), 3.5, 1e-9);
+  for (const double wait_s : {1.0, 5.0}) {
+    const std::string stream =
+        "!MC1;W" + std::to_string(static_cast<int>(wait_s * 1000)) + ";PD;PD100,0;";
+    TestRun undisturbed(parameters, stream);
+    ASSERT_EQ(undisturbed.AdvanceToEnd(), RunPhase::kFinished);
+    const double end_s = undisturbed.seen().motions()[0].end_s;
+    ASSERT_NEAR(undisturbed.seen().motions()[1].start_s, end_s + wait_s, 1e-9);
+    EXPECT_NEAR(begins_s(stream, 1, end_s + 0.4), end_s + 0.4 + std::max(wait_s - 0.4, 2.0), 1e-9);
+  }
+}
+
+// Of a stream of one byte nothing is read before it begins.
+TEST(StopSides, ProgressOfAStreamOfOneByte) {
+  TestRun run(ParametersOf("t1"), ";");
+  EXPECT_EQ(run->state().progress, 0.0);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(run->state().progress, 1.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -68,8 +68,8 @@ TEST(StreamSeparators, OneCommaPartsTwoNumbers) {
   const std::string behind(40, ';');
   for (const Separated& one :
        {Separated{"PU  100 200", 100, 200, 0}, Separated{"PU   100  200", 100, 200, 0},
-        Separated{"PU 100 200 300 400", 300, 400, 0},
-        Separated{"PU100 ,200 , 300,400", 300, 400, 0},
+        Separated{"PU 100 200 300 400", 300, 400, 0}, Separated{"PU 123 456", 123, 456, 0},
+        Separated{"Z 12 34 -5", 12, 34, 0}, Separated{"PU100 ,200 , 300,400", 300, 400, 0},
         Separated{"PU100,200  300\t,\t400", 300, 400, 0}, Separated{"PU,100,200", 0, 0, 4},
         Separated{"PU ,100,200", 0, 0, 4}, Separated{"PU100,200,,300,400", 100, 200, 4},
         Separated{"PU100,200, ,300,400", 100, 200, 4}, Separated{"PU100,,200", 0, 0, 2},

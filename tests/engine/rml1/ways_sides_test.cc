@@ -133,6 +133,7 @@ TEST(WaysSides, TheShareOfForeignBytes) {
   const std::string with_sequences = "\x1b.I;\x1b.I;" + plain + "\x1b.I;";
   for (const bool at_once : {false, true}) {
     EXPECT_NEAR(WayDevice(plain, at_once)->foreign_percent(), 1.0, 1e-9) << at_once;
+    EXPECT_NEAR(WayDevice("$$$$$$$", at_once)->foreign_percent(), 100.0 * 7.0 / 256.0, 1e-9);
     EXPECT_NEAR(WayDevice(with_sequences, at_once)->foreign_percent(),
                 WayDevice(with_sequences, false)->foreign_percent(), 1e-9)
         << at_once;
@@ -153,6 +154,22 @@ TEST(WaysSides, NothingBehindTheStreamIsRead) {
       const std::string longer = alone + behind;
       ASSERT_EQ(WayDevice(std::string_view(longer).substr(0, size), true).State(), state)
           << alone << " before " << behind;
+    }
+  }
+}
+
+// Nor is it where many blanks stand before the numbers, so that the last of them ends the stream.
+TEST(WaysSides, NothingBehindBlanksIsRead) {
+  const std::string blanks(28, ' ');
+  for (const std::string& stream : {"PU" + blanks + "1,2", "Z" + blanks + "3,4,5"}) {
+    for (std::size_t size = 1; size <= stream.size(); ++size) {
+      const std::string alone = stream.substr(0, size);
+      const std::string state = WayDevice(alone, false).State();
+      for (const std::string behind : {"000000000000", ",5,6,7;;;;;;", ";;;;;;;;;;;;"}) {
+        const std::string longer = alone + behind;
+        ASSERT_EQ(WayDevice(std::string_view(longer).substr(0, size), true).State(), state)
+            << alone << " before " << behind;
+      }
     }
   }
 }

@@ -196,5 +196,14 @@ TEST(WorkFit, WithoutDepthItIsNone) {
   EXPECT_EQ(FitOf(flat, {}, {}, kTravel, 0.0, kUnits).z.length, 0.0);
 }
 
+// How large the work is: X and Y from end to end, Z as deep as it goes, whatever it lifts.
+TEST(WorkFit, HasTheLengthOfTheWork) {
+  const WorkExtent work{From(1000, 5000), From(-2000, 3000), From(-1500, 200)};
+  const WorkFit fit = FitOf(work, {}, {}, kTravel, 200.0, kUnits);
+  EXPECT_EQ(fit.x.length, 40.0);
+  EXPECT_EQ(fit.y.length, 50.0);
+  EXPECT_EQ(fit.z.length, 15.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

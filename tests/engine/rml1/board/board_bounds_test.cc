@@ -101,6 +101,30 @@ TEST(BoardBounds, StepsOfTheDepth) {
   EXPECT_EQ(plunges, 10);
 }
 
+// A step is a unit of the machine at least, 0.01 mm here, and the stream has at most the bytes that
+// it may have.
+TEST(BoardBounds, StepsAndTheirStreamAreBounded) {
+  const Bitmap pad{.width = 3, .height = 3, .copper = {0, 0, 0, 0, 1, 0, 0, 0, 0}};
+  BoardOptions options{.pixel_mm = 1.0, .depth_mm = 1.0, .step_mm = 0.0099};
+  const auto made = [&] { return StreamOfBoard(pad, ParametersOf("srm-20"), options); };
+  const auto small = made();
+  ASSERT_FALSE(small);
+  EXPECT_EQ(small.error().code, ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(small.error().detail,
+            "the depth of a step is 0.0099 mm; a unit of this machine is 0.01 mm");
+  EXPECT_EQ(ArgumentsText(small.error().detail), "value=0.0099 mm least=0.01 mm");
+  options.step_mm = 0.01;
+  const auto whole = made();
+  ASSERT_TRUE(whole);
+  options.bytes_max = whole->stream.size();
+  EXPECT_TRUE(made());
+  options.bytes_max = whole->stream.size() / 2;
+  const auto large = made();
+  ASSERT_FALSE(large);
+  EXPECT_EQ(large.error().code, ErrorCode::kRml1ProductTooLarge);
+  EXPECT_EQ(large.error().detail, "more than " + std::to_string(options.bytes_max) + " bytes");
+}
+
 // What lies no further off than the tolerance is left out; the first point and the one furthest
 // from it stay.
 TEST(SimplifiedBounds, WhatIsLeftOut) {

@@ -414,5 +414,22 @@ TEST(GcodeBounds, AHelixGoesOnFromWhereItBegins) {
       << made.stream;
 }
 
+// An origin may lie between two units, 50.005 mm from the left and 20.005 mm from the front: so
+// does what counts from it. X 149.99 is half a unit within the travel of 200 mm, X 150 half a unit
+// beyond it.
+TEST(GcodeBounds, AnOriginBetweenTwoUnits) {
+  machine::Parameters moved = ParametersOf("t1");
+  ASSERT_TRUE(moved.Set("ORIGIN_X", 50.005));
+  ASSERT_TRUE(moved.Set("ORIGIN_Y", 20.005));
+  const auto beyond = [&](const std::string& place) {
+    const auto made = FromGcode("G1 Z-1 F60\n" + place + "\n", moved).value();
+    return made.beyond_travel ? made.beyond_travel->line : 0;
+  };
+  for (const char* within : {"X-50", "X149.99", "Y-20", "Y129.99"})
+    EXPECT_EQ(beyond(within), 0) << within;
+  for (const char* place : {"X-50.01", "X150", "Y-20.01", "Y130"})
+    EXPECT_EQ(beyond(place), 2) << place;
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

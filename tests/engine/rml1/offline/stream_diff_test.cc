@@ -170,5 +170,11 @@ TEST(CompareStreams, ValuesHaveFiveDecimals) {
   EXPECT_EQ(back.steps[0].what, (std::vector<std::string>{"X 1.00006 -> 1"}));
 }
 
+// The same numbers of other axes are another place, and so is one that is as far in both.
+TEST(CompareStreams, TheSameNumbersInOtherAxes) {
+  EXPECT_FALSE(Diff("!MC0;Z100,200,0;", "!MC0;Z200,100,0;").equal());
+  EXPECT_FALSE(Diff("!MC0;PU100,100;", "!MC0;PU200,200;").equal());
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

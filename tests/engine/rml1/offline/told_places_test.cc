@@ -44,6 +44,10 @@ TEST(ToldPlaces, AlongTheSurfaceNoFeedRateIsMissed) {
   EXPECT_EQ(codes("!MC0;PU100,100;PD200,100;PU;"), std::vector<ErrorCode>{});
   EXPECT_EQ(codes("!MC0;!PZ-1,200;PU100,100;PD200,100;PU;"),
             std::vector{ErrorCode::kRml1FeedNotGiven});
+  // Where the operator set Z0 the work begins: !ZO moves the heights, and no material.
+  EXPECT_EQ(codes("!MC0;!PZ0,200;!ZO-2500;PU100,100;PD200,100;PU;"),
+            std::vector{ErrorCode::kRml1FeedNotGiven});
+  EXPECT_EQ(codes("!MC0;!PZ0,200;!ZO-1500;PU100,100;PD200,100;PU;"), std::vector<ErrorCode>{});
 }
 
 // RML1-9.42
@@ -58,6 +62,21 @@ TEST(ToldPlaces, ATornCommandIsExplainedByItsRule) {
   EXPECT_EQ(findings[0].rule, "RML1-9.42");
   EXPECT_EQ(findings[0].detail, "incomplete command at end of data");
   EXPECT_EQ(findings[0].where, (SourceSpan{.line = 2, .column = 1, .length = 1, .byte_offset = 3}));
+}
+
+// docs/gcode.md: a comment ends with its bracket, so that none may stand within it: what is made is
+// read again.
+TEST(ToldPlaces, ABracketEndsNoComment) {
+  for (const auto& [stream, comment] :
+       {std::pair("PU;)", "(RML1-E1 in the stream: ']' begins no command)\n"),
+        {"PU;(", "(RML1-E1 in the stream: '[' begins no command)\n"}}) {
+    const Result<GcodeText> made = ToGcode(stream, ParametersOf("t1"));
+    ASSERT_TRUE(made) << stream;
+    EXPECT_NE(made->text.find(comment), std::string::npos) << made->text;
+    const Result<StreamOfGcode> again = FromGcode(made->text, ParametersOf("t1"));
+    ASSERT_TRUE(again) << stream;
+    EXPECT_TRUE(again->ok) << made->text;
+  }
 }
 
 }  // namespace

@@ -69,5 +69,23 @@ TEST(WaysBetween, AnAbortHasNoNumbers) {
   EXPECT_EQ(counting.values, (std::vector<std::size_t>{0, 0}));
 }
 
+// stream_mover.h: up to the top only to go across. What is owed in Z alone leads straight to where
+// the moved program goes on, also from the surface.
+TEST(WaysBetween, AWayInZAloneIsStraight) {
+  EXPECT_EQ(MovedBy("!ZM-2000;PR;Z0,0,-10;", 0, 0, -0.5), "!ZM-2000;PR;!ZZ0,0,-50;Z0,0,-10;");
+  EXPECT_EQ(MovedBy("!ZM-2000;PR;Z0,0,-10;", 0, 0, 0.5), "!ZM-2000;PR;!ZZ0,0,50;Z0,0,-10;");
+}
+
+// What is owed in Z has not moved the tool yet: behind !ZM, a place of the machine, it stands at
+// the surface, 20 mm below the top, or a unit above it, whatever the move is.
+TEST(WaysBetween, WhatIsOwedInZHasMovedNothing) {
+  EXPECT_EQ(MovedBy("!ZM-2000;PR;Z100,0,0;", 1, 2, 0.5),
+            "!ZM-2000;PR;!ZZ0,0,2000,100,200,0,0,0,-1950;Z100,0,0;");
+  EXPECT_EQ(MovedBy("!ZM-2000;PR;Z100,0,0;", 1, 2, -0.5),
+            "!ZM-2000;PR;!ZZ0,0,2000,100,200,0,0,0,-2050;Z100,0,0;");
+  EXPECT_EQ(MovedBy("!ZM-1999;PR;Z100,0,0;", 1, 2, -0.5),
+            "!ZM-1999;PR;!ZZ100,200,0,0,0,-50;Z100,0,0;");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

@@ -115,5 +115,16 @@ TEST(CheckWork, LengthsHaveThreeDecimals) {
             "it fits moved by -10 to -0.123 mm");
 }
 
+// All of the work lies 5 mm beyond the least Y, 10 mm too deep at its end: nothing of it is done,
+// and the remedy is told all the same. 37.5 mm across and 50 mm down are 62.5 mm.
+TEST(CheckWork, WorkThatLiesBeyondTheTravelAltogether) {
+  const auto lost = Checked("!MC1;Z100,-500,0;Z3850,-500,-5000;");
+  ASSERT_TRUE(lost);
+  EXPECT_EQ(lost->detail,
+            "62.5 mm of the work would not be cut: 5 mm beyond the least Y (0 mm), 10 mm below the "
+            "lowest Z (-40 mm); in Y it fits moved by 5 to 155 mm; in Z it fits moved by 10 to 20 "
+            "mm");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1
