@@ -71,7 +71,6 @@ class ConstantAdviser {
 
   void Run() {
     for (const Instruction& i : module_.instructions) {
-      if (i.op == Op::kDeclare) continue;
       const std::uint32_t count = module_.ExpressionCount(i);
       for (std::uint32_t e = 0; e < count; ++e) {
         const Expression expression = module_.expression(i.first_expression + e);

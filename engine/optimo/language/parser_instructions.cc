@@ -328,7 +328,7 @@ bool Parser::ParseDeclare() {
   if (LevelOf(next) != 0 && !attribute) {
     return FailAt(next, ErrorCode::kDeclareValue, "DECLARE takes no expression", "OPT-7.42");
   }
-  if (declared_[instruction_.name]) {
+  if (declared_[instruction_.name] && !nameless_) {
     char room[kNameLength];
     return FailAt(name, ErrorCode::kNameDuplicate,
                   Told("name", UnpackName(name.key, room)) + " is declared already", "OPT-7.49");

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "engine/optimo/language/byte_stream.h"
-#include "engine/optimo/language/checker.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
+#include "engine/optimo/language/parser.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -63,8 +63,7 @@ Result<RecoveredSource> RecoverSource(std::string_view object,
 
 std::vector<int> LinesOfSteps(std::string_view text) {
   Findings findings(0);
-  ParsedProgram program = Parse(text, findings, Places::kStatements);
-  Check(program, findings);
+  const ParsedProgram program = Parse(text, findings, Places::kStatements);
   return LinesOfSteps(program);
 }
 

@@ -102,16 +102,11 @@ class Converter {
     return node.op == Node::kPi || (node.op == Node::kName && names_[node.name].constant);
   }
   void Declare(const Instruction& i);
-  double Factor(Unit unit) const {
-    const bool metric = direction_ == Direction::kToMetric;
-    if (unit == Unit::kLinear) return metric ? kMmPerInch : 1.0 / kMmPerInch;
-    return metric ? kTurn / 360.0 : 360.0 / kTurn;
-  }
   // Divides where that is exact in one rounding: 25.4 mm are 1 inch.
   double Converted(double value, Unit unit) const {
     if (direction_ == Direction::kToInch)
       return unit == Unit::kLinear ? value / kMmPerInch : value * 360.0 / kTurn;
-    return value * Factor(unit);
+    return value * (unit == Unit::kLinear ? kMmPerInch : kTurn / 360.0);
   }
 
   const ParsedProgram& p_;

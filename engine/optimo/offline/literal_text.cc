@@ -20,7 +20,6 @@ std::optional<double> LiteralValue(std::string_view text) {
       negative = negative != (c == '-');
       continue;
     }
-    if (c == '+') continue;  // of the exponent
     packed += c;
   }
   const std::optional<double> value = ParseDouble(packed);

@@ -33,7 +33,7 @@ struct Draft {
   std::array<bool, kProcesses> defines{};            // it has this WORKDEF
   std::array<std::uint32_t, kProcesses> first_on{};  // instruction of its first WORK ON, plus one
   bool uses_sysdef = false;
-  std::optional<std::uint32_t> absol_move_without_sysdef;
+  bool absol_move_without_sysdef = false;
   bool own_text = true;  // but for units it is what the project has
 };
 
@@ -205,8 +205,7 @@ void Planner::Survey(Draft& draft) {
         absol = i.choice == static_cast<std::uint8_t>(CoordType::kAbsol);
         break;
       case Op::kMove:
-        if (absol && !draft.uses_sysdef && !draft.absol_move_without_sysdef)
-          draft.absol_move_without_sysdef = n;
+        if (absol && !draft.uses_sysdef) draft.absol_move_without_sysdef = true;
         break;
       default:
         break;

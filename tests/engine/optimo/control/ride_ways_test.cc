@@ -5,11 +5,14 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/optimo/control/optimo_family.h"
+#include "engine/optimo/machine/optimo_parameters.h"
 #include "engine/optimo/ride/lead.h"
+#include "engine/optimo/ride/lead_along.h"
 #include "tests/engine/optimo/control/measured.h"
 #include "tests/engine/optimo/control/run_text.h"
 
@@ -45,6 +48,132 @@ TEST(RideWays, TheLeadToALowerSpeed) {
   EXPECT_EQ(lead(30.0, -1000.0, 80.0).speed, 0.0);
   const Lead steady = lead(150.0, 0.0, 50.0);
   EXPECT_NEAR(steady.length, 100.0 * 0.2, 1e-9);
+}
+
+constexpr motion::PathLimits kOf50{.speed = 50.0, .acceleration = 2000.0, .jerk = 40'000.0};
+
+// Of the standard machine.
+motion::AxisLimits Axes() {
+  return Resolve(machine::Parameters(OptimoParameterTable())).limits.axes;
+}
+
+// A straight one, passed at 50 mm/s.
+motion::PlannedMotion Straight(double length_mm, const motion::PathLimits& limits = kOf50) {
+  motion::PlannedMotion made;
+  made.path = motion::PathPiece::Line({.tip = {0.0, 0.0, 0.0}}, {.tip = {length_mm, 0.0, 0.0}});
+  made.speed = motion::SpeedProfile::Steady(length_mm, 50.0);
+  made.limits = limits;
+  made.settling_s = kSettle_s;
+  made.corner.passage = motion::Passage::kBlend;
+  made.corner.speed = 50.0;
+  return made;
+}
+
+// motion.md 6: over motions that are each shorter than the 1.875 mm from 50 to 25 mm/s: from 0.25
+// mm of the first one on it ends on the third, 0.125 mm behind its begin.
+TEST(RideWays, TheWayDownOverSeveralMotions) {
+  LeadAlong way(Straight(1.0), {.s = 0.25, .speed = 50.0});
+  EXPECT_FALSE(way.EndOnLast(25.0).has_value());
+  way.Add(Straight(1.0));
+  EXPECT_FALSE(way.EndOnLast(25.0).has_value());
+  way.Add(Straight(1.0));
+  const std::optional<LeadAlong::End> end = way.EndOnLast(25.0);
+  ASSERT_TRUE(end.has_value());
+  EXPECT_NEAR(end->s, 0.125, 1e-9);
+  EXPECT_NEAR(end->speed, 25.0, 1e-9);
+  const std::vector<motion::PlannedMotion> motions = way.MotionsTo(*end, Axes());
+  ASSERT_EQ(motions.size(), 3U);
+  constexpr double kLengths[] = {0.75, 1.0, 0.125};
+  double speed = 50.0;
+  double lasts_s = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const motion::PlannedMotion& one = motions[k];
+    EXPECT_NEAR(one.path.length(), kLengths[k], 1e-9) << k;
+    EXPECT_NEAR(one.speed.At(0.0).speed, speed, 1e-6) << k;
+    EXPECT_NEAR(one.limits.speed, speed, 1e-6) << k;  // START on the way goes no faster again
+    EXPECT_EQ(one.settling_s, 0.0) << k;
+    EXPECT_EQ(one.ends_move, k < 2) << k;
+    speed = one.speed.end().speed;
+    EXPECT_NEAR(one.corner.speed, k < 2 ? speed : 0.0, 1e-9) << k;
+    lasts_s += one.duration_s();
+  }
+  EXPECT_NEAR(motions[0].path.from().point.x(), 0.25, 1e-9);
+  EXPECT_EQ(motions[1].corner.passage, motion::Passage::kBlend);
+  EXPECT_EQ(motions[2].corner.passage, motion::Passage::kStop);
+  EXPECT_NEAR(speed, 25.0, 1e-6);
+  EXPECT_NEAR(lasts_s, Ramp_s(25.0), 1e-6);
+}
+
+// motion.md 6: it may end with a motion, and where one begins, which is as it was then.
+TEST(RideWays, TheWayDownToTheEndsOfMotions) {
+  const double down_mm = LeadFrom({.speed = 50.0}, kOf50, 25.0).length;
+  const LeadAlong on_one(Straight(down_mm), {.speed = 50.0});
+  const std::optional<LeadAlong::End> at_end = on_one.EndOnLast(25.0);
+  ASSERT_TRUE(at_end.has_value());
+  EXPECT_EQ(at_end->s, down_mm);
+  LeadAlong way(Straight(1.0), {.s = 0.25, .speed = 50.0});
+  way.Add(Straight(1.25));
+  way.Add(Straight(1.0));
+  const std::optional<LeadAlong::End> at_begin = way.EndOnLast(25.0);
+  ASSERT_TRUE(at_begin.has_value());
+  EXPECT_EQ(at_begin->s, 0.0);
+  const std::vector<motion::PlannedMotion> motions = way.MotionsTo(*at_begin, Axes());
+  ASSERT_EQ(motions.size(), 2U);
+  EXPECT_NEAR(motions[1].path.length(), 1.25, 1e-9);
+  EXPECT_TRUE(motions[1].ends_move);
+  EXPECT_NEAR(motions[1].corner.speed, 25.0, 1e-6);
+  EXPECT_NEAR(motions[0].duration_s() + motions[1].duration_s(), Ramp_s(25.0) + 0.125 / 25.0, 1e-6);
+}
+
+// motion.md 6: the weakest motion sets the ramp: by a jerk of 10,000 mm/s3, or by 500 mm/s2, it is
+// so much longer.
+TEST(RideWays, TheWeakestMotionSetsTheRamp) {
+  const auto way_mm = [](const motion::PathLimits& weak) {
+    LeadAlong way(Straight(1.0), {.s = 0.25, .speed = 50.0});
+    way.Add(Straight(10.0, weak));
+    return 0.75 + way.EndOnLast(25.0).value_or(LeadAlong::End{}).s;
+  };
+  EXPECT_NEAR(way_mm(kOf50), 1.875, 1e-9);
+  EXPECT_NEAR(way_mm({.speed = 50.0, .acceleration = 2000.0, .jerk = 10'000.0}), 3.75, 1e-9);
+  EXPECT_NEAR(way_mm({.speed = 50.0, .acceleration = 500.0, .jerk = 40'000.0}),
+              37.5 * (25.0 / 500.0 + 500.0 / 40'000.0), 1e-9);
+}
+
+// motion.md 6: there is no such way where a motion may not be passed so fast, a START on it may
+// not, or what comes behind it begins slower.
+TEST(RideWays, MotionsThatMayNotBePassedSoFast) {
+  const auto count = [](const motion::PlannedMotion& second) {
+    LeadAlong way(Straight(1.0), {.s = 0.25, .speed = 50.0});
+    way.Add(second);
+    way.Add(Straight(1.0));
+    const std::optional<LeadAlong::End> end = way.EndOnLast(25.0);
+    EXPECT_TRUE(end.has_value());
+    return way.MotionsTo(end.value_or(LeadAlong::End{}), Axes()).size();
+  };
+  EXPECT_EQ(count(Straight(1.0)), 3U);
+  EXPECT_EQ(count(Straight(1.0, {.speed = 30.0, .acceleration = 2000.0, .jerk = 40'000.0})), 0U);
+  motion::PlannedMotion slow_start = Straight(1.0);
+  slow_start.restart_speed = 30.0;
+  EXPECT_EQ(count(slow_start), 0U);
+  motion::PlannedMotion slow_end = Straight(1.0);
+  slow_end.speed = motion::SpeedProfile::Steady(1.0, 20.0);
+  EXPECT_EQ(count(slow_end), 0U);
+}
+
+// motion.md 6: it slows down to what it is faster than when its acceleration is at an end; by then
+// it may not be faster than the motion allows, but for rounding.
+TEST(RideWays, WhatCanSlowDown) {
+  const auto slows = [](double speed, double acceleration, double to) {
+    return LeadAlong(Straight(1.0), {.speed = speed, .acceleration = acceleration}).SlowsTo(to);
+  };
+  EXPECT_TRUE(slows(50.0, 0.0, 25.0));
+  EXPECT_FALSE(slows(50.0, 0.0, 50.0));
+  EXPECT_TRUE(slows(30.0, 1000.0, 42.0));  // 42.5 mm/s after 0.025 s
+  EXPECT_FALSE(slows(30.0, 1000.0, 43.0));
+  EXPECT_FALSE(slows(40.0, 1000.0, 25.0));  // 52.5 mm/s
+  EXPECT_FALSE(slows(10.0, -1000.0, 0.0));  // at rest before
+  EXPECT_TRUE(slows(50.0 * (1.0 + 1e-9), 0.0, 25.0));
+  EXPECT_FALSE(slows(50.0 * (1.0 + 1e-7), 0.0, 25.0));
 }
 
 struct End {
@@ -245,6 +374,33 @@ TEST(RideWays, AHoleThatWasKeptBack) {
   EXPECT_EQ(moved.run->outputs().on.size(), 1U);
   EXPECT_NEAR(taken, Time_s(20.0) + Time_s(20.0 * M_PI) + kSettle_s, 3e-3);
   EXPECT_NEAR(moved.run->state().tip.tip.x(), 1090.0, 1e-6);
+}
+
+// OPT-6.42, OPT-4.17: moved by hand behind a HOLD, the machine goes to its next target from where
+// it stands: of a MOVE that was kept back, behind which one that was not read yet begins where it
+// ends, and where a mere output was kept back, of a MOVE that comes later.
+TEST(RideWays, TheNextMoveBehindAHoldThatWasMoved) {
+  struct Row {
+    std::string behind;
+    double taken_s;
+    int outputs;
+  };
+  const double slope_s = Time_s(std::hypot(100.0, 20.0)) + kSettle_s;
+  for (const Row& row :
+       {Row{"MOVE (1200.,1000.,-400.,0.,0.)\nMOVE (1200.,1100.,-400.,0.,0.)\n",
+            slope_s + Time_s(100.0) + kSettle_s, 0},
+        Row{"OL[16]=ON\nDELAY 1\nMOVE (1200.,1000.,-400.,0.,0.)\n", 1.0 + slope_s, 1}}) {
+    const std::string text = kThere + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\n" + row.behind;
+    const double begin = ToSeconds(RunText(text).moves.front().at);
+    Moved moved(text, begin + 0.5, {0.0, 0.0, 20.0}, InputKind::kHold);
+    EXPECT_NEAR(moved.left.x(), 1100.0, 1e-6) << row.behind;
+    EXPECT_EQ(moved.run->outputs().on.size(), 0U) << row.behind;
+    EXPECT_NEAR(moved.GoOn_s(), row.taken_s, 1e-3) << row.behind;
+    EXPECT_EQ(moved.run->outcome().kind, machine::OutcomeKind::kCompleted) << row.behind;
+    EXPECT_EQ(moved.run->outputs().on.size(), static_cast<std::size_t>(row.outputs));
+    EXPECT_NEAR(moved.run->state().tip.tip.x(), 1200.0, 1e-6) << row.behind;
+    EXPECT_NEAR(moved.run->state().tip.tip.z(), -400.0, 1e-6) << row.behind;
+  }
 }
 
 // OPT-6.42, OPT-E.7305: an arc through its via point: from a place on the line of via and target,

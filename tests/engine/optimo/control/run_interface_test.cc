@@ -233,6 +233,15 @@ TEST(RunInterface, TheWayToAStep) {
             "LIN to 1000,-100 at 50:; ");
   EXPECT_TRUE(
       entered.PlanApproach(EncodeMachineState(stands), machine::ApproachWay::kDirect).empty());
+  // Who stands straight above need but go down, and who stands as high beside it need not go up.
+  const auto legs_from = [&](double aside_mm) {
+    stands.axes = legs.back().to;
+    stands.axes.column.x() += aside_mm;
+    stands.axes.column.z() = -50.0;
+    return entered.PlanApproach(EncodeMachineState(stands), machine::ApproachWay::kSafe).size();
+  };
+  EXPECT_EQ(legs_from(0.0), 1U);
+  EXPECT_EQ(legs_from(10.0), 2U);
 }
 
 // A finished run takes no more keys, and ends only once.

@@ -131,6 +131,26 @@ TEST(TimerRules, ALoopReadsAThousandTimesAtOnce) {
   EXPECT_NEAR(two.time_s, 5 * 0.048, 1e-9);
 }
 
+// OPT-7.97: of a loop that reads two inputs the first one is counted; what was read before the loop
+// and is not of it counts for nothing: behind a thousand others one of these takes its place, and
+// has its own thousand from there.
+TEST(TimerRules, OneReadOfALoopIsCounted) {
+  const auto time = [](const std::string& before, const std::string& reads, int turns) {
+    return RunText(before + "10 VI[2]=VI[2]+1\n" + reads + "IF VI[2] < " + std::to_string(turns) +
+                   " THEN 10\n20 VI[3]=1\n")
+        .time_s;
+  };
+  const std::string one = "VL[1]=IL[16]\n";
+  const std::string two = one + "VL[2]=IL[17]\n";
+  EXPECT_EQ(time("", two, 1000), 0.0);
+  EXPECT_NEAR(time("", two, 1001), 0.048, 1e-9);
+  EXPECT_NEAR(time("", two, 1010), 10 * 0.048, 1e-9);
+  const std::string before = "IF IL[18] THEN 20\n";
+  EXPECT_EQ(time(before, one, 1999), 0.0);
+  EXPECT_NEAR(time(before, one, 2000), 0.048, 1e-9);
+  EXPECT_NEAR(time(before, one, 2010), 11 * 0.048, 1e-9);
+}
+
 // OPT-2.49: the program runs ahead of a passage by ten thousand instructions; one more, and the
 // passage becomes a stop.
 TEST(TimerRules, HowFarAProgramRunsAhead) {

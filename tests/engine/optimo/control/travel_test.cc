@@ -180,6 +180,21 @@ TEST(Travel, AHoleAtTheEdge) {
   EXPECT_NEAR(ran.violations[0].excess, 30.0, 1e-6);
 }
 
+// OPT-B.08, OPT-B.15: in RUN a hole whose circle reaches beyond the end of X is refused before its
+// lead, up to (3530,1000), begins: nothing of it is ridden, and it is told once.
+TEST(Travel, AHoleIsLookedAtBeforeItsLead) {
+  const Ran ran = RunText(std::string(kAbsol) +
+                          "MOVE (3000.,1000.,-400.,0.,0.)\nPATH HOLE (50.)\n"
+                          "MOVE (3580.,1000.,-400.,0.,0.)/VIA (3580.,1000.,-300.,0.,0.)\n");
+  EXPECT_EQ(CodeOf(ran), 7301);
+  EXPECT_EQ(ran.outcome.place.step, 5);
+  EXPECT_EQ(ran.outcome.detail, "X on the way leaves its travel by 30.000 mm");
+  EXPECT_EQ(ran.violations.size(), 1U);
+  EXPECT_EQ(ran.moves.size(), 1U);
+  EXPECT_EQ(ran.parts.size(), 1U);
+  EXPECT_NEAR(ran.end.axes.column.x(), 3000.0, 1e-9);
+}
+
 // OPT-6.31: a forecast that stops for a key and found violations is a failed one, too.
 TEST(Travel, AHaltDoesNotHideThem) {
   const Ran ran =
@@ -199,6 +214,23 @@ TEST(Travel, AMachineThatStandsOutside) {
   EXPECT_EQ(ran.outcome.detail, "X on the way leaves its travel by 400.000 mm");
   options.forecast = true;
   EXPECT_EQ(RunText(back, options).violations.size(), 1U);
+}
+
+// OPT-B.08: a MOVE to the place outside where the machine stands anyway is told, though nothing
+// moves for it.
+TEST(Travel, ATargetOutsideWhereItStands) {
+  const std::string stay = "COORD ROBOT\nMOVE (4000.,2200.,-50.,0.,0.)\n";
+  RunOptions options{.parameters = {{"HOME_X", "4000"}, {"HOME_Y", "2200"}}};
+  EXPECT_EQ(CodeOf(RunText(stay, options)), 7301);
+  options.forecast = true;
+  const Ran ran = RunText(stay, options);
+  EXPECT_EQ(CodeOf(ran), 7301);
+  EXPECT_EQ(StepsOf(ran, 7301), std::vector{2});
+  ASSERT_EQ(ran.violations.size(), 1U);
+  EXPECT_EQ(ran.violations[0].axis, 0);
+  EXPECT_NEAR(ran.violations[0].excess, 400.0, 1e-9);
+  EXPECT_TRUE(ran.violations[0].at_target);
+  EXPECT_TRUE(ran.parts.empty());
 }
 
 // OPT-7.28: SYSDEF moves the tip, so X, Y and Z of a target in COORD ABSOL, and no angle.

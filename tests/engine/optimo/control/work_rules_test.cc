@@ -229,6 +229,21 @@ TEST(WorkRules, ADwellEndsWithTheBeam) {
   EXPECT_NEAR(power("WORK 2,1/ON\n", 2.0), 60.0, 1e-9);
 }
 
+// OPT-3.38, OPT-3.45: a DELAY beside which the beam comes on is told in two parts: without it, and
+// with it.
+TEST(WorkRules, ADelayBesideAWorkThatBegins) {
+  const Ran ran = RunText("WORK 0,0/ON/START (IL[20])/NEXT\nDELAY 4\nWORK 0,0/OFF\n",
+                          {.inputs = {Input(1.0, 20, 1.0)}});
+  ASSERT_EQ(ran.waits.size(), 2U);
+  EXPECT_FALSE(ran.waits[0].beam_on);
+  EXPECT_EQ(ran.waits[0].power_percent, 0.0);
+  EXPECT_NEAR(ToSeconds(ran.waits[0].end), 1.0, 1e-9);
+  EXPECT_TRUE(ran.waits[1].beam_on);
+  EXPECT_EQ(ran.waits[1].power_percent, 100.0);
+  EXPECT_EQ(ran.waits[1].start, ran.waits[0].end);
+  EXPECT_NEAR(ToSeconds(ran.waits[1].end), 4.0, 1e-9);
+}
+
 // OPT-3.38: what goes on beside a program ends with it, and stands still while a CALLed one runs.
 TEST(WorkRules, BackgroundWorkBelongsToItsProgram) {
   const Ran ended = RunText(

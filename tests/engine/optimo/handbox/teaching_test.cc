@@ -338,6 +338,16 @@ TEST_F(Teaching, EditsTellHowItWas) {
   EXPECT_EQ(edit.note.tip, machine->status().run.tip);
 }
 
+// LIVE-7.09: the mode of a hole is told with its radius.
+TEST_F(Teaching, EditsTellTheRadiusOfAHole) {
+  Begin();
+  Keys("PATH PREV ENT DEL 1 2 POINT 5 ENT REC");
+  ASSERT_EQ(edits.size(), 1U);
+  EXPECT_EQ(edits[0].text_after, "PATH HOLE (12.5)");
+  EXPECT_EQ(edits[0].note.coord, "ROBOT");
+  EXPECT_EQ(edits[0].note.modes, "PATH HOLE (12.5) FLY 0");
+}
+
 // OPT-5.16: points are recorded to 0.0001 mm and 0.000001 rad.
 TEST_F(Teaching, PointsAreRounded) {
   Have({{12, "ENDTASK\n"}});

@@ -161,6 +161,76 @@ TEST(AdviceEnds, ASubroutineEndsWithItsReturn) {
   EXPECT_EQ(CountOf(begin + retract + approach, 7033, "OPT-7.109"), 2);
 }
 
+// OPT-3.24: of what stands between them only a WORK 2 switches the beam off.
+TEST(AdviceEnds, OnlyAWorkSwitchesTheBeamOff) {
+  const auto count = [](const std::string& between) {
+    return CountOf("WORK 0,0/ON\n" + between + "WORK 0,0/OFF\n", 7411, "OPT-3.24");
+  };
+  EXPECT_EQ(count("WORK 2,5/OFF\n"), 1);
+  for (const char* between : {"WORK 2,5/ON\n", "WORKDEF 2,5 (15)\n", "ASSIGN VL[1] = 1 /2\n",
+                              "DEFINE PAR[2] = INT\n", "BREAK 2\n"})
+    EXPECT_EQ(count(between), 0) << between;
+}
+
+// OPT-9.16, OPT-3.33, OPT-3.34: which processes a FUNCTION switched nobody knows, so that nothing
+// is told of them, with a beam or without one.
+TEST(AdviceEnds, WhatAFunctionSwitchedIsNotTold) {
+  const std::string call = "WORK 0,0/ON\nCALL 2\n", end = "WORKDEF 2,5 (15)\nWORK 2,5/ON\n";
+  EXPECT_EQ(CountOf(call, 7407, "OPT-3.33"), 1);
+  EXPECT_EQ(CountOf("FUNCTION 44\n" + call, 7407, "OPT-3.33"), 0);
+  EXPECT_EQ(CountOf(end, 7408, "OPT-3.34"), 1);
+  EXPECT_EQ(CountOf("FUNCTION 44\n" + end, 7408, "OPT-3.34"), 0);
+}
+
+// OPT-3.20, OPT-3.23: the kind of a process says whether it has a beam, its number does not.
+TEST(AdviceEnds, TheKindOfAProcessHasTheBeam) {
+  const auto count = [](const std::string& process, const std::string& values) {
+    return CountOf("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0.,0.,0.,0.,0.)\nOL[11]=ON\nWORKDEF " +
+                       process + values + "\nWORK " + process +
+                       "/ON\nMOVE (9.,0.,0.,0.,0.)\nWORK " + process + "/OFF\n",
+                   7033, "OPT-3.20");
+  };
+  EXPECT_EQ(count("0,0", ""), 1);
+  EXPECT_EQ(count("0,3", ""), 1);
+  EXPECT_EQ(count("2,0", " (15)"), 0);
+}
+
+// OPT-5.48: the axis of a hole is compared with a tool of which both angles are known, at a known
+// centre.
+TEST(AdviceEnds, AHoleIsComparedWithAToolThatIsKnown) {
+  const auto count = [](const std::string& target) {
+    return CountOf("COORD ABSOL\nPATH HOLE (5.)\nMOVE (" + target + ")/VIA (29.,2.,9.,0.,0.)\n",
+                   7033, "OPT-5.48");
+  };
+  EXPECT_EQ(count("20.,2.,3.,0.,0."), 1);  // atan(9/6) = 56 degrees
+  for (const char* target : {"20.,2.,3.,VR[1],0.", "20.,2.,3.,0.,VR[1]", "20.,2.,3.,VR[1],VR[2]",
+                             "VR[1],2.,3.,0.,0.", "20.,2.,VR[1],0.,0."})
+    EXPECT_EQ(count(target), 0) << target;
+}
+
+// OPT-2.52, OPT-7.20: a GOSUB that moves away and back begins a new row of moves.
+TEST(AdviceEnds, ASubroutineThatMovesEndsTheRow) {
+  const auto count = [](const std::string& body) {
+    return CountOf(
+        "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0.,0.,0.,0.,0.)\nMOVE (.005,0.,0.,0.,0.)/FLY\n"
+        "MOVE (0.,0.,0.,0.,0.)/FLY\nGOSUB 100\nMOVE (.005,0.,0.,0.,0.)/FLY\n"
+        "MOVE (90.,0.,0.,0.,0.)\nENDTASK\n100 " +
+            body + "RETURN\n",
+        7314, "OPT-2.52");
+  };
+  EXPECT_EQ(count("OL[16]=ON\n"), 1);
+  EXPECT_EQ(count("MOVE (9.,0.,0.,0.,0.)\nMOVE (0.,0.,0.,0.,0.)\n"), 0);
+}
+
+// OPT-B.59, OPT-5.40: a TIMER may come in a GOSUB until that cancels it; what it switches is not
+// known behind it.
+TEST(AdviceEnds, ATimerMayComeUntilASubroutineCancelsIt) {
+  const std::string rest =
+      "GOSUB 20\nOL[9]=ON\nENDTASK\n10 OL[8]=OFF\nRETURN\n20 OL[8]=ON\nTIMER /DIS\nRETURN\n";
+  EXPECT_EQ(CountOf(rest, 7409, "OPT-5.40"), 1);
+  EXPECT_EQ(CountOf("TIMER (5.,10)\n" + rest, 7409, "OPT-5.40"), 0);
+}
+
 // OPT-9.12: a FUNCTION of that number is no TASK 1, before it or behind it.
 TEST(AdviceEnds, FunctionOneIsNoTask) {
   EXPECT_EQ(CountOf("TASK 1\nTASK 1\n", 7033, "OPT-9.12"), 1);

@@ -61,6 +61,23 @@ TEST(FlowFromTheFirst, AWorkStopsWhereItPierces) {
   // What does not stop does not go on either.
   EXPECT_EQ(stops(none, "WORK 1,1/OFF\nDELAY 1\n"), 1);
   EXPECT_EQ(stops(none, "WORK 0,1/ON\nDELAY 1\n"), 1);
+  EXPECT_EQ(stops(none, "WORK 1,0/ON\nDELAY 1\n"), 1);
+  // OPT-3.38: one with a condition waits for it, whatever that reads.
+  EXPECT_EQ(stops("", "WORK 0,0/ON/START (VL[1])\n"), 1);
+}
+
+// OPT-2.47, OPT-2.48, OPT-7.20: behind a RETURN stands what follows its GOSUB; that is what is
+// told.
+TEST(FlowFromTheFirst, AReturnStopsWhereItsGosubGoesOn) {
+  const auto told = [](const std::string& behind, std::string_view rule) {
+    return TimesSaid(kLines + "GOSUB 100\n" + behind +
+                         "MOVE (20.,0.,0.,0.,0.)\nENDTASK\n100 MOVE (9.,0.,0.,0.,0.)/FLY\nRETURN\n",
+                     7032, rule);
+  };
+  EXPECT_EQ(told("DELAY 1\n", "OPT-2.48"), 1);
+  EXPECT_EQ(told("DELAY 1\n", "OPT-2.47"), 0);
+  EXPECT_EQ(told("CALL 2\n", "OPT-2.47"), 1);
+  EXPECT_EQ(told("", "OPT-2.48"), 0);
 }
 
 // OPT-7.20, OPT-B.22: a subroutine of one instruction changes nothing.

@@ -29,6 +29,9 @@ TEST(Lexer, StatementsReachOverLines) {
   EXPECT_EQ(Kinds("MOVE (1.,\n; c\n\n2.)\n/FLY\nSPEED 5"), "MOVE|(|1.|,|2.|)|/|FLY|\nSPEED|5|\n");
   EXPECT_EQ(Kinds("VR[1] = 2. +\n3.\nSTOP"), "VR|[|1|]|=|2.|+|3.|\nSTOP|\n");
   EXPECT_EQ(Kinds("15\n(1)\n"), "15|\n(|1|)|\n");
+  // Where a line begins with what cannot begin a statement.
+  EXPECT_EQ(Kinds("UPDATE IL\n, OL\n/ON\nSTOP"), "UPDATE|IL|,|OL|/|ON|\nSTOP|\n");
+  EXPECT_EQ(Kinds("SPEED 5\n)\nSTOP"), "SPEED|5|)|\nSTOP|\n");
 }
 
 // An instruction word ends whatever was left open.

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <string>
+#include <string_view>
 
 #include "engine/core/units.h"
+#include "engine/optimo/language/byte_stream.h"
 #include "tests/engine/optimo/language/compile_text.h"
 
 namespace rmlcell::optimo {
@@ -238,6 +241,33 @@ TEST_F(Linker, ExecutablesHaveProgramsOfTheMemory) {
   EXPECT_TRUE(decodes(slots));
   slots.push_back(34);
   EXPECT_FALSE(decodes(slots));
+}
+
+// OPT-B.71: with a right checksum, too, nothing is read that is no executable of this version, or
+// whose programs are damaged.
+TEST_F(Linker, WhatIsNoExecutableIsRefused) {
+  Store(32, "SPEED 5\n");
+  const std::string made = EncodeExecutable(*Link(32, Lookup(), {}));
+  const std::string body = made.substr(0, made.size() - 4);
+  const auto sealed = [](std::string_view bytes) {
+    ByteWriter out;
+    out.Raw(bytes);
+    out.Fixed32(Checksum(bytes));
+    return out.Take();
+  };
+  EXPECT_EQ(sealed(body), made);
+  const std::size_t object = body.find("LMR");
+  ASSERT_NE(object, std::string::npos);
+  for (const std::size_t at :
+       {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{3}, object, body.size() - 1}) {
+    std::string changed = body;
+    changed[at] = static_cast<char>(changed[at] + 1);
+    const Result<Executable> decoded = DecodeExecutable(sealed(changed));
+    ASSERT_FALSE(decoded) << at;
+    EXPECT_EQ(decoded.error().code, ErrorCode::kObjectCorrupt) << at;
+  }
+  EXPECT_FALSE(DecodeExecutable(sealed(body + "x")));
+  EXPECT_FALSE(DecodeExecutable(sealed(body.substr(0, body.size() - 1))));
 }
 
 // OPT-6.15, OPT-B.72: program 1 is a number like any other, 0 is none.

@@ -58,6 +58,12 @@ TEST(ObjectLimits, Names) {
   EXPECT_EQ(found->where.line, kMost + 1);
   EXPECT_EQ(found->where.column, 9);
   EXPECT_EQ(found->where.length, 6);
+  // None of those behind is taken for another one that is declared.
+  EXPECT_EQ(std::ranges::count(more.diagnostics, ErrorCode::kNameDuplicate, &Diagnostic::code), 0);
+  // Nor is it told where a name without room is used.
+  const Compilation used = CompileLong(names(kMost + 1) + "N65535 = 5.\nVR[2] = N65535\n");
+  EXPECT_EQ(std::ranges::count(used.diagnostics, ErrorCode::kObjectTooLong, &Diagnostic::code), 1);
+  EXPECT_EQ(std::ranges::count(used.diagnostics, ErrorCode::kNameUndeclared, &Diagnostic::code), 0);
 }
 
 // OPT-7.17, OPT-B.69: the table of a computed GOTO, as long as an object within OBJECT_LIMIT can

@@ -31,6 +31,41 @@ TEST(OneFinding, OfTheNumbersOfAProcess) {
   EXPECT_EQ(OnlyOne("WORKDEF 1,X (8.,75.,1.,50.)\n"), "7003 expected a process number, found 'X'");
 }
 
+// OPT-3.03, OPT-3.04: how many values each kind takes.
+TEST(OneFinding, OfTheValuesOfAWorkdef) {
+  EXPECT_EQ(OnlyOne("WORKDEF 0,0 (5)\n"), "7019 WORKDEF 0 has 1 value, needs none");
+  EXPECT_EQ(OnlyOne("WORKDEF 1,0 (5, 6)\n"),
+            "7019 WORKDEF 1 has 2 values, needs 4 or 5: speed, power, delay, peak [, schedule]");
+}
+
+// OPT-7.66: what is given to a variable that can only be read is not looked at, nor how many of
+// them there are.
+TEST(OneFinding, OfAVariableThatCanOnlyBeRead) {
+  for (const char* text : {"IL[3] = 5\n", "LET VI[98] = ON\n", "IA[1] = VL[80]\n",
+                           "ASSIGN IL[97] = 0 /8\n", "ASSIGN IA[1] = 0 /4\n"})
+    EXPECT_EQ(FindingsOf(text), std::vector<int>{7016}) << text;
+}
+
+// OPT-2.43, OPT-7.50: each value of an attribute is looked at.
+TEST(OneFinding, OfANameInAnAttribute) {
+  for (const char* attributes :
+       {"/START (XX)", "/END (XX)", "/TIME (XX,5)", "/VIA (XX,2,3,0,0)", "/VIA (1,2,3,0,XX)",
+        "/START (VL[1])/END (XX)", "/START (XX)/END (VL[1])", "/END (VL[1])/TIME (XX,5)"})
+    EXPECT_EQ(OnlyOne("5 MOVE (1,2,3,0,0)" + std::string(attributes) + "\n"),
+              "7011 XX is not declared")
+        << attributes;
+  // In whatever order they stand before what cannot stand there.
+  EXPECT_EQ(OnlyOne("MOVE (1,2,3,0,0)/END (VL[1])/START (VL[2])/FLYY\n"),
+            "7003 expected an attribute behind '/', found 'FLYY'");
+}
+
+// OPT-7.91: words without effect are proposed like instructions, those of attributes are not.
+TEST(OneFinding, OfAMistypedWordProposesWhatBeginsAStatement) {
+  EXPECT_EQ(OnlyOne("CONTT 3\n"),
+            "7011 'CONTT' is no instruction and no declared name; did you mean CONT?");
+  EXPECT_EQ(OnlyOne("FLYY 3\n"), "7011 'FLYY' is no instruction and no declared name");
+}
+
 // OPT-7.59, OPT-1.32, OPT-7.53
 TEST(OneFinding, OfAnIndexAndADigit) {
   EXPECT_EQ(OnlyOne("VR[] = 5\n"), "7003 expected an index, found ']'");
@@ -74,6 +109,7 @@ TEST(OneFinding, OfATimer) {
 
 // OPT-9.22, OPT-9.23, OPT-7.41
 TEST(OneFinding, OfADefineAndADeclare) {
+  EXPECT_EQ(OnlyOne("DECLARE 5\n"), "7003 expected a name, found '5'");
   EXPECT_EQ(OnlyOne("DEFINE 5 = INT\n"), "7003 expected PAR, found '5'");
   EXPECT_EQ(OnlyOne("DEFINE PAR[X] = INT\n"), "7003 expected an index, found 'X'");
   EXPECT_EQ(OnlyOne("DEFINE PAR[0 = INT\n"), "7003 expected ']', found '='");
@@ -136,6 +172,9 @@ TEST(OneFinding, OfACarriageReturnIsNone) {
   EXPECT_EQ(FindingsOf("SPEED 5\n\r"), std::vector<int>{});
   EXPECT_EQ(FindingsOf("SPEED 5\r"), std::vector<int>{});
   EXPECT_EQ(FindingsOf("SPEED 5\n \r\r"), std::vector<int>{});
+  // Nor are several before a line end, also where the statement goes on.
+  EXPECT_EQ(FindingsOf("SPEED 5\r\r\nSPEED 6 \r\r\r\nSPEED 7\r\r"), std::vector<int>{});
+  EXPECT_EQ(FindingsOf("MOVE (1,2,\r\r\n3,0,0)\r\r\n"), std::vector<int>{});
   EXPECT_EQ(FindingsOf("SPEED 5\n\rX\n"), std::vector<int>{7001});
 }
 
@@ -233,6 +272,10 @@ TEST(OneFinding, OfAStatementIsWhereItStops) {
   EXPECT_EQ(OnlyOne("WORKDEF 0,0,\nSTOP\n"), "7003 expected '(' and the parameters");
   EXPECT_EQ(FindingsOf("WORKDEF 2,0, (5)\n"), std::vector<int>{});
   EXPECT_EQ(OnlyOne("CALL 4.5\n"), "7003 expected a whole program number, found '4.5'");
+  EXPECT_EQ(OnlyOne("FUNCTION STOP\n"), "7003 expected a program number, found 'STOP'");
+  EXPECT_EQ(OnlyOne("10 IF VL[1] STOP 10\n"), "7003 expected THEN, found 'STOP'");
+  EXPECT_EQ(OnlyOne("10 IF VL[1] THEN 10 STOP 10\n"),
+            "7003 expected the end of the statement, found 'STOP'");
   EXPECT_EQ(OnlyOne("MOVE (1,2,3,0,0)/TIME 5\n"), "7003 expected '(' and a time, found '5'");
   EXPECT_EQ(OnlyOne("DEFINE PAR INT\n"), "7003 expected '=', found 'INT'");
   EXPECT_EQ(OnlyOne("DECLARE X1 = VI[1]\nASSIGN OL[32]=X1 5 /4\n"),
@@ -266,9 +309,13 @@ TEST(OneFinding, OfASumWithALogicalValue) {
 
 // OPT-7.85: what an unknown name is compared with is not what is wrong.
 TEST(OneFinding, OfAnUnknownNameThatIsCompared) {
-  for (const char* text : {"VL[0] = XX = IL[3]\n", "VL[0] = IL[3] = XX\n", "VL[0] = XX <> IL[3]\n",
-                           "VL[0] = XX = 2.5\n"})
+  for (const char* text :
+       {"VL[0] = XX = IL[3]\n", "VL[0] = IL[3] = XX\n", "VL[0] = XX <> IL[3]\n",
+        "VL[0] = XX = 2.5\n", "VR[0] = (XX = IL[3]) + 1\n", "VR[0] = (IL[3] <> XX) + 1\n"})
     EXPECT_EQ(FindingsOf(text), std::vector<int>{7011}) << text;
+  // What cannot be compared has no type either.
+  EXPECT_EQ(OnlyOne("VR[0] = (IL[3] = VR[1]) + 1\n"),
+            "7018 a logical value is compared with a number");
 }
 
 // OPT-1.33: an assignment behind a line that lacks its value is a statement of its own.

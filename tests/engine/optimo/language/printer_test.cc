@@ -130,6 +130,9 @@ TEST(Printer, ALiteralInParenthesesIsCheckedLikeOneWithout) {
 // OPT-B.85
 TEST(Printer, DivisionsInTcpKeepTheirParentheses) {
   EXPECT_EQ(Canonical("TCP (0,0,(VR[1]/2)/0,0,-5)"), "     TCP (0, 0, (VR[1] / 2) / 0, 0, -5)");
+  // Those outside of other parentheses only, and nothing but divisions.
+  EXPECT_EQ(Canonical("TCP (0,0,ABS(VR[1]/2)/VR[2]+1,(ABS(VR[3])/2),(VR[4]/2)*3)"),
+            "     TCP (0, 0, ABS(VR[1] / 2) / VR[2] + 1, (ABS(VR[3]) / 2), (VR[4] / 2 * 3))");
 }
 
 // OPT-7.51, OPT-7.46

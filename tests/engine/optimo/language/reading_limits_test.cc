@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tests/engine/optimo/language/compile_text.h"
 
@@ -86,6 +88,22 @@ TEST(ReadingLimits, WhatIsReadAgainCountsOnce) {
   EXPECT_EQ(comments("CONT;a\nSTOP\n"), 1U);
   EXPECT_EQ(comments("CONT ( ;a\n;b\nSTOP ;c\n"), 3U);
   EXPECT_EQ(comments("MOVE (1, 2 ;a\nVR[5] = 1. ;b\nSTOP ;c\n"), 3U);
+}
+
+// OPT-1.03, OPT-1.18: a comment has no line end, and what lies behind a text is none of it.
+TEST(ReadingLimits, ACommentEndsWithItsLine) {
+  const auto ends = [](std::string_view text) {
+    Findings findings;
+    const ParsedProgram program = Parse(text, findings, Places::kStatements);
+    std::vector<std::uint32_t> all;
+    for (const Comment& comment : program.comments) all.push_back(comment.end);
+    return all;
+  };
+  using Ends = std::vector<std::uint32_t>;
+  EXPECT_EQ(ends("STOP ; a\r\r\n; b\r\n;\r\n; c"), (Ends{8, 14, 17, 22}));
+  constexpr std::string_view kLonger = "STOP ; a b\nSTOP\nSTOP\n";
+  EXPECT_EQ(ends(kLonger), Ends{10});
+  EXPECT_EQ(ends(kLonger.substr(0, 8)), Ends{8});
 }
 
 // lexer.h: the first word too many is told, and nothing behind it.

@@ -69,6 +69,8 @@ TEST(NearestWords, TellsASlipFromAnotherWord) {
         << zone;
   }
   EXPECT_TRUE(NearestWords("SPEED20", words).IsSingle(Slip::kOther));
+  EXPECT_TRUE(
+      NearestWords("ABCDEF", std::array<std::string_view, 1>{"ABXYEF"}).IsSingle(Slip::kOther));
   EXPECT_TRUE(NearestWords("SPPE", words).words.empty() ||
               NearestWords("SPPE", words).IsSingle(Slip::kOther));
   EXPECT_FALSE(NearestWords("GOT", words).IsSingle(Slip::kOneLetter));

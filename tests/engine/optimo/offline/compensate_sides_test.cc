@@ -61,16 +61,20 @@ TEST(CompensateSides, ThePierceMovesAgainstTheOrigin) {
 
 // OPT-8.19: where the angles of the start are not known the head is taken to stand straight down.
 // The half circle runs about (0,0) from (1.6,-1.2); at its end the head lies along the radius, and
-// only the start has no room for an offset of 2.
+// only the start has no room for an offset of 2. Of one angle alone nothing follows.
 TEST(CompensateSides, ANotKnownHeadStandsStraightDown) {
-  const std::string arc =
-      "PATH CIR\nMOVE (1.6,-1.2,0,VR[1],0)\nWORK 0,0/ON\n"
-      "MOVE (-1.6,1.2,0,-2.214297436,1.570796327)/VIA (1.2,1.6,0,0,0)\nWORK 0,0/OFF\n";
-  const Compensation consumed = Compensate(";$rad=2\n;$left\n" + arc);
-  EXPECT_EQ(
-      SaidOf(consumed),
-      (std::vector<std::string>{"7806: the arc of radius 2.000000 is not larger than the offset"}));
-  EXPECT_TRUE(Compensate(";$rad=1.9\n;$left\n" + arc).ok);
+  for (const std::string head : {"VR[1],0", "VR[1],1.570796327", "1.570796327,VR[1]"}) {
+    const std::string arc =
+        "PATH CIR\nMOVE (1.6,-1.2,0," + head +
+        ")\nWORK 0,0/ON\n"
+        "MOVE (-1.6,1.2,0,-2.214297436,1.570796327)/VIA (1.2,1.6,0,0,0)\nWORK 0,0/OFF\n";
+    const Compensation consumed = Compensate(";$rad=2\n;$left\n" + arc);
+    EXPECT_EQ(SaidOf(consumed),
+              (std::vector<std::string>{
+                  "7806: the arc of radius 2.000000 is not larger than the offset"}))
+        << head;
+    EXPECT_TRUE(Compensate(";$rad=1.9\n;$left\n" + arc).ok) << head;
+  }
 }
 
 // OPT-8.05, OPT-8.09: a directive is no step of the program.
@@ -154,6 +158,59 @@ TEST(CompensateSides, InchSourcesAreToldWhatToDo) {
   ASSERT_EQ(refused.diagnostics.size(), 1U);
   EXPECT_EQ(refused.diagnostics[0].detail, "convert the source to metric first");
   EXPECT_EQ(refused.diagnostics[0].rule, "OPT-8.01");
+}
+
+// OPT-8.11, OPT-8.20, OPT-8.23: a MOVE has five numbers, ten with a via point, and SYSDEF has six:
+// what stands behind it is neither asked for nor written anew.
+TEST(CompensateSides, WhatFollowsAStatementIsNoPartOfIt) {
+  const std::string start = ";$rad=1\n;$left\nPATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\n";
+  for (const std::string move :
+       {"MOVE (10,0,0,0,0)\n", "PATH CIR\nMOVE (10,0,0,0,0)/VIA (5,-5,0,0,0)\n"}) {
+    for (const std::string behind : {"DELAY VR[1]\n", "DELAY 2\n", "VR[1]=VR[2]\n", "SPEED 5\n"}) {
+      const Compensation made = Compensate(start + move + behind);
+      EXPECT_EQ(SaidOf(made), std::vector<std::string>{}) << move << behind;
+      EXPECT_TRUE(made.text.ends_with(")\n" + behind)) << move << made.text;
+    }
+  }
+  EXPECT_TRUE(Compensate("SYSDEF (1,2,3,0,0,0)\nDELAY VR[1]\n").diagnostics.empty());
+}
+
+// OPT-2.19, OPT-8.20: a MOVE with a via point ends at its target, also where nothing is cut.
+TEST(CompensateSides, AContourBeginsWhereAnArcEnds) {
+  const Compensation made = Compensate(
+      ";$rad=1\n;$left\nMOVE (0,0,0,0,0)\nPATH CIR\nMOVE (10,0,0,0,0)/VIA (5,5,0,0,0)\n"
+      "PATH LIN\nWORK 0,0/ON\nMOVE (10,20,0,0,0)\n");
+  ASSERT_TRUE(made.ok);
+  EXPECT_EQ(LastMove(made.text), "MOVE (9.00000,20.00000,0.00000,0.00000,0.00000)");
+}
+
+// OPT-2.19: a via point on the line through start and target makes no arc: between them it leads
+// along the line, and outside them, on either side, nowhere.
+TEST(CompensateSides, AViaPointOnTheLineOfItsMove) {
+  const auto cut = [](const std::string& target, const std::string& via) {
+    return Compensate(";$rad=1\n;$left\nPATH CIR\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\nMOVE (" + target +
+                      ",0,0,0,0)/VIA (" + via + ",0,0,0,0)\n");
+  };
+  for (const auto& [target, via] : {std::pair{"5", "9"}, {"5", "-3"}, {"-5", "3"}}) {
+    const Compensation none = cut(target, via);
+    ASSERT_EQ(none.diagnostics.size(), 1U) << target << " " << via;
+    EXPECT_EQ(none.diagnostics[0].code, ErrorCode::kArcUndefined) << target << " " << via;
+  }
+  const Compensation along = cut("9", "5");
+  ASSERT_TRUE(along.ok);
+  EXPECT_EQ(LastMove(along.text),
+            "MOVE (9.00000,1.00000,0.00000,0.00000,0.00000)/VIA "
+            "(5.00000,1.00000,0.00000,0.00000,0.00000)");
+}
+
+// compensate.h: what the list of findings has no room for is counted.
+TEST(CompensateSides, FindingsWithoutRoomAreCounted) {
+  std::string text;
+  for (int n = 0; n < 1100; ++n) text += ";$middle\n";
+  const Compensation made = Compensate(text);
+  EXPECT_FALSE(made.ok);
+  EXPECT_EQ(made.diagnostics.size() + made.diagnostics_dropped.count(), 1100U);
+  EXPECT_TRUE(made.diagnostics_dropped.kinds().contains(ErrorCode::kCompDirective));
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ const std::string kAlong = "MOVE (100,0,0,0,0)", kUp = "MOVE (100,100,0,0,0)\n";
 // system, or a move that may end elsewhere.
 TEST(ContourChain, CornersFromNowhereAreNotTold) {
   EXPECT_EQ(SharpOnes(kAlong + "/FLY\n" + kUp), 1U);
+  EXPECT_EQ(SharpOnes(kAlong + "/FLY\nMOVE (100,0,100,0,0)\n"), 1U);  // in the plane of X and Z
   EXPECT_EQ(SharpOnes("SYSDEF (1,2,3,0,0,0)\n" + kAlong + "/FLY\n" + kUp), 0U);
   EXPECT_EQ(SharpOnes("MOVE (50,0,0,0,0)/END (VL[1])\n" + kAlong + "/FLY\n" + kUp), 0U);
 }

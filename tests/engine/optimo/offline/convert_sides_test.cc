@@ -191,5 +191,96 @@ TEST(ConvertSides, WarningsOfReadingAreNoErrors) {
   }
 }
 
+// OPT-8.26, OPT-8.37, OPT-8.38: each statement has its own values, and is converted once: what
+// stands behind it is no further value of it.
+TEST(ConvertSides, StatementsEndWhereTheyEnd) {
+  const std::vector<std::pair<std::string, std::string>> rows = {
+      {"MOVE (1,1,1,180,180)", "MOVE (25.4,25.4,25.4,3.141593,3.141593)"},
+      {"MOVE (1,1,1,180,180)/VIA (1,1,1,180,180)",
+       "MOVE (25.4,25.4,25.4,3.141593,3.141593)/VIA (25.4,25.4,25.4,3.141593,3.141593)"},
+      {"SYSDEF (1,1,1,180,180,180)", "SYSDEF (25.4,25.4,25.4,3.141593,3.141593,3.141593)"},
+      {"SYSDEF", "SYSDEF"},
+      {"TCP (1,1,1/1,1,1)", "TCP (25.4,25.4,25.4/25.4,25.4,25.4)"},
+      {"PATH HOLE (1)", "PATH HOLE (25.4)"},
+      {"PATH LIN", "PATH LIN"},
+      {"VR[0] = 1", "VR[0] = 25.4"},
+      {"SPEED 5", "SPEED 5"},
+      {"WORK 0,0/ON", "WORK 0,0/ON"},
+      {"WAIT VR[5] > 1", "WAIT VR[5] > 25.4"},
+      {"FUNCTION 99 (90.)", "FUNCTION 99 (90.)"},
+      {"FUNCTION 44 (7.)", "FUNCTION 44 (7.)"},
+      {"DECLARE N = 1", "DECLARE N = 1"},
+      {"ASSIGN OL[16] = 1 /1", "ASSIGN OL[16] = 1 /1"},
+  };
+  for (const auto& [text, metric] : rows) {
+    EXPECT_EQ(ToMetric(text + "\nDELAY 90.\n"), metric + "\nDELAY 90.\n");
+    EXPECT_EQ(ToMetric(text + "\nDELAY SIN(90.)\n"), metric + "\nDELAY SIN(1.570796)\n");
+  }
+}
+
+// OPT-8.26, OPT-8.43: all arguments of a CALL are looked at, in the order of the text.
+TEST(ConvertSides, EachArgumentIsLookedAt) {
+  EXPECT_EQ(ToMetric("CALL 2 (1.5, SIN(90.), VR[0] + 1, SIN(180.))"),
+            "CALL 2 (1.5, SIN(1.570796), VR[0] + 25.4, SIN(3.141593))");
+  EXPECT_EQ(ToMetric("VR[0] = 1 + SIN(90)"), "VR[0] = 25.4 + SIN(1.570796)");
+}
+
+// OPT-8.41, OPT-9.01: the rotary table is program 99, by a name as well.
+TEST(ConvertSides, TheRotaryTableByName) {
+  const std::string table = "DECLARE RTAB = 99\n", other = "DECLARE RTAB = 44\n";
+  EXPECT_EQ(ToMetric(table + "FUNCTION RTAB (SIN(90.))\n"), table + "FUNCTION RTAB (SIN(90.))\n");
+  EXPECT_EQ(ToMetric(other + "FUNCTION RTAB (SIN(90.))\n"),
+            other + "FUNCTION RTAB (SIN(1.570796))\n");
+}
+
+// OPT-8.46: operators on the right count as those on the left.
+TEST(ConvertSides, OperatorsOnTheRightCount) {
+  for (const std::string text : {"VR[0] = 3 - (VR[1] + 2)", "VR[0] = 3 * (VR[1] + 2)"}) {
+    const Conversion converted = Convert(text, Direction::kToMetric);
+    EXPECT_EQ(converted.text, text);
+    ASSERT_EQ(converted.diagnostics.size(), 1U) << text;
+    EXPECT_EQ(converted.diagnostics[0].code, ErrorCode::kConvertExpression) << text;
+  }
+}
+
+// OPT-8.39: directives stand between the statements, each in its place.
+TEST(ConvertSides, DirectivesBetweenStatements) {
+  EXPECT_EQ(ToMetric(";$dia=1\nVR[0] = 1\n;$rad=2\nVR[1] = 2\n;$dia=3\n"),
+            ";$dia=25.4\nVR[0] = 25.4\n;$rad=50.8\nVR[1] = 50.8\n;$dia=76.2\n");
+}
+
+// OPT-8.53, OPT-8.65: what is no RML is told as that alone, however long it is.
+TEST(ConvertSides, ALongLineThatIsNoneIsToldOnce) {
+  std::string text = "VI[2] = 1";  // tokens: VI [ 2 ] = 1, then two each
+  for (int n = 0; n < 98; ++n) text += "+1";
+  text += " 2\n";
+  const Conversion converted = Convert(text, Direction::kToMetric);
+  EXPECT_EQ(converted.text, text);
+  ASSERT_EQ(converted.diagnostics.size(), 1U);
+  EXPECT_EQ(converted.diagnostics[0].code, ErrorCode::kConvertNotRml);
+}
+
+// OPT-8.53: of more lines than there is room for the rest are counted, as the warnings that they
+// are; what the parser only warns of is none of them.
+TEST(ConvertSides, WhatHasNoRoomIsCountedAsWhatItIs) {
+  std::string wrong, warned;
+  for (int n = 0; n < 1100; ++n) {
+    wrong += "12345 VR[0] = 1.\n";
+    warned += "DEFINE PAR = INT\n";
+  }
+  const UntoldFindings dropped = Convert(wrong, Direction::kToMetric).diagnostics_dropped;
+  ASSERT_TRUE(dropped.kinds().contains(ErrorCode::kConvertNotRml));
+  const GatheredFindings& more = dropped.kinds().at(ErrorCode::kConvertNotRml);
+  EXPECT_EQ(more.count, 100U);
+  for (const Diagnostic& place : {more.first, more.last}) {
+    EXPECT_EQ(place.code, ErrorCode::kConvertNotRml);
+    EXPECT_EQ(place.severity, Severity::kWarning);
+  }
+  const Conversion same = Convert(warned, Direction::kToMetric);
+  EXPECT_EQ(same.text, warned);
+  EXPECT_TRUE(same.diagnostics.empty());
+  EXPECT_TRUE(same.diagnostics_dropped.empty());
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

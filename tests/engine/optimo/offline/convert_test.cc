@@ -284,6 +284,13 @@ TEST(Convert, ADeclareWithAWrongSequenceNumberIsKnown) {
             "10 VR[0] = 25.4\n10 DECLARE LEN = VR[0]\nLEN = 50.8\n");
 }
 
+// OPT-8.53: a line with a sequence number that stands before already is no RML.
+TEST(Convert, ALineWithASequenceNumberTwiceIsCopied) {
+  const std::string text = "10 VR[0] = 2.\n";
+  EXPECT_EQ(Metric("10 VR[0] = 1.\n" + text), "10 VR[0] = 25.4\n" + text);
+  EXPECT_EQ(FindingsOf("10 VR[0] = 1.\n" + text), (std::vector<int>{7711}));
+}
+
 // OPT-8.53: what is missing at the end of a line is missing there, and not on the next one.
 TEST(Convert, TheLineBehindAnUnfinishedOneIsNotIt) {
   for (const std::string unfinished : {"DECLARE X =", "DEFINE PAR[1] ="}) {

@@ -172,5 +172,27 @@ TEST(FixProgram, ObjectsAndBinariesAreNoText) {
   EXPECT_TRUE(CheckIsText("12.S", "SPEED 20 ; \xE9t\xE9 \x1B\n\x1A"));
 }
 
+// OPT-7.50: a name is put right when nothing else is left to be repaired; both are told.
+TEST(FixProgram, NamesComeLast) {
+  const RepairedText fixing =
+      FixText("DECLARE PASSLR = VR[1]\nPASSRL = 5.\nMOVE (1.,2.,3.,0.,0.) / INF ; x\n");
+  EXPECT_EQ(fixing.text, "DECLARE PASSLR = VR[1]\nPASSLR = 5.\nMOVE (1.,2.,3.,0.,0.) ; x\n");
+  ASSERT_EQ(fixing.fixed.size(), 2U);
+  EXPECT_EQ(fixing.fixed[0].code, ErrorCode::kWordIgnored);
+  EXPECT_EQ(fixing.fixed[1].code, ErrorCode::kNameUndeclared);
+  EXPECT_EQ(fixing.fixed[1].where.line, 2);
+}
+
+// fix_program.h: where there is nothing to repair nothing is looked at again.
+TEST(FixProgram, WhatNeedsNoRepairIsLookedAtOnce) {
+  int looks = 0;
+  const ProgramCheck check = [&looks](const machine::SourceFile& file) {
+    ++looks;
+    return TranslateOptimo(file, {});
+  };
+  EXPECT_EQ(FixProgram({.name = "part.S", .bytes = "SPEED 101\n"}, check).text, "SPEED 101\n");
+  EXPECT_EQ(looks, 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -163,6 +163,9 @@ TEST(GougeSides, AnArcTheLongWayRoundRunsBack) {
   EXPECT_EQ(back.found[0].kind, Gouge::Kind::kRunsBack);
   EXPECT_EQ(back.found[0].distance, 0.0);
   EXPECT_TRUE(FindGouges(legs, {{at(9, 0), {}}, {at(9, 0.1), at(9, 0.05)}}, 1.0).found.empty());
+  // One that has become a line leads where it was to lead.
+  EXPECT_TRUE(FindGouges(legs, {{at(9, 0), {}}, {at(9, 0.1), {}}}, 1.0).found.empty());
+  EXPECT_TRUE(FindGouges({}, {}, 1.0).found.empty());
 }
 
 // A head of which the angles are not known stands straight down: at which height the other side of
@@ -189,6 +192,76 @@ TEST(GougeSides, ATabEndsBeforeAnyMoveOfTheWayIn) {
     };
     EXPECT_EQ(with_tab(1.99), std::vector<int>{}) << moves;
     EXPECT_NE(with_tab(2.01), std::vector<int>{}) << moves;
+  }
+}
+
+// gouge.h: a tab is 2 mm wide at most, wherever the contour lies, and behind an arc as behind a
+// line.
+TEST(GougeSides, ATabIsAsWideAnywhere) {
+  const auto with_tab = [](double mm, const std::string& way_in, double dx, double dy) {
+    std::vector<std::string> text = {FlatMove(dx + 10.0, dy + 12.0), way_in};
+    for (const auto& [x, y] : {std::pair{20.0, 0.0}, {20.0, 20.0}, {0.0, 20.0}, {0.0, 0.0}})
+      text.push_back(FlatMove(dx + x, dy + y));
+    text.push_back(FlatMove(dx + 10.0 - mm, dy));
+    return GougedMoves(";$rad=3.5\n;$left\n", text);
+  };
+  const std::string line = FlatMove(110.0, 50.0),
+                    arc = "PATH CIR\nMOVE (10,0,0,0,0)/VIA (9,6,0,0,0)\nPATH LIN\n";
+  EXPECT_EQ(with_tab(1.99, line, 100.0, 50.0), std::vector<int>{});
+  EXPECT_NE(with_tab(2.01, line, 100.0, 50.0), std::vector<int>{});
+  EXPECT_EQ(with_tab(1.99, arc, 0.0, 0.0), std::vector<int>{});
+  EXPECT_NE(with_tab(2.01, arc, 0.0, 0.0), std::vector<int>{});
+}
+
+// gouge.h: a beam that starts on an edge damages it: what lies within two radii of the start is
+// left out, the second edge as well, which comes back to within 0.74 mm of it.
+TEST(GougeSides, ASecondEdgeMayComeBackToAPierceOnAnEdge) {
+  EXPECT_EQ(GougedMoves(";$rad=1\n;$right\n", {FlatMove(0, 0), FlatMove(5, 0), FlatMove(0, 0.75)}),
+            std::vector<int>{});
+}
+
+// gouge.h: a last move that goes on behind the point where the contour came back to itself leads
+// into the scrap: what lies there is no edge, and the way in may cross it.
+TEST(GougeSides, TheLastMoveMayGoOnIntoTheScrap) {
+  EXPECT_EQ(GougedMoves(";$rad=1\n;$right\n", {FlatMove(-8, -3), FlatMove(0, 0), FlatMove(20, 0),
+                                               FlatMove(20, 20), FlatMove(0, 20), FlatMove(0, -5)}),
+            std::vector<int>{});
+}
+
+// How near a path comes to an edge along X that it passes on an arc whose lowest point lies 0.9 mm
+// above it; -1 where it is not told.
+double ToldDistance(double radius, double sweep) {
+  const double x = radius * std::sin(sweep / 2.0), y = 0.9 + radius * (1.0 - std::cos(sweep / 2.0));
+  std::vector<Leg> legs = {
+      StraightLeg({-200, 0, 0}, {200, 0, 0}), StraightLeg({200, 0, 0}, {200, 300, 0}),
+      StraightLeg({200, 300, 0}, {100, 300, 0}), StraightLeg({100, 300, 0}, {-100, 300, 0})};
+  legs[3].via = ProgramVector(0, 290, 0);
+  Prepare(legs[3]);
+  std::vector<OffsetLeg> moved(4);
+  moved[0].to = {199, 1, 0};
+  moved[1].to = {199, 299, 0};
+  moved[2].to = {x, y, 0};
+  moved[3].to = {-x, y, 0};
+  moved[3].via = ProgramVector(0, 0.9, 0);
+  for (const Gouge& gouge : FindGouges(legs, moved, 1.0).found) {
+    if (gouge.leg == 3) return gouge.distance;
+  }
+  return -1.0;
+}
+
+// gouge.h: rounding and the chords of arcs make up a third of the tolerance of 0.003 mm: those of
+// path and contour half of that each; of a circle of 16 m, whose chords are a thousandth of a
+// radian, all of it. However short an arc is it has a chord.
+TEST(GougeSides, ChordsKeepToTheirShareOfTheTolerance) {
+  for (int n = 0; n < 20; ++n) {
+    const double told = ToldDistance(100.0, 1.0 + 0.01 * n);
+    EXPECT_GE(told, 0.9 - 1e-6) << n;
+    EXPECT_LE(told, 0.9 + 0.0005 + 1e-6) << n;
+  }
+  for (const double sweep : {0.0009, 0.030, 0.031, 0.032, 0.033, 0.034, 0.035, 0.036, 0.037}) {
+    const double told = ToldDistance(8000.0, sweep);
+    EXPECT_GE(told, 0.9 - 1e-6) << sweep;
+    EXPECT_LE(told, 0.9 + 0.001 + 1e-6) << sweep;
   }
 }
 

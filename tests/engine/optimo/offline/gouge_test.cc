@@ -89,6 +89,7 @@ TEST(Gouge, AHeadThatTurnsComesALittleNearer) {
   EXPECT_TRUE(way_back(1.985, 0.0));
   EXPECT_FALSE(way_back(1.998, 0.0));
   EXPECT_FALSE(way_back(1.985, 0.002));
+  EXPECT_FALSE(way_back(1.985, 0.0005));
   EXPECT_TRUE(way_back(1.97, 0.002));
 }
 

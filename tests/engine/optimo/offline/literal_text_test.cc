@@ -30,7 +30,7 @@ TEST(LiteralText, LiteralsHaveTheirValue) {
     ASSERT_TRUE(found) << text;
     EXPECT_DOUBLE_EQ(*found, value) << text;
   }
-  for (const std::string text : {"", "x", "5x", "-", "1.2.3", "5-3"})
+  for (const std::string text : {"", "x", "5x", "-", "1.2.3", "5-3", "5+3", "5+", "1E2+3", "1E++2"})
     EXPECT_FALSE(LiteralValue(text)) << text;
 }
 

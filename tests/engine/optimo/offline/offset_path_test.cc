@@ -89,6 +89,11 @@ TEST(OffsetPath, PointsOnALineMakeNoArc) {
   Prepare(leg);
   EXPECT_FALSE(leg.is_arc);
   ExpectNear(leg.tangent_from, kPlanes[1].ex);
+  Leg straightened = ArcOf(kPlanes[1], 3.0, -2.0, 5.0, 0.3, 1.3);  // prepared once more
+  ASSERT_TRUE(straightened.is_arc);
+  straightened.via = ProgramVector((straightened.from + straightened.to) * 0.5);
+  Prepare(straightened);
+  EXPECT_FALSE(straightened.is_arc);
   const Leg none = LineOf(kPlanes[1], 5, 5, 5, 5);
   EXPECT_EQ(none.tangent_to, ProgramVector{});
   EXPECT_EQ(LeftNormal({0, 0, 1}, {}), ProgramVector{});
@@ -254,7 +259,7 @@ TEST(OffsetPath, LegsThatLeanMeetByTheirTangents) {
 }
 
 // What counts as nothing: a way of a nanometre, a tangent that leaves the tool by a sine of 1e-6,
-// an arc that is left with half of the last decimal (OPT-8.11).
+// an arc that is left with half of the last decimal (OPT-8.11), a bend of 1e-9 square millimetres.
 TEST(OffsetPath, HowLittleIsNothing) {
   EXPECT_EQ(LineOf(kPlanes[0], 0, 0, 0.7e-9, 0).tangent_to, ProgramVector{});
   ExpectNear(LineOf(kPlanes[0], 0, 0, 1.5e-9, 0).tangent_to, {1, 0, 0});
@@ -264,6 +269,14 @@ TEST(OffsetPath, HowLittleIsNothing) {
   std::size_t failed{};
   EXPECT_TRUE(OffsetChain({arc}, 2.0 - 7e-6, failed));
   EXPECT_FALSE(OffsetChain({arc}, 2.0 - 3e-6, failed));
+  const auto bends = [](double size) {  // two ways that span twice its square
+    Leg leg = LineOf(kPlanes[0], 0, 0, 2.0 * size, 0);
+    leg.via = ProgramVector(size, size, 0);
+    Prepare(leg);
+    return leg.is_arc;
+  };
+  EXPECT_FALSE(bends(2e-5));
+  EXPECT_TRUE(bends(3e-5));
 }
 
 // OPT-2.23, OPT-B.10: the nearest point of the circle, at the height of its centre.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "engine/optimo/offline/offset_path.h"
@@ -70,6 +71,24 @@ TEST(OffsetTouch, AnArcAndAMoveWithoutDirection) {
   const auto before = OffsetChain({FlatLeg({10, 0, 0}, {10, 0, 0}), arc}, 1.0, failed);
   ASSERT_TRUE(before);
   EXPECT_LT(((*before)[0].to - ProgramVector(9, 0, 0)).norm(), 1e-9);
+}
+
+// OPT-B.79: a turn of a thousandth is a corner: the line y = 1 meets the concentric circle there,
+// which is not where the tangents would meet.
+TEST(OffsetTouch, ATurnOfAThousandthIsACorner) {
+  const double turn = 1e-3, radius = 2.0;
+  const ProgramVector centre(-radius * std::sin(turn), radius * std::cos(turn), 0);
+  const auto at = [&](double angle) -> ProgramVector {
+    return centre + ProgramVector(std::sin(turn + angle), -std::cos(turn + angle), 0) * radius;
+  };
+  std::size_t failed = 99;
+  const auto moved = OffsetChain(
+      {FlatLeg({-20, 0, 0}, {0, 0, 0}), FlatArc({0, 0, 0}, at(0.4), at(1.0))}, 1.0, failed);
+  ASSERT_TRUE(moved);
+  const double below = centre.y() - 1.0, x = centre.x() + std::sqrt(1.0 - below * below);
+  EXPECT_NEAR((*moved)[0].to.x(), x, 1e-9);
+  EXPECT_NEAR((*moved)[0].to.y(), 1.0, 1e-9);
+  EXPECT_GT(std::fabs(x + std::tan(turn / 2.0)), 5e-5);
 }
 
 }  // namespace

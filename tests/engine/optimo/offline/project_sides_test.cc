@@ -162,5 +162,46 @@ TEST_F(ProjectSides, DefinitionsAreRefusedByTheirRule) {
             (Refusals{"OPT-3.06 process definition 2,8: laser schedules go from 1 to 63"}));
 }
 
+// OPT-3.11, OPT-7.50: by a name the number counts that it stands for; of a name that nobody
+// declared there is none to compare.
+TEST_F(ProjectSides, NamesInDefinitionsCountByTheirNumbers) {
+  Define(1, 0, {6.5, 80, 1.5, 95});
+  Put(45, "WORKDEF 1,0 (6.5,NOPE,1.5,95.)\n");
+  EXPECT_EQ(CountOf(ErrorCode::kProjectProcess), 0U);
+  EXPECT_FALSE(Plan().ok);
+  bundle_.programs.clear();
+  Put(45, "DECLARE P = 81.\nWORKDEF 1,0 (6.5,P,1.5,95.)\n");
+  EXPECT_EQ(CountOf(ErrorCode::kProjectProcess), 1U);
+  bundle_.programs.clear();
+  Put(45, "DECLARE P = 80.\nWORKDEF 1,0 (6.5,P,1.5,95.)\n");
+  EXPECT_EQ(CountOf(ErrorCode::kProjectProcess), 0U);
+}
+
+// OPT-8.53, OPT-8.71: of a program in inches what is no RML is the compiler's alone, also where
+// there is no room for it.
+TEST_F(ProjectSides, LinesThatAreNoneAreCountedByTheCompiler) {
+  std::string text;
+  for (int n = 0; n < 1100; ++n) text += "12345 VR[0] = 1.\n";
+  bundle_.programs.push_back({45, {"45.SI", text}, true});
+  const machine::TransferPlan plan = Plan();
+  EXPECT_FALSE(plan.ok);
+  EXPECT_FALSE(plan.diagnostics_dropped.empty());
+  EXPECT_FALSE(plan.diagnostics_dropped.kinds().contains(ErrorCode::kConvertNotRml));
+}
+
+// OPT-8.68, OPT-10.17: what is wrong with a program as a whole, of which one, by which rule.
+TEST_F(ProjectSides, FindingsOfAProgramAreOfItsFile) {
+  Put(45, "");
+  Put(5, "SPEED 5\n");
+  std::vector<std::string> said;
+  for (const Diagnostic& d : Plan().diagnostics) {
+    if (d.code != ErrorCode::kProjectSource && d.code != ErrorCode::kReservedVariable) continue;
+    said.push_back(std::to_string(d.program) + " " + d.file + " " + d.rule + " " + d.detail);
+  }
+  EXPECT_EQ(said,
+            (std::vector<std::string>{"45 45.S OPT-8.68 program 45 has no text",
+                                      "5 5.S OPT-10.17 programs 1 to 7 are reserved for Amada"}));
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -35,6 +35,8 @@ TEST(SegmentGrid, TheNearestPointsOfTwoSegments) {
       {{{-2, 3, 0}, {6, 3, 0}}, {{0, 0, 0}, {0, 0, 0}}, 3.0, 0.25, 0.0},
       {{{9, 9, 9}, {9, 9, 9}}, {{-2, 3, 0}, {6, 3, 0}}, std::sqrt(126.0), 0.0, 1.0},
       {{{1, 2, 3}, {1, 2, 3}}, {{1, 2, 8}, {1, 2, 8}}, 5.0, 0.0, 0.0},
+      {{{0, 0, 0}, {1e-8, 0, 0}}, {{5, -1, 0}, {5, 1, 0}}, 5.0 - 1e-8, 1.0, 0.5},
+      {{{5, -1, 0}, {5, 1, 0}}, {{0, 0, 0}, {1e-8, 0, 0}}, 5.0 - 1e-8, 0.5, 1.0},
   };
   for (const Row& row : rows) {
     const NearestPoints nearest = NearestPointsOf(row.a, row.b);
@@ -44,7 +46,8 @@ TEST(SegmentGrid, TheNearestPointsOfTwoSegments) {
   }
 }
 
-// Parallel ones, also where they lie apart: the distance is what counts.
+// Parallel ones, also where they lie apart: the distance is what counts. Two that cross at a
+// hundred-thousandth are not parallel.
 TEST(SegmentGrid, TheDistanceOfParallelSegments) {
   const PathSegment a{{0, 0, 0}, {10, 0, 0}};
   EXPECT_NEAR(NearestPointsOf(a, {{3, 4, 0}, {8, 4, 0}}).distance, 4.0, 1e-12);
@@ -52,6 +55,8 @@ TEST(SegmentGrid, TheDistanceOfParallelSegments) {
   EXPECT_NEAR(NearestPointsOf(a, {{13, 4, 0}, {20, 4, 0}}).distance, 5.0, 1e-12);
   EXPECT_NEAR(NearestPointsOf(a, {{20, 4, 0}, {13, 4, 0}}).distance, 5.0, 1e-12);
   EXPECT_NEAR(NearestPointsOf(a, {{-20, 0, 4}, {-3, 0, 4}}).distance, 5.0, 1e-12);
+  const PathSegment along{{0, 0, 0}, {1000, 0, 0}}, across{{0, -0.005, 0}, {1000, 0.005, 0}};
+  EXPECT_NEAR(NearestPointsOf(along, across).distance, 0.0, 1e-6);
 }
 
 // Another way to the same: no two points of a fine division are nearer, and the points told are
@@ -132,6 +137,30 @@ TEST(SegmentGrid, AQueryMeetsFew) {
   const PathSegment far{{-1e7, 5e6, 0}, {1e7, 5e6, 0}, 0};
   EXPECT_TRUE(grid.ForEachNear(far, budget, [&](std::uint32_t) { ++met; }));
   EXPECT_EQ(met, 0U);
+}
+
+// The grid lies in the two axes in which the segments spread most, wherever they are: of a field of
+// them a query meets a few, too.
+TEST(SegmentGrid, AQueryMeetsFewOfAField) {
+  for (int flat = 0; flat < 3; ++flat) {
+    const auto point = [&](double u, double v) {
+      motion::ProgramVector p(0.0, 0.0, 0.0);
+      p[flat] = 7e5;
+      p[(flat + 1) % 3] = u;
+      p[(flat + 2) % 3] = v;
+      return p;
+    };
+    std::vector<PathSegment> segments;
+    for (int u = 0; u < 100; ++u) {
+      for (int v = 0; v < 100; ++v) segments.push_back({point(u, v), point(u + 0.5, v), 0});
+    }
+    const SegmentGrid grid(segments, 0.5);
+    std::size_t met = 0, budget = 1'000;
+    const PathSegment query{point(50.0, 50.0), point(50.5, 50.0), 0};
+    EXPECT_TRUE(grid.ForEachNear(query, budget, [&](std::uint32_t) { ++met; })) << flat;
+    EXPECT_GE(met, 1U) << flat;
+    EXPECT_LE(met, 60U) << flat;
+  }
 }
 
 TEST(SegmentGrid, TheBudgetEndsAQuery) {

@@ -31,6 +31,7 @@ TEST(SemanticDiff, WritingDoesNotCount) {
   EXPECT_TRUE(
       DiffOf("VR[0] = VR[1] + 5\nOL[1] = 1\n", "LET VR[00] = VR[1] + 5.0\nOL[1] = ON\n").equal());
   EXPECT_FALSE(DiffOf("VR[0] = VR[1] + 5\n", "VR[0] = VR[1] - 5\n").equal());
+  EXPECT_FALSE(DiffOf("CALL 2 (ON)\n", "CALL 2 (1)\n").equal());  // where no logical value stands
 }
 
 // OPT-3.46: ENDTASK at the end is assumed there; before the end it ends the program.
@@ -55,6 +56,12 @@ TEST(SemanticDiff, NamesCountByWhatTheyStandFor) {
       DiffOf("DECLARE T = 1.5\nCALL 45 (1.,2.,T)\n", "DECLARE T = 2.5\nCALL 45 (1.,2.,T)\n");
   ASSERT_EQ(last.steps.size(), 1U);
   EXPECT_EQ(last.steps[0].what, (Texts{"1.5 -> 2.5"}));
+  // The step behind it has its own values.
+  const ProgramDiff both =
+      DiffOf("DECLARE T = 1.5\nDELAY T\nDELAY 3.\n", "DECLARE T = 2.5\nDELAY T\nDELAY 4.\n");
+  ASSERT_EQ(both.steps.size(), 2U);
+  EXPECT_EQ(both.steps[0].what, (Texts{"1.5 -> 2.5"}));
+  EXPECT_EQ(both.steps[1].what, (Texts{"DELAY 3.0 -> DELAY 4.0"}));
   const ProgramDiff source = DiffOf("DECLARE XP = VR[1]\nMOVE (XP+1,0,0,0,0)\n",
                                     "DECLARE XP = VR[2]\nMOVE (XP+1,0,0,0,0)\n");
   ASSERT_EQ(source.steps.size(), 1U);

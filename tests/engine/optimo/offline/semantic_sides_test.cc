@@ -103,5 +103,19 @@ TEST(SemanticSides, ZerosAreToldAsZeros) {
   EXPECT_EQ(what("-0.0"), (Lines{"X 0.0 -> 5.0"}));
 }
 
+// OPT-3.46, OPT-E.7023: instructions without effect are no steps, wherever they stand; what stands
+// behind one of them, or behind an ENDTASK, is one.
+TEST(SemanticSides, WhatStandsBehindNothingIsAStep) {
+  for (const std::string text : {"CONT 3\n", "ENDTASK\n", "DECLARE X = 1\nCONT 3\nENDTASK\n"}) {
+    EXPECT_EQ(ChangesOf(text, ""), Lines{}) << text;
+    EXPECT_EQ(ChangesOf("DELAY 1.\n" + text, "DELAY 1.\n"), Lines{}) << text;
+  }
+  for (const std::string text : {"CONT 3\n", "ENDTASK\n"}) {
+    EXPECT_EQ(ChangesOf(text + "DELAY 1.\n", text + "DELAY 2.\n"),
+              (Lines{"* 2 2 DELAY 1.0 -> DELAY 2.0"}))
+        << text;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -61,5 +61,35 @@ TEST(TransformSides, TheHeadGoesOnAsItBegan) {
   EXPECT_EQ(SignsOf("-0.0105", "1.57").back(), '+');
 }
 
+// OPT-8.76, OPT-B.80: a turn about Z leaves Z where it is, to rounding; with a tilt of a
+// ten-millionth it is none, and the nearest angles are taken, with B turned over.
+TEST(TransformSides, ATurnThatTiltsIsNoneAboutZ) {
+  const auto b_of = [](double tilt) {
+    const motion::RigidMotion turn = motion::RigidMotionOf({}, 3.0, 0, tilt);
+    return TurnHead({0.0, 0.3}, turn.linear()).b_rad;
+  };
+  EXPECT_NEAR(b_of(1e-10), 0.3, 1e-6);
+  EXPECT_NEAR(b_of(1e-7), -0.3, 1e-6);
+}
+
+// OPT-B.80: nearest to the old angles, and not to where a turn about Z would have led: half a turn
+// about X leads A to pi - A and B to pi - B, the turn about Z behind it A on by 3.
+TEST(TransformSides, TheNearestAnglesLieBesideTheOldOnes) {
+  const motion::RigidMotion turn = motion::RigidMotionOf({}, 3.0, 0, kPi);
+  const motion::HeadAngles head = TurnHead({0.68, 1.5}, turn.linear());
+  EXPECT_NEAR(head.a_rad, 3.0 - kPi - 0.68, 1e-9);
+  EXPECT_NEAR(head.b_rad, kPi - 1.5, 1e-9);
+}
+
+// transform.h: what the list of findings has no room for is counted.
+TEST(TransformSides, FindingsWithoutRoomAreCounted) {
+  std::string text;
+  for (int n = 0; n < 1100; ++n) text += "MOVE (VR[1],0,0,0,0)\n";
+  const Rewriting refused = Transform(text, {});
+  EXPECT_FALSE(refused.ok);
+  EXPECT_EQ(refused.diagnostics.size() + refused.diagnostics_dropped.count(), 1100U);
+  EXPECT_TRUE(refused.diagnostics_dropped.kinds().contains(ErrorCode::kTransformVariable));
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -113,6 +113,7 @@ TEST(Translate, OtherNamesAreToldByTheirBytes) {
   EXPECT_EQ(FormOfFile("a.SO", object), FileForm::kObject);
   EXPECT_EQ(FormOfFile("S", object), FileForm::kObject);
   EXPECT_EQ(FormOfFile("o", "LMR"), FileForm::kMetricSource);
+  EXPECT_EQ(FormOfFile("o", "LMR\x01"), FileForm::kObject);
   EXPECT_EQ(FormOfFile("a.o", ""), FileForm::kObject);
   EXPECT_EQ(FormOfFile("a.S", object), FileForm::kMetricSource);
   EXPECT_EQ(FormOfFile(".si", ""), FileForm::kInchSource);

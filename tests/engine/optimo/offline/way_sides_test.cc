@@ -42,6 +42,7 @@ TEST(WaySides, PiecesAtTheBallOfAPierceOnAnEdge) {
   EXPECT_TRUE(found({1.8, 0.5, 0}, {2.2, 0.5, 0}));   // 2 mm from the start at x = 1.936
   EXPECT_FALSE(found({1.5, 0.5, 0}, {1.9, 0.5, 0}));  // inside
   EXPECT_TRUE(found({2.2, 0.5, 0}, {1.8, 0.5, 0}));   // into it
+  EXPECT_TRUE(found({2.6, 1.3, 0}, {1.8, 0.3, 0}));   // near to the edge at its border alone
   EXPECT_TRUE(found({2.1, 0.4, 0}, {2.1, 0.2, 0}));   // beside it
   EXPECT_FALSE(found({2.2, 1.5, 0}, {1.8, 1.5, 0}));  // further from the edge than the radius
 }
